@@ -1,0 +1,66 @@
+#pragma once
+// Transports: bytes or CAN frames in and out, stamped on arrival. A link knows nothing of what it
+// carries. Links live on one io_context (the device thread); callbacks come on that thread.
+// send/write may be called from one other thread (the control loop): they write the raw handle,
+// never wait, and never touch an Asio object.
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "base/bytes.hpp"
+#include "base/result.hpp"
+#include "base/time.hpp"
+
+namespace roverd::link {
+
+using base::Bytes;
+using base::CanFrame;
+using base::Time;
+
+/// Sent: handed to the kernel whole. Busy: no room now, dropped. Closed: the link is down.
+enum class SendResult { Sent, Busy, Closed };
+
+/// A stream or datagram transport.
+class ByteLink {
+ public:
+  virtual ~ByteLink() = default;
+  ByteLink(const ByteLink&) = delete;
+  ByteLink& operator=(const ByteLink&) = delete;
+
+  /// Device thread. Starts receiving; opening again an open link is an error of the caller.
+  virtual base::Result<void> open() = 0;
+  /// Device thread. Idempotent; no callback comes after it.
+  virtual void close() noexcept = 0;
+  /// Any one thread; a short write counts as Busy and the rest is dropped.
+  virtual SendResult write(Bytes bytes) noexcept = 0;
+  /// For messages and the driver list: "serial:/dev/ttyUSB0:115200".
+  virtual std::string describe() const = 0;
+
+  std::function<void(Bytes, Time)> on_bytes;                 ///< never empty spans
+  std::function<void(const std::string& reason)> on_closed;  ///< lost; not after close()
+
+ protected:
+  ByteLink() = default;
+};
+
+/// A CAN bus.
+class FrameLink {
+ public:
+  virtual ~FrameLink() = default;
+  FrameLink(const FrameLink&) = delete;
+  FrameLink& operator=(const FrameLink&) = delete;
+
+  virtual base::Result<void> open() = 0;
+  virtual void close() noexcept = 0;
+  virtual SendResult send(const CanFrame& frame) noexcept = 0;
+  virtual std::string describe() const = 0;
+
+  std::function<void(const CanFrame&, Time)> on_frame;
+  std::function<void(const std::string& reason)> on_closed;
+
+ protected:
+  FrameLink() = default;
+};
+
+}  // namespace roverd::link

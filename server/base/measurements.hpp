@@ -1,0 +1,131 @@
+#pragma once
+// What drivers tell the robot. SI, radians, stamped with the monotonic time at which the bytes
+// arrived (device units die in the codecs). An unknown value is an empty optional, never zero.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "base/geo.hpp"
+#include "base/time.hpp"
+
+namespace roverd::base {
+
+/// Ordered: a later one is a better position.
+enum class FixType { None, Unknown, Estimated, Single, Differential, RtkFloat, RtkFixed };
+std::string_view to_string(
+    FixType fix) noexcept;  // none unknown estimated gps dgps rtk_float rtk_fixed
+
+/// One epoch's position. `position` is empty without a fix.
+struct GnssFix {
+  Time stamp;
+  FixType fix = FixType::None;
+  std::optional<LatLon> position;
+  std::optional<double> alt_msl_m;
+  std::optional<double> geoid_sep_m;
+  std::optional<int> satellites;
+  std::optional<double> hdop;
+  std::optional<double> sigma_east_m;  ///< 1σ as the receiver reports it (GST)
+  std::optional<double> sigma_north_m;
+  std::optional<double> correction_age_s;
+  std::optional<WallTime> utc;  ///< epoch by the receiver
+};
+
+/// Velocity over ground.
+struct GnssVelocity {
+  Time stamp;
+  double east_mps = 0.0;
+  double north_mps = 0.0;
+  std::optional<double> sigma_mps;
+};
+
+enum class HeadingSource { Compass, DualAntenna };
+
+/// Absolute yaw. A compass may carry a large, slowly changing bias; two antennas do not.
+struct Heading {
+  Time stamp;
+  double yaw_rad = 0.0;
+  HeadingSource source = HeadingSource::Compass;
+};
+
+/// Track or wheel travel since the last message of this kind.
+struct WheelTravel {
+  Time stamp;
+  double left_m = 0.0;
+  double right_m = 0.0;
+};
+
+/// Speed and turn rate as the base measures them on its wheels (slip is not seen).
+struct BaseMotion {
+  Time stamp;
+  BodyTwist twist;
+};
+
+enum class VehicleState { Normal, Estop, Exception, Unknown };
+enum class ControlMode { Standby, Can, Uart, Radio, Unknown };
+std::string_view to_string(VehicleState s) noexcept;  // normal estop exception unknown
+std::string_view to_string(ControlMode m) noexcept;   // standby can uart rc unknown
+
+struct BaseStatus {
+  Time stamp;
+  VehicleState vehicle_state = VehicleState::Unknown;
+  ControlMode control_mode = ControlMode::Unknown;
+  double battery_v = 0.0;
+  std::uint16_t error_code = 0;
+  std::vector<std::string> errors;  ///< error bits in words
+  bool radio_lost = false;
+  bool battery_fault = false;
+};
+
+struct BatteryState {
+  Time stamp;
+  double charge_pct = 0.0;  ///< 0..100
+  double voltage_v = 0.0;
+  std::optional<double> current_a;
+  std::optional<double> temperature_c;
+};
+
+enum class Switch { Unknown, Up, Middle, Down };
+std::string_view to_string(Switch s) noexcept;  // unknown up middle down
+
+/// Transmitter state. Axes in [−1, 1]: sticks up and right positive.
+struct RadioState {
+  Time stamp;
+  Switch swa = Switch::Unknown;
+  Switch swb = Switch::Unknown;
+  Switch swc = Switch::Unknown;
+  Switch swd = Switch::Unknown;
+  double right_lr = 0.0;
+  double right_ud = 0.0;
+  double left_ud = 0.0;
+  double left_lr = 0.0;
+  double vra = 0.0;
+  std::uint8_t count = 0;
+};
+
+/// A driver's own state machine: Down → Opening → Up → Faulty → (back-off) Opening.
+enum class DriverPhase { Down, Opening, Up, Faulty };
+std::string_view to_string(DriverPhase p) noexcept;  // down opening up faulty
+
+struct DriverStatus {
+  Time stamp;
+  std::string name;
+  DriverPhase phase = DriverPhase::Down;
+  std::string reason;          ///< why it is not up; empty when up
+  std::uint64_t received = 0;  ///< frames or sentences understood
+  std::uint64_t refused = 0;   ///< damaged, out of range
+  std::uint64_t sent = 0;
+  std::optional<Time> last_received;
+};
+
+using Measurement = std::variant<GnssFix, GnssVelocity, Heading, WheelTravel, BaseMotion,
+                                 BaseStatus, BatteryState, RadioState, DriverStatus>;
+
+inline Time stamp_of(const Measurement& m) noexcept {
+  return std::visit([](const auto& value) { return value.stamp; }, m);
+}
+
+}  // namespace roverd::base

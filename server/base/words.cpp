@@ -1,0 +1,169 @@
+// The words of the public interface for every enumeration of base: written once, used by the API,
+// the log and the events.
+
+#include "base/measurements.hpp"
+#include "base/snapshot.hpp"
+
+namespace roverd::base {
+
+std::string_view to_string(FixType fix) noexcept {
+  switch (fix) {
+    case FixType::None:
+      return "none";
+    case FixType::Unknown:
+      return "unknown";
+    case FixType::Estimated:
+      return "estimated";
+    case FixType::Single:
+      return "gps";
+    case FixType::Differential:
+      return "dgps";
+    case FixType::RtkFloat:
+      return "rtk_float";
+    case FixType::RtkFixed:
+      return "rtk_fixed";
+  }
+  return "unknown";
+}
+
+std::string_view to_string(VehicleState s) noexcept {
+  switch (s) {
+    case VehicleState::Normal:
+      return "normal";
+    case VehicleState::Estop:
+      return "estop";
+    case VehicleState::Exception:
+      return "exception";
+    case VehicleState::Unknown:
+      return "unknown";
+  }
+  return "unknown";
+}
+
+std::string_view to_string(ControlMode m) noexcept {
+  switch (m) {
+    case ControlMode::Standby:
+      return "standby";
+    case ControlMode::Can:
+      return "can";
+    case ControlMode::Uart:
+      return "uart";
+    case ControlMode::Radio:
+      return "rc";
+    case ControlMode::Unknown:
+      return "unknown";
+  }
+  return "unknown";
+}
+
+std::string_view to_string(Switch s) noexcept {
+  switch (s) {
+    case Switch::Unknown:
+      return "unknown";
+    case Switch::Up:
+      return "up";
+    case Switch::Middle:
+      return "middle";
+    case Switch::Down:
+      return "down";
+  }
+  return "unknown";
+}
+
+std::string_view to_string(DriverPhase p) noexcept {
+  switch (p) {
+    case DriverPhase::Down:
+      return "down";
+    case DriverPhase::Opening:
+      return "opening";
+    case DriverPhase::Up:
+      return "up";
+    case DriverPhase::Faulty:
+      return "faulty";
+  }
+  return "faulty";
+}
+
+std::string_view to_string(Mode mode) noexcept {
+  switch (mode) {
+    case Mode::Manual:
+      return "MANUAL";
+    case Mode::Hold:
+      return "HOLD";
+    case Mode::Auto:
+      return "AUTO";
+    case Mode::Guided:
+      return "GUIDED";
+    case Mode::Rtl:
+      return "RTL";
+    case Mode::SmartRtl:
+      return "SMART_RTL";
+    case Mode::Follow:
+      return "FOLLOW";
+    case Mode::Steering:
+      return "STEERING";
+    case Mode::Acro:
+      return "ACRO";
+    case Mode::Simple:
+      return "SIMPLE";
+    case Mode::Dock:
+      return "DOCK";
+  }
+  return "HOLD";
+}
+
+std::optional<Mode> mode_from(std::string_view text) noexcept {
+  for (int i = 0; i <= static_cast<int>(Mode::Dock); ++i) {
+    const Mode mode = static_cast<Mode>(i);
+    if (to_string(mode) == text) return mode;
+  }
+  return std::nullopt;
+}
+
+std::string_view to_string(Driver driver) noexcept {
+  switch (driver) {
+    case Driver::None:
+      return "none";
+    case Driver::Autonomy:
+      return "auto";
+    case Driver::Teleop:
+      return "teleop";
+    case Driver::Radio:
+      return "rc";
+  }
+  return "none";
+}
+
+std::string_view to_string(ExecutionState s) noexcept {
+  switch (s) {
+    case ExecutionState::Idle:
+      return "idle";
+    case ExecutionState::Loaded:
+      return "loaded";
+    case ExecutionState::Running:
+      return "running";
+    case ExecutionState::Paused:
+      return "paused";
+    case ExecutionState::Blocked:
+      return "blocked";
+    case ExecutionState::Finished:
+      return "finished";
+    case ExecutionState::Aborted:
+      return "aborted";
+  }
+  return "idle";
+}
+
+std::string_view to_string(Severity s) noexcept {
+  switch (s) {
+    case Severity::Info:
+      return "info";
+    case Severity::Warning:
+      return "warning";
+    case Severity::Error:
+      return "error";
+  }
+  return "error";
+}
+
+}  // namespace roverd::base

@@ -1,0 +1,116 @@
+#pragma once
+// A mission: an ordered list of items, a home kept apart, and settings. Plain values; an edit makes
+// a new Plan. Item numbers shown to people start at 1; indices here start at 0.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "base/geo.hpp"
+
+namespace roverd::mission {
+
+using base::LatLon;
+
+enum class Turn { Auto, Pivot, Arc, Through };
+enum class Side { Left, Right };
+enum class AtEnd { Hold, Return, Repeat, BackAndForth };
+
+struct Waypoint {
+  LatLon at;
+  std::optional<double> alt_m;
+  std::optional<double> speed_mps;  ///< for the leg that leads here
+  std::optional<double> radius_m;   ///< counts as reached within
+  std::optional<double> hold_s;
+  bool reverse = false;
+  Turn turn = Turn::Auto;
+  friend bool operator==(const Waypoint&, const Waypoint&) = default;
+};
+struct Local {
+  double east_m = 0.0;
+  double north_m = 0.0;
+  std::optional<double> heading_deg;
+  friend bool operator==(const Local&, const Local&) = default;
+};
+struct Move {
+  double forward_m = 0.0;
+  friend bool operator==(const Move&, const Move&) = default;
+};
+/// Exactly one of the two.
+struct TurnBy {
+  std::optional<double> turn_deg;     ///< relative, clockwise positive (as compass)
+  std::optional<double> heading_deg;  ///< absolute
+  friend bool operator==(const TurnBy&, const TurnBy&) = default;
+};
+struct Wait {
+  double seconds = 0.0;
+  friend bool operator==(const Wait&, const Wait&) = default;
+};
+struct Speed {
+  double speed_mps = 0.0;  ///< for the items that follow
+  friend bool operator==(const Speed&, const Speed&) = default;
+};
+struct Row {
+  Side side = Side::Left;
+  std::optional<double> gap_m;
+  friend bool operator==(const Row&, const Row&) = default;
+};
+struct Wall {
+  Side side = Side::Left;
+  double distance_m = 0.0;
+  friend bool operator==(const Wall&, const Wall&) = default;
+};
+struct Landmarks {
+  std::string name;
+  double offset_m = 0.0;
+  friend bool operator==(const Landmarks&, const Landmarks&) = default;
+};
+struct Jump {
+  int item = 0;   ///< number, from 1
+  int times = 0;  ///< repetitions; 0 = for ever
+  friend bool operator==(const Jump&, const Jump&) = default;
+};
+struct ReturnHome {
+  friend bool operator==(const ReturnHome&, const ReturnHome&) = default;
+};
+struct Action {
+  std::string name;
+  nlohmann::json arguments = nlohmann::json::object();  ///< the other members, kept as they came
+  friend bool operator==(const Action&, const Action&) = default;
+};
+
+using Item = std::variant<Waypoint, Local, Move, TurnBy, Wait, Speed, Row, Wall, Landmarks, Jump,
+                          ReturnHome, Action>;
+
+/// The word of the public interface: "waypoint", "local", "move", "turn", "wait", …
+std::string_view type_name(const Item& item) noexcept;
+
+struct Home {
+  LatLon at;
+  std::optional<double> alt_m;
+  friend bool operator==(const Home&, const Home&) = default;
+};
+
+struct Settings {
+  AtEnd at_end = AtEnd::Hold;
+  std::optional<double> speed_mps;  ///< default speed of the mission
+  friend bool operator==(const Settings&, const Settings&) = default;
+};
+
+struct Plan {
+  std::string name;
+  std::optional<Home> home;
+  Settings settings;
+  std::vector<Item> items;
+  friend bool operator==(const Plan&, const Plan&) = default;
+};
+
+/// Sum of the geodesic legs between consecutive waypoints, metres.
+double length_m(const Plan& plan) noexcept;
+
+}  // namespace roverd::mission

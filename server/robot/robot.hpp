@@ -1,0 +1,142 @@
+#pragma once
+// The robot: measurements and commands in, one DriveCommand and one Snapshot out, 50 times a
+// second.
+//
+//   inbox, commands ─▶ tick(now): take → estimate → modes and executor → arbiter → limits
+//                        → send → publish
+//
+// Thread rules: tick, and nothing else, runs on the control thread; it is noexcept, does no I/O but
+// the two callables `send` and `wake`, allocates little, and waits for nobody (queues are taken
+// with try_lock). measurements(), request(), snapshot(), replies(), events() may be used from any
+// thread. Without a thread, a test calls tick() with any times it likes.
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "base/drive_command.hpp"
+#include "base/inbox.hpp"
+#include "base/latest.hpp"
+#include "base/measurements.hpp"
+#include "base/result.hpp"
+#include "base/snapshot.hpp"
+#include "mission/plan.hpp"
+#include "robot/config.hpp"
+
+namespace roverd::robot {
+
+using base::Time;
+
+/// One revision of a mission as the api hands it over. Immutable.
+struct MissionCopy {
+  std::string id;
+  std::int64_t revision = 0;
+  mission::Plan plan;
+};
+
+struct Arm {};
+struct Disarm {};
+struct SetMode {
+  base::Mode mode = base::Mode::Hold;
+};
+struct Estop {
+  std::string who;
+};
+struct ResetEstop {};
+struct StartMission {
+  std::string mission_id;
+  std::int64_t revision = 0;
+  enum class From { First, Nearest, Item } from = From::First;
+  int item = 1;  ///< 1-based, with From::Item
+};
+struct PauseMission {};
+struct ResumeMission {};
+struct StopMission {};
+struct SkipItem {
+  int item = 0;  ///< 1-based target; 0: the next one
+};
+struct SetHome {
+  std::optional<base::LatLon> at;  ///< empty: here
+};
+/// Teleoperation; no answer is given. Void after 0.5 s without a newer one.
+struct Drive {
+  base::BodyTwist twist;
+  bool deadman = false;
+};
+struct CompiledMission;  // route of one MissionCopy in one LocalFrame; see robot/compile.hpp
+struct LoadMission {
+  std::shared_ptr<const CompiledMission> mission;
+};
+
+using Command = std::variant<Arm, Disarm, SetMode, Estop, ResetEstop, StartMission, PauseMission,
+                             ResumeMission, StopMission, SkipItem, SetHome, Drive, LoadMission>;
+
+/// Called with what the robot *did*. Runs on whatever thread drains replies().
+using Reply = std::function<void(base::Result<void>)>;
+
+struct PendingReply {
+  Reply reply;
+  base::Result<void> result;
+};
+
+/// What `start` would do now. All unknowns empty.
+struct Preview {
+  std::string mission_id;
+  std::int64_t revision = 0;
+  std::string name;
+  int first_item = 0;  ///< 1-based
+  std::optional<base::LatLon> first_target;
+  std::optional<double> distance_m;
+  std::optional<double> bearing_deg;
+  double speed_mps = 0.0;
+  mission::AtEnd at_end = mission::AtEnd::Hold;
+};
+
+class Robot {
+ public:
+  explicit Robot(Config config);
+  ~Robot();
+  Robot(const Robot&) = delete;
+  Robot& operator=(const Robot&) = delete;
+
+  /// Set before the first tick. Called at every tick, never waits; what it returns is ignored: a
+  /// lost command shows in the base's feedback.
+  std::function<void(const base::DriveCommand&, Time)> send;
+  /// Set before the first tick. Called by tick when replies() or events() got something; must not
+  /// wait (an eventfd write).
+  std::function<void()> wake;
+
+  /// Any thread: from drivers.
+  base::Inbox<base::Measurement>& measurements() noexcept;
+
+  /// Any thread. The answer comes with the next tick through replies(). `not_after`: a command
+  /// still waiting then is refused as Late. @return false: no room, nothing was queued and `reply`
+  /// will not be called.
+  bool request(Command command, Time not_after, Reply reply);
+
+  /// Any thread, at once: compiles a copy into a route in the robot's frame (or a new frame at its
+  /// first point while the robot has none). Errors name the items (fields "/items/3").
+  base::Result<std::shared_ptr<const CompiledMission>> compile(MissionCopy copy) const;
+  /// Any thread. NotFound when nothing is loaded; Conflict when `from` names no item.
+  base::Result<Preview> preview(const StartMission& start) const;
+  /// Any thread. What is loaded; null if nothing is.
+  std::shared_ptr<const MissionCopy> loaded() const;
+
+  base::Inbox<PendingReply>& replies() noexcept;
+  base::Inbox<base::Event>& events() noexcept;
+  /// Any thread; null before the first tick.
+  std::shared_ptr<const base::Snapshot> snapshot() const;
+
+  /// Control thread (or a test). @param now never goes backwards. @param wall for events only.
+  /// @param lateness how much later than planned the loop woke; for the health figures.
+  void tick(Time now, base::WallTime wall, base::Duration lateness = {}) noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace roverd::robot
