@@ -1,0 +1,65 @@
+#pragma once
+// The transmitter in the operator's hand, and what may go wrong while the simulator runs.
+
+#include <string>
+
+#include "base/measurements.hpp"
+#include "base/result.hpp"
+
+namespace roverd::sim {
+
+/// Sticks in [−1, 1], up and right positive. The usual position: CAN drives, everything else off.
+struct Radio {
+  bool on = true;
+  base::Switch swa = base::Switch::Up;
+  base::Switch swb = base::Switch::Up;  ///< up: the CAN bus drives; other positions: the sticks
+  base::Switch swc = base::Switch::Up;
+  base::Switch swd = base::Switch::Up;
+  double right_lr = 0.0;
+  double right_ud = 0.0;
+  double left_ud = 0.0;
+  double left_lr = 0.0;
+  double vra = 0.0;
+};
+
+/// Switchable while running. All off: a healthy robot.
+struct Faults {
+  bool bus_off = false;
+  double loss_to_base = 0.0;
+  double loss_from_base = 0.0;
+  bool estop = false;
+  bool radio_loss = false;
+  bool radio_freeze = false;
+  bool radio_loss_unflagged = false;
+  int error_bits = 0;
+  bool gnss_outage = false;
+  bool gnss_silent = false;
+  std::string gnss_fix;
+  double gnss_jump_east_m = 0.0;
+  double gnss_jump_north_m = 0.0;
+  double gnss_jump_s = 0.0;
+  bool compass_off = false;
+  double compass_extra_deg = 0.0;
+};
+
+template <class V>
+void fields(V& v, Faults& f) {
+  v("bus_off", f.bus_off, "no frame goes in or out");
+  v("loss_to_base", f.loss_to_base, 0.0, 1.0, "share of frames lost on the way to the base");
+  v("loss_from_base", f.loss_from_base, 0.0, 1.0, "share of frames lost on the way from the base");
+  v("estop", f.estop, "the red button on the robot is pressed");
+  v("radio_loss", f.radio_loss, "the transmitter is out of range: 0x241 stops, error bit 2");
+  v("radio_freeze", f.radio_freeze, "out of range: 0x241 repeats its last bytes, error bit 2");
+  v("radio_loss_unflagged", f.radio_loss_unflagged, "a lost transmitter does not set error bit 2");
+  v("error_bits", f.error_bits, 0, 65535, "further error bits of 0x211; 0x441 clears them");
+  v("gnss_outage", f.gnss_outage, "sentences without a fix");
+  v("gnss_silent", f.gnss_silent, "no byte from the receiver");
+  v("gnss_fix", f.gnss_fix, "rtk_fixed, rtk_float, dgps, gps or none; empty: by the profile");
+  v("gnss_jump_east_m", f.gnss_jump_east_m, -1000.0, 1000.0, "added to the position");
+  v("gnss_jump_north_m", f.gnss_jump_north_m, -1000.0, 1000.0, "added to the position");
+  v("gnss_jump_s", f.gnss_jump_s, 0.0, 86400.0, "a new jump ends after this; 0: it stays");
+  v("compass_off", f.compass_off, "no HDT sentences");
+  v("compass_extra_deg", f.compass_extra_deg, -180.0, 180.0, "added to the compass heading");
+}
+
+}  // namespace roverd::sim
