@@ -1,0 +1,167 @@
+# Shared by run, test and .ci/run; sourced, never started. The caller has set -euo pipefail and `me`
+# (its own name, for messages).
+# shellcheck shell=bash
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+build=$root/build
+bin=$build/bin
+node_home=$root/.cache/node
+node_version=22.23.3 # installed only where Node is missing or older than the web tools need
+npm_version=10.9.9
+jobs=$(nproc)
+
+# Compiled objects are shared between clones of the same sources.
+export CCACHE_BASEDIR=$root CCACHE_NOHASHDIR=1
+
+say() { printf '%s\n' "$*"; }
+
+# One line with the cause, then out.
+die() {
+  printf '%s: %s\n' "${me:-roverd}" "$*" >&2
+  exit 1
+}
+
+# logged TITLE LOG COMMAND…: shows and keeps the output; on failure one line with cause and log.
+logged() {
+  local title=$1 log=$2 cause
+  shift 2
+  mkdir -p "$(dirname "$log")"
+  if ! "$@" 2>&1 </dev/null | tee "$log"; then
+    cause=$(grep -m1 -E '(error|ERR!|^E: |fatal|Error:)' "$log" || tail -n 1 "$log")
+    die "$title failed: ${cause:-no message} (log: $log)"
+  fi
+}
+
+as_root() {
+  if [ "$(id -u)" = 0 ]; then
+    "$@"
+  else
+    command -v sudo >/dev/null || die "$1 needs root: start as root, or install sudo"
+    sudo "$@"
+  fi
+}
+
+# install_packages LOG PACKAGE…: apt, without questions.
+install_packages() {
+  local log=$1
+  shift
+  command -v apt-get >/dev/null ||
+    die "this is not a Debian system; please install by hand: $*"
+  say "installing packages: $*"
+  logged "apt-get update" "$log" as_root apt-get update -q
+  logged "apt-get install" "$log" as_root env DEBIAN_FRONTEND=noninteractive \
+    apt-get install -y -q --no-install-recommends "$@"
+}
+
+# need_packages LIST…: installs what is missing of the files .ci/packages.LIST; quick when all is there.
+need_packages() {
+  local list wanted=() missing=() name state
+  for list in "$@"; do
+    mapfile -t -O "${#wanted[@]}" wanted < <(grep -vE '^(#|$)' "$root/.ci/packages.$list")
+  done
+  declare -A installed=()
+  while read -r name state; do
+    [ "$state" = installed ] && installed[${name%%:*}]=1
+  done < <(dpkg-query -W -f='${Package} ${db:Status-Status}\n' "${wanted[@]}" 2>/dev/null || true)
+  for name in "${wanted[@]}"; do
+    [ -n "${installed[$name]:-}" ] || missing+=("$name")
+  done
+  [ "${#missing[@]}" = 0 ] || install_packages "$build/logs/packages.log" "${missing[@]}"
+}
+
+node_is_new_enough() {
+  local version major minor
+  version=$(node --version 2>/dev/null) && command -v npm >/dev/null || return 1
+  IFS=. read -r major minor _ <<<"${version#v}"
+  [ "$major" -gt 22 ] || { [ "$major" = 22 ] && [ "$minor" -ge 12 ]; } ||
+    { [ "$major" = 20 ] && [ "$minor" -ge 19 ]; }
+}
+
+# The web tools need Node 20.19 or 22.12 and later; Debian 12 has 18. A newer one then comes from npm
+# into the project's own .cache.
+need_node() {
+  node_is_new_enough && return
+  PATH=$node_home/node_modules/.bin:$PATH
+  export PATH
+  node_is_new_enough && return
+  command -v npm >/dev/null || install_packages "$build/logs/packages.log" nodejs npm
+  say "fetching Node $node_version into .cache/node"
+  mkdir -p "$node_home"
+  logged "fetching Node" "$build/logs/node.log" npm install --prefix "$node_home" --no-audit \
+    --no-fund --loglevel=error "node@$node_version" "npm@$npm_version"
+  hash -r
+  node_is_new_enough || die "the fetched Node does not start (log: $build/logs/node.log)"
+}
+
+# newer_than STAMP PATH…: is there no stamp, or something changed (or gone) since?
+newer_than() {
+  local stamp=$1
+  shift
+  [ -e "$stamp" ] || return 0
+  [ -n "$(find "$@" -newer "$stamp" -print -quit 2>&1)" ]
+}
+
+# The page's packages as package-lock.json says.
+need_web_packages() {
+  local lock=$root/web/package-lock.json stamp=$root/web/node_modules/.complete
+  newer_than "$stamp" "$lock" || return 0
+  need_node
+  say "fetching the page's packages"
+  logged "npm ci" "$build/logs/npm.log" npm --prefix "$root/web" ci --no-audit --no-fund --loglevel=error
+  touch "$stamp"
+}
+
+web_sources() {
+  find "$root/web" -mindepth 1 -maxdepth 1 ! -name node_modules ! -name dist ! -name '.*'
+}
+
+build_web() {
+  local stamp=$build/page.stamp sources
+  mapfile -t sources < <(web_sources)
+  newer_than "$stamp" "${sources[@]}" "$root/server/api" || return 0
+  need_web_packages
+  need_node
+  say "building the page"
+  mkdir -p "$build"
+  touch "$stamp.new"
+  logged "building the page" "$build/logs/page.log" npm --prefix "$root/web" run build
+  mv "$stamp.new" "$stamp"
+}
+
+# configure FOLDER OPTION…: only the first time; ninja repeats it when a CMakeLists.txt changed.
+configure() {
+  local folder=$1 launcher=()
+  shift
+  [ -e "$folder/build.ninja" ] && return
+  command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  logged "cmake" "$build/logs/cmake-$(basename "$folder").log" \
+    cmake -S "$root" -B "$folder" -G Ninja "${launcher[@]}" "$@"
+}
+
+ninja_build() {
+  local folder=$1
+  shift
+  NINJA_STATUS='[%f/%t %es] ' logged "building" "$build/logs/ninja-$(basename "$folder").log" \
+    ninja -C "$folder" -j "$jobs" "$@"
+}
+
+# The two programs and the page. Nothing but a look at time stamps when nothing changed.
+build_product() {
+  local stamp=$build/product.stamp
+  mkdir -p "$build/logs"
+  exec 9>"$build/.lock"
+  flock -n 9 || {
+    say "another build is running in $build; waiting for it"
+    flock 9
+  }
+  build_web
+  if newer_than "$stamp" "$root/server" "$root/drivers" "$root/migrations" "$root/CMakeLists.txt" \
+    "$build/page.stamp" || [ ! -x "$bin/roverd" ] || [ ! -x "$bin/roverd-sim" ]; then
+    touch "$stamp.new"
+    configure "$build" -DCMAKE_BUILD_TYPE=Release
+    say "building roverd and roverd-sim"
+    ninja_build "$build" roverd roverd-sim
+    mv "$stamp.new" "$stamp"
+  fi
+  exec 9>&-
+}
