@@ -1,0 +1,116 @@
+#include "mission/text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+
+#include "mission/json.hpp"
+
+namespace roverd::mission {
+namespace {
+
+/// Bytes of the character that begins at `at`; 0 if it is broken. Table 3-7 of the Unicode
+/// standard.
+std::size_t character_size(std::string_view text, std::size_t at) noexcept {
+  const auto byte = [&](std::size_t i) -> unsigned {
+    return at + i < text.size() ? static_cast<std::uint8_t>(text[at + i]) : 0u;
+  };
+  const auto follows = [&](std::size_t i) { return (byte(i) & 0xC0u) == 0x80u; };
+  const unsigned a = byte(0);
+  const unsigned b = byte(1);
+  if (a < 0x80) return 1;
+  if (a >= 0xC2 && a <= 0xDF) return follows(1) ? 2 : 0;
+  if (a >= 0xE0 && a <= 0xEF) {
+    const bool narrow = (a == 0xE0 && b < 0xA0) || (a == 0xED && b > 0x9F);
+    return follows(1) && follows(2) && !narrow ? 3 : 0;
+  }
+  if (a >= 0xF0 && a <= 0xF4) {
+    const bool narrow = (a == 0xF0 && b < 0x90) || (a == 0xF4 && b > 0x8F);
+    return follows(1) && follows(2) && follows(3) && !narrow ? 4 : 0;
+  }
+  return 0;
+}
+
+bool is_control(char c) noexcept {
+  const auto byte = static_cast<std::uint8_t>(c);
+  return byte < 0x20 || byte == 0x7F;
+}
+
+}  // namespace
+
+std::optional<std::size_t> utf8_length(std::string_view text) noexcept {
+  std::size_t count = 0;
+  for (std::size_t at = 0; at < text.size(); ++count) {
+    const std::size_t size = character_size(text, at);
+    if (size == 0) return std::nullopt;
+    at += size;
+  }
+  return count;
+}
+
+std::string name_problem(std::string_view name) {
+  const auto length = utf8_length(name);
+  if (!length) return "must be valid UTF-8";
+  if (name.find_first_not_of(' ') == std::string_view::npos) return "must not be empty";
+  if (*length > kMaxNameLength) {
+    return "must have at most " + std::to_string(kMaxNameLength) + " characters, has " +
+           std::to_string(*length);
+  }
+  if (std::any_of(name.begin(), name.end(), is_control)) {
+    return "must not contain control characters";
+  }
+  return {};
+}
+
+std::string clean_name(std::string_view name, std::string_view fallback) {
+  std::string out;
+  std::size_t count = 0;
+  for (std::size_t at = 0; at < name.size() && count < kMaxNameLength; ++count) {
+    const std::size_t size = character_size(name, at);
+    if (size == 0 || is_control(name[at])) {
+      out += ' ';
+      at += 1;
+    } else {
+      out += name.substr(at, size);
+      at += size;
+    }
+  }
+  const std::size_t first = out.find_first_not_of(' ');
+  if (first == std::string::npos) return std::string(fallback);
+  return out.substr(first, out.find_last_not_of(' ') - first + 1);
+}
+
+void append_number(std::string& out, double value) {
+  if (!std::isfinite(value)) {
+    out += "null";
+    return;
+  }
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  out.append(text.data(), end);
+}
+
+std::string fixed_number(double value, int decimals) {
+  std::array<char, 400> text{};  // the smallest double takes 327 characters, the largest 310
+  const double finite = std::isfinite(value) ? value : 0.0;
+  const auto end =
+      std::to_chars(text.data(), text.data() + text.size(), finite, std::chars_format::fixed).ptr;
+  std::string out(text.data(), end);
+  std::size_t point = out.find('.');
+  if (point == std::string::npos) {
+    if (decimals == 0) return out;
+    point = out.size();
+    out += '.';
+  }
+  const std::size_t wanted = point + 1 + static_cast<std::size_t>(decimals);
+  if (out.size() < wanted) out.resize(wanted, '0');
+  return out;
+}
+
+std::string_view without_bom(std::string_view text) noexcept {
+  return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
+}
+
+}  // namespace roverd::mission
