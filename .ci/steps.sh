@@ -1,0 +1,182 @@
+# The steps of ./test, cheapest first; sourced by it. A step prints what it does and lines
+# "ok - …", "not ok - …", "skip - …"; it fails by its exit code.
+# shellcheck shell=bash
+# shellcheck source=.ci/lib.sh
+true
+
+all_steps=(doors shell format readme web build unit api command real can page figures tidy asan tsan fuzz)
+# shellcheck disable=SC2034
+quick_steps=(doors shell format web build unit)
+# shellcheck disable=SC2034
+declare -A titles=(
+  [doors]="every include and import goes through a door"
+  [shell]="the scripts are clean"
+  [format]="the sources are in the project's format"
+  [readme]="what the README names exists"
+  [web]="page: lint, types, unit tests"
+  [build]="release build without warnings"
+  [unit]="rooms, and the loop in simulated time"
+  [api]="the API over real sockets"
+  [command]="./run: options, bad input, Ctrl-C, second start"
+  [real]="recordings and mission files from the field"
+  [can]="a real CAN interface in the user-mode kernel"
+  [page]="the page in a browser, against the simulated robot"
+  [figures]="figures, measured shortly (twice the promise allowed)"
+  [tidy]="clang-tidy finds nothing"
+  [asan]="unit, loop and API under address and undefined sanitizers"
+  [tsan]="threaded rooms and API under the thread sanitizer"
+  [fuzz]="every parser of foreign bytes against random input"
+  [bench]="all figures of the README, in full"
+)
+
+# sources PATTERN…: tracked and new files, zero-separated.
+sources() { git -C "$root" ls-files -co --exclude-standard -z -- "$@"; }
+
+fix() {
+  need_packages run test
+  need_web_packages
+  need_node
+  (cd "$root" && sources '*.cpp' '*.hpp' | xargs -0 -r clang-format -i)
+  (cd "$root/web" && npm run types >/dev/null && npx eslint --fix . && npm run format)
+}
+
+# run_ctest FOLDER LABELS RESULTS [CTEST OPTION…]: results of every case on stdout.
+run_ctest() {
+  local folder=$1 labels=$2 results=$3 code=0
+  shift 3
+  rm -rf "$results" "$results.xml"
+  mkdir -p "$results"
+  GTEST_OUTPUT=xml:$results/ ctest --test-dir "$folder" -L "^($labels)\$" --no-tests=error \
+    --output-on-failure --timeout 600 --output-junit "$results.xml" "$@" || code=$?
+  "$root/.ci/results" gtest "$results" "$results.xml"
+  return "$code"
+}
+
+step_doors() {
+  "$root/.ci/doors" --self-test
+  "$root/.ci/doors"
+}
+
+step_shell() {
+  cd "$root"
+  local scripts
+  mapfile -d '' scripts < <(sources | xargs -0 grep -lZE -m1 '^#!/usr/bin/env (bash|sh)$')
+  shellcheck -x -a "${scripts[@]}"
+  mapfile -d '' scripts < <(sources | xargs -0 grep -lZE -m1 '^#!/usr/bin/env python3$')
+  python3 - "${scripts[@]}" <<'PYTHON'
+import sys
+for name in sys.argv[1:]:
+    compile(open(name, encoding="utf-8").read(), name, "exec")
+PYTHON
+}
+
+step_format() {
+  cd "$root"
+  sources '*.cpp' '*.hpp' | xargs -0 -r clang-format --dry-run -Werror ||
+    { say "./test --fix brings them into format" && return 1; }
+}
+
+step_readme() { "$root/.ci/readme"; }
+
+step_web() {
+  local code=0 results=$logs/vitest.json
+  need_web_packages
+  cd "$root/web"
+  if npm run check; then say "ok - page types"; else say "not ok - page types" && code=1; fi
+  if npm run lint; then say "ok - page lint"; else say "not ok - page lint" && code=1; fi
+  rm -f "$results"
+  npx vitest run --reporter=default --reporter=json --outputFile.json="$results" || code=$?
+  "$root/.ci/results" vitest "$results"
+  return "$code"
+}
+
+step_build() {
+  build_product
+  ninja_build "$build"
+}
+
+step_unit() { run_ctest "$build" 'unit|loop' "$logs/unit" -j "$jobs"; }
+
+step_api() { run_ctest "$build" api "$logs/api"; }
+
+step_command() { python3 "$root/tests/command/run_test.py"; }
+
+step_real() { python3 "$root/tests/command/real_data_test.py"; }
+
+step_can() { "$root/tests/can/run"; }
+
+step_page() {
+  local code=0 results=$logs/playwright.json
+  need_web_packages
+  cd "$root/web"
+  rm -f "$results"
+  PLAYWRIGHT_JSON_OUTPUT_NAME=$results npm run test:page -- --reporter=list,json || code=$?
+  "$root/.ci/results" playwright "$results"
+  return "$code"
+}
+
+step_tidy() {
+  local files
+  cd "$root"
+  mapfile -t files < <(git ls-files 'server/*.cpp' 'drivers/*.cpp')
+  # Only the warnings' own lines: run-clang-tidy prints each command as well.
+  run-clang-tidy-14 -p "$build" -quiet -j "$jobs" "${files[@]/#/$root/}" 2>&1 |
+    grep -vE '^(clang-tidy|[0-9]+ warnings? (generated|treated)|$)'
+  local code=${PIPESTATUS[0]}
+  [ "$code" = 0 ] && say "ok - ${#files[@]} files"
+  return "$code"
+}
+
+# sanitized NAME SANITIZERS: configures build/NAME.
+sanitized() {
+  configure "$build/$1" -DCMAKE_BUILD_TYPE=Sanitized -DCMAKE_CXX_FLAGS="-O1 -g1" \
+    -DROVERD_SANITIZE="$2"
+}
+
+step_asan() {
+  sanitized asan address,undefined
+  ninja_build "$build/asan"
+  ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1 \
+    UBSAN_OPTIONS=print_stacktrace=1 \
+    run_ctest "$build/asan" 'unit|loop|api' "$logs/asan" -j "$jobs" >"$logs/asan-cases.log" 2>&1 ||
+    { cat "$logs/asan-cases.log" && return 1; }
+  "$root/.ci/results" ctest "$logs/asan.xml"
+}
+
+threaded='^(base|net|api|store|link|robot)_test$'
+
+step_tsan() {
+  local targets
+  sanitized tsan thread
+  mapfile -t targets < <(ctest --test-dir "$build/tsan" -N -R "$threaded" | grep -oE '[a-z_]+_test$')
+  ninja_build "$build/tsan" roverd roverd-sim "${targets[@]}"
+  # Without address randomisation: newer kernels' layout is unknown to this sanitizer's runtime.
+  TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1 \
+    setarch -R ctest --test-dir "$build/tsan" -R "$threaded" --no-tests=error --output-on-failure \
+    --timeout 600 --output-junit "$logs/tsan.xml"
+  "$root/.ci/results" ctest "$logs/tsan.xml"
+}
+
+step_fuzz() {
+  local program name found code=0
+  configure "$build/fuzz" -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Sanitized \
+    -DCMAKE_CXX_FLAGS="-O1 -g1" -DROVERD_FUZZ=ON -DROVERD_TESTS=OFF
+  ninja_build "$build/fuzz" fuzz
+  for program in "$build/fuzz/bin/"*_fuzz; do
+    name=$(basename "$program" _fuzz)
+    found=$build/fuzz/corpus/$name # what it learns is kept for the next run
+    mkdir -p "$found" "$root/tests/data/fuzz/$name"
+    if "$program" -max_total_time="${FUZZ_SECONDS:-5}" -timeout=10 -rss_limit_mb=2048 -verbosity=0 \
+      -print_final_stats=1 -artifact_prefix="$logs/$name-" "$found" "$root/tests/data/fuzz/$name"; then
+      say "ok - fuzz $name"
+    else
+      say "not ok - fuzz $name: the input that breaks it is $logs/$name-…"
+      code=1
+    fi
+  done
+  return "$code"
+}
+
+step_figures() { "$root/tests/bench/run" --short; }
+
+step_bench() { "$root/tests/bench/run" | tee /dev/stderr; }
