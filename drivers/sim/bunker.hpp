@@ -77,7 +77,8 @@ class Bunker {
   const Radio& radio() const noexcept;
   void set_radio(const Radio& radio);
   const Faults& faults() const noexcept;
-  /// Setting gnss_jump_* anew starts the jump's duration anew. Unknown word: an error, no change.
+  /// A changed gnss_jump_* starts its duration anew; when it is over all three are zero again.
+  /// Unknown word in gnss_fix: an error, no change.
   base::Result<void> set_faults(const Faults& faults);
   const Params& params() const noexcept;
   /// Takes effect at the next step; start values (battery.start_pct) do not.

@@ -57,7 +57,7 @@ void fields(V& v, Faults& f) {
   v("gnss_fix", f.gnss_fix, "rtk_fixed, rtk_float, dgps, gps or none; empty: by the profile");
   v("gnss_jump_east_m", f.gnss_jump_east_m, -1000.0, 1000.0, "added to the position");
   v("gnss_jump_north_m", f.gnss_jump_north_m, -1000.0, 1000.0, "added to the position");
-  v("gnss_jump_s", f.gnss_jump_s, 0.0, 86400.0, "a new jump ends after this; 0: it stays");
+  v("gnss_jump_s", f.gnss_jump_s, 0.0, 86400.0, "the jump ends after this; 0: it stays");
   v("compass_off", f.compass_off, "no HDT sentences");
   v("compass_extra_deg", f.compass_extra_deg, -180.0, 180.0, "added to the compass heading");
 }

@@ -1,0 +1,90 @@
+#pragma once
+// The GNSS receiver on the robot and the compass that speaks beside it: once an epoch they look at
+// the truth, add their errors, and deliver sentences a latency later.
+
+#include <deque>
+#include <optional>
+#include <string>
+
+#include "base/geo.hpp"
+#include "base/measurements.hpp"
+#include "base/time.hpp"
+#include "sim/noise.hpp"
+#include "sim/params.hpp"
+#include "sim/radio.hpp"
+
+namespace roverd::sim {
+
+using base::Time;
+
+/// 1 sigma per horizontal axis. `white` is new at every epoch, `drift` changes slowly.
+struct FixErrors {
+  base::FixType fix = base::FixType::None;
+  double white_m = 0.0;
+  double drift_m = 0.0;
+  double drift_tau_s = 60.0;
+  double velocity_mps = 0.0;
+  int satellites = 0;
+  double hdop = 99.99;
+};
+
+/// The errors of a fix class. Source of the drift figures: D. L. Wilson, GPS error correlation.
+FixErrors errors_of(base::FixType fix) noexcept;
+base::FixType fix_of_profile(std::string_view profile) noexcept;
+/// Empty: not one of none, gps, dgps, rtk_float, rtk_fixed.
+std::optional<base::FixType> fix_from(std::string_view word) noexcept;
+
+/// What is true at one instant, at the body's origin.
+struct BodyState {
+  Time time;
+  base::WallTime utc;
+  base::EnuPoint at;
+  double yaw_rad = 0.0;
+  double east_mps = 0.0;
+  double north_mps = 0.0;
+  double yaw_rate_radps = 0.0;
+};
+
+/// What the receiver and the compass make of it.
+struct Epoch {
+  base::WallTime utc;
+  FixErrors errors;
+  std::optional<base::LatLon> position;  ///< empty without a fix
+  double alt_msl_m = 0.0;
+  double geoid_sep_m = 0.0;
+  double speed_mps = 0.0;
+  std::optional<double> course_deg;  ///< empty below 0.1 m/s, as receivers do
+  double sigma_m = 0.0;              ///< per axis, honest
+  std::optional<double> heading_deg;
+};
+
+/// Text of one epoch: GGA RMC VTG GST, and HDT where there is a heading.
+std::string sentences(const Epoch& epoch);
+
+class Receiver {
+ public:
+  Receiver(std::uint64_t seed, const base::LocalFrame& frame);
+
+  /// Once a step. @param now truth at the end of the step. @param motor_difference_a right minus
+  /// left motor current. @return what leaves the receiver during this step; usually empty.
+  std::string step(const Params& p, const Faults& faults, const BodyState& now,
+                   double motor_difference_a);
+
+ private:
+  Epoch measure(const Params& p, const Faults& faults, BodyState truth);
+
+  struct Pending {
+    Time due;
+    std::string text;
+  };
+
+  base::LocalFrame frame_;
+  Noise east_, north_, height_, velocity_, compass_;
+  Drift drift_east_, drift_north_;
+  double kick_a_ = 0.0;  ///< current difference as the iron remembers it
+  std::optional<Time> last_epoch_;
+  std::optional<Time> last_step_;
+  std::deque<Pending> pending_;
+};
+
+}  // namespace roverd::sim
