@@ -1,0 +1,255 @@
+#!/usr/bin/env python3
+"""roverd and the simulated Bunker on a real CAN interface, judged by what candump saw.
+
+Wants an interface vcan0 that is up, and the right to set it down. Started by tests/can/run.
+Usage: can_test.py SCRATCH_FOLDER
+"""
+
+import math
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parent / "harness")]
+
+import candump  # noqa: E402
+from station import BIN, ROOT, Program, Station, check, run_cases, until  # noqa: E402
+
+BUS = "vcan0"
+SCRATCH = pathlib.Path(sys.argv[1])
+LOG = SCRATCH / "candump.log"
+
+# 0x241, byte 0: SWD SWC SWB SWA, two bits each; 2 up, 1 middle, 3 down.
+RADIO_CAN_DRIVES = "241#AA00000000000061"
+RADIO_TAKES_OVER = "241#A600000000000062"
+
+station = None
+moments = {}  # what happened when, by the clock that candump stamps with
+
+
+def now():
+    return time.time()
+
+
+def wait_frames(frame_id, wanted, seconds, begin_s):
+    """Frames of this id since begin_s, as soon as one is wanted."""
+    def ask():
+        frames = candump.only(candump.read(LOG), frame_id, begin_s)
+        return frames if any(map(wanted, frames)) else None
+    return until(f"a 0x{frame_id:03X} for which {wanted.__name__} holds on {BUS}", seconds, ask, 0.2)
+
+
+class Transmitter:
+    """The operator's radio, played by can-utils: the simulator's own is switched off."""
+
+    def __init__(self):
+        self.process = None
+
+    def can_drives(self):
+        frame_id, data = RADIO_CAN_DRIVES.split("#")
+        self.process = subprocess.Popen(["cangen", BUS, "-I", frame_id, "-L", "8", "-D", data, "-g", "40"])
+
+    def silence(self):
+        if self.process:
+            self.process.terminate()
+            self.process.wait()
+            self.process = None
+
+    def take_over(self, seconds):
+        self.silence()
+        end = now() + seconds
+        while now() < end:
+            subprocess.run(["cansend", BUS, RADIO_TAKES_OVER], check=True)
+            time.sleep(0.04)
+
+
+radio = Transmitter()
+
+
+def a_missing_interface_is_named_at_the_start():
+    """roverd says in one line that the CAN interface is missing, and ends"""
+    roverd = Program(BIN / "roverd", "--config", ROOT / "config/robot.toml", "--data",
+                     SCRATCH / "missing", "--port", "0", "--set", "drivers.bunker.link=can:vcan7")
+    code = roverd.wait_exit(30)
+    check(code != 0, "exit code 0 without its CAN interface")
+    named = [line for line in roverd.errors if "vcan7" in line]
+    check(len(named) == 1, f"one line names vcan7, not: {roverd.errors}")
+
+
+def everything_comes_up():
+    """the simulated base is heard over the real interface, and the checks pass"""
+    station.control.ask({"radio": {"on": False}})
+    radio.can_drives()
+    checks = until("the robot is ready to arm", 90,
+                   lambda: station.rest.get("/vehicle/checks")["ready"] or None, 0.5)
+    check(checks, "not ready")
+    vehicle = station.rest.get("/vehicle")
+    frames = candump.read(LOG)
+    for frame_id in (0x211, 0x221, 0x311):
+        check(candump.only(frames, frame_id), f"no 0x{frame_id:03X} on the bus")
+    battery_v = candump.state(candump.only(frames, 0x211)[-1])[2]
+    shown_v = vehicle["battery"]["battery_v"]
+    check(abs(shown_v - battery_v) < 0.35, f"0x211 says {battery_v} V, the API {shown_v} V")
+
+
+def nothing_moves_before_arming():
+    """before arming every 0x111 on the bus is zero"""
+    moving = list(filter(candump.moves, candump.only(candump.read(LOG), 0x111)))
+    check(not moving, f"{len(moving)} moving commands, first {moving[:1]}")
+
+
+def a_mission_drives():
+    """a mission started over the API becomes 0x421 and moving 0x111 frames"""
+    rest = station.rest
+    truth = station.control.ask({"get": "truth"})
+    heading = math.radians(truth["heading_deg"])
+    metre_lat = 1 / 111_360.0
+    metre_lon = metre_lat / math.cos(math.radians(truth["lat"]))
+    ahead = [{"type": "waypoint",
+              "lat": truth["lat"] + d * math.cos(heading) * metre_lat,
+              "lon": truth["lon"] + d * math.sin(heading) * metre_lon} for d in (15, 60)]
+    mission = rest.do("POST", "/missions", {"name": "ahead", "items": ahead})
+    rest.do("POST", "/execution/load", {"mission_id": mission["id"]})
+    rest.do("POST", "/vehicle/arm", {})
+    rest.do("PUT", "/vehicle/mode", {"mode": "AUTO"})
+    moments["start"] = now()
+    rest.do("POST", "/execution/start", {"mission_id": mission["id"], "revision": mission["revision"],
+                                         "from": "first"})
+    wait_frames(0x111, candump.moves, 30, moments["start"])
+    asked = candump.only(candump.read(LOG), 0x421)
+    check(asked and asked[-1].data == bytes([1, 0, 0, 0, 0, 0, 0, 0]),
+          f"0x421 asks for CAN mode with 01 and seven zeros, not {asked[-1:]}")
+    until("the robot has really driven 3 m", 60,
+          lambda: station.control.ask({"get": "truth"})["driven_m"] > 3.0, 0.5)
+
+
+def feedback_is_what_really_happens():
+    """0x221 and 0x311 on the bus agree with each other and with the speed the API shows"""
+    begin = now() - 2.0
+    vehicle = station.rest.get("/vehicle")
+    frames = candump.read(LOG)
+    speeds = [candump.motion(f)[0] for f in candump.only(frames, 0x221, begin)]
+    check(len(speeds) > 20, f"only {len(speeds)} frames 0x221 in 2 s")
+    mean = sum(speeds) / len(speeds)
+    check(0.2 < mean < 1.6, f"0x221 shows {mean:.2f} m/s while driving ahead")
+    shown = vehicle["position"]["speed_mps"]
+    check(abs(shown - mean) < 0.35, f"the API shows {shown} m/s, the tracks {mean:.2f} m/s")
+    odometer = candump.only(frames, 0x311, begin)
+    passed_s = odometer[-1].time_s - odometer[0].time_s
+    way = [b - a for a, b in zip(candump.odometer_m(odometer[0]), candump.odometer_m(odometer[-1]))]
+    check(abs(sum(way) / 2 - mean * passed_s) < 0.3 * mean * passed_s + 0.1,
+          f"0x311 advances {way} m in {passed_s:.2f} s at {mean:.2f} m/s")
+
+
+def commands_come_without_a_gap():
+    """while it drives, 0x111 is never silent for the base's 500 ms"""
+    commands = candump.only(candump.read(LOG), 0x111, moments["start"] + 1.0)
+    gap_s = candump.longest_gap_s(commands)
+    check(gap_s < 0.5, f"a gap of {gap_s:.3f} s in {len(commands)} commands")
+
+
+def the_radio_takes_over():
+    """a radio take-over frame injected by cansend silences the robot's commands"""
+    moments["take_over"] = now()
+    radio.take_over(1.0)
+    moments["quiet"] = now()
+    radio.take_over(1.0)
+    moments["seen"] = station.rest.get("/vehicle")
+    radio.take_over(1.0)
+    moments["still_quiet"] = now()
+    frames = candump.read(LOG)
+    injected = [f for f in candump.only(frames, 0x241, moments["take_over"]) if f.data[0] == 0xA6]
+    check(injected, "candump did not see the injected 0x241")
+    late = list(filter(candump.moves, candump.only(frames, 0x111, moments["quiet"],
+                                                   moments["still_quiet"])))
+    check(not late, f"{len(late)} moving 0x111 while the radio drives, first {late[:1]}")
+    first = injected[0].time_s
+    moving = list(filter(candump.moves, candump.only(frames, 0x111, first)))
+    if moving:
+        check(moving[-1].time_s - first < 0.5, f"moving commands until {moving[-1].time_s - first:.2f} s "
+                                               "after the first take-over frame")
+
+
+def the_api_says_who_drives():
+    """during the take-over the API says that the radio drives, and the mission is kept"""
+    vehicle = moments["seen"]
+    check(vehicle["control"] == "rc", f"control is {vehicle['control']!r}, not 'rc'")
+    check(vehicle["rc"]["swb"] == "middle", f"rc is {vehicle['rc']}")
+    state = vehicle["mission"]["state"]
+    check(state in ("running", "paused"), f"the mission is {state}")
+
+
+def no_request_fights_the_radio():
+    """during the take-over the robot does not ask for CAN mode"""
+    asked = [f for f in candump.only(candump.read(LOG), 0x421, moments["quiet"], moments["still_quiet"])
+             if f.data[0] == 1]
+    check(not asked, f"{len(asked)} requests against the radio, first {asked[:1]}")
+
+
+def the_mission_goes_on():
+    """with the switch up again CAN mode is asked for anew and the same mission goes on"""
+    back = now()
+    item = moments["seen"]["mission"]["current_item"]
+    subprocess.run(["cansend", BUS, RADIO_CAN_DRIVES], check=True)
+    radio.can_drives()
+    wait_frames(0x421, lambda f: f.data[0] == 1, 20, back)
+    moving = wait_frames(0x111, candump.moves, 30, back)
+    check(moving, "no moving 0x111")
+    mission = until("the mission runs", 20, lambda: (
+        lambda m: m if m["state"] == "running" else None)(station.rest.get("/vehicle")["mission"]))
+    check(mission["current_item"] >= item > 0, f"item {mission['current_item']} after {item}")
+    driven = station.control.ask({"get": "truth"})["driven_m"]
+    until("the robot really moves on", 40,
+          lambda: station.control.ask({"get": "truth"})["driven_m"] > driven + 1.0, 0.5)
+
+
+def the_interface_goes_down_and_comes_back():
+    """an interface set down is reported, and taken into use again when it is up"""
+    def phase():
+        drivers = station.rest.get("/drivers")["items"]
+        return next(d for d in drivers if d["name"] == "bunker")["state"]
+    subprocess.run(["ip", "link", "set", BUS, "down"], check=True)
+    until("the driver says that it is not up", 20, lambda: phase() != "up", 0.2)
+    vehicle = station.rest.get("/vehicle")
+    check(vehicle["safety"], "no safety condition without a bus")
+    subprocess.run(["ip", "link", "set", BUS, "up"], check=True)
+    until("the driver is up again", 40, lambda: phase() == "up", 0.2)
+
+
+def both_programs_end_cleanly():
+    """Ctrl-C ends both programs with exit code 0"""
+    for program in (station.roverd, station.sim):
+        code = program.stop(signal.SIGINT, 20)
+        check(code == 0, f"{program.name} ends with {code}: {program.said()}")
+
+
+def the_programs_start():
+    """the simulator and roverd open the real interface"""
+    global station
+    station = Station(can=BUS, data=SCRATCH / "data")
+
+
+def main():
+    code = run_cases([a_missing_interface_is_named_at_the_start])
+    with open(LOG, "w", encoding="ascii") as log:
+        watcher = subprocess.Popen(["stdbuf", "-oL", "candump", "-L", BUS], stdout=log)
+    try:
+        code |= run_cases([
+            the_programs_start, everything_comes_up, nothing_moves_before_arming, a_mission_drives,
+            feedback_is_what_really_happens, commands_come_without_a_gap, the_radio_takes_over,
+            the_api_says_who_drives, no_request_fights_the_radio, the_mission_goes_on,
+            the_interface_goes_down_and_comes_back, both_programs_end_cleanly])
+    finally:
+        if station:
+            station.close()
+        radio.silence()
+        watcher.terminate()
+        watcher.wait()
+    sys.exit(code)
+
+
+if __name__ == "__main__":
+    main()
