@@ -1,7 +1,13 @@
 #pragma once
 // HTTP/1.1 and WebSocket on Beast. Knows bytes, requests and topics; no word of what they mean.
 // Everything runs on one io_context with one thread (the web thread); every call and callback here
-// belongs to that thread, unless it says otherwise.
+// belongs to that thread, unless it says otherwise. Make that io_context with kWebConcurrency.
+//
+//   Server (listener) ─accept─▶ Connection (HTTP) ─upgrade─▶ Session (WebSocket) ◀─frames─ Hub
+//
+// Every connection is bounded: header, body and message bytes, the time for a request, idle time,
+// the time a client may refuse to read, the number of connections. What is beyond a bound is
+// refused with a status, or closed.
 
 #include <cstdint>
 #include <functional>
@@ -10,6 +16,7 @@
 #include <string>
 #include <string_view>
 
+#include <boost/asio/detail/concurrency_hint.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/string_body.hpp>
@@ -19,9 +26,13 @@
 
 namespace roverd::net {
 
+/// One thread runs the io_context; posting to it from other threads is fine.
+inline constexpr int kWebConcurrency = BOOST_ASIO_CONCURRENCY_HINT_UNSAFE_IO;
+
 using Request = boost::beast::http::request<boost::beast::http::string_body>;
 using Response = boost::beast::http::response<boost::beast::http::string_body>;
 /// To be called exactly once, on the web thread, at any later time; harmless if the client is gone.
+/// Dropping it uncalled closes the connection.
 using Respond = std::function<void(Response)>;
 
 struct Limits {
@@ -30,24 +41,66 @@ struct Limits {
   std::size_t message_bytes = 64 * 1024;  ///< one WebSocket message from a client
   int connections = 512;
   base::Duration idle = std::chrono::seconds(30);
-  base::Duration request = std::chrono::seconds(30);  ///< header and body must be in by then
+  /// Header and body must be in by then; a client that reads nothing of its answer for so long is
+  /// closed, too.
+  base::Duration request = std::chrono::seconds(30);
 };
 
 using ClientId = std::uint64_t;
 
-/// One topic at one rate has one sequence; a text is shared by all its clients.
+/// One topic at one rate has one sequence; a text is shared by all its clients. See hub.hpp.
 class Hub;
 
 struct Handlers {
-  /// Any request that is not a WebSocket upgrade.
-  std::function<void(Request, Respond)> on_request;
+  /// Any request that is not a WebSocket upgrade. `begun`: when its first byte was there. HEAD
+  /// comes as it is; answer as for GET, net leaves out the body.
+  std::function<void(Request, base::Time begun, Respond)> on_request;
   /// An upgrade request: nullopt accepts, a response refuses.
   std::function<std::optional<Response>(const Request&)> on_upgrade;
   std::function<void(ClientId)> on_client;
   std::function<void(ClientId, std::string_view text)> on_text;
   std::function<void(ClientId)> on_gone;
-  /// The answer for requests that net itself refuses: 400 malformed, 413, 431, 503 …
+  /// The answer for requests that net itself refuses: 400 malformed, 413, 417, 431, 503.
   std::function<Response(unsigned status, std::string_view detail)> on_refused;
+  /// Once a second. May be empty.
+  std::function<void()> on_second;
+};
+
+struct Stats {
+  std::uint64_t accepted = 0;
+  std::uint64_t refused = 0;    ///< beyond the number of connections
+  std::uint64_t timed_out = 0;  ///< too slow or silent for too long
+  std::uint64_t requests = 0;
+  int connections = 0;  ///< open now, WebSockets included
+  int clients = 0;      ///< WebSockets open now
+};
+
+class Server {
+ public:
+  /// Binds and starts accepting. @param port 0: the system chooses one. Errors: Invalid (not an IP
+  /// address), Conflict ("port 8080 is in use"), Unavailable (the system's reason).
+  static base::Result<std::unique_ptr<Server>> listen(boost::asio::io_context& io,
+                                                      const std::string& address,
+                                                      std::uint16_t port, Limits limits,
+                                                      Handlers handlers);
+  /// Closes everything at once; no handler is called any more.
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  std::uint16_t port() const noexcept;
+  /// Lives as long as the server.
+  Hub& hub() noexcept;
+  Stats stats() const noexcept;
+
+  /// Stops accepting, says goodbye to the WebSocket clients, lets running answers go out, and after
+  /// `grace` closes what is left. `done` is called once, then or earlier.
+  void stop(base::Duration grace, std::function<void()> done);
+
+ private:
+  struct Impl;
+  explicit Server(std::shared_ptr<Impl> impl);
+  std::shared_ptr<Impl> impl_;
 };
 
 }  // namespace roverd::net

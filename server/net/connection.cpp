@@ -1,0 +1,237 @@
+#include "net/connection.hpp"
+
+#include <array>
+#include <utility>
+
+#include <boost/asio/write.hpp>
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/write.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+
+#include "net/http_date.hpp"
+#include "net/session.hpp"
+
+namespace roverd::net {
+
+namespace http = boost::beast::http;
+using boost::asio::ip::tcp;
+using boost::system::error_code;
+
+namespace {
+
+constexpr std::size_t kReadBytes = 8 * 1024;
+constexpr base::Duration kLinger = std::chrono::seconds(2);
+constexpr std::size_t kDiscardBytes = 64 * 1024 * 1024;
+
+/// An answer that never has a body (RFC 9110, section 6.4.1).
+bool bodyless(http::status status) {
+  return status == http::status::no_content || status == http::status::not_modified ||
+         http::to_status_class(status) == http::status_class::informational;
+}
+
+bool equals_no_case(boost::beast::string_view a, boost::beast::string_view b) {
+  return boost::beast::iequals(a, b);
+}
+
+}  // namespace
+
+Connection::Connection(std::shared_ptr<Peers> peers, tcp::socket socket)
+    : peers_(std::move(peers)),
+      socket_(std::move(socket)),
+      buffer_(peers_->limits.header_bytes + 64 * 1024) {}
+
+Connection::~Connection() {
+  peers_->remove(this);
+}
+
+void Connection::start() {
+  error_code ignored;
+  socket_.set_option(tcp::no_delay(true), ignored);
+  wait();
+}
+
+void Connection::wait() {
+  phase_ = Phase::Waiting;
+  deadline_ = base::steady_now() + peers_->limits.idle;
+  if (buffer_.size() > 0) return read_header();
+  socket_.async_read_some(buffer_.prepare(kReadBytes),
+                          [self = shared_from_this()](error_code ec, std::size_t n) {
+                            if (ec) return self->force();
+                            self->buffer_.commit(n);
+                            self->read_header();
+                          });
+}
+
+void Connection::read_header() {
+  phase_ = Phase::Reading;
+  begun_ = base::steady_now();
+  deadline_ = begun_ + peers_->limits.request;
+  parser_.emplace();
+  parser_->header_limit(static_cast<std::uint32_t>(peers_->limits.header_bytes));
+  parser_->body_limit(peers_->limits.body_bytes);
+  http::async_read_header(socket_, buffer_, *parser_,
+                          [self = shared_from_this()](error_code ec, std::size_t) {
+                            if (self->on_read_error(ec)) return;
+                            self->on_header();
+                          });
+}
+
+/// @return true if that was the end of reading; a broken request has then been answered.
+bool Connection::on_read_error(error_code ec) {
+  if (!ec) return false;
+  if (ec == http::error::header_limit || ec == http::error::buffer_overflow) {
+    refuse(431,
+           "the header is larger than " + std::to_string(peers_->limits.header_bytes) + " bytes");
+  } else if (ec == http::error::body_limit) {
+    refuse(413, "the body is larger than " + std::to_string(peers_->limits.body_bytes) + " bytes");
+  } else if (ec == http::error::end_of_stream || ec == http::error::partial_message ||
+             ec.category() != make_error_code(http::error::end_of_stream).category()) {
+    force();  // the client left, or its deadline passed
+  } else {
+    refuse(400, "not an HTTP request: " + ec.message());
+  }
+  return true;
+}
+
+void Connection::on_header() {
+  const auto& request = parser_->get();
+  head_ = request.method() == http::verb::head;
+  keep_alive_ = request.keep_alive() && !peers_->stopping;
+  version_ = request.version();
+  if (boost::beast::websocket::is_upgrade(request)) return upgrade();
+  const auto expect = request[http::field::expect];
+  if (expect.empty() || version_ < 11) return read_body();
+  if (!equals_no_case(expect, "100-continue")) {
+    return refuse(417, "the only expectation understood is 100-continue");
+  }
+  expect_continue();
+}
+
+void Connection::expect_continue() {
+  static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
+  boost::asio::async_write(socket_, boost::asio::buffer(kContinue),
+                           [self = shared_from_this()](error_code ec, std::size_t) {
+                             if (ec) return self->force();
+                             self->read_body();
+                           });
+}
+
+void Connection::read_body() {
+  if (parser_->is_done()) return on_request();
+  http::async_read(socket_, buffer_, *parser_,
+                   [self = shared_from_this()](error_code ec, std::size_t) {
+                     if (self->on_read_error(ec)) return;
+                     self->on_request();
+                   });
+}
+
+void Connection::on_request() {
+  phase_ = Phase::Handling;
+  deadline_.reset();  // the handler keeps its own time
+  ++peers_->stats.requests;
+  if (!peers_->handlers.on_request) return force();
+  peers_->handlers.on_request(parser_->release(), begun_,
+                              [self = shared_from_this()](Response response) {
+                                if (self->phase_ != Phase::Handling) return;
+                                self->answer(std::move(response));
+                              });
+}
+
+void Connection::upgrade() {
+  phase_ = Phase::Handling;
+  deadline_.reset();
+  ++peers_->stats.requests;
+  Request request = parser_->release();
+  if (!peers_->handlers.on_upgrade) return force();
+  if (auto refusal = peers_->handlers.on_upgrade(request)) return answer(std::move(*refusal));
+  const auto bytes = buffer_.cdata();
+  std::string early(static_cast<const char*>(bytes.data()), bytes.size());
+  const auto session = std::make_shared<Session>(peers_, std::move(socket_), std::move(early));
+  peers_->add(session.get(), session);
+  session->accept(std::move(request));
+}
+
+void Connection::refuse(unsigned status, std::string_view detail) {
+  keep_alive_ = false;
+  phase_ = Phase::Handling;
+  answer(peers_->refusal(status, detail));
+}
+
+void Connection::answer(Response response) {
+  phase_ = Phase::Writing;
+  keep_alive_ = keep_alive_ && response.keep_alive();
+  response.version(version_);
+  response.keep_alive(keep_alive_);
+  response.set(http::field::date, http_date_now());
+  if (bodyless(response.result())) {
+    response.body().clear();
+    response.erase(http::field::content_length);
+  } else {
+    response.content_length(response.body().size());
+  }
+  response_.emplace(std::move(response));
+  serializer_.emplace(*response_);
+  serializer_->split(head_);
+  write();
+}
+
+void Connection::write() {
+  deadline_ = base::steady_now() + peers_->limits.request;
+  const auto next = [self = shared_from_this()](error_code ec, std::size_t) {
+    if (ec) return self->force();
+    const bool done =
+        self->head_ ? self->serializer_->is_header_done() : self->serializer_->is_done();
+    if (done) return self->on_written();
+    self->write();
+  };
+  if (head_) {
+    http::async_write_header(socket_, *serializer_, next);
+  } else {
+    http::async_write_some(socket_, *serializer_, next);
+  }
+}
+
+void Connection::on_written() {
+  serializer_.reset();
+  response_.reset();
+  parser_.reset();
+  if (keep_alive_ && !peers_->stopping) return wait();
+  linger();
+}
+
+void Connection::linger() {
+  phase_ = Phase::Lingering;
+  deadline_ = base::steady_now() + kLinger;
+  error_code ec;
+  socket_.shutdown(tcp::socket::shutdown_send, ec);
+  if (ec) return force();
+  buffer_.clear();
+  discard();
+}
+
+void Connection::discard() {
+  socket_.async_read_some(buffer_.prepare(64 * 1024),
+                          [self = shared_from_this()](error_code ec, std::size_t n) {
+                            self->discarded_ += n;
+                            if (ec || self->discarded_ > kDiscardBytes) return self->force();
+                            self->discard();
+                          });
+}
+
+void Connection::sweep(base::Time now) {
+  if (!deadline_ || now < *deadline_) return;
+  if (phase_ != Phase::Lingering) ++peers_->stats.timed_out;
+  force();
+}
+
+void Connection::stop() {
+  keep_alive_ = false;
+  if (phase_ == Phase::Waiting || phase_ == Phase::Lingering) force();
+}
+
+void Connection::force() {
+  error_code ignored;
+  socket_.close(ignored);
+}
+
+}  // namespace roverd::net

@@ -1,0 +1,74 @@
+#pragma once
+// One HTTP/1.1 connection, request after request. What a client sends ahead (pipelining) waits in
+// the buffer: one request is answered before the next is read.
+//
+//   Waiting ─bytes─▶ Reading ─whole─▶ Handling ─answer─▶ Writing ─keep-alive─▶ Waiting
+//                      │ upgrade ▶ Session                   └─close─▶ Lingering ▶ gone
+//                      └ refused (4xx, then close) ─▶ Writing
+//
+// Lingering: after the last answer the write side is shut and what still comes is thrown away for
+// a moment, because closing at once would reset the connection and destroy the answer on its way.
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/serializer.hpp>
+
+#include "net/peers.hpp"
+
+namespace roverd::net {
+
+class Connection : public Peer, public std::enable_shared_from_this<Connection> {
+ public:
+  Connection(std::shared_ptr<Peers> peers, boost::asio::ip::tcp::socket socket);
+  ~Connection() override;
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  void start();
+  /// Says no without reading anything.
+  void refuse(unsigned status, std::string_view detail);
+
+  void sweep(base::Time now) override;
+  void stop() override;
+  void force() override;
+
+ private:
+  using Parser = boost::beast::http::request_parser<boost::beast::http::string_body>;
+  using Serializer = boost::beast::http::response_serializer<boost::beast::http::string_body>;
+  enum class Phase { Waiting, Reading, Handling, Writing, Lingering };
+
+  void wait();
+  void read_header();
+  void on_header();
+  void expect_continue();
+  void read_body();
+  void on_request();
+  bool on_read_error(boost::system::error_code ec);
+  void upgrade();
+  void answer(Response response);
+  void write();
+  void on_written();
+  void linger();
+  void discard();
+
+  std::shared_ptr<Peers> peers_;
+  boost::asio::ip::tcp::socket socket_;
+  boost::beast::flat_buffer buffer_;
+  std::optional<Parser> parser_;
+  std::optional<Response> response_;
+  std::optional<Serializer> serializer_;
+  Phase phase_ = Phase::Waiting;
+  base::Time begun_;
+  std::optional<base::Time> deadline_;
+  bool head_ = false;
+  bool keep_alive_ = true;
+  unsigned version_ = 11;
+  std::size_t discarded_ = 0;
+};
+
+}  // namespace roverd::net

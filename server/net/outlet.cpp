@@ -1,0 +1,46 @@
+#include "net/outlet.hpp"
+
+#include <boost/asio/error.hpp>
+
+namespace roverd::net {
+
+bool Outlet::write(const std::string& bytes) {
+  while (offset_ < bytes.size()) {
+    error_code ec;
+    offset_ +=
+        socket_.write_some(boost::asio::buffer(bytes.data() + offset_, bytes.size() - offset_), ec);
+    if (!ec) continue;
+    if (ec != boost::asio::error::would_block) {  // broken: the read side hears of it, too
+      finished_ = true;
+      current_.reset();
+      own_.clear();
+      offset_ = 0;
+      error_code ignored;
+      socket_.shutdown(next_layer_type::shutdown_both, ignored);
+      return true;
+    }
+    if (!blocked_) {
+      blocked_ = true;
+      if (on_blocked) on_blocked();
+    }
+    return false;
+  }
+  offset_ = 0;
+  return true;
+}
+
+bool Outlet::flush() {
+  blocked_ = false;
+  if (current_) {
+    const Frame frame = current_;
+    if (!write(*frame)) return false;
+    current_.reset();
+  }
+  if (!own_.empty()) {
+    if (!write(own_)) return false;
+    own_.clear();
+  }
+  return true;
+}
+
+}  // namespace roverd::net

@@ -1,0 +1,132 @@
+#pragma once
+// The stream under a WebSocket. Beast reads through it, and writes through it what it has to say
+// itself (handshake, pong, close); our ready-made frames go straight to the socket. Both meet here,
+// so that frames never mix: what Beast hands over is taken as a whole, whatever the socket takes.
+//
+//   idle ──send──▶ idle            (the usual case: the kernel takes all of it at once)
+//   idle ──send──▶ blocked ──flush, when writable──▶ idle
+//
+// Never waits; the owner waits for the socket to become writable when on_blocked was called.
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include <boost/asio/async_result.hpp>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/beast/core/bind_handler.hpp>
+#include <boost/beast/core/error.hpp>
+#include <boost/beast/core/role.hpp>
+#include <boost/beast/websocket/teardown.hpp>
+
+#include "net/frame.hpp"
+
+namespace roverd::net {
+
+class Outlet {
+ public:
+  using next_layer_type = boost::asio::ip::tcp::socket;
+  using executor_type = next_layer_type::executor_type;
+  using error_code = boost::beast::error_code;
+
+  /// @param early bytes that came after the upgrade request, read already.
+  Outlet(next_layer_type socket, std::string early)
+      : socket_(std::move(socket)), early_(std::move(early)) {}
+
+  /// The socket is full: call flush() when it is writable. Called once until that flush.
+  std::function<void()> on_blocked;
+
+  executor_type get_executor() { return socket_.get_executor(); }
+  next_layer_type& next_layer() noexcept { return socket_; }
+  const next_layer_type& next_layer() const noexcept { return socket_; }
+
+  /// Nothing waits to be sent.
+  bool idle() const noexcept { return current_ == nullptr && own_.empty(); }
+  /// A close frame went out or the socket broke: data frames are not wanted any more.
+  bool finished() const noexcept { return finished_; }
+  /// Only when idle.
+  void send(Frame frame) {
+    if (finished_) return;
+    current_ = std::move(frame);
+    offset_ = 0;
+    flush();
+  }
+  /// Sends what waits. @return true if idle then.
+  bool flush();
+
+  template <class Buffers, class Handler>
+  auto async_read_some(const Buffers& buffers, Handler&& handler) {
+    return boost::asio::async_initiate<Handler, void(error_code, std::size_t)>(
+        [this](auto&& done, const auto& into) {
+          if (early_.empty()) {
+            socket_.async_read_some(into, std::forward<decltype(done)>(done));
+            return;
+          }
+          const std::size_t n = boost::asio::buffer_copy(into, boost::asio::buffer(early_));
+          early_.erase(0, n);
+          complete(std::forward<decltype(done)>(done), error_code{}, n);
+        },
+        handler, buffers);
+  }
+
+  template <class Buffers, class Handler>
+  auto async_write_some(const Buffers& buffers, Handler&& handler) {
+    return boost::asio::async_initiate<Handler, void(error_code, std::size_t)>(
+        [this](auto&& done, const auto& from) {
+          const std::size_t n = boost::asio::buffer_size(from);
+          if (own_.size() + n > kOwnBytes) {  // it pings and never reads
+            complete(std::forward<decltype(done)>(done),
+                     error_code(boost::asio::error::no_buffer_space), 0);
+            return;
+          }
+          take(from, n);
+          complete(std::forward<decltype(done)>(done), error_code{}, n);
+        },
+        handler, buffers);
+  }
+
+ private:
+  static constexpr std::size_t kOwnBytes = 8 * 1024;
+
+  template <class Handler>
+  void complete(Handler&& handler, error_code ec, std::size_t n) {
+    boost::asio::post(get_executor(),
+                      boost::beast::bind_front_handler(std::forward<Handler>(handler), ec, n));
+  }
+
+  template <class Buffers>
+  void take(const Buffers& from, std::size_t n) {
+    const std::size_t begin = own_.size();
+    own_.resize(begin + n);
+    boost::asio::buffer_copy(boost::asio::buffer(own_.data() + begin, n), from);
+    if (n > 0 && static_cast<unsigned char>(own_[begin]) == 0x88) closing_ = true;
+    if (!blocked_) flush();
+    if (closing_) finished_ = true;  // RFC 6455, 5.5.1: no data after a close frame
+  }
+
+  bool write(const std::string& bytes);  ///< from offset_; true if all of it went
+
+  next_layer_type socket_;
+  std::string early_;
+  Frame current_;
+  std::string own_;  ///< Beast's frames
+  std::size_t offset_ = 0;
+  bool blocked_ = false;
+  bool closing_ = false;
+  bool finished_ = false;
+};
+
+inline void teardown(boost::beast::role_type role, Outlet& outlet, Outlet::error_code& ec) {
+  boost::beast::websocket::teardown(role, outlet.next_layer(), ec);
+}
+template <class Handler>
+void async_teardown(boost::beast::role_type role, Outlet& outlet, Handler&& handler) {
+  boost::beast::websocket::async_teardown(role, outlet.next_layer(),
+                                          std::forward<Handler>(handler));
+}
+
+}  // namespace roverd::net

@@ -1,0 +1,172 @@
+#include "net/session.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <boost/asio/detail/socket_option.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+
+namespace roverd::net {
+
+namespace websocket = boost::beast::websocket;
+using boost::system::error_code;
+
+namespace {
+
+// Unsent bytes that the kernel may hold for one client. More would only be older news for a slow
+// one: what does not fit waits here, where newer replaces older.
+constexpr int kUnsentBytes = 16 * 1024;
+constexpr base::Duration kCloseGrace = std::chrono::seconds(2);
+
+}  // namespace
+
+Session::Session(std::shared_ptr<Peers> peers, boost::asio::ip::tcp::socket socket,
+                 std::string early)
+    : peers_(std::move(peers)),
+      ws_(std::move(socket), std::move(early)),
+      buffer_(peers_->limits.message_bytes + 1024),
+      heard_(base::steady_now()),
+      pinged_(heard_) {
+  ++peers_->stats.clients;
+}
+
+Session::~Session() {
+  --peers_->stats.clients;
+  peers_->remove(this);
+}
+
+void Session::accept(Request upgrade) {
+  upgrade_ = std::move(upgrade);
+  auto& socket = ws_.next_layer().next_layer();
+  error_code ignored;
+  socket.non_blocking(true, ignored);
+  using NotSentLowAt = boost::asio::detail::socket_option::integer<IPPROTO_TCP, TCP_NOTSENT_LOWAT>;
+  socket.set_option(NotSentLowAt(kUnsentBytes), ignored);
+
+  // Deadlines are looked after by sweep.
+  ws_.set_option(websocket::stream_base::timeout{websocket::stream_base::none(),
+                                                 websocket::stream_base::none(), false});
+  ws_.read_message_max(peers_->limits.message_bytes);
+  ws_.control_callback(
+      [this](websocket::frame_type, boost::beast::string_view) { heard_ = base::steady_now(); });
+  ws_.next_layer().on_blocked = [this] { wait_writable(); };
+  ws_.async_accept(upgrade_, [self = shared_from_this()](error_code ec) {
+    if (ec || self->phase_ != Phase::Accepting) return self->gone();
+    self->opened();
+  });
+}
+
+void Session::opened() {
+  phase_ = Phase::Open;
+  upgrade_ = {};
+  heard_ = base::steady_now();
+  if (peers_->stopping) return close(1001, "the server is stopping");
+  id_ = peers_->next_client++;
+  peers_->hub.join(id_, this);
+  if (peers_->handlers.on_client) peers_->handlers.on_client(id_);
+  read();
+}
+
+void Session::read() {
+  ws_.async_read(buffer_, [self = shared_from_this()](error_code ec, std::size_t) {
+    if (ec) return self->gone();  // also ours: a message too big, a broken frame, not UTF-8
+    self->on_message();
+    if (self->phase_ == Phase::Open) self->read();  // async_close reads for itself
+  });
+}
+
+void Session::on_message() {
+  heard_ = base::steady_now();
+  if (phase_ == Phase::Open && id_ != 0) {
+    if (!ws_.got_text()) {
+      close(1003, "text only");
+    } else if (peers_->handlers.on_text) {
+      const auto bytes = buffer_.cdata();
+      peers_->handlers.on_text(id_, {static_cast<const char*>(bytes.data()), bytes.size()});
+    }
+  }
+  buffer_.consume(buffer_.size());
+}
+
+void Session::offer(std::uint64_t slot, const Frame& frame) {
+  if (ws_.next_layer().idle() && backlog_.empty()) {
+    ws_.next_layer().send(frame);
+  } else {
+    backlog_.offer(slot, frame);
+  }
+}
+
+void Session::push(const Frame& frame) {
+  if (ws_.next_layer().idle() && backlog_.empty()) {
+    ws_.next_layer().send(frame);
+  } else {
+    backlog_.push(frame);
+  }
+}
+
+void Session::wait_writable() {
+  if (!blocked_) blocked_since_ = base::steady_now();
+  blocked_ = true;
+  ws_.next_layer().next_layer().async_wait(
+      boost::asio::ip::tcp::socket::wait_write, [self = shared_from_this()](error_code ec) {
+        if (ec) return;
+        Outlet& outlet = self->ws_.next_layer();
+        self->blocked_since_ = base::steady_now();  // it took something
+        while (outlet.flush()) {
+          Frame frame = self->backlog_.next();
+          if (!frame) {
+            self->blocked_ = false;
+            return;
+          }
+          outlet.send(std::move(frame));
+          if (!outlet.idle()) return;  // blocked again, and waited for again
+        }
+      });
+}
+
+void Session::close(std::uint16_t code, std::string_view reason) {
+  if (phase_ == Phase::Closing || phase_ == Phase::Gone) return;
+  phase_ = Phase::Closing;
+  close_by_ = base::steady_now() + kCloseGrace;
+  websocket::close_reason why(code);
+  why.reason = boost::beast::string_view(reason.data(), std::min<std::size_t>(reason.size(), 120));
+  ws_.async_close(why, [self = shared_from_this()](error_code) { self->gone(); });
+}
+
+void Session::sweep(base::Time now) {
+  const base::Duration idle = peers_->limits.idle;
+  const bool mute = blocked_ && now - blocked_since_ > peers_->limits.request;
+  const bool silent = now - heard_ > idle;
+  const bool overdue = phase_ == Phase::Closing && now > close_by_;
+  if (mute || silent || overdue) {
+    if (!overdue) ++peers_->stats.timed_out;
+    return force();
+  }
+  if (phase_ == Phase::Open && now - heard_ > idle / 2 && pinged_ <= heard_) {
+    pinged_ = now;
+    push(ping_frame());
+  }
+}
+
+void Session::stop() {
+  if (phase_ == Phase::Accepting) return force();
+  close(1001, "the server is stopping");
+}
+
+void Session::force() {
+  error_code ignored;
+  ws_.next_layer().next_layer().close(ignored);
+}
+
+void Session::gone() {
+  if (phase_ == Phase::Gone) return;
+  phase_ = Phase::Gone;
+  force();
+  if (id_ == 0) return;
+  peers_->hub.leave(id_);
+  if (peers_->handlers.on_gone) peers_->handlers.on_gone(id_);
+}
+
+}  // namespace roverd::net
