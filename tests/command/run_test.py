@@ -1,0 +1,241 @@
+#!/usr/bin/env python3
+"""./run as a person uses it: its options, what it says of bad ones, starting twice, Ctrl-C."""
+
+import os
+import pathlib
+import re
+import shutil
+import signal
+import socket
+import sqlite3
+import subprocess
+import sys
+import tempfile
+import time
+import urllib.request
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "harness"))
+from station import ROOT, Program, Rest, check, run_cases, until  # noqa: E402
+
+RUN = ROOT / "run"
+scratch = pathlib.Path(tempfile.mkdtemp(prefix="roverd-command."))
+
+
+def start(*options, data="data"):
+    """./run with a free port, listening. @return the program and its API."""
+    program = Program(RUN, "--port", "0", "--data", scratch / data, *options)
+    address = program.wait_line(r"^listening on (http://127\.0\.0\.1:\d+)$", 60)[1]
+    return program, Rest(address)
+
+
+def children_of(pid):
+    """Name → pid of the live children."""
+    found = {}
+    for stat in pathlib.Path("/proc").glob("[0-9]*/stat"):
+        try:
+            match = re.match(r"(\d+) \((.*)\) (\S) (\d+)", stat.read_text())
+        except (FileNotFoundError, ProcessLookupError):
+            continue
+        if match and int(match[4]) == pid and match[3] != "Z":
+            found[match[2]] = int(match[1])
+    return found
+
+
+def alive(pid):
+    try:
+        return pathlib.Path(f"/proc/{pid}/stat").read_text().split(") ")[1][0] != "Z"
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+
+
+def refused(*options, names, environment=None):
+    """./run ends with an error of one line that names the cause."""
+    env = os.environ | (environment or {})
+    done = subprocess.run([str(RUN), *map(str, options)], stdin=subprocess.DEVNULL,
+                          capture_output=True, text=True, timeout=60, env=env)
+    shown = " ".join(map(str, options))
+    check(done.returncode != 0, f"exit code 0 of ./run {shown}")
+    lines = done.stderr.strip().splitlines()
+    check(len(lines) == 1, f"./run {shown} says on stderr {lines}, not one line")
+    for name in names:
+        check(name in lines[0], f"./run {shown} says {lines[0]!r}, which does not name {name!r}")
+    check("listening" not in done.stdout, f"./run {shown} listened for a while")
+
+
+def config_with(*lines):
+    """A copy of the shipped configuration with these lines in front."""
+    folder = scratch / "config"
+    if not folder.exists():
+        shutil.copytree(ROOT / "config", folder)
+    file = folder / "changed.toml"
+    file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return file
+
+
+def help_tells_every_option():
+    """./run --help tells every option, and ends with 0"""
+    done = subprocess.run([str(RUN), "--help"], capture_output=True, text=True, timeout=20)
+    check(done.returncode == 0, f"exit code {done.returncode}")
+    for option in ("--port", "--data", "--config", "--vehicle", "--seed", "--replay", "--no-sim"):
+        check(option in done.stdout, f"{option} is not told")
+
+
+def wrong_options_are_named():
+    """an unknown option or a wrong value is refused in one line that names it"""
+    refused("--frobnicate", names=["--frobnicate"])
+    refused("--port", names=["--port"])
+    refused("--port", "http", names=["--port", "http"])
+    refused("--port", "65536", names=["--port", "65536"])
+    refused("--seed", "-1", names=["--seed"])
+    refused("--data", "", names=["--data"])
+
+
+def missing_files_are_named():
+    """a missing configuration, recording or vehicle is refused by name"""
+    refused("--config", "/nowhere/robot.toml", names=["/nowhere/robot.toml"])
+    refused("--replay", "/nowhere/field.log", names=["/nowhere/field.log"])
+    refused("--port", "0", "--data", scratch / "v", "--vehicle", "hovercraft", names=["hovercraft"])
+
+
+def an_unwritable_data_folder_is_named():
+    """a data folder that cannot be written is refused by name"""
+    refused("--data", "/proc/roverd", names=["/proc/roverd"])
+    blocker = scratch / "a-file"
+    blocker.write_text("")
+    refused("--data", blocker, names=[str(blocker)])
+
+
+def wrong_configuration_is_named():
+    """an unknown key, a wrong type and a value out of range are refused, naming file and key"""
+    for text, key in (("[server]\nprot = 8080", "prot"), ("[server]\nport = \"x\"", "port"),
+                      ("[server]\nport = 70000", "port"), ("[server", "changed.toml")):
+        refused("--data", scratch / "c", "--config", config_with(text), names=["changed.toml", key])
+
+
+def only_loopback_is_served():
+    """any bind address but loopback is refused with the reason"""
+    refused("--data", scratch / "b", "--config", config_with('[server]', 'bind = "0.0.0.0"'),
+            names=["0.0.0.0"])
+
+
+def a_missing_can_interface_is_named():
+    """with --no-sim and no CAN interface the start is refused by its name"""
+    config = config_with('[drivers.bunker]', 'link = "can:nocan7"')
+    refused("--no-sim", "--port", "0", "--data", scratch / "n", "--config", config, names=["nocan7"])
+
+
+def the_product_starts():
+    """./run --port 0 prints data folder and address; page and API answer there"""
+    program, rest = start()
+    try:
+        check(any(str(scratch / "data") in line for line in program.lines), "data folder not shown")
+        check(rest.get("/health")["status"] == "ok", "not healthy")
+        status, headers, page = page_of(rest)
+        check(status == 200 and b"<html" in page.lower(), f"the page answers {status}")
+        check("text/html" in headers["Content-Type"], headers["Content-Type"])
+        until("the simulated base is heard", 10, lambda: all(
+            d["state"] == "up" for d in rest.get("/drivers")["items"]))
+    finally:
+        code = program.stop(signal.SIGINT)
+    check(code == 0, f"Ctrl-C ends it with {code}: {program.said()}")
+
+
+def page_of(rest):
+    with urllib.request.urlopen(rest.address + "/", timeout=10) as answer:
+        return answer.status, answer.headers, answer.read()
+
+
+def a_second_start_is_quick():
+    """a second start listens within 2 s, without network, and finds what was saved before"""
+    program, rest = start()
+    mission = {"name": "kept", "items": [{"type": "waypoint", "lat": 58.3781, "lon": 26.7290}]}
+    saved = rest.do("POST", "/missions", mission)
+    program.stop(signal.SIGTERM)
+    alone = ["unshare", "-rn", "sh", "-c", 'ip link set lo up && exec "$@"', "sh"]
+    begin = time.monotonic()
+    program = Program(*alone, RUN, "--port", "0", "--data", scratch / "data")
+    try:
+        program.wait_line(r"^listening on ", 30)
+        took_s = time.monotonic() - begin
+        check(took_s < 2.0, f"{took_s:.2f} s until it listened")
+    finally:
+        program.stop(signal.SIGINT)
+    program, rest = start()
+    try:
+        check(rest.get(f"/missions/{saved['id']}")["name"] == "kept", "the mission is lost")
+    finally:
+        program.stop(signal.SIGINT)
+
+
+def both_end():
+    """Ctrl-C and SIGTERM end roverd and the simulator within 2 s, and nothing is left behind"""
+    for how in (signal.SIGINT, signal.SIGTERM):
+        program, _ = start()
+        children = children_of(program.process.pid)
+        check({"roverd", "roverd-sim"} <= set(children), f"children are {children}")
+        begin = time.monotonic()
+        code = program.stop(how)
+        took_s = time.monotonic() - begin
+        check(code == 0, f"{how.name} ends it with {code}: {program.said()}")
+        check(took_s < 2.0, f"{how.name} took {took_s:.2f} s")
+        left = [name for name, pid in children.items() if alive(pid)]
+        check(not left, f"still running: {left}")
+
+
+def a_killed_script_leaves_nothing():
+    """when the script itself is killed, both programs end too"""
+    program, _ = start()
+    children = children_of(program.process.pid)
+    program.process.kill()
+    until("both programs have ended", 5,
+          lambda: not any(alive(children[n]) for n in ("roverd", "roverd-sim")))
+
+
+def one_dies_the_other_ends():
+    """if one of the two dies, the other is ended and the reason is said"""
+    for victim, other in (("roverd-sim", "roverd"), ("roverd", "roverd-sim")):
+        program, _ = start()
+        children = children_of(program.process.pid)
+        os.kill(children[victim], signal.SIGKILL)
+        code = program.wait_exit(10)
+        check(code != 0, f"exit code 0 after {victim} died")
+        check(not alive(children[other]), f"{other} still runs")
+        what = "simulator" if victim == "roverd-sim" else "roverd"
+        check(any(what in line for line in program.errors), f"no reason: {program.errors}")
+
+
+def a_busy_port_is_named():
+    """a busy port is refused by its number, and the one that has it goes on"""
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = str(taken.getsockname()[1])
+        refused("--port", port, "--data", scratch / "busy", names=[port])
+
+
+def a_newer_database_is_refused():
+    """a database of a newer version is refused, and not touched"""
+    folder = scratch / "newer"
+    program, _ = start(data="newer")
+    program.stop(signal.SIGINT)
+    files = [f for f in folder.rglob("*") if f.is_file() and f.read_bytes()[:6] == b"SQLite"]
+    check(len(files) == 1, f"one SQLite file expected in {folder}: {files}")
+    with sqlite3.connect(files[0]) as connection:
+        connection.execute("PRAGMA user_version = 9999")
+    connection.close()
+    before = files[0].read_bytes()
+    refused("--port", "0", "--data", folder, names=["9999"])
+    check(files[0].read_bytes() == before, "the file was changed")
+
+
+if __name__ == "__main__":
+    try:
+        code = run_cases([
+            help_tells_every_option, wrong_options_are_named, missing_files_are_named,
+            an_unwritable_data_folder_is_named, wrong_configuration_is_named,
+            only_loopback_is_served, a_missing_can_interface_is_named, the_product_starts,
+            a_second_start_is_quick, both_end, a_killed_script_leaves_nothing,
+            one_dies_the_other_ends, a_busy_port_is_named, a_newer_database_is_refused])
+    finally:
+        shutil.rmtree(scratch, ignore_errors=True)
+    sys.exit(code)
