@@ -4,6 +4,7 @@
 // go into a bounded queue, and are answered through `deliver` (which posts to the asker's
 // executor). A full queue answers Unavailable at once. An acknowledged change survives a power cut.
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -41,6 +42,7 @@ struct RevisionSummary {
   base::WallTime time;
   std::string author;
   std::string what;  ///< "created", "replaced", "imported from basic.waypoints", "reverted to 3"
+  bool deletion = false;  ///< this revision is the mission's deletion and has no plan
   std::string name;
   int items = 0;
   double length_m = 0.0;
@@ -57,10 +59,20 @@ struct StoredEvent {
   base::Event event;
 };
 
+/// Who changed what, for the list of revisions. An empty `what` becomes "created", "replaced" …
 struct Change {
   std::string author;
   std::string what;
 };
+
+struct Options {
+  std::size_t queue = 256;                 ///< waiting calls (and, apart from them, waiting events)
+  std::int64_t max_events = 100'000;       ///< beyond that the oldest go
+  std::int64_t max_bytes = 4'000'000'000;  ///< of the file; then as if the disk were full
+  std::function<base::WallTime()> clock = base::wall_now;  ///< called on the store's thread
+};
+
+inline constexpr int kMaxPage = 1000;  ///< largest `limit` of a list; below 1 or above is Invalid
 
 template <class T>
 using Reply = std::function<void(base::Result<T>)>;
@@ -69,12 +81,15 @@ class Store {
  public:
   using Deliver = std::function<void(std::function<void()>)>;
 
-  /// Opens or creates `file`, applies missing migrations (one transaction each), starts the thread.
-  /// Errors: unwritable folder, not a database, a newer schema ("the file is of version 7, this
-  /// program knows 3"), a damaged file. Nothing is changed then.
+  /// Opens or creates `file` in a folder that exists, applies missing migrations (one transaction
+  /// each), starts the thread. `<file>.lock` beside it keeps a second roverd out.
+  /// Errors: missing or unwritable folder, in use, not a database, of another program, a newer
+  /// schema ("… is of schema 7, this program knows up to 2"), a damaged file. Nothing is changed
+  /// then. Later, whatever the disk does (full, failing, locked) is Unavailable, and the call that
+  /// met it changed nothing.
   static base::Result<std::unique_ptr<Store>> open(const std::filesystem::path& file,
-                                                   Deliver deliver);
-  /// Drains the queue, then closes.
+                                                   Deliver deliver, Options options = {});
+  /// Drains the queue, then closes. The last answers go through `deliver` before it returns.
   ~Store();
   Store(const Store&) = delete;
   Store& operator=(const Store&) = delete;
@@ -82,21 +97,28 @@ class Store {
   /// Newest change first. @param cursor empty: from the start; Malformed if it is not one of ours.
   void list_missions(int limit, std::string cursor, Reply<Page<MissionSummary>> reply);
   void create_mission(mission::Plan plan, Change change, Reply<StoredMission> reply);
+  /// NotFound also if it was deleted.
   void read_mission(std::string id, Reply<StoredMission> reply);
+  /// Also of a deleted mission; `updated` is the revision's time.
   void read_revision(std::string id, std::int64_t revision, Reply<StoredMission> reply);
   /// RevisionMismatch unless `expected` is the present revision.
   void replace_mission(std::string id, std::int64_t expected, mission::Plan plan, Change change,
                        Reply<StoredMission> reply);
+  /// Hides it; its revisions stay, with the deletion as the newest, and revert_mission brings it
+  /// back.
   void delete_mission(std::string id, std::int64_t expected, Change change, Reply<void> reply);
-  /// Newest first.
+  /// Newest first; also of a deleted mission.
   void list_revisions(std::string id, int limit, std::string cursor,
                       Reply<Page<RevisionSummary>> reply);
-  /// Makes the old state a new revision.
+  /// Makes the old state a new revision. NotFound if that revision does not exist or is a deletion.
   void revert_mission(std::string id, std::int64_t to_revision, Change change,
                       Reply<StoredMission> reply);
 
-  /// No answer; when the queue is full the event is lost and counted.
+  /// No answer; when there is no room or the disk is full the event is lost and counted. A list
+  /// asked for later has it.
   void add_event(base::Event event);
+  /// Any thread.
+  std::uint64_t lost_events() const noexcept;
   /// Ascending ids greater than `after_id`, at least `level`.
   void list_events(std::int64_t after_id, base::Severity level, int limit,
                    Reply<Page<StoredEvent>> reply);
