@@ -1,14 +1,17 @@
 #include "sim/bunker.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <variant>
 
 #include "base/angle.hpp"
+#include "bunker/codec.hpp"
 #include "sim/battery.hpp"
-#include "sim/frames.hpp"
 #include "sim/machine.hpp"
 #include "sim/noise.hpp"
 #include "sim/receiver.hpp"
+#include "sim/reports.hpp"
 #include "sim/tracks.hpp"
 
 namespace roverd::sim {
@@ -60,6 +63,7 @@ struct Bunker::Impl {
   void report_radio();
   void report_motors(bool slow);
   void send(const CanFrame& f);
+  void obey(const bunker::Message& message);
 
   Bunker& out;
   Params params;
@@ -140,25 +144,28 @@ void Bunker::Impl::move(double dt_s) {
 void Bunker::Impl::report() {
   const auto every = [this](int period, int phase) { return steps % period == phase; };
   if (every(4, 0)) {
-    send(motion_frame(tracks.measured()));
-    send(odometer_frame(wrapped_mm(tracks.left().travel_m), wrapped_mm(tracks.right().travel_m)));
+    const base::BodyTwist t = tracks.measured();
+    send(bunker::encode(bunker::MotionState{{t.linear_mps, t.angular_radps, 0.0, 0.0}}));
+    send(bunker::encode(
+        bunker::Odometer{wrapped_mm(tracks.left().travel_m), wrapped_mm(tracks.right().travel_m)}));
   }
   if (every(4, 1)) report_radio();
   if (every(4, 2)) report_motors(false);
   if (every(20, 3)) {
-    send(state_frame({machine.state(), machine.shown_mode(now), battery.voltage_v(), error_code(),
-                      state_count++}));
+    send(bunker::encode(bunker::SystemState{raw(machine.state()), raw(machine.shown_mode(now)),
+                                            battery.voltage_v(), error_code(), state_count++}));
   }
   if (every(20, 7)) report_motors(true);
   if (every(100, 11)) {
-    send(battery_frame(
-        {battery.charge_pct(), battery.voltage_v(), battery.current_a(), kAmbient_c}));
+    const auto charge = static_cast<std::uint8_t>(std::lround(battery.charge_pct()));
+    send(bunker::encode(
+        bunker::Battery{charge, 100, battery.voltage_v(), battery.current_a(), kAmbient_c}));
   }
 }
 
 void Bunker::Impl::report_radio() {
   if (radio_heard()) {
-    last_radio = radio_frame(radio, radio_count++);
+    last_radio = bunker::encode(radio_report(radio, radio_count++));
   } else if (!faults.radio_freeze || !last_radio) {
     return;
   }
@@ -167,11 +174,16 @@ void Bunker::Impl::report_radio() {
 
 /// Motor 1 drives the right track, motor 2 the left one.
 void Bunker::Impl::report_motors(bool slow) {
-  const auto one = [&](int motor, const MotorState& m, double heat_c) {
-    if (slow) return motor_slow_frame(motor, battery.voltage_v(), kAmbient_c + heat_c);
+  const auto one = [&](std::uint8_t motor, const MotorState& m, double heat_c) {
+    if (slow) {  // the driver sits on the motor's heat sink
+      const std::int16_t warm_c = whole(kAmbient_c + heat_c);
+      return bunker::encode(
+          bunker::ActuatorSlow{motor, battery.voltage_v(), warm_c,
+                               static_cast<std::int8_t>(std::min<int>(warm_c, 127)), 0});
+    }
     const double per_m = params.drive.motor_rev_per_m;
-    return motor_fast_frame(
-        motor, {m.track_mps * per_m * 60.0, m.current_a, wrapped_pulses(m.travel_m * per_m)});
+    return bunker::encode(bunker::ActuatorFast{motor, whole(m.track_mps * per_m * 60.0),
+                                               m.current_a, wrapped_pulses(m.travel_m * per_m)});
   };
   send(one(1, tracks.right(), right_heat_c));
   send(one(2, tracks.left(), left_heat_c));
@@ -189,21 +201,21 @@ Bunker::Bunker(const Params& params, std::uint64_t seed, const Start& start)
 Bunker::~Bunker() = default;
 
 void Bunker::receive(const CanFrame& f) {
-  if (f.extended || f.remote || f.error) return;
   const bool lost = impl_->to_base.uniform() < impl_->faults.loss_to_base;
   if (lost || impl_->faults.bus_off) return;
-  if (f.id == kMotionCommandId) {
-    if (const auto twist = motion_command(f)) {
-      ++impl_->commands;
-      impl_->machine.command(*twist, impl_->now);
-    }
-  } else if (f.id == kModeCommandId && f.len >= 1) {
-    impl_->machine.request_mode(f.data[0], impl_->params.radio.fight_limit, impl_->now);
-  } else if (f.id == kClearErrorsId && f.len >= 1) {
-    unsigned bits = static_cast<unsigned>(impl_->faults.error_bits);
-    if (f.data[0] == 0) bits = 0;
-    if (f.data[0] >= 1 && f.data[0] <= 4) bits &= ~(1u << (2 + f.data[0]));
-    impl_->faults.error_bits = static_cast<int>(bits);
+  const bunker::Decoded decoded = bunker::decode(f);
+  if (decoded.verdict == bunker::Verdict::Decoded) impl_->obey(decoded.message);
+}
+
+void Bunker::Impl::obey(const bunker::Message& message) {
+  if (const auto* motion = std::get_if<bunker::MotionCommand>(&message)) {
+    ++commands;
+    machine.command({motion->linear_mps, motion->angular_radps}, now);
+  } else if (const auto* mode = std::get_if<bunker::ControlModeCommand>(&message)) {
+    machine.request_mode(static_cast<std::uint8_t>(mode->mode), params.radio.fight_limit, now);
+  } else if (const auto* clear = std::get_if<bunker::ClearErrors>(&message)) {
+    const unsigned gone = clear->which == 0 ? 0xFFFFu : 1u << (2 + clear->which);
+    faults.error_bits = static_cast<int>(static_cast<unsigned>(faults.error_bits) & ~gone);
   }
 }
 

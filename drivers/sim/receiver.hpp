@@ -25,7 +25,7 @@ struct FixErrors {
   double drift_tau_s = 60.0;
   double velocity_mps = 0.0;
   int satellites = 0;
-  double hdop = 99.99;
+  double hdop = 99.9;
 };
 
 /// The errors of a fix class. Source of the drift figures: D. L. Wilson, GPS error correlation.

@@ -1,57 +1,17 @@
 // NMEA 0183 text of one epoch, as a current multi-constellation receiver writes it.
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <string>
 
-#include <fmt/format.h>
-
+#include "gnss/nmea_encode.hpp"
 #include "sim/receiver.hpp"
 
 namespace roverd::sim {
 namespace {
 
 using base::FixType;
-
-constexpr double kKnot_mps = 1852.0 / 3600.0;
-
-std::string closed(const std::string& body) {
-  unsigned sum = 0;
-  for (const char c : body) sum ^= static_cast<unsigned char>(c);
-  return fmt::format("${}*{:02X}\r\n", body, sum);
-}
-
-struct Utc {
-  std::string time;  ///< hhmmss.ss
-  std::string date;  ///< ddmmyy
-};
-
-Utc utc_of(base::WallTime wall) {
-  using namespace std::chrono;
-  const auto centi = floor<duration<std::int64_t, std::centi>>(wall);
-  const auto day = floor<days>(centi);
-  const year_month_day date{day};
-  const hh_mm_ss clock{centi - day};
-  return {fmt::format("{:02}{:02}{:02}.{:02}", clock.hours().count(), clock.minutes().count(),
-                      clock.seconds().count(), clock.subseconds().count()),
-          fmt::format("{:02}{:02}{:02}", unsigned{date.day()}, unsigned{date.month()},
-                      static_cast<int>(date.year()) % 100)};
-}
-
-/// ddmm.mmmmmmm,N: 7 decimals of a minute are 0.2 mm. Rounded as a whole, so that 59.99999999
-/// carries into the degree instead of printing 60 minutes.
-std::string angle(double degrees, int width, const char* signs) {
-  const auto units = std::llround(std::abs(degrees) * 60.0 * 1e7);
-  const auto whole = units / 600'000'000;
-  const auto rest = units % 600'000'000;
-  return fmt::format("{:0{}}{:02}.{:07},{}", whole, width, rest / 10'000'000, rest % 10'000'000,
-                     degrees < 0.0 ? signs[1] : signs[0]);
-}
-
-std::string place(const Epoch& epoch) {
-  if (!epoch.position) return ",,,";
-  return angle(epoch.position->lat, 2, "NS") + "," + angle(epoch.position->lon, 3, "EW");
-}
 
 int quality(FixType fix) {
   switch (fix) {
@@ -91,52 +51,68 @@ char mode_letter(FixType fix) {
   return 'N';
 }
 
-std::string gga(const Epoch& epoch, const Utc& utc) {
-  const FixErrors& e = epoch.errors;
-  const std::string head = fmt::format("GNGGA,{},{},{},", utc.time, place(epoch), quality(e.fix));
-  if (!epoch.position) return closed(head + "00,99.99,,,,,,");
-  const bool corrected = e.fix != FixType::Single;
-  return closed(head + fmt::format("{:02},{:.1f},{:.3f},M,{:.3f},M,{},{}", e.satellites, e.hdop,
-                                   epoch.alt_msl_m, epoch.geoid_sep_m, corrected ? "1.0" : "",
-                                   corrected ? "0001" : ""));
-}
-
-std::string rmc(const Epoch& epoch, const Utc& utc, const std::string& course) {
-  const char mode = mode_letter(epoch.errors.fix);
-  if (!epoch.position) {
-    return closed(fmt::format("GNRMC,{},V,,,,,,,{},,,{},V", utc.time, utc.date, mode));
-  }
-  return closed(fmt::format("GNRMC,{},A,{},{:.3f},{},{},,,{},V", utc.time, place(epoch),
-                            epoch.speed_mps / kKnot_mps, course, utc.date, mode));
-}
-
-std::string vtg(const Epoch& epoch, const std::string& course) {
-  const char mode = mode_letter(epoch.errors.fix);
-  if (!epoch.position) return closed(fmt::format("GNVTG,,,,,,,,,{}", mode));
-  return closed(fmt::format("GNVTG,{},T,,M,{:.3f},N,{:.3f},K,{}", course,
-                            epoch.speed_mps / kKnot_mps, epoch.speed_mps * 3.6, mode));
-}
-
-std::string gst(const Epoch& epoch, const Utc& utc) {
-  if (!epoch.position) return closed(fmt::format("GNGST,{},,,,,,,", utc.time));
-  const double s = std::max(epoch.sigma_m, 0.001);
-  return closed(fmt::format("GNGST,{},{:.3f},{:.3f},{:.3f},0.0,{:.3f},{:.3f},{:.3f}", utc.time,
-                            1.4 * s, s, s, s, s, 1.5 * s));
-}
-
 /// Two decimals, and never "360.00".
-std::string compass_angle(double degrees) {
-  return fmt::format("{:.2f}", std::fmod(std::round(degrees * 100.0) / 100.0, 360.0));
+double angle_as_printed(double degrees) {
+  return std::fmod(std::round(degrees * 100.0) / 100.0, 360.0);
+}
+
+gnss::Gga gga_of(const Epoch& epoch, double time_s) {
+  gnss::Gga s{.time_s = time_s, .quality = quality(epoch.errors.fix)};
+  s.sats = epoch.errors.satellites;
+  s.hdop = epoch.errors.hdop;
+  if (!epoch.position) return s;
+  s.lat = epoch.position->lat;
+  s.lon = epoch.position->lon;
+  s.alt_msl_m = epoch.alt_msl_m;
+  s.geoid_sep_m = epoch.geoid_sep_m;
+  if (epoch.errors.fix != FixType::Single) {  // corrected by some reference station
+    s.dgps_age_s = 1.0;
+    s.station = 1;
+  }
+  return s;
+}
+
+gnss::Gst gst_of(const Epoch& epoch, double time_s) {
+  gnss::Gst s;
+  s.time_s = time_s;
+  if (!epoch.position) return s;
+  const double sigma_m = std::max(epoch.sigma_m, 0.001);
+  s.rms_m = 1.4 * sigma_m;
+  s.major_m = s.minor_m = s.lat_sd_m = s.lon_sd_m = sigma_m;
+  s.orient_deg = 0.0;
+  s.alt_sd_m = 1.5 * sigma_m;
+  return s;
 }
 
 }  // namespace
 
 std::string sentences(const Epoch& epoch) {
-  const Utc utc = utc_of(epoch.utc);
-  const std::string course = epoch.course_deg ? compass_angle(*epoch.course_deg) : "";
-  std::string text = gga(epoch, utc) + rmc(epoch, utc, course) + vtg(epoch, course);
-  text += gst(epoch, utc);
-  if (epoch.heading_deg) text += closed("GNHDT," + compass_angle(*epoch.heading_deg) + ",T");
+  const auto day = std::chrono::floor<std::chrono::days>(epoch.utc);
+  const double time_s = base::seconds(epoch.utc - day);
+
+  gnss::Rmc rmc;
+  rmc.time_s = time_s;
+  rmc.date = gnss::Date{day};
+  rmc.mode = mode_letter(epoch.errors.fix);
+  rmc.nav_status = 'V';
+  gnss::Vtg vtg;
+  vtg.mode = rmc.mode;
+  if (epoch.position) {
+    rmc.active = true;
+    rmc.lat = epoch.position->lat;
+    rmc.lon = epoch.position->lon;
+    rmc.speed_kn = vtg.speed_kn = epoch.speed_mps / gnss::kMpsPerKnot;
+    if (epoch.course_deg) {
+      rmc.course_deg = vtg.course_true_deg = angle_as_printed(*epoch.course_deg);
+    }
+  }
+  std::string text = gnss::encode(gga_of(epoch, time_s)) + gnss::encode(rmc) + gnss::encode(vtg) +
+                     gnss::encode(gst_of(epoch, time_s));
+  if (epoch.heading_deg) {
+    gnss::Hdt hdt;
+    hdt.heading_deg = angle_as_printed(*epoch.heading_deg);
+    text += gnss::encode(hdt);
+  }
   return text;
 }
 

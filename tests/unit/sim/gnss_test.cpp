@@ -183,7 +183,7 @@ TEST(Gnss, AnOutageSaysNoFixAndTheCompassGoesOn) {
   Plant plant;
   set_fault(plant, [](Faults& f) { f.gnss_outage = true; });
   plant.wait(2s);
-  EXPECT_EQ(plant.lines("GGA").back(), "$GNGGA,120001.80,,,,,0,00,99.99,,,,,,*72");
+  EXPECT_EQ(plant.lines("GGA").back(), "$GNGGA,120001.80,,,,,0,00,99.9,,,,,,*4B");
   const auto rmc = split(plant.lines("RMC").back());
   EXPECT_EQ(rmc.at(2), "V");
   EXPECT_EQ(rmc.at(3), "");
