@@ -1,0 +1,187 @@
+#include "link/address.hpp"
+
+#include <array>
+#include <charconv>
+#include <optional>
+#include <utility>
+
+#include "link/cansock.hpp"
+#include "link/replay.hpp"
+#include "link/serial.hpp"
+#include "link/socketcan.hpp"
+#include "link/tcp.hpp"
+#include "link/udp.hpp"
+
+namespace roverd::link {
+namespace {
+
+struct SchemeName {
+  std::string_view name;
+  Scheme scheme;
+  std::string_view form;
+};
+
+constexpr std::array<SchemeName, 6> kSchemes{{{"can", Scheme::Can, "can:IFACE"},
+                                              {"cansock", Scheme::CanSocket, "cansock:PATH"},
+                                              {"serial", Scheme::Serial, "serial:DEVICE:BAUD"},
+                                              {"tcp", Scheme::Tcp, "tcp:HOST:PORT"},
+                                              {"udp", Scheme::Udp, "udp:PORT"},
+                                              {"replay", Scheme::Replay, "replay:FILE"}}};
+
+const SchemeName& entry(Scheme scheme) noexcept {
+  return kSchemes[static_cast<std::size_t>(scheme)];  // listed in the order of the enum
+}
+
+tl::unexpected<base::Error> bad(std::string_view text, std::string_view problem) {
+  return base::fail(base::Code::Invalid,
+                    "link address '" + std::string(text) + "': " + std::string(problem));
+}
+
+std::optional<unsigned> whole_number(std::string_view text) noexcept {
+  unsigned value = 0;
+  const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || ec != std::errc() || end != text.data() + text.size()) return {};
+  return value;
+}
+
+std::optional<std::uint16_t> port_number(std::string_view text) noexcept {
+  const auto value = whole_number(text);
+  if (!value || *value < 1 || *value > 65'535) return {};
+  return static_cast<std::uint16_t>(*value);
+}
+
+/// "name:rest" split at the last colon: device paths and IPv6 hosts contain colons themselves.
+std::optional<std::pair<std::string_view, std::string_view>> split_last(std::string_view rest) {
+  const auto colon = rest.rfind(':');
+  if (colon == std::string_view::npos) return {};
+  return std::pair(rest.substr(0, colon), rest.substr(colon + 1));
+}
+
+base::Result<Address> parse_serial(std::string_view text, std::string_view rest) {
+  const auto parts = split_last(rest);
+  const auto baud = parts ? whole_number(parts->second) : std::nullopt;
+  if (!baud || *baud == 0 || parts->first.empty()) {
+    return bad(text, "must read serial:DEVICE:BAUD, for example serial:/dev/ttyUSB0:115200");
+  }
+  return Address{Scheme::Serial, std::string(parts->first), *baud, 0};
+}
+
+base::Result<Address> parse_tcp(std::string_view text, std::string_view rest) {
+  const auto parts = split_last(rest);
+  const auto port = parts ? port_number(parts->second) : std::nullopt;
+  if (!port) return bad(text, "must read tcp:HOST:PORT with a port of 1..65535");
+  std::string_view host = parts->first;
+  if (host.size() > 2 && host.front() == '[' && host.back() == ']') {
+    host = host.substr(1, host.size() - 2);
+  } else if (host.empty() || host.find_first_of(":[]") != std::string_view::npos) {
+    return bad(text, "must name a host; an IPv6 address stands in brackets: tcp:[::1]:5000");
+  }
+  return Address{Scheme::Tcp, std::string(host), 0, *port};
+}
+
+template <class Link>
+base::Result<std::unique_ptr<Link>> wrong_kind(std::string_view text, std::string_view carries) {
+  return bad(text, "carries " + std::string(carries));
+}
+
+}  // namespace
+
+base::Result<Address> parse_address(std::string_view text) {
+  const auto colon = text.find(':');
+  const auto name = text.substr(0, colon);
+  const auto rest = colon == std::string_view::npos ? "" : text.substr(colon + 1);
+  const SchemeName* known = nullptr;
+  std::string forms;
+  for (const auto& scheme : kSchemes) {
+    if (scheme.name == name && colon != std::string_view::npos) known = &scheme;
+    forms += (forms.empty() ? "" : ", ") + std::string(scheme.form);
+  }
+  if (known == nullptr) return bad(text, "must be one of " + forms);
+  if (rest.find('\0') != std::string_view::npos) return bad(text, "contains a zero byte");
+  switch (known->scheme) {
+    case Scheme::Serial:
+      return parse_serial(text, rest);
+    case Scheme::Tcp:
+      return parse_tcp(text, rest);
+    case Scheme::Udp: {
+      const auto port = port_number(rest);
+      if (!port) return bad(text, "must read udp:PORT with a port of 1..65535");
+      return Address{Scheme::Udp, "", 0, *port};
+    }
+    case Scheme::Can:
+      // The kernel's rule for interface names; longer ones cannot exist.
+      if (rest.empty() || rest.size() > 15 ||
+          rest.find_first_of("/ \t") != std::string_view::npos) {
+        return bad(text, "must read can:IFACE, an interface name of 1 to 15 letters like can0");
+      }
+      break;
+    case Scheme::CanSocket:
+    case Scheme::Replay:
+      if (rest.empty()) return bad(text, "must read " + std::string(known->form));
+      break;
+  }
+  return Address{known->scheme, std::string(rest), 0, 0};
+}
+
+std::string to_string(const Address& address) {
+  const std::string start = std::string(entry(address.scheme).name) + ":";
+  switch (address.scheme) {
+    case Scheme::Serial:
+      return start + address.target + ":" + std::to_string(address.baud);
+    case Scheme::Tcp: {
+      const bool v6 = address.target.find(':') != std::string::npos;
+      return start + (v6 ? "[" + address.target + "]" : address.target) + ":" +
+             std::to_string(address.port);
+    }
+    case Scheme::Udp:
+      return start + std::to_string(address.port);
+    case Scheme::Can:
+    case Scheme::CanSocket:
+    case Scheme::Replay:
+      break;
+  }
+  return start + address.target;
+}
+
+base::Result<std::unique_ptr<FrameLink>> make_frame_link(asio::io_context& io,
+                                                         std::string_view text,
+                                                         const ReplayOptions& replay) {
+  const auto address = parse_address(text);
+  if (!address) return tl::unexpected(address.error());
+  switch (address->scheme) {
+    case Scheme::Can:
+      return std::make_unique<SocketCanLink>(io, address->target);
+    case Scheme::CanSocket:
+      return std::make_unique<CanSocketLink>(io, address->target);
+    case Scheme::Replay:
+      return std::make_unique<FrameReplay>(io, address->target, replay);
+    case Scheme::Serial:
+    case Scheme::Tcp:
+    case Scheme::Udp:
+      break;
+  }
+  return wrong_kind<FrameLink>(text, "bytes, but CAN frames are needed (can:, cansock:, replay:)");
+}
+
+base::Result<std::unique_ptr<ByteLink>> make_byte_link(asio::io_context& io, std::string_view text,
+                                                       const ReplayOptions& replay) {
+  const auto address = parse_address(text);
+  if (!address) return tl::unexpected(address.error());
+  switch (address->scheme) {
+    case Scheme::Serial:
+      return std::make_unique<SerialLink>(io, address->target, address->baud);
+    case Scheme::Tcp:
+      return std::make_unique<TcpLink>(io, address->target, address->port);
+    case Scheme::Udp:
+      return std::make_unique<UdpLink>(io, address->port);
+    case Scheme::Replay:
+      return std::make_unique<ByteReplay>(io, address->target, replay);
+    case Scheme::Can:
+    case Scheme::CanSocket:
+      break;
+  }
+  return wrong_kind<ByteLink>(text,
+                              "CAN frames, but bytes are needed (serial:, tcp:, udp:, replay:)");
+}
+
+}  // namespace roverd::link

@@ -1,0 +1,51 @@
+#pragma once
+// Link addresses as they stand in the configuration, and the links they name.
+//
+//   can:IFACE            SocketCAN interface                     frames
+//   cansock:PATH         local CAN socket                        frames
+//   serial:DEVICE:BAUD   serial port, 8N1                        bytes
+//   tcp:HOST:PORT        TCP client; IPv6 as [::1]               bytes
+//   udp:PORT             UDP receiver                            bytes
+//   replay:FILE          a recording                             frames or bytes
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include <boost/asio/io_context.hpp>
+
+#include "base/result.hpp"
+#include "link/link.hpp"
+#include "link/replay_options.hpp"
+
+namespace roverd::link {
+
+namespace asio = boost::asio;
+
+enum class Scheme { Can, CanSocket, Serial, Tcp, Udp, Replay };
+
+struct Address {
+  Scheme scheme = Scheme::Can;
+  std::string target;      ///< interface, path, device, host or file; empty for udp
+  unsigned baud = 0;       ///< serial only
+  std::uint16_t port = 0;  ///< tcp and udp only; never 0 there
+  friend bool operator==(const Address&, const Address&) = default;
+};
+
+/// Pure. The error's detail says what is wrong with `text` and, for a scheme nobody knows, which
+/// ones there are.
+base::Result<Address> parse_address(std::string_view text);
+
+/// The text that parse_address turns into `address` again.
+std::string to_string(const Address& address);
+
+/// The link, not opened yet. An address of the other kind (frames from a serial port) is an error.
+base::Result<std::unique_ptr<FrameLink>> make_frame_link(asio::io_context& io,
+                                                         std::string_view address,
+                                                         const ReplayOptions& replay = {});
+base::Result<std::unique_ptr<ByteLink>> make_byte_link(asio::io_context& io,
+                                                       std::string_view address,
+                                                       const ReplayOptions& replay = {});
+
+}  // namespace roverd::link

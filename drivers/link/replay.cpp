@@ -1,0 +1,165 @@
+#include "link/replay.hpp"
+
+#include <utility>
+
+namespace roverd::link {
+namespace {
+
+/// Items handed over before other work on the same thread gets its turn.
+constexpr int kBurst = 64;
+/// A year: keeps a silly stamp or a tiny speed within the range of the clock.
+constexpr double kLongestWait_s = 3.0e7;
+
+base::Error has_ended(const std::string& path) {
+  return {base::Code::Conflict, "the replay of " + path + " has ended", {}};
+}
+
+}  // namespace
+
+ReplayPump::ReplayPump(asio::io_context& io, ReplayFile& file, double speed, bool loop)
+    : timer_(io), file_(file), speed_(speed), loop_(loop) {}
+
+void ReplayPump::start(std::function<void(const std::string&)> on_end) {
+  on_end_ = std::make_shared<const std::function<void(const std::string&)>>(std::move(on_end));
+  started_ = base::steady_now();
+  lap_ = at_ = base::Duration::zero();
+  loaded_ = false;
+  played_this_lap_ = 0;
+  again(base::Duration::zero());  // never from within the caller's open()
+}
+
+void ReplayPump::stop() noexcept {
+  on_end_.reset();
+  timer_.cancel();
+}
+
+void ReplayPump::again(base::Duration after) {
+  timer_.expires_after(std::chrono::duration_cast<asio::steady_timer::duration>(after));
+  timer_.async_wait([this, weak = std::weak_ptr(on_end_)](const boost::system::error_code& ec) {
+    if (!ec && !weak.expired()) step();
+  });
+}
+
+base::Duration ReplayPump::due_in(Time now) const {
+  if (speed_ <= 0.0) return base::Duration::zero();
+  const double wait_s = base::seconds(at_) / speed_ - base::seconds(now - started_);
+  return base::from_seconds(std::min(wait_s, kLongestWait_s));
+}
+
+void ReplayPump::step() {
+  for (int i = 0; i < kBurst; ++i) {
+    if (!loaded_ && !load()) return;
+    const base::Duration wait = due_in(base::steady_now());
+    if (wait > base::Duration::zero()) {
+      again(wait);
+      return;
+    }
+    loaded_ = false;
+    ++played_;
+    ++played_this_lap_;
+    const std::weak_ptr playing = on_end_;
+    file_.emit(base::steady_now());
+    if (playing.expired()) return;  // closed by the receiver
+  }
+  again(base::Duration::zero());
+}
+
+bool ReplayPump::load() {
+  for (;;) {
+    const auto due = file_.advance();
+    if (!due) {
+      end(due.error().detail);
+      return false;
+    }
+    if (*due) {
+      at_ = lap_ + **due;
+      loaded_ = true;
+      return true;
+    }
+    if (!loop_ || played_this_lap_ == 0) {
+      end("end of file");
+      return false;
+    }
+    if (const auto rewound = file_.rewind(); !rewound) {
+      end(rewound.error().detail);
+      return false;
+    }
+    lap_ = at_ + kLoopGap;
+    played_this_lap_ = 0;
+  }
+}
+
+void ReplayPump::end(const std::string& reason) {
+  const auto call = std::exchange(on_end_, nullptr);
+  if (call) (*call)(reason);
+}
+
+FrameReplay::FrameReplay(asio::io_context& io, std::string path, const ReplayOptions& options)
+    : path_(std::move(path)),
+      file_(path_,
+            [this](const CanFrame& frame, Time t) {
+              if (on_frame) on_frame(frame, t);
+            }),
+      pump_(io, file_, options.speed, options.loop) {}
+
+FrameReplay::~FrameReplay() {
+  close();
+}
+
+base::Result<void> FrameReplay::open() {
+  if (ended_) return tl::unexpected(has_ended(path_));
+  close();
+  if (auto opened = file_.open(); !opened) return opened;
+  open_ = true;
+  pump_.start([this](const std::string& reason) {
+    ended_ = true;
+    open_ = false;
+    if (on_closed) on_closed(reason);
+  });
+  return {};
+}
+
+void FrameReplay::close() noexcept {
+  open_ = false;
+  pump_.stop();
+}
+
+SendResult FrameReplay::send(const CanFrame&) noexcept {
+  return open_ ? SendResult::Sent : SendResult::Closed;
+}
+
+ByteReplay::ByteReplay(asio::io_context& io, std::string path, const ReplayOptions& options)
+    : path_(std::move(path)),
+      file_(path_, options,
+            [this](Bytes bytes, Time t) {
+              if (on_bytes) on_bytes(bytes, t);
+            }),
+      pump_(io, file_, options.speed, options.loop) {}
+
+ByteReplay::~ByteReplay() {
+  close();
+}
+
+base::Result<void> ByteReplay::open() {
+  if (ended_) return tl::unexpected(has_ended(path_));
+  close();
+  if (auto opened = file_.open(); !opened) return opened;
+  open_ = true;
+  pump_.start([this](const std::string& reason) {
+    ended_ = true;
+    open_ = false;
+    if (on_closed) on_closed(reason);
+  });
+  return {};
+}
+
+void ByteReplay::close() noexcept {
+  open_ = false;
+  pump_.stop();
+}
+
+SendResult ByteReplay::write(Bytes) noexcept {
+  return open_ ? SendResult::Sent : SendResult::Closed;
+}
+
+}  // namespace roverd::link

@@ -1,0 +1,29 @@
+#pragma once
+// How a recording is played.
+
+#include <functional>
+#include <optional>
+
+#include "base/bytes.hpp"
+
+namespace roverd::link {
+
+/// Seconds on the clock of the recorded device that a line carries (a sentence's time of day, say),
+/// or nothing. The line is without its line end. Differences count, so any origin will do; a step
+/// back by about a day is taken for midnight.
+using LineClock = std::function<std::optional<double>(base::Bytes line)>;
+
+struct ReplayOptions {
+  /// Recorded seconds per second; 1 is real time. 0: as fast as the program takes it. Not negative.
+  double speed = 1.0;
+  /// Begin again at the end, for ever, instead of closing.
+  bool loop = false;
+  /// Longer silences in a plain file are cut to this (recordings with stamps keep theirs).
+  double longest_gap_s = 30.0;
+  /// Paces a plain file of bytes (no stamps of ours) by what its lines say.
+  LineClock line_clock;
+  /// Paces a plain file in which line_clock finds nothing.
+  double fallback_bytes_per_s = 960.0;
+};
+
+}  // namespace roverd::link

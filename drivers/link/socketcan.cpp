@@ -1,0 +1,196 @@
+#include "link/socketcan.hpp"
+
+#include <array>
+#include <cerrno>
+#include <cstddef>
+#include <cstring>
+#include <optional>
+#include <utility>
+
+#include <linux/can.h>
+#include <linux/can/error.h>
+#include <linux/can/raw.h>
+#include <net/if.h>
+#include <net/if_arp.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "link/can_wire.hpp"
+
+namespace roverd::link {
+namespace {
+
+static_assert(sizeof(can_frame) == kCanPacketSize && offsetof(can_frame, data) == 8);
+
+/// Frames taken at one wake-up, so that a full bus cannot starve the other links.
+constexpr int kBurst = 64;
+
+ifreq request_for(const std::string& interface) noexcept {
+  ifreq request{};
+  std::memcpy(request.ifr_name, interface.c_str(), interface.size());  // length checked by open()
+  return request;
+}
+
+struct Extras {
+  std::optional<base::WallTime> stamp;
+  std::optional<std::uint32_t> overrun;
+};
+
+Extras read_extras(msghdr& message) noexcept {
+  Extras out;
+  for (cmsghdr* c = CMSG_FIRSTHDR(&message); c != nullptr; c = CMSG_NXTHDR(&message, c)) {
+    if (c->cmsg_level != SOL_SOCKET) continue;
+    if (c->cmsg_type == SCM_TIMESTAMPNS) {
+      timespec t{};
+      std::memcpy(&t, CMSG_DATA(c), sizeof t);
+      out.stamp =
+          base::WallTime(std::chrono::seconds(t.tv_sec) + std::chrono::nanoseconds(t.tv_nsec));
+    } else if (c->cmsg_type == SO_RXQ_OVFL) {
+      std::uint32_t count = 0;
+      std::memcpy(&count, CMSG_DATA(c), sizeof count);
+      out.overrun = count;
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+Time monotonic_stamp(base::WallTime stamped, base::WallTime wall_now, Time now) noexcept {
+  const base::Duration ago = wall_now - stamped;
+  if (ago < base::Duration::zero() || ago > std::chrono::seconds(1)) return now;
+  return now - ago;
+}
+
+SocketCanLink::SocketCanLink(asio::io_context& io, std::string interface)
+    : interface_(std::move(interface)), socket_(io) {}
+
+SocketCanLink::~SocketCanLink() {
+  close();
+}
+
+base::Result<void> SocketCanLink::open() {
+  const std::string name = "CAN interface " + interface_;
+  if (interface_.empty() || interface_.size() >= IFNAMSIZ) {
+    return base::fail(base::Code::Invalid, name + ": a name has 1 to 15 letters");
+  }
+  // Asked before the socket: also on a kernel without CAN, the missing interface is the reason.
+  if (::if_nametoindex(interface_.c_str()) == 0) {
+    return base::fail(base::Code::NotFound, name + " does not exist");
+  }
+  const int fd = ::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW);
+  if (fd < 0) {
+    const std::string why = errno == EAFNOSUPPORT || errno == EPROTONOSUPPORT
+                                ? "this kernel has no CAN (modules can, can-raw)"
+                                : errno_text(errno);
+    return base::fail(base::Code::Unavailable, name + ": " + why);
+  }
+  auto ready = check_interface(fd);
+  if (ready) ready = configure(fd);
+  if (!ready) {
+    ::close(fd);
+    return ready;
+  }
+  return socket_.open(fd, [this] { read(); });
+}
+
+base::Result<void> SocketCanLink::check_interface(int fd) const {
+  const std::string name = "CAN interface " + interface_;
+  ifreq request = request_for(interface_);
+  if (::ioctl(fd, SIOCGIFHWADDR, &request) == 0 && request.ifr_hwaddr.sa_family != ARPHRD_CAN) {
+    return base::fail(base::Code::Invalid, name + " is not a CAN interface");
+  }
+  request = request_for(interface_);
+  if (::ioctl(fd, SIOCGIFFLAGS, &request) == 0 && (request.ifr_flags & IFF_UP) == 0) {
+    return base::fail(
+        base::Code::Unavailable,
+        name + " is down (set the bit rate, then: ip link set " + interface_ + " up)");
+  }
+  return {};
+}
+
+base::Result<void> SocketCanLink::configure(int fd) const {
+  const can_err_mask_t every_error = CAN_ERR_MASK;
+  ::setsockopt(fd, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &every_error, sizeof every_error);
+  const int off = 0;
+  ::setsockopt(fd, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, &off, sizeof off);
+  const int on = 1;
+  ::setsockopt(fd, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);  // without: stamped when read
+  ::setsockopt(fd, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
+  sockaddr_can address{};
+  address.can_family = AF_CAN;
+  address.can_ifindex = static_cast<int>(::if_nametoindex(interface_.c_str()));
+  if (address.can_ifindex == 0 ||  // 0 would mean every interface
+      ::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+    return base::fail(base::Code::Unavailable,
+                      "CAN interface " + interface_ + ": " +
+                          errno_text(address.can_ifindex == 0 ? ENODEV : errno));
+  }
+  return {};
+}
+
+void SocketCanLink::close() noexcept {
+  socket_.close();
+}
+
+SendResult SocketCanLink::send(const CanFrame& frame) noexcept {
+  if (!is_valid(frame)) {
+    refused_.fetch_add(1, std::memory_order_relaxed);
+    return SendResult::Busy;
+  }
+  const CanPacket packet = to_packet(frame);
+  return socket_.use([&](int fd) {
+    return write_result(::send(fd, packet.data(), packet.size(), MSG_DONTWAIT | MSG_NOSIGNAL),
+                        packet.size());
+  });
+}
+
+void SocketCanLink::read() {
+  for (int i = 0; i < kBurst && socket_.is_open(); ++i) {
+    if (!read_one()) return;
+  }
+}
+
+bool SocketCanLink::read_one() {
+  CanPacket packet{};
+  iovec part{packet.data(), packet.size()};
+  alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(timespec)) + CMSG_SPACE(sizeof(int))> control;
+  msghdr message{};
+  message.msg_iov = &part;
+  message.msg_iovlen = 1;
+  message.msg_control = control.data();
+  message.msg_controllen = control.size();
+  const ssize_t n = ::recvmsg(socket_.fd(), &message, MSG_DONTWAIT);
+  if (n < 0) {
+    if (errno == EAGAIN || errno == EINTR) return false;
+    lost(errno);
+    return false;
+  }
+  const auto frame = from_packet(Bytes(packet.data(), static_cast<std::size_t>(n)));
+  if (!frame) {
+    refused_.fetch_add(1, std::memory_order_relaxed);
+    return true;
+  }
+  const Extras extras = read_extras(message);
+  if (extras.overrun) overrun_.store(*extras.overrun, std::memory_order_relaxed);
+  const Time now = base::steady_now();
+  const Time stamp = extras.stamp ? monotonic_stamp(*extras.stamp, base::wall_now(), now) : now;
+  if (on_frame) on_frame(*frame, stamp);
+  return true;
+}
+
+void SocketCanLink::lost(int error) {
+  close();
+  if (!on_closed) return;
+  const std::string name = "CAN interface " + interface_;
+  if (error == ENETDOWN) {
+    on_closed(name + " went down");
+  } else if (error == ENODEV || error == ENXIO) {
+    on_closed(name + " was removed");
+  } else {
+    on_closed(name + ": " + errno_text(error));
+  }
+}
+
+}  // namespace roverd::link

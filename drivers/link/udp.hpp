@@ -1,0 +1,56 @@
+#pragma once
+// Datagrams received on a port, from anybody; on_bytes gets one datagram at a time.
+
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include <sys/socket.h>
+
+#include "link/descriptor.hpp"
+#include "link/link.hpp"
+
+namespace roverd::link {
+
+/// Listens on all addresses, IPv4 and IPv6. write() goes to a fixed peer if one is given, otherwise
+/// to whoever sent last; Closed as long as there is nobody.
+class UdpLink final : public ByteLink {
+ public:
+  struct Peer {
+    std::string address;  ///< numeric, IPv4 or IPv6
+    std::uint16_t port = 0;
+  };
+
+  /// @param port to receive on; 0: the kernel chooses (see port()).
+  UdpLink(asio::io_context& io, std::uint16_t port, std::optional<Peer> peer = {});
+  ~UdpLink() override;
+
+  base::Result<void> open() override;
+  void close() noexcept override;
+  SendResult write(Bytes bytes) noexcept override;
+  std::string describe() const override { return "udp:" + std::to_string(port_); }
+
+  /// Device thread, after open(): the port received on.
+  std::uint16_t port() const noexcept { return bound_port_; }
+
+ private:
+  struct Address {
+    sockaddr_storage storage{};
+    socklen_t size = 0;  ///< 0: nobody yet
+  };
+
+  base::Result<int> bind_socket();
+  void read();
+  void remember(const Address& sender);
+  void lost(const std::string& reason);
+
+  const std::uint16_t port_;
+  const std::optional<Peer> peer_;
+  std::uint16_t bound_port_ = 0;
+  Descriptor socket_;
+  std::mutex mutex_;  // leaf; guards target_, taken by the device thread when the sender changes
+  Address target_;
+};
+
+}  // namespace roverd::link
