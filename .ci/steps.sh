@@ -177,6 +177,18 @@ step_fuzz() {
   return "$code"
 }
 
-step_figures() { "$root/tests/bench/run" --short; }
+build_benchmarks() {
+  build_product
+  cmake -DROVERD_BENCH=ON "$build"
+  ninja_build "$build" benchmarks roverd-load
+}
 
-step_bench() { "$root/tests/bench/run" | tee /dev/stderr; }
+step_figures() {
+  build_benchmarks
+  "$root/tests/bench/run" --short
+}
+
+step_bench() {
+  build_benchmarks
+  "$root/tests/bench/run"
+}
