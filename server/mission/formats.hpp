@@ -7,21 +7,24 @@
 // Both carry MAVLink mission commands. A rover that drives on the ground cannot do all of them:
 // every row of a file is accounted for as taken, changed or left out, with the reason.
 //
-//   command                       item                    parameters
-//   16 NAV_WAYPOINT               waypoint                p1 hold_s, p2 radius_m
-//   21 NAV_LAND, 22 NAV_TAKEOFF,  waypoint (changed)      the position only
-//   82 NAV_SPLINE_WAYPOINT        waypoint (changed)      driven straight
-//   17/18/19 NAV_LOITER_*         waypoint (changed)      19: p1 hold_s
+//   command                       item                  parameters
+//   16 NAV_WAYPOINT               waypoint              p1 hold_s, p2 radius_m
+//   19 NAV_LOITER_TIME            waypoint              p1 hold_s
+//   17, 18 NAV_LOITER_*, 21 LAND, 82 SPLINE_WAYPOINT    waypoint, changed: the position only
 //   20 NAV_RETURN_TO_LAUNCH       return_home
-//   93 NAV_DELAY, 112 COND_DELAY  wait                    p1 seconds
-//   115 CONDITION_YAW             turn                    p1 deg, p3 direction, p4 relative
-//   177 DO_JUMP                   jump                    p1 row number, p2 repetitions (−1: ever)
-//   178 DO_CHANGE_SPEED           speed                   p2 m/s
-//   179 DO_SET_HOME               home
-//   194 DO_SET_REVERSE            reverse of what follows p1 1: backwards
+//   93 NAV_DELAY, 112 CONDITION_DELAY                   wait: p1 seconds
+//   115 CONDITION_YAW             turn                  p1 deg, p3 −1: left, p4 1: relative
+//   177 DO_JUMP                   jump                  p1 row's number, p2 times (−1: for ever)
+//   178 DO_CHANGE_SPEED           speed                 p2 m/s
+//   194 DO_SET_REVERSE            reverse of the waypoints that follow: p1 1
 //
-// A navigation command at 0/0 means "where the vehicle is": it has no position of its own, so what
-// remains of it (a hold) becomes a wait, otherwise the row is left out.
+// A jump to a row that was left out goes to the next one that was not. A navigation command at 0/0
+// means "where the vehicle is": it has no position of its own, so its hold becomes a wait, and
+// without one it is left out. A home at 0/0 is no home. Heights do not steer a ground vehicle: they
+// are kept as numbers (above home, frame 3), 0 is none.
+//
+// Written positions have as many digits as it takes to read the same double back, at least 8
+// decimals in .waypoints (1e-9 deg is 0.1 mm).
 // Pure, any thread, throws nothing. Sources: MAVLink common.xml; QGroundControl's file format page.
 
 #include <optional>
@@ -46,8 +49,8 @@ std::string_view to_string(Outcome outcome) noexcept;  // taken changed left_out
 
 /// What became of one row, item or section of a file.
 struct FileRow {
-  std::string row;   ///< "line 4", or a JSON pointer: "/mission/items/3"
-  std::string what;  ///< "NAV_WAYPOINT (16)", "geofence" …; in an export: "item 3, row"
+  std::string row;   ///< "line 4" or a JSON pointer into the file; in an export into the plan
+  std::string what;  ///< "NAV_WAYPOINT (16)", "geofence" …; in an export the item's type
   Outcome outcome = Outcome::Taken;
   std::string reason;       ///< a sentence; empty for taken
   std::optional<int> item;  ///< number (from 1) of the item in the plan, if it has one
@@ -61,9 +64,9 @@ struct ImportedFile {
 };
 
 /// @param format empty: detected, Unsupported if that fails. @param file_name for the plan's name
-/// and as a hint; may be empty. Malformed: the file is not of that format or breaks off; Invalid: a
-/// value in it cannot be; `fields` then names each line or JSON pointer. A byte order mark and CRLF
-/// line ends are fine.
+/// and as a hint; may be empty. Invalid: the file is not of that format, breaks off or holds values
+/// that cannot be; `fields` then names each line ("line 4") or JSON pointer. TooLarge: more than
+/// kMaxItems rows. A byte order mark and CR or CRLF line ends are fine.
 base::Result<ImportedFile> import_file(std::string_view content, std::optional<Format> format,
                                        std::string_view file_name = {});
 

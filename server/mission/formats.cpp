@@ -1,0 +1,133 @@
+#include "mission/formats.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "mission/file_formats.hpp"
+#include "mission/json.hpp"
+#include "mission/text.hpp"
+
+namespace roverd::mission {
+namespace {
+
+using base::Code;
+using base::Error;
+using base::Result;
+
+constexpr std::string_view kBlanks = " \t\r\n";
+
+std::string_view base_name(std::string_view file_name) {
+  const std::size_t slash = file_name.find_last_of("/\\");
+  return slash == std::string_view::npos ? file_name : file_name.substr(slash + 1);
+}
+
+std::string lower(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return out;
+}
+
+std::string_view without_ending(std::string_view name) {
+  const std::size_t dot = name.rfind('.');
+  return dot == std::string_view::npos || dot == 0 ? name : name.substr(0, dot);
+}
+
+/// ASCII letters, digits, '-' and '_'; runs of anything else become one '_'.
+std::string file_stem(std::string_view name) {
+  constexpr std::size_t kMax = 80;
+  std::string out;
+  for (const char c : name) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '-' || c == '_';
+    if (plain) {
+      out += c;
+    } else if (!out.empty() && out.back() != '_') {
+      out += '_';
+    }
+    if (out.size() == kMax) break;
+  }
+  while (!out.empty() && out.back() == '_') out.pop_back();
+  return out.empty() ? "mission" : out;
+}
+
+}  // namespace
+
+std::string_view to_string(Format format) noexcept {
+  switch (format) {
+    case Format::Plan:
+      return "plan";
+    case Format::Waypoints:
+      return "waypoints";
+  }
+  return "plan";
+}
+
+std::optional<Format> format_from(std::string_view word) noexcept {
+  for (const Format format : {Format::Plan, Format::Waypoints}) {
+    if (to_string(format) == word) return format;
+  }
+  return std::nullopt;
+}
+
+std::string_view to_string(Outcome outcome) noexcept {
+  switch (outcome) {
+    case Outcome::Taken:
+      return "taken";
+    case Outcome::Changed:
+      return "changed";
+    case Outcome::LeftOut:
+      return "left_out";
+  }
+  return "left_out";
+}
+
+std::optional<Format> detect_format(std::string_view content, std::string_view file_name) {
+  content = without_bom(content);
+  const std::size_t start = content.find_first_not_of(kBlanks);
+  const std::string_view text =
+      start == std::string_view::npos ? std::string_view{} : content.substr(start);
+  if (text.starts_with("QGC WPL")) return Format::Waypoints;
+  if (text.starts_with('{') && text.find("\"fileType\"") != std::string_view::npos) {
+    return Format::Plan;
+  }
+  const std::string name = lower(file_name);
+  if (name.ends_with(".plan")) return Format::Plan;
+  if (name.ends_with(".waypoints")) return Format::Waypoints;
+  return std::nullopt;
+}
+
+Result<ImportedFile> import_file(std::string_view content, std::optional<Format> format,
+                                 std::string_view file_name) {
+  if (!format) format = detect_format(content, file_name);
+  if (!format) {
+    return base::fail(Code::Unsupported,
+                      "neither a QGroundControl .plan nor a QGC WPL 110 .waypoints file");
+  }
+  Result<ImportedFile> file =
+      *format == Format::Plan ? read_qgc_plan(content) : read_waypoints(content);
+  if (!file) return file;
+  file->format = *format;
+  file->plan.name = clean_name(without_ending(base_name(file_name)), "Imported mission");
+  if (auto ok = check_plan(file->plan); !ok) return tl::unexpected<Error>(ok.error());
+  return file;
+}
+
+ExportedFile export_file(const Plan& plan, Format format) {
+  ExportedFile file;
+  file.file_name = file_stem(plan.name) + '.' + std::string(to_string(format));
+  switch (format) {
+    case Format::Plan:
+      file.content = write_qgc_plan(plan, file.rows);
+      file.media_type = "application/json";
+      break;
+    case Format::Waypoints:
+      file.content = write_waypoints(plan, file.rows);
+      file.media_type = "text/plain";
+      break;
+  }
+  return file;
+}
+
+}  // namespace roverd::mission
