@@ -106,6 +106,7 @@ class Control:
         host, port = address.rsplit(":", 1)
         self.socket = socket.create_connection((host, int(port)), 10)
         self.file = self.socket.makefile("rw", encoding="utf-8", newline="\n")
+        self.ask({"set": {"truth_hz": 0}})
 
     def ask(self, request):
         self.file.write(json.dumps(request) + "\n")
@@ -114,7 +115,8 @@ class Control:
             answer = json.loads(self.file.readline())
             if "error" in answer:
                 raise Failed(f"the simulator refuses {request}: {answer['error']}")
-            return answer
+            if "ok" in answer:  # other lines are the truth it sends by itself
+                return answer
 
     def close(self):
         self.file.close()
