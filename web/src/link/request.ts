@@ -1,0 +1,68 @@
+// One HTTP request to the server, with a time limit; every way it can end becomes an Answer.
+
+import type { Answer, FieldError, Refusal } from '../model/answer';
+import type { Mission } from '../model/ports';
+import type { components } from './schema';
+
+type Problem = components['schemas']['Problem'];
+
+export interface Call {
+  readonly method?: 'GET' | 'POST' | 'PUT' | 'DELETE';
+  readonly body?: unknown;
+  readonly text?: string;
+  readonly headers?: Readonly<Record<string, string>>;
+  /** Give up after this. */
+  readonly limit_ms?: number;
+}
+
+const no_answer = (detail: string): Refusal => ({
+  status: 0,
+  title: 'No answer',
+  detail,
+  errors: [],
+});
+
+const read_problem = async (response: Response): Promise<Refusal> => {
+  const fallback = `The server answered ${response.status} ${response.statusText}.`;
+  let problem: Partial<Problem>;
+  try {
+    problem = (await response.json()) as Partial<Problem>;
+  } catch {
+    problem = {};
+  }
+  const errors: readonly FieldError[] = problem.errors ?? [];
+  const current: Mission | undefined = problem.current;
+  return {
+    status: response.status,
+    title: problem.title ?? response.statusText,
+    detail: problem.detail ?? fallback,
+    errors,
+    ...(current === undefined ? {} : { current }),
+  };
+};
+
+const fetch_options = (call: Call): RequestInit => {
+  const body = call.text ?? (call.body === undefined ? undefined : JSON.stringify(call.body));
+  const type = call.text === undefined ? 'application/json' : 'application/octet-stream';
+  return {
+    method: call.method ?? 'GET',
+    headers: { ...(body === undefined ? {} : { 'Content-Type': type }), ...call.headers },
+    cache: 'no-store',
+    signal: AbortSignal.timeout(call.limit_ms ?? 5000),
+    ...(body === undefined ? {} : { body }),
+  };
+};
+
+/** @param T what the OpenAPI document promises for success; null for an empty answer */
+export const request = async <T>(path: string, call: Call = {}): Promise<Answer<T>> => {
+  try {
+    const response = await fetch(`/api/v1${path}`, fetch_options(call));
+    if (!response.ok) return { ok: false, refusal: await read_problem(response) };
+    const value = response.status === 204 ? null : await response.json();
+    return { ok: true, value: value as T };
+  } catch (cause) {
+    const late = cause instanceof DOMException && cause.name === 'TimeoutError';
+    const detail = late ? 'The robot did not answer in time.' : 'The robot cannot be reached.';
+    return { ok: false, refusal: no_answer(detail) };
+  }
+};

@@ -1,0 +1,99 @@
+// The REST calls of the page. Types come from the OpenAPI document; that they fit the model's words
+// is checked here by the compiler.
+
+import type { Answer } from '../model/answer';
+import type { Plan } from '../model/plan';
+import type { MissionCalls, TileSet, VehicleCalls } from '../model/ports';
+import { request, type Call } from './request';
+import type { components } from './schema';
+
+type Schemas = components['schemas'];
+
+/** Clicks are void after this: a late one must not move the robot. */
+const CLICK_VALID_S = 2;
+/** Storing and reading a mission of 10,000 items over a weak radio link takes a while. */
+const MISSION_LIMIT_MS = 30_000;
+
+const etag = (revision: number): string => `"rev-${revision}"`;
+
+const draft_of = (plan: Plan): Schemas['MissionDraft'] => ({
+  name: plan.name,
+  items: [...plan.items],
+  home: plan.home ?? null,
+  settings: plan.settings ?? {},
+});
+
+const mission_path = (id: string): string => `/missions/${encodeURIComponent(id)}`;
+
+const with_mission = <T>(path: string, call: Call): Promise<Answer<T>> =>
+  request<T>(path, { limit_ms: MISSION_LIMIT_MS, ...call });
+
+export const mission_calls: MissionCalls = {
+  list: (cursor) => {
+    const from = cursor === null ? '' : `&cursor=${encodeURIComponent(cursor)}`;
+    return request<Schemas['MissionList']>(`/missions?limit=50${from}`);
+  },
+  read: (id) => with_mission<Schemas['Mission']>(mission_path(id), {}),
+  read_revision: (id, revision) =>
+    with_mission<Schemas['Mission']>(`${mission_path(id)}/revisions/${revision}`, {}),
+  create: (plan) =>
+    with_mission<Schemas['Mission']>('/missions', { method: 'POST', body: draft_of(plan) }),
+  replace: (id, revision, plan) =>
+    with_mission<Schemas['Mission']>(mission_path(id), {
+      method: 'PUT',
+      body: draft_of(plan),
+      headers: { 'If-Match': etag(revision) },
+    }),
+  remove: (id, revision) =>
+    request<null>(mission_path(id), {
+      method: 'DELETE',
+      headers: { 'If-Match': etag(revision) },
+    }),
+  import_file: (file_name, text) => {
+    const name = file_name.replace(/\.[^.]*$/, '') || file_name;
+    return with_mission<Schemas['ImportResult']>(
+      `/missions/import?name=${encodeURIComponent(name)}`,
+      { method: 'POST', text },
+    );
+  },
+  export_address: (id, format) =>
+    `/api/v1${mission_path(id)}/export?format=${encodeURIComponent(format)}`,
+};
+
+/** A command that answers with a state we also get from the stream. */
+const command = (
+  method: 'POST' | 'PUT',
+  path: string,
+  body: object = {},
+): Promise<Answer<unknown>> =>
+  request<unknown>(path, { method, body: { ...body, valid_for_s: CLICK_VALID_S } });
+
+const an_hour_ago = (): string => new Date(Date.now() - 3_600_000).toISOString();
+
+export const vehicle_calls: VehicleCalls = {
+  arm: () => command('POST', '/vehicle/arm'),
+  disarm: () => command('POST', '/vehicle/disarm'),
+  set_mode: (mode) => command('PUT', '/vehicle/mode', { mode }),
+  // No body to parse, no age to check: a stop is always carried out.
+  estop: () => request<unknown>('/vehicle/estop', { method: 'POST', limit_ms: 1000 }),
+  reset_estop: () => command('POST', '/vehicle/estop/reset'),
+  checks: () => request<Schemas['Checks']>('/vehicle/checks'),
+  load: (mission_id, revision) => command('POST', '/execution/load', { mission_id, revision }),
+  preview: (from) => request<Schemas['Preview']>(`/execution/preview?from=${from}`),
+  start: (mission_id, revision, from) =>
+    request<Schemas['Preview']>('/execution/start', {
+      method: 'POST',
+      body: { mission_id, revision, from, valid_for_s: CLICK_VALID_S },
+    }),
+  pause: () => command('POST', '/execution/pause'),
+  resume: () => command('POST', '/execution/resume'),
+  stop: () => command('POST', '/execution/stop'),
+  skip: () => command('POST', '/execution/skip'),
+  recent_events: () =>
+    request<Schemas['EventList']>(`/events?limit=200&since=${encodeURIComponent(an_hour_ago())}`),
+};
+
+export const tile_sets = async (): Promise<readonly TileSet[]> => {
+  const answer = await request<Schemas['TileSetList']>('/tiles');
+  return answer.ok ? answer.value.items : [];
+};

@@ -1,0 +1,42 @@
+// Wires the page by hand; the only file that sees every room.
+
+import { mount } from 'svelte';
+
+import { mission_calls, tile_sets, vehicle_calls } from './link/rest';
+import { draft_storage } from './link/storage';
+import { open_stream, type Stream } from './link/stream';
+import { make_map } from './map/map';
+import App from './ui/App.svelte';
+import { Station } from './ui/station.svelte';
+import './ui/style.css';
+
+const element = (id: string): HTMLElement => {
+  const found = document.getElementById(id);
+  if (!found) throw new Error(`the page has no element "${id}"`);
+  return found;
+};
+
+const map = make_map(element('map'));
+/** The station needs a way to send before there is a stream, and the stream needs the station. */
+const late: { stream: Stream | null } = { stream: null };
+const station = new Station({
+  missions: mission_calls,
+  vehicle: vehicle_calls,
+  map,
+  storage: draft_storage,
+  send_drive: (speed_mps, yaw_rate_dps, deadman) =>
+    late.stream?.send_drive(speed_mps, yaw_rate_dps, deadman) ?? false,
+});
+late.stream = open_stream(station.stream_events);
+mount(App, { target: element('app'), props: { station } });
+
+void tile_sets().then((sets) => map.use_tiles(sets[0] ?? null));
+window.addEventListener('online', () => late.stream?.hurry());
+document.addEventListener('visibilitychange', () => {
+  if (document.visibilityState === 'visible') late.stream?.hurry();
+  else station.editor.write_draft();
+});
+window.addEventListener('beforeunload', (event) => {
+  station.editor.write_draft();
+  if (station.editor.unsaved) event.preventDefault();
+});

@@ -1,0 +1,70 @@
+// Colours of what is drawn on the canvas. Everything has a casing in the ground's colour, so that it
+// stays readable on tiles and in bright sun.
+
+export interface Palette {
+  readonly ground: string;
+  readonly casing: string;
+  readonly grid_major: string;
+  readonly grid_minor: string;
+  readonly grid_label: string;
+  readonly plan: string;
+  readonly selected: string;
+  readonly refused: string;
+  readonly on_point: string;
+  readonly route: string;
+  readonly route_done: string;
+  readonly current: string;
+  readonly trail: string;
+  readonly robot: string;
+  readonly robot_stale: string;
+  readonly ring: string;
+  readonly home: string;
+}
+
+const light: Palette = {
+  ground: '#f3f1ea',
+  casing: 'rgba(255, 255, 255, 0.92)',
+  grid_major: 'rgba(70, 66, 52, 0.30)',
+  grid_minor: 'rgba(70, 66, 52, 0.11)',
+  grid_label: '#5b5646',
+  plan: '#0b57d0',
+  selected: '#b3261e',
+  refused: '#b3261e',
+  on_point: '#ffffff',
+  route: '#146c2e',
+  route_done: 'rgba(20, 108, 46, 0.35)',
+  current: '#e8710a',
+  trail: '#a8327a',
+  robot: '#111318',
+  robot_stale: '#8a8d93',
+  ring: 'rgba(11, 87, 208, 0.16)',
+  home: '#5f3dc4',
+};
+
+const dark: Palette = {
+  ground: '#14171c',
+  casing: 'rgba(13, 15, 19, 0.9)',
+  grid_major: 'rgba(214, 222, 235, 0.22)',
+  grid_minor: 'rgba(214, 222, 235, 0.08)',
+  grid_label: '#aab3c2',
+  plan: '#7cacff',
+  selected: '#ff8a80',
+  refused: '#ff8a80',
+  on_point: '#0d0f13',
+  route: '#6dd58c',
+  route_done: 'rgba(109, 213, 140, 0.35)',
+  current: '#ffb066',
+  trail: '#ff8fd0',
+  robot: '#ffffff',
+  robot_stale: '#7d838d',
+  ring: 'rgba(124, 172, 255, 0.20)',
+  home: '#b9a5ff',
+};
+
+const dark_wanted = matchMedia('(prefers-color-scheme: dark)');
+
+export const palette = (): Palette => (dark_wanted.matches ? dark : light);
+
+export const on_palette_change = (redraw: () => void): void => {
+  dark_wanted.addEventListener('change', redraw);
+};

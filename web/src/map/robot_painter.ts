@@ -1,0 +1,119 @@
+// Draws the robot, the accuracy ring, the driven trail and home.
+
+import type { LatLon } from '../model/plan';
+import type { RobotOnMap } from '../model/ports';
+import type { Trail } from '../model/trail';
+import { stroke_cased, trace, type Paint } from './canvas';
+import type { Palette } from './palette';
+import { to_plane, units_per_m } from './projection';
+
+/** The trail in the plane, kept in step with the model's ring. */
+export class TrailLine {
+  readonly #xs: number[] = [];
+  readonly #ys: number[] = [];
+  #seen = 0;
+
+  follow(trail: Trail): void {
+    const fresh = Math.min(trail.added - this.#seen, trail.length);
+    this.#seen = trail.added;
+    for (let k = trail.length - fresh; k < trail.length; k += 1) {
+      const at = trail.at(k);
+      if (!at) continue;
+      const [x, y] = to_plane(at);
+      this.#xs.push(x);
+      this.#ys.push(y);
+    }
+    const surplus = this.#xs.length - trail.length;
+    if (surplus > 0) {
+      this.#xs.splice(0, surplus);
+      this.#ys.splice(0, surplus);
+    }
+  }
+
+  paint(paint: Paint, colors: Palette): void {
+    if (this.#xs.length < 2) return;
+    paint.context.beginPath();
+    trace(paint, this.#xs, this.#ys);
+    stroke_cased(paint.context, colors.casing, colors.trail, 3);
+  }
+}
+
+const ARROW_PX = 19;
+
+/** An arrow head around the origin that points up, to be turned by the heading. */
+const arrow_path = (context: CanvasRenderingContext2D, size: number): void => {
+  context.beginPath();
+  context.moveTo(0, -size);
+  context.lineTo(size * 0.74, size * 0.78);
+  context.lineTo(0, size * 0.4);
+  context.lineTo(-size * 0.74, size * 0.78);
+  context.closePath();
+};
+
+export interface Size {
+  readonly length_m: number;
+  readonly width_m: number;
+}
+
+export const paint_robot = (paint: Paint, robot: RobotOnMap, size: Size, colors: Palette): void => {
+  const { context, resolution } = paint;
+  const [x, y] = to_plane(robot.at);
+  const metre_px = units_per_m(robot.at.lat).east / resolution;
+  const color = robot.stale ? colors.robot_stale : colors.robot;
+  context.translate(paint.x_px(x), paint.y_px(y));
+
+  const ring_px = (robot.accuracy_m ?? 0) * metre_px;
+  if (ring_px > 4) {
+    context.beginPath();
+    context.arc(0, 0, ring_px, 0, 2 * Math.PI);
+    context.fillStyle = colors.ring;
+    context.fill();
+    context.strokeStyle = colors.plan;
+    context.lineWidth = 1;
+    context.stroke();
+  }
+  if (robot.heading_deg === null) {
+    context.beginPath();
+    context.arc(0, 0, 11, 0, 2 * Math.PI);
+    stroke_cased(context, colors.casing, color, 5);
+    return;
+  }
+  context.rotate((robot.heading_deg * Math.PI) / 180);
+  const [long_px, wide_px] = [size.length_m * metre_px, size.width_m * metre_px];
+  if (long_px > ARROW_PX) {
+    context.beginPath();
+    context.rect(-wide_px / 2, -long_px / 2, wide_px, long_px);
+    context.strokeStyle = color;
+    context.lineWidth = 1.5;
+    context.stroke();
+  }
+  arrow_path(context, ARROW_PX);
+  context.lineJoin = 'round';
+  context.strokeStyle = colors.casing;
+  context.lineWidth = 6;
+  context.stroke();
+  context.fillStyle = color;
+  context.fill();
+};
+
+/** A house. */
+export const paint_home = (paint: Paint, home: LatLon, colors: Palette): void => {
+  const { context } = paint;
+  const [x, y] = to_plane(home);
+  context.translate(paint.x_px(x), paint.y_px(y));
+  context.beginPath();
+  context.moveTo(0, -11);
+  context.lineTo(11, -1);
+  context.lineTo(8, -1);
+  context.lineTo(8, 10);
+  context.lineTo(-8, 10);
+  context.lineTo(-8, -1);
+  context.lineTo(-11, -1);
+  context.closePath();
+  context.strokeStyle = colors.casing;
+  context.lineWidth = 5;
+  context.lineJoin = 'round';
+  context.stroke();
+  context.fillStyle = colors.home;
+  context.fill();
+};

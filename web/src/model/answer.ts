@@ -1,0 +1,39 @@
+// What a request to the server ended in. A refusal is a value, not an exception: the page shows the
+// robot's own words.
+
+import type { Mission } from './ports';
+
+export interface FieldError {
+  /** JSON pointer, a line of a file, or the id of a failing check. */
+  readonly pointer: string;
+  readonly detail: string;
+}
+export interface Refusal {
+  /** HTTP status; 0: no answer came. */
+  readonly status: number;
+  readonly title: string;
+  readonly detail: string;
+  readonly errors: readonly FieldError[];
+  /** With 412: what is stored now. */
+  readonly current?: Mission;
+}
+export type Answer<T> =
+  { readonly ok: true; readonly value: T } | { readonly ok: false; readonly refusal: Refusal };
+
+/** One line for a person: the cause, then what is wrong in each place. */
+export const refusal_text = (refusal: Refusal): string => {
+  const causes = refusal.errors.map((error) =>
+    error.pointer === '' ? error.detail : `${error.pointer}: ${error.detail}`,
+  );
+  return [refusal.detail === '' ? refusal.title : refusal.detail, ...causes].join(' · ');
+};
+
+/** Indices of the items that a refusal names ("/items/3/lat" → 3). */
+export const refused_items = (refusal: Refusal): ReadonlySet<number> => {
+  const found = new Set<number>();
+  for (const { pointer } of refusal.errors) {
+    const match = /^\/items\/(\d+)(\/|$)/.exec(pointer);
+    if (match?.[1] !== undefined) found.add(Number(match[1]));
+  }
+  return found;
+};

@@ -1,0 +1,47 @@
+// From a finger on the drive pad to a command.
+
+export interface DriveLimits {
+  readonly max_speed_mps: number;
+  readonly max_yaw_rate_dps: number;
+}
+export interface DriveWish {
+  readonly speed_mps: number;
+  /** Counter-clockwise (to the left) positive. */
+  readonly yaw_rate_dps: number;
+}
+
+/** Commands go out every 80 ms while held: above 10 Hz even when the browser is late. */
+export const DRIVE_PERIOD_MS = 80;
+/** Share of the pad around its middle that means zero: a thumb is never quite still. */
+export const DEAD_ZONE = 0.12;
+
+const shaped = (value: number): number => {
+  const size = Math.min(Math.abs(value), 1);
+  return size <= DEAD_ZONE ? 0 : (Math.sign(value) * (size - DEAD_ZONE)) / (1 - DEAD_ZONE);
+};
+
+/**
+ * @param right, up place of the finger from the middle of the pad, each in [-1, 1]
+ * @param share 0..1 of the vehicle's limits, from the speed setting
+ */
+export const drive_wish = (
+  right: number,
+  up: number,
+  limits: DriveLimits,
+  share: number,
+): DriveWish => ({
+  speed_mps: shaped(up) * limits.max_speed_mps * share,
+  yaw_rate_dps: 0 - shaped(right) * limits.max_yaw_rate_dps * share,
+});
+
+/** The same from keys held down; opposite keys cancel. */
+export const wish_of_keys = (
+  held: ReadonlySet<string>,
+  limits: DriveLimits,
+  share: number,
+): DriveWish => {
+  const on = (...keys: string[]): number => (keys.some((key) => held.has(key)) ? 1 : 0);
+  const up = on('ArrowUp', 'w') - on('ArrowDown', 's');
+  const right = on('ArrowRight', 'd') - on('ArrowLeft', 'a');
+  return drive_wish(right, up, limits, share);
+};

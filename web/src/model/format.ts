@@ -1,0 +1,83 @@
+// Numbers as people read them. Null, undefined and NaN are "—".
+
+import type { LatLon } from './plan';
+
+type Value = number | null | undefined;
+
+export const UNKNOWN = '—';
+
+const known = (value: Value): value is number => typeof value === 'number' && !Number.isNaN(value);
+
+/** A minus of typographic width, and no "-0.0". */
+const fixed = (value: number, digits: number): string => {
+  const text = value.toFixed(digits);
+  return Number(text) === 0 ? text.replace('-', '') : text.replace('-', '−');
+};
+
+export const number_text = (value: Value, digits: number, unit = ''): string =>
+  known(value) ? `${fixed(value, digits)}${unit === '' ? '' : ` ${unit}`}` : UNKNOWN;
+
+/** 0.012 → "1.2 cm", 12.34 → "12.3 m", 1234 → "1.23 km". */
+export const metres = (value: Value): string => {
+  if (!known(value)) return UNKNOWN;
+  const size = Math.abs(value);
+  if (size < 0.1) return `${fixed(value * 100, 1)} cm`;
+  if (size < 10) return `${fixed(value, 2)} m`;
+  if (size < 1000) return `${fixed(value, size < 100 ? 1 : 0)} m`;
+  return `${fixed(value / 1000, 2)} km`;
+};
+
+/** Accuracy as a radius: "±2 cm". */
+export const accuracy = (value: Value): string => {
+  if (!known(value)) return UNKNOWN;
+  if (value < 1) return `±${Math.max(1, Math.round(value * 100))} cm`;
+  return `±${fixed(value, value < 10 ? 1 : 0)} m`;
+};
+
+export const age = (seconds: Value): string => {
+  if (!known(seconds)) return UNKNOWN;
+  if (seconds < 10) return `${seconds.toFixed(1)} s`;
+  if (seconds < 120) return `${Math.round(seconds)} s`;
+  if (seconds < 7200) return `${Math.round(seconds / 60)} min`;
+  return `${Math.round(seconds / 3600)} h`;
+};
+
+/** Time still needed: "45 s", "3 min 05 s", "1 h 12 min". */
+export const duration = (seconds: Value): string => {
+  if (!known(seconds)) return UNKNOWN;
+  const whole = Math.round(seconds);
+  const pair = (value: number): string => String(value).padStart(2, '0');
+  if (whole < 60) return `${whole} s`;
+  if (whole < 3600) return `${Math.floor(whole / 60)} min ${pair(whole % 60)} s`;
+  return `${Math.floor(whole / 3600)} h ${pair(Math.floor((whole % 3600) / 60))} min`;
+};
+
+const WINDS = ['N', 'NE', 'E', 'SE', 'S', 'SW', 'W', 'NW'];
+
+/** Compass direction with its wind: "048° NE". */
+export const direction = (bearing_deg: Value): string => {
+  if (!known(bearing_deg)) return UNKNOWN;
+  const whole = Math.round(((bearing_deg % 360) + 360) % 360) % 360;
+  return `${String(whole).padStart(3, '0')}° ${WINDS[Math.round(whole / 45) % 8] ?? ''}`;
+};
+
+/** 7 decimals are a centimetre: what a person can compare. */
+export const coordinates = (at: LatLon | null): string =>
+  at === null ? UNKNOWN : `${at.lat.toFixed(7)}, ${at.lon.toFixed(7)}`;
+
+/** Local clock time of an RFC 3339 stamp. */
+export const clock_time = (stamp: string): string => {
+  const time = new Date(stamp);
+  return Number.isNaN(time.getTime()) ? UNKNOWN : time.toTimeString().slice(0, 8);
+};
+
+export const day_and_time = (stamp: string): string => {
+  const time = new Date(stamp);
+  if (Number.isNaN(time.getTime())) return UNKNOWN;
+  const pair = (value: number): string => String(value).padStart(2, '0');
+  const day = `${time.getFullYear()}-${pair(time.getMonth() + 1)}-${pair(time.getDate())}`;
+  return `${day} ${pair(time.getHours())}:${pair(time.getMinutes())}`;
+};
+
+export const count = (value: number, one: string, many = `${one}s`): string =>
+  `${value} ${value === 1 ? one : many}`;

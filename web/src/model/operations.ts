@@ -1,0 +1,75 @@
+// Which command makes sense now, and if not, why: one sentence for the button. The page refuses only
+// what it can know for certain; the last word is the robot's answer. Whatever makes the robot stop
+// is never refused here.
+
+import type { Vehicle } from './vehicle';
+
+export interface Facts {
+  /** The live link is silent or closed. */
+  readonly link_stale: boolean;
+  readonly vehicle: Vehicle | null;
+}
+
+type Reason = string | null;
+
+const no_link = ({ link_stale, vehicle }: Facts): Reason =>
+  link_stale || vehicle === null ? 'No live connection to the robot.' : null;
+
+const no_stop = ({ vehicle }: Facts): Reason =>
+  vehicle?.estop === true ? 'The emergency stop is latched: reset it first.' : null;
+
+export const why_not_arm = (facts: Facts): Reason => no_link(facts) ?? no_stop(facts);
+
+export const why_not_reset_stop = (facts: Facts): Reason =>
+  no_link(facts) ?? (facts.vehicle?.estop === true ? null : 'The emergency stop is not set.');
+
+export const why_not_mode = (facts: Facts, mode: string): Reason => {
+  if (mode === 'HOLD') return null;
+  return no_link(facts) ?? no_stop(facts);
+};
+
+/** @param saved what the editor holds is stored, unchanged */
+export const why_not_load = (facts: Facts, saved: boolean, items: number): Reason => {
+  if (items === 0) return 'The mission has no items yet.';
+  const link = no_link(facts);
+  if (link !== null) return link;
+  if (!saved) return 'Save the mission first: the robot takes the stored revision.';
+  const state = facts.vehicle?.mission.state;
+  return state === 'running' || state === 'blocked' ? 'A mission is running: stop it first.' : null;
+};
+
+export const why_not_start = (facts: Facts): Reason => {
+  const before = no_link(facts) ?? no_stop(facts);
+  if (before !== null) return before;
+  const state = facts.vehicle?.mission.state;
+  if (state === 'idle') return 'Load a mission first.';
+  if (state === 'running' || state === 'blocked') return 'The mission is running already.';
+  return facts.vehicle?.armed === true ? null : 'Arm the robot first.';
+};
+
+export const why_not_pause = (facts: Facts): Reason => {
+  const state = facts.vehicle?.mission.state;
+  return state === 'running' || state === 'blocked' ? null : 'No mission is running.';
+};
+
+export const why_not_resume = (facts: Facts): Reason => {
+  const before = no_link(facts) ?? no_stop(facts);
+  if (before !== null) return before;
+  return facts.vehicle?.mission.state === 'paused' ? null : 'The mission is not paused.';
+};
+
+export const why_not_stop_mission = (facts: Facts): Reason => {
+  const state = facts.vehicle?.mission.state;
+  return state === 'running' || state === 'paused' || state === 'blocked'
+    ? null
+    : 'No mission is running or paused.';
+};
+
+export const why_not_skip = (facts: Facts): Reason => no_link(facts) ?? why_not_stop_mission(facts);
+
+export const why_not_drive = (facts: Facts): Reason => {
+  const before = no_link(facts) ?? no_stop(facts);
+  if (before !== null) return before;
+  if (facts.vehicle?.armed !== true) return 'Arm the robot first.';
+  return facts.vehicle.mode === 'MANUAL' ? null : 'Choose the mode MANUAL first.';
+};

@@ -1,0 +1,136 @@
+// What the rooms of the page hand each other through main.ts: types only.
+
+import type { Answer } from './answer';
+import type { LinkHealth } from './freshness';
+import type { Home, LatLon, Plan, Settings, Item } from './plan';
+import type { Trail } from './trail';
+import type { Capabilities, Check, Preview, StationEvent, Vehicle } from './vehicle';
+
+/** One stored revision. */
+export interface Mission {
+  readonly id: string;
+  readonly revision: number;
+  readonly name: string;
+  readonly items: readonly Item[];
+  readonly home: Home | null;
+  readonly settings: Settings;
+  readonly updated: string;
+}
+export interface MissionSummary {
+  readonly id: string;
+  readonly revision: number;
+  readonly name: string;
+  readonly items: number;
+  readonly length_m: number;
+  readonly updated: string;
+}
+export interface Page<T> {
+  readonly items: readonly T[];
+  readonly next_cursor: string | null;
+}
+export interface ImportEntry {
+  readonly where: string;
+  readonly outcome: 'taken' | 'changed' | 'left_out';
+  readonly item: number | null;
+  readonly reason: string;
+}
+export interface ImportResult {
+  readonly format: string;
+  readonly mission: Mission;
+  readonly taken: number;
+  readonly changed: number;
+  readonly left_out: number;
+  readonly report: readonly ImportEntry[];
+}
+export interface TileSet {
+  readonly set: string;
+  readonly name: string;
+  readonly format: 'png' | 'jpg' | 'webp' | 'pbf';
+  readonly min_zoom: number;
+  readonly max_zoom: number;
+  readonly attribution: string;
+}
+
+/** Where a mission begins: its first item, the nearest one, or an item's number. */
+export type StartFrom = 'first' | 'nearest' | number;
+
+export interface MissionCalls {
+  list(cursor: string | null): Promise<Answer<Page<MissionSummary>>>;
+  read(id: string): Promise<Answer<Mission>>;
+  read_revision(id: string, revision: number): Promise<Answer<Mission>>;
+  create(plan: Plan): Promise<Answer<Mission>>;
+  replace(id: string, revision: number, plan: Plan): Promise<Answer<Mission>>;
+  remove(id: string, revision: number): Promise<Answer<null>>;
+  import_file(file_name: string, text: string): Promise<Answer<ImportResult>>;
+  export_address(id: string, format: string): string;
+}
+export interface VehicleCalls {
+  arm(): Promise<Answer<unknown>>;
+  disarm(): Promise<Answer<unknown>>;
+  set_mode(mode: string): Promise<Answer<unknown>>;
+  estop(): Promise<Answer<unknown>>;
+  reset_estop(): Promise<Answer<unknown>>;
+  checks(): Promise<Answer<{ ready: boolean; checks: readonly Check[] }>>;
+  load(mission_id: string, revision: number): Promise<Answer<unknown>>;
+  preview(from: StartFrom): Promise<Answer<Preview>>;
+  start(mission_id: string, revision: number, from: StartFrom): Promise<Answer<Preview>>;
+  pause(): Promise<Answer<unknown>>;
+  resume(): Promise<Answer<unknown>>;
+  stop(): Promise<Answer<unknown>>;
+  skip(): Promise<Answer<unknown>>;
+  /** Events of the last hour, oldest first. */
+  recent_events(): Promise<Answer<Page<StationEvent>>>;
+}
+/** Teleoperation over the live stream. @return false: not connected, nothing was sent */
+export type SendDrive = (speed_mps: number, yaw_rate_dps: number, deadman: boolean) => boolean;
+
+export interface StreamEvents {
+  on_link(link: LinkHealth): void;
+  on_hello(capabilities: Capabilities): void;
+  on_vehicle(vehicle: Vehicle): void;
+  on_event(event: StationEvent): void;
+  /** A stored mission changed; revision null: it was deleted. */
+  on_mission_changed(id: string, revision: number | null): void;
+}
+
+/** What the page keeps on the device, so that a dead battery loses nothing. */
+export interface DraftStorage {
+  read(): string | null;
+  /** @return false: no room or not allowed */
+  write(text: string): boolean;
+}
+
+/** Exactly one is active: look only; move and select; or also add a waypoint with every tap. */
+export type MapMode = 'watch' | 'edit' | 'draw';
+
+export interface MapEvents {
+  on_add(at: LatLon): void;
+  on_insert(index: number, at: LatLon): void;
+  on_move(index: number, to: LatLon): void;
+  on_select(index: number | null): void;
+  /** The person moved the map: following ends. */
+  on_pan(): void;
+}
+export interface RobotOnMap {
+  readonly at: LatLon;
+  readonly heading_deg: number | null;
+  readonly accuracy_m: number | null;
+  readonly stale: boolean;
+}
+export interface MapCalls {
+  listen(events: MapEvents): void;
+  set_mode(mode: MapMode): void;
+  show_plan(plan: Plan, selected: number | null, refused: ReadonlySet<number>): void;
+  /** The mission the robot has loaded; null hides it. @param current_item from 1; 0: none */
+  show_route(route: Plan | null, current_item: number): void;
+  show_robot(robot: RobotOnMap | null, trail: Trail): void;
+  show_home(home: LatLon | null): void;
+  /** Footprint of the vehicle, drawn to scale. */
+  set_size(length_m: number, width_m: number): void;
+  /** What panels cover, pixels: the robot and fitted routes stay in the free part. */
+  set_cover(top: number, right: number, bottom: number, left: number): void;
+  set_follow(follow: boolean): void;
+  fit(points: readonly LatLon[]): void;
+  zoom_by(levels: number): void;
+  use_tiles(set: TileSet | null): void;
+}

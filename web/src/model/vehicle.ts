@@ -1,0 +1,160 @@
+// The state of the vehicle as the stream sends it, and the words for it. An unknown value is null
+// and is shown as "—", never as zero.
+
+import type { LatLon } from './plan';
+
+export type Mode =
+  | 'MANUAL'
+  | 'HOLD'
+  | 'AUTO'
+  | 'GUIDED'
+  | 'RTL'
+  | 'SMART_RTL'
+  | 'FOLLOW'
+  | 'STEERING'
+  | 'ACRO'
+  | 'SIMPLE'
+  | 'DOCK';
+export type Fix = 'none' | 'unknown' | 'estimated' | 'gps' | 'dgps' | 'rtk_float' | 'rtk_fixed';
+export type Control = 'none' | 'auto' | 'teleop' | 'rc';
+export type ExecutionState =
+  'idle' | 'loaded' | 'running' | 'paused' | 'blocked' | 'finished' | 'aborted';
+
+/** Every measured group carries its age at the time the message was sent. */
+export interface Measured {
+  readonly age_s: number | null;
+  readonly stale: boolean;
+}
+export interface Position extends Measured {
+  readonly lat: number | null;
+  readonly lon: number | null;
+  readonly heading_deg: number | null;
+  readonly speed_mps: number | null;
+  readonly horizontal_accuracy_m: number | null;
+  readonly heading_accuracy_deg: number | null;
+  readonly source: string | null;
+}
+export interface Gnss extends Measured {
+  readonly fix: Fix;
+  readonly lat: number | null;
+  readonly lon: number | null;
+  readonly satellites: number | null;
+  readonly hdop: number | null;
+  readonly horizontal_accuracy_m: number | null;
+  readonly correction_age_s: number | null;
+}
+export interface Battery extends Measured {
+  readonly battery_v: number | null;
+  readonly charge_pct: number | null;
+  readonly fault: boolean | null;
+}
+export interface Rc extends Measured {
+  readonly lost: boolean | null;
+}
+export interface Base extends Measured {
+  readonly errors: readonly string[];
+}
+export interface MissionProgress {
+  readonly id: string | null;
+  readonly revision: number | null;
+  readonly name: string | null;
+  readonly state: ExecutionState;
+  readonly reason: string;
+  /** From 1; 0: none. */
+  readonly current_item: number;
+  readonly items: number;
+  readonly distance_to_item_m: number | null;
+  readonly bearing_to_item_deg: number | null;
+  readonly cross_track_m: number | null;
+  readonly distance_left_m: number | null;
+  readonly eta_s: number | null;
+}
+export interface SafetyCondition {
+  readonly id: string;
+  readonly detail: string;
+}
+export interface Vehicle {
+  readonly name: string;
+  readonly time: string;
+  readonly mode: Mode;
+  readonly armed: boolean;
+  readonly estop: boolean;
+  readonly control: Control;
+  readonly speed_reason: string;
+  readonly position: Position;
+  readonly gnss: Gnss;
+  readonly base: Base;
+  readonly battery: Battery;
+  readonly rc: Rc;
+  readonly mission: MissionProgress;
+  readonly safety: readonly SafetyCondition[];
+  readonly home: LatLon | null;
+  readonly ready_to_arm: boolean;
+}
+export interface Check {
+  readonly id: string;
+  readonly ok: boolean;
+  readonly severity: 'info' | 'warning' | 'error';
+  readonly detail: string;
+}
+export interface Capabilities {
+  readonly vehicle: string;
+  readonly size: { readonly length_m: number; readonly width_m: number };
+  readonly limits: { readonly max_speed_mps: number; readonly max_yaw_rate_dps: number };
+  readonly modes: readonly Mode[];
+  readonly item_types: readonly string[];
+  readonly import_formats: readonly string[];
+  readonly export_formats: readonly string[];
+}
+/** What `start` would do; nothing has moved yet. */
+export interface Preview {
+  readonly mission_id: string;
+  readonly revision: number;
+  readonly name: string;
+  readonly first_item: number;
+  readonly first_target: LatLon | null;
+  readonly distance_m: number | null;
+  readonly bearing_deg: number | null;
+  readonly speed_mps: number;
+  readonly at_end: 'hold' | 'return' | 'repeat' | 'back_and_forth';
+}
+export interface StationEvent {
+  readonly id: number;
+  readonly time: string;
+  readonly level: 'info' | 'warning' | 'error';
+  readonly kind: string;
+  readonly detail: string;
+}
+
+export const fix_words: Record<Fix, string> = {
+  none: 'No fix',
+  unknown: 'Fix unknown',
+  estimated: 'Dead reckoning',
+  gps: 'GNSS',
+  dgps: 'DGNSS',
+  rtk_float: 'RTK float',
+  rtk_fixed: 'RTK fixed',
+};
+
+export const control_words: Record<Control, string> = {
+  none: 'Nobody drives',
+  auto: 'Autopilot drives',
+  teleop: 'Page drives',
+  rc: 'Radio drives',
+};
+
+export const state_words: Record<ExecutionState, string> = {
+  idle: 'No mission loaded',
+  loaded: 'Loaded',
+  running: 'Running',
+  paused: 'Paused',
+  blocked: 'Blocked',
+  finished: 'Finished',
+  aborted: 'Aborted',
+};
+
+/** Where the robot believes it is, or null while it does not know. */
+export const robot_place = (vehicle: Vehicle | null): LatLon | null => {
+  const { lat, lon } = vehicle?.position ?? { lat: null, lon: null };
+  return lat === null || lon === null ? null : { lat, lon };
+};

@@ -1,0 +1,73 @@
+// Keys of the whole page. Esc and Space stop the robot, whatever is on the screen; only while a
+// person types into a field is Space a blank. Buttons are pressed with Enter.
+
+import type { Station } from './station.svelte';
+
+export const key_words: readonly (readonly [keys: string, meaning: string])[] = [
+  ['Esc or Space', 'Emergency stop, at once'],
+  ['Enter', 'Press the button that has the focus'],
+  ['Ctrl + Z', 'Undo the last edit'],
+  ['Ctrl + Y, Ctrl + Shift + Z', 'Redo'],
+  ['Ctrl + S', 'Save the mission'],
+  ['Delete', 'Delete the selected item'],
+  ['F', 'Follow the robot'],
+  ['+ and −', 'Zoom'],
+  ['Arrows or W A S D', 'Drive, while the drive pad has the focus and a key is held'],
+];
+
+const TYPING = 'input:not([type=checkbox], [type=range], [type=file]), textarea, select';
+
+const is_typing = (target: EventTarget | null): boolean =>
+  target instanceof Element && target.matches(TYPING);
+
+const edit_key = (station: Station, event: KeyboardEvent): boolean => {
+  const { editor } = station;
+  const key = event.key.toLowerCase();
+  if (!(event.ctrlKey || event.metaKey)) return false;
+  if (key === 's') void editor.save();
+  else if (is_typing(event.target)) return false;
+  else if (key === 'z' && event.shiftKey) editor.redo();
+  else if (key === 'z') editor.undo();
+  else if (key === 'y') editor.redo();
+  else return false;
+  return true;
+};
+
+const plain_key = (station: Station, event: KeyboardEvent): boolean => {
+  const { editor } = station;
+  if (is_typing(event.target) || event.ctrlKey || event.metaKey || event.altKey) return false;
+  switch (event.key) {
+    case 'Delete':
+      if (station.tab !== 'plan' || editor.selected === null) return false;
+      editor.remove(editor.selected);
+      return true;
+    case 'f':
+      station.set_follow(!station.follow);
+      return true;
+    case '+':
+      station.map.zoom_by(1);
+      return true;
+    case '-':
+      station.map.zoom_by(-1);
+      return true;
+    default:
+      return false;
+  }
+};
+
+/** @return stops listening */
+export const listen_for_keys = (station: Station): (() => void) => {
+  const on_key = (event: KeyboardEvent): void => {
+    const stop = event.key === 'Escape' || (event.key === ' ' && !is_typing(event.target));
+    if (stop) {
+      event.preventDefault();
+      event.stopPropagation();
+      if (!event.repeat) void station.pilot.estop();
+    } else if (edit_key(station, event) || plain_key(station, event)) {
+      event.preventDefault();
+    }
+  };
+  // Capture: no widget may swallow a stop.
+  window.addEventListener('keydown', on_key, { capture: true });
+  return () => window.removeEventListener('keydown', on_key, { capture: true });
+};

@@ -1,0 +1,48 @@
+// What the stream says, with its freshness. Time moves on here, so that silence shows.
+
+import { add_sample, empty_columns, type Columns } from '../model/columns';
+import { link_age_s, link_stale, type LinkHealth } from '../model/freshness';
+import type { Facts } from '../model/operations';
+import type { RobotOnMap } from '../model/ports';
+import { Trail } from '../model/trail';
+import { robot_place, type Capabilities, type Vehicle } from '../model/vehicle';
+
+const CLOCK_MS = 200;
+/** Two minutes at ten a second. */
+const CHART_SAMPLES = 1200;
+
+export class Live {
+  link = $state.raw<LinkHealth>({ socket: 'connecting', last_message_ms: null });
+  vehicle = $state.raw<Vehicle | null>(null);
+  capabilities = $state.raw<Capabilities | null>(null);
+  now_ms = $state(performance.now());
+  readonly trail = new Trail();
+  readonly chart: Columns = empty_columns(2);
+
+  stale = $derived(link_stale(this.link, this.now_ms));
+  age_s = $derived(link_age_s(this.link, this.now_ms));
+  facts = $derived<Facts>({ link_stale: this.stale, vehicle: this.vehicle });
+  robot = $derived<RobotOnMap | null>(this.#robot());
+
+  constructor() {
+    setInterval(() => {
+      this.now_ms = performance.now();
+    }, CLOCK_MS);
+  }
+
+  take(vehicle: Vehicle): void {
+    this.vehicle = vehicle;
+    const at = robot_place(vehicle);
+    if (at && !vehicle.position.stale) this.trail.add(at);
+    const { speed_mps } = vehicle.position;
+    const seconds = Date.parse(vehicle.time) / 1000;
+    add_sample(this.chart, CHART_SAMPLES, seconds, [speed_mps, vehicle.mission.cross_track_m]);
+  }
+
+  #robot(): RobotOnMap | null {
+    const at = robot_place(this.vehicle);
+    if (!this.vehicle || !at) return null;
+    const { heading_deg, horizontal_accuracy_m, stale } = this.vehicle.position;
+    return { at, heading_deg, accuracy_m: horizontal_accuracy_m, stale: stale || this.stale };
+  }
+}

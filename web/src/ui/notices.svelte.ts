@@ -1,0 +1,55 @@
+// Short messages to the person, and the log of what happened.
+
+import type { StationEvent } from '../model/vehicle';
+
+export type Level = 'info' | 'good' | 'warning' | 'error';
+
+export interface Notice {
+  readonly id: number;
+  readonly level: Level;
+  readonly text: string;
+}
+
+/** Errors stay until they are dismissed. */
+const SHOWN_MS: Record<Exclude<Level, 'error'>, number> = { info: 4000, good: 4000, warning: 8000 };
+const AT_MOST = 4;
+const LOG_LINES = 500;
+
+export class Notices {
+  shown = $state.raw<readonly Notice[]>([]);
+  /** Newest first. */
+  log = $state.raw<readonly StationEvent[]>([]);
+  #next = 1;
+
+  show(level: Level, text: string): void {
+    const rest = this.shown.filter((notice) => notice.text !== text);
+    const notice = { id: this.#next, level, text };
+    this.#next += 1;
+    this.shown = [...rest, notice].slice(-AT_MOST);
+    if (level !== 'error') setTimeout(() => this.dismiss(notice.id), SHOWN_MS[level]);
+  }
+
+  dismiss(id: number): void {
+    this.shown = this.shown.filter((notice) => notice.id !== id);
+  }
+
+  /** An event just happened: into the log, and on the screen. */
+  event(event: StationEvent): void {
+    if (this.#enter([event]) > 0) this.show(event.level, event.detail);
+  }
+
+  /** Events from before this page looked. */
+  past_events(events: readonly StationEvent[]): void {
+    this.#enter(events);
+  }
+
+  /** @return how many were new */
+  #enter(events: readonly StationEvent[]): number {
+    const known = new Set(this.log.map((event) => event.id));
+    const fresh = events.filter((event) => !known.has(event.id));
+    if (fresh.length > 0) {
+      this.log = [...this.log, ...fresh].sort((a, b) => b.id - a.id).slice(0, LOG_LINES);
+    }
+    return fresh.length;
+  }
+}

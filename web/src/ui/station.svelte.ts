@@ -1,0 +1,160 @@
+// The whole station in one value: what the panels share, and the effects that keep the map in step.
+
+import { refusal_text } from '../model/answer';
+import { spots, type Plan } from '../model/plan';
+import type {
+  DraftStorage,
+  MapCalls,
+  MapEvents,
+  MissionCalls,
+  SendDrive,
+  StreamEvents,
+  VehicleCalls,
+} from '../model/ports';
+import type { Check } from '../model/vehicle';
+import { Dialogs } from './dialogs.svelte';
+import { Editor, plan_of } from './editor.svelte';
+import { Library } from './library.svelte';
+import { Live } from './live.svelte';
+import { Notices } from './notices.svelte';
+import { Pilot } from './pilot.svelte';
+
+export type Tab = 'drive' | 'plan' | 'missions' | 'log';
+
+/** What main.ts hands in: the doors to the server, the map and the device. */
+export interface Doors {
+  readonly missions: MissionCalls;
+  readonly vehicle: VehicleCalls;
+  readonly map: MapCalls;
+  readonly storage: DraftStorage;
+  readonly send_drive: SendDrive;
+}
+
+export class Station {
+  tab = $state<Tab>('drive');
+  follow = $state(true);
+  /** On a small screen the sheet can be folded away. */
+  sheet_open = $state(true);
+  route = $state.raw<Plan | null>(null);
+  checks = $state.raw<readonly Check[]>([]);
+
+  readonly live = new Live();
+  readonly notices = new Notices();
+  readonly dialogs = new Dialogs();
+  readonly editor: Editor;
+  readonly library: Library;
+  readonly pilot: Pilot;
+  readonly map: MapCalls;
+  readonly #doors: Doors;
+  #route_key = '';
+
+  constructor(doors: Doors) {
+    this.#doors = doors;
+    this.map = doors.map;
+    this.editor = new Editor(doors.missions, doors.storage, this.notices, this.dialogs);
+    this.library = new Library(doors.missions, this.editor, this.notices, this.dialogs);
+    this.pilot = new Pilot(doors.vehicle, doors.send_drive, this.live, this.notices, this.dialogs);
+    doors.map.listen(this.#map_events());
+    this.editor.restore_draft();
+    void this.#fetch_past_events();
+    $effect.root(() => this.#keep_map_in_step());
+  }
+
+  readonly stream_events: StreamEvents = {
+    on_link: (link) => {
+      const was_open = this.live.link.socket === 'open';
+      this.live.link = link;
+      if (link.socket === 'open' && !was_open) void this.#fetch_past_events();
+    },
+    on_hello: (capabilities) => {
+      this.live.capabilities = capabilities;
+      this.map.set_size(capabilities.size.length_m, capabilities.size.width_m);
+    },
+    on_vehicle: (vehicle) => {
+      this.live.take(vehicle);
+      void this.#follow_route();
+    },
+    on_event: (event) => this.notices.event(event),
+    on_mission_changed: (id, revision) => {
+      void this.editor.stored_changed(id, revision);
+      if (this.tab === 'missions') void this.library.refresh();
+    },
+  };
+
+  choose_tab(tab: Tab): void {
+    const again = this.tab === tab;
+    this.sheet_open = again ? !this.sheet_open : true;
+    this.tab = tab;
+    if (tab === 'missions') void this.library.refresh();
+    if (tab === 'log') void this.fetch_checks();
+  }
+
+  set_follow(follow: boolean): void {
+    this.follow = follow;
+    this.map.set_follow(follow);
+  }
+
+  /** Shows the edited mission, or the loaded one, or the robot. */
+  fit(): void {
+    const edited = spots(this.editor.plan);
+    const points = edited.length > 0 ? edited : this.route ? spots(this.route) : [];
+    const at = this.live.robot?.at;
+    const all = points.length > 0 ? points : at ? [at] : [];
+    if (all.length === 0) return;
+    this.set_follow(false);
+    this.map.fit(all);
+  }
+
+  async fetch_checks(): Promise<void> {
+    const answer = await this.#doors.vehicle.checks();
+    this.checks = answer.ok ? answer.value.checks : [];
+  }
+
+  async #fetch_past_events(): Promise<void> {
+    const answer = await this.#doors.vehicle.recent_events();
+    if (answer.ok) this.notices.past_events(answer.value.items);
+  }
+
+  /** The robot drives its own copy of one revision: fetch exactly that one. */
+  async #follow_route(): Promise<void> {
+    const { id, revision } = this.live.vehicle?.mission ?? { id: null, revision: null };
+    const key = id === null || revision === null ? '' : `${id} ${revision}`;
+    if (key === this.#route_key) return;
+    this.#route_key = key;
+    if (id === null || revision === null) {
+      this.route = null;
+      return;
+    }
+    const answer = await this.#doors.missions.read_revision(id, revision);
+    if (this.#route_key !== key) return;
+    this.route = answer.ok ? plan_of(answer.value) : null;
+    if (!answer.ok) {
+      this.notices.show('warning', `The route cannot be shown: ${refusal_text(answer.refusal)}`);
+    }
+  }
+
+  #map_events(): MapEvents {
+    const select = (index: number | null): void => {
+      this.editor.selected = index;
+      if (index !== null) this.tab = 'plan';
+    };
+    return {
+      on_add: (at) => this.editor.add(at),
+      on_insert: (index, at) => this.editor.insert(index, at),
+      on_move: (index, to) => this.editor.move(index, to),
+      on_select: select,
+      on_pan: () => {
+        if (this.follow) this.set_follow(false);
+      },
+    };
+  }
+
+  #keep_map_in_step(): void {
+    const { editor, live, map } = this;
+    $effect(() => map.set_mode(this.tab === 'plan' ? editor.map_mode : 'watch'));
+    $effect(() => map.show_plan(editor.plan, editor.selected, editor.refused));
+    $effect(() => map.show_route(this.route, live.vehicle?.mission.current_item ?? 0));
+    $effect(() => map.show_robot(live.robot, live.trail));
+    $effect(() => map.show_home(live.vehicle?.home ?? null));
+  }
+}
