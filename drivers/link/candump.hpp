@@ -30,7 +30,7 @@ struct CanRecord {
   friend bool operator==(const CanRecord&, const CanRecord&) = default;
 };
 
-/// One line, without its line end (a CR there is ignored). Nothing for a line that carries no
+/// One line; a line end is ignored. Nothing for a line that carries no
 /// frame: blank, a comment (#), or candump -e's explanation of an error frame (begins with a tab).
 /// Any other line is Malformed, and the detail says what is wrong.
 base::Result<std::optional<CanRecord>> parse_candump_line(std::string_view line);

@@ -21,7 +21,7 @@ struct ReplayOptions {
   /// Longer silences in a plain file are cut to this (recordings with stamps keep theirs).
   double longest_gap_s = 30.0;
   /// Paces a plain file of bytes (no stamps of ours) by what its lines say.
-  LineClock line_clock;
+  LineClock line_clock{};
   /// Paces a plain file in which line_clock finds nothing.
   double fallback_bytes_per_s = 960.0;
 };

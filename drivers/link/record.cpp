@@ -1,0 +1,146 @@
+#include "link/record.hpp"
+
+#include <cctype>
+#include <cerrno>
+#include <utility>
+
+#include <fcntl.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include "link/candump.hpp"
+#include "link/descriptor.hpp"
+#include "link/recording.hpp"
+
+namespace roverd::link {
+namespace {
+
+/// A full 1 Mbit/s bus fills this in half a second, the control loop in a minute.
+constexpr std::size_t kFramesWaiting = 4096;
+constexpr std::size_t kChunksWaiting = 1024;
+
+bool is_bus_name(const std::string& name) {
+  return !name.empty() && name.size() <= 15 && std::all_of(name.begin(), name.end(), [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '.';
+  });
+}
+
+}  // namespace
+
+base::Result<std::unique_ptr<RecordFile>> RecordFile::create(const std::string& path,
+                                                             const RecordOptions& options) {
+  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+  if (fd < 0) {
+    return base::fail(base::Code::Unavailable,
+                      "cannot make the recording " + path + ": " + errno_text(errno));
+  }
+  return std::unique_ptr<RecordFile>(
+      new RecordFile(path, fd, options.max_bytes, options.keep_free_bytes));
+}
+
+RecordFile::~RecordFile() {
+  ::close(fd_);
+}
+
+base::Result<void> RecordFile::stop(const std::string& why) const {
+  return base::fail(base::Code::Unavailable, "recording to " + path_ + " stopped: " + why);
+}
+
+base::Result<void> RecordFile::write(const std::string& text) {
+  if (size_ + text.size() > max_bytes_) {
+    return stop("the file has reached " + std::to_string(max_bytes_ / 1'000'000) + " MB");
+  }
+  for (std::size_t done = 0; done < text.size();) {
+    const ssize_t n = ::write(fd_, text.data() + done, text.size() - done);
+    if (n > 0) {
+      done += static_cast<std::size_t>(n);
+    } else if (n == 0 || errno != EINTR) {
+      return stop(errno_text(n == 0 ? ENOSPC : errno));
+    }
+  }
+  size_ += text.size();
+  return {};
+}
+
+base::Result<void> RecordFile::sync() {
+  struct statvfs disk {};
+  if (::fstatvfs(fd_, &disk) == 0 && disk.f_bavail * disk.f_frsize < keep_free_bytes_) {
+    return stop("less than " + std::to_string(keep_free_bytes_ / 1'000'000) +
+                " MB are left on the disk");
+  }
+  if (::fdatasync(fd_) != 0) return stop(errno_text(errno));
+  return {};
+}
+
+base::Result<std::unique_ptr<RecordedFrameLink>> RecordedFrameLink::create(
+    std::unique_ptr<FrameLink> inner, const std::string& file, const RecordOptions& options) {
+  if (!is_bus_name(options.bus)) {
+    return base::fail(base::Code::Invalid,
+                      "'" + options.bus + "' is no name for a bus in a recording");
+  }
+  auto out = RecordFile::create(file, options);
+  if (!out) return tl::unexpected(out.error());
+  const auto format = [bus = options.bus](std::string& text, const Entry& entry,
+                                          base::Duration stamp) {
+    text += to_candump_line({stamp, bus, entry.frame, entry.sent});
+  };
+  auto writer = std::make_unique<Writer>(std::move(*out), "", format, options, kFramesWaiting);
+  return std::unique_ptr<RecordedFrameLink>(
+      new RecordedFrameLink(std::move(inner), std::move(writer)));
+}
+
+RecordedFrameLink::RecordedFrameLink(std::unique_ptr<FrameLink> inner,
+                                     std::unique_ptr<Writer> writer)
+    : writer_(std::move(writer)), inner_(std::move(inner)) {
+  inner_->on_frame = [this](const CanFrame& frame, Time t) {
+    writer_->put({t, false, frame});
+    if (on_frame) on_frame(frame, t);
+  };
+  inner_->on_closed = [this](const std::string& reason) {
+    if (on_closed) on_closed(reason);
+  };
+}
+
+RecordedFrameLink::~RecordedFrameLink() = default;
+
+SendResult RecordedFrameLink::send(const CanFrame& frame) noexcept {
+  const SendResult result = inner_->send(frame);
+  if (result == SendResult::Sent) writer_->put({base::steady_now(), true, frame});
+  return result;
+}
+
+base::Result<std::unique_ptr<RecordedByteLink>> RecordedByteLink::create(
+    std::unique_ptr<ByteLink> inner, const std::string& file, const RecordOptions& options) {
+  auto out = RecordFile::create(file, options);
+  if (!out) return tl::unexpected(out.error());
+  const auto format = [](std::string& text, const Entry& entry, base::Duration stamp) {
+    append_record(text, stamp, entry.sent, entry.bytes);
+  };
+  auto writer = std::make_unique<Writer>(std::move(*out), recording_header(inner->describe()),
+                                         format, options, kChunksWaiting);
+  return std::unique_ptr<RecordedByteLink>(
+      new RecordedByteLink(std::move(inner), std::move(writer)));
+}
+
+RecordedByteLink::RecordedByteLink(std::unique_ptr<ByteLink> inner, std::unique_ptr<Writer> writer)
+    : writer_(std::move(writer)), inner_(std::move(inner)) {
+  inner_->on_bytes = [this](Bytes bytes, Time t) {
+    writer_->put({t, false, {bytes.begin(), bytes.end()}});
+    if (on_bytes) on_bytes(bytes, t);
+  };
+  inner_->on_closed = [this](const std::string& reason) {
+    if (on_closed) on_closed(reason);
+  };
+}
+
+RecordedByteLink::~RecordedByteLink() = default;
+
+SendResult RecordedByteLink::write(Bytes bytes) noexcept {
+  const SendResult result = inner_->write(bytes);
+  if (result == SendResult::Sent && !bytes.empty()) {
+    writer_->put({base::steady_now(), true, {bytes.begin(), bytes.end()}});
+  }
+  return result;
+}
+
+}  // namespace roverd::link

@@ -1,0 +1,79 @@
+#pragma once
+// A link that records what passes through it: what was heard, with its arrival stamp, and what was
+// sent, marked as such. CAN goes into a candump log (candump.hpp) that can-utils' canplayer and
+// log2asc read, bytes into a recording (recording.hpp); link/replay.hpp plays both.
+//
+// Times in the file are UTC by the clock as it was when recording began.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "link/link.hpp"
+#include "link/record_writer.hpp"
+
+namespace roverd::link {
+
+/// Wraps a frame link and behaves like it.
+class RecordedFrameLink final : public FrameLink {
+ public:
+  /// Takes `inner` over, on error too. @param file a new one: an existing file is an error. Its
+  /// folder must exist.
+  static base::Result<std::unique_ptr<RecordedFrameLink>> create(std::unique_ptr<FrameLink> inner,
+                                                                 const std::string& file,
+                                                                 const RecordOptions& options = {});
+  ~RecordedFrameLink() override;
+
+  base::Result<void> open() override { return inner_->open(); }
+  void close() noexcept override { inner_->close(); }
+  /// Recorded if the link took it. Does not wait for the disk.
+  SendResult send(const CanFrame& frame) noexcept override;
+  std::string describe() const override { return inner_->describe(); }
+
+  /// Any thread.
+  RecordStatus status() const { return writer_->status(); }
+
+ private:
+  struct Entry {
+    Time stamp;
+    bool sent = false;
+    CanFrame frame;
+  };
+  using Writer = RecordWriter<Entry>;
+  RecordedFrameLink(std::unique_ptr<FrameLink> inner, std::unique_ptr<Writer> writer);
+
+  const std::unique_ptr<Writer> writer_;
+  const std::unique_ptr<FrameLink> inner_;  // goes first: nothing is recorded after that
+};
+
+/// Wraps a byte link and behaves like it.
+class RecordedByteLink final : public ByteLink {
+ public:
+  static base::Result<std::unique_ptr<RecordedByteLink>> create(std::unique_ptr<ByteLink> inner,
+                                                                const std::string& file,
+                                                                const RecordOptions& options = {});
+  ~RecordedByteLink() override;
+
+  base::Result<void> open() override { return inner_->open(); }
+  void close() noexcept override { inner_->close(); }
+  SendResult write(Bytes bytes) noexcept override;
+  std::string describe() const override { return inner_->describe(); }
+
+  /// Any thread.
+  RecordStatus status() const { return writer_->status(); }
+
+ private:
+  struct Entry {
+    Time stamp;
+    bool sent = false;
+    std::vector<std::uint8_t> bytes;
+  };
+  using Writer = RecordWriter<Entry>;
+  RecordedByteLink(std::unique_ptr<ByteLink> inner, std::unique_ptr<Writer> writer);
+
+  const std::unique_ptr<Writer> writer_;
+  const std::unique_ptr<ByteLink> inner_;
+};
+
+}  // namespace roverd::link
