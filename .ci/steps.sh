@@ -148,7 +148,8 @@ threaded='^(base|net|api|store|link|robot)_test$'
 step_tsan() {
   local targets
   sanitized tsan thread
-  mapfile -t targets < <(ctest --test-dir "$build/tsan" -N -R "$threaded" | grep -oE '[a-z_]+_test$')
+  mapfile -t targets < <(ctest --test-dir "$build/tsan" -N -R "$threaded" |
+    sed -n 's/^ *Test *#[0-9]*: //p')
   ninja_build "$build/tsan" roverd roverd-sim "${targets[@]}"
   # Without address randomisation: newer kernels' layout is unknown to this sanitizer's runtime.
   TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1 \
