@@ -101,12 +101,14 @@ class Builder {
     return true;
   }
 
-  /// Pointer of the value that is being read.
+  /// Pointer of the value that is being read. The containers around it are in their parents
+  /// already, it is not.
   std::string here() const {
     std::string pointer;
     for (const Level& level : levels_) {
+      const std::size_t open = &level == &levels_.back() ? 0 : 1;
       pointer += '/';
-      pointer += level.container->is_array() ? std::to_string(level.container->size())
+      pointer += level.container->is_array() ? std::to_string(level.container->size() - open)
                                              : escaped_key(level.key);
     }
     return pointer;

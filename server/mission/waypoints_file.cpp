@@ -3,6 +3,7 @@
 // Row 0 is home.
 // Source: MAVLink developer guide, "plain-text file format"; Mission Planner's files.
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -204,6 +205,9 @@ Result<ImportedFile> read_waypoints(std::string_view content) {
     }
   }
   items_from_commands(commands, file.plan, file.rows, problems);
+  const auto line_of = [](const FileRow& row) { return std::stoull(row.row.substr(5)); };
+  std::stable_sort(file.rows.begin(), file.rows.end(),
+                   [&](const FileRow& a, const FileRow& b) { return line_of(a) < line_of(b); });
   if (!problems.none()) return tl::unexpected<Error>(std::move(problems).error("the file"));
   return file;
 }

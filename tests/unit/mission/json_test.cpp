@@ -1,0 +1,274 @@
+#include "mission/json.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "plans.hpp"
+
+namespace roverd::mission {
+namespace {
+
+using base::Code;
+using nlohmann::json;
+
+/// Pointers of what is wrong in a text that must be refused as Invalid.
+std::vector<std::string> wrong_in(const std::string& text) {
+  const auto plan = plan_from_text(text);
+  EXPECT_FALSE(plan) << text;
+  if (plan) return {};
+  EXPECT_EQ(plan.error().code, Code::Invalid) << plan.error().detail;
+  std::vector<std::string> pointers;
+  for (const auto& field : plan.error().fields) pointers.push_back(field.pointer);
+  return pointers;
+}
+
+std::vector<std::string> wrong_in_item(const std::string& item) {
+  return wrong_in(R"({"name":"x","items":[{"type":"wait","seconds":1},)" + item + "]}");
+}
+
+using Names = std::vector<std::string>;
+
+TEST(PlanJson, EveryItemSurvivesARoundTripThroughBothForms) {
+  const Plan plan = plan_with_every_item();
+  ASSERT_TRUE(check_plan(plan));
+  EXPECT_EQ(plan_from_text(plan_to_text(plan)).value(), plan);
+  EXPECT_EQ(plan_from_json(plan_to_json(plan)).value(), plan);
+  EXPECT_EQ(plan_from_text(plan_to_json(plan).dump(2)).value(), plan);
+}
+
+TEST(PlanJson, RandomPlansSurviveARoundTripToTheLastBit) {
+  RandomPlans plans(20'240'601);
+  for (int i = 0; i < 300; ++i) {
+    const Plan plan = plans.next(1 + i % 40);
+    ASSERT_TRUE(check_plan(plan)) << check_plan(plan).error().detail;
+    EXPECT_EQ(plan_from_text(plan_to_text(plan)).value(), plan);
+    EXPECT_EQ(plan_from_json(plan_to_json(plan)).value(), plan);
+  }
+}
+
+TEST(PlanJson, IsWrittenInTheWordsOfThePublicInterface) {
+  Plan plan;
+  plan.name = "North";
+  Waypoint first = waypoint_at(58.5, 26.25);
+  first.turn = Turn::Through;
+  plan.items = {first, Jump{1, 3}, ReturnHome{}, TurnBy{90.0, std::nullopt}};
+  EXPECT_EQ(plan_to_json(plan), json::parse(R"({
+    "name": "North", "settings": {"at_end": "hold"}, "items": [
+      {"type": "waypoint", "lat": 58.5, "lon": 26.25, "turn": "through"},
+      {"type": "jump", "item": 1, "times": 3},
+      {"type": "return_home"},
+      {"type": "turn", "turn_deg": 90}]})"));
+}
+
+TEST(PlanJson, AnEmptyMissionIsAMission) {
+  const auto plan = plan_from_text(R"({"name":"later","items":[]})");
+  ASSERT_TRUE(plan);
+  EXPECT_TRUE(plan->items.empty());
+  EXPECT_EQ(plan->settings, Settings{});
+}
+
+TEST(PlanJson, NullStandsForAnAbsentOptionalMember) {
+  const auto plan = plan_from_text(
+      R"({"name":"x","home":null,"settings":null,
+          "items":[{"type":"waypoint","lat":1,"lon":2,"alt_m":null,"hold_s":null,"turn":null}]})");
+  ASSERT_TRUE(plan);
+  EXPECT_EQ(plan->items.at(0), Item(waypoint_at(1.0, 2.0)));
+}
+
+TEST(PlanJson, WhatIsNotJsonIsMalformedAndSaysWhere) {
+  for (const char* text :
+       {"", "{", "nonsense", R"({"name":"x",})", R"({"name":"x"} 1)", "{\"a\":\"\xff\"}",
+        R"({"name":NaN})", R"({"name":Infinity})", "[1,2", "\"\x01\""}) {
+    const auto plan = plan_from_text(text);
+    ASSERT_FALSE(plan) << text;
+    EXPECT_EQ(plan.error().code, Code::Malformed) << text;
+    EXPECT_EQ(plan.error().fields.at(0).pointer.substr(0, 5), "byte ") << text;
+  }
+  EXPECT_EQ(plan_from_text(R"({"a":x})").error().fields.at(0).pointer, "byte 5");
+}
+
+TEST(PlanJson, ErrorsAboutBytesThatAreNotTextAreText) {
+  const auto error = plan_from_text("{\"n\xc3\xff").error();
+  EXPECT_NO_THROW(json(error.detail).dump());
+}
+
+TEST(PlanJson, AMillionBracketsAreRefusedWithoutHarm) {
+  for (const std::string& text : {std::string(1'000'000, '['), std::string(1'000'000, '{'), [] {
+                                    std::string s;
+                                    for (int i = 0; i < 300'000; ++i) s += "{\"a\":";
+                                    return s;
+                                  }()}) {
+    const auto plan = plan_from_text(text);
+    ASSERT_FALSE(plan);
+    EXPECT_EQ(plan.error().code, Code::Malformed);
+  }
+  EXPECT_TRUE(parse_json(std::string(32, '[') + std::string(32, ']')));
+  EXPECT_FALSE(parse_json(std::string(33, '[') + std::string(33, ']')));
+}
+
+TEST(PlanJson, ANumberTooLargeForADoubleIsNamedByPointer) {
+  const auto plan = plan_from_text(
+      R"({"name":"x","items":[{"type":"waypoint","lat":1,"lon":2},{"type":"waypoint","lat":1e999,"lon":2}]})");
+  ASSERT_FALSE(plan);
+  EXPECT_EQ(plan.error().code, Code::Invalid);
+  EXPECT_EQ(plan.error().fields.at(0).pointer, "/items/1/lat");
+}
+
+TEST(PlanJson, AMemberThatIsThereTwiceIsRefused) {
+  EXPECT_EQ(wrong_in(R"({"name":"x","items":[{"type":"wait","seconds":1,"seconds":2}]})"),
+            Names{"/items/0/seconds"});
+}
+
+TEST(PlanJson, TheWholeMustBeAnObjectWithNameAndItems) {
+  EXPECT_EQ(wrong_in("[]"), Names{""});
+  EXPECT_EQ(wrong_in("3"), Names{""});
+  EXPECT_EQ(wrong_in("{}"), (Names{"/name", "/items"}));
+  EXPECT_EQ(wrong_in(R"({"name":3,"items":{}})"), (Names{"/name", "/items"}));
+  EXPECT_EQ(wrong_in(R"({"name":null,"items":null})"), (Names{"/name", "/items"}));
+  EXPECT_EQ(wrong_in(R"({"name":"x","items":[],"home":[1,2],"settings":"fast"})"),
+            (Names{"/home", "/settings"}));
+}
+
+TEST(PlanJson, UnknownMembersAreRefusedByPointer) {
+  EXPECT_EQ(wrong_in(R"({"name":"x","items":[],"colour":1,"a/b~c":2})"),
+            (Names{"/a~1b~0c", "/colour"}));
+  EXPECT_EQ(wrong_in_item(R"({"type":"waypoint","lat":1,"lon":2,"speed":1})"),
+            Names{"/items/1/speed"});
+  EXPECT_EQ(wrong_in(R"({"name":"x","items":[],"home":{"lat":1,"lon":2,"hight":3}})"),
+            Names{"/home/hight"});
+  EXPECT_EQ(wrong_in(R"({"name":"x","items":[],"settings":{"end":"hold"}})"),
+            Names{"/settings/end"});
+}
+
+TEST(PlanJson, EveryWrongValueIsNamedAtOnce) {
+  EXPECT_EQ(
+      wrong_in(R"({"name":"","home":{"lat":-91,"lon":181},"items":[
+    {"type":"waypoint","lat":91,"lon":"26","alt_m":20000,"speed_mps":0,"radius_m":101,
+     "hold_s":-1,"reverse":1,"turn":"sharp"}, 7, {"kind":"wait"}, {"type":"fly"}]})"),
+      (Names{"/name", "/home/lat", "/home/lon", "/items/0/lat", "/items/0/lon", "/items/0/alt_m",
+             "/items/0/speed_mps", "/items/0/radius_m", "/items/0/hold_s", "/items/0/reverse",
+             "/items/0/turn", "/items/1", "/items/2/type", "/items/3/type"}));
+}
+
+TEST(PlanJson, OfManyWrongValuesTheFirstHundredAreNamed) {
+  json items = json::array();
+  for (int i = 0; i < 500; ++i) items.push_back({{"type", "wait"}, {"seconds", -1}});
+  const auto plan = plan_from_json({{"name", "x"}, {"items", items}});
+  ASSERT_FALSE(plan);
+  EXPECT_EQ(plan.error().fields.size(), kMaxFieldErrors);
+  EXPECT_NE(plan.error().detail.find("500 wrong values"), std::string::npos);
+}
+
+TEST(PlanJson, RangesEndWhereTheyShould) {
+  struct Case {
+    const char* item;
+    bool good;
+  };
+  for (const Case& c : std::initializer_list<Case>{
+           {R"({"type":"waypoint","lat":90,"lon":180})", true},
+           {R"({"type":"waypoint","lat":-90,"lon":-180})", true},
+           {R"({"type":"waypoint","lat":90.000000001,"lon":0})", false},
+           {R"({"type":"waypoint","lat":0,"lon":-180.000000001})", false},
+           {R"({"type":"waypoint","lat":0,"lon":0,"speed_mps":10,"radius_m":100,"hold_s":86400})",
+            true},
+           {R"({"type":"waypoint","lat":0,"lon":0,"speed_mps":10.1})", false},
+           {R"({"type":"waypoint","lat":0,"lon":0,"radius_m":0})", false},
+           {R"({"type":"local","east_m":0,"north_m":0,"heading_deg":0})", true},
+           {R"({"type":"local","east_m":0,"north_m":0,"heading_deg":360})", false},
+           {R"({"type":"local","east_m":10000.1,"north_m":0})", false},
+           {R"({"type":"local","east_m":1})", false},
+           {R"({"type":"move","forward_m":-3})", true},
+           {R"({"type":"move"})", false},
+           {R"({"type":"turn","turn_deg":-360})", true},
+           {R"({"type":"turn","turn_deg":361})", false},
+           {R"({"type":"turn","turn_deg":1,"heading_deg":1})", false},
+           {R"({"type":"turn"})", false},
+           {R"({"type":"turn","turn_deg":null,"heading_deg":null})", false},
+           {R"({"type":"wait","seconds":86400.5})", false},
+           {R"({"type":"speed","speed_mps":-1})", false},
+           {R"({"type":"row","side":"left"})", true},
+           {R"({"type":"row","side":"middle"})", false},
+           {R"({"type":"row"})", false},
+           {R"({"type":"wall","side":"right","distance_m":20})", true},
+           {R"({"type":"wall","side":"right","distance_m":0})", false},
+           {R"({"type":"landmarks","name":"cone","offset_m":-0.7})", true},
+           {R"({"type":"landmarks","name":" ","offset_m":0})", false},
+           {R"({"type":"jump","item":1,"times":0})", true},
+           {R"({"type":"jump","item":2,"times":1})", false},
+           {R"({"type":"jump","item":3,"times":1})", false},
+           {R"({"type":"jump","item":0,"times":1})", false},
+           {R"({"type":"jump","item":1.5,"times":1})", false},
+           {R"({"type":"jump","item":1,"times":-1})", false},
+           {R"({"type":"jump","item":1e300,"times":1})", false},
+           {R"({"type":"jump","item":99999999999999999999,"times":1})", false},
+           {R"({"type":"action","name":"spray","level":{"a":[1]}})", true},
+           {R"({"type":"action","level":1})", false},
+           {R"({"type":"return_home","now":true})", false}}) {
+    const auto plan = plan_from_text(R"({"name":"x","items":[{"type":"wait","seconds":1},)" +
+                                     std::string(c.item) + "]}");
+    EXPECT_EQ(plan.has_value(), c.good) << c.item;
+    if (plan) continue;
+    EXPECT_EQ(plan.error().fields.size(), 1u) << c.item;
+  }
+}
+
+TEST(PlanJson, NamesAreTextThatPeopleCanRead) {
+  Plan plan;
+  const auto problem = [&](std::string name) {
+    plan.name = std::move(name);
+    const auto ok = check_plan(plan);
+    return ok ? std::string() : ok.error().fields.at(0).detail;
+  };
+  EXPECT_EQ(problem("Põld 1"), "");
+  EXPECT_EQ(problem(std::string(200, 'x')), "");
+  std::string umlauts;
+  for (int i = 0; i < 200; ++i) umlauts += "ü";
+  EXPECT_EQ(problem(umlauts), "");
+  EXPECT_EQ(problem(umlauts + "u"), "must have at most 200 characters, has 201");
+  EXPECT_EQ(problem("  "), "must not be empty");
+  EXPECT_EQ(problem(""), "must not be empty");
+  EXPECT_EQ(problem("a\nb"), "must not contain control characters");
+  EXPECT_EQ(problem(std::string("a\0b", 3)), "must not contain control characters");
+  for (const char* broken : {"\xff", "\xc0\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xe2\x82"}) {
+    EXPECT_EQ(problem(broken), "must be valid UTF-8");
+  }
+}
+
+TEST(PlanJson, APlanMadeInMemoryIsCheckedByTheSameRules) {
+  Plan plan = plan_with_every_item();
+  std::get<Waypoint>(plan.items[0]).at.lat = std::nan("");
+  std::get<Waypoint>(plan.items[0]).speed_mps = std::numeric_limits<double>::infinity();
+  std::get<TurnBy>(plan.items[5]).heading_deg = 3.0;
+  std::get<Jump>(plan.items[13]).item = 99;
+  plan.settings.at_end = static_cast<AtEnd>(9);
+  const auto ok = check_plan(plan);
+  ASSERT_FALSE(ok);
+  Names pointers;
+  for (const auto& field : ok.error().fields) pointers.push_back(field.pointer);
+  EXPECT_EQ(pointers, (Names{"/settings/at_end", "/items/0/lat", "/items/0/speed_mps",
+                             "/items/5/heading_deg", "/items/13/item"}));
+  EXPECT_NO_THROW(plan_to_json(plan).dump());
+  EXPECT_NO_THROW(plan_to_text(plan));
+}
+
+TEST(PlanJson, MoreItemsThanPossibleAreTooLarge) {
+  json items = json::array();
+  for (std::size_t i = 0; i <= kMaxItems; ++i) items.push_back(nullptr);
+  const auto plan = plan_from_json({{"name", "x"}, {"items", std::move(items)}});
+  ASSERT_FALSE(plan);
+  EXPECT_EQ(plan.error().code, Code::TooLarge);
+}
+
+TEST(PlanJson, OneItemIsReadByItself) {
+  const auto item = item_from_json({{"type", "wait"}, {"seconds", 3}}, "/item");
+  ASSERT_TRUE(item);
+  EXPECT_EQ(*item, Item(Wait{3.0}));
+  const auto bad = item_from_json({{"type", "wait"}, {"seconds", "3"}}, "/item");
+  EXPECT_EQ(bad.error().fields.at(0).pointer, "/item/seconds");
+  EXPECT_EQ(item_from_json(7, "/item").error().fields.at(0).pointer, "/item");
+}
+
+}  // namespace
+}  // namespace roverd::mission

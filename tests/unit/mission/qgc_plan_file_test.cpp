@@ -1,0 +1,111 @@
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "files.hpp"
+#include "mission/formats.hpp"
+#include "plans.hpp"
+
+namespace roverd::mission {
+namespace {
+
+using base::Code;
+using nlohmann::json;
+
+/// A .plan with these items.
+std::string plan_file(const std::string& items, const std::string& mission_members = "") {
+  return R"({"fileType":"Plan","version":1,"groundStation":"QGroundControl","mission":{"version":2,)" +
+         mission_members + R"("plannedHomePosition":[58.378,26.7289,61.5],"items":[)" + items +
+         "]}}";
+}
+std::string simple_item(int command, int jump_id, const std::string& params) {
+  return R"({"type":"SimpleItem","autoContinue":true,"frame":3,"command":)" +
+         std::to_string(command) + R"(,"doJumpId":)" + std::to_string(jump_id) + R"(,"params":[)" +
+         params + "]}";
+}
+
+TEST(QgcPlan, SimpleItemsBecomeItems) {
+  const auto file = imported(plan_file(simple_item(22, 1, "15,0,0,null,0,0,5") + "," +
+                                           simple_item(16, 2, "3,0,0,null,58.3781,26.7291,5") +
+                                           "," + simple_item(177, 3, "2,4,0,0,0,0,0") + "," +
+                                           simple_item(20, 4, "0,0,0,0,0,0,0"),
+                                       R"("vehicleType":10,"cruiseSpeed":1.5,)"),
+                             "/home/anna/Lower field.plan");
+  EXPECT_EQ(file.format, Format::Plan);
+  EXPECT_EQ(file.plan.name, "Lower field");
+  EXPECT_EQ(file.plan.settings.speed_mps, 1.5);
+  Waypoint waypoint = waypoint_at(58.3781, 26.7291);
+  waypoint.alt_m = 5.0;
+  waypoint.hold_s = 3.0;
+  EXPECT_EQ(file.plan.items, (std::vector<Item>{waypoint, Jump{1, 4}, ReturnHome{}}));
+  ASSERT_EQ(file.rows.size(), 6u);
+  EXPECT_EQ(file.rows[2].row, "/mission/items/0");
+  EXPECT_EQ(file.rows[2].outcome, Outcome::LeftOut);
+  EXPECT_EQ(file.rows[3].item, 1);
+}
+
+TEST(QgcPlan, ASurveyIsTakenAsTheItemsItCarries) {
+  const std::string survey =
+      R"({"type":"ComplexItem","complexItemType":"survey","TransectStyleComplexItem":{"Items":[)" +
+      simple_item(16, 1, "0,0,0,null,58.1,26.1,30") + "," + simple_item(206, 2, "25,0,1,0,0,0,0") +
+      "," + simple_item(16, 3, "0,0,0,null,58.2,26.2,30") +
+      R"(]}},{"type":"ComplexItem","complexItemType":"StructureScan"})";
+  const auto file = imported(plan_file(survey));
+  EXPECT_EQ(positions(file.plan), (std::vector<LatLon>{{58.1, 26.1}, {58.2, 26.2}}));
+  EXPECT_EQ(file.rows[1].what, "survey");
+  EXPECT_EQ(file.rows[1].outcome, Outcome::Changed);
+  EXPECT_EQ(file.rows[2].outcome, Outcome::LeftOut);
+  EXPECT_EQ(file.rows[3].row, "/mission/items/0/TransectStyleComplexItem/Items/0");
+}
+
+TEST(QgcPlan, FencesAndRallyPointsAreAccountedFor) {
+  json root = json::parse(plan_file(""));
+  root["geoFence"] = {{"circles", {1}}, {"polygons", {1, 2}}, {"version", 2}};
+  root["rallyPoints"] = {{"points", {1}}, {"version", 2}};
+  const auto file = imported(root.dump());
+  ASSERT_EQ(file.rows.size(), 5u);
+  EXPECT_EQ(file.rows[2].row, "/geoFence/polygons/0");
+  EXPECT_EQ(file.rows[4].what, "rally point");
+  for (std::size_t i = 1; i < 5; ++i) EXPECT_EQ(file.rows[i].outcome, Outcome::LeftOut);
+}
+
+TEST(QgcPlan, ASpeedMadeForFlyingIsNotTaken) {
+  for (const char* members :
+       {R"("vehicleType":2,"cruiseSpeed":1.5,)", R"("vehicleType":10,"cruiseSpeed":15,)"}) {
+    const auto file = imported(plan_file("", members));
+    EXPECT_FALSE(file.plan.settings.speed_mps);
+    EXPECT_EQ(file.rows[1].outcome, Outcome::LeftOut);
+  }
+}
+
+TEST(QgcPlan, BrokenFilesAreRefusedByPointerOrLine) {
+  const auto pointer = [](const std::string& text) {
+    const auto error = refused(text, Format::Plan);
+    EXPECT_EQ(error.code, Code::Invalid) << error.detail;
+    return error.fields.empty() ? std::string("none") : error.fields[0].pointer;
+  };
+  EXPECT_EQ(pointer(""), "line 1");
+  EXPECT_EQ(pointer("{\n \"fileType\": \"Plan\",\n oops }"), "line 3");
+  EXPECT_EQ(pointer(plan_file("").substr(0, 60)), "line 1");
+  EXPECT_EQ(pointer("[]"), "");
+  EXPECT_EQ(pointer(R"({"fileType":"Mission"})"), "/fileType");
+  EXPECT_EQ(pointer(R"({"fileType":"Plan","version":2})"), "/version");
+  EXPECT_EQ(pointer(R"({"fileType":"Plan","version":1})"), "/mission");
+  EXPECT_EQ(pointer(R"({"fileType":"Plan","version":1,"mission":{}})"), "/mission/items");
+  EXPECT_EQ(pointer(plan_file("3")), "/mission/items/0");
+  EXPECT_EQ(pointer(plan_file(R"({"type":"Other"})")), "/mission/items/0/type");
+  EXPECT_EQ(pointer(plan_file(R"({"type":"SimpleItem"})")), "/mission/items/0/command");
+  EXPECT_EQ(pointer(plan_file(R"({"type":"SimpleItem","command":16})")), "/mission/items/0/params");
+  EXPECT_EQ(pointer(plan_file(simple_item(16, 1, "0,0,0,0,95,26,0"))), "/mission/items/0/params/4");
+  EXPECT_EQ(pointer(plan_file(simple_item(16, 1, "0,0,0,0,5,null,0"))),
+            "/mission/items/0/params/5");
+  EXPECT_EQ(pointer(plan_file(simple_item(16, 1, "0,0,0,0,5,1e999,0"))),
+            "/mission/items/0/params/5");
+  EXPECT_EQ(pointer(plan_file(simple_item(16, 1, "0,0,0,0,\"5\",6,0"))), "/mission/items/0/params");
+  EXPECT_EQ(
+      pointer(
+          R"({"fileType":"Plan","version":1,"mission":{"items":[],"plannedHomePosition":[99,0,0]}})"),
+      "/mission/plannedHomePosition/0");
+}
+
+}  // namespace
+}  // namespace roverd::mission
