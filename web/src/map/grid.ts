@@ -43,19 +43,18 @@ const labels = (paint: Paint, axis: Axis, vertical: boolean, cover: Cover): void
   const { context, width_px, height_px } = paint;
   for (let n = Math.ceil(axis.from); n <= axis.to; n += 1) {
     const p = axis.at(n);
-    const x = vertical ? p + 4 : width_px - cover.right - 6;
+    const x = vertical ? p + 4 : cover.left + 8;
     const y = vertical ? cover.top + 14 : p - 4;
     const hidden = vertical
-      ? x < cover.left || x > width_px - cover.right - 90
-      : y < cover.top + 30 || y > height_px - cover.bottom;
+      ? x < cover.left + 60 || x > width_px - cover.right - 110
+      : y < cover.top + 30 || y > height_px - cover.bottom - 40;
     if (hidden) continue;
-    context.textAlign = vertical ? 'left' : 'right';
     context.strokeText(axis.label(n), x, y);
     context.fillText(axis.label(n), x, y);
   }
 };
 
-/** "+40 m E": sign and letter together, because a bare number has no direction. */
+/** "40 m E": a bare number has no direction. */
 const metre_label = (value: number, plus: string, minus: string): string => {
   if (value === 0) return '0';
   const size = Math.abs(value);
@@ -131,6 +130,7 @@ export const paint_grid = (paint: Paint, colors: Palette, origin: LatLon, cover:
   axes(step).forEach((axis, k) => lines(paint, axis, k === 0));
 
   context.font = FONT;
+  context.textAlign = 'left';
   context.fillStyle = colors.grid_label;
   context.strokeStyle = colors.ground;
   context.lineWidth = 3;

@@ -126,6 +126,15 @@ export interface StationEvent {
   readonly detail: string;
 }
 
+/** Good news that a person waits for. The other good news is only logged. */
+const TOLD = new Set(['mission_finished', 'mission_lap', 'radio_takeover', 'radio_released']);
+/** What the page itself shows already, in the answer to its command. */
+const SHOWN_ELSEWHERE = new Set(['arm_refused', 'estop', 'disarmed']);
+
+/** Whether an event deserves a message on the screen, besides its line in the log. */
+export const worth_a_word = ({ level, kind }: StationEvent): boolean =>
+  level === 'info' ? TOLD.has(kind) : !SHOWN_ELSEWHERE.has(kind);
+
 export const fix_words: Record<Fix, string> = {
   none: 'No fix',
   unknown: 'Fix unknown',

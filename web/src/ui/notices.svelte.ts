@@ -1,6 +1,6 @@
 // Short messages to the person, and the log of what happened.
 
-import type { StationEvent } from '../model/vehicle';
+import { worth_a_word, type StationEvent } from '../model/vehicle';
 
 export type Level = 'info' | 'good' | 'warning' | 'error';
 
@@ -35,7 +35,8 @@ export class Notices {
 
   /** An event just happened: into the log, and on the screen. */
   event(event: StationEvent): void {
-    if (this.#enter([event]) > 0) this.show(event.level, event.detail);
+    if (this.#enter([event]) === 0 || !worth_a_word(event)) return;
+    this.show(event.level === 'error' ? 'warning' : event.level, event.detail);
   }
 
   /** Events from before this page looked. */

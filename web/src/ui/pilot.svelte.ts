@@ -1,7 +1,7 @@
 // Commands to the robot. What it answers is shown in its own words; the emergency stop is repeated
 // until the robot has confirmed it.
 
-import { refusal_text, type Answer, type Refusal } from '../model/answer';
+import type { Answer, Refusal } from '../model/answer';
 import type { SendDrive, StartFrom, VehicleCalls } from '../model/ports';
 import type { Dialogs } from './dialogs.svelte';
 import type { Live } from './live.svelte';
@@ -69,13 +69,7 @@ export class Pilot {
 
   async start(id: string, revision: number, from: StartFrom): Promise<void> {
     this.#dialogs.close();
-    await this.#do('Start', async () => {
-      if (this.#live.vehicle?.mode !== 'AUTO') {
-        const mode = await this.#calls.set_mode('AUTO');
-        if (!mode.ok) return mode;
-      }
-      return this.#calls.start(id, revision, from);
-    });
+    await this.#do('Start', () => this.#calls.start(id, revision, from));
   }
 
   /** At once and without a question. Every press sends; one loop repeats until it is confirmed. */
@@ -108,10 +102,7 @@ export class Pilot {
     this.refused = null;
     const answer = await call();
     this.busy = null;
-    if (!answer.ok) {
-      this.refused = { what, refusal: answer.refusal };
-      this.#notices.show('error', `${what} refused: ${refusal_text(answer.refusal)}`);
-    }
+    if (!answer.ok) this.refused = { what, refusal: answer.refusal };
     return answer.ok;
   }
 }

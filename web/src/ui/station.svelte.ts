@@ -37,6 +37,8 @@ export class Station {
   sheet_open = $state(true);
   route = $state.raw<Plan | null>(null);
   checks = $state.raw<readonly Check[]>([]);
+  /** There is room for the panel beside the map. */
+  wide = $state(false);
 
   readonly live = new Live();
   readonly notices = new Notices();
@@ -83,7 +85,7 @@ export class Station {
 
   choose_tab(tab: Tab): void {
     const again = this.tab === tab;
-    this.sheet_open = again ? !this.sheet_open : true;
+    this.sheet_open = again && !this.wide ? !this.sheet_open : true;
     this.tab = tab;
     if (tab === 'missions') void this.library.refresh();
     if (tab === 'log') void this.fetch_checks();
@@ -91,7 +93,6 @@ export class Station {
 
   set_follow(follow: boolean): void {
     this.follow = follow;
-    this.map.set_follow(follow);
   }
 
   /** Shows the edited mission, or the loaded one, or the robot. */
@@ -151,6 +152,8 @@ export class Station {
 
   #keep_map_in_step(): void {
     const { editor, live, map } = this;
+    // A map that moves under the finger cannot be drawn on.
+    $effect(() => map.set_follow(this.follow && this.tab !== 'plan'));
     $effect(() => map.set_mode(this.tab === 'plan' ? editor.map_mode : 'watch'));
     $effect(() => map.show_plan(editor.plan, editor.selected, editor.refused));
     $effect(() => map.show_route(this.route, live.vehicle?.mission.current_item ?? 0));

@@ -1,0 +1,32 @@
+// The page's tests: a real browser, the real roverd and the simulated robot. They drive in real
+// time and share two cores with the browser, so one runs after the other.
+
+import { defineConfig } from '@playwright/test';
+
+export default defineConfig({
+  testDir: '../tests/page',
+  outputDir: '../tests/page/results',
+  workers: 1,
+  timeout: 60_000,
+  expect: { timeout: 10_000 },
+  forbidOnly: process.env['CI'] === 'true',
+  reporter: 'list',
+  use: {
+    // The device's own browser; none is ever downloaded.
+    launchOptions: {
+      executablePath: process.env['CHROMIUM'] ?? '/usr/bin/chromium',
+      args: [
+        '--no-sandbox',
+        '--disable-gpu',
+        '--disable-background-networking',
+        '--disable-component-update',
+        '--disable-sync',
+        '--no-first-run',
+      ],
+    },
+    viewport: { width: 1440, height: 900 },
+    locale: 'en-GB',
+    timezoneId: 'UTC',
+    trace: 'retain-on-failure',
+  },
+});

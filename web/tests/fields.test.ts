@@ -1,0 +1,94 @@
+import { describe, expect, test } from 'vitest';
+
+import { draft_text, parse_draft } from '../src/model/draft';
+import {
+  fields_of,
+  fresh_item,
+  read_number,
+  with_field,
+  type NumberField,
+} from '../src/model/fields';
+import { item_title, spots, type Item, type ItemType, type Plan } from '../src/model/plan';
+
+const number_field = (type: ItemType, key: string): NumberField => {
+  const field = fields_of[type].find((each) => each.key === key);
+  if (field?.kind !== 'number') throw new Error(`no number field ${key}`);
+  return field;
+};
+
+describe('fields', () => {
+  test('read what people type: commas, blanks and the typographic minus', () => {
+    const lat = number_field('waypoint', 'lat');
+    expect(read_number(lat, ' 58,37802 ')).toEqual({ ok: true, value: 58.37802 });
+    expect(read_number(lat, '−12.5')).toEqual({ ok: true, value: -12.5 });
+  });
+
+  test('refuse what is out of range, no number, or missing, and name the field', () => {
+    const lat = number_field('waypoint', 'lat');
+    for (const text of ['91', '-90.1', 'north', '', 'Infinity', '1e999']) {
+      const read = read_number(lat, text);
+      expect(read.ok).toBe(false);
+      if (!read.ok) expect(read.error).toContain('Latitude');
+    }
+    expect(read_number(number_field('jump', 'item'), '1.5').ok).toBe(false);
+  });
+
+  test('an empty optional field takes the value out', () => {
+    expect(read_number(number_field('waypoint', 'speed_mps'), ' ')).toEqual({
+      ok: true,
+      value: null,
+    });
+    const item: Item = { type: 'waypoint', lat: 1, lon: 2, speed_mps: 1 };
+    expect(with_field(item, 'speed_mps', null)).toEqual({ type: 'waypoint', lat: 1, lon: 2 });
+  });
+
+  test('a turn is either relative or absolute', () => {
+    const turned = with_field({ type: 'turn', turn_deg: 90 }, 'heading_deg', 180);
+    expect(turned).toEqual({ type: 'turn', heading_deg: 180 });
+  });
+
+  test('every kind of item has a title, and a fresh one passes its own checks', () => {
+    for (const type of Object.keys(fields_of) as ItemType[]) {
+      const item: Item = type === 'waypoint' ? { type, lat: 1, lon: 2 } : fresh_item(type);
+      expect(item_title(item)).not.toBe('');
+      const draft = { plan: { name: 'P', items: [item] }, stored: null, unsaved: true };
+      expect(parse_draft(draft_text(draft))).toEqual(draft);
+    }
+  });
+
+  test('only waypoints have a place of their own', () => {
+    const plan: Plan = {
+      name: 'P',
+      items: [fresh_item('wait'), { type: 'waypoint', lat: 1, lon: 2 }, fresh_item('turn')],
+    };
+    expect(spots(plan)).toEqual([{ index: 1, lat: 1, lon: 2 }]);
+  });
+});
+
+describe('drafts', () => {
+  const draft = {
+    plan: { name: 'P', items: [{ type: 'waypoint' as const, lat: 58, lon: 26, hold_s: 2 }] },
+    stored: { id: 'abc', revision: 3 },
+    unsaved: true,
+  };
+
+  test('come back as they were', () => {
+    expect(parse_draft(draft_text(draft))).toEqual(draft);
+  });
+
+  test('that are damaged, of another version or of another program are no drafts', () => {
+    const text = draft_text(draft);
+    expect(parse_draft(null)).toBeNull();
+    expect(parse_draft(text.slice(0, -3))).toBeNull();
+    expect(parse_draft('[]')).toBeNull();
+    expect(parse_draft('{"version":2}')).toBeNull();
+    expect(parse_draft(text.replace('"lat":58', '"lat":"58"'))).toBeNull();
+    expect(parse_draft(text.replace('"lat":58,', ''))).toBeNull();
+    expect(parse_draft(text.replace('"waypoint"', '"teleport"'))).toBeNull();
+  });
+
+  test('that lost only their origin begin a new mission', () => {
+    const text = draft_text(draft).replace('"revision":3', '"revision":"x"');
+    expect(parse_draft(text)?.stored).toBeNull();
+  });
+});

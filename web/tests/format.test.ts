@@ -1,0 +1,94 @@
+import { describe, expect, test } from 'vitest';
+
+import { refusal_text, refused_items, type Refusal } from '../src/model/answer';
+import {
+  accuracy,
+  age,
+  clock_time,
+  coordinates,
+  count,
+  direction,
+  duration,
+  metres,
+  number_text,
+} from '../src/model/format';
+
+describe('format', () => {
+  test('an unknown value is a dash, never a zero', () => {
+    for (const unknown of [null, undefined, Number.NaN]) {
+      for (const words of [metres, accuracy, age, duration, direction]) {
+        expect(words(unknown)).toBe('—');
+      }
+      expect(number_text(unknown, 1, 'V')).toBe('—');
+    }
+    expect(coordinates(null)).toBe('—');
+    expect(clock_time('never')).toBe('—');
+  });
+
+  test('metres are given in the unit that reads best', () => {
+    expect(metres(0)).toBe('0.0 cm');
+    expect(metres(0.034)).toBe('3.4 cm');
+    expect(metres(-0.02)).toBe('−2.0 cm');
+    expect(metres(3.2)).toBe('3.20 m');
+    expect(metres(21.44)).toBe('21.4 m');
+    expect(metres(640.2)).toBe('640 m');
+    expect(metres(1234)).toBe('1.23 km');
+  });
+
+  test('zero has no sign', () => {
+    expect(number_text(-0.001, 2, 'm/s')).toBe('0.00 m/s');
+    expect(number_text(-0.5, 2)).toBe('−0.50');
+  });
+
+  test('accuracy never pretends to be perfect', () => {
+    expect(accuracy(0.001)).toBe('±1 cm');
+    expect(accuracy(0.023)).toBe('±2 cm');
+    expect(accuracy(2.54)).toBe('±2.5 m');
+    expect(accuracy(12.6)).toBe('±13 m');
+  });
+
+  test('ages and durations grow into larger units', () => {
+    expect(age(0.04)).toBe('0.0 s');
+    expect(age(12.4)).toBe('12 s');
+    expect(age(300)).toBe('5 min');
+    expect(age(7300)).toBe('2 h');
+    expect(duration(45)).toBe('45 s');
+    expect(duration(185)).toBe('3 min 05 s');
+    expect(duration(4320)).toBe('1 h 12 min');
+  });
+
+  test('directions have three digits and a wind', () => {
+    expect(direction(0)).toBe('000° N');
+    expect(direction(359.7)).toBe('000° N');
+    expect(direction(48)).toBe('048° NE');
+    expect(direction(-90)).toBe('270° W');
+  });
+
+  test('one and many', () => {
+    expect(count(1, 'item')).toBe('1 item');
+    expect(count(0, 'item')).toBe('0 items');
+  });
+});
+
+describe('refusals', () => {
+  const refusal: Refusal = {
+    status: 422,
+    title: 'Invalid',
+    detail: 'Two values are not valid.',
+    errors: [
+      { pointer: '/items/3/lat', detail: 'must be from -90 to 90' },
+      { pointer: '/items/12', detail: 'is empty' },
+      { pointer: '/name', detail: 'is empty' },
+    ],
+  };
+
+  test('name every cause', () => {
+    expect(refusal_text(refusal)).toContain('Two values are not valid.');
+    expect(refusal_text(refusal)).toContain('/items/3/lat: must be from -90 to 90');
+    expect(refusal_text({ ...refusal, detail: '', errors: [] })).toBe('Invalid');
+  });
+
+  test('point at the items they are about', () => {
+    expect([...refused_items(refusal)]).toEqual([3, 12]);
+  });
+});

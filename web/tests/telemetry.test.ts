@@ -1,0 +1,76 @@
+import { describe, expect, test } from 'vitest';
+
+import { add_sample, empty_columns } from '../src/model/columns';
+import { Trail } from '../src/model/trail';
+import { robot_place, worth_a_word, type Vehicle } from '../src/model/vehicle';
+
+const north = (metres: number) => ({ lat: 58 + metres / 111_000, lon: 26 });
+
+describe('trail', () => {
+  test('keeps points in order and leaves out standing still', () => {
+    const trail = new Trail(10, 0.05);
+    expect(trail.add(north(0))).toBe(true);
+    expect(trail.add(north(0.01))).toBe(false);
+    expect(trail.add(north(1))).toBe(true);
+    expect(trail.length).toBe(2);
+    expect(trail.at(1)).toEqual(north(1));
+    expect(trail.at(2)).toBeUndefined();
+    expect(trail.at(-1)).toBeUndefined();
+  });
+
+  test('drops the oldest point when it is full', () => {
+    const trail = new Trail(3, 0.05);
+    for (let k = 0; k < 5; k += 1) trail.add(north(k));
+    expect(trail.length).toBe(3);
+    expect([0, 1, 2].map((k) => trail.at(k))).toEqual([north(2), north(3), north(4)]);
+    expect(trail.added).toBe(5);
+  });
+
+  test('can be cleared, which is news too', () => {
+    const trail = new Trail(3);
+    trail.add(north(0));
+    const seen = trail.added;
+    trail.clear();
+    expect(trail.length).toBe(0);
+    expect(trail.added).toBeGreaterThan(seen);
+  });
+});
+
+describe('columns', () => {
+  test('hold one column per signal, bounded, with gaps for unknown values', () => {
+    const columns = empty_columns(2);
+    for (let t = 1; t <= 4; t += 1) add_sample(columns, 3, t, [t * 10, t === 3 ? null : t]);
+    expect(columns).toEqual([
+      [2, 3, 4],
+      [20, 30, 40],
+      [2, null, 4],
+    ]);
+  });
+
+  test('refuse a sample that is not later than the last', () => {
+    const columns = empty_columns(1);
+    expect(add_sample(columns, 3, 5, [1])).toBe(true);
+    expect(add_sample(columns, 3, 5, [2])).toBe(false);
+    expect(columns[0]).toEqual([5]);
+  });
+});
+
+describe('vehicle', () => {
+  test('has no place while one coordinate is unknown', () => {
+    const at = (lat: number | null, lon: number | null) =>
+      robot_place({ position: { lat, lon } } as Vehicle);
+    expect(at(58, 26)).toEqual({ lat: 58, lon: 26 });
+    expect(at(0, 0)).toEqual({ lat: 0, lon: 0 });
+    expect(at(null, 26)).toBeNull();
+    expect(robot_place(null)).toBeNull();
+  });
+
+  test('tells bad news and the good news one waits for, but not its own echo', () => {
+    const event = (level: 'info' | 'warning' | 'error', kind: string) =>
+      worth_a_word({ id: 1, time: '', level, kind, detail: '' });
+    expect(event('info', 'item_reached')).toBe(false);
+    expect(event('info', 'mission_finished')).toBe(true);
+    expect(event('error', 'blocked')).toBe(true);
+    expect(event('warning', 'arm_refused')).toBe(false);
+  });
+});
