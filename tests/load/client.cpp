@@ -1,8 +1,9 @@
-#include "client.hpp"
+#include "load/client.hpp"
 
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <chrono>
 #include <cstring>
 #include <stdexcept>
 
@@ -40,6 +41,23 @@ Connection::Connection(const Address& to) {
 
 Connection::~Connection() {
   ::close(handle_);
+}
+
+void Connection::upgrade(const Address& at, const std::string& path) {
+  const std::string host = at.host + ":" + std::to_string(at.port);
+  send("GET " + path + " HTTP/1.1\r\nHost: " + host +
+       "\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+       "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nOrigin: http://" +
+       host + "\r\n\r\n");
+  std::optional<int> status;
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+  while (!(status = take_answer())) {
+    if (!receive() || std::chrono::steady_clock::now() > end) {
+      throw std::runtime_error("no answer to the upgrade");
+    }
+    ::usleep(200);
+  }
+  if (*status != 101) throw std::runtime_error("upgrade answered " + std::to_string(*status));
 }
 
 void Connection::send(std::string_view bytes) {

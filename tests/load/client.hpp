@@ -24,6 +24,8 @@ class Connection {
   Connection& operator=(const Connection&) = delete;
 
   int handle() const noexcept { return handle_; }
+  /// Asks for a WebSocket and waits for the server's yes.
+  void upgrade(const Address& at, const std::string& path);
   /// The whole text; the requests of this load fit into the socket's buffer.
   void send(std::string_view bytes);
   /// Takes in what there is. @return false when the peer has closed.

@@ -21,7 +21,7 @@
 #include <sys/epoll.h>
 #include <unistd.h>
 
-#include "client.hpp"
+#include "load/client.hpp"
 
 namespace roverd::load {
 namespace {
@@ -151,18 +151,7 @@ void Load::watch(int handle, std::uint32_t index) {
 
 void Load::add_client() {
   auto client = std::make_unique<Connection>(plan_.to);
-  const std::string host = plan_.to.host + ":" + std::to_string(plan_.to.port);
-  client->send("GET /api/v1/stream HTTP/1.1\r\nHost: " + host +
-               "\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
-               "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nOrigin: http://" +
-               host + "\r\n\r\n");
-  std::optional<int> status;
-  const auto end = Clock::now() + std::chrono::seconds(10);
-  while (!(status = client->take_answer())) {
-    if (!client->receive() || Clock::now() > end) throw std::runtime_error("no upgrade");
-    ::usleep(200);
-  }
-  if (*status != 101) throw std::runtime_error("upgrade answered " + std::to_string(*status));
+  client->upgrade(plan_.to, "/api/v1/stream");
   char subscribe[80];
   std::snprintf(subscribe, sizeof subscribe, "{\"subscribe\":{\"vehicle\":%g}}", plan_.rate_hz);
   client->send(masked_frame(1, subscribe));
