@@ -22,9 +22,15 @@ BUS = "vcan0"
 SCRATCH = pathlib.Path(sys.argv[1])
 LOG = SCRATCH / "candump.log"
 
-# 0x241, byte 0: SWD SWC SWB SWA, two bits each; 2 up, 1 middle, 3 down.
-RADIO_CAN_DRIVES = "241#AA00000000000061"
-RADIO_TAKES_OVER = "241#A600000000000062"
+# 0x241, byte 0: SWD SWC SWB SWA, two bits each; 2 up, 1 middle, 3 down. Byte 7 counts the frames.
+CAN_DRIVES = 0xAA
+TAKES_OVER = 0xA6
+RADIO_PERIOD_S = 0.04
+
+
+def radio_frame(switches, count):
+    return f"241#{switches:02X}000000000000{count % 256:02X}"
+
 
 station = None
 moments = {}  # what happened when, by the clock that candump stamps with
@@ -47,10 +53,16 @@ class Transmitter:
 
     def __init__(self):
         self.process = None
+        self.count = 0
+        self.recording = SCRATCH / "radio.log"
+        with open(self.recording, "w", encoding="ascii") as log:
+            for i in range(256):
+                log.write(f"({i * RADIO_PERIOD_S:.6f}) {BUS} {radio_frame(CAN_DRIVES, i)}\n")
 
     def can_drives(self):
-        frame_id, data = RADIO_CAN_DRIVES.split("#")
-        self.process = subprocess.Popen(["cangen", BUS, "-I", frame_id, "-L", "8", "-D", data, "-g", "40"])
+        """SWB up from now on: canplayer repeats 256 frames with a running count."""
+        self.process = subprocess.Popen(["canplayer", "-I", self.recording, "-l", "i"],
+                                        stdout=subprocess.DEVNULL)
 
     def silence(self):
         if self.process:
@@ -59,11 +71,13 @@ class Transmitter:
             self.process = None
 
     def take_over(self, seconds):
+        """SWB in the middle, by one cansend a frame."""
         self.silence()
         end = now() + seconds
         while now() < end:
-            subprocess.run(["cansend", BUS, RADIO_TAKES_OVER], check=True)
-            time.sleep(0.04)
+            self.count += 1
+            subprocess.run(["cansend", BUS, radio_frame(TAKES_OVER, self.count)], check=True)
+            time.sleep(RADIO_PERIOD_S)
 
 
 radio = Transmitter()
@@ -193,7 +207,7 @@ def the_mission_goes_on():
     """with the switch up again CAN mode is asked for anew and the same mission goes on"""
     back = now()
     item = moments["seen"]["mission"]["current_item"]
-    subprocess.run(["cansend", BUS, RADIO_CAN_DRIVES], check=True)
+    subprocess.run(["cansend", BUS, radio_frame(CAN_DRIVES, radio.count + 1)], check=True)
     radio.can_drives()
     wait_frames(0x421, lambda f: f.data[0] == 1, 20, back)
     moving = wait_frames(0x111, candump.moves, 30, back)
