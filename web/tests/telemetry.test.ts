@@ -67,7 +67,7 @@ describe('vehicle', () => {
 
   test('tells bad news and the good news one waits for, but not its own echo', () => {
     const event = (level: 'info' | 'warning' | 'error', kind: string) =>
-      worth_a_word({ id: 1, time: '', level, kind, detail: '' });
+      worth_a_word({ time: '', level, kind, detail: '' });
     expect(event('info', 'item_reached')).toBe(false);
     expect(event('info', 'mission_finished')).toBe(true);
     expect(event('error', 'blocked')).toBe(true);

@@ -29,7 +29,10 @@ export interface Page<T> {
   readonly next_cursor: string | null;
 }
 export interface ImportEntry {
-  readonly where: string;
+  /** "line 3", "/mission/items/2" … */
+  readonly row: string;
+  /** What stands there. */
+  readonly what: string;
   readonly outcome: 'taken' | 'changed' | 'left_out';
   readonly item: number | null;
   readonly reason: string;

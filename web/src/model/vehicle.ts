@@ -119,12 +119,15 @@ export interface Preview {
   readonly at_end: 'hold' | 'return' | 'repeat' | 'back_and_forth';
 }
 export interface StationEvent {
-  readonly id: number;
   readonly time: string;
   readonly level: 'info' | 'warning' | 'error';
   readonly kind: string;
   readonly detail: string;
 }
+
+/** Tells events apart: the stream sends them before they have a number. */
+export const event_key = ({ time, kind, detail }: StationEvent): string =>
+  `${time} ${kind} ${detail}`;
 
 /** Good news that a person waits for. The other good news is only logged. */
 const TOLD = new Set(['mission_finished', 'mission_lap', 'radio_takeover', 'radio_released']);

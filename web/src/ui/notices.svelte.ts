@@ -1,6 +1,6 @@
 // Short messages to the person, and the log of what happened.
 
-import { worth_a_word, type StationEvent } from '../model/vehicle';
+import { event_key, worth_a_word, type StationEvent } from '../model/vehicle';
 
 export type Level = 'info' | 'good' | 'warning' | 'error';
 
@@ -46,10 +46,12 @@ export class Notices {
 
   /** @return how many were new */
   #enter(events: readonly StationEvent[]): number {
-    const known = new Set(this.log.map((event) => event.id));
-    const fresh = events.filter((event) => !known.has(event.id));
+    const known = new Set(this.log.map(event_key));
+    const fresh = events.filter((event) => !known.has(event_key(event)));
     if (fresh.length > 0) {
-      this.log = [...this.log, ...fresh].sort((a, b) => b.id - a.id).slice(0, LOG_LINES);
+      const newest_first = (a: StationEvent, b: StationEvent): number =>
+        a.time < b.time ? 1 : a.time > b.time ? -1 : 0;
+      this.log = [...fresh.toReversed(), ...this.log].sort(newest_first).slice(0, LOG_LINES);
     }
     return fresh.length;
   }
