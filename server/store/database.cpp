@@ -1,5 +1,6 @@
 #include "store/database.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -76,8 +77,9 @@ Result<int> inspect_schema(SQLite::Database& db, const std::string& file, int ne
 }
 
 Result<void> check_pages(SQLite::Database& db, const std::string& file) {
-  const std::string verdict = db.execAndGet("PRAGMA quick_check(1)").getString();
+  std::string verdict = db.execAndGet("PRAGMA quick_check(1)").getString();
   if (verdict == "ok") return {};
+  std::replace(verdict.begin(), verdict.end(), '\n', ' ');  // start-up errors are one line
   return base::fail(Code::Unavailable, "the database " + file + " is damaged: " + verdict);
 }
 
