@@ -80,6 +80,10 @@ const nothing_shown = (): Shown => ({
   placed: false,
 });
 
+/** The words of an attribution, which may be written in HTML. */
+const plain_text = (html: string): string =>
+  new DOMParser().parseFromString(html, 'text/html').body.textContent;
+
 /** The grid keeps its origin while one works near it. */
 const grid_origin = (shown: Shown, here: LatLon): LatLon => {
   const wanted = shown.origin ?? shown.home ?? shown.robot?.at ?? shown.plan.spots[0] ?? here;
@@ -148,7 +152,9 @@ export const make_map = (target: HTMLElement): MapCalls => {
   const tiles = new TileLayer<XYZ>({ visible: false });
   map.addLayer(tiles);
   map.addLayer(canvas_layer(painters(shown, trail, bar)));
-  target.append(bar.element);
+  const credit = document.createElement('div');
+  credit.className = 'map-credit';
+  target.append(bar.element, credit);
 
   const edit = new EditInteraction({
     drawn: () => shown.plan,
@@ -175,6 +181,14 @@ export const make_map = (target: HTMLElement): MapCalls => {
   on_palette_change(() => map.render());
 
   const center_on = (at: LatLon): void => view.setCenter([...to_plane(at)]);
+
+  /** Whether a place is in sight and not under a panel. */
+  const in_free_part = (at: LatLon): boolean => {
+    const [width = 0, height = 0] = map.getSize() ?? [];
+    const [x = -1, y = -1] = map.getPixelFromCoordinate([...to_plane(at)]) ?? [];
+    const { top, right, bottom, left } = shown.cover;
+    return x > left && x < width - right && y > top && y < height - bottom;
+  };
 
   const fit = (points: readonly LatLon[]): void => {
     const first = points[0];
@@ -203,9 +217,12 @@ export const make_map = (target: HTMLElement): MapCalls => {
       map.render();
     },
     show_plan: (plan, selected, refused) => {
+      const chosen = selected !== shown.look.selected;
       if (shown.plan_source !== plan) shown.plan = prepare_plan(plan);
       shown.plan_source = plan;
       shown.look = { ...shown.look, selected, refused };
+      const spot = shown.plan.spots.find(({ index }) => index === selected);
+      if (chosen && spot && !in_free_part(spot)) center_on(spot);
       map.render();
     },
     show_route: (route, current_item) => {
@@ -252,13 +269,13 @@ export const make_map = (target: HTMLElement): MapCalls => {
     use_tiles: (set: TileSet | null) => {
       const usable = set !== null && set.format !== 'pbf';
       tiles.setVisible(usable);
+      credit.textContent = usable ? plain_text(set.attribution) : '';
       if (!usable) return;
       tiles.setSource(
         new XYZ({
           url: `/api/v1/tiles/${encodeURIComponent(set.set)}/{z}/{x}/{y}`,
           minZoom: set.min_zoom,
           maxZoom: set.max_zoom,
-          attributions: set.attribution,
         }),
       );
     },

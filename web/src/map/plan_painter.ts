@@ -175,7 +175,7 @@ const paint_spot = (
   const point = { ink: colors.on_point, casing: colors.casing };
   paint_point(paint, x, y, String(index + 1), {
     ...point,
-    fill: chosen || look.refused.has(index) ? colors.selected : colors.plan,
+    fill: look.refused.has(index) ? colors.refused : chosen ? colors.selected : colors.plan,
     radius_px: chosen ? POINT_PX + 3 : POINT_PX,
   });
   if (chips > 0) {

@@ -99,6 +99,8 @@ export interface Check {
 }
 export interface Capabilities {
   readonly vehicle: string;
+  /** Name for people. */
+  readonly title: string;
   readonly size: { readonly length_m: number; readonly width_m: number };
   readonly limits: { readonly max_speed_mps: number; readonly max_yaw_rate_dps: number };
   readonly modes: readonly Mode[];
@@ -153,6 +155,14 @@ export const control_words: Record<Control, string> = {
   auto: 'Autopilot drives',
   teleop: 'Page drives',
   rc: 'Radio drives',
+};
+
+/** The same in one word, for narrow places. */
+export const driver_words: Record<Control, string> = {
+  none: 'Nobody',
+  auto: 'Autopilot',
+  teleop: 'Page',
+  rc: 'Radio',
 };
 
 export const state_words: Record<ExecutionState, string> = {

@@ -57,7 +57,7 @@ export class Station {
     this.library = new Library(doors.missions, this.editor, this.notices, this.dialogs);
     this.pilot = new Pilot(doors.vehicle, doors.send_drive, this.live, this.notices, this.dialogs);
     doors.map.listen(this.#map_events());
-    this.editor.restore_draft();
+    if (this.editor.restore_draft()) this.map.fit(spots(this.editor.plan));
     void this.#fetch_past_events();
     $effect.root(() => this.#keep_map_in_step());
   }
