@@ -4,6 +4,7 @@
 #include <atomic>
 #include <thread>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -46,6 +47,38 @@ TEST(Descriptor, AHandlerThatIsAlreadyQueuedIsSilentAfterClose) {
   ::close(fds[1]);
 }
 
+TEST(Descriptor, CloseWaitsForAWriteInProgressAndTheNumberStaysOursUntilThen) {
+  asio::io_context io;
+  Descriptor descriptor(io);
+  const Pair fds = socket_pair();
+  ASSERT_TRUE(descriptor.open(fds[0], [] {}));
+  std::atomic<bool> inside{false};
+  std::atomic<bool> closing{false};
+  std::atomic<bool> left{false};
+  std::atomic<int> lost{0};
+  std::thread writer([&] {
+    descriptor.use([&](int fd) {
+      inside = true;
+      while (!closing) std::this_thread::yield();
+      for (int i = 0; i < 200; ++i) {  // time for close to do harm
+        if (::fcntl(fd, F_GETFD) < 0) ++lost;
+        std::this_thread::yield();
+      }
+      left = true;
+      return SendResult::Sent;
+    });
+  });
+  while (!inside) std::this_thread::yield();
+  closing = true;
+  descriptor.close();
+  EXPECT_TRUE(left);
+  EXPECT_EQ(lost, 0);
+  EXPECT_LT(::fcntl(fds[0], F_GETFD), 0);
+  EXPECT_EQ(descriptor.use([](int) { return SendResult::Sent; }), SendResult::Closed);
+  writer.join();
+  ::close(fds[1]);
+}
+
 // The kernel reuses descriptor numbers at once: after close, the next socket gets the same one.
 TEST(Descriptor, AWriterNeverReachesTheNextOwnerOfTheNumber) {
   asio::io_context io;
@@ -57,10 +90,11 @@ TEST(Descriptor, AWriterNeverReachesTheNextOwnerOfTheNumber) {
       const auto result =
           descriptor.use([](int fd) { return write_result(::send(fd, "x", 1, MSG_NOSIGNAL), 1); });
       if (result == SendResult::Sent) ++sent;
+      std::this_thread::yield();
     }
   });
   int foreign = 0;
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < 200; ++i) {
     const Pair ours = socket_pair();
     ASSERT_TRUE(descriptor.open(ours[0], [] {}));
     descriptor.close();
