@@ -28,6 +28,7 @@ export default ts.config(
       'no-console': 'error',
       'prefer-const': 'error',
       'max-lines': ['error', 400],
+      'max-params': ['error', 5],
     },
   },
   {
@@ -51,6 +52,7 @@ export default ts.config(
   // Sets here are values: made once, never changed, so nothing has to watch them.
   { files: ['src/ui/**'], rules: { 'svelte/prefer-svelte-reactivity': 'off' } },
   { files: ['*.ts', '*.js'], languageOptions: { globals: globals.node } },
+  { files: ['src/**/*.ts'], rules: { 'max-lines-per-function': ['error', 60] } },
   door('model', '^(?!\\./)'),
   door('link', '^(\\.\\./(map|ui)|svelte|ol|uplot)'),
   door('map', '^(\\.\\./(link|ui)|svelte|uplot)'),

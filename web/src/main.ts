@@ -4,8 +4,8 @@ import { mount } from 'svelte';
 
 import { mission_calls, tile_sets, vehicle_calls } from './link/rest';
 import { draft_storage } from './link/storage';
-import { open_stream, type Stream } from './link/stream';
-import { make_map } from './map/map';
+import { Stream } from './link/stream';
+import { FieldMap } from './map/map';
 import App from './ui/App.svelte';
 import { Station } from './ui/station.svelte';
 import './ui/style.css';
@@ -16,7 +16,7 @@ const element = (id: string): HTMLElement => {
   return found;
 };
 
-const map = make_map(element('map'));
+const map = new FieldMap(element('map'));
 /** The station needs a way to send before there is a stream, and the stream needs the station. */
 const late: { stream: Stream | null } = { stream: null };
 const station = new Station({
@@ -27,7 +27,7 @@ const station = new Station({
   send_drive: (speed_mps, yaw_rate_dps, deadman) =>
     late.stream?.send_drive(speed_mps, yaw_rate_dps, deadman) ?? false,
 });
-late.stream = open_stream(station.stream_events);
+late.stream = new Stream(station.stream_events);
 mount(App, { target: element('app'), props: { station } });
 
 void tile_sets().then((sets) => map.use_tiles(sets[0] ?? null));

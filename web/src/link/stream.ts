@@ -5,7 +5,7 @@
 // An open socket that says nothing is worth no more than a closed one: the watchdog closes it.
 
 import { backoff_ms, should_reopen, type SocketState } from '../model/freshness';
-import type { SendDrive, StreamEvents } from '../model/ports';
+import type { StreamEvents } from '../model/ports';
 import type { components } from './schema';
 
 type Schemas = components['schemas'];
@@ -23,102 +23,98 @@ const DRIVE_BACKLOG = 512;
 const address = (): string =>
   `${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/api/v1/stream`;
 
-export interface Stream {
-  readonly send_drive: SendDrive;
+export class Stream {
+  readonly #events: StreamEvents;
+  #socket: WebSocket | null = null;
+  #state: SocketState = 'closed';
+  #opened_ms = 0;
+  #last_message_ms: number | null = null;
+  #attempt = 0;
+  #retry: ReturnType<typeof setTimeout> | undefined;
+  #drive_seq = 0;
+
+  constructor(events: StreamEvents) {
+    this.#events = events;
+    setInterval(() => this.#watch(), WATCH_MS);
+    this.#connect();
+  }
+
+  /** Teleoperation. @return false: not connected or congested, nothing was sent */
+  send_drive(speed_mps: number, yaw_rate_dps: number, deadman: boolean): boolean {
+    const socket = this.#socket;
+    if (socket?.readyState !== WebSocket.OPEN) return false;
+    if (deadman && socket.bufferedAmount > DRIVE_BACKLOG) return false;
+    this.#drive_seq += 1;
+    const message: Schemas['StreamDrive'] = {
+      drive: { speed_mps, yaw_rate_dps, deadman, seq: this.#drive_seq },
+    };
+    socket.send(JSON.stringify(message));
+    return true;
+  }
+
   /** Try at once, for example when the device woke up. */
-  readonly hurry: () => void;
-}
+  hurry(): void {
+    if (this.#socket !== null) return;
+    this.#attempt = 0;
+    this.#connect();
+  }
 
-export const open_stream = (events: StreamEvents): Stream => {
-  let socket: WebSocket | null = null;
-  let state: SocketState = 'closed';
-  let opened_ms = 0;
-  let last_message_ms: number | null = null;
-  let attempt = 0;
-  let timer: ReturnType<typeof setTimeout> | undefined;
-  let drive_seq = 0;
+  #connect(): void {
+    clearTimeout(this.#retry);
+    const socket = new WebSocket(address());
+    this.#socket = socket;
+    this.#opened_ms = performance.now();
+    this.#report('connecting');
+    socket.onopen = () => {
+      socket.send(SUBSCRIBE);
+      this.#report('open');
+    };
+    socket.onmessage = ({ data }) => {
+      if (this.#socket === socket && typeof data === 'string') this.#take(data);
+    };
+    socket.onclose = () => {
+      if (this.#socket === socket) this.#drop();
+    };
+  }
 
-  const report = (next: SocketState): void => {
-    state = next;
-    events.on_link({ socket: state, last_message_ms });
-  };
-
-  const take = (text: string): void => {
+  #take(text: string): void {
     const message = JSON.parse(text) as Message;
-    last_message_ms = performance.now();
-    attempt = 0;
+    this.#last_message_ms = performance.now();
+    this.#attempt = 0;
     switch (message.topic) {
       case 'hello':
-        events.on_hello(message.data.capabilities);
+        this.#events.on_hello(message.data.capabilities);
         break;
       case 'vehicle':
-        events.on_vehicle(message.data);
+        this.#events.on_vehicle(message.data);
         break;
       case 'events':
-        events.on_event(message.data);
+        this.#events.on_event(message.data);
         break;
       case 'missions':
-        events.on_mission_changed(message.data.id, message.data.revision);
+        this.#events.on_mission_changed(message.data.id, message.data.revision);
         break;
     }
-    report('open');
-  };
+    this.#report('open');
+  }
 
-  const retry = (): void => {
-    clearTimeout(timer);
-    timer = setTimeout(connect, backoff_ms(attempt, Math.random()));
-    attempt += 1;
-  };
+  #watch(): void {
+    const health = { socket: this.#state, last_message_ms: this.#last_message_ms };
+    if (this.#socket && should_reopen(this.#opened_ms, health, performance.now())) this.#drop();
+  }
 
-  const drop = (): void => {
-    const old = socket;
-    socket = null;
+  #drop(): void {
+    const old = this.#socket;
+    this.#socket = null;
     old?.close();
-    report('closed');
-    retry();
-  };
+    this.#report('closed');
+    clearTimeout(this.#retry);
+    this.#retry = setTimeout(() => this.#connect(), backoff_ms(this.#attempt, Math.random()));
+    this.#attempt += 1;
+  }
 
-  const connect = (): void => {
-    clearTimeout(timer);
-    const mine = new WebSocket(address());
-    socket = mine;
-    opened_ms = performance.now();
-    report('connecting');
-    mine.onopen = () => {
-      mine.send(SUBSCRIBE);
-      report('open');
-    };
-    mine.onmessage = ({ data }) => {
-      if (socket === mine && typeof data === 'string') take(data);
-    };
-    mine.onclose = () => {
-      if (socket === mine) drop();
-    };
-  };
-
-  setInterval(() => {
-    if (socket && should_reopen(opened_ms, { socket: state, last_message_ms }, performance.now())) {
-      drop();
-    }
-  }, WATCH_MS);
-  connect();
-
-  return {
-    send_drive: (speed_mps, yaw_rate_dps, deadman) => {
-      if (socket?.readyState !== WebSocket.OPEN) return false;
-      if (deadman && socket.bufferedAmount > DRIVE_BACKLOG) return false;
-      drive_seq += 1;
-      const message: Schemas['StreamDrive'] = {
-        drive: { speed_mps, yaw_rate_dps, deadman, seq: drive_seq },
-      };
-      socket.send(JSON.stringify(message));
-      return true;
-    },
-    hurry: () => {
-      if (socket === null) {
-        attempt = 0;
-        connect();
-      }
-    },
-  };
-};
+  #report(state: SocketState): void {
+    this.#state = state;
+    this.#events.on_link({ socket: state, last_message_ms: this.#last_message_ms });
+  }
+}

@@ -1,0 +1,107 @@
+// What the map was told to show, and the painters that draw it, in order.
+
+import { distance_m } from '../model/geo';
+import { EMPTY_PLAN, type LatLon, type Plan } from '../model/plan';
+import type { MapEvents, RobotOnMap } from '../model/ports';
+import type { Paint, Painter } from './canvas';
+import type { Drag } from './edit';
+import { paint_grid, type Cover } from './grid';
+import { palette } from './palette';
+import {
+  paint_plan,
+  paint_route,
+  prepare_plan,
+  with_inserted,
+  with_point,
+  type DrawnPlan,
+  type PlanLook,
+} from './plan_painter';
+import { from_plane, units_per_m } from './projection';
+import { paint_home, paint_robot, TrailLine, type Size } from './robot_painter';
+import type { ScaleBar } from './scale_bar';
+
+/** Beyond this from its origin the grid gets a new one. */
+const GRID_REACH_M = 10_000;
+
+const NO_EVENTS: MapEvents = {
+  on_add: () => undefined,
+  on_insert: () => undefined,
+  on_move: () => undefined,
+  on_select: () => undefined,
+  on_pan: () => undefined,
+};
+
+/** A plan, projected once: when it changes. */
+class Projected {
+  #source: Plan;
+  drawn: DrawnPlan;
+
+  constructor(plan: Plan) {
+    this.#source = plan;
+    this.drawn = prepare_plan(plan);
+  }
+
+  take(plan: Plan): void {
+    if (this.#source === plan) return;
+    this.#source = plan;
+    this.drawn = prepare_plan(plan);
+  }
+}
+
+export class Scene {
+  events = NO_EVENTS;
+  readonly plan = new Projected(EMPTY_PLAN);
+  readonly route = new Projected(EMPTY_PLAN);
+  readonly trail = new TrailLine();
+  look: PlanLook = { selected: null, refused: new Set(), handles: false };
+  drag: Drag | null = null;
+  current_item = 0;
+  robot: RobotOnMap | null = null;
+  home: LatLon | null = null;
+  size: Size = { length_m: 1, width_m: 0.8 };
+  cover: Cover = { top: 0, right: 0, bottom: 0, left: 0 };
+  #origin: LatLon | null = null;
+
+  /** The grid keeps its origin while one works near it. */
+  grid_origin(here: LatLon): LatLon {
+    const known = this.home ?? this.robot?.at ?? this.plan.drawn.spots[0] ?? null;
+    const wanted = this.#origin ?? known ?? here;
+    if (distance_m(wanted, here) > GRID_REACH_M) {
+      return { lat: Math.round(here.lat * 100) / 100, lon: Math.round(here.lon * 100) / 100 };
+    }
+    if (known) this.#origin = wanted;
+    return wanted;
+  }
+
+  painters(bar: ScaleBar): Painter[] {
+    return [
+      (paint) => {
+        const here = from_plane(paint.center);
+        paint_grid(paint, palette(), this.grid_origin(here), this.cover);
+        bar.show(paint.resolution / units_per_m(here.lat).east);
+      },
+      (paint) => paint_route(paint, this.route.drawn, this.current_item),
+      (paint) => this.trail.paint(paint, palette()),
+      (paint) => this.#paint_edited(paint),
+      (paint) => {
+        if (this.home) paint_home(paint, this.home, palette());
+      },
+      (paint) => {
+        if (this.robot) paint_robot(paint, this.robot, this.size, palette());
+      },
+    ];
+  }
+
+  /** In the middle of a drag the line already goes where it will go. */
+  #paint_edited(paint: Paint): void {
+    const { drawn } = this.plan;
+    const { drag } = this;
+    const line =
+      drag === null
+        ? drawn.line
+        : drag.what === 'spot'
+          ? with_point(drawn.line, drag.k, drag.to)
+          : with_inserted(drawn.line, drag.k, drag.to);
+    paint_plan(paint, drawn, line, this.look);
+  }
+}
