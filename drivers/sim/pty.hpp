@@ -1,0 +1,38 @@
+#pragma once
+// A pseudo-terminal that looks like the receiver's serial port, with a symbolic link to it at a
+// path of the caller's choice.
+
+#include <string>
+
+#include "link/descriptor.hpp"
+#include "link/link.hpp"
+
+namespace roverd::sim {
+
+/// Raw in both directions. Nobody need listen: like a serial port without a reader, old bytes are
+/// dropped, at most kMaxUnread stay for the next reader.
+class Pty final : public link::ByteLink {
+ public:
+  static constexpr int kMaxUnread = 2048;
+
+  /// @param path where the symbolic link is made. One that is there already is replaced; anything
+  /// else at that path is left alone and is an error of open().
+  Pty(boost::asio::io_context& io, std::string path);
+  ~Pty() override;
+
+  base::Result<void> open() override;
+  void close() noexcept override;
+  link::SendResult write(base::Bytes bytes) noexcept override;
+  std::string describe() const override { return "serial:" + path_ + ":115200"; }
+
+ private:
+  base::Result<void> make_symlink(const std::string& device);
+  void read();
+
+  const std::string path_;
+  link::Descriptor master_;
+  int slave_ = -1;      ///< held open, so that the line does not hang up between readers
+  std::string device_;  ///< "/dev/pts/3", while the symbolic link is ours
+};
+
+}  // namespace roverd::sim
