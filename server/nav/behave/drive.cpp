@@ -1,0 +1,286 @@
+// The executor at work: which way begins, what counts as reached, what counts as stuck.
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/angle.hpp"
+#include "nav/behave/executor.hpp"
+
+namespace roverd::nav {
+namespace {
+
+using base::ExecutionState;
+
+constexpr double kThere_m = 0.05;  // nearer than this there is nothing to drive
+constexpr double kPivotLimit_s = 40.0;
+
+}  // namespace
+
+TrackOutput Executor::step(const Vehicle& vehicle, double limit_mps, std::optional<EnuPoint> home,
+                           double dt_s) {
+  if (!running() || interrupted_) return {};
+  if (doing_ == Doing::Nothing) enter(vehicle, home);
+  if (!running()) return {};
+  if (doing_ == Doing::Wait) {
+    wait_s_ -= dt_s;
+    if (wait_s_ > 0.0) return {};
+    wait_s_ = 0.0;
+    if (step_now()->kind == StepKind::Wait) {
+      notices_.push_back({Notice::Kind::ItemReached, step_now()->item, {}});
+    }
+    ++at_;
+    enter(vehicle, home);
+    if (!running()) return {};
+  }
+  const TrackOutput out = tracker_.step(vehicle, limit_mps, dt_s);
+  if (doing_ == Doing::Path) pass_nodes(vehicle);
+  if (tracker_.phase() == TrackPhase::Done) {
+    leg_done();
+    if (running() && doing_ == Doing::Nothing) enter(vehicle, home);
+  }
+  watch(vehicle, dt_s);
+  return out;
+}
+
+/// Begins steps until one of them takes time.
+void Executor::enter(const Vehicle& vehicle, std::optional<EnuPoint> home) {
+  // Jumps and places already reached take no time; a circle of them must not hang the loop.
+  std::size_t idle = 0;
+  const std::size_t most = 2 * course_->steps.size() + 4;
+  while (running()) {
+    doing_ = Doing::Nothing;
+    if (++idle > most) {
+      stop("the mission goes round in a circle without driving");
+      return;
+    }
+    const RouteStep* step = step_now();
+    const bool busy = step == nullptr ? at_end(vehicle, home) : enter_step(*step, vehicle, home);
+    if (busy) return;
+  }
+}
+
+bool Executor::enter_step(const RouteStep& step, const Vehicle& vehicle,
+                          std::optional<EnuPoint> home) {
+  switch (step.kind) {
+    case StepKind::Go:
+      return enter_go(step, vehicle);
+    case StepKind::Wait:
+      wait_s_ = step.seconds;
+      doing_ = Doing::Wait;
+      return true;
+    case StepKind::Home: {
+      if (!home) {
+        stop("there is no home to return to");
+        return true;
+      }
+      standing_.reset();
+      if (connect(*home, nullptr, vehicle)) return true;
+      reached(step);
+      return doing_ == Doing::Wait;
+    }
+    case StepKind::Jump: {
+      int& left = jumps_left_[step.node];
+      if (left < 0) left = step.times;
+      if (step.times == 0 || left > 0) {
+        if (step.times != 0) --left;
+        at_ = step.target;
+      } else {
+        left = -1;  // counts anew when the mission comes here again
+        ++at_;
+      }
+      return false;
+    }
+  }
+  return false;
+}
+
+bool Executor::enter_go(const RouteStep& step, const Vehicle& vehicle) {
+  const Path& path = course_->path;
+  const bool in_order = standing_ && *standing_ + 1 == step.node;
+  const RouteNode& node = course_->nodes[step.node];
+  if (in_order) {
+    const double from_m = path.vertex_m[*standing_];
+    if (path.vertex_m[step.node] - from_m > 1e-6) {
+      const double off_m = base::distance_m(vehicle.at, path.at(from_m));
+      if (off_m <= std::max(path_params_.track.rejoin_m, 0.5)) {
+        doing_ = Doing::Path;
+        drove_ = true;
+        tracker_.begin(path, path.leg_from(from_m), from_m);
+        return true;
+      }
+    } else {
+      reached(step);
+      return doing_ == Doing::Wait;
+    }
+  }
+  if (connect(node.at, &node, vehicle)) return true;
+  reached(step);
+  return doing_ == Doing::Wait;
+}
+
+/// A straight way of its own. @return false when the robot is already there.
+bool Executor::connect(EnuPoint to, const RouteNode* node, const Vehicle& vehicle) {
+  EnuPoint from = vehicle.at;
+  if (standing_) {
+    const EnuPoint nominal = course_->nodes[*standing_].at;
+    if (base::distance_m(nominal, from) < path_params_.track.rejoin_m) from = nominal;
+  }
+  Vertex end;
+  end.at = to;
+  end.speed_mps = node != nullptr ? node->speed_mps : route_->speed_mps;
+  end.reverse = node != nullptr && node->reverse;
+  const Vertex both[] = {{from, end.speed_mps, end.reverse, false, mission::Turn::Auto, 0.1}, end};
+  connector_ = build_path(both, path_params_);
+  rejoin_.reset();
+  if (connector_.legs.empty() || connector_.length_m() < kThere_m) return false;
+  doing_ = Doing::Connector;
+  drove_ = true;
+  tracker_.begin(connector_, 0, 0.0);
+  return true;
+}
+
+bool Executor::at_end(const Vehicle& vehicle, std::optional<EnuPoint> home) {
+  if (returning_) {
+    finish();
+    return true;
+  }
+  switch (route_->at_end) {
+    case mission::AtEnd::Hold:
+      finish();
+      return true;
+    case mission::AtEnd::Return: {
+      returning_ = true;
+      standing_.reset();
+      if (home && connect(*home, nullptr, vehicle)) return true;
+      finish();
+      return true;
+    }
+    case mission::AtEnd::Repeat:
+    case mission::AtEnd::BackAndForth: {
+      if (!drove_) {
+        finish();
+        return true;
+      }
+      drove_ = false;
+      notices_.push_back({Notice::Kind::Lap, 0, {}});
+      if (route_->at_end == mission::AtEnd::BackAndForth) {
+        turn_round();
+      } else {
+        at_ = 0;
+      }
+      return false;
+    }
+  }
+  return false;
+}
+
+/// The other direction begins where the robot stands: at its first waypoint, already reached.
+void Executor::turn_round() {
+  course_ = course_ == &route_->forth ? &route_->back : &route_->forth;
+  at_ = 0;
+  standing_.reset();
+  while (at_ < course_->steps.size() && course_->steps[at_].kind == StepKind::Wait) ++at_;
+  if (at_ < course_->steps.size() && course_->steps[at_].kind == StepKind::Go) {
+    standing_ = course_->steps[at_].node;
+    ++at_;
+    while (at_ < course_->steps.size() && course_->steps[at_].kind == StepKind::Wait) ++at_;
+  }
+}
+
+/// Waypoints inside a leg count when the robot is level with them, or within their radius.
+void Executor::pass_nodes(const Vehicle& vehicle) {
+  const Path& path = course_->path;
+  const double end_m = path.legs[tracker_.leg()].end_m;
+  for (;;) {
+    const RouteStep* step = step_now();
+    if (step == nullptr || step->kind != StepKind::Go) return;
+    const double at_m = path.vertex_m[step->node];
+    if (at_m > end_m - 1e-6) return;  // the leg's end is a stop and counts when it stands there
+    const RouteNode& node = course_->nodes[step->node];
+    const bool level = tracker_.s_m() >= at_m;
+    const bool within = node.radius_m > 0.0 && at_m - tracker_.s_m() <= node.radius_m &&
+                        base::distance_m(vehicle.at, node.at) <= node.radius_m;
+    if (!level && !within) return;
+    reached(*step);
+  }
+}
+
+void Executor::leg_done() {
+  if (rejoin_) {
+    rejoin_.reset();
+    doing_ = Doing::Path;
+    tracker_.begin(course_->path, leg_, s_m_);
+    return;
+  }
+  const bool on_path = doing_ == Doing::Path;
+  doing_ = Doing::Nothing;
+  const RouteStep* step = step_now();
+  if (step == nullptr) return;  // on the way home: at_end decides
+  reached(*step);
+  // A robot that did not stop at a vertex of its own still goes on with its path.
+  if (on_path && doing_ == Doing::Nothing) leg_ = 0;
+}
+
+/// Counts a step as done; holds if it says so.
+void Executor::reached(const RouteStep& step) {
+  notices_.push_back({Notice::Kind::ItemReached, step.item, {}});
+  if (step.kind == StepKind::Go) standing_ = step.node;
+  if (step.kind == StepKind::Go && step.seconds > 0.0) {
+    wait_s_ = step.seconds;
+    doing_ = Doing::Wait;
+    return;
+  }
+  ++at_;
+}
+
+void Executor::finish() {
+  state_ = ExecutionState::Finished;
+  reason_.clear();
+  doing_ = Doing::Nothing;
+  tracker_.reset();
+  notices_.push_back({Notice::Kind::Finished, 0, {}});
+}
+
+void Executor::watch(const Vehicle& vehicle, double dt_s) {
+  if (!running()) return;
+  const TrackPhase phase = tracker_.phase();
+  lost_s_ = phase == TrackPhase::Follow && std::abs(tracker_.cross_track_m()) > params_.lost_m
+                ? lost_s_ + dt_s
+                : 0.0;
+  if (lost_s_ > params_.lost_s) {
+    const std::string text =
+        std::to_string(std::lround(std::abs(tracker_.cross_track_m()))) + " m away from the path";
+    pause(text);
+    notices_.push_back({Notice::Kind::Lost, 0, text});
+    return;
+  }
+  watch_stuck(vehicle, dt_s);
+}
+
+void Executor::watch_stuck(const Vehicle& vehicle, double dt_s) {
+  const TrackPhase phase = tracker_.phase();
+  const bool driving = phase == TrackPhase::Follow || phase == TrackPhase::Pivot;
+  const bool moved = base::distance_m(vehicle.at, stuck_at_.at) > params_.stuck_m ||
+                     std::abs(base::angle_diff_rad(stuck_at_.yaw_rad, vehicle.yaw_rad)) >
+                         base::rad_from_deg(params_.stuck_deg);
+  if (!driving || moved) {
+    stuck_s_ = 0.0;
+    stuck_at_ = vehicle;
+  } else {
+    stuck_s_ += dt_s;
+  }
+  pivot_s_ = phase == TrackPhase::Pivot ? pivot_s_ + dt_s : 0.0;
+  std::string text;
+  if (stuck_s_ > params_.stuck_s) {
+    text = "no progress for " + std::to_string(std::lround(params_.stuck_s)) + " s";
+  } else if (pivot_s_ > kPivotLimit_s) {
+    text = "a turn on the spot does not come to its end";
+  } else {
+    return;
+  }
+  pause(text);
+  state_ = ExecutionState::Blocked;
+  notices_.push_back({Notice::Kind::Blocked, 0, text});
+}
+
+}  // namespace roverd::nav

@@ -1,0 +1,247 @@
+#include "nav/behave/executor.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/angle.hpp"
+
+namespace roverd::nav {
+namespace {
+
+using base::Code;
+using base::ExecutionState;
+
+std::string metres(double m) {
+  return std::to_string(std::lround(m)) + " m";
+}
+
+}  // namespace
+
+std::size_t first_step(const Route& route, const StartAt& start,
+                       std::optional<EnuPoint> here) noexcept {
+  const Course& course = route.forth;
+  if (start.from == StartAt::From::First) return 0;
+  if (start.from == StartAt::From::Item) {
+    const auto found = std::find_if(course.steps.begin(), course.steps.end(),
+                                    [&](const RouteStep& s) { return s.item >= start.item; });
+    const bool exists = start.item >= 1 && start.item <= route.items;
+    return exists ? static_cast<std::size_t>(found - course.steps.begin()) : course.steps.size();
+  }
+  std::size_t best = 0;
+  double best_m = 1e300;
+  for (std::size_t i = 0; here && i < course.steps.size(); ++i) {
+    if (course.steps[i].kind != StepKind::Go) continue;
+    const double far_m = base::distance_m(*here, course.nodes[course.steps[i].node].at);
+    if (far_m >= best_m) continue;
+    best_m = far_m;
+    best = i;
+  }
+  return best;
+}
+
+std::optional<EnuPoint> first_target(const Route& route, std::size_t step,
+                                     std::optional<EnuPoint> home) noexcept {
+  const Course& course = route.forth;
+  for (std::size_t i = step; i < course.steps.size(); ++i) {
+    if (course.steps[i].kind == StepKind::Go) return course.nodes[course.steps[i].node].at;
+    if (course.steps[i].kind == StepKind::Home) return home;
+  }
+  return std::nullopt;
+}
+
+Executor::Executor(const PathParams& path, const BehaveParams& behave)
+    : path_params_(path), params_(behave), tracker_(path) {
+  notices_.reserve(16);
+}
+
+void Executor::load(std::shared_ptr<const Route> route) {
+  route_ = std::move(route);
+  course_ = route_ ? &route_->forth : nullptr;
+  state_ = route_ ? ExecutionState::Loaded : ExecutionState::Idle;
+  reason_.clear();
+  interrupt();
+  interrupted_ = false;
+  doing_ = Doing::Nothing;
+  at_ = 0;
+  standing_.reset();
+  rejoin_.reset();
+}
+
+void Executor::begin_at(std::size_t step) {
+  tracker_.reset();
+  doing_ = Doing::Nothing;
+  at_ = step;
+  standing_.reset();
+  rejoin_.reset();
+  wait_s_ = lost_s_ = stuck_s_ = pivot_s_ = 0.0;
+  returning_ = false;
+}
+
+base::Result<void> Executor::start(const StartAt& at, EnuPoint here, std::optional<EnuPoint> home) {
+  if (!route_) return base::fail(Code::Conflict, "no mission is loaded");
+  if (running()) return base::fail(Code::Conflict, "the mission already runs");
+  const std::size_t step = first_step(*route_, at, here);
+  if (step >= route_->forth.steps.size()) {
+    return base::fail(Code::Conflict, "item " + std::to_string(at.item) +
+                                          " has nothing to drive to; the mission has " +
+                                          std::to_string(route_->items) + " items");
+  }
+  const auto target = first_target(*route_, step, home);
+  const double far_m = target ? base::distance_m(here, *target) : 0.0;
+  if (far_m > params_.start_within_m) {
+    return base::fail(Code::Conflict, "the first point is " + metres(far_m) + " away; at most " +
+                                          metres(params_.start_within_m) + " are allowed");
+  }
+  course_ = &route_->forth;
+  begin_at(step);
+  jumps_left_.assign(route_->forth.steps.size(), -1);
+  drove_ = false;
+  interrupted_ = false;
+  state_ = ExecutionState::Running;
+  reason_.clear();
+  return {};
+}
+
+void Executor::pause(std::string reason) {
+  if (!running()) return;
+  interrupt();
+  interrupted_ = false;
+  state_ = ExecutionState::Paused;
+  reason_ = std::move(reason);
+}
+
+void Executor::stop(std::string reason) {
+  interrupt();
+  interrupted_ = false;
+  state_ = ExecutionState::Aborted;
+  reason_ = std::move(reason);
+}
+
+void Executor::interrupt() noexcept {
+  if (doing_ == Doing::Path) {
+    leg_ = tracker_.leg();
+    s_m_ = tracker_.s_m();
+  }
+  tracker_.reset();
+  lost_s_ = stuck_s_ = pivot_s_ = 0.0;
+  interrupted_ = true;
+}
+
+std::optional<EnuPoint> Executor::place_to_go_on() const noexcept {
+  switch (doing_) {
+    case Doing::Path:
+      return course_->path.at(s_m_);
+    case Doing::Connector:
+      return connector_.points.back().at;
+    case Doing::Nothing:
+    case Doing::Wait:
+      return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+base::Result<void> Executor::resume(EnuPoint here) {
+  if (state_ != ExecutionState::Paused && state_ != ExecutionState::Blocked) {
+    return base::fail(Code::Conflict, "the mission is " + std::string(base::to_string(state_)));
+  }
+  const auto place = place_to_go_on();
+  const double far_m = place && doing_ == Doing::Path ? base::distance_m(here, *place) : 0.0;
+  if (far_m > params_.start_within_m) {
+    return base::fail(Code::Conflict, "the place to go on with is " + metres(far_m) +
+                                          " away; at most " + metres(params_.start_within_m) +
+                                          " are allowed");
+  }
+  state_ = ExecutionState::Running;
+  reason_.clear();
+  interrupted_ = true;
+  go_on(here);
+  return {};
+}
+
+void Executor::go_on(EnuPoint here) {
+  if (!interrupted_) return;
+  interrupted_ = false;
+  const auto place = place_to_go_on();
+  if (!place) return;
+  const double far_m = base::distance_m(here, *place);
+  if (doing_ == Doing::Path && far_m > params_.start_within_m) {
+    pause("moved " + metres(far_m) + " away from the mission");
+    return;
+  }
+  Vehicle vehicle;
+  vehicle.at = here;
+  if (doing_ == Doing::Path && far_m <= path_params_.track.rejoin_m) {
+    tracker_.begin(course_->path, leg_, s_m_);
+    return;
+  }
+  const RouteStep* step = step_now();
+  const RouteNode* node =
+      step != nullptr && step->kind == StepKind::Go ? &course_->nodes[step->node] : nullptr;
+  const bool on_path = doing_ == Doing::Path;
+  standing_.reset();
+  const EnuPoint to = *place;
+  if (!connect(to, node, vehicle)) {
+    // Already there: the connector is as good as driven.
+    tracker_.begin(connector_, 0, 0.0);
+  }
+  if (on_path) rejoin_ = to;
+}
+
+base::Result<void> Executor::skip(int item) {
+  if (!route_ || (state_ != ExecutionState::Running && state_ != ExecutionState::Paused &&
+                  state_ != ExecutionState::Blocked)) {
+    return base::fail(Code::Conflict, "no mission is running or paused");
+  }
+  std::size_t to = at_ + 1;
+  if (item != 0) {
+    const auto found = std::find_if(course_->steps.begin(), course_->steps.end(),
+                                    [&](const RouteStep& s) { return s.item == item; });
+    to = static_cast<std::size_t>(found - course_->steps.begin());
+  }
+  if (to >= course_->steps.size()) {
+    return base::fail(Code::Conflict, item == 0
+                                          ? "there is no later item"
+                                          : "item " + std::to_string(item) + " is none to go to");
+  }
+  begin_at(to);
+  return {};
+}
+
+const RouteStep* Executor::step_now() const noexcept {
+  return course_ != nullptr && at_ < course_->steps.size() ? &course_->steps[at_] : nullptr;
+}
+
+Progress Executor::progress() const {
+  Progress p;
+  const RouteStep* step = step_now();
+  if (step == nullptr || state_ == ExecutionState::Idle || state_ == ExecutionState::Finished) {
+    return p;
+  }
+  if (state_ != ExecutionState::Loaded) p.current_item = step->item;
+  if (step->kind == StepKind::Go) p.target = course_->nodes[step->node].at;
+  if (step->kind == StepKind::Home && doing_ == Doing::Connector) {
+    p.target = connector_.points.back().at;
+  }
+  double left_m = 0.0;
+  if (doing_ == Doing::Path) {
+    const bool tracking = tracker_.path() == &course_->path;
+    left_m = course_->path.length_m() - (tracking ? tracker_.s_m() : s_m_);
+    if (tracking && running()) p.cross_track_m = tracker_.cross_track_m();
+  } else if (doing_ == Doing::Connector) {
+    const bool tracking = tracker_.path() == &connector_;
+    left_m = connector_.length_m() - (tracking ? tracker_.s_m() : 0.0);
+    if (tracking && running()) p.cross_track_m = tracker_.cross_track_m();
+    if (rejoin_) {
+      left_m += course_->path.length_m() - s_m_;
+    } else if (step->kind == StepKind::Go) {
+      left_m += course_->path.length_m() - course_->path.vertex_m[step->node];
+    }
+  } else if (step->kind == StepKind::Go) {
+    left_m = course_->path.length_m() - course_->path.vertex_m[step->node];
+  }
+  p.distance_left_m = std::max(0.0, left_m);
+  p.eta_s = wait_s_ + *p.distance_left_m / std::max(0.1, route_->speed_mps);
+  return p;
+}
+
+}  // namespace roverd::nav

@@ -1,0 +1,134 @@
+#pragma once
+// Carries out a route, step by step.
+//
+//   Idle ──load──▶ Loaded ──start──▶ Running ──last step──▶ Finished ──start──▶ Running
+//                                    │  ▲  ▲
+//                       pause, a loss▼  │resume        stuck: Running ─▶ Blocked ──resume─▶ Running
+//                                   Paused             stop: any of these ─▶ Aborted ──start─▶
+//                                   Running
+//
+// interrupt() keeps Running but forgets what the tracker was doing: somebody else drives; go_on()
+// continues at the same place, driving back to it first if the robot was moved.
+// Control thread; allocates only when a new way begins.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.hpp"
+#include "base/snapshot.hpp"
+#include "nav/behave/params.hpp"
+#include "nav/behave/route.hpp"
+#include "nav/track/tracker.hpp"
+
+namespace roverd::nav {
+
+/// Where to begin.
+struct StartAt {
+  enum class From { First, Nearest, Item } from = From::First;
+  int item = 1;
+};
+
+/// Something that happened in a step.
+struct Notice {
+  enum class Kind { ItemReached, Finished, Lap, Blocked, Lost } kind = Kind::ItemReached;
+  int item = 0;
+  std::string detail;
+};
+
+/// Where the mission stands, in the words of the snapshot.
+struct Progress {
+  int current_item = 0;
+  std::optional<EnuPoint> target;
+  std::optional<double> cross_track_m;
+  std::optional<double> distance_left_m;
+  std::optional<double> eta_s;
+};
+
+/// The step a start would begin with; steps.size() if there is none.
+std::size_t first_step(const Route& route, const StartAt& start,
+                       std::optional<EnuPoint> here) noexcept;
+/// The first place a mission drives to from that step on. @param home for return_home.
+std::optional<EnuPoint> first_target(const Route& route, std::size_t step,
+                                     std::optional<EnuPoint> home) noexcept;
+
+class Executor {
+ public:
+  Executor(const PathParams& path, const BehaveParams& behave);
+
+  /// Allowed unless Running. Null: nothing is loaded.
+  void load(std::shared_ptr<const Route> route);
+  /// Conflict when nothing is loaded, it already runs, the item does not exist, or the first place
+  /// is too far away.
+  base::Result<void> start(const StartAt& at, EnuPoint here, std::optional<EnuPoint> home);
+  void pause(std::string reason);
+  void stop(std::string reason);
+  /// Conflict unless Paused or Blocked, or when the place to go on with is too far away.
+  base::Result<void> resume(EnuPoint here);
+  /// Goes on with another item. @param item from 1; 0: the next one.
+  base::Result<void> skip(int item);
+  void interrupt() noexcept;
+  /// After interrupt(). Pauses when the place is too far away.
+  void go_on(EnuPoint here);
+
+  /// One control step while Running. @param home for return_home where the mission has none.
+  TrackOutput step(const Vehicle& vehicle, double limit_mps, std::optional<EnuPoint> home,
+                   double dt_s);
+
+  base::ExecutionState state() const noexcept { return state_; }
+  const std::string& reason() const noexcept { return reason_; }
+  bool running() const noexcept { return state_ == base::ExecutionState::Running; }
+  bool interrupted() const noexcept { return interrupted_; }
+  TrackPhase phase() const noexcept { return tracker_.phase(); }
+  Progress progress() const;
+  /// What happened since the last call.
+  std::vector<Notice>& notices() noexcept { return notices_; }
+
+ private:
+  enum class Doing { Nothing, Path, Connector, Wait };
+
+  std::optional<EnuPoint> place_to_go_on() const noexcept;
+  void enter(const Vehicle& vehicle, std::optional<EnuPoint> home);
+  bool enter_step(const RouteStep& step, const Vehicle& vehicle, std::optional<EnuPoint> home);
+  bool enter_go(const RouteStep& step, const Vehicle& vehicle);
+  bool connect(EnuPoint to, const RouteNode* node, const Vehicle& vehicle);
+  bool at_end(const Vehicle& vehicle, std::optional<EnuPoint> home);
+  void turn_round();
+  void pass_nodes(const Vehicle& vehicle);
+  void leg_done();
+  void reached(const RouteStep& step);
+  void finish();
+  void watch(const Vehicle& vehicle, double dt_s);
+  void watch_stuck(const Vehicle& vehicle, double dt_s);
+  void begin_at(std::size_t step);
+  const RouteStep* step_now() const noexcept;
+
+  PathParams path_params_;
+  BehaveParams params_;
+  Tracker tracker_;
+  std::shared_ptr<const Route> route_;
+  const Course* course_ = nullptr;
+  Path connector_;
+  std::vector<int> jumps_left_;  ///< per jump; −1: not counted yet
+  std::vector<Notice> notices_;
+
+  base::ExecutionState state_ = base::ExecutionState::Idle;
+  std::string reason_;
+  Doing doing_ = Doing::Nothing;
+  std::size_t at_ = 0;                   ///< index of the step in hand
+  std::optional<std::size_t> standing_;  ///< node at which the robot is
+  std::optional<EnuPoint> rejoin_;       ///< the connector leads back to the path here
+  std::size_t leg_ = 0;                  ///< kept place on the path
+  double s_m_ = 0.0;
+  double wait_s_ = 0.0;
+  bool interrupted_ = false;
+  bool returning_ = false;  ///< the way home after the last step
+  bool drove_ = false;      ///< in this lap
+  double lost_s_ = 0.0;
+  double stuck_s_ = 0.0;
+  double pivot_s_ = 0.0;
+  Vehicle stuck_at_;
+};
+
+}  // namespace roverd::nav

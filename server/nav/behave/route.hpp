@@ -1,0 +1,61 @@
+#pragma once
+// A mission made ready to drive: steps in order, and the path through its waypoints. Immutable.
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/geo.hpp"
+#include "base/result.hpp"
+#include "mission/plan.hpp"
+#include "nav/track/path.hpp"
+
+namespace roverd::nav {
+
+enum class StepKind { Go, Wait, Home, Jump };
+
+/// One thing to do. `item` is the number people see (from 1).
+struct RouteStep {
+  StepKind kind = StepKind::Go;
+  int item = 0;
+  std::size_t node = 0;    ///< Go: index of the waypoint. Jump: how many jumps come before it
+  double seconds = 0.0;    ///< Wait: how long. Go: how long to hold there
+  std::size_t target = 0;  ///< Jump: index of the step to go on with
+  int times = 0;           ///< Jump: repetitions; 0 = for ever
+};
+
+/// A waypoint of the route, in metres.
+struct RouteNode {
+  EnuPoint at;
+  double speed_mps = 0.0;
+  double radius_m = 0.0;  ///< counts as reached within; 0: at its place on the path
+  bool reverse = false;
+  mission::Turn turn = mission::Turn::Auto;
+  int item = 0;
+};
+
+/// One direction through the mission.
+struct Course {
+  std::vector<RouteNode> nodes;
+  std::vector<RouteStep> steps;
+  Path path;  ///< through all nodes in order; vertex i is node i
+};
+
+struct Route {
+  Course forth;
+  Course back;  ///< empty unless at_end is back_and_forth
+  mission::AtEnd at_end = mission::AtEnd::Hold;
+  std::optional<EnuPoint> home;  ///< the mission's own; the driver of the route decides on it
+  double speed_mps = 0.0;        ///< default, for ways outside of the path
+  int items = 0;
+};
+
+/// Checks and lays out a plan. Items of types that this robot cannot do yet, positions farther than
+/// 10 km from the frame's origin, jumps to nowhere, a plan without a single waypoint: Invalid,
+/// every such item named in `fields` ("/items/3", from 0 as a JSON pointer counts). Pure; linear in
+/// the number of items.
+base::Result<Route> lay_route(const mission::Plan& plan, const base::LocalFrame& frame,
+                              const PathParams& params);
+
+}  // namespace roverd::nav

@@ -1,0 +1,140 @@
+#include "nav/estimate/ekf.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/angle.hpp"
+
+namespace roverd::nav {
+namespace {
+
+using base::rad_from_deg;
+
+// Densities per √s, see the header. Yaw: without a gyro the turn rate is the tracks', and slip
+// varies by some percent from moment to moment.
+constexpr double kPositionNoise_m = 0.02;
+constexpr double kPositionNoisePerTurn_m = 0.05;
+constexpr double kStandingNoise_m = 0.001;
+const double kYawNoise_rad = rad_from_deg(0.3);
+const double kYawNoisePerSpeed_rad = rad_from_deg(0.8);
+constexpr double kYawNoisePerTurn = 0.06;
+const double kBiasNoise_rad = rad_from_deg(0.7);
+const double kBiasNoisePivot_rad = rad_from_deg(6.0);
+constexpr double kScaleNoise = 0.006;
+constexpr double kYawScaleNoise = 0.02;
+constexpr double kPullNoise_1pm = 0.004;
+constexpr double kCoastNoise_m = 0.3;
+const double kCoastYawNoise_rad = rad_from_deg(15.0);
+
+void add_drift(Belief& b, const Drift& drift, double dt_s) noexcept {
+  const double keep = std::exp(-dt_s / drift.tau_s);
+  const double fresh = drift.sigma_m * drift.sigma_m * (1.0 - keep * keep);
+  for (const int i : {kDriftE, kDriftN}) {
+    b.x(i) *= keep;
+    b.P.row(i) *= keep;
+    b.P.col(i) *= keep;
+    b.P(i, i) += fresh;
+  }
+}
+
+void add_noise(Belief& b, int i, double density, double dt_s) noexcept {
+  b.P(i, i) += density * density * dt_s;
+}
+
+}  // namespace
+
+void predict(Belief& b, const Travel& t, const Drift& drift, bool standing) noexcept {
+  add_drift(b, drift, t.dt_s);
+  if (standing) {
+    add_noise(b, kEast, kStandingNoise_m, t.dt_s);
+    add_noise(b, kNorth, kStandingNoise_m, t.dt_s);
+    return;
+  }
+  const double k = b.x(kScale);
+  const double turned_rad = b.x(kYawScale) * t.turn_rad + b.x(kPull) * t.ahead_m;
+  const double middle_rad = b.x(kYaw) + 0.5 * turned_rad;
+  const double east = std::cos(middle_rad);
+  const double north = std::sin(middle_rad);
+
+  StateMatrix F = StateMatrix::Identity();
+  F(kEast, kYaw) = -k * t.ahead_m * north;
+  F(kNorth, kYaw) = k * t.ahead_m * east;
+  F(kEast, kScale) = t.ahead_m * east;
+  F(kNorth, kScale) = t.ahead_m * north;
+  F(kEast, kYawScale) = -0.5 * k * t.ahead_m * t.turn_rad * north;
+  F(kNorth, kYawScale) = 0.5 * k * t.ahead_m * t.turn_rad * east;
+  F(kYaw, kYawScale) = t.turn_rad;
+  F(kYaw, kPull) = t.ahead_m;
+
+  b.x(kEast) += k * t.ahead_m * east;
+  b.x(kNorth) += k * t.ahead_m * north;
+  b.x(kYaw) = base::wrap_rad(b.x(kYaw) + turned_rad);
+  const StateMatrix carried = F * b.P * F.transpose();
+  b.P = 0.5 * (carried + carried.transpose());
+
+  const double turn_rate = std::abs(t.turn_rad) / t.dt_s;
+  const double speed = std::abs(t.ahead_m) / t.dt_s;
+  const double place = kPositionNoise_m + kPositionNoisePerTurn_m * turn_rate;
+  add_noise(b, kEast, place, t.dt_s);
+  add_noise(b, kNorth, place, t.dt_s);
+  add_noise(b, kYaw, kYawNoise_rad + kYawNoisePerSpeed_rad * speed + kYawNoisePerTurn * turn_rate,
+            t.dt_s);
+  // Motor currents of a turn on the spot move a compass by many degrees.
+  const bool pivot = turn_rate > 0.3 && speed < 0.15;
+  add_noise(b, kBias, pivot ? kBiasNoisePivot_rad : kBiasNoise_rad, t.dt_s);
+  add_noise(b, kScale, kScaleNoise * std::min(1.0, speed), t.dt_s);
+  add_noise(b, kYawScale, kYawScaleNoise * std::min(1.0, turn_rate), t.dt_s);
+  add_noise(b, kPull, kPullNoise_1pm * std::min(1.0, speed), t.dt_s);
+}
+
+void predict_coasting(Belief& b, const Eigen::Vector2d& velocity_mps, double dt_s,
+                      const Drift& drift) noexcept {
+  add_drift(b, drift, dt_s);
+  b.x(kEast) += velocity_mps.x() * dt_s;
+  b.x(kNorth) += velocity_mps.y() * dt_s;
+  add_noise(b, kEast, kCoastNoise_m, dt_s);
+  add_noise(b, kNorth, kCoastNoise_m, dt_s);
+  add_noise(b, kYaw, kCoastYawNoise_rad, dt_s);
+  // An angle is never less certain than "anywhere".
+  b.P(kYaw, kYaw) = std::min(b.P(kYaw, kYaw), base::kPi * base::kPi);
+}
+
+template <int M>
+bool update(Belief& b, const Observation<M>& o, StateVector& change) noexcept {
+  change.setZero();
+  if (!o.innovation.allFinite() || !o.H.allFinite() || !o.R.allFinite()) return false;
+  const Eigen::Matrix<double, kStates, M> PHt = b.P * o.H.transpose();
+  const Eigen::Matrix<double, M, M> S = o.H * PHt + o.R;
+  const Eigen::Matrix<double, M, M> S_inverse = S.inverse();
+  const double nis = o.innovation.dot(S_inverse * o.innovation);
+  if (!std::isfinite(nis) || (o.gate > 0.0 && nis > o.gate)) return false;
+
+  const Eigen::Matrix<double, kStates, M> K = o.may_change.asDiagonal() * PHt * S_inverse;
+  const StateVector before = b.x;
+  b.x += K * o.innovation;
+  b.x(kYaw) = base::wrap_rad(b.x(kYaw));
+  b.x(kBias) = base::wrap_rad(b.x(kBias));
+  b.x(kScale) = std::clamp(b.x(kScale), 0.5, 1.2);
+  b.x(kYawScale) = std::clamp(b.x(kYawScale), 0.3, 1.5);
+  b.x(kPull) = std::clamp(b.x(kPull), -0.3, 0.3);
+  change = b.x - before;
+  change(kYaw) = base::wrap_rad(change(kYaw));
+
+  // Joseph form: right for any gain, so also for one with rows struck out.
+  const StateMatrix A = StateMatrix::Identity() - K * o.H;
+  const StateMatrix P = A * b.P * A.transpose() + K * o.R * K.transpose();
+  b.P = 0.5 * (P + P.transpose());
+  return true;
+}
+
+template bool update<1>(Belief&, const Observation<1>&, StateVector&) noexcept;
+template bool update<2>(Belief&, const Observation<2>&, StateVector&) noexcept;
+
+void reset_state(Belief& b, StateIndex i, double value, double sigma) noexcept {
+  b.x(i) = value;
+  b.P.row(i).setZero();
+  b.P.col(i).setZero();
+  b.P(i, i) = sigma * sigma;
+}
+
+}  // namespace roverd::nav

@@ -1,0 +1,87 @@
+#pragma once
+// The filter's arithmetic, without sensors or time: one belief, one prediction, one update.
+//
+//   x = [east_m, north_m, yaw_rad, compass_bias_rad, odometry_scale, yaw_scale, pull_1pm,
+//        drift_east_m, drift_north_m]ᵀ ,  P is 9×9 in that order.
+//
+// The position is the centre of rotation in the local frame. A compass shows yaw + compass_bias.
+// The tracks say v_odo and w_odo; the ground sees v = odometry_scale·v_odo and
+// w = yaw_scale·w_odo + pull·v_odo: a skid-steer turns less than its tracks claim, and bends to one
+// side where one track grips better. A receiver shows position + drift, drift being a slow
+// Gauss-Markov process that vanishes with RTK fixed.
+
+#include <Eigen/Dense>
+
+namespace roverd::nav {
+
+enum StateIndex : int {
+  kEast,
+  kNorth,
+  kYaw,
+  kBias,
+  kScale,
+  kYawScale,
+  kPull,
+  kDriftE,
+  kDriftN,
+  kStates
+};
+
+using StateVector = Eigen::Matrix<double, kStates, 1>;
+using StateMatrix = Eigen::Matrix<double, kStates, kStates>;
+
+struct Belief {
+  StateVector x = StateVector::Zero();
+  StateMatrix P = StateMatrix::Zero();
+};
+
+/// What the tracks did in one step, as they measure it.
+struct Travel {
+  double ahead_m = 0.0;
+  double turn_rad = 0.0;
+  double dt_s = 0.0;  ///< > 0
+};
+
+/// Slow drift of the position source.
+struct Drift {
+  double sigma_m = 0.0;
+  double tau_s = 60.0;
+};
+
+/// Advances the belief by one step of odometry. `standing`: nothing turns, so nothing but the drift
+/// gets less certain. Noise densities are those of a 1.3 m/s tracked vehicle without a gyro.
+void predict(Belief& b, const Travel& travel, const Drift& drift, bool standing) noexcept;
+
+/// Advances without odometry: moves by a velocity over ground (m/s east, north).
+void predict_coasting(Belief& b, const Eigen::Vector2d& velocity_mps, double dt_s,
+                      const Drift& drift) noexcept;
+
+/// y'S⁻¹y limits, 99.9 % of a chi-square with one and two degrees of freedom.
+inline constexpr double kGate1 = 10.8;
+inline constexpr double kGate2 = 13.8;
+
+/// One measurement of M values, linearised.
+template <int M>
+struct Observation {
+  Eigen::Matrix<double, M, 1> innovation;  ///< measured − expected, angles wrapped
+  Eigen::Matrix<double, M, kStates> H = Eigen::Matrix<double, M, kStates>::Zero();
+  Eigen::Matrix<double, M, M> R = Eigen::Matrix<double, M, M>::Zero();
+  double gate = 0.0;  ///< 0: none
+  /// 1 for a state this measurement may change, 0 for one it only has to consider.
+  StateVector may_change = StateVector::Ones();
+};
+
+/// Joseph form, symmetrised, yaw wrapped, scales bounded to [0.5, 1.2] and [0.3, 1.5], pull to
+/// ±0.3 /m.
+/// @param change what was added to x (for past states). @return false: outside the gate, or not
+/// finite; nothing changed.
+template <int M>
+bool update(Belief& b, const Observation<M>& o, StateVector& change) noexcept;
+
+extern template bool update<1>(Belief&, const Observation<1>&, StateVector&) noexcept;
+extern template bool update<2>(Belief&, const Observation<2>&, StateVector&) noexcept;
+
+/// Sets one state to a value of its own, uncorrelated with the others.
+void reset_state(Belief& b, StateIndex i, double value, double sigma) noexcept;
+
+}  // namespace roverd::nav

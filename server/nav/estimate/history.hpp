@@ -1,0 +1,77 @@
+#pragma once
+// The last second of states: a GNSS sentence tells of a moment about 0.1 s before its bytes arrive.
+
+#include <array>
+#include <cstddef>
+#include <optional>
+
+#include "base/angle.hpp"
+#include "base/time.hpp"
+#include "nav/estimate/ekf.hpp"
+
+namespace roverd::nav {
+
+struct Past {
+  base::Time stamp;
+  StateVector x = StateVector::Zero();
+  double ahead_m = 0.0;   ///< sum of all travel as the tracks measure it
+  double turn_rad = 0.0;  ///< sum of all turning, likewise, not wrapped
+};
+
+/// A ring of 64 states, about 1.3 s at 50 Hz. Oldest goes first. No allocation.
+class History {
+ public:
+  void clear() noexcept { size_ = 0; }
+  bool empty() const noexcept { return size_ == 0; }
+
+  void push(const Past& past) noexcept {
+    head_ = (head_ + 1) % ring_.size();
+    ring_[head_] = past;
+    if (size_ < ring_.size()) ++size_;
+  }
+
+  /// Interpolated; the oldest or newest one outside of what is kept. Empty if nothing is kept.
+  std::optional<Past> at(base::Time t) const noexcept {
+    if (size_ == 0) return std::nullopt;
+    const Past* later = &entry(0);
+    if (t >= later->stamp) return *later;
+    for (std::size_t i = 1; i < size_; ++i) {
+      const Past& earlier = entry(i);
+      if (earlier.stamp <= t) return between(earlier, *later, t);
+      later = &earlier;
+    }
+    return *later;
+  }
+
+  /// A correction of the present is one of the recent past as well.
+  void shift(const StateVector& change) noexcept {
+    for (std::size_t i = 0; i < size_; ++i) {
+      Past& past = ring_[(head_ + ring_.size() - i) % ring_.size()];
+      past.x += change;
+      past.x(kYaw) = base::wrap_rad(past.x(kYaw));
+    }
+  }
+
+ private:
+  const Past& entry(std::size_t back) const noexcept {
+    return ring_[(head_ + ring_.size() - back) % ring_.size()];
+  }
+
+  static Past between(const Past& a, const Past& b, base::Time t) noexcept {
+    const double span_s = base::seconds(b.stamp - a.stamp);
+    const double part = span_s > 0.0 ? base::seconds(t - a.stamp) / span_s : 1.0;
+    Past p;
+    p.stamp = t;
+    p.x = a.x + part * (b.x - a.x);
+    p.x(kYaw) = base::wrap_rad(a.x(kYaw) + part * base::angle_diff_rad(a.x(kYaw), b.x(kYaw)));
+    p.ahead_m = a.ahead_m + part * (b.ahead_m - a.ahead_m);
+    p.turn_rad = a.turn_rad + part * (b.turn_rad - a.turn_rad);
+    return p;
+  }
+
+  std::array<Past, 64> ring_{};
+  std::size_t head_ = 0;
+  std::size_t size_ = 0;
+};
+
+}  // namespace roverd::nav

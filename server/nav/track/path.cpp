@@ -1,0 +1,267 @@
+#include "nav/track/path.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/angle.hpp"
+
+namespace roverd::nav {
+namespace {
+
+using base::rad_from_deg;
+using mission::Turn;
+
+constexpr double kSame_m = 0.001;
+const double kStraight_rad = rad_from_deg(2.0);
+const double kArcLimit_rad = rad_from_deg(150.0);
+const double kAligned_rad = rad_from_deg(5.0);
+constexpr double kArcStep_m = 0.10;
+const double kArcStep_rad = rad_from_deg(8.0);
+
+double direction_rad(EnuPoint from, EnuPoint to) noexcept {
+  return std::atan2(to.north_m - from.north_m, to.east_m - from.east_m);
+}
+
+EnuPoint along(EnuPoint from, double yaw_rad, double by_m) noexcept {
+  return {from.east_m + by_m * std::cos(yaw_rad), from.north_m + by_m * std::sin(yaw_rad)};
+}
+
+struct Corner {
+  double deflection_rad = 0.0;  ///< left positive
+  bool stop = false;
+  bool pivot = false;     ///< the stop is for turning on the spot
+  double radius_m = 0.0;  ///< 0: not rounded
+  double tangent_m = 0.0;
+};
+
+/// The distinct vertices and where each given one went.
+struct Distinct {
+  std::vector<Vertex> vertices;
+  std::vector<std::size_t> of;
+};
+
+Distinct distinct(std::span<const Vertex> vertices) {
+  Distinct d;
+  d.vertices.reserve(vertices.size());
+  d.of.reserve(vertices.size());
+  for (const Vertex& v : vertices) {
+    if (d.vertices.empty() || base::distance_m(d.vertices.back().at, v.at) >= kSame_m) {
+      d.vertices.push_back(v);
+    } else {
+      d.vertices.back().stop |= v.stop;
+    }
+    d.of.push_back(d.vertices.size() - 1);
+  }
+  return d;
+}
+
+/// How far off the robot may point when it leaves a stop without turning on the spot first.
+double align_rad(const Vertex& at, bool pivot_corner, const PivotParams& p) noexcept {
+  if (pivot_corner || at.turn == Turn::Pivot) return kAligned_rad;
+  const bool arc = at.turn == Turn::Arc || at.turn == Turn::Through;
+  return arc ? kArcLimit_rad : rad_from_deg(p.angle_deg);
+}
+
+bool pivots(Turn turn, double angle_rad, const PivotParams& p) noexcept {
+  switch (turn) {
+    case Turn::Pivot:
+      return true;
+    case Turn::Auto:
+      return angle_rad > rad_from_deg(p.angle_deg);
+    case Turn::Arc:
+    case Turn::Through:
+      return angle_rad > kArcLimit_rad;
+  }
+  return true;
+}
+
+/// @param v three vertices in a row. Source of the fillet: R = d/(1/cos(θ/2) − 1), T = R·tan(θ/2).
+Corner corner(std::span<const Vertex, 3> v, const PivotParams& pivot) noexcept {
+  Corner c;
+  c.deflection_rad =
+      base::angle_diff_rad(direction_rad(v[0].at, v[1].at), direction_rad(v[1].at, v[2].at));
+  const double angle = std::abs(c.deflection_rad);
+  c.stop = v[1].stop || v[1].reverse != v[2].reverse;
+  if (c.stop || angle < kStraight_rad) return c;
+  c.stop = c.pivot = pivots(v[1].turn, angle, pivot);
+  if (c.stop) return c;
+  const double room_m =
+      0.45 * std::min(base::distance_m(v[0].at, v[1].at), base::distance_m(v[1].at, v[2].at));
+  const double half_tan = std::tan(0.5 * angle);
+  c.radius_m = v[1].deviation_m / (1.0 / std::cos(0.5 * angle) - 1.0);
+  c.tangent_m = c.radius_m * half_tan;
+  if (c.tangent_m > room_m) {
+    c.tangent_m = room_m;
+    c.radius_m = room_m / half_tan;
+  }
+  return c;
+}
+
+class Builder {
+ public:
+  Builder(const PathParams& params, Path& path) : params_(params), path_(path) {}
+
+  void add(EnuPoint at, double curvature_1pm, const Vertex& towards) {
+    PathPoint p;
+    p.at = at;
+    p.curvature_1pm = curvature_1pm;
+    p.segment_mps = item_mps(towards);
+    const double k = std::abs(curvature_1pm);
+    if (k > 1e-6) {
+      const SpeedParams& s = params_.speed;
+      const double bend = std::min(std::sqrt(s.lateral_mps2 / k), 0.7 * s.max_yaw_rate_radps / k);
+      if (bend < p.segment_mps) {
+        p.segment_mps = std::max(bend, s.min_mps);
+        p.segment_reason = SpeedReason::Bend;
+      }
+    }
+    if (!path_.points.empty()) {
+      p.s_m = path_.points.back().s_m + base::distance_m(path_.points.back().at, at);
+    }
+    path_.points.push_back(p);
+  }
+
+  /// The rounded corner at v, from tangent point to tangent point. @return s of its middle.
+  double round(const Vertex& v, const Vertex& next, double yaw_in, const Corner& c) {
+    const double turn = c.deflection_rad;
+    const double side = turn > 0.0 ? 1.0 : -1.0;
+    const EnuPoint begin = along(v.at, yaw_in, -c.tangent_m);
+    const EnuPoint centre = along(begin, yaw_in + side * base::kPi / 2.0, c.radius_m);
+    const double pieces = std::ceil(
+        std::max({2.0, std::abs(turn) / kArcStep_rad, std::abs(turn) * c.radius_m / kArcStep_m}));
+    const int n = 2 * static_cast<int>(std::min(200.0, std::ceil(pieces / 2.0)));
+    double middle_m = 0.0;
+    for (int i = 0; i <= n; ++i) {
+      const double angle = yaw_in - side * base::kPi / 2.0 + turn * i / n;
+      const bool last = i == n;
+      add(along(centre, angle, c.radius_m), last ? 0.0 : side / c.radius_m, i * 2 < n ? v : next);
+      if (i * 2 == n) middle_m = path_.points.back().s_m;
+    }
+    return middle_m;
+  }
+
+ private:
+  double item_mps(const Vertex& v) const noexcept {
+    const SpeedParams& s = params_.speed;
+    return std::clamp(v.speed_mps, s.min_mps, v.reverse ? s.reverse_max_mps : s.max_mps);
+  }
+
+  const PathParams& params_;
+  Path& path_;
+};
+
+/// Limits at the points, from the end backwards: v_i² = v_{i+1}² + 2·a·ds at most.
+void brake_in_time(Path& path, const SpeedParams& speed) {
+  for (const Leg& leg : path.legs) {
+    path.points[leg.last].speed_mps = 0.0;
+    path.points[leg.last].reason = SpeedReason::Approach;
+    for (std::size_t i = leg.last; i-- > leg.first;) {
+      PathPoint& p = path.points[i];
+      const PathPoint& next = path.points[i + 1];
+      const double ds = next.s_m - p.s_m;
+      const double brake = std::sqrt(next.speed_mps * next.speed_mps + 2.0 * speed.decel_mps2 * ds);
+      p.speed_mps = p.segment_mps;
+      p.reason = p.segment_reason;
+      if (i > leg.first && path.points[i - 1].segment_mps < p.speed_mps) {
+        p.speed_mps = path.points[i - 1].segment_mps;
+        p.reason = path.points[i - 1].segment_reason;
+      }
+      if (brake < p.speed_mps) {
+        p.speed_mps = brake;
+        p.reason = next.reason;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::string_view to_string(SpeedReason r) noexcept {
+  switch (r) {
+    case SpeedReason::Item:
+      return "item";
+    case SpeedReason::Bend:
+      return "bend";
+    case SpeedReason::Approach:
+      return "approach";
+    case SpeedReason::Creep:
+      return "heading_uncertain";
+    case SpeedReason::Heading:
+      return "heading_error";
+    case SpeedReason::Turn:
+      return "turn_rate";
+    case SpeedReason::Accel:
+      return "acceleration";
+    case SpeedReason::Slow:
+      return "position_uncertain";
+    case SpeedReason::Pivot:
+      return "pivot";
+    case SpeedReason::Stopping:
+      return "stopping";
+    case SpeedReason::Standing:
+      return "standing";
+  }
+  return "standing";
+}
+
+Path build_path(std::span<const Vertex> given, const PathParams& params) {
+  Path path;
+  const Distinct d = distinct(given);
+  const std::vector<Vertex>& v = d.vertices;
+  std::vector<double> passed_m(v.size(), 0.0);
+  if (v.size() >= 2) {
+    Builder builder(params, path);
+    path.points.reserve(v.size() * 2);
+    std::size_t leg_first = 0;
+    double align = align_rad(v[0], false, params.pivot);
+    builder.add(v[0].at, 0.0, v[1]);
+    for (std::size_t i = 1; i < v.size(); ++i) {
+      const bool last = i + 1 == v.size();
+      Corner c;
+      if (!last) c = corner(std::span<const Vertex, 3>(&v[i - 1], 3), params.pivot);
+      if (c.radius_m > 0.0) {
+        passed_m[i] = builder.round(v[i], v[i + 1], direction_rad(v[i - 1].at, v[i].at), c);
+        continue;
+      }
+      builder.add(v[i].at, 0.0, last ? v[i] : v[i + 1]);
+      passed_m[i] = path.points.back().s_m;
+      if (!last && !c.stop) continue;
+      const std::size_t end = path.points.size() - 1;
+      path.legs.push_back(
+          {leg_first, end, v[i].reverse, path.points[leg_first].s_m, path.points[end].s_m, align});
+      leg_first = end;
+      align = align_rad(v[i], c.pivot, params.pivot);
+    }
+    brake_in_time(path, params.speed);
+  }
+  path.vertex_m.reserve(given.size());
+  for (const std::size_t i : d.of) path.vertex_m.push_back(passed_m[i]);
+  return path;
+}
+
+std::size_t Path::leg_from(double s_m) const noexcept {
+  const auto next = std::upper_bound(legs.begin(), legs.end(), s_m + kSame_m,
+                                     [](double s, const Leg& leg) { return s < leg.end_m; });
+  return static_cast<std::size_t>(next - legs.begin());
+}
+
+std::size_t Path::segment_at(const Leg& leg, double s_m, std::size_t near) const noexcept {
+  std::size_t i = std::clamp(near, leg.first, leg.last - 1);
+  while (i > leg.first && points[i].s_m > s_m) --i;
+  while (i + 1 < leg.last && points[i + 1].s_m <= s_m) ++i;
+  return i;
+}
+
+EnuPoint Path::at(double s_m) const noexcept {
+  if (points.empty()) return {};
+  const auto next = std::upper_bound(points.begin(), points.end(), s_m,
+                                     [](double s, const PathPoint& p) { return s < p.s_m; });
+  if (next == points.begin()) return points.front().at;
+  if (next == points.end()) return points.back().at;
+  const PathPoint& a = *(next - 1);
+  const double part = (s_m - a.s_m) / (next->s_m - a.s_m);
+  return {a.at.east_m + part * (next->at.east_m - a.at.east_m),
+          a.at.north_m + part * (next->at.north_m - a.at.north_m)};
+}
+
+}  // namespace roverd::nav

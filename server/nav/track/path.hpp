@@ -1,0 +1,99 @@
+#pragma once
+// A path on the ground: a polyline with rounded corners, cut into legs that end in a stop.
+//
+//      v0 ────────╮            leg 0: v0 … v2 (v1 rounded, passed without stopping)
+//                 v1           at v2 the robot stops and turns on the spot
+//                 │
+//      v3 ◀────── v2           leg 1: v2 … v3
+//
+// Metres in one local frame. Immutable after build_path; sizes of 10⁵ points are fine: everything
+// that runs in the control loop looks at a window around its place.
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "base/geo.hpp"
+#include "mission/plan.hpp"
+#include "nav/track/params.hpp"
+
+namespace roverd::nav {
+
+using base::EnuPoint;
+
+/// What limits the speed at a place; the text names it to the operator.
+enum class SpeedReason {
+  Item,
+  Bend,
+  Approach,
+  Creep,
+  Heading,
+  Turn,
+  Accel,
+  Slow,
+  Pivot,
+  Stopping,
+  Standing
+};
+std::string_view to_string(SpeedReason r) noexcept;  // item bend approach creep heading …
+
+/// One corner of the wanted way.
+struct Vertex {
+  EnuPoint at;
+  double speed_mps = 0.5;  ///< of the way that leads here
+  bool reverse = false;    ///< the way that leads here is driven backwards
+  bool stop = false;       ///< stop here
+  mission::Turn turn = mission::Turn::Auto;
+  double deviation_m = 0.1;  ///< allowed between vertex and rounded corner
+};
+
+struct PathPoint {
+  EnuPoint at;
+  double s_m = 0.0;            ///< arc length from the path's start
+  double curvature_1pm = 0.0;  ///< of the segment that begins here; left positive
+  double segment_mps = 0.0;    ///< limit on the segment that begins here
+  double speed_mps = 0.0;      ///< limit at this point, so that all later ones can be kept
+  SpeedReason segment_reason = SpeedReason::Item;
+  SpeedReason reason = SpeedReason::Item;  ///< of speed_mps
+};
+
+/// Points [first, last]; first < last. Its end is a stop.
+struct Leg {
+  std::size_t first = 0;
+  std::size_t last = 0;
+  bool reverse = false;
+  double start_m = 0.0;
+  double end_m = 0.0;
+  double align_rad = 0.0;  ///< pointing away by more than this at its start, the robot pivots first
+};
+
+struct Path {
+  std::vector<PathPoint> points;
+  std::vector<Leg> legs;
+  std::vector<double> vertex_m;  ///< arc length at which each vertex counts as passed
+
+  double length_m() const noexcept { return points.empty() ? 0.0 : points.back().s_m; }
+  /// The leg that leads on from s; the one that ends there counts as done. legs.size() at the end.
+  std::size_t leg_from(double s_m) const noexcept;
+  /// Index of the segment's first point. @param near a guess.
+  std::size_t segment_at(const Leg& leg, double s_m, std::size_t near) const noexcept;
+  EnuPoint at(double s_m) const noexcept;
+};
+
+struct PathParams {
+  TrackParams track;
+  SpeedParams speed;
+  PivotParams pivot;
+};
+
+/// Vertices nearer than 1 mm to each other are one. Fewer than two different ones: a path without
+/// legs. A corner is
+///   straight on below 2°, rounded with radius d/(1/cos(θ/2) − 1) up to the pivot angle (always for
+///   turn arc and through, as far as the neighbours leave room), else a stop with a turn on the
+///   spot. An arc cannot reverse: above 150° it is a pivot as well.
+/// Speed limits: item, bends (√(a/κ) and 0.7·w/κ), and braking for what follows.
+/// Pure; any finite points. Time and memory linear.
+Path build_path(std::span<const Vertex> vertices, const PathParams& params);
+
+}  // namespace roverd::nav

@@ -1,0 +1,104 @@
+#pragma once
+// Drives one leg after another of a path: regulated pure pursuit with turns on the spot.
+//
+//   begin ─▶ Settle ──points away──▶ Pivot ──aligned──▶ Follow ──end near──▶ Stop ──standing──▶
+//   Done
+//              │                        ▲                 │ ▲                  │
+//              └──────── aligned ───────┼─────────────────┘ └── too short ─────┘
+//                                       └── Settle ◀── points far away ── Follow
+//
+// The pose is predicted over the actuation delay with the commands already sent, so that steering
+// does not weave. Progress along the path only grows and is looked for in a window around its
+// place: crossings and parallel lanes do not confuse it.
+// Sources: Coulter 1992 (pure pursuit); Macenski et al. 2023 (regulation of the speed).
+// Control thread; no allocation after construction.
+
+#include <array>
+#include <cstddef>
+
+#include "base/geo.hpp"
+#include "base/snapshot.hpp"
+#include "nav/track/path.hpp"
+#include "nav/track/rules.hpp"
+
+namespace roverd::nav {
+
+/// The vehicle as the tracker needs it.
+struct Vehicle {
+  EnuPoint at;
+  double yaw_rad = 0.0;
+  double yaw_sigma_rad = 0.0;
+  double speed_mps = 0.0;       ///< over ground, forward positive
+  double yaw_rate_radps = 0.0;  ///< over ground
+  double odometry_scale = 1.0;  ///< true over track speed
+  double yaw_scale = 1.0;       ///< true over track turn rate
+  double pull_1pm = 0.0;        ///< turn per metre on straight tracks
+};
+
+enum class TrackPhase { Idle, Settle, Pivot, Follow, Stop, Done };
+
+struct TrackOutput {
+  base::BodyTwist command;  ///< for the base: track speed and track turn rate
+  SpeedReason reason = SpeedReason::Standing;
+};
+
+class Tracker {
+ public:
+  explicit Tracker(const PathParams& params) : params_(params) {}
+
+  /// Starts or goes on with `leg` at arc length s. `path` must outlive the drive.
+  void begin(const Path& path, std::size_t leg, double s_m) noexcept;
+  void reset() noexcept;
+
+  /// One control step. @param limit_mps cuts the speed ("position_uncertain").
+  TrackOutput step(const Vehicle& vehicle, double limit_mps, double dt_s) noexcept;
+
+  TrackPhase phase() const noexcept { return phase_; }
+  const Path* path() const noexcept { return path_; }
+  std::size_t leg() const noexcept { return leg_; }
+  double s_m() const noexcept { return s_m_; }
+  /// Positive: the vehicle is left of the way it drives.
+  double cross_track_m() const noexcept { return cross_track_m_; }
+
+ private:
+  struct Projection {
+    double s_m = 0.0;
+    double cross_m = 0.0;
+    double tangent_rad = 0.0;
+    std::size_t segment = 0;
+  };
+
+  const Leg& leg_now() const noexcept { return path_->legs[leg_]; }
+  Projection project(EnuPoint at, double s_m, double ahead_m) const noexcept;
+  EnuPoint point_ahead(const Projection& from, double by_m) const noexcept;
+  Vehicle predict(const Vehicle& now, double dt_s) const noexcept;
+  double facing_error(const Vehicle& v, const Projection& on) const noexcept;
+  SpeedLimit profile(double s_m) const noexcept;
+
+  TrackOutput settle(const Vehicle& v, double dt_s) noexcept;
+  TrackOutput pivot(const Vehicle& v, double dt_s) noexcept;
+  TrackOutput follow(const Vehicle& v, double limit_mps, double dt_s) noexcept;
+  TrackOutput stop(const Vehicle& v, double dt_s) noexcept;
+  /// Ground twist to command, with saturation: steering first, speed gives way.
+  TrackOutput command(const Vehicle& v, double speed_mps, double rate_radps,
+                      SpeedReason reason) noexcept;
+  bool still(const Vehicle& v, double dt_s) noexcept;
+
+  PathParams params_;
+  const Path* path_ = nullptr;
+  std::size_t leg_ = 0;
+  std::size_t segment_ = 0;
+  double s_m_ = 0.0;
+  double cross_track_m_ = 0.0;
+  TrackPhase phase_ = TrackPhase::Idle;
+  double still_s_ = 0.0;
+  double astray_s_ = 0.0;
+  bool creeping_ = false;
+  double speed_mps_ = 0.0;   ///< last commanded over ground
+  double rate_radps_ = 0.0;  ///< likewise
+
+  std::array<base::BodyTwist, 64> sent_{};  ///< ground twists, newest at sent_at_
+  std::size_t sent_at_ = 0;
+};
+
+}  // namespace roverd::nav

@@ -1,0 +1,261 @@
+// What each command does, and when it is refused. Answers tell what the robot did.
+
+#include <cmath>
+
+#include "robot/impl.hpp"
+
+namespace roverd::robot {
+namespace {
+
+using base::Code;
+using base::ExecutionState;
+using base::Mode;
+using base::Severity;
+
+/// Stops are never too late: they are carried out whenever they arrive.
+bool is_stop(const Command& c) noexcept {
+  if (const auto* mode = std::get_if<SetMode>(&c)) return mode->mode == Mode::Hold;
+  if (const auto* drive = std::get_if<Drive>(&c)) return !drive->deadman;
+  return std::holds_alternative<Estop>(c) || std::holds_alternative<Disarm>(c) ||
+         std::holds_alternative<PauseMission>(c) || std::holds_alternative<StopMission>(c);
+}
+
+}  // namespace
+
+void Robot::Impl::take_commands() {
+  command_batch.clear();
+  if (outbox.full()) return;
+  commands.try_take(command_batch);
+  for (PendingCommand& pending : command_batch) {
+    if (now > pending.not_after && !is_stop(pending.command)) {
+      outbox.reply(std::move(pending.reply),
+                   base::fail(Code::Late, "the command arrived too late and was not carried out"));
+      continue;
+    }
+    auto result = std::visit([this](const auto& c) { return handle(c); }, pending.command);
+    outbox.reply(std::move(pending.reply), std::move(result));
+  }
+  command_batch.clear();
+}
+
+base::Result<void> Robot::Impl::handle(const Arm&) {
+  if (armed) return {};
+  std::vector<base::FieldError> failing;
+  for (const base::Check& c : checks) {
+    if (!c.ok && c.severity == Severity::Error) failing.push_back({"/checks/" + c.id, c.detail});
+  }
+  if (!failing.empty() || checks.empty()) {
+    std::string detail = "not armed: ";
+    detail += failing.empty() ? "the checks have not run yet" : failing.front().detail;
+    if (failing.size() > 1) {
+      detail += " (and " + std::to_string(failing.size() - 1) + " more)";
+    }
+    event(Severity::Warning, "arm_refused", detail);
+    return base::fail(Code::Conflict, std::move(detail), std::move(failing));
+  }
+  armed = true;
+  base_waited_since.reset();
+  manual.release();
+  if (mode == Mode::Auto) set_mode(Mode::Hold, "armed");
+  if (pose && !home_is_chosen) home = pose->global;
+  event(Severity::Info, "armed", "armed");
+  return {};
+}
+
+base::Result<void> Robot::Impl::handle(const Disarm&) {
+  disarm("by the operator");
+  return {};
+}
+
+void Robot::Impl::disarm(const std::string& why) {
+  executor.pause("disarmed");
+  manual.release();
+  if (mode == Mode::Auto) set_mode(Mode::Hold, "disarmed");
+  if (!armed) return;
+  armed = false;
+  base_waited_since.reset();
+  event(Severity::Info, "disarmed", "disarmed " + why);
+}
+
+base::Result<void> Robot::Impl::handle(const SetMode& c) {
+  switch (c.mode) {
+    case Mode::Hold:
+      executor.pause("mode HOLD");
+      set_mode(Mode::Hold, "by the operator");
+      return {};
+    case Mode::Manual:
+      if (estop) return base::fail(Code::Conflict, "the emergency stop is latched");
+      executor.pause("mode MANUAL");
+      set_mode(Mode::Manual, "by the operator");
+      return {};
+    case Mode::Auto: {
+      if (mode == Mode::Auto) return {};
+      const ExecutionState s = executor.state();
+      const bool waits = s == ExecutionState::Paused || s == ExecutionState::Blocked;
+      return waits ? resume() : start({});
+    }
+    case Mode::Guided:
+    case Mode::Rtl:
+    case Mode::SmartRtl:
+    case Mode::Follow:
+    case Mode::Steering:
+    case Mode::Acro:
+    case Mode::Simple:
+    case Mode::Dock:
+      break;
+  }
+  return base::fail(Code::Conflict, "mode " + std::string(base::to_string(c.mode)) +
+                                        " is not available yet: this robot knows HOLD, MANUAL "
+                                        "and AUTO");
+}
+
+void Robot::Impl::set_mode(Mode to, const std::string& why) {
+  if (mode == to) return;
+  mode = to;
+  manual.release();
+  event(Severity::Info, "mode", "mode " + std::string(base::to_string(to)) + ": " + why);
+}
+
+base::Result<void> Robot::Impl::handle(const Estop& c) {
+  latch_estop(c.who);
+  return {};
+}
+
+void Robot::Impl::latch_estop(const std::string& who) {
+  if (estop) return;
+  estop = true;
+  executor.pause("emergency stop");
+  manual.release();
+  if (armed) event(Severity::Warning, "disarmed", "disarmed by the emergency stop");
+  armed = false;
+  base_waited_since.reset();
+  set_mode(Mode::Hold, "emergency stop");
+  event(Severity::Error, "estop", "emergency stop" + (who.empty() ? "" : " by " + who));
+}
+
+base::Result<void> Robot::Impl::handle(const ResetEstop&) {
+  if (!estop) return {};
+  if (world.base && world.base->vehicle_state == base::VehicleState::Estop) {
+    return base::fail(Code::Conflict,
+                      "the emergency stop at the base is still pressed: release it first");
+  }
+  estop = false;
+  estop_asked.store(false);
+  set_mode(Mode::Hold, "emergency stop released");
+  event(Severity::Info, "estop_reset", "emergency stop released; disarmed");
+  return {};
+}
+
+base::Result<void> Robot::Impl::may_drive_mission() const {
+  if (estop) return base::fail(Code::Conflict, "the emergency stop is latched");
+  if (!mission) return base::fail(Code::Conflict, "no mission is loaded");
+  if (!armed) return base::fail(Code::Conflict, "the robot is not armed");
+  if (!pose) return base::fail(Code::Conflict, "the position is not known");
+  if (assessment.response >= Response::Hold) {
+    return base::fail(Code::Conflict, assessment.cause);
+  }
+  return {};
+}
+
+base::Result<void> Robot::Impl::start(const nav::StartAt& at) {
+  if (auto ok = may_drive_mission(); !ok) return ok;
+  if (auto ok = executor.start(at, pose->at, home_point()); !ok) return ok;
+  set_mode(Mode::Auto, "mission started");
+  event(Severity::Info, "mission_started",
+        "mission \"" + mission->copy.plan.name + "\" revision " +
+            std::to_string(mission->copy.revision) + " started");
+  return {};
+}
+
+base::Result<void> Robot::Impl::resume() {
+  if (auto ok = may_drive_mission(); !ok) return ok;
+  if (auto ok = executor.resume(pose->at); !ok) return ok;
+  set_mode(Mode::Auto, "mission resumed");
+  event(Severity::Info, "mission_resumed", "mission resumed");
+  return {};
+}
+
+base::Result<void> Robot::Impl::handle(const StartMission& c) {
+  if (mission && (c.mission_id != mission->copy.id || c.revision != mission->copy.revision)) {
+    return base::fail(Code::Conflict, "loaded is mission " + mission->copy.id + " revision " +
+                                          std::to_string(mission->copy.revision) + ", not " +
+                                          c.mission_id + " revision " + std::to_string(c.revision));
+  }
+  return start(start_at(c));
+}
+
+base::Result<void> Robot::Impl::handle(const PauseMission&) {
+  if (!executor.running()) {
+    return base::fail(Code::Conflict,
+                      "no mission runs: it is " + std::string(base::to_string(executor.state())));
+  }
+  hold("paused by the operator");
+  event(Severity::Info, "mission_paused", "mission paused");
+  return {};
+}
+
+base::Result<void> Robot::Impl::handle(const ResumeMission&) {
+  return resume();
+}
+
+base::Result<void> Robot::Impl::handle(const StopMission&) {
+  const ExecutionState s = executor.state();
+  if (s != ExecutionState::Running && s != ExecutionState::Paused && s != ExecutionState::Blocked) {
+    return base::fail(Code::Conflict,
+                      "there is nothing to stop: the mission is " + std::string(to_string(s)));
+  }
+  executor.stop("stopped by the operator");
+  if (mode == Mode::Auto) set_mode(Mode::Hold, "mission stopped");
+  event(Severity::Info, "mission_aborted", "mission stopped by the operator");
+  return {};
+}
+
+base::Result<void> Robot::Impl::handle(const SkipItem& c) {
+  auto result = executor.skip(c.item);
+  if (result) event(Severity::Info, "skip", "skipped to another item");
+  return result;
+}
+
+base::Result<void> Robot::Impl::handle(const SetHome& c) {
+  if (c.at && !base::is_valid(*c.at)) {
+    return base::fail(Code::Invalid, "home is not a position on earth",
+                      {{"/lat", "or /lon out of range"}});
+  }
+  if (!c.at && !pose) return base::fail(Code::Conflict, "the position is not known");
+  home = c.at ? *c.at : pose->global;
+  home_is_chosen = true;
+  event(Severity::Info, "home", "home was set");
+  return {};
+}
+
+base::Result<void> Robot::Impl::handle(const Drive& c) {
+  const bool finite = std::isfinite(c.twist.linear_mps) && std::isfinite(c.twist.angular_radps);
+  if (!finite) return base::fail(Code::Invalid, "speed and turn rate must be finite");
+  if (mode == Mode::Manual) manual.drive(c.twist, c.deadman, now);
+  return {};
+}
+
+base::Result<void> Robot::Impl::handle(const LoadMission& c) {
+  if (!c.mission) return base::fail(Code::Invalid, "there is no mission to load");
+  if (executor.running()) {
+    return base::fail(Code::Conflict, "a mission runs: pause or stop it first");
+  }
+  if (!estimator.frame()) estimator.use_frame(c.mission->frame);
+  if (estimator.frame()->id() != c.mission->frame.id()) {
+    return base::fail(Code::Conflict, "the robot's map began meanwhile: load once more");
+  }
+  mission = c.mission;
+  mission_unpublished = true;
+  executor.load(std::shared_ptr<const nav::Route>(mission, &mission->route));
+  if (mode == Mode::Auto) set_mode(Mode::Hold, "another mission was loaded");
+  if (mission->copy.plan.home) {
+    home = mission->copy.plan.home->at;
+    home_is_chosen = true;
+  }
+  event(Severity::Info, "mission_loaded",
+        "mission \"" + mission->copy.plan.name + "\" revision " +
+            std::to_string(mission->copy.revision) + " loaded");
+  return {};
+}
+
+}  // namespace roverd::robot

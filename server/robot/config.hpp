@@ -1,0 +1,104 @@
+#pragma once
+// Everything the robot may be told, section by section. sections() lists the structs under the
+// names they have in the configuration file; each struct lists its fields (base/params.hpp).
+
+#include "nav/behave/params.hpp"
+#include "nav/estimate/params.hpp"
+#include "nav/track/params.hpp"
+
+namespace roverd::robot {
+
+/// Driving by hand over the network. Section [robot.manual].
+struct ManualParams {
+  double max_mps = 1.0;
+  double max_yaw_rate_radps = 0.75;
+  double accel_mps2 = 0.8;
+  double yaw_accel_radps2 = 2.0;
+  double timeout_s = 0.5;
+};
+
+template <class V>
+void fields(V& v, ManualParams& p) {
+  v("max_mps", p.max_mps, 0.05, 3.0, "commands by hand are cut to this speed");
+  v("max_yaw_rate_radps", p.max_yaw_rate_radps, 0.05, 3.0, "and to this turn rate");
+  v("accel_mps2", p.accel_mps2, 0.1, 5.0, "speeding up; stopping is at once");
+  v("yaw_accel_radps2", p.yaw_accel_radps2, 0.1, 20.0, "change of the turn rate");
+  v("timeout_s", p.timeout_s, 0.1, 0.5, "without a newer command the robot stops");
+}
+
+/// What must hold while moving. Section [robot.safety].
+struct SafetyParams {
+  double base_timeout_s = 0.4;
+  double status_timeout_s = 1.5;
+  double base_accept_s = 3.0;
+  bool radio_required = true;
+  double radio_timeout_s = 0.5;
+  double gnss_slow_s = 2.0;
+  double gnss_hold_s = 6.0;
+  double sigma_slow_m = 2.0;
+  double sigma_hold_m = 3.0;
+  double sigma_hold_s = 2.0;
+  double battery_warn_pct = 20.0;
+  double battery_stop_pct = 8.0;
+};
+
+template <class V>
+void fields(V& v, SafetyParams& p) {
+  v("base_timeout_s", p.base_timeout_s, 0.1, 2.0, "no word from the base for so long: stop");
+  v("status_timeout_s", p.status_timeout_s, 0.3, 10.0, "no state of the base for so long: stop");
+  v("base_accept_s", p.base_accept_s, 0.5, 30.0,
+    "a base that does not take commands for so long while armed: hold");
+  v("radio_required", p.radio_required,
+    "a transmitter must be heard: it is the operator's way to take over");
+  v("radio_timeout_s", p.radio_timeout_s, 0.2, 5.0,
+    "transmitter silent, or its counter frozen, for so long: stop");
+  v("gnss_slow_s", p.gnss_slow_s, 0.5, 60.0, "no usable fix for so long: creep");
+  v("gnss_hold_s", p.gnss_hold_s, 1.0, 600.0, "no usable fix for so long: hold");
+  v("sigma_slow_m", p.sigma_slow_m, 0.02, 50.0, "position less certain than this: creep");
+  v("sigma_hold_m", p.sigma_hold_m, 0.05, 50.0, "position less certain than this: hold");
+  v("sigma_hold_s", p.sigma_hold_s, 0.1, 60.0, "for so long");
+  v("battery_warn_pct", p.battery_warn_pct, 0.0, 100.0, "charge below this: warn");
+  v("battery_stop_pct", p.battery_stop_pct, 0.0, 100.0, "charge below this: hold");
+}
+
+/// What arming asks for. Section [robot.arming].
+struct ArmingParams {
+  double healthy_s = 5.0;
+  int satellites_min = 6;
+  double sigma_max_m = 2.0;
+  double heading_sigma_deg = 10.0;
+};
+
+template <class V>
+void fields(V& v, ArmingParams& p) {
+  v("healthy_s", p.healthy_s, 0.0, 120.0, "a usable fix must have lasted so long");
+  v("satellites_min", p.satellites_min, 0, 30, "satellites in use, where the receiver tells");
+  v("sigma_max_m", p.sigma_max_m, 0.02, 50.0, "the position must be this certain");
+  v("heading_sigma_deg", p.heading_sigma_deg, 0.5, 90.0,
+    "less certain of the heading, arming warns that the robot will creep at first");
+}
+
+struct Config {
+  nav::EstimateParams estimate;
+  nav::TrackParams track;
+  nav::SpeedParams speed;
+  nav::PivotParams pivot;
+  nav::BehaveParams behave;
+  ManualParams manual;
+  SafetyParams safety;
+  ArmingParams arming;
+};
+
+template <class V>
+void sections(V& v, Config& c) {
+  v("nav.estimate", c.estimate);
+  v("nav.track", c.track);
+  v("nav.speed", c.speed);
+  v("nav.pivot", c.pivot);
+  v("nav.behave", c.behave);
+  v("robot.manual", c.manual);
+  v("robot.safety", c.safety);
+  v("robot.arming", c.arming);
+}
+
+}  // namespace roverd::robot

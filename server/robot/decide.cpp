@@ -1,0 +1,203 @@
+// From facts to a command: judge what is wrong, let the one with the right to drive drive.
+
+#include <cmath>
+
+#include "base/angle.hpp"
+#include "robot/impl.hpp"
+
+namespace roverd::robot {
+namespace {
+
+using base::Driver;
+using base::ExecutionState;
+using base::Mode;
+using base::Severity;
+
+constexpr double kNoLimit_mps = 1e9;
+
+}  // namespace
+
+Facts Robot::Impl::facts() const {
+  return {.world = world,
+          .pose = pose,
+          .last_position = estimator.last_position(),
+          .armed = armed,
+          .estop = estop,
+          .autonomous = mode == Mode::Auto && executor.running(),
+          .base_waited_since = base_waited_since,
+          .sigma_bad_since = sigma_bad_since};
+}
+
+void Robot::Impl::judge() {
+  const SafetyParams& p = config.safety;
+  const bool radio = radio_drives(world, p, now);
+  const bool waits = armed && !radio && !base_listens(world);
+  if (!waits) base_waited_since.reset();
+  if (waits && !base_waited_since) base_waited_since = now;
+  const bool bad = pose && pose->horizontal_sigma_m > p.sigma_hold_m;
+  if (!bad) sigma_bad_since.reset();
+  if (bad && !sigma_bad_since) sigma_bad_since = now;
+
+  assessment = assess(facts(), p, now);
+  if (assessment.base_estop) latch_estop("the button at the base");
+  if (assessment.response >= Response::Hold && mode != Mode::Hold) {
+    const bool was_auto = mode == Mode::Auto;
+    hold(assessment.cause);
+    event(Severity::Warning, was_auto ? "mission_paused" : "stopped", assessment.cause);
+  }
+  checks = arming_checks(facts(), p, config.arming, mission != nullptr, now);
+}
+
+void Robot::Impl::hold(const std::string& why) {
+  executor.pause(why);
+  set_mode(Mode::Hold, why);
+}
+
+base::DriveCommand Robot::Impl::decide() {
+  driver = Driver::None;
+  speed_reason = "standing";
+  const bool radio = radio_drives(world, config.safety, now);
+  if (radio != radio_had_control) {
+    radio_had_control = radio;
+    event(Severity::Info, radio ? "radio_takeover" : "radio_released",
+          radio ? "the radio took control" : "the radio gave control back");
+  }
+  if (radio || !base_listens(world)) {
+    if (executor.running() && !executor.interrupted()) executor.interrupt();
+    manual.release();
+  }
+  if (radio && !estop) driver = Driver::Radio;
+  if (estop || !armed || radio) return {};
+  if (base_lost(world, config.safety, now)) return {};
+  if (!base_listens(world)) return {{}, true};
+  switch (mode) {
+    case Mode::Manual:
+      return drive_by_hand();
+    case Mode::Auto:
+      return drive_mission();
+    case Mode::Hold:
+    case Mode::Guided:
+    case Mode::Rtl:
+    case Mode::SmartRtl:
+    case Mode::Follow:
+    case Mode::Steering:
+    case Mode::Acro:
+    case Mode::Simple:
+    case Mode::Dock:
+      break;
+  }
+  return {{}, true};
+}
+
+base::DriveCommand Robot::Impl::drive_by_hand() {
+  const base::BodyTwist twist = manual.step(now, dt_s);
+  switch (manual.phase()) {
+    case Manual::Phase::Free:
+      break;
+    case Manual::Phase::Held:
+      driver = Driver::Teleop;
+      speed_reason = "manual";
+      break;
+    case Manual::Phase::Stale:
+      speed_reason = "teleop_stale";
+      assessment.conditions.push_back(
+          {"teleop_stale", "the commands by hand stopped coming: let go once to drive on"});
+      break;
+  }
+  return {twist, true};
+}
+
+base::DriveCommand Robot::Impl::drive_mission() {
+  if (!executor.running() || !pose) return {{}, true};
+  driver = Driver::Autonomy;
+  executor.go_on(pose->at);
+  const nav::Belief& b = estimator.belief();
+  const nav::Vehicle vehicle{pose->at,
+                             pose->yaw_rad,
+                             pose->yaw_sigma_rad,
+                             pose->speed_mps,
+                             pose->yaw_rate_radps,
+                             b.x(nav::kScale),
+                             b.x(nav::kYawScale),
+                             b.x(nav::kPull)};
+  const double limit =
+      assessment.response >= Response::Slow ? config.speed.creep_mps : kNoLimit_mps;
+  const nav::TrackOutput out = executor.step(vehicle, limit, home_point(), dt_s);
+  speed_reason = std::string(nav::to_string(out.reason));
+  tell_notices();
+  if (!executor.running()) {
+    driver = Driver::None;
+    return {{}, true};
+  }
+  return {out.command, true};
+}
+
+void Robot::Impl::tell_notices() {
+  for (nav::Notice& n : executor.notices()) {
+    switch (n.kind) {
+      case nav::Notice::Kind::ItemReached:
+        event(Severity::Info, "item_reached", "item " + std::to_string(n.item) + " reached");
+        break;
+      case nav::Notice::Kind::Finished:
+        event(Severity::Info, "mission_finished",
+              "mission \"" + mission->copy.plan.name + "\" finished");
+        break;
+      case nav::Notice::Kind::Lap:
+        event(Severity::Info, "mission_lap", "the mission begins again");
+        break;
+      case nav::Notice::Kind::Blocked:
+        event(Severity::Error, "blocked", std::move(n.detail));
+        break;
+      case nav::Notice::Kind::Lost:
+        event(Severity::Error, "cross_track_lost", std::move(n.detail));
+        break;
+    }
+  }
+  executor.notices().clear();
+  if (mode == Mode::Auto && !executor.running()) {
+    const bool finished = executor.state() == ExecutionState::Finished;
+    if (executor.state() == ExecutionState::Aborted) {
+      event(Severity::Error, "mission_aborted", executor.reason());
+    }
+    set_mode(Mode::Hold, finished ? "mission finished" : executor.reason());
+  }
+}
+
+std::optional<base::EnuPoint> Robot::Impl::home_point() const {
+  if (!home || !estimator.frame()) return std::nullopt;
+  return estimator.frame()->to_local(*home);
+}
+
+/// Changes that an operator wants to find later.
+void Robot::Impl::watch_changes() {
+  const std::uint64_t resets = estimator.health().resets;
+  if (resets != resets_seen) {
+    resets_seen = resets;
+    event(Severity::Warning, "estimate_reset",
+          "position or heading was set anew: the sensors contradicted it for too long");
+  }
+  const base::FixType fix = world.gnss ? world.gnss->fix : base::FixType::None;
+  if (fix != fix_seen) {
+    fix_seen = fix;
+    fix_seen_since = now;
+  }
+  if (fix_seen != fix_told && now - fix_seen_since >= std::chrono::seconds(1)) {
+    const bool worse = fix_seen < fix_told;
+    fix_told = fix_seen;
+    event(worse ? Severity::Warning : Severity::Info, "gnss_fix",
+          "GNSS fix is " + std::string(base::to_string(fix_seen)));
+  }
+}
+
+/// The first fix may lie out of reach of the frame that a mission brought: a new frame began then.
+void Robot::Impl::watch_frame() {
+  if (!home && pose) home = pose->global;
+  if (!mission || !estimator.frame() || estimator.frame()->id() == mission->frame.id()) return;
+  executor.load(nullptr);
+  event(Severity::Warning, "mission_unloaded",
+        "the mission lies more than 10 km away from the robot and was unloaded");
+  mission.reset();
+  mission_unpublished = true;
+}
+
+}  // namespace roverd::robot

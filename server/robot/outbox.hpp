@@ -1,0 +1,62 @@
+#pragma once
+// What waits to leave the control thread. Nothing is lost because a reader holds a lock for a
+// moment; what does not fit stays for the next tick. Replies are as many as commands were taken;
+// events beyond 256 drop the oldest, and that is counted.
+
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <utility>
+
+#include "base/inbox.hpp"
+#include "base/snapshot.hpp"
+#include "robot/robot.hpp"
+
+namespace roverd::robot {
+
+class Outbox {
+ public:
+  static constexpr std::size_t kEvents = 256;
+  /// So many answers waiting: nobody drains them; no more commands are taken.
+  static constexpr std::size_t kReplies = 256;
+
+  base::Inbox<PendingReply> replies{1024};
+  base::Inbox<base::Event> events{1024};
+
+  void reply(Reply to, base::Result<void> result) {
+    if (to) waiting_replies_.push_back({std::move(to), std::move(result)});
+  }
+
+  void event(base::WallTime wall, base::Severity level, const char* kind, std::string detail) {
+    if (waiting_events_.size() >= kEvents) {
+      waiting_events_.pop_front();
+      ++dropped_;
+    }
+    waiting_events_.push_back({wall, level, kind, std::move(detail)});
+  }
+
+  bool full() const noexcept { return waiting_replies_.size() >= kReplies; }
+
+  /// @return true if something was handed over.
+  bool flush() {
+    bool any = false;
+    while (!waiting_replies_.empty() && replies.try_offer(waiting_replies_.front())) {
+      waiting_replies_.pop_front();
+      any = true;
+    }
+    while (!waiting_events_.empty() && events.try_offer(waiting_events_.front())) {
+      waiting_events_.pop_front();
+      any = true;
+    }
+    return any;
+  }
+
+  std::uint64_t dropped() const noexcept { return dropped_; }
+
+ private:
+  std::deque<PendingReply> waiting_replies_;
+  std::deque<base::Event> waiting_events_;
+  std::uint64_t dropped_ = 0;
+};
+
+}  // namespace roverd::robot

@@ -1,0 +1,71 @@
+// The snapshot: everything the robot says of itself at one tick.
+
+#include <algorithm>
+
+#include "robot/impl.hpp"
+
+namespace roverd::robot {
+
+base::MissionProgress Robot::Impl::progress() const {
+  base::MissionProgress p;
+  if (!mission) return p;
+  p.mission_id = mission->copy.id;
+  p.revision = mission->copy.revision;
+  p.name = mission->copy.plan.name;
+  p.state = executor.state();
+  p.reason = executor.reason();
+  if (executor.running() && driver == base::Driver::Radio) {
+    p.reason = "the radio drives; the mission goes on when it gives control back";
+  }
+  p.items = static_cast<int>(mission->copy.plan.items.size());
+  const nav::Progress at = executor.progress();
+  p.current_item = at.current_item;
+  p.cross_track_m = at.cross_track_m;
+  p.distance_left_m = at.distance_left_m;
+  p.eta_s = at.eta_s;
+  if (pose && at.target && estimator.frame()) {
+    const auto to = base::distance_bearing(pose->global, estimator.frame()->to_global(*at.target));
+    p.distance_to_item_m = to.distance_m;
+    p.bearing_to_item_deg = to.bearing_deg;
+  }
+  return p;
+}
+
+bool Robot::Impl::publish() {
+  auto s = std::make_shared<base::Snapshot>();
+  s->now = now;
+  s->wall = wall;
+  s->tick = loop.ticks;
+  s->mode = mode;
+  s->armed = armed;
+  s->estop = estop;
+  s->control = driver;
+  s->speed_reason = speed_reason;
+  s->pose = pose;
+  s->frame = estimator.frame();
+  s->home = home;
+  s->gnss = world.gnss;
+  s->gnss_velocity = world.gnss_velocity;
+  s->base = world.base;
+  s->motion = world.motion;
+  s->battery = world.battery;
+  s->radio = world.radio;
+  s->drivers = world.drivers;
+  s->mission = progress();
+  s->command = sent;
+  s->safety = std::move(assessment.conditions);
+  s->checks = checks;
+  s->ready_to_arm = std::none_of(checks.begin(), checks.end(), [](const base::Check& c) {
+    return !c.ok && c.severity == base::Severity::Error;
+  });
+  s->estimator = estimator.health();
+  s->loop = loop;
+  bool all = true;
+  if (mission_unpublished) {
+    mission_unpublished = !loaded.publish(mission);
+    all = !mission_unpublished;
+  }
+  return snapshot.publish(std::move(s)) && all;
+}
+
+}  // namespace roverd::robot

@@ -1,0 +1,192 @@
+#include "robot/robot.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "robot/impl.hpp"
+
+namespace roverd::robot {
+
+using base::Code;
+using base::Severity;
+
+Robot::Impl::Impl(Config c)
+    : config(c),
+      estimator(config.estimate),
+      executor({config.track, config.speed, config.pivot}, config.behave),
+      manual(config.manual) {
+  measurement_batch.reserve(256);
+  command_batch.reserve(64);
+}
+
+Robot::Robot(Config config) : impl_(std::make_unique<Impl>(std::move(config))) {}
+Robot::~Robot() = default;
+
+base::Inbox<base::Measurement>& Robot::measurements() noexcept {
+  return impl_->measurements;
+}
+base::Inbox<PendingReply>& Robot::replies() noexcept {
+  return impl_->outbox.replies;
+}
+base::Inbox<base::Event>& Robot::events() noexcept {
+  return impl_->outbox.events;
+}
+std::shared_ptr<const base::Snapshot> Robot::snapshot() const {
+  return impl_->snapshot.get();
+}
+
+std::shared_ptr<const MissionCopy> Robot::loaded() const {
+  const auto mission = impl_->loaded.get();
+  if (!mission) return nullptr;
+  return {mission, &mission->copy};
+}
+
+bool Robot::request(Command command, Time not_after, Reply reply) {
+  // The stop itself never waits for room in a queue.
+  if (std::holds_alternative<Estop>(command)) impl_->estop_asked.store(true);
+  return impl_->commands.offer({std::move(command), not_after, std::move(reply)});
+}
+
+nav::StartAt start_at(const StartMission& c) noexcept {
+  switch (c.from) {
+    case StartMission::From::First:
+      return {nav::StartAt::From::First, 1};
+    case StartMission::From::Nearest:
+      return {nav::StartAt::From::Nearest, 1};
+    case StartMission::From::Item:
+      return {nav::StartAt::From::Item, c.item};
+  }
+  return {};
+}
+
+base::Result<std::shared_ptr<const CompiledMission>> Robot::compile(MissionCopy copy) const {
+  const auto state = impl_->snapshot.get();
+  std::optional<base::LocalFrame> frame;
+  if (state) frame = state->frame;
+  for (std::size_t i = 0; !frame && i < copy.plan.items.size(); ++i) {
+    const auto* first = std::get_if<mission::Waypoint>(&copy.plan.items[i]);
+    if (first != nullptr && base::is_valid(first->at)) {
+      frame.emplace(impl_->frame_ids.fetch_add(1), first->at);
+    }
+  }
+  if (!frame) {
+    return base::fail(Code::Invalid, "the mission has no waypoint",
+                      {{"/items", "the mission has no waypoint"}});
+  }
+  const Config& c = impl_->config;
+  auto route = nav::lay_route(copy.plan, *frame, {c.track, c.speed, c.pivot});
+  if (!route) return tl::unexpected(std::move(route.error()));
+  return std::make_shared<const CompiledMission>(
+      CompiledMission{std::move(copy), *frame, std::move(*route)});
+}
+
+base::Result<Preview> Robot::preview(const StartMission& start) const {
+  const auto mission = impl_->loaded.get();
+  if (!mission) return base::fail(Code::NotFound, "no mission is loaded");
+  const auto state = impl_->snapshot.get();
+  const nav::Route& route = mission->route;
+  std::optional<base::EnuPoint> here;
+  std::optional<base::EnuPoint> home;
+  if (state && state->pose) here = state->pose->at;
+  if (state && state->home) home = mission->frame.to_local(*state->home);
+  const std::size_t step = nav::first_step(route, start_at(start), here);
+  if (step >= route.forth.steps.size()) {
+    return base::fail(Code::Conflict, "item " + std::to_string(start.item) +
+                                          " has nothing to drive to; the mission has " +
+                                          std::to_string(route.items) + " items");
+  }
+  Preview p;
+  p.mission_id = mission->copy.id;
+  p.revision = mission->copy.revision;
+  p.name = mission->copy.plan.name;
+  p.first_item = route.forth.steps[step].item;
+  p.speed_mps = route.speed_mps;
+  p.at_end = route.at_end;
+  for (std::size_t i = step; i < route.forth.steps.size(); ++i) {
+    if (route.forth.steps[i].kind != nav::StepKind::Go) continue;
+    p.speed_mps = route.forth.nodes[route.forth.steps[i].node].speed_mps;
+    break;
+  }
+  p.speed_mps = std::min(p.speed_mps, impl_->config.speed.max_mps);
+  if (const auto target = nav::first_target(route, step, home)) {
+    p.first_target = mission->frame.to_global(*target);
+    if (state && state->pose) {
+      const auto to = base::distance_bearing(state->pose->global, *p.first_target);
+      p.distance_m = to.distance_m;
+      p.bearing_deg = to.bearing_deg;
+    }
+  }
+  return p;
+}
+
+void Robot::Impl::begin(Time t, base::WallTime w, base::Duration lateness) {
+  now = t;
+  wall = w;
+  dt_s = last_tick ? std::clamp(base::seconds(t - *last_tick), 0.001, 0.1) : 0.02;
+  last_tick = t;
+  ++loop.ticks;
+  loop.last_lateness_s = base::seconds(lateness);
+  if (lateness > std::chrono::milliseconds(20)) ++loop.late_ticks;
+  const auto us = std::max<std::int64_t>(0, lateness.count() / 1000);
+  const auto bin = static_cast<std::size_t>(std::bit_width(static_cast<std::uint64_t>(us)));
+  ++loop.lateness_log2_us[std::min(bin, loop.lateness_log2_us.size() - 1)];
+}
+
+void Robot::Impl::take_estop() {
+  if (estop_asked.exchange(false)) latch_estop("the operator");
+}
+
+void Robot::Impl::take_measurements() {
+  measurement_batch.clear();
+  measurements.try_take(measurement_batch);
+  std::stable_sort(measurement_batch.begin(), measurement_batch.end(),
+                   [](const base::Measurement& a, const base::Measurement& b) {
+                     return base::stamp_of(a) < base::stamp_of(b);
+                   });
+  for (base::Measurement& m : measurement_batch) {
+    estimator.take(m, now);
+    if (const auto* d = std::get_if<base::DriverStatus>(&m)) {
+      const auto known = std::find_if(world.drivers.begin(), world.drivers.end(),
+                                      [&](const auto& k) { return k.name == d->name; });
+      const bool changed = known == world.drivers.end() || known->phase != d->phase;
+      if (changed && (d->phase == base::DriverPhase::Up || d->phase == base::DriverPhase::Faulty)) {
+        const bool up = d->phase == base::DriverPhase::Up;
+        event(up ? Severity::Info : Severity::Warning, up ? "driver_up" : "driver_down",
+              d->name + (up ? " is up" : ": " + d->reason));
+      }
+    }
+    world.take(std::move(m));
+  }
+  measurement_batch.clear();
+  world.forget_stale(now);
+  estimator.advance(now);
+  pose = estimator.pose(now);
+}
+
+void Robot::tick(Time now, base::WallTime wall, base::Duration lateness) noexcept {
+  Impl& r = *impl_;
+  try {
+    r.begin(now, wall, lateness);
+    r.take_estop();
+    r.take_commands();
+    r.take_measurements();
+    r.watch_changes();
+    r.watch_frame();
+    r.judge();
+    r.sent = r.decide();
+    if (send) send(r.sent, now);
+    if (r.publish() && r.outbox.flush() && wake) wake();
+  } catch (...) {
+    // Out of memory: nothing moves, and the next tick tries again.
+    r.armed = false;
+    r.sent = {};
+    try {
+      if (send) send(r.sent, now);
+    } catch (...) {
+      // The base stops by itself when it hears nothing.
+      r.sent = {};
+    }
+  }
+}
+
+}  // namespace roverd::robot

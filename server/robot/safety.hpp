@@ -1,0 +1,60 @@
+#pragma once
+// What is wrong now, and what follows from it. Pure: facts in, conditions out; worst one wins.
+//
+// | loss                                   | after              | follows                        |
+// | base e-stop                            | at once            | Stop: latched e-stop           |
+// | no word from the base                  | 0.4 s (parameter)  | Hold                           |
+// | base exception, unknown state          | at once            | Hold                           |
+// | base takes no commands while armed     | 3 s                | Hold; no motion before          |
+// | radio silent, frozen, or reported lost | 0.5 s              | Hold                           |
+// | no usable fix (AUTO)                   | 2 s, 6 s           | Slow, Hold                     |
+// | position uncertain (AUTO)              | at once, 2 s worse | Slow, Hold                     |
+// | battery low, fault                     | at once            | Warn, Hold                     |
+// Hold stops, goes to mode HOLD and stays there until an operator goes on. Only the radio's
+// take-over ends by itself.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/snapshot.hpp"
+#include "robot/config.hpp"
+#include "robot/world.hpp"
+
+namespace roverd::robot {
+
+enum class Response { None, Warn, Slow, Hold, Stop };  // later ones win
+
+struct Facts {
+  const World& world;
+  const std::optional<base::Pose>& pose;
+  std::optional<Time> last_position;  ///< last one that was fused
+  bool armed = false;
+  bool estop = false;                     ///< latched
+  bool autonomous = false;                ///< mode AUTO, mission running
+  std::optional<Time> base_waited_since;  ///< armed, and the base takes no commands since
+  std::optional<Time> sigma_bad_since;
+};
+
+struct Assessment {
+  Response response = Response::None;
+  std::string cause;  ///< of the worst response
+  std::vector<base::SafetyCondition> conditions;
+  bool base_estop = false;
+};
+
+/// Does the radio drive? The base says so, or the switch SWB stands elsewhere than up.
+bool radio_drives(const World& world, const SafetyParams& p, Time now) noexcept;
+/// The base takes our commands.
+bool base_listens(const World& world) noexcept;
+bool base_lost(const World& world, const SafetyParams& p, Time now) noexcept;
+/// Empty: the radio is all right. Otherwise why not.
+std::string radio_trouble(const World& world, const SafetyParams& p, Time now);
+
+Assessment assess(const Facts& facts, const SafetyParams& p, Time now);
+
+/// The checks before arming, always all of them.
+std::vector<base::Check> arming_checks(const Facts& facts, const SafetyParams& safety,
+                                       const ArmingParams& p, bool mission_loaded, Time now);
+
+}  // namespace roverd::robot

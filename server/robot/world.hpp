@@ -1,0 +1,71 @@
+#pragma once
+// The newest of everything the drivers said, and since when. Control thread only.
+
+#include <optional>
+#include <vector>
+
+#include "base/measurements.hpp"
+#include "base/snapshot.hpp"
+
+namespace roverd::robot {
+
+using base::Time;
+
+struct World {
+  std::optional<base::GnssFix> gnss;
+  std::optional<base::GnssVelocity> gnss_velocity;
+  std::optional<base::BaseStatus> base;
+  std::optional<base::BaseMotion> motion;
+  std::optional<base::BatteryState> battery;
+  std::optional<base::RadioState> radio;
+  std::vector<base::DriverStatus> drivers;
+
+  base::Switch swb = base::Switch::Unknown;  ///< last position between detents
+  std::optional<Time> radio_counted;         ///< when the radio's counter last changed
+  std::optional<Time> gnss_good_since;       ///< usable fixes without a gap from then on
+  std::optional<Time> base_heard;            ///< any word from it
+
+  void take(base::Measurement&& m) {
+    std::visit([this](auto&& value) { put(std::move(value)); }, std::move(m));
+  }
+
+  /// No usable fix for 2 s ends the healthy time.
+  void forget_stale(Time now) noexcept {
+    if (gnss && now - gnss->stamp > std::chrono::seconds(2)) gnss_good_since.reset();
+  }
+
+ private:
+  void put(base::GnssFix&& m) {
+    const bool usable = m.position && m.fix >= base::FixType::Single;
+    if (!usable) gnss_good_since.reset();
+    if (usable && !gnss_good_since) gnss_good_since = m.stamp;
+    gnss = std::move(m);
+  }
+  void put(base::GnssVelocity&& m) { gnss_velocity = m; }
+  void put(base::BaseStatus&& m) {
+    base_heard = m.stamp;
+    base = std::move(m);
+  }
+  void put(base::BaseMotion&& m) {
+    base_heard = m.stamp;
+    motion = m;
+  }
+  void put(base::WheelTravel&& m) { base_heard = m.stamp; }
+  void put(base::Heading&&) {}
+  void put(base::BatteryState&& m) { battery = m; }
+  void put(base::RadioState&& m) {
+    if (m.swb != base::Switch::Unknown) swb = m.swb;
+    if (!radio || radio->count != m.count) radio_counted = m.stamp;
+    radio = m;
+  }
+  void put(base::DriverStatus&& m) {
+    for (base::DriverStatus& known : drivers) {
+      if (known.name != m.name) continue;
+      known = std::move(m);
+      return;
+    }
+    if (drivers.size() < 64) drivers.push_back(std::move(m));
+  }
+};
+
+}  // namespace roverd::robot
