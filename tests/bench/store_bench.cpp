@@ -79,7 +79,10 @@ void SaveAndReadTenThousandItems(benchmark::State& state) {
     if (found.plan != plan) state.SkipWithError("not what was saved");
   }
 }
-BENCHMARK(SaveAndReadTenThousandItems)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(SaveAndReadTenThousandItems)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
 
 /// As the API does it: JSON text in, saved, read, JSON text out.
 void BodyToStoreToBodyOfTenThousandItems(benchmark::State& state) {
