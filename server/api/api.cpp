@@ -1,0 +1,265 @@
+#include "api/api.hpp"
+
+#include <algorithm>
+#include <array>
+#include <exception>
+#include <utility>
+
+#include "api/context.hpp"
+#include "api/docs.hpp"
+#include "api/idempotency.hpp"
+#include "api/stream.hpp"
+#include "base/log.hpp"
+
+namespace roverd::api {
+
+namespace {
+
+constexpr std::string_view kBase = "/api/v1";
+constexpr const char* kDocsPolicy =
+    "default-src 'none'; style-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors "
+    "'none'";
+/// Requests that may wait for the robot or the store at the same time.
+constexpr int kUnanswered = 256;
+
+/// The path inside the interface; empty if the page is meant. A few addresses also work without the
+/// base path, as the tools that use them expect.
+std::string_view inner_path(std::string_view path) {
+  if (path.starts_with(kBase) && (path.size() == kBase.size() || path[kBase.size()] == '/')) {
+    path.remove_prefix(kBase.size());
+    return path.empty() ? "/" : path;
+  }
+  const bool known = path == "/health" || path == "/metrics" || path == "/openapi.json" ||
+                     path == "/docs" || path == "/docs/style.css" || path == "/tiles" ||
+                     path.starts_with("/tiles/");
+  return known ? path : std::string_view{};
+}
+
+Response docs_response(std::string_view type, std::string body) {
+  Response response = text_response(http::status::ok, type, std::move(body));
+  response.set(http::field::cache_control, "no-cache");
+  response.set("Content-Security-Policy", kDocsPolicy);
+  return response;
+}
+
+Response options_response(std::string_view allow) {
+  Response response{http::status::no_content, 11};
+  response.set(http::field::allow, boost::beast::string_view(allow.data(), allow.size()));
+  return response;
+}
+
+}  // namespace
+
+std::shared_ptr<const base::Snapshot> Context::snapshot_or_refuse(const CallPtr& call) const {
+  auto snapshot = deps.robot.snapshot();
+  if (!snapshot) {
+    call->respond(problem({base::Code::Unavailable, "the control loop has not started yet"}));
+  }
+  return snapshot;
+}
+
+void Context::announce(const std::string& id, std::optional<std::int64_t> revision) const {
+  if (on_mission_change) on_mission_change(id, revision);
+}
+
+struct Api::Impl {
+  explicit Impl(Deps deps) : context(std::make_shared<Context>(std::move(deps))) {}
+
+  void route(CallPtr call);
+  void serve_page(const CallPtr& call, std::string_view path);
+  void watch(const CallPtr& call, const Route& route);
+
+  ContextPtr context;
+  Idempotency idempotency;
+  std::unique_ptr<StreamTexts> stream;
+  int unanswered = 0;
+  std::map<std::string, std::uint64_t> driver_counts;
+  base::Time counted;
+  std::vector<robot::PendingReply> replies;
+  std::vector<base::Event> events;
+};
+
+Api::Api(Deps deps) : impl_(std::make_unique<Impl>(std::move(deps))) {
+  const ContextPtr& c = impl_->context;
+  c->openapi_tag = "\"" + std::to_string(std::hash<std::string_view>{}(openapi_text())) + "\"";
+  c->on_mission_change = [this](const std::string& id, std::optional<std::int64_t> revision) {
+    if (impl_->stream) impl_->stream->publish_mission(id, revision);
+  };
+  add_vehicle_routes(c);
+  add_execution_routes(c);
+  add_mission_routes(c);
+  add_file_routes(c);
+  add_event_routes(c);
+  add_server_routes(c);
+  add_tile_routes(c);
+}
+
+Api::~Api() {
+  // The routes hold the context that holds them.
+  impl_->context->router = Router{};
+  impl_->context->on_mission_change = nullptr;
+  impl_->context->commands.abandon();
+}
+
+void Api::attach(Stream stream) {
+  impl_->stream = std::make_unique<StreamTexts>(impl_->context, std::move(stream));
+}
+
+void Api::Impl::serve_page(const CallPtr& call, std::string_view path) {
+  const http::verb method = call->request.method();
+  auto found = context->deps.page ? context->deps.page(call->request) : std::optional<Response>{};
+  if (found) return call->respond(std::move(*found));
+  if (method == http::verb::options) return call->respond(options_response("GET, HEAD, OPTIONS"));
+  if (method != http::verb::get && method != http::verb::head) {
+    Response response = problem(405, "the page can only be read");
+    response.set(http::field::allow, "GET, HEAD, OPTIONS");
+    return call->respond(std::move(response));
+  }
+  call->respond(problem({base::Code::NotFound, "there is nothing at " + std::string(path)}));
+}
+
+/// Counts what waits for an answer, and complains in the log about an answer that the OpenAPI
+/// document does not promise.
+void Api::Impl::watch(const CallPtr& call, const Route& route) {
+  ++unanswered;
+  call->respond = [this, &route, respond = std::move(call->respond)](Response response) {
+    --unanswered;
+    const auto& known = route.statuses;
+    if (std::find(known.begin(), known.end(), response.result_int()) == known.end()) {
+      const auto method = http::to_string(route.method);
+      base::log(base::Level::Error, "api", "undocumented status",
+                {{"method", std::string(method.data(), method.size())},
+                 {"path", route.pattern},
+                 {"status", std::to_string(response.result_int())}});
+    }
+    respond(std::move(response));
+  };
+}
+
+void Api::Impl::route(CallPtr call) {
+  auto target_parts = parse_target(target(call->request));
+  if (!target_parts) return call->respond(problem(target_parts.error()));
+  const std::string_view path = inner_path(target_parts->path);
+  const http::verb method = call->request.method();
+  if (path.empty()) return serve_page(call, target_parts->path);
+  const bool reading = method == http::verb::get || method == http::verb::head;
+  if (reading && path == "/docs") {
+    return call->respond(
+        docs_response("text/html; charset=utf-8", docs_page(Json::parse(openapi_text()))));
+  }
+  if (reading && path == "/docs/style.css") {
+    return call->respond(docs_response("text/css; charset=utf-8", std::string(docs_style())));
+  }
+  const auto found = context->router.find(method, path);
+  if (std::holds_alternative<Router::NotFound>(found)) {
+    return call->respond(
+        problem({base::Code::NotFound, "there is nothing at " + target_parts->path}));
+  }
+  if (const auto* wrong = std::get_if<Router::WrongMethod>(&found)) {
+    if (method == http::verb::options) return call->respond(options_response(wrong->allow));
+    const auto name = call->request.method_string();
+    Response response = problem(405, "the method " + std::string(name.data(), name.size()) +
+                                         " does nothing here; allowed: " + wrong->allow);
+    response.set(http::field::allow, wrong->allow);
+    return call->respond(std::move(response));
+  }
+  const auto& match = std::get<Router::Match>(found);
+  call->params = match.params;
+  call->query = std::move(target_parts->query);
+  const bool stop = match.route->pattern == "/vehicle/estop";  // always heard
+  if (unanswered >= kUnanswered && !stop) {
+    return call->respond(problem(429, "too many requests wait for an answer"));
+  }
+  watch(call, *match.route);
+  if (!reading && !idempotency.admit(*call)) return;
+  match.route->handler(call);
+}
+
+void Api::on_request(Request request, base::Time begun, Respond respond) {
+  if (auto refusal = guard_request(request)) return respond(std::move(*refusal));
+  const auto answered = std::make_shared<bool>(false);
+  auto call = std::make_shared<Call>();
+  call->request = std::move(request);
+  call->begun = begun;
+  call->respond = [answered, respond](Response response) {
+    if (std::exchange(*answered, true)) return;
+    respond(std::move(response));
+  };
+  try {
+    impl_->route(call);
+  } catch (const std::exception& bug) {
+    base::log(base::Level::Error, "api", "a handler failed", {{"what", bug.what()}});
+    call->respond(problem({base::Code::Unavailable, "the request could not be handled"}));
+  }
+}
+
+std::optional<Response> Api::on_upgrade(const Request& request) {
+  if (auto refusal = guard_upgrade(request)) return refusal;
+  const auto parts = parse_target(target(request));
+  if (!parts) return problem(parts.error());
+  if (parts->path != std::string(kBase) + "/stream" || !impl_->stream) {
+    return problem({base::Code::NotFound, "the stream is at /api/v1/stream"});
+  }
+  return std::nullopt;
+}
+
+void Api::on_client(ClientId client) {
+  impl_->stream->on_client(client);
+}
+void Api::on_text(ClientId client, std::string_view text) {
+  impl_->stream->on_text(client, text);
+}
+void Api::on_gone(ClientId client) {
+  impl_->stream->on_gone(client);
+}
+
+Response Api::on_refused(unsigned status, std::string_view detail) {
+  return problem(status, detail);
+}
+
+void Api::on_second() {
+  const base::Time now = base::steady_now();
+  impl_->context->commands.sweep(now);
+  if (impl_->stream) impl_->stream->look_at_execution();
+  const auto snapshot = impl_->context->deps.robot.snapshot();
+  if (!snapshot) return;
+  const double passed_s = base::seconds(now - impl_->counted);
+  for (const auto& driver : snapshot->drivers) {
+    const auto [at, is_new] = impl_->driver_counts.try_emplace(driver.name, driver.received);
+    const bool counts = !is_new && driver.received >= at->second && passed_s > 0.1;
+    if (counts) {
+      impl_->context->driver_rates[driver.name] =
+          static_cast<double>(driver.received - at->second) / passed_s;
+    }
+    at->second = driver.received;
+  }
+  impl_->counted = now;
+}
+
+void Api::drain() {
+  auto& robot = impl_->context->deps.robot;
+  impl_->events.clear();
+  robot.events().take(impl_->events);
+  for (base::Event& event : impl_->events) {
+    if (impl_->stream) impl_->stream->publish_event(event);
+    impl_->context->deps.store.add_event(std::move(event));
+  }
+  impl_->replies.clear();
+  robot.replies().take(impl_->replies);
+  for (robot::PendingReply& pending : impl_->replies) {
+    if (pending.reply) pending.reply(std::move(pending.result));
+  }
+  impl_->replies.clear();
+  if (impl_->stream) impl_->stream->look_at_execution();
+}
+
+std::map<std::string, std::vector<unsigned>> Api::documented() const {
+  std::map<std::string, std::vector<unsigned>> out;
+  for (const Route& route : impl_->context->router.routes()) {
+    const auto method = http::to_string(route.method);
+    out[std::string(method.data(), method.size()) + " " + route.pattern] = route.statuses;
+  }
+  return out;
+}
+
+}  // namespace roverd::api

@@ -1,0 +1,119 @@
+#pragma once
+// The public interface: routes, JSON ↔ words, refusals, stream texts. Knows no sockets: main plugs
+// the functions below into net. Everything runs on the web thread; nothing here waits.
+//
+//   net ─on_request─▶ guard ─▶ idempotency ─▶ router ─▶ handler ─▶ robot.request / store ─▶ answer
+//   net ─on_text────▶ subscribe, drive
+//   robot.wake ─▶ drain(): answers of commands, events → store and stream
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "api/guard.hpp"
+#include "api/message.hpp"
+#include "api/words.hpp"
+#include "robot/robot.hpp"
+#include "store/store.hpp"
+
+namespace roverd::api {
+
+struct TileSet {
+  std::string set;     ///< name in the address
+  std::string name;    ///< for people
+  std::string format;  ///< png, jpg, webp, pbf
+  int min_zoom = 0;
+  int max_zoom = 0;
+  std::optional<std::array<double, 4>> bounds_deg;  ///< west, south, east, north
+  std::string attribution;
+};
+
+struct Tile {
+  std::string bytes;
+  std::string content_type;
+  std::string content_encoding;  ///< "gzip" for vector tiles, or empty
+};
+
+/// Offline map tiles; both may be empty.
+struct Tiles {
+  std::vector<TileSet> sets;
+  /// XYZ numbering. Empty: there is no such tile. Quick: one look into a file.
+  std::function<std::optional<Tile>(const std::string& set, int zoom, int x, int y)> read;
+};
+
+/// The stream, as the api sees it: net's Hub.
+struct Stream {
+  /// The text of one message of a topic, or empty: nothing to say.
+  using Render = std::function<std::optional<std::string>(std::uint64_t seq)>;
+  std::function<void(std::string topic, Render)> add_sampled_topic;
+  std::function<void(std::string topic)> add_event_topic;
+  std::function<void(ClientId, const std::map<std::string, double>& rates_hz)> subscribe;
+  std::function<void(std::string_view topic, const Render&)> publish;
+  std::function<void(ClientId, std::string_view text)> send;
+  std::function<void(ClientId, std::uint16_t code, std::string_view reason)> close;
+};
+
+/// Figures of net for /metrics.
+struct NetFigures {
+  std::uint64_t accepted = 0;
+  std::uint64_t refused = 0;
+  std::uint64_t timed_out = 0;
+  std::uint64_t requests = 0;
+  std::uint64_t delivered = 0;
+  std::uint64_t dropped = 0;
+  int connections = 0;
+  int clients = 0;
+};
+
+struct Deps {
+  robot::Robot& robot;
+  store::Store& store;
+  std::string version;
+  Profile profile;
+  Tiles tiles{};
+  /// The ground-control page; empty answers: no such file.
+  std::function<std::optional<Response>(const Request&)> page{};
+  std::function<NetFigures()> figures{};
+};
+
+/// One per program. All members but the constructor: web thread. It must live until the web thread
+/// and the store's have ended: answers on their way refer to it.
+class Api {
+ public:
+  explicit Api(Deps deps);
+  ~Api();
+  Api(const Api&) = delete;
+  Api& operator=(const Api&) = delete;
+
+  /// Before the first client: names the topics. Needed for the stream only.
+  void attach(Stream stream);
+
+  void on_request(Request request, base::Time begun, Respond respond);
+  /// Empty: welcome.
+  std::optional<Response> on_upgrade(const Request& request);
+  void on_client(ClientId client);
+  void on_text(ClientId client, std::string_view text);
+  /// A client that was driving stops the robot.
+  void on_gone(ClientId client);
+  static Response on_refused(unsigned status, std::string_view detail);
+  /// Once a second: driver rates, answers that never came.
+  void on_second();
+  /// After robot.wake: hands out the robot's answers and events.
+  void drain();
+
+  /// For the test that compares with the OpenAPI document: "POST /vehicle/arm" → statuses.
+  std::map<std::string, std::vector<unsigned>> documented() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The OpenAPI document as it is served.
+std::string_view openapi_text() noexcept;
+
+}  // namespace roverd::api

@@ -1,0 +1,69 @@
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "api/context.hpp"
+
+namespace roverd::api {
+
+void Commands::run(robot::Command command, base::Time not_after, base::Time now, Done done) {
+  if (now > not_after) {
+    return done(base::fail(base::Code::Late,
+                           "the command arrived too late and was not carried "
+                           "out"));
+  }
+  const bool stop = std::holds_alternative<robot::Estop>(command);  // always has room
+  if (waiting_.size() >= kWaiting && !stop) {
+    return done(base::fail(base::Code::Unavailable, "too many commands wait for the robot"));
+  }
+  const std::uint64_t id = next_++;
+  const std::weak_ptr<Commands*> self = self_;
+  const bool queued = robot_.request(std::move(command), not_after, [self, id](auto result) {
+    if (const auto alive = self.lock()) (*alive)->answer(id, std::move(result));
+  });
+  if (!queued) {
+    return done(base::fail(base::Code::Unavailable, "too many commands wait for the robot"));
+  }
+  const bool endless = not_after == base::Time::max();
+  const base::Time give_up = (endless ? now : not_after) + kPatience;
+  waiting_.emplace(id, Waiting{give_up, std::move(done)});
+}
+
+void Commands::answer(std::uint64_t id, base::Result<void> result) {
+  const auto at = waiting_.find(id);
+  if (at == waiting_.end()) return;
+  const Done done = std::move(at->second.done);
+  waiting_.erase(at);
+  done(std::move(result));
+}
+
+void Commands::sweep(base::Time now) {
+  std::vector<std::uint64_t> overdue;
+  for (const auto& [id, waiting] : waiting_) {
+    if (now > waiting.give_up) overdue.push_back(id);
+  }
+  for (const std::uint64_t id : overdue) {
+    answer(id, base::fail(base::Code::Unavailable, "the control loop does not answer"));
+  }
+}
+
+base::Time validity_of(Members& members, const Call& call, Moves moves) {
+  constexpr double kClick_s = 1.0;
+  constexpr double kLongest_s = 60.0;
+  const auto given = members.number("valid_for_s", 0.0, kLongest_s);
+  if (given) return call.begun + base::from_seconds(*given);
+  return moves == Moves::Yes ? call.begun + base::from_seconds(kClick_s) : base::Time::max();
+}
+
+void run_command(const ContextPtr& context, const CallPtr& call, robot::Command command,
+                 base::Time not_after, std::function<Json(const base::Snapshot&)> state) {
+  context->commands.run(std::move(command), not_after, base::steady_now(),
+                        [context, call, state = std::move(state)](base::Result<void> result) {
+                          if (!result) return call->respond(problem(result.error()));
+                          if (const auto snapshot = context->snapshot_or_refuse(call)) {
+                            call->respond(json_response(http::status::ok, state(*snapshot)));
+                          }
+                        });
+}
+
+}  // namespace roverd::api

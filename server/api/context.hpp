@@ -1,0 +1,86 @@
+#pragma once
+// What the handlers of the routes share. Web thread only.
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "api/api.hpp"
+#include "api/body.hpp"
+#include "api/problem.hpp"
+#include "api/router.hpp"
+#include "api/words.hpp"
+
+namespace roverd::api {
+
+/// Commands on their way to the robot and back. The robot answers with its next tick; if it does
+/// not, the client hears 503, and what it asked for is refused as late by the robot itself.
+class Commands {
+ public:
+  using Done = std::function<void(base::Result<void>)>;
+  static constexpr std::size_t kWaiting = 64;
+  static constexpr base::Duration kPatience = std::chrono::seconds(2);
+
+  explicit Commands(robot::Robot& robot) : robot_(robot) {}
+
+  /// `done` is called exactly once, later: with what the robot did, or Unavailable.
+  /// @param not_after the robot refuses it as late then.
+  void run(robot::Command command, base::Time not_after, base::Time now, Done done);
+  void sweep(base::Time now);
+  /// Forgets them all, unanswered.
+  void abandon() { waiting_.clear(); }
+
+ private:
+  struct Waiting {
+    base::Time give_up;
+    Done done;
+  };
+  void answer(std::uint64_t id, base::Result<void> result);
+
+  robot::Robot& robot_;
+  std::map<std::uint64_t, Waiting> waiting_;
+  std::uint64_t next_ = 1;
+  /// A reply may come when this is gone: it asks here first.
+  std::shared_ptr<Commands*> self_ = std::make_shared<Commands*>(this);
+};
+
+struct Context {
+  explicit Context(Deps with)
+      : deps(std::move(with)), commands(deps.robot), begun(base::steady_now()) {}
+
+  Deps deps;
+  Commands commands;
+  Router router;
+  base::Time begun;
+  std::map<std::string, double> driver_rates;
+  std::string openapi_tag;
+  std::function<void(const std::string& id, std::optional<std::int64_t> revision)>
+      on_mission_change;
+
+  /// Answers 503 and returns null before the robot's first tick.
+  std::shared_ptr<const base::Snapshot> snapshot_or_refuse(const CallPtr& call) const;
+  /// A stored mission changed: tells the stream. @param revision empty: deleted.
+  void announce(const std::string& id, std::optional<std::int64_t> revision) const;
+};
+using ContextPtr = std::shared_ptr<Context>;
+
+void add_vehicle_routes(const ContextPtr& context);
+void add_execution_routes(const ContextPtr& context);
+void add_mission_routes(const ContextPtr& context);
+void add_file_routes(const ContextPtr& context);
+void add_event_routes(const ContextPtr& context);
+void add_server_routes(const ContextPtr& context);
+void add_tile_routes(const ContextPtr& context);
+
+enum class Moves { Yes, No };
+/// Takes `valid_for_s` out of the body. Without it: 1 s after the request began for commands that
+/// may move the robot, no end for others.
+base::Time validity_of(Members& members, const Call& call, Moves moves);
+
+/// Runs a command and answers with what `state` makes of the snapshot, or with the refusal.
+void run_command(const ContextPtr& context, const CallPtr& call, robot::Command command,
+                 base::Time not_after, std::function<Json(const base::Snapshot&)> state);
+
+}  // namespace roverd::api

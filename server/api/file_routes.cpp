@@ -1,0 +1,90 @@
+// Mission files of other programs, in and out.
+
+#include <algorithm>
+#include <utility>
+
+#include "api/context.hpp"
+
+namespace roverd::api {
+
+namespace {
+
+base::Error not_a_format(const std::string& word) {
+  const std::string detail = "\"" + word + "\" is not a known format: plan and waypoints are";
+  return {base::Code::Invalid, detail, {{"format", detail}}};
+}
+
+/// Words, no path: what a person called the file.
+std::string file_name(std::string name) {
+  if (const auto slash = name.find_last_of("/\\"); slash != std::string::npos) {
+    name.erase(0, slash + 1);
+  }
+  return name;
+}
+
+Handler import_mission(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    const std::string word = query_text(*call, "format");
+    const auto format = mission::format_from(word);
+    if (!word.empty() && !format) return call->respond(problem(not_a_format(word)));
+    if (call->request.body().empty()) {
+      return call->respond(problem({base::Code::Malformed, "the file is empty"}));
+    }
+    const std::string name = file_name(query_text(*call, "name"));
+    auto file = mission::import_file(call->request.body(), format, name);
+    if (!file) return call->respond(problem(file.error()));
+    auto imported = std::make_shared<mission::ImportedFile>(std::move(*file));
+    const std::string from =
+        name.empty() ? std::string(mission::to_string(imported->format)) + " file" : name;
+    context->deps.store.create_mission(
+        imported->plan, {"local", "imported from " + from},
+        [context, call, imported](base::Result<store::StoredMission> stored) {
+          if (!stored) return call->respond(problem(stored.error()));
+          context->announce(stored->id, stored->revision);
+          Response response = json_response(http::status::created, import_json(*imported, *stored));
+          response.set(http::field::location, "/api/v1/missions/" + stored->id);
+          response.set(http::field::etag, etag_of(stored->revision));
+          call->respond(std::move(response));
+        });
+  };
+}
+
+Handler export_mission(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    const std::string word = query_text(*call, "format");
+    const auto format = mission::format_from(word);
+    if (!format) return call->respond(problem(not_a_format(word)));
+    context->deps.store.read_mission(
+        call->params.at("id"), [call, format](base::Result<store::StoredMission> stored) {
+          if (!stored) return call->respond(problem(stored.error()));
+          mission::ExportedFile file = mission::export_file(stored->plan, *format);
+          const auto count = [&file](mission::Outcome outcome) {
+            return std::to_string(
+                std::count_if(file.rows.begin(), file.rows.end(),
+                              [outcome](const auto& row) { return row.outcome == outcome; }));
+          };
+          Response response = text_response(http::status::ok, file.media_type + "; charset=utf-8",
+                                            std::move(file.content));
+          response.set(http::field::content_disposition,
+                       "attachment; filename=\"" + file.file_name + "\"");
+          response.set(http::field::etag, etag_of(stored->revision));
+          // What the format could not hold: never lost in silence.
+          response.set("Items-Changed", count(mission::Outcome::Changed));
+          response.set("Items-Left-Out", count(mission::Outcome::LeftOut));
+          call->respond(std::move(response));
+        });
+  };
+}
+
+}  // namespace
+
+void add_file_routes(const ContextPtr& c) {
+  c->router.add({http::verb::post,
+                 "/missions/import",
+                 {201, 400, 403, 413, 415, 422, 429, 503},
+                 import_mission(c)});
+  c->router.add(
+      {http::verb::get, "/missions/{id}/export", {200, 400, 404, 422, 503}, export_mission(c)});
+}
+
+}  // namespace roverd::api

@@ -1,0 +1,55 @@
+#pragma once
+// The table of what the server answers: method, path, handler, and the statuses that the OpenAPI
+// document promises for it. Pure; built once, then only read.
+
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "api/message.hpp"
+
+namespace roverd::api {
+
+using Handler = std::function<void(CallPtr)>;
+
+struct Route {
+  http::verb method = http::verb::get;
+  std::string pattern;             ///< "/missions/{id}/export"; a literal wins over a parameter
+  std::vector<unsigned> statuses;  ///< as documented, ascending
+  Handler handler;
+};
+
+/// Splits "/a/b%20c?x=1&y" into path and decoded query. Malformed: broken percent signs.
+struct Target {
+  std::string path;  ///< not decoded
+  std::map<std::string, std::string, std::less<>> query;
+};
+base::Result<Target> parse_target(std::string_view target);
+
+/// Percent-decoding; Malformed for "%", "%4", "%zz" and for a zero byte.
+base::Result<std::string> percent_decoded(std::string_view text, bool plus_is_blank = false);
+
+class Router {
+ public:
+  void add(Route route);
+  const std::vector<Route>& routes() const noexcept { return routes_; }
+
+  struct Match {
+    const Route* route = nullptr;
+    std::map<std::string, std::string, std::less<>> params;  ///< decoded
+  };
+  struct NotFound {};
+  struct WrongMethod {
+    std::string allow;  ///< "GET, HEAD, PUT, OPTIONS"
+  };
+  /// HEAD counts as GET. @param path without the base path and the query.
+  std::variant<Match, NotFound, WrongMethod> find(http::verb method, std::string_view path) const;
+
+ private:
+  std::vector<Route> routes_;
+};
+
+}  // namespace roverd::api

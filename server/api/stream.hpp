@@ -1,0 +1,57 @@
+#pragma once
+// The live stream's texts: hello, subscriptions, teleoperation, errors.
+//
+// One client at a time drives: the first who sends a drive message with the dead-man's switch held,
+// until it lets go, leaves, or is silent for half a second.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+
+#include "api/context.hpp"
+
+namespace roverd::api {
+
+/// {"topic", "seq", "time", "data"} around a JSON text.
+std::string stream_text(std::string_view topic, std::uint64_t seq, std::string_view data);
+
+class StreamTexts {
+ public:
+  StreamTexts(ContextPtr context, Stream stream);
+
+  void on_client(ClientId client);
+  void on_text(ClientId client, std::string_view text);
+  void on_gone(ClientId client);
+
+  void publish_event(const base::Event& event);
+  void publish_mission(const std::string& id, std::optional<std::int64_t> revision);
+  /// Publishes if something worth a message changed since the last time.
+  void look_at_execution();
+
+ private:
+  struct Client {
+    int complaints = 0;  ///< in a row
+    std::uint64_t errors_sent = 0;
+    std::optional<std::int64_t> drive_seq;
+  };
+
+  base::Result<void> read(ClientId id, Client& client, const Json& message);
+  base::Result<void> subscribe(ClientId id, const Json& topics);
+  base::Result<void> drive(ClientId id, Client& client, const Json& members);
+  void stop_driving();
+  void complain(ClientId id, Client& client, const base::Error& error);
+  std::optional<std::string> vehicle_text(std::uint64_t seq);
+
+  ContextPtr context_;
+  Stream stream_;
+  std::unordered_map<ClientId, Client> clients_;
+  ClientId driver_ = 0;  ///< 0: nobody
+  base::Time driven_;    ///< last drive message
+  std::uint64_t encoded_tick_ = 0;
+  std::string encoded_;  ///< the vehicle's state at that tick
+  std::string execution_seen_;
+};
+
+}  // namespace roverd::api

@@ -1,0 +1,130 @@
+#include <limits>
+#include <utility>
+
+#include "api/context.hpp"
+
+namespace roverd::api {
+
+namespace {
+
+const std::vector<unsigned> kCommand = {200, 400, 403, 409, 413, 415, 422, 429, 503};
+
+/// Refused arming names the failing checks, whatever room the refusal came from.
+base::Error with_checks(base::Error error, const std::shared_ptr<const base::Snapshot>& snapshot) {
+  if (error.code != base::Code::Conflict || !error.fields.empty() || !snapshot) return error;
+  for (const auto& check : snapshot->checks) {
+    if (!check.ok && check.severity == base::Severity::Error) {
+      error.fields.push_back({check.id, check.detail});
+    }
+  }
+  return error;
+}
+
+std::function<Json(const base::Snapshot&)> whole_state(const ContextPtr& context) {
+  return [context](const base::Snapshot& snapshot) {
+    return vehicle_json(snapshot, context->deps.profile.name, base::steady_now());
+  };
+}
+
+/// A command without members of its own.
+Handler plain(const ContextPtr& context, robot::Command command, Moves moves) {
+  return [context, command = std::move(command), moves](const CallPtr& call) {
+    const auto body = json_body(call->request, true);
+    if (!body) return call->respond(problem(body.error()));
+    Members members(*body);
+    const base::Time not_after = validity_of(members, *call, moves);
+    if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
+    run_command(context, call, command, not_after, whole_state(context));
+  };
+}
+
+Handler arm(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    const auto body = json_body(call->request, true);
+    if (!body) return call->respond(problem(body.error()));
+    Members members(*body);
+    const base::Time not_after = validity_of(members, *call, Moves::Yes);
+    if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
+    context->commands.run(
+        robot::Arm{}, not_after, base::steady_now(), [context, call](base::Result<void> result) {
+          const auto snapshot = context->deps.robot.snapshot();
+          if (!result) {
+            return call->respond(problem(with_checks(std::move(result.error()), snapshot)));
+          }
+          if (const auto state = context->snapshot_or_refuse(call)) {
+            call->respond(json_response(http::status::ok, whole_state(context)(*state)));
+          }
+        });
+  };
+}
+
+Handler set_mode(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    const auto body = json_body(call->request);
+    if (!body) return call->respond(problem(body.error()));
+    Members members(*body);
+    members.require("mode");
+    const auto word = members.text("mode");
+    base::Mode mode = base::Mode::Hold;
+    if (word) {
+      const auto known = base::mode_from(*word);
+      if (known) mode = *known;
+      if (!known) members.complain("mode", "\"" + *word + "\" is not a mode");
+    }
+    // HOLD stops: that is never too late.
+    const Moves moves = mode == base::Mode::Hold ? Moves::No : Moves::Yes;
+    const base::Time not_after = validity_of(members, *call, moves);
+    if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
+    run_command(context, call, robot::SetMode{mode}, not_after, whole_state(context));
+  };
+}
+
+Handler set_home(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    const auto body = json_body(call->request, true);
+    if (!body) return call->respond(problem(body.error()));
+    Members members(*body);
+    const auto lat = members.number("lat", -90.0, 90.0);
+    const auto lon = members.number("lon", -180.0, 180.0);
+    if (body->is_object() && body->contains("lat") != body->contains("lon")) {
+      members.require("lat");
+      members.require("lon");
+    }
+    const base::Time not_after = validity_of(members, *call, Moves::No);
+    if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
+    robot::SetHome command;
+    if (lat && lon) command.at = base::LatLon{*lat, *lon};
+    run_command(context, call, command, not_after, whole_state(context));
+  };
+}
+
+}  // namespace
+
+void add_vehicle_routes(const ContextPtr& c) {
+  const auto get = http::verb::get;
+  const auto post = http::verb::post;
+  c->router.add({get, "/vehicle", {200, 503}, [c](const CallPtr& call) {
+                   if (const auto s = c->snapshot_or_refuse(call)) {
+                     call->respond(json_response(http::status::ok, whole_state(c)(*s)));
+                   }
+                 }});
+  c->router.add({get, "/vehicle/checks", {200, 503}, [c](const CallPtr& call) {
+                   if (const auto s = c->snapshot_or_refuse(call)) {
+                     call->respond(json_response(http::status::ok, checks_json(*s)));
+                   }
+                 }});
+  c->router.add({get, "/vehicle/capabilities", {200}, [c](const CallPtr& call) {
+                   call->respond(json_response(
+                       http::status::ok, capabilities_json(c->deps.profile, c->deps.version)));
+                 }});
+  c->router.add({post, "/vehicle/arm", kCommand, arm(c)});
+  c->router.add({post, "/vehicle/disarm", kCommand, plain(c, robot::Disarm{}, Moves::No)});
+  c->router.add({http::verb::put, "/vehicle/mode", kCommand, set_mode(c)});
+  c->router.add({post, "/vehicle/estop", kCommand,
+                 plain(c, robot::Estop{"the page or a script"}, Moves::No)});
+  c->router.add(
+      {post, "/vehicle/estop/reset", kCommand, plain(c, robot::ResetEstop{}, Moves::Yes)});
+  c->router.add({http::verb::put, "/vehicle/home", kCommand, set_home(c)});
+}
+
+}  // namespace roverd::api

@@ -1,0 +1,63 @@
+#pragma once
+// The robot's and the store's values in the words of the public interface. Radians and yaw end
+// here: JSON has degrees and compass headings. Pure; `now` gives the ages.
+
+#include <map>
+#include <string>
+
+#include "api/message.hpp"
+#include "base/snapshot.hpp"
+#include "mission/formats.hpp"
+#include "robot/robot.hpp"
+#include "store/store.hpp"
+
+namespace roverd::api {
+
+/// Older than this is stale, seconds. About twice the usual period of each device and more.
+struct StaleAfter {
+  static constexpr double kPosition_s = 1.0;
+  static constexpr double kGnss_s = 2.5;
+  static constexpr double kBase_s = 0.5;
+  static constexpr double kBattery_s = 5.0;
+  static constexpr double kRc_s = 0.5;
+  static constexpr double kDriver_s = 2.5;
+};
+
+/// What main says of the vehicle; fixed while the program runs.
+struct Profile {
+  std::string name;
+  std::string title;
+  std::string kinematics;
+  double length_m = 0.0;
+  double width_m = 0.0;
+  double mass_kg = 0.0;
+  double max_speed_mps = 0.0;
+  double max_yaw_rate_radps = 0.0;
+  double max_acceleration_mps2 = 0.0;
+  double pivot_angle_rad = 0.0;
+  std::vector<base::Mode> modes;
+  std::vector<std::string> drivers;
+  std::vector<std::string> item_types;  ///< those that execution can drive
+};
+
+Json vehicle_json(const base::Snapshot& snapshot, const std::string& name, base::Time now);
+Json checks_json(const base::Snapshot& snapshot);
+Json execution_json(const base::MissionProgress& progress);
+Json preview_json(const robot::Preview& preview, base::ExecutionState state);
+Json capabilities_json(const Profile& profile, const std::string& version);
+/// @param rates received per second by driver name; a missing one is null.
+Json drivers_json(const base::Snapshot& snapshot, const std::map<std::string, double>& rates,
+                  base::Time now);
+
+Json mission_json(const store::StoredMission& mission);
+Json mission_list_json(const store::Page<store::MissionSummary>& page);
+Json revision_list_json(const store::Page<store::RevisionSummary>& page);
+Json import_json(const mission::ImportedFile& file, const store::StoredMission& mission);
+Json event_json(const store::StoredEvent& event);
+
+/// "rev-3", with its quotes.
+std::string etag_of(std::int64_t revision);
+/// The revision in such a tag; empty if it is another one, or a weak one.
+std::optional<std::int64_t> revision_of(std::string_view etag) noexcept;
+
+}  // namespace roverd::api
