@@ -1,12 +1,12 @@
 // Files from the field: missions of other ground stations, and a recorded receiver.
 
-import { readFileSync } from "node:fs";
-import { basename } from "node:path";
+import { readFileSync } from 'node:fs';
+import { basename } from 'node:path';
 
-import { expect as expect_base, type Page } from "@playwright/test";
+import { expect as expect_base, type Page } from '@playwright/test';
 
-import { items, metres_between, tab, type Point } from "./page";
-import { expect, real_file, test } from "./station";
+import { items, metres_between, tab, type Point } from './page';
+import { expect, real_file, test } from './station';
 
 interface Mission {
   readonly items: readonly (Point & { readonly type: string })[];
@@ -25,25 +25,22 @@ const plan_positions = (text: string): Point[] => {
 /** Positions of a QGC WPL 110 file, home (row 0) left out. */
 const waypoint_positions = (text: string): Point[] =>
   text
-    .split("\n")
+    .split('\n')
     .slice(2)
     .map((row) => row.trim().split(/\s+/))
-    .filter((columns) => columns[3] === "16")
+    .filter((columns) => columns[3] === '16')
     .map((columns) => ({ lat: Number(columns[8]), lon: Number(columns[9]) }));
 
 const FILES = [
-  { name: "mission-sitl.plan", format: "plan", read: plan_positions },
+  { name: 'mission-sitl.plan', format: 'plan', read: plan_positions },
   {
-    name: "mission-rover-basic.waypoints",
-    format: "waypoints",
+    name: 'mission-rover-basic.waypoints',
+    format: 'waypoints',
     read: waypoint_positions,
   },
 ] as const;
 
-const same_places = (
-  found: readonly Point[],
-  wanted: readonly Point[],
-): void => {
+const same_places = (found: readonly Point[], wanted: readonly Point[]): void => {
   expect_base(found).toHaveLength(wanted.length);
   wanted.forEach((point, k) => {
     expect_base(metres_between(found[k] as Point, point)).toBeLessThan(0.001);
@@ -51,10 +48,10 @@ const same_places = (
 };
 
 const export_text = async (page: Page, format: string): Promise<string> => {
-  await page.getByRole("button", { name: /^More about/ }).click();
-  const download = page.waitForEvent("download");
-  await page.getByRole("link", { name: `.${format}`, exact: true }).click();
-  return readFileSync(await (await download).path(), "utf8");
+  await page.getByRole('button', { name: /^More about/ }).click();
+  const download = page.waitForEvent('download');
+  await page.getByRole('link', { name: `.${format}`, exact: true }).click();
+  return readFileSync(await (await download).path(), 'utf8');
 };
 
 for (const { name, format, read } of FILES) {
@@ -63,92 +60,72 @@ for (const { name, format, read } of FILES) {
     station,
   }) => {
     const file = real_file(name);
-    test.skip(
-      file === null,
-      `${name} is not on this machine (ROVERD_REAL_DATA)`,
-    );
+    test.skip(file === null, `${name} is not on this machine (ROVERD_REAL_DATA)`);
     if (file === null) return;
-    const wanted = read(readFileSync(file, "utf8"));
+    const wanted = read(readFileSync(file, 'utf8'));
     expect(wanted.length).toBeGreaterThan(2);
 
     await page.goto(station.url);
-    await tab(page, "Missions");
-    await page.getByLabel("Mission file").setInputFiles(file);
-    await expect(page.getByRole("dialog")).toContainText(
-      `“${basename(file)}” became the mission`,
-    );
-    await page.getByRole("button", { name: "Continue" }).click();
+    await tab(page, 'Missions');
+    await page.getByLabel('Mission file').setInputFiles(file);
+    await expect(page.getByRole('dialog')).toContainText(`“${basename(file)}” became the mission`);
+    await page.getByRole('button', { name: 'Continue' }).click();
 
-    const list = await station.rest<{ items: { id: string }[] }>(
-      "GET",
-      "/missions",
-    );
-    const id = list.items[0]?.id ?? "";
-    const mission = await station.rest<Mission>("GET", `/missions/${id}`);
+    const list = await station.rest<{ items: { id: string }[] }>('GET', '/missions');
+    const id = list.items[0]?.id ?? '';
+    const mission = await station.rest<Mission>('GET', `/missions/${id}`);
     same_places(
-      mission.items.filter(({ type }) => type === "waypoint"),
+      mission.items.filter(({ type }) => type === 'waypoint'),
       wanted,
     );
 
     same_places(read(await export_text(page, format)), wanted);
 
-    await tab(page, "Plan");
+    await tab(page, 'Plan');
     await expect(items(page)).toHaveCount(mission.items.length);
-    await expect(page.locator(".scale-bar")).toHaveText(/\d+ (cm|m|km)/);
+    await expect(page.locator('.scale-bar')).toHaveText(/\d+ (cm|m|km)/);
   });
 }
 
-test("a broken file is refused with the reason, and nothing is stored", async ({
+test('a broken file is refused with the reason, and nothing is stored', async ({
   page,
   station,
 }) => {
   await page.goto(station.url);
-  await tab(page, "Missions");
-  await page.getByLabel("Mission file").setInputFiles({
-    name: "broken.plan",
-    mimeType: "application/json",
+  await tab(page, 'Missions');
+  await page.getByLabel('Mission file').setInputFiles({
+    name: 'broken.plan',
+    mimeType: 'application/json',
     buffer: Buffer.from('{"fileType": "Plan", "mission": {"items": ['),
   });
-  await expect(page.getByLabel("Messages")).toContainText(
-    "“broken.plan” was not imported",
-  );
-  await expect(page.getByText("No missions stored yet.")).toBeVisible();
+  await expect(page.getByLabel('Messages')).toContainText('“broken.plan” was not imported');
+  await expect(page.getByText('No missions stored yet.')).toBeVisible();
 });
 
 /** Pixels of the trail's colour on the map's canvas. */
 const trail_pixels = (page: Page): Promise<number> =>
   page.evaluate(() => {
-    const canvas = document.querySelector<HTMLCanvasElement>("#map canvas");
-    const context = canvas?.getContext("2d");
+    const canvas = document.querySelector<HTMLCanvasElement>('#map canvas');
+    const context = canvas?.getContext('2d');
     if (!canvas || !context) return 0;
     const { data } = context.getImageData(0, 0, canvas.width, canvas.height);
     let count = 0;
     for (let k = 0; k < data.length; k += 4) {
-      if (data[k] === 168 && data[k + 1] === 50 && data[k + 2] === 122)
-        count += 1;
+      if (data[k] === 168 && data[k + 1] === 50 && data[k + 2] === 122) count += 1;
     }
     return count;
   });
 
-test("a recorded RTK receiver is replayed and its track is drawn", async ({
-  page,
-  replay,
-}) => {
+test('a recorded RTK receiver is replayed and its track is drawn', async ({ page, replay }) => {
   test.setTimeout(120_000);
-  const file = real_file("gnss-nmea-rtk.log");
-  test.skip(
-    file === null,
-    "gnss-nmea-rtk.log is not on this machine (ROVERD_REAL_DATA)",
-  );
+  const file = real_file('gnss-nmea-rtk.log');
+  test.skip(file === null, 'gnss-nmea-rtk.log is not on this machine (ROVERD_REAL_DATA)');
   if (file === null) return;
   await page.goto(await replay(file));
-  const position = page.getByRole("group", { name: "Position" });
+  const position = page.getByRole('group', { name: 'Position' });
   await expect(position).toContainText(/RTK fixed|RTK float|GNSS|DGNSS/, {
     timeout: 30_000,
   });
-  for (let k = 0; k < 4; k += 1)
-    await page.getByRole("button", { name: "Zoom in" }).click();
-  await expect
-    .poll(() => trail_pixels(page), { timeout: 60_000 })
-    .toBeGreaterThan(20);
+  for (let k = 0; k < 4; k += 1) await page.getByRole('button', { name: 'Zoom in' }).click();
+  await expect.poll(() => trail_pixels(page), { timeout: 60_000 }).toBeGreaterThan(20);
 });

@@ -1,6 +1,6 @@
 // The page as a person uses it: by what is written on it and by where the map is tapped.
 
-import { expect, type Page } from "@playwright/test";
+import { expect, type Page } from '@playwright/test';
 
 export interface Point {
   readonly lat: number;
@@ -15,40 +15,32 @@ export const metres_between = (a: Point, b: Point): number => {
 };
 
 export const press = (page: Page, name: string): Promise<void> =>
-  page.getByRole("button", { name, exact: true }).click();
+  page.getByRole('button', { name, exact: true }).click();
 
-export const tab = (
-  page: Page,
-  name: "Drive" | "Plan" | "Missions" | "Log",
-): Promise<void> =>
-  page
-    .getByRole("navigation", { name: "Panels" })
-    .getByRole("button", { name })
-    .click();
+export const tab = (page: Page, name: 'Drive' | 'Plan' | 'Missions' | 'Log'): Promise<void> =>
+  page.getByRole('navigation', { name: 'Panels' }).getByRole('button', { name }).click();
 
 /** Opens the page and waits until the robot is on the map. */
 export const open_page = async (page: Page, url: string): Promise<void> => {
   await page.goto(url);
-  await expect(page.getByRole("group", { name: "Link" })).toContainText("Live");
-  await expect(page.getByRole("group", { name: "Position" })).toHaveAttribute(
-    "data-stale",
-    "false",
+  await expect(page.getByRole('group', { name: 'Link' })).toContainText('Live');
+  await expect(page.getByRole('group', { name: 'Position' })).toHaveAttribute(
+    'data-stale',
+    'false',
     { timeout: 30_000 },
   );
 };
 
 /** Where the map is free of panels: its middle, in pixels of the window. */
-export const map_middle = async (
-  page: Page,
-): Promise<readonly [number, number]> => {
+export const map_middle = async (page: Page): Promise<readonly [number, number]> => {
   const box = async (name: string) => {
     const found = await page.locator(name).boundingBox();
     if (!found) throw new Error(`no ${name} on the page`);
     return found;
   };
   const { width, height } = page.viewportSize() ?? { width: 0, height: 0 };
-  const top = await box("header");
-  const panel = await box("main");
+  const top = await box('header');
+  const panel = await box('main');
   const left = width >= 900 ? panel.x + panel.width : 0;
   const bottom = width >= 900 ? height : panel.y;
   return [(left + width) / 2, (top.y + top.height + bottom) / 2];
@@ -60,33 +52,30 @@ export const draw = async (
   places: readonly (readonly [right: number, down: number])[],
 ): Promise<void> => {
   const [x, y] = await map_middle(page);
-  for (const [right, down] of places)
-    await page.mouse.click(x + right, y + down);
+  for (const [right, down] of places) await page.mouse.click(x + right, y + down);
 };
 
 export const items = (page: Page) =>
-  page.getByRole("list", { name: "Items" }).getByRole("listitem");
+  page.getByRole('list', { name: 'Items' }).getByRole('listitem');
 
 export const save = async (page: Page): Promise<void> => {
-  await press(page, "Save");
-  await expect(page.getByLabel("Summary")).toContainText("saved, revision");
+  await press(page, 'Save');
+  await expect(page.getByLabel('Summary')).toContainText('saved, revision');
 };
 
 /** From a drawn and saved mission to a driving robot. */
 export const drive_it = async (page: Page): Promise<void> => {
-  await tab(page, "Drive");
-  await expect(
-    page.getByRole("button", { name: "Arm", exact: true }),
-  ).toBeEnabled();
+  await tab(page, 'Drive');
+  await expect(page.getByRole('button', { name: 'Arm', exact: true })).toBeEnabled();
   // The checks want a settled position; the robot says when.
   await expect(async () => {
-    const disarm = page.getByRole("button", { name: "Disarm", exact: true });
-    if (!(await disarm.isVisible())) await press(page, "Arm");
+    const disarm = page.getByRole('button', { name: 'Disarm', exact: true });
+    if (!(await disarm.isVisible())) await press(page, 'Arm');
     await expect(disarm).toBeVisible({ timeout: 1000 });
   }).toPass({ timeout: 20_000 });
-  await page.getByRole("button", { name: /^Load/ }).click();
-  await press(page, "Start…");
-  await expect(page.getByRole("dialog")).toContainText("Drives to item");
-  await press(page, "Start driving");
-  await expect(page.getByLabel("Mission state")).toHaveText("Running");
+  await page.getByRole('button', { name: /^Load/ }).click();
+  await press(page, 'Start…');
+  await expect(page.getByRole('dialog')).toContainText('Drives to item');
+  await press(page, 'Start driving');
+  await expect(page.getByLabel('Mission state')).toHaveText('Running');
 };

@@ -1,17 +1,17 @@
 // How it looks while a mission runs, on a phone and on a laptop: nothing may overlap, everything that
 // is touched is large enough. UPDATE_SHOTS=1 renews the README's picture.
 
-import { mkdirSync } from "node:fs";
-import { join } from "node:path";
+import { mkdirSync } from 'node:fs';
+import { join } from 'node:path';
 
-import type { Page } from "@playwright/test";
+import type { Page } from '@playwright/test';
 
-import { draw, drive_it, items, open_page, save, tab } from "./page";
-import { expect, test } from "./station";
+import { draw, drive_it, items, open_page, save, tab } from './page';
+import { expect, test } from './station';
 
 const SIZES = [
   {
-    name: "phone",
+    name: 'phone',
     viewport: { width: 390, height: 844 },
     route: [
       [-110, -100],
@@ -21,7 +21,7 @@ const SIZES = [
     ],
   },
   {
-    name: "laptop",
+    name: 'laptop',
     viewport: { width: 1440, height: 900 },
     route: [
       [-260, -190],
@@ -34,7 +34,7 @@ const SIZES = [
 ] as const;
 
 const folder = (): string => {
-  const name = process.env["UPDATE_SHOTS"] === "1" ? "shots" : "results/shots";
+  const name = process.env['UPDATE_SHOTS'] === '1' ? 'shots' : 'results/shots';
   const path = join(__dirname, name);
   mkdirSync(path, { recursive: true });
   return path;
@@ -52,19 +52,13 @@ interface Box {
 const targets = (page: Page): Promise<Box[]> =>
   page.evaluate(() => {
     const found: Box[] = [];
-    for (const element of document.querySelectorAll<HTMLElement>(
-      "button, a.button, select",
-    )) {
+    for (const element of document.querySelectorAll<HTMLElement>('button, a.button, select')) {
       const box = element.getBoundingClientRect();
-      const top = document.elementFromPoint(
-        box.x + box.width / 2,
-        box.y + box.height / 2,
-      );
-      const in_sight =
-        top !== null && (element.contains(top) || top.contains(element));
+      const top = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
+      const in_sight = top !== null && (element.contains(top) || top.contains(element));
       if (box.width === 0 || !in_sight) continue;
       const { x, y, width, height } = box;
-      const what = element.getAttribute("aria-label") ?? element.innerText;
+      const what = element.getAttribute('aria-label') ?? element.innerText;
       found.push({ what, x, y, width, height });
     }
     return found;
@@ -77,16 +71,12 @@ const check_layout = async (page: Page): Promise<void> => {
     expect
       .soft(Math.min(box.width, box.height), `size of “${box.what}”`)
       .toBeGreaterThanOrEqual(44);
-    expect
-      .soft(box.x + box.width, `right edge of “${box.what}”`)
-      .toBeLessThanOrEqual(width);
+    expect.soft(box.x + box.width, `right edge of “${box.what}”`).toBeLessThanOrEqual(width);
   }
-  const stop = boxes.find(({ what }) => what === "Emergency stop");
-  expect(stop, "the stop button is in sight").toBeDefined();
+  const stop = boxes.find(({ what }) => what === 'Emergency stop');
+  expect(stop, 'the stop button is in sight').toBeDefined();
   if (stop) expect(stop.y + stop.height).toBeLessThanOrEqual(height);
-  const overflow = await page.evaluate(
-    () => document.documentElement.scrollWidth,
-  );
+  const overflow = await page.evaluate(() => document.documentElement.scrollWidth);
   expect(overflow).toBeLessThanOrEqual(width);
 };
 
@@ -94,22 +84,19 @@ for (const { name, viewport, route } of SIZES) {
   test.describe(name, () => {
     test.use({
       viewport,
-      hasTouch: name === "phone",
-      deviceScaleFactor: name === "phone" ? 2 : 1,
+      hasTouch: name === 'phone',
+      deviceScaleFactor: name === 'phone' ? 2 : 1,
     });
 
-    test(`a running mission looks right on a ${name}`, async ({
-      page,
-      station,
-    }) => {
+    test(`a running mission looks right on a ${name}`, async ({ page, station }) => {
       test.setTimeout(150_000);
       await open_page(page, station.url);
-      await tab(page, "Plan");
+      await tab(page, 'Plan');
       await draw(page, route);
       await expect(items(page).first()).toBeVisible();
       await check_layout(page);
-      await page.getByLabel("Mission name").fill("Orchard, east rows");
-      await page.getByLabel("Mission name").press("Enter");
+      await page.getByLabel('Mission name').fill('Orchard, east rows');
+      await page.getByLabel('Mission name').press('Enter');
       await save(page);
       await page.screenshot({ path: join(folder(), `${name}-plan.png`) });
       await drive_it(page);
@@ -117,9 +104,9 @@ for (const { name, viewport, route } of SIZES) {
       await page.waitForTimeout(4500);
       await check_layout(page);
       await page.screenshot({
-        path: join(folder(), name === "laptop" ? "page.png" : `${name}.png`),
+        path: join(folder(), name === 'laptop' ? 'page.png' : `${name}.png`),
       });
-      for (const other of ["Missions", "Log"] as const) {
+      for (const other of ['Missions', 'Log'] as const) {
         await tab(page, other);
         await check_layout(page);
       }
@@ -127,16 +114,16 @@ for (const { name, viewport, route } of SIZES) {
   });
 }
 
-test("the first load is under 300 kB compressed", async ({ page, station }) => {
+test('the first load is under 300 kB compressed', async ({ page, station }) => {
   let bytes = 0;
   const session = await page.context().newCDPSession(page);
-  await session.send("Network.enable");
-  session.on("Network.loadingFinished", ({ encodedDataLength }) => {
+  await session.send('Network.enable');
+  session.on('Network.loadingFinished', ({ encodedDataLength }) => {
     bytes += encodedDataLength;
   });
   await page.goto(station.url);
-  await expect(page.getByRole("group", { name: "Link" })).toContainText("Live");
-  await page.waitForLoadState("networkidle");
+  await expect(page.getByRole('group', { name: 'Link' })).toContainText('Live');
+  await page.waitForLoadState('networkidle');
   expect(bytes).toBeGreaterThan(50_000);
   expect(bytes).toBeLessThan(300_000);
 });

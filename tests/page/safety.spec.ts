@@ -1,101 +1,81 @@
 // What must hold when things go wrong: stop, stale data, refusals in the robot's words.
 
-import {
-  draw,
-  drive_it,
-  metres_between,
-  open_page,
-  press,
-  save,
-  tab,
-} from "./page";
-import { expect, test } from "./station";
+import { draw, drive_it, metres_between, open_page, press, save, tab } from './page';
+import { expect, test } from './station';
 
 const FAR = [
   [0, -180],
   [0, -330],
 ] as const;
 
-const drive_north = async (
-  page: Parameters<typeof open_page>[0],
-): Promise<void> => {
-  await tab(page, "Plan");
+const drive_north = async (page: Parameters<typeof open_page>[0]): Promise<void> => {
+  await tab(page, 'Plan');
   await draw(page, FAR);
   await save(page);
   await drive_it(page);
 };
 
-test("the stop button stops the moving robot, latches, and is reset after a question", async ({
+test('the stop button stops the moving robot, latches, and is reset after a question', async ({
   page,
   station,
 }) => {
   test.setTimeout(120_000);
   await open_page(page, station.url);
   await drive_north(page);
-  await expect
-    .poll(() => station.sim.now.speed_mps, { timeout: 30_000 })
-    .toBeGreaterThan(0.3);
+  await expect.poll(() => station.sim.now.speed_mps, { timeout: 30_000 }).toBeGreaterThan(0.3);
 
-  await press(page, "Emergency stop");
+  await press(page, 'Emergency stop');
 
   await expect
     .poll(() => Math.abs(station.sim.now.speed_mps), { timeout: 3000 })
     .toBeLessThan(0.01);
-  await expect(page.getByText("Emergency stop is latched.")).toBeVisible();
-  await expect(page.getByRole("button", { name: "Emergency stop" })).toHaveText(
-    "STOPPED",
-  );
+  await expect(page.getByText('Emergency stop is latched.')).toBeVisible();
+  await expect(page.getByRole('button', { name: 'Emergency stop' })).toHaveText('STOPPED');
   const resting = station.sim.now;
-  await tab(page, "Drive");
-  await expect(
-    page.getByRole("button", { name: "Arm", exact: true }),
-  ).toHaveAttribute("title", /latched/);
+  await tab(page, 'Drive');
+  await expect(page.getByRole('button', { name: 'Arm', exact: true })).toHaveAttribute(
+    'title',
+    /latched/,
+  );
   await page.waitForTimeout(1000);
   expect(metres_between(resting, station.sim.now)).toBeLessThan(0.05);
 
-  await press(page, "Reset stop");
-  await page
-    .getByRole("dialog")
-    .getByRole("button", { name: "Reset", exact: true })
-    .click();
-  await expect(page.getByText("Emergency stop is latched.")).toBeHidden();
-  await expect(page.getByRole("button", { name: "Emergency stop" })).toHaveText(
-    "STOP",
-  );
+  await press(page, 'Reset stop');
+  await page.getByRole('dialog').getByRole('button', { name: 'Reset', exact: true }).click();
+  await expect(page.getByText('Emergency stop is latched.')).toBeHidden();
+  await expect(page.getByRole('button', { name: 'Emergency stop' })).toHaveText('STOP');
 });
 
-test("Esc stops the robot even while a dialog is open and a field has the focus", async ({
+test('Esc stops the robot even while a dialog is open and a field has the focus', async ({
   page,
   station,
 }) => {
   await open_page(page, station.url);
-  await tab(page, "Log");
-  await press(page, "Keys");
-  await expect(page.getByRole("dialog")).toContainText("Emergency stop");
-  await page.keyboard.press("Escape");
-  await expect(page.getByRole("button", { name: "Emergency stop" })).toHaveText(
-    "STOPPED",
-  );
+  await tab(page, 'Log');
+  await press(page, 'Keys');
+  await expect(page.getByRole('dialog')).toContainText('Emergency stop');
+  await page.keyboard.press('Escape');
+  await expect(page.getByRole('button', { name: 'Emergency stop' })).toHaveText('STOPPED');
 });
 
-test("a lost GNSS receiver shows: the value is marked stale with its age, and comes back", async ({
+test('a lost GNSS receiver shows: the value is marked stale with its age, and comes back', async ({
   page,
   station,
 }) => {
   await open_page(page, station.url);
-  const position = page.getByRole("group", { name: "Position" });
+  const position = page.getByRole('group', { name: 'Position' });
   station.sim.tell({ set: { gnss_outage: true } });
-  await expect(position).toHaveAttribute("data-stale", "true", {
+  await expect(position).toHaveAttribute('data-stale', 'true', {
     timeout: 15_000,
   });
-  await expect(position).toContainText("old");
+  await expect(position).toContainText('old');
   station.sim.tell({ set: { gnss_outage: false } });
-  await expect(position).toHaveAttribute("data-stale", "false", {
+  await expect(position).toHaveAttribute('data-stale', 'false', {
     timeout: 20_000,
   });
 });
 
-test("an open but silent stream shows: all is marked old, driving is refused, it recovers", async ({
+test('an open but silent stream shows: all is marked old, driving is refused, it recovers', async ({
   page,
   station,
 }) => {
@@ -108,76 +88,64 @@ test("an open but silent stream shows: all is marked old, driving is refused, it
   });
   await open_page(page, station.url);
   silent = true;
-  const link = page.getByRole("group", { name: "Link" });
-  await expect(link).toHaveAttribute("data-stale", "true");
-  await expect(page.getByRole("group", { name: "Battery" })).toHaveAttribute(
-    "data-stale",
-    "true",
+  const link = page.getByRole('group', { name: 'Link' });
+  await expect(link).toHaveAttribute('data-stale', 'true');
+  await expect(page.getByRole('group', { name: 'Battery' })).toHaveAttribute('data-stale', 'true');
+  await expect(page.getByText('what you see is old')).toBeVisible();
+  await expect(page.getByRole('button', { name: 'Arm', exact: true })).toHaveAttribute(
+    'title',
+    'No live connection to the robot.',
   );
-  await expect(page.getByText("what you see is old")).toBeVisible();
-  await expect(
-    page.getByRole("button", { name: "Arm", exact: true }),
-  ).toHaveAttribute("title", "No live connection to the robot.");
 
   // STOP does not need the stream.
-  await press(page, "Emergency stop");
+  await press(page, 'Emergency stop');
   await expect
-    .poll(
-      async () =>
-        (await station.rest<{ estop: boolean }>("GET", "/vehicle")).estop,
-    )
+    .poll(async () => (await station.rest<{ estop: boolean }>('GET', '/vehicle')).estop)
     .toBe(true);
 
   silent = false;
-  await expect(link).toHaveAttribute("data-stale", "false", {
+  await expect(link).toHaveAttribute('data-stale', 'false', {
     timeout: 15_000,
   });
 });
 
-test("a refused arming lists the failing checks in words", async ({
-  page,
-  station,
-}) => {
+test('a refused arming lists the failing checks in words', async ({ page, station }) => {
   await open_page(page, station.url);
   station.sim.tell({ set: { gnss_outage: true } });
-  await expect(page.getByRole("group", { name: "Position" })).toHaveAttribute(
-    "data-stale",
-    "true",
+  await expect(page.getByRole('group', { name: 'Position' })).toHaveAttribute(
+    'data-stale',
+    'true',
     {
       timeout: 15_000,
     },
   );
-  await press(page, "Arm");
-  const refused = page.getByRole("alert", { name: "Refused" });
-  await expect(refused).toContainText("Arm refused");
-  await expect(refused.getByRole("listitem").first()).toBeVisible();
+  await press(page, 'Arm');
+  const refused = page.getByRole('alert', { name: 'Refused' });
+  await expect(refused).toContainText('Arm refused');
+  await expect(refused.getByRole('listitem').first()).toBeVisible();
 });
 
-test("driving by hand moves the robot while held, and letting go stops it", async ({
+test('driving by hand moves the robot while held, and letting go stops it', async ({
   page,
   station,
 }) => {
   await open_page(page, station.url);
   await expect(async () => {
-    const disarm = page.getByRole("button", { name: "Disarm", exact: true });
-    if (!(await disarm.isVisible())) await press(page, "Arm");
+    const disarm = page.getByRole('button', { name: 'Disarm', exact: true });
+    if (!(await disarm.isVisible())) await press(page, 'Arm');
     await expect(disarm).toBeVisible({ timeout: 1000 });
   }).toPass({ timeout: 20_000 });
-  await press(page, "MANUAL");
+  await press(page, 'MANUAL');
   const pad = page.getByLabel(/^Drive pad/);
   const box = await pad.boundingBox();
-  if (!box) throw new Error("no drive pad");
+  if (!box) throw new Error('no drive pad');
   const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
 
   await page.mouse.move(x, y);
   await page.mouse.down();
   await page.mouse.move(x, y - box.height * 0.45, { steps: 5 });
-  await expect
-    .poll(() => station.sim.now.speed_mps, { timeout: 10_000 })
-    .toBeGreaterThan(0.2);
-  await expect(page.getByRole("group", { name: "Control" })).toContainText(
-    "Page drives",
-  );
+  await expect.poll(() => station.sim.now.speed_mps, { timeout: 10_000 }).toBeGreaterThan(0.2);
+  await expect(page.getByRole('group', { name: 'Control' })).toContainText('Page drives');
 
   await page.mouse.up();
   await expect

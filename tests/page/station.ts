@@ -1,19 +1,18 @@
 // Starts the real programs for a test and ends them again: roverd-sim and roverd, on free ports,
 // with a data folder of their own. The side channel gives the true pose, which roverd never sees.
 
-import { spawn, type ChildProcess } from "node:child_process";
-import { existsSync, mkdtempSync, rmSync } from "node:fs";
-import { connect, type Socket } from "node:net";
-import { tmpdir } from "node:os";
-import { join, resolve } from "node:path";
-import { createInterface } from "node:readline";
+import { spawn, type ChildProcess } from 'node:child_process';
+import { existsSync, mkdtempSync, rmSync } from 'node:fs';
+import { connect, type Socket } from 'node:net';
+import { tmpdir } from 'node:os';
+import { join, resolve } from 'node:path';
+import { createInterface } from 'node:readline';
 
-import { test as base } from "@playwright/test";
+import { test as base } from '@playwright/test';
 
-const ROOT = resolve(__dirname, "../..");
-const BIN = process.env["ROVERD_BIN"] ?? join(ROOT, "build/bin");
-const REAL_DATA =
-  process.env["ROVERD_REAL_DATA"] ?? resolve(ROOT, "../shared/data");
+const ROOT = resolve(__dirname, '../..');
+const BIN = process.env['ROVERD_BIN'] ?? join(ROOT, 'build/bin');
+const REAL_DATA = process.env['ROVERD_REAL_DATA'] ?? resolve(ROOT, '../shared/data');
 const START_LIMIT_MS = 30_000;
 
 /** A file from the field, or null on a machine that does not have it. */
@@ -30,14 +29,11 @@ class Program {
   constructor(name: string, args: readonly string[]) {
     this.#name = name;
     this.#process = spawn(join(BIN, name), args, {
-      stdio: ["ignore", "pipe", "pipe"],
+      stdio: ['ignore', 'pipe', 'pipe'],
     });
-    this.#process.on("error", (cause) => this.#lines.push(String(cause)));
+    this.#process.on('error', (cause) => this.#lines.push(String(cause)));
     for (const stream of [this.#process.stdout, this.#process.stderr]) {
-      if (stream)
-        createInterface({ input: stream }).on("line", (line) =>
-          this.#lines.push(line),
-        );
+      if (stream) createInterface({ input: stream }).on('line', (line) => this.#lines.push(line));
     }
   }
 
@@ -52,18 +48,15 @@ class Program {
       await new Promise((resolve_wait) => setTimeout(resolve_wait, 20));
     }
     throw new Error(
-      `${this.#name} never said ${String(pattern)}: ${this.#lines.slice(-8).join(" | ")}`,
+      `${this.#name} never said ${String(pattern)}: ${this.#lines.slice(-8).join(' | ')}`,
     );
   }
 
   async stop(): Promise<void> {
-    if (this.#process.exitCode !== null || this.#process.signalCode !== null)
-      return;
-    const gone = new Promise((resolve_gone) =>
-      this.#process.once("exit", resolve_gone),
-    );
-    this.#process.kill("SIGTERM");
-    const killer = setTimeout(() => this.#process.kill("SIGKILL"), 5000);
+    if (this.#process.exitCode !== null || this.#process.signalCode !== null) return;
+    const gone = new Promise((resolve_gone) => this.#process.once('exit', resolve_gone));
+    this.#process.kill('SIGTERM');
+    const killer = setTimeout(() => this.#process.kill('SIGKILL'), 5000);
     await gone;
     clearTimeout(killer);
   }
@@ -85,12 +78,12 @@ export class SideChannel {
   readonly track: Truth[] = [];
 
   constructor(address: string) {
-    const [host = "", port = ""] = address.split(":");
+    const [host = '', port = ''] = address.split(':');
     this.#socket = connect({ host, port: Number(port) });
-    this.#socket.on("error", () => undefined);
-    createInterface({ input: this.#socket }).on("line", (text) => {
+    this.#socket.on('error', () => undefined);
+    createInterface({ input: this.#socket }).on('line', (text) => {
       const line = JSON.parse(text) as Partial<Truth>;
-      if (typeof line.lat === "number") this.track.push(line as Truth);
+      if (typeof line.lat === 'number') this.track.push(line as Truth);
     });
     this.tell({ set: { truth_hz: 20 } });
   }
@@ -101,7 +94,7 @@ export class SideChannel {
 
   get now(): Truth {
     const last = this.track.at(-1);
-    if (!last) throw new Error("the side channel has said nothing yet");
+    if (!last) throw new Error('the side channel has said nothing yet');
     return last;
   }
 
@@ -114,34 +107,23 @@ export interface Station {
   readonly url: string;
   readonly sim: SideChannel;
   /** A call to the API that must succeed. */
-  rest<T>(
-    method: string,
-    path: string,
-    body?: unknown,
-    headers?: object,
-  ): Promise<T>;
+  rest<T>(method: string, path: string, body?: unknown, headers?: object): Promise<T>;
 }
 
 const rest_of =
-  (url: string): Station["rest"] =>
-  async <T>(
-    method: string,
-    path: string,
-    body?: unknown,
-    headers: object = {},
-  ) => {
+  (url: string): Station['rest'] =>
+  async <T>(method: string, path: string, body?: unknown, headers: object = {}) => {
     const answer = await fetch(`${url}/api/v1${path}`, {
       method,
-      headers: { "Content-Type": "application/json", ...headers },
+      headers: { 'Content-Type': 'application/json', ...headers },
       ...(body === undefined ? {} : { body: JSON.stringify(body) }),
     });
     const text = await answer.text();
-    if (!answer.ok)
-      throw new Error(`${method} ${path} answers ${answer.status}: ${text}`);
-    return (text === "" ? null : JSON.parse(text)) as T;
+    if (!answer.ok) throw new Error(`${method} ${path} answers ${answer.status}: ${text}`);
+    return (text === '' ? null : JSON.parse(text)) as T;
   };
 
-const config = join(ROOT, "config/robot.toml");
+const config = join(ROOT, 'config/robot.toml');
 
 export const test = base.extend<{
   station: Station;
@@ -149,31 +131,24 @@ export const test = base.extend<{
 }>({
   // eslint-disable-next-line no-empty-pattern
   station: async ({}, use) => {
-    const folder = mkdtempSync(join(tmpdir(), "roverd-page."));
+    const folder = mkdtempSync(join(tmpdir(), 'roverd-page.'));
     const programs: Program[] = [];
     let sim: SideChannel | undefined;
     try {
-      const bus = [
-        "--cansock",
-        join(folder, "can"),
-        "--gnss",
-        "tcp:0",
-        "--control",
-        "0",
-      ];
-      const simulator = new Program("roverd-sim", [...bus, "--seed", "7"]);
+      const bus = ['--cansock', join(folder, 'can'), '--gnss', 'tcp:0', '--control', '0'];
+      const simulator = new Program('roverd-sim', [...bus, '--seed', '7']);
       programs.push(simulator);
-      const [, can, gnss, control = ""] = await simulator.line(
+      const [, can, gnss, control = ''] = await simulator.line(
         /^ready can=(\S+) gnss=(\S+) control=(\S+)/,
       );
       sim = new SideChannel(control);
       const links = [`drivers.bunker.link=${can}`, `drivers.gnss.link=${gnss}`];
-      const roverd = new Program("roverd", [
-        ...["--config", config, "--data", join(folder, "data"), "--port", "0"],
-        ...links.flatMap((setting) => ["--set", setting]),
+      const roverd = new Program('roverd', [
+        ...['--config', config, '--data', join(folder, 'data'), '--port', '0'],
+        ...links.flatMap((setting) => ['--set', setting]),
       ]);
       programs.unshift(roverd);
-      const [, url = ""] = await roverd.line(/^listening on (http:\S+)/);
+      const [, url = ''] = await roverd.line(/^listening on (http:\S+)/);
       await use({ url, sim, rest: rest_of(url) });
     } finally {
       sim?.close();
@@ -183,18 +158,18 @@ export const test = base.extend<{
   },
   // eslint-disable-next-line no-empty-pattern
   replay: async ({}, use) => {
-    const folder = mkdtempSync(join(tmpdir(), "roverd-page."));
+    const folder = mkdtempSync(join(tmpdir(), 'roverd-page.'));
     let roverd: Program | undefined;
     await use(async (file) => {
-      roverd = new Program("roverd", [
-        ...["--config", config, "--data", join(folder, "data"), "--port", "0"],
-        ...["--replay", file, "--replay-speed", "4"],
+      roverd = new Program('roverd', [
+        ...['--config', config, '--data', join(folder, 'data'), '--port', '0'],
+        ...['--replay', file, '--replay-speed', '4'],
       ]);
-      const [, url = ""] = await roverd.line(/^listening on (http:\S+)/);
+      const [, url = ''] = await roverd.line(/^listening on (http:\S+)/);
       return url;
     });
     await roverd?.stop();
     rmSync(folder, { recursive: true, force: true });
   },
 });
-export { expect } from "@playwright/test";
+export { expect } from '@playwright/test';

@@ -16,8 +16,11 @@ export interface DrawnPlan {
 }
 
 const POINT_PX = 14;
-const NUMBER_CELL_PX = 24;
-const DOT_CELL_PX = 7;
+const NUMBERS_APART_PX = 33;
+/** With more points in sight than this, only some numbers are drawn. */
+const CROWD = 150;
+const CROWDED_APART_PX = 90;
+const DOTS_APART_PX = 9;
 /** Segments shorter than this have no handle for a new point in their middle. */
 export const HANDLE_FROM_PX = 72;
 const ARROW_FROM_PX = 110;
@@ -136,13 +139,29 @@ const paint_point = (paint: Paint, x: number, y: number, text: string, style: Po
   context.fillText(text, x, y + 0.5);
 };
 
-/** Marks a cell of the screen as taken. @return false: it was taken before */
-const take_cell = (taken: Set<number>, x: number, y: number, cell_px: number): boolean => {
-  const key = Math.floor(x / cell_px) * 100_003 + Math.floor(y / cell_px);
-  if (taken.has(key)) return false;
-  taken.add(key);
-  return true;
-};
+/** Places on the screen that are taken, each with free room around it. */
+class Room {
+  readonly #taken = new Map<number, PlanePoint>();
+  readonly #apart_px: number;
+
+  constructor(apart_px: number) {
+    this.#apart_px = apart_px;
+  }
+
+  /** @return false: something is nearer than allowed */
+  take(x: number, y: number): boolean {
+    const column = Math.floor(x / this.#apart_px);
+    const row = Math.floor(y / this.#apart_px);
+    for (let c = column - 1; c <= column + 1; c += 1) {
+      for (let r = row - 1; r <= row + 1; r += 1) {
+        const other = this.#taken.get(c * 100_003 + r);
+        if (other && Math.hypot(other[0] - x, other[1] - y) < this.#apart_px) return false;
+      }
+    }
+    this.#taken.set(column * 100_003 + row, [x, y]);
+    return true;
+  }
+}
 
 export interface PlanLook {
   readonly selected: number | null;
@@ -185,23 +204,25 @@ const paint_spot = (
 
 const paint_points = (paint: Paint, drawn: DrawnPlan, line: PlaneLine, look: PlanLook): void => {
   const { context } = paint;
-  const numbers = new Set<number>();
-  const dots = new Set<number>();
-  const numbered: (() => void)[] = [];
-  context.fillStyle = palette().plan;
-  for (const k of by_claim(drawn, look)) {
-    const x = paint.x_px(line.xs[k] ?? 0);
-    const y = paint.y_px(line.ys[k] ?? 0);
-    if (!on_screen(paint, x, y, 30)) continue;
-    if (take_cell(numbers, x, y, NUMBER_CELL_PX)) {
-      const index = drawn.spots[k]?.index ?? 0;
-      numbered.push(() => paint_spot(paint, [x, y], index, drawn.chips[k] ?? 0, look));
-    } else if (take_cell(dots, x, y, DOT_CELL_PX)) {
-      disc(context, x, y, 3);
-      context.fill();
-    }
+  const x_of = (k: number): number => paint.x_px(line.xs[k] ?? 0);
+  const y_of = (k: number): number => paint.y_px(line.ys[k] ?? 0);
+  const seen = [...by_claim(drawn, look)].filter((k) => on_screen(paint, x_of(k), y_of(k), 30));
+  const numbers = new Room(seen.length > CROWD ? CROWDED_APART_PX : NUMBERS_APART_PX);
+  const dots = new Room(DOTS_APART_PX);
+  const numbered: number[] = [];
+  context.beginPath();
+  for (const k of seen) {
+    const x = x_of(k);
+    const y = y_of(k);
+    if (numbers.take(x, y)) numbered.push(k);
+    else if (dots.take(x, y)) context.rect(x - 2.5, y - 2.5, 5, 5);
   }
-  numbered.reverse().forEach((draw) => draw());
+  context.fillStyle = palette().plan;
+  context.fill();
+  for (const k of numbered.reverse()) {
+    const index = drawn.spots[k]?.index ?? 0;
+    paint_spot(paint, [x_of(k), y_of(k)], index, drawn.chips[k] ?? 0, look);
+  }
 };
 
 /** @param line where the points are now: the drawn plan's own line, or one in the middle of a drag */
