@@ -82,35 +82,44 @@ void Driver::open(Time now) {
     owned_link_->on_closed = [this](const std::string& reason) { fail(reason, now_); };
     link_.store(owned_link_.get(), std::memory_order_release);
   }
-  opened_ = now;
-  last_feedback_.reset();
+  last_feedback_ = now;
   v2_seen_ = false;
-  odometry_.forget();
-  // Before open: a link may hand over the first frame from inside it.
   life_.opening("waiting for 0x211 or 0x221");
+  open_ = true;  // before open: a link may hand over the first frame from inside it
   if (const auto opened = owned_link_->open(); !opened) fail(opened.error().detail, now);
 }
 
-void Driver::fail(const std::string& reason, Time now) {
+void Driver::lose(const std::string& reason, Time now) {
   up_.store(false, std::memory_order_release);
   mode_.store(ControlMode::Unknown, std::memory_order_release);
   gate_.permit(false);
-  if (owned_link_) owned_link_->close();
+  odometry_.forget();
   life_.faulty(reason, now);
+}
+
+void Driver::fail(const std::string& reason, Time now) {
+  lose(reason, now);
+  open_ = false;
+  owned_link_->close();
 }
 
 void Driver::tick(Time now) {
   now_ = now;
-  if (life_.phase() == Phase::Up &&
-      base::seconds(now - last_feedback_.value_or(opened_)) > params_.lost_after_s) {
-    fail("no 0x211 or 0x221 for " + seconds_text(params_.lost_after_s), now);
-  } else if (life_.phase() == Phase::Opening &&
-             base::seconds(now - opened_) > params_.silent_reopen_s) {
-    fail("the bus is open but silent: no 0x211 or 0x221", now);
+  if (open_) {
+    check_silence(now);
   } else if (life_.retry_due(now)) {
     open(now);
   }
   report(now);
+}
+
+void Driver::check_silence(Time now) {
+  const double silent_s = base::seconds(now - last_feedback_);
+  if (life_.phase() == Phase::Up && silent_s > params_.lost_after_s) {
+    lose("no 0x211 or 0x221 for " + seconds_text(params_.lost_after_s), now);
+  } else if (params_.silent_reopen_s > 0.0 && silent_s > params_.silent_reopen_s) {
+    fail("the bus is open but silent: no 0x211 or 0x221", now);
+  }
 }
 
 void Driver::report(Time now) {
@@ -128,7 +137,9 @@ void Driver::stop(Time now) {
     transmit(encode(ControlModeCommand{RequestedMode::Standby}), now);
   }
   mode_.store(ControlMode::Unknown, std::memory_order_release);
+  open_ = false;
   if (owned_link_) owned_link_->close();
+  odometry_.forget();
   life_.down();
   report(now);
 }
@@ -152,7 +163,7 @@ base::DriverStatus Driver::status(Time now) const {
 }
 
 void Driver::on_frame(const CanFrame& frame, Time stamp) {
-  if (life_.phase() != Phase::Opening && life_.phase() != Phase::Up) return;
+  if (!open_) return;
   if (refuse_v1(frame, stamp)) return;
   const Decoded decoded = decode(frame, left_stick_);
   if (decoded.verdict == Verdict::TooShort) ++refused_;

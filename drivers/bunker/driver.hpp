@@ -1,10 +1,13 @@
 #pragma once
 // The Bunker on a CAN bus: commands in, measurements out.
 //
-//   Down ─start─▶ Opening ─0x211 or 0x221 heard─▶ Up ─0.5 s of silence, bus down, V1 seen─▶ Faulty
-//                    ▲  └──── open refused, 5 s of silence, V1 seen ──────────────────────▶ │ ▲
-//                    └───────────────────────── back-off over ──────────────────────────────┘
+//   Down ─start─▶ Opening ─0x211 or 0x221 heard─▶ Up ─0.5 s of silence─▶ Faulty ─heard again─▶ Up
+//                    ▲  └── open refused, closed, V1 seen (Up too) ────────▶ │
+//                    └────────── back-off over, if the bus is closed ────────┘
 //   any ─stop─▶ Down: zeros and standby are sent first
+//
+// Silence alone does not close the bus; it is opened again when it stays silent for
+// silent_reopen_s.
 //
 // Control mode, at every send() while Up:
 //
@@ -78,7 +81,11 @@ class Driver {
 
  private:
   void open(Time now);
+  /// The base is not there: nothing but its own voice brings it back.
+  void lose(const std::string& reason, Time now);
+  /// As lose, and the bus is closed, to be opened again after the back-off.
   void fail(const std::string& reason, Time now);
+  void check_silence(Time now);
   void report(Time now);
   void on_frame(const CanFrame& frame, Time stamp);
   /// @return true if the base speaks V1: the driver is then Faulty.
@@ -120,8 +127,8 @@ class Driver {
   // Device thread.
   link::Lifecycle life_;
   Time now_{};  ///< of the last call, for callbacks that carry no time
-  Time opened_{};
-  std::optional<Time> last_feedback_;
+  bool open_ = false;
+  Time last_feedback_{};  ///< or the opening
   std::optional<Time> last_received_;
   bool v2_seen_ = false;
   Odometry odometry_;

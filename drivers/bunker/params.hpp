@@ -37,7 +37,8 @@ void fields(V& v, Params& p) {
     "between two requests for CAN mode while the base is in standby");
   v("stop_frames", p.stop_frames, 1, 50, "zero commands before the base is sent to standby");
   v("odometer_max_mps", p.odometer_max_mps, 0.5, 20.0, "a faster odometer step is impossible");
-  v("silent_reopen_s", p.silent_reopen_s, 1.0, 60.0, "an open but silent bus is opened again");
+  v("silent_reopen_s", p.silent_reopen_s, 0.0, 600.0,
+    "an open but silent bus is opened again; 0: never (recordings with gaps)");
   v("retry_first_s", p.retry_first_s, 0.05, 60.0, "first wait before opening again");
   v("retry_max_s", p.retry_max_s, 0.05, 600.0, "longest wait before opening again");
 }

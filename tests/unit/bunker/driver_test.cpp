@@ -72,10 +72,9 @@ TEST_F(BunkerDriverTest, HalfASecondOfSilenceIsALostBase) {
   driver->tick(now);
   EXPECT_EQ(status().phase, DriverPhase::Faulty);
   EXPECT_EQ(status().reason, "no 0x211 or 0x221 for 0.5 s");
-  // When the back-off is over and the base speaks again
-  now += 500ms;
-  driver->tick(now);
-  EXPECT_EQ(status().phase, DriverPhase::Opening);
+  // When the base speaks again
+  hear(encode(RadioFrame{}));
+  EXPECT_EQ(status().phase, DriverPhase::Faulty) << "a transmitter is no base";
   hear(state(0, 0));
   EXPECT_EQ(status().phase, DriverPhase::Up);
 }
@@ -89,6 +88,17 @@ TEST_F(BunkerDriverTest, AnOpenButSilentBusIsOpenedAgain) {
   driver->tick(now);
   EXPECT_EQ(status().phase, DriverPhase::Faulty);
   EXPECT_EQ(status().reason, "the bus is open but silent: no 0x211 or 0x221");
+}
+
+TEST_F(BunkerDriverTest, ARecordingIsNotBegunAgainInItsGaps) {
+  Params p;
+  p.silent_reopen_s = 0.0;
+  make(p);
+  driver->start(now);
+  now += 3600s;
+  driver->tick(now);
+  EXPECT_TRUE(ours->is_open());
+  EXPECT_EQ(status().phase, DriverPhase::Opening);
 }
 
 TEST_F(BunkerDriverTest, ALinkThatBreaksIsFaultyWithItsReason) {
@@ -229,8 +239,6 @@ TEST_F(BunkerDriverTest, TheOdometerBecomesTravelAndWildStepsAreCounted) {
 TEST_F(BunkerDriverTest, AfterALossTheOdometerBeginsAnew) {
   up(1);
   hear(encode(Odometer{1000, 1000}));
-  now += 600ms;
-  driver->tick(now);
   now += 600ms;
   driver->tick(now);
   hear(state(0, 0));

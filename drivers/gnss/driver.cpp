@@ -1,0 +1,154 @@
+#include "gnss/driver.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace roverd::gnss {
+
+using Phase = base::DriverPhase;
+
+namespace {
+
+/// What looks like a binary frame and is not complete after this long is none.
+constexpr base::Duration kStalled = std::chrono::seconds(1);
+
+EpochOptions epoch_options(const Params& p) {
+  EpochOptions o;
+  o.timeout_s = p.epoch_timeout_s;
+  o.heading_source = p.heading_source == "dual_antenna" ? base::HeadingSource::DualAntenna
+                                                        : base::HeadingSource::Compass;
+  o.heading_offset_deg = p.heading_offset_deg;
+  return o;
+}
+
+}  // namespace
+
+base::Result<void> validate(const Params& params) {
+  if (params.heading_source != "compass" && params.heading_source != "dual_antenna") {
+    return base::fail(base::Code::Invalid, "heading_source must be compass or dual_antenna",
+                      {{"heading_source", "must be compass or dual_antenna"}});
+  }
+  return {};
+}
+
+Driver::Driver(std::string name, const Params& params, MakeLink make_link,
+               OnMeasurement on_measurement)
+    : name_(std::move(name)),
+      params_(params),
+      make_link_(std::move(make_link)),
+      on_measurement_(std::move(on_measurement)),
+      life_(params.retry_first_s, params.retry_max_s),
+      epochs_(epoch_options(params), [this](const base::Measurement& m) { on_measurement_(m); }) {
+  if (const auto valid = validate(params); !valid)
+    throw std::invalid_argument(valid.error().detail);
+}
+
+Driver::~Driver() {
+  if (link_) link_->close();
+}
+
+void Driver::start(Time now) {
+  now_ = now;
+  if (life_.phase() != Phase::Down) return;
+  open(now);
+  report(now);
+}
+
+void Driver::open(Time now) {
+  if (!link_) {
+    auto made = make_link_();
+    if (!made) return life_.faulty(made.error().detail, now);
+    link_ = std::move(*made);
+    link_->on_bytes = [this](Bytes b, Time t) { on_bytes(b, t); };
+    link_->on_closed = [this](const std::string& reason) { fail(reason, now_); };
+  }
+  life_.opening("waiting for a sentence");
+  last_byte_ = last_intact_ = now;
+  open_ = true;  // before open: a link may hand over the first bytes from inside it
+  if (const auto opened = link_->open(); !opened) fail(opened.error().detail, now);
+}
+
+void Driver::fail(const std::string& reason, Time now) {
+  open_ = false;
+  link_->close();
+  epochs_.reset();
+  life_.faulty(reason, now);
+}
+
+void Driver::tick(Time now) {
+  now_ = now;
+  if (open_) {
+    const std::uint64_t intact = decoder_.counts().intact();
+    decoder_.give_up(now - kStalled, [&](const Sentence& s, Time t) { epochs_.add(s, t); });
+    after_bytes(intact, now);
+    epochs_.tick(now);
+    check_silence(now);
+  }
+  if (!open_ && life_.retry_due(now)) open(now);
+  report(now);
+}
+
+void Driver::check_silence(Time now) {
+  const double silent_s = base::seconds(now - last_intact_);
+  if (silent_s <= params_.silent_after_s) return;
+  const bool bytes = base::seconds(now - last_byte_) <= params_.silent_after_s;
+  const std::string reason = bytes ? "bytes but no sentence: wrong baud rate, or not NMEA"
+                                   : "no bytes: the receiver is silent";
+  if (params_.silent_reopen_s > 0.0 && silent_s > params_.silent_reopen_s) {
+    fail(reason, now);
+  } else if (life_.phase() != Phase::Faulty || life_.reason() != reason) {
+    epochs_.reset();
+    life_.faulty(reason, now);
+  }
+}
+
+void Driver::on_bytes(Bytes bytes, Time stamp) {
+  if (!open_) return;
+  last_byte_ = stamp;
+  const std::uint64_t intact = decoder_.counts().intact();
+  decoder_.feed(bytes, stamp, [&](const Sentence& s, Time t) { epochs_.add(s, t); });
+  after_bytes(intact, stamp);
+}
+
+void Driver::after_bytes(std::uint64_t intact_before, Time stamp) {
+  if (decoder_.counts().intact() == intact_before) return;
+  last_intact_ = stamp;
+  last_received_ = stamp;
+  if (life_.phase() == Phase::Up) return;
+  life_.up();
+  report(stamp);
+}
+
+void Driver::report(Time now) {
+  if (life_.report_due(now)) on_measurement_(status(now));
+}
+
+void Driver::stop(Time now) {
+  now_ = now;
+  if (life_.phase() == Phase::Down) return;
+  open_ = false;
+  if (link_) link_->close();
+  epochs_.reset();
+  life_.down();
+  report(now);
+}
+
+void Driver::restart(Time now) {
+  stop(now);
+  start(now);
+}
+
+base::DriverStatus Driver::status(Time now) const {
+  base::DriverStatus s;
+  s.stamp = now;
+  s.name = name_;
+  s.phase = life_.phase();
+  s.reason = life_.reason();
+  s.received = decoder_.counts().used;
+  s.refused = decoder_.counts().damaged;
+  s.last_received = last_received_;
+  return s;
+}
+
+}  // namespace roverd::gnss
