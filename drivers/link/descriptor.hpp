@@ -9,7 +9,7 @@
 // the number just before close() would then write a drive command into somebody else's file. So the
 // number is used under a leaf mutex: close() takes it away there first, waiting at most for one
 // non-blocking system call, and gives it back to the kernel afterwards. The writer only tries the
-// lock; it fails only while the link is being opened or closed.
+// lock; it is taken only while the link is being opened or closed, and the answer is then Busy.
 
 #include <functional>
 #include <memory>
@@ -39,7 +39,8 @@ class WriteHandle {
   template <class Write>
   SendResult use(Write&& write) noexcept {
     std::unique_lock lock(mutex_, std::try_to_lock);
-    if (!lock || fd_ < 0) return SendResult::Closed;
+    if (!lock) return SendResult::Busy;
+    if (fd_ < 0) return SendResult::Closed;
     return write(fd_);
   }
 

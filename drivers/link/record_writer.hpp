@@ -140,12 +140,15 @@ class RecordWriter {
   RecordWriter(const RecordWriter&) = delete;
   RecordWriter& operator=(const RecordWriter&) = delete;
 
-  /// Never waits. Entries marked sent come from one thread, the others from one (other) thread.
+  /// Never waits. Received entries come from one thread. Sent ones mostly too, but a rare command
+  /// of another thread may meet them: the later of the two is then dropped, counted.
   void put(Entry entry) noexcept {
-    auto& ring = rings_[entry.sent ? 1 : 0];
-    if (stopped_.load(std::memory_order_relaxed) || !ring.put(std::move(entry))) {
-      dropped_.fetch_add(1, std::memory_order_relaxed);
+    if (!entry.sent) {
+      count_unless(rings_[0].put(std::move(entry)));
+      return;
     }
+    std::unique_lock one_at_a_time(sent_mutex_, std::try_to_lock);
+    count_unless(one_at_a_time.owns_lock() && rings_[1].put(std::move(entry)));
   }
 
   /// Any thread.
@@ -157,6 +160,10 @@ class RecordWriter {
   }
 
  private:
+  void count_unless(bool taken) noexcept {
+    if (!taken) dropped_.fetch_add(1, std::memory_order_relaxed);
+  }
+
   void run(const std::string& header) {
     write(header, {});
     base::Time synced = base::steady_now();
@@ -217,10 +224,11 @@ class RecordWriter {
   const RecordOptions options_;
   const base::Duration offset_;
   std::array<Ring<Entry>, 2> rings_;  // received, sent
-  std::atomic<bool> stopped_{false};
+  std::mutex sent_mutex_;             // leaf; only ever tried
   std::atomic<std::uint64_t> dropped_{0};
-  std::vector<Entry> batch_;  // writer thread
-  std::string text_;          // writer thread
+  bool stopped_ = false;  // writer thread, like the next two
+  std::vector<Entry> batch_;
+  std::string text_;
   mutable std::mutex mutex_;  // leaf; guards stop_ and status_
   std::condition_variable wake_;
   bool stop_ = false;

@@ -184,10 +184,10 @@ void SocketCanLink::lost(int error) {
   close();
   if (!on_closed) return;
   const std::string name = "CAN interface " + interface_;
-  if (error == ENETDOWN) {
-    on_closed(name + " went down");
-  } else if (error == ENODEV || error == ENXIO) {
+  if (::if_nametoindex(interface_.c_str()) == 0) {  // it goes down first, which may be all we hear
     on_closed(name + " was removed");
+  } else if (error == ENETDOWN) {
+    on_closed(name + " went down");
   } else {
     on_closed(name + ": " + errno_text(error));
   }

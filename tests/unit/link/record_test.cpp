@@ -171,6 +171,10 @@ TEST_F(RecordedFrames, AFullDiskStopsTheRecordingAndNotTheLink) {
   // then recording says why it stopped, once, and the link goes on
   EXPECT_EQ(problem, "recording to " + path + " stopped: File too large");
   EXPECT_EQ(link->send(make_frame(0x111, {4})), SendResult::Sent);
+  const auto end = std::chrono::steady_clock::now() + 20s;
+  while (link->status().dropped == 0 && std::chrono::steady_clock::now() < end) {
+    std::this_thread::yield();
+  }
   EXPECT_GT(link->status().dropped, 0u);
   link.reset();
   EXPECT_EQ(told, 1);

@@ -1,0 +1,129 @@
+// SocketCAN on a real kernel with vcan. A program of its own, socketcan_test, that tests/can runs
+// where the interfaces can be made (as root there); ctest does not know it.
+
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "link/socketcan.hpp"
+#include "tools.hpp"
+
+namespace roverd::link {
+namespace {
+
+constexpr const char* kInterface = "vcan7";
+
+void ip(const std::string& words) {
+  ASSERT_EQ(std::system(("ip link " + words).c_str()), 0) << words;
+}
+
+struct Node {
+  Node(asio::io_context& io, const std::string& interface) : link(io, interface) {
+    link.on_frame = [this](const CanFrame& f, Time t) {
+      heard.push_back(f);
+      stamps.push_back(t);
+    };
+    link.on_closed = [this](const std::string& reason) { closed = reason; };
+  }
+  SocketCanLink link;
+  std::vector<CanFrame> heard;
+  std::vector<Time> stamps;
+  std::string closed;
+};
+
+class Vcan : public testing::Test {
+ protected:
+  void SetUp() override {
+    ip(std::string("add dev ") + kInterface + " type vcan");
+    exists = true;
+    ip(std::string("set ") + kInterface + " up");
+    ASSERT_TRUE(a.link.open());
+    ASSERT_TRUE(b.link.open());
+  }
+  void TearDown() override {
+    if (exists) ip(std::string("delete ") + kInterface);
+  }
+  bool exists = false;
+  asio::io_context io;
+  Node a{io, kInterface};
+  Node b{io, kInterface};
+};
+
+TEST_F(Vcan, FramesOfEveryKindReachTheOthersAndNotTheSender) {
+  CanFrame extended = make_frame(0x18FF1234, {1, 2, 3, 4, 5, 6, 7, 8});
+  extended.extended = true;
+  CanFrame remote = make_frame(0x211, {});
+  remote.remote = true;
+  remote.len = 4;
+  const std::vector<CanFrame> frames{make_frame(0x111, {0, 150}), make_frame(0, {}), extended,
+                                     remote};
+  for (const auto& frame : frames) EXPECT_EQ(a.link.send(frame), SendResult::Sent);
+  ASSERT_TRUE(run_until(io, [&] { return b.heard.size() == frames.size(); }));
+  EXPECT_EQ(b.heard, frames);
+  run_ready(io);
+  EXPECT_TRUE(a.heard.empty());
+}
+
+TEST_F(Vcan, FramesAreStampedWhenTheKernelTookThem) {
+  const Time before = base::steady_now();
+  a.link.send(make_frame(1, {}));
+  const Time after = base::steady_now();
+  while (base::steady_now() < after + std::chrono::milliseconds(50)) {
+  }  // the frame waits unread
+  ASSERT_TRUE(run_until(io, [&] { return !b.stamps.empty(); }));
+  EXPECT_GE(b.stamps[0], before - std::chrono::milliseconds(1));
+  EXPECT_LE(b.stamps[0], after + std::chrono::milliseconds(40));
+}
+
+TEST_F(Vcan, ErrorFramesAreHeardAsSuch) {
+  CanFrame error = make_frame(0x40, {0, 0, 0, 0, 0, 0, 0, 0});  // bus off
+  error.error = true;
+  ASSERT_EQ(a.link.send(error), SendResult::Sent);
+  ASSERT_TRUE(run_until(io, [&] { return !b.heard.empty(); }));
+  EXPECT_EQ(b.heard.at(0), error);
+}
+
+TEST_F(Vcan, AnInterfaceThatGoesDownClosesTheLinkAndIsNamedUntilItIsUp) {
+  const std::string name = std::string("CAN interface ") + kInterface;
+  ip(std::string("set ") + kInterface + " down");
+  ASSERT_TRUE(run_until(io, [&] { return !a.closed.empty() && !b.closed.empty(); }));
+  EXPECT_EQ(a.closed, name + " went down");
+  EXPECT_EQ(a.link.send(make_frame(1, {})), SendResult::Closed);
+  const auto refused = a.link.open();
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().detail.rfind(name + " is down", 0), 0u) << refused.error().detail;
+  ip(std::string("set ") + kInterface + " up");
+  ASSERT_TRUE(a.link.open());
+  ASSERT_TRUE(b.link.open());
+  EXPECT_EQ(a.link.send(make_frame(1, {})), SendResult::Sent);
+  EXPECT_TRUE(run_until(io, [&] { return b.heard.size() == 1; }));
+}
+
+TEST_F(Vcan, AnInterfaceThatIsRemovedClosesTheLink) {
+  const std::string name = std::string("CAN interface ") + kInterface;
+  ip(std::string("delete ") + kInterface);
+  exists = false;
+  ASSERT_TRUE(run_until(io, [&] { return !a.closed.empty(); }));
+  EXPECT_EQ(a.closed, name + " was removed");
+  EXPECT_EQ(a.link.open().error().detail, name + " does not exist");
+}
+
+TEST_F(Vcan, NothingIsHeardAfterClose) {
+  a.link.send(make_frame(1, {}));
+  b.link.close();
+  run_ready(io);
+  EXPECT_TRUE(b.heard.empty());
+  EXPECT_EQ(b.closed, "");
+}
+
+TEST(VcanErrors, AnInterfaceThatIsNotCanIsRefused) {
+  asio::io_context io;
+  EXPECT_EQ(SocketCanLink(io, "lo").open().error().detail,
+            "CAN interface lo is not a CAN interface");
+}
+
+}  // namespace
+}  // namespace roverd::link
