@@ -65,7 +65,10 @@ Parsed parse_options(int argc, const char* const* argv) {
       ->excludes(can);
   app.add_option("--gnss", raw.gnss, "tcp:PORT (0: choose) or pty:PATH of a symbolic link");
   app.add_option("--control", options.control_port, "port of the side channel (0: choose)");
-  app.add_option("--seed", options.seed, "equal seeds repeat a run")->check(CLI::NonNegativeNumber);
+  app.add_option("--seed", options.seed, "equal seeds repeat a run")
+      ->check([](const std::string& text) {
+        return text.starts_with('-') ? std::string("must not be negative") : std::string();
+      });
   app.add_option("--config", raw.config_file, "TOML file");
   app.add_option("--set", raw.overrides, "section.key=value, may be repeated")
       ->allow_extra_args(false);

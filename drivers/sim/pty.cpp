@@ -84,12 +84,20 @@ void Pty::close() noexcept {
 
 link::SendResult Pty::write(base::Bytes bytes) noexcept {
   int unread = 0;
-  if (slave_ >= 0 && ::ioctl(slave_, FIONREAD, &unread) == 0 && unread > kMaxUnread) {
-    ::tcflush(slave_, TCIFLUSH);
-  }
-  return master_.use([&](int fd) {
+  if (slave_ >= 0 && ::ioctl(slave_, FIONREAD, &unread) == 0 && unread > kMaxUnread) drop_unread();
+  const auto once = [&](int fd) {
     return link::write_result(::write(fd, bytes.data(), bytes.size()), bytes.size());
-  });
+  };
+  if (master_.use(once) == link::SendResult::Sent) return link::SendResult::Sent;
+  drop_unread();  // the kernel's own queue was full: nobody has listened for long
+  return master_.use(once);
+}
+
+/// Both what waits at the reader's end and what is still on its way there.
+void Pty::drop_unread() noexcept {
+  if (slave_ < 0 || !master_.is_open()) return;
+  ::tcflush(master_.fd(), TCOFLUSH);
+  ::tcflush(slave_, TCIFLUSH);
 }
 
 /// What the robot writes to the receiver (settings, corrections) is taken and forgotten.

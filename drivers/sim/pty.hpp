@@ -10,10 +10,10 @@
 namespace roverd::sim {
 
 /// Raw in both directions. Nobody need listen: like a serial port without a reader, old bytes are
-/// dropped, at most kMaxUnread stay for the next reader.
+/// dropped; what a late reader still finds is about a second old.
 class Pty final : public link::ByteLink {
  public:
-  static constexpr int kMaxUnread = 2048;
+  static constexpr int kMaxUnread = 2048;  ///< bytes; more are dropped before the next write
 
   /// @param path where the symbolic link is made. One that is there already is replaced; anything
   /// else at that path is left alone and is an error of open().
@@ -28,6 +28,7 @@ class Pty final : public link::ByteLink {
  private:
   base::Result<void> make_symlink(const std::string& device);
   void read();
+  void drop_unread() noexcept;
 
   const std::string path_;
   link::Descriptor master_;
