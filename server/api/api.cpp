@@ -73,6 +73,7 @@ struct Api::Impl {
   Idempotency idempotency;
   std::unique_ptr<StreamTexts> stream;
   int unanswered = 0;
+  std::string docs;  ///< made when first asked for
   std::map<std::string, std::uint64_t> driver_counts;
   base::Time counted;
   std::vector<robot::PendingReply> replies;
@@ -144,8 +145,8 @@ void Api::Impl::route(CallPtr call) {
   if (path.empty()) return serve_page(call, target_parts->path);
   const bool reading = method == http::verb::get || method == http::verb::head;
   if (reading && path == "/docs") {
-    return call->respond(
-        docs_response("text/html; charset=utf-8", docs_page(Json::parse(openapi_text()))));
+    if (docs.empty()) docs = docs_page(Json::parse(openapi_text()));
+    return call->respond(docs_response("text/html; charset=utf-8", docs));
   }
   if (reading && path == "/docs/style.css") {
     return call->respond(docs_response("text/css; charset=utf-8", std::string(docs_style())));

@@ -19,30 +19,15 @@
 #include "api/words.hpp"
 #include "robot/robot.hpp"
 #include "store/store.hpp"
+#include "store/tiles.hpp"
 
 namespace roverd::api {
 
-struct TileSet {
-  std::string set;     ///< name in the address
-  std::string name;    ///< for people
-  std::string format;  ///< png, jpg, webp, pbf
-  int min_zoom = 0;
-  int max_zoom = 0;
-  std::optional<std::array<double, 4>> bounds_deg;  ///< west, south, east, north
-  std::string attribution;
-};
-
-struct Tile {
-  std::string bytes;
-  std::string content_type;
-  std::string content_encoding;  ///< "gzip" for vector tiles, or empty
-};
-
 /// Offline map tiles; both may be empty.
 struct Tiles {
-  std::vector<TileSet> sets;
+  std::vector<store::TileSet> sets;
   /// XYZ numbering. Empty: there is no such tile. Quick: one look into a file.
-  std::function<std::optional<Tile>(const std::string& set, int zoom, int x, int y)> read;
+  std::function<std::optional<store::Tile>(const std::string& set, int zoom, int x, int y)> read;
 };
 
 /// The stream, as the api sees it: net's Hub.

@@ -8,9 +8,9 @@ namespace {
 
 constexpr int kMostZoom = 30;
 
-Json sets_json(const std::vector<TileSet>& sets) {
+Json sets_json(const std::vector<store::TileSet>& sets) {
   Json items = Json::array();
-  for (const TileSet& set : sets) {
+  for (const store::TileSet& set : sets) {
     items.push_back({{"set", set.set},
                      {"name", set.name},
                      {"format", set.format},
@@ -46,7 +46,7 @@ Handler tile(const ContextPtr& context) {
     }
     const std::string& set = call->params.at("set");
     auto found = context->deps.tiles.read ? context->deps.tiles.read(set, zoom, x, y)
-                                          : std::optional<Tile>{};
+                                          : std::optional<store::Tile>{};
     if (!found) {
       return call->respond(problem({base::Code::NotFound, "no such tile in set \"" + set + "\""}));
     }

@@ -1,0 +1,136 @@
+#include "api/words.hpp"
+
+#include <gtest/gtest.h>
+
+#include "api/docs.hpp"
+#include "api/metrics.hpp"
+#include "base/angle.hpp"
+
+namespace roverd::api {
+namespace {
+
+using namespace std::chrono_literals;
+
+base::Time at(base::Duration since_start) {
+  return base::Time(since_start);
+}
+
+TEST(VehicleWords, WhatIsUnknownIsNullAndStale) {
+  // Given a robot that has heard nothing yet,
+  const Json v = vehicle_json(base::Snapshot{}, "bunker", at(10s));
+  // then no number is made up.
+  for (const char* group : {"position", "attitude", "gnss", "base", "battery", "rc"}) {
+    EXPECT_EQ(v[group]["stale"], true) << group;
+    EXPECT_TRUE(v[group]["age_s"].is_null()) << group;
+  }
+  EXPECT_TRUE(v["position"]["lat"].is_null());
+  EXPECT_TRUE(v["position"]["heading_deg"].is_null());
+  EXPECT_TRUE(v["battery"]["battery_v"].is_null());
+  EXPECT_TRUE(v["mission"]["id"].is_null());
+  EXPECT_TRUE(v["home"].is_null());
+  EXPECT_TRUE(v["compass_bias_deg"].is_null());
+  EXPECT_EQ(v["gnss"]["fix"], "none");
+  EXPECT_EQ(v["mode"], "HOLD");
+  EXPECT_EQ(v["control"], "none");
+}
+
+TEST(VehicleWords, YawBecomesHeadingAndRadiansDegrees) {
+  // Given a robot that looks north-east and turns left,
+  //   N   ↗ yaw +π/4, heading 45
+  //   └─ E
+  base::Snapshot s;
+  s.pose = base::Pose{};
+  s.pose->stamp = at(9'900ms);
+  s.pose->global = {58.378020123456, 26.728900987654};
+  s.pose->yaw_rad = base::kPi / 4;
+  s.pose->yaw_rate_radps = 0.1;
+  s.pose->yaw_sigma_rad = base::rad_from_deg(2.0);
+  s.pose->speed_mps = -0.25;
+  s.pose->source = "gnss+odometry";
+  const Json p = vehicle_json(s, "bunker", at(10s))["position"];
+  EXPECT_EQ(p["heading_deg"], 45.0);
+  EXPECT_EQ(p["yaw_rate_dps"], 5.73);
+  EXPECT_EQ(p["heading_accuracy_deg"], 2.0);
+  EXPECT_EQ(p["speed_mps"], -0.25);
+  EXPECT_EQ(p["lat"], 58.378020123);  // 9 decimals
+  EXPECT_EQ(p["lon"], 26.728900988);
+  EXPECT_EQ(p["age_s"], 0.1);
+  EXPECT_EQ(p["stale"], false);
+  // A hair west of north must not round to 360.
+  s.pose->yaw_rad = base::kPi / 2 + 1e-6;
+  EXPECT_EQ(vehicle_json(s, "bunker", at(10s))["position"]["heading_deg"], 0.0);
+}
+
+TEST(VehicleWords, OldValuesStayVisibleAndAreMarked) {
+  base::Snapshot s;
+  s.base = base::BaseStatus{};
+  s.base->stamp = at(9s);
+  s.base->battery_v = 48.2;
+  const Json v = vehicle_json(s, "bunker", at(10s));
+  EXPECT_EQ(v["base"]["stale"], true);  // 1 s is long for 50 frames a second
+  EXPECT_EQ(v["base"]["age_s"], 1.0);
+  EXPECT_EQ(v["battery"]["battery_v"], 48.2);
+  EXPECT_EQ(v["battery"]["stale"], false);  // but not for a voltage
+}
+
+TEST(VehicleWords, AMessageIsAboutOneKilobyte) {
+  base::Snapshot s;
+  s.pose = base::Pose{};
+  s.gnss = base::GnssFix{};
+  s.base = base::BaseStatus{};
+  s.radio = base::RadioState{};
+  const std::string text = vehicle_json(s, "bunker", at(1s)).dump();
+  EXPECT_LT(text.size(), 2500u);
+}
+
+TEST(DriverWords, TellRatesAgesAndCounts) {
+  base::Snapshot s;
+  s.drivers.push_back({at(10s), "gnss", base::DriverPhase::Up, "", 120, 3, 0, at(9'800ms)});
+  const Json list = drivers_json(s, {{"gnss", 5.04}}, at(10s));
+  EXPECT_EQ(list["items"][0]["state"], "up");
+  EXPECT_EQ(list["items"][0]["rate_hz"], 5.0);
+  EXPECT_EQ(list["items"][0]["age_s"], 0.2);
+  EXPECT_EQ(list["items"][0]["refused"], 3);
+  EXPECT_TRUE(list["next_cursor"].is_null());
+}
+
+TEST(MissionWords, HomeIsNullWhenThereIsNone) {
+  store::StoredMission m;
+  m.id = "abc";
+  m.revision = 2;
+  m.plan.name = "field";
+  m.plan.items.push_back(mission::Waypoint{.at = {58.1, 26.1}});
+  const Json out = mission_json(m);
+  EXPECT_TRUE(out["home"].is_null());
+  EXPECT_EQ(out["items"][0]["type"], "waypoint");
+  EXPECT_EQ(out["items"][0]["lat"], 58.1);
+  EXPECT_EQ(out["revision"], 2);
+}
+
+TEST(Metrics, TheLatenessHistogramIsCumulative) {
+  // Given two wake-ups below 1 us, one below 4 us, one beyond everything,
+  auto s = std::make_shared<base::Snapshot>();
+  s->loop.lateness_log2_us[0] = 2;
+  s->loop.lateness_log2_us[2] = 1;
+  s->loop.lateness_log2_us[19] = 1;
+  const std::string text = metrics_text({.snapshot = s, .net = {}, .version = "1.0"});
+  EXPECT_NE(text.find("roverd_loop_lateness_seconds_bucket{le=\"1e-06\"} 2\n"), std::string::npos);
+  EXPECT_NE(text.find("roverd_loop_lateness_seconds_bucket{le=\"4e-06\"} 3\n"), std::string::npos);
+  EXPECT_NE(text.find("roverd_loop_lateness_seconds_bucket{le=\"+Inf\"} 4\n"), std::string::npos);
+  EXPECT_NE(text.find("roverd_loop_lateness_seconds_count 4\n"), std::string::npos);
+  EXPECT_NE(text.find("roverd_info{version=\"1.0\"} 1\n"), std::string::npos);
+}
+
+TEST(Docs, ShowEveryCallAndEveryProblem) {
+  const Json document = Json::parse(openapi_text());
+  const std::string page = docs_page(document);
+  for (const auto& [path, methods] : document["paths"].items()) {
+    EXPECT_NE(page.find("/api/v1" + path), std::string::npos) << path;
+  }
+  EXPECT_NE(page.find("id=\"problem-conflict\""), std::string::npos);
+  EXPECT_NE(page.find("id=\"schema-Vehicle\""), std::string::npos);
+  EXPECT_EQ(page.find("<script"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace roverd::api
