@@ -84,8 +84,7 @@ void EpochAssembler::add(const Sentence& sentence, Time stamp) {
   complete();
 }
 
-EpochAssembler::Epoch& EpochAssembler::epoch_for(Part part, std::optional<double> time_s,
-                                                 Time stamp) {
+Epoch& EpochAssembler::epoch_for(Part part, std::optional<double> time_s, Time stamp) {
   const bool another_time =
       epoch_ && epoch_->time_s && time_s && std::abs(*epoch_->time_s - *time_s) > kSameTime_s;
   if (epoch_ && (another_time || (epoch_->parts & part) != 0)) finish();

@@ -49,6 +49,23 @@ struct EpochOptions {
   double heading_offset_deg = 0.0;  ///< added to what the receiver says
 };
 
+/// What was heard of one epoch so far.
+struct Epoch {
+  Time stamp;
+  Time last;  ///< first byte of its last sentence
+  std::optional<double> time_s;
+  unsigned parts = 0;
+  bool told = false;
+  bool velocity_told = false;
+  bool heading_told = false;
+  base::FixType fix = base::FixType::None;  ///< once told
+  std::optional<Gga> gga;
+  std::optional<Rmc> rmc;
+  std::optional<Vtg> vtg;
+  std::optional<Gst> gst;
+  std::optional<Gns> gns;
+};
+
 class EpochAssembler {
  public:
   using OnMeasurement = std::function<void(const base::Measurement&)>;
@@ -65,22 +82,6 @@ class EpochAssembler {
  private:
   /// Bits of the types that make up an epoch.
   enum Part : unsigned { kGga = 1, kRmc = 2, kVtg = 4, kGst = 8, kGns = 16, kZda = 32 };
-
-  struct Epoch {
-    Time stamp;
-    Time last;  ///< first byte of its last sentence
-    std::optional<double> time_s;
-    unsigned parts = 0;
-    bool told = false;
-    bool velocity_told = false;
-    bool heading_told = false;
-    base::FixType fix = base::FixType::None;  ///< once told
-    std::optional<Gga> gga;
-    std::optional<Rmc> rmc;
-    std::optional<Vtg> vtg;
-    std::optional<Gst> gst;
-    std::optional<Gns> gns;
-  };
 
   Epoch& epoch_for(Part part, std::optional<double> time_s, Time stamp);
   void on_vtg(const Vtg& vtg, Time stamp);
