@@ -1,0 +1,59 @@
+// roverd: reads what it is told, starts the station, serves until a signal comes.
+
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <system_error>
+
+#include "logging.hpp"
+#include "options.hpp"
+#include "settings.hpp"
+#include "station.hpp"
+
+namespace {
+
+/// Exit codes: 1 something on this machine refuses (port, folder, database), 2 wrong arguments or
+/// configuration.
+constexpr int kRefused = 1;
+constexpr int kWrongInput = 2;
+
+int say(int code, const std::string& cause) {
+  std::fprintf(stderr, "roverd: %s\n", cause.c_str());
+  return code;
+}
+
+int serve(const roverd::Options& options) {
+  const auto settings = roverd::load_settings(
+      {.config = options.config, .vehicle = options.vehicle, .overrides = options.overrides});
+  if (!settings) return say(kWrongInput, settings.error().detail);
+  std::error_code ec;
+  std::filesystem::create_directories(options.data, ec);
+  if (ec) return say(kRefused, "data folder " + options.data + ": " + ec.message());
+  const auto log_file = std::filesystem::path(options.data) / "roverd.log";
+  if (auto logging = roverd::start_logging(log_file, settings->server.log_level); !logging) {
+    return say(kRefused, logging.error().detail);
+  }
+  {
+    auto station = roverd::Station::open(*settings, options);
+    if (!station) {
+      roverd::stop_logging();
+      return say(kRefused, station.error().detail);
+    }
+    std::printf("listening on %s\n", (*station)->address().c_str());
+    std::fflush(stdout);
+    (*station)->run();
+  }
+  roverd::stop_logging();
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return serve(roverd::read_options(argc, argv));
+  } catch (const std::exception& error) {
+    return say(kRefused, error.what());
+  }
+}

@@ -1,0 +1,93 @@
+#pragma once
+// Everything a config file, a vehicle profile and the command line can say, as one value.
+// Order, later wins: the code's defaults, the vehicle profile, the config file, --set.
+// An unknown key, a wrong type or a value out of range is an error naming file, line and key.
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/result.hpp"
+#include "bunker/driver.hpp"
+#include "gnss/driver.hpp"
+#include "robot/config.hpp"
+
+namespace roverd {
+
+struct ServerSettings {
+  std::string bind = "127.0.0.1";
+  int port = 8080;
+  std::string log_level = "info";
+};
+
+template <class V>
+void fields(V& v, ServerSettings& p) {
+  v("bind", p.bind, "address to listen on; only loopback until access control is in place");
+  v("port", p.port, 0, 65535, "TCP port; 0 chooses a free one");
+  v("log_level", p.log_level, "debug, info, warning or error");
+}
+
+/// What a person must know of the vehicle; served as GET /vehicle/capabilities.
+struct VehicleSettings {
+  std::string name = "bunker";
+  std::string title = "AgileX Bunker";
+  std::string kinematics = "skid_steer";
+  double length_m = 1.023;
+  double width_m = 0.778;
+  double mass_kg = 150.0;
+};
+
+template <class V>
+void fields(V& v, VehicleSettings& p) {
+  v("name", p.name, "short name, as in --vehicle");
+  v("title", p.title, "name for people");
+  v("kinematics", p.kinematics, "skid_steer");
+  v("length_m", p.length_m, 0.1, 10.0, "over everything");
+  v("width_m", p.width_m, 0.1, 5.0, "over everything");
+  v("mass_kg", p.mass_kg, 0.5, 10'000.0, "unladen");
+}
+
+/// A driver's own wiring; its parameters are in the driver's struct.
+struct DriverWiring {
+  bool enabled = true;
+  std::string link;
+};
+
+template <class V>
+void fields(V& v, DriverWiring& p) {
+  v("enabled", p.enabled, "false: the device is not there");
+  v("link", p.link,
+    "can:IFACE, cansock:PATH, serial:DEVICE:BAUD, tcp:HOST:PORT, udp:PORT, replay:FILE");
+}
+
+struct RecordingSettings {
+  bool enabled = false;
+};
+
+template <class V>
+void fields(V& v, RecordingSettings& p) {
+  v("enabled", p.enabled, "record every input byte under the data folder");
+}
+
+struct Settings {
+  ServerSettings server;
+  VehicleSettings vehicle;
+  RecordingSettings recording;
+  DriverWiring bunker_wiring{true, "can:can0"};
+  DriverWiring gnss_wiring{true, "serial:/dev/ttyACM0:115200"};
+  bunker::Params bunker;
+  gnss::Params gnss;
+  robot::Config robot;
+  std::map<std::string, std::filesystem::path> tiles;  ///< set name → MBTiles file
+};
+
+struct SettingsSource {
+  std::filesystem::path config;        ///< the config file
+  std::string vehicle;                 ///< profile name; empty: what the config says
+  std::vector<std::string> overrides;  ///< "key=value"
+};
+
+base::Result<Settings> load_settings(const SettingsSource& source);
+
+}  // namespace roverd

@@ -1,0 +1,228 @@
+#include "station.hpp"
+
+#include <csignal>
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/signal_set.hpp>
+
+#include "api/api.hpp"
+#include "base/angle.hpp"
+#include "base/log.hpp"
+#include "control_loop.hpp"
+#include "driver_bay.hpp"
+#include "net/assets.hpp"
+#include "net/doorbell.hpp"
+#include "net/hub.hpp"
+#include "net/page.hpp"
+#include "net/server.hpp"
+#include "robot/robot.hpp"
+#include "store/store.hpp"
+#include "store/tiles.hpp"
+#include "version.hpp"
+
+namespace roverd {
+namespace {
+
+namespace asio = boost::asio;
+using base::Result;
+
+constexpr base::Duration kGoodbye = std::chrono::milliseconds(500);
+
+api::Profile profile_of(const Settings& s, const std::vector<std::string>& drivers) {
+  api::Profile profile;
+  profile.name = s.vehicle.name;
+  profile.title = s.vehicle.title;
+  profile.kinematics = s.vehicle.kinematics;
+  profile.length_m = s.vehicle.length_m;
+  profile.width_m = s.vehicle.width_m;
+  profile.mass_kg = s.vehicle.mass_kg;
+  profile.max_speed_mps = std::min(s.bunker.max_linear_mps, s.robot.speed.max_mps);
+  profile.max_yaw_rate_radps = s.bunker.max_angular_radps;
+  profile.max_acceleration_mps2 = s.robot.speed.accel_mps2;
+  profile.pivot_angle_rad = base::rad_from_deg(s.robot.pivot.angle_deg);
+  profile.modes = {base::Mode::Manual, base::Mode::Hold, base::Mode::Auto};
+  profile.drivers = drivers;
+  profile.item_types = {"waypoint", "wait", "speed", "return_home", "jump"};
+  return profile;
+}
+
+/// net's hub behind the callables that api knows.
+api::Stream stream_of(net::Hub& hub) {
+  return {
+      .add_sampled_topic =
+          [&hub](std::string topic, api::Stream::Render render) {
+            hub.add_sampled_topic(std::move(topic), std::move(render));
+          },
+      .add_event_topic = [&hub](std::string topic) { hub.add_event_topic(std::move(topic)); },
+      .subscribe = [&hub](net::ClientId client,
+                          const auto& rates_hz) { hub.subscribe(client, rates_hz); },
+      .publish = [&hub](std::string_view topic,
+                        const api::Stream::Render& render) { hub.publish(topic, render); },
+      .send = [&hub](net::ClientId client, std::string_view text) { hub.send(client, text); },
+      .close = [&hub](net::ClientId client, std::uint16_t code,
+                      std::string_view reason) { hub.close(client, code, reason); },
+  };
+}
+
+net::Handlers handlers_of(api::Api& api) {
+  return {
+      .on_request =
+          [&api](net::Request request, base::Time begun, net::Respond respond) {
+            api.on_request(std::move(request), begun, std::move(respond));
+          },
+      .on_upgrade = [&api](const net::Request& request) { return api.on_upgrade(request); },
+      .on_client = [&api](net::ClientId client) { api.on_client(client); },
+      .on_text = [&api](net::ClientId client, std::string_view text) { api.on_text(client, text); },
+      .on_gone = [&api](net::ClientId client) { api.on_gone(client); },
+      .on_refused = api::Api::on_refused,
+      .on_second = [&api] { api.on_second(); },
+  };
+}
+
+}  // namespace
+
+struct Station::Impl {
+  explicit Impl(const Settings& settings) : robot(settings.robot) {}
+
+  asio::io_context web{net::kWebConcurrency};
+  robot::Robot robot;
+  net::Files page{net::page_entries()};
+  store::TileFolder tiles;
+  std::unique_ptr<DriverBay> bay;
+  std::unique_ptr<store::Store> store;
+  std::unique_ptr<api::Api> api;
+  std::unique_ptr<net::Server> server;
+  std::unique_ptr<net::Doorbell> bell;
+  std::unique_ptr<ControlLoop> loop;
+  asio::signal_set signals{web, SIGINT, SIGTERM};
+  std::string address;
+
+  Result<void> open(const Settings& settings, const Options& options);
+  Result<void> open_store(const Options& options);
+  Result<void> open_server(const Settings& settings, const Options& options);
+  void make_api(const Settings& settings);
+  void start();
+  void halt() noexcept;
+  void stop();
+};
+
+Result<void> Station::Impl::open(const Settings& settings, const Options& options) {
+  auto made = DriverBay::make(settings, options,
+                              [this](const base::Measurement& m) { robot.measurements().put(m); });
+  if (!made) return tl::unexpected(made.error());
+  bay = std::move(*made);
+  if (auto done = tiles.open(settings.tiles); !done) return done;
+  if (auto done = open_store(options); !done) return done;
+  make_api(settings);
+  if (auto done = open_server(settings, options); !done) return done;
+  start();
+  return {};
+}
+
+Result<void> Station::Impl::open_store(const Options& options) {
+  auto opened = store::Store::open(
+      std::filesystem::path(options.data) / "roverd.db",
+      [this](std::function<void()> answer) { asio::post(web, std::move(answer)); });
+  if (!opened) return tl::unexpected(opened.error());
+  store = std::move(*opened);
+  return {};
+}
+
+void Station::Impl::make_api(const Settings& settings) {
+  api::Deps deps{.robot = robot,
+                 .store = *store,
+                 .version = kVersion,
+                 .profile = profile_of(settings, bay->names())};
+  deps.tiles = {tiles.sets(), [this](const std::string& set, int zoom, int x, int y) {
+                  return tiles.read(set, zoom, x, y);
+                }};
+  deps.page = [this](const net::Request& request) { return page.answer(request); };
+  deps.figures = [this] {
+    const net::Stats stats = server->stats();
+    return api::NetFigures{.accepted = stats.accepted,
+                           .refused = stats.refused,
+                           .timed_out = stats.timed_out,
+                           .requests = stats.requests,
+                           .delivered = server->hub().delivered(),
+                           .dropped = server->hub().dropped(),
+                           .connections = stats.connections,
+                           .clients = stats.clients};
+  };
+  api = std::make_unique<api::Api>(std::move(deps));
+}
+
+Result<void> Station::Impl::open_server(const Settings& settings, const Options& options) {
+  const std::string& bind = settings.server.bind;
+  if (auto allowed = api::check_bind_address(bind); !allowed) return allowed;
+  const int port = options.port.value_or(settings.server.port);
+  auto listening = net::Server::listen(web, bind, static_cast<std::uint16_t>(port), net::Limits{},
+                                       handlers_of(*api));
+  if (!listening) return tl::unexpected(listening.error());
+  server = std::move(*listening);
+  api->attach(stream_of(server->hub()));
+  const bool v6 = bind.find(':') != std::string::npos;
+  address = "http://" + (v6 ? "[" + bind + "]" : bind) + ":" + std::to_string(server->port());
+  return {};
+}
+
+void Station::Impl::start() {
+  bell = std::make_unique<net::Doorbell>(web, [this] { api->drain(); });
+  robot.wake = [this] { bell->ring(); };
+  robot.send = [this](const base::DriveCommand& command, base::Time now) {
+    bay->send(command, now);
+  };
+  signals.async_wait([this](const boost::system::error_code& ec, int) {
+    if (!ec) stop();
+  });
+  bay->start();
+  loop = std::make_unique<ControlLoop>(
+      [this](base::Time now, base::WallTime wall, base::Duration lateness) {
+        robot.tick(now, wall, lateness);
+      });
+  base::log(base::Level::Info, "main", "serving", {{"address", address}, {"version", kVersion}});
+}
+
+/// The robot first: no command after this, and the base is told to stand.
+void Station::Impl::halt() noexcept {
+  loop.reset();
+  if (bay) bay->stop();
+}
+
+void Station::Impl::stop() {
+  base::log(base::Level::Info, "main", "stopping");
+  halt();
+  server->stop(kGoodbye, [this] {
+    bell->silence();
+    web.stop();
+  });
+}
+
+Station::Station(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+Station::~Station() {
+  impl_->halt();
+  impl_->server.reset();
+  impl_->store.reset();  // its last answers are posted, and dropped with the io_context
+}
+
+Result<std::unique_ptr<Station>> Station::open(const Settings& settings, const Options& options) {
+  std::unique_ptr<Station> station(new Station(std::make_unique<Impl>(settings)));
+  if (auto done = station->impl_->open(settings, options); !done) {
+    return tl::unexpected(done.error());
+  }
+  return station;
+}
+
+std::string Station::address() const {
+  return impl_->address;
+}
+
+void Station::run() {
+  impl_->web.run();
+}
+
+}  // namespace roverd
