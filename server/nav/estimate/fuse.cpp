@@ -299,6 +299,10 @@ void Estimator::velocity_refused(const base::GnssVelocity& velocity, double ahea
   const double course = std::atan2(velocity.north_mps, velocity.east_mps);
   set_heading(course + (ahead_mps < 0.0 ? base::kPi : 0.0), sigma_mps / speed + 0.05);
   reset_state(belief_, kBias, belief_.x(kBias), base::kPi);
+  // What was driven with the wrong heading went to the wrong place.
+  for (const StateIndex i : {kEast, kNorth}) {
+    reset_state(belief_, i, belief_.x(i), 2.0 + std::sqrt(belief_.P(i, i)));
+  }
   velocity_off_since_.reset();
   ++resets_;
 }

@@ -1,0 +1,242 @@
+// What happens when something is lost: the robot stops, says why, and does not go on by itself.
+// The radio's take-over is the one exception.
+
+#include "rig.hpp"
+
+namespace roverd::loop {
+namespace {
+
+class Loss : public testing::TestWithParam<std::uint64_t> {
+ protected:
+  /// Somewhere on a 20 m line northwards.
+  std::unique_ptr<Rig> driving() {
+    RigOptions o;
+    o.seed = GetParam();
+    auto rig = std::make_unique<Rig>(o);
+    rig->arm_and_start(rig->plan_of({{0, 20}}));
+    EXPECT_TRUE(rig->run_until([&] { return rig->truth().driven_m > 5.0; }, 60.0));
+    return rig;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Loop, Loss, testing::Values(1, 2));
+
+void expect_paused(Rig& rig, const std::string& condition) {
+  EXPECT_TRUE(rig.stands());
+  EXPECT_EQ(rig.execution(), ExecutionState::Paused);
+  EXPECT_EQ(rig.state()->mode, Mode::Hold);
+  EXPECT_NE(rig.state()->mission.reason, "");
+  EXPECT_TRUE(rig.has_condition(condition)) << condition;
+}
+
+TEST_P(Loss, TheEmergencyStopStopsAtOnceAndStaysUntilItIsReset) {
+  auto rig = driving();
+  ASSERT_TRUE(rig->ask(robot::Estop{"anna"}));
+  const auto at = rig->truth().local;
+  rig->run(3.0);
+  EXPECT_TRUE(rig->stands());
+  EXPECT_LT(base::distance_m(at, rig->truth().local), 0.6);
+  EXPECT_TRUE(rig->state()->estop);
+  EXPECT_FALSE(rig->state()->armed);
+  EXPECT_FALSE(rig->ask(robot::ResumeMission{}));
+  EXPECT_FALSE(rig->ask(robot::Arm{}));
+  ASSERT_TRUE(rig->ask(robot::ResetEstop{}));
+  EXPECT_FALSE(rig->state()->armed);
+  EXPECT_EQ(rig->state()->mode, Mode::Hold);
+  ASSERT_TRUE(rig->ask(robot::Arm{}));
+  ASSERT_TRUE(rig->ask(robot::ResumeMission{}));
+  ASSERT_TRUE(rig->finish(60.0));
+  EXPECT_LT(rig->distance_to_m({0, 20}), 0.2);
+}
+
+TEST_P(Loss, TheButtonAtTheBaseLatchesOurStopAndMustBeReleasedFirst) {
+  auto rig = driving();
+  rig->fault([](sim::Faults& f) { f.estop = true; });
+  rig->run(2.0);
+  EXPECT_TRUE(rig->stands());
+  EXPECT_TRUE(rig->state()->estop);
+  EXPECT_TRUE(rig->has_condition("base_estop"));
+  EXPECT_FALSE(rig->ask(robot::ResetEstop{}));
+  rig->fault([](sim::Faults&) {});
+  rig->run(1.0);
+  EXPECT_TRUE(rig->state()->estop);
+  EXPECT_TRUE(rig->ask(robot::ResetEstop{}));
+  EXPECT_FALSE(rig->state()->estop);
+}
+
+TEST_P(Loss, TheRadioTakesOverAndTheMissionGoesOnFromTheSamePlace) {
+  auto rig = driving();
+  sim::Radio radio;
+  radio.swb = base::Switch::Middle;
+  radio.left_lr = 0.6;
+  radio.right_ud = 0.5;
+  rig->plant.set_radio(radio);
+  rig->run(4.0);
+  EXPECT_EQ(rig->state()->control, base::Driver::Radio);
+  EXPECT_EQ(rig->execution(), ExecutionState::Running);
+  EXPECT_EQ(rig->state()->mode, Mode::Auto);
+  EXPECT_GT(std::abs(rig->truth().local.east_m), 0.5);  // the sticks led it off the line
+  EXPECT_EQ(rig->state()->command, base::DriveCommand{});
+  rig->plant.set_radio({});
+  ASSERT_TRUE(rig->finish(90.0)) << rig->state()->mission.reason;
+  EXPECT_LT(rig->distance_to_m({0, 20}), 0.2);
+  EXPECT_TRUE(rig->has_event("radio_takeover"));
+  EXPECT_TRUE(rig->has_event("radio_released"));
+}
+
+TEST_P(Loss, ARadioThatIsLostStopsTheRobotEvenWithoutAFlagFromTheBase) {
+  for (const bool flagged : {true, false}) {
+    auto rig = driving();
+    const auto at = rig->truth().local;
+    rig->fault([&](sim::Faults& f) {
+      f.radio_loss = true;
+      f.radio_loss_unflagged = !flagged;
+    });
+    rig->run(3.0);
+    expect_paused(*rig, "radio_lost");
+    EXPECT_LT(base::distance_m(at, rig->truth().local), 1.5);
+    rig->fault([](sim::Faults&) {});
+    rig->run(3.0);
+    EXPECT_TRUE(rig->stands());
+    EXPECT_EQ(rig->execution(), ExecutionState::Paused);
+    ASSERT_TRUE(rig->ask(robot::ResumeMission{}));
+    ASSERT_TRUE(rig->finish(90.0));
+    EXPECT_LT(rig->distance_to_m({0, 20}), 0.2);
+  }
+}
+
+TEST_P(Loss, ARadioWhoseCounterStandsStillCountsAsLost) {
+  auto rig = driving();
+  rig->fault([](sim::Faults& f) {
+    f.radio_freeze = true;
+    f.radio_loss_unflagged = true;
+  });
+  rig->run(3.0);
+  expect_paused(*rig, "radio_lost");
+}
+
+TEST_P(Loss, ABusThatGoesSilentStopsTheRobotAndItSaysSo) {
+  auto rig = driving();
+  rig->fault([](sim::Faults& f) { f.bus_off = true; });
+  rig->run(3.0);
+  expect_paused(*rig, "base_lost");
+  rig->fault([](sim::Faults&) {});
+  rig->run(5.0);
+  EXPECT_TRUE(rig->stands());
+  EXPECT_EQ(rig->execution(), ExecutionState::Paused);
+  EXPECT_FALSE(rig->has_condition("base_lost"));
+  ASSERT_TRUE(rig->ask(robot::ResumeMission{}));
+  ASSERT_TRUE(rig->finish(90.0)) << rig->state()->mission.reason;
+  EXPECT_LT(rig->distance_to_m({0, 20}), 0.2);
+}
+
+TEST_P(Loss, OneFrameInTwentyMayGetLost) {
+  RigOptions o;
+  o.seed = GetParam();
+  Rig rig(o);
+  rig.fault([](sim::Faults& f) {
+    f.loss_to_base = 0.05;
+    f.loss_from_base = 0.05;
+  });
+  rig.arm_and_start(rig.plan_of({{0, 6}, {6, 6}}));
+  ASSERT_TRUE(rig.finish(90.0)) << rig.state()->mission.reason;
+  EXPECT_LT(rig.nearest_m({0, 6}), 0.3);
+  EXPECT_LT(rig.distance_to_m({6, 6}), 0.3);
+}
+
+TEST_P(Loss, AShortOutageOfGnssIsDrivenThroughSlowlyALongOneStops) {
+  auto rig = driving();
+  rig->fault([](sim::Faults& f) { f.gnss_outage = true; });
+  rig->run(4.0);
+  EXPECT_EQ(rig->execution(), ExecutionState::Running);
+  EXPECT_TRUE(rig->has_condition("gnss_lost"));
+  EXPECT_LT(rig->truth().twist.linear_mps, 0.5);
+  rig->fault([](sim::Faults&) {});
+  rig->run(2.0);
+  EXPECT_EQ(rig->execution(), ExecutionState::Running);
+  EXPECT_FALSE(rig->has_condition("gnss_lost"));
+  rig->fault([](sim::Faults& f) { f.gnss_silent = true; });
+  rig->run(10.0);
+  EXPECT_TRUE(rig->stands());
+  EXPECT_EQ(rig->execution(), ExecutionState::Paused);
+  EXPECT_LT(rig->farthest_from_line_m({0, 0}, {0, 20}), 0.5);
+}
+
+TEST_P(Loss, AJumpOfGnssForFiveSecondsDoesNotMoveTheRobot) {
+  auto rig = driving();
+  rig->fault([](sim::Faults& f) {
+    f.gnss_jump_east_m = 3.0;
+    f.gnss_jump_s = 5.0;
+  });
+  rig->run(5.0);
+  EXPECT_LT(rig->position_error_m(), 0.5);
+  ASSERT_TRUE(rig->run_until([&] { return rig->execution() == ExecutionState::Finished; }, 90.0))
+      << rig->state()->mission.reason;
+  EXPECT_LT(rig->farthest_from_line_m({0, 0}, {0, 20}), 0.5);
+}
+
+TEST_P(Loss, ARobotThatIsHeldFastSaysThatItIsBlocked) {
+  auto rig = driving();
+  auto p = rig->plant.params();
+  p.drive.max_linear_mps = p.drive.max_angular_radps = 0.0;  // as if the tracks were chained
+  rig->plant.set_params(p);
+  rig->run(20.0);
+  EXPECT_EQ(rig->execution(), ExecutionState::Blocked);
+  EXPECT_NE(rig->state()->mission.reason.find("no progress"), std::string::npos);
+  EXPECT_EQ(rig->state()->command.twist, base::BodyTwist{});
+}
+
+TEST_P(Loss, AnEmptyBatteryStopsTheMission) {
+  auto rig = driving();
+  rig->plant.set_battery_pct(4.0);
+  rig->run(4.0);
+  EXPECT_TRUE(rig->stands());
+  EXPECT_EQ(rig->execution(), ExecutionState::Paused);
+  EXPECT_TRUE(rig->has_condition("battery"));
+}
+
+TEST(LossOnce, DrivingByHandStopsWithoutFreshCommandsAndWantsTheHandleLetGo) {
+  Rig rig({});
+  rig.arm();
+  ASSERT_TRUE(rig.ask(robot::SetMode{Mode::Manual}));
+  for (int i = 0; i < 100; ++i) {
+    rig.drive(0.5, 0.0);
+    rig.tick();
+  }
+  EXPECT_EQ(rig.state()->control, base::Driver::Teleop);
+  EXPECT_GT(rig.truth().twist.linear_mps, 0.3);
+  rig.run(1.5);
+  EXPECT_TRUE(rig.stands());
+  EXPECT_TRUE(rig.has_condition("teleop_stale"));
+  for (int i = 0; i < 50; ++i) {
+    rig.drive(0.5, 0.0);
+    rig.tick();
+  }
+  EXPECT_TRUE(rig.stands());
+  rig.drive(0.0, 0.0, false);
+  for (int i = 0; i < 50; ++i) {
+    rig.tick();
+    rig.drive(0.5, 0.0);
+  }
+  EXPECT_GT(rig.truth().twist.linear_mps, 0.3);
+  rig.drive(0.5, 0.0, false);
+  rig.run(1.0);
+  EXPECT_TRUE(rig.stands());
+}
+
+TEST(LossOnce, NothingMovesThatIsNotArmed) {
+  Rig rig({});
+  rig.run(8.0);
+  rig.load(rig.plan_of({{0, 5}}));
+  EXPECT_FALSE(rig.ask(robot::StartMission{"m1", 1}));
+  EXPECT_FALSE(rig.ask(robot::SetMode{Mode::Auto}));
+  ASSERT_TRUE(rig.ask(robot::SetMode{Mode::Manual}));
+  for (int i = 0; i < 100; ++i) {
+    rig.drive(0.5, 0.2);
+    rig.tick();
+  }
+  EXPECT_LT(rig.truth().driven_m, 0.001);
+  EXPECT_EQ(rig.truth().commands, 0u);
+}
+
+}  // namespace
+}  // namespace roverd::loop

@@ -1,0 +1,387 @@
+#include "nav/estimate/estimator.hpp"
+
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <random>
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include "base/angle.hpp"
+
+namespace roverd::nav {
+namespace {
+
+using base::rad_from_deg;
+using std::chrono::milliseconds;
+
+constexpr base::LatLon kOrigin{58.378, 26.729};
+
+/// A robot on rails: says what it does to an estimator, with the delays that this one assumes.
+class Drive {
+ public:
+  explicit Drive(const EstimateParams& params = {}) : estimator(params), params_(params) {}
+
+  double speed_mps = 0.0;
+  double rate_radps = 0.0;
+  double east_m = 0.0;
+  double north_m = 0.0;
+  double yaw_rad = base::kPi / 2.0;
+  double compass_bias_rad = 0.0;
+  double slip = 1.0;       ///< true over measured travel
+  double yaw_scale = 0.8;  ///< true over measured turning
+  base::FixType fix = base::FixType::RtkFixed;
+  bool gnss = true;
+  bool compass = true;
+  bool tracks = true;
+  double offset_east_m = 0.0;
+  double noise_m = 0.0;
+  Estimator estimator;
+
+  Time now() const { return now_; }
+  std::optional<base::Pose> pose() const { return estimator.pose(now_); }
+
+  void run(double seconds) {
+    const int ticks = static_cast<int>(std::lround(seconds * 50.0));
+    for (int i = 0; i < ticks; ++i) tick();
+  }
+
+  double position_error_m() const {
+    const auto p = pose();
+    return base::distance_bearing(p->global, frame_.to_global({east_m, north_m})).distance_m;
+  }
+  double yaw_error_deg() const {
+    return base::deg_from_rad(base::angle_diff_rad(yaw_rad, pose()->yaw_rad));
+  }
+
+  void tick() {
+    now_ += milliseconds(20);
+    const double dt = 0.02;
+    const double middle = yaw_rad + 0.5 * rate_radps * dt;
+    east_m += speed_mps * dt * std::cos(middle);
+    north_m += speed_mps * dt * std::sin(middle);
+    yaw_rad = base::wrap_rad(yaw_rad + rate_radps * dt);
+    if (tracks) {
+      const double ahead = speed_mps / slip * dt;
+      const double half = 0.5 * params_.track_width_m * rate_radps / yaw_scale * dt;
+      estimator.take(base::WheelTravel{now_, ahead - half, ahead + half}, now_);
+      estimator.take(base::BaseMotion{now_, {speed_mps / slip, rate_radps / yaw_scale}}, now_);
+    }
+    if (++count_ % 10 == 0) sense();
+    deliver();
+    estimator.advance(now_);
+  }
+
+ private:
+  struct Seen {
+    Time due;
+    double east_m, north_m, yaw_rad, ve, vn;
+  };
+
+  void sense() {
+    seen_.push_back({now_ + base::from_seconds(params_.gnss_latency_s),
+                     east_m + offset_east_m + noise_m * normal_(random_),
+                     north_m + noise_m * normal_(random_), yaw_rad, speed_mps * std::cos(yaw_rad),
+                     speed_mps * std::sin(yaw_rad)});
+  }
+  void deliver() {
+    while (!seen_.empty() && seen_.front().due <= now_) {
+      const Seen s = seen_.front();
+      seen_.pop_front();
+      if (compass) {
+        const double shown = base::wrap_rad(s.yaw_rad + compass_bias_rad);
+        estimator.take(base::Heading{now_, shown, base::HeadingSource::Compass}, now_);
+      }
+      if (!gnss) continue;
+      base::GnssFix f;
+      f.stamp = now_;
+      f.fix = fix;
+      f.position = frame_.to_global({s.east_m, s.north_m});
+      estimator.take(f, now_);
+      estimator.take(base::GnssVelocity{now_, s.ve, s.vn, {}}, now_);
+    }
+  }
+
+  EstimateParams params_;
+  base::LocalFrame frame_{7, kOrigin};
+  Time now_{};
+  int count_ = 0;
+  std::deque<Seen> seen_;
+  std::mt19937_64 random_{4};
+  std::normal_distribution<double> normal_;
+};
+
+TEST(Estimator, KnowsNothingBeforeTheFirstUsableFix) {
+  Drive d;
+  d.fix = base::FixType::Estimated;
+  d.run(3.0);
+  EXPECT_FALSE(d.pose());
+  d.fix = base::FixType::Single;
+  d.run(1.0);
+  ASSERT_TRUE(d.pose());
+  EXPECT_EQ(d.estimator.frame()->id(), 1u);
+  EXPECT_GT(d.pose()->horizontal_sigma_m, 1.0);
+}
+
+TEST(Estimator, ACompassTwentyDegreesOffIsFoundOutWithinFiveMetres) {
+  for (const double bias_deg : {-20.0, 20.0}) {
+    Drive d;
+    d.compass_bias_rad = rad_from_deg(bias_deg);
+    d.run(3.0);
+    EXPECT_NEAR(d.yaw_error_deg(), bias_deg, 4.0);  // standing, the compass is all there is
+    EXPECT_GT(d.pose()->yaw_sigma_rad, rad_from_deg(10.0));
+    d.speed_mps = 0.5;
+    d.run(10.0);
+    EXPECT_LT(std::abs(d.yaw_error_deg()), 1.0);
+    EXPECT_NEAR(base::deg_from_rad(d.estimator.health().compass_bias_rad), bias_deg, 3.0);
+  }
+}
+
+TEST(Estimator, ABiasThatChangesDuringATurnOnTheSpotIsLearnedAgain) {
+  Drive d;
+  d.speed_mps = 0.8;
+  d.run(15.0);
+  d.speed_mps = 0.0;
+  d.rate_radps = 0.5;
+  d.compass_bias_rad = rad_from_deg(15.0);
+  d.run(3.0);
+  d.rate_radps = 0.0;
+  d.speed_mps = 0.4;
+  d.run(6.0);
+  EXPECT_LT(std::abs(d.yaw_error_deg()), 2.0);
+}
+
+TEST(Estimator, LearnsHowMuchTheTracksSlipInStraightsAndTurns) {
+  Drive d;
+  d.slip = 0.9;
+  d.yaw_scale = 0.6;
+  for (int i = 0; i < 8; ++i) {
+    d.speed_mps = 0.8;
+    d.rate_radps = 0.0;
+    d.run(6.0);
+    d.speed_mps = 0.3;
+    d.rate_radps = 0.4;
+    d.run(4.0);
+  }
+  EXPECT_NEAR(d.estimator.health().odometry_scale, 0.9, 0.02);
+  EXPECT_NEAR(d.estimator.yaw_scale(), 0.6, 0.05);
+}
+
+TEST(Estimator, DrivingBackwardsDoesNotTurnTheHeadingRound) {
+  Drive d;
+  d.speed_mps = -0.6;
+  d.run(20.0);
+  EXPECT_LT(std::abs(d.yaw_error_deg()), 1.0);
+  EXPECT_LT(d.position_error_m(), 0.05);
+  EXPECT_LT(d.pose()->speed_mps, -0.5);
+}
+
+TEST(Estimator, FindsTheHeadingByDrivingWhenThereIsNoCompass) {
+  for (const double speed : {0.4, -0.4}) {
+    Drive d;
+    d.compass = false;
+    d.yaw_rad = 2.5;
+    d.run(2.0);
+    EXPECT_FALSE(d.estimator.heading_known());
+    EXPECT_NEAR(d.pose()->yaw_sigma_rad, base::kPi, 1e-9);
+    d.speed_mps = speed;
+    d.run(4.0);
+    EXPECT_LT(std::abs(d.yaw_error_deg()), 2.0);
+  }
+}
+
+TEST(Estimator, AHeadingWrongByHalfATurnIsSetAnewFromTheCourse) {
+  Drive d;
+  d.compass_bias_rad = base::kPi;
+  d.run(2.0);
+  d.speed_mps = 0.5;
+  d.run(6.0);
+  EXPECT_LT(std::abs(d.yaw_error_deg()), 3.0);
+  EXPECT_GE(d.estimator.health().resets, 1u);
+}
+
+TEST(Estimator, ThirtySecondsWithoutGnssDriftLittleAndSaySo) {
+  Drive d;
+  d.speed_mps = 0.8;
+  d.run(30.0);
+  d.gnss = false;
+  d.run(30.0);
+  EXPECT_EQ(d.pose()->source, "odometry");
+  EXPECT_LT(d.position_error_m(), 0.5);
+  EXPECT_GT(d.pose()->horizontal_sigma_m, 0.1);
+}
+
+TEST(Estimator, AJumpOfThreeMetresForFiveSecondsIsRefused) {
+  Drive d;
+  d.speed_mps = 0.5;
+  d.run(15.0);
+  d.offset_east_m = 3.0;
+  d.run(5.0);
+  EXPECT_LT(d.position_error_m(), 0.1);
+  EXPECT_GT(d.estimator.health().rejected, 10u);
+  d.offset_east_m = 0.0;
+  d.run(2.0);
+  EXPECT_EQ(d.estimator.health().resets, 0u);
+}
+
+TEST(Estimator, AJumpThatStaysIsBelievedAfterTenSecondsAndCounted) {
+  Drive d;
+  d.speed_mps = 0.5;
+  d.run(15.0);
+  d.offset_east_m = 3.0;
+  d.run(14.0);
+  EXPECT_NEAR(d.position_error_m(), 3.0, 0.1);
+  EXPECT_EQ(d.estimator.health().resets, 1u);
+}
+
+TEST(Estimator, AJumpBeyondTwentyFiveMetresIsBelievedSooner) {
+  Drive d;
+  d.run(5.0);
+  d.offset_east_m = 100.0;
+  d.run(2.0);
+  EXPECT_NEAR(d.position_error_m(), 100.0, 0.1);
+  EXPECT_EQ(d.estimator.health().resets, 1u);
+}
+
+TEST(Estimator, StandingStillHoldsPositionAndYawAgainstADriftingReceiver) {
+  Drive d;
+  d.fix = base::FixType::Single;
+  d.speed_mps = 0.5;
+  d.run(20.0);
+  d.speed_mps = 0.0;
+  d.run(3.0);
+  const auto before = d.pose();
+  for (int i = 0; i < 600; ++i) {
+    d.offset_east_m = 1.5 * std::sin(i * 0.02);
+    d.compass_bias_rad = rad_from_deg(3.0) * std::sin(i * 0.05);
+    d.run(1.0);
+  }
+  EXPECT_LT(base::distance_m(before->at, d.pose()->at), 0.05);
+  EXPECT_LT(std::abs(base::angle_diff_rad(before->yaw_rad, d.pose()->yaw_rad)), 0.002);
+}
+
+TEST(Estimator, AWorseFixOpensTheOffsetInsteadOfMovingTheRobot) {
+  Drive d;
+  d.speed_mps = 0.5;
+  d.run(20.0);
+  d.fix = base::FixType::Single;
+  d.offset_east_m = 1.0;
+  d.run(5.0);
+  EXPECT_LT(d.position_error_m(), 0.5);
+  d.fix = base::FixType::RtkFixed;
+  d.offset_east_m = 0.0;
+  d.run(5.0);
+  EXPECT_LT(d.position_error_m(), 0.05);
+}
+
+TEST(Estimator, WorksWithAReceiverAloneAndSaysSo) {
+  Drive d;
+  d.tracks = false;
+  d.compass = false;
+  d.fix = base::FixType::Single;
+  d.speed_mps = 1.2;
+  d.run(20.0);
+  ASSERT_TRUE(d.pose());
+  EXPECT_EQ(d.pose()->source, "gnss");
+  EXPECT_LT(d.position_error_m(), 0.5);
+  EXPECT_LT(std::abs(d.yaw_error_deg()), 10.0);
+  EXPECT_NEAR(d.pose()->speed_mps, 1.2, 0.1);
+}
+
+TEST(Estimator, RefusesAndCountsWhatCannotBe) {
+  Drive d;
+  d.run(3.0);
+  const auto before = d.estimator.belief().x;
+  const auto rejected = d.estimator.health().rejected;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double inf = std::numeric_limits<double>::infinity();
+  const Time now = d.now();
+  base::GnssFix fix;
+  fix.fix = base::FixType::RtkFixed;
+  fix.stamp = now + milliseconds(1);
+  fix.position = base::LatLon{nan, 26.0};
+  d.estimator.take(fix, now);
+  fix.stamp = now + std::chrono::seconds(1);  // from the future
+  fix.position = base::LatLon{58.4, 26.8};
+  d.estimator.take(fix, now);
+  fix.stamp = now - std::chrono::seconds(2);  // older than the last one
+  d.estimator.take(fix, now);
+  d.estimator.take(base::GnssVelocity{now, inf, 0.0, {}}, now);
+  d.estimator.take(base::Heading{now, nan, base::HeadingSource::Compass}, now);
+  d.estimator.take(base::WheelTravel{now + milliseconds(1), nan, 0.0}, now);
+  d.estimator.take(base::WheelTravel{now, 0.0, 0.0}, now);  // doubled stamp
+  d.estimator.take(base::WheelTravel{now + milliseconds(2), 500.0, 500.0}, now);
+  d.estimator.take(base::BaseMotion{now + milliseconds(3), {nan, 0.0}}, now);
+  EXPECT_EQ(d.estimator.health().rejected - rejected, 9u);
+  EXPECT_EQ(before, d.estimator.belief().x);
+}
+
+TEST(Estimator, TheCovarianceStaysSymmetricAndPositiveForAVeryLongTime) {
+  Drive d;
+  d.noise_m = 0.02;
+  d.fix = base::FixType::RtkFloat;
+  for (int i = 0; i < 400; ++i) {
+    d.speed_mps = i % 3 == 0 ? 0.0 : 0.8;
+    d.rate_radps = i % 5 == 0 ? 0.5 : i % 7 == 0 ? -0.4 : 0.0;
+    d.run(5.0);
+    const StateMatrix& P = d.estimator.belief().P;
+    ASSERT_TRUE(P.allFinite());
+    ASSERT_LT((P - P.transpose()).norm(), 1e-12);
+    const Eigen::SelfAdjointEigenSolver<StateMatrix> solver(P);
+    ASSERT_GT(solver.eigenvalues().minCoeff(), -1e-12);
+  }
+}
+
+// The error, measured with the filter's own idea of it, stays of the size that it claims.
+TEST(Estimator, ItsCertaintyMatchesItsError) {
+  double worse = 0.0;
+  int count = 0;
+  for (int run = 0; run < 10; ++run) {
+    Drive d;
+    d.noise_m = 0.015;
+    d.compass_bias_rad = rad_from_deg(5.0 * (run - 5));
+    d.slip = 0.9 + 0.02 * run;
+    for (int i = 0; i < 20; ++i) {
+      d.speed_mps = 0.7;
+      d.rate_radps = i % 4 == 3 ? 0.3 : 0.0;
+      d.run(2.0);
+      if (i < 4) continue;
+      const double sigma = std::max(0.005, d.pose()->horizontal_sigma_m);
+      worse += std::pow(d.position_error_m() / sigma, 2);
+      ++count;
+    }
+  }
+  EXPECT_LT(worse / count, 3.0);  // 2 degrees of freedom
+}
+
+TEST(GnssQuality, TakesTheFloorOfTheClassUnlessTheReceiverClaimsLess) {
+  base::GnssFix fix;
+  fix.fix = base::FixType::RtkFixed;
+  fix.position = kOrigin;
+  fix.sigma_east_m = 0.001;
+  fix.sigma_north_m = 0.08;
+  const auto q = gnss_quality(fix, true, 1.0);
+  ASSERT_TRUE(q);
+  EXPECT_DOUBLE_EQ(q->sigma_east_m, 0.015);
+  EXPECT_DOUBLE_EQ(q->sigma_north_m, 0.08);
+  EXPECT_DOUBLE_EQ(q->drift.sigma_m, 0.0);
+  EXPECT_GT(gnss_quality(fix, false, 1.0)->sigma_east_m, 0.05);
+}
+
+TEST(GnssQuality, ScalesByHdopAndRefusesWhatIsNoFix) {
+  base::GnssFix fix;
+  fix.fix = base::FixType::Single;
+  fix.position = kOrigin;
+  fix.hdop = 3.0;
+  EXPECT_DOUBLE_EQ(gnss_quality(fix, true, 1.0)->sigma_east_m, 3.0);
+  EXPECT_GT(gnss_quality(fix, true, 1.0)->drift.sigma_m, 0.5);
+  fix.fix = base::FixType::Estimated;
+  EXPECT_FALSE(gnss_quality(fix, true, 1.0));
+  fix.fix = base::FixType::Single;
+  fix.position.reset();
+  EXPECT_FALSE(gnss_quality(fix, true, 1.0));
+}
+
+}  // namespace
+}  // namespace roverd::nav

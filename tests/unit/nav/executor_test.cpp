@@ -1,0 +1,295 @@
+#include "nav/behave/executor.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "base/angle.hpp"
+
+namespace roverd::nav {
+namespace {
+
+using base::ExecutionState;
+using mission::AtEnd;
+using mission::Plan;
+using mission::Waypoint;
+
+const base::LocalFrame kFrame{1, {58.378, 26.729}};
+
+Waypoint at(double east_m, double north_m) {
+  Waypoint w;
+  w.at = kFrame.to_global({east_m, north_m});
+  return w;
+}
+
+Waypoint far_away() {
+  Waypoint w;
+  w.at = {59.0, 26.7};
+  return w;
+}
+
+Plan plan(std::vector<mission::Item> items, AtEnd at_end = AtEnd::Hold) {
+  Plan p;
+  p.items = std::move(items);
+  p.settings.at_end = at_end;
+  return p;
+}
+
+/// An ideal robot that does at once what it is told.
+struct Ride {
+  PathParams path;
+  BehaveParams behave;
+  Executor executor{path, behave};
+  Vehicle vehicle;
+  std::optional<EnuPoint> home = EnuPoint{0, 0};
+  std::vector<int> reached;
+  int laps = 0;
+
+  void load(const Plan& p) {
+    auto route = lay_route(p, kFrame, {});
+    ASSERT_TRUE(route) << route.error().detail;
+    executor.load(std::make_shared<const Route>(std::move(*route)));
+  }
+  void start(StartAt from = {}) {
+    const auto ok = executor.start(from, vehicle.at, home);
+    ASSERT_TRUE(ok) << ok.error().detail;
+  }
+  void tick() {
+    const auto t = executor.step(vehicle, 10.0, home, 0.02).command;
+    const bool runs = executor.running();
+    vehicle.speed_mps = runs ? t.linear_mps : 0.0;
+    vehicle.yaw_rate_radps = runs ? t.angular_radps : 0.0;
+    vehicle.at.east_m += vehicle.speed_mps * 0.02 * std::cos(vehicle.yaw_rad);
+    vehicle.at.north_m += vehicle.speed_mps * 0.02 * std::sin(vehicle.yaw_rad);
+    vehicle.yaw_rad = base::wrap_rad(vehicle.yaw_rad + vehicle.yaw_rate_radps * 0.02);
+    for (const Notice& n : executor.notices()) {
+      if (n.kind == Notice::Kind::ItemReached) reached.push_back(n.item);
+      if (n.kind == Notice::Kind::Lap) ++laps;
+    }
+    executor.notices().clear();
+  }
+  bool run(double seconds) {
+    for (int i = 0; i < seconds * 50.0; ++i) {
+      tick();
+      if (!executor.running()) return true;
+    }
+    return false;
+  }
+};
+
+TEST(Route, NamesEveryItemThatThisRobotCannotDoYet) {
+  const auto r =
+      lay_route(plan({at(1, 1), mission::Row{}, at(2, 2), mission::Move{3.0}}), kFrame, {});
+  ASSERT_FALSE(r);
+  ASSERT_EQ(r.error().fields.size(), 2u);
+  EXPECT_EQ(r.error().fields[0].pointer, "/items/1");
+  EXPECT_EQ(r.error().fields[0].detail, "items of type row are not available yet");
+  EXPECT_EQ(r.error().fields[1].pointer, "/items/3");
+}
+
+TEST(Route, RefusesPlacesOutOfReachAndJumpsToNowhere) {
+  const auto far = lay_route(plan({at(1, 1), far_away()}), kFrame, {});
+  ASSERT_FALSE(far);
+  EXPECT_EQ(far.error().fields[0].pointer, "/items/1");
+  const auto jump = lay_route(plan({at(1, 1), mission::Jump{9, 1}}), kFrame, {});
+  ASSERT_FALSE(jump);
+  EXPECT_EQ(jump.error().fields[0].detail, "jumps to item 9 of 2");
+  EXPECT_FALSE(lay_route(plan({}), kFrame, {}));
+  EXPECT_FALSE(lay_route(plan({mission::Wait{1.0}}), kFrame, {}));
+}
+
+TEST(Executor, DrivesAllItemsInOrderAndFinishes) {
+  Ride r;
+  r.load(plan({at(4, 0), mission::Wait{1.0}, mission::Speed{0.4}, at(4, 4), at(4, 4), at(0, 4)}));
+  EXPECT_EQ(r.executor.state(), ExecutionState::Loaded);
+  r.start();
+  ASSERT_TRUE(r.run(90.0));
+  EXPECT_EQ(r.executor.state(), ExecutionState::Finished);
+  EXPECT_EQ(r.reached, (std::vector<int>{1, 2, 4, 5, 6}));
+  EXPECT_LT(base::distance_m(r.vehicle.at, {0, 4}), 0.1);
+}
+
+TEST(Executor, StartsAtTheNearestOrAtAGivenItem) {
+  const Plan p = plan({at(4, 0), at(8, 0), at(12, 0)});
+  Ride nearest;
+  nearest.vehicle.at = {7, 1};
+  nearest.load(p);
+  nearest.start({StartAt::From::Nearest, 1});
+  ASSERT_TRUE(nearest.run(60.0));
+  EXPECT_EQ(nearest.reached, (std::vector<int>{2, 3}));
+  Ride third;
+  third.load(p);
+  third.start({StartAt::From::Item, 3});
+  ASSERT_TRUE(third.run(60.0));
+  EXPECT_EQ(third.reached, (std::vector<int>{3}));
+  Ride none;
+  none.load(p);
+  EXPECT_FALSE(none.executor.start({StartAt::From::Item, 4}, {}, {}));
+  EXPECT_FALSE(none.executor.start({StartAt::From::Item, 0}, {}, {}));
+}
+
+TEST(Executor, RefusesAFirstPointThatIsTooFarAway) {
+  Ride r;
+  r.vehicle.at = {0, -60};
+  r.load(plan({at(0, 0)}));
+  const auto refused = r.executor.start({}, r.vehicle.at, {});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, base::Code::Conflict);
+  EXPECT_NE(refused.error().detail.find("60 m"), std::string::npos);
+  EXPECT_EQ(r.executor.state(), ExecutionState::Loaded);
+}
+
+// Start and goal are the same place: it is driven to the far point first.
+TEST(Executor, AClosedLoopIsNotFinishedAtItsStart) {
+  Ride r;
+  r.load(plan({at(0, 0), at(5, 0), at(5, 5), at(0, 0)}));
+  r.start();
+  r.tick();
+  EXPECT_TRUE(r.executor.running());
+  ASSERT_TRUE(r.run(120.0));
+  EXPECT_EQ(r.reached, (std::vector<int>{1, 2, 3, 4}));
+}
+
+TEST(Executor, AMissionOnTheSpotFinishesAtOnceEvenIfItRepeats) {
+  for (const AtEnd at_end : {AtEnd::Hold, AtEnd::Repeat, AtEnd::BackAndForth, AtEnd::Return}) {
+    Ride r;
+    r.load(plan({at(0, 0)}, at_end));
+    r.start();
+    ASSERT_TRUE(r.run(5.0));
+    EXPECT_EQ(r.executor.state(), ExecutionState::Finished);
+  }
+}
+
+TEST(Executor, JumpsAsOftenAsToldAndRefusesToSpinInPlace) {
+  Ride r;
+  r.load(plan({at(2, 0), at(4, 0), mission::Jump{1, 2}, at(6, 0)}));
+  r.start();
+  ASSERT_TRUE(r.run(200.0));
+  EXPECT_EQ(r.reached, (std::vector<int>{1, 2, 1, 2, 1, 2, 4}));
+  Ride spin;
+  spin.load(plan({at(0, 0), mission::Jump{2, 0}}));
+  spin.start();
+  ASSERT_TRUE(spin.run(5.0));
+  EXPECT_EQ(spin.executor.state(), ExecutionState::Aborted);
+  EXPECT_NE(spin.executor.reason().find("circle"), std::string::npos);
+}
+
+TEST(Executor, RepeatsAndGoesBackAndForth) {
+  Ride round;
+  round.load(plan({at(3, 0), at(3, 3)}, AtEnd::Repeat));
+  round.start();
+  EXPECT_FALSE(round.run(100.0));
+  EXPECT_GE(round.laps, 2);
+  EXPECT_EQ((std::vector<int>{round.reached.begin(), round.reached.begin() + 4}),
+            (std::vector<int>{1, 2, 1, 2}));
+  Ride back;
+  back.load(plan({at(3, 0), mission::Wait{0.5}, at(3, 3), at(0, 3)}, AtEnd::BackAndForth));
+  back.start();
+  EXPECT_FALSE(back.run(150.0));
+  EXPECT_EQ((std::vector<int>{back.reached.begin(), back.reached.begin() + 7}),
+            (std::vector<int>{1, 2, 3, 4, 3, 1, 2}));
+}
+
+TEST(Executor, ReturnsHomeAsAnItemAndWithoutAHomeSaysWhyNot) {
+  Ride r;
+  r.load(plan({at(3, 0), mission::ReturnHome{}}));
+  r.start();
+  ASSERT_TRUE(r.run(60.0));
+  EXPECT_LT(base::distance_m(r.vehicle.at, {0, 0}), 0.1);
+  Ride none;
+  none.home.reset();
+  none.load(plan({at(3, 0), mission::ReturnHome{}}));
+  none.start();
+  ASSERT_TRUE(none.run(60.0));
+  EXPECT_EQ(none.executor.state(), ExecutionState::Aborted);
+}
+
+TEST(Executor, GoesOnAtTheSamePlaceAfterAnInterruptionAndDrivesBackToItFirst) {
+  Ride r;
+  r.load(plan({at(10, 0)}));
+  r.vehicle.at = {0, 0};
+  r.start();
+  for (int i = 0; i < 300; ++i) r.tick();
+  const EnuPoint place = r.vehicle.at;
+  r.executor.interrupt();
+  r.vehicle.at = {place.east_m - 1.0, 4.0};
+  r.vehicle.yaw_rad = 1.0;
+  r.tick();
+  EXPECT_TRUE(r.executor.running());
+  EXPECT_EQ(r.vehicle.at, (EnuPoint{place.east_m - 1.0, 4.0}));  // somebody else drives
+  r.executor.go_on(r.vehicle.at);
+  ASSERT_TRUE(r.run(90.0));
+  EXPECT_EQ(r.executor.state(), ExecutionState::Finished);
+  EXPECT_LT(base::distance_m(r.vehicle.at, {10, 0}), 0.1);
+}
+
+TEST(Executor, RejoinsThePathWhereItLeftItNotFurtherOn) {
+  Ride r;
+  r.load(plan({at(0, 0), at(10, 0), at(10, 10)}));
+  r.start();
+  ASSERT_FALSE(r.run(8.0));
+  const double left_at = r.vehicle.at.east_m;
+  ASSERT_GT(left_at, 2.0);
+  r.executor.pause("test");
+  r.vehicle.at = {9.0, 3.0};
+  ASSERT_TRUE(r.executor.resume(r.vehicle.at));
+  double nearest = 1e9;
+  for (int i = 0; i < 5000 && r.executor.running(); ++i) {
+    r.tick();
+    nearest = std::min(nearest, base::distance_m(r.vehicle.at, {left_at, 0.0}));
+  }
+  EXPECT_EQ(r.executor.state(), ExecutionState::Finished);
+  EXPECT_LT(nearest, 0.2);
+}
+
+TEST(Executor, ARobotThatDoesNotMoveIsBlockedAfterTenSeconds) {
+  Ride r;
+  r.load(plan({at(10, 0)}));
+  r.start();
+  for (int i = 0; i < 480; ++i) r.executor.step(r.vehicle, 10.0, {}, 0.02);
+  EXPECT_TRUE(r.executor.running());
+  for (int i = 0; i < 60; ++i) r.executor.step(r.vehicle, 10.0, {}, 0.02);
+  EXPECT_EQ(r.executor.state(), ExecutionState::Blocked);
+  EXPECT_TRUE(r.executor.resume(r.vehicle.at));
+}
+
+TEST(Executor, TooFarFromThePathItPausesAndSaysHowFar) {
+  Ride r;
+  r.load(plan({at(0, 0), at(20, 0)}));
+  r.start();
+  ASSERT_FALSE(r.run(6.0));
+  r.vehicle.at.north_m = 5.0;
+  ASSERT_TRUE(r.run(1.0));
+  EXPECT_EQ(r.executor.state(), ExecutionState::Paused);
+  EXPECT_EQ(r.executor.reason(), "5 m away from the path");
+}
+
+TEST(Executor, SkipsForwardsAndBackwards) {
+  Ride r;
+  r.load(plan({at(3, 0), at(6, 0), at(9, 0)}));
+  EXPECT_FALSE(r.executor.skip(0));  // nothing runs yet
+  r.start();
+  r.run(1.0);
+  ASSERT_TRUE(r.executor.skip(3));
+  EXPECT_FALSE(r.executor.skip(4));
+  ASSERT_TRUE(r.executor.skip(2));
+  ASSERT_TRUE(r.run(60.0));
+  EXPECT_EQ(r.reached, (std::vector<int>{2, 3}));
+}
+
+TEST(Executor, PassesParallelLanesOneAfterTheOther) {
+  Ride r;
+  std::vector<mission::Item> items;
+  for (int lane = 0; lane < 4; ++lane) {
+    const double e = 1.5 * lane;
+    items.push_back(at(e, lane % 2 == 0 ? 0.0 : 8.0));
+    items.push_back(at(e, lane % 2 == 0 ? 8.0 : 0.0));
+  }
+  r.load(plan(std::move(items)));
+  r.start();
+  ASSERT_TRUE(r.run(300.0));
+  EXPECT_EQ(r.reached, (std::vector<int>{1, 2, 3, 4, 5, 6, 7, 8}));
+}
+
+}  // namespace
+}  // namespace roverd::nav
