@@ -51,8 +51,8 @@ base::Time validity_of(Members& members, const Call& call, Moves moves) {
   constexpr double kClick_s = 1.0;
   constexpr double kLongest_s = 60.0;
   const auto given = members.number("valid_for_s", 0.0, kLongest_s);
-  if (given) return call.begun + base::from_seconds(*given);
-  return moves == Moves::Yes ? call.begun + base::from_seconds(kClick_s) : base::Time::max();
+  if (moves == Moves::No) return base::Time::max();
+  return call.begun + base::from_seconds(given.value_or(kClick_s));
 }
 
 void run_command(const ContextPtr& context, const CallPtr& call, robot::Command command,

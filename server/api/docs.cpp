@@ -181,7 +181,8 @@ class Page {
 
   static std::string content_words(const Json& holder) {
     std::string out;
-    for (const auto& [type, media] : holder.value("content", Json::object()).items()) {
+    const Json content = holder.value("content", Json::object());
+    for (const auto& [type, media] : content.items()) {
       out += (out.empty() ? "" : ", ") + escaped(type) +
              (media.contains("schema") ? " " + type_words(media.at("schema")) : "");
     }

@@ -105,8 +105,8 @@ TEST(Problem, HasTypeTitleStatusDetailAndPointers) {
   EXPECT_EQ(body["errors"], Json::parse(R"([{"pointer":"/lat","detail":"must be less"}])"));
   const Response response = problem({base::Code::Unavailable, "busy"});
   EXPECT_EQ(response.result_int(), 503u);
-  EXPECT_EQ(header(response.base(), http::field::content_type), "application/problem+json");
-  EXPECT_EQ(header(response.base(), http::field::retry_after), "1");
+  EXPECT_EQ(response[http::field::content_type], "application/problem+json");
+  EXPECT_EQ(response[http::field::retry_after], "1");
 }
 
 TEST(Rfc3339, ReadsOffsetsAndFractions) {

@@ -99,7 +99,9 @@ TEST(MissionWords, HomeIsNullWhenThereIsNone) {
   m.id = "abc";
   m.revision = 2;
   m.plan.name = "field";
-  m.plan.items.push_back(mission::Waypoint{.at = {58.1, 26.1}});
+  mission::Waypoint waypoint;
+  waypoint.at = {58.1, 26.1};
+  m.plan.items.push_back(waypoint);
   const Json out = mission_json(m);
   EXPECT_TRUE(out["home"].is_null());
   EXPECT_EQ(out["items"][0]["type"], "waypoint");

@@ -1,0 +1,64 @@
+#pragma once
+// A plain client over a real socket: sends any bytes, right or wrong, and reads answers with a
+// deadline. Its own reading, so that a mistake shared with the server would not cancel.
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace roverd::test {
+
+struct Answer {
+  unsigned status = 0;
+  std::map<std::string, std::string> headers;  ///< names in lower case
+  std::string body;
+
+  std::string header(const std::string& name) const {
+    const auto found = headers.find(name);
+    return found == headers.end() ? std::string{} : found->second;
+  }
+};
+
+class Client {
+ public:
+  static constexpr std::chrono::milliseconds kPatience{20'000};
+
+  /// Throws std::runtime_error if nobody listens.
+  explicit Client(std::uint16_t port);
+  ~Client();
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+
+  /// @return false if the server closed before all of it went.
+  bool send(std::string_view bytes);
+  /// The next whole answer; empty if the connection ends or nothing comes for kPatience.
+  /// @param no_body to a HEAD request.
+  std::optional<Answer> answer(bool no_body = false);
+  /// Waits until the server closes. @return false if it does not within `time`.
+  bool closed_within(std::chrono::milliseconds time);
+
+  struct Frame {
+    int opcode = 0;
+    std::string payload;
+    /// Of a close frame; 0 without one.
+    unsigned close_code() const;
+  };
+  /// Asks for a WebSocket. @return the status: 101 if it is one now.
+  unsigned upgrade(const std::string& path, const std::string& more_headers = "");
+  std::optional<Frame> frame(std::chrono::milliseconds time = kPatience);
+  bool send_frame(int opcode, std::string_view payload);
+
+  int handle() const noexcept { return handle_; }
+
+ private:
+  bool receive(std::chrono::steady_clock::time_point until);
+
+  int handle_ = -1;
+  std::string in_;
+  bool closed_ = false;
+};
+
+}  // namespace roverd::test

@@ -1,0 +1,233 @@
+#include "house.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <stdexcept>
+
+#include <boost/asio/post.hpp>
+#include <unistd.h>
+
+#include "base/angle.hpp"
+#include "net/hub.hpp"
+#include "schema.hpp"
+
+namespace roverd::test {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+api::Profile profile() {
+  api::Profile p;
+  p.name = "bunker";
+  p.title = "AgileX Bunker";
+  p.kinematics = "skid_steer";
+  p.length_m = 1.023;
+  p.width_m = 0.778;
+  p.max_speed_mps = 1.5;
+  p.modes = {base::Mode::Manual, base::Mode::Hold, base::Mode::Auto};
+  p.drivers = {"bunker", "gnss"};
+  p.item_types = {"waypoint"};
+  return p;
+}
+
+api::Stream stream_of(net::Hub& hub) {
+  return {[&hub](std::string topic, api::Stream::Render render) {
+            hub.add_sampled_topic(std::move(topic), std::move(render));
+          },
+          [&hub](std::string topic) { hub.add_event_topic(std::move(topic)); },
+          [&hub](api::ClientId id, const auto& rates) { hub.subscribe(id, rates); },
+          [&hub](std::string_view topic, const api::Stream::Render& render) {
+            hub.publish(topic, render);
+          },
+          [&hub](api::ClientId id, std::string_view text) { hub.send(id, text); },
+          [&hub](api::ClientId id, std::uint16_t code, std::string_view reason) {
+            hub.close(id, code, reason);
+          }};
+}
+
+}  // namespace
+
+House::House(net::Limits limits) {
+  std::string name = (std::filesystem::temp_directory_path() / "roverd-api-XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+  folder_ = name;
+  auto opened = store::Store::open(folder_ / "roverd.db", [this](std::function<void()> answer) {
+    boost::asio::post(io_, std::move(answer));
+  });
+  if (!opened) throw std::runtime_error(opened.error().detail);
+  store_ = std::move(*opened);
+  api::Deps deps{.robot = robot_, .store = *store_, .version = "test", .profile = profile()};
+  store::TileSet farm;
+  farm.set = "farm";
+  farm.name = "Farm";
+  farm.format = "png";
+  farm.max_zoom = 3;
+  deps.tiles.sets = {farm};
+  deps.tiles.read = [](const std::string& set, int zoom, int x,
+                       int y) -> std::optional<store::Tile> {
+    if (set != "farm" || zoom != 3) return std::nullopt;
+    return store::Tile{std::to_string(x) + "," + std::to_string(y), "image/png", ""};
+  };
+  api_ = std::make_unique<api::Api>(std::move(deps));
+  serve(limits);
+  bell_ = std::make_unique<net::Doorbell>(io_, [this] { api_->drain(); });
+  robot_.wake = [this] { bell_->ring(); };
+  robot_.send = [this](const base::DriveCommand& command, base::Time) {
+    std::lock_guard lock(mutex_);
+    sent_ = command;
+  };
+  web_ = std::thread([this] { io_.run(); });
+  control_ = std::thread([this] { play(); });
+}
+
+void House::serve(net::Limits limits) {
+  net::Handlers h;
+  h.on_request = [this](net::Request request, base::Time begun, net::Respond respond) {
+    api_->on_request(std::move(request), begun, std::move(respond));
+  };
+  h.on_upgrade = [this](const net::Request& request) { return api_->on_upgrade(request); };
+  h.on_client = [this](net::ClientId id) { api_->on_client(id); };
+  h.on_text = [this](net::ClientId id, std::string_view text) { api_->on_text(id, text); };
+  h.on_gone = [this](net::ClientId id) { api_->on_gone(id); };
+  h.on_refused = api::Api::on_refused;
+  h.on_second = [this] { api_->on_second(); };
+  auto made = net::Server::listen(io_, "127.0.0.1", 0, limits, std::move(h));
+  if (!made) throw std::runtime_error(made.error().detail);
+  server_ = std::move(*made);
+  api_->attach(stream_of(server_->hub()));
+}
+
+House::~House() {
+  stop_ = true;
+  control_.join();
+  boost::asio::post(io_, [this] {
+    server_.reset();
+    io_.stop();
+  });
+  web_.join();
+  store_.reset();
+  std::error_code ignored;
+  std::filesystem::remove_all(folder_, ignored);
+}
+
+base::DriveCommand House::sent() {
+  std::lock_guard lock(mutex_);
+  return sent_;
+}
+
+void House::play() {
+  auto next = std::chrono::steady_clock::now();
+  for (int count = 0; !stop_; ++count) {
+    const base::Time now = base::steady_now();
+    if (healthy) tell(now, count);
+    if (ticking) robot_.tick(now, base::wall_now());
+    next = std::max(next + 20ms, std::chrono::steady_clock::now());
+    std::this_thread::sleep_until(next);
+  }
+}
+
+void House::tell(base::Time now, int count) {
+  auto& in = robot_.measurements();
+  base::BaseStatus status;
+  status.stamp = now;
+  status.vehicle_state = base::VehicleState::Normal;
+  status.control_mode = base::ControlMode::Can;
+  status.battery_v = 49.5;
+  in.put(status);
+  in.put(base::BaseMotion{now, {}});
+  in.put(base::WheelTravel{now, 0.0, 0.0});
+  base::RadioState radio;
+  radio.stamp = now;
+  radio.swa = radio.swc = radio.swd = radio.swb = base::Switch::Up;
+  radio.count = static_cast<std::uint8_t>(count);
+  in.put(radio);
+  if (count % 10 != 0) return;
+  in.put(base::BatteryState{now, 80.0, 49.5, {}, {}});
+  base::GnssFix fix;
+  fix.stamp = now;
+  fix.fix = base::FixType::RtkFixed;
+  fix.position = kStart;
+  fix.alt_msl_m = 60.0;
+  fix.satellites = 18;
+  fix.hdop = 0.7;
+  fix.sigma_east_m = 0.02;
+  fix.sigma_north_m = 0.02;
+  in.put(fix);
+  in.put(base::GnssVelocity{now, 0.0, 0.0, {}});
+  in.put(base::Heading{now, base::yaw_from_heading(0.0), base::HeadingSource::DualAntenna});
+  in.put(base::DriverStatus{now, "gnss", base::DriverPhase::Up, "",
+                            static_cast<std::uint64_t>(count), 0, 0, now});
+}
+
+const Json& HouseTest::document() {
+  static const Json kDocument = Json::parse(api::openapi_text());
+  return kDocument;
+}
+
+HouseTest::Reply HouseTest::raw(const std::string& request) {
+  Client client(house.port());
+  client.send(request);
+  const auto answer = client.answer(request.starts_with("HEAD"));
+  EXPECT_TRUE(answer) << request.substr(0, 200);
+  if (!answer) return {};
+  Reply out{answer->status, nullptr, *answer};
+  if (out.raw.header("content-type").find("json") != std::string::npos && !out.raw.body.empty()) {
+    out.body = Json::parse(out.raw.body);
+  }
+  return out;
+}
+
+HouseTest::Reply HouseTest::call(const std::string& method, const std::string& path,
+                                 const std::string& body, const std::string& more) {
+  std::string request = method + " /api/v1" + path + " HTTP/1.1\r\nHost: 127.0.0.1\r\n" + more;
+  if (!body.empty()) {
+    request += "Content-Length: " + std::to_string(body.size()) + "\r\n";
+    if (more.find("Content-Type") == std::string::npos) {
+      request += "Content-Type: application/json\r\n";
+    }
+  }
+  Reply reply = raw(request + "\r\n" + body);
+  const std::string known = documented_path(document(), path);
+  std::string lower = method;
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (known.empty() || !document()["paths"][known].contains(lower)) return reply;
+  const Json* schema = answer_schema(document(), known, lower, reply.status);
+  if (schema != nullptr && !reply.body.is_null()) {
+    EXPECT_EQ(schema_fault(document(), *schema, reply.body), "") << method << ' ' << path;
+  }
+  return reply;
+}
+
+void HouseTest::until(const std::function<bool()>& claim, const char* what) {
+  const auto end = std::chrono::steady_clock::now() + 20s;
+  while (!claim()) {
+    if (std::chrono::steady_clock::now() > end) FAIL() << "not within 20 s: " << what;
+    std::this_thread::sleep_for(5ms);
+  }
+}
+
+void HouseTest::until_ready() {
+  until(
+      [this] {
+        const auto s = house.snapshot();
+        return s && s->ready_to_arm && s->pose;
+      },
+      "the checks are fine");
+}
+
+Json two_waypoints(const std::string& name) {
+  return {{"name", name},
+          {"items",
+           {{{"type", "waypoint"}, {"lat", kStart.lat + 0.0001}, {"lon", kStart.lon}},
+            {{"type", "waypoint"}, {"lat", kStart.lat + 0.0001}, {"lon", kStart.lon + 0.0002}}}}};
+}
+
+std::string HouseTest::make_mission(const std::string& name) {
+  const Reply made = call("POST", "/missions", two_waypoints(name));
+  EXPECT_EQ(made.status, 201u);
+  return made.body.value("id", "");
+}
+
+}  // namespace roverd::test

@@ -1,0 +1,103 @@
+#pragma once
+// The whole server over real sockets, without drivers: net, api, robot and store as main wires
+// them. A thread of its own plays control loop and devices: it ticks the robot and tells it what a
+// standing, healthy base with a good receiver would.
+
+#include <atomic>
+#include <concepts>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "api/api.hpp"
+#include "client.hpp"
+#include "net/doorbell.hpp"
+#include "net/server.hpp"
+#include "robot/robot.hpp"
+#include "store/store.hpp"
+
+namespace roverd::test {
+
+using Json = nlohmann::json;
+
+class House {
+ public:
+  explicit House(net::Limits limits = {});
+  ~House();
+  House(const House&) = delete;
+  House& operator=(const House&) = delete;
+
+  std::uint16_t port() const { return server_->port(); }
+  api::Api& api() { return *api_; }
+
+  /// Devices speak (true at first) or are silent.
+  std::atomic<bool> healthy{true};
+  /// The control loop runs (true at first) or hangs.
+  std::atomic<bool> ticking{true};
+  /// What went to the base last.
+  base::DriveCommand sent();
+  std::shared_ptr<const base::Snapshot> snapshot() { return robot_.snapshot(); }
+
+ private:
+  void play();
+  void tell(base::Time now, int count);
+  void serve(net::Limits limits);
+
+  std::filesystem::path folder_;
+  boost::asio::io_context io_{net::kWebConcurrency};
+  robot::Robot robot_{robot::Config{}};
+  std::unique_ptr<store::Store> store_;
+  std::unique_ptr<api::Api> api_;
+  std::unique_ptr<net::Server> server_;
+  std::unique_ptr<net::Doorbell> bell_;
+  std::mutex mutex_;
+  base::DriveCommand sent_;  ///< guarded by mutex_
+  std::atomic<bool> stop_{false};
+  std::thread web_;
+  std::thread control_;
+};
+
+/// One house for all tests of a program part, and calls whose answers are judged by the document.
+class HouseTest : public ::testing::Test {
+ protected:
+  struct Reply {
+    unsigned status = 0;
+    Json body;  ///< null if it is no JSON
+    Answer raw;
+  };
+
+  /// @param more further header lines, each with its end. A body goes as application/json unless
+  /// `more` says otherwise. Fails the test if the answer is not as the OpenAPI document says.
+  Reply call(const std::string& method, const std::string& path, const std::string& body = "",
+             const std::string& more = "");
+  template <std::same_as<Json> J>
+  Reply call(const std::string& method, const std::string& path, const J& body,
+             const std::string& more = "") {
+    return call(method, path, body.dump(), more);
+  }
+  /// As it is, with the base path added; not judged.
+  Reply raw(const std::string& request);
+
+  /// Asks until `claim` holds; 20 s.
+  void until(const std::function<bool()>& claim, const char* what);
+  void until_ready();  ///< the checks are fine
+
+  /// A new mission of two waypoints near the robot. @return id.
+  std::string make_mission(const std::string& name = "field");
+
+  static const Json& document();
+  House house;
+};
+
+/// Where the devices of the house say the robot stands, looking north.
+inline constexpr base::LatLon kStart{58.378020, 26.728900};
+
+Json two_waypoints(const std::string& name);
+
+}  // namespace roverd::test

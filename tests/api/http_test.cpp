@@ -1,0 +1,269 @@
+// HTTP over real sockets: what a connection does with right, wrong, slow and too many requests.
+
+#include <gtest/gtest.h>
+
+#include "net_house.hpp"
+
+namespace roverd::test {
+namespace {
+
+using namespace std::chrono_literals;
+namespace http = boost::beast::http;
+
+net::Limits small() {
+  net::Limits limits;
+  limits.header_bytes = 2048;
+  limits.body_bytes = 10'000;
+  limits.connections = 3;
+  limits.idle = 20s;
+  limits.request = 20s;
+  return limits;
+}
+
+/// Answers with the target, "+" and the body's size.
+net::Handlers echo() {
+  net::Handlers h;
+  h.on_request = [](net::Request request, base::Time, const net::Respond& respond) {
+    net::Response response{http::status::ok, 11};
+    response.body() = std::string(request.target().data(), request.target().size()) + "+" +
+                      std::to_string(request.body().size());
+    respond(std::move(response));
+  };
+  h.on_upgrade = [](const net::Request&) { return std::optional<net::Response>{}; };
+  return h;
+}
+
+std::string get(const std::string& path, const std::string& more = "") {
+  return "GET " + path + " HTTP/1.1\r\nHost: localhost\r\n" + more + "\r\n";
+}
+
+TEST(Http, OneConnectionServesRequestAfterRequest) {
+  NetHouse house(small(), echo());
+  Client client(house.port());
+  for (const char* path : {"/a", "/b", "/c"}) {
+    client.send(get(path));
+    const auto answer = client.answer();
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->status, 200u);
+    EXPECT_EQ(answer->body, std::string(path) + "+0");
+    EXPECT_NE(answer->header("date").find("GMT"), std::string::npos);
+  }
+}
+
+TEST(Http, RequestsSentAheadAreAnsweredInOrder) {
+  // Given a client that does not wait (pipelining), with a body in between,
+  NetHouse house(small(), echo());
+  Client client(house.port());
+  client.send(get("/1") + "POST /2 HTTP/1.1\r\nHost: x\r\nContent-Length: 3\r\n\r\nabc" +
+              get("/3"));
+  // then every request has its answer, in order.
+  EXPECT_EQ(client.answer()->body, "/1+0");
+  EXPECT_EQ(client.answer()->body, "/2+3");
+  EXPECT_EQ(client.answer()->body, "/3+0");
+}
+
+TEST(Http, ASlowHandlerHoldsOnlyItsOwnConnection) {
+  // Given a handler that keeps its answer,
+  net::Handlers h = echo();
+  std::vector<net::Respond> kept;
+  h.on_request = [&kept, quick = h.on_request](net::Request request, base::Time begun,
+                                               net::Respond respond) {
+    if (request.target() == "/slow") return kept.push_back(std::move(respond));
+    quick(std::move(request), begun, std::move(respond));
+  };
+  NetHouse house(small(), h);
+  Client slow(house.port());
+  slow.send(get("/slow") + get("/after"));
+  Client other(house.port());
+  other.send(get("/other"));
+  EXPECT_EQ(other.answer()->body, "/other+0");
+  // when it answers at last (and once too often),
+  house.run([&kept] {
+    ASSERT_EQ(kept.size(), 1u);
+    net::Response late{http::status::ok, 11};
+    late.body() = "late";
+    kept.front()(late);
+    kept.front()(late);
+    kept.clear();
+  });
+  // then each request has one answer.
+  EXPECT_EQ(slow.answer()->body, "late");
+  EXPECT_EQ(slow.answer()->body, "/after+0");
+}
+
+TEST(Http, HeadHasTheLengthButNotTheBody) {
+  NetHouse house(small(), echo());
+  Client client(house.port());
+  client.send("HEAD /head HTTP/1.1\r\nHost: x\r\n\r\n" + get("/next"));
+  const auto head = client.answer(true);
+  EXPECT_EQ(head->status, 200u);
+  EXPECT_EQ(head->header("content-length"), "7");
+  EXPECT_EQ(client.answer()->body, "/next+0");
+}
+
+TEST(Http, CloseMeansCloseAndHttp10ClosesByItself) {
+  NetHouse house(small(), echo());
+  Client client(house.port());
+  client.send(get("/x", "Connection: close\r\n"));
+  EXPECT_EQ(client.answer()->header("connection"), "close");
+  EXPECT_TRUE(client.closed_within(5s));
+  Client old(house.port());
+  old.send("GET /old HTTP/1.0\r\nHost: x\r\n\r\n");
+  EXPECT_EQ(old.answer()->body, "/old+0");
+  EXPECT_TRUE(old.closed_within(5s));
+}
+
+TEST(Http, FiftyMegabytesAreRefusedWhileTheyAreStillComing) {
+  // Given a client that announces 50 MB and sends all of them without reading,
+  NetHouse house(small(), echo());
+  Client client(house.port());
+  constexpr std::size_t kBytes = 50'000'000;
+  client.send("POST /big HTTP/1.1\r\nHost: x\r\nContent-Length: " + std::to_string(kBytes) +
+              "\r\n\r\n");
+  const std::string part(100'000, 'x');
+  std::size_t sent = 0;
+  while (sent < kBytes && client.send(part)) sent += part.size();
+  // then it hears 413, and the server never held more than the limit.
+  const auto answer = client.answer();
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->status, 413u);
+  EXPECT_NE(answer->body.find("10000 bytes"), std::string::npos);
+  EXPECT_TRUE(client.closed_within(5s));
+}
+
+TEST(Http, ABodyInPiecesIsCountedToo) {
+  NetHouse house(small(), echo());
+  Client client(house.port());
+  client.send("POST /big HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\n");
+  for (int i = 0; i < 12; ++i) client.send("3e8\r\n" + std::string(1000, 'x') + "\r\n");
+  EXPECT_EQ(client.answer()->status, 413u);
+  Client fine(house.port());
+  fine.send(
+      "POST /ok HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\n3\r\nabc\r\n0\r\n\r\n");
+  EXPECT_EQ(fine.answer()->body, "/ok+3");
+}
+
+TEST(Http, AHeaderWithoutEndIsRefused) {
+  NetHouse house(small(), echo());
+  Client client(house.port());
+  client.send("GET /x HTTP/1.1\r\nCookie: " + std::string(100'000, 'x'));
+  EXPECT_EQ(client.answer()->status, 431u);
+}
+
+TEST(Http, WhatIsNotHttpIsRefused) {
+  NetHouse house(small(), echo());
+  for (const char* text :
+       {"hello\r\n\r\n", "GET\r\n\r\n", "GET / HTTP/9.9\r\n\r\n",
+        "GET / HTTP/1.1\r\nno colon\r\n\r\n", "POST / HTTP/1.1\r\nContent-Length: -1\r\n\r\n",
+        "POST / HTTP/1.1\r\nContent-Length: 99999999999999999999\r\n\r\n",
+        "\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03\r\n\r\n"}) {
+    Client client(house.port());
+    client.send(text);
+    const auto answer = client.answer();
+    ASSERT_TRUE(answer) << text;
+    EXPECT_EQ(answer->status / 100, 4u) << text;
+  }
+}
+
+TEST(Http, ExpectContinueIsAnsweredBeforeTheBodyComes) {
+  NetHouse house(small(), echo());
+  Client client(house.port());
+  client.send("POST /x HTTP/1.1\r\nHost: x\r\nExpect: 100-continue\r\nContent-Length: 2\r\n\r\n");
+  EXPECT_EQ(client.answer()->status, 100u);
+  client.send("ab");
+  EXPECT_EQ(client.answer()->body, "/x+2");
+  // Too large is said before anything was sent; other expectations are not understood.
+  Client big(house.port());
+  big.send("POST /x HTTP/1.1\r\nHost: x\r\nExpect: 100-continue\r\nContent-Length: 99999\r\n\r\n");
+  EXPECT_EQ(big.answer()->status, 413u);
+  Client odd(house.port());
+  odd.send("POST /x HTTP/1.1\r\nHost: x\r\nExpect: miracles\r\nContent-Length: 2\r\n\r\n");
+  EXPECT_EQ(odd.answer()->status, 417u);
+}
+
+TEST(Http, HalfARequestTimesOutHoweverItTrickles) {
+  net::Limits limits = small();
+  limits.request = 400ms;
+  NetHouse house(limits, echo());
+  Client head(house.port());
+  head.send("GET / HT");
+  Client body(house.port());
+  body.send("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 100\r\n\r\nabc");
+  EXPECT_TRUE(head.closed_within(5s));
+  EXPECT_TRUE(body.closed_within(5s));
+  EXPECT_EQ(house.ask([&] { return house.server().stats().timed_out; }), 2u);
+}
+
+TEST(Http, ASilentConnectionIsClosed) {
+  net::Limits limits = small();
+  limits.idle = 400ms;
+  NetHouse house(limits, echo());
+  Client fresh(house.port());
+  Client used(house.port());
+  used.send(get("/x"));
+  EXPECT_EQ(used.answer()->status, 200u);
+  EXPECT_TRUE(fresh.closed_within(5s));
+  EXPECT_TRUE(used.closed_within(5s));
+}
+
+TEST(Http, ConnectionsBeyondTheLimitHear503) {
+  // Given as many connections as there may be,
+  NetHouse house(small(), echo());
+  {
+    Client a(house.port());
+    Client b(house.port());
+    Client c(house.port());
+    for (Client* client : {&a, &b, &c}) {
+      client->send(get("/x"));
+      ASSERT_EQ(client->answer()->status, 200u);
+    }
+    // when one more comes, then it is told, and the others go on.
+    Client more(house.port());
+    EXPECT_EQ(more.answer()->status, 503u);
+    EXPECT_TRUE(more.closed_within(5s));
+    a.send(get("/y"));
+    EXPECT_EQ(a.answer()->status, 200u);
+  }
+  // When they are gone, there is room again.
+  const auto end = std::chrono::steady_clock::now() + 10s;
+  while (house.ask([&] { return house.server().stats().connections; }) > 0 &&
+         std::chrono::steady_clock::now() < end) {
+    std::this_thread::yield();
+  }
+  Client again(house.port());
+  again.send(get("/z"));
+  EXPECT_EQ(again.answer()->status, 200u);
+}
+
+TEST(Http, ABusyPortIsNamed) {
+  NetHouse house(small(), echo());
+  boost::asio::io_context io;
+  const auto second = net::Server::listen(io, "127.0.0.1", house.port(), small(), echo());
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().code, base::Code::Conflict);
+  EXPECT_EQ(second.error().detail, "port " + std::to_string(house.port()) + " is in use");
+  EXPECT_EQ(net::Server::listen(io, "nowhere", 0, small(), echo()).error().detail,
+            "\"nowhere\" is not an IP address");
+}
+
+TEST(Http, StoppingClosesIdleConnectionsAndIsDoneSoon) {
+  NetHouse house(small(), echo());
+  Client idle(house.port());
+  idle.send(get("/x"));
+  EXPECT_EQ(idle.answer()->status, 200u);
+  Client socket(house.port());
+  ASSERT_EQ(socket.upgrade("/stream"), 101u);
+  std::promise<void> done;
+  house.run([&] { house.server().stop(5s, [&done] { done.set_value(); }); });
+  EXPECT_TRUE(idle.closed_within(5s));
+  const auto goodbye = socket.frame();
+  ASSERT_TRUE(goodbye);
+  EXPECT_EQ(goodbye->close_code(), 1001u);
+  socket.send_frame(8, goodbye->payload);
+  EXPECT_TRUE(socket.closed_within(5s));
+  EXPECT_EQ(done.get_future().wait_for(10s), std::future_status::ready);
+  EXPECT_THROW(Client{house.port()}, std::runtime_error);
+}
+
+}  // namespace
+}  // namespace roverd::test

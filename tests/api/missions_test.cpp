@@ -1,0 +1,200 @@
+// Missions over HTTP: every change checked, kept, and refused when somebody else was quicker.
+
+#include <algorithm>
+
+#include "house.hpp"
+
+namespace roverd::test {
+namespace {
+
+using MissionsApi = HouseTest;
+
+std::string if_match(const std::string& tag) {
+  return "If-Match: " + tag + "\r\n";
+}
+
+TEST_F(MissionsApi, AMissionIsCreatedReadReplacedAndDeleted) {
+  // Create,
+  const auto made = call("POST", "/missions", two_waypoints("north field"));
+  ASSERT_EQ(made.status, 201u);
+  const std::string id = made.body["id"];
+  EXPECT_EQ(made.raw.header("location"), "/api/v1/missions/" + id);
+  EXPECT_EQ(made.raw.header("etag"), "\"rev-1\"");
+  // read,
+  const auto read = call("GET", "/missions/" + id);
+  EXPECT_EQ(read.status, 200u);
+  EXPECT_EQ(read.body, made.body);
+  EXPECT_EQ(call("GET", "/missions/" + id, "", "If-None-Match: \"rev-1\"\r\n").status, 304u);
+  // list,
+  const auto list = call("GET", "/missions");
+  EXPECT_EQ(list.body["items"][0]["name"], "north field");
+  EXPECT_EQ(list.body["items"][0]["items"], 2);
+  EXPECT_NEAR(list.body["items"][0]["length_m"], 11.7, 0.1);
+  // replace,
+  Json changed = two_waypoints("north field");
+  changed["home"] = {{"lat", 58.0}, {"lon", 26.0}};
+  const auto put = call("PUT", "/missions/" + id, changed, if_match("\"rev-1\""));
+  EXPECT_EQ(put.status, 200u);
+  EXPECT_EQ(put.raw.header("etag"), "\"rev-2\"");
+  EXPECT_EQ(put.body["home"]["lat"], 58.0);
+  // look back, and go back,
+  EXPECT_EQ(call("GET", "/missions/" + id + "/revisions").body["items"].size(), 2u);
+  EXPECT_TRUE(call("GET", "/missions/" + id + "/revisions/1").body["home"].is_null());
+  const auto back = call("POST", "/missions/" + id + "/revert", Json{{"revision", 1}});
+  EXPECT_EQ(back.status, 200u);
+  EXPECT_EQ(back.body["revision"], 3);
+  EXPECT_TRUE(back.body["home"].is_null());
+  // delete.
+  EXPECT_EQ(call("DELETE", "/missions/" + id, "", if_match("\"rev-3\"")).status, 204u);
+  EXPECT_EQ(call("GET", "/missions/" + id).status, 404u);
+}
+
+TEST_F(MissionsApi, AChangeBasedOnAnOldRevisionIsRefusedWithThePresentOne) {
+  // Given two people who read revision 1, of whom one saves first,
+  const std::string id = make_mission();
+  ASSERT_EQ(call("PUT", "/missions/" + id, two_waypoints("hers"), if_match("\"rev-1\"")).status,
+            200u);
+  // when the other one saves,
+  const auto late = call("PUT", "/missions/" + id, two_waypoints("his"), if_match("\"rev-1\""));
+  // then nothing is overwritten and he gets what she saved.
+  EXPECT_EQ(late.status, 412u);
+  EXPECT_EQ(late.body["current"]["name"], "hers");
+  EXPECT_EQ(late.raw.header("etag"), "\"rev-2\"");
+  EXPECT_EQ(call("GET", "/missions/" + id).body["name"], "hers");
+  EXPECT_EQ(call("DELETE", "/missions/" + id, "", if_match("\"rev-1\"")).status, 412u);
+}
+
+TEST_F(MissionsApi, AChangeWithoutItsRevisionIsRefused) {
+  const std::string id = make_mission();
+  EXPECT_EQ(call("PUT", "/missions/" + id, two_waypoints("x")).status, 428u);
+  EXPECT_EQ(call("DELETE", "/missions/" + id).status, 428u);
+}
+
+TEST_F(MissionsApi, IfMatchKnowsTheStarListsAndNonsense) {
+  const std::string id = make_mission();
+  const std::string path = "/missions/" + id;
+  EXPECT_EQ(call("PUT", path, two_waypoints("a"), if_match("*")).status, 200u);
+  EXPECT_EQ(call("PUT", path, two_waypoints("b"), if_match("\"rev-9\", \"rev-2\"")).status, 200u);
+  EXPECT_EQ(call("PUT", path, two_waypoints("c"), if_match("rev-3")).status, 412u);
+  EXPECT_EQ(call("PUT", path, two_waypoints("c"), if_match("W/\"rev-3\"")).status, 412u);
+  EXPECT_EQ(call("PUT", path, two_waypoints("c"), if_match("\"rev-3000\"")).status, 412u);
+  EXPECT_EQ(call("PUT", "/missions/nobody", two_waypoints("c"), if_match("*")).status, 404u);
+  EXPECT_EQ(call("PUT", "/missions/nobody", two_waypoints("c"), if_match("\"rev-1\"")).status,
+            404u);
+}
+
+TEST_F(MissionsApi, EveryWrongFieldIsNamedAndNothingIsStored) {
+  // Given a mission with three mistakes,
+  Json plan = two_waypoints("bad");
+  plan["items"][0]["lat"] = 91;
+  plan["items"][1]["lon"] = "east";
+  plan["colour"] = "red";
+  // when it is sent, then each is named,
+  const auto reply = call("POST", "/missions", plan);
+  EXPECT_EQ(reply.status, 422u);
+  std::vector<std::string> pointers;
+  for (const Json& error : reply.body["errors"]) pointers.push_back(error["pointer"]);
+  std::sort(pointers.begin(), pointers.end());
+  EXPECT_EQ(pointers, (std::vector<std::string>{"/colour", "/items/0/lat", "/items/1/lon"}));
+  // and nothing is there.
+  EXPECT_TRUE(call("GET", "/missions").body["items"].empty());
+}
+
+TEST_F(MissionsApi, MalformedBodiesAreRefusedAsMalformed) {
+  for (const char* body : {"{", "{\"name\": NaN}", "[1,2", "\xff\xff"}) {
+    EXPECT_EQ(call("POST", "/missions", std::string(body)).status, 400u) << body;
+  }
+  EXPECT_EQ(call("POST", "/missions", std::string("{\"name\":\"a\",\"name\":\"b\"}")).status, 422u);
+  EXPECT_EQ(call("POST", "/missions", std::string("[]")).status, 422u);
+  EXPECT_EQ(call("POST", "/missions", std::string("{\"name\":\"a\",\"items\":[1e999]}")).status,
+            422u);
+  EXPECT_EQ(call("POST", "/missions", std::string(50'000, '[')).status, 400u);
+}
+
+TEST_F(MissionsApi, OnlyJsonIsTakenAsJson) {
+  // A foreign page's form can send these without asking.
+  const std::string body = two_waypoints("x").dump();
+  EXPECT_EQ(call("POST", "/missions", body, "Content-Type: text/plain\r\n").status, 415u);
+  EXPECT_EQ(
+      call("POST", "/missions", body, "Content-Type: application/x-www-form-urlencoded\r\n").status,
+      415u);
+}
+
+TEST_F(MissionsApi, ListsArePaged) {
+  for (int i = 0; i < 5; ++i) make_mission("m" + std::to_string(i));
+  std::vector<std::string> names;
+  std::string cursor;
+  for (int page = 0; page < 3; ++page) {
+    const auto reply =
+        call("GET", "/missions?limit=2" + (cursor.empty() ? "" : "&cursor=" + cursor));
+    ASSERT_EQ(reply.status, 200u);
+    for (const Json& one : reply.body["items"]) names.push_back(one["name"]);
+    EXPECT_EQ(reply.body["next_cursor"].is_null(), page == 2);
+    if (page < 2) cursor = reply.body["next_cursor"];
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"m4", "m3", "m2", "m1", "m0"}));
+  EXPECT_EQ(call("GET", "/missions?limit=0").status, 422u);
+  EXPECT_EQ(call("GET", "/missions?cursor=nonsense").status, 400u);
+}
+
+TEST_F(MissionsApi, ARepeatedKeyCreatesOnce) {
+  const std::string key = "Idempotency-Key: 7f3a\r\n";
+  const auto first = call("POST", "/missions", two_waypoints("once"), key);
+  const auto again = call("POST", "/missions", two_waypoints("once"), key);
+  EXPECT_EQ(first.status, 201u);
+  EXPECT_EQ(again.status, 201u);
+  EXPECT_EQ(first.body, again.body);
+  EXPECT_EQ(call("GET", "/missions").body["items"].size(), 1u);
+  EXPECT_EQ(call("POST", "/missions", two_waypoints("other"), key).status, 422u);
+}
+
+TEST_F(MissionsApi, AFileIsImportedAccountedForAndExportedAgain) {
+  // Given a waypoint file with a home, a point, a camera command,
+  const std::string file =
+      "QGC WPL 110\r\n"
+      "0\t1\t0\t16\t0\t0\t0\t0\t58.3780\t26.7289\t60\t1\r\n"
+      "1\t0\t3\t16\t0\t0\t0\t0\t58.3785\t26.7290\t10\t1\r\n"
+      "2\t0\t3\t206\t20\t0\t0\t0\t0\t0\t0\t1\r\n";
+  // when it is imported,
+  const auto made = call("POST", "/missions/import?name=trial%20field.waypoints", file,
+                         "Content-Type: application/octet-stream\r\n");
+  // then every row is accounted for,
+  ASSERT_EQ(made.status, 201u);
+  EXPECT_EQ(made.body["format"], "waypoints");
+  EXPECT_EQ(made.body["mission"]["name"], "trial field");
+  EXPECT_EQ(made.body["mission"]["items"].size(), 1u);
+  EXPECT_EQ(made.body["left_out"], 1);
+  EXPECT_EQ(made.raw.header("etag"), "\"rev-1\"");
+  // and both formats give it back with a name to save it under.
+  const std::string path = "/missions/" + made.body["mission"]["id"].get<std::string>();
+  for (const char* format : {"waypoints", "plan"}) {
+    const auto out = call("GET", path + "/export?format=" + format);
+    ASSERT_EQ(out.status, 200u);
+    EXPECT_NE(out.raw.header("content-disposition").find("attachment; filename=\""),
+              std::string::npos);
+    const auto back =
+        call("POST", "/missions/import", out.raw.body, "Content-Type: text/plain\r\n");
+    ASSERT_EQ(back.status, 201u) << format;
+    EXPECT_EQ(back.body["mission"]["items"][0]["lat"], 58.3785);
+    EXPECT_EQ(back.body["mission"]["items"][0]["lon"], 26.7290);
+  }
+}
+
+TEST_F(MissionsApi, ABrokenFileNamesItsLineAndMakesNothing) {
+  const std::string bad =
+      "QGC WPL 110\n0\t1\t0\t16\t0\t0\t0\t0\t58.3780\t26.7289\t60\t1\n"
+      "1\t0\t3\t16\t0\t0\t0\t0\t158.3\t26.7290\t10\t1\n";
+  const auto reply = call("POST", "/missions/import", bad, "Content-Type: text/plain\r\n");
+  EXPECT_EQ(reply.status, 422u);
+  EXPECT_NE(reply.body.dump().find("line 3"), std::string::npos);
+  EXPECT_EQ(call("POST", "/missions/import?format=plan", std::string("{\"fileType\":")).status,
+            422u);
+  EXPECT_EQ(call("POST", "/missions/import?format=shapefile", bad).status, 422u);
+  EXPECT_EQ(call("POST", "/missions/import").status, 400u);
+  EXPECT_TRUE(call("GET", "/missions").body["items"].empty());
+  EXPECT_EQ(call("GET", "/missions/nobody/export?format=plan").status, 404u);
+  EXPECT_EQ(call("GET", "/missions/nobody/export").status, 422u);
+}
+
+}  // namespace
+}  // namespace roverd::test

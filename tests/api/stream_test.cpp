@@ -1,0 +1,164 @@
+// The live stream over a real WebSocket: hello, state, events, teleoperation, nonsense.
+
+#include "house.hpp"
+#include "schema.hpp"
+
+namespace roverd::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+class StreamApi : public HouseTest {
+ protected:
+  std::unique_ptr<Client> connect() {
+    auto client = std::make_unique<Client>(house.port());
+    EXPECT_EQ(client->upgrade("/api/v1/stream"), 101u);
+    return client;
+  }
+  /// The next message of a topic; others are passed over.
+  static Json next(Client& client, const std::string& topic) {
+    while (const auto frame = client.frame()) {
+      if (frame->opcode != 1) continue;
+      const Json message = Json::parse(frame->payload);
+      if (message["topic"] == topic) return message;
+    }
+    ADD_FAILURE() << "the stream ended without a message of " << topic;
+    return {};
+  }
+  static std::string fault(const char* schema, const Json& message) {
+    return schema_fault(document(), document()["components"]["schemas"][schema], message);
+  }
+  static void say(Client& client, const Json& message) { client.send_frame(1, message.dump()); }
+  static Json drive(double speed_mps, double yaw_rate_dps, bool deadman) {
+    return {{"drive",
+             {{"speed_mps", speed_mps}, {"yaw_rate_dps", yaw_rate_dps}, {"deadman", deadman}}}};
+  }
+};
+
+TEST_F(StreamApi, HelloComesFirstThenTheWholeStateAtTheWantedRate) {
+  until_ready();
+  const auto client = connect();
+  const Json hello = Json::parse(client->frame()->payload);
+  EXPECT_EQ(hello["topic"], "hello");
+  EXPECT_EQ(fault("StreamHello", hello), "");
+  say(*client, {{"subscribe", {{"vehicle", 20}, {"events", 0}}}});
+  const Json first = next(*client, "vehicle");
+  EXPECT_EQ(fault("StreamVehicle", first), "");
+  const auto begin = std::chrono::steady_clock::now();
+  int seq = first["seq"];
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(next(*client, "vehicle")["seq"], ++seq);
+  EXPECT_GT(std::chrono::steady_clock::now() - begin, 400ms);
+}
+
+TEST_F(StreamApi, EventsMissionsAndExecutionAreToldAsTheyHappen) {
+  until_ready();
+  const auto client = connect();
+  say(*client, {{"subscribe", {{"events", 0}, {"missions", 0}, {"execution", 0}, {"vehicle", 1}}}});
+  next(*client, "vehicle");  // the subscription is in force
+  const std::string id = make_mission();
+  const Json made = next(*client, "missions");
+  EXPECT_EQ(fault("StreamMissions", made), "");
+  EXPECT_EQ(made["data"]["id"], id);
+  call("POST", "/execution/load", Json{{"mission_id", id}});
+  const Json loaded = next(*client, "execution");
+  EXPECT_EQ(fault("StreamExecution", loaded), "");
+  EXPECT_EQ(loaded["data"]["state"], "loaded");
+  call("POST", "/vehicle/estop");
+  Json event;
+  do {
+    event = next(*client, "events");
+    ASSERT_EQ(fault("StreamEvent", event), "");
+  } while (event["data"]["kind"] != "estop");
+}
+
+TEST_F(StreamApi, AnUnknownTopicIsSaidAndTheConnectionStays) {
+  until_ready();
+  const auto client = connect();
+  say(*client, {{"subscribe", {{"scan", 5}, {"vehicle", 10}}}});
+  const Json error = next(*client, "error");
+  EXPECT_EQ(fault("StreamError", error), "");
+  EXPECT_EQ(error["data"]["errors"][0]["pointer"], "/subscribe/scan");
+  EXPECT_FALSE(next(*client, "vehicle").is_null());
+}
+
+TEST_F(StreamApi, NonsenseIsAnsweredAndNonsenseWithoutEndIsClosed) {
+  const auto client = connect();
+  for (const char* text :
+       {"hello", "[]", "{}", "{\"subscribe\":5}", "{\"subscribe\":{\"vehicle\":\"fast\"}}",
+        "{\"subscribe\":{},\"drive\":{}}", "{\"drive\":{\"speed_mps\":NaN}}",
+        "{\"subscribe\":{\"vehicle\":-1}}", "{\"fly\":1}"}) {
+    client->send_frame(1, text);
+    EXPECT_EQ(fault("StreamError", next(*client, "error")), "") << text;
+  }
+  client->send_frame(1, "and once more");
+  while (const auto frame = client->frame()) {
+    if (frame->opcode != 8) continue;
+    EXPECT_EQ(frame->close_code(), 1008u);
+    return;
+  }
+  FAIL() << "not closed";
+}
+
+TEST_F(StreamApi, DrivingByHandMovesTheBaseAndLettingGoStopsIt) {
+  // Given an armed robot in MANUAL,
+  until_ready();
+  ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 20}}).status, 200u);
+  ASSERT_EQ(call("PUT", "/vehicle/mode", Json{{"mode", "MANUAL"}}).status, 200u);
+  auto client = connect();
+  const auto hold = [&](double speed_mps, double yaw_rate_dps) {
+    until(
+        [&] {
+          say(*client, drive(speed_mps, yaw_rate_dps, true));
+          std::this_thread::sleep_for(20ms);
+          return std::abs(house.sent().twist.linear_mps) > 0.1;
+        },
+        "the base is told to move");
+  };
+  // when somebody holds the switch, then it moves: left is positive,
+  hold(0.4, 20.0);
+  EXPECT_GT(house.sent().twist.linear_mps, 0.0);
+  EXPECT_GT(house.sent().twist.angular_radps, 0.0);
+  EXPECT_EQ(house.snapshot()->control, base::Driver::Teleop);
+  // when he lets go, it stops at once;
+  say(*client, drive(0.4, 0.0, false));
+  const auto stopped = [this] { return house.sent().twist == base::BodyTwist{}; };
+  until(stopped, "the base stands");
+  // and when his connection breaks, too.
+  hold(-0.4, 0.0);
+  EXPECT_LT(house.sent().twist.linear_mps, 0.0);
+  client.reset();
+  until(stopped, "the base stands after the connection broke");
+}
+
+TEST_F(StreamApi, OneDrivesAtATime) {
+  until_ready();
+  const auto first = connect();
+  const auto second = connect();
+  say(*first, {{"subscribe", {{"vehicle", 1}}}});
+  next(*first, "vehicle");
+  say(*first, drive(0.2, 0.0, true));
+  std::this_thread::sleep_for(50ms);
+  say(*second, drive(0.2, 0.0, true));
+  const Json refused = next(*second, "error");
+  EXPECT_EQ(refused["data"]["status"], 409);
+  // Once the first lets go, the second may.
+  say(*first, drive(0.0, 0.0, false));
+  std::this_thread::sleep_for(50ms);
+  say(*second, drive(0.2, 0.0, true));
+  say(*second, {{"subscribe", {{"vehicle", 1}}}});
+  const auto frame = second->frame();
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(Json::parse(frame->payload)["topic"], "vehicle");
+}
+
+TEST_F(StreamApi, OnlyTheOwnPageMayOpenIt) {
+  const std::string own = "Origin: http://127.0.0.1\r\n";
+  EXPECT_EQ(Client(house.port()).upgrade("/api/v1/stream", own), 101u);
+  EXPECT_EQ(Client(house.port()).upgrade("/api/v1/stream", "Origin: http://evil.example\r\n"),
+            403u);
+  EXPECT_EQ(Client(house.port()).upgrade("/api/v1/vehicle"), 404u);
+  EXPECT_EQ(call("GET", "/stream").status, 426u);
+}
+
+}  // namespace
+}  // namespace roverd::test

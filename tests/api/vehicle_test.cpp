@@ -1,0 +1,204 @@
+// Vehicle and execution over HTTP: answers tell what the robot did.
+
+#include <algorithm>
+
+#include "house.hpp"
+
+namespace roverd::test {
+namespace {
+
+using namespace std::chrono_literals;
+using VehicleApi = HouseTest;
+
+TEST_F(VehicleApi, TheStateIsWholeAndJudgedByTheDocument) {
+  until_ready();
+  const auto reply = call("GET", "/vehicle");
+  EXPECT_EQ(reply.status, 200u);
+  EXPECT_EQ(reply.body["name"], "bunker");
+  EXPECT_EQ(reply.body["mode"], "HOLD");
+  EXPECT_EQ(reply.body["armed"], false);
+  EXPECT_NEAR(reply.body["position"]["lat"], kStart.lat, 1e-5);
+  EXPECT_EQ(reply.body["gnss"]["fix"], "rtk_fixed");
+  EXPECT_EQ(reply.body["battery"]["charge_pct"], 80.0);
+  EXPECT_EQ(call("GET", "/vehicle/checks").body["ready"], true);
+  EXPECT_EQ(call("GET", "/vehicle/capabilities").body["kinematics"], "skid_steer");
+  until([this] { return !call("GET", "/drivers").body["items"].empty(); }, "a driver is listed");
+}
+
+TEST_F(VehicleApi, SilentDevicesGoStale) {
+  until_ready();
+  house.healthy = false;
+  until([this] { return call("GET", "/vehicle").body["base"]["stale"] == true; }, "base stale");
+  const auto reply = call("GET", "/vehicle");
+  EXPECT_GT(reply.body["base"]["age_s"].get<double>(), 0.5);
+  EXPECT_EQ(reply.body["base"]["state"], "normal");  // what was last heard stays
+}
+
+TEST_F(VehicleApi, ArmingSaysWhichChecksFail) {
+  // Given a robot without any device,
+  house.healthy = false;
+  const auto refused = call("POST", "/vehicle/arm");
+  EXPECT_EQ(refused.status, 409u);
+  ASSERT_FALSE(refused.body["errors"].empty());
+  EXPECT_EQ(call("GET", "/vehicle").body["armed"], false);
+  // when they speak,
+  house.healthy = true;
+  until_ready();
+  // then it arms.
+  const auto armed = call("POST", "/vehicle/arm", Json{{"valid_for_s", 10}});
+  EXPECT_EQ(armed.status, 200u);
+  EXPECT_EQ(armed.body["armed"], true);
+  EXPECT_EQ(call("POST", "/vehicle/disarm").body["armed"], false);
+}
+
+TEST_F(VehicleApi, ModesAreSetOrRefusedWithTheReason) {
+  until_ready();
+  EXPECT_EQ(call("PUT", "/vehicle/mode", Json{{"mode", "MANUAL"}}).body["mode"], "MANUAL");
+  EXPECT_EQ(call("PUT", "/vehicle/mode", Json{{"mode", "HOLD"}}).body["mode"], "HOLD");
+  EXPECT_EQ(call("PUT", "/vehicle/mode", Json{{"mode", "DOCK"}}).status, 409u);
+  const auto wrong = call("PUT", "/vehicle/mode", Json{{"mode", "fly"}});
+  EXPECT_EQ(wrong.status, 422u);
+  EXPECT_EQ(wrong.body["errors"][0]["pointer"], "/mode");
+  EXPECT_EQ(call("PUT", "/vehicle/mode", Json{{"mode", 3}, {"speed", 1}}).body["errors"].size(),
+            2u);
+  EXPECT_EQ(call("PUT", "/vehicle/mode").status, 415u);
+  EXPECT_EQ(call("PUT", "/vehicle/mode", std::string("{")).status, 400u);
+  EXPECT_EQ(call("PUT", "/vehicle/mode", std::string("null")).status, 422u);
+}
+
+TEST_F(VehicleApi, TheStopIsLatchedUntilItIsReset) {
+  until_ready();
+  const auto stopped = call("POST", "/vehicle/estop");
+  EXPECT_EQ(stopped.status, 200u);
+  EXPECT_EQ(stopped.body["estop"], true);
+  EXPECT_EQ(call("POST", "/vehicle/arm").status, 409u);
+  EXPECT_EQ(call("POST", "/vehicle/estop/reset").body["estop"], false);
+}
+
+TEST_F(VehicleApi, HomeIsHereOrThere) {
+  until_ready();
+  const auto here = call("PUT", "/vehicle/home");
+  EXPECT_EQ(here.status, 200u);
+  EXPECT_NEAR(here.body["home"]["lat"], kStart.lat, 1e-5);
+  const auto there = call("PUT", "/vehicle/home", Json{{"lat", 58.5}, {"lon", 26.5}});
+  EXPECT_EQ(there.body["home"]["lat"], 58.5);
+  EXPECT_EQ(call("PUT", "/vehicle/home", Json{{"lat", 58.5}}).body["errors"][0]["pointer"], "/lon");
+  EXPECT_EQ(call("PUT", "/vehicle/home", Json{{"lat", 91}, {"lon", 26.5}}).status, 422u);
+}
+
+TEST_F(VehicleApi, AHangingLoopIsReportedAndLateCommandsAreNotCarriedOut) {
+  // Given a control loop that hangs,
+  until_ready();
+  house.ticking = false;
+  until([this] { return call("GET", "/health").body["status"] == "degraded"; }, "degraded");
+  // when somebody arms, then he hears that nothing answers,
+  const auto reply = call("POST", "/vehicle/arm", Json{{"valid_for_s", 0.2}});
+  EXPECT_EQ(reply.status, 503u);
+  // and when the loop runs again, the old command is not carried out.
+  house.ticking = true;
+  until([this] { return call("GET", "/health").body["status"] == "ok"; }, "well again");
+  EXPECT_EQ(call("GET", "/vehicle").body["armed"], false);
+}
+
+TEST_F(VehicleApi, ACommandWhoseBodyTrickledInIsTooLate) {
+  until_ready();
+  // Given an arm command of which the end comes after its validity,
+  Client client(house.port());
+  client.send(
+      "POST /api/v1/vehicle/arm HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\n"
+      "Content-Length: 20\r\n\r\n{\"valid_for_s\":");
+  std::this_thread::sleep_for(300ms);
+  client.send(" 0.1}");
+  const auto answer = client.answer();
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->status, 409u);
+  EXPECT_NE(answer->body.find("too late"), std::string::npos);
+  EXPECT_EQ(call("GET", "/vehicle").body["armed"], false);
+}
+
+TEST_F(VehicleApi, AMissionIsLoadedPreviewedStartedPausedAndStopped) {
+  until_ready();
+  const std::string id = make_mission();
+  // Nothing is loaded yet: there is nothing to start.
+  EXPECT_EQ(call("GET", "/execution").body["state"], "idle");
+  EXPECT_EQ(call("GET", "/execution/preview").status, 409u);
+  const Json start = {{"mission_id", id}, {"revision", 1}, {"valid_for_s", 20}};
+  EXPECT_EQ(call("POST", "/execution/start", start).status, 409u);
+  // Load: a copy of one revision.
+  const auto loaded = call("POST", "/execution/load", Json{{"mission_id", id}});
+  ASSERT_EQ(loaded.status, 200u) << loaded.body.dump();
+  EXPECT_EQ(loaded.body["state"], "loaded");
+  EXPECT_EQ(loaded.body["mission_id"], id);
+  // Preview tells what start would do.
+  const auto preview = call("GET", "/execution/preview?from=2");
+  ASSERT_EQ(preview.status, 200u) << preview.body.dump();
+  EXPECT_EQ(preview.body["first_item"], 2);
+  const auto first = call("GET", "/execution/preview");
+  EXPECT_EQ(first.body["first_item"], 1);
+  EXPECT_NEAR(first.body["distance_m"], 11.1, 0.2);
+  EXPECT_NEAR(first.body["bearing_deg"], 0.0, 0.5);
+  EXPECT_EQ(first.body["at_end"], "hold");
+  // Start is refused while not armed, and for what is not loaded.
+  EXPECT_EQ(call("POST", "/execution/start", start).status, 409u);
+  ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 20}}).status, 200u);
+  Json other = start;
+  other["revision"] = 2;
+  EXPECT_EQ(call("POST", "/execution/start", other).status, 409u);
+  const auto started = call("POST", "/execution/start", start);
+  ASSERT_EQ(started.status, 200u) << started.body.dump();
+  EXPECT_EQ(started.body["state"], "running");
+  EXPECT_EQ(started.body["name"], "field");
+  EXPECT_EQ(call("GET", "/vehicle").body["mode"], "AUTO");
+  until([this] { return house.sent().twist.linear_mps > 0.0; }, "the base is told to move");
+  // Pause, resume, stop.
+  EXPECT_EQ(call("POST", "/execution/pause").body["state"], "paused");
+  EXPECT_EQ(call("POST", "/execution/resume").body["state"], "running");
+  EXPECT_EQ(call("POST", "/execution/skip", Json{{"item", 2}}).body["current_item"], 2);
+  EXPECT_EQ(call("POST", "/execution/stop").status, 200u);
+  EXPECT_NE(call("GET", "/execution").body["state"], "running");
+}
+
+TEST_F(VehicleApi, ExecutionRefusesWhatCannotBe) {
+  until_ready();
+  EXPECT_EQ(call("POST", "/execution/load", Json{{"mission_id", "nobody"}}).status, 404u);
+  EXPECT_EQ(call("POST", "/execution/load", Json{{"mission_id", 7}}).status, 422u);
+  EXPECT_EQ(call("POST", "/execution/load").status, 415u);
+  EXPECT_EQ(call("POST", "/execution/pause").status, 409u);
+  EXPECT_EQ(call("POST", "/execution/skip", Json{{"item", 0}}).status, 422u);
+  for (const Json& from : {Json("last"), Json(0), Json(1.5), Json(true), Json("2"), Json(-1)}) {
+    const auto reply = call("POST", "/execution/start",
+                            Json{{"mission_id", "x"}, {"revision", 1}, {"from", from}});
+    EXPECT_EQ(reply.status, 422u) << from;
+    EXPECT_EQ(reply.body["errors"][0]["pointer"], "/from");
+  }
+  EXPECT_EQ(call("GET", "/execution/preview?from=last").status, 422u);
+  EXPECT_EQ(call("POST", "/execution/start", Json{{"mission_id", "x"}}).status, 422u);
+}
+
+TEST_F(VehicleApi, WhatHappenedIsFoundAmongTheEvents) {
+  until_ready();
+  call("POST", "/vehicle/estop");
+  until(
+      [this] {
+        const auto list = call("GET", "/events");
+        const Json& items = list.body["items"];
+        return std::any_of(items.begin(), items.end(),
+                           [](const Json& event) { return event["kind"] == "estop"; });
+      },
+      "the stop is stored");
+  const auto all = call("GET", "/events");
+  const Json last = all.body["items"].back();
+  const std::string id = std::to_string(last["id"].get<int>());
+  EXPECT_TRUE(call("GET", "/events?since=" + id).body["items"].empty());
+  EXPECT_EQ(call("GET", "/events?since=1970-01-01T00:00:00Z").body["items"].size(),
+            all.body["items"].size());
+  EXPECT_TRUE(call("GET", "/events?since=2199-01-01T00:00:00Z").body["items"].empty());
+  EXPECT_EQ(call("GET", "/events?limit=1").body["items"].size(), 1u);
+  for (const char* wrong : {"since=yesterday", "level=loud", "limit=x"}) {
+    EXPECT_EQ(call("GET", std::string("/events?") + wrong).status, 422u) << wrong;
+  }
+  EXPECT_EQ(call("GET", "/events?cursor=x").status, 400u);
+}
+
+}  // namespace
+}  // namespace roverd::test
