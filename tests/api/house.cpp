@@ -31,6 +31,13 @@ api::Profile profile() {
   return p;
 }
 
+/// A receiver that has been good for a moment is good enough for these tests.
+robot::Config quick_to_trust() {
+  robot::Config config;
+  config.arming.healthy_s = 0.2;
+  return config;
+}
+
 api::Stream stream_of(net::Hub& hub) {
   return {[&hub](std::string topic, api::Stream::Render render) {
             hub.add_sampled_topic(std::move(topic), std::move(render));
@@ -48,7 +55,7 @@ api::Stream stream_of(net::Hub& hub) {
 
 }  // namespace
 
-House::House(net::Limits limits) {
+House::House(net::Limits limits) : robot_(quick_to_trust()) {
   std::string name = (std::filesystem::temp_directory_path() / "roverd-api-XXXXXX").string();
   if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
   folder_ = name;

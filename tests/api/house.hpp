@@ -51,7 +51,7 @@ class House {
 
   std::filesystem::path folder_;
   boost::asio::io_context io_{net::kWebConcurrency};
-  robot::Robot robot_{robot::Config{}};
+  robot::Robot robot_;
   std::unique_ptr<store::Store> store_;
   std::unique_ptr<api::Api> api_;
   std::unique_ptr<net::Server> server_;
