@@ -100,7 +100,7 @@ Result<void> check(const std::string& key, const DriverWiring& wiring) {
 }  // namespace
 
 Result<std::unique_ptr<DriverBay>> DriverBay::make(const Settings& settings, const Options& options,
-                                                   OnMeasurement on_measurement) {
+                                                   const OnMeasurement& on_measurement) {
   if (!options.replay.empty() && !std::filesystem::is_regular_file(options.replay)) {
     return base::fail(base::Code::NotFound, "no recording " + options.replay);
   }

@@ -30,7 +30,7 @@ class DriverBay {
   /// @param on_measurement called on the device thread.
   static base::Result<std::unique_ptr<DriverBay>> make(const Settings& settings,
                                                        const Options& options,
-                                                       OnMeasurement on_measurement);
+                                                       const OnMeasurement& on_measurement);
   ~DriverBay();
   DriverBay(const DriverBay&) = delete;
   DriverBay& operator=(const DriverBay&) = delete;

@@ -33,15 +33,16 @@ std::optional<ParamValue> value_of(const toml::node& node) {
 Result<void> flatten(const toml::table& table, const std::string& prefix, const std::string& file,
                      std::vector<Entry>& out) {
   for (const auto& [key, node] : table) {
-    const std::string name = prefix + std::string(key.str());
-    const std::string place = file + ":" + std::to_string(key.source().begin.line);
+    std::string name = prefix;
+    name += key.str();
+    std::string place = file + ":" + std::to_string(key.source().begin.line);
     if (const auto* inner = node.as_table()) {
       if (auto done = flatten(*inner, name + ".", file, out); !done) return done;
     } else if (auto value = value_of(node)) {
       out.push_back({name, *value, place});
     } else {
-      return base::fail(base::Code::Invalid,
-                        place + ": " + name + " must be a number, a text or true/false");
+      place += ": " + name;
+      return base::fail(base::Code::Invalid, place + " must be a number, a text or true/false");
     }
   }
   return {};
