@@ -151,9 +151,14 @@ base::Result<void> Robot::Impl::may_drive_mission() const {
   if (!mission) return base::fail(Code::Conflict, "no mission is loaded");
   if (!armed) return base::fail(Code::Conflict, "the robot is not armed");
   if (!pose) return base::fail(Code::Conflict, "the position is not known");
-  if (assessment.response >= Response::Hold) {
-    return base::fail(Code::Conflict, assessment.cause);
+  if (radio_drives(world, config.safety, now)) {
+    return base::fail(Code::Conflict, "the radio drives: put its switch SWB up first");
   }
+  // What would pause the mission at the next tick refuses it now.
+  Facts as_if = facts();
+  as_if.autonomous = true;
+  const Assessment then = assess(as_if, config.safety, now);
+  if (then.response >= Response::Hold) return base::fail(Code::Conflict, then.cause);
   return {};
 }
 

@@ -1,0 +1,158 @@
+// One control tick: measurements of a full bus and a receiver in, estimate, mission of 1,000 items,
+// command and snapshot out. Reports the median and the 99th percentile of single ticks.
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "base/angle.hpp"
+#include "robot/robot.hpp"
+
+namespace roverd::robot {
+namespace {
+
+using base::LatLon;
+
+const base::LocalFrame kFrame{9, {58.378, 26.729}};
+
+/// Lanes of 30 m, 1.5 m apart, with a waypoint every 3 m.
+mission::Plan plan_of(int items) {
+  mission::Plan plan;
+  plan.name = "bench";
+  plan.settings.speed_mps = 1.0;
+  plan.settings.at_end = mission::AtEnd::Repeat;
+  for (int i = 0; i < items; ++i) {
+    const int lane = i / 11;
+    const int at = lane % 2 == 0 ? i % 11 : 10 - i % 11;
+    mission::Waypoint w;
+    w.at = kFrame.to_global({1.5 * lane, 3.0 * at});
+    plan.items.emplace_back(w);
+  }
+  return plan;
+}
+
+/// An ideal vehicle that speaks like the drivers do: 50 Hz tracks and motion, 5 Hz GNSS.
+class Field {
+ public:
+  Robot robot{Config{}};
+  base::Time now{};
+
+  Field() {
+    robot.send = [this](const base::DriveCommand& c, base::Time) { command_ = c; };
+  }
+
+  void sense() {
+    now += std::chrono::milliseconds(20);
+    const auto [v, w] = command_.twist;
+    at_.east_m += v * 0.02 * std::cos(yaw_);
+    at_.north_m += v * 0.02 * std::sin(yaw_);
+    yaw_ = base::wrap_rad(yaw_ + w * 0.02);
+    auto& in = robot.measurements();
+    in.put(base::WheelTravel{now, (v - w * 0.3) * 0.02, (v + w * 0.3) * 0.02});
+    in.put(base::BaseMotion{now, command_.twist});
+    base::RadioState radio;
+    radio.stamp = now;
+    radio.swb = base::Switch::Up;
+    radio.count = ++count_;
+    in.put(radio);
+    if (count_ % 5 == 0) {
+      base::BaseStatus status;
+      status.stamp = now;
+      status.vehicle_state = base::VehicleState::Normal;
+      status.control_mode = base::ControlMode::Can;
+      status.battery_v = 50.0;
+      in.put(status);
+    }
+    if (count_ % 10 != 0) return;
+    base::GnssFix fix;
+    fix.stamp = now;
+    fix.fix = base::FixType::RtkFixed;
+    fix.position = kFrame.to_global(at_);
+    fix.satellites = 20;
+    in.put(fix);
+    in.put(base::GnssVelocity{now, v * std::cos(yaw_), v * std::sin(yaw_), {}});
+    in.put(base::Heading{now, yaw_, base::HeadingSource::Compass});
+  }
+
+  void tick() { robot.tick(now, base::WallTime{now.time_since_epoch()}); }
+
+  bool ask(Command command) {
+    bool done = false;
+    robot.request(std::move(command), now + std::chrono::seconds(1),
+                  [&](base::Result<void> r) { done = r.has_value(); });
+    sense();
+    tick();
+    drain();
+    return done;
+  }
+
+  void drain() {
+    replies_.clear();
+    events_.clear();
+    robot.replies().take(replies_);
+    robot.events().take(events_);
+    for (auto& r : replies_) r.reply(std::move(r.result));
+  }
+
+  bool start(int items) {
+    for (int i = 0; i < 500; ++i) {
+      sense();
+      tick();
+    }
+    auto compiled = robot.compile({"m", 1, plan_of(items)});
+    return compiled && ask(Arm{}) && ask(LoadMission{*compiled}) && ask(StartMission{"m", 1});
+  }
+
+ private:
+  base::DriveCommand command_;
+  base::EnuPoint at_{};
+  double yaw_ = base::kPi / 2.0;
+  std::uint8_t count_ = 0;
+  std::vector<PendingReply> replies_;
+  std::vector<base::Event> events_;
+};
+
+void one_tick(benchmark::State& state) {
+  Field field;
+  if (!field.start(static_cast<int>(state.range(0)))) {
+    state.SkipWithError("the mission did not start");
+    return;
+  }
+  std::vector<double> us;
+  us.reserve(1u << 20);
+  for (auto _ : state) {
+    field.sense();
+    const auto begin = std::chrono::steady_clock::now();
+    field.tick();
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    field.drain();
+    state.SetIterationTime(took.count());
+    us.push_back(took.count() * 1e6);
+  }
+  const auto at = [&us](double part) {
+    const auto k = static_cast<std::size_t>(part * static_cast<double>(us.size() - 1));
+    std::nth_element(us.begin(), us.begin() + static_cast<std::ptrdiff_t>(k), us.end());
+    return us[k];
+  };
+  state.counters["p50_us"] = at(0.50);
+  state.counters["p99_us"] = at(0.99);
+  state.counters["p99.9_us"] = at(0.999);
+  const auto snapshot = field.robot.snapshot();
+  if (snapshot->mission.state != base::ExecutionState::Running) {
+    state.SkipWithError("the mission stopped on the way");
+  }
+}
+BENCHMARK(one_tick)->Arg(10)->Arg(1'000)->Arg(10'000)->UseManualTime()->MinTime(1.0);
+
+void compile_a_mission(benchmark::State& state) {
+  const Robot robot{Config{}};
+  const auto plan = plan_of(static_cast<int>(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(robot.compile({"m", 1, plan}));
+}
+BENCHMARK(compile_a_mission)->Arg(1'000)->Arg(10'000)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace roverd::robot

@@ -1,0 +1,200 @@
+// Who drives, and what a loss does: e-stop > radio > teleoperation > autonomy.
+
+#include <limits>
+
+#include "field.hpp"
+#include "robot/manual.hpp"
+
+namespace roverd::robot {
+namespace {
+
+TEST(Arbiter, TheRadioGoesBeforeEverythingButTheEmergencyStop) {
+  Field f;
+  f.drive_mission();
+  f.swb = base::Switch::Middle;
+  f.run(0.1);
+  EXPECT_EQ(f.state()->control, base::Driver::Radio);
+  EXPECT_EQ(f.command, base::DriveCommand{});
+  EXPECT_EQ(f.execution(), ExecutionState::Running);
+  EXPECT_NE(f.state()->mission.reason, "");
+  EXPECT_TRUE(f.has_condition("radio_control"));
+  f.run(30.0);  // as long as it likes
+  EXPECT_EQ(f.execution(), ExecutionState::Running);
+  f.swb = base::Switch::Up;
+  f.run(1.0);
+  EXPECT_EQ(f.state()->control, base::Driver::Autonomy);
+  EXPECT_TRUE(f.moves());
+  f.control_mode = base::ControlMode::Radio;
+  f.run(0.5);
+  EXPECT_EQ(f.state()->control, base::Driver::Radio);
+  ASSERT_TRUE(f.ask(Estop{}));
+  EXPECT_EQ(f.state()->control, base::Driver::None);
+}
+
+TEST(Arbiter, ALeverBetweenItsDetentsKeepsItsLastPosition) {
+  Field f;
+  f.drive_mission();
+  f.swb = base::Switch::Unknown;
+  f.run(2.0);
+  EXPECT_EQ(f.state()->control, base::Driver::Autonomy);
+  EXPECT_TRUE(f.moves());
+}
+
+TEST(Arbiter, NothingIsSentToABaseThatDoesNotListenAndTheMissionWaits) {
+  Field f;
+  f.drive_mission();
+  f.control_mode = base::ControlMode::Standby;
+  f.run(1.0);
+  EXPECT_FALSE(f.moves());
+  EXPECT_TRUE(f.command.enabled);  // the driver asks the base again
+  EXPECT_TRUE(f.has_condition("base_not_ready"));
+  EXPECT_EQ(f.execution(), ExecutionState::Running);
+  f.control_mode = base::ControlMode::Can;
+  f.run(2.0);
+  EXPECT_TRUE(f.moves());
+  f.control_mode = base::ControlMode::Uart;
+  f.run(4.0);
+  EXPECT_EQ(f.execution(), ExecutionState::Paused);
+  EXPECT_EQ(f.state()->mode, Mode::Hold);
+}
+
+TEST(Arbiter, EachLossStopsSaysWhyAndDoesNotGoOnByItself) {
+  struct Case {
+    const char* condition;
+    double after_s;
+    void (*lose)(Field&);
+    void (*find)(Field&);
+  };
+  const Case cases[] = {
+      {"base_lost", 0.45, [](Field& f) { f.base_speaks = false; },
+       [](Field& f) { f.base_speaks = true; }},
+      {"base_exception", 0.15, [](Field& f) { f.vehicle_state = base::VehicleState::Exception; },
+       [](Field& f) { f.vehicle_state = base::VehicleState::Normal; }},
+      {"base_exception", 0.15, [](Field& f) { f.vehicle_state = base::VehicleState::Unknown; },
+       [](Field& f) { f.vehicle_state = base::VehicleState::Normal; }},
+      {"radio_lost", 0.55, [](Field& f) { f.radio_speaks = false; },
+       [](Field& f) { f.radio_speaks = true; }},
+      {"radio_lost", 0.55, [](Field& f) { f.radio_counts = false; },
+       [](Field& f) { f.radio_counts = true; }},
+      {"radio_lost", 0.15, [](Field& f) { f.radio_lost = true; },
+       [](Field& f) { f.radio_lost = false; }},
+      {"gnss_lost", 6.3, [](Field& f) { f.gnss_speaks = false; },
+       [](Field& f) { f.gnss_speaks = true; }},
+      {"battery", 0.1, [](Field& f) { f.charge_pct = 5.0; }, [](Field& f) { f.charge_pct = 80.0; }},
+  };
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.condition);
+    Field f;
+    f.drive_mission();
+    c.lose(f);
+    f.run(c.after_s);
+    EXPECT_FALSE(f.moves());
+    EXPECT_EQ(f.execution(), ExecutionState::Paused);
+    EXPECT_EQ(f.state()->mode, Mode::Hold);
+    EXPECT_NE(f.state()->mission.reason, "");
+    EXPECT_FALSE(f.ask(ResumeMission{}));
+    c.find(f);
+    f.run(2.0);
+    EXPECT_FALSE(f.moves());
+    EXPECT_EQ(f.execution(), ExecutionState::Paused);
+    EXPECT_TRUE(f.ask(ResumeMission{}));
+    f.run(2.0);
+    EXPECT_TRUE(f.moves());
+  }
+}
+
+TEST(Arbiter, TheWorstOfTwoLossesDecides) {
+  Field f;
+  f.drive_mission();
+  f.radio_speaks = false;
+  f.vehicle_state = base::VehicleState::Estop;
+  f.run(1.0);
+  EXPECT_TRUE(f.state()->estop);
+  EXPECT_TRUE(f.has_condition("radio_lost"));
+  EXPECT_TRUE(f.has_condition("base_estop"));
+}
+
+TEST(Arbiter, AFlappingLinkDoesNotLetItMoveInBetween) {
+  Field f;
+  f.drive_mission();
+  for (int i = 0; i < 10; ++i) {
+    f.radio_speaks = false;
+    f.run(0.7);
+    f.radio_speaks = true;
+    f.run(0.7);
+    EXPECT_FALSE(f.moves());
+  }
+}
+
+TEST(Arbiter, HandCommandsWorkInManualOnlyAndWhileFresh) {
+  Field f;
+  f.run(8.0);
+  ASSERT_TRUE(f.ask(Arm{}));
+  const auto drive = [&](double v) {
+    f.robot.request(Drive{{v, 0.0}, true}, f.now + std::chrono::milliseconds(250), {});
+    f.tick();
+  };
+  drive(0.5);
+  EXPECT_FALSE(f.moves());  // HOLD
+  ASSERT_TRUE(f.ask(SetMode{Mode::Manual}));
+  for (int i = 0; i < 100; ++i) drive(5.0);
+  EXPECT_NEAR(f.command.twist.linear_mps, 1.0, 1e-9);  // cut to the limit
+  f.run(0.48);
+  EXPECT_TRUE(f.moves());
+  f.run(0.06);
+  EXPECT_FALSE(f.moves());
+  drive(0.5);
+  EXPECT_FALSE(f.moves());  // let go first
+  f.robot.request(Drive{{}, false}, f.now, {});
+  f.tick();
+  drive(0.5);
+  EXPECT_TRUE(f.moves());
+  f.radio_speaks = false;
+  for (int i = 0; i < 40; ++i) drive(0.5);
+  EXPECT_FALSE(f.moves());
+  EXPECT_EQ(f.state()->mode, Mode::Hold);
+}
+
+TEST(Manual, RefusesNothingButStopsOnEverythingOdd) {
+  Manual m{ManualParams{}};
+  const base::Time t{};
+  m.drive({0.4, 0.0}, true, t);
+  for (int i = 0; i < 100; ++i) m.step(t, 0.02);
+  EXPECT_DOUBLE_EQ(m.step(t, 0.02).linear_mps, 0.4);
+  m.drive({-0.4, 0.0}, true, t);
+  EXPECT_LT(m.step(t, 0.02).linear_mps, 0.0);  // through zero at once, then with the ramp
+  m.drive({0.0, 0.0}, true, t);
+  EXPECT_EQ(m.step(t, 0.02), base::BodyTwist{});
+}
+
+TEST(Robot, SurvivesAnyMeasurement) {
+  Field f;
+  f.run(1.0);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double inf = std::numeric_limits<double>::infinity();
+  auto& in = f.robot.measurements();
+  for (const double x : {nan, inf, -inf, 1e300, -1e300}) {
+    base::GnssFix fix;
+    fix.stamp = f.now + std::chrono::milliseconds(1);
+    fix.fix = base::FixType::RtkFixed;
+    fix.position = base::LatLon{x, x};
+    fix.hdop = x;
+    fix.sigma_east_m = x;
+    fix.alt_msl_m = x;
+    in.put(fix);
+    in.put(base::GnssVelocity{f.now, x, x, x});
+    in.put(base::Heading{f.now, x, base::HeadingSource::DualAntenna});
+    in.put(base::WheelTravel{f.now, x, -x});
+    in.put(base::BaseMotion{f.now, {x, x}});
+    in.put(base::BatteryState{f.now, x, x, x, x});
+    f.run(0.5);
+    ASSERT_TRUE(f.state()->pose);
+    EXPECT_TRUE(std::isfinite(f.state()->pose->at.east_m));
+    EXPECT_TRUE(std::isfinite(f.state()->pose->yaw_rad));
+    EXPECT_TRUE(std::isfinite(f.state()->pose->speed_mps));
+  }
+  EXPECT_FALSE(f.moves());
+}
+
+}  // namespace
+}  // namespace roverd::robot
