@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """./run as a person uses it: its options, what it says of bad ones, starting twice, Ctrl-C."""
 
+import contextlib
 import os
 import pathlib
 import re
@@ -21,11 +22,15 @@ RUN = ROOT / "run"
 scratch = pathlib.Path(tempfile.mkdtemp(prefix="roverd-command."))
 
 
-def start(*options, data="data"):
-    """./run with a free port, listening. @return the program and its API."""
-    program = Program(RUN, "--port", "0", "--data", scratch / data, *options)
-    address = program.wait_line(r"^listening on (http://127\.0\.0\.1:\d+)$", 60)[1]
-    return program, Rest(address)
+@contextlib.contextmanager
+def running(*options, data="data", before=()):
+    """./run with a free port, listening: the program and its API. Whatever comes, it is ended."""
+    program = Program(*before, RUN, "--port", "0", "--data", scratch / data, *options)
+    try:
+        address = program.wait_line(r"^listening on (http://127\.0\.0\.1:\d+)$", 60)[1]
+        yield program, Rest(address)
+    finally:
+        program.stop(signal.SIGINT)
 
 
 def children_of(pid):
@@ -124,10 +129,14 @@ def a_missing_can_interface_is_named():
     refused("--no-sim", "--port", "0", "--data", scratch / "n", "--config", config, names=["nocan7"])
 
 
+def page_of(rest):
+    with urllib.request.urlopen(rest.address + "/", timeout=10) as answer:
+        return answer.status, answer.headers, answer.read()
+
+
 def the_product_starts():
     """./run --port 0 prints data folder and address; page and API answer there"""
-    program, rest = start()
-    try:
+    with running() as (program, rest):
         check(any(str(scratch / "data") in line for line in program.lines), "data folder not shown")
         check(rest.get("/health")["status"] == "ok", "not healthy")
         status, headers, page = page_of(rest)
@@ -135,47 +144,31 @@ def the_product_starts():
         check("text/html" in headers["Content-Type"], headers["Content-Type"])
         until("the simulated base is heard", 10, lambda: all(
             d["state"] == "up" for d in rest.get("/drivers")["items"]))
-    finally:
-        code = program.stop(signal.SIGINT)
-    check(code == 0, f"Ctrl-C ends it with {code}: {program.said()}")
-
-
-def page_of(rest):
-    with urllib.request.urlopen(rest.address + "/", timeout=10) as answer:
-        return answer.status, answer.headers, answer.read()
 
 
 def a_second_start_is_quick():
     """a second start listens within 2 s, without network, and finds what was saved before"""
-    program, rest = start()
     mission = {"name": "kept", "items": [{"type": "waypoint", "lat": 58.3781, "lon": 26.7290}]}
-    saved = rest.do("POST", "/missions", mission)
-    program.stop(signal.SIGTERM)
+    with running() as (_, rest):
+        saved = rest.do("POST", "/missions", mission)
     alone = ["unshare", "-rn", "sh", "-c", 'ip link set lo up && exec "$@"', "sh"]
     begin = time.monotonic()
-    program = Program(*alone, RUN, "--port", "0", "--data", scratch / "data")
-    try:
-        program.wait_line(r"^listening on ", 30)
+    with running(before=alone):
         took_s = time.monotonic() - begin
-        check(took_s < 2.0, f"{took_s:.2f} s until it listened")
-    finally:
-        program.stop(signal.SIGINT)
-    program, rest = start()
-    try:
+    check(took_s < 2.0, f"{took_s:.2f} s until it listened")
+    with running() as (_, rest):
         check(rest.get(f"/missions/{saved['id']}")["name"] == "kept", "the mission is lost")
-    finally:
-        program.stop(signal.SIGINT)
 
 
 def both_end():
     """Ctrl-C and SIGTERM end roverd and the simulator within 2 s, and nothing is left behind"""
     for how in (signal.SIGINT, signal.SIGTERM):
-        program, _ = start()
-        children = children_of(program.process.pid)
-        check({"roverd", "roverd-sim"} <= set(children), f"children are {children}")
-        begin = time.monotonic()
-        code = program.stop(how)
-        took_s = time.monotonic() - begin
+        with running() as (program, _):
+            children = children_of(program.process.pid)
+            check({"roverd", "roverd-sim"} <= set(children), f"children are {children}")
+            begin = time.monotonic()
+            code = program.stop(how)
+            took_s = time.monotonic() - begin
         check(code == 0, f"{how.name} ends it with {code}: {program.said()}")
         check(took_s < 2.0, f"{how.name} took {took_s:.2f} s")
         left = [name for name, pid in children.items() if alive(pid)]
@@ -184,20 +177,20 @@ def both_end():
 
 def a_killed_script_leaves_nothing():
     """when the script itself is killed, both programs end too"""
-    program, _ = start()
-    children = children_of(program.process.pid)
-    program.process.kill()
-    until("both programs have ended", 5,
-          lambda: not any(alive(children[n]) for n in ("roverd", "roverd-sim")))
+    with running() as (program, _):
+        children = children_of(program.process.pid)
+        program.process.kill()
+        until("both programs have ended", 5,
+              lambda: not any(alive(children[n]) for n in ("roverd", "roverd-sim")))
 
 
 def one_dies_the_other_ends():
     """if one of the two dies, the other is ended and the reason is said"""
     for victim, other in (("roverd-sim", "roverd"), ("roverd", "roverd-sim")):
-        program, _ = start()
-        children = children_of(program.process.pid)
-        os.kill(children[victim], signal.SIGKILL)
-        code = program.wait_exit(10)
+        with running() as (program, _):
+            children = children_of(program.process.pid)
+            os.kill(children[victim], signal.SIGKILL)
+            code = program.wait_exit(10)
         check(code != 0, f"exit code 0 after {victim} died")
         check(not alive(children[other]), f"{other} still runs")
         what = "simulator" if victim == "roverd-sim" else "roverd"
@@ -216,8 +209,8 @@ def a_busy_port_is_named():
 def a_newer_database_is_refused():
     """a database of a newer version is refused, and not touched"""
     folder = scratch / "newer"
-    program, _ = start(data="newer")
-    program.stop(signal.SIGINT)
+    with running(data="newer"):
+        pass
     files = [f for f in folder.rglob("*") if f.is_file() and f.read_bytes()[:6] == b"SQLite"]
     check(len(files) == 1, f"one SQLite file expected in {folder}: {files}")
     with sqlite3.connect(files[0]) as connection:
