@@ -12,8 +12,8 @@ constexpr std::uint32_t kSystemState = 0x211;
 constexpr std::uint32_t kMotionState = 0x221;
 constexpr std::uint32_t kControlMode = 0x421;
 constexpr std::uint8_t kNormal = 0;
+constexpr std::uint8_t kStandby = 0;
 constexpr std::uint8_t kCan = 1;
-constexpr std::uint8_t kRadio = 3;
 
 /// The base itself forgets a motion command after this long.
 constexpr double kCommandLife_s = 0.5;
@@ -77,7 +77,6 @@ void Gate::permit(bool on) noexcept {
   permitted_ = on;
   if (on) return;
   seen_ = {};
-  vehicle_state_ = 0xFF;
   control_mode_ = 0xFF;
 }
 
@@ -115,7 +114,7 @@ Refusal Gate::check_code(const TxRule& rule, const CanFrame& frame, Time now) no
   if (rule.zero_is_stop && code == 0) return Refusal::None;
   if (!permitted_) return Refusal::NotPermitted;
   // A base asked for CAN mode while its radio drives flips between the two and can latch a fault.
-  if (frame.id == kControlMode && control_mode_ == kRadio) return Refusal::NotReady;
+  if (frame.id == kControlMode && control_mode_ != kStandby) return Refusal::NotReady;
   auto& last = last_code_[static_cast<std::size_t>(&rule - kMayLeave.data())];
   if (last && base::seconds(now - *last) < rule.min_period_s) return Refusal::TooOften;
   last = now;

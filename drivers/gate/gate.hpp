@@ -39,7 +39,7 @@ enum class Refusal {
   WrongContent,  ///< a byte that must be zero is not, or a code outside its range
   NotPermitted,  ///< permit(false), or never permitted
   Stale,         ///< feedback is too old
-  NotReady,      ///< the base is not in normal state and CAN mode
+  NotReady,      ///< motion: not normal state and CAN mode; CAN request: not in standby
   TooLarge,      ///< beyond the limit
   TooSudden,     ///< beyond the step
   TooOften,
@@ -85,7 +85,7 @@ struct Limits {
 
 inline constexpr std::array kMayLeave{
     TxRule{.id = 0x111, .len = 8, .payload = Payload::Motion},
-    // 1 CAN; 2 (serial) is nobody's business. Never while the radio drives, see gate.cpp.
+    // 1 CAN; 2 (serial) is nobody's business. Only to a base that says standby.
     TxRule{.id = 0x421, .len = 8, .max_code = 1, .zero_is_stop = true, .min_period_s = 0.45},
     TxRule{.id = 0x441, .len = 8, .max_code = 2, .min_period_s = 0.1},
 };

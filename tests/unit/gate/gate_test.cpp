@@ -1,6 +1,7 @@
 #include "gate/gate.hpp"
 
 #include <initializer_list>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -231,13 +232,21 @@ TEST_F(GateTest, AsksForCanModeAtMostTwiceASecond) {
   EXPECT_TRUE(gate.allows(kCanMode, now));
 }
 
-TEST_F(GateTest, NeverAsksForCanModeWhileTheRadioDrives) {
+TEST_F(GateTest, AsksOnlyABaseInStandbyForCanMode) {
   gate.permit(true);
-  gate.saw(state(0, 3), now);
   expect_refused(kCanMode, Refusal::NotReady);
+  for (const int mode : {1, 2, 3, 4}) {
+    gate.saw(state(0, mode), now);
+    expect_refused(kCanMode, Refusal::NotReady);
+  }
   EXPECT_TRUE(gate.allows(kClearAll, now)) << "errors may be cleared";
   gate.saw(state(0, 0), now);
   EXPECT_TRUE(gate.allows(kCanMode, now));
+  // When permission was withdrawn, what the base said before counts no more
+  now += 1s;
+  gate.permit(false);
+  gate.permit(true);
+  expect_refused(kCanMode, Refusal::NotReady);
 }
 
 TEST_F(GateTest, LetsOnlyListedCodesOut) {
@@ -249,6 +258,17 @@ TEST_F(GateTest, LetsOnlyListedCodesOut) {
   expect_refused(kClearAll, Refusal::TooOften);
   now += 100ms;
   EXPECT_TRUE(gate.allows(kClearAll, now));
+}
+
+TEST_F(GateTest, MayBeUsedByTheLoopAndTheDeviceAtOnce) {
+  // For the thread sanitizer; the counts show that no call was lost.
+  ready();
+  std::thread device([&] {
+    for (int i = 0; i < 2000; ++i) gate.saw(kMotionState, now);
+  });
+  for (int i = 0; i < 2000; ++i) gate.allows(motion(10, 0), now);
+  device.join();
+  EXPECT_EQ(gate.counts().allowed, 2000u);
 }
 
 }  // namespace
