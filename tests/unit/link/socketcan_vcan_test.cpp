@@ -71,11 +71,12 @@ TEST_F(Vcan, FramesAreStampedWhenTheKernelTookThem) {
   const Time before = base::steady_now();
   a.link.send(make_frame(1, {}));
   const Time after = base::steady_now();
-  while (base::steady_now() < after + std::chrono::milliseconds(50)) {
+  while (base::steady_now() < after + std::chrono::milliseconds(500)) {
   }  // the frame waits unread
   ASSERT_TRUE(run_until(io, [&] { return !b.stamps.empty(); }));
-  EXPECT_GE(b.stamps[0], before - std::chrono::milliseconds(1));
-  EXPECT_LE(b.stamps[0], after + std::chrono::milliseconds(40));
+  // A kernel in a kernel is slow and its clocks drift apart a little: wide, but far from the wait.
+  EXPECT_GE(b.stamps[0], before - std::chrono::milliseconds(100));
+  EXPECT_LE(b.stamps[0], after + std::chrono::milliseconds(250));
 }
 
 TEST_F(Vcan, ErrorFramesAreHeardAsSuch) {
