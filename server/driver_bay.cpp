@@ -108,6 +108,11 @@ Result<std::unique_ptr<DriverBay>> DriverBay::make(const Settings& settings, con
   Settings wired = settings;
   wired.bunker_wiring = wiring_of(settings.bunker_wiring, options, true);
   wired.gnss_wiring = wiring_of(settings.gnss_wiring, options, false);
+  if (!options.replay.empty()) {
+    // A hole in a recording is no reason to open it again: it would begin anew.
+    wired.bunker.silent_reopen_s = 0.0;
+    wired.gnss.silent_reopen_s = 0.0;
+  }
   if (auto good = check("bunker", wired.bunker_wiring); !good) return tl::unexpected(good.error());
   if (auto good = check("gnss", wired.gnss_wiring); !good) return tl::unexpected(good.error());
 

@@ -88,6 +88,7 @@ TEST_F(ServerApi, ForeignHostsAndPagesAreKeptOut) {
   };
   EXPECT_EQ(post("http://evil.example"), 403u);
   EXPECT_EQ(post("null"), 403u);
+  until([this] { return call("GET", "/vehicle").status == 200; }, "a first state");
   EXPECT_EQ(call("GET", "/vehicle").body["estop"], false);
   EXPECT_EQ(post("http://127.0.0.1:8080"), 200u);
 }
