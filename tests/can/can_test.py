@@ -109,7 +109,7 @@ def wait_ready():
 
 def everything_comes_up():
     """the simulated base is heard over the real interface, and the checks pass"""
-    station.control.ask({"radio": {"on": False}})
+    station.control.ask({"fault": {"radio_loss": True, "radio_loss_unflagged": True}})
     radio.can_drives()
     wait_ready()
     vehicle = station.rest.get("/vehicle")
@@ -181,6 +181,8 @@ def commands_come_without_a_gap():
 
 def the_radio_takes_over():
     """a radio take-over frame injected by cansend silences the robot's commands"""
+    driving = candump.only(candump.read(LOG), 0x111, now() - 1.0)
+    check(any(map(candump.moves, driving)), "the robot does not drive, so nothing can be taken over")
     moments["take_over"] = now()
     radio.take_over(1.0)
     moments["quiet"] = now()
