@@ -64,15 +64,25 @@ test('a lost GNSS receiver shows: the value is marked stale with its age, and co
 }) => {
   await open_page(page, station.url);
   const position = page.getByRole('group', { name: 'Position' });
-  station.sim.tell({ set: { gnss_outage: true } });
+  station.sim.tell({ set: { gnss_silent: true } });
   await expect(position).toHaveAttribute('data-stale', 'true', {
     timeout: 15_000,
   });
   await expect(position).toContainText('old');
-  station.sim.tell({ set: { gnss_outage: false } });
+  station.sim.tell({ set: { gnss_silent: false } });
   await expect(position).toHaveAttribute('data-stale', 'false', {
     timeout: 20_000,
   });
+});
+
+test('a receiver without a fix says so in words', async ({ page, station }) => {
+  await open_page(page, station.url);
+  const position = page.getByRole('group', { name: 'Position' });
+  await expect(position).toContainText('RTK fixed');
+  station.sim.tell({ set: { gnss_outage: true } });
+  await expect(position).toContainText('No fix');
+  station.sim.tell({ set: { gnss_outage: false } });
+  await expect(position).toContainText('RTK fixed', { timeout: 20_000 });
 });
 
 test('an open but silent stream shows: all is marked old, driving is refused, it recovers', async ({
@@ -111,7 +121,7 @@ test('an open but silent stream shows: all is marked old, driving is refused, it
 
 test('a refused arming lists the failing checks in words', async ({ page, station }) => {
   await open_page(page, station.url);
-  station.sim.tell({ set: { gnss_outage: true } });
+  station.sim.tell({ set: { gnss_silent: true } });
   await expect(page.getByRole('group', { name: 'Position' })).toHaveAttribute(
     'data-stale',
     'true',

@@ -150,6 +150,23 @@ export const fix_words: Record<Fix, string> = {
   rtk_fixed: 'RTK fixed',
 };
 
+/** How good a fix is for driving along rows. */
+export const fix_tone = (fix: Fix | undefined): 'plain' | 'good' | 'bad' => {
+  switch (fix) {
+    case 'rtk_fixed':
+      return 'good';
+    case 'none':
+    case 'estimated':
+      return 'bad';
+    case 'unknown':
+    case 'gps':
+    case 'dgps':
+    case 'rtk_float':
+    case undefined:
+      return 'plain';
+  }
+};
+
 export const control_words: Record<Control, string> = {
   none: 'Nobody drives',
   auto: 'Autopilot drives',
