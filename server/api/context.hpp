@@ -75,8 +75,8 @@ void add_server_routes(const ContextPtr& context);
 void add_tile_routes(const ContextPtr& context);
 
 enum class Moves { Yes, No };
-/// Takes `valid_for_s` out of the body. Without it: 1 s, counted from the first byte of the request.
-/// What cannot move the robot, stops above all, never comes too late.
+/// Takes `valid_for_s` out of the body. Without it: 1 s, counted from the first byte of the
+/// request. What cannot move the robot, stops above all, never comes too late.
 base::Time validity_of(Members& members, const Call& call, Moves moves);
 
 /// Runs a command and answers with what `state` makes of the snapshot, or with the refusal.
