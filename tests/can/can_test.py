@@ -16,7 +16,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "harness")]
 
 import candump  # noqa: E402
-from station import BIN, ROOT, Program, Station, check, run_cases, until  # noqa: E402
+from station import BIN, ROOT, Failed, Program, Station, check, run_cases, until  # noqa: E402
 
 BUS = "vcan0"
 SCRATCH = pathlib.Path(sys.argv[1])
@@ -49,19 +49,20 @@ def wait_frames(frame_id, wanted, seconds, begin_s):
 
 
 class Transmitter:
-    """The operator's radio, played by can-utils: the simulator's own is switched off."""
+    """The operator's radio, played by can-utils: the simulator's own is switched off. A lever moved
+    is one cansend; what follows is canplayer with 256 frames of a running count, again and again."""
 
     def __init__(self):
         self.process = None
-        self.count = 0
-        self.recording = SCRATCH / "radio.log"
-        with open(self.recording, "w", encoding="ascii") as log:
-            for i in range(256):
-                log.write(f"({i * RADIO_PERIOD_S:.6f}) {BUS} {radio_frame(CAN_DRIVES, i)}\n")
 
-    def can_drives(self):
-        """SWB up from now on: canplayer repeats 256 frames with a running count."""
-        self.process = subprocess.Popen(["canplayer", "-I", self.recording, "-l", "i"],
+    def play(self, switches):
+        recording = SCRATCH / f"radio-{switches:02X}.log"
+        with open(recording, "w", encoding="ascii") as log:
+            for i in range(256):
+                log.write(f"({i * RADIO_PERIOD_S:.6f}) {BUS} {radio_frame(switches, i)}\n")
+        self.silence()
+        subprocess.run(["cansend", BUS, radio_frame(switches, 255)], check=True)
+        self.process = subprocess.Popen(["canplayer", "-I", recording, "-l", "i"],
                                         stdout=subprocess.DEVNULL)
 
     def silence(self):
@@ -69,15 +70,6 @@ class Transmitter:
             self.process.terminate()
             self.process.wait()
             self.process = None
-
-    def take_over(self, seconds):
-        """SWB in the middle, by one cansend a frame."""
-        self.silence()
-        end = now() + seconds
-        while now() < end:
-            self.count += 1
-            subprocess.run(["cansend", BUS, radio_frame(TAKES_OVER, self.count)], check=True)
-            time.sleep(RADIO_PERIOD_S)
 
 
 radio = Transmitter()
@@ -110,7 +102,7 @@ def wait_ready():
 def everything_comes_up():
     """the simulated base is heard over the real interface, and the checks pass"""
     station.control.ask({"fault": {"radio_loss": True, "radio_loss_unflagged": True}})
-    radio.can_drives()
+    radio.play(CAN_DRIVES)
     wait_ready()
     vehicle = station.rest.get("/vehicle")
     frames = candump.read(LOG)
@@ -184,11 +176,11 @@ def the_radio_takes_over():
     driving = candump.only(candump.read(LOG), 0x111, now() - 1.0)
     check(any(map(candump.moves, driving)), "the robot does not drive, so nothing can be taken over")
     moments["take_over"] = now()
-    radio.take_over(1.0)
+    radio.play(TAKES_OVER)
+    time.sleep(1.0)
     moments["quiet"] = now()
-    radio.take_over(1.0)
+    time.sleep(1.5)
     moments["seen"] = station.rest.get("/vehicle")
-    radio.take_over(1.0)
     moments["still_quiet"] = now()
     frames = candump.read(LOG)
     injected = [f for f in candump.only(frames, 0x241, moments["take_over"]) if f.data[0] == 0xA6]
@@ -223,11 +215,14 @@ def the_mission_goes_on():
     """with the switch up again CAN mode is asked for anew and the same mission goes on"""
     back = now()
     item = moments["seen"]["mission"]["current_item"]
-    subprocess.run(["cansend", BUS, radio_frame(CAN_DRIVES, radio.count + 1)], check=True)
-    radio.can_drives()
+    radio.play(CAN_DRIVES)
     wait_frames(0x421, lambda f: f.data[0] == 1, 20, back)
-    moving = wait_frames(0x111, candump.moves, 30, back)
-    check(moving, "no moving 0x111")
+    try:
+        wait_frames(0x111, candump.moves, 30, back)
+    except Failed as failed:
+        vehicle = station.rest.get("/vehicle")
+        raise Failed(f"{failed}; mission {vehicle['mission']['state']} {vehicle['mission']['reason']!r}, "
+                     f"safety {vehicle['safety']}") from None
     mission = until("the mission runs", 20, lambda: (
         lambda m: m if m["state"] == "running" else None)(station.rest.get("/vehicle")["mission"]))
     check(mission["current_item"] >= item > 0, f"item {mission['current_item']} after {item}")
