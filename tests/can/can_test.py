@@ -134,7 +134,6 @@ def a_mission_drives():
     mission = rest.do("POST", "/missions", {"name": "ahead", "items": ahead})
     rest.do("POST", "/execution/load", {"mission_id": mission["id"]})
     rest.do("POST", "/vehicle/arm", {})
-    rest.do("PUT", "/vehicle/mode", {"mode": "AUTO"})
     moments["start"] = now()
     rest.do("POST", "/execution/start", {"mission_id": mission["id"], "revision": mission["revision"],
                                          "from": "first"})
