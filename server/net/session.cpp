@@ -151,7 +151,7 @@ void Session::sweep(base::Time now) {
 }
 
 void Session::stop() {
-  if (phase_ == Phase::Accepting) return force();
+  if (phase_ == Phase::Accepting) return;  // says goodbye as soon as it is open
   close(1001, "the server is stopping");
 }
 
