@@ -2,10 +2,10 @@
 
 #include <filesystem>
 #include <functional>
-#include <future>
 #include <utility>
 
 #include <boost/asio/post.hpp>
+#include <net/if.h>
 
 #include "gnss/nmea.hpp"
 #include "link/address.hpp"
@@ -91,8 +91,15 @@ DriverWiring wiring_of(const DriverWiring& said, const Options& options, bool fo
 
 Result<void> check(const std::string& key, const DriverWiring& wiring) {
   if (!wiring.enabled) return {};
-  if (auto parsed = link::parse_address(wiring.link); !parsed) {
+  const auto parsed = link::parse_address(wiring.link);
+  if (!parsed) {
     return base::fail(base::Code::Invalid, "drivers." + key + ".link: " + parsed.error().detail);
+  }
+  // A base that is not there at the start is a mistake in the configuration or the set-up: say so
+  // at once. One that goes away later is waited for.
+  if (parsed->scheme == link::Scheme::Can && ::if_nametoindex(parsed->target.c_str()) == 0) {
+    return base::fail(base::Code::NotFound, "drivers." + key + ".link: CAN interface " +
+                                                parsed->target + " does not exist");
   }
   return {};
 }
