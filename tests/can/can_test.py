@@ -60,10 +60,14 @@ class Transmitter:
         with open(recording, "w", encoding="ascii") as log:
             for i in range(256):
                 log.write(f"({i * RADIO_PERIOD_S:.6f}) {BUS} {radio_frame(switches, i)}\n")
-        self.silence()
+        before = self.process
         subprocess.run(["cansend", BUS, radio_frame(switches, 255)], check=True)
         self.process = subprocess.Popen(["canplayer", "-I", recording, "-l", "i"],
                                         stdout=subprocess.DEVNULL)
+        if before:  # ends last: a silent radio would be another story
+            time.sleep(0.4)
+            before.terminate()
+            before.wait()
 
     def silence(self):
         if self.process:
