@@ -6,7 +6,7 @@ import { join } from 'node:path';
 
 import type { Page } from '@playwright/test';
 
-import { draw, drive_it, items, open_page, save, tab } from './page';
+import { draw, drive_it, items, open_page, press, save, tab } from './page';
 import { expect, test } from './station';
 
 const SIZES = [
@@ -24,20 +24,21 @@ const SIZES = [
     name: 'laptop',
     viewport: { width: 1440, height: 900 },
     route: [
-      [-260, -190],
-      [150, -230],
-      [290, 60],
-      [40, 210],
-      [-240, 130],
+      [-90, -60],
+      [70, -95],
+      [150, 40],
+      [20, 120],
+      [-150, 60],
     ],
   },
 ] as const;
 
-const folder = (): string => {
-  const name = process.env['UPDATE_SHOTS'] === '1' ? 'shots' : 'results/shots';
-  const path = join(__dirname, name);
-  mkdirSync(path, { recursive: true });
-  return path;
+/** Where a picture goes: the README's own beside this file, all others among the results. */
+const picture = (name: string): string => {
+  const kept = name === 'page.png' && process.env['UPDATE_SHOTS'] === '1';
+  const folder = join(__dirname, kept ? 'shots' : 'results/shots');
+  mkdirSync(folder, { recursive: true });
+  return join(folder, name);
 };
 
 interface Box {
@@ -98,13 +99,14 @@ for (const { name, viewport, route } of SIZES) {
       await page.getByLabel('Mission name').fill('Orchard, east rows');
       await page.getByLabel('Mission name').press('Enter');
       await save(page);
-      await page.screenshot({ path: join(folder(), `${name}-plan.png`) });
+      await page.screenshot({ path: picture(`${name}-plan.png`) });
       await drive_it(page);
-      await expect(page.getByText(/^2 of/)).toBeVisible({ timeout: 60_000 });
-      await page.waitForTimeout(4500);
+      await press(page, 'Show the whole mission');
+      await expect(page.getByText(/^3 of/)).toBeVisible({ timeout: 90_000 });
+      await page.waitForTimeout(4000);
       await check_layout(page);
       await page.screenshot({
-        path: join(folder(), name === 'laptop' ? 'page.png' : `${name}.png`),
+        path: picture(name === 'laptop' ? 'page.png' : `${name}.png`),
       });
       for (const other of ['Missions', 'Log'] as const) {
         await tab(page, other);

@@ -163,7 +163,7 @@ export const test = base.extend<{
     await use(async (file) => {
       roverd = new Program('roverd', [
         ...['--config', config, '--data', join(folder, 'data'), '--port', '0'],
-        ...['--replay', file, '--replay-speed', '4'],
+        ...['--replay', file, '--replay-speed', '0.5'],
       ]);
       const [, url = ''] = await roverd.line(/^listening on (http:\S+)/);
       return url;

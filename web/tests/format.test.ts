@@ -4,6 +4,7 @@ import { refusal_text, refused_items, type Refusal } from '../src/model/answer';
 import {
   accuracy,
   age,
+  beside,
   clock_time,
   coordinates,
   count,
@@ -33,6 +34,13 @@ describe('format', () => {
     expect(metres(21.44)).toBe('21.4 m');
     expect(metres(640.2)).toBe('640 m');
     expect(metres(1234)).toBe('1.23 km');
+  });
+
+  test('a place beside the path has a side, not a sign', () => {
+    expect(beside(0.034)).toBe('3.4 cm left');
+    expect(beside(-1.5)).toBe('1.50 m right');
+    expect(beside(0)).toBe('0.0 cm');
+    expect(beside(null)).toBe('—');
   });
 
   test('zero has no sign', () => {

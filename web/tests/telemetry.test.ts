@@ -2,7 +2,7 @@ import { describe, expect, test } from 'vitest';
 
 import { add_sample, empty_columns } from '../src/model/columns';
 import { Trail } from '../src/model/trail';
-import { robot_place, worth_a_word, type Vehicle } from '../src/model/vehicle';
+import { receiver_place, robot_place, worth_a_word, type Vehicle } from '../src/model/vehicle';
 
 const north = (metres: number) => ({ lat: 58 + metres / 111_000, lon: 26 });
 
@@ -63,6 +63,14 @@ describe('vehicle', () => {
     expect(at(0, 0)).toEqual({ lat: 0, lon: 0 });
     expect(at(null, 26)).toBeNull();
     expect(robot_place(null)).toBeNull();
+  });
+
+  test('has no receiver place without a fresh fix', () => {
+    const received = (fix: string, stale: boolean) =>
+      receiver_place({ gnss: { lat: 58, lon: 26, fix, stale } } as unknown as Vehicle);
+    expect(received('gps', false)).toEqual({ lat: 58, lon: 26 });
+    expect(received('none', false)).toBeNull();
+    expect(received('rtk_fixed', true)).toBeNull();
   });
 
   test('tells bad news and the good news one waits for, but not its own echo', () => {

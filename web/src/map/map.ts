@@ -118,8 +118,9 @@ export class FieldMap implements MapCalls {
     this.#map.render();
   }
 
-  show_robot(robot: RobotOnMap | null, trail: Trail): void {
-    this.#scene.trail.follow(trail);
+  show_robot(robot: RobotOnMap | null, driven: Trail, fixes: Trail): void {
+    this.#scene.driven.follow(driven);
+    this.#scene.fixes.follow(fixes);
     this.#scene.robot = robot;
     if (robot && !this.#placed) {
       this.#placed = true;

@@ -15,6 +15,7 @@ export interface Palette {
   readonly route_done: string;
   readonly current: string;
   readonly trail: string;
+  readonly fixes: string;
   readonly robot: string;
   readonly robot_stale: string;
   readonly ring: string;
@@ -35,6 +36,7 @@ const light: Palette = {
   route_done: 'rgba(20, 108, 46, 0.35)',
   current: '#e8710a',
   trail: '#a8327a',
+  fixes: '#8a6d00',
   robot: '#111318',
   robot_stale: '#8a8d93',
   ring: 'rgba(11, 87, 208, 0.16)',
@@ -55,6 +57,7 @@ const dark: Palette = {
   route_done: 'rgba(109, 213, 140, 0.35)',
   current: '#ffb066',
   trail: '#ff8fd0',
+  fixes: '#e0c14a',
   robot: '#ffffff',
   robot_stale: '#7d838d',
   ring: 'rgba(124, 172, 255, 0.20)',

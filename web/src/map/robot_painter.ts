@@ -7,7 +7,9 @@ import { stroke_cased, trace, type Paint } from './canvas';
 import type { Palette } from './palette';
 import { to_plane, units_per_m } from './projection';
 
-/** The trail in the plane, kept in step with the model's ring. */
+const DOTS_APART_PX = 7;
+
+/** A trail in the plane, kept in step with the model's ring. */
 export class TrailLine {
   readonly #xs: number[] = [];
   readonly #ys: number[] = [];
@@ -30,7 +32,23 @@ export class TrailLine {
     }
   }
 
-  paint(paint: Paint, colors: Palette): void {
+  /** A dot for every point that is not too near to the dot before. */
+  paint_dots(paint: Paint, color: string): void {
+    const { context } = paint;
+    let [last_x, last_y] = [Number.NaN, Number.NaN];
+    context.beginPath();
+    for (let k = 0; k < this.#xs.length; k += 1) {
+      const x = paint.x_px(this.#xs[k] ?? 0);
+      const y = paint.y_px(this.#ys[k] ?? 0);
+      if (Math.hypot(x - last_x, y - last_y) < DOTS_APART_PX) continue;
+      context.rect(x - 2.5, y - 2.5, 5, 5);
+      [last_x, last_y] = [x, y];
+    }
+    context.fillStyle = color;
+    context.fill();
+  }
+
+  paint_line(paint: Paint, colors: Palette): void {
     if (this.#xs.length < 2) return;
     paint.context.beginPath();
     trace(paint, this.#xs, this.#ys);

@@ -52,7 +52,8 @@ export class Scene {
   events = NO_EVENTS;
   readonly plan = new Projected(EMPTY_PLAN);
   readonly route = new Projected(EMPTY_PLAN);
-  readonly trail = new TrailLine();
+  readonly driven = new TrailLine();
+  readonly fixes = new TrailLine();
   look: PlanLook = { selected: null, refused: new Set(), handles: false };
   drag: Drag | null = null;
   current_item = 0;
@@ -81,7 +82,8 @@ export class Scene {
         bar.show(paint.resolution / units_per_m(here.lat).east);
       },
       (paint) => paint_route(paint, this.route.drawn, this.current_item),
-      (paint) => this.trail.paint(paint, palette()),
+      (paint) => this.fixes.paint_dots(paint, palette().fixes),
+      (paint) => this.driven.paint_line(paint, palette()),
       (paint) => this.#paint_edited(paint),
       (paint) => {
         if (this.home) paint_home(paint, this.home, palette());

@@ -27,6 +27,13 @@ export const metres = (value: Value): string => {
   return `${fixed(value / 1000, 2)} km`;
 };
 
+/** Where the robot is beside its path: "3.4 cm left". @param left_m positive: left of it */
+export const beside = (left_m: Value): string => {
+  if (!known(left_m)) return UNKNOWN;
+  const side = left_m > 0 ? ' left' : left_m < 0 ? ' right' : '';
+  return `${metres(Math.abs(left_m))}${side}`;
+};
+
 /** Accuracy as a radius: "±2 cm". */
 export const accuracy = (value: Value): string => {
   if (!known(value)) return UNKNOWN;

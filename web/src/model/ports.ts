@@ -126,7 +126,8 @@ export interface MapCalls {
   show_plan(plan: Plan, selected: number | null, refused: ReadonlySet<number>): void;
   /** The mission the robot has loaded; null hides it. @param current_item from 1; 0: none */
   show_route(route: Plan | null, current_item: number): void;
-  show_robot(robot: RobotOnMap | null, trail: Trail): void;
+  /** @param driven where the robot believes it drove @param fixes what its receiver said */
+  show_robot(robot: RobotOnMap | null, driven: Trail, fixes: Trail): void;
   show_home(home: LatLon | null): void;
   /** Footprint of the vehicle, drawn to scale. */
   set_size(length_m: number, width_m: number): void;

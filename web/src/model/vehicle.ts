@@ -192,6 +192,12 @@ export const state_words: Record<ExecutionState, string> = {
   aborted: 'Aborted',
 };
 
+/** Where the receiver says it is, or null without a fresh fix. */
+export const receiver_place = (vehicle: Vehicle): LatLon | null => {
+  const { lat, lon, stale, fix } = vehicle.gnss;
+  return lat === null || lon === null || stale || fix === 'none' ? null : { lat, lon };
+};
+
 /** Where the robot believes it is, or null while it does not know. */
 export const robot_place = (vehicle: Vehicle | null): LatLon | null => {
   const { lat, lon } = vehicle?.position ?? { lat: null, lon: null };

@@ -5,7 +5,7 @@ import { link_age_s, link_stale, type LinkHealth } from '../model/freshness';
 import type { Facts } from '../model/operations';
 import type { RobotOnMap } from '../model/ports';
 import { Trail } from '../model/trail';
-import { robot_place, type Capabilities, type Vehicle } from '../model/vehicle';
+import { receiver_place, robot_place, type Capabilities, type Vehicle } from '../model/vehicle';
 
 const CLOCK_MS = 200;
 /** Two minutes at ten a second. */
@@ -16,7 +16,9 @@ export class Live {
   vehicle = $state.raw<Vehicle | null>(null);
   capabilities = $state.raw<Capabilities | null>(null);
   now_ms = $state(performance.now());
-  readonly trail = new Trail();
+  /** Where the robot believes it drove, and what its receiver said. */
+  readonly driven = new Trail();
+  readonly fixes = new Trail();
   readonly chart: Columns = empty_columns(2);
 
   stale = $derived(link_stale(this.link, this.now_ms));
@@ -33,7 +35,9 @@ export class Live {
   take(vehicle: Vehicle): void {
     this.vehicle = vehicle;
     const at = robot_place(vehicle);
-    if (at && !vehicle.position.stale) this.trail.add(at);
+    if (at && !vehicle.position.stale) this.driven.add(at);
+    const received = receiver_place(vehicle);
+    if (received) this.fixes.add(received);
     const { speed_mps } = vehicle.position;
     const seconds = Date.parse(vehicle.time) / 1000;
     add_sample(this.chart, CHART_SAMPLES, seconds, [speed_mps, vehicle.mission.cross_track_m]);

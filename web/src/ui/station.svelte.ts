@@ -157,7 +157,7 @@ export class Station {
     $effect(() => map.set_mode(this.tab === 'plan' ? editor.map_mode : 'watch'));
     $effect(() => map.show_plan(editor.plan, editor.selected, editor.refused));
     $effect(() => map.show_route(this.route, live.vehicle?.mission.current_item ?? 0));
-    $effect(() => map.show_robot(live.robot, live.trail));
+    $effect(() => map.show_robot(live.robot, live.driven, live.fixes));
     $effect(() => map.show_home(live.vehicle?.home ?? null));
   }
 }
