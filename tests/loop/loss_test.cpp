@@ -194,6 +194,65 @@ TEST_P(Loss, AnEmptyBatteryStopsTheMission) {
   EXPECT_TRUE(rig->has_condition("battery"));
 }
 
+// The same losses in the middle of a turn on the spot, while reversing, and close to the goal.
+TEST_P(Loss, ALossWhilePivotingReversingOrArrivingStopsJustAsWell) {
+  const std::vector<std::pair<std::string, void (*)(sim::Faults&)>> losses{
+      {"base_lost", [](sim::Faults& f) { f.bus_off = true; }},
+      {"radio_lost", [](sim::Faults& f) { f.radio_loss = true; }},
+  };
+  const std::vector<std::pair<std::string, bool (*)(Rig&)>> moments{
+      {"pivoting", [](Rig& r) { return std::abs(r.truth().twist.angular_radps) > 0.3; }},
+      {"reversing", [](Rig& r) { return r.truth().twist.linear_mps < -0.2; }},
+      {"arriving",
+       [](Rig& r) {
+         return r.state()->mission.current_item == 2 && r.distance_to_m({-2, 5}) < 0.15;
+       }},
+  };
+  for (const auto& [condition, lose] : losses) {
+    for (const auto& [moment, is_now] : moments) {
+      SCOPED_TRACE(condition + " while " + moment);
+      RigOptions o;
+      o.seed = GetParam();
+      Rig rig(o);
+      auto plan = rig.plan_of({{3, 5}, {-2, 5}});
+      std::get<mission::Waypoint>(plan.items[1]).reverse = true;
+      rig.arm_and_start(plan);
+      ASSERT_TRUE(rig.run_until([&, now = is_now] { return now(rig); }, 90.0));
+      rig.fault(lose);
+      rig.run(2.5);
+      expect_paused(rig, condition);
+      rig.fault([](sim::Faults&) {});
+      rig.run(3.0);
+      EXPECT_TRUE(rig.stands());
+      ASSERT_TRUE(rig.ask(robot::ResumeMission{}));
+      ASSERT_TRUE(rig.finish(90.0)) << rig.state()->mission.reason;
+      EXPECT_LT(rig.distance_to_m({-2, 5}), 0.2);
+    }
+  }
+}
+
+TEST_P(Loss, ARadioTakeOverDuringATurnOnTheSpotIsGivenBackToTheSameTurn) {
+  RigOptions o;
+  o.seed = GetParam();
+  Rig rig(o);
+  rig.arm_and_start(rig.plan_of({{0, 5}, {5, 5}}));
+  ASSERT_TRUE(rig.run_until(
+      [&] {
+        return rig.nearest_m({0, 5}) < 0.2 && rig.truth().twist.angular_radps < -0.2;
+      },
+      60.0));
+  sim::Radio radio;
+  radio.swb = base::Switch::Middle;
+  rig.plant.set_radio(radio);
+  rig.run(3.0);
+  EXPECT_TRUE(rig.stands());
+  EXPECT_EQ(rig.state()->mission.current_item, 2);
+  rig.plant.set_radio({});
+  ASSERT_TRUE(rig.finish(60.0)) << rig.state()->mission.reason;
+  EXPECT_LT(rig.distance_to_m({5, 5}), 0.2);
+  EXPECT_LT(rig.farthest_from_path_m({{0, 0}, {0, 5}, {5, 5}}), 0.3);
+}
+
 TEST(LossOnce, DrivingByHandStopsWithoutFreshCommandsAndWantsTheHandleLetGo) {
   Rig rig({});
   rig.arm();
