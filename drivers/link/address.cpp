@@ -32,7 +32,7 @@ const SchemeName& entry(Scheme scheme) noexcept {
   return kSchemes[static_cast<std::size_t>(scheme)];  // listed in the order of the enum
 }
 
-tl::unexpected<base::Error> bad(std::string_view text, std::string_view problem) {
+tl::unexpected<base::Error> bad_address(std::string_view text, std::string_view problem) {
   return base::fail(base::Code::Invalid,
                     "link address '" + std::string(text) + "': " + std::string(problem));
 }
@@ -61,7 +61,8 @@ base::Result<Address> parse_serial(std::string_view text, std::string_view rest)
   const auto parts = split_last(rest);
   const auto baud = parts ? whole_number(parts->second) : std::nullopt;
   if (!baud || *baud == 0 || parts->first.empty()) {
-    return bad(text, "must read serial:DEVICE:BAUD, for example serial:/dev/ttyUSB0:115200");
+    return bad_address(text,
+                       "must read serial:DEVICE:BAUD, for example serial:/dev/ttyUSB0:115200");
   }
   return Address{Scheme::Serial, std::string(parts->first), *baud, 0};
 }
@@ -69,19 +70,20 @@ base::Result<Address> parse_serial(std::string_view text, std::string_view rest)
 base::Result<Address> parse_tcp(std::string_view text, std::string_view rest) {
   const auto parts = split_last(rest);
   const auto port = parts ? port_number(parts->second) : std::nullopt;
-  if (!port) return bad(text, "must read tcp:HOST:PORT with a port of 1..65535");
+  if (!port) return bad_address(text, "must read tcp:HOST:PORT with a port of 1..65535");
   std::string_view host = parts->first;
   if (host.size() > 2 && host.front() == '[' && host.back() == ']') {
     host = host.substr(1, host.size() - 2);
   } else if (host.empty() || host.find_first_of(":[]") != std::string_view::npos) {
-    return bad(text, "must name a host; an IPv6 address stands in brackets: tcp:[::1]:5000");
+    return bad_address(text,
+                       "must name a host; an IPv6 address stands in brackets: tcp:[::1]:5000");
   }
   return Address{Scheme::Tcp, std::string(host), 0, *port};
 }
 
 template <class Link>
 base::Result<std::unique_ptr<Link>> wrong_kind(std::string_view text, std::string_view carries) {
-  return bad(text, "carries " + std::string(carries));
+  return bad_address(text, "carries " + std::string(carries));
 }
 
 }  // namespace
@@ -96,8 +98,8 @@ base::Result<Address> parse_address(std::string_view text) {
     if (scheme.name == name && colon != std::string_view::npos) known = &scheme;
     forms += (forms.empty() ? "" : ", ") + std::string(scheme.form);
   }
-  if (known == nullptr) return bad(text, "must be one of " + forms);
-  if (rest.find('\0') != std::string_view::npos) return bad(text, "contains a zero byte");
+  if (known == nullptr) return bad_address(text, "must be one of " + forms);
+  if (rest.find('\0') != std::string_view::npos) return bad_address(text, "contains a zero byte");
   switch (known->scheme) {
     case Scheme::Serial:
       return parse_serial(text, rest);
@@ -105,19 +107,20 @@ base::Result<Address> parse_address(std::string_view text) {
       return parse_tcp(text, rest);
     case Scheme::Udp: {
       const auto port = port_number(rest);
-      if (!port) return bad(text, "must read udp:PORT with a port of 1..65535");
+      if (!port) return bad_address(text, "must read udp:PORT with a port of 1..65535");
       return Address{Scheme::Udp, "", 0, *port};
     }
     case Scheme::Can:
       // The kernel's rule for interface names; longer ones cannot exist.
       if (rest.empty() || rest.size() > 15 ||
           rest.find_first_of("/ \t") != std::string_view::npos) {
-        return bad(text, "must read can:IFACE, an interface name of 1 to 15 letters like can0");
+        return bad_address(text,
+                           "must read can:IFACE, an interface name of 1 to 15 letters like can0");
       }
       break;
     case Scheme::CanSocket:
     case Scheme::Replay:
-      if (rest.empty()) return bad(text, "must read " + std::string(known->form));
+      if (rest.empty()) return bad_address(text, "must read " + std::string(known->form));
       break;
   }
   return Address{known->scheme, std::string(rest), 0, 0};

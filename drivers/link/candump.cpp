@@ -15,7 +15,7 @@ using base::Duration;
 constexpr std::uint32_t kErrorBit = 0x2000'0000;
 constexpr std::size_t kLongestBusName = 15;
 
-tl::unexpected<base::Error> bad(std::string_view problem) {
+tl::unexpected<base::Error> bad_line(std::string_view problem) {
   return base::fail(base::Code::Malformed, std::string(problem));
 }
 
@@ -190,21 +190,22 @@ base::Result<std::optional<CanRecord>> parse_candump_line(std::string_view line)
   CanRecord out;
   if (rest.front() == '(') {
     const auto close = rest.find(')');
-    if (close == std::string_view::npos) return bad("the time stamp has no closing bracket");
+    if (close == std::string_view::npos) return bad_line("the time stamp has no closing bracket");
     const auto text = trim(rest.substr(1, close - 1));
     out.stamp = parse_seconds(text);
     if (!out.stamp) out.stamp = parse_date(text);
-    if (!out.stamp) return bad("the time stamp is not a number of seconds");
+    if (!out.stamp) return bad_line("the time stamp is not a number of seconds");
     rest = rest.substr(close + 1);
   }
   const auto bus = next_word(rest);
-  if (bus.empty() || bus.size() > kLongestBusName) return bad("the name of the bus is missing");
+  if (bus.empty() || bus.size() > kLongestBusName)
+    return bad_line("the name of the bus is missing");
   out.bus = bus;
   const auto word = next_word(rest);
-  if (word.empty()) return bad("the frame is missing");
+  if (word.empty()) return bad_line("the frame is missing");
   const bool log = word.find('#') != std::string_view::npos;
   const auto problem = log ? read_log(word, rest, out) : read_console(word, rest, out);
-  if (!problem.empty()) return bad(problem);
+  if (!problem.empty()) return bad_line(problem);
   return out;
 }
 

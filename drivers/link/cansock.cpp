@@ -13,13 +13,11 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "link/burst.hpp"
 #include "link/can_wire.hpp"
 
 namespace roverd::link {
 namespace {
-
-/// Frames taken at one wake-up, so that a flood on one socket cannot starve the others.
-constexpr int kBurst = 64;
 
 base::Result<sockaddr_un> socket_address(const std::string& path) {
   sockaddr_un address{};
@@ -112,7 +110,7 @@ SendResult CanSocketLink::send(const CanFrame& frame) noexcept {
 }
 
 void CanSocketLink::read() {
-  for (int i = 0; i < kBurst && socket_.is_open(); ++i) {
+  for (int i = 0; i < kReadBurst && socket_.is_open(); ++i) {
     CanFrame frame;
     switch (read_packet(socket_.fd(), frame)) {
       case Read::Frame:
@@ -207,7 +205,7 @@ void CanSocketServer::accept() {
 }
 
 void CanSocketServer::read(Client& client) {
-  for (int i = 0; i < kBurst && client.socket.is_open(); ++i) {
+  for (int i = 0; i < kReadBurst && client.socket.is_open(); ++i) {
     CanFrame frame;
     switch (read_packet(client.socket.fd(), frame)) {
       case Read::Frame:

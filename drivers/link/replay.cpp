@@ -2,11 +2,11 @@
 
 #include <utility>
 
+#include "link/burst.hpp"
+
 namespace roverd::link {
 namespace {
 
-/// Items handed over before other work on the same thread gets its turn.
-constexpr int kBurst = 64;
 /// A year: keeps a silly stamp or a tiny speed within the range of the clock.
 constexpr double kLongestWait_s = 3.0e7;
 
@@ -47,7 +47,7 @@ base::Duration ReplayPump::due_in(Time now) const {
 }
 
 void ReplayPump::step() {
-  for (int i = 0; i < kBurst; ++i) {
+  for (int i = 0; i < kReadBurst; ++i) {
     if (!loaded_ && !load()) return;
     const base::Duration wait = due_in(base::steady_now());
     if (wait > base::Duration::zero()) {

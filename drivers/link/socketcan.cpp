@@ -16,15 +16,13 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "link/burst.hpp"
 #include "link/can_wire.hpp"
 
 namespace roverd::link {
 namespace {
 
 static_assert(sizeof(can_frame) == kCanPacketSize && offsetof(can_frame, data) == 8);
-
-/// Frames taken at one wake-up, so that a full bus cannot starve the other links.
-constexpr int kBurst = 64;
 
 ifreq request_for(const std::string& interface) noexcept {
   ifreq request{};
@@ -147,7 +145,7 @@ SendResult SocketCanLink::send(const CanFrame& frame) noexcept {
 }
 
 void SocketCanLink::read() {
-  for (int i = 0; i < kBurst && socket_.is_open(); ++i) {
+  for (int i = 0; i < kReadBurst && socket_.is_open(); ++i) {
     if (!read_one()) return;
   }
 }

@@ -16,7 +16,7 @@ namespace {
 using asio::ip::tcp;
 
 /// Reads at one wake-up, so that a fast stream cannot starve the other links.
-constexpr int kBurst = 16;
+constexpr int kTcpBurst = 16;
 constexpr std::size_t kChunk = 4096;
 
 void set_option(int fd, int level, int name, int value) noexcept {
@@ -127,7 +127,7 @@ SendResult TcpLink::write(Bytes bytes) noexcept {
 
 void TcpLink::read() {
   std::array<std::uint8_t, kChunk> buffer;
-  for (int i = 0; i < kBurst && socket_.is_open(); ++i) {
+  for (int i = 0; i < kTcpBurst && socket_.is_open(); ++i) {
     const ssize_t n = ::recv(socket_.fd(), buffer.data(), buffer.size(), MSG_DONTWAIT);
     if (n > 0) {
       if (on_bytes) on_bytes({buffer.data(), static_cast<std::size_t>(n)}, base::steady_now());

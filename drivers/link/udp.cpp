@@ -11,11 +11,11 @@
 #include <netinet/in.h>
 #include <unistd.h>
 
+#include "link/burst.hpp"
+
 namespace roverd::link {
 namespace {
 
-/// Datagrams taken at one wake-up, so that a flood cannot starve the other links.
-constexpr int kBurst = 64;
 constexpr std::size_t kLargestDatagram = 65'536;
 
 base::Error cannot_bind(std::uint16_t port, int error) {
@@ -121,7 +121,7 @@ SendResult UdpLink::write(Bytes bytes) noexcept {
 
 void UdpLink::read() {
   std::array<std::uint8_t, kLargestDatagram> buffer;
-  for (int i = 0; i < kBurst && socket_.is_open(); ++i) {
+  for (int i = 0; i < kReadBurst && socket_.is_open(); ++i) {
     Address sender;
     sender.size = sizeof sender.storage;
     const ssize_t n = ::recvfrom(socket_.fd(), buffer.data(), buffer.size(), MSG_DONTWAIT,

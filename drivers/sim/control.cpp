@@ -11,7 +11,7 @@ using base::ParamValue;
 using base::Result;
 using nlohmann::json;
 
-tl::unexpected<base::Error> refuse(std::string detail) {
+tl::unexpected<base::Error> refuse_line(std::string detail) {
   return base::fail(base::Code::Invalid, std::move(detail));
 }
 
@@ -50,21 +50,21 @@ Result<ParamValue> value_of(const std::string& key, const json& value) {
   if (value.is_boolean()) return ParamValue(value.get<bool>());
   if (value.is_number()) return ParamValue(value.get<double>());
   if (value.is_string()) return ParamValue(value.get<std::string>());
-  return refuse(key + " must be a number, a text or true/false");
+  return refuse_line(key + " must be a number, a text or true/false");
 }
 
 Result<double> number_in(const std::string& key, const json& value, double min, double max) {
-  if (!value.is_number()) return refuse(key + " must be a number");
+  if (!value.is_number()) return refuse_line(key + " must be a number");
   const double number = value.get<double>();
   if (number >= min && number <= max) return number;
-  return refuse(key + " must lie in " + json(min).dump() + " .. " + json(max).dump());
+  return refuse_line(key + " must lie in " + json(min).dump() + " .. " + json(max).dump());
 }
 
 Result<void> set_fault(Wish& wish, const std::string& key, const json& value) {
   const auto plain = value_of(key, value);
   if (!plain) return tl::unexpected(plain.error());
   auto done = base::set_param(wish.faults, key, *plain);
-  if (!done && done.error().detail == "unknown key") return refuse("unknown key " + key);
+  if (!done && done.error().detail == "unknown key") return refuse_line("unknown key " + key);
   return done;
 }
 
@@ -73,7 +73,7 @@ Result<void> set_any(Wish& wish, const std::string& key, const json& value) {
     const auto number = number_in(key, value, 0.0, key == "truth_hz" ? kMaxTruthHz : 100.0);
     if (!number) return tl::unexpected(number.error());
     if (key == "truth_hz" && *number > 0.0 && *number < kMinTruthHz) {
-      return refuse("truth_hz must be 0 or at least 0.1");
+      return refuse_line("truth_hz must be 0 or at least 0.1");
     }
     (key == "truth_hz" ? wish.truth_hz : wish.battery_pct) = *number;
     return {};
@@ -93,7 +93,7 @@ Result<base::Switch> switch_of(const std::string& key, const json& value) {
       return position;
     }
   }
-  return refuse(
+  return refuse_line(
       key + (three_way ? " must be up, middle, down or unknown" : " must be up, down or unknown"));
 }
 
@@ -121,8 +121,8 @@ Result<void> set_radio(Wish& wish, const std::string& key, const json& value) {
     *field = *number;
     return {};
   }
-  if (key != "on") return refuse("unknown key " + key);
-  if (!value.is_boolean()) return refuse("on must be true or false");
+  if (key != "on") return refuse_line("unknown key " + key);
+  if (!value.is_boolean()) return refuse_line("on must be true or false");
   wish.radio.on = value.get<bool>();
   return {};
 }
@@ -142,7 +142,7 @@ Result<void> set_pose(Wish& wish, const json& members, const Bunker& bunker) {
                     : key == "north_m"     ? &local.north_m
                     : key == "heading_deg" ? &heading_deg
                                            : nullptr;
-    if (field == nullptr) return refuse("unknown key " + key);
+    if (field == nullptr) return refuse_line("unknown key " + key);
     const double reach = key == "lat"           ? 90.0
                          : key == "lon"         ? 180.0
                          : key == "heading_deg" ? 360.0
@@ -153,7 +153,7 @@ Result<void> set_pose(Wish& wish, const json& members, const Bunker& bunker) {
     is_local = is_local || key == "east_m" || key == "north_m";
     is_global = is_global || key == "lat" || key == "lon";
   }
-  if (is_local && is_global) return refuse("pose takes lat, lon or east_m, north_m, not both");
+  if (is_local && is_global) return refuse_line("pose takes lat, lon or east_m, north_m, not both");
   wish.at = is_local ? bunker.frame().to_global(local) : global;
   wish.heading_deg = heading_deg;
   return {};
@@ -161,7 +161,7 @@ Result<void> set_pose(Wish& wish, const json& members, const Bunker& bunker) {
 
 template <class Set>
 Result<void> each(const std::string& member, const json& members, Set&& set) {
-  if (!members.is_object()) return refuse(member + " must be an object");
+  if (!members.is_object()) return refuse_line(member + " must be an object");
   for (const auto& [key, value] : members.items()) {
     if (auto done = set(key, value); !done) return done;
   }
@@ -180,11 +180,11 @@ Result<void> read_member(Wish& wish, const std::string& name, const json& value,
     return each(name, value, [&](auto& k, auto& v) { return set_radio(wish, k, v); });
   }
   if (name == "pose") {
-    if (!value.is_object()) return refuse("pose must be an object");
+    if (!value.is_object()) return refuse_line("pose must be an object");
     return set_pose(wish, value, bunker);
   }
   if (name == "power_cycle") {
-    if (!value.is_boolean()) return refuse("power_cycle must be true or false");
+    if (!value.is_boolean()) return refuse_line("power_cycle must be true or false");
     wish.power_cycle = value.get<bool>();
     return {};
   }
@@ -193,10 +193,10 @@ Result<void> read_member(Wish& wish, const std::string& name, const json& value,
     for (const char* word : {"truth", "faults", "radio", "params"}) {
       if (wish.get == word) return {};
     }
-    return refuse("get must be truth, faults, radio or params");
+    return refuse_line("get must be truth, faults, radio or params");
   }
   if (name == "id") return {};
-  return refuse("unknown key " + name);
+  return refuse_line("unknown key " + name);
 }
 
 Result<void> grant(const Wish& wish, Bunker& bunker) {

@@ -74,7 +74,7 @@ void answer_page(const ContextPtr& context, const CallPtr& call, std::int64_t af
       });
 }
 
-Handler list(const ContextPtr& context) {
+Handler list_events(const ContextPtr& context) {
   return [context](const CallPtr& call) {
     const auto limit = limit_of(*call);
     if (!limit) return call->respond(problem(limit.error()));
@@ -115,7 +115,7 @@ Handler list(const ContextPtr& context) {
 }  // namespace
 
 void add_event_routes(const ContextPtr& c) {
-  c->router.add({http::verb::get, "/events", {200, 400, 422, 503}, list(c)});
+  c->router.add({http::verb::get, "/events", {200, 400, 422, 503}, list_events(c)});
 }
 
 }  // namespace roverd::api

@@ -162,7 +162,7 @@ store::Reply<store::Page<T>> listed(const CallPtr& call, Json (*words)(const sto
   };
 }
 
-Handler list(const ContextPtr& context) {
+Handler list_missions(const ContextPtr& context) {
   return [context](const CallPtr& call) {
     const auto limit = limit_of(*call);
     if (!limit) return call->respond(problem(limit.error()));
@@ -197,7 +197,7 @@ Handler one_revision(const ContextPtr& context) {
 void add_mission_routes(const ContextPtr& c) {
   const auto get = http::verb::get;
   const auto post = http::verb::post;
-  c->router.add({get, "/missions", {200, 400, 422, 503}, list(c)});
+  c->router.add({get, "/missions", {200, 400, 422, 503}, list_missions(c)});
   c->router.add({post, "/missions", {201, 400, 403, 413, 415, 422, 429, 503}, create(c)});
   c->router.add({get, "/missions/{id}", {200, 304, 404, 503}, [c](const CallPtr& call) {
                    c->deps.store.read_mission(call->params.at("id"), shown(call));

@@ -31,12 +31,6 @@ void leave_out(Draft& draft, std::string_view reason) {
   draft.row.reason = reason;
 }
 
-std::string text_of(double value) {
-  std::string out;
-  append_number(out, value);
-  return out;
-}
-
 /// Global frames, with float or scaled integer coordinates in MAVLink; in files always degrees.
 bool is_geographic(int frame) noexcept {
   return frame == 0 || frame == 3 || frame == 5 || frame == 6 || frame == 10 || frame == 11;
@@ -46,9 +40,9 @@ void check_position(const Command& c, Problems& problems) {
   const auto check = [&](std::optional<double> value, std::string_view at, const char* name,
                          const Range& range) {
     if (value && range.holds(*value)) return;
-    std::string detail = std::string(name) + " must be a number from " + text_of(range.min) +
-                         " to " + text_of(range.max);
-    if (value && std::isfinite(*value)) detail += ", is " + text_of(*value);
+    std::string detail = std::string(name) + " must be a number from " + number_text(range.min) +
+                         " to " + number_text(range.max);
+    if (value && std::isfinite(*value)) detail += ", is " + number_text(*value);
     problems.add(c.row + std::string(at), std::move(detail));
   };
   check(c.lat, c.lat_at, "latitude", kLat);
@@ -60,13 +54,13 @@ std::optional<double> usable(Draft& draft, std::optional<double> value, const Ra
                              const char* name) {
   if (!value || *value == 0.0) return std::nullopt;
   if (range.holds(*value)) return value;
-  change(draft, std::string(name) + ' ' + text_of(*value) + " cannot be kept");
+  change(draft, std::string(name) + ' ' + number_text(*value) + " cannot be kept");
   return std::nullopt;
 }
 
-class Reader {
+class CommandReader {
  public:
-  explicit Reader(Problems& problems) : problems_(problems) {}
+  explicit CommandReader(Problems& problems) : problems_(problems) {}
 
   Draft read(const Command& c) {
     Draft draft{{c.row, command_name(c.id), Outcome::Taken, {}, std::nullopt}, {}, {}};
@@ -162,7 +156,7 @@ class Reader {
     const double seconds = c.p[0].value_or(0.0);
     if (seconds < 0.0) return leave_out(draft, "waiting for a time of day is not possible");
     if (!kHold_s.holds(seconds)) {
-      return leave_out(draft, "a wait of " + text_of(seconds) + " s is too long");
+      return leave_out(draft, "a wait of " + number_text(seconds) + " s is too long");
     }
     draft.item = Wait{seconds};
   }
@@ -173,7 +167,7 @@ class Reader {
     if (c.p[3].value_or(0.0) != 0.0) {
       turn.turn_deg = c.p[2].value_or(0.0) < 0.0 ? -*c.p[0] : *c.p[0];
       if (!kTurn_deg.holds(*turn.turn_deg)) {
-        return leave_out(draft, "a turn of " + text_of(*turn.turn_deg) + " deg is too much");
+        return leave_out(draft, "a turn of " + number_text(*turn.turn_deg) + " deg is too much");
       }
     } else {
       const double heading_deg = std::fmod(*c.p[0], 360.0);
@@ -202,7 +196,7 @@ class Reader {
   static void speed(Draft& draft, const Command& c) {
     const double speed_mps = c.p[1].value_or(-1.0);
     if (!kSpeed_mps.holds(speed_mps)) {
-      return leave_out(draft, "a speed of " + text_of(speed_mps) + " m/s is not possible");
+      return leave_out(draft, "a speed of " + number_text(speed_mps) + " m/s is not possible");
     }
     draft.item = Speed{speed_mps};
   }
@@ -256,7 +250,7 @@ void items_from_commands(const std::vector<Command>& commands, Plan& plan,
                          std::vector<FileRow>& rows, Problems& problems) {
   std::vector<Draft> drafts;
   drafts.reserve(commands.size());
-  Reader reader(problems);
+  CommandReader reader(problems);
   for (const Command& command : commands) drafts.push_back(reader.read(command));
   Jumps jumps(commands, drafts);
   jumps.drop_lost();

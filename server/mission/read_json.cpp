@@ -17,24 +17,18 @@ using base::Error;
 using base::Result;
 using nlohmann::json;
 
-std::string text_of(double value) {
-  std::string out;
-  append_number(out, value);
-  return out;
-}
-
 std::string range_problem(const Range& range, double value) {
   std::string text = "must be ";
   if (range.without_min || range.without_max) {
     text += range.without_min ? "more than " : "at least ";
-    text += text_of(range.min);
+    text += number_text(range.min);
     text += range.without_max ? " and less than " : " and at most ";
   } else {
-    text += "from " + text_of(range.min) + " to ";
+    text += "from " + number_text(range.min) + " to ";
   }
-  text += text_of(range.max) + ", is ";
+  text += number_text(range.max) + ", is ";
   if (std::isnan(value)) return text + "not a number";
-  return text + (std::isinf(value) ? std::string("infinite") : text_of(value));
+  return text + (std::isinf(value) ? std::string("infinite") : number_text(value));
 }
 
 template <class E>
@@ -93,9 +87,9 @@ class Checker {
 };
 
 /// Fills a struct from an object. The pointer's text is only made when something is wrong.
-class Reader {
+class ItemReader {
  public:
-  Reader(const json& object, std::string where, Problems& problems)
+  ItemReader(const json& object, std::string where, Problems& problems)
       : object_(object), where_(std::move(where)), problems_(problems) {}
 
   void number(std::string_view name, double& out, const Range& range) {
@@ -237,7 +231,7 @@ Item read_item(const json& value, const std::string& where, Problems& problems) 
     problems.add(where, "must be an object");
     return item;
   }
-  Reader reader(value, where, problems);
+  ItemReader reader(value, where, problems);
   const json* type = reader.known("type");
   if (type == nullptr) {
     reader.add("type", "is required");
@@ -257,7 +251,7 @@ void read_object(const json& value, const char* where, T& out, Problems& problem
     problems.add(where, "must be an object");
     return;
   }
-  Reader reader(value, where, problems);
+  ItemReader reader(value, where, problems);
   fields(reader, out);
   reader.refuse_unknown();
 }
@@ -292,7 +286,7 @@ Result<Plan> plan_from_json(const json& value) {
     problems.add("", "must be an object");
     return tl::unexpected<Error>(std::move(problems).error("the mission"));
   }
-  Reader reader(value, "", problems);
+  ItemReader reader(value, "", problems);
   reader.name("name", plan.name);
   if (const json* home = reader.known("home"); home != nullptr && !home->is_null()) {
     read_object(*home, "/home", plan.home.emplace(), problems);

@@ -92,6 +92,12 @@ void append_number(std::string& out, double value) {
   out.append(text.data(), end);
 }
 
+std::string number_text(double value) {
+  std::string out;
+  append_number(out, value);
+  return out;
+}
+
 std::string fixed_number(double value, int decimals) {
   std::array<char, 400> text{};  // the smallest double takes 327 characters, the largest 310
   const double finite = std::isfinite(value) ? value : 0.0;

@@ -21,6 +21,7 @@ std::string clean_name(std::string_view name, std::string_view fallback);
 
 /// The shortest text that reads back as the same double: "58.3780201". Not finite: "null".
 void append_number(std::string& out, double value);
+std::string number_text(double value);
 
 /// Like append_number but never with an exponent and with at least `decimals` digits after the
 /// point. Not finite: "0" with its decimals.

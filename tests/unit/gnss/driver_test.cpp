@@ -59,7 +59,7 @@ class GnssDriverTest : public ::testing::Test {
   std::vector<base::Measurement> seen;
 };
 
-const std::string kHdt = "$GPHDT,359.97,T*04\r\n";
+const std::string kTrueHeading = "$GPHDT,359.97,T*04\r\n";
 
 TEST_F(GnssDriverTest, OpensAndIsUpWithTheFirstIntactSentence) {
   EXPECT_EQ(status().phase, DriverPhase::Down);
@@ -68,7 +68,7 @@ TEST_F(GnssDriverTest, OpensAndIsUpWithTheFirstIntactSentence) {
   EXPECT_EQ(status().reason, "waiting for a sentence");
   hear("$GPHDT,359.97,T*05\r\n");
   EXPECT_EQ(status().phase, DriverPhase::Opening);
-  hear(kHdt);
+  hear(kTrueHeading);
   EXPECT_EQ(status().phase, DriverPhase::Up);
   EXPECT_EQ(status().reason, "");
   EXPECT_EQ(status().received, 1u);
@@ -79,14 +79,14 @@ TEST_F(GnssDriverTest, OpensAndIsUpWithTheFirstIntactSentence) {
 
 TEST_F(GnssDriverTest, TwoSecondsWithoutBytesAreAFault) {
   driver->start(now);
-  hear(kHdt);
+  hear(kTrueHeading);
   after(2s);
   EXPECT_EQ(status().phase, DriverPhase::Up);
   after(1ms);
   EXPECT_EQ(status().phase, DriverPhase::Faulty);
   EXPECT_EQ(status().reason, "no bytes: the receiver is silent");
   EXPECT_TRUE(ours->is_open()) << "the port is not to blame";
-  hear(kHdt);
+  hear(kTrueHeading);
   EXPECT_EQ(status().phase, DriverPhase::Up);
 }
 
@@ -126,7 +126,7 @@ TEST_F(GnssDriverTest, ARecordingIsNotBegunAgainInItsGaps) {
 
 TEST_F(GnssDriverTest, ALinkThatBreaksIsFaultyAndTriedAgain) {
   driver->start(now);
-  hear(kHdt);
+  hear(kTrueHeading);
   ours->fail("the adapter was unplugged");
   EXPECT_EQ(status().phase, DriverPhase::Faulty);
   EXPECT_EQ(status().reason, "the adapter was unplugged");
@@ -154,7 +154,7 @@ TEST_F(GnssDriverTest, ALinkThatCannotBeMadeOrOpenedIsTriedAgain) {
 
 TEST_F(GnssDriverTest, CanBeStoppedAndRestarted) {
   driver->start(now);
-  hear(kHdt);
+  hear(kTrueHeading);
   driver->stop(now);
   EXPECT_EQ(status().phase, DriverPhase::Down);
   EXPECT_FALSE(ours->is_open());
@@ -162,13 +162,13 @@ TEST_F(GnssDriverTest, CanBeStoppedAndRestarted) {
   EXPECT_EQ(status().phase, DriverPhase::Down);
   driver->restart(now);
   EXPECT_EQ(status().phase, DriverPhase::Opening);
-  hear(kHdt);
+  hear(kTrueHeading);
   EXPECT_EQ(status().phase, DriverPhase::Up);
 }
 
 TEST_F(GnssDriverTest, RepeatsItsStatusTwiceASecond) {
   driver->start(now);
-  hear(kHdt);
+  hear(kTrueHeading);
   driver->tick(now);
   const auto before = measured<base::DriverStatus>().size();
   for (int i = 0; i < 75; ++i) after(20ms);
@@ -207,7 +207,7 @@ TEST_F(GnssDriverTest, AWholeEpochBecomesMeasurements) {
 
 TEST_F(GnssDriverTest, AFalseBinaryFrameHoldsSentencesBackForASecondAtMost) {
   driver->start(now);
-  hear("\xD3\x03\xFF" + kHdt);
+  hear("\xD3\x03\xFF" + kTrueHeading);
   EXPECT_EQ(status().received, 0u);
   after(1s);
   EXPECT_EQ(status().received, 1u);

@@ -42,7 +42,7 @@ Path line(std::vector<EnuPoint> points, bool reverse = false) {
   return build_path(v, {});
 }
 
-struct Drive {
+struct TrackedDrive {
   PathParams params;
   Tracker tracker{params};
   Toy toy;
@@ -67,7 +67,7 @@ struct Drive {
 };
 
 TEST(Tracker, DrivesALineToItsEndAndStopsThere) {
-  Drive d;
+  TrackedDrive d;
   const Path path = line({{0, 0}, {8, 0}});
   ASSERT_TRUE(d.run(path, 40.0));
   EXPECT_NEAR(d.toy.vehicle.at.east_m, 8.0, 0.06);
@@ -79,7 +79,7 @@ TEST(Tracker, DrivesALineToItsEndAndStopsThere) {
 //  ─────────────────────────────╲────────▶ less than 0.1 m to the other side
 TEST(Tracker, AStepOfOneMetreIsTakenWithHardlyAnyOvershoot) {
   for (const std::size_t delay : {0u, 5u, 7u, 12u}) {
-    Drive d;
+    TrackedDrive d;
     d.toy = Toy(delay);
     d.params.track.delay_s = 0.02 * static_cast<double>(delay);
     d.tracker = Tracker(d.params);
@@ -92,7 +92,7 @@ TEST(Tracker, AStepOfOneMetreIsTakenWithHardlyAnyOvershoot) {
 }
 
 TEST(Tracker, TheAccountedSlipAndPullDoNotShowOnTheGround) {
-  Drive d;
+  TrackedDrive d;
   d.toy.vehicle.odometry_scale = 0.8;
   d.toy.vehicle.yaw_scale = 0.6;
   d.toy.vehicle.pull_1pm = 0.05;
@@ -103,7 +103,7 @@ TEST(Tracker, TheAccountedSlipAndPullDoNotShowOnTheGround) {
 
 TEST(Tracker, PivotsFirstWhenItPointsAwayMoreThanThirtyDegrees) {
   for (const auto& [deg, pivots] : {std::pair{29.0, false}, {31.0, true}, {180.0, true}}) {
-    Drive d;
+    TrackedDrive d;
     d.toy.vehicle.yaw_rad = base::rad_from_deg(deg);
     ASSERT_TRUE(d.run(line({{0, 0}, {6, 0}}), 60.0)) << deg;
     EXPECT_EQ(d.pivoted, pivots) << deg;
@@ -113,7 +113,7 @@ TEST(Tracker, PivotsFirstWhenItPointsAwayMoreThanThirtyDegrees) {
 }
 
 TEST(Tracker, ReversesWithItsTailAhead) {
-  Drive d;
+  TrackedDrive d;
   d.toy.vehicle.yaw_rad = base::kPi;
   d.toy.vehicle.at.north_m = 0.3;
   ASSERT_TRUE(d.run(line({{0, 0}, {6, 0}}, true), 60.0));
@@ -123,7 +123,7 @@ TEST(Tracker, ReversesWithItsTailAhead) {
 }
 
 TEST(Tracker, OutAndBackOnTheSameLineIsNotTakenForOneWay) {
-  Drive d;
+  TrackedDrive d;
   const Path path = line({{0, 0}, {6, 0}, {0, 0.001}});
   ASSERT_EQ(path.legs.size(), 2u);
   ASSERT_TRUE(d.run(path, 40.0, 0));
@@ -139,7 +139,7 @@ TEST(Tracker, ACrossingDoesNotShortenTheWay) {
     v.push_back({p, 0.8, false, false, mission::Turn::Arc, 0.1});
   }
   const Path path = build_path(v, {});
-  Drive d;
+  TrackedDrive d;
   double last = 0.0;
   d.tracker.begin(path, 0, 0.0);
   for (int i = 0; i < 4000 && d.tracker.phase() != TrackPhase::Done; ++i) {
@@ -153,13 +153,13 @@ TEST(Tracker, ACrossingDoesNotShortenTheWay) {
 }
 
 TEST(Tracker, AWayShorterThanTheLookaheadIsDrivenToo) {
-  Drive d;
+  TrackedDrive d;
   ASSERT_TRUE(d.run(line({{0, 0}, {0.3, 0}}), 20.0));
   EXPECT_NEAR(d.toy.vehicle.at.east_m, 0.3, 0.06);
 }
 
 TEST(Tracker, CreepsWhileTheHeadingIsUncertainAndSaysSo) {
-  Drive d;
+  TrackedDrive d;
   const Path path = line({{0, 0}, {20, 0}});
   d.toy.vehicle.yaw_sigma_rad = 0.3;
   d.tracker.begin(path, 0, 0.0);
@@ -173,7 +173,7 @@ TEST(Tracker, CreepsWhileTheHeadingIsUncertainAndSaysSo) {
 }
 
 TEST(Tracker, ALimitThatComesSuddenlyIsBrakedFor) {
-  Drive d;
+  TrackedDrive d;
   const Path path = line({{0, 0}, {20, 0}});
   d.tracker.begin(path, 0, 0.0);
   for (int i = 0; i < 250; ++i) d.toy.step(d.tracker.step(d.toy.vehicle, 10.0, 0.02).command);
@@ -189,7 +189,7 @@ TEST(Tracker, ALimitThatComesSuddenlyIsBrakedFor) {
 }
 
 TEST(Tracker, NeverCommandsMoreTurnThanAllowed) {
-  Drive d;
+  TrackedDrive d;
   d.toy.vehicle.yaw_rad = 1.0;
   d.toy.vehicle.yaw_scale = 0.5;
   const Path path = line({{0, 0}, {3, 0}, {3, 3}, {0, 3}});

@@ -8,12 +8,6 @@
 namespace roverd::sim {
 namespace {
 
-void set_fault(Plant& plant, const std::function<void(Faults&)>& change) {
-  Faults f = plant.bunker.faults();
-  change(f);
-  ASSERT_TRUE(plant.bunker.set_faults(f));
-}
-
 base::EnuPoint local(const Plant& plant, const std::string& gga) {
   return plant.bunker.frame().to_local(position(gga));
 }

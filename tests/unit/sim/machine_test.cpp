@@ -17,12 +17,6 @@ void set_swb(Plant& plant, Switch position) {
   plant.bunker.set_radio(radio);
 }
 
-void set_fault(Plant& plant, const std::function<void(Faults&)>& change) {
-  Faults f = plant.bunker.faults();
-  change(f);
-  ASSERT_TRUE(plant.bunker.set_faults(f));
-}
-
 TEST(BaseMachine, StandsInStandbyAtTheStartAndObeysOnlyTheModeFrame) {
   Plant plant;
   plant.drive(1.0, 0.0, 1s);

@@ -2,8 +2,11 @@
 // Helpers for tests of the plant: a quiet robot, commands at 50 Hz, and what it said.
 
 #include <cmath>
+#include <functional>
 #include <string>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "base/angle.hpp"
 #include "sim/bunker.hpp"
@@ -147,6 +150,12 @@ inline double degrees(const std::string& value, const std::string& sign, std::si
 inline base::LatLon position(const std::string& gga) {
   const auto f = split(gga);
   return {degrees(f.at(2), f.at(3), 2), degrees(f.at(4), f.at(5), 3)};
+}
+
+inline void set_fault(Plant& plant, const std::function<void(Faults&)>& change) {
+  Faults f = plant.bunker.faults();
+  change(f);
+  ASSERT_TRUE(plant.bunker.set_faults(f));
 }
 
 }  // namespace roverd::sim
