@@ -166,7 +166,8 @@ step_tsan() {
 step_fuzz() {
   local program name found code=0
   configure "$build/fuzz" -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Sanitized \
-    -DCMAKE_CXX_FLAGS="-O1 -g1" -DROVERD_FUZZ=ON -DROVERD_TESTS=OFF
+    -DCMAKE_CXX_FLAGS="-O1 -g1" -DROVERD_FUZZ=ON -DROVERD_TESTS=OFF \
+    -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=12
   ninja_build "$build/fuzz" fuzz
   for program in "$build/fuzz/bin/"*_fuzz; do
     name=$(basename "$program" _fuzz)

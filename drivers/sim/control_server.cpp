@@ -105,7 +105,7 @@ class ControlServer::Session : public std::enable_shared_from_this<Session> {
 };
 
 ControlServer::ControlServer(asio::io_context& io, std::uint16_t port, Plant plant)
-    : io_(io), port_(port), plant_(std::move(plant)), acceptor_(io), pause_(io) {}
+    : port_(port), plant_(std::move(plant)), acceptor_(io), pause_(io) {}
 
 ControlServer::~ControlServer() {
   close();

@@ -42,7 +42,6 @@ class ControlServer {
   class Session;
   void accept();
 
-  boost::asio::io_context& io_;
   std::uint16_t port_;
   Plant plant_;
   boost::asio::ip::tcp::acceptor acceptor_;
