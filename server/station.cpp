@@ -8,6 +8,7 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
 
 #include "api/api.hpp"
 #include "base/angle.hpp"
@@ -99,6 +100,7 @@ struct Station::Impl {
   std::unique_ptr<net::Doorbell> bell;
   std::unique_ptr<ControlLoop> loop;
   asio::signal_set signals{web, SIGINT, SIGTERM};
+  asio::steady_timer sample_timer{web};
   std::string address;
 
   Result<void> open(const Settings& settings, const Options& options);
@@ -106,6 +108,7 @@ struct Station::Impl {
   Result<void> open_server(const Settings& settings, const Options& options);
   void make_api(const Settings& settings);
   void start();
+  void sample_soon();
   void halt() noexcept;
   void stop();
 };
@@ -179,11 +182,21 @@ void Station::Impl::start() {
     if (!ec) stop();
   });
   bay->start();
+  sample_soon();
   loop = std::make_unique<ControlLoop>(
       [this](base::Time now, base::WallTime wall, base::Duration lateness) {
         robot.tick(now, wall, lateness);
       });
   base::log(base::Level::Info, "main", "serving", {{"address", address}, {"version", kVersion}});
+}
+
+void Station::Impl::sample_soon() {
+  sample_timer.expires_after(api::Api::kSample);
+  sample_timer.async_wait([this](const boost::system::error_code& ec) {
+    if (ec) return;
+    api->on_sample();
+    sample_soon();
+  });
 }
 
 /// The robot first: no command after this, and the base is told to stand.

@@ -237,6 +237,12 @@ void Api::on_second() {
   impl_->counted = now;
 }
 
+void Api::on_sample() {
+  if (const auto snapshot = impl_->context->deps.robot.snapshot()) {
+    impl_->context->trail.take(*snapshot);
+  }
+}
+
 void Api::drain() {
   auto& robot = impl_->context->deps.robot;
   impl_->events.clear();

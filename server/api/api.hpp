@@ -87,6 +87,9 @@ class Api {
   static Response on_refused(unsigned status, std::string_view detail);
   /// Once a second: driver rates, answers that never came.
   void on_second();
+  /// Every kSample: the trail takes where the robot is.
+  static constexpr base::Duration kSample = std::chrono::milliseconds(50);
+  void on_sample();
   /// After robot.wake: hands out the robot's answers and events.
   void drain();
 

@@ -11,6 +11,7 @@
 #include "api/body.hpp"
 #include "api/problem.hpp"
 #include "api/router.hpp"
+#include "api/trail.hpp"
 #include "api/words.hpp"
 
 namespace roverd::api {
@@ -53,6 +54,7 @@ struct Context {
   Deps deps;
   Commands commands;
   Router router;
+  Trail trail;
   base::Time begun;
   std::map<std::string, double> driver_rates;
   std::string openapi_tag;

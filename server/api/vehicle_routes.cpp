@@ -117,6 +117,12 @@ void add_vehicle_routes(const ContextPtr& c) {
                    call->respond(json_response(
                        http::status::ok, capabilities_json(c->deps.profile, c->deps.version)));
                  }});
+  c->router.add({get, "/vehicle/trail", {200, 503}, [c](const CallPtr& call) {
+                   if (const auto s = c->snapshot_or_refuse(call)) {
+                     c->trail.take(*s);  // the live stream goes on exactly where this ends
+                     call->respond(json_response(http::status::ok, trail_json(c->trail, *s)));
+                   }
+                 }});
   c->router.add({post, "/vehicle/arm", kCommand, arm(c)});
   c->router.add({post, "/vehicle/disarm", kCommand, plain(c, robot::Disarm{}, Moves::No)});
   c->router.add({http::verb::put, "/vehicle/mode", kCommand, set_mode(c)});

@@ -12,6 +12,7 @@ namespace {
 // Digits that mean something; they also keep a message near one kilobyte.
 constexpr double kPlaces2 = 1e2;
 constexpr double kPlaces3 = 1e3;
+constexpr double kPlaces8 = 1e8;
 constexpr double kPlaces9 = 1e9;
 
 Json rounded(double value, double places) {
@@ -181,6 +182,18 @@ Json point_json(const std::optional<base::LatLon>& at) {
   return out;
 }
 
+/// Pieces of points [lat, lon, age_s]; to a millimetre, for drawing.
+Json track_json(const Track& track, base::Time now) {
+  Json pieces = Json::array();
+  for (const Track::Point& p : track.points()) {
+    if (p.begins) pieces.push_back(Json::array());
+    const double age_s = std::max(0.0, base::seconds(now - p.stamp));
+    pieces.back().push_back(
+        {rounded(p.at.lat, kPlaces8), rounded(p.at.lon, kPlaces8), rounded(age_s, kPlaces2)});
+  }
+  return pieces;
+}
+
 }  // namespace
 
 Json vehicle_json(const base::Snapshot& s, const std::string& name, base::Time now) {
@@ -212,6 +225,12 @@ Json vehicle_json(const base::Snapshot& s, const std::string& name, base::Time n
           // A compass that reads too far clockwise has a smaller yaw than the truth.
           {"compass_bias_deg", s.pose ? degrees(-s.estimator.compass_bias_rad) : Json(nullptr)},
           {"ready_to_arm", s.ready_to_arm}};
+}
+
+Json trail_json(const Trail& trail, const base::Snapshot& s) {
+  return {{"time", base::to_rfc3339(s.wall)},
+          {"estimated", track_json(trail.estimated(), s.now)},
+          {"received", track_json(trail.received(), s.now)}};
 }
 
 Json checks_json(const base::Snapshot& s) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "api/message.hpp"
+#include "api/trail.hpp"
 #include "base/snapshot.hpp"
 #include "mission/formats.hpp"
 #include "robot/robot.hpp"
@@ -41,6 +42,8 @@ struct Profile {
 };
 
 Json vehicle_json(const base::Snapshot& snapshot, const std::string& name, base::Time now);
+/// @param snapshot the last one that the trail has taken
+Json trail_json(const Trail& trail, const base::Snapshot& snapshot);
 Json checks_json(const base::Snapshot& snapshot);
 Json execution_json(const base::MissionProgress& progress);
 Json preview_json(const robot::Preview& preview, base::ExecutionState state);

@@ -84,6 +84,7 @@ House::House(net::Limits limits) : robot_(quick_to_trust()) {
     std::lock_guard lock(mutex_);
     sent_ = command;
   };
+  sample_soon();
   web_ = std::thread([this] { io_.run(); });
   control_ = std::thread([this] { play(); });
 }
@@ -103,6 +104,15 @@ void House::serve(net::Limits limits) {
   if (!made) throw std::runtime_error(made.error().detail);
   server_ = std::move(*made);
   api_->attach(stream_of(server_->hub()));
+}
+
+void House::sample_soon() {
+  sample_timer_.expires_after(api::Api::kSample);
+  sample_timer_.async_wait([this](const boost::system::error_code& ec) {
+    if (ec) return;
+    api_->on_sample();
+    sample_soon();
+  });
 }
 
 House::~House() {
@@ -154,7 +164,7 @@ void House::tell(base::Time now, int count) {
   base::GnssFix fix;
   fix.stamp = now;
   fix.fix = base::FixType::RtkFixed;
-  fix.position = kStart;
+  fix.position = base::destination(kStart, 0.0, moved_m);
   fix.alt_msl_m = 60.0;
   fix.satellites = 18;
   fix.hdop = 0.7;

@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include <boost/asio/steady_timer.hpp>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -40,6 +41,8 @@ class House {
   std::atomic<bool> healthy{true};
   /// The control loop runs (true at first) or hangs.
   std::atomic<bool> ticking{true};
+  /// How far north of kStart the receiver says it is.
+  std::atomic<double> moved_m{0.0};
   /// What went to the base last.
   base::DriveCommand sent();
   std::shared_ptr<const base::Snapshot> snapshot() { return robot_.snapshot(); }
@@ -48,6 +51,7 @@ class House {
   void play();
   void tell(base::Time now, int count);
   void serve(net::Limits limits);
+  void sample_soon();
 
   std::filesystem::path folder_;
   boost::asio::io_context io_{net::kWebConcurrency};
@@ -56,6 +60,7 @@ class House {
   std::unique_ptr<api::Api> api_;
   std::unique_ptr<net::Server> server_;
   std::unique_ptr<net::Doorbell> bell_;
+  boost::asio::steady_timer sample_timer_{io_};
   std::mutex mutex_;
   base::DriveCommand sent_;  ///< guarded by mutex_
   std::atomic<bool> stop_{false};

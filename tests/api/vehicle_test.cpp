@@ -25,6 +25,30 @@ TEST_F(VehicleApi, TheStateIsWholeAndJudgedByTheDocument) {
   until([this] { return !call("GET", "/drivers").body["items"].empty(); }, "a driver is listed");
 }
 
+TEST_F(VehicleApi, TheWaySoFarIsKeptInPiecesForWhoComesLate) {
+  until_ready();
+  const auto here = call("GET", "/vehicle/trail");
+  ASSERT_EQ(here.status, 200u);
+  ASSERT_EQ(here.body["estimated"].size(), 1u);
+  ASSERT_EQ(here.body["received"].size(), 1u);
+  for (const char* track : {"estimated", "received"}) {
+    const Json& first = here.body[track][0][0];
+    EXPECT_NEAR(first[0], kStart.lat, 1e-6) << track;
+    EXPECT_NEAR(first[1], kStart.lon, 1e-6) << track;
+    EXPECT_LT(first[2], 20.0) << track;
+  }
+  // When the receiver insists on being 60 m away, the robot believes it after a while,
+  house.moved_m = 60.0;
+  until([this] { return call("GET", "/vehicle/trail").body["estimated"].size() == 2; }, "set anew");
+  // and no line leads there; the time of the answer is that of the robot's state.
+  const auto there = call("GET", "/vehicle/trail");
+  EXPECT_NEAR(there.body["estimated"][1][0][0], kStart.lat + 60.0 / 111'400, 1e-5);
+  EXPECT_EQ(there.body["received"].size(), 2u);
+  EXPECT_GT(there.body["time"], here.body["time"]);
+  EXPECT_LE(there.body["time"], call("GET", "/vehicle").body["time"]);
+  EXPECT_EQ(call("DELETE", "/vehicle/trail").status, 405u);
+}
+
 TEST_F(VehicleApi, SilentDevicesGoStale) {
   until_ready();
   house.healthy = false;

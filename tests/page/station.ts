@@ -127,7 +127,8 @@ const config = join(ROOT, 'config/robot.toml');
 
 export const test = base.extend<{
   station: Station;
-  replay: (file: string) => Promise<string>;
+  /** Plays a recording, `speed` times as fast as it was recorded. @return the address */
+  replay: (file: string, speed: number) => Promise<string>;
 }>({
   // eslint-disable-next-line no-empty-pattern
   station: async ({}, use) => {
@@ -160,10 +161,10 @@ export const test = base.extend<{
   replay: async ({}, use) => {
     const folder = mkdtempSync(join(tmpdir(), 'roverd-page.'));
     let roverd: Program | undefined;
-    await use(async (file) => {
+    await use(async (file, speed) => {
       roverd = new Program('roverd', [
         ...['--config', config, '--data', join(folder, 'data'), '--port', '0'],
-        ...['--replay', file, '--replay-speed', '0.5'],
+        ...['--replay', file, '--replay-speed', String(speed)],
       ]);
       const [, url = ''] = await roverd.line(/^listening on (http:\S+)/);
       return url;

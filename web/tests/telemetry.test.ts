@@ -1,40 +1,7 @@
 import { describe, expect, test } from 'vitest';
 
 import { add_sample, empty_columns } from '../src/model/columns';
-import { Trail } from '../src/model/trail';
 import { receiver_place, robot_place, worth_a_word, type Vehicle } from '../src/model/vehicle';
-
-const north = (metres: number) => ({ lat: 58 + metres / 111_000, lon: 26 });
-
-describe('trail', () => {
-  test('keeps points in order and leaves out standing still', () => {
-    const trail = new Trail(10, 0.05);
-    expect(trail.add(north(0))).toBe(true);
-    expect(trail.add(north(0.01))).toBe(false);
-    expect(trail.add(north(1))).toBe(true);
-    expect(trail.length).toBe(2);
-    expect(trail.at(1)).toEqual(north(1));
-    expect(trail.at(2)).toBeUndefined();
-    expect(trail.at(-1)).toBeUndefined();
-  });
-
-  test('drops the oldest point when it is full', () => {
-    const trail = new Trail(3, 0.05);
-    for (let k = 0; k < 5; k += 1) trail.add(north(k));
-    expect(trail.length).toBe(3);
-    expect([0, 1, 2].map((k) => trail.at(k))).toEqual([north(2), north(3), north(4)]);
-    expect(trail.added).toBe(5);
-  });
-
-  test('can be cleared, which is news too', () => {
-    const trail = new Trail(3);
-    trail.add(north(0));
-    const seen = trail.added;
-    trail.clear();
-    expect(trail.length).toBe(0);
-    expect(trail.added).toBeGreaterThan(seen);
-  });
-});
 
 describe('columns', () => {
   test('hold one column per signal, bounded, with gaps for unknown values', () => {

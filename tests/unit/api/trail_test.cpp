@@ -12,6 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
+constexpr double kReach_m = 10.0;
 const base::LocalFrame kField(1, {58.378, 26.729});
 
 base::LatLon at(double east_m, double north_m) {
@@ -42,7 +43,7 @@ double longest_gap_m(const Track& track) {
 TEST(Track, KeepsAPointForEveryFifthOfAMetre) {
   // Given a drive of 100 m at 1.5 m/s, sampled 20 times a second,
   Track track;
-  for (int i = 0; i * 0.075 <= 100.0; ++i) track.add(at(0.0, i * 0.075), t(i * 0.05));
+  for (int i = 0; i * 0.075 <= 100.0; ++i) track.add(at(0.0, i * 0.075), t(i * 0.05), kReach_m);
   // then every third sample is kept (0.225 m), and both ends.
   EXPECT_EQ(track.points().size(), 445u);
   EXPECT_EQ(pieces(track), 1);
@@ -53,14 +54,14 @@ TEST(Track, KeepsAPointForEveryFifthOfAMetre) {
 
 TEST(Track, StandingStillAddsNothing) {
   Track track;
-  for (int i = 0; i < 10'000; ++i) track.add(at(0.0, 0.009 * (i % 2)), t(i * 0.05));
+  for (int i = 0; i < 10'000; ++i) track.add(at(0.0, 0.009 * (i % 2)), t(i * 0.05), kReach_m);
   EXPECT_EQ(track.points().size(), 1u);
 }
 
 TEST(Track, AReceiverThatHardlyMovesHasATrackOfOnePointASecond) {
   // Given an antenna that creeps along at 2 cm/s for half a minute,
   Track track;
-  for (int i = 0; i <= 300; ++i) track.add(at(i * 0.002, 0.0), t(i * 0.1));
+  for (int i = 0; i <= 300; ++i) track.add(at(i * 0.002, 0.0), t(i * 0.1), kReach_m);
   EXPECT_EQ(track.points().size(), 31u);
   EXPECT_NEAR(longest_gap_m(track), 0.02, 1e-3);
 }
@@ -70,7 +71,7 @@ TEST(Track, ACloudOfNoiseIsBoundedHoweverLongItStands) {
   // apart fill up, and no more come.
   Track track;
   for (int i = 0; i < 36'000; ++i) {
-    track.add(at(0.025 * std::sin(i * 1.7), 0.025 * std::cos(i * 2.3)), t(i));
+    track.add(at(0.025 * std::sin(i * 1.7), 0.025 * std::cos(i * 2.3)), t(i), kReach_m);
   }
   EXPECT_GT(track.points().size(), 10u);
   EXPECT_LT(track.points().size(), Track::kSeen);
@@ -79,13 +80,13 @@ TEST(Track, ACloudOfNoiseIsBoundedHoweverLongItStands) {
 TEST(Track, AJumpBeginsANewPiece) {
   //   x──x──x           x──x      set anew, 12 m aside: no line between
   Track track;
-  for (int i = 0; i < 5; ++i) track.add(at(i, 0.0), t(i));
-  for (int i = 0; i < 5; ++i) track.add(at(i, 12.0), t(5 + i));
+  for (int i = 0; i < 5; ++i) track.add(at(i, 0.0), t(i), kReach_m);
+  for (int i = 0; i < 5; ++i) track.add(at(i, 12.0), t(5 + i), kReach_m);
   ASSERT_EQ(track.points().size(), 10u);
   EXPECT_EQ(pieces(track), 2);
   EXPECT_TRUE(track.points()[5].begins);
   // A smaller one is a correction, and drawn.
-  track.add(at(4.0, 14.5), t(10));
+  track.add(at(4.0, 14.5), t(10), kReach_m);
   EXPECT_EQ(pieces(track), 2);
 }
 
@@ -98,7 +99,7 @@ TEST(Track, IsBoundedAndThinnedWhereTheLineMissesLeast) {
   Track track;
   int i = 0;
   const auto go = [&](double east_m, double north_m) {
-    track.add(at(east_m, north_m), t(0.2 * i++));
+    track.add(at(east_m, north_m), t(0.2 * i++), kReach_m);
     ASSERT_LE(track.points().size(), Track::kMost);
   };
   for (int row = 0; row < 100; ++row) {
@@ -132,8 +133,8 @@ TEST(Track, IsBoundedAndThinnedWhereTheLineMissesLeast) {
 TEST(Track, OfNothingButJumpsLosesTheOldest) {
   Track track;
   for (std::size_t i = 0; i < Track::kMost + 1; ++i) {
-    track.add(at(i % 2 == 0 ? 0.0 : 50.0, static_cast<double>(i) * 0.01),
-              t(static_cast<double>(i)));
+    track.add(at(i % 2 == 0 ? 0.0 : 50.0, static_cast<double>(i) * 0.01), t(static_cast<double>(i)),
+              kReach_m);
   }
   EXPECT_LE(track.points().size(), Track::kMost);
   EXPECT_GT(track.points().size(), Track::kMost / 2);
@@ -178,6 +179,28 @@ TEST(Trail, TakesWhatTheRobotBelievesAndWhatItsReceiverSays) {
   s.pose->global = at(5, 0);
   trail.take(s);
   EXPECT_EQ(trail.estimated().points().size(), 1u);
+}
+
+TEST(Trail, TheEstimateJumpsWhereItsSpeedDoesNotExplainTheWay) {
+  Trail trail;
+  double s = 0.0;
+  const auto place = [&](double north_m, double speed_mps) {
+    base::Snapshot snap = snapshot(s += 0.05);
+    snap.pose = base::Pose{};
+    snap.pose->stamp = snap.now;
+    snap.pose->global = at(0, north_m);
+    snap.pose->speed_mps = speed_mps;
+    trail.take(snap);
+  };
+  // A standing robot is corrected by 1.5 m: drawn. By 3 m more: set anew.
+  place(0.0, 0.0);
+  place(1.5, 0.0);
+  EXPECT_EQ(pieces(trail.estimated()), 1);
+  place(4.5, 0.0);
+  EXPECT_EQ(pieces(trail.estimated()), 2);
+  // A car's recording played eight times as fast goes backwards, 5 m between two samples.
+  for (int i = 0; i < 20; ++i) place(4.5 - 5.0 * i, -100.0);
+  EXPECT_EQ(pieces(trail.estimated()), 2);
 }
 
 TEST(Trail, IsPiecesOfPositionsAndAgesInJson) {

@@ -4,6 +4,8 @@
 import type { Answer } from '../model/answer';
 import type { Plan } from '../model/plan';
 import type { MissionCalls, TileSet, VehicleCalls } from '../model/ports';
+import type { Remembered } from '../model/tracks';
+import type { TrailPiece } from '../model/trail';
 import { request, type Call } from './request';
 import type { components } from './schema';
 
@@ -11,8 +13,8 @@ type Schemas = components['schemas'];
 
 /** Clicks are void after this: a late one must not move the robot. */
 const CLICK_VALID_S = 2;
-/** Storing and reading a mission of 10,000 items over a weak radio link takes a while. */
-const MISSION_LIMIT_MS = 30_000;
+/** A mission of 10,000 items and the way of a day take a while over a weak radio link. */
+const LARGE_LIMIT_MS = 30_000;
 
 const etag = (revision: number): string => `"rev-${revision}"`;
 
@@ -26,7 +28,7 @@ const draft_of = (plan: Plan): Schemas['MissionDraft'] => ({
 const mission_path = (id: string): string => `/missions/${encodeURIComponent(id)}`;
 
 const with_mission = <T>(path: string, call: Call): Promise<Answer<T>> =>
-  request<T>(path, { limit_ms: MISSION_LIMIT_MS, ...call });
+  request<T>(path, { limit_ms: LARGE_LIMIT_MS, ...call });
 
 export const mission_calls: MissionCalls = {
   list: (cursor) => {
@@ -70,6 +72,19 @@ const command = (
 
 const an_hour_ago = (): string => new Date(Date.now() - 3_600_000).toISOString();
 
+/** Ages become times. */
+const pieces_of = (track: Schemas['Track'], until_s: number): TrailPiece[] =>
+  track.map((piece) => piece.map(([lat, lon, age_s]) => ({ lat, lon, t_s: until_s - age_s })));
+
+const trail = async (): Promise<Answer<Remembered>> => {
+  const answer = await request<Schemas['Trail']>('/vehicle/trail', { limit_ms: LARGE_LIMIT_MS });
+  if (!answer.ok) return answer;
+  const until_s = Date.parse(answer.value.time) / 1000;
+  const estimated = pieces_of(answer.value.estimated, until_s);
+  const received = pieces_of(answer.value.received, until_s);
+  return { ok: true, value: { until_s, estimated, received } };
+};
+
 export const vehicle_calls: VehicleCalls = {
   arm: () => command('POST', '/vehicle/arm'),
   disarm: () => command('POST', '/vehicle/disarm'),
@@ -77,6 +92,7 @@ export const vehicle_calls: VehicleCalls = {
   // No body to parse, no age to check: a stop is always carried out.
   estop: () => request<unknown>('/vehicle/estop', { method: 'POST', limit_ms: 1000 }),
   reset_estop: () => command('POST', '/vehicle/estop/reset'),
+  trail,
   checks: () => request<Schemas['Checks']>('/vehicle/checks'),
   load: (mission_id, revision) => command('POST', '/execution/load', { mission_id, revision }),
   preview: (from) => request<Schemas['Preview']>(`/execution/preview?from=${from}`),

@@ -10,7 +10,7 @@ import XYZ from 'ol/source/XYZ';
 
 import { EMPTY_PLAN, type LatLon, type Plan } from '../model/plan';
 import type { MapCalls, MapEvents, MapMode, RobotOnMap, TileSet } from '../model/ports';
-import type { Trail } from '../model/trail';
+import type { Tracks } from '../model/tracks';
 import { canvas_layer } from './canvas';
 import { EditInteraction } from './edit';
 import { on_palette_change } from './palette';
@@ -118,9 +118,9 @@ export class FieldMap implements MapCalls {
     this.#map.render();
   }
 
-  show_robot(robot: RobotOnMap | null, driven: Trail, fixes: Trail): void {
-    this.#scene.driven.follow(driven);
-    this.#scene.fixes.follow(fixes);
+  show_robot(robot: RobotOnMap | null, tracks: Tracks): void {
+    this.#scene.driven.follow(tracks.driven);
+    this.#scene.fixes.follow(tracks.fixes);
     this.#scene.robot = robot;
     if (robot && !this.#placed) {
       this.#placed = true;

@@ -9,10 +9,11 @@ import { to_plane, units_per_m } from './projection';
 
 const DOTS_APART_PX = 7;
 
-/** A trail in the plane, kept in step with the model's ring. */
+/** A trail in the plane, kept in step with the model's ring: a line in pieces, or dots. */
 export class TrailLine {
   readonly #xs: number[] = [];
   readonly #ys: number[] = [];
+  readonly #begins: boolean[] = [];
   #seen = 0;
 
   follow(trail: Trail): void {
@@ -24,11 +25,13 @@ export class TrailLine {
       const [x, y] = to_plane(at);
       this.#xs.push(x);
       this.#ys.push(y);
+      this.#begins.push(trail.begins(k));
     }
     const surplus = this.#xs.length - trail.length;
     if (surplus > 0) {
       this.#xs.splice(0, surplus);
       this.#ys.splice(0, surplus);
+      this.#begins.splice(0, surplus);
     }
   }
 
@@ -49,9 +52,15 @@ export class TrailLine {
   }
 
   paint_line(paint: Paint, colors: Palette): void {
-    if (this.#xs.length < 2) return;
+    const count = this.#xs.length;
+    if (count < 2) return;
     paint.context.beginPath();
-    trace(paint, this.#xs, this.#ys);
+    let first = 0;
+    for (let k = 1; k <= count; k += 1) {
+      if (k < count && !this.#begins[k]) continue;
+      trace(paint, this.#xs, this.#ys, first, k);
+      first = k;
+    }
     stroke_cased(paint.context, colors.casing, colors.trail, 3);
   }
 }

@@ -3,7 +3,7 @@
 import type { Answer } from './answer';
 import type { LinkHealth } from './freshness';
 import type { Home, LatLon, Plan, Settings, Item } from './plan';
-import type { Trail } from './trail';
+import type { Remembered, Tracks } from './tracks';
 import type { Capabilities, Check, Preview, StationEvent, Vehicle } from './vehicle';
 
 /** One stored revision. */
@@ -73,6 +73,8 @@ export interface VehicleCalls {
   set_mode(mode: string): Promise<Answer<unknown>>;
   estop(): Promise<Answer<unknown>>;
   reset_estop(): Promise<Answer<unknown>>;
+  /** The way so far. */
+  trail(): Promise<Answer<Remembered>>;
   checks(): Promise<Answer<{ ready: boolean; checks: readonly Check[] }>>;
   load(mission_id: string, revision: number): Promise<Answer<unknown>>;
   preview(from: StartFrom): Promise<Answer<Preview>>;
@@ -126,8 +128,7 @@ export interface MapCalls {
   show_plan(plan: Plan, selected: number | null, refused: ReadonlySet<number>): void;
   /** The mission the robot has loaded; null hides it. @param current_item from 1; 0: none */
   show_route(route: Plan | null, current_item: number): void;
-  /** @param driven where the robot believes it drove @param fixes what its receiver said */
-  show_robot(robot: RobotOnMap | null, driven: Trail, fixes: Trail): void;
+  show_robot(robot: RobotOnMap | null, tracks: Tracks): void;
   show_home(home: LatLon | null): void;
   /** Footprint of the vehicle, drawn to scale. */
   set_size(length_m: number, width_m: number): void;

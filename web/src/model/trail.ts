@@ -1,26 +1,43 @@
 // The way the robot drove, as a bounded ring: when it is full the oldest point goes. Standing still
-// adds nothing. The only mutable value of the model: it grows ten times a second.
+// adds nothing. Made of pieces: where the position jumps, no line joins one to the next. The only
+// mutable value of the model: it grows ten times a second.
 
 import { distance_m } from './geo';
 import type { LatLon } from './plan';
 
+export interface TrailPoint extends LatLon {
+  /** Seconds, Unix time of the robot's clock. */
+  readonly t_s: number;
+}
+/** What a line may join, oldest first. */
+export type TrailPiece = readonly TrailPoint[];
+
 export class Trail {
   readonly #lat: Float64Array;
   readonly #lon: Float64Array;
+  readonly #t_s: Float64Array;
+  readonly #begins: Uint8Array;
   readonly #step_m: number;
   #first = 0;
   #count = 0;
   #added = 0;
 
   /** @param step_m points nearer than this to the last one are left out */
-  constructor(capacity = 20_000, step_m = 0.05) {
+  constructor(capacity = 40_000, step_m = 0.05) {
     this.#lat = new Float64Array(capacity);
     this.#lon = new Float64Array(capacity);
+    this.#t_s = new Float64Array(capacity);
+    this.#begins = new Uint8Array(capacity);
     this.#step_m = step_m;
   }
 
   get length(): number {
     return this.#count;
+  }
+
+  /** The next point costs the oldest. */
+  get full(): boolean {
+    return this.#count === this.#lat.length;
   }
 
   /** Grows with every point that was ever added; tells a drawer whether there is news. */
@@ -29,28 +46,61 @@ export class Trail {
   }
 
   /** @param index 0 is the oldest point */
-  at(index: number): LatLon | undefined {
+  at(index: number): TrailPoint | undefined {
     if (index < 0 || index >= this.#count) return undefined;
-    const slot = (this.#first + index) % this.#lat.length;
-    return { lat: this.#lat[slot] ?? 0, lon: this.#lon[slot] ?? 0 };
+    const slot = this.#slot(index);
+    return { lat: this.#lat[slot] ?? 0, lon: this.#lon[slot] ?? 0, t_s: this.#t_s[slot] ?? 0 };
   }
 
-  /** @return whether the point was kept */
-  add(at: LatLon): boolean {
+  /** No line leads to this point. */
+  begins(index: number): boolean {
+    return index === 0 || this.#begins[this.#slot(index)] === 1;
+  }
+
+  points(): TrailPoint[] {
+    const all = Array.from({ length: this.#count }, (_, k) => this.at(k));
+    return all.filter((at) => at !== undefined);
+  }
+
+  /** @param reach_m farther than this from the last point is a jump @return whether it was kept */
+  add(at: LatLon, t_s: number, reach_m: number): boolean {
     const last = this.at(this.#count - 1);
-    if (last && distance_m(last, at) < this.#step_m) return false;
-    const slot = (this.#first + this.#count) % this.#lat.length;
-    this.#lat[slot] = at.lat;
-    this.#lon[slot] = at.lon;
-    if (this.#count < this.#lat.length) this.#count += 1;
-    else this.#first = (this.#first + 1) % this.#lat.length;
-    this.#added += 1;
+    const moved_m = last ? distance_m(last, at) : Infinity;
+    if (moved_m < this.#step_m) return false;
+    this.#push(at, t_s, moved_m > reach_m);
     return true;
+  }
+
+  /**
+   * Takes over what the server remembers. Points of our own that are older than its memory stay (it
+   * may have been started anew); all others are in it, and go. @param until_s when it was told
+   */
+  restore(pieces: readonly TrailPiece[], until_s: number): void {
+    const since_s = pieces[0]?.[0]?.t_s ?? until_s;
+    const own = this.points().map((at, k) => ({ ...at, begins: this.begins(k) }));
+    this.clear();
+    for (const at of own) if (at.t_s < since_s) this.#push(at, at.t_s, at.begins);
+    for (const piece of pieces) piece.forEach((at, k) => this.#push(at, at.t_s, k === 0));
   }
 
   clear(): void {
     this.#first = 0;
     this.#count = 0;
+    this.#added += 1;
+  }
+
+  #slot(index: number): number {
+    return (this.#first + index) % this.#lat.length;
+  }
+
+  #push(at: LatLon, t_s: number, begins: boolean): void {
+    const slot = this.#slot(this.#count);
+    this.#lat[slot] = at.lat;
+    this.#lon[slot] = at.lon;
+    this.#t_s[slot] = t_s;
+    this.#begins[slot] = begins ? 1 : 0;
+    if (this.#count < this.#lat.length) this.#count += 1;
+    else this.#first = (this.#first + 1) % this.#lat.length;
     this.#added += 1;
   }
 }

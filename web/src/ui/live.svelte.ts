@@ -3,9 +3,10 @@
 import { add_sample, empty_columns, type Columns } from '../model/columns';
 import { link_age_s, link_stale, type LinkHealth } from '../model/freshness';
 import type { Facts } from '../model/operations';
+import type { LatLon } from '../model/plan';
 import type { RobotOnMap } from '../model/ports';
-import { Trail } from '../model/trail';
-import { receiver_place, robot_place, type Capabilities, type Vehicle } from '../model/vehicle';
+import { Tracks } from '../model/tracks';
+import { robot_place, type Capabilities, type Vehicle } from '../model/vehicle';
 
 const CLOCK_MS = 200;
 /** Two minutes at ten a second. */
@@ -16,9 +17,7 @@ export class Live {
   vehicle = $state.raw<Vehicle | null>(null);
   capabilities = $state.raw<Capabilities | null>(null);
   now_ms = $state(performance.now());
-  /** Where the robot believes it drove, and what its receiver said. */
-  readonly driven = new Trail();
-  readonly fixes = new Trail();
+  readonly tracks = new Tracks();
   readonly chart: Columns = empty_columns(2);
 
   stale = $derived(link_stale(this.link, this.now_ms));
@@ -34,13 +33,15 @@ export class Live {
 
   take(vehicle: Vehicle): void {
     this.vehicle = vehicle;
-    const at = robot_place(vehicle);
-    if (at && !vehicle.position.stale) this.driven.add(at);
-    const received = receiver_place(vehicle);
-    if (received) this.fixes.add(received);
+    this.tracks.take(vehicle);
     const { speed_mps } = vehicle.position;
     const seconds = Date.parse(vehicle.time) / 1000;
     add_sample(this.chart, CHART_SAMPLES, seconds, [speed_mps, vehicle.mission.cross_track_m]);
+  }
+
+  /** Everything worth seeing of the way so far. */
+  get places(): readonly LatLon[] {
+    return this.robot ? [...this.tracks.places(), this.robot.at] : this.tracks.places();
   }
 
   #robot(): RobotOnMap | null {

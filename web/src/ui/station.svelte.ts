@@ -19,6 +19,12 @@ import { Live } from './live.svelte';
 import { Notices } from './notices.svelte';
 import { Pilot } from './pilot.svelte';
 
+/** Between calls for the trail. After failures the wait doubles: a weak link has better things to
+ * carry. */
+const TRAIL_RENEWED_MS = 60_000;
+const TRAIL_AGAIN_MS = 3000;
+const TRAIL_AT_LAST_MS = 300_000;
+
 export type Tab = 'drive' | 'plan' | 'missions' | 'log';
 
 /** What main.ts hands in: the doors to the server, the map and the device. */
@@ -49,6 +55,12 @@ export class Station {
   readonly map: MapCalls;
   readonly #doors: Doors;
   #route_key = '';
+  /** The way before this connection is not drawn yet. */
+  #trail_missing = false;
+  /** When it may be asked for. */
+  #trail_due_ms = 0;
+  #trail_again_ms = TRAIL_AGAIN_MS;
+  #trail_call = 0;
 
   constructor(doors: Doors) {
     this.#doors = doors;
@@ -66,7 +78,11 @@ export class Station {
     on_link: (link) => {
       const was_open = this.live.link.socket === 'open';
       this.live.link = link;
-      if (link.socket === 'open' && !was_open) void this.#fetch_past_events();
+      if (link.socket !== 'open' || was_open) return;
+      void this.#fetch_past_events();
+      this.#trail_missing = true;
+      this.#trail_due_ms = 0;
+      this.#trail_again_ms = TRAIL_AGAIN_MS;
     },
     on_hello: (capabilities) => {
       this.live.capabilities = capabilities;
@@ -74,6 +90,7 @@ export class Station {
     },
     on_vehicle: (vehicle) => {
       this.live.take(vehicle);
+      void this.#complete_trail();
       void this.#follow_route();
     },
     on_event: (event) => this.notices.event(event),
@@ -95,12 +112,11 @@ export class Station {
     this.follow = follow;
   }
 
-  /** Shows the edited mission, or the loaded one, or the robot. */
+  /** Shows the edited mission, or the loaded one, or the way so far. */
   fit(): void {
     const edited = spots(this.editor.plan);
     const points = edited.length > 0 ? edited : this.route ? spots(this.route) : [];
-    const at = this.live.robot?.at;
-    const all = points.length > 0 ? points : at ? [at] : [];
+    const all = points.length > 0 ? points : this.live.places;
     if (all.length === 0) return;
     this.set_follow(false);
     this.map.fit(all);
@@ -114,6 +130,27 @@ export class Station {
   async #fetch_past_events(): Promise<void> {
     const answer = await this.#doors.vehicle.recent_events();
     if (answer.ok) this.notices.past_events(answer.value.items);
+  }
+
+  /** Fetches what was driven while this page did not look. Begun by live messages, so that it can be
+   * had, and they go on from it. */
+  async #complete_trail(): Promise<void> {
+    const { tracks } = this.live;
+    const wanted = this.#trail_missing || tracks.full;
+    if (!wanted || performance.now() < this.#trail_due_ms) return;
+    this.#trail_due_ms = Infinity;
+    const call = (this.#trail_call += 1);
+    const answer = await this.#doors.vehicle.trail();
+    if (call !== this.#trail_call) return; // of the connection before: it knows less
+    this.#trail_missing = !answer.ok;
+    if (!answer.ok) {
+      this.#trail_due_ms = performance.now() + this.#trail_again_ms;
+      this.#trail_again_ms = Math.min(2 * this.#trail_again_ms, TRAIL_AT_LAST_MS);
+      return;
+    }
+    this.#trail_due_ms = performance.now() + TRAIL_RENEWED_MS;
+    tracks.restore(answer.value);
+    this.map.show_robot(this.live.robot, tracks);
   }
 
   /** The robot drives its own copy of one revision: fetch exactly that one. */
@@ -157,7 +194,7 @@ export class Station {
     $effect(() => map.set_mode(this.tab === 'plan' ? editor.map_mode : 'watch'));
     $effect(() => map.show_plan(editor.plan, editor.selected, editor.refused));
     $effect(() => map.show_route(this.route, live.vehicle?.mission.current_item ?? 0));
-    $effect(() => map.show_robot(live.robot, live.driven, live.fixes));
+    $effect(() => map.show_robot(live.robot, live.tracks));
     $effect(() => map.show_home(live.vehicle?.home ?? null));
   }
 }
