@@ -227,6 +227,10 @@ base::Result<void> Robot::Impl::handle(const SetHome& c) {
                       {{"/lat", "or /lon out of range"}});
   }
   if (!c.at && !pose) return base::fail(Code::Conflict, "the position is not known");
+  if (c.at && estimator.frame() && !within_reach(*c.at)) {
+    return base::fail(Code::Invalid, "home lies more than 10 km from the robot's map",
+                      {{"/lat", "or /lon lies more than 10 km from the robot's map"}});
+  }
   home = c.at ? *c.at : pose->global;
   home_is_chosen = true;
   event(Severity::Info, "home", "home was set");

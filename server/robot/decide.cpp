@@ -164,8 +164,13 @@ void Robot::Impl::tell_notices() {
 }
 
 std::optional<base::EnuPoint> Robot::Impl::home_point() const {
-  if (!home || !estimator.frame()) return std::nullopt;
+  if (!home || !estimator.frame() || !within_reach(*home)) return std::nullopt;
   return estimator.frame()->to_local(*home);
+}
+
+bool Robot::Impl::within_reach(base::LatLon at) const {
+  const double far_m = base::distance_bearing(estimator.frame()->origin(), at).distance_m;
+  return far_m <= base::LocalFrame::kReach_m;
 }
 
 /// Changes that an operator wants to find later.

@@ -118,7 +118,10 @@ struct Robot::Impl {
   void disarm(const std::string& why);
   void latch_estop(const std::string& who);
   void hold(const std::string& why);
+  /// Nothing where home is out of the map's reach.
   std::optional<base::EnuPoint> home_point() const;
+  /// Needs a frame.
+  bool within_reach(base::LatLon at) const;
   Facts facts() const;
 
   // decide.cpp

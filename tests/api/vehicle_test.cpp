@@ -104,8 +104,10 @@ TEST_F(VehicleApi, HomeIsHereOrThere) {
   const auto here = call("PUT", "/vehicle/home");
   EXPECT_EQ(here.status, 200u);
   EXPECT_NEAR(here.body["home"]["lat"], kStart.lat, 1e-5);
-  const auto there = call("PUT", "/vehicle/home", Json{{"lat", 58.5}, {"lon", 26.5}});
-  EXPECT_EQ(there.body["home"]["lat"], 58.5);
+  const auto there = call("PUT", "/vehicle/home", Json{{"lat", 58.4}, {"lon", 26.8}});
+  EXPECT_EQ(there.body["home"]["lat"], 58.4);
+  // Out of the map's reach: a return home would drive there.
+  EXPECT_EQ(call("PUT", "/vehicle/home", Json{{"lat", 0}, {"lon", 0}}).status, 422u);
   EXPECT_EQ(call("PUT", "/vehicle/home", Json{{"lat", 58.5}}).body["errors"][0]["pointer"], "/lon");
   EXPECT_EQ(call("PUT", "/vehicle/home", Json{{"lat", 91}, {"lon", 26.5}}).status, 422u);
 }

@@ -176,6 +176,7 @@ TEST(Commands, HomeIsHereOrWhereTheOperatorSays) {
   Field f;
   f.run(1.0);
   EXPECT_FALSE(f.ask(SetHome{base::LatLon{91.0, 0.0}}));
+  EXPECT_FALSE(f.ask(SetHome{base::LatLon{58.5, 26.8}}));  // out of the map's reach
   ASSERT_TRUE(f.ask(SetHome{base::LatLon{58.4, 26.8}}));
   f.run(8.0);
   ASSERT_TRUE(f.ask(Arm{}));
