@@ -14,6 +14,7 @@ using std::chrono::milliseconds;
 
 constexpr base::Duration kFuture = milliseconds(50);
 constexpr base::Duration kOdometryGone = milliseconds(300);
+constexpr base::Duration kGnssGone = milliseconds(2000);
 constexpr base::Duration kStandsAfter = milliseconds(500);
 constexpr double kStill_m = 0.0015;   // two counts of a millimetre odometer
 constexpr double kFastest_mps = 4.0;  // more is a damaged count, not a motion
@@ -126,7 +127,7 @@ void Estimator::advance(Time now) noexcept {
   if (dt_s <= 0.0) return;
   if (located_) {
     Eigen::Vector2d over_ground{0.0, 0.0};
-    if (velocity_ && now - velocity_->stamp < std::chrono::seconds(2)) {
+    if (velocity_ && now - velocity_->stamp < kGnssGone) {
       over_ground = {velocity_->east_mps, velocity_->north_mps};
     }
     predict_coasting(belief_, over_ground, dt_s, drift_);
@@ -141,8 +142,13 @@ void Estimator::advance(Time now) noexcept {
 std::optional<base::Pose> Estimator::pose(Time now) const {
   if (!located_ || !frame_ || !filter_at_) return std::nullopt;
   base::Pose p;
-  p.stamp = now;
   const bool odometry = has_odometry(now);
+  const bool gnss = last_fused_ && now - *last_fused_ < kGnssGone;
+  const bool velocity = velocity_ && now - velocity_->stamp < kGnssGone;
+  // Carried on from something fresh it is of now; from nothing it grows old.
+  const auto velocity_at = velocity_ ? std::optional(velocity_->stamp) : std::nullopt;
+  const auto last_word = std::max({tracks_at_, last_fused_, velocity_at});
+  p.stamp = odometry || gnss || velocity ? now : last_word.value_or(now);
   p.yaw_rad = belief_.x(kYaw);
   p.at = {belief_.x(kEast), belief_.x(kNorth)};
   if (odometry) {
@@ -154,7 +160,7 @@ std::optional<base::Pose> Estimator::pose(Time now) const {
     p.at.east_m += p.speed_mps * dt_s * std::cos(middle_rad);
     p.at.north_m += p.speed_mps * dt_s * std::sin(middle_rad);
     p.yaw_rad = base::wrap_rad(p.yaw_rad + p.yaw_rate_radps * dt_s);
-  } else if (velocity_ && now - velocity_->stamp < std::chrono::seconds(2)) {
+  } else if (velocity) {
     p.speed_mps = std::hypot(velocity_->east_mps, velocity_->north_mps);
   }
   p.global = frame_->to_global(p.at);
@@ -164,7 +170,6 @@ std::optional<base::Pose> Estimator::pose(Time now) const {
   p.horizontal_sigma_m = std::sqrt(std::max(0.0, 0.5 * (a + b) + std::hypot(0.5 * (a - b), c)));
   p.yaw_sigma_rad = heading_known_ ? std::sqrt(std::max(0.0, belief_.P(kYaw, kYaw))) : base::kPi;
   p.alt_msl_m = alt_msl_m_;
-  const bool gnss = last_fused_ && now - *last_fused_ < std::chrono::seconds(2);
   p.source = !odometry ? "gnss" : gnss ? "gnss+odometry" : "odometry";
   return p;
 }

@@ -289,6 +289,22 @@ TEST(Estimator, WorksWithAReceiverAloneAndSaysSo) {
   EXPECT_NEAR(d.pose()->speed_mps, 1.2, 0.1);
 }
 
+TEST(Estimator, APositionThatNothingCarriesOnGrowsOld) {
+  Drive d;
+  d.speed_mps = 0.8;
+  d.run(20.0);
+  EXPECT_EQ(d.pose()->stamp, d.now());
+  d.gnss = false;  // the tracks carry on
+  d.run(10.0);
+  EXPECT_EQ(d.pose()->stamp, d.now());
+  d.tracks = false;
+  d.run(3.0);
+  EXPECT_NEAR(base::seconds(d.now() - d.pose()->stamp), 3.0, 0.1);
+  d.gnss = true;
+  d.run(1.0);
+  EXPECT_EQ(d.pose()->stamp, d.now());
+}
+
 TEST(Estimator, RefusesAndCountsWhatCannotBe) {
   Drive d;
   d.run(3.0);
