@@ -374,7 +374,9 @@ TEST(Nmea, TheTimeOfDayPacesAReplay) {
   EXPECT_EQ(of(line("GNGGA,,,,,,0,00,99.99,,,,,,")), std::nullopt);
   EXPECT_EQ(of("$GNZDA,235959.95,31,12,2026,00,00*73\r\n"), std::nullopt);
   EXPECT_EQ(of("# a comment"), std::nullopt);
+  EXPECT_EQ(of("# $a comment"), std::nullopt);
   EXPECT_EQ(of("\r\n"), std::nullopt);
+  EXPECT_EQ(of("\xB5\x62\x01$\x07\xFF$GNZDA,235959.95,31,12,2026,00,00*72\r\n"), 86399.95);
 }
 
 }  // namespace
