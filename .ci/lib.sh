@@ -116,10 +116,15 @@ web_sources() {
   find "$root/web" -mindepth 1 -maxdepth 1 ! -name node_modules ! -name dist ! -name '.*'
 }
 
-build_web() {
-  local stamp=$build/page.stamp sources
+page_is_old() {
+  local sources
   mapfile -t sources < <(web_sources)
-  newer_than "$stamp" "${sources[@]}" "$root/server/api" || return 0
+  newer_than "$build/page.stamp" "${sources[@]}" "$root/server/api"
+}
+
+build_web() {
+  local stamp=$build/page.stamp
+  page_is_old || return 0
   need_web_packages
   need_node
   say "building the page"
@@ -146,18 +151,26 @@ ninja_build() {
     ninja -C "$folder" -j "$jobs" "$@"
 }
 
-# The two programs and the page. Nothing but a look at time stamps when nothing changed.
+product_is_old() {
+  newer_than "$build/product.stamp" "$root/server" "$root/drivers" "$root/migrations" \
+    "$root/CMakeLists.txt" "$build/page.stamp" || [ ! -x "$bin/roverd" ] || [ ! -x "$bin/roverd-sim" ]
+}
+
+# The two programs and the page. Nothing but a look at time stamps when nothing changed: whoever may
+# not write here may still start what others built.
 build_product() {
   local stamp=$build/product.stamp
-  mkdir -p "$build/logs"
+  page_is_old || product_is_old || return 0
+  if ! mkdir -p "$build/logs" 2>/dev/null || ! { : >>"$build/.lock"; } 2>/dev/null; then
+    die "cannot build: $(id -un) may not write in $build"
+  fi
   exec 9>"$build/.lock"
   flock -n 9 || {
     say "another build is running in $build; waiting for it"
     flock 9
   }
   build_web
-  if newer_than "$stamp" "$root/server" "$root/drivers" "$root/migrations" "$root/CMakeLists.txt" \
-    "$build/page.stamp" || [ ! -x "$bin/roverd" ] || [ ! -x "$bin/roverd-sim" ]; then
+  if product_is_old; then
     touch "$stamp.new"
     configure "$build" -DCMAKE_BUILD_TYPE=Release
     say "building roverd and roverd-sim"
