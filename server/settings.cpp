@@ -176,8 +176,8 @@ Result<std::vector<Entry>> read_profile(const std::filesystem::path& config,
   const bool plain = !vehicle.empty() && vehicle.find_first_of("/\\.") == std::string::npos;
   const auto file = folder / (vehicle + ".toml");
   if (!plain || !std::filesystem::exists(file)) {
-    return base::fail(base::Code::NotFound,
-                      "unknown vehicle \"" + vehicle + "\"; known: " + known_vehicles(folder));
+    return base::fail(base::Code::NotFound, "unknown vehicle \"" + vehicle + "\"; known in " +
+                                                folder.string() + ": " + known_vehicles(folder));
   }
   return read_file(file);
 }
