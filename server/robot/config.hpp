@@ -2,9 +2,11 @@
 // Everything the robot may be told, section by section. sections() lists the structs under the
 // names they have in the configuration file; each struct lists its fields (base/params.hpp).
 
+#include <algorithm>
+
 #include "nav/behave/params.hpp"
 #include "nav/estimate/params.hpp"
-#include "nav/track/params.hpp"
+#include "nav/track/path.hpp"
 
 namespace roverd::robot {
 
@@ -88,6 +90,13 @@ struct Config {
   ManualParams manual;
   SafetyParams safety;
   ArmingParams arming;
+
+  /// What following a path needs; the vehicle goes no faster than it can.
+  nav::PathParams path() const {
+    nav::PathParams p{track, speed, pivot, vehicle};
+    p.speed.max_mps = std::min(speed.max_mps, vehicle.max_speed_mps);
+    return p;
+  }
 };
 
 template <class V>

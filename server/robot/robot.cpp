@@ -13,7 +13,7 @@ using base::Severity;
 Robot::Impl::Impl(Config c)
     : config(c),
       estimator(config.estimate),
-      executor({config.track, config.speed, config.pivot}, config.behave),
+      executor(config.path(), config.behave),
       manual(config.manual) {
   measurement_batch.reserve(256);
   command_batch.reserve(64);
@@ -74,7 +74,7 @@ base::Result<std::shared_ptr<const CompiledMission>> Robot::compile(MissionCopy 
                       {{"/items", "the mission has no waypoint"}});
   }
   const Config& c = impl_->config;
-  auto route = nav::lay_route(copy.plan, *frame, {c.track, c.speed, c.pivot});
+  auto route = nav::lay_route(copy.plan, *frame, c.path());
   if (!route) return tl::unexpected(std::move(route.error()));
   return std::make_shared<const CompiledMission>(
       CompiledMission{std::move(copy), *frame, std::move(*route)});
@@ -107,7 +107,7 @@ base::Result<Preview> Robot::preview(const StartMission& start) const {
     p.speed_mps = route.forth.nodes[route.forth.steps[i].node].speed_mps;
     break;
   }
-  p.speed_mps = std::min(p.speed_mps, impl_->config.speed.max_mps);
+  p.speed_mps = std::min(p.speed_mps, impl_->config.path().speed.max_mps);
   if (const auto target = nav::first_target(route, step, home)) {
     p.first_target = mission->frame.to_global(*target);
     if (state && state->pose) {

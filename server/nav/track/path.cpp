@@ -4,17 +4,14 @@
 #include <cmath>
 
 #include "base/angle.hpp"
+#include "nav/track/corner.hpp"
 
 namespace roverd::nav {
 namespace {
 
 using base::rad_from_deg;
-using mission::Turn;
 
 constexpr double kSame_m = 0.001;
-const double kStraight_rad = rad_from_deg(2.0);
-const double kArcLimit_rad = rad_from_deg(150.0);
-const double kAligned_rad = rad_from_deg(5.0);
 constexpr double kArcStep_m = 0.10;
 const double kArcStep_rad = rad_from_deg(8.0);
 
@@ -25,14 +22,6 @@ double direction_rad(EnuPoint from, EnuPoint to) noexcept {
 EnuPoint along(EnuPoint from, double yaw_rad, double by_m) noexcept {
   return {from.east_m + by_m * std::cos(yaw_rad), from.north_m + by_m * std::sin(yaw_rad)};
 }
-
-struct Corner {
-  double deflection_rad = 0.0;  ///< left positive
-  bool stop = false;
-  bool pivot = false;     ///< the stop is for turning on the spot
-  double radius_m = 0.0;  ///< 0: not rounded
-  double tangent_m = 0.0;
-};
 
 /// The distinct vertices and where each given one went.
 struct Distinct {
@@ -53,48 +42,6 @@ Distinct distinct(std::span<const Vertex> vertices) {
     d.of.push_back(d.vertices.size() - 1);
   }
   return d;
-}
-
-/// How far off the robot may point when it leaves a stop without turning on the spot first.
-double align_rad(const Vertex& at, bool pivot_corner, const PivotParams& p) noexcept {
-  if (pivot_corner || at.turn == Turn::Pivot) return kAligned_rad;
-  const bool arc = at.turn == Turn::Arc || at.turn == Turn::Through;
-  return arc ? kArcLimit_rad : rad_from_deg(p.angle_deg);
-}
-
-bool pivots(Turn turn, double angle_rad, const PivotParams& p) noexcept {
-  switch (turn) {
-    case Turn::Pivot:
-      return true;
-    case Turn::Auto:
-      return angle_rad > rad_from_deg(p.angle_deg);
-    case Turn::Arc:
-    case Turn::Through:
-      return angle_rad > kArcLimit_rad;
-  }
-  return true;
-}
-
-/// @param v three vertices in a row. Source of the fillet: R = d/(1/cos(θ/2) − 1), T = R·tan(θ/2).
-Corner corner(std::span<const Vertex, 3> v, const PivotParams& pivot) noexcept {
-  Corner c;
-  c.deflection_rad =
-      base::angle_diff_rad(direction_rad(v[0].at, v[1].at), direction_rad(v[1].at, v[2].at));
-  const double angle = std::abs(c.deflection_rad);
-  c.stop = v[1].stop || v[1].reverse != v[2].reverse;
-  if (c.stop || angle < kStraight_rad) return c;
-  c.stop = c.pivot = pivots(v[1].turn, angle, pivot);
-  if (c.stop) return c;
-  const double room_m =
-      0.45 * std::min(base::distance_m(v[0].at, v[1].at), base::distance_m(v[1].at, v[2].at));
-  const double half_tan = std::tan(0.5 * angle);
-  c.radius_m = v[1].deviation_m / (1.0 / std::cos(0.5 * angle) - 1.0);
-  c.tangent_m = c.radius_m * half_tan;
-  if (c.tangent_m > room_m) {
-    c.tangent_m = room_m;
-    c.radius_m = room_m / half_tan;
-  }
-  return c;
 }
 
 class Builder {
@@ -121,18 +68,40 @@ class Builder {
     path_.points.push_back(p);
   }
 
-  /// The rounded corner at v, from tangent point to tangent point. @return s of its middle.
+  /// The arcs at v, from tangent point to tangent point. @return s at which v counts as passed.
   double round(const Vertex& v, const Vertex& next, double yaw_in, const Corner& c) {
-    const double turn = c.deflection_rad;
-    const double side = turn > 0.0 ? 1.0 : -1.0;
     const EnuPoint begin = along(v.at, yaw_in, -c.tangent_m);
-    const EnuPoint centre = along(begin, yaw_in + side * base::kPi / 2.0, c.radius_m);
-    const double pieces = std::ceil(
-        std::max({2.0, std::abs(turn) / kArcStep_rad, std::abs(turn) * c.radius_m / kArcStep_m}));
+    const double turn = c.deflection_rad + c.swing_rad;
+    add(begin, turn > 0.0 ? 1.0 / c.radius_m : -1.0 / c.radius_m, v);
+    const double middle_m = arc({begin, yaw_in}, turn, c, v, next);
+    if (c.swing_rad == 0.0) return middle_m;
+    // Passed where the first arc is nearest to the corner, which is not its middle.
+    const double nearest_m = path_.points.back().s_m - std::abs(turn) * c.radius_m +
+                             std::atan2(c.tangent_m, c.radius_m) * c.radius_m;
+    const Place out{path_.points.back().at, yaw_in + turn};
+    path_.points.back().curvature_1pm = (turn > 0.0 ? -1.0 : 1.0) / c.radius_m;
+    arc(out, -c.swing_rad, c, next, next);
+    return nearest_m;
+  }
+
+ private:
+  struct Place {
+    EnuPoint at;
+    double yaw_rad;
+  };
+
+  /// Points of an arc after its first, which is there already. The limits of `v` hold in its first
+  /// half, those of `next` then. @return s of its middle.
+  double arc(const Place& from, double turn_rad, const Corner& c, const Vertex& v,
+             const Vertex& next) {
+    const double side = turn_rad > 0.0 ? 1.0 : -1.0;
+    const EnuPoint centre = along(from.at, from.yaw_rad + side * base::kPi / 2.0, c.radius_m);
+    const double pieces = std::ceil(std::max(
+        {2.0, std::abs(turn_rad) / kArcStep_rad, std::abs(turn_rad) * c.radius_m / kArcStep_m}));
     const int n = 2 * static_cast<int>(std::min(200.0, std::ceil(pieces / 2.0)));
     double middle_m = 0.0;
-    for (int i = 0; i <= n; ++i) {
-      const double angle = yaw_in - side * base::kPi / 2.0 + turn * i / n;
+    for (int i = 1; i <= n; ++i) {
+      const double angle = from.yaw_rad - side * base::kPi / 2.0 + turn_rad * i / n;
       const bool last = i == n;
       add(along(centre, angle, c.radius_m), last ? 0.0 : side / c.radius_m, i * 2 < n ? v : next);
       if (i * 2 == n) middle_m = path_.points.back().s_m;
@@ -140,7 +109,6 @@ class Builder {
     return middle_m;
   }
 
- private:
   double item_mps(const Vertex& v) const noexcept {
     const SpeedParams& s = params_.speed;
     return std::clamp(v.speed_mps, s.min_mps, v.reverse ? s.reverse_max_mps : s.max_mps);
@@ -213,12 +181,12 @@ Path build_path(std::span<const Vertex> given, const PathParams& params) {
     Builder builder(params, path);
     path.points.reserve(v.size() * 2);
     std::size_t leg_first = 0;
-    double align = align_rad(v[0], false, params.pivot);
+    double align = align_rad(v[0], false, params);
     builder.add(v[0].at, 0.0, v[1]);
     for (std::size_t i = 1; i < v.size(); ++i) {
       const bool last = i + 1 == v.size();
       Corner c;
-      if (!last) c = corner(std::span<const Vertex, 3>(&v[i - 1], 3), params.pivot);
+      if (!last) c = corner_at(std::span<const Vertex, 3>(&v[i - 1], 3), params);
       if (c.radius_m > 0.0) {
         passed_m[i] = builder.round(v[i], v[i + 1], direction_rad(v[i - 1].at, v[i].at), c);
         continue;
@@ -230,7 +198,7 @@ Path build_path(std::span<const Vertex> given, const PathParams& params) {
       path.legs.push_back(
           {leg_first, end, v[i].reverse, path.points[leg_first].s_m, path.points[end].s_m, align});
       leg_first = end;
-      align = align_rad(v[i], c.pivot, params.pivot);
+      align = align_rad(v[i], c.pivot, params);
     }
     brake_in_time(path, params.speed);
   }

@@ -85,13 +85,15 @@ struct PathParams {
   TrackParams track;
   SpeedParams speed;
   PivotParams pivot;
+  VehicleParams vehicle{};
 };
 
 /// Vertices nearer than 1 mm to each other are one. Fewer than two different ones: a path without
 /// legs. A corner is
 ///   straight on below 2°, rounded with radius d/(1/cos(θ/2) − 1) up to the pivot angle (always for
 ///   turn arc and through, as far as the neighbours leave room), else a stop with a turn on the
-///   spot. An arc cannot reverse: above 150° it is a pivot as well.
+///   spot. An arc cannot reverse: above 150° it is a pivot as well. A steered vehicle never turns
+///   on the spot; what is too sharp for it becomes a swing (nav/track/corner.hpp).
 /// Speed limits: item, bends (√(a/κ) and 0.7·w/κ), and braking for what follows.
 /// Pure; any finite points. Time and memory linear.
 Path build_path(std::span<const Vertex> vertices, const PathParams& params);

@@ -14,6 +14,7 @@ using base::rad_from_deg;
 constexpr double kStill_mps = 0.03;
 constexpr double kStill_radps = 0.06;
 constexpr double kStillFor_s = 0.1;
+constexpr double kTightest_1pm = 1.0 / 0.25;
 constexpr double kNear_m = 0.3;  // closer to the path, its direction counts, not that of a target
 const double kAstray_rad = rad_from_deg(60.0);
 constexpr double kAstrayFor_s = 0.3;
@@ -37,7 +38,7 @@ void Tracker::begin(const Path& path, std::size_t leg, double s_m) noexcept {
 void Tracker::reset() noexcept {
   path_ = nullptr;
   phase_ = TrackPhase::Idle;
-  speed_mps_ = rate_radps_ = 0.0;
+  speed_mps_ = rate_radps_ = curvature_1pm_ = 0.0;
   sent_.fill({});
 }
 
@@ -207,6 +208,20 @@ SpeedLimit Tracker::profile(double s_m) const noexcept {
   return limit;
 }
 
+/// What the vehicle can do of the wanted curvature. A steered one cannot turn on the spot: with the
+/// target behind it, it goes round with full lock, to the side on which the target lies.
+double Tracker::steer(double wanted_1pm, BodyPoint target, double dt_s) noexcept {
+  const VehicleParams& car = params_.vehicle;
+  if (!car.steered()) return std::clamp(wanted_1pm, -kTightest_1pm, kTightest_1pm);
+  const double lock = std::tan(rad_from_deg(car.max_steering_deg)) / car.wheelbase_m;
+  if (target.x_m < 0.0) wanted_1pm = std::copysign(lock, target.y_m);
+  // d tan(δ)/dt is at least dδ/dt: cautious near full lock.
+  const double step = rad_from_deg(car.max_steering_rate_dps) / car.wheelbase_m * dt_s;
+  wanted_1pm = std::clamp(wanted_1pm, -lock, lock);
+  curvature_1pm_ += std::clamp(wanted_1pm - curvature_1pm_, -step, step);
+  return curvature_1pm_;
+}
+
 TrackOutput Tracker::follow(const Vehicle& v, double limit_mps, double dt_s) noexcept {
   const Leg& leg = leg_now();
   const SpeedParams& p = params_.speed;
@@ -236,8 +251,7 @@ TrackOutput Tracker::follow(const Vehicle& v, double limit_mps, double dt_s) noe
     phase_ = TrackPhase::Settle;
     return settle(v, dt_s);
   }
-  const double most_1pm = 1.0 / 0.25;
-  const double curvature = std::clamp(arc_curvature_1pm(target), -most_1pm, most_1pm);
+  const double curvature = steer(arc_curvature_1pm(target), target, dt_s);
 
   SpeedLimit limit = profile(s_m_);
   const double sigma_limit = rad_from_deg(p.heading_sigma_deg);
@@ -256,7 +270,10 @@ TrackOutput Tracker::follow(const Vehicle& v, double limit_mps, double dt_s) noe
   if (speed > from && speed < limit.mps) limit.reason = SpeedReason::Accel;
   const double signed_speed = leg.reverse ? -speed : speed;
   const double turn_step = p.yaw_accel_radps2 * dt_s;
-  const double rate = slew(rate_radps_, speed * curvature, turn_step, turn_step);
+  const double wanted = speed * curvature;
+  const double rate = params_.vehicle.steered()
+                          ? wanted  // the wheels' angle was limited, and the speed is
+                          : slew(rate_radps_, wanted, turn_step, turn_step);
   return command(v, signed_speed, rate, limit.reason);
 }
 

@@ -82,6 +82,7 @@ class Tracker {
   /// Ground twist to command, with saturation: steering first, speed gives way.
   TrackOutput command(const Vehicle& v, double speed_mps, double rate_radps,
                       SpeedReason reason) noexcept;
+  double steer(double wanted_1pm, BodyPoint target, double dt_s) noexcept;
   bool still(const Vehicle& v, double dt_s) noexcept;
 
   PathParams params_;
@@ -94,8 +95,9 @@ class Tracker {
   double still_s_ = 0.0;
   double astray_s_ = 0.0;
   bool creeping_ = false;
-  double speed_mps_ = 0.0;   ///< last commanded over ground
-  double rate_radps_ = 0.0;  ///< likewise
+  double speed_mps_ = 0.0;      ///< last commanded over ground
+  double rate_radps_ = 0.0;     ///< likewise
+  double curvature_1pm_ = 0.0;  ///< steered vehicles: where the wheels were told to point
 
   std::array<base::BodyTwist, 64> sent_{};  ///< ground twists, newest at sent_at_
   std::size_t sent_at_ = 0;
