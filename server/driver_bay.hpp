@@ -15,8 +15,7 @@
 #include "base/measurements.hpp"
 #include "base/result.hpp"
 #include "base/time.hpp"
-#include "bunker/driver.hpp"
-#include "gnss/driver.hpp"
+#include "devices.hpp"
 #include "options.hpp"
 #include "settings.hpp"
 
@@ -24,9 +23,8 @@ namespace roverd {
 
 class DriverBay {
  public:
-  using OnMeasurement = std::function<void(const base::Measurement&)>;
-
-  /// Errors: a link address that cannot be read, a recording that cannot be opened or written.
+  /// Errors: a link address that cannot be read, a recording that cannot be opened or written, two
+  /// drivers that both want to move the vehicle.
   /// @param on_measurement called on the device thread.
   static base::Result<std::unique_ptr<DriverBay>> make(const Settings& settings,
                                                        const Options& options,
@@ -40,21 +38,25 @@ class DriverBay {
   void stop();
   /// Control thread; never waits. Does nothing without a base.
   void send(const base::DriveCommand& command, base::Time now) noexcept;
+  /// Any thread. Closes and opens the driver anew, soon. Errors: NotFound.
+  base::Result<void> restart(const std::string& name);
 
   std::vector<std::string> names() const;
 
  private:
-  DriverBay() = default;
-  void add_bunker(const Settings& settings, const Options& options, const OnMeasurement& sink);
-  void add_gnss(const Settings& settings, const Options& options, const OnMeasurement& sink);
+  DriverBay(Settings settings, Options options)
+      : settings_(std::move(settings)), options_(std::move(options)) {}
+  void each(const std::function<void(const Device&, base::Time)>& act) const;
   void tick_soon();
 
+  const Settings settings_;
+  const Options options_;
   boost::asio::io_context io_{1};
   boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{
       io_.get_executor()};
   boost::asio::steady_timer timer_{io_};
-  std::unique_ptr<bunker::Driver> bunker_;
-  std::unique_ptr<gnss::Driver> gnss_;
+  std::vector<Device> devices_;   ///< not changed after make()
+  const Device* base_ = nullptr;  ///< the one that moves the vehicle
   std::thread thread_;
 };
 

@@ -125,12 +125,15 @@ Result<void> set_tiles(Settings& settings, std::string_view name, const ParamVal
 Sections sections_of(Settings& s) {
   Sections out{
       {"server", section(s.server)},
-      {"vehicle", section(s.vehicle)},
+      {"vehicle", section(s.vehicle, s.robot.vehicle)},
       {"recording", section(s.recording)},
-      {"drivers.bunker", section(s.bunker_wiring, s.bunker)},
-      {"drivers.gnss", section(s.gnss_wiring, s.gnss)},
       {"tiles", [&s](std::string_view name, const ParamValue& v) { return set_tiles(s, name, v); }},
   };
+  drivers(
+      [&out](const std::string& name, auto& driver) {
+        out.emplace("drivers." + name, section(driver.wiring, driver.params));
+      },
+      s);
   Collect collect{out};
   robot::sections(collect, s.robot);
   return out;

@@ -28,13 +28,14 @@ void fields(V& v, ServerSettings& p) {
   v("log_level", p.log_level, "debug, info, warning or error");
 }
 
-/// What a person must know of the vehicle; served as GET /vehicle/capabilities.
+/// What a person must know of the vehicle; served as GET /vehicle/capabilities. What limits its
+/// motion stands in the same section [vehicle]: nav::VehicleParams.
 struct VehicleSettings {
   std::string name = "bunker";
   std::string title = "AgileX Bunker";
-  std::string kinematics = "skid_steer";
   double length_m = 1.023;
   double width_m = 0.778;
+  double height_m = 0.4;
   double mass_kg = 150.0;
 };
 
@@ -42,24 +43,31 @@ template <class V>
 void fields(V& v, VehicleSettings& p) {
   v("name", p.name, "short name, as in --vehicle");
   v("title", p.title, "name for people");
-  v("kinematics", p.kinematics, "skid_steer");
   v("length_m", p.length_m, 0.1, 10.0, "over everything");
   v("width_m", p.width_m, 0.1, 5.0, "over everything");
+  v("height_m", p.height_m, 0.05, 5.0, "over everything");
   v("mass_kg", p.mass_kg, 0.5, 10'000.0, "unladen");
 }
 
 /// A driver's own wiring; its parameters are in the driver's struct.
 struct DriverWiring {
-  bool enabled = true;
+  bool enabled = false;
   std::string link;
 };
 
 template <class V>
 void fields(V& v, DriverWiring& p) {
-  v("enabled", p.enabled, "false: the device is not there");
+  v("enabled", p.enabled, "true: the device is there");
   v("link", p.link,
     "can:IFACE, cansock:PATH, serial:DEVICE:BAUD, tcp:HOST:PORT, udp:PORT, replay:FILE");
 }
+
+/// A driver with its parameters: section [drivers.NAME].
+template <class P>
+struct Wired {
+  DriverWiring wiring;
+  P params;
+};
 
 struct RecordingSettings {
   bool enabled = false;
@@ -74,13 +82,18 @@ struct Settings {
   ServerSettings server;
   VehicleSettings vehicle;
   RecordingSettings recording;
-  DriverWiring bunker_wiring{true, "can:can0"};
-  DriverWiring gnss_wiring{true, "serial:/dev/ttyACM0:115200"};
-  bunker::Params bunker;
-  gnss::Params gnss;
+  Wired<bunker::Params> bunker;
+  Wired<gnss::Params> gnss;
   robot::Config robot;
   std::map<std::string, std::filesystem::path> tiles;  ///< set name → MBTiles file
 };
+
+/// Calls v(name, wired) for every driver that there is.
+template <class V>
+void drivers(V&& v, Settings& s) {
+  v("bunker", s.bunker);
+  v("gnss", s.gnss);
+}
 
 struct SettingsSource {
   std::filesystem::path config;        ///< the config file

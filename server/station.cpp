@@ -36,12 +36,12 @@ api::Profile profile_of(const Settings& s, const std::vector<std::string>& drive
   api::Profile profile;
   profile.name = s.vehicle.name;
   profile.title = s.vehicle.title;
-  profile.kinematics = s.vehicle.kinematics;
+  profile.kinematics = s.robot.vehicle.kinematics;
   profile.length_m = s.vehicle.length_m;
   profile.width_m = s.vehicle.width_m;
   profile.mass_kg = s.vehicle.mass_kg;
-  profile.max_speed_mps = std::min(s.bunker.max_linear_mps, s.robot.speed.max_mps);
-  profile.max_yaw_rate_radps = s.bunker.max_angular_radps;
+  profile.max_speed_mps = std::min(s.robot.vehicle.max_speed_mps, s.robot.speed.max_mps);
+  profile.max_yaw_rate_radps = s.robot.speed.max_yaw_rate_radps;
   profile.max_acceleration_mps2 = s.robot.speed.accel_mps2;
   profile.pivot_angle_rad = base::rad_from_deg(s.robot.pivot.angle_deg);
   profile.modes = {base::Mode::Manual, base::Mode::Hold, base::Mode::Auto};

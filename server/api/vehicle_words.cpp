@@ -124,7 +124,7 @@ Json battery_json(const base::Snapshot& s, base::Time now) {
               {"temperature_c", nullptr},
               {"fault", s.base ? Json(s.base->battery_fault) : Json(nullptr)}};
   std::optional<base::Time> stamp = stamp_of(s.base);
-  if (s.base) out["battery_v"] = rounded(s.base->battery_v, kPlaces2);
+  if (s.base && s.base->battery_v) out["battery_v"] = rounded(*s.base->battery_v, kPlaces2);
   if (s.battery) {
     stamp = s.battery->stamp;
     out["battery_v"] = rounded(s.battery->voltage_v, kPlaces2);

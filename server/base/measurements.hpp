@@ -3,6 +3,8 @@
 // arrived (device units die in the codecs). An unknown value is an empty optional, never zero.
 
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -62,6 +64,13 @@ struct WheelTravel {
 struct BaseMotion {
   Time stamp;
   BodyTwist twist;
+  bool assumed = false;  ///< the base tells nothing: this is what it was told to do
+};
+
+/// Angle of the (virtual middle) front wheel as the vehicle reports it, left positive.
+struct SteeringState {
+  Time stamp;
+  double wheel_rad = 0.0;
 };
 
 enum class VehicleState { Normal, Estop, Exception, Unknown };
@@ -73,7 +82,7 @@ struct BaseStatus {
   Time stamp;
   VehicleState vehicle_state = VehicleState::Unknown;
   ControlMode control_mode = ControlMode::Unknown;
-  double battery_v = 0.0;
+  std::optional<double> battery_v;
   std::uint16_t error_code = 0;
   std::vector<std::string> errors;  ///< error bits in words
   bool radio_lost = false;
@@ -86,6 +95,37 @@ struct BatteryState {
   double voltage_v = 0.0;
   std::optional<double> current_a;
   std::optional<double> temperature_c;
+  std::vector<std::string> alarms{};  ///< in words
+};
+
+/// One motor of the base, counted from 1. What its frames have not told yet is empty.
+struct MotorState {
+  Time stamp;
+  int motor = 0;
+  std::optional<double> speed_rpm;
+  std::optional<double> current_a;
+  std::optional<std::int32_t> encoder_pulses;
+  std::optional<double> supply_v;
+  std::optional<double> driver_temperature_c;
+  std::optional<double> motor_temperature_c;
+  std::vector<std::string> faults;  ///< in words
+};
+
+/// The base's lights. Modes: 0 off, 1 on, 2 breathing, 3 own brightness.
+struct LightState {
+  Time stamp;
+  bool commanded = false;  ///< the computer decides, not the base
+  int front_mode = 0;
+  int front_pct = 0;
+  int rear_mode = 0;
+  int rear_pct = 0;
+};
+
+/// Contact switches around the robot.
+struct Bumper {
+  Time stamp;
+  bool pressed = false;
+  std::string where;  ///< "front left"; empty where the device does not tell
 };
 
 enum class Switch { Unknown, Up, Middle, Down };
@@ -110,6 +150,16 @@ struct RadioState {
 enum class DriverPhase { Down, Opening, Up, Faulty };
 std::string_view to_string(DriverPhase p) noexcept;  // down opening up faulty
 
+/// What a driver counts and finds, in words for people. Immutable once told.
+struct DriverDetail {
+  std::map<std::string, std::uint64_t> counts;  ///< refusals by cause: "0x221 too short"
+  std::map<std::string, double> rates_hz;       ///< by message: "0x221"
+  std::map<std::string, std::string> facts;     ///< "protocol": "V2", "can_state": "error active"
+  /// Dangers that this driver alone can see ("somebody else sends 0x111"). While one is listed the
+  /// robot does not move.
+  std::vector<std::string> hazards;
+};
+
 struct DriverStatus {
   Time stamp;
   std::string name;
@@ -118,11 +168,15 @@ struct DriverStatus {
   std::uint64_t received = 0;  ///< frames or sentences understood
   std::uint64_t refused = 0;   ///< damaged, out of range
   std::uint64_t sent = 0;
-  std::optional<Time> last_received;
+  std::optional<Time> last_received{};
+  std::uint64_t restarts = 0;                    ///< on request
+  std::string link{};                            ///< address
+  std::shared_ptr<const DriverDetail> detail{};  ///< may be null
 };
 
 using Measurement = std::variant<GnssFix, GnssVelocity, Heading, WheelTravel, BaseMotion,
-                                 BaseStatus, BatteryState, RadioState, DriverStatus>;
+                                 SteeringState, BaseStatus, BatteryState, MotorState, LightState,
+                                 RadioState, Bumper, DriverStatus>;
 
 inline Time stamp_of(const Measurement& m) noexcept {
   return std::visit([](const auto& value) { return value.stamp; }, m);

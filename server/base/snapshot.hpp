@@ -109,7 +109,11 @@ struct Snapshot {
   std::optional<GnssVelocity> gnss_velocity;
   std::optional<BaseStatus> base;
   std::optional<BaseMotion> motion;
+  std::optional<SteeringState> steering;
   std::optional<BatteryState> battery;
+  std::vector<MotorState> motors;  ///< by number
+  std::optional<LightState> lights;
+  std::optional<Bumper> bumper;
   std::optional<RadioState> radio;
   std::vector<DriverStatus> drivers;
 

@@ -79,6 +79,7 @@ void fields(V& v, ArmingParams& p) {
 }
 
 struct Config {
+  nav::VehicleParams vehicle;  ///< section [vehicle], beside what only people need
   nav::EstimateParams estimate;
   nav::TrackParams track;
   nav::SpeedParams speed;

@@ -48,7 +48,11 @@ bool Robot::Impl::publish() {
   s->gnss_velocity = world.gnss_velocity;
   s->base = world.base;
   s->motion = world.motion;
+  s->steering = world.steering;
   s->battery = world.battery;
+  s->motors = world.motors;
+  s->lights = world.lights;
+  s->bumper = world.bumper;
   s->radio = world.radio;
   s->drivers = world.drivers;
   s->mission = progress();

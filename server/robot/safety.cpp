@@ -38,6 +38,7 @@ class Assessor {
     const bool radio = radio_drives(w, p_, now_);
     if (f_.estop) add(Response::Stop, "estop", "emergency stop is latched");
     base_state();
+    hazards();
     if (radio) add(Response::None, "radio_control", "the radio drives");
     if (!radio && w.base_heard) {
       const std::string trouble = radio_trouble(w, p_, now_);
@@ -84,6 +85,15 @@ class Assessor {
       case VehicleState::Unknown:
         add(Response::Hold, "base_exception", "the base is in a state unknown to this program");
         break;
+    }
+  }
+
+  void hazards() {
+    for (const base::DriverStatus& driver : f_.world.drivers) {
+      if (!driver.detail) continue;
+      for (const std::string& hazard : driver.detail->hazards) {
+        add(Response::Hold, "driver_hazard", driver.name + ": " + hazard);
+      }
     }
   }
 

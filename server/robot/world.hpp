@@ -1,6 +1,7 @@
 #pragma once
 // The newest of everything the drivers said, and since when. Control thread only.
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -16,7 +17,11 @@ struct World {
   std::optional<base::GnssVelocity> gnss_velocity;
   std::optional<base::BaseStatus> base;
   std::optional<base::BaseMotion> motion;
+  std::optional<base::SteeringState> steering;
   std::optional<base::BatteryState> battery;
+  std::vector<base::MotorState> motors;
+  std::optional<base::LightState> lights;
+  std::optional<base::Bumper> bumper;
   std::optional<base::RadioState> radio;
   std::vector<base::DriverStatus> drivers;
 
@@ -24,6 +29,8 @@ struct World {
   std::optional<Time> radio_counted;         ///< when the radio's counter last changed
   std::optional<Time> gnss_good_since;       ///< usable fixes without a gap from then on
   std::optional<Time> base_heard;            ///< any word from it
+
+  static constexpr int kMotors = 8;
 
   void take(base::Measurement&& m) {
     std::visit([this](auto&& value) { put(std::move(value)); }, std::move(m));
@@ -47,12 +54,25 @@ struct World {
     base = std::move(m);
   }
   void put(base::BaseMotion&& m) {
-    base_heard = m.stamp;
+    if (!m.assumed) base_heard = m.stamp;
     motion = m;
   }
   void put(base::WheelTravel&& m) { base_heard = m.stamp; }
   void put(base::Heading&&) {}
-  void put(base::BatteryState&& m) { battery = m; }
+  void put(base::SteeringState&& m) { steering = m; }
+  void put(base::BatteryState&& m) { battery = std::move(m); }
+  void put(base::MotorState&& m) {
+    if (m.motor < 1 || m.motor > kMotors) return;
+    const auto at = std::find_if(motors.begin(), motors.end(),
+                                 [&](const base::MotorState& k) { return k.motor >= m.motor; });
+    if (at != motors.end() && at->motor == m.motor) {
+      *at = std::move(m);
+    } else {
+      motors.insert(at, std::move(m));
+    }
+  }
+  void put(base::LightState&& m) { lights = m; }
+  void put(base::Bumper&& m) { bumper = std::move(m); }
   void put(base::RadioState&& m) {
     if (m.swb != base::Switch::Unknown) swb = m.swb;
     if (!radio || radio->count != m.count) radio_counted = m.stamp;

@@ -1,7 +1,33 @@
 #pragma once
-// How the robot follows a path. Sections [nav.track], [nav.speed] and [nav.pivot].
+// How the robot follows a path. Sections [vehicle], [nav.track], [nav.speed] and [nav.pivot].
+
+#include <string>
 
 namespace roverd::nav {
+
+/// How the vehicle can move. The words of `kinematics`:
+///   skid_steer    tracks or wheels driven by side, slip in every turn; turns on the spot
+///   differential  two driven wheels; turns on the spot
+///   ackermann     steered front wheels: no turn is narrower than the steering allows
+struct VehicleParams {
+  std::string kinematics = "skid_steer";
+  double wheelbase_m = 1.0;
+  double max_speed_mps = 1.5;
+  double max_steering_deg = 40.0;
+  double max_steering_rate_dps = 30.0;
+
+  bool steered() const noexcept { return kinematics == "ackermann"; }
+};
+
+template <class V>
+void fields(V& v, VehicleParams& p) {
+  v("kinematics", p.kinematics, "skid_steer, differential or ackermann");
+  v("wheelbase_m", p.wheelbase_m, 0.1, 10.0, "ackermann: between the axles");
+  v("max_speed_mps", p.max_speed_mps, 0.1, 20.0, "the vehicle goes no faster, whatever is asked");
+  v("max_steering_deg", p.max_steering_deg, 1.0, 80.0, "ackermann: of the middle front wheel");
+  v("max_steering_rate_dps", p.max_steering_rate_dps, 1.0, 720.0,
+    "ackermann: how fast that angle changes");
+}
 
 struct TrackParams {
   double lookahead_min_m = 0.6;

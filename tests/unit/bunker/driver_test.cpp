@@ -152,7 +152,7 @@ TEST_F(BunkerDriverTest, TellsStateMotionAndBattery) {
   EXPECT_EQ(base.stamp, now);
   EXPECT_EQ(base.vehicle_state, VehicleState::Estop);
   EXPECT_EQ(base.control_mode, ControlMode::Can);
-  EXPECT_DOUBLE_EQ(base.battery_v, 48.0);
+  EXPECT_DOUBLE_EQ(base.battery_v.value(), 48.0);
   EXPECT_EQ(base.error_code, 7);
   EXPECT_EQ(base.errors.size(), 3u);
   EXPECT_EQ(base.errors.at(2), "radio transmitter signal lost");
