@@ -20,7 +20,7 @@ declare -A titles=(
   [build]="release build without warnings"
   [unit]="rooms, and the loop in simulated time"
   [api]="the API over real sockets"
-  [command]="./run: options, bad input, Ctrl-C, second start"
+  [command]="./run: options, bad input, Ctrl-C, second start; roverd decode"
   [real]="recordings and mission files from the field"
   [can]="a real CAN interface in the user-mode kernel"
   [page]="the page in a browser, against the simulated robot"
@@ -102,7 +102,12 @@ step_unit() { run_ctest "$build" 'unit|loop' "$logs/unit" -j "$jobs"; }
 
 step_api() { run_ctest "$build" api "$logs/api"; }
 
-step_command() { python3 "$root/tests/command/run_test.py"; }
+step_command() {
+  local code=0
+  python3 "$root/tests/command/decode_test.py" || code=$?
+  python3 "$root/tests/command/run_test.py" || code=$?
+  return "$code"
+}
 
 step_real() { python3 "$root/tests/command/real_data_test.py"; }
 

@@ -1,11 +1,14 @@
-// roverd: reads what it is told, starts the station, serves until a signal comes.
+// roverd: reads what it is told, starts the station, serves until a signal comes. Or decodes a
+// recording (decode.hpp).
 
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <system_error>
 
+#include "decode.hpp"
 #include "logging.hpp"
 #include "options.hpp"
 #include "settings.hpp"
@@ -52,6 +55,8 @@ int serve(const roverd::Options& options) {
 
 int main(int argc, char** argv) {
   try {
+    if (argc > 1 && std::string_view(argv[1]) == "decode")
+      return roverd::decode(argc - 2, argv + 2);
     return serve(roverd::read_options(argc, argv));
   } catch (const std::exception& error) {
     return say(kRefused, error.what());

@@ -12,6 +12,7 @@ namespace roverd {
 Options read_options(int argc, char** argv) {
   Options o;
   CLI::App app("roverd: the ground station that lives on the robot", "roverd");
+  app.footer("roverd decode KIND FILE|-   a recording as JSON lines (roverd decode --help)");
   app.set_version_flag("--version", kVersion);
   app.add_option("--config", o.config, "config file; vehicle profiles lie beside it in vehicles/")
       ->capture_default_str();

@@ -11,8 +11,8 @@
 //
 //   0x111 motion command   0x211 system state    0x251/2 actuator, fast   0x361 battery
 //   0x121 light command    0x221 motion state    0x261/2 actuator, slow   0x362 battery alarms
-//   0x421 control mode     0x231 light state     0x311   odometer
-//   0x441 clear errors     0x241 radio state
+//   0x421 control mode     0x231 light state     0x311   odometer           0x41A version
+//   0x441 clear errors     0x241 radio state                                0x4A1 version text
 
 #include <array>
 #include <cstddef>
@@ -43,7 +43,8 @@ inline constexpr std::uint32_t kActuatorSlow = 0x260;  ///< plus the motor numbe
 inline constexpr std::uint32_t kOdometer = 0x311;
 inline constexpr std::uint32_t kBattery = 0x361;
 inline constexpr std::uint32_t kBatteryAlarms = 0x362;
-inline constexpr std::uint32_t kV1SystemState = 0x151;  ///< only firmware of protocol V1 sends it
+inline constexpr std::uint32_t kVersion = 0x41A;      ///< answer to 0x411, the old form
+inline constexpr std::uint32_t kVersionText = 0x4A1;  ///< the new form; also its request
 }  // namespace id
 
 /// Four speeds share one layout in both directions. Wire step 0.001.
@@ -145,13 +146,26 @@ struct BatteryAlarms {
   std::uint8_t warn2 = 0;
 };
 
-using Message = std::variant<std::monostate, MotionCommand, ControlModeCommand, ClearErrors,
-                             LightCommand, SystemState, MotionState, LightState, RadioFrame,
-                             ActuatorFast, ActuatorSlow, Odometer, Battery, BatteryAlarms>;
+/// Four numbers whose meaning is not documented.
+struct Version {
+  std::array<std::uint16_t, 4> number{};
+};
+
+/// Eight of the characters of a text that comes in ten or more frames. The request looks alike: one
+/// byte 01.
+struct VersionText {
+  std::array<char, 8> text{};
+};
+
+using Message =
+    std::variant<std::monostate, MotionCommand, ControlModeCommand, ClearErrors, LightCommand,
+                 SystemState, MotionState, LightState, RadioFrame, ActuatorFast, ActuatorSlow,
+                 Odometer, Battery, BatteryAlarms, Version, VersionText>;
 
 /// Foreign: not a data frame of this protocol (extended, remote, error or unknown id): ignore it.
 /// TooShort: a known id with too few bytes. BadValue: a command byte outside its table.
-enum class Verdict { Decoded, Foreign, TooShort, BadValue };
+/// BadChecksum: protocol V1 only.
+enum class Verdict { Decoded, Foreign, TooShort, BadValue, BadChecksum };
 
 struct Decoded {
   Verdict verdict = Verdict::Foreign;
@@ -174,6 +188,8 @@ constexpr CanFrame encode(const ActuatorSlow& m) noexcept;
 constexpr CanFrame encode(const Odometer& m) noexcept;
 constexpr CanFrame encode(const Battery& m) noexcept;
 constexpr CanFrame encode(const BatteryAlarms& m) noexcept;
+constexpr CanFrame encode(const Version& m) noexcept;
+constexpr CanFrame encode(const VersionText& m) noexcept;
 
 /// A twist cut to the limits (both positive). A twist with a NaN or infinity becomes zero as a
 /// whole: half of a broken command is not a command.
@@ -248,11 +264,8 @@ constexpr ErrorBits error_bits(std::uint16_t code, const ErrorTable& table = kEr
 constexpr bool has_error(std::uint16_t code, std::string_view word,
                          const ErrorTable& table = kErrorBits) noexcept;
 
-/// Protocol V1 is told from V2 by its system state 0x151, which carries a checksum in byte 7:
-/// low id byte + high id byte + length + bytes 0..6, modulo 256.
+/// Byte 7 of every frame of protocol V1 (bunker/v1.hpp).
 constexpr std::uint8_t v1_checksum(const CanFrame& frame) noexcept;
-/// @return true for an intact V1 system state; one with a wrong checksum proves nothing.
-constexpr bool is_v1_system_state(const CanFrame& frame) noexcept;
 
 }  // namespace roverd::bunker
 

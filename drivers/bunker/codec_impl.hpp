@@ -45,6 +45,11 @@ constexpr Decoded decode(const CanFrame& f, LeftStick order) noexcept {
       return decoded(wire::battery_from(f));
     case id::kBatteryAlarms:
       return decoded(BatteryAlarms{f.data[0], f.data[1], f.data[2], f.data[3]});
+    case id::kVersion:
+      return decoded(Version{
+          {wire::get_u16(f, 0), wire::get_u16(f, 2), wire::get_u16(f, 4), wire::get_u16(f, 6)}});
+    case id::kVersionText:
+      return decoded(wire::text_from(f));
     default:
       return {};
   }
@@ -141,6 +146,18 @@ constexpr CanFrame encode(const BatteryAlarms& m) noexcept {
   return f;
 }
 
+constexpr CanFrame encode(const Version& m) noexcept {
+  CanFrame f = wire::frame(id::kVersion);
+  for (std::size_t i = 0; i < m.number.size(); ++i) wire::put16(f, 2 * i, m.number[i]);
+  return f;
+}
+
+constexpr CanFrame encode(const VersionText& m) noexcept {
+  CanFrame f = wire::frame(id::kVersionText);
+  for (std::size_t i = 0; i < m.text.size(); ++i) f.data[i] = static_cast<std::uint8_t>(m.text[i]);
+  return f;
+}
+
 constexpr MotionCommand limited(base::BodyTwist t, double max_linear_mps,
                                 double max_angular_radps) noexcept {
   constexpr double kMax = std::numeric_limits<double>::max();
@@ -204,11 +221,6 @@ constexpr std::uint8_t v1_checksum(const CanFrame& f) noexcept {
   unsigned sum = (f.id & 0xFFU) + (f.id >> 8U) + f.len;
   for (std::size_t i = 0; i < 7; ++i) sum += f.data[i];
   return static_cast<std::uint8_t>(sum);
-}
-
-constexpr bool is_v1_system_state(const CanFrame& f) noexcept {
-  return f.id == id::kV1SystemState && !f.extended && !f.remote && !f.error && f.len == 8 &&
-         f.data[7] == v1_checksum(f);
 }
 
 }  // namespace roverd::bunker

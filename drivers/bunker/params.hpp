@@ -21,6 +21,8 @@ struct Params {
   double silent_reopen_s = 5.0;
   double retry_first_s = 0.5;
   double retry_max_s = 5.0;
+  double v1_full_linear_mps = 3.0;
+  double v1_full_angular_radps = 2.5235;
 };
 
 template <class V>
@@ -36,11 +38,15 @@ void fields(V& v, Params& p) {
   v("mode_request_period_s", p.mode_request_period_s, 0.5, 10.0,
     "between two requests for CAN mode while the base is in standby");
   v("stop_frames", p.stop_frames, 1, 50, "zero commands before the base is sent to standby");
-  v("odometer_max_mps", p.odometer_max_mps, 0.5, 20.0, "a faster odometer step is impossible");
+  v("odometer_max_mps", p.odometer_max_mps, 0.5, 20.0,
+    "a faster odometer step or reported speed is impossible");
   v("silent_reopen_s", p.silent_reopen_s, 0.0, 600.0,
     "an open but silent bus is opened again; 0: never (recordings with gaps)");
   v("retry_first_s", p.retry_first_s, 0.05, 60.0, "first wait before opening again");
   v("retry_max_s", p.retry_max_s, 0.05, 600.0, "longest wait before opening again");
+  v("v1_full_linear_mps", p.v1_full_linear_mps, 0.1, 10.0,
+    "100 percent of a base with protocol V1; too small a value makes it faster than commanded");
+  v("v1_full_angular_radps", p.v1_full_angular_radps, 0.1, 10.0, "likewise, turning");
 }
 
 /// What `fields` cannot say: the words allowed in the text fields. The error names the field.

@@ -80,6 +80,8 @@ constexpr std::uint8_t least_length(std::uint32_t frame_id) noexcept {
     case id::kActuatorSlow + 2:
     case id::kOdometer:
     case id::kBattery:
+    case id::kVersion:
+    case id::kVersionText:
       return 8;
     default:
       return 0;
@@ -175,6 +177,12 @@ constexpr Battery battery_from(const CanFrame& f) noexcept {
   m.voltage_v = get_i16(f, 2) / 10.0;
   m.current_a = get_i16(f, 4) / 10.0;
   m.temperature_c = get_i16(f, 6) / 10.0;
+  return m;
+}
+
+constexpr VersionText text_from(const CanFrame& f) noexcept {
+  VersionText m;
+  for (std::size_t i = 0; i < m.text.size(); ++i) m.text[i] = static_cast<char>(f.data[i]);
   return m;
 }
 

@@ -107,6 +107,9 @@ class Rig {
 
   double now_s() const { return base::seconds(now_.time_since_epoch()); }
 
+  /// Somebody else on the bus sends this.
+  void put_on_bus(const base::CanFrame& f) { can_.b->send(f); }
+
   // ---- commands; each answer comes at the next tick ----
 
   base::Result<void> ask(robot::Command command) {

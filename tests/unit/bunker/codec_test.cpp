@@ -1,11 +1,12 @@
 #include "bunker/codec.hpp"
 
 #include <cmath>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "hex.hpp"
 
 namespace roverd::bunker {
 namespace {
@@ -13,15 +14,6 @@ namespace {
 using base::ControlMode;
 using base::Switch;
 using base::VehicleState;
-
-/// "00 96 …" as written in the tables.
-CanFrame frame(std::uint32_t frame_id, const std::string& hex) {
-  CanFrame f;
-  f.id = frame_id;
-  std::istringstream in(hex);
-  for (int byte = 0; in >> std::hex >> byte;) f.data[f.len++] = static_cast<std::uint8_t>(byte);
-  return f;
-}
 
 template <class M>
 M decoded(const CanFrame& f, LeftStick order = LeftStick::UdLr) {
@@ -315,16 +307,13 @@ TEST(BunkerCodec, ABrokenCommandBecomesZeroAsAWhole) {
   }
 }
 
-TEST(BunkerCodec, ProtocolV1IsRecognisedOnlyByAnIntactFrame) {
-  EXPECT_TRUE(is_v1_system_state(frame(0x151, "00 01 00 F5 00 00 03 53")));
-  EXPECT_FALSE(is_v1_system_state(frame(0x151, "00 01 00 F5 00 00 03 00")));
-  EXPECT_FALSE(is_v1_system_state(frame(0x151, "00 01 00 F5 00 00 03")));
-  EXPECT_FALSE(is_v1_system_state(frame(0x131, "01 2C FF 9C 00 00 07 09")));
-  for (const CanFrame& f :
-       {frame(0x130, "01 00 0A 00 00 00 00 44"), frame(0x130, "01 00 E7 19 00 00 42 7C"),
-        frame(0x131, "01 2C FF 9C 00 00 07 09"), frame(0x200, "FF F1 03 E8 23 28 01 31")}) {
-    EXPECT_EQ(v1_checksum(f), f.data[7]);
-  }
+TEST(BunkerCodec, VersionsOfBothFormsAreRead) {
+  const CanFrame numbers = frame(0x41A, "00 02 00 01 01 00 00 07");
+  EXPECT_EQ(decoded<Version>(numbers).number, (std::array<std::uint16_t, 4>{2, 1, 256, 7}));
+  EXPECT_EQ(encode(decoded<Version>(numbers)), numbers);
+  const CanFrame text = frame(0x4A1, "42 55 4E 4B 45 52 20 56");
+  EXPECT_EQ(decoded<VersionText>(text).text[0], 'B');
+  EXPECT_EQ(encode(decoded<VersionText>(text)), text);
 }
 
 }  // namespace

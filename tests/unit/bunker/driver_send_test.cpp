@@ -208,9 +208,9 @@ TEST_F(BunkerDriverTest, CanBeRestarted) {
 }
 
 TEST_F(BunkerDriverTest, ClearsErrorsOnRequestWhileUp) {
-  EXPECT_FALSE(driver->clear_errors(now));
+  EXPECT_FALSE(driver->clear_errors(0, now));
   up(0);
-  EXPECT_TRUE(driver->clear_errors(now));
+  EXPECT_TRUE(driver->clear_errors(0, now));
   wire.b->deliver(now);
   EXPECT_EQ(commands, std::vector<CanFrame>{encode(ClearErrors{})});
 }

@@ -111,21 +111,6 @@ TEST_F(BunkerDriverTest, ALinkThatBreaksIsFaultyWithItsReason) {
   EXPECT_EQ(status().phase, DriverPhase::Opening);
 }
 
-TEST_F(BunkerDriverTest, RefusesABaseOfProtocolV1) {
-  driver->start(now);
-  CanFrame v1;
-  v1.id = 0x151;
-  v1.len = 8;
-  v1.data = {0x00, 0x01, 0x00, 0xF5, 0x00, 0x00, 0x03, 0x00};
-  hear(v1);
-  EXPECT_EQ(status().phase, DriverPhase::Opening) << "a wrong checksum proves nothing";
-  v1.data[7] = 0x53;
-  hear(v1);
-  EXPECT_EQ(status().phase, DriverPhase::Faulty);
-  EXPECT_EQ(status().reason,
-            "speaks protocol V1 (0x151 seen), which is not supported; V2 is needed");
-}
-
 TEST_F(BunkerDriverTest, RefusesABusWithBothProtocols) {
   up(1);
   CanFrame v1;
@@ -286,7 +271,7 @@ TEST(BunkerParams, AreListedWithTheirRanges) {
   Params p;
   EXPECT_TRUE(base::set_param(p, "max_linear_mps", 1.0));
   EXPECT_FALSE(base::set_param(p, "max_linear_mps", 9.0));
-  EXPECT_EQ(base::describe(p).size(), 13u);
+  EXPECT_EQ(base::describe(p).size(), 15u);
 }
 
 }  // namespace

@@ -1,21 +1,9 @@
-#include "gate/gate.hpp"
-
-#include <initializer_list>
 #include <thread>
 
-#include <gtest/gtest.h>
+#include "gate_fixture.hpp"
 
 namespace roverd::gate {
 namespace {
-
-using namespace std::chrono_literals;
-
-CanFrame frame(std::uint32_t id, std::initializer_list<int> bytes) {
-  CanFrame f;
-  f.id = id;
-  for (const int b : bytes) f.data[f.len++] = static_cast<std::uint8_t>(b);
-  return f;
-}
 
 /// 0x111 with these wire steps.
 CanFrame motion(int linear, int angular) {
@@ -32,7 +20,7 @@ const CanFrame kCanMode = frame(0x421, {1, 0, 0, 0, 0, 0, 0, 0});
 const CanFrame kStandby = frame(0x421, {0, 0, 0, 0, 0, 0, 0, 0});
 const CanFrame kClearAll = frame(0x441, {0, 0, 0, 0, 0, 0, 0, 0});
 
-class GateTest : public ::testing::Test {
+class GateV2Test : public GateTest {
  protected:
   /// A base in CAN mode that answers, and permission.
   void ready() {
@@ -43,20 +31,9 @@ class GateTest : public ::testing::Test {
     gate.saw(kMotionState, now);
     gate.saw(state(0, 1), now);
   }
-  std::uint64_t refused(Refusal why) const {
-    return gate.counts().refused[static_cast<std::size_t>(why)];
-  }
-  void expect_refused(const CanFrame& f, Refusal why) {
-    const auto before = refused(why);
-    EXPECT_FALSE(gate.allows(f, now)) << std::hex << f.id;
-    EXPECT_EQ(refused(why), before + 1) << "reason " << static_cast<int>(why);
-  }
-
-  Gate gate{Limits{}};
-  Time now = Time{} + 100s;
 };
 
-TEST_F(GateTest, IsSilentByDefault) {
+TEST_F(GateV2Test, IsSilentByDefault) {
   expect_refused(motion(1, 0), Refusal::NotPermitted);
   expect_refused(kCanMode, Refusal::NotPermitted);
   expect_refused(kClearAll, Refusal::NotPermitted);
@@ -66,13 +43,13 @@ TEST_F(GateTest, IsSilentByDefault) {
   EXPECT_EQ(gate.counts().refused_total(), 4u);
 }
 
-TEST_F(GateTest, LetsMotionOutWhenAllIsWell) {
+TEST_F(GateV2Test, LetsMotionOutWhenAllIsWell) {
   ready();
   EXPECT_TRUE(gate.allows(motion(100, -100), now));
   EXPECT_EQ(gate.counts().allowed, 1u);
 }
 
-TEST_F(GateTest, AlwaysLetsAStopAndStandbyOut) {
+TEST_F(GateV2Test, AlwaysLetsAStopAndStandbyOut) {
   // Given neither permission nor feedback
   EXPECT_TRUE(gate.allows(motion(0, 0), now));
   EXPECT_TRUE(gate.allows(kStandby, now));
@@ -84,15 +61,15 @@ TEST_F(GateTest, AlwaysLetsAStopAndStandbyOut) {
   EXPECT_TRUE(gate.allows(kStandby, now));
 }
 
-TEST_F(GateTest, KnowsOnlyTheListedIds) {
+TEST_F(GateV2Test, KnowsOnlyTheListedIds) {
   ready();
   for (const std::uint32_t id :
-       {0x000u, 0x110u, 0x112u, 0x121u, 0x131u, 0x130u, 0x211u, 0x411u, 0x420u, 0x4A1u, 0x7FFu}) {
+       {0x000u, 0x110u, 0x112u, 0x131u, 0x141u, 0x151u, 0x211u, 0x411u, 0x420u, 0x4A1u, 0x7FFu}) {
     expect_refused(frame(id, {0, 0, 0, 0, 0, 0, 0, 0}), Refusal::NotListed);
   }
 }
 
-TEST_F(GateTest, LetsOnlyPlainFramesOut) {
+TEST_F(GateV2Test, LetsOnlyPlainFramesOut) {
   ready();
   for (bool CanFrame::*flag : {&CanFrame::extended, &CanFrame::remote, &CanFrame::error}) {
     CanFrame f = motion(0, 0);
@@ -101,7 +78,7 @@ TEST_F(GateTest, LetsOnlyPlainFramesOut) {
   }
 }
 
-TEST_F(GateTest, LetsOnlyWholeFramesOut) {
+TEST_F(GateV2Test, LetsOnlyWholeFramesOut) {
   ready();
   CanFrame f = motion(0, 0);
   f.len = 7;
@@ -109,7 +86,7 @@ TEST_F(GateTest, LetsOnlyWholeFramesOut) {
   expect_refused(frame(0x421, {0}), Refusal::WrongLength);
 }
 
-TEST_F(GateTest, KeepsValuesInTheirLimits) {
+TEST_F(GateV2Test, KeepsValuesInTheirLimits) {
   // Given steps as wide as the limits
   Gate wide{Limits{.max_linear_step = 40000, .max_angular_step = 40000}};
   wide.permit(true);
@@ -125,13 +102,13 @@ TEST_F(GateTest, KeepsValuesInTheirLimits) {
   EXPECT_EQ(wide.counts().refused[static_cast<std::size_t>(Refusal::TooLarge)], 5u);
 }
 
-TEST_F(GateTest, LetsNoSidewaysOrSteeringMotionOut) {
+TEST_F(GateV2Test, LetsNoSidewaysOrSteeringMotionOut) {
   ready();
   expect_refused(frame(0x111, {0, 10, 0, 0, 0, 1, 0, 0}), Refusal::WrongContent);
   expect_refused(frame(0x111, {0, 0, 0, 0, 0, 0, 0, 1}), Refusal::WrongContent);
 }
 
-TEST_F(GateTest, RefusesASuddenRiseAndAllowsAnySlowingDown) {
+TEST_F(GateV2Test, RefusesASuddenRiseAndAllowsAnySlowingDown) {
   // 0 ─▶ 251 no   0 ─▶ 250 ─▶ 500 yes   500 ─▶ 751 no   500 ─▶ 10 yes
   ready();
   expect_refused(motion(251, 0), Refusal::TooSudden);
@@ -144,7 +121,7 @@ TEST_F(GateTest, RefusesASuddenRiseAndAllowsAnySlowingDown) {
   EXPECT_TRUE(gate.allows(motion(0, -500), now));
 }
 
-TEST_F(GateTest, CountsAReversalFromZero) {
+TEST_F(GateV2Test, CountsAReversalFromZero) {
   ready();
   EXPECT_TRUE(gate.allows(motion(200, 0), now));
   EXPECT_TRUE(gate.allows(motion(400, 0), now));
@@ -152,7 +129,7 @@ TEST_F(GateTest, CountsAReversalFromZero) {
   EXPECT_TRUE(gate.allows(motion(-250, 0), now));
 }
 
-TEST_F(GateTest, ForgetsTheLastMotionWhenTheBaseDoes) {
+TEST_F(GateV2Test, ForgetsTheLastMotionWhenTheBaseDoes) {
   ready();
   EXPECT_TRUE(gate.allows(motion(250, 0), now));
   now += 499ms;
@@ -165,7 +142,7 @@ TEST_F(GateTest, ForgetsTheLastMotionWhenTheBaseDoes) {
   EXPECT_TRUE(gate.allows(motion(250, 0), now));
 }
 
-TEST_F(GateTest, LostMotionFeedbackWithdrawsPermission) {
+TEST_F(GateV2Test, LostMotionFeedbackWithdrawsPermission) {
   ready();
   now += 300ms;
   EXPECT_TRUE(gate.allows(motion(10, 0), now));
@@ -177,7 +154,7 @@ TEST_F(GateTest, LostMotionFeedbackWithdrawsPermission) {
   EXPECT_TRUE(gate.allows(motion(10, 0), now));
 }
 
-TEST_F(GateTest, LostStateFeedbackWithdrawsPermission) {
+TEST_F(GateV2Test, LostStateFeedbackWithdrawsPermission) {
   ready();
   now += 700ms;
   gate.saw(kMotionState, now);
@@ -187,7 +164,7 @@ TEST_F(GateTest, LostStateFeedbackWithdrawsPermission) {
   expect_refused(motion(10, 0), Refusal::Stale);
 }
 
-TEST_F(GateTest, FramesThatProveNothingDoNotCountAsFeedback) {
+TEST_F(GateV2Test, FramesThatProveNothingDoNotCountAsFeedback) {
   gate.permit(true);
   CanFrame remote = kMotionState;
   remote.remote = true;
@@ -200,7 +177,7 @@ TEST_F(GateTest, FramesThatProveNothingDoNotCountAsFeedback) {
   expect_refused(motion(10, 0), Refusal::Stale);
 }
 
-TEST_F(GateTest, MovesOnlyANormalBaseInCanMode) {
+TEST_F(GateV2Test, MovesOnlyANormalBaseInCanMode) {
   ready();
   for (const auto& [vehicle, mode] : {std::pair{1, 1}, {2, 1}, {7, 1}, {0, 0}, {0, 2}, {0, 3}}) {
     gate.saw(state(vehicle, mode), now);
@@ -210,7 +187,7 @@ TEST_F(GateTest, MovesOnlyANormalBaseInCanMode) {
   EXPECT_TRUE(gate.allows(motion(10, 0), now));
 }
 
-TEST_F(GateTest, PermissionBeginsWithFreshFrames) {
+TEST_F(GateV2Test, PermissionBeginsWithFreshFrames) {
   ready();
   gate.permit(false);
   expect_refused(motion(10, 0), Refusal::NotPermitted);
@@ -222,7 +199,7 @@ TEST_F(GateTest, PermissionBeginsWithFreshFrames) {
   EXPECT_TRUE(gate.allows(motion(10, 0), now));
 }
 
-TEST_F(GateTest, AsksForCanModeAtMostTwiceASecond) {
+TEST_F(GateV2Test, AsksForCanModeAtMostTwiceASecond) {
   gate.permit(true);
   gate.saw(state(0, 0), now);
   EXPECT_TRUE(gate.allows(kCanMode, now));
@@ -232,7 +209,7 @@ TEST_F(GateTest, AsksForCanModeAtMostTwiceASecond) {
   EXPECT_TRUE(gate.allows(kCanMode, now));
 }
 
-TEST_F(GateTest, AsksOnlyABaseInStandbyForCanMode) {
+TEST_F(GateV2Test, AsksOnlyABaseInStandbyForCanMode) {
   gate.permit(true);
   expect_refused(kCanMode, Refusal::NotReady);
   for (const int mode : {1, 2, 3, 4}) {
@@ -249,7 +226,7 @@ TEST_F(GateTest, AsksOnlyABaseInStandbyForCanMode) {
   expect_refused(kCanMode, Refusal::NotReady);
 }
 
-TEST_F(GateTest, LetsOnlyListedCodesOut) {
+TEST_F(GateV2Test, LetsOnlyListedCodesOut) {
   ready();
   expect_refused(frame(0x421, {2, 0, 0, 0, 0, 0, 0, 0}), Refusal::WrongContent);
   expect_refused(frame(0x421, {1, 0, 0, 0, 0, 0, 0, 1}), Refusal::WrongContent);
@@ -260,7 +237,27 @@ TEST_F(GateTest, LetsOnlyListedCodesOut) {
   EXPECT_TRUE(gate.allows(kClearAll, now));
 }
 
-TEST_F(GateTest, MayBeUsedByTheLoopAndTheDeviceAtOnce) {
+TEST_F(GateV2Test, LetsLightsOutWithinTheirBounds) {
+  const CanFrame lights = frame(0x121, {1, 3, 100, 3, 100, 0, 0, 77});
+  expect_refused(lights, Refusal::NotPermitted);
+  gate.permit(true);
+  for (std::size_t at = 0; at < 7; ++at) {
+    CanFrame f = lights;
+    ++f.data[at];
+    expect_refused(f, Refusal::WrongContent);
+  }
+  EXPECT_TRUE(gate.allows(lights, now));
+  now += 14ms;
+  expect_refused(lights, Refusal::TooOften);
+  now += 1ms;
+  EXPECT_TRUE(gate.allows(frame(0x121, {0, 0, 0, 0, 0, 0, 0, 78}), now));
+  now += 1s;
+  CanFrame shorter = lights;
+  shorter.len = 7;
+  expect_refused(shorter, Refusal::WrongLength);
+}
+
+TEST_F(GateV2Test, MayBeUsedByTheLoopAndTheDeviceAtOnce) {
   // For the thread sanitizer; the counts show that no call was lost.
   ready();
   std::thread device([&] {

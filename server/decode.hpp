@@ -1,0 +1,41 @@
+#pragma once
+// roverd decode KIND FILE|-: what a recording says, one JSON object a line on standard output.
+//
+//   bunker   candump's text, as on the screen or as a log (-L)    decode_bunker.cpp
+//   nmea     the bytes of a GNSS receiver, UBX and RTCM3 between   decode_nmea.cpp
+//
+// Fields are named as in the fact sheets' tables. What is not understood is a line too, with the
+// reason under "refused". Files of any size: nothing but the present block is kept. New kinds are a
+// row in decode.cpp and a function that makes their Reader.
+
+#include <functional>
+
+#include <nlohmann/json.hpp>
+
+#include "base/bytes.hpp"
+
+namespace roverd {
+
+/// Takes a recording in pieces of any size.
+struct Reader {
+  std::function<void(base::Bytes)> feed;
+  std::function<void()> finish;  ///< no more will come
+};
+
+using OnObject = std::function<void(const nlohmann::ordered_json&)>;
+
+/// Objects: line (counted from 1), time (seconds as stamped; null without), interface, id, data,
+/// then protocol, name and fields of what the frame says.
+Reader bunker_reader(OnObject on_object);
+/// Objects: sentence, talker and fields; or the text, or the size of a binary frame; or how many
+/// bytes were skipped.
+Reader nmea_reader(OnObject on_object);
+
+/// The text of one line, with its line feed. Bytes that are not UTF-8 are replaced.
+std::string to_line(const nlohmann::ordered_json& object);
+
+/// @param argc, argv what follows the word "decode". @return exit code: 0 all was read (or nobody
+/// wants to hear more), 1 the file cannot be read or the output not written, 2 wrong arguments.
+int decode(int argc, char** argv);
+
+}  // namespace roverd
