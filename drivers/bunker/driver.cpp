@@ -123,7 +123,14 @@ void Driver::check_silence(Time now) {
 }
 
 void Driver::report(Time now) {
-  if (life_.report_due(now)) on_measurement_(status(now));
+  if (!life_.report_due(now)) return;
+  auto told = status(now);
+  if (owned_link_) {
+    auto bus = owned_link_->report(now);
+    told.detail = std::make_shared<const base::DriverDetail>(
+        base::DriverDetail{std::move(bus.counts), {}, std::move(bus.facts), {}});
+  }
+  on_measurement_(std::move(told));
 }
 
 void Driver::stop(Time now) {
