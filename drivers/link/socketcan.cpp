@@ -1,5 +1,6 @@
 #include "link/socketcan.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstddef>
@@ -28,8 +29,8 @@ namespace {
 using Packet = std::array<std::uint8_t, CANFD_MTU>;
 static_assert(sizeof(can_frame) == kCanPacketSize && offsetof(can_frame, data) == 8);
 
-/// Asked for; the kernel doubles it and cuts it to its own limit. At half a kilobyte a frame about
-/// 50 ms of a full 1 Mbit/s bus fit into the usual 200 kB.
+/// Asked for. Without CAP_NET_ADMIN the kernel cuts it to net.core.rmem_max, usually 200 kB: that
+/// is about 50 ms of a full 1 Mbit/s bus, for a frame takes about half a kilobyte there.
 constexpr int kReceiveBuffer = 1'000'000;
 
 ifreq request_for(const std::string& interface) noexcept {
@@ -136,7 +137,9 @@ base::Result<void> SocketCanLink::configure(int fd) const {
   ::setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on);  // to count them
   ::setsockopt(fd, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);      // without: stamped when read
   ::setsockopt(fd, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
-  ::setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &kReceiveBuffer, sizeof kReceiveBuffer);
+  if (::setsockopt(fd, SOL_SOCKET, SO_RCVBUFFORCE, &kReceiveBuffer, sizeof kReceiveBuffer) != 0) {
+    ::setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &kReceiveBuffer, sizeof kReceiveBuffer);
+  }
   set_filter(fd);
   sockaddr_can address{};
   address.can_family = AF_CAN;
@@ -218,7 +221,10 @@ bool SocketCanLink::read_one() {
     return true;
   }
   const Time now = base::steady_now();
-  heard(*frame, extras.stamp ? monotonic_stamp(*extras.stamp, base::wall_now(), now) : now);
+  // Interrupted between the two clocks, a frame would seem to come before the one ahead of it.
+  last_stamp_ = std::max(
+      last_stamp_, extras.stamp ? monotonic_stamp(*extras.stamp, base::wall_now(), now) : now);
+  heard(*frame, last_stamp_);
   return true;
 }
 

@@ -76,6 +76,7 @@ class SocketCanLink final : public FrameLink {
   std::atomic<std::uint64_t> overrun_{0};
 
   // Device thread.
+  Time last_stamp_{};
   std::uint64_t fd_frames_ = 0;
   std::array<std::uint64_t, kCanFaultWords.size()> faults_{};
   CanFaults last_faults_ = 0;
