@@ -49,6 +49,16 @@ bool holds_frames(const std::string& file) {
   return link::FrameFile(file, [](const base::CanFrame&, base::Time) {}).open().has_value();
 }
 
+/// The bus keeps its name in the log where it has one.
+link::RecordOptions record_options(const Settings& settings, const std::string& address) {
+  link::RecordOptions options;
+  options.max_bytes = static_cast<std::uint64_t>(settings.recording.max_mb) * 1'000'000;
+  options.keep_files = settings.recording.keep_files;
+  const auto parsed = link::parse_address(address);
+  if (parsed && parsed->scheme == link::Scheme::Can) options.bus = parsed->target;
+  return options;
+}
+
 link::ReplayOptions replay_options(const Options& options) {
   link::ReplayOptions replay;
   replay.speed = options.replay_speed;
@@ -77,7 +87,7 @@ Result<std::unique_ptr<typename Kind::Link>> open_link(const Workshop& w, const 
   if (!made || !records(w.settings, w.options)) return made;
   const auto file = recording_file(w.options, name + Kind::kEnding);
   if (!file) return tl::unexpected(file.error());
-  auto taped = Kind::Taped::create(std::move(*made), *file);
+  auto taped = Kind::Taped::create(std::move(*made), *file, record_options(w.settings, address));
   if (!taped) return tl::unexpected(taped.error());
   return std::move(*taped);
 }

@@ -59,7 +59,8 @@ template <class V>
 void fields(V& v, DriverWiring& p) {
   v("enabled", p.enabled, "true: the device is there");
   v("link", p.link,
-    "can:IFACE, cansock:PATH, serial:DEVICE:BAUD, tcp:HOST:PORT, udp:PORT, replay:FILE");
+    "can:IFACE[?OPTIONS], slcan:DEVICE:BAUD[:BITRATE], cansock:PATH, serial:DEVICE:BAUD, "
+    "tcp:HOST:PORT, udp:PORT, replay:FILE");
 }
 
 /// A driver with its parameters: section [drivers.NAME].
@@ -71,11 +72,16 @@ struct Wired {
 
 struct RecordingSettings {
   bool enabled = false;
+  int max_mb = 64;
+  int keep_files = 20;
 };
 
 template <class V>
 void fields(V& v, RecordingSettings& p) {
   v("enabled", p.enabled, "record every input byte under the data folder");
+  v("max_mb", p.max_mb, 1, 4000, "a file that has grown so large is followed by the next");
+  v("keep_files", p.keep_files, 1, 10000,
+    "files kept of each device's recording, the oldest goes; 1: recording stops when it is full");
 }
 
 struct Settings {

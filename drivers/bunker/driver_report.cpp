@@ -34,6 +34,11 @@ std::shared_ptr<const base::DriverDetail> Driver::make_detail(Time now) {
   }
   detail->rates_hz = rates_.words(now);
   detail->facts = facts(now);
+  if (owned_link_) {
+    link::BusReport bus = owned_link_->report(now);
+    detail->facts.merge(bus.facts);
+    detail->counts.merge(bus.counts);
+  }
   told_ = hazards(now);
   if (told_.foreign_motion) {
     detail->hazards.emplace_back(speaks_v1_.load() ? "somebody else sends motion commands (0x130)"

@@ -8,6 +8,8 @@
 #include "link/cansock.hpp"
 #include "link/replay.hpp"
 #include "link/serial.hpp"
+#include "link/slcan.hpp"
+#include "link/slcan_link.hpp"
 #include "link/socketcan.hpp"
 #include "link/tcp.hpp"
 #include "link/udp.hpp"
@@ -21,12 +23,14 @@ struct SchemeName {
   std::string_view form;
 };
 
-constexpr std::array<SchemeName, 6> kSchemes{{{"can", Scheme::Can, "can:IFACE"},
-                                              {"cansock", Scheme::CanSocket, "cansock:PATH"},
-                                              {"serial", Scheme::Serial, "serial:DEVICE:BAUD"},
-                                              {"tcp", Scheme::Tcp, "tcp:HOST:PORT"},
-                                              {"udp", Scheme::Udp, "udp:PORT"},
-                                              {"replay", Scheme::Replay, "replay:FILE"}}};
+constexpr std::array<SchemeName, 7> kSchemes{
+    {{"can", Scheme::Can, "can:IFACE"},
+     {"slcan", Scheme::Slcan, "slcan:DEVICE:BAUD[:BITRATE]"},
+     {"cansock", Scheme::CanSocket, "cansock:PATH"},
+     {"serial", Scheme::Serial, "serial:DEVICE:BAUD"},
+     {"tcp", Scheme::Tcp, "tcp:HOST:PORT"},
+     {"udp", Scheme::Udp, "udp:PORT"},
+     {"replay", Scheme::Replay, "replay:FILE"}}};
 
 const SchemeName& entry(Scheme scheme) noexcept {
   return kSchemes[static_cast<std::size_t>(scheme)];  // listed in the order of the enum
@@ -65,6 +69,42 @@ base::Result<Address> parse_serial(std::string_view text, std::string_view rest)
                        "must read serial:DEVICE:BAUD, for example serial:/dev/ttyUSB0:115200");
   }
   return Address{Scheme::Serial, std::string(parts->first), *baud, 0};
+}
+
+/// DEVICE:BAUD, or DEVICE:BAUD:BITRATE if the last two parts are numbers.
+base::Result<Address> parse_slcan(std::string_view text, std::string_view rest) {
+  const std::string form =
+      "must read slcan:DEVICE:BAUD or slcan:DEVICE:BAUD:BITRATE, for example "
+      "slcan:/dev/ttyACM0:115200:500000";
+  const auto last = split_last(rest);
+  const auto before = last ? split_last(last->first) : std::nullopt;
+  const bool with_bitrate = before && whole_number(before->second);
+  const auto& [device, baud_text] = with_bitrate ? *before : last.value_or(std::pair(rest, rest));
+  const auto baud = whole_number(baud_text);
+  if (!last || !baud || *baud == 0 || device.empty()) return bad_address(text, form);
+  Address out{Scheme::Slcan, std::string(device), *baud, 0};
+  if (!with_bitrate) return out;
+  out.can.bitrate = whole_number(last->second);
+  if (!out.can.bitrate || !slcan_speed(*out.can.bitrate)) {
+    return bad_address(text,
+                       "BITRATE must be one that such adapters have: 10000, 20000, 50000, 100000, "
+                       "125000, 250000, 500000, 800000, 1000000");
+  }
+  return out;
+}
+
+base::Result<Address> parse_can(std::string_view text, std::string_view rest) {
+  const auto mark = rest.find('?');
+  const auto interface = rest.substr(0, mark);
+  // The kernel's rule for interface names; longer ones cannot exist.
+  if (interface.empty() || interface.size() > 15 ||
+      interface.find_first_of("/: \t") != std::string_view::npos) {
+    return bad_address(text, "must read can:IFACE, an interface name of 1 to 15 letters like can0");
+  }
+  const auto options =
+      parse_can_options(mark == std::string_view::npos ? "" : rest.substr(mark + 1));
+  if (!options) return bad_address(text, options.error().detail);
+  return Address{Scheme::Can, std::string(interface), 0, 0, *options};
 }
 
 base::Result<Address> parse_tcp(std::string_view text, std::string_view rest) {
@@ -111,13 +151,9 @@ base::Result<Address> parse_address(std::string_view text) {
       return Address{Scheme::Udp, "", 0, *port};
     }
     case Scheme::Can:
-      // The kernel's rule for interface names; longer ones cannot exist.
-      if (rest.empty() || rest.size() > 15 ||
-          rest.find_first_of("/ \t") != std::string_view::npos) {
-        return bad_address(text,
-                           "must read can:IFACE, an interface name of 1 to 15 letters like can0");
-      }
-      break;
+      return parse_can(text, rest);
+    case Scheme::Slcan:
+      return parse_slcan(text, rest);
     case Scheme::CanSocket:
     case Scheme::Replay:
       if (rest.empty()) return bad_address(text, "must read " + std::string(known->form));
@@ -138,7 +174,11 @@ std::string to_string(const Address& address) {
     }
     case Scheme::Udp:
       return start + std::to_string(address.port);
+    case Scheme::Slcan:
+      return start + address.target + ":" + std::to_string(address.baud) +
+             (address.can.bitrate ? ":" + std::to_string(*address.can.bitrate) : "");
     case Scheme::Can:
+      return start + address.target + to_string(address.can);
     case Scheme::CanSocket:
     case Scheme::Replay:
       break;
@@ -153,7 +193,9 @@ base::Result<std::unique_ptr<FrameLink>> make_frame_link(asio::io_context& io,
   if (!address) return tl::unexpected(address.error());
   switch (address->scheme) {
     case Scheme::Can:
-      return std::make_unique<SocketCanLink>(io, address->target);
+      return std::make_unique<SocketCanLink>(io, address->target, address->can);
+    case Scheme::Slcan:
+      return std::make_unique<SlcanLink>(io, address->target, address->baud, address->can.bitrate);
     case Scheme::CanSocket:
       return std::make_unique<CanSocketLink>(io, address->target);
     case Scheme::Replay:
@@ -163,7 +205,8 @@ base::Result<std::unique_ptr<FrameLink>> make_frame_link(asio::io_context& io,
     case Scheme::Udp:
       break;
   }
-  return wrong_kind<FrameLink>(text, "bytes, but CAN frames are needed (can:, cansock:, replay:)");
+  return wrong_kind<FrameLink>(
+      text, "bytes, but CAN frames are needed (can:, slcan:, cansock:, replay:)");
 }
 
 base::Result<std::unique_ptr<ByteLink>> make_byte_link(asio::io_context& io, std::string_view text,
@@ -180,6 +223,7 @@ base::Result<std::unique_ptr<ByteLink>> make_byte_link(asio::io_context& io, std
     case Scheme::Replay:
       return std::make_unique<ByteReplay>(io, address->target, replay);
     case Scheme::Can:
+    case Scheme::Slcan:
     case Scheme::CanSocket:
       break;
   }

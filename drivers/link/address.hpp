@@ -2,6 +2,9 @@
 // Link addresses as they stand in the configuration, and the links they name.
 //
 //   can:IFACE            SocketCAN interface                     frames
+//   can:IFACE?OPTIONS    the same, set up as can_options.hpp says
+//   slcan:DEVICE:BAUD    serial-line CAN adapter at 500 kbit/s   frames
+//   slcan:DEVICE:BAUD:BITRATE                                    frames
 //   cansock:PATH         local CAN socket                        frames
 //   serial:DEVICE:BAUD   serial port, 8N1                        bytes
 //   tcp:HOST:PORT        TCP client; IPv6 as [::1]               bytes
@@ -16,6 +19,7 @@
 #include <boost/asio/io_context.hpp>
 
 #include "base/result.hpp"
+#include "link/can_options.hpp"
 #include "link/link.hpp"
 #include "link/replay_options.hpp"
 
@@ -23,13 +27,14 @@ namespace roverd::link {
 
 namespace asio = boost::asio;
 
-enum class Scheme { Can, CanSocket, Serial, Tcp, Udp, Replay };
+enum class Scheme { Can, Slcan, CanSocket, Serial, Tcp, Udp, Replay };
 
 struct Address {
   Scheme scheme = Scheme::Can;
   std::string target;      ///< interface, path, device, host or file; empty for udp
-  unsigned baud = 0;       ///< serial only
+  unsigned baud = 0;       ///< serial and slcan only
   std::uint16_t port = 0;  ///< tcp and udp only; never 0 there
+  CanOptions can{};        ///< can; of slcan only the bit rate
   friend bool operator==(const Address&, const Address&) = default;
 };
 

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 
 #include "base/bytes.hpp"
@@ -44,6 +45,12 @@ class ByteLink {
   ByteLink() = default;
 };
 
+/// What a bus tells about itself, in words for the driver list.
+struct BusReport {
+  std::map<std::string, std::string> facts;     ///< "can_state": "error active"
+  std::map<std::string, std::uint64_t> counts;  ///< "CAN error: no acknowledgement"; none is 0
+};
+
 /// A CAN bus.
 class FrameLink {
  public:
@@ -55,6 +62,12 @@ class FrameLink {
   virtual void close() noexcept = 0;
   virtual SendResult send(const CanFrame& frame) noexcept = 0;
   virtual std::string describe() const = 0;
+  /// Device thread, open or not, about as often as a driver reports. A link that can lose its bus
+  /// also looks after it here. Empty for one that knows nothing (memory, cansock, replay).
+  virtual BusReport report(Time now) {
+    static_cast<void>(now);
+    return {};
+  }
 
   std::function<void(const CanFrame&, Time)> on_frame;
   std::function<void(const std::string& reason)> on_closed;

@@ -1,15 +1,10 @@
 #include "link/record.hpp"
 
+#include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <utility>
 
-#include <fcntl.h>
-#include <sys/statvfs.h>
-#include <unistd.h>
-
 #include "link/candump.hpp"
-#include "link/descriptor.hpp"
 #include "link/recording.hpp"
 
 namespace roverd::link {
@@ -27,51 +22,6 @@ bool is_bus_name(const std::string& name) {
 
 }  // namespace
 
-base::Result<std::unique_ptr<RecordFile>> RecordFile::create(const std::string& path,
-                                                             const RecordOptions& options) {
-  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
-  if (fd < 0) {
-    return base::fail(base::Code::Unavailable,
-                      "cannot make the recording " + path + ": " + errno_text(errno));
-  }
-  return std::unique_ptr<RecordFile>(
-      new RecordFile(path, fd, options.max_bytes, options.keep_free_bytes));
-}
-
-RecordFile::~RecordFile() {
-  ::close(fd_);
-}
-
-base::Result<void> RecordFile::stop(const std::string& why) const {
-  return base::fail(base::Code::Unavailable, "recording to " + path_ + " stopped: " + why);
-}
-
-base::Result<void> RecordFile::write(const std::string& text) {
-  if (size_ + text.size() > max_bytes_) {
-    return stop("the file has reached " + std::to_string(max_bytes_ / 1'000'000) + " MB");
-  }
-  for (std::size_t done = 0; done < text.size();) {
-    const ssize_t n = ::write(fd_, text.data() + done, text.size() - done);
-    if (n > 0) {
-      done += static_cast<std::size_t>(n);
-    } else if (n == 0 || errno != EINTR) {
-      return stop(errno_text(n == 0 ? ENOSPC : errno));
-    }
-  }
-  size_ += text.size();
-  return {};
-}
-
-base::Result<void> RecordFile::sync() {
-  struct statvfs disk {};
-  if (::fstatvfs(fd_, &disk) == 0 && disk.f_bavail * disk.f_frsize < keep_free_bytes_) {
-    return stop("less than " + std::to_string(keep_free_bytes_ / 1'000'000) +
-                " MB are left on the disk");
-  }
-  if (::fdatasync(fd_) != 0) return stop(errno_text(errno));
-  return {};
-}
-
 base::Result<std::unique_ptr<RecordedFrameLink>> RecordedFrameLink::create(
     std::unique_ptr<FrameLink> inner, const std::string& file, const RecordOptions& options) {
   if (!is_bus_name(options.bus)) {
@@ -84,7 +34,7 @@ base::Result<std::unique_ptr<RecordedFrameLink>> RecordedFrameLink::create(
                                           base::Duration stamp) {
     text += to_candump_line({stamp, bus, entry.frame, entry.sent});
   };
-  auto writer = std::make_unique<Writer>(std::move(*out), "", format, options, kFramesWaiting);
+  auto writer = std::make_unique<Writer>(std::move(*out), format, options, kFramesWaiting);
   return std::unique_ptr<RecordedFrameLink>(
       new RecordedFrameLink(std::move(inner), std::move(writer)));
 }
@@ -111,13 +61,12 @@ SendResult RecordedFrameLink::send(const CanFrame& frame) noexcept {
 
 base::Result<std::unique_ptr<RecordedByteLink>> RecordedByteLink::create(
     std::unique_ptr<ByteLink> inner, const std::string& file, const RecordOptions& options) {
-  auto out = RecordFile::create(file, options);
+  auto out = RecordFile::create(file, options, recording_header(inner->describe()));
   if (!out) return tl::unexpected(out.error());
   const auto format = [](std::string& text, const Entry& entry, base::Duration stamp) {
     append_record(text, stamp, entry.sent, entry.bytes);
   };
-  auto writer = std::make_unique<Writer>(std::move(*out), recording_header(inner->describe()),
-                                         format, options, kChunksWaiting);
+  auto writer = std::make_unique<Writer>(std::move(*out), format, options, kChunksWaiting);
   return std::unique_ptr<RecordedByteLink>(
       new RecordedByteLink(std::move(inner), std::move(writer)));
 }

@@ -30,6 +30,7 @@ class RecordedFrameLink final : public FrameLink {
   /// Recorded if the link took it. Does not wait for the disk.
   SendResult send(const CanFrame& frame) noexcept override;
   std::string describe() const override { return inner_->describe(); }
+  BusReport report(Time now) override { return inner_->report(now); }
 
   /// Any thread.
   RecordStatus status() const { return writer_->status(); }

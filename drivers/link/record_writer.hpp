@@ -25,23 +25,9 @@
 
 #include "base/result.hpp"
 #include "base/time.hpp"
+#include "link/record_file.hpp"
 
 namespace roverd::link {
-
-struct RecordOptions {
-  /// Name of the bus in a candump log: letters and digits, "can0".
-  std::string bus = "can0";
-  /// What is lost at most if this program dies.
-  base::Duration write_every = std::chrono::milliseconds(100);
-  /// What is lost at most if the power fails.
-  base::Duration sync_every = std::chrono::seconds(2);
-  /// Recording stops rather than fill the disk on which missions are kept: when the file reaches
-  /// this size, or when less than this is left free.
-  std::uint64_t max_bytes = 2'000'000'000;
-  std::uint64_t keep_free_bytes = 200'000'000;
-  /// Called once when recording had to stop, on the writer thread.
-  std::function<void(const std::string& reason)> on_problem;
-};
 
 struct RecordStatus {
   std::uint64_t received = 0;  ///< entries of each direction put into the file
@@ -84,33 +70,6 @@ class Ring {
   std::atomic<std::size_t> tail_{0};
 };
 
-/// The file itself. One thread; becomes unusable with a reason at the first error.
-class RecordFile {
- public:
-  /// Makes a new file; an existing one is never touched.
-  static base::Result<std::unique_ptr<RecordFile>> create(const std::string& path,
-                                                          const RecordOptions& options);
-  ~RecordFile();
-  RecordFile(const RecordFile&) = delete;
-  RecordFile& operator=(const RecordFile&) = delete;
-
-  /// All of `text` or an error; then a part of it may stand in the file.
-  base::Result<void> write(const std::string& text);
-  /// To the disk itself; also looks how much room is left there.
-  base::Result<void> sync();
-
- private:
-  RecordFile(std::string path, int fd, std::uint64_t max_bytes, std::uint64_t keep_free_bytes)
-      : path_(std::move(path)), fd_(fd), max_bytes_(max_bytes), keep_free_bytes_(keep_free_bytes) {}
-  base::Result<void> stop(const std::string& why) const;
-
-  const std::string path_;
-  const int fd_;
-  const std::uint64_t max_bytes_;
-  const std::uint64_t keep_free_bytes_;
-  std::uint64_t size_ = 0;
-};
-
 /// @tparam Entry has `base::Time stamp` and `bool sent`.
 template <class Entry>
 class RecordWriter {
@@ -118,15 +77,15 @@ class RecordWriter {
   /// Appends the text of one entry. @param stamp UTC since 1970. Called on the writer thread.
   using Format = std::function<void(std::string& out, const Entry& entry, base::Duration stamp)>;
 
-  RecordWriter(std::unique_ptr<RecordFile> file, std::string header, Format format,
-               RecordOptions options, std::size_t capacity)
+  RecordWriter(std::unique_ptr<RecordFile> file, Format format, RecordOptions options,
+               std::size_t capacity)
       : file_(std::move(file)),
         format_(std::move(format)),
         options_(std::move(options)),
         // One offset for the whole file: a clock that is set meanwhile does not bend the times.
         offset_(base::wall_now().time_since_epoch() - base::steady_now().time_since_epoch()),
         rings_{Ring<Entry>(capacity), Ring<Entry>(capacity)},
-        thread_([this, first = std::move(header)] { run(first); }) {}
+        thread_([this] { run(); }) {}
 
   /// Writes what is still waiting.
   ~RecordWriter() {
@@ -164,8 +123,7 @@ class RecordWriter {
     if (!taken) dropped_.fetch_add(1, std::memory_order_relaxed);
   }
 
-  void run(const std::string& header) {
-    write(header, {});
+  void run() {
     base::Time synced = base::steady_now();
     std::unique_lock lock(mutex_);
     for (bool last = false; !last;) {
@@ -205,7 +163,7 @@ class RecordWriter {
     }
     status_.received += counts.received;
     status_.sent += counts.sent;
-    status_.bytes += text.size();
+    status_.bytes = file_->written();
   }
 
   bool check(const base::Result<void>& result) {

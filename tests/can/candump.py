@@ -8,6 +8,8 @@ import struct
 from typing import NamedTuple
 
 LINE = re.compile(r"^\((\d+\.\d+)\) (\S+) ([0-9A-F]{3})#((?:[0-9A-F]{2}){0,8})$")
+# Extended ids, remote and FD frames: on the bus, but not what the robot and its base say.
+OTHER = re.compile(r"^\(\d+\.\d+\) \S+ (?:[0-9A-F]{3}|[0-9A-F]{8})#(?:R\d?|#[0-9A-F]*|[0-9A-F]*)$")
 
 
 class Frame(NamedTuple):
@@ -24,6 +26,8 @@ def read(path):
             if not line.endswith("\n"):
                 break
             match = LINE.match(line.rstrip("\n"))
+            if not match and OTHER.match(line.rstrip("\n")):
+                continue
             if not match:
                 raise ValueError(f"{path}:{number}: not a line of candump -L: {line!r}")
             frames.append(Frame(float(match[1]), int(match[3], 16), bytes.fromhex(match[4])))

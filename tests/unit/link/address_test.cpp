@@ -10,6 +10,11 @@ namespace {
 TEST(Address, EveryKindIsReadAndWrittenBack) {
   const std::pair<const char*, Address> cases[] = {
       {"can:can0", {Scheme::Can, "can0", 0, 0}},
+      {"can:can0?bitrate=500000&restart_ms=50",
+       {Scheme::Can, "can0", 0, 0, {.bitrate = 500'000, .restart_ms = 50}}},
+      {"slcan:/dev/ttyACM0:115200", {Scheme::Slcan, "/dev/ttyACM0", 115'200, 0}},
+      {"slcan:/dev/serial/by-path/usb-0:1:1.0:3000000:250000",
+       {Scheme::Slcan, "/dev/serial/by-path/usb-0:1:1.0", 3'000'000, 0, {.bitrate = 250'000}}},
       {"cansock:/run/bus.sock", {Scheme::CanSocket, "/run/bus.sock", 0, 0}},
       {"serial:/dev/ttyUSB0:115200", {Scheme::Serial, "/dev/ttyUSB0", 115'200, 0}},
       {"serial:/dev/serial/by-path/pci-0000:00:14.0-usb-0:1:1.0:9600",
@@ -31,7 +36,8 @@ TEST(Address, AnUnknownSchemeListsTheKnownOnes) {
   for (const char* text : {"", "canbus:can0", "can", "/dev/ttyUSB0", ":x"}) {
     EXPECT_EQ(parse_address(text).error().detail,
               "link address '" + std::string(text) +
-                  "': must be one of can:IFACE, cansock:PATH, serial:DEVICE:BAUD, tcp:HOST:PORT, "
+                  "': must be one of can:IFACE, slcan:DEVICE:BAUD[:BITRATE], cansock:PATH, "
+                  "serial:DEVICE:BAUD, tcp:HOST:PORT, "
                   "udp:PORT, replay:FILE");
   }
 }
@@ -41,6 +47,15 @@ TEST(Address, WrongPartsAreNamed) {
       {"can:", "interface name"},
       {"can:a-name-of-16-let", "interface name"},
       {"can:can0/x", "interface name"},
+      {"can:can0?bitrate=5", "bitrate must be 10000..1000000"},
+      {"can:can0?bitrate", "bitrate must be"},
+      {"can:can0?up=yes", "up must be 0 or 1"},
+      {"can:can0?speed=1", "unknown option 'speed'"},
+      {"can:?up=1", "interface name"},
+      {"slcan:/dev/ttyACM0", "must read slcan:DEVICE:BAUD"},
+      {"slcan:/dev/ttyACM0:0:500000", "must read slcan:DEVICE:BAUD"},
+      {"slcan:/dev/ttyACM0:115200:115200", "BITRATE must be one"},
+      {"slcan::115200", "must read slcan:DEVICE:BAUD"},
       {"cansock:", "must read cansock:PATH"},
       {"replay:", "must read replay:FILE"},
       {"serial:/dev/ttyUSB0", "must read serial:DEVICE:BAUD"},
@@ -70,7 +85,8 @@ TEST(Address, WrongPartsAreNamed) {
 
 TEST(Factories, MakeTheLinkThatTheAddressNames) {
   asio::io_context io;
-  for (const char* text : {"can:can77", "cansock:/tmp/x.sock", "replay:/tmp/x.log"}) {
+  for (const char* text : {"can:can77", "can:can77?up=1", "slcan:/dev/ttyACM0:115200:500000",
+                           "cansock:/tmp/x.sock", "replay:/tmp/x.log"}) {
     const auto link = make_frame_link(io, text);
     ASSERT_TRUE(link) << text;
     EXPECT_EQ((*link)->describe(), text);
@@ -86,7 +102,8 @@ TEST(Factories, MakeTheLinkThatTheAddressNames) {
 TEST(Factories, RefuseAnAddressOfTheOtherKind) {
   asio::io_context io;
   EXPECT_EQ(make_frame_link(io, "tcp:host:80").error().detail,
-            "link address 'tcp:host:80': carries bytes, but CAN frames are needed (can:, cansock:, "
+            "link address 'tcp:host:80': carries bytes, but CAN frames are needed (can:, slcan:, "
+            "cansock:, "
             "replay:)");
   EXPECT_EQ(make_byte_link(io, "can:can0").error().detail,
             "link address 'can:can0': carries CAN frames, but bytes are needed (serial:, tcp:, "

@@ -1,5 +1,6 @@
 #include "link/record.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <thread>
@@ -183,9 +184,66 @@ TEST_F(RecordedFrames, AFullDiskStopsTheRecordingAndNotTheLink) {
 TEST_F(RecordedFrames, ALimitOnTheFileStopsTheRecording) {
   RecordOptions with = options();
   with.max_bytes = 60;
+  with.keep_files = 1;
   start(with);
   for (int i = 0; i < 10; ++i) link->send(make_frame(0x111, {1, 2, 3}));
   EXPECT_NE(wait_for_problem(*link).find("the file has reached"), std::string::npos);
+}
+
+TEST_F(RecordedFrames, AFullFileIsFollowedByTheNextAndTheOldestGoes) {
+  RecordOptions with = options();
+  with.max_bytes = 200;  // five lines of 40 letters
+  with.keep_files = 3;
+  start(with);
+  for (std::uint8_t i = 0; i < 40; ++i) {  // one line at a time
+    const auto before = link->status().sent;
+    link->send(make_frame(0x111, {i}));
+    const auto end = std::chrono::steady_clock::now() + 20s;
+    while (link->status().sent == before && std::chrono::steady_clock::now() < end) {
+      std::this_thread::yield();
+    }
+  }
+  link.reset();
+  // then the last files stand there, whole lines each, without a gap between them
+  EXPECT_FALSE(std::filesystem::exists(path));
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.file("."))) {
+    files.push_back(entry.path().string());
+  }
+  std::sort(files.begin(), files.end());
+  ASSERT_EQ(files.size(), 3u);
+  std::vector<CanRecord> all;
+  for (const auto& file : files) {
+    const std::string text = read_file(file);
+    EXPECT_LE(text.size(), 200u);
+    EXPECT_EQ(text.front(), '(');
+    EXPECT_EQ(text.back(), '\n');
+    for (const auto& record : read_log(file)) all.push_back(record);
+  }
+  ASSERT_GE(all.size(), 10u);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(all[i].frame.data[0], 40 - all.size() + i);
+  }
+}
+
+TEST(RecordFiles, AreNumberedBeforeTheirEnding) {
+  EXPECT_EQ(numbered_file("a.b/drive.log", 2), "a.b/drive.002.log");
+  EXPECT_EQ(numbered_file("a.b/drive", 12), "a.b/drive.012");
+  EXPECT_EQ(numbered_file("drive.log", 1000), "drive.1000.log");
+}
+
+TEST(RecordFiles, EachBeginsWithTheHeader) {
+  const TempFolder folder;
+  RecordOptions with = options();
+  with.max_bytes = 10;
+  auto file = RecordFile::create(folder.file("a.raw"), with, "head\n");
+  ASSERT_TRUE(file);
+  for (const char* text : {"one\n", "two, which is longer than a file\n", "six\n"}) {
+    ASSERT_TRUE((*file)->write(text));
+  }
+  EXPECT_EQ(read_file(folder.file("a.raw")), "head\none\n");
+  EXPECT_EQ(read_file(folder.file("a.002.raw")), "head\ntwo, which is longer than a file\n");
+  EXPECT_EQ(read_file(folder.file("a.003.raw")), "head\nsix\n");
 }
 
 TEST_F(RecordedFrames, ADiskThatIsNearlyFullIsLeftToOthers) {

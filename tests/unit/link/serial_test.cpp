@@ -3,41 +3,15 @@
 #include <array>
 #include <string>
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <pty.h>
-#include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
 
+#include "terminal.hpp"
 #include "tools.hpp"
 
 namespace roverd::link {
 namespace {
-
-/// A pseudo-terminal: `master` plays the device, `path` is the serial port.
-struct Terminal {
-  Terminal() {
-    int slave = -1;
-    std::array<char, 256> name{};
-    EXPECT_EQ(::openpty(&master, &slave, name.data(), nullptr, nullptr), 0);
-    path = name.data();
-    ::fcntl(master, F_SETFL, O_NONBLOCK);
-    ::close(slave);
-  }
-  ~Terminal() { hang_up(); }
-  Terminal(const Terminal&) = delete;
-  Terminal& operator=(const Terminal&) = delete;
-  void hang_up() {
-    if (master >= 0) ::close(master);
-    master = -1;
-  }
-  void say(std::string_view text) const {
-    ASSERT_EQ(::write(master, text.data(), text.size()), static_cast<ssize_t>(text.size()));
-  }
-  int master = -1;
-  std::string path;
-};
 
 class Serial : public testing::Test {
  protected:

@@ -1,8 +1,6 @@
 // SocketCAN on a real kernel with vcan. A program of its own, socketcan_test, that tests/can runs
 // where the interfaces can be made (as root there); ctest does not know it.
 
-#include <cstdlib>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,29 +8,12 @@
 
 #include "link/socketcan.hpp"
 #include "tools.hpp"
+#include "vcan.hpp"
 
 namespace roverd::link {
 namespace {
 
 constexpr const char* kInterface = "vcan7";
-
-void ip(const std::string& words) {
-  ASSERT_EQ(std::system(("ip link " + words).c_str()), 0) << words;
-}
-
-struct Node {
-  Node(asio::io_context& io, const std::string& interface) : link(io, interface) {
-    link.on_frame = [this](const CanFrame& f, Time t) {
-      heard.push_back(f);
-      stamps.push_back(t);
-    };
-    link.on_closed = [this](const std::string& reason) { closed = reason; };
-  }
-  SocketCanLink link;
-  std::vector<CanFrame> heard;
-  std::vector<Time> stamps;
-  std::string closed;
-};
 
 class Vcan : public testing::Test {
  protected:
