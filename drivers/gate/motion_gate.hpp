@@ -59,6 +59,7 @@ class MotionGate {
     }
     last_ = *decoded;
     last_at_ = now;
+    begun_ = true;
     return refusal;
   }
   bool allows(const std::optional<Motion>& decoded, Time now) noexcept {
@@ -87,7 +88,7 @@ class MotionGate {
     if (!permitted_) return Refusal::NotPermitted;
     if (!fresh(now)) return Refusal::Stale;
     if (std::abs(m->speed) > limits_.max_speed) return Refusal::TooLarge;
-    const bool running = last_at_ && base::seconds(now - *last_at_) < kForgotten_s;
+    const bool running = begun_ && base::seconds(now - last_at_) < kForgotten_s;
     const Motion from = running ? last_ : Motion{0.0, limits_.turn_holds ? last_.turn : 0.0, false};
     if (growth(from.speed, m->speed) > limits_.max_speed_step) return Refusal::TooSudden;
     const double turn_step =
@@ -110,7 +111,8 @@ class MotionGate {
   bool permitted_ = false;
   std::optional<Time> fed_;
   Motion last_{};
-  std::optional<Time> last_at_;
+  bool begun_ = false;  ///< last_at_ means something; GCC 12 misreads an optional here
+  Time last_at_{};
   std::array<std::uint64_t, kRefusals> refused_{};
 };
 
