@@ -4,7 +4,7 @@
 //   $RVC,<seq>,<speed_mps>,<turn_radps>,<enable 0|1>*HH\r\n
 //   $RVF,<seq>,<ack>,<speed_mps>,<turn_radps>,<left_m>,<right_m>,<battery_v>,<status>,<estop>*HH\r\n
 //
-//   $RVC,7,0.500,-0.250,1*7A
+//   $RVC,7,0.500,-0.250,1*6E
 //
 // Pure.
 

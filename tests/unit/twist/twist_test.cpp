@@ -17,7 +17,7 @@ const Command kCommandExample{7, 0.5, -0.25, true};
 const Feedback kFeedbackExample{9, 7, 0.48, -0.2, 12.345, -0.5, 48.25, kObeying | kTooHot, true};
 
 TEST(TwistText, BothMessagesComeBack) {
-  EXPECT_EQ(encode_text(kCommandExample).substr(0, 21), "$RVC,7,0.500,-0.250,1");
+  EXPECT_EQ(encode_text(kCommandExample), "$RVC,7,0.500,-0.250,1*6E\r\n");
   TextDecoder decoder;
   std::vector<Said> all;
   const std::string both = "noise" + encode_text(kCommandExample) + encode_text(kFeedbackExample);
