@@ -6,12 +6,16 @@
 
 #include <net/if.h>
 
+#include "ackermann/driver.hpp"
+#include "bumper/driver.hpp"
 #include "bunker/driver.hpp"
 #include "gnss/driver.hpp"
 #include "gnss/nmea.hpp"
 #include "link/address.hpp"
 #include "link/record.hpp"
 #include "link/replay_file.hpp"
+#include "ratio/driver.hpp"
+#include "twist/driver.hpp"
 
 namespace roverd {
 namespace {
@@ -166,6 +170,18 @@ Result<std::vector<Device>> make_devices(const Workshop& workshop) {
   const Settings& s = workshop.settings;
   Maker maker(workshop);
   if (auto done = maker.add<Frames, bunker::Driver>("bunker", s.bunker); !done) {
+    return tl::unexpected(done.error());
+  }
+  if (auto done = maker.add<ByteStream, ackermann::Driver>("ackermann", s.ackermann); !done) {
+    return tl::unexpected(done.error());
+  }
+  if (auto done = maker.add<ByteStream, ratio::Driver>("ratio", s.ratio); !done) {
+    return tl::unexpected(done.error());
+  }
+  if (auto done = maker.add<ByteStream, twist::Driver>("twist", s.twist); !done) {
+    return tl::unexpected(done.error());
+  }
+  if (auto done = maker.add<ByteStream, bumper::Driver>("bumper", s.bumper); !done) {
     return tl::unexpected(done.error());
   }
   if (auto done = maker.add<ByteStream, gnss::Driver>("gnss", s.gnss); !done) {

@@ -12,8 +12,8 @@ namespace {
 namespace asio = boost::asio;
 using base::Result;
 
-/// Drivers' time-outs and back-off are tenths of a second; 50 Hz is fine for all of them.
-constexpr auto kTick = std::chrono::milliseconds(20);
+/// The fastest driver that repeats its command (Ackermann over UDP) does so at 100 Hz.
+constexpr auto kTick = std::chrono::milliseconds(10);
 
 }  // namespace
 
@@ -58,7 +58,9 @@ void DriverBay::start() {
 }
 
 void DriverBay::tick_soon() {
-  timer_.expires_after(kTick);
+  // Absolute times, so that lateness does not add up; what is past is not made up for.
+  due_ = std::max(due_ + kTick, std::chrono::steady_clock::now());
+  timer_.expires_at(due_);
   timer_.async_wait([this](const boost::system::error_code& ec) {
     if (ec) return;
     each([](const Device& device, base::Time now) { device.tick(now); });

@@ -55,8 +55,9 @@ class DriverBay {
   boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{
       io_.get_executor()};
   boost::asio::steady_timer timer_{io_};
-  std::vector<Device> devices_;   ///< not changed after make()
-  const Device* base_ = nullptr;  ///< the one that moves the vehicle
+  std::chrono::steady_clock::time_point due_{};  ///< of the next tick
+  std::vector<Device> devices_;                  ///< not changed after make()
+  const Device* base_ = nullptr;                 ///< the one that moves the vehicle
   std::thread thread_;
 };
 

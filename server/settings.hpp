@@ -8,10 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "ackermann/params.hpp"
 #include "base/result.hpp"
+#include "bumper/params.hpp"
 #include "bunker/driver.hpp"
 #include "gnss/driver.hpp"
+#include "ratio/params.hpp"
 #include "robot/config.hpp"
+#include "twist/params.hpp"
 
 namespace roverd {
 
@@ -60,7 +64,7 @@ void fields(V& v, DriverWiring& p) {
   v("enabled", p.enabled, "true: the device is there");
   v("link", p.link,
     "can:IFACE[?OPTIONS], slcan:DEVICE:BAUD[:BITRATE], cansock:PATH, serial:DEVICE:BAUD, "
-    "tcp:HOST:PORT, udp:PORT, replay:FILE");
+    "tcp:HOST:PORT, udp:[HOST:]PORT, replay:FILE");
 }
 
 /// A driver with its parameters: section [drivers.NAME].
@@ -89,6 +93,10 @@ struct Settings {
   VehicleSettings vehicle;
   RecordingSettings recording;
   Wired<bunker::Params> bunker;
+  Wired<ackermann::Params> ackermann;
+  Wired<ratio::Params> ratio;
+  Wired<twist::Params> twist;
+  Wired<bumper::Params> bumper;
   Wired<gnss::Params> gnss;
   robot::Config robot;
   std::map<std::string, std::filesystem::path> tiles;  ///< set name → MBTiles file
@@ -98,6 +106,10 @@ struct Settings {
 template <class V>
 void drivers(V&& v, Settings& s) {
   v("bunker", s.bunker);
+  v("ackermann", s.ackermann);
+  v("ratio", s.ratio);
+  v("twist", s.twist);
+  v("bumper", s.bumper);
   v("gnss", s.gnss);
 }
 

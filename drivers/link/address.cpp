@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include <boost/asio/ip/address.hpp>
+
 #include "link/cansock.hpp"
 #include "link/replay.hpp"
 #include "link/serial.hpp"
@@ -29,7 +31,7 @@ constexpr std::array<SchemeName, 7> kSchemes{
      {"cansock", Scheme::CanSocket, "cansock:PATH"},
      {"serial", Scheme::Serial, "serial:DEVICE:BAUD"},
      {"tcp", Scheme::Tcp, "tcp:HOST:PORT"},
-     {"udp", Scheme::Udp, "udp:PORT"},
+     {"udp", Scheme::Udp, "udp:[HOST:]PORT"},
      {"replay", Scheme::Replay, "replay:FILE"}}};
 
 const SchemeName& entry(Scheme scheme) noexcept {
@@ -107,18 +109,56 @@ base::Result<Address> parse_can(std::string_view text, std::string_view rest) {
   return Address{Scheme::Can, std::string(interface), 0, 0, *options};
 }
 
+/// Without the brackets of an IPv6 address; empty: no host.
+std::optional<std::string> host_name(std::string_view host) {
+  if (host.size() > 2 && host.front() == '[' && host.back() == ']') {
+    return std::string(host.substr(1, host.size() - 2));
+  }
+  if (host.empty() || host.find_first_of(":[]") != std::string_view::npos) return {};
+  return std::string(host);
+}
+
+std::string in_brackets(const std::string& host) {
+  return host.find(':') != std::string::npos ? "[" + host + "]" : host;
+}
+
 base::Result<Address> parse_tcp(std::string_view text, std::string_view rest) {
   const auto parts = split_last(rest);
   const auto port = parts ? port_number(parts->second) : std::nullopt;
   if (!port) return bad_address(text, "must read tcp:HOST:PORT with a port of 1..65535");
-  std::string_view host = parts->first;
-  if (host.size() > 2 && host.front() == '[' && host.back() == ']') {
-    host = host.substr(1, host.size() - 2);
-  } else if (host.empty() || host.find_first_of(":[]") != std::string_view::npos) {
+  const auto host = host_name(parts->first);
+  if (!host) {
     return bad_address(text,
                        "must name a host; an IPv6 address stands in brackets: tcp:[::1]:5000");
   }
-  return Address{Scheme::Tcp, std::string(host), 0, *port};
+  return Address{Scheme::Tcp, *host, 0, *port};
+}
+
+base::Result<Address> parse_udp(std::string_view text, std::string_view rest) {
+  constexpr const char* kForms =
+      "must read udp:PORT, udp:HOST:PORT or udp:LOCALPORT:HOST:PORT with ports of 1..65535";
+  const auto parts = split_last(rest);
+  const auto port = port_number(parts ? parts->second : rest);
+  if (!port) return bad_address(text, kForms);
+  if (!parts) return Address{Scheme::Udp, "", 0, *port};
+  std::string_view name = parts->first;
+  std::uint16_t local = 0;
+  const auto colon = name.find(':');
+  if (colon != std::string_view::npos && !name.starts_with('[')) {
+    const auto number = port_number(name.substr(0, colon));
+    if (!number) return bad_address(text, kForms);
+    local = *number;
+    name.remove_prefix(colon + 1);
+  }
+  const auto host = host_name(name);
+  boost::system::error_code ec;
+  if (host) asio::ip::make_address(*host, ec);
+  if (!host || ec) {
+    return bad_address(text, "needs a numeric address, like udp:192.168.1.10:5005");
+  }
+  Address peer{Scheme::Udp, *host, 0, *port};
+  peer.local_port = local;
+  return peer;
 }
 
 template <class Link>
@@ -145,11 +185,8 @@ base::Result<Address> parse_address(std::string_view text) {
       return parse_serial(text, rest);
     case Scheme::Tcp:
       return parse_tcp(text, rest);
-    case Scheme::Udp: {
-      const auto port = port_number(rest);
-      if (!port) return bad_address(text, "must read udp:PORT with a port of 1..65535");
-      return Address{Scheme::Udp, "", 0, *port};
-    }
+    case Scheme::Udp:
+      return parse_udp(text, rest);
     case Scheme::Can:
       return parse_can(text, rest);
     case Scheme::Slcan:
@@ -167,13 +204,15 @@ std::string to_string(const Address& address) {
   switch (address.scheme) {
     case Scheme::Serial:
       return start + address.target + ":" + std::to_string(address.baud);
-    case Scheme::Tcp: {
-      const bool v6 = address.target.find(':') != std::string::npos;
-      return start + (v6 ? "[" + address.target + "]" : address.target) + ":" +
-             std::to_string(address.port);
+    case Scheme::Tcp:
+      return start + in_brackets(address.target) + ":" + std::to_string(address.port);
+    case Scheme::Udp: {
+      const std::string port = std::to_string(address.port);
+      if (address.target.empty()) return start + port;
+      const std::string local =
+          address.local_port == 0 ? "" : std::to_string(address.local_port) + ":";
+      return start + local + in_brackets(address.target) + ":" + port;
     }
-    case Scheme::Udp:
-      return start + std::to_string(address.port);
     case Scheme::Slcan:
       return start + address.target + ":" + std::to_string(address.baud) +
              (address.can.bitrate ? ":" + std::to_string(*address.can.bitrate) : "");
@@ -219,7 +258,9 @@ base::Result<std::unique_ptr<ByteLink>> make_byte_link(asio::io_context& io, std
     case Scheme::Tcp:
       return std::make_unique<TcpLink>(io, address->target, address->port);
     case Scheme::Udp:
-      return std::make_unique<UdpLink>(io, address->port);
+      if (address->target.empty()) return std::make_unique<UdpLink>(io, address->port);
+      return std::make_unique<UdpLink>(io, address->local_port,
+                                       UdpLink::Peer{address->target, address->port});
     case Scheme::Replay:
       return std::make_unique<ByteReplay>(io, address->target, replay);
     case Scheme::Can:

@@ -8,7 +8,10 @@
 //   cansock:PATH         local CAN socket                        frames
 //   serial:DEVICE:BAUD   serial port, 8N1                        bytes
 //   tcp:HOST:PORT        TCP client; IPv6 as [::1]               bytes
-//   udp:PORT             UDP receiver                            bytes
+//   udp:PORT             UDP receiver, answers the last sender   bytes
+//   udp:HOST:PORT        UDP with one peer: sends there, hears   bytes
+//                        only it; from a port of the kernel's choice
+//   udp:LOCALPORT:HOST:PORT   the same from a fixed port; HOST is numeric, IPv6 as [::1]
 //   replay:FILE          a recording                             frames or bytes
 
 #include <cstdint>
@@ -31,10 +34,11 @@ enum class Scheme { Can, Slcan, CanSocket, Serial, Tcp, Udp, Replay };
 
 struct Address {
   Scheme scheme = Scheme::Can;
-  std::string target;      ///< interface, path, device, host or file; empty for udp
-  unsigned baud = 0;       ///< serial and slcan only
-  std::uint16_t port = 0;  ///< tcp and udp only; never 0 there
-  CanOptions can{};        ///< can; of slcan only the bit rate
+  std::string target;            ///< interface, path, device, host or file; empty for udp:PORT
+  unsigned baud = 0;             ///< serial and slcan only
+  std::uint16_t port = 0;        ///< tcp and udp only; never 0 there
+  CanOptions can{};              ///< can; of slcan only the bit rate
+  std::uint16_t local_port = 0;  ///< udp with a peer: ours; 0: the kernel chooses
   friend bool operator==(const Address&, const Address&) = default;
 };
 

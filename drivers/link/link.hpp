@@ -37,6 +37,8 @@ class ByteLink {
   virtual SendResult write(Bytes bytes) noexcept = 0;
   /// For messages and the driver list: "serial:/dev/ttyUSB0:115200".
   virtual std::string describe() const = 0;
+  /// Device thread. What came from somebody else than the peer and was not handed over.
+  virtual std::uint64_t strangers() const noexcept { return 0; }
 
   std::function<void(Bytes, Time)> on_bytes;                 ///< never empty spans
   std::function<void(const std::string& reason)> on_closed;  ///< lost; not after close()

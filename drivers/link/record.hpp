@@ -60,6 +60,7 @@ class RecordedByteLink final : public ByteLink {
   void close() noexcept override { inner_->close(); }
   SendResult write(Bytes bytes) noexcept override;
   std::string describe() const override { return inner_->describe(); }
+  std::uint64_t strangers() const noexcept override { return inner_->strangers(); }
 
   /// Any thread.
   RecordStatus status() const { return writer_->status(); }

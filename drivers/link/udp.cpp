@@ -132,11 +132,37 @@ void UdpLink::read() {
       if (errno != EAGAIN && errno != EINTR) lost(errno_text(errno));
       return;
     }
-    if (!peer_) remember(sender);
+    if (!peer_) {
+      remember(sender);
+    } else if (!is_peer(sender)) {
+      ++strangers_;
+      continue;
+    }
     if (n > 0 && on_bytes) {
       on_bytes({buffer.data(), static_cast<std::size_t>(n)}, base::steady_now());
     }
   }
+}
+
+/// Address and port; a scope or flow label of IPv6 says nothing of who it is.
+bool UdpLink::is_peer(const Address& sender) const noexcept {
+  if (sender.storage.ss_family != target_.storage.ss_family) return false;
+  if (sender.storage.ss_family == AF_INET) {
+    const auto& a = reinterpret_cast<const sockaddr_in&>(sender.storage);
+    const auto& b = reinterpret_cast<const sockaddr_in&>(target_.storage);
+    return a.sin_port == b.sin_port && a.sin_addr.s_addr == b.sin_addr.s_addr;
+  }
+  const auto& a = reinterpret_cast<const sockaddr_in6&>(sender.storage);
+  const auto& b = reinterpret_cast<const sockaddr_in6&>(target_.storage);
+  return a.sin6_port == b.sin6_port &&
+         std::memcmp(&a.sin6_addr, &b.sin6_addr, sizeof a.sin6_addr) == 0;
+}
+
+std::string UdpLink::describe() const {
+  if (!peer_) return "udp:" + std::to_string(port_);
+  const bool v6 = peer_->address.find(':') != std::string::npos;
+  return "udp:" + (port_ == 0 ? "" : std::to_string(port_) + ":") +
+         (v6 ? "[" + peer_->address + "]" : peer_->address) + ":" + std::to_string(peer_->port);
 }
 
 void UdpLink::remember(const Address& sender) {

@@ -1,5 +1,6 @@
 #pragma once
-// Datagrams received on a port, from anybody; on_bytes gets one datagram at a time.
+// Datagrams received on a port, from anybody or from one peer only; on_bytes gets one datagram at a
+// time.
 
 #include <cstdint>
 #include <mutex>
@@ -13,8 +14,9 @@
 
 namespace roverd::link {
 
-/// Listens on all addresses, IPv4 and IPv6. write() goes to a fixed peer if one is given, otherwise
-/// to whoever sent last; Closed as long as there is nobody.
+/// Listens on all addresses, IPv4 and IPv6. Without a peer, write() goes to whoever sent last and
+/// is Closed as long as there is nobody. With one, write() goes there, and a datagram from any
+/// other address or port is counted (strangers) and never handed over.
 class UdpLink final : public ByteLink {
  public:
   struct Peer {
@@ -29,7 +31,8 @@ class UdpLink final : public ByteLink {
   base::Result<void> open() override;
   void close() noexcept override;
   SendResult write(Bytes bytes) noexcept override;
-  std::string describe() const override { return "udp:" + std::to_string(port_); }
+  std::string describe() const override;
+  std::uint64_t strangers() const noexcept override { return strangers_; }
 
   /// Device thread, after open(): the port received on.
   std::uint16_t port() const noexcept { return bound_port_; }
@@ -43,11 +46,13 @@ class UdpLink final : public ByteLink {
   base::Result<int> bind_socket();
   void read();
   void remember(const Address& sender);
+  bool is_peer(const Address& sender) const noexcept;
   void lost(const std::string& reason);
 
   const std::uint16_t port_;
   const std::optional<Peer> peer_;
   std::uint16_t bound_port_ = 0;
+  std::uint64_t strangers_ = 0;  ///< device thread
   Descriptor socket_;
   std::mutex mutex_;  // leaf; guards target_, taken by the device thread when the sender changes
   Address target_;

@@ -44,8 +44,7 @@ Start starting_now(Start start, base::Time now) {
 class Simulation {
  public:
   Simulation(asio::io_context& io, const Options& options)
-      : options_(options),
-        began_(base::steady_now()),
+      : began_(base::steady_now()),
         pace_(began_),
         bunker_(options.config.params, options.seed, starting_now(options.config.start, began_)),
         bus_(make_bus(io, options)),
@@ -130,7 +129,6 @@ class Simulation {
     return sim::carry_out(line, bunker_, began_);
   }
 
-  const Options& options_;
   const Time began_;
   Pace pace_;
   Bunker bunker_;

@@ -65,7 +65,7 @@ void Context::announce(const std::string& id, std::optional<std::int64_t> revisi
 struct Api::Impl {
   explicit Impl(Deps deps) : context(std::make_shared<Context>(std::move(deps))) {}
 
-  void route(CallPtr call);
+  void route(const CallPtr& call);
   void serve_page(const CallPtr& call, std::string_view path);
   void watch(const CallPtr& call, const Route& route);
 
@@ -137,7 +137,7 @@ void Api::Impl::watch(const CallPtr& call, const Route& route) {
   };
 }
 
-void Api::Impl::route(CallPtr call) {
+void Api::Impl::route(const CallPtr& call) {
   auto target_parts = parse_target(target(call->request));
   if (!target_parts) return call->respond(problem(target_parts.error()));
   const std::string_view path = inner_path(target_parts->path);

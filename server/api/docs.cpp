@@ -74,7 +74,7 @@ std::string type_words(const Json& schema) {
     }
     return out;
   }
-  const auto type = schema.at("type").get<std::string>();
+  auto type = schema.at("type").get<std::string>();
   if (type == "array" && schema.contains("items")) {
     return "list of " + type_words(schema.at("items"));
   }

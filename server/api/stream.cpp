@@ -100,7 +100,7 @@ base::Result<void> StreamTexts::read(ClientId id, Client& client, const Json& me
   Members members(message);
   const Json* topics = members.any("subscribe");
   const Json* driving = members.any("drive");
-  if (const auto whole = members.finish(); !whole) return whole;
+  if (auto whole = members.finish(); !whole) return whole;
   if ((topics == nullptr) == (driving == nullptr)) {
     return base::fail(base::Code::Invalid,
                       "a message has exactly one of the members subscribe and drive");

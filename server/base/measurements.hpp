@@ -174,9 +174,9 @@ struct DriverStatus {
   std::shared_ptr<const DriverDetail> detail{};  ///< may be null
 };
 
-using Measurement = std::variant<GnssFix, GnssVelocity, Heading, WheelTravel, BaseMotion,
-                                 SteeringState, BaseStatus, BatteryState, MotorState, LightState,
-                                 RadioState, Bumper, DriverStatus>;
+using Measurement =
+    std::variant<GnssFix, GnssVelocity, Heading, WheelTravel, BaseMotion, SteeringState, BaseStatus,
+                 BatteryState, MotorState, LightState, RadioState, Bumper, DriverStatus>;
 
 inline Time stamp_of(const Measurement& m) noexcept {
   return std::visit([](const auto& value) { return value.stamp; }, m);

@@ -234,4 +234,8 @@ void Connection::force() {
   socket_.close(ignored);
 }
 
+std::optional<base::Time> Connection::waits_until() const {
+  return phase_ == Phase::Waiting && socket_.is_open() ? deadline_ : std::nullopt;
+}
+
 }  // namespace roverd::net

@@ -36,6 +36,7 @@ class Connection : public Peer, public std::enable_shared_from_this<Connection> 
   void sweep(base::Time now) override;
   void stop() override;
   void force() override;
+  std::optional<base::Time> waits_until() const override;
 
  private:
   using Parser = boost::beast::http::request_parser<boost::beast::http::string_body>;

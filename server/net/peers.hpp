@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -28,6 +29,8 @@ class Peer {
   virtual void stop() = 0;
   /// Closes the socket now.
   virtual void force() = 0;
+  /// Until when it may go on waiting for a request; empty: it has one, or is a WebSocket.
+  virtual std::optional<base::Time> waits_until() const = 0;
 };
 
 class Peers {
@@ -49,6 +52,24 @@ class Peers {
     for (const auto& peer : all) {
       if (const auto alive = peer.lock()) call(*alive);
     }
+  }
+
+  /// Makes room for a newcomer: whoever has waited longest without a request goes. A crowd of
+  /// silent sockets must not keep out the one who wants to stop the robot.
+  /// @return false if all are busy.
+  bool drop_longest_waiting() {
+    std::shared_ptr<Peer> longest;
+    std::optional<base::Time> until;
+    for (const auto& [raw, peer] : open_) {
+      const auto waits = raw->waits_until();
+      if (!waits || (until && *until <= *waits)) continue;
+      auto alive = peer.lock();
+      if (!alive) continue;
+      longest = std::move(alive);
+      until = waits;
+    }
+    if (longest) longest->force();
+    return longest != nullptr;
   }
 
   Response refusal(unsigned status, std::string_view detail) const;

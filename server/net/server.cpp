@@ -94,11 +94,12 @@ void Server::Impl::accept() {
 void Server::Impl::welcome(tcp::socket socket) {
   const int open = peers->count();
   ++peers->stats.accepted;
-  if (open >= peers->limits.connections) ++peers->stats.refused;
-  if (open >= peers->limits.connections + kRefusedAtOnce) return;
+  const bool full = open >= peers->limits.connections && !peers->drop_longest_waiting();
+  if (full) ++peers->stats.refused;
+  if (full && open >= peers->limits.connections + kRefusedAtOnce) return;
   const auto connection = std::make_shared<Connection>(peers, std::move(socket));
   peers->add(connection.get(), connection);
-  if (open >= peers->limits.connections) {
+  if (full) {
     connection->refuse(503, "too many connections; try again");
   } else {
     connection->start();

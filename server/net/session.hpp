@@ -41,6 +41,7 @@ class Session : public Peer, public std::enable_shared_from_this<Session> {
   void sweep(base::Time now) override;
   void stop() override;
   void force() override;
+  std::optional<base::Time> waits_until() const override { return std::nullopt; }
 
  private:
   using Stream = boost::beast::websocket::stream<Outlet, false>;

@@ -139,6 +139,9 @@ base::Result<void> Robot::Impl::handle(const ResetEstop&) {
     return base::fail(Code::Conflict,
                       "the emergency stop at the base is still pressed: release it first");
   }
+  if (world.bumper && world.bumper->pressed) {
+    return base::fail(Code::Conflict, "the bumper is still pressed: free it first");
+  }
   estop = false;
   estop_asked.store(false);
   set_mode(Mode::Hold, "emergency stop released");

@@ -35,6 +35,7 @@ struct SafetyParams {
   double base_accept_s = 3.0;
   bool radio_required = true;
   double radio_timeout_s = 0.5;
+  double bumper_timeout_s = 1.0;
   double gnss_slow_s = 2.0;
   double gnss_hold_s = 6.0;
   double sigma_slow_m = 2.0;
@@ -54,6 +55,8 @@ void fields(V& v, SafetyParams& p) {
     "a transmitter must be heard: it is the operator's way to take over");
   v("radio_timeout_s", p.radio_timeout_s, 0.2, 5.0,
     "transmitter silent, or its counter frozen, for so long: stop");
+  v("bumper_timeout_s", p.bumper_timeout_s, 0.1, 10.0,
+    "a bumper that was heard once and then not for so long: hold");
   v("gnss_slow_s", p.gnss_slow_s, 0.5, 60.0, "no usable fix for so long: creep");
   v("gnss_hold_s", p.gnss_hold_s, 1.0, 600.0, "no usable fix for so long: hold");
   v("sigma_slow_m", p.sigma_slow_m, 0.02, 50.0, "position less certain than this: creep");

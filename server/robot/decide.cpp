@@ -1,6 +1,7 @@
 // From facts to a command: judge what is wrong, let the one with the right to drive drive.
 
 #include <cmath>
+#include <utility>
 
 #include "base/angle.hpp"
 #include "robot/impl.hpp"
@@ -40,6 +41,9 @@ void Robot::Impl::judge() {
 
   assessment = assess(facts(), p, now);
   if (assessment.base_estop) latch_estop("the button at the base");
+  if (const auto hit = std::exchange(world.bumper_hit, std::nullopt)) {
+    latch_estop("the bumper" + (hit->empty() ? "" : " (" + *hit + ")"));
+  }
   if (assessment.response >= Response::Hold && mode != Mode::Hold) {
     const bool was_auto = mode == Mode::Auto;
     hold(assessment.cause);

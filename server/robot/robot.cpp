@@ -19,7 +19,7 @@ Robot::Impl::Impl(Config c)
   command_batch.reserve(64);
 }
 
-Robot::Robot(Config config) : impl_(std::make_unique<Impl>(std::move(config))) {}
+Robot::Robot(const Config& config) : impl_(std::make_unique<Impl>(config)) {}
 Robot::~Robot() = default;
 
 base::Inbox<base::Measurement>& Robot::measurements() noexcept {

@@ -97,7 +97,7 @@ struct Preview {
 
 class Robot {
  public:
-  explicit Robot(Config config);
+  explicit Robot(const Config& config);
   ~Robot();
   Robot(const Robot&) = delete;
   Robot& operator=(const Robot&) = delete;

@@ -29,6 +29,10 @@ std::string error_words(const base::BaseStatus& status) {
   return text.empty() ? "no error bit set" : text;
 }
 
+std::string in_brackets(const std::string& where) {
+  return where.empty() ? "" : " (" + where + ")";
+}
+
 class Assessor {
  public:
   Assessor(const Facts& facts, const SafetyParams& p, Time now) : f_(facts), p_(p), now_(now) {}
@@ -39,6 +43,7 @@ class Assessor {
     if (f_.estop) add(Response::Stop, "estop", "emergency stop is latched");
     base_state();
     hazards();
+    bumper();
     if (radio) add(Response::None, "radio_control", "the radio drives");
     if (!radio && w.base_heard) {
       const std::string trouble = radio_trouble(w, p_, now_);
@@ -94,6 +99,17 @@ class Assessor {
       for (const std::string& hazard : driver.detail->hazards) {
         add(Response::Hold, "driver_hazard", driver.name + ": " + hazard);
       }
+    }
+  }
+
+  /// A hit itself latches the emergency stop (Robot::judge).
+  void bumper() {
+    const auto& bumper = f_.world.bumper;
+    if (!bumper) return;
+    if (bumper->pressed) {
+      add(Response::Stop, "bumper", "the bumper" + in_brackets(bumper->where) + " is pressed");
+    } else if (older(bumper->stamp, p_.bumper_timeout_s, now_)) {
+      add(Response::Hold, "bumper_lost", "the bumper is silent");
     }
   }
 

@@ -5,6 +5,8 @@
 // | base e-stop                            | at once            | Stop: latched e-stop           |
 // | no word from the base                  | 0.4 s (parameter)  | Hold                           |
 // | base exception, unknown state          | at once            | Hold                           |
+// | bumper pressed                         | at once            | Stop: latched e-stop           |
+// | bumper enabled and silent              | 1 s (parameter)    | Hold                           |
 // | base takes no commands while armed     | 3 s                | Hold; no motion before          |
 // | radio silent, frozen, or reported lost | 0.5 s              | Hold                           |
 // | no usable fix (AUTO)                   | 2 s, 6 s           | Slow, Hold                     |

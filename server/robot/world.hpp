@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "base/measurements.hpp"
@@ -22,6 +23,8 @@ struct World {
   std::vector<base::MotorState> motors;
   std::optional<base::LightState> lights;
   std::optional<base::Bumper> bumper;
+  /// Where it was hit, until the robot has latched its stop: a hit shorter than a tick counts too.
+  std::optional<std::string> bumper_hit;
   std::optional<base::RadioState> radio;
   std::vector<base::DriverStatus> drivers;
 
@@ -33,7 +36,7 @@ struct World {
   static constexpr int kMotors = 8;
 
   void take(base::Measurement&& m) {
-    std::visit([this](auto&& value) { put(std::move(value)); }, std::move(m));
+    std::visit([this](auto& value) { put(std::move(value)); }, m);
   }
 
   /// No usable fix for 2 s ends the healthy time.
@@ -72,7 +75,10 @@ struct World {
     }
   }
   void put(base::LightState&& m) { lights = m; }
-  void put(base::Bumper&& m) { bumper = std::move(m); }
+  void put(base::Bumper&& m) {
+    if (m.pressed) bumper_hit = m.where;
+    bumper = std::move(m);
+  }
   void put(base::RadioState&& m) {
     if (m.swb != base::Switch::Unknown) swb = m.swb;
     if (!radio || radio->count != m.count) radio_counted = m.stamp;

@@ -206,22 +206,42 @@ TEST(Http, ASilentConnectionIsClosed) {
   EXPECT_TRUE(used.closed_within(5s));
 }
 
-TEST(Http, ConnectionsBeyondTheLimitHear503) {
-  // Given as many connections as there may be,
+TEST(Http, WhoHasWaitedLongestMakesRoomForANewcomer) {
+  // Given as many connections as there may be, none of them with a request,
+  NetHouse house(small(), echo());
+  Client a(house.port());
+  Client b(house.port());
+  Client c(house.port());
+  for (Client* client : {&a, &b, &c}) {
+    client->send(get("/x"));
+    ASSERT_EQ(client->answer()->status, 200u);
+  }
+  // when somebody comes with a request, then it is served, and the others but one go on.
+  Client stop(house.port());
+  stop.send(get("/stop"));
+  EXPECT_EQ(stop.answer()->status, 200u);
+  EXPECT_TRUE(a.closed_within(5s));
+  c.send(get("/y"));
+  EXPECT_EQ(c.answer()->status, 200u);
+}
+
+TEST(Http, BeyondTheLimitOfBusyConnectionsItIs503) {
   NetHouse house(small(), echo());
   {
+    // Given as many connections as there may be, each in the middle of a request,
     Client a(house.port());
     Client b(house.port());
     Client c(house.port());
     for (Client* client : {&a, &b, &c}) {
-      client->send(get("/x"));
-      ASSERT_EQ(client->answer()->status, 200u);
+      client->send(
+          "POST /x HTTP/1.1\r\nHost: x\r\nExpect: 100-continue\r\nContent-Length: 2\r\n\r\n");
+      ASSERT_EQ(client->answer()->status, 100u);
     }
     // when one more comes, then it is told, and the others go on.
     Client more(house.port());
     EXPECT_EQ(more.answer()->status, 503u);
     EXPECT_TRUE(more.closed_within(5s));
-    a.send(get("/y"));
+    a.send("ab");
     EXPECT_EQ(a.answer()->status, 200u);
   }
   // When they are gone, there is room again.

@@ -22,6 +22,10 @@ TEST(Address, EveryKindIsReadAndWrittenBack) {
       {"tcp:192.168.1.5:5017", {Scheme::Tcp, "192.168.1.5", 0, 5'017}},
       {"tcp:[fe80::1%eth0]:65535", {Scheme::Tcp, "fe80::1%eth0", 0, 65'535}},
       {"udp:10110", {Scheme::Udp, "", 0, 10'110}},
+      {"udp:192.168.1.10:5005", {Scheme::Udp, "192.168.1.10", 0, 5'005}},
+      {"udp:6000:192.168.1.10:5005", {Scheme::Udp, "192.168.1.10", 0, 5'005, {}, 6'000}},
+      {"udp:[fe80::1]:5005", {Scheme::Udp, "fe80::1", 0, 5'005}},
+      {"udp:6000:[::1]:5005", {Scheme::Udp, "::1", 0, 5'005, {}, 6'000}},
       {"replay:logs/a:b.log", {Scheme::Replay, "logs/a:b.log", 0, 0}},
   };
   for (const auto& [text, expected] : cases) {
@@ -38,7 +42,7 @@ TEST(Address, AnUnknownSchemeListsTheKnownOnes) {
               "link address '" + std::string(text) +
                   "': must be one of can:IFACE, slcan:DEVICE:BAUD[:BITRATE], cansock:PATH, "
                   "serial:DEVICE:BAUD, tcp:HOST:PORT, "
-                  "udp:PORT, replay:FILE");
+                  "udp:[HOST:]PORT, replay:FILE");
   }
 }
 
@@ -73,6 +77,11 @@ TEST(Address, WrongPartsAreNamed) {
       {"udp:", "must read udp:PORT"},
       {"udp:0", "must read udp:PORT"},
       {"udp:-1", "must read udp:PORT"},
+      {"udp:10.0.0.1:", "must read udp:PORT"},
+      {"udp:0:10.0.0.1:5", "must read udp:PORT"},
+      {"udp:x:10.0.0.1:5", "must read udp:PORT"},
+      {"udp:car:5005", "needs a numeric address"},
+      {"udp::5005", "needs a numeric address"},
   };
   for (const auto& [text, problem] : cases) {
     const auto address = parse_address(text);
@@ -92,7 +101,7 @@ TEST(Factories, MakeTheLinkThatTheAddressNames) {
     EXPECT_EQ((*link)->describe(), text);
   }
   for (const char* text : {"serial:/dev/ttyUSB0:9600", "tcp:[::1]:5000", "tcp:localhost:80",
-                           "udp:5000", "replay:/tmp/x.log"}) {
+                           "udp:5000", "udp:10.0.0.1:5", "udp:7:[::1]:5", "replay:/tmp/x.log"}) {
     const auto link = make_byte_link(io, text);
     ASSERT_TRUE(link) << text;
     EXPECT_EQ((*link)->describe(), text);

@@ -31,6 +31,29 @@ TEST(Udp, HearsDatagramsAndAnswersTheLastSender) {
   EXPECT_EQ(answer, "hello");
 }
 
+TEST(Udp, WithAPeerAForeignAddressIsCountedAndNotHeard) {
+  asio::io_context io;
+  UdpLink device(io, 0);
+  ASSERT_TRUE(device.open());
+  UdpLink station(io, 0, UdpLink::Peer{"127.0.0.1", device.port()});
+  std::vector<std::string> heard;
+  station.on_bytes = [&](Bytes b, Time) { heard.push_back(text_of(b)); };
+  ASSERT_TRUE(station.open());
+  UdpLink stranger(io, 0, UdpLink::Peer{"127.0.0.1", station.port()});
+  ASSERT_TRUE(stranger.open());
+  stranger.write(bytes_of("drive!"));
+  ASSERT_TRUE(run_until(io, [&] { return station.strangers() == 1; }));
+  station.write(bytes_of("hello"));
+  bool asked = false;
+  device.on_bytes = [&](Bytes, Time) { asked = true; };
+  ASSERT_TRUE(run_until(io, [&] { return asked; }));
+  device.write(bytes_of("here"));
+  ASSERT_TRUE(run_until(io, [&] { return !heard.empty(); }));
+  EXPECT_EQ(heard, std::vector<std::string>{"here"});
+  EXPECT_EQ(station.strangers(), 1U);
+  EXPECT_EQ(station.describe(), "udp:127.0.0.1:" + std::to_string(device.port()));
+}
+
 TEST(Udp, AnswersToAClosedPortDoNotEndTheListening) {
   asio::io_context io;
   UdpLink station(io, 0);

@@ -1,0 +1,47 @@
+#pragma once
+// Where the steering really stands when it is told to stand straight.
+//
+// The driver sees two angles: what it told and what the controller reports. Their difference while
+// the car drives straight and steadily is the actuator's zero, and this removes it. A sensor that
+// is itself off shows nothing here: only the measured yaw rate tells, which is the robot's business
+// (it sees a curvature that stays while a straight line is driven). Pure.
+
+#include <algorithm>
+#include <cmath>
+
+namespace roverd::ackermann {
+
+class SteeringZero {
+ public:
+  static constexpr double kSlow_mps = 0.3;       ///< slower, the tyres hold the wheels
+  static constexpr double kStraight_rad = 0.1;   ///< farther out, the linkage is not linear
+  static constexpr double kSettled_s = 0.5;      ///< the wheel follows the command by then
+  static constexpr double kTime_s = 3.0;         ///< time constant
+  static constexpr double kSteady_radps = 0.05;  ///< the command changes no faster
+
+  explicit SteeringZero(double max_rad) : max_rad_(max_rad) {}
+
+  /// @param told_rad wheel angle wanted. @param seen_rad reported. dt_s since the last call.
+  void add(double speed_mps, double told_rad, double seen_rad, double dt_s) noexcept {
+    if (!(dt_s > 0.0)) return;
+    const double rate_radps = (told_rad - last_told_rad_) / dt_s;
+    last_told_rad_ = told_rad;
+    const bool straight = std::abs(speed_mps) > kSlow_mps && std::abs(told_rad) < kStraight_rad &&
+                          std::abs(rate_radps) < kSteady_radps;
+    steady_s_ = straight ? steady_s_ + dt_s : 0.0;
+    if (steady_s_ < kSettled_s) return;
+    const double step = std::min(1.0, dt_s / kTime_s);
+    zero_rad_ = std::clamp(zero_rad_ + step * (told_rad - seen_rad), -max_rad_, max_rad_);
+  }
+
+  /// To be added to what is sent, beside the parameter.
+  double zero_rad() const noexcept { return zero_rad_; }
+
+ private:
+  double max_rad_;
+  double zero_rad_ = 0.0;
+  double last_told_rad_ = 0.0;
+  double steady_s_ = 0.0;
+};
+
+}  // namespace roverd::ackermann

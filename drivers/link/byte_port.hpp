@@ -1,0 +1,180 @@
+#pragma once
+// What every driver on a byte link has in common: the machine of lifecycle.hpp, opening and opening
+// again, counting and reporting. The driver owns one and gives it the meaning of the bytes.
+// Device thread only. Time is an argument.
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/measurements.hpp"
+#include "base/result.hpp"
+#include "link/lifecycle.hpp"
+#include "link/link.hpp"
+
+namespace roverd::link {
+
+class BytePort {
+ public:
+  using Phase = base::DriverPhase;
+  using MakeLink = std::function<base::Result<std::unique_ptr<ByteLink>>()>;
+  using OnBytes = std::function<void(Bytes, Time)>;
+  using OnMeasurement = std::function<void(const base::Measurement&)>;
+
+  struct Names {
+    std::string name;         ///< of the driver
+    std::string waiting_for;  ///< "waiting for feedback"
+    double retry_first_s = 0.5;
+    double retry_max_s = 5.0;
+  };
+
+  /// @param forget called whenever what was heard before is worth nothing any more.
+  BytePort(Names names, MakeLink make_link, OnBytes on_bytes, std::function<void()> forget,
+           OnMeasurement on_measurement)
+      : names_(std::move(names)),
+        make_link_(std::move(make_link)),
+        on_bytes_(std::move(on_bytes)),
+        forget_(std::move(forget)),
+        on_measurement_(std::move(on_measurement)),
+        life_(names_.retry_first_s, names_.retry_max_s) {}
+  ~BytePort() { close(); }
+  BytePort(const BytePort&) = delete;
+  BytePort& operator=(const BytePort&) = delete;
+
+  bool is_open() const noexcept { return open_; }
+  bool is_up() const noexcept { return life_.phase() == Phase::Up; }
+  Phase phase() const noexcept { return life_.phase(); }
+  /// When the device was last heard, or the link opened.
+  Time last_heard() const noexcept { return last_heard_; }
+  const std::string& name() const noexcept { return names_.name; }
+
+  void start(Time now) {
+    now_ = now;
+    if (life_.phase() == Phase::Down) open(now);
+    report(now);
+  }
+  /// Opens again when it is time, and reports.
+  void tick(Time now) {
+    now_ = now;
+    if (!open_ && life_.retry_due(now)) open(now);
+    report(now);
+  }
+  void stop(Time now) {
+    now_ = now;
+    if (life_.phase() == Phase::Down) return;
+    close();
+    forget_();
+    life_.down();
+    report(now);
+  }
+
+  /// The device is there.
+  void heard(Time stamp) {
+    last_heard_ = stamp;
+    if (life_.phase() == Phase::Up || !open_) return;
+    life_.up();
+    report(stamp);
+  }
+  /// It is not there: only its own voice brings it back. The link stays open.
+  void lose(const std::string& reason, Time now) {
+    if (life_.phase() == Phase::Faulty && life_.reason() == reason) return;
+    forget_();
+    life_.faulty(reason, now);
+  }
+  /// As lose, and the link is closed, to be opened again after the back-off.
+  void fail(const std::string& reason, Time now) {
+    close();
+    forget_();
+    life_.faulty(reason, now);
+  }
+
+  SendResult write(Bytes bytes) noexcept {
+    if (!open_) return SendResult::Closed;
+    const SendResult result = link_->write(bytes);
+    if (result == SendResult::Sent) ++sent_;
+    return result;
+  }
+
+  void received(Time stamp) {
+    ++received_;
+    last_received_ = stamp;
+  }
+  /// @param cause in words: "wrong length".
+  void refused(const std::string& cause) { count(cause, 1); }
+  void count(const std::string& cause, std::uint64_t more) {
+    refused_ += more;
+    counts_[cause] += more;
+  }
+  void fact(const std::string& key, std::string value) { facts_[key] = std::move(value); }
+  void hazards(std::vector<std::string> all) { hazards_ = std::move(all); }
+
+  base::DriverStatus status(Time now) const {
+    base::DriverStatus s;
+    s.stamp = now;
+    s.name = names_.name;
+    s.phase = life_.phase();
+    s.reason = life_.reason();
+    s.received = received_;
+    s.refused = refused_;
+    s.sent = sent_;
+    s.last_received = last_received_;
+    auto detail = std::make_shared<base::DriverDetail>();
+    detail->counts = counts_;
+    if (link_) {
+      s.link = link_->describe();
+      if (link_->strangers() > 0) detail->counts["from a foreign address"] = link_->strangers();
+    }
+    detail->facts = facts_;
+    detail->hazards = hazards_;
+    s.detail = std::move(detail);
+    return s;
+  }
+
+ private:
+  void open(Time now) {
+    if (!link_) {
+      auto made = make_link_();
+      if (!made) return life_.faulty(made.error().detail, now);
+      link_ = std::move(*made);
+      link_->on_bytes = [this](Bytes b, Time t) {
+        if (open_) on_bytes_(b, t);
+      };
+      link_->on_closed = [this](const std::string& reason) { fail(reason, now_); };
+    }
+    life_.opening(names_.waiting_for);
+    last_heard_ = now;
+    open_ = true;  // before open: a link may hand over the first bytes from inside it
+    if (const auto opened = link_->open(); !opened) fail(opened.error().detail, now);
+  }
+  void close() noexcept {
+    open_ = false;
+    if (link_) link_->close();
+  }
+  void report(Time now) {
+    if (life_.report_due(now)) on_measurement_(status(now));
+  }
+
+  const Names names_;
+  const MakeLink make_link_;
+  const OnBytes on_bytes_;
+  const std::function<void()> forget_;
+  const OnMeasurement on_measurement_;
+  std::unique_ptr<ByteLink> link_;
+  Lifecycle life_;
+  bool open_ = false;
+  Time now_{};  ///< of the last call, for callbacks that carry no time
+  Time last_heard_{};
+  std::optional<Time> last_received_;
+  std::uint64_t received_ = 0;
+  std::uint64_t refused_ = 0;
+  std::uint64_t sent_ = 0;
+  std::map<std::string, std::uint64_t> counts_;
+  std::map<std::string, std::string> facts_;
+  std::vector<std::string> hazards_;
+};
+
+}  // namespace roverd::link
