@@ -55,7 +55,7 @@ class Peers {
   }
 
   /// Makes room for a newcomer: whoever has waited longest without a request goes. A crowd of
-  /// silent sockets must not keep out the one who wants to stop the robot.
+  /// silent sockets must not keep out the one who is in a hurry.
   /// @return false if all are busy.
   bool drop_longest_waiting() {
     std::shared_ptr<Peer> longest;

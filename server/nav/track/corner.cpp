@@ -57,7 +57,7 @@ void swing(Corner& c, double radius_m, double deviation_m, double in_m, double o
   const double beta = std::acos(std::clamp(cos_beta, -1.0, 1.0));
   const double ends_m = -t * std::cos(theta) + radius_m * (std::sin(theta) + 2.0 * std::sin(beta));
   c.radius_m = c.tangent_m = 0.0;
-  if (t > 0.5 * in_m || ends_m > 0.9 * out_m) return;
+  if (t > 0.45 * in_m || ends_m > 0.5 * out_m) return;
   c.radius_m = radius_m;
   c.tangent_m = t;
   c.swing_rad = std::copysign(beta, c.deflection_rad);
