@@ -31,7 +31,7 @@ Json day(const std::optional<gnss::Date>& date) {
 }
 
 /// Writes one sentence's type and fields.
-struct Describe {
+struct DescribeSentence {
   Json& out;
 
   void begin(const char* type, const gnss::Talker& talker) const {
@@ -153,7 +153,7 @@ Json line_object(std::string_view text) {
   const gnss::Parsed parsed = gnss::parse_line(text);
   Json out;
   if (parsed.kind == gnss::Kind::Used) {
-    std::visit(Describe{out}, parsed.sentence);
+    std::visit(DescribeSentence{out}, parsed.sentence);
     return out;
   }
   out["text"] = text;

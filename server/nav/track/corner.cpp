@@ -15,10 +15,6 @@ const double kStraight_rad = rad_from_deg(2.0);
 const double kArcLimit_rad = rad_from_deg(150.0);
 const double kAligned_rad = rad_from_deg(5.0);
 
-double direction_rad(EnuPoint from, EnuPoint to) noexcept {
-  return std::atan2(to.north_m - from.north_m, to.east_m - from.east_m);
-}
-
 bool pivots(Turn turn, double angle_rad, const PivotParams& p) noexcept {
   switch (turn) {
     case Turn::Pivot:
@@ -64,6 +60,10 @@ void swing(Corner& c, double radius_m, double deviation_m, double in_m, double o
 }
 
 }  // namespace
+
+double direction_rad(EnuPoint from, EnuPoint to) noexcept {
+  return std::atan2(to.north_m - from.north_m, to.east_m - from.east_m);
+}
 
 double min_radius_m(const VehicleParams& p) noexcept {
   return p.steered() ? 1.1 * p.wheelbase_m / std::tan(rad_from_deg(p.max_steering_deg)) : 0.0;

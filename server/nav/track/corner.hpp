@@ -26,6 +26,9 @@ struct Corner {
   double swing_rad = 0.0;  ///< not 0: the arc goes on by β beyond the new direction, and back by β
 };
 
+/// Yaw of the way from one point to another.
+double direction_rad(EnuPoint from, EnuPoint to) noexcept;
+
 /// Narrowest turn that the steering allows, with a tenth left to steer with; 0: turns on the spot.
 double min_radius_m(const VehicleParams& p) noexcept;
 

@@ -15,10 +15,6 @@ constexpr double kSame_m = 0.001;
 constexpr double kArcStep_m = 0.10;
 const double kArcStep_rad = rad_from_deg(8.0);
 
-double direction_rad(EnuPoint from, EnuPoint to) noexcept {
-  return std::atan2(to.north_m - from.north_m, to.east_m - from.east_m);
-}
-
 EnuPoint along(EnuPoint from, double yaw_rad, double by_m) noexcept {
   return {from.east_m + by_m * std::cos(yaw_rad), from.north_m + by_m * std::sin(yaw_rad)};
 }

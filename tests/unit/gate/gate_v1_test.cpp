@@ -18,16 +18,16 @@ CanFrame v1(std::uint32_t id, std::initializer_list<int> seven) {
 CanFrame command(int mode, int linear_pct, int angular_pct, int count = 0) {
   return v1(0x130, {mode, 0, linear_pct & 0xFF, angular_pct & 0xFF, 0, 0, count});
 }
-CanFrame state(int vehicle, int mode) {
+CanFrame v1_or_v2_state(int vehicle, int mode) {
   return v1(0x151, {vehicle, mode, 0, 0xF5, 0, 0, 3});
 }
-const CanFrame kMotionState = v1(0x131, {0, 0, 0, 0, 0, 0, 7});
+const CanFrame kMotionFeedback = v1(0x131, {0, 0, 0, 0, 0, 0, 7});
 
 class GateV1Test : public GateTest {
  protected:
   void hear(int mode = 1) {
-    gate.saw(kMotionState, now);
-    gate.saw(state(0, mode), now);
+    gate.saw(kMotionFeedback, now);
+    gate.saw(v1_or_v2_state(0, mode), now);
   }
   void ready() {
     gate.permit(true);
@@ -67,10 +67,10 @@ TEST_F(GateV1Test, AlwaysLetsAStopOut) {
 TEST_F(GateV1Test, MovesOnlyANormalBaseInCanMode) {
   ready();
   for (const auto& [vehicle, mode] : {std::pair{1, 1}, {2, 1}, {7, 1}, {0, 0}, {0, 2}}) {
-    gate.saw(state(vehicle, mode), now);
+    gate.saw(v1_or_v2_state(vehicle, mode), now);
     expect_refused(command(1, 5, 0), Refusal::NotReady);
   }
-  gate.saw(state(0, 1), now);
+  gate.saw(v1_or_v2_state(0, 1), now);
   EXPECT_TRUE(gate.allows(command(1, 5, -5), now));
 }
 
@@ -80,19 +80,19 @@ TEST_F(GateV1Test, LostFeedbackWithdrawsPermission) {
   EXPECT_TRUE(gate.allows(command(1, 5, 0), now));
   now += 1ms;
   expect_refused(command(1, 5, 0), Refusal::Stale);
-  gate.saw(kMotionState, now);
+  gate.saw(kMotionFeedback, now);
   EXPECT_TRUE(gate.allows(command(1, 5, 0), now));
   now += 400ms;
-  gate.saw(kMotionState, now);
+  gate.saw(kMotionFeedback, now);
   expect_refused(command(1, 5, 0), Refusal::Stale);
 }
 
 TEST_F(GateV1Test, FeedbackWithAWrongChecksumProvesNothing) {
   gate.permit(true);
-  CanFrame broken = state(0, 1);
+  CanFrame broken = v1_or_v2_state(0, 1);
   ++broken.data[7];
   gate.saw(broken, now);
-  gate.saw(kMotionState, now);
+  gate.saw(kMotionFeedback, now);
   expect_refused(command(1, 5, 0), Refusal::Stale);
 }
 

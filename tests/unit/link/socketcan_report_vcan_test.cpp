@@ -19,13 +19,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr const char* kBus = "vcan8";
+constexpr const char* kReportBus = "vcan8";
 
 class Bus : public testing::Test {
  protected:
-  void SetUp() override { ip(std::string("add dev ") + kBus + " type vcan"); }
-  void TearDown() override { ip(std::string("delete ") + kBus); }
-  void up() { ip(std::string("set ") + kBus + " up"); }
+  void SetUp() override { ip(std::string("add dev ") + kReportBus + " type vcan"); }
+  void TearDown() override { ip(std::string("delete ") + kReportBus); }
+  void up() { ip(std::string("set ") + kReportBus + " up"); }
   /// Reports are a second apart, so that each one reads the kernel.
   BusReport report(Node& node) {
     now += 2s;
@@ -36,7 +36,7 @@ class Bus : public testing::Test {
 };
 
 TEST_F(Bus, TheInterfacesStateIsToldWhetherTheLinkIsOpenOrNot) {
-  Node node(io, kBus);
+  Node node(io, kReportBus);
   EXPECT_EQ(report(node).facts.at("can_interface"), "down");
   up();
   const auto facts = report(node).facts;
@@ -48,7 +48,7 @@ TEST_F(Bus, TheInterfacesStateIsToldWhetherTheLinkIsOpenOrNot) {
 }
 
 TEST_F(Bus, TheStateIsReadOnceASecondAndNotAtEveryReport) {
-  Node node(io, kBus);
+  Node node(io, kReportBus);
   EXPECT_EQ(node.link.report(now).facts.at("can_interface"), "down");
   up();
   EXPECT_EQ(node.link.report(now + 900ms).facts.at("can_interface"), "down");
@@ -57,8 +57,8 @@ TEST_F(Bus, TheStateIsReadOnceASecondAndNotAtEveryReport) {
 
 TEST_F(Bus, OwnFramesComeBackAsConfirmationsAndAreNotHeard) {
   up();
-  Node a(io, kBus);
-  Node b(io, kBus);
+  Node a(io, kReportBus);
+  Node b(io, kReportBus);
   ASSERT_TRUE(a.link.open());
   ASSERT_TRUE(b.link.open());
   for (int i = 0; i < 5; ++i) EXPECT_EQ(a.link.send(make_frame(0x111, {1})), SendResult::Sent);
@@ -75,8 +75,8 @@ TEST_F(Bus, OwnFramesComeBackAsConfirmationsAndAreNotHeard) {
 
 TEST_F(Bus, ErrorFramesAreCountedByTheirWords) {
   up();
-  Node a(io, kBus);
-  Node b(io, kBus);
+  Node a(io, kReportBus);
+  Node b(io, kReportBus);
   ASSERT_TRUE(a.link.open());
   ASSERT_TRUE(b.link.open());
   auto error = make_frame(0x20, {0, 0, 0, 0, 0, 0, 0, 0});
@@ -92,23 +92,23 @@ TEST_F(Bus, ErrorFramesAreCountedByTheirWords) {
 }
 
 TEST_F(Bus, CanFdFramesAreCountedAndNothingElse) {
-  ip(std::string("set ") + kBus + " mtu 72");
+  ip(std::string("set ") + kReportBus + " mtu 72");
   up();
-  Node a(io, kBus);
+  Node a(io, kReportBus);
   ASSERT_TRUE(a.link.open());
   const int fd = ::socket(PF_CAN, SOCK_RAW, CAN_RAW);
   const int on = 1;
   ::setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on);
   sockaddr_can address{};
   address.can_family = AF_CAN;
-  address.can_ifindex = static_cast<int>(::if_nametoindex(kBus));
+  address.can_ifindex = static_cast<int>(::if_nametoindex(kReportBus));
   ASSERT_EQ(::bind(fd, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
   canfd_frame frame{};
   frame.can_id = 0x211;
   frame.len = 8;  // as long as a classic one, and still another kind
   ASSERT_EQ(::write(fd, &frame, sizeof frame), static_cast<ssize_t>(sizeof frame));
   ::close(fd);
-  Node b(io, kBus);
+  Node b(io, kReportBus);
   ASSERT_TRUE(b.link.open());
   b.link.send(make_frame(1, {}));
   ASSERT_TRUE(run_until(io, [&] { return !a.heard.empty(); }));
@@ -118,8 +118,8 @@ TEST_F(Bus, CanFdFramesAreCountedAndNothingElse) {
 
 TEST_F(Bus, AFilterLetsItsIdsThroughAndNoOthers) {
   up();
-  Node a(io, kBus);
-  Node b(io, kBus, {.only = {{0x211}, {0x18FF0001, true}}});
+  Node a(io, kReportBus);
+  Node b(io, kReportBus, {.only = {{0x211}, {0x18FF0001, true}}});
   ASSERT_TRUE(a.link.open());
   ASSERT_TRUE(b.link.open());
   auto wide = make_frame(0x18FF0001, {});
@@ -140,9 +140,9 @@ TEST_F(Bus, SeveralBusesAreHeardAtOnceAndApart) {
   ip("add dev vcan9 type vcan");
   ip("set vcan9 up");
   {
-    Node left(io, kBus);
+    Node left(io, kReportBus);
     Node right(io, "vcan9");
-    Node far_left(io, kBus);
+    Node far_left(io, kReportBus);
     Node far_right(io, "vcan9");
     for (Node* node : {&left, &right, &far_left, &far_right}) ASSERT_TRUE(node->link.open());
     far_left.link.send(make_frame(1, {}));
@@ -155,13 +155,13 @@ TEST_F(Bus, SeveralBusesAreHeardAtOnceAndApart) {
 }
 
 TEST_F(Bus, AnInterfaceThatIsOursToSetUpIsBroughtUpByOpening) {
-  Node node(io, kBus, {.bitrate = 500'000});  // a virtual bus has no bit rate: only up
+  Node node(io, kReportBus, {.bitrate = 500'000});  // a virtual bus has no bit rate: only up
   ASSERT_TRUE(node.link.open());
-  EXPECT_TRUE(read_can_state(kBus)->up);
-  ip(std::string("set ") + kBus + " down");
+  EXPECT_TRUE(read_can_state(kReportBus)->up);
+  ip(std::string("set ") + kReportBus + " down");
   ASSERT_TRUE(run_until(io, [&] { return !node.closed.empty(); }));
   ASSERT_TRUE(node.link.open());
-  EXPECT_TRUE(read_can_state(kBus)->up);
+  EXPECT_TRUE(read_can_state(kReportBus)->up);
 }
 
 TEST_F(Bus, WithoutTheRightToSetItUpTheErrorSaysSo) {
@@ -171,15 +171,15 @@ TEST_F(Bus, WithoutTheRightToSetItUpTheErrorSaysSo) {
     __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
     __user_cap_data_struct none[2]{};
     if (::syscall(SYS_capset, &header, none) != 0) ::_exit(2);
-    const auto brought = bring_up(kBus, {.up = true});
-    const std::string expected = std::string("CAN interface ") + kBus +
+    const auto brought = bring_up(kReportBus, {.up = true});
+    const std::string expected = std::string("CAN interface ") + kReportBus +
                                  ": cannot be set up: not allowed (it needs CAP_NET_ADMIN)";
     ::_exit(!brought && brought.error().detail == expected ? 0 : 1);
   }
   int status = -1;
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   EXPECT_EQ(status, 0);
-  EXPECT_FALSE(read_can_state(kBus)->up);
+  EXPECT_FALSE(read_can_state(kReportBus)->up);
 }
 
 }  // namespace
