@@ -160,6 +160,15 @@ Result<void> set_all(Settings& settings, const std::vector<Entry>& entries) {
   return {};
 }
 
+/// A misspelt word must not turn a steered vehicle into one that turns on the spot.
+Result<void> check_kinematics(const nav::VehicleParams& vehicle) {
+  const std::string& word = vehicle.kinematics;
+  if (word == "skid_steer" || word == "differential" || word == "ackermann") return {};
+  return base::fail(
+      base::Code::Invalid,
+      "vehicle.kinematics must be skid_steer, differential or ackermann, is \"" + word + "\"");
+}
+
 /// The profiles beside the config file, for the message when a name is wrong.
 std::string known_vehicles(const std::filesystem::path& folder) {
   std::vector<std::string> names;
@@ -210,6 +219,9 @@ Result<Settings> load_settings(const SettingsSource& source) {
   using Layer = const std::vector<Entry>*;
   for (const Layer layer : {Layer{&*profile}, Layer{&*config}, Layer{&overrides}, Layer{&chosen}}) {
     if (auto done = set_all(settings, *layer); !done) return tl::unexpected(done.error());
+  }
+  if (auto good = check_kinematics(settings.robot.vehicle); !good) {
+    return tl::unexpected(good.error());
   }
   return settings;
 }
