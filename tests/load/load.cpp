@@ -116,6 +116,7 @@ class Load {
 
  private:
   static constexpr int kCallers = 16;
+  static constexpr auto kSettling = std::chrono::milliseconds(500);
 
   void add_client();
   void add_caller();
@@ -126,6 +127,7 @@ class Load {
 
   const Plan plan_;
   const int poll_;
+  Clock::time_point counts_from_;
   std::vector<std::unique_ptr<Connection>> clients_;
   std::vector<Caller> callers_;
   std::vector<double> message_ms_;
@@ -184,6 +186,7 @@ void Load::on_frames(Connection& client) {
   while (const auto frame = client.take_frame()) {
     if (frame->opcode == 9) client.send(masked_frame(10, frame->text));
     if (frame->opcode != 1) continue;
+    if (Clock::now() < counts_from_) continue;
     ++messages_;
     bytes_ += static_cast<long>(frame->text.size());
     if (const auto stamp = stamp_ms(frame->text)) message_ms_.push_back(wall_ms_of_day() - *stamp);
@@ -214,14 +217,17 @@ void Load::on_ready(std::uint32_t index) {
 }
 
 void Load::run() {
-  const auto begin = Clock::now();
+  // While the later clients still connected, messages for the earlier ones waited unread here: they
+  // tell nothing about the server, so the first moment is read but not counted.
+  const auto begin = Clock::now() + kSettling;
+  counts_from_ = begin;
   const auto end =
       begin + std::chrono::duration_cast<Clock::duration>(duration<double>(plan_.seconds));
   const auto period = std::chrono::duration_cast<Clock::duration>(
       duration<double>(plan_.calls_per_s > 0.0 ? 1.0 / plan_.calls_per_s : 3600.0));
   auto next_call = begin + period;
   epoll_event events[64];
-  for (auto now = begin; now < end; now = Clock::now()) {
+  for (auto now = Clock::now(); now < end; now = Clock::now()) {
     for (; plan_.calls_per_s > 0.0 && next_call <= now; next_call += period) call(now);
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(std::min(next_call, end) - now);
     const int n =
