@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -105,7 +106,6 @@ class Load {
   explicit Load(Plan plan) : plan_(std::move(plan)), poll_(::epoll_create1(EPOLL_CLOEXEC)) {
     if (poll_ < 0) throw std::runtime_error("epoll_create1 failed");
     for (int i = 0; i < plan_.clients; ++i) add_client();
-    for (int i = 0; i < kCallers && plan_.calls_per_s > 0.0; ++i) add_caller();
   }
   ~Load() { ::close(poll_); }
   Load(const Load&) = delete;
@@ -115,7 +115,7 @@ class Load {
   void report();
 
  private:
-  static constexpr int kCallers = 16;
+  static constexpr std::size_t kCallers = 16;
   static constexpr auto kSettling = std::chrono::milliseconds(500);
 
   void add_client();
@@ -170,11 +170,16 @@ void Load::add_caller() {
 void Load::call(Clock::time_point now) {
   static constexpr std::string_view kPaths[] = {"vehicle", "vehicle/checks", "missions?limit=20",
                                                 "execution", "drivers"};
-  const auto idle = std::find_if(callers_.begin(), callers_.end(),
-                                 [](const Caller& c) { return c.connection && !c.asked; });
+  auto idle = std::find_if(callers_.begin(), callers_.end(),
+                           [](const Caller& c) { return c.connection && !c.asked; });
   if (idle == callers_.end()) {
-    ++unsent_;
-    return;
+    if (callers_.size() == kCallers) {
+      ++unsent_;
+      return;
+    }
+    // Not before it is needed: the server hangs up on those that never ask.
+    add_caller();
+    idle = std::prev(callers_.end());
   }
   const std::string_view path = kPaths[next_path_++ % std::size(kPaths)];
   idle->asked = now;
