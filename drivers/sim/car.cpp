@@ -3,7 +3,7 @@
 namespace roverd::sim {
 namespace {
 
-constexpr double kWeight_nkg = 9.81;
+constexpr double kCarGravity_mps2 = 9.81;
 constexpr double kCarEfficiency = 0.8;
 
 }  // namespace
@@ -31,7 +31,7 @@ void Car::step(const DriveParams& d, const CarParams& c, double speed_mps,
   ground_ = {{v, v * std::tan(wheel_rad_) / c.wheelbase_m}, 0.0};
   const double force_n = d.mass_kg * ((speed_mps_ - before_mps) / dt_s +
                                       (speed_mps_ == 0.0 ? 0.0 : std::copysign(1.0, speed_mps_)) *
-                                          d.rolling_resistance * kWeight_nkg);
+                                          d.rolling_resistance * kCarGravity_mps2);
   power_w_ = std::max(0.0, force_n * speed_mps_) / kCarEfficiency;
 }
 

@@ -5,15 +5,13 @@ over the API, and the simulator's true pose as the judge. All at the same time."
 import concurrent.futures
 import math
 import pathlib
-import re
 import shutil
 import signal
 import sys
 import tempfile
-import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "harness"))
-from station import ROOT, Control, Failed, Program, Rest, check, run_cases, until  # noqa: E402
+from station import ROOT, Control, Program, Rest, check, run_cases, until  # noqa: E402
 
 RUN = ROOT / "run"
 METRE_LAT = 1 / 111_360.0
@@ -35,6 +33,11 @@ DRIVERS = {"bunker": {"bunker", "gnss"}, "uku": {"ackermann", "gnss"},
            "donkey": {"twist", "gnss"}, "husky": {"twist", "bumper", "gnss"}}
 
 
+# The driver that hears, or is connected to, its vehicle; the uku tells nothing.
+TELLING = {"bunker": "bunker", "imiev": "ackermann", "probot": "ratio", "donkey": "twist",
+           "husky": "twist"}
+
+
 class Course:
     """A mission laid from where the vehicle really stands and looks."""
 
@@ -53,6 +56,26 @@ class Course:
         east = (truth["lon"] - self.lon) / self.metre_lon
         north = (truth["lat"] - self.lat) / METRE_LAT
         return math.hypot(east - point[0], north - point[1])
+
+
+def break_things(name, control, rest):
+    """The faults of the drive link and the bumper reach roverd, and what is over is over."""
+    def states():
+        return {d["name"]: d["state"] for d in rest.get("/drivers")["items"]}
+
+    if name in TELLING:
+        control.ask({"fault": {"bus_off": True}})
+        until("the dead drive link is noticed", 10, lambda: states()[TELLING[name]] != "up")
+        control.ask({"fault": {"bus_off": False}})
+        until("the drive link is up again", 20, lambda: states()[TELLING[name]] == "up")
+    if "bumper" in DRIVERS[name]:
+        control.ask({"fault": {"bumper": 1}})
+        until("the hit latches the stop", 5, lambda: rest.get("/vehicle")["estop"])
+        status, _, answer = rest.call("POST", "/vehicle/estop/reset", {})
+        check(status == 409, f"a pressed bumper is reset: {answer}")
+        control.ask({"fault": {"bumper": 0}})
+        until("it lets itself be reset", 5,
+              lambda: rest.call("POST", "/vehicle/estop/reset", {})[0] == 200, 0.2)
 
 
 def drive(name):
@@ -94,9 +117,11 @@ def drive(name):
         truth = control.ask({"get": "truth"})
         rests_m = course.metres(truth, course.points[-1])
         check(rests_m < end_m, f"it rests {rests_m:.2f} m from the end")
-        time.sleep(1.0)
+        until("a second goes by", 10,
+              lambda: control.ask({"get": "truth"})["t_s"] > truth["t_s"] + 1.0)
         check(abs(control.ask({"get": "truth"})["driven_m"] - truth["driven_m"]) < 0.02, "it rolls")
         check(rest.get("/vehicle")["mode"] == "HOLD", "not in HOLD at the end")
+        break_things(name, control, rest)
         control.close()
         return nearest
     finally:

@@ -164,30 +164,22 @@ class Rest:
 
 
 class Station:
-    """roverd-sim and roverd, each on free ports, with a data folder of their own.
+    """roverd-sim and roverd, each on free ports, with a data folder of their own."""
 
-    @param vehicle of config/vehicles and config/sim; the Bunker by default."""
-
-    def __init__(self, can=None, seed=1, sim=(), arguments=(), config=None, data=None,
-                 vehicle=None):
+    def __init__(self, can=None, seed=1, sim=(), arguments=(), config=None, data=None):
         self.scratch = pathlib.Path(tempfile.mkdtemp(prefix="roverd-test."))
         self.sim = self.roverd = self.control = None
         try:
             bus = ("--can", can) if can else ("--cansock", self.scratch / "can")
             self.sim = Program(BIN / "roverd-sim", *bus, "--gnss", "tcp:0", "--control", "0",
-                               "--seed", seed, "--config", ROOT / f"config/sim/{vehicle or 'bunker'}.toml",
-                               *sim)
-            ready = self.sim.wait_line(r"^ready (.+)$")[1]
-            links = dict(word.split("=", 1) for word in ready.split())
-            self.control_address = links.pop("control")
-            self.control = Control(self.control_address)
-            links = {"bunker" if name == "can" else name: link for name, link in links.items()}
-            settings = [word for name, link in links.items()
-                        for word in ("--set", f"drivers.{name}.link={link}")]
+                               "--seed", seed, *sim)
+            ready = self.sim.wait_line(r"^ready can=(\S+) gnss=(\S+) control=(\S+)")
+            self.control = Control(ready[3])
+            self.control_address = ready[3]
             self.roverd = Program(BIN / "roverd", "--config", config or ROOT / "config/robot.toml",
                                   "--data", data or self.scratch / "data", "--port", "0",
-                                  *(("--vehicle", vehicle) if vehicle else ()), *settings,
-                                  *arguments)
+                                  "--set", f"drivers.bunker.link={ready[1]}",
+                                  "--set", f"drivers.gnss.link={ready[2]}", *arguments)
             self.address = self.roverd.wait_line(r"^listening on (http://\S+)")[1]
             self.rest = Rest(self.address)
         except BaseException:

@@ -107,6 +107,26 @@ TEST(Vehicles, TheBunkerDrivesTheSameL) {
   EXPECT_TRUE(rig.stands());
 }
 
+//   1 ──── 2      the page's main job: 8 m to each side of the start, which is in the middle; twice
+//     0    │      that for the i-MiEV, which needs 23 m to swing round a corner of 90 deg
+//   4 ──── 3
+TEST(Vehicles, EachDoesTheMainJobOfThePage) {
+  for (const char* vehicle : {"uku", "imiev", "probot", "donkey", "husky"}) {
+    SCOPED_TRACE(vehicle);
+    const double half_m = vehicle == std::string("imiev") ? 16.0 : 8.0;
+    const std::vector<Metres> square{{-half_m, half_m},
+                                     {half_m, half_m * 1.1},
+                                     {half_m * 1.2, -half_m * 0.6},
+                                     {-half_m * 0.8, -half_m}};
+    CartRig rig({.vehicle = vehicle, .heading_deg = 40.0});
+    rig.arm_and_start(rig.plan_of(square));
+    ASSERT_TRUE(rig.finish(400.0)) << rig.state()->mission.reason;
+    for (const Metres& m : square) EXPECT_LT(rig.nearest_m(m), 0.5);
+    EXPECT_LT(rig.distance_to_m(square.back()), 0.15);
+    EXPECT_TRUE(rig.stands());
+  }
+}
+
 class EachCar : public testing::TestWithParam<Job> {};
 INSTANTIATE_TEST_SUITE_P(Loop, EachCar, testing::Values(kUku, kImiev),
                          [](const auto& made) { return std::string(made.param.vehicle); });
