@@ -8,8 +8,7 @@ constexpr double kCarEfficiency = 0.8;
 
 }  // namespace
 
-void Car::step(const DriveParams& d, const CarParams& c, double speed_mps,
-               std::optional<double> wheel_rad, bool brake, double dt_s) {
+void Car::step(const DriveParams& d, const CarParams& c, Wanted wanted, bool brake, double dt_s) {
   const double before_mps = speed_mps_;
   if (brake) {
     const double step = d.estop_decel_mps2 * dt_s;
@@ -17,15 +16,15 @@ void Car::step(const DriveParams& d, const CarParams& c, double speed_mps,
     lagged_mps_ = driven_mps_ = speed_mps_ = slew(speed_mps_, 0.0, step, step);
     steer(c, {}, dt_s);
   } else {
-    if (wheel_rad) *wheel_rad -= c.servo_rad;
-    const Wanted now = delay_.step({speed_mps, wheel_rad}, d.delay_s, dt_s);
+    if (wanted.wheel_rad) *wanted.wheel_rad -= c.servo_rad;
+    const Wanted now = delay_.step(wanted, d.delay_s, dt_s);
     lagged_mps_ += (now.speed_mps - lagged_mps_) * lag_share(d.lag_s, dt_s);
     driven_mps_ = slew(driven_mps_, lagged_mps_, d.accel_mps2 * dt_s, d.decel_mps2 * dt_s);
     if (now.speed_mps == 0.0 && std::abs(driven_mps_) < kStandLinear_mps) {
       driven_mps_ = lagged_mps_ = 0.0;
     }
     speed_mps_ = unstick(speed_mps_, driven_mps_, d.stick_mps);
-    steer(c, now.motor_rad, dt_s);
+    steer(c, now.wheel_rad, dt_s);
   }
   const double v = speed_mps_ * (1.0 - d.slip);
   ground_ = {{v, v * std::tan(wheel_rad_) / c.wheelbase_m}, 0.0};

@@ -16,9 +16,13 @@ namespace roverd::sim {
 
 class Car {
  public:
-  /// @param wheel_rad empty: the steering motor stays where it is. @param brake at once.
-  void step(const DriveParams& d, const CarParams& c, double speed_mps,
-            std::optional<double> wheel_rad, bool brake, double dt_s);
+  struct Wanted {
+    double speed_mps = 0.0;
+    std::optional<double> wheel_rad;  ///< empty: the steering motor stays where it is
+  };
+
+  /// @param brake the e-stop: brakes at once, whatever is wanted.
+  void step(const DriveParams& d, const CarParams& c, Wanted wanted, bool brake, double dt_s);
 
   GroundMotion ground() const noexcept { return ground_; }
   double wheel_speed_mps() const noexcept { return speed_mps_; }
@@ -30,10 +34,6 @@ class Car {
   void halt() noexcept;
 
  private:
-  struct Wanted {
-    double speed_mps = 0.0;
-    std::optional<double> motor_rad;
-  };
   void steer(const CarParams& c, std::optional<double> wanted_rad, double dt_s);
 
   Delay<Wanted> delay_;

@@ -79,7 +79,7 @@ Vehicle::Moved Cart::drive(double dt_s) {
 Vehicle::Moved Cart::roll(const Order& order, bool brake, double dt_s) {
   const Params& p = params();
   if (steered_) {
-    car_.step(p.drive, p.car, order.speed_mps, order.wheel_rad, brake, dt_s);
+    car_.step(p.drive, p.car, {order.speed_mps, order.wheel_rad}, brake, dt_s);
     car_travel_m_ += car_.wheel_speed_mps() * dt_s;
     return {car_.ground(), car_.power_w(), 0.0};
   }

@@ -37,11 +37,11 @@ TEST(Car, TheWheelTurnsNoFasterThanItCanAndNotBeyondItsLock) {
   Params p = ideal_cart("ackermann");
   p.car.wheel_rate_radps = 0.5;
   Car car;
-  for (int i = 0; i < 100; ++i) car.step(p.drive, p.car, 0.0, 1.0, false, kStep_s);
+  for (int i = 0; i < 100; ++i) car.step(p.drive, p.car, {0.0, 1.0}, false, kStep_s);
   EXPECT_NEAR(car.wheel_rad(), 0.25, 1e-9);  // 0.5 s
-  for (int i = 0; i < 400; ++i) car.step(p.drive, p.car, 0.0, 1.0, false, kStep_s);
+  for (int i = 0; i < 400; ++i) car.step(p.drive, p.car, {0.0, 1.0}, false, kStep_s);
   EXPECT_NEAR(car.wheel_rad(), 0.7, 1e-9);
-  for (int i = 0; i < 400; ++i) car.step(p.drive, p.car, 0.0, {}, false, kStep_s);
+  for (int i = 0; i < 400; ++i) car.step(p.drive, p.car, {0.0, {}}, false, kStep_s);
   EXPECT_NEAR(car.wheel_rad(), 0.7, 1e-9);  // nobody turned it back
 }
 
@@ -52,7 +52,7 @@ TEST(Car, SpeedingUpAndBrakingKeepTheLimits) {
   p.drive.estop_decel_mps2 = 4.0;
   Car car;
   const auto run = [&](double mps, int steps, bool brake = false) {
-    for (int i = 0; i < steps; ++i) car.step(p.drive, p.car, mps, 0.0, brake, kStep_s);
+    for (int i = 0; i < steps; ++i) car.step(p.drive, p.car, {mps, 0.0}, brake, kStep_s);
     return car.wheel_speed_mps();
   };
   EXPECT_NEAR(run(1.0, 200), 0.5, 1e-9);       // 1 s at 0.5 m/s²
@@ -67,10 +67,10 @@ TEST(Car, DelayAndLagComeBeforeTheMotion) {
   p.drive.delay_s = 0.1;
   p.drive.lag_s = 0.2;
   Car car;
-  for (int i = 0; i < 20; ++i) car.step(p.drive, p.car, 1.0, 0.3, false, kStep_s);
+  for (int i = 0; i < 20; ++i) car.step(p.drive, p.car, {1.0, 0.3}, false, kStep_s);
   EXPECT_EQ(car.wheel_speed_mps(), 0.0);
   EXPECT_EQ(car.wheel_rad(), 0.0);
-  for (int i = 0; i < 40; ++i) car.step(p.drive, p.car, 1.0, 0.3, false, kStep_s);
+  for (int i = 0; i < 40; ++i) car.step(p.drive, p.car, {1.0, 0.3}, false, kStep_s);
   EXPECT_NEAR(car.wheel_speed_mps(), 1.0 - std::exp(-1.0), 1e-3);  // one time constant later
 }
 
@@ -78,14 +78,14 @@ TEST(Car, TheLinkagesZeroIsHiddenFromTheSensorTheServosIsNot) {
   Params p = ideal_cart("ackermann");
   p.car.linkage_rad = 0.03;
   Car car;
-  for (int i = 0; i < 20; ++i) car.step(p.drive, p.car, 1.0, 0.2, false, kStep_s);
+  for (int i = 0; i < 20; ++i) car.step(p.drive, p.car, {1.0, 0.2}, false, kStep_s);
   EXPECT_NEAR(car.seen_rad(), 0.2, 1e-9);
   EXPECT_NEAR(car.wheel_rad(), 0.17, 1e-9);
   EXPECT_NEAR(car.ground().twist.angular_radps,
               car.ground().twist.linear_mps * std::tan(0.17) / 1.3, 1e-9);
   p.car.linkage_rad = 0.0;
   p.car.servo_rad = 0.03;
-  for (int i = 0; i < 20; ++i) car.step(p.drive, p.car, 1.0, 0.2, false, kStep_s);
+  for (int i = 0; i < 20; ++i) car.step(p.drive, p.car, {1.0, 0.2}, false, kStep_s);
   EXPECT_NEAR(car.seen_rad(), 0.17, 1e-9);
   EXPECT_NEAR(car.wheel_rad(), 0.17, 1e-9);
 }
