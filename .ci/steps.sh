@@ -4,7 +4,7 @@
 # shellcheck source=.ci/lib.sh
 true
 
-all_steps=(doors shell format readme web build unit api command real can page asan tsan fuzz)
+all_steps=(doors shell format readme web build unit api command vehicles real can page asan tsan fuzz)
 # Timing depends on what else the machine does, and clang-tidy takes long: by name.
 # shellcheck disable=SC2034
 named_steps=(figures tidy bench)
@@ -21,6 +21,7 @@ declare -A titles=(
   [unit]="rooms, and the loop in simulated time"
   [api]="the API over real sockets"
   [command]="./run: options, bad input, Ctrl-C, second start; roverd decode"
+  [vehicles]="the main job with every vehicle: ./run --vehicle NAME, judged by the true pose"
   [real]="recordings and mission files from the field"
   [can]="a real CAN interface in the user-mode kernel"
   [page]="the page in a browser, against the simulated robot"
@@ -108,6 +109,8 @@ step_command() {
   python3 "$root/tests/command/run_test.py" || code=$?
   return "$code"
 }
+
+step_vehicles() { python3 "$root/tests/command/vehicles_test.py"; }
 
 step_real() { python3 "$root/tests/command/real_data_test.py"; }
 

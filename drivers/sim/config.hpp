@@ -2,14 +2,14 @@
 // The simulator's configuration file (TOML) and its --set overrides.
 //
 //   [start]            where the robot stands at first: lat, lon, heading_deg
-//   [drive] [battery] [radio] [gnss] [compass]      sim/params.hpp
+//   [device] [drive] [car] [battery] [radio] [gnss] [compass]      sim/params.hpp
 
 #include <string>
 #include <vector>
 
 #include "base/params.hpp"
 #include "base/result.hpp"
-#include "sim/bunker.hpp"
+#include "sim/vehicle.hpp"
 
 namespace roverd::sim {
 

@@ -26,6 +26,7 @@ json truth_object(const Truth& t, Time start) {
           {"yaw_rate_dps", base::deg_from_rad(t.twist.angular_radps)},
           {"left_track_mps", t.left_track_mps},
           {"right_track_mps", t.right_track_mps},
+          {"wheel_rad", t.wheel_rad},
           {"driven_m", t.driven_m},
           {"battery_pct", t.battery_pct},
           {"control_mode", base::to_string(t.control_mode)},
@@ -128,8 +129,8 @@ Result<void> set_radio(Wish& wish, const std::string& key, const json& value) {
 }
 
 /// @param now where the robot is: members that are missing keep it.
-Result<void> set_pose(Wish& wish, const json& members, const Bunker& bunker) {
-  const Truth now = bunker.truth();
+Result<void> set_pose(Wish& wish, const json& members, const Vehicle& vehicle) {
+  const Truth now = vehicle.truth();
   base::LatLon global = now.at;
   base::EnuPoint local = now.local;
   bool is_local = false;
@@ -154,7 +155,7 @@ Result<void> set_pose(Wish& wish, const json& members, const Bunker& bunker) {
     is_global = is_global || key == "lat" || key == "lon";
   }
   if (is_local && is_global) return refuse_line("pose takes lat, lon or east_m, north_m, not both");
-  wish.at = is_local ? bunker.frame().to_global(local) : global;
+  wish.at = is_local ? vehicle.frame().to_global(local) : global;
   wish.heading_deg = heading_deg;
   return {};
 }
@@ -169,7 +170,7 @@ Result<void> each(const std::string& member, const json& members, Set&& set) {
 }
 
 Result<void> read_member(Wish& wish, const std::string& name, const json& value,
-                         const Bunker& bunker) {
+                         const Vehicle& vehicle) {
   if (name == "set") {
     return each(name, value, [&](auto& k, auto& v) { return set_any(wish, k, v); });
   }
@@ -181,7 +182,7 @@ Result<void> read_member(Wish& wish, const std::string& name, const json& value,
   }
   if (name == "pose") {
     if (!value.is_object()) return refuse_line("pose must be an object");
-    return set_pose(wish, value, bunker);
+    return set_pose(wish, value, vehicle);
   }
   if (name == "power_cycle") {
     if (!value.is_boolean()) return refuse_line("power_cycle must be true or false");
@@ -199,13 +200,14 @@ Result<void> read_member(Wish& wish, const std::string& name, const json& value,
   return refuse_line("unknown key " + name);
 }
 
-Result<void> grant(const Wish& wish, Bunker& bunker) {
-  if (auto done = bunker.set_faults(wish.faults); !done) return done;  // the only one that may fail
-  bunker.set_radio(wish.radio);
-  bunker.set_params(wish.params);
-  if (wish.power_cycle) bunker.power_cycle();
-  if (wish.battery_pct) bunker.set_battery_pct(*wish.battery_pct);
-  if (wish.at) bunker.place(*wish.at, *wish.heading_deg);
+Result<void> grant(const Wish& wish, Vehicle& vehicle) {
+  if (auto done = vehicle.set_faults(wish.faults); !done)
+    return done;  // the only one that may fail
+  vehicle.set_radio(wish.radio);
+  vehicle.set_params(wish.params);
+  if (wish.power_cycle) vehicle.power_cycle();
+  if (wish.battery_pct) vehicle.set_battery_pct(*wish.battery_pct);
+  if (wish.at) vehicle.place(*wish.at, *wish.heading_deg);
   return {};
 }
 
@@ -228,11 +230,11 @@ json radio_object(const Radio& r) {
           {"vra", r.vra}};
 }
 
-json got(const std::string& what, const Bunker& bunker, Time start) {
-  if (what == "truth") return truth_object(bunker.truth(), start);
-  if (what == "faults") return listed(base::describe(bunker.faults()));
-  if (what == "radio") return radio_object(bunker.radio());
-  if (what == "params") return listed(describe(bunker.params()));
+json got(const std::string& what, const Vehicle& vehicle, Time start) {
+  if (what == "truth") return truth_object(vehicle.truth(), start);
+  if (what == "faults") return listed(base::describe(vehicle.faults()));
+  if (what == "radio") return radio_object(vehicle.radio());
+  if (what == "params") return listed(describe(vehicle.params()));
   return json::object();
 }
 
@@ -246,7 +248,7 @@ std::string truth_line(const Truth& truth, Time start) {
   return text_of(truth_object(truth, start));
 }
 
-ControlAnswer carry_out(std::string_view line, Bunker& bunker, Time start) {
+ControlAnswer carry_out(std::string_view line, Vehicle& vehicle, Time start) {
   const json object = json::parse(line, nullptr, false);
   if (!object.is_object()) return {R"({"error":"a line must be one JSON object"})", {}};
   const auto failed = [&](const std::string& detail) {
@@ -255,16 +257,16 @@ ControlAnswer carry_out(std::string_view line, Bunker& bunker, Time start) {
     return ControlAnswer{text_of(answer), {}};
   };
   Wish wish;
-  wish.radio = bunker.radio();
-  wish.faults = bunker.faults();
-  wish.params = bunker.params();
+  wish.radio = vehicle.radio();
+  wish.faults = vehicle.faults();
+  wish.params = vehicle.params();
   for (const auto& [name, value] : object.items()) {
-    if (auto done = read_member(wish, name, value, bunker); !done) {
+    if (auto done = read_member(wish, name, value, vehicle); !done) {
       return failed(done.error().detail);
     }
   }
-  if (auto done = grant(wish, bunker); !done) return failed(done.error().detail);
-  json answer = got(wish.get, bunker, start);
+  if (auto done = grant(wish, vehicle); !done) return failed(done.error().detail);
+  json answer = got(wish.get, vehicle, start);
   answer["ok"] = true;
   if (object.contains("id")) answer["id"] = object["id"];
   return {text_of(answer), wish.truth_hz};

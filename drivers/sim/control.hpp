@@ -20,7 +20,7 @@
 #include <string>
 #include <string_view>
 
-#include "sim/bunker.hpp"
+#include "sim/vehicle.hpp"
 
 namespace roverd::sim {
 
@@ -38,6 +38,6 @@ struct ControlAnswer {
 };
 
 /// Carries out one line. Whatever it holds, the answer is a line and nothing is thrown.
-ControlAnswer carry_out(std::string_view line, Bunker& bunker, Time start);
+ControlAnswer carry_out(std::string_view line, Vehicle& vehicle, Time start);
 
 }  // namespace roverd::sim

@@ -1,8 +1,10 @@
-// roverd-sim: the plant in real time, between a CAN bus, a GNSS port and the side channel of tests.
+// roverd-sim: the plant in real time, between a drive link (CAN, UDP, TCP or serial), a GNSS port
+// and the side channel of tests.
 // One thread, one io_context.
 
 #include <csignal>
 #include <cstdio>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -17,9 +19,11 @@
 #include "link/socketcan.hpp"
 #include "link/tcp.hpp"
 #include "sim/bunker.hpp"
+#include "sim/cart.hpp"
 #include "sim/control_server.hpp"
 #include "sim/options.hpp"
 #include "sim/pace.hpp"
+#include "sim/port.hpp"
 #include "sim/pty.hpp"
 
 namespace roverd::sim {
@@ -41,15 +45,108 @@ Start starting_now(Start start, base::Time now) {
   return start;
 }
 
+/// A vehicle with its drive link. Names what roverd calls the driver of each link:
+/// "ackermann=udp:127.0.0.1:40123".
+class Side {
+ public:
+  virtual ~Side() = default;
+  virtual Vehicle& vehicle() = 0;
+  /// @param catch_up called before anything that comes in.
+  virtual base::Result<void> open(std::function<void()> catch_up) = 0;
+  virtual void close() noexcept = 0;
+  virtual std::string links() const = 0;
+  /// Once a step.
+  virtual void tick() {}
+};
+
+class CanSide final : public Side {
+ public:
+  CanSide(asio::io_context& io, const Options& o, const Start& start)
+      : bunker_(o.config.params, o.seed, start), bus_(make_bus(io, o)), reopen_(io) {}
+
+  Vehicle& vehicle() override { return bunker_; }
+  base::Result<void> open(std::function<void()> catch_up) override {
+    bunker_.on_frame = [this](const CanFrame& f, Time) { bus_->send(f); };
+    bus_->on_frame = [this, catch_up = std::move(catch_up)](const CanFrame& f, Time) {
+      catch_up();
+      bunker_.receive(f);
+    };
+    bus_->on_closed = [this](const std::string&) { reopen(); };
+    return bus_->open();
+  }
+  void close() noexcept override {
+    reopen_.cancel();
+    bus_->close();
+  }
+  std::string links() const override { return "can=" + bus_->describe(); }
+
+ private:
+  /// The interface went down or away: the robot goes on, and speaks again when it is back.
+  void reopen() {
+    bus_->close();
+    reopen_.expires_after(kReopen);
+    reopen_.async_wait([this](error_code ec) {
+      if (!ec && !bus_->open()) reopen();
+    });
+  }
+
+  Bunker bunker_;
+  std::unique_ptr<link::FrameLink> bus_;
+  asio::steady_timer reopen_;
+};
+
+class CartSide final : public Side {
+ public:
+  CartSide(asio::io_context& io, const Options& o, const Start& start)
+      : cart_(o.config.params, o.seed, start), drive_(io, o.drive), bumper_(io, o.bumper) {
+    const DeviceParams& device = o.config.params.device;
+    name_ = device.wire.substr(0, device.wire.find('_'));
+    has_bumper_ = device.bumper;
+  }
+
+  Vehicle& vehicle() override { return cart_; }
+  base::Result<void> open(std::function<void()> catch_up) override {
+    cart_.on_drive = [this](Bytes b, Time) { drive_.write(b); };
+    cart_.on_bumper = [this](Bytes b, Time) { bumper_.write(b); };
+    drive_.on_bytes = [this, catch_up = std::move(catch_up)](Bytes b) {
+      catch_up();
+      cart_.receive(b);
+    };
+    if (auto done = drive_.open(); !done || !has_bumper_) return done;
+    return bumper_.open();
+  }
+  void close() noexcept override {
+    drive_.close();
+    bumper_.close();
+  }
+  std::string links() const override {
+    const std::string drive = name_ + "=" + drive_.address();
+    return has_bumper_ ? drive + " bumper=" + bumper_.address() : drive;
+  }
+  void tick() override { drive_.cut(cart_.faults().bus_off); }
+
+ private:
+  Cart cart_;
+  Port drive_;
+  Port bumper_;
+  std::string name_;
+  bool has_bumper_ = false;
+};
+
+std::unique_ptr<Side> make_side(asio::io_context& io, const Options& o, base::Time began) {
+  const Start start = starting_now(o.config.start, began);
+  if (o.config.params.device.wire == "can") return std::make_unique<CanSide>(io, o, start);
+  return std::make_unique<CartSide>(io, o, start);
+}
+
 class Simulation {
  public:
   Simulation(asio::io_context& io, const Options& options)
       : began_(base::steady_now()),
         pace_(began_),
-        bunker_(options.config.params, options.seed, starting_now(options.config.start, began_)),
-        bus_(make_bus(io, options)),
+        side_(make_side(io, options, began_)),
+        vehicle_(side_->vehicle()),
         tick_(io),
-        reopen_(io),
         control_(io, options.control_port,
                  {.truth = [this] { return truth(); },
                   .carry_out = [this](std::string_view line) { return carry_out(line); }}) {
@@ -63,14 +160,8 @@ class Simulation {
   }
 
   base::Result<void> open() {
-    bunker_.on_frame = [this](const CanFrame& f, Time) { bus_->send(f); };
-    bunker_.on_gnss = [this](Bytes bytes, Time) { gnss_->write(bytes); };
-    bus_->on_frame = [this](const CanFrame& f, Time) {
-      catch_up();
-      bunker_.receive(f);
-    };
-    bus_->on_closed = [this](const std::string&) { reopen(); };
-    if (auto done = bus_->open(); !done) return done;
+    vehicle_.on_gnss = [this](Bytes bytes, Time) { gnss_->write(bytes); };
+    if (auto done = side_->open([this] { catch_up(); }); !done) return done;
     if (auto done = gnss_->open(); !done) return done;
     if (auto done = control_.open(); !done) return done;
     due_ = std::chrono::steady_clock::now();
@@ -78,65 +169,56 @@ class Simulation {
     return {};
   }
 
+  /// The words before gnss are names of roverd's drivers, "can" stands for the Bunker's.
   std::string ready_line() const {
     const std::string gnss =
         tcp_ != nullptr ? "tcp:127.0.0.1:" + std::to_string(tcp_->port()) : gnss_->describe();
-    return "ready can=" + bus_->describe() + " gnss=" + gnss +
+    return "ready " + side_->links() + " gnss=" + gnss +
            " control=127.0.0.1:" + std::to_string(control_.port());
   }
 
   void close() noexcept {
     tick_.cancel();
-    reopen_.cancel();
     control_.close();
     gnss_->close();
-    bus_->close();
+    side_->close();
   }
 
  private:
-  void catch_up() { bunker_.advance_to(pace_.advance(base::steady_now())); }
+  void catch_up() { vehicle_.advance_to(pace_.advance(base::steady_now())); }
 
   /// Absolute times, so that lateness does not add up; times already past are left out, for
   /// catch_up does their steps.
   void schedule() {
     const auto now = std::chrono::steady_clock::now();
-    due_ += Bunker::kStep;
+    due_ += Vehicle::kStep;
     if (due_ < now) due_ = now;
     tick_.expires_at(due_);
     tick_.async_wait([this](error_code ec) {
       if (ec) return;
       catch_up();
+      side_->tick();
       schedule();
-    });
-  }
-
-  /// The interface went down or away: the robot goes on, and speaks again when it is back.
-  void reopen() {
-    bus_->close();
-    reopen_.expires_after(kReopen);
-    reopen_.async_wait([this](error_code ec) {
-      if (!ec && !bus_->open()) reopen();
     });
   }
 
   std::string truth() {
     catch_up();
-    return truth_line(bunker_.truth(), began_);
+    return truth_line(vehicle_.truth(), began_);
   }
 
   ControlAnswer carry_out(std::string_view line) {
     catch_up();
-    return sim::carry_out(line, bunker_, began_);
+    return sim::carry_out(line, vehicle_, began_);
   }
 
   const Time began_;
   Pace pace_;
-  Bunker bunker_;
-  std::unique_ptr<link::FrameLink> bus_;
+  std::unique_ptr<Side> side_;
+  Vehicle& vehicle_;  ///< of side_
   std::unique_ptr<link::ByteLink> gnss_;
   link::TcpServer* tcp_ = nullptr;  ///< gnss_, when it is one
   asio::steady_timer tick_;
-  asio::steady_timer reopen_;
   std::chrono::steady_clock::time_point due_;
   ControlServer control_;
 };

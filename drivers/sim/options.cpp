@@ -12,6 +12,8 @@ constexpr int kBadArguments = 2;
 
 struct Raw {
   std::string gnss = "tcp:0";
+  std::string drive;
+  std::string bumper = "pty";
   std::string config_file;
   std::vector<std::string> overrides;
   std::string start;
@@ -41,6 +43,37 @@ base::Result<void> read_gnss(Options& options, const std::string& text) {
   return base::fail(base::Code::Invalid, "--gnss " + text + ": must be tcp:PORT or pty:PATH");
 }
 
+base::Result<void> read_named_port(PortSpec& spec, const char* option, const std::string& text) {
+  auto read = read_port(text);
+  if (!read) {
+    return base::fail(base::Code::Invalid,
+                      std::string(option) + " " + text + ": " + read.error().detail);
+  }
+  spec = *read;
+  return {};
+}
+
+/// The device's port, once its wire is known.
+base::Result<void> read_device(Options& options, const Raw& raw) {
+  const DeviceParams& device = options.config.params.device;
+  const bool on_can = !options.can.empty() || !options.cansock.empty();
+  if (device.wire == "can") {
+    if (on_can && raw.drive.empty()) return {};
+    return base::fail(base::Code::Invalid, on_can
+                                               ? "--drive is of no use on CAN"
+                                               : "one of --can IFACE and --cansock PATH is needed");
+  }
+  if (!options.can.empty()) {
+    return base::fail(base::Code::Invalid, "--can is of no use with device.wire " + device.wire);
+  }
+  const std::string drive = raw.drive.empty() ? device.port : raw.drive;
+  if (auto done = read_named_port(options.drive, "--drive", drive); !done) return done;
+  if (device.wire == "ackermann" && options.drive.kind != PortSpec::Kind::Udp) {
+    return base::fail(base::Code::Invalid, "device.wire ackermann needs udp, not " + drive);
+  }
+  return read_named_port(options.bumper, "--bumper", raw.bumper);
+}
+
 /// Later wins: the code's defaults, the file, --set, --start.
 base::Result<void> read_values(Options& options, const Raw& raw) {
   if (auto done = read_gnss(options, raw.gnss); !done) return done;
@@ -58,11 +91,15 @@ base::Result<void> read_values(Options& options, const Raw& raw) {
 Parsed parse_options(int argc, const char* const* argv) {
   Options options;
   Raw raw;
-  CLI::App app{"Simulated Bunker: CAN frames, GNSS sentences, and a true pose for tests.",
+  CLI::App app{"Simulated robot: its drive link, GNSS sentences, and a true pose for tests.",
                "roverd-sim"};
   auto* can = app.add_option("--can", options.can, "SocketCAN interface, e.g. vcan0");
-  app.add_option("--cansock", options.cansock, "path of a local CAN socket to listen on")
+  app.add_option("--cansock", options.cansock,
+                 "path of a local CAN socket to listen on, where the vehicle is on CAN")
       ->excludes(can);
+  app.add_option("--drive", raw.drive,
+                 "udp:PORT, tcp:PORT (0: choose) or pty:PATH: where vehicles without CAN listen");
+  app.add_option("--bumper", raw.bumper, "the same of the bumper (default: a pseudo-terminal)");
   app.add_option("--gnss", raw.gnss, "tcp:PORT (0: choose) or pty:PATH of a symbolic link");
   app.add_option("--control", options.control_port, "port of the side channel (0: choose)");
   app.add_option("--seed", options.seed, "equal seeds repeat a run")
@@ -84,9 +121,7 @@ Parsed parse_options(int argc, const char* const* argv) {
   }
   if (auto done = read_values(options, raw); !done) return bad(done.error().detail);
   if (raw.list_parameters) return {std::nullopt, parameter_list(options.config), 0};
-  if (options.can.empty() == options.cansock.empty()) {
-    return bad("one of --can IFACE and --cansock PATH is needed");
-  }
+  if (auto done = read_device(options, raw); !done) return bad(done.error().detail);
   return {std::move(options), "", 0};
 }
 

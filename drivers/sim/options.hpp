@@ -8,12 +8,16 @@
 
 #include "base/result.hpp"
 #include "sim/config.hpp"
+#include "sim/port.hpp"
 
 namespace roverd::sim {
 
 struct Options {
-  std::string can;      ///< SocketCAN interface; or
-  std::string cansock;  ///< path of the local CAN socket: exactly one of them
+  std::string can;  ///< SocketCAN interface; or
+  std::string
+      cansock;      ///< path of the local CAN socket: exactly one of them where device.wire is can
+  PortSpec drive;   ///< elsewhere: where the device listens
+  PortSpec bumper;  ///< the same of its bumper, where it has one
   std::optional<std::uint16_t> gnss_port = std::uint16_t{0};  ///< 0: choose
   std::string gnss_pty;                                       ///< set instead of gnss_port
   std::uint16_t control_port = 0;                             ///< 0: choose

@@ -11,7 +11,47 @@
 
 namespace roverd::sim {
 
-/// From the command on the bus to the motion over ground.
+/// How the vehicle is spoken to, and with it what it drives on: "ackermann" is a car with steered
+/// front wheels, every other wire belongs to tracks or wheels driven by side.
+struct DeviceParams {
+  std::string wire = "can";
+  std::string port = "udp";
+  double feedback_hz = 20.0;
+  bool bumper = false;
+};
+
+template <class V>
+void fields(V& v, DeviceParams& p) {
+  v("wire", p.wire, "can (Bunker), ackermann, ratio, twist_text or twist_binary");
+  v("port", p.port, "udp, tcp or pty: what carries it, where --drive does not say; not for can");
+  v("feedback_hz", p.feedback_hz, 0.0, 100.0,
+    "reports a second, on whole steps of 5 ms; 0: the device tells nothing; not for can");
+  v("bumper", p.bumper, "a bumper speaks on a pseudo-terminal of its own; not for can");
+}
+
+/// Steered front wheels; speed is the section drive's. The body's origin is the rear axle's middle.
+struct CarParams {
+  double wheelbase_m = 1.3;
+  double max_wheel_rad = 0.7;
+  double wheel_rate_radps = 0.7;
+  double wheel_lag_s = 0.1;
+  double linkage_rad = 0.0;
+  double servo_rad = 0.0;
+};
+
+template <class V>
+void fields(V& v, CarParams& p) {
+  v("wheelbase_m", p.wheelbase_m, 0.1, 10.0, "between the axles");
+  v("max_wheel_rad", p.max_wheel_rad, 0.05, 1.4, "of the middle front wheel, either side");
+  v("wheel_rate_radps", p.wheel_rate_radps, 0.01, 20.0, "the wheel turns no faster");
+  v("wheel_lag_s", p.wheel_lag_s, 0.0, 2.0, "time constant of the steering, after drive.delay_s");
+  v("linkage_rad", p.linkage_rad, -0.3, 0.3,
+    "the wheels stand so far right of where the steering motor stands; its sensor cannot see it");
+  v("servo_rad", p.servo_rad, -0.3, 0.3,
+    "the steering motor stops so far right of where it is told; its sensor sees it");
+}
+
+/// From the command on the wire to the motion over ground.
 struct DriveParams {
   double track_width_m = 0.60;
   double turn_loss = 1.3;
@@ -157,7 +197,9 @@ void fields(V& v, CompassParams& p) {
 }
 
 struct Params {
+  DeviceParams device;
   DriveParams drive;
+  CarParams car;
   BatteryParams battery;
   RadioParams radio;
   GnssParams gnss;
@@ -167,7 +209,9 @@ struct Params {
 /// Lists the sections: their names are the tables of the configuration file.
 template <class V>
 void sections(V& v, Params& p) {
+  v("device", p.device);
   v("drive", p.drive);
+  v("car", p.car);
   v("battery", p.battery);
   v("radio", p.radio);
   v("gnss", p.gnss);

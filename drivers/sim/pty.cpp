@@ -60,6 +60,10 @@ base::Result<void> Pty::open() {
 }
 
 base::Result<void> Pty::make_symlink(const std::string& device) {
+  if (path_.empty()) {
+    device_ = device;
+    return {};
+  }
   std::error_code ec;
   const fs::file_status there = fs::symlink_status(path_, ec);
   if (fs::is_symlink(there)) {
@@ -75,7 +79,8 @@ base::Result<void> Pty::make_symlink(const std::string& device) {
 
 void Pty::close() noexcept {
   std::error_code ec;
-  if (!device_.empty() && fs::read_symlink(path_, ec) == device_) fs::remove(path_, ec);
+  if (!path_.empty() && !device_.empty() && fs::read_symlink(path_, ec) == device_)
+    fs::remove(path_, ec);
   device_.clear();
   master_.close();
   if (slave_ >= 0) ::close(slave_);

@@ -1,6 +1,6 @@
 #pragma once
-// A pseudo-terminal that looks like the receiver's serial port, with a symbolic link to it at a
-// path of the caller's choice.
+// A pseudo-terminal that looks like a device's serial port, with a symbolic link to it at a path of
+// the caller's choice.
 
 #include <string>
 
@@ -16,14 +16,16 @@ class Pty final : public link::ByteLink {
   static constexpr int kMaxUnread = 2048;  ///< bytes; more are dropped before the next write
 
   /// @param path where the symbolic link is made. One that is there already is replaced; anything
-  /// else at that path is left alone and is an error of open().
+  /// else at that path is left alone and is an error of open(). Empty: no link is made.
   Pty(boost::asio::io_context& io, std::string path);
   ~Pty() override;
 
   base::Result<void> open() override;
   void close() noexcept override;
   link::SendResult write(base::Bytes bytes) noexcept override;
-  std::string describe() const override { return "serial:" + path_ + ":115200"; }
+  std::string describe() const override {
+    return "serial:" + (path_.empty() ? device_ : path_) + ":115200";
+  }
 
  private:
   base::Result<void> make_symlink(const std::string& device);
@@ -33,7 +35,7 @@ class Pty final : public link::ByteLink {
   const std::string path_;
   link::Descriptor master_;
   int slave_ = -1;      ///< held open, so that the line does not hang up between readers
-  std::string device_;  ///< "/dev/pts/3", while the symbolic link is ours
+  std::string device_;  ///< "/dev/pts/3", while it is open
 };
 
 }  // namespace roverd::sim

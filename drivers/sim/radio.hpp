@@ -40,18 +40,23 @@ struct Faults {
   double gnss_jump_s = 0.0;
   bool compass_off = false;
   double compass_extra_deg = 0.0;
+  int bumper = 0;
+  bool bumper_silent = false;
 };
 
 template <class V>
 void fields(V& v, Faults& f) {
-  v("bus_off", f.bus_off, "no frame goes in or out");
-  v("loss_to_base", f.loss_to_base, 0.0, 1.0, "share of frames lost on the way to the base");
-  v("loss_from_base", f.loss_from_base, 0.0, 1.0, "share of frames lost on the way from the base");
+  v("bus_off", f.bus_off, "the drive link is dead: nothing goes in or out");
+  v("loss_to_base", f.loss_to_base, 0.0, 1.0,
+    "share of frames or messages lost on the way to the base");
+  v("loss_from_base", f.loss_from_base, 0.0, 1.0,
+    "share of frames or messages lost on the way from the base");
   v("estop", f.estop, "the red button on the robot is pressed");
   v("radio_loss", f.radio_loss, "the transmitter is out of range: 0x241 stops, error bit 2");
   v("radio_freeze", f.radio_freeze, "out of range: 0x241 repeats its last bytes, error bit 2");
   v("radio_loss_unflagged", f.radio_loss_unflagged, "a lost transmitter does not set error bit 2");
-  v("error_bits", f.error_bits, 0, 65535, "further error bits of 0x211; 0x441 clears them");
+  v("error_bits", f.error_bits, 0, 65535,
+    "further error bits of 0x211, 0x441 clears them; elsewhere any of them stops the motors");
   v("gnss_outage", f.gnss_outage, "sentences without a fix");
   v("gnss_silent", f.gnss_silent, "no byte from the receiver");
   v("gnss_fix", f.gnss_fix, "rtk_fixed, rtk_float, dgps, gps or none; empty: by the profile");
@@ -60,6 +65,8 @@ void fields(V& v, Faults& f) {
   v("gnss_jump_s", f.gnss_jump_s, 0.0, 86400.0, "the jump ends after this; 0: it stays");
   v("compass_off", f.compass_off, "no HDT sentences");
   v("compass_extra_deg", f.compass_extra_deg, -180.0, 180.0, "added to the compass heading");
+  v("bumper", f.bumper, 0, 255, "switches pressed, one bit each: 1 front left, 2 front …");
+  v("bumper_silent", f.bumper_silent, "no line from the bumper");
 }
 
 }  // namespace roverd::sim

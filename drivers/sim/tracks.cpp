@@ -9,27 +9,11 @@ namespace {
 constexpr double kGravity_mps2 = 9.81;
 constexpr double kMotorEfficiency = 0.8;
 constexpr double kSlipWanderTau_s = 3.0;
-/// Below these a motor that is told to stand, stands: an exponential lag alone never ends.
-constexpr double kStandLinear_mps = 0.003;
-constexpr double kStandAngular_radps = 0.005;
 /// True yaw rate at which the tracks' sideways friction is nearly whole.
 constexpr double kFullScrub_radps = 0.15;
 
-/// Towards `target`, faster growing than falling or the other way round. Through zero it falls.
-double slew(double now, double target, double grow_step, double fall_step) {
-  const bool falling = now * target < 0.0 || std::abs(target) < std::abs(now);
-  const double step = falling ? fall_step : grow_step;
-  const double next = now + std::clamp(target - now, -step, step);
-  return now * next < 0.0 ? 0.0 : next;
-}
-
 double sign(double value) {
   return value > 0.0 ? 1.0 : value < 0.0 ? -1.0 : 0.0;
-}
-
-/// A standing track ignores a command too small to overcome friction.
-double unstick(double now_mps, double target_mps, double stick_mps) {
-  return now_mps == 0.0 && std::abs(target_mps) < stick_mps ? 0.0 : target_mps;
 }
 
 }  // namespace
@@ -40,14 +24,14 @@ void Tracks::step(const DriveParams& p, base::BodyTwist wanted, bool brake, doub
     const double step = p.estop_decel_mps2 * dt_s;
     const double left = slew(left_.track_mps, 0.0, step, step);
     const double right = slew(right_.track_mps, 0.0, step, step);
-    pipe_.clear();
+    delay_.clear();
     driven_ = {(left + right) / 2.0, (right - left) / p.track_width_m};
     lagged_ = driven_;
     set_tracks(p, left, right, dt_s);
     return;
   }
-  const base::BodyTwist target = delayed(p, wanted, dt_s);
-  const double share = p.lag_s > 0.0 ? 1.0 - std::exp(-dt_s / p.lag_s) : 1.0;
+  const base::BodyTwist target = delay_.step(wanted, p.delay_s, dt_s);
+  const double share = lag_share(p.lag_s, dt_s);
   lagged_.linear_mps += (target.linear_mps - lagged_.linear_mps) * share;
   lagged_.angular_radps += (target.angular_radps - lagged_.angular_radps) * share;
 
@@ -61,19 +45,6 @@ void Tracks::step(const DriveParams& p, base::BodyTwist wanted, bool brake, doub
   }
   set_tracks(p, unstick(left_.track_mps, v - w * half_m, p.stick_mps),
              unstick(right_.track_mps, v + w * half_m, p.stick_mps), dt_s);
-}
-
-base::BodyTwist Tracks::delayed(const DriveParams& p, base::BodyTwist wanted, double dt_s) {
-  const auto length = static_cast<std::size_t>(std::lround(p.delay_s / dt_s));
-  const base::BodyTwist oldest = pipe_.empty() ? base::BodyTwist{} : pipe_.front();
-  while (pipe_.size() < length) pipe_.push_front(oldest);
-  pipe_.push_back(wanted);
-  base::BodyTwist out = wanted;
-  while (pipe_.size() > length) {
-    out = pipe_.front();
-    pipe_.pop_front();
-  }
-  return out;
 }
 
 void Tracks::set_tracks(const DriveParams& p, double left_mps, double right_mps, double dt_s) {
@@ -113,7 +84,7 @@ void Tracks::load(const DriveParams& p, double left_mps2, double right_mps2) {
 }
 
 void Tracks::halt() noexcept {
-  pipe_.clear();
+  delay_.clear();
   lagged_ = driven_ = measured_ = {};
   left_.track_mps = right_.track_mps = 0.0;
   ground_ = {};

@@ -5,18 +5,13 @@
 //                                          └─▶ encoders see this
 
 #include <cstdint>
-#include <deque>
 
 #include "base/geo.hpp"
+#include "sim/motion.hpp"
 #include "sim/noise.hpp"
 #include "sim/params.hpp"
 
 namespace roverd::sim {
-
-struct GroundMotion {
-  base::BodyTwist twist;     ///< at the body's origin
-  double lateral_mps = 0.0;  ///< left positive: the centre of rotation is not the origin
-};
 
 struct MotorState {
   double track_mps = 0.0;
@@ -45,11 +40,10 @@ class Tracks {
   void zero_odometer() noexcept { left_.travel_m = right_.travel_m = 0.0; }
 
  private:
-  base::BodyTwist delayed(const DriveParams& p, base::BodyTwist wanted, double dt_s);
   void set_tracks(const DriveParams& p, double left_mps, double right_mps, double dt_s);
   void load(const DriveParams& p, double left_mps2, double right_mps2);
 
-  std::deque<base::BodyTwist> pipe_;  ///< commands on their way, oldest first
+  Delay<base::BodyTwist> delay_;  ///< commands on their way
   base::BodyTwist lagged_;
   base::BodyTwist driven_;  ///< after the limits
   base::BodyTwist measured_;

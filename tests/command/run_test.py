@@ -102,6 +102,14 @@ def missing_files_are_named():
     refused("--port", "0", "--data", scratch / "v", "--vehicle", "hovercraft", names=["hovercraft"])
 
 
+def a_vehicle_without_a_simulation_is_refused():
+    """a profile that nothing tells how to simulate is refused by name, and --no-sim is offered"""
+    config = config_with('[vehicle]', 'name = "tractor"')
+    shutil.copy(ROOT / "config/vehicles/husky.toml", config.parent / "vehicles/tractor.toml")
+    for options in ((), ("--vehicle", "tractor")):
+        refused("--config", config, *options, names=["sim/tractor.toml", "--no-sim"])
+
+
 def an_unwritable_data_folder_is_named():
     """a data folder that cannot be written is refused by name"""
     refused("--data", "/proc/roverd", names=["/proc/roverd"])
@@ -225,7 +233,7 @@ if __name__ == "__main__":
     try:
         code = run_cases([
             help_tells_every_option, wrong_options_are_named, missing_files_are_named,
-            an_unwritable_data_folder_is_named, wrong_configuration_is_named,
+            a_vehicle_without_a_simulation_is_refused, an_unwritable_data_folder_is_named, wrong_configuration_is_named,
             only_loopback_is_served, a_missing_can_interface_is_named, the_product_starts,
             a_second_start_is_quick, both_end, a_killed_script_leaves_nothing,
             one_dies_the_other_ends, a_busy_port_is_named, a_newer_database_is_refused])

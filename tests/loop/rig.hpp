@@ -18,6 +18,7 @@
 #include "link/memory.hpp"
 #include "robot/robot.hpp"
 #include "sim/bunker.hpp"
+#include "sim/vehicle.hpp"
 
 namespace roverd::loop {
 
@@ -38,50 +39,20 @@ struct RigOptions {
   robot::Config robot{};
 };
 
-class Rig {
+/// What every vehicle's loop has in common; which plant and which drivers, the heirs say.
+class RigBase {
  public:
   static constexpr base::Duration kTick = std::chrono::milliseconds(20);
 
-  explicit Rig(const RigOptions& options)
-      : plant(options.plant, options.seed, start_of(options)),
-        robot(options.robot),
-        can_(link::memory_frame_pair()),
-        bytes_(link::memory_byte_pair()),
-        bunker_(
-            "bunker", {},
-            [this] { return base::Result<std::unique_ptr<link::FrameLink>>(std::move(can_.a)); },
-            [this](const base::Measurement& m) { robot.measurements().put(m); }),
-        gnss_(
-            "gnss", {},
-            [this] { return base::Result<std::unique_ptr<link::ByteLink>>(std::move(bytes_.a)); },
-            [this](const base::Measurement& m) { robot.measurements().put(m); }) {
-    can_.a->set_immediate([this] { return at_; });
-    can_.b->set_immediate([this] { return at_; });
-    bytes_.b->set_immediate([this] { return at_; });
-    can_.b->on_frame = [this](const base::CanFrame& f, Time) { plant.receive(f); };
-    EXPECT_TRUE(can_.b->open());
-    EXPECT_TRUE(bytes_.b->open());
-    plant.on_frame = [this](const base::CanFrame& f, Time t) {
-      at_ = t;
-      can_.b->send(f);
-    };
-    plant.on_gnss = [this](base::Bytes b, Time t) {
-      at_ = t;
-      bytes_.b->write(b);
-    };
-    robot.send = [this](const base::DriveCommand& c, Time t) { bunker_.send(c, t); };
-    bunker_.start(at_);
-    gnss_.start(at_);
-  }
+  virtual ~RigBase() = default;
+  RigBase(const RigBase&) = delete;
+  RigBase& operator=(const RigBase&) = delete;
 
   // ---- time ----
 
   void tick() {
     now_ += kTick;
-    plant.advance_to(now_);
-    at_ = now_;
-    bunker_.tick(now_);
-    gnss_.tick(now_);
+    run_devices(now_);
     robot.tick(now_, wall());
     drain();
     const sim::Truth t = plant.truth();
@@ -106,9 +77,6 @@ class Rig {
   }
 
   double now_s() const { return base::seconds(now_.time_since_epoch()); }
-
-  /// Somebody else on the bus sends this.
-  void put_on_bus(const base::CanFrame& f) { can_.b->send(f); }
 
   // ---- commands; each answer comes at the next tick ----
 
@@ -256,20 +224,46 @@ class Rig {
     ASSERT_TRUE(plant.set_faults(f));
   }
 
-  sim::Bunker plant;
+ protected:
+  RigBase(std::unique_ptr<sim::Vehicle> vehicle, const robot::Config& config)
+      : owned_(std::move(vehicle)),
+        plant(*owned_),
+        robot(config),
+        bytes_(link::memory_byte_pair()),
+        gnss_(
+            "gnss", {},
+            [this] { return base::Result<std::unique_ptr<link::ByteLink>>(std::move(bytes_.a)); },
+            [this](const base::Measurement& m) { robot.measurements().put(m); }) {
+    bytes_.b->set_immediate([this] { return at_; });
+    EXPECT_TRUE(bytes_.b->open());
+    plant.on_gnss = [this](base::Bytes b, Time t) {
+      at_ = t;
+      bytes_.b->write(b);
+    };
+    gnss_.start(at_);
+  }
+
+  /// Plant and drivers up to `now`.
+  virtual void run_devices(Time now) = 0;
+
+  static sim::Start start_of(double heading_deg) {
+    sim::Start s;
+    s.heading_deg = heading_deg;
+    s.wall = base::WallTime{std::chrono::seconds(1'780'000'000)};
+    return s;
+  }
+
+ private:
+  std::unique_ptr<sim::Vehicle> owned_;
+
+ public:
+  sim::Vehicle& plant;
   robot::Robot robot;
   std::vector<sim::Truth> track;
   std::vector<base::Event> events;
   double fastest_mps = 0.0;
 
  private:
-  static sim::Start start_of(const RigOptions& o) {
-    sim::Start s;
-    s.heading_deg = o.heading_deg;
-    s.wall = base::WallTime{std::chrono::seconds(1'780'000'000)};
-    return s;
-  }
-
   static double to_segment(base::EnuPoint p, Metres a, Metres b) {
     const double e = b.east_m - a.east_m;
     const double n = b.north_m - a.north_m;
@@ -291,11 +285,50 @@ class Rig {
   }
 
   Time now_{};
+
+ protected:
   Time at_{};  ///< finer than now_: when a frame leaves within a tick
-  link::MemoryFramePair can_;
   link::MemoryBytePair bytes_;
-  bunker::Driver bunker_;
   gnss::Driver gnss_;
+};
+
+/// The Bunker.
+class Rig final : public RigBase {
+ public:
+  explicit Rig(const RigOptions& o)
+      : RigBase(std::make_unique<sim::Bunker>(o.plant, o.seed, start_of(o.heading_deg)), o.robot),
+        base_(static_cast<sim::Bunker&>(plant)),
+        can_(link::memory_frame_pair()),
+        bunker_(
+            "bunker", {},
+            [this] { return base::Result<std::unique_ptr<link::FrameLink>>(std::move(can_.a)); },
+            [this](const base::Measurement& m) { robot.measurements().put(m); }) {
+    can_.a->set_immediate([this] { return at_; });
+    can_.b->set_immediate([this] { return at_; });
+    can_.b->on_frame = [this](const base::CanFrame& f, Time) { base_.receive(f); };
+    EXPECT_TRUE(can_.b->open());
+    base_.on_frame = [this](const base::CanFrame& f, Time t) {
+      at_ = t;
+      can_.b->send(f);
+    };
+    robot.send = [this](const base::DriveCommand& c, Time t) { bunker_.send(c, t); };
+    bunker_.start(at_);
+  }
+
+  /// Somebody else on the bus sends this.
+  void put_on_bus(const base::CanFrame& f) { can_.b->send(f); }
+
+ private:
+  void run_devices(Time now) override {
+    plant.advance_to(now);
+    at_ = now;
+    bunker_.tick(now);
+    gnss_.tick(now);
+  }
+
+  sim::Bunker& base_;
+  link::MemoryFramePair can_;
+  bunker::Driver bunker_;
 };
 
 }  // namespace roverd::loop
