@@ -23,6 +23,7 @@
 #include "nav/behave/executor.hpp"
 #include "nav/estimate/estimator.hpp"
 #include "robot/compile.hpp"
+#include "robot/follow.hpp"
 #include "robot/manual.hpp"
 #include "robot/outbox.hpp"
 #include "robot/safety.hpp"
@@ -74,6 +75,11 @@ struct Robot::Impl {
   Assessment assessment;
   std::vector<base::Check> checks;
   std::optional<Time> base_waited_since;
+  FollowWatch follow;
+  std::optional<Time> in_charge_since;  ///< armed, no radio: the base is to listen to us
+  bool base_listened = false;
+  bool base_left = false;  ///< at this tick
+  bool base_gone = false;  ///< since then
   std::optional<Time> sigma_bad_since;
   bool radio_had_control = false;
   base::Driver driver = base::Driver::None;
@@ -130,6 +136,7 @@ struct Robot::Impl {
   void tell_notices();
   void watch_changes();
   void watch_frame();
+  void watch_base();
 
   void event(base::Severity level, const char* kind, std::string detail) {
     outbox.event(wall, level, kind, std::move(detail));

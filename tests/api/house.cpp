@@ -152,7 +152,7 @@ void House::tell(base::Time now, int count) {
   status.control_mode = base::ControlMode::Can;
   status.battery_v = 49.5;
   in.put(status);
-  in.put(base::BaseMotion{now, {}});
+  in.put(base::BaseMotion{now, sent().twist});  // the tracks do as told, in the air
   in.put(base::WheelTravel{now, 0.0, 0.0});
   base::RadioState radio;
   radio.stamp = now;
