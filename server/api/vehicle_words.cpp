@@ -32,6 +32,9 @@ Json heading_json(double yaw_rad) {
 Json degrees(double rad) {
   return rounded(base::deg_from_rad(rad), kPlaces2);
 }
+Json degrees(const std::optional<double>& rad) {
+  return rad ? degrees(*rad) : Json(nullptr);
+}
 
 void set_position(Json& group, const std::optional<base::LatLon>& at) {
   group["lat"] = at ? rounded(at->lat, kPlaces9) : Json(nullptr);
@@ -110,7 +113,8 @@ Json base_json(const base::Snapshot& s, base::Time now) {
     out["error_code"] = s.base->error_code;
     out["errors"] = s.base->errors;
   }
-  if (s.motion) {
+  const bool moves = s.motion && base::seconds(now - s.motion->stamp) <= StaleAfter::kBase_s;
+  if (moves) {  // its age is not told beside the state's
     out["speed_mps"] = rounded(s.motion->twist.linear_mps, kPlaces3);
     out["yaw_rate_dps"] = degrees(s.motion->twist.angular_radps);
   }
@@ -166,7 +170,7 @@ Json progress_json(const base::MissionProgress& p, const char* id_word) {
           {"name", none ? Json(nullptr) : Json(p.name)},
           {"state", base::to_string(p.state)},
           {"reason", p.reason},
-          {"current_item", p.current_item},
+          {"current_item", p.current_item ? Json(*p.current_item) : Json(nullptr)},
           {"items", p.items},
           {"distance_to_item_m", rounded(p.distance_to_item_m, kPlaces3)},
           {"bearing_to_item_deg", rounded(p.bearing_to_item_deg, kPlaces2)},

@@ -161,8 +161,8 @@ base::DriveCommand Robot::Impl::drive_mission() {
   const nav::Vehicle vehicle{pose->at,
                              pose->yaw_rad,
                              pose->yaw_sigma_rad,
-                             pose->speed_mps,
-                             pose->yaw_rate_radps,
+                             pose->speed_mps.value_or(0.0),
+                             pose->yaw_rate_radps.value_or(0.0),
                              b.x(nav::kScale),
                              b.x(nav::kYawScale),
                              b.x(nav::kPull)};

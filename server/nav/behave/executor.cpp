@@ -211,7 +211,28 @@ const RouteStep* Executor::step_now() const noexcept {
   return course_ != nullptr && at_ < course_->steps.size() ? &course_->steps[at_] : nullptr;
 }
 
-Progress Executor::progress() const {
+/// The rest of the mission's way; empty where it is not known yet.
+std::optional<double> Executor::way_left_m(const RouteStep& step,
+                                           std::optional<EnuPoint> here) const noexcept {
+  const Path& path = course_->path;
+  if (doing_ == Doing::Path) {
+    return path.length_m() - (tracker_.path() == &path ? tracker_.s_m() : s_m_);
+  }
+  if (doing_ == Doing::Connector) {
+    const bool tracking = tracker_.path() == &connector_;
+    const double rest_m = connector_.length_m() - (tracking ? tracker_.s_m() : 0.0);
+    if (rejoin_) return rest_m + path.length_m() - s_m_;
+    if (step.kind == StepKind::Go) return rest_m + path.length_m() - path.vertex_m[step.node];
+    return rest_m;
+  }
+  if (doing_ == Doing::Wait && standing_) return path.length_m() - path.vertex_m[*standing_];
+  if (step.kind != StepKind::Go || !here) return std::nullopt;
+  // Not on its way yet: straight to the waypoint first.
+  return base::distance_m(*here, course_->nodes[step.node].at) + path.length_m() -
+         path.vertex_m[step.node];
+}
+
+Progress Executor::progress(std::optional<EnuPoint> here) const {
   Progress p;
   const RouteStep* step = step_now();
   if (step == nullptr || state_ == ExecutionState::Idle || state_ == ExecutionState::Finished) {
@@ -222,25 +243,13 @@ Progress Executor::progress() const {
   if (step->kind == StepKind::Home && doing_ == Doing::Connector) {
     p.target = connector_.points.back().at;
   }
-  double left_m = 0.0;
-  if (doing_ == Doing::Path) {
-    const bool tracking = tracker_.path() == &course_->path;
-    left_m = course_->path.length_m() - (tracking ? tracker_.s_m() : s_m_);
-    if (tracking && running()) p.cross_track_m = tracker_.cross_track_m();
-  } else if (doing_ == Doing::Connector) {
-    const bool tracking = tracker_.path() == &connector_;
-    left_m = connector_.length_m() - (tracking ? tracker_.s_m() : 0.0);
-    if (tracking && running()) p.cross_track_m = tracker_.cross_track_m();
-    if (rejoin_) {
-      left_m += course_->path.length_m() - s_m_;
-    } else if (step->kind == StepKind::Go) {
-      left_m += course_->path.length_m() - course_->path.vertex_m[step->node];
-    }
-  } else if (step->kind == StepKind::Go) {
-    left_m = course_->path.length_m() - course_->path.vertex_m[step->node];
+  const bool tracking = (doing_ == Doing::Path && tracker_.path() == &course_->path) ||
+                        (doing_ == Doing::Connector && tracker_.path() == &connector_);
+  if (running() && tracking) p.cross_track_m = tracker_.cross_track_m();
+  if (const auto left_m = way_left_m(*step, here)) {
+    p.distance_left_m = std::max(0.0, *left_m);
+    p.eta_s = wait_s_ + *p.distance_left_m / std::max(0.1, route_->speed_mps);
   }
-  p.distance_left_m = std::max(0.0, left_m);
-  p.eta_s = wait_s_ + *p.distance_left_m / std::max(0.1, route_->speed_mps);
   return p;
 }
 

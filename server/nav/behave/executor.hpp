@@ -39,7 +39,7 @@ struct Notice {
 
 /// Where the mission stands, in the words of the snapshot.
 struct Progress {
-  int current_item = 0;
+  std::optional<int> current_item;  ///< empty: none in hand
   std::optional<EnuPoint> target;
   std::optional<double> cross_track_m;
   std::optional<double> distance_left_m;
@@ -81,7 +81,8 @@ class Executor {
   bool running() const noexcept { return state_ == base::ExecutionState::Running; }
   bool interrupted() const noexcept { return interrupted_; }
   TrackPhase phase() const noexcept { return tracker_.phase(); }
-  Progress progress() const;
+  /// @param here empty: the position is not known, and neither is a way that begins there.
+  Progress progress(std::optional<EnuPoint> here) const;
   /// What happened since the last call.
   std::vector<Notice>& notices() noexcept { return notices_; }
 
@@ -103,6 +104,8 @@ class Executor {
   void watch_stuck(const Vehicle& vehicle, double dt_s);
   void begin_at(std::size_t step);
   const RouteStep* step_now() const noexcept;
+  std::optional<double> way_left_m(const RouteStep& step,
+                                   std::optional<EnuPoint> here) const noexcept;
 
   PathParams path_params_;
   BehaveParams params_;

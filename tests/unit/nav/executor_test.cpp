@@ -160,6 +160,34 @@ TEST(Executor, AMissionOnTheSpotFinishesAtOnceEvenIfItRepeats) {
   }
 }
 
+TEST(Executor, TellsTheWayThatIsLeftOnlyWhereItIsKnown) {
+  Ride r;
+  EXPECT_FALSE(r.executor.progress(EnuPoint{}).current_item);
+  r.load(plan({at(10, 0)}));
+  // Loaded: no item is in hand, and the way leads from here to the waypoint.
+  const Progress before = r.executor.progress(r.vehicle.at);
+  EXPECT_FALSE(before.current_item);
+  EXPECT_NEAR(before.distance_left_m.value(), 10.0, 1e-6);
+  EXPECT_GT(before.eta_s.value(), 5.0);
+  const Progress nowhere = r.executor.progress(std::nullopt);
+  EXPECT_FALSE(nowhere.distance_left_m);
+  EXPECT_FALSE(nowhere.eta_s);
+  r.start();
+  r.run(4.0);
+  EXPECT_EQ(r.executor.progress(r.vehicle.at).current_item, 1);
+  EXPECT_NEAR(r.executor.progress(r.vehicle.at).distance_left_m.value(), 10.0 - r.vehicle.at.east_m,
+              0.2);
+  ASSERT_TRUE(r.run(60.0));
+  const Progress after = r.executor.progress(r.vehicle.at);
+  EXPECT_FALSE(after.current_item);
+  EXPECT_FALSE(after.distance_left_m);
+  EXPECT_FALSE(after.eta_s);
+  // Home is not a place before the robot goes there.
+  Ride home;
+  home.load(plan({mission::Wait{5.0}, at(4, 0), mission::ReturnHome{}}));
+  EXPECT_FALSE(home.executor.progress(home.vehicle.at).distance_left_m);
+}
+
 TEST(Executor, JumpsAsOftenAsToldAndRefusesToSpinInPlace) {
   Ride r;
   r.load(plan({at(2, 0), at(4, 0), mission::Jump{1, 2}, at(6, 0)}));

@@ -264,7 +264,7 @@ TEST(Robot, SurvivesAnyMeasurement) {
     ASSERT_TRUE(f.state()->pose);
     EXPECT_TRUE(std::isfinite(f.state()->pose->at.east_m));
     EXPECT_TRUE(std::isfinite(f.state()->pose->yaw_rad));
-    EXPECT_TRUE(std::isfinite(f.state()->pose->speed_mps));
+    EXPECT_TRUE(std::isfinite(f.state()->pose->speed_mps.value_or(0.0)));
   }
   EXPECT_FALSE(f.moves());
 }
