@@ -207,6 +207,63 @@ base::Result<void> Executor::skip(int item) {
   return {};
 }
 
+bool Executor::in_hand() const noexcept {
+  return running() || state_ == ExecutionState::Paused || state_ == ExecutionState::Blocked;
+}
+
+void Executor::extend(std::shared_ptr<const Route> route) {
+  if (!in_hand()) return load(std::move(route));
+  const bool back = course_ == &route_->back;
+  const Course& fresh = back ? route->back : route->forth;
+  const Course& old = *course_;
+  const bool at_end = at_ >= old.steps.size();  // on the way home, or done with the last item
+  // Backwards, what was added comes first and shifts the rest.
+  move_to(fresh, back ? fresh.steps.size() - old.steps.size() : 0,
+          back ? fresh.nodes.size() - old.nodes.size() : 0);
+  jumps_left_.resize(std::max(jumps_left_.size(), route->forth.steps.size()), -1);
+  route_ = std::move(route);
+  course_ = &fresh;
+  if (at_end && !back) begin_at(at_);
+}
+
+/// The place on the old course, on the new one: the same way before the same waypoint.
+void Executor::move_to(const Course& fresh, std::size_t more_steps, std::size_t more_nodes) {
+  const Course& old = *course_;
+  const bool tracking = tracker_.path() == &old.path;
+  const RouteStep* step = step_now();
+  if (doing_ == Doing::Path || rejoin_) {
+    double s_m = tracking ? tracker_.s_m() : s_m_;
+    if (step != nullptr && step->kind == StepKind::Go) {
+      const double before_m = old.path.vertex_m[step->node] - s_m;
+      s_m = fresh.path.vertex_m[step->node + more_nodes] - before_m;
+    }
+    s_m_ = std::clamp(s_m, 0.0, fresh.path.length_m());
+    leg_ = fresh.path.leg_from(s_m_);
+  }
+  at_ += more_steps;
+  if (standing_) *standing_ += more_nodes;
+  if (tracking) tracker_.move_to(fresh.path, leg_, s_m_);
+}
+
+void Executor::drop(std::shared_ptr<const Route> route, int item) {
+  if (!in_hand()) return load(std::move(route));
+  const bool back = course_ == &route_->back;
+  const Course& fresh = back ? route->back : route->forth;
+  std::size_t next = at_;
+  while (next < course_->steps.size() && course_->steps[next].item == item) ++next;
+  std::size_t to = fresh.steps.size();
+  if (next < course_->steps.size()) {
+    const int number = course_->steps[next].item - (course_->steps[next].item > item ? 1 : 0);
+    const auto found = std::find_if(fresh.steps.begin(), fresh.steps.end(),
+                                    [&](const RouteStep& s) { return s.item == number; });
+    to = static_cast<std::size_t>(found - fresh.steps.begin());
+  }
+  route_ = std::move(route);
+  course_ = back ? &route_->back : &route_->forth;
+  jumps_left_.assign(route_->forth.steps.size(), -1);
+  begin_at(to);
+}
+
 const RouteStep* Executor::step_now() const noexcept {
   return course_ != nullptr && at_ < course_->steps.size() ? &course_->steps[at_] : nullptr;
 }

@@ -68,6 +68,11 @@ class Executor {
   base::Result<void> resume(EnuPoint here);
   /// Goes on with another item. @param item from 1; 0: the next one.
   base::Result<void> skip(int item);
+  /// Another route in the place of the loaded one, also while it runs: its items are the same, and
+  /// more come after them. The drive goes on without a stop. Not Running, Paused or Blocked: load.
+  void extend(std::shared_ptr<const Route> route);
+  /// Likewise, but one item is gone. If it was the one in hand, the next one is.
+  void drop(std::shared_ptr<const Route> route, int item);
   void interrupt() noexcept;
   /// After interrupt(). Pauses when the place is too far away.
   void go_on(EnuPoint here);
@@ -103,6 +108,8 @@ class Executor {
   void watch(const Vehicle& vehicle, double dt_s);
   void watch_stuck(const Vehicle& vehicle, double dt_s);
   void begin_at(std::size_t step);
+  bool in_hand() const noexcept;
+  void move_to(const Course& fresh, std::size_t more_steps, std::size_t more_nodes);
   const RouteStep* step_now() const noexcept;
   std::optional<double> way_left_m(const RouteStep& step,
                                    std::optional<EnuPoint> here) const noexcept;
