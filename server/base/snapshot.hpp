@@ -76,6 +76,11 @@ struct SafetyCondition {
   friend bool operator==(const SafetyCondition&, const SafetyCondition&) = default;
 };
 
+/// What the radio's switches and knob mean as they stand, in words; empty: not known.
+struct RadioMeaning {
+  std::string_view swa, swb, swc, swd, vra;  ///< of static texts
+};
+
 struct EstimatorHealth {
   double compass_bias_rad = 0.0;
   double odometry_scale = 1.0;
@@ -116,6 +121,7 @@ struct Snapshot {
   std::optional<LightState> lights;
   std::optional<Bumper> bumper;
   std::optional<RadioState> radio;
+  RadioMeaning radio_meaning;
   std::vector<DriverStatus> drivers;
 
   MissionProgress mission;

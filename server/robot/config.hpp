@@ -7,6 +7,7 @@
 #include "nav/behave/params.hpp"
 #include "nav/estimate/params.hpp"
 #include "nav/track/path.hpp"
+#include "robot/radio_actions.hpp"
 
 namespace roverd::robot {
 
@@ -96,6 +97,7 @@ struct Config {
   ManualParams manual;
   SafetyParams safety;
   ArmingParams arming;
+  RadioParams radio;
 
   /// What following a path needs; the vehicle goes no faster than it can.
   nav::PathParams path() const {
@@ -115,6 +117,7 @@ void sections(V& v, Config& c) {
   v("robot.manual", c.manual);
   v("robot.safety", c.safety);
   v("robot.arming", c.arming);
+  v("radio", c.radio);
 }
 
 }  // namespace roverd::robot

@@ -54,6 +54,7 @@ bool Robot::Impl::publish() {
   s->lights = world.lights;
   s->bumper = world.bumper;
   s->radio = world.radio;
+  s->radio_meaning = radio_meaning();
   s->drivers = world.drivers;
   s->mission = progress();
   s->command = sent;

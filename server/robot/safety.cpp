@@ -272,11 +272,14 @@ base::Check check_drivers(const World& w) {
 bool radio_drives(const World& w, const SafetyParams& p, Time now) noexcept {
   const bool base_says = w.base && w.base->control_mode == ControlMode::Radio &&
                          !older(w.base->stamp, p.status_timeout_s, now);
-  const bool heard = w.radio && !older(w.radio->stamp, p.radio_timeout_s, now) &&
-                     !older(w.radio_counted, p.radio_timeout_s, now) &&
-                     !(w.base && w.base->radio_lost);
-  const bool switch_says = heard && (w.swb == Switch::Middle || w.swb == Switch::Down);
+  const bool switch_says =
+      radio_heard(w, p, now) && (w.swb == Switch::Middle || w.swb == Switch::Down);
   return base_says || switch_says;
+}
+
+bool radio_heard(const World& w, const SafetyParams& p, Time now) noexcept {
+  return w.radio && !older(w.radio->stamp, p.radio_timeout_s, now) &&
+         !older(w.radio_counted, p.radio_timeout_s, now) && !(w.base && w.base->radio_lost);
 }
 
 bool base_listens(const World& w) noexcept {

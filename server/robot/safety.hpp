@@ -53,6 +53,8 @@ struct Assessment {
 
 /// Does the radio drive? The base says so, or the switch SWB stands elsewhere than up.
 bool radio_drives(const World& world, const SafetyParams& p, Time now) noexcept;
+/// Its frames come, and count.
+bool radio_heard(const World& world, const SafetyParams& p, Time now) noexcept;
 /// The base takes our commands.
 bool base_listens(const World& world) noexcept;
 bool base_lost(const World& world, const SafetyParams& p, Time now) noexcept;

@@ -53,7 +53,11 @@ class Field {
   bool gnss_speaks = true;
   base::FixType fix = base::FixType::RtkFixed;
   int satellites = 20;
+  base::Switch swa = base::Switch::Up;
   base::Switch swb = base::Switch::Up;
+  base::Switch swc = base::Switch::Up;
+  base::Switch swd = base::Switch::Up;
+  double vra = 0.0;
   base::ControlMode control_mode = base::ControlMode::Can;
   base::VehicleState vehicle_state = base::VehicleState::Normal;
   bool radio_lost = false;
@@ -140,7 +144,11 @@ class Field {
     if (radio_speaks) {
       base::RadioState r;
       r.stamp = now;
+      r.swa = swa;
       r.swb = swb;
+      r.swc = swc;
+      r.swd = swd;
+      r.vra = vra;
       if (radio_counts) ++radio_count_;
       r.count = radio_count_;
       in.put(r);
