@@ -148,6 +148,15 @@ Json rc_json(const base::Snapshot& s, base::Time now) {
     out[name] = nullptr;
   }
   set_age(out, stamp_of(s.radio), now, StaleAfter::kRc_s);
+  const auto words = [](std::string_view text) {
+    return text.empty() ? Json(nullptr) : Json(text);
+  };
+  const base::RadioMeaning& m = s.radio_meaning;
+  out["meaning"] = {{"swa", words(m.swa)},
+                    {"swb", words(m.swb)},
+                    {"swc", words(m.swc)},
+                    {"swd", words(m.swd)},
+                    {"vra", words(m.vra)}};
   if (!s.radio) return out;
   const base::RadioState& r = *s.radio;
   out["swa"] = base::to_string(r.swa);
@@ -283,6 +292,7 @@ Json capabilities_json(const Profile& p, const std::string& version) {
           {"modes", std::move(modes)},
           {"drivers", p.drivers},
           {"item_types", p.item_types},
+          {"radio", p.radio},
           {"import_formats", formats},
           {"export_formats", formats}};
 }
