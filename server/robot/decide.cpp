@@ -1,5 +1,6 @@
 // From facts to a command: judge what is wrong, let the one with the right to drive drive.
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -58,6 +59,13 @@ void Robot::Impl::judge() {
   checks = arming_checks(facts(), p, config.arming, mission != nullptr, now);
 }
 
+/// The part of a command that this vehicle can do at all.
+base::BodyTwist Robot::Impl::possible(const base::BodyTwist& told) const noexcept {
+  const double v = config.vehicle.max_speed_mps;
+  const double w = config.vehicle.steered() ? 0.0 : config.speed.max_yaw_rate_radps;
+  return {std::clamp(told.linear_mps, -v, v), std::clamp(told.angular_radps, -w, w)};
+}
+
 /// Whether our commands reach the base, by what it shows of them.
 void Robot::Impl::watch_base() {
   const SafetyParams& p = config.safety;
@@ -85,7 +93,7 @@ void Robot::Impl::watch_base() {
   const bool told = world.motion && !world.motion->assumed &&
                     base::seconds(now - world.motion->stamp) <= p.base_timeout_s;
   if (told) does = world.motion->twist;
-  follow.step(in_charge ? sent.twist : base::BodyTwist{}, does, now, p.follow_timeout_s);
+  follow.step(in_charge ? possible(sent.twist) : base::BodyTwist{}, does, now, p.follow_timeout_s);
   if (!was_lost && follow.lost()) {
     event(Severity::Warning, "base_not_following",
           "the base does not do what it is told: commands seem not to reach it");

@@ -141,6 +141,7 @@ struct Robot::Impl {
   void watch_changes();
   void watch_frame();
   void watch_base();
+  base::BodyTwist possible(const base::BodyTwist& told) const noexcept;
 
   // radio.cpp
   void press(const base::RadioState& frame);

@@ -84,6 +84,32 @@ TEST(Arbiter, TheRadioMayTakeTheBaseAndGiveItBackThroughStandby) {
   EXPECT_FALSE(f.has_event("base_left_control"));
 }
 
+TEST(Arbiter, WhatAVehicleCannotDoIsNoSignOfALostCommand) {
+  Config steered;
+  steered.vehicle.kinematics = "ackermann";
+  steered.vehicle.max_speed_mps = 0.3;
+  Field f(steered);
+  f.obeys = false;
+  f.run(8.0);
+  ASSERT_TRUE(f.ask(Arm{}));
+  ASSERT_TRUE(f.ask(SetMode{Mode::Manual}));
+  const auto drive = [&f](base::BodyTwist twist, base::BodyTwist does) {
+    f.does = does;
+    for (int i = 0; i < 150; ++i) {
+      f.robot.request(Drive{twist, true}, f.now + std::chrono::milliseconds(250), {});
+      f.tick();
+    }
+  };
+  drive({0.0, 0.5}, {});           // it cannot turn on the spot
+  drive({1.0, 0.0}, {0.25, 0.0});  // nor go as fast as that
+  EXPECT_EQ(f.state()->mode, Mode::Manual);
+  EXPECT_FALSE(f.has_event("base_not_following"));
+  drive({1.0, 0.0}, {});
+  EXPECT_EQ(f.state()->mode, Mode::Hold);
+  EXPECT_TRUE(f.has_event("base_not_following"));
+  EXPECT_TRUE(f.has_condition("base_not_following"));
+}
+
 TEST(FollowWatch, AllowsForALagAndNamesABaseThatDoesNotMove) {
   using std::chrono::milliseconds;
   FollowWatch w;

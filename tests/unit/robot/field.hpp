@@ -62,13 +62,15 @@ class Field {
   base::VehicleState vehicle_state = base::VehicleState::Normal;
   bool radio_lost = false;
   std::optional<double> charge_pct;
+  bool obeys = true;       ///< the base moves as it is told; else
+  base::BodyTwist does{};  ///< it moves so
   base::EnuPoint at{};
   double yaw_rad = base::kPi / 2.0;
   Time now{};
 
   void tick() {
     now += std::chrono::milliseconds(20);
-    const auto [v, w] = command.twist;
+    const auto [v, w] = obeys ? command.twist : does;
     at.east_m += v * 0.02 * std::cos(yaw_rad);
     at.north_m += v * 0.02 * std::sin(yaw_rad);
     yaw_rad = base::wrap_rad(yaw_rad + w * 0.02);
