@@ -1,8 +1,6 @@
 #pragma once
 // What a switch of the radio may do, and what it does on this vehicle. Section [radio].
 
-#include <cstdint>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -34,8 +32,6 @@ struct RadioAction {
   base::Mode mode = base::Mode::Hold;  ///< with SetMode
 };
 
-/// All that there are.
-std::span<const RadioAction> radio_actions() noexcept;
 /// The one of that word; null if there is none.
 const RadioAction* radio_action(std::string_view word) noexcept;
 

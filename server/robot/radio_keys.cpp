@@ -59,10 +59,6 @@ std::size_t index_of(Switch position) noexcept {
 
 }  // namespace
 
-std::span<const RadioAction> radio_actions() noexcept {
-  return kActions;
-}
-
 const RadioAction* radio_action(std::string_view word) noexcept {
   for (const RadioAction& action : kActions) {
     if (action.word == word) return &action;
