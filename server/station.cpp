@@ -13,6 +13,7 @@
 #include "api/api.hpp"
 #include "base/angle.hpp"
 #include "base/log.hpp"
+#include "base/params.hpp"
 #include "control_loop.hpp"
 #include "driver_bay.hpp"
 #include "net/assets.hpp"
@@ -47,6 +48,9 @@ api::Profile profile_of(const Settings& s, const std::vector<std::string>& drive
   profile.pivot_angle_rad = base::rad_from_deg(s.robot.pivot.angle_deg);
   profile.modes = {base::Mode::Manual, base::Mode::Hold, base::Mode::Auto};
   profile.drivers = drivers;
+  for (const base::ParamInfo& key : base::describe(s.robot.radio)) {
+    if (const auto* word = std::get_if<std::string>(&key.value)) profile.radio[key.name] = *word;
+  }
   profile.item_types = {"waypoint", "wait", "speed", "return_home", "jump"};
   return profile;
 }

@@ -8,6 +8,7 @@
 #include "api/context.hpp"
 #include "api/docs.hpp"
 #include "api/idempotency.hpp"
+#include "api/radio_edits.hpp"
 #include "api/stream.hpp"
 #include "base/log.hpp"
 
@@ -63,11 +64,15 @@ void Context::announce(const std::string& id, std::optional<std::int64_t> revisi
 }
 
 struct Api::Impl {
-  explicit Impl(Deps deps) : context(std::make_shared<Context>(std::move(deps))) {}
+  explicit Impl(Deps deps)
+      : context(std::make_shared<Context>(std::move(deps))), radio_edits(context) {
+    radio_edits.tell = [this](base::Event event) { take_event(std::move(event)); };
+  }
 
   void route(const CallPtr& call);
   void serve_page(const CallPtr& call, std::string_view path);
   void watch(const CallPtr& call, const Route& route);
+  void take_event(base::Event event);
 
   ContextPtr context;
   Idempotency idempotency;
@@ -78,6 +83,8 @@ struct Api::Impl {
   base::Time counted;
   std::vector<robot::PendingReply> replies;
   std::vector<base::Event> events;
+  RadioEdits radio_edits;
+  std::vector<robot::MissionEdit> edits;
 };
 
 Api::Api(Deps deps) : impl_(std::make_unique<Impl>(std::move(deps))) {
@@ -243,14 +250,19 @@ void Api::on_sample() {
   }
 }
 
+void Api::Impl::take_event(base::Event event) {
+  if (stream) stream->publish_event(event);
+  context->deps.store.add_event(std::move(event));
+}
+
 void Api::drain() {
   auto& robot = impl_->context->deps.robot;
   impl_->events.clear();
   robot.events().take(impl_->events);
-  for (base::Event& event : impl_->events) {
-    if (impl_->stream) impl_->stream->publish_event(event);
-    impl_->context->deps.store.add_event(std::move(event));
-  }
+  for (base::Event& event : impl_->events) impl_->take_event(std::move(event));
+  impl_->edits.clear();
+  robot.edits().take(impl_->edits);
+  for (robot::MissionEdit& edit : impl_->edits) impl_->radio_edits.put(std::move(edit));
   impl_->replies.clear();
   robot.replies().take(impl_->replies);
   for (robot::PendingReply& pending : impl_->replies) {

@@ -4,7 +4,8 @@
 //
 //   net ─on_request─▶ guard ─▶ idempotency ─▶ router ─▶ handler ─▶ robot.request / store ─▶ answer
 //   net ─on_text────▶ subscribe, drive
-//   robot.wake ─▶ drain(): answers of commands, events → store and stream
+//   robot.wake ─▶ drain(): answers of commands, events → store and stream, the radio's edits of the
+//                          mission → store → robot
 
 #include <functional>
 #include <map>

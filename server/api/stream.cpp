@@ -191,7 +191,7 @@ void StreamTexts::look_at_execution() {
   const base::MissionProgress& p = snapshot->mission;
   std::string now = p.mission_id + '/' + std::to_string(p.revision) + '/' +
                     std::string(base::to_string(p.state)) + '/' + p.reason + '/' +
-                    std::to_string(p.current_item);
+                    std::to_string(p.current_item.value_or(0));
   if (now == execution_seen_) return;
   execution_seen_ = std::move(now);
   stream_.publish(kExecution, [&p](std::uint64_t seq) {

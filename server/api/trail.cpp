@@ -80,7 +80,7 @@ void Track::thin() {
 void Trail::take(const base::Snapshot& s) {
   const auto& pose = s.pose;
   if (pose && base::seconds(s.now - pose->stamp) <= StaleAfter::kPosition_s) {
-    const double reach_m = kSlack_m + std::abs(pose->speed_mps) * kAhead_s;
+    const double reach_m = kSlack_m + std::abs(pose->speed_mps.value_or(0.0)) * kAhead_s;
     estimated_.add(pose->global, pose->stamp, reach_m);
   }
   const auto& fix = s.gnss;

@@ -32,6 +32,9 @@ Json heading_json(double yaw_rad) {
 Json degrees(double rad) {
   return rounded(base::deg_from_rad(rad), kPlaces2);
 }
+Json degrees(const std::optional<double>& rad) {
+  return rad ? degrees(*rad) : Json(nullptr);
+}
 
 void set_position(Json& group, const std::optional<base::LatLon>& at) {
   group["lat"] = at ? rounded(at->lat, kPlaces9) : Json(nullptr);
@@ -110,7 +113,8 @@ Json base_json(const base::Snapshot& s, base::Time now) {
     out["error_code"] = s.base->error_code;
     out["errors"] = s.base->errors;
   }
-  if (s.motion) {
+  const bool moves = s.motion && base::seconds(now - s.motion->stamp) <= StaleAfter::kBase_s;
+  if (moves) {  // its age is not told beside the state's
     out["speed_mps"] = rounded(s.motion->twist.linear_mps, kPlaces3);
     out["yaw_rate_dps"] = degrees(s.motion->twist.angular_radps);
   }
@@ -144,6 +148,15 @@ Json rc_json(const base::Snapshot& s, base::Time now) {
     out[name] = nullptr;
   }
   set_age(out, stamp_of(s.radio), now, StaleAfter::kRc_s);
+  const auto words = [](std::string_view text) {
+    return text.empty() ? Json(nullptr) : Json(text);
+  };
+  const base::RadioMeaning& m = s.radio_meaning;
+  out["meaning"] = {{"swa", words(m.swa)},
+                    {"swb", words(m.swb)},
+                    {"swc", words(m.swc)},
+                    {"swd", words(m.swd)},
+                    {"vra", words(m.vra)}};
   if (!s.radio) return out;
   const base::RadioState& r = *s.radio;
   out["swa"] = base::to_string(r.swa);
@@ -166,7 +179,7 @@ Json progress_json(const base::MissionProgress& p, const char* id_word) {
           {"name", none ? Json(nullptr) : Json(p.name)},
           {"state", base::to_string(p.state)},
           {"reason", p.reason},
-          {"current_item", p.current_item},
+          {"current_item", p.current_item ? Json(*p.current_item) : Json(nullptr)},
           {"items", p.items},
           {"distance_to_item_m", rounded(p.distance_to_item_m, kPlaces3)},
           {"bearing_to_item_deg", rounded(p.bearing_to_item_deg, kPlaces2)},
@@ -279,6 +292,7 @@ Json capabilities_json(const Profile& p, const std::string& version) {
           {"modes", std::move(modes)},
           {"drivers", p.drivers},
           {"item_types", p.item_types},
+          {"radio", p.radio},
           {"import_formats", formats},
           {"export_formats", formats}};
 }

@@ -38,7 +38,8 @@ struct Profile {
   double pivot_angle_rad = 0.0;
   std::vector<base::Mode> modes;
   std::vector<std::string> drivers;
-  std::vector<std::string> item_types;  ///< those that execution can drive
+  std::vector<std::string> item_types;       ///< those that execution can drive
+  std::map<std::string, std::string> radio;  ///< "swc_up" → "mode.manual"
 };
 
 Json vehicle_json(const base::Snapshot& snapshot, const std::string& name, base::Time now);

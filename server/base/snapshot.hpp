@@ -45,9 +45,10 @@ struct Pose {
   EnuPoint at;
   LatLon global;
   double yaw_rad = 0.0;
-  double speed_mps = 0.0;  ///< along the body's forward axis, signed
-  double yaw_rate_radps = 0.0;
-  double horizontal_sigma_m = 0.0;  ///< 1σ, larger axis of the ellipse
+  std::optional<double> speed_mps;  ///< along the body's forward axis, signed; over ground without
+                                    ///< odometry, then never negative
+  std::optional<double> yaw_rate_radps;  ///< empty without odometry
+  double horizontal_sigma_m = 0.0;       ///< 1σ, larger axis of the ellipse
   double yaw_sigma_rad = 0.0;
   std::optional<double> alt_msl_m;
   std::string source;  ///< "gnss", "gnss+odometry", "odometry"
@@ -58,8 +59,8 @@ struct MissionProgress {
   std::int64_t revision = 0;
   std::string name;
   ExecutionState state = ExecutionState::Idle;
-  std::string reason;    ///< why paused, blocked, aborted
-  int current_item = 0;  ///< 1-based; 0: none
+  std::string reason;               ///< why paused, blocked, aborted
+  std::optional<int> current_item;  ///< 1-based
   int items = 0;
   std::optional<double> distance_to_item_m;
   std::optional<double> bearing_to_item_deg;
@@ -73,6 +74,11 @@ struct SafetyCondition {
   std::string id;  ///< "estop", "radio_lost", "base_lost", "pose_uncertain" …
   std::string detail;
   friend bool operator==(const SafetyCondition&, const SafetyCondition&) = default;
+};
+
+/// What the radio's switches and knob mean as they stand, in words; empty: not known.
+struct RadioMeaning {
+  std::string_view swa, swb, swc, swd, vra;  ///< of static texts
 };
 
 struct EstimatorHealth {
@@ -115,6 +121,7 @@ struct Snapshot {
   std::optional<LightState> lights;
   std::optional<Bumper> bumper;
   std::optional<RadioState> radio;
+  RadioMeaning radio_meaning;
   std::vector<DriverStatus> drivers;
 
   MissionProgress mission;

@@ -1,6 +1,7 @@
 // What each command does, and when it is refused. Answers tell what the robot did.
 
 #include <cmath>
+#include <utility>
 
 #include "robot/impl.hpp"
 
@@ -267,6 +268,51 @@ base::Result<void> Robot::Impl::handle(const LoadMission& c) {
   event(Severity::Info, "mission_loaded",
         "mission \"" + mission->copy.plan.name + "\" revision " +
             std::to_string(mission->copy.revision) + " loaded");
+  return {};
+}
+
+base::Result<void> Robot::Impl::handle(const ReviseMission& c) {
+  const bool same = mission
+                        ? mission->copy.id == c.from_id && mission->copy.revision == c.from_revision
+                        : c.from_id.empty();
+  if (!same) return base::fail(Code::Conflict, "another mission was loaded meanwhile");
+  if (c.mission && !estimator.frame()) estimator.use_frame(c.mission->frame);
+  if (c.mission && estimator.frame()->id() != c.mission->frame.id()) {
+    return base::fail(Code::Conflict, "the robot's map began meanwhile: try once more");
+  }
+  const bool was_loaded = mission != nullptr;
+  const auto before = std::exchange(mission, c.mission);  // the old route is left below
+  mission_unpublished = true;
+  if (!was_loaded && mission && mission->copy.plan.home) {
+    home = mission->copy.plan.home->at;
+    home_is_chosen = true;
+  }
+  if (!mission) {
+    if (executor.running()) executor.stop("nothing is left of the mission");
+    executor.load(nullptr);
+    if (mode == Mode::Auto) set_mode(Mode::Hold, "nothing is left of the mission");
+  } else {
+    auto route = std::shared_ptr<const nav::Route>(mission, &mission->route);
+    if (!was_loaded) {
+      executor.load(std::move(route));
+    } else if (c.kind == EditKind::RemoveItem) {
+      executor.drop(std::move(route), c.item);
+    } else {
+      executor.extend(std::move(route));
+    }
+  }
+  const std::string item = "item " + std::to_string(c.item);
+  switch (c.kind) {
+    case EditKind::AddWaypoint:
+      event(Severity::Info, "mission_item_added", item + " added where the robot was");
+      break;
+    case EditKind::RemoveItem:
+      event(Severity::Info, "mission_item_removed", item + " removed");
+      break;
+    case EditKind::Clear:
+      event(Severity::Info, "mission_cleared", "the mission was cleared");
+      break;
+  }
   return {};
 }
 

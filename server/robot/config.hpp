@@ -7,6 +7,7 @@
 #include "nav/behave/params.hpp"
 #include "nav/estimate/params.hpp"
 #include "nav/track/path.hpp"
+#include "robot/radio_actions.hpp"
 
 namespace roverd::robot {
 
@@ -33,6 +34,7 @@ struct SafetyParams {
   double base_timeout_s = 0.4;
   double status_timeout_s = 1.5;
   double base_accept_s = 3.0;
+  double follow_timeout_s = 0.3;
   bool radio_required = true;
   double radio_timeout_s = 0.5;
   double bumper_timeout_s = 1.0;
@@ -51,6 +53,8 @@ void fields(V& v, SafetyParams& p) {
   v("status_timeout_s", p.status_timeout_s, 0.3, 10.0, "no state of the base for so long: stop");
   v("base_accept_s", p.base_accept_s, 0.5, 30.0,
     "a base that does not take commands for so long while armed: hold");
+  v("follow_timeout_s", p.follow_timeout_s, 0.1, 10.0,
+    "commanded motion that the base does not show for so long, beyond a lag of 0.4 s: hold");
   v("radio_required", p.radio_required,
     "a transmitter must be heard: it is the operator's way to take over");
   v("radio_timeout_s", p.radio_timeout_s, 0.2, 5.0,
@@ -93,6 +97,7 @@ struct Config {
   ManualParams manual;
   SafetyParams safety;
   ArmingParams arming;
+  RadioParams radio;
 
   /// What following a path needs; the vehicle goes no faster than it can.
   nav::PathParams path() const {
@@ -112,6 +117,7 @@ void sections(V& v, Config& c) {
   v("robot.manual", c.manual);
   v("robot.safety", c.safety);
   v("robot.arming", c.arming);
+  v("radio", c.radio);
 }
 
 }  // namespace roverd::robot

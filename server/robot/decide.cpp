@@ -1,5 +1,6 @@
 // From facts to a command: judge what is wrong, let the one with the right to drive drive.
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -15,6 +16,8 @@ using base::Mode;
 using base::Severity;
 
 constexpr double kNoLimit_mps = 1e9;
+/// The base tells its state every 0.1 to 0.2 s: until then its last word is of the time before.
+constexpr base::Duration kSettled = std::chrono::milliseconds(500);
 
 }  // namespace
 
@@ -26,6 +29,9 @@ Facts Robot::Impl::facts() const {
           .estop = estop,
           .autonomous = mode == Mode::Auto && executor.running(),
           .base_waited_since = base_waited_since,
+          .base_left = base_left,
+          .commands_lost = follow.lost(),
+          .not_following = follow.failing(),
           .sigma_bad_since = sigma_bad_since};
 }
 
@@ -38,6 +44,7 @@ void Robot::Impl::judge() {
   const bool bad = pose && pose->horizontal_sigma_m > p.sigma_hold_m;
   if (!bad) sigma_bad_since.reset();
   if (bad && !sigma_bad_since) sigma_bad_since = now;
+  watch_base();
 
   assessment = assess(facts(), p, now);
   if (assessment.base_estop) latch_estop("the button at the base");
@@ -50,6 +57,49 @@ void Robot::Impl::judge() {
     event(Severity::Warning, was_auto ? "mission_paused" : "stopped", assessment.cause);
   }
   checks = arming_checks(facts(), p, config.arming, mission != nullptr, now);
+}
+
+/// The part of a command that this vehicle can do at all.
+base::BodyTwist Robot::Impl::possible(const base::BodyTwist& told) const noexcept {
+  const double v = config.vehicle.max_speed_mps;
+  const double w = config.vehicle.steered() ? 0.0 : config.speed.max_yaw_rate_radps;
+  return {std::clamp(told.linear_mps, -v, v), std::clamp(told.angular_radps, -w, w)};
+}
+
+/// Whether our commands reach the base, by what it shows of them.
+void Robot::Impl::watch_base() {
+  const SafetyParams& p = config.safety;
+  const bool in_charge = armed && sent.enabled && !radio_drives(world, p, now);
+  if (!in_charge) in_charge_since.reset();
+  if (in_charge && !in_charge_since) in_charge_since = now;
+
+  // Just armed, or just given back by the radio, the last status may still tell of the time before.
+  const bool settled = in_charge_since && now - *in_charge_since > kSettled;
+  const bool listens = base_listens(world);
+  const bool normal = world.base && world.base->vehicle_state == base::VehicleState::Normal;
+  base_left = settled && base_listened && !listens && normal;
+  if (base_left) {
+    base_gone = true;
+    event(Severity::Warning, "base_left_control",
+          "the base left our control by itself: it was switched off and on, or heard no command");
+  }
+  if (base_gone && listens) event(Severity::Info, "base_back", "the base takes commands again");
+  if (listens || !armed) base_gone = false;
+  if (settled && listens && !base_listened) follow.heard();
+  base_listened = listens;
+
+  const bool was_lost = follow.lost();
+  std::optional<base::BodyTwist> does;
+  const bool told = world.motion && !world.motion->assumed &&
+                    base::seconds(now - world.motion->stamp) <= p.base_timeout_s;
+  if (told) does = world.motion->twist;
+  follow.step(in_charge ? possible(sent.twist) : base::BodyTwist{}, does, now, p.follow_timeout_s);
+  if (!was_lost && follow.lost()) {
+    event(Severity::Warning, "base_not_following",
+          "the base does not do what it is told: commands seem not to reach it");
+  } else if (was_lost && !follow.lost()) {
+    event(Severity::Info, "base_follows", "the base does what it is told again");
+  }
 }
 
 void Robot::Impl::hold(const std::string& why) {
@@ -119,8 +169,8 @@ base::DriveCommand Robot::Impl::drive_mission() {
   const nav::Vehicle vehicle{pose->at,
                              pose->yaw_rad,
                              pose->yaw_sigma_rad,
-                             pose->speed_mps,
-                             pose->yaw_rate_radps,
+                             pose->speed_mps.value_or(0.0),
+                             pose->yaw_rate_radps.value_or(0.0),
                              b.x(nav::kScale),
                              b.x(nav::kYawScale),
                              b.x(nav::kPull)};

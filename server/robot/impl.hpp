@@ -23,8 +23,10 @@
 #include "nav/behave/executor.hpp"
 #include "nav/estimate/estimator.hpp"
 #include "robot/compile.hpp"
+#include "robot/follow.hpp"
 #include "robot/manual.hpp"
 #include "robot/outbox.hpp"
+#include "robot/radio_keys.hpp"
 #include "robot/safety.hpp"
 #include "robot/world.hpp"
 
@@ -56,6 +58,8 @@ struct Robot::Impl {
   nav::Estimator estimator;
   nav::Executor executor;
   Manual manual;
+  RadioKeys keys;
+  std::vector<RadioKey> pressed;
   World world;
   std::shared_ptr<const CompiledMission> mission;
   bool mission_unpublished = false;
@@ -74,6 +78,11 @@ struct Robot::Impl {
   Assessment assessment;
   std::vector<base::Check> checks;
   std::optional<Time> base_waited_since;
+  FollowWatch follow;
+  std::optional<Time> in_charge_since;  ///< armed, no radio: the base is to listen to us
+  bool base_listened = false;
+  bool base_left = false;  ///< at this tick
+  bool base_gone = false;  ///< since then
   std::optional<Time> sigma_bad_since;
   bool radio_had_control = false;
   base::Driver driver = base::Driver::None;
@@ -87,7 +96,7 @@ struct Robot::Impl {
   std::vector<base::Measurement> measurement_batch;
   std::vector<PendingCommand> command_batch;
 
-  // tick, in this order (robot.cpp, commands.cpp, decide.cpp, publish.cpp)
+  // tick, in this order (robot.cpp, commands.cpp, radio.cpp, decide.cpp, publish.cpp)
   void begin(Time t, base::WallTime w, base::Duration lateness);
   void take_estop();
   void take_commands();
@@ -110,6 +119,7 @@ struct Robot::Impl {
   base::Result<void> handle(const SetHome& c);
   base::Result<void> handle(const Drive& c);
   base::Result<void> handle(const LoadMission& c);
+  base::Result<void> handle(const ReviseMission& c);
   base::Result<void> may_drive_mission() const;
   base::Result<void> start(const nav::StartAt& at);
   base::Result<void> resume();
@@ -130,6 +140,15 @@ struct Robot::Impl {
   void tell_notices();
   void watch_changes();
   void watch_frame();
+  void watch_base();
+  base::BodyTwist possible(const base::BodyTwist& told) const noexcept;
+
+  // radio.cpp
+  void press(const base::RadioState& frame);
+  void act_on_radio();
+  base::Result<void> carry_out(const RadioAction& action);
+  base::Result<void> ask_for_edit(RadioDeed deed);
+  base::RadioMeaning radio_meaning() const noexcept;
 
   void event(base::Severity level, const char* kind, std::string detail) {
     outbox.event(wall, level, kind, std::move(detail));

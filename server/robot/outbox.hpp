@@ -19,9 +19,11 @@ class Outbox {
   static constexpr std::size_t kEvents = 256;
   /// So many answers waiting: nobody drains them; no more commands are taken.
   static constexpr std::size_t kReplies = 256;
+  static constexpr std::size_t kEdits = 16;
 
   base::Inbox<PendingReply> replies{1024};
   base::Inbox<base::Event> events{1024};
+  base::Inbox<MissionEdit> edits{64};
 
   void reply(Reply to, base::Result<void> result) {
     if (to) waiting_replies_.push_back({std::move(to), std::move(result)});
@@ -33,6 +35,13 @@ class Outbox {
       ++dropped_;
     }
     waiting_events_.push_back({wall, level, kind, std::move(detail)});
+  }
+
+  /// @return false: too many wait.
+  bool edit(MissionEdit edit) {
+    if (waiting_edits_.size() >= kEdits) return false;
+    waiting_edits_.push_back(std::move(edit));
+    return true;
   }
 
   bool full() const noexcept { return waiting_replies_.size() >= kReplies; }
@@ -48,6 +57,10 @@ class Outbox {
       waiting_events_.pop_front();
       any = true;
     }
+    while (!waiting_edits_.empty() && edits.try_offer(waiting_edits_.front())) {
+      waiting_edits_.pop_front();
+      any = true;
+    }
     return any;
   }
 
@@ -56,6 +69,7 @@ class Outbox {
  private:
   std::deque<PendingReply> waiting_replies_;
   std::deque<base::Event> waiting_events_;
+  std::deque<MissionEdit> waiting_edits_;
   std::uint64_t dropped_ = 0;
 };
 

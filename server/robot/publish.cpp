@@ -18,7 +18,7 @@ base::MissionProgress Robot::Impl::progress() const {
     p.reason = "the radio drives; the mission goes on when it gives control back";
   }
   p.items = static_cast<int>(mission->copy.plan.items.size());
-  const nav::Progress at = executor.progress();
+  const nav::Progress at = executor.progress(pose ? std::optional(pose->at) : std::nullopt);
   p.current_item = at.current_item;
   p.cross_track_m = at.cross_track_m;
   p.distance_left_m = at.distance_left_m;
@@ -54,6 +54,7 @@ bool Robot::Impl::publish() {
   s->lights = world.lights;
   s->bumper = world.bumper;
   s->radio = world.radio;
+  s->radio_meaning = radio_meaning();
   s->drivers = world.drivers;
   s->mission = progress();
   s->command = sent;

@@ -14,9 +14,11 @@ Robot::Impl::Impl(Config c)
     : config(c),
       estimator(config.estimate),
       executor(config.path(), config.behave),
-      manual(config.manual) {
+      manual(config.manual),
+      keys(config.radio, config.safety.radio_timeout_s) {
   measurement_batch.reserve(256);
   command_batch.reserve(64);
+  pressed.reserve(64);
 }
 
 Robot::Robot(const Config& config) : impl_(std::make_unique<Impl>(config)) {}
@@ -30,6 +32,9 @@ base::Inbox<PendingReply>& Robot::replies() noexcept {
 }
 base::Inbox<base::Event>& Robot::events() noexcept {
   return impl_->outbox.events;
+}
+base::Inbox<MissionEdit>& Robot::edits() noexcept {
+  return impl_->outbox.edits;
 }
 std::shared_ptr<const base::Snapshot> Robot::snapshot() const {
   return impl_->snapshot.get();
@@ -155,7 +160,10 @@ void Robot::Impl::take_measurements() {
               d->name + (up ? " is up" : ": " + d->reason));
       }
     }
+    const auto* radio = std::get_if<base::RadioState>(&m);
+    const auto frame = radio != nullptr ? std::optional(*radio) : std::nullopt;
     world.take(std::move(m));
+    if (frame) press(*frame);
   }
   measurement_batch.clear();
   world.forget_stale(now);
@@ -172,6 +180,7 @@ void Robot::tick(Time now, base::WallTime wall, base::Duration lateness) noexcep
     r.take_measurements();
     r.watch_changes();
     r.watch_frame();
+    r.act_on_radio();
     r.judge();
     r.sent = r.decide();
     if (send) send(r.sent, now);

@@ -7,8 +7,8 @@
 //
 // Thread rules: tick, and nothing else, runs on the control thread; it is noexcept, does no I/O but
 // the two callables `send` and `wake`, allocates little, and waits for nobody (queues are taken
-// with try_lock). measurements(), request(), snapshot(), replies(), events() may be used from any
-// thread. Without a thread, a test calls tick() with any times it likes.
+// with try_lock). measurements(), request(), snapshot(), replies(), events(), edits() may be used
+// from any thread. Without a thread, a test calls tick() with any times it likes.
 
 #include <cstdint>
 #include <functional>
@@ -71,8 +71,30 @@ struct LoadMission {
   std::shared_ptr<const CompiledMission> mission;
 };
 
-using Command = std::variant<Arm, Disarm, SetMode, Estop, ResetEstop, StartMission, PauseMission,
-                             ResumeMission, StopMission, SkipItem, SetHome, Drive, LoadMission>;
+enum class EditKind { AddWaypoint, RemoveItem, Clear };
+/// What the radio wants of the loaded mission; the store is to keep it. The robot asks for nothing
+/// more until a ReviseMission comes, or the mission stays as it is.
+struct MissionEdit {
+  EditKind kind = EditKind::AddWaypoint;
+  base::LatLon at;         ///< where the robot was
+  std::string mission_id;  ///< loaded at that moment; empty: none
+  std::int64_t revision = 0;
+  std::optional<int> item;  ///< RemoveItem: 1-based; empty: the last one
+  base::WallTime wall;
+};
+/// Puts a new revision in the place of the loaded one, while it is driven if it is: added items
+/// come last and the drive goes on; without the current item it goes on with the next one.
+struct ReviseMission {
+  EditKind kind = EditKind::AddWaypoint;
+  int item = 0;         ///< 1-based: the one added or removed
+  std::string from_id;  ///< what must be loaded; empty: nothing
+  std::int64_t from_revision = 0;
+  std::shared_ptr<const CompiledMission> mission;  ///< null: nothing is left to drive
+};
+
+using Command =
+    std::variant<Arm, Disarm, SetMode, Estop, ResetEstop, StartMission, PauseMission, ResumeMission,
+                 StopMission, SkipItem, SetHome, Drive, LoadMission, ReviseMission>;
 
 /// Called with what the robot *did*. Runs on whatever thread drains replies().
 using Reply = std::function<void(base::Result<void>)>;
@@ -105,8 +127,8 @@ class Robot {
   /// Set before the first tick. Called at every tick, never waits; what it returns is ignored: a
   /// lost command shows in the base's feedback.
   std::function<void(const base::DriveCommand&, Time)> send;
-  /// Set before the first tick. Called by tick when replies() or events() got something; must not
-  /// wait (an eventfd write).
+  /// Set before the first tick. Called by tick when replies(), events() or edits() got something;
+  /// must not wait (an eventfd write).
   std::function<void()> wake;
 
   /// Any thread: from drivers.
@@ -127,6 +149,7 @@ class Robot {
 
   base::Inbox<PendingReply>& replies() noexcept;
   base::Inbox<base::Event>& events() noexcept;
+  base::Inbox<MissionEdit>& edits() noexcept;
   /// Any thread; null before the first tick.
   std::shared_ptr<const base::Snapshot> snapshot() const;
 

@@ -50,7 +50,8 @@ class Assessor {
       if (!trouble.empty()) add(Response::Hold, "radio_lost", trouble);
     }
     if (!radio) base_waits();
-    if (!radio) position();
+    if (!radio) base_follows();
+    position(radio);
     battery();
     return std::move(out_);
   }
@@ -123,23 +124,38 @@ class Assessor {
                       : std::string("the base does not tell its control mode"));
   }
 
-  void position() {
-    if (!f_.autonomous) return;
+  void base_follows() {
+    if (f_.base_left) {
+      add(Response::Hold, "base_left_control",
+          "the base left our control by itself: it was switched off and on, or heard no command");
+    }
+    if (!f_.commands_lost) return;
+    // While nothing is asked of it nothing more can be told, and an operator may try again.
+    add(f_.not_following ? Response::Hold : Response::None, "base_not_following",
+        "the base does not do what it is told: commands seem not to reach it");
+  }
+
+  /// True whatever the mode; only AUTO needs it.
+  void position(bool radio) {
+    const bool matters = f_.autonomous && !radio;
+    const auto tell = [&](Response response, const char* id, std::string detail) {
+      add(matters ? response : Response::None, id, std::move(detail));
+    };
     if (!f_.pose) {
-      add(Response::Hold, "pose_unknown", "the position is not known");
+      tell(Response::Hold, "pose_unknown", "the position is not known");
       return;
     }
     const double age_s = f_.last_position ? base::seconds(now_ - *f_.last_position) : 1e9;
     if (age_s > p_.gnss_slow_s) {
-      add(age_s > p_.gnss_hold_s ? Response::Hold : Response::Slow, "gnss_lost",
-          "no usable position from GNSS for " + number(age_s, "%.0f s"));
+      tell(age_s > p_.gnss_hold_s ? Response::Hold : Response::Slow, "gnss_lost",
+           "no usable position from GNSS for " + number(age_s, "%.0f s"));
     }
     const double sigma_m = f_.pose->horizontal_sigma_m;
     if (sigma_m > p_.sigma_slow_m) {
       const bool hold =
           f_.sigma_bad_since && base::seconds(now_ - *f_.sigma_bad_since) > p_.sigma_hold_s;
-      add(hold ? Response::Hold : Response::Slow, "pose_uncertain",
-          "the position is uncertain by " + number(sigma_m, "%.1f m"));
+      tell(hold ? Response::Hold : Response::Slow, "pose_uncertain",
+           "the position is uncertain by " + number(sigma_m, "%.1f m"));
     }
   }
 
@@ -256,11 +272,14 @@ base::Check check_drivers(const World& w) {
 bool radio_drives(const World& w, const SafetyParams& p, Time now) noexcept {
   const bool base_says = w.base && w.base->control_mode == ControlMode::Radio &&
                          !older(w.base->stamp, p.status_timeout_s, now);
-  const bool heard = w.radio && !older(w.radio->stamp, p.radio_timeout_s, now) &&
-                     !older(w.radio_counted, p.radio_timeout_s, now) &&
-                     !(w.base && w.base->radio_lost);
-  const bool switch_says = heard && (w.swb == Switch::Middle || w.swb == Switch::Down);
+  const bool switch_says =
+      radio_heard(w, p, now) && (w.swb == Switch::Middle || w.swb == Switch::Down);
   return base_says || switch_says;
+}
+
+bool radio_heard(const World& w, const SafetyParams& p, Time now) noexcept {
+  return w.radio && !older(w.radio->stamp, p.radio_timeout_s, now) &&
+         !older(w.radio_counted, p.radio_timeout_s, now) && !(w.base && w.base->radio_lost);
 }
 
 bool base_listens(const World& w) noexcept {

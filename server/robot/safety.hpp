@@ -8,12 +8,15 @@
 // | bumper pressed                         | at once            | Stop: latched e-stop           |
 // | bumper enabled and silent              | 1 s (parameter)    | Hold                           |
 // | base takes no commands while armed     | 3 s                | Hold; no motion before          |
+// | base leaves our control by itself      | at once            | Hold                            |
+// | base does not do what it is told       | 0.3 s (parameter)  | Hold                            |
 // | radio silent, frozen, or reported lost | 0.5 s              | Hold                           |
 // | no usable fix (AUTO)                   | 2 s, 6 s           | Slow, Hold                     |
 // | position uncertain (AUTO)              | at once, 2 s worse | Slow, Hold                     |
 // | battery low, fault                     | at once            | Warn, Hold                     |
 // Hold stops, goes to mode HOLD and stays there until an operator goes on. Only the radio's
-// take-over ends by itself.
+// take-over ends by itself. What is wrong with the position is listed in every mode, and followed
+// by something in AUTO only.
 
 #include <optional>
 #include <string>
@@ -35,6 +38,9 @@ struct Facts {
   bool estop = false;                     ///< latched
   bool autonomous = false;                ///< mode AUTO, mission running
   std::optional<Time> base_waited_since;  ///< armed, and the base takes no commands since
+  bool base_left = false;                 ///< just now, and nobody told it to
+  bool commands_lost = false;             ///< see FollowWatch
+  bool not_following = false;             ///< commands_lost, and told to move now
   std::optional<Time> sigma_bad_since;
 };
 
@@ -47,6 +53,8 @@ struct Assessment {
 
 /// Does the radio drive? The base says so, or the switch SWB stands elsewhere than up.
 bool radio_drives(const World& world, const SafetyParams& p, Time now) noexcept;
+/// Its frames come, and count.
+bool radio_heard(const World& world, const SafetyParams& p, Time now) noexcept;
 /// The base takes our commands.
 bool base_listens(const World& world) noexcept;
 bool base_lost(const World& world, const SafetyParams& p, Time now) noexcept;

@@ -152,11 +152,15 @@ void House::tell(base::Time now, int count) {
   status.control_mode = base::ControlMode::Can;
   status.battery_v = 49.5;
   in.put(status);
-  in.put(base::BaseMotion{now, {}});
+  in.put(base::BaseMotion{now, sent().twist});  // the tracks do as told, in the air
   in.put(base::WheelTravel{now, 0.0, 0.0});
   base::RadioState radio;
   radio.stamp = now;
-  radio.swa = radio.swc = radio.swd = radio.swb = base::Switch::Up;
+  radio.swb = base::Switch::Up;
+  radio.swa = swa;
+  radio.swc = swc;
+  radio.swd = swd;
+  radio.vra = vra;
   radio.count = static_cast<std::uint8_t>(count);
   in.put(radio);
   if (count % 10 != 0) return;

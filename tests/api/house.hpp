@@ -41,6 +41,11 @@ class House {
   std::atomic<bool> healthy{true};
   /// The control loop runs (true at first) or hangs.
   std::atomic<bool> ticking{true};
+  /// The radio's levers and knob; SWB stays up.
+  std::atomic<base::Switch> swa{base::Switch::Up};
+  std::atomic<base::Switch> swc{base::Switch::Up};
+  std::atomic<base::Switch> swd{base::Switch::Up};
+  std::atomic<double> vra{0.0};
   /// How far north of kStart the receiver says it is.
   std::atomic<double> moved_m{0.0};
   /// What went to the base last.

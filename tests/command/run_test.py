@@ -121,7 +121,10 @@ def an_unwritable_data_folder_is_named():
 def wrong_configuration_is_named():
     """an unknown key, a wrong type and a value out of range are refused, naming file and key"""
     for text, key in (("[server]\nprot = 8080", "prot"), ("[server]\nport = \"x\"", "port"),
-                      ("[server]\nport = 70000", "port"), ("[server", "changed.toml")):
+                      ("[server]\nport = 70000", "port"), ("[server", "changed.toml"),
+                      ("[radio]\nswc_down = \"mode.fly\"", "changed.toml:2: radio.swc_down must be"),
+                      ("[radio]\nknob_high = \"by_knob\"", "radio.knob_high cannot be by_knob"),
+                      ("[radio]\nswe_up = \"arm\"", "unknown key radio.swe_up")):
         refused("--data", scratch / "c", "--config", config_with(text), names=["changed.toml", key])
 
 

@@ -174,15 +174,85 @@ TEST_P(Loss, AJumpOfGnssForFiveSecondsDoesNotMoveTheRobot) {
   EXPECT_LT(rig->farthest_from_line_m({0, 0}, {0, 20}), 0.5);
 }
 
-TEST_P(Loss, ARobotThatIsHeldFastSaysThatItIsBlocked) {
+TEST_P(Loss, ARobotWhoseTracksAreHeldFastStopsTryingAndSaysSo) {
   auto rig = driving();
   auto p = rig->plant.params();
   p.drive.max_linear_mps = p.drive.max_angular_radps = 0.0;  // as if the tracks were chained
   rig->plant.set_params(p);
-  rig->run(20.0);
-  EXPECT_EQ(rig->execution(), ExecutionState::Blocked);
-  EXPECT_NE(rig->state()->mission.reason.find("no progress"), std::string::npos);
-  EXPECT_EQ(rig->state()->command.twist, base::BodyTwist{});
+  rig->run(3.0);
+  expect_paused(*rig, "base_not_following");
+}
+
+// Frames from the base arrive, none to it do.
+TEST_P(Loss, ABaseThatHearsNoCommandIsNamedAndTheMissionWaitsForAnOperator) {
+  for (const bool leaves_can : {false, true}) {
+    SCOPED_TRACE(leaves_can ? "goes to standby by itself" : "stays in CAN mode");
+    auto rig = driving();
+    auto p = rig->plant.params();
+    p.drive.timeout_leaves_can = leaves_can;
+    rig->plant.set_params(p);
+    // When the way to the base is lost,
+    rig->fault([](sim::Faults& f) { f.loss_to_base = 1.0; });
+    rig->run(1.5);
+    // then that is named within 1.5 s, and the mission waits.
+    const char* condition = leaves_can ? "base_not_ready" : "base_not_following";
+    EXPECT_TRUE(rig->has_condition(condition));
+    EXPECT_TRUE(rig->has_event(leaves_can ? "base_left_control" : "base_not_following"));
+    EXPECT_EQ(rig->state()->mode, Mode::Hold);
+    rig->run(3.0);
+    expect_paused(*rig, condition);
+    // Resumed while it is still lost, it is refused or stops again.
+    if (rig->ask(robot::ResumeMission{})) rig->run(2.0);
+    EXPECT_EQ(rig->execution(), ExecutionState::Paused);
+    // When frames arrive again, the robot still stands until an operator goes on.
+    rig->fault([](sim::Faults&) {});
+    rig->run(5.0);
+    EXPECT_TRUE(rig->stands());
+    EXPECT_EQ(rig->execution(), ExecutionState::Paused);
+    ASSERT_TRUE(rig->ask(robot::ResumeMission{}));
+    ASSERT_TRUE(rig->finish(90.0)) << rig->state()->mission.reason;
+    EXPECT_LT(rig->distance_to_m({0, 20}), 0.2);
+    EXPECT_FALSE(rig->has_condition(condition));
+    EXPECT_TRUE(rig->has_event(leaves_can ? "base_back" : "base_follows"));
+  }
+}
+
+TEST_P(Loss, ABaseThatIsSwitchedOffAndOnHoldsTheMission) {
+  for (const double off_s : {0.0, 0.2, 3.0}) {
+    SCOPED_TRACE(off_s);
+    auto rig = driving();
+    rig->fault([&](sim::Faults& f) { f.bus_off = off_s > 0.0; });
+    rig->run(off_s);
+    rig->plant.power_cycle();
+    rig->fault([](sim::Faults&) {});
+    rig->run(4.0);
+    EXPECT_TRUE(rig->stands());
+    EXPECT_EQ(rig->state()->mode, Mode::Hold);
+    EXPECT_EQ(rig->execution(), ExecutionState::Paused);
+    EXPECT_NE(rig->state()->mission.reason, "");
+    EXPECT_TRUE(rig->has_event("mission_paused"));
+    EXPECT_TRUE(rig->has_event(off_s < 0.4 ? "base_left_control" : "driver_down"));
+    EXPECT_TRUE(rig->has_event(off_s < 0.4 ? "base_back" : "driver_up"));
+    ASSERT_TRUE(rig->ask(robot::ResumeMission{}));
+    ASSERT_TRUE(rig->finish(90.0)) << rig->state()->mission.reason;
+    EXPECT_LT(rig->distance_to_m({0, 20}), 0.2);
+  }
+}
+
+TEST_P(Loss, WhatIsWrongWithThePositionStaysListedWhileTheRobotHolds) {
+  auto rig = driving();
+  rig->fault([](sim::Faults& f) { f.gnss_outage = true; });
+  rig->run(12.0);
+  expect_paused(*rig, "gnss_lost");
+  rig->run(30.0);
+  EXPECT_TRUE(rig->has_condition("gnss_lost"));
+  ASSERT_TRUE(rig->ask(robot::SetMode{Mode::Manual}));
+  rig->run(1.0);
+  EXPECT_EQ(rig->state()->mode, Mode::Manual);  // driving by hand needs no position
+  EXPECT_TRUE(rig->has_condition("gnss_lost"));
+  rig->fault([](sim::Faults&) {});
+  rig->run(3.0);
+  EXPECT_FALSE(rig->has_condition("gnss_lost"));
 }
 
 TEST_P(Loss, AnEmptyBatteryStopsTheMission) {

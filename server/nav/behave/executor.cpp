@@ -207,11 +207,89 @@ base::Result<void> Executor::skip(int item) {
   return {};
 }
 
+bool Executor::in_hand() const noexcept {
+  return running() || state_ == ExecutionState::Paused || state_ == ExecutionState::Blocked;
+}
+
+void Executor::extend(std::shared_ptr<const Route> route) {
+  if (!in_hand()) return load(std::move(route));
+  const bool back = course_ == &route_->back;
+  const Course& fresh = back ? route->back : route->forth;
+  const Course& old = *course_;
+  const bool at_end = at_ >= old.steps.size();  // on the way home, or done with the last item
+  // Backwards, what was added comes first and shifts the rest.
+  move_to(fresh, back ? fresh.steps.size() - old.steps.size() : 0,
+          back ? fresh.nodes.size() - old.nodes.size() : 0);
+  jumps_left_.resize(std::max(jumps_left_.size(), route->forth.steps.size()), -1);
+  route_ = std::move(route);
+  course_ = &fresh;
+  if (at_end && !back) begin_at(at_);
+}
+
+/// The place on the old course, on the new one: the same way before the same waypoint.
+void Executor::move_to(const Course& fresh, std::size_t more_steps, std::size_t more_nodes) {
+  const Course& old = *course_;
+  const bool tracking = tracker_.path() == &old.path;
+  const RouteStep* step = step_now();
+  if (doing_ == Doing::Path || rejoin_) {
+    double s_m = tracking ? tracker_.s_m() : s_m_;
+    if (step != nullptr && step->kind == StepKind::Go) {
+      const double before_m = old.path.vertex_m[step->node] - s_m;
+      s_m = fresh.path.vertex_m[step->node + more_nodes] - before_m;
+    }
+    s_m_ = std::clamp(s_m, 0.0, fresh.path.length_m());
+    leg_ = fresh.path.leg_from(s_m_);
+  }
+  at_ += more_steps;
+  if (standing_) *standing_ += more_nodes;
+  if (tracking) tracker_.move_to(fresh.path, leg_, s_m_);
+}
+
+void Executor::drop(std::shared_ptr<const Route> route, int item) {
+  if (!in_hand()) return load(std::move(route));
+  const bool back = course_ == &route_->back;
+  const Course& fresh = back ? route->back : route->forth;
+  std::size_t next = at_;
+  while (next < course_->steps.size() && course_->steps[next].item == item) ++next;
+  std::size_t to = fresh.steps.size();
+  if (next < course_->steps.size()) {
+    const int number = course_->steps[next].item - (course_->steps[next].item > item ? 1 : 0);
+    const auto found = std::find_if(fresh.steps.begin(), fresh.steps.end(),
+                                    [&](const RouteStep& s) { return s.item == number; });
+    to = static_cast<std::size_t>(found - fresh.steps.begin());
+  }
+  route_ = std::move(route);
+  course_ = back ? &route_->back : &route_->forth;
+  jumps_left_.assign(route_->forth.steps.size(), -1);
+  begin_at(to);
+}
+
 const RouteStep* Executor::step_now() const noexcept {
   return course_ != nullptr && at_ < course_->steps.size() ? &course_->steps[at_] : nullptr;
 }
 
-Progress Executor::progress() const {
+/// The rest of the mission's way; empty where it is not known yet.
+std::optional<double> Executor::way_left_m(const RouteStep& step,
+                                           std::optional<EnuPoint> here) const noexcept {
+  const Path& path = course_->path;
+  if (doing_ == Doing::Path) {
+    return path.length_m() - (tracker_.path() == &path ? tracker_.s_m() : s_m_);
+  }
+  if (doing_ == Doing::Connector) {
+    const bool tracking = tracker_.path() == &connector_;
+    const double rest_m = connector_.length_m() - (tracking ? tracker_.s_m() : 0.0);
+    if (rejoin_) return rest_m + path.length_m() - s_m_;
+    if (step.kind == StepKind::Go) return rest_m + path.length_m() - path.vertex_m[step.node];
+    return rest_m;
+  }
+  if (doing_ == Doing::Wait && standing_) return path.length_m() - path.vertex_m[*standing_];
+  if (step.kind != StepKind::Go || !here) return std::nullopt;
+  // Not on its way yet: straight to the waypoint first.
+  return base::distance_m(*here, course_->nodes[step.node].at) + path.length_m() -
+         path.vertex_m[step.node];
+}
+
+Progress Executor::progress(std::optional<EnuPoint> here) const {
   Progress p;
   const RouteStep* step = step_now();
   if (step == nullptr || state_ == ExecutionState::Idle || state_ == ExecutionState::Finished) {
@@ -222,25 +300,13 @@ Progress Executor::progress() const {
   if (step->kind == StepKind::Home && doing_ == Doing::Connector) {
     p.target = connector_.points.back().at;
   }
-  double left_m = 0.0;
-  if (doing_ == Doing::Path) {
-    const bool tracking = tracker_.path() == &course_->path;
-    left_m = course_->path.length_m() - (tracking ? tracker_.s_m() : s_m_);
-    if (tracking && running()) p.cross_track_m = tracker_.cross_track_m();
-  } else if (doing_ == Doing::Connector) {
-    const bool tracking = tracker_.path() == &connector_;
-    left_m = connector_.length_m() - (tracking ? tracker_.s_m() : 0.0);
-    if (tracking && running()) p.cross_track_m = tracker_.cross_track_m();
-    if (rejoin_) {
-      left_m += course_->path.length_m() - s_m_;
-    } else if (step->kind == StepKind::Go) {
-      left_m += course_->path.length_m() - course_->path.vertex_m[step->node];
-    }
-  } else if (step->kind == StepKind::Go) {
-    left_m = course_->path.length_m() - course_->path.vertex_m[step->node];
+  const bool tracking = (doing_ == Doing::Path && tracker_.path() == &course_->path) ||
+                        (doing_ == Doing::Connector && tracker_.path() == &connector_);
+  if (running() && tracking) p.cross_track_m = tracker_.cross_track_m();
+  if (const auto left_m = way_left_m(*step, here)) {
+    p.distance_left_m = std::max(0.0, *left_m);
+    p.eta_s = wait_s_ + *p.distance_left_m / std::max(0.1, route_->speed_mps);
   }
-  p.distance_left_m = std::max(0.0, left_m);
-  p.eta_s = wait_s_ + *p.distance_left_m / std::max(0.1, route_->speed_mps);
   return p;
 }
 

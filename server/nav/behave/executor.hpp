@@ -39,7 +39,7 @@ struct Notice {
 
 /// Where the mission stands, in the words of the snapshot.
 struct Progress {
-  int current_item = 0;
+  std::optional<int> current_item;  ///< empty: none in hand
   std::optional<EnuPoint> target;
   std::optional<double> cross_track_m;
   std::optional<double> distance_left_m;
@@ -68,6 +68,11 @@ class Executor {
   base::Result<void> resume(EnuPoint here);
   /// Goes on with another item. @param item from 1; 0: the next one.
   base::Result<void> skip(int item);
+  /// Another route in the place of the loaded one, also while it runs: its items are the same, and
+  /// more come after them. The drive goes on without a stop. Not Running, Paused or Blocked: load.
+  void extend(std::shared_ptr<const Route> route);
+  /// Likewise, but one item is gone. If it was the one in hand, the next one is.
+  void drop(std::shared_ptr<const Route> route, int item);
   void interrupt() noexcept;
   /// After interrupt(). Pauses when the place is too far away.
   void go_on(EnuPoint here);
@@ -81,7 +86,8 @@ class Executor {
   bool running() const noexcept { return state_ == base::ExecutionState::Running; }
   bool interrupted() const noexcept { return interrupted_; }
   TrackPhase phase() const noexcept { return tracker_.phase(); }
-  Progress progress() const;
+  /// @param here empty: the position is not known, and neither is a way that begins there.
+  Progress progress(std::optional<EnuPoint> here) const;
   /// What happened since the last call.
   std::vector<Notice>& notices() noexcept { return notices_; }
 
@@ -102,7 +108,11 @@ class Executor {
   void watch(const Vehicle& vehicle, double dt_s);
   void watch_stuck(const Vehicle& vehicle, double dt_s);
   void begin_at(std::size_t step);
+  bool in_hand() const noexcept;
+  void move_to(const Course& fresh, std::size_t more_steps, std::size_t more_nodes);
   const RouteStep* step_now() const noexcept;
+  std::optional<double> way_left_m(const RouteStep& step,
+                                   std::optional<EnuPoint> here) const noexcept;
 
   PathParams path_params_;
   BehaveParams params_;

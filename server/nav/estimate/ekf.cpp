@@ -87,11 +87,14 @@ void predict(Belief& b, const Travel& t, const Drift& drift, bool standing) noex
   add_noise(b, kPull, kPullNoise_1pm * std::min(1.0, speed), t.dt_s);
 }
 
-void predict_coasting(Belief& b, const Eigen::Vector2d& velocity_mps, double dt_s,
-                      const Drift& drift) noexcept {
+void predict_coasting(Belief& b, const Coast& coast, double dt_s, const Drift& drift) noexcept {
   add_drift(b, drift, dt_s);
-  b.x(kEast) += velocity_mps.x() * dt_s;
-  b.x(kNorth) += velocity_mps.y() * dt_s;
+  b.x(kEast) += coast.velocity_mps.x() * dt_s;
+  b.x(kNorth) += coast.velocity_mps.y() * dt_s;
+  // d(sigma² t²) = 2 sigma² t dt
+  const double more = 2.0 * coast.sigma_mps * coast.sigma_mps * coast.blind_s * dt_s;
+  b.P(kEast, kEast) += more;
+  b.P(kNorth, kNorth) += more;
   add_noise(b, kEast, kCoastNoise_m, dt_s);
   add_noise(b, kNorth, kCoastNoise_m, dt_s);
   add_noise(b, kYaw, kCoastYawNoise_rad, dt_s);

@@ -52,9 +52,16 @@ struct Drift {
 /// gets less certain. Noise densities are those of a 1.3 m/s tracked vehicle without a gyro.
 void predict(Belief& b, const Travel& travel, const Drift& drift, bool standing) noexcept;
 
-/// Advances without odometry: moves by a velocity over ground (m/s east, north).
-void predict_coasting(Belief& b, const Eigen::Vector2d& velocity_mps, double dt_s,
-                      const Drift& drift) noexcept;
+/// What is known of the motion without odometry.
+struct Coast {
+  Eigen::Vector2d velocity_mps{0.0, 0.0};  ///< over ground, east and north
+  double sigma_mps = 0.0;                  ///< of it, each way, the same error all the time
+  double blind_s = 0.0;                    ///< since odometry or a position told where it is
+};
+
+/// Advances without odometry. The error of the velocity adds up with time, not with its root:
+/// without a position for t seconds sigma grows to sigma_mps · t.
+void predict_coasting(Belief& b, const Coast& coast, double dt_s, const Drift& drift) noexcept;
 
 /// y'S⁻¹y limits, 99.9 % of a chi-square with one and two degrees of freedom.
 inline constexpr double kGate1 = 10.8;

@@ -19,6 +19,11 @@ constexpr base::Duration kStandsAfter = milliseconds(500);
 constexpr double kStill_m = 0.0015;   // two counts of a millimetre odometer
 constexpr double kFastest_mps = 4.0;  // more is a damaged count, not a motion
 constexpr double kMaxGap_s = 2.0;     // of odometry that may still be carried over
+// Without odometry: how wrong the receiver's velocity is, how fast it grows old, and how fast a
+// robot may be of which nothing is known (1 sigma).
+constexpr double kCoastSpeed_mps = 0.15;
+constexpr double kCoastAccel_mps2 = 0.5;
+constexpr double kBlindSpeed_mps = 1.0;
 
 }  // namespace
 
@@ -126,17 +131,28 @@ void Estimator::advance(Time now) noexcept {
   const double dt_s = seconds(now - *filter_at_);
   if (dt_s <= 0.0) return;
   if (located_) {
-    Eigen::Vector2d over_ground{0.0, 0.0};
-    if (velocity_ && now - velocity_->stamp < kGnssGone) {
-      over_ground = {velocity_->east_mps, velocity_->north_mps};
-    }
-    predict_coasting(belief_, over_ground, dt_s, drift_);
+    predict_coasting(belief_, coast(now), dt_s, drift_);
   }
   tracks_ = {};
   filter_at_ = now;
   sums_.stamp = now;
   sums_.x = belief_.x;
   history_.push(sums_);
+}
+
+/// The last velocity over ground, which is worth less every moment; without any it may stand or
+/// drive, nobody knows.
+Coast Estimator::coast(Time now) const noexcept {
+  Coast c;
+  c.sigma_mps = kBlindSpeed_mps;
+  const double age_s = velocity_ ? seconds(now - velocity_->stamp) : 1e9;
+  if (age_s < seconds(kGnssGone)) {
+    c.velocity_mps = {velocity_->east_mps, velocity_->north_mps};
+    c.sigma_mps = std::min(kCoastSpeed_mps + kCoastAccel_mps2 * age_s, kBlindSpeed_mps);
+  }
+  const auto known = std::max(tracks_at_, last_fused_);
+  c.blind_s = known ? std::max(0.0, seconds(now - *known)) : 0.0;
+  return c;
 }
 
 std::optional<base::Pose> Estimator::pose(Time now) const {
@@ -152,14 +168,16 @@ std::optional<base::Pose> Estimator::pose(Time now) const {
   p.yaw_rad = belief_.x(kYaw);
   p.at = {belief_.x(kEast), belief_.x(kNorth)};
   if (odometry) {
-    p.speed_mps = belief_.x(kScale) * tracks_.linear_mps;
-    p.yaw_rate_radps =
+    const double speed_mps = belief_.x(kScale) * tracks_.linear_mps;
+    const double yaw_rate_radps =
         belief_.x(kYawScale) * tracks_.angular_radps + belief_.x(kPull) * tracks_.linear_mps;
     const double dt_s = std::clamp(seconds(now - *filter_at_), 0.0, 0.2);
-    const double middle_rad = p.yaw_rad + 0.5 * p.yaw_rate_radps * dt_s;
-    p.at.east_m += p.speed_mps * dt_s * std::cos(middle_rad);
-    p.at.north_m += p.speed_mps * dt_s * std::sin(middle_rad);
-    p.yaw_rad = base::wrap_rad(p.yaw_rad + p.yaw_rate_radps * dt_s);
+    const double middle_rad = p.yaw_rad + 0.5 * yaw_rate_radps * dt_s;
+    p.at.east_m += speed_mps * dt_s * std::cos(middle_rad);
+    p.at.north_m += speed_mps * dt_s * std::sin(middle_rad);
+    p.yaw_rad = base::wrap_rad(p.yaw_rad + yaw_rate_radps * dt_s);
+    p.speed_mps = speed_mps;
+    p.yaw_rate_radps = yaw_rate_radps;
   } else if (velocity) {
     p.speed_mps = std::hypot(velocity_->east_mps, velocity_->north_mps);
   }

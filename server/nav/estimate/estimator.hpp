@@ -81,6 +81,7 @@ class Estimator {
   template <int M>
   bool apply(const Observation<M>& o) noexcept;
   bool has_odometry(Time at) const noexcept;
+  Coast coast(Time now) const noexcept;
 
   EstimateParams params_;
   Belief belief_;

@@ -42,6 +42,15 @@ void Tracker::reset() noexcept {
   sent_.fill({});
 }
 
+void Tracker::move_to(const Path& path, std::size_t leg, double s_m) noexcept {
+  const bool done = phase_ == TrackPhase::Done || phase_ == TrackPhase::Stop;
+  const bool same_leg = path_ != nullptr && leg == leg_;
+  if (leg >= path.legs.size() || !same_leg || done) return begin(path, leg, s_m);
+  path_ = &path;
+  s_m_ = std::clamp(s_m, leg_now().start_m, leg_now().end_m);
+  segment_ = path.segment_at(leg_now(), s_m_, leg_now().first);
+}
+
 TrackOutput Tracker::step(const Vehicle& vehicle, double limit_mps, double dt_s) noexcept {
   TrackOutput out;
   switch (phase_) {

@@ -49,6 +49,8 @@ class Tracker {
   /// Starts or goes on with `leg` at arc length s. `path` must outlive the drive.
   void begin(const Path& path, std::size_t leg, double s_m) noexcept;
   void reset() noexcept;
+  /// Goes on as it goes, on another path that is the same here. `path` must outlive the drive.
+  void move_to(const Path& path, std::size_t leg, double s_m) noexcept;
 
   /// One control step. @param limit_mps cuts the speed ("position_uncertain").
   TrackOutput step(const Vehicle& vehicle, double limit_mps, double dt_s) noexcept;

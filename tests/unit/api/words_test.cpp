@@ -26,7 +26,10 @@ TEST(VehicleWords, WhatIsUnknownIsNullAndStale) {
   EXPECT_TRUE(v["position"]["lat"].is_null());
   EXPECT_TRUE(v["position"]["heading_deg"].is_null());
   EXPECT_TRUE(v["battery"]["battery_v"].is_null());
-  EXPECT_TRUE(v["mission"]["id"].is_null());
+  EXPECT_TRUE(v["position"]["speed_mps"].is_null());
+  for (const char* name : {"id", "current_item", "distance_left_m", "eta_s"}) {
+    EXPECT_TRUE(v["mission"][name].is_null()) << name;
+  }
   EXPECT_TRUE(v["home"].is_null());
   EXPECT_TRUE(v["compass_bias_deg"].is_null());
   EXPECT_EQ(v["gnss"]["fix"], "none");
@@ -71,6 +74,22 @@ TEST(VehicleWords, OldValuesStayVisibleAndAreMarked) {
   EXPECT_EQ(v["base"]["age_s"], 1.0);
   EXPECT_EQ(v["battery"]["battery_v"], 48.2);
   EXPECT_EQ(v["battery"]["stale"], false);  // but not for a voltage
+}
+
+TEST(VehicleWords, ASpeedThatNobodyTellsAnyMoreIsUnknown) {
+  base::Snapshot s;
+  s.pose = base::Pose{};
+  s.base = base::BaseStatus{};
+  s.base->stamp = at(9'900ms);
+  s.motion = base::BaseMotion{at(9'900ms), {0.5, 0.0}};
+  EXPECT_EQ(vehicle_json(s, "bunker", at(10s))["base"]["speed_mps"], 0.5);
+  EXPECT_TRUE(vehicle_json(s, "bunker", at(10s))["position"]["speed_mps"].is_null());
+  // Its state still comes, its motion does not.
+  s.motion->stamp = at(9s);
+  const Json v = vehicle_json(s, "bunker", at(10s));
+  EXPECT_TRUE(v["base"]["speed_mps"].is_null());
+  EXPECT_TRUE(v["base"]["yaw_rate_dps"].is_null());
+  EXPECT_EQ(v["base"]["stale"], false);
 }
 
 TEST(VehicleWords, AMessageIsAboutOneKilobyte) {

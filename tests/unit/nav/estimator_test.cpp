@@ -174,7 +174,7 @@ TEST(Estimator, DrivingBackwardsDoesNotTurnTheHeadingRound) {
   d.run(20.0);
   EXPECT_LT(std::abs(d.yaw_error_deg()), 1.0);
   EXPECT_LT(d.position_error_m(), 0.05);
-  EXPECT_LT(d.pose()->speed_mps, -0.5);
+  EXPECT_LT(d.pose()->speed_mps.value(), -0.5);
 }
 
 TEST(Estimator, FindsTheHeadingByDrivingWhenThereIsNoCompass) {
@@ -286,7 +286,7 @@ TEST(Estimator, WorksWithAReceiverAloneAndSaysSo) {
   EXPECT_EQ(d.pose()->source, "gnss");
   EXPECT_LT(d.position_error_m(), 0.5);
   EXPECT_LT(std::abs(d.yaw_error_deg()), 10.0);
-  EXPECT_NEAR(d.pose()->speed_mps, 1.2, 0.1);
+  EXPECT_NEAR(d.pose()->speed_mps.value(), 1.2, 0.1);
 }
 
 TEST(Estimator, APositionThatNothingCarriesOnGrowsOld) {
@@ -303,6 +303,36 @@ TEST(Estimator, APositionThatNothingCarriesOnGrowsOld) {
   d.gnss = true;
   d.run(1.0);
   EXPECT_EQ(d.pose()->stamp, d.now());
+}
+
+// Nobody tells how fast it goes: it may stand, or be carried off.
+TEST(Estimator, WithoutOdometryAndReceiverTheSpeedIsUnknownAndTheDoubtGrowsWithTime) {
+  Drive d;
+  d.speed_mps = 0.8;
+  d.run(20.0);
+  EXPECT_NEAR(d.pose()->speed_mps.value(), 0.8, 0.05);
+  EXPECT_TRUE(d.pose()->yaw_rate_radps);
+  // Given tracks that fall silent, the receiver still tells a speed, but no turn rate.
+  d.tracks = false;
+  d.run(3.0);
+  EXPECT_NEAR(d.pose()->speed_mps.value(), 0.8, 0.05);
+  EXPECT_FALSE(d.pose()->yaw_rate_radps);
+  EXPECT_LT(d.pose()->horizontal_sigma_m, 0.5);
+  // When it does so as well while the robot drives on,
+  d.gnss = false;
+  for (const double silent_s : {3.0, 10.0, 30.0}) {
+    d.run(silent_s);
+    EXPECT_FALSE(d.pose()->speed_mps) << silent_s;
+    // then the truth stays within three sigma, which is not without bounds either.
+    EXPECT_LT(d.position_error_m(), 3.0 * d.pose()->horizontal_sigma_m) << silent_s;
+    EXPECT_LT(d.pose()->horizontal_sigma_m, 45.0) << silent_s;
+  }
+  EXPECT_GT(d.pose()->horizontal_sigma_m, 20.0);
+  // A position ends the doubt.
+  d.gnss = d.tracks = true;
+  d.run(3.0);
+  EXPECT_LT(d.position_error_m(), 0.2);
+  EXPECT_LT(d.pose()->horizontal_sigma_m, 0.1);
 }
 
 TEST(Estimator, RefusesAndCountsWhatCannotBe) {

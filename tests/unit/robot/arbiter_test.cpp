@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "field.hpp"
+#include "robot/follow.hpp"
 #include "robot/manual.hpp"
 
 namespace roverd::robot {
@@ -40,22 +41,120 @@ TEST(Arbiter, ALeverBetweenItsDetentsKeepsItsLastPosition) {
   EXPECT_TRUE(f.moves());
 }
 
-TEST(Arbiter, NothingIsSentToABaseThatDoesNotListenAndTheMissionWaits) {
+TEST(Arbiter, ABaseThatStopsListeningHoldsTheMissionUntilAnOperatorGoesOn) {
   Field f;
   f.drive_mission();
-  f.control_mode = base::ControlMode::Standby;
+  for (const base::ControlMode left_to : {base::ControlMode::Standby, base::ControlMode::Uart}) {
+    f.control_mode = left_to;
+    f.run(1.0);
+    EXPECT_FALSE(f.moves());
+    EXPECT_TRUE(f.command.enabled);  // the driver asks the base again
+    EXPECT_TRUE(f.has_condition("base_not_ready"));
+    EXPECT_TRUE(f.has_event("base_left_control"));
+    EXPECT_EQ(f.execution(), ExecutionState::Paused);
+    EXPECT_EQ(f.state()->mode, Mode::Hold);
+    f.control_mode = base::ControlMode::Can;
+    f.run(2.0);
+    EXPECT_FALSE(f.moves());
+    EXPECT_TRUE(f.has_event("base_back"));
+    ASSERT_TRUE(f.ask(ResumeMission{}));
+    f.run(2.0);
+    EXPECT_TRUE(f.moves());
+    f.events.clear();
+  }
+}
+
+TEST(Arbiter, TheRadioMayTakeTheBaseAndGiveItBackThroughStandby) {
+  Field f;
+  f.drive_mission();
+  // The base tells who drives only now and then; the lever is quicker.
+  f.swb = base::Switch::Middle;
+  f.run(0.06);
+  f.control_mode = base::ControlMode::Radio;
   f.run(1.0);
+  f.swb = base::Switch::Up;
+  f.run(0.06);
+  f.control_mode = base::ControlMode::Standby;
+  f.run(0.5);
   EXPECT_FALSE(f.moves());
-  EXPECT_TRUE(f.command.enabled);  // the driver asks the base again
-  EXPECT_TRUE(f.has_condition("base_not_ready"));
-  EXPECT_EQ(f.execution(), ExecutionState::Running);
   f.control_mode = base::ControlMode::Can;
   f.run(2.0);
   EXPECT_TRUE(f.moves());
-  f.control_mode = base::ControlMode::Uart;
-  f.run(4.0);
-  EXPECT_EQ(f.execution(), ExecutionState::Paused);
+  EXPECT_EQ(f.execution(), ExecutionState::Running);
+  EXPECT_FALSE(f.has_event("base_left_control"));
+}
+
+TEST(Arbiter, WhatAVehicleCannotDoIsNoSignOfALostCommand) {
+  Config steered;
+  steered.vehicle.kinematics = "ackermann";
+  steered.vehicle.max_speed_mps = 0.3;
+  Field f(steered);
+  f.obeys = false;
+  f.run(8.0);
+  ASSERT_TRUE(f.ask(Arm{}));
+  ASSERT_TRUE(f.ask(SetMode{Mode::Manual}));
+  const auto drive = [&f](base::BodyTwist twist, base::BodyTwist does) {
+    f.does = does;
+    for (int i = 0; i < 150; ++i) {
+      f.robot.request(Drive{twist, true}, f.now + std::chrono::milliseconds(250), {});
+      f.tick();
+    }
+  };
+  drive({0.0, 0.5}, {});           // it cannot turn on the spot
+  drive({1.0, 0.0}, {0.25, 0.0});  // nor go as fast as that
+  EXPECT_EQ(f.state()->mode, Mode::Manual);
+  EXPECT_FALSE(f.has_event("base_not_following"));
+  drive({1.0, 0.0}, {});
   EXPECT_EQ(f.state()->mode, Mode::Hold);
+  EXPECT_TRUE(f.has_event("base_not_following"));
+  EXPECT_TRUE(f.has_condition("base_not_following"));
+}
+
+TEST(FollowWatch, AllowsForALagAndNamesABaseThatDoesNotMove) {
+  using std::chrono::milliseconds;
+  FollowWatch w;
+  base::Time t{};
+  const auto run = [&](double told_mps, double does_mps, int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      t += milliseconds(20);
+      w.step({told_mps, 0.0}, base::BodyTwist{does_mps, 0.0}, t, 0.3);
+    }
+  };
+  run(0.5, 0.0, 30);  // setting off, 0.6 s late
+  EXPECT_FALSE(w.lost());
+  run(0.5, 0.3, 50);
+  EXPECT_FALSE(w.lost());
+  run(-0.5, 0.3, 30);  // reversing takes as long
+  EXPECT_FALSE(w.lost());
+  run(-0.5, 0.3, 10);
+  EXPECT_TRUE(w.lost());
+  EXPECT_TRUE(w.failing());
+  run(0.0, 0.0, 100);  // nothing asked: still lost, but not failing
+  EXPECT_TRUE(w.lost());
+  EXPECT_FALSE(w.failing());
+  run(0.5, 0.5, 30);
+  EXPECT_FALSE(w.lost());
+  run(0.05, 0.0, 200);  // too slow to judge
+  EXPECT_FALSE(w.lost());
+}
+
+TEST(FollowWatch, JudgesATurnOnTheSpotByItsRateAndNothingWithoutAWord) {
+  FollowWatch w;
+  base::Time t{};
+  const auto run = [&](double told_radps, std::optional<base::BodyTwist> does) {
+    for (int i = 0; i < 50; ++i) {
+      t += std::chrono::milliseconds(20);
+      w.step({0.0, told_radps}, does, t, 0.3);
+    }
+  };
+  run(0.5, base::BodyTwist{0.0, 0.4});
+  EXPECT_FALSE(w.lost());
+  run(0.5, std::nullopt);
+  EXPECT_FALSE(w.lost());
+  run(0.5, base::BodyTwist{0.3, 0.0});
+  EXPECT_TRUE(w.lost());
+  w.heard();
+  EXPECT_FALSE(w.lost());
 }
 
 TEST(Arbiter, EachLossStopsSaysWhyAndDoesNotGoOnByItself) {
@@ -191,7 +290,7 @@ TEST(Robot, SurvivesAnyMeasurement) {
     ASSERT_TRUE(f.state()->pose);
     EXPECT_TRUE(std::isfinite(f.state()->pose->at.east_m));
     EXPECT_TRUE(std::isfinite(f.state()->pose->yaw_rad));
-    EXPECT_TRUE(std::isfinite(f.state()->pose->speed_mps));
+    EXPECT_TRUE(std::isfinite(f.state()->pose->speed_mps.value_or(0.0)));
   }
   EXPECT_FALSE(f.moves());
 }

@@ -53,18 +53,24 @@ class Field {
   bool gnss_speaks = true;
   base::FixType fix = base::FixType::RtkFixed;
   int satellites = 20;
+  base::Switch swa = base::Switch::Up;
   base::Switch swb = base::Switch::Up;
+  base::Switch swc = base::Switch::Up;
+  base::Switch swd = base::Switch::Up;
+  double vra = 0.0;
   base::ControlMode control_mode = base::ControlMode::Can;
   base::VehicleState vehicle_state = base::VehicleState::Normal;
   bool radio_lost = false;
   std::optional<double> charge_pct;
+  bool obeys = true;       ///< the base moves as it is told; else
+  base::BodyTwist does{};  ///< it moves so
   base::EnuPoint at{};
   double yaw_rad = base::kPi / 2.0;
   Time now{};
 
   void tick() {
     now += std::chrono::milliseconds(20);
-    const auto [v, w] = command.twist;
+    const auto [v, w] = obeys ? command.twist : does;
     at.east_m += v * 0.02 * std::cos(yaw_rad);
     at.north_m += v * 0.02 * std::sin(yaw_rad);
     yaw_rad = base::wrap_rad(yaw_rad + w * 0.02);
@@ -140,7 +146,11 @@ class Field {
     if (radio_speaks) {
       base::RadioState r;
       r.stamp = now;
+      r.swa = swa;
       r.swb = swb;
+      r.swc = swc;
+      r.swd = swd;
+      r.vra = vra;
       if (radio_counts) ++radio_count_;
       r.count = radio_count_;
       in.put(r);

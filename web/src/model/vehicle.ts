@@ -60,8 +60,8 @@ export interface MissionProgress {
   readonly name: string | null;
   readonly state: ExecutionState;
   readonly reason: string;
-  /** From 1; 0: none. */
-  readonly current_item: number;
+  /** From 1; null: none. */
+  readonly current_item: number | null;
   readonly items: number;
   readonly distance_to_item_m: number | null;
   readonly bearing_to_item_deg: number | null;

@@ -1,0 +1,194 @@
+#include "api/radio_edits.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "mission/json.hpp"
+
+namespace roverd::api {
+namespace {
+
+using base::Code;
+using base::Result;
+using robot::EditKind;
+using robot::MissionEdit;
+
+constexpr const char* kRadioAuthor = "radio";
+
+/// "Radio 2026-05-12 14:03", UTC.
+std::string name_of_day(base::WallTime wall) {
+  constexpr std::size_t kDay = 10;
+  constexpr std::size_t kMinute = 16;
+  std::string text = base::to_rfc3339(wall).substr(0, kMinute);
+  if (text.size() > kDay) text[kDay] = ' ';
+  return "Radio " + text;
+}
+
+/// Jumps keep their targets; one to the item that goes leads to what comes in its place.
+void remove_item(mission::Plan& plan, int number) {
+  plan.items.erase(plan.items.begin() + (number - 1));
+  const int most = static_cast<int>(plan.items.size());
+  for (mission::Item& item : plan.items) {
+    auto* jump = std::get_if<mission::Jump>(&item);
+    if (jump == nullptr) continue;
+    if (jump->item > number) --jump->item;
+    jump->item = std::clamp(jump->item, 1, most);
+  }
+}
+
+bool has_waypoint(const mission::Plan& plan) {
+  return std::any_of(plan.items.begin(), plan.items.end(), [](const mission::Item& item) {
+    return std::holds_alternative<mission::Waypoint>(item);
+  });
+}
+
+/// Changes the plan as asked. @return the number of the item that was added or removed.
+Result<int> apply(mission::Plan& plan, const MissionEdit& edit, std::optional<int> current) {
+  switch (edit.kind) {
+    case EditKind::AddWaypoint: {
+      if (plan.items.size() >= mission::kMaxItems) {
+        return base::fail(Code::Conflict, "the mission is full");
+      }
+      mission::Waypoint waypoint;
+      waypoint.at = edit.at;
+      plan.items.emplace_back(waypoint);
+      return static_cast<int>(plan.items.size());
+    }
+    case EditKind::RemoveItem: {
+      const int last = static_cast<int>(plan.items.size());
+      const int number = current.value_or(last);
+      if (number < 1 || number > last) {
+        return base::fail(Code::Conflict, "there is no such item");
+      }
+      remove_item(plan, number);
+      return number;
+    }
+    case EditKind::Clear:
+      plan.items.clear();
+      plan.home = mission::Home{edit.at, std::nullopt};
+      return 0;
+  }
+  return 0;
+}
+
+const char* words_of(EditKind kind) {
+  switch (kind) {
+    case EditKind::AddWaypoint:
+      return "waypoint added by radio";
+    case EditKind::RemoveItem:
+      return "item removed by radio";
+    case EditKind::Clear:
+      return "cleared by radio";
+  }
+  return "";
+}
+
+}  // namespace
+
+RadioEdits::RadioEdits(ContextPtr context) : context_(std::move(context)) {}
+RadioEdits::~RadioEdits() = default;
+
+void RadioEdits::put(MissionEdit edit) {
+  if (waiting_.size() >= kWaiting) {
+    if (tell) {
+      tell({edit.wall, base::Severity::Warning, "mission_edit_refused",
+            "too many changes wait to be saved"});
+    }
+    return;
+  }
+  waiting_.push_back(std::move(edit));
+  if (waiting_.size() == 1) next();
+}
+
+void RadioEdits::finish(Result<void> result) {
+  if (!result && tell) {
+    tell({base::wall_now(), base::Severity::Warning, "mission_edit_refused",
+          std::string(words_of(waiting_.front().kind)) + ": " + result.error().detail});
+  }
+  waiting_.pop_front();
+  if (!waiting_.empty()) next();
+}
+
+RadioEdits::Target RadioEdits::find_target(const MissionEdit& edit) {
+  if (const auto loaded = context_->deps.robot.loaded()) {
+    cleared_.reset();
+    return {loaded->id, loaded->revision, true, loaded->plan};
+  }
+  if (cleared_) return *cleared_;
+  Target made;
+  made.plan.name = name_of_day(edit.wall);
+  return made;
+}
+
+void RadioEdits::next() {
+  const MissionEdit& edit = waiting_.front();
+  Target target = find_target(edit);
+  if (!edit.mission_id.empty() && (!target.is_loaded || target.id != edit.mission_id)) {
+    return finish(base::fail(Code::Conflict, "another mission was loaded meanwhile"));
+  }
+  // An edit before this one may have changed the numbers: then the item of now is meant.
+  std::optional<int> item = edit.item;
+  const auto snapshot = context_->deps.robot.snapshot();
+  if (item && edit.revision != target.revision && snapshot) item = snapshot->mission.current_item;
+  const auto number = apply(target.plan, edit, item);
+  if (!number) return finish(tl::unexpected(number.error()));
+  // What cannot be driven is not saved.
+  if (has_waypoint(target.plan)) {
+    const auto good = context_->deps.robot.compile({target.id, target.revision, target.plan});
+    if (!good) return finish(tl::unexpected(good.error()));
+  }
+  save(std::move(target), *number);
+}
+
+void RadioEdits::save(Target target, int item) {
+  const std::weak_ptr<RadioEdits*> self = self_;
+  auto done = [self, target, item](Result<store::StoredMission> stored) {
+    const auto alive = self.lock();
+    if (!alive) return;
+    RadioEdits& edits = **alive;
+    if (stored) return edits.hand_over(target, item, std::move(*stored));
+    if (!target.is_loaded && !target.id.empty()) {
+      // What was cleared has gone or has been filled by somebody else: a new one, then.
+      edits.cleared_.reset();
+      return edits.next();
+    }
+    base::Error error = std::move(stored.error());
+    if (error.code == Code::RevisionMismatch) {
+      error.detail = "somebody changed the stored mission: load it again first";
+    }
+    edits.finish(tl::unexpected(std::move(error)));
+  };
+  store::Change change{kRadioAuthor, words_of(waiting_.front().kind)};
+  store::Store& store = context_->deps.store;
+  if (target.id.empty()) {
+    store.create_mission(std::move(target.plan), std::move(change), std::move(done));
+  } else {
+    store.replace_mission(target.id, target.revision, std::move(target.plan), std::move(change),
+                          std::move(done));
+  }
+}
+
+void RadioEdits::hand_over(const Target& before, int item, store::StoredMission stored) {
+  context_->announce(stored.id, stored.revision);
+  robot::ReviseMission revise;
+  revise.kind = waiting_.front().kind;
+  revise.item = item;
+  if (before.is_loaded) {
+    revise.from_id = before.id;
+    revise.from_revision = before.revision;
+  }
+  if (has_waypoint(stored.plan)) {
+    auto compiled = context_->deps.robot.compile({stored.id, stored.revision, stored.plan});
+    if (!compiled) return finish(tl::unexpected(compiled.error()));
+    revise.mission = std::move(*compiled);
+  } else {
+    cleared_ = Target{stored.id, stored.revision, false, std::move(stored.plan)};
+  }
+  const std::weak_ptr<RadioEdits*> self = self_;
+  context_->commands.run(std::move(revise), base::Time::max(), base::steady_now(),
+                         [self](Result<void> result) {
+                           if (const auto alive = self.lock()) (*alive)->finish(std::move(result));
+                         });
+}
+
+}  // namespace roverd::api

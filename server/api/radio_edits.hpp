@@ -1,0 +1,54 @@
+#pragma once
+// Changes of the loaded mission that the radio asks for: the robot says what and where, the store
+// keeps a new revision of it, and the robot goes on with that without a stop.
+//
+//   robot ─MissionEdit─▶ queue ─▶ store: revision n+1 ─▶ compile ─▶ robot: ReviseMission ─▶ next
+//
+// One at a time, in order. What is changed is what is loaded: if somebody saved another revision
+// meanwhile, the edit is refused with an event, and nothing is lost. Nothing loaded: a waypoint
+// goes to the mission that was cleared last, or to a new one. Web thread.
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "api/context.hpp"
+
+namespace roverd::api {
+
+class RadioEdits {
+ public:
+  explicit RadioEdits(ContextPtr context);
+  ~RadioEdits();
+  RadioEdits(const RadioEdits&) = delete;
+  RadioEdits& operator=(const RadioEdits&) = delete;
+
+  /// Writes an event as if the robot had said it.
+  std::function<void(base::Event)> tell;
+
+  void put(robot::MissionEdit edit);
+
+ private:
+  static constexpr std::size_t kWaiting = 16;
+
+  struct Target {
+    std::string id;  ///< empty: a mission has to be made
+    std::int64_t revision = 0;
+    bool is_loaded = false;
+    mission::Plan plan;
+  };
+
+  void next();
+  void save(Target target, int item);
+  void hand_over(const Target& before, int item, store::StoredMission stored);
+  Target find_target(const robot::MissionEdit& edit);
+  void finish(base::Result<void> result);
+
+  ContextPtr context_;
+  std::deque<robot::MissionEdit> waiting_;  ///< the first one is at work
+  std::optional<Target> cleared_;
+  std::shared_ptr<RadioEdits*> self_ = std::make_shared<RadioEdits*>(this);
+};
+
+}  // namespace roverd::api

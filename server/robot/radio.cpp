@@ -1,0 +1,142 @@
+// The radio as user interface: thrown switches become commands, by the same ways and with the same
+// refusals as those that come over the network. Edits of the mission go out as requests: the loop
+// does not wait for the store.
+
+#include "robot/impl.hpp"
+
+namespace roverd::robot {
+namespace {
+
+using base::Code;
+using base::ExecutionState;
+using base::Mode;
+using base::Severity;
+
+const char* refusal_of(RadioDeed deed) noexcept {
+  switch (deed) {
+    case RadioDeed::SetMode:
+    case RadioDeed::StartMission:
+      return "mode_refused";
+    case RadioDeed::AddWaypoint:
+    case RadioDeed::RemoveCurrent:
+    case RadioDeed::ClearMission:
+      return "mission_edit_refused";
+    case RadioDeed::None:
+    case RadioDeed::ByKnob:
+    case RadioDeed::Arm:
+    case RadioDeed::Disarm:
+    case RadioDeed::Estop:
+    case RadioDeed::PauseMission:
+    case RadioDeed::StopMission:
+    case RadioDeed::SetHome:
+      break;
+  }
+  return "radio_refused";
+}
+
+std::string_view meaning_of(const RadioAction* action) noexcept {
+  return action != nullptr ? action->meaning : std::string_view{};
+}
+
+}  // namespace
+
+void Robot::Impl::press(const base::RadioState& frame) {
+  if (!radio_heard(world, config.safety, now)) keys.lost();
+  for (const RadioKey& key : keys.take(frame, world.swb)) {
+    if (key.action != nullptr) pressed.push_back(key);
+  }
+}
+
+void Robot::Impl::act_on_radio() {
+  if (!radio_heard(world, config.safety, now)) keys.lost();
+  for (const RadioKey& key : pressed) {
+    const RadioAction& action = *key.action;
+    const std::string text = std::string(key.cause) + ": " + std::string(action.meaning);
+    event(Severity::Info, "radio_action", text);
+    const auto done = carry_out(action);
+    // Arming tells its refusal itself.
+    if (done || action.deed == RadioDeed::Arm) continue;
+    event(Severity::Warning, refusal_of(action.deed), text + " refused: " + done.error().detail);
+  }
+  pressed.clear();
+}
+
+base::Result<void> Robot::Impl::carry_out(const RadioAction& action) {
+  switch (action.deed) {
+    case RadioDeed::None:
+    case RadioDeed::ByKnob:
+      return {};
+    case RadioDeed::SetMode:
+      return handle(SetMode{action.mode});
+    case RadioDeed::Arm:
+      return handle(Arm{});
+    case RadioDeed::Disarm:
+      disarm("by the radio");
+      return {};
+    case RadioDeed::Estop:
+      latch_estop("the radio");
+      return {};
+    case RadioDeed::AddWaypoint:
+    case RadioDeed::RemoveCurrent:
+    case RadioDeed::ClearMission:
+      return ask_for_edit(action.deed);
+    case RadioDeed::StartMission:
+      return handle(SetMode{Mode::Auto});
+    case RadioDeed::PauseMission:
+      return handle(PauseMission{});
+    case RadioDeed::StopMission:
+      return handle(StopMission{});
+    case RadioDeed::SetHome:
+      return handle(SetHome{});
+  }
+  return {};
+}
+
+base::Result<void> Robot::Impl::ask_for_edit(RadioDeed deed) {
+  const bool adds = deed == RadioDeed::AddWaypoint;
+  if (!adds && !mission) return base::fail(Code::Conflict, "no mission is loaded");
+  if (deed != RadioDeed::RemoveCurrent && !pose) {
+    return base::fail(Code::Conflict, "the position is not known");
+  }
+  MissionEdit edit;
+  edit.wall = wall;
+  if (pose) edit.at = pose->global;
+  if (mission) {
+    edit.mission_id = mission->copy.id;
+    edit.revision = mission->copy.revision;
+  }
+  if (deed == RadioDeed::RemoveCurrent) {
+    edit.kind = EditKind::RemoveItem;
+    edit.item = executor.progress(std::nullopt).current_item;
+  }
+  if (deed == RadioDeed::ClearMission) {
+    edit.kind = EditKind::Clear;
+    // It stops now, not when the disk has written that it is empty.
+    const ExecutionState s = executor.state();
+    const bool drives =
+        s == ExecutionState::Running || s == ExecutionState::Paused || s == ExecutionState::Blocked;
+    if (drives) executor.stop("cleared by the radio");
+    if (mode == Mode::Auto) set_mode(Mode::Hold, "the mission was cleared");
+  }
+  if (!outbox.edit(std::move(edit))) {
+    return base::fail(Code::Unavailable, "too many changes wait to be saved");
+  }
+  return {};
+}
+
+base::RadioMeaning Robot::Impl::radio_meaning() const noexcept {
+  base::RadioMeaning m;
+  if (!world.radio) return m;
+  const RadioPositions at = keys.positions(*world.radio);
+  m.swa = meaning_of(at.swa);
+  m.swc = meaning_of(at.swc);
+  m.swd = meaning_of(at.swd);
+  m.vra = meaning_of(at.knob);
+  if (world.swb == base::Switch::Up) m.swb = "the computer drives";
+  if (world.swb == base::Switch::Middle || world.swb == base::Switch::Down) {
+    m.swb = "the sticks drive";
+  }
+  return m;
+}
+
+}  // namespace roverd::robot

@@ -1,0 +1,150 @@
+#include "robot/radio_keys.hpp"
+
+namespace roverd::robot {
+namespace {
+
+using base::Mode;
+using base::Switch;
+
+constexpr RadioAction kActions[] = {
+    {"none", "nothing", RadioDeed::None},
+    {"by_knob", "what the knob chooses", RadioDeed::ByKnob},
+    {"mode.manual", "mode MANUAL", RadioDeed::SetMode, Mode::Manual},
+    {"mode.hold", "mode HOLD", RadioDeed::SetMode, Mode::Hold},
+    {"mode.auto", "mode AUTO", RadioDeed::SetMode, Mode::Auto},
+    {"mode.guided", "mode GUIDED", RadioDeed::SetMode, Mode::Guided},
+    {"mode.rtl", "mode RTL", RadioDeed::SetMode, Mode::Rtl},
+    {"mode.smart_rtl", "mode SMART_RTL", RadioDeed::SetMode, Mode::SmartRtl},
+    {"mode.follow", "mode FOLLOW", RadioDeed::SetMode, Mode::Follow},
+    {"mode.steering", "mode STEERING", RadioDeed::SetMode, Mode::Steering},
+    {"mode.acro", "mode ACRO", RadioDeed::SetMode, Mode::Acro},
+    {"mode.simple", "mode SIMPLE", RadioDeed::SetMode, Mode::Simple},
+    {"mode.dock", "mode DOCK", RadioDeed::SetMode, Mode::Dock},
+    {"arm", "arm", RadioDeed::Arm},
+    {"disarm", "disarm", RadioDeed::Disarm},
+    {"estop", "emergency stop", RadioDeed::Estop},
+    {"mission.add_waypoint", "add a waypoint here", RadioDeed::AddWaypoint},
+    {"mission.remove_current", "remove the current waypoint", RadioDeed::RemoveCurrent},
+    {"mission.clear", "clear the mission", RadioDeed::ClearMission},
+    {"mission.start", "start or resume the mission", RadioDeed::StartMission},
+    {"mission.pause", "pause the mission", RadioDeed::PauseMission},
+    {"mission.stop", "stop the mission", RadioDeed::StopMission},
+    {"home.set", "set home here", RadioDeed::SetHome},
+};
+
+/// Checks every field that names an action; those with a range are none.
+struct CheckWords {
+  std::string_view bad{};
+  std::string word{};
+  bool knob_by_knob = false;
+
+  template <class N>
+  void operator()(std::string_view, N&, double, double, std::string_view) {}
+  void operator()(std::string_view, bool&, std::string_view) {}
+  void operator()(std::string_view name, std::string& value, std::string_view) {
+    if (!bad.empty()) return;
+    const RadioAction* action = radio_action(value);
+    const bool circle =
+        name.starts_with("knob_") && action != nullptr && action->deed == RadioDeed::ByKnob;
+    if (action != nullptr && !circle) return;
+    bad = name;
+    word = value;
+    knob_by_knob = circle;
+  }
+};
+
+std::size_t index_of(Switch position) noexcept {
+  return position == Switch::Up ? 0 : position == Switch::Middle ? 1 : 2;
+}
+
+}  // namespace
+
+const RadioAction* radio_action(std::string_view word) noexcept {
+  for (const RadioAction& action : kActions) {
+    if (action.word == word) return &action;
+  }
+  return nullptr;
+}
+
+base::Result<void> check(const RadioParams& params) {
+  CheckWords words;
+  RadioParams copy = params;
+  fields(words, copy);
+  if (words.bad.empty()) return {};
+  std::string detail(words.bad);
+  if (words.knob_by_knob) {
+    detail += " cannot be by_knob: the knob would ask itself";
+  } else {
+    detail += " must be one of";
+    for (const RadioAction& action : kActions) {
+      detail += (&action == kActions ? " " : ", ") + std::string(action.word);
+    }
+    detail += "; is \"" + words.word + "\"";
+  }
+  return base::fail(base::Code::Invalid, std::move(detail));
+}
+
+RadioKeys::RadioKeys(const RadioParams& p, double gap_s)
+    : debounce_s_(p.debounce_s),
+      gap_s_(gap_s),
+      knob_limit_(p.knob_limit_pct / 100.0),
+      swb_down_blocks_swa_(p.swb_down_blocks_swa),
+      swa_{{{radio_action(p.swa_up), "SWA up"}, {}, {radio_action(p.swa_down), "SWA down"}}},
+      swc_{{{radio_action(p.swc_up), "SWC up"},
+            {radio_action(p.swc_middle), "SWC middle"},
+            {radio_action(p.swc_down), "SWC down"}}},
+      swd_{{{radio_action(p.swd_up), "SWD up"}, {}, {radio_action(p.swd_down), "SWD down"}}},
+      knob_{radio_action(p.knob_low), radio_action(p.knob_middle), radio_action(p.knob_high)} {}
+
+void RadioKeys::lost() noexcept {
+  swa_key_ = swc_key_ = swd_key_ = {};
+}
+
+const RadioAction* RadioKeys::by_knob(double vra) const noexcept {
+  return knob_[vra < -knob_limit_ ? 0 : vra > knob_limit_ ? 2 : 1];
+}
+
+/// @return true if the key has just come to stand in another position than before.
+bool RadioKeys::settles(Key& key, Switch position, Time stamp) const noexcept {
+  if (position == Switch::Unknown || position == key.settled) {
+    key.candidate = Switch::Unknown;
+    return false;
+  }
+  if (position != key.candidate) {
+    key.candidate = position;
+    key.since = stamp;
+  }
+  if (base::seconds(stamp - key.since) < debounce_s_) return false;
+  const bool acts = key.settled.has_value();
+  key.settled = position;
+  key.candidate = Switch::Unknown;
+  return acts;
+}
+
+RadioKeys::Pressed RadioKeys::take(const base::RadioState& radio, Switch swb) noexcept {
+  if (last_ && base::seconds(radio.stamp - *last_) > gap_s_) lost();
+  last_ = radio.stamp;
+  Pressed pressed{};
+  if (settles(swd_key_, radio.swd, radio.stamp)) pressed[0] = swd_[index_of(radio.swd)];
+  if (settles(swc_key_, radio.swc, radio.stamp)) pressed[1] = swc_[index_of(radio.swc)];
+  const bool blocked = swb_down_blocks_swa_ && swb == Switch::Down;
+  if (settles(swa_key_, radio.swa, radio.stamp) && !blocked) {
+    pressed[2] = swa_[index_of(radio.swa)];
+  }
+  for (RadioKey& key : pressed) {
+    if (key.action != nullptr && key.action->deed == RadioDeed::ByKnob) {
+      key.action = by_knob(radio.vra);
+    }
+    if (key.action != nullptr && key.action->deed == RadioDeed::None) key = {};
+  }
+  return pressed;
+}
+
+RadioPositions RadioKeys::positions(const base::RadioState& radio) const noexcept {
+  const auto at = [](const Actions& actions, Switch position) {
+    return position == Switch::Unknown ? nullptr : actions[index_of(position)].action;
+  };
+  return {at(swa_, radio.swa), at(swc_, radio.swc), at(swd_, radio.swd), by_knob(radio.vra)};
+}
+
+}  // namespace roverd::robot

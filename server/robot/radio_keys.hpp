@@ -1,0 +1,75 @@
+#pragma once
+// The radio's switches as keys: what stands still for long enough, and has changed, acts once.
+//
+//   Unknown ──same position for debounce_s──▶ Settled(p) ──another for debounce_s──▶ Settled(q):
+//   acts
+//      ▲                                          │
+//      └── a gap, lost() ─────────────────────────┘     the first position is only remembered
+//
+// A position between two detents counts as the one before. Pure but for its memory; time is an
+// argument. Control thread.
+
+#include <array>
+#include <optional>
+
+#include "base/measurements.hpp"
+#include "robot/radio_actions.hpp"
+
+namespace roverd::robot {
+
+using base::Time;
+
+/// What one change asked for.
+struct RadioKey {
+  const RadioAction* action = nullptr;  ///< never null, never None or ByKnob
+  const char* cause = "";               ///< "SWC middle"
+};
+
+/// Actions of the positions in which switches and knob stand; null: not known.
+struct RadioPositions {
+  const RadioAction* swa = nullptr;
+  const RadioAction* swc = nullptr;
+  const RadioAction* swd = nullptr;
+  const RadioAction* knob = nullptr;
+};
+
+class RadioKeys {
+ public:
+  static constexpr std::size_t kKeys = 3;
+  /// At most one per switch, in the order SWD, SWC, SWA; unused ones have no action.
+  using Pressed = std::array<RadioKey, kKeys>;
+
+  /// @param params checked. @param gap_s frames farther apart than this have lost the radio
+  /// between.
+  RadioKeys(const RadioParams& params, double gap_s);
+
+  /// Every frame in order. @param swb the last position between detents.
+  Pressed take(const base::RadioState& radio, base::Switch swb) noexcept;
+  /// The radio is not to be believed: what it says next is only remembered.
+  void lost() noexcept;
+
+  RadioPositions positions(const base::RadioState& radio) const noexcept;
+
+ private:
+  struct Key {
+    std::optional<base::Switch> settled;
+    base::Switch candidate = base::Switch::Unknown;
+    Time since{};
+  };
+  /// By position: up, middle, down.
+  using Actions = std::array<RadioKey, 3>;
+
+  bool settles(Key& key, base::Switch position, Time stamp) const noexcept;
+  const RadioAction* by_knob(double vra) const noexcept;
+
+  double debounce_s_;
+  double gap_s_;
+  double knob_limit_;
+  bool swb_down_blocks_swa_;
+  Actions swa_, swc_, swd_;
+  std::array<const RadioAction*, 3> knob_;  ///< low, middle, high
+  Key swa_key_, swc_key_, swd_key_;
+  std::optional<Time> last_;
+};
+
+}  // namespace roverd::robot
