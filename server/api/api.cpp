@@ -92,6 +92,7 @@ Api::Api(Deps deps) : impl_(std::make_unique<Impl>(std::move(deps))) {
   add_file_routes(c);
   add_event_routes(c);
   add_server_routes(c);
+  add_driver_routes(c);
   add_tile_routes(c);
 }
 
