@@ -202,7 +202,7 @@ std::optional<Response> Api::on_upgrade(const Request& request) {
   if (parts->path != std::string(kBase) + "/stream" || !impl_->stream) {
     return problem({base::Code::NotFound, "the stream is at /api/v1/stream"});
   }
-  return std::nullopt;
+  return guard_handshake(request);
 }
 
 void Api::on_client(ClientId client) {
