@@ -328,6 +328,9 @@ Json drivers_json(const base::Snapshot& s, const std::map<std::string, double>& 
     items.push_back(
         driver_json(driver, rate == rates.end() ? std::nullopt : std::optional(rate->second), now));
   }
+  // In an order that does not depend on who spoke first.
+  std::sort(items.begin(), items.end(),
+            [](const Json& a, const Json& b) { return a["name"] < b["name"]; });
   return {{"items", std::move(items)}, {"next_cursor", nullptr}};
 }
 
