@@ -1,20 +1,21 @@
 #include "devices.hpp"
 
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <utility>
 
 #include <net/if.h>
 
 #include "ackermann/driver.hpp"
+#include "base/log.hpp"
 #include "bumper/driver.hpp"
 #include "bunker/driver.hpp"
 #include "gnss/driver.hpp"
-#include "gnss/nmea.hpp"
 #include "link/address.hpp"
 #include "link/record.hpp"
-#include "link/replay_file.hpp"
 #include "ratio/driver.hpp"
+#include "replays.hpp"
 #include "twist/driver.hpp"
 
 namespace roverd {
@@ -23,51 +24,42 @@ namespace {
 namespace asio = boost::asio;
 using base::Result;
 
+/// What every driver is made from. Shared: a driver that hangs keeps it for as long as it lasts.
+struct Workshop {
+  std::string folder;  ///< of recordings
+  bool records = false;
+  link::RecordOptions record;
+  link::ReplayOptions replay;
+};
+using WorkshopPtr = std::shared_ptr<const Workshop>;
+
 /// A file name for this moment: 20260301T120000Z-can0.log
-std::string file_for_now(const std::string& ending) {
+std::string name_for_now(const std::string& name) {
   std::string text;
   for (const char c : base::to_rfc3339(base::wall_now())) {
     if (c == '.') break;
     if (c != '-' && c != ':') text += c;
   }
-  return text + "Z-" + ending;
+  return text + "Z-" + name;
 }
 
-Result<std::string> recording_file(const Options& options, const std::string& ending) {
-  const auto folder = std::filesystem::path(options.data) / "recordings";
+/// A file that is not there yet, in a folder that is.
+Result<std::string> recording_file(const Workshop& w, const std::string& name,
+                                   const std::string& ending) {
+  const std::filesystem::path folder(w.folder);
   std::error_code ec;
   std::filesystem::create_directories(folder, ec);
   if (ec) {
     return base::fail(base::Code::Unavailable,
                       "recording folder " + folder.string() + ": " + ec.message());
   }
-  return (folder / file_for_now(ending)).string();
-}
-
-bool records(const Settings& settings, const Options& options) {
-  return options.replay.empty() && (settings.recording.enabled || options.record);
-}
-
-/// @return whether `file` is a recording of CAN frames.
-bool holds_frames(const std::string& file) {
-  return link::FrameFile(file, [](const base::CanFrame&, base::Time) {}).open().has_value();
-}
-
-/// The bus keeps its name in the log where it has one.
-link::RecordOptions record_options(const Settings& settings, const std::string& address) {
-  link::RecordOptions options;
-  options.max_bytes = static_cast<std::uint64_t>(settings.recording.max_mb) * 1'000'000;
-  options.keep_files = settings.recording.keep_files;
-  const auto parsed = link::parse_address(address);
-  if (parsed && parsed->scheme == link::Scheme::Can) options.bus = parsed->target;
-  return options;
-}
-
-link::ReplayOptions replay_options(const Options& options) {
-  link::ReplayOptions replay;
-  replay.speed = options.replay_speed;
-  replay.line_clock = gnss::time_of_day_s;
-  return replay;
+  const std::string stem = name_for_now(name);
+  auto file = folder / (stem + ending);
+  // A driver that is restarted within a second begins another recording.
+  for (int i = 2; i < 100 && std::filesystem::exists(file, ec); ++i) {
+    file = folder / (stem + "-" + std::to_string(i) + ending);
+  }
+  return file.string();
 }
 
 /// Frames or bytes: how such a link is made, and taped.
@@ -84,110 +76,186 @@ struct ByteStream {
   static constexpr const char* kEnding = ".raw";
 };
 
-template <class Kind>
-Result<std::unique_ptr<typename Kind::Link>> open_link(const Workshop& w, const std::string& name,
-                                                       const std::string& address) {
-  auto made = Kind::kMake(w.io, address, replay_options(w.options));
-  if (!made || !records(w.settings, w.options)) return made;
-  const auto file = recording_file(w.options, name + Kind::kEnding);
-  if (!file) return tl::unexpected(file.error());
-  auto taped = Kind::Taped::create(std::move(*made), *file, record_options(w.settings, address));
-  if (!taped) return tl::unexpected(taped.error());
-  return std::move(*taped);
+/// The bus keeps its name in the log where it has one.
+std::string bus_name(const std::string& address) {
+  const auto parsed = link::parse_address(address);
+  return parsed && parsed->scheme == link::Scheme::Can ? parsed->target : link::RecordOptions{}.bus;
 }
 
-Result<void> check(const std::string& key, const DriverWiring& wiring) {
-  if (!wiring.enabled) return {};
-  const auto parsed = link::parse_address(wiring.link);
-  if (!parsed) {
-    return base::fail(base::Code::Invalid, "drivers." + key + ".link: " + parsed.error().detail);
+/// A recording that cannot be written is told, and never keeps a driver from its work.
+template <class Kind>
+Result<std::unique_ptr<typename Kind::Link>> open_link(const Workshop& w, asio::io_context& io,
+                                                       const DeviceEars& ears,
+                                                       const std::string& name,
+                                                       const std::string& address) {
+  auto made = Kind::kMake(io, address, w.replay);
+  if (!made || !w.records) return made;
+  const auto refused = [&](const std::string& problem) {
+    base::log(base::Level::Warning, "drivers", "not recorded", {{"why", problem}});
+    ears.on_recording(base::Recording::Stopped, problem);
+  };
+  const auto file = recording_file(w, name, Kind::kEnding);
+  if (!file) {
+    refused(file.error().detail);
+    return made;
   }
+  link::RecordOptions record = w.record;
+  record.bus = bus_name(address);
+  record.on_problem = [on_recording = ears.on_recording](const std::string& problem) {
+    base::log(base::Level::Warning, "drivers", "recording stopped", {{"why", problem}});
+    on_recording(base::Recording::Stopped, problem);
+  };
+  ears.on_recording(base::Recording::On, "");  // before: the writer may refuse at once
+  auto taped = Kind::Taped::create(std::move(*made), *file, record);
+  if (taped) return std::move(*taped);
+  refused(taped.error().detail);
+  return Kind::kMake(io, address, w.replay);
+}
+
+Result<void> check_can(const std::string& who, const std::string& interface) {
+  if (::if_nametoindex(interface.c_str()) == 0) {
+    return base::fail(base::Code::NotFound,
+                      who + ": CAN interface " + interface + " does not exist");
+  }
+  constexpr int kCanHardware = 280;  // ARPHRD_CAN
+  int hardware = kCanHardware;
+  std::ifstream("/sys/class/net/" + interface + "/type") >> hardware;
+  if (hardware == kCanHardware) return {};
+  return base::fail(base::Code::Invalid, who + ": " + interface + " is no CAN interface");
+}
+
+Result<void> check_link(const std::string& who, const std::string& address) {
+  const auto parsed = link::parse_address(address);
+  if (!parsed) return base::fail(base::Code::Invalid, who + ": " + parsed.error().detail);
   // A base that is not there at the start is a mistake in the configuration or the set-up: say so
   // at once. One that goes away later is waited for.
-  if (parsed->scheme == link::Scheme::Can && ::if_nametoindex(parsed->target.c_str()) == 0) {
-    return base::fail(base::Code::NotFound, "drivers." + key + ".link: CAN interface " +
-                                                parsed->target + " does not exist");
+  if (parsed->scheme == link::Scheme::Can) return check_can(who, parsed->target);
+  std::error_code ec;
+  if (parsed->scheme == link::Scheme::CanSocket &&
+      !std::filesystem::is_socket(parsed->target, ec)) {
+    return base::fail(base::Code::NotFound, who + ": there is no socket " + parsed->target);
   }
   return {};
 }
 
+/// The kind of link that a driver needs, from a trial on a context that never runs.
+template <class Kind>
+Result<void> check_kind(const std::string& who, const std::string& address) {
+  asio::io_context nowhere;
+  if (auto made = Kind::kMake(nowhere, address, {}); !made) {
+    return base::fail(base::Code::Invalid, who + ": " + made.error().detail);
+  }
+  return {};
+}
+
+template <class Driver>
+concept Moves = requires(Driver d, base::DriveCommand c, base::Time t) {
+  d.send(c, t);
+};
+template <class Driver>
+concept HasLights = requires(Driver d, base::LightState l, base::Time t) {
+  d.set_lights(l, t);
+};
+template <class Driver>
+concept ClearsErrors = requires(Driver d, base::Time t) {
+  d.clear_errors(0, t);
+};
+
 /// The driver lives as long as the device's functions.
 template <class Driver>
-Device device_of(const std::string& name, std::shared_ptr<Driver> driver) {
+Device device_of(std::shared_ptr<Driver> driver) {
   Device device{
-      .name = name,
       .start = [driver](base::Time now) { driver->start(now); },
       .tick = [driver](base::Time now) { driver->tick(now); },
       .stop = [driver](base::Time now) { driver->stop(now); },
       .restart = [driver](base::Time now) { driver->restart(now); },
-      .send = {},
   };
-  if constexpr (requires(base::DriveCommand c, base::Time t) { driver->send(c, t); }) {
+  if constexpr (Moves<Driver>) {
     device.send = [driver = driver.get()](const base::DriveCommand& command, base::Time now) {
       driver->send(command, now);
+    };
+  }
+  if constexpr (HasLights<Driver>) {
+    device.set_lights = [driver](const base::LightState& lights, base::Time now) {
+      return driver->set_lights(lights, now);
+    };
+  }
+  if constexpr (ClearsErrors<Driver>) {
+    device.clear_errors = [driver](int motor, base::Time now) {
+      return driver->clear_errors(motor, now);
     };
   }
   return device;
 }
 
-/// Makes the wanted ones of the drivers that there are.
-class Maker {
+/// Plans the wanted ones of the drivers that there are.
+class Planner {
  public:
-  explicit Maker(const Workshop& workshop) : w_(workshop) {}
+  Planner(const Settings& settings, WorkshopPtr workshop, Replays replays)
+      : settings_(settings), workshop_(std::move(workshop)), replays_(std::move(replays)) {}
 
   template <class Kind, class Driver, class Params>
   Result<void> add(const std::string& name, const Wired<Params>& said) {
-    const bool replays = !w_.options.replay.empty();
-    if (replays && !plays(name)) return {};
-    const DriverWiring wiring =
-        replays ? DriverWiring{true, "replay:" + w_.options.replay} : said.wiring;
-    if (!wiring.enabled) return {};
-    if (auto good = check(name, wiring); !good) return good;
+    const bool replaying = !replays_.file_of.empty();
+    const auto replay = replays_.file_of.find(name);
+    if (replaying ? replay == replays_.file_of.end() : !said.wiring.enabled) return {};
+    const std::string address = replaying ? "replay:" + replay->second : said.wiring.link;
+    const std::string who = settings_.where("drivers." + name + ".link");
+    if (auto good = check_link(who, address); !good) return good;
+    if (auto good = check_kind<Kind>(who, address); !good) return good;
     Params params = said.params;
     // A hole in a recording is no reason to open it again: it would begin anew.
-    if (replays) params.silent_reopen_s = 0.0;
-    if (auto good = validate(params); !good) return good;
-    const auto make = [w = w_, name, link = wiring.link] { return open_link<Kind>(w, name, link); };
-    made_.push_back(device_of(name, std::make_shared<Driver>(name, params, make, w_.sink)));
+    if (replaying) params.silent_reopen_s = 0.0;
+    if (auto good = validate(params); !good) {
+      const auto& fields = good.error().fields;
+      const std::string key = "drivers." + name + (fields.empty() ? "" : "." + fields[0].pointer);
+      return base::fail(base::Code::Invalid, settings_.where(key) + ": " + good.error().detail);
+    }
+    DevicePlan plan{.name = name,
+                    .moves = Moves<Driver>,
+                    .lights = HasLights<Driver>,
+                    .clears_errors = ClearsErrors<Driver>,
+                    .make = {}};
+    plan.make = [w = workshop_, name, params, address](asio::io_context& io,
+                                                       const DeviceEars& ears) {
+      const auto make_link = [w, name, address, ears, &io] {
+        return open_link<Kind>(*w, io, ears, name, address);
+      };
+      return device_of(std::make_shared<Driver>(name, params, make_link, ears.on_measurement));
+    };
+    plans_.push_back(std::move(plan));
     return {};
   }
 
-  std::vector<Device> take() { return std::move(made_); }
+  std::vector<DevicePlan> take() { return std::move(plans_); }
 
  private:
-  /// A recording is either a bus or a receiver.
-  bool plays(const std::string& name) const {
-    return name == (holds_frames(w_.options.replay) ? "bunker" : "gnss");
-  }
-
-  const Workshop& w_;
-  std::vector<Device> made_;
+  const Settings& settings_;
+  const WorkshopPtr workshop_;
+  const Replays replays_;
+  std::vector<DevicePlan> plans_;
 };
 
 }  // namespace
 
-Result<std::vector<Device>> make_devices(const Workshop& workshop) {
-  const Settings& s = workshop.settings;
-  Maker maker(workshop);
-  if (auto done = maker.add<Frames, bunker::Driver>("bunker", s.bunker); !done) {
-    return tl::unexpected(done.error());
-  }
-  if (auto done = maker.add<ByteStream, ackermann::Driver>("ackermann", s.ackermann); !done) {
-    return tl::unexpected(done.error());
-  }
-  if (auto done = maker.add<ByteStream, ratio::Driver>("ratio", s.ratio); !done) {
-    return tl::unexpected(done.error());
-  }
-  if (auto done = maker.add<ByteStream, twist::Driver>("twist", s.twist); !done) {
-    return tl::unexpected(done.error());
-  }
-  if (auto done = maker.add<ByteStream, bumper::Driver>("bumper", s.bumper); !done) {
-    return tl::unexpected(done.error());
-  }
-  if (auto done = maker.add<ByteStream, gnss::Driver>("gnss", s.gnss); !done) {
-    return tl::unexpected(done.error());
-  }
-  return maker.take();
+Result<std::vector<DevicePlan>> plan_devices(const Settings& s, const Options& options) {
+  auto replays = read_replays(options.replays, options.replay_speed);
+  if (!replays) return tl::unexpected(replays.error());
+  auto workshop = std::make_shared<Workshop>();
+  workshop->folder = (std::filesystem::path(options.data) / "recordings").string();
+  workshop->records = options.replays.empty() && (s.recording.enabled || options.record);
+  workshop->record.max_bytes = static_cast<std::uint64_t>(s.recording.max_mb) * 1'000'000;
+  workshop->record.keep_files = s.recording.keep_files;
+  workshop->replay = replays->how;
+  Planner planner(s, workshop, std::move(*replays));
+  Result<void> done = planner.add<Frames, bunker::Driver>("bunker", s.bunker);
+  if (done) done = planner.add<ByteStream, ackermann::Driver>("ackermann", s.ackermann);
+  if (done) done = planner.add<ByteStream, ratio::Driver>("ratio", s.ratio);
+  if (done) done = planner.add<ByteStream, twist::Driver>("twist", s.twist);
+  if (done) done = planner.add<ByteStream, bumper::Driver>("bumper", s.bumper);
+  if (done) done = planner.add<ByteStream, gnss::Driver>("gnss", s.gnss);
+  if (!done) return tl::unexpected(done.error());
+  return planner.take();
 }
 
 }  // namespace roverd

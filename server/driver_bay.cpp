@@ -1,39 +1,29 @@
 #include "driver_bay.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <utility>
 
-#include <boost/asio/post.hpp>
-
 namespace roverd {
-namespace {
 
-namespace asio = boost::asio;
 using base::Result;
 
-/// The fastest driver that repeats its command (Ackermann over UDP) does so at 100 Hz.
-constexpr auto kTick = std::chrono::milliseconds(10);
+DriverBay::DriverBay(std::vector<DevicePlan> plans, OnMeasurement on_measurement)
+    : on_measurement_(std::move(on_measurement)) {
+  slots_.reserve(plans.size());
+  for (DevicePlan& plan : plans) slots_.push_back({std::move(plan)});
+}
 
-}  // namespace
-
-Result<std::unique_ptr<DriverBay>> DriverBay::make(const Settings& settings, const Options& options,
-                                                   const OnMeasurement& on_measurement) {
-  if (!options.replay.empty() && !std::filesystem::is_regular_file(options.replay)) {
-    return base::fail(base::Code::NotFound, "no recording " + options.replay);
-  }
-  std::unique_ptr<DriverBay> bay(new DriverBay(settings, options));
-  auto devices = make_devices({bay->io_, bay->settings_, bay->options_, on_measurement});
-  if (!devices) return tl::unexpected(devices.error());
-  bay->devices_ = std::move(*devices);
-  for (const Device& device : bay->devices_) {
-    if (!device.send) continue;
+Result<std::unique_ptr<DriverBay>> DriverBay::make(std::vector<DevicePlan> plans,
+                                                   OnMeasurement on_measurement) {
+  std::unique_ptr<DriverBay> bay(new DriverBay(std::move(plans), std::move(on_measurement)));
+  for (const Slot& slot : bay->slots_) {
+    if (!slot.plan.moves) continue;
     if (bay->base_ != nullptr) {
-      return base::fail(base::Code::Invalid, "drivers." + bay->base_->name + " and drivers." +
-                                                 device.name +
+      return base::fail(base::Code::Invalid, "drivers." + bay->base_->plan.name + " and drivers." +
+                                                 slot.plan.name +
                                                  " both want to move the vehicle: enable one");
     }
-    bay->base_ = &device;
+    bay->base_ = &slot;
   }
   return bay;
 }
@@ -42,60 +32,136 @@ DriverBay::~DriverBay() {
   stop();
 }
 
-void DriverBay::each(const std::function<void(const Device&, base::Time)>& act) const {
-  const base::Time now = base::steady_now();
-  for (const Device& device : devices_) {
-    act(device, now);
-  }
-}
-
 void DriverBay::start() {
-  asio::post(io_, [this] {
-    each([](const Device& device, base::Time now) { device.start(now); });
-    tick_soon();
-  });
-  thread_ = std::thread([this] { io_.run(); });
+  {
+    std::lock_guard lock(mutex_);
+    for (Slot& slot : slots_) slot.berth = Berth::begin(slot.plan, on_measurement_, {});
+  }
+  watch_ = std::thread([this] { look_after(); });
 }
 
-void DriverBay::tick_soon() {
-  // Absolute times, so that lateness does not add up; what is past is not made up for.
-  due_ = std::max(due_ + kTick, std::chrono::steady_clock::now());
-  timer_.expires_at(due_);
-  timer_.async_wait([this](const boost::system::error_code& ec) {
-    if (ec) return;
-    each([](const Device& device, base::Time now) { device.tick(now); });
-    tick_soon();
-  });
+void DriverBay::look_after() {
+  std::unique_lock lock(mutex_);
+  while (!wake_.wait_for(lock, kLook, [this] { return stopping_; })) {
+    std::vector<std::shared_ptr<Berth>> berths;
+    for (const Slot& slot : slots_) berths.push_back(slot.berth);
+    lock.unlock();
+    for (const auto& berth : berths) berth->look(base::steady_now());
+    berths.clear();
+    lock.lock();
+  }
 }
 
 void DriverBay::stop() {
-  if (!thread_.joinable()) return;
-  asio::post(io_, [this] {
-    timer_.cancel();
-    each([](const Device& device, base::Time now) { device.stop(now); });
-    work_.reset();
-    io_.stop();
-  });
-  thread_.join();
+  if (!watch_.joinable()) return;
+  {
+    std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  wake_.notify_all();
+  watch_.join();
+  for (const Slot& slot : slots_) slot.berth->stop();
+  const base::Time deadline = base::steady_now() + kGoodbye;
+  for (const Slot& slot : slots_) {
+    slot.berth->wait_until(deadline);
+    slot.berth->abandon();
+  }
 }
 
 void DriverBay::send(const base::DriveCommand& command, base::Time now) noexcept {
-  if (base_ != nullptr) base_->send(command, now);
+  std::unique_lock lock(mutex_, std::try_to_lock);
+  if (!lock || base_ == nullptr || !base_->berth) return;
+  base_->berth->send(command, now);
 }
 
 Result<void> DriverBay::restart(const std::string& name) {
-  for (const Device& device : devices_) {
-    if (device.name != name) continue;
-    asio::post(io_, [&device] { device.restart(base::steady_now()); });
-    return {};
+  std::shared_ptr<Berth> old;  // destroyed without the lock: closing links may take a while
+  {
+    std::lock_guard lock(mutex_);
+    const auto slot = std::find_if(slots_.begin(), slots_.end(),
+                                   [&name](const Slot& s) { return s.plan.name == name; });
+    if (slot == slots_.end()) return base::fail(base::Code::NotFound, "no driver \"" + name + "\"");
+    if (!slot->berth || stopping_) {
+      return base::fail(base::Code::Unavailable, "the drivers are not running");
+    }
+    if (slot->berth->works()) {
+      slot->berth->restart();
+      return {};
+    }
+    old = slot->berth;
+    old->abandon();
+    Berth::Past past = old->past();
+    ++past.restarts;
+    slot->berth = Berth::begin(slot->plan, on_measurement_, std::move(past));
   }
-  return base::fail(base::Code::NotFound, "no driver \"" + name + "\"");
+  return {};
+}
+
+void DriverBay::ask(bool DevicePlan::*able, const char* what, Berth::Errand errand,
+                    base::Time not_after, Done done) {
+  std::shared_ptr<Berth> berth;
+  {
+    std::lock_guard lock(mutex_);
+    for (const Slot& slot : slots_) {
+      if (slot.plan.*able) berth = slot.berth;
+    }
+  }
+  if (!berth) {
+    return done(base::fail(base::Code::Conflict, std::string("this vehicle has no ") + what));
+  }
+  if (!berth->works()) {
+    return done(base::fail(base::Code::Conflict, "the vehicle's driver is not running"));
+  }
+  berth->ask(
+      [errand = std::move(errand), not_after](const Device& device, base::Time now) {
+        if (now <= not_after) return errand(device, now);
+        return Result<void>(
+            base::fail(base::Code::Late, "the command arrived too late and was not carried out"));
+      },
+      std::move(done));
+}
+
+namespace {
+
+Result<void> sent_or_why(bool sent) {
+  if (sent) return {};
+  return base::fail(base::Code::Conflict,
+                    "it could not be sent: the vehicle is not heard, or its bus is busy");
+}
+
+}  // namespace
+
+void DriverBay::set_lights(const base::LightState& lights, base::Time not_after, Done done) {
+  ask(
+      &DevicePlan::lights, "lights that can be set",
+      [lights](const Device& device, base::Time now) {
+        return sent_or_why(device.set_lights(lights, now));
+      },
+      not_after, std::move(done));
+}
+
+void DriverBay::clear_errors(int motor, base::Time not_after, Done done) {
+  ask(
+      &DevicePlan::clears_errors, "errors that can be cleared",
+      [motor](const Device& device, base::Time now) {
+        return sent_or_why(device.clear_errors(motor, now));
+      },
+      not_after, std::move(done));
+}
+
+bool DriverBay::has_lights() const noexcept {
+  return std::any_of(slots_.begin(), slots_.end(), [](const Slot& s) { return s.plan.lights; });
+}
+
+bool DriverBay::clears_errors() const noexcept {
+  return std::any_of(slots_.begin(), slots_.end(),
+                     [](const Slot& s) { return s.plan.clears_errors; });
 }
 
 std::vector<std::string> DriverBay::names() const {
   std::vector<std::string> names;
-  names.reserve(devices_.size());
-  for (const Device& device : devices_) names.push_back(device.name);
+  names.reserve(slots_.size());
+  for (const Slot& slot : slots_) names.push_back(slot.plan.name);
   return names;
 }
 

@@ -1,64 +1,81 @@
 #pragma once
-// The drivers of one vehicle on their own thread, made from settings. A driver that fails disturbs
-// neither the others nor the control loop.
+// The drivers of one vehicle, each in a berth of its own. A driver that fails or hangs disturbs
+// neither the others nor the control loop; its state says so, and restart() makes it anew.
 
+#include <condition_variable>
+#include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
-
-#include <boost/asio/executor_work_guard.hpp>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/steady_timer.hpp>
 
 #include "base/drive_command.hpp"
 #include "base/measurements.hpp"
 #include "base/result.hpp"
 #include "base/time.hpp"
-#include "devices.hpp"
-#include "options.hpp"
-#include "settings.hpp"
+#include "berth.hpp"
+#include "device.hpp"
 
 namespace roverd {
 
 class DriverBay {
  public:
-  /// Errors: a link address that cannot be read, a recording that cannot be opened or written, two
-  /// drivers that both want to move the vehicle.
-  /// @param on_measurement called on the device thread.
-  static base::Result<std::unique_ptr<DriverBay>> make(const Settings& settings,
-                                                       const Options& options,
-                                                       const OnMeasurement& on_measurement);
+  using Done = Berth::Done;
+
+  /// Errors: two drivers that both want to move the vehicle. @param on_measurement called on the
+  /// drivers' threads and the bay's own; must be safe for that.
+  static base::Result<std::unique_ptr<DriverBay>> make(std::vector<DevicePlan> plans,
+                                                       OnMeasurement on_measurement);
   ~DriverBay();
   DriverBay(const DriverBay&) = delete;
   DriverBay& operator=(const DriverBay&) = delete;
 
   void start();
-  /// Sends the base to standby, closes every link, ends the thread. Idempotent.
+  /// Sends the base to standby, closes every link, ends the threads. One that hangs is left behind
+  /// after kGoodbye. Idempotent. Not while send() may be called.
   void stop();
-  /// Control thread; never waits. Does nothing without a base.
+  /// Control thread; never waits. Does nothing without a base, and at the moment in which its
+  /// driver is replaced.
   void send(const base::DriveCommand& command, base::Time now) noexcept;
-  /// Any thread. Closes and opens the driver anew, soon. Errors: NotFound.
+
+  /// Any thread. Closes and opens the driver, soon; one that failed or hangs is made anew. Errors:
+  /// NotFound.
   base::Result<void> restart(const std::string& name);
+
+  bool has_lights() const noexcept;
+  bool clears_errors() const noexcept;
+  /// Any thread, at once. The driver does it on its own thread, through the gate that its motion
+  /// passes. @param not_after later it is refused. @param done called once, on that thread, unless
+  /// it hangs; on the caller's with a Conflict where the vehicle has nothing of the kind.
+  void set_lights(const base::LightState& lights, base::Time not_after, Done done);
+  /// @param motor from 1; 0: all
+  void clear_errors(int motor, base::Time not_after, Done done);
 
   std::vector<std::string> names() const;
 
  private:
-  DriverBay(Settings settings, Options options)
-      : settings_(std::move(settings)), options_(std::move(options)) {}
-  void each(const std::function<void(const Device&, base::Time)>& act) const;
-  void tick_soon();
+  static constexpr base::Duration kLook = std::chrono::milliseconds(250);
+  static constexpr base::Duration kGoodbye = std::chrono::seconds(2);
 
-  const Settings settings_;
-  const Options options_;
-  boost::asio::io_context io_{1};
-  boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{
-      io_.get_executor()};
-  boost::asio::steady_timer timer_{io_};
-  std::chrono::steady_clock::time_point due_{};  ///< of the next tick
-  std::vector<Device> devices_;                  ///< not changed after make()
-  const Device* base_ = nullptr;                 ///< the one that moves the vehicle
-  std::thread thread_;
+  struct Slot {
+    DevicePlan plan;
+    std::shared_ptr<Berth> berth{};
+  };
+
+  DriverBay(std::vector<DevicePlan> plans, OnMeasurement on_measurement);
+  void look_after();
+  void ask(bool DevicePlan::*able, const char* what, Berth::Errand errand, base::Time not_after,
+           Done done);
+
+  const OnMeasurement on_measurement_;
+  /// Guards the berths in slots_. The control thread only tries it.
+  mutable std::mutex mutex_;
+  std::vector<Slot> slots_;  ///< but for the berths not changed after make()
+  const Slot* base_ = nullptr;
+  std::condition_variable wake_;
+  bool stopping_ = false;
+  std::thread watch_;
 };
 
 }  // namespace roverd

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "base/result.hpp"
 #include "decode.hpp"
 #include "logging.hpp"
 #include "options.hpp"
@@ -15,6 +16,8 @@
 #include "station.hpp"
 
 namespace {
+
+namespace base = roverd::base;
 
 /// Exit codes: 1 something on this machine refuses (port, folder, database), 2 wrong arguments or
 /// configuration.
@@ -24,6 +27,25 @@ constexpr int kWrongInput = 2;
 int say(int code, const std::string& cause) {
   std::fprintf(stderr, "roverd: %s\n", cause.c_str());
   return code;
+}
+
+/// What was said wrongly, or what this machine refuses?
+int exit_code(base::Code code) {
+  switch (code) {
+    case base::Code::Malformed:
+    case base::Code::Invalid:
+    case base::Code::NotFound:
+    case base::Code::Unsupported:
+      return kWrongInput;
+    case base::Code::Conflict:
+    case base::Code::RevisionMismatch:
+    case base::Code::PreconditionMissing:
+    case base::Code::TooLarge:
+    case base::Code::Unavailable:
+    case base::Code::Late:
+      break;
+  }
+  return kRefused;
 }
 
 int serve(const roverd::Options& options) {
@@ -41,7 +63,7 @@ int serve(const roverd::Options& options) {
     auto station = roverd::Station::open(*settings, options);
     if (!station) {
       roverd::stop_logging();
-      return say(kRefused, station.error().detail);
+      return say(exit_code(station.error().code), station.error().detail);
     }
     std::printf("listening on %s\n", (*station)->address().c_str());
     std::fflush(stdout);

@@ -9,6 +9,18 @@
 
 namespace roverd {
 
+namespace {
+
+/// Not a number lies in no range, and CLI's own check lets it pass.
+std::string check_speed(const std::string& text) {
+  constexpr double kFastest = 1000.0;
+  double speed = 0.0;
+  if (CLI::detail::lexical_cast(text, speed) && speed >= 0.0 && speed <= kFastest) return {};
+  return "\"" + text + "\" is not a number in 0 .. 1000";
+}
+
+}  // namespace
+
 Options read_options(int argc, char** argv) {
   Options o;
   CLI::App app("roverd: the ground station that lives on the robot", "roverd");
@@ -23,10 +35,12 @@ Options read_options(int argc, char** argv) {
       ->check(CLI::Range(0, 65535));
   app.add_option("--set", o.overrides,
                  "one setting: key=value, e.g. nav.track.lookahead_min_m=0.8");
-  app.add_option("--replay", o.replay,
-                 "play this recording (receiver bytes or candump log) instead of opening drivers");
+  app.add_option("--replay", o.replays,
+                 "play this recording (receiver bytes or candump log) instead of opening drivers; "
+                 "twice, for the bus and the receiver of one run: in step")
+      ->allow_extra_args(false);
   app.add_option("--replay-speed", o.replay_speed, "times real time; 0 is as fast as possible")
-      ->check(CLI::Range(0.0, 1000.0))
+      ->check(check_speed)
       ->capture_default_str();
   app.add_flag("--record", o.record, "record every input byte under the data folder");
   try {

@@ -13,8 +13,9 @@ struct Options {
   std::string vehicle;                 ///< empty: what the config says
   std::optional<int> port;             ///< instead of the config's
   std::vector<std::string> overrides;  ///< key=value
-  std::string replay;                  ///< recording instead of the drivers; empty: none
-  double replay_speed = 1.0;           ///< 0: as fast as possible
+  /// Recordings of one run instead of the drivers: one of the CAN bus, one of the receiver.
+  std::vector<std::string> replays;
+  double replay_speed = 1.0;  ///< 0: as fast as possible
   bool record = false;
 };
 

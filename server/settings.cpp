@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <functional>
+#include <initializer_list>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include <toml++/toml.h>
@@ -17,9 +19,9 @@ using base::Result;
 
 /// One key with its value and where it was said, for the error message.
 struct Entry {
-  std::string key;  ///< "nav.track.lookahead_min_m"
-  ParamValue value;
-  std::string place;  ///< "config/robot.toml:12"
+  std::string key;                  ///< "nav.track.lookahead_min_m"
+  std::optional<ParamValue> value;  ///< none: the head of a section
+  std::string place;                ///< "config/robot.toml:12"
 };
 
 std::optional<ParamValue> value_of(const toml::node& node) {
@@ -37,6 +39,7 @@ Result<void> flatten(const toml::table& table, const std::string& prefix, const 
     name += key.str();
     std::string place = file + ":" + std::to_string(key.source().begin.line);
     if (const auto* inner = node.as_table()) {
+      out.push_back({name, std::nullopt, place});
       if (auto done = flatten(*inner, name + ".", file, out); !done) return done;
     } else if (auto value = value_of(node)) {
       out.push_back({name, *value, place});
@@ -149,9 +152,21 @@ Sections sections_of(Settings& s) {
   return out;
 }
 
+/// "drivers" is none itself, but leads to some.
+bool leads_to_section(const Sections& sections, const std::string& key) {
+  return sections.contains(key) ||
+         std::any_of(sections.begin(), sections.end(), [start = key + "."](const auto& section) {
+           return section.first.starts_with(start);
+         });
+}
+
 Result<void> set_all(Settings& settings, const std::vector<Entry>& entries) {
   const auto sections = sections_of(settings);
   for (const auto& entry : entries) {
+    if (!entry.value) {
+      if (leads_to_section(sections, entry.key)) continue;
+      return base::fail(base::Code::Invalid, entry.place + ": unknown section [" + entry.key + "]");
+    }
     const auto dot = entry.key.rfind('.');
     const std::string where = dot == std::string::npos ? "" : entry.key.substr(0, dot);
     const std::string name = dot == std::string::npos ? entry.key : entry.key.substr(dot + 1);
@@ -159,7 +174,8 @@ Result<void> set_all(Settings& settings, const std::vector<Entry>& entries) {
     if (found == sections.end()) {
       return base::fail(base::Code::Invalid, entry.place + ": unknown key " + entry.key);
     }
-    if (auto done = found->second(name, entry.value); !done) {
+    settings.places[entry.key] = entry.place;
+    if (auto done = found->second(name, *entry.value); !done) {
       const std::string& detail = done.error().detail;
       return base::fail(base::Code::Invalid,
                         entry.place + ": " +
@@ -170,13 +186,36 @@ Result<void> set_all(Settings& settings, const std::vector<Entry>& entries) {
   return {};
 }
 
-/// A misspelt word must not turn a steered vehicle into one that turns on the spot.
-Result<void> check_kinematics(const nav::VehicleParams& vehicle) {
-  const std::string& word = vehicle.kinematics;
-  if (word == "skid_steer" || word == "differential" || word == "ackermann") return {};
-  return base::fail(
-      base::Code::Invalid,
-      "vehicle.kinematics must be skid_steer, differential or ackermann, is \"" + word + "\"");
+/// One of a few words. @param one_of "skid_steer, differential or ackermann", for the message.
+Result<void> check_word(const Settings& settings, const std::string& key, const std::string& word,
+                        std::initializer_list<std::string_view> known, const char* one_of) {
+  if (std::find(known.begin(), known.end(), word) != known.end()) return {};
+  return base::fail(base::Code::Invalid,
+                    settings.where(key) + " must be " + one_of + ", is \"" + word + "\"");
+}
+
+/// What only the whole tells.
+Result<void> check_all(const Settings& s) {
+  // A misspelt word must not turn a steered vehicle into one that turns on the spot.
+  if (auto good = check_word(s, "vehicle.kinematics", s.robot.vehicle.kinematics,
+                             {"skid_steer", "differential", "ackermann"},
+                             "skid_steer, differential or ackermann");
+      !good) {
+    return good;
+  }
+  if (auto good =
+          check_word(s, "server.log_level", s.server.log_level,
+                     {"debug", "info", "warning", "error"}, "debug, info, warning or error");
+      !good) {
+    return good;
+  }
+  for (const auto& [set, path] : s.tiles) {
+    std::error_code ec;
+    if (std::filesystem::is_regular_file(path, ec)) continue;
+    return base::fail(base::Code::NotFound,
+                      s.where("tiles." + set) + ": there is no file " + path.string());
+  }
+  return {};
 }
 
 /// The profiles beside the config file, for the message when a name is wrong.
@@ -206,6 +245,13 @@ Result<std::vector<Entry>> read_profile(const std::filesystem::path& config,
 
 }  // namespace
 
+std::string Settings::where(const std::string& key) const {
+  const auto place = places.find(key);
+  if (place == places.end()) return key;
+  // "--set key=value" names the key already.
+  return place->second.starts_with("--set ") ? place->second : place->second + ": " + key;
+}
+
 Result<Settings> load_settings(const SettingsSource& source) {
   auto config = read_file(source.config);
   if (!config) return tl::unexpected(config.error());
@@ -230,9 +276,7 @@ Result<Settings> load_settings(const SettingsSource& source) {
   for (const Layer layer : {Layer{&*profile}, Layer{&*config}, Layer{&overrides}, Layer{&chosen}}) {
     if (auto done = set_all(settings, *layer); !done) return tl::unexpected(done.error());
   }
-  if (auto good = check_kinematics(settings.robot.vehicle); !good) {
-    return tl::unexpected(good.error());
-  }
+  if (auto good = check_all(settings); !good) return tl::unexpected(good.error());
   return settings;
 }
 

@@ -100,6 +100,10 @@ struct Settings {
   Wired<gnss::Params> gnss;
   robot::Config robot;
   std::map<std::string, std::filesystem::path> tiles;  ///< set name → MBTiles file
+  std::map<std::string, std::string> places;           ///< key → where it was said last
+
+  /// For messages: "config/robot.toml:12: drivers.gnss.link"; the key alone if nobody said it.
+  std::string where(const std::string& key) const;
 };
 
 /// Calls v(name, wired) for every driver that there is.

@@ -15,6 +15,7 @@
 #include "base/log.hpp"
 #include "base/params.hpp"
 #include "control_loop.hpp"
+#include "devices.hpp"
 #include "driver_bay.hpp"
 #include "net/assets.hpp"
 #include "net/doorbell.hpp"
@@ -34,7 +35,7 @@ using base::Result;
 
 constexpr base::Duration kGoodbye = std::chrono::milliseconds(500);
 
-api::Profile profile_of(const Settings& s, const std::vector<std::string>& drivers) {
+api::Profile profile_of(const Settings& s, const DriverBay& bay) {
   api::Profile profile;
   profile.name = s.vehicle.name;
   profile.title = s.vehicle.title;
@@ -47,7 +48,9 @@ api::Profile profile_of(const Settings& s, const std::vector<std::string>& drive
   profile.max_acceleration_mps2 = s.robot.speed.accel_mps2;
   profile.pivot_angle_rad = base::rad_from_deg(s.robot.pivot.angle_deg);
   profile.modes = {base::Mode::Manual, base::Mode::Hold, base::Mode::Auto};
-  profile.drivers = drivers;
+  profile.drivers = bay.names();
+  profile.lights = bay.has_lights();
+  profile.clears_errors = bay.clears_errors();
   for (const base::ParamInfo& key : base::describe(s.robot.radio)) {
     if (const auto* word = std::get_if<std::string>(&key.value)) profile.radio[key.name] = *word;
   }
@@ -108,9 +111,11 @@ struct Station::Impl {
   std::string address;
 
   Result<void> open(const Settings& settings, const Options& options);
+  Result<void> open_tiles(const Settings& settings);
   Result<void> open_store(const Options& options);
   Result<void> open_server(const Settings& settings, const Options& options);
   void make_api(const Settings& settings);
+  api::DriverDoor driver_door();
   void start();
   void sample_soon();
   void halt() noexcept;
@@ -118,16 +123,28 @@ struct Station::Impl {
 };
 
 Result<void> Station::Impl::open(const Settings& settings, const Options& options) {
-  auto made = DriverBay::make(settings, options,
+  auto plans = plan_devices(settings, options);
+  if (!plans) return tl::unexpected(plans.error());
+  auto made = DriverBay::make(std::move(*plans),
                               [this](const base::Measurement& m) { robot.measurements().put(m); });
   if (!made) return tl::unexpected(made.error());
   bay = std::move(*made);
-  if (auto done = tiles.open(settings.tiles); !done) return done;
+  if (auto done = open_tiles(settings); !done) return done;
   if (auto done = open_store(options); !done) return done;
   make_api(settings);
   if (auto done = open_server(settings, options); !done) return done;
   start();
   return {};
+}
+
+Result<void> Station::Impl::open_tiles(const Settings& settings) {
+  for (const auto& set : settings.tiles) {  // one by one first, to name the line of the wrong one
+    if (auto done = store::TileFolder().open({set}); !done) {
+      return base::fail(done.error().code,
+                        settings.where("tiles." + set.first) + ": " + done.error().detail);
+    }
+  }
+  return tiles.open(settings.tiles);
 }
 
 Result<void> Station::Impl::open_store(const Options& options) {
@@ -139,14 +156,37 @@ Result<void> Station::Impl::open_store(const Options& options) {
   return {};
 }
 
+/// What the web asks of drivers, and their answers back on the web thread.
+api::DriverDoor Station::Impl::driver_door() {
+  const auto on_web = [this](api::DriverDoor::Done done) {
+    return [this, done = std::move(done)](Result<void> result) {
+      asio::post(web, [done, result = std::move(result)] { done(result); });
+    };
+  };
+  api::DriverDoor door;
+  door.restart = [this](const std::string& name) { return bay->restart(name); };
+  if (bay->has_lights()) {
+    door.set_lights = [this, on_web](const base::LightState& lights, base::Time not_after,
+                                     api::DriverDoor::Done done) {
+      bay->set_lights(lights, not_after, on_web(std::move(done)));
+    };
+  }
+  if (bay->clears_errors()) {
+    door.clear_errors = [this, on_web](int motor, base::Time not_after,
+                                       api::DriverDoor::Done done) {
+      bay->clear_errors(motor, not_after, on_web(std::move(done)));
+    };
+  }
+  return door;
+}
+
 void Station::Impl::make_api(const Settings& settings) {
-  api::Deps deps{.robot = robot,
-                 .store = *store,
-                 .version = kVersion,
-                 .profile = profile_of(settings, bay->names())};
+  api::Deps deps{
+      .robot = robot, .store = *store, .version = kVersion, .profile = profile_of(settings, *bay)};
   deps.tiles = {tiles.sets(), [this](const std::string& set, int zoom, int x, int y) {
                   return tiles.read(set, zoom, x, y);
                 }};
+  deps.drivers = driver_door();
   deps.page = [this](const net::Request& request) { return page.answer(request); };
   deps.figures = [this] {
     const net::Stats stats = server->stats();

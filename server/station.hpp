@@ -1,9 +1,10 @@
 #pragma once
 // The whole program: every room made, wired to the others and taken down again, by hand.
 //
-//   device thread   drivers and their links         ─measurements─▶ robot's inbox
-//   control thread  Robot::tick, 50 Hz              ─DriveCommand─▶ bunker driver
+//   a thread a driver                               ─measurements─▶ robot's inbox
+//   control thread  Robot::tick, 50 Hz              ─DriveCommand─▶ the base's driver
 //   web thread      net and api (the caller's)      ◀─doorbell───── robot's answers and events
+//   bay thread      sees whether a driver hangs
 //   store thread    SQLite                          ─answers──────▶ web thread
 
 #include <memory>

@@ -114,6 +114,7 @@ base::DriverStatus Driver::status(Time now) const {
   s.last_received = last_received_;
   s.restarts = restarts_;
   if (owned_link_) s.link = owned_link_->describe();
+  s.link_open = open_;
   s.detail = detail_;
   return s;
 }

@@ -148,6 +148,21 @@ base::DriverStatus Driver::status(Time now) const {
   s.received = decoder_.counts().used;
   s.refused = decoder_.counts().damaged;
   s.last_received = last_received_;
+  if (link_) s.link = link_->describe();
+  s.link_open = open_;
+  auto detail = std::make_shared<base::DriverDetail>();
+  const SentenceCounts& counts = decoder_.counts();
+  const auto count = [&detail](const std::string& what, std::uint64_t n) {
+    if (n > 0) detail->counts[what] = n;
+  };
+  for (std::size_t i = 0; i < counts.by_flaw.size(); ++i) {
+    count("damaged: " + std::string(to_string(static_cast<Flaw>(i))), counts.by_flaw[i]);
+  }
+  count("sentences of no use here", counts.unused);
+  count("unknown sentences", counts.unknown);
+  count("UBX frames", counts.ubx);
+  count("RTCM frames", counts.rtcm3);
+  s.detail = std::move(detail);
   return s;
 }
 

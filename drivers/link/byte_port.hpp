@@ -126,6 +126,7 @@ class BytePort {
     detail->counts = counts_;
     if (link_) {
       s.link = link_->describe();
+      s.link_open = open_;
       if (link_->strangers() > 0) detail->counts["from a foreign address"] = link_->strangers();
     }
     detail->facts = facts_;

@@ -1,5 +1,6 @@
 #include "link/replay.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "link/burst.hpp"
@@ -16,8 +17,12 @@ base::Error has_ended(const std::string& path) {
 
 }  // namespace
 
-ReplayPump::ReplayPump(asio::io_context& io, ReplayFile& file, double speed, bool loop)
-    : timer_(io), file_(file), speed_(speed), loop_(loop) {}
+ReplayPump::ReplayPump(asio::io_context& io, ReplayFile& file, const ReplayOptions& options)
+    : timer_(io),
+      file_(file),
+      speed_(options.speed),
+      loop_(options.loop),
+      together_(options.together) {}
 
 void ReplayPump::start(std::function<void(const std::string&)> on_end) {
   on_end_ = std::make_shared<const std::function<void(const std::string&)>>(std::move(on_end));
@@ -25,6 +30,16 @@ void ReplayPump::start(std::function<void(const std::string&)> on_end) {
   lap_ = at_ = base::Duration::zero();
   loaded_ = false;
   played_this_lap_ = 0;
+  skip_ = base::Duration::zero();
+  if (together_) {
+    Time::rep begun = 0;
+    if (!together_->started.compare_exchange_strong(begun, started_.time_since_epoch().count())) {
+      const Time now = started_;
+      started_ = Time(base::Duration(begun));
+      // Opened again: the others are elsewhere by now.
+      if (now - started_ > std::chrono::seconds(1)) skip_ = position(now);
+    }
+  }
   again(base::Duration::zero());  // never from within the caller's open()
 }
 
@@ -38,6 +53,18 @@ void ReplayPump::again(base::Duration after) {
   timer_.async_wait([this, weak = std::weak_ptr(on_end_)](const boost::system::error_code& ec) {
     if (!ec && !weak.expired()) step();
   });
+}
+
+/// Where in recorded time the playing is.
+base::Duration ReplayPump::position(Time now) const {
+  return base::from_seconds(base::seconds(now - started_) * speed_);
+}
+
+/// How much later than the run this file begins.
+base::Duration ReplayPump::lead() const noexcept {
+  const auto begin = file_.begin();
+  if (!together_ || !begin) return base::Duration::zero();
+  return std::max(*begin - together_->begin, base::Duration::zero());
 }
 
 base::Duration ReplayPump::due_in(Time now) const {
@@ -72,7 +99,8 @@ bool ReplayPump::load() {
       return false;
     }
     if (*due) {
-      at_ = lap_ + **due;
+      at_ = lap_ + lead() + **due;
+      if (at_ < skip_) continue;
       loaded_ = true;
       return true;
     }
@@ -100,7 +128,7 @@ FrameReplay::FrameReplay(asio::io_context& io, std::string path, const ReplayOpt
             [this](const CanFrame& frame, Time t) {
               if (on_frame) on_frame(frame, t);
             }),
-      pump_(io, file_, options.speed, options.loop) {}
+      pump_(io, file_, options) {}
 
 FrameReplay::~FrameReplay() {
   close();
@@ -134,7 +162,7 @@ ByteReplay::ByteReplay(asio::io_context& io, std::string path, const ReplayOptio
             [this](Bytes bytes, Time t) {
               if (on_bytes) on_bytes(bytes, t);
             }),
-      pump_(io, file_, options.speed, options.loop) {}
+      pump_(io, file_, options) {}
 
 ByteReplay::~ByteReplay() {
   close();

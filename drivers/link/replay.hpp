@@ -30,7 +30,7 @@ class ReplayPump {
   /// Silence between the end and the new beginning, in recorded time.
   static constexpr base::Duration kLoopGap = std::chrono::seconds(1);
 
-  ReplayPump(asio::io_context& io, ReplayFile& file, double speed, bool loop);
+  ReplayPump(asio::io_context& io, ReplayFile& file, const ReplayOptions& options);
 
   /// @param on_end called once with the reason, unless stopped before.
   void start(std::function<void(const std::string&)> on_end);
@@ -44,16 +44,20 @@ class ReplayPump {
   bool load();
   void end(const std::string& reason);
   base::Duration due_in(Time now) const;
+  base::Duration position(Time now) const;
+  base::Duration lead() const noexcept;
 
   asio::steady_timer timer_;
   ReplayFile& file_;
   const double speed_;
   const bool loop_;
+  const std::shared_ptr<ReplayTogether> together_;
   /// Only while playing; handlers hold it weakly and do nothing once it is gone.
   std::shared_ptr<const std::function<void(const std::string&)>> on_end_;
   Time started_;
-  base::Duration lap_{};  ///< recorded time of the rounds before
-  base::Duration at_{};   ///< of the loaded item, rounds before included
+  base::Duration lap_{};   ///< recorded time of the rounds before
+  base::Duration at_{};    ///< of the loaded item, rounds before included
+  base::Duration skip_{};  ///< what is due before is left out
   bool loaded_ = false;
   std::uint64_t played_ = 0;
   std::uint64_t played_this_lap_ = 0;

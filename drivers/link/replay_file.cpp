@@ -44,6 +44,12 @@ Duration step_to(Duration stamp, std::optional<Duration>& last) noexcept {
 
 }  // namespace
 
+std::optional<Duration> ReplayFile::begin() const noexcept {
+  // A log with times since its own beginning, or between its lines, has small ones.
+  constexpr Duration kDated = std::chrono::seconds(1'000'000'000);  // September 2001
+  return first_stamp_ && *first_stamp_ >= kDated ? first_stamp_ : std::nullopt;
+}
+
 FrameFile::FrameFile(std::string path, Receiver receiver)
     : path_(std::move(path)), receiver_(std::move(receiver)) {}
 
@@ -83,7 +89,10 @@ MaybeDue FrameFile::advance() {
                         {{"line " + std::to_string(line_), record.error().detail}});
     }
     if (!*record) continue;
-    if ((*record)->stamp) at_ += step_to(*(*record)->stamp, last_stamp_);
+    if ((*record)->stamp) {
+      if (!last_stamp_) first_stamp_ = (*record)->stamp;
+      at_ += step_to(*(*record)->stamp, last_stamp_);
+    }
     if ((*record)->sent) continue;
     frame_ = (*record)->frame;
     return at_;
@@ -171,6 +180,7 @@ MaybeDue ByteFile::advance_recording() {
       case RecordingStep::State::Ok:
         break;
     }
+    if (!last_stamp_) first_stamp_ = step.record.stamp;
     at_ += step_to(step.record.stamp, last_stamp_);
     if (!step.record.sent) chunk_.assign(step.record.bytes.begin(), step.record.bytes.end());
     take(step.used);

@@ -26,6 +26,11 @@ class ReplayFile {
   virtual void emit(base::Time now) = 0;
   /// Back to the first item.
   virtual base::Result<void> rewind() = 0;
+  /// UTC since 1970 of the first stamp, once an item was loaded. Nothing without stamps of a date.
+  std::optional<base::Duration> begin() const noexcept;
+
+ protected:
+  std::optional<base::Duration> first_stamp_;
 };
 
 /// A candump log or candump's console output (candump.hpp). Frames that the recorder marked as sent
@@ -63,6 +68,8 @@ class ByteFile final : public ReplayFile {
   base::Result<std::optional<base::Duration>> advance() override;
   void emit(base::Time now) override { receiver_(chunk_, now); }
   base::Result<void> rewind() override;
+  /// Stamps or the lines themselves tell when; false: what this is is not known. Once open.
+  bool tells_time() const noexcept { return pace_ != Pace::Rated; }
 
  private:
   enum class Pace { Stamped, Clocked, Rated };

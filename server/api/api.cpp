@@ -99,6 +99,7 @@ Api::Api(Deps deps) : impl_(std::make_unique<Impl>(std::move(deps))) {
   add_file_routes(c);
   add_event_routes(c);
   add_server_routes(c);
+  add_driver_routes(c);
   add_tile_routes(c);
 }
 
@@ -208,7 +209,7 @@ std::optional<Response> Api::on_upgrade(const Request& request) {
   if (parts->path != std::string(kBase) + "/stream" || !impl_->stream) {
     return problem({base::Code::NotFound, "the stream is at /api/v1/stream"});
   }
-  return std::nullopt;
+  return guard_handshake(request);
 }
 
 void Api::on_client(ClientId client) {

@@ -43,6 +43,18 @@ struct Stream {
   std::function<void(ClientId, std::uint16_t code, std::string_view reason)> close;
 };
 
+/// What may be asked of the drivers beside motion. Web thread; nothing here waits.
+struct DriverDoor {
+  using Done = std::function<void(base::Result<void>)>;
+  /// Soon: its status tells. Errors: NotFound.
+  std::function<base::Result<void>(const std::string& name)> restart{};
+  /// Empty: the vehicle has no lights that can be set. `done` comes once, on the web thread; not at
+  /// all if the driver hangs.
+  std::function<void(const base::LightState&, base::Time not_after, Done)> set_lights{};
+  /// Empty: there is no such request. @param motor from 1; 0: all
+  std::function<void(int motor, base::Time not_after, Done)> clear_errors{};
+};
+
 /// Figures of net for /metrics.
 struct NetFigures {
   std::uint64_t accepted = 0;
@@ -61,6 +73,7 @@ struct Deps {
   std::string version;
   Profile profile;
   Tiles tiles{};
+  DriverDoor drivers{};
   /// The ground-control page; empty answers: no such file.
   std::function<std::optional<Response>(const Request&)> page{};
   std::function<NetFigures()> figures{};

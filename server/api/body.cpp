@@ -40,6 +40,12 @@ void Members::complain(std::string_view name, std::string detail) {
   errors_.push_back({"/" + mission::escaped_key(name), std::move(detail)});
 }
 
+void Members::complain_inside(std::string_view name, const base::Error& inner) {
+  for (const auto& [pointer, detail] : inner.fields) {
+    errors_.push_back({"/" + mission::escaped_key(name) + pointer, detail});
+  }
+}
+
 void Members::require(std::string_view name) {
   if (object_.is_object() && find(name) == nullptr) complain(name, "is missing");
 }

@@ -30,6 +30,8 @@ class Members {
   const Json* any(std::string_view name);
   void require(std::string_view name);
   void complain(std::string_view name, std::string detail);
+  /// What is wrong with the members of a member: "/front/mode".
+  void complain_inside(std::string_view name, const base::Error& inner);
 
   /// Call last: Invalid, with all that was found, or fine.
   base::Result<void> finish();

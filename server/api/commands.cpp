@@ -29,6 +29,14 @@ void Commands::run(robot::Command command, base::Time not_after, base::Time now,
   waiting_.emplace(id, Waiting{give_up, std::move(done)});
 }
 
+Commands::Done Commands::expect(base::Time give_up, Done done) {
+  const std::uint64_t id = next_++;
+  waiting_.emplace(id, Waiting{give_up, std::move(done)});
+  return [self = std::weak_ptr<Commands*>(self_), id](base::Result<void> result) {
+    if (const auto alive = self.lock()) (*alive)->answer(id, std::move(result));
+  };
+}
+
 void Commands::answer(std::uint64_t id, base::Result<void> result) {
   const auto at = waiting_.find(id);
   if (at == waiting_.end()) return;
@@ -43,7 +51,8 @@ void Commands::sweep(base::Time now) {
     if (now > waiting.give_up) overdue.push_back(id);
   }
   for (const std::uint64_t id : overdue) {
-    answer(id, base::fail(base::Code::Unavailable, "the control loop does not answer"));
+    answer(id, base::fail(base::Code::Unavailable,
+                          "nobody answers: the control loop or the driver hangs"));
   }
 }
 

@@ -29,6 +29,9 @@ class Commands {
   /// `done` is called exactly once, later: with what the robot did, or Unavailable.
   /// @param not_after the robot refuses it as late then.
   void run(robot::Command command, base::Time not_after, base::Time now, Done done);
+  /// For what others than the robot answer: @return what to call with the answer, web thread. If
+  /// nobody does until `give_up`, `done` hears Unavailable.
+  Done expect(base::Time give_up, Done done);
   void sweep(base::Time now);
   /// Forgets them all, unanswered.
   void abandon() { waiting_.clear(); }
@@ -74,6 +77,7 @@ void add_mission_routes(const ContextPtr& context);
 void add_file_routes(const ContextPtr& context);
 void add_event_routes(const ContextPtr& context);
 void add_server_routes(const ContextPtr& context);
+void add_driver_routes(const ContextPtr& context);
 void add_tile_routes(const ContextPtr& context);
 
 enum class Moves { Yes, No };

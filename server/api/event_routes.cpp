@@ -89,7 +89,10 @@ Handler list_events(const ContextPtr& context) {
     if (!cursor.empty()) {
       const auto after = whole_number(cursor);
       if (!after) {
-        return call->respond(problem({base::Code::Malformed, "the cursor is not one of ours"}));
+        return call->respond(
+            problem({base::Code::Malformed,
+                     "the cursor is not one of ours",
+                     {{"cursor", "must be the next_cursor of an earlier answer"}}}));
       }
       return answer_page(context, call, *after, *level, *limit);
     }

@@ -22,6 +22,28 @@ std::string file_name(std::string name) {
   return name;
 }
 
+/// RFC 6266: a name in ASCII for all, and the mission's own in UTF-8 for those that read it.
+std::string attachment(const std::string& ascii, const std::string& name, mission::Format format) {
+  std::string out = "attachment; filename=\"" + ascii + "\"";
+  const std::string whole = name + "." + std::string(mission::to_string(format));
+  if (whole == ascii) return out;
+  out += "; filename*=UTF-8''";
+  for (const char c : whole) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '-' || c == '_' || c == '.';
+    const auto byte = static_cast<unsigned char>(c);
+    if (plain) {
+      out += c;
+    } else if (c == '/' || c == '\\' || byte < 0x20 || byte == 0x7F) {
+      out += '_';  // no path, no control characters
+    } else {
+      constexpr std::string_view kHex = "0123456789ABCDEF";
+      out += {'%', kHex[byte >> 4U], kHex[byte & 15U]};
+    }
+  }
+  return out;
+}
+
 Handler import_mission(const ContextPtr& context) {
   return [context](const CallPtr& call) {
     const std::string word = query_text(*call, "format");
@@ -66,7 +88,7 @@ Handler export_mission(const ContextPtr& context) {
           Response response = text_response(http::status::ok, file.media_type + "; charset=utf-8",
                                             std::move(file.content));
           response.set(http::field::content_disposition,
-                       "attachment; filename=\"" + file.file_name + "\"");
+                       attachment(file.file_name, stored->plan.name, *format));
           response.set(http::field::etag, etag_of(stored->revision));
           // What the format could not hold: never lost in silence.
           response.set("Items-Changed", count(mission::Outcome::Changed));

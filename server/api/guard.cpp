@@ -91,4 +91,17 @@ std::optional<Response> guard_upgrade(const Request& request) {
   return check_origin(request);
 }
 
+std::optional<Response> guard_handshake(const Request& request) {
+  if (header(request, http::field::sec_websocket_version) != "13") {
+    Response refusal = problem(426, "the stream speaks version 13 of the WebSocket protocol");
+    refusal.set(http::field::upgrade, "websocket");
+    refusal.set(http::field::sec_websocket_version, "13");
+    return refusal;
+  }
+  constexpr std::size_t kKey = 24;  // 16 bytes in base64
+  const std::string_view key = header(request, http::field::sec_websocket_key);
+  if (key.size() == kKey && key.ends_with("==")) return std::nullopt;
+  return problem(400, "Sec-WebSocket-Key must be 16 bytes in base64");
+}
+
 }  // namespace roverd::api

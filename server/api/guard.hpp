@@ -21,5 +21,7 @@ bool is_loopback_host(std::string_view host) noexcept;
 std::optional<Response> guard_request(const Request& request);
 /// Host and Origin of a WebSocket upgrade.
 std::optional<Response> guard_upgrade(const Request& request);
+/// Version and key of a WebSocket upgrade (RFC 6455, section 4.2).
+std::optional<Response> guard_handshake(const Request& request);
 
 }  // namespace roverd::api

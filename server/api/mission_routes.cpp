@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "api/context.hpp"
+#include "api/plain_json.hpp"
 #include "mission/json.hpp"
 
 namespace roverd::api {
@@ -43,7 +44,7 @@ void refuse_with_present(const ContextPtr& context, const CallPtr& call, base::E
         if (present) {
           Json body = problem_json(error);
           body["current"] = mission_json(*present);
-          response.body() = body.dump(-1, ' ', false, Json::error_handler_t::replace);
+          response.body() = plain_json(body);
           response.set(http::field::etag, etag_of(present->revision));
         }
         call->respond(std::move(response));

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
+#include "api/plain_json.hpp"
+
 namespace roverd::api {
 
 Response json_response(http::status status, const Json& body) {
-  // Bytes that are no UTF-8 (a name out of a device) must not throw.
-  return text_response(status, "application/json",
-                       body.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return text_response(status, "application/json", plain_json(body));
 }
 
 Response text_response(http::status status, std::string_view content_type, std::string body) {

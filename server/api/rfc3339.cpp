@@ -6,6 +6,9 @@ namespace roverd::api {
 
 namespace {
 
+/// Nanoseconds since 1970 in 64 bits reach a little further.
+constexpr int kLastYear = 2200;
+
 /// Takes characters off the front of a text; remembers whether all of them fitted.
 class Reader {
  public:
@@ -60,7 +63,7 @@ class Reader {
 std::optional<base::WallTime> from_rfc3339(std::string_view text) noexcept {
   using namespace std::chrono;
   Reader in(text);
-  const int y = in.digits(4, 2200);
+  const int y = in.digits(4, 9999);
   in.need('-', '-');
   const int m = in.digits(2, 12);
   in.need('-', '-');
@@ -84,6 +87,7 @@ std::optional<base::WallTime> from_rfc3339(std::string_view text) noexcept {
   const year_month_day date{year(y), month(static_cast<unsigned>(m)),
                             day(static_cast<unsigned>(d))};
   if (!in.whole() || y < 1970 || !date.ok()) return std::nullopt;
+  if (y > kLastYear) return base::WallTime(sys_days(year(kLastYear + 1) / 1 / 1));
   return base::WallTime(sys_days(date) + hours(hour) + minutes(minute) + seconds(second) +
                         nanoseconds(nanos) - offset);
 }

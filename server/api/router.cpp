@@ -89,7 +89,10 @@ base::Result<Target> parse_target(std::string_view target) {
     auto value = percent_decoded(
         equals == std::string_view::npos ? std::string_view{} : pair.substr(equals + 1), true);
     if (!key) return tl::unexpected<base::Error>(std::move(key.error()));
-    if (!value) return tl::unexpected<base::Error>(std::move(value.error()));
+    if (!value) {
+      return base::fail(base::Code::Malformed, "a broken percent sign in the parameter " + *key,
+                        {{*key, "has a broken percent sign"}});
+    }
     if (!key->empty()) out.query[std::move(*key)] = std::move(*value);
   }
   return out;

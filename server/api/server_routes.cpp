@@ -60,13 +60,7 @@ void add_server_routes(const ContextPtr& c) {
                  }});
   c->router.add(
       {get, "/openapi.json", {200, 304}, [c](const CallPtr& call) { answer_openapi(*c, call); }});
-  c->router.add({get, "/drivers", {200, 503}, [c](const CallPtr& call) {
-                   if (const auto s = c->snapshot_or_refuse(call)) {
-                     call->respond(json_response(
-                         http::status::ok, drivers_json(*s, c->driver_rates, base::steady_now())));
-                   }
-                 }});
-  c->router.add({get, "/stream", {101, 403, 426, 503}, [](const CallPtr& call) {
+  c->router.add({get, "/stream", {101, 400, 403, 426, 503}, [](const CallPtr& call) {
                    Response response = problem(426, "this address is a WebSocket");
                    response.set(http::field::upgrade, "websocket");
                    call->respond(std::move(response));

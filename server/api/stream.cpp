@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "api/plain_json.hpp"
 #include "base/angle.hpp"
 #include "mission/json.hpp"
 
@@ -22,10 +23,6 @@ constexpr const char* kVehicle = "vehicle";
 constexpr const char* kEvents = "events";
 constexpr const char* kMissions = "missions";
 constexpr const char* kExecution = "execution";
-
-std::string dumped(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 }  // namespace
 
@@ -54,7 +51,7 @@ std::optional<std::string> StreamTexts::vehicle_text(std::uint64_t seq) {
   const base::Time now = base::steady_now();
   const bool fresh = now - snapshot->now < std::chrono::milliseconds(100);
   if (encoded_.empty() || snapshot->tick != encoded_tick_ || !fresh) {
-    encoded_ = dumped(vehicle_json(*snapshot, context_->deps.profile.name, now));
+    encoded_ = plain_json(vehicle_json(*snapshot, context_->deps.profile.name, now));
     encoded_tick_ = snapshot->tick;
   }
   return stream_text(kVehicle, seq, encoded_);
@@ -66,7 +63,7 @@ void StreamTexts::on_client(ClientId client) {
       {"version", context_->deps.version},
       {"topics", {kVehicle, kEvents, kMissions, kExecution}},
       {"capabilities", capabilities_json(context_->deps.profile, context_->deps.version)}};
-  stream_.send(client, stream_text("hello", 1, dumped(data)));
+  stream_.send(client, stream_text("hello", 1, plain_json(data)));
 }
 
 void StreamTexts::on_gone(ClientId client) {
@@ -89,7 +86,7 @@ void StreamTexts::on_text(ClientId id, std::string_view text) {
 }
 
 void StreamTexts::complain(ClientId id, Client& client, const base::Error& error) {
-  stream_.send(id, stream_text("error", ++client.errors_sent, dumped(problem_json(error))));
+  stream_.send(id, stream_text("error", ++client.errors_sent, plain_json(problem_json(error))));
   const bool garbage = error.code == base::Code::Malformed || error.code == base::Code::Invalid;
   if (garbage && ++client.complaints >= kComplaintsInARow) {
     stream_.close(id, kPolicyViolation, "too many messages that are not understood");
@@ -174,14 +171,14 @@ void StreamTexts::publish_event(const base::Event& event) {
   stream_.publish(kEvents, [&event](std::uint64_t seq) {
     Json data = event_json({0, event});
     data.erase("id");  // it gets one when it is stored
-    return stream_text(kEvents, seq, dumped(data));
+    return stream_text(kEvents, seq, plain_json(data));
   });
 }
 
 void StreamTexts::publish_mission(const std::string& id, std::optional<std::int64_t> revision) {
   stream_.publish(kMissions, [&](std::uint64_t seq) {
     const Json data = {{"id", id}, {"revision", revision ? Json(*revision) : Json(nullptr)}};
-    return stream_text(kMissions, seq, dumped(data));
+    return stream_text(kMissions, seq, plain_json(data));
   });
 }
 
@@ -195,7 +192,7 @@ void StreamTexts::look_at_execution() {
   if (now == execution_seen_) return;
   execution_seen_ = std::move(now);
   stream_.publish(kExecution, [&p](std::uint64_t seq) {
-    return stream_text(kExecution, seq, dumped(execution_json(p)));
+    return stream_text(kExecution, seq, plain_json(execution_json(p)));
   });
 }
 

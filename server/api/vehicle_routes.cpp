@@ -58,6 +58,50 @@ Handler arm(const ContextPtr& context) {
   };
 }
 
+/// Why a loaded revision is not the one that a person would expect to be driven; empty: it is.
+std::string outdated(const robot::MissionCopy& loaded,
+                     const base::Result<store::StoredMission>& stored) {
+  const std::string which =
+      "mission \"" + loaded.plan.name + "\" revision " + std::to_string(loaded.revision);
+  if (!stored) {
+    return which +
+           " is loaded, but the stored mission was deleted: POST /execution/start says "
+           "that you mean it";
+  }
+  if (stored->revision == loaded.revision) return {};
+  return which + " is loaded, but the mission was changed since (revision " +
+         std::to_string(stored->revision) +
+         "): load it again, or say with POST /execution/start that you mean the loaded one";
+}
+
+/// A mission that waits goes on. What is merely loaded is started only while it is the newest
+/// revision: nobody named one here.
+void set_auto(const ContextPtr& context, const CallPtr& call, base::Time not_after) {
+  const auto snapshot = context->snapshot_or_refuse(call);
+  if (!snapshot) return;
+  const base::ExecutionState state = snapshot->mission.state;
+  const bool waits =
+      state == base::ExecutionState::Paused || state == base::ExecutionState::Blocked;
+  const auto loaded = context->deps.robot.loaded();
+  if (waits || snapshot->mode == base::Mode::Auto || !loaded) {
+    return run_command(context, call, robot::SetMode{base::Mode::Auto}, not_after,
+                       whole_state(context));
+  }
+  context->deps.store.read_mission(
+      loaded->id, [context, call, not_after, loaded](base::Result<store::StoredMission> stored) {
+        if (!stored && stored.error().code != base::Code::NotFound) {
+          return call->respond(problem(stored.error()));
+        }
+        if (const std::string why = outdated(*loaded, stored); !why.empty()) {
+          return call->respond(problem({base::Code::Conflict, why}));
+        }
+        robot::StartMission start;
+        start.mission_id = loaded->id;
+        start.revision = loaded->revision;
+        run_command(context, call, start, not_after, whole_state(context));
+      });
+}
+
 Handler set_mode(const ContextPtr& context) {
   return [context](const CallPtr& call) {
     const auto body = json_body(call->request);
@@ -75,6 +119,7 @@ Handler set_mode(const ContextPtr& context) {
     const Moves moves = mode == base::Mode::Hold ? Moves::No : Moves::Yes;
     const base::Time not_after = validity_of(members, *call, moves);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
+    if (mode == base::Mode::Auto) return set_auto(context, call, not_after);
     run_command(context, call, robot::SetMode{mode}, not_after, whole_state(context));
   };
 }
@@ -86,9 +131,15 @@ Handler set_home(const ContextPtr& context) {
     Members members(*body);
     const auto lat = members.number("lat", -90.0, 90.0);
     const auto lon = members.number("lon", -180.0, 180.0);
-    if (body->is_object() && body->contains("lat") != body->contains("lon")) {
-      members.require("lat");
-      members.require("lon");
+    // Half a position, or one that is null, must not mean "here".
+    if (body->is_object() && (body->contains("lat") || body->contains("lon"))) {
+      for (const char* name : {"lat", "lon"}) {
+        if (body->contains(name) && (*body)[name].is_null()) {
+          members.complain(name, "must be a number, not null");
+        } else {
+          members.require(name);
+        }
+      }
     }
     const base::Time not_after = validity_of(members, *call, Moves::No);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));

@@ -2,8 +2,11 @@
 // The robot's and the store's values in the words of the public interface. Radians and yaw end
 // here: JSON has degrees and compass headings. Pure; `now` gives the ages.
 
+#include <array>
 #include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "api/message.hpp"
 #include "api/trail.hpp"
@@ -22,6 +25,7 @@ struct StaleAfter {
   static constexpr double kBattery_s = 5.0;
   static constexpr double kRc_s = 0.5;
   static constexpr double kDriver_s = 2.5;
+  static constexpr double kLights_s = 2.5;
 };
 
 /// What main says of the vehicle; fixed while the program runs.
@@ -38,6 +42,8 @@ struct Profile {
   double pivot_angle_rad = 0.0;
   std::vector<base::Mode> modes;
   std::vector<std::string> drivers;
+  bool lights = false;                       ///< can be set
+  bool clears_errors = false;                ///< latched ones
   std::vector<std::string> item_types;       ///< those that execution can drive
   std::map<std::string, std::string> radio;  ///< "swc_up" → "mode.manual"
 };
@@ -49,6 +55,12 @@ Json checks_json(const base::Snapshot& snapshot);
 Json execution_json(const base::MissionProgress& progress);
 Json preview_json(const robot::Preview& preview, base::ExecutionState state);
 Json capabilities_json(const Profile& profile, const std::string& version);
+/// @param rate_hz received per second
+Json driver_json(const base::DriverStatus& driver, std::optional<double> rate_hz, base::Time now);
+/// What LightState counts from 0.
+inline constexpr std::array<std::string_view, 4> kLightModes = {"off", "on", "breathing", "custom"};
+/// As the vehicle tells them.
+Json lights_json(const base::Snapshot& snapshot, base::Time now);
 /// @param rates received per second by driver name; a missing one is null.
 Json drivers_json(const base::Snapshot& snapshot, const std::map<std::string, double>& rates,
                   base::Time now);

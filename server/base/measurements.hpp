@@ -146,9 +146,14 @@ struct RadioState {
   std::uint8_t count = 0;
 };
 
-/// A driver's own state machine: Down → Opening → Up → Faulty → (back-off) Opening.
-enum class DriverPhase { Down, Opening, Up, Faulty };
-std::string_view to_string(DriverPhase p) noexcept;  // down opening up faulty
+/// A driver's own state machine: Down → Opening → Up → Faulty → (back-off) Opening. Failed: it
+/// threw or hangs; only a restart on request brings it back (or the end of the hanging).
+enum class DriverPhase { Down, Opening, Up, Faulty, Failed };
+std::string_view to_string(DriverPhase p) noexcept;  // down opening up faulty failed
+
+/// What is written down of a driver's input. Stopped: it was wanted, and the disk refused.
+enum class Recording { Off, On, Stopped };
+std::string_view to_string(Recording r) noexcept;  // off on stopped
 
 /// What a driver counts and finds, in words for people. Immutable once told.
 struct DriverDetail {
@@ -172,6 +177,12 @@ struct DriverStatus {
   std::uint64_t restarts = 0;                    ///< on request
   std::string link{};                            ///< address
   std::shared_ptr<const DriverDetail> detail{};  ///< may be null
+  bool link_open = false;
+  /// Why it was faulty or failed last, and when; kept when it is up again.
+  std::string last_error{};
+  std::optional<Time> last_error_at{};
+  Recording recording = Recording::Off;
+  std::string recording_problem{};  ///< why Stopped; empty otherwise
 };
 
 using Measurement =

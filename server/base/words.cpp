@@ -80,8 +80,22 @@ std::string_view to_string(DriverPhase p) noexcept {
       return "up";
     case DriverPhase::Faulty:
       return "faulty";
+    case DriverPhase::Failed:
+      return "failed";
   }
-  return "faulty";
+  return "failed";
+}
+
+std::string_view to_string(Recording r) noexcept {
+  switch (r) {
+    case Recording::Off:
+      return "off";
+    case Recording::On:
+      return "on";
+    case Recording::Stopped:
+      return "stopped";
+  }
+  return "stopped";
 }
 
 std::string_view to_string(Mode mode) noexcept {

@@ -92,8 +92,10 @@ base::Result<void> Robot::Impl::handle(const SetMode& c) {
     case Mode::Auto: {
       if (mode == Mode::Auto) return {};
       const ExecutionState s = executor.state();
-      const bool waits = s == ExecutionState::Paused || s == ExecutionState::Blocked;
-      return waits ? resume() : start({});
+      if (s == ExecutionState::Paused || s == ExecutionState::Blocked) return resume();
+      if (auto ok = may_drive_mission(); !ok) return ok;
+      return base::fail(Code::Conflict, "the mission is " + std::string(base::to_string(s)) +
+                                            ": there is none to go on with; start it");
     }
     case Mode::Guided:
     case Mode::Rtl:

@@ -101,6 +101,7 @@ struct Robot::Impl {
   void take_estop();
   void take_commands();
   void take_measurements();
+  void note_driver(const base::DriverStatus& d);
   void judge();
   base::DriveCommand decide();
   bool publish();

@@ -141,6 +141,27 @@ void Robot::Impl::take_estop() {
   if (estop_asked.exchange(false)) latch_estop("the operator");
 }
 
+/// What changed about a driver, for those who look later.
+void Robot::Impl::note_driver(const base::DriverStatus& d) {
+  using Phase = base::DriverPhase;
+  const auto known = std::find_if(world.drivers.begin(), world.drivers.end(),
+                                  [&](const auto& k) { return k.name == d.name; });
+  const bool is_new = known == world.drivers.end();
+  if (is_new || known->phase != d.phase) {
+    if (d.phase == Phase::Up) event(Severity::Info, "driver_up", d.name + " is up");
+    if (d.phase == Phase::Faulty) {
+      event(Severity::Warning, "driver_down", d.name + ": " + d.reason);
+    }
+    if (d.phase == Phase::Failed) {
+      event(Severity::Error, "driver_failed", d.name + ": " + d.reason);
+    }
+  }
+  const bool stopped = d.recording == base::Recording::Stopped;
+  if (stopped && (is_new || known->recording != base::Recording::Stopped)) {
+    event(Severity::Warning, "recording_stopped", d.name + ": " + d.recording_problem);
+  }
+}
+
 void Robot::Impl::take_measurements() {
   measurement_batch.clear();
   measurements.try_take(measurement_batch);
@@ -150,16 +171,7 @@ void Robot::Impl::take_measurements() {
                    });
   for (base::Measurement& m : measurement_batch) {
     estimator.take(m, now);
-    if (const auto* d = std::get_if<base::DriverStatus>(&m)) {
-      const auto known = std::find_if(world.drivers.begin(), world.drivers.end(),
-                                      [&](const auto& k) { return k.name == d->name; });
-      const bool changed = known == world.drivers.end() || known->phase != d->phase;
-      if (changed && (d->phase == base::DriverPhase::Up || d->phase == base::DriverPhase::Faulty)) {
-        const bool up = d->phase == base::DriverPhase::Up;
-        event(up ? Severity::Info : Severity::Warning, up ? "driver_up" : "driver_down",
-              d->name + (up ? " is up" : ": " + d->reason));
-      }
-    }
+    if (const auto* d = std::get_if<base::DriverStatus>(&m)) note_driver(*d);
     const auto* radio = std::get_if<base::RadioState>(&m);
     const auto frame = radio != nullptr ? std::optional(*radio) : std::nullopt;
     world.take(std::move(m));

@@ -39,6 +39,7 @@ struct MissionCopy {
 
 struct Arm {};
 struct Disarm {};
+/// AUTO goes on with a mission that waits. It starts none: StartMission names which.
 struct SetMode {
   base::Mode mode = base::Mode::Hold;
 };

@@ -28,6 +28,7 @@ api::Profile profile() {
   p.modes = {base::Mode::Manual, base::Mode::Hold, base::Mode::Auto};
   p.drivers = {"bunker", "gnss"};
   p.item_types = {"waypoint"};
+  p.lights = p.clears_errors = true;
   return p;
 }
 
@@ -55,7 +56,7 @@ api::Stream stream_of(net::Hub& hub) {
 
 }  // namespace
 
-House::House(net::Limits limits) : robot_(quick_to_trust()) {
+House::House(net::Limits limits, Vehicle vehicle) : robot_(quick_to_trust()) {
   std::string name = (std::filesystem::temp_directory_path() / "roverd-api-XXXXXX").string();
   if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
   folder_ = name;
@@ -65,6 +66,7 @@ House::House(net::Limits limits) : robot_(quick_to_trust()) {
   if (!opened) throw std::runtime_error(opened.error().detail);
   store_ = std::move(*opened);
   api::Deps deps{.robot = robot_, .store = *store_, .version = "test", .profile = profile()};
+  deps.drivers = door(vehicle);
   store::TileSet farm;
   farm.set = "farm";
   farm.name = "Farm";
@@ -87,6 +89,32 @@ House::House(net::Limits limits) : robot_(quick_to_trust()) {
   sample_soon();
   web_ = std::thread([this] { io_.run(); });
   control_ = std::thread([this] { play(); });
+}
+
+api::DriverDoor House::door(Vehicle vehicle) {
+  api::DriverDoor out;
+  out.restart = [this](const std::string& name) -> base::Result<void> {
+    if (name != "gnss") return base::fail(base::Code::NotFound, "no driver");
+    ++restarts;
+    return {};
+  };
+  if (vehicle == Vehicle::Bare) return out;
+  const auto answer = [this](api::DriverDoor::Done done) {
+    if (driver_answers) boost::asio::post(io_, [done] { done({}); });
+  };
+  out.set_lights = [this, answer](const base::LightState& lights, base::Time,
+                                  api::DriverDoor::Done done) {
+    light_mode = lights.front_mode;
+    base::LightState seen = lights;
+    seen.stamp = base::steady_now();
+    robot_.measurements().put(seen);
+    answer(std::move(done));
+  };
+  out.clear_errors = [this, answer](int motor, base::Time, api::DriverDoor::Done done) {
+    errors_cleared = motor;
+    answer(std::move(done));
+  };
+  return out;
 }
 
 void House::serve(net::Limits limits) {
@@ -177,8 +205,24 @@ void House::tell(base::Time now, int count) {
   in.put(fix);
   in.put(base::GnssVelocity{now, 0.0, 0.0, {}});
   in.put(base::Heading{now, base::yaw_from_heading(0.0), base::HeadingSource::DualAntenna});
-  in.put(base::DriverStatus{now, "gnss", base::DriverPhase::Up, "",
-                            static_cast<std::uint64_t>(count), 0, 0, now});
+  base::DriverStatus driver;
+  driver.stamp = now;
+  driver.name = "gnss";
+  driver.phase = phase;
+  driver.received = static_cast<std::uint64_t>(count);
+  driver.last_received = now;
+  driver.link = "serial:/dev/ttyACM0:115200";
+  driver.link_open = true;
+  if (driver.phase == base::DriverPhase::Failed) {
+    driver.reason = driver.last_error = "failed while ticking: a value that cannot be";
+    driver.last_error_at = now;
+  }
+  base::DriverDetail detail;
+  detail.counts["wrong checksum"] = 3;
+  detail.rates_hz["GGA"] = 5.0;
+  detail.facts["protocol"] = "NMEA";
+  driver.detail = std::make_shared<const base::DriverDetail>(std::move(detail));
+  in.put(std::move(driver));
 }
 
 const Json& HouseTest::document() {

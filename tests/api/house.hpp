@@ -29,7 +29,9 @@ using Json = nlohmann::json;
 
 class House {
  public:
-  explicit House(net::Limits limits = {});
+  /// Bare: a vehicle without lights, and without errors to clear.
+  enum class Vehicle { Whole, Bare };
+  explicit House(net::Limits limits = {}, Vehicle vehicle = Vehicle::Whole);
   ~House();
   House(const House&) = delete;
   House& operator=(const House&) = delete;
@@ -48,6 +50,13 @@ class House {
   std::atomic<double> vra{0.0};
   /// How far north of kStart the receiver says it is.
   std::atomic<double> moved_m{0.0};
+  /// The vehicle's driver answers (true at first) or hangs.
+  std::atomic<bool> driver_answers{true};
+  /// Of the driver "gnss", as it says.
+  std::atomic<base::DriverPhase> phase{base::DriverPhase::Up};
+  std::atomic<int> restarts{0};
+  std::atomic<int> errors_cleared{-1};  ///< the motor asked for last
+  std::atomic<int> light_mode{-1};      ///< front
   /// What went to the base last.
   base::DriveCommand sent();
   std::shared_ptr<const base::Snapshot> snapshot() { return robot_.snapshot(); }
@@ -57,6 +66,7 @@ class House {
   void tell(base::Time now, int count);
   void serve(net::Limits limits);
   void sample_soon();
+  api::DriverDoor door(Vehicle vehicle);
 
   std::filesystem::path folder_;
   boost::asio::io_context io_{net::kWebConcurrency};
@@ -100,6 +110,8 @@ class HouseTest : public ::testing::Test {
 
   /// A new mission of two waypoints near the robot. @return id.
   std::string make_mission(const std::string& name = "field");
+
+  explicit HouseTest(House::Vehicle vehicle = House::Vehicle::Whole) : house({}, vehicle) {}
 
   static const Json& document();
   House house;

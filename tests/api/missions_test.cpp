@@ -180,6 +180,21 @@ TEST_F(MissionsApi, AFileIsImportedAccountedForAndExportedAgain) {
   }
 }
 
+TEST_F(MissionsApi, ADownloadKeepsAForeignName) {
+  const auto name_for = [this](const std::string& name) {
+    const auto made = call("POST", "/missions", two_waypoints(name));
+    EXPECT_EQ(made.status, 201u) << name;
+    const std::string id = made.body.value("id", "");
+    return call("GET", "/missions/" + id + "/export?format=plan").raw.header("content-disposition");
+  };
+  EXPECT_EQ(name_for("field"), "attachment; filename=\"field.plan\"");
+  EXPECT_EQ(name_for("p\xC3\xB5ld \"1/2\""),
+            "attachment; filename=\"p_ld_1_2.plan\"; "
+            "filename*=UTF-8''p%C3%B5ld%20%221_2%22.plan");
+  EXPECT_EQ(name_for("\xE9\xBA\xA6"),
+            "attachment; filename=\"mission.plan\"; filename*=UTF-8''%E9%BA%A6.plan");
+}
+
 TEST_F(MissionsApi, ABrokenFileNamesItsLineAndMakesNothing) {
   const std::string bad =
       "QGC WPL 110\n0\t1\t0\t16\t0\t0\t0\t0\t58.3780\t26.7289\t60\t1\n"

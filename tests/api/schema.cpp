@@ -53,6 +53,11 @@ std::string object_fault(const json& document, const json& schema, const json& v
       const std::string fault =
           schema_fault(document, properties[name], member, pointer + "/" + name);
       if (!fault.empty()) return fault;
+    } else if (schema.contains("additionalProperties") &&
+               schema["additionalProperties"].is_object()) {
+      const std::string fault =
+          schema_fault(document, schema["additionalProperties"], member, pointer + "/" + name);
+      if (!fault.empty()) return fault;
     } else if (schema.contains("properties") &&
                schema.value("additionalProperties", json()) == false) {
       return pointer + "/" + name + " is not documented";

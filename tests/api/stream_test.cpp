@@ -1,5 +1,7 @@
 // The live stream over a real WebSocket: hello, state, events, teleoperation, nonsense.
 
+#include <tuple>
+
 #include "house.hpp"
 #include "schema.hpp"
 
@@ -158,6 +160,33 @@ TEST_F(StreamApi, OnlyTheOwnPageMayOpenIt) {
             403u);
   EXPECT_EQ(Client(house.port()).upgrade("/api/v1/vehicle"), 404u);
   EXPECT_EQ(call("GET", "/stream").status, 426u);
+}
+
+TEST_F(StreamApi, ARefusedUpgradeIsAProblemThatNamesTheCause) {
+  const auto ask = [this](const std::string& path, const std::string& version,
+                          const std::string& key, const std::string& more = "") {
+    return raw("GET " + path +
+               " HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n" +
+               version + key + more + "\r\n");
+  };
+  const std::string here = "/api/v1/stream";
+  const std::string version = "Sec-WebSocket-Version: 13\r\n";
+  const std::string key = "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
+  const std::vector<std::tuple<Reply, unsigned, const char*>> cases = {
+      {ask(here, version, key, "Origin: http://evil.example\r\n"), 403, "evil.example"},
+      {ask("/api/v1/vehicle", version, key), 404, "/api/v1/stream"},
+      {ask("/%zz", version, key), 404, "/api/v1/stream"},
+      {ask(here, "Sec-WebSocket-Version: 8\r\n", key), 426, "version 13"},
+      {ask(here, "", key), 426, "version 13"},
+      {ask(here, version, ""), 400, "Sec-WebSocket-Key"},
+      {ask(here, version, "Sec-WebSocket-Key: short\r\n"), 400, "Sec-WebSocket-Key"},
+  };
+  for (const auto& [reply, status, named] : cases) {
+    EXPECT_EQ(reply.status, status) << named;
+    EXPECT_EQ(reply.raw.header("content-type"), "application/problem+json") << named;
+    EXPECT_NE(reply.body["detail"].get<std::string>().find(named), std::string::npos) << reply.body;
+  }
+  EXPECT_EQ(std::get<0>(cases[3]).raw.header("sec-websocket-version"), "13");
 }
 
 }  // namespace

@@ -184,6 +184,52 @@ TEST_F(VehicleApi, AMissionIsLoadedPreviewedStartedPausedAndStopped) {
   EXPECT_NE(call("GET", "/execution").body["state"], "running");
 }
 
+TEST_F(VehicleApi, AutoGoesOnButStartsOnlyTheNewestRevision) {
+  until_ready();
+  const Json autonomous = {{"mode", "AUTO"}, {"valid_for_s", 20}};
+  ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 20}}).status, 200u);
+  // Given nothing that could be driven, then a mission that somebody changes after it was loaded,
+  EXPECT_EQ(call("PUT", "/vehicle/mode", autonomous).status, 409u);
+  const std::string id = make_mission();
+  ASSERT_EQ(call("POST", "/execution/load", Json{{"mission_id", id}}).status, 200u);
+  ASSERT_EQ(
+      call("PUT", "/missions/" + id, two_waypoints("changed"), "If-Match: \"rev-1\"\r\n").status,
+      200u);
+  // when AUTO is chosen,
+  const auto refused = call("PUT", "/vehicle/mode", autonomous);
+  // then it is not started: nobody has said which revision is meant.
+  EXPECT_EQ(refused.status, 409u);
+  EXPECT_NE(refused.body["detail"].get<std::string>().find("revision 2"), std::string::npos);
+  EXPECT_EQ(call("GET", "/vehicle").body["mode"], "HOLD");
+  // The newest is,
+  ASSERT_EQ(call("POST", "/execution/load", Json{{"mission_id", id}}).status, 200u);
+  EXPECT_EQ(call("PUT", "/vehicle/mode", autonomous).body["mission"]["state"], "running");
+  EXPECT_EQ(call("PUT", "/vehicle/mode", autonomous).status, 200u);  // and again: nothing happens
+  // and what waits goes on, whatever became of the stored one.
+  EXPECT_EQ(call("POST", "/execution/pause").body["state"], "paused");
+  ASSERT_EQ(call("DELETE", "/missions/" + id, "", "If-Match: \"rev-2\"\r\n").status, 204u);
+  EXPECT_EQ(call("PUT", "/vehicle/mode", autonomous).body["mission"]["state"], "running");
+  EXPECT_EQ(call("POST", "/execution/stop").status, 200u);
+  const auto gone = call("PUT", "/vehicle/mode", autonomous);
+  EXPECT_EQ(gone.status, 409u);
+  EXPECT_NE(gone.body["detail"].get<std::string>().find("deleted"), std::string::npos);
+}
+
+TEST_F(VehicleApi, HalfAPositionIsNotHere) {
+  until_ready();
+  const auto pointer = [this](const std::string& body) {
+    const auto reply = call("PUT", "/vehicle/home", body);
+    EXPECT_EQ(reply.status, 422u) << body;
+    return reply.body["errors"][0]["pointer"].get<std::string>();
+  };
+  EXPECT_EQ(pointer(R"({"lat": null})"), "/lat");
+  EXPECT_EQ(pointer(R"({"lat": null, "lon": null})"), "/lat");
+  EXPECT_EQ(pointer(R"({"lat": 58.378, "lon": null})"), "/lon");
+  EXPECT_EQ(pointer(R"({"lat": 58.378})"), "/lon");
+  EXPECT_EQ(pointer(R"({"lat": 91, "lon": 26})"), "/lat");
+  EXPECT_EQ(pointer(R"({"lat": "58", "lon": 26})"), "/lat");
+}
+
 TEST_F(VehicleApi, ExecutionRefusesWhatCannotBe) {
   until_ready();
   EXPECT_EQ(call("POST", "/execution/load", Json{{"mission_id", "nobody"}}).status, 404u);
@@ -220,10 +266,22 @@ TEST_F(VehicleApi, WhatHappenedIsFoundAmongTheEvents) {
             all.body["items"].size());
   EXPECT_TRUE(call("GET", "/events?since=2199-01-01T00:00:00Z").body["items"].empty());
   EXPECT_EQ(call("GET", "/events?limit=1").body["items"].size(), 1u);
-  for (const char* wrong : {"since=yesterday", "level=loud", "limit=x"}) {
-    EXPECT_EQ(call("GET", std::string("/events?") + wrong).status, 422u) << wrong;
+  // However late a time or an id: nothing is later.
+  for (const char* late : {"9999-12-31T23:59:59Z", "9223372036854775807"}) {
+    const auto none = call("GET", std::string("/events?since=") + late);
+    EXPECT_EQ(none.status, 200u) << late;
+    EXPECT_TRUE(none.body["items"].empty()) << late;
   }
-  EXPECT_EQ(call("GET", "/events?cursor=x").status, 400u);
+  const std::vector<std::pair<const char*, unsigned>> wrong_ones = {
+      {"since=yesterday", 422}, {"since=-5", 422},   {"since=9223372036854775808", 422},
+      {"since=1.5", 422},       {"level=loud", 422}, {"limit=x", 422},
+      {"limit=0", 422},         {"cursor=x", 400},   {"since=%zz", 400}};
+  for (const auto& [wrong, status] : wrong_ones) {
+    const auto reply = call("GET", std::string("/events?") + wrong);
+    const std::string query = wrong;
+    EXPECT_EQ(reply.status, status) << wrong;
+    EXPECT_EQ(reply.body["errors"][0]["pointer"], query.substr(0, query.find('='))) << wrong;
+  }
 }
 
 }  // namespace

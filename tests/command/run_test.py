@@ -16,7 +16,7 @@ import time
 import urllib.request
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "harness"))
-from station import ROOT, Program, Rest, check, run_cases, until  # noqa: E402
+from station import BIN, ROOT, Program, Rest, check, run_cases, until  # noqa: E402
 
 RUN = ROOT / "run"
 scratch = pathlib.Path(tempfile.mkdtemp(prefix="roverd-command."))
@@ -93,6 +93,8 @@ def wrong_options_are_named():
     refused("--port", "65536", names=["--port", "65536"])
     refused("--seed", "-1", names=["--seed"])
     refused("--data", "", names=["--data"])
+    for speed in ("nan", "-1", "fast"):
+        refused("--replay", __file__, "--replay-speed", speed, names=["--replay-speed", speed])
 
 
 def missing_files_are_named():
@@ -124,8 +126,106 @@ def wrong_configuration_is_named():
                       ("[server]\nport = 70000", "port"), ("[server", "changed.toml"),
                       ("[radio]\nswc_down = \"mode.fly\"", "changed.toml:2: radio.swc_down must be"),
                       ("[radio]\nknob_high = \"by_knob\"", "radio.knob_high cannot be by_knob"),
-                      ("[radio]\nswe_up = \"arm\"", "unknown key radio.swe_up")):
+                      ("[radio]\nswe_up = \"arm\"", "unknown key radio.swe_up"),
+                      ("[frobnicate]", "frobnicate"), ("[nav.frobnicate]", "nav.frobnicate")):
         refused("--data", scratch / "c", "--config", config_with(text), names=["changed.toml", key])
+    not_tiles = scratch / "tiles.txt"
+    not_tiles.write_text("no database, but long enough to be looked into. " * 20)
+    for text, key in (('[server]\nlog_level = "loud"', "server.log_level"),
+                      ('[tiles]\nfarm = "/nowhere.mbtiles"', "/nowhere.mbtiles"),
+                      (f'[tiles]\nfarm = "{not_tiles}"', str(not_tiles)),
+                      ('[vehicle]\nkinematics = "hover"', "vehicle.kinematics"),
+                      ('[drivers.gnss]\nheading_source = "moon"', "drivers.gnss.heading_source")):
+        refused("--data", scratch / "c", "--config", config_with(text),
+                names=["changed.toml:2", key])
+
+
+def wrong_links_are_named():
+    """a link that is not there, or of another kind, is refused by file, line and name"""
+    for link, name in (("cansock:/nope", "no socket /nope"), ("can:lo", "lo is no CAN interface"),
+                       ("frob:x", "frob:x"), ("tcp:localhost:5000", "CAN frames are needed")):
+        config = config_with("[drivers.bunker]", f'link = "{link}"')
+        refused("--no-sim", "--port", "0", "--data", scratch / "n", "--config", config,
+                names=["changed.toml:2", "drivers.bunker.link", name])
+
+
+def wrong_input_has_its_own_exit_code():
+    """what is said wrongly ends roverd with 2, what this machine refuses with 1"""
+    def code(*options, data=scratch / "e"):
+        return subprocess.run([str(BIN / "roverd"), "--data", str(data), "--port", "0",
+                               "--config", str(config_with("[server]")), *options],
+                              capture_output=True, timeout=60).returncode
+    check(code("--replay-speed", "nan") == 2, "a speed that is no number")
+    check(code("--set", "drivers.bunker.link=cansock:/nope") == 2, "a link that is not there")
+    check(code("--replay", __file__) == 2, "a file that is no recording")
+    check(code("--set", "server.bind=0.0.0.0", "--replay", str(recording_of_gnss())) == 2, "bind")
+    check(code(data="/proc/roverd") == 1, "a folder that cannot be")
+
+
+def recording_of_bus(name="bus.log", begin_s=1_700_000_000, seconds=20):
+    """A standing Bunker with the radio off, as candump -L writes it."""
+    path = scratch / name
+    with path.open("w", encoding="ascii") as file:
+        for i in range(seconds * 50):
+            stamp = f"({begin_s + i * 0.02:.6f}) can0"
+            file.write(f"{stamp} 221#0000000000000000\n")
+            if i % 5 == 0:
+                file.write(f"{stamp} 211#000001EF000000{(i // 5) % 256:02X}\n")
+    return path
+
+
+def recording_of_gnss(name="gnss.raw", begin_s=1_700_000_001, seconds=20):
+    """A receiver without a fix, as roverd records it."""
+    path = scratch / name
+    with path.open("wb") as file:
+        file.write(b"roverd-bytes 1 serial:/dev/ttyACM0:115200\n")
+        for i in range(seconds):
+            text = f"GPGGA,1200{i:02d}.00,,,,,0,00,99.99,,,,,,"
+            total = 0
+            for c in text:
+                total ^= ord(c)
+            line = f"${text}*{total:02X}\r\n".encode()
+            file.write(f"({begin_s + i}.000000) R {len(line)}\n".encode() + line + b"\n")
+    return path
+
+
+def both_recordings_of_a_run_play():
+    """--replay given twice plays the bus and the receiver of one run"""
+    with running("--replay", recording_of_gnss(), "--replay", recording_of_bus()) as (_, rest):
+        def both():
+            drivers = {d["name"]: d for d in rest.get("/drivers")["items"]}
+            return (set(drivers) == {"bunker", "gnss"} and
+                    all(d["received"] > 0 for d in drivers.values()))
+        until("both are heard", 20, both)
+
+
+def recordings_that_do_not_belong_together_are_refused():
+    """two of a kind, recordings of other runs, and several without a pace are refused"""
+    bus, gnss = recording_of_bus(), recording_of_gnss()
+    data = ("--port", "0", "--data", scratch / "r")
+    refused(*data, "--replay", bus, "--replay", recording_of_bus("other.log"),
+            names=["bus.log", "other.log", "CAN bus"])
+    refused(*data, "--replay", bus, "--replay", recording_of_gnss("late.raw", 1_700_009_000),
+            names=["more than an hour apart"])
+    refused(*data, "--replay", bus, "--replay", gnss, "--replay-speed", "0",
+            names=["--replay-speed 0"])
+    plan = ROOT / "tests/data/fuzz/plan/every_kind.plan"
+    refused(*data, "--replay", plan, names=[str(plan), "no recording"])
+
+
+def a_recorder_that_cannot_write_is_told():
+    """when recordings cannot be written, the drivers work, and an event and their state say why"""
+    folder = scratch / "full"
+    folder.mkdir()
+    (folder / "recordings").write_text("a file where the folder should be")
+    with running("--record", data="full") as (_, rest):
+        until("the base is heard", 20, lambda: all(
+            d["state"] == "up" for d in rest.get("/drivers")["items"]))
+        for driver in rest.get("/drivers")["items"]:
+            check(driver["recording"] == "stopped", driver)
+            check("recordings" in driver["recording_problem"], driver)
+        until("an event tells", 10, lambda: any(
+            e["kind"] == "recording_stopped" for e in rest.get("/events")["items"]))
 
 
 def only_loopback_is_served():
@@ -236,8 +336,11 @@ if __name__ == "__main__":
     try:
         code = run_cases([
             help_tells_every_option, wrong_options_are_named, missing_files_are_named,
-            a_vehicle_without_a_simulation_is_refused, an_unwritable_data_folder_is_named, wrong_configuration_is_named,
-            only_loopback_is_served, a_missing_can_interface_is_named, the_product_starts,
+            a_vehicle_without_a_simulation_is_refused, an_unwritable_data_folder_is_named,
+            wrong_configuration_is_named,
+            wrong_links_are_named, wrong_input_has_its_own_exit_code,
+            both_recordings_of_a_run_play, recordings_that_do_not_belong_together_are_refused,
+            a_recorder_that_cannot_write_is_told, only_loopback_is_served, a_missing_can_interface_is_named, the_product_starts,
             a_second_start_is_quick, both_end, a_killed_script_leaves_nothing,
             one_dies_the_other_ends, a_busy_port_is_named, a_newer_database_is_refused])
     finally:

@@ -46,6 +46,28 @@ test('the stop button stops the moving robot, latches, and is reset after a ques
   await expect(page.getByRole('button', { name: 'Emergency stop' })).toHaveText('STOP');
 });
 
+test('drivers are listed with what they say, and one is restarted after a question', async ({
+  page,
+  station,
+}) => {
+  await page.setViewportSize({ width: 390, height: 844 });
+  await open_page(page, station.url);
+  await tab(page, 'Log');
+  const bunker = page.getByRole('listitem', { name: 'Driver bunker' });
+  await expect(bunker).toContainText(/Up.*heard .* ago/s);
+
+  await bunker.getByText('Details').click();
+  await expect(bunker).toContainText('0x221');
+  const width = await page.evaluate(() => document.documentElement.scrollWidth);
+  expect(width).toBeLessThanOrEqual(390);
+
+  await bunker.getByRole('button', { name: 'Restart' }).click();
+  await page.getByRole('dialog').getByRole('button', { name: 'Restart', exact: true }).click();
+
+  await expect(bunker).toContainText('restarted once');
+  await expect(bunker).toContainText('Up');
+});
+
 test('Esc stops the robot even while a dialog is open and a field has the focus', async ({
   page,
   station,

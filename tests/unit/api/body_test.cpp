@@ -1,7 +1,10 @@
 #include "api/body.hpp"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
+#include "api/plain_json.hpp"
 #include "api/problem.hpp"
 #include "api/rfc3339.hpp"
 #include "api/words.hpp"
@@ -114,6 +117,34 @@ TEST(Rfc3339, ReadsOffsetsAndFractions) {
   EXPECT_EQ(from_rfc3339("2024-02-29T12:35:30.25Z"), base::WallTime(1'709'210'130'250ms));
   EXPECT_EQ(from_rfc3339("2024-02-29t14:35:30+02:00"), base::WallTime(1'709'210'130s));
   EXPECT_EQ(from_rfc3339("2024-02-29T07:05:30-05:30"), base::WallTime(1'709'210'130s));
+}
+
+TEST(Rfc3339, WhatIsBeyondTheClockIsItsEnd) {
+  const auto end = from_rfc3339("2201-01-01T00:00:00Z");
+  ASSERT_TRUE(end);
+  EXPECT_EQ(from_rfc3339("9999-12-31T23:59:59Z"), end);
+  EXPECT_LT(*from_rfc3339("2200-12-31T23:59:59Z"), *end);
+}
+
+TEST(PlainJson, HasNoExponentsAndChangesNothingElse) {
+  const Json value = {{"small", 1e-7},       {"smaller", -2.5e-11}, {"large", 1e25},
+                      {"usual", 58.3781},    {"whole", 7},          {"text", "1e-7 \"2e-9\" \\"},
+                      {"none", std::nan("")}};
+  const std::string text = plain_json(value);
+  EXPECT_EQ(text,
+            R"({"large":10000000000000000905969664.0,"none":null,"small":0.0000001,)"
+            R"("smaller":-0.000000000025,"text":"1e-7 \"2e-9\" \\","usual":58.3781,"whole":7})");
+  // and reads back as the same numbers.
+  const Json back = Json::parse(text);
+  for (const char* name : {"small", "smaller", "large", "usual"}) {
+    EXPECT_EQ(back[name].get<double>(), value[name].get<double>()) << name;
+  }
+  EXPECT_EQ(plain_json({{"bytes", "\xff"}}), "{\"bytes\":\"\xEF\xBF\xBD\"}");
+  for (const double number : {5e-324, 1.7976931348623157e308, -1.2345678901234567e-5}) {
+    const std::string plain = plain_json(number);
+    EXPECT_EQ(plain.find('e'), std::string::npos) << plain;
+    EXPECT_EQ(Json::parse(plain).get<double>(), number);
+  }
 }
 
 TEST(Rfc3339, RefusesWhatIsNoTime) {

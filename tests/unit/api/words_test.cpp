@@ -105,11 +105,16 @@ TEST(VehicleWords, AMessageIsAboutOneKilobyte) {
 TEST(DriverWords, TellRatesAgesAndCounts) {
   base::Snapshot s;
   s.drivers.push_back({at(10s), "gnss", base::DriverPhase::Up, "", 120, 3, 0, at(9'800ms)});
+  s.drivers.push_back({at(10s), "bunker", base::DriverPhase::Failed, "hangs", 0, 0, 0});
   const Json list = drivers_json(s, {{"gnss", 5.04}}, at(10s));
-  EXPECT_EQ(list["items"][0]["state"], "up");
-  EXPECT_EQ(list["items"][0]["rate_hz"], 5.0);
-  EXPECT_EQ(list["items"][0]["age_s"], 0.2);
-  EXPECT_EQ(list["items"][0]["refused"], 3);
+  EXPECT_EQ(list["items"][0]["name"], "bunker");
+  EXPECT_EQ(list["items"][0]["state"], "failed");
+  EXPECT_TRUE(list["items"][0]["rate_hz"].is_null());
+  const Json& gnss = list["items"][1];
+  EXPECT_EQ(gnss["state"], "up");
+  EXPECT_EQ(gnss["rate_hz"], 5.0);
+  EXPECT_EQ(gnss["age_s"], 0.2);
+  EXPECT_EQ(gnss["refused"], 3);
   EXPECT_TRUE(list["next_cursor"].is_null());
 }
 

@@ -1,6 +1,7 @@
 #include "link/replay.hpp"
 
 #include <charconv>
+#include <memory>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -91,6 +92,60 @@ TEST(FrameReplay, KeepsTheRecordedPaceTimesTheSpeed) {
   // 3.02 s at 20 times the speed are 151 ms. Never early; late only by what the machine is busy.
   EXPECT_GE(base::seconds(at[2] - at[0]), 0.150);
   EXPECT_LT(base::seconds(at[2] - at[0]), 3.0);
+}
+
+/// Bytes of the same run as kLog, from two seconds later.
+std::string bytes_of_the_run() {
+  std::string text = recording_header("serial:/dev/gnss:115200");
+  append_record(text, 1'700'000'002s, false, bytes_of("$A"));
+  append_record(text, 1'700'000'004s, false, bytes_of("$B"));
+  return text;
+}
+
+std::shared_ptr<ReplayTogether> run_of_the_log() {
+  auto together = std::make_shared<ReplayTogether>();
+  together->begin = 1'700'000'000s;
+  return together;
+}
+
+TEST(Replays, OfOneRunKeepTheirDistance) {
+  // Given a bus and a receiver of one run, of which the receiver began two seconds later,
+  const TempFolder folder;
+  asio::io_context io;
+  const auto together = run_of_the_log();
+  FrameReplay bus(io, folder.write("a.log", kLog), {.speed = 20, .together = together});
+  ByteReplay receiver(io, folder.write("a.raw", bytes_of_the_run()),
+                      {.speed = 20, .together = together});
+  std::vector<Time> frames;
+  std::vector<Time> chunks;
+  bus.on_frame = [&](const CanFrame&, Time t) { frames.push_back(t); };
+  receiver.on_bytes = [&](Bytes, Time t) { chunks.push_back(t); };
+  // when they are opened in any order, twenty times as fast,
+  ASSERT_TRUE(receiver.open());
+  const Time begin = base::steady_now();
+  ASSERT_TRUE(bus.open());
+  ASSERT_TRUE(run_until(io, [&] { return frames.size() == 3 && chunks.size() == 2; }));
+  // then what came two seconds later does so in a twentieth of that.
+  EXPECT_GE(chunks[0] - begin, 90ms);
+  EXPECT_GE(chunks[1] - begin, 190ms);
+  EXPECT_GE(frames[2] - begin, 140ms);
+  EXPECT_LE(frames[1], chunks[0]);
+}
+
+TEST(Replays, OneThatIsOpenedAgainGoesOnWhereTheRunIs) {
+  // Given a run that has been played for 1.5 s, twice as fast as recorded,
+  const TempFolder folder;
+  asio::io_context io;
+  const auto together = run_of_the_log();
+  together->started = (base::steady_now() - 1'500ms).time_since_epoch().count();
+  FrameReplay bus(io, folder.write("a.log", kLog), {.speed = 2, .together = together});
+  std::vector<std::uint32_t> ids;
+  bus.on_frame = [&](const CanFrame& f, Time) { ids.push_back(f.id); };
+  // when the bus is opened,
+  ASSERT_TRUE(bus.open());
+  ASSERT_TRUE(run_until(io, [&] { return !ids.empty(); }));
+  // then what is over is not told any more.
+  EXPECT_EQ(ids, std::vector<std::uint32_t>{0x241});
 }
 
 TEST(FrameReplay, ADamagedLineIsNamed) {

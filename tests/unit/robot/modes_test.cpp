@@ -5,14 +5,18 @@ namespace {
 
 using std::chrono::milliseconds;
 
-TEST(Modes, AutoStartsWhatIsLoadedHoldPausesItAutoGoesOn) {
+TEST(Modes, HoldPausesAMissionAndAutoGoesOnButStartsNone) {
   Field f;
   f.run(8.0);
   ASSERT_TRUE(f.load(plan_of({{0, 20}})));
   EXPECT_EQ(f.execution(), ExecutionState::Loaded);
   EXPECT_FALSE(f.ask(SetMode{Mode::Auto}));  // not armed
   ASSERT_TRUE(f.ask(Arm{}));
-  ASSERT_TRUE(f.ask(SetMode{Mode::Auto}));
+  const auto refused = f.ask(SetMode{Mode::Auto});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().detail, "the mission is loaded: there is none to go on with; start it");
+  EXPECT_FALSE(f.moves());
+  ASSERT_TRUE(f.ask(StartMission{"m", 1}));
   EXPECT_EQ(f.execution(), ExecutionState::Running);
   EXPECT_EQ(f.state()->control, base::Driver::Autonomy);
   f.run(3.0);

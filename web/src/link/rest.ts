@@ -93,6 +93,8 @@ export const vehicle_calls: VehicleCalls = {
   estop: () => request<unknown>('/vehicle/estop', { method: 'POST', limit_ms: 1000 }),
   reset_estop: () => command('POST', '/vehicle/estop/reset'),
   trail,
+  drivers: () => request<Schemas['DriverList']>('/drivers'),
+  restart_driver: (name) => command('POST', `/drivers/${encodeURIComponent(name)}/restart`),
   checks: () => request<Schemas['Checks']>('/vehicle/checks'),
   load: (mission_id, revision) => command('POST', '/execution/load', { mission_id, revision }),
   preview: (from) => request<Schemas['Preview']>(`/execution/preview?from=${from}`),

@@ -1,6 +1,7 @@
 // What the rooms of the page hand each other through main.ts: types only.
 
 import type { Answer } from './answer';
+import type { Driver } from './drivers';
 import type { LinkHealth } from './freshness';
 import type { Home, LatLon, Plan, Settings, Item } from './plan';
 import type { Remembered, Tracks } from './tracks';
@@ -75,6 +76,8 @@ export interface VehicleCalls {
   reset_estop(): Promise<Answer<unknown>>;
   /** The way so far. */
   trail(): Promise<Answer<Remembered>>;
+  drivers(): Promise<Answer<Page<Driver>>>;
+  restart_driver(name: string): Promise<Answer<unknown>>;
   checks(): Promise<Answer<{ ready: boolean; checks: readonly Check[] }>>;
   load(mission_id: string, revision: number): Promise<Answer<unknown>>;
   preview(from: StartFrom): Promise<Answer<Preview>>;

@@ -13,6 +13,7 @@ import type {
 } from '../model/ports';
 import type { Check } from '../model/vehicle';
 import { Dialogs } from './dialogs.svelte';
+import { Drivers } from './drivers.svelte';
 import { Editor, plan_of } from './editor.svelte';
 import { Library } from './library.svelte';
 import { Live } from './live.svelte';
@@ -52,6 +53,7 @@ export class Station {
   readonly editor: Editor;
   readonly library: Library;
   readonly pilot: Pilot;
+  readonly drivers: Drivers;
   readonly map: MapCalls;
   readonly #doors: Doors;
   #route_key = '';
@@ -68,6 +70,7 @@ export class Station {
     this.editor = new Editor(doors.missions, doors.storage, this.notices, this.dialogs);
     this.library = new Library(doors.missions, this.editor, this.notices, this.dialogs);
     this.pilot = new Pilot(doors.vehicle, doors.send_drive, this.live, this.notices, this.dialogs);
+    this.drivers = new Drivers(doors.vehicle, this.notices, this.dialogs);
     doors.map.listen(this.#map_events());
     if (this.editor.restore_draft()) this.map.fit(spots(this.editor.plan));
     void this.#fetch_past_events();
