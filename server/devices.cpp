@@ -111,6 +111,15 @@ Result<void> check(const std::string& key, const DriverWiring& wiring) {
   return {};
 }
 
+/// Whoever moves a vehicle has to know whom it speaks to: any sender may not become the vehicle.
+Result<void> check_peer(const std::string& key, const DriverWiring& wiring) {
+  const auto parsed = link::parse_address(wiring.link);
+  if (!parsed || parsed->scheme != link::Scheme::Udp || !parsed->target.empty()) return {};
+  return base::fail(base::Code::Invalid,
+                    "drivers." + key + ".link: " + wiring.link +
+                        " names no peer; a vehicle wants udp:HOST:PORT or udp:LOCALPORT:HOST:PORT");
+}
+
 /// The driver lives as long as the device's functions.
 template <class Driver>
 Device device_of(const std::string& name, std::shared_ptr<Driver> driver) {
@@ -143,6 +152,9 @@ class Maker {
         replays ? DriverWiring{true, "replay:" + w_.options.replay} : said.wiring;
     if (!wiring.enabled) return {};
     if (auto good = check(name, wiring); !good) return good;
+    if constexpr (requires(Driver & d, base::DriveCommand c, base::Time t) { d.send(c, t); }) {
+      if (auto good = check_peer(name, wiring); !good) return good;
+    }
     Params params = said.params;
     // A hole in a recording is no reason to open it again: it would begin anew.
     if (replays) params.silent_reopen_s = 0.0;

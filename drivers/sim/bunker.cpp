@@ -7,6 +7,7 @@
 
 #include "base/angle.hpp"
 #include "bunker/codec.hpp"
+#include "sim/base_v1.hpp"
 #include "sim/battery.hpp"
 #include "sim/machine.hpp"
 #include "sim/noise.hpp"
@@ -22,6 +23,8 @@ constexpr std::uint16_t kBatteryWarningBit = 1u << 1;
 constexpr std::uint16_t kRadioLostBit = 1u << 2;
 constexpr std::uint16_t kMotorBits = 1u << 3 | 1u << 4 | 1u << 8;
 constexpr std::uint16_t kSeenWithEstopBit = 1u << 7;
+constexpr std::uint16_t kV1BatteryWarningBit = 1u << 11;
+constexpr std::uint16_t kV1RadioLostBit = 1u << 12;
 constexpr double kAmbient_c = 25.0;
 
 /// A motor's heat follows the square of its current within minutes.
@@ -60,10 +63,13 @@ struct Bunker::Impl {
   void step();
   void move(double dt_s);
   void report();
+  void report_v1();
   void report_radio();
   void report_motors(bool slow);
   void send(const CanFrame& f);
   void obey(const bunker::Message& message);
+  void obey(const V1Order& order);
+  bool speaks_v1() const noexcept { return params.base.protocol == "v1"; }
 
   Bunker& out;
   Params params;
@@ -88,6 +94,7 @@ struct Bunker::Impl {
   std::uint64_t commands = 0;
   std::uint8_t state_count = 0;
   std::uint8_t radio_count = 0;
+  V1Voice v1_voice;
   std::optional<CanFrame> last_radio;
 };
 
@@ -142,6 +149,7 @@ void Bunker::Impl::move(double dt_s) {
 
 /// The periods of the real base; the phases spread the load over the bus.
 void Bunker::Impl::report() {
+  if (speaks_v1()) return report_v1();
   const auto every = [this](int period, int phase) { return steps % period == phase; };
   if (every(4, 0)) {
     const base::BodyTwist t = tracks.measured();
@@ -161,6 +169,25 @@ void Bunker::Impl::report() {
     send(bunker::encode(
         bunker::Battery{charge, 100, battery.voltage_v(), battery.current_a(), kAmbient_c}));
   }
+}
+
+void Bunker::Impl::report_v1() {
+  unsigned code = static_cast<unsigned>(faults.error_bits);
+  if (battery.fault(params.battery)) code |= kBatteryFaultBit;
+  if (battery.warning(params.battery)) code |= kV1BatteryWarningBit;
+  if (machine.radio_lost() && !faults.radio_loss_unflagged) code |= kV1RadioLostBit;
+  const auto motor = [this](const MotorState& m, double heat_c) {
+    return V1Facts::Motor{m.current_a, m.track_mps * params.drive.motor_rev_per_m * 60.0,
+                          kAmbient_c + heat_c};
+  };
+  const V1Facts facts{.vehicle_state = machine.state(),
+                      .control_mode = machine.shown_mode(now),
+                      .battery_v = battery.voltage_v(),
+                      .error_code = static_cast<std::uint16_t>(code),
+                      .measured = tracks.measured(),
+                      .right = motor(tracks.right(), right_heat_c),
+                      .left = motor(tracks.left(), left_heat_c)};
+  for (const CanFrame& f : v1_voice.at(steps, facts)) send(f);
 }
 
 void Bunker::Impl::report_radio() {
@@ -203,6 +230,11 @@ Bunker::~Bunker() = default;
 void Bunker::receive(const CanFrame& f) {
   const bool lost = impl_->to_base.uniform() < impl_->faults.loss_to_base;
   if (lost || impl_->faults.bus_off) return;
+  if (impl_->speaks_v1()) {
+    if (const auto order = v1_order(f, impl_->params.base)) impl_->obey(*order);
+    return;
+  }
+  for (const CanFrame& part : version_answer(f, impl_->params.base.firmware)) impl_->send(part);
   const bunker::Decoded decoded = bunker::decode(f);
   if (decoded.verdict == bunker::Verdict::Decoded) impl_->obey(decoded.message);
 }
@@ -217,6 +249,17 @@ void Bunker::Impl::obey(const bunker::Message& message) {
     const unsigned gone = clear->which == 0 ? 0xFFFFu : 1u << (2 + clear->which);
     faults.error_bits = static_cast<int>(static_cast<unsigned>(faults.error_bits) & ~gone);
   }
+}
+
+/// Every command carries the mode. While the radio drives it is not asked for anything.
+void Bunker::Impl::obey(const V1Order& order) {
+  faults.error_bits &= ~static_cast<int>(order.cleared);
+  if (order.motion) {
+    ++commands;
+    machine.command(*order.motion, now);
+  }
+  if (machine.shown_mode(now) == base::ControlMode::Radio) return;
+  machine.request_mode(order.mode, 0, now);
 }
 
 void Bunker::advance_to(Time now) {

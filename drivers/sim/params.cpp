@@ -35,6 +35,7 @@ struct DescribeAll {
 
 /// The words a text parameter may hold; empty: any.
 std::vector<std::string_view> words_of(std::string_view key) {
+  if (key == "base.protocol") return {"v2", "v1"};
   if (key == "gnss.profile") return {"rtk", "float", "consumer"};
   if (key == "radio.linear_stick") return {"right_ud", "left_ud"};
   if (key == "radio.turn_stick") return {"left_lr", "right_lr"};

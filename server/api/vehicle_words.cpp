@@ -283,6 +283,24 @@ Json capabilities_json(const Profile& p, const std::string& version) {
           {"export_formats", formats}};
 }
 
+namespace {
+
+/// What a driver says of itself in words, beside its numbers.
+void add_detail(Json& one, const base::DriverStatus& driver) {
+  static const base::DriverDetail nothing;
+  const base::DriverDetail& detail = driver.detail ? *driver.detail : nothing;
+  Json rates = Json::object();
+  for (const auto& [what, hz] : detail.rates_hz) rates[what] = rounded(hz, 10.0);
+  one["link"] = driver.link;
+  one["restarts"] = driver.restarts;
+  one["hazards"] = detail.hazards;
+  one["counts"] = detail.counts;
+  one["rates_hz"] = std::move(rates);
+  one["facts"] = detail.facts;
+}
+
+}  // namespace
+
 Json drivers_json(const base::Snapshot& s, const std::map<std::string, double>& rates,
                   base::Time now) {
   Json items = Json::array();
@@ -295,6 +313,7 @@ Json drivers_json(const base::Snapshot& s, const std::map<std::string, double>& 
                 {"refused", driver.refused},
                 {"sent", driver.sent},
                 {"rate_hz", rate == rates.end() ? Json(nullptr) : rounded(rate->second, 10.0)}};
+    add_detail(one, driver);
     set_age(one, driver.last_received, now, StaleAfter::kDriver_s);
     items.push_back(std::move(one));
   }
