@@ -214,14 +214,14 @@ constexpr std::array kNames{
     Name{{0x01, 0x03}, "NAV-STATUS"},    Name{{0x01, 0x04}, "NAV-DOP"},
     Name{{0x01, 0x12}, "NAV-VELNED"},    Name{{0x01, 0x13}, "NAV-HPPOSECEF"},
     Name{{0x01, 0x20}, "NAV-TIMEGPS"},   Name{{0x01, 0x21}, "NAV-TIMEUTC"},
-    Name{{0x01, 0x26}, "NAV-TIMELS"},    Name{{0x01, 0x35}, "NAV-SAT"},
-    Name{{0x01, 0x43}, "NAV-SIG"},       Name{{0x01, 0x61}, "NAV-EOE"},
-    Name{{0x02, 0x13}, "RXM-SFRBX"},     Name{{0x02, 0x15}, "RXM-RAWX"},
-    Name{{0x02, 0x32}, "RXM-RTCM"},      Name{{0x06, 0x00}, "CFG-PRT"},
-    Name{{0x06, 0x01}, "CFG-MSG"},       Name{{0x06, 0x8B}, "CFG-VALGET"},
-    Name{{0x0A, 0x09}, "MON-HW"},        Name{{0x0A, 0x36}, "MON-COMMS"},
-    Name{{0x0A, 0x38}, "MON-RF"},        Name{{0x0D, 0x01}, "TIM-TP"},
-    Name{{0x10, 0x02}, "ESF-MEAS"},
+    Name{{0x01, 0x22}, "NAV-CLOCK"},     Name{{0x01, 0x26}, "NAV-TIMELS"},
+    Name{{0x01, 0x35}, "NAV-SAT"},       Name{{0x01, 0x43}, "NAV-SIG"},
+    Name{{0x01, 0x61}, "NAV-EOE"},       Name{{0x02, 0x13}, "RXM-SFRBX"},
+    Name{{0x02, 0x15}, "RXM-RAWX"},      Name{{0x02, 0x32}, "RXM-RTCM"},
+    Name{{0x06, 0x00}, "CFG-PRT"},       Name{{0x06, 0x01}, "CFG-MSG"},
+    Name{{0x06, 0x8B}, "CFG-VALGET"},    Name{{0x0A, 0x09}, "MON-HW"},
+    Name{{0x0A, 0x36}, "MON-COMMS"},     Name{{0x0A, 0x38}, "MON-RF"},
+    Name{{0x0D, 0x01}, "TIM-TP"},        Name{{0x10, 0x02}, "ESF-MEAS"},
 };
 
 void append(std::vector<std::uint8_t>& out, std::uint64_t value, std::size_t size) {
