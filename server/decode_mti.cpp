@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string hex(std::uint32_t value, int digits) {
+std::string mti_hex(std::uint32_t value, int digits) {
   std::array<char, 16> text{};
   std::snprintf(text.data(), text.size(), "%0*X", digits, static_cast<unsigned>(value));
   return text.data();
@@ -131,7 +131,7 @@ struct DescribePacket {
 Json packet_object(const mti::Packet& packet) {
   const auto name = mti::name_of(packet.kind());
   Json out;
-  out["xdi"] = hex(packet.xdi, 4);
+  out["xdi"] = mti_hex(packet.xdi, 4);
   out["content"] = name.empty() ? Json(nullptr) : Json(name);
   if (packet.fault == mti::Fault::None) {
     std::visit(DescribePacket{out, packet}, packet.value);
@@ -142,7 +142,7 @@ Json packet_object(const mti::Packet& packet) {
   return out;
 }
 
-std::string text_of(base::Bytes payload) {
+std::string product_text(base::Bytes payload) {
   std::string text(payload.begin(), payload.end());
   text.erase(text.find_last_not_of(' ') + 1);
   return text;
@@ -152,19 +152,19 @@ void describe_short(Json& out, const mti::Message& m) {
   const base::Bytes p = m.payload;
   if (m.mid == mti::mid::kDeviceId && p.size() == 4) {
     out["device_id"] =
-        hex(static_cast<std::uint32_t>(p[0]) << 24U | p[1] << 16U | p[2] << 8U | p[3], 8);
+        mti_hex(static_cast<std::uint32_t>(p[0]) << 24U | p[1] << 16U | p[2] << 8U | p[3], 8);
   } else if (m.mid == mti::mid::kFirmware && p.size() >= 3) {
     out["firmware"] =
         std::to_string(p[0]) + "." + std::to_string(p[1]) + "." + std::to_string(p[2]);
   } else if (m.mid == mti::mid::kProductCode) {
-    out["product"] = text_of(p);
+    out["product"] = product_text(p);
   } else if (m.mid == mti::mid::kError && !p.empty()) {
     out["code"] = p[0];
     out["error"] = mti::error_words(p[0]);
   } else if (m.mid == mti::mid::kSetOutput || m.mid == mti::mid::kSetOutputAck) {
     out["outputs"] = Json::array();
     for (const mti::Output& o : mti::outputs_of(p)) {
-      out["outputs"].push_back({{"xdi", hex(o.xdi, 4)}, {"rate", o.rate_hz}});
+      out["outputs"].push_back({{"xdi", mti_hex(o.xdi, 4)}, {"rate", o.rate_hz}});
     }
   } else if (!p.empty()) {
     out["bytes"] = p.size();
@@ -177,7 +177,7 @@ Json message_object(const mti::Message& m) {
   const auto name = mti::name_of(m.mid);
   Json out;
   out["message"] = name.empty() ? Json(nullptr) : Json(name);
-  out["mid"] = hex(m.mid, 2);
+  out["mid"] = mti_hex(m.mid, 2);
   if (m.mid != mti::mid::kMtData2) {
     describe_short(out, m);
     return out;

@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 constexpr double kUnknown_m = 4294967.295;
 
 template <class T>
-Json known(const std::optional<T>& value) {
+Json or_null(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 Json only_if(bool valid, double value) {
@@ -26,13 +26,13 @@ Json only_if(bool valid, double value) {
 Json accuracy(double value) {
   return only_if(value < kUnknown_m, value);
 }
-std::string hex(std::uint32_t value, int digits) {
+std::string ubx_hex(std::uint32_t value, int digits) {
   std::array<char, 16> text{};
   std::snprintf(text.data(), text.size(), "%0*X", digits, static_cast<unsigned>(value));
   return text.data();
 }
 
-struct DescribeUbx {
+struct UbxFields {
   Json& out;
 
   void operator()(std::monostate) const {}
@@ -72,9 +72,9 @@ struct DescribeUbx {
     out["sAcc"] = accuracy(m.speed_sigma_mps);
     out["headAcc"] = m.course_sigma_deg;
     out["pDOP"] = m.pdop;
-    out["headVeh"] = known(m.heading_deg);
-    out["magDec"] = known(m.magnetic_declination_deg);
-    out["magAcc"] = known(m.magnetic_declination_sigma_deg);
+    out["headVeh"] = or_null(m.heading_deg);
+    out["magDec"] = or_null(m.magnetic_declination_deg);
+    out["magAcc"] = or_null(m.magnetic_declination_sigma_deg);
   }
   void operator()(const ubx::NavHpPosLlh& m) const {
     out["iTOW"] = m.itow_ms;
@@ -127,15 +127,15 @@ struct DescribeUbx {
   }
   void operator()(const ubx::Ack& m) const {
     out["accepted"] = m.accepted;
-    out["to_class"] = hex(m.to.cls, 2);
-    out["to_id"] = hex(m.to.id, 2);
+    out["to_class"] = ubx_hex(m.to.cls, 2);
+    out["to_id"] = ubx_hex(m.to.id, 2);
     out["to"] = ubx::name_of(m.to);
   }
   void operator()(const ubx::ValSet& m) const {
     out["layers"] = m.layers;
     out["items"] = Json::array();
     for (const auto& item : m.items) {
-      out["items"].push_back({{"key", "0x" + hex(item.id, 8)}, {"value", item.value}});
+      out["items"].push_back({{"key", "0x" + ubx_hex(item.id, 8)}, {"value", item.value}});
     }
   }
   void operator()(const ubx::Poll&) const { out["poll"] = true; }
@@ -156,10 +156,10 @@ Json ubx_object(base::Bytes bytes) {
   const ubx::Decoded decoded = ubx::decode(frame);
   Json out;
   out["message"] = name.empty() ? Json(nullptr) : Json("UBX-" + std::string(name));
-  out["class"] = hex(frame.key.cls, 2);
-  out["id"] = hex(frame.key.id, 2);
+  out["class"] = ubx_hex(frame.key.cls, 2);
+  out["id"] = ubx_hex(frame.key.id, 2);
   if (decoded.verdict == ubx::Verdict::Decoded) {
-    std::visit(DescribeUbx{out}, decoded.message);
+    std::visit(UbxFields{out}, decoded.message);
   } else {
     out["bytes"] = bytes.size();
     out["refused"] = ubx::to_string(decoded.verdict);
