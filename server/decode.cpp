@@ -21,17 +21,19 @@ constexpr const char* kUsage =
     "input. What is not understood carries its reason under \"refused\".\n"
     "KIND:\n"
     "  bunker   CAN frames of a Bunker: the text of candump or candump -L\n"
-    "  nmea     bytes of a GNSS receiver\n";
+    "  nmea     bytes of a GNSS receiver\n"
+    "  ubx      the same, with the frames of u-blox receivers read\n"
+    "  mti      bytes of an Xsens MTi\n";
 
 constexpr int kUnreadable = 1;
 constexpr int kUsageWrong = 2;
 
 struct Kind {
   std::string_view name;
-  Reader (*make)(OnObject);  ///< null: known, not supported yet
+  Reader (*make)(OnObject);
 };
 constexpr std::array kKinds{Kind{"bunker", bunker_reader}, Kind{"nmea", nmea_reader},
-                            Kind{"ubx", nullptr}, Kind{"mti", nullptr}};
+                            Kind{"ubx", ubx_reader}, Kind{"mti", mti_reader}};
 
 int say(int code, const std::string& cause) {
   std::fprintf(stderr, "roverd: %s\n", cause.c_str());
@@ -103,9 +105,7 @@ int decode(int argc, char** argv) {
   }
   if (argc != 2) return say(kUsageWrong, "decode wants KIND and FILE (roverd decode --help)");
   for (const Kind& kind : kKinds) {
-    if (kind.name != first) continue;
-    if (kind.make == nullptr) return say(kUsageWrong, "decode " + first + ": not supported yet");
-    return run(kind, argv[1]);
+    if (kind.name == first) return run(kind, argv[1]);
   }
   return say(kUsageWrong, "decode does not know \"" + first + "\" (roverd decode --help)");
 }

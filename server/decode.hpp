@@ -3,6 +3,8 @@
 //
 //   bunker   candump's text, as on the screen or as a log (-L)    decode_bunker.cpp
 //   nmea     the bytes of a GNSS receiver, UBX and RTCM3 between   decode_nmea.cpp
+//   ubx      the same bytes, the UBX frames read too               decode_ubx.cpp
+//   mti      the bytes of an Xsens MTi                             decode_mti.cpp
 //
 // Fields are named as in the fact sheets' tables. What is not understood is a line too, with the
 // reason under "refused". Files of any size: nothing but the present block is kept. New kinds are a
@@ -30,6 +32,12 @@ Reader bunker_reader(OnObject on_object);
 /// Objects: sentence, talker and fields; or the text, or the size of a binary frame; or how many
 /// bytes were skipped.
 Reader nmea_reader(OnObject on_object);
+/// As nmea_reader, but a UBX frame is message, class, id and its fields in m, m/s, deg, s.
+Reader ubx_reader(OnObject on_object);
+/// @param frame intact.
+nlohmann::ordered_json ubx_object(base::Bytes frame);
+/// Objects: message, mid and fields; MTData2: packets, each with xdi, content and its fields.
+Reader mti_reader(OnObject on_object);
 
 /// The text of one line, with its line feed. Bytes that are not UTF-8 are replaced.
 std::string to_line(const nlohmann::ordered_json& object);

@@ -173,7 +173,11 @@ Json line_object(std::string_view text) {
   return out;
 }
 
-Json binary_object(const gnss::Cut& cut) {
+using DescribeUbx = Json (*)(base::Bytes frame);
+
+/// @param ubx null: UBX frames are only named.
+Json binary_object(const gnss::Cut& cut, DescribeUbx ubx) {
+  if (cut.piece == gnss::Piece::Ubx && ubx != nullptr) return ubx(cut.bytes);
   Json out;
   const auto& b = cut.bytes;
   if (cut.piece == gnss::Piece::Ubx) {
@@ -192,7 +196,8 @@ Json binary_object(const gnss::Cut& cut) {
 
 class NmeaBytes {
  public:
-  explicit NmeaBytes(OnObject on_object) : on_object_(std::move(on_object)) {}
+  explicit NmeaBytes(OnObject on_object, DescribeUbx ubx = nullptr)
+      : on_object_(std::move(on_object)), ubx_(ubx) {}
 
   void feed(base::Bytes bytes) {
     framer_.feed(bytes, {}, [this](const gnss::Cut& cut) { take(cut); });
@@ -218,29 +223,46 @@ class NmeaBytes {
         return on_object_({{"text", cut.text}, {"refused", to_string(cut.flaw)}});
       case gnss::Piece::Ubx:
       case gnss::Piece::Rtcm3:
-        return on_object_(binary_object(cut));
+        return on_object_(binary_object(cut, ubx_));
     }
   }
 
   void tell_skipped() {
     const auto skipped = framer_.counts().skipped_bytes;
     if (skipped == skipped_) return;
+    const auto broken = framer_.counts().broken_binary;
     on_object_({{"skipped_bytes", skipped - skipped_},
-                {"refused", "outside any sentence or binary frame"}});
+                {"refused", broken == broken_ ? "outside any sentence or binary frame"
+                                              : "what begins like a binary frame has a wrong "
+                                                "checksum or length"}});
     skipped_ = skipped;
+    broken_ = broken;
   }
 
   const OnObject on_object_;
+  const DescribeUbx ubx_;
   gnss::Framer framer_;
   std::uint64_t skipped_ = 0;
+  std::uint64_t broken_ = 0;
 };
 
 }  // namespace
 
-Reader nmea_reader(OnObject on_object) {
-  const auto bytes = std::make_shared<NmeaBytes>(std::move(on_object));
+namespace {
+
+Reader reader_of(std::shared_ptr<NmeaBytes> bytes) {
   return {.feed = [bytes](base::Bytes part) { bytes->feed(part); },
           .finish = [bytes] { bytes->finish(); }};
+}
+
+}  // namespace
+
+Reader nmea_reader(OnObject on_object) {
+  return reader_of(std::make_shared<NmeaBytes>(std::move(on_object)));
+}
+
+Reader ubx_reader(OnObject on_object) {
+  return reader_of(std::make_shared<NmeaBytes>(std::move(on_object), ubx_object));
 }
 
 }  // namespace roverd

@@ -161,6 +161,15 @@ concept ClearsErrors = requires(Driver d, base::Time t) {
   d.clear_errors(0, t);
 };
 
+/// Whoever moves a vehicle has to know whom it speaks to: any sender may not become the vehicle.
+Result<void> check_peer(const std::string& who, const std::string& address) {
+  const auto parsed = link::parse_address(address);
+  if (!parsed || parsed->scheme != link::Scheme::Udp || !parsed->target.empty()) return {};
+  return base::fail(base::Code::Invalid,
+                    who + ": " + address +
+                        " names no peer; a vehicle wants udp:HOST:PORT or udp:LOCALPORT:HOST:PORT");
+}
+
 /// The driver lives as long as the device's functions.
 template <class Driver>
 Device device_of(std::shared_ptr<Driver> driver) {
@@ -203,6 +212,9 @@ class Planner {
     const std::string who = settings_.where("drivers." + name + ".link");
     if (auto good = check_link(who, address); !good) return good;
     if (auto good = check_kind<Kind>(who, address); !good) return good;
+    if constexpr (Moves<Driver>) {
+      if (auto good = check_peer(who, address); !good) return good;
+    }
     Params params = said.params;
     // A hole in a recording is no reason to open it again: it would begin anew.
     if (replaying) params.silent_reopen_s = 0.0;

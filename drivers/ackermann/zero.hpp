@@ -3,8 +3,10 @@
 //
 // The driver sees two angles: what it told and what the controller reports. Their difference while
 // the car drives straight and steadily is the actuator's zero, and this removes it. A sensor that
-// is itself off shows nothing here: only the measured yaw rate tells, which is the robot's business
-// (it sees a curvature that stays while a straight line is driven). Pure.
+// is itself off shows nothing here, and a controller that reports nothing even less: there only the
+// way over ground tells. The robot's estimator learns it from position and course as the curvature
+// that stays while the wheels stand straight (nav: pull_1pm, told in GET /vehicle), and the tracker
+// steers against it. What is removed here leaves nothing to learn there. Pure.
 
 #include <algorithm>
 #include <cmath>

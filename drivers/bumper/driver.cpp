@@ -31,9 +31,9 @@ void Driver::restart(Time now) {
 void Driver::tick(Time now) {
   const double silent_s = base::seconds(now - port_.last_heard());
   if (port_.is_open() && params_.silent_reopen_s > 0.0 && silent_s > params_.silent_reopen_s) {
-    port_.fail("no intact line", now);
+    port_.fail(port_.silence("no intact line"), now);
   } else if (port_.is_up() && silent_s > params_.silent_after_s) {
-    port_.lose("no intact line", now);
+    port_.lose(port_.silence("no intact line"), now);
   }
   port_.tick(now);
 }

@@ -13,11 +13,13 @@
 //   0x121 light command    0x221 motion state    0x261/2 actuator, slow   0x362 battery alarms
 //   0x421 control mode     0x231 light state     0x311   odometer           0x41A version
 //   0x441 clear errors     0x241 radio state                                0x4A1 version text
+//   0x411 0x4A1 version request
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string_view>
 #include <variant>
 
@@ -43,7 +45,8 @@ inline constexpr std::uint32_t kActuatorSlow = 0x260;  ///< plus the motor numbe
 inline constexpr std::uint32_t kOdometer = 0x311;
 inline constexpr std::uint32_t kBattery = 0x361;
 inline constexpr std::uint32_t kBatteryAlarms = 0x362;
-inline constexpr std::uint32_t kVersion = 0x41A;      ///< answer to 0x411, the old form
+inline constexpr std::uint32_t kVersionRequest = 0x411;
+inline constexpr std::uint32_t kVersion = 0x41A;      ///< its answer, the old form
 inline constexpr std::uint32_t kVersionText = 0x4A1;  ///< the new form; also its request
 }  // namespace id
 
@@ -157,6 +160,11 @@ struct VersionText {
   std::array<char, 8> text{};
 };
 
+/// The host's question for either of the two: one byte 01.
+struct VersionRequest {
+  bool as_text = true;  ///< 0x4A1, else 0x411
+};
+
 using Message =
     std::variant<std::monostate, MotionCommand, ControlModeCommand, ClearErrors, LightCommand,
                  SystemState, MotionState, LightState, RadioFrame, ActuatorFast, ActuatorSlow,
@@ -190,6 +198,10 @@ constexpr CanFrame encode(const Battery& m) noexcept;
 constexpr CanFrame encode(const BatteryAlarms& m) noexcept;
 constexpr CanFrame encode(const Version& m) noexcept;
 constexpr CanFrame encode(const VersionText& m) noexcept;
+constexpr CanFrame encode(const VersionRequest& m) noexcept;
+
+/// For the base's side: the question this frame asks, if it asks one.
+constexpr std::optional<VersionRequest> version_request(const CanFrame& frame) noexcept;
 
 /// A twist cut to the limits (both positive). A twist with a NaN or infinity becomes zero as a
 /// whole: half of a broken command is not a command.

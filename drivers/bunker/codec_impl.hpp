@@ -158,6 +158,20 @@ constexpr CanFrame encode(const VersionText& m) noexcept {
   return f;
 }
 
+constexpr CanFrame encode(const VersionRequest& m) noexcept {
+  CanFrame f = wire::frame(m.as_text ? id::kVersionText : id::kVersionRequest);
+  f.len = 1;
+  f.data[0] = 1;
+  return f;
+}
+
+constexpr std::optional<VersionRequest> version_request(const CanFrame& f) noexcept {
+  if (f.extended || f.remote || f.error || f.len != 1 || f.data[0] != 1) return std::nullopt;
+  if (f.id == id::kVersionText) return VersionRequest{true};
+  if (f.id == id::kVersionRequest) return VersionRequest{false};
+  return std::nullopt;
+}
+
 constexpr MotionCommand limited(base::BodyTwist t, double max_linear_mps,
                                 double max_angular_radps) noexcept {
   constexpr double kMax = std::numeric_limits<double>::max();

@@ -93,6 +93,8 @@ void Driver::open(Time now) {
     link_.store(owned_link_.get(), std::memory_order_release);
   }
   last_feedback_ = now;
+  firmware_asks_ = 0;
+  firmware_at_ = now;
   v1_seen_ = v2_seen_ = false;
   speaks_v1_.store(false, std::memory_order_release);
   state_count_ = {};
@@ -129,6 +131,7 @@ void Driver::tick(Time now) {
   } else if (life_.retry_due(now)) {
     open(now);
   }
+  ask_firmware(now);
   if (clear_next_ != 0 && now - clear_at_ >= kClearPause) clear_next(now);
   report(now);
 }

@@ -25,6 +25,9 @@
 // no radio frame: mode 0 is told as standby, but as the radio's for kRadioPause after it took the
 // base from us.
 //
+// The firmware's version is asked for while Up, at most kFirmwareAsks times (V2 only; in turn with
+// the new and the old form).
+//
 // Every frame passes the gate. If it refuses a motion frame, a zero goes in its place.
 //
 // Measurements, stamped with the arrival of their frame: BaseStatus (0x211, 0x151), BaseMotion
@@ -112,6 +115,8 @@ class Driver {
   static constexpr base::Duration kRefusedAfter = std::chrono::seconds(2);
   static constexpr base::Duration kOneVoice = std::chrono::seconds(1);
   static constexpr base::Duration kClearPause = std::chrono::milliseconds(500);
+  static constexpr base::Duration kFirmwarePause = std::chrono::seconds(1);
+  static constexpr int kFirmwareAsks = 4;
 
   void open(Time now);
   /// The base is not there: nothing but its own voice brings it back.
@@ -156,6 +161,7 @@ class Driver {
   CanFrame zero_frame(base::ControlMode mode) noexcept;
   CanFrame mode_frame(RequestedMode mode) noexcept;
   bool clear_next(Time now) noexcept;
+  void ask_firmware(Time now) noexcept;
   enum class Outcome { Sent, Refused, NoRoom };  ///< Refused: by the gate
   Outcome transmit(const CanFrame& frame, Time now) noexcept;
 
@@ -209,6 +215,8 @@ class Driver {
   std::uint8_t clear_next_ = 0;  ///< V1: the kind to clear next; 0: none
   bool clear_all_ = false;
   Time clear_at_{};
+  int firmware_asks_ = 0;  ///< since the bus was opened
+  Time firmware_at_{};
   std::uint64_t received_ = 0;
   std::uint64_t refused_ = 0;
   std::uint64_t restarts_ = 0;

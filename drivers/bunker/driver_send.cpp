@@ -146,6 +146,17 @@ bool Driver::clear_next(Time now) noexcept {
   return transmit(encode(c), now) == Outcome::Sent;
 }
 
+void Driver::ask_firmware(Time now) noexcept {
+  if (!up_.load(std::memory_order_acquire) || speaks_v1_.load(std::memory_order_acquire)) return;
+  if (!params_.ask_firmware || firmware_asks_ == kFirmwareAsks || !interpreter_.firmware().empty())
+    return;
+  if (now - firmware_at_ < kFirmwarePause) return;
+  const bool as_text = firmware_asks_ % 2 == 0;
+  transmit(encode(VersionRequest{as_text}), now);
+  ++firmware_asks_;
+  firmware_at_ = now;
+}
+
 Driver::Outcome Driver::transmit(const CanFrame& frame, Time now) noexcept {
   if (!gate_.allows(frame, now)) return Outcome::Refused;
   link::FrameLink* link = link_.load(std::memory_order_acquire);

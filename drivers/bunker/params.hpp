@@ -17,6 +17,7 @@ struct Params {
   double state_fresh_s = 0.7;
   double mode_request_period_s = 0.5;
   int stop_frames = 5;
+  bool ask_firmware = true;
   double odometer_max_mps = 4.0;
   double silent_reopen_s = 5.0;
   double retry_first_s = 0.5;
@@ -38,6 +39,8 @@ void fields(V& v, Params& p) {
   v("mode_request_period_s", p.mode_request_period_s, 0.5, 10.0,
     "between two requests for CAN mode while the base is in standby");
   v("stop_frames", p.stop_frames, 1, 50, "zero commands before the base is sent to standby");
+  v("ask_firmware", p.ask_firmware,
+    "ask the base for its firmware's version (0x4A1, 0x411) while it is up");
   v("odometer_max_mps", p.odometer_max_mps, 0.5, 20.0,
     "a faster odometer step or reported speed is impossible");
   v("silent_reopen_s", p.silent_reopen_s, 0.0, 600.0,

@@ -98,6 +98,9 @@ inline constexpr std::array kMayLeave{
     TxRule{.id = 0x421, .len = 8, .max_code = 1, .zero_is_stop = true, .min_period_s = 0.45},
     TxRule{.id = 0x441, .len = 8, .max_code = 2, .min_period_s = 0.1},
     TxRule{.id = 0x121, .payload = Payload::Lights, .max_code = 1, .min_period_s = 0.015},
+    // Asks for the firmware's version, in the two forms.
+    TxRule{.id = 0x4A1, .len = 1, .max_code = 1, .min_period_s = 0.45},
+    TxRule{.id = 0x411, .len = 1, .max_code = 1, .min_period_s = 0.45},
     TxRule{.id = 0x130, .payload = Payload::MotionV1, .max_code = 1, .min_period_s = 0.45},
     TxRule{.id = 0x140, .payload = Payload::LightsV1, .max_code = 1, .min_period_s = 0.015},
 };

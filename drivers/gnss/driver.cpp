@@ -65,6 +65,7 @@ void Driver::open(Time now) {
   }
   life_.opening("waiting for a sentence");
   last_byte_ = last_intact_ = now;
+  clock_ = {};
   open_ = true;  // before open: a link may hand over the first bytes from inside it
   if (const auto opened = link_->open(); !opened) fail(opened.error().detail, now);
 }
@@ -80,7 +81,7 @@ void Driver::tick(Time now) {
   now_ = now;
   if (open_) {
     const std::uint64_t intact = decoder_.counts().intact();
-    decoder_.give_up(now - kStalled, [&](const Sentence& s, Time t) { epochs_.add(s, t); });
+    decoder_.give_up(now - kStalled, [&](const Sentence& s, Time t) { take(s, t); });
     after_bytes(intact, now);
     epochs_.tick(now);
     check_silence(now);
@@ -107,15 +108,24 @@ void Driver::on_bytes(Bytes bytes, Time stamp) {
   if (!open_) return;
   last_byte_ = stamp;
   const std::uint64_t intact = decoder_.counts().intact();
-  decoder_.feed(bytes, stamp, [&](const Sentence& s, Time t) { epochs_.add(s, t); });
+  decoder_.feed(bytes, stamp, [&](const Sentence& s, Time t) { take(s, t); });
   after_bytes(intact, stamp);
+}
+
+void Driver::take(const Sentence& sentence, Time stamp) {
+  if (!clock_.add(sentence, stamp)) return epochs_.add(sentence, stamp);
+  ++frozen_;
+  if (life_.phase() != Phase::Up) return;
+  epochs_.reset();
+  life_.faulty("the receiver repeats itself: its time stands still", stamp);
+  report(stamp);
 }
 
 void Driver::after_bytes(std::uint64_t intact_before, Time stamp) {
   if (decoder_.counts().intact() == intact_before) return;
   last_intact_ = stamp;
   last_received_ = stamp;
-  if (life_.phase() == Phase::Up) return;
+  if (life_.phase() == Phase::Up || clock_.frozen()) return;
   life_.up();
   report(stamp);
 }
@@ -146,24 +156,34 @@ base::DriverStatus Driver::status(Time now) const {
   s.phase = life_.phase();
   s.reason = life_.reason();
   s.received = decoder_.counts().used;
-  s.refused = decoder_.counts().damaged;
+  s.refused = decoder_.counts().damaged + frozen_;
   s.last_received = last_received_;
+  auto detail = std::make_shared<base::DriverDetail>();
+  detail->counts = causes();
   if (link_) s.link = link_->describe();
   s.link_open = open_;
-  auto detail = std::make_shared<base::DriverDetail>();
-  const SentenceCounts& counts = decoder_.counts();
-  const auto count = [&detail](const std::string& what, std::uint64_t n) {
-    if (n > 0) detail->counts[what] = n;
-  };
-  for (std::size_t i = 0; i < counts.by_flaw.size(); ++i) {
-    count("damaged: " + std::string(to_string(static_cast<Flaw>(i))), counts.by_flaw[i]);
-  }
-  count("sentences of no use here", counts.unused);
-  count("unknown sentences", counts.unknown);
-  count("UBX frames", counts.ubx);
-  count("RTCM frames", counts.rtcm3);
   s.detail = std::move(detail);
   return s;
+}
+
+std::map<std::string, std::uint64_t> Driver::causes() const {
+  std::map<std::string, std::uint64_t> out;
+  const auto count = [&out](std::string what, std::uint64_t n) {
+    if (n > 0) out.emplace(std::move(what), n);
+  };
+  const SentenceCounts& c = decoder_.counts();
+  for (std::size_t i = 0; i < c.by_flaw.size(); ++i) {
+    count("sentence: " + std::string(to_string(static_cast<Flaw>(i))), c.by_flaw[i]);
+  }
+  count("sentence of no use", c.unused);
+  count("unknown sentence", c.unknown);
+  count("UBX frame, not used", c.ubx);
+  count("RTCM3 frame, not used", c.rtcm3);
+  count("binary frame with a wrong checksum", decoder_.framing().broken_binary);
+  count("bytes outside any sentence", decoder_.framing().skipped_bytes);
+  count("sentence of a standing clock", frozen_);
+  if (link_) count("from a foreign address", link_->strangers());
+  return out;
 }
 
 }  // namespace roverd::gnss

@@ -8,20 +8,25 @@
 //
 // Silence alone does not close the port; it is opened again when it stays silent for
 // silent_reopen_s. Faulty says which silence: "no bytes" (cable, power) or "bytes but no sentence"
-// (baud rate, binary protocol only).
+// (baud rate, binary protocol only, another device on this port), or that the receiver repeats one
+// epoch for ever (ClockWatch): nothing it says then is used.
 //
 // Measurements: GnssFix, GnssVelocity, Heading (gnss/epoch.hpp says how), DriverStatus on change
-// and twice a second; received counts decoded sentences, refused the damaged ones.
+// and twice a second; received counts decoded sentences, refused the damaged ones and those of a
+// standing clock; its DriverDetail has the counts by cause.
 //
 // Threads: the device thread only.
 
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "base/measurements.hpp"
 #include "base/result.hpp"
+#include "gnss/clock_watch.hpp"
 #include "gnss/decoder.hpp"
 #include "gnss/epoch.hpp"
 #include "gnss/params.hpp"
@@ -60,7 +65,9 @@ class Driver {
   void check_silence(Time now);
   void report(Time now);
   void on_bytes(Bytes bytes, Time stamp);
+  void take(const Sentence& sentence, Time stamp);
   void after_bytes(std::uint64_t intact_before, Time stamp);
+  std::map<std::string, std::uint64_t> causes() const;
 
   const std::string name_;
   const Params params_;
@@ -70,6 +77,8 @@ class Driver {
   link::Lifecycle life_;
   Decoder decoder_;
   EpochAssembler epochs_;
+  ClockWatch clock_;
+  std::uint64_t frozen_ = 0;  ///< sentences of a standing clock
   bool open_ = false;
   Time now_{};          ///< of the last call, for callbacks that carry no time
   Time last_byte_{};    ///< or the opening

@@ -50,6 +50,11 @@ class BytePort {
   Phase phase() const noexcept { return life_.phase(); }
   /// When the device was last heard, or the link opened.
   Time last_heard() const noexcept { return last_heard_; }
+  /// Why nothing was heard: the cable, or what is at its other end. @param missing "no feedback".
+  std::string silence(const std::string& missing) const {
+    if (!last_bytes_ || *last_bytes_ <= last_heard_) return missing + ": the port is silent";
+    return missing + ", only other bytes: another device on this port, or a wrong baud rate";
+  }
   const std::string& name() const noexcept { return names_.name; }
 
   void start(Time now) {
@@ -142,7 +147,9 @@ class BytePort {
       if (!made) return life_.faulty(made.error().detail, now);
       link_ = std::move(*made);
       link_->on_bytes = [this](Bytes b, Time t) {
-        if (open_) on_bytes_(b, t);
+        if (!open_) return;
+        last_bytes_ = t;
+        on_bytes_(b, t);
       };
       link_->on_closed = [this](const std::string& reason) { fail(reason, now_); };
     }
@@ -169,6 +176,7 @@ class BytePort {
   bool open_ = false;
   Time now_{};  ///< of the last call, for callbacks that carry no time
   Time last_heard_{};
+  std::optional<Time> last_bytes_;
   std::optional<Time> last_received_;
   std::uint64_t received_ = 0;
   std::uint64_t refused_ = 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <variant>
 
+#include "sim/base_v1.hpp"
 #include "sim/reports.hpp"
 
 namespace roverd::sim {
@@ -14,6 +15,8 @@ constexpr std::uint16_t kBatteryWarningBit = 1u << 1;
 constexpr std::uint16_t kRadioLostBit = 1u << 2;
 constexpr std::uint16_t kMotorBits = 1u << 3 | 1u << 4 | 1u << 8;
 constexpr std::uint16_t kSeenWithEstopBit = 1u << 7;
+constexpr std::uint16_t kV1BatteryWarningBit = 1u << 11;
+constexpr std::uint16_t kV1RadioLostBit = 1u << 12;
 constexpr double kAmbient_c = 25.0;
 
 /// A motor's heat follows the square of its current within minutes.
@@ -57,6 +60,7 @@ Vehicle::Moved Bunker::drive(double dt_s) {
 
 /// The periods of the real base; the phases spread the load over the bus.
 void Bunker::report() {
+  if (speaks_v1()) return report_v1();
   if (every(4, 0)) {
     const base::BodyTwist t = tracks_.measured();
     send(bunker::encode(bunker::MotionState{{t.linear_mps, t.angular_radps, 0.0, 0.0}}));
@@ -75,6 +79,25 @@ void Bunker::report() {
     send(bunker::encode(
         bunker::Battery{charge, 100, battery().voltage_v(), battery().current_a(), kAmbient_c}));
   }
+}
+
+void Bunker::report_v1() {
+  unsigned code = static_cast<unsigned>(faults().error_bits);
+  if (battery().fault(params().battery)) code |= kBatteryFaultBit;
+  if (battery().warning(params().battery)) code |= kV1BatteryWarningBit;
+  if (machine_.radio_lost() && !faults().radio_loss_unflagged) code |= kV1RadioLostBit;
+  const auto motor = [this](const MotorState& m, double heat_c) {
+    return V1Facts::Motor{m.current_a, m.track_mps * params().drive.motor_rev_per_m * 60.0,
+                          kAmbient_c + heat_c};
+  };
+  const V1Facts facts{.vehicle_state = machine_.state(),
+                      .control_mode = machine_.shown_mode(now()),
+                      .battery_v = battery().voltage_v(),
+                      .error_code = static_cast<std::uint16_t>(code),
+                      .measured = tracks_.measured(),
+                      .right = motor(tracks_.right(), right_heat_c_),
+                      .left = motor(tracks_.left(), left_heat_c_)};
+  for (const CanFrame& f : v1_voice_.at(steps(), facts)) send(f);
 }
 
 void Bunker::report_radio() {
@@ -112,6 +135,11 @@ void Bunker::send(const CanFrame& f) {
 void Bunker::receive(const CanFrame& f) {
   const bool lost = to_base_.uniform() < faults().loss_to_base;
   if (lost || faults().bus_off) return;
+  if (speaks_v1()) {
+    if (const auto order = v1_order(f, params().base)) obey(*order);
+    return;
+  }
+  for (const CanFrame& part : version_answer(f, params().base.firmware)) send(part);
   const bunker::Decoded decoded = bunker::decode(f);
   if (decoded.verdict == bunker::Verdict::Decoded) obey(decoded.message);
 }
@@ -125,6 +153,17 @@ void Bunker::obey(const bunker::Message& message) {
   } else if (const auto* clear = std::get_if<bunker::ClearErrors>(&message)) {
     clear_error_bits(clear->which == 0 ? 0xFFFFu : 1u << (2 + clear->which));
   }
+}
+
+/// Every command carries the mode. While the radio drives it is not asked for anything.
+void Bunker::obey(const V1Order& order) {
+  clear_error_bits(order.cleared);
+  if (order.motion) {
+    ++commands_;
+    machine_.command(*order.motion, now());
+  }
+  if (machine_.shown_mode(now()) == base::ControlMode::Radio) return;
+  machine_.request_mode(order.mode, 0, now());
 }
 
 void Bunker::describe(Truth& t) const {

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "bunker/codec.hpp"
+#include "sim/base_v1.hpp"
 #include "sim/machine.hpp"
 #include "sim/noise.hpp"
 #include "sim/tracks.hpp"
@@ -36,10 +37,13 @@ class Bunker final : public Vehicle {
   void restart() override;
 
   std::uint16_t error_code() const noexcept;
+  bool speaks_v1() const noexcept { return params().base.protocol == "v1"; }
+  void report_v1();
   void report_radio();
   void report_motors(bool slow);
   void send(const CanFrame& frame);
   void obey(const bunker::Message& message);
+  void obey(const V1Order& order);
 
   Tracks tracks_;
   Machine machine_;
@@ -49,6 +53,7 @@ class Bunker final : public Vehicle {
   std::uint64_t commands_ = 0;
   std::uint8_t state_count_ = 0;
   std::uint8_t radio_count_ = 0;
+  V1Voice v1_voice_;
   std::optional<CanFrame> last_radio_;
 };
 

@@ -112,6 +112,22 @@ void fields(V& v, DriveParams& p) {
   v("newton_per_ampere", p.newton_per_ampere, 1.0, 1000.0, "track force for a motor's ampere");
 }
 
+/// The firmware of the base.
+struct BaseParams {
+  std::string protocol = "v2";
+  std::string firmware = "BUNKER-SIM V2.0.1";
+  double v1_full_linear_mps = 3.0;
+  double v1_full_angular_radps = 2.5235;
+};
+
+template <class V>
+void fields(V& v, BaseParams& p) {
+  v("protocol", p.protocol, "v2, or v1: what older firmware speaks");
+  v("firmware", p.firmware, "answer to a version request (V2 only), at most 80 characters");
+  v("v1_full_linear_mps", p.v1_full_linear_mps, 0.1, 10.0, "what 100 percent mean in V1");
+  v("v1_full_angular_radps", p.v1_full_angular_radps, 0.1, 10.0, "likewise, turning");
+}
+
 struct BatteryParams {
   double capacity_ah = 60.0;
   double start_pct = 90.0;
@@ -200,6 +216,7 @@ struct Params {
   DeviceParams device;
   DriveParams drive;
   CarParams car;
+  BaseParams base;
   BatteryParams battery;
   RadioParams radio;
   GnssParams gnss;
@@ -212,6 +229,7 @@ void sections(V& v, Params& p) {
   v("device", p.device);
   v("drive", p.drive);
   v("car", p.car);
+  v("base", p.base);
   v("battery", p.battery);
   v("radio", p.radio);
   v("gnss", p.gnss);

@@ -54,6 +54,23 @@ bunker::RadioFrame radio_report(const Radio& radio, std::uint8_t count) noexcept
           .count = count};
 }
 
+std::vector<CanFrame> version_answer(const CanFrame& request, const std::string& firmware) {
+  constexpr std::size_t kParts = 10;
+  const auto asked = bunker::version_request(request);
+  if (!asked) return {};
+  if (!asked->as_text) return {bunker::encode(bunker::Version{{2, 0, 1, 0}})};
+  std::vector<CanFrame> out;
+  for (std::size_t part = 0; part < kParts; ++part) {
+    bunker::VersionText text;
+    for (std::size_t i = 0; i < text.text.size(); ++i) {
+      const std::size_t at = part * text.text.size() + i;
+      text.text[i] = at < firmware.size() ? firmware[at] : '\0';
+    }
+    out.push_back(bunker::encode(text));
+  }
+  return out;
+}
+
 std::int32_t wrapped_mm(double metres) noexcept {
   return wrapped(metres * 1000.0);
 }

@@ -108,6 +108,7 @@ class Vehicle {
   virtual void restart() = 0;
 
   Time now() const noexcept { return now_; }
+  std::int64_t steps() const noexcept { return steps_; }
   /// Reports with a period of so many steps; the phases spread the load.
   bool every(int period, int phase) const noexcept { return steps_ % period == phase; }
   bool radio_heard() const noexcept {

@@ -70,9 +70,9 @@ void Driver::tick(Time now) {
   if (port_.is_open()) {
     const double silent_s = base::seconds(now - port_.last_heard());
     if (params_.silent_reopen_s > 0.0 && silent_s > params_.silent_reopen_s) {
-      port_.fail("no feedback", now);
+      port_.fail(port_.silence("no feedback"), now);
     } else if (port_.is_up() && silent_s > params_.feedback_timeout_s) {
-      port_.lose("no feedback", now);
+      port_.lose(port_.silence("no feedback"), now);
     }
     if (!last_sent_ || base::seconds(now - *last_sent_) >= kPeriod_s) drive(now);
   }

@@ -237,6 +237,7 @@ Json vehicle_json(const base::Snapshot& s, const std::string& name, base::Time n
           {"home", point_json(s.home)},
           // A compass that reads too far clockwise has a smaller yaw than the truth.
           {"compass_bias_deg", s.pose ? degrees(-s.estimator.compass_bias_rad) : Json(nullptr)},
+          {"pull_1pm", s.pose ? rounded(s.estimator.pull_1pm, 1e4) : Json(nullptr)},
           {"ready_to_arm", s.ready_to_arm}};
 }
 

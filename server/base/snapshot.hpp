@@ -84,6 +84,7 @@ struct RadioMeaning {
 struct EstimatorHealth {
   double compass_bias_rad = 0.0;
   double odometry_scale = 1.0;
+  double pull_1pm = 0.0;  ///< curvature of a vehicle that is told to go straight; left positive
   std::uint64_t rejected = 0;
   std::uint64_t resets = 0;
 };

@@ -148,6 +148,7 @@ struct Robot::Impl {
   void press(const base::RadioState& frame);
   void act_on_radio();
   base::Result<void> carry_out(const RadioAction& action);
+  base::Result<void> drive_by_radio();
   base::Result<void> ask_for_edit(RadioDeed deed);
   base::RadioMeaning radio_meaning() const noexcept;
 

@@ -67,7 +67,7 @@ base::Result<void> Robot::Impl::carry_out(const RadioAction& action) {
     case RadioDeed::ByKnob:
       return {};
     case RadioDeed::SetMode:
-      return handle(SetMode{action.mode});
+      return action.mode == Mode::Auto ? drive_by_radio() : handle(SetMode{action.mode});
     case RadioDeed::Arm:
       return handle(Arm{});
     case RadioDeed::Disarm:
@@ -81,7 +81,7 @@ base::Result<void> Robot::Impl::carry_out(const RadioAction& action) {
     case RadioDeed::ClearMission:
       return ask_for_edit(action.deed);
     case RadioDeed::StartMission:
-      return handle(SetMode{Mode::Auto});
+      return drive_by_radio();
     case RadioDeed::PauseMission:
       return handle(PauseMission{});
     case RadioDeed::StopMission:
@@ -90,6 +90,16 @@ base::Result<void> Robot::Impl::carry_out(const RadioAction& action) {
       return handle(SetHome{});
   }
   return {};
+}
+
+/// Goes on with what was interrupted; else starts what is loaded. Whoever holds the radio stands
+/// beside the robot and edits with it, and has no screen to compare revisions on.
+base::Result<void> Robot::Impl::drive_by_radio() {
+  const ExecutionState s = executor.state();
+  const bool under_way =
+      s == ExecutionState::Running || s == ExecutionState::Paused || s == ExecutionState::Blocked;
+  if (under_way || mode == Mode::Auto || !mission) return handle(SetMode{Mode::Auto});
+  return start(nav::StartAt{});
 }
 
 base::Result<void> Robot::Impl::ask_for_edit(RadioDeed deed) {

@@ -113,6 +113,10 @@ def everything_comes_up():
     frames = candump.read(LOG)
     for frame_id in (0x211, 0x221, 0x311):
         check(candump.only(frames, frame_id), f"no 0x{frame_id:03X} on the bus")
+    driver = next(d for d in station.rest.get("/drivers")["items"] if d["name"] == "bunker")
+    check(driver["facts"].get("protocol") == "V2" and driver["facts"].get("can_kind") == "vcan",
+          f"the driver tells {driver['facts']}")
+    check("BUNKER-SIM" in driver["facts"].get("firmware", ""), f"no firmware in {driver['facts']}")
     battery_v = candump.state(candump.only(frames, 0x211)[-1])[2]
     shown_v = vehicle["battery"]["battery_v"]
     check(abs(shown_v - battery_v) < 0.35, f"0x211 says {battery_v} V, the API {shown_v} V")
@@ -286,6 +290,7 @@ def main():
         rough = RoughBus(station, BUS, LOG, watcher.start)
         code |= run_cases([
             rough.a_full_bus_does_not_stop_the_robot, rough.strangers_are_counted_and_change_nothing,
+            rough.a_second_commander_makes_the_robot_hold,
             rough.the_interface_goes_down_and_comes_back,
             rough.the_interface_is_unplugged_and_plugged_in_again, both_programs_end_cleanly,
             rough.the_recording_is_whole_and_in_several_files,

@@ -64,15 +64,50 @@ class RoughBus:
         refused = self.driver()["refused"]
         for frame in ("123#R", "211#R", "241#R8", "7FF#", "123#DEADBEEF", "00000211#0201000000000000",
                       "00000241#A600000000000000", "20000020#0000000000000000", "123##1AABBCCDD",
-                      "211##10201000000000000", "211#0201", "241#A6", "221#", "221#03E8"):
+                      "211##10201000000000000", "211#0201", "241#A6", "221#", "221#03E8",
+                      "211#0001FFFF00000000", "221#7D00000000000000", "20000040#0000000000000000"):
             subprocess.run(["cansend", self.bus, frame], check=True)
         until("the short frames are counted as refused", 10,
               lambda: self.driver()["refused"] >= refused + 4, 0.2)
+        wanted = ("remote frame", "extended id", "error frame", "unknown id 0x7FF", "0x211 too short",
+                  "0x221 too short", "0x241 too short", "impossible value in 0x211: battery 6553.5 V",
+                  "impossible value in 0x221: speed 32 m/s", "CAN FD frame", "CAN error: bus off")
+        until(f"every cause is named, in {self.driver()['counts']}", 10,
+              lambda: all(self.driver()["counts"].get(cause, 0) >= 1 for cause in wanted), 0.3)
         vehicle = self.station.rest.get("/vehicle")
         check(vehicle["control"] != "rc", "an extended or short frame passed for the radio")
         check(self.driver()["state"] == "up" and self.is_running(),
               f"{self.driver()}, {vehicle['mission']}, {vehicle['safety']}")
         self.drives_on()
+
+    def a_second_commander_makes_the_robot_hold(self):
+        """somebody else's 0x111 (cansend) while roverd drives: a hazard, an event, and the robot holds"""
+        self.drives_on()
+        theirs = "111#0096000000000000"
+        begin = time.time()
+
+        def hazards():
+            subprocess.run(["cansend", self.bus, theirs], check=True)
+            return self.driver()["hazards"]
+        named = until("the driver lists the hazard", 20, hazards, 0.1)
+        check(any("somebody else sends motion commands (0x111)" in h for h in named), f"hazards {named}")
+        # It stays for a second after the last foreign command: the robot is asked meanwhile.
+        vehicle = self.station.rest.get("/vehicle")
+        check(any(c["id"] == "driver_hazard" for c in vehicle["safety"]), f"safety {vehicle['safety']}")
+        check(vehicle["mission"]["state"] == "paused", f"the mission is {vehicle['mission']}")
+        check(self.driver()["counts"].get("somebody else's command 0x111", 0) >= 1, f"{self.driver()['counts']}")
+        until("an event tells it", 10, lambda: any(
+            e["kind"] == "mission_paused" and "0x111" in e["detail"]
+            for e in self.station.rest.get("/events?level=warning&limit=200")["items"]), 0.3)
+        time.sleep(1.0)
+        quiet = time.time()
+        time.sleep(1.0)
+        ours = [f for f in candump.only(candump.read(self.log), 0x111, quiet)
+                if candump.moves(f) and f.data.hex() != theirs.split("#")[1].lower()]
+        check(not ours, f"{len(ours)} moving commands beside the stranger's, first {ours[:1]}")
+        check(time.time() - begin < 60, "the case took too long to mean anything")
+        until("the hazard is over", 20, lambda: not self.driver()["hazards"], 0.3)
+        self.go_on()
 
     def lose_and_return(self, lose, give_back):
         """@param lose, give_back commands."""

@@ -176,11 +176,113 @@ def nmea_between_other_bytes():
     check(len(objects) == 5, objects)
 
 
+# frame, fields of the fact sheet
+UBX = [
+    ("b56201075c0000420612ea0705140b3b2a371900000084ffffff0383ea1dffb5e0a5f50ad0eb91380100c8e300"
+     "000e00000014000000e803000006ffffff0c0000000704000017e60f022800000040e201006200040000000000"
+     "0000000000000000e4d5",
+     {"message": "UBX-NAV-PVT", "iTOW": 302400000, "year": 2026, "sec": 42, "nano": -124, "fixType": 3,
+      "gnssFixOK": True, "diffSoln": True, "carrSoln": 2, "numSV": 29, "lon": -151.2000001, "lat": -33.8687243,
+      "height": 80.017, "hMSL": 58.312, "hAcc": 0.014, "vAcc": 0.020, "velN": 1.0, "velE": -0.25, "velD": 0.012,
+      "gSpeed": 1.031, "headMot": 345.96375, "sAcc": 0.040, "headAcc": 1.23456, "pDOP": 0.98}),
+    ("b56201075c00e8030000ea07010100000000140000000000000000000000000000000000000000000000000000"
+     "00ffffffffffffffff0000000000000000000000000000000000000000204e000080a812010f27000000000000"
+     "00000000000000002d72",
+     {"gnssFixOK": False, "usable": False, "lat": None, "lon": None, "hAcc": None, "pDOP": 99.99}),
+    ("b562011424000000000000420612ffb5e0a5f50ad0eb91380100c8e30000dd0704fa8a000000c70000002e87",
+     {"lon": -151.200000135, "lat": -33.868724293, "height": 80.0174, "hMSL": 58.3114, "hAcc": 0.0138, "vAcc": 0.0199}),
+    ("b562013c400001000000004206120c0000009dffffffffffffff640000005acea6010000000022eb05fe150000"
+     "00160000002b0000001e000000306f010000000000370100000982",
+     {"relPosN": 0.1234, "relPosE": -0.9921, "relPosD": -0.0095, "relPosLength": 0.9998,
+      "relPosHeading": 277.09018, "accHeading": 0.94, "isMoving": True, "relPosHeadingValid": True, "carrSoln": 2}),
+    ("b562013640000042061200010000000000000000000017b7d1390000000017b7d1b8faed6b3a6f12833917b7d1"
+     "3a000000000000000000000000000000000000000000000000a381",
+     {"posCovValid": True, "velCovValid": False, "velCov": None}),
+    ("b5620a04a00045585420434f524520312e30302028613162326333290000000000000000303031393030303000"
+     "00524f4d20424153452030783131384232303630000000000000000000000046575645523d48504720312e3332"
+     "0000000000000000000000000000000050524f545645523d32372e333100000000000000000000000000000000"
+     "004d4f443d5a45442d463950000000000000000000000000000000000000000337",
+     {"swVersion": "EXT CORE 1.00 (a1b2c3)", "hwVersion": "00190000", "module": "ZED-F9P", "protocol": "27.31"}),
+    ("b56205010200068a98c1",
+     {"message": "UBX-ACK-ACK", "accepted": True, "to": "CFG-VALSET"}),
+    ("b56205000200068a97bc",
+     {"message": "UBX-ACK-NAK", "accepted": False}),
+    ("b56205010200068a98c0",
+     {"refused": "what begins like a binary frame has a wrong checksum or length"}),
+]
+
+# message, its fields, those of its packets
+MTI = [
+    ("faff3100d0",
+     {"message": "GoToConfigAck", "mid": "31"}, []),
+    ("faff01040770012361",
+     {"device_id": "07700123"}, []),
+    ("faff4201219d",
+     {"code": 33, "error": "parameter invalid"}, []),
+    ("faff362610200202011060040012d6872010103f000000bf0000003f000000bf000000e0200401800007c5",
+     {}, [{"value": 513}, {"value": 1234567}, {"q0": 0.5, "q1": -0.5, "q2": 0.5, "q3": -0.5, "axes": "ENU"},
+      {"value": 0x01800007, "gnss_fix": True, "filter_mode": 3}]),
+    ("faff360f20350cffe80000002400000b3c000009",
+     {}, [{"roll": -1.5, "pitch": 2.25, "yaw": 179.75, "axes": "NED", "format": "fp12.20"}]),
+    ("faff362d50420c80000000ffde400000000097502206100000000050d01612800000000001c0000000ffff2000"
+     "000000009d",
+     {}, [{"lat": -33.5, "lon": 151.25}, {"value": 80.0625}, {"north": 1.5, "east": -0.25, "down": 0.125}]),
+    ("faff36364023183fb999999999999abfc999999999999a40239eb851eb851f8023183f50624dd2f1a9fc3f6062"
+     "4dd2f1a9fcbf689374bc6a7efaf0",
+     {}, [{"x": 0.1, "y": -0.2, "z": 9.81}, {"x": 0.001, "y": 0.002, "z": -0.003}]),
+    ("faff361e10100c0ee6b28007ea05140b3b2a37c0200c3e800000bf0000003f400000c2",
+     {}, [{"year": 2026, "second": 42, "ns": 250000000, "flags": 0x37}, {"x": 0.25, "y": -0.5, "z": 0.75}]),
+    ("faff366170105e1206420007ea05140b3b2a0700000019fffffc18030112005a26eb20ec084e40000138bf0000"
+     "e3c8000004b00000076c000005dcffffff060000007d000005f10216e0d6000000fa0016e36000000000009600"
+     "820046006e00500037003c92",
+     {}, [{"iTOW": 302400000, "fix_type": 3, "satellites": 18, "lon": 151.25, "lat": -33.5, "height": 80.063,
+      "hAcc": 1.2, "velN": 1.5, "course": 350.53782, "gDOP": 1.5, "eDOP": 0.6}]),
+    ("faff36ff000750200441480000c8",
+     {}, [{"content": "altitude", "value": 12.5}]),
+    ("faff360f2030103f8000004000000040400000dd",
+     {"refused": "a packet runs past the end of the message"}, []),
+]
+
+
+def ubx_vectors():
+    """every UBX vector of the GNSS fact sheet"""
+    objects = decoded("ubx", bytes.fromhex("".join(frame for frame, _ in UBX)))
+    check(len(objects) == len(UBX), f"{len(objects)} objects of {len(UBX)} frames")
+    for got, (frame, wanted) in zip(objects, UBX):
+        same(got, wanted, frame[:16])
+
+
+def sentences_and_frames_of_one_port():
+    """decode ubx shows the sentences of the same port too"""
+    frame = bytes.fromhex(UBX[6][0])
+    objects = decoded("ubx", b"$GPHDT,359.97,T*04\r\n" + frame + b"$GPHDT,10.0,T*00\r\n" + frame)
+    check([o.get("sentence") or o.get("message") for o in objects]
+          == ["HDT", "UBX-ACK-ACK", None, "UBX-ACK-ACK"], objects)
+    same(objects[2], {"refused": "wrong checksum"}, "the second sentence")
+
+
+def mti_vectors():
+    """every message of the MTi's fact sheet, in all number formats"""
+    objects = decoded("mti", bytes.fromhex("".join(message for message, _, _ in MTI)))
+    check(len(objects) == len(MTI), f"{len(objects)} objects of {len(MTI)} messages")
+    for got, (message, wanted, packets) in zip(objects, MTI):
+        same(got, wanted, message[:16])
+        check(len(got.get("packets", [])) == len(packets), got)
+        for one, fields in zip(got.get("packets", []), packets):
+            same(one, fields, message[:16])
+
+
+def mti_damage():
+    """a wrong checksum is told as skipped bytes, and what follows is read"""
+    objects = decoded("mti", bytes.fromhex("faff360f20300c3f8000004000000040400000e2" + MTI[0][0]))
+    check(len(objects) == 2 and "wrong checksum" in objects[0]["refused"], objects)
+    same(objects[1], MTI[0][1], "the message behind it")
+
+
 def usage_is_answered():
     """wrong arguments end with 2 and a reason, an unreadable file with 1"""
     for arguments, code, part in (((), 2, "KIND"), (("bunker",), 2, "FILE"), (("bunker", "a", "b"), 2, "FILE"),
-                                  (("tape", "-"), 2, "tape"), (("ubx", "-"), 2, "not supported yet"),
-                                  (("mti", "-"), 2, "not supported yet"),
+                                  (("tape", "-"), 2, "tape"),
                                   (("bunker", "/nowhere/bus.log"), 1, "/nowhere/bus.log"),
                                   (("bunker", "/"), 1, "/")):
         done = run(*arguments)
@@ -262,8 +364,8 @@ def mixed_receiver():
 
 if __name__ == "__main__":
     cases = [bunker_vectors, bunker_refusals, v1_has_another_0x211, nmea_vectors,
-             nmea_between_other_bytes, usage_is_answered, a_closed_pipe_is_quiet,
-             a_long_file_is_streamed, live_input_is_answered_at_once]
+             nmea_between_other_bytes, ubx_vectors, sentences_and_frames_of_one_port, mti_vectors,
+             mti_damage, usage_is_answered, a_closed_pipe_is_quiet, a_long_file_is_streamed, live_input_is_answered_at_once]
     for case in (moving_receiver, rtk_receiver, mixed_receiver):
         if (FOLDER / case.__doc__).is_file():
             cases.append(case)

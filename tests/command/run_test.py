@@ -240,6 +240,13 @@ def a_missing_can_interface_is_named():
     refused("--no-sim", "--port", "0", "--data", scratch / "n", "--config", config, names=["nocan7"])
 
 
+def a_vehicle_over_udp_needs_its_peer():
+    """a vehicle's UDP link without a peer is refused: any sender could become the vehicle"""
+    config = config_with("[drivers.ackermann]", 'link = "udp:5005"')
+    refused("--no-sim", "--port", "0", "--data", scratch / "u", "--config", config, "--vehicle", "uku",
+            names=["drivers.ackermann.link", "udp:HOST:PORT"])
+
+
 def page_of(rest):
     with urllib.request.urlopen(rest.address + "/", timeout=10) as answer:
         return answer.status, answer.headers, answer.read()
@@ -337,10 +344,10 @@ if __name__ == "__main__":
         code = run_cases([
             help_tells_every_option, wrong_options_are_named, missing_files_are_named,
             a_vehicle_without_a_simulation_is_refused, an_unwritable_data_folder_is_named,
-            wrong_configuration_is_named,
-            wrong_links_are_named, wrong_input_has_its_own_exit_code,
+            wrong_configuration_is_named, wrong_links_are_named, wrong_input_has_its_own_exit_code,
             both_recordings_of_a_run_play, recordings_that_do_not_belong_together_are_refused,
-            a_recorder_that_cannot_write_is_told, only_loopback_is_served, a_missing_can_interface_is_named, the_product_starts,
+            a_recorder_that_cannot_write_is_told, only_loopback_is_served, a_missing_can_interface_is_named,
+            a_vehicle_over_udp_needs_its_peer, the_product_starts,
             a_second_start_is_quick, both_end, a_killed_script_leaves_nothing,
             one_dies_the_other_ends, a_busy_port_is_named, a_newer_database_is_refused])
     finally:

@@ -1,7 +1,8 @@
-// Any bytes to both readers of roverd decode: every object is one line of JSON that says something,
+// Any bytes to every reader of roverd decode: every object is one line of JSON that says something,
 // and the same bytes in pieces give the same lines.
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <string>
 
@@ -33,7 +34,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size < 2) return 0;
   const base::Bytes bytes(data + 2, size - 2);
   const std::size_t piece = data[0] % 64U + 1U;
-  const auto make = data[1] % 2U == 0 ? bunker_reader : nmea_reader;
+  constexpr std::array kReaders{bunker_reader, nmea_reader, ubx_reader, mti_reader};
+  const auto make = kReaders[data[1] % kReaders.size()];
   const std::string whole = lines(make, bytes, size);
   // Skipped bytes are told piece by piece.
   const std::string pieces = lines(make, bytes, piece);

@@ -216,7 +216,8 @@ TEST(Vehicles, AnUnknownWordForTheKinematicsIsRefused) {
                                       .overrides = {"vehicle.kinematics=ackerman"}});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().detail,
-            "vehicle.kinematics must be skid_steer, differential or ackermann, is \"ackerman\"");
+            "--set vehicle.kinematics=ackerman must be skid_steer, differential or ackermann, is "
+            "\"ackerman\"");
 }
 
 /// What the navigation believes, what the driver may send, and what the vehicle can do: one story.

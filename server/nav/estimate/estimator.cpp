@@ -193,7 +193,7 @@ std::optional<base::Pose> Estimator::pose(Time now) const {
 }
 
 base::EstimatorHealth Estimator::health() const noexcept {
-  return {belief_.x(kBias), belief_.x(kScale), rejected_, resets_};
+  return {belief_.x(kBias), belief_.x(kScale), belief_.x(kPull), rejected_, resets_};
 }
 
 }  // namespace roverd::nav

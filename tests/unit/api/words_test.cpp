@@ -116,6 +116,26 @@ TEST(DriverWords, TellRatesAgesAndCounts) {
   EXPECT_EQ(gnss["age_s"], 0.2);
   EXPECT_EQ(gnss["refused"], 3);
   EXPECT_TRUE(list["next_cursor"].is_null());
+  EXPECT_EQ(list["items"][0]["counts"], Json::object()) << "nothing is told yet";
+}
+
+TEST(DriverWords, WhatWasRefusedAndWhatIsDangerousIsNamed) {
+  base::DriverStatus driver;
+  driver.stamp = at(10s);
+  driver.name = "bunker";
+  driver.phase = base::DriverPhase::Up;
+  driver.link = "can:can0";
+  driver.detail = std::make_shared<const base::DriverDetail>(
+      base::DriverDetail{{{"0x221 too short", 3}},
+                         {{"0x221", 49.96}},
+                         {{"protocol", "V2"}},
+                         {"somebody else sends motion commands (0x111)"}});
+  const Json one = driver_json(driver, std::nullopt, at(10s));
+  EXPECT_EQ(one["link"]["address"], "can:can0");
+  EXPECT_EQ(one["counts"]["0x221 too short"], 3);
+  EXPECT_EQ(one["rates_hz"]["0x221"], 50.0);
+  EXPECT_EQ(one["facts"]["protocol"], "V2");
+  EXPECT_EQ(one["hazards"][0], "somebody else sends motion commands (0x111)");
 }
 
 TEST(MissionWords, HomeIsNullWhenThereIsNone) {

@@ -102,6 +102,32 @@ TEST_F(BunkerDetailTest, TheFirmwareIsTextOfManyFrames) {
   EXPECT_LE(detail().facts.at("firmware").size(), 128u);
 }
 
+TEST_F(BunkerDetailTest, TheFirmwareIsAskedForInBothFormsAndNotForEver) {
+  asks_firmware = true;
+  make(Params{});
+  up(0);
+  rounds(500, off());
+  const auto text = frame(0x4A1, "01");
+  const auto numbers = frame(0x411, "01");
+  EXPECT_EQ(commands, (std::vector<CanFrame>{text, numbers, text, numbers}));
+  driver->restart(now);
+  up(0);
+  commands.clear();
+  rounds(60, off());
+  hear(frame(0x4A1, "56 39 00 00 00 00 00 00"));
+  rounds(200, off());
+  EXPECT_EQ(commands, std::vector<CanFrame>{text}) << "it answered";
+}
+
+TEST_F(BunkerDetailTest, ABaseThatIsNotUpIsAskedNothing) {
+  asks_firmware = true;
+  make(Params{});
+  driver->start(now);
+  base_talks = false;
+  rounds(200, off());
+  EXPECT_TRUE(commands.empty());
+}
+
 TEST_F(BunkerDetailTest, ASecondCommanderIsAHazardForASecond) {
   up(1);
   driver->tick(now);

@@ -23,7 +23,9 @@ class BunkerDriverTest : public ::testing::Test {
  protected:
   BunkerDriverTest() { make(Params{}); }
 
-  void make(const Params& params) {
+  /// @param params the firmware is asked for where a test wants it (asks_firmware).
+  void make(Params params) {
+    params.ask_firmware = asks_firmware;
     driver.reset();
     seen.clear();
     wire = link::memory_frame_pair();
@@ -112,6 +114,7 @@ class BunkerDriverTest : public ::testing::Test {
   std::vector<base::Measurement> seen;
   std::vector<CanFrame> commands;
   bool base_talks = true;
+  bool asks_firmware = false;
   int base_mode = 0;
 };
 

@@ -271,7 +271,7 @@ TEST(BunkerParams, AreListedWithTheirRanges) {
   Params p;
   EXPECT_TRUE(base::set_param(p, "max_linear_mps", 1.0));
   EXPECT_FALSE(base::set_param(p, "max_linear_mps", 9.0));
-  EXPECT_EQ(base::describe(p).size(), 15u);
+  EXPECT_EQ(base::describe(p).size(), 16u);
 }
 
 }  // namespace

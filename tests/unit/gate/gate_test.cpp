@@ -64,8 +64,20 @@ TEST_F(GateV2Test, AlwaysLetsAStopAndStandbyOut) {
 TEST_F(GateV2Test, KnowsOnlyTheListedIds) {
   ready();
   for (const std::uint32_t id :
-       {0x000u, 0x110u, 0x112u, 0x131u, 0x141u, 0x151u, 0x211u, 0x411u, 0x420u, 0x4A1u, 0x7FFu}) {
+       {0x000u, 0x110u, 0x112u, 0x131u, 0x141u, 0x151u, 0x211u, 0x41Au, 0x420u, 0x4A0u, 0x7FFu}) {
     expect_refused(frame(id, {0, 0, 0, 0, 0, 0, 0, 0}), Refusal::NotListed);
+  }
+}
+
+TEST_F(GateV2Test, TheFirmwareMayBeAskedForOncePermittedAndNotTooOften) {
+  for (const std::uint32_t id : {0x411u, 0x4A1u}) {
+    gate.permit(false);
+    expect_refused(frame(id, {1}), Refusal::NotPermitted);
+    ready();
+    expect_refused(frame(id, {1, 0, 0, 0, 0, 0, 0, 0}), Refusal::WrongLength);
+    expect_refused(frame(id, {2}), Refusal::WrongContent);
+    EXPECT_TRUE(gate.allows(frame(id, {1}), now));
+    expect_refused(frame(id, {1}), Refusal::TooOften);
   }
 }
 

@@ -1,0 +1,59 @@
+#pragma once
+// The fact sheet's messages.
+
+#include <string_view>
+
+#include "unit/ubx/frames.hpp"
+
+namespace roverd::mti {
+
+using ubx::from_hex;
+
+inline constexpr std::string_view kGoToConfig = "faff3000d1";
+inline constexpr std::string_view kGoToConfigAck = "faff3100d0";
+inline constexpr std::string_view kGoToMeasurement = "faff1000f1";
+inline constexpr std::string_view kReqDid = "faff000001";
+inline constexpr std::string_view kDeviceId = "faff01040770012361";
+inline constexpr std::string_view kSetOutputs =
+    "faffc0301020ffff1060ffff1010ffff201400644020006480200064c02000645042006450220064d0160064701000"
+    "04"
+    "e020ffff1b";
+inline constexpr std::string_view kError = "faff4201219d";
+inline constexpr std::string_view kQuaternion =
+    "faff362610200202011060040012d6872010103f000000bf0000003f000000bf000000e0200401800007c5";
+inline constexpr std::string_view kEuler = "faff360f20350cffe80000002400000b3c000009";
+inline constexpr std::string_view kPosition =
+    "faff362d50420c80000000ffde400000000097502206100000000050d01612800000000001c0000000ffff20000000"
+    "00"
+    "009d";
+inline constexpr std::string_view kAcceleration =
+    "faff36364023183fb999999999999abfc999999999999a40239eb851eb851f8023183f50624dd2f1a9fc3f60624dd2"
+    "f1"
+    "a9fcbf689374bc6a7efaf0";
+inline constexpr std::string_view kUtc =
+    "faff361e10100c0ee6b28007ea05140b3b2a37c0200c3e800000bf0000003f400000c2";
+inline constexpr std::string_view kPvt =
+    "faff366170105e1206420007ea05140b3b2a0700000019fffffc18030112005a26eb20ec084e40000138bf0000e3c8"
+    "00"
+    "0004b00000076c000005dcffffff060000007d000005f10216e0d6000000fa0016e36000000000009600820046006e"
+    "00"
+    "500037003c92";
+inline constexpr std::string_view kFourMatrices =
+    "faff36ff012c2023483ff00000000000000000000000000000000000000000000000000000000000003ff000000000"
+    "00"
+    "000000000000000000000000000000000000000000000000003ff00000000000002023483ff0000000000000000000"
+    "00"
+    "00000000000000000000000000000000000000003ff000000000000000000000000000000000000000000000000000"
+    "00"
+    "000000003ff00000000000002023483ff0000000000000000000000000000000000000000000000000000000000000"
+    "3f"
+    "f00000000000000000000000000000000000000000000000000000000000003ff00000000000002023483ff0000000"
+    "00"
+    "00000000000000000000000000000000000000000000000000003ff000000000000000000000000000000000000000"
+    "00"
+    "000000000000000000003ff00000000000003f";
+inline constexpr std::string_view kShortExtended = "faff36ff000750200441480000c8";
+inline constexpr std::string_view kWrongChecksum = "faff360f20300c3f8000004000000040400000e2";
+inline constexpr std::string_view kWrongInnerSize = "faff360f2030103f8000004000000040400000dd";
+
+}  // namespace roverd::mti
