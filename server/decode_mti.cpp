@@ -151,8 +151,9 @@ std::string product_text(base::Bytes payload) {
 void describe_short(Json& out, const mti::Message& m) {
   const base::Bytes p = m.payload;
   if (m.mid == mti::mid::kDeviceId && p.size() == 4) {
-    out["device_id"] =
-        mti_hex(static_cast<std::uint32_t>(p[0]) << 24U | p[1] << 16U | p[2] << 8U | p[3], 8);
+    std::uint32_t id = 0;
+    for (const std::uint8_t byte : p) id = id << 8U | byte;
+    out["device_id"] = mti_hex(id, 8);
   } else if (m.mid == mti::mid::kFirmware && p.size() >= 3) {
     out["firmware"] =
         std::to_string(p[0]) + "." + std::to_string(p[1]) + "." + std::to_string(p[2]);

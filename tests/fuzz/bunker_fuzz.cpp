@@ -73,7 +73,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     gate.saw(f, now);
     const bool may = gate.allows(f, now);
     check(!may || f.id == 0x111 || f.id == 0x421 || f.id == 0x441 || f.id == 0x121 ||
-          f.id == 0x130 || f.id == 0x140);
+          f.id == 0x130 || f.id == 0x140 || f.id == 0x411 || f.id == 0x4A1);
     const auto old = there_and_back(sealed(f), [](const auto& x) { return bunker::v1::decode(x); });
     interpreter.take(old.message, base::ControlMode::Can, now);
     bunker::impossible(old.message, 4.0);
