@@ -156,7 +156,7 @@ step_asan() {
   "$root/.ci/results" ctest "$logs/asan.xml"
 }
 
-threaded='^(base|net|api|store|link|robot)_test$'
+threaded='^(base|bay|net|store|link|robot|net_socket|api_socket)_test$'
 
 step_tsan() {
   local targets

@@ -148,11 +148,13 @@ void Berth::send(const base::DriveCommand& command, base::Time now) const noexce
   device_.send(command, now);
 }
 
+// What is posted runs only on the thread, which keeps the berth; what never runs goes with io_. Were
+// it to keep the berth too, the two would keep each other for ever.
 void Berth::ask(Errand errand, Done done) {
-  asio::post(io_, [self = shared_from_this(), errand = std::move(errand), done = std::move(done)] {
-    self->doing("carrying out a command");
+  asio::post(io_, [this, errand = std::move(errand), done = std::move(done)] {
+    doing("carrying out a command");
     try {
-      done(errand(self->device_, base::steady_now()));
+      done(errand(device_, base::steady_now()));
     } catch (...) {
       done(base::fail(base::Code::Unavailable, "the driver failed over it"));
       throw;
@@ -165,9 +167,9 @@ void Berth::restart() {
     std::lock_guard lock(mutex_);
     ++past_.restarts;
   }
-  asio::post(io_, [self = shared_from_this()] {
-    self->doing("restarting");
-    self->device_.restart(base::steady_now());
+  asio::post(io_, [this] {
+    doing("restarting");
+    device_.restart(base::steady_now());
   });
 }
 
@@ -188,12 +190,12 @@ Berth::Past Berth::past() const {
 }
 
 void Berth::stop() {
-  asio::post(io_, [self = shared_from_this()] {
-    self->doing("stopping");
-    self->timer_.cancel();
-    if (self->ready_) self->device_.stop(base::steady_now());
-    self->work_.reset();
-    self->io_.stop();
+  asio::post(io_, [this] {
+    doing("stopping");
+    timer_.cancel();
+    if (ready_) device_.stop(base::steady_now());
+    work_.reset();
+    io_.stop();
   });
 }
 

@@ -30,7 +30,7 @@
 
 namespace roverd {
 
-class Berth : public std::enable_shared_from_this<Berth> {
+class Berth {
  public:
   static constexpr base::Duration kHung = std::chrono::seconds(3);
   /// What the driver in this place went through before.
