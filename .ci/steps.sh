@@ -161,6 +161,7 @@ threaded='^(base|bay|net|store|link|robot|net_socket|api_socket)_test$'
 step_tsan() {
   local targets
   sanitized tsan thread
+  cmake "$build/tsan" # knows tests that are new
   mapfile -t targets < <(ctest --test-dir "$build/tsan" -N -R "$threaded" |
     sed -n 's/^ *Test *#[0-9]*: //p')
   ninja_build "$build/tsan" roverd roverd-sim "${targets[@]}"
