@@ -82,6 +82,21 @@ export interface Size {
   readonly width_m: number;
 }
 
+/** How far off the robot may be. Under everything else, which it must not tint: it can be wide. */
+export const paint_accuracy = (paint: Paint, robot: RobotOnMap, colors: Palette): void => {
+  const { context, resolution } = paint;
+  const [x, y] = to_plane(robot.at);
+  const ring_px = ((robot.accuracy_m ?? 0) * units_per_m(robot.at.lat).east) / resolution;
+  if (ring_px <= 4) return;
+  context.beginPath();
+  context.arc(paint.x_px(x), paint.y_px(y), ring_px, 0, 2 * Math.PI);
+  context.fillStyle = colors.ring;
+  context.fill();
+  context.strokeStyle = colors.plan;
+  context.lineWidth = 1;
+  context.stroke();
+};
+
 export const paint_robot = (paint: Paint, robot: RobotOnMap, size: Size, colors: Palette): void => {
   const { context, resolution } = paint;
   const [x, y] = to_plane(robot.at);
@@ -89,16 +104,6 @@ export const paint_robot = (paint: Paint, robot: RobotOnMap, size: Size, colors:
   const color = robot.stale ? colors.robot_stale : colors.robot;
   context.translate(paint.x_px(x), paint.y_px(y));
 
-  const ring_px = (robot.accuracy_m ?? 0) * metre_px;
-  if (ring_px > 4) {
-    context.beginPath();
-    context.arc(0, 0, ring_px, 0, 2 * Math.PI);
-    context.fillStyle = colors.ring;
-    context.fill();
-    context.strokeStyle = colors.plan;
-    context.lineWidth = 1;
-    context.stroke();
-  }
   if (robot.heading_deg === null) {
     context.beginPath();
     context.arc(0, 0, 11, 0, 2 * Math.PI);

@@ -17,7 +17,7 @@ import {
   type PlanLook,
 } from './plan_painter';
 import { from_plane, units_per_m } from './projection';
-import { paint_home, paint_robot, TrailLine, type Size } from './robot_painter';
+import { paint_accuracy, paint_home, paint_robot, TrailLine, type Size } from './robot_painter';
 import type { ScaleBar } from './scale_bar';
 
 /** Beyond this from its origin the grid gets a new one. */
@@ -80,6 +80,9 @@ export class Scene {
         const here = from_plane(paint.center);
         paint_grid(paint, palette(), this.grid_origin(here), this.cover);
         bar.show(paint.resolution / units_per_m(here.lat).east);
+      },
+      (paint) => {
+        if (this.robot) paint_accuracy(paint, this.robot, palette());
       },
       (paint) => paint_route(paint, this.route.drawn, this.current_item),
       (paint) => this.fixes.paint_dots(paint, palette().fixes),
