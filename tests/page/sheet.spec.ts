@@ -35,7 +35,9 @@ test('the item that is edited stays above the sheet', async ({ page, station }) 
   const [x] = await map_middle(page);
   const low = (await page.locator('main').boundingBox())?.y ?? 0;
   await page.touchscreen.tap(x - 100, low - 30); // the open sheet will cover this place
+  await page.touchscreen.tap(x - 100, low - 30);
   await press(page, 'Show the panel');
+  await expect(page.getByRole('button', { name: 'Close item' })).toBeVisible();
   await expect(items(page)).toHaveCount(1);
   const top = (await page.locator('main').boundingBox())?.y ?? 0;
   expect(top).toBeLessThan(low - 60);

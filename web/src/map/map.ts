@@ -166,7 +166,7 @@ export class FieldMap implements MapCalls {
     this.#view.padding = [top, right, bottom, left]; // what is drawn stays where it is
     this.#map.updateSize();
     if (this.#follow && this.#scene.robot) this.#center_on(this.#scene.robot.at);
-    else if (kept && this.#scene.drag === null) this.#uncover(kept);
+    else if (kept && this.#scene.drag === null) this.#keep_in_sight(kept);
     this.#map.render();
   }
 
@@ -245,6 +245,13 @@ export class FieldMap implements MapCalls {
     return wanted && this.#in_sight(wanted) ? wanted : null;
   }
 
+  /** The edited item moves just as far as needed; the robot goes back to the middle. */
+  #keep_in_sight(at: LatLon): void {
+    if (this.#in_sight(at, FIT_MARGIN_PX)) return;
+    if (this.#spot(this.#scene.look.selected)) this.#uncover(at);
+    else this.#center_on(at);
+  }
+
   /** Moves the map just as far as needed. */
   #uncover(at: LatLon): void {
     const free = free_part(this.#map.getSize() ?? [0, 0], this.#scene.cover);
@@ -257,11 +264,11 @@ export class FieldMap implements MapCalls {
     this.#view.setCenter([center_x - right * resolution, center_y + down * resolution]);
   }
 
-  #in_sight(at: LatLon): boolean {
+  #in_sight(at: LatLon, margin = 0): boolean {
     const free = free_part(this.#map.getSize() ?? [0, 0], this.#scene.cover);
     const [x, y] = this.#pixel_of(at, free);
-    const across = x > free.left && x < free.left + free.width;
-    return across && y > free.top && y < free.top + free.height;
+    const across = x > free.left + margin && x < free.left + free.width - margin;
+    return across && y > free.top + margin && y < free.top + free.height - margin;
   }
 
   /** Where it will be drawn; the map itself knows only where it was in the last frame. */
