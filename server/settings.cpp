@@ -209,6 +209,12 @@ Result<void> check_all(const Settings& s) {
       !good) {
     return good;
   }
+  const nav::SpeedParams& speed = s.robot.speed;
+  for (const auto& [key, most] : {std::pair{"nav.speed.max_mps", speed.max_mps},
+                                  std::pair{"nav.speed.reverse_max_mps", speed.reverse_max_mps}}) {
+    if (most >= speed.min_mps) continue;
+    return base::fail(base::Code::Invalid, s.where(key) + " must not be below nav.speed.min_mps");
+  }
   for (const auto& [set, path] : s.tiles) {
     std::error_code ec;
     if (std::filesystem::is_regular_file(path, ec)) continue;

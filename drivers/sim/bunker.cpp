@@ -4,6 +4,7 @@
 #include <cmath>
 #include <variant>
 
+#include "bunker/v1.hpp"
 #include "sim/base_v1.hpp"
 #include "sim/reports.hpp"
 
@@ -60,6 +61,7 @@ Vehicle::Moved Bunker::drive(double dt_s) {
 
 /// The periods of the real base; the phases spread the load over the bus.
 void Bunker::report() {
+  if (every(20, 13)) report_lights();
   if (speaks_v1()) return report_v1();
   if (every(4, 0)) {
     const base::BodyTwist t = tracks_.measured();
@@ -126,6 +128,20 @@ void Bunker::report_motors(bool slow) {
   send(one(2, tracks_.left(), left_heat_c_));
 }
 
+void Bunker::report_lights() {
+  if (!lights_) return;
+  bunker::Light told = *lights_;
+  told.count = light_count_++;
+  send(speaks_v1() ? bunker::v1::encode(bunker::v1::LightState{told})
+                   : bunker::encode(bunker::LightState{told}));
+}
+
+/// Without the host's command the lights are the base's own business: it switches them off.
+void Bunker::light(const bunker::Light& wanted) {
+  lights_ = wanted.enabled ? wanted : bunker::Light{};
+  report_lights();
+}
+
 void Bunker::send(const CanFrame& f) {
   const bool lost = from_base_.uniform() < faults().loss_from_base;
   if (lost || faults().bus_off || !on_frame) return;
@@ -137,6 +153,8 @@ void Bunker::receive(const CanFrame& f) {
   if (lost || faults().bus_off) return;
   if (speaks_v1()) {
     if (const auto order = v1_order(f, params().base)) obey(*order);
+    const auto decoded = bunker::v1::decode(f);
+    if (const auto* l = std::get_if<bunker::v1::LightCommand>(&decoded.message)) light(*l);
     return;
   }
   for (const CanFrame& part : version_answer(f, params().base.firmware)) send(part);
@@ -152,6 +170,8 @@ void Bunker::obey(const bunker::Message& message) {
     machine_.request_mode(static_cast<std::uint8_t>(mode->mode), params().radio.fight_limit, now());
   } else if (const auto* clear = std::get_if<bunker::ClearErrors>(&message)) {
     clear_error_bits(clear->which == 0 ? 0xFFFFu : 1u << (2 + clear->which));
+  } else if (const auto* wanted = std::get_if<bunker::LightCommand>(&message)) {
+    light(*wanted);
   }
 }
 
@@ -179,6 +199,8 @@ void Bunker::restart() {
   tracks_.zero_odometer();
   state_count_ = radio_count_ = 0;
   last_radio_.reset();
+  lights_.reset();
+  light_count_ = 0;
 }
 
 }  // namespace roverd::sim

@@ -41,6 +41,8 @@ class Bunker final : public Vehicle {
   void report_v1();
   void report_radio();
   void report_motors(bool slow);
+  void report_lights();
+  void light(const bunker::Light& wanted);
   void send(const CanFrame& frame);
   void obey(const bunker::Message& message);
   void obey(const V1Order& order);
@@ -55,6 +57,9 @@ class Bunker final : public Vehicle {
   std::uint8_t radio_count_ = 0;
   V1Voice v1_voice_;
   std::optional<CanFrame> last_radio_;
+  /// Told from the first command on: many bases have none fitted and never tell of them.
+  std::optional<bunker::Light> lights_;
+  std::uint8_t light_count_ = 0;
 };
 
 }  // namespace roverd::sim

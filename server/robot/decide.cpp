@@ -192,6 +192,9 @@ void Robot::Impl::tell_notices() {
       case nav::Notice::Kind::ItemReached:
         event(Severity::Info, "item_reached", "item " + std::to_string(n.item) + " reached");
         break;
+      case nav::Notice::Kind::ItemMissed:
+        event(Severity::Warning, "item_missed", "item " + std::to_string(n.item) + " " + n.detail);
+        break;
       case nav::Notice::Kind::Finished:
         event(Severity::Info, "mission_finished",
               "mission \"" + mission->copy.plan.name + "\" finished");

@@ -135,6 +135,7 @@ def wrong_configuration_is_named():
                       ('[tiles]\nfarm = "/nowhere.mbtiles"', "/nowhere.mbtiles"),
                       (f'[tiles]\nfarm = "{not_tiles}"', str(not_tiles)),
                       ('[vehicle]\nkinematics = "hover"', "vehicle.kinematics"),
+                      ("[nav.speed]\nreverse_max_mps = 0.11", "nav.speed.reverse_max_mps"),
                       ('[drivers.gnss]\nheading_source = "moon"', "drivers.gnss.heading_source")):
         refused("--data", scratch / "c", "--config", config_with(text),
                 names=["changed.toml:2", key])

@@ -58,6 +58,17 @@ describe('operations', () => {
     expect(why_not_stop_mission(silent)).toBeNull();
   });
 
+  test('a blocked mission stands like a paused one: it goes on, or is stopped or replaced', () => {
+    for (const state of ['paused', 'blocked'] as const) {
+      const waiting = facts({ armed: true, state });
+      expect(why_not_resume(waiting)).toBeNull();
+      expect(why_not_stop_mission(waiting)).toBeNull();
+      expect(why_not_load(waiting, true, 3)).toBeNull();
+      expect(why_not_pause(waiting)).toBe('No mission is running.');
+    }
+    expect(why_not_resume(facts({ armed: true, state: 'running' }))).not.toBeNull();
+  });
+
   test('a latched stop refuses everything but its reset', () => {
     const stopped = facts({ estop: true, armed: true, mode: 'MANUAL', state: 'paused' });
     for (const reason of [

@@ -1,7 +1,14 @@
 import { describe, expect, test } from 'vitest';
 
 import { add_sample, empty_columns } from '../src/model/columns';
-import { receiver_place, robot_place, worth_a_word, type Vehicle } from '../src/model/vehicle';
+import {
+  radio_lines,
+  receiver_place,
+  robot_place,
+  worth_a_word,
+  type Rc,
+  type Vehicle,
+} from '../src/model/vehicle';
 
 describe('columns', () => {
   test('hold one column per signal, bounded, with gaps for unknown values', () => {
@@ -38,6 +45,23 @@ describe('vehicle', () => {
     expect(received('gps', false)).toEqual({ lat: 58, lon: 26 });
     expect(received('none', false)).toBeNull();
     expect(received('rtk_fixed', true)).toBeNull();
+  });
+
+  test('says of each radio switch that was heard how it stands and what that does', () => {
+    const positions = { swa: 'up', swb: 'middle', swc: null, swd: 'down', vra: -0.5 };
+    const meaning = {
+      swa: null,
+      swb: 'the sticks drive',
+      swc: 'mode AUTO',
+      swd: 'arm',
+      vra: 'clear',
+    };
+    expect(radio_lines({ ...positions, meaning } as unknown as Rc)).toEqual([
+      { name: 'SWB', position: 'middle', meaning: 'the sticks drive' },
+      { name: 'SWD', position: 'down', meaning: 'arm' },
+      { name: 'VRA', position: 'at -50 %', meaning: 'clear' },
+    ]);
+    expect(radio_lines(undefined)).toEqual([]);
   });
 
   test('tells bad news and the good news one waits for, but not its own echo', () => {

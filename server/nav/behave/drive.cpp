@@ -14,6 +14,11 @@ using base::ExecutionState;
 constexpr double kThere_m = 0.05;  // nearer than this there is nothing to drive
 constexpr double kPivotLimit_s = 40.0;
 
+std::string tenths(double m) {
+  const long rounded = std::lround(m * 10.0);
+  return std::to_string(rounded / 10) + "." + std::to_string(rounded % 10) + " m";
+}
+
 }  // namespace
 
 TrackOutput Executor::step(const Vehicle& vehicle, double limit_mps, std::optional<EnuPoint> home,
@@ -35,7 +40,7 @@ TrackOutput Executor::step(const Vehicle& vehicle, double limit_mps, std::option
   const TrackOutput out = tracker_.step(vehicle, limit_mps, dt_s);
   if (doing_ == Doing::Path) pass_nodes(vehicle);
   if (tracker_.phase() == TrackPhase::Done) {
-    leg_done();
+    leg_done(vehicle);
     if (running() && doing_ == Doing::Nothing) enter(vehicle, home);
   }
   watch(vehicle, dt_s);
@@ -201,11 +206,20 @@ void Executor::pass_nodes(const Vehicle& vehicle) {
     const bool within = node.radius_m > 0.0 && at_m - tracker_.s_m() <= node.radius_m &&
                         base::distance_m(vehicle.at, node.at) <= node.radius_m;
     if (!level && !within) return;
-    reached(*step);
+    // What the corner leaves out is meant; what the robot drove beside it is not.
+    const double off_m = base::distance_m(vehicle.at, node.at);
+    const double meant_m = std::max(node.radius_m, base::distance_m(path.at(at_m), node.at));
+    if (off_m > meant_m + params_.missed_m) {
+      notices_.push_back({Notice::Kind::ItemMissed, step->item, "missed by " + tenths(off_m)});
+      pass(*step);
+    } else {
+      reached(*step);
+    }
   }
 }
 
-void Executor::leg_done() {
+void Executor::leg_done(const Vehicle& vehicle) {
+  if (!rejoin_ && missed(vehicle)) return;
   if (rejoin_) {
     rejoin_.reset();
     doing_ = Doing::Path;
@@ -221,9 +235,32 @@ void Executor::leg_done() {
   if (on_path && doing_ == Doing::Nothing) leg_ = 0;
 }
 
+/// The tracker stops where it is level with the place; a vehicle that cannot turn on the spot may
+/// stand beside it then. That is not claimed as reached.
+bool Executor::missed(const Vehicle& vehicle) {
+  const Path& path = *tracker_.path();
+  if (path.legs.empty()) return false;  // it stood there already
+  const double off_m = base::distance_m(vehicle.at, path.points[path.legs[tracker_.leg()].last].at);
+  const RouteStep* step = step_now();
+  double allowed_m = params_.missed_m;
+  if (step != nullptr && step->kind == StepKind::Go) {
+    allowed_m = std::max(allowed_m, course_->nodes[step->node].radius_m);
+  }
+  if (off_m <= allowed_m) return false;
+  const std::string what = step == nullptr || step->kind == StepKind::Home
+                               ? "home"
+                               : "item " + std::to_string(step->item);
+  block(what + " missed by " + tenths(off_m));
+  return true;
+}
+
 /// Counts a step as done; holds if it says so.
 void Executor::reached(const RouteStep& step) {
   notices_.push_back({Notice::Kind::ItemReached, step.item, {}});
+  pass(step);
+}
+
+void Executor::pass(const RouteStep& step) {
   if (step.kind == StepKind::Go) standing_ = step.node;
   if (step.kind == StepKind::Go && step.seconds > 0.0) {
     wait_s_ = step.seconds;
@@ -278,9 +315,13 @@ void Executor::watch_stuck(const Vehicle& vehicle, double dt_s) {
   } else {
     return;
   }
-  pause(text);
+  block(std::move(text));
+}
+
+void Executor::block(std::string why) {
+  pause(why);
   state_ = ExecutionState::Blocked;
-  notices_.push_back({Notice::Kind::Blocked, 0, text});
+  notices_.push_back({Notice::Kind::Blocked, 0, std::move(why)});
 }
 
 }  // namespace roverd::nav

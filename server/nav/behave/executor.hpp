@@ -3,9 +3,9 @@
 //
 //   Idle ──load──▶ Loaded ──start──▶ Running ──last step──▶ Finished ──start──▶ Running
 //                                    │  ▲  ▲
-//                       pause, a loss▼  │resume        stuck: Running ─▶ Blocked ──resume─▶ Running
-//                                   Paused             stop: any of these ─▶ Aborted ──start─▶
-//                                   Running
+//                       pause, a loss▼  │resume        stuck, a place missed:
+//                                   Paused            Running ─▶ Blocked ──resume─▶ Running
+//                                   stop: any of these ─▶ Aborted ──start─▶ Running
 //
 // interrupt() keeps Running but forgets what the tracker was doing: somebody else drives; go_on()
 // continues at the same place, driving back to it first if the robot was moved.
@@ -32,7 +32,14 @@ struct StartAt {
 
 /// Something that happened in a step.
 struct Notice {
-  enum class Kind { ItemReached, Finished, Lap, Blocked, Lost } kind = Kind::ItemReached;
+  enum class Kind {
+    ItemReached,
+    ItemMissed,
+    Finished,
+    Lap,
+    Blocked,
+    Lost
+  } kind = Kind::ItemReached;
   int item = 0;
   std::string detail;
 };
@@ -102,8 +109,11 @@ class Executor {
   bool at_end(const Vehicle& vehicle, std::optional<EnuPoint> home);
   void turn_round();
   void pass_nodes(const Vehicle& vehicle);
-  void leg_done();
+  void leg_done(const Vehicle& vehicle);
+  bool missed(const Vehicle& vehicle);
+  void block(std::string why);
   void reached(const RouteStep& step);
+  void pass(const RouteStep& step);
   void finish();
   void watch(const Vehicle& vehicle, double dt_s);
   void watch_stuck(const Vehicle& vehicle, double dt_s);

@@ -7,6 +7,7 @@ struct BehaveParams {
   double start_within_m = 50.0;
   double lost_m = 3.0;
   double lost_s = 0.5;
+  double missed_m = 0.5;
   double stuck_s = 10.0;
   double stuck_m = 0.3;
   double stuck_deg = 5.0;
@@ -18,6 +19,8 @@ void fields(V& v, BehaveParams& p) {
     "a mission whose first point is farther away is not started, nor rejoined");
   v("lost_m", p.lost_m, 0.2, 100.0, "farther from the path than this the robot stops");
   v("lost_s", p.lost_s, 0.0, 10.0, "for so long");
+  v("missed_m", p.missed_m, 0.05, 10.0,
+    "a waypoint to stop at that is farther away then, and than its radius: blocked");
   v("stuck_s", p.stuck_s, 1.0, 120.0, "no progress for so long while driving: blocked");
   v("stuck_m", p.stuck_m, 0.05, 10.0, "less way than this is no progress");
   v("stuck_deg", p.stuck_deg, 1.0, 90.0, "less turning than this is no progress");

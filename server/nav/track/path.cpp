@@ -107,7 +107,8 @@ class Builder {
 
   double item_mps(const Vertex& v) const noexcept {
     const SpeedParams& s = params_.speed;
-    return std::clamp(v.speed_mps, s.min_mps, v.reverse ? s.reverse_max_mps : s.max_mps);
+    const double most = v.reverse ? s.reverse_max_mps : s.max_mps;
+    return std::min(std::max(v.speed_mps, s.min_mps), most);
   }
 
   const PathParams& params_;

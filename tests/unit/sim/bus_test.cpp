@@ -45,6 +45,20 @@ TEST(Bus, EveryFrameComesWithItsRealPeriod) {
   for (std::size_t i = 0; i < radio.size(); ++i) EXPECT_EQ(radio[i].data[7], i % 256);
 }
 
+// 0x231 of the protocol sheet, but for the count.
+TEST(Bus, LightsAreToldFromTheirFirstCommandOn) {
+  Plant plant;
+  plant.wait(1s);
+  EXPECT_TRUE(plant.of(0x231).empty());
+  plant.bunker.receive(frame_of(0x121, {1, 3, 60, 0, 0, 0, 0, 9}));
+  ASSERT_EQ(plant.of(0x231).size(), 1u);
+  EXPECT_EQ(plant.last(0x231), frame_of(0x231, {1, 3, 0x3C, 0, 0, 0, 0, 0}));
+  plant.wait(1s);
+  EXPECT_EQ(plant.of(0x231).size(), 11u);
+  plant.bunker.receive(frame_of(0x121, {0, 1, 0, 1, 0, 0, 0, 10}));
+  EXPECT_EQ(plant.last(0x231), frame_of(0x231, {0, 0, 0, 0, 0, 0, 0, 11}));
+}
+
 TEST(Bus, FramesOfOtherKindsAreIgnored) {
   Plant plant;
   CanFrame f = mode_frame(1);

@@ -55,6 +55,18 @@ TEST(OldFirmware, DrivesWithPercentOfItsFullSpeed) {
   EXPECT_NEAR(plant.truth().twist.linear_mps, 0.0, 1e-3) << "nobody commands any more";
 }
 
+TEST(OldFirmware, AnswersALightCommandWithItsLights) {
+  Plant plant(old_base());
+  bunker::Light wanted;
+  wanted.enabled = true;
+  wanted.front_mode = bunker::LightMode::Breathing;
+  plant.bunker.receive(v1::encode(v1::LightCommand{wanted}));
+  const auto told = std::get<v1::LightState>(v1::decode(plant.last(0x141)).message);
+  EXPECT_TRUE(told.enabled);
+  EXPECT_EQ(told.front_mode, bunker::LightMode::Breathing);
+  EXPECT_EQ(told.rear_mode, bunker::LightMode::Off);
+}
+
 TEST(OldFirmware, IgnoresWrongChecksumsAndCommandsOfV2) {
   Plant plant(old_base());
   CanFrame broken = v1_drive(20, 0);

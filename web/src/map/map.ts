@@ -13,6 +13,7 @@ import type { MapCalls, MapEvents, MapMode, RobotOnMap, TileSet } from '../model
 import type { Tracks } from '../model/tracks';
 import { canvas_layer } from './canvas';
 import { EditInteraction } from './edit';
+import type { Cover } from './grid';
 import { on_palette_change } from './palette';
 import { to_plane } from './projection';
 import { Scene } from './scene';
@@ -54,6 +55,24 @@ const extent_of = (points: readonly LatLon[]): [number, number, number, number] 
   }
   return extent;
 };
+
+/** The part of the map that no panel covers, in pixels. */
+interface FreePart {
+  readonly left: number;
+  readonly top: number;
+  readonly width: number;
+  readonly height: number;
+}
+
+const free_part = ([width = 0, height = 0]: readonly number[], cover: Cover): FreePart => ({
+  left: cover.left,
+  top: cover.top,
+  width: Math.max(0, width - cover.left - cover.right),
+  height: Math.max(0, height - cover.top - cover.bottom),
+});
+
+const clamp = (value: number, least: number, most: number): number =>
+  Math.min(Math.max(value, least), most);
 
 export class FieldMap implements MapCalls {
   readonly #target: HTMLElement;
@@ -142,9 +161,12 @@ export class FieldMap implements MapCalls {
   }
 
   set_cover(top: number, right: number, bottom: number, left: number): void {
+    const kept = this.#kept_in_sight();
     this.#scene.cover = { top, right, bottom, left };
-    this.#view.padding = [top, right, bottom, left];
+    this.#view.padding = [top, right, bottom, left]; // what is drawn stays where it is
     this.#map.updateSize();
+    if (this.#follow && this.#scene.robot) this.#center_on(this.#scene.robot.at);
+    else if (kept && this.#scene.drag === null) this.#keep_in_sight(kept);
     this.#map.render();
   }
 
@@ -158,6 +180,10 @@ export class FieldMap implements MapCalls {
     this.#placed = true;
     const padding = Array<number>(4).fill(FIT_MARGIN_PX);
     this.#view.fit(extent_of(points), { padding, maxZoom: WORK_ZOOM + 1 });
+  }
+
+  center_robot(): void {
+    if (this.#scene.robot) this.#center_on(this.#scene.robot.at);
   }
 
   zoom_by(levels: number): void {
@@ -204,12 +230,55 @@ export class FieldMap implements MapCalls {
 
   /** Brings an item into the part of the map that no panel covers. */
   #reveal(index: number): void {
-    const spot = this.#scene.plan.drawn.spots.find((each) => each.index === index);
-    if (!spot) return;
-    const [width = 0, height = 0] = this.#map.getSize() ?? [];
-    const [x = -1, y = -1] = this.#map.getPixelFromCoordinate([...to_plane(spot)]) ?? [];
-    const { top, right, bottom, left } = this.#scene.cover;
-    const seen = x > left && x < width - right && y > top && y < height - bottom;
-    if (!seen) this.#center_on(spot);
+    const spot = this.#spot(index);
+    if (!spot || this.#in_sight(spot)) return;
+    this.#center_on(spot);
+  }
+
+  #spot(index: number | null): LatLon | null {
+    return this.#scene.plan.drawn.spots.find((each) => each.index === index) ?? null;
+  }
+
+  /** What a person looks at, if it can be seen: the edited item, else the robot. */
+  #kept_in_sight(): LatLon | null {
+    const wanted = this.#spot(this.#scene.look.selected) ?? this.#scene.robot?.at ?? null;
+    return wanted && this.#in_sight(wanted) ? wanted : null;
+  }
+
+  /** The edited item moves just as far as needed; the robot goes back to the middle. */
+  #keep_in_sight(at: LatLon): void {
+    if (this.#in_sight(at, FIT_MARGIN_PX)) return;
+    if (this.#spot(this.#scene.look.selected)) this.#uncover(at);
+    else this.#center_on(at);
+  }
+
+  /** Moves the map just as far as needed. */
+  #uncover(at: LatLon): void {
+    const free = free_part(this.#map.getSize() ?? [0, 0], this.#scene.cover);
+    const [x, y] = this.#pixel_of(at, free);
+    const margin = Math.min(FIT_MARGIN_PX, free.width / 2, free.height / 2);
+    const right = clamp(x, free.left + margin, free.left + free.width - margin) - x;
+    const down = clamp(y, free.top + margin, free.top + free.height - margin) - y;
+    const [center_x = 0, center_y = 0] = this.#view.getCenter() ?? [];
+    const resolution = this.#view.getResolution() ?? 1;
+    this.#view.setCenter([center_x - right * resolution, center_y + down * resolution]);
+  }
+
+  #in_sight(at: LatLon, margin = 0): boolean {
+    const free = free_part(this.#map.getSize() ?? [0, 0], this.#scene.cover);
+    const [x, y] = this.#pixel_of(at, free);
+    const across = x > free.left + margin && x < free.left + free.width - margin;
+    return across && y > free.top + margin && y < free.top + free.height - margin;
+  }
+
+  /** Where it will be drawn; the map itself knows only where it was in the last frame. */
+  #pixel_of(at: LatLon, free: FreePart): readonly [x: number, y: number] {
+    const [x, y] = to_plane(at);
+    const [center_x = 0, center_y = 0] = this.#view.getCenter() ?? [];
+    const resolution = this.#view.getResolution() ?? 1;
+    return [
+      free.left + free.width / 2 + (x - center_x) / resolution,
+      free.top + free.height / 2 - (y - center_y) / resolution,
+    ];
   }
 }

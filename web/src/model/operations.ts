@@ -35,7 +35,7 @@ export const why_not_load = (facts: Facts, saved: boolean, items: number): Reaso
   if (link !== null) return link;
   if (!saved) return 'Save the mission first: the robot takes the stored revision.';
   const state = facts.vehicle?.mission.state;
-  return state === 'running' || state === 'blocked' ? 'A mission is running: stop it first.' : null;
+  return state === 'running' ? 'A mission is running: stop it first.' : null;
 };
 
 export const why_not_start = (facts: Facts): Reason => {
@@ -43,19 +43,23 @@ export const why_not_start = (facts: Facts): Reason => {
   if (before !== null) return before;
   const state = facts.vehicle?.mission.state;
   if (state === 'idle') return 'Load a mission first.';
-  if (state === 'running' || state === 'blocked') return 'The mission is running already.';
+  if (state === 'running') return 'The mission is running already.';
   return facts.vehicle?.armed === true ? null : 'Arm the robot first.';
 };
 
 export const why_not_pause = (facts: Facts): Reason => {
   const state = facts.vehicle?.mission.state;
-  return state === 'running' || state === 'blocked' ? null : 'No mission is running.';
+  return state === 'running' ? null : 'No mission is running.';
 };
+
+/** It stands in the middle of its mission: paused, or blocked by what it could not do. */
+export const waits = ({ vehicle }: Facts): boolean =>
+  vehicle?.mission.state === 'paused' || vehicle?.mission.state === 'blocked';
 
 export const why_not_resume = (facts: Facts): Reason => {
   const before = no_link(facts) ?? no_stop(facts);
   if (before !== null) return before;
-  return facts.vehicle?.mission.state === 'paused' ? null : 'The mission is not paused.';
+  return waits(facts) ? null : 'The mission is not paused.';
 };
 
 export const why_not_stop_mission = (facts: Facts): Reason => {

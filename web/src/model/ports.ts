@@ -135,9 +135,12 @@ export interface MapCalls {
   show_home(home: LatLon | null): void;
   /** Footprint of the vehicle, drawn to scale. */
   set_size(length_m: number, width_m: number): void;
-  /** What panels cover, pixels: the robot and fitted routes stay in the free part. */
+  /** What panels cover, pixels: the robot, the edited item and fitted routes stay in the free
+   * part. */
   set_cover(top: number, right: number, bottom: number, left: number): void;
   set_follow(follow: boolean): void;
+  /** Once, also where the map does not follow. */
+  center_robot(): void;
   fit(points: readonly LatLon[]): void;
   zoom_by(levels: number): void;
   use_tiles(set: TileSet | null): void;

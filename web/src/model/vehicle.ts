@@ -48,8 +48,17 @@ export interface Battery extends Measured {
   readonly charge_pct: number | null;
   readonly fault: boolean | null;
 }
+type Switch = 'up' | 'middle' | 'down' | 'unknown' | null;
 export interface Rc extends Measured {
   readonly lost: boolean | null;
+  readonly swa: Switch;
+  readonly swb: Switch;
+  readonly swc: Switch;
+  readonly swd: Switch;
+  /** Knob, −1 to 1. */
+  readonly vra: number | null;
+  /** What they do as they stand, in words. */
+  readonly meaning: Readonly<Record<'swa' | 'swb' | 'swc' | 'swd' | 'vra', string | null>>;
 }
 export interface Base extends Measured {
   readonly errors: readonly string[];
@@ -190,6 +199,25 @@ export const state_words: Record<ExecutionState, string> = {
   blocked: 'Blocked',
   finished: 'Finished',
   aborted: 'Aborted',
+};
+
+export interface RadioLine {
+  readonly name: string;
+  readonly position: string;
+  readonly meaning: string;
+}
+
+/** The switches and the knob that do something; none of a radio that was never heard. */
+export const radio_lines = (rc: Rc | undefined): readonly RadioLine[] => {
+  const lines: RadioLine[] = [];
+  for (const name of ['swa', 'swb', 'swc', 'swd', 'vra'] as const) {
+    const meaning = rc?.meaning[name] ?? null;
+    const at = rc?.[name] ?? null;
+    if (meaning === null || at === null) continue;
+    const position = typeof at === 'number' ? `at ${Math.round(at * 100)} %` : at;
+    lines.push({ name: name.toUpperCase(), position, meaning });
+  }
+  return lines;
 };
 
 /** Where the receiver says it is, or null without a fresh fix. */

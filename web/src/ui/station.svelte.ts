@@ -113,6 +113,7 @@ export class Station {
 
   set_follow(follow: boolean): void {
     this.follow = follow;
+    if (follow) this.map.center_robot();
   }
 
   /** Shows the edited mission, or the loaded one, or the way so far. */

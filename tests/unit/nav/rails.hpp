@@ -1,0 +1,110 @@
+#pragma once
+// A robot on rails for tests of the estimator.
+
+#include <cmath>
+#include <deque>
+#include <optional>
+#include <random>
+
+#include "base/angle.hpp"
+#include "nav/estimate/estimator.hpp"
+
+namespace roverd::nav {
+
+inline constexpr base::LatLon kOrigin{58.378, 26.729};
+
+/// A robot on rails: says what it does to an estimator, with the delays that this one assumes.
+class Drive {
+ public:
+  explicit Drive(const EstimateParams& params = {}) : estimator(params), params_(params) {}
+
+  double speed_mps = 0.0;
+  double rate_radps = 0.0;
+  double east_m = 0.0;
+  double north_m = 0.0;
+  double yaw_rad = base::kPi / 2.0;
+  double compass_bias_rad = 0.0;
+  double slip = 1.0;       ///< true over measured travel
+  double yaw_scale = 0.8;  ///< true over measured turning
+  base::FixType fix = base::FixType::RtkFixed;
+  bool gnss = true;
+  bool compass = true;
+  bool tracks = true;
+  double offset_east_m = 0.0;
+  double noise_m = 0.0;
+  Estimator estimator;
+
+  Time now() const { return now_; }
+  std::optional<base::Pose> pose() const { return estimator.pose(now_); }
+
+  void run(double seconds) {
+    const int ticks = static_cast<int>(std::lround(seconds * 50.0));
+    for (int i = 0; i < ticks; ++i) tick();
+  }
+
+  double position_error_m() const {
+    const auto p = pose();
+    return base::distance_bearing(p->global, frame_.to_global({east_m, north_m})).distance_m;
+  }
+  double yaw_error_deg() const {
+    return base::deg_from_rad(base::angle_diff_rad(yaw_rad, pose()->yaw_rad));
+  }
+
+  void tick() {
+    now_ += std::chrono::milliseconds(20);
+    const double dt = 0.02;
+    const double middle = yaw_rad + 0.5 * rate_radps * dt;
+    east_m += speed_mps * dt * std::cos(middle);
+    north_m += speed_mps * dt * std::sin(middle);
+    yaw_rad = base::wrap_rad(yaw_rad + rate_radps * dt);
+    if (tracks) {
+      const double ahead = speed_mps / slip * dt;
+      const double half = 0.5 * params_.track_width_m * rate_radps / yaw_scale * dt;
+      estimator.take(base::WheelTravel{now_, ahead - half, ahead + half}, now_);
+      estimator.take(base::BaseMotion{now_, {speed_mps / slip, rate_radps / yaw_scale}}, now_);
+    }
+    if (++count_ % 10 == 0) sense();
+    deliver();
+    estimator.advance(now_);
+  }
+
+ private:
+  struct Seen {
+    Time due;
+    double east_m, north_m, yaw_rad, ve, vn;
+  };
+
+  void sense() {
+    seen_.push_back({now_ + base::from_seconds(params_.gnss_latency_s),
+                     east_m + offset_east_m + noise_m * normal_(random_),
+                     north_m + noise_m * normal_(random_), yaw_rad, speed_mps * std::cos(yaw_rad),
+                     speed_mps * std::sin(yaw_rad)});
+  }
+  void deliver() {
+    while (!seen_.empty() && seen_.front().due <= now_) {
+      const Seen s = seen_.front();
+      seen_.pop_front();
+      if (compass) {
+        const double shown = base::wrap_rad(s.yaw_rad + compass_bias_rad);
+        estimator.take(base::Heading{now_, shown, base::HeadingSource::Compass}, now_);
+      }
+      if (!gnss) continue;
+      base::GnssFix f;
+      f.stamp = now_;
+      f.fix = fix;
+      f.position = frame_.to_global({s.east_m, s.north_m});
+      estimator.take(f, now_);
+      estimator.take(base::GnssVelocity{now_, s.ve, s.vn, {}}, now_);
+    }
+  }
+
+  EstimateParams params_;
+  base::LocalFrame frame_{7, kOrigin};
+  Time now_{};
+  int count_ = 0;
+  std::deque<Seen> seen_;
+  std::mt19937_64 random_{4};
+  std::normal_distribution<double> normal_;
+};
+
+}  // namespace roverd::nav
