@@ -119,7 +119,7 @@ class Load {
   static constexpr auto kSettling = std::chrono::milliseconds(500);
 
   void add_client();
-  void add_caller();
+  std::vector<Caller>::iterator idle_caller();
   void watch(int handle, std::uint32_t index);
   void call(Clock::time_point now);
   void on_ready(std::uint32_t index);
@@ -161,25 +161,32 @@ void Load::add_client() {
   clients_.push_back(std::move(client));
 }
 
-void Load::add_caller() {
-  auto connection = std::make_unique<Connection>(plan_.to);
-  watch(connection->handle(), static_cast<std::uint32_t>(clients_.size() + callers_.size()));
-  callers_.push_back({std::move(connection), std::nullopt});
+/// A caller that waits for no answer, the connected ones first: the server hangs up on those that
+/// ask nothing for long. The end if all are busy.
+std::vector<Caller>::iterator Load::idle_caller() {
+  auto caller = std::find_if(callers_.begin(), callers_.end(),
+                             [](const Caller& c) { return c.connection && !c.asked; });
+  if (caller != callers_.end()) return caller;
+  caller =
+      std::find_if(callers_.begin(), callers_.end(), [](const Caller& c) { return !c.connection; });
+  if (caller == callers_.end()) {
+    if (callers_.size() == kCallers) return caller;
+    callers_.emplace_back();
+    caller = std::prev(callers_.end());
+  }
+  caller->connection = std::make_unique<Connection>(plan_.to);
+  const auto index = static_cast<std::size_t>(caller - callers_.begin());
+  watch(caller->connection->handle(), static_cast<std::uint32_t>(clients_.size() + index));
+  return caller;
 }
 
 void Load::call(Clock::time_point now) {
   static constexpr std::string_view kPaths[] = {"vehicle", "vehicle/checks", "missions?limit=20",
                                                 "execution", "drivers"};
-  auto idle = std::find_if(callers_.begin(), callers_.end(),
-                           [](const Caller& c) { return c.connection && !c.asked; });
+  const auto idle = idle_caller();
   if (idle == callers_.end()) {
-    if (callers_.size() == kCallers) {
-      ++unsent_;
-      return;
-    }
-    // Not before it is needed: the server hangs up on those that never ask.
-    add_caller();
-    idle = std::prev(callers_.end());
+    ++unsent_;
+    return;
   }
   const std::string_view path = kPaths[next_path_++ % std::size(kPaths)];
   idle->asked = now;
@@ -208,9 +215,9 @@ void Load::on_ready(std::uint32_t index) {
   }
   Caller& caller = callers_[index - clients_.size()];
   if (!caller.connection->receive()) {
-    ++lost_;
+    if (caller.asked) ++lost_;
     ::epoll_ctl(poll_, EPOLL_CTL_DEL, caller.connection->handle(), nullptr);
-    caller.connection.reset();
+    caller = {};
     return;
   }
   if (const auto status = caller.connection->take_answer(); status && caller.asked) {
