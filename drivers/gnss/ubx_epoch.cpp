@@ -29,7 +29,8 @@ std::optional<base::WallTime> utc_of(const ubx::NavPvt& m) {
   if (!m.date_valid() || !m.time_valid()) return std::nullopt;
   const Date date{std::chrono::year{m.year}, std::chrono::month{static_cast<unsigned>(m.month)},
                   std::chrono::day{static_cast<unsigned>(m.day)}};
-  if (!date.ok() || m.hour > 23 || m.min > 59 || m.sec > 60) return std::nullopt;
+  if (!date.ok() || m.year < 1980 || m.year > 2200 || m.hour > 23 || m.min > 59 || m.sec > 60)
+    return std::nullopt;
   // Whole microseconds, as from NMEA; the fraction may be negative.
   const auto fraction_us = std::llround(m.nano / 1e3);
   return std::chrono::sys_days{date} + std::chrono::hours{m.hour} + std::chrono::minutes{m.min} +

@@ -11,6 +11,7 @@
 #include "../ubx/frames.hpp"
 #include "base/angle.hpp"
 #include "gnss/blend.hpp"
+#include "gnss/epoch.hpp"
 
 namespace roverd::gnss {
 namespace {
@@ -211,6 +212,14 @@ TEST_F(BlendTest, ADateOfNineteenEightyIsNone) {
   EXPECT_EQ(fixes().at(0).utc, std::nullopt);
   EXPECT_TRUE(fixes()[0].position) << "the position may well be right";
   EXPECT_EQ(blend.counts().impossible_dates, 1u);
+}
+
+TEST(CalendarOfEpochs, AYearThatNoClockHoldsIsNoDate) {
+  Calendar calendar;
+  calendar.set(Date{std::chrono::year{9999} / 12 / 31}, 0.0);
+  EXPECT_EQ(calendar.at(0.0), std::nullopt);
+  calendar.set(Date{std::chrono::year{2026} / 12 / 31}, 0.0);
+  EXPECT_TRUE(calendar.at(0.0));
 }
 
 TEST(CorrectionAge, IsTheEndOfItsClass) {
