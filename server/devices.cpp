@@ -3,17 +3,22 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <type_traits>
 #include <utility>
+#include <vector>
 
 #include <net/if.h>
 
 #include "ackermann/driver.hpp"
+#include "base/inbox.hpp"
+#include "base/latest.hpp"
 #include "base/log.hpp"
 #include "bumper/driver.hpp"
 #include "bunker/driver.hpp"
 #include "gnss/driver.hpp"
 #include "link/address.hpp"
 #include "link/record.hpp"
+#include "ntrip/driver.hpp"
 #include "ratio/driver.hpp"
 #include "replays.hpp"
 #include "twist/driver.hpp"
@@ -31,6 +36,13 @@ struct Workshop {
   link::RecordOptions record;
   link::ReplayOptions replay;
 };
+/// Between the corrections' thread and the receiver's.
+struct Corrections {
+  base::Inbox<std::vector<std::uint8_t>> frames{64};
+  base::Latest<base::GnssFix> fix;
+};
+using CorrectionsPtr = std::shared_ptr<Corrections>;
+
 using WorkshopPtr = std::shared_ptr<const Workshop>;
 
 /// A file name for this moment: 20260301T120000Z-can0.log
@@ -197,6 +209,23 @@ Device device_of(std::shared_ptr<Driver> driver) {
   return device;
 }
 
+/// The receiver takes corrections, and what it says of its place is for the caster.
+std::shared_ptr<gnss::Driver> corrected(const std::string& name, const gnss::Params& params,
+                                        gnss::Driver::MakeLink make_link, const DeviceEars& ears,
+                                        const CorrectionsPtr& corrections) {
+  const auto hear = [corrections, tell = ears.on_measurement](const base::Measurement& m) {
+    if (const auto* fix = std::get_if<base::GnssFix>(&m)) {
+      corrections->fix.publish(std::make_shared<const base::GnssFix>(*fix));
+    }
+    tell(m);
+  };
+  auto driver = std::make_shared<gnss::Driver>(name, params, std::move(make_link), hear);
+  driver->take_corrections = [corrections](gnss::Driver::Frames& out) {
+    static_cast<void>(corrections->frames.try_take(out));
+  };
+  return driver;
+}
+
 /// Plans the wanted ones of the drivers that there are.
 class Planner {
  public:
@@ -228,12 +257,46 @@ class Planner {
                     .lights = HasLights<Driver>,
                     .clears_errors = ClearsErrors<Driver>,
                     .make = {}};
-    plan.make = [w = workshop_, name, params, address](asio::io_context& io,
-                                                       const DeviceEars& ears) {
+    plan.make = [w = workshop_, c = corrections_, name, params, address](asio::io_context& io,
+                                                                         const DeviceEars& ears) {
       const auto make_link = [w, name, address, ears, &io] {
         return open_link<Kind>(*w, io, ears, name, address);
       };
+      if constexpr (std::is_same_v<Driver, gnss::Driver>) {
+        return device_of(corrected(name, params, make_link, ears, c));
+      }
       return device_of(std::make_shared<Driver>(name, params, make_link, ears.on_measurement));
+    };
+    plans_.push_back(std::move(plan));
+    return {};
+  }
+
+  /// Its casters, with their logins, stand where others have their link. It is not recorded: what
+  /// it hears is not of the robot.
+  Result<void> add_ntrip(const Wired<ntrip::Params>& said) {
+    if (!replays_.file_of.empty() || !said.wiring.enabled) return {};
+    const auto casters = ntrip::parse_casters(said.wiring.link);
+    if (!casters) {
+      return base::fail(base::Code::Invalid,
+                        settings_.where("drivers.ntrip.link") + ": " + casters.error().detail);
+    }
+    DevicePlan plan;
+    plan.name = "ntrip";
+    plan.make = [c = corrections_, params = said.params, casters = *casters](
+                    asio::io_context& io, const DeviceEars& ears) {
+      ntrip::Driver::Doors doors;
+      doors.make_link = [&io](const std::string& address) {
+        return link::make_byte_link(io, address);
+      };
+      doors.on_measurement = ears.on_measurement;
+      doors.on_frame = [c](base::Bytes frame) {
+        return c->frames.put({frame.begin(), frame.end()});
+      };
+      doors.where = [c] {
+        const auto fix = c->fix.get();
+        return fix ? *fix : base::GnssFix{};
+      };
+      return device_of(std::make_shared<ntrip::Driver>("ntrip", params, casters, std::move(doors)));
     };
     plans_.push_back(std::move(plan));
     return {};
@@ -245,6 +308,7 @@ class Planner {
   const Settings& settings_;
   const WorkshopPtr workshop_;
   const Replays replays_;
+  const CorrectionsPtr corrections_ = std::make_shared<Corrections>();
   std::vector<DevicePlan> plans_;
 };
 
@@ -266,6 +330,7 @@ Result<std::vector<DevicePlan>> plan_devices(const Settings& s, const Options& o
   if (done) done = planner.add<ByteStream, twist::Driver>("twist", s.twist);
   if (done) done = planner.add<ByteStream, bumper::Driver>("bumper", s.bumper);
   if (done) done = planner.add<ByteStream, gnss::Driver>("gnss", s.gnss);
+  if (done) done = planner.add_ntrip(s.ntrip);
   if (!done) return tl::unexpected(done.error());
   return planner.take();
 }

@@ -13,6 +13,7 @@
 #include "bumper/params.hpp"
 #include "bunker/driver.hpp"
 #include "gnss/driver.hpp"
+#include "ntrip/params.hpp"
 #include "ratio/params.hpp"
 #include "robot/config.hpp"
 #include "twist/params.hpp"
@@ -63,8 +64,9 @@ template <class V>
 void fields(V& v, DriverWiring& p) {
   v("enabled", p.enabled, "true: the device is there");
   v("link", p.link,
-    "can:IFACE[?OPTIONS], slcan:DEVICE:BAUD[:BITRATE], cansock:PATH, serial:DEVICE:BAUD, "
-    "tcp:HOST:PORT, udp:[HOST:]PORT, replay:FILE");
+    "can:IFACE[?OPTIONS], slcan:DEVICE:BAUD[:BITRATE], cansock:PATH, serial:DEVICE:BAUD|auto, "
+    "tcp:HOST:PORT, tls:HOST:PORT, udp:[HOST:]PORT, replay:FILE; of ntrip: its casters, "
+    "ntrip[s]://USER:PASSWORD@HOST:PORT/MOUNTPOINT, with blanks between them");
 }
 
 /// A driver with its parameters: section [drivers.NAME].
@@ -98,6 +100,7 @@ struct Settings {
   Wired<twist::Params> twist;
   Wired<bumper::Params> bumper;
   Wired<gnss::Params> gnss;
+  Wired<ntrip::Params> ntrip;
   robot::Config robot;
   std::map<std::string, std::filesystem::path> tiles;  ///< set name → MBTiles file
   std::map<std::string, std::string> places;           ///< key → where it was said last
@@ -115,6 +118,7 @@ void drivers(V&& v, Settings& s) {
   v("twist", s.twist);
   v("bumper", s.bumper);
   v("gnss", s.gnss);
+  v("ntrip", s.ntrip);
 }
 
 struct SettingsSource {

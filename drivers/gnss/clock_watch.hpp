@@ -17,7 +17,10 @@ class ClockWatch {
 
   /// @param stamp arrival. @return whether the time stands: nothing the receiver says is of now.
   bool add(const Sentence& sentence, base::Time stamp) noexcept {
-    const std::optional<double> time_s = time_of_fix(sentence);
+    return add(time_of_fix(sentence), stamp);
+  }
+  /// @param time_s of a position, by the receiver; empty: it told none.
+  bool add(std::optional<double> time_s, base::Time stamp) noexcept {
     if (!time_s) return frozen_;
     if (time_s != time_s_) {
       time_s_ = time_s;

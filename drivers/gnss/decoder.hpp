@@ -1,11 +1,13 @@
 #pragma once
-// A receiver's bytes to typed sentences, every one of them accounted for.
+// A receiver's bytes to typed sentences and UBX messages, every one of them accounted for.
 
 #include <array>
 #include <cstdint>
+#include <type_traits>
 
 #include "gnss/framer.hpp"
 #include "gnss/nmea.hpp"
+#include "ubx/messages.hpp"
 
 namespace roverd::gnss {
 
@@ -18,6 +20,8 @@ struct SentenceCounts {
   std::array<std::uint64_t, kFlaws> by_flaw{};  ///< of the damaged ones, by Flaw
   std::uint64_t ubx = 0;                        ///< binary frames with a right checksum
   std::uint64_t rtcm3 = 0;
+  std::uint64_t ubx_used = 0;     ///< of ubx: decoded
+  std::uint64_t ubx_refused = 0;  ///< of ubx: too short, of an unknown version, out of range
 
   std::uint64_t intact() const noexcept { return used + unused + unknown; }
 };
@@ -25,7 +29,8 @@ struct SentenceCounts {
 /// Not thread-safe; no clock.
 class Decoder {
  public:
-  /// Calls sink(const Sentence&, Time first_byte) for each decoded sentence, in order.
+  /// Calls sink(const Sentence&, Time first_byte) for each decoded sentence, in order; and, if the
+  /// sink takes that, sink(const ubx::Message&, Time first_byte) for each UBX message.
   template <class Sink>
   void feed(Bytes bytes, Time now, Sink&& sink) {
     framer_.feed(bytes, now, [&](const Cut& cut) { take(cut, sink); });
@@ -35,6 +40,9 @@ class Decoder {
   void give_up(Time then, Sink&& sink) {
     framer_.give_up(then, [&](const Cut& cut) { take(cut, sink); });
   }
+
+  /// See Framer::forget.
+  void forget() noexcept { framer_.forget(); }
 
   const SentenceCounts& counts() const noexcept { return counts_; }
   const Framer::Counts& framing() const noexcept { return framer_.counts(); }
@@ -48,8 +56,7 @@ class Decoder {
       case Piece::Broken:
         return damaged(cut.flaw);
       case Piece::Ubx:
-        ++counts_.ubx;
-        return;
+        return take_ubx(cut, sink);
       case Piece::Rtcm3:
         ++counts_.rtcm3;
         return;
@@ -68,6 +75,19 @@ class Decoder {
         return;
       case Kind::Damaged:
         return damaged(parsed.flaw);
+    }
+  }
+  template <class Sink>
+  void take_ubx(const Cut& cut, Sink&& sink) {
+    ++counts_.ubx;
+    if constexpr (std::is_invocable_v<Sink&, const ubx::Message&, Time>) {
+      const ubx::Decoded decoded = ubx::decode(ubx::opened(cut.bytes));
+      if (decoded.verdict == ubx::Verdict::Decoded) {
+        ++counts_.ubx_used;
+        sink(decoded.message, cut.stamp);
+      } else if (decoded.verdict != ubx::Verdict::NotOurs) {
+        ++counts_.ubx_refused;
+      }
     }
   }
   void damaged(Flaw flaw) noexcept {

@@ -1,5 +1,6 @@
 #pragma once
-// A GNSS receiver that speaks NMEA 0183 on a byte stream.
+// A GNSS receiver that speaks NMEA 0183, u-blox UBX or both on a byte stream. A sentence below is
+// a UBX frame as well.
 //
 //   Down ─start─▶ Opening ─intact sentence─▶ Up ─2 s without one─▶ Faulty ─intact sentence─▶ Up
 //                    ▲  └─open refused, closed, 2 s without one ──▶ │
@@ -8,12 +9,15 @@
 //
 // Silence alone does not close the port; it is opened again when it stays silent for
 // silent_reopen_s. Faulty says which silence: "no bytes" (cable, power) or "bytes but no sentence"
-// (baud rate, binary protocol only, another device on this port), or that the receiver repeats one
-// epoch for ever (ClockWatch): nothing it says then is used.
+// (baud rate, another device on this port), or that the receiver repeats one epoch for ever
+// (ClockWatch): nothing it says then is used. A link that can try other baud rates does so.
 //
-// Measurements: GnssFix, GnssVelocity, Heading (gnss/epoch.hpp says how), DriverStatus on change
-// and twice a second; received counts decoded sentences, refused the damaged ones and those of a
-// standing clock; its DriverDetail has the counts by cause.
+// Measurements: GnssFix, GnssVelocity, Heading (gnss/epoch.hpp, gnss/ubx_epoch.hpp and
+// gnss/blend.hpp say how), DriverStatus on change and twice a second; received counts decoded
+// sentences, refused the damaged ones and those of a standing clock; its DriverDetail has the
+// counts by cause, and who the receiver is.
+//
+// It writes nothing to the receiver but corrections and what gnss/ubx_setup.hpp says.
 //
 // Threads: the device thread only.
 
@@ -23,13 +27,17 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/measurements.hpp"
 #include "base/result.hpp"
+#include "gnss/blend.hpp"
 #include "gnss/clock_watch.hpp"
 #include "gnss/decoder.hpp"
 #include "gnss/epoch.hpp"
 #include "gnss/params.hpp"
+#include "gnss/ubx_epoch.hpp"
+#include "gnss/ubx_setup.hpp"
 #include "link/lifecycle.hpp"
 #include "link/link.hpp"
 
@@ -55,6 +63,11 @@ class Driver {
   void stop(Time now);
   void restart(Time now);
 
+  /// Correction frames for the receiver, oldest first, appended to the vector; called in tick().
+  /// Empty: there are none. What the port has no room for is dropped and counted.
+  using Frames = std::vector<std::vector<std::uint8_t>>;
+  std::function<void(Frames&)> take_corrections;
+
   base::DriverStatus status(Time now) const;
   const SentenceCounts& counts() const noexcept { return decoder_.counts(); }
   const Framer::Counts& framing() const noexcept { return decoder_.framing(); }
@@ -65,8 +78,15 @@ class Driver {
   void check_silence(Time now);
   void report(Time now);
   void on_bytes(Bytes bytes, Time stamp);
+  std::uint64_t intact() const noexcept { return counts().intact() + counts().ubx; }
   void take(const Sentence& sentence, Time stamp);
+  void take(const ubx::Message& message, Time stamp);
+  void clock_stands(Time stamp);
   void after_bytes(std::uint64_t intact_before, Time stamp);
+  void forget_epochs();
+  void retune(Time now);
+  void talk(Time now);
+  void correct();
   std::map<std::string, std::uint64_t> causes() const;
 
   const std::string name_;
@@ -76,13 +96,22 @@ class Driver {
   std::unique_ptr<link::ByteLink> link_;
   link::Lifecycle life_;
   Decoder decoder_;
+  Blend blend_;
   EpochAssembler epochs_;
+  UbxEpochs ubx_epochs_;
+  UbxSetup setup_;
   ClockWatch clock_;
-  std::uint64_t frozen_ = 0;  ///< sentences of a standing clock
+  ClockWatch ubx_clock_;
+  std::uint64_t frozen_ = 0;            ///< sentences of a standing clock
+  std::uint64_t ubx_before_ = 0;        ///< frames before the link was opened
+  std::uint64_t corrections_ = 0;       ///< frames handed to the receiver
+  std::uint64_t corrections_lost_ = 0;  ///< for which its port had no room
+  std::uint64_t sent_ = 0;              ///< requests to the receiver
   bool open_ = false;
   Time now_{};          ///< of the last call, for callbacks that carry no time
   Time last_byte_{};    ///< or the opening
   Time last_intact_{};  ///< or the opening
+  Time retuned_{};      ///< or the opening
   std::optional<Time> last_received_;
 };
 

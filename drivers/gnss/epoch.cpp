@@ -42,6 +42,7 @@ std::optional<double> positive(std::optional<double> sigma) {
 }  // namespace
 
 void Calendar::set(Date date, double time_s) noexcept {
+  if (date.year() > std::chrono::year{2200}) return;  // beyond what a WallTime holds
   day_ = std::chrono::sys_days{date};
   time_s_ = time_s;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "rtcm/crc24q.hpp"
+
 namespace roverd::gnss {
 
 namespace {
@@ -17,26 +19,6 @@ constexpr std::array<bool, 256> kSpecial = [] {
   for (std::size_t c = 0; c < special.size(); ++c) special[c] = c < 0x20 || c > 0x7E || c == '$';
   return special;
 }();
-
-/// CRC-24Q, polynomial 0x1864CFB, as RTCM 10403 uses it.
-constexpr std::array<std::uint32_t, 256> kCrc24q = [] {
-  std::array<std::uint32_t, 256> table{};
-  for (std::uint32_t i = 0; i < 256; ++i) {
-    std::uint32_t crc = i << 16U;
-    for (int bit = 0; bit < 8; ++bit) {
-      crc <<= 1U;
-      if ((crc & 0x1000000U) != 0) crc ^= 0x1864CFBU;
-    }
-    table[i] = crc;
-  }
-  return table;
-}();
-
-std::uint32_t crc24q(Bytes bytes) noexcept {
-  std::uint32_t crc = 0;
-  for (const std::uint8_t b : bytes) crc = ((crc << 8U) & 0xFFFFFFU) ^ kCrc24q[(crc >> 16U) ^ b];
-  return crc;
-}
 
 /// 8-bit Fletcher over class, id, length and payload.
 bool ubx_checksum_is_right(Bytes frame) noexcept {
@@ -169,7 +151,7 @@ Framer::Look Framer::look_rtcm3(Cut& cut) noexcept {
   const std::size_t total = payload + 6;
   if (waiting() < total) return Look::More;
   // The CRC over the frame and its own CRC is zero.
-  const bool good = crc24q({buffer_.data() + at_, total}) == 0;
+  const bool good = rtcm::crc24q({buffer_.data() + at_, total}) == 0;
   return look_binary(total, good, Piece::Rtcm3, cut);
 }
 

@@ -68,6 +68,14 @@ class Framer {
     }
   }
 
+  /// What has begun will not go on: the line speaks differently from now on.
+  void forget() noexcept {
+    counts_.skipped_bytes += waiting();
+    at_ = end_;
+    scanned_ = 0;
+    nul_ = false;
+  }
+
   const Counts& counts() const noexcept { return counts_; }
 
  private:

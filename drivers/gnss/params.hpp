@@ -15,6 +15,12 @@ struct Params {
   double epoch_timeout_s = 0.25;
   double retry_first_s = 0.5;
   double retry_max_s = 5.0;
+  double baseline_m = 0.0;
+  double baseline_tolerance_m = 0.05;
+  bool ubx_configure = false;
+  bool ubx_keep = false;
+  std::string ubx_port = "usb";
+  double ubx_rate_hz = 5.0;
 };
 
 template <class V>
@@ -30,6 +36,17 @@ void fields(V& v, Params& p) {
     "an epoch without its last sentence is used after this");
   v("retry_first_s", p.retry_first_s, 0.05, 60.0, "first wait before opening again");
   v("retry_max_s", p.retry_max_s, 0.05, 600.0, "longest wait before opening again");
+  v("baseline_m", p.baseline_m, 0.0, 10.0,
+    "distance of the two antennas of a moving-base pair (NAV-RELPOSNED); 0: one antenna. Its "
+    "heading points from the base's antenna to the rover's; heading_offset_deg turns it forward");
+  v("baseline_tolerance_m", p.baseline_tolerance_m, 0.005, 1.0,
+    "a pair measured longer or shorter by more than this gives no heading");
+  v("ubx_configure", p.ubx_configure,
+    "tell a u-blox receiver to send NAV-PVT, NAV-HPPOSLLH, NAV-COV and NAV-RELPOSNED and to take "
+    "corrections, on the port that we are connected to");
+  v("ubx_keep", p.ubx_keep, "the receiver keeps what it is told, also without power");
+  v("ubx_port", p.ubx_port, "which of the receiver's ports that is: usb, uart1 or uart2");
+  v("ubx_rate_hz", p.ubx_rate_hz, 1.0, 25.0, "how often it measures once configured");
 }
 
 /// What `fields` cannot say: the words allowed in the text fields. The error names the field.

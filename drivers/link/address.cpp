@@ -14,6 +14,7 @@
 #include "link/slcan_link.hpp"
 #include "link/socketcan.hpp"
 #include "link/tcp.hpp"
+#include "link/tls.hpp"
 #include "link/udp.hpp"
 
 namespace roverd::link {
@@ -25,14 +26,17 @@ struct SchemeName {
   std::string_view form;
 };
 
-constexpr std::array<SchemeName, 7> kSchemes{
+constexpr std::array<SchemeName, 8> kSchemes{
     {{"can", Scheme::Can, "can:IFACE"},
      {"slcan", Scheme::Slcan, "slcan:DEVICE:BAUD[:BITRATE]"},
      {"cansock", Scheme::CanSocket, "cansock:PATH"},
      {"serial", Scheme::Serial, "serial:DEVICE:BAUD"},
      {"tcp", Scheme::Tcp, "tcp:HOST:PORT"},
+     {"tls", Scheme::Tls, "tls:HOST:PORT"},
      {"udp", Scheme::Udp, "udp:[HOST:]PORT"},
      {"replay", Scheme::Replay, "replay:FILE"}}};
+
+constexpr std::string_view kAutoBaud = "auto";
 
 const SchemeName& entry(Scheme scheme) noexcept {
   return kSchemes[static_cast<std::size_t>(scheme)];  // listed in the order of the enum
@@ -65,10 +69,14 @@ std::optional<std::pair<std::string_view, std::string_view>> split_last(std::str
 
 base::Result<Address> parse_serial(std::string_view text, std::string_view rest) {
   const auto parts = split_last(rest);
+  if (parts && !parts->first.empty() && parts->second == kAutoBaud) {
+    return Address{Scheme::Serial, std::string(parts->first), 0, 0};
+  }
   const auto baud = parts ? whole_number(parts->second) : std::nullopt;
   if (!baud || *baud == 0 || parts->first.empty()) {
     return bad_address(text,
-                       "must read serial:DEVICE:BAUD, for example serial:/dev/ttyUSB0:115200");
+                       "must read serial:DEVICE:BAUD, for example serial:/dev/ttyUSB0:115200 or "
+                       "serial:/dev/serial/by-id/usb-u-blox*:auto");
   }
   return Address{Scheme::Serial, std::string(parts->first), *baud, 0};
 }
@@ -122,16 +130,18 @@ std::string in_brackets(const std::string& host) {
   return host.find(':') != std::string::npos ? "[" + host + "]" : host;
 }
 
-base::Result<Address> parse_tcp(std::string_view text, std::string_view rest) {
+base::Result<Address> parse_tcp(Scheme scheme, std::string_view text, std::string_view rest) {
   const auto parts = split_last(rest);
   const auto port = parts ? port_number(parts->second) : std::nullopt;
-  if (!port) return bad_address(text, "must read tcp:HOST:PORT with a port of 1..65535");
+  if (!port)
+    return bad_address(text,
+                       "must read " + std::string(entry(scheme).form) + " with a port of 1..65535");
   const auto host = host_name(parts->first);
   if (!host) {
     return bad_address(text,
                        "must name a host; an IPv6 address stands in brackets: tcp:[::1]:5000");
   }
-  return Address{Scheme::Tcp, *host, 0, *port};
+  return Address{scheme, *host, 0, *port};
 }
 
 base::Result<Address> parse_udp(std::string_view text, std::string_view rest) {
@@ -184,7 +194,8 @@ base::Result<Address> parse_address(std::string_view text) {
     case Scheme::Serial:
       return parse_serial(text, rest);
     case Scheme::Tcp:
-      return parse_tcp(text, rest);
+    case Scheme::Tls:
+      return parse_tcp(known->scheme, text, rest);
     case Scheme::Udp:
       return parse_udp(text, rest);
     case Scheme::Can:
@@ -203,8 +214,10 @@ std::string to_string(const Address& address) {
   const std::string start = std::string(entry(address.scheme).name) + ":";
   switch (address.scheme) {
     case Scheme::Serial:
-      return start + address.target + ":" + std::to_string(address.baud);
+      return start + address.target + ":" +
+             (address.baud == 0 ? std::string(kAutoBaud) : std::to_string(address.baud));
     case Scheme::Tcp:
+    case Scheme::Tls:
       return start + in_brackets(address.target) + ":" + std::to_string(address.port);
     case Scheme::Udp: {
       const std::string port = std::to_string(address.port);
@@ -241,6 +254,7 @@ base::Result<std::unique_ptr<FrameLink>> make_frame_link(asio::io_context& io,
       return std::make_unique<FrameReplay>(io, address->target, replay);
     case Scheme::Serial:
     case Scheme::Tcp:
+    case Scheme::Tls:
     case Scheme::Udp:
       break;
   }
@@ -257,6 +271,8 @@ base::Result<std::unique_ptr<ByteLink>> make_byte_link(asio::io_context& io, std
       return std::make_unique<SerialLink>(io, address->target, address->baud);
     case Scheme::Tcp:
       return std::make_unique<TcpLink>(io, address->target, address->port);
+    case Scheme::Tls:
+      return std::make_unique<TlsLink>(io, address->target, address->port);
     case Scheme::Udp:
       if (address->target.empty()) return std::make_unique<UdpLink>(io, address->port);
       return std::make_unique<UdpLink>(io, address->local_port,

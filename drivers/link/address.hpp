@@ -6,8 +6,10 @@
 //   slcan:DEVICE:BAUD    serial-line CAN adapter at 500 kbit/s   frames
 //   slcan:DEVICE:BAUD:BITRATE                                    frames
 //   cansock:PATH         local CAN socket                        frames
-//   serial:DEVICE:BAUD   serial port, 8N1                        bytes
+//   serial:DEVICE:BAUD   serial port, 8N1; DEVICE may be a       bytes
+//                        pattern (/dev/serial/by-id/usb-u-blox*), BAUD may be auto
 //   tcp:HOST:PORT        TCP client; IPv6 as [::1]               bytes
+//   tls:HOST:PORT        the same, through TLS                   bytes
 //   udp:PORT             UDP receiver, answers the last sender   bytes
 //   udp:HOST:PORT        UDP with one peer: sends there, hears   bytes
 //                        only it; from a port of the kernel's choice
@@ -30,13 +32,13 @@ namespace roverd::link {
 
 namespace asio = boost::asio;
 
-enum class Scheme { Can, Slcan, CanSocket, Serial, Tcp, Udp, Replay };
+enum class Scheme { Can, Slcan, CanSocket, Serial, Tcp, Tls, Udp, Replay };
 
 struct Address {
   Scheme scheme = Scheme::Can;
   std::string target;            ///< interface, path, device, host or file; empty for udp:PORT
-  unsigned baud = 0;             ///< serial and slcan only
-  std::uint16_t port = 0;        ///< tcp and udp only; never 0 there
+  unsigned baud = 0;             ///< serial and slcan only; serial: 0 is auto
+  std::uint16_t port = 0;        ///< tcp, tls and udp only; never 0 there
   CanOptions can{};              ///< can; of slcan only the bit rate
   std::uint16_t local_port = 0;  ///< udp with a peer: ours; 0: the kernel chooses
   friend bool operator==(const Address&, const Address&) = default;

@@ -40,6 +40,11 @@ class ByteLink {
   /// Device thread. What came from somebody else than the peer and was not handed over.
   virtual std::uint64_t strangers() const noexcept { return 0; }
 
+  /// Device thread, not from a callback. What comes makes no sense to the driver: tries the next
+  /// way of listening (a serial port's next baud rate, the next port). @return false: there is
+  /// none.
+  virtual bool retune() { return false; }
+
   std::function<void(Bytes, Time)> on_bytes;                 ///< never empty spans
   std::function<void(const std::string& reason)> on_closed;  ///< lost; not after close()
 

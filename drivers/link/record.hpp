@@ -61,6 +61,7 @@ class RecordedByteLink final : public ByteLink {
   SendResult write(Bytes bytes) noexcept override;
   std::string describe() const override { return inner_->describe(); }
   std::uint64_t strangers() const noexcept override { return inner_->strangers(); }
+  bool retune() override { return inner_->retune(); }
 
   /// Any thread.
   RecordStatus status() const { return writer_->status(); }

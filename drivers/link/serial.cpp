@@ -1,25 +1,87 @@
 #include "link/serial.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <utility>
 
+#include <glob.h>
 #include <sys/file.h>
 #include <unistd.h>
 
 namespace roverd::link {
+namespace {
+
+/// Tried in this order: the usual ones of receivers first.
+constexpr std::array<unsigned, 9> kRates{115'200, 9600,    38'400, 460'800, 921'600,
+                                         57'600,  230'400, 19'200, 4800};
+
+/// Sorted; empty: none.
+std::vector<std::string> matches(const std::string& pattern) {
+  std::vector<std::string> out;
+  ::glob_t found{};
+  if (::glob(pattern.c_str(), 0, nullptr, &found) == 0) {
+    out.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
+  }
+  ::globfree(&found);
+  return out;
+}
+
+}  // namespace
 
 SerialLink::SerialLink(asio::io_context& io, std::string device, unsigned baud)
-    : device_(std::move(device)), baud_(baud), port_(io) {}
+    : device_(std::move(device)), baud_(baud), path_(device_), port_(io) {}
 
 SerialLink::~SerialLink() {
   close();
 }
 
+unsigned SerialLink::rate() const noexcept {
+  return is_automatic() ? kRates[rate_] : baud_;
+}
+
+std::string SerialLink::describe() const {
+  return "serial:" + path_ + ":" + std::to_string(rate()) + (is_automatic() ? " (auto)" : "");
+}
+
 base::Result<void> SerialLink::open() {
+  if (!is_pattern()) return open_port();
+  auto ports = matches(device_);
+  // The one found last first; the one that retune() leaves, and those before it, last.
+  const std::string& first = skip_.empty() ? path_ : skip_;
+  auto middle = std::find(ports.begin(), ports.end(), first);
+  if (middle != ports.end() && !skip_.empty()) ++middle;
+  if (middle != ports.end()) std::rotate(ports.begin(), middle, ports.end());
+  base::Result<void> opened = base::fail(base::Code::NotFound, "no serial port matches " + device_);
+  for (const std::string& port : ports) {
+    path_ = port;
+    opened = open_port();
+    if (opened) break;
+  }
+  return opened;
+}
+
+bool SerialLink::retune() {
+  if (!session_ || !(is_automatic() || is_pattern())) return false;
+  if (is_automatic()) {
+    rate_ = (rate_ + 1) % kRates.size();
+    if (rate_ != 0 || !is_pattern()) {
+      boost::system::error_code ec;
+      port_.set_option(asio::serial_port_base::baud_rate(rate()), ec);
+      return true;  // a rate that the port lacks is passed at the next call
+    }
+  }
+  skip_ = path_;
+  const auto opened = open();
+  skip_.clear();
+  if (!opened && on_closed) on_closed(opened.error().detail);
+  return true;
+}
+
+base::Result<void> SerialLink::open_port() {
   close();
-  const std::string name = "serial port " + device_;
+  const std::string name = "serial port " + path_;
   boost::system::error_code ec;
-  port_.open(device_, ec);  // raw mode, no controlling terminal, non-blocking
+  port_.open(path_, ec);  // raw mode, no controlling terminal, non-blocking
   if (ec) {
     switch (ec.value()) {
       case ENOENT:
@@ -51,15 +113,15 @@ base::Result<void> SerialLink::open() {
 
 base::Result<void> SerialLink::configure() {
   using Port = asio::serial_port_base;
-  const std::string name = "serial port " + device_;
+  const std::string name = "serial port " + path_;
   // Two readers of one port would each get half of the bytes.
   if (::flock(port_.native_handle(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     return base::fail(base::Code::Unavailable, name + " is in use by another program");
   }
   boost::system::error_code ec;
-  if (port_.set_option(Port::baud_rate(baud_), ec)) {
+  if (port_.set_option(Port::baud_rate(rate()), ec)) {
     return base::fail(base::Code::Invalid,
-                      name + ": baud rate " + std::to_string(baud_) + " is not supported");
+                      name + ": baud rate " + std::to_string(rate()) + " is not supported");
   }
   if (port_.set_option(Port::character_size(8), ec) ||
       port_.set_option(Port::parity(Port::parity::none), ec) ||
@@ -101,7 +163,7 @@ void SerialLink::read() {
 
 void SerialLink::lost(const std::string& reason) {
   close();
-  if (on_closed) on_closed("serial port " + device_ + " " + reason);
+  if (on_closed) on_closed("serial port " + path_ + " " + reason);
 }
 
 }  // namespace roverd::link

@@ -5,9 +5,12 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "gnss/blend.hpp"
 #include "gnss/decoder.hpp"
 #include "gnss/epoch.hpp"
 #include "gnss/gsv.hpp"
+#include "gnss/ubx_epoch.hpp"
+#include "gnss/ubx_setup.hpp"
 
 namespace {
 
@@ -26,6 +29,41 @@ void check_measurement(const base::Measurement& m) {
     check(!std::isnan(v->east_mps) && !std::isnan(v->north_mps));
   }
   if (const auto* h = std::get_if<base::Heading>(&m)) check(std::abs(h->yaw_rad) <= 3.1415926536);
+}
+
+/// UBX messages and sentences as the driver hears them. The checksum hides most payloads from the
+/// fuzzer, so the bytes are also taken as payloads themselves.
+void run_both(base::Bytes bytes) {
+  gnss::Blend blend(check_measurement);
+  gnss::EpochAssembler sentences({}, [&](const base::Measurement& m) { blend.nmea(m); });
+  gnss::UbxEpochs messages({.timeout_s = 0.25,
+                            .baseline_m = 1.0,
+                            .baseline_tolerance_m = 0.05,
+                            .heading_offset_deg = 90.0},
+                           [&](const base::Measurement& m) { blend.ubx(m); });
+  gnss::UbxSetup setup({.configure = true});
+  base::Time now{};
+  struct Ears {
+    gnss::EpochAssembler& sentences;
+    gnss::UbxEpochs& messages;
+    gnss::UbxSetup& setup;
+    void operator()(const gnss::Sentence& s, base::Time t) const { sentences.add(s, t); }
+    void operator()(const ubx::Message& m, base::Time t) const {
+      setup.add(m);
+      messages.add(m, t);
+    }
+  };
+  const Ears ears{sentences, messages, setup};
+  gnss::Decoder decoder;
+  decoder.feed(bytes, now, ears);
+  for (const ubx::Key key : {ubx::key::kNavPvt, ubx::key::kNavHpPosLlh, ubx::key::kNavCov,
+                             ubx::key::kNavRelPosNed, ubx::key::kMonVer, ubx::key::kAckNak}) {
+    now += std::chrono::milliseconds(10);
+    setup.due(true, now);
+    if (bytes.size() <= ubx::kMaxPayload) ears(ubx::decode({key, bytes}).message, now);
+  }
+  messages.tick(now + std::chrono::seconds(1));
+  messages.reset();
 }
 
 gnss::SentenceCounts run(base::Bytes bytes, std::size_t chunk) {
@@ -59,6 +97,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   check(whole.used == pieces.used && whole.damaged == pieces.damaged);
   check(whole.unused == pieces.unused && whole.unknown == pieces.unknown);
   check(whole.ubx == pieces.ubx && whole.rtcm3 == pieces.rtcm3);
+  run_both(bytes);
   gnss::time_of_day_s(bytes);
   gnss::parse_line({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   return 0;

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "../ubx/frames.hpp"
 #include "gnss/nmea_encode.hpp"
 #include "link/memory.hpp"
 
@@ -97,7 +98,7 @@ TEST_F(GnssDriverTest, BytesThatMakeNoSentenceAreAnotherFault) {
     after(500ms);
   }
   EXPECT_EQ(status().phase, DriverPhase::Faulty);
-  EXPECT_EQ(status().reason, "bytes but no sentence: wrong baud rate, or not NMEA");
+  EXPECT_EQ(status().reason, "bytes but no sentence: wrong baud rate, or another device");
   after(2001ms);
   EXPECT_EQ(status().reason, "no bytes: the receiver is silent");
 }
@@ -214,19 +215,78 @@ TEST_F(GnssDriverTest, AFalseBinaryFrameHoldsSentencesBackForASecondAtMost) {
   EXPECT_EQ(status().phase, DriverPhase::Up);
 }
 
+std::string text_of_hex(std::string_view hex) {
+  const auto bytes = ubx::from_hex(hex);
+  return {bytes.begin(), bytes.end()};
+}
+
+TEST_F(GnssDriverTest, BothLanguagesOnOnePortAreOneReceiver) {
+  Params p;
+  p.baseline_m = 1.0;
+  make(p);
+  driver->start(now);
+  hear(text_of_hex(ubx::kPvtFixed) + text_of_hex(ubx::kHpPosLlh) + text_of_hex(ubx::kRelPosNed));
+  EXPECT_EQ(status().phase, DriverPhase::Up) << "UBX alone will do";
+  after(300ms);
+  Gga g;
+  g.time_s = 43182.0;
+  g.lat = 10.0;
+  g.lon = 20.0;
+  g.quality = 4;
+  hear(encode(g));
+  hear("$GPHDT,359.97,T*04\r\n");
+  after(300ms);
+  ASSERT_EQ(measured<base::GnssFix>().size(), 1u);
+  EXPECT_NEAR(measured<base::GnssFix>()[0].position->lat, -33.868724293, 1e-10);
+  EXPECT_EQ(measured<base::Heading>().size(), 1u);
+  EXPECT_EQ(measured<base::Heading>()[0].source, base::HeadingSource::DualAntenna);
+  EXPECT_EQ(status().received, 3u + 2u);
+  EXPECT_EQ(status().refused, 0u);
+}
+
+TEST_F(GnssDriverTest, AReceiverThatRepeatsOneUbxEpochIsNotBelieved) {
+  driver->start(now);
+  for (int i = 0; i < 10; ++i) {
+    hear(text_of_hex(ubx::kPvtFixed));
+    after(200ms);
+  }
+  EXPECT_EQ(status().phase, DriverPhase::Faulty);
+  EXPECT_EQ(status().reason, "the receiver repeats itself: its time stands still");
+  EXPECT_GT(status().detail->counts.at("sentence of a standing clock"), 0u);
+}
+
+TEST_F(GnssDriverTest, TheReceiverSaysWhoItIs) {
+  std::string asked;
+  wire.b->on_bytes = [&](Bytes b, Time) { asked.assign(b.begin(), b.end()); };
+  driver->start(now);
+  after(20ms);
+  wire.b->deliver(now);
+  EXPECT_EQ(asked, "") << "nothing is said to a receiver that may not know UBX";
+  hear(text_of_hex(ubx::kPvtNoFix));
+  after(20ms);
+  wire.b->deliver(now);
+  EXPECT_EQ(asked, text_of_hex(ubx::kMonVerPoll));
+  hear(text_of_hex(ubx::kMonVerAnswer));
+  EXPECT_EQ(status().detail->facts.at("receiver"), "ZED-F9P");
+  EXPECT_EQ(status().sent, 1u);
+}
+
 TEST(GnssParams, WordsOutsideTheListAreRefusedByName) {
   Params p;
   EXPECT_TRUE(validate(p));
   p.heading_source = "magic";
   EXPECT_EQ(validate(p).error().fields.at(0).pointer, "heading_source");
   EXPECT_THROW(Driver("gnss", p, {}, {}), std::invalid_argument);
+  p.heading_source = "compass";
+  p.ubx_port = "spi";
+  EXPECT_EQ(validate(p).error().fields.at(0).pointer, "ubx_port");
 }
 
 TEST(GnssParams, AreListedWithTheirRanges) {
   Params p;
   EXPECT_TRUE(base::set_param(p, "silent_after_s", 3.0));
   EXPECT_FALSE(base::set_param(p, "silent_after_s", 0.1));
-  EXPECT_EQ(base::describe(p).size(), 7u);
+  EXPECT_EQ(base::describe(p).size(), 13u);
 }
 
 }  // namespace

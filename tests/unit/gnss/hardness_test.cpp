@@ -66,11 +66,10 @@ TEST_F(BadReceiver, EveryRefusalIsCountedByItsCause) {
   const std::map<std::string, std::uint64_t> wanted{
       {"sentence: wrong checksum", 1}, {"sentence: no checksum", 1},
       {"sentence: bad field", 1},      {"sentence: cut short", 1},
-      {"sentence: not text", 1},       {"bytes outside any sentence", 4},
-      {"UBX frame, not used", 1}};
+      {"sentence: not text", 1},       {"bytes outside any sentence", 4}};
   EXPECT_EQ(status().detail->counts, wanted);
   EXPECT_EQ(status().refused, 5U);
-  EXPECT_EQ(status().received, 1U);
+  EXPECT_EQ(status().received, 2U) << "the sentence and the acknowledgement";
   EXPECT_EQ(fixes, 0);
 }
 

@@ -19,8 +19,11 @@ TEST(Address, EveryKindIsReadAndWrittenBack) {
       {"serial:/dev/ttyUSB0:115200", {Scheme::Serial, "/dev/ttyUSB0", 115'200, 0}},
       {"serial:/dev/serial/by-path/pci-0000:00:14.0-usb-0:1:1.0:9600",
        {Scheme::Serial, "/dev/serial/by-path/pci-0000:00:14.0-usb-0:1:1.0", 9'600, 0}},
+      {"serial:/dev/serial/by-id/usb-u-blox*:auto",
+       {Scheme::Serial, "/dev/serial/by-id/usb-u-blox*", 0, 0}},
       {"tcp:192.168.1.5:5017", {Scheme::Tcp, "192.168.1.5", 0, 5'017}},
       {"tcp:[fe80::1%eth0]:65535", {Scheme::Tcp, "fe80::1%eth0", 0, 65'535}},
+      {"tls:caster.example:443", {Scheme::Tls, "caster.example", 0, 443}},
       {"udp:10110", {Scheme::Udp, "", 0, 10'110}},
       {"udp:192.168.1.10:5005", {Scheme::Udp, "192.168.1.10", 0, 5'005}},
       {"udp:6000:192.168.1.10:5005", {Scheme::Udp, "192.168.1.10", 0, 5'005, {}, 6'000}},
@@ -41,7 +44,7 @@ TEST(Address, AnUnknownSchemeListsTheKnownOnes) {
     EXPECT_EQ(parse_address(text).error().detail,
               "link address '" + std::string(text) +
                   "': must be one of can:IFACE, slcan:DEVICE:BAUD[:BITRATE], cansock:PATH, "
-                  "serial:DEVICE:BAUD, tcp:HOST:PORT, "
+                  "serial:DEVICE:BAUD, tcp:HOST:PORT, tls:HOST:PORT, "
                   "udp:[HOST:]PORT, replay:FILE");
   }
 }

@@ -1,6 +1,7 @@
 #include "link/serial.hpp"
 
 #include <array>
+#include <filesystem>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -97,6 +98,81 @@ TEST_F(Serial, TwoReadersOfOnePortAreRefused) {
   SerialLink second(io, terminal.path, 9600);
   EXPECT_EQ(second.open().error().detail,
             "serial port " + terminal.path + " is in use by another program");
+}
+
+speed_t speed_of(const Terminal& terminal) {
+  termios settings{};
+  EXPECT_EQ(::tcgetattr(terminal.master, &settings), 0);
+  return ::cfgetospeed(&settings);
+}
+
+TEST(SerialAutomatic, EveryRateIsTriedUntilTheDriverIsContent) {
+  asio::io_context io;
+  const Terminal terminal;
+  SerialLink link(io, terminal.path, 0);
+  ASSERT_TRUE(link.open());
+  EXPECT_EQ(speed_of(terminal), static_cast<speed_t>(B115200));
+  EXPECT_TRUE(link.retune());
+  EXPECT_EQ(speed_of(terminal), static_cast<speed_t>(B9600));
+  EXPECT_TRUE(link.retune());
+  EXPECT_EQ(speed_of(terminal), static_cast<speed_t>(B38400));
+  EXPECT_EQ(link.describe(), "serial:" + terminal.path + ":38400 (auto)");
+  ASSERT_TRUE(link.open());
+  EXPECT_EQ(speed_of(terminal), static_cast<speed_t>(B38400)) << "what was found stays";
+  for (int i = 0; i < 7; ++i) EXPECT_TRUE(link.retune());
+  EXPECT_EQ(speed_of(terminal), static_cast<speed_t>(B115200)) << "from the beginning";
+}
+
+TEST(SerialAutomatic, AFixedRateOfANamedPortIsNotChanged) {
+  asio::io_context io;
+  const Terminal terminal;
+  SerialLink link(io, terminal.path, 9600);
+  ASSERT_TRUE(link.open());
+  EXPECT_FALSE(link.retune());
+  EXPECT_EQ(speed_of(terminal), static_cast<speed_t>(B9600));
+}
+
+/// Two ports with names as udev gives them.
+class SerialById : public testing::Test {
+ protected:
+  SerialById() {
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directories(folder);
+    std::filesystem::create_symlink(one.path, folder / "usb-u-blox_one");
+    std::filesystem::create_symlink(two.path, folder / "usb-u-blox_two");
+  }
+  ~SerialById() override { std::filesystem::remove_all(folder); }
+  std::string by_id(const std::string& name) const { return (folder / name).string(); }
+
+  asio::io_context io;
+  Terminal one, two;
+  std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("by-id-" + std::to_string(::getpid()));
+};
+
+TEST_F(SerialById, APatternFindsThePort) {
+  SerialLink link(io, by_id("usb-u-blox*"), 9600);
+  if (const auto opened = link.open(); !opened) FAIL() << opened.error().detail;
+  EXPECT_EQ(link.describe(), "serial:" + by_id("usb-u-blox_one") + ":9600");
+  EXPECT_TRUE(link.retune());
+  EXPECT_EQ(link.describe(), "serial:" + by_id("usb-u-blox_two") + ":9600");
+  if (const auto opened = link.open(); !opened) FAIL() << opened.error().detail;
+  EXPECT_EQ(link.describe(), "serial:" + by_id("usb-u-blox_two") + ":9600") << "what was found";
+  EXPECT_TRUE(link.retune());
+  EXPECT_EQ(link.describe(), "serial:" + by_id("usb-u-blox_one") + ":9600");
+}
+
+TEST_F(SerialById, APortThatSomebodyElseUsesIsPassed) {
+  SerialLink first(io, by_id("usb-u-blox_one"), 9600);
+  ASSERT_TRUE(first.open());
+  SerialLink link(io, by_id("usb-u-blox*"), 9600);
+  ASSERT_TRUE(link.open());
+  EXPECT_EQ(link.describe(), "serial:" + by_id("usb-u-blox_two") + ":9600");
+}
+
+TEST_F(SerialById, WithoutAMatchThePatternIsNamed) {
+  SerialLink link(io, by_id("usb-xsens*"), 9600);
+  EXPECT_EQ(link.open().error().detail, "no serial port matches " + by_id("usb-xsens*"));
 }
 
 TEST(SerialErrors, NameTheCause) {
