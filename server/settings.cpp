@@ -140,6 +140,7 @@ Sections sections_of(Settings& s) {
       {"server", section(s.server)},
       {"vehicle", section(s.vehicle, s.robot.vehicle)},
       {"recording", section(s.recording)},
+      {"missions", section(s.missions)},
       {"tiles", [&s](std::string_view name, const ParamValue& v) { return set_tiles(s, name, v); }},
   };
   drivers(

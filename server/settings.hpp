@@ -90,10 +90,21 @@ void fields(V& v, RecordingSettings& p) {
     "files kept of each device's recording, the oldest goes; 1: recording stops when it is full");
 }
 
+struct MissionSettings {
+  int keep_deleted_days = 30;
+};
+
+template <class V>
+void fields(V& v, MissionSettings& p) {
+  v("keep_deleted_days", p.keep_deleted_days, 1, 36500,
+    "how long a deleted mission can be restored; then it is gone for good");
+}
+
 struct Settings {
   ServerSettings server;
   VehicleSettings vehicle;
   RecordingSettings recording;
+  MissionSettings missions;
   Wired<bunker::Params> bunker;
   Wired<ackermann::Params> ackermann;
   Wired<ratio::Params> ratio;

@@ -112,7 +112,7 @@ struct Station::Impl {
 
   Result<void> open(const Settings& settings, const Options& options);
   Result<void> open_tiles(const Settings& settings);
-  Result<void> open_store(const Options& options);
+  Result<void> open_store(const Settings& settings, const Options& options);
   Result<void> open_server(const Settings& settings, const Options& options);
   void make_api(const Settings& settings);
   api::DriverDoor driver_door();
@@ -130,7 +130,7 @@ Result<void> Station::Impl::open(const Settings& settings, const Options& option
   if (!made) return tl::unexpected(made.error());
   bay = std::move(*made);
   if (auto done = open_tiles(settings); !done) return done;
-  if (auto done = open_store(options); !done) return done;
+  if (auto done = open_store(settings, options); !done) return done;
   make_api(settings);
   if (auto done = open_server(settings, options); !done) return done;
   start();
@@ -147,10 +147,12 @@ Result<void> Station::Impl::open_tiles(const Settings& settings) {
   return tiles.open(settings.tiles);
 }
 
-Result<void> Station::Impl::open_store(const Options& options) {
+Result<void> Station::Impl::open_store(const Settings& settings, const Options& options) {
+  store::Options how;
+  how.keep_deleted = std::chrono::hours(24) * settings.missions.keep_deleted_days;
   auto opened = store::Store::open(
       std::filesystem::path(options.data) / "roverd.db",
-      [this](std::function<void()> answer) { asio::post(web, std::move(answer)); });
+      [this](std::function<void()> answer) { asio::post(web, std::move(answer)); }, std::move(how));
   if (!opened) return tl::unexpected(opened.error());
   store = std::move(*opened);
   return {};

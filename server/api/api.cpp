@@ -96,6 +96,7 @@ Api::Api(Deps deps) : impl_(std::make_unique<Impl>(std::move(deps))) {
   add_vehicle_routes(c);
   add_execution_routes(c);
   add_mission_routes(c);
+  add_operation_routes(c);
   add_file_routes(c);
   add_event_routes(c);
   add_server_routes(c);

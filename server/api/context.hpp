@@ -74,6 +74,7 @@ using ContextPtr = std::shared_ptr<Context>;
 void add_vehicle_routes(const ContextPtr& context);
 void add_execution_routes(const ContextPtr& context);
 void add_mission_routes(const ContextPtr& context);
+void add_operation_routes(const ContextPtr& context);
 void add_file_routes(const ContextPtr& context);
 void add_event_routes(const ContextPtr& context);
 void add_server_routes(const ContextPtr& context);

@@ -1,6 +1,8 @@
 // Mission files of other programs, in and out.
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <utility>
 
 #include "api/context.hpp"
@@ -10,7 +12,10 @@ namespace roverd::api {
 namespace {
 
 base::Error not_a_format(const std::string& word) {
-  const std::string detail = "\"" + word + "\" is not a known format: plan and waypoints are";
+  std::string detail = "\"" + word + "\" is not a known format; known are";
+  for (const mission::Format format : mission::kFormats) {
+    detail += ' ' + std::string(mission::to_string(format));
+  }
   return {base::Code::Invalid, detail, {{"format", detail}}};
 }
 
@@ -23,9 +28,9 @@ std::string file_name(std::string name) {
 }
 
 /// RFC 6266: a name in ASCII for all, and the mission's own in UTF-8 for those that read it.
-std::string attachment(const std::string& ascii, const std::string& name, mission::Format format) {
+std::string attachment(const std::string& ascii, const std::string& name) {
   std::string out = "attachment; filename=\"" + ascii + "\"";
-  const std::string whole = name + "." + std::string(mission::to_string(format));
+  const std::string whole = name + ascii.substr(ascii.rfind('.'));
   if (whole == ascii) return out;
   out += "; filename*=UTF-8''";
   for (const char c : whole) {
@@ -44,6 +49,35 @@ std::string attachment(const std::string& ascii, const std::string& name, missio
   return out;
 }
 
+/// ?origin_lat=, ?origin_lon= (both or neither) and ?speed_unit=mps|kmh.
+base::Result<mission::ImportHints> hints_of(const Call& call) {
+  mission::ImportHints hints;
+  const auto refuse = [](const char* name, const char* detail) {
+    return base::fail(base::Code::Invalid, std::string(name) + " " + detail, {{name, detail}});
+  };
+  const std::string unit = query_text(call, "speed_unit");
+  if (!unit.empty() && unit != "mps" && unit != "kmh") {
+    return refuse("speed_unit", "must be mps or kmh");
+  }
+  hints.kmh = unit == "kmh";
+  const std::string lat = query_text(call, "origin_lat");
+  const std::string lon = query_text(call, "origin_lon");
+  if (lat.empty() && lon.empty()) return hints;
+  base::LatLon origin;
+  const auto read = [](const std::string& text, double& out) {
+    const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), out);
+    return ec == std::errc{} && end == text.data() + text.size();
+  };
+  if (!read(lat, origin.lat) || !(std::abs(origin.lat) <= 90.0)) {
+    return refuse("origin_lat", "must be a latitude in degrees");
+  }
+  if (!read(lon, origin.lon) || !(std::abs(origin.lon) <= 180.0)) {
+    return refuse("origin_lon", "must be a longitude in degrees");
+  }
+  hints.origin = origin;
+  return hints;
+}
+
 Handler import_mission(const ContextPtr& context) {
   return [context](const CallPtr& call) {
     const std::string word = query_text(*call, "format");
@@ -53,7 +87,9 @@ Handler import_mission(const ContextPtr& context) {
       return call->respond(problem({base::Code::Malformed, "the file is empty"}));
     }
     const std::string name = file_name(query_text(*call, "name"));
-    auto file = mission::import_file(call->request.body(), format, name);
+    const auto hints = hints_of(*call);
+    if (!hints) return call->respond(problem(hints.error()));
+    auto file = mission::import_file(call->request.body(), format, name, *hints);
     if (!file) return call->respond(problem(file.error()));
     auto imported = std::make_shared<mission::ImportedFile>(std::move(*file));
     const std::string from =
@@ -88,7 +124,7 @@ Handler export_mission(const ContextPtr& context) {
           Response response = text_response(http::status::ok, file.media_type + "; charset=utf-8",
                                             std::move(file.content));
           response.set(http::field::content_disposition,
-                       attachment(file.file_name, stored->plan.name, *format));
+                       attachment(file.file_name, stored->plan.name));
           response.set(http::field::etag, etag_of(stored->revision));
           // What the format could not hold: never lost in silence.
           response.set("Items-Changed", count(mission::Outcome::Changed));

@@ -2,80 +2,12 @@
 #include <utility>
 
 #include "api/context.hpp"
-#include "api/plain_json.hpp"
+#include "api/mission_change.hpp"
 #include "mission/json.hpp"
 
 namespace roverd::api {
 
 namespace {
-
-// There are no users yet: everybody is the operator at this machine.
-constexpr const char* kAuthor = "local";
-
-std::string mission_path(const std::string& id) {
-  return "/api/v1/missions/" + id;
-}
-
-Response mission_response(http::status status, const store::StoredMission& mission) {
-  Response response = json_response(status, mission_json(mission));
-  response.set(http::field::etag, etag_of(mission.revision));
-  if (status == http::status::created) {
-    response.set(http::field::location, mission_path(mission.id));
-  }
-  return response;
-}
-
-/// What a change of a stored mission answers.
-store::Reply<store::StoredMission> changed(const ContextPtr& context, const CallPtr& call,
-                                           http::status status) {
-  return [context, call, status](base::Result<store::StoredMission> stored) {
-    if (!stored) return call->respond(problem(stored.error()));
-    context->announce(stored->id, stored->revision);
-    call->respond(mission_response(status, *stored));
-  };
-}
-
-/// 412 with the present state, so that a client can show what it collided with.
-void refuse_with_present(const ContextPtr& context, const CallPtr& call, base::Error error) {
-  context->deps.store.read_mission(
-      call->params.at("id"),
-      [call, error = std::move(error)](base::Result<store::StoredMission> present) {
-        Response response = problem(error);
-        if (present) {
-          Json body = problem_json(error);
-          body["current"] = mission_json(*present);
-          response.body() = plain_json(body);
-          response.set(http::field::etag, etag_of(present->revision));
-        }
-        call->respond(std::move(response));
-      });
-}
-
-/// Calls `change` with the revision that If-Match asks for, or refuses: 428 without the header.
-/// Tags that name no revision of ours lead to 412 by way of an impossible revision.
-void with_expected(const ContextPtr& context, const CallPtr& call,
-                   std::function<void(std::int64_t expected)> change) {
-  const std::string_view given = header(call->request, http::field::if_match);
-  if (given.empty()) {
-    return call->respond(problem({base::Code::PreconditionMissing,
-                                  "If-Match with the mission's ETag is needed: somebody else may "
-                                  "have changed it"}));
-  }
-  constexpr std::int64_t kNone = -1;
-  if (given.find(',') == std::string_view::npos && given != "*") {
-    return change(revision_of(given).value_or(kNone));
-  }
-  // "*" or a list: whichever of them is the present one.
-  context->deps.store.read_mission(
-      call->params.at("id"),
-      [call, change = std::move(change)](base::Result<store::StoredMission> present) {
-        if (!present) return call->respond(problem(present.error()));
-        const std::string_view tags = header(call->request, http::field::if_match);
-        const bool fits =
-            tags == "*" || tags.find(etag_of(present->revision)) != std::string_view::npos;
-        change(fits ? present->revision : kNone);
-      });
-}
 
 base::Result<mission::Plan> read_plan(const Request& request) {
   auto body = json_body(request);
@@ -167,8 +99,24 @@ Handler list_missions(const ContextPtr& context) {
   return [context](const CallPtr& call) {
     const auto limit = limit_of(*call);
     if (!limit) return call->respond(problem(limit.error()));
-    context->deps.store.list_missions(*limit, query_text(*call, "cursor"),
-                                      listed<store::MissionSummary>(call, mission_list_json));
+    const std::string deleted = query_text(*call, "deleted");
+    if (!deleted.empty() && deleted != "true" && deleted != "false") {
+      return call->respond(problem({base::Code::Invalid,
+                                    "deleted must be true or false",
+                                    {{"deleted", "must be true or false"}}}));
+    }
+    const bool gone = deleted == "true";
+    context->deps.store.list_missions(
+        *limit, query_text(*call, "cursor"),
+        listed<store::MissionSummary>(call, gone ? deleted_list_json : mission_list_json),
+        gone ? store::Which::Deleted : store::Which::Present);
+  };
+}
+
+Handler restore(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    context->deps.store.restore_mission(call->params.at("id"), {kAuthor, ""},
+                                        changed(context, call, http::status::ok));
   };
 }
 
@@ -193,6 +141,41 @@ Handler one_revision(const ContextPtr& context) {
   };
 }
 
+/// ?name=, a whole number from 1; left out: empty.
+base::Result<std::optional<std::int64_t>> revision_in_query(const Call& call, const char* name) {
+  const std::string text = query_text(call, name);
+  if (text.empty()) return std::nullopt;
+  const auto revision = whole_number(text);
+  if (revision && *revision >= 1) return revision;
+  const std::string detail = "must be a whole number from 1";
+  return base::fail(base::Code::Invalid, std::string(name) + " " + detail, {{name, detail}});
+}
+
+/// ?from=&to=: what changed between two revisions; `to` left out: the present one; `from` left out:
+/// the one before.
+Handler compare(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    const auto from = revision_in_query(*call, "from");
+    if (!from) return call->respond(problem(from.error()));
+    const auto to = revision_in_query(*call, "to");
+    if (!to) return call->respond(problem(to.error()));
+    const std::string id = call->params.at("id");
+    const auto with_newer = [context, call, id,
+                             from = *from](base::Result<store::StoredMission> stored) {
+      if (!stored) return call->respond(problem(stored.error()));
+      auto newer = std::make_shared<store::StoredMission>(std::move(*stored));
+      context->deps.store.read_revision(
+          id, from.value_or(std::max<std::int64_t>(1, newer->revision - 1)),
+          [call, newer](base::Result<store::StoredMission> older) {
+            if (!older) return call->respond(problem(older.error()));
+            call->respond(json_response(http::status::ok, differences_json(*older, *newer)));
+          });
+    };
+    if (*to) return context->deps.store.read_revision(id, **to, with_newer);
+    context->deps.store.read_mission(id, with_newer);
+  };
+}
+
 }  // namespace
 
 void add_mission_routes(const ContextPtr& c) {
@@ -212,6 +195,8 @@ void add_mission_routes(const ContextPtr& c) {
   c->router.add({get, "/missions/{id}/revisions", {200, 400, 404, 422, 503}, revisions(c)});
   c->router.add(
       {get, "/missions/{id}/revisions/{revision}", {200, 304, 404, 422, 503}, one_revision(c)});
+  c->router.add({get, "/missions/{id}/compare", {200, 404, 422, 503}, compare(c)});
+  c->router.add({post, "/missions/{id}/restore", {200, 403, 404, 409, 429, 503}, restore(c)});
   c->router.add(
       {post, "/missions/{id}/revert", {200, 400, 403, 404, 413, 415, 422, 429, 503}, revert(c)});
 }

@@ -2,6 +2,7 @@
 
 #include "api/body.hpp"
 #include "api/words.hpp"
+#include "mission/compare.hpp"
 #include "mission/json.hpp"
 
 namespace roverd::api {
@@ -46,6 +47,58 @@ Json mission_list_json(const store::Page<store::MissionSummary>& page) {
     return {{"id", m.id},       {"revision", m.revision}, {"name", m.name},
             {"items", m.items}, {"length_m", m.length_m}, {"updated", base::to_rfc3339(m.updated)}};
   });
+}
+
+Json deleted_list_json(const store::Page<store::MissionSummary>& page) {
+  Json out = mission_list_json(page);
+  for (Json& one : out["items"]) one["deleted_at"] = one["updated"];
+  return out;
+}
+
+namespace {
+
+/// {from, to}, or null where nothing changed.
+Json both_json(bool differ, Json from, Json to) {
+  return differ ? Json{{"from", std::move(from)}, {"to", std::move(to)}} : Json(nullptr);
+}
+
+Json item_of(const mission::Plan& plan, const std::optional<int>& number) {
+  if (!number) return nullptr;
+  return mission::item_to_json(plan.items.at(static_cast<std::size_t>(*number) - 1));
+}
+
+template <class T>
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+}  // namespace
+
+Json differences_json(const store::StoredMission& older, const store::StoredMission& newer) {
+  const mission::Differences found = mission::compare(older.plan, newer.plan);
+  const Json from = mission::plan_to_json(older.plan);
+  const Json to = mission::plan_to_json(newer.plan);
+  Json items = Json::array();
+  for (const mission::ItemDifference& d : found.items) {
+    items.push_back({{"change", mission::to_string(d.change)},
+                     {"from_item", or_null(d.before)},
+                     {"to_item", or_null(d.now)},
+                     {"from", item_of(older.plan, d.before)},
+                     {"to", item_of(newer.plan, d.now)},
+                     {"moved_m", or_null(d.moved_m)}});
+  }
+  return {{"from", older.revision},
+          {"to", newer.revision},
+          {"name", both_json(found.name, from["name"], to["name"])},
+          {"home", both_json(found.home, from.value("home", Json()), to.value("home", Json()))},
+          {"settings", both_json(found.settings, from["settings"], to["settings"])},
+          {"length_m",
+           {{"from", mission::length_m(older.plan)}, {"to", mission::length_m(newer.plan)}}},
+          {"added", found.added},
+          {"removed", found.removed},
+          {"changed", found.changed},
+          {"unchanged", found.unchanged},
+          {"items", std::move(items)}};
 }
 
 Json revision_list_json(const store::Page<store::RevisionSummary>& page) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "mission/json.hpp"
+#include "mission/operations.hpp"
 
 namespace roverd::api {
 namespace {
@@ -24,51 +24,41 @@ std::string name_of_day(base::WallTime wall) {
   return "Radio " + text;
 }
 
-/// Jumps keep their targets; one to the item that goes leads to what comes in its place.
-void remove_item(mission::Plan& plan, int number) {
-  plan.items.erase(plan.items.begin() + (number - 1));
-  const int most = static_cast<int>(plan.items.size());
-  for (mission::Item& item : plan.items) {
-    auto* jump = std::get_if<mission::Jump>(&item);
-    if (jump == nullptr) continue;
-    if (jump->item > number) --jump->item;
-    jump->item = std::clamp(jump->item, 1, most);
-  }
-}
-
 bool has_waypoint(const mission::Plan& plan) {
   return std::any_of(plan.items.begin(), plan.items.end(), [](const mission::Item& item) {
     return std::holds_alternative<mission::Waypoint>(item);
   });
 }
 
-/// Changes the plan as asked. @return the number of the item that was added or removed.
-Result<int> apply(mission::Plan& plan, const MissionEdit& edit, std::optional<int> current) {
+mission::Operation operation_of(const MissionEdit& edit, std::optional<int> current) {
   switch (edit.kind) {
     case EditKind::AddWaypoint: {
-      if (plan.items.size() >= mission::kMaxItems) {
-        return base::fail(Code::Conflict, "the mission is full");
-      }
       mission::Waypoint waypoint;
       waypoint.at = edit.at;
-      plan.items.emplace_back(waypoint);
-      return static_cast<int>(plan.items.size());
+      return mission::AddWaypoint{waypoint, std::nullopt};
     }
-    case EditKind::RemoveItem: {
-      const int last = static_cast<int>(plan.items.size());
-      const int number = current.value_or(last);
-      if (number < 1 || number > last) {
-        return base::fail(Code::Conflict, "there is no such item");
-      }
-      remove_item(plan, number);
-      return number;
-    }
+    case EditKind::RemoveItem:
+      if (current) return mission::RemoveItems{mission::Numbers{*current, *current}};
+      return mission::RemoveItems{};
     case EditKind::Clear:
-      plan.items.clear();
-      plan.home = mission::Home{edit.at, std::nullopt};
-      return 0;
+      break;
   }
-  return 0;
+  return mission::Clear{mission::Home{edit.at, std::nullopt}};
+}
+
+/// Changes the plan as asked. @return the number of the item that was added or removed.
+Result<int> apply(mission::Plan& plan, const MissionEdit& edit, std::optional<int> current) {
+  const std::size_t before = plan.items.size();
+  auto done = mission::perform(plan, operation_of(edit, current));
+  if (!done) {
+    return base::fail(Code::Conflict, std::move(done.error().detail));
+  }
+  // The robot goes on with the numbers of a list that is one shorter.
+  if (edit.kind == EditKind::RemoveItem && done->plan.items.size() + 1 != before) {
+    return base::fail(Code::Conflict, "a jump to this item would lead to itself then");
+  }
+  plan = std::move(done->plan);
+  return done->item.value_or(0);
 }
 
 const char* words_of(EditKind kind) {

@@ -67,6 +67,10 @@ Json drivers_json(const base::Snapshot& snapshot, const std::map<std::string, do
 
 Json mission_json(const store::StoredMission& mission);
 Json mission_list_json(const store::Page<store::MissionSummary>& page);
+/// With `deleted_at`.
+Json deleted_list_json(const store::Page<store::MissionSummary>& page);
+/// What changed between two revisions of one mission.
+Json differences_json(const store::StoredMission& older, const store::StoredMission& newer);
 Json revision_list_json(const store::Page<store::RevisionSummary>& page);
 Json import_json(const mission::ImportedFile& file, const store::StoredMission& mission);
 Json event_json(const store::StoredEvent& event);

@@ -16,4 +16,19 @@ std::string write_qgc_plan(const Plan& plan, std::vector<FileRow>& rows);
 base::Result<ImportedFile> read_waypoints(std::string_view content);
 std::string write_waypoints(const Plan& plan, std::vector<FileRow>& rows);
 
+base::Result<ImportedFile> read_gpx(std::string_view content);
+std::string write_gpx(const Plan& plan, std::vector<FileRow>& rows);
+
+base::Result<ImportedFile> read_kml(std::string_view content);
+std::string write_kml(const Plan& plan, std::vector<FileRow>& rows);
+
+base::Result<ImportedFile> read_geojson(std::string_view content);
+std::string write_geojson(const Plan& plan, std::vector<FileRow>& rows);
+
+/// Either form of table.
+base::Result<ImportedFile> read_csv(std::string_view content, const ImportHints& hints);
+bool looks_like_csv(std::string_view content);
+std::string write_csv(const Plan& plan, std::vector<FileRow>& rows);
+std::string write_follower(const Plan& plan, std::vector<FileRow>& rows);
+
 }  // namespace roverd::mission

@@ -52,6 +52,29 @@ std::string file_stem(std::string_view name) {
   return out.empty() ? "mission" : out;
 }
 
+std::string ending_of(Format format) {
+  return format == Format::Follower ? "csv" : std::string(to_string(format));
+}
+
+Result<ImportedFile> read_as(std::string_view content, Format format, const ImportHints& hints) {
+  switch (format) {
+    case Format::Plan:
+      return read_qgc_plan(content);
+    case Format::Waypoints:
+      return read_waypoints(content);
+    case Format::Gpx:
+      return read_gpx(content);
+    case Format::Kml:
+      return read_kml(content);
+    case Format::GeoJson:
+      return read_geojson(content);
+    case Format::Csv:
+    case Format::Follower:
+      return read_csv(content, hints);
+  }
+  return read_csv(content, hints);
+}
+
 }  // namespace
 
 std::string_view to_string(Format format) noexcept {
@@ -60,12 +83,22 @@ std::string_view to_string(Format format) noexcept {
       return "plan";
     case Format::Waypoints:
       return "waypoints";
+    case Format::Gpx:
+      return "gpx";
+    case Format::Kml:
+      return "kml";
+    case Format::GeoJson:
+      return "geojson";
+    case Format::Csv:
+      return "csv";
+    case Format::Follower:
+      return "follower";
   }
   return "plan";
 }
 
 std::optional<Format> format_from(std::string_view word) noexcept {
-  for (const Format format : {Format::Plan, Format::Waypoints}) {
+  for (const Format format : kFormats) {
     if (to_string(format) == word) return format;
   }
   return std::nullopt;
@@ -92,31 +125,39 @@ std::optional<Format> detect_format(std::string_view content, std::string_view f
   if (text.starts_with('{') && text.find("\"fileType\"") != std::string_view::npos) {
     return Format::Plan;
   }
+  if (text.starts_with('{') && text.find("\"type\"") != std::string_view::npos) {
+    return Format::GeoJson;
+  }
+  if (text.starts_with('<')) {
+    if (text.find("<gpx") != std::string_view::npos) return Format::Gpx;
+    if (text.find("<kml") != std::string_view::npos) return Format::Kml;
+  }
   const std::string name = lower(file_name);
-  if (name.ends_with(".plan")) return Format::Plan;
-  if (name.ends_with(".waypoints")) return Format::Waypoints;
-  return std::nullopt;
+  for (const Format format : kFormats) {
+    if (name.ends_with('.' + ending_of(format))) return format;
+  }
+  return looks_like_csv(content) ? std::optional(Format::Csv) : std::nullopt;
 }
 
 Result<ImportedFile> import_file(std::string_view content, std::optional<Format> format,
-                                 std::string_view file_name) {
+                                 std::string_view file_name, const ImportHints& hints) {
   if (!format) format = detect_format(content, file_name);
   if (!format) {
     return base::fail(Code::Unsupported,
-                      "neither a QGroundControl .plan nor a QGC WPL 110 .waypoints file");
+                      "none of .plan, .waypoints, GPX, KML, GeoJSON and a table of positions");
   }
-  Result<ImportedFile> file =
-      *format == Format::Plan ? read_qgc_plan(content) : read_waypoints(content);
+  Result<ImportedFile> file = read_as(content, *format, hints);
   if (!file) return file;
   file->format = *format;
-  file->plan.name = clean_name(without_ending(base_name(file_name)), "Imported mission");
+  const std::string own = clean_name(file->plan.name, "Imported mission");
+  file->plan.name = clean_name(without_ending(base_name(file_name)), own);
   if (auto ok = check_plan(file->plan); !ok) return tl::unexpected<Error>(ok.error());
   return file;
 }
 
 ExportedFile export_file(const Plan& plan, Format format) {
   ExportedFile file;
-  file.file_name = file_stem(plan.name) + '.' + std::string(to_string(format));
+  file.file_name = file_stem(plan.name) + '.' + ending_of(format);
   switch (format) {
     case Format::Plan:
       file.content = write_qgc_plan(plan, file.rows);
@@ -125,6 +166,26 @@ ExportedFile export_file(const Plan& plan, Format format) {
     case Format::Waypoints:
       file.content = write_waypoints(plan, file.rows);
       file.media_type = "text/plain";
+      break;
+    case Format::Gpx:
+      file.content = write_gpx(plan, file.rows);
+      file.media_type = "application/gpx+xml";
+      break;
+    case Format::Kml:
+      file.content = write_kml(plan, file.rows);
+      file.media_type = "application/vnd.google-earth.kml+xml";
+      break;
+    case Format::GeoJson:
+      file.content = write_geojson(plan, file.rows);
+      file.media_type = "application/geo+json";
+      break;
+    case Format::Csv:
+      file.content = write_csv(plan, file.rows);
+      file.media_type = "text/csv";
+      break;
+    case Format::Follower:
+      file.content = write_follower(plan, file.rows);
+      file.media_type = "text/csv";
       break;
   }
   return file;

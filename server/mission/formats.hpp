@@ -3,9 +3,16 @@
 //
 //   plan       QGroundControl .plan: JSON, fileType "Plan", version 1
 //   waypoints  QGC WPL 110, as Mission Planner and QGroundControl write it: a line for each command
+//   gpx        GPX 1.1: the route, else the tracks, else the waypoints
+//   kml        KML 2.2: lines, else points
+//   geojson    RFC 7946: lines and points
+//   csv        lat,lon[,alt,speed]; read: also the follower's form
+//   follower   x,y,z,yaw,velocity from an origin: m, rad, m/s
 //
-// Both carry MAVLink mission commands. A rover that drives on the ground cannot do all of them:
-// every row of a file is accounted for as taken, changed or left out, with the reason.
+// The last five carry positions: each becomes a waypoint, with a height and a speed where the
+// format has them. .plan and .waypoints carry MAVLink mission commands. A rover that drives on the
+// ground cannot do all of them: every row of a file is accounted for as taken, changed or left out,
+// with the reason.
 //
 //   command                       item                  parameters
 //   16 NAV_WAYPOINT               waypoint              p1 hold_s, p2 radius_m
@@ -27,6 +34,7 @@
 // decimals in .waypoints (1e-9 deg is 0.1 mm).
 // Pure, any thread, throws nothing. Sources: MAVLink common.xml; QGroundControl's file format page.
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -37,8 +45,11 @@
 
 namespace roverd::mission {
 
-enum class Format { Plan, Waypoints };
-std::string_view to_string(Format format) noexcept;  // plan waypoints
+enum class Format { Plan, Waypoints, Gpx, Kml, GeoJson, Csv, Follower };
+inline constexpr std::array kFormats{Format::Plan,    Format::Waypoints, Format::Gpx,
+                                     Format::Kml,     Format::GeoJson,   Format::Csv,
+                                     Format::Follower};
+std::string_view to_string(Format format) noexcept;  // plan waypoints gpx kml geojson csv follower
 std::optional<Format> format_from(std::string_view word) noexcept;
 
 /// By content first, then by the file name's ending. Empty: none of ours.
@@ -63,17 +74,24 @@ struct ImportedFile {
   std::vector<FileRow> rows;
 };
 
+/// What a file of the follower's form may leave unsaid.
+struct ImportHints {
+  std::optional<LatLon> origin;  ///< goes before the file's own
+  bool kmh = false;              ///< its velocities are in km/h
+};
+
 /// @param format empty: detected, Unsupported if that fails. @param file_name for the plan's name
 /// and as a hint; may be empty. Invalid: the file is not of that format, breaks off or holds values
 /// that cannot be; `fields` then names each line ("line 4") or JSON pointer. TooLarge: more than
 /// kMaxItems rows. A byte order mark and CR or CRLF line ends are fine.
 base::Result<ImportedFile> import_file(std::string_view content, std::optional<Format> format,
-                                       std::string_view file_name = {});
+                                       std::string_view file_name = {},
+                                       const ImportHints& hints = {});
 
 struct ExportedFile {
   std::string content;
   std::string file_name;   ///< from the plan's name, safe in a Content-Disposition header (ASCII)
-  std::string media_type;  ///< without charset: "application/json" or "text/plain"
+  std::string media_type;  ///< without charset: "application/json", "text/csv" …
   /// Items that the format cannot hold (left out) or only in another form (changed). Items that are
   /// written as they are have no row.
   std::vector<FileRow> rows;

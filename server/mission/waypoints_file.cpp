@@ -13,6 +13,7 @@
 #include "mission/file_formats.hpp"
 #include "mission/json.hpp"
 #include "mission/text.hpp"
+#include "mission/text_lines.hpp"
 
 namespace roverd::mission {
 namespace {
@@ -27,31 +28,6 @@ constexpr std::array<const char*, kColumns> kColumnNames{
     "number",      "current",     "frame",    "command",   "parameter 1", "parameter 2",
     "parameter 3", "parameter 4", "latitude", "longitude", "altitude",    "autocontinue"};
 constexpr int kDecimals = 8;
-
-/// Lines that end in LF, CRLF or CR.
-class Lines {
- public:
-  explicit Lines(std::string_view text) : rest_(text) {}
-
-  bool next(std::string_view& line) {
-    if (rest_.empty()) return false;
-    const std::size_t end = rest_.find_first_of("\r\n");
-    line = rest_.substr(0, end);
-    ++number_;
-    if (end == std::string_view::npos) {
-      rest_ = {};
-      return true;
-    }
-    const bool two = rest_.substr(end).starts_with("\r\n");
-    rest_.remove_prefix(end + (two ? 2 : 1));
-    return true;
-  }
-  std::string place() const { return "line " + std::to_string(number_); }
-
- private:
-  std::string_view rest_;
-  std::size_t number_ = 0;
-};
 
 /// @return number of columns, also of those beyond the twelfth.
 std::size_t split(std::string_view line, std::array<std::string_view, kColumns>& columns) {
@@ -147,7 +123,7 @@ class RowReader {
   bool failed_ = false;
 };
 
-Result<void> read_head(Lines& lines) {
+Result<void> read_head(TextLines& lines) {
   std::string_view line;
   while (lines.next(line)) {
     std::array<std::string_view, kColumns> words{};
@@ -173,7 +149,7 @@ void append_row(std::string& out, const Command& c) {
 }  // namespace
 
 Result<ImportedFile> read_waypoints(std::string_view content) {
-  Lines lines(without_bom(content));
+  TextLines lines(without_bom(content));
   if (auto ok = read_head(lines); !ok) return tl::unexpected<Error>(ok.error());
   ImportedFile file;
   Problems problems;

@@ -45,6 +45,14 @@ tl::unexpected<Error> unreadable(const std::string& id, std::int64_t revision,
                                            " cannot be read: " + problem.detail);
 }
 
+// Written out twice, because only then SQLite uses the partial indexes.
+constexpr const char* kPresent =
+    "SELECT id, revision, name, items, length_m, updated_ns FROM missions "
+    "WHERE deleted = 0 AND (updated_ns, id) < (?, ?) ORDER BY updated_ns DESC, id DESC LIMIT ?";
+constexpr const char* kDeleted =
+    "SELECT id, revision, name, items, length_m, updated_ns FROM missions "
+    "WHERE deleted = 1 AND (updated_ns, id) < (?, ?) ORDER BY updated_ns DESC, id DESC LIMIT ?";
+
 }  // namespace
 
 /// The present row of a mission.
@@ -104,7 +112,7 @@ std::string random_id() {
   return id;
 }
 
-Result<Page<MissionSummary>> Missions::list(int limit, const std::string& cursor) {
+Result<Page<MissionSummary>> Missions::list(int limit, const std::string& cursor, Which which) {
   if (auto ok = check_limit(limit); !ok) return tl::unexpected<Error>(ok.error());
   // A cursor is "<updated_ns>.<id>" of the last row given; the next page starts below it.
   std::int64_t updated_ns = std::numeric_limits<std::int64_t>::max();
@@ -116,10 +124,7 @@ Result<Page<MissionSummary>> Missions::list(int limit, const std::string& cursor
     updated_ns = *number;
     id = cursor.substr(dot + 1);
   }
-  SQLite::Statement rows(db_,
-                         "SELECT id, revision, name, items, length_m, updated_ns FROM missions "
-                         "WHERE deleted = 0 AND (updated_ns, id) < (?, ?) "
-                         "ORDER BY updated_ns DESC, id DESC LIMIT ?");
+  SQLite::Statement rows(db_, which == Which::Present ? kPresent : kDeleted);
   rows.bind(1, updated_ns);
   rows.bind(2, id);
   rows.bind(3, limit + 1);  // one more shows whether there is a next page
@@ -190,14 +195,20 @@ void Missions::add_revision(const Head& head, const Entry& entry) {
 }
 
 Result<StoredMission> Missions::create(mission::Plan plan, const Change& change, WallTime now) {
+  SQLite::Transaction transaction(db_, SQLite::TransactionBehavior::IMMEDIATE);
+  auto made = add_mission(std::move(plan), change, now);
+  if (made) transaction.commit();
+  return made;
+}
+
+Result<StoredMission> Missions::add_mission(mission::Plan plan, const Change& change,
+                                            WallTime now) {
   if (auto ok = mission::check_plan(plan); !ok) return tl::unexpected<Error>(ok.error());
   Entry entry(change, "created", now);
   entry.hold(plan);
-  SQLite::Transaction transaction(db_, SQLite::TransactionBehavior::IMMEDIATE);
   Head made{random_id(), 1, entry.time_ns, false, {}};
   while (head(made.id)) made.id = random_id();  // once in 2^60 missions
   add_revision(made, entry);
-  transaction.commit();
   return StoredMission{made.id, made.revision, now, now, std::move(plan)};
 }
 
@@ -233,16 +244,35 @@ Result<StoredMission> Missions::read_revision(const std::string& id, std::int64_
 
 Result<StoredMission> Missions::replace(const std::string& id, std::int64_t expected,
                                         mission::Plan plan, const Change& change, WallTime now) {
+  SQLite::Transaction transaction(db_, SQLite::TransactionBehavior::IMMEDIATE);
+  auto changed = change_mission(id, expected, std::move(plan), change, now);
+  if (changed) transaction.commit();
+  return changed;
+}
+
+Result<StoredMission> Missions::change_mission(const std::string& id, std::int64_t expected,
+                                               mission::Plan plan, const Change& change,
+                                               WallTime now) {
   if (auto ok = mission::check_plan(plan); !ok) return tl::unexpected<Error>(ok.error());
   Entry entry(change, "replaced", now);
   entry.hold(plan);
-  SQLite::Transaction transaction(db_, SQLite::TransactionBehavior::IMMEDIATE);
   auto found = live_head(id, expected);
   if (!found) return tl::unexpected<Error>(found.error());
   found->revision += 1;
   add_revision(*found, entry);
-  transaction.commit();
   return StoredMission{id, found->revision, time_from(found->created_ns), now, std::move(plan)};
+}
+
+Result<Halves> Missions::split(const std::string& id, std::int64_t expected, mission::Plan first,
+                               mission::Plan rest, const Change& change, WallTime now) {
+  SQLite::Transaction transaction(db_, SQLite::TransactionBehavior::IMMEDIATE);
+  const std::string from = first.name;
+  auto changed = change_mission(id, expected, std::move(first), change, now);
+  if (!changed) return tl::unexpected<Error>(changed.error());
+  auto made = add_mission(std::move(rest), {change.author, "split from " + from}, now);
+  if (!made) return tl::unexpected<Error>(made.error());
+  transaction.commit();
+  return Halves{std::move(*changed), std::move(*made)};
 }
 
 Result<void> Missions::remove(const std::string& id, std::int64_t expected, const Change& change,
@@ -289,21 +319,49 @@ Result<Page<RevisionSummary>> Missions::list_revisions(const std::string& id, in
   return page;
 }
 
+Result<StoredMission> Missions::bring_back(const Head& head, std::int64_t revision, Entry entry) {
+  auto old = read_revision(head.id, revision);
+  if (!old) return old;
+  entry.hold(old->plan);
+  Head next = head;
+  next.revision += 1;
+  add_revision(next, entry);
+  old->revision = next.revision;
+  old->updated = time_from(entry.time_ns);
+  return old;
+}
+
 Result<StoredMission> Missions::revert(const std::string& id, std::int64_t to_revision,
                                        const Change& change, WallTime now) {
   SQLite::Transaction transaction(db_, SQLite::TransactionBehavior::IMMEDIATE);
-  auto found = head(id);
+  const auto found = head(id);
   if (!found) return tl::unexpected<Error>(found.error());
-  auto old = read_revision(id, to_revision);
-  if (!old) return old;
-  Entry entry(change, "reverted to " + std::to_string(to_revision), now);
-  entry.hold(old->plan);
-  found->revision += 1;
-  add_revision(*found, entry);
+  auto back =
+      bring_back(*found, to_revision, {change, "reverted to " + std::to_string(to_revision), now});
+  if (back) transaction.commit();
+  return back;
+}
+
+Result<StoredMission> Missions::restore(const std::string& id, const Change& change, WallTime now) {
+  SQLite::Transaction transaction(db_, SQLite::TransactionBehavior::IMMEDIATE);
+  const auto found = head(id);
+  if (!found) return tl::unexpected<Error>(found.error());
+  if (!found->deleted) return base::fail(Code::Conflict, "the mission is not deleted");
+  auto back = bring_back(*found, found->revision - 1, {change, "restored", now});
+  if (back) transaction.commit();
+  return back;
+}
+
+void Missions::forget_deleted(WallTime then) {
+  SQLite::Transaction transaction(db_, SQLite::TransactionBehavior::IMMEDIATE);
+  for (const char* sql : {"DELETE FROM revisions WHERE mission_id IN "
+                          "(SELECT id FROM missions WHERE deleted = 1 AND updated_ns < ?)",
+                          "DELETE FROM missions WHERE deleted = 1 AND updated_ns < ?"}) {
+    SQLite::Statement rows(db_, sql);
+    rows.bind(1, ns_from(then));
+    rows.exec();
+  }
   transaction.commit();
-  old->revision = found->revision;
-  old->updated = now;
-  return old;
 }
 
 }  // namespace roverd::store

@@ -73,7 +73,21 @@ struct Store::Impl {
                                                 std::to_string(options.queue) + " calls is full"));
   }
 
+  /// What was deleted too long ago. If that fails it stays until the next time.
+  void forget() {
+    const auto done = guarded([&]() -> Result<void> {
+      missions.forget_deleted(options.clock() - options.keep_deleted);
+      return {};
+    });
+    static base::LogLimit limit(10.0);
+    if (!done && limit.due()) {
+      base::log(base::Level::Warning, "store", "deleted missions cannot be forgotten",
+                {{"reason", done.error().detail}});
+    }
+  }
+
   void run() {
+    forget();
     std::vector<base::Event> new_events;
     std::deque<std::function<void()>> todo;
     for (;;) {
@@ -121,10 +135,19 @@ Result<std::unique_ptr<Store>> Store::open(const std::filesystem::path& file, De
 Store::Store(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Store::~Store() = default;
 
-void Store::list_missions(int limit, std::string cursor, Reply<Page<MissionSummary>> reply) {
-  impl_->ask(std::move(reply), [impl = impl_.get(), limit, cursor = std::move(cursor)] {
-    return impl->missions.list(limit, cursor);
+void Store::list_missions(int limit, std::string cursor, Reply<Page<MissionSummary>> reply,
+                          Which which) {
+  impl_->ask(std::move(reply), [impl = impl_.get(), limit, cursor = std::move(cursor), which] {
+    if (which == Which::Deleted) impl->forget();
+    return impl->missions.list(limit, cursor, which);
   });
+}
+
+void Store::restore_mission(std::string id, Change change, Reply<StoredMission> reply) {
+  impl_->ask(std::move(reply),
+             [impl = impl_.get(), id = std::move(id), change = std::move(change)] {
+               return impl->missions.restore(id, change, impl->options.clock());
+             });
 }
 
 void Store::create_mission(mission::Plan plan, Change change, Reply<StoredMission> reply) {
@@ -153,11 +176,23 @@ void Store::replace_mission(std::string id, std::int64_t expected, mission::Plan
   });
 }
 
+void Store::split_mission(std::string id, std::int64_t expected, mission::Plan first,
+                          mission::Plan rest, Change change, Reply<Halves> reply) {
+  impl_->ask(std::move(reply),
+             [impl = impl_.get(), id = std::move(id), expected, first = std::move(first),
+              rest = std::move(rest), change = std::move(change)]() mutable {
+               return impl->missions.split(id, expected, std::move(first), std::move(rest), change,
+                                           impl->options.clock());
+             });
+}
+
 void Store::delete_mission(std::string id, std::int64_t expected, Change change,
                            Reply<void> reply) {
   impl_->ask(std::move(reply),
              [impl = impl_.get(), id = std::move(id), expected, change = std::move(change)] {
-               return impl->missions.remove(id, expected, change, impl->options.clock());
+               auto done = impl->missions.remove(id, expected, change, impl->options.clock());
+               if (done) impl->forget();
+               return done;
              });
 }
 

@@ -28,14 +28,22 @@ struct StoredMission {
   mission::Plan plan;
 };
 
+/// Of a mission that was cut in two.
+struct Halves {
+  StoredMission first;  ///< the mission, its new revision
+  StoredMission rest;   ///< a new one
+};
+
 struct MissionSummary {
   std::string id;
   std::int64_t revision = 0;
   std::string name;
   int items = 0;
   double length_m = 0.0;
-  base::WallTime updated;
+  base::WallTime updated;  ///< of a deleted one: when it was deleted
 };
+
+enum class Which { Present, Deleted };
 
 struct RevisionSummary {
   std::int64_t revision = 0;
@@ -69,7 +77,8 @@ struct Options {
   std::size_t queue = 256;                 ///< waiting calls (and, apart from them, waiting events)
   std::int64_t max_events = 100'000;       ///< beyond that the oldest go
   std::int64_t max_bytes = 4'000'000'000;  ///< of the file; then as if the disk were full
-  std::function<base::WallTime()> clock = base::wall_now;  ///< called on the store's thread
+  base::Duration keep_deleted = std::chrono::hours(24 * 30);  ///< then they are forgotten for good
+  std::function<base::WallTime()> clock = base::wall_now;     ///< called on the store's thread
 };
 
 inline constexpr int kMaxPage = 1000;  ///< largest `limit` of a list; below 1 or above is Invalid
@@ -95,7 +104,10 @@ class Store {
   Store& operator=(const Store&) = delete;
 
   /// Newest change first. @param cursor empty: from the start; Malformed if it is not one of ours.
-  void list_missions(int limit, std::string cursor, Reply<Page<MissionSummary>> reply);
+  /// @param which Deleted: those that can be restored, newest deletion first, with the name they
+  /// had
+  void list_missions(int limit, std::string cursor, Reply<Page<MissionSummary>> reply,
+                     Which which = Which::Present);
   void create_mission(mission::Plan plan, Change change, Reply<StoredMission> reply);
   /// NotFound also if it was deleted.
   void read_mission(std::string id, Reply<StoredMission> reply);
@@ -104,9 +116,14 @@ class Store {
   /// RevisionMismatch unless `expected` is the present revision.
   void replace_mission(std::string id, std::int64_t expected, mission::Plan plan, Change change,
                        Reply<StoredMission> reply);
-  /// Hides it; its revisions stay, with the deletion as the newest, and revert_mission brings it
-  /// back.
+  /// Replaces the mission and makes another one of the rest, both or neither.
+  void split_mission(std::string id, std::int64_t expected, mission::Plan first, mission::Plan rest,
+                     Change change, Reply<Halves> reply);
+  /// Hides it; its revisions stay, with the deletion as the newest, and restore_mission or
+  /// revert_mission brings it back, until Options::keep_deleted is over.
   void delete_mission(std::string id, std::int64_t expected, Change change, Reply<void> reply);
+  /// Makes the state before the deletion a new revision. Conflict if it is not deleted.
+  void restore_mission(std::string id, Change change, Reply<StoredMission> reply);
   /// Newest first; also of a deleted mission.
   void list_revisions(std::string id, int limit, std::string cursor,
                       Reply<Page<RevisionSummary>> reply);

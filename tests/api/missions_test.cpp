@@ -137,6 +137,51 @@ TEST_F(MissionsApi, ListsArePaged) {
   EXPECT_EQ(call("GET", "/missions?cursor=nonsense").status, 400u);
 }
 
+TEST_F(MissionsApi, ADeletedMissionIsListedAndComesBack) {
+  const std::string id = make_mission("lost");
+  EXPECT_EQ(call("POST", "/missions/" + id + "/restore").status, 409u);
+  ASSERT_EQ(call("DELETE", "/missions/" + id, "", if_match("*")).status, 204u);
+  const auto gone = call("GET", "/missions?deleted=true");
+  ASSERT_EQ(gone.body["items"].size(), 1u);
+  EXPECT_EQ(gone.body["items"][0]["id"], id);
+  EXPECT_EQ(gone.body["items"][0]["name"], "lost");
+  EXPECT_TRUE(gone.body["items"][0]["deleted_at"].is_string());
+  EXPECT_EQ(call("GET", "/missions?deleted=perhaps").status, 422u);
+  const auto back = call("POST", "/missions/" + id + "/restore");
+  EXPECT_EQ(back.status, 200u);
+  EXPECT_EQ(back.raw.header("etag"), "\"rev-3\"");
+  EXPECT_EQ(call("GET", "/missions/" + id + "/revisions").body["items"][0]["what"], "restored");
+  EXPECT_TRUE(call("GET", "/missions?deleted=true").body["items"].empty());
+  EXPECT_EQ(call("POST", "/missions/nobody/restore").status, 404u);
+}
+
+TEST_F(MissionsApi, TwoRevisionsAreCompared) {
+  const std::string id = make_mission("first");
+  Json changed = two_waypoints("second");
+  changed["home"] = {{"lat", 58.0}, {"lon", 26.0}};
+  changed["items"][1]["speed_mps"] = 0.5;
+  changed["items"].push_back({{"type", "wait"}, {"seconds", 3}});
+  ASSERT_EQ(call("PUT", "/missions/" + id, changed, if_match("\"rev-1\"")).status, 200u);
+  const auto found = call("GET", "/missions/" + id + "/compare");
+  ASSERT_EQ(found.status, 200u);
+  EXPECT_EQ(found.body["from"], 1);
+  EXPECT_EQ(found.body["to"], 2);
+  EXPECT_EQ(found.body["name"], Json({{"from", "first"}, {"to", "second"}}));
+  EXPECT_TRUE(found.body["home"]["from"].is_null());
+  EXPECT_TRUE(found.body["settings"].is_null());
+  EXPECT_EQ(found.body["changed"], 1);
+  EXPECT_EQ(found.body["added"], 1);
+  EXPECT_EQ(found.body["unchanged"], 1);
+  EXPECT_EQ(found.body["items"][0]["to"]["speed_mps"], 0.5);
+  EXPECT_EQ(found.body["items"][1]["change"], "added");
+  EXPECT_EQ(found.body["items"][1]["to_item"], 3);
+  const auto back = call("GET", "/missions/" + id + "/compare?from=2&to=1");
+  EXPECT_EQ(back.body["removed"], 1);
+  EXPECT_EQ(call("GET", "/missions/" + id + "/compare?from=0").status, 422u);
+  EXPECT_EQ(call("GET", "/missions/" + id + "/compare?from=9").status, 404u);
+  EXPECT_EQ(call("GET", "/missions/nobody/compare").status, 404u);
+}
+
 TEST_F(MissionsApi, ARepeatedKeyCreatesOnce) {
   const std::string key = "Idempotency-Key: 7f3a\r\n";
   const auto first = call("POST", "/missions", two_waypoints("once"), key);
@@ -165,9 +210,9 @@ TEST_F(MissionsApi, AFileIsImportedAccountedForAndExportedAgain) {
   EXPECT_EQ(made.body["mission"]["items"].size(), 1u);
   EXPECT_EQ(made.body["left_out"], 1);
   EXPECT_EQ(made.raw.header("etag"), "\"rev-1\"");
-  // and both formats give it back with a name to save it under.
+  // and every format gives it back with a name to save it under.
   const std::string path = "/missions/" + made.body["mission"]["id"].get<std::string>();
-  for (const char* format : {"waypoints", "plan"}) {
+  for (const char* format : {"waypoints", "plan", "gpx", "kml", "geojson", "csv", "follower"}) {
     const auto out = call("GET", path + "/export?format=" + format);
     ASSERT_EQ(out.status, 200u);
     EXPECT_NE(out.raw.header("content-disposition").find("attachment; filename=\""),
@@ -175,9 +220,25 @@ TEST_F(MissionsApi, AFileIsImportedAccountedForAndExportedAgain) {
     const auto back =
         call("POST", "/missions/import", out.raw.body, "Content-Type: text/plain\r\n");
     ASSERT_EQ(back.status, 201u) << format;
-    EXPECT_EQ(back.body["mission"]["items"][0]["lat"], 58.3785);
-    EXPECT_EQ(back.body["mission"]["items"][0]["lon"], 26.7290);
+    EXPECT_NEAR(back.body["mission"]["items"][0]["lat"], 58.3785, 1e-9);
+    EXPECT_NEAR(back.body["mission"]["items"][0]["lon"], 26.7290, 1e-9);
   }
+}
+
+TEST_F(MissionsApi, AFollowersTableTakesItsOriginFromTheCall) {
+  const std::string rows = "x,y,z,yaw,velocity\n0,0,0,0,3.6\n";
+  const std::string text = "Content-Type: text/csv\r\n";
+  const std::string path = "/missions/import?format=csv";
+  const auto lost = call("POST", path, rows, text);
+  EXPECT_EQ(lost.status, 422u);
+  EXPECT_EQ(lost.body["errors"][0]["pointer"], "line 2");
+  const auto made =
+      call("POST", path + "&origin_lat=58.378&origin_lon=26.729&speed_unit=kmh", rows, text);
+  ASSERT_EQ(made.status, 201u);
+  EXPECT_NEAR(made.body["mission"]["items"][0]["lat"], 58.378, 1e-9);
+  EXPECT_NEAR(made.body["mission"]["items"][0]["speed_mps"], 1.0, 1e-9);
+  EXPECT_EQ(call("POST", path + "&origin_lat=58.378", rows, text).status, 422u);
+  EXPECT_EQ(call("POST", path + "&speed_unit=knots", rows, text).status, 422u);
 }
 
 TEST_F(MissionsApi, ADownloadKeepsAForeignName) {

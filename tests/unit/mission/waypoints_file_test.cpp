@@ -18,7 +18,8 @@ TEST(Formats, AreDetectedByContentThenByName) {
   EXPECT_EQ(detect_format(R"({ "fileType": "Plan" })", "x.txt"), Format::Plan);
   EXPECT_EQ(detect_format("", "FIELD.PLAN"), Format::Plan);
   EXPECT_EQ(detect_format("", "a.waypoints"), Format::Waypoints);
-  EXPECT_EQ(detect_format("<gpx>", "a.gpx"), std::nullopt);
+  EXPECT_EQ(detect_format("<?xml version=\"1.0\"?><gpx>", "a.kml"), Format::Gpx);
+  EXPECT_EQ(detect_format("<html>", "a.html"), std::nullopt);
   EXPECT_EQ(detect_format(""), std::nullopt);
   EXPECT_EQ(import_file("hello", std::nullopt).error().code, Code::Unsupported);
   EXPECT_EQ(format_from("waypoints"), Format::Waypoints);

@@ -91,10 +91,13 @@ inline base::Result<StoredMission> revert(Store& s, const std::string& id, std::
     s.revert_mission(id, revision, {"anna", ""}, reply);
   });
 }
-inline base::Result<Page<MissionSummary>> list(Store& s, int limit,
-                                               const std::string& cursor = "") {
+inline base::Result<StoredMission> restore(Store& s, const std::string& id) {
+  return answer_of<StoredMission>([&](auto reply) { s.restore_mission(id, {"anna", ""}, reply); });
+}
+inline base::Result<Page<MissionSummary>> list(Store& s, int limit, const std::string& cursor = "",
+                                               Which which = Which::Present) {
   return answer_of<Page<MissionSummary>>(
-      [&](auto reply) { s.list_missions(limit, cursor, reply); });
+      [&](auto reply) { s.list_missions(limit, cursor, reply, which); });
 }
 inline base::Result<Page<RevisionSummary>> revisions(Store& s, const std::string& id, int limit,
                                                      const std::string& cursor = "") {

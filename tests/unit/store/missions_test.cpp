@@ -266,5 +266,75 @@ TEST(Missions, AStrangeCursorOrLimitIsRefused) {
   }
 }
 
+TEST(DeletedMissions, AreListedAndRestored) {
+  Folder folder;
+  FakeClock clock;
+  auto store = open_store(folder.file(), clock.options());
+  const std::string id = create(*store, plan_named("lost", 4))->id;
+  create(*store, plan_named("kept"));
+  EXPECT_EQ(restore(*store, id).error().code, Code::Conflict);
+  clock.now += 1h;
+  ASSERT_TRUE(remove(*store, id, 1));
+  const auto gone = list(*store, 10, "", Which::Deleted);
+  ASSERT_EQ(gone->items.size(), 1u);
+  EXPECT_EQ(gone->items[0].name, "lost");
+  EXPECT_EQ(gone->items[0].updated, clock.now);
+  EXPECT_EQ(list(*store, 10)->items.size(), 1u);
+  const auto back = restore(*store, id);
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->revision, 3);
+  EXPECT_EQ(back->plan, plan_named("lost", 4));
+  EXPECT_EQ(revisions(*store, id, 10)->items[0].what, "restored");
+  EXPECT_TRUE(list(*store, 10, "", Which::Deleted)->items.empty());
+  EXPECT_EQ(restore(*store, "nobody").error().code, Code::NotFound);
+}
+
+TEST(DeletedMissions, AreForgottenWhenTheirTimeIsOver) {
+  Folder folder;
+  FakeClock clock;
+  Options options = clock.options();
+  options.keep_deleted = 24h;
+  std::string old, young;
+  {
+    auto store = open_store(folder.file(), options);
+    old = create(*store, plan_named("old"))->id;
+    young = create(*store, plan_named("young"))->id;
+    create(*store, plan_named("present"));
+    ASSERT_TRUE(remove(*store, old, 1));
+    clock.now += 23h;
+    ASSERT_TRUE(remove(*store, young, 1));
+    EXPECT_EQ(list(*store, 10, "", Which::Deleted)->items.size(), 2u);
+  }
+  clock.now += 2h;
+  auto store = open_store(folder.file(), options);
+  const auto gone = list(*store, 10, "", Which::Deleted);
+  ASSERT_EQ(gone->items.size(), 1u);
+  EXPECT_EQ(gone->items[0].id, young);
+  EXPECT_EQ(restore(*store, old).error().code, Code::NotFound);
+  EXPECT_EQ(revisions(*store, old, 10).error().code, Code::NotFound);
+  EXPECT_EQ(list(*store, 10)->items.size(), 1u);
+  EXPECT_TRUE(restore(*store, young));
+}
+
+TEST(Missions, AreSplitInOneStepOrNotAtAll) {
+  Folder folder;
+  auto store = open_store(folder.file());
+  const auto made = create(*store, plan_named("whole", 6));
+  const auto split = [&](std::int64_t expected) {
+    return answer_of<Halves>([&](auto reply) {
+      store->split_mission(made->id, expected, plan_named("whole", 2), plan_named("rest", 4),
+                           {"anna", "split after item 2"}, reply);
+    });
+  };
+  EXPECT_EQ(split(7).error().code, Code::RevisionMismatch);
+  EXPECT_EQ(list(*store, 10)->items.size(), 1u);
+  const auto both = split(1);
+  ASSERT_TRUE(both);
+  EXPECT_EQ(both->first.revision, 2);
+  EXPECT_EQ(read(*store, made->id)->plan, plan_named("whole", 2));
+  EXPECT_EQ(read(*store, both->rest.id)->plan, plan_named("rest", 4));
+  EXPECT_EQ(revisions(*store, both->rest.id, 1)->items[0].what, "split from whole");
+}
+
 }  // namespace
 }  // namespace roverd::store

@@ -84,6 +84,20 @@ TEST(Opening, AListOfMissionsIsReadFromItsIndex) {
   EXPECT_FALSE(contains(text, "TEMP B-TREE")) << text;
 }
 
+TEST(Opening, AListOfDeletedMissionsIsReadFromItsIndex) {
+  Folder folder;
+  const auto db = open_database(folder.file(), migrations(), 1'000'000'000);
+  SQLite::Statement plan((*db)->connection,
+                         "EXPLAIN QUERY PLAN SELECT id FROM missions WHERE deleted = 1 AND "
+                         "(updated_ns, id) < (?, ?) ORDER BY updated_ns DESC, id DESC LIMIT ?");
+  std::string text;
+  while (plan.executeStep()) text += plan.getColumn(3).getString() + "\n";
+  EXPECT_TRUE(contains(text, "SEARCH missions USING COVERING INDEX missions_by_deletion") ||
+              contains(text, "SEARCH missions USING INDEX missions_by_deletion"))
+      << text;
+  EXPECT_FALSE(contains(text, "TEMP B-TREE")) << text;
+}
+
 TEST(Opening, EveryOlderSchemaIsUpgradedWithItsData) {
   const auto all = migrations();
   for (std::size_t known = 1; known <= all.size(); ++known) {

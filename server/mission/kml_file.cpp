@@ -1,0 +1,143 @@
+// KML 2.2: the coordinates of its lines (LineString, gx:Track); without one, of its Points. Areas
+// are left out. Written as one Placemark with a LineString, a Point if there is only one.
+
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "mission/file_formats.hpp"
+#include "mission/track_points.hpp"
+#include "mission/xml.hpp"
+
+namespace roverd::mission {
+
+namespace {
+
+using base::Error;
+using base::Result;
+
+/// The next finite number at the front of `text`.
+std::optional<double> take_number(std::string_view& text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (ec != std::errc{} || !std::isfinite(value)) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return value;
+}
+
+class KmlReader {
+ public:
+  Result<ImportedFile> read(std::string_view content) {
+    XmlEvents events;
+    events.begin = [this](const XmlElement& element) {
+      path_.emplace_back(element.name);
+      rows_.push_back(element.row);
+      if (path_.size() == 1) is_kml_ = element.name == "kml";
+      if (element.name == "Polygon") {
+        builder_.leave_out(element.row, "Polygon", "an area is no way to drive");
+      }
+    };
+    events.end = [this](std::string_view name, const std::string& text, const std::string&) {
+      path_.pop_back();
+      const std::string row = std::move(rows_.back());
+      rows_.pop_back();
+      const std::string_view inside = path_.empty() ? std::string_view{} : path_.back();
+      if (name == "coordinates") coordinates(text, row, inside);
+      if (name == "coord" && inside == "Track") tuple(text, row, "gx:coord", ' ', lines_);
+      if (name == "name" && file_.plan.name.empty()) file_.plan.name = text;
+    };
+    if (auto done = read_xml(content, events); !done) return tl::unexpected<Error>(done.error());
+    if (!is_kml_) {
+      return base::fail(base::Code::Invalid, "line 1 must begin a <kml> document",
+                        {{"line 1", "must begin a <kml> document"}});
+    }
+    const bool line = !lines_.empty();
+    for (TrackPoint& point : line ? lines_ : points_) builder_.add(std::move(point));
+    if (line) {
+      for (TrackPoint& point : points_) {
+        builder_.leave_out(std::move(point.row), "Point", "the file's line is taken instead");
+      }
+    }
+    return std::move(builder_).finish();
+  }
+
+ private:
+  void coordinates(std::string_view text, const std::string& row, std::string_view inside) {
+    const bool line = inside == "LineString";
+    if (!line && inside != "Point") return;  // of an area, which has its account already
+    constexpr std::string_view kBlanks = " \t\r\n";
+    for (std::size_t number = 1;; ++number) {
+      const std::size_t begin = text.find_first_not_of(kBlanks);
+      if (begin == std::string_view::npos) return;
+      text.remove_prefix(begin);
+      const std::string_view one = text.substr(0, text.find_first_of(kBlanks));
+      text.remove_prefix(one.size());
+      tuple(one, line ? row + ", coordinate " + std::to_string(number) : row,
+            line ? "coordinate" : "Point", ',', line ? lines_ : points_);
+    }
+  }
+
+  /// longitude, latitude and perhaps a height
+  void tuple(std::string_view text, std::string row, const char* what, char separator,
+             std::vector<TrackPoint>& out) {
+    constexpr std::string_view kBlanks = " \t\r\n";
+    const std::size_t begin = std::min(text.find_first_not_of(kBlanks), text.size());
+    text.remove_prefix(begin);
+    while (!text.empty() && kBlanks.find(text.back()) != std::string_view::npos) {
+      text.remove_suffix(1);
+    }
+    std::vector<double> values;
+    bool good = !text.empty();
+    while (good && !text.empty() && values.size() < 3) {
+      const auto value = take_number(text);
+      good = value.has_value() && (text.empty() || text.front() == separator);
+      if (value) values.push_back(*value);
+      if (good && !text.empty()) text.remove_prefix(1);
+    }
+    if (!good || !text.empty() || values.size() < 2) {
+      return problems_.add(row, "must be longitude, latitude and perhaps a height");
+    }
+    TrackPoint point{std::move(row), what, values[1], values[0]};
+    if (values.size() > 2) point.alt_m = values[2];
+    out.push_back(std::move(point));
+  }
+
+  std::vector<std::string> path_;
+  std::vector<std::string> rows_;
+  bool is_kml_ = false;
+  std::vector<TrackPoint> lines_;
+  std::vector<TrackPoint> points_;
+  ImportedFile file_;
+  Problems problems_;
+  TrackBuilder builder_{file_, problems_};
+};
+
+}  // namespace
+
+Result<ImportedFile> read_kml(std::string_view content) {
+  return KmlReader().read(content);
+}
+
+std::string write_kml(const Plan& plan, std::vector<FileRow>& rows) {
+  report_left_out(plan, {true, false}, rows);
+  constexpr int kDecimals = 9;
+  std::string points;
+  int count = 0;
+  for (const Item& item : plan.items) {
+    const auto* point = std::get_if<Waypoint>(&item);
+    if (point == nullptr) continue;
+    points += fixed_number(point->at.lon, kDecimals) + ',' + fixed_number(point->at.lat, kDecimals);
+    if (point->alt_m) points += ',' + fixed_number(*point->alt_m, 0);
+    points += '\n';
+    ++count;
+  }
+  const std::string shape = count == 1 ? "Point" : "LineString";
+  const std::string name = xml_escaped(plan.name);
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+         "<kml xmlns=\"http://www.opengis.net/kml/2.2\">\n<Document>\n<name>" +
+         name + "</name>\n<Placemark><name>" + name + "</name><" + shape + "><coordinates>\n" +
+         points + "</coordinates></" + shape + "></Placemark>\n</Document>\n</kml>\n";
+}
+
+}  // namespace roverd::mission

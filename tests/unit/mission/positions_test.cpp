@@ -1,0 +1,216 @@
+// Formats of plain positions: CSV in both forms, GeoJSON, GPX, KML.
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "base/geo.hpp"
+#include "mission/formats.hpp"
+#include "mission/json.hpp"
+#include "plans.hpp"
+
+namespace roverd::mission {
+namespace {
+
+constexpr std::array kPositionFormats{Format::Gpx, Format::Kml, Format::GeoJson, Format::Csv,
+                                      Format::Follower};
+
+Plan line_plan() {
+  Plan plan;
+  plan.name = "a < b & \"c\"";
+  Waypoint first = waypoint_at(58.378020123, 26.728900987);
+  first.alt_m = 61.25;
+  first.speed_mps = 0.8;
+  plan.items = {first, waypoint_at(58.3781, -0.000000001), waypoint_at(58.3782, 26.7291)};
+  std::get<Waypoint>(plan.items[1]).at.lon = 26.7290000011;
+  return plan;
+}
+
+/// "row: reason" of everything that was not taken as it is.
+std::string losses(const std::vector<FileRow>& rows) {
+  std::string out;
+  for (const FileRow& row : rows) {
+    if (row.outcome != Outcome::Taken) out += row.row + " " + row.what + ": " + row.reason + "\n";
+  }
+  return out;
+}
+
+std::string refusal(std::string_view content, std::optional<Format> format = std::nullopt) {
+  const auto file = import_file(content, format);
+  if (file) return "taken";
+  const auto& fields = file.error().fields;
+  return fields.empty() ? file.error().detail : fields[0].pointer + ": " + fields[0].detail;
+}
+
+TEST(Positions, ComeBackWhateverTheFormat) {
+  const Plan plan = line_plan();
+  for (const Format format : kPositionFormats) {
+    const ExportedFile out = export_file(plan, format);
+    // Detected by what it holds, not by its name.
+    const auto back = import_file(out.content, std::nullopt);
+    ASSERT_TRUE(back) << out.content << back.error().detail;
+    EXPECT_EQ(back->format, format == Format::Follower ? Format::Csv : format);
+    ASSERT_EQ(back->plan.items.size(), plan.items.size());
+    for (std::size_t i = 0; i < plan.items.size(); ++i) {
+      const auto& was = std::get<Waypoint>(plan.items[i]);
+      const auto& is = std::get<Waypoint>(back->plan.items[i]);
+      EXPECT_NEAR(is.at.lat, was.at.lat, 1e-9) << out.content;
+      EXPECT_NEAR(is.at.lon, was.at.lon, 1e-9);
+      const bool has_alt = format != Format::Follower;
+      EXPECT_EQ(is.alt_m, has_alt ? was.alt_m : std::nullopt);
+      const bool has_speed = format != Format::Gpx && format != Format::Kml;
+      EXPECT_EQ(is.speed_mps, has_speed ? was.speed_mps : std::nullopt);
+    }
+    const bool has_name = format != Format::Csv && format != Format::Follower;
+    EXPECT_EQ(back->plan.name, has_name ? plan.name : "Imported mission");
+  }
+}
+
+TEST(Positions, GeoJsonKeepsEveryWaypointWhole) {
+  Plan plan = line_plan();
+  auto& last = std::get<Waypoint>(plan.items.back());
+  last.hold_s = 3.0;
+  last.turn = Turn::Pivot;
+  last.reverse = true;
+  EXPECT_EQ(import_file(export_file(plan, Format::GeoJson).content, std::nullopt)->plan, plan);
+}
+
+TEST(Positions, WhatAFormatCannotHoldIsTold) {
+  Plan plan = line_plan();
+  plan.home = Home{{58.0, 26.0}, std::nullopt};
+  plan.items.emplace_back(Wait{3.0});
+  EXPECT_EQ(losses(export_file(plan, Format::Gpx).rows),
+            "/home home: the format has no home\n"
+            "/items/0 waypoint: of its settings the format holds only position, height\n"
+            "/items/3 wait: the format holds positions only\n");
+}
+
+TEST(Csv, ColumnsAreFoundByNameAndEveryRowIsAccountedFor) {
+  const auto file = import_file(
+      "# from the office\r\n"
+      "Name;Longitude;Latitude;Speed (km/h)\r\n"
+      "gate;26.7289;58.378;3.6\r\n"
+      "\r\n"
+      "barn;26.7290;58.379;720\r\n",
+      std::nullopt);
+  ASSERT_TRUE(file) << file.error().detail;
+  EXPECT_EQ(file->format, Format::Csv);
+  ASSERT_EQ(file->plan.items.size(), 2u);
+  EXPECT_EQ(std::get<Waypoint>(file->plan.items[0]).at, (LatLon{58.378, 26.7289}));
+  EXPECT_EQ(std::get<Waypoint>(file->plan.items[0]).speed_mps, 1.0);
+  EXPECT_EQ(losses(file->rows),
+            "line 1 comment: a comment\n"
+            "line 2 column Name: a waypoint has no place for it\n"
+            "line 5 row: a speed of 200 cannot be kept\n");
+  EXPECT_EQ(file->rows.size(), 4u);
+}
+
+TEST(Csv, TheFollowersFormNeedsAnOrigin) {
+  const std::string rows = "x,y,z,yaw,velocity\n0,0,0,1.57,3.6\n3,4,0,1.57,7.2\n";
+  const auto file = import_file("# origin 58.378 26.729\n" + rows, std::nullopt);
+  ASSERT_TRUE(file) << file.error().detail;
+  const auto& second = std::get<Waypoint>(file->plan.items.at(1));
+  EXPECT_NEAR(base::distance_bearing({58.378, 26.729}, second.at).distance_m, 5.0, 1e-6);
+  EXPECT_EQ(second.speed_mps, 7.2);
+  ImportHints hints{LatLon{58.378, 26.729}, true};
+  const auto hinted = import_file(rows, std::nullopt, "", hints);
+  EXPECT_EQ(std::get<Waypoint>(hinted->plan.items.at(1)).at, second.at);
+  EXPECT_NEAR(*std::get<Waypoint>(hinted->plan.items.at(1)).speed_mps, 2.0, 1e-12);
+  EXPECT_TRUE(import_file("0 0 0 1.57 0.5\n3 4 0 1.57 0.5\n", std::nullopt, "", hints));
+  EXPECT_EQ(refusal(rows),
+            "line 2: needs an origin: a line \"# origin LAT LON\" before it, or origin_lat and "
+            "origin_lon with the call");
+}
+
+TEST(Csv, BadRowsAreNamed) {
+  EXPECT_EQ(refusal("lat,lon\n91,0\n"), "line 2: latitude must be from -90 to 90, is 91");
+  EXPECT_EQ(refusal("lat,lon\n1,2,3\n"), "line 2: must have 2 columns, has 3");
+  EXPECT_EQ(refusal("lat,lon\n1,nan\n"), "line 2: column 2 must be a finite number");
+  EXPECT_EQ(refusal("lat,lon\n1,1e999\n"), "line 2: column 2 must be a finite number");
+  EXPECT_EQ(refusal("lat,lon\n"), ": has no position");
+  EXPECT_EQ(refusal("# origin 91 0\nx,y\n1,1\n"),
+            "line 1: origin must be a latitude and a longitude");
+  EXPECT_EQ(refusal("a,b\n1,2\n", Format::Csv).substr(0, 12), "line 1: must");
+  EXPECT_EQ(refusal("hello world\n"),
+            "none of .plan, .waypoints, GPX, KML, GeoJSON and a table of positions");
+}
+
+TEST(GeoJson, LinesPointsAndCollectionsAreRead) {
+  const auto file = import_file(
+      R"({"type":"FeatureCollection","features":[
+        {"type":"Feature","properties":{"name":"gate"},"geometry":{"type":"Point","coordinates":[26.1,58.1]}},
+        {"type":"Feature","properties":null,"geometry":{"type":"Polygon","coordinates":[]}},
+        {"type":"Feature","properties":{},"geometry":null},
+        {"type":"Feature","properties":{},"geometry":{"type":"GeometryCollection","geometries":[
+          {"type":"MultiLineString","coordinates":[[[26.2,58.2,50]],[[26.3,58.3]]]}]}}]})",
+      std::nullopt);
+  ASSERT_TRUE(file) << file.error().detail;
+  EXPECT_EQ(file->plan.name, "gate");
+  ASSERT_EQ(file->plan.items.size(), 3u);
+  EXPECT_EQ(std::get<Waypoint>(file->plan.items[1]).alt_m, 50.0);
+  EXPECT_EQ(losses(file->rows),
+            "/features/1/geometry Polygon: an area is no way to drive\n"
+            "/features/2 Feature: it has no geometry\n");
+  EXPECT_EQ(refusal(R"({"type":"Point","coordinates":[26.1,"x"]})"),
+            "/coordinates: must be [longitude, latitude] or with a height");
+  EXPECT_EQ(refusal(R"({"type":"LineString","coordinates":[[0,0],[181,0]]})"),
+            "/coordinates/1: longitude must be from -180 to 180, is 181");
+  EXPECT_EQ(refusal(R"({"type":"Circle"})"), "/type: is no type of GeoJSON");
+  EXPECT_EQ(refusal(R"({"type":"Point")").substr(0, 4), "byte");
+}
+
+TEST(Gpx, TheRouteIsTakenBeforeTracksAndWaypoints) {
+  const auto file = import_file(
+      "<?xml version=\"1.0\"?>\n<gpx version=\"1.1\" xmlns=\"http://www.topografix.com/GPX/1/1\">\n"
+      "<wpt lat=\"1\" lon=\"2\"><name>gate</name></wpt>\n"
+      "<rte><name>morning</name>\n"
+      "<rtept lat=\"58.1\" lon=\"26.1\"><ele>61.5</ele></rtept>\n"
+      "<rtept lat=\"58.2\" lon=\"26.2\"/></rte></gpx>",
+      std::nullopt);
+  ASSERT_TRUE(file) << file.error().detail;
+  EXPECT_EQ(file->plan.name, "morning");
+  ASSERT_EQ(file->plan.items.size(), 2u);
+  EXPECT_EQ(std::get<Waypoint>(file->plan.items[0]).alt_m, 61.5);
+  EXPECT_EQ(losses(file->rows), "line 3 wpt: the file's route is taken instead\n");
+  EXPECT_EQ(refusal("<gpx>\n<wpt lat=\"x\" lon=\"2\"/></gpx>"),
+            "line 2: lat and lon must be finite numbers");
+  EXPECT_EQ(refusal("<gpx>\n<wpt lat=\"1\" lon=\"200\"/></gpx>"),
+            "line 2: longitude must be from -180 to 180, is 200");
+  EXPECT_EQ(refusal("<gpx>\n<wpt lat="), "line 2: unclosed token");
+  EXPECT_EQ(refusal("<kml></kml>", Format::Gpx), "line 1: must begin a <gpx> document");
+}
+
+TEST(Kml, LinesAreTakenBeforePoints) {
+  const auto file = import_file(
+      "<kml><Document><name>farm</name>\n"
+      "<Placemark><Point><coordinates>1,2</coordinates></Point></Placemark>\n"
+      "<Placemark><Polygon><outerBoundaryIs><LinearRing><coordinates>0,0 1,1 1,0</coordinates>"
+      "</LinearRing></outerBoundaryIs></Polygon></Placemark>\n"
+      "<Placemark><LineString><coordinates>\n 26.1,58.1,61.5\n 26.2,58.2 </coordinates>"
+      "</LineString></Placemark></Document></kml>",
+      std::nullopt);
+  ASSERT_TRUE(file) << file.error().detail;
+  EXPECT_EQ(file->plan.name, "farm");
+  ASSERT_EQ(file->plan.items.size(), 2u);
+  EXPECT_EQ(std::get<Waypoint>(file->plan.items[0]).at, (LatLon{58.1, 26.1}));
+  EXPECT_EQ(losses(file->rows),
+            "line 3 Polygon: an area is no way to drive\n"
+            "line 2 Point: the file's line is taken instead\n");
+  EXPECT_EQ(refusal("<kml><LineString><coordinates>1,2 3</coordinates></LineString></kml>"),
+            "line 1, coordinate 2: must be longitude, latitude and perhaps a height");
+}
+
+TEST(Xml, BombsEntitiesAndDepthAreRefused) {
+  EXPECT_EQ(refusal("<!DOCTYPE gpx [<!ENTITY a \"aaaa\"><!ENTITY b \"&a;&a;\">]>\n<gpx>&b;</gpx>"),
+            "line 1: a document type declaration is not taken");
+  EXPECT_EQ(refusal("<!DOCTYPE gpx SYSTEM \"file:///etc/passwd\"><gpx/>"),
+            "line 1: a document type declaration is not taken");
+  EXPECT_EQ(refusal("<gpx>&xxe;</gpx>"), "line 1: undefined entity");
+  std::string deep = "<gpx>";
+  for (int i = 0; i < 100'000; ++i) deep += "<a>";
+  EXPECT_EQ(refusal(deep), "line 1: nested too deeply");
+  EXPECT_EQ(refusal("<gpx><name>\xff\xfe</name></gpx>"), "line 1: not well-formed (invalid token)");
+}
+
+}  // namespace
+}  // namespace roverd::mission
