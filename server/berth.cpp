@@ -148,8 +148,8 @@ void Berth::send(const base::DriveCommand& command, base::Time now) const noexce
   device_.send(command, now);
 }
 
-// What is posted runs only on the thread, which keeps the berth; what never runs goes with io_. Were
-// it to keep the berth too, the two would keep each other for ever.
+// What is posted runs only on the thread, which keeps the berth; what never runs goes with io_.
+// Were it to keep the berth too, the two would keep each other for ever.
 void Berth::ask(Errand errand, Done done) {
   asio::post(io_, [this, errand = std::move(errand), done = std::move(done)] {
     doing("carrying out a command");
