@@ -21,27 +21,27 @@ constexpr int kMost = static_cast<int>(mission::kMaxItems);
 
 /// Reads one operation. What is wrong with a member goes to `members`, what is wrong with the
 /// moment to `conflict`.
-class Reader {
+class RequestReader {
  public:
-  Reader(const Json& body, const OperationFacts& facts)
+  RequestReader(const Json& body, const OperationFacts& facts)
       : body_(body), facts_(facts), members_(body) {}
 
   Result<OperationRequest> read() {
-    using Read = OperationRequest (Reader::*)();
+    using Read = OperationRequest (RequestReader::*)();
     static constexpr std::array<std::pair<std::string_view, Read>, 13> kOperations{{
-        {"add_waypoint", &Reader::add_waypoint},
-        {"remove_waypoint", &Reader::remove},
-        {"clear", &Reader::clear},
-        {"reverse", &Reader::reverse},
-        {"offset", &Reader::offset},
-        {"scale_rotate", &Reader::scale_rotate},
-        {"mirror", &Reader::mirror},
-        {"set_home", &Reader::set_home},
-        {"simplify", &Reader::simplify},
-        {"densify", &Reader::densify},
-        {"join", &Reader::join},
-        {"split", &Reader::split},
-        {"renumber", &Reader::renumber},
+        {"add_waypoint", &RequestReader::add_waypoint},
+        {"remove_waypoint", &RequestReader::remove},
+        {"clear", &RequestReader::clear},
+        {"reverse", &RequestReader::reverse},
+        {"offset", &RequestReader::offset},
+        {"scale_rotate", &RequestReader::scale_rotate},
+        {"mirror", &RequestReader::mirror},
+        {"set_home", &RequestReader::set_home},
+        {"simplify", &RequestReader::simplify},
+        {"densify", &RequestReader::densify},
+        {"join", &RequestReader::join},
+        {"split", &RequestReader::split},
+        {"renumber", &RequestReader::renumber},
     }};
     members_.require("op");
     const auto op = members_.text("op");
@@ -270,7 +270,7 @@ class Reader {
 }  // namespace
 
 Result<OperationRequest> read_operation(const Json& body, const OperationFacts& facts) {
-  return Reader(body, facts).read();
+  return RequestReader(body, facts).read();
 }
 
 }  // namespace roverd::api

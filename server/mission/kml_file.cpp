@@ -66,12 +66,12 @@ class KmlReader {
   void coordinates(std::string_view text, const std::string& row, std::string_view inside) {
     const bool line = inside == "LineString";
     if (!line && inside != "Point") return;  // of an area, which has its account already
-    constexpr std::string_view kBlanks = " \t\r\n";
+    constexpr std::string_view kXmlBlanks = " \t\r\n";
     for (std::size_t number = 1;; ++number) {
-      const std::size_t begin = text.find_first_not_of(kBlanks);
+      const std::size_t begin = text.find_first_not_of(kXmlBlanks);
       if (begin == std::string_view::npos) return;
       text.remove_prefix(begin);
-      const std::string_view one = text.substr(0, text.find_first_of(kBlanks));
+      const std::string_view one = text.substr(0, text.find_first_of(kXmlBlanks));
       text.remove_prefix(one.size());
       tuple(one, line ? row + ", coordinate " + std::to_string(number) : row,
             line ? "coordinate" : "Point", ',', line ? lines_ : points_);
@@ -81,10 +81,10 @@ class KmlReader {
   /// longitude, latitude and perhaps a height
   void tuple(std::string_view text, std::string row, const char* what, char separator,
              std::vector<TrackPoint>& out) {
-    constexpr std::string_view kBlanks = " \t\r\n";
-    const std::size_t begin = std::min(text.find_first_not_of(kBlanks), text.size());
+    constexpr std::string_view kXmlBlanks = " \t\r\n";
+    const std::size_t begin = std::min(text.find_first_not_of(kXmlBlanks), text.size());
     text.remove_prefix(begin);
-    while (!text.empty() && kBlanks.find(text.back()) != std::string_view::npos) {
+    while (!text.empty() && kXmlBlanks.find(text.back()) != std::string_view::npos) {
       text.remove_suffix(1);
     }
     std::vector<double> values;
