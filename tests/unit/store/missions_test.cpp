@@ -13,12 +13,13 @@ namespace {
 using base::Code;
 using namespace std::chrono_literals;
 
-/// A clock that a test moves.
+/// A clock that a test moves, and the store's own thread reads.
 struct FakeClock {
-  base::WallTime now{std::chrono::nanoseconds(1'700'000'000'123'456'789)};
+  std::atomic<base::WallTime> now{
+      base::WallTime{std::chrono::nanoseconds(1'700'000'000'123'456'789)}};
   Options options() {
     Options o;
-    o.clock = [this] { return now; };
+    o.clock = [this] { return now.load(); };
     return o;
   }
 };
@@ -120,7 +121,7 @@ TEST(Missions, KeepEveryRevisionWithAuthorAndWhat) {
   FakeClock clock;
   auto store = open_store(folder.file(), clock.options());
   const auto made = create(*store, plan_named("one", 2), {"anna", "imported from basic.waypoints"});
-  clock.now += 60s;
+  clock.now = clock.now.load() + 60s;
   ASSERT_TRUE(replace(*store, made->id, 1, plan_named("two", 4), {"bert", ""}));
   const auto page = revisions(*store, made->id, 10);
   ASSERT_TRUE(page);
@@ -184,9 +185,9 @@ TEST(Missions, AreListedNewestChangeFirst) {
   FakeClock clock;
   auto store = open_store(folder.file(), clock.options());
   const std::string a = create(*store, plan_named("a"))->id;
-  clock.now += 1s;
+  clock.now = clock.now.load() + 1s;
   const std::string b = create(*store, plan_named("b", 5))->id;
-  clock.now += 1s;
+  clock.now = clock.now.load() + 1s;
   ASSERT_TRUE(replace(*store, a, 1, plan_named("a2", 2)));
   const auto page = list(*store, 10);
   ASSERT_EQ(page->items.size(), 2u);
@@ -194,7 +195,7 @@ TEST(Missions, AreListedNewestChangeFirst) {
   EXPECT_EQ(page->items[0].name, "a2");
   EXPECT_EQ(page->items[0].revision, 2);
   EXPECT_EQ(page->items[0].items, 2);
-  EXPECT_EQ(page->items[0].updated, clock.now);
+  EXPECT_EQ(page->items[0].updated, clock.now.load());
   EXPECT_EQ(page->items[1].id, b);
 }
 
@@ -204,7 +205,7 @@ TEST(Missions, PagesOf250MissWithoutGapOrRepetitionEvenAtEqualTimes) {
   auto store = open_store(folder.file(), clock.options());
   std::set<std::string> made;
   for (int i = 0; i < 250; ++i) {
-    if (i % 10 == 0) clock.now += 1s;  // ten share one time
+    if (i % 10 == 0) clock.now = clock.now.load() + 1s;  // ten share one time
     made.insert(create(*store, plan_named("m" + std::to_string(i), 1))->id);
   }
   std::set<std::string> seen;
@@ -273,12 +274,12 @@ TEST(DeletedMissions, AreListedAndRestored) {
   const std::string id = create(*store, plan_named("lost", 4))->id;
   create(*store, plan_named("kept"));
   EXPECT_EQ(restore(*store, id).error().code, Code::Conflict);
-  clock.now += 1h;
+  clock.now = clock.now.load() + 1h;
   ASSERT_TRUE(remove(*store, id, 1));
   const auto gone = list(*store, 10, "", Which::Deleted);
   ASSERT_EQ(gone->items.size(), 1u);
   EXPECT_EQ(gone->items[0].name, "lost");
-  EXPECT_EQ(gone->items[0].updated, clock.now);
+  EXPECT_EQ(gone->items[0].updated, clock.now.load());
   EXPECT_EQ(list(*store, 10)->items.size(), 1u);
   const auto back = restore(*store, id);
   ASSERT_TRUE(back);
@@ -301,11 +302,11 @@ TEST(DeletedMissions, AreForgottenWhenTheirTimeIsOver) {
     young = create(*store, plan_named("young"))->id;
     create(*store, plan_named("present"));
     ASSERT_TRUE(remove(*store, old, 1));
-    clock.now += 23h;
+    clock.now = clock.now.load() + 23h;
     ASSERT_TRUE(remove(*store, young, 1));
     EXPECT_EQ(list(*store, 10, "", Which::Deleted)->items.size(), 2u);
   }
-  clock.now += 2h;
+  clock.now = clock.now.load() + 2h;
   auto store = open_store(folder.file(), options);
   const auto gone = list(*store, 10, "", Which::Deleted);
   ASSERT_EQ(gone->items.size(), 1u);
