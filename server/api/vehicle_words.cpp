@@ -74,6 +74,15 @@ Json position_json(const std::optional<base::Pose>& pose, base::Time now) {
   return out;
 }
 
+Json attitude_json(const std::optional<base::Attitude>& a, base::Time now) {
+  Json out = {{"roll_deg", nullptr}, {"pitch_deg", nullptr}};
+  set_age(out, stamp_of(a), now, StaleAfter::kAttitude_s);
+  if (!a) return out;
+  out["roll_deg"] = degrees(a->roll_rad);
+  out["pitch_deg"] = degrees(a->pitch_rad);
+  return out;
+}
+
 /// The larger of two sigmas, if the receiver gives both.
 std::optional<double> larger(const std::optional<double>& a, const std::optional<double>& b) {
   return a && b ? std::optional(std::max(*a, *b)) : std::nullopt;
@@ -214,8 +223,6 @@ Json vehicle_json(const base::Snapshot& s, const std::string& name, base::Time n
   for (const auto& condition : s.safety) {
     safety.push_back({{"id", condition.id}, {"detail", condition.detail}});
   }
-  Json attitude = {{"roll_deg", nullptr}, {"pitch_deg", nullptr}};
-  set_age(attitude, std::nullopt, now, 0.0);
   return {{"name", name},
           {"time", base::to_rfc3339(s.wall)},
           {"mode", base::to_string(s.mode)},
@@ -227,7 +234,7 @@ Json vehicle_json(const base::Snapshot& s, const std::string& name, base::Time n
            {{"speed_mps", rounded(s.command.twist.linear_mps, kPlaces3)},
             {"yaw_rate_dps", degrees(s.command.twist.angular_radps)}}},
           {"position", position_json(s.pose, now)},
-          {"attitude", std::move(attitude)},
+          {"attitude", attitude_json(s.attitude, now)},
           {"gnss", gnss_json(s, now)},
           {"base", base_json(s, now)},
           {"battery", battery_json(s, now)},

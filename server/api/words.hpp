@@ -20,6 +20,7 @@ namespace roverd::api {
 /// Older than this is stale, seconds. About twice the usual period of each device and more.
 struct StaleAfter {
   static constexpr double kPosition_s = 1.0;
+  static constexpr double kAttitude_s = 1.0;
   static constexpr double kGnss_s = 2.5;
   static constexpr double kBase_s = 0.5;
   static constexpr double kBattery_s = 5.0;

@@ -51,6 +51,47 @@ struct Heading {
   Time stamp;
   double yaw_rad = 0.0;
   HeadingSource source = HeadingSource::Compass;
+  std::optional<double> sigma_rad{};  ///< as the device reports it
+};
+
+/// Along the body's axes: forward, left, up.
+struct BodyVector {
+  double forward = 0.0;
+  double left = 0.0;
+  double up = 0.0;
+  friend bool operator==(const BodyVector&, const BodyVector&) = default;
+};
+
+/// One sample of an inertial unit, turned into the body's axes by its driver.
+struct Inertial {
+  Time stamp;
+  /// About the body's axes, right-handed: up is the yaw rate, left turns positive. With the bias.
+  std::optional<BodyVector> rate_radps;
+  std::optional<BodyVector> accel_mps2;  ///< specific force: standing level, up is +9.81
+};
+
+/// How the body leans, by a device that works it out itself.
+struct Attitude {
+  Time stamp;
+  double roll_rad = 0.0;   ///< right side down positive
+  double pitch_rad = 0.0;  ///< nose up positive
+};
+
+/// One satellite as a receiver tells of it.
+struct Satellite {
+  std::string system;  ///< gps glonass galileo beidou qzss sbas navic unknown
+  int number = 0;      ///< within its system
+  std::optional<double> elevation_deg;
+  std::optional<double> azimuth_deg;  ///< compass
+  std::optional<double> cn0_dbhz;     ///< empty: in view, not tracked
+  std::optional<bool> used;           ///< in the solution
+};
+
+/// All satellites that one receiver sees; replaces what that receiver told before.
+struct SatellitesInView {
+  Time stamp;
+  std::string driver;
+  std::shared_ptr<const std::vector<Satellite>> satellites;
 };
 
 /// Track or wheel travel since the last message of this kind.
@@ -186,8 +227,9 @@ struct DriverStatus {
 };
 
 using Measurement =
-    std::variant<GnssFix, GnssVelocity, Heading, WheelTravel, BaseMotion, SteeringState, BaseStatus,
-                 BatteryState, MotorState, LightState, RadioState, Bumper, DriverStatus>;
+    std::variant<GnssFix, GnssVelocity, Heading, Inertial, Attitude, SatellitesInView, WheelTravel,
+                 BaseMotion, SteeringState, BaseStatus, BatteryState, MotorState, LightState,
+                 RadioState, Bumper, DriverStatus>;
 
 inline Time stamp_of(const Measurement& m) noexcept {
   return std::visit([](const auto& value) { return value.stamp; }, m);

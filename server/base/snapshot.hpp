@@ -114,6 +114,8 @@ struct Snapshot {
   std::optional<LatLon> home;
   std::optional<GnssFix> gnss;
   std::optional<GnssVelocity> gnss_velocity;
+  std::optional<Attitude> attitude;
+  std::vector<SatellitesInView> satellites;  ///< one entry for each receiver that tells
   std::optional<BaseStatus> base;
   std::optional<BaseMotion> motion;
   std::optional<SteeringState> steering;

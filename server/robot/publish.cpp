@@ -46,6 +46,8 @@ bool Robot::Impl::publish() {
   s->home = home;
   s->gnss = world.gnss;
   s->gnss_velocity = world.gnss_velocity;
+  s->attitude = world.attitude;
+  s->satellites = world.satellites;
   s->base = world.base;
   s->motion = world.motion;
   s->steering = world.steering;

@@ -16,6 +16,8 @@ using base::Time;
 struct World {
   std::optional<base::GnssFix> gnss;
   std::optional<base::GnssVelocity> gnss_velocity;
+  std::optional<base::Attitude> attitude;
+  std::vector<base::SatellitesInView> satellites;  ///< one for each receiver
   std::optional<base::BaseStatus> base;
   std::optional<base::BaseMotion> motion;
   std::optional<base::SteeringState> steering;
@@ -34,6 +36,7 @@ struct World {
   std::optional<Time> base_heard;            ///< any word from it
 
   static constexpr int kMotors = 8;
+  static constexpr std::size_t kReceivers = 4;
 
   void take(base::Measurement&& m) {
     std::visit([this](auto& value) { put(std::move(value)); }, m);
@@ -62,6 +65,16 @@ struct World {
   }
   void put(base::WheelTravel&& m) { base_heard = m.stamp; }
   void put(base::Heading&&) {}
+  void put(base::Inertial&&) {}
+  void put(base::Attitude&& m) { attitude = m; }
+  void put(base::SatellitesInView&& m) {
+    for (base::SatellitesInView& known : satellites) {
+      if (known.driver != m.driver) continue;
+      known = std::move(m);
+      return;
+    }
+    if (satellites.size() < kReceivers) satellites.push_back(std::move(m));
+  }
   void put(base::SteeringState&& m) { steering = m; }
   void put(base::BatteryState&& m) { battery = std::move(m); }
   void put(base::MotorState&& m) {

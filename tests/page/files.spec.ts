@@ -239,8 +239,9 @@ test('a recorded RTK receiver is replayed, and its track is drawn for whoever co
       const dots = await pixels(each, [FIXES]);
       const line = await pixels(each, [DRIVEN]);
       const above = await pixels(each, [ROBOT, ROBOT_STALE, HOME, DRIVEN]);
-      expect(dots.length).toBeGreaterThan(100);
-      expect(line.length).toBeGreaterThan(100);
+      // How many pixels there are depends on the scale; that enough is drawn is asked below.
+      expect(dots.length).toBeGreaterThan(0);
+      expect(line.length).toBeGreaterThan(0);
       // Every dot is a recorded position, and every recorded position has its dot: half a dot and a
       // page that begins with its first message off, 7 px and 0.2 m to the next one. A tenth may
       // be missing on a busy machine.
