@@ -113,12 +113,16 @@ struct Collect {
   void operator()(const char* name, P& params) {
     out.emplace(name, section(params));
   }
-  /// Its texts are words of a list, and a wrong one is told where it stands.
-  void operator()(const char* name, robot::RadioParams& params) {
+  /// Their texts follow a rule, and a wrong one is told where it stands.
+  void operator()(const char* name, robot::RadioParams& params) { checked(name, params); }
+  void operator()(const char* name, robot::BatteryParams& params) { checked(name, params); }
+
+  template <class P>
+  void checked(const char* name, P& params) {
     out.emplace(name, [&params](std::string_view key, const ParamValue& value) -> Result<void> {
-      robot::RadioParams changed = params;
+      P changed = params;
       if (auto done = base::set_param(changed, key, value); !done) return done;
-      if (auto good = robot::check(changed); !good) return good;
+      if (auto good = check(changed); !good) return good;
       params = std::move(changed);
       return {};
     });

@@ -7,6 +7,8 @@ export default defineConfig({
   testDir: '../tests/page',
   outputDir: '../tests/page/results',
   workers: 1,
+  // On a busy machine a browser may be late once. What fails twice fails; a second try is told.
+  retries: 1,
   timeout: 60_000,
   expect: { timeout: 10_000 },
   forbidOnly: process.env['CI'] === 'true',

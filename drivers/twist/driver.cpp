@@ -188,11 +188,6 @@ void Driver::tell(const Feedback& f, Time stamp) {
   s.error_code = f.status;
   if (f.battery_v > 0.0) s.battery_v = f.battery_v;
   on_measurement_(std::move(s));
-  const double span_v = params_.battery_full_v - params_.battery_empty_v;
-  if (f.battery_v <= 0.0 || span_v <= 0.0 || params_.battery_full_v <= 0.0) return;
-  const double charge = (f.battery_v - params_.battery_empty_v) / span_v;
-  on_measurement_(
-      base::BatteryState{stamp, std::clamp(100.0 * charge, 0.0, 100.0), f.battery_v, {}, {}});
 }
 
 }  // namespace roverd::twist

@@ -8,7 +8,7 @@
 //
 // A command leaves at every second tick (50 Hz), enabled only while the robot wants it, feedback is
 // fresh and the gate agrees. A feedback whose sequence stands still proves nothing.
-// Measurements: BaseMotion, WheelTravel, BaseStatus, BatteryState, DriverStatus.
+// Measurements: BaseMotion, WheelTravel, BaseStatus, DriverStatus.
 //
 // Threads: send() belongs to the control thread, everything else to the device thread.
 

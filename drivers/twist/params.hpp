@@ -16,8 +16,6 @@ struct Params {
   double command_timeout_s = 0.25;
   double feedback_timeout_s = 0.3;
   double travel_max_mps = 5.0;
-  double battery_empty_v = 0.0;
-  double battery_full_v = 0.0;
   double silent_reopen_s = 3.0;
   double retry_first_s = 0.5;
   double retry_max_s = 5.0;
@@ -33,8 +31,6 @@ void fields(V& v, Params& p) {
   v("command_timeout_s", p.command_timeout_s, 0.05, 0.25, "an older command: stop");
   v("feedback_timeout_s", p.feedback_timeout_s, 0.05, 2.0, "so long a silence: nothing moves");
   v("travel_max_mps", p.travel_max_mps, 0.1, 50.0, "faster travel is impossible: refused");
-  v("battery_empty_v", p.battery_empty_v, 0.0, 1000.0, "voltage called 0 %");
-  v("battery_full_v", p.battery_full_v, 0.0, 1000.0, "voltage called 100 %; 0: no charge is told");
   v("silent_reopen_s", p.silent_reopen_s, 0.0, 600.0, "a silent port is opened again; 0: never");
   v("retry_first_s", p.retry_first_s, 0.05, 60.0, "first wait before opening again");
   v("retry_max_s", p.retry_max_s, 0.05, 600.0, "longest wait before opening again");

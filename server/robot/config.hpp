@@ -7,6 +7,7 @@
 #include "nav/behave/params.hpp"
 #include "nav/estimate/params.hpp"
 #include "nav/track/path.hpp"
+#include "robot/battery_gauge.hpp"
 #include "robot/radio_actions.hpp"
 
 namespace roverd::robot {
@@ -98,6 +99,7 @@ struct Config {
   SafetyParams safety;
   ArmingParams arming;
   RadioParams radio;
+  BatteryParams battery;
 
   /// What following a path needs; the vehicle goes no faster than it can.
   nav::PathParams path() const {
@@ -118,6 +120,7 @@ void sections(V& v, Config& c) {
   v("robot.safety", c.safety);
   v("robot.arming", c.arming);
   v("radio", c.radio);
+  v("battery", c.battery);
 }
 
 }  // namespace roverd::robot

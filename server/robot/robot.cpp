@@ -16,6 +16,7 @@ Robot::Impl::Impl(Config c)
       executor(config.path(), config.behave),
       manual(config.manual),
       keys(config.radio, config.safety.radio_timeout_s) {
+  world.gauge = BatteryGauge(config.battery);
   measurement_batch.reserve(256);
   command_batch.reserve(64);
   pressed.reserve(64);

@@ -8,6 +8,7 @@
 
 #include "base/measurements.hpp"
 #include "base/snapshot.hpp"
+#include "robot/battery_gauge.hpp"
 
 namespace roverd::robot {
 
@@ -35,6 +36,9 @@ struct World {
   std::optional<Time> gnss_good_since;       ///< usable fixes without a gap from then on
   std::optional<Time> base_heard;            ///< any word from it
 
+  BatteryGauge gauge;                ///< speaks while the battery itself tells nothing
+  std::optional<Time> battery_told;  ///< by the battery itself
+
   static constexpr int kMotors = 8;
   static constexpr std::size_t kReceivers = 4;
 
@@ -58,6 +62,8 @@ struct World {
   void put(base::BaseStatus&& m) {
     base_heard = m.stamp;
     base = std::move(m);
+    if (battery_told && base->stamp - *battery_told < std::chrono::seconds(10)) return;
+    if (const auto charge = gauge.step(*base)) battery = charge;
   }
   void put(base::BaseMotion&& m) {
     if (!m.assumed) base_heard = m.stamp;
@@ -76,7 +82,10 @@ struct World {
     if (satellites.size() < kReceivers) satellites.push_back(std::move(m));
   }
   void put(base::SteeringState&& m) { steering = m; }
-  void put(base::BatteryState&& m) { battery = std::move(m); }
+  void put(base::BatteryState&& m) {
+    battery_told = m.stamp;
+    battery = std::move(m);
+  }
   void put(base::MotorState&& m) {
     if (m.motor < 1 || m.motor > kMotors) return;
     const auto at = std::find_if(motors.begin(), motors.end(),

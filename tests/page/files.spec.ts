@@ -5,7 +5,7 @@ import { basename } from 'node:path';
 
 import { expect as expect_base, type Page } from '@playwright/test';
 
-import { items, map_middle, metres_between, press, tab, type Point } from './page';
+import { items, map_middle, metres_between, pixels_per_m, press, tab, type Point } from './page';
 import { expect, real_file, test } from './station';
 
 interface Mission {
@@ -129,14 +129,6 @@ const pixels = (page: Page, colors: readonly Color[]): Promise<Pixel[]> =>
     }
     return found;
   }, colors);
-
-/** Pixels of one metre on the ground. */
-const pixels_per_m = async (page: Page): Promise<number> => {
-  const bar = page.locator('.scale-bar');
-  const [, figure = '', unit = ''] = /^([\d.]+) (cm|m|km)$/.exec(await bar.innerText()) ?? [];
-  const width = await bar.evaluate((element) => parseFloat(element.style.width));
-  return width / (Number(figure) * ({ cm: 0.01, km: 1000 }[unit] ?? 1));
-};
 
 /** Metres to the east and to the south of a place. */
 const offset_m = (from: Point, to: Point): Pixel => [

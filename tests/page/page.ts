@@ -46,6 +46,14 @@ export const map_middle = async (page: Page): Promise<readonly [number, number]>
   return [(left + width) / 2, (top.y + top.height + bottom) / 2];
 };
 
+/** Pixels of one metre on the ground, by the scale bar. */
+export const pixels_per_m = async (page: Page): Promise<number> => {
+  const bar = page.locator('.scale-bar');
+  const [, figure = '', unit = ''] = /^([\d.]+) (cm|m|km)$/.exec(await bar.innerText()) ?? [];
+  const width = await bar.evaluate((element) => parseFloat(element.style.width));
+  return width / (Number(figure) * ({ cm: 0.01, km: 1000 }[unit] ?? 1));
+};
+
 /** Taps the map at places given from the middle of its free part, pixels right and down. */
 export const draw = async (
   page: Page,

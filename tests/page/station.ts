@@ -26,9 +26,10 @@ class Program {
   readonly #lines: string[] = [];
   readonly #name: string;
 
+  /** @param name one of the built programs, or the path of another one. */
   constructor(name: string, args: readonly string[]) {
     this.#name = name;
-    this.#process = spawn(join(BIN, name), args, {
+    this.#process = spawn(resolve(BIN, name), args, {
       stdio: ['ignore', 'pipe', 'pipe'],
     });
     this.#process.on('error', (cause) => this.#lines.push(String(cause)));
@@ -127,6 +128,8 @@ const config = join(ROOT, 'config/robot.toml');
 
 export const test = base.extend<{
   station: Station;
+  /** ./run --vehicle NAME, as a person starts it. */
+  vehicle: (name: string) => Promise<Station>;
   /** Plays a recording, `speed` times as fast as it was recorded. @return the address */
   replay: (file: string, speed: number) => Promise<string>;
 }>({
@@ -154,6 +157,26 @@ export const test = base.extend<{
     } finally {
       sim?.close();
       for (const program of programs) await program.stop();
+      rmSync(folder, { recursive: true, force: true });
+    }
+  },
+  // eslint-disable-next-line no-empty-pattern
+  vehicle: async ({}, use) => {
+    const folder = mkdtempSync(join(tmpdir(), 'roverd-page.'));
+    let run: Program | undefined;
+    let sim: SideChannel | undefined;
+    try {
+      await use(async (name) => {
+        const options = ['--vehicle', name, '--data', join(folder, 'data'), '--port', '0'];
+        run = new Program(join(ROOT, 'run'), options);
+        const [, control = ''] = await run.line(/true pose and faults at (\S+)$/);
+        sim = new SideChannel(control);
+        const [, url = ''] = await run.line(/^listening on (http:\S+)/);
+        return { url, sim, rest: rest_of(url) };
+      });
+    } finally {
+      sim?.close();
+      await run?.stop();
       rmSync(folder, { recursive: true, force: true });
     }
   },
