@@ -7,7 +7,7 @@ true
 all_steps=(doors shell format readme web build unit api command vehicles real can page asan tsan fuzz)
 # Timing depends on what else the machine does, and clang-tidy takes long: by name.
 # shellcheck disable=SC2034
-named_steps=(figures tidy bench)
+named_steps=(figures tidy bench mutate)
 # shellcheck disable=SC2034
 quick_steps=(doors shell format web build unit)
 # shellcheck disable=SC2034
@@ -27,6 +27,7 @@ declare -A titles=(
   [page]="the page in a browser, against the simulated robot"
   [figures]="figures, measured shortly (twice the promise allowed)"
   [tidy]="clang-tidy finds nothing"
+  [mutate]="the gate's tests notice each change of the gate"
   [asan]="unit, loop and API under address and undefined sanitizers"
   [tsan]="threaded rooms and API under the thread sanitizer"
   [fuzz]="every parser of foreign bytes against random input"
@@ -125,6 +126,11 @@ step_page() {
   PLAYWRIGHT_JSON_OUTPUT_NAME=$results npm run test:page -- --reporter=list,json || code=$?
   "$root/.ci/results" playwright "$results"
   return "$code"
+}
+
+step_mutate() {
+  ninja_build "$build" base
+  "$root/.ci/mutate" "$build"
 }
 
 step_tidy() {

@@ -45,14 +45,15 @@ class CommandBox {
 
  private:
   static constexpr std::int64_t kNone = INT64_MIN;
-  std::atomic<std::uint64_t> twist_{0};
+  std::atomic<std::uint64_t> twist_{0};  // mutant 0: never read before put()
   std::atomic<std::int64_t> stamp_{kNone};
 };
 
 /// `to`, but not further from zero than `last` plus a step; a reversal begins at zero.
 inline double eased(double last, double to, double step) noexcept {
-  const double from = (last < 0.0) == (to < 0.0) ? std::abs(last) : 0.0;
-  return std::abs(to) > from + step ? std::copysign(from + step, to) : to;
+  const bool same_side = (last < 0.0) == (to < 0.0);  // mutant <: zero belongs to both sides
+  const double most = (same_side ? std::abs(last) : 0.0) + step;
+  return std::abs(to) > most ? std::copysign(most, to) : to;  // mutant >: both give the limit
 }
 
 }  // namespace roverd::gate

@@ -13,6 +13,8 @@ constexpr std::uint8_t kNormal = 0;
 constexpr std::uint8_t kStandby = 0;  // of V1: the radio's mode
 constexpr std::uint8_t kCan = 1;
 
+constexpr std::size_t kTwoBytes = 2;
+
 constexpr std::size_t kV2 = 0;
 constexpr std::size_t kV1 = 1;
 
@@ -51,7 +53,7 @@ constexpr bool v1_intact(const CanFrame& f) noexcept {
 
 /// How far `to` lies beyond `from`, away from zero. A change of sign counts from zero.
 constexpr int growth(int from, int to) noexcept {
-  const bool same_side = (from < 0) == (to < 0);
+  const bool same_side = (from < 0) == (to < 0);  // mutant < 0: zero belongs to both sides
   const int start = same_side ? std::abs(from) : 0;
   return std::abs(to) - start;
 }
@@ -66,8 +68,8 @@ Gate::Gate(const Limits& l) noexcept
     : protocols_{
           Protocol{RxRule{0x221, 8, 0.02, l.motion_max_age_s},
                    RxRule{0x211, 8, 0.2, l.state_max_age_s},
-                   {ValueRule{0, 2, l.max_linear, l.max_linear_step},
-                    ValueRule{2, 2, l.max_angular, l.max_angular_step}}},
+                   {ValueRule{0, kTwoBytes, l.max_linear, l.max_linear_step},
+                    ValueRule{2, kTwoBytes, l.max_angular, l.max_angular_step}}},
           Protocol{RxRule{0x131, 8, 0.02, l.motion_max_age_s},
                    RxRule{0x151, 8, 0.2, l.state_max_age_s},
                    {ValueRule{kV1Speeds, 1, l.max_linear_pct, l.max_linear_step_pct},
@@ -76,7 +78,7 @@ Gate::Gate(const Limits& l) noexcept
 void Gate::saw(const CanFrame& frame, Time now) noexcept {
   if (!is_plain(frame)) return;
   const std::lock_guard lock(mutex_);
-  for (std::size_t which = 0; which < protocols_.size(); ++which) {
+  for (const std::size_t which : {kV2, kV1}) {
     const Protocol& p = protocols_[which];
     const bool is_state = frame.id == p.state.id;
     if (!is_state && frame.id != p.motion.id) continue;
@@ -125,7 +127,7 @@ Refusal Gate::check(const CanFrame& frame, Time now) noexcept {
     case Payload::LightsV1:
       return check_lights(*rule, frame, now);
   }
-  return Refusal::NotListed;
+  return Refusal::NotListed;  // mutant Refusal::NotListed;: every payload returned above
 }
 
 Refusal Gate::check_motion(const TxRule& rule, const CanFrame& frame, Time now) noexcept {
@@ -145,7 +147,7 @@ Refusal Gate::check_v1(const TxRule& rule, const CanFrame& frame, Time now) noex
   }
   const bool clears = frame.data[kV1Clear] != 0;
   if (frame.data[kV1Clear] > kV1LastClear) return Refusal::WrongContent;
-  const bool stands = all_zero(frame, kV1Speeds, kV1Speeds + 2);
+  const bool stands = all_zero(frame, kV1Speeds, kV1Speeds + 2);  // mutant 2: byte 4 is zero
   const bool in_can = heard_[kV1].control_mode == kCan;
   if (!stands) {
     if (mode != kCan || clears) return Refusal::WrongContent;

@@ -103,8 +103,8 @@ class MotionGate {
 
   /// How far `to` lies beyond `from`, away from zero. A change of sign counts from zero.
   static double growth(double from, double to) noexcept {
-    const double start = (from < 0.0) == (to < 0.0) ? std::abs(from) : 0.0;
-    return std::abs(to) - start;
+    const bool same_side = (from < 0.0) == (to < 0.0);  // mutant <: zero belongs to both sides
+    return std::abs(to) - (same_side ? std::abs(from) : 0.0);
   }
 
   MotionLimits limits_;

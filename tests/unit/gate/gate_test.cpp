@@ -117,6 +117,7 @@ TEST_F(GateV2Test, KeepsValuesInTheirLimits) {
 TEST_F(GateV2Test, LetsNoSidewaysOrSteeringMotionOut) {
   ready();
   expect_refused(frame(0x111, {0, 10, 0, 0, 0, 1, 0, 0}), Refusal::WrongContent);
+  expect_refused(frame(0x111, {0, 10, 0, 0, 1, 0, 0, 0}), Refusal::WrongContent);
   expect_refused(frame(0x111, {0, 0, 0, 0, 0, 0, 0, 1}), Refusal::WrongContent);
 }
 
@@ -242,6 +243,7 @@ TEST_F(GateV2Test, LetsOnlyListedCodesOut) {
   ready();
   expect_refused(frame(0x421, {2, 0, 0, 0, 0, 0, 0, 0}), Refusal::WrongContent);
   expect_refused(frame(0x421, {1, 0, 0, 0, 0, 0, 0, 1}), Refusal::WrongContent);
+  expect_refused(frame(0x441, {1, 1, 0, 0, 0, 0, 0, 0}), Refusal::WrongContent);
   expect_refused(frame(0x441, {3, 0, 0, 0, 0, 0, 0, 0}), Refusal::WrongContent);
   EXPECT_TRUE(gate.allows(frame(0x441, {2, 0, 0, 0, 0, 0, 0, 0}), now));
   expect_refused(kClearAll, Refusal::TooOften);

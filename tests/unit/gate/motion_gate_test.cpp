@@ -110,5 +110,15 @@ TEST(CommandBox, OldDisabledOrNotFiniteIsAStop) {
   EXPECT_FALSE(box.take(Time{}, 0.25));
 }
 
+TEST(Eased, GrowsByAStepAndSlowsDownAtOnce) {
+  EXPECT_DOUBLE_EQ(eased(0.0, 1.0, 0.25), 0.25);
+  EXPECT_DOUBLE_EQ(eased(0.5, 1.0, 0.25), 0.75);
+  EXPECT_DOUBLE_EQ(eased(-0.5, -1.0, 0.25), -0.75);
+  EXPECT_DOUBLE_EQ(eased(0.9, 1.0, 0.25), 1.0);
+  EXPECT_DOUBLE_EQ(eased(1.0, 0.1, 0.25), 0.1);
+  // A reversal begins at zero.
+  EXPECT_DOUBLE_EQ(eased(1.0, -1.0, 0.25), -0.25);
+}
+
 }  // namespace
 }  // namespace roverd::gate
