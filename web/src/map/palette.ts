@@ -19,6 +19,7 @@ export interface Palette {
   readonly robot: string;
   readonly robot_stale: string;
   readonly ring: string;
+  readonly wedge: string;
   readonly home: string;
 }
 
@@ -40,6 +41,7 @@ const light: Palette = {
   robot: '#111318',
   robot_stale: '#8a8d93',
   ring: 'rgba(11, 87, 208, 0.16)',
+  wedge: 'rgba(184, 80, 10, 0.28)',
   home: '#5f3dc4',
 };
 
@@ -61,6 +63,7 @@ const dark: Palette = {
   robot: '#ffffff',
   robot_stale: '#7d838d',
   ring: 'rgba(124, 172, 255, 0.20)',
+  wedge: 'rgba(255, 176, 102, 0.32)',
   home: '#b9a5ff',
 };
 

@@ -1,4 +1,4 @@
-// Draws the robot, the accuracy ring, the driven trail and home.
+// Draws the robot, how sure it is of place and heading, the driven trail and home.
 
 import type { LatLon } from '../model/plan';
 import type { RobotOnMap } from '../model/ports';
@@ -86,15 +86,40 @@ export interface Size {
 export const paint_accuracy = (paint: Paint, robot: RobotOnMap, colors: Palette): void => {
   const { context, resolution } = paint;
   const [x, y] = to_plane(robot.at);
-  const ring_px = ((robot.accuracy_m ?? 0) * units_per_m(robot.at.lat).east) / resolution;
-  if (ring_px <= 4) return;
+  const metre_px = units_per_m(robot.at.lat).east / resolution;
+  const round_m = robot.accuracy_m ?? 0;
+  const { major_m, minor_m, orientation_deg } = robot.ellipse ?? {
+    major_m: round_m,
+    minor_m: round_m,
+    orientation_deg: 0,
+  };
+  if (major_m * metre_px <= 4) return;
   context.beginPath();
-  context.arc(paint.x_px(x), paint.y_px(y), ring_px, 0, 2 * Math.PI);
+  // On the canvas angles go clockwise from the right.
+  const turn = ((orientation_deg - 90) * Math.PI) / 180;
+  const [long_px, wide_px] = [major_m * metre_px, Math.max(1, minor_m * metre_px)];
+  context.ellipse(paint.x_px(x), paint.y_px(y), long_px, wide_px, turn, 0, 2 * Math.PI);
   context.fillStyle = colors.ring;
   context.fill();
   context.strokeStyle = colors.plan;
   context.lineWidth = 1;
   context.stroke();
+};
+
+const WEDGE_PX = 64;
+/** A narrower wedge hides behind the arrow. */
+const WEDGE_FROM_DEG = 3;
+
+/** How far off the heading may be, to both sides of it, two sigma. The origin is the robot. */
+const paint_wedge = (context: CanvasRenderingContext2D, sigma_deg: number, color: string): void => {
+  if (sigma_deg < WEDGE_FROM_DEG) return;
+  const half = (Math.min(2 * sigma_deg, 180) * Math.PI) / 180;
+  context.beginPath();
+  context.moveTo(0, 0);
+  context.arc(0, 0, WEDGE_PX, -Math.PI / 2 - half, -Math.PI / 2 + half);
+  context.closePath();
+  context.fillStyle = color;
+  context.fill();
 };
 
 export const paint_robot = (paint: Paint, robot: RobotOnMap, size: Size, colors: Palette): void => {
@@ -111,6 +136,7 @@ export const paint_robot = (paint: Paint, robot: RobotOnMap, size: Size, colors:
     return;
   }
   context.rotate((robot.heading_deg * Math.PI) / 180);
+  if (!robot.stale) paint_wedge(context, robot.heading_accuracy_deg ?? 0, colors.wedge);
   const [long_px, wide_px] = [size.length_m * metre_px, size.width_m * metre_px];
   if (long_px > ARROW_PX) {
     context.beginPath();

@@ -4,8 +4,9 @@ import type { Answer } from './answer';
 import type { Driver } from './drivers';
 import type { LinkHealth } from './freshness';
 import type { Home, LatLon, Plan, Settings, Item } from './plan';
+import type { ReceiverSky } from './sky';
 import type { Remembered, Tracks } from './tracks';
-import type { Capabilities, Check, Preview, StationEvent, Vehicle } from './vehicle';
+import type { Capabilities, Check, Position, Preview, StationEvent, Vehicle } from './vehicle';
 
 /** One stored revision. */
 export interface Mission {
@@ -77,6 +78,7 @@ export interface VehicleCalls {
   /** The way so far. */
   trail(): Promise<Answer<Remembered>>;
   drivers(): Promise<Answer<Page<Driver>>>;
+  satellites(): Promise<Answer<{ receivers: readonly ReceiverSky[] }>>;
   restart_driver(name: string): Promise<Answer<unknown>>;
   checks(): Promise<Answer<{ ready: boolean; checks: readonly Check[] }>>;
   load(mission_id: string, revision: number): Promise<Answer<unknown>>;
@@ -122,7 +124,10 @@ export interface MapEvents {
 export interface RobotOnMap {
   readonly at: LatLon;
   readonly heading_deg: number | null;
+  /** Of the heading, 1σ; null: not known. */
+  readonly heading_accuracy_deg: number | null;
   readonly accuracy_m: number | null;
+  readonly ellipse: Position['ellipse'];
   readonly stale: boolean;
 }
 export interface MapCalls {

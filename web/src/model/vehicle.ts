@@ -32,6 +32,12 @@ export interface Position extends Measured {
   readonly speed_mps: number | null;
   readonly horizontal_accuracy_m: number | null;
   readonly heading_accuracy_deg: number | null;
+  /** Where it is with one sigma; the orientation is the compass direction of the longer axis. */
+  readonly ellipse: {
+    readonly major_m: number;
+    readonly minor_m: number;
+    readonly orientation_deg: number;
+  } | null;
   readonly source: string | null;
 }
 export interface Gnss extends Measured {
@@ -47,6 +53,18 @@ export interface Battery extends Measured {
   readonly battery_v: number | null;
   readonly charge_pct: number | null;
   readonly fault: boolean | null;
+}
+/** How the robot finds out where it is and which way it faces. */
+export interface Estimator {
+  readonly alignment: 'unknown' | 'aligning' | 'aligned';
+  /** What a driver can do for a better heading. */
+  readonly advice: string | null;
+  readonly gyro_bias_dps: number | null;
+  readonly compass_bias_deg: number | null;
+  readonly odometry_scale: number | null;
+  /** Measurements that were not believed, by kind. */
+  readonly rejected: Readonly<Record<string, number>>;
+  readonly resets: number;
 }
 type Switch = 'up' | 'middle' | 'down' | 'unknown' | null;
 export interface Rc extends Measured {
@@ -91,6 +109,7 @@ export interface Vehicle {
   readonly control: Control;
   readonly speed_reason: string;
   readonly position: Position;
+  readonly estimator: Estimator;
   readonly gnss: Gnss;
   readonly base: Base;
   readonly battery: Battery;
@@ -106,6 +125,11 @@ export interface Check {
   readonly severity: 'info' | 'warning' | 'error';
   readonly detail: string;
 }
+/** What a check is about: "gnss_fix" → "GNSS fix:". */
+export const check_subject = (id: string): string => {
+  const words = id.replaceAll('_', ' ').replace('gnss', 'GNSS').replace('rtk', 'RTK');
+  return `${words.charAt(0).toUpperCase()}${words.slice(1)}:`;
+};
 export interface Capabilities {
   readonly vehicle: string;
   /** Name for people. */

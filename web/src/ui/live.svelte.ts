@@ -47,7 +47,14 @@ export class Live {
   #robot(): RobotOnMap | null {
     const at = robot_place(this.vehicle);
     if (!this.vehicle || !at) return null;
-    const { heading_deg, horizontal_accuracy_m, stale } = this.vehicle.position;
-    return { at, heading_deg, accuracy_m: horizontal_accuracy_m, stale: stale || this.stale };
+    const { position } = this.vehicle;
+    return {
+      at,
+      heading_deg: position.heading_deg,
+      heading_accuracy_deg: position.heading_accuracy_deg,
+      accuracy_m: position.horizontal_accuracy_m,
+      ellipse: position.ellipse,
+      stale: position.stale || this.stale,
+    };
   }
 }

@@ -19,6 +19,7 @@ import { Library } from './library.svelte';
 import { Live } from './live.svelte';
 import { Notices } from './notices.svelte';
 import { Pilot } from './pilot.svelte';
+import { Sky } from './sky.svelte';
 
 /** Between calls for the trail. After failures the wait doubles: a weak link has better things to
  * carry. */
@@ -54,6 +55,7 @@ export class Station {
   readonly library: Library;
   readonly pilot: Pilot;
   readonly drivers: Drivers;
+  readonly sky: Sky;
   readonly map: MapCalls;
   readonly #doors: Doors;
   #route_key = '';
@@ -71,6 +73,7 @@ export class Station {
     this.library = new Library(doors.missions, this.editor, this.notices, this.dialogs);
     this.pilot = new Pilot(doors.vehicle, doors.send_drive, this.live, this.notices, this.dialogs);
     this.drivers = new Drivers(doors.vehicle, this.notices, this.dialogs);
+    this.sky = new Sky(doors.vehicle);
     doors.map.listen(this.#map_events());
     if (this.editor.restore_draft()) this.map.fit(spots(this.editor.plan));
     void this.#fetch_past_events();

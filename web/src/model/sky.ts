@@ -1,0 +1,104 @@
+// The sky as the receivers see it, and how sure the robot is of where it is.
+
+import { count, metres, number_text } from './format';
+import type { Estimator, Position } from './vehicle';
+
+export interface Satellite {
+  readonly system: string;
+  /** Within its system. */
+  readonly number: number;
+  readonly elevation_deg: number | null;
+  readonly azimuth_deg: number | null;
+  /** Null: in view, but not tracked. */
+  readonly cn0_dbhz: number | null;
+  readonly used: boolean | null;
+}
+export interface ReceiverSky {
+  readonly driver: string;
+  readonly age_s: number | null;
+  readonly stale: boolean;
+  readonly satellites: readonly Satellite[];
+}
+
+const LETTERS: Readonly<Record<string, string>> = {
+  gps: 'G',
+  glonass: 'R',
+  galileo: 'E',
+  beidou: 'C',
+  qzss: 'J',
+  sbas: 'S',
+  navic: 'I',
+};
+
+/** As in RINEX: "G07", "E11". */
+export const satellite_name = ({ system, number }: Satellite): string =>
+  `${LETTERS[system] ?? '?'}${String(number).padStart(2, '0')}`;
+
+/** Good enough for RTK from 40 dB-Hz on; below 30 hardly of use. */
+export const signal_tone = (cn0_dbhz: number | null): 'good' | 'warn' | 'bad' | 'none' => {
+  if (cn0_dbhz === null) return 'none';
+  if (cn0_dbhz >= 40) return 'good';
+  return cn0_dbhz >= 30 ? 'warn' : 'bad';
+};
+
+export interface SkySpot {
+  readonly satellite: Satellite;
+  /** Right and down from the zenith, where 1 is the horizon. */
+  readonly x: number;
+  readonly y: number;
+}
+
+/** Where each one stands in a plot with north up. Those of unknown place are left out. */
+export const sky_spots = (satellites: readonly Satellite[]): readonly SkySpot[] =>
+  satellites.flatMap((satellite) => {
+    const { elevation_deg, azimuth_deg } = satellite;
+    if (elevation_deg === null || azimuth_deg === null || elevation_deg < 0) return [];
+    const out = 1 - Math.min(elevation_deg, 90) / 90;
+    const turn = (azimuth_deg * Math.PI) / 180;
+    return [{ satellite, x: out * Math.sin(turn), y: -out * Math.cos(turn) }];
+  });
+
+/** Used ones first, then by the strength of the signal. */
+export const by_signal = (satellites: readonly Satellite[]): readonly Satellite[] =>
+  [...satellites].sort(
+    (a, b) =>
+      Number(b.used ?? false) - Number(a.used ?? false) || (b.cn0_dbhz ?? -1) - (a.cn0_dbhz ?? -1),
+  );
+
+export const sky_summary = (satellites: readonly Satellite[]): string => {
+  const tracked = satellites.filter(({ cn0_dbhz }) => cn0_dbhz !== null);
+  const used = satellites.filter((each) => each.used === true);
+  if (satellites.length === 0) return 'No satellite in view';
+  return `${used.length} used, ${tracked.length} heard, ${satellites.length} in view`;
+};
+
+/** What the robot knows of its place and heading, as pairs of name and value. */
+export const position_lines = (
+  position: Position,
+  estimator: Estimator | undefined,
+): readonly (readonly [string, string])[] => {
+  const { ellipse } = position;
+  const out: [string, string][] = [
+    [
+      'Position, 1σ',
+      ellipse
+        ? `${metres(ellipse.major_m)} along ${Math.round(ellipse.orientation_deg)}°, ` +
+          `${metres(ellipse.minor_m)} across`
+        : metres(position.horizontal_accuracy_m),
+    ],
+    ['Heading, 1σ', number_text(position.heading_accuracy_deg, 1, '°')],
+    ['From', position.source ?? '—'],
+  ];
+  if (!estimator) return out;
+  out.push(['Compass is off by', number_text(estimator.compass_bias_deg, 1, '°')]);
+  if (estimator.gyro_bias_dps !== null) {
+    out.push(['Gyro is off by', number_text(estimator.gyro_bias_dps, 3, '°/s')]);
+  }
+  out.push(['Odometry, true over told', number_text(estimator.odometry_scale, 3)]);
+  const refused = Object.entries(estimator.rejected)
+    .filter(([, times]) => times > 0)
+    .map(([what, times]) => `${what} ${times}`);
+  out.push(['Refused', refused.length === 0 ? 'nothing' : refused.join(', ')]);
+  out.push(['Set anew', count(estimator.resets, 'time')]);
+  return out;
+};
