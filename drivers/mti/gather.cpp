@@ -1,6 +1,7 @@
 // MTData2 packets to one sample, and how each packet is accounted for.
 
 #include <cmath>
+#include <limits>
 
 #include "base/angle.hpp"
 #include "mti/interpreter.hpp"
@@ -9,6 +10,31 @@ namespace roverd::mti {
 namespace {
 
 constexpr double kUnitLengthError = 0.01;
+/// Beyond these a number is none that such a unit measures.
+constexpr double kMostRate_radps = 100.0;
+constexpr double kMostAccel_mps2 = 1000.0;
+constexpr double kMostField = 100.0;
+constexpr double kMostVelocity_mps = 1000.0;
+constexpr double kMostHeight_m = 100'000.0;
+
+double most_of(Kind kind) noexcept {
+  switch (kind) {
+    case Kind::RateOfTurn:
+      return kMostRate_radps;
+    case Kind::Acceleration:
+      return kMostAccel_mps2;
+    case Kind::MagneticField:
+      return kMostField;
+    case Kind::Velocity:
+      return kMostVelocity_mps;
+    case Kind::AltitudeEllipsoid:
+      return kMostHeight_m;
+    case Kind::Euler:
+      return 360.0;
+    default:
+      return std::numeric_limits<double>::infinity();
+  }
+}
 
 Vec3 three(const Numbers& n) noexcept {
   return {n[0], n[1], n[2]};
@@ -62,6 +88,10 @@ void Interpreter::gather_numbers(Sample& s, const Packet& packet, const Numbers&
                       packet.kind() == Kind::Velocity;
   if (framed && axes == Axes::Unknown) {
     return ears_.refused(words(name_of(packet.kind())) + ": unknown coordinate system", 1);
+  }
+  for (std::size_t i = 0; i < n.size; ++i) {
+    if (std::abs(n[i]) <= most_of(packet.kind())) continue;
+    return ears_.refused(words(name_of(packet.kind())) + ": impossible", 1);
   }
   switch (packet.kind()) {
     case Kind::RateOfTurn:

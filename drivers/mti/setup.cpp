@@ -121,9 +121,9 @@ void Setup::on_answer(const Message& message) {
   const std::string what = steps_[at_].what;
   std::string outcome;
   if (what == "device" && (p.size() == 4 || p.size() == 8)) {
-    const Bytes low = p.last(4);
-    facts_[what] =
-        hex(static_cast<std::uint32_t>(low[0]) << 24U | low[1] << 16U | low[2] << 8U | low[3], 8);
+    std::uint32_t id = 0;
+    for (const std::uint8_t b : p.last(4)) id = id << 8U | b;
+    facts_[what] = hex(id, 8);
   } else if (what == "product") {
     facts_[what] = text_of(p);
   } else if (what == "firmware" && p.size() >= 3) {

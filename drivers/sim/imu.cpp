@@ -131,8 +131,8 @@ Imu::Packets Imu::step(const Params& p, const Faults& faults, const BodyState& n
     // The streams advance at every sample, told or not: a fault does not shift what comes after.
     const Measured m = measure(p, faults, now, last_ ? base::seconds(now.time - last_->time) : 0.0);
     last_ = now;
-    ++samples_;
     if (measuring_) {
+      ++samples_;
       pending_.push_back(
           {now.time + base::from_seconds(p.imu.latency_s), data(m, faults, now.time - *began_)});
     }
