@@ -59,8 +59,11 @@ struct Epoch {
   std::optional<double> heading_deg;
 };
 
-/// Text of one epoch: GGA RMC VTG GST, and HDT where there is a heading.
+/// Text of one epoch: GGA RMC VTG GST, HDT where there is a heading, and the sky once a second.
 std::string sentences(const Epoch& epoch);
+
+/// GSA and GSV of four systems: as many used as the epoch has satellites.
+std::string sky_sentences(const Epoch& epoch);
 
 class Receiver {
  public:
