@@ -118,6 +118,19 @@ struct UbxFields {
     out["relPosHeadingValid"] = m.heading_valid();
     out["relPosNormalized"] = m.normalised();
   }
+  void operator()(const ubx::NavSat& m) const {
+    out["iTOW"] = m.itow_ms;
+    out["svs"] = Json::array();
+    for (const auto& s : m.all) {
+      out["svs"].push_back({{"gnssId", s.gnss_id},
+                            {"svId", s.number},
+                            {"cno", s.cn0_dbhz},
+                            {"elev", s.elevation_deg},
+                            {"azim", s.azimuth_deg},
+                            {"qualityInd", s.quality()},
+                            {"svUsed", s.used()}});
+    }
+  }
   void operator()(const ubx::MonVer& m) const {
     out["swVersion"] = m.software;
     out["hwVersion"] = m.hardware;

@@ -60,6 +60,7 @@ Driver::Driver(std::string name, const Params& params, MakeLink make_link,
       blend_([this](const base::Measurement& m) { on_measurement_(m); }),
       epochs_(epoch_options(params), [this](const base::Measurement& m) { blend_.nmea(m); }),
       ubx_epochs_(ubx_epoch_options(params), [this](const base::Measurement& m) { blend_.ubx(m); }),
+      sky_(name_, [this](const base::Measurement& m) { on_measurement_(m); }),
       setup_(setup_options(params)) {
   if (const auto valid = validate(params); !valid)
     throw std::invalid_argument(valid.error().detail);
@@ -104,6 +105,7 @@ void Driver::fail(const std::string& reason, Time now) {
 void Driver::forget_epochs() {
   epochs_.reset();
   ubx_epochs_.reset();
+  sky_.reset();
   blend_.reset();
 }
 
@@ -115,6 +117,7 @@ void Driver::tick(Time now) {
     after_bytes(before, now);
     epochs_.tick(now);
     ubx_epochs_.tick(now);
+    sky_.tick(now);
     check_silence(now);
     retune(now);
     talk(now);
@@ -171,8 +174,9 @@ void Driver::on_bytes(Bytes bytes, Time stamp) {
 }
 
 void Driver::take(const Sentence& sentence, Time stamp) {
-  if (!clock_.add(sentence, stamp)) return epochs_.add(sentence, stamp);
-  clock_stands(stamp);
+  if (clock_.add(sentence, stamp)) return clock_stands(stamp);
+  sky_.add(sentence, stamp);
+  epochs_.add(sentence, stamp);
 }
 
 void Driver::take(const ubx::Message& message, Time stamp) {
@@ -180,8 +184,9 @@ void Driver::take(const ubx::Message& message, Time stamp) {
   const auto* pvt = std::get_if<ubx::NavPvt>(&message);
   std::optional<double> time_s;
   if (pvt != nullptr && pvt->usable()) time_s = pvt->itow_ms / 1e3;
-  if (!ubx_clock_.add(time_s, stamp)) return ubx_epochs_.add(message, stamp);
-  clock_stands(stamp);
+  if (ubx_clock_.add(time_s, stamp)) return clock_stands(stamp);
+  if (const auto* sats = std::get_if<ubx::NavSat>(&message)) return sky_.add(*sats, stamp);
+  ubx_epochs_.add(message, stamp);
 }
 
 void Driver::clock_stands(Time stamp) {

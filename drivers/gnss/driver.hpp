@@ -13,9 +13,9 @@
 // (ClockWatch): nothing it says then is used. A link that can try other baud rates does so.
 //
 // Measurements: GnssFix, GnssVelocity, Heading (gnss/epoch.hpp, gnss/ubx_epoch.hpp and
-// gnss/blend.hpp say how), DriverStatus on change and twice a second; received counts decoded
-// sentences, refused the damaged ones and those of a standing clock; its DriverDetail has the
-// counts by cause, and who the receiver is.
+// gnss/blend.hpp say how), SatellitesInView (gnss/sky.hpp), DriverStatus on change and twice a
+// second; received counts decoded sentences, refused the damaged ones and those of a standing
+// clock; its DriverDetail has the counts by cause, and who the receiver is.
 //
 // It writes nothing to the receiver but corrections and what gnss/ubx_setup.hpp says.
 //
@@ -36,6 +36,7 @@
 #include "gnss/decoder.hpp"
 #include "gnss/epoch.hpp"
 #include "gnss/params.hpp"
+#include "gnss/sky.hpp"
 #include "gnss/ubx_epoch.hpp"
 #include "gnss/ubx_setup.hpp"
 #include "link/lifecycle.hpp"
@@ -99,6 +100,7 @@ class Driver {
   Blend blend_;
   EpochAssembler epochs_;
   UbxEpochs ubx_epochs_;
+  Sky sky_;
   UbxSetup setup_;
   ClockWatch clock_;
   ClockWatch ubx_clock_;

@@ -158,6 +158,31 @@ std::string encode(const Vtg& s) {
   return body.line();
 }
 
+std::string encode(const Gsa& s) {
+  Body body(s.talker, "GSA");
+  body.letter(s.automatic ? 'A' : 'M').integer(s.fix);
+  for (std::size_t i = 0; i < s.ids.size(); ++i) {
+    body.integer(i < s.used ? std::optional<int>(s.ids[i]) : std::nullopt, 2);
+  }
+  body.number(s.pdop, 2).number(s.hdop, 2).number(s.vdop, 2);
+  if (s.system) body.integer(s.system);
+  return body.line();
+}
+
+std::string encode(const Gsv& s) {
+  Body body(s.talker, "GSV");
+  body.integer(s.total).integer(s.index).integer(s.in_view, 2);
+  for (std::size_t i = 0; i < s.used; ++i) {
+    const Satellite& sat = s.sats[i];
+    body.integer(sat.id, 2)
+        .integer(sat.elevation_deg, 2)
+        .integer(sat.azimuth_deg, 3)
+        .integer(sat.cn0_dbhz, 2);
+  }
+  if (s.signal) body.integer(s.signal);
+  return body.line();
+}
+
 std::string encode(const Gst& s) {
   return Body(s.talker, "GST")
       .time(s.time_s)

@@ -18,6 +18,8 @@ std::string encode(const Gga& s, int decimals = 7);
 std::string encode(const Rmc& s, int decimals = 7);
 /// New form, knots and km/h; an empty speed_kmh is computed from speed_kn.
 std::string encode(const Vtg& s);
+std::string encode(const Gsa& s);
+std::string encode(const Gsv& s);
 std::string encode(const Gst& s);
 std::string encode(const Hdt& s);
 std::string encode(const Ths& s);

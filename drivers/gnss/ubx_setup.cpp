@@ -1,5 +1,6 @@
 #include "gnss/ubx_setup.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace roverd::gnss {
@@ -9,6 +10,7 @@ using Items = std::vector<ubx::ValSet::Item>;
 
 // Output keys of a message follow the ports: UART1, UART2, USB.
 constexpr std::uint32_t kOutPvt = 0x20910007;
+constexpr std::uint32_t kOutSatellites = 0x20910016;
 constexpr std::uint32_t kOutPrecise = 0x20910034;
 constexpr std::uint32_t kOutCov = 0x20910084;
 constexpr std::uint32_t kOutRelative = 0x2091008E;
@@ -51,6 +53,9 @@ UbxSetup::UbxSetup(const UbxSetupOptions& options) : options_(options) {
   request("precise position", {{kOutPrecise + port, 1}});
   request("covariance", {{kOutCov + port, 1}});
   request("heading", {{kOutRelative + port, 1}});
+  // Once a second is enough for a picture of the sky.
+  const auto epochs = static_cast<std::uint64_t>(std::lround(std::max(1.0, options.rate_hz)));
+  request("satellites", {{kOutSatellites + port, epochs}});
   request("corrections", {{rtcm3_in(options.port), 1}});
   request("model", {{kModel, kAutomotive}});
 }

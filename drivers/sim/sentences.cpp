@@ -113,6 +113,9 @@ std::string sentences(const Epoch& epoch) {
     hdt.heading_deg = angle_as_printed(*epoch.heading_deg);
     text += gnss::encode(hdt);
   }
+  if (epoch.utc == std::chrono::floor<std::chrono::seconds>(epoch.utc)) {
+    text += sky_sentences(epoch);
+  }
   return text;
 }
 

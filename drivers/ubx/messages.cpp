@@ -118,6 +118,21 @@ Decoded nav_hpposllh(Bytes p) {
   return on_earth ? Decoded{Verdict::Decoded, m} : Decoded{Verdict::BadValue, {}};
 }
 
+Decoded nav_sat(Bytes p) {
+  constexpr std::size_t kHead = 8;
+  constexpr std::size_t kOne = 12;
+  if (p.size() < kHead) return too_short();
+  if (p[4] != 1) return {Verdict::WrongVersion, {}};
+  const std::size_t count = p[5];
+  if (p.size() < kHead + kOne * count) return too_short();
+  NavSat m{u4(p, 0), {}};
+  m.all.reserve(count);
+  for (std::size_t at = kHead; m.all.size() < count; at += kOne) {
+    m.all.push_back({p[at], p[at + 1], p[at + 2], i1(p, at + 3), i2(p, at + 4), u4(p, at + 8)});
+  }
+  return {Verdict::Decoded, std::move(m)};
+}
+
 std::optional<Covariance> covariance(Bytes p, std::size_t at) {
   Covariance c{};
   for (std::size_t i = 0; i < c.size(); ++i) c[i] = r4(p, at + 4 * i);
@@ -215,7 +230,7 @@ constexpr std::array kNames{
     Name{{0x01, 0x12}, "NAV-VELNED"},    Name{{0x01, 0x13}, "NAV-HPPOSECEF"},
     Name{{0x01, 0x20}, "NAV-TIMEGPS"},   Name{{0x01, 0x21}, "NAV-TIMEUTC"},
     Name{{0x01, 0x22}, "NAV-CLOCK"},     Name{{0x01, 0x26}, "NAV-TIMELS"},
-    Name{{0x01, 0x35}, "NAV-SAT"},       Name{{0x01, 0x43}, "NAV-SIG"},
+    Name{key::kNavSat, "NAV-SAT"},       Name{{0x01, 0x43}, "NAV-SIG"},
     Name{{0x01, 0x61}, "NAV-EOE"},       Name{{0x02, 0x13}, "RXM-SFRBX"},
     Name{{0x02, 0x15}, "RXM-RAWX"},      Name{{0x02, 0x32}, "RXM-RTCM"},
     Name{{0x06, 0x00}, "CFG-PRT"},       Name{{0x06, 0x01}, "CFG-MSG"},
@@ -284,6 +299,7 @@ Decoded decode(const Frame& frame) {
   if (frame.key == key::kNavPvt) return nav_pvt(p);
   if (frame.key == key::kNavHpPosLlh) return nav_hpposllh(p);
   if (frame.key == key::kNavCov) return nav_cov(p);
+  if (frame.key == key::kNavSat) return nav_sat(p);
   if (frame.key == key::kNavRelPosNed) return nav_relposned(p);
   if (frame.key == key::kAckAck || frame.key == key::kAckNak) {
     return ack(p, frame.key == key::kAckAck);

@@ -3,7 +3,7 @@
 // compass degrees (clockwise from true north), velocities north, east, down. What a receiver marks
 // as not valid is empty; a field without a mark is as sent, so look at `usable()` first.
 //
-//   NAV-PVT 01 07   NAV-HPPOSLLH 01 14   NAV-COV 01 36   NAV-RELPOSNED 01 3C
+//   NAV-PVT 01 07   NAV-HPPOSLLH 01 14   NAV-SAT 01 35   NAV-COV 01 36   NAV-RELPOSNED 01 3C
 //   MON-VER 0A 04   ACK-NAK 05 00        ACK-ACK 05 01   CFG-VALSET 06 8A (to the receiver)
 //
 // Pure. Any payload may come in.
@@ -24,6 +24,7 @@ namespace roverd::ubx {
 namespace key {
 inline constexpr Key kNavPvt{0x01, 0x07};
 inline constexpr Key kNavHpPosLlh{0x01, 0x14};
+inline constexpr Key kNavSat{0x01, 0x35};
 inline constexpr Key kNavCov{0x01, 0x36};
 inline constexpr Key kNavRelPosNed{0x01, 0x3C};
 inline constexpr Key kAckNak{0x05, 0x00};
@@ -130,6 +131,22 @@ struct NavRelPosNed {
   bool heading_usable(double baseline_m, double tolerance_m) const noexcept;
 };
 
+/// Every satellite that the receiver knows of.
+struct NavSat {
+  struct One {
+    int gnss_id = 0;  ///< 0 GPS, 1 SBAS, 2 Galileo, 3 BeiDou, 5 QZSS, 6 GLONASS, 7 NavIC
+    int number = 0;
+    int cn0_dbhz = 0;       ///< 0: not tracked
+    int elevation_deg = 0;  ///< beyond ±90: not known
+    int azimuth_deg = 0;
+    std::uint32_t flags = 0;
+    int quality() const noexcept { return static_cast<int>(flags & 7U); }
+    bool used() const noexcept { return (flags >> 3U & 1U) != 0; }
+  };
+  std::uint32_t itow_ms = 0;
+  std::vector<One> all;
+};
+
 struct MonVer {
   std::string software;
   std::string hardware;
@@ -160,8 +177,8 @@ struct Poll {
   Key of;
 };
 
-using Message = std::variant<std::monostate, NavPvt, NavHpPosLlh, NavCov, NavRelPosNed, MonVer, Ack,
-                             ValSet, Poll>;
+using Message = std::variant<std::monostate, NavPvt, NavHpPosLlh, NavCov, NavRelPosNed, NavSat,
+                             MonVer, Ack, ValSet, Poll>;
 
 /// NotOurs: intact, but of a class and id that has no struct here.
 enum class Verdict { Decoded, NotOurs, TooShort, WrongVersion, BadValue };

@@ -159,6 +159,12 @@ void add_vehicle_routes(const ContextPtr& c) {
                      call->respond(json_response(http::status::ok, whole_state(c)(*s)));
                    }
                  }});
+  c->router.add({get, "/gnss/satellites", {200, 503}, [c](const CallPtr& call) {
+                   if (const auto s = c->snapshot_or_refuse(call)) {
+                     call->respond(
+                         json_response(http::status::ok, satellites_json(*s, base::steady_now())));
+                   }
+                 }});
   c->router.add({get, "/vehicle/checks", {200, 503}, [c](const CallPtr& call) {
                    if (const auto s = c->snapshot_or_refuse(call)) {
                      call->respond(json_response(http::status::ok, checks_json(*s)));

@@ -52,6 +52,8 @@ struct Profile {
 Json vehicle_json(const base::Snapshot& snapshot, const std::string& name, base::Time now);
 /// @param snapshot the last one that the trail has taken
 Json trail_json(const Trail& trail, const base::Snapshot& snapshot);
+/// Every receiver's satellites, newest word of each.
+Json satellites_json(const base::Snapshot& snapshot, base::Time now);
 Json checks_json(const base::Snapshot& snapshot);
 Json execution_json(const base::MissionProgress& progress);
 Json preview_json(const robot::Preview& preview, base::ExecutionState state);

@@ -60,6 +60,8 @@ class House {
   /// What went to the base last.
   base::DriveCommand sent();
   std::shared_ptr<const base::Snapshot> snapshot() { return robot_.snapshot(); }
+  /// A device says something more.
+  void hear(base::Measurement m) { robot_.measurements().put(std::move(m)); }
 
  private:
   void play();

@@ -25,6 +25,31 @@ TEST_F(VehicleApi, TheStateIsWholeAndJudgedByTheDocument) {
   until([this] { return !call("GET", "/drivers").body["items"].empty(); }, "a driver is listed");
 }
 
+TEST_F(VehicleApi, TheSkyIsToldReceiverByReceiver) {
+  // Given no receiver that tells of satellites,
+  EXPECT_EQ(call("GET", "/gnss/satellites").body["receivers"], Json::array());
+  // when one does,
+  auto all = std::make_shared<std::vector<base::Satellite>>();
+  all->push_back({"galileo", 11, 50.0, 200.0, 41.0, true});
+  all->push_back({"glonass", 3, {}, {}, {}, {}});
+  house.hear(base::SatellitesInView{base::steady_now(), "gnss", all});
+  until([this] { return !call("GET", "/gnss/satellites").body["receivers"].empty(); }, "a sky");
+  // then it is listed; what is not known is null.
+  const auto reply = call("GET", "/gnss/satellites");
+  EXPECT_EQ(reply.status, 200u);
+  const Json& sky = reply.body["receivers"][0];
+  EXPECT_EQ(sky["driver"], "gnss");
+  EXPECT_EQ(sky["stale"], false);
+  EXPECT_EQ(sky["satellites"][0], (Json{{"system", "galileo"},
+                                        {"number", 11},
+                                        {"elevation_deg", 50.0},
+                                        {"azimuth_deg", 200.0},
+                                        {"cn0_dbhz", 41.0},
+                                        {"used", true}}));
+  EXPECT_EQ(sky["satellites"][1]["elevation_deg"], nullptr);
+  EXPECT_EQ(sky["satellites"][1]["used"], nullptr);
+}
+
 TEST_F(VehicleApi, TheWaySoFarIsKeptInPiecesForWhoComesLate) {
   until_ready();
   const auto here = call("GET", "/vehicle/trail");

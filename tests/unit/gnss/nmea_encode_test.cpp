@@ -118,5 +118,30 @@ TEST(NmeaEncode, TheTimeIsRoundedWithinItsDay) {
   EXPECT_EQ(back<Gst>(encode(s)).time_s, std::nullopt);
 }
 
+TEST(NmeaEncode, SatellitesComeBackAsTheyWere) {
+  Gsa gsa;
+  gsa.automatic = true;
+  gsa.fix = 3;
+  gsa.ids = {5, 12};
+  gsa.used = 2;
+  gsa.pdop = 1.2;
+  gsa.system = 3;
+  const std::string gsa_line = encode(gsa);
+  const Parsed a = parse_line(std::string_view(gsa_line).substr(0, gsa_line.size() - 2));
+  ASSERT_EQ(a.kind, Kind::Used) << gsa_line;
+  EXPECT_EQ(std::get<Gsa>(a.sentence).ids[1], 12);
+  EXPECT_EQ(std::get<Gsa>(a.sentence).used, 2u);
+  EXPECT_EQ(std::get<Gsa>(a.sentence).system, 3);
+  Gsv gsv;
+  gsv.in_view = 1;
+  gsv.signal = 7;
+  gsv.sats[gsv.used++] = {5, 45, 123, std::nullopt};
+  const std::string gsv_line = encode(gsv);
+  const Parsed b = parse_line(std::string_view(gsv_line).substr(0, gsv_line.size() - 2));
+  ASSERT_EQ(b.kind, Kind::Used) << gsv_line;
+  EXPECT_EQ(std::get<Gsv>(b.sentence).sats[0], gsv.sats[0]);
+  EXPECT_EQ(std::get<Gsv>(b.sentence).signal, 7);
+}
+
 }  // namespace
 }  // namespace roverd::gnss

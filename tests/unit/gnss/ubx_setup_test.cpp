@@ -58,7 +58,7 @@ TEST_F(UbxSetupTest, IsConfiguredRequestByRequest) {
   answer(ubx::kAckAck);
   EXPECT_EQ(request_in(due()).items, (std::vector<ubx::ValSet::Item>{{0x20910034, 1}}));
   EXPECT_EQ(fact("configuration"), "asking for precise position");
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 5; ++i) {
     answer(ubx::kAckAck);
     due();
   }
@@ -79,6 +79,8 @@ TEST_F(UbxSetupTest, WhatItRefusesOrDoesNotAnswerIsNamedAndTheRestGoesOn) {
   answer(ubx::kAckAck);  // covariance
   due();
   answer(ubx::kAckNak);  // heading
+  due();
+  answer(ubx::kAckAck);  // satellites
   const auto corrections = due();
   EXPECT_EQ(request_in(corrections).items, (std::vector<ubx::ValSet::Item>{{0x10770004, 1}}));
   for (int i = 0; i < 2; ++i) {

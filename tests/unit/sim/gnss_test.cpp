@@ -243,5 +243,28 @@ TEST(Gnss, TheCompassCanBeSwitchedOffAndTurned) {
   EXPECT_LE(plant.lines("HDT").size(), 1u);  // the one already on its way
 }
 
+TEST(SimGnss, TheSkyIsToldOnceASecondWithAsManyUsedAsTheFixSays) {
+  Plant plant;
+  plant.wait(3100ms);
+  EXPECT_EQ(plant.lines("GSA").size() / 4, plant.lines("GGA").size() / 5);
+  const std::size_t sweeps = plant.lines("GSA").size() / 4;
+  EXPECT_NEAR(static_cast<double>(sweeps), 3.0, 1.0);
+  std::size_t used = 0;
+  const auto gsa = plant.lines("GSA");
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto fields = split(gsa[i]);
+    for (std::size_t k = 3; k < 15; ++k) used += fields.at(k).empty() ? 0u : 1u;
+  }
+  EXPECT_EQ(used, std::stoul(split(plant.lines("GGA").front()).at(7)));
+  EXPECT_GE(plant.lines("GSV").size(), 8u * sweeps);
+  // Without a fix nothing is used, and nothing is tracked.
+  set_fault(plant, [](Faults& f) { f.gnss_outage = true; });
+  plant.wait(500ms);
+  plant.forget();
+  plant.wait(1100ms);
+  EXPECT_EQ(split(plant.lines("GSA").front()).at(3), "");
+  EXPECT_EQ(split(plant.lines("GSV").front()).at(7), "");
+}
+
 }  // namespace
 }  // namespace roverd::sim

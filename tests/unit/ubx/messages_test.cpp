@@ -2,6 +2,9 @@
 
 #include "ubx/messages.hpp"
 
+#include <algorithm>
+#include <array>
+
 #include <gtest/gtest.h>
 
 #include "frames.hpp"
@@ -156,8 +159,8 @@ TEST(UbxMessages, SettingsAreWrittenAsTheSheetSays) {
 }
 
 TEST(UbxMessages, OthersAreNamedAtLeast) {
-  EXPECT_EQ(decode({{0x01, 0x35}, {}}).verdict, Verdict::NotOurs);
-  EXPECT_EQ(name_of({0x01, 0x35}), "NAV-SAT");
+  EXPECT_EQ(decode({{0x01, 0x43}, {}}).verdict, Verdict::NotOurs);
+  EXPECT_EQ(name_of({0x01, 0x43}), "NAV-SIG");
   EXPECT_EQ(name_of({0x7F, 0x7F}), "");
 }
 
@@ -168,6 +171,28 @@ TEST(UbxMessages, EveryShorterPayloadIsRefusedOrHarmless) {
     const Frame f = opened(frame);
     for (std::size_t n = 0; n < f.payload.size(); ++n) decode({f.key, f.payload.first(n)});
   }
+}
+
+TEST(UbxMessages, SatellitesAreReadWholeOrNotAtAll) {
+  std::vector<std::uint8_t> payload(8 + 2 * 12, 0);
+  payload[4] = 1;
+  payload[5] = 2;
+  const std::array<std::uint8_t, 12> galileo{2, 11, 41, 50, 0xC8, 0, 0, 0, 0x0F, 0, 0, 0};
+  const std::array<std::uint8_t, 12> glonass{6, 255, 0, 0xA5, 0, 0, 0, 0, 1, 0, 0, 0};
+  std::copy(galileo.begin(), galileo.end(), payload.begin() + 8);
+  std::copy(glonass.begin(), glonass.end(), payload.begin() + 20);
+  const Decoded whole = decode({key::kNavSat, payload});
+  ASSERT_EQ(whole.verdict, Verdict::Decoded);
+  const auto& all = std::get<NavSat>(whole.message).all;
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0].azimuth_deg, 200);
+  EXPECT_TRUE(all[0].used());
+  EXPECT_EQ(all[0].quality(), 7);
+  EXPECT_EQ(all[1].elevation_deg, -91);
+  payload.pop_back();
+  EXPECT_EQ(decode({key::kNavSat, payload}).verdict, Verdict::TooShort);
+  payload[4] = 2;
+  EXPECT_EQ(decode({key::kNavSat, payload}).verdict, Verdict::WrongVersion);
 }
 
 }  // namespace
