@@ -18,6 +18,7 @@
 #include "gnss/driver.hpp"
 #include "link/address.hpp"
 #include "link/record.hpp"
+#include "mti/driver.hpp"
 #include "ntrip/driver.hpp"
 #include "ratio/driver.hpp"
 #include "replays.hpp"
@@ -247,6 +248,9 @@ class Planner {
     Params params = said.params;
     // A hole in a recording is no reason to open it again: it would begin anew.
     if (replaying) params.silent_reopen_s = 0.0;
+    if constexpr (std::is_same_v<Driver, mti::Driver>) {
+      if (replaying) params.configure = false;  // a recording does not answer
+    }
     if (auto good = validate(params); !good) {
       const auto& fields = good.error().fields;
       const std::string key = "drivers." + name + (fields.empty() ? "" : "." + fields[0].pointer);
@@ -330,6 +334,7 @@ Result<std::vector<DevicePlan>> plan_devices(const Settings& s, const Options& o
   if (done) done = planner.add<ByteStream, twist::Driver>("twist", s.twist);
   if (done) done = planner.add<ByteStream, bumper::Driver>("bumper", s.bumper);
   if (done) done = planner.add<ByteStream, gnss::Driver>("gnss", s.gnss);
+  if (done) done = planner.add<ByteStream, mti::Driver>("mti", s.mti);
   if (done) done = planner.add_ntrip(s.ntrip);
   if (!done) return tl::unexpected(done.error());
   return planner.take();

@@ -13,6 +13,7 @@
 #include "bumper/params.hpp"
 #include "bunker/driver.hpp"
 #include "gnss/driver.hpp"
+#include "mti/params.hpp"
 #include "ntrip/params.hpp"
 #include "ratio/params.hpp"
 #include "robot/config.hpp"
@@ -111,6 +112,7 @@ struct Settings {
   Wired<twist::Params> twist;
   Wired<bumper::Params> bumper;
   Wired<gnss::Params> gnss;
+  Wired<mti::Params> mti;
   Wired<ntrip::Params> ntrip;
   robot::Config robot;
   std::map<std::string, std::filesystem::path> tiles;  ///< set name → MBTiles file
@@ -129,6 +131,7 @@ void drivers(V&& v, Settings& s) {
   v("twist", s.twist);
   v("bumper", s.bumper);
   v("gnss", s.gnss);
+  v("mti", s.mti);
   v("ntrip", s.ntrip);
 }
 

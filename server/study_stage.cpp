@@ -6,6 +6,7 @@
 #include "ackermann/driver.hpp"
 #include "bumper/driver.hpp"
 #include "bunker/driver.hpp"
+#include "mti/driver.hpp"
 #include "ratio/driver.hpp"
 #include "twist/driver.hpp"
 
@@ -28,19 +29,14 @@ Stage::Stage(const Settings& settings, const sim::Params& plant, std::uint64_t s
       can_(link::memory_frame_pair()),
       drive_(link::memory_byte_pair()),
       bumper_(link::memory_byte_pair()),
-      gnss_bytes_(link::memory_byte_pair()) {
+      gnss_bytes_(link::memory_byte_pair()),
+      imu_bytes_(link::memory_byte_pair()) {
   if (auto* bunker = dynamic_cast<sim::Bunker*>(plant_.get())) {
     wire_bunker(settings, *bunker);
   } else {
     wire_cart(settings, static_cast<sim::Cart&>(*plant_));
   }
-  gnss_bytes_.b->set_immediate([this] { return at_; });
-  (void)gnss_bytes_.b->open();
-  plant_->on_gnss = [this](base::Bytes b, base::Time t) {
-    at_ = t;
-    gnss_bytes_.b->write(b);
-  };
-  add<gnss::Driver>("gnss", settings.gnss, gnss_bytes_);
+  wire_sensors(settings);
 }
 
 void Stage::join(link::MemoryBytePair& pair) {
@@ -61,6 +57,22 @@ void Stage::add(const std::string& name, const Wired& wired, link::MemoryBytePai
   if constexpr (requires(base::DriveCommand c, base::Time t) { driver->send(c, t); }) {
     robot_.send = [driver](const base::DriveCommand& c, base::Time t) { driver->send(c, t); };
   }
+}
+
+void Stage::wire_sensors(const Settings& s) {
+  join(gnss_bytes_);
+  join(imu_bytes_);
+  plant_->on_gnss = [this](base::Bytes b, base::Time t) {
+    at_ = t;
+    gnss_bytes_.b->write(b);
+  };
+  plant_->on_imu = [this](base::Bytes b, base::Time t) {
+    at_ = t;
+    imu_bytes_.b->write(b);
+  };
+  imu_bytes_.b->on_bytes = [this](base::Bytes b, base::Time) { plant_->receive_imu(b); };
+  add<gnss::Driver>("gnss", s.gnss, gnss_bytes_);
+  add<mti::Driver>("mti", s.mti, imu_bytes_);
 }
 
 void Stage::wire_bunker(const Settings& s, sim::Bunker& plant) {

@@ -36,6 +36,7 @@ class Stage {
   double tick_us() const noexcept { return tick_us_; }
 
  private:
+  void wire_sensors(const Settings& s);
   void wire_bunker(const Settings& s, sim::Bunker& plant);
   void wire_cart(const Settings& s, sim::Cart& plant);
   template <class Driver, class Wired>
@@ -52,6 +53,7 @@ class Stage {
   link::MemoryBytePair drive_;
   link::MemoryBytePair bumper_;
   link::MemoryBytePair gnss_bytes_;
+  link::MemoryBytePair imu_bytes_;
   std::vector<std::function<void(base::Time)>> ticks_;
   std::vector<robot::PendingReply> replies_;
   std::vector<base::Event> events_;

@@ -104,6 +104,9 @@ class BytePort {
     return result;
   }
 
+  /// ByteLink::retune of an open link.
+  bool retune() { return open_ && link_->retune(); }
+
   void received(Time stamp) {
     ++received_;
     last_received_ = stamp;
@@ -114,6 +117,8 @@ class BytePort {
     refused_ += more;
     counts_[cause] += more;
   }
+  /// As count, of what is no refusal: of no use, lost on the way.
+  void note(const std::string& what, std::uint64_t more) { counts_[what] += more; }
   void fact(const std::string& key, std::string value) { facts_[key] = std::move(value); }
   void hazards(std::vector<std::string> all) { hazards_ = std::move(all); }
 

@@ -65,6 +65,8 @@ class Framer {
     drain(true, on_message);
   }
   void forget() noexcept { buffer_.clear(); }
+  /// Bytes that may become a message are kept.
+  bool waiting() const noexcept { return !buffer_.empty(); }
 
   const Counts& counts() const noexcept { return counts_; }
 

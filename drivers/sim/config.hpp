@@ -2,7 +2,7 @@
 // The simulator's configuration file (TOML) and its --set overrides.
 //
 //   [start]            where the robot stands at first: lat, lon, heading_deg
-//   [device] [drive] [car] [battery] [radio] [gnss] [compass]      sim/params.hpp
+//   [device] [drive] [car] [battery] [radio] [gnss] [compass] [imu]      sim/params.hpp
 
 #include <string>
 #include <vector>

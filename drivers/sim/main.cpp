@@ -146,6 +146,8 @@ class Simulation {
         pace_(began_),
         side_(make_side(io, options, began_)),
         vehicle_(side_->vehicle()),
+        imu_(io, options.imu),
+        has_imu_(options.config.params.imu.fitted),
         tick_(io),
         control_(io, options.control_port,
                  {.truth = [this] { return truth(); },
@@ -163,6 +165,7 @@ class Simulation {
     vehicle_.on_gnss = [this](Bytes bytes, Time) { gnss_->write(bytes); };
     if (auto done = side_->open([this] { catch_up(); }); !done) return done;
     if (auto done = gnss_->open(); !done) return done;
+    if (auto done = open_imu(); !done) return done;
     if (auto done = control_.open(); !done) return done;
     due_ = std::chrono::steady_clock::now();
     schedule();
@@ -174,6 +177,7 @@ class Simulation {
     const std::string gnss =
         tcp_ != nullptr ? "tcp:127.0.0.1:" + std::to_string(tcp_->port()) : gnss_->describe();
     return "ready " + side_->links() + " gnss=" + gnss +
+           (has_imu_ ? " mti=" + imu_.address() : "") +
            " control=127.0.0.1:" + std::to_string(control_.port());
   }
 
@@ -181,10 +185,21 @@ class Simulation {
     tick_.cancel();
     control_.close();
     gnss_->close();
+    imu_.close();
     side_->close();
   }
 
  private:
+  base::Result<void> open_imu() {
+    if (!has_imu_) return {};
+    vehicle_.on_imu = [this](Bytes bytes, Time) { imu_.write(bytes); };
+    imu_.on_bytes = [this](Bytes bytes) {
+      catch_up();
+      vehicle_.receive_imu(bytes);
+    };
+    return imu_.open();
+  }
+
   void catch_up() { vehicle_.advance_to(pace_.advance(base::steady_now())); }
 
   /// Absolute times, so that lateness does not add up; times already past are left out, for
@@ -218,6 +233,8 @@ class Simulation {
   Vehicle& vehicle_;  ///< of side_
   std::unique_ptr<link::ByteLink> gnss_;
   link::TcpServer* tcp_ = nullptr;  ///< gnss_, when it is one
+  Port imu_;
+  bool has_imu_;
   asio::steady_timer tick_;
   std::chrono::steady_clock::time_point due_;
   ControlServer control_;

@@ -20,6 +20,10 @@ enum class Stream : std::uint64_t {
   Compass,
   LossToBase,
   LossFromBase,
+  Gyro,
+  GyroWander,
+  Accelerometer,
+  ImuCompass,
 };
 
 class Noise {

@@ -14,6 +14,7 @@ struct Raw {
   std::string gnss = "tcp:0";
   std::string drive;
   std::string bumper = "pty";
+  std::string imu = "tcp";
   std::string config_file;
   std::vector<std::string> overrides;
   std::string start;
@@ -77,6 +78,7 @@ base::Result<void> read_device(Options& options, const Raw& raw) {
 /// Later wins: the code's defaults, the file, --set, --start.
 base::Result<void> read_values(Options& options, const Raw& raw) {
   if (auto done = read_gnss(options, raw.gnss); !done) return done;
+  if (auto done = read_named_port(options.imu, "--imu", raw.imu); !done) return done;
   if (!raw.config_file.empty()) {
     if (auto done = read_config_file(options.config, raw.config_file); !done) return done;
   }
@@ -101,6 +103,7 @@ Parsed parse_options(int argc, const char* const* argv) {
                  "udp:PORT, tcp:PORT (0: choose) or pty:PATH: where vehicles without CAN listen");
   app.add_option("--bumper", raw.bumper, "the same of the bumper (default: a pseudo-terminal)");
   app.add_option("--gnss", raw.gnss, "tcp:PORT (0: choose) or pty:PATH of a symbolic link");
+  app.add_option("--imu", raw.imu, "udp:PORT, tcp:PORT or pty:PATH of the inertial unit");
   app.add_option("--control", options.control_port, "port of the side channel (0: choose)");
   app.add_option("--seed", options.seed, "equal seeds repeat a run")
       ->check([](const std::string& text) {

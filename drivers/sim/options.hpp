@@ -20,6 +20,7 @@ struct Options {
   PortSpec bumper;  ///< the same of its bumper, where it has one
   std::optional<std::uint16_t> gnss_port = std::uint16_t{0};  ///< 0: choose
   std::string gnss_pty;                                       ///< set instead of gnss_port
+  PortSpec imu{PortSpec::Kind::Tcp, 0, {}};                   ///< where there is one
   std::uint16_t control_port = 0;                             ///< 0: choose
   std::uint64_t seed = 1;
   bool die_with_parent = false;

@@ -192,24 +192,57 @@ void fields(V& v, GnssParams& p) {
   v("geoid_sep_m", p.geoid_sep_m, -120.0, 120.0, "geoid above the ellipsoid");
 }
 
-/// The compass that speaks HDT beside the receiver.
+/// The compass: in the inertial unit where there is one, else beside the receiver, where it speaks
+/// HDT (true headings; the inertial unit knows magnetic north only).
 struct CompassParams {
   bool fitted = true;
   double bias_deg = 8.0;
   double noise_deg = 1.5;
   double kick_deg_per_a = 0.25;
   double kick_memory_s = 2.0;
+  double declination_deg = 0.0;
 };
 
 template <class V>
 void fields(V& v, CompassParams& p) {
-  v("fitted", p.fitted, "false: no HDT sentences");
+  v("fitted", p.fitted, "false: no HDT sentences (with an inertial unit there are none anyway)");
   v("bias_deg", p.bias_deg, -180.0, 180.0, "shown minus true heading, constant");
   v("noise_deg", p.noise_deg, 0.0, 45.0, "1 sigma of every reading");
   v("kick_deg_per_a", p.kick_deg_per_a, -5.0, 5.0,
     "further error for each ampere by which the motors' currents differ");
   v("kick_memory_s", p.kick_memory_s, 0.0, 60.0,
     "time constant with which that error comes and goes");
+  v("declination_deg", p.declination_deg, -180.0, 180.0,
+    "true minus magnetic heading, of the field that the inertial unit sees");
+}
+
+/// An MTi: gyros, accelerometers, the compass, and an orientation made of them.
+struct ImuParams {
+  bool fitted = true;
+  double rate_hz = 100.0;
+  double latency_s = 0.005;
+  double gyro_bias_dps = 0.3;
+  double gyro_wander_dps = 0.02;
+  double gyro_noise_dps = 0.1;
+  double accel_bias_mps2 = 0.02;
+  double accel_noise_mps2 = 0.05;
+  double roll_deg = 0.0;
+  double pitch_deg = 0.0;
+};
+
+template <class V>
+void fields(V& v, ImuParams& p) {
+  v("fitted", p.fitted, "false: no inertial unit; the compass then speaks HDT");
+  v("rate_hz", p.rate_hz, 1.0, 200.0, "messages a second, on whole steps of 5 ms");
+  v("latency_s", p.latency_s, 0.0, 1.0, "from the sample to the last byte of its message");
+  v("gyro_bias_dps", p.gyro_bias_dps, -50.0, 50.0, "of each axis, constant");
+  v("gyro_wander_dps", p.gyro_wander_dps, 0.0, 5.0,
+    "1 sigma of a slow random change of that bias, over five minutes");
+  v("gyro_noise_dps", p.gyro_noise_dps, 0.0, 20.0, "1 sigma of every sample");
+  v("accel_bias_mps2", p.accel_bias_mps2, -5.0, 5.0, "of each axis, constant");
+  v("accel_noise_mps2", p.accel_noise_mps2, 0.0, 5.0, "1 sigma of every sample");
+  v("roll_deg", p.roll_deg, -45.0, 45.0, "how the ground leans the robot, right side down");
+  v("pitch_deg", p.pitch_deg, -45.0, 45.0, "the same, nose up");
 }
 
 struct Params {
@@ -221,6 +254,7 @@ struct Params {
   RadioParams radio;
   GnssParams gnss;
   CompassParams compass;
+  ImuParams imu;
 };
 
 /// Lists the sections: their names are the tables of the configuration file.
@@ -234,6 +268,7 @@ void sections(V& v, Params& p) {
   v("radio", p.radio);
   v("gnss", p.gnss);
   v("compass", p.compass);
+  v("imu", p.imu);
 }
 
 /// @param key "section.name". Unknown key, wrong type, out of range, unknown word: an error that

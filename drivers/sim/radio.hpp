@@ -40,6 +40,9 @@ struct Faults {
   double gnss_jump_s = 0.0;
   bool compass_off = false;
   double compass_extra_deg = 0.0;
+  bool imu_silent = false;
+  bool imu_freeze = false;
+  double imu_gyro_extra_dps = 0.0;
   int bumper = 0;
   bool bumper_silent = false;
 };
@@ -63,8 +66,11 @@ void fields(V& v, Faults& f) {
   v("gnss_jump_east_m", f.gnss_jump_east_m, -1000.0, 1000.0, "added to the position");
   v("gnss_jump_north_m", f.gnss_jump_north_m, -1000.0, 1000.0, "added to the position");
   v("gnss_jump_s", f.gnss_jump_s, 0.0, 86400.0, "the jump ends after this; 0: it stays");
-  v("compass_off", f.compass_off, "no HDT sentences");
+  v("compass_off", f.compass_off, "no HDT sentences, no field in the inertial unit's messages");
   v("compass_extra_deg", f.compass_extra_deg, -180.0, 180.0, "added to the compass heading");
+  v("imu_silent", f.imu_silent, "no byte from the inertial unit");
+  v("imu_freeze", f.imu_freeze, "the inertial unit repeats its last message");
+  v("imu_gyro_extra_dps", f.imu_gyro_extra_dps, -100.0, 100.0, "added to the gyro's bias");
   v("bumper", f.bumper, 0, 255, "switches pressed, one bit each: 1 front left, 2 front …");
   v("bumper_silent", f.bumper_silent, "no line from the bumper");
 }

@@ -75,9 +75,7 @@ std::string Receiver::step(const Params& p, const Faults& faults, const BodyStat
                            double motor_difference_a) {
   const double dt_s = last_step_ ? base::seconds(now.time - *last_step_) : 0.0;
   last_step_ = now.time;
-  const double tau_s = p.compass.kick_memory_s;
-  const double share = tau_s > 0.0 ? 1.0 - std::exp(-dt_s / tau_s) : 1.0;
-  kick_a_ += (motor_difference_a - kick_a_) * share;
+  kick_.step(p.compass, motor_difference_a, dt_s);
 
   const base::Duration age = now.utc - epoch_before(now.utc, p.gnss.rate_hz);
   const Time epoch = now.time - age;
@@ -138,9 +136,9 @@ Epoch Receiver::measure(const Params& p, const Faults& faults, BodyState truth) 
     }
     epoch.sigma_m = std::hypot(e.white_m, e.drift_m);
   }
-  if (p.compass.fitted && !faults.compass_off) {
-    const double error_deg = p.compass.bias_deg + faults.compass_extra_deg + compass_deg +
-                             p.compass.kick_deg_per_a * kick_a_;
+  if (p.compass.fitted && !p.imu.fitted && !faults.compass_off) {
+    const double error_deg =
+        p.compass.bias_deg + faults.compass_extra_deg + compass_deg + kick_.error_deg(p.compass);
     epoch.heading_deg = base::heading_from_yaw(truth.yaw_rad - base::rad_from_deg(error_deg));
   }
   return epoch;

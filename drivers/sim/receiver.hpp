@@ -9,6 +9,7 @@
 #include "base/geo.hpp"
 #include "base/measurements.hpp"
 #include "base/time.hpp"
+#include "sim/kick.hpp"
 #include "sim/noise.hpp"
 #include "sim/params.hpp"
 #include "sim/radio.hpp"
@@ -81,7 +82,7 @@ class Receiver {
   base::LocalFrame frame_;
   Noise east_, north_, height_, velocity_, compass_;
   Drift drift_east_, drift_north_;
-  double kick_a_ = 0.0;  ///< current difference as the iron remembers it
+  Kick kick_;
   std::optional<Time> last_epoch_;
   std::optional<Time> last_step_;
   std::deque<Pending> pending_;

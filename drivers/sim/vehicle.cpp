@@ -13,6 +13,7 @@ Vehicle::Vehicle(const Params& params, std::uint64_t seed, const Start& start)
       frame_(1, start.at),
       battery_(params.battery),
       receiver_(seed, frame_),
+      imu_(seed),
       now_(start.time),
       yaw_rad_(base::yaw_from_heading(start.heading_deg)) {}
 
@@ -57,6 +58,8 @@ void Vehicle::move(const Moved& moved, double dt_s) {
   if (!text.empty() && on_gnss) {
     on_gnss({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, now_);
   }
+  const Imu::Packets packets = imu_.step(params_, faults_, body, moved.motor_difference_a);
+  if (!packets.empty() && on_imu) on_imu(packets, now_);
 }
 
 Truth Vehicle::truth() const {
@@ -100,6 +103,7 @@ void Vehicle::power_cycle() {
   twist_ = {};
   halt();
   restart();
+  imu_.power_cycle();
 }
 
 }  // namespace roverd::sim

@@ -19,6 +19,7 @@
 #include "base/result.hpp"
 #include "base/time.hpp"
 #include "sim/battery.hpp"
+#include "sim/imu.hpp"
 #include "sim/motion.hpp"
 #include "sim/params.hpp"
 #include "sim/radio.hpp"
@@ -65,6 +66,10 @@ class Vehicle {
   /// Called from within advance_to, stamped with the time at which the sentences of one epoch
   /// leave. May be empty.
   std::function<void(Bytes, Time)> on_gnss;
+  /// The same of the inertial unit's messages.
+  std::function<void(Bytes, Time)> on_imu;
+  /// From the host to the inertial unit.
+  void receive_imu(Bytes bytes) { imu_.receive(bytes); }
 
   /// Runs whole steps until the next one would end after `now`; an earlier `now` does nothing.
   void advance_to(Time now);
@@ -128,6 +133,7 @@ class Vehicle {
   const base::LocalFrame frame_;
   Battery battery_;
   Receiver receiver_;
+  Imu imu_;
   Radio radio_;
   Faults faults_;
   Time now_;

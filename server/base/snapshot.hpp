@@ -39,17 +39,26 @@ struct Check {
   std::string detail;
 };
 
+/// Where the robot probably is: half axes of the 1σ ellipse.
+struct Ellipse {
+  double major_m = 0.0;
+  double minor_m = 0.0;
+  double major_yaw_rad = 0.0;  ///< direction of the larger axis; it has no front: (−π/2, π/2]
+};
+
 /// The estimator's answer.
 struct Pose {
   Time stamp;
   EnuPoint at;
   LatLon global;
   double yaw_rad = 0.0;
+  bool heading_known = true;        ///< false: yaw_rad means nothing
   std::optional<double> speed_mps;  ///< along the body's forward axis, signed; over ground without
                                     ///< odometry, then never negative
   std::optional<double> yaw_rate_radps;  ///< empty without odometry
   double horizontal_sigma_m = 0.0;       ///< 1σ, larger axis of the ellipse
   double yaw_sigma_rad = 0.0;
+  Ellipse ellipse;
   std::optional<double> alt_msl_m;
   std::string source;  ///< "gnss", "gnss+odometry", "odometry"
 };
@@ -81,12 +90,77 @@ struct RadioMeaning {
   std::string_view swa, swb, swc, swd, vra;  ///< of static texts
 };
 
+/// Does the robot know where it points? Unknown: at best a compass hints at it. Aligning: known to
+/// some degrees. Aligned: well enough to drive at full speed.
+enum class Alignment { Unknown, Aligning, Aligned };
+std::string_view to_string(Alignment a) noexcept;  // unknown aligning aligned
+
+/// Why the estimator does not use a measurement.
+enum class Refusal {
+  NotFinite,   ///< NaN, infinite
+  Impossible,  ///< no place on earth, no speed that this robot can have
+  Stamp,       ///< doubled, out of order, in the future, too old
+  Zero,        ///< latitude and longitude exactly zero
+  Date,        ///< before receivers like this were made
+  Satellites,  ///< too few of them
+  Dilution,    ///< they stand badly (HDOP)
+  Accuracy,    ///< the device itself is not sure enough
+  Disturbed,   ///< a compass during and after a turn on the spot
+  Jump,        ///< outside of what can be believed
+  Receivers,   ///< another receiver says something else
+};
+inline constexpr std::size_t kRefusals = 11;
+std::string_view to_string(Refusal r) noexcept;  // not_finite impossible time zero …
+
+/// The newest comparison of a measurement with what was expected of it.
+struct Innovation {
+  double size = 0.0;  ///< measured minus expected: rad, or the length in m or m/s
+  double nis = 0.0;   ///< its square in units of its own variance, y'S⁻¹y
+};
+
+/// What one kind of measurement did lately.
+struct InputHealth {
+  std::optional<Innovation> innovation;
+  std::uint64_t rejected = 0;
+  std::optional<Time> refused_since;  ///< none was used from then on
+  Refusal why = Refusal::Jump;        ///< of the last refusal
+};
+
+/// The estimate was set anew. What was driven by it keeps its place: `jump` is old minus new.
+struct EstimateReset {
+  std::string_view what;  ///< position, heading, pose, anchor
+  EnuPoint jump;
+  double jump_rad = 0.0;  ///< of the yaw
+  Time stamp;
+};
+
+/// The operator said at which point the robot stood: the receiver's positions are moved by so much.
+struct Anchor {
+  EnuPoint offset;  ///< what is added to the receiver's position
+  LatLon at;        ///< of the point
+  std::optional<int> item;
+  Time stamp;
+};
+
 struct EstimatorHealth {
+  Alignment alignment = Alignment::Unknown;
+  std::string_view advice;                ///< what helps, for a driver; empty: nothing is needed
+  bool gyro = false;                      ///< the yaw rate is a gyro's, not the tracks'
+  std::optional<double> gyro_bias_radps;  ///< left positive
   double compass_bias_rad = 0.0;
+  bool compass_heard = false;
   double odometry_scale = 1.0;
   double pull_1pm = 0.0;  ///< curvature of a vehicle that is told to go straight; left positive
+  std::optional<EnuPoint> gnss_offset;  ///< slow error of the receiver, as estimated
+  InputHealth position, velocity, compass, heading, odometry, inertial;
   std::uint64_t rejected = 0;
+  std::array<std::uint64_t, kRefusals> refusals{};  ///< by cause
+  bool receivers_disagree = false;
+  double free_m = 0.0;  ///< driven since a position was told
+  bool placed = false;  ///< an operator told the last position, not a receiver
   std::uint64_t resets = 0;
+  std::optional<EstimateReset> last_reset;
+  std::optional<Anchor> anchor;
 };
 
 struct LoopHealth {

@@ -180,4 +180,44 @@ std::string_view to_string(Severity s) noexcept {
   return "error";
 }
 
+std::string_view to_string(Alignment a) noexcept {
+  switch (a) {
+    case Alignment::Unknown:
+      return "unknown";
+    case Alignment::Aligning:
+      return "aligning";
+    case Alignment::Aligned:
+      return "aligned";
+  }
+  return "unknown";
+}
+
+std::string_view to_string(Refusal r) noexcept {
+  switch (r) {
+    case Refusal::NotFinite:
+      return "not_finite";
+    case Refusal::Impossible:
+      return "impossible";
+    case Refusal::Stamp:
+      return "time";
+    case Refusal::Zero:
+      return "zero_position";
+    case Refusal::Date:
+      return "date";
+    case Refusal::Satellites:
+      return "satellites";
+    case Refusal::Dilution:
+      return "dilution";
+    case Refusal::Accuracy:
+      return "accuracy";
+    case Refusal::Disturbed:
+      return "disturbed";
+    case Refusal::Jump:
+      return "jump";
+    case Refusal::Receivers:
+      return "receivers";
+  }
+  return "impossible";
+}
+
 }  // namespace roverd::base

@@ -173,13 +173,15 @@ class Station:
             bus = ("--can", can) if can else ("--cansock", self.scratch / "can")
             self.sim = Program(BIN / "roverd-sim", *bus, "--gnss", "tcp:0", "--control", "0",
                                "--seed", seed, *sim)
-            ready = self.sim.wait_line(r"^ready can=(\S+) gnss=(\S+) control=(\S+)")
-            self.control = Control(ready[3])
-            self.control_address = ready[3]
+            ready = self.sim.wait_line(r"^ready can=(\S+) gnss=(\S+)(?: mti=(\S+))? control=(\S+)")
+            self.control = Control(ready[4])
+            self.control_address = ready[4]
             self.roverd = Program(BIN / "roverd", "--config", config or ROOT / "config/robot.toml",
                                   "--data", data or self.scratch / "data", "--port", "0",
                                   "--set", f"drivers.bunker.link={ready[1]}",
-                                  "--set", f"drivers.gnss.link={ready[2]}", *arguments)
+                                  "--set", f"drivers.gnss.link={ready[2]}",
+                                  *(("--set", f"drivers.mti.link={ready[3]}") if ready[3] else ()),
+                                  *arguments)
             self.address = self.roverd.wait_line(r"^listening on (http://\S+)")[1]
             self.rest = Rest(self.address)
         except BaseException:

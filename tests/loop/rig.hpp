@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "bunker/driver.hpp"
 #include "gnss/driver.hpp"
 #include "link/memory.hpp"
+#include "mti/driver.hpp"
 #include "robot/robot.hpp"
 #include "sim/bunker.hpp"
 #include "sim/vehicle.hpp"
@@ -233,7 +235,8 @@ class RigBase {
         gnss_(
             "gnss", {},
             [this] { return base::Result<std::unique_ptr<link::ByteLink>>(std::move(bytes_.a)); },
-            [this](const base::Measurement& m) { robot.measurements().put(m); }) {
+            [this](const base::Measurement& m) { robot.measurements().put(m); }),
+        imu_bytes_(link::memory_byte_pair()) {
     bytes_.b->set_immediate([this] { return at_; });
     EXPECT_TRUE(bytes_.b->open());
     plant.on_gnss = [this](base::Bytes b, Time t) {
@@ -241,6 +244,7 @@ class RigBase {
       bytes_.b->write(b);
     };
     gnss_.start(at_);
+    if (plant.params().imu.fitted) fit_imu();
   }
 
   /// Plant and drivers up to `now`.
@@ -264,6 +268,21 @@ class RigBase {
   double fastest_mps = 0.0;
 
  private:
+  void fit_imu() {
+    imu_bytes_.b->set_immediate([this] { return at_; });
+    imu_bytes_.b->on_bytes = [this](base::Bytes b, Time) { plant.receive_imu(b); };
+    EXPECT_TRUE(imu_bytes_.b->open());
+    plant.on_imu = [this](base::Bytes b, Time t) {
+      at_ = t;
+      imu_bytes_.b->write(b);
+    };
+    mti_.emplace(
+        "mti", mti::Params{},
+        [this] { return base::Result<std::unique_ptr<link::ByteLink>>(std::move(imu_bytes_.a)); },
+        [this](const base::Measurement& m) { robot.measurements().put(m); });
+    mti_->start(at_);
+  }
+
   static double to_segment(base::EnuPoint p, Metres a, Metres b) {
     const double e = b.east_m - a.east_m;
     const double n = b.north_m - a.north_m;
@@ -290,6 +309,8 @@ class RigBase {
   Time at_{};  ///< finer than now_: when a frame leaves within a tick
   link::MemoryBytePair bytes_;
   gnss::Driver gnss_;
+  link::MemoryBytePair imu_bytes_;
+  std::optional<mti::Driver> mti_;  ///< where the plant has an inertial unit
 };
 
 /// The Bunker.
@@ -324,6 +345,7 @@ class Rig final : public RigBase {
     at_ = now;
     bunker_.tick(now);
     gnss_.tick(now);
+    if (mti_) mti_->tick(now);
   }
 
   sim::Bunker& base_;

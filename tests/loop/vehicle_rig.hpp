@@ -112,6 +112,7 @@ class CartRig final : public RigBase {
       at_ = t;
       for (const auto& tick : ticks_) tick(t);
       gnss_.tick(t);
+      if (mti_) mti_->tick(t);
     }
   }
 

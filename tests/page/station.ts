@@ -139,11 +139,11 @@ export const test = base.extend<{
       const bus = ['--cansock', join(folder, 'can'), '--gnss', 'tcp:0', '--control', '0'];
       const simulator = new Program('roverd-sim', [...bus, '--seed', '7']);
       programs.push(simulator);
-      const [, can, gnss, control = ''] = await simulator.line(
-        /^ready can=(\S+) gnss=(\S+) control=(\S+)/,
+      const [, can, gnss, mti, control = ''] = await simulator.line(
+        /^ready can=(\S+) gnss=(\S+) mti=(\S+) control=(\S+)/,
       );
       sim = new SideChannel(control);
-      const links = [`drivers.bunker.link=${can}`, `drivers.gnss.link=${gnss}`];
+      const links = [`drivers.bunker.link=${can}`, `drivers.gnss.link=${gnss}`, `drivers.mti.link=${mti}`];
       const roverd = new Program('roverd', [
         ...['--config', config, '--data', join(folder, 'data'), '--port', '0'],
         ...links.flatMap((setting) => ['--set', setting]),

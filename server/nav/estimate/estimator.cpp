@@ -1,3 +1,5 @@
+// Time, tracks and gyro: what carries the belief on between two words from outside.
+
 #include "nav/estimate/estimator.hpp"
 
 #include <algorithm>
@@ -9,6 +11,7 @@ namespace roverd::nav {
 namespace {
 
 using base::rad_from_deg;
+using base::Refusal;
 using base::seconds;
 using std::chrono::milliseconds;
 
@@ -24,17 +27,38 @@ constexpr double kMaxGap_s = 2.0;     // of odometry that may still be carried o
 constexpr double kCoastSpeed_mps = 0.15;
 constexpr double kCoastAccel_mps2 = 0.5;
 constexpr double kBlindSpeed_mps = 1.0;
+// A gyro that stands: within this of its bias, or at least as even and as slow as the second pair.
+const double kGyroStill_radps = rad_from_deg(1.5);
+const double kGyroEven_radps = rad_from_deg(0.3);
+const double kGyroBiasMost_radps = rad_from_deg(5.0);
+constexpr double kGyroFastest_radps = 8.0;
+constexpr double kAccelMost_mps2 = 160.0;
+constexpr double kCompare_s = 0.2;  // of travel, before gyro and tracks are compared
+
+bool finite(const base::BodyVector& v, double most) noexcept {
+  const double size = std::hypot(v.forward, v.left, v.up);
+  return std::isfinite(size) && size <= most;
+}
 
 }  // namespace
 
-Estimator::Estimator(const EstimateParams& params) : params_(params) {
-  belief_.x(kScale) = 1.0;
-  belief_.x(kYawScale) = params.yaw_scale;
+Estimator::Estimator(const EstimateParams& params)
+    : params_(params),
+      limits_{params.satellites_min, params.hdop_max, params.accuracy_max_m, params.drift_scale} {
   reset_state(belief_, kYaw, 0.0, base::kPi);
+  reset_state(belief_, kGyroBias, 0.0, rad_from_deg(params.gyro_bias_sigma_dps));
   reset_state(belief_, kBias, 0.0, rad_from_deg(params.compass_bias_sigma_deg));
+  const double per_a = rad_from_deg(params.compass_current_sigma_deg_per_a);
+  // Clockwise on a compass is a smaller yaw.
+  reset_state(belief_, kCompassLeft, -rad_from_deg(params.compass_left_deg_per_a), per_a);
+  reset_state(belief_, kCompassRight, -rad_from_deg(params.compass_right_deg_per_a), per_a);
   reset_state(belief_, kScale, 1.0, params.odometry_scale_sigma);
   reset_state(belief_, kYawScale, params.yaw_scale, params.yaw_scale_sigma);
   reset_state(belief_, kPull, 0.0, params.pull_sigma_1pm);
+  if (params.has_map()) {
+    frame_.emplace(1, base::LatLon{params.map_lat, params.map_lon});
+    next_frame_id_ = 2'000'000'000;  // of a first fix that lies elsewhere
+  }
 }
 
 void Estimator::use_frame(const base::LocalFrame& frame) noexcept {
@@ -50,30 +74,125 @@ void Estimator::take(const base::Measurement& m, Time now) noexcept {
       m);
 }
 
-bool Estimator::in_order(std::optional<Time>& last, Time stamp) noexcept {
+bool Estimator::in_order(Input& input, std::optional<Time>& last, Time stamp) noexcept {
   if (stamp > now_ + kFuture || (last && stamp <= *last)) {
-    reject();
+    refuse(input, Refusal::Stamp);
     return false;
   }
   last = stamp;
   return true;
 }
 
+void Estimator::refuse(Input& input, Refusal why) noexcept {
+  ++input.rejected;
+  ++health_.rejected;
+  ++health_.refusals[static_cast<std::size_t>(why)];
+  input.why = why;
+  if (!input.refused_since) input.refused_since = now_;
+}
+
 bool Estimator::has_odometry(Time at) const noexcept {
   return tracks_at_ && at - *tracks_at_ < kOdometryGone;
+}
+
+/// Long enough that what may still be learned at rest was learned.
+bool Estimator::settled_in(std::optional<Time> since) const noexcept {
+  return has_moved_ || (since && now_ - *since > std::chrono::seconds(10));
+}
+
+// ---- gyro --------------------------------------------------------------------------------------
+
+void Estimator::take(const base::Inertial& inertial) {
+  Input& in = health_.inertial;
+  const bool rate_ok = !inertial.rate_radps || finite(*inertial.rate_radps, kGyroFastest_radps);
+  const bool accel_ok = !inertial.accel_mps2 || finite(*inertial.accel_mps2, kAccelMost_mps2);
+  if (!rate_ok || !accel_ok) return refuse(in, Refusal::NotFinite);
+  if (!in_order(in, last_inertial_, inertial.stamp)) return;
+  const double turn_radps = gyro_.rate_radps() - belief_.x(kGyroBias);
+  tilt_.put(inertial, belief_.x(kScale) * tracks_.linear_mps, turn_radps);
+  if (!inertial.rate_radps) return;
+  in.refused_since.reset();
+  gyro_.put(inertial.stamp, tilt_.level_radps(*inertial.rate_radps, inertial.stamp));
+}
+
+void Estimator::take(const base::Attitude& attitude) {
+  if (!std::isfinite(attitude.roll_rad) || !std::isfinite(attitude.pitch_rad)) {
+    return refuse(health_.inertial, Refusal::NotFinite);
+  }
+  tilt_.put(attitude);
+}
+
+/// Small beside its bias; or, with the tracks still for two seconds, so even that nobody turns it.
+bool Estimator::gyro_stands(Time stamp) const noexcept {
+  const auto lately = gyro_.spread(stamp - milliseconds(100));
+  if (!lately) return true;  // it says nothing
+  const double doubt = 3.0 * std::sqrt(belief_.P(kGyroBias, kGyroBias));
+  if (std::abs(lately->mean_radps - belief_.x(kGyroBias)) < kGyroStill_radps + doubt) return true;
+  const auto long_time = gyro_.spread(stamp - milliseconds(500));
+  return long_time && long_time->deviation_radps < kGyroEven_radps &&
+         std::abs(long_time->mean_radps) < kGyroBiasMost_radps;
+}
+
+/// At rest a gyro shows its bias.
+void Estimator::learn_gyro_bias(Time stamp) noexcept {
+  if (!gyro_used_ || stamp - bias_learned_at_ < kStandsAfter) return;
+  bias_learned_at_ = stamp;
+  const auto seen = gyro_.spread(stamp - kStandsAfter);
+  if (!seen) return;
+  Observation<1> o;
+  o.innovation(0) = seen->mean_radps - belief_.x(kGyroBias);
+  o.H(0, kGyroBias) = 1.0;
+  o.R(0, 0) = std::pow(rad_from_deg(0.03), 2) + std::pow(0.2 * seen->deviation_radps, 2);
+  o.may_change.setZero();
+  o.may_change(kGyroBias) = 1.0;
+  apply(health_.inertial, o);
+}
+
+/// What the tracks make of a turn, as the gyro sees it: it is steered by, and what the yaw rate is
+/// taken from when the gyro falls silent.
+void Estimator::learn_tracks(const Travel& t) noexcept {
+  if (!t.gyro_rad) {
+    untold_ = {};
+    untold_turned_rad_ = 0.0;
+    return;
+  }
+  untold_.ahead_m += t.ahead_m;
+  untold_.turn_rad += t.turn_rad;
+  untold_.dt_s += t.dt_s;
+  untold_turned_rad_ += *t.gyro_rad - belief_.x(kGyroBias) * t.dt_s;
+  if (untold_.dt_s < kCompare_s) return;
+  const Travel all = untold_;
+  const double turned_rad = untold_turned_rad_;
+  untold_ = {};
+  untold_turned_rad_ = 0.0;
+  if (std::abs(all.ahead_m) + std::abs(all.turn_rad) < 0.02) return;
+  Observation<1> o;
+  o.innovation(0) =
+      turned_rad - belief_.x(kYawScale) * all.turn_rad - belief_.x(kPull) * all.ahead_m;
+  o.H(0, kYawScale) = all.turn_rad;
+  o.H(0, kPull) = all.ahead_m;
+  const double spread = rad_from_deg(0.5) + 0.1 * std::abs(all.turn_rad);
+  o.R(0, 0) = spread * spread;
+  o.may_change.setZero();
+  o.may_change(kYawScale) = o.may_change(kPull) = 1.0;
+  apply(health_.odometry, o);
 }
 
 // ---- tracks ------------------------------------------------------------------------------------
 
 void Estimator::take(const base::WheelTravel& travel) {
-  if (!std::isfinite(travel.left_m) || !std::isfinite(travel.right_m)) return reject();
+  Input& in = health_.odometry;
+  if (!std::isfinite(travel.left_m) || !std::isfinite(travel.right_m)) {
+    return refuse(in, Refusal::NotFinite);
+  }
   const auto before = last_travel_;
-  if (!in_order(last_travel_, travel.stamp)) return;
+  if (!in_order(in, last_travel_, travel.stamp)) return;
   const double dt_s = before ? seconds(travel.stamp - *before) : 0.02;
   const double reach_m = kFastest_mps * dt_s + 0.1;
   if (dt_s > kMaxGap_s || std::abs(travel.left_m) > reach_m || std::abs(travel.right_m) > reach_m) {
-    return reject();
+    return refuse(in, Refusal::Impossible);
   }
+  in.refused_since.reset();
   const Travel t{0.5 * (travel.left_m + travel.right_m),
                  (travel.right_m - travel.left_m) / params_.track_width_m, dt_s};
   step(t, travel.stamp);
@@ -83,11 +202,12 @@ void Estimator::take(const base::WheelTravel& travel) {
 }
 
 void Estimator::take(const base::BaseMotion& motion) {
+  Input& in = health_.odometry;
   if (!std::isfinite(motion.twist.linear_mps) || !std::isfinite(motion.twist.angular_radps)) {
-    return reject();
+    return refuse(in, Refusal::NotFinite);
   }
   const auto before = last_motion_;
-  if (!in_order(last_motion_, motion.stamp)) return;
+  if (!in_order(in, last_motion_, motion.stamp)) return;
   tracks_ = motion.twist;
   const bool travel_is_fresh = last_travel_ && motion.stamp - *last_travel_ < kOdometryGone;
   if (travel_is_fresh || !before) {
@@ -98,46 +218,76 @@ void Estimator::take(const base::BaseMotion& motion) {
   step({motion.twist.linear_mps * dt_s, motion.twist.angular_radps * dt_s, dt_s}, motion.stamp);
 }
 
+/// Currents act on a compass through iron that remembers them for a while.
+void Estimator::take(const base::MotorState& motor) {
+  if (!motor.current_a || !std::isfinite(*motor.current_a)) return;
+  if (motor.motor != params_.left_motor && motor.motor != params_.right_motor) return;
+  Current& side = motor.motor == params_.left_motor ? left_ : right_;
+  const double dt_s = side.stamp ? std::max(0.0, seconds(motor.stamp - *side.stamp)) : 0.0;
+  const double lag_s = params_.compass_current_lag_s;
+  side.ampere += (*motor.current_a - side.ampere) * dt_s / std::max(1e-3, lag_s + dt_s);
+  side.stamp = motor.stamp;
+}
+
 void Estimator::step(const Travel& travel, Time stamp) noexcept {
+  Travel t = travel;
+  const Time whole = stamp - base::from_seconds(t.dt_s);
+  const bool near = filter_at_ && *filter_at_ <= stamp && stamp - *filter_at_ < milliseconds(400);
+  t.gyro_rad = gyro_.turned_rad(near ? *filter_at_ : whole, stamp);
+  if (t.gyro_rad) gyro_used_ = true;
+  if (!t.gyro_rad && !gyro_.fresh(stamp)) gyro_used_ = false;
+
   tracks_at_ = stamp;
-  sums_.ahead_m += travel.ahead_m;
-  sums_.turn_rad += travel.turn_rad;
-  const double half_m = 0.5 * travel.turn_rad * params_.track_width_m;
-  if (std::abs(travel.ahead_m) + std::abs(half_m) > kStill_m) moved_at_ = stamp;
-  watch_standing(stamp);
-  if (located_) {
-    predict(belief_, travel, drift_, standing_ && travel.ahead_m == 0.0 && travel.turn_rad == 0.0);
-  } else if (heading_known_) {
-    belief_.x(kYaw) = base::wrap_rad(belief_.x(kYaw) + belief_.x(kYawScale) * travel.turn_rad);
+  watch_standing(t, stamp);
+  const double yaw_before = belief_.x(kYaw);
+  predict(belief_, t, drift_, standing_ && t.ahead_m == 0.0 && t.turn_rad == 0.0);
+  sums_.ahead_m += t.ahead_m;
+  sums_.turned_rad += base::angle_diff_rad(yaw_before, belief_.x(kYaw));
+  free_m_ += std::abs(belief_.x(kScale) * t.ahead_m);
+  if (standing_) {
+    learn_gyro_bias(stamp);
+  } else {
+    learn_tracks(t);
+    const double rate = std::abs(base::angle_diff_rad(yaw_before, belief_.x(kYaw))) / t.dt_s;
+    if (rate > 0.3 && std::abs(t.ahead_m) < 0.15 * t.dt_s) pivot_at_ = stamp;
   }
+  remember(stamp);
+}
+
+void Estimator::remember(Time stamp) noexcept {
   filter_at_ = stamp;
   sums_.stamp = stamp;
   sums_.x = belief_.x;
   history_.push(sums_);
 }
 
-void Estimator::watch_standing(Time stamp) noexcept {
-  standing_ = stamp - moved_at_ >= kStandsAfter;
-  if (!standing_) has_moved_ = true;
+void Estimator::watch_standing(const Travel& t, Time stamp) noexcept {
+  const double half_m = 0.5 * t.turn_rad * params_.track_width_m;
+  const bool tracks = std::abs(t.ahead_m) + std::abs(half_m) > kStill_m;
+  const bool turned = !tracks && !gyro_stands(stamp);  // by hand
+  if (tracks || turned) moved_at_ = stamp;
+  standing_ = !tracks && !turned && stamp - moved_at_ >= kStandsAfter;
+  if (tracks) has_moved_ = true;
 }
 
 // ---- time --------------------------------------------------------------------------------------
 
 void Estimator::advance(Time now) noexcept {
   now_ = now;
+  watch_alignment();
   if (!filter_at_) filter_at_ = now;
   if (has_odometry(now)) return;
   standing_ = false;
   const double dt_s = seconds(now - *filter_at_);
   if (dt_s <= 0.0) return;
-  if (located_) {
-    predict_coasting(belief_, coast(now), dt_s, drift_);
-  }
+  Coast c = coast(now);
+  c.gyro_rad = gyro_.turned_rad(*filter_at_, now);
+  gyro_used_ = c.gyro_rad.has_value();
+  const double yaw_before = belief_.x(kYaw);
+  if (located_ || heading_known_) predict_coasting(belief_, c, dt_s, drift_);
+  sums_.turned_rad += base::angle_diff_rad(yaw_before, belief_.x(kYaw));
   tracks_ = {};
-  filter_at_ = now;
-  sums_.stamp = now;
-  sums_.x = belief_.x;
-  history_.push(sums_);
+  remember(now);
 }
 
 /// The last velocity over ground, which is worth less every moment; without any it may stand or
@@ -159,19 +309,21 @@ std::optional<base::Pose> Estimator::pose(Time now) const {
   if (!located_ || !frame_ || !filter_at_) return std::nullopt;
   base::Pose p;
   const bool odometry = has_odometry(now);
-  const bool gnss = last_fused_ && now - *last_fused_ < kGnssGone;
+  const bool gnss = last_fused_ && !placed_ && now - *last_fused_ < kGnssGone;
   const bool velocity = velocity_ && now - velocity_->stamp < kGnssGone;
   // Carried on from something fresh it is of now; from nothing it grows old.
   const auto velocity_at = velocity_ ? std::optional(velocity_->stamp) : std::nullopt;
   const auto last_word = std::max({tracks_at_, last_fused_, velocity_at});
   p.stamp = odometry || gnss || velocity ? now : last_word.value_or(now);
   p.yaw_rad = belief_.x(kYaw);
+  p.heading_known = heading_known_;
   p.at = {belief_.x(kEast), belief_.x(kNorth)};
+  const double dt_s = std::clamp(seconds(now - *filter_at_), 0.0, 0.2);
+  if (gyro_used_) p.yaw_rate_radps = standing_ ? 0.0 : gyro_.rate_radps() - belief_.x(kGyroBias);
   if (odometry) {
     const double speed_mps = belief_.x(kScale) * tracks_.linear_mps;
-    const double yaw_rate_radps =
-        belief_.x(kYawScale) * tracks_.angular_radps + belief_.x(kPull) * tracks_.linear_mps;
-    const double dt_s = std::clamp(seconds(now - *filter_at_), 0.0, 0.2);
+    const double yaw_rate_radps = p.yaw_rate_radps.value_or(
+        belief_.x(kYawScale) * tracks_.angular_radps + belief_.x(kPull) * tracks_.linear_mps);
     const double middle_rad = p.yaw_rad + 0.5 * yaw_rate_radps * dt_s;
     p.at.east_m += speed_mps * dt_s * std::cos(middle_rad);
     p.at.north_m += speed_mps * dt_s * std::sin(middle_rad);
@@ -182,18 +334,19 @@ std::optional<base::Pose> Estimator::pose(Time now) const {
     p.speed_mps = std::hypot(velocity_->east_mps, velocity_->north_mps);
   }
   p.global = frame_->to_global(p.at);
+  // Axes of the covariance: mean of the variances ± half their spread.
   const double a = belief_.P(kEast, kEast);
   const double b = belief_.P(kNorth, kNorth);
   const double c = belief_.P(kEast, kNorth);
-  p.horizontal_sigma_m = std::sqrt(std::max(0.0, 0.5 * (a + b) + std::hypot(0.5 * (a - b), c)));
+  const double half = std::hypot(0.5 * (a - b), c);
+  p.ellipse.major_m = std::sqrt(std::max(0.0, 0.5 * (a + b) + half));
+  p.ellipse.minor_m = std::sqrt(std::max(0.0, 0.5 * (a + b) - half));
+  p.ellipse.major_yaw_rad = 0.5 * std::atan2(2.0 * c, a - b);
+  p.horizontal_sigma_m = p.ellipse.major_m;
   p.yaw_sigma_rad = heading_known_ ? std::sqrt(std::max(0.0, belief_.P(kYaw, kYaw))) : base::kPi;
   p.alt_msl_m = alt_msl_m_;
   p.source = !odometry ? "gnss" : gnss ? "gnss+odometry" : "odometry";
   return p;
-}
-
-base::EstimatorHealth Estimator::health() const noexcept {
-  return {belief_.x(kBias), belief_.x(kScale), belief_.x(kPull), rejected_, resets_};
 }
 
 }  // namespace roverd::nav

@@ -1,29 +1,39 @@
 #pragma once
 // Where the robot is, which way it points, how fast it goes, and how sure that is.
 //
-//   tracks (50 Hz) ─▶ predict ─────────────▶ belief ─▶ pose(now)
+//   tracks (50 Hz), gyro ─▶ predict ────────▶ belief ─▶ pose(now)
 //   position, velocity, heading ─▶ gate ─▶ update, formed at the moment they tell of
 //
-// Heading:   unknown ──compass, two antennas, or course while moving──▶ known
-//            known ──velocity contradicts it for 2 s──▶ known (set from course; a counted reset)
-// Position:  none ──first usable fix (makes the local frame)──▶ known
+// Yaw rate:  the gyro's while it is fresh (0.1 s), otherwise the tracks'
+// Heading:   unknown ──compass, two antennas, operator, or course while moving──▶ known
+//            known ──velocity contradicts it for 2 s (5 s with a gyro)──▶ known (a counted reset)
+// Position:  none ──first usable fix (makes the local frame), or the operator──▶ known
 //            known ──rejected for 10 s, or by 25 m for 1 s──▶ known (set; a counted reset)
+// Fix class: better ──▶ the estimate moves to it at 0.25 m/s at most; worse ──▶ it stays, and the
+//            receiver's offset is open
 //
-// Standing (tracks still for 0.5 s) the yaw is held, and the position too unless the fix is RTK
-// fixed: noise would make them wander. Refused and counted: values that are not finite, stamps that
-// are doubled, out of order or in the future.
+// Standing (tracks still for 0.5 s, and the gyro too) the yaw is held, the gyro's bias learned, and
+// the position held unless the fix is RTK fixed: noise would make them wander. Refused and counted
+// by cause: values that are not finite, stamps that are doubled, out of order or in the future,
+// fixes beyond the limits of GnssLimits, receivers that disagree.
 //
 // Not thread-safe; no allocation; nothing here reads a clock.
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 
 #include "base/measurements.hpp"
 #include "base/snapshot.hpp"
+#include "nav/estimate/arrival.hpp"
 #include "nav/estimate/ekf.hpp"
 #include "nav/estimate/gnss_quality.hpp"
+#include "nav/estimate/gyro.hpp"
 #include "nav/estimate/history.hpp"
 #include "nav/estimate/params.hpp"
+#include "nav/estimate/receivers.hpp"
+#include "nav/estimate/tilt.hpp"
 
 namespace roverd::nav {
 
@@ -44,6 +54,14 @@ class Estimator {
   /// Once a tick, after the measurements: coasts when the tracks are silent.
   void advance(Time now) noexcept;
 
+  /// The operator says where the robot stands, or which way it points, or both. Needs a frame.
+  /// @param at in frame(). @param yaw_rad finite. Counted as a reset.
+  void place(std::optional<base::EnuPoint> at, std::optional<double> yaw_rad) noexcept;
+  /// The operator says that the robot stands at a known point: the receiver's positions are moved
+  /// accordingly until the fix class changes (for 2 s). Needs a pose. Counted as a reset.
+  void anchor(base::EnuPoint at, std::optional<int> item) noexcept;
+  void drop_anchor() noexcept;
+
   /// Empty until the first usable fix. Without a known heading the yaw sigma is π.
   std::optional<base::Pose> pose(Time now) const;
   const std::optional<base::LocalFrame>& frame() const noexcept { return frame_; }
@@ -51,66 +69,151 @@ class Estimator {
   const Belief& belief() const noexcept { return belief_; }
 
   bool heading_known() const noexcept { return heading_known_; }
+  base::Alignment alignment() const noexcept;
   bool standing() const noexcept { return standing_; }
-  /// Stamp of the last position that was fused.
+  /// The yaw rate comes from a gyro.
+  bool gyro() const noexcept { return gyro_used_; }
+  /// Stamp of the last position that was fused, or told by the operator.
   std::optional<Time> last_position() const noexcept { return last_fused_; }
   double yaw_scale() const noexcept { return belief_.x(kYawScale); }
   double pull_1pm() const noexcept { return belief_.x(kPull); }
+  /// All turning since the start, without the jumps of corrections; not wrapped.
+  double turned_rad() const noexcept { return sums_.turned_rad; }
+  /// All way since the start, backwards negative, likewise.
+  double driven_m() const noexcept { return sums_.ahead_m; }
+  /// By a device, or by gyro and accelerometer; empty: nothing tells.
+  std::optional<base::Attitude> attitude(Time now) const noexcept { return tilt_.at(now); }
 
  private:
+  using Input = base::InputHealth;
+  struct Arm {  ///< from the centre of rotation to the antenna, in ENU
+    double east_m, north_m;
+  };
+
   void take(const base::GnssFix& fix);
   void take(const base::GnssVelocity& velocity);
   void take(const base::Heading& heading);
+  void take(const base::Inertial& inertial);
+  void take(const base::Attitude& attitude);
   void take(const base::WheelTravel& travel);
   void take(const base::BaseMotion& motion);
+  void take(const base::MotorState& motor);
 
-  bool in_order(std::optional<Time>& last, Time stamp) noexcept;
-  void step(const Travel& travel, Time stamp) noexcept;
-  void watch_standing(Time stamp) noexcept;
-  void set_drift(const Drift& drift) noexcept;
-  bool settled(const base::GnssFix& fix) noexcept;
-  void first_fix(const base::GnssFix& fix, const GnssQuality& q);
-  void fuse_position(const base::GnssFix& fix, const GnssQuality& q) noexcept;
-  void position_refused(const base::GnssFix& fix, const GnssQuality& q, double off_m) noexcept;
-  void reset_position(base::EnuPoint at, const GnssQuality& q) noexcept;
-  void fuse_velocity(const base::GnssVelocity& velocity, double sigma_mps) noexcept;
-  void fuse_course(const base::GnssVelocity& velocity, double sigma_mps) noexcept;
-  void velocity_refused(const base::GnssVelocity& v, double ahead_mps, double sigma_mps) noexcept;
-  void set_heading(double yaw_rad, double sigma_rad) noexcept;
-  void reject() noexcept { ++rejected_; }
+  bool in_order(Input& input, std::optional<Time>& last, Time stamp) noexcept;
+  void refuse(Input& input, base::Refusal why) noexcept;
   template <int M>
-  bool apply(const Observation<M>& o) noexcept;
+  bool apply(Input& input, const Observation<M>& o) noexcept;
+
+  // estimator.cpp: time, tracks, gyro
+  void step(const Travel& travel, Time stamp) noexcept;
+  void watch_standing(const Travel& travel, Time stamp) noexcept;
+  bool gyro_stands(Time stamp) const noexcept;
+  void learn_gyro_bias(Time stamp) noexcept;
+  void learn_tracks(const Travel& travel) noexcept;
+  void remember(Time stamp) noexcept;
   bool has_odometry(Time at) const noexcept;
   Coast coast(Time now) const noexcept;
+  void watch_alignment() noexcept;
+  bool settled_in(std::optional<Time> since) const noexcept;
+
+  // heading.cpp
+  void first_heading(double yaw_rad, double sigma_rad, bool compass) noexcept;
+  void fuse_compass(const base::Heading& heading, const StateVector& at) noexcept;
+  void fuse_antennas(const base::Heading& heading, const StateVector& at) noexcept;
+  void set_heading(double yaw_rad, double sigma_rad) noexcept;
+  double shown_bias_rad(const StateVector& x) const noexcept;
+
+  // position.cpp
+  bool settled(const base::GnssFix& fix) noexcept;
+  void change_class(const base::GnssFix& fix, const GnssQuality& q) noexcept;
+  void first_fix(const base::GnssFix& fix, const GnssQuality& q);
+  void fuse_position(const base::GnssFix& fix, const GnssQuality& q) noexcept;
+  void approach(Observation<2>& o) noexcept;
+  void position_refused(const base::GnssFix& fix, const GnssQuality& q, double off_m) noexcept;
+  void reset_position(base::EnuPoint at, const GnssQuality& q) noexcept;
+  base::EnuPoint local(const base::GnssFix& fix) const noexcept;
+  Arm arm(double yaw_rad) const noexcept;
+  Time taken_at(Time stamp) const noexcept;
+
+  // velocity.cpp
+  void fuse_velocity(const base::GnssVelocity& velocity, double sigma_mps) noexcept;
+  void fuse_course(const base::GnssVelocity& velocity, double sigma_mps) noexcept;
+  void fuse_vector(const base::GnssVelocity& velocity, double sigma_mps, const Past& at,
+                   const base::BodyTwist& odometry) noexcept;
+  bool align(const base::GnssVelocity& velocity, double sigma_mps, const Past& at,
+             const base::BodyTwist& odometry) noexcept;
+  void velocity_refused(const base::GnssVelocity& v, double ahead_mps, double sigma_mps) noexcept;
+
+  // place.cpp
+  void move(base::EnuPoint to, double sigma_m) noexcept;
+  void note_reset(std::string_view what, const Belief& before) noexcept;
+  std::string_view advice() const noexcept;
 
   EstimateParams params_;
+  GnssLimits limits_;
   Belief belief_;
   History history_;
+  Gyro gyro_;
+  Tilt tilt_;
+  Arrival arrival_;
+  Receivers receivers_;
   std::optional<base::LocalFrame> frame_;
   std::uint32_t next_frame_id_ = 1;
   bool located_ = false;
   bool heading_known_ = false;
   bool standing_ = false;
   bool has_moved_ = false;
+  bool gyro_used_ = false;
+  bool approaching_ = false;  ///< a better fix class, slowly
+  bool placed_ = false;
+  base::Alignment alignment_ = base::Alignment::Unknown;
 
   Time now_{};                     ///< of this tick
   std::optional<Time> filter_at_;  ///< the belief's time
   Past sums_;                      ///< travel since the start
-  Time moved_at_{};                ///< last time the tracks moved
-  base::BodyTwist tracks_{};       ///< present speed by the tracks, unscaled
+  Travel untold_;                  ///< travel of which gyro and tracks were not compared yet
+  double untold_turned_rad_ = 0.0;
+  double free_m_ = 0.0;
+  Time moved_at_{};           ///< last time the tracks moved, or the gyro turned
+  Time bias_learned_at_{};    ///< likewise for the gyro's bias
+  base::BodyTwist tracks_{};  ///< present speed by the tracks, unscaled
   std::optional<Time> tracks_at_;
   std::optional<base::GnssVelocity> velocity_;
+  double late_s_ = 0.0;  ///< of the last fix, beyond the usual latency
 
-  std::optional<Time> last_travel_, last_motion_, last_fix_, last_velocity_, last_heading_;
-  std::optional<Time> last_fused_, last_heading_fused_;
+  struct Current {
+    double ampere = 0.0;
+    std::optional<Time> stamp;
+  };
+  Current left_, right_;  ///< motor currents as the compass feels them
+
+  std::optional<Time> last_travel_, last_motion_, last_fix_, last_velocity_;
+  std::optional<Time> last_compass_, last_antennas_, last_inertial_, last_fused_;
+  std::optional<Time> located_since_, heading_since_, pivot_at_;
   std::optional<Time> position_off_since_, velocity_off_since_, compass_off_since_;
-  std::optional<Time> far_off_since_;
+  std::optional<Time> antennas_off_since_, far_off_since_, anchor_off_since_;
   base::FixType fix_type_ = base::FixType::None;
+  base::FixType fused_type_ = base::FixType::None;
+  base::FixType anchor_type_ = base::FixType::None;
   Time fix_type_since_{};
+  Time approach_until_{};
   std::optional<double> alt_msl_m_;
   Drift drift_{};
-  std::uint64_t rejected_ = 0;
-  std::uint64_t resets_ = 0;
+
+  base::EstimatorHealth health_;  ///< counts and inputs; the rest is filled in when asked
 };
+
+/// Updates the belief and the recent past; notes the innovation, used or not.
+template <int M>
+bool Estimator::apply(Input& input, const Observation<M>& o) noexcept {
+  StateVector change;
+  double nis = 0.0;
+  const bool used = update(belief_, o, change, nis);
+  if (std::isfinite(nis)) {
+    input.innovation = base::Innovation{M == 1 ? o.innovation(0) : o.innovation.norm(), nis};
+  }
+  if (used) history_.shift(change);
+  return used;
+}
 
 }  // namespace roverd::nav

@@ -3,7 +3,10 @@
 
 #include <optional>
 
+#include <tl/expected.hpp>
+
 #include "base/measurements.hpp"
+#include "base/snapshot.hpp"
 #include "nav/estimate/ekf.hpp"
 
 namespace roverd::nav {
@@ -12,20 +15,30 @@ struct GnssQuality {
   double sigma_east_m = 0.0;  ///< white noise, 1σ
   double sigma_north_m = 0.0;
   Drift drift;  ///< slow part on top of it
-  double velocity_sigma_mps = 0.0;
 };
 
-/// Empty: not to be used (no fix, dead reckoning, unknown class, no or invalid position).
-/// | class     | white floor | drift      | velocity |
-/// | rtk_fixed | 0.015 m     | none       | 0.05 m/s |
-/// | rtk_float | 0.25 m      | 0.3 m 60 s | 0.10 m/s |
-/// | dgps      | 0.5 m       | 0.6 m 100 s| 0.10 m/s |
-/// | gps       | 1.0 m       | 1.2 m 90 s | 0.15 m/s |
-/// The white part is the larger of floor × hdop (hdop above 1 only) and the receiver's own figure.
+/// Below (above) these a fix is not used, where the receiver tells.
+struct GnssLimits {
+  int satellites_min = 6;
+  double hdop_max = 2.5;
+  double sigma_max_m = 3.0;
+  double drift_scale = 1.0;  ///< multiplies the drift
+};
+
+/// Why not: empty for what is no fix at all (none, dead reckoning, unknown class, no position).
+using NoQuality = std::optional<base::Refusal>;
+
+/// The whole error is the receiver's own figure, at least `least`; without one that of `typical`
+/// times hdop (above 1). It is white only in part: the rest wanders within a minute.
+/// | class     | least   | typical | white | drift | tau   |
+/// | rtk_fixed | 0.015 m | 0.015 m | all   | none  |       |
+/// | rtk_float | 0.1 m   | 0.35 m  | 1/4   | all   | 60 s  |
+/// | dgps      | 0.3 m   | 0.8 m   | 1/4   | all   | 100 s |
+/// | gps       | 0.5 m   | 1.2 m   | 1/4   | all   | 60 s  |
+/// Sources: D. L. Wilson, GPS error correlation; Sensors 2020, 20(21) 6050; limits as PX4's.
 /// @param settled false during the first seconds of a new RTK fix, which may still be a wrong one.
-/// @param drift_scale multiplies the drift.
-std::optional<GnssQuality> gnss_quality(const base::GnssFix& fix, bool settled,
-                                        double drift_scale) noexcept;
+tl::expected<GnssQuality, NoQuality> gnss_quality(const base::GnssFix& fix, bool settled,
+                                                  const GnssLimits& limits) noexcept;
 
 /// Velocity noise of a class when the receiver gives none; never below 0.05 m/s.
 double velocity_sigma_mps(base::FixType fix, std::optional<double> reported_mps) noexcept;

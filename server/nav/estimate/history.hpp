@@ -14,8 +14,8 @@ namespace roverd::nav {
 struct Past {
   base::Time stamp;
   StateVector x = StateVector::Zero();
-  double ahead_m = 0.0;   ///< sum of all travel as the tracks measure it
-  double turn_rad = 0.0;  ///< sum of all turning, likewise, not wrapped
+  double ahead_m = 0.0;     ///< sum of all travel as the tracks measure it
+  double turned_rad = 0.0;  ///< sum of all turning as it was believed then, not wrapped
 };
 
 /// A ring of 64 states, about 1.3 s at 50 Hz. Oldest goes first. No allocation.
@@ -65,7 +65,7 @@ class History {
     p.x = a.x + part * (b.x - a.x);
     p.x(kYaw) = base::wrap_rad(a.x(kYaw) + part * base::angle_diff_rad(a.x(kYaw), b.x(kYaw)));
     p.ahead_m = a.ahead_m + part * (b.ahead_m - a.ahead_m);
-    p.turn_rad = a.turn_rad + part * (b.turn_rad - a.turn_rad);
+    p.turned_rad = a.turned_rad + part * (b.turned_rad - a.turned_rad);
     return p;
   }
 

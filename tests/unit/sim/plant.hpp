@@ -43,6 +43,7 @@ inline Params ideal() {
   p.drive.pivot_centre_m = p.drive.stick_mps = 0.0;
   p.gnss.noise_scale = 0.0;
   p.compass.bias_deg = p.compass.noise_deg = p.compass.kick_deg_per_a = 0.0;
+  p.imu.fitted = false;
   return p;
 }
 

@@ -1,0 +1,136 @@
+// What the operator tells of the place, and what the estimator tells of itself.
+
+#include <cmath>
+
+#include "base/angle.hpp"
+#include "nav/estimate/estimator.hpp"
+
+namespace roverd::nav {
+namespace {
+
+using base::Alignment;
+using base::rad_from_deg;
+
+constexpr double kPlaced_m = 0.10;    // how well a person says where it stands
+constexpr double kAnchored_m = 0.15;  // and drives it onto a point
+const double kPlaced_rad = rad_from_deg(3.0);
+const double kHint_rad = rad_from_deg(20.0);  // less certain: hardly more than a guess
+constexpr double kLeaveAligned = 1.5;         // hysteresis
+
+}  // namespace
+
+void Estimator::note_reset(std::string_view what, const Belief& before) noexcept {
+  ++health_.resets;
+  base::EstimateReset reset;
+  reset.what = what;
+  if (located_) {
+    reset.jump = {before.x(kEast) - belief_.x(kEast), before.x(kNorth) - belief_.x(kNorth)};
+  }
+  reset.jump_rad = base::angle_diff_rad(belief_.x(kYaw), before.x(kYaw));
+  reset.stamp = now_;
+  health_.last_reset = reset;
+}
+
+void Estimator::move(base::EnuPoint to, double sigma_m) noexcept {
+  StateVector change = StateVector::Zero();
+  change(kEast) = to.east_m - belief_.x(kEast);
+  change(kNorth) = to.north_m - belief_.x(kNorth);
+  reset_state(belief_, kEast, to.east_m, sigma_m);
+  reset_state(belief_, kNorth, to.north_m, sigma_m);
+  history_.shift(change);
+}
+
+void Estimator::place(std::optional<base::EnuPoint> at, std::optional<double> yaw_rad) noexcept {
+  const Belief before = belief_;
+  if (at) {
+    move(*at, kPlaced_m);
+    // The receiver may mean another place: its offset is open.
+    for (const StateIndex i : {kDriftE, kDriftN}) reset_state(belief_, i, 0.0, drift_.sigma_m);
+    if (!located_) located_since_ = now_;
+    located_ = true;
+    placed_ = true;
+    last_fused_ = now_;
+    free_m_ = 0.0;
+    approaching_ = false;
+    position_off_since_.reset();
+    far_off_since_.reset();
+  }
+  if (yaw_rad) {
+    set_heading(*yaw_rad, kPlaced_rad);
+    reset_state(belief_, kBias, belief_.x(kBias), rad_from_deg(params_.compass_bias_sigma_deg));
+    velocity_off_since_.reset();
+    compass_off_since_.reset();
+  }
+  note_reset("pose", before);
+}
+
+void Estimator::anchor(base::EnuPoint at, std::optional<int> item) noexcept {
+  const Belief before = belief_;
+  const base::EnuPoint here{belief_.x(kEast), belief_.x(kNorth)};
+  base::Anchor a;
+  a.offset = at - here;
+  if (health_.anchor) a.offset = a.offset + health_.anchor->offset;
+  a.at = frame_->to_global(at);
+  a.item = item;
+  a.stamp = now_;
+  health_.anchor = a;
+  anchor_type_ = fused_type_;
+  anchor_off_since_.reset();
+  move(at, kAnchored_m);
+  note_reset("anchor", before);
+}
+
+void Estimator::drop_anchor() noexcept {
+  if (!health_.anchor) return;
+  // Nothing jumps: the receiver's own position is approached slowly.
+  const base::EnuPoint off = health_.anchor->offset;
+  belief_.P(kEast, kEast) += off.east_m * off.east_m;
+  belief_.P(kNorth, kNorth) += off.north_m * off.north_m;
+  health_.anchor.reset();
+  anchor_off_since_.reset();
+  approaching_ = true;
+  approach_until_ = now_ + std::chrono::seconds(20);
+}
+
+void Estimator::watch_alignment() noexcept {
+  const double sigma_rad = heading_known_ ? std::sqrt(belief_.P(kYaw, kYaw)) : base::kPi;
+  const bool was = alignment_ == Alignment::Aligned;
+  const double enough = rad_from_deg(params_.aligned_deg) * (was ? kLeaveAligned : 1.0);
+  alignment_ = sigma_rad <= enough      ? Alignment::Aligned
+               : sigma_rad <= kHint_rad ? Alignment::Aligning
+                                        : Alignment::Unknown;
+}
+
+base::Alignment Estimator::alignment() const noexcept {
+  return alignment_;
+}
+
+/// For a driver.
+std::string_view Estimator::advice() const noexcept {
+  if (!located_) return "wait for a position: put the robot where it sees the sky";
+  if (alignment_ == Alignment::Aligned) return {};
+  const bool velocity = velocity_ && now_ - velocity_->stamp < std::chrono::seconds(2);
+  if (!velocity) return "say where the robot points, or drive it where its receiver sees the sky";
+  return standing_ || !has_moved_ ? "drive 3 m straight to find the heading"
+                                  : "drive on straight: the heading is being found";
+}
+
+base::EstimatorHealth Estimator::health() const noexcept {
+  base::EstimatorHealth h = health_;
+  h.alignment = alignment_;
+  h.advice = advice();
+  h.gyro = gyro_used_;
+  if (last_inertial_) h.gyro_bias_radps = belief_.x(kGyroBias);
+  h.compass_bias_rad = belief_.x(kBias);
+  h.odometry_scale = belief_.x(kScale);
+  h.pull_1pm = belief_.x(kPull);
+  if (located_ && drift_.sigma_m > 0.0) {
+    h.gnss_offset = base::EnuPoint{belief_.x(kDriftE), belief_.x(kDriftN)};
+  }
+  h.receivers_disagree = receivers_.disagree();
+  h.free_m = free_m_;
+  h.placed = placed_;
+  return h;
+}
+
+}  // namespace roverd::nav

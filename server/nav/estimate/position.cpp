@@ -1,0 +1,228 @@
+// Positions of the receiver: what a fix says, and what happens when it is not believed.
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/angle.hpp"
+#include "nav/estimate/estimator.hpp"
+
+namespace roverd::nav {
+namespace {
+
+using base::Refusal;
+using base::seconds;
+
+constexpr base::Duration kSettled = std::chrono::seconds(3);
+constexpr base::Duration kAnchorClass = std::chrono::seconds(2);
+constexpr base::Duration kApproach = std::chrono::seconds(20);
+constexpr double kApproach_mps = 0.25;  // to a better fix class: slower than the robot steers
+constexpr double kFar_m = 25.0;
+constexpr double kDoubtAfter_s = 2.0;
+constexpr double kResetAfter_s = 10.0;
+constexpr double kDoubt_m2ps = 0.05;  // slow enough not to believe a jump of 3 m within 5 s
+
+bool long_ago(const std::optional<base::WallTime>& utc) noexcept {
+  using std::chrono::sys_days, std::chrono::year;
+  return utc && *utc < sys_days{year{2015} / 1 / 1};
+}
+
+}  // namespace
+
+bool Estimator::settled(const base::GnssFix& fix) noexcept {
+  if (fix.fix != fix_type_) {
+    fix_type_ = fix.fix;
+    fix_type_since_ = fix.stamp;
+  }
+  return fix.stamp - fix_type_since_ >= kSettled;
+}
+
+/// The receiver's position in the robot's frame, moved by the anchor.
+base::EnuPoint Estimator::local(const base::GnssFix& fix) const noexcept {
+  const base::EnuPoint at = frame_->to_local(*fix.position);
+  return health_.anchor ? at + health_.anchor->offset : at;
+}
+
+/// E: ENU at the datum. B: body. A: antenna. p_EA = p_EB + R_EB · p_BA, leaning included.
+Estimator::Arm Estimator::arm(double yaw_rad) const noexcept {
+  double forward_m = params_.antenna_forward_m;
+  double left_m = params_.antenna_left_m;
+  if (params_.antenna_up_m > 0.0) {
+    if (const auto lean = tilt_.at(now_)) {
+      // Nose up, the mast leans back; right side down, it leans to the right.
+      forward_m -= params_.antenna_up_m * std::sin(lean->pitch_rad);
+      left_m -= params_.antenna_up_m * std::sin(lean->roll_rad);
+    }
+  }
+  const double c = std::cos(yaw_rad);
+  const double s = std::sin(yaw_rad);
+  return {c * forward_m - s * left_m, s * forward_m + c * left_m};
+}
+
+/// When the receiver measured what arrived then.
+Time Estimator::taken_at(Time stamp) const noexcept {
+  return stamp - base::from_seconds(params_.gnss_latency_s + late_s_);
+}
+
+void Estimator::take(const base::GnssFix& fix) {
+  Input& in = health_.position;
+  if (!in_order(in, last_fix_, fix.stamp)) return;
+  const bool is_settled = settled(fix);
+  const auto quality = gnss_quality(fix, is_settled, limits_);
+  if (!quality) {
+    if (quality.error()) refuse(in, *quality.error());
+    return;
+  }
+  if (long_ago(fix.utc)) return refuse(in, Refusal::Date);
+  if (frame_) receivers_.put(frame_->to_local(*fix.position), fix.stamp);
+  if (receivers_.disagree()) return refuse(in, Refusal::Receivers);
+  const auto late_s = arrival_.late_s(fix.stamp, fix.utc);
+  if (!late_s) return refuse(in, Refusal::Stamp);
+  late_s_ = *late_s;
+  if (fix.alt_msl_m && std::isfinite(*fix.alt_msl_m)) alt_msl_m_ = fix.alt_msl_m;
+  if (!located_) {
+    first_fix(fix, *quality);
+    in.refused_since.reset();
+    return;
+  }
+  change_class(fix, *quality);
+  fuse_position(fix, *quality);
+}
+
+/// A worse fix: the position stays, and the offset of the new class is open. A better one: the
+/// position is as uncertain as it was, and moves there slowly.
+void Estimator::change_class(const base::GnssFix& fix, const GnssQuality& q) noexcept {
+  if (health_.anchor) {
+    if (fix.fix == anchor_type_) anchor_off_since_.reset();
+    if (fix.fix != anchor_type_ && !anchor_off_since_) anchor_off_since_ = fix.stamp;
+    if (anchor_off_since_ && fix.stamp - *anchor_off_since_ >= kAnchorClass) drop_anchor();
+  }
+  drift_ = q.drift;
+  if (fix.fix == fused_type_) return;
+  if (fix.fix > fused_type_) {
+    approaching_ = true;
+    approach_until_ = fix.stamp + kApproach;
+  }
+  fused_type_ = fix.fix;
+  for (const StateIndex i : {kDriftE, kDriftN}) reset_state(belief_, i, 0.0, q.drift.sigma_m);
+}
+
+void Estimator::first_fix(const base::GnssFix& fix, const GnssQuality& q) {
+  const bool reachable =
+      frame_ && base::distance_bearing(frame_->origin(), *fix.position).distance_m <
+                    base::LocalFrame::kReach_m;
+  if (!reachable) frame_.emplace(next_frame_id_, *fix.position);
+  drift_ = q.drift;
+  fused_type_ = fix.fix;
+  reset_position(local(fix), q);
+  located_ = true;
+  located_since_ = fix.stamp;
+  last_fused_ = fix.stamp;
+  free_m_ = 0.0;
+  placed_ = false;
+}
+
+void Estimator::reset_position(base::EnuPoint at, const GnssQuality& q) noexcept {
+  const double drift_var = q.drift.sigma_m * q.drift.sigma_m;
+  const Arm to_antenna = arm(belief_.x(kYaw));
+  const double arm_m = std::hypot(to_antenna.east_m, to_antenna.north_m);
+  if (heading_known_) at = at - base::EnuPoint{to_antenna.east_m, to_antenna.north_m};
+  const double unknown_m = heading_known_ ? 0.0 : arm_m;
+  StateVector change = StateVector::Zero();
+  change(kEast) = at.east_m - belief_.x(kEast);
+  change(kNorth) = at.north_m - belief_.x(kNorth);
+  reset_state(belief_, kEast, at.east_m, std::hypot(q.sigma_east_m, q.drift.sigma_m, unknown_m));
+  reset_state(belief_, kNorth, at.north_m, std::hypot(q.sigma_north_m, q.drift.sigma_m, unknown_m));
+  reset_state(belief_, kDriftE, 0.0, q.drift.sigma_m);
+  reset_state(belief_, kDriftN, 0.0, q.drift.sigma_m);
+  // What the drift is more than thought, the position is less.
+  belief_.P(kEast, kDriftE) = belief_.P(kDriftE, kEast) = -drift_var;
+  belief_.P(kNorth, kDriftN) = belief_.P(kDriftN, kNorth) = -drift_var;
+  history_.shift(change);
+}
+
+void Estimator::fuse_position(const base::GnssFix& fix, const GnssQuality& q) noexcept {
+  Input& in = health_.position;
+  const auto past = history_.at(taken_at(fix.stamp));
+  const StateVector& at = past ? past->x : belief_.x;
+  const Arm to_antenna = arm(at(kYaw));
+  const base::EnuPoint z = local(fix);
+
+  Observation<2> o;
+  o.innovation << z.east_m - at(kEast) - at(kDriftE) - to_antenna.east_m,
+      z.north_m - at(kNorth) - at(kDriftN) - to_antenna.north_m;
+  o.H(0, kEast) = o.H(1, kNorth) = 1.0;
+  if (q.drift.sigma_m > 0.0) o.H(0, kDriftE) = o.H(1, kDriftN) = 1.0;
+  if (heading_known_) {
+    // The present yaw turns the way since then as well: an antenna that trails behind.
+    const double behind_e = at(kEast) - belief_.x(kEast);
+    const double behind_n = at(kNorth) - belief_.x(kNorth);
+    o.H(0, kYaw) = -(to_antenna.north_m + behind_n);
+    o.H(1, kYaw) = to_antenna.east_m + behind_e;
+  }
+  o.R(0, 0) = q.sigma_east_m * q.sigma_east_m;
+  o.R(1, 1) = q.sigma_north_m * q.sigma_north_m;
+  o.gate = kGate2;
+  if (approaching_) approach(o);
+  if (standing_) {
+    const bool hold = settled_in(located_since_) && q.drift.sigma_m > 0.0 && !approaching_;
+    o.may_change.setZero();
+    o.may_change(kDriftE) = o.may_change(kDriftN) = 1.0;
+    if (!hold) o.may_change(kEast) = o.may_change(kNorth) = 1.0;
+  }
+  if (apply(in, o)) {
+    in.refused_since.reset();
+    last_fused_ = fix.stamp;
+    free_m_ = 0.0;
+    placed_ = false;
+    position_off_since_.reset();
+    far_off_since_.reset();
+    return;
+  }
+  refuse(in, Refusal::Jump);
+  position_refused(fix, q, o.innovation.norm());
+}
+
+/// Weakens a fix so much that it moves the estimate no faster than it may. With y what is missing
+/// and p the variance of it, the gain p/(p + R) must not exceed step/y.
+void Estimator::approach(Observation<2>& o) noexcept {
+  const double off_m = o.innovation.norm();
+  const double floor_m = std::sqrt(std::max(o.R(0, 0), o.R(1, 1)));
+  if (off_m < 2.0 * floor_m + 0.03 || now_ > approach_until_) {
+    approaching_ = false;
+    return;
+  }
+  const double since_s = last_fused_ ? std::clamp(seconds(now_ - *last_fused_), 0.02, 0.5) : 0.2;
+  const double step_m = kApproach_mps * since_s;
+  const Eigen::Matrix2d p = o.H * belief_.P * o.H.transpose();
+  const double variance = std::max(p(0, 0), p(1, 1));
+  if (off_m <= step_m) return;
+  const double least = variance * (off_m / step_m - 1.0);
+  o.R(0, 0) = std::max(o.R(0, 0), least);
+  o.R(1, 1) = std::max(o.R(1, 1), least);
+}
+
+void Estimator::position_refused(const base::GnssFix& fix, const GnssQuality& q,
+                                 double off_m) noexcept {
+  if (!position_off_since_) position_off_since_ = fix.stamp;
+  if (off_m <= kFar_m) far_off_since_.reset();
+  if (off_m > kFar_m && !far_off_since_) far_off_since_ = fix.stamp;
+  const double off_s = seconds(fix.stamp - *position_off_since_);
+  const bool far = far_off_since_ && fix.stamp - *far_off_since_ >= std::chrono::seconds(1);
+  if (off_s >= kResetAfter_s || far) {
+    const Belief before = belief_;
+    reset_position(local(fix), q);
+    note_reset("position", before);
+    position_off_since_.reset();
+    far_off_since_.reset();
+    health_.position.refused_since.reset();
+    last_fused_ = fix.stamp;
+    free_m_ = 0.0;
+    placed_ = false;
+  } else if (off_s > kDoubtAfter_s) {
+    const double more = kDoubt_m2ps * 0.2;
+    belief_.P(kEast, kEast) += more;
+    belief_.P(kNorth, kNorth) += more;
+  }
+}
+
+}  // namespace roverd::nav
