@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kNearStart_m = 0.5;
 constexpr double kBack_m = 0.3;       // so far the matched place may look back
-constexpr double kNearEnd_m = 0.5;    // of a leg, before the next one may begin
+constexpr double kNearEnd_m = 1.5;    // of a leg, before the next one may begin
 constexpr double kMoving_mps = 0.02;  // slower, the sign of a speed says nothing
 constexpr double kCornerReach_m = 2.5;
 constexpr double kTrim_m = 1.0;

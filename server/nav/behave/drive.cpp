@@ -12,6 +12,13 @@ namespace {
 using base::ExecutionState;
 
 constexpr double kThere_m = 0.05;  // nearer than this there is nothing to drive
+constexpr double kThereVaguely_m = 0.3;
+constexpr double kVague_m = 0.1;  // of the position's sigma
+
+/// A robot that does not know its place to the decimetre is not sent round for one.
+double there_m(const Vehicle& vehicle) {
+  return vehicle.sigma_m > kVague_m ? std::clamp(vehicle.sigma_m, kThereVaguely_m, 0.5) : kThere_m;
+}
 
 std::string tenths(double m) {
   const long rounded = std::lround(m * 10.0);
@@ -136,7 +143,7 @@ bool Executor::connect(EnuPoint to, const RouteNode* node, const Vehicle& vehicl
   const Vertex both[] = {{from, end.speed_mps, end.reverse, false, mission::Turn::Auto, 0.1}, end};
   connector_ = build_path(both, path_params_);
   rejoin_.reset();
-  if (connector_.legs.empty() || connector_.length_m() < kThere_m) return false;
+  if (connector_.legs.empty() || connector_.length_m() < there_m(vehicle)) return false;
   doing_ = Doing::Connector;
   drove_ = true;
   tracker_.begin(connector_, 0, 0.0);
@@ -295,8 +302,8 @@ void Executor::watch(const Vehicle& vehicle, double dt_s) {
 
 void Executor::watch_stuck(const Vehicle& vehicle, double dt_s) {
   const TrackPhase phase = tracker_.phase();
-  const bool driving = phase == TrackPhase::Follow || phase == TrackPhase::Pivot ||
-                       phase == TrackPhase::Turn;
+  const bool driving =
+      phase == TrackPhase::Follow || phase == TrackPhase::Pivot || phase == TrackPhase::Turn;
   const bool moved = base::distance_m(vehicle.at, stuck_at_.at) > params_.stuck_m ||
                      std::abs(base::angle_diff_rad(stuck_at_.yaw_rad, vehicle.yaw_rad)) >
                          base::rad_from_deg(params_.stuck_deg);

@@ -16,6 +16,7 @@ using base::rad_from_deg;
 constexpr double kTightest_1pm = 1.0 / 0.25;
 const double kAstray_rad = rad_from_deg(60.0);
 constexpr double kAstrayFor_s = 0.3;
+constexpr double kRest_s = 0.2;
 const double kAside_rad = rad_from_deg(5.0);  // of the course, that is no reason to be slower
 const double kBehind_rad = rad_from_deg(150.0);
 
@@ -34,10 +35,14 @@ Vehicle Tracker::predict(const Vehicle& now, double dt_s) const noexcept {
   if (dt_s <= 0.0) return v;
   const auto steps = std::min<std::size_t>(
       sent_.size(), static_cast<std::size_t>(std::lround(params_.track.delay_s / dt_s)));
+  // A base that brakes a turn more slowly than told goes on with the rest of it for a while.
+  const base::BodyTwist then = sent_before(params_.track.delay_s, dt_s);
+  double rest_radps = now.yaw_rate_radps - then.angular_radps - observer_.radps();
+  const double keep = std::exp(-dt_s / kRest_s);
   for (std::size_t k = steps; k-- > 0;) {
     const base::BodyTwist& t = sent_[(sent_at_ + sent_.size() - k) % sent_.size()];
-    const bool moves = t.linear_mps != 0.0 || t.angular_radps != 0.0;
-    const double rate = t.angular_radps + (moves ? observer_.radps() : 0.0);
+    const double rate = t.angular_radps + observer_.radps() + rest_radps;
+    rest_radps *= keep;
     const double middle = v.yaw_rad + 0.5 * rate * dt_s;
     v.at.east_m += t.linear_mps * dt_s * std::cos(middle);
     v.at.north_m += t.linear_mps * dt_s * std::sin(middle);
@@ -179,11 +184,12 @@ TrackOutput Tracker::drive(const Vehicle& v, SpeedLimit limit, double curvature_
   const double from = std::abs(speed_mps_);
   const double speed = speed_up_or_down(limit.mps, dt_s);
   if (speed > from && speed < limit.mps) limit.reason = SpeedReason::Accel;
-  const double turn_step = params_.speed.yaw_accel_radps2 * dt_s;
+  const double turn_up = params_.speed.yaw_accel_radps2 * dt_s;
+  const double turn_down = params_.speed.yaw_decel_radps2 * dt_s;
   const double wanted = speed * curvature_1pm;
   const double rate = params_.vehicle.steered()
                           ? wanted  // the wheels' angle was limited, and the speed is
-                          : slew(rate_radps_, wanted, turn_step, turn_step);
+                          : slew(rate_radps_, wanted, turn_up, turn_down);
   return command(v, leg_now().reverse ? -speed : speed, rate, limit.reason);
 }
 

@@ -94,6 +94,7 @@ struct SpeedParams {
   double lateral_mps2 = 0.5;
   double max_yaw_rate_radps = 0.78;
   double yaw_accel_radps2 = 1.5;
+  double yaw_decel_radps2 = 1.0;
   double heading_sigma_deg = 4.0;
 };
 
@@ -111,7 +112,9 @@ void fields(V& v, SpeedParams& p) {
     "slowing down for a pause or a lost condition");
   v("lateral_mps2", p.lateral_mps2, 0.05, 5.0, "sideways acceleration allowed in bends");
   v("max_yaw_rate_radps", p.max_yaw_rate_radps, 0.1, 5.0, "largest turn rate ever commanded");
-  v("yaw_accel_radps2", p.yaw_accel_radps2, 0.1, 20.0, "largest change of the turn rate");
+  v("yaw_accel_radps2", p.yaw_accel_radps2, 0.1, 20.0, "change of the turn rate while it grows");
+  v("yaw_decel_radps2", p.yaw_decel_radps2, 0.1, 20.0,
+    "and while it falls; a skid-steer brakes half as hard as it accelerates");
   v("heading_sigma_deg", p.heading_sigma_deg, 0.5, 90.0,
     "less certain of the heading than this, the robot creeps");
 }
@@ -120,7 +123,7 @@ struct PivotParams {
   double angle_deg = 30.0;
   double done_deg = 2.0;
   double max_rate_radps = 0.6;
-  double decel_radps2 = 0.5;
+  double decel_radps2 = 0.42;
   double slew_radps2 = 1.2;
   double timeout_s = 30.0;
 };

@@ -39,6 +39,7 @@ struct Vehicle {
   double odometry_scale = 1.0;  ///< true over track speed
   double yaw_scale = 1.0;       ///< true over track turn rate
   double pull_1pm = 0.0;        ///< turn per metre on straight tracks
+  double sigma_m = 0.0;         ///< of the position
 };
 
 enum class TrackPhase { Idle, Settle, Pivot, Follow, Stop, Turn, Done };
