@@ -15,8 +15,10 @@ constexpr double kThere_m = 0.05;  // nearer than this there is nothing to drive
 constexpr double kThereVaguely_m = 0.3;
 constexpr double kVague_m = 0.1;  // of the position's sigma
 
-/// A robot that does not know its place to the decimetre is not sent round for one.
-double there_m(const Vehicle& vehicle) {
+/// A robot that does not know its place to the decimetre, or cannot move aside, is not sent round
+/// for one.
+double there_m(const Vehicle& vehicle, const VehicleParams& params) {
+  if (params.steered()) return 0.5;
   return vehicle.sigma_m > kVague_m ? std::clamp(vehicle.sigma_m, kThereVaguely_m, 0.5) : kThere_m;
 }
 
@@ -143,7 +145,8 @@ bool Executor::connect(EnuPoint to, const RouteNode* node, const Vehicle& vehicl
   const Vertex both[] = {{from, end.speed_mps, end.reverse, false, mission::Turn::Auto, 0.1}, end};
   connector_ = build_path(both, path_params_);
   rejoin_.reset();
-  if (connector_.legs.empty() || connector_.length_m() < there_m(vehicle)) return false;
+  if (connector_.legs.empty() || connector_.length_m() < there_m(vehicle, path_params_.vehicle))
+    return false;
   doing_ = Doing::Connector;
   drove_ = true;
   tracker_.begin(connector_, 0, 0.0);

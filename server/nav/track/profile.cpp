@@ -10,7 +10,7 @@ namespace roverd::nav {
 namespace {
 
 constexpr double kOnset_s = 0.2;            // turn rate of a vehicle that turns on the spot
-constexpr double kOnsetDeviation_m = 0.03;  // what the wheels' slowness may cost in a bend
+constexpr double kOnsetDeviation_m = 0.05;  // what the wheels' slowness may cost in a bend
 constexpr double kStanding_s = 0.5;         // until a stop is noticed and the next leg begins
 
 void backward_pass(Path& path, const Leg& leg, const SpeedParams& speed) noexcept {
@@ -76,7 +76,7 @@ double leg_yaw_rad(const Path& path, const Leg& leg, bool at_end) noexcept {
 
 double bend_onset_s(const VehicleParams& vehicle) noexcept {
   if (!vehicle.steered()) return kOnset_s;
-  return std::clamp(vehicle.max_steering_deg / vehicle.max_steering_rate_dps, kOnset_s, 1.5);
+  return std::clamp(2.0 * vehicle.max_steering_deg / vehicle.max_steering_rate_dps, kOnset_s, 3.0);
 }
 
 SpeedLimit bend_limit(double curvature_1pm, const PathParams& params) noexcept {

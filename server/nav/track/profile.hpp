@@ -15,8 +15,8 @@
 
 namespace roverd::nav {
 
-/// How long the vehicle takes from straight ahead to a bend: the yaw rate or the wheels follow so
-/// late, and half of it the tracker begins early.
+/// How long the vehicle takes into a bend: of a steered one, from lock to lock, as one arc may
+/// follow another. The tracker begins half of it early.
 double bend_onset_s(const VehicleParams& vehicle) noexcept;
 
 /// @param curvature_1pm > 0.
