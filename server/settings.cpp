@@ -208,6 +208,12 @@ Result<void> check_all(const Settings& s) {
       !good) {
     return good;
   }
+  if (auto good = check_word(s, "nav.track.law", s.robot.track.law,
+                             {"path_frame", "pure_pursuit", "stanley"},
+                             "path_frame, pure_pursuit or stanley");
+      !good) {
+    return good;
+  }
   if (auto good =
           check_word(s, "server.log_level", s.server.log_level,
                      {"debug", "info", "warning", "error"}, "debug, info, warning or error");

@@ -173,7 +173,8 @@ base::DriveCommand Robot::Impl::drive_mission() {
                              pose->yaw_rate_radps.value_or(0.0),
                              b.x(nav::kScale),
                              b.x(nav::kYawScale),
-                             b.x(nav::kPull)};
+                             b.x(nav::kPull),
+                             pose->horizontal_sigma_m};
   const double limit =
       assessment.response >= Response::Slow ? config.speed.creep_mps : kNoLimit_mps;
   const nav::TrackOutput out = executor.step(vehicle, limit, home_point(), dt_s);

@@ -12,7 +12,15 @@ namespace {
 using base::ExecutionState;
 
 constexpr double kThere_m = 0.05;  // nearer than this there is nothing to drive
-constexpr double kPivotLimit_s = 40.0;
+constexpr double kThereVaguely_m = 0.3;
+constexpr double kVague_m = 0.1;  // of the position's sigma
+
+/// A robot that does not know its place to the decimetre, or cannot move aside, is not sent round
+/// for one.
+double there_m(const Vehicle& vehicle, const VehicleParams& params) {
+  if (params.steered()) return 0.5;
+  return vehicle.sigma_m > kVague_m ? std::clamp(vehicle.sigma_m, kThereVaguely_m, 0.5) : kThere_m;
+}
 
 std::string tenths(double m) {
   const long rounded = std::lround(m * 10.0);
@@ -137,7 +145,8 @@ bool Executor::connect(EnuPoint to, const RouteNode* node, const Vehicle& vehicl
   const Vertex both[] = {{from, end.speed_mps, end.reverse, false, mission::Turn::Auto, 0.1}, end};
   connector_ = build_path(both, path_params_);
   rejoin_.reset();
-  if (connector_.legs.empty() || connector_.length_m() < kThere_m) return false;
+  if (connector_.legs.empty() || connector_.length_m() < there_m(vehicle, path_params_.vehicle))
+    return false;
   doing_ = Doing::Connector;
   drove_ = true;
   tracker_.begin(connector_, 0, 0.0);
@@ -296,7 +305,8 @@ void Executor::watch(const Vehicle& vehicle, double dt_s) {
 
 void Executor::watch_stuck(const Vehicle& vehicle, double dt_s) {
   const TrackPhase phase = tracker_.phase();
-  const bool driving = phase == TrackPhase::Follow || phase == TrackPhase::Pivot;
+  const bool driving =
+      phase == TrackPhase::Follow || phase == TrackPhase::Pivot || phase == TrackPhase::Turn;
   const bool moved = base::distance_m(vehicle.at, stuck_at_.at) > params_.stuck_m ||
                      std::abs(base::angle_diff_rad(stuck_at_.yaw_rad, vehicle.yaw_rad)) >
                          base::rad_from_deg(params_.stuck_deg);
@@ -306,11 +316,10 @@ void Executor::watch_stuck(const Vehicle& vehicle, double dt_s) {
   } else {
     stuck_s_ += dt_s;
   }
-  pivot_s_ = phase == TrackPhase::Pivot ? pivot_s_ + dt_s : 0.0;
   std::string text;
   if (stuck_s_ > params_.stuck_s) {
     text = "no progress for " + std::to_string(std::lround(params_.stuck_s)) + " s";
-  } else if (pivot_s_ > kPivotLimit_s) {
+  } else if (tracker_.turn_timed_out()) {
     text = "a turn on the spot does not come to its end";
   } else {
     return;

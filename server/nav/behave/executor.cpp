@@ -73,7 +73,7 @@ void Executor::begin_at(std::size_t step) {
   at_ = step;
   standing_.reset();
   rejoin_.reset();
-  wait_s_ = lost_s_ = stuck_s_ = pivot_s_ = 0.0;
+  wait_s_ = lost_s_ = stuck_s_ = 0.0;
   returning_ = false;
 }
 
@@ -123,7 +123,7 @@ void Executor::interrupt() noexcept {
     s_m_ = tracker_.s_m();
   }
   tracker_.reset();
-  lost_s_ = stuck_s_ = pivot_s_ = 0.0;
+  lost_s_ = stuck_s_ = 0.0;
   interrupted_ = true;
 }
 

@@ -147,7 +147,6 @@ class Executor {
   bool drove_ = false;      ///< in this lap
   double lost_s_ = 0.0;
   double stuck_s_ = 0.0;
-  double pivot_s_ = 0.0;
   Vehicle stuck_at_;
 };
 

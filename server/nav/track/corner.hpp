@@ -29,6 +29,10 @@ struct Corner {
 /// Yaw of the way from one point to another.
 double direction_rad(EnuPoint from, EnuPoint to) noexcept;
 
+inline bool turning_on_the_spot(const VehicleParams& p) noexcept {
+  return !p.steered();
+}
+
 /// Narrowest turn that the steering allows, with a tenth left to steer with; 0: turns on the spot.
 double min_radius_m(const VehicleParams& p) noexcept;
 

@@ -29,11 +29,22 @@ void fields(V& v, VehicleParams& p) {
     "ackermann: how fast that angle changes");
 }
 
+/// How the robot steers back to its path. The words of `law` (nav/track/law.hpp):
+///   path_frame    feedback of offset and heading on the path's own curvature; the default
+///   pure_pursuit  an arc to a point ahead; calm, cuts corners
+///   stanley       by the front axle; for steered vehicles with clean positions
 struct TrackParams {
+  std::string law = "path_frame";
+  double settle_min_m = 0.45;
+  double settle_time_s = 0.45;
+  double damping = 0.9;
   double lookahead_min_m = 0.6;
   double lookahead_time_s = 1.2;
   double lookahead_max_m = 2.0;
+  double stanley_gain_1ps = 1.5;
   double delay_s = 0.15;
+  double observer_s = 1.0;
+  double observer_max_radps = 0.25;
   double corner_deviation_m = 0.10;
   double through_deviation_m = 0.5;
   double arrive_m = 0.04;
@@ -42,11 +53,25 @@ struct TrackParams {
 
 template <class V>
 void fields(V& v, TrackParams& p) {
-  v("lookahead_min_m", p.lookahead_min_m, 0.2, 20.0, "shorter is livelier, may weave");
-  v("lookahead_time_s", p.lookahead_time_s, 0.2, 10.0, "lookahead grows with speed by this");
-  v("lookahead_max_m", p.lookahead_max_m, 0.3, 30.0, "lookahead does not grow beyond");
+  v("law", p.law, "path_frame, pure_pursuit or stanley: how it steers back to the path");
+  v("settle_min_m", p.settle_min_m, 0.15, 20.0,
+    "path_frame: an offset fades to a twentieth within 4.7 times this; shorter is livelier");
+  v("settle_time_s", p.settle_time_s, 0.0, 10.0,
+    "path_frame: that length grows with speed by this");
+  v("damping", p.damping, 0.5, 3.0, "path_frame: 1 is critical; less is quicker and swings over");
+  v("lookahead_min_m", p.lookahead_min_m, 0.2, 20.0,
+    "pure_pursuit: shorter is livelier, may weave");
+  v("lookahead_time_s", p.lookahead_time_s, 0.2, 10.0,
+    "pure_pursuit: lookahead grows with speed by this");
+  v("lookahead_max_m", p.lookahead_max_m, 0.3, 30.0,
+    "pure_pursuit: lookahead does not grow beyond");
+  v("stanley_gain_1ps", p.stanley_gain_1ps, 0.1, 10.0,
+    "stanley: more is livelier, noise goes to the wheel");
   v("delay_s", p.delay_s, 0.0, 1.0,
     "from a command to its motion (delay and lag); the pose is predicted by it");
+  v("observer_s", p.observer_s, 0.05, 60.0,
+    "a turn that nobody commanded (a track that pulls) is learned and countered within this");
+  v("observer_max_radps", p.observer_max_radps, 0.0, 1.0, "but no more of it than this; 0: off");
   v("corner_deviation_m", p.corner_deviation_m, 0.02, 2.0,
     "how far a rounded corner may pass beside its waypoint");
   v("through_deviation_m", p.through_deviation_m, 0.02, 5.0,
@@ -62,12 +87,14 @@ struct SpeedParams {
   double reverse_max_mps = 0.5;
   double creep_mps = 0.4;
   double min_mps = 0.12;
-  double accel_mps2 = 0.5;
-  double decel_mps2 = 0.4;
+  double accel_mps2 = 0.7;
+  double decel_mps2 = 0.6;
+  double jerk_mps3 = 3.0;
   double hold_decel_mps2 = 0.8;
   double lateral_mps2 = 0.5;
-  double max_yaw_rate_radps = 0.75;
+  double max_yaw_rate_radps = 0.78;
   double yaw_accel_radps2 = 1.5;
+  double yaw_decel_radps2 = 1.0;
   double heading_sigma_deg = 4.0;
 };
 
@@ -80,11 +107,14 @@ void fields(V& v, SpeedParams& p) {
   v("min_mps", p.min_mps, 0.02, 1.0, "slower, and the tracks stick");
   v("accel_mps2", p.accel_mps2, 0.05, 5.0, "speeding up");
   v("decel_mps2", p.decel_mps2, 0.05, 5.0, "slowing down for what is known in advance");
+  v("jerk_mps3", p.jerk_mps3, 0.1, 100.0, "change of either while following a path");
   v("hold_decel_mps2", p.hold_decel_mps2, 0.05, 5.0,
     "slowing down for a pause or a lost condition");
   v("lateral_mps2", p.lateral_mps2, 0.05, 5.0, "sideways acceleration allowed in bends");
   v("max_yaw_rate_radps", p.max_yaw_rate_radps, 0.1, 5.0, "largest turn rate ever commanded");
-  v("yaw_accel_radps2", p.yaw_accel_radps2, 0.1, 20.0, "largest change of the turn rate");
+  v("yaw_accel_radps2", p.yaw_accel_radps2, 0.1, 20.0, "change of the turn rate while it grows");
+  v("yaw_decel_radps2", p.yaw_decel_radps2, 0.1, 20.0,
+    "and while it falls; a skid-steer brakes half as hard as it accelerates");
   v("heading_sigma_deg", p.heading_sigma_deg, 0.5, 90.0,
     "less certain of the heading than this, the robot creeps");
 }
@@ -92,9 +122,10 @@ void fields(V& v, SpeedParams& p) {
 struct PivotParams {
   double angle_deg = 30.0;
   double done_deg = 2.0;
-  double max_rate_radps = 0.5;
-  double decel_radps2 = 0.5;
+  double max_rate_radps = 0.6;
+  double decel_radps2 = 0.42;
   double slew_radps2 = 1.2;
+  double timeout_s = 30.0;
 };
 
 template <class V>
@@ -106,6 +137,7 @@ void fields(V& v, PivotParams& p) {
   v("decel_radps2", p.decel_radps2, 0.05, 5.0,
     "braking of a turn; a skid-steer brakes half as hard as it accelerates");
   v("slew_radps2", p.slew_radps2, 0.1, 10.0, "change of the commanded turn rate");
+  v("timeout_s", p.timeout_s, 2.0, 300.0, "a turn that takes longer does not come to its end");
 }
 
 }  // namespace roverd::nav

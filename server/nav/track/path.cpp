@@ -5,6 +5,7 @@
 
 #include "base/angle.hpp"
 #include "nav/track/corner.hpp"
+#include "nav/track/profile.hpp"
 
 namespace roverd::nav {
 namespace {
@@ -51,11 +52,10 @@ class Builder {
     p.segment_mps = item_mps(towards);
     const double k = std::abs(curvature_1pm);
     if (k > 1e-6) {
-      const SpeedParams& s = params_.speed;
-      const double bend = std::min(std::sqrt(s.lateral_mps2 / k), 0.7 * s.max_yaw_rate_radps / k);
-      if (bend < p.segment_mps) {
-        p.segment_mps = std::max(bend, s.min_mps);
-        p.segment_reason = SpeedReason::Bend;
+      const SpeedLimit bend = bend_limit(k, params_);
+      if (bend.mps < p.segment_mps) {
+        p.segment_mps = std::max(bend.mps, params_.speed.min_mps);
+        p.segment_reason = bend.reason;
       }
     }
     if (!path_.points.empty()) {
@@ -115,30 +115,6 @@ class Builder {
   Path& path_;
 };
 
-/// Limits at the points, from the end backwards: v_i² = v_{i+1}² + 2·a·ds at most.
-void brake_in_time(Path& path, const SpeedParams& speed) {
-  for (const Leg& leg : path.legs) {
-    path.points[leg.last].speed_mps = 0.0;
-    path.points[leg.last].reason = SpeedReason::Approach;
-    for (std::size_t i = leg.last; i-- > leg.first;) {
-      PathPoint& p = path.points[i];
-      const PathPoint& next = path.points[i + 1];
-      const double ds = next.s_m - p.s_m;
-      const double brake = std::sqrt(next.speed_mps * next.speed_mps + 2.0 * speed.decel_mps2 * ds);
-      p.speed_mps = p.segment_mps;
-      p.reason = p.segment_reason;
-      if (i > leg.first && path.points[i - 1].segment_mps < p.speed_mps) {
-        p.speed_mps = path.points[i - 1].segment_mps;
-        p.reason = path.points[i - 1].segment_reason;
-      }
-      if (brake < p.speed_mps) {
-        p.speed_mps = brake;
-        p.reason = next.reason;
-      }
-    }
-  }
-}
-
 }  // namespace
 
 std::string_view to_string(SpeedReason r) noexcept {
@@ -155,6 +131,8 @@ std::string_view to_string(SpeedReason r) noexcept {
       return "heading_error";
     case SpeedReason::Turn:
       return "turn_rate";
+    case SpeedReason::Steer:
+      return "steering";
     case SpeedReason::Accel:
       return "acceleration";
     case SpeedReason::Slow:
@@ -192,12 +170,13 @@ Path build_path(std::span<const Vertex> given, const PathParams& params) {
       passed_m[i] = path.points.back().s_m;
       if (!last && !c.stop) continue;
       const std::size_t end = path.points.size() - 1;
-      path.legs.push_back(
-          {leg_first, end, v[i].reverse, path.points[leg_first].s_m, path.points[end].s_m, align});
+      path.legs.push_back({leg_first, end, v[i].reverse, path.points[leg_first].s_m,
+                           path.points[end].s_m, align,
+                           turning_on_the_spot(params.vehicle) ? v[i].yaw_rad : std::nullopt});
       leg_first = end;
       align = align_rad(v[i], c.pivot, params);
     }
-    brake_in_time(path, params.speed);
+    plan_speeds(path, params);
   }
   path.vertex_m.reserve(given.size());
   for (const std::size_t i : d.of) path.vertex_m.push_back(passed_m[i]);
@@ -215,6 +194,25 @@ std::size_t Path::segment_at(const Leg& leg, double s_m, std::size_t near) const
   while (i > leg.first && points[i].s_m > s_m) --i;
   while (i + 1 < leg.last && points[i + 1].s_m <= s_m) ++i;
   return i;
+}
+
+double Path::yaw_rad(const Leg& leg, double s_m, std::size_t near) const noexcept {
+  const std::size_t i = segment_at(leg, s_m, near);
+  const PathPoint& a = points[i];
+  const PathPoint& b = points[i + 1];
+  const double within_m = std::clamp(s_m, a.s_m, b.s_m) - 0.5 * (a.s_m + b.s_m);
+  return direction_rad(a.at, b.at) + a.curvature_1pm * within_m;
+}
+
+double Path::left_s(double s_m) const noexcept {
+  if (points.empty()) return 0.0;
+  const auto next = std::upper_bound(points.begin(), points.end(), s_m,
+                                     [](double s, const PathPoint& p) { return s < p.s_m; });
+  if (next == points.begin()) return points.back().plan_s;
+  if (next == points.end()) return 0.0;
+  const PathPoint& a = *(next - 1);
+  const double part = (s_m - a.s_m) / (next->s_m - a.s_m);
+  return points.back().plan_s - a.plan_s - part * (next->plan_s - a.plan_s);
 }
 
 EnuPoint Path::at(double s_m) const noexcept {

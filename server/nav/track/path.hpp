@@ -10,6 +10,7 @@
 // that runs in the control loop looks at a window around its place.
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -30,6 +31,7 @@ enum class SpeedReason {
   Creep,
   Heading,
   Turn,
+  Steer,
   Accel,
   Slow,
   Pivot,
@@ -45,7 +47,8 @@ struct Vertex {
   bool reverse = false;    ///< the way that leads here is driven backwards
   bool stop = false;       ///< stop here
   mission::Turn turn = mission::Turn::Auto;
-  double deviation_m = 0.1;  ///< allowed between vertex and rounded corner
+  double deviation_m = 0.1;         ///< allowed between vertex and rounded corner
+  std::optional<double> yaw_rad{};  ///< at the path's end or a stop: point so before it counts
 };
 
 struct PathPoint {
@@ -54,6 +57,8 @@ struct PathPoint {
   double curvature_1pm = 0.0;  ///< of the segment that begins here; left positive
   double segment_mps = 0.0;    ///< limit on the segment that begins here
   double speed_mps = 0.0;      ///< limit at this point, so that all later ones can be kept
+  double plan_mps = 0.0;       ///< what speeding up from the leg's start allows of it
+  double plan_s = 0.0;         ///< time from the path's start, stops and turns on the spot included
   SpeedReason segment_reason = SpeedReason::Item;
   SpeedReason reason = SpeedReason::Item;  ///< of speed_mps
 };
@@ -66,6 +71,7 @@ struct Leg {
   double start_m = 0.0;
   double end_m = 0.0;
   double align_rad = 0.0;  ///< pointing away by more than this at its start, the robot pivots first
+  std::optional<double> end_yaw_rad{};  ///< to be turned to on the spot before it is done
 };
 
 struct Path {
@@ -79,6 +85,11 @@ struct Path {
   /// Index of the segment's first point. @param near a guess.
   std::size_t segment_at(const Leg& leg, double s_m, std::size_t near) const noexcept;
   EnuPoint at(double s_m) const noexcept;
+  /// Direction of the path within a leg, arcs taken as such; beyond its ends as there.
+  /// @param near a guess.
+  double yaw_rad(const Leg& leg, double s_m, std::size_t near) const noexcept;
+  /// Planned time that is left from s to the end.
+  double left_s(double s_m) const noexcept;
 };
 
 struct PathParams {
@@ -94,7 +105,7 @@ struct PathParams {
 ///   turn arc and through, as far as the neighbours leave room), else a stop with a turn on the
 ///   spot. An arc cannot reverse: above 150° it is a pivot as well. A steered vehicle never turns
 ///   on the spot; what is too sharp for it becomes a swing (nav/track/corner.hpp).
-/// Speed limits: item, bends (√(a/κ) and 0.7·w/κ), and braking for what follows.
+/// Speed limits: item, bends (nav/track/profile.hpp), and braking for what follows.
 /// Pure; any finite points. Time and memory linear.
 Path build_path(std::span<const Vertex> vertices, const PathParams& params);
 

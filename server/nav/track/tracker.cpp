@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/angle.hpp"
+#include "nav/track/corner.hpp"
 
 namespace roverd::nav {
 namespace {
@@ -14,31 +15,60 @@ using base::rad_from_deg;
 constexpr double kStill_mps = 0.03;
 constexpr double kStill_radps = 0.06;
 constexpr double kStillFor_s = 0.1;
-constexpr double kTightest_1pm = 1.0 / 0.25;
-constexpr double kNear_m = 0.3;  // closer to the path, its direction counts, not that of a target
-const double kAstray_rad = rad_from_deg(60.0);
-constexpr double kAstrayFor_s = 0.3;
+constexpr double kTurned_radps = 0.15;
+constexpr double kTurnedFor_s = 0.1;
+constexpr double kNear_m = 0.3;  // closer to the path, its direction counts, not the way to it
+
+bool finite(const Vehicle& v) noexcept {
+  return std::isfinite(v.at.east_m) && std::isfinite(v.at.north_m) && std::isfinite(v.yaw_rad) &&
+         std::isfinite(v.yaw_sigma_rad) && std::isfinite(v.speed_mps) &&
+         std::isfinite(v.yaw_rate_radps) && std::isfinite(v.odometry_scale) &&
+         std::isfinite(v.yaw_scale) && std::isfinite(v.pull_1pm) && v.odometry_scale > 0.0 &&
+         v.yaw_scale > 0.0;
+}
 
 }  // namespace
 
+void Tracker::set_params(const PathParams& params) noexcept {
+  params_ = params;
+  law_ = law_from(params.track.law).value_or(TrackLaw::PathFrame);
+}
+
+void Tracker::enter(TrackPhase phase) noexcept {
+  phase_ = phase;
+  still_s_ = astray_s_ = turning_s_ = 0.0;
+  if (phase != TrackPhase::Follow) accel_mps2_ = 0.0;
+}
+
 void Tracker::begin(const Path& path, std::size_t leg, double s_m) noexcept {
+  const bool stands = phase_ == TrackPhase::Done;  // seen at this tick: no need to see it again
   path_ = &path;
   leg_ = leg;
   if (leg_ >= path.legs.size()) {
-    phase_ = TrackPhase::Done;
+    enter(TrackPhase::Done);
     return;
   }
   s_m_ = std::clamp(s_m, leg_now().start_m, leg_now().end_m);
   segment_ = path.segment_at(leg_now(), s_m_, leg_now().first);
   cross_track_m_ = 0.0;
-  still_s_ = astray_s_ = 0.0;
-  phase_ = TrackPhase::Settle;
+  enter(TrackPhase::Settle);
+  if (stands) still_s_ = kStillFor_s;
+}
+
+void Tracker::begin_turn(double yaw_rad) noexcept {
+  path_ = nullptr;
+  leg_ = 0;
+  turn_to_rad_ = yaw_rad;
+  const bool can = turning_on_the_spot(params_.vehicle) && std::isfinite(yaw_rad);
+  enter(can ? TrackPhase::Settle : TrackPhase::Done);
 }
 
 void Tracker::reset() noexcept {
   path_ = nullptr;
-  phase_ = TrackPhase::Idle;
+  enter(TrackPhase::Idle);
   speed_mps_ = rate_radps_ = curvature_1pm_ = 0.0;
+  saturated_ = false;
+  observer_.reset();
   sent_.fill({});
 }
 
@@ -53,10 +83,12 @@ void Tracker::move_to(const Path& path, std::size_t leg, double s_m) noexcept {
 
 TrackOutput Tracker::step(const Vehicle& vehicle, double limit_mps, double dt_s) noexcept {
   TrackOutput out;
-  switch (phase_) {
+  const bool usable = finite(vehicle) && dt_s > 0.0 && !std::isnan(limit_mps);
+  const TrackPhase phase = usable ? phase_ : TrackPhase::Idle;
+  switch (phase) {
     case TrackPhase::Idle:
     case TrackPhase::Done:
-      out = command(vehicle, 0.0, 0.0, SpeedReason::Standing);
+      speed_mps_ = rate_radps_ = 0.0;
       break;
     case TrackPhase::Settle:
       out = settle(vehicle, dt_s);
@@ -70,9 +102,14 @@ TrackOutput Tracker::step(const Vehicle& vehicle, double limit_mps, double dt_s)
     case TrackPhase::Stop:
       out = stop(vehicle, dt_s);
       break;
+    case TrackPhase::Turn:
+      out = turn(vehicle, dt_s);
+      break;
   }
+  const bool moves = out.command.linear_mps != 0.0 || out.command.angular_radps != 0.0;
+  const bool counter = moves && phase_ == TrackPhase::Follow;
   sent_at_ = (sent_at_ + 1) % sent_.size();
-  sent_[sent_at_] = {speed_mps_, rate_radps_};
+  sent_[sent_at_] = {speed_mps_, rate_radps_ - (counter ? observer_.radps() : 0.0)};
   return out;
 }
 
@@ -99,11 +136,12 @@ Tracker::Projection Tracker::project(EnuPoint at, double s_m, double ahead_m) co
     const double c = d.east_m / length;
     const double s = d.north_m / length;
     const double along = std::clamp(c * p.east_m + s * p.north_m, std::max(0.0, from_m - a.s_m),
-                                    std::min(length, to_m - a.s_m));
+                                    std::max(0.0, std::min(length, to_m - a.s_m)));
     const double off_m = std::hypot(p.east_m - along * c, p.north_m - along * s);
     if (off_m < best_m) {
       best_m = off_m;
-      best = {a.s_m + along, c * p.north_m - s * p.east_m, std::atan2(s, c), i};
+      const double bend = a.curvature_1pm * (along - 0.5 * length);
+      best = {a.s_m + along, c * p.north_m - s * p.east_m, std::atan2(s, c) + bend, i};
     }
   }
   return best;
@@ -121,23 +159,6 @@ EnuPoint Tracker::point_ahead(const Projection& from, double by_m) const noexcep
           a.at.north_m + part * (b.at.north_m - a.at.north_m)};
 }
 
-/// Where the vehicle will be when a command of now begins to act.
-Vehicle Tracker::predict(const Vehicle& now, double dt_s) const noexcept {
-  Vehicle v = now;
-  if (dt_s <= 0.0) return v;
-  const auto steps = std::min<std::size_t>(
-      sent_.size(), static_cast<std::size_t>(std::lround(params_.track.delay_s / dt_s)));
-  for (std::size_t k = steps; k-- > 0;) {
-    const base::BodyTwist& t = sent_[(sent_at_ + sent_.size() - k) % sent_.size()];
-    const double middle = v.yaw_rad + 0.5 * t.angular_radps * dt_s;
-    v.at.east_m += t.linear_mps * dt_s * std::cos(middle);
-    v.at.north_m += t.linear_mps * dt_s * std::sin(middle);
-    v.yaw_rad += t.angular_radps * dt_s;
-  }
-  v.yaw_rad = base::wrap_rad(v.yaw_rad);
-  return v;
-}
-
 /// How far the vehicle must turn to drive on; reversing, its tail points along the path.
 double Tracker::facing_error(const Vehicle& v, const Projection& on) const noexcept {
   double wanted = on.tangent_rad;
@@ -153,10 +174,12 @@ TrackOutput Tracker::command(const Vehicle& v, double speed_mps, double rate_rad
                              SpeedReason reason) noexcept {
   speed_mps_ = speed_mps;
   rate_radps_ = rate_radps;
+  saturated_ = false;
   base::BodyTwist t;
   if (speed_mps == 0.0 && rate_radps == 0.0) return {t, reason};
+  const double counter = phase_ == TrackPhase::Follow ? observer_.radps() : 0.0;
   t.linear_mps = speed_mps / v.odometry_scale;
-  t.angular_radps = (rate_radps - v.pull_1pm * t.linear_mps) / v.yaw_scale;
+  t.angular_radps = (rate_radps - counter - v.pull_1pm * t.linear_mps) / v.yaw_scale;
   const double most = params_.speed.max_yaw_rate_radps;
   if (std::abs(t.angular_radps) > most) {
     const double part = most / std::abs(t.angular_radps);
@@ -164,6 +187,7 @@ TrackOutput Tracker::command(const Vehicle& v, double speed_mps, double rate_rad
     t.angular_radps *= part;
     speed_mps_ *= part;
     rate_radps_ *= part;
+    saturated_ = true;
     if (speed_mps != 0.0) reason = SpeedReason::Turn;
   }
   return {t, reason};
@@ -173,11 +197,14 @@ TrackOutput Tracker::settle(const Vehicle& v, double dt_s) noexcept {
   const double step = params_.speed.hold_decel_mps2 * dt_s;
   const double turn_step = params_.pivot.slew_radps2 * dt_s;
   if (still(v, dt_s)) {
+    if (path_ == nullptr) {
+      enter(TrackPhase::Turn);
+      return command(v, 0.0, 0.0, SpeedReason::Stopping);
+    }
     const Projection on = project(v.at, s_m_, 1.0);
     cross_track_m_ = leg_now().reverse ? -on.cross_m : on.cross_m;
-    still_s_ = 0.0;
-    phase_ = std::abs(facing_error(v, on)) > leg_now().align_rad ? TrackPhase::Pivot
-                                                                 : TrackPhase::Follow;
+    const bool away = std::abs(facing_error(v, on)) > leg_now().align_rad;
+    enter(away ? TrackPhase::Pivot : TrackPhase::Follow);
   }
   return command(v, slew(speed_mps_, 0.0, step, step), slew(rate_radps_, 0.0, turn_step, turn_step),
                  SpeedReason::Stopping);
@@ -186,104 +213,34 @@ TrackOutput Tracker::settle(const Vehicle& v, double dt_s) noexcept {
 TrackOutput Tracker::pivot(const Vehicle& v, double dt_s) noexcept {
   const Vehicle soon = predict(v, dt_s);
   const Projection on = project(v.at, s_m_, 1.0);
-  const double error = facing_error(v, on);
-  const double error_soon = facing_error(soon, on);
-  const double done = rad_from_deg(params_.pivot.done_deg);
-  const bool there = std::abs(error) < done && std::abs(v.yaw_rate_radps) < 0.15;
-  still_s_ = there ? still_s_ + dt_s : 0.0;
-  if (still_s_ >= 0.2) {
-    still_s_ = 0.0;
-    phase_ = TrackPhase::Follow;
-    return command(v, 0.0, 0.0, SpeedReason::Pivot);
+  const TrackOutput out = turn_by(facing_error(v, on), facing_error(soon, on), v, dt_s);
+  if (still_s_ >= kTurnedFor_s) enter(TrackPhase::Follow);
+  return out;
+}
+
+TrackOutput Tracker::turn(const Vehicle& v, double dt_s) noexcept {
+  const Vehicle soon = predict(v, dt_s);
+  const TrackOutput out = turn_by(angle_diff_rad(v.yaw_rad, turn_to_rad_),
+                                  angle_diff_rad(soon.yaw_rad, turn_to_rad_), v, dt_s);
+  if (still_s_ >= kTurnedFor_s && rate_radps_ == 0.0 && std::abs(v.yaw_rate_radps) < kStill_radps) {
+    enter(TrackPhase::Done);
   }
-  const double wanted =
-      std::abs(error_soon) < 0.5 * done ? 0.0 : pivot_rate_radps(error_soon, params_.pivot);
+  return out;
+}
+
+/// One step of a turn on the spot. still_s_ tells for how long it is there.
+TrackOutput Tracker::turn_by(double error_rad, double error_soon_rad, const Vehicle& v,
+                             double dt_s) noexcept {
+  turning_s_ += dt_s;
+  const double done = rad_from_deg(params_.pivot.done_deg);
+  const bool there = std::abs(error_rad) < done && std::abs(v.yaw_rate_radps) < kTurned_radps;
+  still_s_ = there ? still_s_ + dt_s : 0.0;
+  double wanted =
+      std::abs(error_soon_rad) < 0.5 * done ? 0.0 : pivot_rate_radps(error_soon_rad, params_.pivot);
+  // It brakes by itself; turning back before it stands is for a turn that went too far.
+  if (wanted * v.yaw_rate_radps < 0.0 && std::abs(v.yaw_rate_radps) > kStill_radps) wanted = 0.0;
   const double step = params_.pivot.slew_radps2 * dt_s;
   return command(v, 0.0, slew(rate_radps_, wanted, step, step), SpeedReason::Pivot);
-}
-
-SpeedLimit Tracker::profile(double s_m) const noexcept {
-  const Leg& leg = leg_now();
-  const std::size_t i = path_->segment_at(leg, s_m, segment_);
-  const PathPoint& here = path_->points[i];
-  const PathPoint& next = path_->points[i + 1];
-  const double delay = params_.track.delay_s;
-  SpeedLimit limit{here.segment_mps, here.segment_reason};
-  const bool end = i + 1 == leg.last;
-  limit.cut(braking_mps(end ? 0.0 : next.speed_mps, next.s_m - s_m, params_.speed, delay),
-            end ? SpeedReason::Approach : next.reason);
-  // The delay may reach over a corner that is nearer than its braking distance.
-  limit.cut(stopping_mps(leg.end_m - s_m, params_.speed.decel_mps2, delay), SpeedReason::Approach);
-  return limit;
-}
-
-/// What the vehicle can do of the wanted curvature. A steered one cannot turn on the spot: with the
-/// target behind it, it goes round with full lock, to the side on which the target lies.
-double Tracker::steer(double wanted_1pm, BodyPoint target, double dt_s) noexcept {
-  const VehicleParams& car = params_.vehicle;
-  if (!car.steered()) return std::clamp(wanted_1pm, -kTightest_1pm, kTightest_1pm);
-  const double lock = std::tan(rad_from_deg(car.max_steering_deg)) / car.wheelbase_m;
-  if (target.x_m < 0.0) wanted_1pm = std::copysign(lock, target.y_m);
-  // d tan(δ)/dt is at least dδ/dt: cautious near full lock.
-  const double step = rad_from_deg(car.max_steering_rate_dps) / car.wheelbase_m * dt_s;
-  wanted_1pm = std::clamp(wanted_1pm, -lock, lock);
-  curvature_1pm_ += std::clamp(wanted_1pm - curvature_1pm_, -step, step);
-  return curvature_1pm_;
-}
-
-TrackOutput Tracker::follow(const Vehicle& v, double limit_mps, double dt_s) noexcept {
-  const Leg& leg = leg_now();
-  const SpeedParams& p = params_.speed;
-  const double reach = std::max(1.0, 2.0 * std::abs(v.speed_mps) * dt_s + 1.0);
-  const Projection on = project(v.at, s_m_, reach);
-  s_m_ = std::max(s_m_, on.s_m);
-  segment_ = path_->segment_at(leg, s_m_, segment_);
-  cross_track_m_ = leg.reverse ? -on.cross_m : on.cross_m;
-  const double left_m = leg.end_m - s_m_;
-  if (left_m <= std::max(0.01, std::abs(v.speed_mps) * params_.track.delay_s)) {
-    phase_ = TrackPhase::Stop;
-    still_s_ = 0.0;
-    return stop(v, dt_s);
-  }
-
-  // Reversing is driving forward with the tail: same curvature, other end.
-  Vehicle soon = predict(v, dt_s);
-  if (leg.reverse) soon.yaw_rad = base::wrap_rad(soon.yaw_rad + base::kPi);
-  const Projection ahead_on = project(soon.at, s_m_, reach);
-  const double look = lookahead_m(v.speed_mps, ahead_on.cross_m, params_.track);
-  const BodyPoint target = to_body(point_ahead(ahead_on, look), soon.at, soon.yaw_rad);
-  const double bearing = std::atan2(target.y_m, target.x_m);
-  astray_s_ = std::abs(bearing) > std::max(kAstray_rad, leg.align_rad) ? astray_s_ + dt_s : 0.0;
-  if (astray_s_ > kAstrayFor_s) {
-    astray_s_ = 0.0;
-    still_s_ = 0.0;
-    phase_ = TrackPhase::Settle;
-    return settle(v, dt_s);
-  }
-  const double curvature = steer(arc_curvature_1pm(target), target, dt_s);
-
-  SpeedLimit limit = profile(s_m_);
-  const double sigma_limit = rad_from_deg(p.heading_sigma_deg);
-  creeping_ = v.yaw_sigma_rad > (creeping_ ? 0.85 : 1.0) * sigma_limit;
-  if (creeping_) limit.cut(p.creep_mps, SpeedReason::Creep);
-  limit.cut(limit_mps, SpeedReason::Slow);
-  limit.cut(bend_mps(curvature, p.lateral_mps2), SpeedReason::Bend);
-  limit.cut(p.max_yaw_rate_radps * v.yaw_scale / std::max(1e-6, std::abs(curvature)),
-            SpeedReason::Turn);
-  limit.cut(limit.mps * heading_factor(bearing),
-            std::abs(bearing) > rad_from_deg(10.0) ? SpeedReason::Heading : limit.reason);
-  limit.mps = std::max(limit.mps, p.min_mps);
-  const double from = std::abs(speed_mps_);
-  // What was planned brakes gently; a limit that came suddenly brakes at once, but not harder.
-  const double speed = slew(from, limit.mps, p.accel_mps2 * dt_s, p.hold_decel_mps2 * dt_s);
-  if (speed > from && speed < limit.mps) limit.reason = SpeedReason::Accel;
-  const double signed_speed = leg.reverse ? -speed : speed;
-  const double turn_step = p.yaw_accel_radps2 * dt_s;
-  const double wanted = speed * curvature;
-  const double rate = params_.vehicle.steered()
-                          ? wanted  // the wheels' angle was limited, and the speed is
-                          : slew(rate_radps_, wanted, turn_step, turn_step);
-  return command(v, signed_speed, rate, limit.reason);
 }
 
 TrackOutput Tracker::stop(const Vehicle& v, double dt_s) noexcept {
@@ -292,9 +249,14 @@ TrackOutput Tracker::stop(const Vehicle& v, double dt_s) noexcept {
   cross_track_m_ = leg_now().reverse ? -on.cross_m : on.cross_m;
   const TrackOutput out = command(v, 0.0, 0.0, SpeedReason::Approach);
   if (still(v, dt_s)) {
-    still_s_ = 0.0;
-    phase_ =
-        leg_now().end_m - s_m_ <= params_.track.arrive_m ? TrackPhase::Done : TrackPhase::Follow;
+    if (leg_now().end_m - s_m_ > params_.track.arrive_m) {
+      enter(TrackPhase::Follow);
+    } else if (leg_now().end_yaw_rad) {
+      turn_to_rad_ = *leg_now().end_yaw_rad;
+      enter(TrackPhase::Turn);
+    } else {
+      enter(TrackPhase::Done);
+    }
   }
   return out;
 }

@@ -1,16 +1,20 @@
 #pragma once
-// Drives one leg after another of a path: regulated pure pursuit with turns on the spot.
+// Drives one leg after another of a path.
 //
 //   begin ─▶ Settle ──points away──▶ Pivot ──aligned──▶ Follow ──end near──▶ Stop ──standing──▶
 //   Done
-//              │                        ▲                 │ ▲                  │
-//              └──────── aligned ───────┼─────────────────┘ └── too short ─────┘
-//                                       └── Settle ◀── points far away ── Follow
+//              │                        ▲                 │ ▲                 │ │            ▲
+//              └──────── aligned ───────┼─────────────────┘ └── too short ────┘ │            │
+//                                       └── Settle ◀── points far away ── Follow└─▶ Turn ────┘
+//                                                                  the leg's end has a heading
+//   begin_turn ─▶ Settle ─▶ Turn ─▶ Done
 //
-// The pose is predicted over the actuation delay with the commands already sent, so that steering
-// does not weave. Progress along the path only grows and is looked for in a window around its
-// place: crossings and parallel lanes do not confuse it.
-// Sources: Coulter 1992 (pure pursuit); Macenski et al. 2023 (regulation of the speed).
+// Follow steers by one of the laws of nav/track/law.hpp. The pose is predicted over the actuation
+// delay with the commands already sent, so that steering does not weave; what turns the robot
+// without being commanded is learned and countered (nav/track/observer.hpp). Steering goes first:
+// where the turn rate saturates, the speed gives way. Progress along the path only grows and is
+// looked for in a window around its place: crossings and parallel lanes do not confuse it.
+// An arrival is latched: a leg that is done stays done wherever noise carries the pose.
 // Control thread; no allocation after construction.
 
 #include <array>
@@ -18,6 +22,8 @@
 
 #include "base/geo.hpp"
 #include "base/snapshot.hpp"
+#include "nav/track/law.hpp"
+#include "nav/track/observer.hpp"
 #include "nav/track/path.hpp"
 #include "nav/track/rules.hpp"
 
@@ -33,9 +39,10 @@ struct Vehicle {
   double odometry_scale = 1.0;  ///< true over track speed
   double yaw_scale = 1.0;       ///< true over track turn rate
   double pull_1pm = 0.0;        ///< turn per metre on straight tracks
+  double sigma_m = 0.0;         ///< of the position
 };
 
-enum class TrackPhase { Idle, Settle, Pivot, Follow, Stop, Done };
+enum class TrackPhase { Idle, Settle, Pivot, Follow, Stop, Turn, Done };
 
 struct TrackOutput {
   base::BodyTwist command;  ///< for the base: track speed and track turn rate
@@ -44,15 +51,21 @@ struct TrackOutput {
 
 class Tracker {
  public:
-  explicit Tracker(const PathParams& params) : params_(params) {}
+  explicit Tracker(const PathParams& params) { set_params(params); }
+
+  /// Takes effect at the next step, also while driving; paths keep the limits they were built with.
+  void set_params(const PathParams& params) noexcept;
 
   /// Starts or goes on with `leg` at arc length s. `path` must outlive the drive.
   void begin(const Path& path, std::size_t leg, double s_m) noexcept;
+  /// Turns on the spot to a yaw, without any path. A steered vehicle is Done at once.
+  void begin_turn(double yaw_rad) noexcept;
   void reset() noexcept;
   /// Goes on as it goes, on another path that is the same here. `path` must outlive the drive.
   void move_to(const Path& path, std::size_t leg, double s_m) noexcept;
 
-  /// One control step. @param limit_mps cuts the speed ("position_uncertain").
+  /// One control step. @param limit_mps cuts the speed ("position_uncertain"). A pose that is not
+  /// finite stops the robot.
   TrackOutput step(const Vehicle& vehicle, double limit_mps, double dt_s) noexcept;
 
   TrackPhase phase() const noexcept { return phase_; }
@@ -61,6 +74,10 @@ class Tracker {
   double s_m() const noexcept { return s_m_; }
   /// Positive: the vehicle is left of the way it drives.
   double cross_track_m() const noexcept { return cross_track_m_; }
+  /// The turn on the spot takes longer than nav.pivot.timeout_s.
+  bool turn_timed_out() const noexcept { return turning_s_ > params_.pivot.timeout_s; }
+  /// What turns the robot without being commanded.
+  double yaw_disturbance_radps() const noexcept { return observer_.radps(); }
 
  private:
   struct Projection {
@@ -73,35 +90,53 @@ class Tracker {
   const Leg& leg_now() const noexcept { return path_->legs[leg_]; }
   Projection project(EnuPoint at, double s_m, double ahead_m) const noexcept;
   EnuPoint point_ahead(const Projection& from, double by_m) const noexcept;
+  double bend_ahead_1pm(const Projection& from, double speed_mps) const noexcept;
   Vehicle predict(const Vehicle& now, double dt_s) const noexcept;
+  base::BodyTwist sent_before(double age_s, double dt_s) const noexcept;
   double facing_error(const Vehicle& v, const Projection& on) const noexcept;
   SpeedLimit profile(double s_m) const noexcept;
 
   TrackOutput settle(const Vehicle& v, double dt_s) noexcept;
   TrackOutput pivot(const Vehicle& v, double dt_s) noexcept;
+  TrackOutput turn(const Vehicle& v, double dt_s) noexcept;
+  TrackOutput turn_by(double error_rad, double error_soon_rad, const Vehicle& v,
+                      double dt_s) noexcept;
   TrackOutput follow(const Vehicle& v, double limit_mps, double dt_s) noexcept;
   TrackOutput stop(const Vehicle& v, double dt_s) noexcept;
+  TrackOutput drive(const Vehicle& v, SpeedLimit limit, double curvature_1pm, double dt_s) noexcept;
   /// Ground twist to command, with saturation: steering first, speed gives way.
   TrackOutput command(const Vehicle& v, double speed_mps, double rate_radps,
                       SpeedReason reason) noexcept;
-  double steer(double wanted_1pm, BodyPoint target, double dt_s) noexcept;
+  double law_1pm(const Vehicle& soon, const Projection& on, double speed_mps) const noexcept;
+  double steer(double wanted_1pm, double heading_rad, double dt_s) noexcept;
+  SpeedLimit limits(const Vehicle& v, double limit_mps, double curvature_1pm,
+                    double course_error_rad) noexcept;
+  double speed_up_or_down(double limit_mps, double dt_s) noexcept;
   bool still(const Vehicle& v, double dt_s) noexcept;
+  void enter(TrackPhase phase) noexcept;
 
   PathParams params_;
+  TrackLaw law_ = TrackLaw::PathFrame;
   const Path* path_ = nullptr;
   std::size_t leg_ = 0;
   std::size_t segment_ = 0;
   double s_m_ = 0.0;
   double cross_track_m_ = 0.0;
+  double turn_to_rad_ = 0.0;
   TrackPhase phase_ = TrackPhase::Idle;
   double still_s_ = 0.0;
   double astray_s_ = 0.0;
+  double turning_s_ = 0.0;
   bool creeping_ = false;
+  bool saturated_ = false;
   double speed_mps_ = 0.0;      ///< last commanded over ground
-  double rate_radps_ = 0.0;     ///< likewise
+  double rate_radps_ = 0.0;     ///< likewise, as wanted
+  double accel_mps2_ = 0.0;     ///< of the commanded speed's size
   double curvature_1pm_ = 0.0;  ///< steered vehicles: where the wheels were told to point
+  YawObserver observer_;
 
-  std::array<base::BodyTwist, 64> sent_{};  ///< ground twists, newest at sent_at_
+  std::array<base::BodyTwist, 64>
+      sent_{};  ///< what the commands make of ground without disturbance
   std::size_t sent_at_ = 0;
 };
 
