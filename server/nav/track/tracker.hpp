@@ -49,6 +49,8 @@ class Tracker {
   /// Starts or goes on with `leg` at arc length s. `path` must outlive the drive.
   void begin(const Path& path, std::size_t leg, double s_m) noexcept;
   void reset() noexcept;
+  /// Other limits and gains, from the next step on; paths that are laid keep their speeds.
+  void use(const PathParams& params) { params_ = params; }
   /// Goes on as it goes, on another path that is the same here. `path` must outlive the drive.
   void move_to(const Path& path, std::size_t leg, double s_m) noexcept;
 
