@@ -1,12 +1,16 @@
 // roverd: reads what it is told, starts the station, serves until a signal comes. Or decodes a
-// recording (decode.hpp).
+// recording (decode.hpp), or becomes the program that studies in simulated time (study.hpp).
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <system_error>
+
+#include <unistd.h>
 
 #include "base/result.hpp"
 #include "decode.hpp"
@@ -73,12 +77,22 @@ int serve(const roverd::Options& options) {
   return 0;
 }
 
+/// The study holds the simulated vehicle, which this program is not to know: it lies beside it.
+int become_study(char** argv) {
+  std::error_code ec;
+  const auto here = std::filesystem::read_symlink("/proc/self/exe", ec);
+  const std::string program = (here.parent_path() / "roverd-study").string();
+  ::execv(program.c_str(), argv + 1);
+  return say(kRefused, program + ": " + std::strerror(errno));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
     if (argc > 1 && std::string_view(argv[1]) == "decode")
       return roverd::decode(argc - 2, argv + 2);
+    if (argc > 1 && std::string_view(argv[1]) == "study") return become_study(argv);
     return serve(roverd::read_options(argc, argv));
   } catch (const std::exception& error) {
     return say(kRefused, error.what());
