@@ -63,6 +63,18 @@ struct Pose {
   std::string source;  ///< "gnss", "gnss+odometry", "odometry"
 };
 
+/// Where in its route a mission stands: enough to go on from there, also after a restart.
+struct MissionPlace {
+  bool back = false;        ///< on the way back of back_and_forth
+  int step = 0;             ///< index of the step in hand; behind the last one: at the end
+  int standing = -1;        ///< index of the waypoint at which the robot stands; −1: at none
+  double s_m = -1.0;        ///< arc length on the route's path; negative: not on it
+  double wait_s = 0.0;      ///< left of a wait
+  double left = 0.0;        ///< left of a move, m, or of a turn, rad; 0: all of it
+  std::vector<int> jumps_left;  ///< of each jump; −1: not counted yet
+  friend bool operator==(const MissionPlace&, const MissionPlace&) = default;
+};
+
 struct MissionProgress {
   std::string mission_id;
   std::int64_t revision = 0;
@@ -76,6 +88,32 @@ struct MissionProgress {
   std::optional<double> cross_track_m;  ///< positive: the robot is left of the path
   std::optional<double> distance_left_m;
   std::optional<double> eta_s;
+  std::optional<MissionPlace> place;  ///< running, paused or blocked
+};
+
+/// How far what a mode other than AUTO does has come.
+enum class ActivityState { None, Driving, Turning, Waiting, Reached, Failed };
+std::string_view to_string(ActivityState s) noexcept;  // none driving turning waiting …
+
+/// What a mode other than AUTO is doing, or did last.
+struct Activity {
+  std::uint64_t id = 0;   ///< counts what was begun; 0: nothing yet
+  std::string_view kind;  ///< "goto" "heading" "move" "turn" "return" "retrace" "follow" "dock"
+  ActivityState state = ActivityState::None;
+  std::string reason;  ///< why failed or waiting
+  std::optional<LatLon> goal;
+  std::optional<double> goal_yaw_rad;
+  std::optional<double> distance_m;  ///< left to the goal, along the way; of FOLLOW: to the target
+  std::optional<double> turn_rad;    ///< left to turn, left positive
+  std::optional<LatLon> target;      ///< of FOLLOW, as it was told last
+  std::optional<double> target_age_s;
+};
+
+/// The fence, as the robot sees it.
+struct FenceState {
+  std::string name;
+  bool inside = true;
+  std::optional<double> distance_m;  ///< to its nearest limit; negative outside; empty: no limit
 };
 
 /// Something that prevents or limits motion now.
@@ -202,6 +240,8 @@ struct Snapshot {
   std::vector<DriverStatus> drivers;
 
   MissionProgress mission;
+  Activity activity;
+  std::optional<FenceState> fence;
   DriveCommand command;  ///< what was sent at this tick
   std::vector<SafetyCondition> safety;
   std::vector<Check> checks;

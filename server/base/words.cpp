@@ -168,6 +168,24 @@ std::string_view to_string(ExecutionState s) noexcept {
   return "idle";
 }
 
+std::string_view to_string(ActivityState s) noexcept {
+  switch (s) {
+    case ActivityState::None:
+      return "none";
+    case ActivityState::Driving:
+      return "driving";
+    case ActivityState::Turning:
+      return "turning";
+    case ActivityState::Waiting:
+      return "waiting";
+    case ActivityState::Reached:
+      return "reached";
+    case ActivityState::Failed:
+      return "failed";
+  }
+  return "none";
+}
+
 std::string_view to_string(Severity s) noexcept {
   switch (s) {
     case Severity::Info:

@@ -35,6 +35,9 @@ struct Range {
   }
 };
 
+/// "must be from 0 to 10, is 11", for a value that it does not hold.
+std::string range_problem(const Range& range, double value);
+
 inline constexpr Range kLat{-90.0, 90.0};
 inline constexpr Range kLon{-180.0, 180.0};
 inline constexpr Range kAlt_m{-1000.0, 10'000.0};

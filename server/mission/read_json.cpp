@@ -10,12 +10,6 @@
 #include "mission/text.hpp"
 
 namespace roverd::mission {
-namespace {
-
-using base::Code;
-using base::Error;
-using base::Result;
-using nlohmann::json;
 
 std::string range_problem(const Range& range, double value) {
   std::string text = "must be ";
@@ -30,6 +24,13 @@ std::string range_problem(const Range& range, double value) {
   if (std::isnan(value)) return text + "not a number";
   return text + (std::isinf(value) ? std::string("infinite") : number_text(value));
 }
+
+namespace {
+
+using base::Code;
+using base::Error;
+using base::Result;
+using nlohmann::json;
 
 template <class E>
 std::string words_problem() {

@@ -57,8 +57,9 @@ base::Result<void> Robot::Impl::handle(const Arm&) {
   armed = true;
   base_waited_since.reset();
   manual.release();
-  if (mode == Mode::Auto) set_mode(Mode::Hold, "armed");
+  if (by_itself()) set_mode(Mode::Hold, "armed");
   if (pose && !home_is_chosen) home = pose->global;
+  drop_crumbs();
   event(Severity::Info, "armed", "armed");
   return {};
 }
@@ -71,52 +72,11 @@ base::Result<void> Robot::Impl::handle(const Disarm&) {
 void Robot::Impl::disarm(const std::string& why) {
   executor.pause("disarmed");
   manual.release();
-  if (mode == Mode::Auto) set_mode(Mode::Hold, "disarmed");
+  if (by_itself()) set_mode(Mode::Hold, "disarmed");
   if (!armed) return;
   armed = false;
   base_waited_since.reset();
   event(Severity::Info, "disarmed", "disarmed " + why);
-}
-
-base::Result<void> Robot::Impl::handle(const SetMode& c) {
-  switch (c.mode) {
-    case Mode::Hold:
-      executor.pause("mode HOLD");
-      set_mode(Mode::Hold, "by the operator");
-      return {};
-    case Mode::Manual:
-      if (estop) return base::fail(Code::Conflict, "the emergency stop is latched");
-      executor.pause("mode MANUAL");
-      set_mode(Mode::Manual, "by the operator");
-      return {};
-    case Mode::Auto: {
-      if (mode == Mode::Auto) return {};
-      const ExecutionState s = executor.state();
-      if (s == ExecutionState::Paused || s == ExecutionState::Blocked) return resume();
-      if (auto ok = may_drive_mission(); !ok) return ok;
-      return base::fail(Code::Conflict, "the mission is " + std::string(base::to_string(s)) +
-                                            ": there is none to go on with; start it");
-    }
-    case Mode::Guided:
-    case Mode::Rtl:
-    case Mode::SmartRtl:
-    case Mode::Follow:
-    case Mode::Steering:
-    case Mode::Acro:
-    case Mode::Simple:
-    case Mode::Dock:
-      break;
-  }
-  return base::fail(Code::Conflict, "mode " + std::string(base::to_string(c.mode)) +
-                                        " is not available yet: this robot knows HOLD, MANUAL "
-                                        "and AUTO");
-}
-
-void Robot::Impl::set_mode(Mode to, const std::string& why) {
-  if (mode == to) return;
-  mode = to;
-  manual.release();
-  event(Severity::Info, "mode", "mode " + std::string(base::to_string(to)) + ": " + why);
 }
 
 base::Result<void> Robot::Impl::handle(const Estop& c) {
@@ -155,21 +115,12 @@ base::Result<void> Robot::Impl::handle(const ResetEstop&) {
 base::Result<void> Robot::Impl::may_drive_mission() const {
   if (estop) return base::fail(Code::Conflict, "the emergency stop is latched");
   if (!mission) return base::fail(Code::Conflict, "no mission is loaded");
-  if (!armed) return base::fail(Code::Conflict, "the robot is not armed");
-  if (!pose) return base::fail(Code::Conflict, "the position is not known");
-  if (radio_drives(world, config.safety, now)) {
-    return base::fail(Code::Conflict, "the radio drives: put its switch SWB up first");
-  }
-  // What would pause the mission at the next tick refuses it now.
-  Facts as_if = facts();
-  as_if.autonomous = true;
-  const Assessment then = assess(as_if, config.safety, now);
-  if (then.response >= Response::Hold) return base::fail(Code::Conflict, then.cause);
-  return {};
+  return may_drive_by_itself();
 }
 
 base::Result<void> Robot::Impl::start(const nav::StartAt& at) {
   if (auto ok = may_drive_mission(); !ok) return ok;
+  if (auto ok = mission_inside(at); !ok) return ok;
   if (auto ok = executor.start(at, pose->at, home_point()); !ok) return ok;
   set_mode(Mode::Auto, "mission started");
   event(Severity::Info, "mission_started",
@@ -239,6 +190,7 @@ base::Result<void> Robot::Impl::handle(const SetHome& c) {
   }
   home = c.at ? *c.at : pose->global;
   home_is_chosen = true;
+  if (!c.at) drop_crumbs();
   event(Severity::Info, "home", "home was set");
   return {};
 }
@@ -246,7 +198,9 @@ base::Result<void> Robot::Impl::handle(const SetHome& c) {
 base::Result<void> Robot::Impl::handle(const Drive& c) {
   const bool finite = std::isfinite(c.twist.linear_mps) && std::isfinite(c.twist.angular_radps);
   if (!finite) return base::fail(Code::Invalid, "speed and turn rate must be finite");
-  if (mode == Mode::Manual) manual.drive(c.twist, c.deadman, now);
+  const bool by_hand = mode == Mode::Manual || mode == Mode::Acro || mode == Mode::Steering ||
+                       mode == Mode::Simple;
+  if (by_hand) manual.drive(c.twist, c.deadman, now);
   return {};
 }
 
@@ -259,6 +213,11 @@ base::Result<void> Robot::Impl::handle(const LoadMission& c) {
   if (estimator.frame()->id() != c.mission->frame.id()) {
     return base::fail(Code::Conflict, "the robot's map began meanwhile: load once more");
   }
+  adopt(c);
+  return {};
+}
+
+void Robot::Impl::adopt(const LoadMission& c) {
   mission = c.mission;
   mission_unpublished = true;
   executor.load(std::shared_ptr<const nav::Route>(mission, &mission->route));
@@ -270,7 +229,25 @@ base::Result<void> Robot::Impl::handle(const LoadMission& c) {
   event(Severity::Info, "mission_loaded",
         "mission \"" + mission->copy.plan.name + "\" revision " +
             std::to_string(mission->copy.revision) + " loaded");
-  return {};
+}
+
+base::Result<void> Robot::Impl::handle(const ResumeAt& c) {
+  if (!c.mission) return base::fail(Code::Invalid, "there is no mission to go on with");
+  if (mission) {
+    return base::fail(Code::Conflict, "mission \"" + mission->copy.plan.name +
+                                          "\" is loaded: resume or start that one");
+  }
+  if (auto ok = may_drive_by_itself(); !ok) return ok;
+  if (!estimator.frame() || estimator.frame()->id() != c.mission->frame.id()) {
+    return base::fail(Code::Conflict, "the robot's map began meanwhile: try once more");
+  }
+  nav::Executor trial(config.path(), config.behave, config.modes);
+  const std::shared_ptr<const nav::Route> route(c.mission, &c.mission->route);
+  if (auto ok = trial.restore(route, c.place, "left by a restart"); !ok) return ok;
+  if (auto ok = trial.may_resume(pose->at); !ok) return ok;
+  adopt({c.mission});
+  (void)executor.restore(route, c.place, "left by a restart");
+  return resume();
 }
 
 base::Result<void> Robot::Impl::handle(const ReviseMission& c) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "nav/behave/mode_params.hpp"
 #include "nav/behave/params.hpp"
 #include "nav/estimate/params.hpp"
 #include "nav/track/path.hpp"
@@ -88,6 +89,21 @@ void fields(V& v, ArmingParams& p) {
     "less certain of the heading, arming warns that the robot will creep at first");
 }
 
+/// Keeping inside the fence. Section [robot.fence].
+struct FenceParams {
+  double margin_m = 0.5;
+  double react_s = 0.4;
+  double decel_mps2 = 0.5;
+};
+
+template <class V>
+void fields(V& v, FenceParams& p) {
+  v("margin_m", p.margin_m, 0.0, 20.0,
+    "the robot stops so far inside the fence; the position's uncertainty comes on top");
+  v("react_s", p.react_s, 0.1, 3.0, "from a command to standing, beside the braking itself");
+  v("decel_mps2", p.decel_mps2, 0.05, 5.0, "braking that can be relied on");
+}
+
 struct Config {
   nav::VehicleParams vehicle;  ///< section [vehicle], beside what only people need
   nav::EstimateParams estimate;
@@ -95,8 +111,10 @@ struct Config {
   nav::SpeedParams speed;
   nav::PivotParams pivot;
   nav::BehaveParams behave;
+  nav::ModeParams modes;
   ManualParams manual;
   SafetyParams safety;
+  FenceParams fence;
   ArmingParams arming;
   RadioParams radio;
   BatteryParams battery;
@@ -116,11 +134,17 @@ void sections(V& v, Config& c) {
   v("nav.speed", c.speed);
   v("nav.pivot", c.pivot);
   v("nav.behave", c.behave);
+  v("nav.modes", c.modes);
   v("robot.manual", c.manual);
   v("robot.safety", c.safety);
+  v("robot.fence", c.fence);
   v("robot.arming", c.arming);
   v("radio", c.radio);
   v("battery", c.battery);
 }
+
+/// What only the whole tells: values that are each in range and make no sense together. Invalid,
+/// with the parameter's name as the field.
+base::Result<void> check(const Config& c);
 
 }  // namespace roverd::robot

@@ -15,7 +15,6 @@ using base::ExecutionState;
 using base::Mode;
 using base::Severity;
 
-constexpr double kNoLimit_mps = 1e9;
 /// The base tells its state every 0.1 to 0.2 s: until then its last word is of the time before.
 constexpr base::Duration kSettled = std::chrono::milliseconds(500);
 
@@ -27,7 +26,7 @@ Facts Robot::Impl::facts() const {
           .last_position = estimator.last_position(),
           .armed = armed,
           .estop = estop,
-          .autonomous = mode == Mode::Auto && executor.running(),
+          .autonomous = mode == Mode::Auto ? executor.running() : by_itself(),
           .base_waited_since = base_waited_since,
           .base_left = base_left,
           .commands_lost = follow.lost(),
@@ -118,27 +117,35 @@ base::DriveCommand Robot::Impl::decide() {
   }
   if (radio || !base_listens(world)) {
     if (executor.running() && !executor.interrupted()) executor.interrupt();
+    interrupt_modes();
     manual.release();
   }
   if (radio && !estop) driver = Driver::Radio;
   if (estop || !armed || radio) return {};
   if (base_lost(world, config.safety, now)) return {};
   if (!base_listens(world)) return {{}, true};
+  return keep_inside(choose());
+}
+
+/// Who may drive in this mode, and what he wants.
+base::DriveCommand Robot::Impl::choose() {
   switch (mode) {
+    case Mode::Hold:
+      return {{}, true};
     case Mode::Manual:
       return drive_by_hand();
+    case Mode::Acro:
+    case Mode::Steering:
+    case Mode::Simple:
+      return drive_by_sticks();
     case Mode::Auto:
       return drive_mission();
-    case Mode::Hold:
     case Mode::Guided:
     case Mode::Rtl:
     case Mode::SmartRtl:
     case Mode::Follow:
-    case Mode::Steering:
-    case Mode::Acro:
-    case Mode::Simple:
     case Mode::Dock:
-      break;
+      return drive_by_itself();
   }
   return {{}, true};
 }
@@ -165,19 +172,7 @@ base::DriveCommand Robot::Impl::drive_mission() {
   if (!executor.running() || !pose) return {{}, true};
   driver = Driver::Autonomy;
   executor.go_on(pose->at);
-  const nav::Belief& b = estimator.belief();
-  const nav::Vehicle vehicle{pose->at,
-                             pose->yaw_rad,
-                             pose->yaw_sigma_rad,
-                             pose->speed_mps.value_or(0.0),
-                             pose->yaw_rate_radps.value_or(0.0),
-                             b.x(nav::kScale),
-                             b.x(nav::kYawScale),
-                             b.x(nav::kPull),
-                             pose->horizontal_sigma_m};
-  const double limit =
-      assessment.response >= Response::Slow ? config.speed.creep_mps : kNoLimit_mps;
-  const nav::TrackOutput out = executor.step(vehicle, limit, home_point(), dt_s);
+  const nav::TrackOutput out = executor.step(vehicle(), limit_mps(), home_point(), dt_s);
   speed_reason = std::string(nav::to_string(out.reason));
   tell_notices();
   if (!executor.running()) {
@@ -195,6 +190,9 @@ void Robot::Impl::tell_notices() {
         break;
       case nav::Notice::Kind::ItemMissed:
         event(Severity::Warning, "item_missed", "item " + std::to_string(n.item) + " " + n.detail);
+        break;
+      case nav::Notice::Kind::Action:
+        act(n);
         break;
       case nav::Notice::Kind::Finished:
         event(Severity::Info, "mission_finished",
@@ -218,6 +216,16 @@ void Robot::Impl::tell_notices() {
       event(Severity::Error, "mission_aborted", executor.reason());
     }
     set_mode(Mode::Hold, finished ? "mission finished" : executor.reason());
+  }
+}
+
+/// Every action is told, so that a script may do it; what the robot knows of, it does itself.
+void Robot::Impl::act(const nav::Notice& n) {
+  event(Severity::Info, "action", "item " + std::to_string(n.item) + ": " + n.detail);
+  if (n.detail == "set_home" && pose) {
+    home = pose->global;
+    home_is_chosen = true;
+    event(Severity::Info, "home", "home was set");
   }
 }
 

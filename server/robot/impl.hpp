@@ -3,26 +3,41 @@
 //
 // Modes (armed or not; nothing moves unless armed):
 //
-//            ┌─────────────── set mode ───────────────┐
-//            ▼                                        ▼
-//   MANUAL ◀───▶ HOLD ◀──pause, finished, a loss── AUTO
-//                  └────start, resume, set mode──────▶
+//   by hand                 stopped        by itself, paused by any loss
+//   MANUAL                                 AUTO      a mission (nav/behave/executor.hpp)
+//   ACRO STEERING SIMPLE ◀──▶ HOLD ◀──▶    GUIDED    a goal (nav/behave/guided.hpp)
+//   (nav/behave/sticks.hpp)                RTL SMART_RTL   (nav/behave/homeward.hpp)
+//                                          FOLLOW (nav/behave/follow.hpp)  DOCK (…/dock.hpp)
+//
+//   Any mode leads to any other by set mode; a mode refuses to begin (Conflict, with the reason)
+//   where its conditions do not hold, and then the one before goes on. Leaving AUTO pauses the
+//   mission. RTL, SMART_RTL, FOLLOW and DOCK end in HOLD. Between two that drive by themselves the
+//   robot stands first (robot/changeover.hpp).
 //
 //   Disarmed ──arm (all checks pass)──▶ Armed ──disarm, e-stop──▶ Disarmed
 //   e-stop: Released ──anyone, the base──▶ Latched ──reset, base released──▶ Released, disarmed,
 //   HOLD
 //
-// Who drives: e-stop > radio > teleoperation (MANUAL) > autonomy (AUTO). The radio's take-over
-// keeps mode AUTO and the mission running; it goes on from the same place when control returns.
+// Who drives: e-stop > radio > by hand over the network > by itself. Whoever drives, the fence has
+// the last word. The radio's take-over keeps the mode and what it does; it goes on from the same
+// place when control returns.
 
 #include <atomic>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "nav/behave/breadcrumbs.hpp"
+#include "nav/behave/dock.hpp"
 #include "nav/behave/executor.hpp"
+#include "nav/behave/follow.hpp"
+#include "nav/behave/guided.hpp"
+#include "nav/behave/homeward.hpp"
+#include "nav/behave/sticks.hpp"
 #include "nav/estimate/estimator.hpp"
+#include "robot/changeover.hpp"
 #include "robot/compile.hpp"
+#include "robot/fence_guard.hpp"
 #include "robot/follow.hpp"
 #include "robot/manual.hpp"
 #include "robot/outbox.hpp"
@@ -42,21 +57,40 @@ struct PendingCommand {
 nav::StartAt start_at(const StartMission& c) noexcept;
 
 struct Robot::Impl {
+  using Mode = base::Mode;
+
   explicit Impl(Config c);
 
   // Shared between threads; each is safe by itself.
-  const Config config;
+  base::Latest<Config> shared_config;
+  base::Latest<LaidFence> shared_fence;
   base::Inbox<base::Measurement> measurements{4096};
   base::Inbox<PendingCommand> commands{64};
   base::Latest<base::Snapshot> snapshot;
   base::Latest<CompiledMission> loaded;
   std::atomic<bool> estop_asked{false};
+  std::atomic<std::uint64_t> made{1};       ///< ids of missions and fences that are laid out
   std::atomic<std::uint32_t> frame_ids{2};  ///< 1 is for the first fix
   Outbox outbox;
 
   // Control thread from here on.
+  Config config;
+  bool config_unpublished = true;
+  bool fence_unpublished = false;
   nav::Estimator estimator;
   nav::Executor executor;
+  nav::Guided guided;
+  nav::Dock dock;
+  nav::Homeward homeward;
+  nav::Follow follower;
+  nav::Sticks sticks;
+  nav::Breadcrumbs crumbs;
+  std::uint64_t crumbs_resets = 0;
+  Changeover changeover;
+  std::shared_ptr<const LaidFence> fence;
+  bool fence_stops = false;  ///< at this tick
+  bool fence_told = false;
+  base::Activity activity;
   Manual manual;
   RadioKeys keys;
   std::vector<RadioKey> pressed;
@@ -121,7 +155,16 @@ struct Robot::Impl {
   base::Result<void> handle(const Drive& c);
   base::Result<void> handle(const LoadMission& c);
   base::Result<void> handle(const ReviseMission& c);
+  base::Result<void> handle(const GoTo& c);
+  base::Result<void> handle(const MoveBy& c);
+  base::Result<void> handle(const SetTarget& c);
+  base::Result<void> handle(const SetParameter& c);
+  base::Result<void> handle(const SetFence& c);
+  base::Result<void> handle(const ResumeAt& c);
   base::Result<void> may_drive_mission() const;
+  base::Result<void> may_drive_by_itself() const;
+  base::Result<void> mission_inside(const nav::StartAt& at) const;
+  void adopt(const LoadMission& c);
   base::Result<void> start(const nav::StartAt& at);
   base::Result<void> resume();
 
@@ -135,10 +178,43 @@ struct Robot::Impl {
   bool within_reach(base::LatLon at) const;
   Facts facts() const;
 
+  // modes.cpp: entering and leaving
+  base::Result<void> guide(const nav::GuidedGoal& goal, std::string_view kind);
+  base::Result<base::EnuPoint> place_of(const GoTo& c) const;
+  base::Result<void> enter_guided();
+  base::Result<void> enter_return();
+  base::Result<void> enter_retrace();
+  base::Result<void> enter_follow();
+  base::Result<void> enter_dock(const SetMode& c);
+  base::Result<void> enter_sticks(Mode to);
+  base::Result<void> inside(base::EnuPoint to) const;
+  std::optional<base::EnuPoint> refuge() const;
+  void take_over(Mode to, const std::string& why);
+  void begin_activity(std::string_view kind);
+  bool by_itself() const noexcept;
+  void interrupt_modes();
+  void drop_crumbs();
+
+  // drive_modes.cpp: one tick of them
+  nav::Vehicle vehicle() const;
+  double limit_mps() const noexcept;
+  base::DriveCommand drive_by_sticks();
+  base::DriveCommand drive_by_itself();
+  nav::TrackOutput step_mode(const nav::Vehicle& v, double limit);
+  void end_mode(base::ActivityState state, const char* kind, const std::string& detail);
+  void watch_mode();
+  void tell_activity();
+  void lay_crumbs();
+  base::DriveCommand keep_inside(base::DriveCommand command);
+  base::FenceState fence_state() const;
+  void use_config();
+
   // decide.cpp
+  base::DriveCommand choose();
   base::DriveCommand drive_by_hand();
   base::DriveCommand drive_mission();
   void tell_notices();
+  void act(const nav::Notice& n);
   void watch_changes();
   void watch_frame();
   void watch_base();

@@ -24,6 +24,8 @@ class Manual {
 
   explicit Manual(const ManualParams& params) : params_(params) {}
 
+  void use(const ManualParams& params) noexcept { params_ = params; }
+
   void drive(const base::BodyTwist& twist, bool deadman, base::Time now) noexcept {
     last_ = now;
     const bool zero = twist.linear_mps == 0.0 && twist.angular_radps == 0.0;

@@ -23,6 +23,7 @@ base::MissionProgress Robot::Impl::progress() const {
   p.cross_track_m = at.cross_track_m;
   p.distance_left_m = at.distance_left_m;
   p.eta_s = at.eta_s;
+  p.place = executor.place();
   if (pose && at.target && estimator.frame()) {
     const auto to = base::distance_bearing(pose->global, estimator.frame()->to_global(*at.target));
     p.distance_to_item_m = to.distance_m;
@@ -59,6 +60,8 @@ bool Robot::Impl::publish() {
   s->radio_meaning = radio_meaning();
   s->drivers = world.drivers;
   s->mission = progress();
+  s->activity = activity;
+  if (fence) s->fence = fence_state();
   s->command = sent;
   s->safety = std::move(assessment.conditions);
   s->checks = checks;
@@ -71,6 +74,14 @@ bool Robot::Impl::publish() {
   if (mission_unpublished) {
     mission_unpublished = !loaded.publish(mission);
     all = !mission_unpublished;
+  }
+  if (config_unpublished) {
+    config_unpublished = !shared_config.publish(std::make_shared<const Config>(config));
+    all = all && !config_unpublished;
+  }
+  if (fence_unpublished) {
+    fence_unpublished = !shared_fence.publish(fence);
+    all = all && !fence_unpublished;
   }
   return snapshot.publish(std::move(s)) && all;
 }

@@ -11,12 +11,19 @@ using base::Code;
 using base::Severity;
 
 Robot::Impl::Impl(Config c)
-    : config(c),
+    : config(std::move(c)),
       estimator(config.estimate),
-      executor(config.path(), config.behave),
+      executor(config.path(), config.behave, config.modes),
+      guided(config.path(), config.behave, config.modes),
+      dock(config.path(), config.behave, config.modes),
+      homeward(config.path(), config.behave),
+      follower(config.path(), config.modes),
+      sticks(config.path(), config.modes),
+      crumbs(config.modes.crumb_m),
       manual(config.manual),
       keys(config.radio, config.safety.radio_timeout_s) {
   world.gauge = BatteryGauge(config.battery);
+  shared_config.publish(std::make_shared<const Config>(config));
   measurement_batch.reserve(256);
   command_batch.reserve(64);
   pressed.reserve(64);
@@ -69,21 +76,66 @@ base::Result<std::shared_ptr<const CompiledMission>> Robot::compile(MissionCopy 
   const auto state = impl_->snapshot.get();
   std::optional<base::LocalFrame> frame;
   if (state) frame = state->frame;
+  bool local = false;
   for (std::size_t i = 0; !frame && i < copy.plan.items.size(); ++i) {
+    local = local || !std::holds_alternative<mission::Waypoint>(copy.plan.items[i]);
     const auto* first = std::get_if<mission::Waypoint>(&copy.plan.items[i]);
     if (first != nullptr && base::is_valid(first->at)) {
       frame.emplace(impl_->frame_ids.fetch_add(1), first->at);
     }
   }
+  if (!frame && copy.plan.home && local) {
+    frame.emplace(impl_->frame_ids.fetch_add(1), copy.plan.home->at);
+  }
+  if (!frame && local) {
+    return base::fail(Code::Conflict,
+                      "the position is not known, and the mission says of no place where it is");
+  }
   if (!frame) {
     return base::fail(Code::Invalid, "the mission has no waypoint",
                       {{"/items", "the mission has no waypoint"}});
   }
-  const Config& c = impl_->config;
-  auto route = nav::lay_route(copy.plan, *frame, c.path());
+  const auto config = impl_->shared_config.get();
+  auto route = nav::lay_route(copy.plan, *frame, config->path());
   if (!route) return tl::unexpected(std::move(route.error()));
-  return std::make_shared<const CompiledMission>(
-      CompiledMission{std::move(copy), *frame, std::move(*route)});
+  CompiledMission made{impl_->made.fetch_add(1), std::move(copy), *frame, std::move(*route)};
+  const auto fence = impl_->shared_fence.get();
+  if (fence && fence->frame_id == frame->id()) {
+    std::optional<base::EnuPoint> home = made.route.home;
+    if (!home && state && state->home) home = frame->to_local(*state->home);
+    made.fence_id = fence->id;
+    made.fence_objection = route_objection(made.route, fence->limits, home,
+                                           config->fence.margin_m + kFenceAllowance_m);
+  }
+  return std::make_shared<const CompiledMission>(std::move(made));
+}
+
+std::shared_ptr<const LaidFence> Robot::lay_fence(
+    std::shared_ptr<const mission::Fence> fence) const {
+  if (!fence) return nullptr;
+  auto laid = std::make_shared<LaidFence>();
+  laid->id = impl_->made.fetch_add(1);
+  laid->fence = std::move(fence);
+  const auto state = impl_->snapshot.get();
+  if (!state || !state->frame) return laid;
+  laid->frame_id = state->frame->id();
+  laid->limits = mission::CompiledFence(*laid->fence, *state->frame);
+  for (const mission::RallyPoint& r : laid->fence->rally) {
+    laid->rally.push_back(state->frame->to_local(r.at));
+  }
+  const auto mission = impl_->loaded.get();
+  if (!mission || mission->frame.id() != laid->frame_id) return laid;
+  std::optional<base::EnuPoint> home;
+  if (state->home) home = state->frame->to_local(*state->home);
+  laid->mission_id = mission->id;
+  laid->objection =
+      route_objection(mission->route, laid->limits, home,
+                      impl_->shared_config.get()->fence.margin_m + kFenceAllowance_m);
+  return laid;
+}
+
+std::shared_ptr<const Config> Robot::config() const {
+  return impl_->shared_config.get();
 }
 
 base::Result<Preview> Robot::preview(const StartMission& start) const {
@@ -113,7 +165,7 @@ base::Result<Preview> Robot::preview(const StartMission& start) const {
     p.speed_mps = route.forth.nodes[route.forth.steps[i].node].speed_mps;
     break;
   }
-  p.speed_mps = std::min(p.speed_mps, impl_->config.path().speed.max_mps);
+  p.speed_mps = std::min(p.speed_mps, impl_->shared_config.get()->path().speed.max_mps);
   if (const auto target = nav::first_target(route, step, home)) {
     p.first_target = mission->frame.to_global(*target);
     if (state && state->pose) {
@@ -195,6 +247,7 @@ void Robot::tick(Time now, base::WallTime wall, base::Duration lateness) noexcep
     r.watch_frame();
     r.act_on_radio();
     r.judge();
+    r.lay_crumbs();
     r.sent = r.decide();
     if (send) send(r.sent, now);
     if (r.publish() && r.outbox.flush() && wake) wake();

@@ -21,8 +21,10 @@
 #include "base/inbox.hpp"
 #include "base/latest.hpp"
 #include "base/measurements.hpp"
+#include "base/params.hpp"
 #include "base/result.hpp"
 #include "base/snapshot.hpp"
+#include "mission/fence.hpp"
 #include "mission/plan.hpp"
 #include "robot/config.hpp"
 
@@ -40,8 +42,46 @@ struct MissionCopy {
 struct Arm {};
 struct Disarm {};
 /// AUTO goes on with a mission that waits. It starts none: StartMission names which.
+/// A place to go to, in words of the outside. Neither `at` nor `local`: a way to go, by yaw and
+/// speed, that holds until it is too old (ModeParams::stream_timeout_s).
+struct GoTo {
+  std::optional<base::LatLon> at;
+  std::optional<base::EnuPoint> local;  ///< in the robot's map
+  std::optional<double> yaw_rad;
+  std::optional<double> speed_mps;
+  bool reverse = false;
+};
+/// Exactly one of the first three.
+struct MoveBy {
+  std::optional<double> forward_m;  ///< negative: backwards
+  std::optional<double> turn_rad;   ///< left positive, any size
+  std::optional<double> yaw_rad;    ///< turn to it, the shorter way
+  std::optional<double> speed_mps;  ///< of forward_m
+};
+/// A moving target for FOLLOW.
+struct SetTarget {
+  std::optional<base::LatLon> at;
+  std::optional<base::EnuPoint> local;  ///< else
+  std::optional<base::EnuPoint> velocity_mps;
+  double age_s = 0.0;  ///< when this was asked; the robot adds what passes until it takes it
+  base::Time asked;
+  enum class Offset { None, North, Course } offset = Offset::None;
+  double a_m = 0.0;  ///< North: east. Course: forward
+  double b_m = 0.0;  ///< North: north. Course: left
+};
 struct SetMode {
   base::Mode mode = base::Mode::Hold;
+  std::optional<GoTo> goal{};  ///< of DOCK: the pose, needed; reverse: with the tail
+};
+/// One parameter, by the name of its section and its own: "nav.track.lookahead_min_m".
+struct SetParameter {
+  std::string name;
+  base::ParamValue value;
+};
+struct LaidFence;  // see robot/fence_guard.hpp
+/// What may be driven on from the next tick on. Null: no fence.
+struct SetFence {
+  std::shared_ptr<const LaidFence> fence;
 };
 struct Estop {
   std::string who;
@@ -71,6 +111,11 @@ struct CompiledMission;  // route of one MissionCopy in one LocalFrame; see robo
 struct LoadMission {
   std::shared_ptr<const CompiledMission> mission;
 };
+/// Loads a mission and goes on with it where another life of this program left it. All or nothing.
+struct ResumeAt {
+  std::shared_ptr<const CompiledMission> mission;
+  base::MissionPlace place;
+};
 
 enum class EditKind { AddWaypoint, RemoveItem, Clear };
 /// What the radio wants of the loaded mission; the store is to keep it. The robot asks for nothing
@@ -95,7 +140,8 @@ struct ReviseMission {
 
 using Command =
     std::variant<Arm, Disarm, SetMode, Estop, ResetEstop, StartMission, PauseMission, ResumeMission,
-                 StopMission, SkipItem, SetHome, Drive, LoadMission, ReviseMission>;
+                 StopMission, SkipItem, SetHome, Drive, LoadMission, ReviseMission, GoTo, MoveBy,
+                 SetTarget, SetParameter, SetFence, ResumeAt>;
 
 /// Called with what the robot *did*. Runs on whatever thread drains replies().
 using Reply = std::function<void(base::Result<void>)>;
@@ -116,6 +162,14 @@ struct Preview {
   std::optional<double> bearing_deg;
   double speed_mps = 0.0;
   mission::AtEnd at_end = mission::AtEnd::Hold;
+};
+
+/// One parameter of the robot's sections.
+struct Parameter {
+  std::string section;  ///< "nav.track"
+  base::ParamInfo info;
+  base::ParamValue initial;  ///< by default
+  bool at_once = true;       ///< a change acts at the next tick; else at the next start
 };
 
 class Robot {
@@ -145,6 +199,16 @@ class Robot {
   base::Result<std::shared_ptr<const CompiledMission>> compile(MissionCopy copy) const;
   /// Any thread. NotFound when nothing is loaded; Conflict when `from` names no item.
   base::Result<Preview> preview(const StartMission& start) const;
+  /// Any thread, at once: lays a fence out in the robot's frame, and looks at the loaded mission.
+  /// Without a frame yet it forbids every drive without hands; lay it again when there is one.
+  std::shared_ptr<const LaidFence> lay_fence(std::shared_ptr<const mission::Fence> fence) const;
+  /// Any thread: the parameters as they are now, and as they are by default.
+  std::vector<Parameter> parameters() const;
+  /// Any thread. What SetParameter would refuse: NotFound, Invalid, or Conflict for one that acts
+  /// only at the next start.
+  base::Result<void> check_parameter(const std::string& name, const base::ParamValue& value) const;
+  /// Any thread.
+  std::shared_ptr<const Config> config() const;
   /// Any thread. What is loaded; null if nothing is.
   std::shared_ptr<const MissionCopy> loaded() const;
 

@@ -32,6 +32,7 @@ std::string tenths(double m) {
 TrackOutput Executor::step(const Vehicle& vehicle, double limit_mps, std::optional<EnuPoint> home,
                            double dt_s) {
   if (!running() || interrupted_) return {};
+  home_ = home;
   if (doing_ == Doing::Nothing) enter(vehicle, home);
   if (!running()) return {};
   if (doing_ == Doing::Wait) {
@@ -45,6 +46,8 @@ TrackOutput Executor::step(const Vehicle& vehicle, double limit_mps, std::option
     enter(vehicle, home);
     if (!running()) return {};
   }
+  if (doing_ == Doing::Turn) return step_turn(vehicle, dt_s);
+  if (doing_ == Doing::Wait || cut_goal(vehicle, dt_s)) return {};
   const TrackOutput out = tracker_.step(vehicle, limit_mps, dt_s);
   if (doing_ == Doing::Path) pass_nodes(vehicle);
   if (tracker_.phase() == TrackPhase::Done) {
@@ -81,6 +84,17 @@ bool Executor::enter_step(const RouteStep& step, const Vehicle& vehicle,
       wait_s_ = step.seconds;
       doing_ = Doing::Wait;
       return true;
+    case StepKind::Move:
+      return enter_move(step, vehicle);
+    case StepKind::Face:
+    case StepKind::Turn:
+      return enter_turn(step);
+    case StepKind::Act:
+      notices_.push_back({Notice::Kind::Action, step.item,
+                          step.arguments.empty() ? step.action
+                                                 : step.action + " " + step.arguments});
+      ++at_;
+      return false;
     case StepKind::Home: {
       if (!home) {
         stop("there is no home to return to");
@@ -109,7 +123,8 @@ bool Executor::enter_step(const RouteStep& step, const Vehicle& vehicle,
 
 bool Executor::enter_go(const RouteStep& step, const Vehicle& vehicle) {
   const Path& path = course_->path;
-  const bool in_order = standing_ && *standing_ + 1 == step.node;
+  const bool in_order =
+      standing_ && *standing_ + 1 == step.node && modes_.goal_cut_m <= 0.0;
   const RouteNode& node = course_->nodes[step.node];
   if (in_order) {
     const double from_m = path.vertex_m[*standing_];
@@ -126,22 +141,29 @@ bool Executor::enter_go(const RouteStep& step, const Vehicle& vehicle) {
       return doing_ == Doing::Wait;
     }
   }
-  if (connect(node.at, &node, vehicle)) return true;
+  if (modes_.goal_cut_m > 0.0) standing_.reset();
+  looked_s_ = 0.0;
+  if (connect(cut(node.at, vehicle.at), &node, vehicle)) return true;
   reached(step);
   return doing_ == Doing::Wait;
 }
 
 /// A straight way of its own. @return false when the robot is already there.
 bool Executor::connect(EnuPoint to, const RouteNode* node, const Vehicle& vehicle) {
+  Vertex end;
+  end.at = to;
+  end.speed_mps = node != nullptr ? node->speed_mps : route_->speed_mps;
+  end.reverse = node != nullptr && node->reverse;
+  return lay_connector(end, vehicle);
+}
+
+bool Executor::lay_connector(Vertex end, const Vehicle& vehicle) {
   EnuPoint from = vehicle.at;
   if (standing_) {
     const EnuPoint nominal = course_->nodes[*standing_].at;
     if (base::distance_m(nominal, from) < path_params_.track.rejoin_m) from = nominal;
   }
-  Vertex end;
-  end.at = to;
-  end.speed_mps = node != nullptr ? node->speed_mps : route_->speed_mps;
-  end.reverse = node != nullptr && node->reverse;
+  connector_end_ = end;
   const Vertex both[] = {{from, end.speed_mps, end.reverse, false, mission::Turn::Auto, 0.1}, end};
   connector_ = build_path(both, path_params_);
   rejoin_.reset();
@@ -153,9 +175,96 @@ bool Executor::connect(EnuPoint to, const RouteNode* node, const Vehicle& vehicl
   return true;
 }
 
+/// Straight on from where the robot is and points.
+bool Executor::enter_move(const RouteStep& step, const Vehicle& vehicle) {
+  const double way_m = left_ != 0.0 ? left_ : step.by;
+  left_ = 0.0;
+  standing_.reset();
+  Vertex end;
+  end.at = {vehicle.at.east_m + way_m * std::cos(vehicle.yaw_rad),
+            vehicle.at.north_m + way_m * std::sin(vehicle.yaw_rad)};
+  end.reverse = way_m < 0.0;
+  end.speed_mps = end.reverse ? modes_.move_back_mps : modes_.move_mps;
+  if (lay_connector(end, vehicle)) return true;
+  reached(step);
+  return false;
+}
+
+bool Executor::enter_turn(const RouteStep& step) {
+  const double rate_radps =
+      step.kind == StepKind::Turn ? modes_.turn_radps : path_params_.pivot.max_rate_radps;
+  if (step.yaw_rad) {
+    turner_.to(*step.yaw_rad, rate_radps);
+  } else {
+    turner_.by(left_ != 0.0 ? left_ : step.by, rate_radps);
+  }
+  left_ = 0.0;
+  drove_ = true;
+  doing_ = Doing::Turn;
+  return true;
+}
+
+TrackOutput Executor::step_turn(const Vehicle& vehicle, double dt_s) {
+  const TrackOutput out = turner_.step(vehicle, path_params_, dt_s);
+  if (turner_.state() == Turner::State::Failed) block("a turn on the spot does not come to its end");
+  if (turner_.state() == Turner::State::Done) {
+    doing_ = Doing::Nothing;
+    reached(*step_now());
+  }
+  return out;
+}
+
+/// Where the parameters ask for it, only so far towards a place.
+EnuPoint Executor::cut(EnuPoint to, EnuPoint here) const noexcept {
+  const double far_m = base::distance_m(here, to);
+  if (modes_.goal_cut_m <= 0.0 || far_m <= modes_.goal_cut_m) return to;
+  const double part = modes_.goal_cut_m / far_m;
+  return {here.east_m + part * (to.east_m - here.east_m),
+          here.north_m + part * (to.north_m - here.north_m)};
+}
+
+/// Looks at a cut goal anew. @return true: it counts as reached, and something else begins.
+bool Executor::cut_goal(const Vehicle& vehicle, double dt_s) {
+  const RouteStep* step = step_now();
+  const bool cuts = modes_.goal_cut_m > 0.0 && doing_ == Doing::Connector && !rejoin_ &&
+                    step != nullptr && step->kind == StepKind::Go;
+  if (!cuts) return false;
+  const RouteNode& node = course_->nodes[step->node];
+  if (base::distance_m(vehicle.at, node.at) <= std::max(node.radius_m, modes_.goal_within_m)) {
+    doing_ = Doing::Nothing;
+    tracker_.reset();
+    reached(*step);
+    return true;
+  }
+  looked_s_ += dt_s;
+  const bool whole = base::distance_m(connector_end_.at, node.at) < 0.01;
+  const bool due = looked_s_ >= modes_.goal_cut_s || tracker_.phase() == TrackPhase::Done;
+  if (whole || !due) return false;
+  looked_s_ = 0.0;
+  Vertex end = connector_end_;
+  end.at = cut(node.at, vehicle.at);
+  const Vertex both[] = {
+      {vehicle.at, end.speed_mps, end.reverse, false, mission::Turn::Auto, 0.1}, end};
+  connector_ = build_path(both, path_params_);
+  connector_end_ = end;
+  tracker_.move_to(connector_, 0, 0.0);
+  return false;
+}
+
 bool Executor::at_end(const Vehicle& vehicle, std::optional<EnuPoint> home) {
   if (returning_) {
-    finish();
+    if (fled_.empty()) {
+      finish();
+    } else {
+      stop("returned home: " + fled_);
+    }
+    return true;
+  }
+  if (!fled_.empty()) {
+    returning_ = true;
+    standing_.reset();
+    if (home && connect(*home, nullptr, vehicle)) return true;
+    stop("did not return home: " + fled_);
     return true;
   }
   switch (route_->at_end) {
@@ -265,7 +374,8 @@ bool Executor::missed(const Vehicle& vehicle) {
 
 /// Counts a step as done; holds if it says so.
 void Executor::reached(const RouteStep& step) {
-  notices_.push_back({Notice::Kind::ItemReached, step.item, {}});
+  if (!step.silent) notices_.push_back({Notice::Kind::ItemReached, step.item, {}});
+  skipped_ = 0;
   pass(step);
 }
 
@@ -327,7 +437,28 @@ void Executor::watch_stuck(const Vehicle& vehicle, double dt_s) {
   block(std::move(text));
 }
 
+/// The item in hand cannot be reached: what follows is the operator's choice.
 void Executor::block(std::string why) {
+  const RouteStep* step = step_now();
+  if (params_.unreachable == "skip" && step != nullptr && at_ + 1 < course_->steps.size() &&
+      skipped_ < course_->steps.size()) {
+    const int item = step->item;
+    std::size_t next = at_;
+    while (next < course_->steps.size() && course_->steps[next].item == item) ++next;
+    if (next < course_->steps.size()) {
+      ++skipped_;
+      notices_.push_back({Notice::Kind::ItemMissed, item, "left out: " + why});
+      begin_at(next);
+      return;
+    }
+  }
+  if (params_.unreachable == "return" && fled_.empty() && home_) {
+    notices_.push_back({Notice::Kind::ItemMissed, step != nullptr ? step->item : 0,
+                        "given up, going home: " + why});
+    begin_at(course_->steps.size());
+    fled_ = std::move(why);
+    return;
+  }
   pause(why);
   state_ = ExecutionState::Blocked;
   notices_.push_back({Notice::Kind::Blocked, 0, std::move(why)});

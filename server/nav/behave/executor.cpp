@@ -49,9 +49,16 @@ std::optional<EnuPoint> first_target(const Route& route, std::size_t step,
   return std::nullopt;
 }
 
-Executor::Executor(const PathParams& path, const BehaveParams& behave)
-    : path_params_(path), params_(behave), tracker_(path) {
+Executor::Executor(const PathParams& path, const BehaveParams& behave, const ModeParams& modes)
+    : path_params_(path), params_(behave), modes_(modes), tracker_(path) {
   notices_.reserve(16);
+}
+
+void Executor::use(const PathParams& path, const BehaveParams& behave, const ModeParams& modes) {
+  path_params_ = path;
+  params_ = behave;
+  modes_ = modes;
+  tracker_.use(path);
 }
 
 void Executor::load(std::shared_ptr<const Route> route) {
@@ -69,7 +76,9 @@ void Executor::load(std::shared_ptr<const Route> route) {
 
 void Executor::begin_at(std::size_t step) {
   tracker_.reset();
+  turner_.reset();
   doing_ = Doing::Nothing;
+  left_ = looked_s_ = 0.0;
   at_ = step;
   standing_.reset();
   rejoin_.reset();
@@ -97,6 +106,8 @@ base::Result<void> Executor::start(const StartAt& at, EnuPoint here, std::option
   jumps_left_.assign(route_->forth.steps.size(), -1);
   drove_ = false;
   interrupted_ = false;
+  skipped_ = 0;
+  fled_.clear();
   state_ = ExecutionState::Running;
   reason_.clear();
   return {};
@@ -135,12 +146,13 @@ std::optional<EnuPoint> Executor::place_to_go_on() const noexcept {
       return connector_.points.back().at;
     case Doing::Nothing:
     case Doing::Wait:
+    case Doing::Turn:
       return std::nullopt;
   }
   return std::nullopt;
 }
 
-base::Result<void> Executor::resume(EnuPoint here) {
+base::Result<void> Executor::may_resume(EnuPoint here) const {
   if (state_ != ExecutionState::Paused && state_ != ExecutionState::Blocked) {
     return base::fail(Code::Conflict, "the mission is " + std::string(base::to_string(state_)));
   }
@@ -151,6 +163,11 @@ base::Result<void> Executor::resume(EnuPoint here) {
                                           " away; at most " + metres(params_.start_within_m) +
                                           " are allowed");
   }
+  return {};
+}
+
+base::Result<void> Executor::resume(EnuPoint here) {
+  if (auto ok = may_resume(here); !ok) return ok;
   state_ = ExecutionState::Running;
   reason_.clear();
   interrupted_ = true;
@@ -161,6 +178,10 @@ base::Result<void> Executor::resume(EnuPoint here) {
 void Executor::go_on(EnuPoint here) {
   if (!interrupted_) return;
   interrupted_ = false;
+  if (doing_ == Doing::Turn) {
+    left_ = turner_.left_rad();
+    doing_ = Doing::Nothing;  // the rest of it is begun anew
+  }
   const auto place = place_to_go_on();
   if (!place) return;
   const double far_m = base::distance_m(here, *place);
@@ -174,17 +195,20 @@ void Executor::go_on(EnuPoint here) {
     tracker_.begin(course_->path, leg_, s_m_);
     return;
   }
+  standing_.reset();
+  if (doing_ == Doing::Connector) {  // the same end, driven the same way
+    if (!lay_connector(connector_end_, vehicle)) tracker_.begin(connector_, 0, 0.0);
+    return;
+  }
   const RouteStep* step = step_now();
   const RouteNode* node =
       step != nullptr && step->kind == StepKind::Go ? &course_->nodes[step->node] : nullptr;
-  const bool on_path = doing_ == Doing::Path;
-  standing_.reset();
   const EnuPoint to = *place;
   if (!connect(to, node, vehicle)) {
     // Already there: the connector is as good as driven.
     tracker_.begin(connector_, 0, 0.0);
   }
-  if (on_path) rejoin_ = to;
+  rejoin_ = to;
 }
 
 base::Result<void> Executor::skip(int item) {
@@ -297,7 +321,7 @@ Progress Executor::progress(std::optional<EnuPoint> here) const {
   }
   if (state_ != ExecutionState::Loaded) p.current_item = step->item;
   if (step->kind == StepKind::Go) p.target = course_->nodes[step->node].at;
-  if (step->kind == StepKind::Home && doing_ == Doing::Connector) {
+  if (step->kind != StepKind::Go && doing_ == Doing::Connector) {
     p.target = connector_.points.back().at;
   }
   const bool tracking = (doing_ == Doing::Path && tracker_.path() == &course_->path) ||

@@ -7,7 +7,8 @@
 //                                   Paused            Running ─▶ Blocked ──resume─▶ Running
 //                                   stop: any of these ─▶ Aborted ──start─▶ Running
 //
-// interrupt() keeps Running but forgets what the tracker was doing: somebody else drives; go_on()
+// An item that cannot be reached is Blocked, or left for the next one, or the robot returns home:
+// BehaveParams::unreachable. interrupt() keeps Running but forgets what the tracker was doing: somebody else drives; go_on()
 // continues at the same place, driving back to it first if the robot was moved.
 // Control thread; allocates only when a new way begins.
 
@@ -18,8 +19,10 @@
 
 #include "base/result.hpp"
 #include "base/snapshot.hpp"
+#include "nav/behave/mode_params.hpp"
 #include "nav/behave/params.hpp"
 #include "nav/behave/route.hpp"
+#include "nav/behave/turner.hpp"
 #include "nav/track/tracker.hpp"
 
 namespace roverd::nav {
@@ -35,6 +38,7 @@ struct Notice {
   enum class Kind {
     ItemReached,
     ItemMissed,
+    Action,  ///< `detail`: its name, then a blank and its arguments as JSON
     Finished,
     Lap,
     Blocked,
@@ -62,7 +66,9 @@ std::optional<EnuPoint> first_target(const Route& route, std::size_t step,
 
 class Executor {
  public:
-  Executor(const PathParams& path, const BehaveParams& behave);
+  Executor(const PathParams& path, const BehaveParams& behave, const ModeParams& modes = {});
+  /// Other parameters from the next step on; routes that are laid keep theirs.
+  void use(const PathParams& path, const BehaveParams& behave, const ModeParams& modes);
 
   /// Allowed unless Running. Null: nothing is loaded.
   void load(std::shared_ptr<const Route> route);
@@ -73,6 +79,14 @@ class Executor {
   void stop(std::string reason);
   /// Conflict unless Paused or Blocked, or when the place to go on with is too far away.
   base::Result<void> resume(EnuPoint here);
+  /// What resume would refuse, without doing it.
+  base::Result<void> may_resume(EnuPoint here) const;
+  /// Where it stands; empty: nothing is in hand.
+  std::optional<base::MissionPlace> place() const;
+  /// Loads a route and is Paused at a place of it, as if it had been interrupted there. Conflict if
+  /// the place is none of this route's.
+  base::Result<void> restore(std::shared_ptr<const Route> route, const base::MissionPlace& place,
+                             std::string reason);
   /// Goes on with another item. @param item from 1; 0: the next one.
   base::Result<void> skip(int item);
   /// Another route in the place of the loaded one, also while it runs: its items are the same, and
@@ -99,13 +113,19 @@ class Executor {
   std::vector<Notice>& notices() noexcept { return notices_; }
 
  private:
-  enum class Doing { Nothing, Path, Connector, Wait };
+  enum class Doing { Nothing, Path, Connector, Wait, Turn };
 
   std::optional<EnuPoint> place_to_go_on() const noexcept;
   void enter(const Vehicle& vehicle, std::optional<EnuPoint> home);
   bool enter_step(const RouteStep& step, const Vehicle& vehicle, std::optional<EnuPoint> home);
   bool enter_go(const RouteStep& step, const Vehicle& vehicle);
   bool connect(EnuPoint to, const RouteNode* node, const Vehicle& vehicle);
+  bool lay_connector(Vertex end, const Vehicle& vehicle);
+  bool enter_move(const RouteStep& step, const Vehicle& vehicle);
+  bool enter_turn(const RouteStep& step);
+  TrackOutput step_turn(const Vehicle& vehicle, double dt_s);
+  bool cut_goal(const Vehicle& vehicle, double dt_s);
+  EnuPoint cut(EnuPoint to, EnuPoint here) const noexcept;
   bool at_end(const Vehicle& vehicle, std::optional<EnuPoint> home);
   void turn_round();
   void pass_nodes(const Vehicle& vehicle);
@@ -126,10 +146,13 @@ class Executor {
 
   PathParams path_params_;
   BehaveParams params_;
+  ModeParams modes_;
   Tracker tracker_;
   std::shared_ptr<const Route> route_;
   const Course* course_ = nullptr;
   Path connector_;
+  Vertex connector_end_;
+  Turner turner_;
   std::vector<int> jumps_left_;  ///< per jump; −1: not counted yet
   std::vector<Notice> notices_;
 
@@ -142,6 +165,11 @@ class Executor {
   std::size_t leg_ = 0;                  ///< kept place on the path
   double s_m_ = 0.0;
   double wait_s_ = 0.0;
+  double left_ = 0.0;      ///< of a move or turn that was interrupted; 0: all of it
+  double looked_s_ = 0.0;  ///< since a cut goal was looked at
+  std::size_t skipped_ = 0;
+  std::optional<EnuPoint> home_;  ///< of the last step
+  std::string fled_;              ///< why it returns before its end
   bool interrupted_ = false;
   bool returning_ = false;  ///< the way home after the last step
   bool drove_ = false;      ///< in this lap

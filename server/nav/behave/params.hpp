@@ -1,6 +1,8 @@
 #pragma once
 // When a mission counts as lost or stuck. Section [nav.behave].
 
+#include <string>
+
 namespace roverd::nav {
 
 struct BehaveParams {
@@ -11,6 +13,7 @@ struct BehaveParams {
   double stuck_s = 10.0;
   double stuck_m = 0.3;
   double stuck_deg = 5.0;
+  std::string unreachable = "stop";
 };
 
 template <class V>
@@ -24,6 +27,9 @@ void fields(V& v, BehaveParams& p) {
   v("stuck_s", p.stuck_s, 1.0, 120.0, "no progress for so long while driving: blocked");
   v("stuck_m", p.stuck_m, 0.05, 10.0, "less way than this is no progress");
   v("stuck_deg", p.stuck_deg, 1.0, 90.0, "less turning than this is no progress");
+  v("unreachable", p.unreachable,
+    "what follows when an item cannot be reached: stop (blocked), skip (the next item) or return "
+    "(home)");
 }
 
 }  // namespace roverd::nav

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
+
+#include "base/angle.hpp"
+#include "nav/track/corner.hpp"
 
 namespace roverd::nav {
 namespace {
@@ -29,7 +31,12 @@ class Layout {
       std::visit([this](const auto& item) { add(item); }, plan_.items[i]);
     }
     resolve_jumps();
-    if (problems_.empty() && forth().nodes.empty()) {
+    const bool drives =
+        std::any_of(forth().steps.begin(), forth().steps.end(), [](const RouteStep& step) {
+          return step.kind == StepKind::Go || step.kind == StepKind::Home ||
+                 step.kind == StepKind::Move || step.kind == StepKind::Turn;
+        });
+    if (problems_.empty() && !drives) {
       problems_.push_back({"/items", "the mission has no waypoint"});
     }
     if (!problems_.empty()) {
@@ -43,6 +50,10 @@ class Layout {
 
  private:
   Course& forth() { return route_.forth; }
+
+  static bool belongs_before(StepKind kind) {
+    return kind == StepKind::Wait || kind == StepKind::Face || kind == StepKind::Act;
+  }
 
   void refuse(std::string detail) { problems_.push_back({pointer_, std::move(detail)}); }
 
@@ -87,6 +98,58 @@ class Layout {
     forth().steps.push_back({.kind = StepKind::Jump, .item = item_, .times = j.times});
     jump_items_.push_back(j.item);
   }
+  /// Measured from the mission's home, else from where the map began.
+  void add(const mission::Local& l) {
+    const EnuPoint origin = route_.home.value_or(EnuPoint{});
+    const EnuPoint at = origin + EnuPoint{l.east_m, l.north_m};
+    if (!(std::hypot(at.east_m, at.north_m) <= base::LocalFrame::kReach_m)) {
+      return refuse("lies more than 10 km from the robot's map");
+    }
+    RouteNode node{at, speed_mps_, 0.0, false, mission::Turn::Auto, item_};
+    const bool faces = l.heading_deg.has_value();
+    const double yaw_rad = base::yaw_from_heading(l.heading_deg.value_or(0.0));
+    if (faces && params_.vehicle.steered()) {
+      const double run_m = std::max(2.0, 1.5 * min_radius_m(params_.vehicle));
+      RouteNode before = node;
+      before.at = {at.east_m - run_m * std::cos(yaw_rad), at.north_m - run_m * std::sin(yaw_rad)};
+      forth().steps.push_back({.kind = StepKind::Go,
+                               .item = item_,
+                               .node = forth().nodes.size(),
+                               .silent = true});
+      forth().nodes.push_back(before);
+    }
+    forth().steps.push_back(
+        {.kind = StepKind::Go, .item = item_, .node = forth().nodes.size(), .silent = faces &&
+         !params_.vehicle.steered()});
+    forth().nodes.push_back(node);
+    if (faces && !params_.vehicle.steered()) {
+      forth().steps.push_back({.kind = StepKind::Face, .item = item_, .yaw_rad = yaw_rad});
+    }
+  }
+  void add(const mission::Move& m) {
+    not_back_and_forth("a move");
+    forth().steps.push_back({.kind = StepKind::Move, .item = item_, .by = m.forward_m});
+  }
+  void add(const mission::TurnBy& t) {
+    if (params_.vehicle.steered()) return refuse("this vehicle cannot turn on the spot");
+    not_back_and_forth("a turn");
+    RouteStep step{.kind = StepKind::Turn, .item = item_};
+    if (t.heading_deg) step.yaw_rad = base::yaw_from_heading(*t.heading_deg);
+    // Compass turns count clockwise.
+    if (t.turn_deg) step.by = -base::rad_from_deg(*t.turn_deg);
+    forth().steps.push_back(std::move(step));
+  }
+  void add(const mission::Action& a) {
+    forth().steps.push_back({.kind = StepKind::Act,
+                             .item = item_,
+                             .action = a.name,
+                             .arguments = a.arguments.empty() ? "" : a.arguments.dump()});
+  }
+  void not_back_and_forth(const char* what) {
+    if (route_.at_end == AtEnd::BackAndForth) {
+      refuse(std::string(what) + " cannot be driven back and forth");
+    }
+  }
   template <class Other>
   void add(const Other& other) {
     refuse("items of type " + std::string(mission::type_name(mission::Item(other))) +
@@ -122,7 +185,8 @@ class Layout {
     return build_path(vertices, params_);
   }
 
-  /// The same way in the other direction. A wait belongs to the waypoint before it, a speed and
+  /// The same way in the other direction. What is done at a
+  /// waypoint belongs to the one before it, a speed and
   /// "reverse" to the way between two waypoints.
   void turn_round() {
     Course& back = route_.back;
@@ -135,8 +199,8 @@ class Layout {
     }
     for (std::size_t end = there.steps.size(); end > 0;) {
       std::size_t begin = end - 1;
-      while (begin > 0 && there.steps[begin].kind == StepKind::Wait) --begin;
-      const bool before_any = there.steps[begin].kind == StepKind::Wait;
+      while (begin > 0 && belongs_before(there.steps[begin].kind)) --begin;
+      const bool before_any = belongs_before(there.steps[begin].kind);
       for (std::size_t i = begin; i < end && !before_any; ++i) {
         RouteStep step = there.steps[i];
         if (step.kind == StepKind::Go) step.node = there.nodes.size() - 1 - step.node;

@@ -13,7 +13,8 @@
 
 namespace roverd::nav {
 
-enum class StepKind { Go, Wait, Home, Jump };
+/// Face and Act belong to the waypoint before them.
+enum class StepKind { Go, Wait, Home, Jump, Face, Turn, Move, Act };
 
 /// One thing to do. `item` is the number people see (from 1).
 struct RouteStep {
@@ -23,6 +24,11 @@ struct RouteStep {
   double seconds = 0.0;    ///< Wait: how long. Go: how long to hold there
   std::size_t target = 0;  ///< Jump: index of the step to go on with
   int times = 0;           ///< Jump: repetitions; 0 = for ever
+  double by = 0.0;         ///< Move: m, negative backwards. Turn: rad, left positive
+  std::optional<double> yaw_rad{};  ///< Face: to this; Turn: to this instead of by an angle
+  bool silent = false;              ///< Go: a point on the way to the item's own
+  std::string action{};             ///< Act: its name
+  std::string arguments{};          ///< Act: JSON
 };
 
 /// A waypoint of the route, in metres.
@@ -52,9 +58,11 @@ struct Route {
 };
 
 /// Checks and lays out a plan. Items of types that this robot cannot do yet, positions farther than
-/// 10 km from the frame's origin, jumps to nowhere, a plan without a single waypoint: Invalid,
-/// every such item named in `fields` ("/items/3", from 0 as a JSON pointer counts). Pure; linear in
-/// the number of items.
+/// 10 km from the frame's origin, jumps to nowhere, a plan without anything to drive: Invalid,
+/// every such item named in `fields` ("/items/3", from 0 as a JSON pointer counts). `local` items
+/// count from the mission's home, or, if it has none, from the frame's origin. A steered vehicle
+/// comes to a heading on a straight before it, and does not turn on the spot. Pure; linear in the
+/// number of items.
 base::Result<Route> lay_route(const mission::Plan& plan, const base::LocalFrame& frame,
                               const PathParams& params);
 

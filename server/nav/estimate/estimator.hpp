@@ -42,6 +42,8 @@ using base::Time;
 class Estimator {
  public:
   explicit Estimator(const EstimateParams& params);
+  /// Other parameters, for what comes; what was learned stays.
+  void use(const EstimateParams& params) noexcept { params_ = params; }
 
   /// Works in this frame from the first fix on. Only before there is a pose; ignored later.
   void use_frame(const base::LocalFrame& frame) noexcept;

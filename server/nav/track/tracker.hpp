@@ -61,6 +61,8 @@ class Tracker {
   /// Turns on the spot to a yaw, without any path. A steered vehicle is Done at once.
   void begin_turn(double yaw_rad) noexcept;
   void reset() noexcept;
+  /// Other limits and gains, from the next step on; paths that are laid keep their speeds.
+  void use(const PathParams& params) { params_ = params; }
   /// Goes on as it goes, on another path that is the same here. `path` must outlive the drive.
   void move_to(const Path& path, std::size_t leg, double s_m) noexcept;
 

@@ -1,0 +1,90 @@
+#pragma once
+// A way through a few points, then perhaps a turn: what GUIDED, RTL, SMART_RTL, DOCK and single
+// moves have in common.
+//
+//   Idle ──a way──▶ Way ──stands at its end──▶ Face ──turned──▶ There
+//     └─only a turn─────────────────────────▶ Face
+//   Way ──stopped beside the end, no progress──▶ Failed ◀──time over── Face
+//
+// Another order may come at any time. If the new way goes on ahead, it is joined without a stop:
+//
+//      old goal                     the new way begins where the robot is, leads a little ahead,
+//   ──▶ · · · ○                     and bends to the new goal; what lies farther to the side than
+//        ╲                          the pivot angle is turned to on the spot instead
+//         ╰──▶ new goal
+//
+// Control thread; allocates when an order comes, and when the robot goes on after somebody else
+// drove it.
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "nav/behave/params.hpp"
+#include "nav/behave/turner.hpp"
+#include "nav/track/tracker.hpp"
+
+namespace roverd::nav {
+
+class Trip {
+ public:
+  enum class State { Idle, Way, Face, There, Failed };
+
+  struct Order {
+    std::vector<Vertex> way;                ///< points to drive to; empty: none
+    std::optional<double> face_yaw_rad{};   ///< then turn to this
+    std::optional<double> turn_rad{};       ///< or by this, left positive
+    double turn_radps = 0.5;                ///< at most
+    double within_m = 0.5;                  ///< an end missed by more is failed
+  };
+
+  explicit Trip(const PathParams& path, const BehaveParams& behave)
+      : path_params_(path), behave_(behave), tracker_(path) {}
+
+  /// New parameters: at once for what is being driven as far as that can be, else for the next way.
+  void use(const PathParams& path, const BehaveParams& behave);
+
+  void begin(Order order, const Vehicle& vehicle, bool smoothly);
+  void reset() noexcept;
+  /// Somebody else drives; the next step goes on from wherever the robot is then.
+  void interrupt() noexcept { interrupted_ = state_ == State::Way || state_ == State::Face; }
+
+  TrackOutput step(const Vehicle& vehicle, double limit_mps, double dt_s);
+
+  State state() const noexcept { return state_; }
+  bool busy() const noexcept { return state_ == State::Way || state_ == State::Face; }
+  const std::string& reason() const noexcept { return reason_; }  ///< why Failed
+  std::optional<double> distance_left_m() const noexcept;
+  std::optional<double> turn_left_rad() const noexcept;
+  double cross_track_m() const noexcept { return tracker_.cross_track_m(); }
+  /// The way from where it began; empty before the first.
+  const Path& path() const noexcept { return paths_[slot_]; }
+  double s_m() const noexcept { return tracker_.s_m(); }
+
+ private:
+  void lay(const Vehicle& vehicle, bool smoothly);
+  bool goes_on_ahead(const Vehicle& vehicle, EnuPoint first) const noexcept;
+  void face();
+  void fail(std::string why);
+  void watch(const Vehicle& vehicle, double dt_s);
+
+  PathParams path_params_;
+  BehaveParams behave_;
+  Tracker tracker_;
+  Turner turner_;
+  Order order_;
+  std::array<Path, 2> paths_;  ///< the one that is driven, and the one before it
+  std::size_t slot_ = 0;
+  std::size_t lead_ = 1;  ///< vertices of the path before the order's first one
+  std::size_t first_ = 0;  ///< of the order's points: the first one on the path
+  std::size_t next_ = 0;   ///< of the order's points: not yet passed
+  State state_ = State::Idle;
+  std::string reason_;
+  bool interrupted_ = false;
+  double stuck_s_ = 0.0;
+  Vehicle stuck_at_;
+};
+
+}  // namespace roverd::nav

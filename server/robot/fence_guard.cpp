@@ -1,0 +1,98 @@
+#include "robot/fence_guard.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/angle.hpp"
+
+namespace roverd::robot {
+namespace {
+
+constexpr double kNoise_m = 0.01;  // of the position beside a limit
+
+std::string item_text(int item) {
+  return "the way to item " + std::to_string(item) + " leaves the fence";
+}
+
+/// The first point that is not inside, as the item that the way leads to.
+std::optional<int> first_outside(const nav::Course& course, const mission::CompiledFence& limits,
+                                 double margin_m) {
+  const nav::Path& path = course.path;
+  std::size_t node = 0;
+  for (std::size_t i = 0; i + 1 < path.points.size(); ++i) {
+    const nav::PathPoint& a = path.points[i];
+    while (node + 1 < path.vertex_m.size() && path.vertex_m[node] < a.s_m + 1e-6) ++node;
+    if (limits.clearance_m(a.at, path.points[i + 1].at) < margin_m) return course.nodes[node].item;
+  }
+  if (path.points.empty()) {
+    for (const nav::RouteNode& n : course.nodes) {
+      if (limits.clearance_m(n.at) < margin_m) return n.item;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string route_objection(const nav::Route& route, const mission::CompiledFence& limits,
+                            std::optional<base::EnuPoint> home, double margin_m) {
+  if (limits.empty()) return {};
+  if (const auto item = first_outside(route.forth, limits, margin_m)) return item_text(*item);
+  if (const auto item = first_outside(route.back, limits, margin_m)) return item_text(*item);
+  if (!home) return {};
+  const auto& steps = route.forth.steps;
+  std::optional<base::EnuPoint> before;
+  for (const nav::RouteStep& step : steps) {
+    if (step.kind == nav::StepKind::Go) before = route.forth.nodes[step.node].at;
+    if (step.kind != nav::StepKind::Home || !before) continue;
+    if (limits.clearance_m(*before, *home) < margin_m) {
+      return "the way home of item " + std::to_string(step.item) + " leaves the fence";
+    }
+    before = *home;
+  }
+  const bool returns = route.at_end == mission::AtEnd::Return && before.has_value();
+  if (returns && limits.clearance_m(*before, *home) < margin_m) {
+    return "the way home after the last item leaves the fence";
+  }
+  return {};
+}
+
+bool may_drive(const mission::CompiledFence& limits, base::EnuPoint from, base::EnuPoint to,
+               double margin_m) noexcept {
+  if (limits.empty()) return true;
+  const double here_m = limits.clearance_m(from);
+  if (!(here_m > 0.0)) return false;
+  if (here_m >= margin_m) return limits.clearance_m(from, to) >= margin_m;
+  return !limits.crosses(from, to) && limits.clearance_m(to) >= margin_m &&
+         limits.clearance_m(from, to) >= here_m - kNoise_m;
+}
+
+base::EnuPoint stopping_place(const base::Pose& pose, const base::BodyTwist& twist, double part,
+                              const FenceParams& p) noexcept {
+  const double v = std::abs(twist.linear_mps);
+  const double way_m = part * (v * p.react_s + v * v / (2.0 * p.decel_mps2));
+  if (way_m < 1e-6) return pose.at;
+  const double turn =
+      std::clamp(twist.angular_radps / v * way_m, -base::kPi / 2.0, base::kPi / 2.0);
+  const double half = 0.5 * turn;
+  const double chord_m = std::abs(half) < 1e-6 ? way_m : way_m * std::sin(half) / half;
+  const double to = pose.yaw_rad + half + (twist.linear_mps < 0.0 ? base::kPi : 0.0);
+  return {pose.at.east_m + chord_m * std::cos(to), pose.at.north_m + chord_m * std::sin(to)};
+}
+
+bool may_move(const mission::CompiledFence& limits, const base::Pose& pose,
+              const base::BodyTwist& twist, bool by_hand, const FenceParams& p) noexcept {
+  if (limits.empty() || twist.linear_mps == 0.0) return true;
+  const base::EnuPoint middle = stopping_place(pose, twist, 0.5, p);
+  const base::EnuPoint stop = stopping_place(pose, twist, 1.0, p);
+  const double margin_m = p.margin_m + pose.horizontal_sigma_m;
+  const double near_m =
+      std::min(limits.clearance_m(pose.at, middle), limits.clearance_m(middle, stop));
+  if (near_m >= margin_m) return true;
+  const double here_m = limits.clearance_m(pose.at);
+  const bool inwards = limits.clearance_m(stop) > here_m;
+  if (here_m > 0.0) return inwards && near_m > 0.0;
+  return by_hand && inwards;
+}
+
+}  // namespace roverd::robot
