@@ -9,6 +9,7 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <boost/asio/thread_pool.hpp>
 
 #include "api/api.hpp"
 #include "base/angle.hpp"
@@ -108,6 +109,7 @@ struct Station::Impl {
   std::unique_ptr<ControlLoop> loop;
   asio::signal_set signals{web, SIGINT, SIGTERM};
   asio::steady_timer sample_timer{web};
+  asio::thread_pool planner{1};  ///< for what would keep the web waiting; ends first
   std::string address;
 
   Result<void> open(const Settings& settings, const Options& options);
@@ -200,6 +202,12 @@ void Station::Impl::make_api(const Settings& settings) {
                            .dropped = server->hub().dropped(),
                            .connections = stats.connections,
                            .clients = stats.clients};
+  };
+  deps.aside = [this](std::function<void()> work, std::function<void()> then) {
+    asio::post(planner, [this, work = std::move(work), then = std::move(then)]() mutable {
+      work();
+      asio::post(web, std::move(then));  // nothing of a request ends on the planner's thread
+    });
   };
   api = std::make_unique<api::Api>(std::move(deps));
 }

@@ -59,6 +59,12 @@ std::shared_ptr<const base::Snapshot> Context::snapshot_or_refuse(const CallPtr&
   return snapshot;
 }
 
+void Context::aside(std::function<void()> work, std::function<void()> then) const {
+  if (deps.aside) return deps.aside(std::move(work), std::move(then));
+  work();
+  then();
+}
+
 void Context::announce(const std::string& id, std::optional<std::int64_t> revision) const {
   if (on_mission_change) on_mission_change(id, revision);
 }
@@ -97,6 +103,7 @@ Api::Api(Deps deps) : impl_(std::make_unique<Impl>(std::move(deps))) {
   add_execution_routes(c);
   add_mission_routes(c);
   add_operation_routes(c);
+  add_survey_routes(c);
   add_file_routes(c);
   add_event_routes(c);
   add_server_routes(c);

@@ -77,6 +77,8 @@ struct Deps {
   /// The ground-control page; empty answers: no such file.
   std::function<std::optional<Response>(const Request&)> page{};
   std::function<NetFigures()> figures{};
+  /// Runs `work` on a thread of its own and then `then` on the web thread. Empty: both at once.
+  std::function<void(std::function<void()> work, std::function<void()> then)> aside{};
 };
 
 /// One per program. All members but the constructor: web thread. It must live until the web thread

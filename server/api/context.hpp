@@ -66,6 +66,8 @@ struct Context {
 
   /// Answers 503 and returns null before the robot's first tick.
   std::shared_ptr<const base::Snapshot> snapshot_or_refuse(const CallPtr& call) const;
+  /// `work` on another thread if there is one for it, then `then` on this one.
+  void aside(std::function<void()> work, std::function<void()> then) const;
   /// A stored mission changed: tells the stream. @param revision empty: deleted.
   void announce(const std::string& id, std::optional<std::int64_t> revision) const;
 };
@@ -75,6 +77,7 @@ void add_vehicle_routes(const ContextPtr& context);
 void add_execution_routes(const ContextPtr& context);
 void add_mission_routes(const ContextPtr& context);
 void add_operation_routes(const ContextPtr& context);
+void add_survey_routes(const ContextPtr& context);
 void add_file_routes(const ContextPtr& context);
 void add_event_routes(const ContextPtr& context);
 void add_server_routes(const ContextPtr& context);
