@@ -77,6 +77,9 @@ struct Deps {
   /// The ground-control page; empty answers: no such file.
   std::function<std::optional<Response>(const Request&)> page{};
   std::function<NetFigures()> figures{};
+  /// The active fence is another one, or was changed; null: none. Also once when the program begins
+  /// with one. Web thread.
+  std::function<void(std::shared_ptr<const mission::Fence>)> fence_changed{};
 };
 
 /// One per program. All members but the constructor: web thread. It must live until the web thread
