@@ -285,4 +285,68 @@ Result<Done> apply(Plan plan, const Mirror& mirror) {
   return Done{std::move(plan), std::move(what), std::nullopt, *centre};
 }
 
+namespace {
+
+/// Where an item with a position lies. @param pointer of the member that names it
+Result<LatLon> position_of(const Plan& plan, int item, const char* pointer) {
+  const auto count = static_cast<int>(plan.items.size());
+  if (item < 1 || item > count) {
+    return tl::unexpected<Error>(wrong(
+        pointer, "must be from 1 to " + std::to_string(count) + ", is " + std::to_string(item)));
+  }
+  const auto places = places_in(plan, Numbers{item, item});
+  if (!places) return tl::unexpected<Error>(places.error());
+  if (places->empty()) {
+    return tl::unexpected<Error>(wrong(pointer, "has no position of its own"));
+  }
+  return places->front().at;
+}
+
+double direction_rad(EnuPoint way) noexcept {
+  return std::atan2(way.north_m, way.east_m);
+}
+
+}  // namespace
+
+Result<Done> apply(Plan plan, const Align& align) {
+  constexpr double kLeast_m = 0.1;
+  const auto first = position_of(plan, align.first.item, "/item");
+  if (!first) return tl::unexpected<Error>(first.error());
+  const TangentPlane plane(align.first.at);
+  const EnuPoint begin = plane.to_local(*first);
+  double turn_rad = 0.0;  // counter-clockwise
+  std::string what = "aligned item " + std::to_string(align.first.item) + ", moved by " +
+                     direction_words({-begin.east_m, -begin.north_m});
+  if (align.second) {
+    const auto second = position_of(plan, align.second->item, "/second/item");
+    if (!second) return tl::unexpected<Error>(second.error());
+    const EnuPoint way = plane.to_local(*second) - begin;
+    const EnuPoint wanted = plane.to_local(align.second->at);
+    const double way_m = std::hypot(way.east_m, way.north_m);
+    const double wanted_m = std::hypot(wanted.east_m, wanted.north_m);
+    if (!(std::min(way_m, wanted_m) >= kLeast_m)) {
+      return tl::unexpected<Error>(wrong("/second", "is too near to tell a direction"));
+    }
+    turn_rad = base::angle_diff_rad(direction_rad(way), direction_rad(wanted));
+    what += ", turned by " + rounded_text(-base::deg_from_rad(turn_rad)) + " deg; item " +
+            std::to_string(align.second->item) + " is " + rounded_text(std::abs(way_m - wanted_m)) +
+            " m from its place";
+  }
+  const double c = std::cos(turn_rad);
+  const double s = std::sin(turn_rad);
+  const auto centre = map_all(plan, align.first.at, [&](EnuPoint p) {
+    const EnuPoint way = p - begin;
+    return EnuPoint{c * way.east_m - s * way.north_m, s * way.east_m + c * way.north_m};
+  });
+  if (!centre) {
+    Error error = centre.error();
+    for (auto& field : error.fields) field.pointer = "/item";
+    return tl::unexpected<Error>(std::move(error));
+  }
+  if (turn_rad != 0.0) {
+    map_headings(plan, [&](double deg) { return deg - base::deg_from_rad(turn_rad); });
+  }
+  return Done{std::move(plan), std::move(what), std::nullopt, *centre};
+}
+
 }  // namespace roverd::mission

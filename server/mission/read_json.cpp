@@ -6,6 +6,7 @@
 
 #include "mission/json.hpp"
 #include "mission/members.hpp"
+#include "mission/quick_read.hpp"
 
 namespace roverd::mission {
 
@@ -136,6 +137,7 @@ Result<Plan> plan_from_json(const json& value) {
 }
 
 Result<Plan> plan_from_text(std::string_view text) {
+  if (auto plan = quick_plan(text)) return std::move(*plan);
   auto value = parse_json(text);
   if (!value) return tl::unexpected<Error>(std::move(value).error());
   return plan_from_json(*value);
