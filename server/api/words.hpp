@@ -53,7 +53,9 @@ Json vehicle_json(const base::Snapshot& snapshot, const std::string& name, base:
 /// @param snapshot the last one that the trail has taken
 Json trail_json(const Trail& trail, const base::Snapshot& snapshot);
 Json checks_json(const base::Snapshot& snapshot);
-Json execution_json(const base::MissionProgress& progress);
+/// @param offer a mission that a restart left behind
+Json execution_json(const base::MissionProgress& progress,
+                    const std::optional<store::StoredPlace>& offer = std::nullopt);
 Json preview_json(const robot::Preview& preview, base::ExecutionState state);
 Json capabilities_json(const Profile& profile, const std::string& version);
 /// @param rate_hz received per second

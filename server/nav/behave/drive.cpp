@@ -82,9 +82,9 @@ bool Executor::enter_step(const RouteStep& step, const Vehicle& vehicle,
     case StepKind::Turn:
       return enter_turn(step);
     case StepKind::Act:
-      notices_.push_back({Notice::Kind::Action, step.item,
-                          step.arguments.empty() ? step.action
-                                                 : step.action + " " + step.arguments});
+      notices_.push_back(
+          {Notice::Kind::Action, step.item,
+           step.arguments.empty() ? step.action : step.action + " " + step.arguments});
       ++at_;
       return false;
     case StepKind::Home: {
@@ -115,8 +115,7 @@ bool Executor::enter_step(const RouteStep& step, const Vehicle& vehicle,
 
 bool Executor::enter_go(const RouteStep& step, const Vehicle& vehicle) {
   const Path& path = course_->path;
-  const bool in_order =
-      standing_ && *standing_ + 1 == step.node && modes_.goal_cut_m <= 0.0;
+  const bool in_order = standing_ && *standing_ + 1 == step.node && modes_.goal_cut_m <= 0.0;
   const RouteNode& node = course_->nodes[step.node];
   if (in_order) {
     const double from_m = path.vertex_m[*standing_];
@@ -197,7 +196,8 @@ bool Executor::enter_turn(const RouteStep& step) {
 
 TrackOutput Executor::step_turn(const Vehicle& vehicle, double dt_s) {
   const TrackOutput out = turner_.step(vehicle, path_params_, dt_s);
-  if (turner_.state() == Turner::State::Failed) block("a turn on the spot does not come to its end");
+  if (turner_.state() == Turner::State::Failed)
+    block("a turn on the spot does not come to its end");
   if (turner_.state() == Turner::State::Done) {
     doing_ = Doing::Nothing;
     reached(*step_now());
@@ -234,8 +234,8 @@ bool Executor::cut_goal(const Vehicle& vehicle, double dt_s) {
   looked_s_ = 0.0;
   Vertex end = connector_end_;
   end.at = cut(node.at, vehicle.at);
-  const Vertex both[] = {
-      {vehicle.at, end.speed_mps, end.reverse, false, mission::Turn::Auto, 0.1}, end};
+  const Vertex both[] = {{vehicle.at, end.speed_mps, end.reverse, false, mission::Turn::Auto, 0.1},
+                         end};
   connector_ = build_path(both, path_params_);
   connector_end_ = end;
   tracker_.move_to(connector_, 0, 0.0);
