@@ -239,7 +239,8 @@ base::Result<StoredRun> Runs::read(std::int64_t id) {
   auto plan = mission::plan_from_text(row.getColumn(9).getString());
   if (!plan) return base::fail(Code::Unavailable, "the run's plan cannot be read");
   run.plan = std::move(*plan);
-  for (const auto& [name, value] : Json::parse(row.getColumn(10).getString()).items()) {
+  const Json parameters = Json::parse(row.getColumn(10).getString());
+  for (const auto& [name, value] : parameters.items()) {
     if (auto known = value_of(value)) run.parameters.push_back({name, std::move(*known)});
   }
   SQLite::Statement events(
