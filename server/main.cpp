@@ -9,15 +9,20 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 #include <unistd.h>
 
+#include "base/log.hpp"
 #include "base/result.hpp"
 #include "decode.hpp"
 #include "logging.hpp"
 #include "options.hpp"
+#include "report.hpp"
+#include "robot/run_report.hpp"
 #include "settings.hpp"
 #include "station.hpp"
+#include "store/store.hpp"
 
 namespace {
 
@@ -52,8 +57,22 @@ int exit_code(base::Code code) {
   return kRefused;
 }
 
+/// What was changed while the program ran holds over the files, not over the command line. A value
+/// that this version does not take any more is left out, and said.
+std::vector<std::string> take_kept_parameters(roverd::Settings& settings,
+                                              const std::filesystem::path& database) {
+  std::vector<std::string> refused;
+  for (const auto& kept : roverd::store::read_parameters(database)) {
+    const auto place = settings.places.find(kept.name);
+    if (place != settings.places.end() && place->second.starts_with("--set ")) continue;
+    const auto done = roverd::robot::set_parameter(settings.robot, kept.name, kept.value);
+    if (!done) refused.push_back(kept.name + ": " + done.error().detail);
+  }
+  return refused;
+}
+
 int serve(const roverd::Options& options) {
-  const auto settings = roverd::load_settings(
+  auto settings = roverd::load_settings(
       {.config = options.config, .vehicle = options.vehicle, .overrides = options.overrides});
   if (!settings) return say(kWrongInput, settings.error().detail);
   std::error_code ec;
@@ -62,6 +81,10 @@ int serve(const roverd::Options& options) {
   const auto log_file = std::filesystem::path(options.data) / "roverd.log";
   if (auto logging = roverd::start_logging(log_file, settings->server.log_level); !logging) {
     return say(kRefused, logging.error().detail);
+  }
+  for (const std::string& why :
+       take_kept_parameters(*settings, std::filesystem::path(options.data) / "roverd.db")) {
+    base::log(base::Level::Warning, "main", "a kept parameter is left out", {{"reason", why}});
   }
   {
     auto station = roverd::Station::open(*settings, options);
@@ -93,6 +116,8 @@ int main(int argc, char** argv) {
     if (argc > 1 && std::string_view(argv[1]) == "decode")
       return roverd::decode(argc - 2, argv + 2);
     if (argc > 1 && std::string_view(argv[1]) == "study") return become_study(argv);
+    if (argc > 1 && std::string_view(argv[1]) == "report")
+      return roverd::report(argc - 2, argv + 2);
     return serve(roverd::read_options(argc, argv));
   } catch (const std::exception& error) {
     return say(kRefused, error.what());

@@ -145,6 +145,7 @@ Sections sections_of(Settings& s) {
       {"vehicle", section(s.vehicle, s.robot.vehicle)},
       {"recording", section(s.recording)},
       {"missions", section(s.missions)},
+      {"runs", section(s.runs)},
       {"tiles", [&s](std::string_view name, const ParamValue& v) { return set_tiles(s, name, v); }},
   };
   drivers(

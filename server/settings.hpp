@@ -110,11 +110,21 @@ void fields(V& v, MissionSettings& p) {
     "how long a deleted mission can be restored; then it is gone for good");
 }
 
+struct RunSettings {
+  int keep = 1000;
+};
+
+template <class V>
+void fields(V& v, RunSettings& p) {
+  v("keep", p.keep, 1, 1'000'000, "the newest runs so many are kept, with their tracks");
+}
+
 struct Settings {
   ServerSettings server;
   VehicleSettings vehicle;
   RecordingSettings recording;
   MissionSettings missions;
+  RunSettings runs;
   Wired<bunker::Params> bunker;
   Wired<ackermann::Params> ackermann;
   Wired<ratio::Params> ratio;

@@ -73,14 +73,19 @@ api::Profile profile_of(const Settings& s, const DriverBay& bay) {
   profile.max_yaw_rate_radps = s.robot.speed.max_yaw_rate_radps;
   profile.max_acceleration_mps2 = s.robot.speed.accel_mps2;
   profile.pivot_angle_rad = base::rad_from_deg(s.robot.pivot.angle_deg);
-  profile.modes = {base::Mode::Manual, base::Mode::Hold, base::Mode::Auto};
+  profile.modes = {base::Mode::Manual, base::Mode::Hold,  base::Mode::Auto,
+                   base::Mode::Guided, base::Mode::Rtl,   base::Mode::SmartRtl,
+                   base::Mode::Follow, base::Mode::Dock,  base::Mode::Steering,
+                   base::Mode::Acro,   base::Mode::Simple};
   profile.drivers = bay.names();
   profile.lights = bay.has_lights();
   profile.clears_errors = bay.clears_errors();
   for (const base::ParamInfo& key : base::describe(s.robot.radio)) {
     if (const auto* word = std::get_if<std::string>(&key.value)) profile.radio[key.name] = *word;
   }
-  profile.item_types = {"waypoint", "wait", "speed", "return_home", "jump"};
+  profile.item_types = {"waypoint", "local",       "move", "wait",
+                        "speed",    "return_home", "jump", "action"};
+  if (!s.robot.vehicle.steered()) profile.item_types.push_back("turn");
   profile.limits = limits_of(s);
   profile.limits.item_types = profile.item_types;
   return profile;
@@ -179,6 +184,7 @@ Result<void> Station::Impl::open_tiles(const Settings& settings) {
 Result<void> Station::Impl::open_store(const Settings& settings, const Options& options) {
   store::Options how;
   how.keep_deleted = std::chrono::hours(24) * settings.missions.keep_deleted_days;
+  how.keep_runs = settings.runs.keep;
   auto opened = store::Store::open(
       std::filesystem::path(options.data) / "roverd.db",
       [this](std::function<void()> answer) { asio::post(web, std::move(answer)); }, std::move(how));

@@ -111,6 +111,9 @@ Api::Api(Deps deps) : impl_(std::make_unique<Impl>(std::move(deps))) {
   add_server_routes(c);
   add_driver_routes(c);
   add_tile_routes(c);
+  add_drive_routes(c);
+  add_run_routes(c);
+  add_parameter_routes(c);
   load_active_fence(c);
 }
 
@@ -259,11 +262,13 @@ void Api::on_second() {
 void Api::on_sample() {
   if (const auto snapshot = impl_->context->deps.robot.snapshot()) {
     impl_->context->trail.take(*snapshot);
+    impl_->context->runs.look(*snapshot);
   }
 }
 
 void Api::Impl::take_event(base::Event event) {
   if (stream) stream->publish_event(event);
+  context->runs.take(event);
   context->deps.store.add_event(std::move(event));
 }
 

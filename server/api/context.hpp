@@ -11,6 +11,7 @@
 #include "api/body.hpp"
 #include "api/problem.hpp"
 #include "api/router.hpp"
+#include "api/run_recorder.hpp"
 #include "api/trail.hpp"
 #include "api/words.hpp"
 
@@ -52,12 +53,16 @@ class Commands {
 
 struct Context {
   explicit Context(Deps with)
-      : deps(std::move(with)), commands(deps.robot), begun(base::steady_now()) {}
+      : deps(std::move(with)),
+        commands(deps.robot),
+        runs(deps.robot, deps.store, deps.profile.name),
+        begun(base::steady_now()) {}
 
   Deps deps;
   Commands commands;
   Router router;
   Trail trail;
+  RunRecorder runs;
   base::Time begun;
   std::map<std::string, double> driver_rates;
   std::string openapi_tag;
@@ -95,6 +100,9 @@ void add_event_routes(const ContextPtr& context);
 void add_server_routes(const ContextPtr& context);
 void add_driver_routes(const ContextPtr& context);
 void add_tile_routes(const ContextPtr& context);
+void add_drive_routes(const ContextPtr& context);
+void add_run_routes(const ContextPtr& context);
+void add_parameter_routes(const ContextPtr& context);
 
 enum class Moves { Yes, No };
 /// Takes `valid_for_s` out of the body. Without it: 1 s, counted from the first byte of the

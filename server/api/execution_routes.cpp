@@ -13,8 +13,10 @@ const std::vector<unsigned> kCommand = {200, 400, 403, 409, 413, 415, 422, 429, 
 
 constexpr std::int64_t kMostRevisions = 1'000'000'000;
 
-Json progress(const base::Snapshot& snapshot) {
-  return execution_json(snapshot.mission);
+std::function<Json(const base::Snapshot&)> progress_of(const ContextPtr& context) {
+  return [context](const base::Snapshot& snapshot) {
+    return execution_json(snapshot.mission, context->runs.offer());
+  };
 }
 
 /// "first", "nearest" or an item's number, from text or a JSON number.
@@ -43,7 +45,7 @@ Handler plain(const ContextPtr& context, robot::Command command, Moves moves) {
     Members members(*body);
     const base::Time not_after = validity_of(members, *call, moves);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
-    run_command(context, call, command, not_after, progress);
+    run_command(context, call, command, not_after, progress_of(context));
   };
 }
 
@@ -70,7 +72,7 @@ Handler load(const ContextPtr& context) {
       run_command(context, call, robot::LoadMission{std::move(*compiled)}, not_after,
                   [context, warnings](const base::Snapshot& snapshot) {
                     context->warnings = warnings;
-                    Json out = progress(snapshot);
+                    Json out = progress_of(context)(snapshot);
                     out["warnings"] = warnings.list;
                     return out;
                   });
@@ -168,7 +170,37 @@ Handler skip(const ContextPtr& context) {
     const base::Time not_after = validity_of(members, *call, Moves::Yes);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
     run_command(context, call, robot::SkipItem{static_cast<int>(item.value_or(0))}, not_after,
-                progress);
+                progress_of(context));
+  };
+}
+
+/// What is paused goes on. With nothing in hand, the mission that a restart left behind does, from
+/// the place it had come to.
+Handler resume(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    const auto body = json_body(call->request, true);
+    if (!body) return call->respond(problem(body.error()));
+    Members members(*body);
+    const base::Time not_after = validity_of(members, *call, Moves::Yes);
+    if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
+    const auto offer = context->runs.offer();
+    if (!offer || context->deps.robot.loaded()) {
+      return run_command(context, call, robot::ResumeMission{}, not_after, progress_of(context));
+    }
+    context->deps.store.read_revision(
+        offer->mission_id, offer->revision,
+        [context, call, not_after, place = offer->place](auto stored) {
+          if (!stored) {
+            return call->respond(
+                problem({base::Code::Conflict,
+                         "the mission that was left behind is gone: " + stored.error().detail}));
+          }
+          auto compiled =
+              context->deps.robot.compile({stored->id, stored->revision, std::move(stored->plan)});
+          if (!compiled) return call->respond(problem(compiled.error()));
+          run_command(context, call, robot::ResumeAt{std::move(*compiled), place}, not_after,
+                      progress_of(context));
+        });
   };
 }
 
@@ -181,15 +213,14 @@ void add_execution_routes(const ContextPtr& c) {
   with_404.push_back(404);
   c->router.add({get, "/execution", {200, 503}, [c](const CallPtr& call) {
                    if (const auto s = c->snapshot_or_refuse(call)) {
-                     call->respond(json_response(http::status::ok, progress(*s)));
+                     call->respond(json_response(http::status::ok, progress_of(c)(*s)));
                    }
                  }});
   c->router.add({get, "/execution/preview", {200, 409, 422, 503}, preview(c)});
   c->router.add({post, "/execution/load", with_404, load(c)});
   c->router.add({post, "/execution/start", kCommand, start(c)});
   c->router.add({post, "/execution/pause", kCommand, plain(c, robot::PauseMission{}, Moves::No)});
-  c->router.add(
-      {post, "/execution/resume", kCommand, plain(c, robot::ResumeMission{}, Moves::Yes)});
+  c->router.add({post, "/execution/resume", kCommand, resume(c)});
   c->router.add({post, "/execution/stop", kCommand, plain(c, robot::StopMission{}, Moves::No)});
   c->router.add({post, "/execution/skip", kCommand, skip(c)});
 }

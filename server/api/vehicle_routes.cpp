@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "api/context.hpp"
+#include "api/goals.hpp"
 
 namespace roverd::api {
 
@@ -118,9 +119,18 @@ Handler set_mode(const ContextPtr& context) {
     // HOLD stops: that is never too late.
     const Moves moves = mode == base::Mode::Hold ? Moves::No : Moves::Yes;
     const base::Time not_after = validity_of(members, *call, moves);
+    robot::SetMode command{mode};
+    if (mode == base::Mode::Dock) {
+      command.goal = read_goal(members);
+      members.require("heading_deg");
+      if (!command.goal->at && !command.goal->local) {
+        members.require("lat");
+        members.require("lon");
+      }
+    }
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
     if (mode == base::Mode::Auto) return set_auto(context, call, not_after);
-    run_command(context, call, robot::SetMode{mode}, not_after, whole_state(context));
+    run_command(context, call, command, not_after, whole_state(context));
   };
 }
 

@@ -204,6 +204,27 @@ Json point_json(const std::optional<base::LatLon>& at) {
   return out;
 }
 
+Json activity_json(const base::Activity& a) {
+  return {{"id", a.id},
+          {"kind", a.kind.empty() ? Json(nullptr) : Json(a.kind)},
+          {"state", base::to_string(a.state)},
+          {"reason", a.reason},
+          {"goal", point_json(a.goal)},
+          {"goal_heading_deg", a.goal_yaw_rad ? heading_json(*a.goal_yaw_rad) : Json(nullptr)},
+          {"distance_m", rounded(a.distance_m, kPlaces3)},
+          // Compass turns count clockwise.
+          {"turn_deg", a.turn_rad ? degrees(-*a.turn_rad) : Json(nullptr)},
+          {"target", point_json(a.target)},
+          {"target_age_s", rounded(a.target_age_s, kPlaces2)}};
+}
+
+Json fence_json(const std::optional<base::FenceState>& fence) {
+  if (!fence) return nullptr;
+  return {{"name", fence->name},
+          {"inside", fence->inside},
+          {"distance_m", rounded(fence->distance_m, kPlaces2)}};
+}
+
 /// Pieces of points [lat, lon, age_s]; to a millimetre, for drawing.
 Json track_json(const Track& track, base::Time now) {
   Json pieces = Json::array();
@@ -240,8 +261,11 @@ Json vehicle_json(const base::Snapshot& s, const std::string& name, base::Time n
           {"battery", battery_json(s, now)},
           {"rc", rc_json(s, now)},
           {"mission", progress_json(s.mission, "id")},
+          {"activity", activity_json(s.activity)},
+          {"fence", fence_json(s.fence)},
           {"safety", std::move(safety)},
           {"home", point_json(s.home)},
+          {"origin", point_json(s.frame ? std::optional(s.frame->origin()) : std::nullopt)},
           // A compass that reads too far clockwise has a smaller yaw than the truth.
           {"compass_bias_deg", s.pose ? degrees(-s.estimator.compass_bias_rad) : Json(nullptr)},
           {"pull_1pm", s.pose ? rounded(s.estimator.pull_1pm, 1e4) : Json(nullptr)},
@@ -265,8 +289,18 @@ Json checks_json(const base::Snapshot& s) {
   return {{"ready", s.ready_to_arm}, {"checks", std::move(checks)}};
 }
 
-Json execution_json(const base::MissionProgress& progress) {
-  return progress_json(progress, "mission_id");
+Json execution_json(const base::MissionProgress& progress,
+                    const std::optional<store::StoredPlace>& offer) {
+  Json out = progress_json(progress, "mission_id");
+  out["left_behind"] = nullptr;
+  if (!offer) return out;
+  out["left_behind"] = {{"mission_id", offer->mission_id},
+                        {"revision", offer->revision},
+                        {"name", offer->name},
+                        {"item", offer->item ? Json(*offer->item) : Json(nullptr)},
+                        {"items", offer->items},
+                        {"time", base::to_rfc3339(offer->time)}};
+  return out;
 }
 
 Json preview_json(const robot::Preview& p, base::ExecutionState state) {

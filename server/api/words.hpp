@@ -57,7 +57,9 @@ Json trail_json(const Trail& trail, const base::Snapshot& snapshot);
 /// Every receiver's satellites, newest word of each.
 Json satellites_json(const base::Snapshot& snapshot, base::Time now);
 Json checks_json(const base::Snapshot& snapshot);
-Json execution_json(const base::MissionProgress& progress);
+/// @param offer a mission that a restart left behind
+Json execution_json(const base::MissionProgress& progress,
+                    const std::optional<store::StoredPlace>& offer = std::nullopt);
 Json preview_json(const robot::Preview& preview, base::ExecutionState state);
 Json capabilities_json(const Profile& profile, const std::string& version);
 /// @param rate_hz received per second

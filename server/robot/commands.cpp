@@ -198,8 +198,8 @@ base::Result<void> Robot::Impl::handle(const SetHome& c) {
 base::Result<void> Robot::Impl::handle(const Drive& c) {
   const bool finite = std::isfinite(c.twist.linear_mps) && std::isfinite(c.twist.angular_radps);
   if (!finite) return base::fail(Code::Invalid, "speed and turn rate must be finite");
-  const bool by_hand = mode == Mode::Manual || mode == Mode::Acro || mode == Mode::Steering ||
-                       mode == Mode::Simple;
+  const bool by_hand =
+      mode == Mode::Manual || mode == Mode::Acro || mode == Mode::Steering || mode == Mode::Simple;
   if (by_hand) manual.drive(c.twist, c.deadman, now);
   return {};
 }

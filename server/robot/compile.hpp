@@ -17,7 +17,7 @@ struct CompiledMission {
   MissionCopy copy;
   base::LocalFrame frame;
   nav::Route route;
-  std::uint64_t fence_id = 0;       ///< LaidFence::id of the fence that was looked at; 0: none
+  std::uint64_t fence_id = 0;     ///< LaidFence::id of the fence that was looked at; 0: none
   std::string fence_objection{};  ///< of that fence; empty: it stays inside
 };
 

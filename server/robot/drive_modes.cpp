@@ -192,9 +192,10 @@ void Robot::Impl::lay_crumbs() {
   const std::uint64_t resets = estimator.health().resets;
   const bool jumped = resets != crumbs_resets;
   crumbs_resets = resets;
-  crumbs.take(pose->at, pose->horizontal_sigma_m, jumped, [this](base::EnuPoint a, base::EnuPoint b) {
-    return !fence || !fence->limits.crosses(a, b);
-  });
+  crumbs.take(pose->at, pose->horizontal_sigma_m, jumped,
+              [this](base::EnuPoint a, base::EnuPoint b) {
+                return !fence || !fence->limits.crosses(a, b);
+              });
 }
 
 base::FenceState Robot::Impl::fence_state() const {

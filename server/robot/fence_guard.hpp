@@ -47,8 +47,8 @@ std::string route_objection(const nav::Route& route, const mission::CompiledFenc
 bool may_drive(const mission::CompiledFence& limits, base::EnuPoint from, base::EnuPoint to,
                double margin_m) noexcept;
 
-/// Where the robot is after `part` (0..1) of the way that braking from now on takes, on the arc that
-/// it drives, which is followed for a quarter turn at most.
+/// Where the robot is after `part` (0..1) of the way that braking from now on takes, on the arc
+/// that it drives, which is followed for a quarter turn at most.
 base::EnuPoint stopping_place(const base::Pose& pose, const base::BodyTwist& twist, double part,
                               const FenceParams& p) noexcept;
 

@@ -13,8 +13,8 @@ using base::Code;
 using base::ExecutionState;
 using base::Severity;
 
-constexpr double kLongGap_m = 5.0;       // a piece of the way that was not seen
-constexpr double kSameHome_m = 1.0;      // crumbs that begin so near to home end there
+constexpr double kLongGap_m = 5.0;   // a piece of the way that was not seen
+constexpr double kSameHome_m = 1.0;  // crumbs that begin so near to home end there
 constexpr double kHeadingKnown_rad = 0.35;
 
 std::string metres(double m) {
@@ -128,7 +128,8 @@ base::Result<void> Robot::Impl::may_drive_by_itself() const {
   if (then.response >= Response::Hold) return base::fail(Code::Conflict, then.cause);
   if (!fence) return {};
   if (!estimator.frame() || fence->frame_id != estimator.frame()->id()) {
-    return base::fail(Code::Conflict, "the fence is not laid out in the robot's map yet: try again");
+    return base::fail(Code::Conflict,
+                      "the fence is not laid out in the robot's map yet: try again");
   }
   if (!(fence->limits.clearance_m(pose->at) > 0.0)) {
     return base::fail(Code::Conflict,
@@ -219,9 +220,9 @@ base::Result<void> Robot::Impl::guide(const nav::GuidedGoal& goal, std::string_v
 }
 
 base::Result<void> Robot::Impl::handle(const GoTo& c) {
-  const bool finite = std::isfinite(c.yaw_rad.value_or(0.0)) &&
-                      std::isfinite(c.speed_mps.value_or(0.0)) &&
-                      (!c.local || (std::isfinite(c.local->east_m) && std::isfinite(c.local->north_m)));
+  const bool finite =
+      std::isfinite(c.yaw_rad.value_or(0.0)) && std::isfinite(c.speed_mps.value_or(0.0)) &&
+      (!c.local || (std::isfinite(c.local->east_m) && std::isfinite(c.local->north_m)));
   if (!finite) return base::fail(Code::Invalid, "a goal has finite numbers only");
   if (auto ok = may_drive_by_itself(); !ok) return ok;
   nav::GuidedGoal goal;
@@ -304,8 +305,9 @@ base::Result<void> Robot::Impl::enter_retrace() {
   if (auto ok = may_drive_by_itself(); !ok) return ok;
   if (mode == Mode::SmartRtl) return {};
   if (crumbs.size() == 0) {
-    return base::fail(Code::Conflict, "the way from home is not known: it is kept from arming on, "
-                                      "where the position is certain enough");
+    return base::fail(Code::Conflict,
+                      "the way from home is not known: it is kept from arming on, "
+                      "where the position is certain enough");
   }
   if (const double gap_m = crumbs.longest_gap_m(); gap_m > kLongGap_m) {
     return base::fail(Code::Conflict, "the driven way is not known over " + metres(gap_m));

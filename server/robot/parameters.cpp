@@ -4,11 +4,14 @@
 #include <utility>
 
 #include "robot/impl.hpp"
+#include "robot/run_report.hpp"
 
 namespace roverd::robot {
 namespace {
 
 using base::Code;
+
+constexpr const char* kVehicle = "vehicle";
 
 struct List {
   std::vector<Parameter> out;
@@ -18,7 +21,8 @@ struct List {
     const std::vector<base::ParamInfo> defaults = base::describe(P{});
     std::vector<base::ParamInfo> now = base::describe(params);
     for (std::size_t i = 0; i < now.size(); ++i) {
-      out.push_back({section, std::move(now[i]), defaults[i].value, true});
+      out.push_back(
+          {section, std::move(now[i]), defaults[i].value, std::string_view(section) != kVehicle});
     }
   }
 };
@@ -40,6 +44,11 @@ base::Result<void> wrong(const char* name, std::string detail) {
   return base::fail(Code::Invalid, std::string(name) + " " + detail, {{name, detail}});
 }
 
+/// What kind of vehicle it is, the machines have taken in when they were made.
+bool only_at_start(const std::string& full) {
+  return full.starts_with(kVehicle + std::string("."));
+}
+
 /// A copy of `config` with one parameter changed.
 base::Result<Config> changed(const Config& config, const std::string& full,
                              const base::ParamValue& value) {
@@ -48,6 +57,7 @@ base::Result<Config> changed(const Config& config, const std::string& full,
   Config next = config;
   const std::string section = dot == std::string::npos ? std::string() : full.substr(0, dot);
   Change change{section, name, value};
+  change(kVehicle, next.vehicle);
   sections(change, next);
   if (!change.result || (!*change.result && change.result->error().detail == "unknown key")) {
     return base::fail(Code::NotFound, "there is no parameter " + full);
@@ -87,12 +97,17 @@ base::Result<void> check(const Config& c) {
   if (rule != "stop" && rule != "skip" && rule != "return") {
     return wrong("nav.behave.unreachable", "must be stop, skip or return");
   }
+  const std::string& kind = c.vehicle.kinematics;
+  if (kind != "skid_steer" && kind != "differential" && kind != "ackermann") {
+    return wrong("vehicle.kinematics", "must be skid_steer, differential or ackermann");
+  }
   return check(c.radio);
 }
 
 std::vector<Parameter> Robot::parameters() const {
   Config now = *impl_->shared_config.get();
   List list;
+  list(kVehicle, now.vehicle);
   sections(list, now);
   return std::move(list.out);
 }
@@ -104,7 +119,18 @@ base::Result<void> Robot::check_parameter(const std::string& name,
   return {};
 }
 
+base::Result<void> set_parameter(Config& config, const std::string& name,
+                                 const base::ParamValue& value) {
+  auto next = changed(config, name, value);
+  if (!next) return tl::unexpected(std::move(next.error()));
+  config = std::move(*next);
+  return {};
+}
+
 base::Result<void> Robot::Impl::handle(const SetParameter& c) {
+  if (only_at_start(c.name)) {
+    return base::fail(Code::Conflict, c.name + " acts at the next start of the program");
+  }
   auto next = changed(config, c.name, c.value);
   if (!next) return tl::unexpected(std::move(next.error()));
   config = std::move(*next);

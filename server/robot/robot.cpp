@@ -128,9 +128,8 @@ std::shared_ptr<const LaidFence> Robot::lay_fence(
   std::optional<base::EnuPoint> home;
   if (state->home) home = state->frame->to_local(*state->home);
   laid->mission_id = mission->id;
-  laid->objection =
-      route_objection(mission->route, laid->limits, home,
-                      impl_->shared_config.get()->fence.margin_m + kFenceAllowance_m);
+  laid->objection = route_objection(mission->route, laid->limits, home,
+                                    impl_->shared_config.get()->fence.margin_m + kFenceAllowance_m);
   return laid;
 }
 

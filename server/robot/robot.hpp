@@ -204,8 +204,8 @@ class Robot {
   std::shared_ptr<const LaidFence> lay_fence(std::shared_ptr<const mission::Fence> fence) const;
   /// Any thread: the parameters as they are now, and as they are by default.
   std::vector<Parameter> parameters() const;
-  /// Any thread. What SetParameter would refuse: NotFound, Invalid, or Conflict for one that acts
-  /// only at the next start.
+  /// Any thread. What no program would take: NotFound, Invalid. SetParameter also refuses, as
+  /// Conflict, what acts only at the next start.
   base::Result<void> check_parameter(const std::string& name, const base::ParamValue& value) const;
   /// Any thread.
   std::shared_ptr<const Config> config() const;

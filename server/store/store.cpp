@@ -12,6 +12,7 @@
 #include "store/events.hpp"
 #include "store/fences.hpp"
 #include "store/missions.hpp"
+#include "store/runs.hpp"
 
 namespace roverd::store {
 
@@ -27,6 +28,7 @@ struct Store::Impl {
   Options options;
   Missions missions{db->connection};
   Fences fences{db->connection};
+  Runs runs{db->connection};
 
   std::mutex mutex;  // leaf
   std::condition_variable news;
@@ -88,8 +90,19 @@ struct Store::Impl {
     }
   }
 
+  void close_runs() {
+    const auto done = guarded([&]() -> Result<void> {
+      runs.close_interrupted();
+      return {};
+    });
+    if (done) return;
+    base::log(base::Level::Warning, "store", "interrupted runs cannot be closed",
+              {{"reason", done.error().detail}});
+  }
+
   void run() {
     forget();
+    close_runs();
     std::vector<base::Event> new_events;
     std::deque<std::function<void()>> todo;
     for (;;) {
@@ -294,6 +307,77 @@ void Store::activate_fence(std::optional<std::string> id, Reply<std::optional<St
 
 void Store::read_active_fence(Reply<std::optional<StoredFence>> reply) {
   impl_->ask(std::move(reply), [impl = impl_.get()] { return impl->fences.active(); });
+}
+
+void Store::begin_run(StoredRun run, Reply<std::int64_t> reply) {
+  impl_->ask(std::move(reply), [impl = impl_.get(), run = std::move(run)] {
+    return impl->runs.begin(run, impl->options.keep_runs);
+  });
+}
+
+void Store::add_to_run(std::int64_t id, RunBatch batch, Reply<void> reply) {
+  impl_->ask(std::move(reply), [impl = impl_.get(), id, batch = std::move(batch)] {
+    return impl->runs.add(id, batch);
+  });
+}
+
+void Store::list_runs(int limit, std::string cursor, Reply<Page<RunHead>> reply) {
+  impl_->ask(std::move(reply), [impl = impl_.get(), limit, cursor = std::move(cursor)] {
+    return impl->runs.list(limit, cursor);
+  });
+}
+
+void Store::read_run(std::int64_t id, Reply<StoredRun> reply) {
+  impl_->ask(std::move(reply), [impl = impl_.get(), id] { return impl->runs.read(id); });
+}
+
+void Store::read_run_points(std::int64_t id, Reply<std::vector<RunPoint>> reply) {
+  impl_->ask(std::move(reply), [impl = impl_.get(), id] { return impl->runs.points(id); });
+}
+
+void Store::keep_place(std::optional<StoredPlace> place, Reply<void> reply) {
+  impl_->ask(std::move(reply), [impl = impl_.get(), place = std::move(place)]() -> Result<void> {
+    impl->runs.keep_place(place);
+    return {};
+  });
+}
+
+void Store::read_place(Reply<std::optional<StoredPlace>> reply) {
+  impl_->ask(std::move(reply), [impl = impl_.get()] { return impl->runs.place(); });
+}
+
+void Store::keep_parameter(StoredParameter parameter, Reply<void> reply) {
+  impl_->ask(std::move(reply),
+             [impl = impl_.get(), parameter = std::move(parameter)]() -> Result<void> {
+               impl->runs.keep_parameter(parameter, impl->options.clock());
+               return {};
+             });
+}
+
+std::vector<StoredParameter> read_parameters(const std::filesystem::path& file) {
+  std::error_code ec;
+  if (!std::filesystem::exists(file, ec)) return {};
+  auto read = guarded([&]() -> Result<std::vector<StoredParameter>> {
+    SQLite::Database db(file.string(), SQLite::OPEN_READONLY, 2000);
+    return Runs(db).parameters();
+  });
+  return read ? std::move(*read) : std::vector<StoredParameter>{};
+}
+
+Result<RunWithTrack> read_run(const std::filesystem::path& file, std::int64_t id) {
+  std::error_code ec;
+  if (!std::filesystem::exists(file, ec)) {
+    return base::fail(Code::NotFound, "there is no database " + file.string());
+  }
+  return guarded([&]() -> Result<RunWithTrack> {
+    SQLite::Database db(file.string(), SQLite::OPEN_READONLY, 2000);
+    Runs runs(db);
+    auto run = runs.read(id);
+    if (!run) return tl::unexpected(run.error());
+    auto points = runs.points(id);
+    if (!points) return tl::unexpected(points.error());
+    return RunWithTrack{std::move(*run), std::move(*points)};
+  });
 }
 
 void Store::add_event(base::Event event) {

@@ -18,6 +18,7 @@
 #include "base/time.hpp"
 #include "mission/fence.hpp"
 #include "mission/plan.hpp"
+#include "store/run_words.hpp"
 
 namespace roverd::store {
 
@@ -120,6 +121,7 @@ struct Options {
   std::int64_t max_events = 100'000;       ///< beyond that the oldest go
   std::int64_t max_bytes = 4'000'000'000;  ///< of the file; then as if the disk were full
   base::Duration keep_deleted = std::chrono::hours(24 * 30);  ///< then they are forgotten for good
+  std::int64_t keep_runs = 1000;  ///< the newest; older ones go with their tracks
   std::function<base::WallTime()> clock = base::wall_now;     ///< called on the store's thread
 };
 
@@ -199,6 +201,22 @@ class Store {
   void activate_fence(std::optional<std::string> id, Reply<std::optional<StoredFence>> reply);
   void read_active_fence(Reply<std::optional<StoredFence>> reply);
 
+  // Runs. A run that was open when the program ended without closing it is interrupted.
+  void begin_run(StoredRun run, Reply<std::int64_t> reply);
+  /// NotFound: it was given up for newer ones.
+  void add_to_run(std::int64_t id, RunBatch batch, Reply<void> reply);
+  /// Newest first.
+  void list_runs(int limit, std::string cursor, Reply<Page<RunHead>> reply);
+  void read_run(std::int64_t id, Reply<StoredRun> reply);
+  void read_run_points(std::int64_t id, Reply<std::vector<RunPoint>> reply);
+
+  /// Where the mission in hand stands; empty: none is.
+  void keep_place(std::optional<StoredPlace> place, Reply<void> reply);
+  void read_place(Reply<std::optional<StoredPlace>> reply);
+
+  /// Holds from the next start on, over the configuration file.
+  void keep_parameter(StoredParameter parameter, Reply<void> reply);
+
   /// No answer; when there is no room or the disk is full the event is lost and counted. A list
   /// asked for later has it.
   void add_event(base::Event event);
@@ -213,5 +231,17 @@ class Store {
   explicit Store(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
+
+/// Reads a database without a Store, also while another program holds it open; changes nothing.
+/// For before the start, and for commands. A file that does not exist has no parameters, and one
+/// that cannot be read neither: Store::open will say why.
+std::vector<StoredParameter> read_parameters(const std::filesystem::path& file);
+
+struct RunWithTrack {
+  StoredRun run;
+  std::vector<RunPoint> points;
+};
+/// NotFound without the file or the run; Unavailable if it cannot be read.
+base::Result<RunWithTrack> read_run(const std::filesystem::path& file, std::int64_t id);
 
 }  // namespace roverd::store

@@ -6,9 +6,9 @@
 namespace roverd::nav {
 namespace {
 
-constexpr double kNear = 0.99;      ///< of the accuracy: so near the robot was there before
-constexpr double kLoop = 4.0;       ///< a loop is longer than so many accuracies
-constexpr double kGap = 2.5;        ///< crumbs farther apart than so many were not driven between
+constexpr double kNear = 0.99;  ///< of the accuracy: so near the robot was there before
+constexpr double kLoop = 4.0;   ///< a loop is longer than so many accuracies
+constexpr double kGap = 2.5;    ///< crumbs farther apart than so many were not driven between
 constexpr double kCoarser = 1.5;
 
 struct Foot {
@@ -22,9 +22,8 @@ Foot foot_on(EnuPoint p, EnuPoint a, EnuPoint b) noexcept {
   const double square = d.east_m * d.east_m + d.north_m * d.north_m;
   const EnuPoint q = p - a;
   const double t =
-      square > 0.0
-          ? std::clamp((q.east_m * d.east_m + q.north_m * d.north_m) / square, 0.0, 1.0)
-          : 0.0;
+      square > 0.0 ? std::clamp((q.east_m * d.east_m + q.north_m * d.north_m) / square, 0.0, 1.0)
+                   : 0.0;
   const EnuPoint at{a.east_m + t * d.east_m, a.north_m + t * d.north_m};
   return {at, base::distance_m(p, at)};
 }

@@ -1,7 +1,8 @@
 #pragma once
 // The way that was driven, to drive it back: SMART_RTL.
 //
-//   home ●──●──●──●           A crumb falls when the robot is `accuracy` away from the last one, and
+//   home ●──●──●──●           A crumb falls when the robot is `accuracy` away from the last one,
+//   and
 //                 │           sure of its place. Where it comes back to its own way within that
 //        ●──●──●──●           accuracy, the loop between is forgotten: circles, and out and back
 //        ╰── loop: forgotten  do not fill the memory, and the way home gets shorter.

@@ -10,11 +10,11 @@ namespace roverd::nav {
 namespace {
 
 constexpr double kPredict_s = 1.0;
-constexpr double kCourse_mps = 0.3;   ///< slower, and the course is not known
+constexpr double kCourse_mps = 0.3;  ///< slower, and the course is not known
 constexpr double kTrackStep_m = 0.3;
-constexpr double kOnTrack_m = 5.0;    ///< a target farther ahead is followed where it went
-constexpr double kJump_m = 2.0;       ///< less is no jump, however short the time
-constexpr double kPlace_m = 0.3;      ///< with an offset: near enough to the place beside the target
+constexpr double kOnTrack_m = 5.0;  ///< a target farther ahead is followed where it went
+constexpr double kJump_m = 2.0;     ///< less is no jump, however short the time
+constexpr double kPlace_m = 0.3;    ///< with an offset: near enough to the place beside the target
 constexpr double kGain_1ps = 0.5;
 
 double speed_of(EnuPoint v) noexcept {
@@ -46,7 +46,8 @@ std::string Follow::take(const FollowTarget& t, const FollowOffset& offset) {
     velocity_.north_m += part * (way.north_m / passed_s - velocity_.north_m);
   }
   if (old) track_.clear();
-  if (speed_of(velocity_) > kCourse_mps) course_rad_ = std::atan2(velocity_.north_m, velocity_.east_m);
+  if (speed_of(velocity_) > kCourse_mps)
+    course_rad_ = std::atan2(velocity_.north_m, velocity_.east_m);
   target_ = t;
   offset_ = offset;
   return {};
@@ -71,6 +72,7 @@ void Follow::reset() noexcept {
   reason_.clear();
   track_.clear();
   speed_mps_ = rate_radps_ = 0.0;
+  pivots_ = false;
 }
 
 EnuPoint Follow::predicted(base::Time now) const noexcept {
@@ -123,7 +125,7 @@ EnuPoint Follow::ahead(const Vehicle& v, EnuPoint at, double look_m, double& gap
   for (std::size_t i = 0; i <= track_.size(); ++i) {
     const EnuPoint to = i < track_.size() ? track_[i] : at;
     gap_m += base::distance_m(from, to);
-    if (!found && gap_m >= look_m) {
+    if (!found && base::distance_m(v.at, to) >= look_m) {
       target = to;
       found = true;
     }
@@ -151,8 +153,10 @@ TrackOutput Follow::command(const Vehicle& v, EnuPoint to, double wanted_mps,
   soon.at.north_m += speed_mps_ * T * std::sin(v.yaw_rad + 0.5 * rate_radps_ * T);
   const BodyPoint target = to_body(to, soon.at, soon.yaw_rad);
   const double bearing = std::atan2(target.y_m, target.x_m);
+  const double begins = base::rad_from_deg(path_.pivot.angle_deg);
   const bool spot =
-      !path_.vehicle.steered() && std::abs(bearing) > base::rad_from_deg(path_.pivot.angle_deg);
+      !path_.vehicle.steered() && std::abs(bearing) > (pivots_ ? 0.25 * begins : begins);
+  pivots_ = spot;
   SpeedReason reason = SpeedReason::Item;
   if (spot) {
     wanted_mps = 0.0;
@@ -198,8 +202,8 @@ TrackOutput Follow::step(const Vehicle& v, double limit_mps, base::Time now, dou
   const EnuPoint place = aim(now);
   lay_track(place);
   double gap_m = 0.0;
-  const double look_m = std::max(path_.track.lookahead_min_m,
-                                 path_.track.lookahead_time_s * std::abs(v.speed_mps));
+  const double look_m =
+      std::max(path_.track.lookahead_min_m, path_.track.lookahead_time_s * std::abs(v.speed_mps));
   const EnuPoint to = ahead(v, place, look_m, gap_m);
   const bool beside = offset_.frame != FollowOffset::Frame::None;
   const double wanted_gap =

@@ -87,6 +87,7 @@ class Follow {
   std::string reason_;
   double speed_mps_ = 0.0;
   double rate_radps_ = 0.0;
+  bool pivots_ = false;  ///< until it points there: else it would drive and turn by turns
 };
 
 }  // namespace roverd::nav

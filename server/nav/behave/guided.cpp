@@ -68,8 +68,7 @@ void Guided::lay(const Vehicle& v, bool smoothly) {
                            goal_.reverse ? path_.speed.reverse_max_mps : path_.speed.max_mps);
   if (goal_.kind == GuidedGoal::Kind::Move) {
     end.reverse = goal_.forward_m < 0.0;
-    end.speed_mps =
-        goal_.speed_mps.value_or(end.reverse ? modes_.move_back_mps : modes_.move_mps);
+    end.speed_mps = goal_.speed_mps.value_or(end.reverse ? modes_.move_back_mps : modes_.move_mps);
   }
   const double far_m = base::distance_m(v.at, end.at);
   const bool cut_off = modes_.goal_cut_m > 0.0 && far_m > modes_.goal_cut_m;
@@ -99,10 +98,9 @@ bool Guided::cut(const Vehicle& v, double dt_s) {
   const double far_m = base::distance_m(v.at, goal_.at);
   if (far_m <= modes_.goal_within_m && !goal_.yaw_rad) return true;
   looked_s_ += dt_s;
-  const bool cut_off = base::distance_m(trip_.path().points.empty()
-                                            ? goal_.at
-                                            : trip_.path().points.back().at,
-                                        goal_.at) > 0.01;
+  const bool cut_off =
+      base::distance_m(trip_.path().points.empty() ? goal_.at : trip_.path().points.back().at,
+                       goal_.at) > 0.01;
   if (!cut_off || looked_s_ < modes_.goal_cut_s) return false;
   looked_s_ = 0.0;
   lay(v, true);
@@ -153,8 +151,9 @@ TrackOutput Guided::steer(const Vehicle& v, double limit_mps, double dt_s) noexc
     state_ = State::Waiting;
     return {{}, SpeedReason::Standing};
   }
-  return {track_twist(v, speed_mps_, rate_radps_, path_),
-          old ? SpeedReason::Stopping : turn_first ? SpeedReason::Pivot : SpeedReason::Item};
+  return {track_twist(v, speed_mps_, rate_radps_, path_), old          ? SpeedReason::Stopping
+                                                          : turn_first ? SpeedReason::Pivot
+                                                                       : SpeedReason::Item};
 }
 
 std::string Guided::reason() const {

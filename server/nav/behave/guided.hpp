@@ -74,9 +74,9 @@ class Guided {
   std::optional<EnuPoint> place_;
   State state_ = State::Waiting;
   bool timed_out_ = false;
-  double age_s_ = 0.0;       ///< of a heading and speed
-  double looked_s_ = 0.0;    ///< since a cut goal was looked at
-  double speed_mps_ = 0.0;   ///< Steered: last told, over ground
+  double age_s_ = 0.0;      ///< of a heading and speed
+  double looked_s_ = 0.0;   ///< since a cut goal was looked at
+  double speed_mps_ = 0.0;  ///< Steered: last told, over ground
   double rate_radps_ = 0.0;
 };
 

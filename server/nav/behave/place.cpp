@@ -60,7 +60,8 @@ base::Result<void> Executor::restore(std::shared_ptr<const Route> route,
   skipped_ = 0;
   fled_.clear();
   const RouteStep* step = step_now();
-  if (p.s_m >= 0.0 && step != nullptr && step->kind == StepKind::Go && !course_->path.legs.empty()) {
+  if (p.s_m >= 0.0 && step != nullptr && step->kind == StepKind::Go &&
+      !course_->path.legs.empty()) {
     doing_ = Doing::Path;
     s_m_ = std::min(p.s_m, course_->path.length_m());
     leg_ = std::min(course_->path.leg_from(s_m_), course_->path.legs.size() - 1);

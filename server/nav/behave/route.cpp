@@ -112,15 +112,14 @@ class Layout {
       const double run_m = std::max(2.0, 1.5 * min_radius_m(params_.vehicle));
       RouteNode before = node;
       before.at = {at.east_m - run_m * std::cos(yaw_rad), at.north_m - run_m * std::sin(yaw_rad)};
-      forth().steps.push_back({.kind = StepKind::Go,
-                               .item = item_,
-                               .node = forth().nodes.size(),
-                               .silent = true});
+      forth().steps.push_back(
+          {.kind = StepKind::Go, .item = item_, .node = forth().nodes.size(), .silent = true});
       forth().nodes.push_back(before);
     }
-    forth().steps.push_back(
-        {.kind = StepKind::Go, .item = item_, .node = forth().nodes.size(), .silent = faces &&
-         !params_.vehicle.steered()});
+    forth().steps.push_back({.kind = StepKind::Go,
+                             .item = item_,
+                             .node = forth().nodes.size(),
+                             .silent = faces && !params_.vehicle.steered()});
     forth().nodes.push_back(node);
     if (faces && !params_.vehicle.steered()) {
       forth().steps.push_back({.kind = StepKind::Face, .item = item_, .yaw_rad = yaw_rad});

@@ -9,7 +9,7 @@
 namespace roverd::nav {
 namespace {
 
-constexpr double kMiddle_radps = 0.03;   ///< a stick that asks for less is in its middle
+constexpr double kMiddle_radps = 0.03;  ///< a stick that asks for less is in its middle
 constexpr double kMostMissing_radps = 0.3;
 
 }  // namespace
@@ -47,8 +47,8 @@ TrackOutput Sticks::acro(const base::BodyTwist& stick, const Vehicle& v, double 
   const double off = wanted - v.yaw_rate_radps;
   const bool full = std::abs(wanted + missing_radps_) >= most && off * wanted > 0.0;
   if (!full) {
-    missing_radps_ = std::clamp(missing_radps_ + modes_.rate_gain * off * dt_s,
-                                -kMostMissing_radps, kMostMissing_radps);
+    missing_radps_ = std::clamp(missing_radps_ + modes_.rate_gain * off * dt_s, -kMostMissing_radps,
+                                kMostMissing_radps);
   }
   return {track_twist(v, stick.linear_mps, wanted + missing_radps_, path_), SpeedReason::Item};
 }
@@ -68,9 +68,9 @@ TrackOutput Sticks::steering(const base::BodyTwist& stick, const Vehicle& v, dou
     }
     if (holding_) {
       const double soon = v.yaw_rad + rate_radps_ * path_.track.delay_s;
-      wanted = std::clamp(heading_rate_radps(base::angle_diff_rad(soon, yaw_rad_),
-                                             modes_.heading_gain, path_),
-                          -most, most);
+      wanted = std::clamp(
+          heading_rate_radps(base::angle_diff_rad(soon, yaw_rad_), modes_.heading_gain, path_),
+          -most, most);
     }
   }
   const double change = path_.speed.yaw_accel_radps2 * dt_s;
@@ -95,7 +95,8 @@ TrackOutput Sticks::simple(const base::BodyTwist& stick, const base::BodyTwist& 
   const double wanted = spot ? 0.0 : most * heading_factor(error);
   speed_mps_ = slew(speed_mps_, wanted, p.accel_mps2 * dt_s, p.hold_decel_mps2 * dt_s);
   const double side = spot ? p.max_yaw_rate_radps : p.lateral_mps2 / std::max(0.1, speed_mps_);
-  const double rate = std::clamp(heading_rate_radps(error, modes_.heading_gain, path_), -side, side);
+  const double rate =
+      std::clamp(heading_rate_radps(error, modes_.heading_gain, path_), -side, side);
   const double change = p.yaw_accel_radps2 * dt_s;
   rate_radps_ = slew(rate_radps_, rate, change, change);
   return {track_twist(v, speed_mps_, rate_radps_, path_),

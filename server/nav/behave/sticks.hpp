@@ -31,8 +31,8 @@ class Sticks {
   void begin(StickMode mode, const Vehicle& vehicle) noexcept;
   /// @param stick speed and turn rate asked for, ramped; both 0: let go
   /// @param full what the sticks ask for at their ends
-  TrackOutput step(const base::BodyTwist& stick, const base::BodyTwist& full, const Vehicle& vehicle,
-                   double limit_mps, double dt_s) noexcept;
+  TrackOutput step(const base::BodyTwist& stick, const base::BodyTwist& full,
+                   const Vehicle& vehicle, double limit_mps, double dt_s) noexcept;
   StickMode mode() const noexcept { return mode_; }
   /// Held, or SIMPLE's forward; yaw.
   double yaw_rad() const noexcept { return yaw_rad_; }

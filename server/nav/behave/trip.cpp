@@ -46,11 +46,12 @@ void Trip::begin(Order order, const Vehicle& vehicle, bool smoothly) {
 /// May the new way be joined while driving?
 bool Trip::goes_on_ahead(const Vehicle& v, EnuPoint first) const noexcept {
   if (tracker_.leg() != 0) return false;
-  const double ahead = order_.way[next_].reverse ? base::wrap_rad(v.yaw_rad + base::kPi)
-                                                 : v.yaw_rad;
+  const double ahead =
+      order_.way[next_].reverse ? base::wrap_rad(v.yaw_rad + base::kPi) : v.yaw_rad;
   const double off = std::abs(base::angle_diff_rad(ahead, direction_rad(v.at, first)));
-  const double most = path_params_.vehicle.steered() ? base::kPi / 2.0
-                                                     : base::rad_from_deg(path_params_.pivot.angle_deg);
+  const double most = path_params_.vehicle.steered()
+                          ? base::kPi / 2.0
+                          : base::rad_from_deg(path_params_.pivot.angle_deg);
   return off < most && base::distance_m(v.at, first) > 2.0 * std::abs(v.speed_mps);
 }
 
@@ -123,14 +124,14 @@ TrackOutput Trip::step(const Vehicle& v, double limit_mps, double dt_s) {
   if (state_ == State::Face) {
     const TrackOutput out = turner_.step(v, path_params_, dt_s);
     if (turner_.state() == Turner::State::Done) state_ = State::There;
-    if (turner_.state() == Turner::State::Failed) fail("a turn on the spot does not come to its end");
+    if (turner_.state() == Turner::State::Failed)
+      fail("a turn on the spot does not come to its end");
     return out;
   }
   if (state_ != State::Way) return {};
   const TrackOutput out = tracker_.step(v, limit_mps, dt_s);
   const Path& path = paths_[slot_];
-  while (next_ + 1 < order_.way.size() &&
-         tracker_.s_m() >= path.vertex_m[lead_ + next_ - first_]) {
+  while (next_ + 1 < order_.way.size() && tracker_.s_m() >= path.vertex_m[lead_ + next_ - first_]) {
     ++next_;
   }
   if (tracker_.phase() == TrackPhase::Done) {

@@ -33,11 +33,11 @@ class Trip {
   enum class State { Idle, Way, Face, There, Failed };
 
   struct Order {
-    std::vector<Vertex> way;                ///< points to drive to; empty: none
-    std::optional<double> face_yaw_rad{};   ///< then turn to this
-    std::optional<double> turn_rad{};       ///< or by this, left positive
-    double turn_radps = 0.5;                ///< at most
-    double within_m = 0.5;                  ///< an end missed by more is failed
+    std::vector<Vertex> way;               ///< points to drive to; empty: none
+    std::optional<double> face_yaw_rad{};  ///< then turn to this
+    std::optional<double> turn_rad{};      ///< or by this, left positive
+    double turn_radps = 0.5;               ///< at most
+    double within_m = 0.5;                 ///< an end missed by more is failed
   };
 
   explicit Trip(const PathParams& path, const BehaveParams& behave)
@@ -77,7 +77,7 @@ class Trip {
   Order order_;
   std::array<Path, 2> paths_;  ///< the one that is driven, and the one before it
   std::size_t slot_ = 0;
-  std::size_t lead_ = 1;  ///< vertices of the path before the order's first one
+  std::size_t lead_ = 1;   ///< vertices of the path before the order's first one
   std::size_t first_ = 0;  ///< of the order's points: the first one on the path
   std::size_t next_ = 0;   ///< of the order's points: not yet passed
   State state_ = State::Idle;

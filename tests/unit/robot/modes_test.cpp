@@ -30,13 +30,15 @@ TEST(Modes, HoldPausesAMissionAndAutoGoesOnButStartsNone) {
   EXPECT_EQ(f.state()->mode, Mode::Manual);
 }
 
-TEST(Modes, ThoseThatDoNotExistYetSayWhatIsMissing) {
+TEST(Modes, EachSaysWhyItDoesNotBegin) {
   Field f;
   f.run(1.0);
-  const auto refused = f.ask(SetMode{Mode::SmartRtl});
-  ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().code, base::Code::Conflict);
-  EXPECT_NE(refused.error().detail.find("SMART_RTL is not available yet"), std::string::npos);
+  for (const Mode mode : {Mode::Guided, Mode::Rtl, Mode::SmartRtl, Mode::Follow, Mode::Auto}) {
+    const auto refused = f.ask(SetMode{mode});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, base::Code::Conflict);
+    EXPECT_FALSE(refused.error().detail.empty());
+  }
   EXPECT_EQ(f.state()->mode, Mode::Hold);
 }
 

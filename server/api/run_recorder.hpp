@@ -1,0 +1,80 @@
+#pragma once
+// Writes down what the robot drives: runs with their tracks, and where the mission in hand stands.
+// It reads snapshots; nothing of it runs in the control loop, and the store writes on its own
+// thread. Web thread.
+//
+//   Idle ──mission runs──▶ Recording ──pause──▶ Resting ──runs again──▶ Recording
+//                              └──finished, stopped, another mission──▶ Idle
+//
+// Points come at 5 Hz and go to the store every 2 s, so a power cut loses at most these. While the
+// store is busy they wait, at most kMost of them; then the oldest go, and that is counted.
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/snapshot.hpp"
+#include "robot/robot.hpp"
+#include "store/store.hpp"
+
+namespace roverd::api {
+
+class RunRecorder {
+ public:
+  static constexpr base::Duration kEvery = std::chrono::milliseconds(200);
+  static constexpr base::Duration kFlush = std::chrono::seconds(2);
+  static constexpr std::size_t kMost = 3000;
+
+  RunRecorder(robot::Robot& robot, store::Store& store, std::string vehicle)
+      : robot_(robot), store_(store), vehicle_(std::move(vehicle)) {}
+
+  /// Every sample of the snapshot, 20 Hz.
+  void look(const base::Snapshot& s);
+  void take(const base::Event& event);
+
+  /// The mission that another life of the program left behind; empty: none, or it is in hand.
+  const std::optional<store::StoredPlace>& offer() const noexcept { return offer_; }
+  /// Reads it; once, before the first sample counts.
+  void recall();
+  /// It was taken up, or somebody began something else.
+  void forget_offer();
+
+  std::optional<std::int64_t> running() const noexcept { return id_; }
+  std::uint64_t lost_points() const noexcept { return lost_; }
+
+ private:
+  void begin(const base::Snapshot& s);
+  void end(store::RunOutcome outcome, const base::Snapshot& s);
+  void sample(const base::Snapshot& s);
+  void flush(base::WallTime wall, std::optional<store::RunOutcome> outcome);
+  void send();
+  void keep_place(const base::Snapshot& s);
+
+  robot::Robot& robot_;
+  store::Store& store_;
+  std::string vehicle_;
+  std::optional<store::StoredPlace> offer_;
+  bool recalled_ = false;
+  bool place_kept_ = false;
+  std::string place_seen_;
+  base::Time place_at_;
+
+  bool open_ = false;               ///< a run is in hand
+  std::optional<std::int64_t> id_;  ///< once the store has told it
+  std::uint64_t generation_ = 0;    ///< of the run in hand: late answers know theirs
+  std::string mission_id_;
+  base::ExecutionState state_ = base::ExecutionState::Idle;
+  base::Time begun_;
+  base::Time sampled_;
+  base::Time flushed_;
+  int lap_ = 1;
+  store::RunBatch batch_;
+  bool sending_ = false;
+  std::uint64_t lost_ = 0;
+  std::shared_ptr<RunRecorder*> self_ = std::make_shared<RunRecorder*>(this);
+};
+
+}  // namespace roverd::api

@@ -1,0 +1,52 @@
+#pragma once
+// How well a run was driven: its track against the path that its mission meant, with the parameters
+// of that day. Measures: nav/measure.hpp. Pure; linear in the number of points.
+
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/params.hpp"
+#include "base/result.hpp"
+#include "mission/plan.hpp"
+#include "nav/measure.hpp"
+#include "robot/config.hpp"
+
+namespace roverd::robot {
+
+struct ReportPoint {
+  double t_s = 0.0;
+  base::LatLon at;
+  double yaw_rad = 0.0;
+  double speed_mps = 0.0;
+  double yaw_rate_radps = 0.0;
+  int lap = 1;
+  bool by_itself = true;
+  std::optional<double> power_w;
+};
+
+struct RunReport {
+  double time_s = 0.0;              ///< from the first point to the last, pauses included
+  double driving_s = 0.0;           ///< in which the program drove
+  double driven_m = 0.0;            ///< all of it
+  std::optional<double> energy_wh;  ///< empty: the battery does not tell
+  int laps = 1;
+  nav::RunMeasure measure;          ///< of the first lap, where the program drove
+  std::vector<int> corner_items;    ///< of measure.corners: the item at that vertex
+  std::vector<int> straight_items;  ///< of measure.straights: the item it leads to
+};
+
+/// @param parameters those that differed from their defaults, by full name; unknown ones are left
+/// out
+/// Errors: Conflict without points, or where the plan has no path any more.
+base::Result<RunReport> report_run(
+    const mission::Plan& plan, std::span<const ReportPoint> points, int first_item,
+    std::span<const std::pair<std::string, base::ParamValue>> parameters);
+
+/// Sets one parameter of a configuration by its full name, [vehicle] too. NotFound, Invalid.
+base::Result<void> set_parameter(Config& config, const std::string& name,
+                                 const base::ParamValue& value);
+
+}  // namespace roverd::robot

@@ -1,0 +1,88 @@
+// Parameters that are changed while the robot drives.
+
+#include "field.hpp"
+#include "robot/run_report.hpp"
+
+namespace roverd::robot {
+namespace {
+
+TEST(Parameters, AreListedWithTheirDefaults) {
+  Field f;
+  const auto all = f.robot.parameters();
+  EXPECT_GT(all.size(), 80u);
+  for (const Parameter& p : all) {
+    EXPECT_EQ(p.info.value, p.initial) << p.section << p.info.name;
+    EXPECT_FALSE(p.info.description.empty());
+    EXPECT_EQ(p.at_once, p.section != "vehicle");
+  }
+}
+
+TEST(Parameters, ActAtTheNextTickWhileDriving) {
+  Field f;
+  f.drive_mission();
+  ASSERT_TRUE(f.ask(SetParameter{"nav.speed.max_mps", 0.3}));
+  f.run(2.0);
+  EXPECT_LT(f.command.twist.linear_mps, 0.32);
+  EXPECT_GT(f.command.twist.linear_mps, 0.2);
+  EXPECT_EQ(f.robot.config()->speed.max_mps, 0.3);
+  EXPECT_TRUE(f.has_event("parameter"));
+}
+
+TEST(Parameters, AreRefusedWithAReasonAndChangeNothing) {
+  Field f;
+  f.run(0.1);
+  const auto of = [&](const char* name, base::ParamValue value) {
+    const auto done = f.ask(SetParameter{name, std::move(value)});
+    return done ? std::string("done") : done.error().detail;
+  };
+  EXPECT_EQ(of("nav.speed.nothing", 1.0), "there is no parameter nav.speed.nothing");
+  EXPECT_EQ(of("nothing", 1.0), "there is no parameter nothing");
+  EXPECT_EQ(of("nav.speed.max_mps", 99.0), "max_mps must lie in 0.1 .. 5.0");
+  EXPECT_EQ(of("nav.speed.max_mps", std::nan("")), "max_mps must lie in 0.1 .. 5.0");
+  EXPECT_EQ(of("nav.speed.max_mps", true), "max_mps must be a number");
+  EXPECT_EQ(of("nav.behave.unreachable", std::string("fly")),
+            "nav.behave.unreachable must be stop, skip or return");
+  EXPECT_EQ(of("nav.speed.min_mps", 1.0),
+            "nav.speed.reverse_max_mps must not be below "
+            "nav.speed.min_mps");
+  EXPECT_EQ(of("vehicle.kinematics", std::string("ackermann")),
+            "vehicle.kinematics acts at the next start of the program");
+  EXPECT_EQ(f.robot.config()->speed.max_mps, Config{}.speed.max_mps);
+}
+
+/// Every number to its ends, one after the other, while a mission runs: never away from the path.
+TEST(Parameters, ExtremeValuesWhileDrivingNeverLeadAway) {
+  for (const bool high : {false, true}) {
+    Field f;
+    f.run(8.0);
+    ASSERT_TRUE(f.load(plan_of({{0, 20}, {10, 20}, {10, 0}, {0, 0}})));
+    ASSERT_TRUE(f.ask(Arm{}));
+    ASSERT_TRUE(f.ask(StartMission{"m", 1}));
+    for (const Parameter& p : f.robot.parameters()) {
+      const bool steers = p.section == "nav.track" || p.section == "nav.speed" ||
+                          p.section == "nav.pivot" || p.section == "nav.behave";
+      if (!steers || !p.info.min) continue;
+      const std::string name = p.section + "." + p.info.name;
+      (void)f.ask(SetParameter{name, high ? *p.info.max : *p.info.min});
+      f.run(0.4);
+      EXPECT_GT(f.at.east_m, -4.0) << name;
+      EXPECT_LT(f.at.east_m, 14.0) << name;
+      EXPECT_GT(f.at.north_m, -4.0) << name;
+      EXPECT_LT(f.at.north_m, 24.0) << name;
+    }
+    for (int i = 0; i < 60; ++i) {
+      f.run(1.0);
+      ASSERT_LT(std::max(std::abs(f.at.east_m - 5.0), std::abs(f.at.north_m - 10.0)), 15.0);
+    }
+  }
+}
+
+TEST(Parameters, OfAConfigurationByTheirFullName) {
+  Config c;
+  ASSERT_TRUE(set_parameter(c, "vehicle.wheelbase_m", 2.0));
+  EXPECT_EQ(c.vehicle.wheelbase_m, 2.0);
+  EXPECT_FALSE(set_parameter(c, "vehicle.kinematics", std::string("boat")));
+}
+
+}  // namespace
+}  // namespace roverd::robot
