@@ -1,5 +1,5 @@
 // roverd: reads what it is told, starts the station, serves until a signal comes. Or decodes a
-// recording (decode.hpp).
+// recording (decode.hpp), or plays one through the estimator (replay_run.hpp).
 
 #include <cstdio>
 #include <exception>
@@ -12,6 +12,7 @@
 #include "decode.hpp"
 #include "logging.hpp"
 #include "options.hpp"
+#include "replay_run.hpp"
 #include "settings.hpp"
 #include "station.hpp"
 
@@ -79,6 +80,8 @@ int main(int argc, char** argv) {
   try {
     if (argc > 1 && std::string_view(argv[1]) == "decode")
       return roverd::decode(argc - 2, argv + 2);
+    if (argc > 1 && std::string_view(argv[1]) == "replay")
+      return roverd::replay(argc - 2, argv + 2);
     return serve(roverd::read_options(argc, argv));
   } catch (const std::exception& error) {
     return say(kRefused, error.what());

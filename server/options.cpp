@@ -24,7 +24,9 @@ std::string check_speed(const std::string& text) {
 Options read_options(int argc, char** argv) {
   Options o;
   CLI::App app("roverd: the ground station that lives on the robot", "roverd");
-  app.footer("roverd decode KIND FILE|-   a recording as JSON lines (roverd decode --help)");
+  app.footer(
+      "roverd decode KIND FILE|-   a recording as JSON lines (roverd decode --help)\n"
+      "roverd replay FILE... --report  the track of a recorded run (roverd replay --help)");
   app.set_version_flag("--version", kVersion);
   app.add_option("--config", o.config, "config file; vehicle profiles lie beside it in vehicles/")
       ->capture_default_str();
