@@ -115,7 +115,12 @@ step_command() {
 
 step_vehicles() { python3 "$root/tests/command/vehicles_test.py"; }
 
-step_real() { python3 "$root/tests/command/real_data_test.py"; }
+step_real() {
+  local code=0
+  python3 "$root/tests/command/real_data_test.py" || code=$?
+  python3 "$root/tests/command/second_decoder_test.py" || code=$?
+  return "$code"
+}
 
 step_can() { "$root/tests/can/run"; }
 

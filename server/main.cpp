@@ -1,5 +1,6 @@
 // roverd: reads what it is told, starts the station, serves until a signal comes. Or decodes a
-// recording (decode.hpp), or becomes the program that studies in simulated time (study.hpp).
+// recording (decode.hpp), plays one through the estimator (replay_run.hpp), or becomes the program
+// that studies in simulated time (study.hpp).
 
 #include <cerrno>
 #include <cstdio>
@@ -18,6 +19,7 @@
 #include "decode.hpp"
 #include "logging.hpp"
 #include "options.hpp"
+#include "replay_run.hpp"
 #include "report.hpp"
 #include "robot/run_report.hpp"
 #include "settings.hpp"
@@ -118,6 +120,8 @@ int main(int argc, char** argv) {
     if (argc > 1 && std::string_view(argv[1]) == "study") return become_study(argv);
     if (argc > 1 && std::string_view(argv[1]) == "report")
       return roverd::report(argc - 2, argv + 2);
+    if (argc > 1 && std::string_view(argv[1]) == "replay")
+      return roverd::replay(argc - 2, argv + 2);
     return serve(roverd::read_options(argc, argv));
   } catch (const std::exception& error) {
     return say(kRefused, error.what());

@@ -26,6 +26,7 @@ Options read_options(int argc, char** argv) {
   CLI::App app("roverd: the ground station that lives on the robot", "roverd");
   app.footer(
       "roverd decode KIND FILE|-   a recording as JSON lines (roverd decode --help)\n"
+      "roverd replay FILE... --report  the track of a recorded run (roverd replay --help)\n"
       "roverd report RUN...        how well runs were driven, side by side\n"
       "roverd study                courses in simulated time, measured (roverd study --help)");
   app.set_version_flag("--version", kVersion);

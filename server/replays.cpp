@@ -5,8 +5,10 @@
 #include <memory>
 #include <optional>
 
+#include "gnss/decoder.hpp"
 #include "gnss/nmea.hpp"
 #include "link/replay_file.hpp"
+#include "mti/xbus.hpp"
 
 namespace roverd {
 namespace {
@@ -17,10 +19,8 @@ using base::Result;
 /// Parts of one run begin within this: a receiver that was plugged in late.
 constexpr base::Duration kOneRun = std::chrono::hours(1);
 
-struct Look {
-  std::string driver;
-  std::optional<base::Duration> begin;
-};
+/// So much of a file tells whose bytes they are.
+constexpr std::size_t kEnough = 65'536;
 
 /// Begin is known once an item is loaded.
 template <class File>
@@ -29,9 +29,35 @@ std::optional<base::Duration> begin_of(File& file) {
   return file.begin();
 }
 
-Result<Look> look_into(const std::string& path, const link::ReplayOptions& how) {
+const char* kind_in_words(const std::string& driver) {
+  if (driver == "gnss") return "a receiver";
+  return driver == "mti" ? "an inertial unit" : "a CAN bus";
+}
+
+/// A unit's messages have a checksum: more of them than a receiver's sentences is no accident.
+std::string speaker_of(const std::string& path, const link::ReplayOptions& how) {
+  mti::Framer unit;
+  gnss::Decoder receiver;
+  std::size_t seen = 0;
+  link::ByteFile file(path, how, [&](base::Bytes bytes, base::Time now) {
+    seen += bytes.size();
+    unit.feed(bytes, [](const mti::Message&) {});
+    receiver.feed(bytes, now, [](const gnss::Sentence&, base::Time) {});
+  });
+  if (!file.open()) return "gnss";
+  while (seen < kEnough) {
+    const auto next = file.advance();
+    if (!next || !*next) break;
+    file.emit(base::Time{**next});
+  }
+  return unit.counts().messages > receiver.counts().intact() ? "mti" : "gnss";
+}
+
+}  // namespace
+
+Result<RecordingLook> look_into(const std::string& path, const link::ReplayOptions& how) {
   link::FrameFile frames(path, [](const base::CanFrame&, base::Time) {});
-  if (frames.open()) return Look{"bunker", begin_of(frames)};
+  if (frames.open()) return RecordingLook{"bunker", begin_of(frames)};
   link::ByteFile bytes(path, how, [](base::Bytes, base::Time) {});
   if (const auto opened = bytes.open(); !opened) {
     return base::fail(opened.error().code, "--replay: " + opened.error().detail);
@@ -41,10 +67,8 @@ Result<Look> look_into(const std::string& path, const link::ReplayOptions& how) 
                                          " is no recording: neither of roverd, nor a candump log, "
                                          "nor NMEA sentences");
   }
-  return Look{"gnss", begin_of(bytes)};
+  return RecordingLook{speaker_of(path, how), begin_of(bytes)};
 }
-
-}  // namespace
 
 Result<Replays> read_replays(const std::vector<std::string>& files, double speed) {
   Replays out;
@@ -58,8 +82,8 @@ Result<Replays> read_replays(const std::vector<std::string>& files, double speed
     const auto [at, is_new] = out.file_of.emplace(seen->driver, path);
     if (!is_new) {
       return base::fail(Code::Invalid, "--replay: " + at->second + " and " + path +
-                                           " are both recordings of a " +
-                                           (seen->driver == "gnss" ? "receiver" : "CAN bus"));
+                                           " are both recordings of " +
+                                           kind_in_words(seen->driver));
     }
     if (!seen->begin) continue;
     first = std::min(first.value_or(*seen->begin), *seen->begin);

@@ -3,10 +3,12 @@
 // began.
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/result.hpp"
+#include "base/time.hpp"
 #include "link/replay_options.hpp"
 
 namespace roverd {
@@ -16,9 +18,16 @@ struct Replays {
   link::ReplayOptions how;
 };
 
-/// Looks into the files. A recording is either a bus (driver "bunker") or a receiver ("gnss").
-/// Errors: a file that is missing or no recording, two of a kind, recordings of different runs,
-/// several without a pace.
+/// Looks into the files. A recording is a bus (driver "bunker"), a receiver ("gnss") or an inertial
+/// unit ("mti"). Errors: a file that is missing or no recording, two of a kind, recordings of
+/// different runs, several without a pace.
 base::Result<Replays> read_replays(const std::vector<std::string>& files, double speed);
+
+/// What one file holds.
+struct RecordingLook {
+  std::string driver;                   ///< "bunker", "gnss" or "mti"
+  std::optional<base::Duration> begin;  ///< of its first item, since 1970; empty: no dates
+};
+base::Result<RecordingLook> look_into(const std::string& path, const link::ReplayOptions& how);
 
 }  // namespace roverd

@@ -25,7 +25,7 @@ EpochOptions epoch_options(const Params& p) {
 UbxEpochOptions ubx_epoch_options(const Params& p) {
   return {.timeout_s = p.epoch_timeout_s,
           .baseline_m = p.baseline_m,
-          .baseline_tolerance_m = p.baseline_tolerance_m,
+          .baseline_tolerance = p.baseline_tolerance_pct / 100.0,
           .heading_offset_deg = p.heading_offset_deg};
 }
 

@@ -16,7 +16,7 @@ struct Params {
   double retry_first_s = 0.5;
   double retry_max_s = 5.0;
   double baseline_m = 0.0;
-  double baseline_tolerance_m = 0.05;
+  double baseline_tolerance_pct = 5.0;
   bool ubx_configure = false;
   bool ubx_keep = false;
   std::string ubx_port = "usb";
@@ -39,7 +39,7 @@ void fields(V& v, Params& p) {
   v("baseline_m", p.baseline_m, 0.0, 10.0,
     "distance of the two antennas of a moving-base pair (NAV-RELPOSNED); 0: one antenna. Its "
     "heading points from the base's antenna to the rover's; heading_offset_deg turns it forward");
-  v("baseline_tolerance_m", p.baseline_tolerance_m, 0.005, 1.0,
+  v("baseline_tolerance_pct", p.baseline_tolerance_pct, 0.5, 50.0,
     "a pair measured longer or shorter by more than this gives no heading");
   v("ubx_configure", p.ubx_configure,
     "tell a u-blox receiver to send NAV-PVT, NAV-HPPOSLLH, NAV-COV and NAV-RELPOSNED and to take "

@@ -1,5 +1,6 @@
 #include "gnss/ubx_epoch.hpp"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -14,6 +15,7 @@ namespace {
 
 /// Beyond this an accuracy says "unknown" (the receiver sends all bits set).
 constexpr double kUnknownSigma_m = 1e6;
+constexpr double kAntennaSigma_m = 0.01;
 
 std::optional<double> axis_sigma(double radius_m) {
   if (!(radius_m > 0.0) || radius_m > kUnknownSigma_m) return std::nullopt;
@@ -111,7 +113,7 @@ UbxEpoch& UbxEpochs::epoch_for(Part part, std::uint32_t itow_ms, Time stamp) {
 
 void UbxEpochs::on_relative(const ubx::NavRelPosNed& m, Time stamp) {
   if (options_.baseline_m <= 0.0) return;
-  if (!m.heading_usable(options_.baseline_m, options_.baseline_tolerance_m)) {
+  if (!m.heading_usable(options_.baseline_m, options_.baseline_tolerance * options_.baseline_m)) {
     ++headings_refused_;
     return;
   }
@@ -119,6 +121,9 @@ void UbxEpochs::on_relative(const ubx::NavRelPosNed& m, Time stamp) {
   heading.stamp = epoch_ && epoch_->itow_ms == m.itow_ms ? epoch_->stamp : stamp;
   heading.yaw_rad = base::yaw_from_heading(m.heading_deg + options_.heading_offset_deg);
   heading.source = base::HeadingSource::DualAntenna;
+  // What the receiver reports is its noise; the antennas' own centres wander by a centimetre.
+  heading.sigma_rad = std::max(base::rad_from_deg(std::max(0.0, m.heading_sigma_deg)),
+                               kAntennaSigma_m / options_.baseline_m);
   on_measurement_(heading);
 }
 

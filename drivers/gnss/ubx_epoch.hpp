@@ -24,9 +24,9 @@ using base::Time;
 
 struct UbxEpochOptions {
   double timeout_s = 0.25;
-  double baseline_m = 0.0;  ///< between the antennas, as mounted; 0: there is one antenna
-  double baseline_tolerance_m = 0.05;
-  double heading_offset_deg = 0.0;  ///< added to the direction from the base's antenna to ours
+  double baseline_m = 0.0;           ///< between the antennas, as mounted; 0: there is one antenna
+  double baseline_tolerance = 0.05;  ///< part of baseline_m by which it may be measured off
+  double heading_offset_deg = 0.0;   ///< added to the direction from the base's antenna to ours
 };
 
 /// What was heard of one UBX epoch so far.

@@ -97,6 +97,7 @@ void Driver::tick(Time now) {
     stuck_since_.reset();
   }
   if (stage_ == Stage::Streaming) tell_position(now);
+  look_up_the_list(now);
   check_silence(now);
   report(now);
 }
@@ -132,7 +133,7 @@ void Driver::on_reply(Time now) {
     case Reply::State::Stream:
       if (stage_ == Stage::Streaming) return;
       stage_ = Stage::Streaming;
-      since_ = now;
+      since_ = streaming_since_ = now;
       if (life_.phase() != Phase::Up) {  // the first frame may have come with the answer
         life_.opening("waiting for corrections of " + casters_[at_].name());
       }
@@ -174,6 +175,18 @@ void Driver::check_silence(Time now) {
   } else if (stage_ == Stage::Streaming && silent_s > params_.silent_after_s) {
     fail("no corrections: the caster is silent", now);
   }
+}
+
+/// What stands first in the list is what the owner wants; the others are for when it is away.
+void Driver::look_up_the_list(Time now) {
+  if (stage_ != Stage::Streaming || params_.return_after_s <= 0.0) return;
+  if (base::seconds(now - streaming_since_) < params_.return_after_s) return;
+  const auto end = turns_.begin() + static_cast<std::ptrdiff_t>(at_);
+  if (std::none_of(turns_.begin(), end, [&](const Turn& t) { return now >= t.not_before; })) return;
+  ++returns_;
+  turns_[at_].not_before = now;
+  close();
+  open_next(now);
 }
 
 void Driver::tell_position(Time now) {
@@ -261,6 +274,7 @@ std::map<std::string, std::uint64_t> Driver::tallies() const {
   count("bytes", bytes_);
   count("position told to the caster", positions_);
   count("connection", connections_);
+  count("return to a caster further up", returns_);
   return out;
 }
 

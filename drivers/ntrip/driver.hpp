@@ -7,8 +7,9 @@
 //
 // The casters are tried in their order. One that fails waits retry_first_s, doubled up to
 // retry_max_s each time, and starts anew once it gave corrections; one that refuses the login waits
-// retry_max_s at once. Where the mountpoint is missing or unknown, the caster's table is read and
-// named in the facts.
+// retry_max_s at once. A caster further down the list is left after return_after_s for the first
+// one above it whose wait is over; if that one fails, it is used again. Where the mountpoint is
+// missing or unknown, the caster's table is read and named in the facts.
 //
 // Frames with a right CRC go to on_frame unchanged; message numbers, bytes and faults are counted
 // in the DriverStatus. A login is never in a status, an error or a log.
@@ -81,6 +82,7 @@ class Driver {
   void on_frame(const rtcm::Frame& frame, Time now);
   void check_silence(Time now);
   void tell_position(Time now);
+  void look_up_the_list(Time now);
   void fail(const std::string& reason, Time now, bool wait_long = false);
   void close();
   bool caster_said_nothing() const noexcept;
@@ -101,6 +103,8 @@ class Driver {
   Reply reply_;
   rtcm::Framer framer_;
   std::optional<Time> stuck_since_;  ///< a frame has begun and is not complete
+  Time streaming_since_{};
+  std::uint64_t returns_ = 0;  ///< to a caster further up
   Time told_{};
   bool told_once_ = false;
   std::string mountpoints_;  ///< of the table read last

@@ -38,7 +38,7 @@ void run_both(base::Bytes bytes) {
   gnss::EpochAssembler sentences({}, [&](const base::Measurement& m) { blend.nmea(m); });
   gnss::UbxEpochs messages({.timeout_s = 0.25,
                             .baseline_m = 1.0,
-                            .baseline_tolerance_m = 0.05,
+                            .baseline_tolerance = 0.05,
                             .heading_offset_deg = 90.0},
                            [&](const base::Measurement& m) { blend.ubx(m); });
   gnss::UbxSetup setup({.configure = true});

@@ -45,10 +45,8 @@ class UbxEpochTest : public ::testing::Test {
   }
   std::vector<base::GnssFix> fixes() const { return all_of<base::GnssFix>(said); }
 
-  UbxEpochOptions options{.timeout_s = 0.25,
-                          .baseline_m = 1.0,
-                          .baseline_tolerance_m = 0.05,
-                          .heading_offset_deg = 90.0};
+  UbxEpochOptions options{
+      .timeout_s = 0.25, .baseline_m = 1.0, .baseline_tolerance = 0.05, .heading_offset_deg = 90.0};
   std::vector<base::Measurement> said;
   UbxEpochs epochs{options, [this](const base::Measurement& m) { said.push_back(m); }};
   Time t0 = Time{} + 100s;
@@ -128,6 +126,34 @@ TEST_F(UbxEpochTest, AMovingBaseGivesAHeadingTurnedAsItsAntennasAreMounted) {
   EXPECT_EQ(headings[0].stamp, t0) << "of this epoch";
   EXPECT_EQ(headings[0].source, base::HeadingSource::DualAntenna);
   EXPECT_NEAR(headings[0].yaw_rad, base::yaw_from_heading(277.09018 + 90.0), 1e-9);
+}
+
+TEST_F(UbxEpochTest, AHeadingIsNeverSurerThanACentimetreOverItsBaseline) {
+  auto relative = std::get<ubx::NavRelPosNed>(message_of(ubx::kRelPosNed));
+  relative.heading_sigma_deg = 0.1;
+  epochs.add(relative, t0);
+  relative.heading_sigma_deg = 2.0;
+  epochs.add(relative, t0 + 200ms);
+  const auto headings = all_of<base::Heading>(said);
+  ASSERT_EQ(headings.size(), 2u);
+  EXPECT_NEAR(*headings[0].sigma_rad, 0.01, 1e-9);
+  EXPECT_NEAR(*headings[1].sigma_rad, base::rad_from_deg(2.0), 1e-9);
+}
+
+TEST_F(UbxEpochTest, ABaselineMeasuredMoreThanFivePercentOffIsRefused) {
+  auto relative = std::get<ubx::NavRelPosNed>(message_of(ubx::kRelPosNed));
+  const double measured_m = relative.length_m;
+  for (const double part : {0.94, 1.06}) {
+    options.baseline_m = measured_m / part;
+    UbxEpochs off(options, [this](const base::Measurement& m) { said.push_back(m); });
+    off.add(relative, t0);
+    EXPECT_EQ(off.headings_refused(), 1u) << part;
+  }
+  options.baseline_m = measured_m / 1.04;
+  UbxEpochs near(options, [this](const base::Measurement& m) { said.push_back(m); });
+  near.add(relative, t0);
+  EXPECT_EQ(near.headings_refused(), 0u);
+  EXPECT_EQ(said.size(), 1u);
 }
 
 TEST_F(UbxEpochTest, ABaselineOfAnotherLengthGivesNoHeading) {

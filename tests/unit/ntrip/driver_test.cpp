@@ -145,6 +145,29 @@ TEST_F(NtripDriverTest, TheNextCasterIsTriedAndTheFirstAgainLater) {
   EXPECT_EQ(addresses.back(), "tcp:10.0.0.1:2101");
 }
 
+TEST_F(NtripDriverTest, TheFirstCasterIsReturnedToAfterAWhile) {
+  make(kOne + " ntrip://b:c@10.0.0.2/OTHER", {.return_after_s = 100.0});
+  after(20ms);
+  ours->fail("Connection refused");
+  after(20ms);
+  after(20ms);
+  answer("ICY 200 OK\r\n" + k1005);
+  ASSERT_EQ(status().phase, DriverPhase::Up);
+  ASSERT_EQ(status().link, "ntrip://10.0.0.2:2101/OTHER");
+  for (int i = 0; i < 9; ++i) {
+    after(10s);
+    answer(k1005);
+  }
+  EXPECT_EQ(addresses.size(), 2u);
+  after(11s);
+  EXPECT_EQ(addresses.back(), "tcp:10.0.0.1:2101");
+  EXPECT_EQ(count("return to a caster further up"), 1u);
+  // It is still away: the second one serves again at once.
+  ours->fail("Connection refused");
+  after(20ms);
+  EXPECT_EQ(addresses.back(), "tcp:10.0.0.2:2101");
+}
+
 TEST_F(NtripDriverTest, AWaitDoublesUntilCorrectionsCome) {
   make(kOne);
   for (const auto wait : {1s, 2s, 4s}) {
