@@ -159,7 +159,7 @@ class AreaCheck {
   Problems& problems_;
 };
 
-Error too_many(const char* where, std::size_t count, std::size_t most) {
+Error more_than_possible(const char* where, std::size_t count, std::size_t most) {
   const std::string detail =
       "has " + std::to_string(count) + ", at most " + std::to_string(most) + " are possible";
   return {Code::TooLarge, std::string(where) + " " + detail, {{where, detail}}};
@@ -175,7 +175,7 @@ Result<void> check_fence(const Fence& fence) {
   for (const auto& [where, count, most] : {std::tuple{"/areas", fence.areas.size(), kMaxAreas},
                                            std::tuple{"/rally", fence.rally.size(), kMaxRally},
                                            std::tuple{"/areas", corners, kMaxFencePoints}}) {
-    if (count > most) return tl::unexpected<Error>(too_many(where, count, most));
+    if (count > most) return tl::unexpected<Error>(more_than_possible(where, count, most));
   }
   Problems problems;
   if (std::string problem = name_problem(fence.name); !problem.empty()) {

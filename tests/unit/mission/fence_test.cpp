@@ -22,7 +22,7 @@ using base::EnuPoint;
 using base::LatLon;
 
 const base::LocalFrame kFrame(1, {58.0, 26.0});
-constexpr double kMillimetre = 0.001;
+constexpr double kExact_m = 0.001;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 FenceArea polygon(AreaKind kind, const std::vector<EnuPoint>& corners) {
@@ -58,15 +58,15 @@ TEST(Fence, AFieldWithAPondLeavesTheGroundBetween) {
   EXPECT_TRUE(fence.contains({10.0, 50.0}));
   EXPECT_FALSE(fence.contains({50.0, 50.0}));
   EXPECT_FALSE(fence.contains({-1.0, 50.0}));
-  EXPECT_NEAR(fence.clearance_m({10.0, 50.0}), 10.0, kMillimetre);
-  EXPECT_NEAR(fence.clearance_m({33.0, 50.0}), 7.0, kMillimetre);
-  EXPECT_NEAR(fence.clearance_m({48.0, 50.0}), -8.0, kMillimetre);
-  EXPECT_NEAR(fence.clearance_m({-3.0, -4.0}), -5.0, kMillimetre);
+  EXPECT_NEAR(fence.clearance_m({10.0, 50.0}), 10.0, kExact_m);
+  EXPECT_NEAR(fence.clearance_m({33.0, 50.0}), 7.0, kExact_m);
+  EXPECT_NEAR(fence.clearance_m({48.0, 50.0}), -8.0, kExact_m);
+  EXPECT_NEAR(fence.clearance_m({-3.0, -4.0}), -5.0, kExact_m);
   EXPECT_TRUE(fence.crosses({10.0, 50.0}, {90.0, 50.0}));
-  EXPECT_NEAR(*fence.first_crossing_m({10.0, 50.0}, {90.0, 50.0}), 30.0, kMillimetre);
+  EXPECT_NEAR(*fence.first_crossing_m({10.0, 50.0}, {90.0, 50.0}), 30.0, kExact_m);
   EXPECT_FALSE(fence.crosses({10.0, 10.0}, {90.0, 10.0}));
-  EXPECT_NEAR(fence.clearance_m({10.0, 30.0}, {90.0, 30.0}), 10.0, kMillimetre);
-  EXPECT_NEAR(fence.clearance_m({10.0, 50.0}, {90.0, 50.0}), 0.0, kMillimetre);
+  EXPECT_NEAR(fence.clearance_m({10.0, 30.0}, {90.0, 30.0}), 10.0, kExact_m);
+  EXPECT_NEAR(fence.clearance_m({10.0, 50.0}, {90.0, 50.0}), 0.0, kExact_m);
 }
 
 TEST(Fence, TwoFieldsThatTouchAreOne) {
@@ -156,44 +156,45 @@ TEST(Fence, WhatIsNoNumberIsNotAllowed) {
   EXPECT_TRUE(fence.crosses({1.0, 1.0}, bad));
 }
 
-std::string refusal(const Fence& fence) {
+std::string refused_at(const Fence& fence) {
   const auto result = check_fence(fence);
   return result || result.error().fields.empty() ? "" : result.error().fields.front().pointer;
 }
-std::string refusal(FenceArea area) {
-  return refusal(Fence{"field", {std::move(area)}, {}});
+std::string refused_at(FenceArea area) {
+  return refused_at(Fence{"field", {std::move(area)}, {}});
 }
 
 TEST(FenceCheck, NamesWhatCannotBe) {
   const auto in = AreaKind::Inclusion;
   const double nan = std::numeric_limits<double>::quiet_NaN();
 
-  EXPECT_EQ(refusal(Fence{"nothing", {}, {}}), "/areas");
-  EXPECT_EQ(refusal(Fence{" ", {square(in, 0, 0, 1, 1)}, {}}), "/name");
-  EXPECT_EQ(refusal(polygon(in, {{0, 0}, {10, 0}})), "/areas/0/polygon");
-  EXPECT_EQ(refusal({in, FencePolygon{{{nan, 0}, {1, 1}, {0, 1}}}}), "/areas/0/polygon/0/lat");
-  EXPECT_EQ(refusal({in, FencePolygon{{{0, 0}, {1e308, 1}, {0, 1}}}}), "/areas/0/polygon/1/lat");
-  EXPECT_EQ(refusal({in, FenceCircle{{0, 0}, 0.0}}), "/areas/0/circle/radius_m");
-  EXPECT_EQ(refusal({in, FenceCircle{{0, 0}, 10'001.0}}), "/areas/0/circle/radius_m");
-  EXPECT_EQ(refusal({in, FenceCircle{{0, 181.0}, 1.0}}), "/areas/0/circle/lon");
-  EXPECT_EQ(refusal(polygon(in, {{0, 0}, {10, 0}, {30'000, 5}})), "/areas/0/polygon/2");
-  EXPECT_EQ(refusal(Fence{"r", {}, {{{91.0, 0.0}, {}}}}), "/rally/0/lat");
-  EXPECT_EQ(refusal(Fence{"r", {}, {{{1.0, 0.0}, 1e5}}}), "/rally/0/alt_m");
-  EXPECT_EQ(refusal(Fence{"r", {}, {{{1.0, 0.0}, 20.0}}}), "");
+  EXPECT_EQ(refused_at(Fence{"nothing", {}, {}}), "/areas");
+  EXPECT_EQ(refused_at(Fence{" ", {square(in, 0, 0, 1, 1)}, {}}), "/name");
+  EXPECT_EQ(refused_at(polygon(in, {{0, 0}, {10, 0}})), "/areas/0/polygon");
+  EXPECT_EQ(refused_at({in, FencePolygon{{{nan, 0}, {1, 1}, {0, 1}}}}), "/areas/0/polygon/0/lat");
+  EXPECT_EQ(refused_at({in, FencePolygon{{{0, 0}, {1e308, 1}, {0, 1}}}}), "/areas/0/polygon/1/lat");
+  EXPECT_EQ(refused_at({in, FenceCircle{{0, 0}, 0.0}}), "/areas/0/circle/radius_m");
+  EXPECT_EQ(refused_at({in, FenceCircle{{0, 0}, 10'001.0}}), "/areas/0/circle/radius_m");
+  EXPECT_EQ(refused_at({in, FenceCircle{{0, 181.0}, 1.0}}), "/areas/0/circle/lon");
+  EXPECT_EQ(refused_at(polygon(in, {{0, 0}, {10, 0}, {30'000, 5}})), "/areas/0/polygon/2");
+  EXPECT_EQ(refused_at(Fence{"r", {}, {{{91.0, 0.0}, {}}}}), "/rally/0/lat");
+  EXPECT_EQ(refused_at(Fence{"r", {}, {{{1.0, 0.0}, 1e5}}}), "/rally/0/alt_m");
+  EXPECT_EQ(refused_at(Fence{"r", {}, {{{1.0, 0.0}, 20.0}}}), "");
 }
 
 TEST(FenceCheck, RefusesAFigureThatCrossesItself) {
   const auto in = AreaKind::Inclusion;
 
   // the hourglass, a spike, a corner on a side, a repeated corner, a line
-  EXPECT_EQ(refusal(polygon(in, {{0, 0}, {10, 10}, {10, 0}, {0, 10}})), "/areas/0/polygon");
-  EXPECT_EQ(refusal(polygon(in, {{0, 0}, {10, 0}, {20, 0}, {10, 0}, {10, 10}})),
+  EXPECT_EQ(refused_at(polygon(in, {{0, 0}, {10, 10}, {10, 0}, {0, 10}})), "/areas/0/polygon");
+  EXPECT_EQ(refused_at(polygon(in, {{0, 0}, {10, 0}, {20, 0}, {10, 0}, {10, 10}})),
             "/areas/0/polygon");
-  EXPECT_EQ(refusal(polygon(in, {{0, 0}, {10, 0}, {10, 10}, {5, 0}, {0, 10}})), "/areas/0/polygon");
-  EXPECT_EQ(refusal(polygon(in, {{0, 0}, {10, 0}, {10, 0}, {10, 10}})), "/areas/0/polygon/2");
-  EXPECT_EQ(refusal(polygon(in, {{0, 0}, {10, 0}, {10, 10}, {0, 0}})), "/areas/0/polygon/0");
-  EXPECT_EQ(refusal(polygon(in, {{0, 0}, {10, 10}, {20, 20}})), "/areas/0/polygon");
-  EXPECT_EQ(refusal(square(in, 0, 0, 5, 5)), "");
+  EXPECT_EQ(refused_at(polygon(in, {{0, 0}, {10, 0}, {10, 10}, {5, 0}, {0, 10}})),
+            "/areas/0/polygon");
+  EXPECT_EQ(refused_at(polygon(in, {{0, 0}, {10, 0}, {10, 0}, {10, 10}})), "/areas/0/polygon/2");
+  EXPECT_EQ(refused_at(polygon(in, {{0, 0}, {10, 0}, {10, 10}, {0, 0}})), "/areas/0/polygon/0");
+  EXPECT_EQ(refused_at(polygon(in, {{0, 0}, {10, 10}, {20, 20}})), "/areas/0/polygon");
+  EXPECT_EQ(refused_at(square(in, 0, 0, 5, 5)), "");
 }
 
 TEST(FenceCheck, RefusesMoreThanThereCanBe) {
