@@ -110,6 +110,7 @@ step_command() {
   python3 "$root/tests/command/run_test.py" || code=$?
   python3 "$root/tests/command/ntrip_test.py" || code=$?
   python3 "$root/tests/command/power_cut_test.py" || code=$?
+  python3 "$root/tests/command/study_test.py" || code=$?
   return "$code"
 }
 

@@ -92,10 +92,10 @@ base::Result<std::vector<Run>> run_all(const Setup& setup, const std::vector<Tas
                                        const std::function<void(std::size_t done)>& told);
 
 /// A row per course and disturbance: of all its seeds the mean and the worst.
-std::string table(const std::vector<Run>& runs);
+std::string to_table(const std::vector<Run>& runs);
 /// {"runs": [{"course", "disturbance", "seed", "problem", "truth": {…}, "believed": {…}, …}]}
-std::string json(const std::vector<Run>& runs, const Setup& setup);
+std::string to_json(const std::vector<Run>& runs, const Setup& setup);
 /// One plot: the intended way, all seeds' tracks, and the cross-track error along the way.
-std::string svg(const std::vector<const Run*>& runs);
+std::string to_svg(const std::vector<const Run*>& runs);
 
 }  // namespace roverd::study

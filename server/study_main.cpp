@@ -100,7 +100,7 @@ bool write_plots(const fs::path& folder, const std::vector<study::Run>& runs) {
     if (!run.way.empty()) plots[file_name(run)].push_back(&run);
   }
   return std::all_of(plots.begin(), plots.end(), [&](const auto& plot) {
-    return write_file(folder / plot.first, study::svg(plot.second));
+    return write_file(folder / plot.first, study::to_svg(plot.second));
   });
 }
 
@@ -122,8 +122,8 @@ int run(const Options& o) {
     std::fprintf(stderr, "\r%zu of %zu runs%s", n, tasks.size(), n == tasks.size() ? "\n" : "");
   });
   if (!runs) return say(kWrongInput, runs.error().detail);
-  std::fputs(study::table(*runs).c_str(), stdout);
-  if (!o.json.empty() && !write_file(o.json, study::json(*runs, o.setup))) {
+  std::fputs(study::to_table(*runs).c_str(), stdout);
+  if (!o.json.empty() && !write_file(o.json, study::to_json(*runs, o.setup))) {
     return say(kFailed, "cannot write " + o.json);
   }
   if (!o.svg.empty() && !write_plots(o.svg, *runs)) return say(kFailed, "cannot write to " + o.svg);

@@ -112,7 +112,7 @@ ordered_json measure_json(const nav::RunMeasure& m) {
 
 }  // namespace
 
-std::string table(const std::vector<Run>& runs) {
+std::string to_table(const std::vector<Run>& runs) {
   std::vector<std::vector<std::string>> rows(1);
   rows[0].push_back("course / disturbance");
   for (const Column& c : kColumns) rows[0].emplace_back(c.head);
@@ -144,7 +144,7 @@ std::string table(const std::vector<Run>& runs) {
   return out;
 }
 
-std::string json(const std::vector<Run>& runs, const Setup& setup) {
+std::string to_json(const std::vector<Run>& runs, const Setup& setup) {
   ordered_json list = ordered_json::array();
   for (const Run& r : runs) {
     list.push_back({{"course", r.course},

@@ -127,7 +127,7 @@ std::string errors_of(const std::vector<const Run*>& runs) {
 
 }  // namespace
 
-std::string svg(const std::vector<const Run*>& runs) {
+std::string to_svg(const std::vector<const Run*>& runs) {
   if (runs.empty()) return {};
   std::string out = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" +
                     number(kSide_px + kWide_px, 0) + "\" height=\"" + number(kSide_px, 0) +
