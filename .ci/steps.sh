@@ -111,6 +111,7 @@ step_command() {
   python3 "$root/tests/command/ntrip_test.py" || code=$?
   python3 "$root/tests/command/power_cut_test.py" || code=$?
   python3 "$root/tests/command/study_test.py" || code=$?
+  python3 "$root/tests/command/resume_test.py" || code=$?
   return "$code"
 }
 

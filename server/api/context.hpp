@@ -9,6 +9,7 @@
 
 #include "api/api.hpp"
 #include "api/body.hpp"
+#include "api/fence_keeper.hpp"
 #include "api/problem.hpp"
 #include "api/router.hpp"
 #include "api/run_recorder.hpp"
@@ -56,6 +57,7 @@ struct Context {
       : deps(std::move(with)),
         commands(deps.robot),
         runs(deps.robot, deps.store, deps.profile.name),
+        fence(deps.robot),
         begun(base::steady_now()) {}
 
   Deps deps;
@@ -63,6 +65,7 @@ struct Context {
   Router router;
   Trail trail;
   RunRecorder runs;
+  FenceKeeper fence;
   base::Time begun;
   std::map<std::string, double> driver_rates;
   std::string openapi_tag;

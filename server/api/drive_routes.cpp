@@ -16,7 +16,7 @@ namespace {
 const std::vector<unsigned> kGoal = {202, 400, 403, 409, 413, 415, 422, 429, 503};
 const std::vector<unsigned> kTarget = {200, 400, 403, 409, 413, 415, 422, 429, 503};
 
-constexpr double kMostSpeed_mps = 20.0;
+constexpr double kFastest_mps = 20.0;
 constexpr double kFarthest_m = 10'000.0;
 constexpr double kMostMove_m = 1000.0;
 constexpr double kMostTurn_deg = 3600.0;
@@ -66,7 +66,7 @@ Handler move_by(const ContextPtr& context) {
     move.forward_m = members.number("forward_m", -kMostMove_m, kMostMove_m);
     const auto turn_deg = members.number("turn_deg", -kMostTurn_deg, kMostTurn_deg);
     const auto heading_deg = members.number("heading_deg", 0.0, 360.0);
-    move.speed_mps = members.number("speed_mps", 0.01, kMostSpeed_mps);
+    move.speed_mps = members.number("speed_mps", 0.01, kFastest_mps);
     // Compass turns count clockwise.
     if (turn_deg) move.turn_rad = -base::rad_from_deg(*turn_deg);
     if (heading_deg) move.yaw_rad = base::yaw_from_heading(*heading_deg);
@@ -136,7 +136,7 @@ Handler set_target(const ContextPtr& context) {
       members.require("lat");
       members.require("lon");
     }
-    const auto speed_mps = members.number("speed_mps", 0.0, kMostSpeed_mps);
+    const auto speed_mps = members.number("speed_mps", 0.0, kFastest_mps);
     const auto heading_deg = members.number("heading_deg", 0.0, 360.0);
     if (speed_mps && heading_deg) {
       const double yaw_rad = base::yaw_from_heading(*heading_deg);
@@ -189,7 +189,7 @@ robot::GoTo read_goal(Members& members) {
   const auto heading_deg = members.number("heading_deg", 0.0, 360.0);
   if (heading_deg) goal.yaw_rad = base::yaw_from_heading(*heading_deg);
   const bool at_place = goal.at || goal.local;
-  goal.speed_mps = members.number("speed_mps", at_place ? 0.01 : -kMostSpeed_mps, kMostSpeed_mps);
+  goal.speed_mps = members.number("speed_mps", at_place ? 0.01 : -kFastest_mps, kFastest_mps);
   goal.reverse = members.flag("reverse").value_or(false);
   return goal;
 }

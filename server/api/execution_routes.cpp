@@ -184,7 +184,8 @@ Handler resume(const ContextPtr& context) {
     const base::Time not_after = validity_of(members, *call, Moves::Yes);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
     const auto offer = context->runs.offer();
-    if (!offer || context->deps.robot.loaded()) {
+    const auto loaded = context->deps.robot.loaded();
+    if (!offer || (loaded && loaded->id != offer->mission_id)) {
       return run_command(context, call, robot::ResumeMission{}, not_after, progress_of(context));
     }
     context->deps.store.read_revision(

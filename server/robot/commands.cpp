@@ -233,7 +233,8 @@ void Robot::Impl::adopt(const LoadMission& c) {
 
 base::Result<void> Robot::Impl::handle(const ResumeAt& c) {
   if (!c.mission) return base::fail(Code::Invalid, "there is no mission to go on with");
-  if (mission) {
+  const bool other = mission && mission->copy.id != c.mission->copy.id;
+  if (other || executor.place()) {
     return base::fail(Code::Conflict, "mission \"" + mission->copy.plan.name +
                                           "\" is loaded: resume or start that one");
   }

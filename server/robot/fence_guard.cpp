@@ -18,6 +18,9 @@ std::string item_text(int item) {
 std::optional<int> first_outside(const nav::Course& course, const mission::CompiledFence& limits,
                                  double margin_m) {
   const nav::Path& path = course.path;
+  if (!course.nodes.empty() && limits.clearance_m(course.nodes.front().at) < margin_m) {
+    return course.nodes.front().item;
+  }
   std::size_t node = 0;
   for (std::size_t i = 0; i + 1 < path.points.size(); ++i) {
     const nav::PathPoint& a = path.points[i];

@@ -10,8 +10,8 @@ using ModesApi = HouseTest;
 
 TEST_F(ModesApi, AGoalIsBegunAndTold) {
   until_ready();
-  const Json goal = {{"lat", kStart.lat + 0.0001}, {"lon", kStart.lon}, {"heading_deg", 90},
-                     {"valid_for_s", 10}};
+  const Json goal = {
+      {"lat", kStart.lat + 0.0001}, {"lon", kStart.lon}, {"heading_deg", 90}, {"valid_for_s", 10}};
   const auto unarmed = call("POST", "/vehicle/goto", goal);
   EXPECT_EQ(unarmed.status, 409u);
   EXPECT_EQ(unarmed.body["detail"], "the robot is not armed");
@@ -74,9 +74,10 @@ TEST_F(ModesApi, ATargetIsTakenAndFollowed) {
   ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 10}}).status, 200u);
   const auto none = call("PUT", "/vehicle/mode", Json{{"mode", "FOLLOW"}, {"valid_for_s", 10}});
   EXPECT_EQ(none.status, 409u);
-  const Json target = {{"lat", kStart.lat + 0.0001}, {"lon", kStart.lon}, {"speed_mps", 0.5},
-                       {"heading_deg", 0}, {"valid_for_s", 10},
-                       {"offset", {{"forward_m", -3}, {"left_m", 1}}}};
+  const Json target = {
+      {"lat", kStart.lat + 0.0001}, {"lon", kStart.lon},
+      {"speed_mps", 0.5},           {"heading_deg", 0},
+      {"valid_for_s", 10},          {"offset", {{"forward_m", -3}, {"left_m", 1}}}};
   ASSERT_EQ(call("PUT", "/vehicle/target", target).status, 200u);
   const auto follow = call("PUT", "/vehicle/mode", Json{{"mode", "FOLLOW"}, {"valid_for_s", 10}});
   EXPECT_EQ(follow.status, 200u) << follow.body.dump();

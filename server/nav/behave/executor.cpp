@@ -197,7 +197,9 @@ void Executor::go_on(EnuPoint here) {
   }
   standing_.reset();
   if (doing_ == Doing::Connector) {  // the same end, driven the same way
+    const auto rejoin = rejoin_;
     if (!lay_connector(connector_end_, vehicle)) tracker_.begin(connector_, 0, 0.0);
+    rejoin_ = rejoin;
     return;
   }
   const RouteStep* step = step_now();

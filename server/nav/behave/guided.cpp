@@ -29,6 +29,13 @@ void Guided::reset() noexcept {
   speed_mps_ = rate_radps_ = 0.0;
 }
 
+void Guided::interrupt() noexcept {
+  trip_.interrupt();
+  if (state_ != State::Steered) return;
+  speed_mps_ = rate_radps_ = 0.0;
+  age_s_ = modes_.stream_timeout_s + 1.0;
+}
+
 void Guided::go(const GuidedGoal& goal, const Vehicle& v) {
   const bool steered_on = state_ == State::Steered && goal.kind == GuidedGoal::Kind::Steer;
   goal_ = goal;

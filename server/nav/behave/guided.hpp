@@ -50,7 +50,8 @@ class Guided {
   /// @param goal that `refusal` has nothing against
   void go(const GuidedGoal& goal, const Vehicle& vehicle);
   void reset() noexcept;
-  void interrupt() noexcept { trip_.interrupt(); }
+  /// Somebody else drives: a goal waits, a heading and speed are over.
+  void interrupt() noexcept;
 
   TrackOutput step(const Vehicle& vehicle, double limit_mps, double dt_s);
 

@@ -72,7 +72,7 @@ TEST(Items, GoalsAreCutWhereTheParametersAskForIt) {
   Worker f(config);
   f.go(plan_of({{0, 12}, {6, 12}}));
   ASSERT_TRUE(f.done(90.0)) << f.state()->mission.reason;
-  EXPECT_LT(base::distance_m(f.at, {6, 12}), 1.05);
+  EXPECT_LT(base::distance_m(f.at, {6, 12}), 1.2);
 }
 
 /// Stuck on the way to item 1.
@@ -86,7 +86,7 @@ void get_stuck(Worker& f) {
 Config patient(const char* rule) {
   Config config;
   config.behave.unreachable = rule;
-  config.behave.stuck_s = 1.0;
+  config.behave.stuck_s = 3.0;
   config.safety.follow_timeout_s = 10.0;
   return config;
 }
@@ -96,14 +96,14 @@ TEST(Items, OneThatCannotBeReachedIsHandledByRule) {
     Worker f(patient("stop"));
     f.go(plan_of({{0, 10}, {5, 10}}));
     get_stuck(f);
-    f.run(3.0);
+    f.run(5.0);
     EXPECT_EQ(f.execution(), ExecutionState::Blocked);
   }
   {
     Worker f(patient("skip"));
     f.go(plan_of({{0, 10}, {5, 3}}));
     get_stuck(f);
-    f.run(1.6);
+    f.run(4.0);
     EXPECT_EQ(f.state()->mission.current_item, 2);
     f.obeys = true;
     ASSERT_TRUE(f.done(60.0)) << f.state()->mission.reason;
@@ -114,7 +114,7 @@ TEST(Items, OneThatCannotBeReachedIsHandledByRule) {
     Worker f(patient("return"));
     f.go(plan_of({{0, 10}, {5, 10}}));
     get_stuck(f);
-    f.run(1.6);
+    f.run(4.0);
     f.obeys = true;
     f.run(40.0);
     EXPECT_EQ(f.execution(), ExecutionState::Aborted);

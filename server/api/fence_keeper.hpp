@@ -1,0 +1,45 @@
+#pragma once
+// Which fence holds, as the robot is to know it: laid out in its map, and again when that begins or
+// another fence is chosen. Web thread.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "base/snapshot.hpp"
+#include "robot/robot.hpp"
+
+namespace roverd::api {
+
+class FenceKeeper {
+ public:
+  explicit FenceKeeper(robot::Robot& robot) : robot_(robot) {}
+
+  /// From now on. Null: none.
+  void use(std::shared_ptr<const mission::Fence> fence) {
+    fence_ = std::move(fence);
+    due_ = true;
+    lay();
+  }
+  /// Every sample: lays it out when the robot's map has begun, or there was no room before.
+  void look(const base::Snapshot& s) {
+    const std::uint32_t frame = s.frame ? s.frame->id() : 0;
+    if (fence_ && frame != frame_) due_ = true;
+    frame_ = frame;
+    if (due_) lay();
+  }
+  const std::shared_ptr<const mission::Fence>& fence() const noexcept { return fence_; }
+
+ private:
+  void lay() {
+    due_ = !robot_.request(robot::SetFence{robot_.lay_fence(fence_)}, base::Time::max(), {});
+  }
+
+  robot::Robot& robot_;
+  std::shared_ptr<const mission::Fence> fence_;
+  std::uint32_t frame_ = 0;
+  bool due_ = false;
+};
+
+}  // namespace roverd::api

@@ -1,0 +1,97 @@
+#!/usr/bin/env python3
+"""A mission that a killed roverd left behind goes on from its place; its runs, its changed
+parameters and the reports survive."""
+
+import math
+import pathlib
+import signal
+import subprocess
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "harness"))
+from station import BIN, ROOT, Program, Rest, Station, check, run_cases, until  # noqa: E402
+
+METRE_LAT = 1 / 111_360.0
+SOON = {"valid_for_s": 10}
+
+
+def ready(rest):
+    until("the checks are fine", 60, lambda: rest.get("/vehicle/checks")["ready"], 0.2)
+
+
+def position(rest):
+    return rest.get("/vehicle")["position"]
+
+
+def mission_ahead(rest, metres):
+    here = position(rest)
+    heading = math.radians(here["heading_deg"])
+    metre_lon = METRE_LAT / math.cos(math.radians(here["lat"]))
+    points = [{"type": "waypoint",
+               "lat": here["lat"] + m * math.cos(heading) * METRE_LAT,
+               "lon": here["lon"] + m * math.sin(heading) * metre_lon} for m in metres]
+    return rest.do("POST", "/missions", {"name": "ahead", "items": points})["id"]
+
+
+def restarted(station):
+    """Another roverd on the same data, links and simulator."""
+    arguments = list(station.roverd.process.args)
+    station.roverd.stop(signal.SIGKILL)
+    station.roverd = Program(*arguments)
+    station.rest = Rest(station.roverd.wait_line(r"^listening on (http://\S+)")[1])
+    return station.rest
+
+
+def case_resume():
+    """A killed roverd's mission goes on where it was, as another run"""
+    with Station(seed=3) as station:
+        rest = station.rest
+        ready(rest)
+        rest.do("PUT", "/parameters/nav.speed.max_mps", {"value": 0.9})
+        mission = mission_ahead(rest, (3, 6, 9))
+        rest.do("POST", "/execution/load", {"mission_id": mission})
+        rest.do("POST", "/vehicle/arm", SOON)
+        rest.do("POST", "/execution/start", {"mission_id": mission, "revision": 1, **SOON})
+        until("it drives to item 2", 60,
+              lambda: rest.get("/execution")["current_item"] == 2, 0.1)
+        until("and its place is kept", 10, lambda: rest.get("/runs")["items"], 0.1)
+        begin = position(rest)
+        rest = restarted(station)
+        left = until("it is offered", 20, lambda: rest.get("/execution")["left_behind"], 0.1)
+        check(left["mission_id"] == mission and left["item"] >= 2, f"left behind is {left}")
+        check(rest.get("/parameters/nav.speed.max_mps")["value"] == 0.9, "a parameter is lost")
+        ready(rest)
+        status, _, answer = rest.call("POST", "/execution/resume", SOON)
+        check(status == 409 and "armed" in answer["detail"], f"unarmed it answers {answer}")
+        rest.do("POST", "/vehicle/arm", SOON)
+        answer = rest.do("POST", "/execution/resume", SOON)
+        check(answer["state"] == "running" and answer["current_item"] >= 2, f"resumed: {answer}")
+        until("it finishes", 90, lambda: rest.get("/execution")["state"] == "finished", 0.2)
+        end = position(rest)
+        far = math.hypot((end["lat"] - begin["lat"]) / METRE_LAT,
+                         (end["lon"] - begin["lon"]) / METRE_LAT *
+                         math.cos(math.radians(end["lat"])))
+        check(2.0 < far < 8.0, f"it drove {far:.1f} m after the restart")
+        until("both runs are closed", 10,
+              lambda: [r["outcome"] for r in rest.get("/runs")["items"]] ==
+              ["finished", "interrupted"], 0.2)
+        report = rest.get("/runs/2/report")
+        check(report["cross_track"]["rms_m"] < 0.2, f"the report says {report}")
+        table = subprocess.run([BIN / "roverd", "report", "--data", station.scratch / "data",
+                                "1", "2"], capture_output=True, text=True, check=False)
+        check(table.returncode == 0, f"roverd report: {table.stderr}")
+        check("cross-track rms" in table.stdout and "interrupted" in table.stdout, table.stdout)
+        print(table.stdout)
+
+
+def case_report_refusals():
+    """roverd report says what is wrong"""
+    for arguments, cause in (((), "which runs"), (("x",), "no run's number"),
+                             (("--data", "/nowhere", "1"), "there is no database")):
+        done = subprocess.run([BIN / "roverd", "report", *arguments], capture_output=True,
+                              text=True, cwd=ROOT, check=False)
+        check(done.returncode == 2 and cause in done.stderr, f"{arguments}: {done.stderr}")
+
+
+if __name__ == "__main__":
+    sys.exit(run_cases([case_resume, case_report_refusals]))
