@@ -171,6 +171,7 @@ base::Result<void> Robot::Impl::may_drive_mission() const {
 base::Result<void> Robot::Impl::start(const nav::StartAt& at) {
   if (auto ok = may_drive_mission(); !ok) return ok;
   if (auto ok = executor.start(at, pose->at, home_point()); !ok) return ok;
+  straight.reset();
   set_mode(Mode::Auto, "mission started");
   event(Severity::Info, "mission_started",
         "mission \"" + mission->copy.plan.name + "\" revision " +
@@ -181,6 +182,7 @@ base::Result<void> Robot::Impl::start(const nav::StartAt& at) {
 base::Result<void> Robot::Impl::resume() {
   if (auto ok = may_drive_mission(); !ok) return ok;
   if (auto ok = executor.resume(pose->at); !ok) return ok;
+  straight.reset();
   set_mode(Mode::Auto, "mission resumed");
   event(Severity::Info, "mission_resumed", "mission resumed");
   return {};
