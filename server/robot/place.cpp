@@ -226,11 +226,19 @@ base::DriveCommand Robot::Impl::seek_heading() {
 /// While the heading is uncertain, along a leg: the mission's speed, but straight on.
 base::BodyTwist Robot::Impl::straight_first(const base::BodyTwist& wanted) {
   constexpr double kEndNear_m = 1.0;
+  constexpr double kAside_deg = 50.0;  // a target so far aside is not reached straight on
   StraightStart::State state{health.alignment == base::Alignment::Aligned, false,
                              estimator.turned_rad(), estimator.driven_m()};
   const auto target = executor.progress(pose->at).target;
-  state.driving = executor.phase() == nav::TrackPhase::Follow && wanted.linear_mps != 0.0 &&
-                  (!target || base::distance_m(*target, pose->at) > kEndNear_m);
+  bool ahead = true;
+  if (target) {
+    const base::EnuPoint way = *target - pose->at;
+    const double back = wanted.linear_mps < 0.0 ? base::kPi : 0.0;
+    const double bearing = std::atan2(way.north_m, way.east_m) + back;
+    ahead = std::hypot(way.east_m, way.north_m) > kEndNear_m &&
+            std::abs(base::angle_diff_rad(pose->yaw_rad, bearing)) < base::rad_from_deg(kAside_deg);
+  }
+  state.driving = executor.phase() == nav::TrackPhase::Follow && wanted.linear_mps != 0.0 && ahead;
   const auto turn = straight.step(state);
   if (!turn) return wanted;
   speed_reason = "heading_uncertain";
