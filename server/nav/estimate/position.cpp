@@ -19,7 +19,7 @@ constexpr double kApproach_mps = 0.25;  // to a better fix class: slower than th
 constexpr double kFar_m = 25.0;
 constexpr double kDoubtAfter_s = 2.0;
 constexpr double kResetAfter_s = 10.0;
-constexpr double kDoubt_m2ps = 0.01;  // slow enough not to believe a jump of 3 m within 5 s
+constexpr double kDoubt_m2ps = 0.05;  // slow enough not to believe a jump of 3 m within 5 s
 
 bool long_ago(const std::optional<base::WallTime>& utc) noexcept {
   using std::chrono::sys_days, std::chrono::year;
