@@ -90,6 +90,7 @@ struct Context {
 using ContextPtr = std::shared_ptr<Context>;
 
 void add_vehicle_routes(const ContextPtr& context);
+void add_place_routes(const ContextPtr& context);
 void add_execution_routes(const ContextPtr& context);
 void add_mission_routes(const ContextPtr& context);
 void add_operation_routes(const ContextPtr& context);

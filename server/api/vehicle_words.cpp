@@ -29,6 +29,13 @@ Json heading_json(double yaw_rad) {
   return heading_deg >= 360.0 ? 0.0 : heading_deg;
 }
 
+/// An axis has no front: [0, 180).
+Json axis_json(double yaw_rad) {
+  const double heading_deg = std::fmod(base::heading_from_yaw(yaw_rad), 180.0);
+  const double shown_deg = std::round(heading_deg * kPlaces2) / kPlaces2;
+  return shown_deg >= 180.0 ? 0.0 : shown_deg;
+}
+
 Json degrees(double rad) {
   return rounded(base::deg_from_rad(rad), kPlaces2);
 }
@@ -60,16 +67,22 @@ Json position_json(const std::optional<base::Pose>& pose, base::Time now) {
               {"yaw_rate_dps", nullptr},
               {"source", nullptr},
               {"horizontal_accuracy_m", nullptr},
-              {"heading_accuracy_deg", nullptr}};
+              {"heading_accuracy_deg", nullptr},
+              {"ellipse", nullptr}};
   set_position(out, pose ? std::optional(pose->global) : std::nullopt);
   set_age(out, stamp_of(pose), now, StaleAfter::kPosition_s);
   if (!pose) return out;
   out["alt_m"] = rounded(pose->alt_msl_m, kPlaces3);
-  out["heading_deg"] = heading_json(pose->yaw_rad);
+  if (pose->heading_known) {
+    out["heading_deg"] = heading_json(pose->yaw_rad);
+    out["heading_accuracy_deg"] = degrees(pose->yaw_sigma_rad);
+  }
   out["speed_mps"] = rounded(pose->speed_mps, kPlaces3);
   out["yaw_rate_dps"] = degrees(pose->yaw_rate_radps);
   out["horizontal_accuracy_m"] = rounded(pose->horizontal_sigma_m, kPlaces3);
-  out["heading_accuracy_deg"] = degrees(pose->yaw_sigma_rad);
+  out["ellipse"] = {{"major_m", rounded(pose->ellipse.major_m, kPlaces3)},
+                    {"minor_m", rounded(pose->ellipse.minor_m, kPlaces3)},
+                    {"orientation_deg", axis_json(pose->ellipse.major_yaw_rad)}};
   out["source"] = pose->source;
   return out;
 }
@@ -269,6 +282,7 @@ Json vehicle_json(const base::Snapshot& s, const std::string& name, base::Time n
           // A compass that reads too far clockwise has a smaller yaw than the truth.
           {"compass_bias_deg", s.pose ? degrees(-s.estimator.compass_bias_rad) : Json(nullptr)},
           {"pull_1pm", s.pose ? rounded(s.estimator.pull_1pm, 1e4) : Json(nullptr)},
+          {"estimator", estimator_json(s)},
           {"ready_to_arm", s.ready_to_arm}};
 }
 

@@ -52,6 +52,8 @@ struct Profile {
 };
 
 Json vehicle_json(const base::Snapshot& snapshot, const std::string& name, base::Time now);
+/// How well the robot knows where it is: a part of vehicle_json.
+Json estimator_json(const base::Snapshot& snapshot);
 /// @param snapshot the last one that the trail has taken
 Json trail_json(const Trail& trail, const base::Snapshot& snapshot);
 /// Every receiver's satellites, newest word of each.

@@ -122,6 +122,7 @@ base::Result<void> Robot::Impl::start(const nav::StartAt& at) {
   if (auto ok = may_drive_mission(); !ok) return ok;
   if (auto ok = mission_inside(at); !ok) return ok;
   if (auto ok = executor.start(at, pose->at, home_point()); !ok) return ok;
+  straight.reset();
   set_mode(Mode::Auto, "mission started");
   event(Severity::Info, "mission_started",
         "mission \"" + mission->copy.plan.name + "\" revision " +
@@ -132,6 +133,7 @@ base::Result<void> Robot::Impl::start(const nav::StartAt& at) {
 base::Result<void> Robot::Impl::resume() {
   if (auto ok = may_drive_mission(); !ok) return ok;
   if (auto ok = executor.resume(pose->at); !ok) return ok;
+  straight.reset();
   set_mode(Mode::Auto, "mission resumed");
   event(Severity::Info, "mission_resumed", "mission resumed");
   return {};

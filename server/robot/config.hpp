@@ -42,6 +42,7 @@ struct SafetyParams {
   double bumper_timeout_s = 1.0;
   double gnss_slow_s = 2.0;
   double gnss_hold_s = 6.0;
+  double gnss_free_m = 35.0;
   double sigma_slow_m = 2.0;
   double sigma_hold_m = 3.0;
   double sigma_hold_s = 2.0;
@@ -64,7 +65,9 @@ void fields(V& v, SafetyParams& p) {
   v("bumper_timeout_s", p.bumper_timeout_s, 0.1, 10.0,
     "a bumper that was heard once and then not for so long: hold");
   v("gnss_slow_s", p.gnss_slow_s, 0.5, 60.0, "no usable fix for so long: creep");
-  v("gnss_hold_s", p.gnss_hold_s, 1.0, 600.0, "no usable fix for so long: hold");
+  v("gnss_hold_s", p.gnss_hold_s, 1.0, 600.0, "no usable fix for so long, and no gyro: hold");
+  v("gnss_free_m", p.gnss_free_m, 0.0, 10000.0,
+    "with a gyro the robot drives on without a fix for so many metres: then hold");
   v("sigma_slow_m", p.sigma_slow_m, 0.02, 50.0, "position less certain than this: creep");
   v("sigma_hold_m", p.sigma_hold_m, 0.05, 50.0, "position less certain than this: hold");
   v("sigma_hold_s", p.sigma_hold_s, 0.1, 60.0, "for so long");

@@ -31,7 +31,8 @@ Facts Robot::Impl::facts() const {
           .base_left = base_left,
           .commands_lost = follow.lost(),
           .not_following = follow.failing(),
-          .sigma_bad_since = sigma_bad_since};
+          .sigma_bad_since = sigma_bad_since,
+          .estimate = health};
 }
 
 void Robot::Impl::judge() {
@@ -171,6 +172,7 @@ base::DriveCommand Robot::Impl::drive_by_hand() {
 base::DriveCommand Robot::Impl::drive_mission() {
   if (!executor.running() || !pose) return {{}, true};
   driver = Driver::Autonomy;
+  if (!pose->heading_known) return seek_heading();
   executor.go_on(pose->at);
   const nav::TrackOutput out = executor.step(vehicle(), limit_mps(), home_point(), dt_s);
   speed_reason = std::string(nav::to_string(out.reason));
@@ -179,7 +181,7 @@ base::DriveCommand Robot::Impl::drive_mission() {
     driver = Driver::None;
     return {{}, true};
   }
-  return {out.command, true};
+  return {straight_first(out.command), true};
 }
 
 void Robot::Impl::tell_notices() {
@@ -241,12 +243,6 @@ bool Robot::Impl::within_reach(base::LatLon at) const {
 
 /// Changes that an operator wants to find later.
 void Robot::Impl::watch_changes() {
-  const std::uint64_t resets = estimator.health().resets;
-  if (resets != resets_seen) {
-    resets_seen = resets;
-    event(Severity::Warning, "estimate_reset",
-          "position or heading was set anew: the sensors contradicted it for too long");
-  }
   const base::FixType fix = world.gnss ? world.gnss->fix : base::FixType::None;
   if (fix != fix_seen) {
     fix_seen = fix;

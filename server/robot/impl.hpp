@@ -22,6 +22,7 @@
 // the last word. The radio's take-over keeps the mode and what it does; it goes on from the same
 // place when control returns.
 
+#include <array>
 #include <atomic>
 #include <memory>
 #include <string>
@@ -43,6 +44,7 @@
 #include "robot/outbox.hpp"
 #include "robot/radio_keys.hpp"
 #include "robot/safety.hpp"
+#include "robot/straight_start.hpp"
 #include "robot/world.hpp"
 
 namespace roverd::robot {
@@ -123,7 +125,13 @@ struct Robot::Impl {
   base::DriveCommand sent;
   std::string speed_reason;
   base::LoopHealth loop;
+  base::EstimatorHealth health;  ///< of the estimator, at this tick
+  StraightStart straight;
   std::uint64_t resets_seen = 0;
+  bool gyro_seen = false;
+  bool anchored = false;
+  base::Alignment alignment_seen = base::Alignment::Unknown;
+  std::array<bool, 4> refusal_told{};
   base::FixType fix_told = base::FixType::None;
   base::FixType fix_seen = base::FixType::None;
   Time fix_seen_since{};
@@ -152,6 +160,9 @@ struct Robot::Impl {
   base::Result<void> handle(const StopMission&);
   base::Result<void> handle(const SkipItem& c);
   base::Result<void> handle(const SetHome& c);
+  base::Result<void> handle(const SetPose& c);
+  base::Result<void> handle(const SetAnchor& c);
+  base::Result<void> handle(const DropAnchor&);
   base::Result<void> handle(const Drive& c);
   base::Result<void> handle(const LoadMission& c);
   base::Result<void> handle(const ReviseMission& c);
@@ -219,6 +230,14 @@ struct Robot::Impl {
   void watch_frame();
   void watch_base();
   base::BodyTwist possible(const base::BodyTwist& told) const noexcept;
+
+  // place.cpp
+  base::Result<void> may_be_placed() const;
+  base::Result<base::EnuPoint> anchor_point(const SetAnchor& c) const;
+  void watch_estimate();
+  void watch_refusals();
+  base::DriveCommand seek_heading();
+  base::BodyTwist straight_first(const base::BodyTwist& wanted);
 
   // radio.cpp
   void press(const base::RadioState& frame);

@@ -47,7 +47,8 @@ bool Robot::Impl::publish() {
   s->home = home;
   s->gnss = world.gnss;
   s->gnss_velocity = world.gnss_velocity;
-  s->attitude = world.attitude;
+  s->attitude = estimator.attitude(now);
+  if (!s->attitude) s->attitude = world.attitude;
   s->satellites = world.satellites;
   s->base = world.base;
   s->motion = world.motion;
@@ -68,7 +69,7 @@ bool Robot::Impl::publish() {
   s->ready_to_arm = std::none_of(checks.begin(), checks.end(), [](const base::Check& c) {
     return !c.ok && c.severity == base::Severity::Error;
   });
-  s->estimator = estimator.health();
+  s->estimator = health;
   s->loop = loop;
   bool all = true;
   if (mission_unpublished) {

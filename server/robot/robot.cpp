@@ -242,6 +242,7 @@ void Robot::tick(Time now, base::WallTime wall, base::Duration lateness) noexcep
     r.take_estop();
     r.take_commands();
     r.take_measurements();
+    r.watch_estimate();
     r.watch_changes();
     r.watch_frame();
     r.act_on_radio();

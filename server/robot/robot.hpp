@@ -102,6 +102,19 @@ struct SkipItem {
 struct SetHome {
   std::optional<base::LatLon> at;  ///< empty: here
 };
+/// Where the robot stands, or which way it points, or both. Conflict while it moves.
+struct SetPose {
+  std::optional<base::LatLon> at;
+  std::optional<base::EnuPoint> local;  ///< in the robot's frame, if `at` is empty
+  std::optional<double> heading_deg;    ///< compass, finite
+};
+/// The robot stands at a known point: the receiver's positions are moved there for this session, or
+/// until the fix class changes. Conflict while it moves, or too far away.
+struct SetAnchor {
+  std::optional<base::LatLon> at;
+  std::optional<int> item;  ///< of the loaded mission, if `at` is empty; from 1
+};
+struct DropAnchor {};
 /// Teleoperation; no answer is given. Void after 0.5 s without a newer one.
 struct Drive {
   base::BodyTwist twist;
@@ -140,8 +153,8 @@ struct ReviseMission {
 
 using Command =
     std::variant<Arm, Disarm, SetMode, Estop, ResetEstop, StartMission, PauseMission, ResumeMission,
-                 StopMission, SkipItem, SetHome, Drive, LoadMission, ReviseMission, GoTo, MoveBy,
-                 SetTarget, SetParameter, SetFence, ResumeAt>;
+                 StopMission, SkipItem, SetHome, SetPose, SetAnchor, DropAnchor, Drive, LoadMission,
+                 ReviseMission, GoTo, MoveBy, SetTarget, SetParameter, SetFence, ResumeAt>;
 
 /// Called with what the robot *did*. Runs on whatever thread drains replies().
 using Reply = std::function<void(base::Result<void>)>;

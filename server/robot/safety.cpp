@@ -145,11 +145,10 @@ class Assessor {
       tell(Response::Hold, "pose_unknown", "the position is not known");
       return;
     }
-    const double age_s = f_.last_position ? base::seconds(now_ - *f_.last_position) : 1e9;
-    if (age_s > p_.gnss_slow_s) {
-      tell(age_s > p_.gnss_hold_s ? Response::Hold : Response::Slow, "gnss_lost",
-           "no usable position from GNSS for " + number(age_s, "%.0f s"));
+    if (f_.estimate.receivers_disagree) {
+      tell(Response::Hold, "gnss_disagree", "two receivers say different places");
     }
+    without_gnss(tell);
     const double sigma_m = f_.pose->horizontal_sigma_m;
     if (sigma_m > p_.sigma_slow_m) {
       const bool hold =
@@ -157,6 +156,22 @@ class Assessor {
       tell(hold ? Response::Hold : Response::Slow, "pose_uncertain",
            "the position is uncertain by " + number(sigma_m, "%.1f m"));
     }
+  }
+
+  /// With gyro and odometry the way counts; without a gyro the heading is soon worth little.
+  template <class Tell>
+  void without_gnss(const Tell& tell) {
+    const double age_s = f_.last_position ? base::seconds(now_ - *f_.last_position) : 1e9;
+    if (age_s <= p_.gnss_slow_s) return;
+    const double way_m = f_.estimate.free_m;
+    if (f_.estimate.gyro && f_.last_position) {
+      tell(way_m > p_.gnss_free_m ? Response::Hold : Response::Warn, "gnss_lost",
+           "no position from GNSS for " + number(way_m, "%.0f of ") +
+               number(p_.gnss_free_m, "%.0f m"));
+      return;
+    }
+    tell(age_s > p_.gnss_hold_s ? Response::Hold : Response::Slow, "gnss_lost",
+         "no usable position from GNSS for " + number(age_s, "%.0f s"));
   }
 
   void battery() {
@@ -180,8 +195,15 @@ base::Check check(const char* id, bool ok, Severity severity, std::string detail
   return {id, ok, severity, std::move(detail)};
 }
 
-base::Check check_gnss(const World& w, const ArmingParams& p, Time now) {
+base::Check check_gnss(const Facts& f, const SafetyParams& safety, const ArmingParams& p,
+                       Time now) {
   const char* id = "gnss_fix";
+  const World& w = f.world;
+  if (f.estimate.placed && f.estimate.free_m < safety.gnss_free_m) {
+    return check(
+        id, true, Severity::Error,
+        "none; the operator said where the robot was " + number(f.estimate.free_m, "%.0f m ago"));
+  }
   if (!w.gnss) return check(id, false, Severity::Error, "no GNSS receiver has been heard");
   const std::string fix(base::to_string(w.gnss->fix));
   if (older(w.gnss->stamp, 2.0, now)) {
@@ -313,7 +335,7 @@ std::vector<base::Check> arming_checks(const Facts& f, const SafetyParams& safet
   const World& w = f.world;
   std::vector<base::Check> all;
   all.reserve(10);
-  all.push_back(check_gnss(w, p, now));
+  all.push_back(check_gnss(f, safety, p, now));
   all.push_back(check_accuracy(f, p));
   all.push_back(check_heading(f, p));
   const bool lost = base_lost(w, safety, now);

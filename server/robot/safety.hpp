@@ -11,7 +11,9 @@
 // | base leaves our control by itself      | at once            | Hold                            |
 // | base does not do what it is told       | 0.3 s (parameter)  | Hold                            |
 // | radio silent, frozen, or reported lost | 0.5 s              | Hold                           |
-// | no usable fix (AUTO)                   | 2 s, 6 s           | Slow, Hold                     |
+// | no usable fix (AUTO), a gyro           | 2 s, 35 m driven   | Warn, Hold                     |
+// | no usable fix (AUTO), no gyro          | 2 s, 6 s           | Slow, Hold                     |
+// | two receivers disagree (AUTO)          | at once            | Hold                           |
 // | position uncertain (AUTO)              | at once, 2 s worse | Slow, Hold                     |
 // | battery low, fault                     | at once            | Warn, Hold                     |
 // Hold stops, goes to mode HOLD and stays there until an operator goes on. Only the radio's
@@ -42,6 +44,7 @@ struct Facts {
   bool commands_lost = false;             ///< see FollowWatch
   bool not_following = false;             ///< commands_lost, and told to move now
   std::optional<Time> sigma_bad_since;
+  const base::EstimatorHealth& estimate;
 };
 
 struct Assessment {

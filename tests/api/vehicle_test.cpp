@@ -137,6 +137,43 @@ TEST_F(VehicleApi, HomeIsHereOrThere) {
   EXPECT_EQ(call("PUT", "/vehicle/home", Json{{"lat", 91}, {"lon", 26.5}}).status, 422u);
 }
 
+TEST_F(VehicleApi, AnOperatorSaysWhereTheRobotStandsAndAtWhichPoint) {
+  until_ready();
+  const auto known = call("GET", "/vehicle").body;
+  EXPECT_TRUE(known["estimator"]["anchor"].is_null());
+  EXPECT_TRUE(known["position"]["ellipse"]["major_m"].is_number());
+  // Given a point a metre north of where the receiver says that the robot stands,
+  const double lat = known["position"]["lat"].get<double>() + 1.0 / 111'360.0;
+  const Json point = {{"lat", lat}, {"lon", known["position"]["lon"]}};
+  const auto anchored = call("POST", "/vehicle/anchor", point);
+  ASSERT_EQ(anchored.status, 200u);
+  EXPECT_NEAR(anchored.body["estimator"]["anchor"]["north_m"].get<double>(), 1.0, 0.05);
+  EXPECT_NEAR(anchored.body["position"]["lat"].get<double>(), lat, 1e-6);
+  EXPECT_EQ(anchored.body["estimator"]["last_reset"]["what"], "anchor");
+  EXPECT_TRUE(call("DELETE", "/vehicle/anchor").body["estimator"]["anchor"].is_null());
+  EXPECT_EQ(call("DELETE", "/vehicle/anchor").status, 409u);
+  // A point that is far away, an item of no mission, halves and doubles are refused.
+  EXPECT_EQ(call("POST", "/vehicle/anchor", Json{{"lat", lat + 0.01}, {"lon", 26.7289}}).status,
+            409u);
+  EXPECT_EQ(call("POST", "/vehicle/anchor", Json{{"item", 1}}).status, 409u);
+  EXPECT_EQ(call("POST", "/vehicle/anchor", Json::object()).body["errors"][0]["pointer"], "/item");
+  EXPECT_EQ(call("POST", "/vehicle/anchor", Json{{"lat", lat}}).body["errors"][0]["pointer"],
+            "/lon");
+  // A pose: which way it points, where it stands on the map, but not both ways of saying where.
+  const auto turned = call("PUT", "/vehicle/pose", Json{{"heading_deg", 123}});
+  ASSERT_EQ(turned.status, 200u);
+  EXPECT_NEAR(turned.body["position"]["heading_deg"].get<double>(), 123.0, 1.0);
+  EXPECT_EQ(turned.body["estimator"]["last_reset"]["what"], "pose");
+  EXPECT_EQ(call("PUT", "/vehicle/pose", Json{{"east_m", 1}, {"north_m", 2}}).status, 200u);
+  const Json both = {{"lat", lat}, {"lon", 26.7289}, {"east_m", 1}, {"north_m", 2}};
+  EXPECT_EQ(call("PUT", "/vehicle/pose", both).status, 422u);
+  EXPECT_EQ(call("PUT", "/vehicle/pose", Json::object()).body["errors"][0]["pointer"],
+            "/heading_deg");
+  EXPECT_EQ(call("PUT", "/vehicle/pose", Json{{"east_m", 1}}).body["errors"][0]["pointer"],
+            "/north_m");
+  EXPECT_EQ(call("PUT", "/vehicle/pose", Json{{"heading_deg", "north"}}).status, 422u);
+}
+
 TEST_F(VehicleApi, AHangingLoopIsReportedAndLateCommandsAreNotCarriedOut) {
   // Given a control loop that hangs,
   until_ready();

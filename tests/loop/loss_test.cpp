@@ -9,9 +9,10 @@ namespace {
 class Loss : public testing::TestWithParam<std::uint64_t> {
  protected:
   /// Somewhere on a 20 m line northwards.
-  std::unique_ptr<Rig> driving() {
+  std::unique_ptr<Rig> driving(bool gyro = true) {
     RigOptions o;
     o.seed = GetParam();
+    o.plant.imu.fitted = gyro;
     auto rig = std::make_unique<Rig>(o);
     rig->arm_and_start(rig->plan_of({{0, 20}}));
     EXPECT_TRUE(rig->run_until([&] { return rig->truth().driven_m > 5.0; }, 60.0));
@@ -143,8 +144,8 @@ TEST_P(Loss, OneFrameInTwentyMayGetLost) {
   EXPECT_LT(rig.distance_to_m({6, 6}), 0.3);
 }
 
-TEST_P(Loss, AShortOutageOfGnssIsDrivenThroughSlowlyALongOneStops) {
-  auto rig = driving();
+TEST_P(Loss, WithoutAGyroAShortOutageOfGnssIsDrivenThroughSlowlyALongOneStops) {
+  auto rig = driving(false);
   rig->fault([](sim::Faults& f) { f.gnss_outage = true; });
   rig->run(4.0);
   EXPECT_EQ(rig->execution(), ExecutionState::Running);
@@ -239,8 +240,51 @@ TEST_P(Loss, ABaseThatIsSwitchedOffAndOnHoldsTheMission) {
   }
 }
 
-TEST_P(Loss, WhatIsWrongWithThePositionStaysListedWhileTheRobotHolds) {
+TEST_P(Loss, WithAGyroItDrivesOnWithoutGnssAsFarAsItMay) {
+  RigOptions o;
+  o.seed = GetParam();
+  Rig rig(o);
+  rig.arm_and_start(rig.plan_of({{0, 25}, {0, 50}, {0, 75}}));
+  ASSERT_TRUE(rig.run_until([&] { return rig.truth().driven_m > 5.0; }, 60.0));
+  const double sigma_m = rig.state()->pose->horizontal_sigma_m;
+  rig.fault([](sim::Faults& f) { f.gnss_outage = true; });
+  const double from_m = rig.truth().driven_m;
+  ASSERT_TRUE(rig.run_until([&] { return rig.truth().driven_m > from_m + 30.0; }, 90.0));
+  EXPECT_EQ(rig.execution(), ExecutionState::Running);
+  EXPECT_TRUE(rig.has_condition("gnss_lost"));
+  EXPECT_EQ(rig.state()->pose->source, "odometry");
+  // It knows less and less, says so, and is not farther off than that.
+  EXPECT_GT(rig.state()->pose->horizontal_sigma_m, 3.0 * sigma_m);
+  EXPECT_LT(rig.position_error_m(), 3.0 * rig.state()->pose->horizontal_sigma_m);
+  EXPECT_LT(rig.position_error_m(), 0.6);
+  rig.run(20.0);
+  expect_paused(rig, "gnss_lost");
+  EXPECT_NEAR(rig.truth().driven_m - from_m, 35.0, 2.0);
+  EXPECT_FALSE(rig.ask(robot::ResumeMission{}));
+  rig.fault([](sim::Faults&) {});
+  rig.run(3.0);
+  EXPECT_TRUE(rig.ask(robot::ResumeMission{}));
+}
+
+TEST_P(Loss, AGyroThatFallsSilentIsReplacedByTheTracksAndComesBack) {
   auto rig = driving();
+  EXPECT_TRUE(rig->state()->estimator.gyro);
+  rig->fault([](sim::Faults& f) { f.imu_silent = true; });
+  rig->run(3.0);
+  EXPECT_FALSE(rig->state()->estimator.gyro);
+  EXPECT_TRUE(rig->has_event("gyro_lost"));
+  EXPECT_LT(std::abs(rig->yaw_error_deg()), 2.0);
+  rig->fault([](sim::Faults&) {});
+  rig->events.clear();
+  rig->run(3.0);
+  EXPECT_TRUE(rig->state()->estimator.gyro);
+  EXPECT_TRUE(rig->has_event("gyro_back"));
+  ASSERT_TRUE(rig->finish(60.0)) << rig->state()->mission.reason;
+  EXPECT_LT(rig->farthest_from_line_m({0, 0}, {0, 20}), 0.3);
+}
+
+TEST_P(Loss, WhatIsWrongWithThePositionStaysListedWhileTheRobotHolds) {
+  auto rig = driving(false);
   rig->fault([](sim::Faults& f) { f.gnss_outage = true; });
   rig->run(12.0);
   expect_paused(*rig, "gnss_lost");

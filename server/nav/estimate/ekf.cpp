@@ -13,19 +13,21 @@ using base::rad_from_deg;
 
 // Densities per √s, see the header. Yaw: without a gyro the turn rate is the tracks', and slip
 // varies by some percent from moment to moment.
-constexpr double kPositionNoise_m = 0.012;
+constexpr double kPositionNoise_m = 0.02;
+constexpr double kPositionNoiseGyro_m = 0.01;
 constexpr double kPositionNoisePerTurn_m = 0.05;
 constexpr double kStandingNoise_m = 0.001;
 const double kYawNoise_rad = rad_from_deg(0.3);
 const double kYawNoisePerSpeed_rad = rad_from_deg(0.8);
 constexpr double kYawNoisePerTurn = 0.06;
-const double kGyroNoise_rad = rad_from_deg(0.06);
+const double kGyroNoise_rad = rad_from_deg(0.04);
 constexpr double kGyroNoisePerTurn = 0.006;  // scale of the gyro, lean of its axis
-const double kGyroBiasNoise_radps = rad_from_deg(0.003);
+const double kGyroBiasNoise_radps = rad_from_deg(0.002);
 const double kBiasNoise_rad = rad_from_deg(0.7);
 const double kBiasNoiseStanding_rad = rad_from_deg(0.1);
 const double kBiasNoisePivot_rad = rad_from_deg(6.0);
-constexpr double kScaleNoise = 0.002;
+constexpr double kScaleNoise = 0.006;
+constexpr double kScaleNoiseGyro = 0.0015;
 constexpr double kYawScaleNoise = 0.02;
 constexpr double kPullNoise_1pm = 0.004;
 constexpr double kCoastNoise_m = 0.3;
@@ -67,7 +69,9 @@ double turn(const Belief& b, const Travel& t, StateMatrix& F) noexcept {
 void add_motion_noise(Belief& b, const Travel& t, double turned_rad) noexcept {
   const double turn_rate = std::abs(turned_rad) / t.dt_s;
   const double speed = std::abs(t.ahead_m) / t.dt_s;
-  const double place = kPositionNoise_m + kPositionNoisePerTurn_m * turn_rate;
+  // With a gyro, what the heading lacks is not asked of place and scale.
+  const double place =
+      (t.gyro_rad ? kPositionNoiseGyro_m : kPositionNoise_m) + kPositionNoisePerTurn_m * turn_rate;
   add_noise(b, kEast, place, t.dt_s);
   add_noise(b, kNorth, place, t.dt_s);
   const double yaw = t.gyro_rad ? kGyroNoise_rad + kGyroNoisePerTurn * turn_rate
@@ -77,7 +81,7 @@ void add_motion_noise(Belief& b, const Travel& t, double turned_rad) noexcept {
   // Motor currents of a turn on the spot move a compass by many degrees.
   const bool pivot = turn_rate > 0.3 && speed < 0.15;
   add_noise(b, kBias, pivot ? kBiasNoisePivot_rad : kBiasNoise_rad, t.dt_s);
-  add_noise(b, kScale, kScaleNoise * std::min(1.0, speed), t.dt_s);
+  add_noise(b, kScale, (t.gyro_rad ? kScaleNoiseGyro : kScaleNoise) * std::min(1.0, speed), t.dt_s);
   add_noise(b, kYawScale, kYawScaleNoise * std::min(1.0, turn_rate), t.dt_s);
   add_noise(b, kPull, kPullNoise_1pm * std::min(1.0, speed), t.dt_s);
 }

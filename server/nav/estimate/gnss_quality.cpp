@@ -21,11 +21,11 @@ std::optional<Row> row_of(FixType fix) noexcept {
     case FixType::RtkFixed:
       return Row{0.015, 0.015, 0.0, 0.05};
     case FixType::RtkFloat:
-      return Row{0.1, 0.35, 60.0, 0.07};
+      return Row{0.1, 0.35, 60.0, 0.05};
     case FixType::Differential:
-      return Row{0.3, 0.8, 100.0, 0.07};
+      return Row{0.3, 0.8, 100.0, 0.05};
     case FixType::Single:
-      return Row{0.5, 1.2, 60.0, 0.10};
+      return Row{0.5, 1.2, 60.0, 0.055};
     case FixType::None:
     case FixType::Unknown:
     case FixType::Estimated:
@@ -35,6 +35,7 @@ std::optional<Row> row_of(FixType fix) noexcept {
 }
 
 constexpr double kWhitePart = 0.25;
+constexpr double kSlowPart = 0.968;  // the squares of both add up to one
 constexpr double kUnsettled_m = 0.10;
 
 std::optional<double> usable(std::optional<double> sigma_m) noexcept {
@@ -75,7 +76,7 @@ tl::expected<GnssQuality, NoQuality> gnss_quality(const base::GnssFix& fix, bool
   if (row->tau_s > 0.0) {
     q.sigma_east_m *= kWhitePart;
     q.sigma_north_m *= kWhitePart;
-    q.drift = {std::max(east_m, north_m) * limits.drift_scale, row->tau_s};
+    q.drift = {std::max(east_m, north_m) * kSlowPart * limits.drift_scale, row->tau_s};
   }
   return q;
 }

@@ -32,9 +32,9 @@ using NoQuality = std::optional<base::Refusal>;
 /// times hdop (above 1). It is white only in part: the rest wanders within a minute.
 /// | class     | least   | typical | white | drift | tau   |
 /// | rtk_fixed | 0.015 m | 0.015 m | all   | none  |       |
-/// | rtk_float | 0.1 m   | 0.35 m  | 1/4   | all   | 60 s  |
-/// | dgps      | 0.3 m   | 0.8 m   | 1/4   | all   | 100 s |
-/// | gps       | 0.5 m   | 1.2 m   | 1/4   | all   | 60 s  |
+/// | rtk_float | 0.1 m   | 0.35 m  | 1/4   | 0.968 | 60 s  |
+/// | dgps      | 0.3 m   | 0.8 m   | 1/4   | 0.968 | 100 s |
+/// | gps       | 0.5 m   | 1.2 m   | 1/4   | 0.968 | 60 s  |
 /// Sources: D. L. Wilson, GPS error correlation; Sensors 2020, 20(21) 6050; limits as PX4's.
 /// @param settled false during the first seconds of a new RTK fix, which may still be a wrong one.
 tl::expected<GnssQuality, NoQuality> gnss_quality(const base::GnssFix& fix, bool settled,

@@ -36,18 +36,18 @@ TEST(GnssQuality, MostOfTheErrorOfAReceiverWithoutRtkIsSlow) {
   base::GnssFix fix = fix_of(base::FixType::Single);
   fix.sigma_east_m = fix.sigma_north_m = 0.8;
   const auto q = gnss_quality(fix, true, {});
-  EXPECT_DOUBLE_EQ(q->drift.sigma_m, 0.8);
+  EXPECT_NEAR(q->drift.sigma_m, 0.8, 0.03);
   EXPECT_DOUBLE_EQ(q->sigma_east_m, 0.2);
   fix.sigma_east_m = fix.sigma_north_m = 0.01;  // no single fix is so good
-  EXPECT_DOUBLE_EQ(gnss_quality(fix, true, {})->drift.sigma_m, 0.5);
+  EXPECT_DOUBLE_EQ(gnss_quality(fix, true, {})->drift.sigma_m, 0.5 * 0.968);
 }
 
 TEST(GnssQuality, ScalesByHdopWhereTheReceiverTellsNoMore) {
   base::GnssFix fix = fix_of(base::FixType::Single);
   fix.hdop = 2.0;
-  EXPECT_DOUBLE_EQ(gnss_quality(fix, true, {})->drift.sigma_m, 2.4);
+  EXPECT_DOUBLE_EQ(gnss_quality(fix, true, {})->drift.sigma_m, 2.4 * 0.968);
   fix.sigma_east_m = fix.sigma_north_m = 0.8;
-  EXPECT_DOUBLE_EQ(gnss_quality(fix, true, {})->drift.sigma_m, 0.8);
+  EXPECT_DOUBLE_EQ(gnss_quality(fix, true, {})->drift.sigma_m, 0.8 * 0.968);
 }
 
 TEST(GnssQuality, WhatIsNoFixIsNotUsedAndNotCounted) {

@@ -30,6 +30,8 @@ class Drive {
   bool gnss = true;
   bool compass = true;
   bool tracks = true;
+  bool gyro = false;
+  double gyro_bias_radps = 0.0;
   double offset_east_m = 0.0;
   double noise_m = 0.0;
   Estimator estimator;
@@ -57,6 +59,15 @@ class Drive {
     east_m += speed_mps * dt * std::cos(middle);
     north_m += speed_mps * dt * std::sin(middle);
     yaw_rad = base::wrap_rad(yaw_rad + rate_radps * dt);
+    if (gyro) {
+      for (const int ms : {10, 0}) {
+        base::Inertial inertial;
+        inertial.stamp = now_ - std::chrono::milliseconds(ms);
+        inertial.rate_radps = base::BodyVector{0.0, 0.0, rate_radps + gyro_bias_radps};
+        inertial.accel_mps2 = base::BodyVector{0.0, speed_mps * rate_radps, 9.81};
+        estimator.take(inertial, now_);
+      }
+    }
     if (tracks) {
       const double ahead = speed_mps / slip * dt;
       const double half = 0.5 * params_.track_width_m * rate_radps / yaw_scale * dt;

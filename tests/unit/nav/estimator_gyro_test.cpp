@@ -1,0 +1,246 @@
+// The estimator with a gyro: its bias, its silence, turns, standing, and what the operator tells.
+
+#include <cmath>
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include "base/angle.hpp"
+#include "rails.hpp"
+
+namespace roverd::nav {
+namespace {
+
+using base::Alignment;
+using base::rad_from_deg;
+
+Drive with_gyro(double bias_dps = 0.3) {
+  Drive d;
+  d.gyro = true;
+  d.gyro_bias_radps = rad_from_deg(bias_dps);
+  return d;
+}
+
+TEST(EstimatorGyro, LearnsTheGyrosBiasAtRestAndHoldsTheHeading) {
+  for (const double bias_dps : {-1.0, 0.3, 1.0}) {
+    Drive d = with_gyro(bias_dps);
+    d.run(15.0);
+    const auto health = d.estimator.health();
+    EXPECT_TRUE(health.gyro);
+    EXPECT_NEAR(base::deg_from_rad(health.gyro_bias_radps.value()), bias_dps, 0.02);
+    const double yaw = d.pose()->yaw_rad;
+    d.run(600.0);
+    EXPECT_LT(std::abs(base::angle_diff_rad(yaw, d.pose()->yaw_rad)), rad_from_deg(0.1));
+    EXPECT_EQ(d.pose()->yaw_rate_radps, 0.0);
+  }
+}
+
+TEST(EstimatorGyro, TracksThatTurnLessThanTheySayDoNotMislead) {
+  // Given tracks of which half of the turn is lost, which nobody told the estimator,
+  Drive d = with_gyro();
+  d.yaw_scale = 0.5;
+  d.run(10.0);
+  d.speed_mps = 0.6;
+  d.run(8.0);
+  d.gnss = d.compass = false;
+  // when it turns without any help from outside,
+  d.speed_mps = 0.0;
+  d.rate_radps = 0.5;
+  d.run(6.0);
+  // then the gyro knows, and what the tracks are worth was learned by the way.
+  EXPECT_LT(std::abs(d.yaw_error_deg()), 1.0);
+  EXPECT_NEAR(d.estimator.yaw_scale(), 0.5, 0.05);
+}
+
+TEST(EstimatorGyro, ChangesToTheTracksWhenTheGyroFallsSilentAndBack) {
+  Drive d = with_gyro();
+  d.run(10.0);
+  for (int i = 0; i < 4; ++i) {
+    d.speed_mps = 0.6;
+    d.rate_radps = i % 2 == 0 ? 0.3 : -0.3;
+    d.run(4.0);
+  }
+  d.gyro = false;
+  d.run(0.2);
+  EXPECT_FALSE(d.estimator.gyro());
+  d.run(4.0);
+  EXPECT_LT(std::abs(d.yaw_error_deg()), 2.0);
+  d.gyro = true;
+  d.run(0.2);
+  EXPECT_TRUE(d.estimator.gyro());
+  d.run(4.0);
+  EXPECT_LT(std::abs(d.yaw_error_deg()), 1.0);
+}
+
+TEST(EstimatorGyro, ARobotThatIsTurnedByHandKnowsIt) {
+  Drive d = with_gyro();
+  d.run(5.0);
+  d.speed_mps = 0.6;
+  d.run(8.0);
+  d.speed_mps = 0.0;
+  d.compass = false;
+  d.run(2.0);
+  d.tracks = false;  // they stand while the robot is turned: tell so by hand
+  const double before = d.yaw_rad;
+  d.rate_radps = 0.4;
+  for (int i = 0; i < 100; ++i) {
+    d.tick();
+    d.estimator.take(base::WheelTravel{d.now(), 0.0, 0.0}, d.now());
+  }
+  EXPECT_GT(std::abs(base::angle_diff_rad(before, d.yaw_rad)), 0.7);
+  EXPECT_LT(std::abs(d.yaw_error_deg()), 3.0);
+}
+
+TEST(EstimatorGyro, AlignmentGoesFromUnknownToAlignedWithinFiveMetres) {
+  Drive d = with_gyro();
+  d.compass_bias_rad = rad_from_deg(20.0);
+  EXPECT_FALSE(d.estimator.health().advice.empty());  // no position yet
+  d.run(3.0);
+  EXPECT_EQ(d.estimator.alignment(), Alignment::Unknown);
+  EXPECT_EQ(d.estimator.health().advice, "drive 3 m straight to find the heading");
+  d.speed_mps = 0.4;
+  d.run(12.0);
+  EXPECT_EQ(d.estimator.alignment(), Alignment::Aligned);
+  EXPECT_TRUE(d.estimator.health().advice.empty());
+  EXPECT_LT(std::abs(d.yaw_error_deg()), 1.0);
+}
+
+TEST(EstimatorGyro, ACompassIsNotBelievedForTwoSecondsAfterATurnOnTheSpot) {
+  Drive d = with_gyro();
+  d.run(5.0);
+  d.speed_mps = 0.6;
+  d.run(8.0);
+  d.speed_mps = 0.0;
+  d.rate_radps = 0.6;
+  d.compass_bias_rad = rad_from_deg(25.0);  // as long as the currents flow
+  d.run(2.6);
+  d.rate_radps = 0.0;
+  d.run(1.5);
+  d.compass_bias_rad = 0.0;
+  EXPECT_LT(std::abs(d.yaw_error_deg()), 0.5);
+  const auto disturbed = static_cast<std::size_t>(base::Refusal::Disturbed);
+  EXPECT_GT(d.estimator.health().refusals[disturbed], 10u);
+  d.run(3.0);
+  EXPECT_LT(std::abs(d.yaw_error_deg()), 0.5);
+}
+
+TEST(EstimatorGyro, TwoAntennasGiveTheHeadingAtRest) {
+  Drive d = with_gyro();
+  d.compass = false;
+  d.run(2.0);
+  EXPECT_FALSE(d.estimator.heading_known());
+  for (int i = 0; i < 50; ++i) {
+    d.run(0.2);
+    base::Heading h{d.now(), d.yaw_rad + rad_from_deg(i % 2 == 0 ? 0.5 : -0.5),
+                    base::HeadingSource::DualAntenna, rad_from_deg(0.6)};
+    d.estimator.take(h, d.now());
+  }
+  EXPECT_EQ(d.estimator.alignment(), Alignment::Aligned);
+  EXPECT_LT(std::abs(d.yaw_error_deg()), 0.4);
+  EXPECT_LT(d.pose()->yaw_sigma_rad, rad_from_deg(1.0));
+}
+
+TEST(EstimatorGyro, WithoutGnssTheDoubtGrowsAndCoversTheError) {
+  Drive d = with_gyro();
+  d.slip = 0.92;
+  d.run(10.0);
+  d.speed_mps = 0.8;
+  d.run(20.0);
+  const double sigma_m = d.pose()->horizontal_sigma_m;
+  d.gnss = false;
+  d.run(37.5);
+  EXPECT_NEAR(d.estimator.health().free_m, 30.0, 0.5);
+  EXPECT_LT(d.position_error_m(), 0.6);
+  EXPECT_GT(d.pose()->horizontal_sigma_m, 3.0 * sigma_m);
+  EXPECT_LT(d.position_error_m(), 3.0 * d.pose()->horizontal_sigma_m);
+}
+
+TEST(EstimatorGyro, ABetterFixIsApproachedSlowlyInsteadOfJumpedTo) {
+  Drive d = with_gyro();
+  d.fix = base::FixType::Single;
+  d.offset_east_m = 1.0;
+  d.run(12.0);
+  d.speed_mps = 0.5;
+  d.run(10.0);
+  d.offset_east_m = 0.0;
+  d.run(0.14);  // the last single fix arrives
+  d.fix = base::FixType::RtkFixed;
+  double fastest_m = 0.0;
+  for (int i = 0; i < 500; ++i) {
+    const double before_m = d.position_error_m();
+    d.tick();
+    fastest_m = std::max(fastest_m, std::abs(d.position_error_m() - before_m));
+  }
+  EXPECT_LT(fastest_m, 0.08);
+  EXPECT_LT(d.position_error_m(), 0.05);
+}
+
+TEST(EstimatorGyro, TheAnchorMovesTheReceiverUntilTheFixClassChanges) {
+  Drive d = with_gyro();
+  d.fix = base::FixType::Single;
+  d.offset_east_m = 2.0;  // this session's shift
+  d.run(12.0);
+  const base::EnuPoint truth{d.pose()->at.east_m - 2.0, d.pose()->at.north_m};
+  d.estimator.anchor(truth, 3);
+  EXPECT_LT(base::distance_m(d.pose()->at, truth), 0.01);
+  EXPECT_LT(d.position_error_m(), 0.3);
+  ASSERT_TRUE(d.estimator.health().anchor);
+  EXPECT_EQ(d.estimator.health().anchor->item, 3);
+  EXPECT_NEAR(d.estimator.health().last_reset->jump.east_m, 2.0, 0.01);  // old minus new
+  d.speed_mps = 0.5;
+  d.run(20.0);
+  EXPECT_LT(d.position_error_m(), 0.5);
+  d.fix = base::FixType::RtkFixed;
+  d.offset_east_m = 0.0;
+  d.run(15.0);
+  EXPECT_FALSE(d.estimator.health().anchor);
+  EXPECT_LT(d.position_error_m(), 0.1);
+}
+
+TEST(EstimatorGyro, AnOperatorsPoseIsEnoughOnAMapWithoutGnss) {
+  EstimateParams p;
+  p.map_lat = 58.378;
+  p.map_lon = 26.729;
+  Drive d(p);
+  d.gyro = true;
+  d.gnss = d.compass = false;
+  d.run(5.0);
+  EXPECT_FALSE(d.pose());
+  d.estimator.place(base::EnuPoint{3.0, 4.0}, base::kPi / 2.0);
+  d.speed_mps = 0.5;
+  d.run(20.0);
+  ASSERT_TRUE(d.pose());
+  EXPECT_EQ(d.pose()->source, "odometry");
+  EXPECT_NEAR(d.pose()->at.east_m, 3.0, 0.2);
+  EXPECT_NEAR(d.pose()->at.north_m, 14.0, 0.2);
+  EXPECT_TRUE(d.estimator.health().placed);
+  EXPECT_NEAR(d.estimator.health().free_m, 10.0, 0.2);
+}
+
+TEST(EstimatorGyro, TheCovarianceStaysPositiveOverAMillionSteps) {
+  Belief b;
+  for (int i = 0; i < kStates; ++i) b.P(i, i) = 0.1;
+  b.x(kScale) = b.x(kYawScale) = 1.0;
+  StateVector change;
+  double nis = 0.0;
+  for (int i = 0; i < 1'000'000; ++i) {
+    Travel t{0.016, 0.002, 0.02, 0.002};
+    if (i % 5000 > 4000) t.gyro_rad.reset();
+    predict(b, t, {0.8, 60.0}, false);
+    if (i % 100 != 0) continue;
+    Observation<2> o;
+    o.innovation << 0.1 * std::sin(i), 0.1 * std::cos(i);
+    o.H(0, kEast) = o.H(1, kNorth) = o.H(0, kDriftE) = o.H(1, kDriftN) = 1.0;
+    o.R(0, 0) = o.R(1, 1) = 1e-4;
+    if (i % 700 == 0) o.may_change(kEast) = o.may_change(kNorth) = 0.0;
+    update(b, o, change, nis);
+    if (i % 10'000 != 0) continue;
+    ASSERT_TRUE(b.P.allFinite());
+    ASSERT_LT((b.P - b.P.transpose()).norm(), 1e-12);
+    const Eigen::SelfAdjointEigenSolver<StateMatrix> solver(b.P);
+    ASSERT_GT(solver.eigenvalues().minCoeff(), -1e-10);
+  }
+}
+
+}  // namespace
+}  // namespace roverd::nav
