@@ -108,6 +108,7 @@ step_command() {
   python3 "$root/tests/command/decode_test.py" || code=$?
   python3 "$root/tests/command/run_test.py" || code=$?
   python3 "$root/tests/command/ntrip_test.py" || code=$?
+  python3 "$root/tests/command/gpsd_test.py" || code=$?
   return "$code"
 }
 
