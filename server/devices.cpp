@@ -326,12 +326,15 @@ class Planner {
                         .silent_reopen_s = said.params.silent_reopen_s,
                         .retry_first_s = said.params.retry_first_s,
                         .retry_max_s = said.params.retry_max_s};
+    const std::string address = source->address;
     DevicePlan plan;
     plan.name = "gnss";
-    plan.make = [params, address = source->address](asio::io_context& io, const DeviceEars& ears) {
-      return device_of(std::make_shared<gpsd::Driver>(
-          "gnss", params, [address, &io] { return link::make_byte_link(io, address); },
-          ears.on_measurement));
+    plan.make = [params, address](asio::io_context& io, const DeviceEars& ears) {
+      const gpsd::Driver::MakeLink make_link = [address, &io] {
+        return link::make_byte_link(io, address);
+      };
+      return device_of(
+          std::make_shared<gpsd::Driver>("gnss", params, make_link, ears.on_measurement));
     };
     plans_.push_back(std::move(plan));
     return {};
