@@ -16,6 +16,7 @@
 #include "bumper/driver.hpp"
 #include "bunker/driver.hpp"
 #include "gnss/driver.hpp"
+#include "gpsd/driver.hpp"
 #include "link/address.hpp"
 #include "link/record.hpp"
 #include "mti/driver.hpp"
@@ -306,6 +307,39 @@ class Planner {
     return {};
   }
 
+  /// The receiver: at a port of ours, or served by a gpsd. gpsd's own words are not recorded.
+  Result<void> add_receiver(const Wired<gnss::Params>& said) {
+    const bool served =
+        replays_.file_of.empty() && said.wiring.enabled && gpsd::is_source(said.wiring.link);
+    if (!served) return add<ByteStream, gnss::Driver>("gnss", said);
+    const auto source = gpsd::parse_source(said.wiring.link);
+    if (!source) {
+      return base::fail(base::Code::Invalid,
+                        settings_.where("drivers.gnss.link") + ": " + source.error().detail);
+    }
+    gpsd::Params params{.device = source->device,
+                        .heading_source = said.params.heading_source == "dual_antenna"
+                                              ? base::HeadingSource::DualAntenna
+                                              : base::HeadingSource::Compass,
+                        .heading_offset_deg = said.params.heading_offset_deg,
+                        .silent_after_s = said.params.silent_after_s,
+                        .silent_reopen_s = said.params.silent_reopen_s,
+                        .retry_first_s = said.params.retry_first_s,
+                        .retry_max_s = said.params.retry_max_s};
+    const std::string address = source->address;
+    DevicePlan plan;
+    plan.name = "gnss";
+    plan.make = [params, address](asio::io_context& io, const DeviceEars& ears) {
+      const gpsd::Driver::MakeLink make_link = [address, &io] {
+        return link::make_byte_link(io, address);
+      };
+      return device_of(
+          std::make_shared<gpsd::Driver>("gnss", params, make_link, ears.on_measurement));
+    };
+    plans_.push_back(std::move(plan));
+    return {};
+  }
+
   std::vector<DevicePlan> take() { return std::move(plans_); }
 
  private:
@@ -333,7 +367,7 @@ Result<std::vector<DevicePlan>> plan_devices(const Settings& s, const Options& o
   if (done) done = planner.add<ByteStream, ratio::Driver>("ratio", s.ratio);
   if (done) done = planner.add<ByteStream, twist::Driver>("twist", s.twist);
   if (done) done = planner.add<ByteStream, bumper::Driver>("bumper", s.bumper);
-  if (done) done = planner.add<ByteStream, gnss::Driver>("gnss", s.gnss);
+  if (done) done = planner.add_receiver(s.gnss);
   if (done) done = planner.add<ByteStream, mti::Driver>("mti", s.mti);
   if (done) done = planner.add_ntrip(s.ntrip);
   if (!done) return tl::unexpected(done.error());

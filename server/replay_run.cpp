@@ -261,6 +261,7 @@ class Run {
       if (auto played = next->emit(kBegin + end); !played) return tl::unexpected(played.error());
       ++report_.items;
     }
+    ended_ = true;
     while (tick < kBegin + end + kAfter) step(tick += kTick);
     report_.duration_s = base::seconds(end);
     judge_.finish(report_);
@@ -327,7 +328,7 @@ class Run {
     for (const base::Measurement& m : heard_) judge_.take(m, now);
     heard_.clear();
     const auto pose = judge_.advance(now);
-    if (!pose) return;
+    if (!pose || ended_) return;  // what the estimator would guess after the end is no track
     ++report_.poses;
     if (last_) report_.way_m += base::distance_m(*last_, pose->at);
     last_ = pose->at;
@@ -345,6 +346,7 @@ class Run {
   std::vector<base::Measurement> heard_;
   std::map<std::string, std::unique_ptr<Part>> parts_;
   std::optional<base::Duration> begin_;
+  bool ended_ = false;
   std::optional<base::EnuPoint> last_;
   std::optional<Time> told_;
   ReplayReport report_;

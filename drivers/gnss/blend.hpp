@@ -5,7 +5,9 @@
 //
 // Also here, for either language: a position of exactly 0, 0 is no position, and a date before
 // this software was written is no date (a receiver before its first fix says 1980; one whose week
-// counter rolled over is 1,024 weeks late). Counted. Pure state.
+// counter rolled over is 1,024 weeks late). An epoch that is earlier than the one before it is no
+// position either; what comes after is measured against it, so a clock that is set back costs one
+// epoch. Counted. Pure state.
 
 #include <chrono>
 #include <cstdint>
@@ -26,6 +28,7 @@ class Blend {
   struct Counts {
     std::uint64_t zero_positions = 0;
     std::uint64_t impossible_dates = 0;
+    std::uint64_t backwards = 0;
   };
 
   explicit Blend(OnMeasurement on_measurement) : on_measurement_(std::move(on_measurement)) {}
@@ -59,6 +62,7 @@ class Blend {
     ubx_fix_.reset();
     ubx_heading_.reset();
     said_.reset();
+    utc_.reset();
   }
   const Counts& counts() const noexcept { return counts_; }
 
@@ -78,11 +82,20 @@ class Blend {
       fix.position.reset();
       fix.fix = base::FixType::None;
     }
+    if (fix.utc) {
+      if (utc_ && *fix.utc < *utc_) {
+        ++counts_.backwards;
+        fix.position.reset();
+        fix.fix = base::FixType::None;
+      }
+      utc_ = fix.utc;
+    }
     on_measurement_(fix);
   }
 
   const OnMeasurement on_measurement_;
   std::optional<base::GnssFix> said_;  ///< by NMEA, last
+  std::optional<base::WallTime> utc_;  ///< of the last epoch
   std::optional<base::Time> ubx_fix_;
   std::optional<base::Time> ubx_heading_;
   Counts counts_;

@@ -266,6 +266,7 @@ std::map<std::string, std::uint64_t> Driver::causes() const {
   count("correction frame, no room at the port", corrections_lost_);
   count("position 0, 0", blend_.counts().zero_positions);
   count("impossible date", blend_.counts().impossible_dates);
+  count("time going back", blend_.counts().backwards);
   if (link_) count("from a foreign address", link_->strangers());
   return out;
 }

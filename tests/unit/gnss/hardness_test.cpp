@@ -55,6 +55,22 @@ struct BadReceiver : ::testing::Test {
                 }};
 };
 
+TEST_F(BadReceiver, AReceiverMayChangeItsTalkerInTheMiddle) {
+  Gga g;
+  g.lat = 58.37802;
+  g.lon = 26.7289;
+  g.quality = 4;
+  for (int i = 0; i < 10; ++i) {
+    g.talker = i < 5 ? Talker{{'G', 'P'}} : Talker{{'G', 'N'}};
+    g.time_s = 43'200.0 + 0.2 * i;
+    hear(encode(g));
+    after(200ms);
+  }
+  EXPECT_EQ(fixes, 10);
+  EXPECT_EQ(status().refused, 0u);
+  EXPECT_EQ(status().phase, DriverPhase::Up);
+}
+
 TEST_F(BadReceiver, EveryRefusalIsCountedByItsCause) {
   hear("$GPHDT,359.97,T*05\r\n");  // wrong checksum
   hear("$GPHDT,10.0,T\r\n");       // none

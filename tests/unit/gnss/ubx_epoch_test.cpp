@@ -240,6 +240,22 @@ TEST_F(BlendTest, ADateOfNineteenEightyIsNone) {
   EXPECT_EQ(blend.counts().impossible_dates, 1u);
 }
 
+TEST_F(BlendTest, AnEpochBeforeTheLastOneIsNoPosition) {
+  const base::WallTime noon = std::chrono::sys_days{std::chrono::year{2026} / 3 / 1} + 12h;
+  const auto say = [&](base::Duration after) {
+    base::GnssFix fix = fix_at(t0, 58.0);
+    fix.utc = noon + after;
+    blend.nmea(fix);
+  };
+  for (const auto after : {0s, 1s, -5s, -4s, -3s}) say(after);
+  ASSERT_EQ(fixes().size(), 5u);
+  EXPECT_TRUE(fixes()[1].position);
+  EXPECT_FALSE(fixes()[2].position);
+  EXPECT_EQ(fixes()[2].fix, base::FixType::None);
+  EXPECT_TRUE(fixes()[3].position) << "a clock that was set back goes on";
+  EXPECT_EQ(blend.counts().backwards, 1u);
+}
+
 TEST(CalendarOfEpochs, AYearThatNoClockHoldsIsNoDate) {
   Calendar calendar;
   calendar.set(Date{std::chrono::year{9999} / 12 / 31}, 0.0);
