@@ -27,7 +27,7 @@ base::Result<ImportedFile> read_kmz(std::string_view content);
 std::string write_kmz(const Plan& plan, std::vector<FileRow>& rows);
 
 base::Result<ImportedFile> read_geojson(std::string_view content);
-std::string write_geojson(const Plan& plan, std::vector<FileRow>& rows);
+std::string write_geojson(const Plan& plan, const Fence* fence, std::vector<FileRow>& rows);
 
 /// Either form of table.
 base::Result<ImportedFile> read_csv(std::string_view content, const ImportHints& hints);

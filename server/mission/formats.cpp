@@ -190,7 +190,7 @@ ExportedFile export_file(const Plan& plan, Format format, const Fence* fence) {
       file.binary = true;
       break;
     case Format::GeoJson:
-      file.content = write_geojson(plan, file.rows);
+      file.content = write_geojson(plan, fence, file.rows);
       file.media_type = "application/geo+json";
       break;
     case Format::Csv:
@@ -202,7 +202,7 @@ ExportedFile export_file(const Plan& plan, Format format, const Fence* fence) {
       file.media_type = "text/csv";
       break;
   }
-  if (fence != nullptr && format != Format::Plan) {
+  if (fence != nullptr && format != Format::Plan && format != Format::GeoJson) {
     file.rows.push_back(
         {"", "fence", Outcome::LeftOut, "this format has no place for fences", std::nullopt});
   }

@@ -1,6 +1,6 @@
 // GeoJSON (RFC 7946): LineString, MultiLineString, Point, MultiPoint, alone, in a Feature, a
 // FeatureCollection or a GeometryCollection. Positions are longitude, latitude and perhaps a
-// height. Areas are no way to drive: left out.
+// height. Areas are no way to drive: left out, unless they say that they are a fence.
 //
 // Written as one Feature with a LineString (a MultiPoint below two positions). What RFC 7946 has no
 // place for stands in the Feature's property "waypoints": one object for each position, with the
@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "mission/file_formats.hpp"
+#include "mission/geojson_fence.hpp"
 #include "mission/track_points.hpp"
 
 namespace roverd::mission {
@@ -31,6 +32,7 @@ class GeoJsonReader {
       return tl::unexpected<Error>(std::move(error));
     }
     object(*document, "", kMaxDepth);
+    if (!fence_.areas.empty() || !fence_.rally.empty()) file_.fence = std::move(fence_);
     return std::move(builder_).finish();
   }
 
@@ -68,6 +70,10 @@ class GeoJsonReader {
     }
     const auto properties = value.find("properties");
     const bool has_properties = properties != value.end() && properties->is_object();
+    if (has_properties &&
+        take_fence_feature(*properties, *shape, where, fence_, file_.rows, problems_)) {
+      return;
+    }
     if (has_properties && file_.plan.name.empty()) file_.plan.name = text_of(*properties, "name");
     const std::size_t before = file_.plan.items.size();
     object(*shape, where + "/geometry", depth - 1);
@@ -137,6 +143,7 @@ class GeoJsonReader {
   }
 
   ImportedFile file_;
+  Fence fence_;
   Problems problems_;
   TrackBuilder builder_{file_, problems_};
 };
@@ -147,7 +154,7 @@ Result<ImportedFile> read_geojson(std::string_view content) {
   return GeoJsonReader().read(without_bom(content));
 }
 
-std::string write_geojson(const Plan& plan, std::vector<FileRow>& rows) {
+std::string write_geojson(const Plan& plan, const Fence* fence, std::vector<FileRow>& rows) {
   std::vector<FileRow> all;
   report_left_out(plan, {true, true}, all);
   for (FileRow& row : all) {
@@ -170,13 +177,16 @@ std::string write_geojson(const Plan& plan, std::vector<FileRow>& rows) {
   json properties = {{"name", plan.name}};
   if (any) properties["waypoints"] = std::move(settings);
   const bool line = coordinates.size() >= 2;
-  const json document = {{"type", "FeatureCollection"},
-                         {"features",
-                          {{{"type", "Feature"},
-                            {"properties", std::move(properties)},
-                            {"geometry",
-                             {{"type", line ? "LineString" : "MultiPoint"},
-                              {"coordinates", std::move(coordinates)}}}}}}};
+  json document = {{"type", "FeatureCollection"},
+                   {"features",
+                    {{{"type", "Feature"},
+                      {"properties", std::move(properties)},
+                      {"geometry",
+                       {{"type", line ? "LineString" : "MultiPoint"},
+                        {"coordinates", std::move(coordinates)}}}}}}};
+  if (fence != nullptr) {
+    for (json& feature : fence_features(*fence)) document["features"].push_back(std::move(feature));
+  }
   return document.dump(-1, ' ', false, json::error_handler_t::replace) + '\n';
 }
 

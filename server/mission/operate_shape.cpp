@@ -339,9 +339,9 @@ Result<Done> apply(Plan plan, const Align& align) {
     return EnuPoint{c * way.east_m - s * way.north_m, s * way.east_m + c * way.north_m};
   });
   if (!centre) {
-    Error error = centre.error();
-    for (auto& field : error.fields) field.pointer = "/item";
-    return tl::unexpected<Error>(std::move(error));
+    const auto& fields = centre.error().fields;
+    return tl::unexpected<Error>(
+        wrong("/item", fields.empty() ? centre.error().detail : fields.front().detail));
   }
   if (turn_rad != 0.0) {
     map_headings(plan, [&](double deg) { return deg - base::deg_from_rad(turn_rad); });

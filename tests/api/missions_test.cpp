@@ -179,9 +179,9 @@ TEST_F(MissionsApi, NamesTagsAndTheArchiveKeepOrder) {
   EXPECT_EQ(tagged.body["tags"], Json({"farm", "mow"}));
   EXPECT_EQ(tagged.raw.header("etag"), "\"rev-2\"");
   const auto ids = [this](const std::string& query) {
+    const auto list = call("GET", "/missions?" + query);
     std::vector<std::string> out;
-    for (const Json& one : call("GET", "/missions?" + query).body["items"])
-      out.push_back(one["id"]);
+    for (const Json& one : list.body["items"]) out.push_back(one["id"]);
     return out;
   };
   using Ids = std::vector<std::string>;

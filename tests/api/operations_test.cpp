@@ -55,12 +55,12 @@ TEST_F(OperationsApi, AMissionIsAlignedWithTheVehicleAndLookedAtBefore) {
   const auto turned = operate(id,
                               {{"op", "align"},
                                {"item", 1},
-                               {"lat", 58.0},
-                               {"lon", 26.0},
-                               {"second", {{"item", 2}, {"lat", 58.0}, {"lon", 26.001}}}},
+                               {"lat", 58.3785},
+                               {"lon", 26.729},
+                               {"second", {{"item", 2}, {"lat", 58.3785}, {"lon", 26.73}}}},
                               2);
   ASSERT_EQ(turned.status, 200u) << turned.raw.body;
-  EXPECT_NEAR(turned.body["items"][1]["lat"], 58.0, 1e-8);
+  EXPECT_NEAR(turned.body["items"][1]["lat"], 58.3785, 1e-8);
   const auto bad = operate(id, {{"op", "align"}, {"item", 1}, {"second", {{"lat", 95}}}}, 3);
   EXPECT_EQ(bad.status, 422u);
   EXPECT_EQ(operate(id, {{"op", "split"}, {"after", 1}, {"dry_run", true}}, 3).status, 422u);

@@ -212,5 +212,49 @@ TEST(Xml, BombsEntitiesAndDepthAreRefused) {
   EXPECT_EQ(refusal("<gpx><name>\xff\xfe</name></gpx>"), "line 1: not well-formed (invalid token)");
 }
 
+TEST(GeoJson, FencesThatSayTheyAreAreTakenAndWritten) {
+  Plan plan;
+  plan.name = "field";
+  for (int i = 0; i < 3; ++i) plan.items.emplace_back(waypoint_at(58.0 + 0.001 * i, 26.0));
+  const Fence fence{
+      "field",
+      {{AreaKind::Inclusion, FencePolygon{{{58.0, 26.0}, {58.0, 26.01}, {58.01, 26.01}}}},
+       {AreaKind::Exclusion, FenceCircle{{58.0, 26.001}, 12.5}}},
+      {{{58.001, 26.002}, 15.0}, {{58.0, 26.0}, std::nullopt}}};
+
+  const auto file = import_file(export_file(plan, Format::GeoJson, &fence).content, std::nullopt);
+
+  ASSERT_TRUE(file) << file.error().detail;
+  EXPECT_EQ(file->plan.items, plan.items);
+  EXPECT_EQ(file->fence, fence);
+}
+
+TEST(GeoJson, AFenceThatCannotBeIsRefusedAndAnAreaWithoutItsWordLeftOut) {
+  const auto file_with = [](const std::string& properties, const std::string& geometry) {
+    return import_file(
+        R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{},"geometry":)"
+        R"({"type":"LineString","coordinates":[[26,58],[27,58]]}},{"type":"Feature","properties":)" +
+            properties + R"(,"geometry":)" + geometry + "}]}",
+        Format::GeoJson);
+  };
+  const std::string ring = R"({"type":"Polygon","coordinates":[[[0,0],[1e-3,0],[0,1e-3],[0,0]]]})";
+  const std::string crossed =
+      R"({"type":"Polygon","coordinates":[[[0,0],[1e-3,1e-3],[1e-3,0],[0,1e-3],[0,0]]]})";
+  const std::string point = R"({"type":"Point","coordinates":[0,0]})";
+  const std::string line = R"({"type":"LineString","coordinates":[[0,0],[1,1]]})";
+
+  EXPECT_TRUE(file_with(R"({"fence":"exclusion"})", ring)->fence);
+  EXPECT_FALSE(file_with(R"({"name":"lake"})", ring)->fence);
+  const std::vector<std::pair<std::string, std::string>> bad{
+      {R"({"fence":"exclusion"})", crossed}, {R"({"fence":"both"})", ring},
+      {R"({"fence":"inclusion"})", point},   {R"({"fence":"inclusion","radius_m":-1})", point},
+      {R"({"rally":true})", line},           {R"({"fence":"inclusion"})", line}};
+  for (const auto& [properties, geometry] : bad) {
+    const auto refused_file = file_with(properties, geometry);
+    ASSERT_FALSE(refused_file) << properties;
+    EXPECT_EQ(refused_file.error().fields.at(0).pointer, "/features/1/geometry");
+  }
+}
+
 }  // namespace
 }  // namespace roverd::mission

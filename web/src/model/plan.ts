@@ -99,6 +99,8 @@ export interface Settings {
   readonly at_end?: AtEnd;
   /** Default speed of the mission. */
   readonly speed_mps?: number | null;
+  /** With repeat and back_and_forth: how often; 0 or nothing: for ever. */
+  readonly times?: number | null;
 }
 export interface Plan {
   readonly name: string;
