@@ -11,6 +11,7 @@
 #include "api/body.hpp"
 #include "api/problem.hpp"
 #include "api/router.hpp"
+#include "api/teach.hpp"
 #include "api/trail.hpp"
 #include "api/words.hpp"
 
@@ -58,12 +59,15 @@ struct Context {
   Commands commands;
   Router router;
   Trail trail;
+  std::unique_ptr<TeachIn> teach;
   base::Time begun;
   std::map<std::string, double> driver_rates;
   std::string openapi_tag;
   std::function<void(const std::string& id, std::optional<std::int64_t> revision)>
       on_mission_change;
 
+  /// The whole state, with what the robot does not know of itself.
+  Json vehicle(const base::Snapshot& snapshot, base::Time now) const;
   /// Answers 503 and returns null before the robot's first tick.
   std::shared_ptr<const base::Snapshot> snapshot_or_refuse(const CallPtr& call) const;
   /// `work` on another thread if there is one for it, then `then` on this one.
@@ -82,6 +86,8 @@ void add_file_routes(const ContextPtr& context);
 void add_event_routes(const ContextPtr& context);
 void add_server_routes(const ContextPtr& context);
 void add_driver_routes(const ContextPtr& context);
+void add_teach_routes(const ContextPtr& context);
+void add_route_routes(const ContextPtr& context);
 void add_tile_routes(const ContextPtr& context);
 
 enum class Moves { Yes, No };

@@ -13,6 +13,7 @@
 
 #include "mission/json.hpp"
 #include "mission/text.hpp"
+#include "store/teach.hpp"
 
 namespace roverd::store {
 namespace {
@@ -194,9 +195,11 @@ void Missions::add_revision(const Head& head, const Entry& entry) {
   present.exec();
 }
 
-Result<StoredMission> Missions::create(mission::Plan plan, const Change& change, WallTime now) {
+Result<StoredMission> Missions::create(mission::Plan plan, const Change& change, WallTime now,
+                                       Teach teach) {
   SQLite::Transaction transaction(db_, SQLite::TransactionBehavior::IMMEDIATE);
   auto made = add_mission(std::move(plan), change, now);
+  if (made && teach == Teach::Ends) clear_teach(db_);
   if (made) transaction.commit();
   return made;
 }
