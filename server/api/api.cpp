@@ -59,6 +59,12 @@ std::shared_ptr<const base::Snapshot> Context::snapshot_or_refuse(const CallPtr&
   return snapshot;
 }
 
+Json Context::vehicle(const base::Snapshot& snapshot, base::Time now) const {
+  Json out = vehicle_json(snapshot, deps.profile.name, now);
+  out["teach"] = teach->brief();
+  return out;
+}
+
 void Context::aside(std::function<void()> work, std::function<void()> then) const {
   if (deps.aside) return deps.aside(std::move(work), std::move(then));
   work();
@@ -73,6 +79,11 @@ struct Api::Impl {
   explicit Impl(Deps deps)
       : context(std::make_shared<Context>(std::move(deps))), radio_edits(context) {
     radio_edits.tell = [this](base::Event event) { take_event(std::move(event)); };
+    context->teach = std::make_unique<TeachIn>(context->deps.store);
+    context->teach->tell = radio_edits.tell;
+    context->teach->announce = [this](const store::StoredMission& mission) {
+      context->announce(mission.id, mission.revision);
+    };
   }
 
   void route(const CallPtr& call);
@@ -91,6 +102,7 @@ struct Api::Impl {
   std::vector<base::Event> events;
   RadioEdits radio_edits;
   std::vector<robot::MissionEdit> edits;
+  std::vector<robot::TeachWish> wishes;
 };
 
 Api::Api(Deps deps) : impl_(std::make_unique<Impl>(std::move(deps))) {
@@ -111,6 +123,8 @@ Api::Api(Deps deps) : impl_(std::make_unique<Impl>(std::move(deps))) {
   add_event_routes(c);
   add_server_routes(c);
   add_driver_routes(c);
+  add_teach_routes(c);
+  add_route_routes(c);
   add_tile_routes(c);
   add_drive_routes(c);
   add_run_routes(c);
@@ -122,6 +136,7 @@ Api::~Api() {
   // The routes hold the context that holds them.
   impl_->context->router = Router{};
   impl_->context->on_mission_change = nullptr;
+  impl_->context->teach.reset();
   impl_->context->commands.abandon();
 }
 
@@ -244,6 +259,7 @@ Response Api::on_refused(unsigned status, std::string_view detail) {
 void Api::on_second() {
   const base::Time now = base::steady_now();
   impl_->context->commands.sweep(now);
+  impl_->context->teach->save();
   if (impl_->stream) impl_->stream->look_at_execution();
   const auto snapshot = impl_->context->deps.robot.snapshot();
   if (!snapshot) return;
@@ -264,7 +280,8 @@ void Api::on_sample() {
   if (const auto snapshot = impl_->context->deps.robot.snapshot()) {
     impl_->context->trail.take(*snapshot);
     impl_->context->runs.look(*snapshot);
-    impl_->context->fence.look(*snapshot);
+    impl_->context->keeper.look(*snapshot);
+    impl_->context->teach->sample(*snapshot);
   }
 }
 
@@ -282,6 +299,9 @@ void Api::drain() {
   impl_->edits.clear();
   robot.edits().take(impl_->edits);
   for (robot::MissionEdit& edit : impl_->edits) impl_->radio_edits.put(std::move(edit));
+  impl_->wishes.clear();
+  robot.teach_wishes().take(impl_->wishes);
+  for (const robot::TeachWish wish : impl_->wishes) impl_->context->teach->wish(wish);
   impl_->replies.clear();
   robot.replies().take(impl_->replies);
   for (robot::PendingReply& pending : impl_->replies) {

@@ -13,6 +13,7 @@
 #include "api/problem.hpp"
 #include "api/router.hpp"
 #include "api/run_recorder.hpp"
+#include "api/teach.hpp"
 #include "api/trail.hpp"
 #include "api/words.hpp"
 
@@ -57,7 +58,7 @@ struct Context {
       : deps(std::move(with)),
         commands(deps.robot),
         runs(deps.robot, deps.store, deps.profile.name),
-        fence(deps.robot),
+        keeper(deps.robot),
         begun(base::steady_now()) {}
 
   Deps deps;
@@ -65,7 +66,8 @@ struct Context {
   Router router;
   Trail trail;
   RunRecorder runs;
-  FenceKeeper fence;
+  FenceKeeper keeper;
+  std::unique_ptr<TeachIn> teach;
   base::Time begun;
   std::map<std::string, double> driver_rates;
   std::string openapi_tag;
@@ -80,6 +82,8 @@ struct Context {
   };
   Warnings warnings{};
 
+  /// The whole state, with what the robot does not know of itself.
+  Json vehicle(const base::Snapshot& snapshot, base::Time now) const;
   /// Answers 503 and returns null before the robot's first tick.
   std::shared_ptr<const base::Snapshot> snapshot_or_refuse(const CallPtr& call) const;
   /// `work` on another thread if there is one for it, then `then` on this one.
@@ -103,6 +107,8 @@ void add_file_routes(const ContextPtr& context);
 void add_event_routes(const ContextPtr& context);
 void add_server_routes(const ContextPtr& context);
 void add_driver_routes(const ContextPtr& context);
+void add_teach_routes(const ContextPtr& context);
+void add_route_routes(const ContextPtr& context);
 void add_tile_routes(const ContextPtr& context);
 void add_drive_routes(const ContextPtr& context);
 void add_run_routes(const ContextPtr& context);

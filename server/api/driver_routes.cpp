@@ -163,7 +163,7 @@ Handler clear_errors(const ContextPtr& context) {
     }
     ask(static_cast<int>(motor.value_or(0)), not_after,
         answer_later(context, call, not_after, [context](const base::Snapshot& now) {
-          return vehicle_json(now, context->deps.profile.name, base::steady_now());
+          return context->vehicle(now, base::steady_now());
         }));
   };
 }

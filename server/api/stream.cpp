@@ -51,7 +51,7 @@ std::optional<std::string> StreamTexts::vehicle_text(std::uint64_t seq) {
   const base::Time now = base::steady_now();
   const bool fresh = now - snapshot->now < std::chrono::milliseconds(100);
   if (encoded_.empty() || snapshot->tick != encoded_tick_ || !fresh) {
-    encoded_ = plain_json(vehicle_json(*snapshot, context_->deps.profile.name, now));
+    encoded_ = plain_json(context_->vehicle(*snapshot, now));
     encoded_tick_ = snapshot->tick;
   }
   return stream_text(kVehicle, seq, encoded_);

@@ -23,7 +23,7 @@ base::Error with_checks(base::Error error, const std::shared_ptr<const base::Sna
 
 std::function<Json(const base::Snapshot&)> whole_state(const ContextPtr& context) {
   return [context](const base::Snapshot& snapshot) {
-    return vehicle_json(snapshot, context->deps.profile.name, base::steady_now());
+    return context->vehicle(snapshot, base::steady_now());
   };
 }
 

@@ -180,15 +180,18 @@ class Planner {
   ///     ▒▒╲             of what ring k−1 left: ▒ stays open
   ///   ╲╱ k
   void draw_rings(int count, Drawer& drawer) {
+    std::vector<Level> levels;
+    std::size_t points = 0;
     Area level = part_.area();
-    while (rings_ < count) {
-      draw_level(parts_of(drivable_rings(level)), drawer);
-      if (drawer.points().size() > kMaxSurveyItems) return;
+    while (rings_ < count && points <= kMaxSurveyItems) {
+      levels.push_back({parts_of(drivable_rings(level)), {}});
+      for (const Part& part : levels.back().parts) points += part.outer.size();
       Area next = offset(part_.area(), -spacing_m_ * ++rings_, sagitta_m_);
       if (rings_ == count || next.empty()) break;
       leave_open(next);
       level = std::move(next);
     }
+    draw_nested(levels, drawer);
     if (request_.pattern == SurveyPattern::Perimeter) {
       open_.clear();
       return;
@@ -210,27 +213,70 @@ class Planner {
     }
   }
 
-  void draw_level(std::vector<Part> parts, Drawer& drawer) {
-    std::vector<Ring> rings;
-    for (Part& part : parts) {
-      rings.push_back(std::move(part.outer));
-      std::move(part.holes.begin(), part.holes.end(), std::back_inserter(rings));
+  /// The rings that lie equally deep.
+  struct Level {
+    std::vector<Part> parts;
+    std::vector<bool> taken;
+  };
+
+  /// A part, and then what lies inside of it, before another part of the same depth: arms of a
+  /// field are done one after the other.
+  void draw_nested(std::vector<Level>& levels, Drawer& drawer) {
+    struct Place {
+      std::size_t level;
+      std::size_t part;
+    };
+    for (Level& level : levels) level.taken.resize(level.parts.size(), false);
+    std::vector<Place> todo;
+    for (std::size_t k = 0; k < levels.size(); ++k) {
+      for (std::size_t i = 0; i < levels[k].parts.size(); ++i) {
+        if (levels[k].taken[i]) continue;
+        levels[k].taken[i] = true;
+        todo.push_back({k, i});
+        while (!todo.empty() && drawer.points().size() <= kMaxSurveyItems) {
+          const Place at = todo.back();
+          todo.pop_back();
+          const Part& outer = levels[at.level].parts[at.part];
+          draw_part(outer, drawer);
+          if (at.level + 1 == levels.size()) continue;
+          Level& inner = levels[at.level + 1];
+          for (std::size_t j = inner.parts.size(); j-- > 0;) {
+            if (inner.taken[j] || !holds(outer.outer, inner.parts[j].outer.front())) continue;
+            inner.taken[j] = true;
+            todo.push_back({at.level + 1, j});
+          }
+        }
+      }
     }
+  }
+
+  static bool holds(const Ring& ring, EnuPoint p) {
+    bool in = false;
+    for (const auto& e : edges_of({ring})) {
+      if ((e.a.north_m > p.north_m) == (e.b.north_m > p.north_m)) continue;
+      const double share = (p.north_m - e.a.north_m) / (e.b.north_m - e.a.north_m);
+      if (p.east_m < e.a.east_m + share * (e.b.east_m - e.a.east_m)) in = !in;
+    }
+    return in;
+  }
+
+  static double square_from_m2(EnuPoint p, const Ring& ring) {
+    double best = square_from_edge(p, {ring.front(), ring.front()});
+    for (const auto& edge : edges_of({ring})) best = std::min(best, square_from_edge(p, edge));
+    return best;
+  }
+
+  /// Its rings, the nearest one first.
+  void draw_part(const Part& part, Drawer& drawer) {
+    std::vector<Ring> rings = part.area();
     while (!rings.empty() && drawer.points().size() <= kMaxSurveyItems) {
       const EnuPoint at = drawer.at().value_or(start_);
-      const auto far_m2 = [&](const Ring& ring) {
-        double best = square_from_edge(at, {ring.front(), ring.front()});
-        for (const auto& edge : edges_of({ring})) best = std::min(best, square_from_edge(at, edge));
-        return best;
-      };
-      std::size_t next = 0;
-      double next_m2 = far_m2(rings.front());
-      for (std::size_t i = 1; i < rings.size(); ++i) {
-        const double m2 = far_m2(rings[i]);
-        if (m2 < next_m2) next = i, next_m2 = m2;
-      }
-      drawer.round(simplified(rings[next], sagitta_m_), start_);
-      rings.erase(rings.begin() + static_cast<std::ptrdiff_t>(next));
+      const auto next =
+          std::min_element(rings.begin(), rings.end(), [at](const Ring& a, const Ring& b) {
+            return square_from_m2(at, a) < square_from_m2(at, b);
+          });
+      drawer.round(simplified(*next, sagitta_m_), start_);
+      rings.erase(next);
     }
   }
 

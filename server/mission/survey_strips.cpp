@@ -9,7 +9,7 @@
 namespace roverd::mission::survey {
 namespace {
 
-constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t kNoChain = std::numeric_limits<std::size_t>::max();
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
 /// Where the boundary passes a line.
@@ -22,8 +22,8 @@ struct Crossing {
 /// A stretch of the boundary within one strip, from one crossing to the next.
 struct Chain {
   std::size_t strip = 0;
-  std::size_t begin = kNone;  ///< crossing; none: the whole ring lies in the strip
-  std::size_t end = kNone;
+  std::size_t begin = kNoChain;  ///< crossing; none: the whole ring lies in the strip
+  std::size_t end = kNoChain;
   Box box{{kFar, kFar}, {-kFar, -kFar}};
 };
 
@@ -151,17 +151,17 @@ class Cutter {
       return c.line == s ? c.interval : lower.size() + c.interval;
     };
     for (const std::size_t i : chains) {
-      if (chains_[i].begin != kNone)
+      if (chains_[i].begin != kNoChain)
         root[find(node(chains_[i].begin))] = find(node(chains_[i].end));
     }
-    std::vector<std::size_t> component(root.size(), kNone);
+    std::vector<std::size_t> component(root.size(), kNoChain);
     auto& made = out.strips[s];
     for (std::size_t i = 0; i < root.size(); ++i) {
       std::size_t& at = component[find(i)];
       const Interval& interval = i < lower.size() ? lower[i] : upper[i - lower.size()];
       const double across_m = line_m(i < lower.size() ? s : s + 1);
       const Box box{{interval.from_m, across_m}, {interval.to_m, across_m}};
-      if (at == kNone) {
+      if (at == kNoChain) {
         at = made.size();
         made.push_back(component_of(box));
       }
@@ -175,7 +175,7 @@ class Cutter {
     }
     for (const std::size_t i : chains) {
       const Chain& chain = chains_[i];
-      if (chain.begin == kNone) {
+      if (chain.begin == kNoChain) {
         made.push_back(component_of(chain.box));
         continue;
       }

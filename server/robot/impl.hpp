@@ -245,6 +245,7 @@ struct Robot::Impl {
   base::Result<void> carry_out(const RadioAction& action);
   base::Result<void> drive_by_radio();
   base::Result<void> ask_for_edit(RadioDeed deed);
+  base::Result<void> ask_for_teach(TeachWish wish);
   base::RadioMeaning radio_meaning() const noexcept;
 
   void event(base::Severity level, const char* kind, std::string detail) {

@@ -24,6 +24,7 @@ class Outbox {
   base::Inbox<PendingReply> replies{1024};
   base::Inbox<base::Event> events{1024};
   base::Inbox<MissionEdit> edits{64};
+  base::Inbox<TeachWish> wishes{64};
 
   void reply(Reply to, base::Result<void> result) {
     if (to) waiting_replies_.push_back({std::move(to), std::move(result)});
@@ -44,6 +45,13 @@ class Outbox {
     return true;
   }
 
+  /// @return false: too many wait.
+  bool teach(TeachWish wish) {
+    if (waiting_wishes_.size() >= kEdits) return false;
+    waiting_wishes_.push_back(wish);
+    return true;
+  }
+
   bool full() const noexcept { return waiting_replies_.size() >= kReplies; }
 
   /// @return true if something was handed over.
@@ -61,6 +69,10 @@ class Outbox {
       waiting_edits_.pop_front();
       any = true;
     }
+    while (!waiting_wishes_.empty() && wishes.try_offer(waiting_wishes_.front())) {
+      waiting_wishes_.pop_front();
+      any = true;
+    }
     return any;
   }
 
@@ -70,6 +82,7 @@ class Outbox {
   std::deque<PendingReply> waiting_replies_;
   std::deque<base::Event> waiting_events_;
   std::deque<MissionEdit> waiting_edits_;
+  std::deque<TeachWish> waiting_wishes_;
   std::uint64_t dropped_ = 0;
 };
 

@@ -30,6 +30,11 @@ const char* refusal_of(RadioDeed deed) noexcept {
     case RadioDeed::StopMission:
     case RadioDeed::SetHome:
       break;
+    case RadioDeed::StartTeach:
+    case RadioDeed::PauseTeach:
+    case RadioDeed::StopTeach:
+    case RadioDeed::DiscardTeach:
+      return "teach_refused";
   }
   return "radio_refused";
 }
@@ -88,6 +93,14 @@ base::Result<void> Robot::Impl::carry_out(const RadioAction& action) {
       return handle(StopMission{});
     case RadioDeed::SetHome:
       return handle(SetHome{});
+    case RadioDeed::StartTeach:
+      return ask_for_teach(TeachWish::Start);
+    case RadioDeed::PauseTeach:
+      return ask_for_teach(TeachWish::Pause);
+    case RadioDeed::StopTeach:
+      return ask_for_teach(TeachWish::Stop);
+    case RadioDeed::DiscardTeach:
+      return ask_for_teach(TeachWish::Discard);
   }
   return {};
 }
@@ -132,6 +145,11 @@ base::Result<void> Robot::Impl::ask_for_edit(RadioDeed deed) {
     return base::fail(Code::Unavailable, "too many changes wait to be saved");
   }
   return {};
+}
+
+base::Result<void> Robot::Impl::ask_for_teach(TeachWish wish) {
+  if (outbox.teach(wish)) return {};
+  return base::fail(Code::Unavailable, "too many wishes wait");
 }
 
 base::RadioMeaning Robot::Impl::radio_meaning() const noexcept {

@@ -22,7 +22,11 @@ enum class RadioDeed {
   StartMission,  ///< or resume it
   PauseMission,
   StopMission,
-  SetHome
+  SetHome,
+  StartTeach,  ///< or go on with it
+  PauseTeach,
+  StopTeach,
+  DiscardTeach
 };
 
 struct RadioAction {

@@ -30,6 +30,10 @@ constexpr RadioAction kActions[] = {
     {"mission.pause", "pause the mission", RadioDeed::PauseMission},
     {"mission.stop", "stop the mission", RadioDeed::StopMission},
     {"home.set", "set home here", RadioDeed::SetHome},
+    {"teach.start", "start or resume the recording", RadioDeed::StartTeach},
+    {"teach.pause", "pause the recording", RadioDeed::PauseTeach},
+    {"teach.stop", "make a mission of the recording", RadioDeed::StopTeach},
+    {"teach.discard", "discard the recording", RadioDeed::DiscardTeach},
 };
 
 /// Checks every field that names an action; those with a range are none.

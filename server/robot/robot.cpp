@@ -41,6 +41,9 @@ base::Inbox<PendingReply>& Robot::replies() noexcept {
 base::Inbox<base::Event>& Robot::events() noexcept {
   return impl_->outbox.events;
 }
+base::Inbox<TeachWish>& Robot::teach_wishes() noexcept {
+  return impl_->outbox.wishes;
+}
 base::Inbox<MissionEdit>& Robot::edits() noexcept {
   return impl_->outbox.edits;
 }

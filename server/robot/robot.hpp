@@ -141,6 +141,9 @@ struct MissionEdit {
   std::optional<int> item;  ///< RemoveItem: 1-based; empty: the last one
   base::WallTime wall;
 };
+/// What the radio wants of the recording of a driven way; whoever keeps it answers by an event.
+enum class TeachWish { Start, Pause, Stop, Discard };
+
 /// Puts a new revision in the place of the loaded one, while it is driven if it is: added items
 /// come last and the drive goes on; without the current item it goes on with the next one.
 struct ReviseMission {
@@ -228,6 +231,7 @@ class Robot {
   base::Inbox<PendingReply>& replies() noexcept;
   base::Inbox<base::Event>& events() noexcept;
   base::Inbox<MissionEdit>& edits() noexcept;
+  base::Inbox<TeachWish>& teach_wishes() noexcept;
   /// Any thread; null before the first tick.
   std::shared_ptr<const base::Snapshot> snapshot() const;
 

@@ -15,6 +15,7 @@
 #include "mission/text.hpp"
 #include "store/mission_entry.hpp"
 #include "store/packed.hpp"
+#include "store/teach.hpp"
 
 namespace roverd::store {
 namespace {
@@ -221,9 +222,11 @@ void Missions::keep_tags(const Head& head, const Entry& entry) {
   }
 }
 
-Result<StoredMission> Missions::create(mission::Plan plan, const Change& change, WallTime now) {
+Result<StoredMission> Missions::create(mission::Plan plan, const Change& change, WallTime now,
+                                       Teach teach) {
   SQLite::Transaction transaction(db_, SQLite::TransactionBehavior::IMMEDIATE);
   auto made = add_mission(std::move(plan), {change, "created", now});
+  if (made && teach == Teach::Ends) clear_teach(db_);
   if (made) transaction.commit();
   return made;
 }

@@ -21,7 +21,10 @@ class Missions {
 
   base::Result<Page<MissionSummary>> list(int limit, const std::string& cursor,
                                           const Filter& filter);
-  base::Result<StoredMission> create(mission::Plan plan, const Change& change, base::WallTime now);
+  /// Ends: the recording that became this mission is forgotten with it.
+  enum class Teach { Stays, Ends };
+  base::Result<StoredMission> create(mission::Plan plan, const Change& change, base::WallTime now,
+                                     Teach teach = Teach::Stays);
   base::Result<StoredMission> read(const std::string& id);
   base::Result<StoredMission> read_revision(const std::string& id, std::int64_t revision);
   base::Result<StoredMission> replace(const std::string& id, std::int64_t expected,

@@ -12,7 +12,9 @@
 #include "store/events.hpp"
 #include "store/fences.hpp"
 #include "store/missions.hpp"
+#include "store/routes.hpp"
 #include "store/runs.hpp"
+#include "store/teach.hpp"
 
 namespace roverd::store {
 
@@ -342,6 +344,57 @@ void Store::keep_place(std::optional<StoredPlace> place, Reply<void> reply) {
   });
 }
 
+void Store::create_route_map(RouteMap map, Reply<RouteMap> reply) {
+  impl_->ask(std::move(reply), [impl = impl_.get(), map = std::move(map)]() mutable {
+    return store::create_route_map(impl->db->connection, std::move(map), impl->options.clock());
+  });
+}
+
+void Store::list_route_maps(int limit, std::string cursor, Reply<Page<RouteMapSummary>> reply) {
+  impl_->ask(std::move(reply), [impl = impl_.get(), limit, cursor = std::move(cursor)] {
+    return store::list_route_maps(impl->db->connection, limit, cursor);
+  });
+}
+
+void Store::read_route_map(std::string id, Reply<RouteMap> reply) {
+  impl_->ask(std::move(reply), [impl = impl_.get(), id = std::move(id)] {
+    return store::read_route_map(impl->db->connection, id);
+  });
+}
+
+void Store::delete_route_map(std::string id, Reply<void> reply) {
+  impl_->ask(std::move(reply), [impl = impl_.get(), id = std::move(id)] {
+    return store::delete_route_map(impl->db->connection, id);
+  });
+}
+
+void Store::begin_teach(TeachRecord record, Reply<void> reply) {
+  impl_->ask(std::move(reply), [impl = impl_.get(), record = std::move(record)] {
+    return store::begin_teach(impl->db->connection, record);
+  });
+}
+
+void Store::add_teach_points(std::vector<mission::TaughtPoint> points, Reply<void> reply) {
+  impl_->ask(std::move(reply), [impl = impl_.get(), points = std::move(points)] {
+    return store::add_teach_points(impl->db->connection, points);
+  });
+}
+
+void Store::read_teach(Reply<std::optional<TeachRecord>> reply) {
+  impl_->ask(std::move(reply), [impl = impl_.get()]() -> Result<std::optional<TeachRecord>> {
+    return store::read_teach(impl->db->connection);
+  });
+}
+
+void Store::discard_teach(Reply<void> reply) {
+  impl_->ask(std::move(reply), [impl = impl_.get()]() -> Result<void> {
+    SQLite::Transaction transaction(impl->db->connection, SQLite::TransactionBehavior::IMMEDIATE);
+    clear_teach(impl->db->connection);
+    transaction.commit();
+    return {};
+  });
+}
+
 void Store::read_place(Reply<std::optional<StoredPlace>> reply) {
   impl_->ask(std::move(reply), [impl = impl_.get()] { return impl->runs.place(); });
 }
@@ -378,6 +431,14 @@ Result<RunWithTrack> read_run(const std::filesystem::path& file, std::int64_t id
     if (!points) return tl::unexpected(points.error());
     return RunWithTrack{std::move(*run), std::move(*points)};
   });
+}
+
+void Store::finish_teach(mission::Plan plan, Change change, Reply<StoredMission> reply) {
+  impl_->ask(std::move(reply),
+             [impl = impl_.get(), plan = std::move(plan), change = std::move(change)]() mutable {
+               return impl->missions.create(std::move(plan), change, impl->options.clock(),
+                                            Missions::Teach::Ends);
+             });
 }
 
 void Store::add_event(base::Event event) {

@@ -18,6 +18,8 @@
 #include "base/time.hpp"
 #include "mission/fence.hpp"
 #include "mission/plan.hpp"
+#include "mission/route_graph.hpp"
+#include "mission/teach.hpp"
 #include "store/run_words.hpp"
 
 namespace roverd::store {
@@ -108,6 +110,30 @@ struct Page {
 struct StoredEvent {
   std::int64_t id = 0;
   base::Event event;
+};
+
+struct RouteMapSummary {
+  std::string id;
+  std::string name;
+  base::WallTime created;
+  mission::MapFrame frame;
+  std::optional<std::int64_t> home;
+  int nodes = 0;
+  int links = 0;
+};
+
+/// A map of nodes and links.
+struct RouteMap {
+  RouteMapSummary about;
+  mission::RouteGraph graph;
+};
+
+/// A recording of a driven way that is being made, or was when the program ended.
+struct TeachRecord {
+  base::WallTime started;
+  std::string name;
+  mission::TeachSettings settings;
+  std::vector<mission::TaughtPoint> points{};
 };
 
 /// Who changed what, for the list of revisions. An empty `what` becomes "created", "replaced" …
@@ -216,6 +242,22 @@ class Store {
 
   /// Holds from the next start on, over the configuration file.
   void keep_parameter(StoredParameter parameter, Reply<void> reply);
+
+  /// @param map id, time and counts are filled in
+  void create_route_map(RouteMap map, Reply<RouteMap> reply);
+  /// Newest first. Malformed if the cursor is not one of ours.
+  void list_route_maps(int limit, std::string cursor, Reply<Page<RouteMapSummary>> reply);
+  void read_route_map(std::string id, Reply<RouteMap> reply);
+  void delete_route_map(std::string id, Reply<void> reply);
+
+  /// Conflict if there is a recording already.
+  void begin_teach(TeachRecord record, Reply<void> reply);
+  /// Behind those that are there. Conflict without a recording.
+  void add_teach_points(std::vector<mission::TaughtPoint> points, Reply<void> reply);
+  void read_teach(Reply<std::optional<TeachRecord>> reply);
+  void discard_teach(Reply<void> reply);
+  /// Makes a mission and forgets the recording, both or neither.
+  void finish_teach(mission::Plan plan, Change change, Reply<StoredMission> reply);
 
   /// No answer; when there is no room or the disk is full the event is lost and counted. A list
   /// asked for later has it.

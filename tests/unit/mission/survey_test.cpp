@@ -15,7 +15,7 @@
 namespace roverd::mission {
 namespace {
 
-constexpr LatLon kField{58.378, 26.729};
+constexpr LatLon kSurveyField{58.378, 26.729};
 
 std::vector<Outline> rectangle(double width, double height) {
   return {{{0, 0}, {width, 0}, {width, height}, {0, height}}};
@@ -92,9 +92,9 @@ std::vector<Outline> jagged(int points, double radius, double depth, unsigned se
   return {o};
 }
 
-/// Metres are those of a plane at kField; the planner has its own at the field's middle.
+/// Metres are those of a plane at kSurveyField; the planner has its own at the field's middle.
 struct Ground {
-  base::TangentPlane plane{kField};
+  base::TangentPlane plane{kSurveyField};
 
   SurveyRequest request(const std::vector<Outline>& field, double spacing_m) const {
     SurveyRequest r;
@@ -349,7 +349,7 @@ TEST(Survey, OrderPassesOverTracksAndComesBackForThem) {
   }
 }
 
-std::string refusal(const SurveyRequest& request) {
+std::string survey_refusal(const SurveyRequest& request) {
   const auto survey = plan_survey(request);
   if (survey) return "none";
   EXPECT_EQ(survey.error().code, base::Code::Invalid);
@@ -360,30 +360,31 @@ TEST(Survey, RefusesWhatIsNoField) {
   const Ground ground;
   const double nan = std::nan("");
   const auto with = [&](std::vector<Outline> field) { return ground.request(field, 1.0); };
-  EXPECT_EQ(refusal(with({})), "/polygon");
-  EXPECT_EQ(refusal(with({{}})), "/polygon");
-  EXPECT_EQ(refusal(with({{{0, 0}, {10, 0}}})), "/polygon/0");
-  EXPECT_EQ(refusal(with({{{0, 0}, {10, 0}, {10, 0}, {0, 0}}})), "/polygon/0");
+  EXPECT_EQ(survey_refusal(with({})), "/polygon");
+  EXPECT_EQ(survey_refusal(with({{}})), "/polygon");
+  EXPECT_EQ(survey_refusal(with({{{0, 0}, {10, 0}}})), "/polygon/0");
+  EXPECT_EQ(survey_refusal(with({{{0, 0}, {10, 0}, {10, 0}, {0, 0}}})), "/polygon/0");
   // A bow tie: the second edge meets the fourth.
-  EXPECT_EQ(refusal(with({{{0, 0}, {10, 10}, {10, 0}, {0, 10}}})).substr(0, 11), "/polygon/0/");
-  EXPECT_EQ(refusal(with({{{0, 0}, {10, 0}, {20, 0}}})).substr(0, 10), "/polygon/0");
+  EXPECT_EQ(survey_refusal(with({{{0, 0}, {10, 10}, {10, 0}, {0, 10}}})).substr(0, 11),
+            "/polygon/0/");
+  EXPECT_EQ(survey_refusal(with({{{0, 0}, {10, 0}, {20, 0}}})).substr(0, 10), "/polygon/0");
   auto outside = rectangle(20, 20);
   outside.push_back({{30, 30}, {35, 30}, {35, 35}});
-  EXPECT_EQ(refusal(with(outside)), "/polygon/1");
+  EXPECT_EQ(survey_refusal(with(outside)), "/polygon/1");
   auto nested = rectangle(20, 20);
   nested.push_back({{2, 2}, {18, 2}, {18, 18}, {2, 18}});
   nested.push_back({{5, 5}, {8, 5}, {8, 8}});
-  EXPECT_EQ(refusal(with(nested)), "/polygon/2");
+  EXPECT_EQ(survey_refusal(with(nested)), "/polygon/2");
   auto across = rectangle(20, 20);
   across.push_back({{15, 5}, {25, 5}, {25, 8}});
-  EXPECT_NE(refusal(with(across)), "none");
+  EXPECT_NE(survey_refusal(with(across)), "none");
   auto wrong = with(rectangle(20, 20));
   wrong.rings[0][2].lat = nan;
-  EXPECT_EQ(refusal(wrong), "/polygon/0/2");
+  EXPECT_EQ(survey_refusal(wrong), "/polygon/0/2");
   wrong.rings[0][2].lat = 59.0;
-  EXPECT_EQ(refusal(wrong), "/polygon/0/0");
-  wrong.rings[0].assign(kMaxFieldPoints + 1, kField);
-  EXPECT_EQ(refusal(wrong), "/polygon");
+  EXPECT_EQ(survey_refusal(wrong), "/polygon/0/0");
+  wrong.rings[0].assign(kMaxFieldPoints + 1, kSurveyField);
+  EXPECT_EQ(survey_refusal(wrong), "/polygon");
 }
 
 TEST(Survey, RefusesNumbersOutOfTheirRange) {
@@ -391,7 +392,7 @@ TEST(Survey, RefusesNumbersOutOfTheirRange) {
   const auto with = [&](auto change) {
     auto request = ground.request(rectangle(20, 20), 2.0);
     change(request);
-    return refusal(request);
+    return survey_refusal(request);
   };
   EXPECT_EQ(with([](auto& r) { r.spacing_m = 0.0; }), "/spacing_m");
   EXPECT_EQ(with([](auto& r) { r.spacing_m = std::nan(""); }), "/spacing_m");
