@@ -13,6 +13,7 @@ constexpr double kSteepest = 0.5;
 /// An oscillator with the delay T left to prediction is stable for L > 1.5·v·T (model exact); the
 /// rest is for a delay that is not quite the one in the profile.
 constexpr double kDelayRoom = 1.9;
+constexpr double kCalmest = 2.5;
 const double kMostWheel_rad = base::rad_from_deg(70.0);
 
 double approach(double cross_m, double settle_m, double damping) noexcept {
@@ -29,7 +30,7 @@ std::optional<TrackLaw> law_from(std::string_view word) noexcept {
 }
 
 double calm_of(double yaw_sigma_rad, double known_sigma_rad) noexcept {
-  return std::clamp(yaw_sigma_rad / std::max(known_sigma_rad, 1e-6), 1.0, 4.0);
+  return std::clamp(yaw_sigma_rad / std::max(known_sigma_rad, 1e-6), 1.0, kCalmest);
 }
 
 double settle_length_m(double speed_mps, const TrackParams& p) noexcept {

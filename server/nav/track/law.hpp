@@ -37,7 +37,7 @@ struct BesidePath {
 };
 
 /// How much calmer to steer for a heading that is not known well: what looks like an error of
-/// direction is then the compass's. 1 to 4.
+/// direction is then the compass's. 1 to 2.5.
 double calm_of(double yaw_sigma_rad, double known_sigma_rad) noexcept;
 
 /// L of the path-frame law: not less than what the delay lets be stable.
