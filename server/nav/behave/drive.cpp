@@ -16,10 +16,12 @@ constexpr double kThereVaguely_m = 0.3;
 constexpr double kVague_m = 0.1;  // of the position's sigma
 
 /// A robot that does not know its place to the decimetre, or cannot move aside, is not sent round
-/// for one.
-double there_m(const Vehicle& vehicle, const VehicleParams& params) {
-  if (params.steered()) return 0.5;
-  return vehicle.sigma_m > kVague_m ? std::clamp(vehicle.sigma_m, kThereVaguely_m, 0.5) : kThere_m;
+/// for one; nor for 15 cm while it does not know which way it points.
+double there_m(const Vehicle& vehicle, const PathParams& params) {
+  if (params.vehicle.steered()) return 0.5;
+  if (vehicle.sigma_m > kVague_m) return std::clamp(vehicle.sigma_m, kThereVaguely_m, 0.5);
+  const bool turned = vehicle.yaw_sigma_rad > base::rad_from_deg(params.speed.heading_sigma_deg);
+  return turned ? 3.0 * kThere_m : kThere_m;
 }
 
 std::string tenths(double m) {
@@ -166,7 +168,7 @@ bool Executor::lay_connector(Vertex end, const Vehicle& vehicle) {
   const Vertex both[] = {{from, end.speed_mps, end.reverse, false, mission::Turn::Auto, 0.1}, end};
   connector_ = build_path(both, path_params_);
   rejoin_.reset();
-  if (connector_.legs.empty() || connector_.length_m() < there_m(vehicle, path_params_.vehicle))
+  if (connector_.legs.empty() || connector_.length_m() < there_m(vehicle, path_params_))
     return false;
   doing_ = Doing::Connector;
   drove_ = true;

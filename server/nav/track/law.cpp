@@ -13,6 +13,7 @@ constexpr double kSteepest = 0.5;
 /// An oscillator with the delay T left to prediction is stable for L > 1.5·v·T (model exact); the
 /// rest is for a delay that is not quite the one in the profile.
 constexpr double kDelayRoom = 1.9;
+constexpr double kCalmest = 2.5;
 const double kMostWheel_rad = base::rad_from_deg(70.0);
 
 double approach(double cross_m, double settle_m, double damping) noexcept {
@@ -28,6 +29,10 @@ std::optional<TrackLaw> law_from(std::string_view word) noexcept {
   return std::nullopt;
 }
 
+double calm_of(double yaw_sigma_rad, double known_sigma_rad) noexcept {
+  return std::clamp(yaw_sigma_rad / std::max(known_sigma_rad, 1e-6), 1.0, kCalmest);
+}
+
 double settle_length_m(double speed_mps, const TrackParams& p) noexcept {
   const double v = std::abs(speed_mps);
   return std::max({p.settle_min_m, p.settle_time_s * v, kDelayRoom * p.delay_s * v});
@@ -39,7 +44,7 @@ double course_error_rad(double cross_m, double heading_rad, double settle_m,
 }
 
 double path_frame_1pm(const BesidePath& at, const TrackParams& p) noexcept {
-  const double settle_m = settle_length_m(at.speed_mps, p);
+  const double settle_m = at.calm * settle_length_m(at.speed_mps, p);
   // Beyond the centre of the bend the path's frame has no sense.
   const double beside = std::max(0.3, 1.0 - at.curvature_1pm * at.cross_m);
   const double ahead = std::max(0.0, std::cos(at.heading_rad));

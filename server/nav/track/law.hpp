@@ -33,7 +33,12 @@ struct BesidePath {
   double heading_rad = 0.0;    ///< (−π, π]
   double curvature_1pm = 0.0;  ///< of the path, where the command acts
   double speed_mps = 0.0;      ///< >= 0
+  double calm = 1.0;           ///< >= 1: so much longer the way back may be
 };
+
+/// How much calmer to steer for a heading that is not known well: what looks like an error of
+/// direction is then the compass's. 1 to 2.5.
+double calm_of(double yaw_sigma_rad, double known_sigma_rad) noexcept;
 
 /// L of the path-frame law: not less than what the delay lets be stable.
 double settle_length_m(double speed_mps, const TrackParams& p) noexcept;

@@ -72,6 +72,17 @@ TEST(Law, TheLongerTheDelayTheCalmer) {
   EXPECT_EQ(settle_length_m(-1.0, p), settle_length_m(1.0, p));
 }
 
+TEST(Law, TheLessTheHeadingIsKnownTheCalmer) {
+  const double known = base::rad_from_deg(4.0);
+  EXPECT_EQ(calm_of(0.0, known), 1.0);
+  EXPECT_EQ(calm_of(known, known), 1.0);
+  EXPECT_DOUBLE_EQ(calm_of(2.0 * known, known), 2.0);
+  EXPECT_EQ(calm_of(3.0, known), 2.5);
+  const TrackParams p;
+  const double sure = path_frame_1pm({0.0, 0.1, 0.0, 0.4, 1.0}, p);
+  EXPECT_NEAR(path_frame_1pm({0.0, 0.1, 0.0, 0.4, 4.0}, p), sure / 4.0, 1e-12);
+}
+
 TEST(Observer, LearnsATurnThatNobodyCommanded) {
   const TrackParams p;
   YawObserver o;

@@ -61,7 +61,7 @@ TEST(StudyFiles, WhatIsWrongInACourseIsNamed) {
     return R"({"courses": [{"name": "a", )" + members + "}]}";
   };
   const std::string points = R"("points": [[0, 0], [1, 0]])";
-  EXPECT_EQ(courses_problem("{"), "byte 1: the text ends in the middle of a value");
+  EXPECT_EQ(courses_problem("{").rfind("not JSON at byte 1", 0), 0u);
   EXPECT_EQ(courses_problem("[]"), " must be an object with the member courses");
   EXPECT_EQ(courses_problem(R"({"courses": []})"), "/courses must be a list of at least one");
   EXPECT_EQ(courses_problem(R"({"courses": [7]})"), "/courses/0 must be an object");
