@@ -57,7 +57,7 @@ struct Context {
       : deps(std::move(with)),
         commands(deps.robot),
         runs(deps.robot, deps.store, deps.profile.name),
-        fence(deps.robot),
+        fence_keeper(deps.robot),
         begun(base::steady_now()) {}
 
   Deps deps;
@@ -65,7 +65,7 @@ struct Context {
   Router router;
   Trail trail;
   RunRecorder runs;
-  FenceKeeper fence;
+  FenceKeeper fence_keeper;
   base::Time begun;
   std::map<std::string, double> driver_rates;
   std::string openapi_tag;
