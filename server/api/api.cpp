@@ -280,7 +280,7 @@ void Api::on_sample() {
   if (const auto snapshot = impl_->context->deps.robot.snapshot()) {
     impl_->context->trail.take(*snapshot);
     impl_->context->runs.look(*snapshot);
-    impl_->context->keeper.look(*snapshot);
+    impl_->context->fence_keeper.look(*snapshot);
     impl_->context->teach->sample(*snapshot);
   }
 }

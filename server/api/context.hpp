@@ -58,7 +58,7 @@ struct Context {
       : deps(std::move(with)),
         commands(deps.robot),
         runs(deps.robot, deps.store, deps.profile.name),
-        keeper(deps.robot),
+        fence_keeper(deps.robot),
         begun(base::steady_now()) {}
 
   Deps deps;
@@ -66,7 +66,7 @@ struct Context {
   Router router;
   Trail trail;
   RunRecorder runs;
-  FenceKeeper keeper;
+  FenceKeeper fence_keeper;
   std::unique_ptr<TeachIn> teach;
   base::Time begun;
   std::map<std::string, double> driver_rates;

@@ -148,7 +148,7 @@ struct Options {
   std::int64_t max_bytes = 4'000'000'000;  ///< of the file; then as if the disk were full
   base::Duration keep_deleted = std::chrono::hours(24 * 30);  ///< then they are forgotten for good
   std::int64_t keep_runs = 1000;  ///< the newest; older ones go with their tracks
-  std::function<base::WallTime()> clock = base::wall_now;     ///< called on the store's thread
+  std::function<base::WallTime()> clock = base::wall_now;  ///< called on the store's thread
 };
 
 inline constexpr int kMaxPage = 1000;  ///< largest `limit` of a list; below 1 or above is Invalid

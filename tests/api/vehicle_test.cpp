@@ -104,7 +104,7 @@ TEST_F(VehicleApi, ModesAreSetOrRefusedWithTheReason) {
   until_ready();
   EXPECT_EQ(call("PUT", "/vehicle/mode", Json{{"mode", "MANUAL"}}).body["mode"], "MANUAL");
   EXPECT_EQ(call("PUT", "/vehicle/mode", Json{{"mode", "HOLD"}}).body["mode"], "HOLD");
-  EXPECT_EQ(call("PUT", "/vehicle/mode", Json{{"mode", "DOCK"}}).status, 409u);
+  EXPECT_EQ(call("PUT", "/vehicle/mode", Json{{"mode", "RTL"}}).status, 409u);
   const auto wrong = call("PUT", "/vehicle/mode", Json{{"mode", "fly"}});
   EXPECT_EQ(wrong.status, 422u);
   EXPECT_EQ(wrong.body["errors"][0]["pointer"], "/mode");

@@ -81,7 +81,6 @@ def case_resume():
                                 "1", "2"], capture_output=True, text=True, check=False)
         check(table.returncode == 0, f"roverd report: {table.stderr}")
         check("cross-track rms" in table.stdout and "interrupted" in table.stdout, table.stdout)
-        print(table.stdout)
 
 
 def case_report_refusals():
