@@ -42,7 +42,7 @@ TEST(VehicleWords, YawBecomesHeadingAndRadiansDegrees) {
   //   N   ↗ yaw +π/4, heading 45
   //   └─ E
   base::Snapshot s;
-  s.pose = base::Pose{};
+  s.pose.emplace();
   s.pose->stamp = at(9'900ms);
   s.pose->global = {58.378020123456, 26.728900987654};
   s.pose->yaw_rad = base::kPi / 4;
@@ -78,7 +78,7 @@ TEST(VehicleWords, OldValuesStayVisibleAndAreMarked) {
 
 TEST(VehicleWords, ASpeedThatNobodyTellsAnyMoreIsUnknown) {
   base::Snapshot s;
-  s.pose = base::Pose{};
+  s.pose.emplace();
   s.base = base::BaseStatus{};
   s.base->stamp = at(9'900ms);
   s.motion = base::BaseMotion{at(9'900ms), {0.5, 0.0}};
@@ -94,7 +94,7 @@ TEST(VehicleWords, ASpeedThatNobodyTellsAnyMoreIsUnknown) {
 
 TEST(VehicleWords, AMessageIsAboutOneKilobyte) {
   base::Snapshot s;
-  s.pose = base::Pose{};
+  s.pose.emplace();
   s.gnss = base::GnssFix{};
   s.base = base::BaseStatus{};
   s.radio = base::RadioState{};
