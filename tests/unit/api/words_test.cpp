@@ -1,5 +1,7 @@
 #include "api/words.hpp"
 
+#include <memory>
+
 #include <gtest/gtest.h>
 
 #include "api/docs.hpp"
@@ -41,7 +43,8 @@ TEST(VehicleWords, YawBecomesHeadingAndRadiansDegrees) {
   // Given a robot that looks north-east and turns left,
   //   N   ↗ yaw +π/4, heading 45
   //   └─ E
-  base::Snapshot s;
+  const auto kept = std::make_unique<base::Snapshot>();  // GCC 12 warns of one on the stack
+  base::Snapshot& s = *kept;
   s.pose.emplace();
   s.pose->stamp = at(9'900ms);
   s.pose->global = {58.378020123456, 26.728900987654};
@@ -77,7 +80,8 @@ TEST(VehicleWords, OldValuesStayVisibleAndAreMarked) {
 }
 
 TEST(VehicleWords, ASpeedThatNobodyTellsAnyMoreIsUnknown) {
-  base::Snapshot s;
+  const auto kept = std::make_unique<base::Snapshot>();
+  base::Snapshot& s = *kept;
   s.pose.emplace();
   s.base = base::BaseStatus{};
   s.base->stamp = at(9'900ms);
