@@ -158,7 +158,7 @@ TEST(Trail, TakesWhatTheRobotBelievesAndWhatItsReceiverSays) {
   EXPECT_TRUE(trail.estimated().points().empty());
   EXPECT_TRUE(trail.received().points().empty());
   // A pose, and a receiver without a fix.
-  s.pose = base::Pose{};
+  s.pose.emplace();
   s.pose->stamp = t(0);
   s.pose->global = at(0, 0);
   s.gnss = base::GnssFix{};
@@ -174,7 +174,7 @@ TEST(Trail, TakesWhatTheRobotBelievesAndWhatItsReceiverSays) {
   EXPECT_EQ(trail.received().points().size(), 1u);
   // A pose that nobody renews is no place.
   s = snapshot(5);
-  s.pose = base::Pose{};
+  s.pose.emplace();
   s.pose->stamp = t(3);
   s.pose->global = at(5, 0);
   trail.take(s);
@@ -208,7 +208,7 @@ TEST(Trail, IsPiecesOfPositionsAndAgesInJson) {
   base::Snapshot s;
   for (const double north_m : {0.0, 1.0, 50.0}) {
     s = snapshot(north_m);
-    s.pose = base::Pose{};
+    s.pose.emplace();
     s.pose->stamp = s.now;
     s.pose->global = at(0, north_m);
     trail.take(s);
