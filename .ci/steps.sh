@@ -20,7 +20,7 @@ declare -A titles=(
   [build]="release build without warnings"
   [unit]="rooms, and the loop in simulated time"
   [api]="the API over real sockets"
-  [command]="./run: options, bad input, Ctrl-C, second start; roverd decode; NTRIP casters"
+  [command]="./run: options, bad input, Ctrl-C, second start; roverd decode; NTRIP casters; power cuts"
   [vehicles]="the main job with every vehicle: ./run --vehicle NAME, judged by the true pose"
   [real]="recordings and mission files from the field"
   [can]="a real CAN interface in the user-mode kernel"
@@ -108,6 +108,7 @@ step_command() {
   python3 "$root/tests/command/decode_test.py" || code=$?
   python3 "$root/tests/command/run_test.py" || code=$?
   python3 "$root/tests/command/ntrip_test.py" || code=$?
+  python3 "$root/tests/command/power_cut_test.py" || code=$?
   return "$code"
 }
 

@@ -42,6 +42,10 @@ struct VehicleSettings {
   double width_m = 0.778;
   double height_m = 0.4;
   double mass_kg = 150.0;
+  double max_climb_deg = 30.0;
+  double drive_power_w = 0.0;
+  double idle_power_w = 0.0;
+  double battery_wh = 0.0;
 };
 
 template <class V>
@@ -52,6 +56,11 @@ void fields(V& v, VehicleSettings& p) {
   v("width_m", p.width_m, 0.1, 5.0, "over everything");
   v("height_m", p.height_m, 0.05, 5.0, "over everything");
   v("mass_kg", p.mass_kg, 0.5, 10'000.0, "unladen");
+  v("max_climb_deg", p.max_climb_deg, 1.0, 60.0, "missions steeper than this are not loaded");
+  v("drive_power_w", p.drive_power_w, 0.0, 100'000.0,
+    "taken while driving, on the average, for estimates; 0: not known");
+  v("idle_power_w", p.idle_power_w, 0.0, 10'000.0, "taken while standing");
+  v("battery_wh", p.battery_wh, 0.0, 1e6, "a full battery; 0: not known");
 }
 
 /// A driver's own wiring; its parameters are in the driver's struct.

@@ -1,5 +1,7 @@
 #include "station.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <optional>
@@ -36,6 +38,29 @@ using base::Result;
 
 constexpr base::Duration kGoodbye = std::chrono::milliseconds(500);
 
+/// What missions are checked against.
+mission::VehicleLimits limits_of(const Settings& s) {
+  const nav::VehicleParams& v = s.robot.vehicle;
+  mission::VehicleLimits limits;
+  limits.max_speed_mps = std::min(v.max_speed_mps, s.robot.speed.max_mps);
+  limits.default_speed_mps = std::min(s.robot.speed.default_mps, limits.max_speed_mps);
+  limits.width_m = s.vehicle.width_m;
+  limits.max_climb_deg = s.vehicle.max_climb_deg;
+  limits.yaw_rate_radps = s.robot.speed.max_yaw_rate_radps;
+  if (v.steered()) {
+    limits.turn_radius_m = v.wheelbase_m / std::tan(base::rad_from_deg(v.max_steering_deg));
+    // From full lock to one side to straight and in again takes twice the time of one.
+    limits.steer_in_m =
+        2.0 * limits.default_speed_mps * v.max_steering_deg / v.max_steering_rate_dps;
+    limits.settle_m = s.robot.track.lookahead_max_m;
+  }
+  const auto known = [](double value) { return value > 0.0 ? std::optional(value) : std::nullopt; };
+  limits.drive_power_w = known(s.vehicle.drive_power_w);
+  limits.idle_power_w = known(s.vehicle.idle_power_w);
+  limits.battery_wh = known(s.vehicle.battery_wh);
+  return limits;
+}
+
 api::Profile profile_of(const Settings& s, const DriverBay& bay) {
   api::Profile profile;
   profile.name = s.vehicle.name;
@@ -56,6 +81,8 @@ api::Profile profile_of(const Settings& s, const DriverBay& bay) {
     if (const auto* word = std::get_if<std::string>(&key.value)) profile.radio[key.name] = *word;
   }
   profile.item_types = {"waypoint", "wait", "speed", "return_home", "jump"};
+  profile.limits = limits_of(s);
+  profile.limits.item_types = profile.item_types;
   return profile;
 }
 

@@ -116,6 +116,8 @@ Api::Api(Deps deps) : impl_(std::make_unique<Impl>(std::move(deps))) {
   add_mission_routes(c);
   add_operation_routes(c);
   add_survey_routes(c);
+  add_check_routes(c);
+  add_fence_routes(c);
   add_file_routes(c);
   add_event_routes(c);
   add_server_routes(c);
@@ -123,6 +125,7 @@ Api::Api(Deps deps) : impl_(std::make_unique<Impl>(std::move(deps))) {
   add_teach_routes(c);
   add_route_routes(c);
   add_tile_routes(c);
+  load_active_fence(c);
 }
 
 Api::~Api() {

@@ -79,6 +79,9 @@ struct Deps {
   std::function<NetFigures()> figures{};
   /// Runs `work` on a thread of its own and then `then` on the web thread. Empty: both at once.
   std::function<void(std::function<void()> work, std::function<void()> then)> aside{};
+  /// The active fence is another one, or was changed; null: none. Also once when the program begins
+  /// with one. Web thread.
+  std::function<void(std::shared_ptr<const mission::Fence>)> fence_changed{};
 };
 
 /// One per program. All members but the constructor: web thread. It must live until the web thread

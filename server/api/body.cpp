@@ -18,14 +18,19 @@ std::string bounds(double min, double max) {
 
 }  // namespace
 
-base::Result<Json> json_body(const Request& request, bool optional) {
-  if (optional && request.body().empty()) return Json::object();
+base::Result<void> check_json_type(const Request& request) {
   std::string_view type = header(request, http::field::content_type);
   type = type.substr(0, type.find(';'));
   while (type.ends_with(' ')) type.remove_suffix(1);
   if (!boost::beast::iequals({type.data(), type.size()}, "application/json")) {
     return base::fail(base::Code::Unsupported, "the body must be sent as application/json");
   }
+  return {};
+}
+
+base::Result<Json> json_body(const Request& request, bool optional) {
+  if (optional && request.body().empty()) return Json::object();
+  if (auto ok = check_json_type(request); !ok) return tl::unexpected<base::Error>(ok.error());
   return mission::parse_json(request.body());
 }
 

@@ -16,6 +16,9 @@ namespace roverd::api {
 /// simple form cannot send that); Malformed: not JSON. @param optional an empty body is {}.
 base::Result<Json> json_body(const Request& request, bool optional = false);
 
+/// Unsupported unless the body is sent as application/json.
+base::Result<void> check_json_type(const Request& request);
+
 /// Reads the members of one object, and complains about those nobody asked for.
 class Members {
  public:

@@ -65,6 +65,14 @@ struct Context {
   std::string openapi_tag;
   std::function<void(const std::string& id, std::optional<std::int64_t> revision)>
       on_mission_change;
+  std::shared_ptr<const store::StoredFence> fence;  ///< the active one; null: none
+  /// What the check found when the loaded mission was loaded.
+  struct Warnings {
+    std::string mission_id;
+    std::int64_t revision = 0;
+    Json list = Json::array();
+  };
+  Warnings warnings{};
 
   /// The whole state, with what the robot does not know of itself.
   Json vehicle(const base::Snapshot& snapshot, base::Time now) const;
@@ -82,6 +90,10 @@ void add_execution_routes(const ContextPtr& context);
 void add_mission_routes(const ContextPtr& context);
 void add_operation_routes(const ContextPtr& context);
 void add_survey_routes(const ContextPtr& context);
+void add_check_routes(const ContextPtr& context);
+void add_fence_routes(const ContextPtr& context);
+/// Asks the store which fence is active; until it answers there is none.
+void load_active_fence(const ContextPtr& context);
 void add_file_routes(const ContextPtr& context);
 void add_event_routes(const ContextPtr& context);
 void add_server_routes(const ContextPtr& context);

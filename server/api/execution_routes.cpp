@@ -1,6 +1,7 @@
 #include <limits>
 #include <utility>
 
+#include "api/checks.hpp"
 #include "api/context.hpp"
 #include "mission/json.hpp"
 
@@ -59,10 +60,20 @@ Handler load(const ContextPtr& context) {
 
     const auto hand_over = [context, call, not_after](base::Result<store::StoredMission> stored) {
       if (!stored) return call->respond(problem(stored.error()));
+      const mission::CheckReport report = check_now(*context, stored->plan);
+      if (report.errors > 0) return call->respond(problem(refusal(report)));
       auto compiled =
           context->deps.robot.compile({stored->id, stored->revision, std::move(stored->plan)});
       if (!compiled) return call->respond(problem(compiled.error()));
-      run_command(context, call, robot::LoadMission{std::move(*compiled)}, not_after, progress);
+      Context::Warnings warnings{stored->id, stored->revision,
+                                 findings_json(report, mission::Severity::Warning)};
+      run_command(context, call, robot::LoadMission{std::move(*compiled)}, not_after,
+                  [context, warnings](const base::Snapshot& snapshot) {
+                    context->warnings = warnings;
+                    Json out = progress(snapshot);
+                    out["warnings"] = warnings.list;
+                    return out;
+                  });
     };
     if (revision) {
       context->deps.store.read_revision(*id, *revision, hand_over);
@@ -80,7 +91,11 @@ base::Error as_conflict(base::Error error) {
 
 Json present_preview(const ContextPtr& context, const robot::Preview& preview) {
   const auto snapshot = context->deps.robot.snapshot();
-  return preview_json(preview, snapshot ? snapshot->mission.state : base::ExecutionState::Idle);
+  Json out = preview_json(preview, snapshot ? snapshot->mission.state : base::ExecutionState::Idle);
+  const Context::Warnings& found = context->warnings;
+  const bool same = found.mission_id == preview.mission_id && found.revision == preview.revision;
+  out["warnings"] = same ? found.list : Json::array();
+  return out;
 }
 
 base::Result<robot::StartMission> read_start(const Json& body, const Call& call,

@@ -78,6 +78,30 @@ base::Result<mission::ImportHints> hints_of(const Call& call) {
   return hints;
 }
 
+/// @param fence of the same file, kept already; null: it has none
+void keep_mission(const ContextPtr& context, const CallPtr& call,
+                  const std::shared_ptr<const mission::ImportedFile>& imported,
+                  const store::Change& change,
+                  const std::shared_ptr<const store::StoredFence>& fence) {
+  context->deps.store.create_mission(
+      imported->plan, change,
+      [context, call, imported, change, fence](base::Result<store::StoredMission> stored) {
+        if (!stored) {
+          // Both or neither.
+          if (fence)
+            context->deps.store.delete_fence(fence->id, fence->revision, change, [](auto) {});
+          return call->respond(problem(stored.error()));
+        }
+        context->announce(stored->id, stored->revision);
+        Json body = import_json(*imported, *stored);
+        body["fence_id"] = fence ? Json(fence->id) : Json(nullptr);
+        Response response = json_response(http::status::created, body);
+        response.set(http::field::location, "/api/v1/missions/" + stored->id);
+        response.set(http::field::etag, etag_of(stored->revision));
+        call->respond(std::move(response));
+      });
+}
+
 Handler import_mission(const ContextPtr& context) {
   return [context](const CallPtr& call) {
     const std::string word = query_text(*call, "format");
@@ -94,15 +118,14 @@ Handler import_mission(const ContextPtr& context) {
     auto imported = std::make_shared<mission::ImportedFile>(std::move(*file));
     const std::string from =
         name.empty() ? std::string(mission::to_string(imported->format)) + " file" : name;
-    context->deps.store.create_mission(
-        imported->plan, {"local", "imported from " + from},
-        [context, call, imported](base::Result<store::StoredMission> stored) {
-          if (!stored) return call->respond(problem(stored.error()));
-          context->announce(stored->id, stored->revision);
-          Response response = json_response(http::status::created, import_json(*imported, *stored));
-          response.set(http::field::location, "/api/v1/missions/" + stored->id);
-          response.set(http::field::etag, etag_of(stored->revision));
-          call->respond(std::move(response));
+    const store::Change change{"local", "imported from " + from};
+    if (!imported->fence) return keep_mission(context, call, imported, change, nullptr);
+    context->deps.store.create_fence(
+        *imported->fence, change,
+        [context, call, imported, change](base::Result<store::StoredFence> fence) {
+          if (!fence) return call->respond(problem(fence.error()));
+          keep_mission(context, call, imported, change,
+                       std::make_shared<const store::StoredFence>(std::move(*fence)));
         });
   };
 }
@@ -112,17 +135,26 @@ Handler export_mission(const ContextPtr& context) {
     const std::string word = query_text(*call, "format");
     const auto format = mission::format_from(word);
     if (!format) return call->respond(problem(not_a_format(word)));
+    const std::string with_fence = query_text(*call, "fence");
+    if (!with_fence.empty() && with_fence != "active" && with_fence != "none") {
+      const char* detail = "must be active or none";
+      return call->respond(
+          problem({base::Code::Invalid, "fence " + std::string(detail), {{"fence", detail}}}));
+    }
+    const auto fence = with_fence == "active" ? context->fence : nullptr;
     context->deps.store.read_mission(
-        call->params.at("id"), [call, format](base::Result<store::StoredMission> stored) {
+        call->params.at("id"), [call, format, fence](base::Result<store::StoredMission> stored) {
           if (!stored) return call->respond(problem(stored.error()));
-          mission::ExportedFile file = mission::export_file(stored->plan, *format);
+          mission::ExportedFile file =
+              mission::export_file(stored->plan, *format, fence ? &fence->fence : nullptr);
           const auto count = [&file](mission::Outcome outcome) {
             return std::to_string(
                 std::count_if(file.rows.begin(), file.rows.end(),
                               [outcome](const auto& row) { return row.outcome == outcome; }));
           };
-          Response response = text_response(http::status::ok, file.media_type + "; charset=utf-8",
-                                            std::move(file.content));
+          Response response = text_response(
+              http::status::ok, file.binary ? file.media_type : file.media_type + "; charset=utf-8",
+              std::move(file.content));
           response.set(http::field::content_disposition,
                        attachment(file.file_name, stored->plan.name));
           response.set(http::field::etag, etag_of(stored->revision));

@@ -24,6 +24,16 @@ store::Reply<store::StoredMission> changed(const ContextPtr& context, const Call
   };
 }
 
+store::Reply<store::StoredMission> changed_or_present(const ContextPtr& context,
+                                                      const CallPtr& call) {
+  return [context, call](base::Result<store::StoredMission> stored) {
+    if (!stored && stored.error().code == base::Code::RevisionMismatch) {
+      return refuse_with_present(context, call, std::move(stored.error()));
+    }
+    changed(context, call, http::status::ok)(std::move(stored));
+  };
+}
+
 void refuse_with_present(const ContextPtr& context, const CallPtr& call, base::Error error) {
   context->deps.store.read_mission(
       call->params.at("id"),
@@ -48,17 +58,17 @@ void with_expected(const ContextPtr& context, const CallPtr& call,
                                   "have changed it"}));
   }
   constexpr std::int64_t kNone = -1;
-  if (given.find(',') == std::string_view::npos && given != "*") {
+  if (given == "*") return change(store::kAnyRevision);
+  if (given.find(',') == std::string_view::npos) {
     return change(revision_of(given).value_or(kNone));
   }
-  // "*" or a list: whichever of them is the present one.
+  // A list: whichever of them is the present one.
   context->deps.store.read_mission(
       call->params.at("id"),
       [call, change = std::move(change)](base::Result<store::StoredMission> present) {
         if (!present) return call->respond(problem(present.error()));
         const std::string_view tags = header(call->request, http::field::if_match);
-        const bool fits =
-            tags == "*" || tags.find(etag_of(present->revision)) != std::string_view::npos;
+        const bool fits = tags.find(etag_of(present->revision)) != std::string_view::npos;
         change(fits ? present->revision : kNone);
       });
 }

@@ -18,6 +18,10 @@ Response mission_response(http::status status, const store::StoredMission& missi
 store::Reply<store::StoredMission> changed(const ContextPtr& context, const CallPtr& call,
                                            http::status status);
 
+/// The same for a change that If-Match guards: 412 with the present state.
+store::Reply<store::StoredMission> changed_or_present(const ContextPtr& context,
+                                                      const CallPtr& call);
+
 /// 412 with the present state, so that a client can show what it collided with.
 void refuse_with_present(const ContextPtr& context, const CallPtr& call, base::Error error);
 

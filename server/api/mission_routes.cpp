@@ -10,9 +10,8 @@ namespace roverd::api {
 namespace {
 
 base::Result<mission::Plan> read_plan(const Request& request) {
-  auto body = json_body(request);
-  if (!body) return tl::unexpected<base::Error>(std::move(body.error()));
-  return mission::plan_from_json(*body);
+  if (auto ok = check_json_type(request); !ok) return tl::unexpected<base::Error>(ok.error());
+  return mission::plan_from_text(request.body());
 }
 
 bool not_modified(const CallPtr& call, std::int64_t revision) {
@@ -46,14 +45,8 @@ Handler replace(const ContextPtr& context) {
     auto plan = read_plan(call->request);
     if (!plan) return call->respond(problem(plan.error()));
     with_expected(context, call, [context, call, plan = std::move(*plan)](std::int64_t expected) {
-      const auto done = [context, call](base::Result<store::StoredMission> stored) {
-        if (!stored && stored.error().code == base::Code::RevisionMismatch) {
-          return refuse_with_present(context, call, std::move(stored.error()));
-        }
-        changed(context, call, http::status::ok)(std::move(stored));
-      };
       context->deps.store.replace_mission(call->params.at("id"), expected, plan, {kAuthor, ""},
-                                          done);
+                                          changed_or_present(context, call));
     });
   };
 }
@@ -82,8 +75,48 @@ Handler revert(const ContextPtr& context) {
     members.require("revision");
     const auto revision = members.whole("revision", 1, 1'000'000'000);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
-    context->deps.store.revert_mission(call->params.at("id"), *revision, {kAuthor, ""},
-                                       changed(context, call, http::status::ok));
+    with_expected(context, call, [context, call, to = *revision](std::int64_t expected) {
+      context->deps.store.revert_mission(call->params.at("id"), expected, to, {kAuthor, ""},
+                                         changed_or_present(context, call));
+    });
+  };
+}
+
+/// {name?, tags?, archived?}: what is told of a mission without its items.
+Handler describe(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    const auto body = json_body(call->request);
+    if (!body) return call->respond(problem(body.error()));
+    Members members(*body);
+    store::Description description;
+    description.name = members.text("name");
+    description.archived = members.flag("archived");
+    if (const Json* tags = members.any("tags")) {
+      description.tags.emplace();
+      const bool texts =
+          tags->is_array() &&
+          std::all_of(tags->begin(), tags->end(), [](const Json& t) { return t.is_string(); });
+      if (!texts) members.complain("tags", "must be a list of texts");
+      if (texts) description.tags = tags->get<std::vector<std::string>>();
+    }
+    if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
+    with_expected(context, call, [context, call, description](std::int64_t expected) {
+      context->deps.store.describe_mission(call->params.at("id"), expected, description,
+                                           {kAuthor, ""}, changed_or_present(context, call));
+    });
+  };
+}
+
+/// {name?}
+Handler copy(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    const auto body = json_body(call->request, true);
+    if (!body) return call->respond(problem(body.error()));
+    Members members(*body);
+    const auto name = members.text("name");
+    if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
+    context->deps.store.copy_mission(call->params.at("id"), name, {kAuthor, ""},
+                                     changed(context, call, http::status::created));
   };
 }
 
@@ -95,28 +128,51 @@ store::Reply<store::Page<T>> listed(const CallPtr& call, Json (*words)(const sto
   };
 }
 
+/// ?name= one of "true" and "false"; left out: false.
+base::Result<bool> flag_in_query(const Call& call, const char* name) {
+  const std::string text = query_text(call, name);
+  if (text.empty() || text == "true" || text == "false") return text == "true";
+  const std::string detail = "must be true or false";
+  return base::fail(base::Code::Invalid, std::string(name) + " " + detail, {{name, detail}});
+}
+
+/// ?deleted= or ?archived=, ?name=, ?tag=
+base::Result<store::Filter> filter_of(const Call& call) {
+  store::Filter filter;
+  const auto deleted = flag_in_query(call, "deleted");
+  if (!deleted) return tl::unexpected<base::Error>(deleted.error());
+  const auto archived = flag_in_query(call, "archived");
+  if (!archived) return tl::unexpected<base::Error>(archived.error());
+  if (*deleted && *archived) {
+    return base::fail(base::Code::Invalid, "archived excludes deleted",
+                      {{"archived", "excludes deleted"}});
+  }
+  if (*archived) filter.which = store::Which::Archived;
+  if (*deleted) filter.which = store::Which::Deleted;
+  filter.name = query_text(call, "name");
+  filter.tag = query_text(call, "tag");
+  return filter;
+}
+
 Handler list_missions(const ContextPtr& context) {
   return [context](const CallPtr& call) {
     const auto limit = limit_of(*call);
     if (!limit) return call->respond(problem(limit.error()));
-    const std::string deleted = query_text(*call, "deleted");
-    if (!deleted.empty() && deleted != "true" && deleted != "false") {
-      return call->respond(problem({base::Code::Invalid,
-                                    "deleted must be true or false",
-                                    {{"deleted", "must be true or false"}}}));
-    }
-    const bool gone = deleted == "true";
+    const auto filter = filter_of(*call);
+    if (!filter) return call->respond(problem(filter.error()));
+    const bool gone = filter->which == store::Which::Deleted;
     context->deps.store.list_missions(
         *limit, query_text(*call, "cursor"),
-        listed<store::MissionSummary>(call, gone ? deleted_list_json : mission_list_json),
-        gone ? store::Which::Deleted : store::Which::Present);
+        listed<store::MissionSummary>(call, gone ? deleted_list_json : mission_list_json), *filter);
   };
 }
 
 Handler restore(const ContextPtr& context) {
   return [context](const CallPtr& call) {
-    context->deps.store.restore_mission(call->params.at("id"), {kAuthor, ""},
-                                        changed(context, call, http::status::ok));
+    with_expected(context, call, [context, call](std::int64_t expected) {
+      context->deps.store.restore_mission(call->params.at("id"), expected, {kAuthor, ""},
+                                          changed_or_present(context, call));
+    });
   };
 }
 
@@ -196,9 +252,18 @@ void add_mission_routes(const ContextPtr& c) {
   c->router.add(
       {get, "/missions/{id}/revisions/{revision}", {200, 304, 404, 422, 503}, one_revision(c)});
   c->router.add({get, "/missions/{id}/compare", {200, 404, 422, 503}, compare(c)});
-  c->router.add({post, "/missions/{id}/restore", {200, 403, 404, 409, 429, 503}, restore(c)});
   c->router.add(
-      {post, "/missions/{id}/revert", {200, 400, 403, 404, 413, 415, 422, 429, 503}, revert(c)});
+      {post, "/missions/{id}/restore", {200, 403, 404, 409, 412, 428, 429, 503}, restore(c)});
+  c->router.add({post,
+                 "/missions/{id}/revert",
+                 {200, 400, 403, 404, 412, 413, 415, 422, 428, 429, 503},
+                 revert(c)});
+  c->router.add({http::verb::patch,
+                 "/missions/{id}",
+                 {200, 400, 403, 404, 412, 413, 415, 422, 428, 429, 503},
+                 describe(c)});
+  c->router.add(
+      {post, "/missions/{id}/copy", {201, 400, 403, 404, 413, 415, 422, 429, 503}, copy(c)});
 }
 
 }  // namespace roverd::api

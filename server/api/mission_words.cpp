@@ -39,13 +39,21 @@ Json mission_json(const store::StoredMission& mission) {
   out["created"] = base::to_rfc3339(mission.created);
   out["updated"] = base::to_rfc3339(mission.updated);
   out["length_m"] = mission::length_m(mission.plan);
+  out["archived"] = mission.archived;
+  out["tags"] = mission.tags;
   return out;
 }
 
 Json mission_list_json(const store::Page<store::MissionSummary>& page) {
   return page_json(page, [](const store::MissionSummary& m) -> Json {
-    return {{"id", m.id},       {"revision", m.revision}, {"name", m.name},
-            {"items", m.items}, {"length_m", m.length_m}, {"updated", base::to_rfc3339(m.updated)}};
+    return {{"id", m.id},
+            {"revision", m.revision},
+            {"name", m.name},
+            {"items", m.items},
+            {"length_m", m.length_m},
+            {"updated", base::to_rfc3339(m.updated)},
+            {"archived", m.archived},
+            {"tags", m.tags}};
   });
 }
 

@@ -26,9 +26,9 @@ class RequestReader {
   RequestReader(const Json& body, const OperationFacts& facts)
       : body_(body), facts_(facts), members_(body) {}
 
-  Result<OperationRequest> read() {
+  Result<OperationRequest> read(bool& dry_run) {
     using Read = OperationRequest (RequestReader::*)();
-    static constexpr std::array<std::pair<std::string_view, Read>, 13> kOperations{{
+    static constexpr std::array<std::pair<std::string_view, Read>, 14> kOperations{{
         {"add_waypoint", &RequestReader::add_waypoint},
         {"remove_waypoint", &RequestReader::remove},
         {"clear", &RequestReader::clear},
@@ -42,8 +42,13 @@ class RequestReader {
         {"join", &RequestReader::join},
         {"split", &RequestReader::split},
         {"renumber", &RequestReader::renumber},
+        {"align", &RequestReader::align},
     }};
     members_.require("op");
+    dry_run = members_.flag("dry_run").value_or(false);
+    if (dry_run && body_.is_object() && body_.value("op", Json()) == "split") {
+      members_.complain("dry_run", "is not possible with split");
+    }
     const auto op = members_.text("op");
     std::optional<OperationRequest> request;
     std::string known = "must be one of";
@@ -261,6 +266,25 @@ class RequestReader {
     return mission::Operation(renumber);
   }
 
+  OperationRequest align() {
+    mission::Align align;
+    members_.require("item");
+    align.first.item = number_or_word("item", "last", 1).value_or(1);
+    align.first.at = position();
+    if (const Json* second = members_.any("second")) {
+      RequestReader inner(*second, facts_);
+      mission::Anchor& anchor = align.second.emplace();
+      inner.members_.require("item");
+      anchor.item = inner.number_or_word("item", "last", 1).value_or(1);
+      anchor.at = inner.position();
+      if (const auto fine = inner.members_.finish(); !fine) {
+        members_.complain_inside("second", fine.error());
+      }
+      if (inner.conflict_) conflict_ = inner.conflict_;
+    }
+    return mission::Operation(align);
+  }
+
   const Json& body_;
   const OperationFacts& facts_;
   Members members_;
@@ -269,8 +293,9 @@ class RequestReader {
 
 }  // namespace
 
-Result<OperationRequest> read_operation(const Json& body, const OperationFacts& facts) {
-  return RequestReader(body, facts).read();
+Result<OperationRequest> read_operation(const Json& body, const OperationFacts& facts,
+                                        bool& dry_run) {
+  return RequestReader(body, facts).read(dry_run);
 }
 
 }  // namespace roverd::api

@@ -29,6 +29,8 @@ using OperationRequest = std::variant<mission::Operation, JoinWith, SplitAfter>;
 
 /// Invalid with every wrong member; Conflict where the vehicle's position or a current item is
 /// meant and there is none.
-base::Result<OperationRequest> read_operation(const Json& body, const OperationFacts& facts);
+/// @param dry_run set if the body asks for the answer alone: nothing is to be kept
+base::Result<OperationRequest> read_operation(const Json& body, const OperationFacts& facts,
+                                              bool& dry_run);
 
 }  // namespace roverd::api

@@ -70,6 +70,7 @@ class Work : public std::enable_shared_from_this<Work> {
 
   void have(base::Result<store::StoredMission>& stored) {
     if (!stored) return refuse(stored.error());
+    if (expected_ == store::kAnyRevision) expected_ = stored->revision;
     if (stored->revision != expected_) {
       return refuse({base::Code::RevisionMismatch,
                      "the mission is at revision " + std::to_string(stored->revision) +
@@ -77,7 +78,7 @@ class Work : public std::enable_shared_from_this<Work> {
                      {}});
     }
     mission_ = std::move(*stored);
-    const auto request = read_operation(body_, facts_of(context_, mission_));
+    const auto request = read_operation(body_, facts_of(context_, mission_), dry_run_);
     if (!request) return refuse(request.error());
     if (const auto* join = std::get_if<JoinWith>(&*request)) return read_other(join->mission_id);
     if (const auto* cut = std::get_if<SplitAfter>(&*request)) return split(*cut);
@@ -97,9 +98,19 @@ class Work : public std::enable_shared_from_this<Work> {
         });
   }
 
+  /// What the mission would be; nothing is kept.
+  void show(const mission::Done& done) {
+    store::StoredMission would = mission_;
+    would.plan = done.plan;
+    Json body = done_json(would, done);
+    body["dry_run"] = true;
+    call_->respond(done_response(mission_, body));
+  }
+
   void perform(const mission::Operation& operation) {
     auto done = mission::perform(mission_.plan, operation);
     if (!done) return refuse(done.error());
+    if (dry_run_) return show(*done);
     if (done->plan == mission_.plan) {
       // Nothing to keep: the same revision.
       done->what = "nothing changed";
@@ -139,6 +150,7 @@ class Work : public std::enable_shared_from_this<Work> {
   CallPtr call_;
   Json body_;
   std::int64_t expected_ = 0;
+  bool dry_run_ = false;
   store::StoredMission mission_;
 };
 

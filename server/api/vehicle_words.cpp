@@ -285,8 +285,10 @@ Json preview_json(const robot::Preview& p, base::ExecutionState state) {
 Json capabilities_json(const Profile& p, const std::string& version) {
   Json modes = Json::array();
   for (const base::Mode mode : p.modes) modes.push_back(base::to_string(mode));
-  const Json formats = {mission::to_string(mission::Format::Plan),
-                        mission::to_string(mission::Format::Waypoints)};
+  Json formats = Json::array();
+  for (const mission::Format format : mission::kFormats) {
+    formats.push_back(mission::to_string(format));
+  }
   return {{"vehicle", p.name},
           {"title", p.title},
           {"version", version},

@@ -11,6 +11,7 @@
 #include "api/message.hpp"
 #include "api/trail.hpp"
 #include "base/snapshot.hpp"
+#include "mission/checks.hpp"
 #include "mission/formats.hpp"
 #include "robot/robot.hpp"
 #include "store/store.hpp"
@@ -47,6 +48,7 @@ struct Profile {
   bool clears_errors = false;                ///< latched ones
   std::vector<std::string> item_types;       ///< those that execution can drive
   std::map<std::string, std::string> radio;  ///< "swc_up" → "mode.manual"
+  mission::VehicleLimits limits{};           ///< what missions are checked against
 };
 
 Json vehicle_json(const base::Snapshot& snapshot, const std::string& name, base::Time now);

@@ -50,7 +50,8 @@ LatLon TangentPlane::to_global(EnuPoint p) const noexcept {
   // height that comes back puts it at the datum's height, as to_local projected it. A height that
   // is wrong by h moves the point by h·d/R: below 0.1 µm it is good.
   constexpr double kGood_m = 1e-7;
-  const double slope = std::hypot(p.east_m, p.north_m) / radius_m_;
+  // hypot() would cost a tenth of all this, to guard against overflow that cannot be here.
+  const double slope = std::sqrt(p.east_m * p.east_m + p.north_m * p.north_m) / radius_m_;
   LatLon out;
   double up_m = -0.5 * slope * slope * radius_m_;
   for (int i = 0; i < 4; ++i) {

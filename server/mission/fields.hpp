@@ -5,6 +5,8 @@
 //   v.number(name, double&, range)            required
 //   v.number(name, optional<double>&, range)  may be absent
 //   v.whole(name, int&, min, max)             required
+//   v.count(name, int&, max)                  required: 0..max, 0 also as "forever"
+//   v.count(name, optional<int>&, max)        the same, may be absent
 //   v.flag(name, bool&)                       absent means false
 //   v.word(name, enumeration&)                required
 //   v.word_or(name, enumeration&, usual)      absent means `usual`
@@ -34,6 +36,9 @@ struct Range {
     return (without_min ? value > min : value >= min) && (without_max ? value < max : value <= max);
   }
 };
+
+/// "must be from 0 to 10, is 11", for a value that it does not hold.
+std::string range_problem(const Range& range, double value);
 
 inline constexpr Range kLat{-90.0, 90.0};
 inline constexpr Range kLon{-180.0, 180.0};
@@ -115,7 +120,7 @@ void fields(V& v, Of<Landmarks> auto& p) {
 template <class V>
 void fields(V& v, Of<Jump> auto& p) {
   v.whole("item", p.item, 1, static_cast<int>(kMaxItems));
-  v.whole("times", p.times, 0, kMaxTimes);
+  v.count("times", p.times, kMaxTimes);
 }
 template <class V>
 void fields(V&, Of<ReturnHome> auto&) {}
@@ -134,6 +139,7 @@ template <class V>
 void fields(V& v, Of<Settings> auto& p) {
   v.word_or("at_end", p.at_end, AtEnd::Hold);
   v.number("speed_mps", p.speed_mps, kSpeed_mps);
+  v.count("times", p.times, kMaxTimes);
 }
 
 }  // namespace roverd::mission

@@ -11,7 +11,7 @@
 namespace roverd::mission {
 
 base::Result<ImportedFile> read_qgc_plan(std::string_view content);
-std::string write_qgc_plan(const Plan& plan, std::vector<FileRow>& rows);
+std::string write_qgc_plan(const Plan& plan, const Fence* fence, std::vector<FileRow>& rows);
 
 base::Result<ImportedFile> read_waypoints(std::string_view content);
 std::string write_waypoints(const Plan& plan, std::vector<FileRow>& rows);
@@ -21,6 +21,10 @@ std::string write_gpx(const Plan& plan, std::vector<FileRow>& rows);
 
 base::Result<ImportedFile> read_kml(std::string_view content);
 std::string write_kml(const Plan& plan, std::vector<FileRow>& rows);
+
+base::Result<ImportedFile> read_kmz(std::string_view content);
+/// Empty if there is no memory.
+std::string write_kmz(const Plan& plan, std::vector<FileRow>& rows);
 
 base::Result<ImportedFile> read_geojson(std::string_view content);
 std::string write_geojson(const Plan& plan, std::vector<FileRow>& rows);

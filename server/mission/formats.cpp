@@ -66,6 +66,8 @@ Result<ImportedFile> read_as(std::string_view content, Format format, const Impo
       return read_gpx(content);
     case Format::Kml:
       return read_kml(content);
+    case Format::Kmz:
+      return read_kmz(content);
     case Format::GeoJson:
       return read_geojson(content);
     case Format::Csv:
@@ -87,6 +89,8 @@ std::string_view to_string(Format format) noexcept {
       return "gpx";
     case Format::Kml:
       return "kml";
+    case Format::Kmz:
+      return "kmz";
     case Format::GeoJson:
       return "geojson";
     case Format::Csv:
@@ -117,6 +121,7 @@ std::string_view to_string(Outcome outcome) noexcept {
 }
 
 std::optional<Format> detect_format(std::string_view content, std::string_view file_name) {
+  if (content.starts_with("PK\x03\x04")) return Format::Kmz;
   content = without_bom(content);
   const std::size_t start = content.find_first_not_of(kBlanks);
   const std::string_view text =
@@ -144,7 +149,7 @@ Result<ImportedFile> import_file(std::string_view content, std::optional<Format>
   if (!format) format = detect_format(content, file_name);
   if (!format) {
     return base::fail(Code::Unsupported,
-                      "none of .plan, .waypoints, GPX, KML, GeoJSON and a table of positions");
+                      "none of .plan, .waypoints, GPX, KML, KMZ, GeoJSON and a table of positions");
   }
   Result<ImportedFile> file = read_as(content, *format, hints);
   if (!file) return file;
@@ -152,15 +157,19 @@ Result<ImportedFile> import_file(std::string_view content, std::optional<Format>
   const std::string own = clean_name(file->plan.name, "Imported mission");
   file->plan.name = clean_name(without_ending(base_name(file_name)), own);
   if (auto ok = check_plan(file->plan); !ok) return tl::unexpected<Error>(ok.error());
+  if (file->fence) {
+    file->fence->name = file->plan.name;
+    if (auto ok = check_fence(*file->fence); !ok) return tl::unexpected<Error>(ok.error());
+  }
   return file;
 }
 
-ExportedFile export_file(const Plan& plan, Format format) {
+ExportedFile export_file(const Plan& plan, Format format, const Fence* fence) {
   ExportedFile file;
   file.file_name = file_stem(plan.name) + '.' + ending_of(format);
   switch (format) {
     case Format::Plan:
-      file.content = write_qgc_plan(plan, file.rows);
+      file.content = write_qgc_plan(plan, fence, file.rows);
       file.media_type = "application/json";
       break;
     case Format::Waypoints:
@@ -175,6 +184,11 @@ ExportedFile export_file(const Plan& plan, Format format) {
       file.content = write_kml(plan, file.rows);
       file.media_type = "application/vnd.google-earth.kml+xml";
       break;
+    case Format::Kmz:
+      file.content = write_kmz(plan, file.rows);
+      file.media_type = "application/vnd.google-earth.kmz";
+      file.binary = true;
+      break;
     case Format::GeoJson:
       file.content = write_geojson(plan, file.rows);
       file.media_type = "application/geo+json";
@@ -187,6 +201,10 @@ ExportedFile export_file(const Plan& plan, Format format) {
       file.content = write_follower(plan, file.rows);
       file.media_type = "text/csv";
       break;
+  }
+  if (fence != nullptr && format != Format::Plan) {
+    file.rows.push_back(
+        {"", "fence", Outcome::LeftOut, "this format has no place for fences", std::nullopt});
   }
   return file;
 }

@@ -5,11 +5,12 @@
 //   waypoints  QGC WPL 110, as Mission Planner and QGroundControl write it: a line for each command
 //   gpx        GPX 1.1: the route, else the tracks, else the waypoints
 //   kml        KML 2.2: lines, else points
+//   kmz        the same, zipped
 //   geojson    RFC 7946: lines and points
 //   csv        lat,lon[,alt,speed]; read: also the follower's form
 //   follower   x,y,z,yaw,velocity from an origin: m, rad, m/s
 //
-// The last five carry positions: each becomes a waypoint, with a height and a speed where the
+// The last six carry positions: each becomes a waypoint, with a height and a speed where the
 // format has them. .plan and .waypoints carry MAVLink mission commands. A rover that drives on the
 // ground cannot do all of them: every row of a file is accounted for as taken, changed or left out,
 // with the reason.
@@ -41,15 +42,17 @@
 #include <vector>
 
 #include "base/result.hpp"
+#include "mission/fence.hpp"
 #include "mission/plan.hpp"
 
 namespace roverd::mission {
 
-enum class Format { Plan, Waypoints, Gpx, Kml, GeoJson, Csv, Follower };
-inline constexpr std::array kFormats{Format::Plan,    Format::Waypoints, Format::Gpx,
-                                     Format::Kml,     Format::GeoJson,   Format::Csv,
-                                     Format::Follower};
-std::string_view to_string(Format format) noexcept;  // plan waypoints gpx kml geojson csv follower
+enum class Format { Plan, Waypoints, Gpx, Kml, Kmz, GeoJson, Csv, Follower };
+inline constexpr std::array kFormats{Format::Plan,     Format::Waypoints, Format::Gpx,
+                                     Format::Kml,      Format::GeoJson,   Format::Csv,
+                                     Format::Follower, Format::Kmz};
+/// plan waypoints gpx kml kmz geojson csv follower
+std::string_view to_string(Format format) noexcept;
 std::optional<Format> format_from(std::string_view word) noexcept;
 
 /// By content first, then by the file name's ending. Empty: none of ours.
@@ -72,6 +75,7 @@ struct ImportedFile {
   Format format = Format::Plan;
   Plan plan;  ///< satisfies check_plan; its name is the file's name without ending
   std::vector<FileRow> rows;
+  std::optional<Fence> fence{};  ///< of a .plan; satisfies check_fence, named like the plan
 };
 
 /// What a file of the follower's form may leave unsaid.
@@ -92,12 +96,14 @@ struct ExportedFile {
   std::string content;
   std::string file_name;   ///< from the plan's name, safe in a Content-Disposition header (ASCII)
   std::string media_type;  ///< without charset: "application/json", "text/csv" …
+  bool binary = false;     ///< no text
   /// Items that the format cannot hold (left out) or only in another form (changed). Items that are
   /// written as they are have no row.
   std::vector<FileRow> rows;
 };
 
-/// Positions come back equal when the file is imported again.
-ExportedFile export_file(const Plan& plan, Format format);
+/// Positions come back equal when the file is imported again. @param fence written into a .plan;
+/// the other formats have no place for it. Null: none
+ExportedFile export_file(const Plan& plan, Format format, const Fence* fence = nullptr);
 
 }  // namespace roverd::mission

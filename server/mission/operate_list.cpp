@@ -21,17 +21,6 @@ std::string with_jumps(std::string what, int jumps) {
   return what;
 }
 
-/// With " (2)", shortened to fit.
-std::string second_name(std::string name) {
-  constexpr std::string_view kEnd = " (2)";
-  const auto is_inside = [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) == 0x80u; };
-  while (utf8_length(name).value_or(0) + kEnd.size() > kMaxNameLength) {
-    while (is_inside(name.back())) name.pop_back();
-    name.pop_back();
-  }
-  return name += kEnd;
-}
-
 }  // namespace
 
 Result<Done> apply(Plan plan, const AddWaypoint& add) {
@@ -150,7 +139,7 @@ Result<Parts> split(Plan plan, int after, bool shared) {
   }
   const int skipped = shared ? after - 1 : after;
   Parts parts;
-  parts.rest.name = second_name(plan.name);
+  parts.rest.name = name_with_ending(plan.name, " (2)");
   parts.rest.home = plan.home;
   parts.rest.settings = plan.settings;
   for (int i = 0; i < count; ++i) {

@@ -18,7 +18,7 @@ using base::TangentPlane;
 namespace {
 
 /// Where a position stands in the plan: a waypoint or a local item, by index.
-struct Place {
+struct Spot {
   std::size_t item = 0;
   LatLon at;
 };
@@ -35,8 +35,9 @@ double compass(double deg) noexcept {
 }
 
 /// @param which may be the empty run of an empty plan
-Result<std::vector<Place>> places_in(const Plan& plan, const Numbers& which) {
-  std::vector<Place> out;
+Result<std::vector<Spot>> places_in(const Plan& plan, const Numbers& which) {
+  std::vector<Spot> out;
+  out.reserve(static_cast<std::size_t>(which.last - which.first + 1));
   std::optional<TangentPlane> home;
   if (plan.home) home.emplace(plan.home->at);
   for (int number = which.first; number <= which.last; ++number) {
@@ -55,10 +56,10 @@ Result<std::vector<Place>> places_in(const Plan& plan, const Numbers& which) {
   return out;
 }
 
-void put(Plan& plan, const std::vector<Place>& places) {
+void put(Plan& plan, const std::vector<Spot>& places) {
   std::optional<TangentPlane> home;
   if (plan.home) home.emplace(plan.home->at);
-  for (const Place& place : places) {
+  for (const Spot& place : places) {
     if (auto* waypoint = std::get_if<Waypoint>(&plan.items[place.item])) {
       waypoint->at = place.at;
     } else if (auto* local = std::get_if<Local>(&plan.items[place.item]); local && home) {
@@ -70,13 +71,13 @@ void put(Plan& plan, const std::vector<Place>& places) {
 }
 
 /// Of the extremes of latitude and longitude. @param places not empty
-LatLon middle_of(const std::vector<Place>& places) {
+LatLon middle_of(const std::vector<Spot>& places) {
   const LatLon base = places.front().at;
   double lat_min = base.lat;
   double lat_max = base.lat;
   double west = 0.0;
   double east = 0.0;
-  for (const Place& place : places) {
+  for (const Spot& place : places) {
     lat_min = std::min(lat_min, place.at.lat);
     lat_max = std::max(lat_max, place.at.lat);
     const double lon = lon_difference(base.lon, place.at.lon);
@@ -86,19 +87,24 @@ LatLon middle_of(const std::vector<Place>& places) {
   return {(lat_min + lat_max) / 2.0, lon_difference(0.0, base.lon + (west + east) / 2.0)};
 }
 
+/// Within 10 km of the plane's origin? Not if it is no number.
+bool in_reach(EnuPoint p) noexcept {
+  constexpr double kReach_m = base::LocalFrame::kReach_m;
+  return p.east_m * p.east_m + p.north_m * p.north_m <= kReach_m * kReach_m;
+}
+
 /// Invalid if one of them is out of the plane's reach. @param pointer of the member to blame
 Result<std::vector<EnuPoint>> laid_out(const TangentPlane& plane, const LatLon& origin,
-                                       const std::vector<Place>& places, const char* pointer) {
+                                       const std::vector<Spot>& places, const char* pointer) {
   std::vector<EnuPoint> out;
   out.reserve(places.size());
-  for (const Place& place : places) {
+  for (const Spot& place : places) {
     out.push_back(plane.to_local(place.at));
-    const double far_m = std::hypot(out.back().east_m, out.back().north_m);
     // On the far side of the earth the plane's distances shrink again.
     const bool opposite =
         std::abs(place.at.lat - origin.lat) > 1.0 ||
         (std::abs(origin.lat) < 85.0 && std::abs(lon_difference(origin.lon, place.at.lon)) > 90.0);
-    if (opposite || far_m > base::LocalFrame::kReach_m) {
+    if (opposite || !in_reach(out.back())) {
       return tl::unexpected<Error>(wrong(pointer, "cannot be: item " +
                                                       std::to_string(place.item + 1) +
                                                       " lies more than 10 km from the centre"));
@@ -107,15 +113,15 @@ Result<std::vector<EnuPoint>> laid_out(const TangentPlane& plane, const LatLon& 
   return out;
 }
 
-LatLon centroid_of(const std::vector<Place>& places) {
+LatLon centroid_of(const std::vector<Spot>& places) {
   const TangentPlane plane(middle_of(places));
   EnuPoint sum;
-  for (const Place& place : places) sum = sum + plane.to_local(place.at);
+  for (const Spot& place : places) sum = sum + plane.to_local(place.at);
   const auto count = static_cast<double>(places.size());
   return plane.to_global({sum.east_m / count, sum.north_m / count});
 }
 
-Result<LatLon> centre_of(const Plan& plan, const std::vector<Place>& places, const About& about) {
+Result<LatLon> centre_of(const Plan& plan, const std::vector<Spot>& places, const About& about) {
   if (const auto* point = std::get_if<LatLon>(&about)) return *point;
   if (std::holds_alternative<AtHome>(about)) {
     if (plan.home) return plan.home->at;
@@ -140,7 +146,7 @@ Result<LatLon> map_all(Plan& plan, const About& about, Map map) {
   if (!points) return tl::unexpected<Error>(points.error());
   for (std::size_t i = 0; i < places->size(); ++i) {
     const EnuPoint to = map((*points)[i]);
-    if (std::hypot(to.east_m, to.north_m) > base::LocalFrame::kReach_m) {
+    if (!in_reach(to)) {
       return tl::unexpected<Error>(
           wrong("/factor", "is too large: item " + std::to_string((*places)[i].item + 1) +
                                " would lie more than 10 km from the centre"));
@@ -196,7 +202,8 @@ Result<Done> apply(Plan plan, const Offset& offset) {
   }
   const auto which = numbers_in(plan, offset.which);
   if (!which) return tl::unexpected<Error>(which.error());
-  std::vector<Place> places;
+  std::vector<Spot> places;
+  places.reserve(static_cast<std::size_t>(which->last - which->first + 1));
   for (int number = which->first; number <= which->last; ++number) {
     const auto i = static_cast<std::size_t>(number) - 1;
     if (const auto* waypoint = std::get_if<Waypoint>(&plan.items[i])) {
@@ -275,6 +282,70 @@ Result<Done> apply(Plan plan, const Mirror& mirror) {
   }
   std::string what = "mirrored about the axis " + rounded_text(compass(mirror.axis_deg)) +
                      " deg through " + about_words(mirror.about);
+  return Done{std::move(plan), std::move(what), std::nullopt, *centre};
+}
+
+namespace {
+
+/// Where an item with a position lies. @param pointer of the member that names it
+Result<LatLon> position_of(const Plan& plan, int item, const char* pointer) {
+  const auto count = static_cast<int>(plan.items.size());
+  if (item < 1 || item > count) {
+    return tl::unexpected<Error>(wrong(
+        pointer, "must be from 1 to " + std::to_string(count) + ", is " + std::to_string(item)));
+  }
+  const auto places = places_in(plan, Numbers{item, item});
+  if (!places) return tl::unexpected<Error>(places.error());
+  if (places->empty()) {
+    return tl::unexpected<Error>(wrong(pointer, "has no position of its own"));
+  }
+  return places->front().at;
+}
+
+double direction_rad(EnuPoint way) noexcept {
+  return std::atan2(way.north_m, way.east_m);
+}
+
+}  // namespace
+
+Result<Done> apply(Plan plan, const Align& align) {
+  constexpr double kLeast_m = 0.1;
+  const auto first = position_of(plan, align.first.item, "/item");
+  if (!first) return tl::unexpected<Error>(first.error());
+  const TangentPlane plane(align.first.at);
+  const EnuPoint begin = plane.to_local(*first);
+  double turn_rad = 0.0;  // counter-clockwise
+  std::string what = "aligned item " + std::to_string(align.first.item) + ", moved by " +
+                     direction_words({-begin.east_m, -begin.north_m});
+  if (align.second) {
+    const auto second = position_of(plan, align.second->item, "/second/item");
+    if (!second) return tl::unexpected<Error>(second.error());
+    const EnuPoint way = plane.to_local(*second) - begin;
+    const EnuPoint wanted = plane.to_local(align.second->at);
+    const double way_m = std::hypot(way.east_m, way.north_m);
+    const double wanted_m = std::hypot(wanted.east_m, wanted.north_m);
+    if (!(std::min(way_m, wanted_m) >= kLeast_m)) {
+      return tl::unexpected<Error>(wrong("/second", "is too near to tell a direction"));
+    }
+    turn_rad = base::angle_diff_rad(direction_rad(way), direction_rad(wanted));
+    what += ", turned by " + rounded_text(-base::deg_from_rad(turn_rad)) + " deg; item " +
+            std::to_string(align.second->item) + " is " + rounded_text(std::abs(way_m - wanted_m)) +
+            " m from its place";
+  }
+  const double c = std::cos(turn_rad);
+  const double s = std::sin(turn_rad);
+  const auto centre = map_all(plan, align.first.at, [&](EnuPoint p) {
+    const EnuPoint way = p - begin;
+    return EnuPoint{c * way.east_m - s * way.north_m, s * way.east_m + c * way.north_m};
+  });
+  if (!centre) {
+    Error error = centre.error();
+    for (auto& field : error.fields) field.pointer = "/item";
+    return tl::unexpected<Error>(std::move(error));
+  }
+  if (turn_rad != 0.0) {
+    map_headings(plan, [&](double deg) { return deg - base::deg_from_rad(turn_rad); });
+  }
   return Done{std::move(plan), std::move(what), std::nullopt, *centre};
 }
 

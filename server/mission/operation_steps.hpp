@@ -20,6 +20,7 @@ base::Result<Done> apply(Plan plan, const Renumber& renumber);
 base::Result<Done> apply(Plan plan, const Offset& offset);
 base::Result<Done> apply(Plan plan, const ScaleRotate& change);
 base::Result<Done> apply(Plan plan, const Mirror& mirror);
+base::Result<Done> apply(Plan plan, const Align& align);
 // operate_points.cpp
 base::Result<Done> apply(Plan plan, const Simplify& simplify);
 base::Result<Done> apply(Plan plan, const Densify& densify);

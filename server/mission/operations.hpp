@@ -94,8 +94,21 @@ struct Renumber {
   int to = 1;
 };
 
+/// An item with a position, and where that place is by today's measure.
+struct Anchor {
+  int item = 1;
+  LatLon at;
+};
+/// Moves the whole mission so that the first item falls on its anchor, and, with a second one,
+/// turns it about there so that the way to the second points to its anchor. Nothing is stretched:
+/// Done::what tells how far the second then is from where it should be.
+struct Align {
+  Anchor first;
+  std::optional<Anchor> second;
+};
+
 using Operation = std::variant<AddWaypoint, RemoveItems, Clear, Reverse, Offset, ScaleRotate,
-                               Mirror, SetHome, Simplify, Densify, Join, Renumber>;
+                               Mirror, SetHome, Simplify, Densify, Join, Renumber, Align>;
 
 inline constexpr double kMinFactor = 0.001;
 inline constexpr double kMaxFactor = 1000.0;

@@ -99,6 +99,9 @@ struct Home {
 struct Settings {
   AtEnd at_end = AtEnd::Hold;
   std::optional<double> speed_mps;  ///< default speed of the mission
+  /// Of Repeat and BackAndForth: how often the way is driven, in either direction; 0 or empty: for
+  /// ever. Without meaning otherwise.
+  std::optional<int> times{};
   friend bool operator==(const Settings&, const Settings&) = default;
 };
 

@@ -11,6 +11,7 @@
 #include "mission/file_formats.hpp"
 #include "mission/json.hpp"
 #include "mission/pointer.hpp"
+#include "mission/qgc_fence.hpp"
 
 namespace roverd::mission {
 namespace {
@@ -49,6 +50,7 @@ class PlanReader {
     const json& mission = root["mission"];
     home(mission);
     cruise_speed(mission);
+    vehicle_type(mission);
     const json& items = mission["items"];
     for (std::size_t i = 0; i < items.size(); ++i) {
       item(items[i], "/mission/items/" + std::to_string(i));
@@ -58,9 +60,7 @@ class PlanReader {
                         {{"/mission/items", "has too many items"}});
     }
     items_from_commands(commands_, file_.plan, file_.rows, problems_);
-    add_left_out(root, "geoFence", "circles", "geofence circle");
-    add_left_out(root, "geoFence", "polygons", "geofence polygon");
-    add_left_out(root, "rallyPoints", "points", "rally point");
+    file_.fence = fence_in_plan(root, file_.rows, problems_);
     if (!problems_.none()) return tl::unexpected<Error>(std::move(problems_).error("the file"));
     return std::move(file_);
   }
@@ -99,6 +99,17 @@ class PlanReader {
     at.lon = element(*value, 1);
     at.alt = element(*value, 2);
     take_home(at, file_.plan, file_.rows, problems_);
+  }
+
+  void vehicle_type(const json& mission) {
+    const auto type = number_in(mission, "vehicleType");
+    if (!type || *type == 0.0 || *type == kVehicleRover || *type == kVehicleBoat) return;
+    file_.rows.push_back({"/mission/vehicleType", "vehicle type", Outcome::Changed,
+                          "the plan was made for a vehicle that does not drive on the ground "
+                          "(MAV_TYPE " +
+                              std::to_string(std::lround(std::clamp(*type, 0.0, 255.0))) +
+                              "): look at every item",
+                          std::nullopt});
   }
 
   void cruise_speed(const json& mission) {
@@ -205,17 +216,6 @@ class PlanReader {
     file_.rows.push_back(std::move(row));
   }
 
-  void add_left_out(const json& root, const char* part, const char* list, const char* what) {
-    const json* section = member(root, part);
-    const json* found = section != nullptr ? list_in(*section, list) : nullptr;
-    if (found == nullptr) return;
-    for (std::size_t i = 0; i < found->size(); ++i) {
-      file_.rows.push_back({"/" + std::string(part) + "/" + list + "/" + std::to_string(i), what,
-                            Outcome::LeftOut, "a mission holds no fences and no rally points",
-                            std::nullopt});
-    }
-  }
-
   std::optional<int> whole(const json& object, const std::string& pointer, const char* name) {
     constexpr double kMost = 1e9;
     const auto value = number_in(object, name);
@@ -265,7 +265,7 @@ Result<ImportedFile> read_qgc_plan(std::string_view content) {
   return PlanReader().read(*root);
 }
 
-std::string write_qgc_plan(const Plan& plan, std::vector<FileRow>& rows) {
+std::string write_qgc_plan(const Plan& plan, const Fence* fence, std::vector<FileRow>& rows) {
   json items = json::array();
   if (!plan.home) {
     rows.push_back({"/home", "home", Outcome::Changed,
@@ -294,13 +294,12 @@ std::string write_qgc_plan(const Plan& plan, std::vector<FileRow>& rows) {
                {"plannedHomePosition", std::move(home)},
                {"items", std::move(items)}};
   if (plan.settings.speed_mps) mission["cruiseSpeed"] = *plan.settings.speed_mps;
-  const json file{
-      {"fileType", "Plan"},
-      {"version", 1},
-      {"groundStation", "QGroundControl"},
-      {"mission", std::move(mission)},
-      {"geoFence", {{"version", 2}, {"circles", json::array()}, {"polygons", json::array()}}},
-      {"rallyPoints", {{"version", 2}, {"points", json::array()}}}};
+  const json file{{"fileType", "Plan"},
+                  {"version", 1},
+                  {"groundStation", "QGroundControl"},
+                  {"mission", std::move(mission)},
+                  {"geoFence", geo_fence_json(fence)},
+                  {"rallyPoints", rally_points_json(fence)}};
   return file.dump(4) + "\n";
 }
 

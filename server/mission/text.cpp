@@ -82,6 +82,56 @@ std::string clean_name(std::string_view name, std::string_view fallback) {
   return out.substr(first, out.find_last_not_of(' ') - first + 1);
 }
 
+std::string name_with_ending(std::string name, std::string_view ending) {
+  const auto is_inside = [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) == 0x80u; };
+  while (!name.empty() &&
+         utf8_length(name).value_or(0) + utf8_length(ending).value_or(0) > kMaxNameLength) {
+    while (is_inside(name.back())) name.pop_back();
+    name.pop_back();
+  }
+  return name += ending;
+}
+
+namespace {
+
+/// The small letter of a capital one, by Unicode's blocks of two bytes in UTF-8.
+unsigned small_letter(unsigned code) noexcept {
+  const bool latin_1 = code >= 0xC0 && code <= 0xDE && code != 0xD7;
+  const bool greek = code >= 0x391 && code <= 0x3A9 && code != 0x3A2;
+  const bool cyrillic = code >= 0x410 && code <= 0x42F;
+  if (latin_1 || greek || cyrillic) return code + 32;
+  if (code >= 0x400 && code <= 0x40F) return code + 80;
+  if (code == 0x178) return 0xFF;  // Y with diaeresis
+  // Extended Latin has capital and small letters in pairs.
+  const bool even_capitals = (code >= 0x100 && code <= 0x137) || (code >= 0x14A && code <= 0x177);
+  const bool odd_capitals = (code >= 0x139 && code <= 0x148) || (code >= 0x179 && code <= 0x17E);
+  if (even_capitals) return code | 1u;
+  if (odd_capitals) return code % 2 == 1 ? code + 1 : code;
+  return code;
+}
+
+}  // namespace
+
+std::string folded(std::string_view text) {
+  std::string out;
+  out.reserve(text.size());
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t size = std::max<std::size_t>(1, character_size(text, at));
+    if (size == 1 && text[at] >= 'A' && text[at] <= 'Z') {
+      out += static_cast<char>(text[at] + ('a' - 'A'));
+    } else if (size == 2) {
+      const unsigned code = small_letter((static_cast<unsigned char>(text[at]) & 0x1Fu) << 6u |
+                                         (static_cast<unsigned char>(text[at + 1]) & 0x3Fu));
+      out += static_cast<char>(0xC0u | code >> 6u);
+      out += static_cast<char>(0x80u | (code & 0x3Fu));
+    } else {
+      out += text.substr(at, size);
+    }
+    at += size;
+  }
+  return out;
+}
+
 void append_number(std::string& out, double value) {
   if (!std::isfinite(value)) {
     out += "null";

@@ -19,6 +19,13 @@ std::string name_problem(std::string_view name);
 /// trimmed, at most kMaxNameLength characters; `fallback` if nothing remains.
 std::string clean_name(std::string_view name, std::string_view fallback);
 
+/// The name with an ending (" (2)"), shortened so that it stays a name.
+std::string name_with_ending(std::string name, std::string_view ending);
+
+/// For comparing without regard to case: small letters of Latin (with accents), Greek and Cyrillic;
+/// everything else as it is. Broken UTF-8 stays as it is, too.
+std::string folded(std::string_view text);
+
 /// The shortest text that reads back as the same double: "58.3780201". Not finite: "null".
 void append_number(std::string& out, double value);
 std::string number_text(double value);

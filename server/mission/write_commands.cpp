@@ -125,11 +125,13 @@ class Writer {
         action(cmd::kReturn, 0.0);
         return note("/settings/at_end", "return", Outcome::Changed,
                     "written as a last RETURN_TO_LAUNCH");
-      case AtEnd::Repeat:
-        if (out_.empty()) return;
-        action(cmd::kJump, 1.0, -1.0);
+      case AtEnd::Repeat: {
+        const int times = plan_.settings.times.value_or(0);
+        if (out_.empty() || times == 1) return;
+        action(cmd::kJump, 1.0, times == 0 ? -1.0 : static_cast<double>(times - 1));
         return note("/settings/at_end", "repeat", Outcome::Changed,
                     "written as a last jump to the first command");
+      }
       case AtEnd::BackAndForth:
         return note("/settings/at_end", "back_and_forth", Outcome::LeftOut, kNoCommand);
     }

@@ -20,6 +20,10 @@ class ValueWriter {
     if (value) out_[name] = *value;
   }
   void whole(const char* name, const int& value, int, int) { out_[name] = value; }
+  void count(const char* name, const int& value, int) { out_[name] = value; }
+  void count(const char* name, const std::optional<int>& value, int) {
+    if (value) out_[name] = *value;
+  }
   void flag(const char* name, const bool& value) {
     if (value) out_[name] = true;
   }
@@ -61,6 +65,10 @@ class TextWriter {
   void whole(const char* name, const int& value, int, int) {
     key(name);
     out_ += std::to_string(value);
+  }
+  void count(const char* name, const int& value, int max) { whole(name, value, 0, max); }
+  void count(const char* name, const std::optional<int>& value, int max) {
+    if (value) whole(name, *value, 0, max);
   }
   void flag(const char* name, const bool& value) {
     if (!value) return;

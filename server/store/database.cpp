@@ -13,6 +13,8 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include "mission/text.hpp"
+
 namespace roverd::store {
 namespace {
 
@@ -94,6 +96,16 @@ void migrate(SQLite::Database& db, std::span<const Migration> steps, int version
   }
 }
 
+/// fold(text), for migrations and whoever looks into the file with our program.
+void add_fold(SQLite::Database& db) {
+  const auto fold = [](sqlite3_context* context, int, sqlite3_value** values) {
+    const auto* text = reinterpret_cast<const char*>(sqlite3_value_text(values[0]));
+    const std::string folded = mission::folded(text == nullptr ? "" : text);
+    sqlite3_result_text(context, folded.c_str(), static_cast<int>(folded.size()), SQLITE_TRANSIENT);
+  };
+  db.createFunction("fold", 1, true, nullptr, fold, nullptr, nullptr, nullptr);
+}
+
 void configure(SQLite::Database& db, std::int64_t max_bytes) {
   db.exec("PRAGMA foreign_keys = ON");
   // In WAL a commit is one append and one fsync; FULL makes that fsync happen at every commit.
@@ -164,6 +176,7 @@ Result<std::unique_ptr<Database>> open_database(const fs::path& file,
       }
     }
     configure(db->connection, max_bytes);
+    add_fold(db->connection);
     migrate(db->connection, steps, *version);
     return db;
   });

@@ -13,6 +13,8 @@
 
 #include "mission/json.hpp"
 #include "mission/text.hpp"
+#include "store/mission_entry.hpp"
+#include "store/packed.hpp"
 #include "store/teach.hpp"
 
 namespace roverd::store {
@@ -23,20 +25,8 @@ using base::Error;
 using base::Result;
 using base::WallTime;
 
-std::int64_t ns_from(WallTime time) noexcept {
-  return time.time_since_epoch().count();
-}
-WallTime time_from(std::int64_t ns) noexcept {
-  return WallTime(base::Duration(ns));
-}
-
 tl::unexpected<Error> not_found(const std::string& id) {
-  return base::fail(Code::NotFound, "there is no mission " + mission::clean_name(id, "\"\""));
-}
-
-tl::unexpected<Error> bad_cursor() {
-  return base::fail(Code::Malformed, "the cursor is not one of ours",
-                    {{"cursor", "must be the next_cursor of an earlier answer"}});
+  return tl::unexpected<Error>(no_such_mission(id));
 }
 
 tl::unexpected<Error> unreadable(const std::string& id, std::int64_t revision,
@@ -46,47 +36,17 @@ tl::unexpected<Error> unreadable(const std::string& id, std::int64_t revision,
                                            " cannot be read: " + problem.detail);
 }
 
-// Written out twice, because only then SQLite uses the partial indexes.
-constexpr const char* kPresent =
-    "SELECT id, revision, name, items, length_m, updated_ns FROM missions "
-    "WHERE deleted = 0 AND (updated_ns, id) < (?, ?) ORDER BY updated_ns DESC, id DESC LIMIT ?";
-constexpr const char* kDeleted =
-    "SELECT id, revision, name, items, length_m, updated_ns FROM missions "
-    "WHERE deleted = 1 AND (updated_ns, id) < (?, ?) ORDER BY updated_ns DESC, id DESC LIMIT ?";
-
 }  // namespace
 
-/// The present row of a mission.
-struct Missions::Head {
-  std::string id;
-  std::int64_t revision = 0;
-  std::int64_t created_ns = 0;
-  bool deleted = false;
-  std::string name;
-};
+Error bad_cursor() {
+  return {Code::Malformed,
+          "the cursor is not one of ours",
+          {{"cursor", "must be the next_cursor of an earlier answer"}}};
+}
 
-/// A revision to be written.
-struct Missions::Entry {
-  std::int64_t time_ns = 0;
-  std::string author;
-  std::string what;
-  std::string name;
-  int items = 0;
-  double length_m = 0.0;
-  std::optional<std::string> plan;  ///< empty: a deletion
-
-  Entry(const Change& change, std::string_view usual, WallTime now)
-      : time_ns(ns_from(now)),
-        author(mission::clean_name(change.author, "")),
-        what(mission::clean_name(change.what, usual)) {}
-
-  void hold(const mission::Plan& p) {
-    name = p.name;
-    items = static_cast<int>(p.items.size());
-    length_m = mission::length_m(p);
-    plan = mission::plan_to_text(p);
-  }
-};
+Error no_such_mission(const std::string& id) {
+  return {Code::NotFound, "there is no mission " + mission::clean_name(id, "\"\""), {}};
+}
 
 std::optional<std::int64_t> number_from(std::string_view text) noexcept {
   std::int64_t value = 0;
@@ -113,51 +73,22 @@ std::string random_id() {
   return id;
 }
 
-Result<Page<MissionSummary>> Missions::list(int limit, const std::string& cursor, Which which) {
-  if (auto ok = check_limit(limit); !ok) return tl::unexpected<Error>(ok.error());
-  // A cursor is "<updated_ns>.<id>" of the last row given; the next page starts below it.
-  std::int64_t updated_ns = std::numeric_limits<std::int64_t>::max();
-  std::string id;
-  if (!cursor.empty()) {
-    const std::size_t dot = cursor.find('.');
-    const auto number = number_from(std::string_view(cursor).substr(0, dot));
-    if (dot == std::string::npos || !number) return bad_cursor();
-    updated_ns = *number;
-    id = cursor.substr(dot + 1);
-  }
-  SQLite::Statement rows(db_, which == Which::Present ? kPresent : kDeleted);
-  rows.bind(1, updated_ns);
-  rows.bind(2, id);
-  rows.bind(3, limit + 1);  // one more shows whether there is a next page
-  Page<MissionSummary> page;
-  std::int64_t last_ns = 0;
-  while (rows.executeStep()) {
-    if (static_cast<int>(page.items.size()) == limit) {
-      page.next_cursor = std::to_string(last_ns) + '.' + page.items.back().id;
-      break;
-    }
-    last_ns = rows.getColumn(5).getInt64();
-    page.items.push_back({rows.getColumn(0).getString(), rows.getColumn(1).getInt64(),
-                          rows.getColumn(2).getString(), rows.getColumn(3).getInt(),
-                          rows.getColumn(4).getDouble(), time_from(last_ns)});
-  }
-  return page;
-}
-
 Result<Missions::Head> Missions::head(const std::string& id) {
-  SQLite::Statement row(db_,
-                        "SELECT revision, created_ns, deleted, name FROM missions WHERE id = ?");
+  SQLite::Statement row(
+      db_, "SELECT revision, created_ns, deleted, archived, name FROM missions WHERE id = ?");
   row.bind(1, id);
   if (!row.executeStep()) return not_found(id);
-  return Head{id, row.getColumn(0).getInt64(), row.getColumn(1).getInt64(),
-              row.getColumn(2).getInt() != 0, row.getColumn(3).getString()};
+  return Head{id,
+              row.getColumn(0).getInt64(),
+              row.getColumn(1).getInt64(),
+              row.getColumn(2).getInt() != 0,
+              row.getColumn(3).getInt() != 0,
+              row.getColumn(4).getString()};
 }
 
-Result<Missions::Head> Missions::live_head(const std::string& id, std::int64_t expected) {
+Result<Missions::Head> Missions::matching_head(const std::string& id, std::int64_t expected) {
   auto found = head(id);
-  if (!found) return found;
-  if (found->deleted) return not_found(id);
-  if (found->revision != expected) {
+  if (found && expected != kAnyRevision && found->revision != expected) {
     return base::fail(Code::RevisionMismatch,
                       "the mission is at revision " + std::to_string(found->revision) +
                           ", the change was made to revision " + std::to_string(expected));
@@ -165,10 +96,87 @@ Result<Missions::Head> Missions::live_head(const std::string& id, std::int64_t e
   return found;
 }
 
+Result<Missions::Head> Missions::live_head(const std::string& id, std::int64_t expected) {
+  const auto present = head(id);
+  if (present && present->deleted) return not_found(id);
+  return matching_head(id, expected);
+}
+
+std::vector<std::string> Missions::tags_of(const std::string& id) {
+  SQLite::Statement rows(db_, "SELECT tag FROM mission_tags WHERE mission_id = ? ORDER BY tag");
+  rows.bind(1, id);
+  std::vector<std::string> tags;
+  while (rows.executeStep()) tags.push_back(rows.getColumn(0).getString());
+  return tags;
+}
+
+Result<Missions::Text> Missions::text_of(const std::string& id, std::int64_t revision) {
+  SQLite::Statement row(
+      db_,
+      "SELECT plan, packed, base, time_ns FROM revisions WHERE mission_id = ? AND revision = ?");
+  row.bind(1, id);
+  row.bind(2, revision);
+  if (!row.executeStep()) {
+    return base::fail(Code::NotFound,
+                      "mission " + id + " has no revision " + std::to_string(revision));
+  }
+  const auto bytes = [&row](int column) {
+    const SQLite::Column value = row.getColumn(column);
+    const void* begin = value.getBlob();
+    return std::string_view(static_cast<const char*>(begin),
+                            begin == nullptr ? 0 : static_cast<std::size_t>(value.getBytes()));
+  };
+  Text out;
+  out.time_ns = row.getColumn(3).getInt64();
+  if (!row.getColumn(0).isNull()) {
+    out.text = bytes(0);
+    out.kept_bytes = out.text.size();
+    return out;
+  }
+  out.deletion = row.getColumn(1).isNull();
+  if (out.deletion) return out;
+  out.kept_bytes = bytes(1).size();
+  out.whole = row.getColumn(2).isNull();
+  std::string prefix;
+  if (!out.whole) {
+    auto other = text_of(id, row.getColumn(2).getInt64());
+    if (!other) return unreadable(id, revision, other.error());
+    prefix = std::move(other->text);
+  }
+  auto text = unpack(bytes(1), prefix);
+  if (!text) return unreadable(id, revision, text.error());
+  out.text = std::move(*text);
+  return out;
+}
+
+/// As it is, or, if that is much shorter, against the last whole revision.
+void Missions::bind_plan(SQLite::Statement& row, const Head& head, const Entry& entry) {
+  SQLite::Statement last(db_,
+                         "SELECT revision FROM revisions WHERE mission_id = ? AND (plan IS NOT "
+                         "NULL OR (packed IS NOT NULL AND base IS NULL)) "
+                         "ORDER BY revision DESC LIMIT 1");
+  last.bind(1, head.id);
+  if (last.executeStep()) {
+    const std::int64_t base_revision = last.getColumn(0).getInt64();
+    // What cannot be read is no base; the new revision stands for itself then.
+    const auto whole = text_of(head.id, base_revision);
+    const std::string packed = whole ? pack(*entry.plan, whole->text) : std::string();
+    constexpr std::size_t kFew = 256;
+    if (whole && packed.size() * 2 < std::max(whole->kept_bytes, kFew)) {
+      row.bind(9, packed.data(), static_cast<int>(packed.size()));
+      row.bind(10, base_revision);
+      return;
+    }
+  }
+  const std::string packed = pack(*entry.plan);
+  row.bind(9, packed.data(), static_cast<int>(packed.size()));
+}
+
 void Missions::add_revision(const Head& head, const Entry& entry) {
   SQLite::Statement revision(db_,
                              "INSERT INTO revisions (mission_id, revision, time_ns, author, what, "
-                             "name, items, length_m, plan) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)");
+                             "name, items, length_m, packed, base) "
+                             "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   revision.bind(1, head.id);
   revision.bind(2, head.revision);
   revision.bind(3, entry.time_ns);
@@ -177,13 +185,14 @@ void Missions::add_revision(const Head& head, const Entry& entry) {
   revision.bind(6, entry.name);
   revision.bind(7, entry.items);
   revision.bind(8, entry.length_m);
-  if (entry.plan) revision.bindNoCopy(9, *entry.plan);
+  if (entry.plan) bind_plan(revision, head, entry);
   revision.exec();
   SQLite::Statement present(
       db_,
-      "INSERT INTO missions (id, revision, created_ns, updated_ns, name, items, length_m, deleted) "
-      "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8) ON CONFLICT (id) DO UPDATE SET revision = ?2, "
-      "updated_ns = ?4, name = ?5, items = ?6, length_m = ?7, deleted = ?8");
+      "INSERT INTO missions (id, revision, created_ns, updated_ns, name, items, length_m, deleted, "
+      "archived, search) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10) "
+      "ON CONFLICT (id) DO UPDATE SET revision = ?2, updated_ns = ?4, name = ?5, items = ?6, "
+      "length_m = ?7, deleted = ?8, archived = ?9, search = ?10");
   present.bind(1, head.id);
   present.bind(2, head.revision);
   present.bind(3, head.created_ns);
@@ -192,27 +201,51 @@ void Missions::add_revision(const Head& head, const Entry& entry) {
   present.bind(6, entry.items);
   present.bind(7, entry.length_m);
   present.bind(8, entry.plan ? 0 : 1);
+  present.bind(9, head.archived ? 1 : 0);
+  present.bind(10, mission::folded(entry.name));
   present.exec();
+  keep_tags(head, entry);
+}
+
+void Missions::keep_tags(const Head& head, const Entry& entry) {
+  const auto tags = entry.tags ? *entry.tags : tags_of(head.id);
+  SQLite::Statement old(db_, "DELETE FROM mission_tags WHERE mission_id = ?");
+  old.bind(1, head.id);
+  old.exec();
+  for (const std::string& tag : tags) {
+    SQLite::Statement row(
+        db_, "INSERT INTO mission_tags (tag, updated_ns, mission_id) VALUES (?, ?, ?)");
+    row.bind(1, tag);
+    row.bind(2, entry.time_ns);
+    row.bind(3, head.id);
+    row.exec();
+  }
 }
 
 Result<StoredMission> Missions::create(mission::Plan plan, const Change& change, WallTime now,
                                        Teach teach) {
   SQLite::Transaction transaction(db_, SQLite::TransactionBehavior::IMMEDIATE);
-  auto made = add_mission(std::move(plan), change, now);
+  auto made = add_mission(std::move(plan), {change, "created", now});
   if (made && teach == Teach::Ends) clear_teach(db_);
   if (made) transaction.commit();
   return made;
 }
 
-Result<StoredMission> Missions::add_mission(mission::Plan plan, const Change& change,
-                                            WallTime now) {
+Result<StoredMission> Missions::add_mission(mission::Plan plan, const Entry& given) {
   if (auto ok = mission::check_plan(plan); !ok) return tl::unexpected<Error>(ok.error());
-  Entry entry(change, "created", now);
+  Entry entry = given;
   entry.hold(plan);
-  Head made{random_id(), 1, entry.time_ns, false, {}};
+  Head made{random_id(), 1, entry.time_ns, false, false, {}};
   while (head(made.id)) made.id = random_id();  // once in 2^60 missions
   add_revision(made, entry);
-  return StoredMission{made.id, made.revision, now, now, std::move(plan)};
+  const WallTime now = time_from(entry.time_ns);
+  return StoredMission{made.id,
+                       made.revision,
+                       now,
+                       now,
+                       std::move(plan),
+                       false,
+                       entry.tags.value_or(std::vector<std::string>{})};
 }
 
 Result<StoredMission> Missions::read(const std::string& id) {
@@ -222,57 +255,69 @@ Result<StoredMission> Missions::read(const std::string& id) {
   return read_revision(id, found->revision);
 }
 
-Result<StoredMission> Missions::read_revision(const std::string& id, std::int64_t revision) {
-  const auto found = head(id);
-  if (!found) return tl::unexpected<Error>(found.error());
-  SQLite::Statement row(
-      db_, "SELECT time_ns, plan FROM revisions WHERE mission_id = ? AND revision = ?");
-  row.bind(1, id);
-  row.bind(2, revision);
-  if (!row.executeStep()) {
-    return base::fail(Code::NotFound,
-                      "mission " + id + " has no revision " + std::to_string(revision));
-  }
-  const SQLite::Column text = row.getColumn(1);
-  if (text.isNull()) {
+Result<mission::Plan> Missions::plan_of(const std::string& id, std::int64_t revision,
+                                        std::int64_t& time_ns) {
+  const auto text = text_of(id, revision);
+  if (!text) return tl::unexpected<Error>(text.error());
+  if (text->deletion) {
     return base::fail(Code::NotFound, "revision " + std::to_string(revision) + " of mission " + id +
                                           " is its deletion and has no plan");
   }
-  auto plan = mission::plan_from_text(
-      std::string_view(text.getText(), static_cast<std::size_t>(text.getBytes())));
+  time_ns = text->time_ns;
+  auto plan = mission::plan_from_text(text->text);
   if (!plan) return unreadable(id, revision, plan.error());
-  return StoredMission{id, revision, time_from(found->created_ns),
-                       time_from(row.getColumn(0).getInt64()), std::move(*plan)};
+  return plan;
+}
+
+Result<StoredMission> Missions::read_revision(const std::string& id, std::int64_t revision) {
+  const auto found = head(id);
+  if (!found) return tl::unexpected<Error>(found.error());
+  std::int64_t time_ns = 0;
+  auto plan = plan_of(id, revision, time_ns);
+  if (!plan) return tl::unexpected<Error>(plan.error());
+  return StoredMission{id,
+                       revision,
+                       time_from(found->created_ns),
+                       time_from(time_ns),
+                       std::move(*plan),
+                       found->archived,
+                       tags_of(id)};
 }
 
 Result<StoredMission> Missions::replace(const std::string& id, std::int64_t expected,
                                         mission::Plan plan, const Change& change, WallTime now) {
   SQLite::Transaction transaction(db_, SQLite::TransactionBehavior::IMMEDIATE);
-  auto changed = change_mission(id, expected, std::move(plan), change, now);
+  auto changed = change_mission(id, expected, std::move(plan), {change, "replaced", now});
   if (changed) transaction.commit();
   return changed;
 }
 
 Result<StoredMission> Missions::change_mission(const std::string& id, std::int64_t expected,
-                                               mission::Plan plan, const Change& change,
-                                               WallTime now) {
+                                               mission::Plan plan, Entry entry) {
   if (auto ok = mission::check_plan(plan); !ok) return tl::unexpected<Error>(ok.error());
-  Entry entry(change, "replaced", now);
   entry.hold(plan);
   auto found = live_head(id, expected);
   if (!found) return tl::unexpected<Error>(found.error());
   found->revision += 1;
   add_revision(*found, entry);
-  return StoredMission{id, found->revision, time_from(found->created_ns), now, std::move(plan)};
+  return StoredMission{id,
+                       found->revision,
+                       time_from(found->created_ns),
+                       time_from(entry.time_ns),
+                       std::move(plan),
+                       found->archived,
+                       tags_of(id)};
 }
 
 Result<Halves> Missions::split(const std::string& id, std::int64_t expected, mission::Plan first,
                                mission::Plan rest, const Change& change, WallTime now) {
   SQLite::Transaction transaction(db_, SQLite::TransactionBehavior::IMMEDIATE);
   const std::string from = first.name;
-  auto changed = change_mission(id, expected, std::move(first), change, now);
+  auto changed = change_mission(id, expected, std::move(first), {change, "replaced", now});
   if (!changed) return tl::unexpected<Error>(changed.error());
-  auto made = add_mission(std::move(rest), {change.author, "split from " + from}, now);
+  Entry part({change.author, "split from " + from}, "", now);
+  part.tags = changed->tags;
+  auto made = add_mission(std::move(rest), part);
   if (!made) return tl::unexpected<Error>(made.error());
   transaction.commit();
   return Halves{std::move(*changed), std::move(*made)};
@@ -291,37 +336,6 @@ Result<void> Missions::remove(const std::string& id, std::int64_t expected, cons
   return {};
 }
 
-Result<Page<RevisionSummary>> Missions::list_revisions(const std::string& id, int limit,
-                                                       const std::string& cursor) {
-  if (auto ok = check_limit(limit); !ok) return tl::unexpected<Error>(ok.error());
-  std::int64_t below = std::numeric_limits<std::int64_t>::max();
-  if (!cursor.empty()) {
-    const auto number = number_from(cursor);
-    if (!number) return bad_cursor();
-    below = *number;
-  }
-  if (const auto found = head(id); !found) return tl::unexpected<Error>(found.error());
-  SQLite::Statement rows(db_,
-                         "SELECT revision, time_ns, author, what, plan IS NULL, name, items, "
-                         "length_m FROM revisions WHERE mission_id = ? AND revision < ? "
-                         "ORDER BY revision DESC LIMIT ?");
-  rows.bind(1, id);
-  rows.bind(2, below);
-  rows.bind(3, limit + 1);
-  Page<RevisionSummary> page;
-  while (rows.executeStep()) {
-    if (static_cast<int>(page.items.size()) == limit) {
-      page.next_cursor = std::to_string(page.items.back().revision);
-      break;
-    }
-    page.items.push_back({rows.getColumn(0).getInt64(), time_from(rows.getColumn(1).getInt64()),
-                          rows.getColumn(2).getString(), rows.getColumn(3).getString(),
-                          rows.getColumn(4).getInt() != 0, rows.getColumn(5).getString(),
-                          rows.getColumn(6).getInt(), rows.getColumn(7).getDouble()});
-  }
-  return page;
-}
-
 Result<StoredMission> Missions::bring_back(const Head& head, std::int64_t revision, Entry entry) {
   auto old = read_revision(head.id, revision);
   if (!old) return old;
@@ -334,10 +348,11 @@ Result<StoredMission> Missions::bring_back(const Head& head, std::int64_t revisi
   return old;
 }
 
-Result<StoredMission> Missions::revert(const std::string& id, std::int64_t to_revision,
-                                       const Change& change, WallTime now) {
+Result<StoredMission> Missions::revert(const std::string& id, std::int64_t expected,
+                                       std::int64_t to_revision, const Change& change,
+                                       WallTime now) {
   SQLite::Transaction transaction(db_, SQLite::TransactionBehavior::IMMEDIATE);
-  const auto found = head(id);
+  const auto found = matching_head(id, expected);
   if (!found) return tl::unexpected<Error>(found.error());
   auto back =
       bring_back(*found, to_revision, {change, "reverted to " + std::to_string(to_revision), now});
@@ -345,11 +360,13 @@ Result<StoredMission> Missions::revert(const std::string& id, std::int64_t to_re
   return back;
 }
 
-Result<StoredMission> Missions::restore(const std::string& id, const Change& change, WallTime now) {
+Result<StoredMission> Missions::restore(const std::string& id, std::int64_t expected,
+                                        const Change& change, WallTime now) {
   SQLite::Transaction transaction(db_, SQLite::TransactionBehavior::IMMEDIATE);
   const auto found = head(id);
   if (!found) return tl::unexpected<Error>(found.error());
   if (!found->deleted) return base::fail(Code::Conflict, "the mission is not deleted");
+  if (auto ok = matching_head(id, expected); !ok) return tl::unexpected<Error>(ok.error());
   auto back = bring_back(*found, found->revision - 1, {change, "restored", now});
   if (back) transaction.commit();
   return back;
@@ -357,7 +374,9 @@ Result<StoredMission> Missions::restore(const std::string& id, const Change& cha
 
 void Missions::forget_deleted(WallTime then) {
   SQLite::Transaction transaction(db_, SQLite::TransactionBehavior::IMMEDIATE);
-  for (const char* sql : {"DELETE FROM revisions WHERE mission_id IN "
+  for (const char* sql : {"DELETE FROM mission_tags WHERE mission_id IN "
+                          "(SELECT id FROM missions WHERE deleted = 1 AND updated_ns < ?)",
+                          "DELETE FROM revisions WHERE mission_id IN "
                           "(SELECT id FROM missions WHERE deleted = 1 AND updated_ns < ?)",
                           "DELETE FROM missions WHERE deleted = 1 AND updated_ns < ?"}) {
     SQLite::Statement rows(db_, sql);

@@ -10,6 +10,7 @@
 #include "base/log.hpp"
 #include "store/database.hpp"
 #include "store/events.hpp"
+#include "store/fences.hpp"
 #include "store/missions.hpp"
 #include "store/routes.hpp"
 #include "store/teach.hpp"
@@ -27,6 +28,7 @@ struct Store::Impl {
   Deliver deliver;
   Options options;
   Missions missions{db->connection};
+  Fences fences{db->connection};
 
   std::mutex mutex;  // leaf
   std::condition_variable news;
@@ -138,18 +140,36 @@ Store::Store(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Store::~Store() = default;
 
 void Store::list_missions(int limit, std::string cursor, Reply<Page<MissionSummary>> reply,
-                          Which which) {
-  impl_->ask(std::move(reply), [impl = impl_.get(), limit, cursor = std::move(cursor), which] {
-    if (which == Which::Deleted) impl->forget();
-    return impl->missions.list(limit, cursor, which);
+                          Filter filter) {
+  impl_->ask(std::move(reply),
+             [impl = impl_.get(), limit, cursor = std::move(cursor), filter = std::move(filter)] {
+               if (filter.which == Which::Deleted) impl->forget();
+               return impl->missions.list(limit, cursor, filter);
+             });
+}
+
+void Store::restore_mission(std::string id, std::int64_t expected, Change change,
+                            Reply<StoredMission> reply) {
+  impl_->ask(std::move(reply),
+             [impl = impl_.get(), id = std::move(id), expected, change = std::move(change)] {
+               return impl->missions.restore(id, expected, change, impl->options.clock());
+             });
+}
+
+void Store::describe_mission(std::string id, std::int64_t expected, Description description,
+                             Change change, Reply<StoredMission> reply) {
+  impl_->ask(std::move(reply), [impl = impl_.get(), id = std::move(id), expected,
+                                description = std::move(description), change = std::move(change)] {
+    return impl->missions.describe(id, expected, description, change, impl->options.clock());
   });
 }
 
-void Store::restore_mission(std::string id, Change change, Reply<StoredMission> reply) {
-  impl_->ask(std::move(reply),
-             [impl = impl_.get(), id = std::move(id), change = std::move(change)] {
-               return impl->missions.restore(id, change, impl->options.clock());
-             });
+void Store::copy_mission(std::string id, std::optional<std::string> name, Change change,
+                         Reply<StoredMission> reply) {
+  impl_->ask(std::move(reply), [impl = impl_.get(), id = std::move(id), name = std::move(name),
+                                change = std::move(change)] {
+    return impl->missions.copy(id, name, change, impl->options.clock());
+  });
 }
 
 void Store::create_mission(mission::Plan plan, Change change, Reply<StoredMission> reply) {
@@ -206,11 +226,24 @@ void Store::list_revisions(std::string id, int limit, std::string cursor,
              });
 }
 
-void Store::revert_mission(std::string id, std::int64_t to_revision, Change change,
-                           Reply<StoredMission> reply) {
+void Store::revert_mission(std::string id, std::int64_t expected, std::int64_t to_revision,
+                           Change change, Reply<StoredMission> reply) {
+  impl_->ask(std::move(reply), [impl = impl_.get(), id = std::move(id), expected, to_revision,
+                                change = std::move(change)] {
+    return impl->missions.revert(id, expected, to_revision, change, impl->options.clock());
+  });
+}
+
+void Store::list_fences(int limit, std::string cursor, Reply<Page<FenceSummary>> reply) {
+  impl_->ask(std::move(reply), [impl = impl_.get(), limit, cursor = std::move(cursor)] {
+    return impl->fences.list(limit, cursor);
+  });
+}
+
+void Store::create_fence(mission::Fence fence, Change change, Reply<StoredFence> reply) {
   impl_->ask(std::move(reply),
-             [impl = impl_.get(), id = std::move(id), to_revision, change = std::move(change)] {
-               return impl->missions.revert(id, to_revision, change, impl->options.clock());
+             [impl = impl_.get(), fence = std::move(fence), change = std::move(change)]() mutable {
+               return impl->fences.create(std::move(fence), change, impl->options.clock());
              });
 }
 
@@ -271,6 +304,57 @@ void Store::finish_teach(mission::Plan plan, Change change, Reply<StoredMission>
                return impl->missions.create(std::move(plan), change, impl->options.clock(),
                                             Missions::Teach::Ends);
              });
+}
+
+void Store::read_fence(std::string id, Reply<StoredFence> reply) {
+  impl_->ask(std::move(reply),
+             [impl = impl_.get(), id = std::move(id)] { return impl->fences.read(id); });
+}
+
+void Store::read_fence_revision(std::string id, std::int64_t revision, Reply<StoredFence> reply) {
+  impl_->ask(std::move(reply), [impl = impl_.get(), id = std::move(id), revision] {
+    return impl->fences.read_revision(id, revision);
+  });
+}
+
+void Store::replace_fence(std::string id, std::int64_t expected, mission::Fence fence,
+                          Change change, Reply<StoredFence> reply) {
+  impl_->ask(std::move(reply), [impl = impl_.get(), id = std::move(id), expected,
+                                fence = std::move(fence), change = std::move(change)]() mutable {
+    return impl->fences.replace(id, expected, std::move(fence), change, impl->options.clock());
+  });
+}
+
+void Store::delete_fence(std::string id, std::int64_t expected, Change change, Reply<void> reply) {
+  impl_->ask(std::move(reply),
+             [impl = impl_.get(), id = std::move(id), expected, change = std::move(change)] {
+               return impl->fences.remove(id, expected, change, impl->options.clock());
+             });
+}
+
+void Store::revert_fence(std::string id, std::int64_t expected, std::int64_t to_revision,
+                         Change change, Reply<StoredFence> reply) {
+  impl_->ask(std::move(reply), [impl = impl_.get(), id = std::move(id), expected, to_revision,
+                                change = std::move(change)] {
+    return impl->fences.revert(id, expected, to_revision, change, impl->options.clock());
+  });
+}
+
+void Store::list_fence_revisions(std::string id, int limit, std::string cursor,
+                                 Reply<Page<RevisionSummary>> reply) {
+  impl_->ask(std::move(reply),
+             [impl = impl_.get(), id = std::move(id), limit, cursor = std::move(cursor)] {
+               return impl->fences.list_revisions(id, limit, cursor);
+             });
+}
+
+void Store::activate_fence(std::optional<std::string> id, Reply<std::optional<StoredFence>> reply) {
+  impl_->ask(std::move(reply),
+             [impl = impl_.get(), id = std::move(id)] { return impl->fences.activate(id); });
+}
+
+void Store::read_active_fence(Reply<std::optional<StoredFence>> reply) {
+  impl_->ask(std::move(reply), [impl = impl_.get()] { return impl->fences.active(); });
 }
 
 void Store::add_event(base::Event event) {

@@ -16,6 +16,7 @@
 #include "base/result.hpp"
 #include "base/snapshot.hpp"
 #include "base/time.hpp"
+#include "mission/fence.hpp"
 #include "mission/plan.hpp"
 #include "mission/route_graph.hpp"
 #include "mission/teach.hpp"
@@ -28,6 +29,8 @@ struct StoredMission {
   base::WallTime created;
   base::WallTime updated;
   mission::Plan plan;
+  bool archived = false;
+  std::vector<std::string> tags{};  ///< in alphabetical order
 };
 
 /// Of a mission that was cut in two.
@@ -43,9 +46,29 @@ struct MissionSummary {
   int items = 0;
   double length_m = 0.0;
   base::WallTime updated;  ///< of a deleted one: when it was deleted
+  bool archived = false;
+  std::vector<std::string> tags{};
 };
 
-enum class Which { Present, Deleted };
+enum class Which { Present, Archived, Deleted };
+/// Of a list. Empty: all of them.
+struct Filter {
+  Which which = Which::Present;  ///< Present: neither archived nor deleted
+  std::string name{};            ///< what a name must contain, in any case (see mission::folded)
+  std::string tag{};             ///< exactly
+};
+
+inline constexpr std::size_t kMaxTags = 20;
+inline constexpr std::size_t kMaxTagLength = 60;  ///< Unicode characters
+/// What is told of a mission besides its plan. Empty: as it is.
+struct Description {
+  std::optional<std::string> name;
+  std::optional<std::vector<std::string>> tags;
+  std::optional<bool> archived;
+};
+
+/// Instead of a revision: whatever is the present one.
+inline constexpr std::int64_t kAnyRevision = 0;
 
 struct RevisionSummary {
   std::int64_t revision = 0;
@@ -56,6 +79,25 @@ struct RevisionSummary {
   std::string name;
   int items = 0;
   double length_m = 0.0;
+};
+
+struct StoredFence {
+  std::string id;             ///< opaque, URL-safe
+  std::int64_t revision = 0;  ///< 1, 2, 3 … per fence
+  base::WallTime created;
+  base::WallTime updated;
+  bool active = false;  ///< it is the one that the robot keeps to
+  mission::Fence fence;
+};
+
+struct FenceSummary {
+  std::string id;
+  std::int64_t revision = 0;
+  std::string name;
+  int areas = 0;
+  int rally = 0;
+  bool active = false;
+  base::WallTime updated;
 };
 
 template <class T>
@@ -130,16 +172,16 @@ class Store {
   Store& operator=(const Store&) = delete;
 
   /// Newest change first. @param cursor empty: from the start; Malformed if it is not one of ours.
-  /// @param which Deleted: those that can be restored, newest deletion first, with the name they
+  /// @param filter Deleted: those that can be restored, newest deletion first, with the name they
   /// had
   void list_missions(int limit, std::string cursor, Reply<Page<MissionSummary>> reply,
-                     Which which = Which::Present);
+                     Filter filter = {});
   void create_mission(mission::Plan plan, Change change, Reply<StoredMission> reply);
   /// NotFound also if it was deleted.
   void read_mission(std::string id, Reply<StoredMission> reply);
   /// Also of a deleted mission; `updated` is the revision's time.
   void read_revision(std::string id, std::int64_t revision, Reply<StoredMission> reply);
-  /// RevisionMismatch unless `expected` is the present revision.
+  /// RevisionMismatch unless `expected` is the present revision (or kAnyRevision).
   void replace_mission(std::string id, std::int64_t expected, mission::Plan plan, Change change,
                        Reply<StoredMission> reply);
   /// Replaces the mission and makes another one of the rest, both or neither.
@@ -149,13 +191,39 @@ class Store {
   /// revert_mission brings it back, until Options::keep_deleted is over.
   void delete_mission(std::string id, std::int64_t expected, Change change, Reply<void> reply);
   /// Makes the state before the deletion a new revision. Conflict if it is not deleted.
-  void restore_mission(std::string id, Change change, Reply<StoredMission> reply);
+  /// @param expected the deletion's revision
+  void restore_mission(std::string id, std::int64_t expected, Change change,
+                       Reply<StoredMission> reply);
+  /// Another name, other tags, into the archive or out of it: a new revision with the same items.
+  /// Invalid, naming "/name" or "/tags/3".
+  void describe_mission(std::string id, std::int64_t expected, Description description,
+                        Change change, Reply<StoredMission> reply);
+  /// A new mission like it, with its tags. @param name empty: "… (copy)"
+  void copy_mission(std::string id, std::optional<std::string> name, Change change,
+                    Reply<StoredMission> reply);
   /// Newest first; also of a deleted mission.
   void list_revisions(std::string id, int limit, std::string cursor,
                       Reply<Page<RevisionSummary>> reply);
   /// Makes the old state a new revision. NotFound if that revision does not exist or is a deletion.
-  void revert_mission(std::string id, std::int64_t to_revision, Change change,
-                      Reply<StoredMission> reply);
+  /// @param expected as for replace_mission; of a deleted mission the deletion's revision
+  void revert_mission(std::string id, std::int64_t expected, std::int64_t to_revision,
+                      Change change, Reply<StoredMission> reply);
+
+  // Fences: as the missions. A fence that is active cannot be deleted (Conflict).
+  void list_fences(int limit, std::string cursor, Reply<Page<FenceSummary>> reply);
+  void create_fence(mission::Fence fence, Change change, Reply<StoredFence> reply);
+  void read_fence(std::string id, Reply<StoredFence> reply);
+  void read_fence_revision(std::string id, std::int64_t revision, Reply<StoredFence> reply);
+  void replace_fence(std::string id, std::int64_t expected, mission::Fence fence, Change change,
+                     Reply<StoredFence> reply);
+  void delete_fence(std::string id, std::int64_t expected, Change change, Reply<void> reply);
+  void revert_fence(std::string id, std::int64_t expected, std::int64_t to_revision, Change change,
+                    Reply<StoredFence> reply);
+  void list_fence_revisions(std::string id, int limit, std::string cursor,
+                            Reply<Page<RevisionSummary>> reply);
+  /// Makes it the active one, or, empty, none. @return the active one
+  void activate_fence(std::optional<std::string> id, Reply<std::optional<StoredFence>> reply);
+  void read_active_fence(Reply<std::optional<StoredFence>> reply);
 
   /// @param map id, time and counts are filled in
   void create_route_map(RouteMap map, Reply<RouteMap> reply);

@@ -28,6 +28,10 @@ api::Profile profile() {
   p.modes = {base::Mode::Manual, base::Mode::Hold, base::Mode::Auto};
   p.drivers = {"bunker", "gnss"};
   p.item_types = {"waypoint"};
+  p.limits.max_speed_mps = p.max_speed_mps;
+  p.limits.item_types = {"waypoint", "wait", "speed", "return_home", "jump"};
+  p.limits.drive_power_w = 360.0;
+  p.limits.battery_wh = 2880.0;
   p.lights = p.clears_errors = true;
   return p;
 }

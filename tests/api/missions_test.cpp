@@ -40,7 +40,8 @@ TEST_F(MissionsApi, AMissionIsCreatedReadReplacedAndDeleted) {
   // look back, and go back,
   EXPECT_EQ(call("GET", "/missions/" + id + "/revisions").body["items"].size(), 2u);
   EXPECT_TRUE(call("GET", "/missions/" + id + "/revisions/1").body["home"].is_null());
-  const auto back = call("POST", "/missions/" + id + "/revert", Json{{"revision", 1}});
+  const auto back =
+      call("POST", "/missions/" + id + "/revert", Json{{"revision", 1}}, if_match("\"rev-2\""));
   EXPECT_EQ(back.status, 200u);
   EXPECT_EQ(back.body["revision"], 3);
   EXPECT_TRUE(back.body["home"].is_null());
@@ -139,7 +140,7 @@ TEST_F(MissionsApi, ListsArePaged) {
 
 TEST_F(MissionsApi, ADeletedMissionIsListedAndComesBack) {
   const std::string id = make_mission("lost");
-  EXPECT_EQ(call("POST", "/missions/" + id + "/restore").status, 409u);
+  EXPECT_EQ(call("POST", "/missions/" + id + "/restore", "", if_match("*")).status, 409u);
   ASSERT_EQ(call("DELETE", "/missions/" + id, "", if_match("*")).status, 204u);
   const auto gone = call("GET", "/missions?deleted=true");
   ASSERT_EQ(gone.body["items"].size(), 1u);
@@ -147,12 +148,70 @@ TEST_F(MissionsApi, ADeletedMissionIsListedAndComesBack) {
   EXPECT_EQ(gone.body["items"][0]["name"], "lost");
   EXPECT_TRUE(gone.body["items"][0]["deleted_at"].is_string());
   EXPECT_EQ(call("GET", "/missions?deleted=perhaps").status, 422u);
-  const auto back = call("POST", "/missions/" + id + "/restore");
+  EXPECT_EQ(call("POST", "/missions/" + id + "/restore").status, 428u);
+  EXPECT_EQ(call("POST", "/missions/" + id + "/restore", "", if_match("\"rev-1\"")).status, 412u);
+  const auto back = call("POST", "/missions/" + id + "/restore", "", if_match("\"rev-2\""));
   EXPECT_EQ(back.status, 200u);
   EXPECT_EQ(back.raw.header("etag"), "\"rev-3\"");
   EXPECT_EQ(call("GET", "/missions/" + id + "/revisions").body["items"][0]["what"], "restored");
   EXPECT_TRUE(call("GET", "/missions?deleted=true").body["items"].empty());
-  EXPECT_EQ(call("POST", "/missions/nobody/restore").status, 404u);
+  EXPECT_EQ(call("POST", "/missions/nobody/restore", "", if_match("*")).status, 404u);
+}
+
+TEST_F(MissionsApi, ARevertBasedOnAnOldRevisionIsRefusedWithThePresentOne) {
+  const std::string id = make_mission();
+  ASSERT_EQ(call("PUT", "/missions/" + id, two_waypoints("hers"), if_match("*")).status, 200u);
+  const std::string path = "/missions/" + id + "/revert";
+  EXPECT_EQ(call("POST", path, Json{{"revision", 1}}).status, 428u);
+  const auto late = call("POST", path, Json{{"revision", 1}}, if_match("\"rev-1\""));
+  EXPECT_EQ(late.status, 412u);
+  EXPECT_EQ(late.body["current"]["name"], "hers");
+  EXPECT_EQ(late.raw.header("etag"), "\"rev-2\"");
+}
+
+TEST_F(MissionsApi, NamesTagsAndTheArchiveKeepOrder) {
+  const std::string north = make_mission("North field");
+  const std::string yard = make_mission("yard");
+  const auto tagged =
+      call("PATCH", "/missions/" + north, Json{{"tags", {"mow", "farm"}}, {"name", "North Field"}},
+           if_match("\"rev-1\""));
+  ASSERT_EQ(tagged.status, 200u) << tagged.raw.body;
+  EXPECT_EQ(tagged.body["tags"], Json({"farm", "mow"}));
+  EXPECT_EQ(tagged.raw.header("etag"), "\"rev-2\"");
+  const auto ids = [this](const std::string& query) {
+    std::vector<std::string> out;
+    for (const Json& one : call("GET", "/missions?" + query).body["items"])
+      out.push_back(one["id"]);
+    return out;
+  };
+  using Ids = std::vector<std::string>;
+  EXPECT_EQ(ids("name=north%20f"), Ids{north});
+  EXPECT_EQ(ids("tag=mow"), Ids{north});
+  EXPECT_EQ(ids("tag=mo"), Ids{});
+  EXPECT_EQ(call("PATCH", "/missions/" + yard, Json{{"archived", true}}, if_match("*")).status,
+            200u);
+  EXPECT_EQ(ids(""), Ids{north});
+  EXPECT_EQ(ids("archived=true"), Ids{yard});
+  EXPECT_EQ(call("GET", "/missions?archived=true&deleted=true").status, 422u);
+  EXPECT_EQ(call("GET", "/missions/" + yard).body["archived"], true);
+  // What cannot be, or is based on another state, changes nothing.
+  EXPECT_EQ(call("PATCH", "/missions/" + north, Json{{"name", "x"}}).status, 428u);
+  EXPECT_EQ(call("PATCH", "/missions/" + north, Json{{"name", "x"}}, if_match("\"rev-1\"")).status,
+            412u);
+  const auto bad = call("PATCH", "/missions/" + north, Json{{"tags", {"ok", ""}}}, if_match("*"));
+  EXPECT_EQ(bad.status, 422u);
+  EXPECT_EQ(bad.body["errors"][0]["pointer"], "/tags/1");
+  EXPECT_EQ(call("PATCH", "/missions/" + north, Json{{"items", 1}}, if_match("*")).status, 422u);
+  // A copy goes its own way.
+  const auto copied = call("POST", "/missions/" + north + "/copy");
+  EXPECT_EQ(copied.status, 201u);
+  EXPECT_EQ(copied.body["name"], "North Field (copy)");
+  EXPECT_EQ(copied.body["tags"], Json({"farm", "mow"}));
+  EXPECT_EQ(copied.raw.header("location"),
+            "/api/v1/missions/" + copied.body["id"].get<std::string>());
+  EXPECT_EQ(call("POST", "/missions/" + north + "/copy", Json{{"name", "south"}}).body["name"],
+            "south");
+  EXPECT_EQ(call("POST", "/missions/nobody/copy").status, 404u);
 }
 
 TEST_F(MissionsApi, TwoRevisionsAreCompared) {

@@ -34,6 +34,38 @@ TEST_F(OperationsApi, AnOffsetIsANewRevisionAndItsOppositeTheStart) {
   }
 }
 
+TEST_F(OperationsApi, AMissionIsAlignedWithTheVehicleAndLookedAtBefore) {
+  until_ready();
+  const std::string id = make_mission();
+  const Json before = call("GET", "/missions/" + id).body;
+  // given a dry run, nothing is kept,
+  const Json body{{"op", "align"}, {"item", 1}, {"dry_run", true}};
+  const auto shown = operate(id, body, 1);
+  ASSERT_EQ(shown.status, 200u) << shown.raw.body;
+  EXPECT_EQ(shown.body["dry_run"], true);
+  EXPECT_NEAR(shown.body["items"][0]["lat"], kStart.lat, 1e-5);
+  EXPECT_EQ(shown.raw.header("etag"), "\"rev-1\"");
+  EXPECT_EQ(call("GET", "/missions/" + id).body, before);
+  // then it is done.
+  const auto done = operate(id, {{"op", "align"}, {"item", 1}}, 1);
+  EXPECT_EQ(done.body["revision"], 2);
+  EXPECT_NEAR(done.body["items"][0]["lat"], kStart.lat, 1e-5);
+  EXPECT_NEAR(done.body["length_m"], before["length_m"].get<double>(), 0.001);
+  // Two items turn it.
+  const auto turned = operate(id,
+                              {{"op", "align"},
+                               {"item", 1},
+                               {"lat", 58.0},
+                               {"lon", 26.0},
+                               {"second", {{"item", 2}, {"lat", 58.0}, {"lon", 26.001}}}},
+                              2);
+  ASSERT_EQ(turned.status, 200u) << turned.raw.body;
+  EXPECT_NEAR(turned.body["items"][1]["lat"], 58.0, 1e-8);
+  const auto bad = operate(id, {{"op", "align"}, {"item", 1}, {"second", {{"lat", 95}}}}, 3);
+  EXPECT_EQ(bad.status, 422u);
+  EXPECT_EQ(operate(id, {{"op", "split"}, {"after", 1}, {"dry_run", true}}, 3).status, 422u);
+}
+
 TEST_F(OperationsApi, WaypointsAreAddedWhereTheVehicleIsOrWhereOneSays) {
   until_ready();
   const std::string id = make_mission();

@@ -2,6 +2,8 @@
 // forms. The data folder is made under $ROVERD_BENCH_DATA, else in the present folder: a RAM disk
 // would measure nothing.
 
+#include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <future>
@@ -9,12 +11,17 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <benchmark/benchmark.h>
+#include <fcntl.h>
 #include <unistd.h>
 
 #include "mission/formats.hpp"
 #include "mission/json.hpp"
+#include "robot/robot.hpp"
+#include "store/database.hpp"
+#include "store/migrations.hpp"
 #include "store/store.hpp"
 
 namespace {
@@ -110,6 +117,139 @@ void SaveOneSmallMission(benchmark::State& state) {
   }
 }
 BENCHMARK(SaveOneSmallMission)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+mission::Plan plan_of(int items) {
+  mission::Plan plan;
+  plan.name = "bench";
+  for (int i = 0; i < items; ++i) {
+    mission::Waypoint waypoint;
+    waypoint.at = {58.378 + 7.234567e-7 * i + 1e-9 * (i % 7), 26.7289 + 2e-4 * std::sin(0.01 * i)};
+    if (i % 3 == 0) waypoint.speed_mps = 0.8;
+    plan.items.emplace_back(waypoint);
+  }
+  return plan;
+}
+
+/// What the disk alone takes: as many bytes appended as a commit writes into the log, and fsync.
+double fsync_ms(const Folder& folder, std::size_t bytes) {
+  const int fd = ::open((folder.file().string() + ".fsync").c_str(), O_WRONLY | O_CREAT, 0644);
+  const std::vector<char> block(bytes, 'x');
+  constexpr int kTimes = 50;
+  const auto begin = std::chrono::steady_clock::now();
+  for (int i = 0; i < kTimes; ++i) {
+    if (::write(fd, block.data(), bytes) < 0 || ::fdatasync(fd) != 0) {
+      throw std::runtime_error("the disk cannot be written");
+    }
+  }
+  const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
+  ::close(fd);
+  return took.count() / kTimes;
+}
+
+/// One waypoint moved in a mission of 1,000 items; counters: what a revision costs in the file, and
+/// the disk's share.
+void SaveOneEditOfAThousandItems(benchmark::State& state) {
+  Folder folder;
+  auto store = open_in(folder);
+  mission::Plan plan = plan_of(1000);
+  auto saved = answer_of([&](auto reply) { store->create_mission(plan, {"bench", ""}, reply); });
+  const double began = static_cast<double>(std::filesystem::file_size(folder.file()));
+  std::size_t edits = 0;
+  const auto begin = std::chrono::steady_clock::now();
+  for (auto _ : state) {
+    std::get<mission::Waypoint>(plan.items[++edits * 617 % 1000]).at.lat += 1.23456e-5;
+    saved = answer_of([&](auto reply) {
+      store->replace_mission(saved.id, saved.revision, plan, {"bench", ""}, reply);
+    });
+  }
+  const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
+  store.reset();  // brings the log into the file
+  const double ended = static_cast<double>(std::filesystem::file_size(folder.file()));
+  const auto count = static_cast<double>(edits);
+  state.counters["bytes_per_revision"] = (ended - began) / count;
+  state.counters["fsync_ms"] = fsync_ms(folder, 20'000);
+  state.counters["fsync_pct"] = 100.0 * state.counters["fsync_ms"] / (took.count() / count);
+}
+BENCHMARK(SaveOneEditOfAThousandItems)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->Iterations(100);
+
+/// Pages of 50 out of 10,000 missions: all, by name, by tag, far down.
+class ManyMissions {
+ public:
+  ManyMissions() {
+    open_in(folder_);
+    auto db = store::open_database(folder_.file(), store::migrations(), 1'000'000'000).value();
+    SQLite::Transaction all(db->connection);
+    for (int i = 0; i < 10'000; ++i) {
+      const std::string id = "'m" + std::to_string(i) + "'";
+      const std::string name = i % 100 == 0 ? "'rare'" : "'mission " + std::to_string(i) + "'";
+      const std::string ns = std::to_string(1'700'000'000'000'000'000 + i * 1'000'000LL);
+      db->connection.exec(
+          "INSERT INTO revisions (mission_id, revision, time_ns, author, what, "
+          "name, items, length_m, plan) VALUES (" +
+          id + ", 1, " + ns + ", 'bench', 'created', " + name + ", 0, 0.0, '{}')");
+      db->connection.exec(
+          "INSERT INTO missions (id, revision, created_ns, updated_ns, name, "
+          "items, length_m, search) VALUES (" +
+          id + ", 1, " + ns + ", " + ns + ", " + name + ", 0, 0.0, " + name + ")");
+      db->connection.exec("INSERT INTO mission_tags VALUES ('field', " + ns + ", " + id + ")");
+    }
+    all.commit();
+    db.reset();
+    store_ = open_in(folder_);
+  }
+
+  store::Page<store::MissionSummary> page(const std::string& cursor, store::Filter filter) {
+    std::promise<base::Result<store::Page<store::MissionSummary>>> promise;
+    store_->list_missions(
+        50, cursor, [&](auto r) { promise.set_value(std::move(r)); }, std::move(filter));
+    return promise.get_future().get().value();
+  }
+
+ private:
+  Folder folder_;
+  std::unique_ptr<store::Store> store_;
+};
+
+void ListPage(benchmark::State& state, const store::Filter& filter, bool far_down) {
+  static ManyMissions many;
+  std::string cursor;
+  for (int i = 0; far_down && i < 150; ++i) cursor = many.page(cursor, filter).next_cursor.value();
+  for (auto _ : state) {
+    if (many.page(cursor, filter).items.size() != 50) state.SkipWithError("no whole page");
+  }
+}
+BENCHMARK_CAPTURE(ListPage, First, store::Filter{}, false)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(ListPage, FarDown, store::Filter{}, true)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(ListPage, ByName, store::Filter{store::Which::Present, "RARE"}, false)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(ListPage, ByTag, store::Filter{store::Which::Present, "", "field"}, true)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+/// As a load does it: read and unpacked, checked, laid out as the robot's route.
+void LoadAHundredThousandItems(benchmark::State& state) {
+  Folder folder;
+  auto store = open_in(folder);
+  const auto saved = answer_of([&](auto reply) {
+    store->create_mission(plan_of(100'000), {"bench", ""}, reply);
+  });
+  const robot::Robot robot{robot::Config{}};
+  for (auto _ : state) {
+    auto found = answer_of([&](auto reply) { store->read_mission(saved.id, reply); });
+    if (!mission::check_plan(found.plan)) state.SkipWithError("not a plan");
+    auto compiled = robot.compile({found.id, found.revision, std::move(found.plan)});
+    if (!compiled) throw std::runtime_error(compiled.error().detail);
+  }
+}
+BENCHMARK(LoadAHundredThousandItems)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void ParseTenThousandItems(benchmark::State& state) {
   const std::string text = mission::plan_to_text(large_plan());

@@ -7,11 +7,16 @@
 #include <string_view>
 
 #include "mission/json.hpp"
+#include "mission/quick_read.hpp"
 
 using namespace roverd::mission;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
+  if (const auto quick = quick_plan(text)) {
+    const auto value = parse_json(text);
+    if (!value || plan_from_json(*value) != *quick) std::abort();
+  }
   const auto plan = plan_from_text(text);
   if (!plan) {
     // The answer must be writable as JSON.

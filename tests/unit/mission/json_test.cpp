@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "mission/quick_read.hpp"
+#include "mission/text.hpp"
 #include "plans.hpp"
 
 namespace roverd::mission {
@@ -46,6 +48,81 @@ TEST(PlanJson, RandomPlansSurviveARoundTripToTheLastBit) {
     EXPECT_EQ(plan_from_text(plan_to_text(plan)).value(), plan);
     EXPECT_EQ(plan_from_json(plan_to_json(plan)).value(), plan);
   }
+}
+
+TEST(PlanJson, TheShortWayReadsWhatTheLongOneDoes) {
+  RandomPlans plans(7);
+  int quick_ones = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Plan plan = plans.next(1 + i % 20);
+    const std::string text = i % 2 == 0 ? plan_to_text(plan) : plan_to_json(plan).dump(1);
+    const auto quick = quick_plan(text);
+    if (!quick) continue;  // an action's arguments, an escape in a name
+    ++quick_ones;
+    EXPECT_EQ(*quick, plan_from_json(parse_json(text).value()).value());
+  }
+  EXPECT_GT(quick_ones, 30);
+}
+
+TEST(PlanJson, TheShortWayIsLeftForEverythingElse) {
+  const std::string good =
+      R"({"name":"x","items":[{"type":"waypoint","lat":1.5,"lon":-2e1,"turn":"arc"}]})";
+  ASSERT_TRUE(quick_plan(good));
+  // Any one byte changed: it is left, or read as the long way reads it.
+  for (std::size_t at = 0; at < good.size(); ++at) {
+    for (const char c : std::string("\"\\0.-+eE,:{}[] x\n\x80")) {
+      std::string text = good;
+      text[at] = c;
+      const auto quick = quick_plan(text);
+      if (!quick) continue;
+      const auto value = parse_json(text);
+      ASSERT_TRUE(value) << text;
+      EXPECT_EQ(plan_from_json(*value).value(), *quick) << text;
+    }
+  }
+  for (const char* text : {
+           "",
+           "{}",
+           "{\"name\":\"x\"}",
+           "{\"name\":\"x\",\"items\":[]} x",
+           R"({"name":"x","items":[{"type":"wait","seconds":01}]})",
+           R"({"name":"x","items":[{"type":"wait","seconds":1.}]})",
+           R"({"name":"x","items":[{"type":"wait","seconds":inf}]})",
+           R"({"name":"x","items":[{"type":"wait","seconds":1e999}]})",
+           R"({"name":"x","items":[{"type":"wait","seconds":1,"seconds":2}]})",
+           R"({"name":"x","items":[{"type":"wait","seconds":1,"colour":2}]})",
+           R"({"name":"x","items":[{"type":"jump","item":1,"times":0}]})",
+           R"({"name":"x","name":"y","items":[]})",
+           R"({"name":"x","items":[],"id":"y"})",
+       }) {
+    EXPECT_FALSE(quick_plan(text)) << text;
+  }
+}
+
+TEST(PlanJson, ForEverMustBeSaid) {
+  const auto times = [](const std::string& jump) {
+    const auto plan =
+        plan_from_text(R"({"name":"x","items":[{"type":"wait","seconds":1},)" + jump + "]}");
+    return plan ? std::get<Jump>(plan->items[1]).times : -1;
+  };
+  EXPECT_EQ(times(R"({"type":"jump","item":1,"times":3})"), 3);
+  EXPECT_EQ(times(R"({"type":"jump","item":1,"times":0})"), 0);
+  EXPECT_EQ(times(R"({"type":"jump","item":1,"times":"forever"})"), 0);
+  EXPECT_EQ(wrong_in_item(R"({"type":"jump","item":1})"), Names{"/items/1/times"});
+  EXPECT_EQ(wrong_in_item(R"({"type":"jump","item":1,"times":null})"), Names{"/items/1/times"});
+  EXPECT_EQ(wrong_in_item(R"({"type":"jump","item":1,"times":"often"})"), Names{"/items/1/times"});
+  EXPECT_EQ(wrong_in_item(R"({"type":"jump","item":2,"times":1})"), Names{"/items/1/item"});
+  const auto back_and_forth =
+      plan_from_text(R"({"name":"x","settings":{"at_end":"back_and_forth","times":3},"items":[]})");
+  EXPECT_EQ(back_and_forth->settings.times, 3);
+  EXPECT_EQ(plan_from_text(plan_to_text(*back_and_forth)).value(), *back_and_forth);
+  EXPECT_EQ(wrong_in(R"({"name":"x","settings":{"times":-1},"items":[]})"),
+            Names{"/settings/times"});
+}
+
+TEST(PlanText, IsFoldedForSearching) {
+  EXPECT_EQ(folded("Põld ÕUNAAED Žürii ПОЛЕ Ω 100%"), "põld õunaaed žürii поле ω 100%");
+  EXPECT_EQ(folded("\xc3\x97\xff\xc3"), "\xc3\x97\xff\xc3");
 }
 
 TEST(PlanJson, IsWrittenInTheWordsOfThePublicInterface) {

@@ -132,7 +132,7 @@ TEST(Csv, BadRowsAreNamed) {
             "line 1: origin must be a latitude and a longitude");
   EXPECT_EQ(refusal("a,b\n1,2\n", Format::Csv).substr(0, 12), "line 1: must");
   EXPECT_EQ(refusal("hello world\n"),
-            "none of .plan, .waypoints, GPX, KML, GeoJSON and a table of positions");
+            "none of .plan, .waypoints, GPX, KML, KMZ, GeoJSON and a table of positions");
 }
 
 TEST(GeoJson, LinesPointsAndCollectionsAreRead) {

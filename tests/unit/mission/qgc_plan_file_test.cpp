@@ -57,15 +57,57 @@ TEST(QgcPlan, ASurveyIsTakenAsTheItemsItCarries) {
   EXPECT_EQ(file.rows[3].row, "/mission/items/0/TransectStyleComplexItem/Items/0");
 }
 
-TEST(QgcPlan, FencesAndRallyPointsAreAccountedFor) {
+json fenced_plan() {
   json root = json::parse(plan_file(""));
-  root["geoFence"] = {{"circles", {1}}, {"polygons", {1, 2}}, {"version", 2}};
-  root["rallyPoints"] = {{"points", {1}}, {"version", 2}};
-  const auto file = imported(root.dump());
+  root["geoFence"] = {
+      {"version", 2},
+      {"breachReturn", {58.0, 26.0, 0}},
+      {"circles",
+       {{{"circle", {{"center", {58.0, 26.001}}, {"radius", 12.5}}}, {"inclusion", false}}}},
+      {"polygons",
+       {{{"polygon", {{58.0, 26.0}, {58.0, 26.01}, {58.01, 26.01}, {58.0, 26.0}}},
+         {"inclusion", true}}}}};
+  root["rallyPoints"] = {{"points", {{58.001, 26.002, 15}}}, {"version", 2}};
+  return root;
+}
+
+TEST(QgcPlan, FencesAndRallyPointsAreTakenAndWritten) {
+  const auto file = imported(fenced_plan().dump());
+  ASSERT_TRUE(file.fence);
+  EXPECT_EQ(file.fence->name, file.plan.name);
   ASSERT_EQ(file.rows.size(), 5u);
-  EXPECT_EQ(file.rows[2].row, "/geoFence/polygons/0");
-  EXPECT_EQ(file.rows[4].what, "rally point");
-  for (std::size_t i = 1; i < 5; ++i) EXPECT_EQ(file.rows[i].outcome, Outcome::LeftOut);
+  EXPECT_EQ(file.rows[1].row, "/geoFence/polygons/0");
+  for (std::size_t i = 1; i < 4; ++i) EXPECT_EQ(file.rows[i].outcome, Outcome::Taken);
+  EXPECT_EQ(file.rows[4].row, "/geoFence/breachReturn");
+  EXPECT_EQ(file.rows[4].outcome, Outcome::LeftOut);
+  // The figure was closed in the file; here it is not.
+  EXPECT_EQ(file.fence->areas.at(0),
+            (FenceArea{AreaKind::Inclusion,
+                       FencePolygon{{{58.0, 26.0}, {58.0, 26.01}, {58.01, 26.01}}}}));
+  EXPECT_EQ(file.fence->areas.at(1),
+            (FenceArea{AreaKind::Exclusion, FenceCircle{{58.0, 26.001}, 12.5}}));
+  EXPECT_EQ(file.fence->rally.at(0), (RallyPoint{{58.001, 26.002}, 15.0}));
+  const auto again = imported(export_file(file.plan, Format::Plan, &*file.fence).content);
+  EXPECT_EQ(again.fence->areas, file.fence->areas);
+  EXPECT_EQ(again.fence->rally, file.fence->rally);
+  EXPECT_FALSE(imported(export_file(file.plan, Format::Plan).content).fence);
+}
+
+TEST(QgcPlan, AFenceThatCannotBeIsRefusedByPointer) {
+  const auto pointer = [](const char* place, const json& value) {
+    json root = fenced_plan();
+    root[json::json_pointer(place)] = value;
+    return refused(root.dump(), Format::Plan).fields.at(0).pointer;
+  };
+  const json crossed = {{58.0, 26.0}, {58.01, 26.01}, {58.0, 26.01}, {58.01, 26.0}};
+  EXPECT_EQ(pointer("/geoFence/polygons/0/polygon", crossed), "/geoFence/polygons/0");
+  EXPECT_EQ(pointer("/geoFence/polygons/0", 1), "/geoFence/polygons/0/polygon");
+  EXPECT_EQ(pointer("/geoFence/polygons/0/polygon/1", "x"), "/geoFence/polygons/0/polygon/1");
+  EXPECT_EQ(pointer("/geoFence/polygons/0/inclusion", 3), "/geoFence/polygons/0/inclusion");
+  EXPECT_EQ(pointer("/geoFence/circles/0/circle/radius", -1), "/geoFence/circles/0");
+  EXPECT_EQ(pointer("/geoFence/circles/0/circle/center", 5), "/geoFence/circles/0/circle/center");
+  EXPECT_EQ(pointer("/geoFence/circles", json::array_t(101, 1)), "/geoFence/circles");
+  EXPECT_EQ(pointer("/rallyPoints/points/0", {95.0, 0.0, 0.0}), "/rallyPoints/points/0");
 }
 
 TEST(QgcPlan, ASpeedMadeForFlyingIsNotTaken) {
@@ -75,6 +117,9 @@ TEST(QgcPlan, ASpeedMadeForFlyingIsNotTaken) {
     EXPECT_FALSE(file.plan.settings.speed_mps);
     EXPECT_EQ(file.rows[1].outcome, Outcome::LeftOut);
   }
+  const auto copter = imported(plan_file("", R"("vehicleType":2,)"));
+  EXPECT_EQ(copter.rows.at(1).row, "/mission/vehicleType");
+  EXPECT_EQ(copter.rows.at(1).outcome, Outcome::Changed);
 }
 
 TEST(QgcPlan, BrokenFilesAreRefusedByPointerOrLine) {

@@ -133,6 +133,51 @@ TEST(ShapeOperations, OffsetOfADriftedFrameAgreesWithTheGeodesic) {
   EXPECT_NEAR(base::distance_bearing(at(plan, 1), at(one, 1)).distance_m, 10.0, 1e-6);
 }
 
+TEST(ShapeOperations, AligningPutsOneItemOnItsAnchorAndKeepsTheFigure) {
+  for (std::uint32_t seed = 0; seed < 50; ++seed) {
+    Figures figures(seed);
+    const Plan plan = figures.next(500.0);
+    const LatLon anchor = base::destination(at(plan, 1), figures.number(0.0, 360.0), 3.0);
+    const auto aligned = perform(plan, Align{{2, anchor}, std::nullopt});
+    ASSERT_TRUE(aligned) << aligned.error().detail;
+    EXPECT_EQ(aligned->plan.home, plan.home);
+    EXPECT_LT(base::distance_bearing(at(aligned->plan, 1), anchor).distance_m, kMillimetre);
+    EXPECT_NEAR(base::distance_bearing(at(aligned->plan, 0), at(aligned->plan, 2)).distance_m,
+                base::distance_bearing(at(plan, 0), at(plan, 2)).distance_m, kMillimetre);
+  }
+}
+
+TEST(ShapeOperations, AligningByTwoItemsTurnsTheFigureToo) {
+  //   3 ┌ · · · · 2'        a leg to the east that the day's frame shows to the north-east
+  //     1 ─────── 2
+  Plan plan;
+  plan.name = "field";
+  const LatLon start{58.378, 26.729};
+  for (const double way_m : {0.0, 100.0}) {
+    Waypoint waypoint;
+    waypoint.at = base::destination(start, 90.0, way_m);
+    plan.items.emplace_back(waypoint);
+  }
+  plan.items.emplace_back(TurnBy{std::nullopt, 350.0});
+  const LatLon first = base::destination(start, 10.0, 2.0);
+  const LatLon second = base::destination(first, 60.0, 100.25);
+
+  const auto aligned = perform(plan, Align{{1, first}, Anchor{2, second}});
+
+  ASSERT_TRUE(aligned) << aligned.error().detail;
+  EXPECT_LT(base::distance_bearing(at(aligned->plan, 0), first).distance_m, kMillimetre);
+  EXPECT_NEAR(base::distance_bearing(at(aligned->plan, 1), second).distance_m, 0.25, 0.002);
+  EXPECT_NEAR(*std::get<TurnBy>(aligned->plan.items[2]).heading_deg, 320.0, 0.01);
+  EXPECT_NE(aligned->what.find("turned by -30"), std::string::npos) << aligned->what;
+  EXPECT_NE(aligned->what.find("item 2 is 0.25 m from its place"), std::string::npos);
+
+  EXPECT_EQ(perform(plan, Align{{7, first}, {}}).error().fields.at(0).pointer, "/item");
+  EXPECT_EQ(perform(plan, Align{{3, first}, {}}).error().fields.at(0).pointer, "/item");
+  EXPECT_EQ(perform(plan, Align{{1, first}, Anchor{1, first}}).error().fields.at(0).pointer,
+            "/second");
+  EXPECT_EQ(perform(plan, Align{{1, {0.0, 0.0}}, {}}).error().fields.at(0).pointer, "/item");
+}
+
 TEST(ShapeOperations, TurningAndScalingBackGivesTheStart) {
   for (std::uint32_t seed = 0; seed < 100; ++seed) {
     Figures figures(seed);

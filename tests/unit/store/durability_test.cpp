@@ -82,7 +82,7 @@ TEST(Durability, WhenTheSpaceIsUsedUpASaveIsRefusedAndNothingChanged) {
   options.max_bytes = 400'000;
   auto store = open_store(folder.file(), options);
   const std::string id = create(*store, plan_named("small", 3))->id;
-  const auto refused = replace(*store, id, 1, plan_named("large", 20'000));
+  const auto refused = replace(*store, id, 1, noisy_plan("large", 40'000));
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, Code::Unavailable);
   EXPECT_EQ(refused.error().detail, "the disk is full, nothing was changed");
@@ -100,7 +100,7 @@ TEST(Durability, ADiskThatTakesNoMoreBytesIsAnErrorNotACrash) {
     ::signal(SIGXFSZ, SIG_IGN);
     const rlimit limit{200'000, 200'000};
     if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) return 2;
-    const auto refused = create(*store, plan_named("large", 20'000));
+    const auto refused = create(*store, noisy_plan("large", 40'000));
     if (refused || refused.error().code != Code::Unavailable) return 3;
     if (!read(*store, made->id)) return 4;
     return list(*store, 10)->items.size() == 1 ? 0 : 5;

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <future>
 #include <memory>
+#include <random>
 #include <string>
 #include <utility>
 
@@ -60,6 +61,17 @@ inline mission::Plan plan_named(const std::string& name, int waypoints = 3) {
   return plan;
 }
 
+/// Positions that nothing can make shorter.
+inline mission::Plan noisy_plan(const std::string& name, int waypoints) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> degrees(0.0, 1.0);
+  mission::Plan plan = plan_named(name, waypoints);
+  for (auto& item : plan.items) {
+    std::get<mission::Waypoint>(item).at = {58.0 + degrees(random), 26.0 + degrees(random)};
+  }
+  return plan;
+}
+
 inline std::unique_ptr<Store> open_store(const std::filesystem::path& file, Options options = {}) {
   auto store = Store::open(file, at_once, std::move(options));
   if (!store) throw std::runtime_error(store.error().detail);
@@ -86,18 +98,35 @@ inline base::Result<StoredMission> replace(Store& s, const std::string& id, std:
 inline base::Result<void> remove(Store& s, const std::string& id, std::int64_t expected) {
   return answer_of<void>([&](auto reply) { s.delete_mission(id, expected, {"anna", ""}, reply); });
 }
-inline base::Result<StoredMission> revert(Store& s, const std::string& id, std::int64_t revision) {
+inline base::Result<StoredMission> revert(Store& s, const std::string& id, std::int64_t revision,
+                                          std::int64_t expected = kAnyRevision) {
   return answer_of<StoredMission>([&](auto reply) {
-    s.revert_mission(id, revision, {"anna", ""}, reply);
+    s.revert_mission(id, expected, revision, {"anna", ""}, reply);
   });
 }
-inline base::Result<StoredMission> restore(Store& s, const std::string& id) {
-  return answer_of<StoredMission>([&](auto reply) { s.restore_mission(id, {"anna", ""}, reply); });
+inline base::Result<StoredMission> restore(Store& s, const std::string& id,
+                                           std::int64_t expected = kAnyRevision) {
+  return answer_of<StoredMission>([&](auto reply) {
+    s.restore_mission(id, expected, {"anna", ""}, reply);
+  });
+}
+inline base::Result<StoredMission> describe(Store& s, const std::string& id,
+                                            Description description,
+                                            std::int64_t expected = kAnyRevision) {
+  return answer_of<StoredMission>([&](auto reply) {
+    s.describe_mission(id, expected, std::move(description), {"anna", ""}, reply);
+  });
+}
+inline base::Result<StoredMission> copy(Store& s, const std::string& id,
+                                        std::optional<std::string> name = {}) {
+  return answer_of<StoredMission>([&](auto reply) {
+    s.copy_mission(id, std::move(name), {"anna", ""}, reply);
+  });
 }
 inline base::Result<Page<MissionSummary>> list(Store& s, int limit, const std::string& cursor = "",
-                                               Which which = Which::Present) {
+                                               Filter filter = {}) {
   return answer_of<Page<MissionSummary>>(
-      [&](auto reply) { s.list_missions(limit, cursor, reply, which); });
+      [&](auto reply) { s.list_missions(limit, cursor, reply, std::move(filter)); });
 }
 inline base::Result<Page<RevisionSummary>> revisions(Store& s, const std::string& id, int limit,
                                                      const std::string& cursor = "") {

@@ -276,7 +276,7 @@ TEST(DeletedMissions, AreListedAndRestored) {
   EXPECT_EQ(restore(*store, id).error().code, Code::Conflict);
   clock.now = clock.now.load() + 1h;
   ASSERT_TRUE(remove(*store, id, 1));
-  const auto gone = list(*store, 10, "", Which::Deleted);
+  const auto gone = list(*store, 10, "", {Which::Deleted});
   ASSERT_EQ(gone->items.size(), 1u);
   EXPECT_EQ(gone->items[0].name, "lost");
   EXPECT_EQ(gone->items[0].updated, clock.now.load());
@@ -286,7 +286,7 @@ TEST(DeletedMissions, AreListedAndRestored) {
   EXPECT_EQ(back->revision, 3);
   EXPECT_EQ(back->plan, plan_named("lost", 4));
   EXPECT_EQ(revisions(*store, id, 10)->items[0].what, "restored");
-  EXPECT_TRUE(list(*store, 10, "", Which::Deleted)->items.empty());
+  EXPECT_TRUE(list(*store, 10, "", {Which::Deleted})->items.empty());
   EXPECT_EQ(restore(*store, "nobody").error().code, Code::NotFound);
 }
 
@@ -304,11 +304,11 @@ TEST(DeletedMissions, AreForgottenWhenTheirTimeIsOver) {
     ASSERT_TRUE(remove(*store, old, 1));
     clock.now = clock.now.load() + 23h;
     ASSERT_TRUE(remove(*store, young, 1));
-    EXPECT_EQ(list(*store, 10, "", Which::Deleted)->items.size(), 2u);
+    EXPECT_EQ(list(*store, 10, "", {Which::Deleted})->items.size(), 2u);
   }
   clock.now = clock.now.load() + 2h;
   auto store = open_store(folder.file(), options);
-  const auto gone = list(*store, 10, "", Which::Deleted);
+  const auto gone = list(*store, 10, "", {Which::Deleted});
   ASSERT_EQ(gone->items.size(), 1u);
   EXPECT_EQ(gone->items[0].id, young);
   EXPECT_EQ(restore(*store, old).error().code, Code::NotFound);

@@ -12,6 +12,7 @@
 #include "folder.hpp"
 #include "store/database.hpp"
 #include "store/migrations.hpp"
+#include "store/missions.hpp"
 
 namespace roverd::store {
 namespace {
@@ -74,14 +75,21 @@ TEST(Opening, TheConnectionIsDurableAndStrict) {
 TEST(Opening, AListOfMissionsIsReadFromItsIndex) {
   Folder folder;
   const auto db = open_database(folder.file(), migrations(), 1'000'000'000);
-  SQLite::Statement plan((*db)->connection,
-                         "EXPLAIN QUERY PLAN SELECT id, revision, name, items, length_m, "
-                         "updated_ns FROM missions WHERE deleted = 0 AND (updated_ns, id) < (?, ?) "
-                         "ORDER BY updated_ns DESC, id DESC LIMIT ?");
-  std::string text;
-  while (plan.executeStep()) text += plan.getColumn(3).getString() + "\n";
-  EXPECT_TRUE(contains(text, "SEARCH missions USING INDEX missions_by_update")) << text;
-  EXPECT_FALSE(contains(text, "TEMP B-TREE")) << text;
+  const auto how = [&](const Filter& filter) {
+    SQLite::Statement plan((*db)->connection, "EXPLAIN QUERY PLAN " + list_sql(filter));
+    std::string out;
+    while (plan.executeStep()) out += plan.getColumn(3).getString() + '\n';
+    // What is sorted is the page that was found, never the list.
+    const std::size_t begin = out.find("SEARCH");
+    const std::string first = out.substr(begin, out.find('(') - begin);
+    EXPECT_LE(out.find("SCAN found"), out.find("B-TREE")) << out;
+    return first;
+  };
+  EXPECT_EQ(how({}), "SEARCH m USING COVERING INDEX missions_in_use ");
+  EXPECT_EQ(how({Which::Present, "north"}), "SEARCH m USING COVERING INDEX missions_in_use ");
+  EXPECT_EQ(how({Which::Archived}), "SEARCH m USING COVERING INDEX missions_in_archive ");
+  EXPECT_EQ(how({Which::Deleted}), "SEARCH m USING INDEX missions_by_deletion ");
+  EXPECT_EQ(how({Which::Present, "", "farm"}), "SEARCH t USING PRIMARY KEY ");
 }
 
 TEST(Opening, AListOfDeletedMissionsIsReadFromItsIndex) {

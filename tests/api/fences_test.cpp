@@ -1,0 +1,127 @@
+// Fences over HTTP, and the check of missions against them.
+
+#include "house.hpp"
+
+namespace roverd::test {
+namespace {
+
+class FencesApi : public HouseTest {
+ protected:
+  static Json fence(double radius_m = 100.0) {
+    return {{"name", "field"},
+            {"areas",
+             {{{"kind", "inclusion"},
+               {"circle", {{"lat", kStart.lat}, {"lon", kStart.lon}, {"radius_m", radius_m}}}}}},
+            {"rally", {{{"lat", kStart.lat}, {"lon", kStart.lon}}}}};
+  }
+  static std::string tag(int revision) {
+    return "If-Match: \"rev-" + std::to_string(revision) + "\"\r\n";
+  }
+  /// Waypoints so many metres north of the start.
+  std::string mission(const std::vector<double>& north_m) {
+    Json items = Json::array();
+    for (const double m : north_m) {
+      items.push_back(
+          {{"type", "waypoint"}, {"lat", kStart.lat + m / 111'384}, {"lon", kStart.lon}});
+    }
+    return call("POST", "/missions", Json{{"name", "course"}, {"items", items}}).body["id"];
+  }
+};
+
+TEST_F(FencesApi, AFenceIsCreatedReadReplacedAndDeleted) {
+  const auto made = call("POST", "/fences", fence());
+  ASSERT_EQ(made.status, 201u) << made.raw.body;
+  const std::string id = made.body["id"];
+  EXPECT_EQ(made.raw.header("location"), "/api/v1/fences/" + id);
+  EXPECT_EQ(call("GET", "/fences/" + id).body, made.body);
+  EXPECT_EQ(call("GET", "/fences").body["items"][0]["areas"], 1);
+  EXPECT_EQ(call("PUT", "/fences/" + id, fence(50)).status, 428u);
+  EXPECT_EQ(call("PUT", "/fences/" + id, fence(50), tag(1)).raw.header("etag"), "\"rev-2\"");
+  const auto late = call("PUT", "/fences/" + id, fence(60), tag(1));
+  EXPECT_EQ(late.status, 412u);
+  EXPECT_EQ(late.body["current"]["areas"][0]["circle"]["radius_m"], 50.0);
+  const auto back = call("POST", "/fences/" + id + "/revert", Json{{"revision", 1}}, tag(2));
+  EXPECT_EQ(back.body["areas"], made.body["areas"]);
+  EXPECT_EQ(call("GET", "/fences/" + id + "/revisions").body["items"].size(), 3u);
+  EXPECT_EQ(call("DELETE", "/fences/" + id, "", tag(3)).status, 204u);
+  EXPECT_EQ(call("GET", "/fences/" + id).status, 404u);
+}
+
+TEST_F(FencesApi, WhatIsNoFenceIsRefusedWithItsPlace) {
+  Json crossed = fence();
+  crossed["areas"][0] = {{"kind", "exclusion"},
+                         {"polygon",
+                          {{{"lat", 58.0}, {"lon", 26.0}},
+                           {{"lat", 58.001}, {"lon", 26.001}},
+                           {{"lat", 58.0}, {"lon", 26.001}},
+                           {{"lat", 58.001}, {"lon", 26.0}}}}};
+  const auto reply = call("POST", "/fences", crossed);
+  EXPECT_EQ(reply.status, 422u);
+  EXPECT_EQ(reply.body["errors"][0]["pointer"], "/areas/0/polygon");
+  EXPECT_TRUE(call("GET", "/fences").body["items"].empty());
+}
+
+TEST_F(FencesApi, OneOfThemIsTheActiveOne) {
+  EXPECT_TRUE(call("GET", "/fence").body["fence"].is_null());
+  const std::string id = call("POST", "/fences", fence()).body["id"];
+  const auto active = call("PUT", "/fence", Json{{"fence_id", id}});
+  ASSERT_EQ(active.status, 200u) << active.raw.body;
+  EXPECT_EQ(call("GET", "/fence").body["fence"]["id"], id);
+  EXPECT_EQ(call("GET", "/fences").body["items"][0]["active"], true);
+  EXPECT_EQ(call("DELETE", "/fences/" + id, "", tag(1)).status, 409u);
+  EXPECT_EQ(call("PUT", "/fence", Json{{"fence_id", "nobody"}}).status, 422u);
+  EXPECT_EQ(call("PUT", "/fence", Json::object()).status, 422u);
+  // A change of the active one counts at once.
+  ASSERT_EQ(call("PUT", "/fences/" + id, fence(7), tag(1)).status, 200u);
+  EXPECT_EQ(call("GET", "/fence").body["fence"]["areas"][0]["circle"]["radius_m"], 7.0);
+  EXPECT_TRUE(call("PUT", "/fence", Json{{"fence_id", nullptr}}).body["fence"].is_null());
+}
+
+TEST_F(FencesApi, AMissionIsCheckedAndItsErrorsAreNotLoaded) {
+  until_ready();
+  const std::string good = mission({5, 20, 20});
+  const auto report = call("POST", "/missions/" + good + "/check");
+  ASSERT_EQ(report.status, 200u) << report.raw.body;
+  EXPECT_EQ(report.body["ready"], true);
+  ASSERT_EQ(report.body["findings"].size(), 1u);
+  EXPECT_EQ(report.body["findings"][0]["code"], "duplicate_point");
+  EXPECT_EQ(report.body["findings"][0]["pointer"], "/items/2");
+  EXPECT_EQ(report.body["findings"][0]["item"], 3);
+  EXPECT_NEAR(report.body["length_m"], 15.0, 0.1);
+  EXPECT_GT(report.body["time_s"], 10.0);
+  EXPECT_GT(report.body["battery_pct"], 0.0);
+
+  // Its warnings are shown when it is loaded, and before it starts.
+  const auto loaded = call("POST", "/execution/load", Json{{"mission_id", good}});
+  ASSERT_EQ(loaded.status, 200u) << loaded.raw.body;
+  EXPECT_EQ(loaded.body["warnings"].size(), 1u);
+  EXPECT_EQ(call("GET", "/execution/preview").body["warnings"], loaded.body["warnings"]);
+
+  // With a fence round the first two only, another one is refused.
+  const std::string id = call("POST", "/fences", fence(30)).body["id"];
+  ASSERT_EQ(call("PUT", "/fence", Json{{"fence_id", id}}).status, 200u);
+  const std::string outside = mission({5, 40});
+  EXPECT_EQ(call("POST", "/missions/" + outside + "/check").body["fence_id"], id);
+  const auto refused = call("POST", "/execution/load", Json{{"mission_id", outside}});
+  EXPECT_EQ(refused.status, 422u);
+  EXPECT_EQ(refused.body["errors"][0]["pointer"], "/items/1");
+  EXPECT_EQ(refused.body["detail"], "item 2 lies outside the fence");
+  EXPECT_EQ(call("GET", "/execution").body["mission_id"], good);
+}
+
+TEST_F(FencesApi, TypesWithoutTheirDriverAreStoredAndRefusedAtLoad) {
+  const Json items = {{{"type", "waypoint"}, {"lat", kStart.lat}, {"lon", kStart.lon}},
+                      {{"type", "row"}, {"side", "left"}, {"gap_m", 0.8}},
+                      {{"type", "wall"}, {"side", "right"}, {"distance_m", 0.9}},
+                      {{"type", "landmarks"}, {"name", "cone"}, {"offset_m", 0.7}}};
+  const auto made = call("POST", "/missions", Json{{"name", "rows"}, {"items", items}});
+  ASSERT_EQ(made.status, 201u);
+  EXPECT_EQ(call("GET", "/missions/" + made.body["id"].get<std::string>()).body["items"], items);
+  const auto refused = call("POST", "/execution/load", Json{{"mission_id", made.body["id"]}});
+  EXPECT_EQ(refused.status, 422u);
+  EXPECT_EQ(refused.body["errors"].size(), 3u);
+  EXPECT_EQ(refused.body["errors"][0]["pointer"], "/items/1");
+}
+
+}  // namespace
+}  // namespace roverd::test

@@ -1,0 +1,20 @@
+// KMZ archives: whatever the bytes, an import is refused or gives a plan that can be written and
+// read again.
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "mission/formats.hpp"
+
+using namespace roverd::mission;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+  const auto file = import_file(bytes, Format::Kmz, "x");
+  if (!file) return file.error().detail.empty() ? std::abort(), 0 : 0;
+  const auto again = import_file(export_file(file->plan, Format::Kmz).content, Format::Kmz, "x");
+  if (!again || again->plan.items.size() != file->plan.items.size()) std::abort();
+  return 0;
+}

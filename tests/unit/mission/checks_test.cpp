@@ -1,0 +1,148 @@
+// What speaks against driving a mission.
+
+#include "mission/checks.hpp"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+namespace roverd::mission {
+namespace {
+
+using base::EnuPoint;
+
+const base::LocalFrame kGround(1, {58.0, 26.0});
+
+Waypoint spot(double east_m, double north_m) {
+  Waypoint waypoint;
+  waypoint.at = kGround.to_global({east_m, north_m});
+  return waypoint;
+}
+
+Plan course(std::vector<Item> items) {
+  Plan plan;
+  plan.name = "course";
+  plan.items = std::move(items);
+  return plan;
+}
+
+VehicleLimits tracks() {
+  VehicleLimits limits;
+  limits.item_types = {"waypoint", "local", "wait", "speed", "jump", "return_home"};
+  return limits;
+}
+VehicleLimits car() {
+  VehicleLimits limits = tracks();
+  limits.turn_radius_m = 3.9;
+  limits.steer_in_m = 3.0;
+  limits.settle_m = 8.0;
+  return limits;
+}
+
+/// "code@item", in the report's order.
+std::vector<std::string> found(const Plan& plan, const VehicleLimits& vehicle,
+                               const Surroundings& around = {}) {
+  std::vector<std::string> out;
+  for (const Finding& f : check(plan, vehicle, around).findings) {
+    out.push_back(f.code + "@" + std::to_string(f.item.value_or(0)));
+  }
+  return out;
+}
+using Codes = std::vector<std::string>;
+
+TEST(Check, AGoodCourseHasNoFindings) {
+  EXPECT_EQ(found(course({spot(0, 0), spot(20, 0), spot(20, 20)}), tracks()), Codes{});
+}
+
+TEST(Check, NamesTheItemsThatSpeakAgainstIt) {
+  Waypoint high = spot(10, 0);
+  high.alt_m = 50.0;
+  Waypoint low = spot(0, 0);
+  low.alt_m = 40.0;
+  Waypoint fast = spot(5, 5);
+  fast.speed_mps = 3.0;
+  const VehicleLimits v = tracks();
+
+  EXPECT_EQ(found(course({}), v), Codes{"no_target@0"});
+  EXPECT_EQ(found(course({spot(0, 0), spot(0, 0)}), v), Codes{"duplicate_point@2"});
+  EXPECT_EQ(found(course({spot(0, 0), spot(1500, 0)}), v), Codes{"leg_too_long@2"});
+  EXPECT_EQ(found(course({low, high}), v), Codes{"too_steep@2"});
+  EXPECT_EQ(found(course({fast}), v), Codes{"speed_above_limit@1"});
+  EXPECT_EQ(found(course({spot(0, 0), Speed{9.0}}), v), Codes{"speed_above_limit@2"});
+  EXPECT_EQ(found(course({spot(0, 0), spot(9, 9), Jump{1, 0}}), v), Codes{"repeats_for_ever@3"});
+  EXPECT_EQ(found(course({spot(0, 0), spot(0, 12'000)}), v), Codes{"too_far@2"});
+  EXPECT_EQ(found(course({spot(0, 0)}), v, {kGround.to_global({0, 2000}), nullptr}),
+            Codes{"too_far@1"});
+}
+
+TEST(Check, TellsWhatMustBeConfiguredForAType) {
+  const auto report = check(
+      course({spot(0, 0), Row{Side::Left, 0.8}, Wall{Side::Left, 1.0}, Landmarks{"cone", 0.7}}),
+      tracks(), {});
+
+  EXPECT_EQ(report.errors, 3u);
+  EXPECT_EQ(report.findings.at(0).pointer, "/items/1");
+  EXPECT_NE(report.findings.at(0).detail.find("no scanner"), std::string::npos);
+  EXPECT_NE(report.findings.at(2).detail.find("no vision"), std::string::npos);
+}
+
+TEST(Check, ACarNeedsRoomToTurn) {
+  // 90 deg: 2 · (3.9 tan 45° + 3) + 8 = 21.8 m between two corners
+  const auto square = [](double side) {
+    return course({spot(0, 0), spot(side, 0), spot(side, side), spot(0, side)});
+  };
+  EXPECT_EQ(found(square(23), car()), Codes{});
+  EXPECT_EQ(found(square(20), car()), Codes{"turn_too_tight@3"});
+  EXPECT_EQ(found(square(6), car()),
+            (Codes{"turn_too_tight@2", "turn_too_tight@3", "turn_too_tight@4"}));
+  EXPECT_EQ(found(square(6), tracks()), Codes{});
+  Waypoint pivot = spot(50, 0);
+  pivot.turn = Turn::Pivot;
+  EXPECT_EQ(found(course({spot(0, 0), pivot}), car()), Codes{"turn_too_tight@2"});
+}
+
+TEST(Check, KeepsInsideTheFence) {
+  Fence fence{"field", {}, {}};
+  FencePolygon corners;
+  for (const EnuPoint p :
+       {EnuPoint{-10, -10}, EnuPoint{100, -10}, EnuPoint{100, 100}, EnuPoint{-10, 100}}) {
+    corners.points.push_back(kGround.to_global(p));
+  }
+  fence.areas = {{AreaKind::Inclusion, corners},
+                 {AreaKind::Exclusion, FenceCircle{kGround.to_global({50, 0}), 5.0}}};
+  const Surroundings around{std::nullopt, &fence};
+
+  EXPECT_EQ(found(course({spot(0, 0), spot(20, 0)}), tracks(), around), Codes{});
+  EXPECT_EQ(found(course({spot(0, 0), spot(90, 0)}), tracks(), around), Codes{"outside_fence@2"});
+  EXPECT_EQ(found(course({spot(0, 0), spot(-30, 0)}), tracks(), around), Codes{"outside_fence@2"});
+  EXPECT_EQ(found(course({spot(0, 0), spot(-9.8, 0)}), tracks(), around), Codes{"near_fence@2"});
+}
+
+TEST(Estimate, CountsWayWaitsTurnsAndRepetitions) {
+  VehicleLimits v = tracks();
+  v.default_speed_mps = v.max_speed_mps = 1.0;
+  v.yaw_rate_radps = 1.0;
+  v.drive_power_w = 360.0;
+  Waypoint hold = spot(10, 0);
+  hold.hold_s = 5.0;
+
+  const auto once = estimate(course({spot(0, 0), hold, spot(10, 10)}), v);
+  EXPECT_NEAR(once.length_m, 20.0, 0.01);
+  EXPECT_NEAR(*once.time_s, 20.0 + 5.0 + 1.5708, 0.01);
+  EXPECT_NEAR(*once.energy_wh, 21.5708 * 0.1, 0.01);
+
+  const auto thrice = estimate(course({spot(0, 0), spot(10, 0), Jump{1, 2}}), v);
+  EXPECT_NEAR(thrice.length_m, 50.0, 0.01);
+  EXPECT_FALSE(estimate(course({spot(0, 0), spot(10, 0), Jump{1, 0}}), v).time_s);
+  EXPECT_FALSE(
+      estimate(course({spot(0, 0), spot(10, 0), Jump{1, 10'000}, Jump{1, 10'000}}), v).time_s);
+
+  Plan repeated = course({spot(0, 0), spot(10, 0)});
+  repeated.settings.at_end = AtEnd::BackAndForth;
+  EXPECT_FALSE(estimate(repeated, v).time_s);
+  repeated.settings.times = 4;
+  EXPECT_NEAR(estimate(repeated, v).length_m, 40.0, 0.01);
+}
+
+}  // namespace
+}  // namespace roverd::mission
