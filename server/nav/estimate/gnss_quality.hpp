@@ -3,9 +3,8 @@
 
 #include <optional>
 
-#include <tl/expected.hpp>
-
 #include "base/measurements.hpp"
+#include "base/result.hpp"
 #include "base/snapshot.hpp"
 #include "nav/estimate/ekf.hpp"
 
