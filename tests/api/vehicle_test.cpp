@@ -27,6 +27,7 @@ TEST_F(VehicleApi, TheStateIsWholeAndJudgedByTheDocument) {
 
 TEST_F(VehicleApi, TheSkyIsToldReceiverByReceiver) {
   // Given no receiver that tells of satellites,
+  until_ready();
   EXPECT_EQ(call("GET", "/gnss/satellites").body["receivers"], Json::array());
   // when one does,
   auto all = std::make_shared<std::vector<base::Satellite>>();

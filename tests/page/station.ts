@@ -146,7 +146,11 @@ export const test = base.extend<{
         /^ready can=(\S+) gnss=(\S+) mti=(\S+) control=(\S+)/,
       );
       sim = new SideChannel(control);
-      const links = [`drivers.bunker.link=${can}`, `drivers.gnss.link=${gnss}`, `drivers.mti.link=${mti}`];
+      const links = [
+        `drivers.bunker.link=${can}`,
+        `drivers.gnss.link=${gnss}`,
+        `drivers.mti.link=${mti}`,
+      ];
       const roverd = new Program('roverd', [
         ...['--config', config, '--data', join(folder, 'data'), '--port', '0'],
         ...links.flatMap((setting) => ['--set', setting]),

@@ -162,13 +162,14 @@ TEST(Opening, AMigrationThatFailsLeavesTheOldSchema) {
 TEST(Opening, ADatabaseOfANewerProgramIsRefused) {
   Folder folder;
   open_store(folder.file());
+  const int known = migrations().back().number;
   {
     SQLite::Database c(folder.file().string(), SQLite::OPEN_READWRITE);
-    c.exec("PRAGMA user_version = 7");
+    c.exec("PRAGMA user_version = " + std::to_string(known + 1));
   }
-  EXPECT_EQ(refusal(folder.file()), folder.file().string() +
-                                        " is of schema 7, this program knows up to " +
-                                        std::to_string(migrations().back().number) +
+  EXPECT_EQ(refusal(folder.file()), folder.file().string() + " is of schema " +
+                                        std::to_string(known + 1) + ", this program knows up to " +
+                                        std::to_string(known) +
                                         ": start the newer program or another data folder");
 }
 

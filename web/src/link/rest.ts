@@ -94,7 +94,7 @@ export const vehicle_calls: VehicleCalls = {
   reset_estop: () => command('POST', '/vehicle/estop/reset'),
   trail,
   drivers: () => request<Schemas['DriverList']>('/drivers'),
-  satellites: () => request<Schemas['SatelliteList']>('/gnss/satellites'),
+  satellites: () => request<Schemas['Satellites']>('/gnss/satellites'),
   restart_driver: (name) => command('POST', `/drivers/${encodeURIComponent(name)}/restart`),
   checks: () => request<Schemas['Checks']>('/vehicle/checks'),
   load: (mission_id, revision) => command('POST', '/execution/load', { mission_id, revision }),
