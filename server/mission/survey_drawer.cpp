@@ -9,7 +9,7 @@
 namespace roverd::mission::survey {
 namespace {
 
-constexpr double kSame_m = 0.01;
+constexpr double kSamePlace_m = 0.01;
 
 double yaw_of(EnuPoint from, EnuPoint to) noexcept {
   return std::atan2(to.north_m - from.north_m, to.east_m - from.east_m);
@@ -57,7 +57,7 @@ std::optional<EnuPoint> Drawer::at() const noexcept {
 void Drawer::put(EnuPoint at, Turn turn, bool reverse) {
   if (!points_.empty()) {
     PathPoint& last = points_.back();
-    if (base::distance_m(last.at, at) < kSame_m && last.reverse == reverse) {
+    if (base::distance_m(last.at, at) < kSamePlace_m && last.reverse == reverse) {
       if (turn == Turn::Pivot) last.turn = turn;
       return;
     }
@@ -94,7 +94,7 @@ void Drawer::reach(const Pose& to) {
   const bool arcs = manner_.turn == SurveyTurn::Arc;
   if (arcs) {
     constexpr double kStraight_rad = 0.01;
-    const bool there = base::distance_m(points_.back().at, to.at) < kSame_m &&
+    const bool there = base::distance_m(points_.back().at, to.at) < kSamePlace_m &&
                        std::abs(base::angle_diff_rad(yaw_rad_, to.yaw_rad)) < kStraight_rad;
     if (there || arc_to(to)) return;
   }
@@ -107,7 +107,7 @@ void Drawer::reach(const Pose& to) {
 }
 
 void Drawer::line(EnuPoint from, EnuPoint to) {
-  const double yaw = base::distance_m(from, to) < kSame_m ? yaw_rad_ : yaw_of(from, to);
+  const double yaw = base::distance_m(from, to) < kSamePlace_m ? yaw_rad_ : yaw_of(from, to);
   reach({from, yaw});
   put(to, manner_.turn == SurveyTurn::Arc ? Turn::Arc : Turn::Pivot);
 }

@@ -135,15 +135,16 @@ struct Laid {
 };
 
 Laid lay(const std::vector<LatLon>& points, const base::TangentPlane& plane) {
-  constexpr double kSame_m = 1e-3;
+  constexpr double kSamePoint_m = 1e-3;
   Laid out;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const EnuPoint p = plane.to_local(points[i]);
-    if (!out.ring.empty() && base::distance_m(out.ring.back(), p) < kSame_m) continue;
+    if (!out.ring.empty() && base::distance_m(out.ring.back(), p) < kSamePoint_m) continue;
     out.ring.push_back(p);
     out.numbers.push_back(i);
   }
-  while (out.ring.size() > 1 && base::distance_m(out.ring.front(), out.ring.back()) < kSame_m) {
+  while (out.ring.size() > 1 &&
+         base::distance_m(out.ring.front(), out.ring.back()) < kSamePoint_m) {
     out.ring.pop_back();
     out.numbers.pop_back();
   }

@@ -54,7 +54,10 @@ def case_resume():
         rest.do("POST", "/execution/start", {"mission_id": mission, "revision": 1, **SOON})
         until("it drives to item 2", 60,
               lambda: rest.get("/execution")["current_item"] == 2, 0.1)
-        until("and its place is kept", 10, lambda: rest.get("/runs")["items"], 0.1)
+        # The place is kept every 2 s: well on the way to item 2 it is kept as that.
+        until("and is nearly there", 20,
+              lambda: rest.get("/vehicle")["mission"]["distance_to_item_m"] < 0.6, 0.1)
+        until("and its run is kept", 10, lambda: rest.get("/runs")["items"], 0.1)
         begin = position(rest)
         rest = restarted(station)
         left = until("it is offered", 20, lambda: rest.get("/execution")["left_behind"], 0.1)

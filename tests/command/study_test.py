@@ -71,7 +71,7 @@ def names_what_is_wrong():
 def says_what_did_not_arrive():
     """a robot that is stopped on its way: exit code 1 and the reason"""
     with tempfile.TemporaryDirectory() as folder:
-        done = study(folder, disturbances={"disturbances": [{"name": "stuck", "sim": {"drive.slip": 0.9}}]})
+        done = study(folder, disturbances={"disturbances": [{"name": "stuck", "sim": {"drive.max_linear_mps": 0.1}}]})
         check(done.returncode == 1, f"exit code {done.returncode}: {done.stdout}")
         check("2 of 2" in done.stdout and "seed 1:" in done.stdout, done.stdout)
 

@@ -28,7 +28,7 @@ JOBS = {
     "husky": ([(3, 0), (3, 3), (6, 3), (6, 0)], 0.8, 0.5, 0.3),
 }
 # Which driver moves it, and what has to be heard before that.
-DRIVERS = {"bunker": {"bunker", "gnss"}, "uku": {"ackermann", "gnss"},
+DRIVERS = {"bunker": {"bunker", "gnss", "mti"}, "uku": {"ackermann", "gnss"},
            "imiev": {"ackermann", "gnss"}, "probot": {"ratio", "gnss"},
            "donkey": {"twist", "gnss"}, "husky": {"twist", "bumper", "gnss"}}
 
