@@ -79,7 +79,8 @@ def case_resume():
               lambda: [r["outcome"] for r in rest.get("/runs")["items"]] ==
               ["finished", "interrupted"], 0.2)
         report = rest.get("/runs/2/report")
-        check(report["cross_track"]["rms_m"] < 0.2, f"the report says {report}")
+        # It rolled on past the kept place, and turned back to it: only the end tells of tracking.
+        check(report["end_m"] < 0.1, f"the report says {report}")
         table = subprocess.run([BIN / "roverd", "report", "--data", station.scratch / "data",
                                 "1", "2"], capture_output=True, text=True, check=False)
         check(table.returncode == 0, f"roverd report: {table.stderr}")
