@@ -117,7 +117,8 @@ TEST(Durability, AFileHeldByAnotherProgramIsUnavailableAndWorksAgainAfterwards) 
   Folder folder;
   auto store = open_store(folder.file());
   {
-    SQLite::Database other(folder.file().string(), SQLite::OPEN_READWRITE);
+    // The store may still be writing what its start asks for.
+    SQLite::Database other(folder.file().string(), SQLite::OPEN_READWRITE, 5000);
     other.exec("BEGIN IMMEDIATE");
     const auto refused = create(*store, plan_named("x"));
     ASSERT_FALSE(refused);
