@@ -28,6 +28,18 @@ Result<std::unique_ptr<DriverBay>> DriverBay::make(std::vector<DevicePlan> plans
   return bay;
 }
 
+namespace {
+
+base::DriverStatus starting(const std::string& name) {
+  base::DriverStatus status;
+  status.stamp = base::steady_now();
+  status.name = name;
+  status.reason = "starting";
+  return status;
+}
+
+}  // namespace
+
 DriverBay::~DriverBay() {
   stop();
 }
@@ -35,6 +47,8 @@ DriverBay::~DriverBay() {
 void DriverBay::start() {
   {
     std::lock_guard lock(mutex_);
+    // All are known, in the order of the configuration, before the first of them says a word.
+    for (const Slot& slot : slots_) on_measurement_(starting(slot.plan.name));
     for (Slot& slot : slots_) slot.berth = Berth::begin(slot.plan, on_measurement_, {});
   }
   watch_ = std::thread([this] { look_after(); });

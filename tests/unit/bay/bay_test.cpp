@@ -94,6 +94,7 @@ class Bay : public ::testing::Test {
                                   const auto* status = std::get_if<DriverStatus>(&m);
                                   if (status == nullptr) return;
                                   std::lock_guard lock(mutex_);
+                                  heard_.push_back(status->name);
                                   statuses_[status->name].push_back(*status);
                                 });
     ASSERT_TRUE(made);
@@ -105,6 +106,10 @@ class Bay : public ::testing::Test {
     std::lock_guard lock(mutex_);
     const auto& all = statuses_[name];
     return all.empty() ? DriverStatus{} : all.back();
+  }
+  std::vector<std::string> heard() {
+    std::lock_guard lock(mutex_);
+    return heard_;
   }
   bool is(const std::string& name, DriverPhase phase) { return last(name).phase == phase; }
 
@@ -131,8 +136,18 @@ class Bay : public ::testing::Test {
 
  private:
   std::mutex mutex_;
+  std::vector<std::string> heard_;
   std::map<std::string, std::vector<DriverStatus>> statuses_;
 };
+
+TEST_F(Bay, EveryDriverIsKnownInTheOrderOfThePlansBeforeOneSpeaks) {
+  open();
+  const std::vector<std::string> names = heard();
+  ASSERT_GE(names.size(), 2U);
+  EXPECT_EQ(names[0], "wheels");
+  EXPECT_EQ(names[1], "eyes");
+  until_both_work();
+}
 
 TEST_F(Bay, ADriverThatThrowsInATickFailsAloneAndARestartBringsItBack) {
   // Given two drivers that work,
