@@ -164,6 +164,11 @@ void Reader::on_tpv(Time stamp) {
   }
   const bool placed = fix.fix != base::FixType::None && fix.fix != base::FixType::Unknown;
   const base::LatLon at{f.latitude, f.longitude};
+  if (placed && std::isnan(at.lat) && std::isnan(at.lon)) {
+    // The first sentence of an epoch may name the mode alone; the position follows.
+    ears_.noted("fix without a position");
+    return;
+  }
   if (placed && !(std::isfinite(at.lat) && std::isfinite(at.lon) && std::abs(at.lat) <= 90.0 &&
                   std::abs(at.lon) <= 180.0)) {
     ears_.refused("position that is not on earth");

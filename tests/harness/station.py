@@ -43,6 +43,11 @@ def until(what, seconds, ask, pause=0.05):
         time.sleep(pause)
 
 
+def hear_ctrl_c():
+    """Where the tests were started in the background, Ctrl-C is ignored, and children inherit that."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 class Program:
     """A child process whose output lines are kept."""
 
@@ -52,7 +57,8 @@ class Program:
         self.errors = []
         self.process = subprocess.Popen([str(a) for a in arguments], stdin=subprocess.DEVNULL,
                                         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                                        errors="replace", env=env, cwd=cwd, start_new_session=True)
+                                        errors="replace", env=env, cwd=cwd, start_new_session=True,
+                                        preexec_fn=hear_ctrl_c)
         self.readers = [threading.Thread(target=self._read, args=pair, daemon=True) for pair in
                         ((self.process.stdout, self.lines), (self.process.stderr, self.errors))]
         for reader in self.readers:

@@ -123,6 +123,14 @@ TEST_F(GpsdTest, WithoutAFixThereIsNoPosition) {
   EXPECT_FALSE(all<base::GnssFix>()[0].position);
 }
 
+TEST_F(GpsdTest, AModeAheadOfItsPositionIsNoFaultOfTheReceiver) {
+  make();
+  say(tpv("2026-03-18T13:28:20.100Z", ""));
+  EXPECT_TRUE(all<base::GnssFix>().empty());
+  EXPECT_EQ(count("fix without a position"), 1u);
+  EXPECT_EQ(driver->status(now).refused, 0u);
+}
+
 TEST_F(GpsdTest, AnotherReceiverOfTheSameGpsdIsNotHeard) {
   make();
   place(1);
