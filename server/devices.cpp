@@ -22,8 +22,10 @@
 #include "mti/driver.hpp"
 #include "ntrip/driver.hpp"
 #include "ratio/driver.hpp"
+#include "receiver_params.hpp"
 #include "replays.hpp"
 #include "twist/driver.hpp"
+#include "workshop.hpp"
 
 namespace roverd {
 namespace {
@@ -31,50 +33,12 @@ namespace {
 namespace asio = boost::asio;
 using base::Result;
 
-/// What every driver is made from. Shared: a driver that hangs keeps it for as long as it lasts.
-struct Workshop {
-  std::string folder;  ///< of recordings
-  bool records = false;
-  link::RecordOptions record;
-  link::ReplayOptions replay;
-};
 /// Between the corrections' thread and the receiver's.
 struct Corrections {
   base::Inbox<std::vector<std::uint8_t>> frames{64};
   base::Latest<base::GnssFix> fix;
 };
 using CorrectionsPtr = std::shared_ptr<Corrections>;
-
-using WorkshopPtr = std::shared_ptr<const Workshop>;
-
-/// A file name for this moment: 20260301T120000Z-can0.log
-std::string name_for_now(const std::string& name) {
-  std::string text;
-  for (const char c : base::to_rfc3339(base::wall_now())) {
-    if (c == '.') break;
-    if (c != '-' && c != ':') text += c;
-  }
-  return text + "Z-" + name;
-}
-
-/// A file that is not there yet, in a folder that is.
-Result<std::string> recording_file(const Workshop& w, const std::string& name,
-                                   const std::string& ending) {
-  const std::filesystem::path folder(w.folder);
-  std::error_code ec;
-  std::filesystem::create_directories(folder, ec);
-  if (ec) {
-    return base::fail(base::Code::Unavailable,
-                      "recording folder " + folder.string() + ": " + ec.message());
-  }
-  const std::string stem = name_for_now(name);
-  auto file = folder / (stem + ending);
-  // A driver that is restarted within a second begins another recording.
-  for (int i = 2; i < 100 && std::filesystem::exists(file, ec); ++i) {
-    file = folder / (stem + "-" + std::to_string(i) + ending);
-  }
-  return file.string();
-}
 
 /// Frames or bytes: how such a link is made, and taped.
 struct Frames {
@@ -87,7 +51,7 @@ struct ByteStream {
   using Link = link::ByteLink;
   using Taped = link::RecordedByteLink;
   static constexpr auto kMake = link::make_byte_link;
-  static constexpr const char* kEnding = ".raw";
+  static constexpr const char* kEnding = kBytesEnding;
 };
 
 /// The bus keeps its name in the log where it has one.
@@ -96,7 +60,7 @@ std::string bus_name(const std::string& address) {
   return parsed && parsed->scheme == link::Scheme::Can ? parsed->target : link::RecordOptions{}.bus;
 }
 
-/// A recording that cannot be written is told, and never keeps a driver from its work.
+/// A recording that cannot be written never keeps a driver from its work.
 template <class Kind>
 Result<std::unique_ptr<typename Kind::Link>> open_link(const Workshop& w, asio::io_context& io,
                                                        const DeviceEars& ears,
@@ -104,25 +68,17 @@ Result<std::unique_ptr<typename Kind::Link>> open_link(const Workshop& w, asio::
                                                        const std::string& address) {
   auto made = Kind::kMake(io, address, w.replay);
   if (!made || !w.records) return made;
-  const auto refused = [&](const std::string& problem) {
-    base::log(base::Level::Warning, "drivers", "not recorded", {{"why", problem}});
-    ears.on_recording(base::Recording::Stopped, problem);
-  };
   const auto file = recording_file(w, name, Kind::kEnding);
   if (!file) {
-    refused(file.error().detail);
+    recording_refused(ears, file.error().detail);
     return made;
   }
-  link::RecordOptions record = w.record;
+  link::RecordOptions record = record_options(w, ears);
   record.bus = bus_name(address);
-  record.on_problem = [on_recording = ears.on_recording](const std::string& problem) {
-    base::log(base::Level::Warning, "drivers", "recording stopped", {{"why", problem}});
-    on_recording(base::Recording::Stopped, problem);
-  };
   ears.on_recording(base::Recording::On, "");  // before: the writer may refuse at once
   auto taped = Kind::Taped::create(std::move(*made), *file, record);
   if (taped) return std::move(*taped);
-  refused(taped.error().detail);
+  recording_refused(ears, taped.error().detail);
   return Kind::kMake(io, address, w.replay);
 }
 
@@ -276,8 +232,7 @@ class Planner {
     return {};
   }
 
-  /// Its casters, with their logins, stand where others have their link. It is not recorded: what
-  /// it hears is not of the robot.
+  /// Its casters, with their logins, stand where others have their link.
   Result<void> add_ntrip(const Wired<ntrip::Params>& said) {
     if (!replays_.file_of.empty() || !said.wiring.enabled) return {};
     const auto casters = ntrip::parse_casters(said.wiring.link);
@@ -287,14 +242,15 @@ class Planner {
     }
     DevicePlan plan;
     plan.name = "ntrip";
-    plan.make = [c = corrections_, params = said.params, casters = *casters](
+    plan.make = [w = workshop_, c = corrections_, params = said.params, casters = *casters](
                     asio::io_context& io, const DeviceEars& ears) {
       ntrip::Driver::Doors doors;
       doors.make_link = [&io](const std::string& address) {
         return link::make_byte_link(io, address);
       };
       doors.on_measurement = ears.on_measurement;
-      doors.on_frame = [c](base::Bytes frame) {
+      doors.on_frame = [c, tape = std::make_shared<CorrectionsTape>(w, ears)](base::Bytes frame) {
+        tape->put(frame);
         return c->frames.put({frame.begin(), frame.end()});
       };
       doors.where = [c] {
@@ -307,8 +263,14 @@ class Planner {
     return {};
   }
 
-  /// The receiver: at a port of ours, or served by a gpsd. gpsd's own words are not recorded.
+  /// The receiver: at a port of ours, or served by a gpsd.
   Result<void> add_receiver(const Wired<gnss::Params>& said) {
+    const auto replay = replays_.file_of.find("gpsd");
+    if (replay != replays_.file_of.end()) {
+      gnss::Params params = said.params;
+      params.silent_reopen_s = 0.0;  // as of any recording
+      return add_gpsd(gpsd_params(params, ""), "replay:" + replay->second);
+    }
     const bool served =
         replays_.file_of.empty() && said.wiring.enabled && gpsd::is_source(said.wiring.link);
     if (!served) return add<ByteStream, gnss::Driver>("gnss", said);
@@ -317,21 +279,18 @@ class Planner {
       return base::fail(base::Code::Invalid,
                         settings_.where("drivers.gnss.link") + ": " + source.error().detail);
     }
-    gpsd::Params params{.device = source->device,
-                        .heading_source = said.params.heading_source == "dual_antenna"
-                                              ? base::HeadingSource::DualAntenna
-                                              : base::HeadingSource::Compass,
-                        .heading_offset_deg = said.params.heading_offset_deg,
-                        .silent_after_s = said.params.silent_after_s,
-                        .silent_reopen_s = said.params.silent_reopen_s,
-                        .retry_first_s = said.params.retry_first_s,
-                        .retry_max_s = said.params.retry_max_s};
-    const std::string address = source->address;
+    return add_gpsd(gpsd_params(said.params, source->device), source->address);
+  }
+
+  std::vector<DevicePlan> take() { return std::move(plans_); }
+
+ private:
+  Result<void> add_gpsd(const gpsd::Params& params, const std::string& address) {
     DevicePlan plan;
     plan.name = "gnss";
-    plan.make = [params, address](asio::io_context& io, const DeviceEars& ears) {
-      const gpsd::Driver::MakeLink make_link = [address, &io] {
-        return link::make_byte_link(io, address);
+    plan.make = [w = workshop_, params, address](asio::io_context& io, const DeviceEars& ears) {
+      const gpsd::Driver::MakeLink make_link = [w, address, ears, &io] {
+        return open_link<ByteStream>(*w, io, ears, "gnss", address);
       };
       return device_of(
           std::make_shared<gpsd::Driver>("gnss", params, make_link, ears.on_measurement));
@@ -340,9 +299,6 @@ class Planner {
     return {};
   }
 
-  std::vector<DevicePlan> take() { return std::move(plans_); }
-
- private:
   const Settings& settings_;
   const WorkshopPtr workshop_;
   const Replays replays_;

@@ -18,6 +18,7 @@
 #include "base/result.hpp"
 #include "decode.hpp"
 #include "logging.hpp"
+#include "ntrip_table.hpp"
 #include "options.hpp"
 #include "replay_run.hpp"
 #include "report.hpp"
@@ -120,6 +121,8 @@ int main(int argc, char** argv) {
     if (argc > 1 && std::string_view(argv[1]) == "study") return become_study(argv);
     if (argc > 1 && std::string_view(argv[1]) == "report")
       return roverd::report(argc - 2, argv + 2);
+    if (argc > 1 && std::string_view(argv[1]) == "ntrip")
+      return roverd::ntrip_command(argc - 2, argv + 2);
     if (argc > 1 && std::string_view(argv[1]) == "replay")
       return roverd::replay(argc - 2, argv + 2);
     return serve(roverd::read_options(argc, argv));

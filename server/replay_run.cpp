@@ -6,14 +6,10 @@
 #include <memory>
 #include <utility>
 
-#include "bunker/driver.hpp"
-#include "gnss/driver.hpp"
 #include "gnss/nmea.hpp"
-#include "link/memory.hpp"
 #include "link/record_file.hpp"
-#include "link/replay_file.hpp"
-#include "mti/driver.hpp"
 #include "nav/estimate/estimator.hpp"
+#include "replay_parts.hpp"
 #include "replays.hpp"
 
 namespace roverd {
@@ -41,145 +37,6 @@ std::vector<std::string> chain_of(const std::string& first) {
     out.push_back(std::move(next));
   }
   return out;
-}
-
-using Tell = std::function<void(const base::Measurement&)>;
-
-/// One recording with the driver that hears it.
-class Part {
- public:
-  virtual ~Part() = default;
-  Part() = default;
-  Part(const Part&) = delete;
-  Part& operator=(const Part&) = delete;
-
-  /// Opens the first file and loads its first item.
-  Result<void> open(std::vector<std::string> chain) {
-    chain_ = std::move(chain);
-    return open_next();
-  }
-  std::optional<base::Duration> begin() const { return file_ ? file_->begin() : std::nullopt; }
-  /// @param run_begin UTC since 1970; empty: no recording has dates.
-  void align(std::optional<base::Duration> run_begin) { run_begin_ = run_begin; }
-  /// When the loaded item is due, since the run's beginning; empty: there is no more.
-  std::optional<base::Duration> due() const {
-    if (!at_) return {};
-    return std::max(last_, *at_ + offset());
-  }
-  Result<void> emit(Time now) {
-    last_ = *due();
-    clock_ = now;
-    file_->emit(now);
-    return load();
-  }
-  virtual void start(Time now) = 0;
-  virtual void tick(Time now) = 0;
-  virtual base::DriverStatus status(Time now) const = 0;
-
- protected:
-  virtual Result<std::unique_ptr<link::ReplayFile>> make_file(const std::string& path) = 0;
-  Time clock_{};
-
- private:
-  base::Duration offset() const {
-    const auto begin = file_->begin();
-    // Without dates a file begins with the run, a later one where the one before ended.
-    if (!begin || !run_begin_) return before_;
-    return *begin - *run_begin_;
-  }
-  Result<void> open_next() {
-    before_ = last_;
-    auto made = make_file(chain_[next_++]);
-    if (!made) return tl::unexpected(made.error());
-    file_ = std::move(*made);
-    return load();
-  }
-  Result<void> load() {
-    auto next = file_->advance();
-    if (!next) return tl::unexpected(next.error());
-    at_ = *next;
-    return at_ || next_ == chain_.size() ? Result<void>{} : open_next();
-  }
-
-  std::vector<std::string> chain_;
-  std::size_t next_ = 0;
-  std::unique_ptr<link::ReplayFile> file_;
-  std::optional<base::Duration> at_;  ///< of the loaded item, since its file's beginning
-  std::optional<base::Duration> run_begin_;
-  base::Duration last_{};
-  base::Duration before_{};
-};
-
-class BusPart final : public Part {
- public:
-  BusPart(const bunker::Params& params, const Tell& tell)
-      : wire_(link::memory_frame_pair()),
-        driver_(
-            "bunker", params,
-            [this] { return Result<std::unique_ptr<link::FrameLink>>(std::move(wire_.a)); }, tell) {
-    wire_.b->set_immediate([this] { return clock_; });
-    static_cast<void>(wire_.b->open());
-  }
-  void start(Time now) override { driver_.start(now); }
-  void tick(Time now) override { driver_.tick(now); }
-  base::DriverStatus status(Time now) const override { return driver_.status(now); }
-
- private:
-  Result<std::unique_ptr<link::ReplayFile>> make_file(const std::string& path) override {
-    auto file = std::make_unique<link::FrameFile>(
-        path, [this](const base::CanFrame& f, Time) { wire_.b->send(f); });
-    if (const auto opened = file->open(); !opened) return tl::unexpected(opened.error());
-    return Result<std::unique_ptr<link::ReplayFile>>(std::move(file));
-  }
-  link::MemoryFramePair wire_;
-  bunker::Driver driver_;
-};
-
-template <class Driver, class Params>
-class BytePart final : public Part {
- public:
-  BytePart(const char* name, const Params& params, const Tell& tell)
-      : wire_(link::memory_byte_pair()),
-        driver_(
-            name, params,
-            [this] { return Result<std::unique_ptr<link::ByteLink>>(std::move(wire_.a)); }, tell) {
-    wire_.b->set_immediate([this] { return clock_; });
-    static_cast<void>(wire_.b->open());
-  }
-  void start(Time now) override { driver_.start(now); }
-  void tick(Time now) override { driver_.tick(now); }
-  base::DriverStatus status(Time now) const override { return driver_.status(now); }
-
- private:
-  Result<std::unique_ptr<link::ReplayFile>> make_file(const std::string& path) override {
-    link::ReplayOptions how;
-    how.line_clock = gnss::time_of_day_s;
-    auto file = std::make_unique<link::ByteFile>(
-        path, how, [this](base::Bytes b, Time) { wire_.b->write(b); });
-    if (const auto opened = file->open(); !opened) return tl::unexpected(opened.error());
-    return Result<std::unique_ptr<link::ReplayFile>>(std::move(file));
-  }
-  link::MemoryBytePair wire_;
-  Driver driver_;
-};
-
-/// A hole in a recording is no reason to open it again, and nobody there answers.
-std::unique_ptr<Part> part_for(const std::string& driver, const Settings& s, const Tell& tell) {
-  if (driver == "bunker") {
-    bunker::Params p = s.bunker.params;
-    p.silent_reopen_s = 0.0;
-    return std::make_unique<BusPart>(p, tell);
-  }
-  if (driver == "mti") {
-    mti::Params p = s.mti.params;
-    p.silent_reopen_s = 0.0;
-    p.configure = false;
-    return std::make_unique<BytePart<mti::Driver, mti::Params>>("mti", p, tell);
-  }
-  gnss::Params p = s.gnss.params;
-  p.silent_reopen_s = 0.0;
-  p.ubx_configure = false;
-  return std::make_unique<BytePart<gnss::Driver, gnss::Params>>("gnss", p, tell);
 }
 
 /// Estimator and what is counted of its work.
@@ -255,7 +112,7 @@ class Run {
     for (const auto& [name, part] : parts_) part->start(kBegin);
     Time tick = kBegin;
     base::Duration end{};
-    while (Part* next = earliest()) {
+    while (ReplayPart* next = earliest()) {
       end = *next->due();
       while (tick + kTick <= kBegin + end) step(tick += kTick);
       if (auto played = next->emit(kBegin + end); !played) return tl::unexpected(played.error());
@@ -282,17 +139,23 @@ class Run {
       if (known) continue;
       auto seen = look_into(file, how);
       if (!seen) return tl::unexpected(seen.error());
+      if (seen->driver.empty()) continue;  // a device that never said anything
       const auto [at, is_new] = chains.emplace(seen->driver, chain_of(file));
       if (!is_new) {
         return base::fail(Code::Invalid, at->second.front() + " and " + file +
                                              " are both recordings of the driver " + at->first);
       }
     }
+    if (chains.empty()) return base::fail(Code::Invalid, "the recordings are empty");
+    if (chains.contains("gnss") && chains.contains("gpsd")) {
+      return base::fail(Code::Invalid, chains["gnss"].front() + " and " + chains["gpsd"].front() +
+                                           " are both recordings of a receiver");
+    }
     std::optional<base::Duration> first;
     std::optional<base::Duration> last;
     for (auto& [driver, chain] : chains) {
       report_.files.insert(report_.files.end(), chain.begin(), chain.end());
-      auto part = part_for(driver, settings_, [this](const base::Measurement& m) {
+      auto part = replay_part(driver, settings_, [this](const base::Measurement& m) {
         if (!std::holds_alternative<base::DriverStatus>(m)) heard_.push_back(m);
       });
       if (auto opened = part->open(std::move(chain)); !opened) {
@@ -314,8 +177,8 @@ class Run {
   }
 
   /// Equal times: by the driver's name, so that a run is always the same.
-  Part* earliest() const {
-    Part* out = nullptr;
+  ReplayPart* earliest() const {
+    ReplayPart* out = nullptr;
     for (const auto& [name, part] : parts_) {
       const auto due = part->due();
       if (due && (out == nullptr || *due < *out->due())) out = part.get();
@@ -344,7 +207,7 @@ class Run {
   const std::function<void(const ReplayPose&)>& on_pose_;
   Judge judge_;
   std::vector<base::Measurement> heard_;
-  std::map<std::string, std::unique_ptr<Part>> parts_;
+  std::map<std::string, std::unique_ptr<ReplayPart>> parts_;
   std::optional<base::Duration> begin_;
   bool ended_ = false;
   std::optional<base::EnuPoint> last_;

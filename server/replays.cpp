@@ -5,10 +5,9 @@
 #include <memory>
 #include <optional>
 
-#include "gnss/decoder.hpp"
 #include "gnss/nmea.hpp"
 #include "link/replay_file.hpp"
-#include "mti/xbus.hpp"
+#include "speaker.hpp"
 
 namespace roverd {
 namespace {
@@ -19,9 +18,6 @@ using base::Result;
 /// Parts of one run begin within this: a receiver that was plugged in late.
 constexpr base::Duration kOneRun = std::chrono::hours(1);
 
-/// So much of a file tells whose bytes they are.
-constexpr std::size_t kEnough = 65'536;
-
 /// Begin is known once an item is loaded.
 template <class File>
 std::optional<base::Duration> begin_of(File& file) {
@@ -30,27 +26,11 @@ std::optional<base::Duration> begin_of(File& file) {
 }
 
 const char* kind_in_words(const std::string& driver) {
-  if (driver == "gnss") return "a receiver";
-  return driver == "mti" ? "an inertial unit" : "a CAN bus";
-}
-
-/// A unit's messages have a checksum: more of them than a receiver's sentences is no accident.
-std::string speaker_of(const std::string& path, const link::ReplayOptions& how) {
-  mti::Framer unit;
-  gnss::Decoder receiver;
-  std::size_t seen = 0;
-  link::ByteFile file(path, how, [&](base::Bytes bytes, base::Time now) {
-    seen += bytes.size();
-    unit.feed(bytes, [](const mti::Message&) {});
-    receiver.feed(bytes, now, [](const gnss::Sentence&, base::Time) {});
-  });
-  if (!file.open()) return "gnss";
-  while (seen < kEnough) {
-    const auto next = file.advance();
-    if (!next || !*next) break;
-    file.emit(base::Time{**next});
-  }
-  return unit.counts().messages > receiver.counts().intact() ? "mti" : "gnss";
+  if (driver == "bunker") return "a CAN bus";
+  if (driver == "gnss" || driver == "gpsd") return "a receiver";
+  if (driver == "mti") return "an inertial unit";
+  if (driver == "ntrip") return "corrections";
+  return driver == "bumper" ? "a bumper" : "a drive link";
 }
 
 }  // namespace
@@ -79,8 +59,13 @@ Result<Replays> read_replays(const std::vector<std::string>& files, double speed
   for (const std::string& path : files) {
     auto seen = look_into(path, out.how);
     if (!seen) return tl::unexpected(seen.error());
-    const auto [at, is_new] = out.file_of.emplace(seen->driver, path);
-    if (!is_new) {
+    if (seen->driver.empty()) continue;
+    const auto same = std::ranges::find_if(out.file_of, [&](const auto& other) {
+      return kind_in_words(other.first) == std::string_view(kind_in_words(seen->driver));
+    });
+    const auto at =
+        same == out.file_of.end() ? out.file_of.emplace(seen->driver, path).first : same;
+    if (same != out.file_of.end()) {
       return base::fail(Code::Invalid, "--replay: " + at->second + " and " + path +
                                            " are both recordings of " +
                                            kind_in_words(seen->driver));
@@ -89,7 +74,12 @@ Result<Replays> read_replays(const std::vector<std::string>& files, double speed
     first = std::min(first.value_or(*seen->begin), *seen->begin);
     last = std::max(last.value_or(*seen->begin), *seen->begin);
   }
-  if (files.size() < 2) return out;
+  if (!files.empty() &&
+      (out.file_of.empty() || (out.file_of.size() == 1 && out.file_of.contains("ntrip")))) {
+    return base::fail(Code::Invalid, "--replay: " + files.front() +
+                                         " holds nothing that a robot could be driven by");
+  }
+  if (out.file_of.size() < 2) return out;
   if (speed <= 0.0) {
     return base::fail(
         Code::Invalid,

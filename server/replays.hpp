@@ -18,14 +18,14 @@ struct Replays {
   link::ReplayOptions how;
 };
 
-/// Looks into the files. A recording is a bus (driver "bunker"), a receiver ("gnss") or an inertial
-/// unit ("mti"). Errors: a file that is missing or no recording, two of a kind, recordings of
-/// different runs, several without a pace.
+/// Looks into the files; recordings without any bytes are left out. Errors: a file that is missing
+/// or no recording, two of a kind (two drive links, a receiver and a gpsd), recordings of different
+/// runs, several without a pace, nothing but corrections.
 base::Result<Replays> read_replays(const std::vector<std::string>& files, double speed);
 
 /// What one file holds.
 struct RecordingLook {
-  std::string driver;                   ///< "bunker", "gnss" or "mti"
+  std::string driver;                   ///< "bunker", or as speaker_of says
   std::optional<base::Duration> begin;  ///< of its first item, since 1970; empty: no dates
 };
 base::Result<RecordingLook> look_into(const std::string& path, const link::ReplayOptions& how);

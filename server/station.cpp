@@ -20,6 +20,7 @@
 #include "control_loop.hpp"
 #include "devices.hpp"
 #include "driver_bay.hpp"
+#include "learned.hpp"
 #include "net/assets.hpp"
 #include "net/doorbell.hpp"
 #include "net/hub.hpp"
@@ -37,6 +38,17 @@ namespace asio = boost::asio;
 using base::Result;
 
 constexpr base::Duration kGoodbye = std::chrono::milliseconds(500);
+constexpr base::Duration kKeepLearned = std::chrono::minutes(1);
+
+/// The simulated robot is not the real one: they differ in the link that moves them.
+std::string learner(const Settings& s) {
+  const auto scheme = [](const DriverWiring& w) { return w.link.substr(0, w.link.find(':')); };
+  for (const DriverWiring* w :
+       {&s.bunker.wiring, &s.ackermann.wiring, &s.ratio.wiring, &s.twist.wiring}) {
+    if (w->enabled) return s.vehicle.name + " " + scheme(*w);
+  }
+  return s.vehicle.name;
+}
 
 /// What missions are checked against.
 mission::VehicleLimits limits_of(const Settings& s) {
@@ -141,6 +153,9 @@ struct Station::Impl {
   std::unique_ptr<ControlLoop> loop;
   asio::signal_set signals{web, SIGINT, SIGTERM};
   asio::steady_timer sample_timer{web};
+  asio::steady_timer learned_timer{web};
+  std::filesystem::path learned_file;  ///< empty: a recording is played, nothing is kept
+  std::string learned_by;
   asio::thread_pool planner{1};  ///< for what would keep the web waiting; ends first
   std::string address;
 
@@ -152,6 +167,9 @@ struct Station::Impl {
   api::DriverDoor driver_door();
   void start();
   void sample_soon();
+  void recall(const Settings& settings, const Options& options);
+  void keep_learned();
+  void keep_learned_soon();
   void halt() noexcept;
   void stop();
 };
@@ -163,6 +181,7 @@ Result<void> Station::Impl::open(const Settings& settings, const Options& option
                               [this](const base::Measurement& m) { robot.measurements().put(m); });
   if (!made) return tl::unexpected(made.error());
   bay = std::move(*made);
+  recall(settings, options);
   if (auto done = open_tiles(settings); !done) return done;
   if (auto done = open_store(settings, options); !done) return done;
   make_api(settings);
@@ -270,6 +289,7 @@ void Station::Impl::start() {
   });
   bay->start();
   sample_soon();
+  keep_learned_soon();
   loop = std::make_unique<ControlLoop>(
       [this](base::Time now, base::WallTime wall, base::Duration lateness) {
         robot.tick(now, wall, lateness);
@@ -283,6 +303,41 @@ void Station::Impl::sample_soon() {
     if (ec) return;
     api->on_sample();
     sample_soon();
+  });
+}
+
+void Station::Impl::recall(const Settings& settings, const Options& options) {
+  if (!options.replays.empty()) return;
+  learned_file = std::filesystem::path(options.data) / "learned.json";
+  learned_by = learner(settings);
+  const nav::Learned known = read_learned(learned_file, learned_by, base::wall_now());
+  robot.recall(known);
+  const auto text = [](const std::optional<nav::LearnedValue>& v) {
+    return v ? std::to_string(v->value) : std::string("not known");
+  };
+  base::log(base::Level::Info, "main", "learned before",
+            {{"odometry_scale", text(known.odometry_scale)},
+             {"gyro_bias_radps", text(known.gyro_bias_radps)}});
+}
+
+/// A disk may pause: on the planner's thread, or, at the end, after all others.
+void Station::Impl::keep_learned() {
+  const auto learned = robot.learned();
+  if (learned_file.empty() || !learned) return;
+  if (!learned->odometry_scale && !learned->gyro_bias_radps) return;
+  const auto kept = write_learned(learned_file, *learned, learned_by, base::wall_now());
+  if (!kept) {
+    base::log(base::Level::Warning, "main", "what was learned is not kept",
+              {{"reason", kept.error().detail}});
+  }
+}
+
+void Station::Impl::keep_learned_soon() {
+  learned_timer.expires_after(kKeepLearned);
+  learned_timer.async_wait([this](const boost::system::error_code& ec) {
+    if (ec) return;
+    asio::post(planner, [this] { keep_learned(); });
+    keep_learned_soon();
   });
 }
 
@@ -305,6 +360,9 @@ Station::Station(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 Station::~Station() {
   impl_->halt();
+  impl_->planner.stop();
+  impl_->planner.join();
+  impl_->keep_learned();
   impl_->server.reset();
   impl_->store.reset();  // its last answers are posted, and dropped with the io_context
 }

@@ -51,10 +51,13 @@ Driver::Driver(std::string name, const Params& params, MakeLink make_link,
           {std::move(name), params.feedback_required ? "waiting for feedback" : "opening",
            params.retry_first_s, params.retry_max_s},
           std::move(make_link), [this](Bytes b, Time t) { on_bytes(b, t); }, [this] { forget(); },
-          std::move(on_measurement)) {}
+          std::move(on_measurement)) {
+  port_.hear_sent([this](Bytes b, Time t) { on_sent(b, t); });
+}
 
 void Driver::start(Time now) {
   spoken_ = false;
+  replays_ = false;
   gate_.need_feedback(params_.feedback_required ? params_.feedback_timeout_s : 0.0);
   port_.start(now);
 }
@@ -119,7 +122,7 @@ Message Driver::wanted(Time now, double dt_s) {
 }
 
 void Driver::drive(Time now) {
-  if (!port_.is_open()) return;
+  if (!port_.is_open() || replays_) return;
   const double since_s = last_sent_ ? base::seconds(now - *last_sent_) : kPause_s + 1.0;
   if (since_s > kPause_s) speed_mps_ = 0.0;
   const Message m = wanted(now, std::clamp(since_s, 0.0, kLongestStep_s));
@@ -155,6 +158,16 @@ void Driver::on_bytes(Bytes bytes, Time stamp) {
   }
   if (std::abs(d.message.wheel_rad) > 1.5F) return port_.refused("impossible wheel angle");
   on_feedback(d.message, stamp);
+}
+
+void Driver::on_sent(Bytes bytes, Time stamp) {
+  const Decoded d = decode(bytes);
+  if (d.fault != Fault::None) return;
+  replays_ = true;
+  mode_ = d.message.mode;
+  speed_mps_ = d.message.speed_mps;
+  wheel_rad_ = d.message.wheel_rad - zero_rad();
+  if (!spoken_ && !params_.feedback_required) port_.heard(stamp);
 }
 
 void Driver::on_feedback(const Message& m, Time stamp) {

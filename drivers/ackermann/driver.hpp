@@ -15,6 +15,9 @@
 // One that never did is believed to do what it is told (BaseMotion::assumed), and the base counts
 // as normal while the link is open.
 //
+// In a recording, what was sent then stands for what would be sent now: where nothing comes back,
+// it is all that is known of the motion.
+//
 // Measurements: BaseMotion, SteeringState (with feedback), BaseStatus at 10 Hz, DriverStatus.
 //
 // Threads: send() belongs to the control thread, everything else to the device thread.
@@ -60,6 +63,7 @@ class Driver {
  private:
   void on_bytes(Bytes bytes, Time stamp);
   void on_feedback(const Message& message, Time stamp);
+  void on_sent(Bytes bytes, Time stamp);
   void forget();
   void check_silence(Time now);
   void drive(Time now);
@@ -79,6 +83,7 @@ class Driver {
   double speed_mps_ = 0.0;  ///< of the last command that left
   double wheel_rad_ = 0.0;  ///< the same, without the zero
   DriveMode mode_ = DriveMode::Park;
+  bool replays_ = false;  ///< a recording tells what was sent
   std::optional<Time> last_sent_;
   Time next_motion_{};
   Time next_status_{};

@@ -104,6 +104,9 @@ class BytePort {
     return result;
   }
 
+  /// Of a recording: what was sent then. @param on_sent as ByteLink::on_sent; before start.
+  void hear_sent(OnBytes on_sent) { on_sent_ = std::move(on_sent); }
+
   /// ByteLink::retune of an open link.
   bool retune() { return open_ && link_->retune(); }
 
@@ -157,6 +160,11 @@ class BytePort {
         on_bytes_(b, t);
       };
       link_->on_closed = [this](const std::string& reason) { fail(reason, now_); };
+      if (on_sent_) {
+        link_->on_sent = [this](Bytes b, Time t) {
+          if (open_) on_sent_(b, t);
+        };
+      }
     }
     life_.opening(names_.waiting_for);
     last_heard_ = now;
@@ -174,6 +182,7 @@ class BytePort {
   const Names names_;
   const MakeLink make_link_;
   const OnBytes on_bytes_;
+  OnBytes on_sent_;
   const std::function<void()> forget_;
   const OnMeasurement on_measurement_;
   std::unique_ptr<ByteLink> link_;

@@ -47,6 +47,8 @@ class ByteLink {
 
   std::function<void(Bytes, Time)> on_bytes;                 ///< never empty spans
   std::function<void(const std::string& reason)> on_closed;  ///< lost; not after close()
+  /// Links that play a recording: what the recording program sent then. Others never call it.
+  std::function<void(Bytes, Time)> on_sent;
 
  protected:
   ByteLink() = default;

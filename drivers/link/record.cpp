@@ -59,6 +59,29 @@ SendResult RecordedFrameLink::send(const CanFrame& frame) noexcept {
   return result;
 }
 
+base::Result<std::unique_ptr<ByteTape>> ByteTape::create(std::string_view source,
+                                                         const std::string& file,
+                                                         const RecordOptions& options) {
+  auto out = RecordFile::create(file, options, recording_header(source));
+  if (!out) return tl::unexpected(out.error());
+  const auto format = [](std::string& text, const Entry& entry, base::Duration stamp) {
+    append_record(text, stamp, entry.sent, entry.bytes);
+  };
+  auto writer = std::make_unique<Writer>(std::move(*out), format, options, kChunksWaiting);
+  return std::unique_ptr<ByteTape>(new ByteTape(std::move(writer)));
+}
+
+ByteTape::ByteTape(std::unique_ptr<Writer> writer) : writer_(std::move(writer)) {}
+ByteTape::~ByteTape() = default;
+
+void ByteTape::put(Bytes bytes, Time stamp) noexcept {
+  writer_->put({stamp, false, {bytes.begin(), bytes.end()}});
+}
+
+RecordStatus ByteTape::status() const {
+  return writer_->status();
+}
+
 base::Result<std::unique_ptr<RecordedByteLink>> RecordedByteLink::create(
     std::unique_ptr<ByteLink> inner, const std::string& file, const RecordOptions& options) {
   auto out = RecordFile::create(file, options, recording_header(inner->describe()));

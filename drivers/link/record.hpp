@@ -48,6 +48,32 @@ class RecordedFrameLink final : public FrameLink {
   const std::unique_ptr<FrameLink> inner_;  // goes first: nothing is recorded after that
 };
 
+/// Bytes that come by no link of ours, in the same format. One thread puts.
+class ByteTape {
+ public:
+  /// @param source for the file's first line; no secrets. @param file as for a link.
+  static base::Result<std::unique_ptr<ByteTape>> create(std::string_view source,
+                                                        const std::string& file,
+                                                        const RecordOptions& options = {});
+  ~ByteTape();
+
+  /// Received then. Does not wait for the disk.
+  void put(Bytes bytes, Time stamp) noexcept;
+  /// Any thread.
+  RecordStatus status() const;
+
+ private:
+  struct Entry {
+    Time stamp;
+    bool sent = false;
+    std::vector<std::uint8_t> bytes;
+  };
+  using Writer = RecordWriter<Entry>;
+  explicit ByteTape(std::unique_ptr<Writer> writer);
+
+  const std::unique_ptr<Writer> writer_;
+};
+
 /// Wraps a byte link and behaves like it.
 class RecordedByteLink final : public ByteLink {
  public:

@@ -158,10 +158,14 @@ SendResult FrameReplay::send(const CanFrame&) noexcept {
 
 ByteReplay::ByteReplay(asio::io_context& io, std::string path, const ReplayOptions& options)
     : path_(std::move(path)),
-      file_(path_, options,
-            [this](Bytes bytes, Time t) {
-              if (on_bytes) on_bytes(bytes, t);
-            }),
+      file_(
+          path_, options,
+          [this](Bytes bytes, Time t) {
+            if (on_bytes) on_bytes(bytes, t);
+          },
+          [this](Bytes bytes, Time t) {
+            if (on_sent) on_sent(bytes, t);
+          }),
       pump_(io, file_, options) {}
 
 ByteReplay::~ByteReplay() {

@@ -99,8 +99,11 @@ MaybeDue FrameFile::advance() {
   }
 }
 
-ByteFile::ByteFile(std::string path, ReplayOptions options, Receiver receiver)
-    : path_(std::move(path)), options_(std::move(options)), receiver_(std::move(receiver)) {}
+ByteFile::ByteFile(std::string path, ReplayOptions options, Receiver receiver, Receiver sent)
+    : path_(std::move(path)),
+      options_(std::move(options)),
+      receiver_(std::move(receiver)),
+      sent_(std::move(sent)) {}
 
 base::Result<void> ByteFile::open() {
   if (auto opened = open_file(file_, path_); !opened) return opened;
@@ -114,6 +117,7 @@ base::Result<void> ByteFile::rewind() {
   buffer_.clear();
   begin_ = 0;
   offset_ = 0;
+  chunk_sent_ = false;
   last_stamp_.reset();
   last_clock_s_.reset();
   at_ = Duration::zero();
@@ -182,9 +186,11 @@ MaybeDue ByteFile::advance_recording() {
     }
     if (!last_stamp_) first_stamp_ = step.record.stamp;
     at_ += step_to(step.record.stamp, last_stamp_);
-    if (!step.record.sent) chunk_.assign(step.record.bytes.begin(), step.record.bytes.end());
+    chunk_sent_ = step.record.sent;
+    const bool wanted = !chunk_sent_ || sent_;
+    if (wanted) chunk_.assign(step.record.bytes.begin(), step.record.bytes.end());
     take(step.used);
-    if (!step.record.sent) return at_;
+    if (wanted) return at_;
   }
 }
 

@@ -62,11 +62,12 @@ class FrameFile final : public ReplayFile {
 class ByteFile final : public ReplayFile {
  public:
   using Receiver = std::function<void(base::Bytes, base::Time)>;
-  ByteFile(std::string path, ReplayOptions options, Receiver receiver);
+  /// @param sent hears what the recording program sent; null: that is left out.
+  ByteFile(std::string path, ReplayOptions options, Receiver receiver, Receiver sent = {});
 
   base::Result<void> open();
   base::Result<std::optional<base::Duration>> advance() override;
-  void emit(base::Time now) override { receiver_(chunk_, now); }
+  void emit(base::Time now) override { (chunk_sent_ ? sent_ : receiver_)(chunk_, now); }
   base::Result<void> rewind() override;
   /// Stamps or the lines themselves tell when; false: what this is is not known. Once open.
   bool tells_time() const noexcept { return pace_ != Pace::Rated; }
@@ -85,12 +86,14 @@ class ByteFile final : public ReplayFile {
   const std::string path_;
   const ReplayOptions options_;
   const Receiver receiver_;
+  const Receiver sent_;
   std::ifstream file_;
   Pace pace_ = Pace::Rated;
   std::vector<std::uint8_t> buffer_;  // read from the file; played up to begin_
   std::size_t begin_ = 0;
   std::uint64_t offset_ = 0;  // of begin_ in the file
   std::vector<std::uint8_t> chunk_;
+  bool chunk_sent_ = false;
   std::optional<base::Duration> last_stamp_;
   std::optional<double> last_clock_s_;
   base::Duration at_{};

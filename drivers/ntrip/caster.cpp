@@ -152,7 +152,7 @@ std::string base64(std::string_view text) {
   return out;
 }
 
-std::string request(const Caster& caster, int version) {
+std::string request(const Caster& caster, int version, const std::string& authorization) {
   const bool second = version == 2;
   std::string out = "GET /" + caster.mountpoint + (second ? " HTTP/1.1\r\n" : " HTTP/1.0\r\n");
   if (second) {
@@ -160,7 +160,11 @@ std::string request(const Caster& caster, int version) {
     out += "Ntrip-Version: Ntrip/2.0\r\n";
   }
   out += "User-Agent: NTRIP roverd/1\r\n";
-  if (!caster.login.empty()) out += "Authorization: Basic " + base64(caster.login) + "\r\n";
+  if (!authorization.empty()) {
+    out += "Authorization: " + authorization + "\r\n";
+  } else if (!caster.login.empty()) {
+    out += "Authorization: Basic " + base64(caster.login) + "\r\n";
+  }
   return out + "Accept: */*\r\nConnection: close\r\n\r\n";
 }
 

@@ -36,8 +36,8 @@ struct Caster {
 base::Result<std::vector<Caster>> parse_casters(std::string_view text);
 
 /// The whole request, to be sent with one write: simple casters read no further.
-/// @param version 1 or 2.
-std::string request(const Caster& caster, int version);
+/// @param version 1 or 2. @param authorization value of that header; empty: the login by Basic.
+std::string request(const Caster& caster, int version, const std::string& authorization = {});
 
 std::string base64(std::string_view text);
 

@@ -69,6 +69,7 @@ void Driver::open_next(Time now) {
   link_->on_bytes = [this](Bytes b, Time t) { on_bytes(b, t); };
   link_->on_closed = [this](const std::string& reason) {
     if (reply_.state() == Reply::State::Table) return on_table(now_);
+    if (reply_.unauthorized()) return on_refused(now_);
     fail(caster_said_nothing() ? "the caster closed without an answer" : reason, now_);
   };
   reply_ = {};
@@ -104,9 +105,15 @@ void Driver::tick(Time now) {
 
 /// With one write: simple casters read the first segment only.
 void Driver::ask(Time now) {
-  if (link_->write(bytes_of(request(casters_[at_], params_.version))) != link::SendResult::Sent) {
-    return;
+  const Caster& caster = casters_[at_];
+  std::string authorization;
+  if (const auto& challenge = turns_[at_].challenge) {
+    const std::string once = std::to_string(now.time_since_epoch().count() ^ 0x5DEECE66D);
+    authorization =
+        digest_answer(*challenge, caster.login, "/" + caster.mountpoint, once).value_or("");
   }
+  const std::string text = request(caster, params_.version, authorization);
+  if (link_->write(bytes_of(text)) != link::SendResult::Sent) return;
   stage_ = Stage::Waiting;
   since_ = now;
   life_.opening("waiting for the answer of " + casters_[at_].name());
@@ -139,11 +146,35 @@ void Driver::on_reply(Time now) {
       }
       return;
     case Reply::State::Refused:
-      return fail(reply_.refusal(), now, reply_.unauthorized());
+      return on_refused(now);
     case Reply::State::Ended:
       if (stage_ == Stage::Streaming) return fail("the caster ended the stream", now);
       return on_table(now);
   }
+}
+
+/// Once by the way that the caster wants, and once more if what it gave for that was too old.
+void Driver::on_refused(Time now) {
+  constexpr int kTries = 2;
+  Turn& turn = turns_[at_];
+  const auto& asked = reply_.challenge();
+  const bool other = asked && asked != turn.challenge;
+  if (other && turn.challenged < kTries && !casters_[at_].login.empty()) {
+    if (!digest_answer(*asked, casters_[at_].login, "/", "x")) {
+      return fail("the caster wants the login as a Digest by " + asked->algorithm +
+                      ", which is not known here",
+                  now, true);
+    }
+    turn.challenge = asked;
+    ++turn.challenged;
+    turn.not_before = now;
+    close();
+    life_.opening("logging in at " + casters_[at_].name());
+    return report(now);
+  }
+  turn.challenge.reset();
+  turn.challenged = 0;
+  fail(reply_.refusal(), now, reply_.unauthorized());
 }
 
 /// A table instead of a stream: there is no such mountpoint, or none was named.
@@ -162,6 +193,7 @@ void Driver::on_frame(const rtcm::Frame& frame, Time now) {
   last_frame_ = now;
   since_ = now;
   turns_[at_].wait_s = params_.retry_first_s;
+  turns_[at_].challenged = 0;
   if (!doors_.on_frame(frame.bytes)) ++lost_;
   if (life_.phase() == Phase::Up) return;
   life_.up();
@@ -171,6 +203,7 @@ void Driver::on_frame(const rtcm::Frame& frame, Time now) {
 void Driver::check_silence(Time now) {
   const double silent_s = base::seconds(now - since_);
   if ((stage_ == Stage::Asking || stage_ == Stage::Waiting) && silent_s > params_.reply_timeout_s) {
+    if (reply_.unauthorized()) return on_refused(now);
     fail("the caster does not answer", now);
   } else if (stage_ == Stage::Streaming && silent_s > params_.silent_after_s) {
     fail("no corrections: the caster is silent", now);

@@ -11,6 +11,8 @@
 // one above it whose wait is over; if that one fails, it is used again. Where the mountpoint is
 // missing or unknown, the caster's table is read and named in the facts.
 //
+// A caster that wants the login as a Digest (RFC 7616) is asked again at once in that way.
+//
 // Frames with a right CRC go to on_frame unchanged; message numbers, bytes and faults are counted
 // in the DriverStatus. A login is never in a status, an error or a log.
 //
@@ -72,12 +74,15 @@ class Driver {
   struct Turn {
     Time not_before{};
     double wait_s = 0.0;
+    std::optional<Challenge> challenge{};  ///< how it wants the login; empty: by Basic
+    int challenged = 0;                    ///< times in a row
   };
 
   void open_next(Time now);
   void ask(Time now);
   void on_bytes(Bytes bytes, Time now);
   void on_reply(Time now);
+  void on_refused(Time now);
   void on_table(Time now);
   void on_frame(const rtcm::Frame& frame, Time now);
   void check_silence(Time now);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <utility>
 
 namespace roverd::ntrip {
@@ -16,6 +17,13 @@ std::string lower(std::string_view text) {
   return out;
 }
 
+std::optional<double> number_of(std::string_view text) {
+  double value = 0.0;
+  const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = ec == std::errc() && end == text.data() + text.size() && !text.empty();
+  return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
 /// Printable and short.
 std::string quoted(std::string_view text) {
   constexpr std::size_t kLongest = 80;
@@ -27,7 +35,7 @@ std::string quoted(std::string_view text) {
 }  // namespace
 
 Source parse_source(std::string_view line) {
-  std::array<std::string_view, 12> field{};
+  std::array<std::string_view, 16> field{};
   for (std::string_view& f : field) {
     const auto end = line.find(';');
     f = line.substr(0, end);
@@ -35,7 +43,18 @@ Source parse_source(std::string_view line) {
     line.remove_prefix(end + 1);
   }
   if (field[0] != "STR") return {};
-  return {std::string(field[1]), std::string(field[3]), std::string(field[6]), field[11] == "1"};
+  Source out{std::string(field[1]), std::string(field[3]), std::string(field[6]), field[11] == "1"};
+  out.place = field[2];
+  out.country = field[8];
+  const auto lat = number_of(field[9]);
+  const auto lon = number_of(field[10]);
+  const bool placed = lat && lon && std::abs(*lat) <= 90.0 && std::abs(*lon) <= 360.0;
+  if (placed && (*lat != 0.0 || *lon != 0.0)) {
+    out.lat = lat;
+    out.lon = *lon > 180.0 ? *lon - 360.0 : *lon;  // some count eastward only
+  }
+  if (field[15] == "B" || field[15] == "D") out.login = field[15][0];
+  return out;
 }
 
 Reply::Step Reply::take(Bytes rest) {
@@ -104,7 +123,8 @@ void Reply::on_status(const std::string& line) {
   } else if (line.find("401") != std::string::npos ||
              lower(line).find("bad pas") != std::string::npos) {
     unauthorized_ = true;
-    refuse("the caster does not accept the login");
+    refusal_ = "the caster does not accept the login";
+    if (!line.starts_with("HTTP/1.")) refuse(refusal_);
   } else if (line.starts_with("HTTP/1.") && line.find(" 404") != std::string::npos) {
     refuse("the caster has no such mountpoint");
   } else if (!line.starts_with("HTTP/1.") || line.find(" 200") == std::string::npos) {
@@ -114,6 +134,12 @@ void Reply::on_status(const std::string& line) {
 
 void Reply::on_header(const std::string& line) {
   const std::string header = lower(line);
+  constexpr std::string_view kChallenge = "www-authenticate:";
+  if (unauthorized_ && header.starts_with(kChallenge)) {
+    // Several may be offered; one whose algorithm is known here is better than one that is not.
+    const auto asked = parse_challenge(std::string_view(line).substr(kChallenge.size()));
+    if (asked && (!challenge_ || !digest_answer(*challenge_, ":", "/", "x"))) challenge_ = asked;
+  }
   if (header.starts_with("transfer-encoding:") && header.find("chunked") != std::string::npos) {
     chunked_ = true;
   }
@@ -124,6 +150,7 @@ void Reply::on_header(const std::string& line) {
 }
 
 void Reply::head_ends() {
+  if (unauthorized_) return refuse(refusal_);
   state_ = table_ ? State::Table : State::Stream;
   if (state_ == State::Stream && chunked_) chunk_ = Chunk::Size;
 }

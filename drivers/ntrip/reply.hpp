@@ -4,16 +4,18 @@
 //
 //   Head ─"ICY 200 OK", HTTP 200─▶ Stream ─end of chunks─▶ Ended
 //     ├──"SOURCETABLE 200 OK", HTTP 200 with a table─▶ Table ─ENDSOURCETABLE─▶ Ended
-//     └──anything else─▶ Refused
+//     └──anything else─▶ Refused; HTTP 401 at the end of its head, which may ask for a Digest
 //
 // A version 1 caster may send data right after its first line. Pure state; what is kept is bounded.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/bytes.hpp"
+#include "ntrip/digest.hpp"
 
 namespace roverd::ntrip {
 
@@ -22,9 +24,13 @@ using base::Bytes;
 /// One row STR of a source table; rows are often incomplete.
 struct Source {
   std::string mountpoint;
-  std::string format;      ///< "RTCM 3.2"
-  std::string systems;     ///< "GPS+GLO+GAL"
-  bool wants_gga = false;  ///< the caster has to be told where we are
+  std::string format;                  ///< "RTCM 3.2"
+  std::string systems;                 ///< "GPS+GLO+GAL"
+  bool wants_gga = false;              ///< the caster has to be told where we are
+  std::string place{};                 ///< next town
+  std::string country{};               ///< "EST"
+  std::optional<double> lat{}, lon{};  ///< degrees; of a network's mountpoint often none
+  char login = 'N';                    ///< N none, B basic, D digest
 };
 
 /// @param line of a source table. @return empty mountpoint: not a stream.
@@ -55,6 +61,8 @@ class Reply {
   /// Refused: why, in words for people; what the caster said is quoted with printable characters.
   const std::string& refusal() const noexcept { return refusal_; }
   bool unauthorized() const noexcept { return unauthorized_; }
+  /// Of an unauthorized one: how the login is wanted instead; empty: not told, or not by Digest.
+  const std::optional<Challenge>& challenge() const noexcept { return challenge_; }
   const std::vector<Source>& sources() const noexcept { return sources_; }
 
  private:
@@ -84,6 +92,7 @@ class Reply {
   Chunk chunk_ = Chunk::None;
   std::size_t left_ = 0;  ///< bytes of this chunk
   bool unauthorized_ = false;
+  std::optional<Challenge> challenge_;
   std::string refusal_;
   std::vector<Source> sources_;
 };

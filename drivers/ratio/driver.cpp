@@ -35,7 +35,14 @@ Driver::Driver(std::string name, const Params& params, MakeLink make_link,
       port_(
           {std::move(name), "connecting", params.retry_first_s, params.retry_max_s},
           std::move(make_link), [this](base::Bytes b, Time t) { on_bytes(b, t); },
-          [this] { forget(); }, std::move(on_measurement)) {}
+          [this] { forget(); }, std::move(on_measurement)) {
+  port_.hear_sent([this](base::Bytes b, Time t) { on_sent(b, t); });
+}
+
+void Driver::start(Time now) {
+  replays_ = false;
+  port_.start(now);
+}
 
 void Driver::forget() {
   gate_.permit(false);
@@ -72,7 +79,7 @@ Message Driver::wanted(Time now) {
 }
 
 void Driver::tick(Time now) {
-  if (port_.is_open()) {
+  if (port_.is_open() && !replays_) {
     const bool was_driving = driving_;
     const bool due = !last_sent_ || base::seconds(now - *last_sent_) >= params_.period_s - 1e-3;
     const Message m = wanted(now);
@@ -132,6 +139,14 @@ void Driver::on_bytes(base::Bytes bytes, Time stamp) {
   if (decoder_.refused() == damaged_) return;
   port_.count("damaged line", decoder_.refused() - damaged_);
   damaged_ = decoder_.refused();
+}
+
+void Driver::on_sent(base::Bytes bytes, Time stamp) {
+  sent_.feed(bytes, [&](const Message& m) {
+    replays_ = true;
+    last_ = m;
+    port_.heard(stamp);
+  });
 }
 
 void Driver::tell(Time now) {

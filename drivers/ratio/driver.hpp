@@ -7,6 +7,7 @@
 //
 // A line leaves every 200 ms, the stop at once. A command older than 0.25 s is a stop. After a
 // short write the next line begins with a line end, so that the robot never joins two halves.
+// In a recording, what was sent then stands for what would be sent now.
 // Measurements: BaseMotion (assumed, unless the robot sends lines back), BaseStatus at 10 Hz.
 //
 // Threads: send() belongs to the control thread, everything else to the device thread.
@@ -32,7 +33,7 @@ class Driver {
 
   Driver(std::string name, const Params& params, MakeLink make_link, OnMeasurement on_measurement);
 
-  void start(Time now) { port_.start(now); }
+  void start(Time now);
   void tick(Time now);
   void stop(Time now);
   void restart(Time now);
@@ -42,6 +43,7 @@ class Driver {
 
  private:
   void on_bytes(base::Bytes bytes, Time stamp);
+  void on_sent(base::Bytes bytes, Time stamp);
   void forget();
   Message wanted(Time now);
   void transmit(const Message& message, bool drives, Time now);
@@ -52,6 +54,8 @@ class Driver {
   gate::CommandBox box_;
   gate::MotionGate gate_;
   Decoder decoder_;
+  Decoder sent_;          ///< of a recording
+  bool replays_ = false;  ///< a recording tells what was sent
   std::uint64_t damaged_ = 0;
   bool driving_ = false;  ///< the last line moved, or could have
   bool torn_ = false;     ///< the last line may have left in part

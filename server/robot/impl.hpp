@@ -70,6 +70,7 @@ struct Robot::Impl {
   base::Inbox<PendingCommand> commands{64};
   base::Latest<base::Snapshot> snapshot;
   base::Latest<CompiledMission> loaded;
+  base::Latest<nav::Learned> learned;
   std::atomic<bool> estop_asked{false};
   std::atomic<std::uint64_t> made{1};       ///< ids of missions and fences that are laid out
   std::atomic<std::uint32_t> frame_ids{2};  ///< 1 is for the first fix

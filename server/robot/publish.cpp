@@ -76,6 +76,9 @@ bool Robot::Impl::publish() {
     mission_unpublished = !loaded.publish(mission);
     all = !mission_unpublished;
   }
+  if (loop.ticks % 50 == 0) {  // once a second; who missed it gets the next
+    learned.publish(std::make_shared<const nav::Learned>(estimator.learned()));
+  }
   if (config_unpublished) {
     config_unpublished = !shared_config.publish(std::make_shared<const Config>(config));
     all = all && !config_unpublished;

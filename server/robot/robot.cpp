@@ -47,6 +47,12 @@ base::Inbox<TeachWish>& Robot::teach_wishes() noexcept {
 base::Inbox<MissionEdit>& Robot::edits() noexcept {
   return impl_->outbox.edits;
 }
+void Robot::recall(const nav::Learned& learned) noexcept {
+  impl_->estimator.recall(learned);
+}
+std::shared_ptr<const nav::Learned> Robot::learned() const {
+  return impl_->learned.get();
+}
 std::shared_ptr<const base::Snapshot> Robot::snapshot() const {
   return impl_->snapshot.get();
 }

@@ -26,6 +26,7 @@
 #include "base/snapshot.hpp"
 #include "mission/fence.hpp"
 #include "mission/plan.hpp"
+#include "nav/estimate/learned.hpp"
 #include "robot/config.hpp"
 
 namespace roverd::robot {
@@ -201,6 +202,11 @@ class Robot {
   /// Set before the first tick. Called by tick when replies(), events() or edits() got something;
   /// must not wait (an eventfd write).
   std::function<void()> wake;
+
+  /// Before the first tick: what another life of this program learned.
+  void recall(const nav::Learned& learned) noexcept;
+  /// Any thread. What is worth keeping, a second old at most; null: nothing yet.
+  std::shared_ptr<const nav::Learned> learned() const;
 
   /// Any thread: from drivers.
   base::Inbox<base::Measurement>& measurements() noexcept;

@@ -3,8 +3,11 @@
 chunks, TLS), through the running roverd to the receiver's port."""
 
 import base64
+import hashlib
+import json
 import os
 import pathlib
+import re
 import shutil
 import socket
 import ssl
@@ -83,6 +86,7 @@ class Caster:
     def __init__(self, answer, context=None):
         self.answer, self.context = answer, context
         self.requests = []
+        self.refusal = None  # what a request without a Digest is answered with
         self.told = b""
         self.server = socket.create_server(("127.0.0.1", 0))
         self.port = self.server.getsockname()[1]
@@ -109,6 +113,9 @@ class Caster:
                     return
                 request += piece
             self.requests.append(request.decode())
+            if self.refusal and b"Authorization: Digest" not in request:
+                client.sendall(self.refusal)
+                return
             for piece in self.answer:
                 client.sendall(piece)
             while data := client.recv(4096):
@@ -123,7 +130,7 @@ class Caster:
 class House:
     """roverd with a receiver and casters, without a vehicle."""
 
-    def __init__(self, casters, env=None):
+    def __init__(self, casters, env=None, record=False):
         self.receiver = Receiver()
         self.folder = pathlib.Path(tempfile.mkdtemp(dir=scratch))
         (self.folder / "vehicles").symlink_to(ROOT / "config/vehicles")
@@ -140,6 +147,8 @@ link = "tcp:127.0.0.1:{self.receiver.port}"
 enabled = true
 link = "{casters}"
 gga_period_s = 1
+[recording]
+enabled = {str(record).lower()}
 """)
         self.program = Program(BIN / "roverd", "--config", config, "--data", self.folder / "data",
                                "--port", "0", env=env, cwd=self.folder)
@@ -239,6 +248,60 @@ def a_real_caster():
             house.keeps_its_secret()
 
 
+def corrections_are_recorded():
+    """--record keeps the corrections' frames, with times and without the login; replay counts them"""
+    with Str2str() as caster:
+        url = f"ntrip://rover:{SECRET}@127.0.0.1:{caster.port}/TEST0"
+        with House(url, record=True) as house:
+            frames_arrive(house, F1005 + F1006)
+            house.until_state("up")
+            check(house.ntrip()["recording"] == "on", str(house.ntrip()))
+            time.sleep(1)  # a second of it
+            house.program.stop()
+            tapes = {name: next(house.folder.glob(f"data/recordings/*-{name}.raw")) for name in ("gnss", "ntrip")}
+            kept = tapes["ntrip"].read_bytes()
+            check(F1005 in kept and F1006 in kept, "a frame is missing")
+            check(re.match(rb"roverd-bytes 1 ntrip\n\(\d{10}\.\d{6}\) R 25\n", kept), str(kept[:80]))
+            for tape in tapes.values():
+                check(SECRET.encode() not in tape.read_bytes() and LOGIN.encode() not in tape.read_bytes(),
+                      f"{tape.name} holds the login")
+            said = subprocess.run([BIN / "roverd", "replay", *tapes.values(), "--report", "--config",
+                                   house.folder / "robot.toml"], capture_output=True, text=True, check=False)
+            check(said.returncode == 0, said.stderr)
+            check("RTCM3 1005" in said.stdout, said.stdout[-600:])
+
+
+def the_table():
+    """roverd ntrip table lists what a caster offers, as text and as JSON"""
+    with Str2str() as caster:
+        run = [BIN / "roverd", "ntrip", "table", f"127.0.0.1:{caster.port}"]
+        text = subprocess.run(run, capture_output=True, text=True, check=False)
+        check(text.returncode == 0, text.stderr)
+        check("TEST0" in text.stdout and "RTCM 3.2" in text.stdout and "60.17" in text.stdout, text.stdout)
+        table = json.loads(subprocess.run([*run, "--json"], capture_output=True, check=True).stdout)
+        check(table[0]["mountpoint"] == "TEST0" and table[0]["country"] == "FIN", str(table))
+        check(table[0]["lat"] == 60.17 and table[0]["wants_gga"] and table[0]["login"] == "basic", str(table))
+    away = subprocess.run([BIN / "roverd", "ntrip", "table", f"ntrip://a:{SECRET}@127.0.0.1:{free_port()}"],
+                          capture_output=True, text=True, check=False)
+    check(away.returncode == 1 and SECRET not in away.stderr, away.stderr)
+    check(subprocess.run([BIN / "roverd", "ntrip"], capture_output=True, check=False).returncode == 2, "usage")
+
+
+def by_digest():
+    """a caster that wants the login as a Digest gets a right one"""
+    caster = Caster([b"HTTP/1.1 200 OK\r\nContent-Type: gnss/data\r\n\r\n" + F1005])
+    caster.refusal = (b'HTTP/1.1 401 Unauthorized\r\nWWW-Authenticate: Digest realm="net", qop="auth", '
+                      b'nonce="n0nce"\r\nConnection: close\r\n\r\n')
+    with House(f"ntrip://rover:{SECRET}@127.0.0.1:{caster.port}/VRS") as house:
+        frames_arrive(house, F1005)
+        house.keeps_its_secret()
+        said = dict(re.findall(r'(\w+)="?([^",\r]+)"?', caster.requests[-1].split("Digest ")[1].split("\r")[0]))
+        md5 = lambda text: hashlib.md5(text.encode()).hexdigest()  # noqa: E731
+        wanted = md5(f"{md5(f'rover:net:{SECRET}')}:n0nce:00000001:{said['cnonce']}:auth:{md5('GET:/VRS')}")
+        check(said["response"] == wanted, f"{said} instead of {wanted}")
+    caster.close()
+
+
 def a_wrong_login():
     """str2str: a refused login is said, not tried again soon, and nowhere told"""
     with Str2str() as caster:
@@ -303,8 +366,8 @@ def through_tls():
 
 
 try:
-    code = run_cases([a_real_caster, a_wrong_login, no_such_mountpoint, the_next_caster,
-                      second_version, through_tls])
+    code = run_cases([a_real_caster, corrections_are_recorded, the_table, by_digest, a_wrong_login,
+                      no_such_mountpoint, the_next_caster, second_version, through_tls])
 finally:
     shutil.rmtree(scratch, ignore_errors=True)
 sys.exit(code)

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "ntrip/caster.hpp"
+#include "ntrip/digest.hpp"
 #include "ntrip/reply.hpp"
 #include "rtcm/crc24q.hpp"
 #include "rtcm/framer.hpp"
@@ -60,6 +61,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       const std::string asked = ntrip::request(caster, 2);
       check(asked.find("\r\n\r\n") == asked.size() - 4);
     }
+  }
+  // And as a caster's wish for a Digest: what is sent back holds no line end.
+  if (const auto challenge = ntrip::parse_challenge("Digest " + text)) {
+    check(!challenge->nonce.empty());
+    const auto answer = ntrip::digest_answer(*challenge, "rover:secret", "/M", "c");
+    check(!answer || answer->find_first_of("\r\n") == std::string::npos);
+    check(!answer || answer->find("secret") == std::string::npos ||
+          text.find("secret") != std::string::npos);
   }
   return 0;
 }

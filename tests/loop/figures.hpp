@@ -91,12 +91,28 @@ inline std::vector<double> measure_pivots_deg(std::uint64_t seeds) {
   return all;
 }
 
+/// y'S⁻¹y of the pose's ellipse: two on the average where it is right.
+inline double nees_of(const base::Pose& pose, base::EnuPoint off) {
+  const double c = std::cos(pose.ellipse.major_yaw_rad);
+  const double s = std::sin(pose.ellipse.major_yaw_rad);
+  const double along = (c * off.east_m + s * off.north_m) / pose.ellipse.major_m;
+  const double across = (-s * off.east_m + c * off.north_m) / pose.ellipse.minor_m;
+  return along * along + across * across;
+}
+
+/// Is the truth within the 95 % ellipse? 5.991: chi-square with two degrees of freedom.
+inline bool inside(const base::Pose& pose, base::EnuPoint off) {
+  return nees_of(pose, off) <= 5.991;
+}
+
 struct RtkErrors {
   std::vector<double> position_m, heading_deg, after_outage_m;
+  double inside_pct = 0.0;  ///< of the truth in the 95 % ellipse
 };
 
 inline RtkErrors measure_rtk(std::uint64_t seeds) {
   RtkErrors all;
+  std::uint64_t within = 0;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     Rig rig(field_of(seed));
     rig.arm_and_start(rig.plan_of({{0, 20}, {8, 20}, {8, 0}, {0, 0}, {0, 40}}));
@@ -106,6 +122,8 @@ inline RtkErrors measure_rtk(std::uint64_t seeds) {
       rig.tick();
       all.position_m.push_back(rig.position_error_m());
       all.heading_deg.push_back(rig.yaw_error_deg());
+      const auto& pose = *rig.state()->pose;
+      if (inside(pose, rig.plant.frame().to_local(pose.global) - rig.truth().local)) ++within;
     }
     rig.run_until([&] { return rig.state()->mission.current_item == 5; }, 60.0);
     drive_on(rig, 8.0, 60.0);
@@ -113,6 +131,8 @@ inline RtkErrors measure_rtk(std::uint64_t seeds) {
     rig.run(10.0);
     all.after_outage_m.push_back(rig.position_error_m());
   }
+  all.inside_pct = 100.0 * static_cast<double>(within) /
+                   static_cast<double>(std::max<std::size_t>(1, all.position_m.size()));
   return all;
 }
 
@@ -120,16 +140,8 @@ struct ConsumerErrors {
   std::vector<double> estimate_m, receiver_m;
   std::vector<double> estimate_step_m, receiver_step_m;  ///< change over 1 s against the truth's
   double inside_pct = 0.0;                               ///< of the truth in the 95 % ellipse
+  double nees = 0.0;                                     ///< mean
 };
-
-/// Is the truth within the 95 % ellipse? 5.991: chi-square with two degrees of freedom.
-inline bool inside(const base::Pose& pose, base::EnuPoint off) {
-  const double c = std::cos(pose.ellipse.major_yaw_rad);
-  const double s = std::sin(pose.ellipse.major_yaw_rad);
-  const double along = (c * off.east_m + s * off.north_m) / pose.ellipse.major_m;
-  const double across = (-s * off.east_m + c * off.north_m) / pose.ellipse.minor_m;
-  return along * along + across * across <= 5.991;
-}
 
 inline ConsumerErrors measure_consumer(std::uint64_t seeds, double seconds) {
   struct Moment {
@@ -151,6 +163,7 @@ inline ConsumerErrors measure_consumer(std::uint64_t seeds, double seconds) {
     std::vector<Moment> moments;
     for (int i = 0; i < seconds * 50.0; ++i) {
       rig.tick();
+      if (rig.track.size() > 1000) rig.track.clear();
       truths.push_front(rig.truth().local);
       if (truths.size() > 7) truths.pop_back();  // the receiver's latency of 0.12 s
       const auto s = rig.state();
@@ -159,6 +172,7 @@ inline ConsumerErrors measure_consumer(std::uint64_t seeds, double seconds) {
       moments.push_back({frame.to_local(s->pose->global) - truths.front(),
                          frame.to_local(*s->gnss->position) - truths.back()});
       if (inside(*s->pose, moments.back().estimate)) ++within;
+      all.nees += nees_of(*s->pose, moments.back().estimate);
     }
     for (std::size_t i = 0; i < moments.size(); ++i) {
       const auto length = [](base::EnuPoint p) { return std::hypot(p.east_m, p.north_m); };
@@ -169,8 +183,9 @@ inline ConsumerErrors measure_consumer(std::uint64_t seeds, double seconds) {
       all.receiver_step_m.push_back(length(moments[i].receiver - moments[i - 5].receiver));
     }
   }
-  all.inside_pct = 100.0 * static_cast<double>(within) /
-                   static_cast<double>(std::max<std::size_t>(1, all.estimate_m.size()));
+  const auto count = static_cast<double>(std::max<std::size_t>(1, all.estimate_m.size()));
+  all.inside_pct = 100.0 * static_cast<double>(within) / count;
+  all.nees /= count;
   return all;
 }
 

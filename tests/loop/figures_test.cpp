@@ -23,6 +23,7 @@ TEST(Figures, RtkFixedIsAsGoodAsItSays) {
   EXPECT_LT(rms(e.position_m), 0.025);
   EXPECT_LT(rms(e.heading_deg), 0.8);
   EXPECT_LT(largest(e.after_outage_m), 0.25);
+  EXPECT_GT(e.inside_pct, 85.0);
 }
 
 TEST(Figures, AConsumerReceiverIsSmoothedAndNotMadeWorse) {

@@ -12,22 +12,25 @@ namespace {
 using base::rad_from_deg;
 
 // Densities per √s, see the header. Yaw: without a gyro the turn rate is the tracks', and slip
-// varies by some percent from moment to moment.
+// varies by some percent from moment to moment. With one they are those of a MEMS unit and of slip
+// that wanders by half a percent: larger ones add up over minutes, and the ellipse of a drifting
+// receiver grows too wide (estimate_bench watches it).
 constexpr double kPositionNoise_m = 0.02;
-constexpr double kPositionNoiseGyro_m = 0.01;
+constexpr double kPositionNoiseGyro_m = 0.006;
 constexpr double kPositionNoisePerTurn_m = 0.05;
+constexpr double kPositionNoisePerTurnGyro_m = 0.02;
 constexpr double kStandingNoise_m = 0.001;
 const double kYawNoise_rad = rad_from_deg(0.3);
 const double kYawNoisePerSpeed_rad = rad_from_deg(0.8);
 constexpr double kYawNoisePerTurn = 0.06;
-const double kGyroNoise_rad = rad_from_deg(0.04);
-constexpr double kGyroNoisePerTurn = 0.006;  // scale of the gyro, lean of its axis
+const double kGyroNoise_rad = rad_from_deg(0.015);
+constexpr double kGyroNoisePerTurn = 0.002;  // scale of the gyro, lean of its axis
 const double kGyroBiasNoise_radps = rad_from_deg(0.002);
 const double kBiasNoise_rad = rad_from_deg(0.7);
 const double kBiasNoiseStanding_rad = rad_from_deg(0.1);
 const double kBiasNoisePivot_rad = rad_from_deg(6.0);
 constexpr double kScaleNoise = 0.006;
-constexpr double kScaleNoiseGyro = 0.0015;
+constexpr double kScaleNoiseGyro = 0.0008;
 constexpr double kYawScaleNoise = 0.02;
 constexpr double kPullNoise_1pm = 0.004;
 constexpr double kCoastNoise_m = 0.3;
@@ -70,8 +73,8 @@ void add_motion_noise(Belief& b, const Travel& t, double turned_rad) noexcept {
   const double turn_rate = std::abs(turned_rad) / t.dt_s;
   const double speed = std::abs(t.ahead_m) / t.dt_s;
   // With a gyro, what the heading lacks is not asked of place and scale.
-  const double place =
-      (t.gyro_rad ? kPositionNoiseGyro_m : kPositionNoise_m) + kPositionNoisePerTurn_m * turn_rate;
+  const double place = t.gyro_rad ? kPositionNoiseGyro_m + kPositionNoisePerTurnGyro_m * turn_rate
+                                  : kPositionNoise_m + kPositionNoisePerTurn_m * turn_rate;
   add_noise(b, kEast, place, t.dt_s);
   add_noise(b, kNorth, place, t.dt_s);
   const double yaw = t.gyro_rad ? kGyroNoise_rad + kGyroNoisePerTurn * turn_rate

@@ -61,6 +61,31 @@ Estimator::Estimator(const EstimateParams& params)
   }
 }
 
+void Estimator::recall(const Learned& learned) noexcept {
+  const auto take = [this](const std::optional<LearnedValue>& known, StateIndex i, double least,
+                           double from, double to) {
+    if (!known || !(known->value >= from && known->value <= to)) return;
+    const double sigma = std::max(least, known->sigma);
+    if (sigma * sigma < belief_.P(i, i)) reset_state(belief_, i, known->value, sigma);
+  };
+  take(learned.odometry_scale, kScale, kScaleRecalled, 0.5, 1.2);
+  take(learned.gyro_bias_radps, kGyroBias, kGyroBiasRecalled_radps, -0.2, 0.2);
+}
+
+Learned Estimator::learned() const noexcept {
+  Learned out;
+  const auto tell = [this](StateIndex i, double enough) -> std::optional<LearnedValue> {
+    const double sigma = std::sqrt(std::max(0.0, belief_.P(i, i)));
+    if (sigma > enough) return std::nullopt;
+    return LearnedValue{belief_.x(i), sigma};
+  };
+  if (has_moved_ && params_.odometry_scale_sigma > kScaleLearned) {
+    out.odometry_scale = tell(kScale, kScaleLearned);
+  }
+  if (last_inertial_) out.gyro_bias_radps = tell(kGyroBias, kGyroBiasLearned_radps);
+  return out;
+}
+
 void Estimator::use_frame(const base::LocalFrame& frame) noexcept {
   if (!located_) frame_ = frame;
 }

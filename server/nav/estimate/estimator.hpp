@@ -31,6 +31,7 @@
 #include "nav/estimate/gnss_quality.hpp"
 #include "nav/estimate/gyro.hpp"
 #include "nav/estimate/history.hpp"
+#include "nav/estimate/learned.hpp"
 #include "nav/estimate/params.hpp"
 #include "nav/estimate/receivers.hpp"
 #include "nav/estimate/tilt.hpp"
@@ -44,6 +45,12 @@ class Estimator {
   explicit Estimator(const EstimateParams& params);
   /// Other parameters, for what comes; what was learned stays.
   void use(const EstimateParams& params) noexcept { params_ = params; }
+
+  /// What another life of this program learned, before the first measurement. Values beyond what
+  /// update() allows, and those less certain than the parameters' own, are left out.
+  void recall(const Learned& learned) noexcept;
+  /// What is worth keeping. Empty: not learned, or not again since it was recalled.
+  Learned learned() const noexcept;
 
   /// Works in this frame from the first fix on. Only before there is a pose; ignored later.
   void use_frame(const base::LocalFrame& frame) noexcept;

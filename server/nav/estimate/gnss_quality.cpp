@@ -37,6 +37,8 @@ std::optional<Row> row_of(FixType fix) noexcept {
 constexpr double kWhitePart = 0.25;
 constexpr double kSlowPart = 0.968;  // the squares of both add up to one
 constexpr double kUnsettled_m = 0.10;
+/// RTK's error is taken as white, but neighbouring epochs err alike: together they tell less.
+constexpr double kAlike = 1.3;
 
 std::optional<double> usable(std::optional<double> sigma_m) noexcept {
   return sigma_m && std::isfinite(*sigma_m) && *sigma_m > 0.0 ? sigma_m : std::nullopt;
@@ -73,6 +75,10 @@ tl::expected<GnssQuality, NoQuality> gnss_quality(const base::GnssFix& fix, bool
   GnssQuality q;
   q.sigma_east_m = east_m;
   q.sigma_north_m = north_m;
+  if (fix.fix == FixType::RtkFixed && settled) {
+    q.sigma_east_m *= kAlike;
+    q.sigma_north_m *= kAlike;
+  }
   if (row->tau_s > 0.0) {
     q.sigma_east_m *= kWhitePart;
     q.sigma_north_m *= kWhitePart;

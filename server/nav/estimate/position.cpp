@@ -19,6 +19,7 @@ constexpr double kApproach_mps = 0.25;  // to a better fix class: slower than th
 constexpr double kFar_m = 25.0;
 constexpr double kDoubtAfter_s = 2.0;
 constexpr double kResetAfter_s = 10.0;
+constexpr double kToldFrom_m = 0.2;
 constexpr double kDoubt_m2ps = 0.05;  // slow enough not to believe a jump of 3 m within 5 s
 
 bool long_ago(const std::optional<base::WallTime>& utc) noexcept {
@@ -169,7 +170,17 @@ void Estimator::fuse_position(const base::GnssFix& fix, const GnssQuality& q) no
     o.may_change(kDriftE) = o.may_change(kDriftN) = 1.0;
     if (!hold) o.may_change(kEast) = o.may_change(kNorth) = 1.0;
   }
+  // Doubt has opened the gate: what comes through it moves the position at once, and is told.
+  std::optional<Belief> before;
+  if (position_off_since_ && seconds(fix.stamp - *position_off_since_) > kDoubtAfter_s) {
+    before = belief_;
+  }
   if (apply(in, o)) {
+    if (before) {
+      const double moved_m =
+          std::hypot(belief_.x(kEast) - before->x(kEast), belief_.x(kNorth) - before->x(kNorth));
+      if (moved_m > kToldFrom_m) note_reset("position", *before);
+    }
     in.refused_since.reset();
     last_fused_ = fix.stamp;
     free_m_ = 0.0;

@@ -189,7 +189,7 @@ TEST_F(NtripDriverTest, AWaitDoublesUntilCorrectionsCome) {
 TEST_F(NtripDriverTest, ARefusedLoginIsNotTriedAgainSoonAndNeverTold) {
   make(kOne);
   after(20ms);
-  answer("HTTP/1.0 401 Unauthorized\r\n");
+  answer("HTTP/1.0 401 Unauthorized\r\n\r\n");
   EXPECT_EQ(status().reason, "ntrip://10.0.0.1:2101/TEST0: the caster does not accept the login");
   after(59s);
   EXPECT_EQ(addresses.size(), 1u);
@@ -239,6 +239,49 @@ TEST_F(NtripDriverTest, CanBeStoppedAndRestarted) {
   EXPECT_EQ(status().phase, DriverPhase::Down);
   driver->restart(now);
   EXPECT_EQ(status().phase, DriverPhase::Opening);
+}
+
+/// Of RFC 2617, section 3.5, with the robot's login and mountpoint.
+const std::string kDigest =
+    "HTTP/1.1 401 Unauthorized\r\nWWW-Authenticate: Digest realm=\"caster\", qop=\"auth\", "
+    "nonce=\"abc\", opaque=\"x1\"\r\n\r\n";
+
+TEST_F(NtripDriverTest, ACasterThatWantsADigestGetsOneAtOnce) {
+  make(kOne);
+  after(20ms);
+  EXPECT_NE(asked.find("Authorization: Basic "), std::string::npos);
+  asked.clear();
+  answer(kDigest);
+  after(20ms);
+  after(20ms);
+  EXPECT_NE(asked.find("Authorization: Digest username=\"rover\", realm=\"caster\""),
+            std::string::npos)
+      << asked;
+  EXPECT_NE(asked.find("uri=\"/TEST0\""), std::string::npos);
+  EXPECT_EQ(asked.find("secret"), std::string::npos);
+  answer("ICY 200 OK\r\n" + k1005);
+  EXPECT_EQ(status().phase, DriverPhase::Up);
+}
+
+TEST_F(NtripDriverTest, AWrongLoginByDigestIsGivenUp) {
+  make(kOne);
+  for (int i = 0; i < 2; ++i) {
+    after(20ms);
+    after(20ms);
+    answer(kDigest);
+  }
+  EXPECT_EQ(status().phase, DriverPhase::Faulty);
+  EXPECT_NE(status().reason.find("does not accept the login"), std::string::npos);
+  const std::size_t before = wires.size();
+  after(20ms);
+  EXPECT_EQ(wires.size(), before) << "it waits";
+}
+
+TEST_F(NtripDriverTest, ADigestOfAnUnknownKindIsNamed) {
+  make(kOne);
+  after(20ms);
+  answer("HTTP/1.1 401 No\r\nWWW-Authenticate: Digest nonce=\"a\", algorithm=SHA-512-256\r\n\r\n");
+  EXPECT_NE(status().reason.find("SHA-512-256"), std::string::npos) << status().reason;
 }
 
 }  // namespace

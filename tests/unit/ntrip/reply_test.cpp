@@ -89,13 +89,42 @@ TEST(Reply, ATableIsReadRowByRow) {
 }
 
 TEST(Reply, RefusalsAreSaidInWords) {
-  EXPECT_EQ(refusal_of("HTTP/1.0 401 Unauthorized\r\n"), "the caster does not accept the login");
+  EXPECT_EQ(refusal_of("HTTP/1.0 401 Unauthorized\r\n\r\n"),
+            "the caster does not accept the login");
   EXPECT_EQ(refusal_of("ERROR - Bad Pasword\r\n"), "the caster does not accept the login");
   EXPECT_EQ(refusal_of("HTTP/1.1 404 Not Found\r\n"), "the caster has no such mountpoint");
   EXPECT_EQ(refusal_of("ERROR - \x01\r\n"), "the caster answers \"ERROR - ?\"");
   EXPECT_EQ(refusal_of("HTTP/1.1 503 Busy\r\n"), "the caster answers \"HTTP/1.1 503 Busy\"");
   EXPECT_EQ(refusal_of("HTTP/1.1 200 OK\r\n" + std::string(9000, 'x')),
             "the caster's answer does not end");
+}
+
+TEST(Digest, IsThatOfTheStandardsExample) {
+  // RFC 2617, section 3.5.
+  const auto asked = parse_challenge(
+      " Digest realm=\"testrealm@host.com\", qop=\"auth,auth-int\", "
+      "nonce=\"dcd98b7102dd2f0e8b11d0f600bfb0c093\", opaque=\"5ccc069c403ebaf9f0171e9517f40e41\"");
+  ASSERT_TRUE(asked);
+  EXPECT_TRUE(asked->auth);
+  const auto answer = digest_answer(*asked, "Mufasa:Circle Of Life", "/dir/index.html", "0a4f113b");
+  ASSERT_TRUE(answer);
+  EXPECT_NE(answer->find("response=\"6629fae49393a05397450978507c4ef1\""), std::string::npos)
+      << *answer;
+  EXPECT_FALSE(parse_challenge("Basic realm=\"x\""));
+  EXPECT_FALSE(parse_challenge("Digest realm=\"x\""));
+  EXPECT_FALSE(digest_answer({.realm = "", .nonce = "n", .opaque = "", .algorithm = "MD5-sess"},
+                             "a:b", "/", "c"));
+}
+
+TEST(Source, TellsPlaceAndLogin) {
+  const Source s = parse_source(
+      "STR;TALLINN0;Tallinn;RTCM "
+      "3.2;1005(1);2;GPS+GLO;NET;EST;59.44;204.75;1;0;gen;none;D;N;9600;");
+  EXPECT_EQ(s.country, "EST");
+  EXPECT_NEAR(s.lat.value(), 59.44, 1e-9);
+  EXPECT_NEAR(s.lon.value(), -155.25, 1e-9);
+  EXPECT_EQ(s.login, 'D');
+  EXPECT_FALSE(parse_source("STR;X;;RTCM 3;;;;;;0.00;0.00;;").lat);
 }
 
 }  // namespace
