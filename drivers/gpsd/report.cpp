@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <ctime>
 #include <utility>
 
 #include <gps.h>
@@ -61,6 +62,19 @@ std::string_view class_of(std::string_view line) {
   line.remove_prefix(kBegin.size());
   const auto end = line.find('"');
   return end == std::string_view::npos ? std::string_view() : line.substr(0, end);
+}
+
+/// libgps 3.22 reads for ever in a line in which another report, or its beginning, follows the
+/// first.
+constexpr std::string_view kClassKey = "\"class\":";
+
+/// End of the year 2099; nanoseconds of far later ones do not fit into 64 bits.
+constexpr std::time_t kLastSecond = 4'102'444'799;
+
+/// Reports of devices nest others, and tell nothing that is used here.
+bool needs_libgps(std::string_view kind) {
+  return kind == "TPV" || kind == "SKY" || kind == "GST" || kind == "ATT" || kind == "VERSION" ||
+         kind == "ERROR";
 }
 
 }  // namespace
@@ -119,6 +133,11 @@ bool Reader::take(std::string_view line, Time stamp) {
     ears_.refused("line that is no report of gpsd");
     return false;
   }
+  if (!needs_libgps(kind)) return true;
+  if (line.find(kClassKey) != line.rfind(kClassKey)) {
+    ears_.refused("line of several reports");
+    return false;
+  }
   *data_ = gps_data_t{};
   gps_clear_fix(&data_->fix);
   std::string copy(line);  // libgps wants to write into it
@@ -158,6 +177,7 @@ void Reader::on_tpv(Time stamp) {
   fix.fix = fix_of(f);
   fix.satellites = used_;
   fix.hdop = hdop_;
+  if (f.time.tv_sec > kLastSecond) return ears_.refused("impossible date");
   if (f.time.tv_sec > 0) {
     fix.utc = base::WallTime{std::chrono::seconds(f.time.tv_sec) +
                              std::chrono::nanoseconds(f.time.tv_nsec)};

@@ -147,11 +147,14 @@ TEST_F(GpsdTest, BadReportsAreNamedAndNeverTold) {
   say(R"({"class":"ERROR","message":"unknown request"})");
   say(tpv("2026-03-18T13:28:20.100Z", R"(,"lat":0.0,"lon":0.0)"));
   say(tpv("1980-01-06T00:00:10.000Z", R"(,"lat":58.378,"lon":26.728)"));
+  say(tpv("4040-03-18T13:28:20.100Z", R"(,"lat":58.378,"lon":26.728)"));
+  say(R"({"class":"TPV","mode":3}x"class":"TPV"})");  // libgps would never come back
   say(std::string(20'000, 'x'));
   EXPECT_EQ(count("line that is no report of gpsd"), 3u);
+  EXPECT_EQ(count("line of several reports"), 1u);
   EXPECT_EQ(count("error of gpsd"), 1u);
   EXPECT_EQ(count("position 0, 0"), 1u);
-  EXPECT_EQ(count("impossible date"), 1u);
+  EXPECT_EQ(count("impossible date"), 2u);
   EXPECT_EQ(count("line that is too long"), 1u);
   const auto fixes = all<base::GnssFix>();
   ASSERT_EQ(fixes.size(), 2u);
