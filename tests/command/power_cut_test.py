@@ -202,6 +202,7 @@ def recordings_survive_power_cuts():
             station.rest.do("POST", "/teach/resume")
         until("it goes on", 60, lambda: recorded(station.rest)[1] > before + 2, 0.05)
         points = recorded(station.rest)[1]
+        check(station.rest.get("/teach")["gaps"] >= 1, "nothing tells where the recording was cut")
         made = station.rest.do("POST", "/teach/stop", {"tolerance_m": 0})
         check(len(made["items"]) >= points, f"{len(made['items'])} items of {points} points")
         after_a_cut(station, station.scratch / "copy", "after the recording")
