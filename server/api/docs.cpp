@@ -3,37 +3,17 @@
 #include <vector>
 
 #include "api/problem.hpp"
+#include "mission/xml.hpp"
 
 namespace roverd::api {
 
 namespace {
 
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
+using mission::xml_escaped;
 
 std::string text_of(const Json& object, const char* key) {
   const auto found = object.find(key);
-  return found != object.end() && found->is_string() ? escaped(found->get<std::string>()) : "";
+  return found != object.end() && found->is_string() ? xml_escaped(found->get<std::string>()) : "";
 }
 
 /// The last part of "#/components/schemas/Vehicle".
@@ -62,7 +42,7 @@ std::string type_words(const Json& schema) {
   if (schema.contains("enum")) {
     std::string out;
     for (const Json& word : schema.at("enum")) {
-      out += (out.empty() ? "" : " | ") + ("<code>" + escaped(word.dump()) + "</code>");
+      out += (out.empty() ? "" : " | ") + ("<code>" + xml_escaped(word.dump()) + "</code>");
     }
     return out;
   }
@@ -100,10 +80,10 @@ std::string property_rows(const Json& schema, const std::string& prefix = "") {
   for (const auto& [name, property] : schema.at("properties").items()) {
     bool needed = false;
     for (const Json& one : required) needed = needed || one == name;
-    out += "<tr><td><code>" + prefix + escaped(name) + "</code>" + (needed ? "" : " (optional)") +
-           "</td><td>" + type_words(property) + limits_words(property) + "</td><td>" +
-           text_of(property, "description") + "</td></tr>";
-    out += property_rows(property, prefix + escaped(name) + ".");
+    out += "<tr><td><code>" + prefix + xml_escaped(name) + "</code>" +
+           (needed ? "" : " (optional)") + "</td><td>" + type_words(property) +
+           limits_words(property) + "</td><td>" + text_of(property, "description") + "</td></tr>";
+    out += property_rows(property, prefix + xml_escaped(name) + ".");
   }
   return out;
 }
@@ -147,7 +127,7 @@ class Page {
     for (const auto& [path, methods] : doc_.at("paths").items()) {
       for (const auto& [method, operation] : methods.items()) {
         out_ += "<li><a href=\"#" + text_of(operation, "operationId") + "\"><b class=\"" + method +
-                "\">" + method + "</b> <code>" + escaped(path) + "</code></a> " +
+                "\">" + method + "</b> <code>" + xml_escaped(path) + "</code></a> " +
                 text_of(operation, "summary") + "</li>";
       }
     }
@@ -158,7 +138,7 @@ class Page {
 
   void call(const std::string& path, const std::string& method, const Json& operation) {
     out_ += "<section id=\"" + text_of(operation, "operationId") + "\"><h2><b class=\"" + method +
-            "\">" + method + "</b> <code>/api/v1" + escaped(path) + "</code></h2><p>" +
+            "\">" + method + "</b> <code>/api/v1" + xml_escaped(path) + "</code></h2><p>" +
             text_of(operation, "summary") + ". " + text_of(operation, "description") + "</p>";
     std::string rows;
     for (const Json& given : operation.value("parameters", Json::array())) {
@@ -183,7 +163,7 @@ class Page {
     std::string out;
     const Json content = holder.value("content", Json::object());
     for (const auto& [type, media] : content.items()) {
-      out += (out.empty() ? "" : ", ") + escaped(type) +
+      out += (out.empty() ? "" : ", ") + xml_escaped(type) +
              (media.contains("schema") ? " " + type_words(media.at("schema")) : "");
     }
     return out;
@@ -193,7 +173,7 @@ class Page {
     std::string rows;
     for (const auto& [status, given] : responses.items()) {
       const Json& response = resolved(given);
-      rows += "<tr><td><b>" + escaped(status) + "</b></td><td>" + content_words(response) +
+      rows += "<tr><td><b>" + xml_escaped(status) + "</b></td><td>" + content_words(response) +
               "</td><td>" + text_of(response, "description") + "</td></tr>";
     }
     out_ += table(rows);
@@ -217,8 +197,8 @@ class Page {
     out_ += "<h1 id=\"problems\">Refusals</h1>";
     for (const ProblemKind& kind : problem_kinds()) {
       out_ += "<section id=\"problem-" + std::string(kind.slug) + "\"><h2>" +
-              std::to_string(kind.status) + " " + escaped(kind.title) + "</h2><p>" +
-              escaped(kind.meaning) + "</p></section>";
+              std::to_string(kind.status) + " " + xml_escaped(kind.title) + "</h2><p>" +
+              xml_escaped(kind.meaning) + "</p></section>";
     }
   }
 

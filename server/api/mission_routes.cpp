@@ -167,6 +167,15 @@ Handler list_missions(const ContextPtr& context) {
   };
 }
 
+Handler list_tags(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    const auto limit = limit_of(*call);
+    if (!limit) return call->respond(problem(limit.error()));
+    context->deps.store.list_tags(*limit, query_text(*call, "cursor"),
+                                  listed<store::TagCount>(call, tag_list_json));
+  };
+}
+
 Handler restore(const ContextPtr& context) {
   return [context](const CallPtr& call) {
     with_expected(context, call, [context, call](std::int64_t expected) {
@@ -239,6 +248,7 @@ void add_mission_routes(const ContextPtr& c) {
   const auto post = http::verb::post;
   c->router.add({get, "/missions", {200, 400, 422, 503}, list_missions(c)});
   c->router.add({post, "/missions", {201, 400, 403, 413, 415, 422, 429, 503}, create(c)});
+  c->router.add({get, "/tags", {200, 422, 503}, list_tags(c)});
   c->router.add({get, "/missions/{id}", {200, 304, 404, 503}, [c](const CallPtr& call) {
                    c->deps.store.read_mission(call->params.at("id"), shown(call));
                  }});

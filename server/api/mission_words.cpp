@@ -118,6 +118,12 @@ Json revision_list_json(const store::Page<store::RevisionSummary>& page) {
   });
 }
 
+Json tag_list_json(const store::Page<store::TagCount>& page) {
+  return page_json(page, [](const store::TagCount& t) -> Json {
+    return {{"tag", t.tag}, {"missions", t.missions}, {"archived", t.archived}};
+  });
+}
+
 Json import_json(const mission::ImportedFile& file, const store::StoredMission& mission) {
   Json report = Json::array();
   const auto count = [&file](mission::Outcome outcome) {

@@ -134,7 +134,7 @@ void TeachIn::start(const mission::TeachSettings& settings, std::string name, Do
 void TeachIn::pause(Done done) {
   if (auto fine = allow("pause", {State::Recording}); !fine) return done(fine);
   take(sampler_->finish());
-  sampler_->interrupt();
+  if (!record_.points.empty()) sampler_->interrupt();  // else the first point is yet to come
   state_ = State::Paused;
   waiting_.clear();
   event(Severity::Info, "teach_paused",

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "api/measured.hpp"
 #include "api/words.hpp"
 #include "base/angle.hpp"
 #include "mission/json.hpp"
@@ -8,21 +9,6 @@
 namespace roverd::api {
 
 namespace {
-
-// Digits that mean something; they also keep a message near one kilobyte.
-constexpr double kPlaces2 = 1e2;
-constexpr double kPlaces3 = 1e3;
-constexpr double kPlaces8 = 1e8;
-constexpr double kPlaces9 = 1e9;
-
-Json rounded(double value, double places) {
-  if (!std::isfinite(value)) return nullptr;
-  const double out = std::round(value * places) / places;
-  return out == 0.0 ? 0.0 : out;  // no "-0.0"
-}
-Json rounded(const std::optional<double>& value, double places) {
-  return value ? rounded(*value, places) : Json(nullptr);
-}
 
 Json heading_json(double yaw_rad) {
   const double heading_deg = std::round(base::heading_from_yaw(yaw_rad) * kPlaces2) / kPlaces2;
@@ -36,28 +22,9 @@ Json axis_json(double yaw_rad) {
   return shown_deg >= 180.0 ? 0.0 : shown_deg;
 }
 
-Json degrees(double rad) {
-  return rounded(base::deg_from_rad(rad), kPlaces2);
-}
-Json degrees(const std::optional<double>& rad) {
-  return rad ? degrees(*rad) : Json(nullptr);
-}
-
 void set_position(Json& group, const std::optional<base::LatLon>& at) {
   group["lat"] = at ? rounded(at->lat, kPlaces9) : Json(nullptr);
   group["lon"] = at ? rounded(at->lon, kPlaces9) : Json(nullptr);
-}
-
-void set_age(Json& group, const std::optional<base::Time>& stamp, base::Time now,
-             double stale_after_s) {
-  const double age_s = stamp ? std::max(0.0, base::seconds(now - *stamp)) : 0.0;
-  group["age_s"] = stamp ? rounded(age_s, kPlaces3) : Json(nullptr);
-  group["stale"] = !stamp || age_s > stale_after_s;
-}
-
-template <class T>
-std::optional<base::Time> stamp_of(const std::optional<T>& value) {
-  return value ? std::optional(value->stamp) : std::nullopt;
 }
 
 Json position_json(const std::optional<base::Pose>& pose, base::Time now) {
@@ -328,102 +295,6 @@ Json preview_json(const robot::Preview& p, base::ExecutionState state) {
           {"speed_mps", rounded(p.speed_mps, kPlaces3)},
           {"at_end", mission::to_string(p.at_end)},
           {"state", base::to_string(state)}};
-}
-
-Json capabilities_json(const Profile& p, const std::string& version) {
-  Json modes = Json::array();
-  for (const base::Mode mode : p.modes) modes.push_back(base::to_string(mode));
-  Json formats = Json::array();
-  for (const mission::Format format : mission::kFormats) {
-    formats.push_back(mission::to_string(format));
-  }
-  return {{"vehicle", p.name},
-          {"title", p.title},
-          {"version", version},
-          {"kinematics", p.kinematics},
-          {"size", {{"length_m", p.length_m}, {"width_m", p.width_m}, {"mass_kg", p.mass_kg}}},
-          {"limits",
-           {{"max_speed_mps", p.max_speed_mps},
-            {"max_yaw_rate_dps", degrees(p.max_yaw_rate_radps)},
-            {"max_acceleration_mps2", p.max_acceleration_mps2},
-            {"pivot_angle_deg", degrees(p.pivot_angle_rad)}}},
-          {"modes", std::move(modes)},
-          {"drivers", p.drivers},
-          {"lights", p.lights},
-          {"error_clear", p.clears_errors},
-          {"item_types", p.item_types},
-          {"radio", p.radio},
-          {"import_formats", formats},
-          {"export_formats", formats}};
-}
-
-Json driver_json(const base::DriverStatus& d, std::optional<double> rate_hz, base::Time now) {
-  constexpr double kPlaces1 = 1e1;
-  Json out = {
-      {"name", d.name},
-      {"state", base::to_string(d.phase)},
-      {"reason", d.reason},
-      {"link", {{"address", d.link.empty() ? Json(nullptr) : Json(d.link)}, {"open", d.link_open}}},
-      {"received", d.received},
-      {"refused", d.refused},
-      {"sent", d.sent},
-      {"rate_hz", rounded(rate_hz, kPlaces1)},
-      {"rates_hz", Json::object()},
-      {"counts", Json::object()},
-      {"facts", Json::object()},
-      {"hazards", Json::array()},
-      {"restarts", d.restarts},
-      {"last_error", nullptr},
-      {"recording", base::to_string(d.recording)},
-      {"recording_problem", d.recording_problem}};
-  if (d.detail) {
-    for (const auto& [message, hz] : d.detail->rates_hz) {
-      out["rates_hz"][message] = rounded(hz, kPlaces1);
-    }
-    out["counts"] = d.detail->counts;
-    out["facts"] = d.detail->facts;
-    out["hazards"] = d.detail->hazards;
-  }
-  if (d.last_error_at) {
-    const double age_s = std::max(0.0, base::seconds(now - *d.last_error_at));
-    out["last_error"] = {{"detail", d.last_error}, {"age_s", rounded(age_s, kPlaces3)}};
-  }
-  set_age(out, d.last_received, now, StaleAfter::kDriver_s);
-  return out;
-}
-
-Json drivers_json(const base::Snapshot& s, const std::map<std::string, double>& rates,
-                  base::Time now) {
-  Json items = Json::array();
-  for (const auto& driver : s.drivers) {
-    const auto rate = rates.find(driver.name);
-    items.push_back(
-        driver_json(driver, rate == rates.end() ? std::nullopt : std::optional(rate->second), now));
-  }
-  // In an order that does not depend on who spoke first.
-  std::sort(items.begin(), items.end(),
-            [](const Json& a, const Json& b) { return a["name"] < b["name"]; });
-  return {{"items", std::move(items)}, {"next_cursor", nullptr}};
-}
-
-namespace {
-
-Json light_json(int mode, int pct) {
-  const auto known = static_cast<std::size_t>(mode);
-  return {{"mode", known < kLightModes.size() ? Json(kLightModes[known]) : Json(nullptr)},
-          {"brightness_pct", pct}};
-}
-
-}  // namespace
-
-Json lights_json(const base::Snapshot& s, base::Time now) {
-  Json out = {{"commanded", nullptr}, {"front", nullptr}, {"rear", nullptr}};
-  set_age(out, stamp_of(s.lights), now, StaleAfter::kLights_s);
-  if (!s.lights) return out;
-  out["commanded"] = s.lights->commanded;
-  out["front"] = light_json(s.lights->front_mode, s.lights->front_pct);
-  out["rear"] = light_json(s.lights->rear_mode, s.lights->rear_pct);
-  return out;
 }
 
 }  // namespace roverd::api

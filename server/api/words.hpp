@@ -81,6 +81,7 @@ Json deleted_list_json(const store::Page<store::MissionSummary>& page);
 /// What changed between two revisions of one mission.
 Json differences_json(const store::StoredMission& older, const store::StoredMission& newer);
 Json revision_list_json(const store::Page<store::RevisionSummary>& page);
+Json tag_list_json(const store::Page<store::TagCount>& page);
 Json import_json(const mission::ImportedFile& file, const store::StoredMission& mission);
 Json event_json(const store::StoredEvent& event);
 

@@ -22,7 +22,8 @@ class TangentPlane {
  private:
   GeographicLib::LocalCartesian plane_;
   double height_m_;
-  double radius_m_;  ///< of the ellipsoid's curvature at the origin, mean
+  double east_radius_m_;   ///< of the ellipsoid's curvature at the origin, along its parallel
+  double north_radius_m_;  ///< and along its meridian
 };
 
 }  // namespace roverd::base

@@ -2,22 +2,19 @@
 // What speaks against driving a mission with a certain vehicle here and now, and how long it takes.
 // Pure, any thread; some milliseconds for 10,000 items.
 //
-//   code               severity          what
-//   no_target          error             nothing to drive to
-//   too_far            error, warning    more than 10 km (error), 1 km (warning) from the vehicle,
-//   or
-//                                        more than 10 km from the first position
-//   leg_too_long       warning           a leg of more than 1 km
-//   outside_fence      error             a position or a leg outside the active fence
-//   near_fence         warning           nearer to its limit than half the vehicle's width
-//   turn_too_tight     warning, error    legs too short for the turning radius between their
-//   corners;
-//                                        error: a turn on the spot by a vehicle that cannot
-//   too_steep          error             between two heights, where both are known
-//   duplicate_point    warning           the same place as the waypoint before
-//   speed_above_limit  warning           it will be driven at the limit
-//   unreachable_type   error             a type of item that cannot be driven as configured
-//   repeats_for_ever   warning           a jump without end
+//   no_target          error: nothing to drive to
+//   too_far            error: more than 10 km from the vehicle, or from the first position;
+//                      warning: more than 1 km from the vehicle
+//   leg_too_long       warning: a leg of more than 1 km
+//   outside_fence      error: a position or a leg outside the active fence
+//   near_fence         warning: nearer to its limit than half the vehicle's width
+//   turn_too_tight     warning: legs too short for the turning radius between their corners;
+//                      error: a turn on the spot by a vehicle that cannot
+//   too_steep          error: between two heights, where both are known
+//   duplicate_point    warning: the same place as the waypoint before
+//   speed_above_limit  warning: it will be driven at the limit
+//   unreachable_type   error: a type of item that cannot be driven as configured
+//   repeats_for_ever   warning: a jump without end
 
 #include <cstddef>
 #include <optional>

@@ -20,11 +20,11 @@ base::Result<ImportedFile> read_gpx(std::string_view content);
 std::string write_gpx(const Plan& plan, std::vector<FileRow>& rows);
 
 base::Result<ImportedFile> read_kml(std::string_view content);
-std::string write_kml(const Plan& plan, std::vector<FileRow>& rows);
+std::string write_kml(const Plan& plan, const Fence* fence, std::vector<FileRow>& rows);
 
 base::Result<ImportedFile> read_kmz(std::string_view content);
 /// Empty if there is no memory.
-std::string write_kmz(const Plan& plan, std::vector<FileRow>& rows);
+std::string write_kmz(const Plan& plan, const Fence* fence, std::vector<FileRow>& rows);
 
 base::Result<ImportedFile> read_geojson(std::string_view content);
 std::string write_geojson(const Plan& plan, const Fence* fence, std::vector<FileRow>& rows);

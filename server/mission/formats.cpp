@@ -181,11 +181,11 @@ ExportedFile export_file(const Plan& plan, Format format, const Fence* fence) {
       file.media_type = "application/gpx+xml";
       break;
     case Format::Kml:
-      file.content = write_kml(plan, file.rows);
+      file.content = write_kml(plan, fence, file.rows);
       file.media_type = "application/vnd.google-earth.kml+xml";
       break;
     case Format::Kmz:
-      file.content = write_kmz(plan, file.rows);
+      file.content = write_kmz(plan, fence, file.rows);
       file.media_type = "application/vnd.google-earth.kmz";
       file.binary = true;
       break;
@@ -202,7 +202,9 @@ ExportedFile export_file(const Plan& plan, Format format, const Fence* fence) {
       file.media_type = "text/csv";
       break;
   }
-  if (fence != nullptr && format != Format::Plan && format != Format::GeoJson) {
+  const bool holds_fences = format == Format::Plan || format == Format::GeoJson ||
+                            format == Format::Kml || format == Format::Kmz;
+  if (fence != nullptr && !holds_fences) {
     file.rows.push_back(
         {"", "fence", Outcome::LeftOut, "this format has no place for fences", std::nullopt});
   }

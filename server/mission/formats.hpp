@@ -75,7 +75,8 @@ struct ImportedFile {
   Format format = Format::Plan;
   Plan plan;  ///< satisfies check_plan; its name is the file's name without ending
   std::vector<FileRow> rows;
-  std::optional<Fence> fence{};  ///< of a .plan; satisfies check_fence, named like the plan
+  /// Of .plan, GeoJSON, KML and KMZ; satisfies check_fence, named like the plan.
+  std::optional<Fence> fence{};
 };
 
 /// What a file of the follower's form may leave unsaid.
@@ -102,8 +103,8 @@ struct ExportedFile {
   std::vector<FileRow> rows;
 };
 
-/// Positions come back equal when the file is imported again. @param fence written into a .plan;
-/// the other formats have no place for it. Null: none
+/// Positions come back equal when the file is imported again. @param fence written into .plan,
+/// GeoJSON, KML and KMZ; the other formats have no place for it, and `rows` says so. Null: none
 ExportedFile export_file(const Plan& plan, Format format, const Fence* fence = nullptr);
 
 }  // namespace roverd::mission

@@ -89,7 +89,7 @@ json feature_json(json properties, const char* type, json coordinates) {
 
 }  // namespace
 
-bool take_fence_feature(const json& properties, const json& shape, const std::string& where,
+bool take_fence_feature(const json& properties, const json& shape, const FencePlace& where,
                         Fence& fence, std::vector<FileRow>& rows, Problems& problems) {
   const bool rally = properties.value("rally", json()) == true;
   if (!shape.is_object() || (!rally && !properties.contains("fence"))) return false;
@@ -101,12 +101,12 @@ bool take_fence_feature(const json& properties, const json& shape, const std::st
     }
   }
   if (!part.problem.empty()) {
-    problems.add(where + "/geometry", std::move(part.problem));
+    problems.add(where.problem, std::move(part.problem));
     return true;
   }
   for (FenceArea& area : part.alone.areas) fence.areas.push_back(std::move(area));
   for (const RallyPoint& point : part.alone.rally) fence.rally.push_back(point);
-  rows.push_back({where, part.what, Outcome::Taken, {}, std::nullopt});
+  rows.push_back({where.row, part.what, Outcome::Taken, {}, std::nullopt});
   return true;
 }
 

@@ -16,11 +16,16 @@
 
 namespace roverd::mission {
 
+/// Where a part of a fence stands in its file.
+struct FencePlace {
+  std::string row;      ///< for its account
+  std::string problem;  ///< for what cannot be
+};
+
 /// Takes a Feature that is part of a fence into `fence`, with its row; what cannot be goes to
-/// `problems`. @return false: it is none. @param properties, shape objects; where: the Feature's
-/// pointer
+/// `problems`. @return false: it is none. @param properties, shape objects
 bool take_fence_feature(const nlohmann::json& properties, const nlohmann::json& shape,
-                        const std::string& where, Fence& fence, std::vector<FileRow>& rows,
+                        const FencePlace& where, Fence& fence, std::vector<FileRow>& rows,
                         Problems& problems);
 
 /// One Feature for each area and rally point.

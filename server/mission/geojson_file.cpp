@@ -70,8 +70,8 @@ class GeoJsonReader {
     }
     const auto properties = value.find("properties");
     const bool has_properties = properties != value.end() && properties->is_object();
-    if (has_properties &&
-        take_fence_feature(*properties, *shape, where, fence_, file_.rows, problems_)) {
+    if (has_properties && take_fence_feature(*properties, *shape, {where, where + "/geometry"},
+                                             fence_, file_.rows, problems_)) {
       return;
     }
     if (has_properties && file_.plan.name.empty()) file_.plan.name = text_of(*properties, "name");

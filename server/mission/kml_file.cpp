@@ -1,11 +1,13 @@
 // KML 2.2: the coordinates of its lines (LineString, gx:Track); without one, of its Points. Areas
-// are left out. Written as one Placemark with a LineString, a Point if there is only one.
+// are left out, unless their Placemark says that they are a fence (see kml_fence.hpp). Written as
+// one Placemark with a LineString, a Point if there is only one.
 
 #include <charconv>
 #include <cmath>
 #include <utility>
 
 #include "mission/file_formats.hpp"
+#include "mission/kml_fence.hpp"
 #include "mission/track_points.hpp"
 #include "mission/xml.hpp"
 
@@ -34,8 +36,10 @@ class KmlReader {
       path_.emplace_back(element.name);
       rows_.push_back(element.row);
       if (path_.size() == 1) is_kml_ = element.name == "kml";
-      if (element.name == "Polygon") {
-        builder_.leave_out(element.row, "Polygon", "an area is no way to drive");
+      if (element.name == "Placemark") words_ = nlohmann::json::object();
+      if (element.name == "Polygon") shapes_.push_back({element.row, {}, std::nullopt});
+      if (element.name == "Data" || element.name == "SimpleData") {
+        word_ = element.attribute("name");
       }
     };
     events.end = [this](std::string_view name, const std::string& text, const std::string&) {
@@ -46,8 +50,13 @@ class KmlReader {
       if (name == "coordinates") coordinates(text, row, inside);
       if (name == "coord" && inside == "Track") tuple(text, row, "gx:coord", ' ', lines_);
       if (name == "name" && file_.plan.name.empty()) file_.plan.name = text;
+      if (name == "SimpleData" || (name == "value" && inside == "Data")) {
+        set_kml_word(words_, word_, text);
+      }
+      if (name == "Placemark") end_placemark();
     };
     if (auto done = read_xml(content, events); !done) return tl::unexpected<Error>(done.error());
+    end_placemark();  // shapes outside of one
     if (!is_kml_) {
       return base::fail(base::Code::Invalid, "line 1 must begin a <kml> document",
                         {{"line 1", "must begin a <kml> document"}});
@@ -59,27 +68,84 @@ class KmlReader {
         builder_.leave_out(std::move(point.row), "Point", "the file's line is taken instead");
       }
     }
+    if (!fence_.areas.empty() || !fence_.rally.empty()) file_.fence = std::move(fence_);
     return std::move(builder_).finish();
   }
 
  private:
-  void coordinates(std::string_view text, const std::string& row, std::string_view inside) {
-    const bool line = inside == "LineString";
-    if (!line && inside != "Point") return;  // of an area, which has its account already
+  /// Of the Placemark that is being read. What it is is told by its words, which may come last.
+  struct Shape {
+    std::string row;
+    std::vector<std::string> rings;  ///< of a Polygon, as they stand there; the outer one first
+    std::optional<TrackPoint> point;
+  };
+
+  void end_placemark() {
+    for (Shape& shape : shapes_) {
+      if (is_kml_fence(words_)) {
+        take_fence(shape);
+      } else if (shape.point) {
+        points_.push_back(std::move(*shape.point));
+      } else {
+        builder_.leave_out(std::move(shape.row), "Polygon", "an area is no way to drive");
+      }
+    }
+    shapes_.clear();
+    words_ = nlohmann::json::object();
+  }
+
+  void take_fence(const Shape& shape) {
+    const auto position = [](const TrackPoint& at) {
+      auto out = nlohmann::json::array({at.lon, at.lat});
+      if (at.alt_m) out.push_back(*at.alt_m);
+      return out;
+    };
+    nlohmann::json found;
+    if (shape.point) {
+      found = {{"type", "Point"}, {"coordinates", position(*shape.point)}};
+    } else {
+      auto rings = nlohmann::json::array();
+      for (const std::string& text : shape.rings) {
+        std::vector<TrackPoint> corners;
+        if (!tuples(text, shape.row, "corner", corners)) return;
+        auto& ring = rings.emplace_back(nlohmann::json::array());
+        for (const TrackPoint& corner : corners) ring.push_back(position(corner));
+      }
+      found = {{"type", "Polygon"}, {"coordinates", std::move(rings)}};
+    }
+    take_fence_feature(words_, found, {shape.row, shape.row}, fence_, file_.rows, problems_);
+  }
+
+  void coordinates(const std::string& text, const std::string& row, std::string_view inside) {
+    if (inside == "LineString") {
+      tuples(text, row, "coordinate", lines_);
+    } else if (inside == "Point") {
+      std::vector<TrackPoint> one;
+      tuples(text, row, nullptr, one);
+      for (TrackPoint& point : one) shapes_.push_back({row, {}, std::move(point)});
+    } else if (inside == "LinearRing" && !shapes_.empty()) {
+      shapes_.back().rings.push_back(text);
+    }
+  }
+
+  /// @param each what one of many is called; null: there is one, at `row`. @return all were good
+  bool tuples(std::string_view text, const std::string& row, const char* each,
+              std::vector<TrackPoint>& out) {
+    bool good = true;
     constexpr std::string_view kXmlBlanks = " \t\r\n";
     for (std::size_t number = 1;; ++number) {
       const std::size_t begin = text.find_first_not_of(kXmlBlanks);
-      if (begin == std::string_view::npos) return;
+      if (begin == std::string_view::npos) return good;
       text.remove_prefix(begin);
       const std::string_view one = text.substr(0, text.find_first_of(kXmlBlanks));
       text.remove_prefix(one.size());
-      tuple(one, line ? row + ", coordinate " + std::to_string(number) : row,
-            line ? "coordinate" : "Point", ',', line ? lines_ : points_);
+      std::string place = each != nullptr ? row + ", " + each + ' ' + std::to_string(number) : row;
+      good &= tuple(one, std::move(place), each != nullptr ? each : "Point", ',', out);
     }
   }
 
   /// longitude, latitude and perhaps a height
-  void tuple(std::string_view text, std::string row, const char* what, char separator,
+  bool tuple(std::string_view text, std::string row, const char* what, char separator,
              std::vector<TrackPoint>& out) {
     constexpr std::string_view kXmlBlanks = " \t\r\n";
     const std::size_t begin = std::min(text.find_first_not_of(kXmlBlanks), text.size());
@@ -96,11 +162,13 @@ class KmlReader {
       if (good && !text.empty()) text.remove_prefix(1);
     }
     if (!good || !text.empty() || values.size() < 2) {
-      return problems_.add(row, "must be longitude, latitude and perhaps a height");
+      problems_.add(row, "must be longitude, latitude and perhaps a height");
+      return false;
     }
     TrackPoint point{std::move(row), what, values[1], values[0]};
     if (values.size() > 2) point.alt_m = values[2];
     out.push_back(std::move(point));
+    return true;
   }
 
   std::vector<std::string> path_;
@@ -108,6 +176,10 @@ class KmlReader {
   bool is_kml_ = false;
   std::vector<TrackPoint> lines_;
   std::vector<TrackPoint> points_;
+  std::vector<Shape> shapes_;
+  std::string word_;
+  nlohmann::json words_ = nlohmann::json::object();
+  Fence fence_;
   ImportedFile file_;
   Problems problems_;
   TrackBuilder builder_{file_, problems_};
@@ -119,7 +191,7 @@ Result<ImportedFile> read_kml(std::string_view content) {
   return KmlReader().read(content);
 }
 
-std::string write_kml(const Plan& plan, std::vector<FileRow>& rows) {
+std::string write_kml(const Plan& plan, const Fence* fence, std::vector<FileRow>& rows) {
   report_left_out(plan, {true, false}, rows);
   constexpr int kDecimals = 9;
   std::string points;
@@ -134,10 +206,14 @@ std::string write_kml(const Plan& plan, std::vector<FileRow>& rows) {
   }
   const std::string shape = count == 1 ? "Point" : "LineString";
   const std::string name = xml_escaped(plan.name);
+  const std::string way = count == 0 ? ""
+                                     : "<Placemark><name>" + name + "</name><" + shape +
+                                           "><coordinates>\n" + points + "</coordinates></" +
+                                           shape + "></Placemark>\n";
   return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
          "<kml xmlns=\"http://www.opengis.net/kml/2.2\">\n<Document>\n<name>" +
-         name + "</name>\n<Placemark><name>" + name + "</name><" + shape + "><coordinates>\n" +
-         points + "</coordinates></" + shape + "></Placemark>\n</Document>\n</kml>\n";
+         name + "</name>\n" + way + (fence != nullptr ? kml_of(*fence) : std::string()) +
+         "</Document>\n</kml>\n";
 }
 
 }  // namespace roverd::mission

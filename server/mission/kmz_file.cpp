@@ -100,8 +100,8 @@ Result<ImportedFile> read_kmz(std::string_view content) {
   return read_kml(*text);
 }
 
-std::string write_kmz(const Plan& plan, std::vector<FileRow>& rows) {
-  const std::string text = write_kml(plan, rows);
+std::string write_kmz(const Plan& plan, const Fence* fence, std::vector<FileRow>& rows) {
+  const std::string text = write_kml(plan, fence, rows);
   zip_error_t error;
   zip_error_init(&error);
   const std::unique_ptr<zip_source_t, FreeSource> memory(

@@ -25,7 +25,8 @@ struct Spot {
 
 /// The short way round the date line.
 double lon_difference(double from, double to) noexcept {
-  return std::remainder(to - from, 360.0);
+  const double way = to - from;
+  return std::abs(way) < 180.0 ? way : std::remainder(way, 360.0);  // which is slow
 }
 
 double compass(double deg) noexcept {

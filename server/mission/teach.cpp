@@ -29,7 +29,7 @@ double apart_m(LatLon a, LatLon b) noexcept {
 }  // namespace
 
 void Sampler::interrupt() noexcept {
-  gap_ = point_.has_value();
+  gap_ = true;
   now_.reset();
   begin_leg();
 }
@@ -91,7 +91,6 @@ std::vector<TaughtPoint> Sampler::take(const TeachSample& sample) {
   const bool bends = turned_rad >= base::rad_from_deg(settings_.heading_deg) &&
                      far_m >= std::min(kApart_m, settings_.step_m);
   if (!point_ || gap_ || far_m >= settings_.step_m || bends) {
-    if (!point_) gap_ = false;
     out.push_back(point_here());
     point_ = Last{sample.at, sample.yaw_rad};
     gap_ = false;

@@ -50,7 +50,8 @@ class TrackBuilder {
         {std::move(row), std::move(what), Outcome::LeftOut, std::move(reason), std::nullopt});
   }
 
-  /// The file, or what is wrong with it: a wrong value, too many positions, none at all.
+  /// The file, or what is wrong with it: a wrong value, too many positions, none at all and no
+  /// fence either.
   base::Result<ImportedFile> finish() && {
     if (overflow_) {
       return base::fail(base::Code::TooLarge,
@@ -59,7 +60,7 @@ class TrackBuilder {
     if (!problems_.none()) {
       return tl::unexpected<base::Error>(std::move(problems_).error("the file"));
     }
-    if (file_.plan.items.empty()) {
+    if (file_.plan.items.empty() && !file_.fence) {
       return base::fail(base::Code::Invalid, "the file has no position that could be driven to",
                         {{"", "has no position"}});
     }

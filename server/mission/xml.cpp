@@ -6,8 +6,6 @@
 
 #include <expat.h>
 
-#include "mission/text.hpp"
-
 namespace roverd::mission {
 
 namespace {
@@ -106,7 +104,7 @@ Result<void> read_xml(std::string_view content, const XmlEvents& events) {
 
 std::string xml_escaped(std::string_view text) {
   std::string out;
-  for (const char c : clean_name(text, "")) {
+  for (const char c : text) {
     switch (c) {
       case '&':
         out += "&amp;";

@@ -30,7 +30,8 @@ inline constexpr int kMaxXmlDepth = 64;
 /// Invalid with "line N": no XML, nested deeper than kMaxXmlDepth, with a document type.
 base::Result<void> read_xml(std::string_view content, const XmlEvents& events);
 
-/// For text between tags and in attributes; what XML cannot hold is left out.
+/// For text between tags and in attributes, of XML and HTML. @param text UTF-8 without control
+/// characters, which XML cannot hold
 std::string xml_escaped(std::string_view text);
 
 }  // namespace roverd::mission

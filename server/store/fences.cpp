@@ -1,6 +1,5 @@
 #include "store/fences.hpp"
 
-#include <limits>
 #include <utility>
 
 #include "mission/fence_json.hpp"
@@ -205,31 +204,14 @@ Result<StoredFence> Fences::revert(const std::string& id, std::int64_t expected,
 
 Result<Page<RevisionSummary>> Fences::list_revisions(const std::string& id, int limit,
                                                      const std::string& cursor) {
-  if (auto ok = check_limit(limit); !ok) return tl::unexpected<Error>(ok.error());
-  const auto before =
-      cursor.empty() ? std::numeric_limits<std::int64_t>::max() : number_from(cursor).value_or(0);
-  if (before <= 0) return tl::unexpected<Error>(bad_cursor());
-  if (const auto found = head(id, kAnyRevision, true); !found) {
-    return tl::unexpected<Error>(found.error());
+  if (const auto known = head(id, kAnyRevision, true); !known) {
+    return tl::unexpected<Error>(known.error());
   }
   SQLite::Statement rows(db_,
-                         "SELECT revision, time_ns, author, what, packed IS NULL, name "
+                         "SELECT revision, time_ns, author, what, packed IS NULL, name, 0, 0.0 "
                          "FROM fence_revisions WHERE fence_id = ? AND revision < ? "
                          "ORDER BY revision DESC LIMIT ?");
-  rows.bind(1, id);
-  rows.bind(2, before);
-  rows.bind(3, limit + 1);
-  Page<RevisionSummary> page;
-  while (rows.executeStep()) {
-    if (static_cast<int>(page.items.size()) == limit) {
-      page.next_cursor = std::to_string(page.items.back().revision);
-      break;
-    }
-    page.items.push_back({rows.getColumn(0).getInt64(), time_from(rows.getColumn(1).getInt64()),
-                          rows.getColumn(2).getString(), rows.getColumn(3).getString(),
-                          rows.getColumn(4).getInt() != 0, rows.getColumn(5).getString(), 0, 0.0});
-  }
-  return page;
+  return revision_page(rows, id, limit, cursor);
 }
 
 Result<std::optional<StoredFence>> Fences::activate(const std::optional<std::string>& id) {

@@ -1,6 +1,5 @@
 // Lists: a page is read from an index, from where the page before ended.
 
-#include <limits>
 #include <utility>
 
 #include "mission/text.hpp"
@@ -90,25 +89,33 @@ Result<Page<MissionSummary>> Missions::list(int limit, const std::string& cursor
   return page;
 }
 
-Result<Page<RevisionSummary>> Missions::list_revisions(const std::string& id, int limit,
-                                                       const std::string& cursor) {
+Result<Page<TagCount>> Missions::list_tags(int limit, const std::string& cursor) {
   if (auto ok = check_limit(limit); !ok) return tl::unexpected<Error>(ok.error());
-  std::int64_t below = std::numeric_limits<std::int64_t>::max();
-  if (!cursor.empty()) {
-    const auto number = number_from(cursor);
-    if (!number) return tl::unexpected<Error>(bad_cursor());
-    below = *number;
+  SQLite::Statement rows(db_,
+                         "SELECT t.tag, sum(m.archived = 0), sum(m.archived) "
+                         "FROM mission_tags t CROSS JOIN missions m ON m.id = t.mission_id "
+                         "WHERE t.tag > ? AND m.deleted = 0 GROUP BY t.tag ORDER BY t.tag LIMIT ?");
+  rows.bind(1, cursor);
+  rows.bind(2, limit + 1);
+  Page<TagCount> page;
+  while (rows.executeStep()) {
+    if (static_cast<int>(page.items.size()) == limit) {
+      page.next_cursor = page.items.back().tag;
+      break;
+    }
+    page.items.push_back(
+        {rows.getColumn(0).getString(), rows.getColumn(1).getInt(), rows.getColumn(2).getInt()});
   }
-  SQLite::Statement known(db_, "SELECT 1 FROM missions WHERE id = ?");
-  known.bind(1, id);
-  if (!known.executeStep()) return tl::unexpected<Error>(no_such_mission(id));
-  SQLite::Statement rows(
-      db_,
-      "SELECT revision, time_ns, author, what, plan IS NULL AND packed IS NULL, name, items, "
-      "length_m FROM revisions WHERE mission_id = ? AND revision < ? "
-      "ORDER BY revision DESC LIMIT ?");
+  return page;
+}
+
+Result<Page<RevisionSummary>> revision_page(SQLite::Statement& rows, const std::string& id,
+                                            int limit, const std::string& cursor) {
+  if (auto ok = check_limit(limit); !ok) return tl::unexpected<Error>(ok.error());
+  const auto before = below_number(cursor);
+  if (!before) return tl::unexpected<Error>(before.error());
   rows.bind(1, id);
-  rows.bind(2, below);
+  rows.bind(2, *before);
   rows.bind(3, limit + 1);
   Page<RevisionSummary> page;
   while (rows.executeStep()) {
@@ -122,6 +129,17 @@ Result<Page<RevisionSummary>> Missions::list_revisions(const std::string& id, in
                           rows.getColumn(6).getInt(), rows.getColumn(7).getDouble()});
   }
   return page;
+}
+
+Result<Page<RevisionSummary>> Missions::list_revisions(const std::string& id, int limit,
+                                                       const std::string& cursor) {
+  if (const auto known = head(id); !known) return tl::unexpected<Error>(known.error());
+  SQLite::Statement rows(
+      db_,
+      "SELECT revision, time_ns, author, what, plan IS NULL AND packed IS NULL, name, items, "
+      "length_m FROM revisions WHERE mission_id = ? AND revision < ? "
+      "ORDER BY revision DESC LIMIT ?");
+  return revision_page(rows, id, limit, cursor);
 }
 
 }  // namespace roverd::store

@@ -44,6 +44,13 @@ Error bad_cursor() {
           {{"cursor", "must be the next_cursor of an earlier answer"}}};
 }
 
+Result<std::int64_t> below_number(const std::string& cursor) {
+  if (cursor.empty()) return std::numeric_limits<std::int64_t>::max();
+  const auto number = number_from(cursor);
+  if (!number) return tl::unexpected<Error>(bad_cursor());
+  return *number;
+}
+
 Error no_such_mission(const std::string& id) {
   return {Code::NotFound, "there is no mission " + mission::clean_name(id, "\"\""), {}};
 }

@@ -40,6 +40,7 @@ class Missions {
                                        base::WallTime now);
   base::Result<StoredMission> copy(const std::string& id, const std::optional<std::string>& name,
                                    const Change& change, base::WallTime now);
+  base::Result<Page<TagCount>> list_tags(int limit, const std::string& cursor);
   /// Takes the missions that were deleted before `then` out of the file, with their revisions.
   void forget_deleted(base::WallTime then);
   base::Result<Page<RevisionSummary>> list_revisions(const std::string& id, int limit,
@@ -76,6 +77,12 @@ std::string random_id();
 /// The statement for a page: ?1, ?2 the cursor, ?3 how many, ?4 the tag, ?5 the folded name.
 std::string list_sql(const Filter& filter);
 
+/// A page of the revisions of a mission or a fence. @param rows asks for revision, time_ns, author,
+/// what, whether it is the deletion, name, items and length_m; ?1 the id, ?2 the revision that they
+/// are below, ?3 how many. Invalid limit, Malformed cursor.
+base::Result<Page<RevisionSummary>> revision_page(SQLite::Statement& rows, const std::string& id,
+                                                  int limit, const std::string& cursor);
+
 /// Invalid unless 1..kMaxPage.
 base::Result<void> check_limit(int limit);
 
@@ -87,6 +94,8 @@ struct Below {
 /// Malformed if it is not one of ours; empty: from the start.
 base::Result<Below> below(const std::string& cursor);
 base::Error bad_cursor();
+/// Of lists that go down by a number; empty: from the greatest.
+base::Result<std::int64_t> below_number(const std::string& cursor);
 base::Error no_such_mission(const std::string& id);
 
 /// Whole text as a number; empty if it is anything else.

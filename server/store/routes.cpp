@@ -1,7 +1,6 @@
 #include "store/routes.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "mission/text.hpp"
@@ -93,18 +92,11 @@ Result<RouteMap> create_route_map(SQLite::Database& db, RouteMap map, base::Wall
 Result<Page<RouteMapSummary>> list_route_maps(SQLite::Database& db, int limit,
                                               const std::string& cursor) {
   if (auto ok = check_limit(limit); !ok) return tl::unexpected<base::Error>(ok.error());
-  std::int64_t before = std::numeric_limits<std::int64_t>::max();
-  if (!cursor.empty()) {
-    const auto number = number_from(cursor);
-    if (!number) {
-      return base::fail(Code::Malformed, "the cursor is not one of ours",
-                        {{"cursor", "must be the next_cursor of an earlier answer"}});
-    }
-    before = *number;
-  }
+  const auto before = below_number(cursor);
+  if (!before) return tl::unexpected<base::Error>(before.error());
   SQLite::Statement rows(db,
                          std::string(kSummary) + "WHERE number < ? ORDER BY number DESC LIMIT ?");
-  rows.bind(1, before);
+  rows.bind(1, *before);
   rows.bind(2, limit + 1);
   Page<RouteMapSummary> page;
   std::int64_t last = 0;

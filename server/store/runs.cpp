@@ -1,6 +1,5 @@
 #include "store/runs.hpp"
 
-#include <charconv>
 #include <utility>
 
 #include "mission/json.hpp"
@@ -206,18 +205,11 @@ base::Result<void> Runs::add(std::int64_t id, const RunBatch& batch) {
 
 base::Result<Page<RunHead>> Runs::list(int limit, const std::string& cursor) {
   if (auto ok = check_limit(limit); !ok) return tl::unexpected<base::Error>(ok.error());
-  std::int64_t before = 0;
-  if (!cursor.empty()) {
-    const char* end = cursor.data() + cursor.size();
-    const auto read = std::from_chars(cursor.data(), end, before);
-    if (read.ec != std::errc{} || read.ptr != end || before < 1) {
-      return base::fail(Code::Malformed, "the cursor is not one of ours",
-                        {{"cursor", "must be the next_cursor of an earlier answer"}});
-    }
-  }
-  SQLite::Statement rows(
-      db_, std::string(kHead) + "FROM runs WHERE ?1 = 0 OR id < ?1 ORDER BY id DESC LIMIT ?2");
-  rows.bind(1, before);
+  const auto before = below_number(cursor);
+  if (!before) return tl::unexpected<base::Error>(before.error());
+  SQLite::Statement rows(db_,
+                         std::string(kHead) + "FROM runs WHERE id < ?1 ORDER BY id DESC LIMIT ?2");
+  rows.bind(1, *before);
   rows.bind(2, limit + 1);
   Page<RunHead> page;
   while (rows.executeStep()) {
@@ -339,6 +331,32 @@ std::vector<StoredParameter> Runs::parameters() {
     }
   }
   return out;
+}
+
+std::vector<StoredParameter> read_parameters(const std::filesystem::path& file) {
+  std::error_code ec;
+  if (!std::filesystem::exists(file, ec)) return {};
+  auto read = guarded([&]() -> base::Result<std::vector<StoredParameter>> {
+    SQLite::Database db(file.string(), SQLite::OPEN_READONLY, 2000);
+    return Runs(db).parameters();
+  });
+  return read ? std::move(*read) : std::vector<StoredParameter>{};
+}
+
+base::Result<RunWithTrack> read_run(const std::filesystem::path& file, std::int64_t id) {
+  std::error_code ec;
+  if (!std::filesystem::exists(file, ec)) {
+    return base::fail(Code::NotFound, "there is no database " + file.string());
+  }
+  return guarded([&]() -> base::Result<RunWithTrack> {
+    SQLite::Database db(file.string(), SQLite::OPEN_READONLY, 2000);
+    Runs runs(db);
+    auto run = runs.read(id);
+    if (!run) return tl::unexpected(run.error());
+    auto points = runs.points(id);
+    if (!points) return tl::unexpected(points.error());
+    return RunWithTrack{std::move(*run), std::move(*points)};
+  });
 }
 
 }  // namespace roverd::store

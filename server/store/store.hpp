@@ -61,6 +61,12 @@ struct Filter {
 
 inline constexpr std::size_t kMaxTags = 20;
 inline constexpr std::size_t kMaxTagLength = 60;  ///< Unicode characters
+struct TagCount {
+  std::string tag;
+  int missions = 0;  ///< that have it, neither archived nor deleted
+  int archived = 0;
+};
+
 /// What is told of a mission besides its plan. Empty: as it is.
 struct Description {
   std::optional<std::string> name;
@@ -200,6 +206,8 @@ class Store {
   /// Invalid, naming "/name" or "/tags/3".
   void describe_mission(std::string id, std::int64_t expected, Description description,
                         Change change, Reply<StoredMission> reply);
+  /// In alphabetical order (of their UTF-8 bytes); those of deleted missions alone are left out.
+  void list_tags(int limit, std::string cursor, Reply<Page<TagCount>> reply);
   /// A new mission like it, with its tags. @param name empty: "… (copy)"
   void copy_mission(std::string id, std::optional<std::string> name, Change change,
                     Reply<StoredMission> reply);

@@ -37,9 +37,10 @@ api::Profile profile() {
 }
 
 /// A receiver that has been good for a moment is good enough for these tests.
-robot::Config quick_to_trust() {
+robot::Config quick_to_trust(const Before& before) {
   robot::Config config;
   config.arming.healthy_s = 0.2;
+  if (before.config) before.config(config);
   return config;
 }
 
@@ -60,10 +61,12 @@ api::Stream stream_of(net::Hub& hub) {
 
 }  // namespace
 
-House::House(net::Limits limits, Vehicle vehicle) : robot_(quick_to_trust()) {
+House::House(net::Limits limits, Vehicle vehicle, const Before& before)
+    : robot_(quick_to_trust(before)) {
   std::string name = (std::filesystem::temp_directory_path() / "roverd-api-XXXXXX").string();
   if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
   folder_ = name;
+  if (before.data) before.data(folder_ / "roverd.db");
   auto opened = store::Store::open(folder_ / "roverd.db", [this](std::function<void()> answer) {
     boost::asio::post(io_, std::move(answer));
   });

@@ -27,11 +27,19 @@ namespace roverd::test {
 
 using Json = nlohmann::json;
 
+/// What was there before the program started.
+struct Before {
+  /// Writes what an earlier run left: the database's file, which is not open yet.
+  std::function<void(const std::filesystem::path& file)> data{};
+  std::function<void(robot::Config&)> config{};
+};
+
 class House {
  public:
   /// Bare: a vehicle without lights, and without errors to clear.
   enum class Vehicle { Whole, Bare };
-  explicit House(net::Limits limits = {}, Vehicle vehicle = Vehicle::Whole);
+  explicit House(net::Limits limits = {}, Vehicle vehicle = Vehicle::Whole,
+                 const Before& before = {});
   ~House();
   House(const House&) = delete;
   House& operator=(const House&) = delete;
@@ -113,7 +121,8 @@ class HouseTest : public ::testing::Test {
   /// A new mission of two waypoints near the robot. @return id.
   std::string make_mission(const std::string& name = "field");
 
-  explicit HouseTest(House::Vehicle vehicle = House::Vehicle::Whole) : house({}, vehicle) {}
+  explicit HouseTest(House::Vehicle vehicle = House::Vehicle::Whole, const Before& before = {})
+      : house({}, vehicle, before) {}
 
   static const Json& document();
   House house;

@@ -1,6 +1,7 @@
 // Missions over HTTP: every change checked, kept, and refused when somebody else was quicker.
 
 #include <algorithm>
+#include <future>
 
 #include "house.hpp"
 
@@ -188,10 +189,18 @@ TEST_F(MissionsApi, NamesTagsAndTheArchiveKeepOrder) {
   EXPECT_EQ(ids("name=north%20f"), Ids{north});
   EXPECT_EQ(ids("tag=mow"), Ids{north});
   EXPECT_EQ(ids("tag=mo"), Ids{});
+  EXPECT_EQ(call("PATCH", "/missions/" + yard, Json{{"tags", {"farm"}}}, if_match("*")).status,
+            200u);
   EXPECT_EQ(call("PATCH", "/missions/" + yard, Json{{"archived", true}}, if_match("*")).status,
             200u);
   EXPECT_EQ(ids(""), Ids{north});
   EXPECT_EQ(ids("archived=true"), Ids{yard});
+  const Json farm = {{"tag", "farm"}, {"missions", 1}, {"archived", 1}};
+  const Json mow = {{"tag", "mow"}, {"missions", 1}, {"archived", 0}};
+  EXPECT_EQ(call("GET", "/tags").body, Json({{"items", {farm, mow}}, {"next_cursor", nullptr}}));
+  EXPECT_EQ(call("GET", "/tags?limit=1").body["items"], Json::array({farm}));
+  EXPECT_EQ(call("GET", "/tags?limit=1&cursor=farm").body["items"], Json::array({mow}));
+  EXPECT_EQ(call("GET", "/tags?limit=0").status, 422u);
   EXPECT_EQ(call("GET", "/missions?archived=true&deleted=true").status, 422u);
   EXPECT_EQ(call("GET", "/missions/" + yard).body["archived"], true);
   // What cannot be, or is based on another state, changes nothing.
@@ -212,6 +221,39 @@ TEST_F(MissionsApi, NamesTagsAndTheArchiveKeepOrder) {
   EXPECT_EQ(call("POST", "/missions/" + north + "/copy", Json{{"name", "south"}}).body["name"],
             "south");
   EXPECT_EQ(call("POST", "/missions/nobody/copy").status, 404u);
+}
+
+/// A database in which two missions were deleted, 40 days and one day ago.
+void with_deleted_missions(const std::filesystem::path& file) {
+  const base::WallTime now = base::wall_now();
+  for (const auto& [name, days] : {std::pair{"long gone", 40}, {"just gone", 1}}) {
+    store::Options options;
+    options.clock = [then = now - std::chrono::hours(24 * days)] { return then; };
+    const auto at_once = [](const std::function<void()>& work) { work(); };
+    const auto store = store::Store::open(file, at_once, options).value();
+    mission::Plan plan;
+    plan.name = name;
+    std::promise<std::string> id;
+    store->create_mission(plan, {}, [&](const base::Result<store::StoredMission>& made) {
+      id.set_value(made.value().id);
+    });
+    store->delete_mission(id.get_future().get(), 1, {},
+                          [](const base::Result<void>& done) { ASSERT_TRUE(done); });
+  }
+}
+
+class MissionsOfBefore : public HouseTest {
+ protected:
+  MissionsOfBefore() : HouseTest(House::Vehicle::Whole, {with_deleted_missions}) {}
+};
+
+TEST_F(MissionsOfBefore, ThatWereDeletedTooLongAgoAreForgotten) {
+  const Json gone = call("GET", "/missions?deleted=true").body["items"];
+  ASSERT_EQ(gone.size(), 1u);
+  EXPECT_EQ(gone[0]["name"], "just gone");
+  const std::string id = gone[0]["id"];
+  EXPECT_EQ(call("POST", "/missions/" + id + "/restore", "", if_match("*")).status, 200u);
+  EXPECT_EQ(call("GET", "/missions/" + id).body["name"], "just gone");
 }
 
 TEST_F(MissionsApi, TwoRevisionsAreCompared) {

@@ -195,6 +195,8 @@ class ManyMissions {
           "items, length_m, search) VALUES (" +
           id + ", 1, " + ns + ", " + ns + ", " + name + ", 0, 0.0, " + name + ")");
       db->connection.exec("INSERT INTO mission_tags VALUES ('field', " + ns + ", " + id + ")");
+      db->connection.exec("INSERT INTO mission_tags VALUES ('tag " + std::to_string(i % 20) +
+                          "', " + ns + ", " + id + ")");
     }
     all.commit();
     db.reset();
@@ -208,17 +210,29 @@ class ManyMissions {
     return promise.get_future().get().value();
   }
 
+  store::Page<store::TagCount> tags() {
+    std::promise<base::Result<store::Page<store::TagCount>>> promise;
+    store_->list_tags(50, "", [&](auto r) { promise.set_value(std::move(r)); });
+    return promise.get_future().get().value();
+  }
+
  private:
   Folder folder_;
   std::unique_ptr<store::Store> store_;
 };
 
-void ListPage(benchmark::State& state, const store::Filter& filter, bool far_down) {
+ManyMissions& many_missions() {
   static ManyMissions many;
+  return many;
+}
+
+void ListPage(benchmark::State& state, const store::Filter& filter, bool far_down) {
+  ManyMissions& many = many_missions();
   std::string cursor;
   for (int i = 0; far_down && i < 150; ++i) cursor = many.page(cursor, filter).next_cursor.value();
   for (auto _ : state) {
-    if (many.page(cursor, filter).items.size() != 50) state.SkipWithError("no whole page");
+    const std::size_t found = many.page(cursor, filter).items.size();
+    if (found != (filter.name == "nowhere" ? 0 : 50)) state.SkipWithError("no whole page");
   }
 }
 BENCHMARK_CAPTURE(ListPage, First, store::Filter{}, false)
@@ -230,9 +244,20 @@ BENCHMARK_CAPTURE(ListPage, FarDown, store::Filter{}, true)
 BENCHMARK_CAPTURE(ListPage, ByName, store::Filter{store::Which::Present, "RARE"}, false)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
+BENCHMARK_CAPTURE(ListPage, ByNameOfNone, store::Filter{store::Which::Present, "nowhere"}, false)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 BENCHMARK_CAPTURE(ListPage, ByTag, store::Filter{store::Which::Present, "", "field"}, true)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
+
+/// 20,000 tags, 21 different ones.
+void ListTags(benchmark::State& state) {
+  for (auto _ : state) {
+    if (many_missions().tags().items.size() != 21) state.SkipWithError("not all tags");
+  }
+}
+BENCHMARK(ListTags)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 /// As a load does it: read and unpacked, checked, laid out as the robot's route.
 void LoadAHundredThousandItems(benchmark::State& state) {
@@ -249,7 +274,10 @@ void LoadAHundredThousandItems(benchmark::State& state) {
     if (!compiled) throw std::runtime_error(compiled.error().detail);
   }
 }
-BENCHMARK(LoadAHundredThousandItems)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(LoadAHundredThousandItems)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
 
 void ParseTenThousandItems(benchmark::State& state) {
   const std::string text = mission::plan_to_text(large_plan());

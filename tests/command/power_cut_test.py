@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""Power cuts: roverd is killed (SIGKILL) at random moments while missions are saved, and started
-again. The database opens, every acknowledged change is there, no half change is, and SQLite's
-integrity check passes."""
+"""Power cuts: roverd is killed (SIGKILL) at random moments while missions are saved and while a
+driven way is recorded, and started again. The database opens, every acknowledged change is there, no
+half change is, and SQLite's integrity check passes; of a recording at most the last second is lost."""
 
 import http.client
 import json
 import pathlib
 import random
 import shutil
+import signal
 import sqlite3
 import sys
 import tempfile
@@ -16,11 +17,14 @@ import time
 import urllib.parse
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "harness"))
-from station import BIN, ROOT, Program, Rest, check, run_cases  # noqa: E402
+from station import BIN, ROOT, Program, Rest, Station, check, run_cases, until  # noqa: E402
 
 SEED = 20260301
 SAVES = 200
 ITEMS = 200
+RECORDING_CUTS = 6
+# Points go to the disk once a second; the rest is what this machine may be late.
+LOST_S = 1.0 + 0.5
 
 
 def start(data):
@@ -45,8 +49,7 @@ def save_of(body):
 
 
 class Writer:
-    """Saves one mission after another until the server is gone. Another kind of recording (a way
-    taught while driving) is one more such class with `acknowledged` and `verify`."""
+    """Saves one mission after another until the server is gone."""
 
     def __init__(self, address, first):
         self.connection = http.client.HTTPConnection(urllib.parse.urlparse(address).netloc, timeout=20)
@@ -147,5 +150,66 @@ def saves_survive_power_cuts():
         shutil.rmtree(folder, ignore_errors=True)
 
 
+def after_a_cut(station, copy, when):
+    """Kills roverd, looks at what it left, starts it again on the same robot, which drives on."""
+    arguments = list(station.roverd.process.args)
+    station.roverd.stop(signal.SIGKILL)
+    cut = time.monotonic()
+    examine(station.scratch / "data", copy, when)
+    station.roverd = Program(*arguments)
+    station.rest = Rest(station.roverd.wait_line(r"^listening on (http://\S+)")[1])
+    until("the store answers", 20, lambda: station.rest.call("GET", "/teach")[0] == 200, 0.02)
+    return cut
+
+
+def recorded(rest):
+    """Points that are on the disk, and all of them."""
+    teach = rest.get("/teach")
+    return teach["points"] - teach["unsaved_points"], teach["points"]
+
+
+def watch(rest, seconds):
+    """When how many points were recorded, and how many were on the disk for certain."""
+    seen, kept, end = [], 0, time.monotonic() + seconds
+    while time.monotonic() < end:
+        saved, points = recorded(rest)
+        seen.append((time.monotonic(), points))
+        kept = max(kept, saved)
+        time.sleep(0.02)
+    return seen, kept
+
+
+def recordings_survive_power_cuts():
+    """a way recorded through six power cuts: each takes its last second at most, the rest is a mission"""
+    chance = random.Random(SEED)
+    with Station(seed=5) as station:
+        until("the checks are fine", 60, lambda: station.rest.get("/vehicle/checks")["ready"], 0.2)
+        # The radio drives, which the simulated robot obeys by itself: also without roverd.
+        station.control.ask({"radio": {"swb": "middle", "right_ud": 0.5}})
+        station.rest.do("POST", "/teach/start", {"name": "cut", "step_m": 0.1})
+        before = 0
+        for cut in range(1, RECORDING_CUTS + 1):
+            until("it is recorded", 60, lambda: recorded(station.rest)[1] > before + 2, 0.05)
+            seen, kept = watch(station.rest, chance.uniform(0.2, 3.0))
+            killed = after_a_cut(station, station.scratch / f"copy{cut}", f"recording, cut {cut}")
+            found = station.rest.get("/teach")
+            check(found["state"] == "interrupted" and found["name"] == "cut", f"after cut {cut}: {found}")
+            least = max([points for at, points in seen if at < killed - LOST_S], default=before)
+            check(found["points"] >= max(least, kept),
+                  f"cut {cut}: {found['points']} points, {kept} were saved, {least} are older than {LOST_S} s")
+            check(found["gaps"] <= cut - 1, f"{found['gaps']} gaps after {cut} cuts")
+            before = found["points"]
+            station.rest.do("POST", "/teach/resume")
+        until("it goes on", 60, lambda: recorded(station.rest)[1] > before + 2, 0.05)
+        points = recorded(station.rest)[1]
+        check(station.rest.get("/teach")["gaps"] >= 1, "nothing tells where the recording was cut")
+        made = station.rest.do("POST", "/teach/stop", {"tolerance_m": 0})
+        check(len(made["items"]) >= points, f"{len(made['items'])} items of {points} points")
+        after_a_cut(station, station.scratch / "copy", "after the recording")
+        check(station.rest.get("/teach")["state"] == "idle", "the recording is still there")
+        stored = station.rest.get(f"/missions/{made['id']}")
+        check(stored["items"] == made["items"], "the mission is another one after the cut")
+
+
 if __name__ == "__main__":
-    sys.exit(run_cases([saves_survive_power_cuts]))
+    sys.exit(run_cases([saves_survive_power_cuts, recordings_survive_power_cuts]))

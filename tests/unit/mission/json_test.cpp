@@ -291,6 +291,76 @@ TEST(PlanJson, RangesEndWhereTheyShould) {
   }
 }
 
+/// One member of an item (or of home, or the settings), and the values next to its range.
+struct Edge {
+  const char* item;    ///< a good one, as JSON
+  const char* member;  ///< a number of it
+  double below;
+  double above;
+};
+
+TEST(PlanJson, EveryNumberOfEveryItemHasItsRange) {
+  const char* waypoint = R"({"type":"waypoint","lat":1,"lon":2})";
+  const char* local = R"({"type":"local","east_m":1,"north_m":2})";
+  const std::vector<Edge> edges{
+      {waypoint, "lat", -90.1, 90.1},
+      {waypoint, "lon", -180.1, 180.1},
+      {waypoint, "alt_m", -1000.1, 10'000.1},
+      {waypoint, "speed_mps", 0.0, 10.1},
+      {waypoint, "radius_m", 0.0, 100.1},
+      {waypoint, "hold_s", -0.1, 86'400.1},
+      {local, "east_m", -10'000.1, 10'000.1},
+      {local, "north_m", -10'000.1, 10'000.1},
+      {local, "heading_deg", -0.1, 360.0},
+      {R"({"type":"move","forward_m":1})", "forward_m", -10'000.1, 10'000.1},
+      {R"({"type":"turn","turn_deg":1})", "turn_deg", -360.1, 360.1},
+      {R"({"type":"turn","heading_deg":1})", "heading_deg", -0.1, 360.0},
+      {R"({"type":"wait","seconds":1})", "seconds", -0.1, 86'400.1},
+      {R"({"type":"speed","speed_mps":1})", "speed_mps", 0.0, 10.1},
+      {R"({"type":"row","side":"left"})", "gap_m", 0.0, 20.1},
+      {R"({"type":"wall","side":"left","distance_m":1})", "distance_m", 0.0, 20.1},
+      {R"({"type":"landmarks","name":"x","offset_m":1})", "offset_m", -20.1, 20.1},
+      {R"({"type":"jump","item":1,"times":1})", "item", 0.0, 200'001.0},
+      {R"({"type":"jump","item":1,"times":1})", "times", -1.0, 10'001.0}};
+  for (const Edge& edge : edges) {
+    ASSERT_TRUE(item_from_json(json::parse(edge.item), "")) << edge.item;
+    for (const json& value : {json(edge.below), json(edge.above), json(1e308), json(-1e308),
+                              json(true), json("1"), json::array({1}), json::object()}) {
+      json item = json::parse(edge.item);
+      item[edge.member] = value;
+      const json plan = {{"name", "x"}, {"items", {{{"type", "wait"}, {"seconds", 1}}, item}}};
+      EXPECT_EQ(wrong_in(plan.dump()), Names{std::string("/items/1/") + edge.member})
+          << plan.dump();
+    }
+    // What no JSON number is.
+    for (const char* word : {"NaN", "Infinity", "-Infinity", "nan", "1e", "0x1", "01", "+1"}) {
+      std::string text = edge.item;
+      text.pop_back();
+      const std::string own = std::string("\"") + edge.member + "\":";
+      const std::size_t at = text.find(own);
+      if (at != std::string::npos) text.erase(at - 1, text.find_first_of(",}", at) - at + 1);
+      text = R"({"name":"x","items":[)" + text + "," + own + word + "}]}";
+      const auto plan = plan_from_text(text);
+      ASSERT_FALSE(plan) << text;
+      EXPECT_EQ(plan.error().code, Code::Malformed) << text;
+      EXPECT_TRUE(plan.error().fields.at(0).pointer.starts_with("byte ")) << text;
+    }
+  }
+  const auto wrong_beside = [](const char* group, const char* member, double value) {
+    json plan = {{"name", "x"}, {"items", json::array()}, {"home", {{"lat", 1}, {"lon", 2}}}};
+    plan[group][member] = value;
+    return wrong_in(plan.dump());
+  };
+  for (const double value : {-1e308, 1e308}) {
+    for (const char* member : {"lat", "lon", "alt_m"}) {
+      EXPECT_EQ(wrong_beside("home", member, value), Names{std::string("/home/") + member});
+    }
+    for (const char* member : {"speed_mps", "times"}) {
+      EXPECT_EQ(wrong_beside("settings", member, value), Names{std::string("/settings/") + member});
+    }
+  }
+}
+
 TEST(PlanJson, NamesAreTextThatPeopleCanRead) {
   Plan plan;
   const auto problem = [&](std::string name) {

@@ -212,21 +212,90 @@ TEST(Xml, BombsEntitiesAndDepthAreRefused) {
   EXPECT_EQ(refusal("<gpx><name>\xff\xfe</name></gpx>"), "line 1: not well-formed (invalid token)");
 }
 
-TEST(GeoJson, FencesThatSayTheyAreAreTakenAndWritten) {
+TEST(Fences, ThatSayTheyAreAreTakenAndWritten) {
   Plan plan;
   plan.name = "field";
   for (int i = 0; i < 3; ++i) plan.items.emplace_back(waypoint_at(58.0 + 0.001 * i, 26.0));
   const Fence fence{
       "field",
-      {{AreaKind::Inclusion, FencePolygon{{{58.0, 26.0}, {58.0, 26.01}, {58.01, 26.01}}}},
+      {{AreaKind::Inclusion, FencePolygon{{{58.0, 26.0}, {58.0, 26.01}, {58.01, 26.010000001}}}},
        {AreaKind::Exclusion, FenceCircle{{58.0, 26.001}, 12.5}}},
       {{{58.001, 26.002}, 15.0}, {{58.0, 26.0}, std::nullopt}}};
+  for (const Format format : {Format::GeoJson, Format::Kml, Format::Kmz}) {
+    SCOPED_TRACE(to_string(format));
+    const ExportedFile out = export_file(plan, format, &fence);
+    const auto file = import_file(out.content, std::nullopt);
 
-  const auto file = import_file(export_file(plan, Format::GeoJson, &fence).content, std::nullopt);
+    ASSERT_TRUE(file) << file.error().detail;
+    EXPECT_EQ(losses(out.rows), "");
+    EXPECT_EQ(losses(file->rows), "");
+    EXPECT_EQ(file->plan.items, plan.items);
+    EXPECT_EQ(file->fence, fence);
 
+    // A file may hold a fence alone.
+    const auto alone =
+        import_file(export_file({"field", {}, {}, {}}, format, &fence).content, std::nullopt);
+    ASSERT_TRUE(alone) << alone.error().detail;
+    EXPECT_TRUE(alone->plan.items.empty());
+    EXPECT_EQ(alone->fence, fence);
+  }
+  EXPECT_EQ(losses(export_file(plan, Format::Gpx, &fence).rows),
+            " fence: this format has no place for fences\n");
+}
+
+TEST(Kml, AFenceMayBeSaidAfterItsShapeAndByASchema) {
+  const auto file = import_file(
+      "<kml><Document><ExtendedData><Data name=\"fence\"><value>exclusion</value></Data>"
+      "</ExtendedData>\n"
+      "<Placemark><Point><coordinates>26,58</coordinates></Point></Placemark>\n"
+      "<Placemark><Polygon><outerBoundaryIs><LinearRing><coordinates>0,0,7 0.001,0,7 0,0.001,7 "
+      "0,0,7</coordinates></LinearRing></outerBoundaryIs></Polygon>\n"
+      "<ExtendedData><SchemaData><SimpleData name=\"fence\"> inclusion\n</SimpleData>"
+      "</SchemaData></ExtendedData></Placemark></Document></kml>",
+      std::nullopt);
   ASSERT_TRUE(file) << file.error().detail;
-  EXPECT_EQ(file->plan.items, plan.items);
-  EXPECT_EQ(file->fence, fence);
+  EXPECT_EQ(file->plan.items.size(), 1u);  // words of the document are nobody's
+  ASSERT_TRUE(file->fence);
+  const std::vector<LatLon> corners{{0.0, 0.0}, {0.0, 0.001}, {0.001, 0.0}};
+  ASSERT_EQ(file->fence->areas.size(), 1u);
+  EXPECT_EQ(file->fence->areas[0], (FenceArea{AreaKind::Inclusion, FencePolygon{corners}}));
+}
+
+TEST(Kml, AFenceThatCannotBeIsRefusedByItsLine) {
+  using Words = std::vector<std::pair<std::string, std::string>>;
+  const auto refused = [](const Words& words, const std::string& shape) {
+    std::string text = "<kml>\n<Placemark><ExtendedData>";
+    for (const auto& [word, value] : words) {
+      text += "<Data name=\"" + word + "\"><value>" + value + "</value></Data>";
+    }
+    return refusal(text + "</ExtendedData>\n" + shape + "</Placemark></kml>");
+  };
+  const auto polygon = [](const std::string& coordinates, const std::string& more = "") {
+    return "<Polygon><outerBoundaryIs><LinearRing><coordinates>" + coordinates +
+           "</coordinates></LinearRing></outerBoundaryIs>" + more + "</Polygon>";
+  };
+  const std::string ring = "0,0 0.001,0 0,0.001 0,0";
+  const std::string point = "<Point><coordinates>0,0</coordinates></Point>";
+  const std::string hole = "<innerBoundaryIs><LinearRing><coordinates>" + ring +
+                           "</coordinates></LinearRing></innerBoundaryIs>";
+  EXPECT_TRUE(refused({{"fence", "exclusion"}}, polygon("0,0 0.001,0.001 0.001,0 0,0.001 0,0"))
+                  .starts_with("line 3: "));
+  EXPECT_EQ(refused({{"fence", "both"}}, polygon(ring)),
+            "line 3: must have \"inclusion\" or \"exclusion\" as its property fence");
+  EXPECT_EQ(refused({{"fence", "inclusion"}}, polygon(ring, hole)),
+            "line 3: must have no holes: say them as exclusions");
+  EXPECT_EQ(refused({{"fence", "inclusion"}}, polygon("0,0 1,x 2,2")),
+            "line 3, corner 2: must be longitude, latitude and perhaps a height");
+  EXPECT_EQ(refused({{"fence", "inclusion"}}, "<Polygon/>"), "line 3: must be a list of rings");
+  for (const char* radius : {"-1", "0", "nan", "1e308", "wide"}) {
+    EXPECT_TRUE(
+        refused({{"fence", "inclusion"}, {"radius_m", radius}}, point).starts_with("line 3: "))
+        << radius;
+  }
+  EXPECT_EQ(refused({{"fence", "inclusion"}}, point),
+            "line 3: must be a Polygon, or a Point with radius_m, to be a fence");
+  EXPECT_EQ(refused({{"rally", "true"}}, polygon(ring)),
+            "line 3: must be a Point to be a rally point");
 }
 
 TEST(GeoJson, AFenceThatCannotBeIsRefusedAndAnAreaWithoutItsWordLeftOut) {

@@ -57,6 +57,44 @@ TEST(Order, TagsAreARevisionLikeAnyOther) {
   EXPECT_EQ(names(list(*store, 10, "", {Which::Present, "", "mow"})), Names{"renamed"});
 }
 
+TEST(Order, TagsAreListedWithTheirNumbers) {
+  Folder folder;
+  auto store = open_store(folder.file());
+  const auto tags = [&](int limit, const std::string& cursor = "") {
+    return answer_of<Page<TagCount>>([&](auto reply) { store->list_tags(limit, cursor, reply); });
+  };
+  EXPECT_TRUE(tags(10)->items.empty());
+  const auto tagged = [&](const char* name, Names with) {
+    const std::string id = create(*store, plan_named(name))->id;
+    EXPECT_TRUE(describe(*store, id, {{}, std::move(with), {}}));
+    return id;
+  };
+  tagged("one", {"mow", "north"});
+  const std::string two = tagged("two", {"mow", "ämber"});
+  const std::string three = tagged("three", {"gone"});
+  ASSERT_TRUE(describe(*store, two, {{}, {}, true}));
+  ASSERT_TRUE(remove(*store, three, kAnyRevision));
+
+  const auto first = tags(2);
+  ASSERT_TRUE(first) << first.error().detail;
+  ASSERT_EQ(first->items.size(), 2u);
+  EXPECT_EQ(first->items[0].tag, "mow");
+  EXPECT_EQ(first->items[0].missions, 1);
+  EXPECT_EQ(first->items[0].archived, 1);
+  EXPECT_EQ(first->items[1].tag, "north");
+  ASSERT_TRUE(first->next_cursor);
+  const auto rest = tags(2, *first->next_cursor);
+  ASSERT_EQ(rest->items.size(), 1u);
+  EXPECT_EQ(rest->items[0].tag, "ämber");
+  EXPECT_EQ(rest->items[0].missions, 0);
+  EXPECT_EQ(rest->items[0].archived, 1);
+  EXPECT_FALSE(rest->next_cursor);
+  EXPECT_EQ(tags(0).error().code, base::Code::Invalid);
+  // It comes back with its mission.
+  ASSERT_TRUE(restore(*store, three));
+  EXPECT_EQ(tags(10)->items[0].tag, "gone");
+}
+
 TEST(Order, TheArchiveHidesWhatIsNotNeeded) {
   Folder folder;
   auto store = open_store(folder.file());

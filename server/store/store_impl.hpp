@@ -1,0 +1,74 @@
+#pragma once
+// The store's queue and its thread, for the files that put calls into it.
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "store/database.hpp"
+#include "store/fences.hpp"
+#include "store/missions.hpp"
+#include "store/runs.hpp"
+#include "store/store.hpp"
+
+namespace roverd::store {
+
+/// Everything under `mutex` is touched by many threads, the rest by the store's thread alone.
+struct Store::Impl {
+  std::unique_ptr<Database> db;
+  Deliver deliver;
+  Options options;
+  Missions missions{db->connection};
+  Fences fences{db->connection};
+  Runs runs{db->connection};
+
+  std::mutex mutex;  // leaf
+  std::condition_variable news;
+  std::deque<std::function<void()>> jobs;
+  std::vector<base::Event> events;
+  bool closing = false;
+  std::atomic<std::uint64_t> lost_events{0};
+  std::thread thread{};
+
+  Impl(std::unique_ptr<Database> database, Deliver deliver_, Options options_);
+  ~Impl();
+  /// What was deleted too long ago. If that fails it stays until the next time.
+  void forget();
+  void close_runs();
+  void run();
+  void write(const std::vector<base::Event>& list);
+
+  template <class T>
+  void answer(Reply<T> reply, base::Result<T> result) {
+    // Shared, because std::function wants copies and a plan may be large.
+    auto kept = std::make_shared<base::Result<T>>(std::move(result));
+    deliver([reply = std::move(reply), kept = std::move(kept)] { reply(std::move(*kept)); });
+  }
+
+  /// Queues `work` (called as work() on the store's thread, gives base::Result<T>).
+  template <class T, class Work>
+  void ask(Reply<T> reply, Work work) {
+    {
+      std::lock_guard lock(mutex);
+      if (jobs.size() < options.queue) {
+        jobs.push_back([this, reply = std::move(reply), work = std::move(work)]() mutable {
+          answer(std::move(reply), guarded([&]() -> base::Result<T> { return work(); }));
+        });
+        news.notify_one();
+        return;
+      }
+    }
+    answer<T>(std::move(reply), base::fail(base::Code::Unavailable,
+                                           "the store is busy: its queue of " +
+                                               std::to_string(options.queue) + " calls is full"));
+  }
+};
+
+}  // namespace roverd::store
