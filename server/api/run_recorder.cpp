@@ -164,7 +164,7 @@ void RunRecorder::send() {
                     });
 }
 
-/// Where the mission stands: at once when the item or the state changes, else every 2 s.
+/// Where the mission stands: at once when the item or the state changes, else every second.
 void RunRecorder::keep_place(const base::Snapshot& s) {
   const base::MissionProgress& m = s.mission;
   if (!in_hand(m.state) || !m.place) {
