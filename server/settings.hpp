@@ -34,13 +34,11 @@ void fields(V& v, ServerSettings& p) {
   v("log_level", p.log_level, "debug, info, warning or error");
 }
 
-/// What a person must know of the vehicle; served as GET /vehicle/capabilities. What limits its
-/// motion stands in the same section [vehicle]: nav::VehicleParams.
+/// What a person must know of the vehicle; served as GET /vehicle/capabilities. Its size and
+/// what limits its motion stand in the same section [vehicle]: nav::VehicleParams.
 struct VehicleSettings {
   std::string name = "bunker";
   std::string title = "AgileX Bunker";
-  double length_m = 1.023;
-  double width_m = 0.778;
   double height_m = 0.4;
   double mass_kg = 150.0;
   double max_climb_deg = 30.0;
@@ -53,8 +51,6 @@ template <class V>
 void fields(V& v, VehicleSettings& p) {
   v("name", p.name, "short name, as in --vehicle");
   v("title", p.title, "name for people");
-  v("length_m", p.length_m, 0.1, 10.0, "over everything");
-  v("width_m", p.width_m, 0.1, 5.0, "over everything");
   v("height_m", p.height_m, 0.05, 5.0, "over everything");
   v("mass_kg", p.mass_kg, 0.5, 10'000.0, "unladen");
   v("max_climb_deg", p.max_climb_deg, 1.0, 60.0, "missions steeper than this are not loaded");

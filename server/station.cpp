@@ -56,7 +56,7 @@ mission::VehicleLimits limits_of(const Settings& s) {
   mission::VehicleLimits limits;
   limits.max_speed_mps = std::min(v.max_speed_mps, s.robot.speed.max_mps);
   limits.default_speed_mps = std::min(s.robot.speed.default_mps, limits.max_speed_mps);
-  limits.width_m = s.vehicle.width_m;
+  limits.width_m = s.robot.vehicle.width_m;
   limits.max_climb_deg = s.vehicle.max_climb_deg;
   limits.yaw_rate_radps = s.robot.speed.max_yaw_rate_radps;
   if (v.steered()) {
@@ -78,8 +78,8 @@ api::Profile profile_of(const Settings& s, const DriverBay& bay) {
   profile.name = s.vehicle.name;
   profile.title = s.vehicle.title;
   profile.kinematics = s.robot.vehicle.kinematics;
-  profile.length_m = s.vehicle.length_m;
-  profile.width_m = s.vehicle.width_m;
+  profile.length_m = s.robot.vehicle.length_m;
+  profile.width_m = s.robot.vehicle.width_m;
   profile.mass_kg = s.vehicle.mass_kg;
   profile.max_speed_mps = std::min(s.robot.vehicle.max_speed_mps, s.robot.speed.max_mps);
   profile.max_yaw_rate_radps = s.robot.speed.max_yaw_rate_radps;

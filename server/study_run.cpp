@@ -136,7 +136,7 @@ double time_limit_s(const nav::Path& path) {
 }
 
 /// Half of the ground's width that the footprint needs across the way.
-double swept_half_width_m(const std::vector<nav::Matched>& all, const VehicleSettings& v) {
+double swept_half_width_m(const std::vector<nav::Matched>& all, const nav::VehicleParams& v) {
   double widest = 0.0;
   for (const nav::Matched& m : all) {
     widest = std::max(widest, std::abs(m.lateral_m) +
@@ -147,7 +147,7 @@ double swept_half_width_m(const std::vector<nav::Matched>& all, const VehicleSet
 }
 
 void judge(Run& run, const Recorder& seen, const robot::CompiledMission& mission,
-           const VehicleSettings& vehicle) {
+           const nav::VehicleParams& vehicle) {
   const nav::Course& course = mission.route.forth;
   std::vector<base::EnuPoint> vertices;
   for (const nav::RouteNode& n : course.nodes) vertices.push_back(n.at);
@@ -195,7 +195,7 @@ Result<Run> run_one(const Setup& setup, const Task& task) {
                       ? "not there after " + std::to_string(std::lround(limit_s)) + " s"
                       : std::string(base::to_string(state)) + ": " + reason;
   }
-  judge(run, seen, **compiled, prepared->settings.vehicle);
+  judge(run, seen, **compiled, prepared->settings.robot.vehicle);
   return run;
 }
 

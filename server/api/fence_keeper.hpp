@@ -22,10 +22,11 @@ class FenceKeeper {
     due_ = true;
     lay();
   }
-  /// Every sample: lays it out when the robot's map has begun, or there was no room before.
+  /// Every sample: lays it out when the robot's map has begun, when a mission was loaded at the
+  /// same moment and neither was compared with the other, or when there was no room before.
   void look(const base::Snapshot& s) {
     const std::uint32_t frame = s.frame ? s.frame->id() : 0;
-    if (fence_ && frame != frame_) due_ = true;
+    if (fence_ && (frame != frame_ || (s.fence && !s.fence->compared))) due_ = true;
     frame_ = frame;
     if (due_) lay();
   }

@@ -70,7 +70,8 @@ void RunRecorder::begin(const base::Snapshot& s) {
   open_ = true;
   id_.reset();
   sending_ = true;  // until the store has told the run's number
-  batch_ = {};
+  batch_.points.clear();
+  if (std::exchange(batch_.outcome, std::nullopt)) batch_.events.clear();
   lap_ = 1;
   mission_id_ = s.mission.mission_id;
   begun_ = flushed_ = s.now;
@@ -125,6 +126,9 @@ void RunRecorder::sample(const base::Snapshot& s) {
 }
 
 void RunRecorder::take(const base::Event& event) {
+  // The event that a mission begins comes before the snapshot in which it runs.
+  const bool begins = event.kind == "mission_started" || event.kind == "mission_resumed";
+  if (!open_ && begins && !batch_.outcome) batch_.events.assign(1, event);
   if (!open_ || batch_.events.size() >= kMost) return;
   if (event.kind == "mission_lap") ++lap_;
   batch_.events.push_back(event);
@@ -164,7 +168,7 @@ void RunRecorder::send() {
                     });
 }
 
-/// Where the mission stands: at once when the item or the state changes, else every 2 s.
+/// Where the mission stands: at once when the item or the state changes, else every second.
 void RunRecorder::keep_place(const base::Snapshot& s) {
   const base::MissionProgress& m = s.mission;
   if (!in_hand(m.state) || !m.place) {

@@ -6,8 +6,8 @@
 //   Idle ──mission runs──▶ Recording ──pause──▶ Resting ──runs again──▶ Recording
 //                              └──finished, stopped, another mission──▶ Idle
 //
-// Points come at 5 Hz and go to the store every 2 s, so a power cut loses at most these. While the
-// store is busy they wait, at most kMost of them; then the oldest go, and that is counted.
+// Points come at 5 Hz and go to the store every second, so a power cut loses at most these. While
+// the store is busy they wait, at most kMost of them; then the oldest go, and that is counted.
 
 #include <cstdint>
 #include <functional>
@@ -25,7 +25,7 @@ namespace roverd::api {
 class RunRecorder {
  public:
   static constexpr base::Duration kEvery = std::chrono::milliseconds(200);
-  static constexpr base::Duration kFlush = std::chrono::seconds(2);
+  static constexpr base::Duration kFlush = std::chrono::seconds(1);
   static constexpr std::size_t kMost = 3000;
 
   RunRecorder(robot::Robot& robot, store::Store& store, std::string vehicle)

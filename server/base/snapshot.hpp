@@ -72,6 +72,8 @@ struct MissionPlace {
   double wait_s = 0.0;          ///< left of a wait
   double left = 0.0;            ///< left of a move, m, or of a turn, rad; 0: all of it
   std::vector<int> jumps_left;  ///< of each jump; −1: not counted yet
+  int laps = 0;                 ///< driven of a mission that repeats
+  bool driving = false;         ///< it was under way: the robot may have gone on a little from here
   friend bool operator==(const MissionPlace&, const MissionPlace&) = default;
 };
 
@@ -114,6 +116,7 @@ struct FenceState {
   std::string name;
   bool inside = true;
   std::optional<double> distance_m;  ///< to its nearest limit; negative outside; empty: no limit
+  bool compared = true;  ///< with the loaded mission; false: both came at the same moment
 };
 
 /// Something that prevents or limits motion now.

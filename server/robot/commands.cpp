@@ -21,19 +21,34 @@ bool is_stop(const Command& c) noexcept {
          std::holds_alternative<PauseMission>(c) || std::holds_alternative<StopMission>(c);
 }
 
+bool carries_much(const Command& c) noexcept {
+  return std::holds_alternative<LoadMission>(c) || std::holds_alternative<ReviseMission>(c) ||
+         std::holds_alternative<ResumeAt>(c) || std::holds_alternative<SetFence>(c);
+}
+
 }  // namespace
+
+/// To free ten thousand items takes longer than a tick may: whoever takes the answer does it.
+void Robot::Impl::retire(std::shared_ptr<const void> old) {
+  if (old) retired = std::move(old);
+}
 
 void Robot::Impl::take_commands() {
   command_batch.clear();
   if (outbox.full()) return;
   commands.try_take(command_batch);
   for (PendingCommand& pending : command_batch) {
-    if (now > pending.not_after && !is_stop(pending.command)) {
-      outbox.reply(std::move(pending.reply),
-                   base::fail(Code::Late, "the command arrived too late and was not carried out"));
-      continue;
+    base::Result<void> result =
+        base::fail(Code::Late, "the command arrived too late and was not carried out");
+    if (now <= pending.not_after || is_stop(pending.command)) {
+      result = std::visit([this](const auto& c) { return handle(c); }, pending.command);
     }
-    auto result = std::visit([this](const auto& c) { return handle(c); }, pending.command);
+    if (carries_much(pending.command)) {
+      pending.reply = [reply = std::move(pending.reply), old = std::exchange(retired, nullptr),
+                       command = std::move(pending.command)](base::Result<void> r) {
+        if (reply) reply(std::move(r));
+      };
+    }
     outbox.reply(std::move(pending.reply), std::move(result));
   }
   command_batch.clear();
@@ -65,7 +80,7 @@ base::Result<void> Robot::Impl::handle(const Arm&) {
 }
 
 base::Result<void> Robot::Impl::handle(const Disarm&) {
-  disarm("by the operator");
+  disarm(asker);
   return {};
 }
 
@@ -153,7 +168,7 @@ base::Result<void> Robot::Impl::handle(const PauseMission&) {
     return base::fail(Code::Conflict,
                       "no mission runs: it is " + std::string(base::to_string(executor.state())));
   }
-  hold("paused by the operator");
+  hold(std::string("paused ") + asker);
   event(Severity::Info, "mission_paused", "mission paused");
   return {};
 }
@@ -168,9 +183,9 @@ base::Result<void> Robot::Impl::handle(const StopMission&) {
     return base::fail(Code::Conflict,
                       "there is nothing to stop: the mission is " + std::string(to_string(s)));
   }
-  executor.stop("stopped by the operator");
+  executor.stop(std::string("stopped ") + asker);
   if (mode == Mode::Auto) set_mode(Mode::Hold, "mission stopped");
-  event(Severity::Info, "mission_aborted", "mission stopped by the operator");
+  event(Severity::Info, "mission_aborted", std::string("mission stopped ") + asker);
   return {};
 }
 
@@ -220,7 +235,7 @@ base::Result<void> Robot::Impl::handle(const LoadMission& c) {
 }
 
 void Robot::Impl::adopt(const LoadMission& c) {
-  mission = c.mission;
+  retire(std::exchange(mission, c.mission));
   mission_unpublished = true;
   executor.load(std::shared_ptr<const nav::Route>(mission, &mission->route));
   if (mode == Mode::Auto) set_mode(Mode::Hold, "another mission was loaded");
@@ -263,7 +278,7 @@ base::Result<void> Robot::Impl::handle(const ReviseMission& c) {
     return base::fail(Code::Conflict, "the robot's map began meanwhile: try once more");
   }
   const bool was_loaded = mission != nullptr;
-  const auto before = std::exchange(mission, c.mission);  // the old route is left below
+  retire(std::exchange(mission, c.mission));  // the old route is left below
   mission_unpublished = true;
   if (!was_loaded && mission && mission->copy.plan.home) {
     home = mission->copy.plan.home->at;

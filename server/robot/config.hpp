@@ -94,7 +94,7 @@ void fields(V& v, ArmingParams& p) {
 
 /// Keeping inside the fence. Section [robot.fence].
 struct FenceParams {
-  double margin_m = 0.5;
+  double margin_m = 0.1;
   double react_s = 0.4;
   double decel_mps2 = 0.5;
 };
@@ -102,7 +102,7 @@ struct FenceParams {
 template <class V>
 void fields(V& v, FenceParams& p) {
   v("margin_m", p.margin_m, 0.0, 20.0,
-    "the robot stops so far inside the fence; the position's uncertainty comes on top");
+    "no part of the vehicle comes nearer to the fence; the position's uncertainty comes on top");
   v("react_s", p.react_s, 0.1, 3.0, "from a command to standing, beside the braking itself");
   v("decel_mps2", p.decel_mps2, 0.05, 5.0, "braking that can be relied on");
 }
@@ -121,6 +121,13 @@ struct Config {
   ArmingParams arming;
   RadioParams radio;
   BatteryParams battery;
+
+  /// What the body's origin keeps to, so that no part of the body comes nearer than the margin.
+  FenceParams kept_fence() const {
+    FenceParams p = fence;
+    p.margin_m += vehicle.reach_m();
+    return p;
+  }
 
   /// What following a path needs; the vehicle goes no faster than it can.
   nav::PathParams path() const {

@@ -1,4 +1,4 @@
-// One tick of the modes other than AUTO and MANUAL, and the fence that has the last word on all.
+// One tick of the modes other than AUTO and MANUAL.
 
 #include <algorithm>
 #include <cmath>
@@ -196,49 +196,6 @@ void Robot::Impl::lay_crumbs() {
               [this](base::EnuPoint a, base::EnuPoint b) {
                 return !fence || !fence->limits.crosses(a, b);
               });
-}
-
-base::FenceState Robot::Impl::fence_state() const {
-  base::FenceState s;
-  s.name = fence->fence->name;
-  const bool laid = estimator.frame() && estimator.frame()->id() == fence->frame_id;
-  if (!laid || !pose) return s;
-  const double clear_m = fence->limits.clearance_m(pose->at);
-  s.inside = clear_m > 0.0;
-  if (std::isfinite(clear_m)) s.distance_m = clear_m;
-  return s;
-}
-
-/// The last word: what would not stop inside the fence does not leave.
-base::DriveCommand Robot::Impl::keep_inside(base::DriveCommand command) {
-  fence_stops = false;
-  if (!fence || !pose || command.twist.linear_mps == 0.0) return command;
-  const bool laid = estimator.frame() && estimator.frame()->id() == fence->frame_id;
-  base::BodyTwist twist = command.twist;
-  const double driven = pose->speed_mps.value_or(0.0);
-  if (driven * twist.linear_mps > 0.0 && std::abs(driven) > std::abs(twist.linear_mps)) {
-    twist.linear_mps = driven;
-  }
-  const bool by_hand = !by_itself();
-  if (laid ? may_move(fence->limits, *pose, twist, by_hand, config.fence) : by_hand) {
-    fence_told = false;
-    return command;
-  }
-  fence_stops = true;
-  const std::string why = laid ? "the fence is reached: only the way back inside is open"
-                               : "the fence is not laid out in the robot's map";
-  assessment.conditions.push_back({"fence", why});
-  if (!fence_told) event(Severity::Warning, "fence", why);
-  fence_told = true;
-  speed_reason = "fence";
-  if (!by_hand) {
-    const bool mission_ran = mode == Mode::Auto;
-    hold(why);
-    if (mission_ran) event(Severity::Warning, "mission_paused", why);
-    driver = Driver::None;
-  }
-  command.twist = {};
-  return command;
 }
 
 }  // namespace roverd::robot

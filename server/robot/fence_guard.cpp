@@ -35,29 +35,41 @@ std::optional<int> first_outside(const nav::Course& course, const mission::Compi
   return std::nullopt;
 }
 
+/// The straight ways that are not on the path: of jumps, and to the first waypoint once more.
+std::string link_outside(const nav::Route& route, const mission::CompiledFence& limits,
+                         double margin_m) {
+  const nav::Course& course = route.forth;
+  const auto go_from = [&course](std::size_t step) {
+    while (step < course.steps.size() && course.steps[step].kind != nav::StepKind::Go) ++step;
+    return step;
+  };
+  std::optional<base::EnuPoint> before;
+  for (const nav::RouteStep& step : course.steps) {
+    if (step.kind == nav::StepKind::Go) before = course.nodes[step.node].at;
+    if (step.kind == nav::StepKind::Move || step.kind == nav::StepKind::Home) before.reset();
+    if (step.kind != nav::StepKind::Jump || !before) continue;
+    const std::size_t to = go_from(step.target);
+    if (to == course.steps.size()) continue;
+    if (limits.clearance_m(*before, course.nodes[course.steps[to].node].at) < margin_m) {
+      return "the jump of item " + std::to_string(step.item) + " leaves the fence";
+    }
+  }
+  const bool again = route.at_end == mission::AtEnd::Repeat && route.times != 1;
+  if (!again || course.nodes.empty()) return {};
+  if (limits.clearance_m(course.nodes.back().at, course.nodes.front().at) < margin_m) {
+    return "the way back to the first item leaves the fence";
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string route_objection(const nav::Route& route, const mission::CompiledFence& limits,
-                            std::optional<base::EnuPoint> home, double margin_m) {
+                            double margin_m) {
   if (limits.empty()) return {};
   if (const auto item = first_outside(route.forth, limits, margin_m)) return item_text(*item);
   if (const auto item = first_outside(route.back, limits, margin_m)) return item_text(*item);
-  if (!home) return {};
-  const auto& steps = route.forth.steps;
-  std::optional<base::EnuPoint> before;
-  for (const nav::RouteStep& step : steps) {
-    if (step.kind == nav::StepKind::Go) before = route.forth.nodes[step.node].at;
-    if (step.kind != nav::StepKind::Home || !before) continue;
-    if (limits.clearance_m(*before, *home) < margin_m) {
-      return "the way home of item " + std::to_string(step.item) + " leaves the fence";
-    }
-    before = *home;
-  }
-  const bool returns = route.at_end == mission::AtEnd::Return && before.has_value();
-  if (returns && limits.clearance_m(*before, *home) < margin_m) {
-    return "the way home after the last item leaves the fence";
-  }
-  return {};
+  return link_outside(route, limits, margin_m);
 }
 
 bool may_drive(const mission::CompiledFence& limits, base::EnuPoint from, base::EnuPoint to,

@@ -4,7 +4,8 @@
 //        margin + σ         The robot acts on the place where it would stop, not where it is:
 //      │◀────▶│             p + v·t_react + v²/2a. Beyond the margin it stops; what leads farther
 //   ───┤ ·····│◀──── p ▶    inside stays allowed, by hand also from outside.
-//    limit    stop
+//    limit    stop          The margin is that of the parameters beyond the body's farthest part,
+//                           however it is turned (Config::kept_fence).
 //
 // What is asked ahead (a mission, a goal, the way home) is looked at as a whole before it begins,
 // on the caller's thread. Source: navigation notes, section 18.
@@ -37,10 +38,11 @@ struct LaidFence {
 /// A way that is asked for must keep so much more than the margin: tracking is not exact.
 inline constexpr double kFenceAllowance_m = 0.2;
 
-/// Where a route leaves the fence, or comes nearer to its limit than the margin; names the item.
-/// Empty: nowhere. @param home the way there is looked at if the mission drives it
+/// Where a route leaves the fence, or comes nearer to its limit than the margin, jumps and laps
+/// included; names the item. Empty: nowhere. The ways home (Route::home_ends) are looked at when
+/// it starts, as home may change. Linear in the route's length: not for the control thread.
 std::string route_objection(const nav::Route& route, const mission::CompiledFence& limits,
-                            std::optional<base::EnuPoint> home, double margin_m);
+                            double margin_m);
 
 /// May the straight way be driven? It may begin nearer to the limit than the margin, inside, if it
 /// does not come nearer still.

@@ -101,6 +101,8 @@ struct Robot::Impl {
   std::shared_ptr<const CompiledMission> mission;
   bool mission_unpublished = false;
 
+  static constexpr const char* kOperator = "by the operator";
+  const char* asker = kOperator;  ///< whose command is carried out, for the events
   base::Mode mode = base::Mode::Hold;
   bool armed = false;
   bool estop = false;
@@ -138,6 +140,7 @@ struct Robot::Impl {
   Time fix_seen_since{};
   std::vector<base::Measurement> measurement_batch;
   std::vector<PendingCommand> command_batch;
+  std::shared_ptr<const void> retired;  ///< by the command that is being carried out
 
   // tick, in this order (robot.cpp, commands.cpp, radio.cpp, decide.cpp, publish.cpp)
   void begin(Time t, base::WallTime w, base::Duration lateness);
@@ -177,6 +180,7 @@ struct Robot::Impl {
   base::Result<void> may_drive_by_itself() const;
   base::Result<void> mission_inside(const nav::StartAt& at) const;
   void adopt(const LoadMission& c);
+  void retire(std::shared_ptr<const void> old);
   base::Result<void> start(const nav::StartAt& at);
   base::Result<void> resume();
 
@@ -190,7 +194,7 @@ struct Robot::Impl {
   bool within_reach(base::LatLon at) const;
   Facts facts() const;
 
-  // modes.cpp: entering and leaving
+  // modes.cpp, goals.cpp, returns.cpp: entering and leaving
   base::Result<void> guide(const nav::GuidedGoal& goal, std::string_view kind);
   base::Result<base::EnuPoint> place_of(const GoTo& c) const;
   base::Result<void> enter_guided();
@@ -199,7 +203,6 @@ struct Robot::Impl {
   base::Result<void> enter_follow();
   base::Result<void> enter_dock(const SetMode& c);
   base::Result<void> enter_sticks(Mode to);
-  base::Result<void> inside(base::EnuPoint to) const;
   std::optional<base::EnuPoint> refuge() const;
   void take_over(Mode to, const std::string& why);
   void begin_activity(std::string_view kind);
@@ -217,9 +220,14 @@ struct Robot::Impl {
   void watch_mode();
   void tell_activity();
   void lay_crumbs();
+  void use_config();
+
+  // fence_duty.cpp
+  base::Result<void> inside(base::EnuPoint to) const;
+  base::Result<void> way_home_inside() const;
+  bool compared() const noexcept;
   base::DriveCommand keep_inside(base::DriveCommand command);
   base::FenceState fence_state() const;
-  void use_config();
 
   // decide.cpp
   base::DriveCommand choose();

@@ -58,7 +58,9 @@ void Robot::Impl::act_on_radio() {
     const RadioAction& action = *key.action;
     const std::string text = std::string(key.cause) + ": " + std::string(action.meaning);
     event(Severity::Info, "radio_action", text);
+    asker = "by the radio";
     const auto done = carry_out(action);
+    asker = kOperator;
     // Arming tells its refusal itself.
     if (done || action.deed == RadioDeed::Arm) continue;
     event(Severity::Warning, refusal_of(action.deed), text + " refused: " + done.error().detail);
@@ -76,7 +78,7 @@ base::Result<void> Robot::Impl::carry_out(const RadioAction& action) {
     case RadioDeed::Arm:
       return handle(Arm{});
     case RadioDeed::Disarm:
-      disarm("by the radio");
+      disarm(asker);
       return {};
     case RadioDeed::Estop:
       latch_estop("the radio");

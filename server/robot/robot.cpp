@@ -110,11 +110,9 @@ base::Result<std::shared_ptr<const CompiledMission>> Robot::compile(MissionCopy 
   CompiledMission made{impl_->made.fetch_add(1), std::move(copy), *frame, std::move(*route)};
   const auto fence = impl_->shared_fence.get();
   if (fence && fence->frame_id == frame->id()) {
-    std::optional<base::EnuPoint> home = made.route.home;
-    if (!home && state && state->home) home = frame->to_local(*state->home);
     made.fence_id = fence->id;
-    made.fence_objection = route_objection(made.route, fence->limits, home,
-                                           config->fence.margin_m + kFenceAllowance_m);
+    made.fence_objection = route_objection(made.route, fence->limits,
+                                           config->kept_fence().margin_m + kFenceAllowance_m);
   }
   return std::make_shared<const CompiledMission>(std::move(made));
 }
@@ -134,11 +132,10 @@ std::shared_ptr<const LaidFence> Robot::lay_fence(
   }
   const auto mission = impl_->loaded.get();
   if (!mission || mission->frame.id() != laid->frame_id) return laid;
-  std::optional<base::EnuPoint> home;
-  if (state->home) home = state->frame->to_local(*state->home);
   laid->mission_id = mission->id;
-  laid->objection = route_objection(mission->route, laid->limits, home,
-                                    impl_->shared_config.get()->fence.margin_m + kFenceAllowance_m);
+  laid->objection =
+      route_objection(mission->route, laid->limits,
+                      impl_->shared_config.get()->kept_fence().margin_m + kFenceAllowance_m);
   return laid;
 }
 

@@ -118,8 +118,9 @@ void add_run_events(SQLite::Database& db, std::int64_t id, const std::vector<bas
 }
 
 Json place_json(const base::MissionPlace& p) {
-  return {{"back", p.back},     {"step", p.step}, {"standing", p.standing},    {"s_m", p.s_m},
-          {"wait_s", p.wait_s}, {"left", p.left}, {"jumps_left", p.jumps_left}};
+  return {{"back", p.back},      {"step", p.step}, {"standing", p.standing},     {"s_m", p.s_m},
+          {"wait_s", p.wait_s},  {"left", p.left}, {"jumps_left", p.jumps_left}, {"laps", p.laps},
+          {"driving", p.driving}};
 }
 
 base::MissionPlace place_of(const Json& j) {
@@ -131,6 +132,8 @@ base::MissionPlace place_of(const Json& j) {
   p.wait_s = j.value("wait_s", 0.0);
   p.left = j.value("left", 0.0);
   p.jumps_left = j.value("jumps_left", std::vector<int>{});
+  p.laps = j.value("laps", 0);
+  p.driving = j.value("driving", false);
   return p;
 }
 

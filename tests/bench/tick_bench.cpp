@@ -1,118 +1,49 @@
-// One control tick: measurements of a full bus and a receiver in, estimate, mission of 1,000 items,
-// command and snapshot out. Reports the median and the 99th percentile of single ticks.
+// One control tick: measurements of a full bus and a receiver in, estimate, mode, mission of 1,000
+// and of 10,000 items, command and snapshot out. Reports the median and the 99th percentile of
+// single ticks; for loading a mission those of the ticks that take it.
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <vector>
+#include <memory>
 
 #include <benchmark/benchmark.h>
 
-#include "base/angle.hpp"
-#include "robot/robot.hpp"
+#include "tick_field.hpp"
 
 namespace roverd::robot {
 namespace {
 
-using base::LatLon;
-
-const base::LocalFrame kFrame{9, {58.378, 26.729}};
-
-/// Lanes of 30 m, 1.5 m apart, with a waypoint every 3 m.
-mission::Plan plan_of(int items) {
-  mission::Plan plan;
-  plan.name = "bench";
-  plan.settings.speed_mps = 1.0;
-  plan.settings.at_end = mission::AtEnd::Repeat;
-  for (int i = 0; i < items; ++i) {
-    const int lane = i / 11;
-    const int at = lane % 2 == 0 ? i % 11 : 10 - i % 11;
-    mission::Waypoint w;
-    w.at = kFrame.to_global({1.5 * lane, 3.0 * at});
-    plan.items.emplace_back(w);
-  }
-  return plan;
-}
-
-/// An ideal vehicle that speaks like the drivers do: 50 Hz tracks and motion, 5 Hz GNSS.
-class Field {
+/// Times ticks and tells their percentiles.
+class Watch {
  public:
-  Robot robot{Config{}};
-  base::Time now{};
-
-  Field() {
-    robot.send = [this](const base::DriveCommand& c, base::Time) { command_ = c; };
+  explicit Watch(benchmark::State& state) : state_(state) { us_.reserve(1u << 20); }
+  ~Watch() {
+    if (us_.empty()) return;
+    state_.counters["p50_us"] = at(0.50);
+    state_.counters["p99_us"] = at(0.99);
+    state_.counters["p99.9_us"] = at(0.999);
   }
+  Watch(const Watch&) = delete;
+  Watch& operator=(const Watch&) = delete;
 
-  void sense() {
-    now += std::chrono::milliseconds(20);
-    const auto [v, w] = command_.twist;
-    at_.east_m += v * 0.02 * std::cos(yaw_);
-    at_.north_m += v * 0.02 * std::sin(yaw_);
-    yaw_ = base::wrap_rad(yaw_ + w * 0.02);
-    auto& in = robot.measurements();
-    in.put(base::WheelTravel{now, (v - w * 0.3) * 0.02, (v + w * 0.3) * 0.02});
-    in.put(base::BaseMotion{now, command_.twist});
-    base::RadioState radio;
-    radio.stamp = now;
-    radio.swb = base::Switch::Up;
-    radio.count = ++count_;
-    in.put(radio);
-    if (count_ % 5 == 0) {
-      base::BaseStatus status;
-      status.stamp = now;
-      status.vehicle_state = base::VehicleState::Normal;
-      status.control_mode = base::ControlMode::Can;
-      status.battery_v = 50.0;
-      in.put(status);
-    }
-    if (count_ % 10 != 0) return;
-    base::GnssFix fix;
-    fix.stamp = now;
-    fix.fix = base::FixType::RtkFixed;
-    fix.position = kFrame.to_global(at_);
-    fix.satellites = 20;
-    in.put(fix);
-    in.put(base::GnssVelocity{now, v * std::cos(yaw_), v * std::sin(yaw_), {}});
-    in.put(base::Heading{now, yaw_, base::HeadingSource::Compass});
-  }
-
-  void tick() { robot.tick(now, base::WallTime{now.time_since_epoch()}); }
-
-  bool ask(Command command) {
-    bool done = false;
-    robot.request(std::move(command), now + std::chrono::seconds(1),
-                  [&](base::Result<void> r) { done = r.has_value(); });
-    sense();
-    tick();
-    drain();
-    return done;
-  }
-
-  void drain() {
-    replies_.clear();
-    events_.clear();
-    robot.replies().take(replies_);
-    robot.events().take(events_);
-    for (auto& r : replies_) r.reply(std::move(r.result));
-  }
-
-  bool start(int items) {
-    for (int i = 0; i < 500; ++i) {
-      sense();
-      tick();
-    }
-    auto compiled = robot.compile({"m", 1, plan_of(items)});
-    return compiled && ask(Arm{}) && ask(LoadMission{*compiled}) && ask(StartMission{"m", 1});
+  void tick(Field& field) {
+    field.sense();
+    const auto begin = std::chrono::steady_clock::now();
+    field.tick();
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    field.drain();
+    state_.SetIterationTime(took.count());
+    us_.push_back(took.count() * 1e6);
   }
 
  private:
-  base::DriveCommand command_;
-  base::EnuPoint at_{};
-  double yaw_ = base::kPi / 2.0;
-  std::uint8_t count_ = 0;
-  std::vector<PendingReply> replies_;
-  std::vector<base::Event> events_;
+  double at(double part) {
+    const auto k = static_cast<std::size_t>(part * static_cast<double>(us_.size() - 1));
+    std::nth_element(us_.begin(), us_.begin() + static_cast<std::ptrdiff_t>(k), us_.end());
+    return us_[k];
+  }
+
+  benchmark::State& state_;
+  std::vector<double> us_;
 };
 
 void one_tick(benchmark::State& state) {
@@ -121,31 +52,114 @@ void one_tick(benchmark::State& state) {
     state.SkipWithError("the mission did not start");
     return;
   }
-  std::vector<double> us;
-  us.reserve(1u << 20);
-  for (auto _ : state) {
-    field.sense();
-    const auto begin = std::chrono::steady_clock::now();
-    field.tick();
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-    field.drain();
-    state.SetIterationTime(took.count());
-    us.push_back(took.count() * 1e6);
-  }
-  const auto at = [&us](double part) {
-    const auto k = static_cast<std::size_t>(part * static_cast<double>(us.size() - 1));
-    std::nth_element(us.begin(), us.begin() + static_cast<std::ptrdiff_t>(k), us.end());
-    return us[k];
-  };
-  state.counters["p50_us"] = at(0.50);
-  state.counters["p99_us"] = at(0.99);
-  state.counters["p99.9_us"] = at(0.999);
-  const auto snapshot = field.robot.snapshot();
-  if (snapshot->mission.state != base::ExecutionState::Running) {
+  Watch watch(state);
+  for (auto _ : state) watch.tick(field);
+  if (field.robot.snapshot()->mission.state != base::ExecutionState::Running) {
     state.SkipWithError("the mission stopped on the way");
   }
 }
 BENCHMARK(one_tick)->Arg(10)->Arg(1'000)->Arg(10'000)->UseManualTime()->MinTime(1.0);
+
+/// What the mode needs before it can begin, then the mode.
+bool enter(Field& field, base::Mode mode) {
+  SetMode wanted{mode};
+  const base::EnuPoint here = field.at();
+  if (mode == base::Mode::Rtl) {
+    field.ask(SetHome{kFrame.to_global({here.east_m > 0.0 ? -300.0 : 300.0, 40.0})});
+  }
+  if (mode == base::Mode::SmartRtl) {
+    field.ask(StartMission{"m", 1});
+    field.run(10'000);
+  }
+  if (mode == base::Mode::Dock) {
+    wanted.goal.emplace();
+    wanted.goal->at = kFrame.to_global({here.east_m > 0.0 ? -40.0 : 40.0, 5.0});
+    wanted.goal->yaw_rad = 0.3;
+  }
+  return field.ask(wanted);
+}
+
+/// 5 times a second: the target of FOLLOW walks on a circle, GUIDED gets a new heading, the sticks
+/// are held.
+void stimulate(Field& field, base::Mode mode, int tick) {
+  const double turn = 0.01 * tick / 10.0;
+  const auto soon = field.now + std::chrono::milliseconds(250);
+  if (mode == base::Mode::Follow) {
+    SetTarget target;
+    target.at = kFrame.to_global({25.0 * std::cos(turn), 25.0 * std::sin(turn)});
+    target.asked = field.now;
+    field.robot.request(target, soon, {});
+  } else if (mode == base::Mode::Guided) {
+    GoTo stream;
+    stream.yaw_rad = std::remainder(turn, 2.0 * base::kPi);
+    stream.speed_mps = 0.7;
+    field.robot.request(stream, soon, {});
+  } else if (mode == base::Mode::Acro || mode == base::Mode::Steering ||
+             mode == base::Mode::Simple || mode == base::Mode::Manual) {
+    field.robot.request(Drive{{0.6, 0.2}, true}, soon, {});
+  }
+}
+
+void tick_in_mode(benchmark::State& state) {
+  const auto mode = static_cast<base::Mode>(state.range(0));
+  state.SetLabel(std::string(base::to_string(mode)));
+  Field field;
+  if (!field.start(10'000)) {
+    state.SkipWithError("the mission did not start");
+    return;
+  }
+  field.run(1'000);
+  Watch watch(state);
+  int count = 0;
+  for (auto _ : state) {
+    if (count % 10 == 0) stimulate(field, mode, count);
+    if (field.robot.snapshot()->mode != mode && !enter(field, mode)) {
+      state.SkipWithError("the mode does not begin");
+      return;
+    }
+    ++count;
+    watch.tick(field);
+  }
+}
+BENCHMARK(tick_in_mode)
+    ->Arg(static_cast<int>(base::Mode::Manual))
+    ->Arg(static_cast<int>(base::Mode::Acro))
+    ->Arg(static_cast<int>(base::Mode::Steering))
+    ->Arg(static_cast<int>(base::Mode::Simple))
+    ->Arg(static_cast<int>(base::Mode::Hold))
+    ->Arg(static_cast<int>(base::Mode::Guided))
+    ->Arg(static_cast<int>(base::Mode::Rtl))
+    ->Arg(static_cast<int>(base::Mode::SmartRtl))
+    ->Arg(static_cast<int>(base::Mode::Follow))
+    ->Arg(static_cast<int>(base::Mode::Dock))
+    ->UseManualTime()
+    ->MinTime(0.5);
+
+/// Under a fence, two missions of 10,000 items in turn, each compiled anew: what is timed is the
+/// tick that takes one and lets the other go.
+void tick_that_loads(benchmark::State& state) {
+  Field field;
+  field.run(500);
+  auto fence = std::make_shared<mission::Fence>();
+  mission::FencePolygon all;
+  for (const base::EnuPoint p : {base::EnuPoint{-50.0, -50.0}, base::EnuPoint{3000.0, -50.0},
+                                 base::EnuPoint{3000.0, 90.0}, base::EnuPoint{-50.0, 90.0}}) {
+    all.points.push_back(kFrame.to_global(p));
+  }
+  fence->areas.push_back({mission::AreaKind::Inclusion, all});
+  field.ask(SetFence{field.robot.lay_fence(fence)});
+  Watch watch(state);
+  bool loaded = true;
+  for (auto _ : state) {
+    auto compiled = field.robot.compile({"m", 1, plan_of(10'000)});
+    field.run(5);  // as in the program, where another core compiles: the loop's caches are warm
+    field.robot.request(LoadMission{std::move(*compiled)}, field.now + std::chrono::seconds(1),
+                        [&loaded](base::Result<void> r) { loaded = loaded && r.has_value(); });
+    watch.tick(field);
+  }
+  if (!loaded) state.SkipWithError("a mission was not loaded");
+}
+BENCHMARK(tick_that_loads)->UseManualTime()->Iterations(300);
 
 void compile_a_mission(benchmark::State& state) {
   const Robot robot{Config{}};

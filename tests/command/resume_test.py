@@ -2,11 +2,17 @@
 """A mission that a killed roverd left behind goes on from its place; its runs, its changed
 parameters and the reports survive."""
 
+import csv
+import datetime
+import io
 import math
 import pathlib
+import shutil
 import signal
+import sqlite3
 import subprocess
 import sys
+import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "harness"))
 from station import BIN, ROOT, Program, Rest, Station, check, run_cases, until  # noqa: E402
@@ -54,7 +60,7 @@ def case_resume():
         rest.do("POST", "/execution/start", {"mission_id": mission, "revision": 1, **SOON})
         until("it drives to item 2", 60,
               lambda: rest.get("/execution")["current_item"] == 2, 0.1)
-        # The place is kept every 2 s: well on the way to item 2 it is kept as that.
+        # The place is kept every second: well on the way to item 2 it is kept as that.
         until("and is nearly there", 20,
               lambda: rest.get("/vehicle")["mission"]["distance_to_item_m"] < 0.6, 0.1)
         until("and its run is kept", 10, lambda: rest.get("/runs")["items"], 0.1)
@@ -79,12 +85,73 @@ def case_resume():
               lambda: [r["outcome"] for r in rest.get("/runs")["items"]] ==
               ["finished", "interrupted"], 0.2)
         report = rest.get("/runs/2/report")
-        # It rolled on past the kept place, and turned back to it: only the end tells of tracking.
-        check(report["end_m"] < 0.1, f"the report says {report}")
+        # It had rolled on past the kept place, and went on from there.
+        check(report["end_m"] < 0.1 and report["cross_track"]["max_m"] < 0.5, f"the report says {report}")
+        track = list(csv.DictReader(io.StringIO(rest.get("/runs/2/track?format=csv").decode())))
+        left = [math.hypot((float(p["lat"]) - end["lat"]) / METRE_LAT, (float(p["lon"]) - end["lon"]) /
+                           METRE_LAT * math.cos(math.radians(end["lat"]))) for p in track]
+        back = max(now - min(left[:i + 1]) for i, now in enumerate(left))
+        check(back < 0.3, f"it turned back by {back:.2f} m")
         table = subprocess.run([BIN / "roverd", "report", "--data", station.scratch / "data",
                                 "1", "2"], capture_output=True, text=True, check=False)
         check(table.returncode == 0, f"roverd report: {table.stderr}")
         check("cross-track rms" in table.stdout and "interrupted" in table.stdout, table.stdout)
+
+
+MEASURES = ("time_s", "driving_s", "driven_m", "energy_wh", "laps", "cross_track", "corner_mean_m", "corner_max_m",
+            "cut_max_m", "overshoot_max_m", "slalom_max_m", "slalom_mean_m", "heading_rms_deg", "yaw_accel_rms_dps2",
+            "jerk_rms_mps3", "end_m", "corners", "straights")
+
+
+def examine(station):
+    """A copy of the files, as the cut left them: to open them is to mend them."""
+    copy = station.scratch / "copy"
+    shutil.rmtree(copy, ignore_errors=True)
+    copy.mkdir()
+    for file in (station.scratch / "data").glob("roverd.db*"):
+        shutil.copy(file, copy)
+    database = sqlite3.connect(copy / "roverd.db")
+    verdict = database.execute("PRAGMA integrity_check").fetchall()
+    strays = database.execute("PRAGMA foreign_key_check").fetchall()
+    database.close()
+    check(verdict == [("ok",)] and not strays, f"{verdict[:3]} {strays[:3]}")
+
+
+def cut_run(station, seconds):
+    """Starts a mission, cuts the power so long after, and looks at what is left of its run."""
+    rest = station.rest
+    ready(rest)
+    mission = mission_ahead(rest, (1, 20, 30, 40))
+    rest.do("POST", "/vehicle/arm", SOON)
+    rest.do("POST", "/execution/load", {"mission_id": mission})
+    rest.do("POST", "/execution/start", {"mission_id": mission, "revision": 1, **SOON})
+    until("its run is kept", 10, lambda: rest.get("/runs")["items"] and
+          rest.get("/runs")["items"][0]["mission_id"] == mission, 0.1)
+    until("it drives", 20, lambda: position(rest)["speed_mps"] > 0.3, 0.1)
+    time.sleep(seconds)
+    cut_at = time.time()
+    station.roverd.stop(signal.SIGKILL)
+    examine(station)
+    rest = restarted(station)
+    run = rest.get("/runs")["items"][0]
+    check(run["mission_id"] == mission and run["outcome"] == "interrupted", f"the run is {run}")
+    track = list(csv.DictReader(io.StringIO(rest.get(f"/runs/{run['id']}/track?format=csv").decode())))
+    times = [datetime.datetime.fromisoformat(p["time"].replace("Z", "+00:00")).timestamp() for p in track]
+    check(cut_at - times[-1] < 2.0, f"the last {cut_at - times[-1]:.1f} s are lost")
+    check(max(b - a for a, b in zip(times, times[1:])) < 1.0, "the track has a hole")
+    report = rest.get(f"/runs/{run['id']}/report")
+    check(not [m for m in MEASURES if m not in report], f"the report says {report}")
+    check(report["driven_m"] > 0.5 and report["cross_track"]["max_m"] < 1.0, f"the report says {report}")
+    events = [e["kind"] for e in rest.get(f"/runs/{run['id']}")["events"]]
+    check("mission_started" in events, f"its events are {events}")
+    rest.do("POST", "/execution/load", {"mission_id": mission})  # what was left behind is given up
+
+
+def case_run_cut():
+    """Power cuts while a run is recorded: it is there up to the last second, and can be judged"""
+    with Station(seed=5) as station:
+        for seconds in (4.3, 7.1, 2.8):
+            cut_run(station, seconds)
 
 
 def case_report_refusals():
@@ -97,4 +164,4 @@ def case_report_refusals():
 
 
 if __name__ == "__main__":
-    sys.exit(run_cases([case_resume, case_report_refusals]))
+    sys.exit(run_cases([case_resume, case_run_cut, case_report_refusals]))

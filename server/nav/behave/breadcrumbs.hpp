@@ -10,6 +10,8 @@
 // Full: crumbs that a straight line explains go (Ramer-Douglas-Peucker, half the accuracy first,
 // coarser when that is not enough); recording never stops. A gap is a piece that was not driven as
 // it is drawn: the estimate jumped, or was too uncertain on it.
+// Not kept over a restart: they begin where the robot is armed, and so does home; what happened to
+// the robot without power nobody knows. A mission goes on after a restart without them.
 // Control thread; all memory is taken at construction.
 
 #include <cstddef>

@@ -7,6 +7,12 @@
 #include "nav/track/corner.hpp"
 
 namespace roverd::nav {
+namespace {
+
+constexpr double kOnLine_m = 0.005;
+constexpr double kJoin = 8.0;  // metres along the line for each beside it
+
+}  // namespace
 
 void Dock::use(const PathParams& path, const BehaveParams& behave, const ModeParams& modes) {
   path_ = path;
@@ -64,6 +70,20 @@ void Dock::to_gate(const Vehicle& v) {
   trip_.begin(std::move(order), v, false);
 }
 
+/// A steered vehicle keeps the heading that it arrives with: from beside the line it comes onto it
+/// first, well before the pose.
+std::optional<EnuPoint> Dock::join(const Vehicle& v) const noexcept {
+  if (!path_.vehicle.steered()) return std::nullopt;
+  const double sign = goal_.reverse ? -1.0 : 1.0;
+  const EnuPoint along{sign * std::cos(goal_.yaw_rad), sign * std::sin(goal_.yaw_rad)};
+  const EnuPoint to = goal_.at - v.at;
+  const double rest_m = to.east_m * along.east_m + to.north_m * along.north_m;
+  const double off_m = std::abs(to.east_m * along.north_m - to.north_m * along.east_m);
+  const double back_m = rest_m - std::clamp(kJoin * off_m, 0.5, 0.6 * std::max(rest_m, 1.0));
+  if (off_m < kOnLine_m || back_m < 0.5) return std::nullopt;
+  return goal_.at - EnuPoint{back_m * along.east_m, back_m * along.north_m};
+}
+
 /// Along the line through the pose, from where it stands beside it.
 void Dock::straight(const Vehicle& v) {
   Trip::Order order;
@@ -71,6 +91,12 @@ void Dock::straight(const Vehicle& v) {
   end.at = goal_.at;
   end.reverse = goal_.reverse;
   end.speed_mps = modes_.dock_mps;
+  if (const auto on = join(v)) {
+    Vertex first = end;
+    first.at = *on;
+    first.turn = mission::Turn::Through;
+    order.way.push_back(first);
+  }
   order.way.push_back(end);
   order.within_m = 0.5;
   if (!path_.vehicle.steered()) {

@@ -50,6 +50,7 @@ class Dock {
 
  private:
   EnuPoint gate() const noexcept;
+  std::optional<EnuPoint> join(const Vehicle& vehicle) const noexcept;
   double straight_m() const noexcept;
   void to_gate(const Vehicle& vehicle);
   void straight(const Vehicle& vehicle);

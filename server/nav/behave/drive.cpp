@@ -210,6 +210,11 @@ bool Executor::at_end(const Vehicle& vehicle, std::optional<EnuPoint> home) {
         return true;
       }
       drove_ = false;
+      ++laps_;
+      if (route_->times > 0 && laps_ >= route_->times) {
+        finish();
+        return true;
+      }
       notices_.push_back({Notice::Kind::Lap, 0, {}});
       if (route_->at_end == mission::AtEnd::BackAndForth) {
         turn_round();

@@ -83,7 +83,7 @@ void Executor::begin_at(std::size_t step) {
   standing_.reset();
   rejoin_.reset();
   wait_s_ = lost_s_ = stuck_s_ = 0.0;
-  returning_ = false;
+  returning_ = rolled_on_ = false;
 }
 
 base::Result<void> Executor::start(const StartAt& at, EnuPoint here, std::optional<EnuPoint> home) {
@@ -103,10 +103,11 @@ base::Result<void> Executor::start(const StartAt& at, EnuPoint here, std::option
   }
   course_ = &route_->forth;
   begin_at(step);
-  jumps_left_.assign(route_->forth.steps.size(), -1);
+  jumps_left_.assign(route_->jumps, -1);
   drove_ = false;
   interrupted_ = false;
   skipped_ = 0;
+  laps_ = 0;
   fled_.clear();
   state_ = ExecutionState::Running;
   reason_.clear();
@@ -171,6 +172,7 @@ base::Result<void> Executor::resume(EnuPoint here) {
   state_ = ExecutionState::Running;
   reason_.clear();
   interrupted_ = true;
+  catch_up(here);
   go_on(here);
   return {};
 }
@@ -246,7 +248,7 @@ void Executor::extend(std::shared_ptr<const Route> route) {
   // Backwards, what was added comes first and shifts the rest.
   move_to(fresh, back ? fresh.steps.size() - old.steps.size() : 0,
           back ? fresh.nodes.size() - old.nodes.size() : 0);
-  jumps_left_.resize(std::max(jumps_left_.size(), route->forth.steps.size()), -1);
+  jumps_left_.resize(std::max(jumps_left_.size(), route->jumps), -1);
   route_ = std::move(route);
   course_ = &fresh;
   if (at_end && !back) begin_at(at_);
@@ -286,54 +288,12 @@ void Executor::drop(std::shared_ptr<const Route> route, int item) {
   }
   route_ = std::move(route);
   course_ = back ? &route_->back : &route_->forth;
-  jumps_left_.assign(route_->forth.steps.size(), -1);
+  jumps_left_.assign(route_->jumps, -1);
   begin_at(to);
 }
 
 const RouteStep* Executor::step_now() const noexcept {
   return course_ != nullptr && at_ < course_->steps.size() ? &course_->steps[at_] : nullptr;
-}
-
-/// The rest of the mission's way; empty where it is not known yet.
-std::optional<double> Executor::way_left_m(const RouteStep& step,
-                                           std::optional<EnuPoint> here) const noexcept {
-  const Path& path = course_->path;
-  if (doing_ == Doing::Path) {
-    return path.length_m() - (tracker_.path() == &path ? tracker_.s_m() : s_m_);
-  }
-  if (doing_ == Doing::Connector) {
-    const bool tracking = tracker_.path() == &connector_;
-    const double rest_m = connector_.length_m() - (tracking ? tracker_.s_m() : 0.0);
-    if (rejoin_) return rest_m + path.length_m() - s_m_;
-    if (step.kind == StepKind::Go) return rest_m + path.length_m() - path.vertex_m[step.node];
-    return rest_m;
-  }
-  if (doing_ == Doing::Wait && standing_) return path.length_m() - path.vertex_m[*standing_];
-  if (step.kind != StepKind::Go || !here) return std::nullopt;
-  // Not on its way yet: straight to the waypoint first.
-  return base::distance_m(*here, course_->nodes[step.node].at) + path.length_m() -
-         path.vertex_m[step.node];
-}
-
-Progress Executor::progress(std::optional<EnuPoint> here) const {
-  Progress p;
-  const RouteStep* step = step_now();
-  if (step == nullptr || state_ == ExecutionState::Idle || state_ == ExecutionState::Finished) {
-    return p;
-  }
-  if (state_ != ExecutionState::Loaded) p.current_item = step->item;
-  if (step->kind == StepKind::Go) p.target = course_->nodes[step->node].at;
-  if (step->kind != StepKind::Go && doing_ == Doing::Connector) {
-    p.target = connector_.points.back().at;
-  }
-  const bool tracking = (doing_ == Doing::Path && tracker_.path() == &course_->path) ||
-                        (doing_ == Doing::Connector && tracker_.path() == &connector_);
-  if (running() && tracking) p.cross_track_m = tracker_.cross_track_m();
-  if (const auto left_m = way_left_m(*step, here)) {
-    p.distance_left_m = std::max(0.0, *left_m);
-    p.eta_s = wait_s_ + *p.distance_left_m / std::max(0.1, route_->speed_mps);
-  }
-  return p;
 }
 
 }  // namespace roverd::nav

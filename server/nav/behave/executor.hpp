@@ -53,8 +53,9 @@ struct Progress {
   std::optional<int> current_item;  ///< empty: none in hand
   std::optional<EnuPoint> target;
   std::optional<double> cross_track_m;
+  /// To the end of the mission; of this lap where it repeats for ever. Jumps are not counted.
   std::optional<double> distance_left_m;
-  std::optional<double> eta_s;
+  std::optional<double> eta_s;  ///< until then, as the speeds are planned
 };
 
 /// The step a start would begin with; steps.size() if there is none.
@@ -83,8 +84,9 @@ class Executor {
   base::Result<void> may_resume(EnuPoint here) const;
   /// Where it stands; empty: nothing is in hand.
   std::optional<base::MissionPlace> place() const;
-  /// Loads a route and is Paused at a place of it, as if it had been interrupted there. Conflict if
-  /// the place is none of this route's.
+  /// Loads a route and is Paused at a place of it, as if it had been interrupted there. Where it
+  /// was being driven, resume goes on from the nearest place ahead: the robot rolled on meanwhile.
+  /// Conflict if the place is none of this route's.
   base::Result<void> restore(std::shared_ptr<const Route> route, const base::MissionPlace& place,
                              std::string reason);
   /// Goes on with another item. @param item from 1; 0: the next one.
@@ -114,6 +116,11 @@ class Executor {
 
  private:
   enum class Doing { Nothing, Path, Connector, Wait, Turn };
+  /// Way and time, jumps not counted.
+  struct Left {
+    double m = 0.0;
+    double s = 0.0;
+  };
 
   std::optional<EnuPoint> place_to_go_on() const noexcept;
   void enter(const Vehicle& vehicle, std::optional<EnuPoint> home);
@@ -141,8 +148,10 @@ class Executor {
   bool in_hand() const noexcept;
   void move_to(const Course& fresh, std::size_t more_steps, std::size_t more_nodes);
   const RouteStep* step_now() const noexcept;
-  std::optional<double> way_left_m(const RouteStep& step,
-                                   std::optional<EnuPoint> here) const noexcept;
+  void catch_up(EnuPoint here);
+  double may_have_come_to_m() const noexcept;
+  std::optional<Left> left(const RouteStep& step, std::optional<EnuPoint> here) const noexcept;
+  Left laps_left() const noexcept;
 
   PathParams path_params_;
   BehaveParams params_;
@@ -168,6 +177,8 @@ class Executor {
   double left_ = 0.0;      ///< of a move or turn that was interrupted; 0: all of it
   double looked_s_ = 0.0;  ///< since a cut goal was looked at
   std::size_t skipped_ = 0;
+  int laps_ = 0;                  ///< driven
+  bool rolled_on_ = false;        ///< restored: it was under way when its place was kept
   std::optional<EnuPoint> home_;  ///< of the last step
   std::string fled_;              ///< why it returns before its end
   bool interrupted_ = false;

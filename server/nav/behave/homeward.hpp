@@ -11,11 +11,15 @@
 //         the crumbs that are left: those behind it were forgotten on the way.
 // Control thread.
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
 
+#include "base/angle.hpp"
 #include "nav/behave/trip.hpp"
+#include "nav/track/corner.hpp"
 
 namespace roverd::nav {
 
@@ -30,13 +34,26 @@ class Homeward {
   }
 
   /// @param way to be driven in order; the last one is home. Corners are rounded.
-  void begin(std::span<const EnuPoint> way, const Vehicle& vehicle) {
+  /// @param retrace it was driven before: a steered vehicle, which cannot turn round on it, drives
+  /// it backwards where it came forwards, and forwards where it came backwards
+  void begin(std::span<const EnuPoint> way, const Vehicle& vehicle, bool retrace) {
     Trip::Order order;
     order.way.reserve(way.size());
     const double speed_mps = std::min(path_.speed.default_mps, path_.speed.max_mps);
+    const bool may_reverse = retrace && path_.vehicle.steered();
+    EnuPoint from = vehicle.at;
+    double facing_rad = vehicle.yaw_rad;
     for (const EnuPoint& p : way) {
+      // Too near to say where the way leads.
+      const bool near = base::distance_m(from, p) < kNoDirection_m && &p != &way.back();
+      if (may_reverse && near) continue;
+      const double yaw_rad = direction_rad(from, p);
+      const bool behind =
+          std::abs(base::angle_diff_rad(facing_rad, yaw_rad)) > 0.5 * base::kPi && may_reverse;
+      facing_rad = behind ? base::wrap_rad(yaw_rad + base::kPi) : yaw_rad;
+      from = p;
       order.way.push_back(
-          {p, speed_mps, false, false, mission::Turn::Auto, path_.track.corner_deviation_m});
+          {p, speed_mps, behind, false, mission::Turn::Auto, path_.track.corner_deviation_m});
     }
     trip_.begin(std::move(order), vehicle, false);
     state_ = State::Driving;
@@ -60,6 +77,8 @@ class Homeward {
   const Trip& trip() const noexcept { return trip_; }
 
  private:
+  static constexpr double kNoDirection_m = 0.4;
+
   PathParams path_;
   Trip trip_;
   State state_ = State::Idle;

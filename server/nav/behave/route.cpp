@@ -19,6 +19,7 @@ class Layout {
     speed_mps_ = plan.settings.speed_mps.value_or(params.speed.default_mps);
     route_.speed_mps = speed_mps_;
     route_.at_end = plan.settings.at_end;
+    route_.times = std::max(0, plan.settings.times.value_or(0));
     route_.items = static_cast<int>(plan.items.size());
   }
 
@@ -43,8 +44,11 @@ class Layout {
       return base::fail(base::Code::Invalid, problems_[0].pointer + " " + problems_[0].detail,
                         problems_);
     }
+    route_.jumps = jump_items_.size();
     forth().path = path_of(forth());
     if (route_.at_end == AtEnd::BackAndForth) turn_round();
+    for (Course* course : {&route_.forth, &route_.back}) add_pauses(*course);
+    find_home_ends();
     return std::move(route_);
   }
 
@@ -208,6 +212,53 @@ class Layout {
       end = begin;
     }
     back.path = path_of(back);
+  }
+
+  double pause_s(const RouteStep& step) const {
+    const double turn_radps = params_.pivot.max_rate_radps;
+    switch (step.kind) {
+      case StepKind::Go:
+      case StepKind::Wait:
+        return step.seconds;
+      case StepKind::Move:
+        return std::abs(step.by) / std::max(0.1, params_.speed.creep_mps);
+      case StepKind::Face:
+      case StepKind::Turn:
+        return (step.yaw_rad ? base::kPi / 2.0 : std::abs(step.by)) / turn_radps;
+      case StepKind::Home:
+      case StepKind::Jump:
+      case StepKind::Act:
+        break;
+    }
+    return 0.0;
+  }
+
+  void add_pauses(Course& course) const {
+    course.pauses_s.assign(course.steps.size() + 1, 0.0);
+    for (std::size_t i = course.steps.size(); i > 0; --i) {
+      course.pauses_s[i - 1] = course.pauses_s[i] + pause_s(course.steps[i - 1]);
+    }
+  }
+
+  /// From where the mission drives home, and where to from there. After a move nobody knows.
+  void find_home_ends() {
+    std::optional<EnuPoint> before;
+    bool at_home = false;
+    for (const RouteStep& step : forth().steps) {
+      if (step.kind == StepKind::Go) {
+        before = forth().nodes[step.node].at;
+        if (at_home) route_.home_ends.push_back(*before);
+        at_home = false;
+      } else if (step.kind == StepKind::Move) {
+        before.reset();
+        at_home = false;
+      } else if (step.kind == StepKind::Home) {
+        if (before) route_.home_ends.push_back(*before);
+        before.reset();
+        at_home = true;
+      }
+    }
+    if (route_.at_end == AtEnd::Return && before) route_.home_ends.push_back(*before);
   }
 
   const mission::Plan& plan_;

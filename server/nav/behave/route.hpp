@@ -46,12 +46,18 @@ struct Course {
   std::vector<RouteNode> nodes;
   std::vector<RouteStep> steps;
   Path path;  ///< through all nodes in order; vertex i is node i
+  /// Of each step, and one more: what holds, waits, moves and turns take from it to the end, s.
+  std::vector<double> pauses_s;
 };
 
 struct Route {
   Course forth;
   Course back;  ///< empty unless at_end is back_and_forth
   mission::AtEnd at_end = mission::AtEnd::Hold;
+  int times = 0;          ///< of Repeat and BackAndForth: ways that are driven; 0: for ever
+  std::size_t jumps = 0;  ///< steps of that kind
+  /// Other ends of the straight ways to home and from it; 0: it never goes there.
+  std::vector<EnuPoint> home_ends;
   std::optional<EnuPoint> home;  ///< the mission's own; the driver of the route decides on it
   double speed_mps = 0.0;        ///< default, for ways outside of the path
   int items = 0;

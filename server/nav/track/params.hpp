@@ -1,6 +1,7 @@
 #pragma once
 // How the robot follows a path. Sections [vehicle], [nav.track], [nav.speed] and [nav.pivot].
 
+#include <cmath>
 #include <string>
 
 namespace roverd::nav {
@@ -15,8 +16,15 @@ struct VehicleParams {
   double max_speed_mps = 1.5;
   double max_steering_deg = 40.0;
   double max_steering_rate_dps = 30.0;
+  double length_m = 1.023;
+  double width_m = 0.778;
 
   bool steered() const noexcept { return kinematics == "ackermann"; }
+  /// Farthest that any part of the body is from its origin: the middle of a vehicle that turns on
+  /// the spot, the middle of the rear axle of a steered one.
+  double reach_m() const noexcept {
+    return std::hypot(0.5 * (steered() ? length_m + wheelbase_m : length_m), 0.5 * width_m);
+  }
 };
 
 template <class V>
@@ -27,6 +35,8 @@ void fields(V& v, VehicleParams& p) {
   v("max_steering_deg", p.max_steering_deg, 1.0, 80.0, "ackermann: of the middle front wheel");
   v("max_steering_rate_dps", p.max_steering_rate_dps, 1.0, 720.0,
     "ackermann: how fast that angle changes");
+  v("length_m", p.length_m, 0.1, 10.0, "over everything");
+  v("width_m", p.width_m, 0.1, 5.0, "over everything");
 }
 
 /// How the robot steers back to its path. The words of `law` (nav/track/law.hpp):

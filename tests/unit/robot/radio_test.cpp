@@ -176,6 +176,9 @@ TEST(RadioPanel, ArmsAndChoosesModesByTheSameChecksAsTheNetwork) {
   f.run(0.3);
   EXPECT_EQ(f.state()->mode, Mode::Hold);
   EXPECT_FALSE(f.moves());
+  EXPECT_EQ(f.events.back().detail, "mode HOLD: by the radio");
+  ASSERT_TRUE(f.ask(SetMode{Mode::Manual}));
+  EXPECT_EQ(f.events.back().detail, "mode MANUAL: by the operator");
   f.swc = Switch::Middle;  // on again, where it paused
   f.run(2.0);
   EXPECT_TRUE(f.moves());

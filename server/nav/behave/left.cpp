@@ -1,0 +1,104 @@
+// How much of a mission is left.
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/angle.hpp"
+#include "nav/behave/executor.hpp"
+#include "nav/track/corner.hpp"
+
+namespace roverd::nav {
+namespace {
+
+constexpr double kAhead_m = 0.2;  // to see where a way leads
+constexpr double kStands_s = 1.5;
+
+/// What turning on the spot takes between one direction and another.
+double turn_s(double from_rad, double to_rad, const PathParams& params) noexcept {
+  const double turn_rad = std::abs(base::angle_diff_rad(from_rad, to_rad));
+  const bool pivots =
+      !params.vehicle.steered() && turn_rad > base::rad_from_deg(params.pivot.angle_deg);
+  return pivots ? turn_rad / params.pivot.max_rate_radps + kStands_s : 0.0;
+}
+
+double yaw_from(const Path& path, double s_m) noexcept {
+  return direction_rad(path.at(s_m), path.at(s_m + kAhead_m));
+}
+
+double yaw_to(const Path& path, double s_m) noexcept {
+  return direction_rad(path.at(s_m - kAhead_m), path.at(s_m));
+}
+
+}  // namespace
+
+/// Laps after this one; none of a mission that repeats for ever.
+Executor::Left Executor::laps_left() const noexcept {
+  const Course& course = *course_;
+  if (route_->times <= laps_ + 1 || course.nodes.empty()) return {};
+  const double laps = route_->times - laps_ - 1;
+  Left lap{course.path.length_m(), course.path.left_s(0.0) + course.pauses_s.front()};
+  if (route_->at_end == mission::AtEnd::Repeat) {
+    const double back_m = base::distance_m(course.nodes.back().at, course.nodes.front().at);
+    lap.m += back_m;
+    lap.s += back_m / std::max(0.1, route_->speed_mps);
+    const double back_rad = direction_rad(course.nodes.back().at, course.nodes.front().at);
+    lap.s += turn_s(yaw_to(course.path, course.path.length_m()), back_rad, path_params_) +
+             turn_s(back_rad, yaw_from(course.path, 0.0), path_params_);
+  }
+  return {laps * lap.m, laps * lap.s};
+}
+
+/// Of this lap; empty where it is not known yet.
+std::optional<Executor::Left> Executor::left(const RouteStep& step,
+                                             std::optional<EnuPoint> here) const noexcept {
+  const Path& path = course_->path;
+  const auto from = [&path](double s_m) { return Left{path.length_m() - s_m, path.left_s(s_m)}; };
+  if (doing_ == Doing::Path) return from(tracker_.path() == &path ? tracker_.s_m() : s_m_);
+  if (doing_ == Doing::Connector) {
+    const double at_m = tracker_.path() == &connector_ ? tracker_.s_m() : 0.0;
+    Left all{connector_.length_m() - at_m, connector_.left_s(at_m)};
+    if (!rejoin_ && step.kind != StepKind::Go) return all;
+    const double joins_m = rejoin_ ? s_m_ : path.vertex_m[step.node];
+    const Left rest = from(joins_m);
+    all.m += rest.m;
+    all.s += rest.s;
+    if (rest.m > kAhead_m) {
+      all.s +=
+          turn_s(yaw_to(connector_, connector_.length_m()), yaw_from(path, joins_m), path_params_);
+    }
+    return all;
+  }
+  if (doing_ == Doing::Wait && standing_) return from(path.vertex_m[*standing_]);
+  if (step.kind != StepKind::Go || !here) return std::nullopt;
+  // Not on its way yet: straight to the waypoint first.
+  const double there_m = base::distance_m(*here, course_->nodes[step.node].at);
+  const Left rest = from(path.vertex_m[step.node]);
+  return Left{rest.m + there_m, rest.s + there_m / std::max(0.1, route_->speed_mps)};
+}
+
+Progress Executor::progress(std::optional<EnuPoint> here) const {
+  Progress p;
+  const RouteStep* step = step_now();
+  if (step == nullptr || state_ == base::ExecutionState::Idle ||
+      state_ == base::ExecutionState::Finished) {
+    return p;
+  }
+  if (state_ != base::ExecutionState::Loaded) p.current_item = step->item;
+  if (step->kind == StepKind::Go) p.target = course_->nodes[step->node].at;
+  if (step->kind != StepKind::Go && doing_ == Doing::Connector) {
+    p.target = connector_.points.back().at;
+  }
+  const bool tracking = (doing_ == Doing::Path && tracker_.path() == &course_->path) ||
+                        (doing_ == Doing::Connector && tracker_.path() == &connector_);
+  if (running() && tracking) p.cross_track_m = tracker_.cross_track_m();
+  if (const auto lap = left(*step, here)) {
+    const Left more = laps_left();
+    const bool waits = doing_ == Doing::Wait;
+    const double pauses_s = course_->pauses_s[at_ + (waits ? 1 : 0)] + (waits ? wait_s_ : 0.0);
+    p.distance_left_m = std::max(0.0, lap->m) + more.m;
+    p.eta_s = std::max(0.0, lap->s) + pauses_s + more.s;
+  }
+  return p;
+}
+
+}  // namespace roverd::nav

@@ -1,0 +1,179 @@
+// The modes that are told where to go: GUIDED, FOLLOW, DOCK.
+
+#include <cmath>
+
+#include "robot/impl.hpp"
+
+namespace roverd::robot {
+namespace {
+
+using base::Code;
+
+}  // namespace
+
+// ---- GUIDED ----
+
+base::Result<void> Robot::Impl::enter_guided() {
+  if (auto ok = may_drive_by_itself(); !ok) return ok;
+  if (mode == Mode::Guided) return {};
+  take_over(Mode::Guided, asker);
+  begin_activity("goto");
+  activity.state = base::ActivityState::Waiting;
+  activity.reason = "no goal yet";
+  return {};
+}
+
+base::Result<base::EnuPoint> Robot::Impl::place_of(const GoTo& c) const {
+  base::EnuPoint p;
+  if (c.at) {
+    if (!base::is_valid(*c.at)) {
+      return base::fail(Code::Invalid, "the goal is not a position on earth",
+                        {{"/lat", "or /lon out of range"}});
+    }
+    if (!within_reach(*c.at)) {
+      return base::fail(Code::Invalid, "the goal lies more than 10 km from the robot's map",
+                        {{"/lat", "or /lon lies more than 10 km from the robot's map"}});
+    }
+    p = estimator.frame()->to_local(*c.at);
+  } else if (c.local) {
+    p = *c.local;
+    const double far_m = std::hypot(p.east_m, p.north_m);
+    if (!(far_m <= base::LocalFrame::kReach_m)) {
+      return base::fail(Code::Invalid, "the goal lies more than 10 km from the robot's map",
+                        {{"/east_m", "or /north_m lies more than 10 km from the robot's map"}});
+    }
+  }
+  return p;
+}
+
+base::Result<void> Robot::Impl::guide(const nav::GuidedGoal& goal, std::string_view kind) {
+  if (const std::string no = guided.refusal(goal); !no.empty()) {
+    return base::fail(Code::Conflict, no);
+  }
+  take_over(Mode::Guided, asker);
+  guided.go(goal, vehicle());
+  begin_activity(kind);
+  return {};
+}
+
+base::Result<void> Robot::Impl::handle(const GoTo& c) {
+  const bool finite =
+      std::isfinite(c.yaw_rad.value_or(0.0)) && std::isfinite(c.speed_mps.value_or(0.0)) &&
+      (!c.local || (std::isfinite(c.local->east_m) && std::isfinite(c.local->north_m)));
+  if (!finite) return base::fail(Code::Invalid, "a goal has finite numbers only");
+  if (auto ok = may_drive_by_itself(); !ok) return ok;
+  nav::GuidedGoal goal;
+  goal.yaw_rad = c.yaw_rad;
+  goal.speed_mps = c.speed_mps;
+  goal.reverse = c.reverse;
+  if (!c.at && !c.local) {
+    if (!c.yaw_rad || !c.speed_mps) {
+      return base::fail(Code::Invalid, "a goal is a position, or a heading and a speed");
+    }
+    goal.kind = nav::GuidedGoal::Kind::Steer;
+    return guide(goal, "heading");
+  }
+  const auto place = place_of(c);
+  if (!place) return tl::unexpected(place.error());
+  if (auto ok = inside(*place); !ok) return ok;
+  goal.at = *place;
+  return guide(goal, "goto");
+}
+
+base::Result<void> Robot::Impl::handle(const MoveBy& c) {
+  for (const auto& value : {c.forward_m, c.turn_rad, c.yaw_rad, c.speed_mps}) {
+    if (value && !std::isfinite(*value)) {
+      return base::fail(Code::Invalid, "a move has finite numbers only");
+    }
+  }
+  if (auto ok = may_drive_by_itself(); !ok) return ok;
+  nav::GuidedGoal goal;
+  if (c.forward_m) {
+    goal.kind = nav::GuidedGoal::Kind::Move;
+    goal.forward_m = *c.forward_m;
+    goal.speed_mps = c.speed_mps;
+    const base::EnuPoint to{pose->at.east_m + *c.forward_m * std::cos(pose->yaw_rad),
+                            pose->at.north_m + *c.forward_m * std::sin(pose->yaw_rad)};
+    if (auto ok = inside(to); !ok) return ok;
+    return guide(goal, "move");
+  }
+  goal.kind = nav::GuidedGoal::Kind::Turn;
+  goal.turn_rad = c.turn_rad;
+  goal.yaw_rad = c.yaw_rad;
+  if (c.turn_rad && c.yaw_rad) goal.yaw_rad.reset();
+  return guide(goal, "turn");
+}
+
+// ---- FOLLOW ----
+
+base::Result<void> Robot::Impl::handle(const SetTarget& c) {
+  if (!estimator.frame()) return base::fail(Code::Conflict, "the position is not known");
+  GoTo where;
+  where.at = c.at;
+  where.local = c.local;
+  if (!c.at && !c.local) return base::fail(Code::Invalid, "a target has a position");
+  const auto place = place_of(where);
+  if (!place) return tl::unexpected(place.error());
+  const auto bad = [](double x) { return !std::isfinite(x); };
+  const bool not_finite =
+      bad(place->east_m) || bad(place->north_m) || bad(c.age_s) || bad(c.a_m) || bad(c.b_m) ||
+      (c.velocity_mps && (bad(c.velocity_mps->east_m) || bad(c.velocity_mps->north_m)));
+  if (not_finite) return base::fail(Code::Invalid, "a target has finite numbers only");
+  nav::FollowTarget target{*place, c.velocity_mps, c.asked - base::from_seconds(c.age_s)};
+  if (target.stamp > now + std::chrono::milliseconds(200)) {
+    return base::fail(Code::Invalid, "the target's time lies in the future",
+                      {{"/time", "lies in the future"}});
+  }
+  if (base::seconds(now - target.stamp) > config.modes.follow_hold_s) {
+    return base::fail(Code::Late, "the target's time is too long ago");
+  }
+  nav::FollowOffset offset;
+  if (c.offset == SetTarget::Offset::North) offset.frame = nav::FollowOffset::Frame::North;
+  if (c.offset == SetTarget::Offset::Course) offset.frame = nav::FollowOffset::Frame::Course;
+  offset.a_m = c.a_m;
+  offset.b_m = c.b_m;
+  if (const std::string no = follower.take(target, offset); !no.empty()) {
+    return base::fail(Code::Conflict, "the target is not believed: " + no);
+  }
+  return {};
+}
+
+base::Result<void> Robot::Impl::enter_follow() {
+  if (auto ok = may_drive_by_itself(); !ok) return ok;
+  if (mode == Mode::Follow) return {};
+  if (const std::string no = follower.refusal(pose->at, now); !no.empty()) {
+    return base::fail(Code::Conflict, no);
+  }
+  take_over(Mode::Follow, asker);
+  begin_activity("follow");
+  return {};
+}
+
+// ---- DOCK ----
+
+base::Result<void> Robot::Impl::enter_dock(const SetMode& c) {
+  const bool whole = c.goal && (c.goal->at || c.goal->local) && c.goal->yaw_rad;
+  if (!whole) {
+    return base::fail(Code::Invalid, "DOCK needs the pose to dock at",
+                      {{"/heading_deg", "with lat and lon, or east_m and north_m, is missing"}});
+  }
+  if (auto ok = may_drive_by_itself(); !ok) return ok;
+  const auto place = place_of(*c.goal);
+  if (!place) return tl::unexpected(place.error());
+  if (!std::isfinite(place->east_m + place->north_m + *c.goal->yaw_rad)) {
+    return base::fail(Code::Invalid, "a pose has finite numbers only");
+  }
+  if (auto ok = inside(*place); !ok) return ok;
+  if (pose->horizontal_sigma_m > 2.0 * config.modes.dock_within_m) {
+    return base::fail(Code::Conflict,
+                      "the position is uncertain by " +
+                          std::to_string(std::lround(pose->horizontal_sigma_m * 100.0)) +
+                          " cm: too much to dock");
+  }
+  take_over(Mode::Dock, asker);
+  dock.begin({*place, *c.goal->yaw_rad, c.goal->reverse}, vehicle());
+  begin_activity("dock");
+  return {};
+}
+
+}  // namespace roverd::robot
