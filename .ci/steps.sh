@@ -112,6 +112,7 @@ step_command() {
   python3 "$root/tests/command/power_cut_test.py" || code=$?
   python3 "$root/tests/command/study_test.py" || code=$?
   python3 "$root/tests/command/resume_test.py" || code=$?
+  python3 "$root/tests/command/learned_test.py" || code=$?
   python3 "$root/tests/command/gpsd_test.py" || code=$?
   return "$code"
 }

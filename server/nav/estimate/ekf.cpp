@@ -16,21 +16,21 @@ using base::rad_from_deg;
 // that wanders by half a percent: larger ones add up over minutes, and the ellipse of a drifting
 // receiver grows too wide (estimate_bench watches it).
 constexpr double kPositionNoise_m = 0.02;
-constexpr double kPositionNoiseGyro_m = 0.006;
+constexpr double kPositionNoiseGyro_m = 0.005;
 constexpr double kPositionNoisePerTurn_m = 0.05;
-constexpr double kPositionNoisePerTurnGyro_m = 0.02;
+constexpr double kPositionNoisePerTurnGyro_m = 0.015;
 constexpr double kStandingNoise_m = 0.001;
 const double kYawNoise_rad = rad_from_deg(0.3);
 const double kYawNoisePerSpeed_rad = rad_from_deg(0.8);
 constexpr double kYawNoisePerTurn = 0.06;
-const double kGyroNoise_rad = rad_from_deg(0.015);
-constexpr double kGyroNoisePerTurn = 0.002;  // scale of the gyro, lean of its axis
+const double kGyroNoise_rad = rad_from_deg(0.012);
+constexpr double kGyroNoisePerTurn = 0.0015;  // scale of the gyro, lean of its axis
 const double kGyroBiasNoise_radps = rad_from_deg(0.002);
 const double kBiasNoise_rad = rad_from_deg(0.7);
 const double kBiasNoiseStanding_rad = rad_from_deg(0.1);
 const double kBiasNoisePivot_rad = rad_from_deg(6.0);
 constexpr double kScaleNoise = 0.006;
-constexpr double kScaleNoiseGyro = 0.0008;
+constexpr double kScaleNoiseGyro = 0.0006;
 constexpr double kYawScaleNoise = 0.02;
 constexpr double kPullNoise_1pm = 0.004;
 constexpr double kCoastNoise_m = 0.3;

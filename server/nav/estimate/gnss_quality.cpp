@@ -38,7 +38,7 @@ constexpr double kWhitePart = 0.25;
 constexpr double kSlowPart = 0.968;  // the squares of both add up to one
 constexpr double kUnsettled_m = 0.10;
 /// RTK's error is taken as white, but neighbouring epochs err alike: together they tell less.
-constexpr double kAlike = 1.3;
+constexpr double kAlike = 1.5;
 
 std::optional<double> usable(std::optional<double> sigma_m) noexcept {
   return sigma_m && std::isfinite(*sigma_m) && *sigma_m > 0.0 ? sigma_m : std::nullopt;

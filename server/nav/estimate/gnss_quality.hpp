@@ -30,7 +30,7 @@ using NoQuality = std::optional<base::Refusal>;
 /// The whole error is the receiver's own figure, at least `least`; without one that of `typical`
 /// times hdop (above 1). It is white only in part: the rest wanders within a minute.
 /// | class     | least   | typical | white | drift | tau   |
-/// | rtk_fixed | 0.015 m | 0.015 m | × 1.3 | none  |       |
+/// | rtk_fixed | 0.015 m | 0.015 m | × 1.5 | none  |       |
 /// | rtk_float | 0.1 m   | 0.35 m  | 1/4   | 0.968 | 60 s  |
 /// | dgps      | 0.3 m   | 0.8 m   | 1/4   | 0.968 | 100 s |
 /// | gps       | 0.5 m   | 1.2 m   | 1/4   | 0.968 | 60 s  |

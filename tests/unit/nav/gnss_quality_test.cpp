@@ -26,8 +26,8 @@ TEST(GnssQuality, TakesTheFloorOfTheClassUnlessTheReceiverClaimsLess) {
   fix.sigma_north_m = 0.08;
   const auto q = gnss_quality(fix, true, {});
   ASSERT_TRUE(q);
-  EXPECT_DOUBLE_EQ(q->sigma_east_m, 1.3 * 0.015);
-  EXPECT_DOUBLE_EQ(q->sigma_north_m, 1.3 * 0.08);
+  EXPECT_DOUBLE_EQ(q->sigma_east_m, 1.5 * 0.015);
+  EXPECT_DOUBLE_EQ(q->sigma_north_m, 1.5 * 0.08);
   EXPECT_DOUBLE_EQ(q->drift.sigma_m, 0.0);
   EXPECT_GT(gnss_quality(fix, false, {})->sigma_east_m, 0.05);
 }
