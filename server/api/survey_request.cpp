@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "api/body.hpp"
+#include "api/measured.hpp"
 #include "base/angle.hpp"
 #include "mission/text.hpp"
 
@@ -202,10 +203,6 @@ class SurveyReader {
   bool needs_vehicle_ = false;
 };
 
-double rounded_to(double value, double places) {
-  return std::round(value * places) / places;
-}
-
 }  // namespace
 
 base::Result<SurveyOrder> read_survey(const Json& body, const SurveyFacts& facts) {
@@ -213,14 +210,13 @@ base::Result<SurveyOrder> read_survey(const Json& body, const SurveyFacts& facts
 }
 
 Json survey_json(const mission::Survey& s) {
-  constexpr double kPlaces2 = 1e2;
   constexpr double kPlaces4 = 1e4;
-  return {{"direction_deg", rounded_to(s.direction_deg, kPlaces2)},
-          {"length_m", rounded_to(s.length_m, kPlaces2)},
-          {"time_s", rounded_to(s.time_s, 10.0)},
-          {"field_m2", rounded_to(s.field_m2, kPlaces2)},
-          {"reachable_share", rounded_to(s.reachable_share, kPlaces4)},
-          {"covered_share", rounded_to(s.covered_share, kPlaces4)},
+  return {{"direction_deg", rounded(s.direction_deg, kPlaces2)},
+          {"length_m", rounded(s.length_m, kPlaces2)},
+          {"time_s", rounded(s.time_s, 10.0)},
+          {"field_m2", rounded(s.field_m2, kPlaces2)},
+          {"reachable_share", rounded(s.reachable_share, kPlaces4)},
+          {"covered_share", rounded(s.covered_share, kPlaces4)},
           {"tracks", s.tracks},
           {"cells", s.cells},
           {"tight_turns", s.tight_turns},

@@ -12,7 +12,7 @@ namespace {
 using base::LatLon;
 using nlohmann::json;
 
-std::string_view trimmed(std::string_view text) {
+std::string_view bare_word(std::string_view text) {
   constexpr std::string_view kXmlSpace = " \t\r\n";
   const std::size_t begin = text.find_first_not_of(kXmlSpace);
   if (begin == std::string_view::npos) return {};
@@ -24,7 +24,7 @@ std::string tuple_of(LatLon at) {
   return fixed_number(at.lon, kDecimals) + ',' + fixed_number(at.lat, kDecimals);
 }
 
-std::string data(std::string_view name, std::string_view value) {
+std::string kml_data(std::string_view name, std::string_view value) {
   return "<Data name=\"" + std::string(name) + "\"><value>" + xml_escaped(value) +
          "</value></Data>";
 }
@@ -41,7 +41,7 @@ std::string kml_point(const std::string& tuple) {
 }  // namespace
 
 void set_kml_word(json& words, std::string_view name, std::string_view text) {
-  text = trimmed(text);
+  text = bare_word(text);
   if (name == "fence") words["fence"] = text;
   if (name == "rally") words["rally"] = text == "true" || text == "1";
   if (name != "radius_m") return;
@@ -61,7 +61,8 @@ std::string kml_of(const Fence& fence) {
     const std::string kind(to_string(area.kind));
     if (const auto* circle = std::get_if<FenceCircle>(&area.shape)) {
       const std::string radius = number_text(circle->radius_m);
-      out += placemark(kind + ' ' + radius + " m", data("fence", kind) + data("radius_m", radius),
+      out += placemark(kind + ' ' + radius + " m",
+                       kml_data("fence", kind) + kml_data("radius_m", radius),
                        kml_point(tuple_of(circle->center)));
       continue;
     }
@@ -69,14 +70,14 @@ std::string kml_of(const Fence& fence) {
     const auto& points = std::get<FencePolygon>(area.shape).points;
     for (const LatLon at : points) ring += tuple_of(at) + ' ';
     ring += tuple_of(points.front());  // KML closes its rings
-    out += placemark(kind, data("fence", kind),
+    out += placemark(kind, kml_data("fence", kind),
                      "<Polygon><outerBoundaryIs><LinearRing><coordinates>" + ring +
                          "</coordinates></LinearRing></outerBoundaryIs></Polygon>");
   }
   for (const RallyPoint& rally : fence.rally) {
     std::string at = tuple_of(rally.at);
     if (rally.alt_m) at += ',' + fixed_number(*rally.alt_m, 0);
-    out += placemark("rally", data("rally", "true"), kml_point(at));
+    out += placemark("rally", kml_data("rally", "true"), kml_point(at));
   }
   return out;
 }
