@@ -89,6 +89,11 @@ export const vehicle_calls: VehicleCalls = {
   arm: () => command('POST', '/vehicle/arm'),
   disarm: () => command('POST', '/vehicle/disarm'),
   set_mode: (mode) => command('PUT', '/vehicle/mode', { mode }),
+  go_to: (goal) => command('POST', '/vehicle/goto', goal),
+  dock: (goal) => command('PUT', '/vehicle/mode', { mode: 'DOCK', ...goal }),
+  move: (forward_m) => command('POST', '/vehicle/move', { forward_m }),
+  turn: (turn_deg) => command('POST', '/vehicle/move', { turn_deg }),
+  set_home: ({ lat, lon }) => command('PUT', '/vehicle/home', { lat, lon }),
   // No body to parse, no age to check: a stop is always carried out.
   estop: () => request<unknown>('/vehicle/estop', { method: 'POST', limit_ms: 1000 }),
   reset_estop: () => command('POST', '/vehicle/estop/reset'),

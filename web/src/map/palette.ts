@@ -21,6 +21,9 @@ export interface Palette {
   readonly ring: string;
   readonly wedge: string;
   readonly home: string;
+  readonly run_a: string;
+  readonly run_b: string;
+  readonly run_plan: string;
 }
 
 const light: Palette = {
@@ -43,6 +46,9 @@ const light: Palette = {
   ring: 'rgba(11, 87, 208, 0.16)',
   wedge: 'rgba(184, 80, 10, 0.28)',
   home: '#5f3dc4',
+  run_a: '#b8500a',
+  run_b: '#0b57d0',
+  run_plan: 'rgba(70, 66, 52, 0.45)',
 };
 
 const dark: Palette = {
@@ -65,6 +71,9 @@ const dark: Palette = {
   ring: 'rgba(124, 172, 255, 0.20)',
   wedge: 'rgba(255, 176, 102, 0.32)',
   home: '#b9a5ff',
+  run_a: '#ffb066',
+  run_b: '#7cacff',
+  run_plan: 'rgba(214, 222, 235, 0.45)',
 };
 
 const dark_wanted = matchMedia('(prefers-color-scheme: dark)');

@@ -86,5 +86,8 @@ export const day_and_time = (stamp: string): string => {
   return `${day} ${pair(time.getHours())}:${pair(time.getMinutes())}`;
 };
 
+/** A sentence of the server's begins with a small letter; one on the page does not. */
+export const sentence = (text: string): string => text.charAt(0).toUpperCase() + text.slice(1);
+
 export const count = (value: number, one: string, many = `${one}s`): string =>
   `${value} ${value === 1 ? one : many}`;

@@ -4,6 +4,7 @@ import type { Answer } from './answer';
 import type { Driver } from './drivers';
 import type { LinkHealth } from './freshness';
 import type { Home, LatLon, Plan, Settings, Item } from './plan';
+import type { RunHead, RunReport } from './runs';
 import type { ReceiverSky } from './sky';
 import type { Remembered, Tracks } from './tracks';
 import type { Capabilities, Check, Position, Preview, StationEvent, Vehicle } from './vehicle';
@@ -69,10 +70,23 @@ export interface MissionCalls {
   import_file(file_name: string, text: string): Promise<Answer<ImportResult>>;
   export_address(id: string, format: string): string;
 }
+/** A place to drive to. */
+export interface Goal extends LatLon {
+  /** How it faces there; left out: as it comes. */
+  readonly heading_deg?: number;
+  readonly reverse?: boolean;
+}
 export interface VehicleCalls {
   arm(): Promise<Answer<unknown>>;
   disarm(): Promise<Answer<unknown>>;
   set_mode(mode: string): Promise<Answer<unknown>>;
+  go_to(goal: Goal): Promise<Answer<unknown>>;
+  dock(goal: Goal & { readonly heading_deg: number }): Promise<Answer<unknown>>;
+  /** @param forward_m negative: backwards */
+  move(forward_m: number): Promise<Answer<unknown>>;
+  /** @param turn_deg clockwise positive */
+  turn(turn_deg: number): Promise<Answer<unknown>>;
+  set_home(at: LatLon): Promise<Answer<unknown>>;
   estop(): Promise<Answer<unknown>>;
   reset_estop(): Promise<Answer<unknown>>;
   /** The way so far. */
@@ -90,6 +104,26 @@ export interface VehicleCalls {
   skip(): Promise<Answer<unknown>>;
   /** Events of the last hour, oldest first. */
   recent_events(): Promise<Answer<Page<StationEvent>>>;
+}
+export interface RunCalls {
+  list(cursor: string | null): Promise<Answer<Page<RunHead>>>;
+  report(id: number): Promise<Answer<RunReport>>;
+  /** Where it drove, lap by lap. */
+  track(id: number): Promise<Answer<readonly (readonly LatLon[])[]>>;
+  /** The mission as it was driven. */
+  plan(id: number): Promise<Answer<Plan>>;
+  track_address(id: number, format: 'csv' | 'gpx' | 'geojson'): string;
+}
+/** The recording of a driven way. */
+export interface TeachCalls {
+  /** @return why nothing is recorded now; null: it is */
+  waiting(): Promise<Answer<string | null>>;
+  /** @param name of the mission; empty: the time */
+  start(name: string): Promise<Answer<unknown>>;
+  pause(): Promise<Answer<unknown>>;
+  resume(): Promise<Answer<unknown>>;
+  discard(): Promise<Answer<unknown>>;
+  stop(): Promise<Answer<Mission>>;
 }
 /** Teleoperation over the live stream. @return false: not connected, nothing was sent */
 export type SendDrive = (speed_mps: number, yaw_rate_dps: number, deadman: boolean) => boolean;
@@ -118,6 +152,8 @@ export interface MapEvents {
   on_insert(index: number, at: LatLon): void;
   on_move(index: number, to: LatLon): void;
   on_select(index: number | null): void;
+  /** Free ground was tapped while nothing is edited; or any place was pressed for long. */
+  on_place(at: LatLon): void;
   /** The person moved the map: following ends. */
   on_pan(): void;
 }
@@ -130,6 +166,15 @@ export interface RobotOnMap {
   readonly ellipse: Position['ellipse'];
   readonly stale: boolean;
 }
+export interface RunOnMap {
+  /** What it drove, lap by lap. */
+  readonly lines: readonly (readonly LatLon[])[];
+  readonly planned: readonly LatLon[];
+}
+/** A place on the map that means something, and how the robot faces there. */
+export interface Mark extends LatLon {
+  readonly heading_deg: number | null;
+}
 export interface MapCalls {
   listen(events: MapEvents): void;
   set_mode(mode: MapMode): void;
@@ -138,6 +183,10 @@ export interface MapCalls {
   show_route(route: Plan | null, current_item: number): void;
   show_robot(robot: RobotOnMap | null, tracks: Tracks): void;
   show_home(home: LatLon | null): void;
+  /** @param pin the place that the person chose; @param goal where the robot drives to */
+  show_marks(pin: Mark | null, goal: Mark | null): void;
+  /** Instead of the way so far; none: the way so far is shown again. */
+  show_runs(runs: readonly RunOnMap[]): void;
   /** Footprint of the vehicle, drawn to scale. */
   set_size(length_m: number, width_m: number): void;
   /** What panels cover, pixels: the robot, the edited item and fitted routes stay in the free

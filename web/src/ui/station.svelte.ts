@@ -1,14 +1,17 @@
 // The whole station in one value: what the panels share, and the effects that keep the map in step.
 
 import { refusal_text } from '../model/answer';
-import { spots, type Plan } from '../model/plan';
+import { activity_mark } from '../model/modes';
+import { EMPTY_PLAN, spots, type Plan } from '../model/plan';
 import type {
   DraftStorage,
   MapCalls,
   MapEvents,
   MissionCalls,
+  RunCalls,
   SendDrive,
   StreamEvents,
+  TeachCalls,
   VehicleCalls,
 } from '../model/ports';
 import type { Check } from '../model/vehicle';
@@ -19,7 +22,10 @@ import { Library } from './library.svelte';
 import { Live } from './live.svelte';
 import { Notices } from './notices.svelte';
 import { Pilot } from './pilot.svelte';
+import { Runs } from './runs.svelte';
 import { Sky } from './sky.svelte';
+import { Target } from './target.svelte';
+import { Teacher } from './teach.svelte';
 
 /** Between calls for the trail. After failures the wait doubles: a weak link has better things to
  * carry. */
@@ -28,11 +34,17 @@ const TRAIL_AGAIN_MS = 3000;
 const TRAIL_AT_LAST_MS = 300_000;
 
 export type Tab = 'drive' | 'plan' | 'missions' | 'log';
+/** What is shown under Missions. */
+export type Shelf = 'missions' | 'runs';
+/** What is pulled out in the Drive panel. */
+export type Drawer = 'move' | 'teach' | null;
 
 /** What main.ts hands in: the doors to the server, the map and the device. */
 export interface Doors {
   readonly missions: MissionCalls;
   readonly vehicle: VehicleCalls;
+  readonly teach: TeachCalls;
+  readonly runs: RunCalls;
   readonly map: MapCalls;
   readonly storage: DraftStorage;
   readonly send_drive: SendDrive;
@@ -43,12 +55,15 @@ export class Station {
   follow = $state(true);
   /** On a small screen the sheet can be folded away. */
   sheet_open = $state(true);
+  drawer = $state<Drawer>(null);
+  shelf = $state<Shelf>('missions');
   route = $state.raw<Plan | null>(null);
   checks = $state.raw<readonly Check[]>([]);
   /** There is room for the panel beside the map. */
   wide = $state(false);
 
   readonly live = new Live();
+  readonly target = new Target(this.live);
   readonly notices = new Notices();
   readonly dialogs = new Dialogs();
   readonly editor: Editor;
@@ -56,6 +71,8 @@ export class Station {
   readonly pilot: Pilot;
   readonly drivers: Drivers;
   readonly sky: Sky;
+  readonly teacher: Teacher;
+  readonly runs: Runs;
   readonly map: MapCalls;
   readonly #doors: Doors;
   #route_key = '';
@@ -74,6 +91,8 @@ export class Station {
     this.pilot = new Pilot(doors.vehicle, doors.send_drive, this.live, this.notices, this.dialogs);
     this.drivers = new Drivers(doors.vehicle, this.notices, this.dialogs);
     this.sky = new Sky(doors.vehicle);
+    this.runs = new Runs(doors.runs);
+    this.teacher = new Teacher(doors.teach, this.editor, this.notices, this.dialogs);
     doors.map.listen(this.#map_events());
     if (this.editor.restore_draft()) this.map.fit(spots(this.editor.plan));
     void this.#fetch_past_events();
@@ -112,6 +131,10 @@ export class Station {
     this.tab = tab;
     if (tab === 'missions') void this.library.refresh();
     if (tab === 'log') void this.fetch_checks();
+  }
+
+  toggle_drawer(drawer: NonNullable<Drawer>): void {
+    this.drawer = this.drawer === drawer ? null : drawer;
   }
 
   set_follow(follow: boolean): void {
@@ -188,6 +211,11 @@ export class Station {
       on_insert: (index, at) => this.editor.insert(index, at),
       on_move: (index, to) => this.editor.move(index, to),
       on_select: select,
+      on_place: (at) => {
+        if (this.tab !== 'drive') return;
+        this.target.choose(at);
+        this.sheet_open = true;
+      },
       on_pan: () => {
         if (this.follow) this.set_follow(false);
       },
@@ -199,9 +227,19 @@ export class Station {
     // A map that moves under the finger cannot be drawn on.
     $effect(() => map.set_follow(this.follow && this.tab !== 'plan'));
     $effect(() => map.set_mode(this.tab === 'plan' ? editor.map_mode : 'watch'));
-    $effect(() => map.show_plan(editor.plan, editor.selected, editor.refused));
+    // A run is looked at without what is being planned now.
+    const looks_back = $derived(this.tab === 'missions' && this.shelf === 'runs');
+    $effect(() => map.show_runs(looks_back ? this.runs.on_map : []));
+    $effect(() => {
+      const plan = looks_back && this.runs.first ? EMPTY_PLAN : editor.plan;
+      map.show_plan(plan, editor.selected, editor.refused);
+    });
     $effect(() => map.show_route(this.route, live.vehicle?.mission.current_item ?? 0));
     $effect(() => map.show_robot(live.robot, live.tracks));
     $effect(() => map.show_home(live.vehicle?.home ?? null));
+    $effect(() => {
+      const pin = this.tab === 'drive' ? this.target.mark : null;
+      map.show_marks(pin, activity_mark(live.vehicle));
+    });
   }
 }
