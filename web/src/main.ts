@@ -2,6 +2,7 @@
 
 import { mount } from 'svelte';
 
+import { fence_calls, survey_calls } from './link/fields';
 import { mission_calls, tile_sets, vehicle_calls } from './link/rest';
 import { run_calls } from './link/runs';
 import { draft_storage } from './link/storage';
@@ -26,6 +27,8 @@ const station = new Station({
   vehicle: vehicle_calls,
   teach: teach_calls,
   runs: run_calls,
+  survey: survey_calls,
+  fences: fence_calls,
   map,
   storage: draft_storage,
   send_drive: (speed_mps, yaw_rate_dps, deadman) =>

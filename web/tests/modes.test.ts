@@ -85,7 +85,13 @@ describe('activity', () => {
       state: 'going',
       detail: '12.3 m left',
     });
-    const turning = { ...activity, kind: 'turn', state: 'turning', distance_m: null, turn_deg: -30 };
+    const turning = {
+      ...activity,
+      kind: 'turn',
+      state: 'turning',
+      distance_m: null,
+      turn_deg: -30,
+    };
     expect(activity_line(vehicle({ activity: turning }))?.detail).toBe('30° to the left');
   });
 

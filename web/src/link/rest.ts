@@ -31,9 +31,14 @@ const with_mission = <T>(path: string, call: Call): Promise<Answer<T>> =>
   request<T>(path, { limit_ms: LARGE_LIMIT_MS, ...call });
 
 export const mission_calls: MissionCalls = {
-  list: (cursor) => {
-    const from = cursor === null ? '' : `&cursor=${encodeURIComponent(cursor)}`;
-    return request<Schemas['MissionList']>(`/missions?limit=50${from}`);
+  list: (filter, cursor) => {
+    const query = new URLSearchParams({ limit: '50' });
+    if (filter.place === 'archive') query.set('archived', 'true');
+    if (filter.place === 'deleted') query.set('deleted', 'true');
+    if (filter.name !== '') query.set('name', filter.name);
+    if (filter.tag !== '') query.set('tag', filter.tag);
+    if (cursor !== null) query.set('cursor', cursor);
+    return request<Schemas['MissionList']>(`/missions?${query}`);
   },
   read: (id) => with_mission<Schemas['Mission']>(mission_path(id), {}),
   read_revision: (id, revision) =>
@@ -51,12 +56,34 @@ export const mission_calls: MissionCalls = {
       method: 'DELETE',
       headers: { 'If-Match': etag(revision) },
     }),
-  import_file: (file_name, text) => {
-    const name = file_name.replace(/\.[^.]*$/, '') || file_name;
-    return with_mission<Schemas['ImportResult']>(
-      `/missions/import?name=${encodeURIComponent(name)}`,
-      { method: 'POST', text },
-    );
+  describe: (id, revision, change) =>
+    with_mission<Schemas['Mission']>(mission_path(id), {
+      method: 'PATCH',
+      body: change,
+      headers: { 'If-Match': etag(revision) },
+    }),
+  copy: (id) =>
+    with_mission<Schemas['Mission']>(`${mission_path(id)}/copy`, { method: 'POST', body: {} }),
+  restore: (id, revision) =>
+    with_mission<Schemas['Mission']>(`${mission_path(id)}/restore`, {
+      method: 'POST',
+      headers: { 'If-Match': etag(revision) },
+    }),
+  check: (id, revision) =>
+    with_mission<Schemas['CheckReport']>(`${mission_path(id)}/check`, {
+      method: 'POST',
+      body: { revision },
+    }),
+  import_file: (file, origin) => {
+    const query = new URLSearchParams({ name: file.name });
+    if (origin) {
+      query.set('origin_lat', String(origin.lat));
+      query.set('origin_lon', String(origin.lon));
+    }
+    return with_mission<Schemas['ImportResult']>(`/missions/import?${query}`, {
+      method: 'POST',
+      file,
+    });
   },
   export_address: (id, format) =>
     `/api/v1${mission_path(id)}/export?format=${encodeURIComponent(format)}`,

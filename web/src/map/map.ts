@@ -8,12 +8,14 @@ import { defaults as default_interactions } from 'ol/interaction/defaults';
 import TileLayer from 'ol/layer/Tile';
 import XYZ from 'ol/source/XYZ';
 
+import type { FenceDraft } from '../model/fence';
 import { EMPTY_PLAN, type LatLon, type Plan } from '../model/plan';
 import type {
   MapCalls,
   MapEvents,
   MapMode,
   Mark,
+  PlanShape,
   RobotOnMap,
   RunOnMap,
   TileSet,
@@ -136,11 +138,16 @@ export class FieldMap implements MapCalls {
     this.#map.render();
   }
 
-  show_plan(plan: Plan, selected: number | null, refused: ReadonlySet<number>): void {
+  show_plan(
+    plan: Plan,
+    selected: number | null,
+    refused: ReadonlySet<number>,
+    shape: PlanShape,
+  ): void {
     const scene = this.#scene;
     const newly_chosen = selected !== null && selected !== scene.look.selected;
     scene.plan.take(plan);
-    scene.look = { ...scene.look, selected, refused };
+    scene.look = { ...scene.look, selected, refused, shape };
     if (newly_chosen) this.#reveal(selected);
     this.#map.render();
   }
@@ -172,6 +179,11 @@ export class FieldMap implements MapCalls {
 
   show_runs(runs: readonly RunOnMap[]): void {
     this.#scene.runs = runs.map(prepare_run);
+    this.#map.render();
+  }
+
+  show_fence(fence: FenceDraft | null): void {
+    this.#scene.fence = fence;
     this.#map.render();
   }
 

@@ -1,10 +1,12 @@
 // What the map was told to show, and the painters that draw it, in order.
 
 import { distance_m } from '../model/geo';
+import type { FenceDraft } from '../model/fence';
 import { EMPTY_PLAN, type LatLon, type Plan } from '../model/plan';
 import type { MapEvents, Mark, RobotOnMap } from '../model/ports';
 import type { Paint, Painter } from './canvas';
 import type { Drag } from './edit';
+import { paint_fence } from './fence_painter';
 import { paint_grid, type Cover } from './grid';
 import { paint_goal, paint_pin } from './mark_painter';
 import { palette } from './palette';
@@ -57,12 +59,13 @@ export class Scene {
   readonly route = new Projected(EMPTY_PLAN);
   readonly driven = new TrailLine();
   readonly fixes = new TrailLine();
-  look: PlanLook = { selected: null, refused: new Set(), handles: false };
+  look: PlanLook = { selected: null, refused: new Set(), handles: false, shape: 'line' };
   drag: Drag | null = null;
   current_item = 0;
   robot: RobotOnMap | null = null;
   home: LatLon | null = null;
   runs: readonly DrawnRun[] = [];
+  fence: FenceDraft | null = null;
   /** The place that the person chose. */
   pin: Mark | null = null;
   /** Where the robot drives to outside of a mission. */
@@ -91,6 +94,9 @@ export class Scene {
       },
       (paint) => {
         if (this.robot) paint_accuracy(paint, this.robot, palette());
+      },
+      (paint) => {
+        if (this.fence) paint_fence(paint, this.fence, palette());
       },
       (paint) => {
         if (this.runs.length === 0) paint_route(paint, this.route.drawn, this.current_item);

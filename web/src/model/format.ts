@@ -91,3 +91,25 @@ export const sentence = (text: string): string => text.charAt(0).toUpperCase() +
 
 export const count = (value: number, one: string, many = `${one}s`): string =>
   `${value} ${value === 1 ? one : many}`;
+
+/** "rows, Field 3 ,rows" → its words, each once. */
+export const tags_of = (text: string): string[] => [
+  ...new Set(
+    text
+      .split(',')
+      .map((tag) => tag.trim())
+      .filter((tag) => tag !== ''),
+  ),
+];
+
+/** What people call the formats of mission files. */
+export const format_words: Readonly<Record<string, string>> = {
+  plan: 'QGroundControl',
+  waypoints: 'QGC WPL, Mission Planner',
+  gpx: 'GPX',
+  kml: 'Google Earth',
+  kmz: 'Google Earth, packed',
+  geojson: 'GeoJSON',
+  csv: 'table of latitude and longitude',
+  follower: 'table of metres',
+};
