@@ -65,6 +65,9 @@ test('a fence is drawn with a hole and a rally point, and then refuses what leav
   await page.getByLabel('Fence name').fill('Yard');
   await page.getByLabel('Fence name').press('Enter');
   await press(page, '+ Stay inside');
+  // Off and on again: the robot stands in the middle.
+  await press(page, 'Follow the robot');
+  await press(page, 'Follow the robot');
   await draw(page, SQUARE);
   await expect(page.getByLabel('Parts of the fence')).toContainText('4 corners');
   await press(page, '+ Keep-out circle');

@@ -7,6 +7,7 @@ import { expect, test, type Station } from './station';
 
 interface Vehicle {
   readonly mode: string;
+  readonly activity: { readonly state: string };
   readonly home: { readonly lat: number; readonly lon: number } | null;
 }
 
@@ -49,6 +50,30 @@ test('“Go here” drives to the place that was tapped, and “Come home” bac
     .poll(() => (home ? metres_between(home, station.sim.now) : 99), { timeout: 60_000 })
     .toBeLessThan(0.6);
   await stands_still(station);
+});
+
+test('“Dock here” wants to know how it faces there, and docks', async ({ page, station }) => {
+  test.setTimeout(180_000);
+  await open_page(page, station.url);
+  await arm(page);
+  // Some metres tell it its heading.
+  await station.rest('POST', '/vehicle/move', { forward_m: 4 });
+  await expect(page.getByLabel('Activity')).toContainText('Done.', { timeout: 40_000 });
+  await mark(page, 0, 8);
+  const dock = page.getByRole('button', { name: 'Dock here', exact: true });
+  await expect(dock).toHaveAttribute('title', 'Say first how it faces when docked.');
+  await page.getByLabel('Heading there, degrees').fill('0');
+  await page.getByLabel('Heading there, degrees').press('Enter');
+  await dock.click();
+  await expect(page.getByLabel('Activity')).toContainText('Docking');
+  await expect(page.getByLabel('Mode').getByRole('button', { name: 'DOCK' })).toBeVisible();
+  await expect
+    .poll(async () => (await station.rest<Vehicle>('GET', '/vehicle')).activity.state, {
+      timeout: 90_000,
+    })
+    .toBe('reached');
+  const off = (station.sim.now.heading_deg + 180) % 360;
+  expect(Math.abs(off - 180)).toBeLessThan(5);
 });
 
 test('a move by metres and a turn by degrees are carried out and can be stopped', async ({

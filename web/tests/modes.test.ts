@@ -103,6 +103,14 @@ describe('activity', () => {
     });
   });
 
+  test('says nothing of what the person ended', () => {
+    const ended = (reason: string) =>
+      activity_line(vehicle({ activity: { ...activity, state: 'failed', reason } }));
+    expect(ended('ended by mode HOLD: by the operator')).toBeNull();
+    expect(ended('ended by mode AUTO: mission started')).toBeNull();
+    expect(ended('ended by mode HOLD: the position is not known')).not.toBeNull();
+  });
+
   test('is nothing before the first one', () => {
     expect(activity_line(null)).toBeNull();
     expect(activity_line(vehicle({ activity: { ...activity, kind: null } }))).toBeNull();

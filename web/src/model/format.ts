@@ -17,6 +17,10 @@ const fixed = (value: number, digits: number): string => {
 export const number_text = (value: Value, digits: number, unit = ''): string =>
   known(value) ? `${fixed(value, digits)}${unit === '' ? '' : ` ${unit}`}` : UNKNOWN;
 
+/** An angle: "30.0°". */
+export const degrees_text = (value: Value): string =>
+  known(value) ? `${fixed(value, 1)}°` : UNKNOWN;
+
 /** 0.012 → "1.2 cm", 12.34 → "12.3 m", 1234 → "1.23 km". */
 export const metres = (value: Value): string => {
   if (!known(value)) return UNKNOWN;

@@ -92,6 +92,8 @@ export const activity_line = (vehicle: Vehicle | null): ActivityLine | null => {
     case 'reached':
       return { head, state: 'reached', detail: 'Done.' };
     case 'failed':
+      // Whoever chose another mode knows it.
+      if (/^ended by mode (AUTO|\w+: by the operator$)/.test(activity.reason)) return null;
       return { head, state: 'failed', detail: activity.reason };
   }
 };

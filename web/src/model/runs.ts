@@ -1,6 +1,6 @@
 // What was driven and how well, in rows that a person can compare.
 
-import { duration, metres, number_text } from './format';
+import { degrees_text, duration, metres, number_text } from './format';
 
 export type Outcome = 'running' | 'finished' | 'aborted' | 'interrupted';
 
@@ -82,13 +82,21 @@ const MEASURES: readonly Measure[] = [
   measure('Overshoot, at most', (r) => r.overshoot_max_m),
   measure('Slalom on straights, mean', (r) => r.slalom_mean_m),
   measure('Slalom, at most', (r) => r.slalom_max_m),
-  measure('Heading, rms', (r) => r.heading_rms_deg, (v) => number_text(v, 1, '°')), // prettier-ignore
-  measure('Jerk, rms', (r) => r.jerk_rms_mps3, (v) => number_text(v, 2, 'm/s³')), // prettier-ignore
+  measure('Heading, rms', (r) => r.heading_rms_deg, degrees_text),
+  measure(
+    'Jerk, rms',
+    (r) => r.jerk_rms_mps3,
+    (v) => number_text(v, 2, 'm/s³'),
+  ),
   measure('From the end point', (r) => r.end_m),
   measure('Time', (r) => r.time_s, duration),
   measure('Of it driving', (r) => r.driving_s, duration, false),
   measure('Driven', (r) => r.driven_m, metres, false),
-  measure('Energy', (r) => r.energy_wh, (v) => number_text(v, 1, 'Wh')), // prettier-ignore
+  measure(
+    'Energy',
+    (r) => r.energy_wh,
+    (v) => number_text(v, 1, 'Wh'),
+  ),
 ];
 
 export interface ReportRow {

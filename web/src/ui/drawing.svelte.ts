@@ -21,6 +21,8 @@ export interface Drawing {
   insert(index: number, at: LatLon): void;
   move(index: number, to: LatLon): void;
   select(index: number | null): void;
+  remove_selected(): void;
+  undo(): void;
 }
 
 /** Places with their undo. */

@@ -82,6 +82,10 @@ export class Editor implements Drawing {
     this.selected = index;
   }
 
+  remove_selected(): void {
+    if (this.selected !== null) this.remove(this.selected);
+  }
+
   remove(index: number): void {
     this.do(remove_item(index));
     this.selected = null;

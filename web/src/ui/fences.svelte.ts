@@ -11,6 +11,7 @@ import {
   type FenceDraft,
   type FenceSummary,
 } from '../model/fence';
+import { begin_history, perform, undo, type History } from '../model/history';
 import {
   add_place,
   insert_place,
@@ -33,7 +34,10 @@ export class Fences implements Drawing {
   failure = $state<string | null>(null);
   /** What the robot keeps to. */
   active = $state.raw<Fence | null>(null);
-  draft = $state.raw<FenceDraft | null>(null);
+  #history = $state.raw<History<FenceDraft | null>>(begin_history<FenceDraft | null>(null));
+  /** What is drawn now. */
+  draft = $derived<FenceDraft | null>(this.#history.present);
+  can_undo = $derived(this.#history.past.length > 0);
   part = $state<Part>(null);
   selected = $state<number | null>(null);
   busy = $state(false);
@@ -92,26 +96,26 @@ export class Fences implements Drawing {
       });
       if (!sure) return;
     }
-    this.draft = null;
+    this.#history = begin_history<FenceDraft | null>(null);
     this.part = null;
     this.selected = null;
   }
 
   rename(name: string): void {
-    if (this.draft) this.draft = { ...this.draft, name };
+    if (this.draft) this.#edit({ ...this.draft, name });
   }
 
   /** @param at the middle of a circle; null: corners are tapped one by one */
   add_area(kind: AreaKind, at: LatLon | null): void {
     if (!this.draft) return;
     const area = at ? fresh_circle(kind, at) : { kind, polygon: [] };
-    this.draft = { ...this.draft, areas: [...this.draft.areas, area] };
+    this.#edit({ ...this.draft, areas: [...this.draft.areas, area] });
     this.choose(this.draft.areas.length - 1);
   }
 
   remove_area(index: number): void {
     if (!this.draft) return;
-    this.draft = { ...this.draft, areas: this.draft.areas.filter((_, k) => k !== index) };
+    this.#edit({ ...this.draft, areas: this.draft.areas.filter((_, k) => k !== index) });
     this.choose(null);
   }
 
@@ -120,7 +124,7 @@ export class Fences implements Drawing {
     const areas = this.draft.areas.map((area, k) =>
       k === index && area.circle ? { kind: area.kind, circle: { ...area.circle, radius_m } } : area,
     );
-    this.draft = { ...this.draft, areas };
+    this.#edit({ ...this.draft, areas });
   }
 
   choose(part: Part): void {
@@ -150,6 +154,15 @@ export class Fences implements Drawing {
   remove_selected(): void {
     if (this.selected !== null && !this.#circle) this.#change(remove_place(this.selected));
     this.selected = null;
+  }
+
+  undo(): void {
+    if (!this.draft) return;
+    this.#history = undo(this.#history);
+    const part = this.part;
+    // The area may have been added by what is undone.
+    const gone = typeof part === 'number' && !this.draft.areas[part];
+    this.choose(gone ? null : part);
   }
 
   async save(): Promise<void> {
@@ -207,18 +220,22 @@ export class Fences implements Drawing {
     if (!draft || part === null) return;
     const places = action(this.places);
     if (part === 'rally') {
-      this.draft = { ...draft, rally: places };
+      this.#edit({ ...draft, rally: places });
       return;
     }
     const areas = draft.areas.map((area, k) => (k === part ? with_places(area, places) : area));
-    this.draft = { ...draft, areas };
+    this.#edit({ ...draft, areas });
   }
 
   #show(draft: FenceDraft, stored: Fence | null): void {
-    this.draft = draft;
+    this.#history = begin_history<FenceDraft | null>(draft);
     this.#stored = stored;
     this.part = null;
     this.selected = null;
+  }
+
+  #edit(draft: FenceDraft): void {
+    this.#history = perform(this.#history, () => draft);
   }
 
   #complain(what: string, refusal: Refusal): void {

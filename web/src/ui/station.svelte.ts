@@ -1,6 +1,6 @@
 // The whole station in one value: what the panels share, and the effects that keep the map in step.
 
-import { untrack } from 'svelte';
+import { tick, untrack } from 'svelte';
 
 import { refusal_text } from '../model/answer';
 import { activity_mark } from '../model/modes';
@@ -178,6 +178,14 @@ export class Station {
     if (all.length === 0) return;
     this.set_follow(false);
     this.map.fit(all);
+  }
+
+  /** The panel has its new height, and the map knows it. */
+  async settled(): Promise<void> {
+    await tick();
+    const frame = (): Promise<number> => new Promise(requestAnimationFrame);
+    await frame();
+    await frame();
   }
 
   /** Opens an item of the edited mission. @param item from 1 */
