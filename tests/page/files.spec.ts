@@ -49,6 +49,7 @@ const same_places = (found: readonly Point[], wanted: readonly Point[]): void =>
 
 const export_text = async (page: Page, format: string): Promise<string> => {
   await page.getByRole('button', { name: /^More about/ }).click();
+  await page.getByText('Save as a file').click();
   const download = page.waitForEvent('download');
   await page.getByRole('link', { name: `.${format}`, exact: true }).click();
   return readFileSync(await (await download).path(), 'utf8');

@@ -71,16 +71,20 @@ export const save = async (page: Page): Promise<void> => {
   await expect(page.getByLabel('Summary')).toContainText('saved, revision');
 };
 
-/** From a drawn and saved mission to a driving robot. */
-export const drive_it = async (page: Page): Promise<void> => {
-  await tab(page, 'Drive');
+/** Arms; the checks want a settled position, and the robot says when it is. */
+export const arm = async (page: Page): Promise<void> => {
   await expect(page.getByRole('button', { name: 'Arm', exact: true })).toBeEnabled();
-  // The checks want a settled position; the robot says when.
   await expect(async () => {
     const disarm = page.getByRole('button', { name: 'Disarm', exact: true });
     if (!(await disarm.isVisible())) await press(page, 'Arm');
     await expect(disarm).toBeVisible({ timeout: 1000 });
   }).toPass({ timeout: 20_000 });
+};
+
+/** From a drawn and saved mission to a driving robot. */
+export const drive_it = async (page: Page): Promise<void> => {
+  await tab(page, 'Drive');
+  await arm(page);
   await page.getByRole('button', { name: /^Load/ }).click();
   await press(page, 'Start…');
   await expect(page.getByRole('dialog')).toContainText('Drives to item');

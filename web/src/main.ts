@@ -2,9 +2,12 @@
 
 import { mount } from 'svelte';
 
+import { fence_calls, survey_calls } from './link/fields';
 import { mission_calls, tile_sets, vehicle_calls } from './link/rest';
+import { run_calls } from './link/runs';
 import { draft_storage } from './link/storage';
 import { Stream } from './link/stream';
+import { teach_calls } from './link/teach';
 import { FieldMap } from './map/map';
 import App from './ui/App.svelte';
 import { Station } from './ui/station.svelte';
@@ -22,6 +25,10 @@ const late: { stream: Stream | null } = { stream: null };
 const station = new Station({
   missions: mission_calls,
   vehicle: vehicle_calls,
+  teach: teach_calls,
+  runs: run_calls,
+  survey: survey_calls,
+  fences: fence_calls,
   map,
   storage: draft_storage,
   send_drive: (speed_mps, yaw_rate_dps, deadman) =>

@@ -46,6 +46,17 @@ describe('the sky plot', () => {
     ).toEqual([]);
   });
 
+  it('gives the stronger one its name where two names would overlap', () => {
+    const spots = sky_spots([
+      satellite({ number: 1, cn0_dbhz: 30 }),
+      satellite({ number: 2, cn0_dbhz: 45, elevation_deg: 47 }),
+      satellite({ number: 3, azimuth_deg: 180 }),
+    ]);
+    const named = spots.filter((spot) => spot.named).map((spot) => spot.satellite.number);
+    expect(spots).toHaveLength(3);
+    expect(named).toEqual([2, 3]);
+  });
+
   it('names satellites as RINEX does', () => {
     expect(satellite_name(satellite({}))).toBe('G07');
     expect(satellite_name(satellite({ system: 'galileo', number: 11 }))).toBe('E11');
@@ -93,7 +104,7 @@ describe('what is known of the position', () => {
       ['Position, 1σ', '2.1 cm along 32°, 1.2 cm across'],
       ['Heading, 1σ', '—'],
       ['From', 'gnss+odometry'],
-      ['Compass is off by', '−20.0 °'],
+      ['Compass is off by', '−20.0°'],
       ['Gyro is off by', '0.301 °/s'],
       ['Odometry, true over told', '0.920'],
       ['Refused', 'position 3'],

@@ -7,9 +7,10 @@ import type { components } from './schema';
 type Problem = components['schemas']['Problem'];
 
 export interface Call {
-  readonly method?: 'GET' | 'POST' | 'PUT' | 'DELETE';
+  readonly method?: 'GET' | 'POST' | 'PUT' | 'PATCH' | 'DELETE';
   readonly body?: unknown;
-  readonly text?: string;
+  /** A file, byte for byte. */
+  readonly file?: Blob;
   readonly headers?: Readonly<Record<string, string>>;
   /** Give up after this. */
   readonly limit_ms?: number;
@@ -42,8 +43,8 @@ const read_problem = async (response: Response): Promise<Refusal> => {
 };
 
 const fetch_options = (call: Call): RequestInit => {
-  const body = call.text ?? (call.body === undefined ? undefined : JSON.stringify(call.body));
-  const type = call.text === undefined ? 'application/json' : 'application/octet-stream';
+  const body = call.file ?? (call.body === undefined ? undefined : JSON.stringify(call.body));
+  const type = call.file === undefined ? 'application/json' : 'application/octet-stream';
   return {
     method: call.method ?? 'GET',
     headers: { ...(body === undefined ? {} : { 'Content-Type': type }), ...call.headers },

@@ -31,9 +31,14 @@ const with_mission = <T>(path: string, call: Call): Promise<Answer<T>> =>
   request<T>(path, { limit_ms: LARGE_LIMIT_MS, ...call });
 
 export const mission_calls: MissionCalls = {
-  list: (cursor) => {
-    const from = cursor === null ? '' : `&cursor=${encodeURIComponent(cursor)}`;
-    return request<Schemas['MissionList']>(`/missions?limit=50${from}`);
+  list: (filter, cursor) => {
+    const query = new URLSearchParams({ limit: '50' });
+    if (filter.place === 'archive') query.set('archived', 'true');
+    if (filter.place === 'deleted') query.set('deleted', 'true');
+    if (filter.name !== '') query.set('name', filter.name);
+    if (filter.tag !== '') query.set('tag', filter.tag);
+    if (cursor !== null) query.set('cursor', cursor);
+    return request<Schemas['MissionList']>(`/missions?${query}`);
   },
   read: (id) => with_mission<Schemas['Mission']>(mission_path(id), {}),
   read_revision: (id, revision) =>
@@ -51,12 +56,34 @@ export const mission_calls: MissionCalls = {
       method: 'DELETE',
       headers: { 'If-Match': etag(revision) },
     }),
-  import_file: (file_name, text) => {
-    const name = file_name.replace(/\.[^.]*$/, '') || file_name;
-    return with_mission<Schemas['ImportResult']>(
-      `/missions/import?name=${encodeURIComponent(name)}`,
-      { method: 'POST', text },
-    );
+  describe: (id, revision, change) =>
+    with_mission<Schemas['Mission']>(mission_path(id), {
+      method: 'PATCH',
+      body: change,
+      headers: { 'If-Match': etag(revision) },
+    }),
+  copy: (id) =>
+    with_mission<Schemas['Mission']>(`${mission_path(id)}/copy`, { method: 'POST', body: {} }),
+  restore: (id, revision) =>
+    with_mission<Schemas['Mission']>(`${mission_path(id)}/restore`, {
+      method: 'POST',
+      headers: { 'If-Match': etag(revision) },
+    }),
+  check: (id, revision) =>
+    with_mission<Schemas['CheckReport']>(`${mission_path(id)}/check`, {
+      method: 'POST',
+      body: { revision },
+    }),
+  import_file: (file, origin) => {
+    const query = new URLSearchParams({ name: file.name });
+    if (origin) {
+      query.set('origin_lat', String(origin.lat));
+      query.set('origin_lon', String(origin.lon));
+    }
+    return with_mission<Schemas['ImportResult']>(`/missions/import?${query}`, {
+      method: 'POST',
+      file,
+    });
   },
   export_address: (id, format) =>
     `/api/v1${mission_path(id)}/export?format=${encodeURIComponent(format)}`,
@@ -89,6 +116,11 @@ export const vehicle_calls: VehicleCalls = {
   arm: () => command('POST', '/vehicle/arm'),
   disarm: () => command('POST', '/vehicle/disarm'),
   set_mode: (mode) => command('PUT', '/vehicle/mode', { mode }),
+  go_to: (goal) => command('POST', '/vehicle/goto', goal),
+  dock: (goal) => command('PUT', '/vehicle/mode', { mode: 'DOCK', ...goal }),
+  move: (forward_m) => command('POST', '/vehicle/move', { forward_m }),
+  turn: (turn_deg) => command('POST', '/vehicle/move', { turn_deg }),
+  set_home: ({ lat, lon }) => command('PUT', '/vehicle/home', { lat, lon }),
   // No body to parse, no age to check: a stop is always carried out.
   estop: () => request<unknown>('/vehicle/estop', { method: 'POST', limit_ms: 1000 }),
   reset_estop: () => command('POST', '/vehicle/estop/reset'),

@@ -1,6 +1,6 @@
 // The hand on the map. What a press means depends on the mode; exactly one is active:
 //
-//   watch  a tap on a point selects it
+//   watch  a tap on a point selects it; one on free ground marks the place
 //   edit   also: dragging a point moves it; dragging or tapping a "+" inserts one
 //   draw   also: a tap on free ground adds a waypoint at the end
 //
@@ -91,7 +91,10 @@ export class EditInteraction extends PointerInteraction {
     if (hit?.what === 'spot') events.on_select(this.#index_of(hit.k));
     else if (hit) this.#insert(hit.k, this.#middle_before(hit.k));
     else if (this.#mode === 'draw') events.on_add(from_plane(event.coordinate));
-    else events.on_select(null);
+    else {
+      events.on_select(null);
+      if (this.#mode === 'watch') events.on_place(from_plane(event.coordinate));
+    }
   }
 
   /** Whether the pointer is over something that can be taken. */

@@ -8,15 +8,26 @@ import { defaults as default_interactions } from 'ol/interaction/defaults';
 import TileLayer from 'ol/layer/Tile';
 import XYZ from 'ol/source/XYZ';
 
+import type { FenceDraft } from '../model/fence';
 import { EMPTY_PLAN, type LatLon, type Plan } from '../model/plan';
-import type { MapCalls, MapEvents, MapMode, RobotOnMap, TileSet } from '../model/ports';
+import type {
+  MapCalls,
+  MapEvents,
+  MapMode,
+  Mark,
+  PlanShape,
+  RobotOnMap,
+  RunOnMap,
+  TileSet,
+} from '../model/ports';
 import type { Tracks } from '../model/tracks';
 import { canvas_layer } from './canvas';
 import { EditInteraction } from './edit';
 import type { Cover } from './grid';
 import { on_palette_change } from './palette';
-import { to_plane } from './projection';
+import { from_plane, to_plane } from './projection';
 import { Scene } from './scene';
+import { prepare_run } from './run_painter';
 import { make_scale_bar } from './scale_bar';
 
 /** Until something is known: the whole world, in degrees. */
@@ -89,6 +100,8 @@ export class FieldMap implements MapCalls {
   readonly #edit: EditInteraction;
   #mode: MapMode = 'watch';
   #follow = true;
+  /** The press under way has marked a place already: its end is no tap. */
+  #pressed_long = false;
   /** The view shows something that matters; before, the robot's first position sets it. */
   #placed = false;
 
@@ -103,7 +116,10 @@ export class FieldMap implements MapCalls {
     target.append(bar.element, this.#credit);
     this.#edit = this.#make_edit();
     this.#map.addInteraction(this.#edit);
-    this.#map.on('click', (event) => this.#edit.tap(event));
+    this.#map.on('click', (event) => {
+      if (!this.#pressed_long) this.#edit.tap(event);
+    });
+    this.#listen_for_long_press();
     this.#map.on('pointermove', (event) => this.#point(event));
     this.#map.on('pointerdrag', () => {
       if (this.#scene.drag === null) this.#scene.events.on_pan();
@@ -122,11 +138,16 @@ export class FieldMap implements MapCalls {
     this.#map.render();
   }
 
-  show_plan(plan: Plan, selected: number | null, refused: ReadonlySet<number>): void {
+  show_plan(
+    plan: Plan,
+    selected: number | null,
+    refused: ReadonlySet<number>,
+    shape: PlanShape,
+  ): void {
     const scene = this.#scene;
     const newly_chosen = selected !== null && selected !== scene.look.selected;
     scene.plan.take(plan);
-    scene.look = { ...scene.look, selected, refused };
+    scene.look = { ...scene.look, selected, refused, shape };
     if (newly_chosen) this.#reveal(selected);
     this.#map.render();
   }
@@ -153,6 +174,22 @@ export class FieldMap implements MapCalls {
 
   show_home(home: LatLon | null): void {
     this.#scene.home = home;
+    this.#map.render();
+  }
+
+  show_runs(runs: readonly RunOnMap[]): void {
+    this.#scene.runs = runs.map(prepare_run);
+    this.#map.render();
+  }
+
+  show_fence(fence: FenceDraft | null): void {
+    this.#scene.fence = fence;
+    this.#map.render();
+  }
+
+  show_marks(pin: Mark | null, goal: Mark | null): void {
+    this.#scene.pin = pin;
+    this.#scene.goal = goal;
     this.#map.render();
   }
 
@@ -201,6 +238,17 @@ export class FieldMap implements MapCalls {
       maxZoom: set.max_zoom,
     });
     this.#tiles.setSource(source);
+  }
+
+  /** A finger that rests, or the right mouse button: marks a place, also where a tap would select. */
+  #listen_for_long_press(): void {
+    this.#target.addEventListener('pointerdown', () => (this.#pressed_long = false));
+    this.#target.addEventListener('contextmenu', (event) => {
+      event.preventDefault();
+      if (this.#scene.drag !== null) return;
+      this.#pressed_long = true;
+      this.#scene.events.on_place(from_plane(this.#map.getEventCoordinate(event)));
+    });
   }
 
   #make_edit(): EditInteraction {

@@ -21,6 +21,11 @@ export interface Palette {
   readonly ring: string;
   readonly wedge: string;
   readonly home: string;
+  readonly stay_in: string;
+  readonly keep_out: string;
+  readonly run_a: string;
+  readonly run_b: string;
+  readonly run_plan: string;
 }
 
 const light: Palette = {
@@ -43,6 +48,11 @@ const light: Palette = {
   ring: 'rgba(11, 87, 208, 0.16)',
   wedge: 'rgba(184, 80, 10, 0.28)',
   home: '#5f3dc4',
+  stay_in: '#7a5c00',
+  keep_out: 'rgba(179, 38, 30, 0.18)',
+  run_a: '#b8500a',
+  run_b: '#0b57d0',
+  run_plan: 'rgba(70, 66, 52, 0.45)',
 };
 
 const dark: Palette = {
@@ -65,6 +75,11 @@ const dark: Palette = {
   ring: 'rgba(124, 172, 255, 0.20)',
   wedge: 'rgba(255, 176, 102, 0.32)',
   home: '#b9a5ff',
+  stay_in: '#e0c14a',
+  keep_out: 'rgba(255, 138, 128, 0.2)',
+  run_a: '#ffb066',
+  run_b: '#7cacff',
+  run_plan: 'rgba(214, 222, 235, 0.45)',
 };
 
 const dark_wanted = matchMedia('(prefers-color-scheme: dark)');

@@ -3,6 +3,7 @@
 // cheap.
 
 import { spots, type Plan, type Spot } from '../model/plan';
+import type { PlanShape } from '../model/ports';
 import { stroke_cased, trace, type Paint } from './canvas';
 import { palette, type Palette } from './palette';
 import { to_plane, to_plane_line, type PlaneLine, type PlanePoint } from './projection';
@@ -167,6 +168,7 @@ export interface PlanLook {
   readonly selected: number | null;
   readonly refused: ReadonlySet<number>;
   readonly handles: boolean;
+  readonly shape: PlanShape;
 }
 
 /** Spots in the order in which they may claim room: the chosen one, refused ones, then by number. */
@@ -225,6 +227,19 @@ const paint_points = (paint: Paint, drawn: DrawnPlan, line: PlaneLine, look: Pla
   }
 };
 
+const paint_line = (paint: Paint, line: PlaneLine, look: PlanLook, colors: Palette): void => {
+  const { context } = paint;
+  context.beginPath();
+  trace(paint, line.xs, line.ys);
+  if (look.shape === 'ring') {
+    context.closePath();
+    context.fillStyle = colors.ring;
+    context.fill();
+  }
+  stroke_cased(context, colors.casing, colors.plan, 3.5);
+  if (look.shape === 'line') paint_arrows(paint, line, colors.plan, 0.36);
+};
+
 /** @param line where the points are now: the drawn plan's own line, or one in the middle of a drag */
 export const paint_plan = (
   paint: Paint,
@@ -232,13 +247,11 @@ export const paint_plan = (
   line: PlaneLine,
   look: PlanLook,
 ): void => {
-  const { context } = paint;
   const colors = palette();
-  context.beginPath();
-  trace(paint, line.xs, line.ys);
-  stroke_cased(context, colors.casing, colors.plan, 3.5);
-  paint_arrows(paint, line, colors.plan, 0.36);
-  if (look.handles) paint_handles(paint, line, colors);
+  if (look.shape !== 'points') {
+    paint_line(paint, line, look, colors);
+    if (look.handles) paint_handles(paint, line, colors);
+  }
   if (line.xs.length === drawn.spots.length) paint_points(paint, drawn, line, look);
 };
 

@@ -1,11 +1,14 @@
 // What the map was told to show, and the painters that draw it, in order.
 
 import { distance_m } from '../model/geo';
+import type { FenceDraft } from '../model/fence';
 import { EMPTY_PLAN, type LatLon, type Plan } from '../model/plan';
-import type { MapEvents, RobotOnMap } from '../model/ports';
+import type { MapEvents, Mark, RobotOnMap } from '../model/ports';
 import type { Paint, Painter } from './canvas';
 import type { Drag } from './edit';
+import { paint_fence } from './fence_painter';
 import { paint_grid, type Cover } from './grid';
+import { paint_goal, paint_pin } from './mark_painter';
 import { palette } from './palette';
 import {
   paint_plan,
@@ -18,6 +21,7 @@ import {
 } from './plan_painter';
 import { from_plane, units_per_m } from './projection';
 import { paint_accuracy, paint_home, paint_robot, TrailLine, type Size } from './robot_painter';
+import { paint_runs, type DrawnRun } from './run_painter';
 import type { ScaleBar } from './scale_bar';
 
 /** Beyond this from its origin the grid gets a new one. */
@@ -28,6 +32,7 @@ const NO_EVENTS: MapEvents = {
   on_insert: () => undefined,
   on_move: () => undefined,
   on_select: () => undefined,
+  on_place: () => undefined,
   on_pan: () => undefined,
 };
 
@@ -54,11 +59,17 @@ export class Scene {
   readonly route = new Projected(EMPTY_PLAN);
   readonly driven = new TrailLine();
   readonly fixes = new TrailLine();
-  look: PlanLook = { selected: null, refused: new Set(), handles: false };
+  look: PlanLook = { selected: null, refused: new Set(), handles: false, shape: 'line' };
   drag: Drag | null = null;
   current_item = 0;
   robot: RobotOnMap | null = null;
   home: LatLon | null = null;
+  runs: readonly DrawnRun[] = [];
+  fence: FenceDraft | null = null;
+  /** The place that the person chose. */
+  pin: Mark | null = null;
+  /** Where the robot drives to outside of a mission. */
+  goal: Mark | null = null;
   size: Size = { length_m: 1, width_m: 0.8 };
   cover: Cover = { top: 0, right: 0, bottom: 0, left: 0 };
   #origin: LatLon | null = null;
@@ -84,17 +95,36 @@ export class Scene {
       (paint) => {
         if (this.robot) paint_accuracy(paint, this.robot, palette());
       },
-      (paint) => paint_route(paint, this.route.drawn, this.current_item),
-      (paint) => this.fixes.paint_dots(paint, palette().fixes),
-      (paint) => this.driven.paint_line(paint, palette()),
+      (paint) => {
+        if (this.fence) paint_fence(paint, this.fence, palette());
+      },
+      (paint) => {
+        if (this.runs.length === 0) paint_route(paint, this.route.drawn, this.current_item);
+      },
+      (paint) => this.#paint_driven(paint),
       (paint) => this.#paint_edited(paint),
       (paint) => {
         if (this.home) paint_home(paint, this.home, palette());
       },
       (paint) => {
+        if (this.goal) paint_goal(paint, this.goal, this.robot?.at ?? null, palette());
+      },
+      (paint) => {
+        if (this.pin) paint_pin(paint, this.pin, palette());
+      },
+      (paint) => {
         if (this.robot) paint_robot(paint, this.robot, this.size, palette());
       },
     ];
+  }
+
+  #paint_driven(paint: Paint): void {
+    if (this.runs.length > 0) {
+      paint_runs(paint, this.runs, palette());
+      return;
+    }
+    this.fixes.paint_dots(paint, palette().fixes);
+    this.driven.paint_line(paint, palette());
   }
 
   /** In the middle of a drag the line already goes where it will go. */

@@ -37,3 +37,7 @@ export const refused_items = (refusal: Refusal): ReadonlySet<number> => {
   }
   return found;
 };
+
+/** A table in metres that does not say from where. */
+export const wants_origin = (refusal: Refusal): boolean =>
+  refusal.errors.some(({ detail }) => detail.includes('needs an origin'));

@@ -17,6 +17,10 @@ const fixed = (value: number, digits: number): string => {
 export const number_text = (value: Value, digits: number, unit = ''): string =>
   known(value) ? `${fixed(value, digits)}${unit === '' ? '' : ` ${unit}`}` : UNKNOWN;
 
+/** An angle: "30.0°". */
+export const degrees_text = (value: Value): string =>
+  known(value) ? `${fixed(value, 1)}°` : UNKNOWN;
+
 /** 0.012 → "1.2 cm", 12.34 → "12.3 m", 1234 → "1.23 km". */
 export const metres = (value: Value): string => {
   if (!known(value)) return UNKNOWN;
@@ -86,5 +90,30 @@ export const day_and_time = (stamp: string): string => {
   return `${day} ${pair(time.getHours())}:${pair(time.getMinutes())}`;
 };
 
+/** A sentence of the server's begins with a small letter; one on the page does not. */
+export const sentence = (text: string): string => text.charAt(0).toUpperCase() + text.slice(1);
+
 export const count = (value: number, one: string, many = `${one}s`): string =>
   `${value} ${value === 1 ? one : many}`;
+
+/** "rows, Field 3 ,rows" → its words, each once. */
+export const tags_of = (text: string): string[] => [
+  ...new Set(
+    text
+      .split(',')
+      .map((tag) => tag.trim())
+      .filter((tag) => tag !== ''),
+  ),
+];
+
+/** What people call the formats of mission files. */
+export const format_words: Readonly<Record<string, string>> = {
+  plan: 'QGroundControl',
+  waypoints: 'QGC WPL, Mission Planner',
+  gpx: 'GPX',
+  kml: 'Google Earth',
+  kmz: 'Google Earth, packed',
+  geojson: 'GeoJSON',
+  csv: 'table of latitude and longitude',
+  follower: 'table of metres',
+};

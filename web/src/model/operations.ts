@@ -2,7 +2,7 @@
 // what it can know for certain; the last word is the robot's answer. Whatever makes the robot stop
 // is never refused here.
 
-import type { Vehicle } from './vehicle';
+import type { Mode, Vehicle } from './vehicle';
 
 export interface Facts {
   /** The live link is silent or closed. */
@@ -11,6 +11,10 @@ export interface Facts {
 }
 
 type Reason = string | null;
+
+/** Modes that the person drives, by pad or radio. */
+const STICKS: ReadonlySet<Mode> = new Set(['MANUAL', 'STEERING', 'ACRO', 'SIMPLE']);
+export const by_hand = (mode: Mode | undefined): boolean => mode !== undefined && STICKS.has(mode);
 
 const no_link = ({ link_stale, vehicle }: Facts): Reason =>
   link_stale || vehicle === null ? 'No live connection to the robot.' : null;
@@ -75,5 +79,5 @@ export const why_not_drive = (facts: Facts): Reason => {
   const before = no_link(facts) ?? no_stop(facts);
   if (before !== null) return before;
   if (facts.vehicle?.armed !== true) return 'Arm the robot first.';
-  return facts.vehicle.mode === 'MANUAL' ? null : 'Choose the mode MANUAL first.';
+  return by_hand(facts.vehicle.mode) ? null : 'Choose the mode MANUAL first.';
 };

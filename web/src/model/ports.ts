@@ -2,9 +2,12 @@
 
 import type { Answer } from './answer';
 import type { Driver } from './drivers';
+import type { Fence, FenceDraft, FenceSummary } from './fence';
 import type { LinkHealth } from './freshness';
 import type { Home, LatLon, Plan, Settings, Item } from './plan';
+import type { RunHead, RunReport } from './runs';
 import type { ReceiverSky } from './sky';
+import type { Survey, SurveyWish } from './survey';
 import type { Remembered, Tracks } from './tracks';
 import type { Capabilities, Check, Position, Preview, StationEvent, Vehicle } from './vehicle';
 
@@ -25,6 +28,35 @@ export interface MissionSummary {
   readonly items: number;
   readonly length_m: number;
   readonly updated: string;
+  readonly tags?: readonly string[];
+  readonly archived?: boolean;
+}
+/** Which missions a list shows; deleted ones can still be brought back. */
+export type Place = 'present' | 'archive' | 'deleted';
+export interface MissionFilter {
+  readonly place: Place;
+  /** A part of the name; empty: any. */
+  readonly name: string;
+  /** Empty: any. */
+  readonly tag: string;
+}
+export interface Finding {
+  readonly severity: 'error' | 'warning';
+  /** From 1; null: the mission as a whole. */
+  readonly item: number | null;
+  readonly detail: string;
+}
+/** What speaks against driving a mission here and now. */
+export interface CheckReport {
+  /** No errors: it can be loaded. */
+  readonly ready: boolean;
+  readonly findings: readonly Finding[];
+  readonly length_m: number;
+  /** Null: it has no end. */
+  readonly time_s: number | null;
+  readonly energy_wh: number | null;
+  /** Of a full battery. */
+  readonly battery_pct: number | null;
 }
 export interface Page<T> {
   readonly items: readonly T[];
@@ -60,19 +92,43 @@ export interface TileSet {
 export type StartFrom = 'first' | 'nearest' | number;
 
 export interface MissionCalls {
-  list(cursor: string | null): Promise<Answer<Page<MissionSummary>>>;
+  list(filter: MissionFilter, cursor: string | null): Promise<Answer<Page<MissionSummary>>>;
   read(id: string): Promise<Answer<Mission>>;
   read_revision(id: string, revision: number): Promise<Answer<Mission>>;
   create(plan: Plan): Promise<Answer<Mission>>;
   replace(id: string, revision: number, plan: Plan): Promise<Answer<Mission>>;
   remove(id: string, revision: number): Promise<Answer<null>>;
-  import_file(file_name: string, text: string): Promise<Answer<ImportResult>>;
+  /** Other tags, into the archive or out of it; what is left out stays. */
+  describe(
+    id: string,
+    revision: number,
+    change: { readonly tags?: readonly string[]; readonly archived?: boolean },
+  ): Promise<Answer<Mission>>;
+  copy(id: string): Promise<Answer<Mission>>;
+  /** Brings a deleted mission back. */
+  restore(id: string, revision: number): Promise<Answer<Mission>>;
+  check(id: string, revision: number): Promise<Answer<CheckReport>>;
+  /** @param origin of a table in metres that does not tell its own */
+  import_file(file: File, origin: LatLon | null): Promise<Answer<ImportResult>>;
   export_address(id: string, format: string): string;
+}
+/** A place to drive to. */
+export interface Goal extends LatLon {
+  /** How it faces there; left out: as it comes. */
+  readonly heading_deg?: number;
+  readonly reverse?: boolean;
 }
 export interface VehicleCalls {
   arm(): Promise<Answer<unknown>>;
   disarm(): Promise<Answer<unknown>>;
   set_mode(mode: string): Promise<Answer<unknown>>;
+  go_to(goal: Goal): Promise<Answer<unknown>>;
+  dock(goal: Goal & { readonly heading_deg: number }): Promise<Answer<unknown>>;
+  /** @param forward_m negative: backwards */
+  move(forward_m: number): Promise<Answer<unknown>>;
+  /** @param turn_deg clockwise positive */
+  turn(turn_deg: number): Promise<Answer<unknown>>;
+  set_home(at: LatLon): Promise<Answer<unknown>>;
   estop(): Promise<Answer<unknown>>;
   reset_estop(): Promise<Answer<unknown>>;
   /** The way so far. */
@@ -90,6 +146,42 @@ export interface VehicleCalls {
   skip(): Promise<Answer<unknown>>;
   /** Events of the last hour, oldest first. */
   recent_events(): Promise<Answer<Page<StationEvent>>>;
+}
+export interface RunCalls {
+  list(cursor: string | null): Promise<Answer<Page<RunHead>>>;
+  report(id: number): Promise<Answer<RunReport>>;
+  /** Where it drove, lap by lap. */
+  track(id: number): Promise<Answer<readonly (readonly LatLon[])[]>>;
+  /** The mission as it was driven. */
+  plan(id: number): Promise<Answer<Plan>>;
+  track_address(id: number, format: 'csv' | 'gpx' | 'geojson'): string;
+}
+export interface SurveyCalls {
+  /** Works it out; nothing is stored. */
+  preview(wish: SurveyWish): Promise<Answer<Survey>>;
+  keep(wish: SurveyWish, name: string): Promise<Answer<Mission>>;
+}
+export interface FenceCalls {
+  list(): Promise<Answer<Page<FenceSummary>>>;
+  read(id: string): Promise<Answer<Fence>>;
+  create(draft: FenceDraft): Promise<Answer<Fence>>;
+  replace(id: string, revision: number, draft: FenceDraft): Promise<Answer<Fence>>;
+  remove(id: string, revision: number): Promise<Answer<null>>;
+  /** The fence that the robot keeps to. */
+  active(): Promise<Answer<Fence | null>>;
+  /** @param id null: none */
+  activate(id: string | null): Promise<Answer<unknown>>;
+}
+/** The recording of a driven way. */
+export interface TeachCalls {
+  /** @return why nothing is recorded now; null: it is */
+  waiting(): Promise<Answer<string | null>>;
+  /** @param name of the mission; empty: the time */
+  start(name: string): Promise<Answer<unknown>>;
+  pause(): Promise<Answer<unknown>>;
+  resume(): Promise<Answer<unknown>>;
+  discard(): Promise<Answer<unknown>>;
+  stop(): Promise<Answer<Mission>>;
 }
 /** Teleoperation over the live stream. @return false: not connected, nothing was sent */
 export type SendDrive = (speed_mps: number, yaw_rate_dps: number, deadman: boolean) => boolean;
@@ -113,11 +205,16 @@ export interface DraftStorage {
 /** Exactly one is active: look only; move and select; or also add a waypoint with every tap. */
 export type MapMode = 'watch' | 'edit' | 'draw';
 
+/** How what is edited hangs together. */
+export type PlanShape = 'line' | 'ring' | 'points';
+
 export interface MapEvents {
   on_add(at: LatLon): void;
   on_insert(index: number, at: LatLon): void;
   on_move(index: number, to: LatLon): void;
   on_select(index: number | null): void;
+  /** Free ground was tapped while nothing is edited; or any place was pressed for long. */
+  on_place(at: LatLon): void;
   /** The person moved the map: following ends. */
   on_pan(): void;
 }
@@ -130,14 +227,35 @@ export interface RobotOnMap {
   readonly ellipse: Position['ellipse'];
   readonly stale: boolean;
 }
+export interface RunOnMap {
+  /** What it drove, lap by lap. */
+  readonly lines: readonly (readonly LatLon[])[];
+  readonly planned: readonly LatLon[];
+}
+/** A place on the map that means something, and how the robot faces there. */
+export interface Mark extends LatLon {
+  readonly heading_deg: number | null;
+}
 export interface MapCalls {
   listen(events: MapEvents): void;
   set_mode(mode: MapMode): void;
-  show_plan(plan: Plan, selected: number | null, refused: ReadonlySet<number>): void;
+  /** What is edited: a mission, a ring, or places that nothing joins. */
+  show_plan(
+    plan: Plan,
+    selected: number | null,
+    refused: ReadonlySet<number>,
+    shape: PlanShape,
+  ): void;
+  /** Where to stay and where not to go; null: nothing of the kind. */
+  show_fence(fence: FenceDraft | null): void;
   /** The mission the robot has loaded; null hides it. @param current_item from 1; 0: none */
   show_route(route: Plan | null, current_item: number): void;
   show_robot(robot: RobotOnMap | null, tracks: Tracks): void;
   show_home(home: LatLon | null): void;
+  /** @param pin the place that the person chose; @param goal where the robot drives to */
+  show_marks(pin: Mark | null, goal: Mark | null): void;
+  /** Runs, or a survey that is being planned, instead of the way so far; none: that one again. */
+  show_runs(runs: readonly RunOnMap[]): void;
   /** Footprint of the vehicle, drawn to scale. */
   set_size(length_m: number, width_m: number): void;
   /** What panels cover, pixels: the robot, the edited item and fitted routes stay in the free

@@ -1,6 +1,6 @@
 // The sky as the receivers see it, and how sure the robot is of where it is.
 
-import { count, metres, number_text } from './format';
+import { count, degrees_text, metres, number_text } from './format';
 import type { Estimator, Position } from './vehicle';
 
 export interface Satellite {
@@ -46,17 +46,31 @@ export interface SkySpot {
   /** Right and down from the zenith, where 1 is the horizon. */
   readonly x: number;
   readonly y: number;
+  /** There is room for its name. */
+  readonly named: boolean;
 }
 
-/** Where each one stands in a plot with north up. Those of unknown place are left out. */
-export const sky_spots = (satellites: readonly Satellite[]): readonly SkySpot[] =>
-  satellites.flatMap((satellite) => {
+/** Half of what a name takes in the plot, across and down. */
+const NAME_ROOM = { x: 0.27, y: 0.17 };
+
+/** Where each one stands in a plot with north up, the strongest first: they get a name where names
+ * would overlap. Those of unknown place are left out. */
+export const sky_spots = (satellites: readonly Satellite[]): readonly SkySpot[] => {
+  const spots: SkySpot[] = [];
+  for (const satellite of by_signal(satellites)) {
     const { elevation_deg, azimuth_deg } = satellite;
-    if (elevation_deg === null || azimuth_deg === null || elevation_deg < 0) return [];
+    if (elevation_deg === null || azimuth_deg === null || elevation_deg < 0) continue;
     const out = 1 - Math.min(elevation_deg, 90) / 90;
     const turn = (azimuth_deg * Math.PI) / 180;
-    return [{ satellite, x: out * Math.sin(turn), y: -out * Math.cos(turn) }];
-  });
+    const [x, y] = [out * Math.sin(turn), -out * Math.cos(turn)];
+    const crowded = spots.some(
+      (other) =>
+        other.named && Math.abs(other.x - x) < NAME_ROOM.x && Math.abs(other.y - y) < NAME_ROOM.y,
+    );
+    spots.push({ satellite, x, y, named: !crowded });
+  }
+  return spots;
+};
 
 /** Used ones first, then by the strength of the signal. */
 export const by_signal = (satellites: readonly Satellite[]): readonly Satellite[] =>
@@ -86,11 +100,11 @@ export const position_lines = (
           `${metres(ellipse.minor_m)} across`
         : metres(position.horizontal_accuracy_m),
     ],
-    ['Heading, 1σ', number_text(position.heading_accuracy_deg, 1, '°')],
+    ['Heading, 1σ', degrees_text(position.heading_accuracy_deg)],
     ['From', position.source ?? '—'],
   ];
   if (!estimator) return out;
-  out.push(['Compass is off by', number_text(estimator.compass_bias_deg, 1, '°')]);
+  out.push(['Compass is off by', degrees_text(estimator.compass_bias_deg)]);
   if (estimator.gyro_bias_dps !== null) {
     out.push(['Gyro is off by', number_text(estimator.gyro_bias_dps, 3, '°/s')]);
   }

@@ -96,6 +96,36 @@ export interface MissionProgress {
   readonly distance_left_m: number | null;
   readonly eta_s: number | null;
 }
+/** What a mode other than AUTO does, or did last. */
+export interface Activity {
+  /** Another number: it was replaced. */
+  readonly id: number;
+  readonly kind:
+    'goto' | 'heading' | 'move' | 'turn' | 'return' | 'retrace' | 'follow' | 'dock' | null;
+  readonly state: 'none' | 'driving' | 'turning' | 'waiting' | 'reached' | 'failed';
+  /** Why waiting or failed. */
+  readonly reason: string;
+  readonly goal: LatLon | null;
+  readonly goal_heading_deg: number | null;
+  readonly distance_m: number | null;
+  /** Left to turn, clockwise positive. */
+  readonly turn_deg: number | null;
+  /** Of FOLLOW. */
+  readonly target: LatLon | null;
+}
+/** The recording of a driven way. */
+export interface TeachBrief {
+  readonly state: 'loading' | 'idle' | 'recording' | 'paused' | 'interrupted';
+  readonly points: number;
+  readonly length_m: number;
+}
+/** The fence that the robot keeps to. */
+export interface FenceState {
+  readonly name: string;
+  readonly inside: boolean;
+  /** To the nearest limit; negative outside. */
+  readonly distance_m: number | null;
+}
 export interface SafetyCondition {
   readonly id: string;
   readonly detail: string;
@@ -115,6 +145,9 @@ export interface Vehicle {
   readonly battery: Battery;
   readonly rc: Rc;
   readonly mission: MissionProgress;
+  readonly activity: Activity;
+  readonly fence: FenceState | null;
+  readonly teach?: TeachBrief;
   readonly safety: readonly SafetyCondition[];
   readonly home: LatLon | null;
   readonly ready_to_arm: boolean;
@@ -254,4 +287,12 @@ export const receiver_place = (vehicle: Vehicle): LatLon | null => {
 export const robot_place = (vehicle: Vehicle | null): LatLon | null => {
   const { lat, lon } = vehicle?.position ?? { lat: null, lon: null };
   return lat === null || lon === null ? null : { lat, lon };
+};
+
+export const teach_words: Record<TeachBrief['state'], string> = {
+  loading: 'One moment',
+  idle: 'Off',
+  recording: 'Recording',
+  paused: 'Paused',
+  interrupted: 'Interrupted',
 };

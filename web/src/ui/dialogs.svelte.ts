@@ -1,6 +1,7 @@
-// The one dialog that is open: a question, a conflict, an import's report, the start of a mission.
+// The one dialog that is open: a question, a conflict, an import's report, the start of a mission,
+// the menu of modes.
 
-import type { ImportResult, Mission, StartFrom } from '../model/ports';
+import type { CheckReport, ImportResult, Mission, StartFrom } from '../model/ports';
 import type { Preview } from '../model/vehicle';
 
 export interface Question {
@@ -21,6 +22,8 @@ export type Dialog =
     }
   | { readonly kind: 'report'; readonly file: string; readonly result: ImportResult }
   | { readonly kind: 'start'; readonly preview: Preview; readonly from: StartFrom }
+  | { readonly kind: 'check'; readonly name: string; readonly report: CheckReport }
+  | { readonly kind: 'modes' }
   | { readonly kind: 'keys' };
 
 export class Dialogs {

@@ -7,6 +7,7 @@ import { draft_text, parse_draft, type Stored } from '../model/draft';
 import { begin_history, perform, redo, undo, type History } from '../model/history';
 import { EMPTY_PLAN, type LatLon, type Plan } from '../model/plan';
 import type { DraftStorage, MapMode, Mission, MissionCalls } from '../model/ports';
+import type { Drawing } from './drawing.svelte';
 import type { Dialogs } from './dialogs.svelte';
 import type { Notices } from './notices.svelte';
 
@@ -19,7 +20,7 @@ export const plan_of = (mission: Mission): Plan => ({
   settings: mission.settings,
 });
 
-export class Editor {
+export class Editor implements Drawing {
   history = $state.raw<History<Plan>>(begin_history(EMPTY_PLAN));
   /** Which revision the plan is based on; null: never saved. */
   stored = $state.raw<Stored | null>(null);
@@ -34,6 +35,7 @@ export class Editor {
   unsaved = $derived(this.plan !== this.#saved_plan);
   can_undo = $derived(this.history.past.length > 0);
   can_redo = $derived(this.history.future.length > 0);
+  readonly shape = 'line';
   map_mode = $derived<MapMode>(this.adding ? 'draw' : 'edit');
 
   readonly #calls: MissionCalls;
@@ -66,6 +68,10 @@ export class Editor {
     this.selected = null;
   }
 
+  select(index: number | null): void {
+    this.selected = index;
+  }
+
   insert(index: number, at: LatLon): void {
     this.do(insert_waypoint(index, at));
     this.selected = index;
@@ -74,6 +80,10 @@ export class Editor {
   move(index: number, to: LatLon): void {
     this.do(move_waypoint(index, to));
     this.selected = index;
+  }
+
+  remove_selected(): void {
+    if (this.selected !== null) this.remove(this.selected);
   }
 
   remove(index: number): void {

@@ -8,8 +8,8 @@ export const key_words: readonly (readonly [keys: string, meaning: string])[] = 
   ['Enter', 'Press the button that has the focus'],
   ['Ctrl + Z', 'Undo the last edit'],
   ['Ctrl + Y, Ctrl + Shift + Z', 'Redo'],
-  ['Ctrl + S', 'Save the mission'],
-  ['Delete', 'Delete the selected item'],
+  ['Ctrl + S', 'Save the mission, or the fence'],
+  ['Delete', 'Delete the selected item or corner'],
   ['F', 'Follow the robot'],
   ['+ and −', 'Zoom'],
   ['Arrows or W A S D', 'Drive, while the drive pad has the focus and a key is held'],
@@ -24,11 +24,14 @@ const edit_key = (station: Station, event: KeyboardEvent): boolean => {
   const { editor } = station;
   const key = event.key.toLowerCase();
   if (!(event.ctrlKey || event.metaKey)) return false;
-  if (key === 's') void editor.save();
+  const { drawing } = station;
+  if (key === 's' && drawing === null) void editor.save();
+  else if (key === 's' && drawing === station.fences) void station.fences.save();
   else if (is_typing(event.target)) return false;
+  else if (key === 'z' && drawing !== null) drawing.undo();
   else if (key === 'z' && event.shiftKey) editor.redo();
   else if (key === 'z') editor.undo();
-  else if (key === 'y') editor.redo();
+  else if (key === 'y' && drawing === null) editor.redo();
   else return false;
   return true;
 };
@@ -38,8 +41,8 @@ const plain_key = (station: Station, event: KeyboardEvent): boolean => {
   if (is_typing(event.target) || event.ctrlKey || event.metaKey || event.altKey) return false;
   switch (event.key) {
     case 'Delete':
-      if (station.tab !== 'plan' || editor.selected === null) return false;
-      editor.remove(editor.selected);
+      if (station.tab !== 'plan' && station.drawing === null) return false;
+      (station.drawing ?? editor).remove_selected();
       return true;
     case 'f':
       station.set_follow(!station.follow);

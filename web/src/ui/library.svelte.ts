@@ -1,31 +1,46 @@
-// The stored missions: list, open, delete, import.
+// The stored missions: list, search, open, tag, archive, delete, check, import.
 
-import { refusal_text } from '../model/answer';
-import type { MissionCalls, MissionSummary } from '../model/ports';
+import { refusal_text, wants_origin, type Answer } from '../model/answer';
+import type { LatLon } from '../model/plan';
+import type { CheckReport, Mission, MissionCalls, MissionSummary, Place } from '../model/ports';
 import type { Dialogs } from './dialogs.svelte';
 import type { Editor } from './editor.svelte';
 import type { Notices } from './notices.svelte';
+
+const SEARCH_AFTER_MS = 250;
 
 export class Library {
   items = $state.raw<readonly MissionSummary[]>([]);
   next_cursor = $state.raw<string | null>(null);
   loading = $state(false);
   failure = $state<string | null>(null);
-  search = $state('');
-  found = $derived(
-    this.items.filter(({ name }) => name.toLowerCase().includes(this.search.trim().toLowerCase())),
-  );
-
+  name = $state('');
+  tag = $state('');
+  place = $state<Place>('present');
+  /** Of what has been listed, to choose from. */
+  tags = $derived([...new Set(this.items.flatMap(({ tags }) => tags ?? []))].sort());
   readonly #calls: MissionCalls;
   readonly #editor: Editor;
   readonly #notices: Notices;
   readonly #dialogs: Dialogs;
+  readonly #origin: () => LatLon | null;
+  #typing: ReturnType<typeof setTimeout> | undefined;
+  /** Of two answers the later question's counts. */
+  #question = 0;
 
-  constructor(calls: MissionCalls, editor: Editor, notices: Notices, dialogs: Dialogs) {
+  /** @param origin for a file in metres that does not tell its own: home, else the robot */
+  constructor(
+    calls: MissionCalls,
+    editor: Editor,
+    notices: Notices,
+    dialogs: Dialogs,
+    origin: () => LatLon | null,
+  ) {
     this.#calls = calls;
     this.#editor = editor;
     this.#notices = notices;
     this.#dialogs = dialogs;
+    this.#origin = origin;
   }
 
   export_address(id: string, format: string): string {
@@ -36,13 +51,29 @@ export class Library {
     await this.#fetch(null);
   }
 
+  /** With every letter; asks when the person pauses. */
+  search(name: string): void {
+    this.name = name;
+    clearTimeout(this.#typing);
+    this.#typing = setTimeout(() => void this.refresh(), SEARCH_AFTER_MS);
+  }
+
+  filter(change: { readonly place?: Place; readonly tag?: string }): void {
+    this.place = change.place ?? this.place;
+    this.tag = change.tag ?? this.tag;
+    void this.refresh();
+  }
+
   async more(): Promise<void> {
     if (this.next_cursor !== null) await this.#fetch(this.next_cursor);
   }
 
   async #fetch(cursor: string | null): Promise<void> {
     this.loading = true;
-    const answer = await this.#calls.list(cursor);
+    const question = (this.#question += 1);
+    const filter = { place: this.place, name: this.name.trim(), tag: this.tag };
+    const answer = await this.#calls.list(filter, cursor);
+    if (question !== this.#question) return;
     this.loading = false;
     if (!answer.ok) {
       this.failure = refusal_text(answer.refusal);
@@ -82,10 +113,55 @@ export class Library {
     await this.refresh();
   }
 
+  set_tags = (mission: MissionSummary, tags: readonly string[]): Promise<void> =>
+    this.#change('Tags not changed', () =>
+      this.#calls.describe(mission.id, mission.revision, { tags }),
+    );
+
+  set_archived = (mission: MissionSummary, archived: boolean): Promise<void> =>
+    this.#change(archived ? 'Not archived' : 'Not brought back', () =>
+      this.#calls.describe(mission.id, mission.revision, { archived }),
+    );
+
+  restore = (mission: MissionSummary): Promise<void> =>
+    this.#change('Not brought back', () => this.#calls.restore(mission.id, mission.revision));
+
+  copy = (mission: MissionSummary): Promise<void> =>
+    this.#change('Not copied', () => this.#calls.copy(mission.id));
+
+  async #change(failed: string, call: () => Promise<Answer<Mission>>): Promise<void> {
+    const answer = await call();
+    if (!answer.ok) this.#notices.show('error', `${failed}: ${refusal_text(answer.refusal)}`);
+    await this.refresh();
+  }
+
+  /** What speaks against driving the stored mission, in a dialog. */
+  async check(id: string, revision: number, name: string): Promise<void> {
+    const answer = await this.#calls.check(id, revision);
+    if (answer.ok) this.#dialogs.show({ kind: 'check', name, report: answer.value });
+    else this.#notices.show('error', `Not checked: ${refusal_text(answer.refusal)}`);
+  }
+
+  /** The same, for whoever shows it himself. */
+  check_report(id: string, revision: number): Promise<Answer<CheckReport>> {
+    return this.#calls.check(id, revision);
+  }
+
   /** @return whether the imported mission is now in the editor */
   async import_file(file: File): Promise<boolean> {
     if (!(await this.#editor.may_discard())) return false;
-    const answer = await this.#calls.import_file(file.name, await file.text());
+    let answer = await this.#calls.import_file(file, null);
+    const origin = this.#origin();
+    if (!answer.ok && origin && wants_origin(answer.refusal)) {
+      const here = await this.#dialogs.ask({
+        title: 'Where does it begin?',
+        text: `“${file.name}” counts metres from an origin that it does not tell. Take the robot’s home for it?`,
+        yes: 'Take home',
+        danger: false,
+      });
+      if (!here) return false;
+      answer = await this.#calls.import_file(file, origin);
+    }
     if (!answer.ok) {
       const text = refusal_text(answer.refusal);
       this.#notices.show('error', `“${file.name}” was not imported: ${text}`);

@@ -2,7 +2,8 @@
 // until the robot has confirmed it.
 
 import type { Answer, Refusal } from '../model/answer';
-import type { SendDrive, StartFrom, VehicleCalls } from '../model/ports';
+import type { LatLon } from '../model/plan';
+import type { Goal, SendDrive, StartFrom, VehicleCalls } from '../model/ports';
 import type { Dialogs } from './dialogs.svelte';
 import type { Live } from './live.svelte';
 import type { Notices } from './notices.svelte';
@@ -45,6 +46,14 @@ export class Pilot {
   skip = (): Promise<boolean> => this.#do('Skip', () => this.#calls.skip());
   set_mode = (mode: string): Promise<boolean> =>
     this.#do(`Mode ${mode}`, () => this.#calls.set_mode(mode));
+  go_to = (goal: Goal): Promise<boolean> => this.#do('Go here', () => this.#calls.go_to(goal));
+  dock = (goal: Goal & { readonly heading_deg: number }): Promise<boolean> =>
+    this.#do('Dock here', () => this.#calls.dock(goal));
+  move = (forward_m: number): Promise<boolean> =>
+    this.#do('Move', () => this.#calls.move(forward_m));
+  turn = (turn_deg: number): Promise<boolean> => this.#do('Turn', () => this.#calls.turn(turn_deg));
+  set_home = (at: LatLon): Promise<boolean> =>
+    this.#do('Home here', () => this.#calls.set_home(at));
   load = (id: string, revision: number): Promise<boolean> =>
     this.#do('Load', () => this.#calls.load(id, revision));
 

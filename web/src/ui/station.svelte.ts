@@ -1,25 +1,38 @@
 // The whole station in one value: what the panels share, and the effects that keep the map in step.
 
+import { tick, untrack } from 'svelte';
+
 import { refusal_text } from '../model/answer';
-import { spots, type Plan } from '../model/plan';
+import { activity_mark } from '../model/modes';
+import { EMPTY_PLAN, spots, type Plan } from '../model/plan';
 import type {
   DraftStorage,
+  FenceCalls,
   MapCalls,
   MapEvents,
   MissionCalls,
+  RunCalls,
   SendDrive,
   StreamEvents,
+  SurveyCalls,
+  TeachCalls,
   VehicleCalls,
 } from '../model/ports';
-import type { Check } from '../model/vehicle';
+import { robot_place, type Check } from '../model/vehicle';
 import { Dialogs } from './dialogs.svelte';
+import type { Drawing } from './drawing.svelte';
 import { Drivers } from './drivers.svelte';
 import { Editor, plan_of } from './editor.svelte';
+import { Fences } from './fences.svelte';
 import { Library } from './library.svelte';
 import { Live } from './live.svelte';
 import { Notices } from './notices.svelte';
 import { Pilot } from './pilot.svelte';
+import { Runs } from './runs.svelte';
 import { Sky } from './sky.svelte';
+import { Surveyor } from './survey.svelte';
+import { Target } from './target.svelte';
+import { Teacher } from './teach.svelte';
 
 /** Between calls for the trail. After failures the wait doubles: a weak link has better things to
  * carry. */
@@ -27,12 +40,22 @@ const TRAIL_RENEWED_MS = 60_000;
 const TRAIL_AGAIN_MS = 3000;
 const TRAIL_AT_LAST_MS = 300_000;
 
+const NOTHING: ReadonlySet<number> = new Set();
+
 export type Tab = 'drive' | 'plan' | 'missions' | 'log';
+/** What is shown under Missions. */
+export type Shelf = 'missions' | 'runs' | 'fences';
+/** What is pulled out in the Drive panel. */
+export type Drawer = 'move' | 'teach' | null;
 
 /** What main.ts hands in: the doors to the server, the map and the device. */
 export interface Doors {
   readonly missions: MissionCalls;
   readonly vehicle: VehicleCalls;
+  readonly teach: TeachCalls;
+  readonly runs: RunCalls;
+  readonly survey: SurveyCalls;
+  readonly fences: FenceCalls;
   readonly map: MapCalls;
   readonly storage: DraftStorage;
   readonly send_drive: SendDrive;
@@ -43,12 +66,22 @@ export class Station {
   follow = $state(true);
   /** On a small screen the sheet can be folded away. */
   sheet_open = $state(true);
+  drawer = $state<Drawer>(null);
+  shelf = $state<Shelf>('missions');
   route = $state.raw<Plan | null>(null);
   checks = $state.raw<readonly Check[]>([]);
   /** There is room for the panel beside the map. */
   wide = $state(false);
 
+  /** What a hand on the map changes instead of the mission. */
+  drawing = $derived.by<Drawing | null>(() => {
+    if (this.tab === 'plan' && this.surveyor.open) return this.surveyor.outline;
+    const fencing = this.tab === 'missions' && this.shelf === 'fences';
+    return fencing && this.fences.draft ? this.fences : null;
+  });
+
   readonly live = new Live();
+  readonly target = new Target(this.live);
   readonly notices = new Notices();
   readonly dialogs = new Dialogs();
   readonly editor: Editor;
@@ -56,6 +89,10 @@ export class Station {
   readonly pilot: Pilot;
   readonly drivers: Drivers;
   readonly sky: Sky;
+  readonly teacher: Teacher;
+  readonly runs: Runs;
+  readonly surveyor: Surveyor;
+  readonly fences: Fences;
   readonly map: MapCalls;
   readonly #doors: Doors;
   #route_key = '';
@@ -70,10 +107,20 @@ export class Station {
     this.#doors = doors;
     this.map = doors.map;
     this.editor = new Editor(doors.missions, doors.storage, this.notices, this.dialogs);
-    this.library = new Library(doors.missions, this.editor, this.notices, this.dialogs);
+    this.library = new Library(
+      doors.missions,
+      this.editor,
+      this.notices,
+      this.dialogs,
+      () => this.live.vehicle?.home ?? robot_place(this.live.vehicle),
+    );
     this.pilot = new Pilot(doors.vehicle, doors.send_drive, this.live, this.notices, this.dialogs);
     this.drivers = new Drivers(doors.vehicle, this.notices, this.dialogs);
     this.sky = new Sky(doors.vehicle);
+    this.runs = new Runs(doors.runs);
+    this.surveyor = new Surveyor(doors.survey, this.editor, this.notices);
+    this.fences = new Fences(doors.fences, this.notices, this.dialogs);
+    this.teacher = new Teacher(doors.teach, this.editor, this.notices, this.dialogs);
     doors.map.listen(this.#map_events());
     if (this.editor.restore_draft()) this.map.fit(spots(this.editor.plan));
     void this.#fetch_past_events();
@@ -114,6 +161,10 @@ export class Station {
     if (tab === 'log') void this.fetch_checks();
   }
 
+  toggle_drawer(drawer: NonNullable<Drawer>): void {
+    this.drawer = this.drawer === drawer ? null : drawer;
+  }
+
   set_follow(follow: boolean): void {
     this.follow = follow;
     if (follow) this.map.center_robot();
@@ -127,6 +178,21 @@ export class Station {
     if (all.length === 0) return;
     this.set_follow(false);
     this.map.fit(all);
+  }
+
+  /** The panel has its new height, and the map knows it. */
+  async settled(): Promise<void> {
+    await tick();
+    const frame = (): Promise<number> => new Promise(requestAnimationFrame);
+    await frame();
+    await frame();
+  }
+
+  /** Opens an item of the edited mission. @param item from 1 */
+  show_item(item: number): void {
+    this.dialogs.close();
+    this.editor.selected = item - 1;
+    this.tab = 'plan';
   }
 
   async fetch_checks(): Promise<void> {
@@ -179,15 +245,20 @@ export class Station {
   }
 
   #map_events(): MapEvents {
-    const select = (index: number | null): void => {
-      this.editor.selected = index;
-      if (index !== null) this.tab = 'plan';
-    };
+    const drawn = (): Drawing => this.drawing ?? this.editor;
     return {
-      on_add: (at) => this.editor.add(at),
-      on_insert: (index, at) => this.editor.insert(index, at),
-      on_move: (index, to) => this.editor.move(index, to),
-      on_select: select,
+      on_add: (at) => drawn().add(at),
+      on_insert: (index, at) => drawn().insert(index, at),
+      on_move: (index, to) => drawn().move(index, to),
+      on_select: (index) => {
+        drawn().select(index);
+        if (index !== null && this.drawing === null) this.tab = 'plan';
+      },
+      on_place: (at) => {
+        if (this.tab !== 'drive') return;
+        this.target.choose(at);
+        this.sheet_open = true;
+      },
       on_pan: () => {
         if (this.follow) this.set_follow(false);
       },
@@ -197,11 +268,40 @@ export class Station {
   #keep_map_in_step(): void {
     const { editor, live, map } = this;
     // A map that moves under the finger cannot be drawn on.
-    $effect(() => map.set_follow(this.follow && this.tab !== 'plan'));
-    $effect(() => map.set_mode(this.tab === 'plan' ? editor.map_mode : 'watch'));
-    $effect(() => map.show_plan(editor.plan, editor.selected, editor.refused));
+    $effect(() => map.set_follow(this.follow && this.tab !== 'plan' && this.drawing === null));
+    $effect(() => {
+      const edits = this.tab === 'plan' ? editor.map_mode : 'watch';
+      map.set_mode(this.drawing?.map_mode ?? edits);
+    });
+    // A run is looked at, and a field drawn, without what is planned otherwise.
+    const looks_back = $derived(this.tab === 'missions' && this.shelf === 'runs');
+    $effect(() => {
+      const surveys = this.drawing === this.surveyor.outline;
+      map.show_runs(looks_back ? this.runs.on_map : surveys ? this.surveyor.on_map : []);
+    });
+    $effect(() => {
+      const { drawing } = this;
+      const hidden = looks_back && this.runs.first;
+      const { plan, selected, shape } = drawing ?? editor;
+      const refused = drawing ? NOTHING : editor.refused;
+      map.show_plan(hidden ? EMPTY_PLAN : plan, selected, refused, shape);
+    });
+    $effect(() => {
+      const drawn = this.drawing === this.fences ? this.fences.draft : null;
+      map.show_fence(drawn ?? this.fences.active);
+    });
+    // Another one holds now, or none: whoever changed it.
+    const fence_name = $derived(live.vehicle?.fence?.name ?? null);
+    $effect(() => {
+      void fence_name;
+      untrack(() => void this.fences.refresh_active());
+    });
     $effect(() => map.show_route(this.route, live.vehicle?.mission.current_item ?? 0));
     $effect(() => map.show_robot(live.robot, live.tracks));
     $effect(() => map.show_home(live.vehicle?.home ?? null));
+    $effect(() => {
+      const pin = this.tab === 'drive' ? this.target.mark : null;
+      map.show_marks(pin, activity_mark(live.vehicle));
+    });
   }
 }

@@ -1,0 +1,62 @@
+// What was driven: the list, a report, its track on the map, and two runs side by side.
+
+import { arm, open_page, press, tab, type Point } from './page';
+import { expect, test, type Station } from './station';
+
+/** Drives a short bend to its end. */
+const drive = async (station: Station, name: string, speed_mps: number): Promise<void> => {
+  const { home } = await station.rest<{ home: Point }>('GET', '/vehicle');
+  const at = (north_m: number, east_m: number) => ({
+    type: 'waypoint',
+    lat: home.lat + north_m / 111_250,
+    lon: home.lon + east_m / (111_320 * Math.cos((home.lat * Math.PI) / 180)),
+  });
+  const mission = await station.rest<{ id: string; revision: number }>('POST', '/missions', {
+    name,
+    settings: { speed_mps },
+    items: [at(4, 1), at(8, 1), at(8, 5)],
+  });
+  await station.rest('POST', '/execution/load', { mission_id: mission.id });
+  const { id, revision } = mission;
+  await station.rest('POST', '/execution/start', { mission_id: id, revision, from: 'first' });
+  const state = async () =>
+    (await station.rest<{ mission: { state: string } }>('GET', '/vehicle')).mission.state;
+  await expect.poll(state, { timeout: 90_000 }).toBe('finished');
+};
+
+test('a run has a report and a track, and is compared with another one', async ({
+  page,
+  station,
+}) => {
+  test.setTimeout(240_000);
+  await page.setViewportSize({ width: 390, height: 844 });
+  await open_page(page, station.url);
+  await tab(page, 'Missions');
+  await press(page, 'Runs');
+  await expect(page.getByText('Nothing has been driven yet.')).toBeVisible();
+
+  await tab(page, 'Drive');
+  await arm(page);
+  await drive(station, 'Slow bend', 0.6);
+  await drive(station, 'Quick bend', 1.2);
+
+  await tab(page, 'Missions');
+  const list = page.getByRole('list', { name: 'Runs' });
+  await expect(list.getByRole('button')).toHaveCount(2);
+  await expect(list).toContainText('Finished');
+  await list.getByRole('button', { name: /^Quick bend/ }).click();
+  const report = page.getByRole('table', { name: 'Report' });
+  await expect(report.getByRole('row', { name: /Off the path, rms/ })).toContainText(/cm|m/);
+  await expect(report.getByRole('row', { name: /^Driven/ })).toContainText(/1\d\.\d m/);
+  await page.getByText('Each corner').click();
+  await expect(page.getByRole('table', { name: 'Corners' })).toContainText('90°');
+
+  await page.getByLabel('Compare with').selectOption({ index: 1 });
+  await expect(report).toContainText('Other');
+  const time = report.getByRole('row', { name: /^Time/ });
+  await expect(time.locator('.better')).toHaveCount(1);
+  expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBeLessThanOrEqual(390);
+
+  await press(page, 'All runs');
+  await expect(list.getByRole('button')).toHaveCount(2);
+});

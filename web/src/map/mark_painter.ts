@@ -1,0 +1,81 @@
+// Draws the place that the person chose, and where the robot drives to outside of a mission.
+
+import type { LatLon } from '../model/plan';
+import type { Mark } from '../model/ports';
+import { stroke_cased, type Paint } from './canvas';
+import type { Palette } from './palette';
+import { to_plane } from './projection';
+
+const PIN_PX = 15;
+const FACING_PX = 46;
+
+const place = (paint: Paint, at: LatLon): readonly [x: number, y: number] => {
+  const [x, y] = to_plane(at);
+  return [paint.x_px(x), paint.y_px(y)];
+};
+
+/** An arrow from the place: how the robot faces there. */
+const paint_facing = (paint: Paint, at: Mark, color: string, casing: string): void => {
+  if (at.heading_deg === null) return;
+  const { context } = paint;
+  const [x, y] = place(paint, at);
+  context.save();
+  context.translate(x, y);
+  context.rotate((at.heading_deg * Math.PI) / 180);
+  context.beginPath();
+  context.moveTo(0, 0);
+  context.lineTo(0, -FACING_PX);
+  context.moveTo(-9, -FACING_PX + 11);
+  context.lineTo(0, -FACING_PX);
+  context.lineTo(9, -FACING_PX + 11);
+  stroke_cased(context, casing, color, 4);
+  context.restore();
+};
+
+/** A drop that stands with its tip on the place. */
+export const paint_pin = (paint: Paint, pin: Mark, colors: Palette): void => {
+  const { context } = paint;
+  paint_facing(paint, pin, colors.selected, colors.casing);
+  const [x, y] = place(paint, pin);
+  const top = y - 2.2 * PIN_PX;
+  context.beginPath();
+  context.moveTo(x, y);
+  context.quadraticCurveTo(x - PIN_PX, top + PIN_PX, x - PIN_PX, top);
+  context.arc(x, top, PIN_PX, Math.PI, 0);
+  context.quadraticCurveTo(x + PIN_PX, top + PIN_PX, x, y);
+  context.closePath();
+  context.strokeStyle = colors.casing;
+  context.lineWidth = 5;
+  context.lineJoin = 'round';
+  context.stroke();
+  context.fillStyle = colors.selected;
+  context.fill();
+  context.beginPath();
+  context.arc(x, top, 5.5, 0, 2 * Math.PI);
+  context.fillStyle = colors.on_point;
+  context.fill();
+};
+
+/** A ring, and a dashed line to it from the robot. */
+export const paint_goal = (
+  paint: Paint,
+  goal: Mark,
+  from: LatLon | null,
+  colors: Palette,
+): void => {
+  const { context } = paint;
+  const [x, y] = place(paint, goal);
+  if (from) {
+    const [x0, y0] = place(paint, from);
+    context.beginPath();
+    context.moveTo(x0, y0);
+    context.lineTo(x, y);
+    context.setLineDash([10, 8]);
+    stroke_cased(context, colors.casing, colors.route, 3);
+    context.setLineDash([]);
+  }
+  paint_facing(paint, goal, colors.route, colors.casing);
+  context.beginPath();
+  context.arc(x, y, 13, 0, 2 * Math.PI);
+  stroke_cased(context, colors.casing, colors.current, 4.5);
+};

@@ -1,0 +1,253 @@
+// Fences: the list, the one that the robot keeps to, and the one that is drawn.
+
+import { refusal_text, type Answer, type Refusal } from '../model/answer';
+import {
+  area_places,
+  fresh_circle,
+  NEW_FENCE,
+  with_places,
+  type AreaKind,
+  type Fence,
+  type FenceDraft,
+  type FenceSummary,
+} from '../model/fence';
+import { begin_history, perform, undo, type History } from '../model/history';
+import {
+  add_place,
+  insert_place,
+  move_place,
+  plan_of_places,
+  remove_place,
+  type Places,
+} from '../model/outline';
+import type { LatLon, Plan } from '../model/plan';
+import type { FenceCalls, MapMode, PlanShape } from '../model/ports';
+import type { Dialogs } from './dialogs.svelte';
+import type { Drawing } from './drawing.svelte';
+import type { Notices } from './notices.svelte';
+
+/** The area that a hand on the map changes, or the rally points. */
+export type Part = number | 'rally' | null;
+
+export class Fences implements Drawing {
+  items = $state.raw<readonly FenceSummary[]>([]);
+  failure = $state<string | null>(null);
+  /** What the robot keeps to. */
+  active = $state.raw<Fence | null>(null);
+  #history = $state.raw<History<FenceDraft | null>>(begin_history<FenceDraft | null>(null));
+  /** What is drawn now. */
+  draft = $derived<FenceDraft | null>(this.#history.present);
+  can_undo = $derived(this.#history.past.length > 0);
+  part = $state<Part>(null);
+  selected = $state<number | null>(null);
+  busy = $state(false);
+  #stored = $state.raw<Fence | null>(null);
+  unsaved = $derived(this.draft !== null && this.draft !== this.#stored);
+
+  places = $derived<Places>(this.#places());
+  plan = $derived<Plan>(plan_of_places(this.places));
+  shape = $derived<PlanShape>(this.#circle ? 'points' : this.part === 'rally' ? 'points' : 'ring');
+  map_mode = $derived<MapMode>(this.part === null ? 'edit' : 'draw');
+
+  readonly #calls: FenceCalls;
+  readonly #notices: Notices;
+  readonly #dialogs: Dialogs;
+
+  constructor(calls: FenceCalls, notices: Notices, dialogs: Dialogs) {
+    this.#calls = calls;
+    this.#notices = notices;
+    this.#dialogs = dialogs;
+  }
+
+  async refresh(): Promise<void> {
+    const answer = await this.#calls.list();
+    if (answer.ok) this.items = answer.value.items;
+    this.failure = answer.ok ? null : refusal_text(answer.refusal);
+    await this.refresh_active();
+  }
+
+  async refresh_active(): Promise<void> {
+    const answer = await this.#calls.active();
+    if (answer.ok) this.active = answer.value;
+  }
+
+  begin(): void {
+    this.#show(NEW_FENCE, null);
+  }
+
+  /** @return its places, to be shown on the map */
+  async open(id: string): Promise<readonly LatLon[]> {
+    const answer = await this.#calls.read(id);
+    if (!answer.ok) {
+      this.#complain('Not opened', answer.refusal);
+      return [];
+    }
+    this.#show(answer.value, answer.value);
+    return [...answer.value.areas.flatMap(area_places), ...answer.value.rally];
+  }
+
+  async close(): Promise<void> {
+    if (this.unsaved) {
+      const sure = await this.#dialogs.ask({
+        title: 'Discard unsaved changes?',
+        text: `“${this.draft?.name ?? ''}” has changes that are not saved.`,
+        yes: 'Discard',
+        danger: true,
+      });
+      if (!sure) return;
+    }
+    this.#history = begin_history<FenceDraft | null>(null);
+    this.part = null;
+    this.selected = null;
+  }
+
+  rename(name: string): void {
+    if (this.draft) this.#edit({ ...this.draft, name });
+  }
+
+  /** @param at the middle of a circle; null: corners are tapped one by one */
+  add_area(kind: AreaKind, at: LatLon | null): void {
+    if (!this.draft) return;
+    const area = at ? fresh_circle(kind, at) : { kind, polygon: [] };
+    this.#edit({ ...this.draft, areas: [...this.draft.areas, area] });
+    this.choose(this.draft.areas.length - 1);
+  }
+
+  remove_area(index: number): void {
+    if (!this.draft) return;
+    this.#edit({ ...this.draft, areas: this.draft.areas.filter((_, k) => k !== index) });
+    this.choose(null);
+  }
+
+  set_radius(index: number, radius_m: number): void {
+    if (!this.draft) return;
+    const areas = this.draft.areas.map((area, k) =>
+      k === index && area.circle ? { kind: area.kind, circle: { ...area.circle, radius_m } } : area,
+    );
+    this.#edit({ ...this.draft, areas });
+  }
+
+  choose(part: Part): void {
+    this.part = part;
+    this.selected = null;
+  }
+
+  add(at: LatLon): void {
+    this.#change(this.#circle ? () => [at] : add_place(at));
+    this.selected = null;
+  }
+
+  insert(index: number, at: LatLon): void {
+    this.#change(insert_place(index, at));
+    this.selected = index;
+  }
+
+  move(index: number, to: LatLon): void {
+    this.#change(move_place(index, to));
+    this.selected = index;
+  }
+
+  select(index: number | null): void {
+    this.selected = index;
+  }
+
+  remove_selected(): void {
+    if (this.selected !== null && !this.#circle) this.#change(remove_place(this.selected));
+    this.selected = null;
+  }
+
+  undo(): void {
+    if (!this.draft) return;
+    this.#history = undo(this.#history);
+    const part = this.part;
+    // The area may have been added by what is undone.
+    const gone = typeof part === 'number' && !this.draft.areas[part];
+    this.choose(gone ? null : part);
+  }
+
+  async save(): Promise<void> {
+    const { draft } = this;
+    const stored = this.#stored;
+    if (!draft) return;
+    await this.#do('Not saved', async () => {
+      const answer = stored
+        ? await this.#calls.replace(stored.id, stored.revision, draft)
+        : await this.#calls.create(draft);
+      if (answer.ok) {
+        this.#show(answer.value, answer.value);
+        this.#notices.show('good', `Saved the fence “${answer.value.name}”.`);
+      }
+      return answer;
+    });
+  }
+
+  /** @param fence null: the robot keeps to none */
+  async use(fence: FenceSummary | null): Promise<void> {
+    if (fence === null) {
+      const sure = await this.#dialogs.ask({
+        title: 'Without a fence?',
+        text: 'Nothing keeps the robot inside any more.',
+        yes: 'Without a fence',
+        danger: true,
+      });
+      if (!sure) return;
+    }
+    await this.#do('Not changed', () => this.#calls.activate(fence?.id ?? null));
+  }
+
+  async remove(fence: FenceSummary): Promise<void> {
+    const sure = await this.#dialogs.ask({
+      title: 'Delete fence?',
+      text: `“${fence.name}” will be deleted.`,
+      yes: 'Delete',
+      danger: true,
+    });
+    if (sure) await this.#do('Not deleted', () => this.#calls.remove(fence.id, fence.revision));
+  }
+
+  get #circle(): boolean {
+    return typeof this.part === 'number' && this.draft?.areas[this.part]?.circle !== undefined;
+  }
+
+  #places(): Places {
+    if (this.part === 'rally') return this.draft?.rally ?? [];
+    const area = this.part === null ? undefined : this.draft?.areas[this.part];
+    return area ? area_places(area) : [];
+  }
+
+  #change(action: (places: Places) => Places): void {
+    const { draft, part } = this;
+    if (!draft || part === null) return;
+    const places = action(this.places);
+    if (part === 'rally') {
+      this.#edit({ ...draft, rally: places });
+      return;
+    }
+    const areas = draft.areas.map((area, k) => (k === part ? with_places(area, places) : area));
+    this.#edit({ ...draft, areas });
+  }
+
+  #show(draft: FenceDraft, stored: Fence | null): void {
+    this.#history = begin_history<FenceDraft | null>(draft);
+    this.#stored = stored;
+    this.part = null;
+    this.selected = null;
+  }
+
+  #edit(draft: FenceDraft): void {
+    this.#history = perform(this.#history, () => draft);
+  }
+
+  #complain(what: string, refusal: Refusal): void {
+    this.#notices.show('error', `${what}: ${refusal_text(refusal)}`);
+  }
+
+  async #do(failed: string, call: () => Promise<Answer<unknown>>): Promise<void> {
+    if (this.busy) return;
+    this.busy = true;
+    const answer = await call();
+    this.busy = false;
+    if (!answer.ok) this.#complain(failed, answer.refusal);
+    await this.refresh();
+  }
+}
