@@ -40,6 +40,7 @@ struct SafetyParams {
   bool radio_required = true;
   double radio_timeout_s = 0.5;
   double bumper_timeout_s = 1.0;
+  double spin_s = 3.0;
   double gnss_slow_s = 2.0;
   double gnss_hold_s = 6.0;
   double gnss_free_m = 35.0;
@@ -64,6 +65,8 @@ void fields(V& v, SafetyParams& p) {
     "transmitter silent, or its counter frozen, for so long: stop");
   v("bumper_timeout_s", p.bumper_timeout_s, 0.1, 10.0,
     "a bumper that was heard once and then not for so long: hold");
+  v("spin_s", p.spin_s, 0.5, 60.0,
+    "wheels that turn for so long while the receiver sees the robot all but stand: hold");
   v("gnss_slow_s", p.gnss_slow_s, 0.5, 60.0, "no usable fix for so long: creep");
   v("gnss_hold_s", p.gnss_hold_s, 1.0, 600.0, "no usable fix for so long, and no gyro: hold");
   v("gnss_free_m", p.gnss_free_m, 0.0, 10000.0,

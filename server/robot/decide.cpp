@@ -15,6 +15,8 @@ using base::ExecutionState;
 using base::Mode;
 using base::Severity;
 
+/// What tracks may have counted in vain until they are caught at it.
+constexpr double kSpun_m = 5.0;
 /// The base tells its state every 0.1 to 0.2 s: until then its last word is of the time before.
 constexpr base::Duration kSettled = std::chrono::milliseconds(500);
 
@@ -32,6 +34,7 @@ Facts Robot::Impl::facts() const {
           .commands_lost = follow.lost(),
           .not_following = follow.failing(),
           .sigma_bad_since = sigma_bad_since,
+          .spins = spin.for_longer_than(config.safety.spin_s, now),
           .estimate = health};
 }
 
@@ -45,6 +48,11 @@ void Robot::Impl::judge() {
   if (!bad) sigma_bad_since.reset();
   if (bad && !sigma_bad_since) sigma_bad_since = now;
   watch_base();
+  spin.step(world.motion, world.gnss_velocity, now);
+  // Once each time, whoever drives: the way counted meanwhile misleads all of them.
+  const bool spins = spin.for_longer_than(p.spin_s, now);
+  if (spins && !spun) estimator.doubt_position(kSpun_m);
+  spun = spins;
 
   assessment = assess(facts(), p, now);
   if (assessment.base_estop) latch_estop("the button at the base");

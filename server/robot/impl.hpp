@@ -44,6 +44,7 @@
 #include "robot/outbox.hpp"
 #include "robot/radio_keys.hpp"
 #include "robot/safety.hpp"
+#include "robot/spin.hpp"
 #include "robot/straight_start.hpp"
 #include "robot/world.hpp"
 
@@ -118,6 +119,8 @@ struct Robot::Impl {
   std::vector<base::Check> checks;
   std::optional<Time> base_waited_since;
   FollowWatch follow;
+  SpinWatch spin;
+  bool spun = false;                    ///< at the last tick
   std::optional<Time> in_charge_since;  ///< armed, no radio: the base is to listen to us
   bool base_listened = false;
   bool base_left = false;  ///< at this tick

@@ -149,6 +149,8 @@ class Assessor {
       tell(Response::Hold, "gnss_disagree", "two receivers say different places");
     }
     without_gnss(tell);
+    if (f_.spins)
+      tell(Response::Hold, "wheels_spin", "the wheels turn and the robot does not move");
     const double sigma_m = f_.pose->horizontal_sigma_m;
     if (sigma_m > p_.sigma_slow_m) {
       const bool hold =

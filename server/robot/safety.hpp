@@ -14,6 +14,7 @@
 // | no usable fix (AUTO), a gyro           | 2 s, 35 m driven   | Warn, Hold                     |
 // | no usable fix (AUTO), no gyro          | 2 s, 6 s           | Slow, Hold                     |
 // | two receivers disagree (AUTO)          | at once            | Hold                           |
+// | wheels turn, robot stands (AUTO)      | 3 s (parameter)    | Hold                           |
 // | position uncertain (AUTO)              | at once, 2 s worse | Slow, Hold                     |
 // | battery low, fault                     | at once            | Warn, Hold                     |
 // Hold stops, goes to mode HOLD and stays there until an operator goes on. Only the radio's
@@ -44,6 +45,7 @@ struct Facts {
   bool commands_lost = false;             ///< see FollowWatch
   bool not_following = false;             ///< commands_lost, and told to move now
   std::optional<Time> sigma_bad_since;
+  bool spins = false;  ///< see SpinWatch
   const base::EstimatorHealth& estimate;
 };
 

@@ -70,6 +70,9 @@ class Estimator {
   /// accordingly until the fix class changes (for 2 s). Needs a pose. Counted as a reset.
   void anchor(base::EnuPoint at, std::optional<int> item) noexcept;
   void drop_anchor() noexcept;
+  /// Tracks that spun counted a way that was not driven: the position may be off by so much, and
+  /// the next usable fix decides, even while standing. No reset by itself.
+  void doubt_position(double sigma_m) noexcept;
 
   /// Empty until the first usable fix. Without a known heading the yaw sigma is π.
   std::optional<base::Pose> pose(Time now) const;

@@ -64,6 +64,15 @@ void Estimator::place(std::optional<base::EnuPoint> at, std::optional<double> ya
   note_reset("pose", before);
 }
 
+void Estimator::doubt_position(double sigma_m) noexcept {
+  if (!located_) return;
+  for (const StateIndex i : {kEast, kNorth}) {
+    const double known_m = std::sqrt(belief_.P(i, i));
+    reset_state(belief_, i, belief_.x(i), std::hypot(known_m, sigma_m));
+  }
+  located_since_ = now_;
+}
+
 void Estimator::anchor(base::EnuPoint at, std::optional<int> item) noexcept {
   const Belief before = belief_;
   const base::EnuPoint here{belief_.x(kEast), belief_.x(kNorth)};
