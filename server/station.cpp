@@ -181,11 +181,11 @@ Result<void> Station::Impl::open(const Settings& settings, const Options& option
                               [this](const base::Measurement& m) { robot.measurements().put(m); });
   if (!made) return tl::unexpected(made.error());
   bay = std::move(*made);
-  recall(settings, options);
   if (auto done = open_tiles(settings); !done) return done;
   if (auto done = open_store(settings, options); !done) return done;
   make_api(settings);
   if (auto done = open_server(settings, options); !done) return done;
+  recall(settings, options);
   start();
   return {};
 }
@@ -312,6 +312,7 @@ void Station::Impl::recall(const Settings& settings, const Options& options) {
   learned_by = learner(settings);
   const nav::Learned known = read_learned(learned_file, learned_by, base::wall_now());
   robot.recall(known);
+  if (!known.odometry_scale && !known.gyro_bias_radps) return;
   const auto text = [](const std::optional<nav::LearnedValue>& v) {
     return v ? std::to_string(v->value) : std::string("not known");
   };

@@ -180,7 +180,7 @@ void push_in_vain(RigBase& rig, double seconds) {
 void get_stuck_under_way(Rig& rig) {
   rig.arm_and_start(rig.plan_of({{0, 10}, {4, 2}}));
   ASSERT_TRUE(rig.run_until([&] { return rig.truth().local.north_m > 3.0; }, 60.0));
-  push_in_vain(rig, 6.5);
+  push_in_vain(rig, 5.0);
 }
 
 TEST(Unreachable, StopsAndSaysWhy) {
