@@ -16,7 +16,13 @@ const stands_still = (station: Station): Promise<void> =>
 
 /** Marks a place by a tap, metres right and up of the middle of the map. */
 const mark = async (page: Page, right_m: number, up_m: number): Promise<void> => {
-  const [x, y] = await map_middle(page);
+  // An alert that comes or goes moves the middle, and the robot with it.
+  let [x, y] = [NaN, NaN];
+  await expect(async () => {
+    const before = [x, y];
+    [x, y] = await map_middle(page);
+    expect([x, y]).toEqual(before);
+  }).toPass({ intervals: [400] });
   const scale = await pixels_per_m(page);
   await page.mouse.click(x + right_m * scale, y - up_m * scale);
   await expect(page.getByLabel('Chosen place')).toBeVisible();
