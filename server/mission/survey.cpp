@@ -77,6 +77,9 @@ class Planner {
         field_(std::move(field)),
         spacing_m_(request.spacing_m),
         border_m_(request.border_m.value_or(request.spacing_m / 2.0)),
+        // A swath's round end leaves the tip of a corner open: in a spiral, where every ring has
+        // corners, a share of 0.05 of the spacing's square for each right angle, and 0.01 so.
+        ring_step_m_(request.spacing_m * (request.pattern == SurveyPattern::Spiral ? 0.92 : 1.0)),
         sagitta_m_(std::clamp(request.spacing_m / 100.0, 0.001, 0.025)) {}
 
   Result<Survey> plan() {
@@ -173,7 +176,10 @@ class Planner {
     return arcs ? std::max(corner_m2, request_.radius_m * request_.radius_m) : corner_m2;
   }
 
-  /// Ring k runs k spacings inside of the first. What rings leave open in sharp corners and at the
+  /// How far inside of the first ring the last one covers.
+  double covered_m() const { return (rings_ - 1) * ring_step_m_ + spacing_m_ / 2.0; }
+
+  /// Ring k runs k steps inside of the first. What rings leave open in sharp corners and at the
   /// ends of ridges, and what lies inside of the last one, is left for tracks.
   ///
   ///      ╲ ring k−1     ring k turns back before the corner
@@ -186,7 +192,7 @@ class Planner {
     while (rings_ < count && points <= kMaxSurveyItems) {
       levels.push_back({parts_of(drivable_rings(level)), {}});
       for (const Part& part : levels.back().parts) points += part.outer.size();
-      Area next = offset(part_.area(), -spacing_m_ * ++rings_, sagitta_m_);
+      Area next = offset(part_.area(), -ring_step_m_ * ++rings_, sagitta_m_);
       if (rings_ == count || next.empty()) break;
       leave_open(next);
       level = std::move(next);
@@ -196,15 +202,14 @@ class Planner {
       open_.clear();
       return;
     }
-    const Area inner =
-        rings_ == 0 ? part_.area() : offset(part_.area(), -(rings_ - 0.5) * spacing_m_, sagitta_m_);
+    const Area inner = rings_ == 0 ? part_.area() : offset(part_.area(), -covered_m(), sagitta_m_);
     open_.insert(open_.end(), inner.begin(), inner.end());
   }
 
   /// What neither the last ring nor the next one covers.
   void leave_open(const Area& next) {
     const double grace_m = 0.01 * spacing_m_;
-    const Area due = offset(part_.area(), -(rings_ - 0.5) * spacing_m_, sagitta_m_);
+    const Area due = offset(part_.area(), -covered_m(), sagitta_m_);
     const Area done = offset(drivable_rings(next), spacing_m_ / 2.0 + grace_m, sagitta_m_);
     for (const Part& part : parts_of(without(due, done))) {
       if (square_m2(part.area()) < least_open_m2()) continue;
@@ -366,6 +371,7 @@ class Planner {
   const Field field_;
   const double spacing_m_;
   const double border_m_;
+  const double ring_step_m_;
   const double sagitta_m_;
   Part part_;
   Area open_;  ///< what tracks have to cover

@@ -35,7 +35,7 @@ inline constexpr std::size_t kMaxSurveyItems = 100'000;
 enum class SurveyPattern {
   Tracks,     ///< headland passes, then parallel tracks
   Perimeter,  ///< headland passes alone
-  Spiral      ///< rings from the edge to the middle
+  Spiral      ///< rings from the edge to the middle, a little closer than the spacing
 };
 enum class SurveyTurn {
   Pivot,  ///< on the spot
