@@ -36,9 +36,9 @@ std::string decimals(double value) {
   return text.data();
 }
 
-using Row = std::array<std::string, 8>;
+using TableRow = std::array<std::string, 8>;
 
-Row row_of(const ntrip::Source& s) {
+TableRow row_of(const ntrip::Source& s) {
   const bool placed = s.lat && s.lon;
   return {s.mountpoint,
           s.format,
@@ -92,18 +92,18 @@ std::string fetch(const ntrip::Caster& caster, ntrip::Reply& reply) {
 }  // namespace
 
 std::string table_text(const std::vector<ntrip::Source>& sources) {
-  std::vector<Row> rows{
+  std::vector<TableRow> rows{
       {"mountpoint", "format", "systems", "country", "lat", "lon", "wants GGA", "login"}};
   for (const auto& s : sources) rows.push_back(row_of(s));
-  Row::size_type column = 0;
-  std::array<std::size_t, std::tuple_size_v<Row>> width{};
-  for (const Row& row : rows) {
+  TableRow::size_type column = 0;
+  std::array<std::size_t, std::tuple_size_v<TableRow>> width{};
+  for (const TableRow& row : rows) {
     for (column = 0; column < row.size(); ++column) {
       width[column] = std::max(width[column], row[column].size());
     }
   }
   std::string out;
-  for (const Row& row : rows) {
+  for (const TableRow& row : rows) {
     std::string line;
     for (column = 0; column < row.size(); ++column) {
       line += printable(row[column]) + std::string(width[column] - row[column].size() + 2, ' ');
