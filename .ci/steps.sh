@@ -52,7 +52,7 @@ run_ctest() {
   rm -rf "$results" "$results.xml"
   mkdir -p "$results"
   GTEST_OUTPUT=xml:$results/ ctest --test-dir "$folder" -L "^($labels)\$" --no-tests=error \
-    --output-on-failure --timeout 600 --output-junit "$results.xml" "$@" || code=$?
+    --output-on-failure --timeout 1200 --output-junit "$results.xml" "$@" || code=$?
   "$root/.ci/results" gtest "$results" "$results.xml"
   return "$code"
 }
