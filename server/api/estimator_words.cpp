@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "api/measured.hpp"
 #include "api/words.hpp"
 #include "base/angle.hpp"
 
@@ -10,22 +11,16 @@ namespace roverd::api {
 
 namespace {
 
-Json digits(double value, double places) {
-  if (!std::isfinite(value)) return nullptr;
-  const double out = std::round(value * places) / places;
-  return out == 0.0 ? 0.0 : out;  // no "-0.0"
-}
-
 Json metres_json(base::EnuPoint p) {
-  return {{"east_m", digits(p.east_m, 1e3)}, {"north_m", digits(p.north_m, 1e3)}};
+  return {{"east_m", rounded(p.east_m, 1e3)}, {"north_m", rounded(p.north_m, 1e3)}};
 }
 
 /// What was measured last against what was expected, and its square in units of its variance.
 void add_innovation(Json& out, const std::string& name, const std::string& unit,
                     const base::InputHealth& input, double scale) {
   const auto& i = input.innovation;
-  out[name + unit] = i ? digits(i->size * scale, 1e3) : Json(nullptr);
-  out[name + "_nis"] = i ? digits(i->nis, 1e2) : Json(nullptr);
+  out[name + unit] = i ? rounded(i->size * scale, 1e3) : Json(nullptr);
+  out[name + "_nis"] = i ? rounded(i->nis, 1e2) : Json(nullptr);
 }
 
 Json innovations_json(const base::EstimatorHealth& e) {
@@ -56,18 +51,18 @@ Json reset_json(const std::optional<base::EstimateReset>& reset, base::Time now)
   if (!reset) return nullptr;
   // The jump is old minus new, and yaw turns the other way round than a compass.
   return {{"what", reset->what},
-          {"moved_m", digits(std::hypot(reset->jump.east_m, reset->jump.north_m), 1e3)},
-          {"turned_deg", digits(base::deg_from_rad(reset->jump_rad), 1e2)},
-          {"age_s", digits(std::max(0.0, base::seconds(now - reset->stamp)), 1e2)}};
+          {"moved_m", rounded(std::hypot(reset->jump.east_m, reset->jump.north_m), 1e3)},
+          {"turned_deg", rounded(base::deg_from_rad(reset->jump_rad), 1e2)},
+          {"age_s", rounded(std::max(0.0, base::seconds(now - reset->stamp)), 1e2)}};
 }
 
 Json anchor_json(const std::optional<base::Anchor>& anchor, base::Time now) {
   if (!anchor) return nullptr;
   Json out = metres_json(anchor->offset);
-  out["lat"] = digits(anchor->at.lat, 1e9);
-  out["lon"] = digits(anchor->at.lon, 1e9);
+  out["lat"] = rounded(anchor->at.lat, 1e9);
+  out["lon"] = rounded(anchor->at.lon, 1e9);
   out["item"] = anchor->item ? Json(*anchor->item) : Json(nullptr);
-  out["age_s"] = digits(std::max(0.0, base::seconds(now - anchor->stamp)), 1e2);
+  out["age_s"] = rounded(std::max(0.0, base::seconds(now - anchor->stamp)), 1e2);
   return out;
 }
 
@@ -79,17 +74,17 @@ Json estimator_json(const base::Snapshot& s) {
   return {{"alignment", base::to_string(e.alignment)},
           {"advice", e.advice.empty() ? Json(nullptr) : Json(e.advice)},
           {"gyro", e.gyro},
-          {"gyro_bias_dps",
-           e.gyro_bias_radps ? digits(base::deg_from_rad(*e.gyro_bias_radps), 1e3) : Json(nullptr)},
+          {"gyro_bias_dps", e.gyro_bias_radps ? rounded(base::deg_from_rad(*e.gyro_bias_radps), 1e3)
+                                              : Json(nullptr)},
           {"compass_bias_deg",
-           compass ? digits(-base::deg_from_rad(e.compass_bias_rad), 1e2) : Json(nullptr)},
-          {"odometry_scale", s.pose ? digits(e.odometry_scale, 1e4) : Json(nullptr)},
-          {"pull_1pm", s.pose ? digits(e.pull_1pm, 1e4) : Json(nullptr)},
+           compass ? rounded(-base::deg_from_rad(e.compass_bias_rad), 1e2) : Json(nullptr)},
+          {"odometry_scale", s.pose ? rounded(e.odometry_scale, 1e4) : Json(nullptr)},
+          {"pull_1pm", s.pose ? rounded(e.pull_1pm, 1e4) : Json(nullptr)},
           {"gnss_offset", e.gnss_offset ? metres_json(*e.gnss_offset) : Json(nullptr)},
           {"innovations", innovations_json(e)},
           {"rejected", rejected_json(e)},
           {"refusals", refusals_json(e)},
-          {"without_gnss_m", s.pose ? digits(e.free_m, 1e2) : Json(nullptr)},
+          {"without_gnss_m", s.pose ? rounded(e.free_m, 1e2) : Json(nullptr)},
           {"resets", e.resets},
           {"last_reset", reset_json(e.last_reset, s.now)},
           {"anchor", anchor_json(e.anchor, s.now)}};
