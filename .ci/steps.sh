@@ -173,7 +173,7 @@ step_asan() {
   "$root/.ci/results" ctest "$logs/asan.xml"
 }
 
-threaded='^(base|bay|net|store|link|robot|net_socket|api_socket)_test$'
+threaded='^(base|supervise|net|store|link|robot|net_socket|api_socket)_test$'
 
 step_tsan() {
   local targets

@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "api/guard.hpp"
+#include "api/json/words.hpp"
 #include "api/message.hpp"
-#include "api/words.hpp"
 #include "robot/robot.hpp"
 #include "store/store.hpp"
 #include "store/tiles.hpp"

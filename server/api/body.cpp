@@ -5,8 +5,8 @@
 
 #include <boost/beast/core/string.hpp>
 
-#include "mission/json.hpp"
-#include "mission/pointer.hpp"
+#include "mission/json/json.hpp"
+#include "mission/json/pointer.hpp"
 
 namespace roverd::api {
 

@@ -10,12 +10,12 @@
 #include "api/api.hpp"
 #include "api/body.hpp"
 #include "api/fence_keeper.hpp"
+#include "api/json/words.hpp"
 #include "api/problem.hpp"
 #include "api/router.hpp"
 #include "api/run_recorder.hpp"
 #include "api/teach.hpp"
 #include "api/trail.hpp"
-#include "api/words.hpp"
 
 namespace roverd::api {
 

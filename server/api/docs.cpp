@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "api/problem.hpp"
-#include "mission/xml.hpp"
+#include "mission/formats/xml.hpp"
 
 namespace roverd::api {
 

@@ -6,7 +6,7 @@
 
 #include "api/body.hpp"
 #include "base/angle.hpp"
-#include "mission/json.hpp"
+#include "mission/json/json.hpp"
 
 namespace roverd::api {
 namespace {

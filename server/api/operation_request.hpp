@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "api/message.hpp"
-#include "mission/operations.hpp"
+#include "mission/edit/operations.hpp"
 
 namespace roverd::api {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "api/plain_json.hpp"
+#include "api/json/plain_json.hpp"
 
 namespace roverd::api {
 

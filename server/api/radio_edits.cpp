@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "mission/operations.hpp"
+#include "mission/edit/operations.hpp"
 
 namespace roverd::api {
 namespace {

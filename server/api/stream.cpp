@@ -2,9 +2,9 @@
 
 #include <utility>
 
-#include "api/plain_json.hpp"
+#include "api/json/plain_json.hpp"
 #include "base/angle.hpp"
-#include "mission/json.hpp"
+#include "mission/json/json.hpp"
 
 namespace roverd::api {
 

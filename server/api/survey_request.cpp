@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "api/body.hpp"
-#include "api/measured.hpp"
+#include "api/json/measured.hpp"
 #include "base/angle.hpp"
 #include "mission/text.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "api/message.hpp"
-#include "mission/survey.hpp"
+#include "mission/survey/survey.hpp"
 
 namespace roverd::api {
 

@@ -17,7 +17,7 @@
 
 #include "api/message.hpp"
 #include "base/snapshot.hpp"
-#include "mission/teach.hpp"
+#include "mission/edit/teach.hpp"
 #include "robot/robot.hpp"
 #include "store/store.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "api/words.hpp"
+#include "api/json/words.hpp"
 
 namespace roverd::api {
 

@@ -22,7 +22,7 @@
 #include <string_view>
 #include <vector>
 
-#include "mission/fence.hpp"
+#include "mission/fence/fence.hpp"
 #include "mission/plan.hpp"
 
 namespace roverd::mission {

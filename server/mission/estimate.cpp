@@ -6,7 +6,7 @@
 #include "base/angle.hpp"
 #include "base/tangent_plane.hpp"
 #include "mission/checks.hpp"
-#include "mission/plane_lines.hpp"
+#include "mission/fence/plane_lines.hpp"
 
 namespace roverd::mission {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "mission/json.hpp"
+#include "mission/json/json.hpp"
 
 namespace roverd::mission {
 namespace {

@@ -18,7 +18,7 @@
 
 #include "base/geo.hpp"
 #include "base/snapshot.hpp"
-#include "mission/fence.hpp"
+#include "mission/fence/fence.hpp"
 #include "nav/behave/route.hpp"
 #include "robot/config.hpp"
 

@@ -24,7 +24,7 @@
 #include "base/params.hpp"
 #include "base/result.hpp"
 #include "base/snapshot.hpp"
-#include "mission/fence.hpp"
+#include "mission/fence/fence.hpp"
 #include "mission/plan.hpp"
 #include "nav/estimate/learned.hpp"
 #include "robot/config.hpp"

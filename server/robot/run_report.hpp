@@ -1,6 +1,6 @@
 #pragma once
 // How well a run was driven: its track against the path that its mission meant, with the parameters
-// of that day. Measures: nav/measure.hpp. Pure; linear in the number of points.
+// of that day. Measures: nav/measure/measure.hpp. Pure; linear in the number of points.
 
 #include <optional>
 #include <span>
@@ -11,7 +11,7 @@
 #include "base/params.hpp"
 #include "base/result.hpp"
 #include "mission/plan.hpp"
-#include "nav/measure.hpp"
+#include "nav/measure/measure.hpp"
 #include "robot/config.hpp"
 
 namespace roverd::robot {

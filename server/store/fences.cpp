@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "mission/fence_json.hpp"
+#include "mission/fence/fence_json.hpp"
 #include "mission/text.hpp"
 #include "store/mission_entry.hpp"
 #include "store/packed.hpp"

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "mission/json.hpp"
+#include "mission/json/json.hpp"
 #include "mission/text.hpp"
 #include "store/missions.hpp"
 

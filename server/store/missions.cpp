@@ -11,7 +11,7 @@
 
 #include <sys/random.h>
 
-#include "mission/json.hpp"
+#include "mission/json/json.hpp"
 #include "mission/text.hpp"
 #include "store/mission_entry.hpp"
 #include "store/packed.hpp"

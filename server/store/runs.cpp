@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "mission/json.hpp"
+#include "mission/json/json.hpp"
 #include "store/missions.hpp"
 
 namespace roverd::store {

@@ -16,10 +16,10 @@
 #include "base/result.hpp"
 #include "base/snapshot.hpp"
 #include "base/time.hpp"
-#include "mission/fence.hpp"
+#include "mission/edit/teach.hpp"
+#include "mission/fence/fence.hpp"
+#include "mission/graph/route_graph.hpp"
 #include "mission/plan.hpp"
-#include "mission/route_graph.hpp"
-#include "mission/teach.hpp"
 #include "store/run_words.hpp"
 
 namespace roverd::store {

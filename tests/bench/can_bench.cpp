@@ -66,7 +66,7 @@ class Traffic {
   std::size_t number_ = 0;
 };
 
-/// The driver on its thread, as DriverBay has it.
+/// The driver on its thread, as Supervisor has it.
 class Side {
  public:
   Side(const std::string& path, std::vector<std::atomic<base::Time::rep>>& sent_at)

@@ -7,11 +7,11 @@
 
 #include <benchmark/benchmark.h>
 
-#include "mission/compare.hpp"
-#include "mission/formats.hpp"
-#include "mission/operations.hpp"
-#include "mission/route_graph.hpp"
-#include "mission/survey.hpp"
+#include "mission/edit/compare.hpp"
+#include "mission/edit/operations.hpp"
+#include "mission/formats/formats.hpp"
+#include "mission/graph/route_graph.hpp"
+#include "mission/survey/survey.hpp"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 
-#include "replay_run.hpp"
+#include "replay/run.hpp"
 #include "unit/replay/recorder.hpp"
 
 namespace {

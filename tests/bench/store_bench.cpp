@@ -17,8 +17,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "mission/formats.hpp"
-#include "mission/json.hpp"
+#include "mission/formats/formats.hpp"
+#include "mission/json/json.hpp"
 #include "robot/robot.hpp"
 #include "store/database.hpp"
 #include "store/migrations.hpp"

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "decode.hpp"
+#include "tools/decode.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "mission/fence_json.hpp"
+#include "mission/fence/fence_json.hpp"
 
 using namespace roverd;
 

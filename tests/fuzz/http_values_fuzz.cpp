@@ -7,9 +7,9 @@
 #include <string_view>
 
 #include "api/guard.hpp"
-#include "api/rfc3339.hpp"
+#include "api/json/rfc3339.hpp"
+#include "api/json/words.hpp"
 #include "api/router.hpp"
-#include "api/words.hpp"
 #include "net/assets.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "mission/formats.hpp"
+#include "mission/formats/formats.hpp"
 
 using namespace roverd::mission;
 

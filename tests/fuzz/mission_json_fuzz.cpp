@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "mission/json.hpp"
-#include "mission/quick_read.hpp"
+#include "mission/json/json.hpp"
+#include "mission/json/quick_read.hpp"
 
 using namespace roverd::mission;
 

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "mission/formats.hpp"
-#include "mission/json.hpp"
+#include "mission/formats/formats.hpp"
+#include "mission/json/json.hpp"
 
 using namespace roverd::mission;
 

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "mission/route_graph.hpp"
+#include "mission/graph/route_graph.hpp"
 
 using namespace roverd::mission;
 

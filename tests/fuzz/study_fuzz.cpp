@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "study.hpp"
+#include "study/study.hpp"
 
 using namespace roverd;
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "mission/formats.hpp"
+#include "mission/formats/formats.hpp"
 
 using namespace roverd::mission;
 

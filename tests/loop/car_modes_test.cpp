@@ -19,17 +19,17 @@ bool ended(const RigBase& rig) {
   return rig.state()->mode == Mode::Hold;
 }
 
-struct Berth {
+struct Runner {
   const char* vehicle;
   std::uint64_t seed;
   bool reverse;
 };
 
-class CarDock : public testing::TestWithParam<Berth> {};
+class CarDock : public testing::TestWithParam<Runner> {};
 INSTANTIATE_TEST_SUITE_P(Loop, CarDock,
-                         testing::Values(Berth{"uku", 1, false}, Berth{"uku", 2, false},
-                                         Berth{"uku", 3, false}, Berth{"uku", 1, true},
-                                         Berth{"imiev", 1, false}, Berth{"imiev", 2, true}),
+                         testing::Values(Runner{"uku", 1, false}, Runner{"uku", 2, false},
+                                         Runner{"uku", 3, false}, Runner{"uku", 1, true},
+                                         Runner{"imiev", 1, false}, Runner{"imiev", 2, true}),
                          [](const auto& made) {
                            return std::string(made.param.vehicle) +
                                   std::to_string(made.param.seed) +

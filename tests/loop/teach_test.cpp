@@ -1,7 +1,7 @@
 // A way is driven by hand, recorded, and driven again: the true robot passes where it passed
 // before.
 
-#include "mission/teach.hpp"
+#include "mission/edit/teach.hpp"
 
 #include "rig.hpp"
 

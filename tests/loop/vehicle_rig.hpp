@@ -10,9 +10,9 @@
 
 #include "ackermann/driver.hpp"
 #include "bumper/driver.hpp"
+#include "config/settings.hpp"
 #include "ratio/driver.hpp"
 #include "rig.hpp"
-#include "settings.hpp"
 #include "sim/cart.hpp"
 #include "sim/config.hpp"
 #include "twist/driver.hpp"

@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include "api/plain_json.hpp"
+#include "api/json/plain_json.hpp"
+#include "api/json/rfc3339.hpp"
+#include "api/json/words.hpp"
 #include "api/problem.hpp"
-#include "api/rfc3339.hpp"
-#include "api/words.hpp"
 
 namespace roverd::api {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "api/words.hpp"
+#include "api/json/words.hpp"
 #include "base/angle.hpp"
 
 namespace roverd::api {

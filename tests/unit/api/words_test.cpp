@@ -1,4 +1,4 @@
-#include "api/words.hpp"
+#include "api/json/words.hpp"
 
 #include <memory>
 

@@ -1,10 +1,10 @@
 // What changed between two plans.
 
-#include "mission/compare.hpp"
+#include "mission/edit/compare.hpp"
 
 #include <gtest/gtest.h>
 
-#include "mission/operations.hpp"
+#include "mission/edit/operations.hpp"
 #include "plans.hpp"
 
 namespace roverd::mission {

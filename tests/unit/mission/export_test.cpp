@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "files.hpp"
-#include "mission/formats.hpp"
+#include "mission/formats/formats.hpp"
 #include "plans.hpp"
 #include "real_data.hpp"
 

@@ -1,6 +1,6 @@
 // A fence in the words of the public interface.
 
-#include "mission/fence_json.hpp"
+#include "mission/fence/fence_json.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 //                0 └─────────────────┘
 //                  0  40  60        100 east
 
-#include "mission/fence.hpp"
+#include "mission/fence/fence.hpp"
 
 #include <cmath>
 #include <limits>

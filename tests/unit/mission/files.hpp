@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "mission/formats.hpp"
+#include "mission/formats/formats.hpp"
 
 namespace roverd::mission {
 

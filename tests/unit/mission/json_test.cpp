@@ -1,11 +1,11 @@
-#include "mission/json.hpp"
+#include "mission/json/json.hpp"
 
 #include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
 
-#include "mission/quick_read.hpp"
+#include "mission/json/quick_read.hpp"
 #include "mission/text.hpp"
 #include "plans.hpp"
 

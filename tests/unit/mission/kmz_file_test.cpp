@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <zip.h>
 
-#include "mission/formats.hpp"
+#include "mission/formats/formats.hpp"
 #include "plans.hpp"
 
 namespace roverd::mission {

@@ -1,10 +1,10 @@
 // Operations on the list: add, remove, clear, reverse, join, split, renumber.
 
-#include "mission/operations.hpp"
+#include "mission/edit/operations.hpp"
 
 #include <gtest/gtest.h>
 
-#include "mission/json.hpp"
+#include "mission/json/json.hpp"
 #include "plans.hpp"
 
 namespace roverd::mission {

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "base/geo.hpp"
-#include "mission/formats.hpp"
-#include "mission/json.hpp"
+#include "mission/formats/formats.hpp"
+#include "mission/json/json.hpp"
 #include "plans.hpp"
 
 namespace roverd::mission {

@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "files.hpp"
-#include "mission/formats.hpp"
+#include "mission/formats/formats.hpp"
 #include "plans.hpp"
 
 namespace roverd::mission {

@@ -1,6 +1,6 @@
 // Node maps: what is read, what is wrong with it, and ways through it.
 
-#include "mission/route_graph.hpp"
+#include "mission/graph/route_graph.hpp"
 
 #include <cmath>
 

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "base/geo.hpp"
-#include "mission/operations.hpp"
+#include "mission/edit/operations.hpp"
 #include "plans.hpp"
 
 namespace roverd::mission {

@@ -1,6 +1,6 @@
 // Surveys judged by a raster of their own: what is covered, and that no metre leaves the field.
 
-#include "mission/survey.hpp"
+#include "mission/survey/survey.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -10,7 +10,7 @@
 
 #include "base/tangent_plane.hpp"
 #include "field_raster.hpp"
-#include "mission/json.hpp"
+#include "mission/json/json.hpp"
 
 namespace roverd::mission {
 namespace {

@@ -1,6 +1,6 @@
 // Which samples of a drive become points, and what mission they make.
 
-#include "mission/teach.hpp"
+#include "mission/edit/teach.hpp"
 
 #include <chrono>
 #include <cmath>

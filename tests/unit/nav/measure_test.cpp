@@ -1,4 +1,4 @@
-#include "nav/measure.hpp"
+#include "nav/measure/measure.hpp"
 
 #include <cmath>
 #include <functional>

@@ -5,8 +5,8 @@
 #include <unistd.h>
 
 #include "recorder.hpp"
-#include "replay_run.hpp"
-#include "replays.hpp"
+#include "replay/replays.hpp"
+#include "replay/run.hpp"
 
 namespace roverd {
 namespace {

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "folder.hpp"
-#include "mission/json.hpp"
+#include "mission/json/json.hpp"
 #include "store/database.hpp"
 
 namespace roverd::store {

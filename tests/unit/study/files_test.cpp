@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "study.hpp"
+#include "study/study.hpp"
 
 namespace roverd::study {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "study.hpp"
+#include "study/study.hpp"
 
 namespace roverd::study {
 namespace {

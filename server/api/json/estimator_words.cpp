@@ -1,0 +1,93 @@
+// How well the robot knows where it is, for GET /vehicle and the stream.
+
+#include <algorithm>
+#include <cmath>
+
+#include "api/json/measured.hpp"
+#include "api/json/words.hpp"
+#include "base/angle.hpp"
+
+namespace roverd::api {
+
+namespace {
+
+Json metres_json(base::EnuPoint p) {
+  return {{"east_m", rounded(p.east_m, 1e3)}, {"north_m", rounded(p.north_m, 1e3)}};
+}
+
+/// What was measured last against what was expected, and its square in units of its variance.
+void add_innovation(Json& out, const std::string& name, const std::string& unit,
+                    const base::InputHealth& input, double scale) {
+  const auto& i = input.innovation;
+  out[name + unit] = i ? rounded(i->size * scale, 1e3) : Json(nullptr);
+  out[name + "_nis"] = i ? rounded(i->nis, 1e2) : Json(nullptr);
+}
+
+Json innovations_json(const base::EstimatorHealth& e) {
+  Json out = Json::object();
+  add_innovation(out, "position", "_m", e.position, 1.0);
+  add_innovation(out, "velocity", "_mps", e.velocity, 1.0);
+  // A compass that reads too far clockwise has a smaller yaw than expected.
+  add_innovation(out, "compass", "_deg", e.compass, -base::deg_from_rad(1.0));
+  add_innovation(out, "heading", "_deg", e.heading, -base::deg_from_rad(1.0));
+  return out;
+}
+
+Json rejected_json(const base::EstimatorHealth& e) {
+  return {{"position", e.position.rejected}, {"velocity", e.velocity.rejected},
+          {"compass", e.compass.rejected},   {"heading", e.heading.rejected},
+          {"odometry", e.odometry.rejected}, {"inertial", e.inertial.rejected}};
+}
+
+Json refusals_json(const base::EstimatorHealth& e) {
+  Json out = Json::object();
+  for (std::size_t i = 0; i < base::kRefusals; ++i) {
+    out[std::string(base::to_string(static_cast<base::Refusal>(i)))] = e.refusals[i];
+  }
+  return out;
+}
+
+Json reset_json(const std::optional<base::EstimateReset>& reset, base::Time now) {
+  if (!reset) return nullptr;
+  // The jump is old minus new, and yaw turns the other way round than a compass.
+  return {{"what", reset->what},
+          {"moved_m", rounded(std::hypot(reset->jump.east_m, reset->jump.north_m), 1e3)},
+          {"turned_deg", rounded(base::deg_from_rad(reset->jump_rad), 1e2)},
+          {"age_s", rounded(std::max(0.0, base::seconds(now - reset->stamp)), 1e2)}};
+}
+
+Json anchor_json(const std::optional<base::Anchor>& anchor, base::Time now) {
+  if (!anchor) return nullptr;
+  Json out = metres_json(anchor->offset);
+  out["lat"] = rounded(anchor->at.lat, 1e9);
+  out["lon"] = rounded(anchor->at.lon, 1e9);
+  out["item"] = anchor->item ? Json(*anchor->item) : Json(nullptr);
+  out["age_s"] = rounded(std::max(0.0, base::seconds(now - anchor->stamp)), 1e2);
+  return out;
+}
+
+}  // namespace
+
+Json estimator_json(const base::Snapshot& s) {
+  const base::EstimatorHealth& e = s.estimator;
+  const bool compass = s.pose && e.compass_heard;
+  return {{"alignment", base::to_string(e.alignment)},
+          {"advice", e.advice.empty() ? Json(nullptr) : Json(e.advice)},
+          {"gyro", e.gyro},
+          {"gyro_bias_dps", e.gyro_bias_radps ? rounded(base::deg_from_rad(*e.gyro_bias_radps), 1e3)
+                                              : Json(nullptr)},
+          {"compass_bias_deg",
+           compass ? rounded(-base::deg_from_rad(e.compass_bias_rad), 1e2) : Json(nullptr)},
+          {"odometry_scale", s.pose ? rounded(e.odometry_scale, 1e4) : Json(nullptr)},
+          {"pull_1pm", s.pose ? rounded(e.pull_1pm, 1e4) : Json(nullptr)},
+          {"gnss_offset", e.gnss_offset ? metres_json(*e.gnss_offset) : Json(nullptr)},
+          {"innovations", innovations_json(e)},
+          {"rejected", rejected_json(e)},
+          {"refusals", refusals_json(e)},
+          {"without_gnss_m", s.pose ? rounded(e.free_m, 1e2) : Json(nullptr)},
+          {"resets", e.resets},
+          {"last_reset", reset_json(e.last_reset, s.now)},
+          {"anchor", anchor_json(e.anchor, s.now)}};
+}
+
+}  // namespace roverd::api

@@ -1,0 +1,229 @@
+#include <limits>
+#include <utility>
+
+#include "api/checks.hpp"
+#include "api/context.hpp"
+#include "mission/json/json.hpp"
+
+namespace roverd::api {
+
+namespace {
+
+const std::vector<unsigned> kCommand = {200, 400, 403, 409, 413, 415, 422, 429, 503};
+
+constexpr std::int64_t kMostRevisions = 1'000'000'000;
+
+std::function<Json(const base::Snapshot&)> progress_of(const ContextPtr& context) {
+  return [context](const base::Snapshot& snapshot) {
+    return execution_json(snapshot.mission, context->runs.offer());
+  };
+}
+
+/// "first", "nearest" or an item's number, from text or a JSON number.
+std::optional<robot::StartMission> read_from(std::string_view word) {
+  robot::StartMission start;
+  if (word == "first") return start;
+  if (word == "nearest") {
+    start.from = robot::StartMission::From::Nearest;
+    return start;
+  }
+  const auto item = whole_number(word);
+  if (!item || *item < 1 || *item > static_cast<std::int64_t>(mission::kMaxItems)) {
+    return std::nullopt;
+  }
+  start.from = robot::StartMission::From::Item;
+  start.item = static_cast<int>(*item);
+  return start;
+}
+
+constexpr const char* kFromRule = "must be \"first\", \"nearest\" or an item's number from 1";
+
+Handler plain(const ContextPtr& context, robot::Command command, Moves moves) {
+  return [context, command = std::move(command), moves](const CallPtr& call) {
+    const auto body = json_body(call->request, true);
+    if (!body) return call->respond(problem(body.error()));
+    Members members(*body);
+    const base::Time not_after = validity_of(members, *call, moves);
+    if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
+    run_command(context, call, command, not_after, progress_of(context));
+  };
+}
+
+Handler load(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    const auto body = json_body(call->request);
+    if (!body) return call->respond(problem(body.error()));
+    Members members(*body);
+    members.require("mission_id");
+    const auto id = members.text("mission_id");
+    const auto revision = members.whole("revision", 1, kMostRevisions);
+    const base::Time not_after = validity_of(members, *call, Moves::No);
+    if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
+
+    const auto hand_over = [context, call, not_after](base::Result<store::StoredMission> stored) {
+      if (!stored) return call->respond(problem(stored.error()));
+      const mission::CheckReport report = check_now(*context, stored->plan);
+      if (report.errors > 0) return call->respond(problem(refusal(report)));
+      auto compiled =
+          context->deps.robot.compile({stored->id, stored->revision, std::move(stored->plan)});
+      if (!compiled) return call->respond(problem(compiled.error()));
+      Context::Warnings warnings{stored->id, stored->revision,
+                                 findings_json(report, mission::Severity::Warning)};
+      run_command(context, call, robot::LoadMission{std::move(*compiled)}, not_after,
+                  [context, warnings](const base::Snapshot& snapshot) {
+                    context->warnings = warnings;
+                    Json out = progress_of(context)(snapshot);
+                    out["warnings"] = warnings.list;
+                    return out;
+                  });
+    };
+    if (revision) {
+      context->deps.store.read_revision(*id, *revision, hand_over);
+    } else {
+      context->deps.store.read_mission(*id, hand_over);
+    }
+  };
+}
+
+/// What is not loaded cannot be previewed: a state, not a missing address.
+base::Error as_conflict(base::Error error) {
+  if (error.code == base::Code::NotFound) error.code = base::Code::Conflict;
+  return error;
+}
+
+Json present_preview(const ContextPtr& context, const robot::Preview& preview) {
+  const auto snapshot = context->deps.robot.snapshot();
+  Json out = preview_json(preview, snapshot ? snapshot->mission.state : base::ExecutionState::Idle);
+  const Context::Warnings& found = context->warnings;
+  const bool same = found.mission_id == preview.mission_id && found.revision == preview.revision;
+  out["warnings"] = same ? found.list : Json::array();
+  return out;
+}
+
+base::Result<robot::StartMission> read_start(const Json& body, const Call& call,
+                                             base::Time& not_after) {
+  Members members(body);
+  members.require("mission_id");
+  members.require("revision");
+  const auto id = members.text("mission_id");
+  const auto revision = members.whole("revision", 1, kMostRevisions);
+  std::optional<robot::StartMission> start = robot::StartMission{};
+  if (const Json* from = members.any("from")) {
+    start.reset();
+    if (from->is_number_integer()) start = read_from(from->dump());
+    if (*from == "first" || *from == "nearest") start = read_from(from->get<std::string>());
+    if (!start) members.complain("from", kFromRule);
+  }
+  not_after = validity_of(members, call, Moves::Yes);
+  if (const auto read = members.finish(); !read) {
+    return tl::unexpected<base::Error>(read.error());
+  }
+  start->mission_id = *id;
+  start->revision = *revision;
+  return *start;
+}
+
+Handler start(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    const auto body = json_body(call->request);
+    if (!body) return call->respond(problem(body.error()));
+    base::Time not_after;
+    const auto command = read_start(*body, *call, not_after);
+    if (!command) return call->respond(problem(command.error()));
+    const auto preview = context->deps.robot.preview(*command);
+    if (!preview) return call->respond(problem(as_conflict(preview.error())));
+    context->commands.run(
+        *command, not_after, base::steady_now(),
+        [context, call, shown = *preview](base::Result<void> result) {
+          if (!result) return call->respond(problem(result.error()));
+          call->respond(json_response(http::status::ok, present_preview(context, shown)));
+        });
+  };
+}
+
+Handler preview(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    const std::string word = query_text(*call, "from");
+    auto wanted = read_from(word.empty() ? "first" : word);
+    if (!wanted) {
+      return call->respond(
+          problem({base::Code::Invalid, std::string("from ") + kFromRule, {{"from", kFromRule}}}));
+    }
+    const auto loaded = context->deps.robot.loaded();
+    if (!loaded) {
+      return call->respond(problem({base::Code::Conflict, "no mission is loaded (state idle)"}));
+    }
+    wanted->mission_id = loaded->id;
+    wanted->revision = loaded->revision;
+    const auto shown = context->deps.robot.preview(*wanted);
+    if (!shown) return call->respond(problem(as_conflict(shown.error())));
+    call->respond(json_response(http::status::ok, present_preview(context, *shown)));
+  };
+}
+
+Handler skip(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    const auto body = json_body(call->request, true);
+    if (!body) return call->respond(problem(body.error()));
+    Members members(*body);
+    const auto item = members.whole("item", 1, static_cast<std::int64_t>(mission::kMaxItems));
+    const base::Time not_after = validity_of(members, *call, Moves::Yes);
+    if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
+    run_command(context, call, robot::SkipItem{static_cast<int>(item.value_or(0))}, not_after,
+                progress_of(context));
+  };
+}
+
+/// What is paused goes on. With nothing in hand, the mission that a restart left behind does, from
+/// the place it had come to.
+Handler resume(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    const auto body = json_body(call->request, true);
+    if (!body) return call->respond(problem(body.error()));
+    Members members(*body);
+    const base::Time not_after = validity_of(members, *call, Moves::Yes);
+    if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
+    const auto offer = context->runs.offer();
+    const auto loaded = context->deps.robot.loaded();
+    if (!offer || (loaded && loaded->id != offer->mission_id)) {
+      return run_command(context, call, robot::ResumeMission{}, not_after, progress_of(context));
+    }
+    context->deps.store.read_revision(
+        offer->mission_id, offer->revision,
+        [context, call, not_after, place = offer->place](auto stored) {
+          if (!stored) {
+            return call->respond(
+                problem({base::Code::Conflict,
+                         "the mission that was left behind is gone: " + stored.error().detail}));
+          }
+          auto compiled =
+              context->deps.robot.compile({stored->id, stored->revision, std::move(stored->plan)});
+          if (!compiled) return call->respond(problem(compiled.error()));
+          run_command(context, call, robot::ResumeAt{std::move(*compiled), place}, not_after,
+                      progress_of(context));
+        });
+  };
+}
+
+}  // namespace
+
+void add_execution_routes(const ContextPtr& c) {
+  const auto get = http::verb::get;
+  const auto post = http::verb::post;
+  auto with_404 = kCommand;
+  with_404.push_back(404);
+  c->router.add({get, "/execution", {200, 503}, [c](const CallPtr& call) {
+                   if (const auto s = c->snapshot_or_refuse(call)) {
+                     call->respond(json_response(http::status::ok, progress_of(c)(*s)));
+                   }
+                 }});
+  c->router.add({get, "/execution/preview", {200, 409, 422, 503}, preview(c)});
+  c->router.add({post, "/execution/load", with_404, load(c)});
+  c->router.add({post, "/execution/start", kCommand, start(c)});
+  c->router.add({post, "/execution/pause", kCommand, plain(c, robot::PauseMission{}, Moves::No)});
+  c->router.add({post, "/execution/resume", kCommand, resume(c)});
+  c->router.add({post, "/execution/stop", kCommand, plain(c, robot::StopMission{}, Moves::No)});
+  c->router.add({post, "/execution/skip", kCommand, skip(c)});
+}
+
+}  // namespace roverd::api

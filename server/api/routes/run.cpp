@@ -1,0 +1,111 @@
+#include <utility>
+
+#include "api/context.hpp"
+#include "api/json/plain_json.hpp"
+#include "api/json/run_words.hpp"
+
+namespace roverd::api {
+
+namespace {
+
+/// Empty: answered with 404, as no number can be meant.
+std::optional<std::int64_t> run_of(const CallPtr& call) {
+  const auto id = whole_number(call->params.find("id")->second);
+  if (!id) {
+    call->respond(
+        problem({base::Code::NotFound, "there is no run " + call->params.find("id")->second}));
+  }
+  return id;
+}
+
+using Read = std::function<void(const CallPtr&, const store::StoredRun&,
+                                const std::vector<store::RunPoint>&)>;
+
+/// Head and track, then `answer`.
+Handler with_track(const ContextPtr& context, Read answer) {
+  return [context, answer = std::move(answer)](const CallPtr& call) {
+    const auto id = run_of(call);
+    if (!id) return;
+    store::Store& store = context->deps.store;
+    store.read_run(*id, [&store, call, answer, id = *id](base::Result<store::StoredRun> run) {
+      if (!run) return call->respond(problem(run.error()));
+      store.read_run_points(id, [call, answer, run = std::move(*run)](auto points) {
+        if (!points) return call->respond(problem(points.error()));
+        answer(call, run, *points);
+      });
+    });
+  };
+}
+
+Handler list_runs(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    const auto limit = limit_of(*call);
+    if (!limit) return call->respond(problem(limit.error()));
+    context->deps.store.list_runs(
+        *limit, query_text(*call, "cursor"),
+        [call](base::Result<store::Page<store::RunHead>> page) {
+          if (!page) return call->respond(problem(page.error()));
+          Json items = Json::array();
+          for (const store::RunHead& run : page->items) items.push_back(run_head_json(run));
+          const auto& next = page->next_cursor;
+          call->respond(json_response(
+              http::status::ok,
+              {{"items", std::move(items)}, {"next_cursor", next ? Json(*next) : Json(nullptr)}}));
+        });
+  };
+}
+
+Handler get_run(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    const auto id = run_of(call);
+    if (!id) return;
+    context->deps.store.read_run(*id, [call](base::Result<store::StoredRun> run) {
+      if (!run) return call->respond(problem(run.error()));
+      call->respond(json_response(http::status::ok, run_json(*run)));
+    });
+  };
+}
+
+void answer_track(const CallPtr& call, const store::StoredRun& run,
+                  const std::vector<store::RunPoint>& points) {
+  const std::string word = query_text(*call, "format");
+  const std::string format = word.empty() ? "geojson" : word;
+  std::string text;
+  std::string_view type;
+  if (format == "geojson") {
+    text = track_geojson(run.head, points);
+    type = "application/geo+json";
+  } else if (format == "csv") {
+    text = track_csv(run.head, points);
+    type = "text/csv; charset=utf-8";
+  } else if (format == "gpx") {
+    text = track_gpx(run.head, points);
+    type = "application/gpx+xml";
+  } else {
+    const std::string rule = "format must be geojson, csv or gpx";
+    return call->respond(problem({base::Code::Invalid, rule, {{"format", rule}}}));
+  }
+  Response response = text_response(http::status::ok, type, std::move(text));
+  response.set(http::field::content_disposition,
+               "attachment; filename=\"run-" + std::to_string(run.head.id) + "." + format + "\"");
+  call->respond(std::move(response));
+}
+
+void answer_report(const CallPtr& call, const store::StoredRun& run,
+                   const std::vector<store::RunPoint>& points) {
+  const auto report = report_of(run, points);
+  if (!report) return call->respond(problem(report.error()));
+  call->respond(json_response(http::status::ok, report_json(run.head, *report)));
+}
+
+}  // namespace
+
+void add_run_routes(const ContextPtr& c) {
+  const auto get = http::verb::get;
+  c->router.add({get, "/runs", {200, 400, 422, 503}, list_runs(c)});
+  c->router.add({get, "/runs/{id}", {200, 404, 503}, get_run(c)});
+  c->router.add({get, "/runs/{id}/track", {200, 404, 422, 503}, with_track(c, answer_track)});
+  c->router.add({get, "/runs/{id}/report", {200, 404, 409, 503}, with_track(c, answer_report)});
+}
+
+}  // namespace roverd::api

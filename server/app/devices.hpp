@@ -1,0 +1,18 @@
+#pragma once
+// From settings to drivers: which there are, over which links, recorded or replayed.
+
+#include <vector>
+
+#include "app/options.hpp"
+#include "base/result.hpp"
+#include "config/settings.hpp"
+#include "supervise/device.hpp"
+
+namespace roverd {
+
+/// Every driver that is enabled, or that the recordings to play are for. Errors name file, line and
+/// key, or the recording.
+base::Result<std::vector<DevicePlan>> plan_devices(const Settings& settings,
+                                                   const Options& options);
+
+}  // namespace roverd

@@ -1,0 +1,132 @@
+// roverd: reads what it is told, starts the station, serves until a signal comes. Or decodes a
+// recording (decode.hpp), plays one through the estimator (replay_run.hpp), or becomes the program
+// that studies in simulated time (study.hpp).
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include <unistd.h>
+
+#include "app/logging.hpp"
+#include "app/options.hpp"
+#include "app/station.hpp"
+#include "base/log.hpp"
+#include "base/result.hpp"
+#include "config/settings.hpp"
+#include "replay/run.hpp"
+#include "robot/run_report.hpp"
+#include "store/store.hpp"
+#include "tools/decode.hpp"
+#include "tools/ntrip_table.hpp"
+#include "tools/report.hpp"
+
+namespace {
+
+namespace base = roverd::base;
+
+/// Exit codes: 1 something on this machine refuses (port, folder, database), 2 wrong arguments or
+/// configuration.
+constexpr int kRefused = 1;
+constexpr int kWrongInput = 2;
+
+int say(int code, const std::string& cause) {
+  std::fprintf(stderr, "roverd: %s\n", cause.c_str());
+  return code;
+}
+
+/// What was said wrongly, or what this machine refuses?
+int exit_code(base::Code code) {
+  switch (code) {
+    case base::Code::Malformed:
+    case base::Code::Invalid:
+    case base::Code::NotFound:
+    case base::Code::Unsupported:
+      return kWrongInput;
+    case base::Code::Conflict:
+    case base::Code::RevisionMismatch:
+    case base::Code::PreconditionMissing:
+    case base::Code::TooLarge:
+    case base::Code::Unavailable:
+    case base::Code::Late:
+      break;
+  }
+  return kRefused;
+}
+
+/// What was changed while the program ran holds over the files, not over the command line. A value
+/// that this version does not take any more is left out, and said.
+std::vector<std::string> take_kept_parameters(roverd::Settings& settings,
+                                              const std::filesystem::path& database) {
+  std::vector<std::string> refused;
+  for (const auto& kept : roverd::store::read_parameters(database)) {
+    const auto place = settings.places.find(kept.name);
+    if (place != settings.places.end() && place->second.starts_with("--set ")) continue;
+    const auto done = roverd::robot::set_parameter(settings.robot, kept.name, kept.value);
+    if (!done) refused.push_back(kept.name + ": " + done.error().detail);
+  }
+  return refused;
+}
+
+int serve(const roverd::Options& options) {
+  auto settings = roverd::load_settings(
+      {.config = options.config, .vehicle = options.vehicle, .overrides = options.overrides});
+  if (!settings) return say(kWrongInput, settings.error().detail);
+  std::error_code ec;
+  std::filesystem::create_directories(options.data, ec);
+  if (ec) return say(kRefused, "data folder " + options.data + ": " + ec.message());
+  const auto log_file = std::filesystem::path(options.data) / "roverd.log";
+  if (auto logging = roverd::start_logging(log_file, settings->server.log_level); !logging) {
+    return say(kRefused, logging.error().detail);
+  }
+  for (const std::string& why :
+       take_kept_parameters(*settings, std::filesystem::path(options.data) / "roverd.db")) {
+    base::log(base::Level::Warning, "main", "a kept parameter is left out", {{"reason", why}});
+  }
+  {
+    auto station = roverd::Station::open(*settings, options);
+    if (!station) {
+      roverd::stop_logging();
+      return say(exit_code(station.error().code), station.error().detail);
+    }
+    std::printf("listening on %s\n", (*station)->address().c_str());
+    std::fflush(stdout);
+    (*station)->run();
+  }
+  roverd::stop_logging();
+  return 0;
+}
+
+/// The study holds the simulated vehicle, which this program is not to know: it lies beside it.
+int become_study(char** argv) {
+  std::error_code ec;
+  const auto here = std::filesystem::read_symlink("/proc/self/exe", ec);
+  const std::string program = (here.parent_path() / "roverd-study").string();
+  ::execv(program.c_str(), argv + 1);
+  return say(kRefused, program + ": " + std::strerror(errno));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    if (argc > 1 && std::string_view(argv[1]) == "decode")
+      return roverd::decode(argc - 2, argv + 2);
+    if (argc > 1 && std::string_view(argv[1]) == "study") return become_study(argv);
+    if (argc > 1 && std::string_view(argv[1]) == "report")
+      return roverd::report(argc - 2, argv + 2);
+    if (argc > 1 && std::string_view(argv[1]) == "ntrip")
+      return roverd::ntrip_command(argc - 2, argv + 2);
+    if (argc > 1 && std::string_view(argv[1]) == "replay")
+      return roverd::replay(argc - 2, argv + 2);
+    return serve(roverd::read_options(argc, argv));
+  } catch (const std::exception& error) {
+    return say(kRefused, error.what());
+  }
+}

@@ -1,0 +1,301 @@
+#include "config/settings.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <initializer_list>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include <toml++/toml.h>
+
+#include "base/params.hpp"
+
+namespace roverd {
+namespace {
+
+using base::ParamValue;
+using base::Result;
+
+/// One key with its value and where it was said, for the error message.
+struct Entry {
+  std::string key;                  ///< "nav.track.lookahead_min_m"
+  std::optional<ParamValue> value;  ///< none: the head of a section
+  std::string place;                ///< "config/robot.toml:12"
+};
+
+std::optional<ParamValue> value_of(const toml::node& node) {
+  if (const auto* flag = node.as_boolean()) return ParamValue(flag->get());
+  if (const auto* number = node.as_floating_point()) return ParamValue(number->get());
+  if (const auto* number = node.as_integer()) return ParamValue(static_cast<double>(number->get()));
+  if (const auto* text = node.as_string()) return ParamValue(text->get());
+  return std::nullopt;
+}
+
+Result<void> flatten(const toml::table& table, const std::string& prefix, const std::string& file,
+                     std::vector<Entry>& out) {
+  for (const auto& [key, node] : table) {
+    std::string name = prefix;
+    name += key.str();
+    std::string place = file + ":" + std::to_string(key.source().begin.line);
+    if (const auto* inner = node.as_table()) {
+      out.push_back({name, std::nullopt, place});
+      if (auto done = flatten(*inner, name + ".", file, out); !done) return done;
+    } else if (auto value = value_of(node)) {
+      out.push_back({name, *value, place});
+    } else {
+      place += ": " + name;
+      return base::fail(base::Code::Invalid, place + " must be a number, a text or true/false");
+    }
+  }
+  return {};
+}
+
+Result<std::vector<Entry>> read_file(const std::filesystem::path& file) {
+  std::error_code ec;
+  if (!std::filesystem::is_regular_file(file, ec)) {
+    return base::fail(base::Code::NotFound, "no config file " + file.string());
+  }
+  try {
+    const toml::table table = toml::parse_file(file.string());
+    std::vector<Entry> entries;
+    if (auto done = flatten(table, "", file.string(), entries); !done) {
+      return tl::unexpected(done.error());
+    }
+    return entries;
+  } catch (const toml::parse_error& error) {
+    return base::fail(base::Code::Malformed, file.string() + ":" +
+                                                 std::to_string(error.source().begin.line) + ": " +
+                                                 std::string(error.description()));
+  }
+}
+
+/// "--set key=value": a number or true/false where it reads as one, text otherwise.
+Result<Entry> read_override(const std::string& text) {
+  const auto equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    return base::fail(base::Code::Malformed, "--set " + text + ": must be key=value");
+  }
+  const std::string key = text.substr(0, equals);
+  const std::string raw = text.substr(equals + 1);
+  const std::string place = "--set " + text;
+  if (raw == "true" || raw == "false") return Entry{key, raw == "true", place};
+  char* end = nullptr;
+  const double number = std::strtod(raw.c_str(), &end);
+  if (!raw.empty() && *end == '\0') return Entry{key, number, place};
+  return Entry{key, raw, place};
+}
+
+using Section = std::function<Result<void>(std::string_view name, const ParamValue& value)>;
+
+template <class... P>
+Section section(P&... params) {
+  // A section may spread over several structs (wiring and parameters of one driver): the first
+  // that knows the key takes it.
+  return [&params...](std::string_view name, const ParamValue& value) -> Result<void> {
+    Result<void> result = base::fail(base::Code::Invalid, "unknown key");
+    const auto offer = [&](auto& p) {
+      result = base::set_param(p, name, value);
+      return result || result.error().detail != "unknown key";
+    };
+    (void)(offer(params) || ...);
+    return result;
+  };
+}
+
+using Sections = std::map<std::string, Section, std::less<>>;
+
+/// robot::sections lists the robot's own.
+struct Collect {
+  Sections& out;
+
+  template <class P>
+  void operator()(const char* name, P& params) {
+    out.emplace(name, section(params));
+  }
+  /// Their texts follow a rule, and a wrong one is told where it stands.
+  void operator()(const char* name, robot::RadioParams& params) { checked(name, params); }
+  void operator()(const char* name, robot::BatteryParams& params) { checked(name, params); }
+
+  template <class P>
+  void checked(const char* name, P& params) {
+    out.emplace(name, [&params](std::string_view key, const ParamValue& value) -> Result<void> {
+      P changed = params;
+      if (auto done = base::set_param(changed, key, value); !done) return done;
+      if (auto good = check(changed); !good) return good;
+      params = std::move(changed);
+      return {};
+    });
+  }
+};
+
+Result<void> set_tiles(Settings& settings, std::string_view name, const ParamValue& value) {
+  const auto* path = std::get_if<std::string>(&value);
+  if (path == nullptr) {
+    return base::fail(base::Code::Invalid,
+                      std::string(name) + " must be the path of an MBTiles file");
+  }
+  settings.tiles[std::string(name)] = *path;
+  return {};
+}
+
+Sections sections_of(Settings& s) {
+  Sections out{
+      {"server", section(s.server)},
+      {"vehicle", section(s.vehicle, s.robot.vehicle)},
+      {"recording", section(s.recording)},
+      {"missions", section(s.missions)},
+      {"runs", section(s.runs)},
+      {"tiles", [&s](std::string_view name, const ParamValue& v) { return set_tiles(s, name, v); }},
+  };
+  drivers(
+      [&out](const std::string& name, auto& driver) {
+        out.emplace("drivers." + name, section(driver.wiring, driver.params));
+      },
+      s);
+  Collect collect{out};
+  robot::sections(collect, s.robot);
+  return out;
+}
+
+/// "drivers" is none itself, but leads to some.
+bool leads_to_section(const Sections& sections, const std::string& key) {
+  return sections.contains(key) ||
+         std::any_of(sections.begin(), sections.end(), [start = key + "."](const auto& section) {
+           return section.first.starts_with(start);
+         });
+}
+
+Result<void> set_all(Settings& settings, const std::vector<Entry>& entries) {
+  const auto sections = sections_of(settings);
+  for (const auto& entry : entries) {
+    if (!entry.value) {
+      if (leads_to_section(sections, entry.key)) continue;
+      return base::fail(base::Code::Invalid, entry.place + ": unknown section [" + entry.key + "]");
+    }
+    const auto dot = entry.key.rfind('.');
+    const std::string where = dot == std::string::npos ? "" : entry.key.substr(0, dot);
+    const std::string name = dot == std::string::npos ? entry.key : entry.key.substr(dot + 1);
+    const auto found = sections.find(where);
+    if (found == sections.end()) {
+      return base::fail(base::Code::Invalid, entry.place + ": unknown key " + entry.key);
+    }
+    settings.places[entry.key] = entry.place;
+    if (auto done = found->second(name, *entry.value); !done) {
+      const std::string& detail = done.error().detail;
+      return base::fail(base::Code::Invalid,
+                        entry.place + ": " +
+                            (detail == "unknown key" ? "unknown key " + entry.key
+                                                     : entry.key.substr(0, dot + 1) + detail));
+    }
+  }
+  return {};
+}
+
+/// One of a few words. @param one_of "skid_steer, differential or ackermann", for the message.
+Result<void> check_word(const Settings& settings, const std::string& key, const std::string& word,
+                        std::initializer_list<std::string_view> known, const char* one_of) {
+  if (std::find(known.begin(), known.end(), word) != known.end()) return {};
+  return base::fail(base::Code::Invalid,
+                    settings.where(key) + " must be " + one_of + ", is \"" + word + "\"");
+}
+
+/// What only the whole tells.
+Result<void> check_all(const Settings& s) {
+  // A misspelt word must not turn a steered vehicle into one that turns on the spot.
+  if (auto good = check_word(s, "vehicle.kinematics", s.robot.vehicle.kinematics,
+                             {"skid_steer", "differential", "ackermann"},
+                             "skid_steer, differential or ackermann");
+      !good) {
+    return good;
+  }
+  if (auto good = check_word(s, "nav.track.law", s.robot.track.law,
+                             {"path_frame", "pure_pursuit", "stanley"},
+                             "path_frame, pure_pursuit or stanley");
+      !good) {
+    return good;
+  }
+  if (auto good =
+          check_word(s, "server.log_level", s.server.log_level,
+                     {"debug", "info", "warning", "error"}, "debug, info, warning or error");
+      !good) {
+    return good;
+  }
+  const nav::SpeedParams& speed = s.robot.speed;
+  for (const auto& [key, most] : {std::pair{"nav.speed.max_mps", speed.max_mps},
+                                  std::pair{"nav.speed.reverse_max_mps", speed.reverse_max_mps}}) {
+    if (most >= speed.min_mps) continue;
+    return base::fail(base::Code::Invalid, s.where(key) + " must not be below nav.speed.min_mps");
+  }
+  for (const auto& [set, path] : s.tiles) {
+    std::error_code ec;
+    if (std::filesystem::is_regular_file(path, ec)) continue;
+    return base::fail(base::Code::NotFound,
+                      s.where("tiles." + set) + ": there is no file " + path.string());
+  }
+  return {};
+}
+
+/// The profiles beside the config file, for the message when a name is wrong.
+std::string known_vehicles(const std::filesystem::path& folder) {
+  std::vector<std::string> names;
+  std::error_code ec;
+  for (const auto& file : std::filesystem::directory_iterator(folder, ec)) {
+    if (file.path().extension() == ".toml") names.push_back(file.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  std::string text;
+  for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text.empty() ? "none" : text;
+}
+
+Result<std::vector<Entry>> read_profile(const std::filesystem::path& config,
+                                        const std::string& vehicle) {
+  const auto folder = config.parent_path() / "vehicles";
+  const bool plain = !vehicle.empty() && vehicle.find_first_of("/\\.") == std::string::npos;
+  const auto file = folder / (vehicle + ".toml");
+  if (!plain || !std::filesystem::exists(file)) {
+    return base::fail(base::Code::NotFound, "unknown vehicle \"" + vehicle + "\"; known in " +
+                                                folder.string() + ": " + known_vehicles(folder));
+  }
+  return read_file(file);
+}
+
+}  // namespace
+
+std::string Settings::where(const std::string& key) const {
+  const auto place = places.find(key);
+  if (place == places.end()) return key;
+  // "--set key=value" names the key already.
+  return place->second.starts_with("--set ") ? place->second : place->second + ": " + key;
+}
+
+Result<Settings> load_settings(const SettingsSource& source) {
+  auto config = read_file(source.config);
+  if (!config) return tl::unexpected(config.error());
+  std::vector<Entry> overrides;
+  for (const auto& text : source.overrides) {
+    auto entry = read_override(text);
+    if (!entry) return tl::unexpected(entry.error());
+    overrides.push_back(*entry);
+  }
+  std::string vehicle = source.vehicle;
+  if (vehicle.empty()) {
+    Settings said;
+    if (auto done = set_all(said, *config); !done) return tl::unexpected(done.error());
+    vehicle = said.vehicle.name;
+  }
+  auto profile = read_profile(source.config, vehicle);
+  if (!profile) return tl::unexpected(profile.error());
+
+  Settings settings;
+  const std::vector<Entry> chosen{Entry{"vehicle.name", vehicle, "--vehicle"}};
+  using Layer = const std::vector<Entry>*;
+  for (const Layer layer : {Layer{&*profile}, Layer{&*config}, Layer{&overrides}, Layer{&chosen}}) {
+    if (auto done = set_all(settings, *layer); !done) return tl::unexpected(done.error());
+  }
+  if (auto good = check_all(settings); !good) return tl::unexpected(good.error());
+  return settings;
+}
+
+}  // namespace roverd

@@ -1,0 +1,214 @@
+#include "mission/formats/formats.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "mission/formats/file_formats.hpp"
+#include "mission/json/json.hpp"
+#include "mission/text.hpp"
+
+namespace roverd::mission {
+namespace {
+
+using base::Code;
+using base::Error;
+using base::Result;
+
+constexpr std::string_view kBlanks = " \t\r\n";
+
+std::string_view base_name(std::string_view file_name) {
+  const std::size_t slash = file_name.find_last_of("/\\");
+  return slash == std::string_view::npos ? file_name : file_name.substr(slash + 1);
+}
+
+std::string lower(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return out;
+}
+
+std::string_view without_ending(std::string_view name) {
+  const std::size_t dot = name.rfind('.');
+  return dot == std::string_view::npos || dot == 0 ? name : name.substr(0, dot);
+}
+
+/// ASCII letters, digits, '-' and '_'; runs of anything else become one '_'.
+std::string file_stem(std::string_view name) {
+  constexpr std::size_t kMax = 80;
+  std::string out;
+  for (const char c : name) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '-' || c == '_';
+    if (plain) {
+      out += c;
+    } else if (!out.empty() && out.back() != '_') {
+      out += '_';
+    }
+    if (out.size() == kMax) break;
+  }
+  while (!out.empty() && out.back() == '_') out.pop_back();
+  return out.empty() ? "mission" : out;
+}
+
+std::string ending_of(Format format) {
+  return format == Format::Follower ? "csv" : std::string(to_string(format));
+}
+
+Result<ImportedFile> read_as(std::string_view content, Format format, const ImportHints& hints) {
+  switch (format) {
+    case Format::Plan:
+      return read_qgc_plan(content);
+    case Format::Waypoints:
+      return read_waypoints(content);
+    case Format::Gpx:
+      return read_gpx(content);
+    case Format::Kml:
+      return read_kml(content);
+    case Format::Kmz:
+      return read_kmz(content);
+    case Format::GeoJson:
+      return read_geojson(content);
+    case Format::Csv:
+    case Format::Follower:
+      return read_csv(content, hints);
+  }
+  return read_csv(content, hints);
+}
+
+}  // namespace
+
+std::string_view to_string(Format format) noexcept {
+  switch (format) {
+    case Format::Plan:
+      return "plan";
+    case Format::Waypoints:
+      return "waypoints";
+    case Format::Gpx:
+      return "gpx";
+    case Format::Kml:
+      return "kml";
+    case Format::Kmz:
+      return "kmz";
+    case Format::GeoJson:
+      return "geojson";
+    case Format::Csv:
+      return "csv";
+    case Format::Follower:
+      return "follower";
+  }
+  return "plan";
+}
+
+std::optional<Format> format_from(std::string_view word) noexcept {
+  for (const Format format : kFormats) {
+    if (to_string(format) == word) return format;
+  }
+  return std::nullopt;
+}
+
+std::string_view to_string(Outcome outcome) noexcept {
+  switch (outcome) {
+    case Outcome::Taken:
+      return "taken";
+    case Outcome::Changed:
+      return "changed";
+    case Outcome::LeftOut:
+      return "left_out";
+  }
+  return "left_out";
+}
+
+std::optional<Format> detect_format(std::string_view content, std::string_view file_name) {
+  if (content.starts_with("PK\x03\x04")) return Format::Kmz;
+  content = without_bom(content);
+  const std::size_t start = content.find_first_not_of(kBlanks);
+  const std::string_view text =
+      start == std::string_view::npos ? std::string_view{} : content.substr(start);
+  if (text.starts_with("QGC WPL")) return Format::Waypoints;
+  if (text.starts_with('{') && text.find("\"fileType\"") != std::string_view::npos) {
+    return Format::Plan;
+  }
+  if (text.starts_with('{') && text.find("\"type\"") != std::string_view::npos) {
+    return Format::GeoJson;
+  }
+  if (text.starts_with('<')) {
+    if (text.find("<gpx") != std::string_view::npos) return Format::Gpx;
+    if (text.find("<kml") != std::string_view::npos) return Format::Kml;
+  }
+  const std::string name = lower(file_name);
+  for (const Format format : kFormats) {
+    if (name.ends_with('.' + ending_of(format))) return format;
+  }
+  return looks_like_csv(content) ? std::optional(Format::Csv) : std::nullopt;
+}
+
+Result<ImportedFile> import_file(std::string_view content, std::optional<Format> format,
+                                 std::string_view file_name, const ImportHints& hints) {
+  if (!format) format = detect_format(content, file_name);
+  if (!format) {
+    return base::fail(Code::Unsupported,
+                      "none of .plan, .waypoints, GPX, KML, KMZ, GeoJSON and a table of positions");
+  }
+  Result<ImportedFile> file = read_as(content, *format, hints);
+  if (!file) return file;
+  file->format = *format;
+  const std::string own = clean_name(file->plan.name, "Imported mission");
+  file->plan.name = clean_name(without_ending(base_name(file_name)), own);
+  if (auto ok = check_plan(file->plan); !ok) return tl::unexpected<Error>(ok.error());
+  if (file->fence) {
+    file->fence->name = file->plan.name;
+    if (auto ok = check_fence(*file->fence); !ok) return tl::unexpected<Error>(ok.error());
+  }
+  return file;
+}
+
+ExportedFile export_file(const Plan& plan, Format format, const Fence* fence) {
+  ExportedFile file;
+  file.file_name = file_stem(plan.name) + '.' + ending_of(format);
+  switch (format) {
+    case Format::Plan:
+      file.content = write_qgc_plan(plan, fence, file.rows);
+      file.media_type = "application/json";
+      break;
+    case Format::Waypoints:
+      file.content = write_waypoints(plan, file.rows);
+      file.media_type = "text/plain";
+      break;
+    case Format::Gpx:
+      file.content = write_gpx(plan, file.rows);
+      file.media_type = "application/gpx+xml";
+      break;
+    case Format::Kml:
+      file.content = write_kml(plan, fence, file.rows);
+      file.media_type = "application/vnd.google-earth.kml+xml";
+      break;
+    case Format::Kmz:
+      file.content = write_kmz(plan, fence, file.rows);
+      file.media_type = "application/vnd.google-earth.kmz";
+      file.binary = true;
+      break;
+    case Format::GeoJson:
+      file.content = write_geojson(plan, fence, file.rows);
+      file.media_type = "application/geo+json";
+      break;
+    case Format::Csv:
+      file.content = write_csv(plan, file.rows);
+      file.media_type = "text/csv";
+      break;
+    case Format::Follower:
+      file.content = write_follower(plan, file.rows);
+      file.media_type = "text/csv";
+      break;
+  }
+  const bool holds_fences = format == Format::Plan || format == Format::GeoJson ||
+                            format == Format::Kml || format == Format::Kmz;
+  if (fence != nullptr && !holds_fences) {
+    file.rows.push_back(
+        {"", "fence", Outcome::LeftOut, "this format has no place for fences", std::nullopt});
+  }
+  return file;
+}
+
+}  // namespace roverd::mission

@@ -1,0 +1,110 @@
+#pragma once
+// Mission files of other programs, read and written.
+//
+//   plan       QGroundControl .plan: JSON, fileType "Plan", version 1
+//   waypoints  QGC WPL 110, as Mission Planner and QGroundControl write it: a line for each command
+//   gpx        GPX 1.1: the route, else the tracks, else the waypoints
+//   kml        KML 2.2: lines, else points
+//   kmz        the same, zipped
+//   geojson    RFC 7946: lines and points
+//   csv        lat,lon[,alt,speed]; read: also the follower's form
+//   follower   x,y,z,yaw,velocity from an origin: m, rad, m/s
+//
+// The last six carry positions: each becomes a waypoint, with a height and a speed where the
+// format has them. .plan and .waypoints carry MAVLink mission commands. A rover that drives on the
+// ground cannot do all of them: every row of a file is accounted for as taken, changed or left out,
+// with the reason.
+//
+//   command                       item                  parameters
+//   16 NAV_WAYPOINT               waypoint              p1 hold_s, p2 radius_m
+//   19 NAV_LOITER_TIME            waypoint              p1 hold_s
+//   17, 18 NAV_LOITER_*, 21 LAND, 82 SPLINE_WAYPOINT    waypoint, changed: the position only
+//   20 NAV_RETURN_TO_LAUNCH       return_home
+//   93 NAV_DELAY, 112 CONDITION_DELAY                   wait: p1 seconds
+//   115 CONDITION_YAW             turn                  p1 deg, p3 −1: left, p4 1: relative
+//   177 DO_JUMP                   jump                  p1 row's number, p2 times (−1: for ever)
+//   178 DO_CHANGE_SPEED           speed                 p2 m/s
+//   194 DO_SET_REVERSE            reverse of the waypoints that follow: p1 1
+//
+// A jump to a row that was left out goes to the next one that was not. A navigation command at 0/0
+// means "where the vehicle is": it has no position of its own, so its hold becomes a wait, and
+// without one it is left out. A home at 0/0 is no home. Heights do not steer a ground vehicle: they
+// are kept as numbers (above home, frame 3), 0 is none.
+//
+// Written positions have as many digits as it takes to read the same double back, at least 8
+// decimals in .waypoints (1e-9 deg is 0.1 mm).
+// Pure, any thread, throws nothing. Sources: MAVLink common.xml; QGroundControl's file format page.
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.hpp"
+#include "mission/fence/fence.hpp"
+#include "mission/plan.hpp"
+
+namespace roverd::mission {
+
+enum class Format { Plan, Waypoints, Gpx, Kml, Kmz, GeoJson, Csv, Follower };
+inline constexpr std::array kFormats{Format::Plan,     Format::Waypoints, Format::Gpx,
+                                     Format::Kml,      Format::GeoJson,   Format::Csv,
+                                     Format::Follower, Format::Kmz};
+/// plan waypoints gpx kml kmz geojson csv follower
+std::string_view to_string(Format format) noexcept;
+std::optional<Format> format_from(std::string_view word) noexcept;
+
+/// By content first, then by the file name's ending. Empty: none of ours.
+std::optional<Format> detect_format(std::string_view content, std::string_view file_name = {});
+
+enum class Outcome { Taken, Changed, LeftOut };
+std::string_view to_string(Outcome outcome) noexcept;  // taken changed left_out
+
+/// What became of one row, item or section of a file.
+struct FileRow {
+  std::string row;   ///< "line 4" or a JSON pointer into the file; in an export into the plan
+  std::string what;  ///< "NAV_WAYPOINT (16)", "geofence" …; in an export the item's type
+  Outcome outcome = Outcome::Taken;
+  std::string reason;       ///< a sentence; empty for taken
+  std::optional<int> item;  ///< number (from 1) of the item in the plan, if it has one
+  friend bool operator==(const FileRow&, const FileRow&) = default;
+};
+
+struct ImportedFile {
+  Format format = Format::Plan;
+  Plan plan;  ///< satisfies check_plan; its name is the file's name without ending
+  std::vector<FileRow> rows;
+  /// Of .plan, GeoJSON, KML and KMZ; satisfies check_fence, named like the plan.
+  std::optional<Fence> fence{};
+};
+
+/// What a file of the follower's form may leave unsaid.
+struct ImportHints {
+  std::optional<LatLon> origin;  ///< goes before the file's own
+  bool kmh = false;              ///< its velocities are in km/h
+};
+
+/// @param format empty: detected, Unsupported if that fails. @param file_name for the plan's name
+/// and as a hint; may be empty. Invalid: the file is not of that format, breaks off or holds values
+/// that cannot be; `fields` then names each line ("line 4") or JSON pointer. TooLarge: more than
+/// kMaxItems rows. A byte order mark and CR or CRLF line ends are fine.
+base::Result<ImportedFile> import_file(std::string_view content, std::optional<Format> format,
+                                       std::string_view file_name = {},
+                                       const ImportHints& hints = {});
+
+struct ExportedFile {
+  std::string content;
+  std::string file_name;   ///< from the plan's name, safe in a Content-Disposition header (ASCII)
+  std::string media_type;  ///< without charset: "application/json", "text/csv" …
+  bool binary = false;     ///< no text
+  /// Items that the format cannot hold (left out) or only in another form (changed). Items that are
+  /// written as they are have no row.
+  std::vector<FileRow> rows;
+};
+
+/// Positions come back equal when the file is imported again. @param fence written into .plan,
+/// GeoJSON, KML and KMZ; the other formats have no place for it, and `rows` says so. Null: none
+ExportedFile export_file(const Plan& plan, Format format, const Fence* fence = nullptr);
+
+}  // namespace roverd::mission

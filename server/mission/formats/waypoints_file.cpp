@@ -1,0 +1,211 @@
+// QGC WPL 110: a head line, then one command a line, twelve columns apart by tabs or blanks:
+//   number  current  frame  command  p1 p2 p3 p4  latitude longitude altitude  autocontinue
+// Row 0 is home.
+// Source: MAVLink developer guide, "plain-text file format"; Mission Planner's files.
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "mission/formats/commands.hpp"
+#include "mission/formats/file_formats.hpp"
+#include "mission/formats/text_lines.hpp"
+#include "mission/json/json.hpp"
+#include "mission/text.hpp"
+
+namespace roverd::mission {
+namespace {
+
+using base::Code;
+using base::Error;
+using base::Result;
+
+constexpr std::string_view kHead = "QGC WPL 110";
+constexpr std::size_t kColumns = 12;
+constexpr std::array<const char*, kColumns> kColumnNames{
+    "number",      "current",     "frame",    "command",   "parameter 1", "parameter 2",
+    "parameter 3", "parameter 4", "latitude", "longitude", "altitude",    "autocontinue"};
+constexpr int kDecimals = 8;
+
+/// @return number of columns, also of those beyond the twelfth.
+std::size_t split(std::string_view line, std::array<std::string_view, kColumns>& columns) {
+  std::size_t count = 0;
+  for (;;) {
+    const std::size_t begin = line.find_first_not_of(" \t");
+    if (begin == std::string_view::npos) return count;
+    line.remove_prefix(begin);
+    const std::size_t end = std::min(line.find_first_of(" \t"), line.size());
+    if (count < kColumns) columns[count] = line.substr(0, end);
+    ++count;
+    line.remove_prefix(end);
+  }
+}
+
+bool is_printable(std::string_view text) {
+  for (const char c : text) {
+    if (c < 0x20 || c > 0x7E) return false;
+  }
+  return true;
+}
+
+class RowReader {
+ public:
+  RowReader(std::string place, Problems& problems)
+      : place_(std::move(place)), problems_(problems) {}
+
+  /// Empty after a problem was noted.
+  std::optional<Command> read(std::string_view line) {
+    const std::size_t count = split(line, columns_);
+    if (count != kColumns) {
+      problems_.add(place_, "must have 12 columns, has " + std::to_string(count));
+      return std::nullopt;
+    }
+    Command c;
+    c.row = place_;
+    c.number = whole(0);
+    number(1);
+    c.frame = whole(2);
+    c.id = whole(3);
+    for (std::size_t i = 0; i < c.p.size(); ++i) c.p[i] = number(4 + i);
+    c.lat = number(8);
+    c.lon = number(9);
+    c.alt = number(10);
+    c.auto_continue = number(11).value_or(1.0) != 0.0;
+    if (failed_) return std::nullopt;
+    return c;
+  }
+
+ private:
+  void fail(std::size_t column, const std::string& what) {
+    failed_ = true;
+    constexpr std::size_t kMax = 40;
+    const std::string_view shown = columns_[column].substr(0, kMax);
+    std::string detail = std::string(kColumnNames[column]) + ' ' + what;
+    if (is_printable(shown)) detail += ", is \"" + std::string(shown) + '"';
+    problems_.add(place_, std::move(detail));
+  }
+
+  /// NaN is "not given"; for a latitude and longitude the caller refuses that.
+  std::optional<double> number(std::size_t column) {
+    std::string_view text = columns_[column];
+    if (text.starts_with('+')) text.remove_prefix(1);
+    double value = 0.0;
+    const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (ec == std::errc::result_out_of_range) {
+      fail(column, "must be a number that fits a double");
+    } else if (ec != std::errc{} || end != text.data() + text.size()) {
+      fail(column, "must be a number");
+    } else if (std::isinf(value)) {
+      fail(column, "must be finite");
+    } else if (!std::isnan(value)) {
+      return value;
+    }
+    return std::nullopt;
+  }
+
+  /// Some programs write whole numbers as 16.000000.
+  int whole(std::size_t column) {
+    constexpr double kMost = 1e9;
+    const auto value = number(column);
+    if (failed_) return 0;
+    if (value && *value >= 0.0 && *value < kMost && *value == std::floor(*value)) {
+      return static_cast<int>(*value);
+    }
+    fail(column, "must be a whole number");
+    return 0;
+  }
+
+  std::array<std::string_view, kColumns> columns_{};
+  const std::string place_;
+  Problems& problems_;
+  bool failed_ = false;
+};
+
+Result<void> read_head(TextLines& lines) {
+  std::string_view line;
+  while (lines.next(line)) {
+    std::array<std::string_view, kColumns> words{};
+    const std::size_t count = split(line, words);
+    if (count == 0) continue;
+    if (count == 3 && words[0] == "QGC" && words[1] == "WPL" && words[2] == "110") return {};
+    const std::string detail = "must be \"" + std::string(kHead) + "\"";
+    return base::fail(Code::Invalid, lines.place() + " " + detail, {{lines.place(), detail}});
+  }
+  return base::fail(Code::Invalid, "the file is empty", {{"line 1", "is missing"}});
+}
+
+void append_row(std::string& out, const Command& c) {
+  out += std::to_string(c.number) + (c.number == 0 ? "\t1\t" : "\t0\t") + std::to_string(c.frame) +
+         '\t' + std::to_string(c.id);
+  for (const auto& p : c.p) out += '\t' + fixed_number(p.value_or(0.0), kDecimals);
+  out += '\t' + fixed_number(c.lat.value_or(0.0), kDecimals);
+  out += '\t' + fixed_number(c.lon.value_or(0.0), kDecimals);
+  out += '\t' + fixed_number(c.alt.value_or(0.0), 6);
+  out += "\t1\n";
+}
+
+}  // namespace
+
+Result<ImportedFile> read_waypoints(std::string_view content) {
+  TextLines lines(without_bom(content));
+  if (auto ok = read_head(lines); !ok) return tl::unexpected<Error>(ok.error());
+  ImportedFile file;
+  Problems problems;
+  std::vector<Command> commands;
+  std::string_view line;
+  int before = -1;
+  while (lines.next(line)) {
+    const std::size_t begin = line.find_first_not_of(" \t");
+    if (begin == std::string_view::npos) continue;
+    if (line[begin] == '#') {
+      file.rows.push_back({lines.place(), "comment", Outcome::LeftOut, "a comment", std::nullopt});
+      continue;
+    }
+    auto command = RowReader(lines.place(), problems).read(line);
+    if (!command) continue;
+    if (command->number <= before) {
+      problems.add(lines.place(), "number " + std::to_string(command->number) +
+                                      " must be more than " + std::to_string(before) +
+                                      " of the row before");
+    }
+    before = command->number;
+    if (command->number == 0) {
+      take_home(*command, file.plan, file.rows, problems);
+    } else if (commands.size() == kMaxItems) {
+      return base::fail(Code::TooLarge, "more than " + std::to_string(kMaxItems) + " rows",
+                        {{lines.place(), "is one row too many"}});
+    } else {
+      commands.push_back(std::move(*command));
+    }
+  }
+  items_from_commands(commands, file.plan, file.rows, problems);
+  const auto line_of = [](const FileRow& row) { return std::stoull(row.row.substr(5)); };
+  std::stable_sort(file.rows.begin(), file.rows.end(),
+                   [&](const FileRow& a, const FileRow& b) { return line_of(a) < line_of(b); });
+  if (!problems.none()) return tl::unexpected<Error>(std::move(problems).error("the file"));
+  return file;
+}
+
+std::string write_waypoints(const Plan& plan, std::vector<FileRow>& rows) {
+  std::string out(kHead);
+  out += '\n';
+  Command home;
+  home.id = cmd::kWaypoint;
+  home.frame = kFrameGlobal;
+  home.lat = home.lon = 0.0;
+  if (plan.home) {
+    home.lat = plan.home->at.lat;
+    home.lon = plan.home->at.lon;
+    home.alt = plan.home->alt_m;
+  } else {
+    rows.push_back(
+        {"/home", "home", Outcome::Changed, "not known: row 0 is written as 0/0", std::nullopt});
+  }
+  append_row(out, home);
+  for (const Command& command : commands_from_items(plan, true, rows)) append_row(out, command);
+  return out;
+}
+
+}  // namespace roverd::mission

@@ -1,0 +1,155 @@
+// roverd-study: see study.hpp.
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <map>
+#include <string>
+#include <thread>
+
+#include <CLI/CLI.hpp>
+
+#include "study/study.hpp"
+
+namespace {
+
+namespace base = roverd::base;
+namespace study = roverd::study;
+namespace fs = std::filesystem;
+
+constexpr int kFailed = 1;  // a run did not arrive, or a file cannot be written
+constexpr int kWrongInput = 2;
+
+struct Options {
+  study::Setup setup;
+  std::string courses;
+  std::string disturbances;
+  int seeds = 5;
+  int jobs = 0;
+  std::string json;
+  std::string svg;
+};
+
+int say(int code, const std::string& cause) {
+  std::fprintf(stderr, "roverd study: %s\n", cause.c_str());
+  return code;
+}
+
+base::Result<std::string> read_file(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return base::fail(base::Code::NotFound, "cannot read " + path.string());
+  return std::string(std::istreambuf_iterator<char>(in), {});
+}
+
+bool write_file(const fs::path& path, const std::string& text) {
+  std::ofstream out(path, std::ios::binary);
+  out << text;
+  out.close();
+  return !out.fail();
+}
+
+void define(CLI::App& app, Options& o) {
+  app.add_option("--vehicle", o.setup.vehicle, "vehicle profile, instead of the config's");
+  app.add_option("--config", o.setup.config, "config file; vehicles/ and sim/ lie beside it")
+      ->capture_default_str();
+  app.add_option("--courses", o.courses, "JSON file of courses")->capture_default_str();
+  app.add_option("--disturbances", o.disturbances, "JSON file of disturbances")
+      ->capture_default_str();
+  app.add_option("--seeds", o.seeds, "runs of each course under each disturbance, seeds 1 to N")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  app.add_option("--jobs", o.jobs, "threads; 0: one for each core")->check(CLI::Range(0, 1024));
+  app.add_option("--json", o.json, "write every measure of every run to this file");
+  app.add_option("--svg", o.svg, "write a plot for each course and disturbance to this folder");
+  app.add_option("--set", o.setup.overrides, "one setting of the robot: key=value");
+  app.add_option("--sim", o.setup.sim_overrides, "one parameter of the simulator: key=value");
+}
+
+std::vector<study::Task> tasks_of(const std::vector<study::Course>& courses,
+                                  const std::vector<study::Disturbance>& disturbances, int seeds) {
+  std::vector<study::Task> tasks;
+  for (const auto& d : disturbances) {
+    for (const auto& c : courses) {
+      for (int seed = 1; seed <= seeds; ++seed) {
+        tasks.push_back({&c, &d, static_cast<std::uint64_t>(seed)});
+      }
+    }
+  }
+  return tasks;
+}
+
+std::string file_name(const study::Run& run) {
+  std::string name = run.course + "-" + run.disturbance;
+  for (char& c : name) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '-' || c == '_';
+    if (!plain) c = '_';
+  }
+  return name + ".svg";
+}
+
+bool write_plots(const fs::path& folder, const std::vector<study::Run>& runs) {
+  std::error_code ec;
+  fs::create_directories(folder, ec);
+  std::map<std::string, std::vector<const study::Run*>> plots;
+  for (const auto& run : runs) {
+    if (!run.way.empty()) plots[file_name(run)].push_back(&run);
+  }
+  return std::all_of(plots.begin(), plots.end(), [&](const auto& plot) {
+    return write_file(folder / plot.first, study::to_svg(plot.second));
+  });
+}
+
+int run(const Options& o) {
+  const auto folder = fs::path(o.courses).parent_path();
+  auto text = read_file(o.courses);
+  if (!text) return say(kWrongInput, text.error().detail);
+  const auto courses =
+      study::read_courses(*text, [&](const std::string& name) { return read_file(folder / name); });
+  if (!courses) return say(kWrongInput, o.courses + ": " + courses.error().detail);
+  text = read_file(o.disturbances);
+  if (!text) return say(kWrongInput, text.error().detail);
+  const auto disturbances = study::read_disturbances(*text);
+  if (!disturbances) return say(kWrongInput, o.disturbances + ": " + disturbances.error().detail);
+
+  const auto tasks = tasks_of(*courses, *disturbances, o.seeds);
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const auto runs = study::run_all(o.setup, tasks, o.jobs > 0 ? o.jobs : cores, [&](std::size_t n) {
+    std::fprintf(stderr, "\r%zu of %zu runs%s", n, tasks.size(), n == tasks.size() ? "\n" : "");
+  });
+  if (!runs) return say(kWrongInput, runs.error().detail);
+  std::fputs(study::to_table(*runs).c_str(), stdout);
+  if (!o.json.empty() && !write_file(o.json, study::to_json(*runs, o.setup))) {
+    return say(kFailed, "cannot write " + o.json);
+  }
+  if (!o.svg.empty() && !write_plots(o.svg, *runs)) return say(kFailed, "cannot write to " + o.svg);
+  const bool all = std::all_of(runs->begin(), runs->end(),
+                               [](const study::Run& r) { return r.problem.empty(); });
+  return all ? 0 : kFailed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options o;
+  o.setup.config = "config/robot.toml";
+  o.courses = "config/courses/five.json";
+  o.disturbances = "config/disturbances/bunker.json";
+  CLI::App app("Drives courses in simulated time and measures how well.", "roverd study");
+  define(app, o);
+  try {
+    app.parse(argc, argv);
+    return run(o);
+  } catch (const CLI::CallForHelp&) {
+    std::cout << app.help();
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    return say(kWrongInput, std::string(error.what()) + " (roverd study --help lists the options)");
+  } catch (const std::exception& error) {
+    return say(kFailed, error.what());
+  }
+}

@@ -1,0 +1,113 @@
+#include "tools/decode.hpp"
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace roverd {
+namespace {
+
+constexpr const char* kUsage =
+    "usage: roverd decode KIND FILE|-\n"
+    "Prints one JSON object a line for each frame or sentence of a recording; - reads standard\n"
+    "input. What is not understood carries its reason under \"refused\".\n"
+    "KIND:\n"
+    "  bunker   CAN frames of a Bunker: the text of candump or candump -L\n"
+    "  nmea     bytes of a GNSS receiver\n"
+    "  ubx      the same, with the frames of u-blox receivers read\n"
+    "  mti      bytes of an Xsens MTi\n";
+
+constexpr int kUnreadable = 1;
+constexpr int kUsageWrong = 2;
+
+struct Kind {
+  std::string_view name;
+  Reader (*make)(OnObject);
+};
+constexpr std::array kKinds{Kind{"bunker", bunker_reader}, Kind{"nmea", nmea_reader},
+                            Kind{"ubx", ubx_reader}, Kind{"mti", mti_reader}};
+
+int say(int code, const std::string& cause) {
+  std::fprintf(stderr, "roverd: %s\n", cause.c_str());
+  return code;
+}
+
+class File {
+ public:
+  explicit File(const std::string& path)
+      : fd_(path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
+  ~File() {
+    if (fd_ > STDIN_FILENO) ::close(fd_);
+  }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+
+  /// As read(2), but not disturbed by signals; −1 also if the file could not be opened.
+  ssize_t read(std::span<std::uint8_t> block) const noexcept {
+    for (;;) {
+      const ssize_t n = ::read(fd_, block.data(), block.size());
+      if (n >= 0 || errno != EINTR) return n;
+    }
+  }
+  bool is_open() const noexcept { return fd_ >= 0; }
+
+ private:
+  const int fd_;
+};
+
+/// Everything that comes in so far goes out before the next block is waited for, so that a live
+/// `candump can0 | roverd decode bunker -` shows each frame at once.
+int run(const Kind& kind, const std::string& path) {
+  const File file(path);
+  if (!file.is_open()) return say(kUnreadable, path + ": " + std::strerror(errno));
+  std::string out;
+  const Reader reader =
+      kind.make([&out](const nlohmann::ordered_json& object) { out += to_line(object); });
+  std::array<std::uint8_t, 65536> block{};
+  for (bool more = true; more;) {
+    const ssize_t n = file.read(block);
+    if (n < 0) return say(kUnreadable, path + ": " + std::strerror(errno));
+    more = n > 0;
+    if (more) {
+      reader.feed({block.data(), static_cast<std::size_t>(n)});
+    } else {
+      reader.finish();
+    }
+    const bool written =
+        std::fwrite(out.data(), 1, out.size(), stdout) == out.size() && std::fflush(stdout) == 0;
+    if (!written && errno == EPIPE) return 0;
+    if (!written) return say(kUnreadable, std::string("standard output: ") + std::strerror(errno));
+    out.clear();
+  }
+  return 0;
+}
+
+}  // namespace
+
+std::string to_line(const nlohmann::ordered_json& object) {
+  return object.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+}
+
+int decode(int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);
+  const std::string first = argc > 0 ? argv[0] : "";
+  if (first == "--help" || first == "-h") {
+    std::fputs(kUsage, stdout);
+    return 0;
+  }
+  if (argc != 2) return say(kUsageWrong, "decode wants KIND and FILE (roverd decode --help)");
+  for (const Kind& kind : kKinds) {
+    if (kind.name == first) return run(kind, argv[1]);
+  }
+  return say(kUsageWrong, "decode does not know \"" + first + "\" (roverd decode --help)");
+}
+
+}  // namespace roverd

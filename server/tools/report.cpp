@@ -1,0 +1,145 @@
+#include "tools/report.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/angle.hpp"
+#include "robot/run_report.hpp"
+#include "store/store.hpp"
+
+namespace roverd {
+namespace {
+
+struct Column {
+  store::RunHead head;
+  robot::RunReport report;
+};
+
+struct Row {
+  const char* name;
+  int digits;
+  std::function<double(const Column&)> value;  ///< NaN: not known
+};
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+const std::vector<Row>& rows() {
+  static const std::vector<Row> all{
+      {"time, s", 1, [](const Column& c) { return c.report.time_s; }},
+      {"driven by itself, s", 1, [](const Column& c) { return c.report.driving_s; }},
+      {"way, m", 1, [](const Column& c) { return c.report.driven_m; }},
+      {"energy, Wh", 1, [](const Column& c) { return c.report.energy_wh.value_or(kUnknown); }},
+      {"cross-track rms, m", 3, [](const Column& c) { return c.report.measure.cross.rms_m; }},
+      {"cross-track mean, m", 3, [](const Column& c) { return c.report.measure.cross.mean_m; }},
+      {"cross-track 95 %, m", 3, [](const Column& c) { return c.report.measure.cross.p95_m; }},
+      {"cross-track max, m", 3, [](const Column& c) { return c.report.measure.cross.max_m; }},
+      {"corner distance mean, m", 3,
+       [](const Column& c) { return c.report.measure.corner_mean_m; }},
+      {"corner distance max, m", 3, [](const Column& c) { return c.report.measure.corner_max_m; }},
+      {"cut corner max, m", 3, [](const Column& c) { return c.report.measure.cut_max_m; }},
+      {"overshoot max, m", 3, [](const Column& c) { return c.report.measure.overshoot_max_m; }},
+      {"slalom max, m", 3, [](const Column& c) { return c.report.measure.slalom_max_m; }},
+      {"slalom mean, m", 3, [](const Column& c) { return c.report.measure.slalom_mean_m; }},
+      {"heading rms, deg", 2,
+       [](const Column& c) { return base::deg_from_rad(c.report.measure.heading_rms_rad); }},
+      {"turn smoothness, deg/s2", 2,
+       [](const Column& c) { return base::deg_from_rad(c.report.measure.yaw_accel_rms_radps2); }},
+      {"jerk rms, m/s3", 3, [](const Column& c) { return c.report.measure.jerk_rms_mps3; }},
+      {"end missed by, m", 3, [](const Column& c) { return c.report.measure.end_m; }}};
+  return all;
+}
+
+int complain(const std::string& why) {
+  std::fprintf(stderr, "roverd report: %s\n", why.c_str());
+  return 2;
+}
+
+base::Result<Column> column_of(const std::filesystem::path& database, std::int64_t id) {
+  const auto read = store::read_run(database, id);
+  if (!read) return tl::unexpected(read.error());
+  std::vector<robot::ReportPoint> track;
+  track.reserve(read->points.size());
+  for (const store::RunPoint& p : read->points) {
+    track.push_back(
+        {p.t_s, p.at, p.yaw_rad, p.speed_mps, p.yaw_rate_radps, p.lap, p.by_itself, p.power_w});
+  }
+  std::vector<std::pair<std::string, base::ParamValue>> parameters;
+  for (const auto& p : read->run.parameters) parameters.emplace_back(p.name, p.value);
+  auto made = robot::report_run(read->run.plan, track, read->run.head.first_item, parameters);
+  if (!made) return tl::unexpected(made.error());
+  return Column{read->run.head, std::move(*made)};
+}
+
+void print(const std::vector<Column>& columns) {
+  std::printf("%-26s", "");
+  for (const Column& c : columns) {
+    std::printf(" %14s", ("run " + std::to_string(c.head.id)).c_str());
+  }
+  std::printf("\n%-26s", "mission");
+  for (const Column& c : columns) std::printf(" %14.14s", c.head.name.c_str());
+  std::printf("\n%-26s", "outcome");
+  for (const Column& c : columns)
+    std::printf(" %14s", std::string(to_string(c.head.outcome)).c_str());
+  std::printf("\n");
+  for (const Row& row : rows()) {
+    std::printf("%-26s", row.name);
+    for (const Column& c : columns) {
+      const double value = row.value(c);
+      if (std::isfinite(value)) {
+        std::printf(" %14.*f", row.digits, value);
+      } else {
+        std::printf(" %14s", "-");
+      }
+    }
+    std::printf("\n");
+  }
+}
+
+}  // namespace
+
+int report(int argc, char** argv) {
+  std::filesystem::path data = "data";
+  std::vector<std::int64_t> ids;
+  for (int i = 0; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    if (word == "--help" || word == "-h") {
+      std::printf(
+          "usage: roverd report [--data DIR] RUN...\n"
+          "How well runs were driven, side by side. GET /runs lists them.\n");
+      return 0;
+    }
+    if (word == "--data") {
+      if (++i >= argc) return complain("--data needs a folder");
+      data = argv[i];
+      continue;
+    }
+    char* end = nullptr;
+    const long id = std::strtol(argv[i], &end, 10);
+    if (word.empty() || *end != '\0' || id < 1) {
+      return complain("\"" + std::string(word) + "\" is no run's number");
+    }
+    ids.push_back(id);
+  }
+  if (ids.empty()) return complain("which runs? usage: roverd report [--data DIR] RUN...");
+  std::vector<Column> columns;
+  for (const std::int64_t id : ids) {
+    auto column = column_of(data / "roverd.db", id);
+    if (!column) {
+      (void)complain(column.error().detail);
+      return column.error().code == base::Code::Unavailable ? 1 : 2;
+    }
+    columns.push_back(std::move(*column));
+  }
+  print(columns);
+  return 0;
+}
+
+}  // namespace roverd
