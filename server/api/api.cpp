@@ -245,8 +245,8 @@ std::optional<Response> Api::on_upgrade(const Request& request) {
 void Api::on_client(ClientId client) {
   impl_->stream->on_client(client);
 }
-void Api::on_text(ClientId client, std::string_view text) {
-  impl_->stream->on_text(client, text);
+void Api::on_text(ClientId client, base::Time begun, std::string_view text) {
+  impl_->stream->on_text(client, begun, text);
 }
 void Api::on_gone(ClientId client) {
   impl_->stream->on_gone(client);

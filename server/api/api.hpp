@@ -97,7 +97,8 @@ class Api {
   /// Empty: welcome.
   std::optional<Response> on_upgrade(const Request& request);
   void on_client(ClientId client);
-  void on_text(ClientId client, std::string_view text);
+  /// @param begun when its first byte was there
+  void on_text(ClientId client, base::Time begun, std::string_view text);
   /// A client that was driving stops the robot.
   void on_gone(ClientId client);
   static Response on_refused(unsigned status, std::string_view detail);

@@ -45,6 +45,10 @@ void Members::complain(std::string_view name, std::string detail) {
   errors_.push_back({"/" + mission::escaped_key(name), std::move(detail)});
 }
 
+void Members::complain_of_header(std::string_view name, std::string detail) {
+  errors_.push_back({std::string(name), std::move(detail)});
+}
+
 void Members::complain_inside(std::string_view name, const base::Error& inner) {
   for (const auto& [pointer, detail] : inner.fields) {
     errors_.push_back({"/" + mission::escaped_key(name) + pointer, detail});

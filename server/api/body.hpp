@@ -33,6 +33,8 @@ class Members {
   const Json* any(std::string_view name);
   void require(std::string_view name);
   void complain(std::string_view name, std::string detail);
+  /// What is wrong beside the body.
+  void complain_of_header(std::string_view name, std::string detail);
   /// What is wrong with the members of a member: "/front/mode".
   void complain_inside(std::string_view name, const base::Error& inner);
 

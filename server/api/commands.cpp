@@ -8,9 +8,7 @@ namespace roverd::api {
 
 void Commands::run(robot::Command command, base::Time not_after, base::Time now, Done done) {
   if (now > not_after) {
-    return done(base::fail(base::Code::Late,
-                           "the command arrived too late and was not carried "
-                           "out"));
+    return done(tl::unexpected<base::Error>(late_error(not_after, now)));
   }
   const bool stop = std::holds_alternative<robot::Estop>(command);  // always has room
   if (waiting_.size() >= kWaiting && !stop) {
@@ -54,14 +52,6 @@ void Commands::sweep(base::Time now) {
     answer(id, base::fail(base::Code::Unavailable,
                           "nobody answers: the control loop or the driver hangs"));
   }
-}
-
-base::Time validity_of(Members& members, const Call& call, Moves moves) {
-  constexpr double kClick_s = 1.0;
-  constexpr double kLongest_s = 60.0;
-  const auto given = members.number("valid_for_s", 0.0, kLongest_s);
-  if (moves == Moves::No) return base::Time::max();
-  return call.begun + base::from_seconds(given.value_or(kClick_s));
 }
 
 void run_command(const ContextPtr& context, const CallPtr& call, robot::Command command,

@@ -16,6 +16,7 @@
 #include "api/run_recorder.hpp"
 #include "api/teach.hpp"
 #include "api/trail.hpp"
+#include "api/validity.hpp"
 
 namespace roverd::api {
 
@@ -113,11 +114,6 @@ void add_tile_routes(const ContextPtr& context);
 void add_drive_routes(const ContextPtr& context);
 void add_run_routes(const ContextPtr& context);
 void add_parameter_routes(const ContextPtr& context);
-
-enum class Moves { Yes, No };
-/// Takes `valid_for_s` out of the body. Without it: 1 s, counted from the first byte of the
-/// request. What cannot move the robot, stops above all, never comes too late.
-base::Time validity_of(Members& members, const Call& call, Moves moves);
 
 /// Runs a command and answers with what `state` makes of the snapshot, or with the refusal.
 void run_command(const ContextPtr& context, const CallPtr& call, robot::Command command,

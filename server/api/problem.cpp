@@ -52,8 +52,11 @@ const std::vector<ProblemKind>& problem_kinds() {
       {404, "not-found", "Not found", "There is no such thing."},
       {405, "method-not-allowed", "Method not allowed", "Allow names the methods of this path."},
       {409, "conflict", "Conflict with the present state",
-       "The detail says which state; nothing was changed. Commands that arrive late are refused "
-       "so, too."},
+       "The detail says which state; nothing was changed."},
+      {409, "late", "Too late",
+       "The command is older than it is good for; nothing was done. Its age counts from "
+       "Roverd-Seen, "
+       "or, without that header, from the first sign of the request."},
       {412, "revision-mismatch", "Somebody else changed it",
        "If-Match does not name the present revision; `current` holds that."},
       {413, "too-large", "Too large", "The body is larger than the server takes."},
@@ -85,6 +88,10 @@ Json problem_json(unsigned status, std::string_view detail) {
 
 Json problem_json(const base::Error& error) {
   Json out = problem_json(status_of(error.code), error.detail);
+  if (error.code == base::Code::Late) {
+    out["type"] = "/docs#problem-late";
+    out["title"] = "Too late";
+  }
   if (!error.fields.empty()) {
     Json& errors = out["errors"] = Json::array();
     for (const auto& [pointer, detail] : error.fields) {

@@ -11,7 +11,6 @@ namespace roverd::api {
 namespace {
 
 constexpr int kComplaintsInARow = 10;
-constexpr auto kDriveValid = std::chrono::milliseconds(250);
 constexpr auto kDriverSilent = std::chrono::milliseconds(500);
 // Wider than any vehicle: the robot cuts to its own limits.
 constexpr double kMostSpeed_mps = 10.0;
@@ -28,10 +27,11 @@ constexpr const char* kExecution = "execution";
 
 std::string stream_text(std::string_view topic, std::uint64_t seq, std::string_view data) {
   std::string out;
-  out.reserve(data.size() + topic.size() + 96);
+  out.reserve(data.size() + topic.size() + 120);
   out.append(R"({"topic":")").append(topic).append(R"(","seq":)").append(std::to_string(seq));
   out.append(R"(,"time":")").append(base::to_rfc3339(base::wall_now()));
-  out.append(R"(","data":)").append(data).append("}");
+  out.append(R"(","mono_s":)").append(Json(mono_s(base::steady_now())).dump());
+  out.append(R"(,"data":)").append(data).append("}");
   return out;
 }
 
@@ -71,13 +71,13 @@ void StreamTexts::on_gone(ClientId client) {
   if (client == driver_) stop_driving();
 }
 
-void StreamTexts::on_text(ClientId id, std::string_view text) {
+void StreamTexts::on_text(ClientId id, base::Time begun, std::string_view text) {
   const auto found = clients_.find(id);
   if (found == clients_.end()) return;
   Client& client = found->second;
   const auto message = mission::parse_json(text);
   const base::Result<void> done =
-      message ? read(id, client, *message) : tl::unexpected<base::Error>(message.error());
+      message ? read(id, client, *message, begun) : tl::unexpected<base::Error>(message.error());
   if (done) {
     client.complaints = 0;
   } else {
@@ -93,16 +93,43 @@ void StreamTexts::complain(ClientId id, Client& client, const base::Error& error
   }
 }
 
-base::Result<void> StreamTexts::read(ClientId id, Client& client, const Json& message) {
+base::Result<void> StreamTexts::read(ClientId id, Client& client, const Json& message,
+                                     base::Time begun) {
+  // Before all else, and whatever else the message says.
+  if (message.is_object() && message.value("estop", Json()) == true) estop(id);
   Members members(message);
+  const auto stop = members.flag("estop");
   const Json* topics = members.any("subscribe");
   const Json* driving = members.any("drive");
+  constexpr double kLargest = 9'007'199'254'740'992.0;  // whole numbers are exact up to here
+  const auto ping = members.number("ping", -kLargest, kLargest);
+  (void)members.any("seen_s");
+  if (stop == false)
+    members.complain("estop", "can only be true: POST /vehicle/estop/reset ends it");
   if (auto whole = members.finish(); !whole) return whole;
-  if ((topics == nullptr) == (driving == nullptr)) {
+  const int said = (stop ? 1 : 0) + (topics ? 1 : 0) + (driving ? 1 : 0) + (ping ? 1 : 0);
+  if (said != 1) {
     return base::fail(base::Code::Invalid,
-                      "a message has exactly one of the members subscribe and drive");
+                      "a message has exactly one of the members estop, subscribe, drive and ping");
   }
-  return topics != nullptr ? subscribe(id, *topics) : drive(id, client, *driving);
+  if (topics != nullptr) return subscribe(id, *topics);
+  if (driving != nullptr) return drive(id, client, members, begun);
+  if (ping) answer_ping(id, *ping);
+  return {};
+}
+
+void StreamTexts::estop(ClientId id) {
+  context_->commands.run(robot::Estop{"the page or a script"}, base::Time::max(),
+                         base::steady_now(), [this, id](base::Result<void> done) {
+                           // Without an answer the client says it again.
+                           if (!done || !clients_.contains(id)) return;
+                           stream_.send(id, stream_text("estop", 1, R"({"estop":true})"));
+                         });
+}
+
+/// So that a client can tell how old on this very connection the data is that it gets.
+void StreamTexts::answer_ping(ClientId id, double ping) {
+  stream_.send(id, stream_text("pong", 1, plain_json({{"ping", ping}})));
 }
 
 base::Result<void> StreamTexts::subscribe(ClientId id, const Json& topics) {
@@ -129,35 +156,42 @@ base::Result<void> StreamTexts::subscribe(ClientId id, const Json& topics) {
   return base::fail(base::Code::NotFound, std::move(detail), std::move(unknown));
 }
 
-base::Result<void> StreamTexts::drive(ClientId id, Client& client, const Json& object) {
-  Members members(object);
+base::Result<void> StreamTexts::drive(ClientId id, Client& client, Members& message,
+                                      base::Time begun) {
+  Members members(*message.any("drive"));
   for (const char* name : {"speed_mps", "yaw_rate_dps", "deadman"}) members.require(name);
   const auto speed_mps = members.number("speed_mps", -kMostSpeed_mps, kMostSpeed_mps);
   const auto yaw_rate_dps = members.number("yaw_rate_dps", -kMostYawRate_dps, kMostYawRate_dps);
   const auto deadman = members.flag("deadman");
   const auto seq = members.whole("seq", 0, std::int64_t{1} << 53);
-  if (auto read = members.finish(); !read) {
+  const base::Time not_after = stick_validity_of({begun, message, members});
+  const auto outer = message.finish();
+  if (auto read = members.finish(); !read || !outer) {
+    // Whoever lets go has let go, and whoever drives must be understood.
+    if (id == driver_) stop_driving();
+    if (read) return outer;
     for (auto& field : read.error().fields) field.pointer = "/drive" + field.pointer;
-    if (id == driver_) stop_driving();  // whoever drives must be understood
     return read;
   }
   if (seq && client.drive_seq && *seq <= *client.drive_seq) return {};
   if (seq) client.drive_seq = seq;
-
-  const base::Time now = base::steady_now();
-  const bool taken = driver_ != 0 && driver_ != id && now - driven_ < kDriverSilent;
-  if (taken) {
-    if (!*deadman) return {};
-    return base::fail(base::Code::Conflict, "another client is driving");
-  }
   if (!*deadman) {
     if (id == driver_) stop_driving();
     return {};
   }
+  return take_wheel(id, {{*speed_mps, base::rad_from_deg(*yaw_rate_dps)}, true}, not_after);
+}
+
+base::Result<void> StreamTexts::take_wheel(ClientId id, robot::Drive command,
+                                           base::Time not_after) {
+  const base::Time now = base::steady_now();
+  if (driver_ != 0 && driver_ != id && now - driven_ < kDriverSilent) {
+    return base::fail(base::Code::Conflict, "another client is driving");
+  }
+  if (now > not_after) return tl::unexpected<base::Error>(late_error(not_after, now));
   driver_ = id;
   driven_ = now;
-  const robot::Drive command{{*speed_mps, base::rad_from_deg(*yaw_rate_dps)}, true};
-  if (context_->deps.robot.request(command, now + kDriveValid, {})) return {};
+  if (context_->deps.robot.request(command, not_after, {})) return {};
   return base::fail(base::Code::Unavailable, "too many commands wait for the robot");
 }
 

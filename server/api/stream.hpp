@@ -1,5 +1,5 @@
 #pragma once
-// The live stream's texts: hello, subscriptions, teleoperation, errors.
+// The live stream's texts: hello, subscriptions, teleoperation, the stop, errors.
 //
 // One client at a time drives: the first who sends a drive message with the dead-man's switch held,
 // until it lets go, leaves, or is silent for half a second.
@@ -14,7 +14,7 @@
 
 namespace roverd::api {
 
-/// {"topic", "seq", "time", "data"} around a JSON text.
+/// {"topic", "seq", "time", "mono_s", "data"} around a JSON text.
 std::string stream_text(std::string_view topic, std::uint64_t seq, std::string_view data);
 
 class StreamTexts {
@@ -22,7 +22,8 @@ class StreamTexts {
   StreamTexts(ContextPtr context, Stream stream);
 
   void on_client(ClientId client);
-  void on_text(ClientId client, std::string_view text);
+  /// @param begun when its first byte was there
+  void on_text(ClientId client, base::Time begun, std::string_view text);
   void on_gone(ClientId client);
 
   void publish_event(const base::Event& event);
@@ -37,9 +38,12 @@ class StreamTexts {
     std::optional<std::int64_t> drive_seq;
   };
 
-  base::Result<void> read(ClientId id, Client& client, const Json& message);
+  base::Result<void> read(ClientId id, Client& client, const Json& message, base::Time begun);
   base::Result<void> subscribe(ClientId id, const Json& topics);
-  base::Result<void> drive(ClientId id, Client& client, const Json& members);
+  base::Result<void> drive(ClientId id, Client& client, Members& message, base::Time begun);
+  base::Result<void> take_wheel(ClientId id, robot::Drive command, base::Time not_after);
+  void estop(ClientId id);
+  void answer_ping(ClientId id, double ping);
   void stop_driving();
   void complain(ClientId id, Client& client, const base::Error& error);
   std::optional<std::string> vehicle_text(std::uint64_t seq);

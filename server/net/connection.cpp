@@ -8,6 +8,7 @@
 #include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 
+#include "net/arrival.hpp"
 #include "net/http_date.hpp"
 #include "net/session.hpp"
 
@@ -47,6 +48,7 @@ Connection::~Connection() {
 void Connection::start() {
   error_code ignored;
   socket_.set_option(tcp::no_delay(true), ignored);
+  earliest_ = peers_->not_seen_since(opened_at(socket_.native_handle(), base::steady_now()));
   wait();
 }
 
@@ -64,8 +66,11 @@ void Connection::wait() {
 
 void Connection::read_header() {
   phase_ = Phase::Reading;
-  begun_ = base::steady_now();
-  deadline_ = begun_ + peers_->limits.request;
+  const base::Time now = base::steady_now();
+  begun_ =
+      earliest_ ? *earliest_ : peers_->not_seen_since(newest_arrival(socket_.native_handle(), now));
+  earliest_.reset();
+  deadline_ = now + peers_->limits.request;
   parser_.emplace();
   parser_->header_limit(static_cast<std::uint32_t>(peers_->limits.header_bytes));
   parser_->body_limit(peers_->limits.body_bytes);
@@ -128,6 +133,7 @@ void Connection::read_body() {
 void Connection::on_request() {
   phase_ = Phase::Handling;
   deadline_.reset();  // the handler keeps its own time
+  whole_ = base::steady_now();
   ++peers_->stats.requests;
   if (!peers_->handlers.on_request) return force();
   peers_->handlers.on_request(parser_->release(), begun_,
@@ -195,8 +201,11 @@ void Connection::on_written() {
   serializer_.reset();
   response_.reset();
   parser_.reset();
-  if (keep_alive_ && !peers_->stopping) return wait();
-  linger();
+  if (!keep_alive_ || peers_->stopping) return linger();
+  error_code ignored;
+  const bool sent_ahead = buffer_.size() > 0 || socket_.available(ignored) > 0;
+  if (sent_ahead) earliest_ = whole_;
+  wait();
 }
 
 void Connection::linger() {

@@ -6,6 +6,9 @@
 //                      │ upgrade ▶ Session                   └─close─▶ Lingering ▶ gone
 //                      └ refused (4xx, then close) ─▶ Writing
 //
+// How old a request is counts from the first sign of it: the opening of a new connection, the first
+// byte on one that was kept, the request before for one that was sent ahead of its turn.
+//
 // Lingering: after the last answer the write side is shut and what still comes is thrown away for
 // a moment, because closing at once would reset the connection and destroy the answer on its way.
 
@@ -64,7 +67,9 @@ class Connection : public Peer, public std::enable_shared_from_this<Connection> 
   std::optional<Response> response_;
   std::optional<Serializer> serializer_;
   Phase phase_ = Phase::Waiting;
-  base::Time begun_;
+  base::Time begun_;                    ///< of the request being read, as Handlers::on_request says
+  std::optional<base::Time> earliest_;  ///< the next request may have come in then already
+  base::Time whole_;                    ///< when the last request was in
   std::optional<base::Time> deadline_;
   bool head_ = false;
   bool keep_alive_ = true;

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -23,6 +24,7 @@
 #include <boost/beast/core/role.hpp>
 #include <boost/beast/websocket/teardown.hpp>
 
+#include "base/time.hpp"
 #include "net/frame.hpp"
 
 namespace roverd::net {
@@ -58,10 +60,19 @@ class Outlet {
   /// Sends what waits. @return true if idle then.
   bool flush();
 
+  /// Since when a part of a message has been here, if it came in parts.
+  std::optional<base::Time> partial_since() const noexcept { return partial_since_; }
+  /// A frame was read to its end.
+  void frame_ended() noexcept {
+    reads_ = 0;
+    partial_since_.reset();
+  }
+
   template <class Buffers, class Handler>
   auto async_read_some(const Buffers& buffers, Handler&& handler) {
     return boost::asio::async_initiate<Handler, void(error_code, std::size_t)>(
         [this](auto&& done, const auto& into) {
+          if (reads_++ > 0 && !partial_since_) partial_since_ = base::steady_now();
           if (early_.empty()) {
             socket_.async_read_some(into, std::forward<decltype(done)>(done));
             return;
@@ -115,6 +126,8 @@ class Outlet {
   Frame current_;
   std::string own_;  ///< Beast's frames
   std::size_t offset_ = 0;
+  int reads_ = 0;  ///< begun since the last frame's end
+  std::optional<base::Time> partial_since_;
   bool blocked_ = false;
   bool closing_ = false;
   bool finished_ = false;

@@ -3,6 +3,7 @@
 // the one timer that looks after all their deadlines (a timer per operation would cost more than
 // the operation).
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -72,6 +73,23 @@ class Peers {
     return longest != nullptr;
   }
 
+  /// The web thread may have hung, or the machine slept: what is found in a socket then can have
+  /// come at any moment of it. @return the earlier one
+  base::Time not_seen_since(base::Time arrived) const noexcept {
+    constexpr base::Duration kCatchingUp = std::chrono::milliseconds(100);
+    const base::Time now = base::steady_now();
+    if (now - swept_ > kHung) return std::min(swept_, arrived);
+    return now - caught_up_ < kCatchingUp ? std::min(hung_from_, arrived) : arrived;
+  }
+  /// With every sweep.
+  void awake(base::Time now) noexcept {
+    if (now - swept_ > kHung) {
+      hung_from_ = swept_;
+      caught_up_ = now;
+    }
+    swept_ = now;
+  }
+
   Response refusal(unsigned status, std::string_view detail) const;
 
   boost::asio::io_context& io;
@@ -83,7 +101,12 @@ class Peers {
   ClientId next_client = 1;
 
  private:
+  static constexpr base::Duration kHung = 2 * kSweep;
+
   std::unordered_map<Peer*, std::weak_ptr<Peer>> open_;
+  base::Time swept_ = base::steady_now();  ///< the web thread was awake then
+  base::Time hung_from_;
+  base::Time caught_up_;
 };
 
 }  // namespace roverd::net

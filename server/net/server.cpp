@@ -111,6 +111,7 @@ void Server::Impl::sweep() {
   sweep_timer.async_wait([self = shared_from_this()](error_code ec) {
     if (ec) return;
     const base::Time now = base::steady_now();
+    self->peers->awake(now);
     self->peers->each([now](Peer& peer) { peer.sweep(now); });
     constexpr int kPerSecond = std::chrono::seconds(1) / Peers::kSweep;
     if (++self->sweeps % kPerSecond == 0 && self->peers->handlers.on_second) {

@@ -52,13 +52,15 @@ using ClientId = std::uint64_t;
 class Hub;
 
 struct Handlers {
-  /// Any request that is not a WebSocket upgrade. `begun`: when its first byte was there. HEAD
-  /// comes as it is; answer as for GET, net leaves out the body.
+  /// Any request that is not a WebSocket upgrade. `begun`: it cannot have been sent before; at the
+  /// latest when its first byte was there (see connection.hpp). HEAD comes as it is; answer as for
+  /// GET, net leaves out the body.
   std::function<void(Request, base::Time begun, Respond)> on_request;
   /// An upgrade request: nullopt accepts, a response refuses.
   std::function<std::optional<Response>(const Request&)> on_upgrade;
   std::function<void(ClientId)> on_client;
-  std::function<void(ClientId, std::string_view text)> on_text;
+  /// `begun`: when its first byte was there.
+  std::function<void(ClientId, base::Time begun, std::string_view text)> on_text;
   std::function<void(ClientId)> on_gone;
   /// The answer for requests that net itself refuses: 400 malformed, 413, 417, 431, 503.
   std::function<Response(unsigned status, std::string_view detail)> on_refused;

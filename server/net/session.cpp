@@ -8,6 +8,8 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 
+#include "net/arrival.hpp"
+
 namespace roverd::net {
 
 namespace websocket = boost::beast::websocket;
@@ -49,8 +51,10 @@ void Session::accept(Request upgrade) {
   ws_.set_option(websocket::stream_base::timeout{websocket::stream_base::none(),
                                                  websocket::stream_base::none(), false});
   ws_.read_message_max(peers_->limits.message_bytes);
-  ws_.control_callback(
-      [this](websocket::frame_type, boost::beast::string_view) { heard_ = base::steady_now(); });
+  ws_.control_callback([this](websocket::frame_type, boost::beast::string_view) {
+    heard_ = base::steady_now();
+    ws_.next_layer().frame_ended();
+  });
   ws_.next_layer().on_blocked = [this] { wait_writable(); };
   ws_.async_accept(upgrade_, [self = shared_from_this()](error_code ec) {
     if (ec || self->phase_ != Phase::Accepting) return self->gone();
@@ -84,10 +88,19 @@ void Session::on_message() {
       close(1003, "text only");
     } else if (peers_->handlers.on_text) {
       const auto bytes = buffer_.cdata();
-      peers_->handlers.on_text(id_, {static_cast<const char*>(bytes.data()), bytes.size()});
+      peers_->handlers.on_text(id_, begun(),
+                               {static_cast<const char*>(bytes.data()), bytes.size()});
     }
   }
   buffer_.consume(buffer_.size());
+  ws_.next_layer().frame_ended();
+}
+
+/// When the first bytes of the message that was just read came in.
+base::Time Session::begun() {
+  Outlet& outlet = ws_.next_layer();
+  if (outlet.partial_since()) return *outlet.partial_since();
+  return peers_->not_seen_since(newest_arrival(outlet.next_layer().native_handle(), heard_));
 }
 
 void Session::offer(std::uint64_t slot, const Frame& frame) {

@@ -50,6 +50,7 @@ class Session : public Peer, public std::enable_shared_from_this<Session> {
   void opened();
   void read();
   void on_message();
+  base::Time begun();
   void wait_writable();
   void gone();
 

@@ -64,7 +64,7 @@ TEST_F(DriverApi, ARestartIsBegunAndRefusedWhileTheRobotIsArmed) {
   EXPECT_EQ(call("POST", "/drivers/gnss/restart", Json{{"hard", true}}).status, 422u);
   EXPECT_EQ(call("GET", "/drivers/gnss/restart").status, 405u);
   // An armed robot may drive by what a working driver says,
-  ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 20}}).status, 200u);
+  ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 5}}).status, 200u);
   const auto refused = call("POST", "/drivers/gnss/restart");
   EXPECT_EQ(refused.status, 409u);
   EXPECT_NE(refused.body["detail"].get<std::string>().find("disarm"), std::string::npos);
@@ -80,7 +80,7 @@ TEST_F(DriverApi, LightsAreSetAndTold) {
   EXPECT_TRUE(call("GET", "/vehicle/lights").body["front"].is_null());
   const auto set =
       call("PUT", "/vehicle/lights",
-           Json{{"front", {{"mode", "custom"}, {"brightness_pct", 40}}}, {"valid_for_s", 20}});
+           Json{{"front", {{"mode", "custom"}, {"brightness_pct", 40}}}, {"valid_for_s", 5}});
   EXPECT_EQ(set.status, 202u);
   EXPECT_EQ(house.light_mode, 3);
   until([this] { return !call("GET", "/vehicle/lights").body["front"].is_null(); }, "told");
@@ -89,7 +89,7 @@ TEST_F(DriverApi, LightsAreSetAndTold) {
   EXPECT_EQ(told["front"], (Json{{"mode", "custom"}, {"brightness_pct", 40}}));
   EXPECT_EQ(told["rear"]["mode"], "off");
   // Given back to the vehicle:
-  EXPECT_EQ(call("PUT", "/vehicle/lights", Json{{"commanded", false}, {"valid_for_s", 20}}).status,
+  EXPECT_EQ(call("PUT", "/vehicle/lights", Json{{"commanded", false}, {"valid_for_s", 5}}).status,
             202u);
 }
 
@@ -113,13 +113,13 @@ TEST_F(DriverApi, WrongLightsAreNamed) {
 
 TEST_F(DriverApi, ErrorsAreClearedOnlyWhileDisarmed) {
   until_ready();
-  EXPECT_EQ(call("POST", "/vehicle/errors/clear", Json{{"valid_for_s", 20}}).status, 202u);
+  EXPECT_EQ(call("POST", "/vehicle/errors/clear", Json{{"valid_for_s", 5}}).status, 202u);
   EXPECT_EQ(house.errors_cleared, 0);
-  EXPECT_EQ(call("POST", "/vehicle/errors/clear", Json{{"motor", 2}, {"valid_for_s", 20}}).status,
+  EXPECT_EQ(call("POST", "/vehicle/errors/clear", Json{{"motor", 2}, {"valid_for_s", 5}}).status,
             202u);
   EXPECT_EQ(house.errors_cleared, 2);
   EXPECT_EQ(call("POST", "/vehicle/errors/clear", Json{{"motor", 3}}).status, 422u);
-  ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 20}}).status, 200u);
+  ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 5}}).status, 200u);
   const auto refused = call("POST", "/vehicle/errors/clear");
   EXPECT_EQ(refused.status, 409u);
   EXPECT_NE(refused.body["detail"].get<std::string>().find("disarm first"), std::string::npos);

@@ -131,7 +131,9 @@ void House::serve(net::Limits limits) {
   };
   h.on_upgrade = [this](const net::Request& request) { return api_->on_upgrade(request); };
   h.on_client = [this](net::ClientId id) { api_->on_client(id); };
-  h.on_text = [this](net::ClientId id, std::string_view text) { api_->on_text(id, text); };
+  h.on_text = [this](net::ClientId id, base::Time begun, std::string_view text) {
+    api_->on_text(id, begun, text);
+  };
   h.on_gone = [this](net::ClientId id) { api_->on_gone(id); };
   h.on_refused = api::Api::on_refused;
   h.on_second = [this] { api_->on_second(); };

@@ -62,6 +62,54 @@ TEST(Http, RequestsSentAheadAreAnsweredInOrder) {
   EXPECT_EQ(client.answer()->body, "/3+0");
 }
 
+/// Answers with how old the request is at least, in milliseconds.
+net::Handlers aging() {
+  net::Handlers h = echo();
+  h.on_request = [](const net::Request& request, base::Time begun, const net::Respond& respond) {
+    if (request.target() == "/busy") std::this_thread::sleep_for(800ms);
+    net::Response response{http::status::ok, 11};
+    response.body() = std::to_string((base::steady_now() - begun) / 1ms);
+    respond(std::move(response));
+  };
+  return h;
+}
+
+long age_ms(Client& client) {
+  const auto answer = client.answer();
+  return answer ? std::stol(answer->body) : -1;
+}
+
+TEST(Http, TheAgeOfARequestCountsFromTheFirstSignOfIt) {
+  NetHouse house(small(), aging());
+  Client client(house.port());
+  std::this_thread::sleep_for(400ms);
+  client.send(get("/new"));
+  EXPECT_GE(age_ms(client), 390);  // a new connection: from its opening
+  std::this_thread::sleep_for(2s);
+  client.send(get("/kept"));
+  EXPECT_LT(age_ms(client), 1900);  // a kept one may rest
+  client.send("GET /slow HTTP/1.1\r\n");
+  std::this_thread::sleep_for(400ms);
+  client.send("Host: x\r\n\r\n");
+  EXPECT_GE(age_ms(client), 390);  // and its requests may not
+}
+
+TEST(Http, WhatLayInASocketWhileNobodyLookedIsOld) {
+  // Given a web thread that is kept for 0.8 s,
+  NetHouse house(small(), aging());
+  Client keeper(house.port());
+  keeper.send(get("/busy"));
+  std::this_thread::sleep_for(100ms);
+  // when others send meanwhile: through a new connection, and ahead of their turn,
+  Client client(house.port());
+  client.send(get("/waited"));
+  keeper.send(get("/ahead"));
+  // then that time counts.
+  EXPECT_GE(age_ms(client), 500);
+  EXPECT_GE(age_ms(keeper), 800);
+  EXPECT_GE(age_ms(keeper), 500);
+}
+
 TEST(Http, ASlowHandlerHoldsOnlyItsOwnConnection) {
   // Given a handler that keeps its answer,
   net::Handlers h = echo();

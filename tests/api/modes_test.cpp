@@ -11,11 +11,11 @@ using ModesApi = HouseTest;
 TEST_F(ModesApi, AGoalIsBegunAndTold) {
   until_ready();
   const Json goal = {
-      {"lat", kStart.lat + 0.0001}, {"lon", kStart.lon}, {"heading_deg", 90}, {"valid_for_s", 10}};
+      {"lat", kStart.lat + 0.0001}, {"lon", kStart.lon}, {"heading_deg", 90}, {"valid_for_s", 5}};
   const auto unarmed = call("POST", "/vehicle/goto", goal);
   EXPECT_EQ(unarmed.status, 409u);
   EXPECT_EQ(unarmed.body["detail"], "the robot is not armed");
-  ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 10}}).status, 200u);
+  ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 5}}).status, 200u);
   const auto begun = call("POST", "/vehicle/goto", goal);
   ASSERT_EQ(begun.status, 202u);
   EXPECT_EQ(begun.raw.header("location"), "/api/v1/vehicle");
@@ -31,10 +31,10 @@ TEST_F(ModesApi, AGoalIsBegunAndTold) {
   EXPECT_TRUE(state["fence"].is_null());
   const auto held = call("PUT", "/vehicle/mode", Json{{"mode", "HOLD"}});
   EXPECT_EQ(held.body["activity"]["state"], "failed");
-  EXPECT_EQ(call("POST", "/vehicle/move", Json{{"turn_deg", -90}, {"valid_for_s", 10}}).status,
+  EXPECT_EQ(call("POST", "/vehicle/move", Json{{"turn_deg", -90}, {"valid_for_s", 5}}).status,
             202u);
-  EXPECT_EQ(call("PUT", "/vehicle/mode", Json{{"mode", "RTL"}, {"valid_for_s", 10}}).status, 200u);
-  const auto smart = call("PUT", "/vehicle/mode", Json{{"mode", "SMART_RTL"}, {"valid_for_s", 10}});
+  EXPECT_EQ(call("PUT", "/vehicle/mode", Json{{"mode", "RTL"}, {"valid_for_s", 5}}).status, 200u);
+  const auto smart = call("PUT", "/vehicle/mode", Json{{"mode", "SMART_RTL"}, {"valid_for_s", 5}});
   EXPECT_EQ(smart.status, 200u) << smart.body.dump();
 }
 
@@ -71,20 +71,20 @@ TEST_F(ModesApi, BadGoalsNameTheirFields) {
 
 TEST_F(ModesApi, ATargetIsTakenAndFollowed) {
   until_ready();
-  ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 10}}).status, 200u);
-  const auto none = call("PUT", "/vehicle/mode", Json{{"mode", "FOLLOW"}, {"valid_for_s", 10}});
+  ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 5}}).status, 200u);
+  const auto none = call("PUT", "/vehicle/mode", Json{{"mode", "FOLLOW"}, {"valid_for_s", 5}});
   EXPECT_EQ(none.status, 409u);
   const Json target = {
       {"lat", kStart.lat + 0.0001}, {"lon", kStart.lon},
       {"speed_mps", 0.5},           {"heading_deg", 0},
-      {"valid_for_s", 10},          {"offset", {{"forward_m", -3}, {"left_m", 1}}}};
+      {"valid_for_s", 5},           {"offset", {{"forward_m", -3}, {"left_m", 1}}}};
   ASSERT_EQ(call("PUT", "/vehicle/target", target).status, 200u);
-  const auto follow = call("PUT", "/vehicle/mode", Json{{"mode", "FOLLOW"}, {"valid_for_s", 10}});
+  const auto follow = call("PUT", "/vehicle/mode", Json{{"mode", "FOLLOW"}, {"valid_for_s", 5}});
   EXPECT_EQ(follow.status, 200u) << follow.body.dump();
   // The target falls silent: it holds by itself.
   until([this] { return call("GET", "/vehicle").body["mode"] == "HOLD"; }, "held");
   const auto far = call("PUT", "/vehicle/target",
-                        Json{{"lat", kStart.lat + 1.0}, {"lon", kStart.lon}, {"valid_for_s", 10}});
+                        Json{{"lat", kStart.lat + 1.0}, {"lon", kStart.lon}, {"valid_for_s", 5}});
   EXPECT_EQ(far.status, 422u);
 }
 
@@ -127,8 +127,8 @@ TEST_F(ModesApi, ADrivenMissionBecomesARun) {
   EXPECT_EQ(call("GET", "/runs").body["items"].size(), 0u);
   const std::string id = make_mission("short");
   ASSERT_EQ(call("POST", "/execution/load", Json{{"mission_id", id}}).status, 200u);
-  ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 10}}).status, 200u);
-  const Json start = {{"mission_id", id}, {"revision", 1}, {"valid_for_s", 10}};
+  ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 5}}).status, 200u);
+  const Json start = {{"mission_id", id}, {"revision", 1}, {"valid_for_s", 5}};
   ASSERT_EQ(call("POST", "/execution/start", start).status, 200u);
   until([this] { return call("GET", "/runs").body["items"].size() == 1; }, "a run is listed");
   until([this] { return call("GET", "/runs/1/track?format=csv").raw.body.size() > 400; },

@@ -29,8 +29,8 @@ class RadioApi : public HouseTest {
 
   void drive(const std::string& id) {
     ASSERT_EQ(call("POST", "/execution/load", Json{{"mission_id", id}}).status, 200u);
-    ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 10}}).status, 200u);
-    const Json start = {{"mission_id", id}, {"revision", 1}, {"valid_for_s", 10}};
+    ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 5}}).status, 200u);
+    const Json start = {{"mission_id", id}, {"revision", 1}, {"valid_for_s", 5}};
     ASSERT_EQ(call("POST", "/execution/start", start).status, 200u);
   }
 };

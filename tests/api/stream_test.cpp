@@ -104,7 +104,7 @@ TEST_F(StreamApi, NonsenseIsAnsweredAndNonsenseWithoutEndIsClosed) {
 TEST_F(StreamApi, DrivingByHandMovesTheBaseAndLettingGoStopsIt) {
   // Given an armed robot in MANUAL,
   until_ready();
-  ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 20}}).status, 200u);
+  ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 5}}).status, 200u);
   ASSERT_EQ(call("PUT", "/vehicle/mode", Json{{"mode", "MANUAL"}}).status, 200u);
   auto client = connect();
   const auto hold = [&](double speed_mps, double yaw_rate_dps) {

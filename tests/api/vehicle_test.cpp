@@ -95,7 +95,7 @@ TEST_F(VehicleApi, ArmingSaysWhichChecksFail) {
   house.healthy = true;
   until_ready();
   // then it arms.
-  const auto armed = call("POST", "/vehicle/arm", Json{{"valid_for_s", 10}});
+  const auto armed = call("POST", "/vehicle/arm", Json{{"valid_for_s", 5}});
   EXPECT_EQ(armed.status, 200u);
   EXPECT_EQ(armed.body["armed"], true);
   EXPECT_EQ(call("POST", "/vehicle/disarm").body["armed"], false);
@@ -211,7 +211,7 @@ TEST_F(VehicleApi, AMissionIsLoadedPreviewedStartedPausedAndStopped) {
   // Nothing is loaded yet: there is nothing to start.
   EXPECT_EQ(call("GET", "/execution").body["state"], "idle");
   EXPECT_EQ(call("GET", "/execution/preview").status, 409u);
-  const Json start = {{"mission_id", id}, {"revision", 1}, {"valid_for_s", 20}};
+  const Json start = {{"mission_id", id}, {"revision", 1}, {"valid_for_s", 5}};
   EXPECT_EQ(call("POST", "/execution/start", start).status, 409u);
   // Load: a copy of one revision.
   const auto loaded = call("POST", "/execution/load", Json{{"mission_id", id}});
@@ -229,7 +229,7 @@ TEST_F(VehicleApi, AMissionIsLoadedPreviewedStartedPausedAndStopped) {
   EXPECT_EQ(first.body["at_end"], "hold");
   // Start is refused while not armed, and for what is not loaded.
   EXPECT_EQ(call("POST", "/execution/start", start).status, 409u);
-  ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 20}}).status, 200u);
+  ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 5}}).status, 200u);
   Json other = start;
   other["revision"] = 2;
   EXPECT_EQ(call("POST", "/execution/start", other).status, 409u);
@@ -249,8 +249,8 @@ TEST_F(VehicleApi, AMissionIsLoadedPreviewedStartedPausedAndStopped) {
 
 TEST_F(VehicleApi, AutoGoesOnButStartsOnlyTheNewestRevision) {
   until_ready();
-  const Json autonomous = {{"mode", "AUTO"}, {"valid_for_s", 20}};
-  ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 20}}).status, 200u);
+  const Json autonomous = {{"mode", "AUTO"}, {"valid_for_s", 5}};
+  ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 5}}).status, 200u);
   // Given nothing that could be driven, then a mission that somebody changes after it was loaded,
   EXPECT_EQ(call("PUT", "/vehicle/mode", autonomous).status, 409u);
   const std::string id = make_mission();

@@ -19,7 +19,7 @@ class WebSocketTest : public ::testing::Test {
       respond(net::Response{boost::beast::http::status::not_found, 11});
     };
     h.on_upgrade = [](const net::Request&) { return std::optional<net::Response>{}; };
-    h.on_text = [this](net::ClientId client, std::string_view text) {
+    h.on_text = [this](net::ClientId client, base::Time, std::string_view text) {
       if (text == "state") hub->subscribe(client, {{"state", 50.0}});
       if (text == "news") hub->subscribe(client, {{"news", 0.0}, {"unknown", 1.0}});
       if (text == "echo") hub->send(client, "echo");

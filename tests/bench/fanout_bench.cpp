@@ -102,7 +102,7 @@ net::Handlers handlers(net::Hub*& hub) {
   };
   h.on_upgrade = [](const net::Request&) { return std::optional<net::Response>{}; };
   h.on_client = [&hub](net::ClientId client) { hub->subscribe(client, {{"state", kRate_hz}}); };
-  h.on_text = [](net::ClientId, std::string_view) {};
+  h.on_text = [](net::ClientId, base::Time, std::string_view) {};
   h.on_gone = [](net::ClientId) {};
   h.on_refused = [](unsigned status, std::string_view) {
     return net::Response{boost::beast::http::int_to_status(status), 11};

@@ -144,10 +144,10 @@ def a_mission_drives():
     rest.do("POST", "/execution/load", {"mission_id": mission["id"]})
     # On a slow kernel the receiver's sentences may stumble, and the checks with them.
     until("the robot lets itself be armed", 90,
-          lambda: rest.call("POST", "/vehicle/arm", {"valid_for_s": 10})[0] == 200, 1.0)
+          lambda: rest.call("POST", "/vehicle/arm", {"valid_for_s": 5})[0] == 200, 1.0)
     moments["start"] = now()
     rest.do("POST", "/execution/start", {"mission_id": mission["id"], "revision": mission["revision"],
-                                         "from": "first", "valid_for_s": 10})
+                                         "from": "first", "valid_for_s": 5})
     wait_frames(0x111, candump.moves, 30, moments["start"])
     asked = candump.only(candump.read(LOG), 0x421)
     check(asked and asked[-1].data == bytes([1, 0, 0, 0, 0, 0, 0, 0]),

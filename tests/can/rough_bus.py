@@ -139,9 +139,9 @@ class RoughBus:
         if not self.is_running():
             until("the robot is armed again", 60,
                   lambda: self.station.rest.get("/vehicle")["armed"] or self.station.rest.call(
-                      "POST", "/vehicle/arm", {"valid_for_s": 10})[0] == 200, 0.5)
+                      "POST", "/vehicle/arm", {"valid_for_s": 5})[0] == 200, 0.5)
             until("the mission goes on", 30, lambda: self.is_running() or self.station.rest.call(
-                "POST", "/execution/resume", {"valid_for_s": 10})[0] == 200, 0.5)
+                "POST", "/execution/resume", {"valid_for_s": 5})[0] == 200, 0.5)
         self.drives_on()
 
     def the_interface_goes_down_and_comes_back(self):

@@ -22,8 +22,8 @@ def drive_ahead(rest, metres):
             "lon": here["lon"] + metres * math.sin(heading) * metre_lon}
     mission = rest.do("POST", "/missions", {"name": "ahead", "items": [item]})["id"]
     rest.do("POST", "/execution/load", {"mission_id": mission})
-    rest.do("POST", "/vehicle/arm", {"valid_for_s": 10})
-    rest.do("POST", "/execution/start", {"mission_id": mission, "revision": 1, "valid_for_s": 10})
+    rest.do("POST", "/vehicle/arm", {"valid_for_s": 5})
+    rest.do("POST", "/execution/start", {"mission_id": mission, "revision": 1, "valid_for_s": 5})
     until("it arrives", 60, lambda: rest.get("/execution")["state"] == "finished", 0.2)
 
 

@@ -18,7 +18,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "harness"))
 from station import BIN, ROOT, Program, Rest, Station, check, run_cases, until  # noqa: E402
 
 METRE_LAT = 1 / 111_360.0
-SOON = {"valid_for_s": 10}
+SOON = {"valid_for_s": 5}
 
 
 def ready(rest):

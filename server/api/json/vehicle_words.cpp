@@ -3,6 +3,7 @@
 
 #include "api/json/measured.hpp"
 #include "api/json/words.hpp"
+#include "api/validity.hpp"
 #include "base/angle.hpp"
 #include "mission/json/json.hpp"
 
@@ -226,6 +227,7 @@ Json vehicle_json(const base::Snapshot& s, const std::string& name, base::Time n
   }
   return {{"name", name},
           {"time", base::to_rfc3339(s.wall)},
+          {"mono_s", mono_s(now)},
           {"mode", base::to_string(s.mode)},
           {"armed", s.armed},
           {"estop", s.estop},

@@ -51,14 +51,12 @@ Handler restart_driver(const ContextPtr& context) {
     Members members(*body);
     const base::Time not_after = validity_of(members, *call, Moves::Yes);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
+    if (refused_as_late(call, not_after)) return;
     const auto snapshot = context->snapshot_or_refuse(call);
     if (!snapshot) return;
     const std::string& name = call->params.at("name");
     const auto before = one_driver(*context, *snapshot, name);
     if (!before) return call->respond(problem(no_driver(name)));
-    if (base::steady_now() > not_after) {
-      return call->respond(problem({base::Code::Late, "the command arrived too late"}));
-    }
     // The robot may drive by what this driver says, or through it.
     const auto phase = find_driver(*snapshot, name)->phase;
     const bool at_work = phase == base::DriverPhase::Up || phase == base::DriverPhase::Opening;

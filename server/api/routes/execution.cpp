@@ -130,6 +130,7 @@ Handler start(const ContextPtr& context) {
     base::Time not_after;
     const auto command = read_start(*body, *call, not_after);
     if (!command) return call->respond(problem(command.error()));
+    if (refused_as_late(call, not_after)) return;
     const auto preview = context->deps.robot.preview(*command);
     if (!preview) return call->respond(problem(as_conflict(preview.error())));
     context->commands.run(
@@ -183,6 +184,7 @@ Handler resume(const ContextPtr& context) {
     Members members(*body);
     const base::Time not_after = validity_of(members, *call, Moves::Yes);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
+    if (refused_as_late(call, not_after)) return;
     const auto offer = context->runs.offer();
     const auto loaded = context->deps.robot.loaded();
     if (!offer || (loaded && loaded->id != offer->mission_id)) {

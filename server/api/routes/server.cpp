@@ -17,6 +17,7 @@ Json health_json(const Context& context) {
   const bool alive = snapshot && base::seconds(now - snapshot->now) < kSilent_s;
   return {{"status", alive ? "ok" : "degraded"},
           {"version", context.deps.version},
+          {"mono_s", mono_s(now)},
           {"uptime_s", std::round(base::seconds(now - context.begun) * 1e3) / 1e3},
           {"state", snapshot ? base::to_string(snapshot->mode) : "starting"}};
 }

@@ -129,6 +129,7 @@ Handler set_mode(const ContextPtr& context) {
       }
     }
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
+    if (refused_as_late(call, not_after)) return;
     if (mode == base::Mode::Auto) return set_auto(context, call, not_after);
     run_command(context, call, command, not_after, whole_state(context));
   };
