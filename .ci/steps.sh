@@ -17,7 +17,7 @@ declare -A titles=(
   [format]="the sources are in the project's format"
   [readme]="what the README names exists"
   [web]="page: lint, types, unit tests"
-  [build]="release build without warnings"
+  [build]="release build without warnings; objects need what their rooms may use"
   [unit]="rooms, and the loop in simulated time"
   [api]="the API over real sockets"
   [command]="./run: options, bad input, Ctrl-C, second start; roverd decode; NTRIP casters; power cuts"
@@ -58,6 +58,7 @@ run_ctest() {
 }
 
 step_doors() {
+  need_web_packages # the page's imports are judged by its own compilers
   "$root/.ci/doors" --self-test
   "$root/.ci/doors"
 }
@@ -98,6 +99,7 @@ step_web() {
 step_build() {
   build_product
   ninja_build "$build"
+  "$root/.ci/doors" --built "$build"
 }
 
 step_unit() { run_ctest "$build" 'unit|loop' "$logs/unit" -j "$jobs"; }

@@ -5,17 +5,6 @@ import ts from 'typescript-eslint';
 
 import svelte_config from './svelte.config.js';
 
-/** Rooms of the page and what each may not import. main.ts alone sees all of them. */
-const door = (room, forbidden) => ({
-  files: [`src/${room}/**`],
-  rules: {
-    'no-restricted-imports': [
-      'error',
-      { patterns: [{ regex: forbidden, message: `not through the door of ${room}` }] },
-    ],
-  },
-});
-
 export default ts.config(
   { ignores: ['dist', 'src/link/schema.d.ts'] },
   js.configs.recommended,
@@ -53,24 +42,4 @@ export default ts.config(
   { files: ['src/ui/**'], rules: { 'svelte/prefer-svelte-reactivity': 'off' } },
   { files: ['*.ts', '*.js'], languageOptions: { globals: globals.node } },
   { files: ['src/**/*.ts'], rules: { 'max-lines-per-function': ['error', 60] } },
-  door('model', '^(?!\\./)'),
-  door('link', '^(\\.\\./(map|ui)|svelte|ol|uplot)'),
-  door('map', '^(\\.\\./(link|ui)|svelte|uplot)'),
-  door('ui', '^(\\.\\./(link|map)|ol)'),
-  {
-    files: ['src/model/**'],
-    rules: {
-      'no-restricted-globals': [
-        'error',
-        'window',
-        'document',
-        'fetch',
-        'localStorage',
-        'navigator',
-        'WebSocket',
-        'setTimeout',
-        'setInterval',
-      ],
-    },
-  },
 );
