@@ -21,7 +21,7 @@
 #include "base/result.hpp"
 #include "config/settings.hpp"
 #include "replay/run.hpp"
-#include "robot/run_report.hpp"
+#include "robot/config.hpp"
 #include "store/store.hpp"
 #include "tools/decode.hpp"
 #include "tools/ntrip_table.hpp"
@@ -64,14 +64,13 @@ int exit_code(base::Code code) {
 /// that this version does not take any more is left out, and said.
 std::vector<std::string> take_kept_parameters(roverd::Settings& settings,
                                               const std::filesystem::path& database) {
-  std::vector<std::string> refused;
-  for (const auto& kept : roverd::store::read_parameters(database)) {
-    const auto place = settings.places.find(kept.name);
+  std::vector<roverd::robot::NamedValue> kept;
+  for (auto& one : roverd::store::read_parameters(database)) {
+    const auto place = settings.places.find(one.name);
     if (place != settings.places.end() && place->second.starts_with("--set ")) continue;
-    const auto done = roverd::robot::set_parameter(settings.robot, kept.name, kept.value);
-    if (!done) refused.push_back(kept.name + ": " + done.error().detail);
+    kept.emplace_back(std::move(one.name), std::move(one.value));
   }
-  return refused;
+  return roverd::robot::take_kept(settings.robot, std::move(kept));
 }
 
 int serve(const roverd::Options& options) {
@@ -85,8 +84,9 @@ int serve(const roverd::Options& options) {
   if (auto logging = roverd::start_logging(log_file, settings->server.log_level); !logging) {
     return say(kRefused, logging.error().detail);
   }
-  for (const std::string& why :
-       take_kept_parameters(*settings, std::filesystem::path(options.data) / "roverd.db")) {
+  const auto database = std::filesystem::path(options.data) / "roverd.db";
+  settings->left_out = take_kept_parameters(*settings, database);
+  for (const std::string& why : settings->left_out) {
     base::log(base::Level::Warning, "main", "a kept parameter is left out", {{"reason", why}});
   }
   {

@@ -169,6 +169,7 @@ struct Station::Impl {
   void start();
   void sample_soon();
   void recall(const Settings& settings, const Options& options);
+  void tell_left_out(const Settings& settings);
   void keep_learned();
   void keep_learned_soon();
   void halt() noexcept;
@@ -187,6 +188,7 @@ Result<void> Station::Impl::open(const Settings& settings, const Options& option
   make_api(settings);
   if (auto done = open_server(settings, options); !done) return done;
   recall(settings, options);
+  tell_left_out(settings);
   start();
   return {};
 }
@@ -279,6 +281,14 @@ Result<void> Station::Impl::open_server(const Settings& settings, const Options&
   const bool v6 = bind.find(':') != std::string::npos;
   address = "http://" + (v6 ? "[" + bind + "]" : bind) + ":" + std::to_string(server->port());
   return {};
+}
+
+/// Nobody reads a log: what holds in place of a kept value is told where the robot's events are.
+void Station::Impl::tell_left_out(const Settings& settings) {
+  for (const std::string& why : settings.left_out) {
+    robot.tell({base::wall_now(), base::Severity::Warning, "parameter_left_out",
+                "a kept value is not taken any more, the one before it holds: " + why});
+  }
 }
 
 void Station::Impl::start() {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <initializer_list>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -113,20 +112,6 @@ struct Collect {
   void operator()(const char* name, P& params) {
     out.emplace(name, section(params));
   }
-  /// Their texts follow a rule, and a wrong one is told where it stands.
-  void operator()(const char* name, robot::RadioParams& params) { checked(name, params); }
-  void operator()(const char* name, robot::BatteryParams& params) { checked(name, params); }
-
-  template <class P>
-  void checked(const char* name, P& params) {
-    out.emplace(name, [&params](std::string_view key, const ParamValue& value) -> Result<void> {
-      P changed = params;
-      if (auto done = base::set_param(changed, key, value); !done) return done;
-      if (auto good = check(changed); !good) return good;
-      params = std::move(changed);
-      return {};
-    });
-  }
 };
 
 Result<void> set_tiles(Settings& settings, std::string_view name, const ParamValue& value) {
@@ -192,40 +177,26 @@ Result<void> set_all(Settings& settings, const std::vector<Entry>& entries) {
   return {};
 }
 
-/// One of a few words. @param one_of "skid_steer, differential or ackermann", for the message.
-Result<void> check_word(const Settings& settings, const std::string& key, const std::string& word,
-                        std::initializer_list<std::string_view> known, const char* one_of) {
-  if (std::find(known.begin(), known.end(), word) != known.end()) return {};
-  return base::fail(base::Code::Invalid,
-                    settings.where(key) + " must be " + one_of + ", is \"" + word + "\"");
+/// What the robot's own check has to say, at the place where it was written.
+Result<void> check_robot(const Settings& s) {
+  const auto good = robot::check(s.robot);
+  if (good) return {};
+  const base::Error& error = good.error();
+  if (error.fields.empty()) return tl::unexpected(error);
+  const std::string& key = error.fields.front().pointer;
+  std::string detail = error.detail;
+  if (detail.starts_with(key)) detail.erase(0, key.size());
+  return base::fail(error.code, s.where(key) + detail);
 }
 
 /// What only the whole tells.
 Result<void> check_all(const Settings& s) {
-  // A misspelt word must not turn a steered vehicle into one that turns on the spot.
-  if (auto good = check_word(s, "vehicle.kinematics", s.robot.vehicle.kinematics,
-                             {"skid_steer", "differential", "ackermann"},
-                             "skid_steer, differential or ackermann");
-      !good) {
-    return good;
-  }
-  if (auto good = check_word(s, "nav.track.law", s.robot.track.law,
-                             {"path_frame", "pure_pursuit", "stanley"},
-                             "path_frame, pure_pursuit or stanley");
-      !good) {
-    return good;
-  }
-  if (auto good =
-          check_word(s, "server.log_level", s.server.log_level,
-                     {"debug", "info", "warning", "error"}, "debug, info, warning or error");
-      !good) {
-    return good;
-  }
-  const nav::SpeedParams& speed = s.robot.speed;
-  for (const auto& [key, most] : {std::pair{"nav.speed.max_mps", speed.max_mps},
-                                  std::pair{"nav.speed.reverse_max_mps", speed.reverse_max_mps}}) {
-    if (most >= speed.min_mps) continue;
-    return base::fail(base::Code::Invalid, s.where(key) + " must not be below nav.speed.min_mps");
+  if (auto good = check_robot(s); !good) return good;
+  const std::string& level = s.server.log_level;
+  if (level != "debug" && level != "info" && level != "warning" && level != "error") {
+    return base::fail(base::Code::Invalid, s.where("server.log_level") +
+                                               " must be debug, info, warning or error, is \"" +
+                                               level + "\"");
   }
   for (const auto& [set, path] : s.tiles) {
     std::error_code ec;

@@ -132,6 +132,7 @@ struct Settings {
   robot::Config robot;
   std::map<std::string, std::filesystem::path> tiles;  ///< set name → MBTiles file
   std::map<std::string, std::string> places;           ///< key → where it was said last
+  std::vector<std::string> left_out;  ///< kept parameters that were refused, and why
 
   /// For messages: "config/robot.toml:12: drivers.gnss.link"; the key alone if nobody said it.
   std::string where(const std::string& key) const;

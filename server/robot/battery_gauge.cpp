@@ -34,7 +34,8 @@ std::optional<CurvePoint> curve_point(std::string_view text) noexcept {
 }
 
 tl::unexpected<base::Error> bad(std::string_view part, const char* why) {
-  return base::fail(base::Code::Invalid, "curve: \"" + std::string(part) + "\" " + why);
+  const std::string text = "\"" + std::string(part) + "\" " + why;
+  return base::fail(base::Code::Invalid, "curve: " + text, {{"curve", text}});
 }
 
 }  // namespace
@@ -71,10 +72,11 @@ double charge_pct(const std::vector<CurvePoint>& curve, double voltage_v) noexce
   return std::lerp(a.charge_pct, above->charge_pct, part);
 }
 
-BatteryGauge::BatteryGauge(const BatteryParams& params)
-    : curve_(battery_curve(params.curve).value_or(std::vector<CurvePoint>{})) {}
-
-std::optional<base::BatteryState> BatteryGauge::step(const base::BaseStatus& base) noexcept {
+std::optional<base::BatteryState> BatteryGauge::step(const base::BaseStatus& base) {
+  if (params_->curve != read_) {
+    read_ = params_->curve;
+    curve_ = battery_curve(read_).value_or(std::vector<CurvePoint>{});
+  }
   if (curve_.empty() || !base.battery_v || !std::isfinite(*base.battery_v)) return std::nullopt;
   const double dt_s = std::clamp(base::seconds(base.stamp - at_), 0.0, kSmooth_s);
   const double from_v = smooth_v_.value_or(*base.battery_v);

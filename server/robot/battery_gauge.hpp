@@ -8,10 +8,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/measurements.hpp"
 #include "base/result.hpp"
+#include "base/setting.hpp"
 
 namespace roverd::robot {
 
@@ -49,12 +51,14 @@ class BatteryGauge {
 
   BatteryGauge() = default;
   /// @param params checked (battery_curve); of a damaged curve nothing is told.
-  explicit BatteryGauge(const BatteryParams& params);
+  explicit BatteryGauge(base::Setting<BatteryParams> params) : params_(std::move(params)) {}
 
   /// @return the charge as the voltage tells it; empty without a curve or a voltage.
-  std::optional<base::BatteryState> step(const base::BaseStatus& base) noexcept;
+  std::optional<base::BatteryState> step(const base::BaseStatus& base);
 
  private:
+  base::Setting<BatteryParams> params_;
+  std::string read_;  ///< the text of which the curve was made
   std::vector<CurvePoint> curve_;
   std::optional<double> smooth_v_;
   base::Time at_{};

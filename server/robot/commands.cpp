@@ -259,7 +259,7 @@ base::Result<void> Robot::Impl::handle(const ResumeAt& c) {
   if (!estimator.frame() || estimator.frame()->id() != c.mission->frame.id()) {
     return base::fail(Code::Conflict, "the robot's map began meanwhile: try once more");
   }
-  nav::Executor trial(config.path(), config.behave, config.modes);
+  nav::Executor trial(config.path, config.behave, config.modes);
   const std::shared_ptr<const nav::Route> route(c.mission, &c.mission->route);
   if (auto ok = trial.restore(route, c.place, "left by a restart"); !ok) return ok;
   if (auto ok = trial.may_resume(pose->at); !ok) return ok;

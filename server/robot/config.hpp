@@ -3,7 +3,13 @@
 // names they have in the configuration file; each struct lists its fields (base/params.hpp).
 
 #include <algorithm>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
+#include "base/params.hpp"
+#include "base/result.hpp"
 #include "nav/behave/mode_params.hpp"
 #include "nav/behave/params.hpp"
 #include "nav/estimate/params.hpp"
@@ -156,8 +162,25 @@ void sections(V& v, Config& c) {
   v("battery", c.battery);
 }
 
-/// What only the whole tells: values that are each in range and make no sense together. Invalid,
-/// with the parameter's name as the field.
+/// The check of the whole, beyond the range of each: words, rules within a section, values that are
+/// each in range and make no sense together. The same for the configuration's files, for what was
+/// kept, and for a change while the robot runs. Invalid; the field is the parameter's full name.
 base::Result<void> check(const Config& c);
+
+/// Sets one parameter by its full name ("nav.track.law"), those of [vehicle] too, and checks the
+/// whole. NotFound, Invalid: nothing changed, the field is "/value".
+base::Result<void> set_parameter(Config& config, const std::string& name,
+                                 const base::ParamValue& value);
+
+using NamedValue = std::pair<std::string, base::ParamValue>;
+
+/// Takes in what was changed and kept while the program ran before; in which order they are told
+/// does not matter. What this version does not take is left out, and the value before it holds.
+/// @return why, one sentence for each that was left out, beginning with its name.
+std::vector<std::string> take_kept(Config& config, std::vector<NamedValue> kept);
+
+/// What the vehicle is, and what is believed at first, has been taken in when the program started.
+/// All else acts at the next tick.
+bool acts_at_next_start(std::string_view section, std::string_view name) noexcept;
 
 }  // namespace roverd::robot

@@ -34,12 +34,12 @@ Facts Robot::Impl::facts() const {
           .commands_lost = follow.lost(),
           .not_following = follow.failing(),
           .sigma_bad_since = sigma_bad_since,
-          .spins = spin.for_longer_than(config.safety.spin_s, now),
+          .spins = spin.for_longer_than(config->safety.spin_s, now),
           .estimate = health};
 }
 
 void Robot::Impl::judge() {
-  const SafetyParams& p = config.safety;
+  const SafetyParams& p = config->safety;
   const bool radio = radio_drives(world, p, now);
   const bool waits = armed && !radio && !base_listens(world);
   if (!waits) base_waited_since.reset();
@@ -64,19 +64,19 @@ void Robot::Impl::judge() {
     hold(assessment.cause);
     event(Severity::Warning, was_auto ? "mission_paused" : "stopped", assessment.cause);
   }
-  checks = arming_checks(facts(), p, config.arming, mission != nullptr, now);
+  checks = arming_checks(facts(), p, config->arming, mission != nullptr, now);
 }
 
 /// The part of a command that this vehicle can do at all.
 base::BodyTwist Robot::Impl::possible(const base::BodyTwist& told) const noexcept {
-  const double v = config.vehicle.max_speed_mps;
-  const double w = config.vehicle.steered() ? 0.0 : config.speed.max_yaw_rate_radps;
+  const double v = config->vehicle.max_speed_mps;
+  const double w = config->vehicle.steered() ? 0.0 : config->speed.max_yaw_rate_radps;
   return {std::clamp(told.linear_mps, -v, v), std::clamp(told.angular_radps, -w, w)};
 }
 
 /// Whether our commands reach the base, by what it shows of them.
 void Robot::Impl::watch_base() {
-  const SafetyParams& p = config.safety;
+  const SafetyParams& p = config->safety;
   const bool in_charge = armed && sent.enabled && !radio_drives(world, p, now);
   if (!in_charge) in_charge_since.reset();
   if (in_charge && !in_charge_since) in_charge_since = now;
@@ -118,7 +118,7 @@ void Robot::Impl::hold(const std::string& why) {
 base::DriveCommand Robot::Impl::decide() {
   driver = Driver::None;
   speed_reason = "standing";
-  const bool radio = radio_drives(world, config.safety, now);
+  const bool radio = radio_drives(world, config->safety, now);
   if (radio != radio_had_control) {
     radio_had_control = radio;
     event(Severity::Info, radio ? "radio_takeover" : "radio_released",
@@ -131,7 +131,7 @@ base::DriveCommand Robot::Impl::decide() {
   }
   if (radio && !estop) driver = Driver::Radio;
   if (estop || !armed || radio) return {};
-  if (base_lost(world, config.safety, now)) return {};
+  if (base_lost(world, config->safety, now)) return {};
   if (!base_listens(world)) return {{}, true};
   return keep_inside(choose());
 }

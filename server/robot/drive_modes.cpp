@@ -30,8 +30,8 @@ nav::Vehicle Robot::Impl::vehicle() const {
 
 /// What is allowed now, whatever a path was laid for.
 double Robot::Impl::limit_mps() const noexcept {
-  const double most = std::min(config.speed.max_mps, config.vehicle.max_speed_mps);
-  return assessment.response >= Response::Slow ? std::min(most, config.speed.creep_mps) : most;
+  const double most = std::min(config->speed.max_mps, config->vehicle.max_speed_mps);
+  return assessment.response >= Response::Slow ? std::min(most, config->speed.creep_mps) : most;
 }
 
 void Robot::Impl::interrupt_modes() {
@@ -49,7 +49,7 @@ base::DriveCommand Robot::Impl::drive_by_sticks() {
   }
   if (manual.phase() == Manual::Phase::Held) driver = Driver::Teleop;
   if (!pose) return {{}, true};
-  const base::BodyTwist full{config.manual.max_mps, config.manual.max_yaw_rate_radps};
+  const base::BodyTwist full{config->manual.max_mps, config->manual.max_yaw_rate_radps};
   const nav::TrackOutput out = sticks.step(stick, full, vehicle(), limit_mps(), dt_s);
   if (driver == Driver::Teleop) speed_reason = std::string(nav::to_string(out.reason));
   return {out.command, true};

@@ -19,7 +19,7 @@ constexpr std::size_t kMostHomeEnds = 100;
 /// The straight way there, against the fence.
 base::Result<void> Robot::Impl::inside(base::EnuPoint to) const {
   if (!fence) return {};
-  const double margin_m = config.kept_fence().margin_m + kFenceAllowance_m;
+  const double margin_m = config->kept_fence().margin_m + kFenceAllowance_m;
   if (may_drive(fence->limits, pose->at, to, margin_m)) return {};
   return base::fail(Code::Conflict, "the way there leaves the fence");
 }
@@ -59,7 +59,7 @@ base::Result<void> Robot::Impl::way_home_inside() const {
                                           std::to_string(kMostHomeEnds) +
                                           " times: too often to be compared with the fence");
   }
-  const double margin_m = config.kept_fence().margin_m + kFenceAllowance_m;
+  const double margin_m = config->kept_fence().margin_m + kFenceAllowance_m;
   for (const base::EnuPoint& end : ends) {
     if (fence->limits.clearance_m(end, *to) < margin_m) {
       return base::fail(Code::Conflict, "the mission's way home leaves the fence");
@@ -100,7 +100,7 @@ base::DriveCommand Robot::Impl::keep_inside(base::DriveCommand command) {
     twist.linear_mps = driven;
   }
   const bool by_hand = !by_itself();
-  if (laid ? may_move(fence->limits, *pose, twist, by_hand, config.kept_fence()) : by_hand) {
+  if (laid ? may_move(fence->limits, *pose, twist, by_hand, config->kept_fence()) : by_hand) {
     fence_told = false;
     return command;
   }

@@ -124,7 +124,7 @@ base::Result<void> Robot::Impl::handle(const SetTarget& c) {
     return base::fail(Code::Invalid, "the target's time lies in the future",
                       {{"/time", "lies in the future"}});
   }
-  if (base::seconds(now - target.stamp) > config.modes.follow_hold_s) {
+  if (base::seconds(now - target.stamp) > config->modes.follow_hold_s) {
     return base::fail(Code::Late, "the target's time is too long ago");
   }
   nav::FollowOffset offset;
@@ -164,7 +164,7 @@ base::Result<void> Robot::Impl::enter_dock(const SetMode& c) {
     return base::fail(Code::Invalid, "a pose has finite numbers only");
   }
   if (auto ok = inside(*place); !ok) return ok;
-  if (pose->horizontal_sigma_m > 2.0 * config.modes.dock_within_m) {
+  if (pose->horizontal_sigma_m > 2.0 * config->modes.dock_within_m) {
     return base::fail(Code::Conflict,
                       "the position is uncertain by " +
                           std::to_string(std::lround(pose->horizontal_sigma_m * 100.0)) +

@@ -42,6 +42,7 @@
 #include "robot/follow.hpp"
 #include "robot/manual.hpp"
 #include "robot/outbox.hpp"
+#include "robot/parameter_set.hpp"
 #include "robot/radio_keys.hpp"
 #include "robot/safety.hpp"
 #include "robot/spin.hpp"
@@ -78,7 +79,7 @@ struct Robot::Impl {
   Outbox outbox;
 
   // Control thread from here on.
-  Config config;
+  ParameterSet config;
   bool config_unpublished = true;
   bool fence_unpublished = false;
   nav::Estimator estimator;
@@ -223,7 +224,6 @@ struct Robot::Impl {
   void watch_mode();
   void tell_activity();
   void lay_crumbs();
-  void use_config();
 
   // fence_duty.cpp
   base::Result<void> inside(base::EnuPoint to) const;

@@ -11,8 +11,10 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "base/geo.hpp"
+#include "base/setting.hpp"
 #include "base/time.hpp"
 #include "robot/config.hpp"
 
@@ -22,9 +24,7 @@ class Manual {
  public:
   enum class Phase { Free, Held, Stale };
 
-  explicit Manual(const ManualParams& params) : params_(params) {}
-
-  void use(const ManualParams& params) noexcept { params_ = params; }
+  explicit Manual(base::Setting<ManualParams> params) : params_(std::move(params)) {}
 
   void drive(const base::BodyTwist& twist, bool deadman, base::Time now) noexcept {
     last_ = now;
@@ -33,9 +33,7 @@ class Manual {
       release();
     } else if (phase_ != Phase::Stale || zero) {
       phase_ = Phase::Held;
-      wanted_ = {
-          std::clamp(twist.linear_mps, -params_.max_mps, params_.max_mps),
-          std::clamp(twist.angular_radps, -params_.max_yaw_rate_radps, params_.max_yaw_rate_radps)};
+      wanted_ = twist;
     }
   }
 
@@ -47,13 +45,17 @@ class Manual {
 
   /// Once a tick. Speeds up within limits; slows down and stops at once.
   base::BodyTwist step(base::Time now, double dt_s) noexcept {
-    if (phase_ == Phase::Held && base::seconds(now - last_) > params_.timeout_s) {
+    if (phase_ == Phase::Held && base::seconds(now - last_) > params_->timeout_s) {
       phase_ = Phase::Stale;
       wanted_ = {};
     }
-    now_.linear_mps = grow(now_.linear_mps, wanted_.linear_mps, params_.accel_mps2 * dt_s);
+    const ManualParams& p = *params_;
+    now_.linear_mps = grow(now_.linear_mps, std::clamp(wanted_.linear_mps, -p.max_mps, p.max_mps),
+                           p.accel_mps2 * dt_s);
     now_.angular_radps =
-        grow(now_.angular_radps, wanted_.angular_radps, params_.yaw_accel_radps2 * dt_s);
+        grow(now_.angular_radps,
+             std::clamp(wanted_.angular_radps, -p.max_yaw_rate_radps, p.max_yaw_rate_radps),
+             p.yaw_accel_radps2 * dt_s);
     return now_;
   }
 
@@ -66,7 +68,7 @@ class Manual {
     return to < 0.0 ? std::max(to, from - step) : to;
   }
 
-  ManualParams params_;
+  base::Setting<ManualParams> params_;
   Phase phase_ = Phase::Free;
   base::Time last_{};
   base::BodyTwist wanted_{};

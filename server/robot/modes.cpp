@@ -109,13 +109,13 @@ base::Result<void> Robot::Impl::may_drive_by_itself() const {
   if (estop) return base::fail(Code::Conflict, "the emergency stop is latched");
   if (!armed) return base::fail(Code::Conflict, "the robot is not armed");
   if (!pose) return base::fail(Code::Conflict, "the position is not known");
-  if (radio_drives(world, config.safety, now)) {
+  if (radio_drives(world, config->safety, now)) {
     return base::fail(Code::Conflict, "the radio drives: put its switch SWB up first");
   }
   // What would hold it at the next tick refuses it now.
   Facts as_if = facts();
   as_if.autonomous = true;
-  const Assessment then = assess(as_if, config.safety, now);
+  const Assessment then = assess(as_if, config->safety, now);
   if (then.response >= Response::Hold) return base::fail(Code::Conflict, then.cause);
   if (!fence) return {};
   if (!estimator.frame() || fence->frame_id != estimator.frame()->id()) {

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "robot/impl.hpp"
-#include "robot/run_report.hpp"
 
 namespace roverd::robot {
 namespace {
@@ -21,8 +20,8 @@ struct List {
     const std::vector<base::ParamInfo> defaults = base::describe(P{});
     std::vector<base::ParamInfo> now = base::describe(params);
     for (std::size_t i = 0; i < now.size(); ++i) {
-      out.push_back(
-          {section, std::move(now[i]), defaults[i].value, std::string_view(section) != kVehicle});
+      const bool at_once = !acts_at_next_start(section, now[i].name);
+      out.push_back({section, std::move(now[i]), defaults[i].value, at_once});
     }
   }
 };
@@ -40,13 +39,11 @@ struct Change {
   }
 };
 
-base::Result<void> wrong(const char* name, std::string detail) {
-  return base::fail(Code::Invalid, std::string(name) + " " + detail, {{name, detail}});
-}
-
-/// What kind of vehicle it is, the machines have taken in when they were made.
-bool only_at_start(const std::string& full) {
-  return full.starts_with(kVehicle + std::string("."));
+/// What is wrong is the value that was sent, whatever the rule's own name for it.
+tl::unexpected<base::Error> at_value(base::Error error, const std::string& section) {
+  error.detail.insert(0, section);
+  for (base::FieldError& f : error.fields) f.pointer = "/value";
+  return tl::unexpected(std::move(error));
 }
 
 /// A copy of `config` with one parameter changed.
@@ -62,47 +59,12 @@ base::Result<Config> changed(const Config& config, const std::string& full,
   if (!change.result || (!*change.result && change.result->error().detail == "unknown key")) {
     return base::fail(Code::NotFound, "there is no parameter " + full);
   }
-  if (!*change.result) {
-    base::Error error = change.result->error();
-    for (base::FieldError& f : error.fields) f.pointer = "/value";
-    return tl::unexpected(std::move(error));
-  }
-  if (auto good = check(next); !good) {
-    base::Error error = good.error();
-    for (base::FieldError& f : error.fields) f.pointer = "/value";
-    return tl::unexpected(std::move(error));
-  }
+  if (!*change.result) return at_value(std::move(change.result->error()), section + ".");
+  if (auto good = check(next); !good) return at_value(std::move(good.error()), "");
   return next;
 }
 
 }  // namespace
-
-base::Result<void> check(const Config& c) {
-  if (c.speed.max_mps < c.speed.min_mps) {
-    return wrong("nav.speed.max_mps", "must not be below nav.speed.min_mps");
-  }
-  if (c.speed.reverse_max_mps < c.speed.min_mps) {
-    return wrong("nav.speed.reverse_max_mps", "must not be below nav.speed.min_mps");
-  }
-  if (c.modes.follow_hold_s < c.modes.follow_brake_s) {
-    return wrong("nav.modes.follow_hold_s", "must not be below nav.modes.follow_brake_s");
-  }
-  if (c.safety.gnss_hold_s < c.safety.gnss_slow_s) {
-    return wrong("robot.safety.gnss_hold_s", "must not be below robot.safety.gnss_slow_s");
-  }
-  if (c.safety.sigma_hold_m < c.safety.sigma_slow_m) {
-    return wrong("robot.safety.sigma_hold_m", "must not be below robot.safety.sigma_slow_m");
-  }
-  const std::string& rule = c.behave.unreachable;
-  if (rule != "stop" && rule != "skip" && rule != "return") {
-    return wrong("nav.behave.unreachable", "must be stop, skip or return");
-  }
-  const std::string& kind = c.vehicle.kinematics;
-  if (kind != "skid_steer" && kind != "differential" && kind != "ackermann") {
-    return wrong("vehicle.kinematics", "must be skid_steer, differential or ackermann");
-  }
-  return check(c.radio);
-}
 
 std::vector<Parameter> Robot::parameters() const {
   Config now = *impl_->shared_config.get();
@@ -127,33 +89,41 @@ base::Result<void> set_parameter(Config& config, const std::string& name,
   return {};
 }
 
-base::Result<void> Robot::Impl::handle(const SetParameter& c) {
-  if (only_at_start(c.name)) {
-    return base::fail(Code::Conflict, c.name + " acts at the next start of the program");
+std::vector<std::string> take_kept(Config& config, std::vector<NamedValue> kept) {
+  // Each was taken beside the others when it was changed: a rule between two of them may hold only
+  // when both are in. So what is refused is tried again for as long as others go in.
+  std::vector<std::string> refused;
+  for (bool again = true; again && !kept.empty();) {
+    again = false;
+    refused.clear();
+    std::vector<NamedValue> left;
+    for (NamedValue& one : kept) {
+      if (const auto done = set_parameter(config, one.first, one.second); !done) {
+        const std::string& why = done.error().detail;
+        const bool named = why.find(one.first) != std::string::npos;
+        refused.push_back(named ? why : one.first + ": " + why);
+        left.push_back(std::move(one));
+      } else {
+        again = true;
+      }
+    }
+    kept = std::move(left);
   }
-  auto next = changed(config, c.name, c.value);
-  if (!next) return tl::unexpected(std::move(next.error()));
-  config = std::move(*next);
-  config_unpublished = true;
-  use_config();
-  if (c.name.starts_with("radio.") || c.name == "robot.safety.radio_timeout_s") {
-    keys = RadioKeys(config.radio, config.safety.radio_timeout_s);
-  }
-  event(base::Severity::Info, "parameter", c.name + " was changed");
-  return {};
+  return refused;
 }
 
-/// Each part has its own copy of what it needs.
-void Robot::Impl::use_config() {
-  const nav::PathParams path = config.path();
-  estimator.use(config.estimate);
-  executor.use(path, config.behave, config.modes);
-  guided.use(path, config.behave, config.modes);
-  dock.use(path, config.behave, config.modes);
-  homeward.use(path, config.behave);
-  follower.use(path, config.modes);
-  sticks.use(path, config.modes);
-  manual.use(config.manual);
+base::Result<void> Robot::Impl::handle(const SetParameter& c) {
+  const auto dot = std::min(c.name.rfind('.'), c.name.size());
+  const auto name = std::string_view(c.name).substr(std::min(dot + 1, c.name.size()));
+  if (acts_at_next_start(std::string_view(c.name).substr(0, dot), name)) {
+    return base::fail(Code::Conflict, c.name + " acts at the next start of the program");
+  }
+  auto next = changed(*config, c.name, c.value);
+  if (!next) return tl::unexpected(std::move(next.error()));
+  config.adopt(std::make_shared<const Config>(std::move(*next)));
+  config_unpublished = true;
+  event(base::Severity::Info, "parameter", c.name + " was changed");
+  return {};
 }
 
 }  // namespace roverd::robot

@@ -105,9 +105,9 @@ base::Result<void> Robot::Impl::handle(const SetAnchor& c) {
   const auto at = anchor_point(c);
   if (!at) return tl::unexpected(at.error());
   const double off_m = base::distance_m(*at, pose->at);
-  if (off_m > config.estimate.anchor_max_m) {
+  if (off_m > config->estimate.anchor_max_m) {
     std::string detail = "the point is " + tenths_of(off_m) + " m away; an anchor moves at most " +
-                         tenths_of(config.estimate.anchor_max_m) + " m";
+                         tenths_of(config->estimate.anchor_max_m) + " m";
     return base::fail(Code::Conflict, std::move(detail));
   }
   estimator.anchor(*at, c.item);
@@ -219,7 +219,7 @@ base::DriveCommand Robot::Impl::seek_heading() {
     straight.reset();
     return {{}, true};
   }
-  const double speed_mps = config.speed.creep_mps;
+  const double speed_mps = config->speed.creep_mps;
   return {{speed_mps, (*turn - estimator.pull_1pm() * speed_mps) / estimator.yaw_scale()}, true};
 }
 

@@ -80,7 +80,7 @@ bool Robot::Impl::publish() {
     learned.publish(std::make_shared<const nav::Learned>(estimator.learned()));
   }
   if (config_unpublished) {
-    config_unpublished = !shared_config.publish(std::make_shared<const Config>(config));
+    config_unpublished = !shared_config.publish(config.whole());
     all = all && !config_unpublished;
   }
   if (fence_unpublished) {

@@ -46,14 +46,14 @@ std::string_view meaning_of(const RadioAction* action) noexcept {
 }  // namespace
 
 void Robot::Impl::press(const base::RadioState& frame) {
-  if (!radio_heard(world, config.safety, now)) keys.lost();
+  if (!radio_heard(world, config->safety, now)) keys.lost();
   for (const RadioKey& key : keys.take(frame, world.swb)) {
     if (key.action != nullptr) pressed.push_back(key);
   }
 }
 
 void Robot::Impl::act_on_radio() {
-  if (!radio_heard(world, config.safety, now)) keys.lost();
+  if (!radio_heard(world, config->safety, now)) keys.lost();
   for (const RadioKey& key : pressed) {
     const RadioAction& action = *key.action;
     const std::string text = std::string(key.cause) + ": " + std::string(action.meaning);

@@ -57,10 +57,6 @@ struct CheckWords {
   }
 };
 
-std::size_t index_of(Switch position) noexcept {
-  return position == Switch::Up ? 0 : position == Switch::Middle ? 1 : 2;
-}
-
 }  // namespace
 
 const RadioAction* radio_action(std::string_view word) noexcept {
@@ -85,27 +81,39 @@ base::Result<void> check(const RadioParams& params) {
     }
     detail += "; is \"" + words.word + "\"";
   }
-  return base::fail(base::Code::Invalid, std::move(detail));
+  std::string text = detail.substr(words.bad.size() + 1);
+  return base::fail(base::Code::Invalid, std::move(detail),
+                    {{std::string(words.bad), std::move(text)}});
 }
 
-RadioKeys::RadioKeys(const RadioParams& p, double gap_s)
-    : debounce_s_(p.debounce_s),
-      gap_s_(gap_s),
-      knob_limit_(p.knob_limit_pct / 100.0),
-      swb_down_blocks_swa_(p.swb_down_blocks_swa),
-      swa_{{{radio_action(p.swa_up), "SWA up"}, {}, {radio_action(p.swa_down), "SWA down"}}},
-      swc_{{{radio_action(p.swc_up), "SWC up"},
-            {radio_action(p.swc_middle), "SWC middle"},
-            {radio_action(p.swc_down), "SWC down"}}},
-      swd_{{{radio_action(p.swd_up), "SWD up"}, {}, {radio_action(p.swd_down), "SWD down"}}},
-      knob_{radio_action(p.knob_low), radio_action(p.knob_middle), radio_action(p.knob_high)} {}
+RadioKey RadioKeys::swa(Switch position) const noexcept {
+  if (position == Switch::Up) return {radio_action(params_->swa_up), "SWA up"};
+  if (position == Switch::Down) return {radio_action(params_->swa_down), "SWA down"};
+  return {};
+}
+
+RadioKey RadioKeys::swc(Switch position) const noexcept {
+  if (position == Switch::Up) return {radio_action(params_->swc_up), "SWC up"};
+  if (position == Switch::Middle) return {radio_action(params_->swc_middle), "SWC middle"};
+  if (position == Switch::Down) return {radio_action(params_->swc_down), "SWC down"};
+  return {};
+}
+
+RadioKey RadioKeys::swd(Switch position) const noexcept {
+  if (position == Switch::Up) return {radio_action(params_->swd_up), "SWD up"};
+  if (position == Switch::Down) return {radio_action(params_->swd_down), "SWD down"};
+  return {};
+}
 
 void RadioKeys::lost() noexcept {
   swa_key_ = swc_key_ = swd_key_ = {};
 }
 
 const RadioAction* RadioKeys::by_knob(double vra) const noexcept {
-  return knob_[vra < -knob_limit_ ? 0 : vra > knob_limit_ ? 2 : 1];
+  const double limit = params_->knob_limit_pct / 100.0;
+  return radio_action(vra < -limit  ? params_->knob_low
+                      : vra > limit ? params_->knob_high
+                                    : params_->knob_middle);
 }
 
 /// @return true if the key has just come to stand in another position than before.
@@ -118,7 +126,7 @@ bool RadioKeys::settles(Key& key, Switch position, Time stamp) const noexcept {
     key.candidate = position;
     key.since = stamp;
   }
-  if (base::seconds(stamp - key.since) < debounce_s_) return false;
+  if (base::seconds(stamp - key.since) < params_->debounce_s) return false;
   const bool acts = key.settled.has_value();
   key.settled = position;
   key.candidate = Switch::Unknown;
@@ -126,14 +134,14 @@ bool RadioKeys::settles(Key& key, Switch position, Time stamp) const noexcept {
 }
 
 RadioKeys::Pressed RadioKeys::take(const base::RadioState& radio, Switch swb) noexcept {
-  if (last_ && base::seconds(radio.stamp - *last_) > gap_s_) lost();
+  if (last_ && base::seconds(radio.stamp - *last_) > safety_->radio_timeout_s) lost();
   last_ = radio.stamp;
   Pressed pressed{};
-  if (settles(swd_key_, radio.swd, radio.stamp)) pressed[0] = swd_[index_of(radio.swd)];
-  if (settles(swc_key_, radio.swc, radio.stamp)) pressed[1] = swc_[index_of(radio.swc)];
-  const bool blocked = swb_down_blocks_swa_ && swb == Switch::Down;
+  if (settles(swd_key_, radio.swd, radio.stamp)) pressed[0] = swd(radio.swd);
+  if (settles(swc_key_, radio.swc, radio.stamp)) pressed[1] = swc(radio.swc);
+  const bool blocked = params_->swb_down_blocks_swa && swb == Switch::Down;
   if (settles(swa_key_, radio.swa, radio.stamp) && !blocked) {
-    pressed[2] = swa_[index_of(radio.swa)];
+    pressed[2] = swa(radio.swa);
   }
   for (RadioKey& key : pressed) {
     if (key.action != nullptr && key.action->deed == RadioDeed::ByKnob) {
@@ -145,10 +153,7 @@ RadioKeys::Pressed RadioKeys::take(const base::RadioState& radio, Switch swb) no
 }
 
 RadioPositions RadioKeys::positions(const base::RadioState& radio) const noexcept {
-  const auto at = [](const Actions& actions, Switch position) {
-    return position == Switch::Unknown ? nullptr : actions[index_of(position)].action;
-  };
-  return {at(swa_, radio.swa), at(swc_, radio.swc), at(swd_, radio.swd), by_knob(radio.vra)};
+  return {swa(radio.swa).action, swc(radio.swc).action, swd(radio.swd).action, by_knob(radio.vra)};
 }
 
 }  // namespace roverd::robot

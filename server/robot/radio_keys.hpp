@@ -11,8 +11,11 @@
 
 #include <array>
 #include <optional>
+#include <utility>
 
 #include "base/measurements.hpp"
+#include "base/setting.hpp"
+#include "robot/config.hpp"
 #include "robot/radio_actions.hpp"
 
 namespace roverd::robot {
@@ -39,9 +42,10 @@ class RadioKeys {
   /// At most one per switch, in the order SWD, SWC, SWA; unused ones have no action.
   using Pressed = std::array<RadioKey, kKeys>;
 
-  /// @param params checked. @param gap_s frames farther apart than this have lost the radio
-  /// between.
-  RadioKeys(const RadioParams& params, double gap_s);
+  /// @param params checked. @param safety frames farther apart than its radio_timeout_s have lost
+  /// the radio between.
+  RadioKeys(base::Setting<RadioParams> params, base::Setting<SafetyParams> safety)
+      : params_(std::move(params)), safety_(std::move(safety)) {}
 
   /// Every frame in order. @param swb the last position between detents.
   Pressed take(const base::RadioState& radio, base::Switch swb) noexcept;
@@ -56,18 +60,14 @@ class RadioKeys {
     base::Switch candidate = base::Switch::Unknown;
     Time since{};
   };
-  /// By position: up, middle, down.
-  using Actions = std::array<RadioKey, 3>;
-
   bool settles(Key& key, base::Switch position, Time stamp) const noexcept;
+  RadioKey swa(base::Switch position) const noexcept;
+  RadioKey swc(base::Switch position) const noexcept;
+  RadioKey swd(base::Switch position) const noexcept;
   const RadioAction* by_knob(double vra) const noexcept;
 
-  double debounce_s_;
-  double gap_s_;
-  double knob_limit_;
-  bool swb_down_blocks_swa_;
-  Actions swa_, swc_, swd_;
-  std::array<const RadioAction*, 3> knob_;  ///< low, middle, high
+  base::Setting<RadioParams> params_;
+  base::Setting<SafetyParams> safety_;
   Key swa_key_, swc_key_, swd_key_;
   std::optional<Time> last_;
 };

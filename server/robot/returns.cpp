@@ -80,7 +80,7 @@ base::Result<void> Robot::Impl::enter_retrace() {
 
 void Robot::Impl::drop_crumbs() {
   crumbs.clear();
-  crumbs.use(config.modes.crumb_m);
+  crumbs.use(config->modes.crumb_m);
 }
 
 }  // namespace roverd::robot

@@ -13,17 +13,17 @@ using base::Severity;
 Robot::Impl::Impl(Config c)
     : config(std::move(c)),
       estimator(config.estimate),
-      executor(config.path(), config.behave, config.modes),
-      guided(config.path(), config.behave, config.modes),
-      dock(config.path(), config.behave, config.modes),
-      homeward(config.path(), config.behave),
-      follower(config.path(), config.modes),
-      sticks(config.path(), config.modes),
-      crumbs(config.modes.crumb_m),
+      executor(config.path, config.behave, config.modes),
+      guided(config.path, config.behave, config.modes),
+      dock(config.path, config.behave, config.modes),
+      homeward(config.path, config.behave),
+      follower(config.path, config.modes),
+      sticks(config.path, config.modes),
+      crumbs(config->modes.crumb_m),
       manual(config.manual),
-      keys(config.radio, config.safety.radio_timeout_s) {
+      keys(config.radio, config.safety) {
   world.gauge = BatteryGauge(config.battery);
-  shared_config.publish(std::make_shared<const Config>(config));
+  shared_config.publish(config.whole());
   measurement_batch.reserve(256);
   command_batch.reserve(64);
   pressed.reserve(64);
@@ -49,6 +49,9 @@ base::Inbox<MissionEdit>& Robot::edits() noexcept {
 }
 void Robot::recall(const nav::Learned& learned) noexcept {
   impl_->estimator.recall(learned);
+}
+void Robot::tell(base::Event event) {
+  impl_->outbox.event(event.wall, event.level, event.kind.c_str(), std::move(event.detail));
 }
 std::shared_ptr<const nav::Learned> Robot::learned() const {
   return impl_->learned.get();

@@ -205,6 +205,8 @@ class Robot {
 
   /// Before the first tick: what another life of this program learned.
   void recall(const nav::Learned& learned) noexcept;
+  /// Before the first tick: what was found out while the program started.
+  void tell(base::Event event);
   /// Any thread. What is worth keeping, a second old at most; null: nothing yet.
   std::shared_ptr<const nav::Learned> learned() const;
 

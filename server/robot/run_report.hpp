@@ -45,8 +45,4 @@ base::Result<RunReport> report_run(
     const mission::Plan& plan, std::span<const ReportPoint> points, int first_item,
     std::span<const std::pair<std::string, base::ParamValue>> parameters);
 
-/// Sets one parameter of a configuration by its full name, [vehicle] too. NotFound, Invalid.
-base::Result<void> set_parameter(Config& config, const std::string& name,
-                                 const base::ParamValue& value);
-
 }  // namespace roverd::robot

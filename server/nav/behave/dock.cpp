@@ -14,12 +14,6 @@ constexpr double kJoin = 8.0;  // metres along the line for each beside it
 
 }  // namespace
 
-void Dock::use(const PathParams& path, const BehaveParams& behave, const ModeParams& modes) {
-  path_ = path;
-  modes_ = modes;
-  trip_.use(path, behave);
-}
-
 void Dock::reset() noexcept {
   trip_.reset();
   state_ = State::Idle;
@@ -28,9 +22,9 @@ void Dock::reset() noexcept {
 
 /// A steered vehicle needs room to come onto the line.
 double Dock::straight_m() const noexcept {
-  return path_.vehicle.steered()
-             ? std::max(modes_.dock_approach_m, 2.0 * min_radius_m(path_.vehicle))
-             : modes_.dock_approach_m;
+  return path_->vehicle.steered()
+             ? std::max(modes_->dock_approach_m, 2.0 * min_radius_m(path_->vehicle))
+             : modes_->dock_approach_m;
 }
 
 EnuPoint Dock::gate() const noexcept {
@@ -50,11 +44,11 @@ void Dock::to_gate(const Vehicle& v) {
   Trip::Order order;
   Vertex at_gate;
   at_gate.at = gate();
-  at_gate.speed_mps = std::min(path_.speed.default_mps, path_.speed.max_mps);
-  if (path_.vehicle.steered()) {
+  at_gate.speed_mps = std::min(path_->speed.default_mps, path_->speed.max_mps);
+  if (path_->vehicle.steered()) {
     // It cannot turn at the gate: it comes through a point before it, in line with the pose.
     const double sign = goal_.reverse ? -1.0 : 1.0;
-    const double more_m = 2.0 * min_radius_m(path_.vehicle);
+    const double more_m = 2.0 * min_radius_m(path_->vehicle);
     Vertex before = at_gate;
     before.at = {at_gate.at.east_m - sign * more_m * std::cos(goal_.yaw_rad),
                  at_gate.at.north_m - sign * more_m * std::sin(goal_.yaw_rad)};
@@ -62,10 +56,10 @@ void Dock::to_gate(const Vehicle& v) {
     order.way.push_back(before);
   } else {
     order.face_yaw_rad = goal_.yaw_rad;
-    order.turn_radps = path_.pivot.max_rate_radps;
+    order.turn_radps = path_->pivot.max_rate_radps;
   }
   order.way.push_back(at_gate);
-  order.within_m = path_.vehicle.steered() ? 1.0 : 0.3;
+  order.within_m = path_->vehicle.steered() ? 1.0 : 0.3;
   state_ = State::ToGate;
   trip_.begin(std::move(order), v, false);
 }
@@ -73,7 +67,7 @@ void Dock::to_gate(const Vehicle& v) {
 /// A steered vehicle keeps the heading that it arrives with: from beside the line it comes onto it
 /// first, well before the pose.
 std::optional<EnuPoint> Dock::join(const Vehicle& v) const noexcept {
-  if (!path_.vehicle.steered()) return std::nullopt;
+  if (!path_->vehicle.steered()) return std::nullopt;
   const double sign = goal_.reverse ? -1.0 : 1.0;
   const EnuPoint along{sign * std::cos(goal_.yaw_rad), sign * std::sin(goal_.yaw_rad)};
   const EnuPoint to = goal_.at - v.at;
@@ -90,7 +84,7 @@ void Dock::straight(const Vehicle& v) {
   Vertex end;
   end.at = goal_.at;
   end.reverse = goal_.reverse;
-  end.speed_mps = modes_.dock_mps;
+  end.speed_mps = modes_->dock_mps;
   if (const auto on = join(v)) {
     Vertex first = end;
     first.at = *on;
@@ -99,9 +93,9 @@ void Dock::straight(const Vehicle& v) {
   }
   order.way.push_back(end);
   order.within_m = 0.5;
-  if (!path_.vehicle.steered()) {
+  if (!path_->vehicle.steered()) {
     order.face_yaw_rad = goal_.yaw_rad;
-    order.turn_radps = modes_.turn_radps;
+    order.turn_radps = modes_->turn_radps;
   }
   state_ = State::Straight;
   trip_.begin(std::move(order), v, false);
@@ -111,7 +105,7 @@ void Dock::judge(const Vehicle& v) {
   const double off_m = base::distance_m(v.at, goal_.at);
   const double off_deg =
       std::abs(base::deg_from_rad(base::angle_diff_rad(v.yaw_rad, goal_.yaw_rad)));
-  if (off_m <= modes_.dock_within_m && off_deg <= modes_.dock_within_deg) {
+  if (off_m <= modes_->dock_within_m && off_deg <= modes_->dock_within_deg) {
     state_ = State::Docked;
     return;
   }
@@ -125,11 +119,11 @@ void Dock::judge(const Vehicle& v) {
   Vertex out;
   out.at = gate();
   out.reverse = !goal_.reverse;
-  out.speed_mps = modes_.dock_mps;
+  out.speed_mps = modes_->dock_mps;
   order.way.push_back(out);
-  if (!path_.vehicle.steered()) {
+  if (!path_->vehicle.steered()) {
     order.face_yaw_rad = goal_.yaw_rad;
-    order.turn_radps = modes_.turn_radps;
+    order.turn_radps = modes_->turn_radps;
   }
   state_ = State::BackOut;
   trip_.begin(std::move(order), v, false);

@@ -18,7 +18,9 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
+#include "base/setting.hpp"
 #include "nav/behave/mode_params.hpp"
 #include "nav/behave/trip.hpp"
 
@@ -34,9 +36,9 @@ class Dock {
  public:
   enum class State { Idle, ToGate, Straight, BackOut, Docked, Failed };
 
-  Dock(const PathParams& path, const BehaveParams& behave, const ModeParams& modes)
-      : path_(path), modes_(modes), trip_(path, behave) {}
-  void use(const PathParams& path, const BehaveParams& behave, const ModeParams& modes);
+  Dock(base::Setting<PathParams> path, base::Setting<BehaveParams> behave,
+       base::Setting<ModeParams> modes)
+      : path_(path), modes_(std::move(modes)), trip_(path, std::move(behave)) {}
 
   void begin(const DockGoal& goal, const Vehicle& vehicle);
   void reset() noexcept;
@@ -56,8 +58,8 @@ class Dock {
   void straight(const Vehicle& vehicle);
   void judge(const Vehicle& vehicle);
 
-  PathParams path_;
-  ModeParams modes_;
+  base::Setting<PathParams> path_;
+  base::Setting<ModeParams> modes_;
   Trip trip_;
   DockGoal goal_;
   State state_ = State::Idle;

@@ -125,13 +125,13 @@ bool Executor::enter_step(const RouteStep& step, const Vehicle& vehicle,
 
 bool Executor::enter_go(const RouteStep& step, const Vehicle& vehicle) {
   const Path& path = course_->path;
-  const bool in_order = standing_ && *standing_ + 1 == step.node && modes_.goal_cut_m <= 0.0;
+  const bool in_order = standing_ && *standing_ + 1 == step.node && modes_->goal_cut_m <= 0.0;
   const RouteNode& node = course_->nodes[step.node];
   if (in_order) {
     const double from_m = path.vertex_m[*standing_];
     if (path.vertex_m[step.node] - from_m > 1e-6) {
       const double off_m = base::distance_m(vehicle.at, path.at(from_m));
-      if (off_m <= std::max(path_params_.track.rejoin_m, 0.5)) {
+      if (off_m <= std::max(path_params_->track.rejoin_m, 0.5)) {
         doing_ = Doing::Path;
         drove_ = true;
         tracker_.begin(path, path.leg_from(from_m), from_m);
@@ -142,7 +142,7 @@ bool Executor::enter_go(const RouteStep& step, const Vehicle& vehicle) {
       return doing_ == Doing::Wait;
     }
   }
-  if (modes_.goal_cut_m > 0.0) standing_.reset();
+  if (modes_->goal_cut_m > 0.0) standing_.reset();
   looked_s_ = 0.0;
   if (connect(cut(node.at, vehicle.at), &node, vehicle)) return true;
   reached(step);
@@ -162,13 +162,13 @@ bool Executor::lay_connector(Vertex end, const Vehicle& vehicle) {
   EnuPoint from = vehicle.at;
   if (standing_) {
     const EnuPoint nominal = course_->nodes[*standing_].at;
-    if (base::distance_m(nominal, from) < path_params_.track.rejoin_m) from = nominal;
+    if (base::distance_m(nominal, from) < path_params_->track.rejoin_m) from = nominal;
   }
   connector_end_ = end;
   const Vertex both[] = {{from, end.speed_mps, end.reverse, false, mission::Turn::Auto, 0.1}, end};
-  connector_ = build_path(both, path_params_);
+  connector_ = build_path(both, *path_params_);
   rejoin_.reset();
-  if (connector_.legs.empty() || connector_.length_m() < there_m(vehicle, path_params_))
+  if (connector_.legs.empty() || connector_.length_m() < there_m(vehicle, *path_params_))
     return false;
   doing_ = Doing::Connector;
   drove_ = true;
@@ -257,7 +257,7 @@ void Executor::pass_nodes(const Vehicle& vehicle) {
     // What the corner leaves out is meant; what the robot drove beside it is not.
     const double off_m = base::distance_m(vehicle.at, node.at);
     const double meant_m = std::max(node.radius_m, base::distance_m(path.at(at_m), node.at));
-    if (off_m > meant_m + params_.missed_m) {
+    if (off_m > meant_m + params_->missed_m) {
       notices_.push_back({Notice::Kind::ItemMissed, step->item, "missed by " + tenths(off_m)});
       pass(*step);
     } else {
@@ -290,7 +290,7 @@ bool Executor::missed(const Vehicle& vehicle) {
   if (path.legs.empty()) return false;  // it stood there already
   const double off_m = base::distance_m(vehicle.at, path.points[path.legs[tracker_.leg()].last].at);
   const RouteStep* step = step_now();
-  double allowed_m = params_.missed_m;
+  double allowed_m = params_->missed_m;
   if (step != nullptr && step->kind == StepKind::Go) {
     allowed_m = std::max(allowed_m, course_->nodes[step->node].radius_m);
   }
@@ -330,10 +330,10 @@ void Executor::finish() {
 void Executor::watch(const Vehicle& vehicle, double dt_s) {
   if (!running()) return;
   const TrackPhase phase = tracker_.phase();
-  lost_s_ = phase == TrackPhase::Follow && std::abs(tracker_.cross_track_m()) > params_.lost_m
+  lost_s_ = phase == TrackPhase::Follow && std::abs(tracker_.cross_track_m()) > params_->lost_m
                 ? lost_s_ + dt_s
                 : 0.0;
-  if (lost_s_ > params_.lost_s) {
+  if (lost_s_ > params_->lost_s) {
     const std::string text =
         std::to_string(std::lround(std::abs(tracker_.cross_track_m()))) + " m away from the path";
     pause(text);
@@ -347,9 +347,9 @@ void Executor::watch_stuck(const Vehicle& vehicle, double dt_s) {
   const TrackPhase phase = tracker_.phase();
   const bool driving =
       phase == TrackPhase::Follow || phase == TrackPhase::Pivot || phase == TrackPhase::Turn;
-  const bool moved = base::distance_m(vehicle.at, stuck_at_.at) > params_.stuck_m ||
+  const bool moved = base::distance_m(vehicle.at, stuck_at_.at) > params_->stuck_m ||
                      std::abs(base::angle_diff_rad(stuck_at_.yaw_rad, vehicle.yaw_rad)) >
-                         base::rad_from_deg(params_.stuck_deg);
+                         base::rad_from_deg(params_->stuck_deg);
   if (!driving || moved) {
     stuck_s_ = 0.0;
     stuck_at_ = vehicle;
@@ -357,8 +357,8 @@ void Executor::watch_stuck(const Vehicle& vehicle, double dt_s) {
     stuck_s_ += dt_s;
   }
   std::string text;
-  if (stuck_s_ > params_.stuck_s) {
-    text = "no progress for " + std::to_string(std::lround(params_.stuck_s)) + " s";
+  if (stuck_s_ > params_->stuck_s) {
+    text = "no progress for " + std::to_string(std::lround(params_->stuck_s)) + " s";
   } else if (tracker_.turn_timed_out()) {
     text = "a turn on the spot does not come to its end";
   } else {
@@ -370,7 +370,7 @@ void Executor::watch_stuck(const Vehicle& vehicle, double dt_s) {
 /// The item in hand cannot be reached: what follows is the operator's choice.
 void Executor::block(std::string why) {
   const RouteStep* step = step_now();
-  if (params_.unreachable == "skip" && step != nullptr && at_ + 1 < course_->steps.size() &&
+  if (params_->unreachable == "skip" && step != nullptr && at_ + 1 < course_->steps.size() &&
       skipped_ < course_->steps.size()) {
     const int item = step->item;
     std::size_t next = at_;
@@ -382,7 +382,7 @@ void Executor::block(std::string why) {
       return;
     }
   }
-  if (params_.unreachable == "return" && fled_.empty() && home_) {
+  if (params_->unreachable == "return" && fled_.empty() && home_) {
     notices_.push_back({Notice::Kind::ItemMissed, step != nullptr ? step->item : 0,
                         "given up, going home: " + why});
     begin_at(course_->steps.size());

@@ -49,16 +49,13 @@ std::optional<EnuPoint> first_target(const Route& route, std::size_t step,
   return std::nullopt;
 }
 
-Executor::Executor(const PathParams& path, const BehaveParams& behave, const ModeParams& modes)
-    : path_params_(path), params_(behave), modes_(modes), tracker_(path) {
+Executor::Executor(base::Setting<PathParams> path, base::Setting<BehaveParams> behave,
+                   base::Setting<ModeParams> modes)
+    : path_params_(path),
+      params_(std::move(behave)),
+      modes_(std::move(modes)),
+      tracker_(path) {
   notices_.reserve(16);
-}
-
-void Executor::use(const PathParams& path, const BehaveParams& behave, const ModeParams& modes) {
-  path_params_ = path;
-  params_ = behave;
-  modes_ = modes;
-  tracker_.use(path);
 }
 
 void Executor::load(std::shared_ptr<const Route> route) {
@@ -97,9 +94,9 @@ base::Result<void> Executor::start(const StartAt& at, EnuPoint here, std::option
   }
   const auto target = first_target(*route_, step, home);
   const double far_m = target ? base::distance_m(here, *target) : 0.0;
-  if (far_m > params_.start_within_m) {
+  if (far_m > params_->start_within_m) {
     return base::fail(Code::Conflict, "the first point is " + metres(far_m) + " away; at most " +
-                                          metres(params_.start_within_m) + " are allowed");
+                                          metres(params_->start_within_m) + " are allowed");
   }
   course_ = &route_->forth;
   begin_at(step);
@@ -159,9 +156,9 @@ base::Result<void> Executor::may_resume(EnuPoint here) const {
   }
   const auto place = place_to_go_on();
   const double far_m = place && doing_ == Doing::Path ? base::distance_m(here, *place) : 0.0;
-  if (far_m > params_.start_within_m) {
+  if (far_m > params_->start_within_m) {
     return base::fail(Code::Conflict, "the place to go on with is " + metres(far_m) +
-                                          " away; at most " + metres(params_.start_within_m) +
+                                          " away; at most " + metres(params_->start_within_m) +
                                           " are allowed");
   }
   return {};
@@ -187,13 +184,13 @@ void Executor::go_on(EnuPoint here) {
   const auto place = place_to_go_on();
   if (!place) return;
   const double far_m = base::distance_m(here, *place);
-  if (doing_ == Doing::Path && far_m > params_.start_within_m) {
+  if (doing_ == Doing::Path && far_m > params_->start_within_m) {
     pause("moved " + metres(far_m) + " away from the mission");
     return;
   }
   Vehicle vehicle;
   vehicle.at = here;
-  if (doing_ == Doing::Path && far_m <= path_params_.track.rejoin_m) {
+  if (doing_ == Doing::Path && far_m <= path_params_->track.rejoin_m) {
     tracker_.begin(course_->path, leg_, s_m_);
     return;
   }

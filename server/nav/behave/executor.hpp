@@ -19,6 +19,7 @@
 
 #include "base/result.hpp"
 #include "base/snapshot.hpp"
+#include "base/setting.hpp"
 #include "nav/behave/mode_params.hpp"
 #include "nav/behave/params.hpp"
 #include "nav/behave/route.hpp"
@@ -67,9 +68,8 @@ std::optional<EnuPoint> first_target(const Route& route, std::size_t step,
 
 class Executor {
  public:
-  Executor(const PathParams& path, const BehaveParams& behave, const ModeParams& modes = {});
-  /// Other parameters from the next step on; routes that are laid keep theirs.
-  void use(const PathParams& path, const BehaveParams& behave, const ModeParams& modes);
+  Executor(base::Setting<PathParams> path, base::Setting<BehaveParams> behave,
+           base::Setting<ModeParams> modes = {});
 
   /// Allowed unless Running. Null: nothing is loaded.
   void load(std::shared_ptr<const Route> route);
@@ -153,9 +153,9 @@ class Executor {
   std::optional<Left> left(const RouteStep& step, std::optional<EnuPoint> here) const noexcept;
   Left laps_left() const noexcept;
 
-  PathParams path_params_;
-  BehaveParams params_;
-  ModeParams modes_;
+  base::Setting<PathParams> path_params_;
+  base::Setting<BehaveParams> params_;
+  base::Setting<ModeParams> modes_;
   Tracker tracker_;
   std::shared_ptr<const Route> route_;
   const Course* course_ = nullptr;

@@ -20,7 +20,9 @@
 #include <optional>
 #include <string>
 #include <vector>
+#include <utility>
 
+#include "base/setting.hpp"
 #include "base/time.hpp"
 #include "nav/behave/ground.hpp"
 #include "nav/behave/mode_params.hpp"
@@ -44,12 +46,9 @@ class Follow {
  public:
   enum class State { Waiting, Following, Braking, Lost };
 
-  Follow(const PathParams& path, const ModeParams& modes) : path_(path), modes_(modes) {
+  Follow(base::Setting<PathParams> path, base::Setting<ModeParams> modes)
+      : path_(std::move(path)), modes_(std::move(modes)) {
     track_.reserve(kTrack);
-  }
-  void use(const PathParams& path, const ModeParams& modes) {
-    path_ = path;
-    modes_ = modes;
   }
 
   /// Also while another mode drives. @return empty: taken. Else why it is not believed.
@@ -76,8 +75,8 @@ class Follow {
   TrackOutput stand(double dt_s) noexcept;
   TrackOutput command(const Vehicle& v, EnuPoint to, double wanted_mps, double dt_s) noexcept;
 
-  PathParams path_;
-  ModeParams modes_;
+  base::Setting<PathParams> path_;
+  base::Setting<ModeParams> modes_;
   std::optional<FollowTarget> target_;
   EnuPoint velocity_;
   double course_rad_ = 0.0;

@@ -20,7 +20,9 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
+#include "base/setting.hpp"
 #include "nav/behave/mode_params.hpp"
 #include "nav/behave/trip.hpp"
 
@@ -41,9 +43,9 @@ class Guided {
  public:
   enum class State { Waiting, Driving, Steered, Reached, Failed };
 
-  Guided(const PathParams& path, const BehaveParams& behave, const ModeParams& modes)
-      : path_(path), modes_(modes), trip_(path, behave) {}
-  void use(const PathParams& path, const BehaveParams& behave, const ModeParams& modes);
+  Guided(base::Setting<PathParams> path, base::Setting<BehaveParams> behave,
+         base::Setting<ModeParams> modes)
+      : path_(path), modes_(std::move(modes)), trip_(path, std::move(behave)) {}
 
   /// Why this vehicle cannot do it; empty: it can. Pure.
   std::string refusal(const GuidedGoal& goal) const;
@@ -68,8 +70,8 @@ class Guided {
   bool cut(const Vehicle& vehicle, double dt_s);
   TrackOutput steer(const Vehicle& vehicle, double limit_mps, double dt_s) noexcept;
 
-  PathParams path_;
-  ModeParams modes_;
+  base::Setting<PathParams> path_;
+  base::Setting<ModeParams> modes_;
   Trip trip_;
   GuidedGoal goal_;
   std::optional<EnuPoint> place_;

@@ -16,8 +16,10 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "base/angle.hpp"
+#include "base/setting.hpp"
 #include "nav/behave/trip.hpp"
 #include "nav/track/corner.hpp"
 
@@ -27,11 +29,8 @@ class Homeward {
  public:
   enum class State { Idle, Driving, Home, Failed };
 
-  Homeward(const PathParams& path, const BehaveParams& behave) : path_(path), trip_(path, behave) {}
-  void use(const PathParams& path, const BehaveParams& behave) {
-    path_ = path;
-    trip_.use(path, behave);
-  }
+  Homeward(base::Setting<PathParams> path, base::Setting<BehaveParams> behave)
+      : path_(path), trip_(path, std::move(behave)) {}
 
   /// @param way to be driven in order; the last one is home. Corners are rounded.
   /// @param retrace it was driven before: a steered vehicle, which cannot turn round on it, drives
@@ -39,8 +38,8 @@ class Homeward {
   void begin(std::span<const EnuPoint> way, const Vehicle& vehicle, bool retrace) {
     Trip::Order order;
     order.way.reserve(way.size());
-    const double speed_mps = std::min(path_.speed.default_mps, path_.speed.max_mps);
-    const bool may_reverse = retrace && path_.vehicle.steered();
+    const double speed_mps = std::min(path_->speed.default_mps, path_->speed.max_mps);
+    const bool may_reverse = retrace && path_->vehicle.steered();
     EnuPoint from = vehicle.at;
     double facing_rad = vehicle.yaw_rad;
     for (const EnuPoint& p : way) {
@@ -53,7 +52,7 @@ class Homeward {
       facing_rad = behind ? base::wrap_rad(yaw_rad + base::kPi) : yaw_rad;
       from = p;
       order.way.push_back(
-          {p, speed_mps, behind, false, mission::Turn::Auto, path_.track.corner_deviation_m});
+          {p, speed_mps, behind, false, mission::Turn::Auto, path_->track.corner_deviation_m});
     }
     trip_.begin(std::move(order), vehicle, false);
     state_ = State::Driving;
@@ -79,7 +78,7 @@ class Homeward {
  private:
   static constexpr double kNoDirection_m = 0.4;
 
-  PathParams path_;
+  base::Setting<PathParams> path_;
   Trip trip_;
   State state_ = State::Idle;
 };

@@ -17,7 +17,7 @@ bool Executor::enter_move(const RouteStep& step, const Vehicle& vehicle) {
   end.at = {vehicle.at.east_m + way_m * std::cos(vehicle.yaw_rad),
             vehicle.at.north_m + way_m * std::sin(vehicle.yaw_rad)};
   end.reverse = way_m < 0.0;
-  end.speed_mps = end.reverse ? modes_.move_back_mps : modes_.move_mps;
+  end.speed_mps = end.reverse ? modes_->move_back_mps : modes_->move_mps;
   if (lay_connector(end, vehicle)) return true;
   reached(step);
   return false;
@@ -25,7 +25,7 @@ bool Executor::enter_move(const RouteStep& step, const Vehicle& vehicle) {
 
 bool Executor::enter_turn(const RouteStep& step) {
   const double rate_radps =
-      step.kind == StepKind::Turn ? modes_.turn_radps : path_params_.pivot.max_rate_radps;
+      step.kind == StepKind::Turn ? modes_->turn_radps : path_params_->pivot.max_rate_radps;
   if (step.yaw_rad) {
     turner_.to(*step.yaw_rad, rate_radps);
   } else {
@@ -38,7 +38,7 @@ bool Executor::enter_turn(const RouteStep& step) {
 }
 
 TrackOutput Executor::step_turn(const Vehicle& vehicle, double dt_s) {
-  const TrackOutput out = turner_.step(vehicle, path_params_, dt_s);
+  const TrackOutput out = turner_.step(vehicle, *path_params_, dt_s);
   if (turner_.state() == Turner::State::Failed)
     block("a turn on the spot does not come to its end");
   if (turner_.state() == Turner::State::Done) {
@@ -51,8 +51,8 @@ TrackOutput Executor::step_turn(const Vehicle& vehicle, double dt_s) {
 /// Where the parameters ask for it, only so far towards a place.
 EnuPoint Executor::cut(EnuPoint to, EnuPoint here) const noexcept {
   const double far_m = base::distance_m(here, to);
-  if (modes_.goal_cut_m <= 0.0 || far_m <= modes_.goal_cut_m) return to;
-  const double part = modes_.goal_cut_m / far_m;
+  if (modes_->goal_cut_m <= 0.0 || far_m <= modes_->goal_cut_m) return to;
+  const double part = modes_->goal_cut_m / far_m;
   return {here.east_m + part * (to.east_m - here.east_m),
           here.north_m + part * (to.north_m - here.north_m)};
 }
@@ -60,11 +60,11 @@ EnuPoint Executor::cut(EnuPoint to, EnuPoint here) const noexcept {
 /// Looks at a cut goal anew. @return true: it counts as reached, and something else begins.
 bool Executor::cut_goal(const Vehicle& vehicle, double dt_s) {
   const RouteStep* step = step_now();
-  const bool cuts = modes_.goal_cut_m > 0.0 && doing_ == Doing::Connector && !rejoin_ &&
+  const bool cuts = modes_->goal_cut_m > 0.0 && doing_ == Doing::Connector && !rejoin_ &&
                     step != nullptr && step->kind == StepKind::Go;
   if (!cuts) return false;
   const RouteNode& node = course_->nodes[step->node];
-  if (base::distance_m(vehicle.at, node.at) <= std::max(node.radius_m, modes_.goal_within_m)) {
+  if (base::distance_m(vehicle.at, node.at) <= std::max(node.radius_m, modes_->goal_within_m)) {
     doing_ = Doing::Nothing;
     tracker_.reset();
     reached(*step);
@@ -72,14 +72,14 @@ bool Executor::cut_goal(const Vehicle& vehicle, double dt_s) {
   }
   looked_s_ += dt_s;
   const bool whole = base::distance_m(connector_end_.at, node.at) < 0.01;
-  const bool due = looked_s_ >= modes_.goal_cut_s || tracker_.phase() == TrackPhase::Done;
+  const bool due = looked_s_ >= modes_->goal_cut_s || tracker_.phase() == TrackPhase::Done;
   if (whole || !due) return false;
   looked_s_ = 0.0;
   Vertex end = connector_end_;
   end.at = cut(node.at, vehicle.at);
   const Vertex both[] = {{vehicle.at, end.speed_mps, end.reverse, false, mission::Turn::Auto, 0.1},
                          end};
-  connector_ = build_path(both, path_params_);
+  connector_ = build_path(both, *path_params_);
   connector_end_ = end;
   tracker_.move_to(connector_, 0, 0.0);
   return false;

@@ -42,8 +42,8 @@ Executor::Left Executor::laps_left() const noexcept {
     lap.m += back_m;
     lap.s += back_m / std::max(0.1, route_->speed_mps);
     const double back_rad = direction_rad(course.nodes.back().at, course.nodes.front().at);
-    lap.s += turn_s(yaw_to(course.path, course.path.length_m()), back_rad, path_params_) +
-             turn_s(back_rad, yaw_from(course.path, 0.0), path_params_);
+    lap.s += turn_s(yaw_to(course.path, course.path.length_m()), back_rad, *path_params_) +
+             turn_s(back_rad, yaw_from(course.path, 0.0), *path_params_);
   }
   return {laps * lap.m, laps * lap.s};
 }
@@ -64,7 +64,7 @@ std::optional<Executor::Left> Executor::left(const RouteStep& step,
     all.s += rest.s;
     if (rest.m > kAhead_m) {
       all.s +=
-          turn_s(yaw_to(connector_, connector_.length_m()), yaw_from(path, joins_m), path_params_);
+          turn_s(yaw_to(connector_, connector_.length_m()), yaw_from(path, joins_m), *path_params_);
     }
     return all;
   }

@@ -92,7 +92,7 @@ base::Result<void> Executor::restore(std::shared_ptr<const Route> route,
 /// As far as the way may have been driven on since the place was kept: to the next waypoint at
 /// which something else than driving on happens.
 double Executor::may_have_come_to_m() const noexcept {
-  const double most_m = s_m_ + kRolls_m + kRolls_s * path_params_.speed.max_mps;
+  const double most_m = s_m_ + kRolls_m + kRolls_s * path_params_->speed.max_mps;
   for (std::size_t i = at_; i < course_->steps.size(); ++i) {
     const double at_m = course_->path.vertex_m[course_->steps[i].node];
     if (at_m >= most_m) return most_m;
@@ -124,7 +124,7 @@ void Executor::catch_up(EnuPoint here) {
   }
   if (off_m > kCarried_m) return;
   const auto vertex_m = [&] { return path.vertex_m[course_->steps[at_].node]; };
-  if (off_m <= path_params_.track.rejoin_m) {
+  if (off_m <= path_params_->track.rejoin_m) {
     while (at_ + 1 < course_->steps.size() && vertex_m() <= s_m && vertex_m() < end_m) {
       reached(course_->steps[at_]);  // it drove past there before it stood
     }
@@ -134,7 +134,7 @@ void Executor::catch_up(EnuPoint here) {
   if (s_m >= vertex_m() - kBefore_m) {
     s_m = std::max(s_m_, vertex_m() - kBefore_m);
     // Past a place to stop at, farther than it may be missed: back to it.
-    if (base::distance_m(here, path.at(vertex_m())) > params_.missed_m) doing_ = Doing::Nothing;
+    if (base::distance_m(here, path.at(vertex_m())) > params_->missed_m) doing_ = Doing::Nothing;
   }
   s_m_ = s_m;
   leg_ = std::min(path.leg_from(s_m_), path.legs.size() - 1);

@@ -13,6 +13,9 @@
 //
 // Control thread; no allocation.
 
+#include <utility>
+
+#include "base/setting.hpp"
 #include "nav/behave/ground.hpp"
 #include "nav/behave/mode_params.hpp"
 
@@ -22,11 +25,8 @@ enum class StickMode { Acro, Steering, Simple };
 
 class Sticks {
  public:
-  Sticks(const PathParams& path, const ModeParams& modes) : path_(path), modes_(modes) {}
-  void use(const PathParams& path, const ModeParams& modes) {
-    path_ = path;
-    modes_ = modes;
-  }
+  Sticks(base::Setting<PathParams> path, base::Setting<ModeParams> modes)
+      : path_(std::move(path)), modes_(std::move(modes)) {}
 
   void begin(StickMode mode, const Vehicle& vehicle) noexcept;
   /// @param stick speed and turn rate asked for, ramped; both 0: let go
@@ -44,8 +44,8 @@ class Sticks {
   TrackOutput simple(const base::BodyTwist& stick, const base::BodyTwist& full, const Vehicle& v,
                      double dt_s) noexcept;
 
-  PathParams path_;
-  ModeParams modes_;
+  base::Setting<PathParams> path_;
+  base::Setting<ModeParams> modes_;
   StickMode mode_ = StickMode::Acro;
   double yaw_rad_ = 0.0;
   bool holding_ = false;

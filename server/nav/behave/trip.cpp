@@ -18,12 +18,6 @@ std::string centimetres(double m) {
 
 }  // namespace
 
-void Trip::use(const PathParams& path, const BehaveParams& behave) {
-  path_params_ = path;
-  behave_ = behave;
-  tracker_.use(path);
-}
-
 void Trip::reset() noexcept {
   tracker_.reset();
   turner_.reset();
@@ -49,9 +43,9 @@ bool Trip::goes_on_ahead(const Vehicle& v, EnuPoint first) const noexcept {
   const double ahead =
       order_.way[next_].reverse ? base::wrap_rad(v.yaw_rad + base::kPi) : v.yaw_rad;
   const double off = std::abs(base::angle_diff_rad(ahead, direction_rad(v.at, first)));
-  const double most = path_params_.vehicle.steered()
+  const double most = path_params_->vehicle.steered()
                           ? base::kPi / 2.0
-                          : base::rad_from_deg(path_params_.pivot.angle_deg);
+                          : base::rad_from_deg(path_params_->pivot.angle_deg);
   return off < most && base::distance_m(v.at, first) > 2.0 * std::abs(v.speed_mps);
 }
 
@@ -74,13 +68,13 @@ void Trip::lay(const Vehicle& v, bool smoothly) {
                v.at.north_m + sign * lead_m * std::sin(v.yaw_rad)};
     lead.turn = mission::Turn::Through;
     lead.stop = false;
-    lead.deviation_m = path_params_.track.through_deviation_m;
+    lead.deviation_m = path_params_->track.through_deviation_m;
     all.push_back(lead);
     lead_ = 2;
   }
   all.insert(all.end(), order_.way.begin() + static_cast<std::ptrdiff_t>(next_), order_.way.end());
   slot_ = 1 - slot_;
-  paths_[slot_] = build_path(all, path_params_);
+  paths_[slot_] = build_path(all, *path_params_);
   const Path& path = paths_[slot_];
   if (path.legs.empty() || path.length_m() < kNothing_m) return face();
   state_ = State::Way;
@@ -122,7 +116,7 @@ TrackOutput Trip::step(const Vehicle& v, double limit_mps, double dt_s) {
     }
   }
   if (state_ == State::Face) {
-    const TrackOutput out = turner_.step(v, path_params_, dt_s);
+    const TrackOutput out = turner_.step(v, *path_params_, dt_s);
     if (turner_.state() == Turner::State::Done) state_ = State::There;
     if (turner_.state() == Turner::State::Failed)
       fail("a turn on the spot does not come to its end");
@@ -155,18 +149,18 @@ TrackOutput Trip::step(const Vehicle& v, double limit_mps, double dt_s) {
 void Trip::watch(const Vehicle& v, double dt_s) {
   const TrackPhase phase = tracker_.phase();
   const bool driving = phase == TrackPhase::Follow || phase == TrackPhase::Pivot;
-  const bool moved = base::distance_m(v.at, stuck_at_.at) > behave_.stuck_m ||
+  const bool moved = base::distance_m(v.at, stuck_at_.at) > behave_->stuck_m ||
                      std::abs(base::angle_diff_rad(stuck_at_.yaw_rad, v.yaw_rad)) >
-                         base::rad_from_deg(behave_.stuck_deg);
+                         base::rad_from_deg(behave_->stuck_deg);
   if (!driving || moved) {
     stuck_s_ = 0.0;
     stuck_at_ = v;
   } else {
     stuck_s_ += dt_s;
   }
-  if (stuck_s_ > behave_.stuck_s) {
-    fail("no progress for " + std::to_string(std::lround(behave_.stuck_s)) + " s");
-  } else if (phase == TrackPhase::Follow && std::abs(tracker_.cross_track_m()) > behave_.lost_m) {
+  if (stuck_s_ > behave_->stuck_s) {
+    fail("no progress for " + std::to_string(std::lround(behave_->stuck_s)) + " s");
+  } else if (phase == TrackPhase::Follow && std::abs(tracker_.cross_track_m()) > behave_->lost_m) {
     fail(std::to_string(std::lround(std::abs(tracker_.cross_track_m()))) + " m away from the way");
   }
 }

@@ -21,7 +21,9 @@
 #include <optional>
 #include <string>
 #include <vector>
+#include <utility>
 
+#include "base/setting.hpp"
 #include "nav/behave/params.hpp"
 #include "nav/behave/turner.hpp"
 #include "nav/track/tracker.hpp"
@@ -40,11 +42,8 @@ class Trip {
     double within_m = 0.5;                 ///< an end missed by more is failed
   };
 
-  explicit Trip(const PathParams& path, const BehaveParams& behave)
-      : path_params_(path), behave_(behave), tracker_(path) {}
-
-  /// New parameters: at once for what is being driven as far as that can be, else for the next way.
-  void use(const PathParams& path, const BehaveParams& behave);
+  Trip(base::Setting<PathParams> path, base::Setting<BehaveParams> behave)
+      : path_params_(path), behave_(std::move(behave)), tracker_(path) {}
 
   void begin(Order order, const Vehicle& vehicle, bool smoothly);
   void reset() noexcept;
@@ -70,8 +69,8 @@ class Trip {
   void fail(std::string why);
   void watch(const Vehicle& vehicle, double dt_s);
 
-  PathParams path_params_;
-  BehaveParams behave_;
+  base::Setting<PathParams> path_params_;
+  base::Setting<BehaveParams> behave_;
   Tracker tracker_;
   Turner turner_;
   Order order_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/angle.hpp"
 
@@ -42,9 +43,8 @@ bool finite(const base::BodyVector& v, double most) noexcept {
 
 }  // namespace
 
-Estimator::Estimator(const EstimateParams& params)
-    : params_(params),
-      limits_{params.satellites_min, params.hdop_max, params.accuracy_max_m, params.drift_scale} {
+Estimator::Estimator(base::Setting<EstimateParams> setting) : params_(std::move(setting)) {
+  const EstimateParams& params = *params_;
   reset_state(belief_, kYaw, 0.0, base::kPi);
   reset_state(belief_, kGyroBias, 0.0, rad_from_deg(params.gyro_bias_sigma_dps));
   reset_state(belief_, kBias, 0.0, rad_from_deg(params.compass_bias_sigma_deg));
@@ -79,7 +79,7 @@ Learned Estimator::learned() const noexcept {
     if (sigma > enough) return std::nullopt;
     return LearnedValue{belief_.x(i), sigma};
   };
-  if (has_moved_ && params_.odometry_scale_sigma > kScaleLearned) {
+  if (has_moved_ && params_->odometry_scale_sigma > kScaleLearned) {
     out.odometry_scale = tell(kScale, kScaleLearned);
   }
   if (last_inertial_) out.gyro_bias_radps = tell(kGyroBias, kGyroBiasLearned_radps);
@@ -219,7 +219,7 @@ void Estimator::take(const base::WheelTravel& travel) {
   }
   in.refused_since.reset();
   const Travel t{0.5 * (travel.left_m + travel.right_m),
-                 (travel.right_m - travel.left_m) / params_.track_width_m, dt_s};
+                 (travel.right_m - travel.left_m) / params_->track_width_m, dt_s};
   step(t, travel.stamp);
   if (!last_motion_ || travel.stamp - *last_motion_ > kOdometryGone) {
     tracks_ = {t.ahead_m / dt_s, t.turn_rad / dt_s};
@@ -246,10 +246,10 @@ void Estimator::take(const base::BaseMotion& motion) {
 /// Currents act on a compass through iron that remembers them for a while.
 void Estimator::take(const base::MotorState& motor) {
   if (!motor.current_a || !std::isfinite(*motor.current_a)) return;
-  if (motor.motor != params_.left_motor && motor.motor != params_.right_motor) return;
-  Current& side = motor.motor == params_.left_motor ? left_ : right_;
+  if (motor.motor != params_->left_motor && motor.motor != params_->right_motor) return;
+  Current& side = motor.motor == params_->left_motor ? left_ : right_;
   const double dt_s = side.stamp ? std::max(0.0, seconds(motor.stamp - *side.stamp)) : 0.0;
-  const double lag_s = params_.compass_current_lag_s;
+  const double lag_s = params_->compass_current_lag_s;
   side.ampere += (*motor.current_a - side.ampere) * dt_s / std::max(1e-3, lag_s + dt_s);
   side.stamp = motor.stamp;
 }
@@ -287,7 +287,7 @@ void Estimator::remember(Time stamp) noexcept {
 }
 
 void Estimator::watch_standing(const Travel& t, Time stamp) noexcept {
-  const double half_m = 0.5 * t.turn_rad * params_.track_width_m;
+  const double half_m = 0.5 * t.turn_rad * params_->track_width_m;
   const bool tracks = std::abs(t.ahead_m) + std::abs(half_m) > kStill_m;
   const bool turned = !tracks && !gyro_stands(stamp);  // by hand
   if (tracks || turned) moved_at_ = stamp;

@@ -26,6 +26,7 @@
 
 #include "base/measurements.hpp"
 #include "base/snapshot.hpp"
+#include "base/setting.hpp"
 #include "nav/estimate/arrival.hpp"
 #include "nav/estimate/ekf.hpp"
 #include "nav/estimate/gnss_quality.hpp"
@@ -42,9 +43,9 @@ using base::Time;
 
 class Estimator {
  public:
-  explicit Estimator(const EstimateParams& params);
-  /// Other parameters, for what comes; what was learned stays.
-  void use(const EstimateParams& params) noexcept { params_ = params; }
+  /// What is believed at first follows from the parameters at construction 
+  /// (kBelievedAtFirst); all else acts from the next measurement on.
+  explicit Estimator(base::Setting<EstimateParams> params);
 
   /// What another life of this program learned, before the first measurement. Values beyond what
   /// update() allows, and those less certain than the parameters' own, are left out.
@@ -161,8 +162,7 @@ class Estimator {
   void note_reset(std::string_view what, const Belief& before) noexcept;
   std::string_view advice() const noexcept;
 
-  EstimateParams params_;
-  GnssLimits limits_;
+  base::Setting<EstimateParams> params_;
   Belief belief_;
   History history_;
   Gyro gyro_;

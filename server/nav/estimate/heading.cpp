@@ -30,7 +30,7 @@ void Estimator::set_heading(double yaw_rad, double sigma_rad) noexcept {
 
 /// A compass is a hint: as wrong as its bias may be.
 void Estimator::first_heading(double yaw_rad, double sigma_rad, bool compass) noexcept {
-  const double bias_rad = compass ? rad_from_deg(params_.compass_bias_sigma_deg) : 0.0;
+  const double bias_rad = compass ? rad_from_deg(params_->compass_bias_sigma_deg) : 0.0;
   set_heading(yaw_rad, std::hypot(sigma_rad, bias_rad));
   if (!compass) return;
   // yaw = shown − bias: what one is too large the other is too small.
@@ -49,11 +49,11 @@ void Estimator::take(const base::Heading& heading) {
   if (!std::isfinite(heading.yaw_rad)) return refuse(in, Refusal::NotFinite);
   if (!in_order(in, compass ? last_compass_ : last_antennas_, heading.stamp)) return;
   if (compass) health_.compass_heard = true;
-  const double latency_s = compass ? params_.compass_latency_s : params_.gnss_latency_s;
+  const double latency_s = compass ? params_->compass_latency_s : params_->gnss_latency_s;
   const auto past = history_.at(heading.stamp - base::from_seconds(latency_s));
   if (!heading_known_) {
     const double turned_since = past ? base::angle_diff_rad(past->x(kYaw), belief_.x(kYaw)) : 0.0;
-    const double sigma_deg = compass ? params_.compass_sigma_deg : params_.heading_sigma_deg;
+    const double sigma_deg = compass ? params_->compass_sigma_deg : params_->heading_sigma_deg;
     const double sigma_rad = heading.sigma_rad.value_or(rad_from_deg(sigma_deg));
     const double shown_rad =
         compass ? heading.yaw_rad - shown_bias_rad(belief_.x) : heading.yaw_rad;
@@ -75,7 +75,7 @@ void Estimator::fuse_compass(const base::Heading& heading, const StateVector& at
     ++health_.refusals[static_cast<std::size_t>(Refusal::Disturbed)];
     return;
   }
-  const double least_rad = rad_from_deg(params_.compass_sigma_deg);
+  const double least_rad = rad_from_deg(params_->compass_sigma_deg);
   const double sigma_rad = std::max(least_rad, heading.sigma_rad.value_or(0.0));
   Observation<1> o;
   o.innovation(0) = base::wrap_rad(heading.yaw_rad - at(kYaw) - shown_bias_rad(at));
@@ -99,14 +99,14 @@ void Estimator::fuse_compass(const base::Heading& heading, const StateVector& at
   if (heading.stamp - *compass_off_since_ < kLearnAnew) return;
   // The iron around it changed, or the robot was turned by hand: learn the compass anew.
   reset_state(belief_, kBias, base::wrap_rad(at(kBias) + o.innovation(0)),
-              rad_from_deg(params_.compass_bias_sigma_deg));
+              rad_from_deg(params_->compass_bias_sigma_deg));
   compass_off_since_.reset();
 }
 
 void Estimator::fuse_antennas(const base::Heading& heading, const StateVector& at) noexcept {
   Input& in = health_.heading;
-  const double told_rad = heading.sigma_rad.value_or(rad_from_deg(params_.heading_sigma_deg));
-  const double sigma_rad = std::max(told_rad, kAntennas_m / params_.antenna_baseline_m);
+  const double told_rad = heading.sigma_rad.value_or(rad_from_deg(params_->heading_sigma_deg));
+  const double sigma_rad = std::max(told_rad, kAntennas_m / params_->antenna_baseline_m);
   Observation<1> o;
   o.innovation(0) = base::angle_diff_rad(at(kYaw), heading.yaw_rad);
   o.H(0, kYaw) = 1.0;

@@ -1,6 +1,9 @@
 #pragma once
 // What the estimator may be told about the robot and its sensors. Section [nav.estimate].
 
+#include <array>
+#include <string_view>
+
 namespace roverd::nav {
 
 struct EstimateParams {
@@ -102,5 +105,19 @@ void fields(V& v, EstimateParams& p) {
     "latitude of the local map's origin, for driving without GNSS; both 0: there is no such map");
   v("map_lon", p.map_lon, -180.0, 180.0, "longitude of the local map's origin");
 }
+
+/// Of these the estimator makes what it believes at first; later it knows better by itself, so that
+/// a change acts when the program starts anew.
+inline constexpr std::array<std::string_view, 10> kBelievedAtFirst = {
+    "compass_left_deg_per_a",
+    "compass_right_deg_per_a",
+    "compass_current_sigma_deg_per_a",
+    "odometry_scale_sigma",
+    "yaw_scale",
+    "yaw_scale_sigma",
+    "pull_sigma_1pm",
+    "gyro_bias_sigma_dps",
+    "map_lat",
+    "map_lon"};
 
 }  // namespace roverd::nav

@@ -57,7 +57,7 @@ void Estimator::place(std::optional<base::EnuPoint> at, std::optional<double> ya
   }
   if (yaw_rad) {
     set_heading(*yaw_rad, kPlaced_rad);
-    reset_state(belief_, kBias, belief_.x(kBias), rad_from_deg(params_.compass_bias_sigma_deg));
+    reset_state(belief_, kBias, belief_.x(kBias), rad_from_deg(params_->compass_bias_sigma_deg));
     velocity_off_since_.reset();
     compass_off_since_.reset();
   }
@@ -104,7 +104,7 @@ void Estimator::drop_anchor() noexcept {
 void Estimator::watch_alignment() noexcept {
   const double sigma_rad = heading_known_ ? std::sqrt(belief_.P(kYaw, kYaw)) : base::kPi;
   const bool was = alignment_ == Alignment::Aligned;
-  const double enough = rad_from_deg(params_.aligned_deg) * (was ? kLeaveAligned : 1.0);
+  const double enough = rad_from_deg(params_->aligned_deg) * (was ? kLeaveAligned : 1.0);
   alignment_ = sigma_rad <= enough      ? Alignment::Aligned
                : sigma_rad <= kHint_rad ? Alignment::Aligning
                                         : Alignment::Unknown;

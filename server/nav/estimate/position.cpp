@@ -45,13 +45,13 @@ base::EnuPoint Estimator::local(const base::GnssFix& fix) const noexcept {
 
 /// E: ENU at the datum. B: body. A: antenna. p_EA = p_EB + R_EB · p_BA, leaning included.
 Estimator::Arm Estimator::arm(double yaw_rad) const noexcept {
-  double forward_m = params_.antenna_forward_m;
-  double left_m = params_.antenna_left_m;
-  if (params_.antenna_up_m > 0.0) {
+  double forward_m = params_->antenna_forward_m;
+  double left_m = params_->antenna_left_m;
+  if (params_->antenna_up_m > 0.0) {
     if (const auto lean = tilt_.at(now_)) {
       // Nose up, the mast leans back; right side down, it leans to the right.
-      forward_m -= params_.antenna_up_m * std::sin(lean->pitch_rad);
-      left_m -= params_.antenna_up_m * std::sin(lean->roll_rad);
+      forward_m -= params_->antenna_up_m * std::sin(lean->pitch_rad);
+      left_m -= params_->antenna_up_m * std::sin(lean->roll_rad);
     }
   }
   const double c = std::cos(yaw_rad);
@@ -61,14 +61,16 @@ Estimator::Arm Estimator::arm(double yaw_rad) const noexcept {
 
 /// When the receiver measured what arrived then.
 Time Estimator::taken_at(Time stamp) const noexcept {
-  return stamp - base::from_seconds(params_.gnss_latency_s + late_s_);
+  return stamp - base::from_seconds(params_->gnss_latency_s + late_s_);
 }
 
 void Estimator::take(const base::GnssFix& fix) {
   Input& in = health_.position;
   if (!in_order(in, last_fix_, fix.stamp)) return;
   const bool is_settled = settled(fix);
-  const auto quality = gnss_quality(fix, is_settled, limits_);
+  const auto quality = gnss_quality(fix, is_settled,
+                                    {params_->satellites_min, params_->hdop_max,
+                                     params_->accuracy_max_m, params_->drift_scale});
   if (!quality) {
     if (quality.error()) refuse(in, *quality.error());
     return;

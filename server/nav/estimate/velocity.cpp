@@ -28,7 +28,7 @@ void Estimator::take(const base::GnssVelocity& velocity) {
   if (!std::isfinite(speed)) return refuse(in, Refusal::NotFinite);
   if (speed > kReceiverMost_mps) return refuse(in, Refusal::Impossible);
   if (!in_order(in, last_velocity_, velocity.stamp)) return;
-  if (velocity.sigma_mps && !(*velocity.sigma_mps <= params_.speed_accuracy_max_mps)) {
+  if (velocity.sigma_mps && !(*velocity.sigma_mps <= params_->speed_accuracy_max_mps)) {
     return refuse(in, Refusal::Accuracy);
   }
   if (receivers_.disagree()) return refuse(in, Refusal::Receivers);

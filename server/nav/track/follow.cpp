@@ -34,9 +34,9 @@ Vehicle Tracker::predict(const Vehicle& now, double dt_s) const noexcept {
   Vehicle v = now;
   if (dt_s <= 0.0) return v;
   const auto steps = std::min<std::size_t>(
-      sent_.size(), static_cast<std::size_t>(std::lround(params_.track.delay_s / dt_s)));
+      sent_.size(), static_cast<std::size_t>(std::lround(params_->track.delay_s / dt_s)));
   // A base that brakes a turn more slowly than told goes on with the rest of it for a while.
-  const base::BodyTwist then = sent_before(params_.track.delay_s, dt_s);
+  const base::BodyTwist then = sent_before(params_->track.delay_s, dt_s);
   double rest_radps = now.yaw_rate_radps - then.angular_radps - observer_.radps();
   const double keep = std::exp(-dt_s / kRest_s);
   for (std::size_t k = steps; k-- > 0;) {
@@ -56,7 +56,7 @@ Vehicle Tracker::predict(const Vehicle& now, double dt_s) const noexcept {
 /// the place and half behind.
 double Tracker::bend_ahead_1pm(const Projection& from, double speed_mps) const noexcept {
   const Leg& leg = leg_now();
-  const double half_m = 0.5 * std::max(0.1, speed_mps * bend_onset_s(params_.vehicle));
+  const double half_m = 0.5 * std::max(0.1, speed_mps * bend_onset_s(params_->vehicle));
   const double begin_m = std::max(from.s_m - half_m, leg.start_m);
   const double end_m = from.s_m + half_m;  // beyond the leg it is straight
   return angle_diff_rad(path_->yaw_rad(leg, begin_m, from.segment),
@@ -66,21 +66,22 @@ double Tracker::bend_ahead_1pm(const Projection& from, double speed_mps) const n
 
 double Tracker::law_1pm(const Vehicle& soon, const Projection& on,
                         double speed_mps) const noexcept {
-  if (law_ == TrackLaw::PurePursuit) {
-    const double look = lookahead_m(speed_mps, on.cross_m, params_.track);
+  const TrackLaw law = law_from(params_->track.law).value_or(TrackLaw::PathFrame);
+  if (law == TrackLaw::PurePursuit) {
+    const double look = lookahead_m(speed_mps, on.cross_m, params_->track);
     return arc_curvature_1pm(to_body(point_ahead(on, look), soon.at, soon.yaw_rad));
   }
   const BesidePath at{on.cross_m, angle_diff_rad(on.tangent_rad, soon.yaw_rad),
                       bend_ahead_1pm(on, speed_mps), speed_mps,
-                      calm_of(soon.yaw_sigma_rad, rad_from_deg(params_.speed.heading_sigma_deg))};
-  if (law_ == TrackLaw::Stanley) return stanley_1pm(at, params_.vehicle.wheelbase_m, params_.track);
-  return path_frame_1pm(at, params_.track);
+                      calm_of(soon.yaw_sigma_rad, rad_from_deg(params_->speed.heading_sigma_deg))};
+  if (law == TrackLaw::Stanley) return stanley_1pm(at, params_->vehicle.wheelbase_m, params_->track);
+  return path_frame_1pm(at, params_->track);
 }
 
 /// What the vehicle can do of the wanted curvature. A steered one cannot turn on the spot: with the
 /// path's direction behind it, it goes round with full lock, and keeps to the side it has begun.
 double Tracker::steer(double wanted_1pm, double heading_rad, double dt_s) noexcept {
-  const VehicleParams& car = params_.vehicle;
+  const VehicleParams& car = params_->vehicle;
   if (!car.steered()) return std::clamp(wanted_1pm, -kTightest_1pm, kTightest_1pm);
   const double lock = std::tan(rad_from_deg(car.max_steering_deg)) / car.wheelbase_m;
   if (std::abs(heading_rad) > kBehind_rad) {
@@ -101,19 +102,19 @@ SpeedLimit Tracker::profile(double s_m) const noexcept {
   const PathPoint& next = path_->points[i + 1];
   // Braking sets in gradually: as if so much later.
   const double delay =
-      params_.track.delay_s + 0.5 * params_.speed.decel_mps2 / params_.speed.jerk_mps3;
+      params_->track.delay_s + 0.5 * params_->speed.decel_mps2 / params_->speed.jerk_mps3;
   SpeedLimit limit{here.segment_mps, here.segment_reason};
   const bool end = i + 1 == leg.last;
-  limit.cut(braking_mps(end ? 0.0 : next.speed_mps, next.s_m - s_m, params_.speed, delay),
+  limit.cut(braking_mps(end ? 0.0 : next.speed_mps, next.s_m - s_m, params_->speed, delay),
             end ? SpeedReason::Approach : next.reason);
   // The delay may reach over a corner that is nearer than its braking distance.
-  limit.cut(stopping_mps(leg.end_m - s_m, params_.speed.decel_mps2, delay), SpeedReason::Approach);
+  limit.cut(stopping_mps(leg.end_m - s_m, params_->speed.decel_mps2, delay), SpeedReason::Approach);
   return limit;
 }
 
 SpeedLimit Tracker::limits(const Vehicle& v, double limit_mps, double curvature_1pm,
                            double course_error_rad) noexcept {
-  const SpeedParams& p = params_.speed;
+  const SpeedParams& p = params_->speed;
   SpeedLimit limit = profile(s_m_);
   const double sigma_limit = rad_from_deg(p.heading_sigma_deg);
   creeping_ = v.yaw_sigma_rad > (creeping_ ? 0.85 : 1.0) * sigma_limit;
@@ -131,7 +132,7 @@ SpeedLimit Tracker::limits(const Vehicle& v, double limit_mps, double curvature_
 /// The commanded speed's size after this step. What was planned brakes gently; a limit that came
 /// suddenly brakes harder, but neither sets in at once.
 double Tracker::speed_up_or_down(double limit_mps, double dt_s) noexcept {
-  const SpeedParams& p = params_.speed;
+  const SpeedParams& p = params_->speed;
   const double from = std::abs(speed_mps_);
   const double missing = limit_mps - from;
   const double step = p.jerk_mps3 * dt_s;
@@ -155,22 +156,22 @@ TrackOutput Tracker::follow(const Vehicle& v, double limit_mps, double dt_s) noe
   s_m_ = std::max(s_m_, on.s_m);
   segment_ = path_->segment_at(leg, s_m_, segment_);
   cross_track_m_ = leg.reverse ? -on.cross_m : on.cross_m;
-  if (leg.end_m - s_m_ <= std::max(0.01, std::abs(v.speed_mps) * params_.track.delay_s)) {
+  if (leg.end_m - s_m_ <= std::max(0.01, std::abs(v.speed_mps) * params_->track.delay_s)) {
     enter(TrackPhase::Stop);
     return stop(v, dt_s);
   }
-  const base::BodyTwist then = sent_before(params_.track.delay_s, dt_s);
-  observer_.step(v.yaw_rate_radps, then.angular_radps, v.speed_mps, saturated_, params_.track,
+  const base::BodyTwist then = sent_before(params_->track.delay_s, dt_s);
+  observer_.step(v.yaw_rate_radps, then.angular_radps, v.speed_mps, saturated_, params_->track,
                  dt_s);
 
   // Reversing is driving forward with the tail: same curvature, other end.
   Vehicle soon = predict(v, dt_s);
   if (leg.reverse) soon.yaw_rad = base::wrap_rad(soon.yaw_rad + base::kPi);
   const Projection ahead_on = project(soon.at, s_m_, reach);
-  const double speed = std::max(std::abs(speed_mps_), params_.speed.min_mps);
+  const double speed = std::max(std::abs(speed_mps_), params_->speed.min_mps);
   const double heading = angle_diff_rad(ahead_on.tangent_rad, soon.yaw_rad);
   const double course = course_error_rad(
-      ahead_on.cross_m, heading, settle_length_m(speed, params_.track), params_.track.damping);
+      ahead_on.cross_m, heading, settle_length_m(speed, params_->track), params_->track.damping);
   astray_s_ = std::abs(course) > std::max(kAstray_rad, leg.align_rad) ? astray_s_ + dt_s : 0.0;
   if (astray_s_ > kAstrayFor_s) {
     enter(TrackPhase::Settle);
@@ -185,10 +186,10 @@ TrackOutput Tracker::drive(const Vehicle& v, SpeedLimit limit, double curvature_
   const double from = std::abs(speed_mps_);
   const double speed = speed_up_or_down(limit.mps, dt_s);
   if (speed > from && speed < limit.mps) limit.reason = SpeedReason::Accel;
-  const double turn_up = params_.speed.yaw_accel_radps2 * dt_s;
-  const double turn_down = params_.speed.yaw_decel_radps2 * dt_s;
+  const double turn_up = params_->speed.yaw_accel_radps2 * dt_s;
+  const double turn_down = params_->speed.yaw_decel_radps2 * dt_s;
   const double wanted = speed * curvature_1pm;
-  const double rate = params_.vehicle.steered()
+  const double rate = params_->vehicle.steered()
                           ? wanted  // the wheels' angle was limited, and the speed is
                           : slew(rate_radps_, wanted, turn_up, turn_down);
   return command(v, leg_now().reverse ? -speed : speed, rate, limit.reason);

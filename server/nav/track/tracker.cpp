@@ -29,11 +29,6 @@ bool finite(const Vehicle& v) noexcept {
 
 }  // namespace
 
-void Tracker::set_params(const PathParams& params) noexcept {
-  params_ = params;
-  law_ = law_from(params.track.law).value_or(TrackLaw::PathFrame);
-}
-
 void Tracker::enter(TrackPhase phase) noexcept {
   phase_ = phase;
   still_s_ = astray_s_ = turning_s_ = 0.0;
@@ -59,7 +54,7 @@ void Tracker::begin_turn(double yaw_rad) noexcept {
   path_ = nullptr;
   leg_ = 0;
   turn_to_rad_ = yaw_rad;
-  const bool can = turning_on_the_spot(params_.vehicle) && std::isfinite(yaw_rad);
+  const bool can = turning_on_the_spot(params_->vehicle) && std::isfinite(yaw_rad);
   enter(can ? TrackPhase::Settle : TrackPhase::Done);
 }
 
@@ -163,7 +158,7 @@ EnuPoint Tracker::point_ahead(const Projection& from, double by_m) const noexcep
 double Tracker::facing_error(const Vehicle& v, const Projection& on) const noexcept {
   double wanted = on.tangent_rad;
   if (std::abs(on.cross_m) > kNear_m) {
-    const EnuPoint d = point_ahead(on, lookahead_m(0.0, on.cross_m, params_.track)) - v.at;
+    const EnuPoint d = point_ahead(on, lookahead_m(0.0, on.cross_m, params_->track)) - v.at;
     wanted = std::atan2(d.north_m, d.east_m);
   }
   if (leg_now().reverse) wanted += base::kPi;
@@ -180,7 +175,7 @@ TrackOutput Tracker::command(const Vehicle& v, double speed_mps, double rate_rad
   const double counter = phase_ == TrackPhase::Follow ? observer_.radps() : 0.0;
   t.linear_mps = speed_mps / v.odometry_scale;
   t.angular_radps = (rate_radps - counter - v.pull_1pm * t.linear_mps) / v.yaw_scale;
-  const double most = params_.speed.max_yaw_rate_radps;
+  const double most = params_->speed.max_yaw_rate_radps;
   if (std::abs(t.angular_radps) > most) {
     const double part = most / std::abs(t.angular_radps);
     t.linear_mps *= part;
@@ -194,8 +189,8 @@ TrackOutput Tracker::command(const Vehicle& v, double speed_mps, double rate_rad
 }
 
 TrackOutput Tracker::settle(const Vehicle& v, double dt_s) noexcept {
-  const double step = params_.speed.hold_decel_mps2 * dt_s;
-  const double turn_step = params_.pivot.slew_radps2 * dt_s;
+  const double step = params_->speed.hold_decel_mps2 * dt_s;
+  const double turn_step = params_->pivot.slew_radps2 * dt_s;
   if (still(v, dt_s)) {
     if (path_ == nullptr) {
       enter(TrackPhase::Turn);
@@ -232,14 +227,14 @@ TrackOutput Tracker::turn(const Vehicle& v, double dt_s) noexcept {
 TrackOutput Tracker::turn_by(double error_rad, double error_soon_rad, const Vehicle& v,
                              double dt_s) noexcept {
   turning_s_ += dt_s;
-  const double done = rad_from_deg(params_.pivot.done_deg);
+  const double done = rad_from_deg(params_->pivot.done_deg);
   const bool there = std::abs(error_rad) < done && std::abs(v.yaw_rate_radps) < kTurned_radps;
   still_s_ = there ? still_s_ + dt_s : 0.0;
   double wanted =
-      std::abs(error_soon_rad) < 0.5 * done ? 0.0 : pivot_rate_radps(error_soon_rad, params_.pivot);
+      std::abs(error_soon_rad) < 0.5 * done ? 0.0 : pivot_rate_radps(error_soon_rad, params_->pivot);
   // It brakes by itself; turning back before it stands is for a turn that went too far.
   if (wanted * v.yaw_rate_radps < 0.0 && std::abs(v.yaw_rate_radps) > kStill_radps) wanted = 0.0;
-  const double step = params_.pivot.slew_radps2 * dt_s;
+  const double step = params_->pivot.slew_radps2 * dt_s;
   return command(v, 0.0, slew(rate_radps_, wanted, step, step), SpeedReason::Pivot);
 }
 
@@ -249,7 +244,7 @@ TrackOutput Tracker::stop(const Vehicle& v, double dt_s) noexcept {
   cross_track_m_ = leg_now().reverse ? -on.cross_m : on.cross_m;
   const TrackOutput out = command(v, 0.0, 0.0, SpeedReason::Approach);
   if (still(v, dt_s)) {
-    if (leg_now().end_m - s_m_ > params_.track.arrive_m) {
+    if (leg_now().end_m - s_m_ > params_->track.arrive_m) {
       enter(TrackPhase::Follow);
     } else if (leg_now().end_yaw_rad) {
       turn_to_rad_ = *leg_now().end_yaw_rad;

@@ -19,9 +19,11 @@
 
 #include <array>
 #include <cstddef>
+#include <utility>
 
 #include "base/geo.hpp"
 #include "base/snapshot.hpp"
+#include "base/setting.hpp"
 #include "nav/track/law.hpp"
 #include "nav/track/observer.hpp"
 #include "nav/track/path.hpp"
@@ -51,18 +53,15 @@ struct TrackOutput {
 
 class Tracker {
  public:
-  explicit Tracker(const PathParams& params) { set_params(params); }
-
-  /// Takes effect at the next step, also while driving; paths keep the limits they were built with.
-  void set_params(const PathParams& params) noexcept;
+  /// Other parameters act at the next step, also while driving; paths keep the limits they were
+  /// built with.
+  explicit Tracker(base::Setting<PathParams> params) : params_(std::move(params)) {}
 
   /// Starts or goes on with `leg` at arc length s. `path` must outlive the drive.
   void begin(const Path& path, std::size_t leg, double s_m) noexcept;
   /// Turns on the spot to a yaw, without any path. A steered vehicle is Done at once.
   void begin_turn(double yaw_rad) noexcept;
   void reset() noexcept;
-  /// Other limits and gains, from the next step on; paths that are laid keep their speeds.
-  void use(const PathParams& params) { params_ = params; }
   /// Goes on as it goes, on another path that is the same here. `path` must outlive the drive.
   void move_to(const Path& path, std::size_t leg, double s_m) noexcept;
 
@@ -77,7 +76,7 @@ class Tracker {
   /// Positive: the vehicle is left of the way it drives.
   double cross_track_m() const noexcept { return cross_track_m_; }
   /// The turn on the spot takes longer than nav.pivot.timeout_s.
-  bool turn_timed_out() const noexcept { return turning_s_ > params_.pivot.timeout_s; }
+  bool turn_timed_out() const noexcept { return turning_s_ > params_->pivot.timeout_s; }
   /// What turns the robot without being commanded.
   double yaw_disturbance_radps() const noexcept { return observer_.radps(); }
 
@@ -117,8 +116,7 @@ class Tracker {
   bool still(const Vehicle& v, double dt_s) noexcept;
   void enter(TrackPhase phase) noexcept;
 
-  PathParams params_;
-  TrackLaw law_ = TrackLaw::PathFrame;
+  base::Setting<PathParams> params_;
   const Path* path_ = nullptr;
   std::size_t leg_ = 0;
   std::size_t segment_ = 0;

@@ -290,7 +290,8 @@ TEST(HardTracker, ExtremeParametersWhileDrivingNeverMakeItRunAway) {
   for (unsigned seed = 1; seed <= 60; ++seed) {
     std::mt19937 random(seed);
     Body body(0.1, 0.05);
-    Tracker tracker{PathParams{}};
+    base::Setting<PathParams> params;
+    Tracker tracker{params};
     std::size_t leg = 0;
     tracker.begin(path, 0, 0.0);
     for (int i = 0; i < 50 * 60; ++i) {
@@ -301,7 +302,7 @@ TEST(HardTracker, ExtremeParametersWhileDrivingNeverMakeItRunAway) {
         fields(extremes, p.speed);
         fields(extremes, p.pivot);
         p.speed.max_mps = 1.2;
-        tracker.set_params(p);
+        params.adopt(std::make_shared<const PathParams>(p));
       }
       const auto out = tracker.step(body.vehicle, 1.2, 0.02);
       ASSERT_TRUE(std::isfinite(out.command.linear_mps) &&

@@ -45,7 +45,7 @@ TEST(BatteryCurve, ThatIsDamagedIsRefusedWithThePartThatIsWrong) {
 }
 
 TEST(BatteryGauge, ASagUnderLoadHardlyMovesTheCharge) {
-  BatteryGauge gauge({kLithium});
+  BatteryGauge gauge(BatteryParams{kLithium});
   base::Time now{};
   for (int i = 0; i < 100; ++i) gauge.step(status_at(now += std::chrono::milliseconds(100), 50.4));
   const auto before = gauge.step(status_at(now, 50.4));
@@ -67,7 +67,7 @@ TEST(BatteryGauge, OfAnEmptyCurveSaysNothing) {
 
 TEST(Battery, TheBatterysOwnWordCountsBeforeTheVoltage) {
   World world;
-  world.gauge = BatteryGauge({kLithium});
+  world.gauge = BatteryGauge(BatteryParams{kLithium});
   base::Time now{};
   world.take(status_at(now, 46.8));
   ASSERT_TRUE(world.battery);

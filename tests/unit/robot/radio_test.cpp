@@ -12,7 +12,7 @@ using std::chrono::milliseconds;
 /// A transmitter in a hand: frames every 20 ms.
 class Hand {
  public:
-  explicit Hand(const RadioParams& params = {}) : keys(params, 0.5) {
+  explicit Hand(const RadioParams& params = {}) : keys(params, SafetyParams{}) {
     radio.swa = radio.swb = radio.swc = radio.swd = Switch::Up;
   }
 

@@ -1,0 +1,94 @@
+// The one check of all that the robot may be told: for file, start and change while it runs.
+
+#include "robot/config.hpp"
+
+#include <algorithm>
+#include <array>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+namespace roverd::robot {
+namespace {
+
+base::Result<void> wrong(const char* name, std::string detail) {
+  return base::fail(base::Code::Invalid, std::string(name) + " " + detail, {{name, detail}});
+}
+
+/// One of a few words. @param one_of the same for people: "stop, skip or return"
+base::Result<void> check_word(const char* name, const std::string& word,
+                              std::initializer_list<std::string_view> known, const char* one_of) {
+  if (std::find(known.begin(), known.end(), word) != known.end()) return {};
+  return wrong(name, "must be " + std::string(one_of) + ", is \"" + word + "\"");
+}
+
+base::Result<void> check_words(const Config& c) {
+  // A misspelt word must not turn a steered vehicle into one that turns on the spot.
+  if (auto good = check_word("vehicle.kinematics", c.vehicle.kinematics,
+                             {"skid_steer", "differential", "ackermann"},
+                             "skid_steer, differential or ackermann");
+      !good) {
+    return good;
+  }
+  if (auto good = check_word("nav.track.law", c.track.law, {"path_frame", "pure_pursuit", "stanley"},
+                             "path_frame, pure_pursuit or stanley");
+      !good) {
+    return good;
+  }
+  return check_word("nav.behave.unreachable", c.behave.unreachable, {"stop", "skip", "return"},
+                    "stop, skip or return");
+}
+
+struct Order {
+  double upper;
+  double lower;
+  const char* name;  ///< of the upper one
+  const char* than;
+};
+
+base::Result<void> check_orders(const Config& c) {
+  const std::array orders{
+      Order{c.speed.max_mps, c.speed.min_mps, "nav.speed.max_mps", "nav.speed.min_mps"},
+      Order{c.speed.reverse_max_mps, c.speed.min_mps, "nav.speed.reverse_max_mps",
+            "nav.speed.min_mps"},
+      Order{c.modes.follow_hold_s, c.modes.follow_brake_s, "nav.modes.follow_hold_s",
+            "nav.modes.follow_brake_s"},
+      Order{c.safety.gnss_hold_s, c.safety.gnss_slow_s, "robot.safety.gnss_hold_s",
+            "robot.safety.gnss_slow_s"},
+      Order{c.safety.sigma_hold_m, c.safety.sigma_slow_m, "robot.safety.sigma_hold_m",
+            "robot.safety.sigma_slow_m"},
+      Order{c.safety.battery_warn_pct, c.safety.battery_stop_pct, "robot.safety.battery_warn_pct",
+            "robot.safety.battery_stop_pct"},
+  };
+  for (const Order& o : orders) {
+    if (o.upper < o.lower) return wrong(o.name, std::string("must not be below ") + o.than);
+  }
+  return {};
+}
+
+/// A section's own check, under its full name.
+base::Result<void> in_section(const char* section, base::Result<void> result) {
+  if (result) return result;
+  base::Error error = std::move(result.error());
+  const std::string before = std::string(section) + ".";
+  error.detail.insert(0, before);
+  for (base::FieldError& f : error.fields) f.pointer.insert(0, before);
+  return tl::unexpected(std::move(error));
+}
+
+}  // namespace
+
+base::Result<void> check(const Config& c) {
+  if (auto good = check_words(c); !good) return good;
+  if (auto good = check_orders(c); !good) return good;
+  if (auto good = in_section("radio", check(c.radio)); !good) return good;
+  return in_section("battery", check(c.battery));
+}
+
+bool acts_at_next_start(std::string_view section, std::string_view name) noexcept {
+  if (section == "vehicle") return true;
+  const auto& first = nav::kBelievedAtFirst;
+  return section == "nav.estimate" && std::find(first.begin(), first.end(), name) != first.end();
+}
+
+}  // namespace roverd::robot
