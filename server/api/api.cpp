@@ -287,6 +287,9 @@ void Api::on_sample() {
 
 void Api::Impl::take_event(base::Event event) {
   if (stream) stream->publish_event(event);
+  if (event.level == base::Severity::Error) {
+    base::log(base::Level::Error, "robot", event.detail, {{"event", event.kind}});
+  }
   context->runs.take(event);
   context->deps.store.add_event(std::move(event));
 }

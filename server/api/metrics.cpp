@@ -43,6 +43,8 @@ void write_loop(Writer& out, const base::LoopHealth& loop) {
   out.one("roverd_loop_ticks_total", "counter", "Ticks of the control loop.", loop.ticks);
   out.one("roverd_loop_late_ticks_total", "counter", "Woken more than one period late.",
           loop.late_ticks);
+  out.one("roverd_loop_faults_total", "counter",
+          "Ticks that an exception ended: the robot disarmed itself.", loop.faults);
   constexpr std::string_view kName = "roverd_loop_lateness_seconds";
   out.family(kName, "histogram", "How late the control loop woke.");
   std::uint64_t sum = 0;

@@ -37,16 +37,16 @@ void RunRecorder::recall() {
   });
 }
 
-void RunRecorder::forget_offer() {
-  if (!offer_) return;
-  offer_.reset();
-  if (!place_kept_) store_.keep_place(std::nullopt, [](auto) {});
+std::optional<store::StoredPlace> RunRecorder::offer() const {
+  const bool other = offer_ && !loaded_id_.empty() && loaded_id_ != offer_->mission_id;
+  return other ? std::nullopt : offer_;
 }
 
 void RunRecorder::look(const base::Snapshot& s) {
   recall();
   const base::MissionProgress& m = s.mission;
   const bool hand = in_hand(m.state);
+  loaded_id_ = m.mission_id;
   if (hand) offer_.reset();
   keep_place(s);
   const bool other = open_ && m.mission_id != mission_id_;

@@ -35,12 +35,11 @@ class RunRecorder {
   void look(const base::Snapshot& s);
   void take(const base::Event& event);
 
-  /// The mission that another life of the program left behind; empty: none, or it is in hand.
-  const std::optional<store::StoredPlace>& offer() const noexcept { return offer_; }
+  /// The mission that another life of the program left behind; empty: none, it is in hand, or
+  /// another one is loaded. Until one is begun it is offered again when that one is not.
+  std::optional<store::StoredPlace> offer() const;
   /// Reads it; once, before the first sample counts.
   void recall();
-  /// It was taken up, or somebody began something else.
-  void forget_offer();
 
   std::optional<std::int64_t> running() const noexcept { return id_; }
   std::uint64_t lost_points() const noexcept { return lost_; }
@@ -57,6 +56,7 @@ class RunRecorder {
   store::Store& store_;
   std::string vehicle_;
   std::optional<store::StoredPlace> offer_;
+  std::string loaded_id_;  ///< of the last sample; empty: no mission is loaded
   bool recalled_ = false;
   bool place_kept_ = false;
   std::string place_seen_;

@@ -220,13 +220,14 @@ void StreamTexts::look_at_execution() {
   const auto snapshot = context_->deps.robot.snapshot();
   if (!snapshot) return;
   const base::MissionProgress& p = snapshot->mission;
-  std::string now = p.mission_id + '/' + std::to_string(p.revision) + '/' +
-                    std::string(base::to_string(p.state)) + '/' + p.reason + '/' +
-                    std::to_string(p.current_item.value_or(0));
+  const auto offer = context_->runs.offer();
+  std::string now = (offer ? offer->mission_id : std::string()) + '/' + p.mission_id + '/' +
+                    std::to_string(p.revision) + '/' + std::string(base::to_string(p.state)) + '/' +
+                    p.reason + '/' + std::to_string(p.current_item.value_or(0));
   if (now == execution_seen_) return;
   execution_seen_ = std::move(now);
-  stream_.publish(kExecution, [&p](std::uint64_t seq) {
-    return stream_text(kExecution, seq, plain_json(execution_json(p)));
+  stream_.publish(kExecution, [&p, &offer](std::uint64_t seq) {
+    return stream_text(kExecution, seq, plain_json(execution_json(p, offer)));
   });
 }
 

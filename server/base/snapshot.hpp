@@ -94,15 +94,16 @@ struct MissionProgress {
 };
 
 /// How far what a mode other than AUTO does has come.
-enum class ActivityState { None, Driving, Turning, Waiting, Reached, Failed };
-std::string_view to_string(ActivityState s) noexcept;  // none driving turning waiting …
+/// Held: the radio took over, and what it interrupted waits for a word.
+enum class ActivityState { None, Driving, Turning, Waiting, Held, Reached, Failed };
+std::string_view to_string(ActivityState s) noexcept;  // none driving turning waiting held …
 
 /// What a mode other than AUTO is doing, or did last.
 struct Activity {
   std::uint64_t id = 0;   ///< counts what was begun; 0: nothing yet
   std::string_view kind;  ///< "goto" "heading" "move" "turn" "return" "retrace" "follow" "dock"
   ActivityState state = ActivityState::None;
-  std::string reason;  ///< why failed or waiting
+  std::string reason;  ///< why failed, held or waiting
   std::optional<LatLon> goal;
   std::optional<double> goal_yaw_rad;
   std::optional<double> distance_m;  ///< left to the goal, along the way; of FOLLOW: to the target
@@ -207,6 +208,7 @@ struct EstimatorHealth {
 struct LoopHealth {
   std::uint64_t ticks = 0;
   std::uint64_t late_ticks = 0;  ///< woke more than one period late
+  std::uint64_t faults = 0;      ///< ticks that an exception ended: disarmed, standing
   double last_lateness_s = 0.0;
   /// Wake-ups counted by lateness: entry i holds those below 2^i us (and not below 2^(i−1)), the
   /// last one all that were later.
@@ -244,6 +246,7 @@ struct Snapshot {
 
   MissionProgress mission;
   Activity activity;
+  std::string autonomy_refusal;  ///< why nothing may drive by itself now; empty: it may
   std::optional<FenceState> fence;
   DriveCommand command;  ///< what was sent at this tick
   std::vector<SafetyCondition> safety;

@@ -178,6 +178,8 @@ std::string_view to_string(ActivityState s) noexcept {
       return "turning";
     case ActivityState::Waiting:
       return "waiting";
+    case ActivityState::Held:
+      return "held";
     case ActivityState::Reached:
       return "reached";
     case ActivityState::Failed:

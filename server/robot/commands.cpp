@@ -73,8 +73,8 @@ base::Result<void> Robot::Impl::handle(const Arm&) {
   base_waited_since.reset();
   manual.release();
   if (by_itself()) set_mode(Mode::Hold, "armed");
-  if (pose && !home_is_chosen) home = pose->global;
-  drop_crumbs();
+  const HomeAtArm rule = home_at_arm_from(config->robot.home_at_arm).value_or(HomeAtArm::Keep);
+  if (pose && home.arm(pose->global, rule)) drop_crumbs();
   event(Severity::Info, "armed", "armed");
   return {};
 }
@@ -173,8 +173,21 @@ base::Result<void> Robot::Impl::handle(const PauseMission&) {
   return {};
 }
 
+/// A mission that waits; with none, what the radio interrupted.
 base::Result<void> Robot::Impl::handle(const ResumeMission&) {
+  const ExecutionState s = executor.state();
+  const bool waits = s == ExecutionState::Paused || s == ExecutionState::Blocked;
+  if (held.waits() && !waits) return handle(ResumeActivity{});
   return resume();
+}
+
+base::Result<void> Robot::Impl::handle(const ResumeActivity&) {
+  if (!held.waits()) return base::fail(Code::Conflict, "nothing was interrupted by the radio");
+  if (auto ok = may_drive_by_itself(); !ok) return ok;
+  held.go_on();
+  event(Severity::Info, "activity_resumed",
+        "the " + std::string(activity.kind) + " goes on, " + asker);
+  return {};
 }
 
 base::Result<void> Robot::Impl::handle(const StopMission&) {
@@ -205,11 +218,14 @@ base::Result<void> Robot::Impl::handle(const SetHome& c) {
     return base::fail(Code::Invalid, "home lies more than 10 km from the robot's map",
                       {{"/lat", "or /lon lies more than 10 km from the robot's map"}});
   }
-  home = c.at ? *c.at : pose->global;
-  home_is_chosen = true;
+  choose_home(c.at ? *c.at : pose->global);
   if (!c.at) drop_crumbs();
-  event(Severity::Info, "home", "home was set");
   return {};
+}
+
+void Robot::Impl::choose_home(base::LatLon at) {
+  home.choose(at);
+  event(Severity::Info, "home", "home was set");
 }
 
 base::Result<void> Robot::Impl::handle(const Drive& c) {
@@ -239,10 +255,7 @@ void Robot::Impl::adopt(const LoadMission& c) {
   mission_unpublished = true;
   executor.load(std::shared_ptr<const nav::Route>(mission, &mission->route));
   if (mode == Mode::Auto) set_mode(Mode::Hold, "another mission was loaded");
-  if (mission->copy.plan.home) {
-    home = mission->copy.plan.home->at;
-    home_is_chosen = true;
-  }
+  if (mission->copy.plan.home) home.choose(mission->copy.plan.home->at);
   event(Severity::Info, "mission_loaded",
         "mission \"" + mission->copy.plan.name + "\" revision " +
             std::to_string(mission->copy.revision) + " loaded");
@@ -281,8 +294,7 @@ base::Result<void> Robot::Impl::handle(const ReviseMission& c) {
   retire(std::exchange(mission, c.mission));  // the old route is left below
   mission_unpublished = true;
   if (!was_loaded && mission && mission->copy.plan.home) {
-    home = mission->copy.plan.home->at;
-    home_is_chosen = true;
+    home.choose(mission->copy.plan.home->at);
   }
   if (!mission) {
     if (executor.running()) executor.stop("nothing is left of the mission");

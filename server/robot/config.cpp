@@ -35,6 +35,11 @@ base::Result<void> check_words(const Config& c) {
       !good) {
     return good;
   }
+  if (auto good = check_word("robot.home_at_arm", c.robot.home_at_arm,
+                             {"keep", "unless_chosen", "here"}, "keep, unless_chosen or here");
+      !good) {
+    return good;
+  }
   return check_word("nav.behave.unreachable", c.behave.unreachable, {"stop", "skip", "return"},
                     "stop, skip or return");
 }

@@ -19,6 +19,19 @@
 
 namespace roverd::robot {
 
+/// Section [robot].
+struct RobotParams {
+  std::string home_at_arm = "keep";
+};
+
+template <class V>
+void fields(V& v, RobotParams& p) {
+  v("home_at_arm", p.home_at_arm,
+    "keep: the first arming sets home here where nobody has set it, and no later one moves it; "
+    "unless_chosen: each arming does, unless an operator or a mission said where home is; here: "
+    "each arming does. The driven way of SMART_RTL begins anew where home moves");
+}
+
 /// Driving by hand over the network. Section [robot.manual].
 struct ManualParams {
   double max_mps = 1.0;
@@ -124,6 +137,7 @@ struct Config {
   nav::PivotParams pivot;
   nav::BehaveParams behave;
   nav::ModeParams modes;
+  RobotParams robot;
   ManualParams manual;
   SafetyParams safety;
   FenceParams fence;
@@ -154,6 +168,7 @@ void sections(V& v, Config& c) {
   v("nav.pivot", c.pivot);
   v("nav.behave", c.behave);
   v("nav.modes", c.modes);
+  v("robot", c.robot);
   v("robot.manual", c.manual);
   v("robot.safety", c.safety);
   v("robot.fence", c.fence);

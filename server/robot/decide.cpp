@@ -123,6 +123,7 @@ base::DriveCommand Robot::Impl::decide() {
     radio_had_control = radio;
     event(Severity::Info, radio ? "radio_takeover" : "radio_released",
           radio ? "the radio took control" : "the radio gave control back");
+    if (radio) hold_for_a_word();
   }
   if (radio || !base_listens(world)) {
     if (executor.running() && !executor.interrupted()) executor.interrupt();
@@ -233,15 +234,15 @@ void Robot::Impl::tell_notices() {
 void Robot::Impl::act(const nav::Notice& n) {
   event(Severity::Info, "action", "item " + std::to_string(n.item) + ": " + n.detail);
   if (n.detail == "set_home" && pose) {
-    home = pose->global;
-    home_is_chosen = true;
-    event(Severity::Info, "home", "home was set");
+    choose_home(pose->global);
+    drop_crumbs();
   }
 }
 
 std::optional<base::EnuPoint> Robot::Impl::home_point() const {
-  if (!home || !estimator.frame() || !within_reach(*home)) return std::nullopt;
-  return estimator.frame()->to_local(*home);
+  const auto& at = home.at();
+  if (!at || !estimator.frame() || !within_reach(*at)) return std::nullopt;
+  return estimator.frame()->to_local(*at);
 }
 
 bool Robot::Impl::within_reach(base::LatLon at) const {
@@ -266,7 +267,7 @@ void Robot::Impl::watch_changes() {
 
 /// The first fix may lie out of reach of the frame that a mission brought: a new frame began then.
 void Robot::Impl::watch_frame() {
-  if (!home && pose) home = pose->global;
+  if (pose) home.assume(pose->global);
   if (!mission || !estimator.frame() || estimator.frame()->id() == mission->frame.id()) return;
   executor.load(nullptr);
   event(Severity::Warning, "mission_unloaded",

@@ -40,6 +40,19 @@ void Robot::Impl::interrupt_modes() {
   homeward.interrupt();
 }
 
+/// The radio took over: what is under way and is no mission does not go on by itself.
+void Robot::Impl::hold_for_a_word() {
+  const bool no_goal = mode == Mode::Guided && activity.state == ActivityState::Waiting;
+  const bool under_way = activity.state == ActivityState::Driving ||
+                         activity.state == ActivityState::Turning ||
+                         activity.state == ActivityState::Waiting;
+  if (mode == Mode::Auto || !by_itself() || !under_way || no_goal) return;
+  held.take(activity.kind);
+  activity.state = ActivityState::Held;
+  activity.reason = held.why();
+  event(Severity::Warning, "activity_held", held.why());
+}
+
 base::DriveCommand Robot::Impl::drive_by_sticks() {
   const base::BodyTwist stick = manual.step(now, dt_s);
   if (manual.phase() == Manual::Phase::Stale) {
@@ -79,6 +92,10 @@ nav::TrackOutput Robot::Impl::step_mode(const nav::Vehicle& v, double limit) {
 
 base::DriveCommand Robot::Impl::drive_by_itself() {
   if (!pose) return {{}, true};
+  if (held.waits()) {
+    speed_reason = "held";
+    return {{}, true};
+  }
   const nav::Vehicle v = vehicle();
   if (changeover.ends(v.speed_mps, v.yaw_rate_radps, dt_s)) interrupt_modes();
   if (changeover.waits()) {
@@ -188,7 +205,9 @@ void Robot::Impl::tell_activity() {
 }
 
 void Robot::Impl::lay_crumbs() {
-  if (!armed || !pose) return;
+  // From the first arming on; a robot that is carried lays none, and what it misses is a gap.
+  const bool wheels_turn = world.motion && world.motion->twist != base::BodyTwist{};
+  if (!pose || !(armed || (crumbs.size() > 0 && wheels_turn))) return;
   const std::uint64_t resets = estimator.health().resets;
   const bool jumped = resets != crumbs_resets;
   crumbs_resets = resets;

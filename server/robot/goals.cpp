@@ -15,7 +15,7 @@ using base::Code;
 
 base::Result<void> Robot::Impl::enter_guided() {
   if (auto ok = may_drive_by_itself(); !ok) return ok;
-  if (mode == Mode::Guided) return {};
+  if (mode == Mode::Guided) return held.waits() ? handle(ResumeActivity{}) : base::Result<void>{};
   take_over(Mode::Guided, asker);
   begin_activity("goto");
   activity.state = base::ActivityState::Waiting;
@@ -71,6 +71,8 @@ base::Result<void> Robot::Impl::handle(const GoTo& c) {
       return base::fail(Code::Invalid, "a goal is a position, or a heading and a speed");
     }
     goal.kind = nav::GuidedGoal::Kind::Steer;
+    // One more of a stream is no word of a person.
+    if (held.waits() && activity.kind == "heading") return base::fail(Code::Conflict, held.why());
     return guide(goal, "heading");
   }
   const auto place = place_of(c);
@@ -140,7 +142,7 @@ base::Result<void> Robot::Impl::handle(const SetTarget& c) {
 
 base::Result<void> Robot::Impl::enter_follow() {
   if (auto ok = may_drive_by_itself(); !ok) return ok;
-  if (mode == Mode::Follow) return {};
+  if (mode == Mode::Follow) return held.waits() ? handle(ResumeActivity{}) : base::Result<void>{};
   if (const std::string no = follower.refusal(pose->at, now); !no.empty()) {
     return base::fail(Code::Conflict, no);
   }

@@ -40,6 +40,8 @@
 #include "robot/compile.hpp"
 #include "robot/fence_guard.hpp"
 #include "robot/follow.hpp"
+#include "robot/held_by_radio.hpp"
+#include "robot/home.hpp"
 #include "robot/manual.hpp"
 #include "robot/outbox.hpp"
 #include "robot/parameter_set.hpp"
@@ -47,6 +49,7 @@
 #include "robot/safety.hpp"
 #include "robot/spin.hpp"
 #include "robot/straight_start.hpp"
+#include "robot/way_home.hpp"
 #include "robot/world.hpp"
 
 namespace roverd::robot {
@@ -73,6 +76,7 @@ struct Robot::Impl {
   base::Latest<base::Snapshot> snapshot;
   base::Latest<CompiledMission> loaded;
   base::Latest<nav::Learned> learned;
+  base::Latest<DrivenWay> driven_way;
   std::atomic<bool> estop_asked{false};
   std::atomic<std::uint64_t> made{1};       ///< ids of missions and fences that are laid out
   std::atomic<std::uint32_t> frame_ids{2};  ///< 1 is for the first fix
@@ -91,6 +95,7 @@ struct Robot::Impl {
   nav::Sticks sticks;
   nav::Breadcrumbs crumbs;
   std::uint64_t crumbs_resets = 0;
+  std::uint64_t crumbs_published = 0;  ///< Breadcrumbs::changes() of what others see
   Changeover changeover;
   std::shared_ptr<const LaidFence> fence;
   bool fence_stops = false;  ///< at this tick
@@ -108,8 +113,8 @@ struct Robot::Impl {
   base::Mode mode = base::Mode::Hold;
   bool armed = false;
   bool estop = false;
-  std::optional<base::LatLon> home;
-  bool home_is_chosen = false;  ///< by an operator or a mission, so arming leaves it
+  HomePlace home;
+  HeldByRadio held;  ///< what a mode other than AUTO did when the radio took over
 
   Time now{};
   base::WallTime wall{};
@@ -144,6 +149,7 @@ struct Robot::Impl {
   Time fix_seen_since{};
   std::vector<base::Measurement> measurement_batch;
   std::vector<PendingCommand> command_batch;
+  std::optional<Time> fault_told;       ///< the last event about one
   std::shared_ptr<const void> retired;  ///< by the command that is being carried out
 
   // tick, in this order (robot.cpp, commands.cpp, radio.cpp, decide.cpp, publish.cpp)
@@ -155,6 +161,8 @@ struct Robot::Impl {
   void judge();
   base::DriveCommand decide();
   bool publish();
+  void publish_driven_way();
+  void survive(const char* what, const Robot& self) noexcept;
 
   // commands.cpp: what was done, or why not
   base::Result<void> handle(const Arm&);
@@ -165,6 +173,7 @@ struct Robot::Impl {
   base::Result<void> handle(const StartMission& c);
   base::Result<void> handle(const PauseMission&);
   base::Result<void> handle(const ResumeMission&);
+  base::Result<void> handle(const ResumeActivity&);
   base::Result<void> handle(const StopMission&);
   base::Result<void> handle(const SkipItem& c);
   base::Result<void> handle(const SetHome& c);
@@ -207,11 +216,15 @@ struct Robot::Impl {
   base::Result<void> enter_follow();
   base::Result<void> enter_dock(const SetMode& c);
   base::Result<void> enter_sticks(Mode to);
-  std::optional<base::EnuPoint> refuge() const;
+  WayHomeFacts way_home_facts() const;
+  DrivenWay driven() const;
+  void begin_return(Mode to, const WayHome& home_way, std::string_view kind);
+  void choose_home(base::LatLon at);
   void take_over(Mode to, const std::string& why);
   void begin_activity(std::string_view kind);
   bool by_itself() const noexcept;
   void interrupt_modes();
+  void hold_for_a_word();
   void drop_crumbs();
 
   // drive_modes.cpp: one tick of them

@@ -72,10 +72,10 @@ base::Result<void> Robot::Impl::handle(const SetMode& c) {
 
 void Robot::Impl::set_mode(Mode to, const std::string& why) {
   if (mode == to) return;
-  const bool busy = activity.state == base::ActivityState::Driving ||
-                    activity.state == base::ActivityState::Turning ||
-                    activity.state == base::ActivityState::Waiting;
-  if (busy) {
+  const base::ActivityState did = activity.state;
+  const bool over = did == base::ActivityState::None || did == base::ActivityState::Reached ||
+                    did == base::ActivityState::Failed;
+  if (!over) {
     activity.state = base::ActivityState::Failed;
     activity.reason = "ended by mode " + std::string(base::to_string(to)) + ": " + why;
   }
@@ -86,12 +86,14 @@ void Robot::Impl::set_mode(Mode to, const std::string& why) {
   mode = to;
   manual.release();
   changeover.skip();
+  held.go_on();
   event(Severity::Info, "mode", "mode " + std::string(base::to_string(to)) + ": " + why);
 }
 
 /// To a mode that drives by itself: the mission waits, and the robot stands before it begins.
 void Robot::Impl::take_over(Mode to, const std::string& why) {
   executor.pause("mode " + std::string(base::to_string(to)));
+  held.go_on();
   if (mode == to) return;
   set_mode(to, why);
   changeover.begin();

@@ -32,6 +32,14 @@ base::MissionProgress Robot::Impl::progress() const {
   return p;
 }
 
+/// For those who ask where SMART_RTL would lead: a second old at most.
+void Robot::Impl::publish_driven_way() {
+  if (crumbs.changes() == crumbs_published) return;
+  if (driven_way.publish(std::make_shared<const DrivenWay>(driven()))) {
+    crumbs_published = crumbs.changes();
+  }
+}
+
 bool Robot::Impl::publish() {
   auto s = std::make_shared<base::Snapshot>();
   s->now = now;
@@ -44,7 +52,7 @@ bool Robot::Impl::publish() {
   s->speed_reason = speed_reason;
   s->pose = pose;
   s->frame = estimator.frame();
-  s->home = home;
+  s->home = home.at();
   s->gnss = world.gnss;
   s->gnss_velocity = world.gnss_velocity;
   s->attitude = estimator.attitude(now);
@@ -62,6 +70,7 @@ bool Robot::Impl::publish() {
   s->drivers = world.drivers;
   s->mission = progress();
   s->activity = activity;
+  if (const auto may = may_drive_by_itself(); !may) s->autonomy_refusal = may.error().detail;
   if (fence) s->fence = fence_state();
   s->command = sent;
   s->safety = std::move(assessment.conditions);
@@ -78,6 +87,7 @@ bool Robot::Impl::publish() {
   }
   if (loop.ticks % 50 == 0) {  // once a second; who missed it gets the next
     learned.publish(std::make_shared<const nav::Learned>(estimator.learned()));
+    publish_driven_way();
   }
   if (config_unpublished) {
     config_unpublished = !shared_config.publish(config.whole());

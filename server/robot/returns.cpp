@@ -1,7 +1,5 @@
 // The ways home: RTL and SMART_RTL.
 
-#include <cmath>
-
 #include "robot/impl.hpp"
 
 namespace roverd::robot {
@@ -9,73 +7,79 @@ namespace {
 
 using base::Code;
 
-constexpr double kLongGap_m = 5.0;   // a piece of the way that was not seen
-constexpr double kSameHome_m = 1.0;  // crumbs that begin so near to home end there
-
-std::string metres(double m) {
-  return std::to_string(std::lround(m)) + " m";
-}
-
 }  // namespace
 
-/// The nearest of home and the rally points that can be reached straight, inside the fence.
-std::optional<base::EnuPoint> Robot::Impl::refuge() const {
-  std::optional<base::EnuPoint> best;
-  const auto offer = [&](base::EnuPoint p) {
-    if (best && base::distance_m(pose->at, p) >= base::distance_m(pose->at, *best)) return;
-    if (inside(p)) best = p;
-  };
-  if (const auto h = home_point()) offer(*h);
-  if (fence) {
-    for (const base::EnuPoint& r : fence->rally) offer(r);
-  }
-  return best;
+WayHomeFacts Robot::Impl::way_home_facts() const {
+  return {pose->at, home_point(), fence.get(), config->kept_fence().margin_m + kFenceAllowance_m};
+}
+
+DrivenWay Robot::Impl::driven() const {
+  return {estimator.frame() ? estimator.frame()->id() : 0, crumbs.way_back(),
+          crumbs.longest_gap_m()};
+}
+
+void Robot::Impl::begin_return(Mode to, const WayHome& home_way, std::string_view kind) {
+  take_over(to, asker);
+  homeward.begin(home_way.way, vehicle(), to == Mode::SmartRtl);
+  begin_activity(kind);
+  activity.goal = estimator.frame()->to_global(home_way.way.back());
+  activity.distance_m = home_way.length_m(pose->at);
 }
 
 base::Result<void> Robot::Impl::enter_return() {
   if (auto ok = may_drive_by_itself(); !ok) return ok;
-  if (mode == Mode::Rtl) return {};
-  if (!home_point() && !(fence && !fence->rally.empty())) {
-    return base::fail(Code::Conflict, "there is no home to return to");
-  }
-  const auto to = refuge();
-  if (!to) {
-    return base::fail(Code::Conflict,
-                      "neither home nor a rally point can be reached straight inside the fence");
-  }
-  take_over(Mode::Rtl, asker);
-  homeward.begin(std::span(&*to, 1), vehicle(), false);
-  begin_activity("return");
-  activity.goal = estimator.frame()->to_global(*to);
+  if (mode == Mode::Rtl) return held.waits() ? handle(ResumeActivity{}) : base::Result<void>{};
+  const WayHome found = straight_home(way_home_facts());
+  if (!found.refusal.empty()) return base::fail(Code::Conflict, found.refusal);
+  begin_return(Mode::Rtl, found, "return");
   return {};
 }
 
 base::Result<void> Robot::Impl::enter_retrace() {
   if (auto ok = may_drive_by_itself(); !ok) return ok;
-  if (mode == Mode::SmartRtl) return {};
-  if (crumbs.size() == 0) {
-    return base::fail(Code::Conflict,
-                      "the way from home is not known: it is kept from arming on, "
-                      "where the position is certain enough");
-  }
-  if (const double gap_m = crumbs.longest_gap_m(); gap_m > kLongGap_m) {
-    return base::fail(Code::Conflict, "the driven way is not known over " + metres(gap_m));
-  }
-  std::vector<base::EnuPoint> way = crumbs.way_back();
-  const auto h = home_point();
-  if (h && base::distance_m(way.back(), *h) <= kSameHome_m) way.back() = *h;
-  base::EnuPoint from = pose->at;
-  for (const base::EnuPoint& p : way) {
-    if (fence && fence->limits.crosses(from, p)) {
-      return base::fail(Code::Conflict, "the driven way leaves the fence");
-    }
-    from = p;
-  }
-  take_over(Mode::SmartRtl, asker);
-  homeward.begin(way, vehicle(), true);
-  begin_activity("retrace");
-  activity.goal = estimator.frame()->to_global(way.back());
+  if (mode == Mode::SmartRtl) return held.waits() ? handle(ResumeActivity{}) : base::Result<void>{};
+  const WayHome found = driven_home(way_home_facts(), driven());
+  if (!found.refusal.empty()) return base::fail(Code::Conflict, found.refusal);
+  begin_return(Mode::SmartRtl, found, "retrace");
   return {};
+}
+
+/// What RTL or SMART_RTL would do now, by the same rules.
+base::Result<WayHomePreview> Robot::way_home(base::Mode mode) const {
+  if (mode != base::Mode::Rtl && mode != base::Mode::SmartRtl) {
+    return base::fail(Code::Invalid, "only RTL and SMART_RTL lead home");
+  }
+  WayHomePreview out;
+  const auto state = impl_->snapshot.get();
+  if (!state || !state->pose || !state->frame) {
+    out.reason = "the position is not known";
+    return out;
+  }
+  const base::LocalFrame& frame = *state->frame;
+  WayHomeFacts facts;
+  facts.here = state->pose->at;
+  const bool near =
+      state->home &&
+      base::distance_bearing(frame.origin(), *state->home).distance_m <= base::LocalFrame::kReach_m;
+  if (near) facts.home = frame.to_local(*state->home);
+  const auto fence = impl_->shared_fence.get();
+  if (fence && fence->frame_id == frame.id()) facts.fence = fence.get();
+  facts.margin_m = impl_->shared_config.get()->kept_fence().margin_m + kFenceAllowance_m;
+  const auto driven = impl_->driven_way.get();
+  const bool known = driven && driven->frame_id == frame.id();
+  const WayHome found = mode == base::Mode::Rtl ? straight_home(facts)
+                                                : driven_home(facts, known ? *driven : DrivenWay{});
+  // What forbids any drive comes first: the way may be all right.
+  out.reason = state->autonomy_refusal.empty() ? found.refusal : state->autonomy_refusal;
+  out.possible = out.reason.empty();
+  if (found.way.empty()) return out;
+  out.end = to_string(found.end);
+  out.target = frame.to_global(found.way.back());
+  out.distance_m = found.length_m(facts.here);
+  out.line.reserve(found.way.size() + 1);
+  out.line.push_back(state->pose->global);
+  for (const base::EnuPoint& p : found.way) out.line.push_back(frame.to_global(p));
+  return out;
 }
 
 void Robot::Impl::drop_crumbs() {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <exception>
+#include <utility>
 
 #include "robot/impl.hpp"
 
@@ -260,17 +262,44 @@ void Robot::tick(Time now, base::WallTime wall, base::Duration lateness) noexcep
     r.sent = r.decide();
     if (send) send(r.sent, now);
     if (r.publish() && r.outbox.flush() && wake) wake();
+  } catch (const std::exception& e) {
+    r.survive(e.what(), *this);
   } catch (...) {
-    // Out of memory: nothing moves, and the next tick tries again.
-    r.armed = false;
-    r.sent = {};
-    try {
-      if (send) send(r.sent, now);
-    } catch (...) {
-      // The base stops by itself when it hears nothing.
-      r.sent = {};
-    }
+    r.survive("no std::exception", *this);
   }
+}
+
+/// An exception ended the tick (no memory, or a bug): nothing moves until somebody arms again, and
+/// whoever looks is told. What needs memory comes last, each for itself; the next tick tries again.
+void Robot::Impl::survive(const char* what, const Robot& self) noexcept {
+  ++loop.faults;
+  const bool was_armed = std::exchange(armed, false);
+  driver = base::Driver::None;
+  sent = {};
+  const auto try_to = [](auto deed) {
+    try {
+      deed();
+    } catch (...) {
+      // The base stops by itself when it hears nothing; the counter tells of the rest.
+      return;
+    }
+  };
+  try_to([&] {
+    if (self.send) self.send(sent, now);
+  });
+  try_to([&] {
+    executor.pause("a fault in the control loop");
+    manual.release();
+    if (by_itself()) set_mode(Mode::Hold, "a fault in the control loop");
+    if (!was_armed && fault_told && now - *fault_told < std::chrono::seconds(10)) return;
+    fault_told = now;
+    event(Severity::Error, "loop_fault",
+          std::string("an exception ended a tick of the control loop") +
+              (was_armed ? ", and the robot is disarmed: " : ": ") + what);
+  });
+  try_to([&] {
+    if (publish() && outbox.flush() && self.wake) self.wake();
+  });
 }
 
 }  // namespace roverd::robot

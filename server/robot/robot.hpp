@@ -15,7 +15,9 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
+#include <vector>
 
 #include "base/drive_command.hpp"
 #include "base/inbox.hpp"
@@ -95,7 +97,10 @@ struct StartMission {
   int item = 1;  ///< 1-based, with From::Item
 };
 struct PauseMission {};
+/// A mission that waits goes on; with none, as ResumeActivity.
 struct ResumeMission {};
+/// What a mode other than AUTO did when the radio took over goes on.
+struct ResumeActivity {};
 struct StopMission {};
 struct SkipItem {
   int item = 0;  ///< 1-based target; 0: the next one
@@ -155,10 +160,10 @@ struct ReviseMission {
   std::shared_ptr<const CompiledMission> mission;  ///< null: nothing is left to drive
 };
 
-using Command =
-    std::variant<Arm, Disarm, SetMode, Estop, ResetEstop, StartMission, PauseMission, ResumeMission,
-                 StopMission, SkipItem, SetHome, SetPose, SetAnchor, DropAnchor, Drive, LoadMission,
-                 ReviseMission, GoTo, MoveBy, SetTarget, SetParameter, SetFence, ResumeAt>;
+using Command = std::variant<Arm, Disarm, SetMode, Estop, ResetEstop, StartMission, PauseMission,
+                             ResumeMission, ResumeActivity, StopMission, SkipItem, SetHome, SetPose,
+                             SetAnchor, DropAnchor, Drive, LoadMission, ReviseMission, GoTo, MoveBy,
+                             SetTarget, SetParameter, SetFence, ResumeAt>;
 
 /// Called with what the robot *did*. Runs on whatever thread drains replies().
 using Reply = std::function<void(base::Result<void>)>;
@@ -179,6 +184,16 @@ struct Preview {
   std::optional<double> bearing_deg;
   double speed_mps = 0.0;
   mission::AtEnd at_end = mission::AtEnd::Hold;
+};
+
+/// What RTL or SMART_RTL would do now. All unknowns empty.
+struct WayHomePreview {
+  bool possible = false;
+  std::string reason;    ///< why not
+  std::string_view end;  ///< what the target is: "home" "rally_point" "begin_of_way"
+  std::optional<base::LatLon> target;
+  std::optional<double> distance_m;  ///< along the line
+  std::vector<base::LatLon> line;    ///< from the robot to the target, in outline; may be empty
 };
 
 /// One parameter of the robot's sections.
@@ -223,6 +238,8 @@ class Robot {
   base::Result<std::shared_ptr<const CompiledMission>> compile(MissionCopy copy) const;
   /// Any thread. NotFound when nothing is loaded; Conflict when `from` names no item.
   base::Result<Preview> preview(const StartMission& start) const;
+  /// Any thread. Invalid unless RTL or SMART_RTL is asked for. Linear in fence and driven way.
+  base::Result<WayHomePreview> way_home(base::Mode mode) const;
   /// Any thread, at once: lays a fence out in the robot's frame, and looks at the loaded mission.
   /// Without a frame yet it forbids every drive without hands; lay it again when there is one.
   std::shared_ptr<const LaidFence> lay_fence(std::shared_ptr<const mission::Fence> fence) const;

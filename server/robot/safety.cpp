@@ -13,6 +13,9 @@ using base::Severity;
 using base::Switch;
 using base::VehicleState;
 
+/// So long positions may be refused before arming waits for them.
+constexpr double kRefusedLong_s = 1.0;
+
 bool older(std::optional<Time> stamp, double limit_s, Time now) noexcept {
   return !stamp || base::seconds(now - *stamp) > limit_s;
 }
@@ -197,6 +200,31 @@ base::Check check(const char* id, bool ok, Severity severity, std::string detail
   return {id, ok, severity, std::move(detail)};
 }
 
+/// Empty: the receiver's own time goes on as it should.
+std::string time_trouble(const Facts& f, const ArmingParams& p, Time now) {
+  if (const auto& step = f.world.receiver_clock.last_step()) {
+    const double ago_s = base::seconds(now - step->stamp);
+    if (ago_s < p.healthy_s) {
+      return "the receiver's time stepped back by " + number(step->back_s, "%.1f s") +
+             number(ago_s, ", %.0f s ago") + ": waiting " +
+             number(std::ceil(p.healthy_s - ago_s), "%.0f s") + " more to trust it";
+    }
+  }
+  const base::InputHealth& in = f.estimate.position;
+  const bool refused = in.refused_since && in.why == base::Refusal::Stamp &&
+                       base::seconds(now - *in.refused_since) > kRefusedLong_s;
+  if (!refused) return {};
+  return "positions are not used: the receiver's times are doubled, out of order or too old";
+}
+
+/// "4 s more", and of what broke the healthy time.
+std::string still_to_wait(const World& w, double good_s, double healthy_s, Time now) {
+  std::string text =
+      "waiting " + number(std::ceil(healthy_s - good_s), "%.0f s") + " more to trust it";
+  if (!w.gnss_broke) return text;
+  return text + ": " + w.gnss_broke_by + number(base::seconds(now - *w.gnss_broke), " %.0f s ago");
+}
+
 base::Check check_gnss(const Facts& f, const SafetyParams& safety, const ArmingParams& p,
                        Time now) {
   const char* id = "gnss_fix";
@@ -217,11 +245,13 @@ base::Check check_gnss(const Facts& f, const SafetyParams& safety, const ArmingP
                  std::to_string(*w.gnss->satellites) + " satellites; at least " +
                      std::to_string(p.satellites_min) + " are needed");
   }
+  if (const std::string wrong = time_trouble(f, p, now); !wrong.empty()) {
+    return check(id, false, Severity::Error, "fix " + fix + ", but " + wrong);
+  }
   const double good_s = base::seconds(now - *w.gnss_good_since);
   if (good_s < p.healthy_s) {
     return check(id, false, Severity::Error,
-                 "fix " + fix + ", waiting " + number(std::ceil(p.healthy_s - good_s), "%.0f s") +
-                     " more to trust it");
+                 "fix " + fix + ", " + still_to_wait(w, good_s, p.healthy_s, now));
   }
   return check(id, true, Severity::Error, "fix " + fix);
 }

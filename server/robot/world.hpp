@@ -9,6 +9,7 @@
 #include "base/measurements.hpp"
 #include "base/snapshot.hpp"
 #include "robot/battery_gauge.hpp"
+#include "robot/receiver_clock.hpp"
 
 namespace roverd::robot {
 
@@ -34,7 +35,10 @@ struct World {
   base::Switch swb = base::Switch::Unknown;  ///< last position between detents
   std::optional<Time> radio_counted;         ///< when the radio's counter last changed
   std::optional<Time> gnss_good_since;       ///< usable fixes without a gap from then on
-  std::optional<Time> base_heard;            ///< any word from it
+  std::optional<Time> gnss_broke;            ///< when there was none last
+  const char* gnss_broke_by = "";            ///< a static text: "it had no fix"
+  ReceiverClock receiver_clock;
+  std::optional<Time> base_heard;  ///< any word from it
 
   BatteryGauge gauge;                ///< speaks while the battery itself tells nothing
   std::optional<Time> battery_told;  ///< by the battery itself
@@ -48,13 +52,19 @@ struct World {
 
   /// No usable fix for 2 s ends the healthy time.
   void forget_stale(Time now) noexcept {
-    if (gnss && now - gnss->stamp > std::chrono::seconds(2)) gnss_good_since.reset();
+    if (gnss && now - gnss->stamp > std::chrono::seconds(2)) end_good("it was silent", now);
   }
 
  private:
+  void end_good(const char* why, Time when) noexcept {
+    gnss_good_since.reset();
+    gnss_broke = when;
+    gnss_broke_by = why;
+  }
   void put(base::GnssFix&& m) {
+    receiver_clock.take(m.utc, m.stamp);
     const bool usable = m.position && m.fix >= base::FixType::Single;
-    if (!usable) gnss_good_since.reset();
+    if (!usable) end_good("it had no fix", m.stamp);
     if (usable && !gnss_good_since) gnss_good_since = m.stamp;
     gnss = std::move(m);
   }

@@ -159,7 +159,7 @@ TEST(GuidedLoop, AModeChangeWhileMovingStandsFirst) {
   EXPECT_EQ(rig.state()->mode, Mode::Rtl);
 }
 
-TEST(GuidedLoop, GoesOnAfterTheRadioHadIt) {
+TEST(GuidedLoop, WaitsForAWordAfterTheRadioHadItAndGoesOn) {
   Rig rig(facing(0.0));
   warm_up(rig);
   ASSERT_TRUE(rig.ask(to(rig, {0, 16})));
@@ -171,6 +171,13 @@ TEST(GuidedLoop, GoesOnAfterTheRadioHadIt) {
   EXPECT_TRUE(rig.stands());
   radio.swb = base::Switch::Up;
   rig.plant.set_radio(radio);
+  const auto stood = rig.truth().local;
+  rig.run(5.0);
+  EXPECT_EQ(rig.state()->activity.state, ActivityState::Held);
+  EXPECT_LT(std::hypot(rig.truth().local.east_m - stood.east_m,
+                       rig.truth().local.north_m - stood.north_m),
+            0.02);
+  ASSERT_TRUE(rig.ask(robot::ResumeActivity{}));
   ASSERT_TRUE(rig.run_until([&] { return reached(rig); }, 90.0)) << rig.state()->activity.reason;
   EXPECT_LT(rig.distance_to_m({0, 16}), 0.15);
 }

@@ -218,6 +218,10 @@ Json track_json(const Track& track, base::Time now) {
   return pieces;
 }
 
+Json loop_json(const base::LoopHealth& loop) {
+  return {{"ticks", loop.ticks}, {"late_ticks", loop.late_ticks}, {"faults", loop.faults}};
+}
+
 }  // namespace
 
 Json vehicle_json(const base::Snapshot& s, const std::string& name, base::Time now) {
@@ -252,7 +256,8 @@ Json vehicle_json(const base::Snapshot& s, const std::string& name, base::Time n
           {"compass_bias_deg", s.pose ? degrees(-s.estimator.compass_bias_rad) : Json(nullptr)},
           {"pull_1pm", s.pose ? rounded(s.estimator.pull_1pm, 1e4) : Json(nullptr)},
           {"estimator", estimator_json(s)},
-          {"ready_to_arm", s.ready_to_arm}};
+          {"ready_to_arm", s.ready_to_arm},
+          {"loop", loop_json(s.loop)}};
 }
 
 Json trail_json(const Trail& trail, const base::Snapshot& s) {
@@ -284,6 +289,17 @@ Json execution_json(const base::MissionProgress& progress,
                         {"items", offer->items},
                         {"time", base::to_rfc3339(offer->time)}};
   return out;
+}
+
+Json way_home_json(const robot::WayHomePreview& p) {
+  Json line = Json::array();
+  for (const base::LatLon& at : p.line) line.push_back(point_json(at));
+  return {{"target", point_json(p.target)},
+          {"target_is", p.end.empty() ? Json(nullptr) : Json(p.end)},
+          {"distance_m", rounded(p.distance_m, kPlaces3)},
+          {"line", std::move(line)},
+          {"possible", p.possible},
+          {"reason", p.reason}};
 }
 
 Json preview_json(const robot::Preview& p, base::ExecutionState state) {

@@ -62,6 +62,7 @@ Json checks_json(const base::Snapshot& snapshot);
 /// @param offer a mission that a restart left behind
 Json execution_json(const base::MissionProgress& progress,
                     const std::optional<store::StoredPlace>& offer = std::nullopt);
+Json way_home_json(const robot::WayHomePreview& preview);
 Json preview_json(const robot::Preview& preview, base::ExecutionState state);
 Json capabilities_json(const Profile& profile, const std::string& version);
 /// @param rate_hz received per second

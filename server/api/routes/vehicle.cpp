@@ -160,6 +160,25 @@ Handler set_home(const ContextPtr& context) {
   };
 }
 
+/// What "come home" would do now; nothing moves.
+Handler way_home(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    constexpr const char* kRule = "must be RTL or SMART_RTL";
+    const std::string word = query_text(*call, "mode");
+    const auto mode = word.empty() ? std::optional(base::Mode::Rtl) : base::mode_from(word);
+    if (!mode || (*mode != base::Mode::Rtl && *mode != base::Mode::SmartRtl)) {
+      return call->respond(
+          problem({base::Code::Invalid, std::string("mode ") + kRule, {{"mode", kRule}}}));
+    }
+    if (!context->snapshot_or_refuse(call)) return;
+    const auto shown = context->deps.robot.way_home(*mode);
+    if (!shown) return call->respond(problem(shown.error()));
+    Json out = way_home_json(*shown);
+    out["mode"] = base::to_string(*mode);
+    call->respond(json_response(http::status::ok, out));
+  };
+}
+
 }  // namespace
 
 void add_vehicle_routes(const ContextPtr& c) {
@@ -181,6 +200,7 @@ void add_vehicle_routes(const ContextPtr& c) {
                      call->respond(json_response(http::status::ok, checks_json(*s)));
                    }
                  }});
+  c->router.add({get, "/vehicle/way_home", {200, 422, 503}, way_home(c)});
   c->router.add({get, "/vehicle/capabilities", {200}, [c](const CallPtr& call) {
                    call->respond(json_response(
                        http::status::ok, capabilities_json(c->deps.profile, c->deps.version)));
@@ -194,6 +214,7 @@ void add_vehicle_routes(const ContextPtr& c) {
   c->router.add({post, "/vehicle/arm", kCommand, arm(c)});
   c->router.add({post, "/vehicle/disarm", kCommand, plain(c, robot::Disarm{}, Moves::No)});
   c->router.add({http::verb::put, "/vehicle/mode", kCommand, set_mode(c)});
+  c->router.add({post, "/vehicle/resume", kCommand, plain(c, robot::ResumeActivity{}, Moves::Yes)});
   c->router.add({post, "/vehicle/estop", kCommand,
                  plain(c, robot::Estop{"the page or a script"}, Moves::No)});
   c->router.add(

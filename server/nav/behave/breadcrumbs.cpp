@@ -38,6 +38,7 @@ Breadcrumbs::Breadcrumbs(double accuracy_m) : accuracy_m_(accuracy_m) {
 
 void Breadcrumbs::clear() noexcept {
   crumbs_.clear();
+  ++changes_;
   coarse_m_ = 0.0;
   jumped_ = false;
 }
@@ -47,11 +48,13 @@ void Breadcrumbs::take(EnuPoint at, double sigma_m, bool jumped, const May& may)
   if (!std::isfinite(at.east_m) || !std::isfinite(at.north_m) || !(sigma_m < accuracy_m_)) return;
   if (crumbs_.empty()) {
     crumbs_.push_back({at, false});
+    ++changes_;
     jumped_ = false;
     return;
   }
   const double far_m = base::distance_m(at, crumbs_.back().at);
   if (far_m < accuracy_m_) return;
+  ++changes_;
   const bool gap = jumped_ || far_m > kGap * accuracy_m_;
   jumped_ = false;
   if (!gap) prune(at, may);

@@ -10,11 +10,13 @@
 // Full: crumbs that a straight line explains go (Ramer-Douglas-Peucker, half the accuracy first,
 // coarser when that is not enough); recording never stops. A gap is a piece that was not driven as
 // it is drawn: the estimate jumped, or was too uncertain on it.
-// Not kept over a restart: they begin where the robot is armed, and so does home; what happened to
-// the robot without power nobody knows. A mission goes on after a restart without them.
-// Control thread; all memory is taken at construction.
+// They go on over a stop, disarming and arming. Not kept over a restart: they begin where the robot
+// is armed first, and so does home; what happened to the robot without power nobody knows. A
+// mission goes on after a restart without them. Control thread; all memory is taken at
+// construction.
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <utility>
 #include <vector>
@@ -42,6 +44,8 @@ class Breadcrumbs {
   void take(EnuPoint at, double sigma_m, bool jumped, const May& may = {});
 
   std::size_t size() const noexcept { return crumbs_.size(); }
+  /// Another number: the way is another one.
+  std::uint64_t changes() const noexcept { return changes_; }
   /// From the newest crumb to the first one, without those that a straight line explains.
   std::vector<EnuPoint> way_back() const;
   /// Longest piece of it that was not driven as it is drawn, m.
@@ -61,6 +65,7 @@ class Breadcrumbs {
   double accuracy_m_;
   double coarse_m_ = 0.0;
   bool jumped_ = false;
+  std::uint64_t changes_ = 0;
   std::vector<Crumb> crumbs_;
   mutable std::vector<char> keep_;
   mutable std::vector<std::pair<std::size_t, std::size_t>> stack_;

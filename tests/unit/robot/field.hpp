@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,7 @@ class Field {
  public:
   explicit Field(const Config& config = {}) : robot(config) {
     robot.send = [this](const base::DriveCommand& c, Time) {
+      if (send_throws) throw std::runtime_error("the wire is cut");
       command = c;
       ++sends;
     };
@@ -43,6 +45,7 @@ class Field {
   Robot robot;
   base::DriveCommand command;
   int sends = 0;
+  bool send_throws = false;
   int wakes = 0;
   std::vector<base::Event> events;
 
@@ -62,8 +65,9 @@ class Field {
   base::VehicleState vehicle_state = base::VehicleState::Normal;
   bool radio_lost = false;
   std::optional<double> charge_pct;
-  bool obeys = true;       ///< the base moves as it is told; else
-  base::BodyTwist does{};  ///< it moves so
+  std::optional<double> receiver_late_s;  ///< its own time, behind ours; empty: it tells none
+  bool obeys = true;                      ///< the base moves as it is told; else
+  base::BodyTwist does{};                 ///< it moves so
   base::EnuPoint at{};
   double yaw_rad = base::kPi / 2.0;
   Time now{};
@@ -162,6 +166,10 @@ class Field {
     f.fix = fix;
     if (fix != base::FixType::None) f.position = kFrame.to_global(at);
     f.satellites = satellites;
+    if (receiver_late_s) {
+      f.utc = base::WallTime{std::chrono::seconds(1'780'000'000)} + now.time_since_epoch() -
+              base::from_seconds(*receiver_late_s);
+    }
     in.put(f);
     in.put(base::GnssVelocity{now, v * std::cos(yaw_rad), v * std::sin(yaw_rad), {}});
     in.put(base::Heading{now, yaw_rad, base::HeadingSource::Compass});

@@ -88,6 +88,7 @@ export const activity_line = (vehicle: Vehicle | null): ActivityLine | null => {
     case 'turning':
       return { head, state: 'going', detail: left(activity) };
     case 'waiting':
+    case 'held':
       return { head, state: 'waiting', detail: activity.reason };
     case 'reached':
       return { head, state: 'reached', detail: 'Done.' };
@@ -102,7 +103,8 @@ export const activity_line = (vehicle: Vehicle | null): ActivityLine | null => {
 export const activity_mark = (vehicle: Vehicle | null): Mark | null => {
   if (!vehicle) return null;
   const { state, goal, goal_heading_deg } = vehicle.activity;
-  const under_way = state === 'driving' || state === 'turning' || state === 'waiting';
+  const under_way =
+    state === 'driving' || state === 'turning' || state === 'waiting' || state === 'held';
   return under_way && goal ? { ...goal, heading_deg: goal_heading_deg } : null;
 };
 

@@ -102,7 +102,7 @@ export interface Activity {
   readonly id: number;
   readonly kind:
     'goto' | 'heading' | 'move' | 'turn' | 'return' | 'retrace' | 'follow' | 'dock' | null;
-  readonly state: 'none' | 'driving' | 'turning' | 'waiting' | 'reached' | 'failed';
+  readonly state: 'none' | 'driving' | 'turning' | 'waiting' | 'held' | 'reached' | 'failed';
   /** Why waiting or failed. */
   readonly reason: string;
   readonly goal: LatLon | null;
