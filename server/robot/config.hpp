@@ -14,8 +14,8 @@
 #include "nav/behave/params.hpp"
 #include "nav/estimate/params.hpp"
 #include "nav/track/path.hpp"
-#include "robot/battery_gauge.hpp"
-#include "robot/radio_actions.hpp"
+#include "robot/radio/actions.hpp"
+#include "robot/safety/battery_gauge.hpp"
 
 namespace roverd::robot {
 

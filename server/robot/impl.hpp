@@ -12,7 +12,7 @@
 //   Any mode leads to any other by set mode; a mode refuses to begin (Conflict, with the reason)
 //   where its conditions do not hold, and then the one before goes on. Leaving AUTO pauses the
 //   mission. RTL, SMART_RTL, FOLLOW and DOCK end in HOLD. Between two that drive by themselves the
-//   robot stands first (robot/changeover.hpp).
+//   robot stands first (robot/modes/changeover.hpp).
 //
 //   Disarmed ──arm (all checks pass)──▶ Armed ──disarm, e-stop──▶ Disarmed
 //   e-stop: Released ──anyone, the base──▶ Latched ──reset, base released──▶ Released, disarmed,
@@ -36,20 +36,20 @@
 #include "nav/behave/homeward.hpp"
 #include "nav/behave/sticks.hpp"
 #include "nav/estimate/estimator.hpp"
-#include "robot/changeover.hpp"
 #include "robot/compile.hpp"
-#include "robot/fence_guard.hpp"
-#include "robot/follow.hpp"
-#include "robot/held_by_radio.hpp"
-#include "robot/home.hpp"
-#include "robot/manual.hpp"
+#include "robot/modes/changeover.hpp"
+#include "robot/modes/held_by_radio.hpp"
+#include "robot/modes/home.hpp"
+#include "robot/modes/manual.hpp"
+#include "robot/modes/straight_start.hpp"
+#include "robot/modes/way_home.hpp"
 #include "robot/outbox.hpp"
 #include "robot/parameter_set.hpp"
-#include "robot/radio_keys.hpp"
-#include "robot/safety.hpp"
-#include "robot/spin.hpp"
-#include "robot/straight_start.hpp"
-#include "robot/way_home.hpp"
+#include "robot/radio/keys.hpp"
+#include "robot/safety/fence_guard.hpp"
+#include "robot/safety/obedience.hpp"
+#include "robot/safety/safety.hpp"
+#include "robot/safety/spin.hpp"
 #include "robot/world.hpp"
 
 namespace roverd::robot {
@@ -124,7 +124,7 @@ struct Robot::Impl {
   Assessment assessment;
   std::vector<base::Check> checks;
   std::optional<Time> base_waited_since;
-  FollowWatch follow;
+  ObedienceWatch follow;
   SpinWatch spin;
   bool spun = false;                    ///< at the last tick
   std::optional<Time> in_charge_since;  ///< armed, no radio: the base is to listen to us

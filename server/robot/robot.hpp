@@ -81,7 +81,7 @@ struct SetParameter {
   std::string name;
   base::ParamValue value;
 };
-struct LaidFence;  // see robot/fence_guard.hpp
+struct LaidFence;  // see robot/safety/fence_guard.hpp
 /// What may be driven on from the next tick on. Null: no fence.
 struct SetFence {
   std::shared_ptr<const LaidFence> fence;

@@ -8,8 +8,8 @@
 
 #include "base/measurements.hpp"
 #include "base/snapshot.hpp"
-#include "robot/battery_gauge.hpp"
-#include "robot/receiver_clock.hpp"
+#include "robot/safety/battery_gauge.hpp"
+#include "robot/safety/receiver_clock.hpp"
 
 namespace roverd::robot {
 

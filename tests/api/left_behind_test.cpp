@@ -3,7 +3,7 @@
 #include <future>
 
 #include "house.hpp"
-#include "mission/json.hpp"
+#include "mission/json/json.hpp"
 
 namespace roverd::test {
 namespace {
@@ -44,7 +44,7 @@ class LeftBehindApi : public HouseTest {
   }
 
   static inline std::string left_id_;
-  const Json soon_ = {{"valid_for_s", 20}};
+  const Json soon_ = {{"valid_for_s", 5}};
 };
 
 TEST_F(LeftBehindApi, IsOfferedAndGoneOnWithFromItsPlace) {

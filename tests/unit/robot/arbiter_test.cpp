@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "field.hpp"
-#include "robot/follow.hpp"
-#include "robot/manual.hpp"
+#include "robot/modes/manual.hpp"
+#include "robot/safety/obedience.hpp"
 
 namespace roverd::robot {
 namespace {
@@ -110,9 +110,9 @@ TEST(Arbiter, WhatAVehicleCannotDoIsNoSignOfALostCommand) {
   EXPECT_TRUE(f.has_condition("base_not_following"));
 }
 
-TEST(FollowWatch, AllowsForALagAndNamesABaseThatDoesNotMove) {
+TEST(ObedienceWatch, AllowsForALagAndNamesABaseThatDoesNotMove) {
   using std::chrono::milliseconds;
-  FollowWatch w;
+  ObedienceWatch w;
   base::Time t{};
   const auto run = [&](double told_mps, double does_mps, int ticks) {
     for (int i = 0; i < ticks; ++i) {
@@ -138,8 +138,8 @@ TEST(FollowWatch, AllowsForALagAndNamesABaseThatDoesNotMove) {
   EXPECT_FALSE(w.lost());
 }
 
-TEST(FollowWatch, JudgesATurnOnTheSpotByItsRateAndNothingWithoutAWord) {
-  FollowWatch w;
+TEST(ObedienceWatch, JudgesATurnOnTheSpotByItsRateAndNothingWithoutAWord) {
+  ObedienceWatch w;
   base::Time t{};
   const auto run = [&](double told_radps, std::optional<base::BodyTwist> does) {
     for (int i = 0; i < 50; ++i) {

@@ -1,7 +1,7 @@
 // What is left in the battery, where only its voltage is known.
 
 #include "field.hpp"
-#include "robot/battery_gauge.hpp"
+#include "robot/safety/battery_gauge.hpp"
 #include "robot/world.hpp"
 
 namespace roverd::robot {

@@ -1,7 +1,7 @@
 // After the radio had the robot only a mission goes on by itself.
 
 #include "field.hpp"
-#include "robot/held_by_radio.hpp"
+#include "robot/modes/held_by_radio.hpp"
 
 namespace roverd::robot {
 namespace {
@@ -103,6 +103,8 @@ TEST_P(TakenOver, WaitsForAWordAndGoesOnFromThere) {
   f.run(2.0);
   EXPECT_TRUE(f.moves());
   EXPECT_EQ(f.state()->activity.id, id) << "the same goes on";
+  EXPECT_EQ(f.state()->activity.state, ActivityState::Driving);
+  EXPECT_EQ(f.state()->activity.reason.find("radio"), std::string::npos);
   EXPECT_FALSE(f.ask(ResumeActivity{})) << "nothing waits any more";
 }
 

@@ -1,9 +1,9 @@
 // Home moves only on purpose, the driven way goes on over a stop, and both say where they lead.
 
-#include "robot/home.hpp"
+#include "robot/modes/home.hpp"
 
 #include "field.hpp"
-#include "robot/way_home.hpp"
+#include "robot/modes/way_home.hpp"
 
 namespace roverd::robot {
 namespace {

@@ -1,7 +1,7 @@
 // The radio as user interface: a thrown switch acts once, a bounce or a return from silence never.
 
 #include "field.hpp"
-#include "robot/radio_keys.hpp"
+#include "robot/radio/keys.hpp"
 
 namespace roverd::robot {
 namespace {

@@ -1,6 +1,6 @@
 // A receiver whose own time steps back, and what arming waits for.
 
-#include "robot/receiver_clock.hpp"
+#include "robot/safety/receiver_clock.hpp"
 
 #include "field.hpp"
 

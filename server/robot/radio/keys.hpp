@@ -16,7 +16,7 @@
 #include "base/measurements.hpp"
 #include "base/setting.hpp"
 #include "robot/config.hpp"
-#include "robot/radio_actions.hpp"
+#include "robot/radio/actions.hpp"
 
 namespace roverd::robot {
 

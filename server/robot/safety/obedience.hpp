@@ -21,7 +21,7 @@
 
 namespace roverd::robot {
 
-class FollowWatch {
+class ObedienceWatch {
  public:
   static constexpr double kSpeed_mps = 0.1;     ///< slower commands prove nothing
   static constexpr double kTurn_radps = 0.15;   ///< likewise

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "base/geo.hpp"
-#include "robot/fence_guard.hpp"
+#include "robot/safety/fence_guard.hpp"
 
 namespace roverd::robot {
 

@@ -1,4 +1,4 @@
-#include "robot/radio_keys.hpp"
+#include "robot/radio/keys.hpp"
 
 namespace roverd::robot {
 namespace {

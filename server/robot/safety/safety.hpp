@@ -42,7 +42,7 @@ struct Facts {
   bool autonomous = false;                ///< mode AUTO, mission running
   std::optional<Time> base_waited_since;  ///< armed, and the base takes no commands since
   bool base_left = false;                 ///< just now, and nobody told it to
-  bool commands_lost = false;             ///< see FollowWatch
+  bool commands_lost = false;             ///< see ObedienceWatch
   bool not_following = false;             ///< commands_lost, and told to move now
   std::optional<Time> sigma_bad_since;
   bool spins = false;  ///< see SpinWatch

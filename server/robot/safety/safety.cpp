@@ -1,4 +1,4 @@
-#include "robot/safety.hpp"
+#include "robot/safety/safety.hpp"
 
 #include <cmath>
 #include <cstdio>

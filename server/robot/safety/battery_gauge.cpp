@@ -1,4 +1,4 @@
-#include "robot/battery_gauge.hpp"
+#include "robot/safety/battery_gauge.hpp"
 
 #include <algorithm>
 #include <charconv>

@@ -1,4 +1,4 @@
-#include "robot/way_home.hpp"
+#include "robot/modes/way_home.hpp"
 
 #include <cmath>
 

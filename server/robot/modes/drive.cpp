@@ -175,6 +175,7 @@ void Robot::Impl::tell_activity() {
   base::Activity& a = activity;
   const auto global = [this](base::EnuPoint p) { return estimator.frame()->to_global(p); };
   a.state = ActivityState::Driving;
+  a.reason.clear();
   a.turn_rad.reset();
   a.distance_m.reset();
   if (mode == Mode::Guided) {

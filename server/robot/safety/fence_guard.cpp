@@ -1,4 +1,4 @@
-#include "robot/fence_guard.hpp"
+#include "robot/safety/fence_guard.hpp"
 
 #include <algorithm>
 #include <cmath>
