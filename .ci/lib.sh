@@ -41,16 +41,25 @@ as_root() {
   fi
 }
 
-# install_packages LOG PACKAGE…: apt, without questions.
+# What apt would take away from this machine to install PACKAGE…, by a trial that changes nothing.
+would_be_removed() {
+  apt-get -s -q --no-install-recommends install "$@" 2>/dev/null | sed -n 's/^Remv \([^ ]*\).*/\1/p'
+}
+
+# install_packages LOG PACKAGE…: apt, without questions. It never takes away what the machine has.
 install_packages() {
-  local log=$1
+  local log=$1 victims
   shift
   command -v apt-get >/dev/null ||
     die "this is not a Debian system; please install by hand: $*"
   say "installing packages: $*"
   logged "apt-get update" "$log" as_root apt-get update -q
+  mapfile -t victims < <(would_be_removed "$@")
+  [ "${#victims[@]}" = 0 ] ||
+    die "nothing was installed: these packages of this machine stand in the way and would be removed" \
+      "(${#victims[@]}): ${victims[*]}; remove them yourself if you can do without, or use another machine"
   logged "apt-get install" "$log" as_root env DEBIAN_FRONTEND=noninteractive \
-    apt-get install -y -q --no-install-recommends "$@"
+    apt-get install -y -q --no-remove --no-install-recommends "$@"
 }
 
 # need_packages LIST…: installs what is missing of the files .ci/packages.LIST; quick when all is there.
@@ -134,26 +143,63 @@ build_web() {
   mv "$stamp.new" "$stamp"
 }
 
-# configure FOLDER OPTION…: only the first time; ninja repeats it when a CMakeLists.txt changed.
+# configure FOLDER OPTION…: the first time, and when the options are others than then; ninja repeats it
+# when a CMakeLists.txt changed.
 configure() {
   local folder=$1 launcher=()
   shift
-  [ -e "$folder/build.ninja" ] && return
+  [ -e "$folder/build.ninja" ] && [ "$(cat "$folder/options" 2>/dev/null)" = "$*" ] && return
   command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   logged "cmake" "$build/logs/cmake-$(basename "$folder").log" \
     cmake -S "$root" -B "$folder" -G Ninja "${launcher[@]}" "$@"
+  printf '%s' "$*" >"$folder/options"
+}
+
+# ninja with a guess at what is left: as much time for each step to come as for those that are done.
+ninja_with_estimate() {
+  NINJA_STATUS='[%f/%t %e] ' ninja "$@" | awk '
+    match($0, /^\[[0-9]+\/[0-9]+ [0-9.]+\] /) {
+      split(substr($0, 2, RLENGTH - 3), is, /[\/ ]/)
+      left = is[1] > 2 ? is[3] / is[1] * (is[2] - is[1]) : 0
+      guess = left >= 60 ? sprintf(", about %d min left", left / 60 + 0.5) \
+            : left >= 5 ? sprintf(", about %d s left", left) : ""
+      $0 = "[" is[1] "/" is[2] guess "] " substr($0, RLENGTH + 1)
+    }
+    { print; fflush() }'
 }
 
 ninja_build() {
   local folder=$1
   shift
-  NINJA_STATUS='[%f/%t %es] ' logged "building" "$build/logs/ninja-$(basename "$folder").log" \
-    ninja -C "$folder" -j "$jobs" "$@"
+  logged "building" "$build/logs/ninja-$(basename "$folder").log" \
+    ninja_with_estimate -C "$folder" -j "$jobs" "$@"
 }
 
 product_is_old() {
   newer_than "$build/product.stamp" "$root/server" "$root/drivers" "$root/migrations" \
     "$root/CMakeLists.txt" "$build/page.stamp" || [ ! -x "$bin/roverd" ] || [ ! -x "$bin/roverd-sim" ]
+}
+
+# Sources are compiled in groups, which takes half of the time; so names in the anonymous namespaces
+# of a room must differ.
+in_groups=(-DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=12)
+release=(-DCMAKE_BUILD_TYPE=Release "-DCMAKE_CXX_FLAGS_RELEASE=-O2 -DNDEBUG" "${in_groups[@]}")
+
+# What waits for the network, and what waits for the processor, side by side: the page's packages, and
+# all of the programs that holds no page.
+build_beside_the_page() {
+  local page
+  need_node
+  say "building the page beside the programs (log: $build/logs/page-beside.log)"
+  mkdir -p "$build/logs"
+  (build_web) >"$build/logs/page-beside.log" 2>&1 &
+  page=$!
+  configure "$build" "${release[@]}"
+  ninja_build "$build" roverd-study roverd-sim api store supervise tools replaying
+  wait "$page" || {
+    tail -n 20 "$build/logs/page-beside.log"
+    die "building the page failed (log: $build/logs/page-beside.log)"
+  }
 }
 
 # The two programs and the page. Nothing but a look at time stamps when nothing changed: whoever may
@@ -164,15 +210,19 @@ build_product() {
   if ! mkdir -p "$build/logs" 2>/dev/null || ! { : >>"$build/.lock"; } 2>/dev/null; then
     die "cannot build: $(id -un) may not write in $build"
   fi
+  need_packages run
   exec 9>"$build/.lock"
   flock -n 9 || {
     say "another build is running in $build; waiting for it"
     flock 9
   }
+  if page_is_old && product_is_old; then
+    build_beside_the_page
+  fi
   build_web
   if product_is_old; then
     touch "$stamp.new"
-    configure "$build" -DCMAKE_BUILD_TYPE=Release
+    configure "$build" "${release[@]}"
     say "building roverd and roverd-sim"
     ninja_build "$build" roverd roverd-sim
     mv "$stamp.new" "$stamp"

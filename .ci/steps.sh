@@ -157,12 +157,11 @@ step_tidy() {
   return "$code"
 }
 
-# sanitized NAME SANITIZERS: configures build/NAME. Sources are compiled in groups, which takes a
-# third of the time; so names in the anonymous namespaces of a room must differ. Asio uses fences, of
-# which GCC warns that the thread sanitizer does not see them.
+# sanitized NAME SANITIZERS: configures build/NAME. Asio uses fences, of which GCC warns that the
+# thread sanitizer does not see them.
 sanitized() {
   configure "$build/$1" -DCMAKE_BUILD_TYPE=Sanitized -DCMAKE_CXX_FLAGS="-O1 -g1 -Wno-tsan" \
-    -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=12 -DROVERD_SANITIZE="$2"
+    "${in_groups[@]}" -DROVERD_SANITIZE="$2"
 }
 
 step_asan() {
@@ -194,8 +193,7 @@ step_tsan() {
 step_fuzz() {
   local program name found code=0
   configure "$build/fuzz" -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Sanitized \
-    -DCMAKE_CXX_FLAGS="-O1 -g1" -DROVERD_FUZZ=ON -DROVERD_TESTS=OFF \
-    -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=12
+    -DCMAKE_CXX_FLAGS="-O1 -g1" -DROVERD_FUZZ=ON -DROVERD_TESTS=OFF "${in_groups[@]}"
   ninja_build "$build/fuzz" fuzz
   for program in "$build/fuzz/bin/"*_fuzz; do
     name=$(basename "$program" _fuzz)
