@@ -30,8 +30,9 @@ base::Result<void> check_words(const Config& c) {
       !good) {
     return good;
   }
-  if (auto good = check_word("nav.track.law", c.track.law, {"path_frame", "pure_pursuit", "stanley"},
-                             "path_frame, pure_pursuit or stanley");
+  if (auto good =
+          check_word("nav.track.law", c.track.law, {"path_frame", "pure_pursuit", "stanley"},
+                     "path_frame, pure_pursuit or stanley");
       !good) {
     return good;
   }

@@ -1,55 +1,44 @@
 #pragma once
 // The inside of Robot. Only the files of this room include it.
 //
-// Modes (armed or not; nothing moves unless armed):
+// A tick, and who does what in it:
 //
-//   by hand                 stopped        by itself, paused by any loss
-//   MANUAL                                 AUTO      a mission (nav/behave/executor.hpp)
-//   ACRO STEERING SIMPLE ◀──▶ HOLD ◀──▶    GUIDED    a goal (nav/behave/guided.hpp)
-//   (nav/behave/sticks.hpp)                RTL SMART_RTL   (nav/behave/homeward.hpp)
-//                                          FOLLOW (nav/behave/follow.hpp)  DOCK (…/dock.hpp)
+//   inbox ─▶ world, estimator ─▶ safety/: assessment, checks, watches ─▶ arm, machine: what may be
+//   commands ─▶ commands.cpp, modes/: what is asked                          │
+//        who drives:  e-stop > radio > by_hand > missions | self_driving ◀───┘
+//                                   │
+//                     fence: the last word ─▶ send ─▶ publish
 //
-//   Any mode leads to any other by set mode; a mode refuses to begin (Conflict, with the reason)
-//   where its conditions do not hold, and then the one before goes on. Leaving AUTO pauses the
-//   mission. RTL, SMART_RTL, FOLLOW and DOCK end in HOLD. Between two that drive by themselves the
-//   robot stands first (robot/modes/changeover.hpp).
-//
-//   Disarmed ──arm (all checks pass)──▶ Armed ──disarm, e-stop──▶ Disarmed
-//   e-stop: Released ──anyone, the base──▶ Latched ──reset, base released──▶ Released, disarmed,
-//   HOLD
-//
-// Who drives: e-stop > radio > by hand over the network > by itself. Whoever drives, the fence has
-// the last word. The radio's take-over keeps the mode and what it does; it goes on from the same
-// place when control returns.
+// Each part is a class with its own diagram and tests; Impl knows them all, hands each what it
+// needs and nothing more, and keeps what belongs to no one: where the robot is, and what was sent.
+// The radio's take-over keeps the mode; a mission goes on by itself when control returns.
 
-#include <array>
 #include <atomic>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "nav/behave/breadcrumbs.hpp"
-#include "nav/behave/dock.hpp"
-#include "nav/behave/executor.hpp"
-#include "nav/behave/follow.hpp"
-#include "nav/behave/guided.hpp"
-#include "nav/behave/homeward.hpp"
-#include "nav/behave/sticks.hpp"
 #include "nav/estimate/estimator.hpp"
 #include "robot/compile.hpp"
-#include "robot/modes/changeover.hpp"
-#include "robot/modes/held_by_radio.hpp"
+#include "robot/delivered.hpp"
+#include "robot/loop_clock.hpp"
+#include "robot/mission_keeper.hpp"
+#include "robot/modes/by_hand.hpp"
+#include "robot/modes/driven_way.hpp"
 #include "robot/modes/home.hpp"
-#include "robot/modes/manual.hpp"
+#include "robot/modes/machine.hpp"
+#include "robot/modes/self_driving.hpp"
 #include "robot/modes/straight_start.hpp"
 #include "robot/modes/way_home.hpp"
 #include "robot/outbox.hpp"
 #include "robot/parameter_set.hpp"
 #include "robot/radio/keys.hpp"
-#include "robot/safety/fence_guard.hpp"
-#include "robot/safety/obedience.hpp"
+#include "robot/safety/arm_switch.hpp"
+#include "robot/safety/base_watch.hpp"
+#include "robot/safety/estimate_watch.hpp"
+#include "robot/safety/fence_keep.hpp"
+#include "robot/safety/position_watch.hpp"
 #include "robot/safety/safety.hpp"
-#include "robot/safety/spin.hpp"
 #include "robot/world.hpp"
 
 namespace roverd::robot {
@@ -70,13 +59,13 @@ struct Robot::Impl {
 
   // Shared between threads; each is safe by itself.
   base::Latest<Config> shared_config;
-  base::Latest<LaidFence> shared_fence;
   base::Inbox<base::Measurement> measurements{4096};
   base::Inbox<PendingCommand> commands{64};
   base::Latest<base::Snapshot> snapshot;
-  base::Latest<CompiledMission> loaded;
   base::Latest<nav::Learned> learned;
-  base::Latest<DrivenWay> driven_way;
+  base::Latest<DrivenWay> shared_way;
+  Delivered<CompiledMission> loaded;
+  Delivered<LaidFence> shared_fence;
   std::atomic<bool> estop_asked{false};
   std::atomic<std::uint64_t> made{1};       ///< ids of missions and fences that are laid out
   std::atomic<std::uint32_t> frame_ids{2};  ///< 1 is for the first fix
@@ -85,75 +74,43 @@ struct Robot::Impl {
   // Control thread from here on.
   ParameterSet config;
   bool config_unpublished = true;
-  bool fence_unpublished = false;
+  LoopClock clock;
+  World world;
   nav::Estimator estimator;
-  nav::Executor executor;
-  nav::Guided guided;
-  nav::Dock dock;
-  nav::Homeward homeward;
-  nav::Follow follower;
-  nav::Sticks sticks;
-  nav::Breadcrumbs crumbs;
-  std::uint64_t crumbs_resets = 0;
-  std::uint64_t crumbs_published = 0;  ///< Breadcrumbs::changes() of what others see
-  Changeover changeover;
-  std::shared_ptr<const LaidFence> fence;
-  bool fence_stops = false;  ///< at this tick
-  bool fence_told = false;
-  base::Activity activity;
-  Manual manual;
+  std::optional<base::Pose> pose;
+  base::EstimatorHealth health;  ///< of the estimator, at this tick
+
+  ArmSwitch arm;
+  ModeMachine machine;
+  MissionKeeper missions;
+  SelfDriving self_driving;
+  ByHand by_hand;
+  StraightStart straight;
+  HomePlace home;
+  DrivenWayKeeper driven;
+  std::uint64_t driven_told = 0;
+  FenceKeep fence;
   RadioKeys keys;
   std::vector<RadioKey> pressed;
-  World world;
-  std::shared_ptr<const CompiledMission> mission;
-  bool mission_unpublished = false;
+  bool radio_had_control = false;
 
-  static constexpr const char* kOperator = "by the operator";
-  const char* asker = kOperator;  ///< whose command is carried out, for the events
-  base::Mode mode = base::Mode::Hold;
-  bool armed = false;
-  bool estop = false;
-  HomePlace home;
-  HeldByRadio held;  ///< what a mode other than AUTO did when the radio took over
-
-  Time now{};
-  base::WallTime wall{};
-  std::optional<Time> last_tick;
-  double dt_s = 0.02;
-  std::optional<base::Pose> pose;
+  BaseWatch base_watch;
+  EstimateWatch estimate_watch;
+  PositionWatch position_watch;
   Assessment assessment;
   std::vector<base::Check> checks;
-  std::optional<Time> base_waited_since;
-  ObedienceWatch follow;
-  SpinWatch spin;
-  bool spun = false;                    ///< at the last tick
-  std::optional<Time> in_charge_since;  ///< armed, no radio: the base is to listen to us
-  bool base_listened = false;
-  bool base_left = false;  ///< at this tick
-  bool base_gone = false;  ///< since then
-  std::optional<Time> sigma_bad_since;
-  bool radio_had_control = false;
+
   base::Driver driver = base::Driver::None;
   base::DriveCommand sent;
   std::string speed_reason;
-  base::LoopHealth loop;
-  base::EstimatorHealth health;  ///< of the estimator, at this tick
-  StraightStart straight;
-  std::uint64_t resets_seen = 0;
-  bool gyro_seen = false;
-  bool anchored = false;
-  base::Alignment alignment_seen = base::Alignment::Unknown;
-  std::array<bool, 4> refusal_told{};
-  base::FixType fix_told = base::FixType::None;
-  base::FixType fix_seen = base::FixType::None;
-  Time fix_seen_since{};
+
+  static constexpr const char* kOperator = "by the operator";
+  const char* asker = kOperator;  ///< whose command is carried out, for the events
   std::vector<base::Measurement> measurement_batch;
   std::vector<PendingCommand> command_batch;
-  std::optional<Time> fault_told;       ///< the last event about one
   std::shared_ptr<const void> retired;  ///< by the command that is being carried out
 
-  // tick, in this order (robot.cpp, commands.cpp, radio.cpp, decide.cpp, publish.cpp)
-  void begin(Time t, base::WallTime w, base::Duration lateness);
+  // tick, in this order (robot.cpp, commands.cpp, radio/panel.cpp, decide.cpp, publish.cpp)
   void take_estop();
   void take_commands();
   void take_measurements();
@@ -191,13 +148,13 @@ struct Robot::Impl {
   base::Result<void> handle(const ResumeAt& c);
   base::Result<void> may_drive_mission() const;
   base::Result<void> may_drive_by_itself() const;
-  base::Result<void> mission_inside(const nav::StartAt& at) const;
-  void adopt(const LoadMission& c);
+  void adopt(std::shared_ptr<const CompiledMission> mission);
   void retire(std::shared_ptr<const void> old);
   base::Result<void> start(const nav::StartAt& at);
   base::Result<void> resume();
 
-  void set_mode(base::Mode to, const std::string& why);
+  /// The only way to another mode. @return whether it is another one now
+  bool change_mode(ModeCause cause, const std::string& why, Mode chosen = Mode::Hold);
   void disarm(const std::string& why);
   void latch_estop(const std::string& who);
   void hold(const std::string& why);
@@ -207,64 +164,46 @@ struct Robot::Impl {
   bool within_reach(base::LatLon at) const;
   Facts facts() const;
 
-  // modes.cpp, goals.cpp, returns.cpp: entering and leaving
+  // modes/enter.cpp, goals.cpp, returns.cpp: entering
   base::Result<void> guide(const nav::GuidedGoal& goal, std::string_view kind);
   base::Result<base::EnuPoint> place_of(const GoTo& c) const;
+  base::Result<void> go_on();
   base::Result<void> enter_guided();
-  base::Result<void> enter_return();
-  base::Result<void> enter_retrace();
+  base::Result<void> enter_home(Mode to);
   base::Result<void> enter_follow();
   base::Result<void> enter_dock(const SetMode& c);
   base::Result<void> enter_sticks(Mode to);
-  WayHomeFacts way_home_facts() const;
-  DrivenWay driven() const;
-  void begin_return(Mode to, const WayHome& home_way, std::string_view kind);
+  WayHome way_home(Mode mode) const;
   void choose_home(base::LatLon at);
-  void take_over(Mode to, const std::string& why);
-  void begin_activity(std::string_view kind);
-  bool by_itself() const noexcept;
-  void interrupt_modes();
-  void hold_for_a_word();
-  void drop_crumbs();
+  void begin_way_anew();
 
-  // drive_modes.cpp: one tick of them
+  // modes/drive.cpp: one tick of them
+  base::DriveCommand drive_by_hand();
+  base::DriveCommand drive_mission();
+  base::DriveCommand drive_by_itself();
   nav::Vehicle vehicle() const;
   double limit_mps() const noexcept;
-  base::DriveCommand drive_by_sticks();
-  base::DriveCommand drive_by_itself();
-  nav::TrackOutput step_mode(const nav::Vehicle& v, double limit);
-  void end_mode(base::ActivityState state, const char* kind, const std::string& detail);
-  void watch_mode();
-  void tell_activity();
-  void lay_crumbs();
-
-  // fence_duty.cpp
-  base::Result<void> inside(base::EnuPoint to) const;
-  base::Result<void> way_home_inside() const;
-  bool compared() const noexcept;
-  base::DriveCommand keep_inside(base::DriveCommand command);
-  base::FenceState fence_state() const;
+  void tell_notices();
+  void act(const nav::Notice& n);
+  void lay_way();
 
   // decide.cpp
   base::DriveCommand choose();
-  base::DriveCommand drive_by_hand();
-  base::DriveCommand drive_mission();
-  void tell_notices();
-  void act(const nav::Notice& n);
-  void watch_changes();
+  base::DriveCommand keep_inside(base::DriveCommand command);
+  base::Result<void> inside(base::EnuPoint to) const;
+  double way_margin_m() const;
   void watch_frame();
   void watch_base();
-  base::BodyTwist possible(const base::BodyTwist& told) const noexcept;
+  void watch_estimate();
+  void watch_radio(bool drives);
 
-  // place.cpp
+  // positioning.cpp
   base::Result<void> may_be_placed() const;
   base::Result<base::EnuPoint> anchor_point(const SetAnchor& c) const;
-  void watch_estimate();
-  void watch_refusals();
   base::DriveCommand seek_heading();
   base::BodyTwist straight_first(const base::BodyTwist& wanted);
 
-  // radio.cpp
+  // radio/panel.cpp
   void press(const base::RadioState& frame);
   void act_on_radio();
   base::Result<void> carry_out(const RadioAction& action);
@@ -274,9 +213,8 @@ struct Robot::Impl {
   base::RadioMeaning radio_meaning() const noexcept;
 
   void event(base::Severity level, const char* kind, std::string detail) {
-    outbox.event(wall, level, kind, std::move(detail));
+    outbox.event(clock.wall(), level, kind, std::move(detail));
   }
-  base::MissionProgress progress() const;
 };
 
 }  // namespace roverd::robot

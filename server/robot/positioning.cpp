@@ -1,4 +1,4 @@
-// Where the robot is, as an operator says it, and what of the estimate an operator must know.
+// Where the robot is, as an operator says it, and the first metres while its heading is uncertain.
 
 #include <cmath>
 #include <string>
@@ -12,46 +12,11 @@ namespace {
 using base::Code;
 using base::Severity;
 
-constexpr base::Duration kLasts = std::chrono::seconds(2);
-
-std::string tenths_of(double value) {
-  const long rounded = std::lround(std::abs(value) * 10.0);
-  return std::to_string(rounded / 10) + "." + std::to_string(rounded % 10);
-}
-
-std::string cause_of(base::Refusal why) {
-  switch (why) {
-    case base::Refusal::NotFinite:
-      return "they are not numbers";
-    case base::Refusal::Impossible:
-      return "they cannot be";
-    case base::Refusal::Stamp:
-      return "they are doubled, out of order or too old";
-    case base::Refusal::Zero:
-      return "latitude and longitude are exactly zero";
-    case base::Refusal::Date:
-      return "their date lies before such receivers were made";
-    case base::Refusal::Satellites:
-      return "too few satellites";
-    case base::Refusal::Dilution:
-      return "the satellites stand badly";
-    case base::Refusal::Accuracy:
-      return "the receiver itself is not sure enough";
-    case base::Refusal::Disturbed:
-      return "a turn on the spot disturbs them";
-    case base::Refusal::Jump:
-      return "they contradict what the robot did";
-    case base::Refusal::Receivers:
-      return "two receivers say different places";
-  }
-  return {};
-}
-
 }  // namespace
 
 /// A person tells it of a robot that stands and that no mission moves meanwhile.
 base::Result<void> Robot::Impl::may_be_placed() const {
-  if (executor.running()) {
+  if (missions.executor.running()) {
     return base::fail(Code::Conflict, "a mission runs: pause or stop it first");
   }
   const double speed_mps = pose ? std::abs(pose->speed_mps.value_or(0.0)) : 0.0;
@@ -91,7 +56,7 @@ base::Result<void> Robot::Impl::handle(const SetPose& c) {
   std::optional<double> yaw_rad;
   if (c.heading_deg) yaw_rad = base::yaw_from_heading(*c.heading_deg);
   estimator.place(at, yaw_rad);
-  resets_seen = estimator.health().resets;
+  estimate_watch.moved_on_purpose(estimator.health());
   event(Severity::Info, "pose_set", "the operator said where the robot stands");
   return {};
 }
@@ -99,7 +64,8 @@ base::Result<void> Robot::Impl::handle(const SetPose& c) {
 base::Result<void> Robot::Impl::handle(const SetAnchor& c) {
   if (auto ok = may_be_placed(); !ok) return ok;
   const auto heard = estimator.last_position();
-  if (!pose || !heard || estimator.health().placed || now - *heard > std::chrono::seconds(2)) {
+  if (!pose || !heard || estimator.health().placed ||
+      clock.now() - *heard > std::chrono::seconds(2)) {
     return base::fail(Code::Conflict, "there is no position from GNSS that could be anchored");
   }
   const auto at = anchor_point(c);
@@ -111,8 +77,8 @@ base::Result<void> Robot::Impl::handle(const SetAnchor& c) {
     return base::fail(Code::Conflict, std::move(detail));
   }
   estimator.anchor(*at, c.item);
-  resets_seen = estimator.health().resets;
-  anchored = true;
+  estimate_watch.moved_on_purpose(estimator.health());
+  estimate_watch.anchored(true);
   event(Severity::Info, "anchored",
         "the robot stands at " +
             (c.item ? "item " + std::to_string(*c.item) : std::string("the given point")) +
@@ -125,10 +91,10 @@ base::Result<base::EnuPoint> Robot::Impl::anchor_point(const SetAnchor& c) const
   if (!c.item) {
     return base::fail(Code::Invalid, "neither a point nor an item", {{"", "lat and lon, or item"}});
   }
-  if (!mission) return base::fail(Code::Conflict, "no mission is loaded");
-  for (const nav::RouteStep& step : mission->route.forth.steps) {
+  if (!missions) return base::fail(Code::Conflict, "no mission is loaded");
+  for (const nav::RouteStep& step : missions->route.forth.steps) {
     if (step.item == *c.item && step.kind == nav::StepKind::Go) {
-      return mission->route.forth.nodes[step.node].at;
+      return missions->route.forth.nodes[step.node].at;
     }
   }
   return base::fail(Code::Invalid,
@@ -140,71 +106,9 @@ base::Result<void> Robot::Impl::handle(const DropAnchor&) {
   if (auto ok = may_be_placed(); !ok) return ok;
   if (!estimator.health().anchor) return base::fail(Code::Conflict, "there is no anchor");
   estimator.drop_anchor();
-  anchored = false;
+  estimate_watch.anchored(false);
   event(Severity::Info, "anchor_dropped", "the anchor was dropped by the operator");
   return {};
-}
-
-/// Resets, refusals that last, the gyro's coming and going, the anchor.
-void Robot::Impl::watch_estimate() {
-  health = estimator.health();
-  if (health.resets != resets_seen) {
-    resets_seen = health.resets;
-    std::string detail = "the sensors contradicted the estimate for too long: ";
-    if (const auto& reset = health.last_reset) {
-      detail += std::string(reset->what) + " set anew, moved by " +
-                tenths_of(std::hypot(reset->jump.east_m, reset->jump.north_m)) + " m, turned by " +
-                tenths_of(base::deg_from_rad(reset->jump_rad)) + " deg";
-    }
-    event(Severity::Warning, "estimate_reset", std::move(detail));
-  }
-  if (health.gyro != gyro_seen) {
-    gyro_seen = health.gyro;
-    event(gyro_seen ? Severity::Info : Severity::Warning, gyro_seen ? "gyro_back" : "gyro_lost",
-          gyro_seen ? "turns are measured by the gyro"
-                    : "the gyro is silent: turns are measured by the tracks");
-  }
-  if (health.alignment != alignment_seen) {
-    const bool found = health.alignment == base::Alignment::Aligned;
-    if (found) event(Severity::Info, "heading_found", "the heading is known");
-    if (alignment_seen == base::Alignment::Aligned) {
-      event(Severity::Warning, "heading_lost", "the heading is not certain any more");
-    }
-    alignment_seen = health.alignment;
-  }
-  if (anchored && !health.anchor) {
-    anchored = false;
-    const std::string why = "the anchor was dropped: the fix class changed";
-    event(Severity::Warning, "anchor_dropped", why);
-    if (executor.running()) {
-      hold(why);
-      event(Severity::Warning, "mission_paused", why);
-    }
-  }
-  watch_refusals();
-}
-
-void Robot::Impl::watch_refusals() {
-  struct Watched {
-    const base::InputHealth& input;
-    const char* what;
-  };
-  const std::array<Watched, 4> inputs{{{health.position, "positions of the receiver"},
-                                       {health.velocity, "velocities of the receiver"},
-                                       {health.heading, "headings of the antennas"},
-                                       {health.odometry, "distances of the base"}}};
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const auto& since = inputs[i].input.refused_since;
-    const bool lasts = since && now - *since >= kLasts;
-    if (lasts == refusal_told[i]) continue;
-    refusal_told[i] = lasts;
-    if (lasts) {
-      event(Severity::Warning, "input_refused",
-            std::string(inputs[i].what) + " are not used: " + cause_of(inputs[i].input.why));
-    } else {
-      event(Severity::Info, "input_used", std::string(inputs[i].what) + " are used again");
-    }
-  }
 }
 
 /// Nobody knows where the robot points, not even roughly: straight on, slowly.
@@ -229,7 +133,7 @@ base::BodyTwist Robot::Impl::straight_first(const base::BodyTwist& wanted) {
   constexpr double kAside_deg = 50.0;  // a target so far aside is not reached straight on
   StraightStart::State state{health.alignment == base::Alignment::Aligned, false,
                              estimator.turned_rad(), estimator.driven_m()};
-  const auto target = executor.progress(pose->at).target;
+  const auto target = missions.executor.progress(pose->at).target;
   bool ahead = true;
   if (target) {
     const base::EnuPoint way = *target - pose->at;
@@ -238,7 +142,8 @@ base::BodyTwist Robot::Impl::straight_first(const base::BodyTwist& wanted) {
     ahead = std::hypot(way.east_m, way.north_m) > kEndNear_m &&
             std::abs(base::angle_diff_rad(pose->yaw_rad, bearing)) < base::rad_from_deg(kAside_deg);
   }
-  state.driving = executor.phase() == nav::TrackPhase::Follow && wanted.linear_mps != 0.0 && ahead;
+  state.driving =
+      missions.executor.phase() == nav::TrackPhase::Follow && wanted.linear_mps != 0.0 && ahead;
   const auto turn = straight.step(state);
   if (!turn) return wanted;
   speed_reason = "heading_uncertain";

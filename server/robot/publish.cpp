@@ -6,48 +6,22 @@
 
 namespace roverd::robot {
 
-base::MissionProgress Robot::Impl::progress() const {
-  base::MissionProgress p;
-  if (!mission) return p;
-  p.mission_id = mission->copy.id;
-  p.revision = mission->copy.revision;
-  p.name = mission->copy.plan.name;
-  p.state = executor.state();
-  p.reason = executor.reason();
-  if (executor.running() && driver == base::Driver::Radio) {
-    p.reason = "the radio drives; the mission goes on when it gives control back";
-  }
-  p.items = static_cast<int>(mission->copy.plan.items.size());
-  const nav::Progress at = executor.progress(pose ? std::optional(pose->at) : std::nullopt);
-  p.current_item = at.current_item;
-  p.cross_track_m = at.cross_track_m;
-  p.distance_left_m = at.distance_left_m;
-  p.eta_s = at.eta_s;
-  p.place = executor.place();
-  if (pose && at.target && estimator.frame()) {
-    const auto to = base::distance_bearing(pose->global, estimator.frame()->to_global(*at.target));
-    p.distance_to_item_m = to.distance_m;
-    p.bearing_to_item_deg = to.bearing_deg;
-  }
-  return p;
-}
-
 /// For those who ask where SMART_RTL would lead: a second old at most.
 void Robot::Impl::publish_driven_way() {
-  if (crumbs.changes() == crumbs_published) return;
-  if (driven_way.publish(std::make_shared<const DrivenWay>(driven()))) {
-    crumbs_published = crumbs.changes();
-  }
+  if (!estimator.frame()) return;
+  std::uint64_t told = driven_told;
+  auto news = driven.news(told, estimator.frame()->id());
+  if (news && shared_way.publish(std::move(news))) driven_told = told;
 }
 
 bool Robot::Impl::publish() {
   auto s = std::make_shared<base::Snapshot>();
-  s->now = now;
-  s->wall = wall;
-  s->tick = loop.ticks;
-  s->mode = mode;
-  s->armed = armed;
-  s->estop = estop;
+  s->now = clock.now();
+  s->wall = clock.wall();
+  s->tick = clock.health().ticks;
+  s->mode = machine.mode();
+  s->armed = arm.armed();
+  s->estop = arm.latched();
   s->control = driver;
   s->speed_reason = speed_reason;
   s->pose = pose;
@@ -55,7 +29,7 @@ bool Robot::Impl::publish() {
   s->home = home.at();
   s->gnss = world.gnss;
   s->gnss_velocity = world.gnss_velocity;
-  s->attitude = estimator.attitude(now);
+  s->attitude = estimator.attitude(clock.now());
   if (!s->attitude) s->attitude = world.attitude;
   s->satellites = world.satellites;
   s->base = world.base;
@@ -68,10 +42,12 @@ bool Robot::Impl::publish() {
   s->radio = world.radio;
   s->radio_meaning = radio_meaning();
   s->drivers = world.drivers;
-  s->mission = progress();
-  s->activity = activity;
+  s->mission = missions.progress(pose, estimator.frame(), driver == base::Driver::Radio);
+  s->activity = self_driving.activity();
   if (const auto may = may_drive_by_itself(); !may) s->autonomy_refusal = may.error().detail;
-  if (fence) s->fence = fence_state();
+  if (fence.get() != nullptr) {
+    s->fence = fence.state(pose, estimator.frame(), missions.get().get());
+  }
   s->command = sent;
   s->safety = std::move(assessment.conditions);
   s->checks = checks;
@@ -79,23 +55,16 @@ bool Robot::Impl::publish() {
     return !c.ok && c.severity == base::Severity::Error;
   });
   s->estimator = health;
-  s->loop = loop;
-  bool all = true;
-  if (mission_unpublished) {
-    mission_unpublished = !loaded.publish(mission);
-    all = !mission_unpublished;
-  }
-  if (loop.ticks % 50 == 0) {  // once a second; who missed it gets the next
+  s->loop = clock.health();
+  bool all = loaded.deliver();
+  all = shared_fence.deliver() && all;
+  if (clock.health().ticks % 50 == 0) {  // once a second; who missed it gets the next
     learned.publish(std::make_shared<const nav::Learned>(estimator.learned()));
     publish_driven_way();
   }
   if (config_unpublished) {
     config_unpublished = !shared_config.publish(config.whole());
     all = all && !config_unpublished;
-  }
-  if (fence_unpublished) {
-    fence_unpublished = !shared_fence.publish(fence);
-    all = all && !fence_unpublished;
   }
   return snapshot.publish(std::move(s)) && all;
 }

@@ -1,7 +1,6 @@
 #include "robot/robot.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <exception>
 #include <utility>
 
@@ -15,14 +14,10 @@ using base::Severity;
 Robot::Impl::Impl(Config c)
     : config(std::move(c)),
       estimator(config.estimate),
-      executor(config.path, config.behave, config.modes),
-      guided(config.path, config.behave, config.modes),
-      dock(config.path, config.behave, config.modes),
-      homeward(config.path, config.behave),
-      follower(config.path, config.modes),
-      sticks(config.path, config.modes),
-      crumbs(config->modes.crumb_m),
-      manual(config.manual),
+      missions(config),
+      self_driving(config),
+      by_hand(config),
+      driven(config->modes.crumb_m),
       keys(config.radio, config.safety) {
   world.gauge = BatteryGauge(config.battery);
   shared_config.publish(config.whole());
@@ -187,19 +182,6 @@ base::Result<Preview> Robot::preview(const StartMission& start) const {
   return p;
 }
 
-void Robot::Impl::begin(Time t, base::WallTime w, base::Duration lateness) {
-  now = t;
-  wall = w;
-  dt_s = last_tick ? std::clamp(base::seconds(t - *last_tick), 0.001, 0.1) : 0.02;
-  last_tick = t;
-  ++loop.ticks;
-  loop.last_lateness_s = base::seconds(lateness);
-  if (lateness > std::chrono::milliseconds(20)) ++loop.late_ticks;
-  const auto us = std::max<std::int64_t>(0, lateness.count() / 1000);
-  const auto bin = static_cast<std::size_t>(std::bit_width(static_cast<std::uint64_t>(us)));
-  ++loop.lateness_log2_us[std::min(bin, loop.lateness_log2_us.size() - 1)];
-}
-
 void Robot::Impl::take_estop() {
   if (estop_asked.exchange(false)) latch_estop("the operator");
 }
@@ -233,7 +215,7 @@ void Robot::Impl::take_measurements() {
                      return base::stamp_of(a) < base::stamp_of(b);
                    });
   for (base::Measurement& m : measurement_batch) {
-    estimator.take(m, now);
+    estimator.take(m, clock.now());
     if (const auto* d = std::get_if<base::DriverStatus>(&m)) note_driver(*d);
     const auto* radio = std::get_if<base::RadioState>(&m);
     const auto frame = radio != nullptr ? std::optional(*radio) : std::nullopt;
@@ -241,24 +223,23 @@ void Robot::Impl::take_measurements() {
     if (frame) press(*frame);
   }
   measurement_batch.clear();
-  world.forget_stale(now);
-  estimator.advance(now);
-  pose = estimator.pose(now);
+  world.forget_stale(clock.now());
+  estimator.advance(clock.now());
+  pose = estimator.pose(clock.now());
 }
 
 void Robot::tick(Time now, base::WallTime wall, base::Duration lateness) noexcept {
   Impl& r = *impl_;
   try {
-    r.begin(now, wall, lateness);
+    r.clock.begin(now, wall, lateness);
     r.take_estop();
     r.take_commands();
     r.take_measurements();
     r.watch_estimate();
-    r.watch_changes();
     r.watch_frame();
     r.act_on_radio();
     r.judge();
-    r.lay_crumbs();
+    if (r.pose) r.lay_way();
     r.sent = r.decide();
     if (send) send(r.sent, now);
     if (r.publish() && r.outbox.flush() && wake) wake();
@@ -272,8 +253,8 @@ void Robot::tick(Time now, base::WallTime wall, base::Duration lateness) noexcep
 /// An exception ended the tick (no memory, or a bug): nothing moves until somebody arms again, and
 /// whoever looks is told. What needs memory comes last, each for itself; the next tick tries again.
 void Robot::Impl::survive(const char* what, const Robot& self) noexcept {
-  ++loop.faults;
-  const bool was_armed = std::exchange(armed, false);
+  const bool was_armed = arm.disarm();
+  const bool due = clock.fault() || was_armed;
   driver = base::Driver::None;
   sent = {};
   const auto try_to = [](auto deed) {
@@ -285,14 +266,12 @@ void Robot::Impl::survive(const char* what, const Robot& self) noexcept {
     }
   };
   try_to([&] {
-    if (self.send) self.send(sent, now);
+    if (self.send) self.send(sent, clock.now());
   });
   try_to([&] {
-    executor.pause("a fault in the control loop");
-    manual.release();
-    if (by_itself()) set_mode(Mode::Hold, "a fault in the control loop");
-    if (!was_armed && fault_told && now - *fault_told < std::chrono::seconds(10)) return;
-    fault_told = now;
+    by_hand.release();
+    change_mode(ModeCause::Fault, "a fault in the control loop");
+    if (!due) return;
     event(Severity::Error, "loop_fault",
           std::string("an exception ended a tick of the control loop") +
               (was_armed ? ", and the robot is disarmed: " : ": ") + what);

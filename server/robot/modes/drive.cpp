@@ -1,9 +1,9 @@
-// One tick of the modes other than AUTO and MANUAL.
+// One tick of each kind of mode.
 
 #include <algorithm>
-#include <cmath>
+#include <string>
+#include <utility>
 
-#include "base/angle.hpp"
 #include "robot/impl.hpp"
 
 namespace roverd::robot {
@@ -11,6 +11,7 @@ namespace {
 
 using base::ActivityState;
 using base::Driver;
+using base::ExecutionState;
 using base::Severity;
 
 }  // namespace
@@ -34,188 +35,99 @@ double Robot::Impl::limit_mps() const noexcept {
   return assessment.response >= Response::Slow ? std::min(most, config->speed.creep_mps) : most;
 }
 
-void Robot::Impl::interrupt_modes() {
-  guided.interrupt();
-  dock.interrupt();
-  homeward.interrupt();
-}
-
-/// The radio took over: what is under way and is no mission does not go on by itself.
-void Robot::Impl::hold_for_a_word() {
-  const bool no_goal = mode == Mode::Guided && activity.state == ActivityState::Waiting;
-  const bool under_way = activity.state == ActivityState::Driving ||
-                         activity.state == ActivityState::Turning ||
-                         activity.state == ActivityState::Waiting;
-  if (mode == Mode::Auto || !by_itself() || !under_way || no_goal) return;
-  held.take(activity.kind);
-  activity.state = ActivityState::Held;
-  activity.reason = held.why();
-  event(Severity::Warning, "activity_held", held.why());
-}
-
-base::DriveCommand Robot::Impl::drive_by_sticks() {
-  const base::BodyTwist stick = manual.step(now, dt_s);
-  if (manual.phase() == Manual::Phase::Stale) {
-    speed_reason = "teleop_stale";
+base::DriveCommand Robot::Impl::drive_by_hand() {
+  ByHand::Step step;
+  if (machine.mode() == Mode::Manual) {
+    step = by_hand.plain(clock.now(), clock.dt_s());
+  } else if (pose) {
+    const nav::Vehicle v = vehicle();
+    step = by_hand.helped(&v, limit_mps(), clock.now(), clock.dt_s());
+  } else {
+    step = by_hand.helped(nullptr, limit_mps(), clock.now(), clock.dt_s());
+  }
+  if (step.held) driver = Driver::Teleop;
+  if (!step.reason.empty()) speed_reason = std::string(step.reason);
+  if (step.stale) {
     assessment.conditions.push_back(
         {"teleop_stale", "the commands by hand stopped coming: let go once to drive on"});
   }
-  if (manual.phase() == Manual::Phase::Held) driver = Driver::Teleop;
-  if (!pose) return {{}, true};
-  const base::BodyTwist full{config->manual.max_mps, config->manual.max_yaw_rate_radps};
-  const nav::TrackOutput out = sticks.step(stick, full, vehicle(), limit_mps(), dt_s);
-  if (driver == Driver::Teleop) speed_reason = std::string(nav::to_string(out.reason));
-  return {out.command, true};
-}
-
-nav::TrackOutput Robot::Impl::step_mode(const nav::Vehicle& v, double limit) {
-  switch (mode) {
-    case Mode::Guided:
-      return guided.step(v, limit, dt_s);
-    case Mode::Rtl:
-    case Mode::SmartRtl:
-      return homeward.step(v, limit, dt_s);
-    case Mode::Follow:
-      return follower.step(v, limit, now, dt_s);
-    case Mode::Dock:
-      return dock.step(v, limit, dt_s);
-    case Mode::Auto:
-    case Mode::Manual:
-    case Mode::Hold:
-    case Mode::Steering:
-    case Mode::Acro:
-    case Mode::Simple:
-      break;
-  }
-  return {};
+  return {step.twist, true};
 }
 
 base::DriveCommand Robot::Impl::drive_by_itself() {
   if (!pose) return {{}, true};
-  if (held.waits()) {
-    speed_reason = "held";
-    return {{}, true};
-  }
-  const nav::Vehicle v = vehicle();
-  if (changeover.ends(v.speed_mps, v.yaw_rate_radps, dt_s)) interrupt_modes();
-  if (changeover.waits()) {
-    speed_reason = "stopping";
-    return {{}, true};
-  }
-  const nav::TrackOutput out = step_mode(v, limit_mps());
+  const SelfDriving::Step step = self_driving.step(
+      {machine.mode(), vehicle(), *estimator.frame(), limit_mps(), clock.now(), clock.dt_s()});
+  speed_reason = std::string(step.reason);
+  if (step.drives) driver = Driver::Autonomy;
+  if (!step.ending) return {step.twist, true};
+  const SelfDriving::Ending& end = *step.ending;
+  event(end.state == ActivityState::Reached ? Severity::Info : Severity::Warning, end.kind,
+        end.detail);
+  const bool left = change_mode(ModeCause::ActivityOver, end.detail);
+  return {left ? base::BodyTwist{} : step.twist, true};
+}
+
+base::DriveCommand Robot::Impl::drive_mission() {
+  if (!missions.executor.running() || !pose) return {{}, true};
+  driver = Driver::Autonomy;
+  if (!pose->heading_known) return seek_heading();
+  missions.executor.go_on(pose->at);
+  const nav::TrackOutput out =
+      missions.executor.step(vehicle(), limit_mps(), home_point(), clock.dt_s());
   speed_reason = std::string(nav::to_string(out.reason));
-  watch_mode();
-  const bool drives = by_itself() && (activity.state == ActivityState::Driving ||
-                                      activity.state == ActivityState::Turning);
-  if (drives) driver = Driver::Autonomy;
-  if (!by_itself()) return {{}, true};
-  return {out.command, true};
-}
-
-void Robot::Impl::end_mode(ActivityState state, const char* kind, const std::string& detail) {
-  activity.state = state;
-  activity.reason = state == ActivityState::Reached ? std::string() : detail;
-  activity.distance_m.reset();
-  activity.turn_rad.reset();
-  event(state == ActivityState::Reached ? Severity::Info : Severity::Warning, kind, detail);
-  if (mode != Mode::Guided) set_mode(Mode::Hold, detail);
-}
-
-/// What the machine of this mode came to.
-void Robot::Impl::watch_mode() {
-  const bool over =
-      activity.state == ActivityState::Reached || activity.state == ActivityState::Failed;
-  switch (mode) {
-    case Mode::Guided:
-      if (over) return;
-      if (guided.state() == nav::Guided::State::Reached) {
-        return end_mode(ActivityState::Reached, "goal_reached",
-                        "the goal of this " + std::string(activity.kind) + " is reached");
-      }
-      if (guided.state() == nav::Guided::State::Failed) {
-        return end_mode(ActivityState::Failed, "goal_failed", guided.reason());
-      }
-      break;
-    case Mode::Rtl:
-    case Mode::SmartRtl:
-      if (homeward.state() == nav::Homeward::State::Home) {
-        return end_mode(ActivityState::Reached, "home_reached", "home is reached");
-      }
-      if (homeward.state() == nav::Homeward::State::Failed) {
-        return end_mode(ActivityState::Failed, "return_failed",
-                        "the way home: " + homeward.reason());
-      }
-      break;
-    case Mode::Follow:
-      if (follower.state() == nav::Follow::State::Lost) {
-        return end_mode(ActivityState::Failed, "target_lost", follower.reason());
-      }
-      break;
-    case Mode::Dock:
-      if (dock.state() == nav::Dock::State::Docked) {
-        return end_mode(ActivityState::Reached, "docked", "docked");
-      }
-      if (dock.state() == nav::Dock::State::Failed) {
-        return end_mode(ActivityState::Failed, "dock_failed", "not docked: " + dock.reason());
-      }
-      break;
-    case Mode::Auto:
-    case Mode::Manual:
-    case Mode::Hold:
-    case Mode::Steering:
-    case Mode::Acro:
-    case Mode::Simple:
-      return;
+  tell_notices();
+  if (!missions.executor.running()) {
+    driver = Driver::None;
+    return {{}, true};
   }
-  tell_activity();
+  return {straight_first(out.command), true};
 }
 
-/// Where the mode stands, in the words of the snapshot.
-void Robot::Impl::tell_activity() {
-  base::Activity& a = activity;
-  const auto global = [this](base::EnuPoint p) { return estimator.frame()->to_global(p); };
-  a.state = ActivityState::Driving;
-  a.reason.clear();
-  a.turn_rad.reset();
-  a.distance_m.reset();
-  if (mode == Mode::Guided) {
-    const nav::Guided::State s = guided.state();
-    if (s == nav::Guided::State::Waiting) a.state = ActivityState::Waiting;
-    a.reason = s == nav::Guided::State::Waiting && guided.reason().empty() ? "no goal yet"
-                                                                           : guided.reason();
-    if (guided.place()) a.goal = global(*guided.place());
-    if (s != nav::Guided::State::Waiting) a.goal_yaw_rad = guided.goal().yaw_rad;
-    a.distance_m = guided.distance_left_m(pose->at);
-    a.turn_rad = guided.trip().turn_left_rad();
-  } else if (mode == Mode::Rtl || mode == Mode::SmartRtl) {
-    a.distance_m = homeward.trip().distance_left_m();
-  } else if (mode == Mode::Dock) {
-    a.goal = global(dock.goal().at);
-    a.goal_yaw_rad = dock.goal().yaw_rad;
-    a.distance_m = dock.distance_left_m();
-    a.reason = dock.reason();
-  } else if (mode == Mode::Follow && follower.target()) {
-    a.target = global(follower.target()->at);
-    a.target_age_s = base::seconds(now - follower.target()->stamp);
-    a.distance_m = follower.distance_m(pose->at);
-    const bool waits = follower.state() == nav::Follow::State::Braking;
-    if (waits) a.state = ActivityState::Waiting;
-    a.reason = waits ? "the target is silent" : "";
+void Robot::Impl::tell_notices() {
+  for (nav::Notice& n : missions.executor.notices()) {
+    switch (n.kind) {
+      case nav::Notice::Kind::ItemReached:
+        event(Severity::Info, "item_reached", "item " + std::to_string(n.item) + " reached");
+        break;
+      case nav::Notice::Kind::ItemMissed:
+        event(Severity::Warning, "item_missed", "item " + std::to_string(n.item) + " " + n.detail);
+        break;
+      case nav::Notice::Kind::Action:
+        act(n);
+        break;
+      case nav::Notice::Kind::Finished:
+        event(Severity::Info, "mission_finished",
+              "mission \"" + missions->copy.plan.name + "\" finished");
+        break;
+      case nav::Notice::Kind::Lap:
+        event(Severity::Info, "mission_lap", "the mission begins again");
+        break;
+      case nav::Notice::Kind::Blocked:
+        event(Severity::Error, "blocked", std::move(n.detail));
+        break;
+      case nav::Notice::Kind::Lost:
+        event(Severity::Error, "cross_track_lost", std::move(n.detail));
+        break;
+    }
   }
-  if (a.turn_rad) a.state = ActivityState::Turning;
+  missions.executor.notices().clear();
+  if (machine.mode() == Mode::Auto && !missions.executor.running()) {
+    const bool finished = missions.executor.state() == ExecutionState::Finished;
+    if (missions.executor.state() == ExecutionState::Aborted) {
+      event(Severity::Error, "mission_aborted", missions.executor.reason());
+    }
+    change_mode(ModeCause::MissionOver, finished ? "mission finished" : missions.executor.reason());
+  }
 }
 
-void Robot::Impl::lay_crumbs() {
-  // From the first arming on; a robot that is carried lays none, and what it misses is a gap.
-  const bool wheels_turn = world.motion && world.motion->twist != base::BodyTwist{};
-  if (!pose || !(armed || (crumbs.size() > 0 && wheels_turn))) return;
-  const std::uint64_t resets = estimator.health().resets;
-  const bool jumped = resets != crumbs_resets;
-  crumbs_resets = resets;
-  crumbs.take(pose->at, pose->horizontal_sigma_m, jumped,
-              [this](base::EnuPoint a, base::EnuPoint b) {
-                return !fence || !fence->limits.crosses(a, b);
-              });
+/// Every action is told, so that a script may do it; what the robot knows of, it does itself.
+void Robot::Impl::act(const nav::Notice& n) {
+  event(Severity::Info, "action", "item " + std::to_string(n.item) + ": " + n.detail);
+  if (n.detail == "set_home" && pose) {
+    choose_home(pose->global);
+    begin_way_anew();
+  }
 }
 
 }  // namespace roverd::robot

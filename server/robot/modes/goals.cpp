@@ -15,11 +15,9 @@ using base::Code;
 
 base::Result<void> Robot::Impl::enter_guided() {
   if (auto ok = may_drive_by_itself(); !ok) return ok;
-  if (mode == Mode::Guided) return held.waits() ? handle(ResumeActivity{}) : base::Result<void>{};
-  take_over(Mode::Guided, asker);
-  begin_activity("goto");
-  activity.state = base::ActivityState::Waiting;
-  activity.reason = "no goal yet";
+  if (machine.mode() == Mode::Guided) return go_on();
+  change_mode(ModeCause::Chosen, asker, Mode::Guided);
+  self_driving.wait_for_goal();
   return {};
 }
 
@@ -47,12 +45,11 @@ base::Result<base::EnuPoint> Robot::Impl::place_of(const GoTo& c) const {
 }
 
 base::Result<void> Robot::Impl::guide(const nav::GuidedGoal& goal, std::string_view kind) {
-  if (const std::string no = guided.refusal(goal); !no.empty()) {
+  if (const std::string no = self_driving.refusal(goal); !no.empty()) {
     return base::fail(Code::Conflict, no);
   }
-  take_over(Mode::Guided, asker);
-  guided.go(goal, vehicle());
-  begin_activity(kind);
+  change_mode(ModeCause::Chosen, asker, Mode::Guided);
+  self_driving.go(goal, kind, vehicle());
   return {};
 }
 
@@ -72,7 +69,10 @@ base::Result<void> Robot::Impl::handle(const GoTo& c) {
     }
     goal.kind = nav::GuidedGoal::Kind::Steer;
     // One more of a stream is no word of a person.
-    if (held.waits() && activity.kind == "heading") return base::fail(Code::Conflict, held.why());
+    const HeldByRadio& held = self_driving.held();
+    if (held.waits() && self_driving.activity().kind == "heading") {
+      return base::fail(Code::Conflict, held.why());
+    }
     return guide(goal, "heading");
   }
   const auto place = place_of(c);
@@ -122,11 +122,11 @@ base::Result<void> Robot::Impl::handle(const SetTarget& c) {
       (c.velocity_mps && (bad(c.velocity_mps->east_m) || bad(c.velocity_mps->north_m)));
   if (not_finite) return base::fail(Code::Invalid, "a target has finite numbers only");
   nav::FollowTarget target{*place, c.velocity_mps, c.asked - base::from_seconds(c.age_s)};
-  if (target.stamp > now + std::chrono::milliseconds(200)) {
+  if (target.stamp > clock.now() + std::chrono::milliseconds(200)) {
     return base::fail(Code::Invalid, "the target's time lies in the future",
                       {{"/time", "lies in the future"}});
   }
-  if (base::seconds(now - target.stamp) > config->modes.follow_hold_s) {
+  if (base::seconds(clock.now() - target.stamp) > config->modes.follow_hold_s) {
     return base::fail(Code::Late, "the target's time is too long ago");
   }
   nav::FollowOffset offset;
@@ -134,7 +134,7 @@ base::Result<void> Robot::Impl::handle(const SetTarget& c) {
   if (c.offset == SetTarget::Offset::Course) offset.frame = nav::FollowOffset::Frame::Course;
   offset.a_m = c.a_m;
   offset.b_m = c.b_m;
-  if (const std::string no = follower.take(target, offset); !no.empty()) {
+  if (const std::string no = self_driving.take(target, offset); !no.empty()) {
     return base::fail(Code::Conflict, "the target is not believed: " + no);
   }
   return {};
@@ -142,12 +142,11 @@ base::Result<void> Robot::Impl::handle(const SetTarget& c) {
 
 base::Result<void> Robot::Impl::enter_follow() {
   if (auto ok = may_drive_by_itself(); !ok) return ok;
-  if (mode == Mode::Follow) return held.waits() ? handle(ResumeActivity{}) : base::Result<void>{};
-  if (const std::string no = follower.refusal(pose->at, now); !no.empty()) {
-    return base::fail(Code::Conflict, no);
-  }
-  take_over(Mode::Follow, asker);
-  begin_activity("follow");
+  if (machine.mode() == Mode::Follow) return go_on();
+  const std::string no = self_driving.follow_refusal(pose->at, clock.now());
+  if (!no.empty()) return base::fail(Code::Conflict, no);
+  change_mode(ModeCause::Chosen, asker, Mode::Follow);
+  self_driving.follow();
   return {};
 }
 
@@ -172,9 +171,8 @@ base::Result<void> Robot::Impl::enter_dock(const SetMode& c) {
                           std::to_string(std::lround(pose->horizontal_sigma_m * 100.0)) +
                           " cm: too much to dock");
   }
-  take_over(Mode::Dock, asker);
-  dock.begin({*place, *c.goal->yaw_rad, c.goal->reverse}, vehicle());
-  begin_activity("dock");
+  change_mode(ModeCause::Chosen, asker, Mode::Dock);
+  self_driving.dock({*place, *c.goal->yaw_rad, c.goal->reverse}, vehicle());
   return {};
 }
 

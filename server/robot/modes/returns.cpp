@@ -9,38 +9,20 @@ using base::Code;
 
 }  // namespace
 
-WayHomeFacts Robot::Impl::way_home_facts() const {
-  return {pose->at, home_point(), fence.get(), config->kept_fence().margin_m + kFenceAllowance_m};
+WayHome Robot::Impl::way_home(Mode mode) const {
+  const WayHomeFacts facts{pose->at, home_point(), fence.get(), way_margin_m()};
+  if (mode == Mode::Rtl) return straight_home(facts);
+  return driven_home(facts, driven.way(estimator.frame()->id()));
 }
 
-DrivenWay Robot::Impl::driven() const {
-  return {estimator.frame() ? estimator.frame()->id() : 0, crumbs.way_back(),
-          crumbs.longest_gap_m()};
-}
-
-void Robot::Impl::begin_return(Mode to, const WayHome& home_way, std::string_view kind) {
-  take_over(to, asker);
-  homeward.begin(home_way.way, vehicle(), to == Mode::SmartRtl);
-  begin_activity(kind);
-  activity.goal = estimator.frame()->to_global(home_way.way.back());
-  activity.distance_m = home_way.length_m(pose->at);
-}
-
-base::Result<void> Robot::Impl::enter_return() {
+base::Result<void> Robot::Impl::enter_home(Mode to) {
   if (auto ok = may_drive_by_itself(); !ok) return ok;
-  if (mode == Mode::Rtl) return held.waits() ? handle(ResumeActivity{}) : base::Result<void>{};
-  const WayHome found = straight_home(way_home_facts());
+  if (machine.mode() == to) return go_on();
+  const WayHome found = way_home(to);
   if (!found.refusal.empty()) return base::fail(Code::Conflict, found.refusal);
-  begin_return(Mode::Rtl, found, "return");
-  return {};
-}
-
-base::Result<void> Robot::Impl::enter_retrace() {
-  if (auto ok = may_drive_by_itself(); !ok) return ok;
-  if (mode == Mode::SmartRtl) return held.waits() ? handle(ResumeActivity{}) : base::Result<void>{};
-  const WayHome found = driven_home(way_home_facts(), driven());
-  if (!found.refusal.empty()) return base::fail(Code::Conflict, found.refusal);
-  begin_return(Mode::SmartRtl, found, "retrace");
+  change_mode(ModeCause::Chosen, asker, to);
+  self_driving.go_home(found.way, to == Mode::SmartRtl, vehicle(),
+                       estimator.frame()->to_global(found.way.back()), found.length_m(pose->at));
   return {};
 }
 
@@ -65,7 +47,7 @@ base::Result<WayHomePreview> Robot::way_home(base::Mode mode) const {
   const auto fence = impl_->shared_fence.get();
   if (fence && fence->frame_id == frame.id()) facts.fence = fence.get();
   facts.margin_m = impl_->shared_config.get()->kept_fence().margin_m + kFenceAllowance_m;
-  const auto driven = impl_->driven_way.get();
+  const auto driven = impl_->shared_way.get();
   const bool known = driven && driven->frame_id == frame.id();
   const WayHome found = mode == base::Mode::Rtl ? straight_home(facts)
                                                 : driven_home(facts, known ? *driven : DrivenWay{});
@@ -82,9 +64,13 @@ base::Result<WayHomePreview> Robot::way_home(base::Mode mode) const {
   return out;
 }
 
-void Robot::Impl::drop_crumbs() {
-  crumbs.clear();
-  crumbs.use(config->modes.crumb_m);
+void Robot::Impl::lay_way() {
+  const bool wheels_turn = world.motion && world.motion->twist != base::BodyTwist{};
+  driven.lay(*pose, arm.armed(), wheels_turn, estimator.health().resets, fence.get());
+}
+
+void Robot::Impl::begin_way_anew() {
+  driven.begin_anew(config->modes.crumb_m);
 }
 
 }  // namespace roverd::robot

@@ -8,7 +8,6 @@ namespace roverd::robot {
 namespace {
 
 using base::Code;
-using base::ExecutionState;
 using base::Mode;
 using base::Severity;
 
@@ -46,14 +45,14 @@ std::string_view meaning_of(const RadioAction* action) noexcept {
 }  // namespace
 
 void Robot::Impl::press(const base::RadioState& frame) {
-  if (!radio_heard(world, config->safety, now)) keys.lost();
+  if (!radio_heard(world, config->safety, clock.now())) keys.lost();
   for (const RadioKey& key : keys.take(frame, world.swb)) {
     if (key.action != nullptr) pressed.push_back(key);
   }
 }
 
 void Robot::Impl::act_on_radio() {
-  if (!radio_heard(world, config->safety, now)) keys.lost();
+  if (!radio_heard(world, config->safety, clock.now())) keys.lost();
   for (const RadioKey& key : pressed) {
     const RadioAction& action = *key.action;
     const std::string text = std::string(key.cause) + ": " + std::string(action.meaning);
@@ -110,38 +109,34 @@ base::Result<void> Robot::Impl::carry_out(const RadioAction& action) {
 /// Goes on with what was interrupted; else starts what is loaded. Whoever holds the radio stands
 /// beside the robot and edits with it, and has no screen to compare revisions on.
 base::Result<void> Robot::Impl::drive_by_radio() {
-  const ExecutionState s = executor.state();
-  const bool under_way =
-      s == ExecutionState::Running || s == ExecutionState::Paused || s == ExecutionState::Blocked;
-  if (under_way || mode == Mode::Auto || !mission) return handle(SetMode{Mode::Auto});
+  if (missions.in_hand() || machine.mode() == Mode::Auto || !missions) {
+    return handle(SetMode{Mode::Auto});
+  }
   return start(nav::StartAt{});
 }
 
 base::Result<void> Robot::Impl::ask_for_edit(RadioDeed deed) {
   const bool adds = deed == RadioDeed::AddWaypoint;
-  if (!adds && !mission) return base::fail(Code::Conflict, "no mission is loaded");
+  if (!adds && !missions) return base::fail(Code::Conflict, "no mission is loaded");
   if (deed != RadioDeed::RemoveCurrent && !pose) {
     return base::fail(Code::Conflict, "the position is not known");
   }
   MissionEdit edit;
-  edit.wall = wall;
+  edit.wall = clock.wall();
   if (pose) edit.at = pose->global;
-  if (mission) {
-    edit.mission_id = mission->copy.id;
-    edit.revision = mission->copy.revision;
+  if (missions) {
+    edit.mission_id = missions->copy.id;
+    edit.revision = missions->copy.revision;
   }
   if (deed == RadioDeed::RemoveCurrent) {
     edit.kind = EditKind::RemoveItem;
-    edit.item = executor.progress(std::nullopt).current_item;
+    edit.item = missions.executor.progress(std::nullopt).current_item;
   }
   if (deed == RadioDeed::ClearMission) {
     edit.kind = EditKind::Clear;
     // It stops now, not when the disk has written that it is empty.
-    const ExecutionState s = executor.state();
-    const bool drives =
-        s == ExecutionState::Running || s == ExecutionState::Paused || s == ExecutionState::Blocked;
-    if (drives) executor.stop("cleared by the radio");
-    if (mode == Mode::Auto) set_mode(Mode::Hold, "the mission was cleared");
+    if (missions.in_hand()) missions.executor.stop("cleared by the radio");
+    change_mode(ModeCause::MissionOver, "the mission was cleared");
   }
   if (!outbox.edit(std::move(edit))) {
     return base::fail(Code::Unavailable, "too many changes wait to be saved");

@@ -1,0 +1,86 @@
+#include "robot/mission_keeper.hpp"
+
+namespace roverd::robot {
+namespace {
+
+using base::Code;
+
+constexpr const char* kLeftBehind = "left by a restart";
+
+}  // namespace
+
+std::string MissionKeeper::name() const {
+  return "mission \"" + mission_->copy.plan.name + "\" revision " +
+         std::to_string(mission_->copy.revision);
+}
+
+MissionKeeper::Mission MissionKeeper::load(Mission mission) {
+  Mission old = std::exchange(mission_, std::move(mission));
+  executor.load(route());
+  return old;
+}
+
+base::Result<void> MissionKeeper::may_revise(const ReviseMission& r) const {
+  const bool same =
+      mission_ ? mission_->copy.id == r.from_id && mission_->copy.revision == r.from_revision
+               : r.from_id.empty();
+  if (!same) return base::fail(Code::Conflict, "another mission was loaded meanwhile");
+  return {};
+}
+
+MissionKeeper::Mission MissionKeeper::revise(const ReviseMission& r) {
+  Mission old = std::exchange(mission_, r.mission);
+  if (!mission_) {
+    if (executor.running()) executor.stop("nothing is left of the mission");
+    executor.load(nullptr);
+  } else if (!old) {
+    executor.load(route());
+  } else if (r.kind == EditKind::RemoveItem) {
+    executor.drop(route(), r.item);
+  } else {
+    executor.extend(route());
+  }
+  return old;
+}
+
+base::Result<void> MissionKeeper::may_restore(const ResumeAt& left, const ParameterSet& set,
+                                              base::EnuPoint here) const {
+  nav::Executor trial(set.path, set.behave, set.modes);
+  const std::shared_ptr<const nav::Route> way(left.mission, &left.mission->route);
+  if (auto ok = trial.restore(way, left.place, kLeftBehind); !ok) return ok;
+  return trial.may_resume(here);
+}
+
+void MissionKeeper::restore(const base::MissionPlace& place) {
+  (void)executor.restore(route(), place, kLeftBehind);
+}
+
+base::MissionProgress MissionKeeper::progress(const std::optional<base::Pose>& pose,
+                                              const std::optional<base::LocalFrame>& frame,
+                                              bool radio) const {
+  base::MissionProgress p;
+  if (!mission_) return p;
+  p.mission_id = mission_->copy.id;
+  p.revision = mission_->copy.revision;
+  p.name = mission_->copy.plan.name;
+  p.state = executor.state();
+  p.reason = executor.reason();
+  if (executor.running() && radio) {
+    p.reason = "the radio drives; the mission goes on when it gives control back";
+  }
+  p.items = static_cast<int>(mission_->copy.plan.items.size());
+  const nav::Progress at = executor.progress(pose ? std::optional(pose->at) : std::nullopt);
+  p.current_item = at.current_item;
+  p.cross_track_m = at.cross_track_m;
+  p.distance_left_m = at.distance_left_m;
+  p.eta_s = at.eta_s;
+  p.place = executor.place();
+  if (pose && at.target && frame) {
+    const auto to = base::distance_bearing(pose->global, frame->to_global(*at.target));
+    p.distance_to_item_m = to.distance_m;
+    p.bearing_to_item_deg = to.bearing_deg;
+  }
+  return p;
+}
+
+}  // namespace roverd::robot

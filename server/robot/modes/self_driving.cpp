@@ -1,0 +1,223 @@
+#include "robot/modes/self_driving.hpp"
+
+namespace roverd::robot {
+namespace {
+
+using base::ActivityState;
+using base::Mode;
+
+bool under_way(ActivityState s) noexcept {
+  return s == ActivityState::Driving || s == ActivityState::Turning ||
+         s == ActivityState::Waiting || s == ActivityState::Held;
+}
+
+}  // namespace
+
+SelfDriving::SelfDriving(const ParameterSet& set)
+    : guided_(set.path, set.behave, set.modes),
+      dock_(set.path, set.behave, set.modes),
+      homeward_(set.path, set.behave),
+      follow_(set.path, set.modes) {}
+
+void SelfDriving::begin(std::string_view kind) {
+  const std::uint64_t id = activity_.id + 1;
+  held_.go_on();
+  activity_ = {};
+  activity_.id = id;
+  activity_.kind = kind;
+  activity_.state = ActivityState::Driving;
+}
+
+void SelfDriving::wait_for_goal() {
+  begin("goto");
+  activity_.state = ActivityState::Waiting;
+  activity_.reason = "no goal yet";
+}
+
+void SelfDriving::go(const nav::GuidedGoal& goal, std::string_view kind,
+                     const nav::Vehicle& vehicle) {
+  guided_.go(goal, vehicle);
+  begin(kind);
+}
+
+void SelfDriving::go_home(const std::vector<base::EnuPoint>& way, bool retrace,
+                          const nav::Vehicle& vehicle, base::LatLon to, double length_m) {
+  homeward_.begin(way, vehicle, retrace);
+  begin(retrace ? "retrace" : "return");
+  activity_.goal = to;
+  activity_.distance_m = length_m;
+}
+
+void SelfDriving::follow() {
+  begin("follow");
+}
+
+void SelfDriving::dock(const nav::DockGoal& goal, const nav::Vehicle& vehicle) {
+  dock_.begin(goal, vehicle);
+  begin("dock");
+}
+
+void SelfDriving::interrupt() noexcept {
+  guided_.interrupt();
+  dock_.interrupt();
+  homeward_.interrupt();
+}
+
+bool SelfDriving::hold(Mode mode) {
+  const bool no_goal = mode == Mode::Guided && activity_.state == ActivityState::Waiting;
+  if (held_.waits() || no_goal || !under_way(activity_.state)) return false;
+  held_.take(activity_.kind);
+  activity_.state = ActivityState::Held;
+  activity_.reason = held_.why();
+  return true;
+}
+
+void SelfDriving::leave(Mode to, const std::string& why, bool stands_first) {
+  if (under_way(activity_.state)) {
+    activity_.state = ActivityState::Failed;
+    activity_.reason = "ended by mode " + std::string(base::to_string(to)) + ": " + why;
+  }
+  guided_.reset();
+  dock_.reset();
+  homeward_.reset();
+  follow_.reset();
+  held_.go_on();
+  changeover_.skip();
+  if (stands_first) changeover_.begin();
+}
+
+SelfDriving::Step SelfDriving::step(const Facts& f) {
+  if (held_.waits()) return {{}, "held", false, {}};
+  if (changeover_.ends(f.vehicle.speed_mps, f.vehicle.yaw_rate_radps, f.dt_s)) interrupt();
+  if (changeover_.waits()) return {{}, "stopping", false, {}};
+  const nav::TrackOutput out = step_mode(f);
+  Step step{out.command, nav::to_string(out.reason), false, {}};
+  const bool over =
+      activity_.state == ActivityState::Reached || activity_.state == ActivityState::Failed;
+  if (over) return step;
+  step.ending = ending(f.mode);
+  if (step.ending) {
+    activity_.state = step.ending->state;
+    activity_.reason =
+        activity_.state == ActivityState::Reached ? std::string() : step.ending->detail;
+    activity_.distance_m.reset();
+    activity_.turn_rad.reset();
+    return step;
+  }
+  tell(f);
+  step.drives =
+      activity_.state == ActivityState::Driving || activity_.state == ActivityState::Turning;
+  return step;
+}
+
+nav::TrackOutput SelfDriving::step_mode(const Facts& f) {
+  switch (f.mode) {
+    case Mode::Guided:
+      return guided_.step(f.vehicle, f.limit_mps, f.dt_s);
+    case Mode::Rtl:
+    case Mode::SmartRtl:
+      return homeward_.step(f.vehicle, f.limit_mps, f.dt_s);
+    case Mode::Follow:
+      return follow_.step(f.vehicle, f.limit_mps, f.now, f.dt_s);
+    case Mode::Dock:
+      return dock_.step(f.vehicle, f.limit_mps, f.dt_s);
+    case Mode::Auto:
+    case Mode::Manual:
+    case Mode::Hold:
+    case Mode::Steering:
+    case Mode::Acro:
+    case Mode::Simple:
+      break;
+  }
+  return {};
+}
+
+/// What the machine of this mode came to.
+std::optional<SelfDriving::Ending> SelfDriving::ending(Mode mode) const {
+  const auto reached = [](const char* kind, std::string detail) {
+    return Ending{ActivityState::Reached, kind, std::move(detail)};
+  };
+  const auto failed = [](const char* kind, std::string detail) {
+    return Ending{ActivityState::Failed, kind, std::move(detail)};
+  };
+  switch (mode) {
+    case Mode::Guided:
+      if (guided_.state() == nav::Guided::State::Reached) {
+        return reached("goal_reached",
+                       "the goal of this " + std::string(activity_.kind) + " is reached");
+      }
+      if (guided_.state() == nav::Guided::State::Failed) {
+        return failed("goal_failed", guided_.reason());
+      }
+      break;
+    case Mode::Rtl:
+    case Mode::SmartRtl:
+      if (homeward_.state() == nav::Homeward::State::Home) {
+        return reached("home_reached", "home is reached");
+      }
+      if (homeward_.state() == nav::Homeward::State::Failed) {
+        return failed("return_failed", "the way home: " + homeward_.reason());
+      }
+      break;
+    case Mode::Follow:
+      if (follow_.state() == nav::Follow::State::Lost) {
+        return failed("target_lost", follow_.reason());
+      }
+      break;
+    case Mode::Dock:
+      if (dock_.state() == nav::Dock::State::Docked) return reached("docked", "docked");
+      if (dock_.state() == nav::Dock::State::Failed) {
+        return failed("dock_failed", "not docked: " + dock_.reason());
+      }
+      break;
+    case Mode::Auto:
+    case Mode::Manual:
+    case Mode::Hold:
+    case Mode::Steering:
+    case Mode::Acro:
+    case Mode::Simple:
+      break;
+  }
+  return std::nullopt;
+}
+
+void SelfDriving::tell_guided(const Facts& f) {
+  base::Activity& a = activity_;
+  const nav::Guided::State s = guided_.state();
+  if (s == nav::Guided::State::Waiting) a.state = ActivityState::Waiting;
+  a.reason = s == nav::Guided::State::Waiting && guided_.reason().empty() ? "no goal yet"
+                                                                          : guided_.reason();
+  if (guided_.place()) a.goal = f.frame.to_global(*guided_.place());
+  if (s != nav::Guided::State::Waiting) a.goal_yaw_rad = guided_.goal().yaw_rad;
+  a.distance_m = guided_.distance_left_m(f.vehicle.at);
+  a.turn_rad = guided_.trip().turn_left_rad();
+}
+
+/// Where the mode stands, in the words of the snapshot.
+void SelfDriving::tell(const Facts& f) {
+  base::Activity& a = activity_;
+  a.state = ActivityState::Driving;
+  a.reason.clear();
+  a.turn_rad.reset();
+  a.distance_m.reset();
+  if (f.mode == Mode::Guided) {
+    tell_guided(f);
+  } else if (f.mode == Mode::Rtl || f.mode == Mode::SmartRtl) {
+    a.distance_m = homeward_.trip().distance_left_m();
+  } else if (f.mode == Mode::Dock) {
+    a.goal = f.frame.to_global(dock_.goal().at);
+    a.goal_yaw_rad = dock_.goal().yaw_rad;
+    a.distance_m = dock_.distance_left_m();
+    a.reason = dock_.reason();
+  } else if (f.mode == Mode::Follow && follow_.target()) {
+    a.target = f.frame.to_global(follow_.target()->at);
+    a.target_age_s = base::seconds(f.now - follow_.target()->stamp);
+    a.distance_m = follow_.distance_m(f.vehicle.at);
+    const bool waits = follow_.state() == nav::Follow::State::Braking;
+    if (waits) a.state = ActivityState::Waiting;
+    a.reason = waits ? "the target is silent" : "";
+  }
+  if (a.turn_rad) a.state = ActivityState::Turning;
+}
+
+}  // namespace roverd::robot
