@@ -51,6 +51,12 @@ Data2Builder& Data2Builder::integer(std::uint16_t xdi, std::uint32_t value, std:
   return *this;
 }
 
+Data2Builder& Data2Builder::bytes(std::uint16_t xdi, Bytes bytes) {
+  head(xdi, bytes.size());
+  bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+  return *this;
+}
+
 void Data2Builder::head(std::uint16_t xdi, std::size_t size) {
   put(xdi, 2);
   put(size, 1);

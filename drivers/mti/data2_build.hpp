@@ -22,6 +22,8 @@ class Data2Builder {
   Data2Builder& numbers(std::uint16_t xdi, std::initializer_list<double> values);
   /// @param size 1, 2 or 4 bytes.
   Data2Builder& integer(std::uint16_t xdi, std::uint32_t value, std::size_t size);
+  /// A packet as it stands. @param bytes at most 255.
+  Data2Builder& bytes(std::uint16_t xdi, Bytes bytes);
   const std::vector<std::uint8_t>& payload() const noexcept { return bytes_; }
 
  private:

@@ -59,6 +59,7 @@ void Interpreter::tell_filter(const Sample& s, Time stamp) {
   position_at_ = stamp;
   base::GnssFix fix;
   fix.stamp = stamp;
+  fix.latency_s = latency_s_;
   fix.fix = filter_fix(stamp);
   fix.position = s.at;
   if (s.utc) fix.utc = wall_of(*s.utc, s.utc->nanosecond);
@@ -80,12 +81,13 @@ void Interpreter::tell_filter(const Sample& s, Time stamp) {
   tell_fix(fix);
   if (!s.velocity_E) return;
   ears_.tell(base::GnssVelocity{
-      stamp, (*s.velocity_E)[0] - swing_E[0], (*s.velocity_E)[1] - swing_E[1], {}});
+      stamp, (*s.velocity_E)[0] - swing_E[0], (*s.velocity_E)[1] - swing_E[1], {}, latency_s_});
 }
 
 void Interpreter::tell_receiver(const GnssPvt& pvt, Time stamp) {
   base::GnssFix fix;
   fix.stamp = stamp;
+  fix.latency_s = latency_s_;
   fix.satellites = pvt.satellites;
   fix.hdop = pvt.dop[4];
   fix.utc = wall_of(pvt.utc, pvt.nano);
@@ -96,7 +98,7 @@ void Interpreter::tell_receiver(const GnssPvt& pvt, Time stamp) {
   fix.geoid_sep_m = pvt.height_ellipsoid_m - pvt.height_msl_m;
   fix.sigma_east_m = fix.sigma_north_m = axis_sigma_m(pvt.horizontal_sigma_m);
   tell_fix(fix);
-  base::GnssVelocity velocity{stamp, pvt.east_mps, pvt.north_mps, {}};
+  base::GnssVelocity velocity{stamp, pvt.east_mps, pvt.north_mps, {}, latency_s_};
   if (pvt.speed_sigma_mps > 0.0) velocity.sigma_mps = pvt.speed_sigma_mps;
   ears_.tell(velocity);
 }

@@ -24,6 +24,12 @@ Mat3 mounted(const Params& p) noexcept {
          leaning(rad_from_deg(p.mount_roll_deg), rad_from_deg(p.mount_pitch_deg));
 }
 
+/// It belongs to a sample of its own time and says nothing of the unit itself.
+bool of_receiver(const Sample& s) noexcept {
+  return (s.pvt || s.satellites) &&
+         !(s.rate_S || s.accel_S || s.field_S || s.R_ES || s.at || s.velocity_E);
+}
+
 bool due(std::optional<Time>& last, Time stamp, double hz) noexcept {
   // Half a millisecond early is in time: stamps are no exact multiples.
   if (last && stamp >= *last && base::seconds(stamp - *last) < 1.0 / hz - 5e-4) return false;
@@ -53,6 +59,7 @@ void Interpreter::forget() {
   rate_B_.reset();
   slow_accel_B_.reset();
   pvt_.reset();
+  pvt_count_.reset();
 }
 
 bool Interpreter::take(Bytes payload, Time arrival) {
@@ -82,13 +89,18 @@ bool Interpreter::take(Bytes payload, Time arrival) {
 
 /// Empty: not of now. A unit that does not tell its sample time is stamped by arrival.
 std::optional<Time> Interpreter::time_of(const Sample& s, Time arrival) {
+  latency_s_.reset();
+  if (of_receiver(s)) return time_of_receiver(s, arrival);
   frozen_ = false;
   if (!s.count) return arrival;
   const SampleClock::Read read = clock_.read(*s.count, arrival);
   if (read.step == SampleClock::Step::Back) {
     ears_.refused("sample time going back", 1);
+    number_.reset();
+    pvt_count_.reset();
     return {};
   }
+  latency_s_ = 0.0;
   // Slower items have messages of their own, with the time of the sample they belong to.
   if (read.step == SampleClock::Step::Same && (s.rate_S || s.accel_S)) {
     frozen_ = true;
@@ -98,13 +110,36 @@ std::optional<Time> Interpreter::time_of(const Sample& s, Time arrival) {
   return read.stamp;
 }
 
+/// By arrival while no inertial sample has told how the unit's time and ours go together.
+std::optional<Time> Interpreter::time_of_receiver(const Sample& s, Time arrival) {
+  if (!s.count || !clock_.known()) return arrival;
+  const auto stamp = clock_.at(*s.count, arrival);
+  if (!stamp) {
+    ears_.refused("GNSS message of a sample that is long past", 1);
+    return {};
+  }
+  if (s.pvt) {
+    const bool on = !pvt_count_ || static_cast<std::int32_t>(*s.count - *pvt_count_) > 0;
+    if (!on) {
+      ears_.refused("GNSS sample time not going on", 1);
+      return {};
+    }
+    pvt_count_ = s.count;
+  }
+  latency_s_ = 0.0;
+  return stamp;
+}
+
+/// Numbers go on from message to message as they are sent, the receiver's included; those of a unit
+/// that numbers by sample are behind the newest and say nothing of a loss.
 void Interpreter::count_lost(const Sample& s) {
   if (!s.number) return;
   if (number_) {
-    const int gap = static_cast<std::uint16_t>(*s.number - *number_);
+    const int gap = static_cast<std::int16_t>(*s.number - *number_);
     if (gap > 1 && gap <= kMostLost) {
       ears_.noted("message lost on the way", static_cast<std::uint64_t>(gap - 1));
     }
+    if (gap <= 0 && gap >= -kMostLost && of_receiver(s)) return;
   }
   number_ = s.number;
 }

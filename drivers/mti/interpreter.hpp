@@ -12,6 +12,9 @@
 //               position_hz; or of its receiver, at the antenna
 //   SatellitesInView          of its receiver
 //
+// The receiver's messages come 40 ms to 2.5 s after the samples that they tell of, with those
+// samples' time: they are stamped so, told with their true latency (none), and move nothing else.
+//
 // A failed self-test, a sample time that stands still or goes back, 0, 0, dates before this
 // software was written, a field that is not the earth's: refused by name, never told. What is of no
 // use, is noted. Axes: mti/rotation.hpp. Pure state; one thread.
@@ -77,6 +80,7 @@ class Interpreter {
   Sample gather(const Data2& data) const;
   void gather_numbers(Sample& s, const Packet& packet, const Numbers& n) const;
   std::optional<Time> time_of(const Sample& s, Time arrival);
+  std::optional<Time> time_of_receiver(const Sample& s, Time arrival);
   void count_lost(const Sample& s);
   void learn(const Sample& s, Time stamp);
   void tell_inertial(const Sample& s, Time stamp);
@@ -99,6 +103,8 @@ class Interpreter {
   const Vec3 arm_B_;
   SampleClock clock_;
   bool frozen_ = false;
+  std::optional<double> latency_s_;  ///< of the present message; empty: it came without a time
+  std::optional<std::uint32_t> pvt_count_;
   std::optional<std::uint16_t> number_;
   std::optional<Status> status_;
   std::optional<Mat3> R_EB_;  ///< while the unit tells its orientation

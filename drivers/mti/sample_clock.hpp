@@ -5,7 +5,8 @@
 //   stamp = count + min(arrival − count), the minimum rising by 100 ppm against two clocks that
 //   drift apart
 //
-// Stamps never lie after the arrival and go on as evenly as the unit measures. Pure state.
+// Stamps never lie after the arrival and go on as evenly as the unit measures. What is told of an
+// earlier sample (a receiver's position) is read against it and moves nothing. Pure state.
 
 #include <algorithm>
 #include <cstdint>
@@ -25,6 +26,7 @@ class SampleClock {
   static constexpr double kDrift = 100e-6;
   /// A count this far off the arrivals has jumped: the delay is learned anew.
   static constexpr double kJump_s = 0.5;
+  static constexpr double kOldest_s = 5.0;
 
   struct Read {
     Step step = Step::First;
@@ -51,6 +53,17 @@ class SampleClock {
     arrived_ = arrival;
     return {step, Time{total_ + *delay_}};
   }
+  /// When that sample was taken, if it lies at most kOldest_s before the arrival and not after it;
+  /// empty: it does not, or nothing was read yet.
+  std::optional<Time> at(std::uint32_t count, Time arrival) const noexcept {
+    if (!known_) return {};
+    const auto on = static_cast<std::int32_t>(count - last_);
+    const Time stamp{total_ + *delay_ + kTick * on};
+    const double age_s = base::seconds(arrival - stamp);
+    if (age_s < -kJump_s || age_s > kOldest_s) return {};
+    return std::min(stamp, arrival);
+  }
+  bool known() const noexcept { return known_; }
   void reset() noexcept { known_ = false; }
 
  private:

@@ -64,11 +64,16 @@ class Framer {
   void give_up(OnMessage&& on_message) {
     drain(true, on_message);
   }
-  void forget() noexcept { buffer_.clear(); }
+  void forget() noexcept {
+    position_ += buffer_.size();
+    buffer_.clear();
+  }
   /// Bytes that may become a message are kept.
   bool waiting() const noexcept { return !buffer_.empty(); }
 
   const Counts& counts() const noexcept { return counts_; }
+  /// Bytes of the stream up to the end of the message that is being told, or to where it waits.
+  std::uint64_t position() const noexcept { return position_; }
 
  private:
   enum class Look { Message, More, Other };
@@ -84,17 +89,20 @@ class Framer {
       if (seen == Look::More && !last) break;
       if (seen == Look::Message) {
         ++counts_.messages;
-        on_message(std::as_const(message));
         at += length;
+        position_ += length;
+        on_message(std::as_const(message));
       } else {
         ++counts_.skipped_bytes;
         ++at;
+        ++position_;
       }
     }
     buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(at));
   }
 
   std::vector<std::uint8_t> buffer_;
+  std::uint64_t position_ = 0;
   Counts counts_;
 };
 

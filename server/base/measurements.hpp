@@ -34,6 +34,8 @@ struct GnssFix {
   std::optional<double> sigma_north_m;
   std::optional<double> correction_age_s;
   std::optional<WallTime> utc;  ///< epoch by the receiver
+  /// Age at its stamp where the device tells when it measured; empty: nav.estimate.gnss_latency_s.
+  std::optional<double> latency_s{};
 };
 
 /// Velocity over ground.
@@ -42,6 +44,7 @@ struct GnssVelocity {
   double east_mps = 0.0;
   double north_mps = 0.0;
   std::optional<double> sigma_mps;
+  std::optional<double> latency_s{};  ///< as in GnssFix
 };
 
 enum class HeadingSource { Compass, DualAntenna };
@@ -77,14 +80,22 @@ struct Attitude {
   double pitch_rad = 0.0;  ///< nose up positive
 };
 
+/// One signal of a satellite, where the receiver tells them apart.
+struct SatelliteSignal {
+  std::string name;  ///< "L1 C/A", "E5b I"; a number where it has no name here
+  std::optional<double> cn0_dbhz;
+  bool used = false;  ///< its code, carrier or Doppler, in the solution
+};
+
 /// One satellite as a receiver tells of it.
 struct Satellite {
   std::string system;  ///< gps glonass galileo beidou qzss sbas navic unknown
   int number = 0;      ///< within its system
   std::optional<double> elevation_deg;
   std::optional<double> azimuth_deg;  ///< compass
-  std::optional<double> cn0_dbhz;     ///< empty: in view, not tracked
+  std::optional<double> cn0_dbhz;     ///< of the strongest signal; empty: in view, not tracked
   std::optional<bool> used;           ///< in the solution
+  std::vector<SatelliteSignal> signals{};
 };
 
 /// All satellites that one receiver sees; replaces what that receiver told before.

@@ -146,7 +146,8 @@ class Estimator {
   void reset_position(base::EnuPoint at, const GnssQuality& q) noexcept;
   base::EnuPoint local(const base::GnssFix& fix) const noexcept;
   Arm arm(double yaw_rad) const noexcept;
-  Time taken_at(Time stamp) const noexcept;
+  template <class M>
+  Time taken_at(const M& m) const noexcept;
 
   // velocity.cpp
   void fuse_velocity(const base::GnssVelocity& velocity, double sigma_mps) noexcept;
@@ -214,6 +215,12 @@ class Estimator {
 
   base::EstimatorHealth health_;  ///< counts and inputs; the rest is filled in when asked
 };
+
+/// When the receiver measured what has this stamp.
+template <class M>
+Time Estimator::taken_at(const M& m) const noexcept {
+  return m.stamp - base::from_seconds(m.latency_s.value_or(params_->gnss_latency_s + late_s_));
+}
 
 /// Updates the belief and the recent past; notes the innovation, used or not.
 template <int M>

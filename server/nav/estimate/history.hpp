@@ -1,5 +1,6 @@
 #pragma once
-// The last second of states: a GNSS sentence tells of a moment about 0.1 s before its bytes arrive.
+// The last seconds of states: a GNSS sentence tells of a moment about 0.1 s before its bytes
+// arrive, the receiver in an inertial unit of one up to 2.5 s ago.
 
 #include <array>
 #include <cstddef>
@@ -18,11 +19,15 @@ struct Past {
   double turned_rad = 0.0;  ///< sum of all turning as it was believed then, not wrapped
 };
 
-/// A ring of 64 states, about 1.3 s at 50 Hz. Oldest goes first. No allocation.
+/// A ring of 192 states, about 3.8 s at 50 Hz. Oldest goes first. No allocation.
 class History {
  public:
   void clear() noexcept { size_ = 0; }
   bool empty() const noexcept { return size_ == 0; }
+  /// It was kept once and is not any more.
+  bool forgotten(base::Time t) const noexcept {
+    return size_ == ring_.size() && t < entry(size_ - 1).stamp;
+  }
 
   void push(const Past& past) noexcept {
     head_ = (head_ + 1) % ring_.size();
@@ -69,7 +74,7 @@ class History {
     return p;
   }
 
-  std::array<Past, 64> ring_{};
+  std::array<Past, 192> ring_{};
   std::size_t head_ = 0;
   std::size_t size_ = 0;
 };

@@ -59,11 +59,6 @@ Estimator::Arm Estimator::arm(double yaw_rad) const noexcept {
   return {c * forward_m - s * left_m, s * forward_m + c * left_m};
 }
 
-/// When the receiver measured what arrived then.
-Time Estimator::taken_at(Time stamp) const noexcept {
-  return stamp - base::from_seconds(params_->gnss_latency_s + late_s_);
-}
-
 void Estimator::take(const base::GnssFix& fix) {
   Input& in = health_.position;
   if (!in_order(in, last_fix_, fix.stamp)) return;
@@ -78,6 +73,7 @@ void Estimator::take(const base::GnssFix& fix) {
   if (long_ago(fix.utc)) return refuse(in, Refusal::Date);
   if (frame_) receivers_.put(frame_->to_local(*fix.position), fix.stamp);
   if (receivers_.disagree()) return refuse(in, Refusal::Receivers);
+  if (history_.forgotten(taken_at(fix))) return refuse(in, Refusal::Stamp);
   const auto late_s = arrival_.late_s(fix.stamp, fix.utc);
   if (!late_s) return refuse(in, Refusal::Stamp);
   late_s_ = *late_s;
@@ -145,7 +141,7 @@ void Estimator::reset_position(base::EnuPoint at, const GnssQuality& q) noexcept
 
 void Estimator::fuse_position(const base::GnssFix& fix, const GnssQuality& q) noexcept {
   Input& in = health_.position;
-  const auto past = history_.at(taken_at(fix.stamp));
+  const auto past = history_.at(taken_at(fix));
   const StateVector& at = past ? past->x : belief_.x;
   const Arm to_antenna = arm(at(kYaw));
   const base::EnuPoint z = local(fix);

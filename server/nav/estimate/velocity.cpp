@@ -32,6 +32,7 @@ void Estimator::take(const base::GnssVelocity& velocity) {
     return refuse(in, Refusal::Accuracy);
   }
   if (receivers_.disagree()) return refuse(in, Refusal::Receivers);
+  if (history_.forgotten(taken_at(velocity))) return refuse(in, Refusal::Stamp);
   velocity_ = velocity;
   if (!located_) return;
   const double sigma_mps = velocity_sigma_mps(fix_type_, velocity.sigma_mps);
@@ -60,7 +61,7 @@ void Estimator::fuse_course(const base::GnssVelocity& velocity, double sigma_mps
 }
 
 void Estimator::fuse_velocity(const base::GnssVelocity& velocity, double sigma_mps) noexcept {
-  const Time t = taken_at(velocity.stamp);
+  const Time t = taken_at(velocity);
   const auto at = history_.at(t);
   const auto before = history_.at(t - milliseconds(50));
   const auto after = history_.at(t + milliseconds(50));

@@ -161,10 +161,25 @@ TEST(MtData2, UnknownOldAndMisshapenPacketsSayWhat) {
   EXPECT_EQ(std::get<std::uint32_t>(d.packets[5].value), 255U) << "the rest is read";
 }
 
-TEST(MtData2, EveryCutIsRefusedOrHarmless) {
-  for (const auto hex : {kQuaternion, kPosition, kPvt, kUtc}) {
+TEST(MtData2, ACutIsWholeOnlyBetweenTwoPackets) {
+  for (const auto hex : {kQuaternion, kPosition, kPvt, kUtc, kAcceleration}) {
     const Read r(hex);
-    for (std::size_t n = 0; n < r.payload.size(); ++n) decode_data2(Bytes(r.payload).first(n));
+    std::size_t boundary = 0;  // two bytes of id, one of size, and so many
+    std::size_t packets = 0;
+    for (std::size_t n = 0; n <= r.payload.size(); ++n) {
+      if (n > boundary) {
+        const bool fits = n >= boundary + 3 && n == boundary + 3 + r.payload[boundary + 2];
+        if (fits) {
+          boundary = n;
+          ++packets;
+        }
+      }
+      const Data2 d = decode_data2(Bytes(r.payload).first(n));
+      EXPECT_EQ(d.whole, n == boundary) << n;
+      EXPECT_EQ(d.packets.size(), n == boundary ? packets : 0u) << n;
+    }
+    EXPECT_EQ(boundary, r.payload.size());
+    EXPECT_GT(packets, 0u);
   }
 }
 

@@ -77,6 +77,24 @@ TEST(EstimatorRefusal, AReceiversClockThatGoesBackwardsIsNotBelievedAtOnce) {
   EXPECT_EQ(Arrival{}.late_s(now, std::nullopt), 0.0);  // it tells no time
 }
 
+TEST(EstimatorRefusal, APositionThatIsOlderThanWhatIsRememberedIsNotFused) {
+  Drive d;
+  d.speed_mps = 1.0;
+  d.run(10.0);
+  d.gnss = false;
+  d.run(4.0);
+  const std::uint64_t before = count(d, Refusal::Stamp);
+  const auto x = d.estimator.belief().x;
+  base::GnssFix f = fix_at(d, d.pose()->global);
+  f.stamp = d.now();
+  f.latency_s = 3.9;  // 192 states of 20 ms are 3.84 s
+  d.estimator.take(f, d.now());
+  base::GnssVelocity v{d.now(), 0.0, 1.0, {}, 3.9};
+  d.estimator.take(v, d.now());
+  EXPECT_EQ(count(d, Refusal::Stamp), before + 2);
+  EXPECT_EQ(x, d.estimator.belief().x);
+}
+
 TEST(EstimatorRefusal, TwoReceiversThatDisagreeAreNamedAndNoneIsFused) {
   Drive d;
   d.run(3.0);

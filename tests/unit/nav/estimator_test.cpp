@@ -304,5 +304,31 @@ TEST(Estimator, ItsCertaintyMatchesItsError) {
   EXPECT_LT(worse / count, 3.0);  // 2 degrees of freedom
 }
 
+/// An inertial unit's receiver: its messages come late, with the time at which they were valid.
+TEST(Estimator, PositionsThatComeLateAreFusedWhereTheyWereMeasured) {
+  for (const double late_s : {0.04, 0.25, 1.0, 2.5}) {
+    Drive d;
+    d.gyro = true;
+    d.told_late_s = late_s;
+    d.run(5.0);
+    d.speed_mps = 1.0;
+    d.rate_radps = 0.2;
+    d.run(20.0);
+    double worst_m = 0.0;
+    for (int i = 0; i < 1000; ++i) {
+      d.tick();
+      worst_m = std::max(worst_m, d.position_error_m());
+    }
+    EXPECT_LT(worst_m, 0.05) << late_s;  // taken for the present, they would be 2.5 m off
+    EXPECT_LT(std::abs(d.yaw_error_deg()), 1.0) << late_s;
+    // So late that the heading was still open when the first of them came, some are not believed.
+    const auto h = d.estimator.health();
+    EXPECT_LE(h.position.rejected, late_s > 2.0 ? 3u : 0u) << late_s;
+    EXPECT_LE(h.velocity.rejected, late_s > 2.0 ? 30u : 0u) << late_s;
+    EXPECT_EQ(h.resets, 0u) << late_s;
+    EXPECT_NEAR(base::seconds(d.now() - *d.estimator.last_position()), late_s, 0.25) << late_s;
+  }
+}
+
 }  // namespace
 }  // namespace roverd::nav

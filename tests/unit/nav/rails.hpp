@@ -28,6 +28,7 @@ class Drive {
   double yaw_scale = 0.8;  ///< true over measured turning
   base::FixType fix = base::FixType::RtkFixed;
   bool gnss = true;
+  std::optional<double> told_late_s;  ///< it comes so late, with the time at which it was measured
   bool compass = true;
   bool tracks = true;
   bool gyro = false;
@@ -81,12 +82,13 @@ class Drive {
 
  private:
   struct Seen {
-    Time due;
+    Time due, measured;
     double east_m, north_m, yaw_rad, ve, vn;
   };
 
   void sense() {
-    seen_.push_back({now_ + base::from_seconds(params_.gnss_latency_s),
+    const double late_s = told_late_s.value_or(params_.gnss_latency_s);
+    seen_.push_back({now_ + base::from_seconds(late_s), now_,
                      east_m + offset_east_m + noise_m * normal_(random_),
                      north_m + noise_m * normal_(random_), yaw_rad, speed_mps * std::cos(yaw_rad),
                      speed_mps * std::sin(yaw_rad)});
@@ -101,11 +103,12 @@ class Drive {
       }
       if (!gnss) continue;
       base::GnssFix f;
-      f.stamp = now_;
+      f.stamp = told_late_s ? s.measured : now_;
+      if (told_late_s) f.latency_s = 0.0;
       f.fix = fix;
       f.position = frame_.to_global({s.east_m, s.north_m});
       estimator.take(f, now_);
-      estimator.take(base::GnssVelocity{now_, s.ve, s.vn, {}}, now_);
+      estimator.take(base::GnssVelocity{f.stamp, s.ve, s.vn, {}, f.latency_s}, now_);
     }
   }
 
