@@ -82,7 +82,10 @@ bool Framer::next(Cut& cut) noexcept {
     } else if (first == kRtcm3) {
       look = look_rtcm3(cut);
     }
-    if (look == Look::Cut) return true;
+    if (look == Look::Cut) {
+      cut.end = position();
+      return true;
+    }
     if (look == Look::More) return false;
     if (!is_line_end(first)) ++counts_.skipped_bytes;
     ++at_;

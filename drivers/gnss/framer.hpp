@@ -35,7 +35,8 @@ struct Cut {
   Flaw flaw = Flaw::None;
   std::string_view text{};  ///< valid until the next piece is cut
   Bytes bytes{};
-  Time stamp{};  ///< arrival of the piece's first byte
+  Time stamp{};           ///< arrival of the piece's first byte
+  std::uint64_t end = 0;  ///< bytes of the stream up to its end; a line's end is not in it
 };
 
 class Framer {
@@ -77,6 +78,8 @@ class Framer {
   }
 
   const Counts& counts() const noexcept { return counts_; }
+  /// Bytes of the stream that are cut or skipped.
+  std::uint64_t position() const noexcept { return dropped_ + at_; }
 
  private:
   enum class Look { Cut, More, Skip };

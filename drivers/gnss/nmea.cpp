@@ -298,13 +298,7 @@ Parsed parse_line(std::string_view line) noexcept {
   return out;
 }
 
-std::optional<double> time_of_day_s(Bytes line) noexcept {
-  std::string_view text(reinterpret_cast<const char*>(line.data()), line.size());
-  while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.remove_suffix(1);
-  // On a port that mixes protocols, binary without a line end may stand before the sentence.
-  const auto begin = text.rfind('$');
-  if (begin == std::string_view::npos) return std::nullopt;
-  text.remove_prefix(begin);
+std::optional<double> time_of_day_s(std::string_view text) noexcept {
   if (open_line(text) != Flaw::None) return std::nullopt;
   const Fields f(text);
   if (f.tag().size() != 5 || f.tag().front() == 'P') return std::nullopt;

@@ -57,7 +57,7 @@ constexpr std::uint8_t checksum(std::string_view body) noexcept {
 }
 
 /// The UTC time of day an intact GGA, RMC, GNS, GST, ZDA or GLL line carries, for pacing a replay.
-/// Line ends are allowed. Empty for anything else.
-std::optional<double> time_of_day_s(Bytes line) noexcept;
+/// Empty for anything else. @param line as parse_line's.
+std::optional<double> time_of_day_s(std::string_view line) noexcept;
 
 }  // namespace roverd::gnss

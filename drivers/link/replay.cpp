@@ -11,10 +11,6 @@ namespace {
 /// A year: keeps a silly stamp or a tiny speed within the range of the clock.
 constexpr double kLongestWait_s = 3.0e7;
 
-base::Error has_ended(const std::string& path) {
-  return {base::Code::Conflict, "the replay of " + path + " has ended", {}};
-}
-
 }  // namespace
 
 ReplayPump::ReplayPump(asio::io_context& io, ReplayFile& file, const ReplayOptions& options)
@@ -122,76 +118,24 @@ void ReplayPump::end(const std::string& reason) {
   if (call) (*call)(reason);
 }
 
-FrameReplay::FrameReplay(asio::io_context& io, std::string path, const ReplayOptions& options)
-    : path_(std::move(path)),
-      file_(path_,
-            [this](const CanFrame& frame, Time t) {
-              if (on_frame) on_frame(frame, t);
-            }),
-      pump_(io, file_, options) {}
+FrameReplay::FrameReplay(asio::io_context& io, const std::string& path,
+                         const ReplayOptions& options)
+    : Replay(io, path, options, [this](const std::string& file) {
+        return FrameFile(file, [this](const CanFrame& frame, Time t) {
+          if (on_frame) on_frame(frame, t);
+        });
+      }) {}
 
-FrameReplay::~FrameReplay() {
-  close();
-}
-
-base::Result<void> FrameReplay::open() {
-  if (ended_) return tl::unexpected(has_ended(path_));
-  close();
-  if (auto opened = file_.open(); !opened) return opened;
-  open_ = true;
-  pump_.start([this](const std::string& reason) {
-    ended_ = true;
-    open_ = false;
-    if (on_closed) on_closed(reason);
-  });
-  return {};
-}
-
-void FrameReplay::close() noexcept {
-  open_ = false;
-  pump_.stop();
-}
-
-SendResult FrameReplay::send(const CanFrame&) noexcept {
-  return open_ ? SendResult::Sent : SendResult::Closed;
-}
-
-ByteReplay::ByteReplay(asio::io_context& io, std::string path, const ReplayOptions& options)
-    : path_(std::move(path)),
-      file_(
-          path_, options,
-          [this](Bytes bytes, Time t) {
-            if (on_bytes) on_bytes(bytes, t);
-          },
-          [this](Bytes bytes, Time t) {
-            if (on_sent) on_sent(bytes, t);
-          }),
-      pump_(io, file_, options) {}
-
-ByteReplay::~ByteReplay() {
-  close();
-}
-
-base::Result<void> ByteReplay::open() {
-  if (ended_) return tl::unexpected(has_ended(path_));
-  close();
-  if (auto opened = file_.open(); !opened) return opened;
-  open_ = true;
-  pump_.start([this](const std::string& reason) {
-    ended_ = true;
-    open_ = false;
-    if (on_closed) on_closed(reason);
-  });
-  return {};
-}
-
-void ByteReplay::close() noexcept {
-  open_ = false;
-  pump_.stop();
-}
-
-SendResult ByteReplay::write(Bytes) noexcept {
-  return open_ ? SendResult::Sent : SendResult::Closed;
-}
+ByteReplay::ByteReplay(asio::io_context& io, const std::string& path, const ReplayOptions& options)
+    : Replay(io, path, options, [this, &options](const std::string& file) {
+        return ByteFile(
+            file, options,
+            [this](Bytes bytes, Time t) {
+              if (on_bytes) on_bytes(bytes, t);
+            },
+            [this](Bytes bytes, Time t) {
+              if (on_sent) on_sent(bytes, t);
+            });
+      }) {}
 
 }  // namespace roverd::link

@@ -63,40 +63,59 @@ class ReplayPump {
   std::uint64_t played_this_lap_ = 0;
 };
 
-class FrameReplay final : public FrameLink {
+/// A recording in place of the link that it was made from. @tparam Link FrameLink or ByteLink.
+/// @tparam File what reads the recording and hands it to the link's callbacks.
+template <class Link, class File>
+class Replay : public Link {
  public:
-  FrameReplay(asio::io_context& io, std::string path, const ReplayOptions& options = {});
-  ~FrameReplay() override;
+  ~Replay() override { close(); }
 
-  base::Result<void> open() override;
-  void close() noexcept override;
-  SendResult send(const CanFrame& frame) noexcept override;
+  base::Result<void> open() override {
+    if (ended_) {
+      return base::fail(base::Code::Conflict, "the replay of " + path_ + " has ended");
+    }
+    close();
+    if (auto opened = file_.open(); !opened) return opened;
+    open_ = true;
+    pump_.start([this](const std::string& reason) {
+      ended_ = true;
+      open_ = false;
+      if (this->on_closed) this->on_closed(reason);
+    });
+    return {};
+  }
+  void close() noexcept override {
+    open_ = false;
+    pump_.stop();
+  }
   std::string describe() const override { return "replay:" + path_; }
+
+ protected:
+  /// @param make_file returns the File of that path.
+  template <class MakeFile>
+  Replay(asio::io_context& io, const std::string& path, const ReplayOptions& options,
+         MakeFile&& make_file)
+      : path_(path), file_(make_file(path)), pump_(io, file_, options) {}
+  SendResult swallow() const noexcept { return open_ ? SendResult::Sent : SendResult::Closed; }
 
  private:
   const std::string path_;
-  FrameFile file_;
+  File file_;
   ReplayPump pump_;
   std::atomic<bool> open_{false};
   bool ended_ = false;
 };
 
-class ByteReplay final : public ByteLink {
+class FrameReplay final : public Replay<FrameLink, FrameFile> {
  public:
-  ByteReplay(asio::io_context& io, std::string path, const ReplayOptions& options = {});
-  ~ByteReplay() override;
+  FrameReplay(asio::io_context& io, const std::string& path, const ReplayOptions& options = {});
+  SendResult send(const CanFrame&) noexcept override { return swallow(); }
+};
 
-  base::Result<void> open() override;
-  void close() noexcept override;
-  SendResult write(Bytes bytes) noexcept override;
-  std::string describe() const override { return "replay:" + path_; }
-
- private:
-  const std::string path_;
-  ByteFile file_;
-  ReplayPump pump_;
-  std::atomic<bool> open_{false};
-  bool ended_ = false;
+class ByteReplay final : public Replay<ByteLink, ByteFile> {
+ public:
+  ByteReplay(asio::io_context& io, const std::string& path, const ReplayOptions& options = {});
+  SendResult write(Bytes) noexcept override { return swallow(); }
 };
 
 }  // namespace roverd::link

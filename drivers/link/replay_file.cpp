@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "link/candump.hpp"
+#include "link/record_file.hpp"
 #include "link/recording.hpp"
 
 namespace roverd::link {
@@ -18,22 +19,9 @@ using base::Duration;
 using MaybeDue = base::Result<std::optional<Duration>>;
 
 constexpr std::size_t kLongestLine = 4096;
+/// Of a plain file that nothing cuts: small enough to keep the fallback rate even.
+constexpr std::size_t kRatedPiece = 256;
 constexpr std::size_t kReadSize = 64 * 1024;
-constexpr double kDay_s = 86'400.0;
-
-base::Result<void> open_file(std::ifstream& file, const std::string& path) {
-  std::error_code ec;
-  const auto status = std::filesystem::status(path, ec);
-  if (!std::filesystem::exists(status)) {
-    return base::fail(Code::NotFound, "replay file " + path + " does not exist");
-  }
-  if (std::filesystem::is_directory(status)) {
-    return base::fail(Code::Invalid, "replay file " + path + " is a folder");
-  }
-  file = std::ifstream(path, std::ios::binary);
-  if (!file) return base::fail(Code::Unavailable, "replay file " + path + " cannot be read");
-  return {};
-}
 
 /// Time that passes before `stamp`; a stamp that goes back costs none.
 Duration step_to(Duration stamp, std::optional<Duration>& last) noexcept {
@@ -50,11 +38,48 @@ std::optional<Duration> ReplayFile::begin() const noexcept {
   return first_stamp_ && *first_stamp_ >= kDated ? first_stamp_ : std::nullopt;
 }
 
+base::Result<void> ReplayFile::open_first() {
+  playing_ = path_;
+  number_ = 1;
+  std::error_code ec;
+  const auto status = std::filesystem::status(path_, ec);
+  if (!std::filesystem::exists(status)) {
+    return base::fail(Code::NotFound, "replay file " + path_ + " does not exist");
+  }
+  if (std::filesystem::is_directory(status)) {
+    return base::fail(Code::Invalid, "replay file " + path_ + " is a folder");
+  }
+  file_ = std::ifstream(path_, std::ios::binary);
+  if (!file_) return base::fail(Code::Unavailable, "replay file " + path_ + " cannot be read");
+  return {};
+}
+
+base::Result<bool> ReplayFile::open_next() {
+  const std::string next = numbered_file(path_, number_ + 1);
+  std::error_code ec;
+  if (!std::filesystem::is_regular_file(next, ec)) return false;
+  ++number_;
+  playing_ = next;
+  file_ = std::ifstream(next, std::ios::binary);
+  if (!file_) return base::fail(Code::Unavailable, "replay file " + next + " cannot be read");
+  return true;
+}
+
+std::vector<std::string> ReplayFile::parts_of(const std::string& first) {
+  std::vector<std::string> out{first};
+  std::error_code ec;
+  for (int n = 2;; ++n) {
+    std::string next = numbered_file(first, n);
+    if (!std::filesystem::is_regular_file(next, ec)) return out;
+    out.push_back(std::move(next));
+  }
+}
+
 FrameFile::FrameFile(std::string path, Receiver receiver)
-    : path_(std::move(path)), receiver_(std::move(receiver)) {}
+    : ReplayFile(std::move(path)), receiver_(std::move(receiver)) {}
 
 base::Result<void> FrameFile::open() {
-  if (auto opened = open_file(file_, path_); !opened) return opened;
+  if (auto begun = rewind(); !begun) return begun;
   const auto first = advance();
   if (!first) return tl::unexpected(first.error());
   if (!*first) return base::fail(Code::Invalid, "replay file " + path_ + " holds no CAN frames");
@@ -62,9 +87,7 @@ base::Result<void> FrameFile::open() {
 }
 
 base::Result<void> FrameFile::rewind() {
-  file_.clear();
-  file_.seekg(0);
-  if (!file_) return base::fail(Code::Unavailable, "replay file " + path_ + " cannot be rewound");
+  if (auto opened = open_first(); !opened) return opened;
   line_ = 0;
   last_stamp_.reset();
   at_ = Duration::zero();
@@ -72,68 +95,91 @@ base::Result<void> FrameFile::rewind() {
 }
 
 MaybeDue FrameFile::advance() {
-  std::array<char, kLongestLine> buffer;
   for (;;) {
-    file_.getline(buffer.data(), buffer.size());
-    const bool cut_off = file_.eof();  // the last line has no end
-    if (file_.fail() && cut_off) return std::nullopt;
-    ++line_;
-    const std::string where = "replay file " + path_ + " line " + std::to_string(line_) + ": ";
-    if (file_.bad()) return base::fail(Code::Unavailable, where + "cannot be read");
-    if (file_.fail()) return base::fail(Code::Malformed, where + "too long for a CAN frame");
-    const auto count = static_cast<std::size_t>(file_.gcount()) - (cut_off ? 0 : 1);
-    const auto record = parse_candump_line({buffer.data(), count});
-    if (!record) {
-      if (cut_off) return std::nullopt;
-      return base::fail(Code::Malformed, where + record.error().detail,
-                        {{"line " + std::to_string(line_), record.error().detail}});
-    }
-    if (!*record) continue;
-    if ((*record)->stamp) {
-      if (!last_stamp_) first_stamp_ = (*record)->stamp;
-      at_ += step_to(*(*record)->stamp, last_stamp_);
-    }
-    if ((*record)->sent) continue;
-    frame_ = (*record)->frame;
-    return at_;
+    const auto read = read_line();
+    if (!read) return tl::unexpected(read.error());
+    if (*read == Line::Frame) return at_;
+    if (*read == Line::Skip) continue;
+    const auto next = open_next();
+    if (!next) return tl::unexpected(next.error());
+    if (!*next) return std::nullopt;
+    line_ = 0;
   }
 }
 
+base::Result<FrameFile::Line> FrameFile::read_line() {
+  std::array<char, kLongestLine> buffer{};
+  file_.getline(buffer.data(), buffer.size());
+  const bool cut_off = file_.eof();
+  if (cut_off && file_.gcount() == 0) return Line::End;
+  ++line_;
+  const std::string where = "replay file " + playing_ + " line " + std::to_string(line_) + ": ";
+  if (file_.bad()) return base::fail(Code::Unavailable, where + "cannot be read");
+  if (!cut_off && file_.fail()) {
+    return base::fail(Code::Malformed, where + "too long for a CAN frame");
+  }
+  const auto count = static_cast<std::size_t>(file_.gcount()) - (cut_off ? 0 : 1);
+  const auto record = parse_candump_line({buffer.data(), count});
+  if (!record) {
+    if (cut_off) return Line::End;
+    return base::fail(Code::Malformed, where + record.error().detail,
+                      {{"line " + std::to_string(line_), record.error().detail}});
+  }
+  if (!*record) return Line::Skip;
+  if ((*record)->stamp) {
+    if (!last_stamp_) first_stamp_ = (*record)->stamp;
+    at_ += step_to(*(*record)->stamp, last_stamp_);
+  }
+  if ((*record)->sent) return Line::Skip;
+  frame_ = (*record)->frame;
+  return Line::Frame;
+}
+
 ByteFile::ByteFile(std::string path, ReplayOptions options, Receiver receiver, Receiver sent)
-    : path_(std::move(path)),
+    : ReplayFile(std::move(path)),
       options_(std::move(options)),
       receiver_(std::move(receiver)),
       sent_(std::move(sent)) {}
 
 base::Result<void> ByteFile::open() {
-  if (auto opened = open_file(file_, path_); !opened) return opened;
   return rewind();
 }
 
 base::Result<void> ByteFile::rewind() {
-  file_.clear();
-  file_.seekg(0);
-  if (!file_) return base::fail(Code::Unavailable, "replay file " + path_ + " cannot be rewound");
+  if (auto opened = open_first(); !opened) return opened;
+  last_stamp_.reset();
+  marks_.clear();
+  readings_ = {};
+  at_ = Duration::zero();
+  return begin_file();
+}
+
+base::Result<void> ByteFile::begin_file() {
   buffer_.clear();
   begin_ = 0;
   offset_ = 0;
   chunk_sent_ = false;
-  last_stamp_.reset();
-  last_clock_s_.reset();
-  at_ = Duration::zero();
-  if (!fill()) return base::fail(Code::Invalid, "replay file " + path_ + " is empty");
+  if (!fill()) return base::fail(Code::Invalid, "replay file " + playing_ + " is empty");
   const std::string_view start(reinterpret_cast<const char*>(buffer_.data()), buffer_.size());
   if (!start.starts_with(kRecordingMagic)) {
-    pace_ = has_line_clock() ? Pace::Clocked : Pace::Rated;
-    return {};
+    if (playing_ == path_) return begin_plain();
+    return base::fail(Code::Malformed, "replay file " + playing_ + " is no recording");
   }
   pace_ = Pace::Stamped;
   const auto header = read_recording_header(rest());
   if (header.state == RecordingStep::State::Bad) {
-    return base::fail(Code::Malformed, "replay file " + path_ + " line 1: " + header.problem);
+    return base::fail(Code::Malformed, "replay file " + playing_ + " line 1: " + header.problem);
   }
   take(header.used);
   return {};
+}
+
+/// The file that this recording goes on in. @return false: there is none.
+base::Result<bool> ByteFile::follow() {
+  auto next = open_next();
+  if (!next || !*next) return next;
+  if (auto begun = begin_file(); !begun) return tl::unexpected(begun.error());
+  return true;
 }
 
 /// Reads on. @return false at the end of the file.
@@ -152,15 +198,23 @@ void ByteFile::take(std::size_t bytes) {
   offset_ += bytes;
 }
 
-bool ByteFile::has_line_clock() const {
-  if (!options_.line_clock) return false;
-  auto at = buffer_.begin();
-  while (at != buffer_.end()) {
-    const auto end = std::find(at, buffer_.end(), '\n');
-    if (options_.line_clock(Bytes(at, end))) return true;
-    at = end == buffer_.end() ? end : end + 1;
+base::Result<void> ByteFile::begin_plain() {
+  clock_ = options_.make_clock ? options_.make_clock() : base::StreamClock();
+  if (clock_) clock_(buffer_, [this](const base::StreamMark& mark) { marks_.push_back(mark); });
+  const bool told =
+      std::ranges::any_of(marks_, [](const auto& mark) { return mark.time.has_value(); });
+  pace_ = told ? Pace::Clocked : Pace::Rated;
+  return {};
+}
+
+/// More of a plain file, and where it may be cut. @return false at the end of the file.
+bool ByteFile::read_on() {
+  const std::size_t old = rest().size();
+  if (!fill()) return false;
+  if (clock_) {
+    clock_(rest().subspan(old), [this](const base::StreamMark& mark) { marks_.push_back(mark); });
   }
-  return false;
+  return true;
 }
 
 MaybeDue ByteFile::advance() {
@@ -173,12 +227,15 @@ MaybeDue ByteFile::advance_recording() {
     const auto step = next_record(rest());
     switch (step.state) {
       case RecordingStep::State::NeedMore:
-        if (!fill()) return std::nullopt;
+        if (fill()) continue;
+        if (auto next = follow(); !next || !*next) {
+          return next ? MaybeDue(std::nullopt) : tl::unexpected(next.error());
+        }
         continue;
       case RecordingStep::State::Bad: {
         const std::string where = "byte " + std::to_string(offset_);
         return base::fail(Code::Malformed,
-                          "replay file " + path_ + " " + where + ": " + step.problem,
+                          "replay file " + playing_ + " " + where + ": " + step.problem,
                           {{where, step.problem}});
       }
       case RecordingStep::State::Ok:
@@ -194,36 +251,62 @@ MaybeDue ByteFile::advance_recording() {
   }
 }
 
-std::optional<Duration> ByteFile::advance_plain() {
-  // A piece of binary without a line feed is cut: small enough to keep the fallback rate even.
-  const std::size_t longest = pace_ == Pace::Rated ? 256 : kLongestLine;
-  while (rest().size() < longest && fill()) {
+/// Bytes up to where the next message ends, with the line end behind it: a line is none before.
+/// 0: nothing is left. @param time what the message says.
+std::size_t ByteFile::next_piece(std::optional<base::StreamTime>& time) {
+  if (!clock_) {
+    while (rest().size() < kRatedPiece && fill()) {
+    }
+    return std::min(rest().size(), kRatedPiece);
   }
-  const Bytes all = rest().first(std::min(rest().size(), longest));
-  if (all.empty()) return std::nullopt;
-  const auto feed = std::find(all.begin(), all.end(), '\n');
-  const auto content = static_cast<std::size_t>(feed - all.begin());
-  const std::size_t size = content + (feed == all.end() ? 0 : 1);
+  for (;;) {
+    while (!marks_.empty() && marks_.front().end <= offset_) marks_.pop_front();
+    if (marks_.empty()) {
+      if (read_on()) continue;
+      return rest().size();
+    }
+    std::size_t size = marks_.front().end - offset_;
+    if (size + 2 > rest().size() && read_on()) continue;
+    time = marks_.front().time;
+    marks_.pop_front();
+    while (size < rest().size() && (rest()[size] == '\r' || rest()[size] == '\n')) ++size;
+    return size;
+  }
+}
+
+std::optional<Duration> ByteFile::advance_plain() {
+  std::optional<base::StreamTime> time;
+  const std::size_t size = next_piece(time);
+  if (size == 0) return std::nullopt;
   if (pace_ == Pace::Rated) {
     const double rate = std::max(options_.fallback_bytes_per_s, 1.0);
     at_ += base::from_seconds(static_cast<double>(size) / rate);
-  } else {
-    wait_for(all.first(content));
+  } else if (time) {
+    wait_for(*time);
   }
-  chunk_.assign(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(size));
+  const Bytes piece = rest().first(size);
+  chunk_.assign(piece.begin(), piece.end());
   take(size);
   return at_;
 }
 
-void ByteFile::wait_for(Bytes line) {
-  const auto clock_s = options_.line_clock(line);
-  if (!clock_s || !std::isfinite(*clock_s)) return;
-  if (last_clock_s_) {
-    double step_s = *clock_s - *last_clock_s_;
-    if (step_s < -kDay_s / 2) step_s += kDay_s;  // midnight
-    at_ += base::from_seconds(std::clamp(step_s, 0.0, std::max(options_.longest_gap_s, 0.0)));
+void ByteFile::wait_for(const base::StreamTime& time) {
+  if (!std::isfinite(time.s)) return;
+  auto& last = readings_[static_cast<std::size_t>(time.clock)];
+  if (!last) {
+    last = Reading{time.s, at_};
+    return;
   }
-  last_clock_s_ = clock_s;
+  double step_s = time.s - last->s;
+  if (step_s < -time.period_s / 2) step_s += time.period_s;  // midnight
+  if (step_s <= 0.0 && step_s > -kLate_s) return;
+  if (step_s < 0.0 || step_s > kSet_s) {
+    last = Reading{time.s, at_};
+    return;
+  }
+  const Duration longest = at_ + base::from_seconds(std::max(options_.longest_gap_s, 0.0));
+  last = Reading{time.s, std::min(last->at + base::from_seconds(step_s), longest)};
+  at_ = std::max(at_, last->at);
 }
 
 }  // namespace roverd::link

@@ -1,11 +1,14 @@
 #pragma once
 // Recordings as a series of timed things, without a clock: what ReplayPump paces.
 
+#include <array>
 #include <cstdint>
+#include <deque>
 #include <fstream>
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/bytes.hpp"
@@ -15,10 +18,13 @@
 
 namespace roverd::link {
 
-/// A file that is played item by item. Errors name the file and the line, or the byte.
+/// A recording that is played item by item. One that goes on in X.002.log, X.003.log … beside X.log
+/// is followed there, by its stamps. Errors name the file and the line, or the byte.
 class ReplayFile {
  public:
   virtual ~ReplayFile() = default;
+  ReplayFile(const ReplayFile&) = delete;
+  ReplayFile& operator=(const ReplayFile&) = delete;
   /// Loads the next item. @return when it is due, since the start of the file, never earlier than
   /// the item before; nothing at the end. A last line or record that was cut off counts as the end.
   virtual base::Result<std::optional<base::Duration>> advance() = 0;
@@ -29,8 +35,22 @@ class ReplayFile {
   /// UTC since 1970 of the first stamp, once an item was loaded. Nothing without stamps of a date.
   std::optional<base::Duration> begin() const noexcept;
 
+  /// The recording's files, as far as they are there.
+  static std::vector<std::string> parts_of(const std::string& first);
+
  protected:
+  explicit ReplayFile(std::string path) : path_(std::move(path)), playing_(path_) {}
+  base::Result<void> open_first();
+  /// @return false: there is no further file.
+  base::Result<bool> open_next();
+
+  const std::string path_;
+  std::string playing_;  ///< that file, or one that it goes on in
+  std::ifstream file_;
   std::optional<base::Duration> first_stamp_;
+
+ private:
+  int number_ = 1;
 };
 
 /// A candump log or candump's console output (candump.hpp). Frames that the recorder marked as sent
@@ -47,18 +67,21 @@ class FrameFile final : public ReplayFile {
   base::Result<void> rewind() override;
 
  private:
-  const std::string path_;
+  enum class Line { Frame, Skip, End };
+  base::Result<Line> read_line();
+
   const Receiver receiver_;
-  std::ifstream file_;
   std::size_t line_ = 0;
   std::optional<base::Duration> last_stamp_;
   base::Duration at_{};
   base::CanFrame frame_;
 };
 
-/// A recording with stamps (recording.hpp), or any plain file. A plain one is played line by line,
-/// timed by options.line_clock if that finds a time in the first 64 kB, else at the fallback rate;
-/// its bytes arrive exactly as they stand in the file.
+/// A recording with stamps (recording.hpp), or any plain file. A plain one is played message by
+/// message, as options.make_clock cuts it, and timed by what the messages say if one in the first
+/// 64 kB tells a time, else at the fallback rate; its bytes arrive exactly as they stand in the
+/// file. A message that is late by less than kLate_s waits for nothing; a clock that is set anew,
+/// or jumps by more than kSet_s, goes on from there.
 class ByteFile final : public ReplayFile {
  public:
   using Receiver = std::function<void(base::Bytes, base::Time)>;
@@ -69,25 +92,34 @@ class ByteFile final : public ReplayFile {
   base::Result<std::optional<base::Duration>> advance() override;
   void emit(base::Time now) override { (chunk_sent_ ? sent_ : receiver_)(chunk_, now); }
   base::Result<void> rewind() override;
-  /// Stamps or the lines themselves tell when; false: what this is is not known. Once open.
-  bool tells_time() const noexcept { return pace_ != Pace::Rated; }
+  /// Stamped: by a recorder. Clocked: by the device in its messages. Rated: not at all.
+  enum class Pace { Stamped, Clocked, Rated };
+  /// Once open.
+  Pace pace() const noexcept { return pace_; }
+  static constexpr double kLate_s = 10.0;
+  static constexpr double kSet_s = 3600.0;
 
  private:
-  enum class Pace { Stamped, Clocked, Rated };
+  struct Reading {
+    double s = 0.0;       ///< what that clock said last
+    base::Duration at{};  ///< and when that was
+  };
 
   base::Bytes rest() const noexcept { return base::Bytes(buffer_).subspan(begin_); }
   bool fill();
   void take(std::size_t bytes);
-  bool has_line_clock() const;
+  base::Result<void> begin_file();
+  base::Result<bool> follow();
+  base::Result<void> begin_plain();
+  bool read_on();
+  std::size_t next_piece(std::optional<base::StreamTime>& time);
   base::Result<std::optional<base::Duration>> advance_recording();
   std::optional<base::Duration> advance_plain();
-  void wait_for(base::Bytes line);
+  void wait_for(const base::StreamTime& time);
 
-  const std::string path_;
   const ReplayOptions options_;
   const Receiver receiver_;
   const Receiver sent_;
-  std::ifstream file_;
   Pace pace_ = Pace::Rated;
   std::vector<std::uint8_t> buffer_;  // read from the file; played up to begin_
   std::size_t begin_ = 0;
@@ -95,7 +127,9 @@ class ByteFile final : public ReplayFile {
   std::vector<std::uint8_t> chunk_;
   bool chunk_sent_ = false;
   std::optional<base::Duration> last_stamp_;
-  std::optional<double> last_clock_s_;
+  base::StreamClock clock_;
+  std::deque<base::StreamMark> marks_;
+  std::array<std::optional<Reading>, base::kStreamClocks> readings_;
   base::Duration at_{};
 };
 

@@ -4,17 +4,11 @@
 #include <atomic>
 #include <functional>
 #include <memory>
-#include <optional>
 
-#include "base/bytes.hpp"
+#include "base/stream_time.hpp"
 #include "base/time.hpp"
 
 namespace roverd::link {
-
-/// Seconds on the clock of the recorded device that a line carries (a sentence's time of day, say),
-/// or nothing. The line is without its line end. Differences count, so any origin will do; a step
-/// back by about a day is taken for midnight.
-using LineClock = std::function<std::optional<double>(base::Bytes line)>;
 
 /// Several recordings of one run, played in step: their links share one of these, on any threads.
 /// A recording whose stamps are not UTC begins with the earliest one. A link that is opened again
@@ -33,9 +27,9 @@ struct ReplayOptions {
   std::shared_ptr<ReplayTogether> together{};
   /// Longer silences in a plain file are cut to this (recordings with stamps keep theirs).
   double longest_gap_s = 30.0;
-  /// Paces a plain file of bytes (no stamps of ours) by what its lines say.
-  LineClock line_clock{};
-  /// Paces a plain file in which line_clock finds nothing.
+  /// Makes what cuts and paces a plain file of bytes (no stamps of ours) by the device's own time.
+  std::function<base::StreamClock()> make_clock{};
+  /// Paces a plain file in which that finds no time.
   double fallback_bytes_per_s = 960.0;
 };
 

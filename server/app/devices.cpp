@@ -311,6 +311,7 @@ class Planner {
 Result<std::vector<DevicePlan>> plan_devices(const Settings& s, const Options& options) {
   auto replays = read_replays(options.replays, options.replay_speed);
   if (!replays) return tl::unexpected(replays.error());
+  for (const std::string& remark : replays->remarks) base::log(base::Level::Info, "replay", remark);
   auto workshop = std::make_shared<Workshop>();
   workshop->folder = (std::filesystem::path(options.data) / "recordings").string();
   workshop->records = options.replays.empty() && (s.recording.enabled || options.record);

@@ -11,11 +11,11 @@
 #include "bunker/driver.hpp"
 #include "config/receiver_params.hpp"
 #include "gnss/driver.hpp"
-#include "gnss/nmea.hpp"
 #include "gpsd/driver.hpp"
 #include "link/memory.hpp"
 #include "mti/driver.hpp"
 #include "ratio/driver.hpp"
+#include "replay/replays.hpp"
 #include "rtcm/framer.hpp"
 #include "twist/driver.hpp"
 
@@ -56,7 +56,7 @@ Result<std::unique_ptr<link::ReplayFile>> byte_file(const std::string& path,
                                                     link::ByteFile::Receiver received,
                                                     link::ByteFile::Receiver sent) {
   link::ReplayOptions how;
-  how.line_clock = gnss::time_of_day_s;
+  how.make_clock = device_clock;
   auto file = std::make_unique<link::ByteFile>(path, how, std::move(received), std::move(sent));
   if (const auto opened = file->open(); !opened) return tl::unexpected(opened.error());
   return Result<std::unique_ptr<link::ReplayFile>>(std::move(file));
@@ -133,35 +133,26 @@ std::unique_ptr<ReplayPart> bytes_of(const char* name, Params params, const Tell
 
 }  // namespace
 
-Result<void> ReplayPart::open(std::vector<std::string> chain) {
-  chain_ = std::move(chain);
-  return open_next();
+Result<void> ReplayPart::open(const std::string& path) {
+  auto made = make_file(path);
+  if (!made) return tl::unexpected(made.error());
+  file_ = std::move(*made);
+  return load();
+}
+
+void ReplayPart::align(std::optional<base::Duration> run_begin) {
+  const auto begin = file_->begin();
+  if (begin && run_begin) lead_ = *begin - *run_begin;  // without dates it begins with the run
 }
 
 std::optional<base::Duration> ReplayPart::due() const {
   if (!at_) return {};
-  return std::max(last_, *at_ + offset());
+  return lead_ + *at_;
 }
 
 Result<void> ReplayPart::emit(Time now) {
-  last_ = *due();
   clock_ = now;
   file_->emit(now);
-  return load();
-}
-
-base::Duration ReplayPart::offset() const {
-  const auto begin = file_->begin();
-  // Without dates a file begins with the run, a later one where the one before ended.
-  if (!begin || !run_begin_) return before_;
-  return *begin - *run_begin_;
-}
-
-Result<void> ReplayPart::open_next() {
-  before_ = last_;
-  auto made = make_file(chain_[next_++]);
-  if (!made) return tl::unexpected(made.error());
-  file_ = std::move(*made);
   return load();
 }
 
@@ -169,7 +160,7 @@ Result<void> ReplayPart::load() {
   auto next = file_->advance();
   if (!next) return tl::unexpected(next.error());
   at_ = *next;
-  return at_ || next_ == chain_.size() ? Result<void>{} : open_next();
+  return {};
 }
 
 std::unique_ptr<ReplayPart> replay_part(const std::string& driver, const Settings& s,

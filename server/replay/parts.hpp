@@ -15,7 +15,7 @@
 
 namespace roverd {
 
-/// One recording, in one file or several.
+/// A recording and the driver that hears it.
 class ReplayPart {
  public:
   virtual ~ReplayPart() = default;
@@ -23,11 +23,10 @@ class ReplayPart {
   ReplayPart(const ReplayPart&) = delete;
   ReplayPart& operator=(const ReplayPart&) = delete;
 
-  /// Opens the first file and loads its first item.
-  base::Result<void> open(std::vector<std::string> chain);
-  std::optional<base::Duration> begin() const { return file_ ? file_->begin() : std::nullopt; }
+  /// Opens the recording and loads its first item.
+  base::Result<void> open(const std::string& path);
   /// @param run_begin UTC since 1970; empty: no recording has dates.
-  void align(std::optional<base::Duration> run_begin) { run_begin_ = run_begin; }
+  void align(std::optional<base::Duration> run_begin);
   /// When the loaded item is due, since the run's beginning; empty: there is no more.
   std::optional<base::Duration> due() const;
   /// Hands the loaded item to the driver, and loads the next.
@@ -42,17 +41,11 @@ class ReplayPart {
   base::Time clock_{};
 
  private:
-  base::Duration offset() const;
-  base::Result<void> open_next();
   base::Result<void> load();
 
-  std::vector<std::string> chain_;
-  std::size_t next_ = 0;
   std::unique_ptr<link::ReplayFile> file_;
-  std::optional<base::Duration> at_;  ///< of the loaded item, since its file's beginning
-  std::optional<base::Duration> run_begin_;
-  base::Duration last_{};
-  base::Duration before_{};
+  std::optional<base::Duration> at_;  ///< of the loaded item, since the recording's beginning
+  base::Duration lead_{};             ///< how much later than the run that is
 };
 
 /// @param driver as look_into says. @param tell hears its measurements.

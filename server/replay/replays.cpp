@@ -4,9 +4,13 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
+#include <string_view>
+#include <utility>
 
-#include "gnss/nmea.hpp"
+#include "gnss/stream_clock.hpp"
 #include "link/replay_file.hpp"
+#include "mti/stream_clock.hpp"
 #include "replay/speaker.hpp"
 
 namespace roverd {
@@ -33,51 +37,106 @@ const char* kind_in_words(const std::string& driver) {
   return driver == "bumper" ? "a bumper" : "a drive link";
 }
 
+/// Listens with both until it is clear who speaks: from the first part of the stream on, the clock
+/// of whom more messages tell a time.
+class DeviceClock {
+ public:
+  void hear(base::Bytes bytes, const base::OnStreamMark& on) {
+    if (chosen_) return chosen_(bytes, on);
+    std::vector<base::StreamMark> unit;
+    std::vector<base::StreamMark> receiver;
+    base::StreamClock of_unit = mti::stream_clock();
+    base::StreamClock of_receiver = gnss::stream_clock();
+    of_unit(bytes, [&](const base::StreamMark& mark) { unit.push_back(mark); });
+    of_receiver(bytes, [&](const base::StreamMark& mark) { receiver.push_back(mark); });
+    const auto timed = [](const std::vector<base::StreamMark>& marks) {
+      return std::ranges::count_if(marks, [](const auto& mark) { return mark.time.has_value(); });
+    };
+    const bool is_unit = timed(unit) > timed(receiver);
+    chosen_ = is_unit ? std::move(of_unit) : std::move(of_receiver);
+    for (const base::StreamMark& mark : is_unit ? unit : receiver) on(mark);
+  }
+
+ private:
+  base::StreamClock chosen_;
+};
+
+/// "--replay: " is the option of the one command and the argument of the other.
+base::Error told(const base::Error& e) {
+  return {e.code, "--replay: " + e.detail, e.fields};
+}
+
 }  // namespace
 
-Result<RecordingLook> look_into(const std::string& path, const link::ReplayOptions& how) {
+base::StreamClock device_clock() {
+  return [clock = std::make_shared<DeviceClock>()](
+             base::Bytes bytes, const base::OnStreamMark& on) { clock->hear(bytes, on); };
+}
+
+Result<Recording> look_into(const std::string& path) {
+  link::ReplayOptions how;
+  how.make_clock = device_clock;
   link::FrameFile frames(path, [](const base::CanFrame&, base::Time) {});
-  if (frames.open()) return RecordingLook{"bunker", begin_of(frames)};
+  if (frames.open()) return Recording{path, "bunker", begin_of(frames)};
   link::ByteFile bytes(path, how, [](base::Bytes, base::Time) {});
-  if (const auto opened = bytes.open(); !opened) {
-    return base::fail(opened.error().code, "--replay: " + opened.error().detail);
+  if (const auto opened = bytes.open(); !opened) return tl::unexpected(opened.error());
+  if (bytes.pace() == link::ByteFile::Pace::Rated) {
+    return base::fail(Code::Invalid,
+                      path +
+                          " is no recording: neither of roverd, nor a candump log, nor bytes of a "
+                          "receiver or an inertial unit that tell their time");
   }
-  if (!bytes.tells_time()) {
-    return base::fail(Code::Invalid, "--replay: " + path +
-                                         " is no recording: neither of roverd, nor a candump log, "
-                                         "nor NMEA sentences");
+  return Recording{path, speaker_of(path, how), begin_of(bytes),
+                   bytes.pace() == link::ByteFile::Pace::Clocked};
+}
+
+Result<RunFiles> tell_apart(const std::vector<std::string>& files) {
+  RunFiles out;
+  std::set<std::string> known;
+  std::optional<base::Duration> last;
+  for (const std::string& path : files) {
+    if (known.contains(path)) continue;
+    auto seen = look_into(path);
+    if (!seen) return tl::unexpected(seen.error());
+    for (std::string& part : link::ReplayFile::parts_of(path)) known.insert(std::move(part));
+    if (seen->driver.empty()) continue;  // a device that never said anything
+    const std::string_view kind = kind_in_words(seen->driver);
+    const auto same = std::ranges::find_if(
+        out.of, [&](const auto& other) { return kind == kind_in_words(other.first); });
+    if (same != out.of.end()) {
+      return base::fail(Code::Invalid, same->second.file + " and " + path +
+                                           " are both recordings of " + std::string(kind));
+    }
+    if (seen->begin) {
+      out.begin = std::min(out.begin.value_or(*seen->begin), *seen->begin);
+      last = std::max(last.value_or(*seen->begin), *seen->begin);
+    }
+    out.of.emplace(seen->driver, std::move(*seen));
   }
-  return RecordingLook{speaker_of(path, how), begin_of(bytes)};
+  if (out.begin && *last - *out.begin > kOneRun) {
+    return base::fail(Code::Invalid,
+                      "the recordings begin more than an hour apart: they are not of one run");
+  }
+  return out;
 }
 
 Result<Replays> read_replays(const std::vector<std::string>& files, double speed) {
   Replays out;
   out.how.speed = speed;
-  out.how.line_clock = gnss::time_of_day_s;
-  std::optional<base::Duration> first;
-  std::optional<base::Duration> last;
-  for (const std::string& path : files) {
-    auto seen = look_into(path, out.how);
-    if (!seen) return tl::unexpected(seen.error());
-    if (seen->driver.empty()) continue;
-    const auto same = std::ranges::find_if(out.file_of, [&](const auto& other) {
-      return kind_in_words(other.first) == std::string_view(kind_in_words(seen->driver));
-    });
-    const auto at =
-        same == out.file_of.end() ? out.file_of.emplace(seen->driver, path).first : same;
-    if (same != out.file_of.end()) {
-      return base::fail(Code::Invalid, "--replay: " + at->second + " and " + path +
-                                           " are both recordings of " +
-                                           kind_in_words(seen->driver));
-    }
-    if (!seen->begin) continue;
-    first = std::min(first.value_or(*seen->begin), *seen->begin);
-    last = std::max(last.value_or(*seen->begin), *seen->begin);
-  }
-  if (!files.empty() &&
-      (out.file_of.empty() || (out.file_of.size() == 1 && out.file_of.contains("ntrip")))) {
+  out.how.make_clock = device_clock;
+  if (files.empty()) return out;
+  const auto run = tell_apart(files);
+  if (!run) return tl::unexpected(told(run.error()));
+  if (run->of.empty() || (run->of.size() == 1 && run->of.contains("ntrip"))) {
     return base::fail(Code::Invalid, "--replay: " + files.front() +
                                          " holds nothing that a robot could be driven by");
+  }
+  for (const auto& [driver, recording] : run->of) {
+    out.file_of.emplace(driver, recording.file);
+    if (recording.by_device) {
+      out.remarks.push_back(recording.file +
+                            " has no time stamps: it is paced by the time that the device told");
+    }
   }
   if (out.file_of.size() < 2) return out;
   if (speed <= 0.0) {
@@ -86,13 +145,8 @@ Result<Replays> read_replays(const std::vector<std::string>& files, double speed
         "--replay-speed 0 with several recordings: without a pace they would not stay "
         "in step");
   }
-  if (first && *last - *first > kOneRun) {
-    return base::fail(Code::Invalid,
-                      "--replay: the recordings begin more than an hour apart: they are not of one "
-                      "run");
-  }
   out.how.together = std::make_shared<link::ReplayTogether>();
-  out.how.together->begin = first.value_or(base::Duration::zero());
+  out.how.together->begin = run->begin.value_or(base::Duration::zero());
   return out;
 }
 

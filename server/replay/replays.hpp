@@ -13,21 +13,36 @@
 
 namespace roverd {
 
+/// What one recording holds.
+struct Recording {
+  std::string file;
+  std::string driver;                   ///< "bunker", or as speaker_of says
+  std::optional<base::Duration> begin;  ///< of its first item, since 1970; empty: no dates
+  /// No recorder stamped it: it is paced by the time that the device told in its messages.
+  bool by_device = false;
+};
+base::Result<Recording> look_into(const std::string& path);
+
+/// The recordings of one run.
+struct RunFiles {
+  std::map<std::string, Recording> of;  ///< by driver
+  std::optional<base::Duration> begin;  ///< of the run; empty: no recording has dates
+};
+/// Files without any bytes are left out, and those that another one goes on in. Errors: a file that
+/// is missing or no recording, two of a kind (two drive links, a receiver and a gpsd), recordings
+/// of different runs.
+base::Result<RunFiles> tell_apart(const std::vector<std::string>& files);
+
 struct Replays {
   std::map<std::string, std::string> file_of;  ///< by driver
   link::ReplayOptions how;
+  std::vector<std::string> remarks;  ///< for the log
 };
 
-/// Looks into the files; recordings without any bytes are left out. Errors: a file that is missing
-/// or no recording, two of a kind (two drive links, a receiver and a gpsd), recordings of different
-/// runs, several without a pace, nothing but corrections.
+/// For playing by the clock. Errors also: several without a pace, nothing but corrections.
 base::Result<Replays> read_replays(const std::vector<std::string>& files, double speed);
 
-/// What one file holds.
-struct RecordingLook {
-  std::string driver;                   ///< "bunker", or as speaker_of says
-  std::optional<base::Duration> begin;  ///< of its first item, since 1970; empty: no dates
-};
-base::Result<RecordingLook> look_into(const std::string& path, const link::ReplayOptions& how);
+/// Paces a plain file by what its first bytes turn out to be: a receiver's or an MTi's.
+base::StreamClock device_clock();
 
 }  // namespace roverd

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 #include <utility>
 
-#include "gnss/nmea.hpp"
-#include "link/record_file.hpp"
+#include "link/replay_file.hpp"
 #include "nav/estimate/estimator.hpp"
 #include "replay/parts.hpp"
 #include "replay/replays.hpp"
@@ -24,21 +22,6 @@ constexpr base::Duration kTick = std::chrono::milliseconds(20);
 constexpr Time kBegin{std::chrono::seconds(100)};
 /// After the last item, for epochs that wait for more.
 constexpr base::Duration kAfter = std::chrono::milliseconds(500);
-/// Parts of one run begin within this.
-constexpr base::Duration kSameRun = std::chrono::hours(1);
-
-/// X.log, X.002.log, X.003.log … as far as they are there.
-std::vector<std::string> chain_of(const std::string& first) {
-  std::vector<std::string> out{first};
-  std::error_code ec;
-  for (int n = 2; n < 1000; ++n) {
-    std::string next = link::numbered_file(first, n);
-    if (!std::filesystem::is_regular_file(next, ec)) break;
-    out.push_back(std::move(next));
-  }
-  return out;
-}
-
 /// Estimator and what is counted of its work.
 class Judge {
  public:
@@ -127,52 +110,22 @@ class Run {
   }
 
  private:
-  /// A file that another one leads to need not be named, but may be.
   Result<void> open() {
-    link::ReplayOptions how;
-    how.line_clock = gnss::time_of_day_s;
-    std::map<std::string, std::vector<std::string>> chains;
-    for (const std::string& file : plan_.files) {
-      const bool known = std::ranges::any_of(chains, [&](const auto& chain) {
-        return std::ranges::find(chain.second, file) != chain.second.end();
-      });
-      if (known) continue;
-      auto seen = look_into(file, how);
-      if (!seen) return tl::unexpected(seen.error());
-      if (seen->driver.empty()) continue;  // a device that never said anything
-      const auto [at, is_new] = chains.emplace(seen->driver, chain_of(file));
-      if (!is_new) {
-        return base::fail(Code::Invalid, at->second.front() + " and " + file +
-                                             " are both recordings of the driver " + at->first);
-      }
-    }
-    if (chains.empty()) return base::fail(Code::Invalid, "the recordings are empty");
-    if (chains.contains("gnss") && chains.contains("gpsd")) {
-      return base::fail(Code::Invalid, chains["gnss"].front() + " and " + chains["gpsd"].front() +
-                                           " are both recordings of a receiver");
-    }
-    std::optional<base::Duration> first;
-    std::optional<base::Duration> last;
-    for (auto& [driver, chain] : chains) {
-      report_.files.insert(report_.files.end(), chain.begin(), chain.end());
+    const auto run = tell_apart(plan_.files);
+    if (!run) return tl::unexpected(run.error());
+    if (run->of.empty()) return base::fail(Code::Invalid, "the recordings are empty");
+    begin_ = run->begin;
+    for (const auto& [driver, recording] : run->of) {
+      auto parts = link::ReplayFile::parts_of(recording.file);
+      report_.files.insert(report_.files.end(), parts.begin(), parts.end());
+      if (recording.by_device) report_.by_device.push_back(recording.file);
       auto part = replay_part(driver, settings_, [this](const base::Measurement& m) {
         if (!std::holds_alternative<base::DriverStatus>(m)) heard_.push_back(m);
       });
-      if (auto opened = part->open(std::move(chain)); !opened) {
-        return tl::unexpected(opened.error());
-      }
-      if (const auto begin = part->begin()) {
-        first = std::min(first.value_or(*begin), *begin);
-        last = std::max(last.value_or(*begin), *begin);
-      }
+      if (auto opened = part->open(recording.file); !opened) return opened;
+      part->align(begin_);
       parts_.emplace(driver, std::move(part));
     }
-    if (first && *last - *first > kSameRun) {
-      return base::fail(Code::Invalid,
-                        "the recordings begin more than an hour apart: they are not of one run");
-    }
-    begin_ = first;
-    for (const auto& [name, part] : parts_) part->align(first);
     return {};
   }
 

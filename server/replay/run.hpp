@@ -47,7 +47,8 @@ struct ReplayReport {
   std::map<std::string, ReplayInput> inputs;  ///< position, velocity, compass, heading …
   base::EstimatorHealth health;               ///< at the end
   std::vector<base::DriverStatus> drivers;    ///< at the end
-  std::vector<std::string> files;             ///< in the order in which they began
+  std::vector<std::string> files;             ///< by driver, as they were played
+  std::vector<std::string> by_device;         ///< of them: paced by the device's own time
 };
 
 struct ReplayPlan {

@@ -61,6 +61,7 @@ double rms(const ReplayInput& in) {
 
 Json report_json(const ReplayReport& r) {
   Json out = {{"files", r.files},
+              {"paced_by_the_device", r.by_device},
               {"duration_s", rounded_to(r.duration_s, 1e3)},
               {"items", r.items},
               {"poses", r.poses},
@@ -168,6 +169,9 @@ std::string csv_line(const ReplayPose& p) {
 std::string report_text(const ReplayReport& r) {
   std::string out;
   for (const std::string& file : r.files) out += "# file " + file + "\n";
+  for (const std::string& file : r.by_device) {
+    out += "# file " + file + " has no time stamps: paced by the time that the device told\n";
+  }
   append_f(out, "# duration_s %.3f, items %llu, poses %llu, way_m %.3f, resets %llu\n",
            r.duration_s, static_cast<unsigned long long>(r.items),
            static_cast<unsigned long long>(r.poses), r.way_m,

@@ -98,7 +98,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   check(whole.unused == pieces.unused && whole.unknown == pieces.unknown);
   check(whole.ubx == pieces.ubx && whole.rtcm3 == pieces.rtcm3);
   run_both(bytes);
-  gnss::time_of_day_s(bytes);
-  gnss::parse_line({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const auto time_s = gnss::time_of_day_s(text);
+  check(!time_s || (*time_s >= 0.0 && *time_s < 86'401.0));
+  gnss::parse_line(text);
   return 0;
 }

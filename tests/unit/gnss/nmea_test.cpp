@@ -365,7 +365,8 @@ TEST(Nmea, OtherTypesAreReportedNotRefused) {
 
 TEST(Nmea, TheTimeOfDayPacesAReplay) {
   const auto of = [](std::string_view text) {
-    return time_of_day_s({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    while (text.ends_with('\n') || text.ends_with('\r')) text.remove_suffix(1);
+    return time_of_day_s(text);
   };
   EXPECT_EQ(of("$GNZDA,235959.95,31,12,2026,00,00*72\r\n"), 86399.95);
   EXPECT_EQ(of("$GNGST,101530.20,1.9,0.014,0.009,38.5,0.012,0.010,0.021*76"), 36930.2);
@@ -376,7 +377,7 @@ TEST(Nmea, TheTimeOfDayPacesAReplay) {
   EXPECT_EQ(of("# a comment"), std::nullopt);
   EXPECT_EQ(of("# $a comment"), std::nullopt);
   EXPECT_EQ(of("\r\n"), std::nullopt);
-  EXPECT_EQ(of("\xB5\x62\x01$\x07\xFF$GNZDA,235959.95,31,12,2026,00,00*72\r\n"), 86399.95);
+  EXPECT_EQ(of("GNZDA,235959.95,31,12,2026,00,00*72"), 86399.95) << "as the framer cuts it";
 }
 
 }  // namespace

@@ -13,6 +13,7 @@ namespace roverd::link {
 namespace {
 
 using namespace std::chrono_literals;
+using namespace std::string_literals;
 
 constexpr const char* kLog =
     "# a short drive\n"
@@ -235,48 +236,157 @@ TEST(ByteFile, ARecordingGivesItsReceivedChunksAtTheirTimes) {
   EXPECT_EQ(play(folder.write("b.rec", cut)), (Played{{"$GNG", 0ms}}));
 }
 
-/// Lines "t=12.5" carry a time.
-std::optional<double> clock_of(Bytes line) {
-  const std::string text = text_of(line);
-  if (text.rfind("t=", 0) != 0) return {};
-  double value = 0;
-  std::from_chars(text.data() + 2, text.data() + text.size(), value);
-  return value;
+TEST(ByteFile, ARecordingThatGoesOnInFurtherFilesIsFollowedByItsStamps) {
+  const TempFolder folder;
+  const auto part = [](int second, const std::string& text) {
+    std::string out = recording_header("serial:x");
+    append_record(out, std::chrono::seconds(1'700'000'000 + second), false, bytes_of(text));
+    return out;
+  };
+  const auto path = folder.write("a.raw", part(0, "one"));
+  folder.write("a.002.raw", part(7, "two"));
+  folder.write("a.003.raw", part(8, "three").substr(0, 20));  // power was cut
+  folder.write("a.005.raw", part(99, "of another"));
+  EXPECT_EQ(play(path), (Played{{"one", 0s}, {"two", 7s}}));
+  folder.write("a.002.raw", "something else");
+  ByteFile file(path, {}, [](Bytes, Time) {});
+  ASSERT_TRUE(file.open());
+  ASSERT_TRUE(file.advance());
+  EXPECT_EQ(file.advance().error().detail,
+            "replay file " + folder.file("a.002.raw") + " is no recording");
 }
 
-TEST(ByteFile, APlainFileIsTimedByWhatItsLinesSay) {
+TEST(FrameFile, ALogThatGoesOnInFurtherFilesIsFollowedAndBegunAnewByRewind) {
+  const TempFolder folder;
+  std::vector<std::uint32_t> ids;
+  const auto path = folder.write("a.log", "(1700000000.0) can0 001#\n(1700000001.0) can0 002#\n");
+  folder.write("a.002.log", "(1700000003.0) can0 003#\n");
+  FrameFile file(path, [&](const CanFrame& f, Time) { ids.push_back(f.id); });
+  ASSERT_TRUE(file.open());
+  base::Duration last{};
+  for (int round = 0; round < 2; ++round) {
+    for (auto next = file.advance(); next && *next; next = file.advance()) {
+      last = **next;
+      file.emit(Time{});
+    }
+    EXPECT_EQ(last, 3s);
+    ASSERT_TRUE(file.rewind());
+  }
+  EXPECT_EQ(ids, (std::vector<std::uint32_t>{1, 2, 3, 1, 2, 3}));
+  folder.write("a.002.log", "(1700000003.0) can0 003#\nrubbish\n");
+  auto next = file.advance();
+  while (next && *next) next = file.advance();
+  ASSERT_FALSE(next);
+  EXPECT_TRUE(
+      next.error().detail.starts_with("replay file " + folder.file("a.002.log") + " line 2"))
+      << next.error().detail;
+}
+
+/// Messages are lines; "t=12.5" tells the time of day, "w=12.5" that of a week, and "b" and a
+/// number announce so many bytes of anything, line feeds among them.
+base::StreamClock lines_clock() {
+  struct LinesState {
+    std::string waiting;
+    std::uint64_t at = 0;
+  };
+  return [s = std::make_shared<LinesState>()](Bytes bytes, const base::OnStreamMark& on) {
+    s->waiting += text_of(bytes);
+    for (;;) {
+      auto end = s->waiting.find('\n');
+      if (end == std::string::npos) break;
+      base::StreamMark mark;
+      if (s->waiting[0] == 'b') end += std::stoul(s->waiting.substr(1));
+      if (end >= s->waiting.size()) break;
+      using Clock = base::StreamTime::Clock;
+      if (s->waiting.starts_with("t=")) {
+        mark.time = {Clock::TimeOfDay, std::stod(s->waiting.substr(2)), 86'400.0};
+      }
+      if (s->waiting.starts_with("w=")) {
+        mark.time = {Clock::TimeOfWeek, std::stod(s->waiting.substr(2)), 604'800.0};
+      }
+      mark.end = s->at += end;
+      on(mark);
+      s->waiting.erase(0, end + 1);
+      ++s->at;
+    }
+    on({s->at, {}});
+  };
+}
+
+TEST(ByteFile, APlainFileIsTimedByWhatItsMessagesSay) {
   const TempFolder folder;
   const auto path = folder.write("a.nmea",
                                  "# comment\nt=86399.5\r\nmore\nt=0.5\n"  // midnight
                                  "t=0.4\nt=500\nlast");
   const Played expected{{"# comment\n", 0s}, {"t=86399.5\r\n", 0s}, {"more\n", 0s}, {"t=0.5\n", 1s},
                         {"t=0.4\n", 1s},     {"t=500\n", 11s},      {"last", 11s}};
-  EXPECT_EQ(play(path, {.longest_gap_s = 10, .line_clock = clock_of}), expected);
+  EXPECT_EQ(play(path, {.longest_gap_s = 10, .make_clock = lines_clock}), expected);
+}
+
+TEST(ByteFile, AMessageIsNeverCutWhateverItsBytes) {
+  const TempFolder folder;
+  const std::string binary = "b12\n\n\nt=77\r\n\n\x00\n\n"s;
+  const auto path = folder.write("a", "t=5\n" + binary + "\nt=6\n" + binary + "\n");
+  const Played expected{{"t=5\n", 0s}, {binary + "\n", 0s}, {"t=6\n", 1s}, {binary + "\n", 1s}};
+  EXPECT_EQ(play(path, {.make_clock = lines_clock}), expected);
+}
+
+TEST(ByteFile, ClocksOfOtherOriginsGoOnSideBySide) {
+  const TempFolder folder;
+  // The week's clock is seen second, ends, and the day's goes on; one of them is 10 ms early.
+  const auto path = folder.write("a", "t=5\nw=400000\nt=6\nw=400001\nw=400001.99\nt=7\nt=8\n");
+  const Played expected{{"t=5\n", 0s},      {"w=400000\n", 0s},        {"t=6\n", 1s},
+                        {"w=400001\n", 1s}, {"w=400001.99\n", 1990ms}, {"t=7\n", 2s},
+                        {"t=8\n", 3s}};
+  const auto played = play(path, {.make_clock = lines_clock});
+  ASSERT_EQ(played.size(), expected.size());
+  for (std::size_t i = 0; i < played.size(); ++i) {
+    EXPECT_EQ(played[i].first, expected[i].first);
+    EXPECT_NEAR(base::seconds(played[i].second), base::seconds(expected[i].second), 1e-6) << i;
+  }
+}
+
+TEST(ByteFile, AClockThatIsSetAnewCostsNoTime) {
+  const TempFolder folder;
+  // Two seconds after its start the receiver finds out what time it is; later it restarts.
+  const auto path = folder.write("a", "w=1\nw=2\nw=300000\nw=300001\nw=3\nw=4\n");
+  const Played expected{{"w=1\n", 0s},      {"w=2\n", 1s}, {"w=300000\n", 1s},
+                        {"w=300001\n", 2s}, {"w=3\n", 2s}, {"w=4\n", 3s}};
+  EXPECT_EQ(play(path, {.make_clock = lines_clock}), expected);
 }
 
 TEST(ByteFile, APlainFileWithoutTimesIsPlayedAtTheFallbackRate) {
   const TempFolder folder;
   const auto path = folder.write("a.bin", "0123456789\n" + std::string(300, 'x'));
-  const auto played = play(path, {.line_clock = clock_of, .fallback_bytes_per_s = 100});
-  ASSERT_EQ(played.size(), 3u);
-  EXPECT_EQ(played[0].second, 110ms);
-  EXPECT_EQ(played[1].first.size(), 256u);
-  EXPECT_NEAR(base::seconds(played[2].second), 3.11, 1e-6);
+  const auto cut = play(path, {.make_clock = lines_clock, .fallback_bytes_per_s = 100});
+  ASSERT_EQ(cut.size(), 2u);
+  EXPECT_EQ(cut[0].second, 110ms);
+  EXPECT_NEAR(base::seconds(cut[1].second), 3.11, 1e-6);
+  const auto uncut = play(path, {.fallback_bytes_per_s = 100});
+  ASSERT_EQ(uncut.size(), 2u);
+  EXPECT_EQ(uncut[0].first.size(), 256u);
+  EXPECT_NEAR(base::seconds(uncut[1].second), 3.11, 1e-6);
 }
 
 TEST(ByteFile, EveryByteOfAPlainFileArrives) {
-  // given more than one read of lines, long and short, with binary between
+  // given more than one read of messages, long and short, with binary between
   const TempFolder folder;
   std::string content;
-  for (int i = 0; content.size() < 200'000; ++i) {
+  for (int i = 0; content.size() < 400'000; ++i) {
+    const auto size = static_cast<std::size_t>(i % 7000);
+    content += "t=" + std::to_string(i) + "\n" + std::string(size, '\x01') + "\n";
     content +=
-        "t=" + std::to_string(i) + "\n" + std::string(static_cast<std::size_t>(i % 7000), '\x01');
+        "b" + std::to_string(size) + "\n" + std::string(size, i % 2 == 0 ? '\n' : '\r') + "\n";
   }
-  std::string heard;
-  for (const auto& [chunk, at] : play(folder.write("a", content), {.line_clock = clock_of})) {
-    heard += chunk;
+  content += "t=1";
+  const auto path = folder.write("a", content);
+  for (const bool clocked : {true, false}) {
+    ReplayOptions how;
+    if (clocked) how.make_clock = lines_clock;
+    std::string heard;
+    for (const auto& [chunk, at] : play(path, how)) heard += chunk;
+    EXPECT_EQ(heard, content) << clocked;
   }
-  EXPECT_EQ(heard, content);
 }
 
 TEST(ByteReplay, PlaysAndEnds) {

@@ -132,7 +132,7 @@ TEST_P(CartReplay, GivesTheDrivenTrackTwiceTheSame) {
   ASSERT_TRUE(settings);
   const std::vector<std::string> files{file("drive.raw", drive.drive),
                                        file("gnss.raw", drive.receiver)};
-  EXPECT_EQ(look_into(files[0], {})->driver, kind.driver);
+  EXPECT_EQ(look_into(files[0])->driver, kind.driver);
   const std::string once = text_of(files, *settings);
   EXPECT_NEAR(base::distance_bearing(last.pose.global, drive.end.at).distance_m, 0.0, 0.5);
   EXPECT_NEAR(result.way_m, drive.end.driven_m, 0.15 * drive.end.driven_m);
@@ -146,7 +146,7 @@ TEST_P(CartReplay, GivesTheDrivenTrackTwiceTheSame) {
 TEST_P(CartReplay, IsOneDriveLinkAndCanBePlayedLive) {
   const CartKind& kind = *GetParam();
   const CartDrive drive = record_cart(kind);
-  EXPECT_EQ(look_into(file("d.raw", drive.drive), {})->driver, kind.driver);
+  EXPECT_EQ(look_into(file("d.raw", drive.drive))->driver, kind.driver);
   const auto replays =
       read_replays({file("d.raw", drive.drive), file("g.raw", drive.receiver)}, 1.0);
   ASSERT_TRUE(replays);
@@ -198,7 +198,7 @@ TEST_P(CartReplay, AGpsdsReportsAreAReceiver) {
     link::append_record(said, tests::kWall + i * 200ms, false, bytes_of_text(text));
   }
   const std::string recording = file("gpsd.raw", said);
-  EXPECT_EQ(look_into(recording, {})->driver, "gpsd");
+  EXPECT_EQ(look_into(recording)->driver, "gpsd");
   text_of({recording}, {});
   ASSERT_EQ(result.drivers.size(), 1u);
   EXPECT_GT(result.inputs["position"].taken, 40u);

@@ -93,7 +93,7 @@ TEST_F(ReplayTest, ARotatedRecordingIsOne) {
 TEST_F(ReplayTest, WhatIsNoRunIsRefused) {
   const std::string bus = file("a.log", drive().bus);
   text_of({bus, file("b.log", drive().bus)});
-  EXPECT_NE(problem.find("are both recordings of the driver bunker"), std::string::npos) << problem;
+  EXPECT_NE(problem.find("are both recordings of a CAN bus"), std::string::npos) << problem;
   text_of({file("nothing.raw", "no recording at all\n")});
   EXPECT_NE(problem.find("is no recording"), std::string::npos) << problem;
   text_of({"/nonexistent"});
@@ -101,9 +101,9 @@ TEST_F(ReplayTest, WhatIsNoRunIsRefused) {
 }
 
 TEST_F(ReplayTest, AnInertialUnitIsToldFromAReceiver) {
-  EXPECT_EQ(look_into(file("x.raw", drive().unit), {})->driver, "mti");
-  EXPECT_EQ(look_into(file("y.raw", drive().receiver), {})->driver, "gnss");
-  EXPECT_EQ(look_into(file("z.log", drive().bus), {})->driver, "bunker");
+  EXPECT_EQ(look_into(file("x.raw", drive().unit))->driver, "mti");
+  EXPECT_EQ(look_into(file("y.raw", drive().receiver))->driver, "gnss");
+  EXPECT_EQ(look_into(file("z.log", drive().bus))->driver, "bunker");
 }
 
 TEST_F(ReplayTest, GeoJsonHoldsTheTrackAndTheReport) {
