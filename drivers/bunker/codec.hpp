@@ -9,8 +9,8 @@
 // nearest wire step and saturated to the wire's range; NaN and infinity become zero.
 // Thread rules: none needed. The table of frames, by id:
 //
-//   0x111 motion command   0x211 system state    0x251/2 actuator, fast   0x361 battery
-//   0x121 light command    0x221 motion state    0x261/2 actuator, slow   0x362 battery alarms
+//   0x111 motion command   0x211 system state    0x251-4 actuator, fast   0x361 battery
+//   0x121 light command    0x221 motion state    0x261-4 actuator, slow   0x362 battery alarms
 //   0x421 control mode     0x231 light state     0x311   odometer           0x41A version
 //   0x441 clear errors     0x241 radio state                                0x4A1 version text
 //   0x411 0x4A1 version request
@@ -40,8 +40,8 @@ inline constexpr std::uint32_t kSystemState = 0x211;
 inline constexpr std::uint32_t kMotionState = 0x221;
 inline constexpr std::uint32_t kLightState = 0x231;
 inline constexpr std::uint32_t kRadioState = 0x241;
-inline constexpr std::uint32_t kActuatorFast = 0x250;  ///< plus the motor number, 1 or 2
-inline constexpr std::uint32_t kActuatorSlow = 0x260;  ///< plus the motor number, 1 or 2
+inline constexpr std::uint32_t kActuatorFast = 0x250;  ///< plus the motor number, 1 to 4
+inline constexpr std::uint32_t kActuatorSlow = 0x260;  ///< plus the motor number, 1 to 4
 inline constexpr std::uint32_t kOdometer = 0x311;
 inline constexpr std::uint32_t kBattery = 0x361;
 inline constexpr std::uint32_t kBatteryAlarms = 0x362;
@@ -65,7 +65,7 @@ struct ControlModeCommand {
   RequestedMode mode = RequestedMode::Standby;
 };
 
-/// 0: every error; 1, 2: that motor's.
+/// 0: every error; 1 to 4: that motor's.
 struct ClearErrors {
   std::uint8_t which = 0;
 };
@@ -113,7 +113,7 @@ struct RadioFrame {
 };
 
 struct ActuatorFast {
-  std::uint8_t motor = 1;  ///< 1 or 2
+  std::uint8_t motor = 1;  ///< 1 or 2 on a Bunker; 3 and 4 on a base with four
   std::int16_t rpm = 0;
   double current_a = 0.0;  ///< step 0.1
   std::int32_t pulses = 0;

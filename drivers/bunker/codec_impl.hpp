@@ -35,9 +35,13 @@ constexpr Decoded decode(const CanFrame& f, LeftStick order) noexcept {
       return decoded(wire::radio_from(f, order));
     case id::kActuatorFast + 1:
     case id::kActuatorFast + 2:
+    case id::kActuatorFast + 3:
+    case id::kActuatorFast + 4:
       return decoded(wire::fast_from(f));
     case id::kActuatorSlow + 1:
     case id::kActuatorSlow + 2:
+    case id::kActuatorSlow + 3:
+    case id::kActuatorSlow + 4:
       return decoded(wire::slow_from(f));
     case id::kOdometer:
       return decoded(Odometer{wire::get_i32(f, 0), wire::get_i32(f, 4)});

@@ -76,8 +76,12 @@ constexpr std::uint8_t least_length(std::uint32_t frame_id) noexcept {
     case id::kRadioState:
     case id::kActuatorFast + 1:
     case id::kActuatorFast + 2:
+    case id::kActuatorFast + 3:
+    case id::kActuatorFast + 4:
     case id::kActuatorSlow + 1:
     case id::kActuatorSlow + 2:
+    case id::kActuatorSlow + 3:
+    case id::kActuatorSlow + 4:
     case id::kOdometer:
     case id::kBattery:
     case id::kVersion:

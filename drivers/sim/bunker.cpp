@@ -111,7 +111,7 @@ void Bunker::report_radio() {
   send(*last_radio_);
 }
 
-/// Motor 1 drives the right track, motor 2 the left one.
+/// Motor 1 drives the right track, motor 2 the left one; so do 3 and 4, where they are.
 void Bunker::report_motors(bool slow) {
   const auto one = [&](std::uint8_t motor, const MotorState& m, double heat_c) {
     if (slow) {  // the driver sits on the motor's heat sink
@@ -124,8 +124,11 @@ void Bunker::report_motors(bool slow) {
     return bunker::encode(bunker::ActuatorFast{motor, whole(m.track_mps * per_m * 60.0),
                                                m.current_a, wrapped_pulses(m.travel_m * per_m)});
   };
-  send(one(1, tracks_.right(), right_heat_c_));
-  send(one(2, tracks_.left(), left_heat_c_));
+  for (int motor = 1; motor <= params().base.motors; ++motor) {
+    const bool right = motor % 2 == 1;
+    send(one(static_cast<std::uint8_t>(motor), right ? tracks_.right() : tracks_.left(),
+             right ? right_heat_c_ : left_heat_c_));
+  }
 }
 
 void Bunker::report_lights() {

@@ -115,6 +115,7 @@ void fields(V& v, DriveParams& p) {
 /// The firmware of the base.
 struct BaseParams {
   std::string protocol = "v2";
+  int motors = 2;
   std::string firmware = "BUNKER-SIM V2.0.1";
   double v1_full_linear_mps = 3.0;
   double v1_full_angular_radps = 2.5235;
@@ -123,6 +124,8 @@ struct BaseParams {
 template <class V>
 void fields(V& v, BaseParams& p) {
   v("protocol", p.protocol, "v2, or v1: what older firmware speaks");
+  v("motors", p.motors, 2, 4,
+    "drive motors that report themselves (V2); 4: numbers 3 and 4 are the second right and left");
   v("firmware", p.firmware, "answer to a version request (V2 only), at most 80 characters");
   v("v1_full_linear_mps", p.v1_full_linear_mps, 0.1, 10.0, "what 100 percent mean in V1");
   v("v1_full_angular_radps", p.v1_full_angular_radps, 0.1, 10.0, "likewise, turning");

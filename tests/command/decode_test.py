@@ -61,6 +61,12 @@ BUNKER = [
     ("241", "E1 00 00 00 00 00 00 C9", {"swa": "unknown", "swb": "unknown", "swc": "up", "swd": "down"}),
     ("251", "04 D2 00 39 FF FE 79 60", {"motor": 1, "rpm": 1234, "current_a": 5.7, "pulses": -100000}),
     ("252", "FB 2E FF E1 7F FF FF FF", {"motor": 2, "rpm": -1234, "current_a": -3.1, "pulses": 2147483647}),
+    ("253", "F8 30 00 7B 80 00 00 00", {"motor": 3, "rpm": -2000, "current_a": 12.3, "pulses": -2147483648}),
+    ("254", "00 01 FF FF 00 00 00 01", {"motor": 4, "rpm": 1, "current_a": -0.1, "pulses": 1}),
+    ("263", "01 EB 00 26 29 40 00 00", {"motor": 3, "driver_voltage_v": 49.1, "driver_flags": ["driver_enabled"]}),
+    ("264", "02 58 FF D8 80 10 00 00", {
+        "motor": 4, "driver_voltage_v": 60.0, "driver_temp_c": -40, "motor_temp_c": -128,
+        "driver_flags": ["sensor_fault"]}),
     ("261", "01 EB 00 26 29 40 00 00", {
         "motor": 1, "driver_voltage_v": 49.1, "driver_temp_c": 38, "motor_temp_c": 41,
         "driver_state": 64, "driver_flags": ["driver_enabled"]}),
@@ -104,6 +110,8 @@ def bunker_refusals():
     lines = [
         ("can0 221#00010203040506", "0x221 too short"),
         ("can0 123#00", "unknown id 0x123"),
+        ("can0 255#0000000000000000", "unknown id 0x255"),
+        ("can0 254#00000000000000", "0x254 too short"),
         ("can0 00000221#0001020304050607", "extended id"),
         ("can0 221#R8", "remote frame"),
         ("can0 20000040#0000000000000000", "error frame"),

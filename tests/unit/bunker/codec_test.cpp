@@ -209,6 +209,29 @@ TEST(BunkerCodec, ActuatorSlowFramesMatchTheTable) {
   EXPECT_EQ(encode(b), second);
 }
 
+TEST(BunkerCodec, ThirdAndFourthMotorHaveTheSameLayout) {
+  // Big endian: -2000 rpm, 12.3 A, -2147483648 pulses; 9 bytes would be one too many for CAN.
+  const CanFrame third = frame(0x253, "F8 30 00 7B 80 00 00 00");
+  const auto a = decoded<ActuatorFast>(third);
+  EXPECT_EQ(a.motor, 3);
+  EXPECT_EQ(a.rpm, -2000);
+  EXPECT_DOUBLE_EQ(a.current_a, 12.3);
+  EXPECT_EQ(a.pulses, std::numeric_limits<std::int32_t>::min());
+  EXPECT_EQ(encode(a), third);
+  EXPECT_EQ(decoded<ActuatorFast>(frame(0x254, "00 01 FF FF 00 00 00 01")).motor, 4);
+  EXPECT_DOUBLE_EQ(decoded<ActuatorFast>(frame(0x254, "00 01 FF FF 00 00 00 01")).current_a, -0.1);
+
+  const CanFrame fourth = frame(0x264, "02 58 FF D8 80 10 00 00");
+  const auto b = decoded<ActuatorSlow>(fourth);
+  EXPECT_EQ(b.motor, 4);
+  EXPECT_DOUBLE_EQ(b.driver_voltage_v, 60.0);
+  EXPECT_EQ(b.driver_temp_c, -40);
+  EXPECT_EQ(b.motor_temp_c, -128);
+  EXPECT_EQ(b.driver_state, 0x10);
+  EXPECT_EQ(encode(b), fourth);
+  EXPECT_EQ(decoded<ActuatorSlow>(frame(0x263, "01 EB 00 26 29 40 FF FF")).motor, 3);
+}
+
 TEST(BunkerCodec, TheOdometerKeepsItsExtremes) {
   const CanFrame near = frame(0x311, "00 00 30 39 FF FF CF C7");
   EXPECT_EQ(decoded<Odometer>(near).left_mm, 12345);
@@ -262,14 +285,15 @@ TEST(BunkerCodec, ForeignFramesAreIgnoredEvenWithAKnownId) {
   f.remote = false;
   f.error = true;
   EXPECT_EQ(decode(f).verdict, Verdict::Foreign);
-  for (const std::uint32_t other : {0x000u, 0x253u, 0x264u, 0x291u, 0x7FFu}) {
+  for (const std::uint32_t other : {0x000u, 0x250u, 0x255u, 0x260u, 0x265u, 0x291u, 0x7FFu}) {
     EXPECT_EQ(decode(frame(other, "00 00 00 00 00 00 00 00")).verdict, Verdict::Foreign) << other;
   }
 }
 
 TEST(BunkerCodec, AShortFrameIsDroppedWhateverItsId) {
-  for (const std::uint32_t known : {0x111u, 0x121u, 0x211u, 0x221u, 0x231u, 0x241u, 0x251u, 0x252u,
-                                    0x261u, 0x262u, 0x311u, 0x361u}) {
+  for (const std::uint32_t known :
+       {0x111u, 0x121u, 0x211u, 0x221u, 0x231u, 0x241u, 0x251u, 0x252u, 0x253u, 0x254u, 0x261u,
+        0x262u, 0x263u, 0x264u, 0x311u, 0x361u}) {
     EXPECT_EQ(decode(frame(known, "00 00 00 00 00 00 00")).verdict, Verdict::TooShort) << known;
   }
   EXPECT_EQ(decode(frame(0x362, "00 00 00")).verdict, Verdict::TooShort);

@@ -234,6 +234,17 @@ TEST_F(BunkerDetailTest, LightsMotorsAndAlarmsAreMeasured) {
   EXPECT_EQ(motor.faults,
             (std::vector<std::string>{"supply voltage too low", "motor too hot", "driver error"}));
 
+  hear(frame(0x254, "F8 30 00 7B 80 00 00 00"));
+  hear(frame(0x264, "02 58 FF D8 80 10 00 00"));
+  const auto fourth = measured<base::MotorState>().back();
+  EXPECT_EQ(fourth.motor, 4);
+  EXPECT_EQ(fourth.speed_rpm, -2000.0);
+  EXPECT_EQ(fourth.supply_v, 60.0);
+  EXPECT_EQ(fourth.faults, (std::vector<std::string>{"sensor fault or CAN link lost"}));
+  hear(frame(0x253, "00 0A 00 7B 00 00 00 00"));
+  EXPECT_EQ(measured<base::MotorState>().back().motor, 3);
+  EXPECT_EQ(measured<base::MotorState>().back().speed_rpm, 10.0);
+
   hear(frame(0x362, "10 20 00 01 00 00 00 00"));
   EXPECT_TRUE(measured<base::BatteryState>().empty()) << "no charge is known";
   EXPECT_EQ(detail().facts.at("battery_alarms"), "alarm 1: 0x10, alarm 2: 0x20, warning 2: 0x01");

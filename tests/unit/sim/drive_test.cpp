@@ -132,6 +132,19 @@ TEST(Drive, EncodersOdometerAndCurrentsAgreeWithTheMotion) {
   EXPECT_LT(i32(plant.last(0x311), 0), left_mm + 3000);
 }
 
+TEST(Drive, ABaseWithFourMotorsTellsOfAllOfThem) {
+  Params four = ideal();
+  four.base.motors = 4;
+  Plant plant(four);
+  plant.enter_can();
+  plant.drive(1.0, 0.3, 3s);
+  for (const std::uint32_t fast : {0x251u, 0x252u}) {
+    EXPECT_EQ(plant.last(fast + 2).data, plant.last(fast).data) << fast;  // the same side
+    EXPECT_EQ(plant.last(fast + 0x12).data, plant.last(fast + 0x10).data) << fast;
+  }
+  EXPECT_GT(i16(plant.last(0x253), 0), i16(plant.last(0x254), 0)) << "turning left";
+}
+
 TEST(Drive, TheBatteryDrainsBySumOfPowerAndSagsUnderLoad) {
   Params p = ideal();
   p.battery.start_pct = 50.0;
