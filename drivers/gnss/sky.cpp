@@ -43,6 +43,27 @@ std::string_view ubx_system(int gnss_id) noexcept {
   return i < kWords.size() ? kWords[i] : "unknown";
 }
 
+/// @param placed the satellites are those of NAV-SAT, which says itself what is used.
+void add_signal(std::vector<base::Satellite>& all, const ubx::NavSig::One& s, bool placed) {
+  const std::string_view system = ubx_system(s.gnss_id);
+  auto of = std::ranges::find_if(all, [&](const base::Satellite& known) {
+    return known.system == system && known.number == s.number;
+  });
+  if (of == all.end()) {
+    if (placed) return;  // of another epoch
+    all.push_back({std::string(system), s.number, {}, {}, {}, false});
+    of = all.end() - 1;
+  }
+  const std::string_view name = ubx::signal_name(s.gnss_id, s.signal_id);
+  base::SatelliteSignal signal{
+      name.empty() ? "signal " + std::to_string(s.signal_id) : std::string(name), {}, s.used()};
+  if (s.cn0_dbhz > 0) signal.cn0_dbhz = s.cn0_dbhz;
+  of->signals.push_back(std::move(signal));
+  if (placed) return;
+  of->used = of->used.value_or(false) || s.used();
+  if (s.cn0_dbhz > 0) of->cn0_dbhz = std::max<double>(of->cn0_dbhz.value_or(0.0), s.cn0_dbhz);
+}
+
 }  // namespace
 
 SatelliteName satellite_name(const Talker& talker, std::optional<int> nmea_system,
@@ -107,9 +128,8 @@ void Sky::tell(Time stamp) {
 }
 
 void Sky::add(const ubx::NavSat& sats, Time stamp) {
-  ubx_ = stamp;
-  auto all = std::make_shared<std::vector<base::Satellite>>();
-  all->reserve(sats.all.size());
+  sats_.clear();
+  sats_.reserve(sats.all.size());
   for (const ubx::NavSat::One& s : sats.all) {
     base::Satellite out{std::string(ubx_system(s.gnss_id)), s.number, {}, {}, {}, s.used()};
     if (s.elevation_deg >= -90 && s.elevation_deg <= 90 && s.azimuth_deg >= 0 &&
@@ -118,7 +138,29 @@ void Sky::add(const ubx::NavSat& sats, Time stamp) {
       out.azimuth_deg = s.azimuth_deg % 360;
     }
     if (s.cn0_dbhz > 0) out.cn0_dbhz = s.cn0_dbhz;
-    all->push_back(std::move(out));
+    sats_.push_back(std::move(out));
+  }
+  sats_at_ = stamp;
+  tell_ubx(stamp);
+}
+
+void Sky::add(const ubx::NavSig& signals, Time stamp) {
+  signals_ = signals;
+  signals_at_ = stamp;
+  tell_ubx(stamp);
+}
+
+/// What NAV-SAT says of the satellites, and NAV-SIG of their signals, as far as both are fresh.
+void Sky::tell_ubx(Time stamp) {
+  ubx_ = stamp;
+  const auto fresh = [&](const std::optional<Time>& at) {
+    return at && base::seconds(stamp - *at) < kPatience_s;
+  };
+  const bool placed = fresh(sats_at_);
+  auto all = std::make_shared<std::vector<base::Satellite>>();
+  if (placed) *all = sats_;
+  if (fresh(signals_at_)) {
+    for (const ubx::NavSig::One& s : signals_.all) add_signal(*all, s, placed);
   }
   on_measurement_(base::SatellitesInView{stamp, driver_, std::move(all)});
 }
@@ -134,6 +176,8 @@ void Sky::reset() {
   used_.clear();
   knows_used_ = in_gsa_ = false;
   ubx_.reset();
+  sats_at_.reset();
+  signals_at_.reset();
 }
 
 }  // namespace roverd::gnss

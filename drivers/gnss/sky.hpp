@@ -1,10 +1,11 @@
 #pragma once
-// GSV, GSA and NAV-SAT to the satellites in view: one entry for each satellite, with the strongest
-// of its signals, numbered within its system.
+// GSV, GSA, NAV-SAT and NAV-SIG to the satellites in view: one entry for each satellite, with the
+// strongest of its signals, numbered within its system.
 //
 //   A sweep of GSV groups is told when nothing of it came for kPause_s, or when the next begins.
 //   GSA sentences that follow one another are one list of what is used.
-//   NAV-SAT is told at once; while it comes, GSV is not told.
+//   NAV-SAT is told at once; while it comes, GSV is not told. NAV-SIG gives each satellite its
+//   signals; where it comes alone, its satellites have no place in the sky.
 //
 // Numbers: NMEA counts SBAS as 33-64 (PRN 120-151), GLONASS as 65-96 (slot 1-32), QZSS as 193-202;
 // receivers before NMEA 4.11 say Galileo as 301-336 and BeiDou as 201-237 or 401-437. Pure state.
@@ -49,12 +50,14 @@ class Sky {
   /// Every sentence, in order.
   void add(const Sentence& sentence, Time stamp);
   void add(const ubx::NavSat& sats, Time stamp);
+  void add(const ubx::NavSig& signals, Time stamp);
   void tick(Time now);
   void reset();
 
  private:
   void add_group(const SatelliteGroup& group, Time stamp);
   void tell(Time stamp);
+  void tell_ubx(Time stamp);
 
   const std::string driver_;
   const OnMeasurement on_measurement_;
@@ -65,7 +68,11 @@ class Sky {
   std::set<SatelliteName> used_;
   bool knows_used_ = false;
   bool in_gsa_ = false;
-  std::optional<Time> ubx_;
+  std::optional<Time> ubx_;  ///< NAV-SAT or NAV-SIG
+  std::vector<base::Satellite> sats_;
+  std::optional<Time> sats_at_;
+  ubx::NavSig signals_;
+  std::optional<Time> signals_at_;
 };
 
 }  // namespace roverd::gnss

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 
 namespace roverd::ubx {
 namespace {
@@ -150,8 +151,49 @@ Decoded nav_cov(Bytes p) {
   return {Verdict::Decoded, m};
 }
 
+Decoded nav_sig(Bytes p) {
+  constexpr std::size_t kHead = 8;
+  constexpr std::size_t kOne = 16;
+  if (p.size() < kHead) return too_short();
+  if (p[4] != 0) return {Verdict::WrongVersion, {}};
+  const std::size_t count = p[5];
+  if (p.size() < kHead + kOne * count) return too_short();
+  NavSig m{u4(p, 0), {}};
+  m.all.reserve(count);
+  for (std::size_t at = kHead; m.all.size() < count; at += kOne) {
+    m.all.push_back(
+        {p[at], p[at + 1], p[at + 2], p[at + 6], p[at + 7], u2(p, at + 10), i2(p, at + 4) / 10.0});
+  }
+  return {Verdict::Decoded, std::move(m)};
+}
+
+/// 40 bytes: centimetres, then tenths of a millimetre, accuracies, flags.
+Decoded nav_relposned_0(Bytes p) {
+  if (p.size() < 40) return too_short();
+  const auto metres = [&](std::size_t at, std::size_t fine) {
+    return static_cast<double>(std::int64_t{i4(p, at)} * 100 + i1(p, fine)) / 1e4;
+  };
+  NavRelPosNed m;
+  m.station = u2(p, 2);
+  m.itow_ms = u4(p, 4);
+  m.position_m = {metres(8, 20), metres(12, 21), metres(16, 22)};
+  m.sigma_m = {u4(p, 24) / 1e4, u4(p, 28) / 1e4, u4(p, 32) / 1e4};
+  m.flags = u4(p, 36);
+  const Ned& at = m.position_m;
+  const double flat = std::hypot(at.north, at.east);
+  m.length_m = std::hypot(flat, at.down);
+  m.length_sigma_m = std::hypot(m.sigma_m.north, m.sigma_m.east, m.sigma_m.down);
+  if (flat <= 0.0) return {Verdict::Decoded, m};
+  const double heading = std::atan2(at.east, at.north) * 180.0 / std::numbers::pi;
+  m.heading_deg = heading < 0.0 ? heading + 360.0 : heading;
+  const double across = std::hypot(m.sigma_m.north * at.east, m.sigma_m.east * at.north) / flat;
+  m.heading_sigma_deg = std::atan2(across, flat) * 180.0 / std::numbers::pi;
+  return {Verdict::Decoded, m};
+}
+
 Decoded nav_relposned(Bytes p) {
   if (p.empty()) return too_short();
+  if (p[0] == 0) return nav_relposned_0(p);
   if (p[0] != 1) return {Verdict::WrongVersion, {}};
   if (p.size() < 64) return too_short();
   const auto metres = [&](std::size_t at, std::size_t fine) {
@@ -230,7 +272,7 @@ constexpr std::array kNames{
     Name{{0x01, 0x12}, "NAV-VELNED"},    Name{{0x01, 0x13}, "NAV-HPPOSECEF"},
     Name{{0x01, 0x20}, "NAV-TIMEGPS"},   Name{{0x01, 0x21}, "NAV-TIMEUTC"},
     Name{{0x01, 0x22}, "NAV-CLOCK"},     Name{{0x01, 0x26}, "NAV-TIMELS"},
-    Name{key::kNavSat, "NAV-SAT"},       Name{{0x01, 0x43}, "NAV-SIG"},
+    Name{key::kNavSat, "NAV-SAT"},       Name{key::kNavSig, "NAV-SIG"},
     Name{{0x01, 0x61}, "NAV-EOE"},       Name{{0x02, 0x13}, "RXM-SFRBX"},
     Name{{0x02, 0x15}, "RXM-RAWX"},      Name{{0x02, 0x32}, "RXM-RTCM"},
     Name{{0x06, 0x00}, "CFG-PRT"},       Name{{0x06, 0x01}, "CFG-MSG"},
@@ -262,6 +304,11 @@ int NavPvt::quality() const noexcept {
 
 Carrier NavRelPosNed::carrier() const noexcept {
   return carrier_of(flags >> 3U & 3U);
+}
+
+bool NavRelPosNed::heading_valid() const noexcept {
+  if (version != 0) return bit(8);
+  return position_valid() && moving() && (position_m.north != 0.0 || position_m.east != 0.0);
 }
 
 bool NavRelPosNed::heading_usable(double baseline_m, double tolerance_m) const noexcept {
@@ -300,6 +347,7 @@ Decoded decode(const Frame& frame) {
   if (frame.key == key::kNavHpPosLlh) return nav_hpposllh(p);
   if (frame.key == key::kNavCov) return nav_cov(p);
   if (frame.key == key::kNavSat) return nav_sat(p);
+  if (frame.key == key::kNavSig) return nav_sig(p);
   if (frame.key == key::kNavRelPosNed) return nav_relposned(p);
   if (frame.key == key::kAckAck || frame.key == key::kAckNak) {
     return ack(p, frame.key == key::kAckAck);

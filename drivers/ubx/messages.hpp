@@ -4,7 +4,8 @@
 // as not valid is empty; a field without a mark is as sent, so look at `usable()` first.
 //
 //   NAV-PVT 01 07   NAV-HPPOSLLH 01 14   NAV-SAT 01 35   NAV-COV 01 36   NAV-RELPOSNED 01 3C
-//   MON-VER 0A 04   ACK-NAK 05 00        ACK-ACK 05 01   CFG-VALSET 06 8A (to the receiver)
+//   NAV-SIG 01 43   MON-VER 0A 04        ACK-NAK 05 00   ACK-ACK 05 01
+//   CFG-VALSET 06 8A (to the receiver)
 //
 // Pure. Any payload may come in.
 
@@ -27,6 +28,7 @@ inline constexpr Key kNavHpPosLlh{0x01, 0x14};
 inline constexpr Key kNavSat{0x01, 0x35};
 inline constexpr Key kNavCov{0x01, 0x36};
 inline constexpr Key kNavRelPosNed{0x01, 0x3C};
+inline constexpr Key kNavSig{0x01, 0x43};
 inline constexpr Key kAckNak{0x05, 0x00};
 inline constexpr Key kAckAck{0x05, 0x01};
 inline constexpr Key kCfgValSet{0x06, 0x8A};
@@ -106,7 +108,9 @@ struct NavCov {
   std::optional<Covariance> velocity_m2ps2;
 };
 
-/// Vector from the base to the rover; with a moving base the direction of the vehicle.
+/// Vector from the base to the rover; with a moving base the direction of the vehicle. Version 0
+/// (receivers before the F9, 40 bytes) tells neither length nor heading: they are computed from the
+/// vector and its accuracies, and the heading counts as valid with a moving base.
 struct NavRelPosNed {
   int version = 0;
   int station = 0;
@@ -125,8 +129,8 @@ struct NavRelPosNed {
   bool position_valid() const noexcept { return bit(2); }
   Carrier carrier() const noexcept;
   bool moving() const noexcept { return bit(5); }
-  bool heading_valid() const noexcept { return bit(8); }
-  bool normalised() const noexcept { return bit(9); }
+  bool heading_valid() const noexcept;
+  bool normalised() const noexcept { return version != 0 && bit(9); }
   /// @param baseline_m as mounted. @param tolerance_m by which the measured length may differ.
   bool heading_usable(double baseline_m, double tolerance_m) const noexcept;
 };
@@ -146,6 +150,29 @@ struct NavSat {
   std::uint32_t itow_ms = 0;
   std::vector<One> all;
 };
+
+/// Every signal that the receiver tracks: a satellite has one to three.
+struct NavSig {
+  struct One {
+    int gnss_id = 0;  ///< as in NavSat
+    int number = 0;
+    int signal_id = 0;
+    int cn0_dbhz = 0;
+    int quality = 0;  ///< 0 none … 4 code locked … 7 code and carrier locked, time known
+    unsigned flags = 0;
+    double residual_m = 0.0;  ///< of the pseudorange
+    /// 0 unknown, 1 healthy, 2 unhealthy.
+    int health() const noexcept { return static_cast<int>(flags & 3U); }
+    bool code_used() const noexcept { return (flags >> 3U & 1U) != 0; }
+    bool carrier_used() const noexcept { return (flags >> 4U & 1U) != 0; }
+    bool doppler_used() const noexcept { return (flags >> 5U & 1U) != 0; }
+    bool used() const noexcept { return (flags & 0x38U) != 0; }
+  };
+  std::uint32_t itow_ms = 0;
+  std::vector<One> all;
+};
+/// "L1 C/A", "E5b Q"; empty: unknown here.
+std::string_view signal_name(int gnss_id, int signal_id) noexcept;
 
 struct MonVer {
   std::string software;
@@ -178,7 +205,7 @@ struct Poll {
 };
 
 using Message = std::variant<std::monostate, NavPvt, NavHpPosLlh, NavCov, NavRelPosNed, NavSat,
-                             MonVer, Ack, ValSet, Poll>;
+                             NavSig, MonVer, Ack, ValSet, Poll>;
 
 /// NotOurs: intact, but of a class and id that has no struct here.
 enum class Verdict { Decoded, NotOurs, TooShort, WrongVersion, BadValue };

@@ -131,6 +131,24 @@ struct UbxFields {
                             {"svUsed", s.used()}});
     }
   }
+  void operator()(const ubx::NavSig& m) const {
+    out["iTOW"] = m.itow_ms;
+    out["sigs"] = Json::array();
+    for (const auto& s : m.all) {
+      const auto name = ubx::signal_name(s.gnss_id, s.signal_id);
+      out["sigs"].push_back({{"gnssId", s.gnss_id},
+                             {"svId", s.number},
+                             {"sigId", s.signal_id},
+                             {"signal", name.empty() ? Json(nullptr) : Json(name)},
+                             {"prRes", s.residual_m},
+                             {"cno", s.cn0_dbhz},
+                             {"qualityInd", s.quality},
+                             {"health", s.health()},
+                             {"prUsed", s.code_used()},
+                             {"crUsed", s.carrier_used()},
+                             {"doUsed", s.doppler_used()}});
+    }
+  }
   void operator()(const ubx::MonVer& m) const {
     out["swVersion"] = m.software;
     out["hwVersion"] = m.hardware;

@@ -2,6 +2,7 @@
 // written again is what was read.
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 #include "ubx/messages.hpp"
@@ -22,6 +23,12 @@ void on_frame(const ubx::Frame& frame) {
   if (const auto* pvt = std::get_if<ubx::NavPvt>(&decoded.message)) {
     check(base::is_valid(pvt->at));
     check(pvt->usable() == (pvt->quality() > 0));
+  }
+  if (const auto* sig = std::get_if<ubx::NavSig>(&decoded.message)) {
+    check(sig->all.size() * 16 + 8 <= frame.payload.size());
+  }
+  if (const auto* rel = std::get_if<ubx::NavRelPosNed>(&decoded.message)) {
+    check(!rel->heading_usable(1.0, 0.05) || std::isfinite(rel->heading_deg));
   }
   if (const auto* set = std::get_if<ubx::ValSet>(&decoded.message)) {
     check(ubx::is_intact(ubx::encode(*set)));
@@ -49,9 +56,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto pieces = run(bytes, data[0] % 64U + 1U);
   check(whole.frames == pieces.frames && whole.other_bytes == pieces.other_bytes);
   // The rest as a payload of a known message: the checksum hides these paths from the fuzzer.
-  constexpr std::array kKeys{ubx::key::kNavPvt,   ubx::key::kNavHpPosLlh,  ubx::key::kNavCov,
-                             ubx::key::kMonVer,   ubx::key::kNavRelPosNed, ubx::key::kAckAck,
-                             ubx::key::kCfgValSet};
+  constexpr std::array kKeys{ubx::key::kNavPvt,    ubx::key::kNavHpPosLlh,  ubx::key::kNavCov,
+                             ubx::key::kMonVer,    ubx::key::kNavRelPosNed, ubx::key::kAckAck,
+                             ubx::key::kCfgValSet, ubx::key::kNavSat,       ubx::key::kNavSig};
   if (bytes.size() <= ubx::kMaxPayload) on_frame({kKeys[data[0] % kKeys.size()], bytes});
   return 0;
 }

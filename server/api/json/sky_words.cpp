@@ -17,12 +17,18 @@ Json value_or_null(const std::optional<T>& value) {
 }
 
 Json satellite_json(const base::Satellite& s) {
+  Json signals = Json::array();
+  for (const base::SatelliteSignal& one : s.signals) {
+    signals.push_back(
+        {{"name", one.name}, {"cn0_dbhz", value_or_null(one.cn0_dbhz)}, {"used", one.used}});
+  }
   return {{"system", s.system},
           {"number", s.number},
           {"elevation_deg", value_or_null(s.elevation_deg)},
           {"azimuth_deg", value_or_null(s.azimuth_deg)},
           {"cn0_dbhz", value_or_null(s.cn0_dbhz)},
-          {"used", value_or_null(s.used)}};
+          {"used", value_or_null(s.used)},
+          {"signals", std::move(signals)}};
 }
 
 }  // namespace

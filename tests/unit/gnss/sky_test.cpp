@@ -127,5 +127,57 @@ TEST_F(SkyTest, NavSatOutranksGsvWhileItComes) {
   EXPECT_EQ(told.size(), 2u);
 }
 
+ubx::NavSig signals_of_two() {
+  ubx::NavSig sig;
+  sig.all.push_back({2, 11, 0, 41, 7, 0x39, 0.1});  // E1 C, all used
+  sig.all.push_back({2, 11, 6, 36, 7, 0x01, 0.2});  // E5b Q, tracked only
+  sig.all.push_back({0, 5, 77, 0, 1, 0x00, 0.0});   // a signal to come, not heard yet
+  return sig;
+}
+
+TEST_F(SkyTest, NavSigGivesEachSatelliteOfNavSatItsSignals) {
+  ubx::NavSat sats;
+  sats.all.push_back({2, 11, 41, 50, 200, 0x0F});
+  sats.all.push_back({6, 3, 30, 20, 10, 0x00});
+  sky.add(sats, now);
+  EXPECT_TRUE(find("galileo", 11)->signals.empty());
+  sky.add(signals_of_two(), now);
+  ASSERT_EQ(told.size(), 2u);
+  ASSERT_EQ(told.back().satellites->size(), 2u) << "GPS 5 is not in NAV-SAT";
+  const auto& signals = find("galileo", 11)->signals;
+  ASSERT_EQ(signals.size(), 2u);
+  EXPECT_EQ(signals[0].name, "E1 C");
+  EXPECT_EQ(signals[0].cn0_dbhz, 41.0);
+  EXPECT_TRUE(signals[0].used);
+  EXPECT_EQ(signals[1].name, "E5b Q");
+  EXPECT_EQ(signals[1].cn0_dbhz, 36.0);
+  EXPECT_FALSE(signals[1].used);
+  EXPECT_EQ(find("galileo", 11)->elevation_deg, 50.0);
+  EXPECT_TRUE(find("glonass", 3)->signals.empty());
+  // The next NAV-SAT keeps them, once; after five seconds they are old.
+  now += 1s;
+  sky.add(sats, now);
+  EXPECT_EQ(find("galileo", 11)->signals.size(), 2u);
+  now += 4s;
+  sky.add(sats, now);
+  EXPECT_TRUE(find("galileo", 11)->signals.empty());
+}
+
+TEST_F(SkyTest, NavSigAloneTellsSatellitesWithoutAPlace) {
+  sky.add(signals_of_two(), now);
+  ASSERT_EQ(told.back().satellites->size(), 2u);
+  EXPECT_EQ(find("galileo", 11)->cn0_dbhz, 41.0) << "of the stronger";
+  EXPECT_EQ(find("galileo", 11)->used, true) << "one of its signals is";
+  EXPECT_FALSE(find("galileo", 11)->elevation_deg);
+  EXPECT_FALSE(find("gps", 5)->cn0_dbhz);
+  EXPECT_EQ(find("gps", 5)->used, false);
+  EXPECT_EQ(find("gps", 5)->signals.at(0).name, "signal 77");
+  EXPECT_FALSE(find("gps", 5)->signals.at(0).cn0_dbhz);
+  sky.reset();
+  ubx::NavSat none;
+  sky.add(none, now);
+  EXPECT_TRUE(told.back().satellites->empty());
+}
+
 }  // namespace
 }  // namespace roverd::gnss
