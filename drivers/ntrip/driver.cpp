@@ -74,6 +74,8 @@ void Driver::open_next(Time now) {
   };
   reply_ = {};
   framer_.forget();
+  other_.forget();
+  frames_before_ = frames_;
   stuck_since_.reset();
   told_once_ = false;
   stage_ = Stage::Asking;
@@ -126,10 +128,14 @@ void Driver::on_bytes(Bytes bytes, Time now) {
   const std::uint64_t before = frames_;
   reply_.feed(bytes, [&](Bytes data) {
     framer_.feed(data, [&](const rtcm::Frame& f) { on_frame(f, now); });
+    other_.feed(data);
   });
   if (frames_ != before || !framer_.waiting()) stuck_since_.reset();
   if (framer_.waiting() && !stuck_since_) stuck_since_ = now;
   on_reply(now);
+  if (stage_ == Stage::Streaming && other_.sure() && frames_ == frames_before_) {
+    fail("the mountpoint sends RTCM 2; RTCM 3 is needed: choose another mountpoint", now, true);
+  }
 }
 
 void Driver::on_reply(Time now) {

@@ -34,6 +34,7 @@
 #include "ntrip/params.hpp"
 #include "ntrip/reply.hpp"
 #include "rtcm/framer.hpp"
+#include "rtcm/rtcm2.hpp"
 
 namespace roverd::ntrip {
 
@@ -107,6 +108,8 @@ class Driver {
   Time since_{};  ///< of the stage; of Streaming: the last intact frame
   Reply reply_;
   rtcm::Framer framer_;
+  rtcm::Rtcm2Ear other_;             ///< of this connection
+  std::uint64_t frames_before_ = 0;  ///< this connection
   std::optional<Time> stuck_since_;  ///< a frame has begun and is not complete
   Time streaming_since_{};
   std::uint64_t returns_ = 0;  ///< to a caster further up

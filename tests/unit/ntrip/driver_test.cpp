@@ -7,6 +7,7 @@
 
 #include "bytes.hpp"
 #include "link/memory.hpp"
+#include "unit/rtcm/rtcm2.hpp"
 
 namespace roverd::ntrip {
 namespace {
@@ -282,6 +283,34 @@ TEST_F(NtripDriverTest, ADigestOfAnUnknownKindIsNamed) {
   after(20ms);
   answer("HTTP/1.1 401 No\r\nWWW-Authenticate: Digest nonce=\"a\", algorithm=SHA-512-256\r\n\r\n");
   EXPECT_NE(status().reason.find("SHA-512-256"), std::string::npos) << status().reason;
+}
+
+TEST_F(NtripDriverTest, AMountpointThatSendsRtcm2IsNamedAndTheNextCasterTried) {
+  make(kOne + " ntrip://10.0.0.2/RTCM3");
+  after(20ms);
+  rtcm::Rtcm2Writer station;
+  for (int i = 0; i < 4; ++i) station.message(1, 723, {0x123456, 0xFFFFFF, 0, 0xABCDEF, 1});
+  answer("ICY 200 OK\r\n" + station.bytes());
+  EXPECT_EQ(status().phase, DriverPhase::Faulty);
+  EXPECT_NE(status().reason.find("the mountpoint sends RTCM 2; RTCM 3 is needed"),
+            std::string::npos)
+      << status().reason;
+  EXPECT_TRUE(frames.empty());
+  after(20ms);
+  EXPECT_EQ(addresses.size(), 2u);
+  after(20ms);
+  answer("ICY 200 OK\r\n" + k1005);
+  EXPECT_EQ(status().phase, DriverPhase::Up);
+}
+
+TEST_F(NtripDriverTest, BytesThatLookLikeRtcm2BesideRtcm3ChangeNothing) {
+  make(kOne);
+  after(20ms);
+  rtcm::Rtcm2Writer station;
+  for (int i = 0; i < 4; ++i) station.message(1, 723, {0x123456, 0xFFFFFF, 0, 0xABCDEF, 1});
+  answer("ICY 200 OK\r\n" + k1005 + station.bytes() + k1006);
+  EXPECT_EQ(status().phase, DriverPhase::Up);
+  EXPECT_EQ(frames, (std::vector<std::string>{k1005, k1006}));
 }
 
 }  // namespace
