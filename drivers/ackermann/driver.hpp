@@ -33,7 +33,7 @@
 #include "base/drive_command.hpp"
 #include "gate/command_box.hpp"
 #include "gate/motion_gate.hpp"
-#include "link/byte_port.hpp"
+#include "link/port.hpp"
 
 namespace roverd::ackermann {
 

@@ -15,7 +15,7 @@
 
 #include "bumper/codec.hpp"
 #include "bumper/params.hpp"
-#include "link/byte_port.hpp"
+#include "link/port.hpp"
 
 namespace roverd::bumper {
 

@@ -9,7 +9,6 @@
 namespace roverd::bunker {
 
 using base::ControlMode;
-using Phase = base::DriverPhase;
 
 namespace {
 
@@ -59,40 +58,29 @@ base::Result<void> validate(const Params& params) {
 
 Driver::Driver(std::string name, const Params& params, MakeLink make_link,
                OnMeasurement on_measurement)
-    : name_(std::move(name)),
-      params_(params),
+    : params_(params),
       left_stick_(params.rc_left_stick_order == "lr_ud" ? LeftStick::LrUd : LeftStick::UdLr),
-      make_link_(std::move(make_link)),
       on_measurement_(std::move(on_measurement)),
       gate_(limits_of(params)),
-      life_(params.retry_first_s, params.retry_max_s),
       interpreter_(params.error_table == "old" ? kOldErrorBits : kErrorBits, on_measurement_),
-      odometry_(params.odometer_max_mps) {
+      odometry_(params.odometer_max_mps),
+      port_(
+          {std::move(name), "waiting for 0x211 or 0x221", params.retry_first_s, params.retry_max_s},
+          std::move(make_link), [this](const CanFrame& f, Time t) { on_frame(f, t); },
+          [this] { forget(); }, on_measurement_) {
   if (const auto valid = validate(params); !valid)
     throw std::invalid_argument(valid.error().detail);
-}
-
-Driver::~Driver() {
-  if (owned_link_) owned_link_->close();
+  port_.on_opening([this](link::FrameLink& bus, Time now) { begin(bus, now); });
+  port_.on_reporting([this](Time now) { refresh_detail(now); });
+  port_.on_completing([this](base::DriverStatus& s) { complete(s); });
 }
 
 void Driver::start(Time now) {
-  now_ = now;
-  if (life_.phase() != Phase::Down) return;
-  open(now);
-  report(now);
+  port_.start(now);
 }
 
-void Driver::open(Time now) {
-  if (!owned_link_) {
-    auto made = make_link_();
-    if (!made) return life_.faulty(made.error().detail, now);
-    owned_link_ = std::move(*made);
-    owned_link_->on_frame = [this](const CanFrame& f, Time t) { on_frame(f, t); };
-    owned_link_->on_closed = [this](const std::string& reason) { fail(reason, now_); };
-    link_.store(owned_link_.get(), std::memory_order_release);
-  }
-  last_feedback_ = now;
+void Driver::begin(link::FrameLink& bus, Time now) {
+  link_.store(&bus, std::memory_order_release);
   firmware_asks_ = 0;
   firmware_at_ = now;
   v1_seen_ = v2_seen_ = false;
@@ -100,12 +88,9 @@ void Driver::open(Time now) {
   state_count_ = {};
   radio_count_ = {};
   if (up_from_) up_from_ = now + kOneVoice;
-  life_.opening("waiting for 0x211 or 0x221");
-  open_ = true;  // before open: a link may hand over the first frame from inside it
-  if (const auto opened = owned_link_->open(); !opened) fail(opened.error().detail, now);
 }
 
-void Driver::lose(const std::string& reason, Time now) {
+void Driver::forget() noexcept {
   up_.store(false, std::memory_order_release);
   mode_.store(ControlMode::Unknown, std::memory_order_release);
   gate_.permit(false);
@@ -115,41 +100,29 @@ void Driver::lose(const std::string& reason, Time now) {
   radio_took_.reset();
   v1_mode_raw_ = 0xFF;
   clear_next_ = 0;
-  life_.faulty(reason, now);
-}
-
-void Driver::fail(const std::string& reason, Time now) {
-  lose(reason, now);
-  open_ = false;
-  owned_link_->close();
 }
 
 void Driver::tick(Time now) {
-  now_ = now;
-  if (open_) {
-    check_silence(now);
-  } else if (life_.retry_due(now)) {
-    open(now);
-  }
+  if (port_.is_open()) check_silence(now);
   ask_firmware(now);
   if (clear_next_ != 0 && now - clear_at_ >= kClearPause) clear_next(now);
-  report(now);
+  port_.tick(now);
+  tell_news(now);
 }
 
 void Driver::check_silence(Time now) {
-  const double silent_s = base::seconds(now - last_feedback_);
-  if (life_.phase() == Phase::Up && silent_s > params_.lost_after_s) {
-    lose(std::string(v1_seen_ ? "no 0x131 or 0x151 for " : "no 0x211 or 0x221 for ") +
-             seconds_text(params_.lost_after_s),
-         now);
+  const double silent_s = base::seconds(now - port_.last_heard());
+  if (port_.is_up() && silent_s > params_.lost_after_s) {
+    port_.lose(std::string(v1_seen_ ? "no 0x131 or 0x151 for " : "no 0x211 or 0x221 for ") +
+                   seconds_text(params_.lost_after_s),
+               now);
   } else if (params_.silent_reopen_s > 0.0 && silent_s > params_.silent_reopen_s) {
-    fail("the bus is open but silent: no 0x211 or 0x221", now);
+    port_.fail("the bus is open but silent: no 0x211 or 0x221", now);
   }
 }
 
 void Driver::stop(Time now) {
-  now_ = now;
-  if (life_.phase() == Phase::Down) return;
+  if (port_.phase() == base::DriverPhase::Down) return;
   // From here on the gate lets nothing out but zeros and standby, whatever the control loop sends.
   up_.store(false, std::memory_order_release);
   gate_.permit(false);
@@ -157,15 +130,9 @@ void Driver::stop(Time now) {
     for (int i = 0; i < kLastZeros; ++i) transmit(zero_frame(ControlMode::Unknown), now);
     transmit(mode_frame(RequestedMode::Standby), now);
   }
-  mode_.store(ControlMode::Unknown, std::memory_order_release);
-  open_ = false;
-  if (owned_link_) owned_link_->close();
-  odometry_.forget();
   turn_ = {};
   foreign_motion_.reset();
-  clear_next_ = 0;
-  life_.down();
-  report(now);
+  port_.stop(now);
 }
 
 void Driver::restart(Time now) {

@@ -66,8 +66,7 @@
 #include "bunker/v1.hpp"
 #include "bunker/watch.hpp"
 #include "gate/gate.hpp"
-#include "link/lifecycle.hpp"
-#include "link/link.hpp"
+#include "link/port.hpp"
 
 namespace roverd::bunker {
 
@@ -75,15 +74,11 @@ using base::Time;
 
 class Driver {
  public:
-  /// Called until it succeeds; the link is then kept and opened and closed as needed.
-  using MakeLink = std::function<base::Result<std::unique_ptr<link::FrameLink>>()>;
-  using OnMeasurement = std::function<void(const base::Measurement&)>;
+  using MakeLink = link::FramePort::MakeLink;
+  using OnMeasurement = link::FramePort::OnMeasurement;
 
   /// @param params valid (validate). @param on_measurement called on the device thread.
   Driver(std::string name, const Params& params, MakeLink make_link, OnMeasurement on_measurement);
-  ~Driver();
-  Driver(const Driver&) = delete;
-  Driver& operator=(const Driver&) = delete;
 
   /// Device thread. Opens at once; a failure shows as Faulty and is tried again.
   void start(Time now);
@@ -106,7 +101,7 @@ class Driver {
   bool clear_errors(int motor, Time now) noexcept;
 
   /// Device thread.
-  base::DriverStatus status(Time now) const;
+  base::DriverStatus status(Time now) const { return port_.status(now); }
   gate::Gate::Counts gate_counts() const noexcept { return gate_.counts(); }
 
  private:
@@ -118,14 +113,15 @@ class Driver {
   static constexpr base::Duration kFirmwarePause = std::chrono::seconds(1);
   static constexpr int kFirmwareAsks = 4;
 
-  void open(Time now);
+  void begin(link::FrameLink& bus, Time now);
   /// The base is not there: nothing but its own voice brings it back.
-  void lose(const std::string& reason, Time now);
-  /// As lose, and the bus is closed, to be opened again after the back-off.
-  void fail(const std::string& reason, Time now);
+  void forget() noexcept;
   void check_silence(Time now);
 
-  void report(Time now);
+  /// Tells hazards that came or went, at once.
+  void tell_news(Time now);
+  void refresh_detail(Time now);
+  void complete(base::DriverStatus& status) const;
   std::shared_ptr<const base::DriverDetail> make_detail(Time now);
   std::map<std::string, std::string> facts(Time now) const;
   std::string control_words(Time now) const;
@@ -165,12 +161,9 @@ class Driver {
   enum class Outcome { Sent, Refused, NoRoom };  ///< Refused: by the gate
   Outcome transmit(const CanFrame& frame, Time now) noexcept;
 
-  const std::string name_;
   const Params params_;
   const LeftStick left_stick_;
-  const MakeLink make_link_;
   const OnMeasurement on_measurement_;
-  std::unique_ptr<link::FrameLink> owned_link_;
   gate::Gate gate_;
 
   // Shared with the control thread.
@@ -190,12 +183,7 @@ class Driver {
   base::BodyTwist last_twist_;
 
   // Device thread.
-  link::Lifecycle life_;
   Interpreter interpreter_;
-  Time now_{};  ///< of the last call, for callbacks that carry no time
-  bool open_ = false;
-  Time last_feedback_{};  ///< or the opening
-  std::optional<Time> last_received_;
   bool v1_seen_ = false;
   bool v2_seen_ = false;
   std::optional<Time> up_from_;  ///< after both protocols were heard: not before
@@ -217,9 +205,9 @@ class Driver {
   Time clear_at_{};
   int firmware_asks_ = 0;  ///< since the bus was opened
   Time firmware_at_{};
-  std::uint64_t received_ = 0;
   std::uint64_t refused_ = 0;
   std::uint64_t restarts_ = 0;
+  link::FramePort port_;  ///< last: its callbacks use all above
 };
 
 }  // namespace roverd::bunker

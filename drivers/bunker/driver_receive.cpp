@@ -8,7 +8,6 @@
 namespace roverd::bunker {
 
 using base::ControlMode;
-using Phase = base::DriverPhase;
 
 namespace {
 
@@ -25,7 +24,6 @@ constexpr bool is_motion_command(std::uint32_t frame_id) noexcept {
 }  // namespace
 
 void Driver::on_frame(const CanFrame& frame, Time stamp) {
-  if (!open_) return;
   if (frame.error) return tally_.add(Cause::ErrorFrame);
   if (frame.remote) return tally_.add(Cause::Remote);
   if (frame.extended) return tally_.add(Cause::Extended);
@@ -113,8 +111,7 @@ void Driver::on_v1(const CanFrame& frame, Time stamp) {
 }
 
 void Driver::heard(const CanFrame& frame, Time stamp) {
-  ++received_;
-  last_received_ = stamp;
+  port_.received(stamp);
   rates_.add(frame.id);
 }
 
@@ -122,7 +119,7 @@ void Driver::foreign_command(std::uint32_t frame_id, Time stamp) {
   tally_.add(Cause::ForeignCommand, frame_id);
   if (!is_motion_command(frame_id)) return;
   foreign_motion_ = stamp;
-  report(stamp);  // at once, if it is news
+  tell_news(stamp);
 }
 
 bool Driver::two_protocols(bool v1, Time stamp) {
@@ -132,21 +129,20 @@ bool Driver::two_protocols(bool v1, Time stamp) {
     return false;
   }
   ++refused_;
-  fail("speaks protocols V1 (0x151) and V2 (0x221, 0x241) at once: will not drive it", stamp);
+  port_.fail("speaks protocols V1 (0x151) and V2 (0x221, 0x241) at once: will not drive it", stamp);
   up_from_ = stamp;  // counted from the next opening
-  report(stamp);
+  port_.say(stamp);
   return true;
 }
 
 void Driver::feedback(Time stamp) {
-  last_feedback_ = stamp;
-  if (life_.phase() == Phase::Up) return;
+  port_.alive(stamp);
+  if (port_.is_up()) return;
   if (up_from_ && stamp < *up_from_) return;
   up_from_.reset();
-  life_.up();
   gate_.permit(true);
   up_.store(true, std::memory_order_release);
-  report(stamp);
+  port_.heard(stamp);
 }
 
 void Driver::watch(const Message& message, Time stamp) {

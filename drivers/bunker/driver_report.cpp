@@ -11,16 +11,18 @@ using base::ControlMode;
 Driver::Hazards Driver::hazards(Time now) const noexcept {
   return {.foreign_motion = foreign_motion_ && now - *foreign_motion_ < kForeignHold,
           .swapped = turn_.swapped(),
-          .frozen = open_ && state_count_.frozen()};
+          .frozen = port_.is_open() && state_count_.frozen()};
 }
 
-void Driver::report(Time now) {
+void Driver::tell_news(Time now) {
+  if (detail_ && hazards(now) != told_) port_.say(now);
+}
+
+void Driver::refresh_detail(Time now) {
   const bool news = detail_ && hazards(now) != told_;
-  if (!life_.report_due(now) && !news) return;
   if (!detail_ || news || now - detail_at_ >= link::Lifecycle::kReportPeriod) {
     detail_ = make_detail(now);
   }
-  on_measurement_(status(now));
 }
 
 std::shared_ptr<const base::DriverDetail> Driver::make_detail(Time now) {
@@ -34,11 +36,9 @@ std::shared_ptr<const base::DriverDetail> Driver::make_detail(Time now) {
   }
   detail->rates_hz = rates_.words(now);
   detail->facts = facts(now);
-  if (owned_link_) {
-    link::BusReport bus = owned_link_->report(now);
-    detail->facts.merge(bus.facts);
-    detail->counts.merge(bus.counts);
-  }
+  link::BusReport bus = port_.bus(now);
+  detail->facts.merge(bus.facts);
+  detail->counts.merge(bus.counts);
   told_ = hazards(now);
   if (told_.foreign_motion) {
     detail->hazards.emplace_back(speaks_v1_.load() ? "somebody else sends motion commands (0x130)"
@@ -102,21 +102,11 @@ std::string Driver::control_words(Time now) const {
   return "the base does not tell its control mode";
 }
 
-base::DriverStatus Driver::status(Time now) const {
-  base::DriverStatus s;
-  s.stamp = now;
-  s.name = name_;
-  s.phase = life_.phase();
-  s.reason = life_.reason();
-  s.received = received_;
+void Driver::complete(base::DriverStatus& s) const {
   s.refused = refused_ + odometry_.refused();
   s.sent = sent_.load(std::memory_order_relaxed);
-  s.last_received = last_received_;
   s.restarts = restarts_;
-  if (owned_link_) s.link = owned_link_->describe();
-  s.link_open = open_;
   s.detail = detail_;
-  return s;
 }
 
 }  // namespace roverd::bunker

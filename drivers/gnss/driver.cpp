@@ -6,9 +6,10 @@
 
 namespace roverd::gnss {
 
-using Phase = base::DriverPhase;
-
 namespace {
+
+/// Receivers tell a position once in a second at least; without a fix its message comes as well.
+constexpr base::Duration kPositionPatience = std::chrono::seconds(5);
 
 /// What looks like a binary frame and is not complete after this long is none.
 constexpr base::Duration kStalled = std::chrono::seconds(1);
@@ -52,54 +53,34 @@ base::Result<void> validate(const Params& params) {
 
 Driver::Driver(std::string name, const Params& params, MakeLink make_link,
                OnMeasurement on_measurement)
-    : name_(std::move(name)),
-      params_(params),
-      make_link_(std::move(make_link)),
-      on_measurement_(std::move(on_measurement)),
-      life_(params.retry_first_s, params.retry_max_s),
-      blend_([this](const base::Measurement& m) { on_measurement_(m); }),
+    : params_(params),
+      on_measurement_(on_measurement),
+      blend_([this](const base::Measurement& m) { tell(m); }),
       epochs_(epoch_options(params), [this](const base::Measurement& m) { blend_.nmea(m); }),
       ubx_epochs_(ubx_epoch_options(params), [this](const base::Measurement& m) { blend_.ubx(m); }),
-      sky_(name_, [this](const base::Measurement& m) { on_measurement_(m); }),
-      setup_(setup_options(params)) {
+      sky_(name, [this](const base::Measurement& m) { on_measurement_(m); }),
+      setup_(setup_options(params)),
+      port_(
+          {name, "waiting for a sentence", params.retry_first_s, params.retry_max_s},
+          std::move(make_link), [this](Bytes b, Time t) { on_bytes(b, t); },
+          [this] { forget_epochs(); }, std::move(on_measurement)) {
   if (const auto valid = validate(params); !valid)
     throw std::invalid_argument(valid.error().detail);
-}
-
-Driver::~Driver() {
-  if (link_) link_->close();
+  port_.on_opening([this](link::ByteLink&, Time now) { begin(now); });
+  port_.on_completing([this](base::DriverStatus& s) { complete(s); });
 }
 
 void Driver::start(Time now) {
-  now_ = now;
-  if (life_.phase() != Phase::Down) return;
-  open(now);
-  report(now);
+  port_.start(now);
 }
 
-void Driver::open(Time now) {
-  if (!link_) {
-    auto made = make_link_();
-    if (!made) return life_.faulty(made.error().detail, now);
-    link_ = std::move(*made);
-    link_->on_bytes = [this](Bytes b, Time t) { on_bytes(b, t); };
-    link_->on_closed = [this](const std::string& reason) { fail(reason, now_); };
-  }
-  life_.opening("waiting for a sentence");
-  last_byte_ = last_intact_ = retuned_ = now;
+void Driver::begin(Time now) {
+  last_byte_ = last_intact_ = retuned_ = last_fix_ = now;
+  no_position_ = false;
   clock_ = {};
   ubx_clock_ = {};
   ubx_before_ = counts().ubx;
   setup_.begin();
-  open_ = true;  // before open: a link may hand over the first bytes from inside it
-  if (const auto opened = link_->open(); !opened) fail(opened.error().detail, now);
-}
-
-void Driver::fail(const std::string& reason, Time now) {
-  open_ = false;
-  link_->close();
-  forget_epochs();
-  life_.faulty(reason, now);
 }
 
 void Driver::forget_epochs() {
@@ -110,8 +91,7 @@ void Driver::forget_epochs() {
 }
 
 void Driver::tick(Time now) {
-  now_ = now;
-  if (open_) {
+  if (port_.is_open()) {
     const std::uint64_t before = intact();
     decoder_.give_up(now - kStalled, [&](const auto& said, Time t) { take(said, t); });
     after_bytes(before, now);
@@ -123,8 +103,7 @@ void Driver::tick(Time now) {
     talk(now);
   }
   correct();
-  if (!open_ && life_.retry_due(now)) open(now);
-  report(now);
+  port_.tick(now);
 }
 
 void Driver::check_silence(Time now) {
@@ -134,25 +113,24 @@ void Driver::check_silence(Time now) {
   const std::string reason = bytes ? "bytes but no sentence: wrong baud rate, or another device"
                                    : "no bytes: the receiver is silent";
   if (params_.silent_reopen_s > 0.0 && silent_s > params_.silent_reopen_s) {
-    fail(reason, now);
-  } else if (life_.phase() != Phase::Faulty || life_.reason() != reason) {
-    forget_epochs();
-    life_.faulty(reason, now);
+    port_.fail(reason, now);
+  } else {
+    port_.lose(reason, now);
   }
 }
 
 /// What a receiver says at a wrong baud rate is never a sentence: the next rate.
 void Driver::retune(Time now) {
   const Time heard = std::max(last_intact_, retuned_);
-  if (!open_ || base::seconds(now - heard) <= params_.silent_after_s) return;
+  if (!port_.is_open() || base::seconds(now - heard) <= params_.silent_after_s) return;
   retuned_ = now;
-  if (link_->retune()) decoder_.forget();
+  if (port_.retune()) decoder_.forget();
 }
 
 void Driver::talk(Time now) {
-  if (!open_) return;
+  if (!port_.is_open()) return;
   const auto bytes = setup_.due(counts().ubx > ubx_before_, now);
-  if (!bytes.empty() && link_->write(bytes) == link::SendResult::Sent) ++sent_;
+  if (!bytes.empty() && port_.write(bytes) == link::SendResult::Sent) ++sent_;
 }
 
 void Driver::correct() {
@@ -160,13 +138,12 @@ void Driver::correct() {
   Frames frames;
   take_corrections(frames);
   for (const auto& frame : frames) {
-    const bool sent = open_ && link_->write(frame) == link::SendResult::Sent;
+    const bool sent = port_.write(frame) == link::SendResult::Sent;
     ++(sent ? corrections_ : corrections_lost_);
   }
 }
 
 void Driver::on_bytes(Bytes bytes, Time stamp) {
-  if (!open_) return;
   last_byte_ = stamp;
   const std::uint64_t before = intact();
   decoder_.feed(bytes, stamp, [&](const auto& said, Time t) { take(said, t); });
@@ -186,38 +163,33 @@ void Driver::take(const ubx::Message& message, Time stamp) {
   if (pvt != nullptr && pvt->usable()) time_s = pvt->itow_ms / 1e3;
   if (ubx_clock_.add(time_s, stamp)) return clock_stands(stamp);
   if (const auto* sats = std::get_if<ubx::NavSat>(&message)) return sky_.add(*sats, stamp);
+  if (const auto* signals = std::get_if<ubx::NavSig>(&message)) return sky_.add(*signals, stamp);
   ubx_epochs_.add(message, stamp);
 }
 
 void Driver::clock_stands(Time stamp) {
   ++frozen_;
-  if (life_.phase() != Phase::Up) return;
-  forget_epochs();
-  life_.faulty("the receiver repeats itself: its time stands still", stamp);
-  report(stamp);
+  if (!port_.is_up()) return;
+  port_.lose("the receiver repeats itself: its time stands still", stamp);
+  port_.say(stamp);
 }
 
 void Driver::after_bytes(std::uint64_t intact_before, Time stamp) {
   if (intact() == intact_before) return;
   last_intact_ = stamp;
-  last_received_ = stamp;
-  if (life_.phase() == Phase::Up || clock_.frozen() || ubx_clock_.frozen()) return;
-  life_.up();
-  report(stamp);
+  port_.received(stamp);
+  // Set up for something else it speaks, and nobody would know why there is no position.
+  no_position_ = stamp - last_fix_ > kPositionPatience;
+  if (!clock_.frozen() && !ubx_clock_.frozen()) port_.heard(stamp);
 }
 
-void Driver::report(Time now) {
-  if (life_.report_due(now)) on_measurement_(status(now));
+void Driver::tell(const base::Measurement& m) {
+  if (const auto* fix = std::get_if<base::GnssFix>(&m)) last_fix_ = std::max(last_fix_, fix->stamp);
+  on_measurement_(m);
 }
 
 void Driver::stop(Time now) {
-  now_ = now;
-  if (life_.phase() == Phase::Down) return;
-  open_ = false;
-  if (link_) link_->close();
-  forget_epochs();
-  life_.down();
-  report(now);
+  port_.stop(now);
 }
 
 void Driver::restart(Time now) {
@@ -225,23 +197,19 @@ void Driver::restart(Time now) {
   start(now);
 }
 
-base::DriverStatus Driver::status(Time now) const {
-  base::DriverStatus s;
-  s.stamp = now;
-  s.name = name_;
-  s.phase = life_.phase();
-  s.reason = life_.reason();
+void Driver::complete(base::DriverStatus& s) const {
   s.received = counts().used + counts().ubx_used;
   s.refused = counts().damaged + counts().ubx_refused + frozen_;
   s.sent = sent_;
-  s.last_received = last_received_;
-  auto detail = std::make_shared<base::DriverDetail>();
-  detail->counts = causes();
-  detail->facts = setup_.facts();
-  if (link_) s.link = link_->describe();
-  s.link_open = open_;
+  auto detail = std::make_shared<base::DriverDetail>(*s.detail);
+  detail->counts.merge(causes());
+  for (const auto& [key, value] : setup_.facts()) detail->facts[key] = value;
+  if (no_position_) {
+    detail->facts["no_position"] =
+        "the receiver sends no position message: switch on GGA, GNS or RMC of NMEA, or NAV-PVT of "
+        "UBX";
+  }
   s.detail = std::move(detail);
-  return s;
 }
 
 std::map<std::string, std::uint64_t> Driver::causes() const {
@@ -267,7 +235,6 @@ std::map<std::string, std::uint64_t> Driver::causes() const {
   count("position 0, 0", blend_.counts().zero_positions);
   count("impossible date", blend_.counts().impossible_dates);
   count("time going back", blend_.counts().backwards);
-  if (link_) count("from a foreign address", link_->strangers());
   return out;
 }
 

@@ -12,6 +12,9 @@
 // (baud rate, another device on this port), or that the receiver repeats one epoch for ever
 // (ClockWatch): nothing it says then is used. A link that can try other baud rates does so.
 //
+// A receiver that is up and sends no position message (satellites only, say) is told by the fact
+// "no_position".
+//
 // Measurements: GnssFix, GnssVelocity, Heading (gnss/epoch.hpp, gnss/ubx_epoch.hpp and
 // gnss/blend.hpp say how), SatellitesInView (gnss/sky.hpp), DriverStatus on change and twice a
 // second; received counts decoded sentences, refused the damaged ones and those of a standing
@@ -39,22 +42,17 @@
 #include "gnss/sky.hpp"
 #include "gnss/ubx_epoch.hpp"
 #include "gnss/ubx_setup.hpp"
-#include "link/lifecycle.hpp"
-#include "link/link.hpp"
+#include "link/port.hpp"
 
 namespace roverd::gnss {
 
 class Driver {
  public:
-  /// Called until it succeeds; the link is then kept and opened and closed as needed.
-  using MakeLink = std::function<base::Result<std::unique_ptr<link::ByteLink>>()>;
-  using OnMeasurement = std::function<void(const base::Measurement&)>;
+  using MakeLink = link::BytePort::MakeLink;
+  using OnMeasurement = link::BytePort::OnMeasurement;
 
   /// @param params valid (validate).
   Driver(std::string name, const Params& params, MakeLink make_link, OnMeasurement on_measurement);
-  ~Driver();
-  Driver(const Driver&) = delete;
-  Driver& operator=(const Driver&) = delete;
 
   /// Opens at once; a failure shows as Faulty and is tried again.
   void start(Time now);
@@ -69,17 +67,17 @@ class Driver {
   using Frames = std::vector<std::vector<std::uint8_t>>;
   std::function<void(Frames&)> take_corrections;
 
-  base::DriverStatus status(Time now) const;
+  base::DriverStatus status(Time now) const { return port_.status(now); }
   const SentenceCounts& counts() const noexcept { return decoder_.counts(); }
   const Framer::Counts& framing() const noexcept { return decoder_.framing(); }
 
  private:
-  void open(Time now);
-  void fail(const std::string& reason, Time now);
+  void begin(Time now);
   void check_silence(Time now);
-  void report(Time now);
   void on_bytes(Bytes bytes, Time stamp);
   std::uint64_t intact() const noexcept { return counts().intact() + counts().ubx; }
+  void tell(const base::Measurement& m);
+  void complete(base::DriverStatus& status) const;
   void take(const Sentence& sentence, Time stamp);
   void take(const ubx::Message& message, Time stamp);
   void clock_stands(Time stamp);
@@ -90,12 +88,8 @@ class Driver {
   void correct();
   std::map<std::string, std::uint64_t> causes() const;
 
-  const std::string name_;
   const Params params_;
-  const MakeLink make_link_;
   const OnMeasurement on_measurement_;
-  std::unique_ptr<link::ByteLink> link_;
-  link::Lifecycle life_;
   Decoder decoder_;
   Blend blend_;
   EpochAssembler epochs_;
@@ -109,12 +103,12 @@ class Driver {
   std::uint64_t corrections_ = 0;       ///< frames handed to the receiver
   std::uint64_t corrections_lost_ = 0;  ///< for which its port had no room
   std::uint64_t sent_ = 0;              ///< requests to the receiver
-  bool open_ = false;
-  Time now_{};          ///< of the last call, for callbacks that carry no time
-  Time last_byte_{};    ///< or the opening
-  Time last_intact_{};  ///< or the opening
-  Time retuned_{};      ///< or the opening
-  std::optional<Time> last_received_;
+  Time last_byte_{};                    ///< or the opening
+  Time last_intact_{};                  ///< or the opening
+  Time retuned_{};                      ///< or the opening
+  Time last_fix_{};                     ///< told, with a position or without; or the opening
+  bool no_position_ = false;
+  link::BytePort port_;  ///< last: its callbacks use all above
 };
 
 }  // namespace roverd::gnss

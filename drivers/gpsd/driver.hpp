@@ -20,7 +20,7 @@
 #include "gnss/blend.hpp"
 #include "gnss/clock_watch.hpp"
 #include "gpsd/report.hpp"
-#include "link/byte_port.hpp"
+#include "link/port.hpp"
 
 namespace roverd::gpsd {
 

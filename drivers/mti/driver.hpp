@@ -22,7 +22,7 @@
 #include <string>
 
 #include "base/measurements.hpp"
-#include "link/byte_port.hpp"
+#include "link/port.hpp"
 #include "mti/interpreter.hpp"
 #include "mti/params.hpp"
 #include "mti/setup.hpp"

@@ -18,7 +18,7 @@
 #include "base/drive_command.hpp"
 #include "gate/command_box.hpp"
 #include "gate/motion_gate.hpp"
-#include "link/byte_port.hpp"
+#include "link/port.hpp"
 #include "ratio/codec.hpp"
 #include "ratio/params.hpp"
 

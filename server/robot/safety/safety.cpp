@@ -225,6 +225,16 @@ std::string still_to_wait(const World& w, double good_s, double healthy_s, Time 
   return text + ": " + w.gnss_broke_by + number(base::seconds(now - *w.gnss_broke), " %.0f s ago");
 }
 
+/// A receiver that speaks, and says no positions: what its driver says of that; else empty.
+std::string no_position(const World& w) {
+  for (const base::DriverStatus& d : w.drivers) {
+    if (!d.detail) continue;
+    const auto fact = d.detail->facts.find("no_position");
+    if (fact != d.detail->facts.end()) return fact->second;
+  }
+  return {};
+}
+
 base::Check check_gnss(const Facts& f, const SafetyParams& safety, const ArmingParams& p,
                        Time now) {
   const char* id = "gnss_fix";
@@ -234,9 +244,13 @@ base::Check check_gnss(const Facts& f, const SafetyParams& safety, const ArmingP
         id, true, Severity::Error,
         "none; the operator said where the robot was " + number(f.estimate.free_m, "%.0f m ago"));
   }
+  const bool silent = !w.gnss || older(w.gnss->stamp, 2.0, now);
+  if (const std::string why = no_position(w); silent && !why.empty()) {
+    return check(id, false, Severity::Error, why);
+  }
   if (!w.gnss) return check(id, false, Severity::Error, "no GNSS receiver has been heard");
   const std::string fix(base::to_string(w.gnss->fix));
-  if (older(w.gnss->stamp, 2.0, now)) {
+  if (silent) {
     return check(id, false, Severity::Error, "the GNSS receiver is silent");
   }
   if (!w.gnss_good_since) return check(id, false, Severity::Error, "no usable fix: " + fix);

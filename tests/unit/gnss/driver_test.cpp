@@ -289,5 +289,39 @@ TEST(GnssParams, AreListedWithTheirRanges) {
   EXPECT_EQ(base::describe(p).size(), 13u);
 }
 
+std::string no_position_fact(const base::DriverStatus& s) {
+  const auto fact = s.detail->facts.find("no_position");
+  return fact == s.detail->facts.end() ? "" : fact->second;
+}
+
+TEST_F(GnssDriverTest, AReceiverThatSendsNoPositionMessageIsNamed) {
+  driver->start(now);
+  const auto satellites_only = [&] { hear(line("GPGSV,1,1,01,05,45,123,38,1")); };
+  for (int i = 0; i < 10; ++i) {
+    satellites_only();
+    after(500ms);
+    EXPECT_EQ(no_position_fact(status()), "") << i;
+  }
+  satellites_only();
+  after(500ms);
+  satellites_only();
+  EXPECT_EQ(status().phase, DriverPhase::Up) << "it speaks";
+  EXPECT_NE(no_position_fact(status()).find("sends no position message"), std::string::npos);
+  EXPECT_TRUE(measured<base::GnssFix>().empty());
+  // Switched on, though without a fix: that is another matter.
+  for (int i = 0; i < 4; ++i) {
+    hear(line("GNGGA,08150" + std::to_string(i) + ".00,,,,,0,00,99.99,,,,,,"));
+    after(1s);
+  }
+  EXPECT_FALSE(measured<base::GnssFix>().empty());
+  satellites_only();
+  EXPECT_EQ(no_position_fact(status()), "");
+  // Opened again, it has its five seconds again.
+  after(10s);
+  driver->restart(now);
+  satellites_only();
+  EXPECT_EQ(no_position_fact(status()), "");
+}
+
 }  // namespace
 }  // namespace roverd::gnss

@@ -33,6 +33,24 @@ TEST(Arming, NeedsAFixThatHasLasted) {
   EXPECT_TRUE(f.state()->home);
 }
 
+TEST(Arming, AReceiverThatSendsNoPositionsIsNamedByItsCheck) {
+  Field f;
+  f.gnss_speaks = false;
+  f.run(1.0);
+  EXPECT_EQ(f.check("gnss_fix").detail, "no GNSS receiver has been heard");
+  base::DriverStatus receiver;
+  receiver.stamp = f.now;
+  receiver.name = "gnss";
+  receiver.phase = base::DriverPhase::Up;
+  auto detail = std::make_shared<base::DriverDetail>();
+  detail->facts["no_position"] = "the receiver sends no position message";
+  receiver.detail = detail;
+  f.robot.inbox().put(receiver);
+  f.run(0.1);
+  EXPECT_FALSE(f.check("gnss_fix").ok);
+  EXPECT_EQ(f.check("gnss_fix").detail, "the receiver sends no position message");
+}
+
 TEST(Arming, OneBadThingAtATimeIsEnoughToRefuse) {
   struct Case {
     const char* id;

@@ -1,6 +1,6 @@
 #pragma once
-// What every driver on a byte link has in common: the machine of lifecycle.hpp, opening and opening
-// again, counting and reporting. The driver owns one and gives it the meaning of the bytes.
+// What every driver on a link has in common: the machine of lifecycle.hpp, opening and opening
+// again, counting and reporting. The driver owns one and gives it the meaning of what comes in.
 // Device thread only. Time is an argument.
 
 #include <functional>
@@ -18,11 +18,33 @@
 
 namespace roverd::link {
 
-class BytePort {
+/// What comes in over a link, and how one listens.
+inline void listen(ByteLink& link, std::function<void(Bytes, Time)> on) {
+  link.on_bytes = std::move(on);
+}
+inline void listen(FrameLink& link, std::function<void(const CanFrame&, Time)> on) {
+  link.on_frame = std::move(on);
+}
+inline SendResult put(ByteLink& link, Bytes bytes) noexcept {
+  return link.write(bytes);
+}
+inline SendResult put(FrameLink& link, const CanFrame& frame) noexcept {
+  return link.send(frame);
+}
+inline std::uint64_t strangers_of(const ByteLink& link) noexcept {
+  return link.strangers();
+}
+inline std::uint64_t strangers_of(const FrameLink&) noexcept {
+  return 0;
+}
+
+/// @tparam Link ByteLink or FrameLink. @tparam Item what it carries: Bytes or const CanFrame&.
+template <class Link, class Item>
+class Port {
  public:
   using Phase = base::DriverPhase;
-  using MakeLink = std::function<base::Result<std::unique_ptr<ByteLink>>()>;
-  using OnBytes = std::function<void(Bytes, Time)>;
+  using MakeLink = std::function<base::Result<std::unique_ptr<Link>>()>;
+  using OnItem = std::function<void(Item, Time)>;
   using OnMeasurement = std::function<void(const base::Measurement&)>;
 
   struct Names {
@@ -33,17 +55,25 @@ class BytePort {
   };
 
   /// @param forget called whenever what was heard before is worth nothing any more.
-  BytePort(Names names, MakeLink make_link, OnBytes on_bytes, std::function<void()> forget,
-           OnMeasurement on_measurement)
+  Port(Names names, MakeLink make_link, OnItem on_item, std::function<void()> forget,
+       OnMeasurement on_measurement)
       : names_(std::move(names)),
         make_link_(std::move(make_link)),
-        on_bytes_(std::move(on_bytes)),
+        on_item_(std::move(on_item)),
         forget_(std::move(forget)),
         on_measurement_(std::move(on_measurement)),
         life_(names_.retry_first_s, names_.retry_max_s) {}
-  ~BytePort() { close(); }
-  BytePort(const BytePort&) = delete;
-  BytePort& operator=(const BytePort&) = delete;
+  ~Port() { close(); }
+  Port(const Port&) = delete;
+  Port& operator=(const Port&) = delete;
+
+  /// Further hooks, before start. Opening: just before the link is opened, each time. Reporting:
+  /// the status is about to be told. Completing: what the driver counts apart, at each status.
+  void on_opening(std::function<void(Link&, Time)> hook) { opening_ = std::move(hook); }
+  void on_reporting(std::function<void(Time)> hook) { reporting_ = std::move(hook); }
+  void on_completing(std::function<void(base::DriverStatus&)> hook) {
+    completing_ = std::move(hook);
+  }
 
   bool is_open() const noexcept { return open_; }
   bool is_up() const noexcept { return life_.phase() == Phase::Up; }
@@ -52,7 +82,7 @@ class BytePort {
   Time last_heard() const noexcept { return last_heard_; }
   /// Why nothing was heard: the cable, or what is at its other end. @param missing "no feedback".
   std::string silence(const std::string& missing) const {
-    if (!last_bytes_ || *last_bytes_ <= last_heard_) return missing + ": the port is silent";
+    if (!last_item_ || *last_item_ <= last_heard_) return missing + ": the port is silent";
     return missing + ", only other bytes: another device on this port, or a wrong baud rate";
   }
   const std::string& name() const noexcept { return names_.name; }
@@ -77,6 +107,8 @@ class BytePort {
     report(now);
   }
 
+  /// It speaks, which is not enough to be up.
+  void alive(Time stamp) noexcept { last_heard_ = stamp; }
   /// The device is there.
   void heard(Time stamp) {
     last_heard_ = stamp;
@@ -97,18 +129,26 @@ class BytePort {
     life_.faulty(reason, now);
   }
 
-  SendResult write(Bytes bytes) noexcept {
+  SendResult write(Item item) noexcept {
     if (!open_) return SendResult::Closed;
-    const SendResult result = link_->write(bytes);
+    const SendResult result = put(*link_, item);
     if (result == SendResult::Sent) ++sent_;
     return result;
   }
 
   /// Of a recording: what was sent then. @param on_sent as ByteLink::on_sent; before start.
-  void hear_sent(OnBytes on_sent) { on_sent_ = std::move(on_sent); }
+  void hear_sent(OnItem on_sent) { on_sent_ = std::move(on_sent); }
 
   /// ByteLink::retune of an open link.
   bool retune() { return open_ && link_->retune(); }
+  /// FrameLink::report, once there is a link.
+  BusReport bus(Time now) { return link_ ? link_->report(now) : BusReport{}; }
+  const std::string& reason() const noexcept { return life_.reason(); }
+  /// Tells the status now: something in it is news.
+  void say(Time now) {
+    static_cast<void>(life_.report_due(now));  // a change is told with it
+    tell(now);
+  }
 
   void received(Time stamp) {
     ++received_;
@@ -140,11 +180,13 @@ class BytePort {
     if (link_) {
       s.link = link_->describe();
       s.link_open = open_;
-      if (link_->strangers() > 0) detail->counts["from a foreign address"] = link_->strangers();
+      const std::uint64_t strangers = strangers_of(*link_);
+      if (strangers > 0) detail->counts["from a foreign address"] = strangers;
     }
     detail->facts = facts_;
     detail->hazards = hazards_;
     s.detail = std::move(detail);
+    if (completing_) completing_(s);
     return s;
   }
 
@@ -154,18 +196,21 @@ class BytePort {
       auto made = make_link_();
       if (!made) return life_.faulty(made.error().detail, now);
       link_ = std::move(*made);
-      link_->on_bytes = [this](Bytes b, Time t) {
+      listen(*link_, [this](Item item, Time t) {
         if (!open_) return;
-        last_bytes_ = t;
-        on_bytes_(b, t);
-      };
+        last_item_ = t;
+        on_item_(item, t);
+      });
       link_->on_closed = [this](const std::string& reason) { fail(reason, now_); };
-      if (on_sent_) {
-        link_->on_sent = [this](Bytes b, Time t) {
-          if (open_) on_sent_(b, t);
-        };
+      if constexpr (requires { link_->on_sent; }) {
+        if (on_sent_) {
+          link_->on_sent = [this](Item item, Time t) {
+            if (open_) on_sent_(item, t);
+          };
+        }
       }
     }
+    if (opening_) opening_(*link_, now);
     life_.opening(names_.waiting_for);
     last_heard_ = now;
     open_ = true;  // before open: a link may hand over the first bytes from inside it
@@ -176,21 +221,28 @@ class BytePort {
     if (link_) link_->close();
   }
   void report(Time now) {
-    if (life_.report_due(now)) on_measurement_(status(now));
+    if (life_.report_due(now)) tell(now);
+  }
+  void tell(Time now) {
+    if (reporting_) reporting_(now);
+    on_measurement_(status(now));
   }
 
   const Names names_;
   const MakeLink make_link_;
-  const OnBytes on_bytes_;
-  OnBytes on_sent_;
+  const OnItem on_item_;
+  OnItem on_sent_;
   const std::function<void()> forget_;
   const OnMeasurement on_measurement_;
-  std::unique_ptr<ByteLink> link_;
+  std::function<void(Link&, Time)> opening_;
+  std::function<void(Time)> reporting_;
+  std::function<void(base::DriverStatus&)> completing_;
+  std::unique_ptr<Link> link_;
   Lifecycle life_;
   bool open_ = false;
   Time now_{};  ///< of the last call, for callbacks that carry no time
   Time last_heard_{};
-  std::optional<Time> last_bytes_;
+  std::optional<Time> last_item_;
   std::optional<Time> last_received_;
   std::uint64_t received_ = 0;
   std::uint64_t refused_ = 0;
@@ -199,5 +251,8 @@ class BytePort {
   std::map<std::string, std::string> facts_;
   std::vector<std::string> hazards_;
 };
+
+using BytePort = Port<ByteLink, Bytes>;
+using FramePort = Port<FrameLink, const CanFrame&>;
 
 }  // namespace roverd::link
