@@ -26,25 +26,16 @@ int number(std::string_view text, int base) noexcept {
 
 }  // namespace
 
-int parse(std::string_view line) noexcept {
-  if (line.size() < 6 || line.substr(0, 2) != "B,") return -1;
+std::optional<std::uint8_t> parse(std::string_view line) noexcept {
+  if (line.size() < 6 || line.substr(0, 2) != "B,") return {};
   const auto star = line.size() - 3;
-  if (line[star] != '*') return -1;
+  if (line[star] != '*') return {};
   if (number(line.substr(star + 1), 16) != static_cast<int>(checksum(line.substr(0, star)))) {
-    return -1;
+    return {};
   }
   const int mask = number(line.substr(2, star - 2), 10);
-  return mask <= 255 ? mask : -1;
-}
-
-int Decoder::line_done() noexcept {
-  std::string_view line(line_, size_);
-  if (line.ends_with('\r')) line.remove_suffix(1);
-  const bool empty = line.empty() && !too_long_;
-  const int mask = too_long_ ? -1 : parse(line);
-  forget();
-  if (mask < 0 && !empty) ++refused_;
-  return mask;
+  if (mask < 0 || mask > 255) return {};
+  return static_cast<std::uint8_t>(mask);
 }
 
 std::string encode(std::uint8_t mask) {

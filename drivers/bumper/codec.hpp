@@ -12,46 +12,17 @@
 // Device side: mask as wired, print, XOR, done; neither latching nor debouncing is asked of it.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
-#include "base/bytes.hpp"
+#include "base/line_decoder.hpp"
 
 namespace roverd::bumper {
 
-/// Feeds on bytes however they are cut; an unfinished line waits, an endless one is dropped.
-class Decoder {
- public:
-  /// @param on_mask called with the mask of each intact line.
-  template <class OnMask>
-  void feed(base::Bytes bytes, OnMask&& on_mask) {
-    for (const std::uint8_t b : bytes) {
-      if (b == '\n') {
-        if (const int mask = line_done(); mask >= 0) on_mask(static_cast<std::uint8_t>(mask));
-      } else if (size_ < sizeof line_) {
-        line_[size_++] = static_cast<char>(b);
-      } else {
-        too_long_ = true;
-      }
-    }
-  }
-  void forget() noexcept {
-    size_ = 0;
-    too_long_ = false;
-  }
-  std::uint64_t refused() const noexcept { return refused_; }
-
- private:
-  int line_done() noexcept;
-
-  char line_[16]{};
-  std::size_t size_ = 0;
-  bool too_long_ = false;
-  std::uint64_t refused_ = 0;
-};
-
-/// @return the mask, or −1. @param line without the line end.
-int parse(std::string_view line) noexcept;
+/// @return the mask; empty: it is no such line. @param line without the line end.
+std::optional<std::uint8_t> parse(std::string_view line) noexcept;
+using Decoder = base::LineDecoder<std::uint8_t, 16, parse>;
 /// With the line end.
 std::string encode(std::uint8_t mask);
 /// "front left, rear"; empty when nothing is pressed.

@@ -34,16 +34,6 @@ std::optional<Message> parse(std::string_view line) noexcept {
   return Message{*speed, *ratio};
 }
 
-std::optional<Message> Decoder::line_done() noexcept {
-  std::string_view line(line_, size_);
-  if (line.ends_with('\r')) line.remove_suffix(1);
-  const bool empty = line.empty() && !too_long_;
-  const auto m = too_long_ ? std::nullopt : parse(line);
-  forget();
-  if (!m && !empty) ++refused_;
-  return m;
-}
-
 Message from_twist(base::BodyTwist t, double track_width_m) noexcept {
   const double left = t.linear_mps - t.angular_radps * track_width_m / 2.0;
   const double right = t.linear_mps + t.angular_radps * track_width_m / 2.0;

@@ -17,8 +17,8 @@
 #include <string>
 #include <string_view>
 
-#include "base/bytes.hpp"
 #include "base/geo.hpp"
+#include "base/line_decoder.hpp"
 
 namespace roverd::ratio {
 
@@ -36,34 +36,6 @@ std::optional<Message> parse(std::string_view line) noexcept;
 Message from_twist(base::BodyTwist twist, double track_width_m) noexcept;
 base::BodyTwist to_twist(const Message& message, double track_width_m) noexcept;
 
-/// Lines out of bytes however they are cut. Blank lines are no fault.
-class Decoder {
- public:
-  template <class OnMessage>
-  void feed(base::Bytes bytes, OnMessage&& on_message) {
-    for (const std::uint8_t b : bytes) {
-      if (b == '\n') {
-        if (const auto m = line_done()) on_message(*m);
-      } else if (size_ < sizeof line_) {
-        line_[size_++] = static_cast<char>(b);
-      } else {
-        too_long_ = true;
-      }
-    }
-  }
-  void forget() noexcept {
-    size_ = 0;
-    too_long_ = false;
-  }
-  std::uint64_t refused() const noexcept { return refused_; }
-
- private:
-  std::optional<Message> line_done() noexcept;
-
-  char line_[48]{};
-  std::size_t size_ = 0;
-  bool too_long_ = false;
-  std::uint64_t refused_ = 0;
-};
+using Decoder = base::LineDecoder<Message, 48, parse>;
 
 }  // namespace roverd::ratio
