@@ -120,12 +120,17 @@ Result<Page<FenceSummary>> Fences::list(int limit, const std::string& cursor) {
 }
 
 Result<StoredFence> Fences::create(mission::Fence fence, const Change& change, WallTime now) {
-  if (auto ok = mission::check_fence(fence); !ok) return tl::unexpected<Error>(ok.error());
   SQLite::Transaction transaction(db_, SQLite::TransactionBehavior::IMMEDIATE);
+  auto made = add(std::move(fence), change, now);
+  if (made) transaction.commit();
+  return made;
+}
+
+Result<StoredFence> Fences::add(mission::Fence fence, const Change& change, WallTime now) {
+  if (auto ok = mission::check_fence(fence); !ok) return tl::unexpected<Error>(ok.error());
   Head made{random_id(), 1, ns_from(now), false, false, {}};
   while (head(made.id, kAnyRevision, true)) made.id = random_id();
   add_revision(made, {change, "created", now, &fence});
-  transaction.commit();
   return StoredFence{made.id, 1, now, now, false, std::move(fence)};
 }
 

@@ -16,6 +16,8 @@ class Fences {
 
   base::Result<Page<FenceSummary>> list(int limit, const std::string& cursor);
   base::Result<StoredFence> create(mission::Fence fence, const Change& change, base::WallTime now);
+  /// Inside a transaction of the caller.
+  base::Result<StoredFence> add(mission::Fence fence, const Change& change, base::WallTime now);
   base::Result<StoredFence> read(const std::string& id);
   base::Result<StoredFence> read_revision(const std::string& id, std::int64_t revision);
   base::Result<StoredFence> replace(const std::string& id, std::int64_t expected,

@@ -1,5 +1,7 @@
 // What Store is asked about missions.
 
+#include <SQLiteCpp/Transaction.h>
+
 #include "store/store_impl.hpp"
 
 namespace roverd::store {
@@ -47,6 +49,30 @@ void Store::create_mission(mission::Plan plan, Change change, Reply<StoredMissio
   impl_->ask(std::move(reply),
              [impl = impl_.get(), plan = std::move(plan), change = std::move(change)]() mutable {
                return impl->missions.create(std::move(plan), change, impl->options.clock());
+             });
+}
+
+void Store::create_import(std::vector<mission::Plan> plans, std::optional<mission::Fence> fence,
+                          Change change, Reply<StoredImport> reply) {
+  impl_->ask(std::move(reply),
+             [impl = impl_.get(), plans = std::move(plans), fence = std::move(fence),
+              change = std::move(change)]() mutable -> base::Result<StoredImport> {
+               const base::WallTime now = impl->options.clock();
+               SQLite::Transaction transaction(impl->db->connection,
+                                               SQLite::TransactionBehavior::IMMEDIATE);
+               StoredImport out;
+               for (mission::Plan& plan : plans) {
+                 auto made = impl->missions.add(std::move(plan), change, now);
+                 if (!made) return tl::unexpected<base::Error>(made.error());
+                 out.missions.push_back(std::move(*made));
+               }
+               if (fence) {
+                 auto made = impl->fences.add(std::move(*fence), change, now);
+                 if (!made) return tl::unexpected<base::Error>(made.error());
+                 out.fence = std::move(*made);
+               }
+               transaction.commit();
+               return out;
              });
 }
 

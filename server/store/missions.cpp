@@ -238,6 +238,10 @@ Result<StoredMission> Missions::create(mission::Plan plan, const Change& change,
   return made;
 }
 
+Result<StoredMission> Missions::add(mission::Plan plan, const Change& change, WallTime now) {
+  return add_mission(std::move(plan), {change, "created", now});
+}
+
 Result<StoredMission> Missions::add_mission(mission::Plan plan, const Entry& given) {
   if (auto ok = mission::check_plan(plan); !ok) return tl::unexpected<Error>(ok.error());
   Entry entry = given;

@@ -25,6 +25,8 @@ class Missions {
   enum class Teach { Stays, Ends };
   base::Result<StoredMission> create(mission::Plan plan, const Change& change, base::WallTime now,
                                      Teach teach = Teach::Stays);
+  /// Inside a transaction of the caller.
+  base::Result<StoredMission> add(mission::Plan plan, const Change& change, base::WallTime now);
   base::Result<StoredMission> read(const std::string& id);
   base::Result<StoredMission> read_revision(const std::string& id, std::int64_t revision);
   base::Result<StoredMission> replace(const std::string& id, std::int64_t expected,

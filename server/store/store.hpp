@@ -97,6 +97,12 @@ struct StoredFence {
   mission::Fence fence;
 };
 
+/// What one file became.
+struct StoredImport {
+  std::vector<StoredMission> missions;  ///< in the file's order
+  std::optional<StoredFence> fence;
+};
+
 struct FenceSummary {
   std::string id;
   std::int64_t revision = 0;
@@ -185,6 +191,9 @@ class Store {
   void list_missions(int limit, std::string cursor, Reply<Page<MissionSummary>> reply,
                      Filter filter = {});
   void create_mission(mission::Plan plan, Change change, Reply<StoredMission> reply);
+  /// All of them or none.
+  void create_import(std::vector<mission::Plan> plans, std::optional<mission::Fence> fence,
+                     Change change, Reply<StoredImport> reply);
   /// NotFound also if it was deleted.
   void read_mission(std::string id, Reply<StoredMission> reply);
   /// Also of a deleted mission; `updated` is the revision's time.

@@ -3,19 +3,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
-#include <string_view>
 
-#include "mission/formats/formats.hpp"
-
-using namespace roverd::mission;
+#include "track_round.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string_view text(reinterpret_cast<const char*>(data), size);
-  detect_format(text);
-  const auto file = import_file(text, Format::Csv, "x", {LatLon{58.378, 26.729}, false});
-  if (!file) return file.error().detail.empty() ? std::abort(), 0 : 0;
-  const auto again = import_file(export_file(file->plan, Format::Csv).content, Format::Csv, "x");
-  if (!again || again->plan.items.size() != file->plan.items.size()) std::abort();
+  roverd::mission::fuzz_track_file({reinterpret_cast<const char*>(data), size},
+                                   roverd::mission::Format::Csv);
   return 0;
 }

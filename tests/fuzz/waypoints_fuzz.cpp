@@ -16,6 +16,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   detect_format(text, text);
   const auto file = import_file(text, Format::Waypoints, "x.waypoints");
   if (!file) return file.error().detail.empty() ? std::abort(), 0 : 0;
+  if (file->plan.items.empty()) return file->fence ? 0 : (std::abort(), 0);
   for (const Format format : {Format::Plan, Format::Waypoints}) {
     const auto again = import_file(export_file(file->plan, format).content, std::nullopt, "x");
     if (!again) std::abort();

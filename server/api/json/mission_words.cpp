@@ -124,23 +124,86 @@ Json tag_list_json(const store::Page<store::TagCount>& page) {
   });
 }
 
-Json import_json(const mission::ImportedFile& file, const store::StoredMission& mission) {
-  Json report = Json::array();
-  const auto count = [&file](mission::Outcome outcome) {
-    return std::count_if(file.rows.begin(), file.rows.end(),
-                         [outcome](const auto& row) { return row.outcome == outcome; });
-  };
-  for (const mission::FileRow& row : file.rows) {
-    report.push_back({{"row", row.row},
-                      {"what", row.what},
-                      {"outcome", mission::to_string(row.outcome)},
-                      {"item", row.item ? Json(*row.item) : Json(nullptr)},
-                      {"reason", row.reason}});
+namespace {
+
+/// Most texts of an account need no escapes.
+void append_quoted(std::string& out, std::string_view text) {
+  const bool plain = std::all_of(text.begin(), text.end(), [](char c) {
+    return c >= 0x20 && c < 0x7F && c != '"' && c != '\\';
+  });
+  if (!plain) {
+    out += Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
+    return;
   }
-  return {
-      {"format", mission::to_string(file.format)},    {"mission", mission_json(mission)},
-      {"taken", count(mission::Outcome::Taken)},      {"changed", count(mission::Outcome::Changed)},
-      {"left_out", count(mission::Outcome::LeftOut)}, {"report", std::move(report)}};
+  out += '"';
+  out += text;
+  out += '"';
+}
+
+void append_row(std::string& out, const mission::FileRow& row) {
+  out += "{\"row\":";
+  append_quoted(out, row.row);
+  out += ",\"what\":";
+  append_quoted(out, row.what);
+  out += ",\"outcome\":\"";
+  out += mission::to_string(row.outcome);
+  out += "\",\"item\":" + (row.item ? std::to_string(*row.item) : "null");
+  out += ",\"mission\":" + (row.item ? std::to_string(row.mission) : "null");
+  out += ",\"reason\":";
+  append_quoted(out, row.reason);
+  out += '}';
+}
+
+/// As POST /missions/survey takes it.
+Json area_json(const mission::FieldArea& area) {
+  Json rings = Json::array();
+  for (const auto& points : area.rings) {
+    Json ring = Json::array();
+    for (const base::LatLon at : points) ring.push_back({at.lon, at.lat});
+    if (!points.empty()) ring.push_back({points.front().lon, points.front().lat});
+    rings.push_back(std::move(ring));
+  }
+  return {{"name", area.name},
+          {"row", area.row},
+          {"polygon", {{"type", "Polygon"}, {"coordinates", std::move(rings)}}}};
+}
+
+Json kept_json(const store::StoredMission& mission) {
+  return {{"id", mission.id},
+          {"revision", mission.revision},
+          {"name", mission.plan.name},
+          {"items", mission.plan.items.size()},
+          {"length_m", mission::length_m(mission.plan)},
+          {"updated", base::to_rfc3339(mission.updated)}};
+}
+
+}  // namespace
+
+std::string import_text(const mission::ImportedFile& file, const store::StoredImport& kept) {
+  Json head = {{"format", mission::to_string(file.format)},
+               {"mission", nullptr},
+               {"missions", Json::array()},
+               {"fence_id", kept.fence ? Json(kept.fence->id) : Json(nullptr)},
+               {"areas", Json::array()}};
+  if (!kept.missions.empty()) head["mission"] = mission_json(kept.missions.front());
+  for (const auto& mission : kept.missions) head["missions"].push_back(kept_json(mission));
+  for (const auto& area : file.areas) head["areas"].push_back(area_json(area));
+  for (const auto outcome :
+       {mission::Outcome::Taken, mission::Outcome::Changed, mission::Outcome::LeftOut}) {
+    head[std::string(mission::to_string(outcome))] =
+        std::count_if(file.rows.begin(), file.rows.end(),
+                      [outcome](const auto& row) { return row.outcome == outcome; });
+  }
+  std::string out = head.dump();
+  out.pop_back();  // the brace
+  out += ",\"report\":[";
+  for (const mission::FileRow& row : file.rows) {
+    append_row(out, row);
+    out += ',';
+  }
+  if (!file.rows.empty()) out.pop_back();
+  out += "]}";
+  return out;
 }
 
 Json event_json(const store::StoredEvent& stored) {

@@ -83,7 +83,8 @@ Json deleted_list_json(const store::Page<store::MissionSummary>& page);
 Json differences_json(const store::StoredMission& older, const store::StoredMission& newer);
 Json revision_list_json(const store::Page<store::RevisionSummary>& page);
 Json tag_list_json(const store::Page<store::TagCount>& page);
-Json import_json(const mission::ImportedFile& file, const store::StoredMission& mission);
+/// JSON, as text: the account of a large file has many rows.
+std::string import_text(const mission::ImportedFile& file, const store::StoredImport& kept);
 Json event_json(const store::StoredEvent& event);
 
 /// "rev-3", with its quotes.

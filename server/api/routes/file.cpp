@@ -1,31 +1,15 @@
 // Mission files of other programs, in and out.
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <utility>
+#include <vector>
 
 #include "api/context.hpp"
+#include "api/import_request.hpp"
 
 namespace roverd::api {
 
 namespace {
-
-base::Error not_a_format(const std::string& word) {
-  std::string detail = "\"" + word + "\" is not a known format; known are";
-  for (const mission::Format format : mission::kFormats) {
-    detail += ' ' + std::string(mission::to_string(format));
-  }
-  return {base::Code::Invalid, detail, {{"format", detail}}};
-}
-
-/// Words, no path: what a person called the file.
-std::string file_name(std::string name) {
-  if (const auto slash = name.find_last_of("/\\"); slash != std::string::npos) {
-    name.erase(0, slash + 1);
-  }
-  return name;
-}
 
 /// RFC 6266: a name in ASCII for all, and the mission's own in UTF-8 for those that read it.
 std::string attachment(const std::string& ascii, const std::string& name) {
@@ -49,84 +33,45 @@ std::string attachment(const std::string& ascii, const std::string& name) {
   return out;
 }
 
-/// ?origin_lat=, ?origin_lon= (both or neither) and ?speed_unit=mps|kmh.
-base::Result<mission::ImportHints> hints_of(const Call& call) {
-  mission::ImportHints hints;
-  const auto refuse = [](const char* name, const char* detail) {
-    return base::fail(base::Code::Invalid, std::string(name) + " " + detail, {{name, detail}});
-  };
-  const std::string unit = query_text(call, "speed_unit");
-  if (!unit.empty() && unit != "mps" && unit != "kmh") {
-    return refuse("speed_unit", "must be mps or kmh");
+/// With the first mission's place and tag, or the fence's; 200 where there was nothing to keep.
+Response import_response(const mission::ImportedFile& file, const store::StoredImport& kept) {
+  const bool none = kept.missions.empty() && !kept.fence;
+  Response response =
+      json_response(none ? http::status::ok : http::status::created, Json::object());
+  response.body() = import_text(file, kept);
+  if (!kept.missions.empty()) {
+    response.set(http::field::location, "/api/v1/missions/" + kept.missions.front().id);
+    response.set(http::field::etag, etag_of(kept.missions.front().revision));
+  } else if (kept.fence) {
+    response.set(http::field::location, "/api/v1/fences/" + kept.fence->id);
+    response.set(http::field::etag, etag_of(kept.fence->revision));
   }
-  hints.kmh = unit == "kmh";
-  const std::string lat = query_text(call, "origin_lat");
-  const std::string lon = query_text(call, "origin_lon");
-  if (lat.empty() && lon.empty()) return hints;
-  base::LatLon origin;
-  const auto read = [](const std::string& text, double& out) {
-    const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), out);
-    return ec == std::errc{} && end == text.data() + text.size();
-  };
-  if (!read(lat, origin.lat) || !(std::abs(origin.lat) <= 90.0)) {
-    return refuse("origin_lat", "must be a latitude in degrees");
-  }
-  if (!read(lon, origin.lon) || !(std::abs(origin.lon) <= 180.0)) {
-    return refuse("origin_lon", "must be a longitude in degrees");
-  }
-  hints.origin = origin;
-  return hints;
+  return response;
 }
 
-/// @param fence of the same file, kept already; null: it has none
-void keep_mission(const ContextPtr& context, const CallPtr& call,
-                  const std::shared_ptr<const mission::ImportedFile>& imported,
-                  const store::Change& change,
-                  const std::shared_ptr<const store::StoredFence>& fence) {
-  context->deps.store.create_mission(
-      imported->plan, change,
-      [context, call, imported, change, fence](base::Result<store::StoredMission> stored) {
-        if (!stored) {
-          // Both or neither.
-          if (fence)
-            context->deps.store.delete_fence(fence->id, fence->revision, change, [](auto) {});
-          return call->respond(problem(stored.error()));
-        }
-        context->announce(stored->id, stored->revision);
-        Json body = import_json(*imported, *stored);
-        body["fence_id"] = fence ? Json(fence->id) : Json(nullptr);
-        Response response = json_response(http::status::created, body);
-        response.set(http::field::location, "/api/v1/missions/" + stored->id);
-        response.set(http::field::etag, etag_of(stored->revision));
-        call->respond(std::move(response));
-      });
+/// Keeps all that the file holds, or nothing.
+void keep_import(const ContextPtr& context, const CallPtr& call, Upload upload) {
+  auto file = std::make_shared<mission::ImportedFile>(std::move(upload.file));
+  std::vector<mission::Plan> plans;
+  if (!file->plan.items.empty()) plans.push_back(std::move(file->plan));
+  for (mission::Plan& plan : file->more) plans.push_back(std::move(plan));
+  file->more.clear();
+  if (plans.empty() && !file->fence) return call->respond(import_response(*file, {}));
+  context->deps.store.create_import(std::move(plans), file->fence,
+                                    {"local", "imported from " + upload.from},
+                                    [context, call, file](base::Result<store::StoredImport> kept) {
+                                      if (!kept) return call->respond(problem(kept.error()));
+                                      for (const auto& mission : kept->missions)
+                                        context->announce(mission.id, mission.revision);
+                                      call->respond(import_response(*file, *kept));
+                                    });
 }
 
 Handler import_mission(const ContextPtr& context) {
   return [context](const CallPtr& call) {
-    const std::string word = query_text(*call, "format");
-    const auto format = mission::format_from(word);
-    if (!word.empty() && !format) return call->respond(problem(not_a_format(word)));
-    if (call->request.body().empty()) {
-      return call->respond(problem({base::Code::Malformed, "the file is empty"}));
-    }
-    const std::string name = file_name(query_text(*call, "name"));
-    const auto hints = hints_of(*call);
-    if (!hints) return call->respond(problem(hints.error()));
-    auto file = mission::import_file(call->request.body(), format, name, *hints);
-    if (!file) return call->respond(problem(file.error()));
-    auto imported = std::make_shared<mission::ImportedFile>(std::move(*file));
-    const std::string from =
-        name.empty() ? std::string(mission::to_string(imported->format)) + " file" : name;
-    const store::Change change{"local", "imported from " + from};
-    if (!imported->fence) return keep_mission(context, call, imported, change, nullptr);
-    context->deps.store.create_fence(
-        *imported->fence, change,
-        [context, call, imported, change](base::Result<store::StoredFence> fence) {
-          if (!fence) return call->respond(problem(fence.error()));
-          keep_mission(context, call, imported, change,
-                       std::make_shared<const store::StoredFence>(std::move(*fence)));
-        });
+    auto upload = read_upload(call->request.body(), import_wish(*call));
+    if (!upload) return call->respond(problem(upload.error()));
+    keep_import(context, call, std::move(*upload));
   };
 }
 
@@ -134,7 +79,9 @@ Handler export_mission(const ContextPtr& context) {
   return [context](const CallPtr& call) {
     const std::string word = query_text(*call, "format");
     const auto format = mission::format_from(word);
-    if (!format) return call->respond(problem(not_a_format(word)));
+    if (!format || !mission::is_written(*format)) {
+      return call->respond(problem(not_a_format(word, true)));
+    }
     const std::string with_fence = query_text(*call, "fence");
     if (!with_fence.empty() && with_fence != "active" && with_fence != "none") {
       const char* detail = "must be active or none";
@@ -171,7 +118,7 @@ Handler export_mission(const ContextPtr& context) {
 void add_file_routes(const ContextPtr& c) {
   c->router.add({http::verb::post,
                  "/missions/import",
-                 {201, 400, 403, 413, 415, 422, 429, 503},
+                 {200, 201, 400, 403, 413, 415, 422, 429, 503},
                  import_mission(c)});
   c->router.add(
       {http::verb::get, "/missions/{id}/export", {200, 400, 404, 422, 503}, export_mission(c)});

@@ -122,6 +122,39 @@ LatLon centroid_of(const std::vector<Spot>& places) {
   return plane.to_global({sum.east_m / count, sum.north_m / count});
 }
 
+/// The middle of a figure that moves with it: at the poles the middle of the extremes does not, as
+/// meridians are not parallel there. Two rounds, so that it does not depend on where one begins.
+LatLon moving_centre_of(const std::vector<Spot>& places) {
+  LatLon centre = middle_of(places);
+  for (int i = 0; i < 2; ++i) {
+    const TangentPlane plane(centre);
+    EnuPoint sum;
+    for (const Spot& place : places) sum = sum + plane.to_local(place.at);
+    const auto count = static_cast<double>(places.size());
+    centre = plane.to_global({sum.east_m / count, sum.north_m / count});
+  }
+  return centre;
+}
+
+/// The middle of the way from the figure's centre to where it goes, where north is measured, so
+/// that the way back is measured in the same plane. It is found step by step, because north there
+/// decides where it lies. Invalid: there is none, so near is the pole.
+Result<LatLon> middle_of_way(const std::vector<Spot>& places, const EnuPoint& by) {
+  constexpr int kMostSteps = 500;
+  constexpr double kGood_m = 1e-7;
+  const LatLon centre = moving_centre_of(places);
+  const EnuPoint half{by.east_m / 2.0, by.north_m / 2.0};
+  LatLon origin = TangentPlane(centre).to_global(half);
+  for (int i = 0; i < kMostSteps; ++i) {
+    const TangentPlane plane(origin);
+    const EnuPoint step = plane.to_local(centre) + half;
+    origin = plane.to_global(step);
+    if (std::hypot(step.east_m, step.north_m) < kGood_m) return origin;
+  }
+  return tl::unexpected<Error>(
+      wrong("/op", "cannot be: so near to the pole there is no such direction"));
+}
+
 Result<LatLon> centre_of(const Plan& plan, const std::vector<Spot>& places, const About& about) {
   if (const auto* point = std::get_if<LatLon>(&about)) return *point;
   if (std::holds_alternative<AtHome>(about)) {
@@ -215,17 +248,10 @@ Result<Done> apply(Plan plan, const Offset& offset) {
     }
   }
   if (!places.empty()) {
-    // The plane touches the earth in the middle of the way from the old centre to the new one, so
-    // that the way back is measured in the same plane.
-    const LatLon centre = middle_of(places);
-    const EnuPoint half{offset.by.east_m / 2.0, offset.by.north_m / 2.0};
-    LatLon origin = TangentPlane(centre).to_global(half);
-    for (int i = 0; i < 2; ++i) {
-      const TangentPlane plane(origin);
-      origin = plane.to_global(plane.to_local(centre) + half);
-    }
-    const TangentPlane plane(origin);
-    const auto points = laid_out(plane, origin, places, "/op");
+    const auto origin = middle_of_way(places, offset.by);
+    if (!origin) return tl::unexpected<Error>(origin.error());
+    const TangentPlane plane(*origin);
+    const auto points = laid_out(plane, *origin, places, "/op");
     if (!points) return tl::unexpected<Error>(points.error());
     for (std::size_t i = 0; i < places.size(); ++i) {
       places[i].at = plane.to_global((*points)[i] + offset.by);

@@ -9,9 +9,10 @@
 // of the WGS84 ellipsoid at their centre: within 1 mm for figures and ways of 1 km (the plane's
 // error is d³/6R²: 4 µm at 1 km, 0.1 mm at 3 km, 4 mm at 10 km; farther is refused). The opposite
 // operation gives the start back within 1 mm:
-//   offset by d        offset by −d. North is that of the middle of the way, so it is the same one
-//                      for both; a way of 1 km to the east at 58° north turns by 0.007° against the
-//                      direction at its start.
+//   offset by d        offset by −d, at any latitude. North is that of the middle of the way of the
+//                      figure's centroid, so it is the same one for both; a way of 1 km to the east
+//                      at 58° north turns by 0.007° against the direction at its start. Nearer to a
+//                      pole than half of d there may be no such middle: refused.
 //   rotate by a        rotate by −a  ╮ about the same point: Done::about names it, because
 //   scale by f         scale by 1/f  │ the middle of the extremes (Middle) is another one after
 //   mirror about a     mirror about a╯ a turn. Centroid turns with the figure.

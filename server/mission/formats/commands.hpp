@@ -42,6 +42,14 @@ void items_from_commands(const std::vector<Command>& commands, Plan& plan,
 std::vector<Command> commands_from_items(const Plan& plan, bool with_speed,
                                          std::vector<FileRow>& rows);
 
+/// Is it how a home is written: NAV_WAYPOINT above sea level that asks for nothing?
+bool is_home_command(const Command& at) noexcept;
+
+/// Takes fence and rally commands (5000 to 5004, 5100) out of the list and makes a fence of them,
+/// with their accounts; empty if there are none. What cannot be goes to `problems`.
+std::optional<Fence> fence_from_commands(std::vector<Command>& commands, std::vector<FileRow>& rows,
+                                         Problems& problems);
+
 /// Home from its numbers, with its account. 0/0 is none.
 void take_home(const Command& at, Plan& plan, std::vector<FileRow>& rows, Problems& problems);
 
@@ -61,10 +69,17 @@ inline constexpr int kJump = 177;
 inline constexpr int kChangeSpeed = 178;
 inline constexpr int kSetHome = 179;
 inline constexpr int kSetReverse = 194;
+inline constexpr int kFenceReturn = 5000;
+inline constexpr int kFenceInclusion = 5001;
+inline constexpr int kFenceExclusion = 5002;
+inline constexpr int kFenceCircleInclusion = 5003;
+inline constexpr int kFenceCircleExclusion = 5004;
+inline constexpr int kRally = 5100;
 }  // namespace cmd
 
 inline constexpr int kFrameGlobal = 0;
 inline constexpr int kFrameMission = 2;
 inline constexpr int kFrameRelative = 3;
+inline constexpr int kFrameGlobalInt = 5;
 
 }  // namespace roverd::mission

@@ -29,6 +29,9 @@ std::string write_kmz(const Plan& plan, const Fence* fence, std::vector<FileRow>
 base::Result<ImportedFile> read_geojson(std::string_view content);
 std::string write_geojson(const Plan& plan, const Fence* fence, std::vector<FileRow>& rows);
 
+base::Result<ImportedFile> read_fence_text(std::string_view content);
+bool looks_like_fence_text(std::string_view content);
+
 /// Either form of table.
 base::Result<ImportedFile> read_csv(std::string_view content, const ImportHints& hints);
 bool looks_like_csv(std::string_view content);

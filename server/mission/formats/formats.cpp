@@ -1,8 +1,10 @@
 #include "mission/formats/formats.hpp"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
+#include "mission/formats/encoding.hpp"
 #include "mission/formats/file_formats.hpp"
 #include "mission/json/json.hpp"
 #include "mission/text.hpp"
@@ -52,6 +54,75 @@ std::string file_stem(std::string_view name) {
   return out.empty() ? "mission" : out;
 }
 
+/// Is anything of it a way?
+bool drives(const Plan& plan) {
+  return std::any_of(plan.items.begin(), plan.items.end(), [](const Item& item) {
+    return std::holds_alternative<Waypoint>(item) || std::holds_alternative<Local>(item) ||
+           std::holds_alternative<Move>(item) || std::holds_alternative<TurnBy>(item) ||
+           std::holds_alternative<Row>(item) || std::holds_alternative<Wall>(item) ||
+           std::holds_alternative<Landmarks>(item) || std::holds_alternative<ReturnHome>(item);
+  });
+}
+
+/// Nothing to drive is no mission: what was taken for it is not.
+void drop_plan(ImportedFile& file) {
+  for (FileRow& row : file.rows) {
+    const bool of_plan = row.item || row.what == "home" || row.what == "cruise speed";
+    if (!of_plan || row.outcome == Outcome::LeftOut) continue;
+    row.item.reset();
+    row.outcome = Outcome::LeftOut;
+    row.reason = "there is nothing to drive, so there is no mission that it could belong to";
+  }
+  std::string name = std::move(file.plan.name);
+  file.plan = Plan{};
+  file.plan.name = std::move(name);
+}
+
+/// One mission is called as the file; of several each has its own name behind that.
+void name_missions(ImportedFile& file, std::string_view file_name) {
+  const std::string own = file.more.empty() ? file.plan.name : file.name;
+  const std::string base =
+      clean_name(without_ending(base_name(file_name)), clean_name(own, "Imported mission"));
+  if (file.more.empty()) {
+    file.plan.name = base;
+    return;
+  }
+  std::map<std::string, int> used;
+  const auto name = [&](Plan& plan) {
+    const std::string part = clean_name(plan.name, "");
+    plan.name = part.empty() || part == base ? base : clean_name(base + ": " + part, base);
+    const int number = ++used[plan.name];
+    if (number > 1) {
+      plan.name = name_with_ending(plan.name, " (" + std::to_string(number) + ")");
+    }
+  };
+  name(file.plan);
+  for (Plan& plan : file.more) name(plan);
+  file.name = base;
+}
+
+Result<void> check_missions(ImportedFile& file) {
+  if (!drives(file.plan)) {
+    if (!file.fence && file.areas.empty()) {
+      const char* detail = "has nothing to drive";
+      std::string why = "the file " + std::string(detail);
+      const auto lost = std::find_if(file.rows.begin(), file.rows.end(), [](const FileRow& row) {
+        return row.outcome == Outcome::LeftOut && !row.reason.empty();
+      });
+      if (lost != file.rows.end())
+        why += ": " + lost->row + ", " + lost->what + ": " + lost->reason;
+      return base::fail(Code::Invalid, why, {{"", detail}});
+    }
+    drop_plan(file);
+  } else if (auto ok = check_plan(file.plan); !ok) {
+    return ok;
+  }
+  for (const Plan& plan : file.more) {
+    if (auto ok = check_plan(plan); !ok) return ok;
+  }
+  return {};
+}
+
 std::string ending_of(Format format) {
   return format == Format::Follower ? "csv" : std::string(to_string(format));
 }
@@ -73,6 +144,8 @@ Result<ImportedFile> read_as(std::string_view content, Format format, const Impo
     case Format::Csv:
     case Format::Follower:
       return read_csv(content, hints);
+    case Format::Fence:
+      return read_fence_text(content);
   }
   return read_csv(content, hints);
 }
@@ -97,8 +170,14 @@ std::string_view to_string(Format format) noexcept {
       return "csv";
     case Format::Follower:
       return "follower";
+    case Format::Fence:
+      return "fence";
   }
   return "plan";
+}
+
+bool is_written(Format format) noexcept {
+  return format != Format::Fence;
 }
 
 std::optional<Format> format_from(std::string_view word) noexcept {
@@ -120,9 +199,10 @@ std::string_view to_string(Outcome outcome) noexcept {
   return "left_out";
 }
 
-std::optional<Format> detect_format(std::string_view content, std::string_view file_name) {
-  if (content.starts_with("PK\x03\x04")) return Format::Kmz;
-  content = without_bom(content);
+std::optional<Format> detect_format(std::string_view raw, std::string_view file_name) {
+  if (raw.starts_with("PK\x03\x04")) return Format::Kmz;
+  const Utf8Text decoded(raw);
+  const std::string_view content = without_bom(decoded.text());
   const std::size_t start = content.find_first_not_of(kBlanks);
   const std::string_view text =
       start == std::string_view::npos ? std::string_view{} : content.substr(start);
@@ -137,7 +217,9 @@ std::optional<Format> detect_format(std::string_view content, std::string_view f
     if (text.find("<gpx") != std::string_view::npos) return Format::Gpx;
     if (text.find("<kml") != std::string_view::npos) return Format::Kml;
   }
+  if (looks_like_fence_text(text)) return Format::Fence;
   const std::string name = lower(file_name);
+  if (name.ends_with(".fen") || name.ends_with(".ral")) return Format::Fence;
   for (const Format format : kFormats) {
     if (name.ends_with('.' + ending_of(format))) return format;
   }
@@ -146,19 +228,21 @@ std::optional<Format> detect_format(std::string_view content, std::string_view f
 
 Result<ImportedFile> import_file(std::string_view content, std::optional<Format> format,
                                  std::string_view file_name, const ImportHints& hints) {
-  if (!format) format = detect_format(content, file_name);
+  const Utf8Text decoded(content);
+  if (!format) format = detect_format(decoded.text(), file_name);
   if (!format) {
     return base::fail(Code::Unsupported,
                       "none of .plan, .waypoints, GPX, KML, KMZ, GeoJSON and a table of positions");
   }
-  Result<ImportedFile> file = read_as(content, *format, hints);
+  Result<ImportedFile> file = read_as(decoded.text(), *format, hints);
   if (!file) return file;
   file->format = *format;
-  const std::string own = clean_name(file->plan.name, "Imported mission");
-  file->plan.name = clean_name(without_ending(base_name(file_name)), own);
-  if (auto ok = check_plan(file->plan); !ok) return tl::unexpected<Error>(ok.error());
+  name_missions(*file, file_name);
+  if (auto ok = check_missions(*file); !ok) return tl::unexpected<Error>(ok.error());
+  const std::string& name = file->more.empty() ? file->plan.name : file->name;
+  for (FieldArea& area : file->areas) area.name = clean_name(area.name, name);
   if (file->fence) {
-    file->fence->name = file->plan.name;
+    file->fence->name = name;
     if (auto ok = check_fence(*file->fence); !ok) return tl::unexpected<Error>(ok.error());
   }
   return file;
@@ -201,6 +285,8 @@ ExportedFile export_file(const Plan& plan, Format format, const Fence* fence) {
       file.content = write_follower(plan, file.rows);
       file.media_type = "text/csv";
       break;
+    case Format::Fence:
+      break;  // read only
   }
   const bool holds_fences = format == Format::Plan || format == Format::GeoJson ||
                             format == Format::Kml || format == Format::Kmz;

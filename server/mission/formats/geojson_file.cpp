@@ -1,6 +1,8 @@
-// GeoJSON (RFC 7946): LineString, MultiLineString, Point, MultiPoint, alone, in a Feature, a
-// FeatureCollection or a GeometryCollection. Positions are longitude, latitude and perhaps a
-// height. Areas are no way to drive: left out, unless they say that they are a fence.
+// GeoJSON (RFC 7946): LineString, MultiLineString; without one, Point and MultiPoint; alone, in a
+// Feature, a FeatureCollection or a GeometryCollection. Positions are longitude, latitude and
+// perhaps a height. Each line is a way of its own, unless it is of one Feature with the one before
+// it and begins where that ends. Polygons are areas that can be covered, or fences if they say so
+// (see geojson_fence.hpp). A `crs` (of the 2008 specification) must be WGS84.
 //
 // Written as one Feature with a LineString (a MultiPoint below two positions). What RFC 7946 has no
 // place for stands in the Feature's property "waypoints": one object for each position, with the
@@ -8,6 +10,7 @@
 
 #include <utility>
 
+#include "mission/formats/field_area.hpp"
 #include "mission/formats/file_formats.hpp"
 #include "mission/formats/geojson_fence.hpp"
 #include "mission/formats/track_points.hpp"
@@ -22,17 +25,38 @@ using nlohmann::json;
 
 constexpr int kMaxDepth = 16;
 
+/// Of the specification of 2008: {"type": "name", "properties": {"name": …}}, or as older
+/// programs wrote it {"type": "EPSG", "properties": {"code": 4326}}. Axes are longitude, latitude
+/// in both.
+bool is_wgs84(const json& crs) {
+  const auto properties = crs.is_object() ? crs.find("properties") : crs.end();
+  if (!crs.is_object() || properties == crs.end() || !properties->is_object()) return false;
+  if (const auto code = properties->find("code"); code != properties->end()) {
+    return *code == 4326 || *code == "4326";
+  }
+  const auto name = properties->find("name");
+  if (name == properties->end() || !name->is_string()) return false;
+  std::string word = name->get<std::string>();
+  for (char& c : word) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  // "urn:ogc:def:crs:OGC:1.3:CRS84", "EPSG:4326", "http://www.opengis.net/def/crs/EPSG/0/4326"
+  const std::string last = word.substr(word.find_last_of(":/") + 1);
+  if (last == "crs84" || last == "crs84h" || last == "wgs84") return true;
+  const bool epsg = word.find("epsg") != std::string::npos;
+  return epsg && (last == "4326" || last == "4979");
+}
+
 class GeoJsonReader {
  public:
   Result<ImportedFile> read(std::string_view content) {
     auto document = parse_json(content);
     if (!document) {
       Error error = std::move(document.error());
-      error.code = base::Code::Invalid;  // of the file, not of the request
+      if (error.code == base::Code::Malformed) error.code = base::Code::Invalid;  // the file is
       return tl::unexpected<Error>(std::move(error));
     }
     object(*document, "", kMaxDepth);
     if (!fence_.areas.empty() || !fence_.rally.empty()) file_.fence = std::move(fence_);
+    if (file_.plan.name.empty() && builder_.count() == 0) file_.plan.name = first_name_;
     return std::move(builder_).finish();
   }
 
@@ -45,8 +69,12 @@ class GeoJsonReader {
   void object(const json& value, const std::string& where, int depth) {
     if (!value.is_object()) return problems_.add(where, "must be an object");
     if (depth == 0) return problems_.add(where, "is nested too deeply");
+    if (const auto crs = value.find("crs"); crs != value.end() && !is_wgs84(*crs)) {
+      return problems_.add(where + "/crs", "must be WGS84 (CRS84, EPSG:4326), as RFC 7946 has it");
+    }
     const std::string type = text_of(value, "type");
     if (type == "FeatureCollection") {
+      if (file_.plan.name.empty()) file_.plan.name = text_of(value, "name");
       return each(value, "features", where, depth);
     }
     if (type == "GeometryCollection") return each(value, "geometries", where, depth);
@@ -74,22 +102,28 @@ class GeoJsonReader {
                                              fence_, file_.rows, problems_)) {
       return;
     }
-    if (has_properties && file_.plan.name.empty()) file_.plan.name = text_of(*properties, "name");
-    const std::size_t before = file_.plan.items.size();
+    name_ = has_properties ? text_of(*properties, "name") : std::string();
+    if (first_name_.empty()) first_name_ = name_;
+    const std::size_t before = builder_.count();
+    const bool own = has_properties && properties->contains("waypoints");
+    builder_.keep_duplicates(own);
     object(*shape, where + "/geometry", depth - 1);
-    if (has_properties) take_waypoints(*properties, where + "/properties/waypoints", before);
+    builder_.keep_duplicates(false);
+    builder_.end_whole(name_);
+    if (own) take_waypoints(*properties, where + "/properties/waypoints", before);
+    name_.clear();
   }
 
   /// The property of our own files: what the positions from item `before` on have beside them.
   void take_waypoints(const json& properties, const std::string& where, std::size_t before) {
     const auto list = properties.find("waypoints");
     if (list == properties.end()) return;
-    if (!list->is_array() || list->size() != file_.plan.items.size() - before) {
+    if (!list->is_array() || list->size() != builder_.count() - before) {
       return builder_.leave_out(where, "waypoints", "not one object for each position");
     }
     for (std::size_t i = 0; i < list->size(); ++i) {
       json item = (*list)[i];
-      auto& waypoint = std::get<Waypoint>(file_.plan.items[before + i]);
+      Waypoint& waypoint = builder_.point(before + i);
       if (!item.is_object()) {
         problems_.add(where + '/' + std::to_string(i), "must be an object");
         continue;
@@ -110,20 +144,53 @@ class GeoJsonReader {
   void geometry(const json& value, const std::string& type, const std::string& where) {
     const auto coordinates = value.find("coordinates");
     const std::string pointer = where + "/coordinates";
-    if (type == "Polygon" || type == "MultiPolygon") {
-      return builder_.leave_out(where, type, "an area is no way to drive");
-    }
     const bool known = type == "Point" || type == "MultiPoint" || type == "LineString" ||
-                       type == "MultiLineString";
+                       type == "MultiLineString" || type == "Polygon" || type == "MultiPolygon";
     if (!known) return problems_.add(where + "/type", "is no type of GeoJSON");
     if (coordinates == value.end() || !coordinates->is_array()) {
       return problems_.add(pointer, "must be a list");
     }
-    if (type == "Point") return position(*coordinates, pointer);
-    if (type != "MultiLineString") return positions(*coordinates, pointer);
-    for (std::size_t i = 0; i < coordinates->size(); ++i) {
-      positions((*coordinates)[i], pointer + '/' + std::to_string(i));
+    if (coordinates->empty()) {
+      return builder_.leave_out(where, type, "it has no coordinates");
     }
+    if (type == "Polygon") return area(*coordinates, pointer, where);
+    if (type == "Point" || type == "MultiPoint") {
+      builder_.begin(PartKind::Points);
+      return type == "Point" ? position(*coordinates, pointer) : positions(*coordinates, pointer);
+    }
+    if (type == "LineString") return line(*coordinates, pointer);
+    for (std::size_t i = 0; i < coordinates->size(); ++i) {
+      const std::string each = pointer + '/' + std::to_string(i);
+      if (type == "MultiPolygon") {
+        area((*coordinates)[i], each, each);
+      } else {
+        line((*coordinates)[i], each);
+      }
+    }
+  }
+
+  void line(const json& list, const std::string& where) {
+    builder_.begin(PartKind::Line);
+    positions(list, where);
+  }
+
+  /// @param rings lists of positions @param row for its account
+  void area(const json& rings, const std::string& where, const std::string& row) {
+    if (!rings.is_array()) return problems_.add(where, "must be a list of rings");
+    FieldArea out{name_, row, {}};
+    for (std::size_t r = 0; r < rings.size(); ++r) {
+      const std::string ring_at = where + '/' + std::to_string(r);
+      if (!rings[r].is_array()) return problems_.add(ring_at, "must be a list of positions");
+      auto& ring = out.rings.emplace_back();
+      for (std::size_t i = 0; i < rings[r].size(); ++i) {
+        const json& at = rings[r][i];
+        if (!is_position(at)) {
+          return problems_.add(ring_at + '/' + std::to_string(i), kNoPosition);
+        }
+        ring.push_back({at[1].get<double>(), at[0].get<double>()});
+      }
+    }
+    take_field_area(std::move(out), "Polygon", file_, problems_);
   }
 
   void positions(const json& list, const std::string& where) {
@@ -133,15 +200,26 @@ class GeoJsonReader {
     }
   }
 
-  void position(const json& value, std::string where) {
+  static constexpr const char* kNoPosition = "must be [longitude, latitude] or with a height";
+
+  static bool is_position(const json& value) {
     bool good = value.is_array() && value.size() >= 2;
     for (std::size_t i = 0; good && i < value.size() && i < 3; ++i) good = value[i].is_number();
-    if (!good) return problems_.add(where, "must be [longitude, latitude] or with a height");
+    return good;
+  }
+
+  void position(const json& value, std::string where) {
+    if (!is_position(value)) return problems_.add(where, kNoPosition);
     TrackPoint point{std::move(where), "position", value[1].get<double>(), value[0].get<double>()};
     if (value.size() > 2) point.alt_m = value[2].get<double>();
+    if (value.size() > 3) {
+      point.note = "of its " + std::to_string(value.size()) + " numbers the first three are kept";
+    }
     builder_.add(std::move(point));
   }
 
+  std::string name_;        ///< of the open Feature
+  std::string first_name_;  ///< of the first Feature that has one
   ImportedFile file_;
   Fence fence_;
   Problems problems_;

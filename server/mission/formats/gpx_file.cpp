@@ -1,7 +1,8 @@
-// GPX 1.1 (and 1.0): the points of its routes; without one, of its tracks; without one, its
-// waypoints. Whatever is not taken is told with the reason. Written as one route.
+// GPX 1.0 and 1.1: its routes; without one, its tracks; without one, its waypoints. A route is one
+// way; so is each segment of a track ("to represent a single GPS track where GPS reception was
+// lost, start a new Track Segment"), unless it begins where the one before it ends. What is not
+// taken is told with the reason; extensions are looked into for speeds alone. Written as one route.
 
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "mission/formats/file_formats.hpp"
 #include "mission/formats/track_points.hpp"
 #include "mission/formats/xml.hpp"
+#include "mission/text.hpp"
 
 namespace roverd::mission {
 
@@ -17,20 +19,15 @@ namespace {
 using base::Error;
 using base::Result;
 
-enum class Kind { Route, Track, Waypoint };
-constexpr std::array kKinds{Kind::Route, Kind::Track, Kind::Waypoint};
-
-std::optional<Kind> kind_of(std::string_view element) {
-  if (element == "rtept") return Kind::Route;
-  if (element == "trkpt") return Kind::Track;
-  if (element == "wpt") return Kind::Waypoint;
-  return std::nullopt;
+bool is_gpx_point(std::string_view element) {
+  return element == "rtept" || element == "trkpt" || element == "wpt";
 }
 
 std::optional<double> number_in(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(" \t\r\n+");
+  const std::size_t begin = text.find_first_not_of(" \t\r\n");
   if (begin == std::string_view::npos) return std::nullopt;
   text = text.substr(begin, text.find_last_not_of(" \t\r\n") - begin + 1);
+  if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0.0;
   const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (ec != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) {
@@ -52,29 +49,32 @@ class GpxReader {
       return base::fail(base::Code::Invalid, "line 1 must begin a <gpx> document",
                         {{"line 1", "must begin a <gpx> document"}});
     }
-    std::optional<Kind> chosen;
-    for (const Kind kind : kKinds) {
-      auto& points = points_[static_cast<std::size_t>(kind)];
-      if (!chosen && !points.empty()) chosen = kind;
-      for (TrackPoint& point : points) {
-        if (chosen == kind) {
-          builder_.add(std::move(point));
-        } else {
-          builder_.leave_out(std::move(point.row), std::move(point.what),
-                             chosen == Kind::Route ? "the file's route is taken instead"
-                                                   : "the file's track is taken instead");
-        }
-      }
-    }
     return std::move(builder_).finish();
   }
 
  private:
   void begin(const XmlElement& element) {
     path_.emplace_back(element.name);
-    if (path_.size() == 1) is_gpx_ = element.name == "gpx";
-    kind_ = kind_of(element.name);
-    if (!kind_ || point_) return;
+    if (path_.size() == 1) begin_document(element);
+    if (extension_depth_ > 0) return;
+    if (element.name == "extensions") extension_depth_ = path_.size();
+    if (point_) return;
+    if (element.name == "rte" || element.name == "trk") name_.clear();
+    if (element.name == "rte") builder_.begin(PartKind::Route);
+    if (element.name == "trkseg") builder_.begin(PartKind::Track);
+    if (is_gpx_point(element.name)) begin_point(element);
+  }
+
+  void begin_document(const XmlElement& element) {
+    is_gpx_ = element.name == "gpx";
+    const std::string_view version = element.attribute("version");
+    if (is_gpx_ && !version.empty() && version != "1.0" && version != "1.1") {
+      problems_.add(element.row, "is of GPX version " + clean_name(version, "unknown") +
+                                     "; 1.0 and 1.1 are known");
+    }
+  }
+
+  void begin_point(const XmlElement& element) {
     TrackPoint& point = point_.emplace(TrackPoint{element.row, std::string(element.name)});
     point_depth_ = path_.size();
     const auto lat = number_in(element.attribute("lat"));
@@ -85,32 +85,54 @@ class GpxReader {
     point.lon = lon.value_or(0.0);
   }
 
-  void end(std::string_view name, const std::string& text, const std::string& row) {
-    if (point_ && path_.size() > point_depth_) {
-      if (name == "ele" || name == "speed") value(name, text, row);
+  void end(std::string_view name, const std::string& text, const std::string&) {
+    const std::size_t depth = path_.size();
+    if (point_ && depth > point_depth_) {
+      // A height is the point's own; a speed may stand in an extension, too.
+      if ((name == "ele" && depth == point_depth_ + 1) || name == "speed") value(name, text);
     } else if (point_) {
-      const auto kind = static_cast<std::size_t>(*kind_of(name));
-      if (point_good_) points_[kind].push_back(std::move(*point_));
-      point_.reset();
-    } else if (name == "name" && file_.plan.name.empty()) {
-      file_.plan.name = text;
+      end_point(name);
+    } else if (extension_depth_ == 0) {
+      end_outside(name, text);
     }
+    if (depth == extension_depth_) extension_depth_ = 0;
     path_.pop_back();
   }
 
-  void value(std::string_view name, const std::string& text, const std::string& row) {
+  void end_point(std::string_view name) {
+    // Waypoints are one list, wherever they stand.
+    if (name == "wpt") builder_.begin(PartKind::Points);
+    if (point_good_) builder_.add(std::move(*point_));
+    if (name == "wpt") builder_.end_whole({});
+    point_.reset();
+  }
+
+  void end_outside(std::string_view name, const std::string& text) {
+    if (name == "rte" || name == "trk") builder_.end_whole(name_);
+    if (name != "name" || path_.size() < 2) return;
+    const std::string& parent = path_[path_.size() - 2];
+    if (parent == "rte" || parent == "trk") name_ = text;
+    if ((parent == "metadata" || parent == "gpx") && file_.plan.name.empty()) {
+      file_.plan.name = text;
+    }
+  }
+
+  void value(std::string_view name, const std::string& text) {
     const auto number = number_in(text);
-    if (!number) return problems_.add(row, std::string(name) + " must be a finite number");
-    (name == "ele" ? point_->alt_m : point_->speed_mps) = *number;
+    if (number) {
+      (name == "ele" ? point_->alt_m : point_->speed_mps) = *number;
+    } else {
+      point_->note = name == "ele" ? "its height is no number" : "its speed is no number";
+    }
   }
 
   std::vector<std::string> path_;
   bool is_gpx_ = false;
-  std::optional<Kind> kind_;
+  std::string name_;                 ///< of the open route or track
+  std::size_t extension_depth_ = 0;  ///< of the outermost open <extensions>; 0: none
   std::optional<TrackPoint> point_;  ///< the open one
   std::size_t point_depth_ = 0;
   bool point_good_ = false;
-  std::array<std::vector<TrackPoint>, kKinds.size()> points_;
   ImportedFile file_;
   Problems problems_;
   TrackBuilder builder_{file_, problems_};

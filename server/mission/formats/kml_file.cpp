@@ -1,15 +1,21 @@
-// KML 2.2: the coordinates of its lines (LineString, gx:Track); without one, of its Points. Areas
-// are left out, unless their Placemark says that they are a fence (see kml_fence.hpp). Written as
-// one Placemark with a LineString, a Point if there is only one.
+// KML 2.0 to 2.3: its lines (LineString, LinearRing, gx:Track); without one, its Points. Each line
+// is a way of its own, unless it stands in one Placemark with the one before it and begins where
+// that ends. Polygons are areas that can be covered, or, if their Placemark says so, fences (see
+// kml_fence.hpp). Written as one Placemark with a LineString, a Point if there is only one.
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <utility>
 
+#include "mission/formats/field_area.hpp"
 #include "mission/formats/file_formats.hpp"
 #include "mission/formats/kml_fence.hpp"
 #include "mission/formats/track_points.hpp"
 #include "mission/formats/xml.hpp"
+#include "mission/json/json.hpp"
+#include "mission/text.hpp"
 
 namespace roverd::mission {
 
@@ -28,45 +34,39 @@ std::optional<double> take_number(std::string_view& text) {
   return value;
 }
 
+/// Geometry and features that are nothing to drive.
+bool is_picture(std::string_view element) {
+  return element == "NetworkLink" || element == "GroundOverlay" || element == "ScreenOverlay" ||
+         element == "PhotoOverlay" || element == "Model" || element == "Tour";
+}
+
+/// "2.9" of a namespace that says so; empty: known, or none.
+std::string_view unknown_kml_version(std::string_view name_space) {
+  for (const std::string_view begin :
+       {"http://www.opengis.net/kml/", "http://earth.google.com/kml/",
+        "https://www.opengis.net/kml/"}) {
+    if (!name_space.starts_with(begin)) continue;
+    const std::string_view version = name_space.substr(begin.size());
+    const bool known = version == "2.0" || version == "2.1" || version == "2.2" ||
+                       version == "2.3" || version == "2.x";
+    return known ? std::string_view{} : version.empty() ? "?" : version;
+  }
+  return {};
+}
+
 class KmlReader {
  public:
   Result<ImportedFile> read(std::string_view content) {
     XmlEvents events;
-    events.begin = [this](const XmlElement& element) {
-      path_.emplace_back(element.name);
-      rows_.push_back(element.row);
-      if (path_.size() == 1) is_kml_ = element.name == "kml";
-      if (element.name == "Placemark") words_ = nlohmann::json::object();
-      if (element.name == "Polygon") shapes_.push_back({element.row, {}, std::nullopt});
-      if (element.name == "Data" || element.name == "SimpleData") {
-        word_ = element.attribute("name");
-      }
-    };
+    events.begin = [this](const XmlElement& element) { begin(element); };
     events.end = [this](std::string_view name, const std::string& text, const std::string&) {
-      path_.pop_back();
-      const std::string row = std::move(rows_.back());
-      rows_.pop_back();
-      const std::string_view inside = path_.empty() ? std::string_view{} : path_.back();
-      if (name == "coordinates") coordinates(text, row, inside);
-      if (name == "coord" && inside == "Track") tuple(text, row, "gx:coord", ' ', lines_);
-      if (name == "name" && file_.plan.name.empty()) file_.plan.name = text;
-      if (name == "SimpleData" || (name == "value" && inside == "Data")) {
-        set_kml_word(words_, word_, text);
-      }
-      if (name == "Placemark") end_placemark();
+      end(name, text);
     };
     if (auto done = read_xml(content, events); !done) return tl::unexpected<Error>(done.error());
     end_placemark();  // shapes outside of one
     if (!is_kml_) {
       return base::fail(base::Code::Invalid, "line 1 must begin a <kml> document",
                         {{"line 1", "must begin a <kml> document"}});
-    }
-    const bool line = !lines_.empty();
-    for (TrackPoint& point : line ? lines_ : points_) builder_.add(std::move(point));
-    if (line) {
-      for (TrackPoint& point : points_) {
-        builder_.leave_out(std::move(point.row), "Point", "the file's line is taken instead");
-      }
     }
     if (!fence_.areas.empty() || !fence_.rally.empty()) file_.fence = std::move(fence_);
     return std::move(builder_).finish();
@@ -80,18 +80,86 @@ class KmlReader {
     std::optional<TrackPoint> point;
   };
 
+  void begin(const XmlElement& element) {
+    path_.emplace_back(element.name);
+    rows_.push_back(element.row);
+    if (path_.size() == 1) begin_kml(element);
+    if (element.name == "Placemark") {
+      words_ = nlohmann::json::object();
+      name_.clear();
+    }
+    if (element.name == "Polygon") {
+      shapes_.push_back({element.row, {}, std::nullopt});
+      in_polygon_ = true;
+    }
+    if (element.name == "Track") builder_.begin(PartKind::Line);
+    if (element.name == "Data" || element.name == "SimpleData") word_ = element.attribute("name");
+  }
+
+  void begin_kml(const XmlElement& element) {
+    is_kml_ = element.name == "kml";
+    const std::string_view version = unknown_kml_version(element.name_space());
+    if (version.empty()) return;
+    problems_.add(element.row,
+                  "is of KML version " + clean_name(version, "unknown") + "; 2.0 to 2.3 are known");
+  }
+
+  void end(std::string_view name, const std::string& text) {
+    path_.pop_back();
+    const std::string row = std::move(rows_.back());
+    rows_.pop_back();
+    const std::string_view inside = path_.empty() ? std::string_view{} : path_.back();
+    if (name == "coordinates") coordinates(text, row, inside);
+    if (name == "coord" && inside == "Track") track_point(text, row);
+    if (name == "name" && inside == "Placemark") name_ = text;
+    if (name == "name" && (inside == "Document" || inside == "Folder") && file_.plan.name.empty()) {
+      file_.plan.name = text;
+    }
+    if (name == "SimpleData" || (name == "value" && inside == "Data")) {
+      set_kml_word(words_, word_, text);
+    }
+    if (name == "Polygon") in_polygon_ = false;
+    if (is_picture(name)) builder_.leave_out(row, std::string(name), "it is nothing to drive");
+    if (name == "Placemark") end_placemark();
+  }
+
   void end_placemark() {
     for (Shape& shape : shapes_) {
       if (is_kml_fence(words_)) {
         take_fence(shape);
       } else if (shape.point) {
-        points_.push_back(std::move(*shape.point));
+        builder_.begin(PartKind::Points);
+        builder_.add(std::move(*shape.point));
       } else {
-        builder_.leave_out(std::move(shape.row), "Polygon", "an area is no way to drive");
+        take_area(shape);
       }
     }
+    builder_.end_whole(name_);
     shapes_.clear();
+    name_.clear();
     words_ = nlohmann::json::object();
+  }
+
+  /// A gx:coord; KML 2.3 lets it be empty where the receiver had no position.
+  void track_point(const std::string& text, const std::string& row) {
+    if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
+      return builder_.leave_out(row, "gx:coord", "it has no position");
+    }
+    if (auto point = tuple(text, row, "gx:coord", ' ')) builder_.add(std::move(*point));
+  }
+
+  void take_area(const Shape& shape) {
+    FieldArea area{name_, shape.row, {}};
+    for (const std::string& text : shape.rings) {
+      auto& ring = area.rings.emplace_back();
+      const bool good = tuples(text, shape.row, "corner", [&](const TrackPoint& corner) {
+        ring.push_back({corner.lat, corner.lon});
+        return ring.size() <= kMaxItems;
+      });
+      if (!good) return;
+      if (ring.size() > kMaxItems) return problems_.add(shape.row, "has too many corners");
+    }
+    take_field_area(std::move(area), "Polygon", file_, problems_);
   }
 
   void take_fence(const Shape& shape) {
@@ -106,10 +174,12 @@ class KmlReader {
     } else {
       auto rings = nlohmann::json::array();
       for (const std::string& text : shape.rings) {
-        std::vector<TrackPoint> corners;
-        if (!tuples(text, shape.row, "corner", corners)) return;
         auto& ring = rings.emplace_back(nlohmann::json::array());
-        for (const TrackPoint& corner : corners) ring.push_back(position(corner));
+        const bool good = tuples(text, shape.row, "corner", [&](const TrackPoint& corner) {
+          ring.push_back(position(corner));
+          return ring.size() <= kMaxFencePoints + 1;
+        });
+        if (!good) return;
       }
       found = {{"type", "Polygon"}, {"coordinates", std::move(rings)}};
     }
@@ -117,20 +187,24 @@ class KmlReader {
   }
 
   void coordinates(const std::string& text, const std::string& row, std::string_view inside) {
-    if (inside == "LineString") {
-      tuples(text, row, "coordinate", lines_);
-    } else if (inside == "Point") {
-      std::vector<TrackPoint> one;
-      tuples(text, row, nullptr, one);
-      for (TrackPoint& point : one) shapes_.push_back({row, {}, std::move(point)});
-    } else if (inside == "LinearRing" && !shapes_.empty()) {
+    if (inside == "LinearRing" && in_polygon_) {
       shapes_.back().rings.push_back(text);
+    } else if (inside == "LineString" || inside == "LinearRing") {
+      builder_.begin(PartKind::Line);
+      tuples(text, row, "coordinate", [this](TrackPoint point) {
+        builder_.add(std::move(point));
+        return true;
+      });
+    } else if (inside == "Point") {
+      auto point = tuple(text, row, "Point", ',');
+      if (point) shapes_.push_back({row, {}, std::move(*point)});
     }
   }
 
-  /// @param each what one of many is called; null: there is one, at `row`. @return all were good
-  bool tuples(std::string_view text, const std::string& row, const char* each,
-              std::vector<TrackPoint>& out) {
+  /// Calls `take` for each position until it is enough: false. @param each what one is called
+  /// @return all were good
+  template <class Take>
+  bool tuples(std::string_view text, const std::string& row, const std::string& each, Take take) {
     bool good = true;
     constexpr std::string_view kXmlBlanks = " \t\r\n";
     for (std::size_t number = 1;; ++number) {
@@ -139,43 +213,52 @@ class KmlReader {
       text.remove_prefix(begin);
       const std::string_view one = text.substr(0, text.find_first_of(kXmlBlanks));
       text.remove_prefix(one.size());
-      std::string place = each != nullptr ? row + ", " + each + ' ' + std::to_string(number) : row;
-      good &= tuple(one, std::move(place), each != nullptr ? each : "Point", ',', out);
+      std::string place = row + ", " + each + ' ' + std::to_string(number);
+      auto point = tuple(one, std::move(place), each, ',');
+      good = good && point.has_value();
+      if (point && !take(std::move(*point))) return good;
     }
   }
 
-  /// longitude, latitude and perhaps a height
-  bool tuple(std::string_view text, std::string row, const char* what, char separator,
-             std::vector<TrackPoint>& out) {
+  /// longitude, latitude and perhaps a height; what more there is is told
+  std::optional<TrackPoint> tuple(std::string_view text, std::string row, std::string what,
+                                  char separator) {
     constexpr std::string_view kXmlBlanks = " \t\r\n";
     const std::size_t begin = std::min(text.find_first_not_of(kXmlBlanks), text.size());
     text.remove_prefix(begin);
     while (!text.empty() && kXmlBlanks.find(text.back()) != std::string_view::npos) {
       text.remove_suffix(1);
     }
-    std::vector<double> values;
+    std::array<double, 3> values{};
+    std::size_t count = 0;
     bool good = !text.empty();
-    while (good && !text.empty() && values.size() < 3) {
+    while (good && !text.empty()) {
       const auto value = take_number(text);
       good = value.has_value() && (text.empty() || text.front() == separator);
-      if (value) values.push_back(*value);
-      if (good && !text.empty()) text.remove_prefix(1);
+      if (value && count < values.size()) values[count] = *value;
+      ++count;
+      while (good && !text.empty() && text.front() == separator) {
+        text.remove_prefix(1);
+        if (separator != ' ') break;
+      }
     }
-    if (!good || !text.empty() || values.size() < 2) {
+    if (!good || count < 2) {
       problems_.add(row, "must be longitude, latitude and perhaps a height");
-      return false;
+      return std::nullopt;
     }
-    TrackPoint point{std::move(row), what, values[1], values[0]};
-    if (values.size() > 2) point.alt_m = values[2];
-    out.push_back(std::move(point));
-    return true;
+    TrackPoint point{std::move(row), std::move(what), values[1], values[0]};
+    if (count > 2) point.alt_m = values[2];
+    if (count > values.size()) {
+      point.note = "of its " + std::to_string(count) + " numbers the first three are kept";
+    }
+    return point;
   }
 
   std::vector<std::string> path_;
   std::vector<std::string> rows_;
   bool is_kml_ = false;
-  std::vector<TrackPoint> lines_;
-  std::vector<TrackPoint> points_;
+  bool in_polygon_ = false;
+  std::string name_;  ///< of the open Placemark
   std::vector<Shape> shapes_;
   std::string word_;
   nlohmann::json words_ = nlohmann::json::object();

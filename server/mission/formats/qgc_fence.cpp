@@ -1,6 +1,11 @@
 #include "mission/formats/qgc_fence.hpp"
 
+#include <algorithm>
+#include <string>
 #include <utility>
+#include <vector>
+
+#include "mission/formats/track_points.hpp"
 
 namespace roverd::mission {
 
@@ -29,6 +34,7 @@ class FenceSections {
       : root_(root), rows_(rows), problems_(problems) {}
 
   std::optional<Fence> read() {
+    known_versions();
     each("geoFence", "polygons", [this](const json& value, const std::string& where) {
       FencePolygon polygon;
       const auto corners = value.is_object() ? value.find("polygon") : value.end();
@@ -76,8 +82,32 @@ class FenceSections {
   }
 
  private:
+  /// Of both sections there is version 2. QGroundControl passes over version 1, which had other
+  /// members, and so do we, in words.
+  void known_versions() {
+    for (const char* section : {"geoFence", "rallyPoints"}) {
+      const auto part = root_.find(section);
+      if (part == root_.end() || !part->is_object()) continue;
+      const auto version = part->find("version");
+      if (version == part->end() || *version == 2) continue;
+      const std::string where = "/" + std::string(section);
+      if (*version != 1) {
+        problems_.add(where + "/version", "must be 2");
+      } else if (part->size() > 1) {
+        rows_.push_back({where, section, Outcome::LeftOut,
+                         "is of version 1: only version 2 can be read", std::nullopt});
+      }
+      skipped_.emplace_back(section);
+    }
+  }
+
+  bool is_skipped(const char* section) const {
+    return std::find(skipped_.begin(), skipped_.end(), section) != skipped_.end();
+  }
+
   template <class F>
   void each(const char* section, const char* list, F one) {
+    if (is_skipped(section)) return;
     const json* found = section_list(root_, section, list);
     if (found == nullptr) return;
     const std::string where = "/" + std::string(section) + "/" + list;
@@ -101,6 +131,10 @@ class FenceSections {
     if (!takes({"fence", {made}, {}}, where)) return;
     fence_.areas.push_back(std::move(made));
     rows_.push_back({where, what, Outcome::Taken, {}, std::nullopt});
+    if (in && inclusions_++ > 0) {
+      change_row(rows_.back(),
+                 "it is enough to be inside any one inclusion here, where others may demand all");
+    }
   }
 
   /// One alone is what a fence may have? Its problems are told by the place in the file.
@@ -115,6 +149,7 @@ class FenceSections {
   void breach_return() {
     const auto part = root_.find("geoFence");
     if (part == root_.end() || !part->is_object() || !part->contains("breachReturn")) return;
+    if (is_skipped("geoFence")) return;
     rows_.push_back({"/geoFence/breachReturn", "breach return point", Outcome::LeftOut,
                      "the robot stops at a fence; rally points are where it can be sent",
                      std::nullopt});
@@ -123,6 +158,8 @@ class FenceSections {
   const json& root_;
   std::vector<FileRow>& rows_;
   Problems& problems_;
+  std::vector<std::string> skipped_;  ///< sections of an old version
+  int inclusions_ = 0;
   Fence fence_;
 };
 

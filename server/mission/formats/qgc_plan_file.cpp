@@ -7,11 +7,13 @@
 #include <utility>
 
 #include "mission/formats/commands.hpp"
+#include "mission/formats/field_area.hpp"
 #include "mission/formats/file_formats.hpp"
 #include "mission/formats/qgc_fence.hpp"
 #include "mission/json/fields.hpp"
 #include "mission/json/json.hpp"
 #include "mission/json/pointer.hpp"
+#include "mission/text.hpp"
 
 namespace roverd::mission {
 namespace {
@@ -59,8 +61,16 @@ class PlanReader {
       return base::fail(Code::TooLarge, "more than " + std::to_string(kMaxItems) + " items",
                         {{"/mission/items", "has too many items"}});
     }
+    auto more = fence_from_commands(commands_, file_.rows, problems_);
     items_from_commands(commands_, file_.plan, file_.rows, problems_);
     file_.fence = fence_in_plan(root, file_.rows, problems_);
+    if (more && file_.fence) {
+      auto& [name, areas, rally] = *file_.fence;
+      areas.insert(areas.end(), more->areas.begin(), more->areas.end());
+      rally.insert(rally.end(), more->rally.begin(), more->rally.end());
+    } else if (more) {
+      file_.fence = std::move(more);
+    }
     if (!problems_.none()) return tl::unexpected<Error>(std::move(problems_).error("the file"));
     return std::move(file_);
   }
@@ -79,6 +89,10 @@ class PlanReader {
     if (version == nullptr || *version != 1) return fail("/version", "must be 1");
     const json* mission = member(root, "mission");
     if (mission == nullptr || !mission->is_object()) return fail("/mission", "must be an object");
+    const json* inner = member(*mission, "version");
+    if (inner != nullptr && *inner != 1 && *inner != 2) {
+      return fail("/mission/version", "must be 1 or 2");
+    }
     if (list_in(*mission, "items") == nullptr) return fail("/mission/items", "must be a list");
     return {};
   }
@@ -190,30 +204,81 @@ class PlanReader {
     return true;
   }
 
+  /// Surveys, corridors and scans. What QGroundControl made of them stands in their items; older
+  /// ones, and those that were never shown to a vehicle, have the lines or the polygon alone.
   void complex_item(const json& value, const std::string& pointer) {
     const json* kind = member(value, "complexItemType");
     FileRow row{pointer, "complex item", Outcome::Changed, {}, std::nullopt};
     if (kind != nullptr && kind->is_string() && kind->get_ref<const std::string&>().size() < 40) {
-      row.what = kind->get<std::string>();
+      row.what = clean_name(kind->get_ref<const std::string&>(), row.what);
     }
     const json* transect = member(value, "TransectStyleComplexItem");
     const json* items = transect != nullptr ? list_in(*transect, "Items") : nullptr;
-    if (items == nullptr) {
-      row.outcome = Outcome::LeftOut;
-      row.reason = "it carries no items to drive";
-    } else {
+    const json* lines = transect != nullptr ? list_in(*transect, "VisualTransectPoints") : nullptr;
+    const json* polygon = list_in(value, "polygon");
+    const std::string inside = pointer + "/TransectStyleComplexItem";
+    if (const json* version = transect != nullptr ? member(*transect, "version") : nullptr;
+        version != nullptr && *version != 1 && *version != 2) {
+      return problems_.add(inside + "/version", "must be 1 or 2");
+    }
+    if (items != nullptr && !items->empty()) {
       row.reason =
           "taken as the " + std::to_string(items->size()) + " items that QGroundControl made of it";
-      for (std::size_t i = 0; i < items->size(); ++i) {
-        const std::string place = pointer + "/TransectStyleComplexItem/Items/" + std::to_string(i);
-        if ((*items)[i].is_object()) {
-          simple_item((*items)[i], place);
-        } else {
-          problems_.add(place, "must be an object");
-        }
-      }
+      take_transect_items(*items, inside + "/Items");
+    } else if (lines != nullptr && !lines->empty()) {
+      row.reason = "taken as the " + std::to_string(lines->size()) + " corners of its lines";
+      take_corners(*lines, inside + "/VisualTransectPoints");
+    } else if (polygon != nullptr && !polygon->empty()) {
+      return take_polygon(*polygon, row.what, pointer);
+    } else {
+      row.outcome = Outcome::LeftOut;
+      row.reason = "it carries no items to drive";
     }
     file_.rows.push_back(std::move(row));
+  }
+
+  void take_transect_items(const json& items, const std::string& pointer) {
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      const std::string place = pointer + '/' + std::to_string(i);
+      if (items[i].is_object()) {
+        simple_item(items[i], place);
+      } else {
+        problems_.add(place, "must be an object");
+      }
+    }
+  }
+
+  /// [latitude, longitude] each.
+  void take_corners(const json& corners, const std::string& pointer) {
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      Command c;
+      c.row = pointer + '/' + std::to_string(i);
+      c.lat_at = "/0";
+      c.lon_at = "/1";
+      c.id = cmd::kWaypoint;
+      c.number = -1;  // no jump leads here
+      if (corners[i].is_array()) {
+        c.lat = element(corners[i], 0);
+        c.lon = element(corners[i], 1);
+      }
+      commands_.push_back(std::move(c));
+    }
+  }
+
+  void take_polygon(const json& corners, const std::string& what, const std::string& pointer) {
+    FieldArea area{{}, pointer, {{}}};
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const auto lat = corners[i].is_array() ? element(corners[i], 0) : std::nullopt;
+      const auto lon = corners[i].is_array() ? element(corners[i], 1) : std::nullopt;
+      if (!lat || !lon) {
+        return problems_.add(pointer + "/polygon/" + std::to_string(i),
+                             "must be latitude and longitude");
+      }
+      area.rings.front().push_back({*lat, *lon});
+    }
+    const LatLon first = area.rings.front().front();
+    area.rings.front().push_back(first);  // QGroundControl does not close it
+    take_field_area(std::move(area), what.c_str(), file_, problems_);
   }
 
   std::optional<int> whole(const json& object, const std::string& pointer, const char* name) {
@@ -253,7 +318,7 @@ Error with_line(std::string_view content, Error error) {
     field.pointer = "line " + std::to_string(line + 1);
     error.detail = field.pointer + " of the .plan file is not JSON: " + field.detail;
   }
-  error.code = Code::Invalid;
+  if (error.code == Code::Malformed) error.code = Code::Invalid;
   return error;
 }
 

@@ -268,6 +268,14 @@ void items_from_commands(const std::vector<Command>& commands, Plan& plan,
   for (Draft& draft : drafts) rows.push_back(std::move(draft.row));
 }
 
+bool is_home_command(const Command& at) noexcept {
+  const bool asks = std::any_of(at.p.begin(), at.p.end(), [](const std::optional<double>& p) {
+    return p.value_or(0.0) != 0.0;
+  });
+  const bool above_sea = at.frame == kFrameGlobal || at.frame == kFrameGlobalInt;
+  return at.id == cmd::kWaypoint && above_sea && !asks;
+}
+
 void take_home(const Command& at, Plan& plan, std::vector<FileRow>& rows, Problems& problems) {
   Draft draft{{at.row, "home", Outcome::Taken, {}, std::nullopt}, {}, {}};
   if (at.lat == 0.0 && at.lon == 0.0) {
@@ -324,7 +332,13 @@ std::string command_name(int id) {
                                     {600, "JUMP_TAG"},
                                     {601, "DO_JUMP_TAG"},
                                     {2000, "IMAGE_START_CAPTURE"},
-                                    {2001, "IMAGE_STOP_CAPTURE"}};
+                                    {2001, "IMAGE_STOP_CAPTURE"},
+                                    {5000, "FENCE_RETURN_POINT"},
+                                    {5001, "FENCE_POLYGON_VERTEX_INCLUSION"},
+                                    {5002, "FENCE_POLYGON_VERTEX_EXCLUSION"},
+                                    {5003, "FENCE_CIRCLE_INCLUSION"},
+                                    {5004, "FENCE_CIRCLE_EXCLUSION"},
+                                    {5100, "RALLY_POINT"}};
   for (const Name& known : kNames) {
     if (known.id == id) return std::string(known.name) + " (" + std::to_string(id) + ")";
   }

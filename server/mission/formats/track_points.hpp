@@ -1,18 +1,24 @@
 #pragma once
 // What the formats of plain positions (CSV, GeoJSON, GPX, KML) have in common: each position of a
 // file becomes a waypoint, with its account.
+//
+//   whole   what the file calls one thing: a track, a Feature, a Placemark
+//   part    a run of positions that the file says are connected: a segment, a line
+//
+// Parts of one whole that touch are one mission; all others are missions of their own: nobody said
+// that the ground between them can be driven.
 
+#include <cstddef>
 #include <optional>
 #include <string>
-#include <utility>
+#include <vector>
 
 #include "mission/formats/formats.hpp"
-#include "mission/json/fields.hpp"
-#include "mission/json/json.hpp"
 #include "mission/json/pointer.hpp"
-#include "mission/text.hpp"
 
 namespace roverd::mission {
+
+struct Range;
 
 struct TrackPoint {
   std::string row;   ///< its place in the file: "line 4", "/features/0/geometry/coordinates/3"
@@ -21,71 +27,77 @@ struct TrackPoint {
   double lon = 0.0;
   std::optional<double> alt_m{};
   std::optional<double> speed_mps{};
+  std::string note{};  ///< what of it is not taken; empty: nothing
 };
+
+/// What a part is. Of a file that has several kinds the first one is driven. All Points together
+/// are one way, in their order.
+enum class PartKind { Route, Track, Line, Points };
+
+/// How near the end of a part and the beginning of the next one are the same place.
+inline constexpr double kTouching_m = 1.0;
+/// A leg that is longer is told.
+inline constexpr double kLongLeg_m = 10'000.0;
+/// Of one file; more is no list that anyone reads.
+inline constexpr std::size_t kMaxMissionsOfFile = 100;
+inline constexpr std::size_t kMaxRowsOfFile = 400'000;
 
 class TrackBuilder {
  public:
   TrackBuilder(ImportedFile& file, Problems& problems) : file_(file), problems_(problems) {}
 
-  void add(TrackPoint point) {
-    const bool good =
-        check(point, "latitude", point.lat, kLat) && check(point, "longitude", point.lon, kLon);
-    if (!good) return;
-    if (file_.plan.items.size() >= kMaxItems) {
-      overflow_ = true;
-      return;
-    }
-    FileRow row{std::move(point.row), std::move(point.what), Outcome::Taken, {}, std::nullopt};
-    Waypoint waypoint;
-    waypoint.at = {point.lat, point.lon};
-    waypoint.alt_m = usable(row, point.alt_m, kAlt_m, "a height of");
-    waypoint.speed_mps = usable(row, point.speed_mps, kSpeed_mps, "a speed of");
-    file_.plan.items.emplace_back(waypoint);
-    row.item = static_cast<int>(file_.plan.items.size());
-    file_.rows.push_back(std::move(row));
-  }
+  /// A part begins. Without a call there is one, of Points.
+  void begin(PartKind kind);
+  /// The whole to which the parts since the last call belong is over. @param name may be empty
+  void end_whole(const std::string& name);
 
-  void leave_out(std::string row, std::string what, std::string reason) {
-    file_.rows.push_back(
-        {std::move(row), std::move(what), Outcome::LeftOut, std::move(reason), std::nullopt});
-  }
+  /// A position that says nothing new after the one before it is left out.
+  void add(TrackPoint point);
+  void leave_out(std::string row, std::string what, std::string reason);
 
-  /// The file, or what is wrong with it: a wrong value, too many positions, none at all and no
-  /// fence either.
-  base::Result<ImportedFile> finish() && {
-    if (overflow_) {
-      return base::fail(base::Code::TooLarge,
-                        "more than " + std::to_string(kMaxItems) + " positions");
-    }
-    if (!problems_.none()) {
-      return tl::unexpected<base::Error>(std::move(problems_).error("the file"));
-    }
-    if (file_.plan.items.empty() && !file_.fence) {
-      return base::fail(base::Code::Invalid, "the file has no position that could be driven to",
-                        {{"", "has no position"}});
-    }
-    return std::move(file_);
-  }
+  /// From now on a position that repeats the one before it stays, too.
+  void keep_duplicates(bool keep) noexcept { keep_duplicates_ = keep; }
+
+  /// How many positions were taken, and one of them.
+  std::size_t count() const noexcept { return points_.size(); }
+  Waypoint& point(std::size_t number) { return points_[number]; }
+
+  /// The file, or what is wrong with it: a wrong value, too much of something, no position, and
+  /// no fence and no area either.
+  base::Result<ImportedFile> finish() &&;
 
  private:
-  bool check(const TrackPoint& point, const char* name, double value, const Range& range) {
-    if (range.holds(value)) return true;
-    problems_.add(point.row, std::string(name) + " must be from " + number_text(range.min) +
-                                 " to " + number_text(range.max) + ", is " + number_text(value));
-    return false;
-  }
+  struct Part {
+    PartKind kind = PartKind::Points;
+    std::size_t whole = 0;
+    std::size_t first = 0;  ///< of points_
+    std::string name{};
+  };
 
-  static std::optional<double> usable(FileRow& row, std::optional<double> value, const Range& range,
-                                      const char* name) {
-    if (!value || range.holds(*value)) return value;
-    row.outcome = Outcome::Changed;
-    if (!row.reason.empty()) row.reason += "; ";
-    row.reason += std::string(name) + ' ' + number_text(*value) + " cannot be kept";
-    return std::nullopt;
+  bool check(const TrackPoint& point, const char* name, double value, const Range& range);
+  bool repeats(const Waypoint& next) const;
+  bool room_for_row();
+  std::size_t end_of(std::size_t part) const {
+    return part + 1 < parts_.size() ? parts_[part + 1].first : points_.size();
   }
+  /// The kind that is driven; empty: there is no position.
+  std::optional<PartKind> chosen() const;
+  bool has_ways(PartKind kind) const;
+  void take_parts(PartKind kind);
+  void take_part(std::size_t part, bool goes_on);
+  bool goes_on(std::size_t part, const Plan& before) const;
+  void leave_out_part(std::size_t part, const std::string& reason);
+  void tell_long_leg(FileRow& row, const Plan& plan) const;
 
   ImportedFile& file_;
   Problems& problems_;
+  std::vector<Waypoint> points_;
+  std::vector<std::size_t> rows_;  ///< by point: its row
+  std::vector<Part> parts_;
+  std::vector<Plan> plans_;
+  std::size_t whole_ = 0;
+  std::size_t first_of_whole_ = 0;  ///< of parts_
+  bool keep_duplicates_ = false;
   bool overflow_ = false;
 };
 
@@ -96,5 +108,8 @@ struct TrackHolds {
   bool speed = false;
 };
 void report_left_out(const Plan& plan, TrackHolds holds, std::vector<FileRow>& rows);
+
+/// Says of a row that it was not taken as it stands.
+void change_row(FileRow& row, std::string_view reason);
 
 }  // namespace roverd::mission

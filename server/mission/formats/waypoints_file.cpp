@@ -1,6 +1,7 @@
 // QGC WPL 110: a head line, then one command a line, twelve columns apart by tabs or blanks:
 //   number  current  frame  command  p1 p2 p3 p4  latitude longitude altitude  autocontinue
-// Row 0 is home.
+// ArduPilot keeps home in row 0; others begin with the first command there, and files of fences and
+// rally points with those. So row 0 is home if it is written as one (is_home_command).
 // Source: MAVLink developer guide, "plain-text file format"; Mission Planner's files.
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include "mission/formats/commands.hpp"
 #include "mission/formats/file_formats.hpp"
 #include "mission/formats/text_lines.hpp"
+#include "mission/formats/track_points.hpp"
 #include "mission/json/json.hpp"
 #include "mission/text.hpp"
 
@@ -148,44 +150,95 @@ void append_row(std::string& out, const Command& c) {
 
 }  // namespace
 
-Result<ImportedFile> read_waypoints(std::string_view content) {
-  TextLines lines(without_bom(content));
-  if (auto ok = read_head(lines); !ok) return tl::unexpected<Error>(ok.error());
-  ImportedFile file;
-  Problems problems;
-  std::vector<Command> commands;
-  std::string_view line;
-  int before = -1;
-  while (lines.next(line)) {
-    const std::size_t begin = line.find_first_not_of(" \t");
-    if (begin == std::string_view::npos) continue;
-    if (line[begin] == '#') {
-      file.rows.push_back({lines.place(), "comment", Outcome::LeftOut, "a comment", std::nullopt});
-      continue;
+namespace {
+
+/// Of a row that begins with "line ".
+std::size_t line_number(const FileRow& row) {
+  constexpr std::size_t kPrefix = 5;
+  std::size_t number = 0;
+  std::from_chars(row.row.data() + kPrefix, row.row.data() + row.row.size(), number);
+  return number;
+}
+
+class WaypointsReader {
+ public:
+  explicit WaypointsReader(std::string_view content) : lines_(content) {}
+
+  Result<ImportedFile> read() {
+    if (auto ok = read_head(lines_); !ok) return tl::unexpected<Error>(ok.error());
+    std::string_view line;
+    while (lines_.next(line)) {
+      const std::size_t begin = line.find_first_not_of(" \t");
+      if (begin == std::string_view::npos) continue;
+      if (line[begin] == '#') {
+        file_.rows.push_back(
+            {lines_.place(), "comment", Outcome::LeftOut, "a comment", std::nullopt});
+      } else if (commands_.size() < kMaxItems) {
+        row(line);
+        continue;
+      }
+      if (commands_.size() >= kMaxItems || file_.rows.size() >= kMaxRowsOfFile) {
+        return base::fail(Code::TooLarge, "more than " + std::to_string(kMaxItems) + " rows",
+                          {{lines_.place(), "is one row too many"}});
+      }
     }
-    auto command = RowReader(lines.place(), problems).read(line);
-    if (!command) continue;
-    if (command->number <= before) {
-      problems.add(lines.place(), "number " + std::to_string(command->number) +
-                                      " must be more than " + std::to_string(before) +
-                                      " of the row before");
+    std::vector<FileRow> rows;
+    file_.fence = fence_from_commands(commands_, rows, problems_);
+    add(std::move(rows));
+    rows.clear();
+    items_from_commands(commands_, file_.plan, rows, problems_);
+    if (not_home_ && !rows.empty() && rows.front().row == *not_home_ && rows.front().item) {
+      change_row(rows.front(), "it is not written as a home, so it is driven to");
     }
-    before = command->number;
-    if (command->number == 0) {
-      take_home(*command, file.plan, file.rows, problems);
-    } else if (commands.size() == kMaxItems) {
-      return base::fail(Code::TooLarge, "more than " + std::to_string(kMaxItems) + " rows",
-                        {{lines.place(), "is one row too many"}});
-    } else {
-      commands.push_back(std::move(*command));
-    }
+    add(std::move(rows));
+    if (!problems_.none()) return tl::unexpected<Error>(std::move(problems_).error("the file"));
+    return std::move(file_);
   }
-  items_from_commands(commands, file.plan, file.rows, problems);
-  const auto line_of = [](const FileRow& row) { return std::stoull(row.row.substr(5)); };
-  std::stable_sort(file.rows.begin(), file.rows.end(),
-                   [&](const FileRow& a, const FileRow& b) { return line_of(a) < line_of(b); });
-  if (!problems.none()) return tl::unexpected<Error>(std::move(problems).error("the file"));
-  return file;
+
+ private:
+  /// Keeps the rows in the file's order; both lists are.
+  void add(std::vector<FileRow> rows) {
+    const auto middle = static_cast<std::ptrdiff_t>(file_.rows.size());
+    const bool behind =
+        middle == 0 || rows.empty() || line_number(file_.rows.back()) < line_number(rows.front());
+    file_.rows.insert(file_.rows.end(), std::make_move_iterator(rows.begin()),
+                      std::make_move_iterator(rows.end()));
+    if (behind) return;
+    std::inplace_merge(
+        file_.rows.begin(), file_.rows.begin() + middle, file_.rows.end(),
+        [](const FileRow& a, const FileRow& b) { return line_number(a) < line_number(b); });
+  }
+
+  void row(std::string_view line) {
+    auto command = RowReader(lines_.place(), problems_).read(line);
+    if (!command) return;
+    if (command->number <= before_) {
+      problems_.add(lines_.place(), "number " + std::to_string(command->number) +
+                                        " must be more than " + std::to_string(before_) +
+                                        " of the row before");
+    }
+    before_ = command->number;
+    if (command->number == 0 && is_home_command(*command)) {
+      take_home(*command, file_.plan, file_.rows, problems_);
+      return;
+    }
+    const bool is_point = command->id == cmd::kWaypoint || command->id == cmd::kSpline;
+    if (command->number == 0 && is_point) not_home_ = command->row;
+    commands_.push_back(std::move(*command));
+  }
+
+  TextLines lines_;
+  std::vector<Command> commands_;
+  int before_ = -1;
+  std::optional<std::string> not_home_;  ///< row 0, if it could be taken for one
+  ImportedFile file_;
+  Problems problems_;
+};
+
+}  // namespace
+
+Result<ImportedFile> read_waypoints(std::string_view content) {
+  return WaypointsReader(without_bom(content)).read();
 }
 
 std::string write_waypoints(const Plan& plan, std::vector<FileRow>& rows) {

@@ -1,5 +1,7 @@
 #include "mission/formats/xml.hpp"
 
+#include <algorithm>
+#include <array>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -15,6 +17,38 @@ using base::Result;
 std::string_view local_name(std::string_view name) {
   const std::size_t colon = name.rfind(':');
   return colon == std::string_view::npos ? name : name.substr(colon + 1);
+}
+
+std::string_view prefix_of(std::string_view name) {
+  const std::size_t colon = name.rfind(':');
+  return colon == std::string_view::npos ? std::string_view{} : name.substr(0, colon);
+}
+
+/// What Windows-1252 has where Latin-1 has control characters, from 0x80 on; 0: nothing.
+constexpr std::array<int, 32> kWindows1252{
+    0x20AC, 0,      0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021, 0x02C6, 0x2030, 0x0160,
+    0x2039, 0x0152, 0,      0x017D, 0,      0,      0x2018, 0x2019, 0x201C, 0x201D, 0x2022,
+    0x2013, 0x2014, 0x02DC, 0x2122, 0x0161, 0x203A, 0x0153, 0,      0x017E, 0x0178};
+
+/// An encoding that expat does not know, if each of its bytes is a character and the lower half is
+/// ASCII. Others (UTF-7, those of East Asia, EBCDIC) stay unknown: the file is refused.
+int one_byte_encoding(void*, const XML_Char* name, XML_Encoding* encoding) {
+  std::string lower(name);
+  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  const std::string_view given(lower);
+  const bool known = given.starts_with("windows-125") || given.starts_with("cp125") ||
+                     given.starts_with("iso-8859-") || given.starts_with("iso8859-") ||
+                     given.starts_with("koi8") || given == "latin1";
+  if (!known) return XML_STATUS_ERROR;
+  for (int byte = 0; byte < 256; ++byte) {
+    const bool special = byte >= 0x80 && byte < 0xA0;
+    const int code = special ? kWindows1252[static_cast<std::size_t>(byte - 0x80)] : byte;
+    encoding->map[byte] = code == 0 && byte != 0 ? 0xFFFD : code;
+  }
+  encoding->data = nullptr;
+  encoding->convert = nullptr;
+  encoding->release = nullptr;
+  return XML_STATUS_OK;
 }
 
 class XmlParse {
@@ -39,6 +73,12 @@ class XmlParse {
         parser_.get(), [](void* self, const XML_Char*, const XML_Char*, const XML_Char*, int) {
           static_cast<XmlParse*>(self)->stop("a document type declaration is not taken");
         });
+    XML_SetUnknownEncodingHandler(parser_.get(), one_byte_encoding, nullptr);
+    // Blank lines before a declaration are not XML; they are common, and do no harm.
+    const std::size_t start = std::min(content.find_first_not_of(" \t\r\n"), content.size());
+    const std::string_view blank = content.substr(0, start);
+    lines_before_ = static_cast<std::size_t>(std::count(blank.begin(), blank.end(), '\n'));
+    content.remove_prefix(start);
     // Expat counts in int.
     constexpr std::size_t kPiece = std::numeric_limits<int>::max() / 2;
     for (;;) {
@@ -55,7 +95,7 @@ class XmlParse {
 
  private:
   std::string row() const {
-    return "line " + std::to_string(XML_GetCurrentLineNumber(parser_.get()));
+    return "line " + std::to_string(lines_before_ + XML_GetCurrentLineNumber(parser_.get()));
   }
 
   tl::unexpected<base::Error> fail(const std::string& detail) const {
@@ -73,7 +113,7 @@ class XmlParse {
     if (!problem_.empty()) return;
     if (texts_.size() >= kMaxXmlDepth) return stop("nested too deeply");
     texts_.emplace_back();
-    events_.begin({local_name(name), row(), attributes});
+    events_.begin({local_name(name), prefix_of(name), row(), attributes});
   }
 
   void end(const XML_Char* name) {
@@ -87,6 +127,7 @@ class XmlParse {
   std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser_;
   std::vector<std::string> texts_;
   std::string problem_;
+  std::size_t lines_before_ = 0;
 };
 
 }  // namespace
@@ -94,6 +135,14 @@ class XmlParse {
 std::string_view XmlElement::attribute(std::string_view name_wanted) const {
   for (const char** at = attributes; at[0] != nullptr; at += 2) {
     if (local_name(at[0]) == name_wanted) return at[1];
+  }
+  return {};
+}
+
+std::string_view XmlElement::name_space() const {
+  const std::string wanted = prefix.empty() ? "xmlns" : "xmlns:" + std::string(prefix);
+  for (const char** at = attributes; at[0] != nullptr; at += 2) {
+    if (wanted == at[0]) return at[1];
   }
   return {};
 }

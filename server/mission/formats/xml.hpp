@@ -1,6 +1,8 @@
 #pragma once
 // XML as a stream of elements, by libexpat. Document type declarations are refused, and with them
-// every entity of the file's own: no bombs, nothing from outside is read. Pure.
+// every entity of the file's own: no bombs, nothing from outside is read. Of the encodings that a
+// file declares, those of one byte a character are read too; beyond ASCII they are taken for
+// Windows-1252, which may spoil a name but no number. Pure.
 
 #include <functional>
 #include <string>
@@ -12,11 +14,14 @@ namespace roverd::mission {
 
 struct XmlElement {
   std::string_view name;    ///< without its namespace's prefix
+  std::string_view prefix;  ///< without the colon; empty: none
   std::string row;          ///< "line 4"
   const char** attributes;  ///< expat's: name, value, …, null; while the call lasts
 
   /// Empty if it is not there.
   std::string_view attribute(std::string_view name_wanted) const;
+  /// Of its own name, as this element declares it.
+  std::string_view name_space() const;
 };
 
 struct XmlEvents {

@@ -82,8 +82,20 @@ class Builder {
   }
 
   bool put(json&& value) {
+    if (!has_room(sizeof(json))) return false;
     place(std::move(value));
     return true;
+  }
+
+  /// Text of two bytes a value becomes a value of a hundred: what a document takes in memory is
+  /// bounded, not only its length. `bytes` is about right, with the allocator's own.
+  bool has_room(std::size_t bytes) {
+    constexpr std::size_t kMember = 112;  // of a map, with its key
+    const bool named = !levels_.empty() && levels_.back().container->is_object();
+    bytes_ += bytes + (named ? kMember : 0);
+    if (bytes_ <= kMaxJsonMemory) return true;
+    error_ = {Code::TooLarge, "has more values than there is memory for", {}};
+    return false;
   }
 
   bool open(json&& container) {
@@ -92,6 +104,8 @@ class Builder {
           Code::Malformed, "nested deeper than " + std::to_string(kMaxJsonDepth) + " levels", {}};
       return false;
     }
+    constexpr std::size_t kContainer = 80;
+    if (!has_room(kContainer)) return false;
     levels_.push_back({place(std::move(container)), {}});
     return true;
   }
@@ -133,6 +147,7 @@ class Builder {
 
   json root_;
   std::vector<Level> levels_;
+  std::size_t bytes_ = 0;
   Error error_;
 };
 

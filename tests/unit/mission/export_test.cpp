@@ -30,7 +30,8 @@ TEST(Export, PlansOfWaypointsWaitsSpeedsTurnsAndJumpsComeBackEqual) {
 TEST(Export, AnyPlanIsWrittenSuchThatItsPositionsComeBack) {
   RandomPlans plans(99);
   for (int i = 0; i < 200; ++i) {
-    const Plan plan = plans.next(1 + i % 40);
+    Plan plan = plans.next(1 + i % 40);
+    plan.items.emplace_back(waypoint_at(58.0, 26.0));  // something to drive
     for (const Format format : {Format::Plan, Format::Waypoints}) {
       const auto file = export_file(plan, format);
       const auto again = import_file(file.content, std::nullopt, file.file_name);

@@ -56,8 +56,7 @@ TEST(Positions, ComeBackWhateverTheFormat) {
       const auto& is = std::get<Waypoint>(back->plan.items[i]);
       EXPECT_NEAR(is.at.lat, was.at.lat, 1e-9) << out.content;
       EXPECT_NEAR(is.at.lon, was.at.lon, 1e-9);
-      const bool has_alt = format != Format::Follower;
-      EXPECT_EQ(is.alt_m, has_alt ? was.alt_m : std::nullopt);
+      EXPECT_EQ(is.alt_m, was.alt_m);
       const bool has_speed = format != Format::Gpx && format != Format::Kml;
       EXPECT_EQ(is.speed_mps, has_speed ? was.speed_mps : std::nullopt);
     }
@@ -123,7 +122,8 @@ TEST(Csv, TheFollowersFormNeedsAnOrigin) {
 }
 
 TEST(Csv, BadRowsAreNamed) {
-  EXPECT_EQ(refusal("lat,lon\n91,0\n"), "line 2: latitude must be from -90 to 90, is 91");
+  EXPECT_EQ(refusal("lat,lon\n91,0\n"),
+            "line 2: latitude must be from -90 to 90, is 91: is it swapped with longitude?");
   EXPECT_EQ(refusal("lat,lon\n1,2,3\n"), "line 2: must have 2 columns, has 3");
   EXPECT_EQ(refusal("lat,lon\n1,nan\n"), "line 2: column 2 must be a finite number");
   EXPECT_EQ(refusal("lat,lon\n1,1e999\n"), "line 2: column 2 must be a finite number");
@@ -142,14 +142,15 @@ TEST(GeoJson, LinesPointsAndCollectionsAreRead) {
         {"type":"Feature","properties":null,"geometry":{"type":"Polygon","coordinates":[]}},
         {"type":"Feature","properties":{},"geometry":null},
         {"type":"Feature","properties":{},"geometry":{"type":"GeometryCollection","geometries":[
-          {"type":"MultiLineString","coordinates":[[[26.2,58.2,50]],[[26.3,58.3]]]}]}}]})",
+          {"type":"MultiLineString","coordinates":[[[26.2,58.2,50]],[[26.2,58.21]]]}]}}]})",
       std::nullopt);
   ASSERT_TRUE(file) << file.error().detail;
-  EXPECT_EQ(file->plan.name, "gate");
-  ASSERT_EQ(file->plan.items.size(), 3u);
-  EXPECT_EQ(std::get<Waypoint>(file->plan.items[1]).alt_m, 50.0);
+  EXPECT_EQ(file->plan.name, "Imported mission");
+  ASSERT_EQ(file->plan.items.size(), 2u);
+  EXPECT_EQ(std::get<Waypoint>(file->plan.items[0]).alt_m, 50.0);
   EXPECT_EQ(losses(file->rows),
-            "/features/1/geometry Polygon: an area is no way to drive\n"
+            "/features/0/geometry/coordinates position: the file's line is taken instead\n"
+            "/features/1/geometry Polygon: it has no coordinates\n"
             "/features/2 Feature: it has no geometry\n");
   EXPECT_EQ(refusal(R"({"type":"Point","coordinates":[26.1,"x"]})"),
             "/coordinates: must be [longitude, latitude] or with a height");
@@ -165,7 +166,7 @@ TEST(Gpx, TheRouteIsTakenBeforeTracksAndWaypoints) {
       "<wpt lat=\"1\" lon=\"2\"><name>gate</name></wpt>\n"
       "<rte><name>morning</name>\n"
       "<rtept lat=\"58.1\" lon=\"26.1\"><ele>61.5</ele></rtept>\n"
-      "<rtept lat=\"58.2\" lon=\"26.2\"/></rte></gpx>",
+      "<rtept lat=\"58.11\" lon=\"26.1\"/></rte></gpx>",
       std::nullopt);
   ASSERT_TRUE(file) << file.error().detail;
   EXPECT_EQ(file->plan.name, "morning");
@@ -186,7 +187,7 @@ TEST(Kml, LinesAreTakenBeforePoints) {
       "<Placemark><Point><coordinates>1,2</coordinates></Point></Placemark>\n"
       "<Placemark><Polygon><outerBoundaryIs><LinearRing><coordinates>0,0 1,1 1,0</coordinates>"
       "</LinearRing></outerBoundaryIs></Polygon></Placemark>\n"
-      "<Placemark><LineString><coordinates>\n 26.1,58.1,61.5\n 26.2,58.2 </coordinates>"
+      "<Placemark><LineString><coordinates>\n 26.1,58.1,61.5\n 26.1,58.11 </coordinates>"
       "</LineString></Placemark></Document></kml>",
       std::nullopt);
   ASSERT_TRUE(file) << file.error().detail;
@@ -194,8 +195,12 @@ TEST(Kml, LinesAreTakenBeforePoints) {
   ASSERT_EQ(file->plan.items.size(), 2u);
   EXPECT_EQ(std::get<Waypoint>(file->plan.items[0]).at, (LatLon{58.1, 26.1}));
   EXPECT_EQ(losses(file->rows),
-            "line 3 Polygon: an area is no way to drive\n"
-            "line 2 Point: the file's line is taken instead\n");
+            "line 2 Point: the file's line is taken instead\n"
+            "line 3 Polygon: an area to be covered: a survey makes the way; it is not closed in "
+            "the file: from its last corner to its first\n");
+  ASSERT_EQ(file->areas.size(), 1u);
+  EXPECT_EQ(file->areas[0].rings,
+            (std::vector<std::vector<LatLon>>{{{0.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}}));
   EXPECT_EQ(refusal("<kml><LineString><coordinates>1,2 3</coordinates></LineString></kml>"),
             "line 1, coordinate 2: must be longitude, latitude and perhaps a height");
 }

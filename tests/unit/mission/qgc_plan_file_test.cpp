@@ -57,8 +57,13 @@ TEST(QgcPlan, ASurveyIsTakenAsTheItemsItCarries) {
   EXPECT_EQ(file.rows[3].row, "/mission/items/0/TransectStyleComplexItem/Items/0");
 }
 
+/// One that every plan needs: something to drive.
+std::string a_waypoint() {
+  return simple_item(16, 1, "0,0,0,null,58.3781,26.7291,0");
+}
+
 json fenced_plan() {
-  json root = json::parse(plan_file(""));
+  json root = json::parse(plan_file(a_waypoint()));
   root["geoFence"] = {
       {"version", 2},
       {"breachReturn", {58.0, 26.0, 0}},
@@ -75,11 +80,11 @@ TEST(QgcPlan, FencesAndRallyPointsAreTakenAndWritten) {
   const auto file = imported(fenced_plan().dump());
   ASSERT_TRUE(file.fence);
   EXPECT_EQ(file.fence->name, file.plan.name);
-  ASSERT_EQ(file.rows.size(), 5u);
-  EXPECT_EQ(file.rows[1].row, "/geoFence/polygons/0");
-  for (std::size_t i = 1; i < 4; ++i) EXPECT_EQ(file.rows[i].outcome, Outcome::Taken);
-  EXPECT_EQ(file.rows[4].row, "/geoFence/breachReturn");
-  EXPECT_EQ(file.rows[4].outcome, Outcome::LeftOut);
+  ASSERT_EQ(file.rows.size(), 6u);
+  EXPECT_EQ(file.rows[2].row, "/geoFence/polygons/0");
+  for (std::size_t i = 2; i < 5; ++i) EXPECT_EQ(file.rows[i].outcome, Outcome::Taken);
+  EXPECT_EQ(file.rows[5].row, "/geoFence/breachReturn");
+  EXPECT_EQ(file.rows[5].outcome, Outcome::LeftOut);
   // The figure was closed in the file; here it is not.
   EXPECT_EQ(file.fence->areas.at(0),
             (FenceArea{AreaKind::Inclusion,
@@ -113,11 +118,11 @@ TEST(QgcPlan, AFenceThatCannotBeIsRefusedByPointer) {
 TEST(QgcPlan, ASpeedMadeForFlyingIsNotTaken) {
   for (const char* members :
        {R"("vehicleType":2,"cruiseSpeed":1.5,)", R"("vehicleType":10,"cruiseSpeed":15,)"}) {
-    const auto file = imported(plan_file("", members));
+    const auto file = imported(plan_file(a_waypoint(), members));
     EXPECT_FALSE(file.plan.settings.speed_mps);
     EXPECT_EQ(file.rows[1].outcome, Outcome::LeftOut);
   }
-  const auto copter = imported(plan_file("", R"("vehicleType":2,)"));
+  const auto copter = imported(plan_file(a_waypoint(), R"("vehicleType":2,)"));
   EXPECT_EQ(copter.rows.at(1).row, "/mission/vehicleType");
   EXPECT_EQ(copter.rows.at(1).outcome, Outcome::Changed);
 }

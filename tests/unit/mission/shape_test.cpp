@@ -108,6 +108,42 @@ TEST(ShapeOperations, OffsetMovesEveryPointByTheDistanceAndKeepsTheFigure) {
   }
 }
 
+TEST(ShapeOperations, AnOffsetIsUndoneByItsOppositeAtAnyLatitude) {
+  for (const double lat : {0.0, 58.0, 85.0, 89.0, 89.9, 89.99, -89.9}) {
+    // Given a figure of up to 2 km that has no symmetry,
+    Plan plan;
+    plan.name = "figure";
+    for (int i = 0; i < 12; ++i) {
+      Waypoint waypoint;
+      const LatLon middle{lat, 179.9};
+      waypoint.at = base::destination(middle, 37.0 * i, i < 6 ? 60.0 * i : 1000.0 - 50.0 * i);
+      plan.items.emplace_back(waypoint);
+    }
+    for (const double way_m : {0.5, 300.0, 1500.0}) {
+      for (double bearing_deg = 0.0; bearing_deg < 360.0; bearing_deg += 45.0) {
+        const double rad = bearing_deg * std::acos(-1.0) / 180.0;
+        const base::EnuPoint by{way_m * std::sin(rad), way_m * std::cos(rad)};
+        // when it is moved and moved back,
+        const Plan moved = done(plan, Offset{by, std::nullopt});
+        const Plan back = done(moved, Offset{{-by.east_m, -by.north_m}, std::nullopt});
+        // then it went as far as it was told to, and is where it was.
+        for (std::size_t i = 0; i < plan.items.size(); ++i) {
+          EXPECT_NEAR(base::distance_bearing(at(plan, i), at(moved, i)).distance_m, way_m,
+                      kMillimetre);
+        }
+        EXPECT_LT(gap_m(plan, back), kMillimetre) << lat << ' ' << way_m << ' ' << bearing_deg;
+      }
+    }
+  }
+  // So near to the pole nobody can go 9 km to the east.
+  Plan plan;
+  plan.name = "pole";
+  plan.items.emplace_back(waypoint_at(89.999, 0.0));
+  const auto lost = perform(plan, Offset{{9000.0, 0.0}, {}});
+  ASSERT_FALSE(lost);
+  EXPECT_EQ(lost.error().fields.at(0).pointer, "/op");
+}
+
 TEST(ShapeOperations, OffsetOfADriftedFrameAgreesWithTheGeodesic) {
   // Given a mission at 58° north and the frame's shift of a day, 3 m,
   Plan plan;

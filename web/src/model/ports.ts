@@ -69,11 +69,25 @@ export interface ImportEntry {
   readonly what: string;
   readonly outcome: 'taken' | 'changed' | 'left_out';
   readonly item: number | null;
+  /** Which one has the item, from 1. */
+  readonly mission: number | null;
   readonly reason: string;
+}
+/** A polygon of a file: a field that can be covered. */
+export interface ImportedArea {
+  readonly name: string;
+  readonly row: string;
+  /** Rings of [lon, lat], closed; the first is the field, the others are holes. */
+  readonly polygon: { readonly coordinates: readonly (readonly (readonly number[])[])[] };
 }
 export interface ImportResult {
   readonly format: string;
-  readonly mission: Mission;
+  /** The first one; null: there is nothing to drive in the file. */
+  readonly mission: Mission | null;
+  /** All that were made. */
+  readonly missions: readonly { readonly id: string; readonly name: string }[];
+  readonly fence_id: string | null;
+  readonly areas: readonly ImportedArea[];
   readonly taken: number;
   readonly changed: number;
   readonly left_out: number;

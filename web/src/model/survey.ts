@@ -1,6 +1,7 @@
 // A field that is driven in tracks: what is asked for, and what would come of it.
 
 import type { LatLon, Plan } from './plan';
+import type { ImportedArea } from './ports';
 
 export interface SurveyWish {
   readonly polygon: readonly LatLon[];
@@ -37,6 +38,12 @@ export const why_not_survey = (wish: SurveyWish): string | null => {
   if (missing === 3) return 'Tap the corners of the field on the map.';
   if (missing > 0) return `${missing} more ${missing === 1 ? 'corner' : 'corners'} needed.`;
   return null;
+};
+
+/** The corners of a field that came in a file, without the last one, which closes it. */
+export const field_places = ({ polygon }: ImportedArea): LatLon[] => {
+  const ring = polygon.coordinates[0] ?? [];
+  return ring.slice(0, -1).map(([lon = 0, lat = 0]) => ({ lat, lon }));
 };
 
 /** "1.25 ha", "340 m²". */

@@ -65,7 +65,12 @@ export class Outline implements Drawing {
   }
 
   clear(): void {
-    this.history = begin_history<Places>([]);
+    this.begin([]);
+  }
+
+  /** What was drawn elsewhere; there is nothing to undo. */
+  begin(places: Places): void {
+    this.history = begin_history<Places>(places);
     this.selected = null;
   }
 

@@ -167,9 +167,10 @@ export class Library {
       this.#notices.show('error', `“${file.name}” was not imported: ${text}`);
       return false;
     }
-    this.#editor.show_mission(answer.value.mission);
+    const { mission } = answer.value;
+    if (mission) this.#editor.show_mission(mission);
     this.#dialogs.show({ kind: 'report', file: file.name, result: answer.value });
     await this.refresh();
-    return true;
+    return mission !== null;
   }
 }

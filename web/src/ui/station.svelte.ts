@@ -8,6 +8,7 @@ import { EMPTY_PLAN, spots, type Plan } from '../model/plan';
 import type {
   DraftStorage,
   FenceCalls,
+  ImportedArea,
   MapCalls,
   MapEvents,
   MissionCalls,
@@ -18,6 +19,7 @@ import type {
   TeachCalls,
   VehicleCalls,
 } from '../model/ports';
+import { field_places } from '../model/survey';
 import { robot_place, type Check } from '../model/vehicle';
 import { Dialogs } from './dialogs.svelte';
 import type { Drawing } from './drawing.svelte';
@@ -168,6 +170,17 @@ export class Station {
   set_follow(follow: boolean): void {
     this.follow = follow;
     if (follow) this.map.center_robot();
+  }
+
+  /** A field of a file, as if it had been drawn. */
+  cover(area: ImportedArea): void {
+    const places = field_places(area);
+    this.surveyor.name = area.name;
+    this.surveyor.outline.begin(places);
+    this.surveyor.open = true;
+    this.tab = 'plan';
+    this.set_follow(false);
+    this.map.fit(places);
   }
 
   /** Shows the edited mission, or the loaded one, or the way so far. */
