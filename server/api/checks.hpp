@@ -8,12 +8,19 @@
 
 namespace roverd::api {
 
-mission::CheckReport check_now(const Context& context, const mission::Plan& plan);
+/// What speaks against a mission, with the robot where it stands: all that load and start would
+/// refuse, in the words in which they do.
+struct Verdict {
+  mission::CheckReport report;
+  std::shared_ptr<const robot::CompiledMission> compiled;  ///< null: it cannot be driven at all
+  std::size_t lasting = 0;  ///< errors that driving the robot elsewhere does not cure
+  base::Error refusal{};    ///< of a load; of no meaning without lasting errors
+};
+Verdict judge(const Context& context, robot::MissionCopy copy,
+              const robot::StartMission& start = {});
 
 /// @param severity empty: all of them
 Json findings_json(const mission::CheckReport& report, std::optional<mission::Severity> severity);
-
-/// Why a mission with errors is not loaded: each with its pointer.
-base::Error refusal(const mission::CheckReport& report);
+Json finding_json(const mission::Finding& finding);
 
 }  // namespace roverd::api

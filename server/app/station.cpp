@@ -100,6 +100,7 @@ api::Profile profile_of(const Settings& s, const Supervisor& supervisor) {
   if (!s.robot.vehicle.steered()) profile.item_types.push_back("turn");
   profile.limits = limits_of(s);
   profile.limits.item_types = profile.item_types;
+  profile.limits.actions = robot::kActions;
   return profile;
 }
 

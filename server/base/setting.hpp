@@ -19,8 +19,7 @@ class Setting {
  public:
   Setting() : Setting(T{}) {}
   /// Not explicit: a part that takes a Setting takes a plain value as well.
-  Setting(T value)
-      : held_(std::make_shared<Held>(std::make_shared<const T>(std::move(value)))) {}
+  Setting(T value) : held_(std::make_shared<Held>(std::make_shared<const T>(std::move(value)))) {}
 
   const T& operator*() const noexcept { return **held_; }
   const T* operator->() const noexcept { return held_->get(); }

@@ -73,6 +73,10 @@ class PlanCheck {
       if (std::find(known.begin(), known.end(), type) == known.end()) {
         add(Severity::Error, "unreachable_type", number, why_not_drivable(type));
       }
+      if (const auto* action = std::get_if<Action>(&item)) {
+        std::string why = why_not_done(action->name, vehicle_.actions);
+        if (!why.empty()) add(Severity::Error, "unknown_action", number, std::move(why));
+      }
       if (const auto* jump = std::get_if<Jump>(&item); jump != nullptr && jump->times == 0) {
         add(Severity::Warning, "repeats_for_ever", number,
             "jumps to item " + std::to_string(jump->item) + " for ever");
@@ -257,12 +261,26 @@ std::string_view to_string(Severity severity) noexcept {
   return "error";
 }
 
+std::string sentence(const Finding& finding) {
+  if (!finding.item) return finding.detail;
+  return "item " + std::to_string(*finding.item) + " " + finding.detail;
+}
+
+std::string why_not_done(std::string_view action, const std::vector<std::string>& built_in) {
+  if (std::find(built_in.begin(), built_in.end(), action) != built_in.end()) return {};
+  std::string why =
+      "asks for the action \"" + std::string(action) + "\", which nothing here does; ";
+  if (built_in.empty()) return why + "no action is built in";
+  why += "built in: ";
+  for (const std::string& name : built_in) why += (&name == &built_in.front() ? "" : ", ") + name;
+  return why;
+}
+
 std::string why_not_drivable(std::string_view type) {
   const std::string item = "cannot be driven: ";
   if (type == "row") return item + "no scanner that sees rows is configured";
   if (type == "wall") return item + "no camera or scanner that sees walls is configured";
   if (type == "landmarks") return item + "no vision that sees landmarks is configured";
-  if (type == "action") return item + "no driver for actions is configured";
   return item + "items of type " + std::string(type) + " are not available yet";
 }
 

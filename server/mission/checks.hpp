@@ -14,6 +14,7 @@
 //   duplicate_point    warning: the same place as the waypoint before
 //   speed_above_limit  warning: it will be driven at the limit
 //   unreachable_type   error: a type of item that cannot be driven as configured
+//   unknown_action     error: an action that nothing here does
 //   repeats_for_ever   warning: a jump without end
 
 #include <cstddef>
@@ -54,6 +55,7 @@ struct VehicleLimits {
   std::optional<double> idle_power_w;
   std::optional<double> battery_wh;
   std::vector<std::string> item_types;  ///< that can be driven: "waypoint" …
+  std::vector<std::string> actions;     ///< that are built in: "set_home" …
 };
 
 struct Surroundings {
@@ -81,6 +83,12 @@ CheckReport check(const Plan& plan, const VehicleLimits& vehicle, const Surround
 
 /// How long it takes. Straight legs at the asked speed, holds, turns on the spot. Pure.
 Estimate estimate(const Plan& plan, const VehicleLimits& vehicle);
+
+/// A finding as a sentence of its own: "item 3 is reached by a way that leaves the fence".
+std::string sentence(const Finding& finding);
+
+/// Why an action cannot be done, with the names of those that are built in. Empty: it can.
+std::string why_not_done(std::string_view action, const std::vector<std::string>& built_in);
 
 /// Why a type of item cannot be driven: what must be configured.
 std::string why_not_drivable(std::string_view type);

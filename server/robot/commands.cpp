@@ -118,8 +118,11 @@ base::Result<void> Robot::Impl::may_drive_mission() const {
 
 base::Result<void> Robot::Impl::start(const nav::StartAt& at) {
   if (auto ok = may_drive_mission(); !ok) return ok;
-  const FenceKeep::Start from{pose->at, home_point(), way_margin_m()};
-  if (auto ok = fence.mission_inside(*missions.get(), at, from); !ok) return ok;
+  const FenceKeep::Start from{.here = pose->at,
+                              .home = home_point(),
+                              .margin_m = way_margin_m(),
+                              .within_m = config->behave.start_within_m};
+  if (auto ok = fence.may_start(*missions.get(), at, from); !ok) return ok;
   if (auto ok = missions.executor.start(at, pose->at, from.home); !ok) return ok;
   straight.reset();
   change_mode(ModeCause::MissionDrives, "mission started");

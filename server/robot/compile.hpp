@@ -4,9 +4,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "base/geo.hpp"
+#include "mission/checks.hpp"
 #include "nav/behave/route.hpp"
 #include "robot/robot.hpp"
 
@@ -17,8 +19,8 @@ struct CompiledMission {
   MissionCopy copy;
   base::LocalFrame frame;
   nav::Route route;
-  std::uint64_t fence_id = 0;     ///< LaidFence::id of the fence that was looked at; 0: none
-  std::string fence_objection{};  ///< of that fence; empty: it stays inside
+  std::uint64_t fence_id = 0;  ///< LaidFence::id of the fence that was looked at; 0: none
+  std::optional<mission::Finding> fence_objection{};  ///< of that fence; empty: it stays inside
 };
 
 }  // namespace roverd::robot

@@ -129,6 +129,9 @@ void fields(V& v, FenceParams& p) {
   v("decel_mps2", p.decel_mps2, 0.05, 5.0, "braking that can be relied on");
 }
 
+/// The actions of missions that the robot does by itself. There are no others.
+inline const std::vector<std::string> kActions{"set_home"};
+
 struct Config {
   nav::VehicleParams vehicle;  ///< section [vehicle], beside what only people need
   nav::EstimateParams estimate;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "robot/impl.hpp"
+#include "robot/start_check.hpp"
 
 namespace roverd::robot {
 
@@ -81,6 +82,26 @@ nav::StartAt start_at(const StartMission& c) noexcept {
   return {};
 }
 
+namespace {
+
+/// What nobody would do is not driven to either.
+base::Result<void> actions_known(const mission::Plan& plan) {
+  std::vector<base::FieldError> wrong;
+  std::string detail;
+  for (std::size_t i = 0; i < plan.items.size(); ++i) {
+    const auto* action = std::get_if<mission::Action>(&plan.items[i]);
+    if (action == nullptr) continue;
+    std::string why = mission::why_not_done(action->name, kActions);
+    if (why.empty()) continue;
+    if (detail.empty()) detail = "item " + std::to_string(i + 1) + " " + why;
+    wrong.push_back({"/items/" + std::to_string(i), std::move(why)});
+  }
+  if (wrong.empty()) return {};
+  return base::fail(Code::Invalid, std::move(detail), std::move(wrong));
+}
+
+}  // namespace
+
 base::Result<std::shared_ptr<const CompiledMission>> Robot::compile(MissionCopy copy) const {
   const auto state = impl_->snapshot.get();
   std::optional<base::LocalFrame> frame;
@@ -104,6 +125,7 @@ base::Result<std::shared_ptr<const CompiledMission>> Robot::compile(MissionCopy 
     return base::fail(Code::Invalid, "the mission has no waypoint",
                       {{"/items", "the mission has no waypoint"}});
   }
+  if (auto done = actions_known(copy.plan); !done) return tl::unexpected(std::move(done.error()));
   const auto config = impl_->shared_config.get();
   auto route = nav::lay_route(copy.plan, *frame, config->path());
   if (!route) return tl::unexpected(std::move(route.error()));
@@ -137,6 +159,49 @@ std::shared_ptr<const LaidFence> Robot::lay_fence(
       route_objection(mission->route, laid->limits,
                       impl_->shared_config.get()->kept_fence().margin_m + kFenceAllowance_m);
   return laid;
+}
+
+std::vector<mission::Finding> Robot::objections(const CompiledMission& mission,
+                                                const StartMission& start) const {
+  const auto config = impl_->shared_config.get();
+  const auto state = impl_->snapshot.get();
+  const double margin_m = config->kept_fence().margin_m + kFenceAllowance_m;
+  StartView view{.route = mission.route,
+                 .margin_m = margin_m,
+                 .within_m = config->behave.start_within_m,
+                 .at = start_at(start)};
+  if (state && state->pose && state->frame && state->frame->id() == mission.frame.id()) {
+    view.here = state->pose->at;
+  }
+  const auto& own = mission.copy.plan.home;
+  const auto loaded = impl_->loaded.get();
+  const bool is_loaded = loaded && loaded->id == mission.id;
+  if (own && !is_loaded) {
+    view.home = mission.frame.to_local(own->at);  // loading it sets home there
+  } else if (state && state->home) {
+    view.home = mission.frame.to_local(*state->home);
+  }
+  const auto fence = impl_->shared_fence.get();
+  std::optional<mission::Finding> legs;
+  if (fence && fence->frame_id == mission.frame.id()) {
+    legs = mission.fence_id == fence->id ? mission.fence_objection
+           : fence->mission_id == mission.id
+               ? fence->objection
+               : route_objection(mission.route, fence->limits, margin_m);
+    view.limits = &fence->limits;
+    view.legs = &legs;
+  }
+  return start_findings(view);
+}
+
+std::vector<mission::Finding> Robot::objections(const StartMission& start) const {
+  const auto mission = impl_->loaded.get();
+  return mission ? objections(*mission, start) : std::vector<mission::Finding>{};
+}
+
+bool Robot::fenced(const CompiledMission& mission) const {
+  const auto fence = impl_->shared_fence.get();
+  return fence && fence->frame_id == mission.frame.id();
 }
 
 std::shared_ptr<const Config> Robot::config() const {

@@ -26,6 +26,7 @@
 #include "base/params.hpp"
 #include "base/result.hpp"
 #include "base/snapshot.hpp"
+#include "mission/checks.hpp"
 #include "mission/fence/fence.hpp"
 #include "mission/plan.hpp"
 #include "nav/estimate/learned.hpp"
@@ -236,6 +237,13 @@ class Robot {
   /// Any thread, at once: compiles a copy into a route in the robot's frame (or a new frame at its
   /// first point while the robot has none). Errors name the items (fields "/items/3").
   base::Result<std::shared_ptr<const CompiledMission>> compile(MissionCopy copy) const;
+  /// Any thread: what a start of it would refuse now, as the start itself finds it.
+  std::vector<mission::Finding> objections(const CompiledMission& mission,
+                                           const StartMission& start) const;
+  /// The same of the loaded one; empty where none is.
+  std::vector<mission::Finding> objections(const StartMission& start) const;
+  /// Any thread: is there a fence that is laid out in the map of this mission?
+  bool fenced(const CompiledMission& mission) const;
   /// Any thread. NotFound when nothing is loaded; Conflict when `from` names no item.
   base::Result<Preview> preview(const StartMission& start) const;
   /// Any thread. Invalid unless RTL or SMART_RTL is asked for. Linear in fence and driven way.

@@ -1,6 +1,8 @@
 #include "robot/run_report.hpp"
 
 #include <algorithm>
+#include <set>
+#include <utility>
 
 #include "nav/behave/route.hpp"
 
@@ -34,6 +36,85 @@ int item_at(const nav::Course& course, double s_m) {
   return course.nodes[i].item;
 }
 
+/// Where the mission begins: at the first item, or at the one before, if the robot stood there and
+/// passed it at once.
+std::size_t first_node(const nav::Course& course, int first_item, base::EnuPoint begun) {
+  constexpr double kThere_m = 0.5;
+  std::size_t node = 0;
+  while (node + 1 < course.nodes.size() && course.nodes[node].item < first_item) ++node;
+  const bool before = node > 0 && course.nodes[node].item >= first_item &&
+                      base::distance_m(course.nodes[node - 1].at, begun) < kThere_m;
+  if (before) --node;
+  // Two points of one item: the first only leads to the second.
+  while (node + 1 < course.nodes.size() && course.nodes[node + 1].item == course.nodes[node].item) {
+    ++node;
+  }
+  return node;
+}
+
+/// The points of one lap in order: first the approach, then what counts.
+class Selection {
+ public:
+  Selection(const nav::Course& course, const base::LocalFrame& frame, int begins_at)
+      : frame_(frame), begins_at_(begins_at) {
+    for (const nav::RouteNode& n : course.nodes) waypoints_.insert(n.item);
+  }
+
+  void take(std::span<const ReportPoint> points) {
+    const bool known = std::any_of(points.begin(), points.end(),
+                                   [](const ReportPoint& p) { return p.item.has_value(); });
+    for (const ReportPoint& p : points) {
+      if (p.lap != 1 || over_) continue;
+      if (known) judge(p);
+      if (counts_) put(p);
+      apart_ = apart_ || !p.by_itself;
+    }
+  }
+
+  std::vector<nav::DrivenPoint> driven;
+  std::optional<Approach> approach;
+  bool begun = false;  ///< it came to the first item
+
+ private:
+  void judge(const ReportPoint& p) {
+    counts_ = false;
+    if (!begun && p.item && *p.item <= begins_at_) return come(p);
+    begun = true;
+    if (!p.item || !waypoints_.contains(*p.item)) {
+      apart_ = true;
+    } else if (*p.item < reached_) {
+      over_ = true;  // a jump back: the same way once more
+    } else {
+      counts_ = true;
+      reached_ = *p.item;
+    }
+  }
+
+  void come(const ReportPoint& p) {
+    if (!approach) approach.emplace();
+    if (last_ && p.t_s - last_->t_s <= kPause_s) {
+      approach->time_s += p.t_s - last_->t_s;
+      approach->driven_m += base::distance_bearing(last_->at, p.at).distance_m;
+    }
+    last_ = p;
+  }
+
+  void put(const ReportPoint& p) {
+    if (!p.by_itself) return;
+    driven.push_back({p.t_s, frame_.to_local(p.at), p.yaw_rad, p.speed_mps, p.yaw_rate_radps,
+                      std::exchange(apart_, false)});
+  }
+
+  const base::LocalFrame& frame_;
+  int begins_at_;
+  std::set<int> waypoints_;
+  std::optional<ReportPoint> last_;
+  int reached_ = 0;
+  bool counts_ = true;
+  bool apart_ = false;
+  bool over_ = false;
+};
+
 }  // namespace
 
 base::Result<RunReport> report_run(
@@ -52,24 +133,18 @@ base::Result<RunReport> report_run(
   sum_up(r, points);
   const nav::Course& course = route->forth;
   if (course.path.legs.empty()) return r;
-  std::vector<nav::DrivenPoint> driven;
-  driven.reserve(points.size());
-  for (const ReportPoint& p : points) {
-    if (!p.by_itself || p.lap != 1) continue;
-    driven.push_back({p.t_s, frame.to_local(p.at), p.yaw_rad, p.speed_mps, p.yaw_rate_radps});
-  }
-  if (driven.size() < 2) return r;
+  const std::size_t first = first_node(course, first_item, frame.to_local(points.front().at));
+  Selection counted(course, frame, course.nodes[first].item);
+  counted.take(points);
+  r.approach = counted.approach;
+  if (counted.driven.size() < 2) return r;
   std::vector<base::EnuPoint> vertices;
   vertices.reserve(course.nodes.size());
-  double from_m = 0.0;
-  bool found = false;
-  for (std::size_t i = 0; i < course.nodes.size(); ++i) {
-    vertices.push_back(course.nodes[i].at);
-    if (found || course.nodes[i].item < first_item) continue;
-    found = true;
-    from_m = course.path.vertex_m[i];
-  }
-  r.measure = nav::measure_run(course.path, vertices, driven, from_m);
+  for (const nav::RouteNode& n : course.nodes) vertices.push_back(n.at);
+  const double from_m = course.path.vertex_m[first];
+  // Runs of long ago did not keep the item in hand: there the place tells where it began.
+  r.measure = nav::measure_run(course.path, vertices, counted.driven, from_m,
+                               counted.begun ? nav::Counts::All : nav::Counts::FromNear);
   for (const nav::CornerMeasure& c : r.measure.corners) {
     r.corner_items.push_back(course.nodes[std::min(c.vertex, course.nodes.size() - 1)].item);
   }

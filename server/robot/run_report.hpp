@@ -25,6 +25,13 @@ struct ReportPoint {
   int lap = 1;
   bool by_itself = true;
   std::optional<double> power_w;
+  std::optional<int> item{};  ///< in hand; empty: none, or nobody kept it
+};
+
+/// The way to the first item: no part of what the mission asks for.
+struct Approach {
+  double time_s = 0.0;
+  double driven_m = 0.0;
 };
 
 struct RunReport {
@@ -33,9 +40,18 @@ struct RunReport {
   double driven_m = 0.0;            ///< all of it
   std::optional<double> energy_wh;  ///< empty: the battery does not tell
   int laps = 1;
-  nav::RunMeasure measure;          ///< of the first lap, where the program drove
+  std::optional<Approach> approach;  ///< empty: it began at the first item
+  /// Of the first lap from the first item on, where the program drove to waypoints; not of ways
+  /// home, moves, and items that a jump repeats.
+  nav::RunMeasure measure;
   std::vector<int> corner_items;    ///< of measure.corners: the item at that vertex
   std::vector<int> straight_items;  ///< of measure.straights: the item it leads to
+
+  /// Less way than this tells nothing of how well it was driven.
+  static constexpr double kTelling_m = 1.0;
+  bool tells_way() const noexcept { return measure.driven_m >= kTelling_m; }
+  bool tells_corners() const noexcept { return !measure.corners.empty(); }
+  bool tells_straights() const noexcept { return !measure.straights.empty(); }
 };
 
 /// @param parameters those that differed from their defaults, by full name; unknown ones are left

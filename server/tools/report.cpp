@@ -31,29 +31,51 @@ struct Row {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
+using Measured = double (*)(const nav::RunMeasure&);
+
+/// A figure is told where there is enough to tell it of.
+std::function<double(const Column&)> if_told(bool (robot::RunReport::*tells)() const noexcept,
+                                             Measured value) {
+  return [tells, value](const Column& c) {
+    return (c.report.*tells)() ? value(c.report.measure) : kUnknown;
+  };
+}
+
+std::function<double(const Column&)> of_way(Measured value) {
+  return if_told(&robot::RunReport::tells_way, value);
+}
+std::function<double(const Column&)> of_corners(Measured value) {
+  return if_told(&robot::RunReport::tells_corners, value);
+}
+std::function<double(const Column&)> of_straights(Measured value) {
+  return if_told(&robot::RunReport::tells_straights, value);
+}
+
 const std::vector<Row>& rows() {
+  using M = nav::RunMeasure;
   static const std::vector<Row> all{
       {"time, s", 1, [](const Column& c) { return c.report.time_s; }},
       {"driven by itself, s", 1, [](const Column& c) { return c.report.driving_s; }},
       {"way, m", 1, [](const Column& c) { return c.report.driven_m; }},
+      {"of it to the first item, m", 1,
+       [](const Column& c) { return c.report.approach ? c.report.approach->driven_m : 0.0; }},
       {"energy, Wh", 1, [](const Column& c) { return c.report.energy_wh.value_or(kUnknown); }},
-      {"cross-track rms, m", 3, [](const Column& c) { return c.report.measure.cross.rms_m; }},
-      {"cross-track mean, m", 3, [](const Column& c) { return c.report.measure.cross.mean_m; }},
-      {"cross-track 95 %, m", 3, [](const Column& c) { return c.report.measure.cross.p95_m; }},
-      {"cross-track max, m", 3, [](const Column& c) { return c.report.measure.cross.max_m; }},
-      {"corner distance mean, m", 3,
-       [](const Column& c) { return c.report.measure.corner_mean_m; }},
-      {"corner distance max, m", 3, [](const Column& c) { return c.report.measure.corner_max_m; }},
-      {"cut corner max, m", 3, [](const Column& c) { return c.report.measure.cut_max_m; }},
-      {"overshoot max, m", 3, [](const Column& c) { return c.report.measure.overshoot_max_m; }},
-      {"slalom max, m", 3, [](const Column& c) { return c.report.measure.slalom_max_m; }},
-      {"slalom mean, m", 3, [](const Column& c) { return c.report.measure.slalom_mean_m; }},
+      {"cross-track rms, m", 3, of_way([](const M& m) { return m.cross.rms_m; })},
+      {"cross-track mean, m", 3, of_way([](const M& m) { return m.cross.mean_m; })},
+      {"cross-track 95 %, m", 3, of_way([](const M& m) { return m.cross.p95_m; })},
+      {"cross-track max, m", 3, of_way([](const M& m) { return m.cross.max_m; })},
+      {"corner distance mean, m", 3, of_corners([](const M& m) { return m.corner_mean_m; })},
+      {"corner distance max, m", 3, of_corners([](const M& m) { return m.corner_max_m; })},
+      {"cut corner max, m", 3, of_corners([](const M& m) { return m.cut_max_m; })},
+      {"overshoot max, m", 3, of_corners([](const M& m) { return m.overshoot_max_m; })},
+      {"slalom max, m", 3, of_straights([](const M& m) { return m.slalom_max_m; })},
+      {"slalom mean, m", 3, of_straights([](const M& m) { return m.slalom_mean_m; })},
       {"heading rms, deg", 2,
-       [](const Column& c) { return base::deg_from_rad(c.report.measure.heading_rms_rad); }},
+       of_way([](const M& m) { return base::deg_from_rad(m.heading_rms_rad); })},
       {"turn smoothness, deg/s2", 2,
-       [](const Column& c) { return base::deg_from_rad(c.report.measure.yaw_accel_rms_radps2); }},
-      {"jerk rms, m/s3", 3, [](const Column& c) { return c.report.measure.jerk_rms_mps3; }},
-      {"end missed by, m", 3, [](const Column& c) { return c.report.measure.end_m; }}};
+       of_way([](const M& m) { return base::deg_from_rad(m.yaw_accel_rms_radps2); })},
+      {"jerk rms, m/s3", 3, of_way([](const M& m) { return m.jerk_rms_mps3; })},
+      {"end missed by, m", 3, of_way([](const M& m) { return m.end_m; })}};
   return all;
 }
 
@@ -68,8 +90,8 @@ base::Result<Column> column_of(const std::filesystem::path& database, std::int64
   std::vector<robot::ReportPoint> track;
   track.reserve(read->points.size());
   for (const store::RunPoint& p : read->points) {
-    track.push_back(
-        {p.t_s, p.at, p.yaw_rad, p.speed_mps, p.yaw_rate_radps, p.lap, p.by_itself, p.power_w});
+    track.push_back({p.t_s, p.at, p.yaw_rad, p.speed_mps, p.yaw_rate_radps, p.lap, p.by_itself,
+                     p.power_w, p.item});
   }
   std::vector<std::pair<std::string, base::ParamValue>> parameters;
   for (const auto& p : read->run.parameters) parameters.emplace_back(p.name, p.value);

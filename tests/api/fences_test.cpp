@@ -109,6 +109,70 @@ TEST_F(FencesApi, AMissionIsCheckedAndItsErrorsAreNotLoaded) {
   EXPECT_EQ(call("GET", "/execution").body["mission_id"], good);
 }
 
+/// Check, load, preview and start: the same finding in the same words, before anything is armed.
+TEST_F(FencesApi, WhatAStartRefusesIsFoundByEveryQuestionBeforeIt) {
+  until_ready();
+  // A hole between the robot and a mission that itself stays clear of it.
+  Json ring = fence(60);
+  Json hole = Json::array();
+  for (const auto& [north_m, east_m] :
+       {std::pair{8.0, -3.0}, std::pair{8.0, 3.0}, std::pair{12.0, 3.0}, std::pair{12.0, -3.0}}) {
+    hole.push_back({kStart.lat + north_m / 111'384, kStart.lon + east_m / 58'500});
+  }
+  ring["areas"].push_back({{"kind", "exclusion"}, {"polygon", hole}});
+  const auto made = call("POST", "/fences", ring);
+  ASSERT_EQ(made.status, 201u) << made.raw.body;
+  ASSERT_EQ(call("PUT", "/fence", Json{{"fence_id", made.body["id"]}}).status, 200u);
+  const std::string beyond = mission({20, 30});
+  const auto report = call("POST", "/missions/" + beyond + "/check");
+  ASSERT_EQ(report.status, 200u) << report.raw.body;
+  EXPECT_EQ(report.body["ready"], false);
+  ASSERT_EQ(report.body["findings"].size(), 1u) << report.raw.body;
+  const Json finding = report.body["findings"][0];
+  EXPECT_EQ(finding["code"], "approach_outside_fence");
+  EXPECT_EQ(finding["severity"], "error");
+  EXPECT_EQ(finding["pointer"], "/items/0");
+  // It may be driven to the other side by hand: it is loaded, and the finding shown.
+  const auto loaded = call("POST", "/execution/load", Json{{"mission_id", beyond}});
+  ASSERT_EQ(loaded.status, 200u) << loaded.raw.body;
+  EXPECT_EQ(loaded.body["warnings"], Json::array({finding}));
+  const auto preview = call("GET", "/execution/preview");
+  ASSERT_EQ(preview.status, 200u);
+  EXPECT_EQ(preview.body["ready"], false);
+  EXPECT_EQ(preview.body["findings"], Json::array({finding}));
+  ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 5}}).status, 200u);
+  const auto start =
+      call("POST", "/execution/start",
+           Json{{"mission_id", beyond}, {"revision", 1}, {"from", "first"}, {"valid_for_s", 5}});
+  EXPECT_EQ(start.status, 409u);
+  EXPECT_EQ(start.body["detail"], "item 1 " + finding["detail"].get<std::string>());
+  EXPECT_EQ(start.body["errors"][0]["pointer"], "/items/0");
+}
+
+TEST_F(FencesApi, AnActionThatNobodyDoesIsFoundAndStopsTheLoad) {
+  until_ready();
+  const Json items = {
+      {{"type", "waypoint"}, {"lat", kStart.lat + 5.0 / 111'384}, {"lon", kStart.lon}},
+      {{"type", "action"}, {"name", "set_home"}},
+      {{"type", "action"}, {"name", "pump_on"}},
+      {{"type", "action"}, {"name", "take_photo"}}};
+  const auto made = call("POST", "/missions", Json{{"name", "spray"}, {"items", items}});
+  ASSERT_EQ(made.status, 201u) << made.raw.body;
+  const std::string id = made.body["id"];
+  const auto report = call("POST", "/missions/" + id + "/check");
+  EXPECT_EQ(report.body["ready"], false);
+  ASSERT_EQ(report.body["findings"].size(), 2u) << report.raw.body;
+  EXPECT_EQ(report.body["findings"][0]["code"], "unknown_action");
+  EXPECT_EQ(report.body["findings"][0]["pointer"], "/items/2");
+  EXPECT_EQ(report.body["findings"][1]["pointer"], "/items/3");
+  const auto refused = call("POST", "/execution/load", Json{{"mission_id", id}});
+  EXPECT_EQ(refused.status, 422u);
+  EXPECT_EQ(refused.body["detail"],
+            "item 3 asks for the action \"pump_on\", which nothing here does; built in: set_home; "
+            "2 findings in all");
+  EXPECT_EQ(call("GET", "/execution").body["state"], "idle");
+}
+
 TEST_F(FencesApi, TypesWithoutTheirDriverAreStoredAndRefusedAtLoad) {
   const Json items = {{{"type", "waypoint"}, {"lat", kStart.lat}, {"lon", kStart.lon}},
                       {{"type", "row"}, {"side", "left"}, {"gap_m", 0.8}},

@@ -29,7 +29,8 @@ api::Profile profile() {
   p.drivers = {"bunker", "gnss"};
   p.item_types = {"waypoint"};
   p.limits.max_speed_mps = p.max_speed_mps;
-  p.limits.item_types = {"waypoint", "wait", "speed", "return_home", "jump"};
+  p.limits.item_types = {"waypoint", "wait", "speed", "return_home", "jump", "action"};
+  p.limits.actions = robot::kActions;
   p.limits.drive_power_w = 360.0;
   p.limits.battery_wh = 2880.0;
   p.lights = p.clears_errors = true;

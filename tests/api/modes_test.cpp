@@ -122,6 +122,35 @@ TEST_F(ModesApi, ParametersAreListedAndChanged) {
   EXPECT_EQ(call("GET", "/parameters/nothing").status, 404u);
 }
 
+/// Not after a restart, when nobody expects it: at once, and what a start would refuse not at all.
+TEST_F(ModesApi, AParameterActsWhenItIsSaidToAndWrongOnesAreRefusedInWords) {
+  until_ready();
+  const auto refused = [this](const char* name, const Json& value) {
+    const auto reply = call("PUT", std::string("/parameters/") + name, Json{{"value", value}});
+    EXPECT_EQ(reply.status, 422u) << name;
+    EXPECT_EQ(reply.body["errors"][0]["pointer"], "/value") << reply.raw.body;
+    EXPECT_EQ(call("GET", std::string("/parameters/") + name).body["value"],
+              call("GET", std::string("/parameters/") + name).body["default"]);
+    return reply.body["detail"].get<std::string>();
+  };
+  EXPECT_EQ(refused("nav.track.law", "zigzag"),
+            "nav.track.law must be path_frame, pure_pursuit or stanley, is \"zigzag\"");
+  EXPECT_EQ(refused("battery.curve", "garbage"),
+            "battery.curve: \"garbage\" must be a voltage (0 to 1000) and a charge (0 to 100)");
+  EXPECT_EQ(refused("nav.speed.min_mps", 0.9),
+            "nav.speed.reverse_max_mps must not be below nav.speed.min_mps");
+  const auto before = call("GET", "/vehicle").body;
+  EXPECT_EQ(before["ready_to_arm"], true);
+  const auto fewer = call("PUT", "/parameters/nav.estimate.satellites_min", Json{{"value", 30}});
+  ASSERT_EQ(fewer.status, 200u) << fewer.raw.body;
+  EXPECT_EQ(fewer.body["acted"], true);
+  until(
+      [this] {
+        return call("GET", "/vehicle").body["estimator"]["refusals"]["satellites"].get<int>() > 0;
+      },
+      "its positions are not used any more");
+}
+
 TEST_F(ModesApi, ADrivenMissionBecomesARun) {
   until_ready();
   EXPECT_EQ(call("GET", "/runs").body["items"].size(), 0u);

@@ -158,13 +158,13 @@ TEST(FencedLoop, TheWholeWayIsLookedAtBeforeItStarts) {
   EXPECT_EQ(refusal(home), "the mission's way home leaves the fence");
   auto item = round;
   item.items.push_back(mission::ReturnHome{});
-  EXPECT_EQ(refusal(item), "the mission's way home leaves the fence");
+  EXPECT_EQ(refusal(item), "item 3 drives a way to or from home that leaves the fence");
   auto laps = rig.plan_of({{0, 1.5}, {0, 8}, {8, 8}});
   laps.settings.at_end = mission::AtEnd::Repeat;
   EXPECT_EQ(refusal(laps), "the way back to the first item leaves the fence");
   auto jump = rig.plan_of({{0, 1.5}, {0, 8}, {8, 8}});
   jump.items.push_back(mission::Jump{1, 1});
-  EXPECT_EQ(refusal(jump), "the jump of item 4 leaves the fence");
+  EXPECT_EQ(refusal(jump), "item 4 jumps over a way that leaves the fence");
   EXPECT_TRUE(rig.stands());
 }
 
@@ -188,7 +188,7 @@ TEST(FencedLoop, FenceAndMissionOfTheSameMomentAreComparedFirst) {
   EXPECT_TRUE(rig.state()->fence->compared);
   const auto refused = rig.ask(robot::StartMission{"m1", 1});
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().detail, "the way to item 1 leaves the fence");
+  EXPECT_EQ(refused.error().detail, "item 1 lies outside the fence");
 }
 
 }  // namespace

@@ -88,8 +88,8 @@ base::Result<robot::RunReport> report_of(const store::StoredRun& run,
   std::vector<robot::ReportPoint> track;
   track.reserve(points.size());
   for (const store::RunPoint& p : points) {
-    track.push_back(
-        {p.t_s, p.at, p.yaw_rad, p.speed_mps, p.yaw_rate_radps, p.lap, p.by_itself, p.power_w});
+    track.push_back({p.t_s, p.at, p.yaw_rad, p.speed_mps, p.yaw_rate_radps, p.lap, p.by_itself,
+                     p.power_w, p.item});
   }
   std::vector<std::pair<std::string, base::ParamValue>> parameters;
   for (const store::RunParameter& p : run.parameters) parameters.emplace_back(p.name, p.value);
@@ -98,6 +98,21 @@ base::Result<robot::RunReport> report_of(const store::StoredRun& run,
 
 Json report_json(const store::RunHead& run, const robot::RunReport& r) {
   const nav::RunMeasure& m = r.measure;
+  // A figure is told where there is enough to tell it of.
+  const auto of_way = [&r](double v, int digits) {
+    return r.tells_way() ? places(v, digits) : Json(nullptr);
+  };
+  const auto of_corners = [&r](double v) {
+    return r.tells_corners() ? places(v, 3) : Json(nullptr);
+  };
+  const auto of_straights = [&r](double v) {
+    return r.tells_straights() ? places(v, 3) : Json(nullptr);
+  };
+  Json approach = nullptr;
+  if (r.approach) {
+    approach = {{"time_s", places(r.approach->time_s, 1)},
+                {"driven_m", places(r.approach->driven_m, 2)}};
+  }
   Json corners = Json::array();
   for (std::size_t i = 0; i < m.corners.size(); ++i) {
     const nav::CornerMeasure& c = m.corners[i];
@@ -122,21 +137,23 @@ Json report_json(const store::RunHead& run, const robot::RunReport& r) {
           {"driven_m", places(r.driven_m, 2)},
           {"energy_wh", places(r.energy_wh, 2)},
           {"laps", r.laps},
+          {"approach", std::move(approach)},
+          {"judged_m", places(m.driven_m, 2)},
           {"cross_track",
-           {{"rms_m", places(m.cross.rms_m, 4)},
-            {"mean_m", places(m.cross.mean_m, 4)},
-            {"p95_m", places(m.cross.p95_m, 4)},
-            {"max_m", places(m.cross.max_m, 4)}}},
-          {"corner_mean_m", places(m.corner_mean_m, 3)},
-          {"corner_max_m", places(m.corner_max_m, 3)},
-          {"cut_max_m", places(m.cut_max_m, 3)},
-          {"overshoot_max_m", places(m.overshoot_max_m, 3)},
-          {"slalom_max_m", places(m.slalom_max_m, 3)},
-          {"slalom_mean_m", places(m.slalom_mean_m, 3)},
-          {"heading_rms_deg", places(base::deg_from_rad(m.heading_rms_rad), 2)},
-          {"yaw_accel_rms_dps2", places(base::deg_from_rad(m.yaw_accel_rms_radps2), 2)},
-          {"jerk_rms_mps3", places(m.jerk_rms_mps3, 3)},
-          {"end_m", places(m.end_m, 3)},
+           {{"rms_m", of_way(m.cross.rms_m, 4)},
+            {"mean_m", of_way(m.cross.mean_m, 4)},
+            {"p95_m", of_way(m.cross.p95_m, 4)},
+            {"max_m", of_way(m.cross.max_m, 4)}}},
+          {"corner_mean_m", of_corners(m.corner_mean_m)},
+          {"corner_max_m", of_corners(m.corner_max_m)},
+          {"cut_max_m", of_corners(m.cut_max_m)},
+          {"overshoot_max_m", of_corners(m.overshoot_max_m)},
+          {"slalom_max_m", of_straights(m.slalom_max_m)},
+          {"slalom_mean_m", of_straights(m.slalom_mean_m)},
+          {"heading_rms_deg", of_way(base::deg_from_rad(m.heading_rms_rad), 2)},
+          {"yaw_accel_rms_dps2", of_way(base::deg_from_rad(m.yaw_accel_rms_radps2), 2)},
+          {"jerk_rms_mps3", of_way(m.jerk_rms_mps3, 3)},
+          {"end_m", of_way(m.end_m, 3)},
           {"corners", std::move(corners)},
           {"straights", std::move(straights)}};
 }

@@ -1,9 +1,12 @@
 // What speaks against driving a mission: asked for, and before every load.
 
+#include <algorithm>
 #include <utility>
 
 #include "api/checks.hpp"
 #include "api/context.hpp"
+#include "robot/compile.hpp"
+#include "robot/start_check.hpp"
 
 namespace roverd::api {
 
@@ -38,9 +41,12 @@ Handler check_mission(const ContextPtr& context) {
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
     const auto answer = [context, call](base::Result<store::StoredMission> stored) {
       if (!stored) return call->respond(problem(stored.error()));
-      Json out = report_json(check_now(*context, stored->plan), context->deps.profile);
-      out["mission_id"] = stored->id;
-      out["revision"] = stored->revision;
+      const std::string id = stored->id;
+      const std::int64_t number = stored->revision;
+      const Verdict verdict = judge(*context, {id, number, std::move(stored->plan)});
+      Json out = report_json(verdict.report, context->deps.profile);
+      out["mission_id"] = id;
+      out["revision"] = number;
       out["fence_id"] = context->fence ? Json(context->fence->id) : Json(nullptr);
       call->respond(json_response(http::status::ok, out));
     };
@@ -52,44 +58,111 @@ Handler check_mission(const ContextPtr& context) {
   };
 }
 
+/// Errors first, each kind of its severity by item, as the check itself puts them.
+void add_findings(mission::CheckReport& report, std::vector<mission::Finding> more) {
+  for (mission::Finding& finding : more) {
+    const bool told =
+        std::any_of(report.findings.begin(), report.findings.end(), [&](const auto& known) {
+          return known.severity == finding.severity && known.pointer == finding.pointer &&
+                 known.code == finding.code;
+        });
+    if (told) continue;
+    ++(finding.severity == mission::Severity::Error ? report.errors : report.warnings);
+    report.findings.push_back(std::move(finding));
+  }
+  std::stable_sort(report.findings.begin(), report.findings.end(),
+                   [](const mission::Finding& a, const mission::Finding& b) {
+                     if (a.severity != b.severity) return a.severity == mission::Severity::Error;
+                     return a.item.value_or(0) < b.item.value_or(0);
+                   });
+  if (report.findings.size() > mission::kMaxFindings) {
+    report.findings.resize(mission::kMaxFindings);
+  }
+}
+
+/// What cannot be laid out, as findings: the items that the robot names.
+std::vector<mission::Finding> not_laid_out(const base::Error& error,
+                                           const mission::CheckReport& report) {
+  std::vector<mission::Finding> out;
+  const auto known = [&report](const std::string& pointer) {
+    return std::any_of(report.findings.begin(), report.findings.end(), [&](const auto& finding) {
+      return finding.pointer == pointer && finding.severity == mission::Severity::Error;
+    });
+  };
+  for (const base::FieldError& f : error.fields) {
+    if (known(f.pointer)) continue;
+    mission::Finding finding{mission::Severity::Error, "not_drivable", f.pointer, {}, f.detail};
+    constexpr std::string_view kItems = "/items/";
+    if (f.pointer.starts_with(kItems)) {
+      if (const auto at = whole_number(f.pointer.substr(kItems.size()))) {
+        finding.item = static_cast<int>(*at) + 1;
+      }
+    }
+    out.push_back(std::move(finding));
+  }
+  if (error.fields.empty()) {
+    out.push_back({mission::Severity::Error, "not_drivable", "/items", {}, error.detail});
+  }
+  return out;
+}
+
 }  // namespace
 
-mission::CheckReport check_now(const Context& context, const mission::Plan& plan) {
+Verdict judge(const Context& context, robot::MissionCopy copy, const robot::StartMission& start) {
   mission::Surroundings around;
   const auto snapshot = context.deps.robot.snapshot();
   if (snapshot && snapshot->pose &&
       base::seconds(base::steady_now() - snapshot->pose->stamp) <= StaleAfter::kPosition_s) {
     around.vehicle = snapshot->pose->global;
   }
-  if (context.fence) around.fence = &context.fence->fence;
-  return mission::check(plan, context.deps.profile.limits, around);
+  Verdict out;
+  auto compiled = context.deps.robot.compile(copy);
+  // The robot compares with its fence, with the margin that it keeps. Where it has no map yet the
+  // check itself looks whether the mission lies inside.
+  const bool compared = compiled && context.deps.robot.fenced(**compiled);
+  if (context.fence && !compared) around.fence = &context.fence->fence;
+  out.report = mission::check(copy.plan, context.deps.profile.limits, around);
+  out.refusal.code = base::Code::Invalid;
+  if (compiled) {
+    add_findings(out.report, context.deps.robot.objections(**compiled, start));
+    out.compiled = std::move(*compiled);
+  } else {
+    if (compiled.error().fields.empty()) out.refusal.code = compiled.error().code;
+    add_findings(out.report, not_laid_out(compiled.error(), out.report));
+  }
+  out.lasting = out.report.errors;
+  for (const mission::Finding& finding : out.report.findings) {
+    if (finding.severity != mission::Severity::Error) continue;
+    if (robot::of_the_moment(finding)) {
+      --out.lasting;
+      continue;
+    }
+    if (out.refusal.detail.empty()) out.refusal.detail = mission::sentence(finding);
+    out.refusal.fields.push_back({finding.pointer, finding.detail});
+  }
+  if (out.lasting > 1) {
+    out.refusal.detail += "; " + std::to_string(out.lasting) + " findings in all";
+  }
+  return out;
+}
+
+Json finding_json(const mission::Finding& finding) {
+  return {{"severity", mission::to_string(finding.severity)},
+          {"code", finding.code},
+          {"pointer", finding.pointer},
+          {"item", finding.item ? Json(*finding.item) : Json(nullptr)},
+          {"detail", finding.detail}};
 }
 
 Json findings_json(const mission::CheckReport& report, std::optional<mission::Severity> severity) {
   Json out = Json::array();
   for (const mission::Finding& finding : report.findings) {
-    if (severity && finding.severity != *severity) continue;
-    out.push_back({{"severity", mission::to_string(finding.severity)},
-                   {"code", finding.code},
-                   {"pointer", finding.pointer},
-                   {"item", finding.item ? Json(*finding.item) : Json(nullptr)},
-                   {"detail", finding.detail}});
+    // What the robot's place speaks against is shown beside the warnings of a load: it may be
+    // driven there by hand.
+    const bool shown = !severity || finding.severity == *severity || robot::of_the_moment(finding);
+    if (shown) out.push_back(finding_json(finding));
   }
   return out;
-}
-
-base::Error refusal(const mission::CheckReport& report) {
-  base::Error error{base::Code::Invalid, {}, {}};
-  for (const mission::Finding& finding : report.findings) {
-    if (finding.severity != mission::Severity::Error) continue;
-    const std::string who = finding.item ? "item " + std::to_string(*finding.item) + " " : "";
-    if (error.detail.empty()) error.detail = who + finding.detail;
-    error.fields.push_back({finding.pointer, finding.detail});
-  }
-  if (report.errors > 1) {
-    error.detail += "; " + std::to_string(report.errors) + " findings in all";
-  }
-  return error;
 }
 
 void add_check_routes(const ContextPtr& c) {

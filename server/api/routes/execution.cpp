@@ -62,14 +62,15 @@ Handler load(const ContextPtr& context) {
 
     const auto hand_over = [context, call, not_after](base::Result<store::StoredMission> stored) {
       if (!stored) return call->respond(problem(stored.error()));
-      const mission::CheckReport report = check_now(*context, stored->plan);
-      if (report.errors > 0) return call->respond(problem(refusal(report)));
-      auto compiled =
-          context->deps.robot.compile({stored->id, stored->revision, std::move(stored->plan)});
-      if (!compiled) return call->respond(problem(compiled.error()));
-      Context::Warnings warnings{stored->id, stored->revision,
-                                 findings_json(report, mission::Severity::Warning)};
-      run_command(context, call, robot::LoadMission{std::move(*compiled)}, not_after,
+      const std::string id = stored->id;
+      const std::int64_t number = stored->revision;
+      Verdict verdict = judge(*context, {id, number, std::move(stored->plan)});
+      if (verdict.lasting > 0 || !verdict.compiled) {
+        return call->respond(problem(verdict.refusal));
+      }
+      Context::Warnings warnings{id, number,
+                                 findings_json(verdict.report, mission::Severity::Warning)};
+      run_command(context, call, robot::LoadMission{std::move(verdict.compiled)}, not_after,
                   [context, warnings](const base::Snapshot& snapshot) {
                     context->warnings = warnings;
                     Json out = progress_of(context)(snapshot);
@@ -91,12 +92,25 @@ base::Error as_conflict(base::Error error) {
   return error;
 }
 
-Json present_preview(const ContextPtr& context, const robot::Preview& preview) {
+/// What was found at the load, and what a start finds now: the robot has moved, home may have.
+Json findings_now(const Json& at_load, const std::vector<mission::Finding>& now) {
+  Json out = Json::array();
+  for (const mission::Finding& finding : now) out.push_back(finding_json(finding));
+  for (const Json& finding : at_load) {
+    if (finding["severity"] == "warning") out.push_back(finding);
+  }
+  return out;
+}
+
+Json present_preview(const ContextPtr& context, const robot::Preview& preview,
+                     const std::vector<mission::Finding>& now) {
   const auto snapshot = context->deps.robot.snapshot();
   Json out = preview_json(preview, snapshot ? snapshot->mission.state : base::ExecutionState::Idle);
   const Context::Warnings& found = context->warnings;
   const bool same = found.mission_id == preview.mission_id && found.revision == preview.revision;
   out["warnings"] = same ? found.list : Json::array();
+  out["ready"] = now.empty();
+  out["findings"] = findings_now(out["warnings"], now);
   return out;
 }
 
@@ -137,7 +151,7 @@ Handler start(const ContextPtr& context) {
         *command, not_after, base::steady_now(),
         [context, call, shown = *preview](base::Result<void> result) {
           if (!result) return call->respond(problem(result.error()));
-          call->respond(json_response(http::status::ok, present_preview(context, shown)));
+          call->respond(json_response(http::status::ok, present_preview(context, shown, {})));
         });
   };
 }
@@ -158,7 +172,8 @@ Handler preview(const ContextPtr& context) {
     wanted->revision = loaded->revision;
     const auto shown = context->deps.robot.preview(*wanted);
     if (!shown) return call->respond(problem(as_conflict(shown.error())));
-    call->respond(json_response(http::status::ok, present_preview(context, *shown)));
+    const auto now = context->deps.robot.objections(*wanted);
+    call->respond(json_response(http::status::ok, present_preview(context, *shown, now)));
   };
 }
 

@@ -51,10 +51,7 @@ std::optional<EnuPoint> first_target(const Route& route, std::size_t step,
 
 Executor::Executor(base::Setting<PathParams> path, base::Setting<BehaveParams> behave,
                    base::Setting<ModeParams> modes)
-    : path_params_(path),
-      params_(std::move(behave)),
-      modes_(std::move(modes)),
-      tracker_(path) {
+    : path_params_(path), params_(std::move(behave)), modes_(std::move(modes)), tracker_(path) {
   notices_.reserve(16);
 }
 

@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "base/result.hpp"
-#include "base/snapshot.hpp"
 #include "base/setting.hpp"
+#include "base/snapshot.hpp"
 #include "nav/behave/mode_params.hpp"
 #include "nav/behave/params.hpp"
 #include "nav/behave/route.hpp"

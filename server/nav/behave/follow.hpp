@@ -19,8 +19,8 @@
 #include <cstddef>
 #include <optional>
 #include <string>
-#include <vector>
 #include <utility>
+#include <vector>
 
 #include "base/setting.hpp"
 #include "base/time.hpp"

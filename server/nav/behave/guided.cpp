@@ -69,7 +69,8 @@ void Guided::lay(const Vehicle& v, bool smoothly) {
                            goal_.reverse ? path_->speed.reverse_max_mps : path_->speed.max_mps);
   if (goal_.kind == GuidedGoal::Kind::Move) {
     end.reverse = goal_.forward_m < 0.0;
-    end.speed_mps = goal_.speed_mps.value_or(end.reverse ? modes_->move_back_mps : modes_->move_mps);
+    end.speed_mps =
+        goal_.speed_mps.value_or(end.reverse ? modes_->move_back_mps : modes_->move_mps);
   }
   const double far_m = base::distance_m(v.at, end.at);
   const bool cut_off = modes_->goal_cut_m > 0.0 && far_m > modes_->goal_cut_m;
@@ -153,8 +154,8 @@ TrackOutput Guided::steer(const Vehicle& v, double limit_mps, double dt_s) noexc
     return {{}, SpeedReason::Standing};
   }
   return {track_twist(v, speed_mps_, rate_radps_, *path_), old          ? SpeedReason::Stopping
-                                                          : turn_first ? SpeedReason::Pivot
-                                                                       : SpeedReason::Item};
+                                                           : turn_first ? SpeedReason::Pivot
+                                                                        : SpeedReason::Item};
 }
 
 std::string Guided::reason() const {

@@ -247,18 +247,18 @@ class Layout {
     for (const RouteStep& step : forth().steps) {
       if (step.kind == StepKind::Go) {
         before = forth().nodes[step.node].at;
-        if (at_home) route_.home_ends.push_back(*before);
+        if (at_home) route_.home_ends.push_back({*before, step.item});
         at_home = false;
       } else if (step.kind == StepKind::Move) {
         before.reset();
         at_home = false;
       } else if (step.kind == StepKind::Home) {
-        if (before) route_.home_ends.push_back(*before);
+        if (before) route_.home_ends.push_back({*before, step.item});
         before.reset();
         at_home = true;
       }
     }
-    if (route_.at_end == AtEnd::Return && before) route_.home_ends.push_back(*before);
+    if (route_.at_end == AtEnd::Return && before) route_.home_ends.push_back({*before, 0});
   }
 
   const mission::Plan& plan_;

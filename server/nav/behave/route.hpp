@@ -50,16 +50,21 @@ struct Course {
   std::vector<double> pauses_s;
 };
 
+/// The other end of a straight way to home or from it.
+struct HomeEnd {
+  EnuPoint at;
+  int item = 0;  ///< that asks for the way; 0: the end of the mission does
+};
+
 struct Route {
   Course forth;
   Course back;  ///< empty unless at_end is back_and_forth
   mission::AtEnd at_end = mission::AtEnd::Hold;
   int times = 0;          ///< of Repeat and BackAndForth: ways that are driven; 0: for ever
   std::size_t jumps = 0;  ///< steps of that kind
-  /// Other ends of the straight ways to home and from it; 0: it never goes there.
-  std::vector<EnuPoint> home_ends;
-  std::optional<EnuPoint> home;  ///< the mission's own; the driver of the route decides on it
-  double speed_mps = 0.0;        ///< default, for ways outside of the path
+  std::vector<HomeEnd> home_ends;  ///< empty: it never goes there
+  std::optional<EnuPoint> home;    ///< the mission's own; the driver of the route decides on it
+  double speed_mps = 0.0;          ///< default, for ways outside of the path
   int items = 0;
 };
 

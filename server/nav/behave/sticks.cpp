@@ -47,8 +47,8 @@ TrackOutput Sticks::acro(const base::BodyTwist& stick, const Vehicle& v, double 
   const double off = wanted - v.yaw_rate_radps;
   const bool full = std::abs(wanted + missing_radps_) >= most && off * wanted > 0.0;
   if (!full) {
-    missing_radps_ = std::clamp(missing_radps_ + modes_->rate_gain * off * dt_s, -kMostMissing_radps,
-                                kMostMissing_radps);
+    missing_radps_ = std::clamp(missing_radps_ + modes_->rate_gain * off * dt_s,
+                                -kMostMissing_radps, kMostMissing_radps);
   }
   return {track_twist(v, stick.linear_mps, wanted + missing_radps_, *path_), SpeedReason::Item};
 }

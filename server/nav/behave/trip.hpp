@@ -20,8 +20,8 @@
 #include <cstddef>
 #include <optional>
 #include <string>
-#include <vector>
 #include <utility>
+#include <vector>
 
 #include "base/setting.hpp"
 #include "nav/behave/params.hpp"

@@ -25,8 +25,8 @@
 #include <string_view>
 
 #include "base/measurements.hpp"
-#include "base/snapshot.hpp"
 #include "base/setting.hpp"
+#include "base/snapshot.hpp"
 #include "nav/estimate/arrival.hpp"
 #include "nav/estimate/ekf.hpp"
 #include "nav/estimate/gnss_quality.hpp"
@@ -43,7 +43,7 @@ using base::Time;
 
 class Estimator {
  public:
-  /// What is believed at first follows from the parameters at construction 
+  /// What is believed at first follows from the parameters at construction
   /// (kBelievedAtFirst); all else acts from the next measurement on.
   explicit Estimator(base::Setting<EstimateParams> params);
 

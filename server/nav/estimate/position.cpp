@@ -63,9 +63,9 @@ void Estimator::take(const base::GnssFix& fix) {
   Input& in = health_.position;
   if (!in_order(in, last_fix_, fix.stamp)) return;
   const bool is_settled = settled(fix);
-  const auto quality = gnss_quality(fix, is_settled,
-                                    {params_->satellites_min, params_->hdop_max,
-                                     params_->accuracy_max_m, params_->drift_scale});
+  const auto quality = gnss_quality(
+      fix, is_settled,
+      {params_->satellites_min, params_->hdop_max, params_->accuracy_max_m, params_->drift_scale});
   if (!quality) {
     if (quality.error()) refuse(in, *quality.error());
     return;

@@ -164,11 +164,18 @@ std::pair<std::size_t, std::size_t> range(std::span<const Matched> all, double f
           static_cast<std::size_t>(high - all.begin())};
 }
 
+struct Drive {
+  std::span<const Matched> all;
+  std::span<const DrivenPoint> driven;
+  double from_m = 0.0;
+};
+
 void corners(RunMeasure& run, const Path& path, std::span<const EnuPoint> vertices,
-             std::span<const Matched> all, std::span<const DrivenPoint> driven) {
+             const Drive& drive) {
+  const auto& [all, driven, from_m] = drive;
   const std::size_t n = std::min(vertices.size(), path.vertex_m.size());
   for (std::size_t i = 1; i + 1 < n; ++i) {
-    if (base::distance_m(vertices[i - 1], vertices[i]) < 0.001 ||
+    if (path.vertex_m[i] <= from_m || base::distance_m(vertices[i - 1], vertices[i]) < 0.001 ||
         base::distance_m(vertices[i], vertices[i + 1]) < 0.001) {
       continue;
     }
@@ -276,36 +283,37 @@ void smoothness(RunMeasure& run, std::span<const Matched> all,
 
 }  // namespace
 
-std::vector<Matched> match_run(const Path& path, std::span<const DrivenPoint> driven,
-                               double from_m) {
+std::vector<Matched> match_run(const Path& path, std::span<const DrivenPoint> driven, double from_m,
+                               Counts counts) {
   std::vector<Matched> out;
   if (path.legs.empty() || driven.empty()) return out;
-  const std::size_t first = first_counted(path, driven, from_m);
+  const std::size_t first = counts == Counts::All ? 0 : first_counted(path, driven, from_m);
   out.reserve(driven.size() - first);
   Matcher matcher(path, from_m);
   for (std::size_t i = first; i < driven.size(); ++i) {
     const double moved_m = i > first ? base::distance_m(driven[i - 1].at, driven[i].at) : 0.0;
     out.push_back(matcher.match(driven[i], moved_m));
+    if (driven[i].apart) out.back().weight_m = 0.0;
   }
   return out;
 }
 
 RunMeasure measure_run(const Path& path, std::span<const EnuPoint> vertices,
-                       std::span<const DrivenPoint> driven, double from_m) {
+                       std::span<const DrivenPoint> driven, double from_m, Counts counts) {
   RunMeasure run;
   if (driven.empty()) return run;
   run.time_s = driven.back().t_s - driven.front().t_s;
   for (std::size_t i = 1; i < driven.size(); ++i) {
-    run.driven_m += base::distance_m(driven[i - 1].at, driven[i].at);
+    if (!driven[i].apart) run.driven_m += base::distance_m(driven[i - 1].at, driven[i].at);
   }
-  const std::vector<Matched> all = match_run(path, driven, from_m);
+  const std::vector<Matched> all = match_run(path, driven, from_m, counts);
   const auto counted = driven.last(all.size());
   smoothness(run, all, counted);
   if (all.empty()) return run;
   run.matched_m = all.back().s_m;
   run.end_m = base::distance_m(driven.back().at, path.points.back().at);
   run.cross = cross_track(all);
-  corners(run, path, vertices, all, counted);
+  corners(run, path, vertices, {all, counted, from_m});
   straights(run, path, all);
   return run;
 }

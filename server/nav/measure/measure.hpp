@@ -28,6 +28,7 @@ struct DrivenPoint {
   double yaw_rad = 0.0;
   double speed_mps = 0.0;  ///< forward positive
   double yaw_rate_radps = 0.0;
+  bool apart = false;  ///< something else was done before it: the way from the last point is none
 };
 
 /// The place on the path of a driven point.
@@ -85,15 +86,22 @@ struct RunMeasure {
   std::vector<StraightMeasure> straights;
 };
 
-/// @param from_m where on the path the drive began; points before the first one within 0.5 m of
-/// that place do not count (the way to the path is no part of it). If there is none, all count.
+/// Which of the points count.
+enum class Counts {
+  FromNear,  ///< from the first one within 0.5 m of the begin on; where there is none, all
+  All        ///< the way to the path is not among them
+};
+
+/// @param from_m where on the path the drive began.
 /// @return as many as count; empty for an empty path.
 std::vector<Matched> match_run(const Path& path, std::span<const DrivenPoint> driven,
-                               double from_m = 0.0);
+                               double from_m = 0.0, Counts counts = Counts::FromNear);
 
 /// One run along a path, one lap of it. @param vertices where the mission's points are: vertex i is
-/// passed at path.vertex_m[i]. @param driven without times in which somebody else drove.
+/// passed at path.vertex_m[i]; those at the begin and before it are no corners of this run.
+/// @param driven without times in which somebody else drove.
 RunMeasure measure_run(const Path& path, std::span<const EnuPoint> vertices,
-                       std::span<const DrivenPoint> driven, double from_m = 0.0);
+                       std::span<const DrivenPoint> driven, double from_m = 0.0,
+                       Counts counts = Counts::FromNear);
 
 }  // namespace roverd::nav

@@ -74,7 +74,8 @@ double Tracker::law_1pm(const Vehicle& soon, const Projection& on,
   const BesidePath at{on.cross_m, angle_diff_rad(on.tangent_rad, soon.yaw_rad),
                       bend_ahead_1pm(on, speed_mps), speed_mps,
                       calm_of(soon.yaw_sigma_rad, rad_from_deg(params_->speed.heading_sigma_deg))};
-  if (law == TrackLaw::Stanley) return stanley_1pm(at, params_->vehicle.wheelbase_m, params_->track);
+  if (law == TrackLaw::Stanley)
+    return stanley_1pm(at, params_->vehicle.wheelbase_m, params_->track);
   return path_frame_1pm(at, params_->track);
 }
 

@@ -230,8 +230,9 @@ TrackOutput Tracker::turn_by(double error_rad, double error_soon_rad, const Vehi
   const double done = rad_from_deg(params_->pivot.done_deg);
   const bool there = std::abs(error_rad) < done && std::abs(v.yaw_rate_radps) < kTurned_radps;
   still_s_ = there ? still_s_ + dt_s : 0.0;
-  double wanted =
-      std::abs(error_soon_rad) < 0.5 * done ? 0.0 : pivot_rate_radps(error_soon_rad, params_->pivot);
+  double wanted = std::abs(error_soon_rad) < 0.5 * done
+                      ? 0.0
+                      : pivot_rate_radps(error_soon_rad, params_->pivot);
   // It brakes by itself; turning back before it stands is for a turn that went too far.
   if (wanted * v.yaw_rate_radps < 0.0 && std::abs(v.yaw_rate_radps) > kStill_radps) wanted = 0.0;
   const double step = params_->pivot.slew_radps2 * dt_s;

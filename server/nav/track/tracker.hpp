@@ -22,8 +22,8 @@
 #include <utility>
 
 #include "base/geo.hpp"
-#include "base/snapshot.hpp"
 #include "base/setting.hpp"
+#include "base/snapshot.hpp"
 #include "nav/track/law.hpp"
 #include "nav/track/observer.hpp"
 #include "nav/track/path.hpp"

@@ -121,13 +121,18 @@ void Robot::Impl::tell_notices() {
   }
 }
 
-/// Every action is told, so that a script may do it; what the robot knows of, it does itself.
+/// Only what was done is told as done.
 void Robot::Impl::act(const nav::Notice& n) {
-  event(Severity::Info, "action", "item " + std::to_string(n.item) + ": " + n.detail);
-  if (n.detail == "set_home" && pose) {
-    choose_home(pose->global);
-    begin_way_anew();
+  const std::string item = "item " + std::to_string(n.item) + ": ";
+  const std::string name = n.detail.substr(0, n.detail.find(' '));
+  if (name != "set_home" || !pose) {
+    const char* why = name != "set_home" ? "nothing here does it" : "the position is not known";
+    event(Severity::Warning, "action_left_out", item + name + " was not done: " + why);
+    return;
   }
+  choose_home(pose->global);
+  begin_way_anew();
+  event(Severity::Info, "action", item + n.detail);
 }
 
 }  // namespace roverd::robot

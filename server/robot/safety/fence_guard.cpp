@@ -10,34 +10,45 @@ namespace {
 
 constexpr double kNoise_m = 0.01;  // of the position beside a limit
 
-std::string item_text(int item) {
-  return "the way to item " + std::to_string(item) + " leaves the fence";
+using mission::Finding;
+
+Finding outside_at(int item, const char* detail) {
+  return {mission::Severity::Error, "outside_fence", "/items/" + std::to_string(item - 1), item,
+          detail};
+}
+
+Finding leg_outside(const nav::RouteNode& node, const mission::CompiledFence& limits) {
+  return outside_at(node.item, limits.contains(node.at)
+                                   ? "is reached by a way that leaves the fence"
+                                   : "lies outside the fence");
 }
 
 /// The first point that is not inside, as the item that the way leads to.
-std::optional<int> first_outside(const nav::Course& course, const mission::CompiledFence& limits,
-                                 double margin_m) {
+std::optional<Finding> first_outside(const nav::Course& course,
+                                     const mission::CompiledFence& limits, double margin_m) {
   const nav::Path& path = course.path;
   if (!course.nodes.empty() && limits.clearance_m(course.nodes.front().at) < margin_m) {
-    return course.nodes.front().item;
+    return leg_outside(course.nodes.front(), limits);
   }
   std::size_t node = 0;
   for (std::size_t i = 0; i + 1 < path.points.size(); ++i) {
     const nav::PathPoint& a = path.points[i];
     while (node + 1 < path.vertex_m.size() && path.vertex_m[node] < a.s_m + 1e-6) ++node;
-    if (limits.clearance_m(a.at, path.points[i + 1].at) < margin_m) return course.nodes[node].item;
+    if (limits.clearance_m(a.at, path.points[i + 1].at) < margin_m) {
+      return leg_outside(course.nodes[node], limits);
+    }
   }
   if (path.points.empty()) {
     for (const nav::RouteNode& n : course.nodes) {
-      if (limits.clearance_m(n.at) < margin_m) return n.item;
+      if (limits.clearance_m(n.at) < margin_m) return leg_outside(n, limits);
     }
   }
   return std::nullopt;
 }
 
 /// The straight ways that are not on the path: of jumps, and to the first waypoint once more.
-std::string link_outside(const nav::Route& route, const mission::CompiledFence& limits,
-                         double margin_m) {
+std::optional<Finding> link_outside(const nav::Route& route, const mission::CompiledFence& limits,
+                                    double margin_m) {
   const nav::Course& course = route.forth;
   const auto go_from = [&course](std::size_t step) {
     while (step < course.steps.size() && course.steps[step].kind != nav::StepKind::Go) ++step;
@@ -51,24 +62,25 @@ std::string link_outside(const nav::Route& route, const mission::CompiledFence& 
     const std::size_t to = go_from(step.target);
     if (to == course.steps.size()) continue;
     if (limits.clearance_m(*before, course.nodes[course.steps[to].node].at) < margin_m) {
-      return "the jump of item " + std::to_string(step.item) + " leaves the fence";
+      return outside_at(step.item, "jumps over a way that leaves the fence");
     }
   }
   const bool again = route.at_end == mission::AtEnd::Repeat && route.times != 1;
-  if (!again || course.nodes.empty()) return {};
+  if (!again || course.nodes.empty()) return std::nullopt;
   if (limits.clearance_m(course.nodes.back().at, course.nodes.front().at) < margin_m) {
-    return "the way back to the first item leaves the fence";
+    return Finding{mission::Severity::Error, "outside_fence", "/settings/at_end", std::nullopt,
+                   "the way back to the first item leaves the fence"};
   }
-  return {};
+  return std::nullopt;
 }
 
 }  // namespace
 
-std::string route_objection(const nav::Route& route, const mission::CompiledFence& limits,
-                            double margin_m) {
-  if (limits.empty()) return {};
-  if (const auto item = first_outside(route.forth, limits, margin_m)) return item_text(*item);
-  if (const auto item = first_outside(route.back, limits, margin_m)) return item_text(*item);
+std::optional<Finding> route_objection(const nav::Route& route,
+                                       const mission::CompiledFence& limits, double margin_m) {
+  if (limits.empty()) return std::nullopt;
+  if (auto found = first_outside(route.forth, limits, margin_m)) return found;
+  if (auto found = first_outside(route.back, limits, margin_m)) return found;
   return link_outside(route, limits, margin_m);
 }
 

@@ -18,6 +18,7 @@
 
 #include "base/geo.hpp"
 #include "base/snapshot.hpp"
+#include "mission/checks.hpp"
 #include "mission/fence/fence.hpp"
 #include "nav/behave/route.hpp"
 #include "robot/config.hpp"
@@ -31,18 +32,20 @@ struct LaidFence {
   std::uint32_t frame_id = 0;  ///< 0: no frame yet
   mission::CompiledFence limits;
   std::vector<base::EnuPoint> rally;
-  std::uint64_t mission_id = 0;  ///< CompiledMission::id of the one that was looked at
-  std::string objection;         ///< to it; empty: it stays inside
+  std::uint64_t mission_id = 0;               ///< CompiledMission::id of the one that was looked at
+  std::optional<mission::Finding> objection;  ///< to it; empty: it stays inside
 };
 
 /// A way that is asked for must keep so much more than the margin: tracking is not exact.
 inline constexpr double kFenceAllowance_m = 0.2;
 
 /// Where a route leaves the fence, or comes nearer to its limit than the margin, jumps and laps
-/// included; names the item. Empty: nowhere. The ways home (Route::home_ends) are looked at when
-/// it starts, as home may change. Linear in the route's length: not for the control thread.
-std::string route_objection(const nav::Route& route, const mission::CompiledFence& limits,
-                            double margin_m);
+/// included; names the item ("outside_fence"). Empty: nowhere. The ways home (Route::home_ends) are
+/// looked at when it starts, as home may change. Linear in the route's length: not for the control
+/// thread.
+std::optional<mission::Finding> route_objection(const nav::Route& route,
+                                                const mission::CompiledFence& limits,
+                                                double margin_m);
 
 /// May the straight way be driven? It may begin nearer to the limit than the margin, inside, if it
 /// does not come nearer still.

@@ -1,13 +1,14 @@
 #include "robot/safety/fence_keep.hpp"
 
 #include <cmath>
+#include <vector>
+
+#include "robot/start_check.hpp"
 
 namespace roverd::robot {
 namespace {
 
 using base::Code;
-
-constexpr std::size_t kMostHomeEnds = 100;
 
 }  // namespace
 
@@ -30,42 +31,30 @@ base::Result<void> FenceKeep::may_begin(base::EnuPoint here,
   return {};
 }
 
-base::Result<void> FenceKeep::mission_inside(const CompiledMission& mission, const nav::StartAt& at,
-                                             const Start& start) const {
-  if (!fence_) return {};
+base::Result<void> FenceKeep::may_start(const CompiledMission& mission, const nav::StartAt& at,
+                                        const Start& start) const {
   if (!compared(&mission)) {
     return base::fail(
         Code::Conflict,
         "fence and mission came at the same moment and are being compared: try again");
   }
-  const std::string& objection =
-      mission.fence_id == fence_->id ? mission.fence_objection : fence_->objection;
-  if (!objection.empty()) return base::fail(Code::Conflict, objection);
-  if (auto ok = ways_home_inside(mission, start); !ok) return ok;
-  const std::size_t step = nav::first_step(mission.route, at, start.here);
-  const auto target = nav::first_target(mission.route, step, start.home);
-  if (target && !inside(start.here, *target, start.margin_m)) {
-    return base::fail(Code::Conflict, "the way to the first point leaves the fence");
+  const std::optional<mission::Finding>* legs = nullptr;
+  if (fence_) {
+    legs = mission.fence_id == fence_->id ? &mission.fence_objection : &fence_->objection;
   }
-  return {};
-}
-
-/// Home may have been set anew since the mission was compared with the fence.
-base::Result<void> FenceKeep::ways_home_inside(const CompiledMission& mission,
-                                               const Start& start) const {
-  const std::vector<base::EnuPoint>& ends = mission.route.home_ends;
-  if (!start.home || ends.empty()) return {};
-  if (ends.size() > kMostHomeEnds) {
-    return base::fail(Code::Conflict, "the mission drives home more than " +
-                                          std::to_string(kMostHomeEnds) +
-                                          " times: too often to be compared with the fence");
-  }
-  for (const base::EnuPoint& end : ends) {
-    if (fence_->limits.clearance_m(end, *start.home) < start.margin_m) {
-      return base::fail(Code::Conflict, "the mission's way home leaves the fence");
-    }
-  }
-  return {};
+  const std::vector<mission::Finding> found =
+      start_findings({.route = mission.route,
+                      .limits = fence_ ? &fence_->limits : nullptr,
+                      .legs = legs,
+                      .margin_m = start.margin_m,
+                      .within_m = start.within_m,
+                      .here = start.here,
+                      .home = start.home,
+                      .at = at});
+  if (found.empty()) return {};
+  std::vector<base::FieldError> fields;
+  for (const mission::Finding& f : found) fields.push_back({f.pointer, f.detail});
+  return base::fail(Code::Conflict, mission::sentence(found.front()), std::move(fields));
 }
 
 bool FenceKeep::compared(const CompiledMission* mission) const noexcept {

@@ -41,10 +41,11 @@ class FenceKeep {
     base::EnuPoint here;
     std::optional<base::EnuPoint> home;
     double margin_m = 0.0;
+    double within_m = 0.0;  ///< nav.behave.start_within_m
   };
-  /// The whole mission, its ways home, and the way to its first point.
-  base::Result<void> mission_inside(const CompiledMission& mission, const nav::StartAt& at,
-                                    const Start& start) const;
+  /// Nothing of the list that check, load and preview show (robot/start_check.hpp).
+  base::Result<void> may_start(const CompiledMission& mission, const nav::StartAt& at,
+                               const Start& start) const;
   /// The comparison with a mission is long and made on other threads. @param mission null: none
   bool compared(const CompiledMission* mission) const noexcept;
 
@@ -64,8 +65,6 @@ class FenceKeep {
                          const CompiledMission* mission) const;
 
  private:
-  base::Result<void> ways_home_inside(const CompiledMission& mission, const Start& start) const;
-
   std::shared_ptr<const LaidFence> fence_;
   bool told_ = false;
 };

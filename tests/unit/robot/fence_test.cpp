@@ -95,13 +95,13 @@ TEST(Fence, AMissionThatLeavesItIsRefusedWithTheItem) {
   ASSERT_TRUE(f.load(plan_of({{0, 5}, {5, 5}, {5, 14}, {5, 0}})));
   const auto refused = f.ask(StartMission{"m", 1});
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().detail, "the way to item 3 leaves the fence");
+  EXPECT_EQ(refused.error().detail, "item 3 lies outside the fence");
   // The same when the fence comes after the mission.
   ASSERT_TRUE(f.ask(SetFence{}));
   ASSERT_TRUE(f.ask(SetFence{f.robot.lay_fence(square(4.0))}));
   const auto later = f.ask(StartMission{"m", 1});
   ASSERT_FALSE(later);
-  EXPECT_EQ(later.error().detail, "the way to item 1 leaves the fence");
+  EXPECT_EQ(later.error().detail, "item 1 lies outside the fence");
 }
 
 TEST(Fence, TheWayHomeAtTheEndCountsToo) {
@@ -113,6 +113,59 @@ TEST(Fence, TheWayHomeAtTheEndCountsToo) {
   const auto refused = f.ask(StartMission{"m", 1});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().detail, "the mission's way home leaves the fence");
+}
+
+/// Before anything is armed: what the list says is what the start says then.
+std::string objection(Fenced& f, const mission::Plan& plan) {
+  EXPECT_TRUE(f.load(plan));
+  const auto found = f.robot.objections(StartMission{"m", 1});
+  const auto refused = f.ask(StartMission{"m", 1});
+  if (found.empty()) {
+    EXPECT_TRUE(refused);
+    EXPECT_TRUE(f.ask(StopMission{}));
+    return {};
+  }
+  EXPECT_FALSE(refused);
+  if (refused) return "started";
+  EXPECT_EQ(refused.error().detail, mission::sentence(found.front()));
+  EXPECT_EQ(refused.error().fields.front().pointer, found.front().pointer);
+  return found.front().code + " " + found.front().pointer;
+}
+
+//      ┌──┐ 3      the robot stands below a hole; items lie round it
+//   2  │  │
+//      └──┘
+//      1 ▲
+TEST(Fence, WhatAStartRefusesIsListedBeforeWithItsItem) {
+  auto fence = square(14.0);
+  mission::FencePolygon hole;
+  for (const base::EnuPoint c :
+       {base::EnuPoint{-1, 4}, base::EnuPoint{1, 4}, base::EnuPoint{1, 8}, base::EnuPoint{-1, 8}}) {
+    hole.points.push_back(kFrame.to_global(c));
+  }
+  fence->areas.push_back({mission::AreaKind::Exclusion, hole});
+  Fenced f(fence);
+  EXPECT_EQ(objection(f, plan_of({{0, 12}, {5, 12}})), "approach_outside_fence /items/0");
+  const auto round = plan_of({{-6, 2}, {-6, 11}, {0, 11}});
+  EXPECT_EQ(objection(f, round), "");
+  auto home = round;
+  home.settings.at_end = mission::AtEnd::Return;
+  EXPECT_EQ(objection(f, home), "outside_fence /settings/at_end");
+  auto item = round;
+  item.items.push_back(mission::ReturnHome{});
+  EXPECT_EQ(objection(f, item), "outside_fence /items/3");
+  auto jump = plan_of({{0, 1}, {-6, 1}, {-6, 11}, {0, 11}});
+  jump.items.push_back(mission::Jump{1, 2});
+  EXPECT_EQ(objection(f, jump), "outside_fence /items/4");
+  auto laps = plan_of({{0, 1}, {-6, 1}, {-6, 11}, {0, 11}});
+  laps.settings.at_end = mission::AtEnd::Repeat;
+  EXPECT_EQ(objection(f, laps), "outside_fence /settings/at_end");
+  EXPECT_EQ(objection(f, plan_of({{-6, 2}, {-6, 20}})), "outside_fence /items/1");
+}
+
+TEST(Fence, AFirstItemTooFarAwayIsListedAlsoWithoutAFence) {
+  Fenced f(nullptr);
+  EXPECT_EQ(objection(f, plan_of({{0, 70}, {0, 80}})), "start_too_far /items/0");
 }
 
 TEST(Fence, OutsideOnlyTheWayBackByHandIsOpen) {

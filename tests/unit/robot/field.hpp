@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -68,6 +69,12 @@ class Field {
   std::optional<double> receiver_late_s;  ///< its own time, behind ours; empty: it tells none
   bool obeys = true;                      ///< the base moves as it is told; else
   base::BodyTwist does{};                 ///< it moves so
+  std::optional<double> battery_v;
+  std::optional<double> hdop;
+  std::optional<double> fix_sigma_m;
+  std::optional<double> speed_sigma_mps;
+  base::HeadingSource compass = base::HeadingSource::Compass;
+  std::function<void()> more;  ///< says more at every tick, before the robot's
   base::EnuPoint at{};
   double yaw_rad = base::kPi / 2.0;
   Time now{};
@@ -79,6 +86,7 @@ class Field {
     at.north_m += v * 0.02 * std::sin(yaw_rad);
     yaw_rad = base::wrap_rad(yaw_rad + w * 0.02);
     speak(v, w);
+    if (more) more();
     robot.tick(now, base::WallTime{now.time_since_epoch()});
     std::vector<PendingReply> replies;
     robot.replies().take(replies);
@@ -144,6 +152,7 @@ class Field {
         s.vehicle_state = vehicle_state;
         s.control_mode = control_mode;
         s.radio_lost = radio_lost;
+        s.battery_v = battery_v;
         in.put(s);
       }
     }
@@ -170,9 +179,11 @@ class Field {
       f.utc = base::WallTime{std::chrono::seconds(1'780'000'000)} + now.time_since_epoch() -
               base::from_seconds(*receiver_late_s);
     }
+    f.hdop = hdop;
+    f.sigma_east_m = f.sigma_north_m = fix_sigma_m;
     in.put(f);
-    in.put(base::GnssVelocity{now, v * std::cos(yaw_rad), v * std::sin(yaw_rad), {}});
-    in.put(base::Heading{now, yaw_rad, base::HeadingSource::Compass});
+    in.put(base::GnssVelocity{now, v * std::cos(yaw_rad), v * std::sin(yaw_rad), speed_sigma_mps});
+    in.put(base::Heading{now, yaw_rad, compass});
   }
 
   int ticks_ = 0;

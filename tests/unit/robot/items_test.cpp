@@ -39,8 +39,7 @@ struct Worker : Field {
 TEST(Items, LocalPosesMovesTurnsAndActionsAreDriven) {
   Worker f;
   mission::Action action;
-  action.name = "sample";
-  action.arguments = {{"depth_m", 0.2}};
+  action.name = "set_home";
   f.go(items({mission::Local{3.0, 4.0, 90.0}, action, mission::Move{2.0},
               mission::TurnBy{-90.0, {}}, mission::Move{-1.0}, mission::TurnBy{{}, 180.0}}));
   ASSERT_TRUE(f.done(120.0)) << f.state()->mission.reason;
@@ -48,9 +47,26 @@ TEST(Items, LocalPosesMovesTurnsAndActionsAreDriven) {
   EXPECT_NEAR(f.at.east_m, 5.0, 0.15);
   EXPECT_NEAR(f.at.north_m, 3.0, 0.15);
   EXPECT_NEAR(base::heading_from_yaw(f.yaw_rad), 180.0, 3.0);
-  EXPECT_EQ(f.told("action"), "item 2: sample {\"depth_m\":0.2}\n");
+  EXPECT_EQ(f.told("action"), "item 2: set_home\n");
   EXPECT_EQ(f.told("item_reached"),
             "item 1 reached\nitem 3 reached\nitem 4 reached\nitem 5 reached\nitem 6 reached\n");
+}
+
+/// Nothing here pumps: the mission is not driven as if something did.
+TEST(Items, AnActionThatNobodyDoesIsRefusedWithItsItem) {
+  Worker f;
+  mission::Action pump;
+  pump.name = "pump_on";
+  mission::Action home;
+  home.name = "set_home";
+  const auto refused = f.load(items({mission::Local{3.0, 4.0, {}}, home, pump}));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, base::Code::Invalid);
+  ASSERT_EQ(refused.error().fields.size(), 1u);
+  EXPECT_EQ(refused.error().fields[0].pointer, "/items/2");
+  EXPECT_EQ(refused.error().detail,
+            "item 3 asks for the action \"pump_on\", which nothing here does; built in: set_home");
+  EXPECT_EQ(f.execution(), ExecutionState::Idle);
 }
 
 TEST(Items, AMoveGoesOnWithWhatIsLeftAfterAPause) {

@@ -175,24 +175,24 @@ TEST(FenceKeep, AMissionIsComparedBeforeItStarts) {
   FenceKeep keep;
   const auto mission = compiled({{0, 5}});
   const FenceKeep::Start from{{0, 0}, base::EnuPoint{0, 0}, 0.5};
-  EXPECT_TRUE(keep.mission_inside(*mission, {}, from)) << "no fence";
+  EXPECT_TRUE(keep.may_start(*mission, {}, from)) << "no fence";
   auto laid = yard(1);
   keep.set(laid);
   EXPECT_FALSE(keep.compared(mission.get()));
-  EXPECT_NE(keep.mission_inside(*mission, {}, from).error().detail.find("being compared"),
+  EXPECT_NE(keep.may_start(*mission, {}, from).error().detail.find("being compared"),
             std::string::npos);
   laid = yard(2);
   laid->mission_id = mission->id;
   EXPECT_EQ(keep.set(laid)->id, 1u);
   EXPECT_TRUE(keep.compared(mission.get()));
-  EXPECT_TRUE(keep.mission_inside(*mission, {}, from));
+  EXPECT_TRUE(keep.may_start(*mission, {}, from));
   const FenceKeep::Start outside{{0, 30}, base::EnuPoint{0, 0}, 0.5};
-  EXPECT_FALSE(keep.mission_inside(*mission, {}, outside)) << "the way to the first point";
+  EXPECT_FALSE(keep.may_start(*mission, {}, outside)) << "the way to the first point";
   laid = yard(3);
   laid->mission_id = mission->id;
   laid->objection = "item 1 lies outside";
   keep.set(laid);
-  EXPECT_EQ(keep.mission_inside(*mission, {}, from).error().detail, "item 1 lies outside");
+  EXPECT_EQ(keep.may_start(*mission, {}, from).error().detail, "item 1 lies outside");
 }
 
 TEST(FenceKeep, SaysHowNearItIs) {

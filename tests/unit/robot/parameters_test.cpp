@@ -48,6 +48,70 @@ TEST(Parameters, AreRefusedWithAReasonAndChangeNothing) {
   EXPECT_EQ(f.robot.config()->speed.max_mps, Config{}.speed.max_mps);
 }
 
+/// File, change and start ask the same check: one text, whoever hears it.
+TEST(Parameters, WhatAStartWouldRefuseAChangeRefusesInTheSameWords) {
+  struct Wrong {
+    const char* name;
+    base::ParamValue value;
+    void (*put)(Config&);
+    const char* text;
+  };
+  const std::vector<Wrong> all{
+      {"nav.track.law", std::string("zigzag"), [](Config& c) { c.track.law = "zigzag"; },
+       "nav.track.law must be path_frame, pure_pursuit or stanley, is \"zigzag\""},
+      {"battery.curve", std::string("garbage"), [](Config& c) { c.battery.curve = "garbage"; },
+       "battery.curve: \"garbage\" must be a voltage (0 to 1000) and a charge (0 to 100)"},
+      {"vehicle.kinematics", std::string("boat"), [](Config& c) { c.vehicle.kinematics = "boat"; },
+       "vehicle.kinematics must be skid_steer, differential or ackermann, is \"boat\""},
+      {"radio.knob_low", std::string("by_knob"), [](Config& c) { c.radio.knob_low = "by_knob"; },
+       "radio.knob_low cannot be by_knob: the knob would ask itself"},
+      {"nav.speed.min_mps", 1.0, [](Config& c) { c.speed.min_mps = 1.0; },
+       "nav.speed.reverse_max_mps must not be below nav.speed.min_mps"},
+      {"nav.modes.follow_brake_s", 9.0, [](Config& c) { c.modes.follow_brake_s = 9.0; },
+       "nav.modes.follow_hold_s must not be below nav.modes.follow_brake_s"},
+      {"robot.safety.gnss_slow_s", 50.0, [](Config& c) { c.safety.gnss_slow_s = 50.0; },
+       "robot.safety.gnss_hold_s must not be below robot.safety.gnss_slow_s"},
+      {"robot.safety.sigma_slow_m", 9.0, [](Config& c) { c.safety.sigma_slow_m = 9.0; },
+       "robot.safety.sigma_hold_m must not be below robot.safety.sigma_slow_m"},
+      {"robot.safety.battery_stop_pct", 50.0, [](Config& c) { c.safety.battery_stop_pct = 50.0; },
+       "robot.safety.battery_warn_pct must not be below robot.safety.battery_stop_pct"},
+  };
+  Field f;
+  f.run(0.1);
+  for (const Wrong& wrong : all) {
+    Config config;
+    wrong.put(config);
+    const auto start = check(config);
+    ASSERT_FALSE(start) << wrong.name;
+    EXPECT_EQ(start.error().detail, wrong.text);
+    const auto change = f.robot.check_parameter(wrong.name, wrong.value);
+    ASSERT_FALSE(change) << wrong.name;
+    EXPECT_EQ(change.error().detail, wrong.text);
+    EXPECT_EQ(change.error().fields.at(0).pointer, "/value");
+  }
+  EXPECT_FALSE(f.has_event("parameter"));
+}
+
+/// The order in which the store tells them is not the one in which they were changed.
+TEST(Parameters, KeptOnesGoInTogetherAndWhatIsNotTakenIsTold) {
+  Config config;
+  const auto refused = take_kept(config, {{"nav.speed.max_mps", 0.1},
+                                          {"nav.speed.min_mps", 0.05},
+                                          {"nav.track.gone_m", 2.0},
+                                          {"nav.track.law", std::string("zigzag")},
+                                          {"nav.track.settle_min_m", 99.0},
+                                          {"radio.swb_down_blocks_swa", 1.0}});
+  EXPECT_EQ(config.speed.max_mps, 0.1);
+  EXPECT_EQ(config.speed.min_mps, 0.05);
+  EXPECT_EQ(config.track.law, "path_frame");
+  EXPECT_EQ(config.track.settle_min_m, Config{}.track.settle_min_m);
+  EXPECT_EQ(refused, (std::vector<std::string>{
+                         "there is no parameter nav.track.gone_m",
+                         "nav.track.law must be path_frame, pure_pursuit or stanley, is \"zigzag\"",
+                         "nav.track.settle_min_m must lie in 0.15 .. 20.0",
+                         "radio.swb_down_blocks_swa must be true or false"}));
+}
+
 /// Every number to its ends, one after the other, while a mission runs: never away from the path.
 TEST(Parameters, ExtremeValuesWhileDrivingNeverLeadAway) {
   for (const bool high : {false, true}) {

@@ -21,21 +21,24 @@ export interface RunReport {
   readonly driven_m: number;
   readonly energy_wh: number | null;
   readonly laps: number;
+  /** The way to the first item; not judged. */
+  readonly approach: { readonly time_s: number; readonly driven_m: number } | null;
+  readonly judged_m: number;
   readonly cross_track: {
-    readonly rms_m: number;
-    readonly mean_m: number;
-    readonly p95_m: number;
-    readonly max_m: number;
+    readonly rms_m: number | null;
+    readonly mean_m: number | null;
+    readonly p95_m: number | null;
+    readonly max_m: number | null;
   };
-  readonly corner_mean_m: number;
-  readonly corner_max_m: number;
-  readonly cut_max_m: number;
-  readonly overshoot_max_m: number;
-  readonly slalom_max_m: number;
-  readonly slalom_mean_m: number;
-  readonly heading_rms_deg: number;
-  readonly jerk_rms_mps3: number;
-  readonly end_m: number;
+  readonly corner_mean_m: number | null;
+  readonly corner_max_m: number | null;
+  readonly cut_max_m: number | null;
+  readonly overshoot_max_m: number | null;
+  readonly slalom_max_m: number | null;
+  readonly slalom_mean_m: number | null;
+  readonly heading_rms_deg: number | null;
+  readonly jerk_rms_mps3: number | null;
+  readonly end_m: number | null;
   readonly corners: readonly {
     readonly item: number;
     readonly turn_deg: number;
@@ -92,6 +95,7 @@ const MEASURES: readonly Measure[] = [
   measure('Time', (r) => r.time_s, duration),
   measure('Of it driving', (r) => r.driving_s, duration, false),
   measure('Driven', (r) => r.driven_m, metres, false),
+  measure('Of it to the first item', (r) => r.approach?.driven_m ?? null, metres, false),
   measure(
     'Energy',
     (r) => r.energy_wh,

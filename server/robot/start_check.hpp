@@ -1,0 +1,38 @@
+#pragma once
+// What a start would refuse of a mission, told before anything moves: one list for check, load,
+// preview and start.
+//
+//   outside_fence           a way of the mission leaves the fence: legs, jumps, laps, ways home
+//   approach_outside_fence  the straight way from the robot to the first item does
+//   start_too_far           the first item is farther away than nav.behave.start_within_m
+//
+// Pure, any thread. The legs were compared when mission or fence came (route_objection); all that
+// depends on the moment costs little.
+
+#include <optional>
+#include <vector>
+
+#include "mission/checks.hpp"
+#include "mission/fence/fence.hpp"
+#include "nav/behave/executor.hpp"
+
+namespace roverd::robot {
+
+struct StartView {
+  const nav::Route& route;
+  const mission::CompiledFence* limits = nullptr;         ///< null: no fence
+  const std::optional<mission::Finding>* legs = nullptr;  ///< route_objection; null: no fence
+  double margin_m = 0.0;  ///< of a way that is asked for: kept margin and kFenceAllowance_m
+  double within_m = 0.0;
+  std::optional<base::EnuPoint> here;
+  std::optional<base::EnuPoint> home;
+  nav::StartAt at;
+};
+
+/// Errors all of them; at most one of a kind. Empty: a start has nothing against it.
+std::vector<mission::Finding> start_findings(const StartView& view);
+
+/// Does it depend on where the robot stands, so that it may be driven away?
+bool of_the_moment(const mission::Finding& finding) noexcept;
+
+}  // namespace roverd::robot
