@@ -174,7 +174,7 @@ TEST(FenceKeep, StopsAtItsLimitTellsItOnceAndLetsBack) {
 TEST(FenceKeep, AMissionIsComparedBeforeItStarts) {
   FenceKeep keep;
   const auto mission = compiled({{0, 5}});
-  const FenceKeep::Start from{{0, 0}, base::EnuPoint{0, 0}, 0.5};
+  const FenceKeep::Start from{{0, 0}, base::EnuPoint{0, 0}, 0.5, 50.0};
   EXPECT_TRUE(keep.may_start(*mission, {}, from)) << "no fence";
   auto laid = yard(1);
   keep.set(laid);
@@ -186,11 +186,12 @@ TEST(FenceKeep, AMissionIsComparedBeforeItStarts) {
   EXPECT_EQ(keep.set(laid)->id, 1u);
   EXPECT_TRUE(keep.compared(mission.get()));
   EXPECT_TRUE(keep.may_start(*mission, {}, from));
-  const FenceKeep::Start outside{{0, 30}, base::EnuPoint{0, 0}, 0.5};
+  const FenceKeep::Start outside{{0, 30}, base::EnuPoint{0, 0}, 0.5, 50.0};
   EXPECT_FALSE(keep.may_start(*mission, {}, outside)) << "the way to the first point";
   laid = yard(3);
   laid->mission_id = mission->id;
-  laid->objection = "item 1 lies outside";
+  laid->objection =
+      mission::Finding{mission::Severity::Error, "outside_fence", "/items/0", 1, "lies outside"};
   keep.set(laid);
   EXPECT_EQ(keep.may_start(*mission, {}, from).error().detail, "item 1 lies outside");
 }
