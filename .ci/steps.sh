@@ -174,7 +174,7 @@ step_asan() {
   "$root/.ci/results" ctest "$logs/asan.xml"
 }
 
-threaded='^(base|supervise|net|store|link|robot|net_socket|api_socket)_test$'
+threaded='^(base|services|supervise|net|store|link|robot|net_socket|api_socket)_test$'
 
 step_tsan() {
   local targets

@@ -8,7 +8,7 @@
 #include "api/context.hpp"
 #include "api/docs.hpp"
 #include "api/idempotency.hpp"
-#include "api/radio_edits.hpp"
+#include "api/json/teach_words.hpp"
 #include "api/stream.hpp"
 #include "base/log.hpp"
 
@@ -61,8 +61,18 @@ std::shared_ptr<const base::Snapshot> Context::snapshot_or_refuse(const CallPtr&
 
 Json Context::vehicle(const base::Snapshot& snapshot, base::Time now) const {
   Json out = vehicle_json(snapshot, deps.profile.name, now);
-  out["teach"] = teach->brief();
+  out["teach"] = teach_brief_json(deps.services.view()->teach);
   return out;
+}
+
+std::optional<store::StoredPlace> Context::offer(const base::Snapshot& snapshot) const {
+  const base::MissionProgress& m = snapshot.mission;
+  const bool in_hand = m.state == base::ExecutionState::Running ||
+                       m.state == base::ExecutionState::Paused ||
+                       m.state == base::ExecutionState::Blocked;
+  const auto offer = deps.services.view()->offer;
+  const bool other = offer && !m.mission_id.empty() && m.mission_id != offer->mission_id;
+  return in_hand || other ? std::nullopt : offer;
 }
 
 void Context::aside(std::function<void()> work, std::function<void()> then) const {
@@ -76,20 +86,11 @@ void Context::announce(const std::string& id, std::optional<std::int64_t> revisi
 }
 
 struct Api::Impl {
-  explicit Impl(Deps deps)
-      : context(std::make_shared<Context>(std::move(deps))), radio_edits(context) {
-    radio_edits.tell = [this](base::Event event) { take_event(std::move(event)); };
-    context->teach = std::make_unique<TeachIn>(context->deps.store);
-    context->teach->tell = radio_edits.tell;
-    context->teach->announce = [this](const store::StoredMission& mission) {
-      context->announce(mission.id, mission.revision);
-    };
-  }
+  explicit Impl(Deps deps) : context(std::make_shared<Context>(std::move(deps))) {}
 
   void route(const CallPtr& call);
   void serve_page(const CallPtr& call, std::string_view path);
   void watch(const CallPtr& call, const Route& route);
-  void take_event(base::Event event);
 
   ContextPtr context;
   Idempotency idempotency;
@@ -100,9 +101,6 @@ struct Api::Impl {
   base::Time counted;
   std::vector<robot::PendingReply> replies;
   std::vector<base::Event> events;
-  RadioEdits radio_edits;
-  std::vector<robot::MissionEdit> edits;
-  std::vector<robot::TeachWish> wishes;
 };
 
 Api::Api(Deps deps) : impl_(std::make_unique<Impl>(std::move(deps))) {
@@ -136,7 +134,6 @@ Api::~Api() {
   // The routes hold the context that holds them.
   impl_->context->router = Router{};
   impl_->context->on_mission_change = nullptr;
-  impl_->context->teach.reset();
   impl_->context->commands.abandon();
 }
 
@@ -259,7 +256,6 @@ Response Api::on_refused(unsigned status, std::string_view detail) {
 void Api::on_second() {
   const base::Time now = base::steady_now();
   impl_->context->commands.sweep(now);
-  impl_->context->teach->save();
   if (impl_->stream) impl_->stream->look_at_execution();
   const auto snapshot = impl_->context->deps.robot.snapshot();
   if (!snapshot) return;
@@ -276,35 +272,24 @@ void Api::on_second() {
   impl_->counted = now;
 }
 
-void Api::on_sample() {
-  if (const auto snapshot = impl_->context->deps.robot.snapshot()) {
-    impl_->context->trail.take(*snapshot);
-    impl_->context->runs.look(*snapshot);
-    impl_->context->fence_keeper.look(*snapshot);
-    impl_->context->teach->sample(*snapshot);
-  }
-}
-
-void Api::Impl::take_event(base::Event event) {
-  if (stream) stream->publish_event(event);
+void Api::on_event(base::Event event) {
+  if (impl_->stream) impl_->stream->publish_event(event);
   if (event.level == base::Severity::Error) {
     base::log(base::Level::Error, "robot", event.detail, {{"event", event.kind}});
   }
-  context->runs.take(event);
-  context->deps.store.add_event(std::move(event));
+  impl_->context->deps.services.take(event);
+  impl_->context->deps.store.add_event(std::move(event));
+}
+
+void Api::on_mission_change(const std::string& id, std::int64_t revision) {
+  impl_->context->announce(id, revision);
 }
 
 void Api::drain() {
   auto& robot = impl_->context->deps.robot;
   impl_->events.clear();
   robot.events().take(impl_->events);
-  for (base::Event& event : impl_->events) impl_->take_event(std::move(event));
-  impl_->edits.clear();
-  robot.edits().take(impl_->edits);
-  for (robot::MissionEdit& edit : impl_->edits) impl_->radio_edits.put(std::move(edit));
-  impl_->wishes.clear();
-  robot.teach_wishes().take(impl_->wishes);
-  for (const robot::TeachWish wish : impl_->wishes) impl_->context->teach->wish(wish);
+  for (base::Event& event : impl_->events) on_event(std::move(event));
   impl_->replies.clear();
   robot.replies().take(impl_->replies);
   for (robot::PendingReply& pending : impl_->replies) {

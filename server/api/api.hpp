@@ -4,8 +4,7 @@
 //
 //   net ─on_request─▶ guard ─▶ idempotency ─▶ router ─▶ handler ─▶ robot.request / store ─▶ answer
 //   net ─on_text────▶ subscribe, drive
-//   robot.wake ─▶ drain(): answers of commands, events → store and stream, the radio's edits of the
-//                          mission → store → robot
+//   robot.wake ─▶ drain(): answers of commands; events → store, stream and services
 
 #include <functional>
 #include <map>
@@ -19,6 +18,7 @@
 #include "api/json/words.hpp"
 #include "api/message.hpp"
 #include "robot/robot.hpp"
+#include "services/services.hpp"
 #include "store/store.hpp"
 #include "store/tiles.hpp"
 
@@ -70,6 +70,7 @@ struct NetFigures {
 struct Deps {
   robot::Robot& robot;
   store::Store& store;
+  services::Services& services;
   std::string version;
   Profile profile;
   Tiles tiles{};
@@ -104,9 +105,10 @@ class Api {
   static Response on_refused(unsigned status, std::string_view detail);
   /// Once a second: driver rates, answers that never came.
   void on_second();
-  /// Every kSample: the trail takes where the robot is.
-  static constexpr base::Duration kSample = std::chrono::milliseconds(50);
-  void on_sample();
+  /// Something happened that people must know of: to stream, run and store.
+  void on_event(base::Event event);
+  /// A mission was stored by others than the web.
+  void on_mission_change(const std::string& id, std::int64_t revision);
   /// After robot.wake: hands out the robot's answers and events.
   void drain();
 

@@ -9,13 +9,9 @@
 
 #include "api/api.hpp"
 #include "api/body.hpp"
-#include "api/fence_keeper.hpp"
 #include "api/json/words.hpp"
 #include "api/problem.hpp"
 #include "api/router.hpp"
-#include "api/run_recorder.hpp"
-#include "api/teach.hpp"
-#include "api/trail.hpp"
 #include "api/validity.hpp"
 
 namespace roverd::api {
@@ -58,17 +54,11 @@ struct Context {
   explicit Context(Deps with)
       : deps(std::move(with)),
         commands(deps.robot),
-        runs(deps.robot, deps.store, deps.profile.name),
-        fence_keeper(deps.robot),
         begun(base::steady_now()) {}
 
   Deps deps;
   Commands commands;
   Router router;
-  Trail trail;
-  RunRecorder runs;
-  FenceKeeper fence_keeper;
-  std::unique_ptr<TeachIn> teach;
   base::Time begun;
   std::map<std::string, double> driver_rates;
   std::string openapi_tag;
@@ -85,6 +75,9 @@ struct Context {
 
   /// The whole state, with what the robot does not know of itself.
   Json vehicle(const base::Snapshot& snapshot, base::Time now) const;
+  /// The mission that another life of the program left behind, if nothing else is in hand: what the
+  /// services say of it is older than the snapshot by up to their beat.
+  std::optional<store::StoredPlace> offer(const base::Snapshot& snapshot) const;
   /// Answers 503 and returns null before the robot's first tick.
   std::shared_ptr<const base::Snapshot> snapshot_or_refuse(const CallPtr& call) const;
   /// `work` on another thread if there is one for it, then `then` on this one.

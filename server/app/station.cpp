@@ -149,12 +149,12 @@ struct Station::Impl {
   store::TileFolder tiles;
   std::unique_ptr<Supervisor> supervisor;
   std::unique_ptr<store::Store> store;
+  std::unique_ptr<services::Services> services;
   std::unique_ptr<api::Api> api;
   std::unique_ptr<net::Server> server;
   std::unique_ptr<net::Doorbell> bell;
   std::unique_ptr<ControlLoop> loop;
   asio::signal_set signals{web, SIGINT, SIGTERM};
-  asio::steady_timer sample_timer{web};
   asio::steady_timer learned_timer{web};
   std::filesystem::path learned_file;  ///< empty: a recording is played, nothing is kept
   std::string learned_by;
@@ -168,7 +168,7 @@ struct Station::Impl {
   void make_api(const Settings& settings);
   api::DriverDoor driver_door();
   void start();
-  void sample_soon();
+  void start_services();
   void recall(const Settings& settings, const Options& options);
   void tell_left_out(const Settings& settings);
   void keep_learned();
@@ -186,6 +186,7 @@ Result<void> Station::Impl::open(const Settings& settings, const Options& option
   supervisor = std::move(*made);
   if (auto done = open_tiles(settings); !done) return done;
   if (auto done = open_store(settings, options); !done) return done;
+  services = std::make_unique<services::Services>(robot, *store, settings.vehicle.name);
   make_api(settings);
   if (auto done = open_server(settings, options); !done) return done;
   recall(settings, options);
@@ -243,6 +244,7 @@ api::DriverDoor Station::Impl::driver_door() {
 void Station::Impl::make_api(const Settings& settings) {
   api::Deps deps{.robot = robot,
                  .store = *store,
+                 .services = *services,
                  .version = kVersion,
                  .profile = profile_of(settings, *supervisor)};
   deps.tiles = {tiles.sets(), [this](const std::string& set, int zoom, int x, int y) {
@@ -302,7 +304,7 @@ void Station::Impl::start() {
     if (!ec) stop();
   });
   supervisor->start();
-  sample_soon();
+  start_services();
   keep_learned_soon();
   loop = std::make_unique<ControlLoop>(
       [this](base::Time now, base::WallTime wall, base::Duration lateness) {
@@ -311,13 +313,17 @@ void Station::Impl::start() {
   base::log(base::Level::Info, "main", "serving", {{"address", address}, {"version", kVersion}});
 }
 
-void Station::Impl::sample_soon() {
-  sample_timer.expires_after(api::Api::kSample);
-  sample_timer.async_wait([this](const boost::system::error_code& ec) {
-    if (ec) return;
-    api->on_sample();
-    sample_soon();
-  });
+void Station::Impl::start_services() {
+  const auto on_web = [this](auto work) { asio::post(web, std::move(work)); };
+  services->start({.tell =
+                       [this, on_web](base::Event event) {
+                         on_web([this, event = std::move(event)] { api->on_event(event); });
+                       },
+                   .mission_changed =
+                       [this, on_web](const std::string& id, std::int64_t revision) {
+                         on_web([this, id, revision] { api->on_mission_change(id, revision); });
+                       },
+                   .answer = on_web});
 }
 
 void Station::Impl::recall(const Settings& settings, const Options& options) {
@@ -378,7 +384,9 @@ Station::~Station() {
   impl_->planner.stop();
   impl_->planner.join();
   impl_->keep_learned();
+  impl_->services->stop();  // what is on its way to the web is dropped with the io_context
   impl_->server.reset();
+  impl_->services.reset();
   impl_->store.reset();  // its last answers are posted, and dropped with the io_context
 }
 

@@ -7,6 +7,7 @@
 //   supervisor thread      sees whether a driver hangs
 //   store thread    SQLite                          ─answers──────▶ web thread
 //   planner thread  surveys                         ─answers──────▶ web thread
+//   services' thread       trail, runs, teach-in    ─answers──────▶ web thread
 
 #include <memory>
 #include <string>

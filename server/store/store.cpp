@@ -7,8 +7,8 @@ namespace roverd::store {
 using base::Error;
 using base::Result;
 
-Store::Impl::Impl(std::unique_ptr<Database> database, Deliver deliver_, Options options_)
-    : db(std::move(database)), deliver(std::move(deliver_)), options(std::move(options_)) {
+Store::Impl::Impl(std::unique_ptr<Database> database, Options options_)
+    : db(std::move(database)), options(std::move(options_)) {
   thread = std::thread([this] { run(); });
 }
 
@@ -86,10 +86,15 @@ Result<std::unique_ptr<Store>> Store::open(const std::filesystem::path& file, De
   auto db = open_database(file, migrations(), options.max_bytes);
   if (!db) return tl::unexpected<Error>(std::move(db).error());
   return std::unique_ptr<Store>(
-      new Store(std::make_unique<Impl>(std::move(*db), std::move(deliver), std::move(options))));
+      new Store(std::make_shared<Impl>(std::move(*db), std::move(options)), std::move(deliver)));
 }
 
-Store::Store(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+std::unique_ptr<Store> Store::desk(Deliver deliver) const {
+  return std::unique_ptr<Store>(new Store(impl_, std::move(deliver)));
+}
+
+Store::Store(std::shared_ptr<Impl> impl, Deliver deliver)
+    : impl_(std::move(impl)), deliver_(std::move(deliver)) {}
 Store::~Store() = default;
 
 void Store::add_event(base::Event event) {
@@ -110,7 +115,7 @@ std::uint64_t Store::lost_events() const noexcept {
 
 void Store::list_events(std::int64_t after_id, base::Severity level, int limit,
                         Reply<Page<StoredEvent>> reply) {
-  impl_->ask(std::move(reply), [impl = impl_.get(), after_id, level, limit] {
+  impl_->ask(deliver_, std::move(reply), [impl = impl_.get(), after_id, level, limit] {
     return store::list_events(impl->db->connection, after_id, level, limit);
   });
 }

@@ -180,7 +180,10 @@ class Store {
   /// met it changed nothing.
   static base::Result<std::unique_ptr<Store>> open(const std::filesystem::path& file,
                                                    Deliver deliver, Options options = {});
-  /// Drains the queue, then closes. The last answers go through `deliver` before it returns.
+  /// The same store for who asks from another thread: answers of its calls go through `deliver`.
+  std::unique_ptr<Store> desk(Deliver deliver) const;
+  /// The last one drains the queue, then closes. The last answers go through `deliver` before it
+  /// returns.
   ~Store();
   Store(const Store&) = delete;
   Store& operator=(const Store&) = delete;
@@ -287,8 +290,9 @@ class Store {
 
  private:
   struct Impl;
-  explicit Store(std::unique_ptr<Impl> impl);
-  std::unique_ptr<Impl> impl_;
+  Store(std::shared_ptr<Impl> impl, Deliver deliver);
+  std::shared_ptr<Impl> impl_;
+  Deliver deliver_;
 };
 
 /// Reads a database without a Store, also while another program holds it open; changes nothing.

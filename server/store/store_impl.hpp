@@ -23,7 +23,6 @@ namespace roverd::store {
 /// Everything under `mutex` is touched by many threads, the rest by the store's thread alone.
 struct Store::Impl {
   std::unique_ptr<Database> db;
-  Deliver deliver;
   Options options;
   Missions missions{db->connection};
   Fences fences{db->connection};
@@ -37,7 +36,7 @@ struct Store::Impl {
   std::atomic<std::uint64_t> lost_events{0};
   std::thread thread{};
 
-  Impl(std::unique_ptr<Database> database, Deliver deliver_, Options options_);
+  Impl(std::unique_ptr<Database> database, Options options_);
   ~Impl();
   /// What was deleted too long ago. If that fails it stays until the next time.
   void forget();
@@ -46,7 +45,7 @@ struct Store::Impl {
   void write(const std::vector<base::Event>& list);
 
   template <class T>
-  void answer(Reply<T> reply, base::Result<T> result) {
+  void answer(const Deliver& deliver, Reply<T> reply, base::Result<T> result) {
     // Shared, because std::function wants copies and a plan may be large.
     auto kept = std::make_shared<base::Result<T>>(std::move(result));
     deliver([reply = std::move(reply), kept = std::move(kept)] { reply(std::move(*kept)); });
@@ -54,20 +53,21 @@ struct Store::Impl {
 
   /// Queues `work` (called as work() on the store's thread, gives base::Result<T>).
   template <class T, class Work>
-  void ask(Reply<T> reply, Work work) {
+  void ask(const Deliver& deliver, Reply<T> reply, Work work) {
     {
       std::lock_guard lock(mutex);
       if (jobs.size() < options.queue) {
-        jobs.push_back([this, reply = std::move(reply), work = std::move(work)]() mutable {
-          answer(std::move(reply), guarded([&]() -> base::Result<T> { return work(); }));
+        jobs.push_back([this, deliver, reply = std::move(reply), work = std::move(work)]() mutable {
+          answer(deliver, std::move(reply), guarded([&]() -> base::Result<T> { return work(); }));
         });
         news.notify_one();
         return;
       }
     }
-    answer<T>(std::move(reply), base::fail(base::Code::Unavailable,
-                                           "the store is busy: its queue of " +
-                                               std::to_string(options.queue) + " calls is full"));
+    answer<T>(
+        deliver, std::move(reply),
+        base::fail(base::Code::Unavailable, "the store is busy: its queue of " +
+                                                std::to_string(options.queue) + " calls is full"));
   }
 };
 

@@ -73,7 +73,12 @@ House::House(net::Limits limits, Vehicle vehicle, const Before& before)
   });
   if (!opened) throw std::runtime_error(opened.error().detail);
   store_ = std::move(*opened);
-  api::Deps deps{.robot = robot_, .store = *store_, .version = "test", .profile = profile()};
+  services_ = std::make_unique<services::Services>(robot_, *store_, "bunker");
+  api::Deps deps{.robot = robot_,
+                 .store = *store_,
+                 .services = *services_,
+                 .version = "test",
+                 .profile = profile()};
   deps.drivers = door(vehicle);
   store::TileSet farm;
   farm.set = "farm";
@@ -94,7 +99,7 @@ House::House(net::Limits limits, Vehicle vehicle, const Before& before)
     std::lock_guard lock(mutex_);
     sent_ = command;
   };
-  sample_soon();
+  start_services();
   web_ = std::thread([this] { io_.run(); });
   control_ = std::thread([this] { play(); });
 }
@@ -144,23 +149,29 @@ void House::serve(net::Limits limits) {
   api_->attach(stream_of(server_->hub()));
 }
 
-void House::sample_soon() {
-  sample_timer_.expires_after(api::Api::kSample);
-  sample_timer_.async_wait([this](const boost::system::error_code& ec) {
-    if (ec) return;
-    api_->on_sample();
-    sample_soon();
-  });
+void House::start_services() {
+  const auto on_web = [this](auto work) { boost::asio::post(io_, std::move(work)); };
+  services_->start({.tell =
+                        [this, on_web](base::Event event) {
+                          on_web([this, event = std::move(event)] { api_->on_event(event); });
+                        },
+                    .mission_changed =
+                        [this, on_web](const std::string& id, std::int64_t revision) {
+                          on_web([this, id, revision] { api_->on_mission_change(id, revision); });
+                        },
+                    .answer = on_web});
 }
 
 House::~House() {
   stop_ = true;
   control_.join();
+  services_->stop();
   boost::asio::post(io_, [this] {
     server_.reset();
     io_.stop();
   });
   web_.join();
+  services_.reset();
   store_.reset();
   std::error_code ignored;
   std::filesystem::remove_all(folder_, ignored);

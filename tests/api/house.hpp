@@ -12,7 +12,6 @@
 #include <thread>
 #include <vector>
 
-#include <boost/asio/steady_timer.hpp>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -21,6 +20,7 @@
 #include "net/doorbell.hpp"
 #include "net/server.hpp"
 #include "robot/robot.hpp"
+#include "services/services.hpp"
 #include "store/store.hpp"
 
 namespace roverd::test {
@@ -75,17 +75,17 @@ class House {
   void play();
   void tell(base::Time now, int count);
   void serve(net::Limits limits);
-  void sample_soon();
+  void start_services();
   api::DriverDoor door(Vehicle vehicle);
 
   std::filesystem::path folder_;
   boost::asio::io_context io_{net::kWebConcurrency};
   robot::Robot robot_;
   std::unique_ptr<store::Store> store_;
+  std::unique_ptr<services::Services> services_;
   std::unique_ptr<api::Api> api_;
   std::unique_ptr<net::Server> server_;
   std::unique_ptr<net::Doorbell> bell_;
-  boost::asio::steady_timer sample_timer_{io_};
   std::mutex mutex_;
   base::DriveCommand sent_;  ///< guarded by mutex_
   std::atomic<bool> stop_{false};

@@ -207,9 +207,9 @@ Json fence_json(const std::optional<base::FenceState>& fence) {
 }
 
 /// Pieces of points [lat, lon, age_s]; to a millimetre, for drawing.
-Json track_json(const Track& track, base::Time now) {
+Json track_json(const services::Track& track, base::Time now) {
   Json pieces = Json::array();
-  for (const Track::Point& p : track.points()) {
+  for (const services::Track::Point& p : track.points()) {
     if (p.begins) pieces.push_back(Json::array());
     const double age_s = std::max(0.0, base::seconds(now - p.stamp));
     pieces.back().push_back(
@@ -260,7 +260,7 @@ Json vehicle_json(const base::Snapshot& s, const std::string& name, base::Time n
           {"loop", loop_json(s.loop)}};
 }
 
-Json trail_json(const Trail& trail, const base::Snapshot& s) {
+Json trail_json(const services::Trail& trail, const base::Snapshot& s) {
   return {{"time", base::to_rfc3339(s.wall)},
           {"estimated", track_json(trail.estimated(), s.now)},
           {"received", track_json(trail.received(), s.now)}};

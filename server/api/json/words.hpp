@@ -9,11 +9,11 @@
 #include <string_view>
 
 #include "api/message.hpp"
-#include "api/trail.hpp"
 #include "base/snapshot.hpp"
 #include "mission/checks.hpp"
 #include "mission/formats/formats.hpp"
 #include "robot/robot.hpp"
+#include "services/trail.hpp"
 #include "store/store.hpp"
 
 namespace roverd::api {
@@ -55,7 +55,7 @@ Json vehicle_json(const base::Snapshot& snapshot, const std::string& name, base:
 /// How well the robot knows where it is: a part of vehicle_json.
 Json estimator_json(const base::Snapshot& snapshot);
 /// @param snapshot the last one that the trail has taken
-Json trail_json(const Trail& trail, const base::Snapshot& snapshot);
+Json trail_json(const services::Trail& trail, const base::Snapshot& snapshot);
 /// Every receiver's satellites, newest word of each.
 Json satellites_json(const base::Snapshot& snapshot, base::Time now);
 Json checks_json(const base::Snapshot& snapshot);

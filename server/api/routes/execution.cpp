@@ -15,7 +15,7 @@ constexpr std::int64_t kMostRevisions = 1'000'000'000;
 
 std::function<Json(const base::Snapshot&)> progress_of(const ContextPtr& context) {
   return [context](const base::Snapshot& snapshot) {
-    return execution_json(snapshot.mission, context->runs.offer());
+    return execution_json(snapshot.mission, context->offer(snapshot));
   };
 }
 
@@ -200,7 +200,7 @@ Handler resume(const ContextPtr& context) {
     const base::Time not_after = validity_of(members, *call, Moves::Yes);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
     if (refused_as_late(call, not_after)) return;
-    const auto offer = context->runs.offer();
+    const auto offer = context->deps.services.view()->offer;
     const auto loaded = context->deps.robot.loaded();
     if (!offer || (loaded && loaded->id != offer->mission_id)) {
       return run_command(context, call, robot::ResumeMission{}, not_after, progress_of(context));

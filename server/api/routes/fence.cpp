@@ -35,7 +35,7 @@ Response fence_response(http::status status, const store::StoredFence& fence) {
 /// The robot keeps to it from now on.
 void take_up(const ContextPtr& context, std::optional<store::StoredFence> fence) {
   context->fence = fence ? std::make_shared<const store::StoredFence>(std::move(*fence)) : nullptr;
-  context->fence_keeper.use(
+  context->deps.services.use_fence(
       context->fence ? std::shared_ptr<const mission::Fence>(context->fence, &context->fence->fence)
                      : nullptr);
 }

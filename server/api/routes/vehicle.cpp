@@ -3,6 +3,7 @@
 
 #include "api/context.hpp"
 #include "api/goals.hpp"
+#include "api/json/plain_json.hpp"
 
 namespace roverd::api {
 
@@ -179,6 +180,21 @@ Handler way_home(const ContextPtr& context) {
   };
 }
 
+/// A long way takes a while to write down: not here.
+void answer_trail(services::Services& services, const CallPtr& call) {
+  services.read_trail(
+      [](const services::Trail& trail, const base::Snapshot& s) {
+        return plain_json(trail_json(trail, s));
+      },
+      [call](std::optional<std::string> text) {
+        if (!text) {
+          return call->respond(
+              problem({base::Code::Unavailable, "the control loop has not started yet"}));
+        }
+        call->respond(text_response(http::status::ok, "application/json", std::move(*text)));
+      });
+}
+
 }  // namespace
 
 void add_vehicle_routes(const ContextPtr& c) {
@@ -206,10 +222,7 @@ void add_vehicle_routes(const ContextPtr& c) {
                        http::status::ok, capabilities_json(c->deps.profile, c->deps.version)));
                  }});
   c->router.add({get, "/vehicle/trail", {200, 503}, [c](const CallPtr& call) {
-                   if (const auto s = c->snapshot_or_refuse(call)) {
-                     c->trail.take(*s);  // the live stream goes on exactly where this ends
-                     call->respond(json_response(http::status::ok, trail_json(c->trail, *s)));
-                   }
+                   if (c->snapshot_or_refuse(call)) answer_trail(c->deps.services, call);
                  }});
   c->router.add({post, "/vehicle/arm", kCommand, arm(c)});
   c->router.add({post, "/vehicle/disarm", kCommand, plain(c, robot::Disarm{}, Moves::No)});

@@ -1,6 +1,6 @@
 #pragma once
 // The way so far, for a page that is opened late: where the robot believed it was, and what its
-// receiver said. In memory, from the program's start; web thread only.
+// receiver said. In memory, from the program's start; the services' thread only.
 //
 //   snapshots, 20 Hz ─▶ Trail ─▶ two Tracks: decimated, bounded, in pieces
 //
@@ -15,7 +15,7 @@
 #include "base/snapshot.hpp"
 #include "base/time.hpp"
 
-namespace roverd::api {
+namespace roverd::services {
 
 /// One decimated line.
 class Track {
@@ -56,6 +56,8 @@ class Trail {
   /// than kSlack_m at once, and samples are much less than kAhead_s apart.
   static constexpr double kSlack_m = 2.0;
   static constexpr double kAhead_s = 2.0;
+  /// An older pose is not where the robot is.
+  static constexpr double kStale_s = 1.0;
   /// A receiver does not always say its speed. Its points are drawn as dots, so little hangs on it.
   static constexpr double kReceiverReach_m = 10.0;
 
@@ -71,4 +73,4 @@ class Trail {
   std::optional<base::Time> fix_;  ///< stamp of the receiver's last position
 };
 
-}  // namespace roverd::api
+}  // namespace roverd::services

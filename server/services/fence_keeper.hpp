@@ -1,6 +1,6 @@
 #pragma once
 // Which fence holds, as the robot is to know it: laid out in its map, and again when that begins or
-// another fence is chosen. Web thread.
+// another fence is chosen. The services' thread.
 
 #include <cstdint>
 #include <memory>
@@ -10,7 +10,7 @@
 #include "base/snapshot.hpp"
 #include "robot/robot.hpp"
 
-namespace roverd::api {
+namespace roverd::services {
 
 class FenceKeeper {
  public:
@@ -43,4 +43,4 @@ class FenceKeeper {
   bool due_ = false;
 };
 
-}  // namespace roverd::api
+}  // namespace roverd::services

@@ -1,11 +1,9 @@
-#include "api/trail.hpp"
+#include "services/trail.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "api/json/words.hpp"
-
-namespace roverd::api {
+namespace roverd::services {
 
 namespace {
 
@@ -79,7 +77,7 @@ void Track::thin() {
 
 void Trail::take(const base::Snapshot& s) {
   const auto& pose = s.pose;
-  if (pose && base::seconds(s.now - pose->stamp) <= StaleAfter::kPosition_s) {
+  if (pose && base::seconds(s.now - pose->stamp) <= kStale_s) {
     const double reach_m = kSlack_m + std::abs(pose->speed_mps.value_or(0.0)) * kAhead_s;
     estimated_.add(pose->global, pose->stamp, reach_m);
   }
@@ -89,4 +87,4 @@ void Trail::take(const base::Snapshot& s) {
   received_.add(*fix->position, fix->stamp, kReceiverReach_m);
 }
 
-}  // namespace roverd::api
+}  // namespace roverd::services

@@ -1,11 +1,11 @@
-#include "api/radio_edits.hpp"
+#include "services/radio_edits.hpp"
 
 #include <algorithm>
 #include <utility>
 
 #include "mission/edit/operations.hpp"
 
-namespace roverd::api {
+namespace roverd::services {
 namespace {
 
 using base::Code;
@@ -75,7 +75,8 @@ const char* words_of(EditKind kind) {
 
 }  // namespace
 
-RadioEdits::RadioEdits(ContextPtr context) : context_(std::move(context)) {}
+RadioEdits::RadioEdits(robot::Robot& robot, store::Store& store, Desk& desk)
+    : robot_(robot), store_(store), desk_(desk) {}
 RadioEdits::~RadioEdits() = default;
 
 void RadioEdits::put(MissionEdit edit) {
@@ -90,7 +91,14 @@ void RadioEdits::put(MissionEdit edit) {
   if (waiting_.size() == 1) next();
 }
 
+void RadioEdits::sweep(base::Time now) {
+  if (!give_up_ || now < *give_up_) return;
+  finish(base::fail(Code::Unavailable, "the control loop does not answer"));
+}
+
 void RadioEdits::finish(Result<void> result) {
+  give_up_.reset();
+  ++handed_;
   if (!result && tell) {
     tell({base::wall_now(), base::Severity::Warning, "mission_edit_refused",
           std::string(words_of(waiting_.front().kind)) + ": " + result.error().detail});
@@ -100,7 +108,7 @@ void RadioEdits::finish(Result<void> result) {
 }
 
 RadioEdits::Target RadioEdits::find_target(const MissionEdit& edit) {
-  if (const auto loaded = context_->deps.robot.loaded()) {
+  if (const auto loaded = robot_.loaded()) {
     cleared_.reset();
     return {loaded->id, loaded->revision, true, loaded->plan};
   }
@@ -118,13 +126,13 @@ void RadioEdits::next() {
   }
   // An edit before this one may have changed the numbers: then the item of now is meant.
   std::optional<int> item = edit.item;
-  const auto snapshot = context_->deps.robot.snapshot();
+  const auto snapshot = robot_.snapshot();
   if (item && edit.revision != target.revision && snapshot) item = snapshot->mission.current_item;
   const auto number = apply(target.plan, edit, item);
   if (!number) return finish(tl::unexpected(number.error()));
   // What cannot be driven is not saved.
   if (has_waypoint(target.plan)) {
-    const auto good = context_->deps.robot.compile({target.id, target.revision, target.plan});
+    const auto good = robot_.compile({target.id, target.revision, target.plan});
     if (!good) return finish(tl::unexpected(good.error()));
   }
   save(std::move(target), *number);
@@ -149,17 +157,16 @@ void RadioEdits::save(Target target, int item) {
     edits.finish(tl::unexpected(std::move(error)));
   };
   store::Change change{kRadioAuthor, words_of(waiting_.front().kind)};
-  store::Store& store = context_->deps.store;
   if (target.id.empty()) {
-    store.create_mission(std::move(target.plan), std::move(change), std::move(done));
+    store_.create_mission(std::move(target.plan), std::move(change), std::move(done));
   } else {
-    store.replace_mission(target.id, target.revision, std::move(target.plan), std::move(change),
-                          std::move(done));
+    store_.replace_mission(target.id, target.revision, std::move(target.plan), std::move(change),
+                           std::move(done));
   }
 }
 
 void RadioEdits::hand_over(const Target& before, int item, store::StoredMission stored) {
-  context_->announce(stored.id, stored.revision);
+  if (announce) announce(stored);
   robot::ReviseMission revise;
   revise.kind = waiting_.front().kind;
   revise.item = item;
@@ -168,17 +175,24 @@ void RadioEdits::hand_over(const Target& before, int item, store::StoredMission 
     revise.from_revision = before.revision;
   }
   if (has_waypoint(stored.plan)) {
-    auto compiled = context_->deps.robot.compile({stored.id, stored.revision, stored.plan});
+    auto compiled = robot_.compile({stored.id, stored.revision, stored.plan});
     if (!compiled) return finish(tl::unexpected(compiled.error()));
     revise.mission = std::move(*compiled);
   } else {
     cleared_ = Target{stored.id, stored.revision, false, std::move(stored.plan)};
   }
+  give_up_ = base::steady_now() + kPatience;
   const std::weak_ptr<RadioEdits*> self = self_;
-  context_->commands.run(std::move(revise), base::Time::max(), base::steady_now(),
-                         [self](Result<void> result) {
-                           if (const auto alive = self.lock()) (*alive)->finish(std::move(result));
-                         });
+  auto answer = [self, mine = handed_](const Result<void>& result) {
+    const auto alive = self.lock();
+    if (alive && (*alive)->handed_ == mine) (*alive)->finish(result);
+  };
+  // The robot's answers come on whatever thread drains them.
+  auto reply = [post = desk_.poster(), answer](Result<void> result) {
+    post([answer, result = std::move(result)] { answer(result); });
+  };
+  if (robot_.request(std::move(revise), base::Time::max(), std::move(reply))) return;
+  finish(base::fail(Code::Unavailable, "too many commands wait for the robot"));
 }
 
-}  // namespace roverd::api
+}  // namespace roverd::services

@@ -6,28 +6,39 @@
 //
 // One at a time, in order. What is changed is what is loaded: if somebody saved another revision
 // meanwhile, the edit is refused with an event, and nothing is lost. Nothing loaded: a waypoint
-// goes to the mission that was cleared last, or to a new one. Web thread.
+// goes to the mission that was cleared last, or to a new one. The services' thread.
 
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 
-#include "api/context.hpp"
+#include "robot/robot.hpp"
+#include "services/desk.hpp"
+#include "store/store.hpp"
 
-namespace roverd::api {
+namespace roverd::services {
 
 class RadioEdits {
  public:
-  explicit RadioEdits(ContextPtr context);
+  /// How long the robot may take to go on with a revision.
+  static constexpr base::Duration kPatience = std::chrono::seconds(2);
+
+  /// All must outlive it. @param store answers on the desk
+  RadioEdits(robot::Robot& robot, store::Store& store, Desk& desk);
   ~RadioEdits();
   RadioEdits(const RadioEdits&) = delete;
   RadioEdits& operator=(const RadioEdits&) = delete;
 
   /// Writes an event as if the robot had said it.
   std::function<void(base::Event)> tell;
+  /// A revision was stored.
+  std::function<void(const store::StoredMission&)> announce;
 
   void put(robot::MissionEdit edit);
+  /// Now and then: an edit that the robot does not answer is given up.
+  void sweep(base::Time now);
 
  private:
   static constexpr std::size_t kWaiting = 16;
@@ -45,10 +56,14 @@ class RadioEdits {
   Target find_target(const robot::MissionEdit& edit);
   void finish(base::Result<void> result);
 
-  ContextPtr context_;
+  robot::Robot& robot_;
+  store::Store& store_;
+  Desk& desk_;
   std::deque<robot::MissionEdit> waiting_;  ///< the first one is at work
   std::optional<Target> cleared_;
+  std::optional<base::Time> give_up_;  ///< the first edit is with the robot, until then
+  std::uint64_t handed_ = 0;           ///< late answers know which edit they are of
   std::shared_ptr<RadioEdits*> self_ = std::make_shared<RadioEdits*>(this);
 };
 
-}  // namespace roverd::api
+}  // namespace roverd::services

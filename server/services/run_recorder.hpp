@@ -1,7 +1,7 @@
 #pragma once
 // Writes down what the robot drives: runs with their tracks, and where the mission in hand stands.
 // It reads snapshots; nothing of it runs in the control loop, and the store writes on its own
-// thread. Web thread.
+// thread. The services' thread.
 //
 //   Idle ──mission runs──▶ Recording ──pause──▶ Resting ──runs again──▶ Recording
 //                              └──finished, stopped, another mission──▶ Idle
@@ -20,7 +20,7 @@
 #include "robot/robot.hpp"
 #include "store/store.hpp"
 
-namespace roverd::api {
+namespace roverd::services {
 
 class RunRecorder {
  public:
@@ -77,4 +77,4 @@ class RunRecorder {
   std::shared_ptr<RunRecorder*> self_ = std::make_shared<RunRecorder*>(this);
 };
 
-}  // namespace roverd::api
+}  // namespace roverd::services

@@ -1,11 +1,11 @@
-#include "api/run_recorder.hpp"
+#include "services/run_recorder.hpp"
 
 #include <algorithm>
 #include <utility>
 
 #include "base/log.hpp"
 
-namespace roverd::api {
+namespace roverd::services {
 
 namespace {
 
@@ -97,7 +97,7 @@ void RunRecorder::begin(const base::Snapshot& s) {
     r.open_ = false;
     static base::LogLimit limit(10.0);
     if (limit.due()) {
-      base::log(base::Level::Error, "api", "a run is not recorded",
+      base::log(base::Level::Error, "services", "a run is not recorded",
                 {{"reason", id.error().detail}});
     }
   });
@@ -195,4 +195,4 @@ void RunRecorder::keep_place(const base::Snapshot& s) {
   store_.keep_place(std::move(place), [](auto) {});
 }
 
-}  // namespace roverd::api
+}  // namespace roverd::services

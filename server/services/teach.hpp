@@ -7,7 +7,7 @@
 //   Interrupted (found in the store at the start) ──resume, stop, discard──▶ as from Paused
 //
 // Points go to the store once a second: a power cut loses at most the last second. Whoever drives,
-// and by what means, makes no difference. Web thread.
+// and by what means, makes no difference. The services' thread.
 
 #include <functional>
 #include <memory>
@@ -15,17 +15,33 @@
 #include <string>
 #include <vector>
 
-#include "api/message.hpp"
 #include "base/snapshot.hpp"
 #include "mission/edit/teach.hpp"
 #include "robot/robot.hpp"
 #include "store/store.hpp"
 
-namespace roverd::api {
+namespace roverd::services {
+
+enum class TeachState { Loading, Idle, Recording, Paused, Interrupted };
+/// "recording"
+const char* to_string(TeachState state) noexcept;
+
+/// What people see of a recording.
+struct TeachView {
+  TeachState state = TeachState::Loading;
+  std::size_t points = 0;
+  double length_m = 0.0;
+  std::string name;  ///< of Idle and Loading: empty, as all below
+  base::WallTime started{};
+  int gaps = 0;
+  std::size_t unsaved_points = 0;  ///< not on the disk yet
+  std::string waiting;             ///< why nothing is recorded now; empty: it is
+  mission::TeachSettings settings{};
+};
 
 class TeachIn {
  public:
-  enum class State { Loading, Idle, Recording, Paused, Interrupted };
+  using State = TeachState;
   using Done = std::function<void(base::Result<void>)>;
   using Saved = store::Reply<store::StoredMission>;
 
@@ -40,7 +56,7 @@ class TeachIn {
   /// A mission was made.
   std::function<void(const store::StoredMission&)> announce;
 
-  /// Every Api::kSample.
+  /// Every Services::kSample.
   void sample(const base::Snapshot& snapshot);
   /// Once a second.
   void save();
@@ -56,10 +72,7 @@ class TeachIn {
   /// @param name empty: as it was started. @param tolerance_m empty: likewise
   void stop(std::string name, std::optional<double> tolerance_m, Saved saved);
 
-  State state() const noexcept { return state_; }
-  /// {state, points, length_m}, for the vehicle's state.
-  Json brief() const;
-  Json json() const;
+  TeachView view() const;
 
  private:
   base::Result<void> allow(const char* what, std::initializer_list<State> from) const;
@@ -82,4 +95,4 @@ class TeachIn {
   std::shared_ptr<TeachIn*> self_ = std::make_shared<TeachIn*>(this);
 };
 
-}  // namespace roverd::api
+}  // namespace roverd::services

@@ -1,4 +1,4 @@
-#include "api/teach.hpp"
+#include "services/teach.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "base/time.hpp"
 
-namespace roverd::api {
+namespace roverd::services {
 namespace {
 
 using base::Code;
@@ -18,7 +18,27 @@ constexpr const char* kTeachAuthor = "teach-in";
 /// A pose older than this is not where the robot is.
 constexpr double kFresh_s = 0.5;
 
-const char* word_of(State state) noexcept {
+std::string usual_name(base::WallTime wall) {
+  constexpr std::size_t kDay = 10;
+  constexpr std::size_t kMinute = 16;
+  std::string text = base::to_rfc3339(wall).substr(0, kMinute);
+  if (text.size() > kDay) text[kDay] = ' ';
+  return "Taught " + text;
+}
+
+/// Empty: the position may be recorded.
+std::string trouble_with(const base::Snapshot& s, double sigma_max_m) {
+  if (!s.pose) return "the position is not known";
+  if (base::seconds(s.now - s.pose->stamp) > kFresh_s) return "the position is stale";
+  if (s.pose->horizontal_sigma_m <= sigma_max_m) return {};
+  const auto cm = [](double m) { return std::to_string(std::lround(m * 100.0)) + " cm"; };
+  return "the position is uncertain by " + cm(s.pose->horizontal_sigma_m) + ", at most " +
+         cm(sigma_max_m) + " are recorded";
+}
+
+}  // namespace
+
+const char* to_string(TeachState state) noexcept {
   switch (state) {
     case State::Loading:
       return "loading";
@@ -33,30 +53,6 @@ const char* word_of(State state) noexcept {
   }
   return "";
 }
-
-std::string usual_name(base::WallTime wall) {
-  constexpr std::size_t kDay = 10;
-  constexpr std::size_t kMinute = 16;
-  std::string text = base::to_rfc3339(wall).substr(0, kMinute);
-  if (text.size() > kDay) text[kDay] = ' ';
-  return "Taught " + text;
-}
-
-double to_places(double value, double places) {
-  return std::round(value * places) / places;
-}
-
-/// Empty: the position may be recorded.
-std::string trouble_with(const base::Snapshot& s, double sigma_max_m) {
-  if (!s.pose) return "the position is not known";
-  if (base::seconds(s.now - s.pose->stamp) > kFresh_s) return "the position is stale";
-  if (s.pose->horizontal_sigma_m <= sigma_max_m) return {};
-  const auto cm = [](double m) { return std::to_string(std::lround(m * 100.0)) + " cm"; };
-  return "the position is uncertain by " + cm(s.pose->horizontal_sigma_m) + ", at most " +
-         cm(sigma_max_m) + " are recorded";
-}
-
-}  // namespace
 
 TeachIn::TeachIn(store::Store& store) : store_(store) {
   const std::weak_ptr<TeachIn*> self = self_;
@@ -93,7 +89,7 @@ Result<void> TeachIn::allow(const char* what, std::initializer_list<State> from)
   if (std::find(from.begin(), from.end(), state_) != from.end()) return {};
   const std::string is = state_ == State::Idle
                              ? "nothing is being recorded"
-                             : "a recording is there, " + std::string(word_of(state_));
+                             : "a recording is there, " + std::string(to_string(state_));
   return base::fail(Code::Conflict, std::string("cannot ") + what + ": " + is);
 }
 
@@ -271,26 +267,16 @@ void TeachIn::save() {
       });
 }
 
-Json TeachIn::brief() const {
-  return {{"state", word_of(state_)},
-          {"points", record_.points.size()},
-          {"length_m", to_places(length_m_, 1e2)}};
+TeachView TeachIn::view() const {
+  return {.state = state_,
+          .points = record_.points.size(),
+          .length_m = length_m_,
+          .name = record_.name,
+          .started = record_.started,
+          .gaps = gaps_,
+          .unsaved_points = record_.points.size() - saved_,
+          .waiting = waiting_,
+          .settings = record_.settings};
 }
 
-Json TeachIn::json() const {
-  Json out = brief();
-  const bool none = state_ == State::Idle;
-  out["name"] = none ? Json(nullptr) : Json(record_.name);
-  out["started"] = none ? Json(nullptr) : Json(base::to_rfc3339(record_.started));
-  out["gaps"] = gaps_;
-  out["unsaved_points"] = record_.points.size() - saved_;
-  out["waiting"] = waiting_.empty() ? Json(nullptr) : Json(waiting_);
-  const mission::TeachSettings& s = record_.settings;
-  out["settings"] = {{"step_m", s.step_m},
-                     {"heading_deg", s.heading_deg},
-                     {"tolerance_m", s.tolerance_m},
-                     {"sigma_max_m", s.sigma_max_m}};
-  return out;
-}
-
-}  // namespace roverd::api
+}  // namespace roverd::services
