@@ -8,7 +8,13 @@ const server = process.env['ROVERD_URL'] ?? 'http://127.0.0.1:8080';
 
 export default defineConfig({
   plugins: [svelte(), precompress('dist')],
-  build: { target: 'es2022', modulePreload: { polyfill: false }, assetsInlineLimit: 0 },
+  build: {
+    target: 'es2022',
+    modulePreload: { polyfill: false },
+    assetsInlineLimit: 0,
+    // The interface's page is a second one: who drives never loads it.
+    rollupOptions: { input: ['index.html', 'docs.html'] },
+  },
   server: {
     host: '127.0.0.1',
     proxy: { '/api': { target: server, ws: true }, '/tiles': server, '/docs': server },

@@ -10,7 +10,7 @@
 set(not_built "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>roverd</title>\
 <h1>The page was not built</h1><p>This program was compiled without <code>web/dist</code>. Run \
 <code>./run</code>, or <code>npm ci && npm run build</code> in <code>web</code>, and compile \
-again. The <a href=\"/docs\">interface</a> works.</p></html>\n")
+again. The <a href=\"/openapi.json\">interface</a> works.</p></html>\n")
 
 if(EXISTS ${DIST}/index.html)
   set(root ${DIST})

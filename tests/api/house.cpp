@@ -80,6 +80,13 @@ House::House(net::Limits limits, Vehicle vehicle, const Before& before)
                  .version = "test",
                  .profile = profile()};
   deps.drivers = door(vehicle);
+  deps.page = [](const net::Request& request) -> std::optional<net::Response> {
+    if (request.target() != "/docs.html") return std::nullopt;
+    net::Response file{boost::beast::http::status::ok, 11};
+    file.body() = "the page's file /docs.html";
+    file.prepare_payload();
+    return file;
+  };
   store::TileSet farm;
   farm.set = "farm";
   farm.name = "Farm";
