@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <variant>
 #include <vector>
 
 #include <unistd.h>
@@ -116,16 +117,22 @@ int become_study(char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    if (argc > 1 && std::string_view(argv[1]) == "decode")
-      return roverd::decode(argc - 2, argv + 2);
+    // The study's arguments are its own.
     if (argc > 1 && std::string_view(argv[1]) == "study") return become_study(argv);
-    if (argc > 1 && std::string_view(argv[1]) == "report")
-      return roverd::report(argc - 2, argv + 2);
-    if (argc > 1 && std::string_view(argv[1]) == "ntrip")
-      return roverd::ntrip_command(argc - 2, argv + 2);
-    if (argc > 1 && std::string_view(argv[1]) == "replay")
-      return roverd::replay(argc - 2, argv + 2);
-    return serve(roverd::read_options(argc, argv));
+    struct Run {
+      int operator()(const roverd::Options& o) const { return serve(o); }
+      int operator()(const roverd::DecodeCommand& c) const {
+        return roverd::decode(c.kind, c.file);
+      }
+      int operator()(const roverd::ReplayCommand& c) const { return roverd::replay(c); }
+      int operator()(const roverd::ReportCommand& c) const {
+        return roverd::report(c.data, c.runs);
+      }
+      int operator()(const roverd::TableCommand& c) const {
+        return roverd::ntrip_table(c.casters, c.json);
+      }
+    };
+    return std::visit(Run{}, roverd::read_command(argc, argv));
   } catch (const std::exception& error) {
     return say(kRefused, error.what());
   }

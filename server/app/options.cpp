@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <iostream>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -11,25 +12,29 @@ namespace roverd {
 
 namespace {
 
+constexpr int kArgumentsWrong = 2;
+
 /// Not a number lies in no range, and CLI's own check lets it pass.
-std::string check_speed(const std::string& text) {
-  constexpr double kFastest = 1000.0;
-  double speed = 0.0;
-  if (CLI::detail::lexical_cast(text, speed) && speed >= 0.0 && speed <= kFastest) return {};
-  return "\"" + text + "\" is not a number in 0 .. 1000";
+CLI::Validator number_in(double least, double most) {
+  return {
+      [=](std::string& text) -> std::string {
+        double value = 0.0;
+        const bool good = CLI::detail::lexical_cast(text, value) && value >= least && value <= most;
+        if (good) return {};
+        return "\"" + text + "\" is not a number in " + std::to_string(static_cast<long>(least)) +
+               " .. " + std::to_string(static_cast<long>(most));
+      },
+      ""};
 }
 
-}  // namespace
+std::string check_run(const std::string& text) {
+  std::int64_t id = 0;
+  if (CLI::detail::lexical_cast(text, id) && id >= 1) return {};
+  return "\"" + text + "\" is no run's number";
+}
 
-Options read_options(int argc, char** argv) {
-  Options o;
-  CLI::App app("roverd: the ground station that lives on the robot", "roverd");
-  app.footer(
-      "roverd decode KIND FILE|-   a recording as JSON lines (roverd decode --help)\n"
-      "roverd replay FILE... --report  the track of a recorded run (roverd replay --help)\n"
-      "roverd report RUN...        how well runs were driven, side by side\n"
-      "roverd study                courses in simulated time, measured (roverd study --help)");
-  app.set_version_flag("--version", kVersion);
+void add_station(CLI::App& app, Options& o) {
+  app.set_version_flag("--version", std::string("roverd ") + kVersion);
   app.add_option("--config", o.config, "config file; vehicle profiles lie beside it in vehicles/")
       ->capture_default_str();
   app.add_option("--data", o.data, "folder for missions, events, logs and recordings")
@@ -44,22 +49,130 @@ Options read_options(int argc, char** argv) {
                  "twice, for the bus and the receiver of one run: in step")
       ->allow_extra_args(false);
   app.add_option("--replay-speed", o.replay_speed, "times real time; 0 is as fast as possible")
-      ->check(check_speed)
+      ->check(number_in(0.0, 1000.0))
       ->capture_default_str();
   app.add_flag("--record", o.record, "record every input byte under the data folder");
+}
+
+/// A command, with what it says when what it needs is not there.
+struct Told {
+  CLI::App* app;
+  std::string wants;
+};
+
+Told add_decode(CLI::App& app, DecodeCommand& c) {
+  CLI::App* d = app.add_subcommand("decode", "a recording as JSON lines");
+  d->footer(
+      "One JSON object a line for each frame or sentence of a recording; - reads standard input.\n"
+      "What is not understood carries its reason under \"refused\".\n"
+      "KIND:\n"
+      "  bunker   CAN frames of a Bunker: the text of candump or candump -L\n"
+      "  nmea     bytes of a GNSS receiver\n"
+      "  ubx      the same, with the frames of u-blox receivers read\n"
+      "  mti      bytes of an Xsens MTi");
+  d->add_option("KIND", c.kind, "bunker, nmea, ubx or mti")->required();
+  d->add_option("FILE", c.file, "the recording; - is standard input")->required();
+  return {d, "decode wants KIND and FILE"};
+}
+
+Told add_replay(CLI::App& app, ReplayCommand& c) {
+  CLI::App* r = app.add_subcommand("replay", "the track of a recorded run");
+  r->footer(
+      "Plays recordings of one run (CAN bus, receiver, inertial unit) through the drivers and the\n"
+      "estimator, as fast as the machine can, and prints the track. The same files and settings\n"
+      "give the same output. X.log goes on in X.002.log, X.003.log ... where they are.");
+  r->add_option("FILE", c.plan.files, "the recordings")->required();
+  r->add_flag("--report", c.report, "also what the estimator made of its inputs");
+  r->add_option_function<std::string>(
+       "--format", [&c](const std::string& word) { c.geojson = word == "geojson"; },
+       "csv: the track as a table, the report as # lines after it; geojson: a FeatureCollection, "
+       "the report as its member")
+      ->check([](const std::string& word) -> std::string {
+        return word == "csv" || word == "geojson" ? "" : "must be csv or geojson";
+      })
+      ->default_str("csv");
+  r->add_option("--every", c.plan.every_s, "seconds between two poses; 0: all, 50 a second")
+      ->check(number_in(0.0, 3600.0))
+      ->capture_default_str();
+  r->add_option("--config", c.source.config, "config file")->capture_default_str();
+  r->add_option("--vehicle", c.source.vehicle, "vehicle profile, instead of the config's");
+  r->add_option("--set", c.source.overrides, "one setting: key=value")->allow_extra_args(false);
+  return {r, "replay: wants a FILE"};
+}
+
+Told add_report(CLI::App& app, ReportCommand& c) {
+  CLI::App* r = app.add_subcommand("report", "how well runs were driven, side by side");
+  r->footer("GET /runs lists the runs.");
+  r->add_option("--data", c.data, "folder of the database")->capture_default_str();
+  r->add_option("RUN", c.runs, "numbers of runs")->required()->check(check_run);
+  return {r, "report: which runs?"};
+}
+
+Told add_ntrip(CLI::App& app, TableCommand& c) {
+  CLI::App* n = app.add_subcommand("ntrip", "what casters of corrections offer");
+  CLI::App* t = n->add_subcommand("table", "lists the streams of casters");
+  n->require_subcommand(1);
+  t->add_option("CASTER", c.casters, "HOST[:PORT] or ntrip[s]://[USER:PASSWORD@]HOST[:PORT]")
+      ->required();
+  t->add_flag("--json", c.json, "as a JSON array");
+  return {n, "usage: roverd ntrip table CASTER [CASTER...] [--json]"};
+}
+
+/// Why the arguments of a command are wrong.
+std::string cause_of(const CLI::ParseError& error, const CLI::App& app, const Told& command) {
+  const std::string name = command.app->get_name();
+  if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) return command.wants;
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
+    const auto rest = app.remaining(true);
+    const bool option = !rest.empty() && rest.front().starts_with("-");
+    return option ? name + ": " + rest.front() + " is not known" : command.wants;
+  }
+  return name + ": " + error.what();
+}
+
+[[noreturn]] void complain(const std::string& cause, const std::string& help) {
+  std::cerr << "roverd: " << cause << " (" << help << ")\n";
+  std::exit(kArgumentsWrong);
+}
+
+}  // namespace
+
+Command read_command(int argc, char** argv) {
+  Options options;
+  DecodeCommand decode;
+  ReplayCommand replay;
+  ReportCommand report;
+  TableCommand table;
+  CLI::App app("roverd: the ground station that lives on the robot", "roverd");
+  app.footer("roverd study: courses in simulated time, measured (roverd study --help)");
+  add_station(app, options);
+  const Told commands[] = {add_decode(app, decode), add_replay(app, replay),
+                           add_report(app, report), add_ntrip(app, table)};
+  const auto chosen = [&commands]() -> const Told* {
+    for (const Told& one : commands) {
+      if (one.app->parsed()) return &one;
+    }
+    return nullptr;
+  };
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
     std::cout << app.help();
     std::exit(0);
-  } catch (const CLI::CallForVersion&) {
-    std::cout << "roverd " << kVersion << "\n";
+  } catch (const CLI::CallForVersion& version) {
+    std::cout << version.what() << "\n";
     std::exit(0);
   } catch (const CLI::ParseError& error) {
-    std::cerr << "roverd: " << error.what() << " (roverd --help lists the options)\n";
-    std::exit(2);
+    const Told* command = chosen();
+    if (command == nullptr) complain(error.what(), "roverd --help lists the options");
+    complain(cause_of(error, app, *command), "roverd " + command->app->get_name() + " --help");
   }
-  return o;
+  const Told* command = chosen();
+  if (command == nullptr) return options;
+  if (command->app == commands[0].app) return decode;
+  if (command->app == commands[1].app) return replay;
+  if (command->app == commands[2].app) return report;
+  return table;
 }
 
 }  // namespace roverd

@@ -1,12 +1,17 @@
 #pragma once
-// The command line of roverd.
+// The command line of roverd, and of its commands.
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
+
+#include "replay/run.hpp"
 
 namespace roverd {
 
+/// Without a command: the ground station.
 struct Options {
   std::string config = "config/robot.toml";
   std::string data = "data";
@@ -19,8 +24,22 @@ struct Options {
   bool record = false;
 };
 
+struct DecodeCommand {
+  std::string kind;
+  std::string file;
+};
+struct ReportCommand {
+  std::string data = "data";
+  std::vector<std::int64_t> runs;
+};
+struct TableCommand {
+  std::vector<std::string> casters;
+  bool json = false;
+};
+using Command = std::variant<Options, DecodeCommand, ReplayCommand, ReportCommand, TableCommand>;
+
 /// Prints help, version or a one-line error and ends the program where the arguments say so
 /// (exit code 2 for wrong ones).
-Options read_options(int argc, char** argv);
+Command read_command(int argc, char** argv);
 
 }  // namespace roverd

@@ -70,8 +70,14 @@ std::string report_text(const ReplayReport& report);
 std::string geojson_text(const std::vector<ReplayPose>& poses, const ReplayReport* report);
 
 /// roverd replay FILE… [--report] [--format csv|geojson] [--every S] [--config FILE]
-/// [--vehicle NAME] [--set KEY=VALUE]. @param argc, argv what follows the word "replay".
-/// @return exit code: 0, 1 the output cannot be written, 2 wrong arguments or files.
-int replay(int argc, char** argv);
+/// [--vehicle NAME] [--set KEY=VALUE].
+struct ReplayCommand {
+  ReplayPlan plan{};
+  SettingsSource source{.config = "config/robot.toml", .vehicle = {}, .overrides = {}};
+  bool report = false;
+  bool geojson = false;
+};
+/// @return exit code: 0, 1 the output cannot be written, 2 wrong settings or files.
+int replay(const ReplayCommand& command);
 
 }  // namespace roverd

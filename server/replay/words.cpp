@@ -17,20 +17,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kReplayUsage =
-    "usage: roverd replay FILE [FILE...] [options]\n"
-    "Plays recordings of one run (CAN bus, receiver, inertial unit) through the drivers and the\n"
-    "estimator, as fast as the machine can, and prints the track. The same files and settings "
-    "give\n"
-    "the same output. X.log goes on in X.002.log, X.003.log ... where they are.\n"
-    "  --report            also what the estimator made of its inputs\n"
-    "  --format csv        the track as a table (default), the report as # lines after it\n"
-    "  --format geojson    the track as a FeatureCollection, the report as its member\n"
-    "  --every S           seconds between two poses, default 0.1; 0: all, 50 a second\n"
-    "  --config FILE       default config/robot.toml\n"
-    "  --vehicle NAME      vehicle profile, instead of the config's\n"
-    "  --set KEY=VALUE     one setting\n";
-
 constexpr int kNotWritten = 1;
 constexpr int kArgumentsWrong = 2;
 
@@ -85,60 +71,6 @@ Json report_json(const ReplayReport& r) {
     if (d.detail) out["drivers"][d.name]["counts"] = d.detail->counts;
   }
   return out;
-}
-
-struct Arguments {
-  ReplayPlan plan;
-  SettingsSource source{.config = "config/robot.toml", .vehicle = {}, .overrides = {}};
-  bool report = false;
-  bool geojson = false;
-  bool help = false;
-  std::string problem;  ///< why they are wrong
-};
-
-/// @return whether the option took the value.
-bool take_value(Arguments& a, const std::string& option, const std::string& value) {
-  if (option == "--config") {
-    a.source.config = value;
-  } else if (option == "--vehicle") {
-    a.source.vehicle = value;
-  } else if (option == "--set") {
-    a.source.overrides.push_back(value);
-  } else if (option == "--format") {
-    a.geojson = value == "geojson";
-    if (value != "csv" && value != "geojson") a.problem = "--format must be csv or geojson";
-  } else if (option == "--every") {
-    char* end = nullptr;
-    a.plan.every_s = std::strtod(value.c_str(), &end);
-    const bool good =
-        !value.empty() && *end == '\0' && a.plan.every_s >= 0.0 && a.plan.every_s <= 3600.0;
-    if (!good) a.problem = "--every must be a number in 0 .. 3600";
-  } else {
-    return false;
-  }
-  return true;
-}
-
-Arguments read_arguments(int argc, char** argv) {
-  Arguments a;
-  for (int i = 0; i < argc && a.problem.empty(); ++i) {
-    const std::string word = argv[i];
-    if (word == "--help" || word == "-h") {
-      a.help = true;
-    } else if (word == "--report") {
-      a.report = true;
-    } else if (!word.starts_with("--")) {
-      a.plan.files.push_back(word);
-    } else if (i + 1 == argc) {
-      a.problem = word + " is not known, or wants a value";
-    } else if (take_value(a, word, argv[i + 1])) {
-      ++i;
-    } else {
-      a.problem = word + " is not known";
-    }
-  }
-  if (!a.help && a.problem.empty() && a.plan.files.empty()) a.problem = "wants a FILE";
-  return a;
 }
 
 int tell(int code, const std::string& cause) {
@@ -222,15 +154,7 @@ std::string geojson_text(const std::vector<ReplayPose>& poses, const ReplayRepor
   return out.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-int replay(int argc, char** argv) {
-  const Arguments a = read_arguments(argc, argv);
-  if (a.help) {
-    std::fputs(kReplayUsage, stdout);
-    return 0;
-  }
-  if (!a.problem.empty()) {
-    return tell(kArgumentsWrong, "replay: " + a.problem + " (roverd replay --help)");
-  }
+int replay(const ReplayCommand& a) {
   const auto settings = load_settings(a.source);
   if (!settings) return tell(kArgumentsWrong, settings.error().detail);
   std::string out = a.geojson ? "" : csv_head();

@@ -15,16 +15,6 @@
 namespace roverd {
 namespace {
 
-constexpr const char* kUsage =
-    "usage: roverd decode KIND FILE|-\n"
-    "Prints one JSON object a line for each frame or sentence of a recording; - reads standard\n"
-    "input. What is not understood carries its reason under \"refused\".\n"
-    "KIND:\n"
-    "  bunker   CAN frames of a Bunker: the text of candump or candump -L\n"
-    "  nmea     bytes of a GNSS receiver\n"
-    "  ubx      the same, with the frames of u-blox receivers read\n"
-    "  mti      bytes of an Xsens MTi\n";
-
 constexpr int kUnreadable = 1;
 constexpr int kUsageWrong = 2;
 
@@ -96,18 +86,12 @@ std::string to_line(const nlohmann::ordered_json& object) {
   return object.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
 }
 
-int decode(int argc, char** argv) {
+int decode(const std::string& kind, const std::string& file) {
   std::signal(SIGPIPE, SIG_IGN);
-  const std::string first = argc > 0 ? argv[0] : "";
-  if (first == "--help" || first == "-h") {
-    std::fputs(kUsage, stdout);
-    return 0;
+  for (const Kind& known : kKinds) {
+    if (known.name == kind) return run(known, file);
   }
-  if (argc != 2) return say(kUsageWrong, "decode wants KIND and FILE (roverd decode --help)");
-  for (const Kind& kind : kKinds) {
-    if (kind.name == first) return run(kind, argv[1]);
-  }
-  return say(kUsageWrong, "decode does not know \"" + first + "\" (roverd decode --help)");
+  return say(kUsageWrong, "decode does not know \"" + kind + "\" (roverd decode --help)");
 }
 
 }  // namespace roverd

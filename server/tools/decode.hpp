@@ -11,6 +11,7 @@
 // row in decode.cpp and a function that makes their Reader.
 
 #include <functional>
+#include <string>
 
 #include <nlohmann/json.hpp>
 
@@ -42,8 +43,9 @@ Reader mti_reader(OnObject on_object);
 /// The text of one line, with its line feed. Bytes that are not UTF-8 are replaced.
 std::string to_line(const nlohmann::ordered_json& object);
 
-/// @param argc, argv what follows the word "decode". @return exit code: 0 all was read (or nobody
-/// wants to hear more), 1 the file cannot be read or the output not written, 2 wrong arguments.
-int decode(int argc, char** argv);
+/// roverd decode KIND FILE. @param kind "bunker", "nmea", "ubx" or "mti" @param file "-": standard
+/// input. @return exit code: 0 all was read (or nobody wants to hear more), 1 the file cannot be
+/// read or the output not written, 2 there is no such kind.
+int decode(const std::string& kind, const std::string& file);
 
 }  // namespace roverd

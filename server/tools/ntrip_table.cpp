@@ -19,10 +19,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr auto kPatience = std::chrono::seconds(15);
-constexpr const char* kNtripUsage =
-    "usage: roverd ntrip table CASTER [CASTER...] [--json]\n"
-    "Lists what casters offer. CASTER is HOST[:PORT] or ntrip[s]://[USER:PASSWORD@]HOST[:PORT].\n";
-
 std::string printable(std::string text) {
   for (char& c : text) {
     if (c < ' ' || c >= 0x7F) c = '?';
@@ -135,28 +131,17 @@ std::string table_json(const std::string& caster, const std::vector<ntrip::Sourc
   return out.dump(2);
 }
 
-int ntrip_command(int argc, char** argv) {
-  bool json = false;
+int ntrip_table(const std::vector<std::string>& addresses, bool json) {
   std::vector<ntrip::Caster> casters;
-  const bool table = argc > 0 && std::string_view(argv[0]) == "table";
-  for (int i = 1; table && i < argc; ++i) {
-    std::string word = argv[i];
-    if (word == "--json") {
-      json = true;
-      continue;
-    }
-    if (word.find("://") == std::string::npos) word = "ntrip://" + word;
-    auto parsed = ntrip::parse_casters(word);
+  for (std::size_t i = 0; i < addresses.size(); ++i) {
+    const bool whole = addresses[i].find("://") != std::string::npos;
+    auto parsed = ntrip::parse_casters(whole ? addresses[i] : "ntrip://" + addresses[i]);
     if (!parsed) {
-      std::fprintf(stderr, "roverd: argument %d: %s\n", i, parsed.error().detail.c_str());
+      std::fprintf(stderr, "roverd: argument %zu: %s\n", i + 1, parsed.error().detail.c_str());
       return 2;
     }
     casters.push_back(std::move(parsed->front()));
     casters.back().mountpoint.clear();
-  }
-  if (casters.empty()) {
-    std::fputs(kNtripUsage, stderr);
-    return 2;
   }
   int code = 0;
   Json all = Json::array();

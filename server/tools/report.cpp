@@ -2,12 +2,9 @@
 
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
 #include <functional>
 #include <limits>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -127,32 +124,9 @@ void print(const std::vector<Column>& columns) {
 
 }  // namespace
 
-int report(int argc, char** argv) {
-  std::filesystem::path data = "data";
-  std::vector<std::int64_t> ids;
-  for (int i = 0; i < argc; ++i) {
-    const std::string_view word = argv[i];
-    if (word == "--help" || word == "-h") {
-      std::printf(
-          "usage: roverd report [--data DIR] RUN...\n"
-          "How well runs were driven, side by side. GET /runs lists them.\n");
-      return 0;
-    }
-    if (word == "--data") {
-      if (++i >= argc) return complain("--data needs a folder");
-      data = argv[i];
-      continue;
-    }
-    char* end = nullptr;
-    const long id = std::strtol(argv[i], &end, 10);
-    if (word.empty() || *end != '\0' || id < 1) {
-      return complain("\"" + std::string(word) + "\" is no run's number");
-    }
-    ids.push_back(id);
-  }
-  if (ids.empty()) return complain("which runs? usage: roverd report [--data DIR] RUN...");
+int report(const std::filesystem::path& data, const std::vector<std::int64_t>& runs) {
   std::vector<Column> columns;
-  for (const std::int64_t id : ids) {
+  for (const std::int64_t id : runs) {
     auto column = column_of(data / "roverd.db", id);
     if (!column) {
       (void)complain(column.error().detail);
