@@ -200,7 +200,8 @@ Handler resume(const ContextPtr& context) {
     const base::Time not_after = validity_of(members, *call, Moves::Yes);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
     if (refused_as_late(call, not_after)) return;
-    const auto offer = context->deps.services.view()->offer;
+    const auto now = context->deps.robot.snapshot();
+    const auto offer = now ? context->offer(*now) : std::nullopt;
     const auto loaded = context->deps.robot.loaded();
     if (!offer || (loaded && loaded->id != offer->mission_id)) {
       return run_command(context, call, robot::ResumeMission{}, not_after, progress_of(context));
