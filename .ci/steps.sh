@@ -109,6 +109,7 @@ step_api() { run_ctest "$build" api "$logs/api"; }
 step_command() {
   local code=0
   python3 "$root/tests/command/decode_test.py" || code=$?
+  python3 "$root/tests/command/arguments_test.py" || code=$?
   python3 "$root/tests/command/run_test.py" || code=$?
   python3 "$root/tests/command/ntrip_test.py" || code=$?
   python3 "$root/tests/command/power_cut_test.py" || code=$?

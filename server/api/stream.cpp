@@ -220,7 +220,7 @@ void StreamTexts::look_at_execution() {
   const auto snapshot = context_->deps.robot.snapshot();
   if (!snapshot) return;
   const base::MissionProgress& p = snapshot->mission;
-  const auto offer = context_->runs.offer();
+  const auto offer = context_->offer(*snapshot);
   std::string now = (offer ? offer->mission_id : std::string()) + '/' + p.mission_id + '/' +
                     std::to_string(p.revision) + '/' + std::string(base::to_string(p.state)) + '/' +
                     p.reason + '/' + std::to_string(p.current_item.value_or(0));
