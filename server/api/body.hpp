@@ -3,12 +3,11 @@
 
 #include <cstdint>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "api/message.hpp"
+#include "mission/json/object.hpp"
 
 namespace roverd::api {
 
@@ -19,35 +18,7 @@ base::Result<Json> json_body(const Request& request, bool optional = false);
 /// Unsupported unless the body is sent as application/json.
 base::Result<void> check_json_type(const Request& request);
 
-/// Reads the members of one object, and complains about those nobody asked for.
-class Members {
- public:
-  explicit Members(const Json& object) : object_(object) {}
-
-  /// Absent and null: empty. Wrong type or out of range: empty, and noted.
-  std::optional<double> number(std::string_view name, double min, double max);
-  std::optional<std::int64_t> whole(std::string_view name, std::int64_t min, std::int64_t max);
-  std::optional<std::string> text(std::string_view name);
-  std::optional<bool> flag(std::string_view name);
-  /// For members whose form the caller judges. Null if absent.
-  const Json* any(std::string_view name);
-  void require(std::string_view name);
-  void complain(std::string_view name, std::string detail);
-  /// What is wrong beside the body.
-  void complain_of_header(std::string_view name, std::string detail);
-  /// What is wrong with the members of a member: "/front/mode".
-  void complain_inside(std::string_view name, const base::Error& inner);
-
-  /// Call last: Invalid, with all that was found, or fine.
-  base::Result<void> finish();
-
- private:
-  const Json* find(std::string_view name);
-
-  const Json& object_;
-  std::set<std::string, std::less<>> asked_;
-  std::vector<base::FieldError> errors_;
-};
+using mission::Members;
 
 /// ?limit=, 1..1000, default 100. Invalid otherwise.
 base::Result<int> limit_of(const Call& call);

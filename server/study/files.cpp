@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mission/json/json.hpp"
+#include "mission/json/object.hpp"
 #include "sim/params.hpp"
 #include "study/study.hpp"
 
@@ -23,71 +24,23 @@ tl::unexpected<base::Error> wrong(const std::string& pointer, const std::string&
   return base::fail(base::Code::Invalid, pointer + " " + detail, {{pointer, detail}});
 }
 
-/// Reads the members of one object and refuses those that nobody asked for.
-class Members {
- public:
-  Members(const json& object, std::string pointer)
-      : object_(object), pointer_(std::move(pointer)) {}
+using mission::Members;
 
-  const json* take(const std::string& name) {
-    taken_.insert(name);
-    const auto found = object_.find(name);
-    return found == object_.end() || found->is_null() ? nullptr : &*found;
-  }
-
-  Result<void> number(const std::string& name, double low, double high, double& out) {
-    const json* value = take(name);
-    if (value == nullptr) return {};
-    if (!value->is_number()) return wrong(at(name), "must be a number");
-    const double number = value->get<double>();
-    if (!(number >= low && number <= high)) {
-      return wrong(at(name), "must lie in " + base::detail::Set::text(low) + " .. " +
-                                 base::detail::Set::text(high));
-    }
-    out = number;
-    return {};
-  }
-
-  Result<void> flag(const std::string& name, bool& out) {
-    const json* value = take(name);
-    if (value == nullptr) return {};
-    if (!value->is_boolean()) return wrong(at(name), "must be true or false");
-    out = value->get<bool>();
-    return {};
-  }
-
-  Result<void> text(const std::string& name, std::string& out) {
-    const json* value = take(name);
-    if (value == nullptr || !value->is_string() || value->get_ref<const std::string&>().empty()) {
-      return wrong(at(name), "must be a text");
-    }
-    out = value->get<std::string>();
-    return {};
-  }
-
-  Result<void> no_more() const {
-    for (const auto& [name, value] : object_.items()) {
-      if (!taken_.contains(name)) return wrong(at(name), "is no member that is known here");
-    }
-    return {};
-  }
-
-  std::string at(const std::string& name) const { return pointer_ + "/" + name; }
-
- private:
-  const json& object_;
-  std::string pointer_;
-  std::set<std::string> taken_;
-};
+std::string named(Members& members) {
+  members.require("name");
+  const auto name = members.text("name");
+  if (name && name->empty()) members.complain("name", "must not be empty");
+  return name.value_or("");
+}
 
 /// The objects of the list under the one member of the whole.
 Result<std::vector<json>> list_of(std::string_view text, const std::string& name) {
   auto whole = mission::parse_json(text);
   if (!whole) return tl::unexpected(whole.error());
   if (!whole->is_object()) return wrong("", "must be an object with the member " + name);
-  Members members(*whole, "");
-  const json* list = members.take(name);
-  if (auto good = members.no_more(); !good) return tl::unexpected(good.error());
+  Members members(*whole);
+  const json* list = members.any(name);
+  if (auto good = members.finish(); !good) return tl::unexpected(good.error());
   if (list == nullptr || !list->is_array() || list->empty()) {
     return wrong("/" + name, "must be a list of at least one");
   }
@@ -115,17 +68,16 @@ Result<void> read_points(const json& list, const std::string& pointer, Course& c
   return {};
 }
 
-Result<void> read_turn(Members& members, Course& course) {
-  if (members.take("turn") == nullptr) return {};
-  std::string word;
-  if (auto good = members.text("turn", word); !good) return good;
+void read_turn(Members& members, Course& course) {
+  const auto word = members.text("turn");
+  if (!word) return;
   using mission::Turn;
   for (const Turn t : {Turn::Auto, Turn::Pivot, Turn::Arc, Turn::Through}) {
-    if (mission::to_string(t) != word) continue;
+    if (mission::to_string(t) != *word) continue;
     course.turn = t;
-    return {};
+    return;
   }
-  return wrong(members.at("turn"), "must be auto, pivot, arc or through");
+  members.complain("turn", "must be auto, pivot, arc or through");
 }
 
 Result<Course> read_course(
@@ -133,34 +85,30 @@ Result<Course> read_course(
     const std::function<Result<std::string>(const std::string&)>& read_file) {
   Course course;
   Members members(value, pointer);
-  bool closed = false;
-  double heading = -1.0;
-  for (const auto& good :
-       {members.text("name", course.name),
-        members.number("speed_mps", 0.05, 10.0, course.speed_mps),
-        members.number("start_heading_deg", 0.0, 360.0, heading), members.flag("closed", closed),
-        members.flag("reverse", course.reverse), read_turn(members, course)}) {
-    if (!good) return tl::unexpected(good.error());
-  }
-  if (heading >= 0.0) course.start_heading_deg = heading;
-  const json* points = members.take("points");
-  const json* file = members.take("mission");
-  if (auto good = members.no_more(); !good) return tl::unexpected(good.error());
+  course.name = named(members);
+  course.speed_mps = members.number("speed_mps", 0.05, 10.0).value_or(course.speed_mps);
+  course.start_heading_deg = members.number("start_heading_deg", 0.0, 360.0);
+  const bool closed = members.flag("closed").value_or(false);
+  course.reverse = members.flag("reverse").value_or(false);
+  read_turn(members, course);
+  const json* points = members.any("points");
+  const json* file = members.any("mission");
+  if (auto good = members.finish(); !good) return tl::unexpected(good.error());
   if ((points == nullptr) == (file == nullptr))
     return wrong(pointer, "must have points or mission");
   if (points != nullptr) {
-    if (auto good = read_points(*points, members.at("points"), course); !good) {
+    if (auto good = read_points(*points, pointer + "/points", course); !good) {
       return tl::unexpected(good.error());
     }
     if (closed) course.points.push_back(course.points.front());
     return course;
   }
-  if (!file->is_string()) return wrong(members.at("mission"), "must be the name of a file");
+  if (!file->is_string()) return wrong(pointer + "/mission", "must be the name of a file");
   auto text = read_file(file->get<std::string>());
   if (!text) return tl::unexpected(text.error());
   auto plan = mission::plan_from_text(*text);
   if (!plan) {
-    return wrong(members.at("mission"), file->get<std::string>() + ": " + plan.error().detail);
+    return wrong(pointer + "/mission", file->get<std::string>() + ": " + plan.error().detail);
   }
   course.plan = std::move(*plan);
   return course;
@@ -180,25 +128,25 @@ std::string as_override(const std::string& key, const json& value) {
 Result<Disturbance> read_disturbance(const json& value, const std::string& pointer) {
   Disturbance d;
   Members members(value, pointer);
-  if (auto good = members.text("name", d.name); !good) return tl::unexpected(good.error());
-  const json* sim = members.take("sim");
-  const json* robot = members.take("robot");
-  if (auto good = members.no_more(); !good) return tl::unexpected(good.error());
+  d.name = named(members);
+  const json* sim = members.any("sim");
+  const json* robot = members.any("robot");
+  if (auto good = members.finish(); !good) return tl::unexpected(good.error());
   for (const json* part : {sim, robot}) {
     if (part != nullptr && !part->is_object()) return wrong(pointer, "sim and robot are objects");
   }
   sim::Params trial;
   const json none = json::object();
   for (const auto& [key, entry] : (sim != nullptr ? *sim : none).items()) {
-    auto read = value_of(entry, members.at("sim/" + key));
+    auto read = value_of(entry, pointer + "/sim/" + key);
     if (!read) return tl::unexpected(read.error());
     if (auto good = sim::set_param(trial, key, *read); !good) {
-      return wrong(members.at("sim"), good.error().detail);
+      return wrong(pointer + "/sim", good.error().detail);
     }
     d.sim.emplace_back(key, *read);
   }
   for (const auto& [key, entry] : (robot != nullptr ? *robot : none).items()) {
-    if (auto read = value_of(entry, members.at("robot/" + key)); !read) {
+    if (auto read = value_of(entry, pointer + "/robot/" + key); !read) {
       return tl::unexpected(read.error());
     }
     d.robot.push_back(as_override(key, entry));
