@@ -23,6 +23,15 @@ constexpr const char* kEvents = "events";
 constexpr const char* kMissions = "missions";
 constexpr const char* kExecution = "execution";
 
+/// What stops or slows without a latch, by its word. None of it is ever late.
+std::optional<robot::Command> halt_of(std::string_view word) {
+  if (word == "hold") return robot::SetMode{base::Mode::Hold};
+  if (word == "pause") return robot::PauseMission{};
+  if (word == "disarm") return robot::Disarm{};
+  if (word == "stop") return robot::StopMission{};
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::string stream_text(std::string_view topic, std::uint64_t seq, std::string_view data) {
@@ -99,6 +108,9 @@ base::Result<void> StreamTexts::read(ClientId id, Client& client, const Json& me
   if (message.is_object() && message.value("estop", Json()) == true) estop(id);
   Members members(message);
   const auto stop = members.flag("estop");
+  const auto word = members.text("halt");
+  const auto halting = word ? halt_of(*word) : std::nullopt;
+  if (word && !halting) members.complain("halt", "must be hold, pause, disarm or stop");
   const Json* topics = members.any("subscribe");
   const Json* driving = members.any("drive");
   constexpr double kLargest = 9'007'199'254'740'992.0;  // whole numbers are exact up to here
@@ -107,11 +119,14 @@ base::Result<void> StreamTexts::read(ClientId id, Client& client, const Json& me
   if (stop == false)
     members.complain("estop", "can only be true: POST /vehicle/estop/reset ends it");
   if (auto whole = members.finish(); !whole) return whole;
-  const int said = (stop ? 1 : 0) + (topics ? 1 : 0) + (driving ? 1 : 0) + (ping ? 1 : 0);
+  const int said =
+      (stop ? 1 : 0) + (halting ? 1 : 0) + (topics ? 1 : 0) + (driving ? 1 : 0) + (ping ? 1 : 0);
   if (said != 1) {
-    return base::fail(base::Code::Invalid,
-                      "a message has exactly one of the members estop, subscribe, drive and ping");
+    return base::fail(
+        base::Code::Invalid,
+        "a message has exactly one of the members estop, halt, subscribe, drive and ping");
   }
+  if (halting) return halt(*halting);
   if (topics != nullptr) return subscribe(id, *topics);
   if (driving != nullptr) return drive(id, client, members, begun);
   if (ping) answer_ping(id, *ping);
@@ -125,6 +140,12 @@ void StreamTexts::estop(ClientId id) {
                            if (!done || !clients_.contains(id)) return;
                            stream_.send(id, stream_text("estop", 1, R"({"estop":true})"));
                          });
+}
+
+/// The state tells what came of it; where there was nothing to halt, nothing did.
+base::Result<void> StreamTexts::halt(const robot::Command& command) {
+  if (context_->deps.robot.request(command, base::Time::max(), {})) return {};
+  return base::fail(base::Code::Unavailable, "too many commands wait for the robot");
 }
 
 /// So that a client can tell how old on this very connection the data is that it gets.

@@ -43,6 +43,7 @@ class StreamTexts {
   base::Result<void> drive(ClientId id, Client& client, Members& message, base::Time begun);
   base::Result<void> take_wheel(ClientId id, robot::Drive command, base::Time not_after);
   void estop(ClientId id);
+  base::Result<void> halt(const robot::Command& command);
   void answer_ping(ClientId id, double ping);
   void stop_driving();
   void complain(ClientId id, Client& client, const base::Error& error);

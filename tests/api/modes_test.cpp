@@ -179,6 +179,7 @@ TEST_F(ModesApi, ADrivenMissionBecomesARun) {
   EXPECT_EQ(call("GET", "/runs/7").status, 404u);
   EXPECT_EQ(call("GET", "/runs/seven/report").status, 404u);
   EXPECT_TRUE(call("GET", "/execution").body["left_behind"].is_null());
+  EXPECT_EQ(call("DELETE", "/execution/left_behind").status, 204u);
 }
 
 }  // namespace

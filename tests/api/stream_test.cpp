@@ -132,6 +132,40 @@ TEST_F(StreamApi, DrivingByHandMovesTheBaseAndLettingGoStopsIt) {
   until(stopped, "the base stands after the connection broke");
 }
 
+TEST_F(StreamApi, WhatHaltsIsCarriedOutOverTheOpenSocketAndAnUnknownWordIsNot) {
+  until_ready();
+  ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 5}}).status, 200u);
+  ASSERT_EQ(call("PUT", "/vehicle/mode", Json{{"mode", "MANUAL"}}).status, 200u);
+  const auto client = connect();
+  for (const Json& wrong : {Json("sleep"), Json(true), Json({{"halt", 1}})}) {
+    say(*client, {{"halt", wrong}});
+    EXPECT_EQ(next(*client, "error")["data"]["errors"][0]["pointer"], "/halt") << wrong;
+  }
+  say(*client, {{"halt", "hold"}, {"ping", 1}});
+  EXPECT_EQ(fault("StreamError", next(*client, "error")), "");
+  EXPECT_EQ(house.snapshot()->mode, base::Mode::Manual);
+  say(*client, {{"halt", "hold"}});
+  until([this] { return house.snapshot()->mode == base::Mode::Hold; }, "it holds");
+  EXPECT_TRUE(house.snapshot()->armed);
+  say(*client, {{"halt", "disarm"}});
+  until([this] { return !house.snapshot()->armed; }, "it is disarmed");
+}
+
+TEST_F(StreamApi, ARunningMissionIsPausedAndStoppedOverTheOpenSocket) {
+  until_ready();
+  const std::string id = make_mission();
+  ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 5}}).status, 200u);
+  ASSERT_EQ(call("POST", "/execution/load", Json{{"mission_id", id}}).status, 200u);
+  const Json begin = {{"mission_id", id}, {"revision", 1}};
+  ASSERT_EQ(call("POST", "/execution/start", begin).status, 200u);
+  const auto client = connect();
+  const auto is = [this](base::ExecutionState s) { return house.snapshot()->mission.state == s; };
+  say(*client, {{"halt", "pause"}});
+  until([&] { return is(base::ExecutionState::Paused); }, "it is paused");
+  say(*client, {{"halt", "stop"}});
+  until([&] { return is(base::ExecutionState::Aborted); }, "it is stopped");
+}
+
 TEST_F(StreamApi, OneDrivesAtATime) {
   until_ready();
   const auto first = connect();

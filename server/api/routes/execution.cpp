@@ -223,6 +223,14 @@ Handler resume(const ContextPtr& context) {
   };
 }
 
+/// The mission stays stored; only where it stood is forgotten. Forgetting nothing is no error.
+Handler forget(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    context->runs.forget_offer();
+    call->respond(Response{http::status::no_content, 11});
+  };
+}
+
 }  // namespace
 
 void add_execution_routes(const ContextPtr& c) {
@@ -235,6 +243,7 @@ void add_execution_routes(const ContextPtr& c) {
                      call->respond(json_response(http::status::ok, progress_of(c)(*s)));
                    }
                  }});
+  c->router.add({http::verb::delete_, "/execution/left_behind", {204, 403}, forget(c)});
   c->router.add({get, "/execution/preview", {200, 409, 422, 503}, preview(c)});
   c->router.add({post, "/execution/load", with_404, load(c)});
   c->router.add({post, "/execution/start", kCommand, start(c)});
