@@ -51,6 +51,8 @@ test('“Go here” drives to the place that was tapped, and “Come home” bac
   expect(Math.abs(metres_between(start, station.sim.now) - Math.hypot(6, 4))).toBeLessThan(0.8);
 
   await press(page, 'Come home');
+  await expect(page.getByRole('region', { name: 'Come home' })).toContainText(/7\.\d+ m away/);
+  await press(page, 'Drive home');
   await expect(page.getByLabel('Activity')).toContainText('Coming home');
   await expect
     .poll(() => (home ? metres_between(home, station.sim.now) : 99), { timeout: 60_000 })

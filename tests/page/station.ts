@@ -10,6 +10,8 @@ import { createInterface } from 'node:readline';
 
 import { test as base } from '@playwright/test';
 
+import { SlowLink } from './slow_link';
+
 const ROOT = resolve(__dirname, '../..');
 const BIN = process.env['ROVERD_BIN'] ?? join(ROOT, 'build/bin');
 const REAL_DATA = process.env['ROVERD_REAL_DATA'] ?? resolve(ROOT, '../shared/data');
@@ -51,6 +53,13 @@ class Program {
     throw new Error(
       `${this.#name} never said ${String(pattern)}: ${this.#lines.slice(-8).join(' | ')}`,
     );
+  }
+
+  /** As a power cut does it. */
+  async kill(): Promise<void> {
+    const gone = new Promise((resolve_gone) => this.#process.once('exit', resolve_gone));
+    this.#process.kill('SIGKILL');
+    await gone;
   }
 
   async stop(): Promise<void> {
@@ -110,6 +119,11 @@ export interface Station {
   /** A call to the API that must succeed. */
   rest<T>(method: string, path: string, body?: unknown, headers?: object): Promise<T>;
 }
+/** One whose program can die and come back, at the same address and with the same data. */
+export interface MortalStation extends Station {
+  kill(): Promise<void>;
+  begin_again(): Promise<void>;
+}
 
 const rest_of =
   (url: string): Station['rest'] =>
@@ -127,7 +141,9 @@ const rest_of =
 const config = join(ROOT, 'config/robot.toml');
 
 export const test = base.extend<{
-  station: Station;
+  station: MortalStation;
+  /** The way from the browser to that station: it can be slow or broken. */
+  link: SlowLink;
   /** ./run --vehicle NAME, as a person starts it. */
   vehicle: (name: string) => Promise<Station>;
   /** Plays a recording, `speed` times as fast as it was recorded. @return the address */
@@ -151,18 +167,37 @@ export const test = base.extend<{
         `drivers.gnss.link=${gnss}`,
         `drivers.mti.link=${mti}`,
       ];
-      const roverd = new Program('roverd', [
-        ...['--config', config, '--data', join(folder, 'data'), '--port', '0'],
-        ...links.flatMap((setting) => ['--set', setting]),
-      ]);
-      programs.unshift(roverd);
-      const [, url = ''] = await roverd.line(/^listening on (http:\S+)/);
-      await use({ url, sim, rest: rest_of(url) });
+      const begin = (port: string): Program => {
+        const program = new Program('roverd', [
+          ...['--config', config, '--data', join(folder, 'data'), '--port', port],
+          ...links.flatMap((setting) => ['--set', setting]),
+        ]);
+        programs.unshift(program);
+        return program;
+      };
+      let roverd = begin('0');
+      const ready = /^listening on (http:\S+)/;
+      const [, url = ''] = await roverd.line(ready);
+      await use({
+        url,
+        sim,
+        rest: rest_of(url),
+        kill: () => roverd.kill(),
+        begin_again: async () => {
+          roverd = begin(new URL(url).port);
+          await roverd.line(ready);
+        },
+      });
     } finally {
       sim?.close();
       for (const program of programs) await program.stop();
       rmSync(folder, { recursive: true, force: true });
     }
+  },
+  link: async ({ station }, use) => {
+    const link = await SlowLink.to(station.url);
+    await use(link);
+    link.close();
   },
   // eslint-disable-next-line no-empty-pattern
   vehicle: async ({}, use) => {

@@ -24,15 +24,19 @@ const map = new FieldMap(element('map'));
 const late: { stream: Stream | null } = { stream: null };
 const station = new Station({
   missions: mission_calls,
-  vehicle: vehicle_calls,
+  vehicle: vehicle_calls(() => late.stream?.seen_s() ?? null),
   teach: teach_calls,
   runs: run_calls,
   survey: survey_calls,
   fences: fence_calls,
   map,
   storage: draft_storage,
-  send_drive: (speed_mps, yaw_rate_dps, deadman) =>
-    late.stream?.send_drive(speed_mps, yaw_rate_dps, deadman) ?? false,
+  link: {
+    send_drive: (...wish) => late.stream?.send_drive(...wish) ?? false,
+    send_halt: (halt) => late.stream?.send_halt(halt) ?? false,
+    seen_s: () => late.stream?.seen_s() ?? null,
+    robot_s: () => late.stream?.robot_s() ?? null,
+  },
 });
 late.stream = new Stream(station.stream_events);
 mount(App, { target: element('app'), props: { station } });

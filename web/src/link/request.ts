@@ -2,6 +2,7 @@
 
 import type { Answer, FieldError, Refusal } from '../model/answer';
 import type { Mission } from '../model/ports';
+import { in_lane, type Lane } from './lanes';
 import type { components } from './schema';
 
 type Problem = components['schemas']['Problem'];
@@ -12,9 +13,15 @@ export interface Call {
   /** A file, byte for byte. */
   readonly file?: Blob;
   readonly headers?: Readonly<Record<string, string>>;
-  /** Give up after this. */
+  /** Give up so long after it was sent. */
   readonly limit_ms?: number;
+  readonly lane?: Lane;
+  /** Gives up earlier. */
+  readonly signal?: AbortSignal;
 }
+
+/** A link with two seconds each way is slow, not dead: connecting, asking and answering take 8 s. */
+const LIMIT_MS = 15_000;
 
 const no_answer = (detail: string): Refusal => ({
   status: 0,
@@ -43,19 +50,19 @@ const read_problem = async (response: Response): Promise<Refusal> => {
 };
 
 const fetch_options = (call: Call): RequestInit => {
+  const limit = AbortSignal.timeout(call.limit_ms ?? LIMIT_MS);
   const body = call.file ?? (call.body === undefined ? undefined : JSON.stringify(call.body));
   const type = call.file === undefined ? 'application/json' : 'application/octet-stream';
   return {
     method: call.method ?? 'GET',
     headers: { ...(body === undefined ? {} : { 'Content-Type': type }), ...call.headers },
     cache: 'no-store',
-    signal: AbortSignal.timeout(call.limit_ms ?? 5000),
+    signal: call.signal ? AbortSignal.any([limit, call.signal]) : limit,
     ...(body === undefined ? {} : { body }),
   };
 };
 
-/** @param T what the OpenAPI document promises for success; null for an empty answer */
-export const request = async <T>(path: string, call: Call = {}): Promise<Answer<T>> => {
+const sent = async <T>(path: string, call: Call): Promise<Answer<T>> => {
   try {
     const response = await fetch(`/api/v1${path}`, fetch_options(call));
     if (!response.ok) return { ok: false, refusal: await read_problem(response) };
@@ -67,3 +74,7 @@ export const request = async <T>(path: string, call: Call = {}): Promise<Answer<
     return { ok: false, refusal: no_answer(detail) };
   }
 };
+
+/** @param T what the OpenAPI document promises for success; null for an empty answer */
+export const request = <T>(path: string, call: Call = {}): Promise<Answer<T>> =>
+  in_lane(call.lane ?? 'other', () => sent<T>(path, call));

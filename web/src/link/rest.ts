@@ -2,6 +2,7 @@
 // is checked here by the compiler.
 
 import type { Answer } from '../model/answer';
+import type { Halt } from '../model/halt';
 import type { Plan } from '../model/plan';
 import type { MissionCalls, TileSet, VehicleCalls } from '../model/ports';
 import type { Remembered } from '../model/tracks';
@@ -11,8 +12,10 @@ import type { components } from './schema';
 
 type Schemas = components['schemas'];
 
-/** Clicks are void after this: a late one must not move the robot. */
-const CLICK_VALID_S = 2;
+/** After this the page asks the robot what became of a command. Longer than any click can live. */
+const COMMAND_LIMIT_MS = 5000;
+/** A try to stop that has no answer makes room for the next one. */
+const HALT_LIMIT_MS = 10_000;
 /** A mission of 10,000 items and the way of a day take a while over a weak radio link. */
 const LARGE_LIMIT_MS = 30_000;
 
@@ -89,15 +92,63 @@ export const mission_calls: MissionCalls = {
     `/api/v1${mission_path(id)}/export?format=${encodeURIComponent(format)}`,
 };
 
-/** A command that answers with a state we also get from the stream. */
-const command = (
-  method: 'POST' | 'PUT',
-  path: string,
-  body: object = {},
-): Promise<Answer<unknown>> =>
-  request<unknown>(path, { method, body: { ...body, valid_for_s: CLICK_VALID_S } });
+/** The robot's own time at which the person saw the state that he acts upon; null: not known. */
+export type Seen = () => number | null;
+
+/**
+ * A command that moves, arms or resumes: it says what its sender saw, at the click, so that a late
+ * one is refused. It answers with a state that we also get from the stream.
+ */
+const commander =
+  (seen: Seen) =>
+  <T = unknown>(method: 'POST' | 'PUT', path: string, body: object = {}): Promise<Answer<T>> => {
+    const seen_s = seen();
+    return request<T>(path, {
+      method,
+      body,
+      headers: seen_s === null ? {} : { 'Roverd-Seen': seen_s.toFixed(3) },
+      limit_ms: COMMAND_LIMIT_MS,
+      lane: 'command',
+    });
+  };
+
+const halts: Readonly<
+  Record<Halt, readonly [method: 'POST' | 'PUT', path: string, body?: object]>
+> = {
+  // No body to parse, no age to check: a stop is always carried out.
+  estop: ['POST', '/vehicle/estop'],
+  hold: ['PUT', '/vehicle/mode', { mode: 'HOLD' }],
+  pause: ['POST', '/execution/pause'],
+  disarm: ['POST', '/vehicle/disarm'],
+  stop: ['POST', '/execution/stop'],
+};
+
+const halt: VehicleCalls['halt'] = (which, signal) => {
+  const [method, path, body] = halts[which];
+  return request<unknown>(path, {
+    method,
+    ...(body === undefined ? {} : { body }),
+    limit_ms: HALT_LIMIT_MS,
+    lane: 'halt',
+    signal,
+  });
+};
 
 const an_hour_ago = (): string => new Date(Date.now() - 3_600_000).toISOString();
+
+const events_since = (time: string): Promise<Answer<Schemas['EventList']>> =>
+  request<Schemas['EventList']>(`/events?limit=200&since=${encodeURIComponent(time)}`);
+
+type Question =
+  | 'vehicle'
+  | 'trail'
+  | 'drivers'
+  | 'satellites'
+  | 'checks'
+  | 'preview'
+  | 'left_behind'
+  | 'recent_events'
+  | 'events_since';
 
 /** Ages become times. */
 const pieces_of = (track: Schemas['Track'], until_s: number): TrailPiece[] =>
@@ -112,36 +163,54 @@ const trail = async (): Promise<Answer<Remembered>> => {
   return { ok: true, value: { until_s, estimated, received } };
 };
 
-export const vehicle_calls: VehicleCalls = {
-  arm: () => command('POST', '/vehicle/arm'),
-  disarm: () => command('POST', '/vehicle/disarm'),
-  set_mode: (mode) => command('PUT', '/vehicle/mode', { mode }),
-  go_to: (goal) => command('POST', '/vehicle/goto', goal),
-  dock: (goal) => command('PUT', '/vehicle/mode', { mode: 'DOCK', ...goal }),
-  move: (forward_m) => command('POST', '/vehicle/move', { forward_m }),
-  turn: (turn_deg) => command('POST', '/vehicle/move', { turn_deg }),
-  set_home: ({ lat, lon }) => command('PUT', '/vehicle/home', { lat, lon }),
-  // No body to parse, no age to check: a stop is always carried out.
-  estop: () => request<unknown>('/vehicle/estop', { method: 'POST', limit_ms: 1000 }),
-  reset_estop: () => command('POST', '/vehicle/estop/reset'),
+const questions: Pick<VehicleCalls, Question> = {
+  vehicle: () => request<Schemas['Vehicle']>('/vehicle'),
   trail,
   drivers: () => request<Schemas['DriverList']>('/drivers'),
   satellites: () => request<Schemas['Satellites']>('/gnss/satellites'),
-  restart_driver: (name) => command('POST', `/drivers/${encodeURIComponent(name)}/restart`),
   checks: () => request<Schemas['Checks']>('/vehicle/checks'),
-  load: (mission_id, revision) => command('POST', '/execution/load', { mission_id, revision }),
   preview: (from) => request<Schemas['Preview']>(`/execution/preview?from=${from}`),
-  start: (mission_id, revision, from) =>
-    request<Schemas['Preview']>('/execution/start', {
-      method: 'POST',
-      body: { mission_id, revision, from, valid_for_s: CLICK_VALID_S },
-    }),
-  pause: () => command('POST', '/execution/pause'),
-  resume: () => command('POST', '/execution/resume'),
-  stop: () => command('POST', '/execution/stop'),
-  skip: () => command('POST', '/execution/skip'),
-  recent_events: () =>
-    request<Schemas['EventList']>(`/events?limit=200&since=${encodeURIComponent(an_hour_ago())}`),
+  left_behind: async () => {
+    const answer = await request<Schemas['Execution']>('/execution');
+    return answer.ok ? { ok: true, value: answer.value.left_behind } : answer;
+  },
+  recent_events: () => events_since(an_hour_ago()),
+  events_since,
+};
+
+/** @param seen what the person saw, by the live stream */
+export const vehicle_calls = (seen: Seen): VehicleCalls => {
+  const command = commander(seen);
+  return {
+    ...questions,
+    halt,
+    arm: () => command('POST', '/vehicle/arm'),
+    set_mode: (mode) => command('PUT', '/vehicle/mode', { mode }),
+    go_to: (goal) => command('POST', '/vehicle/goto', goal),
+    dock: (goal) => command('PUT', '/vehicle/mode', { mode: 'DOCK', ...goal }),
+    move: (forward_m) => command('POST', '/vehicle/move', { forward_m }),
+    turn: (turn_deg) => command('POST', '/vehicle/move', { turn_deg }),
+    set_home: ({ lat, lon }) => command('PUT', '/vehicle/home', { lat, lon }),
+    reset_estop: () => command('POST', '/vehicle/estop/reset'),
+    restart_driver: (name) =>
+      request<unknown>(`/drivers/${encodeURIComponent(name)}/restart`, {
+        method: 'POST',
+        body: {},
+      }),
+    load: (mission_id, revision) =>
+      request<unknown>('/execution/load', {
+        method: 'POST',
+        body: { mission_id, revision },
+        limit_ms: LARGE_LIMIT_MS,
+        lane: 'command',
+      }),
+    start: (mission_id, revision, from) =>
+      command<Schemas['Preview']>('POST', '/execution/start', { mission_id, revision, from }),
+    resume: () => command('POST', '/execution/resume'),
+    skip: () => command('POST', '/execution/skip'),
+    forget_left_behind: () =>
+      request<null>('/execution/left_behind', { method: 'DELETE', lane: 'command' }),
+  };
 };
 
 export const tile_sets = async (): Promise<readonly TileSet[]> => {

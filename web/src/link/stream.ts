@@ -2,10 +2,13 @@
 //
 //   connecting --open--> open --closed | silent 4 s--> closed --(backoff)--> connecting
 //
-// An open socket that says nothing is worth no more than a closed one: the watchdog closes it.
+// An open socket that says nothing is worth no more than a closed one: the watchdog closes it. A ping
+// every second measures the way there and back, behind all data that waits on the same socket.
 
-import { backoff_ms, should_reopen, type SocketState } from '../model/freshness';
-import type { StreamEvents } from '../model/ports';
+import { Pings, RobotClock } from '../model/clock';
+import { backoff_ms, should_reopen, type LinkHealth, type SocketState } from '../model/freshness';
+import type { Halt } from '../model/halt';
+import type { LiveLink, StreamEvents } from '../model/ports';
 import type { components } from './schema';
 
 type Schemas = components['schemas'];
@@ -13,9 +16,13 @@ type Message =
   | Schemas['StreamHello']
   | Schemas['StreamVehicle']
   | Schemas['StreamEvent']
-  | Schemas['StreamMissions'];
+  | Schemas['StreamMissions']
+  | Schemas['StreamPong']
+  | Schemas['StreamStopped']
+  | Schemas['StreamError'];
 
 const WATCH_MS = 500;
+const PING_MS = 1000;
 const SUBSCRIBE = JSON.stringify({ subscribe: { vehicle: 10, events: 0, missions: 0 } });
 /** Bytes not yet taken by the network: a drive command behind them would come too late. */
 const DRIVE_BACKLOG = 512;
@@ -23,12 +30,16 @@ const DRIVE_BACKLOG = 512;
 const address = (): string =>
   `${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/api/v1/stream`;
 
-export class Stream {
+export class Stream implements LiveLink {
   readonly #events: StreamEvents;
+  readonly #clock = new RobotClock();
+  readonly #pings = new Pings();
   #socket: WebSocket | null = null;
   #state: SocketState = 'closed';
   #opened_ms = 0;
   #last_message_ms: number | null = null;
+  /** The shown state: the robot's clock when it was sent, and when it came. */
+  #shown: { readonly mono_s: number; readonly came_ms: number } | null = null;
   #attempt = 0;
   #retry: ReturnType<typeof setTimeout> | undefined;
   #drive_seq = 0;
@@ -36,20 +47,36 @@ export class Stream {
   constructor(events: StreamEvents) {
     this.#events = events;
     setInterval(() => this.#watch(), WATCH_MS);
+    setInterval(() => this.#ping(), PING_MS);
     this.#connect();
   }
 
   /** Teleoperation. @return false: not connected or congested, nothing was sent */
-  send_drive(speed_mps: number, yaw_rate_dps: number, deadman: boolean): boolean {
-    const socket = this.#socket;
-    if (socket?.readyState !== WebSocket.OPEN) return false;
-    if (deadman && socket.bufferedAmount > DRIVE_BACKLOG) return false;
-    this.#drive_seq += 1;
-    const message: Schemas['StreamDrive'] = {
-      drive: { speed_mps, yaw_rate_dps, deadman, seq: this.#drive_seq },
-    };
-    socket.send(JSON.stringify(message));
-    return true;
+  send_drive = (speed_mps: number, yaw_rate_dps: number, deadman: boolean): boolean => {
+    const backlog = this.#socket?.bufferedAmount ?? 0;
+    if (deadman && backlog > DRIVE_BACKLOG) return false;
+    const seq = this.#drive_seq + 1;
+    const seen_s = this.seen_s();
+    const seen = seen_s === null ? {} : { seen_s };
+    const sent = this.#send({ drive: { speed_mps, yaw_rate_dps, deadman, seq, ...seen } });
+    if (sent) this.#drive_seq = seq;
+    return sent;
+  };
+
+  /** Needs no free connection and waits behind nothing: the socket is open already. */
+  send_halt(halt: Halt): boolean {
+    return this.#send(halt === 'estop' ? { estop: true } : { halt });
+  }
+
+  /** The robot's clock when what is shown was sent, and what has passed since by our own: so the age
+   * that the robot finds is the way of that message to us and the way of the command back. */
+  seen_s(): number | null {
+    if (this.#shown === null || this.#state !== 'open') return null;
+    return this.#shown.mono_s + (performance.now() - this.#shown.came_ms) / 1000;
+  }
+
+  robot_s(): number | null {
+    return this.#clock.robot_s(performance.now());
   }
 
   /** Try at once, for example when the device woke up. */
@@ -67,6 +94,9 @@ export class Stream {
     this.#report('connecting');
     socket.onopen = () => {
       socket.send(SUBSCRIBE);
+      this.#pings.restart();
+      this.#ping();
+      this.#opened_ms = performance.now();
       this.#report('open');
     };
     socket.onmessage = ({ data }) => {
@@ -79,14 +109,25 @@ export class Stream {
 
   #take(text: string): void {
     const message = JSON.parse(text) as Message;
-    this.#last_message_ms = performance.now();
+    const now_ms = performance.now();
+    this.#last_message_ms = now_ms;
     this.#attempt = 0;
+    this.#clock.take_message(message.mono_s, now_ms);
     switch (message.topic) {
       case 'hello':
         this.#events.on_hello(message.data.capabilities);
         break;
       case 'vehicle':
-        this.#events.on_vehicle(message.data);
+        this.#shown = { mono_s: message.mono_s, came_ms: now_ms };
+        this.#events.on_vehicle(message.data, message.mono_s);
+        break;
+      case 'pong': {
+        const sent_ms = this.#pings.answer(message.data.ping, now_ms);
+        if (sent_ms !== null) this.#clock.take_round_trip(sent_ms, now_ms, message.mono_s);
+        break;
+      }
+      case 'estop':
+        this.#events.on_stopped();
         break;
       case 'events':
         this.#events.on_event(message.data);
@@ -94,13 +135,39 @@ export class Stream {
       case 'missions':
         this.#events.on_mission_changed(message.data.id, message.data.revision);
         break;
+      case 'error':
+        this.#events.on_refused({ ...message.data, errors: message.data.errors ?? [] });
+        break;
     }
     this.#report('open');
   }
 
+  #send(message: object): boolean {
+    if (this.#socket?.readyState !== WebSocket.OPEN) return false;
+    this.#socket.send(JSON.stringify(message));
+    return true;
+  }
+
+  #ping(): void {
+    if (this.#socket?.readyState !== WebSocket.OPEN) return;
+    const ping = this.#pings.send(performance.now());
+    if (ping !== null) this.#send({ ping });
+  }
+
+  get #health(): LinkHealth {
+    return {
+      socket: this.#state,
+      last_message_ms: this.#last_message_ms,
+      true_at_ms: this.#shown && this.#clock.page_ms(this.#shown.mono_s),
+      round_trip_s: this.#pings.round_trip_s,
+      unanswered_since_ms: this.#pings.unanswered_since_ms,
+    };
+  }
+
   #watch(): void {
-    const health = { socket: this.#state, last_message_ms: this.#last_message_ms };
-    if (this.#socket && should_reopen(this.#opened_ms, health, performance.now())) this.#drop();
+    if (!this.#socket) return;
+    if (should_reopen(this.#opened_ms, this.#health, performance.now())) this.#drop();
+    else this.#report(this.#state);
   }
 
   #drop(): void {
@@ -115,6 +182,6 @@ export class Stream {
 
   #report(state: SocketState): void {
     this.#state = state;
-    this.#events.on_link({ socket: state, last_message_ms: this.#last_message_ms });
+    this.#events.on_link(this.#health);
   }
 }

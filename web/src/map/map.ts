@@ -42,6 +42,8 @@ const make_ol_map = (target: HTMLElement, view: View): OlMap =>
     target,
     view,
     controls: [],
+    // The others of the browser's connections are for commands, and two for a stop.
+    maxTilesLoading: 1,
     interactions: default_interactions({
       altShiftDragRotate: false,
       pinchRotate: false,

@@ -122,12 +122,26 @@ const paint_wedge = (context: CanvasRenderingContext2D, sigma_deg: number, color
   context.fill();
 };
 
+/** Under the robot: how long ago that was. */
+const paint_age = (context: CanvasRenderingContext2D, words: string, colors: Palette): void => {
+  context.font = '700 13px system-ui, sans-serif';
+  context.textAlign = 'center';
+  context.textBaseline = 'top';
+  context.lineJoin = 'round';
+  context.strokeStyle = colors.casing;
+  context.lineWidth = 4;
+  context.strokeText(words, 0, 26);
+  context.fillStyle = colors.refused;
+  context.fillText(words, 0, 26);
+};
+
 export const paint_robot = (paint: Paint, robot: RobotOnMap, size: Size, colors: Palette): void => {
   const { context, resolution } = paint;
   const [x, y] = to_plane(robot.at);
   const metre_px = units_per_m(robot.at.lat).east / resolution;
   const color = robot.stale ? colors.robot_stale : colors.robot;
   context.translate(paint.x_px(x), paint.y_px(y));
+  if (robot.old !== null) paint_age(context, robot.old, colors);
 
   if (robot.heading_deg === null) {
     context.beginPath();

@@ -28,6 +28,12 @@ export const refusal_text = (refusal: Refusal): string => {
   return [refusal.detail === '' ? refusal.title : refusal.detail, ...causes].join(' · ');
 };
 
+/** A change that did not come about; without an answer nobody knows. @param done "saved" */
+export const failure_text = (done: string, refusal: Refusal): string =>
+  refusal.status === 0
+    ? `It is not known whether it was ${done}: no answer came.`
+    : `Not ${done}: ${refusal_text(refusal)}`;
+
 /** Indices of the items that a refusal names ("/items/3/lat" → 3). */
 export const refused_items = (refusal: Refusal): ReadonlySet<number> => {
   const found = new Set<number>();

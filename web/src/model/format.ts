@@ -53,6 +53,10 @@ export const age = (seconds: Value): string => {
   return `${Math.round(seconds / 3600)} h`;
 };
 
+/** There and back: "4 ms", "0.5 s". */
+export const round_trip_text = (seconds: Value): string =>
+  known(seconds) && seconds < 0.1 ? `${Math.round(seconds * 1000)} ms` : age(seconds);
+
 /** Time still needed: "45 s", "3 min 05 s", "1 h 12 min". */
 export const duration = (seconds: Value): string => {
   if (!known(seconds)) return UNKNOWN;

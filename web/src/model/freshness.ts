@@ -1,33 +1,87 @@
-// How old is what we show? Two ages add up: the age of the measurement when the server sent it, and
-// the time since the message came. Time is an argument everywhere: milliseconds of any clock that
+// How old is what we show? Three ages add up: the age of the measurement when the robot sent it, its
+// way to us, and the time since. Time is an argument everywhere: milliseconds of any clock that
 // never goes back.
 
 import type { Measured } from './vehicle';
 
-/** A healthy stream brings 10 messages a second; after this silence the page greys out. */
-export const SILENT_AFTER_MS = 1500;
+/** Data older than this is grey, and nothing that moves the robot is offered on it. */
+export const OLD_AFTER_MS = 1000;
+/** Slower than this there and back, and the link is no longer good. A click lives for 1 s. */
+const SLOW_ROUND_TRIP_S = 0.5;
+/** Our words do not reach the robot, or its answers not us. */
+const UNHEARD_AFTER_MS = 2000;
 /** An open socket that stays silent for this long is closed and opened again. */
 export const REOPEN_AFTER_MS = 4000;
+/** So is one on which nothing that we send comes back, or that does not open: slow is not dead. */
+export const GIVE_UP_AFTER_MS = 15_000;
 
 export type SocketState = 'connecting' | 'open' | 'closed';
 
 export interface LinkHealth {
   readonly socket: SocketState;
-  /** When the last message came; null: never. */
+  /** When the last message of any kind came; null: never. */
   readonly last_message_ms: number | null;
+  /** When the shown state of the robot was true; null: none came, or no round trip tells yet. */
+  readonly true_at_ms: number | null;
+  /** Of the last ping that was answered. */
+  readonly round_trip_s: number | null;
+  /** When the oldest ping without an answer was sent. */
+  readonly unanswered_since_ms: number | null;
 }
 
+export const NO_LINK: LinkHealth = {
+  socket: 'connecting',
+  last_message_ms: null,
+  true_at_ms: null,
+  round_trip_s: null,
+  unanswered_since_ms: null,
+};
+
+/** Age of the data; null: not known. */
 export const link_age_s = (link: LinkHealth, now_ms: number): number | null =>
-  link.last_message_ms === null ? null : Math.max(0, now_ms - link.last_message_ms) / 1000;
+  link.true_at_ms === null ? null : Math.max(0, now_ms - link.true_at_ms) / 1000;
 
-/** True when what is shown may be old: commands that move the robot are refused by the page. */
+/** There and back as it is now: an answer that is overdue counts already. */
+export const round_trip_s = (link: LinkHealth, now_ms: number): number | null => {
+  const waits_ms = link.unanswered_since_ms === null ? 0 : now_ms - link.unanswered_since_ms;
+  return link.round_trip_s === null && waits_ms < UNHEARD_AFTER_MS
+    ? null
+    : Math.max(link.round_trip_s ?? 0, waits_ms / 1000);
+};
+
+/** True when what is shown is old, or of unknown age: nothing that moves the robot is offered. */
 export const link_stale = (link: LinkHealth, now_ms: number): boolean =>
-  link.socket !== 'open' ||
-  link.last_message_ms === null ||
-  now_ms - link.last_message_ms > SILENT_AFTER_MS;
+  link.socket !== 'open' || link.true_at_ms === null || now_ms - link.true_at_ms > OLD_AFTER_MS;
 
-export const should_reopen = (opened_ms: number, link: LinkHealth, now_ms: number): boolean =>
-  now_ms - Math.max(opened_ms, link.last_message_ms ?? opened_ms) > REOPEN_AFTER_MS;
+export interface LinkView {
+  readonly word: string;
+  readonly tone: 'good' | 'warn' | 'bad';
+}
+
+const bad = (word: string): LinkView => ({ word, tone: 'bad' });
+
+/** One word for the link, and its colour. Green only where data is fresh both ways. */
+export const link_view = (link: LinkHealth, now_ms: number): LinkView => {
+  const { last_message_ms, true_at_ms } = link;
+  if (link.socket !== 'open') return bad(last_message_ms === null ? 'Connecting' : 'Offline');
+  if (last_message_ms === null || now_ms - last_message_ms > OLD_AFTER_MS) return bad('Silent');
+  if (true_at_ms === null) return { word: 'Measuring', tone: 'warn' };
+  const back_s = round_trip_s(link, now_ms) ?? 0;
+  if (now_ms - true_at_ms > OLD_AFTER_MS) return bad('Late');
+  const waits_ms = link.unanswered_since_ms === null ? 0 : now_ms - link.unanswered_since_ms;
+  if (waits_ms > UNHEARD_AFTER_MS) return bad('Unheard');
+  return back_s > SLOW_ROUND_TRIP_S || now_ms - true_at_ms > 1000 * SLOW_ROUND_TRIP_S
+    ? { word: 'Slow', tone: 'warn' }
+    : { word: 'Live', tone: 'good' };
+};
+
+/** Whether a socket is worth no more than a closed one. */
+export const should_reopen = (opened_ms: number, link: LinkHealth, now_ms: number): boolean => {
+  if (link.socket !== 'open') return now_ms - opened_ms > GIVE_UP_AFTER_MS;
+  const heard_ms = Math.max(opened_ms, link.last_message_ms ?? opened_ms);
+  const unanswered_ms = now_ms - (link.unanswered_since_ms ?? now_ms);
+  return now_ms - heard_ms > REOPEN_AFTER_MS || unanswered_ms > GIVE_UP_AFTER_MS;
+};
 
 /** Full age of a measured group now, seconds; null while it was never measured. */
 export const age_now_s = (group: Measured, link: LinkHealth, now_ms: number): number | null => {

@@ -5,8 +5,10 @@
 import type { Mode, Vehicle } from './vehicle';
 
 export interface Facts {
-  /** The live link is silent or closed. */
+  /** What is shown is old, or of unknown age. */
   readonly link_stale: boolean;
+  /** It is old although messages come. */
+  readonly link_late?: boolean;
   readonly vehicle: Vehicle | null;
 }
 
@@ -16,8 +18,12 @@ type Reason = string | null;
 const STICKS: ReadonlySet<Mode> = new Set(['MANUAL', 'STEERING', 'ACRO', 'SIMPLE']);
 export const by_hand = (mode: Mode | undefined): boolean => mode !== undefined && STICKS.has(mode);
 
-const no_link = ({ link_stale, vehicle }: Facts): Reason =>
-  link_stale || vehicle === null ? 'No live connection to the robot.' : null;
+export const no_link = ({ link_stale, link_late, vehicle }: Facts): Reason => {
+  if (!link_stale && vehicle !== null) return null;
+  return link_late === true && vehicle !== null
+    ? 'What you see is too old to act upon: the link is slow.'
+    : 'No live connection to the robot.';
+};
 
 const no_stop = ({ vehicle }: Facts): Reason =>
   vehicle?.estop === true ? 'The emergency stop is latched: reset it first.' : null;

@@ -1,9 +1,10 @@
 // What the rooms of the page hand each other through main.ts: types only.
 
-import type { Answer } from './answer';
+import type { Answer, Refusal } from './answer';
 import type { Driver } from './drivers';
 import type { Fence, FenceDraft, FenceSummary } from './fence';
 import type { LinkHealth } from './freshness';
+import type { Halt } from './halt';
 import type { Home, LatLon, Plan, Settings, Item } from './plan';
 import type { RunHead, RunReport } from './runs';
 import type { ReceiverSky } from './sky';
@@ -132,9 +133,20 @@ export interface Goal extends LatLon {
   readonly heading_deg?: number;
   readonly reverse?: boolean;
 }
+/** A mission that was under way when the program on the robot ended. */
+export interface LeftBehind {
+  readonly mission_id: string;
+  readonly revision: number;
+  readonly name: string;
+  readonly item: number | null;
+  readonly items: number;
+  readonly time: string;
+}
 export interface VehicleCalls {
+  /** What stops or slows: sent at once, beside whatever else is under way. */
+  halt(halt: Halt, signal: AbortSignal): Promise<Answer<unknown>>;
+  vehicle(): Promise<Answer<Vehicle>>;
   arm(): Promise<Answer<unknown>>;
-  disarm(): Promise<Answer<unknown>>;
   set_mode(mode: string): Promise<Answer<unknown>>;
   go_to(goal: Goal): Promise<Answer<unknown>>;
   dock(goal: Goal & { readonly heading_deg: number }): Promise<Answer<unknown>>;
@@ -143,7 +155,6 @@ export interface VehicleCalls {
   /** @param turn_deg clockwise positive */
   turn(turn_deg: number): Promise<Answer<unknown>>;
   set_home(at: LatLon): Promise<Answer<unknown>>;
-  estop(): Promise<Answer<unknown>>;
   reset_estop(): Promise<Answer<unknown>>;
   /** The way so far. */
   trail(): Promise<Answer<Remembered>>;
@@ -154,12 +165,14 @@ export interface VehicleCalls {
   load(mission_id: string, revision: number): Promise<Answer<unknown>>;
   preview(from: StartFrom): Promise<Answer<Preview>>;
   start(mission_id: string, revision: number, from: StartFrom): Promise<Answer<Preview>>;
-  pause(): Promise<Answer<unknown>>;
   resume(): Promise<Answer<unknown>>;
-  stop(): Promise<Answer<unknown>>;
   skip(): Promise<Answer<unknown>>;
+  left_behind(): Promise<Answer<LeftBehind | null>>;
+  forget_left_behind(): Promise<Answer<null>>;
   /** Events of the last hour, oldest first. */
   recent_events(): Promise<Answer<Page<StationEvent>>>;
+  /** @param time RFC 3339, of the robot */
+  events_since(time: string): Promise<Answer<Page<StationEvent>>>;
 }
 export interface RunCalls {
   list(cursor: string | null): Promise<Answer<Page<RunHead>>>;
@@ -200,10 +213,26 @@ export interface TeachCalls {
 /** Teleoperation over the live stream. @return false: not connected, nothing was sent */
 export type SendDrive = (speed_mps: number, yaw_rate_dps: number, deadman: boolean) => boolean;
 
+/** What the open socket can do besides. */
+export interface LiveLink {
+  readonly send_drive: SendDrive;
+  /** @return false: not connected, nothing was sent */
+  send_halt(halt: Halt): boolean;
+  /** The robot's time at which the person saw what is shown now; null: nothing is. */
+  seen_s(): number | null;
+  /** What the robot's clock says now; null: no round trip tells. */
+  robot_s(): number | null;
+}
+
 export interface StreamEvents {
   on_link(link: LinkHealth): void;
   on_hello(capabilities: Capabilities): void;
-  on_vehicle(vehicle: Vehicle): void;
+  /** @param mono_s the robot's clock when this was true */
+  on_vehicle(vehicle: Vehicle, mono_s: number): void;
+  /** A message of ours was refused, such as one of the sticks. */
+  on_refused(refusal: Refusal): void;
+  /** The robot has taken the stop that was sent over the socket. */
+  on_stopped(): void;
   on_event(event: StationEvent): void;
   /** A stored mission changed; revision null: it was deleted. */
   on_mission_changed(id: string, revision: number | null): void;
@@ -240,6 +269,8 @@ export interface RobotOnMap {
   readonly accuracy_m: number | null;
   readonly ellipse: Position['ellipse'];
   readonly stale: boolean;
+  /** How old that is, in words, once it matters. */
+  readonly old: string | null;
 }
 export interface RunOnMap {
   /** What it drove, lap by lap. */

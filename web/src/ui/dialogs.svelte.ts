@@ -1,5 +1,5 @@
 // The one dialog that is open: a question, a conflict, an import's report, the start of a mission,
-// the menu of modes.
+// what was found before arming, the menu of modes.
 
 import type { CheckReport, ImportResult, Mission, StartFrom } from '../model/ports';
 import type { Preview } from '../model/vehicle';
@@ -23,6 +23,7 @@ export type Dialog =
   | { readonly kind: 'report'; readonly file: string; readonly result: ImportResult }
   | { readonly kind: 'start'; readonly preview: Preview; readonly from: StartFrom }
   | { readonly kind: 'check'; readonly name: string; readonly report: CheckReport }
+  | { readonly kind: 'arm'; readonly name: string; readonly report: CheckReport }
   | { readonly kind: 'modes' }
   | { readonly kind: 'keys' };
 

@@ -1,6 +1,6 @@
 // The list of drivers, while somebody looks at it, and their restart.
 
-import { refusal_text } from '../model/answer';
+import { failure_text, refusal_text } from '../model/answer';
 import type { Driver } from '../model/drivers';
 import type { VehicleCalls } from '../model/ports';
 import type { Dialogs } from './dialogs.svelte';
@@ -50,7 +50,7 @@ export class Drivers {
     const answer = await this.#calls.restart_driver(name);
     this.restarting = null;
     if (answer.ok) this.#notices.show('good', `The driver “${name}” is being restarted.`);
-    else this.#notices.show('error', `Not restarted: ${refusal_text(answer.refusal)}`);
+    else this.#notices.show('error', failure_text('restarted', answer.refusal));
     await this.#fetch();
   }
 

@@ -1,6 +1,6 @@
 // The mission being edited: its history, what is stored of it, and the draft on the device.
 
-import { refusal_text, refused_items, type Answer } from '../model/answer';
+import { type Answer, failure_text, refusal_text, refused_items } from '../model/answer';
 import { append_waypoint, insert_waypoint, move_waypoint, remove_item } from '../model/actions';
 import type { PlanAction } from '../model/actions';
 import { draft_text, parse_draft, type Stored } from '../model/draft';
@@ -141,7 +141,7 @@ export class Editor implements Drawing {
     if (refusal.status === 412) return this.#settle_conflict(plan, refusal.current ?? null);
     if (refusal.status === 404 && this.stored !== null) return this.#save_as_new(plan);
     this.refused = refused_items(refusal);
-    this.#notices.show('error', `Not saved: ${refusal_text(refusal)}`);
+    this.#notices.show('error', failure_text('saved', refusal));
     return false;
   }
 

@@ -1,6 +1,6 @@
 // Fences: the list, the one that the robot keeps to, and the one that is drawn.
 
-import { refusal_text, type Answer, type Refusal } from '../model/answer';
+import { failure_text, refusal_text, type Answer, type Refusal } from '../model/answer';
 import {
   area_places,
   fresh_circle,
@@ -79,7 +79,7 @@ export class Fences implements Drawing {
   async open(id: string): Promise<readonly LatLon[]> {
     const answer = await this.#calls.read(id);
     if (!answer.ok) {
-      this.#complain('Not opened', answer.refusal);
+      this.#complain('opened', answer.refusal);
       return [];
     }
     this.#show(answer.value, answer.value);
@@ -169,7 +169,7 @@ export class Fences implements Drawing {
     const { draft } = this;
     const stored = this.#stored;
     if (!draft) return;
-    await this.#do('Not saved', async () => {
+    await this.#do('saved', async () => {
       const answer = stored
         ? await this.#calls.replace(stored.id, stored.revision, draft)
         : await this.#calls.create(draft);
@@ -192,7 +192,7 @@ export class Fences implements Drawing {
       });
       if (!sure) return;
     }
-    await this.#do('Not changed', () => this.#calls.activate(fence?.id ?? null));
+    await this.#do('changed', () => this.#calls.activate(fence?.id ?? null));
   }
 
   async remove(fence: FenceSummary): Promise<void> {
@@ -202,7 +202,7 @@ export class Fences implements Drawing {
       yes: 'Delete',
       danger: true,
     });
-    if (sure) await this.#do('Not deleted', () => this.#calls.remove(fence.id, fence.revision));
+    if (sure) await this.#do('deleted', () => this.#calls.remove(fence.id, fence.revision));
   }
 
   get #circle(): boolean {
@@ -238,8 +238,8 @@ export class Fences implements Drawing {
     this.#history = perform(this.#history, () => draft);
   }
 
-  #complain(what: string, refusal: Refusal): void {
-    this.#notices.show('error', `${what}: ${refusal_text(refusal)}`);
+  #complain(done: string, refusal: Refusal): void {
+    this.#notices.show('error', failure_text(done, refusal));
   }
 
   async #do(failed: string, call: () => Promise<Answer<unknown>>): Promise<void> {

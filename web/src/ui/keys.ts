@@ -65,7 +65,7 @@ export const listen_for_keys = (station: Station): (() => void) => {
     if (stop) {
       event.preventDefault();
       event.stopPropagation();
-      if (!event.repeat) void station.pilot.estop();
+      if (!event.repeat) station.pilot.estop();
     } else if (edit_key(station, event) || plain_key(station, event)) {
       event.preventDefault();
     }

@@ -1,6 +1,6 @@
 // The stored missions: list, search, open, tag, archive, delete, check, import.
 
-import { refusal_text, wants_origin, type Answer } from '../model/answer';
+import { type Answer, failure_text, refusal_text, wants_origin } from '../model/answer';
 import type { LatLon } from '../model/plan';
 import type { CheckReport, Mission, MissionCalls, MissionSummary, Place } from '../model/ports';
 import type { Dialogs } from './dialogs.svelte';
@@ -109,7 +109,7 @@ export class Library {
     if (!sure) return;
     const answer = await this.#calls.remove(mission.id, mission.revision);
     if (answer.ok) this.#notices.show('good', `Deleted “${mission.name}”.`);
-    else this.#notices.show('error', `Not deleted: ${refusal_text(answer.refusal)}`);
+    else this.#notices.show('error', failure_text('deleted', answer.refusal));
     await this.refresh();
   }
 

@@ -1,61 +1,87 @@
-// Commands to the robot. What it answers is shown in its own words; the emergency stop is repeated
-// until the robot has confirmed it.
+// Commands to the robot, one after the other; what stops does not wait for them (halts.svelte.ts).
+// What it answers is shown in its own words. Where no answer comes, the page does not know whether it
+// was obeyed: it says so, and asks the robot.
 
 import type { Answer, Refusal } from '../model/answer';
+import type { Halt } from '../model/halt';
+import { CLICK_LIFE_S, outcome, type Outcome, type Wish } from '../model/outcome';
 import type { LatLon } from '../model/plan';
-import type { Goal, SendDrive, StartFrom, VehicleCalls } from '../model/ports';
+import type { Goal, LiveLink, SendDrive, StartFrom, VehicleCalls } from '../model/ports';
+import type { Mode, StationEvent, Vehicle } from '../model/vehicle';
 import type { Dialogs } from './dialogs.svelte';
+import { Halts } from './halts.svelte';
 import type { Live } from './live.svelte';
 import type { Notices } from './notices.svelte';
 
-const STOP_TRIES = 20;
-const STOP_PAUSE_MS = 250;
+/** A command that was obeyed or refused has answered by then, but for a slow link. */
+const DOUBT_AFTER_MS = 1500;
+const ASK_AGAIN_MS = 1000;
+
+/** A command whose answer did not come (yet). */
+export interface Doubt {
+  readonly what: string;
+  /** Null: the robot has not told yet. */
+  readonly found: Outcome | null;
+  /** What happened on the robot since. */
+  readonly events: readonly StationEvent[];
+}
 
 export class Pilot {
   /** The command that waits for its answer. */
   busy = $state<string | null>(null);
   /** The last refusal and what was refused; stays until the next command. */
   refused = $state.raw<{ readonly what: string; readonly refusal: Refusal } | null>(null);
-  stopping = $state(false);
+  doubt = $state.raw<Doubt | null>(null);
 
+  readonly halts: Halts;
   readonly send_drive: SendDrive;
   readonly #calls: VehicleCalls;
+  readonly #link: LiveLink;
   readonly #live: Live;
   readonly #notices: Notices;
   readonly #dialogs: Dialogs;
 
-  constructor(
-    calls: VehicleCalls,
-    send_drive: SendDrive,
-    live: Live,
-    notices: Notices,
-    dialogs: Dialogs,
-  ) {
+  constructor(calls: VehicleCalls, link: LiveLink, live: Live, notices: Notices, dialogs: Dialogs) {
     this.#calls = calls;
-    this.send_drive = send_drive;
+    this.#link = link;
+    this.send_drive = link.send_drive;
     this.#live = live;
     this.#notices = notices;
     this.#dialogs = dialogs;
+    this.halts = new Halts(calls, link, live);
   }
 
-  arm = (): Promise<boolean> => this.#do('Arm', () => this.#calls.arm());
-  disarm = (): Promise<boolean> => this.#do('Disarm', () => this.#calls.disarm());
-  pause = (): Promise<boolean> => this.#do('Pause', () => this.#calls.pause());
-  resume = (): Promise<boolean> => this.#do('Resume', () => this.#calls.resume());
-  stop_mission = (): Promise<boolean> => this.#do('Stop mission', () => this.#calls.stop());
-  skip = (): Promise<boolean> => this.#do('Skip', () => this.#calls.skip());
-  set_mode = (mode: string): Promise<boolean> =>
-    this.#do(`Mode ${mode}`, () => this.#calls.set_mode(mode));
-  go_to = (goal: Goal): Promise<boolean> => this.#do('Go here', () => this.#calls.go_to(goal));
+  halt = (halt: Halt): void => this.halts.press(halt);
+  hold = (): void => this.halt('hold');
+  disarm = (): void => this.halt('disarm');
+  pause = (): void => this.halt('pause');
+  stop_mission = (): void => this.halt('stop');
+  /** At once and without a question. */
+  estop = (): void => this.halt('estop');
+
+  arm = (): Promise<boolean> => this.#do('Arm', { to: 'arm' }, () => this.#calls.arm());
+  resume = (): Promise<boolean> => this.#do('Resume', { to: 'run' }, () => this.#calls.resume());
+  skip = (): Promise<boolean> => this.#do('Skip', { to: 'skip' }, () => this.#calls.skip());
+  go_to = (goal: Goal): Promise<boolean> =>
+    this.#do('Go here', { to: 'do', kinds: ['goto'] }, () => this.#calls.go_to(goal));
   dock = (goal: Goal & { readonly heading_deg: number }): Promise<boolean> =>
-    this.#do('Dock here', () => this.#calls.dock(goal));
+    this.#do('Dock here', { to: 'mode', mode: 'DOCK' }, () => this.#calls.dock(goal));
   move = (forward_m: number): Promise<boolean> =>
-    this.#do('Move', () => this.#calls.move(forward_m));
-  turn = (turn_deg: number): Promise<boolean> => this.#do('Turn', () => this.#calls.turn(turn_deg));
+    this.#do('Move', { to: 'do', kinds: ['move'] }, () => this.#calls.move(forward_m));
+  turn = (turn_deg: number): Promise<boolean> =>
+    this.#do('Turn', { to: 'do', kinds: ['turn'] }, () => this.#calls.turn(turn_deg));
   set_home = (at: LatLon): Promise<boolean> =>
-    this.#do('Home here', () => this.#calls.set_home(at));
+    this.#do('Home here', { to: 'home', at }, () => this.#calls.set_home(at));
   load = (id: string, revision: number): Promise<boolean> =>
-    this.#do('Load', () => this.#calls.load(id, revision));
+    this.#do('Load', { to: 'load', id, revision }, () => this.#calls.load(id, revision));
+
+  async set_mode(mode: Mode): Promise<boolean> {
+    if (mode === 'HOLD') {
+      this.hold();
+      return true;
+    }
+    return this.#do(`Mode ${mode}`, { to: 'mode', mode }, () => this.#calls.set_mode(mode));
+  }
 
   async reset_estop(): Promise<void> {
     const sure = await this.#dialogs.ask({
@@ -64,54 +90,74 @@ export class Pilot {
       yes: 'Reset',
       danger: true,
     });
-    if (sure) await this.#do('Reset', () => this.#calls.reset_estop());
+    if (sure) await this.#do('Reset', { to: 'reset' }, () => this.#calls.reset_estop());
   }
 
   /** Asks the robot what a start would do, and shows it. Nothing moves. */
   async preview(from: StartFrom): Promise<void> {
-    await this.#do('Start', async () => {
+    await this.#one('Start', async () => {
       const answer = await this.#calls.preview(from);
       if (answer.ok) this.#dialogs.show({ kind: 'start', preview: answer.value, from });
-      return answer;
+      else this.refused = { what: 'Start', refusal: answer.refusal };
+      return answer.ok;
     });
   }
 
   async start(id: string, revision: number, from: StartFrom): Promise<void> {
     this.#dialogs.close();
-    await this.#do('Start', () => this.#calls.start(id, revision, from));
+    await this.#do('Start', { to: 'run' }, () => this.#calls.start(id, revision, from));
   }
 
-  /** At once and without a question. Every press sends; one loop repeats until it is confirmed. */
-  async estop(): Promise<void> {
-    this.send_drive(0, 0, false);
-    if (this.stopping) {
-      void this.#calls.estop();
-      return;
+  /** One command at a time; another one is not sent, and not in silence. */
+  async #one(what: string, run: () => Promise<boolean>): Promise<boolean> {
+    if (this.busy !== null) {
+      this.#notices.show('warning', `${what} was not sent: “${this.busy}” still waits.`);
+      return false;
     }
-    this.stopping = true;
-    for (let attempt = 0; attempt < STOP_TRIES; attempt += 1) {
-      const answer = await this.#calls.estop();
-      const confirmed = this.#live.vehicle?.estop === true && !this.#live.stale;
-      if (answer.ok || confirmed) {
-        this.stopping = false;
-        return;
-      }
-      await new Promise((resolve) => setTimeout(resolve, STOP_PAUSE_MS));
-    }
-    this.stopping = false;
-    this.#notices.show(
-      'error',
-      'STOP was not confirmed by the robot. Use the button on the robot or the radio.',
-    );
-  }
-
-  async #do(what: string, call: () => Promise<Answer<unknown>>): Promise<boolean> {
-    if (this.busy !== null) return false;
     this.busy = what;
     this.refused = null;
-    const answer = await call();
-    this.busy = null;
-    if (!answer.ok) this.refused = { what, refusal: answer.refusal };
-    return answer.ok;
+    this.doubt = null;
+    try {
+      return await run();
+    } finally {
+      this.busy = null;
+    }
+  }
+
+  #do(what: string, wish: Wish, call: () => Promise<Answer<unknown>>): Promise<boolean> {
+    return this.#one(what, async () => {
+      const before = this.#live.vehicle;
+      const seen_s = this.#link.seen_s();
+      // A stop that is pressed from now on must outlast this command.
+      if (seen_s !== null) this.halts.risk_until_s = seen_s + CLICK_LIFE_S;
+      const waits = setTimeout(() => {
+        this.doubt = { what, found: null, events: [] };
+      }, DOUBT_AFTER_MS);
+      const answer = await call();
+      clearTimeout(waits);
+      const unknown = !answer.ok && answer.refusal.status === 0;
+      if (!unknown) this.halts.risk_until_s = null;
+      this.doubt = unknown ? { what, found: null, events: [] } : null;
+      if (unknown) void this.#ask_what_it_did(this.doubt, wish, before);
+      else if (!answer.ok) this.refused = { what, refusal: answer.refusal };
+      return answer.ok;
+    });
+  }
+
+  /** Until the robot tells, or another command is given. */
+  async #ask_what_it_did(doubt: Doubt | null, wish: Wish, before: Vehicle | null): Promise<void> {
+    const given_up = (): boolean => doubt === null || this.doubt !== doubt;
+    while (!given_up()) {
+      const after = await this.#calls.vehicle();
+      const since = before && after.ok ? await this.#calls.events_since(before.time) : null;
+      if (given_up() || !doubt) return;
+      if (after.ok) {
+        const events = since?.ok ? since.value.items : [];
+        this.doubt = { ...doubt, found: outcome(wish, before, after.value), events };
+        this.halts.risk_until_s = null;
+        return;
+      }
+      await new Promise((resolve) => setTimeout(resolve, ASK_AGAIN_MS));
+    }
   }
 }

@@ -9,11 +9,11 @@ import type {
   DraftStorage,
   FenceCalls,
   ImportedArea,
+  LiveLink,
   MapCalls,
   MapEvents,
   MissionCalls,
   RunCalls,
-  SendDrive,
   StreamEvents,
   SurveyCalls,
   TeachCalls,
@@ -26,10 +26,13 @@ import type { Drawing } from './drawing.svelte';
 import { Drivers } from './drivers.svelte';
 import { Editor, plan_of } from './editor.svelte';
 import { Fences } from './fences.svelte';
+import { Findings } from './findings.svelte';
+import { Homeward, type WayHome } from './homeward.svelte';
 import { Library } from './library.svelte';
 import { Live } from './live.svelte';
 import { Notices } from './notices.svelte';
 import { Pilot } from './pilot.svelte';
+import { Resumption } from './resumption.svelte';
 import { Runs } from './runs.svelte';
 import { Sky } from './sky.svelte';
 import { Surveyor } from './survey.svelte';
@@ -60,7 +63,7 @@ export interface Doors {
   readonly fences: FenceCalls;
   readonly map: MapCalls;
   readonly storage: DraftStorage;
-  readonly send_drive: SendDrive;
+  readonly link: LiveLink;
 }
 
 export class Station {
@@ -95,6 +98,9 @@ export class Station {
   readonly runs: Runs;
   readonly surveyor: Surveyor;
   readonly fences: Fences;
+  readonly homeward: Homeward;
+  readonly resumption: Resumption;
+  readonly findings: Findings;
   readonly map: MapCalls;
   readonly #doors: Doors;
   #route_key = '';
@@ -116,12 +122,15 @@ export class Station {
       this.dialogs,
       () => this.live.vehicle?.home ?? robot_place(this.live.vehicle),
     );
-    this.pilot = new Pilot(doors.vehicle, doors.send_drive, this.live, this.notices, this.dialogs);
+    this.pilot = new Pilot(doors.vehicle, doors.link, this.live, this.notices, this.dialogs);
     this.drivers = new Drivers(doors.vehicle, this.notices, this.dialogs);
     this.sky = new Sky(doors.vehicle);
     this.runs = new Runs(doors.runs);
     this.surveyor = new Surveyor(doors.survey, this.editor, this.notices);
     this.fences = new Fences(doors.fences, this.notices, this.dialogs);
+    this.homeward = new Homeward(this.live, this.fences);
+    this.resumption = new Resumption(doors.vehicle, this.pilot, this.notices, this.dialogs);
+    this.findings = new Findings(doors.missions);
     this.teacher = new Teacher(doors.teach, this.editor, this.notices, this.dialogs);
     doors.map.listen(this.#map_events());
     if (this.editor.restore_draft()) this.map.fit(spots(this.editor.plan));
@@ -133,8 +142,10 @@ export class Station {
     on_link: (link) => {
       const was_open = this.live.link.socket === 'open';
       this.live.link = link;
+      this.live.now_ms = performance.now(); // an age is never told too small
       if (link.socket !== 'open' || was_open) return;
       void this.#fetch_past_events();
+      void this.resumption.refresh();
       this.#trail_missing = true;
       this.#trail_due_ms = 0;
       this.#trail_again_ms = TRAIL_AGAIN_MS;
@@ -143,11 +154,15 @@ export class Station {
       this.live.capabilities = capabilities;
       this.map.set_size(capabilities.size.length_m, capabilities.size.width_m);
     },
-    on_vehicle: (vehicle) => {
+    on_vehicle: (vehicle, mono_s) => {
       this.live.take(vehicle);
+      this.pilot.halts.on_vehicle(vehicle, mono_s);
+      this.findings.take(vehicle);
       void this.#complete_trail();
       void this.#follow_route();
     },
+    on_refused: (refusal) => this.live.refuse_stick(refusal_text(refusal)),
+    on_stopped: () => this.pilot.halts.on_stopped(),
     on_event: (event) => this.notices.event(event),
     on_mission_changed: (id, revision) => {
       void this.editor.stored_changed(id, revision);
@@ -208,6 +223,27 @@ export class Station {
     this.tab = 'plan';
   }
 
+  /** Straight to where it can be seen what it would do. */
+  show_way_home(way: WayHome): void {
+    this.dialogs.close();
+    this.tab = 'drive';
+    this.sheet_open = true;
+    this.homeward.show(way);
+    const { target } = this.homeward;
+    const robot = robot_place(this.live.vehicle);
+    if (!target || !robot) return;
+    this.set_follow(false);
+    void this.settled().then(() => this.map.fit([robot, target.at]));
+  }
+
+  /** Arms; what the check has found about the loaded mission is seen before. */
+  arm(): void {
+    const { report, name } = this.findings;
+    if (report && report.findings.length > 0) {
+      this.dialogs.show({ kind: 'arm', name: name ?? '', report });
+    } else void this.pilot.arm();
+  }
+
   async fetch_checks(): Promise<void> {
     const answer = await this.#doors.vehicle.checks();
     this.checks = answer.ok ? answer.value.checks : [];
@@ -245,6 +281,7 @@ export class Station {
     const key = id === null || revision === null ? '' : `${id} ${revision}`;
     if (key === this.#route_key) return;
     this.#route_key = key;
+    void this.resumption.refresh();
     if (id === null || revision === null) {
       this.route = null;
       return;
@@ -314,7 +351,8 @@ export class Station {
     $effect(() => map.show_home(live.vehicle?.home ?? null));
     $effect(() => {
       const pin = this.tab === 'drive' ? this.target.mark : null;
-      map.show_marks(pin, activity_mark(live.vehicle));
+      const home = this.tab === 'drive' ? this.homeward.mark : null;
+      map.show_marks(pin, home ?? activity_mark(live.vehicle));
     });
   }
 }

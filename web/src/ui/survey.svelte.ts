@@ -1,6 +1,6 @@
 // A field that is drawn, the tracks that would cover it, and the mission that they become.
 
-import { refusal_text } from '../model/answer';
+import { failure_text, refusal_text } from '../model/answer';
 import { spots } from '../model/plan';
 import type { RunOnMap, SurveyCalls } from '../model/ports';
 import { why_not_survey, type Survey, type SurveyWish } from '../model/survey';
@@ -73,7 +73,7 @@ export class Surveyor {
     const answer = await this.#calls.keep(this.wish, this.name.trim());
     this.busy = false;
     if (!answer.ok) {
-      this.#notices.show('error', `Not kept: ${refusal_text(answer.refusal)}`);
+      this.#notices.show('error', failure_text('kept', answer.refusal));
       return false;
     }
     this.#editor.show_mission(answer.value);

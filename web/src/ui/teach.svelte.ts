@@ -1,6 +1,6 @@
 // The recording of a driven way: start, pause, keep as a mission, forget.
 
-import { refusal_text, type Answer } from '../model/answer';
+import { type Answer, failure_text } from '../model/answer';
 import { count } from '../model/format';
 import type { TeachCalls } from '../model/ports';
 import type { Dialogs } from './dialogs.svelte';
@@ -71,7 +71,7 @@ export class Teacher {
     this.busy = true;
     const answer = await call();
     this.busy = false;
-    if (!answer.ok) this.#notices.show('error', `Not ${what}: ${refusal_text(answer.refusal)}`);
+    if (!answer.ok) this.#notices.show('error', failure_text(what, answer.refusal));
     return answer.ok;
   }
 }

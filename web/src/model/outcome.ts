@@ -1,0 +1,71 @@
+// A command had no answer. Whether it was obeyed is not known until the robot is asked: this compares
+// its state before and after.
+
+import { distance_m } from './geo';
+import { activity_line } from './modes';
+import type { LatLon } from './plan';
+import type { Activity, Mode, Vehicle } from './vehicle';
+
+/** What a command should lead to. */
+export type Wish =
+  | { readonly to: 'arm' }
+  | { readonly to: 'reset' }
+  | { readonly to: 'mode'; readonly mode: Mode }
+  | { readonly to: 'do'; readonly kinds: readonly Activity['kind'][] }
+  | { readonly to: 'load'; readonly id: string; readonly revision: number }
+  | { readonly to: 'run' }
+  | { readonly to: 'skip' }
+  | { readonly to: 'home'; readonly at: LatLon };
+
+/** How long a click can be obeyed after it was made. */
+export const CLICK_LIFE_S = 1;
+
+export interface Outcome {
+  readonly obeyed: boolean;
+  readonly detail: string;
+}
+
+const SAME_PLACE_M = 0.01;
+
+/** @param before the state that the person acted upon; null: none was seen */
+export const outcome = (wish: Wish, before: Vehicle | null, after: Vehicle): Outcome => {
+  const { mission } = after;
+  switch (wish.to) {
+    case 'arm':
+      return { obeyed: after.armed, detail: `the robot is ${after.armed ? '' : 'not '}armed` };
+    case 'reset':
+      return {
+        obeyed: !after.estop,
+        detail: `the emergency stop is ${after.estop ? 'still latched' : 'reset'}`,
+      };
+    case 'mode':
+      return { obeyed: after.mode === wish.mode, detail: `the mode is ${after.mode}` };
+    case 'do': {
+      const fresh = after.activity.id !== before?.activity.id;
+      const obeyed = fresh && wish.kinds.includes(after.activity.kind);
+      const line = activity_line(after);
+      const words = line ? `${line.head.toLowerCase()}: ${line.detail.toLowerCase()}` : '';
+      return { obeyed, detail: obeyed && line ? words : `the mode is ${after.mode}` };
+    }
+    case 'load': {
+      const obeyed = mission.id === wish.id && mission.revision === wish.revision;
+      return { obeyed, detail: mission.name === null ? 'no mission is loaded' : has(after) };
+    }
+    case 'run': {
+      const runs = mission.state === 'running' || mission.state === 'finished';
+      return { obeyed: runs && mission.state !== before?.mission.state, detail: is(after) };
+    }
+    case 'skip': {
+      const moved = mission.current_item !== before?.mission.current_item;
+      return { obeyed: moved, detail: `item ${mission.current_item ?? '—'} is in hand` };
+    }
+    case 'home': {
+      const obeyed = after.home !== null && distance_m(after.home, wish.at) < SAME_PLACE_M;
+      return { obeyed, detail: obeyed ? 'home is there' : 'home is elsewhere' };
+    }
+  }
+};
+
+const has = ({ mission }: Vehicle): string =>
+  `“${mission.name ?? ''}” revision ${mission.revision ?? '—'} is loaded`;
+const is = ({ mission }: Vehicle): string => `the mission is ${mission.state}`;

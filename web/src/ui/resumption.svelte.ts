@@ -1,0 +1,52 @@
+// The mission that a restart of the robot's program left behind: to go on with, or to forget.
+
+import { failure_text } from '../model/answer';
+import { count } from '../model/format';
+import type { LeftBehind, VehicleCalls } from '../model/ports';
+import type { Dialogs } from './dialogs.svelte';
+import type { Notices } from './notices.svelte';
+import type { Pilot } from './pilot.svelte';
+
+export class Resumption {
+  left_behind = $state.raw<LeftBehind | null>(null);
+  busy = $state(false);
+
+  readonly #calls: VehicleCalls;
+  readonly #pilot: Pilot;
+  readonly #notices: Notices;
+  readonly #dialogs: Dialogs;
+
+  constructor(calls: VehicleCalls, pilot: Pilot, notices: Notices, dialogs: Dialogs) {
+    this.#calls = calls;
+    this.#pilot = pilot;
+    this.#notices = notices;
+    this.#dialogs = dialogs;
+  }
+
+  /** On every new connection, and when another mission is in hand. */
+  async refresh(): Promise<void> {
+    const answer = await this.#calls.left_behind();
+    if (answer.ok) this.left_behind = answer.value;
+  }
+
+  async go_on(): Promise<void> {
+    if (await this.#pilot.resume()) this.left_behind = null;
+  }
+
+  async forget(): Promise<void> {
+    const left = this.left_behind;
+    if (!left || this.busy) return;
+    const sure = await this.#dialogs.ask({
+      title: 'Forget where it was?',
+      text: `“${left.name}” stays stored, with ${count(left.items, 'item')}. The robot forgets that it stood at item ${left.item ?? '—'}.`,
+      yes: 'Forget it',
+      danger: false,
+    });
+    if (!sure) return;
+    this.busy = true;
+    const answer = await this.#calls.forget_left_behind();
+    this.busy = false;
+    if (!answer.ok) this.#notices.show('error', failure_text('forgotten', answer.refusal));
+    await this.refresh();
+  }
+}

@@ -1,0 +1,66 @@
+import { describe, expect, test } from 'vitest';
+
+import { outcome, type Wish } from '../src/model/outcome';
+import type { Vehicle } from '../src/model/vehicle';
+
+const robot = (given: object = {}): Vehicle =>
+  ({
+    armed: false,
+    estop: false,
+    mode: 'HOLD',
+    home: null,
+    activity: { id: 3, kind: null, state: 'none', reason: '', distance_m: null, turn_deg: null },
+    mission: { id: null, revision: null, name: null, state: 'idle', current_item: null },
+    ...given,
+  }) as unknown as Vehicle;
+const going = (id: number, kind: string): object => ({
+  mode: 'GUIDED',
+  activity: { id, kind, state: 'driving', reason: '', distance_m: 5.25, turn_deg: null },
+});
+const mission = (given: object): object => ({
+  mission: { id: 'a', revision: 2, name: 'Field', state: 'loaded', current_item: 1, ...given },
+});
+
+describe('what became of a command without an answer', () => {
+  const told = (wish: Wish, before: object, after: object): readonly [boolean, string] => {
+    const { obeyed, detail } = outcome(wish, robot(before), robot(after));
+    return [obeyed, detail];
+  };
+
+  test('arming and the reset of a stop are seen in the state', () => {
+    expect(told({ to: 'arm' }, {}, { armed: true })).toEqual([true, 'the robot is armed']);
+    expect(told({ to: 'arm' }, {}, {})).toEqual([false, 'the robot is not armed']);
+    expect(told({ to: 'reset' }, { estop: true }, {})[0]).toBe(true);
+    expect(told({ to: 'reset' }, { estop: true }, { estop: true })[0]).toBe(false);
+  });
+
+  test('a drive to a place is obeyed only if it is another one than before', () => {
+    const wish: Wish = { to: 'do', kinds: ['goto'] };
+    expect(told(wish, {}, going(4, 'goto'))).toEqual([true, 'going to the place: 5.25 m left']);
+    expect(told(wish, going(4, 'goto'), going(4, 'goto'))[0]).toBe(false);
+    expect(told(wish, {}, going(4, 'turn'))[0]).toBe(false);
+    expect(told(wish, {}, {})).toEqual([false, 'the mode is HOLD']);
+    expect(outcome(wish, null, robot(going(4, 'goto'))).obeyed).toBe(true);
+  });
+
+  test('modes, missions and home', () => {
+    expect(told({ to: 'mode', mode: 'RTL' }, {}, { mode: 'RTL' })[0]).toBe(true);
+    expect(told({ to: 'mode', mode: 'RTL' }, {}, {})).toEqual([false, 'the mode is HOLD']);
+    const load: Wish = { to: 'load', id: 'a', revision: 2 };
+    expect(told(load, {}, mission({}))).toEqual([true, '“Field” revision 2 is loaded']);
+    expect(told(load, {}, mission({ revision: 1 }))[0]).toBe(false);
+    expect(told(load, {}, {})).toEqual([false, 'no mission is loaded']);
+    const run: Wish = { to: 'run' };
+    expect(told(run, mission({}), mission({ state: 'running' }))[0]).toBe(true);
+    expect(told(run, mission({}), mission({}))).toEqual([false, 'the mission is loaded']);
+    expect(told(run, mission({ state: 'finished' }), mission({ state: 'finished' }))[0]).toBe(
+      false,
+    );
+    expect(told({ to: 'skip' }, mission({}), mission({ current_item: 2 }))[0]).toBe(true);
+    expect(told({ to: 'skip' }, mission({}), mission({}))[0]).toBe(false);
+    const at = { lat: 58, lon: 26 };
+    expect(told({ to: 'home', at }, {}, { home: at })[0]).toBe(true);
+    expect(told({ to: 'home', at }, {}, { home: { lat: 58.001, lon: 26 } })[0]).toBe(false);
+    expect(told({ to: 'home', at }, {}, {})[0]).toBe(false);
+  });
+});
