@@ -24,9 +24,9 @@ struct StartView {
   const std::optional<mission::Finding>* legs = nullptr;  ///< route_objection; null: no fence
   double margin_m = 0.0;  ///< of a way that is asked for: kept margin and kFenceAllowance_m
   double within_m = 0.0;
-  std::optional<base::EnuPoint> here;
-  std::optional<base::EnuPoint> home;
-  nav::StartAt at;
+  std::optional<base::EnuPoint> here{};
+  std::optional<base::EnuPoint> home{};
+  nav::StartAt at{};
 };
 
 /// Errors all of them; at most one of a kind. Empty: a start has nothing against it.

@@ -42,6 +42,13 @@ std::optional<store::StoredPlace> RunRecorder::offer() const {
   return other ? std::nullopt : offer_;
 }
 
+void RunRecorder::forget(std::function<void(base::Result<void>)> done) {
+  if (!offer_) return done({});
+  offer_.reset();
+  if (place_kept_) return done({});  // what is kept now is of the mission in hand
+  store_.keep_place(std::nullopt, std::move(done));
+}
+
 void RunRecorder::look(const base::Snapshot& s) {
   recall();
   const base::MissionProgress& m = s.mission;

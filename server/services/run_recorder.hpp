@@ -38,6 +38,8 @@ class RunRecorder {
   /// The mission that another life of the program left behind; empty: none, it is in hand, or
   /// another one is loaded. Until one is begun it is offered again when that one is not.
   std::optional<store::StoredPlace> offer() const;
+  /// Offers it no more, in no later life either. @param done once the store has it
+  void forget(std::function<void(base::Result<void>)> done);
   /// Reads it; once, before the first sample counts.
   void recall();
 

@@ -26,12 +26,10 @@ void Services::start(Ears ears) {
     if (ears_.tell) ears_.tell(std::move(event));
   };
   radio_.announce = changed;
-  desk_.post([this, changed] {
-    teach_ = std::make_unique<TeachIn>(*store_);
-    teach_->tell = radio_.tell;
-    teach_->announce = changed;
-    runs_.recall();
-  });
+  teach_ = std::make_unique<TeachIn>(*store_);  // its thread has not begun yet
+  teach_->tell = radio_.tell;
+  teach_->announce = changed;
+  runs_.recall();
   desk_.start(kSample, [this] { beat(); });
 }
 
@@ -119,6 +117,10 @@ void Services::read_trail(std::function<std::string(const Trail&, const base::Sn
     }
     answer([done, text = std::move(text)] { done(text); });
   });
+}
+
+void Services::forget_left_behind(Done done) {
+  desk_.post([this, done = std::move(done)] { runs_.forget(answered(done)); });
 }
 
 void Services::use_fence(std::shared_ptr<const mission::Fence> fence) {

@@ -68,6 +68,8 @@ class Services {
   /// @param render pure; gets what was driven and the last snapshot
   void read_trail(std::function<std::string(const Trail&, const base::Snapshot&)> render,
                   std::function<void(std::optional<std::string>)> done);
+  /// The mission that another life of the program left behind is offered no more.
+  void forget_left_behind(Done done);
   /// From now on. Null: none.
   void use_fence(std::shared_ptr<const mission::Fence> fence);
   /// The robot said so.

@@ -57,7 +57,7 @@ void Store::create_mission(mission::Plan plan, Change change, Reply<StoredMissio
 
 void Store::create_import(std::vector<mission::Plan> plans, std::optional<mission::Fence> fence,
                           Change change, Reply<StoredImport> reply) {
-  impl_->ask(std::move(reply),
+  impl_->ask(deliver_, std::move(reply),
              [impl = impl_.get(), plans = std::move(plans), fence = std::move(fence),
               change = std::move(change)]() mutable -> base::Result<StoredImport> {
                const base::WallTime now = impl->options.clock();

@@ -62,13 +62,13 @@ Handler load(const ContextPtr& context) {
 
     const auto hand_over = [context, call, not_after](base::Result<store::StoredMission> stored) {
       if (!stored) return call->respond(problem(stored.error()));
-      const std::string id = stored->id;
+      const std::string found = stored->id;
       const std::int64_t number = stored->revision;
-      Verdict verdict = judge(*context, {id, number, std::move(stored->plan)});
+      Verdict verdict = judge(*context, {found, number, std::move(stored->plan)});
       if (verdict.lasting > 0 || !verdict.compiled) {
         return call->respond(problem(verdict.refusal));
       }
-      Context::Warnings warnings{id, number,
+      Context::Warnings warnings{found, number,
                                  findings_json(verdict.report, mission::Severity::Warning)};
       run_command(context, call, robot::LoadMission{std::move(verdict.compiled)}, not_after,
                   [context, warnings](const base::Snapshot& snapshot) {
@@ -226,8 +226,10 @@ Handler resume(const ContextPtr& context) {
 /// The mission stays stored; only where it stood is forgotten. Forgetting nothing is no error.
 Handler forget(const ContextPtr& context) {
   return [context](const CallPtr& call) {
-    context->runs.forget_offer();
-    call->respond(Response{http::status::no_content, 11});
+    context->deps.services.forget_left_behind([call](const base::Result<void>& done) {
+      if (!done) return call->respond(problem(done.error()));
+      call->respond(Response{http::status::no_content, 11});
+    });
   };
 }
 
@@ -243,7 +245,7 @@ void add_execution_routes(const ContextPtr& c) {
                      call->respond(json_response(http::status::ok, progress_of(c)(*s)));
                    }
                  }});
-  c->router.add({http::verb::delete_, "/execution/left_behind", {204, 403}, forget(c)});
+  c->router.add({http::verb::delete_, "/execution/left_behind", {204, 403, 503}, forget(c)});
   c->router.add({get, "/execution/preview", {200, 409, 422, 503}, preview(c)});
   c->router.add({post, "/execution/load", with_404, load(c)});
   c->router.add({post, "/execution/start", kCommand, start(c)});

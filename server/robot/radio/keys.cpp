@@ -6,7 +6,7 @@ namespace {
 using base::Mode;
 using base::Switch;
 
-constexpr RadioAction kActions[] = {
+constexpr RadioAction kSwitchActions[] = {
     {"none", "nothing", RadioDeed::None},
     {"by_knob", "what the knob chooses", RadioDeed::ByKnob},
     {"mode.manual", "mode MANUAL", RadioDeed::SetMode, Mode::Manual},
@@ -60,7 +60,7 @@ struct CheckWords {
 }  // namespace
 
 const RadioAction* radio_action(std::string_view word) noexcept {
-  for (const RadioAction& action : kActions) {
+  for (const RadioAction& action : kSwitchActions) {
     if (action.word == word) return &action;
   }
   return nullptr;
@@ -76,8 +76,8 @@ base::Result<void> check(const RadioParams& params) {
     detail += " cannot be by_knob: the knob would ask itself";
   } else {
     detail += " must be one of";
-    for (const RadioAction& action : kActions) {
-      detail += (&action == kActions ? " " : ", ") + std::string(action.word);
+    for (const RadioAction& action : kSwitchActions) {
+      detail += (&action == kSwitchActions ? " " : ", ") + std::string(action.word);
     }
     detail += "; is \"" + words.word + "\"";
   }

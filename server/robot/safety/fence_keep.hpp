@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/drive_command.hpp"
+#include "nav/behave/executor.hpp"
 #include "robot/compile.hpp"
 #include "robot/safety/fence_guard.hpp"
 

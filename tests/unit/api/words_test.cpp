@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include "api/api.hpp"
 #include "api/metrics.hpp"
+#include "api/problem.hpp"
 #include "base/angle.hpp"
 
 namespace roverd::api {

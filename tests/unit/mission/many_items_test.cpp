@@ -50,7 +50,9 @@ TEST(ManyItems, ComeBackInEveryFormat) {
           {most_deg, std::abs(back[i].lat - places[i].lat), std::abs(back[i].lon - places[i].lon)});
     }
     EXPECT_LT(most_deg, 1e-9);
-    if (format == Format::GeoJson) EXPECT_EQ(file->plan.items, plan.items);
+    if (format == Format::GeoJson) {
+      EXPECT_EQ(file->plan.items, plan.items);
+    }
   }
 }
 

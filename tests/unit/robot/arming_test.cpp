@@ -45,7 +45,7 @@ TEST(Arming, AReceiverThatSendsNoPositionsIsNamedByItsCheck) {
   auto detail = std::make_shared<base::DriverDetail>();
   detail->facts["no_position"] = "the receiver sends no position message";
   receiver.detail = detail;
-  f.robot.inbox().put(receiver);
+  f.robot.measurements().put(receiver);
   f.run(0.1);
   EXPECT_FALSE(f.check("gnss_fix").ok);
   EXPECT_EQ(f.check("gnss_fix").detail, "the receiver sends no position message");

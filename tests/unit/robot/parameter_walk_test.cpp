@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "field.hpp"
-#include "robot/fence_guard.hpp"
+#include "robot/safety/fence_guard.hpp"
 
 namespace roverd::robot {
 namespace {
