@@ -80,6 +80,7 @@ void Driver::start(Time now) {
 }
 
 void Driver::begin(link::FrameLink& bus, Time now) {
+  bus.attend(own_ids());
   link_.store(&bus, std::memory_order_release);
   firmware_asks_ = 0;
   firmware_at_ = now;
