@@ -31,7 +31,8 @@ TEST_F(VehicleApi, TheSkyIsToldReceiverByReceiver) {
   EXPECT_EQ(call("GET", "/gnss/satellites").body["receivers"], Json::array());
   // when one does,
   auto all = std::make_shared<std::vector<base::Satellite>>();
-  all->push_back({"galileo", 11, 50.0, 200.0, 41.0, true});
+  all->push_back(
+      {"galileo", 11, 50.0, 200.0, 41.0, true, {{"E1 C", 41.0, true}, {"E5b Q", {}, false}}});
   all->push_back({"glonass", 3, {}, {}, {}, {}});
   house.hear(base::SatellitesInView{base::steady_now(), "gnss", all});
   until([this] { return !call("GET", "/gnss/satellites").body["receivers"].empty(); }, "a sky");
@@ -41,12 +42,17 @@ TEST_F(VehicleApi, TheSkyIsToldReceiverByReceiver) {
   const Json& sky = reply.body["receivers"][0];
   EXPECT_EQ(sky["driver"], "gnss");
   EXPECT_EQ(sky["stale"], false);
-  EXPECT_EQ(sky["satellites"][0], (Json{{"system", "galileo"},
-                                        {"number", 11},
-                                        {"elevation_deg", 50.0},
-                                        {"azimuth_deg", 200.0},
-                                        {"cn0_dbhz", 41.0},
-                                        {"used", true}}));
+  EXPECT_EQ(sky["satellites"][0],
+            (Json{{"system", "galileo"},
+                  {"number", 11},
+                  {"elevation_deg", 50.0},
+                  {"azimuth_deg", 200.0},
+                  {"cn0_dbhz", 41.0},
+                  {"used", true},
+                  {"signals",
+                   Json::array({{{"name", "E1 C"}, {"cn0_dbhz", 41.0}, {"used", true}},
+                                {{"name", "E5b Q"}, {"cn0_dbhz", nullptr}, {"used", false}}})}}));
+  EXPECT_EQ(sky["satellites"][1]["signals"], Json::array());
   EXPECT_EQ(sky["satellites"][1]["elevation_deg"], nullptr);
   EXPECT_EQ(sky["satellites"][1]["used"], nullptr);
 }
