@@ -70,7 +70,7 @@ void Executor::load(std::shared_ptr<const Route> route) {
 
 void Executor::begin_at(std::size_t step) {
   tracker_.reset();
-  turner_.reset();
+  rotation_.reset();
   doing_ = Doing::Nothing;
   left_ = looked_s_ = 0.0;
   at_ = step;
@@ -175,7 +175,7 @@ void Executor::go_on(EnuPoint here) {
   if (!interrupted_) return;
   interrupted_ = false;
   if (doing_ == Doing::Turn) {
-    left_ = turner_.left_rad();
+    left_ = rotation_.left_rad();
     doing_ = Doing::Nothing;  // the rest of it is begun anew
   }
   const auto place = place_to_go_on();

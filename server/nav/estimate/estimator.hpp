@@ -158,7 +158,7 @@ class Estimator {
              const base::BodyTwist& odometry) noexcept;
   void velocity_refused(const base::GnssVelocity& v, double ahead_mps, double sigma_mps) noexcept;
 
-  // place.cpp
+  // positioning.cpp
   void move(base::EnuPoint to, double sigma_m) noexcept;
   void note_reset(std::string_view what, const Belief& before) noexcept;
   std::string_view advice() const noexcept;

@@ -150,7 +150,7 @@ double Tracker::speed_up_or_down(double limit_mps, double dt_s) noexcept {
   return speed;
 }
 
-TrackOutput Tracker::follow(const Vehicle& v, double limit_mps, double dt_s) noexcept {
+TrackOutput Tracker::track(const Vehicle& v, double limit_mps, double dt_s) noexcept {
   const Leg& leg = leg_now();
   const double reach = std::max(1.0, 2.0 * std::abs(v.speed_mps) * dt_s + 1.0);
   const Projection on = project(v.at, s_m_, reach);
