@@ -90,6 +90,7 @@ void Driver::open(Time now) {
     owned_link_ = std::move(*made);
     owned_link_->on_frame = [this](const CanFrame& f, Time t) { on_frame(f, t); };
     owned_link_->on_closed = [this](const std::string& reason) { fail(reason, now_); };
+    owned_link_->attend(own_ids());
     link_.store(owned_link_.get(), std::memory_order_release);
   }
   last_feedback_ = now;

@@ -54,6 +54,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/drive_command.hpp"
 #include "base/measurements.hpp"
@@ -138,6 +139,8 @@ class Driver {
   Hazards hazards(Time now) const noexcept;
 
   // driver_receive.cpp
+  /// What this driver reads or sends, of both protocols.
+  static std::vector<std::uint32_t> own_ids();
   void on_frame(const CanFrame& frame, Time stamp);
   void on_v2(const CanFrame& frame, Time stamp);
   void on_v1(const CanFrame& frame, Time stamp);

@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "base/bytes.hpp"
 #include "base/result.hpp"
@@ -67,6 +68,10 @@ class FrameLink {
   FrameLink(const FrameLink&) = delete;
   FrameLink& operator=(const FrameLink&) = delete;
 
+  /// Device thread, before open(). The standard ids that the driver lives on, its own commands
+  /// among them. A link that can hears these apart from all others, so that a bus full of somebody
+  /// else's frames does not delay them; of the others it then hears as many as it has time for.
+  virtual void attend(const std::vector<std::uint32_t>& ids) { static_cast<void>(ids); }
   virtual base::Result<void> open() = 0;
   virtual void close() noexcept = 0;
   virtual SendResult send(const CanFrame& frame) noexcept = 0;

@@ -25,6 +25,7 @@ class RecordedFrameLink final : public FrameLink {
                                                                  const RecordOptions& options = {});
   ~RecordedFrameLink() override;
 
+  void attend(const std::vector<std::uint32_t>& ids) override { inner_->attend(ids); }
   base::Result<void> open() override { return inner_->open(); }
   void close() noexcept override { inner_->close(); }
   /// Recorded if the link took it. Does not wait for the disk.

@@ -1,7 +1,6 @@
 #include "link/socketcan.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
@@ -25,41 +24,20 @@
 namespace roverd::link {
 namespace {
 
-/// What one read may bring: a CAN FD frame is longer, and told by that.
-using Packet = std::array<std::uint8_t, CANFD_MTU>;
+using boost::system::error_code;
+
 static_assert(sizeof(can_frame) == kCanPacketSize && offsetof(can_frame, data) == 8);
 
 /// Asked for. Without CAP_NET_ADMIN the kernel cuts it to net.core.rmem_max, usually 200 kB: that
 /// is about 50 ms of a full 1 Mbit/s bus, for a frame takes about half a kilobyte there.
 constexpr int kReceiveBuffer = 1'000'000;
+/// Of the socket that hears what nobody waits for: a few hundred frames.
+constexpr int kSmallBuffer = 100'000;
 
 ifreq request_for(const std::string& interface) noexcept {
   ifreq request{};
   std::memcpy(request.ifr_name, interface.c_str(), interface.size());  // length checked by open()
   return request;
-}
-
-struct Extras {
-  std::optional<base::WallTime> stamp;
-  std::optional<std::uint32_t> overrun;
-};
-
-Extras read_extras(msghdr& message) noexcept {
-  Extras out;
-  for (cmsghdr* c = CMSG_FIRSTHDR(&message); c != nullptr; c = CMSG_NXTHDR(&message, c)) {
-    if (c->cmsg_level != SOL_SOCKET) continue;
-    if (c->cmsg_type == SCM_TIMESTAMPNS) {
-      timespec t{};
-      std::memcpy(&t, CMSG_DATA(c), sizeof t);
-      out.stamp =
-          base::WallTime(std::chrono::seconds(t.tv_sec) + std::chrono::nanoseconds(t.tv_nsec));
-    } else if (c->cmsg_type == SO_RXQ_OVFL) {
-      std::uint32_t count = 0;
-      std::memcpy(&count, CMSG_DATA(c), sizeof count);
-      out.overrun = count;
-    }
-  }
-  return out;
 }
 
 }  // namespace
@@ -71,15 +49,35 @@ Time monotonic_stamp(base::WallTime stamped, base::WallTime wall_now, Time now) 
 }
 
 SocketCanLink::SocketCanLink(asio::io_context& io, std::string interface, CanOptions options)
-    : interface_(std::move(interface)), options_(std::move(options)), socket_(io) {}
+    : interface_(std::move(interface)), options_(std::move(options)), io_(io), socket_(io) {}
 
 SocketCanLink::~SocketCanLink() {
   close();
 }
 
+SocketCanLink::Others::~Others() {
+  ::close(fd);
+}
+
 base::Result<void> SocketCanLink::open() {
-  auto ready = prepare();
-  if (!ready) return ready;
+  if (auto ready = prepare(); !ready) return ready;
+  const bool apart = options_.only.empty() && !attended_.empty();
+  const auto fd = make_socket(apart ? Share::Attended : Share::All);
+  if (!fd) return tl::unexpected(fd.error());
+  close();
+  refreshed_.reset();
+  if (auto opened = socket_.open(*fd, [this] { read(); }); !opened || !apart) return opened;
+  const auto second = make_socket(Share::Others);
+  if (!second) {
+    close();
+    return tl::unexpected(second.error());
+  }
+  others_ = std::make_shared<Others>(io_, *second);
+  wait_for_others();
+  return {};
+}
+
+base::Result<int> SocketCanLink::make_socket(Share share) const {
   const int fd = ::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW);
   if (fd < 0) {
     const std::string why = errno == EAFNOSUPPORT || errno == EPROTONOSUPPORT
@@ -87,15 +85,11 @@ base::Result<void> SocketCanLink::open() {
                                 : errno_text(errno);
     return base::fail(base::Code::Unavailable, "CAN interface " + interface_ + ": " + why);
   }
-  ready = check_interface(fd);
-  if (ready) ready = configure(fd);
-  if (!ready) {
-    ::close(fd);
-    return ready;
-  }
-  close();
-  refreshed_.reset();
-  return socket_.open(fd, [this] { read(); });
+  auto ready = check_interface(fd);
+  if (ready) ready = configure(fd, share);
+  if (ready) return fd;
+  ::close(fd);
+  return tl::unexpected(ready.error());
 }
 
 base::Result<void> SocketCanLink::prepare() {
@@ -128,19 +122,26 @@ base::Result<void> SocketCanLink::check_interface(int fd) const {
   return {};
 }
 
-base::Result<void> SocketCanLink::configure(int fd) const {
-  const can_err_mask_t every_error = CAN_ERR_MASK;
-  ::setsockopt(fd, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &every_error, sizeof every_error);
+base::Result<void> SocketCanLink::configure(int fd, Share share) const {
   const int on = 1;
-  const int own = options_.only.empty() ? 1 : 0;
-  ::setsockopt(fd, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, &own, sizeof own);
+  if (share != Share::Others) {
+    const can_err_mask_t every_error = CAN_ERR_MASK;
+    ::setsockopt(fd, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &every_error, sizeof every_error);
+    const int own = options_.only.empty() ? 1 : 0;
+    ::setsockopt(fd, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, &own, sizeof own);
+  }
   ::setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on);  // to count them
   ::setsockopt(fd, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);      // without: stamped when read
   ::setsockopt(fd, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
-  if (::setsockopt(fd, SOL_SOCKET, SO_RCVBUFFORCE, &kReceiveBuffer, sizeof kReceiveBuffer) != 0) {
-    ::setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &kReceiveBuffer, sizeof kReceiveBuffer);
+  const int room = share == Share::Others ? kSmallBuffer : kReceiveBuffer;
+  if (::setsockopt(fd, SOL_SOCKET, SO_RCVBUFFORCE, &room, sizeof room) != 0) {
+    ::setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &room, sizeof room);
   }
-  set_filter(fd);
+  if (!set_filter(fd, share)) {
+    return base::fail(
+        base::Code::Unavailable,
+        "CAN interface " + interface_ + ": the kernel takes no filters: " + errno_text(errno));
+  }
   sockaddr_can address{};
   address.can_family = AF_CAN;
   address.can_ifindex = static_cast<int>(::if_nametoindex(interface_.c_str()));
@@ -153,18 +154,34 @@ base::Result<void> SocketCanLink::configure(int fd) const {
   return {};
 }
 
-void SocketCanLink::set_filter(int fd) const {
-  if (options_.only.empty()) return;
+bool SocketCanLink::set_filter(int fd, Share share) const {
   std::vector<can_filter> filters;
-  for (const CanId& wanted : options_.only) {
-    filters.push_back({wanted.id | (wanted.extended ? CAN_EFF_FLAG : 0U),
-                       CAN_EFF_FLAG | (wanted.extended ? CAN_EFF_MASK : CAN_SFF_MASK)});
+  if (share == Share::All) {
+    for (const CanId& wanted : options_.only) {
+      filters.push_back({wanted.id | (wanted.extended ? CAN_EFF_FLAG : 0U),
+                         CAN_EFF_FLAG | (wanted.extended ? CAN_EFF_MASK : CAN_SFF_MASK)});
+    }
+    if (filters.empty()) return true;
   }
-  ::setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(),
-               static_cast<socklen_t>(filters.size() * sizeof(can_filter)));
+  const canid_t inverse = share == Share::Others ? CAN_INV_FILTER : 0U;
+  if (share != Share::All) {
+    for (const std::uint32_t id : attended_) {
+      filters.push_back({id | inverse, CAN_EFF_FLAG | CAN_SFF_MASK});
+    }
+  }
+  // One frame passes when one filter lets it; of the others, when all do.
+  const int join = 1;
+  if (inverse != 0 &&
+      ::setsockopt(fd, SOL_CAN_RAW, CAN_RAW_JOIN_FILTERS, &join, sizeof join) != 0) {
+    return false;
+  }
+  return ::setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(),
+                      static_cast<socklen_t>(filters.size() * sizeof(can_filter))) == 0;
 }
 
 void SocketCanLink::close() noexcept {
+  if (others_) others_dropped_ += others_->dropped;
+  others_.reset();
   socket_.close();
   confirmations_.forget();
 }
@@ -185,52 +202,71 @@ SendResult SocketCanLink::send(const CanFrame& frame) noexcept {
 }
 
 void SocketCanLink::read() {
-  for (int i = 0; i < kReadBurst && socket_.is_open(); ++i) {
-    if (!read_one()) return;
+  for (std::size_t had = 0; had < kReadBurst && socket_.is_open();) {
+    const int n = batch_.read(socket_.fd());
+    if (n < 0) return lost(-n);
+    const Time now = base::steady_now();
+    const base::WallTime wall = base::wall_now();
+    const auto count = static_cast<std::size_t>(n);
+    for (std::size_t i = 0; i < count && socket_.is_open(); ++i) take(batch_.at(i), now, wall);
+    if (count < CanBatch::kMost) return;
+    had += count;
   }
 }
 
-bool SocketCanLink::read_one() {
-  Packet packet;
-  iovec part{packet.data(), packet.size()};
-  alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(timespec)) + CMSG_SPACE(sizeof(int))> control;
-  msghdr message{};
-  message.msg_iov = &part;
-  message.msg_iovlen = 1;
-  message.msg_control = control.data();
-  message.msg_controllen = control.size();
-  const ssize_t n = ::recvmsg(socket_.fd(), &message, MSG_DONTWAIT);
-  if (n < 0) {
-    if (errno == EAGAIN || errno == EINTR) return false;
-    lost(errno);
-    return false;
-  }
-  if (n == CANFD_MTU) {
-    ++fd_frames_;
-    return true;
-  }
-  const auto frame = from_packet(Bytes(packet.data(), static_cast<std::size_t>(n)));
-  if (!frame) {
-    refused_.fetch_add(1, std::memory_order_relaxed);
-    return true;
-  }
-  const Extras extras = read_extras(message);
-  if (extras.overrun) overrun_.store(*extras.overrun, std::memory_order_relaxed);
-  if ((message.msg_flags & MSG_CONFIRM) != 0) {  // sent by this very socket
-    confirmations_.confirmed();
-    return true;
-  }
-  const Time now = base::steady_now();
+void SocketCanLink::take(const CanArrival& arrival, Time now, base::WallTime wall) {
+  if (arrival.overrun) overrun_.store(*arrival.overrun, std::memory_order_relaxed);
+  const auto frame = frame_of(arrival);
+  if (!frame) return;
+  if (arrival.own) return confirmations_.confirmed();
+  const Time came = arrival.stamp ? monotonic_stamp(*arrival.stamp, wall, now) : now;
+  slowest_ = std::max(slowest_, now - came);
   // Interrupted between the two clocks, a frame would seem to come before the one ahead of it.
-  last_stamp_ = std::max(
-      last_stamp_, extras.stamp ? monotonic_stamp(*extras.stamp, base::wall_now(), now) : now);
-  heard(*frame, last_stamp_);
-  return true;
+  last_stamp_ = std::max(last_stamp_, came);
+  if (frame->error) count_errors(*frame);
+  if (on_frame) on_frame(*frame, last_stamp_);
 }
 
-void SocketCanLink::heard(const CanFrame& frame, Time stamp) {
-  if (frame.error) count_errors(frame);
-  if (on_frame) on_frame(frame, stamp);
+std::optional<CanFrame> SocketCanLink::frame_of(const CanArrival& arrival) {
+  if (arrival.packet.size() == CANFD_MTU) {
+    ++fd_frames_;
+    return {};
+  }
+  auto frame = from_packet(arrival.packet);
+  if (frame) return *frame;
+  refused_.fetch_add(1, std::memory_order_relaxed);
+  return {};
+}
+
+void SocketCanLink::wait_for_others() {
+  others_->timer.expires_after(kOthersPause);
+  others_->timer.async_wait([this, watched = std::weak_ptr(others_)](error_code ec) {
+    const auto still = watched.lock();
+    if (!ec && still) read_others(*still);
+  });
+}
+
+// Not when something waits, for on a full bus something always does, but a bounded number at a
+// time. That the interface has gone is told by the first socket.
+void SocketCanLink::read_others(Others& others) {
+  const auto ours = [&] { return others_.get() == &others; };  // until a callback closes
+  for (std::size_t had = 0; had < kReadBurst && ours();) {
+    const auto count = static_cast<std::size_t>(std::max(0, batch_.read(others.fd)));
+    const Time now = base::steady_now();
+    const base::WallTime wall = base::wall_now();
+    for (std::size_t i = 0; i < count && ours(); ++i) take_other(batch_.at(i), now, wall);
+    if (count < CanBatch::kMost) break;
+    had += count;
+  }
+  if (ours()) wait_for_others();
+}
+
+void SocketCanLink::take_other(const CanArrival& arrival, Time now, base::WallTime wall) {
+  if (arrival.overrun) others_->dropped = *arrival.overrun;
+  const auto frame = frame_of(arrival);
+  if (!frame || !on_frame) return;
+  const Time came = arrival.stamp ? monotonic_stamp(*arrival.stamp, wall, now) : now;
+  on_frame(*frame, std::max(last_stamp_, came));
 }
 
 void SocketCanLink::lost(int error) {

@@ -4,9 +4,14 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include <boost/asio/steady_timer.hpp>
+
+#include "link/can_batch.hpp"
 #include "link/can_error.hpp"
 #include "link/can_options.hpp"
 #include "link/can_state.hpp"
@@ -30,6 +35,11 @@ namespace roverd::link {
 /// another node). They are counted, not heard. With a filter (`only`) there are no confirmations:
 /// it would have to let our own ids through, and then the foreign ones of the same id too.
 ///
+/// With attended ids there are two sockets. One hears these alone, and error message frames: the
+/// kernel sorts the others out before they cost anything. The second hears all others, at most
+/// kReadBurst every kOthersPause: enough for a full bus of 500 kbit/s. What is more, the kernel
+/// drops; it is counted. Their stamps never go back behind the last attended frame.
+///
 /// A bus that is off is restarted by the kernel (restart_ms), else by report() after a second, if
 /// the interface is ours to configure.
 class SocketCanLink final : public FrameLink {
@@ -38,6 +48,7 @@ class SocketCanLink final : public FrameLink {
   SocketCanLink(asio::io_context& io, std::string interface, CanOptions options = {});
   ~SocketCanLink() override;
 
+  void attend(const std::vector<std::uint32_t>& ids) override { attended_ = ids; }
   base::Result<void> open() override;
   void close() noexcept override;
   /// Busy: the controller's queue is full (ENOBUFS; nobody acknowledges on the bus), or the frame
@@ -55,14 +66,34 @@ class SocketCanLink final : public FrameLink {
   /// Frames the kernel dropped because we did not read fast enough. Any thread.
   std::uint64_t overrun() const noexcept { return overrun_.load(std::memory_order_relaxed); }
 
+  static constexpr base::Duration kOthersPause = std::chrono::milliseconds(16);
+
  private:
+  /// Which frames a socket is for.
+  enum class Share { All, Attended, Others };
+  /// A second socket for the others: its number is closed with it.
+  struct Others {
+    Others(asio::io_context& io, int number) : fd(number), timer(io) {}
+    ~Others();
+    Others(const Others&) = delete;
+    Others& operator=(const Others&) = delete;
+    const int fd;
+    asio::steady_timer timer;
+    std::uint32_t dropped = 0;  ///< by the kernel
+  };
+
   base::Result<void> prepare();
+  base::Result<int> make_socket(Share share) const;
   base::Result<void> check_interface(int fd) const;
-  base::Result<void> configure(int fd) const;
-  void set_filter(int fd) const;
+  base::Result<void> configure(int fd, Share share) const;
+  bool set_filter(int fd, Share share) const;
   void read();
-  bool read_one();
-  void heard(const CanFrame& frame, Time stamp);
+  void wait_for_others();
+  void read_others(Others& others);
+  void take(const CanArrival& arrival, Time now, base::WallTime wall);
+  void take_other(const CanArrival& arrival, Time now, base::WallTime wall);
+  /// Counts what is no classic CAN frame.
+  std::optional<CanFrame> frame_of(const CanArrival& arrival);
   void count_errors(const CanFrame& frame) noexcept;
   void refresh(Time now);
   void care_for_bus_off(Time now);
@@ -70,13 +101,19 @@ class SocketCanLink final : public FrameLink {
 
   const std::string interface_;
   const CanOptions options_;
+  asio::io_context& io_;
+  std::vector<std::uint32_t> attended_;
   Descriptor socket_;
+  std::shared_ptr<Others> others_;  ///< its timer holds it weakly: empty means closed meanwhile
+  CanBatch batch_;
   Confirmations confirmations_;
   std::atomic<std::uint64_t> refused_{0};
   std::atomic<std::uint64_t> overrun_{0};
 
   // Device thread.
   Time last_stamp_{};
+  base::Duration slowest_{};          ///< from the kernel's stamp to here, since the last report
+  std::uint64_t others_dropped_ = 0;  ///< by the sockets before this one
   std::uint64_t fd_frames_ = 0;
   std::array<std::uint64_t, kCanFaultWords.size()> faults_{};
   CanFaults last_faults_ = 0;

@@ -14,6 +14,8 @@ constexpr base::Duration kRefresh = std::chrono::seconds(1);
 constexpr base::Duration kBusOffPatience = std::chrono::seconds(1);
 /// A frame takes a quarter of a millisecond; the queue before it a few.
 constexpr base::Duration kLateConfirmation = std::chrono::milliseconds(200);
+/// Between a frame's arrival and our reading it: half a tick of the control loop.
+constexpr base::Duration kLateReading = std::chrono::milliseconds(10);
 
 void add_state(const CanState& state, std::map<std::string, std::string>& facts) {
   facts["can_interface"] = !state.exists ? "missing" : state.up ? "up" : "down";
@@ -74,6 +76,11 @@ BusReport SocketCanLink::report(Time now) {
   BusReport out;
   add_state(state_, out.facts);
   if (!problem_.empty()) out.facts["can_problem"] = problem_;
+  if (slowest_ > kLateReading) {
+    out.facts["can_read_late"] =
+        std::to_string(std::chrono::round<std::chrono::milliseconds>(slowest_).count()) + " ms";
+  }
+  slowest_ = {};
   if (last_faults_ != 0) out.facts["can_last_error"] = words_of(last_faults_);
   const auto count = [&out](std::string what, std::uint64_t n) {
     if (n > 0) out.counts.emplace(std::move(what), n);
@@ -84,6 +91,8 @@ BusReport SocketCanLink::report(Time now) {
   count("CAN FD frame", fd_frames_);
   count("no CAN frame", refused());
   count("lost: read too late", overrun());
+  count("foreign frame not read: the bus is full",
+        others_dropped_ + (others_ ? others_->dropped : 0));
   count("bus restarted by roverd", restarts_);
   if (!options_.only.empty()) return out;
   count("sent, never confirmed", confirmations_.lost_count());

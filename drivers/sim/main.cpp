@@ -15,6 +15,8 @@
 #include <unistd.h>
 
 #include "base/time.hpp"
+#include "bunker/codec.hpp"
+#include "bunker/v1.hpp"
 #include "link/cansock.hpp"
 #include "link/socketcan.hpp"
 #include "link/tcp.hpp"
@@ -31,6 +33,7 @@ namespace {
 
 namespace asio = boost::asio;
 using boost::system::error_code;
+namespace id = bunker::id;
 
 constexpr auto kReopen = std::chrono::milliseconds(500);
 
@@ -72,6 +75,9 @@ class CanSide final : public Side {
       bunker_.receive(f);
     };
     bus_->on_closed = [this](const std::string&) { reopen(); };
+    bus_->attend({id::kMotionCommand, id::kLightCommand, id::kControlMode, id::kClearErrors,
+                  id::kVersionRequest, id::kVersionText, bunker::v1::id::kCommand,
+                  bunker::v1::id::kLightCommand});
     return bus_->open();
   }
   void close() noexcept override {

@@ -4,20 +4,11 @@
 #include <utility>
 
 #include <pthread.h>
-#include <sched.h>
-#include <sys/resource.h>
+
+#include "supervise/urgency.hpp"
 
 namespace roverd {
 namespace {
-
-/// @return whether the calling thread now runs before every ordinary one.
-bool ask_for_real_time() noexcept {
-  sched_param priority{};
-  priority.sched_priority = 20;  // above ordinary threads, below the kernel's own interrupt threads
-  if (pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority) == 0) return true;
-  (void)setpriority(PRIO_PROCESS, 0, -10);  // second best; refused to ordinary users as well
-  return false;
-}
 
 void sleep_until(base::Time t) noexcept {
   const auto since = t.time_since_epoch();
@@ -38,7 +29,7 @@ ControlLoop::~ControlLoop() {
 
 void ControlLoop::run() noexcept {
   pthread_setname_np(pthread_self(), "control");
-  real_time_ = ask_for_real_time();
+  real_time_ = make_urgent(Urgency::Control);
   base::Time next = base::steady_now();
   while (!stop_) {
     sleep_until(next);

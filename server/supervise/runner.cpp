@@ -8,6 +8,7 @@
 #include <pthread.h>
 
 #include "base/log.hpp"
+#include "supervise/urgency.hpp"
 
 namespace roverd {
 namespace {
@@ -42,6 +43,7 @@ void Runner::doing(const char* what) noexcept {
 
 void Runner::run() noexcept {
   pthread_setname_np(pthread_self(), plan_.name.substr(0, 15).c_str());
+  if (plan_.moves) make_urgent(Urgency::Drive);
   try {
     live();
   } catch (const std::exception& error) {

@@ -1,6 +1,10 @@
 // The driver's state machine and what it tells the robot.
 
+#include <algorithm>
+#include <memory>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "driver_fixture.hpp"
 
@@ -25,6 +29,40 @@ TEST_F(BunkerDriverTest, OpensAndIsUpWithTheFirstFeedback) {
   EXPECT_EQ(status().phase, DriverPhase::Up);
   EXPECT_EQ(status().reason, "");
   EXPECT_EQ(measured<base::DriverStatus>().back().phase, DriverPhase::Up) << "told at once";
+}
+
+/// Remembers what it was told before it was opened.
+class ListeningLink final : public link::FrameLink {
+ public:
+  void attend(const std::vector<std::uint32_t>& ids) override { attended = ids; }
+  base::Result<void> open() override {
+    attended_at_open = attended;
+    return {};
+  }
+  void close() noexcept override {}
+  link::SendResult send(const CanFrame&) noexcept override { return link::SendResult::Sent; }
+  std::string describe() const override { return "listening"; }
+  std::vector<std::uint32_t> attended;
+  std::vector<std::uint32_t> attended_at_open;
+};
+
+TEST(BunkerDriverLink, IsToldEveryIdOfBothProtocolsBeforeItIsOpenedAndNoOther) {
+  auto made = std::make_unique<ListeningLink>();
+  ListeningLink* const link = made.get();
+  Driver one(
+      "bunker", {}, [&] { return base::Result<std::unique_ptr<link::FrameLink>>(std::move(made)); },
+      [](const base::Measurement&) {});
+  one.start(Time{} + 1s);
+  const auto& ids = link->attended_at_open;
+  for (const std::uint32_t id :
+       {0x111u, 0x121u, 0x211u, 0x221u, 0x231u, 0x241u, 0x251u, 0x252u, 0x261u,
+        0x262u, 0x311u, 0x361u, 0x362u, 0x411u, 0x41Au, 0x421u, 0x441u, 0x4A1u,  // V2
+        0x130u, 0x131u, 0x140u, 0x141u, 0x151u, 0x200u, 0x201u, 0x202u, 0x203u}) {
+    EXPECT_EQ(std::count(ids.begin(), ids.end(), id), 1) << std::hex << id;
+  }
+  for (const std::uint32_t id : {0x000u, 0x123u, 0x5F0u, 0x7FFu}) {
+    EXPECT_EQ(std::count(ids.begin(), ids.end(), id), 0) << std::hex << id;
+  }
 }
 
 TEST_F(BunkerDriverTest, ALinkThatCannotBeMadeIsFaultyAndTriedAgain) {
