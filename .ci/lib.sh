@@ -75,6 +75,8 @@ need_packages() {
   for name in "${wanted[@]}"; do
     [ -n "${installed[$name]:-}" ] || missing+=("$name")
   done
+  # In the same turn, for the page.
+  ! page_is_old || node_is_new_enough || command -v npm >/dev/null || missing+=(nodejs npm)
   [ "${#missing[@]}" = 0 ] || install_packages "$build/logs/packages.log" "${missing[@]}"
 }
 
@@ -155,18 +157,22 @@ configure() {
   printf '%s' "$*" >"$folder/options"
 }
 
-# ninja with a guess at what is left: as much time for each step to come as for those that are done.
-ninja_with_estimate() {
-  NINJA_STATUS='[%f/%t %e] ' ninja "$@" | awk '
-    match($0, /^\[[0-9]+\/[0-9]+ [0-9.]+\] /) {
-      split(substr($0, 2, RLENGTH - 3), is, /[\/ ]/)
-      left = is[1] > 2 ? is[3] / is[1] * (is[2] - is[1]) : 0
-      guess = left >= 60 ? sprintf(", about %d min left", left / 60 + 0.5) \
-            : left >= 5 ? sprintf(", about %d s left", left) : ""
-      $0 = "[" is[1] "/" is[2] guess "] " substr($0, RLENGTH + 1)
-    }
-    { print; fflush() }'
+# Ninja's lines, with how long the rest will take if it goes on so.
+with_estimate() {
+  local line ready total passed_s left_s
+  while IFS= read -r line; do
+    if [[ $line =~ ^\[([0-9]+)/([0-9]+)\ ([0-9]+)[.0-9]*\]\ (.*) ]]; then
+      ready=${BASH_REMATCH[1]} total=${BASH_REMATCH[2]} passed_s=${BASH_REMATCH[3]}
+      line=${BASH_REMATCH[4]}
+      left_s=$(((total - ready) * (passed_s + 1) / (ready > 0 ? ready : 1)))
+      printf '[%d/%d, about %d:%02d left] %s\n' "$ready" "$total" $((left_s / 60)) $((left_s % 60)) "$line"
+    else
+      printf '%s\n' "$line"
+    fi
+  done
 }
+
+ninja_with_estimate() { NINJA_STATUS='[%f/%t %e] ' ninja "$@" | with_estimate; }
 
 ninja_build() {
   local folder=$1
@@ -192,10 +198,12 @@ build_beside_the_page() {
   need_node
   say "building the page beside the programs (log: $build/logs/page-beside.log)"
   mkdir -p "$build/logs"
+  # Made by the build; if it appeared only then, its folder would seem changed afterwards.
+  [ -e "$root/web/src/link/schema.d.ts" ] || : >"$root/web/src/link/schema.d.ts"
   (build_web) >"$build/logs/page-beside.log" 2>&1 &
   page=$!
   configure "$build" "${release[@]}"
-  ninja_build "$build" roverd-study roverd-sim api store supervise tools replaying
+  ninja_build "$build" rooms
   wait "$page" || {
     tail -n 20 "$build/logs/page-beside.log"
     die "building the page failed (log: $build/logs/page-beside.log)"

@@ -45,13 +45,39 @@ fix() {
   (cd "$root/web" && npm run types >/dev/null && npx eslint --fix . && npm run format)
 }
 
+# ordinary COMMAND…: as an ordinary user would run it; where we are root and on a server, as nobody.
+# Permissions hold for that one. Where nobody cannot come here (a checkout below /root), as we are.
+ordinary() {
+  local home as=(setpriv --reuid=65534 --regid=65534 --clear-groups --inh-caps=-all)
+  if [ "$(id -u)" != 0 ] || [ "${CI:-}" != true ]; then
+    "$@"
+  elif ! "${as[@]}" test -r "$root/run" -a -x "$build" 2>/dev/null; then
+    say "as root: an ordinary user may not read $root"
+    "$@"
+  else
+    home=$(mktemp -d "${TMPDIR:-/tmp}/roverd-nobody.XXXXXX")
+    chown 65534:65534 "$home"
+    say "as user nobody"
+    local code=0
+    env HOME="$home" TMPDIR="$home" PATH=/usr/local/bin:/usr/bin:/bin PYTHONDONTWRITEBYTECODE=1 "${as[@]}" "$@" || code=$?
+    rm -rf "$home"
+    return "$code"
+  fi
+}
+
+run_as=() # or ordinary
+
 # run_ctest FOLDER LABELS RESULTS [CTEST OPTION…]: results of every case on stdout.
 run_ctest() {
   local folder=$1 labels=$2 results=$3 code=0
   shift 3
   rm -rf "$results" "$results.xml"
-  mkdir -p "$results"
-  GTEST_OUTPUT=xml:$results/ ctest --test-dir "$folder" -L "^($labels)\$" --no-tests=error \
+  mkdir -p "$results" "$folder/Testing/Temporary"
+  if [ "$(id -u)" = 0 ]; then # for what runs as an ordinary user
+    chmod -R a+rwX "$results" "$folder/Testing"
+    chmod a+rwx "$logs"
+  fi
+  GTEST_OUTPUT=xml:$results/ "${run_as[@]}" ctest --test-dir "$folder" -L "^($labels)\$" --no-tests=error \
     --output-on-failure --timeout 1200 --output-junit "$results.xml" "$@" || code=$?
   "$root/.ci/results" gtest "$results" "$results.xml"
   return "$code"
@@ -102,20 +128,19 @@ step_build() {
   "$root/.ci/doors" --built "$build"
 }
 
-step_unit() { run_ctest "$build" 'unit|loop' "$logs/unit" -j "$jobs"; }
+step_unit() {
+  local run_as=(ordinary)
+  run_ctest "$build" 'unit|loop' "$logs/unit" -j "$jobs"
+}
 
 step_api() { run_ctest "$build" api "$logs/api"; }
 
 step_command() {
-  local code=0
-  python3 "$root/tests/command/decode_test.py" || code=$?
-  python3 "$root/tests/command/run_test.py" || code=$?
-  python3 "$root/tests/command/ntrip_test.py" || code=$?
-  python3 "$root/tests/command/power_cut_test.py" || code=$?
-  python3 "$root/tests/command/study_test.py" || code=$?
-  python3 "$root/tests/command/resume_test.py" || code=$?
-  python3 "$root/tests/command/learned_test.py" || code=$?
-  python3 "$root/tests/command/gpsd_test.py" || code=$?
+  local code=0 name
+  "$root/tests/command/packages_test" || code=$?
+  for name in decode run ntrip power_cut study resume learned gpsd; do
+    ordinary python3 "$root/tests/command/${name}_test.py" || code=$?
+  done
   return "$code"
 }
 
@@ -140,19 +165,46 @@ step_page() {
   return "$code"
 }
 
+# touched PATTERN…: tracked files of these kinds. With TOUCHED=yes only those that the work at hand
+# changes: since it left main, or in the last commit where that is main itself.
+touched() {
+  local since
+  [ "${TOUCHED:-}" = yes ] || { git -C "$root" ls-files -- "$@" && return; }
+  since=$(git -C "$root" merge-base HEAD origin/main 2>/dev/null) || since=
+  [ -n "$since" ] && [ "$since" != "$(git -C "$root" rev-parse HEAD)" ] ||
+    since=$(git -C "$root" rev-parse --verify -q HEAD~1) ||
+    { git -C "$root" ls-files -- "$@" && return; } # a clone without a past
+  git -C "$root" diff --name-only --diff-filter=d "$since" -- "$@"
+}
+
 step_mutate() {
+  local changed
+  mapfile -t changed < <(touched drivers/gate tests/unit/gate server/base .ci/mutate)
+  [ "${#changed[@]}" -gt 0 ] || { say "ok - nothing of the gate was changed" && return; }
   ninja_build "$build" base
   "$root/.ci/mutate" "$build"
 }
 
+tidy_most=30 # of a change: about five minutes
+
 step_tidy() {
   local files
   cd "$root"
-  mapfile -t files < <(git ls-files 'server/*.cpp' 'drivers/*.cpp')
+  mapfile -t files < <(touched 'server/*.cpp' 'drivers/*.cpp')
+  [ "${#files[@]}" -gt 0 ] || { say "ok - no source was changed" && return; }
+  if [ "${TOUCHED:-}" = yes ] && [ "${#files[@]}" -gt "$tidy_most" ]; then
+    say "of ${#files[@]} changed files the $tidy_most longest; all of them: ./test tidy"
+    mapfile -t files < <(wc -l "${files[@]}" | grep -v ' total$' | sort -rn |
+      head -n "$tidy_most" | awk '{ print $2 }')
+  fi
+  build_product # for what is generated
+  # One by one, as they are written.
+  configure "$build/tidy" -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=OFF
   # Only the warnings' own lines: run-clang-tidy prints each command as well.
-  run-clang-tidy-14 -p "$build" -quiet -j "$jobs" "${files[@]/#/$root/}" 2>&1 |
-    grep -vE '^(clang-tidy|[0-9]+ warnings? (generated|treated)|$)'
-  local code=${PIPESTATUS[0]}
+  local code=0
+  run-clang-tidy-14 -p "$build/tidy" -quiet -j "$jobs" "${files[@]/#/$root/}" \
+    >"$logs/tidy-all.log" 2>&1 || code=$?
+  grep -vE '^(clang-tidy|[0-9]+ warnings? (generated|treated)|$)' "$logs/tidy-all.log" || true
   [ "$code" = 0 ] && say "ok - ${#files[@]} files"
   return "$code"
 }
@@ -185,29 +237,37 @@ step_tsan() {
   ninja_build "$build/tsan" roverd roverd-sim "${targets[@]}"
   # Without address randomisation: newer kernels' layout is unknown to this sanitizer's runtime.
   TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1 \
-    setarch -R ctest --test-dir "$build/tsan" -R "$threaded" --no-tests=error --output-on-failure \
+    setarch -R ctest --test-dir "$build/tsan" -j "$jobs" -R "$threaded" --no-tests=error --output-on-failure \
     --timeout 600 --output-junit "$logs/tsan.xml"
   "$root/.ci/results" ctest "$logs/tsan.xml"
 }
 
+fuzz_one() {
+  local name found log
+  name=$(basename "$1" _fuzz)
+  log=$logs/fuzz-$name.log
+  found=$build/fuzz/corpus/$name # what it learns is kept for the next run
+  mkdir -p "$found" "$root/tests/data/fuzz/$name"
+  if "$1" -max_total_time="${FUZZ_SECONDS:-5}" -timeout=10 -rss_limit_mb=2048 -verbosity=0 \
+    -print_final_stats=1 -artifact_prefix="$logs/$name-" "$found" "$root/tests/data/fuzz/$name" \
+    >"$log" 2>&1; then
+    say "ok - fuzz $name"
+  else
+    tail -n 30 "$log"
+    say "not ok - fuzz $name: the input that breaks it is $logs/$name-…"
+    return 1
+  fi
+}
+
 step_fuzz() {
-  local program name found code=0
   configure "$build/fuzz" -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Sanitized \
     -DCMAKE_CXX_FLAGS="-O1 -g1" -DROVERD_FUZZ=ON -DROVERD_TESTS=OFF "${in_groups[@]}"
   ninja_build "$build/fuzz" fuzz
-  for program in "$build/fuzz/bin/"*_fuzz; do
-    name=$(basename "$program" _fuzz)
-    found=$build/fuzz/corpus/$name # what it learns is kept for the next run
-    mkdir -p "$found" "$root/tests/data/fuzz/$name"
-    if "$program" -max_total_time="${FUZZ_SECONDS:-5}" -timeout=10 -rss_limit_mb=2048 -verbosity=0 \
-      -print_final_stats=1 -artifact_prefix="$logs/$name-" "$found" "$root/tests/data/fuzz/$name"; then
-      say "ok - fuzz $name"
-    else
-      say "not ok - fuzz $name: the input that breaks it is $logs/$name-…"
-      code=1
-    fi
-  done
-  return "$code"
+  export -f fuzz_one say
+  export build root logs
+  # shellcheck disable=SC2016
+  printf '%s\0' "$build/fuzz/bin/"*_fuzz |
+    xargs -0 -n 1 -P "$jobs" bash -euo pipefail -c 'fuzz_one "$1"' fuzz
 }
 
 build_benchmarks() {

@@ -1,16 +1,19 @@
-// The page's tests: a real browser, the real roverd and the simulated robot. They drive in real
-// time and share two cores with the browser, so one runs after the other.
+// The page's tests: real browsers, the real roverd and the simulated robot. They drive in real time
+// and mostly wait for it, each with a robot of its own: two of them share two cores well.
+
+import { availableParallelism } from 'node:os';
 
 import { defineConfig } from '@playwright/test';
 
 export default defineConfig({
   testDir: '../tests/page',
   outputDir: '../tests/page/results',
-  workers: 1,
+  workers: Math.max(2, Math.floor(availableParallelism() / 2)),
+  fullyParallel: true,
   // On a busy machine a browser may be late once. What fails twice fails; a second try is told.
   retries: 1,
-  timeout: 60_000,
-  expect: { timeout: 10_000 },
+  timeout: 90_000,
+  expect: { timeout: 15_000 },
   forbidOnly: process.env['CI'] === 'true',
   reporter: 'list',
   use: {

@@ -227,12 +227,14 @@ TEST(Opening, AFolderThatCannotBeWrittenIsNamed) {
   if (::geteuid() == 0) return;  // permissions do not hold for root
   Folder folder;
   open_store(folder.file());
-  fs::permissions(folder.path(), fs::perms::owner_read | fs::perms::owner_exec);
   fs::remove(folder.file().string() + ".lock");
-  EXPECT_NE(refusal(folder.file()), "opened");
+  fs::permissions(folder.path(), fs::perms::owner_read | fs::perms::owner_exec);
+  EXPECT_TRUE(contains(refusal(folder.file()), "cannot write into the data folder: "))
+      << refusal(folder.file());
   fs::permissions(folder.path(), fs::perms::owner_all);
   fs::permissions(folder.file(), fs::perms::owner_read);
   EXPECT_TRUE(contains(refusal(folder.file()), "may not be written"));
+  fs::permissions(folder.file(), fs::perms::owner_all);
 }
 
 TEST(Opening, ASecondProgramOnTheSameFolderIsRefusedUntilTheFirstEnds) {
