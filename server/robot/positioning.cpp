@@ -143,7 +143,7 @@ base::BodyTwist Robot::Impl::straight_first(const base::BodyTwist& wanted) {
             std::abs(base::angle_diff_rad(pose->yaw_rad, bearing)) < base::rad_from_deg(kAside_deg);
   }
   state.driving =
-      missions.executor.phase() == nav::TrackPhase::Follow && wanted.linear_mps != 0.0 && ahead;
+      missions.executor.phase() == nav::TrackPhase::Track && wanted.linear_mps != 0.0 && ahead;
   const auto turn = straight.step(state);
   if (!turn) return wanted;
   speed_reason = "heading_uncertain";

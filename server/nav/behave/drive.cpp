@@ -330,7 +330,7 @@ void Executor::finish() {
 void Executor::watch(const Vehicle& vehicle, double dt_s) {
   if (!running()) return;
   const TrackPhase phase = tracker_.phase();
-  lost_s_ = phase == TrackPhase::Follow && std::abs(tracker_.cross_track_m()) > params_->lost_m
+  lost_s_ = phase == TrackPhase::Track && std::abs(tracker_.cross_track_m()) > params_->lost_m
                 ? lost_s_ + dt_s
                 : 0.0;
   if (lost_s_ > params_->lost_s) {
@@ -346,7 +346,7 @@ void Executor::watch(const Vehicle& vehicle, double dt_s) {
 void Executor::watch_stuck(const Vehicle& vehicle, double dt_s) {
   const TrackPhase phase = tracker_.phase();
   const bool driving =
-      phase == TrackPhase::Follow || phase == TrackPhase::Pivot || phase == TrackPhase::Turn;
+      phase == TrackPhase::Track || phase == TrackPhase::Pivot || phase == TrackPhase::Turn;
   const bool moved = base::distance_m(vehicle.at, stuck_at_.at) > params_->stuck_m ||
                      std::abs(base::angle_diff_rad(stuck_at_.yaw_rad, vehicle.yaw_rad)) >
                          base::rad_from_deg(params_->stuck_deg);

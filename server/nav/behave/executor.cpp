@@ -51,10 +51,7 @@ std::optional<EnuPoint> first_target(const Route& route, std::size_t step,
 
 Executor::Executor(base::Setting<PathParams> path, base::Setting<BehaveParams> behave,
                    base::Setting<ModeParams> modes)
-    : path_params_(path),
-      params_(std::move(behave)),
-      modes_(std::move(modes)),
-      tracker_(path) {
+    : path_params_(path), params_(std::move(behave)), modes_(std::move(modes)), tracker_(path) {
   notices_.reserve(16);
 }
 
@@ -73,7 +70,7 @@ void Executor::load(std::shared_ptr<const Route> route) {
 
 void Executor::begin_at(std::size_t step) {
   tracker_.reset();
-  turner_.reset();
+  rotation_.reset();
   doing_ = Doing::Nothing;
   left_ = looked_s_ = 0.0;
   at_ = step;
@@ -178,7 +175,7 @@ void Executor::go_on(EnuPoint here) {
   if (!interrupted_) return;
   interrupted_ = false;
   if (doing_ == Doing::Turn) {
-    left_ = turner_.left_rad();
+    left_ = rotation_.left_rad();
     doing_ = Doing::Nothing;  // the rest of it is begun anew
   }
   const auto place = place_to_go_on();

@@ -18,12 +18,12 @@
 #include <vector>
 
 #include "base/result.hpp"
-#include "base/snapshot.hpp"
 #include "base/setting.hpp"
+#include "base/snapshot.hpp"
 #include "nav/behave/mode_params.hpp"
 #include "nav/behave/params.hpp"
+#include "nav/behave/rotate_in_place.hpp"
 #include "nav/behave/route.hpp"
-#include "nav/behave/turner.hpp"
 #include "nav/track/tracker.hpp"
 
 namespace roverd::nav {
@@ -161,7 +161,7 @@ class Executor {
   const Course* course_ = nullptr;
   Path connector_;
   Vertex connector_end_;
-  Turner turner_;
+  RotateInPlace rotation_;
   std::vector<int> jumps_left_;  ///< per jump; −1: not counted yet
   std::vector<Notice> notices_;
 

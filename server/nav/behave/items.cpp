@@ -27,9 +27,9 @@ bool Executor::enter_turn(const RouteStep& step) {
   const double rate_radps =
       step.kind == StepKind::Turn ? modes_->turn_radps : path_params_->pivot.max_rate_radps;
   if (step.yaw_rad) {
-    turner_.to(*step.yaw_rad, rate_radps);
+    rotation_.to(*step.yaw_rad, rate_radps);
   } else {
-    turner_.by(left_ != 0.0 ? left_ : step.by, rate_radps);
+    rotation_.by(left_ != 0.0 ? left_ : step.by, rate_radps);
   }
   left_ = 0.0;
   drove_ = true;
@@ -38,10 +38,10 @@ bool Executor::enter_turn(const RouteStep& step) {
 }
 
 TrackOutput Executor::step_turn(const Vehicle& vehicle, double dt_s) {
-  const TrackOutput out = turner_.step(vehicle, *path_params_, dt_s);
-  if (turner_.state() == Turner::State::Failed)
+  const TrackOutput out = rotation_.step(vehicle, *path_params_, dt_s);
+  if (rotation_.state() == RotateInPlace::State::Failed)
     block("a turn on the spot does not come to its end");
-  if (turner_.state() == Turner::State::Done) {
+  if (rotation_.state() == RotateInPlace::State::Done) {
     doing_ = Doing::Nothing;
     reached(*step_now());
   }

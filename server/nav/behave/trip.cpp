@@ -20,14 +20,14 @@ std::string centimetres(double m) {
 
 void Trip::reset() noexcept {
   tracker_.reset();
-  turner_.reset();
+  rotation_.reset();
   state_ = State::Idle;
   reason_.clear();
   interrupted_ = false;
 }
 
 void Trip::begin(Order order, const Vehicle& vehicle, bool smoothly) {
-  const bool moving = state_ == State::Way && tracker_.phase() == TrackPhase::Follow;
+  const bool moving = state_ == State::Way && tracker_.phase() == TrackPhase::Track;
   const bool same_way = !order_.way.empty() && !order.way.empty() &&
                         order_.way.front().reverse == order.way.front().reverse;
   order_ = std::move(order);
@@ -87,10 +87,10 @@ void Trip::lay(const Vehicle& v, bool smoothly) {
 
 void Trip::face() {
   if (order_.face_yaw_rad) {
-    turner_.to(*order_.face_yaw_rad, order_.turn_radps);
+    rotation_.to(*order_.face_yaw_rad, order_.turn_radps);
     state_ = State::Face;
   } else if (order_.turn_rad) {
-    turner_.by(*order_.turn_rad, order_.turn_radps);
+    rotation_.by(*order_.turn_rad, order_.turn_radps);
     state_ = State::Face;
   } else {
     state_ = State::There;
@@ -110,15 +110,15 @@ TrackOutput Trip::step(const Vehicle& v, double limit_mps, double dt_s) {
       tracker_.reset();
       lay(v, false);
     } else if (order_.turn_rad) {
-      turner_.by(turner_.left_rad(), order_.turn_radps);
+      rotation_.by(rotation_.left_rad(), order_.turn_radps);
     } else {
       face();
     }
   }
   if (state_ == State::Face) {
-    const TrackOutput out = turner_.step(v, *path_params_, dt_s);
-    if (turner_.state() == Turner::State::Done) state_ = State::There;
-    if (turner_.state() == Turner::State::Failed)
+    const TrackOutput out = rotation_.step(v, *path_params_, dt_s);
+    if (rotation_.state() == RotateInPlace::State::Done) state_ = State::There;
+    if (rotation_.state() == RotateInPlace::State::Failed)
       fail("a turn on the spot does not come to its end");
     return out;
   }
@@ -148,7 +148,7 @@ TrackOutput Trip::step(const Vehicle& v, double limit_mps, double dt_s) {
 
 void Trip::watch(const Vehicle& v, double dt_s) {
   const TrackPhase phase = tracker_.phase();
-  const bool driving = phase == TrackPhase::Follow || phase == TrackPhase::Pivot;
+  const bool driving = phase == TrackPhase::Track || phase == TrackPhase::Pivot;
   const bool moved = base::distance_m(v.at, stuck_at_.at) > behave_->stuck_m ||
                      std::abs(base::angle_diff_rad(stuck_at_.yaw_rad, v.yaw_rad)) >
                          base::rad_from_deg(behave_->stuck_deg);
@@ -160,7 +160,7 @@ void Trip::watch(const Vehicle& v, double dt_s) {
   }
   if (stuck_s_ > behave_->stuck_s) {
     fail("no progress for " + std::to_string(std::lround(behave_->stuck_s)) + " s");
-  } else if (phase == TrackPhase::Follow && std::abs(tracker_.cross_track_m()) > behave_->lost_m) {
+  } else if (phase == TrackPhase::Track && std::abs(tracker_.cross_track_m()) > behave_->lost_m) {
     fail(std::to_string(std::lround(std::abs(tracker_.cross_track_m()))) + " m away from the way");
   }
 }
@@ -173,7 +173,7 @@ std::optional<double> Trip::distance_left_m() const noexcept {
 
 std::optional<double> Trip::turn_left_rad() const noexcept {
   if (state_ != State::Face) return std::nullopt;
-  return turner_.left_rad();
+  return rotation_.left_rad();
 }
 
 }  // namespace roverd::nav

@@ -20,12 +20,12 @@
 #include <cstddef>
 #include <optional>
 #include <string>
-#include <vector>
 #include <utility>
+#include <vector>
 
 #include "base/setting.hpp"
 #include "nav/behave/params.hpp"
-#include "nav/behave/turner.hpp"
+#include "nav/behave/rotate_in_place.hpp"
 #include "nav/track/tracker.hpp"
 
 namespace roverd::nav {
@@ -72,7 +72,7 @@ class Trip {
   base::Setting<PathParams> path_params_;
   base::Setting<BehaveParams> behave_;
   Tracker tracker_;
-  Turner turner_;
+  RotateInPlace rotation_;
   Order order_;
   std::array<Path, 2> paths_;  ///< the one that is driven, and the one before it
   std::size_t slot_ = 0;

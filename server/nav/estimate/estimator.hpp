@@ -25,8 +25,8 @@
 #include <string_view>
 
 #include "base/measurements.hpp"
-#include "base/snapshot.hpp"
 #include "base/setting.hpp"
+#include "base/snapshot.hpp"
 #include "nav/estimate/arrival.hpp"
 #include "nav/estimate/ekf.hpp"
 #include "nav/estimate/gnss_quality.hpp"
@@ -43,7 +43,7 @@ using base::Time;
 
 class Estimator {
  public:
-  /// What is believed at first follows from the parameters at construction 
+  /// What is believed at first follows from the parameters at construction
   /// (kBelievedAtFirst); all else acts from the next measurement on.
   explicit Estimator(base::Setting<EstimateParams> params);
 
@@ -157,7 +157,7 @@ class Estimator {
              const base::BodyTwist& odometry) noexcept;
   void velocity_refused(const base::GnssVelocity& v, double ahead_mps, double sigma_mps) noexcept;
 
-  // place.cpp
+  // positioning.cpp
   void move(base::EnuPoint to, double sigma_m) noexcept;
   void note_reset(std::string_view what, const Belief& before) noexcept;
   std::string_view advice() const noexcept;

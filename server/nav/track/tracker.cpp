@@ -32,7 +32,7 @@ bool finite(const Vehicle& v) noexcept {
 void Tracker::enter(TrackPhase phase) noexcept {
   phase_ = phase;
   still_s_ = astray_s_ = turning_s_ = 0.0;
-  if (phase != TrackPhase::Follow) accel_mps2_ = 0.0;
+  if (phase != TrackPhase::Track) accel_mps2_ = 0.0;
 }
 
 void Tracker::begin(const Path& path, std::size_t leg, double s_m) noexcept {
@@ -91,8 +91,8 @@ TrackOutput Tracker::step(const Vehicle& vehicle, double limit_mps, double dt_s)
     case TrackPhase::Pivot:
       out = pivot(vehicle, dt_s);
       break;
-    case TrackPhase::Follow:
-      out = follow(vehicle, limit_mps, dt_s);
+    case TrackPhase::Track:
+      out = track(vehicle, limit_mps, dt_s);
       break;
     case TrackPhase::Stop:
       out = stop(vehicle, dt_s);
@@ -102,7 +102,7 @@ TrackOutput Tracker::step(const Vehicle& vehicle, double limit_mps, double dt_s)
       break;
   }
   const bool moves = out.command.linear_mps != 0.0 || out.command.angular_radps != 0.0;
-  const bool counter = moves && phase_ == TrackPhase::Follow;
+  const bool counter = moves && phase_ == TrackPhase::Track;
   sent_at_ = (sent_at_ + 1) % sent_.size();
   sent_[sent_at_] = {speed_mps_, rate_radps_ - (counter ? observer_.radps() : 0.0)};
   return out;
@@ -172,7 +172,7 @@ TrackOutput Tracker::command(const Vehicle& v, double speed_mps, double rate_rad
   saturated_ = false;
   base::BodyTwist t;
   if (speed_mps == 0.0 && rate_radps == 0.0) return {t, reason};
-  const double counter = phase_ == TrackPhase::Follow ? observer_.radps() : 0.0;
+  const double counter = phase_ == TrackPhase::Track ? observer_.radps() : 0.0;
   t.linear_mps = speed_mps / v.odometry_scale;
   t.angular_radps = (rate_radps - counter - v.pull_1pm * t.linear_mps) / v.yaw_scale;
   const double most = params_->speed.max_yaw_rate_radps;
@@ -199,7 +199,7 @@ TrackOutput Tracker::settle(const Vehicle& v, double dt_s) noexcept {
     const Projection on = project(v.at, s_m_, 1.0);
     cross_track_m_ = leg_now().reverse ? -on.cross_m : on.cross_m;
     const bool away = std::abs(facing_error(v, on)) > leg_now().align_rad;
-    enter(away ? TrackPhase::Pivot : TrackPhase::Follow);
+    enter(away ? TrackPhase::Pivot : TrackPhase::Track);
   }
   return command(v, slew(speed_mps_, 0.0, step, step), slew(rate_radps_, 0.0, turn_step, turn_step),
                  SpeedReason::Stopping);
@@ -209,7 +209,7 @@ TrackOutput Tracker::pivot(const Vehicle& v, double dt_s) noexcept {
   const Vehicle soon = predict(v, dt_s);
   const Projection on = project(v.at, s_m_, 1.0);
   const TrackOutput out = turn_by(facing_error(v, on), facing_error(soon, on), v, dt_s);
-  if (still_s_ >= kTurnedFor_s) enter(TrackPhase::Follow);
+  if (still_s_ >= kTurnedFor_s) enter(TrackPhase::Track);
   return out;
 }
 
@@ -230,8 +230,9 @@ TrackOutput Tracker::turn_by(double error_rad, double error_soon_rad, const Vehi
   const double done = rad_from_deg(params_->pivot.done_deg);
   const bool there = std::abs(error_rad) < done && std::abs(v.yaw_rate_radps) < kTurned_radps;
   still_s_ = there ? still_s_ + dt_s : 0.0;
-  double wanted =
-      std::abs(error_soon_rad) < 0.5 * done ? 0.0 : pivot_rate_radps(error_soon_rad, params_->pivot);
+  double wanted = std::abs(error_soon_rad) < 0.5 * done
+                      ? 0.0
+                      : pivot_rate_radps(error_soon_rad, params_->pivot);
   // It brakes by itself; turning back before it stands is for a turn that went too far.
   if (wanted * v.yaw_rate_radps < 0.0 && std::abs(v.yaw_rate_radps) > kStill_radps) wanted = 0.0;
   const double step = params_->pivot.slew_radps2 * dt_s;
@@ -245,7 +246,7 @@ TrackOutput Tracker::stop(const Vehicle& v, double dt_s) noexcept {
   const TrackOutput out = command(v, 0.0, 0.0, SpeedReason::Approach);
   if (still(v, dt_s)) {
     if (leg_now().end_m - s_m_ > params_->track.arrive_m) {
-      enter(TrackPhase::Follow);
+      enter(TrackPhase::Track);
     } else if (leg_now().end_yaw_rad) {
       turn_to_rad_ = *leg_now().end_yaw_rad;
       enter(TrackPhase::Turn);

@@ -1,15 +1,15 @@
 #pragma once
 // Drives one leg after another of a path.
 //
-//   begin ─▶ Settle ──points away──▶ Pivot ──aligned──▶ Follow ──end near──▶ Stop ──standing──▶
+//   begin ─▶ Settle ──points away──▶ Pivot ──aligned──▶ Track ───end near──▶ Stop ──standing──▶
 //   Done
 //              │                        ▲                 │ ▲                 │ │            ▲
 //              └──────── aligned ───────┼─────────────────┘ └── too short ────┘ │            │
-//                                       └── Settle ◀── points far away ── Follow└─▶ Turn ────┘
+//                                       └── Settle ◀── points far away ─── Track└─▶ Turn ────┘
 //                                                                  the leg's end has a heading
 //   begin_turn ─▶ Settle ─▶ Turn ─▶ Done
 //
-// Follow steers by one of the laws of nav/track/law.hpp. The pose is predicted over the actuation
+// Track steers by one of the laws of nav/track/law.hpp. The pose is predicted over the actuation
 // delay with the commands already sent, so that steering does not weave; what turns the robot
 // without being commanded is learned and countered (nav/track/observer.hpp). Steering goes first:
 // where the turn rate saturates, the speed gives way. Progress along the path only grows and is
@@ -22,8 +22,8 @@
 #include <utility>
 
 #include "base/geo.hpp"
-#include "base/snapshot.hpp"
 #include "base/setting.hpp"
+#include "base/snapshot.hpp"
 #include "nav/track/law.hpp"
 #include "nav/track/observer.hpp"
 #include "nav/track/path.hpp"
@@ -44,7 +44,7 @@ struct Vehicle {
   double sigma_m = 0.0;         ///< of the position
 };
 
-enum class TrackPhase { Idle, Settle, Pivot, Follow, Stop, Turn, Done };
+enum class TrackPhase { Idle, Settle, Pivot, Track, Stop, Turn, Done };
 
 struct TrackOutput {
   base::BodyTwist command;  ///< for the base: track speed and track turn rate
@@ -102,7 +102,7 @@ class Tracker {
   TrackOutput turn(const Vehicle& v, double dt_s) noexcept;
   TrackOutput turn_by(double error_rad, double error_soon_rad, const Vehicle& v,
                       double dt_s) noexcept;
-  TrackOutput follow(const Vehicle& v, double limit_mps, double dt_s) noexcept;
+  TrackOutput track(const Vehicle& v, double limit_mps, double dt_s) noexcept;
   TrackOutput stop(const Vehicle& v, double dt_s) noexcept;
   TrackOutput drive(const Vehicle& v, SpeedLimit limit, double curvature_1pm, double dt_s) noexcept;
   /// Ground twist to command, with saturation: steering first, speed gives way.

@@ -16,7 +16,7 @@ bool under_way(ActivityState s) noexcept {
 SelfDriving::SelfDriving(const ParameterSet& set)
     : guided_(set.path, set.behave, set.modes),
       dock_(set.path, set.behave, set.modes),
-      homeward_(set.path, set.behave),
+      rtl_(set.path, set.behave),
       follow_(set.path, set.modes) {}
 
 void SelfDriving::begin(std::string_view kind) {
@@ -42,7 +42,7 @@ void SelfDriving::go(const nav::GuidedGoal& goal, std::string_view kind,
 
 void SelfDriving::go_home(const std::vector<base::EnuPoint>& way, bool retrace,
                           const nav::Vehicle& vehicle, base::LatLon to, double length_m) {
-  homeward_.begin(way, vehicle, retrace);
+  rtl_.begin(way, vehicle, retrace);
   begin(retrace ? "retrace" : "return");
   activity_.goal = to;
   activity_.distance_m = length_m;
@@ -60,7 +60,7 @@ void SelfDriving::dock(const nav::DockGoal& goal, const nav::Vehicle& vehicle) {
 void SelfDriving::interrupt() noexcept {
   guided_.interrupt();
   dock_.interrupt();
-  homeward_.interrupt();
+  rtl_.interrupt();
 }
 
 bool SelfDriving::hold(Mode mode) {
@@ -79,7 +79,7 @@ void SelfDriving::leave(Mode to, const std::string& why, bool stands_first) {
   }
   guided_.reset();
   dock_.reset();
-  homeward_.reset();
+  rtl_.reset();
   follow_.reset();
   held_.go_on();
   changeover_.skip();
@@ -116,7 +116,7 @@ nav::TrackOutput SelfDriving::step_mode(const Facts& f) {
       return guided_.step(f.vehicle, f.limit_mps, f.dt_s);
     case Mode::Rtl:
     case Mode::SmartRtl:
-      return homeward_.step(f.vehicle, f.limit_mps, f.dt_s);
+      return rtl_.step(f.vehicle, f.limit_mps, f.dt_s);
     case Mode::Follow:
       return follow_.step(f.vehicle, f.limit_mps, f.now, f.dt_s);
     case Mode::Dock:
@@ -152,11 +152,11 @@ std::optional<SelfDriving::Ending> SelfDriving::ending(Mode mode) const {
       break;
     case Mode::Rtl:
     case Mode::SmartRtl:
-      if (homeward_.state() == nav::Homeward::State::Home) {
+      if (rtl_.state() == nav::Rtl::State::Home) {
         return reached("home_reached", "home is reached");
       }
-      if (homeward_.state() == nav::Homeward::State::Failed) {
-        return failed("return_failed", "the way home: " + homeward_.reason());
+      if (rtl_.state() == nav::Rtl::State::Failed) {
+        return failed("return_failed", "the way home: " + rtl_.reason());
       }
       break;
     case Mode::Follow:
@@ -203,7 +203,7 @@ void SelfDriving::tell(const Facts& f) {
   if (f.mode == Mode::Guided) {
     tell_guided(f);
   } else if (f.mode == Mode::Rtl || f.mode == Mode::SmartRtl) {
-    a.distance_m = homeward_.trip().distance_left_m();
+    a.distance_m = rtl_.trip().distance_left_m();
   } else if (f.mode == Mode::Dock) {
     a.goal = f.frame.to_global(dock_.goal().at);
     a.goal_yaw_rad = dock_.goal().yaw_rad;

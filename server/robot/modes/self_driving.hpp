@@ -20,7 +20,7 @@
 #include "nav/behave/dock.hpp"
 #include "nav/behave/follow.hpp"
 #include "nav/behave/guided.hpp"
-#include "nav/behave/homeward.hpp"
+#include "nav/behave/rtl.hpp"
 #include "robot/modes/changeover.hpp"
 #include "robot/modes/held_by_radio.hpp"
 #include "robot/parameter_set.hpp"
@@ -98,7 +98,7 @@ class SelfDriving {
 
   nav::Guided guided_;
   nav::Dock dock_;
-  nav::Homeward homeward_;
+  nav::Rtl rtl_;
   nav::Follow follow_;
   Changeover changeover_;
   HeldByRadio held_;

@@ -74,7 +74,7 @@ Driven drive(const Path& path, Body& body, PathParams params, double limit_s = 2
       EXPECT_TRUE(std::isfinite(out.command.linear_mps));
       EXPECT_TRUE(std::isfinite(out.command.angular_radps));
       body.step(out.command);
-      if (tracker.phase() == TrackPhase::Follow) {
+      if (tracker.phase() == TrackPhase::Track) {
         const double e = tracker.cross_track_m();
         c.most_m = std::max(c.most_m, std::abs(e));
         c.least_e_m = std::min(c.least_e_m, e);

@@ -56,7 +56,7 @@ struct TrackedDrive {
     for (int i = 0; i < seconds * 50.0; ++i, ++ticks) {
       toy.step(tracker.step(toy.vehicle, 10.0, 0.02).command);
       if (tracker.phase() == TrackPhase::Pivot) pivoted = true;
-      if (tracker.phase() == TrackPhase::Follow) {
+      if (tracker.phase() == TrackPhase::Track) {
         left_most_m = std::max(left_most_m, tracker.cross_track_m());
         right_most_m = std::min(right_most_m, tracker.cross_track_m());
       }

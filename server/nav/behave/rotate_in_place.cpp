@@ -1,11 +1,11 @@
-#include "nav/behave/turner.hpp"
+#include "nav/behave/rotate_in_place.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace roverd::nav {
 
-void Turner::begin(double rate_radps) noexcept {
+void RotateInPlace::begin(double rate_radps) noexcept {
   state_ = State::Brake;
   counting_ = false;
   most_radps_ = rate_radps;
@@ -13,13 +13,13 @@ void Turner::begin(double rate_radps) noexcept {
   sent_.fill(0.0);
 }
 
-void Turner::to(double yaw_rad, double rate_radps) noexcept {
+void RotateInPlace::to(double yaw_rad, double rate_radps) noexcept {
   begin(rate_radps);
   absolute_ = true;
   goal_rad_ = yaw_rad;
 }
 
-void Turner::by(double angle_rad, double rate_radps) noexcept {
+void RotateInPlace::by(double angle_rad, double rate_radps) noexcept {
   begin(rate_radps);
   absolute_ = false;
   left_rad_ = angle_rad;
@@ -27,7 +27,7 @@ void Turner::by(double angle_rad, double rate_radps) noexcept {
 
 /// What was turned since the last step. An absolute goal takes up what the estimate has learned
 /// meanwhile, and keeps its side.
-void Turner::count(const Vehicle& v) noexcept {
+void RotateInPlace::count(const Vehicle& v) noexcept {
   if (!counting_) {
     counting_ = true;
     if (absolute_) left_rad_ = base::angle_diff_rad(v.yaw_rad, goal_rad_);
@@ -41,7 +41,7 @@ void Turner::count(const Vehicle& v) noexcept {
   yaw_rad_ = v.yaw_rad;
 }
 
-TrackOutput Turner::step(const Vehicle& v, const PathParams& p, double dt_s) noexcept {
+TrackOutput RotateInPlace::step(const Vehicle& v, const PathParams& p, double dt_s) noexcept {
   if (state_ == State::Idle || state_ == State::Done || state_ == State::Failed) {
     return {{}, SpeedReason::Standing};
   }

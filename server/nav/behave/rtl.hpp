@@ -25,11 +25,11 @@
 
 namespace roverd::nav {
 
-class Homeward {
+class Rtl {
  public:
   enum class State { Idle, Driving, Home, Failed };
 
-  Homeward(base::Setting<PathParams> path, base::Setting<BehaveParams> behave)
+  Rtl(base::Setting<PathParams> path, base::Setting<BehaveParams> behave)
       : path_(path), trip_(path, std::move(behave)) {}
 
   /// @param way to be driven in order; the last one is home. Corners are rounded.

@@ -16,7 +16,7 @@
 
 namespace roverd::nav {
 
-class Turner {
+class RotateInPlace {
  public:
   enum class State { Idle, Brake, Turn, Done, Failed };
 
@@ -24,7 +24,7 @@ class Turner {
   void to(double yaw_rad, double rate_radps) noexcept;
   /// @param angle_rad left positive, any size
   void by(double angle_rad, double rate_radps) noexcept;
-  void reset() noexcept { *this = Turner{}; }
+  void reset() noexcept { *this = RotateInPlace{}; }
 
   TrackOutput step(const Vehicle& v, const PathParams& p, double dt_s) noexcept;
 

@@ -74,7 +74,8 @@ double Tracker::law_1pm(const Vehicle& soon, const Projection& on,
   const BesidePath at{on.cross_m, angle_diff_rad(on.tangent_rad, soon.yaw_rad),
                       bend_ahead_1pm(on, speed_mps), speed_mps,
                       calm_of(soon.yaw_sigma_rad, rad_from_deg(params_->speed.heading_sigma_deg))};
-  if (law == TrackLaw::Stanley) return stanley_1pm(at, params_->vehicle.wheelbase_m, params_->track);
+  if (law == TrackLaw::Stanley)
+    return stanley_1pm(at, params_->vehicle.wheelbase_m, params_->track);
   return path_frame_1pm(at, params_->track);
 }
 
@@ -149,7 +150,7 @@ double Tracker::speed_up_or_down(double limit_mps, double dt_s) noexcept {
   return speed;
 }
 
-TrackOutput Tracker::follow(const Vehicle& v, double limit_mps, double dt_s) noexcept {
+TrackOutput Tracker::track(const Vehicle& v, double limit_mps, double dt_s) noexcept {
   const Leg& leg = leg_now();
   const double reach = std::max(1.0, 2.0 * std::abs(v.speed_mps) * dt_s + 1.0);
   const Projection on = project(v.at, s_m_, reach);

@@ -34,7 +34,7 @@ std::optional<base::MissionPlace> Executor::place() const {
   const RouteStep* step = step_now();
   const bool counts = step != nullptr && !step->yaw_rad;
   if (counts && step->kind == StepKind::Turn) {
-    p.left = doing_ == Doing::Turn ? turner_.left_rad() : left_;
+    p.left = doing_ == Doing::Turn ? rotation_.left_rad() : left_;
   }
   if (counts && step->kind == StepKind::Move && doing_ == Doing::Connector) {
     const double driven_m = tracker_.path() == &connector_ ? tracker_.s_m() : 0.0;
