@@ -365,7 +365,9 @@ std::string write_qgc_plan(const Plan& plan, const Fence* fence, std::vector<Fil
                   {"mission", std::move(mission)},
                   {"geoFence", geo_fence_json(fence)},
                   {"rallyPoints", rally_points_json(fence)}};
-  return file.dump(4) + "\n";
+  // To be read by people, too, until nobody would: 100,000 items would take 80 MB of blanks.
+  constexpr std::size_t kReadable = 2000;
+  return file.dump(plan.items.size() <= kReadable ? 4 : -1) + "\n";
 }
 
 }  // namespace roverd::mission
