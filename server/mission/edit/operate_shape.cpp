@@ -149,7 +149,11 @@ Result<LatLon> middle_of_way(const std::vector<Spot>& places, const EnuPoint& by
     const TangentPlane plane(origin);
     const EnuPoint step = plane.to_local(centre) + half;
     origin = plane.to_global(step);
-    if (std::hypot(step.east_m, step.north_m) < kGood_m) return origin;
+    if (std::hypot(step.east_m, step.north_m) >= kGood_m) continue;
+    // A way across the pole begins to the north and ends to the south.
+    const LatLon end = TangentPlane(origin).to_global(half);
+    if (std::abs(lon_difference(centre.lon, end.lon)) < 90.0) return origin;
+    break;
   }
   return tl::unexpected<Error>(
       wrong("/op", "cannot be: so near to the pole there is no such direction"));

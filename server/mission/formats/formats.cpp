@@ -199,6 +199,25 @@ std::string_view to_string(Outcome outcome) noexcept {
   return "left_out";
 }
 
+namespace {
+
+/// Does an element of that name begin, with a namespace's prefix or without?
+bool has_element(std::string_view xml, std::string_view name) {
+  for (std::size_t at = xml.find(name); at != std::string_view::npos; at = xml.find(name, at + 1)) {
+    std::size_t begin = at;
+    if (begin > 0 && xml[begin - 1] == ':') {
+      --begin;
+      while (begin > 0 && xml[begin - 1] != '<' && xml[begin - 1] > ' ') --begin;
+    }
+    const std::size_t end = at + name.size();
+    if (begin == 0 || xml[begin - 1] != '<') continue;
+    if (end == xml.size() || xml[end] <= ' ' || xml[end] == '>' || xml[end] == '/') return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 std::optional<Format> detect_format(std::string_view raw, std::string_view file_name) {
   if (raw.starts_with("PK\x03\x04")) return Format::Kmz;
   const Utf8Text decoded(raw);
@@ -214,8 +233,8 @@ std::optional<Format> detect_format(std::string_view raw, std::string_view file_
     return Format::GeoJson;
   }
   if (text.starts_with('<')) {
-    if (text.find("<gpx") != std::string_view::npos) return Format::Gpx;
-    if (text.find("<kml") != std::string_view::npos) return Format::Kml;
+    if (has_element(text, "gpx")) return Format::Gpx;
+    if (has_element(text, "kml")) return Format::Kml;
   }
   if (looks_like_fence_text(text)) return Format::Fence;
   const std::string name = lower(file_name);

@@ -208,7 +208,7 @@ TEST(Ways, AFourthNumberOfAPositionIsToldInTheAccount) {
 
 TEST(Ways, ALegOfMoreThanTenKilometresIsTold) {
   const auto file = taken("lat,lon\n58,26\n58.05,26\n59.4,26\n");
-  EXPECT_EQ(reasons(file), (Texts{"line 4: lies 150.3 km from the position before it"}));
+  EXPECT_EQ(reasons(file), (Texts{"line 4: lies 150.4 km from the position before it"}));
 }
 
 TEST(Ways, MoreThanAHundredAreRefused) {

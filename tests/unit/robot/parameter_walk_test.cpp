@@ -54,9 +54,9 @@ class Walk : public Field {
     g.at = kFrame.to_global(p);
     return g;
   }
-  void target(base::EnuPoint at, base::EnuPoint velocity) {
+  void target(base::EnuPoint where, base::EnuPoint velocity) {
     SetTarget t;
-    t.at = kFrame.to_global(at);
+    t.at = kFrame.to_global(where);
     t.velocity_mps = velocity;
     t.asked = now;
     (void)ask(t);
@@ -635,7 +635,9 @@ TEST(ParameterWalk, ASceneTwiceIsTheSame) {
 TEST(ParameterWalk, WhatIsSaidToActAtOnceDoes) {
   Stage stage;
   for (const Parameter& p : Field{}.robot.parameters()) {
-    if (p.at_once) EXPECT_TRUE(stage.acts(p)) << p.section << "." << p.info.name;
+    if (p.at_once) {
+      EXPECT_TRUE(stage.acts(p)) << p.section << "." << p.info.name;
+    }
   }
 }
 
@@ -650,7 +652,9 @@ TEST(ParameterWalk, WhatIsSaidToActAtTheNextStartDoesThenAndNotBefore) {
     const bool steered = p.section == "vehicle" &&
                          (p.info.name.starts_with("max_steering") || p.info.name == "wheelbase_m");
     const bool map = p.info.name == "map_lon" || p.info.name == "map_lat";
-    if (!steered && !map) EXPECT_TRUE(stage.begins(p)) << p.section << "." << p.info.name;
+    if (!steered && !map) {
+      EXPECT_TRUE(stage.begins(p)) << p.section << "." << p.info.name;
+    }
   }
   EXPECT_EQ(walked, 17);
 }
