@@ -117,7 +117,8 @@ TEST_F(FencesApi, WhatAStartRefusesIsFoundByEveryQuestionBeforeIt) {
   Json hole = Json::array();
   for (const auto& [north_m, east_m] :
        {std::pair{8.0, -3.0}, std::pair{8.0, 3.0}, std::pair{12.0, 3.0}, std::pair{12.0, -3.0}}) {
-    hole.push_back({kStart.lat + north_m / 111'384, kStart.lon + east_m / 58'500});
+    hole.push_back(
+        {{"lat", kStart.lat + north_m / 111'384}, {"lon", kStart.lon + east_m / 58'500}});
   }
   ring["areas"].push_back({{"kind", "exclusion"}, {"polygon", hole}});
   const auto made = call("POST", "/fences", ring);
