@@ -1,6 +1,7 @@
 #pragma once
 // The check of a mission with the vehicle where it is now and the active fence. Web thread.
 
+#include <functional>
 #include <optional>
 
 #include "api/context.hpp"
@@ -8,7 +9,8 @@
 
 namespace roverd::api {
 
-mission::CheckReport check_now(const Context& context, const mission::Plan& plan);
+/// With what is known at this moment; what it gives may be called beside the web thread.
+std::function<mission::CheckReport(const mission::Plan&)> checker(const Context& context);
 
 /// @param severity empty: all of them
 Json findings_json(const mission::CheckReport& report, std::optional<mission::Severity> severity);

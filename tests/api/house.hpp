@@ -20,6 +20,7 @@
 #include "client.hpp"
 #include "net/doorbell.hpp"
 #include "net/server.hpp"
+#include "net/workers.hpp"
 #include "robot/robot.hpp"
 #include "store/store.hpp"
 
@@ -85,6 +86,7 @@ class House {
   std::unique_ptr<api::Api> api_;
   std::unique_ptr<net::Server> server_;
   std::unique_ptr<net::Doorbell> bell_;
+  net::Workers workers_{io_};
   boost::asio::steady_timer sample_timer_{io_};
   std::mutex mutex_;
   base::DriveCommand sent_;  ///< guarded by mutex_

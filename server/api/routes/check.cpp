@@ -38,11 +38,16 @@ Handler check_mission(const ContextPtr& context) {
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
     const auto answer = [context, call](base::Result<store::StoredMission> stored) {
       if (!stored) return call->respond(problem(stored.error()));
-      Json out = report_json(check_now(*context, stored->plan), context->deps.profile);
-      out["mission_id"] = stored->id;
-      out["revision"] = stored->revision;
-      out["fence_id"] = context->fence ? Json(context->fence->id) : Json(nullptr);
-      call->respond(json_response(http::status::ok, out));
+      const Effort effort{2 * bytes_of(stored->plan)};
+      context->answer_aside(call, effort,
+                            [check = checker(*context), fence = context->fence,
+                             profile = context->deps.profile, mission = std::move(*stored)] {
+                              Json out = report_json(check(mission.plan), profile);
+                              out["mission_id"] = mission.id;
+                              out["revision"] = mission.revision;
+                              out["fence_id"] = fence ? Json(fence->id) : Json(nullptr);
+                              return json_response(http::status::ok, out);
+                            });
     };
     if (revision) {
       context->deps.store.read_revision(call->params.at("id"), *revision, answer);
@@ -54,15 +59,18 @@ Handler check_mission(const ContextPtr& context) {
 
 }  // namespace
 
-mission::CheckReport check_now(const Context& context, const mission::Plan& plan) {
+std::function<mission::CheckReport(const mission::Plan&)> checker(const Context& context) {
   mission::Surroundings around;
   const auto snapshot = context.deps.robot.snapshot();
   if (snapshot && snapshot->pose &&
       base::seconds(base::steady_now() - snapshot->pose->stamp) <= StaleAfter::kPosition_s) {
     around.vehicle = snapshot->pose->global;
   }
-  if (context.fence) around.fence = &context.fence->fence;
-  return mission::check(plan, context.deps.profile.limits, around);
+  return [around, fence = context.fence,
+          limits = context.deps.profile.limits](const mission::Plan& plan) mutable {
+    if (fence) around.fence = &fence->fence;
+    return mission::check(plan, limits, around);
+  };
 }
 
 Json findings_json(const mission::CheckReport& report, std::optional<mission::Severity> severity) {

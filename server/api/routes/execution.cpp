@@ -49,6 +49,38 @@ Handler plain(const ContextPtr& context, robot::Command command, Moves moves) {
   };
 }
 
+/// Checked and laid out as a route; or why not.
+struct Laid {
+  base::Result<std::shared_ptr<const robot::CompiledMission>> mission;
+  Context::Warnings warnings{};
+};
+
+void lay_out(const ContextPtr& context, const CallPtr& call, store::StoredMission stored,
+             base::Time not_after) {
+  const Effort effort{4 * bytes_of(stored.plan)};
+  context->aside(
+      call, effort,
+      [&robot = context->deps.robot, check = checker(*context),
+       stored = std::move(stored)]() mutable -> Laid {
+        const mission::CheckReport report = check(stored.plan);
+        if (report.errors > 0) return {tl::unexpected<base::Error>(refusal(report))};
+        Context::Warnings warnings{stored.id, stored.revision,
+                                   findings_json(report, mission::Severity::Warning)};
+        return {robot.compile({stored.id, stored.revision, std::move(stored.plan)}),
+                std::move(warnings)};
+      },
+      [context, call, not_after](Laid laid) {
+        if (!laid.mission) return call->respond(problem(laid.mission.error()));
+        run_command(context, call, robot::LoadMission{std::move(*laid.mission)}, not_after,
+                    [context, warnings = std::move(laid.warnings)](const base::Snapshot& snapshot) {
+                      context->warnings = warnings;
+                      Json out = progress_of(context)(snapshot);
+                      out["warnings"] = warnings.list;
+                      return out;
+                    });
+      });
+}
+
 Handler load(const ContextPtr& context) {
   return [context](const CallPtr& call) {
     const auto body = json_body(call->request);
@@ -62,20 +94,7 @@ Handler load(const ContextPtr& context) {
 
     const auto hand_over = [context, call, not_after](base::Result<store::StoredMission> stored) {
       if (!stored) return call->respond(problem(stored.error()));
-      const mission::CheckReport report = check_now(*context, stored->plan);
-      if (report.errors > 0) return call->respond(problem(refusal(report)));
-      auto compiled =
-          context->deps.robot.compile({stored->id, stored->revision, std::move(stored->plan)});
-      if (!compiled) return call->respond(problem(compiled.error()));
-      Context::Warnings warnings{stored->id, stored->revision,
-                                 findings_json(report, mission::Severity::Warning)};
-      run_command(context, call, robot::LoadMission{std::move(*compiled)}, not_after,
-                  [context, warnings](const base::Snapshot& snapshot) {
-                    context->warnings = warnings;
-                    Json out = progress_of(context)(snapshot);
-                    out["warnings"] = warnings.list;
-                    return out;
-                  });
+      lay_out(context, call, std::move(*stored), not_after);
     };
     if (revision) {
       context->deps.store.read_revision(*id, *revision, hand_over);
@@ -198,11 +217,17 @@ Handler resume(const ContextPtr& context) {
                 problem({base::Code::Conflict,
                          "the mission that was left behind is gone: " + stored.error().detail}));
           }
-          auto compiled =
-              context->deps.robot.compile({stored->id, stored->revision, std::move(stored->plan)});
-          if (!compiled) return call->respond(problem(compiled.error()));
-          run_command(context, call, robot::ResumeAt{std::move(*compiled), place}, not_after,
-                      progress_of(context));
+          const Effort effort{2 * bytes_of(stored->plan)};
+          context->aside(
+              call, effort,
+              [&robot = context->deps.robot, mission = std::move(*stored)]() mutable {
+                return robot.compile({mission.id, mission.revision, std::move(mission.plan)});
+              },
+              [context, call, not_after, place](auto compiled) {
+                if (!compiled) return call->respond(problem(compiled.error()));
+                run_command(context, call, robot::ResumeAt{std::move(*compiled), place}, not_after,
+                            progress_of(context));
+              });
         });
   };
 }

@@ -80,11 +80,11 @@ base::Result<mission::ImportHints> hints_of(const Call& call) {
 
 /// @param fence of the same file, kept already; null: it has none
 void keep_mission(const ContextPtr& context, const CallPtr& call,
-                  const std::shared_ptr<const mission::ImportedFile>& imported,
+                  const std::shared_ptr<mission::ImportedFile>& imported,
                   const store::Change& change,
                   const std::shared_ptr<const store::StoredFence>& fence) {
   context->deps.store.create_mission(
-      imported->plan, change,
+      std::move(imported->plan), change,
       [context, call, imported, change, fence](base::Result<store::StoredMission> stored) {
         if (!stored) {
           // Both or neither.
@@ -93,12 +93,32 @@ void keep_mission(const ContextPtr& context, const CallPtr& call,
           return call->respond(problem(stored.error()));
         }
         context->announce(stored->id, stored->revision);
-        Json body = import_json(*imported, *stored);
-        body["fence_id"] = fence ? Json(fence->id) : Json(nullptr);
-        Response response = json_response(http::status::created, body);
-        response.set(http::field::location, "/api/v1/missions/" + stored->id);
-        response.set(http::field::etag, etag_of(stored->revision));
-        call->respond(std::move(response));
+        const Effort effort{3 * bytes_of(stored->plan) + 100 * imported->rows.size(), true};
+        context->answer_aside(
+            call, effort, [file = std::move(*imported), mission = std::move(*stored), fence] {
+              Json body = import_json(file, mission);
+              body["fence_id"] = fence ? Json(fence->id) : Json(nullptr);
+              Response response = json_response(http::status::created, body);
+              response.set(http::field::location, "/api/v1/missions/" + mission.id);
+              response.set(http::field::etag, etag_of(mission.revision));
+              return response;
+            });
+      });
+}
+
+void keep_file(const ContextPtr& context, const CallPtr& call, const std::string& name,
+               mission::ImportedFile file) {
+  auto imported = std::make_shared<mission::ImportedFile>(std::move(file));
+  const std::string from =
+      name.empty() ? std::string(mission::to_string(imported->format)) + " file" : name;
+  const store::Change change{"local", "imported from " + from};
+  if (!imported->fence) return keep_mission(context, call, imported, change, nullptr);
+  context->deps.store.create_fence(
+      *imported->fence, change,
+      [context, call, imported, change](base::Result<store::StoredFence> fence) {
+        if (!fence) return call->respond(problem(fence.error()));
+        keep_mission(context, call, imported, change,
+                     std::make_shared<const store::StoredFence>(std::move(*fence)));
       });
 }
 
@@ -113,21 +133,38 @@ Handler import_mission(const ContextPtr& context) {
     const std::string name = file_name(query_text(*call, "name"));
     const auto hints = hints_of(*call);
     if (!hints) return call->respond(problem(hints.error()));
-    auto file = mission::import_file(call->request.body(), format, name, *hints);
-    if (!file) return call->respond(problem(file.error()));
-    auto imported = std::make_shared<mission::ImportedFile>(std::move(*file));
-    const std::string from =
-        name.empty() ? std::string(mission::to_string(imported->format)) + " file" : name;
-    const store::Change change{"local", "imported from " + from};
-    if (!imported->fence) return keep_mission(context, call, imported, change, nullptr);
-    context->deps.store.create_fence(
-        *imported->fence, change,
-        [context, call, imported, change](base::Result<store::StoredFence> fence) {
-          if (!fence) return call->respond(problem(fence.error()));
-          keep_mission(context, call, imported, change,
-                       std::make_shared<const store::StoredFence>(std::move(*fence)));
+    std::string body = std::move(call->request.body());
+    const Effort effort{2 * body.size()};
+    context->aside(
+        call, effort,
+        [body = std::move(body), format, name, hints = *hints] {
+          return mission::import_file(body, format, name, hints);
+        },
+        [context, call, name](base::Result<mission::ImportedFile> file) {
+          if (!file) return call->respond(problem(file.error()));
+          keep_file(context, call, name, std::move(*file));
         });
   };
+}
+
+Response file_response(const store::StoredMission& stored, mission::Format format,
+                       const std::shared_ptr<const store::StoredFence>& fence) {
+  mission::ExportedFile file =
+      mission::export_file(stored.plan, format, fence ? &fence->fence : nullptr);
+  const auto count = [&file](mission::Outcome outcome) {
+    return std::to_string(
+        std::count_if(file.rows.begin(), file.rows.end(),
+                      [outcome](const auto& row) { return row.outcome == outcome; }));
+  };
+  Response response = text_response(
+      http::status::ok, file.binary ? file.media_type : file.media_type + "; charset=utf-8",
+      std::move(file.content));
+  response.set(http::field::content_disposition, attachment(file.file_name, stored.plan.name));
+  response.set(http::field::etag, etag_of(stored.revision));
+  // What the format could not hold: never lost in silence.
+  response.set("Items-Changed", count(mission::Outcome::Changed));
+  response.set("Items-Left-Out", count(mission::Outcome::LeftOut));
+  return response;
 }
 
 Handler export_mission(const ContextPtr& context) {
@@ -143,25 +180,14 @@ Handler export_mission(const ContextPtr& context) {
     }
     const auto fence = with_fence == "active" ? context->fence : nullptr;
     context->deps.store.read_mission(
-        call->params.at("id"), [call, format, fence](base::Result<store::StoredMission> stored) {
+        call->params.at("id"),
+        [context, call, format, fence](base::Result<store::StoredMission> stored) {
           if (!stored) return call->respond(problem(stored.error()));
-          mission::ExportedFile file =
-              mission::export_file(stored->plan, *format, fence ? &fence->fence : nullptr);
-          const auto count = [&file](mission::Outcome outcome) {
-            return std::to_string(
-                std::count_if(file.rows.begin(), file.rows.end(),
-                              [outcome](const auto& row) { return row.outcome == outcome; }));
-          };
-          Response response = text_response(
-              http::status::ok, file.binary ? file.media_type : file.media_type + "; charset=utf-8",
-              std::move(file.content));
-          response.set(http::field::content_disposition,
-                       attachment(file.file_name, stored->plan.name));
-          response.set(http::field::etag, etag_of(stored->revision));
-          // What the format could not hold: never lost in silence.
-          response.set("Items-Changed", count(mission::Outcome::Changed));
-          response.set("Items-Left-Out", count(mission::Outcome::LeftOut));
-          call->respond(std::move(response));
+          const Effort effort{2 * bytes_of(stored->plan)};
+          context->answer_aside(call, effort,
+                                [format = *format, fence, mission = std::move(*stored)] {
+                                  return file_response(mission, format, fence);
+                                });
         });
   };
 }
@@ -172,7 +198,8 @@ void add_file_routes(const ContextPtr& c) {
   c->router.add({http::verb::post,
                  "/missions/import",
                  {201, 400, 403, 413, 415, 422, 429, 503},
-                 import_mission(c)});
+                 import_mission(c),
+                 kFileBytes});
   c->router.add(
       {http::verb::get, "/missions/{id}/export", {200, 400, 404, 422, 503}, export_mission(c)});
 }

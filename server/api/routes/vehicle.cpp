@@ -208,7 +208,11 @@ void add_vehicle_routes(const ContextPtr& c) {
   c->router.add({get, "/vehicle/trail", {200, 503}, [c](const CallPtr& call) {
                    if (const auto s = c->snapshot_or_refuse(call)) {
                      c->trail.take(*s);  // the live stream goes on exactly where this ends
-                     call->respond(json_response(http::status::ok, trail_json(c->trail, *s)));
+                     const Effort effort{60 * (c->trail.estimated().points().size() +
+                                               c->trail.received().points().size())};
+                     c->answer_aside(call, effort, [trail = c->trail, s] {
+                       return json_response(http::status::ok, trail_json(trail, *s));
+                     });
                    }
                  }});
   c->router.add({post, "/vehicle/arm", kCommand, arm(c)});
@@ -216,7 +220,10 @@ void add_vehicle_routes(const ContextPtr& c) {
   c->router.add({http::verb::put, "/vehicle/mode", kCommand, set_mode(c)});
   c->router.add({post, "/vehicle/resume", kCommand, plain(c, robot::ResumeActivity{}, Moves::Yes)});
   c->router.add({post, "/vehicle/estop", kCommand,
-                 plain(c, robot::Estop{"the page or a script"}, Moves::No)});
+                 [c](const CallPtr& call) {  // whatever the body says
+                   run_command(c, call, robot::Estop{"the page or a script"}, base::Time::max(),
+                               whole_state(c));
+                 }});
   c->router.add(
       {post, "/vehicle/estop/reset", kCommand, plain(c, robot::ResetEstop{}, Moves::Yes)});
   c->router.add({http::verb::put, "/vehicle/home", kCommand, set_home(c)});
