@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <deque>
 #include <exception>
 #include <utility>
 
@@ -37,6 +38,17 @@ std::string_view inner_path(std::string_view path) {
   return known ? path : std::string_view{};
 }
 
+/// What stops, or slows down: goes before all other requests, and is always heard.
+bool stops(std::string_view path) {
+  return path == "/vehicle/estop" || path == "/vehicle/disarm" || path == "/vehicle/mode" ||
+         path == "/execution/pause" || path == "/execution/stop";
+}
+
+std::string_view path_of(const Request& request) {
+  const std::string_view whole = target(request);
+  return inner_path(whole.substr(0, whole.find('?')));
+}
+
 Response options_response(std::string_view allow) {
   Response response{http::status::no_content, 11};
   response.set(http::field::allow, boost::beast::string_view(allow.data(), allow.size()));
@@ -69,10 +81,30 @@ std::optional<store::StoredPlace> Context::offer(const base::Snapshot& snapshot)
   return in_hand || other ? std::nullopt : offer;
 }
 
-void Context::aside(std::function<void()> work, std::function<void()> then) const {
-  if (deps.aside) return deps.aside(std::move(work), std::move(then));
-  work();
-  then();
+void Context::go_aside(const CallPtr& call, Effort effort, std::function<void()> work,
+                       std::function<bool()> then) const {
+  const auto tried = [work = std::move(work)] {
+    try {
+      work();
+    } catch (const std::exception& bug) {
+      base::log(base::Level::Error, "api", "work failed", {{"what", bug.what()}});
+    }
+  };
+  const auto ended = [call, then = std::move(then)] {
+    try {
+      if (then()) return;
+    } catch (const std::exception& bug) {
+      base::log(base::Level::Error, "api", "a handler failed", {{"what", bug.what()}});
+    }
+    call->respond(problem({base::Code::Unavailable, "the request could not be handled"}));
+  };
+  if (!deps.aside || effort.bytes <= Effort::kAtOnce) {
+    tried();
+    return ended();
+  }
+  if (deps.aside({tried, ended, effort.bytes > Effort::kSmall, effort.must})) return;
+  call->respond(
+      problem({base::Code::Unavailable, "too much is being worked on; nothing was done"}));
 }
 
 void Context::announce(const std::string& id, std::optional<std::int64_t> revision) const {
@@ -80,8 +112,15 @@ void Context::announce(const std::string& id, std::optional<std::int64_t> revisi
 }
 
 struct Api::Impl {
-  explicit Impl(Deps deps) : context(std::make_shared<Context>(std::move(deps))) {}
+  explicit Impl(Deps deps) : context(std::make_shared<Context>(std::move(deps))) {
+    if (!context->deps.aside) return;
+    idempotency.aside = [this](std::function<void()> work, std::function<void()> then) {
+      context->deps.aside({std::move(work), std::move(then), false, true});
+    };
+  }
 
+  void handle(const CallPtr& call);
+  void handle_next();
   void route(const CallPtr& call);
   void serve_page(const CallPtr& call, std::string_view path);
   void watch(const CallPtr& call, const Route& route);
@@ -90,6 +129,7 @@ struct Api::Impl {
   Idempotency idempotency;
   std::unique_ptr<StreamTexts> stream;
   int unanswered = 0;
+  std::deque<CallPtr> turns;  ///< requests that wait for theirs
   std::map<std::string, std::uint64_t> driver_counts;
   base::Time counted;
   std::vector<robot::PendingReply> replies;
@@ -126,6 +166,7 @@ Api::Api(Deps deps) : impl_(std::make_unique<Impl>(std::move(deps))) {
 Api::~Api() {
   // The routes hold the context that holds them.
   impl_->context->router = Router{};
+  impl_->context->deps.aside = nullptr;
   impl_->context->on_mission_change = nullptr;
   impl_->context->commands.abandon();
 }
@@ -191,31 +232,71 @@ void Api::Impl::route(const CallPtr& call) {
   const auto& match = std::get<Router::Match>(found);
   call->params = match.params;
   call->query = std::move(target_parts->query);
-  const bool stop = match.route->pattern == "/vehicle/estop";  // always heard
-  if (unanswered >= kUnanswered && !stop) {
+  if (unanswered >= kUnanswered && !stops(path)) {
     return call->respond(problem(429, "too many requests wait for an answer"));
   }
   watch(call, *match.route);
-  if (!reading && !idempotency.admit(*call)) return;
-  match.route->handler(call);
+  // A stop is carried out however often it is said.
+  const bool repeats = path == "/vehicle/estop" || path == "/vehicle/disarm";
+  if (reading || repeats) return match.route->handler(call);
+  const bool keyed = !header(call->request, "Idempotency-Key").empty();
+  const Effort effort{keyed ? call->request.body().size() : 0};
+  if (effort.bytes <= Effort::kSmall) {
+    if (idempotency.admit(*call)) match.route->handler(call);
+    return;
+  }
+  context->aside(
+      call, effort, [call] { return Idempotency::hash_of(call->request.body()); },
+      [this, call, route = match.route](std::size_t hash) {
+        if (idempotency.admit(*call, hash)) route->handler(call);
+      });
+}
+
+void Api::Impl::handle(const CallPtr& call) {
+  try {
+    route(call);
+  } catch (const std::exception& bug) {
+    base::log(base::Level::Error, "api", "a handler failed", {{"what", bug.what()}});
+    call->respond(problem({base::Code::Unavailable, "the request could not be handled"}));
+  }
+}
+
+/// One at a time: between two of them the sockets are looked at, and a stop goes first.
+void Api::Impl::handle_next() {
+  const CallPtr call = std::move(turns.front());
+  turns.pop_front();
+  if (!turns.empty()) context->deps.later([this] { handle_next(); });
+  handle(call);
 }
 
 void Api::on_request(Request request, base::Time begun, Respond respond) {
   if (auto refusal = guard_request(request)) return respond(std::move(*refusal));
   const auto answered = std::make_shared<bool>(false);
-  auto call = std::make_shared<Call>();
+  // Bodies are freed beside the web thread.
+  auto call = CallPtr(new Call, [context = impl_->context](Call* old) {
+    std::string body = std::move(old->request.body());
+    delete old;
+    if (body.size() > Effort::kSmall) context->discard(std::move(body));
+  });
   call->request = std::move(request);
   call->begun = begun;
   call->respond = [answered, respond](Response response) {
     if (std::exchange(*answered, true)) return;
     respond(std::move(response));
   };
-  try {
-    impl_->route(call);
-  } catch (const std::exception& bug) {
-    base::log(base::Level::Error, "api", "a handler failed", {{"what", bug.what()}});
-    call->respond(problem({base::Code::Unavailable, "the request could not be handled"}));
-  }
+  if (!impl_->context->deps.later || stops(path_of(call->request))) return impl_->handle(call);
+  impl_->turns.push_back(std::move(call));
+  if (impl_->turns.size() == 1) impl_->context->deps.later([this] { impl_->handle_next(); });
+}
+
+std::size_t Api::body_limit(const Request& header) const {
+  const auto found = impl_->context->router.find(header.method(), path_of(header));
+  const auto* match = std::get_if<Router::Match>(&found);
+  return match != nullptr ? match->route->body_bytes : kCommandBytes;
+}
+
+void Api::discard(std::string large) const {
+  impl_->context->discard(std::move(large));
 }
 
 std::optional<Response> Api::on_upgrade(const Request& request) {
@@ -284,7 +365,8 @@ void Api::drain() {
   for (robot::PendingReply& pending : impl_->replies) {
     if (pending.reply) pending.reply(std::move(pending.result));
   }
-  impl_->replies.clear();
+  // They may hold the mission that was loaded before.
+  if (!impl_->replies.empty()) impl_->context->discard(std::exchange(impl_->replies, {}));
   if (impl_->stream) impl_->stream->look_at_execution();
 }
 

@@ -67,6 +67,14 @@ struct NetFigures {
   int clients = 0;
 };
 
+/// Work beside the web thread. What is not large is done one after the other.
+struct Aside {
+  std::function<void()> work;
+  std::function<void()> then{};  ///< on the web thread
+  bool large = false;            ///< others should not wait behind it
+  bool must = false;             ///< never refused
+};
+
 struct Deps {
   robot::Robot& robot;
   store::Store& store;
@@ -78,8 +86,10 @@ struct Deps {
   /// The ground-control page; empty answers: no such file.
   std::function<std::optional<Response>(const Request&)> page{};
   std::function<NetFigures()> figures{};
-  /// Runs `work` on a thread of its own and then `then` on the web thread. Empty: both at once.
-  std::function<void(std::function<void()> work, std::function<void()> then)> aside{};
+  /// Any number at a time, bounded. @return false: no room, nothing was taken. Empty: both at once.
+  std::function<bool(Aside)> aside{};
+  /// Calls it on the web thread after what is ready there already. Empty: at once.
+  std::function<void(std::function<void()>)> later{};
 };
 
 /// One per program. All members but the constructor: web thread. It must live until the web thread
@@ -95,6 +105,10 @@ class Api {
   void attach(Stream stream);
 
   void on_request(Request request, base::Time begun, Respond respond);
+  /// The largest body that is read for a request with this header.
+  std::size_t body_limit(const Request& header) const;
+  /// Frees it beside the web thread.
+  void discard(std::string large) const;
   /// Empty: welcome.
   std::optional<Response> on_upgrade(const Request& request);
   void on_client(ClientId client);

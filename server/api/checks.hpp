@@ -1,6 +1,7 @@
 #pragma once
 // The check of a mission with the vehicle where it is now and the active fence. Web thread.
 
+#include <functional>
 #include <optional>
 
 #include "api/context.hpp"
@@ -16,8 +17,8 @@ struct Verdict {
   std::size_t lasting = 0;  ///< errors that driving the robot elsewhere does not cure
   base::Error refusal{};    ///< of a load; of no meaning without lasting errors
 };
-Verdict judge(const Context& context, robot::MissionCopy copy,
-              const robot::StartMission& start = {});
+/// With what is known at this moment; what it gives may be called beside the web thread.
+std::function<Verdict(robot::MissionCopy)> judge_now(const Context& context);
 
 /// @param severity empty: all of them
 Json findings_json(const mission::CheckReport& report, std::optional<mission::Severity> severity);

@@ -5,7 +5,10 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <type_traits>
+#include <utility>
 
 #include "api/api.hpp"
 #include "api/body.hpp"
@@ -50,11 +53,21 @@ class Commands {
   std::shared_ptr<Commands*> self_ = std::make_shared<Commands*>(this);
 };
 
+/// What a piece of work reads or writes; a slow machine does 16 kB in well under 2 ms.
+struct Effort {
+  static constexpr std::size_t kAtOnce = 16 * 1024;
+  static constexpr std::size_t kSmall = 256 * 1024;
+  std::size_t bytes = 0;
+  bool must = false;  ///< something was changed already: it is not refused any more
+};
+/// Of a plan as text, about.
+inline std::size_t bytes_of(const mission::Plan& plan) noexcept {
+  return plan.items.size() * 100;
+}
+
 struct Context {
   explicit Context(Deps with)
-      : deps(std::move(with)),
-        commands(deps.robot),
-        begun(base::steady_now()) {}
+      : deps(std::move(with)), commands(deps.robot), begun(base::steady_now()) {}
 
   Deps deps;
   Commands commands;
@@ -80,12 +93,57 @@ struct Context {
   std::optional<store::StoredPlace> offer(const base::Snapshot& snapshot) const;
   /// Answers 503 and returns null before the robot's first tick.
   std::shared_ptr<const base::Snapshot> snapshot_or_refuse(const CallPtr& call) const;
-  /// `work` on another thread if there is one for it, then `then` on this one.
-  void aside(std::function<void()> work, std::function<void()> then) const;
+  /// What costs much leaves the web thread: `work` gives a value and touches nothing that others
+  /// change; what it holds is freed there, too. Then `then(value)` on this thread. What costs
+  /// little is done at once. Where there is no room the caller hears 503 and nothing was done.
+  template <class Work, class Then>
+  void aside(const CallPtr& call, Effort effort, Work work, Then then) const;
+  /// The same, and the value is the answer.
+  template <class Work>
+  void answer_aside(const CallPtr& call, Effort effort, Work work) const {
+    aside(call, effort, std::move(work),
+          [call](Response response) { call->respond(std::move(response)); });
+  }
+  /// Frees what is large beside the web thread.
+  template <class T>
+  void discard(T large) const {
+    if (!deps.aside) return;
+    auto held = std::make_shared<T>(std::move(large));
+    deps.aside({.work = [held = std::move(held)] {}, .must = true});
+  }
   /// A stored mission changed: tells the stream. @param revision empty: deleted.
   void announce(const std::string& id, std::optional<std::int64_t> revision) const;
+
+ private:
+  void go_aside(const CallPtr& call, Effort effort, std::function<void()> work,
+                std::function<bool()> then) const;
 };
 using ContextPtr = std::shared_ptr<Context>;
+
+template <class Work, class Then>
+void Context::aside(const CallPtr& call, Effort effort, Work work, Then then) const {
+  using Value = std::invoke_result_t<Work&>;
+  struct Shared {
+    std::optional<Work> work;
+    Then then;
+    std::optional<Value> made{};
+  };
+  auto shared = std::make_shared<Shared>(Shared{std::move(work), std::move(then)});
+  go_aside(
+      call, effort,
+      [shared] {
+        struct Freed {  // here, also when it fails
+          std::optional<Work>& work;
+          ~Freed() { work.reset(); }
+        } const freed{shared->work};
+        shared->made.emplace((*shared->work)());
+      },
+      [shared] {
+        if (!shared->made) return false;
+        shared->then(std::move(*shared->made));
+        return true;
+      });
+}
 
 void add_vehicle_routes(const ContextPtr& context);
 void add_place_routes(const ContextPtr& context);

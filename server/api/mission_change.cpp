@@ -15,12 +15,20 @@ Response mission_response(http::status status, const store::StoredMission& missi
   return response;
 }
 
+void answer_mission(const ContextPtr& context, const CallPtr& call, http::status status,
+                    store::StoredMission mission, bool must) {
+  const Effort effort{bytes_of(mission.plan), must};
+  context->answer_aside(call, effort, [status, mission = std::move(mission)] {
+    return mission_response(status, mission);
+  });
+}
+
 store::Reply<store::StoredMission> changed(const ContextPtr& context, const CallPtr& call,
                                            http::status status) {
   return [context, call, status](base::Result<store::StoredMission> stored) {
     if (!stored) return call->respond(problem(stored.error()));
     context->announce(stored->id, stored->revision);
-    call->respond(mission_response(status, *stored));
+    answer_mission(context, call, status, std::move(*stored), true);
   };
 }
 
@@ -37,15 +45,17 @@ store::Reply<store::StoredMission> changed_or_present(const ContextPtr& context,
 void refuse_with_present(const ContextPtr& context, const CallPtr& call, base::Error error) {
   context->deps.store.read_mission(
       call->params.at("id"),
-      [call, error = std::move(error)](base::Result<store::StoredMission> present) {
-        Response response = problem(error);
-        if (present) {
+      [context, call, error = std::move(error)](base::Result<store::StoredMission> present) {
+        if (!present) return call->respond(problem(error));
+        const Effort effort{bytes_of(present->plan)};
+        context->answer_aside(call, effort, [error, mission = std::move(*present)] {
+          Response response = problem(error);
           Json body = problem_json(error);
-          body["current"] = mission_json(*present);
+          body["current"] = mission_json(mission);
           response.body() = plain_json(body);
-          response.set(http::field::etag, etag_of(present->revision));
-        }
-        call->respond(std::move(response));
+          response.set(http::field::etag, etag_of(mission.revision));
+          return response;
+        });
       });
 }
 

@@ -14,6 +14,10 @@ inline constexpr const char* kAuthor = "local";
 /// With ETag, and Location if it was created.
 Response mission_response(http::status status, const store::StoredMission& mission);
 
+/// Answers so; a large one is written beside the web thread.
+void answer_mission(const ContextPtr& context, const CallPtr& call, http::status status,
+                    store::StoredMission mission, bool must);
+
 /// What a change of a stored mission answers.
 store::Reply<store::StoredMission> changed(const ContextPtr& context, const CallPtr& call,
                                            http::status status);

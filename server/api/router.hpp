@@ -15,11 +15,17 @@ namespace roverd::api {
 
 using Handler = std::function<void(CallPtr)>;
 
+/// The largest bodies, bytes: of a command, of a document, of a file to be imported.
+inline constexpr std::size_t kCommandBytes = 64 * 1024;
+inline constexpr std::size_t kDocumentBytes = 8 * 1024 * 1024;
+inline constexpr std::size_t kFileBytes = 64 * 1024 * 1024;
+
 struct Route {
   http::verb method = http::verb::get;
   std::string pattern;             ///< "/missions/{id}/export"; a literal wins over a parameter
   std::vector<unsigned> statuses;  ///< as documented, ascending
   Handler handler;
+  std::size_t body_bytes = kCommandBytes;
 };
 
 /// Splits "/a/b%20c?x=1&y" into path and decoded query. Malformed: broken percent signs.

@@ -11,7 +11,6 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/asio/thread_pool.hpp>
 
 #include "api/api.hpp"
 #include "app/control_loop.hpp"
@@ -26,6 +25,7 @@
 #include "net/hub.hpp"
 #include "net/page.hpp"
 #include "net/server.hpp"
+#include "net/workers.hpp"
 #include "robot/robot.hpp"
 #include "store/store.hpp"
 #include "store/tiles.hpp"
@@ -128,6 +128,8 @@ net::Handlers handlers_of(api::Api& api) {
           [&api](net::Request request, base::Time begun, net::Respond respond) {
             api.on_request(std::move(request), begun, std::move(respond));
           },
+      .body_limit = [&api](const net::Request& header) { return api.body_limit(header); },
+      .discard = [&api](std::string large) { api.discard(std::move(large)); },
       .on_upgrade = [&api](const net::Request& request) { return api.on_upgrade(request); },
       .on_client = [&api](net::ClientId client) { api.on_client(client); },
       .on_text = [&api](net::ClientId client, base::Time begun,
@@ -158,7 +160,7 @@ struct Station::Impl {
   asio::steady_timer learned_timer{web};
   std::filesystem::path learned_file;  ///< empty: a recording is played, nothing is kept
   std::string learned_by;
-  asio::thread_pool planner{1};  ///< for what would keep the web waiting; ends first
+  net::Workers workers{web};  ///< for what would keep the web waiting; ends first
   std::string address;
 
   Result<void> open(const Settings& settings, const Options& options);
@@ -263,12 +265,13 @@ void Station::Impl::make_api(const Settings& settings) {
                            .connections = stats.connections,
                            .clients = stats.clients};
   };
-  deps.aside = [this](std::function<void()> work, std::function<void()> then) {
-    asio::post(planner, [this, work = std::move(work), then = std::move(then)]() mutable {
-      work();
-      asio::post(web, std::move(then));  // nothing of a request ends on the planner's thread
-    });
+  deps.aside = [this](api::Aside a) {
+    const net::Lane lane = a.large ? net::Lane::Large : net::Lane::Small;
+    if (!a.must) return workers.run(lane, std::move(a.work), std::move(a.then));
+    workers.must_run(lane, std::move(a.work), std::move(a.then));
+    return true;
   };
+  deps.later = [this](std::function<void()> call) { asio::post(web, std::move(call)); };
   api = std::make_unique<api::Api>(std::move(deps));
 }
 
@@ -300,6 +303,9 @@ void Station::Impl::start() {
   robot.send = [this](const base::DriveCommand& command, base::Time now) {
     supervisor->send(command, now);
   };
+  robot.alert = [this] {
+    if (loop) loop->alert();
+  };
   signals.async_wait([this](const boost::system::error_code& ec, int) {
     if (!ec) stop();
   });
@@ -309,7 +315,8 @@ void Station::Impl::start() {
   loop = std::make_unique<ControlLoop>(
       [this](base::Time now, base::WallTime wall, base::Duration lateness) {
         robot.tick(now, wall, lateness);
-      });
+      },
+      [this](base::Time now) { robot.heed_stop(now); });
   base::log(base::Level::Info, "main", "serving", {{"address", address}, {"version", kVersion}});
 }
 
@@ -341,7 +348,7 @@ void Station::Impl::recall(const Settings& settings, const Options& options) {
              {"gyro_bias_radps", text(known.gyro_bias_radps)}});
 }
 
-/// A disk may pause: on the planner's thread, or, at the end, after all others.
+/// A disk may pause: on a worker's thread, or, at the end, after all others.
 void Station::Impl::keep_learned() {
   const auto learned = robot.learned();
   if (learned_file.empty() || !learned) return;
@@ -357,7 +364,7 @@ void Station::Impl::keep_learned_soon() {
   learned_timer.expires_after(kKeepLearned);
   learned_timer.async_wait([this](const boost::system::error_code& ec) {
     if (ec) return;
-    asio::post(planner, [this] { keep_learned(); });
+    workers.must_run(net::Lane::Small, [this] { keep_learned(); }, {});
     keep_learned_soon();
   });
 }
@@ -381,8 +388,7 @@ Station::Station(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 Station::~Station() {
   impl_->halt();
-  impl_->planner.stop();
-  impl_->planner.join();
+  impl_->workers.stop();
   impl_->keep_learned();
   impl_->services->stop();  // what is on its way to the web is dropped with the io_context
   impl_->server.reset();

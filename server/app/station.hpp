@@ -6,7 +6,7 @@
 //   web thread      net and api (the caller's)      ◀─doorbell───── robot's answers and events
 //   supervisor thread      sees whether a driver hangs
 //   store thread    SQLite                          ─answers──────▶ web thread
-//   planner thread  surveys                         ─answers──────▶ web thread
+//   worker threads  large files, plans, surveys     ─answers──────▶ web thread
 //   services' thread       trail, runs, teach-in    ─answers──────▶ web thread
 
 #include <memory>

@@ -21,6 +21,12 @@ using boost::system::error_code;
 namespace {
 
 constexpr std::size_t kReadBytes = 8 * 1024;
+/// At once into the socket: others have their turn in between.
+constexpr std::size_t kWriteBytes = 256 * 1024;
+/// Larger ones are counted, and freed elsewhere.
+constexpr std::size_t kLargeBody = 64 * 1024;
+/// Header fields are read before it is known what they ask for.
+constexpr std::size_t kLargestBody = std::size_t{1} << 40U;
 constexpr base::Duration kLinger = std::chrono::seconds(2);
 constexpr std::size_t kDiscardBytes = 64 * 1024 * 1024;
 
@@ -42,6 +48,9 @@ Connection::Connection(std::shared_ptr<Peers> peers, tcp::socket socket)
       buffer_(peers_->limits.header_bytes + 64 * 1024) {}
 
 Connection::~Connection() {
+  release_body();
+  if (parser_) discard(parser_->get().body());
+  if (response_) discard(response_->body());
   peers_->remove(this);
 }
 
@@ -73,7 +82,8 @@ void Connection::read_header() {
   deadline_ = now + peers_->limits.request;
   parser_.emplace();
   parser_->header_limit(static_cast<std::uint32_t>(peers_->limits.header_bytes));
-  parser_->body_limit(peers_->limits.body_bytes);
+  parser_->body_limit(kLargestBody);
+  body_limit_ = peers_->limits.body_bytes;
   http::async_read_header(socket_, buffer_, *parser_,
                           [self = shared_from_this()](error_code ec, std::size_t) {
                             if (self->on_read_error(ec)) return;
@@ -88,7 +98,7 @@ bool Connection::on_read_error(error_code ec) {
     refuse(431,
            "the header is larger than " + std::to_string(peers_->limits.header_bytes) + " bytes");
   } else if (ec == http::error::body_limit) {
-    refuse(413, "the body is larger than " + std::to_string(peers_->limits.body_bytes) + " bytes");
+    refuse(413, "the body is larger than " + std::to_string(body_limit_) + " bytes");
   } else if (ec == http::error::end_of_stream || ec == http::error::partial_message ||
              ec.category() != make_error_code(http::error::end_of_stream).category()) {
     force();  // the client left, or its deadline passed
@@ -104,12 +114,46 @@ void Connection::on_header() {
   keep_alive_ = request.keep_alive() && !peers_->stopping;
   version_ = request.version();
   if (boost::beast::websocket::is_upgrade(request)) return upgrade();
+  if (!admit_body()) return;
   const auto expect = request[http::field::expect];
   if (expect.empty() || version_ < 11) return read_body();
   if (!equals_no_case(expect, "100-continue")) {
     return refuse(417, "the only expectation understood is 100-continue");
   }
   expect_continue();
+}
+
+/// @return false: refused, for its length or because too much is being worked on.
+bool Connection::admit_body() {
+  if (peers_->handlers.body_limit) body_limit_ = peers_->handlers.body_limit(parser_->get());
+  parser_->body_limit(body_limit_);
+  const auto length = parser_->content_length();
+  if (length && *length > body_limit_) {
+    on_read_error(http::error::body_limit);
+    return false;
+  }
+  const std::size_t most = length ? static_cast<std::size_t>(*length) : body_limit_;
+  const bool sends = length ? most > 0 : parser_->chunked();
+  if (!sends || most <= kLargeBody) return true;
+  if (peers_->bodies + most > peers_->limits.all_bodies_bytes) {
+    refuse(503, "too many large bodies at the same time; try again");
+    return false;
+  }
+  peers_->bodies += reserved_ = most;
+  if (!length) parser_->get().body().reserve(most);  // growing would copy it again and again
+  *deadline_ += std::chrono::seconds(most / kSlowest_Bps);
+  return true;
+}
+
+void Connection::release_body() {
+  peers_->bodies -= reserved_;
+  reserved_ = 0;
+}
+
+void Connection::discard(std::string& body) const {
+  if (body.size() > kLargeBody && peers_->handlers.discard) {
+    peers_->handlers.discard(std::move(body));
+  }
 }
 
 void Connection::expect_continue() {
@@ -165,6 +209,7 @@ void Connection::refuse(unsigned status, std::string_view detail) {
 
 void Connection::answer(Response response) {
   phase_ = Phase::Writing;
+  release_body();
   keep_alive_ = keep_alive_ && response.keep_alive();
   response.version(version_);
   response.keep_alive(keep_alive_);
@@ -178,6 +223,7 @@ void Connection::answer(Response response) {
   response_.emplace(std::move(response));
   serializer_.emplace(*response_);
   serializer_->split(head_);
+  serializer_->limit(kWriteBytes);
   write();
 }
 
@@ -199,6 +245,7 @@ void Connection::write() {
 
 void Connection::on_written() {
   serializer_.reset();
+  discard(response_->body());
   response_.reset();
   parser_.reset();
   if (!keep_alive_ || peers_->stopping) return linger();

@@ -49,6 +49,9 @@ class Connection : public Peer, public std::enable_shared_from_this<Connection> 
   void wait();
   void read_header();
   void on_header();
+  bool admit_body();
+  void release_body();
+  void discard(std::string& body) const;
   void expect_continue();
   void read_body();
   void on_request();
@@ -75,6 +78,8 @@ class Connection : public Peer, public std::enable_shared_from_this<Connection> 
   bool keep_alive_ = true;
   unsigned version_ = 11;
   std::size_t discarded_ = 0;
+  std::size_t body_limit_ = 0;
+  std::size_t reserved_ = 0;  ///< counted in Peers::bodies
 };
 
 }  // namespace roverd::net

@@ -98,6 +98,7 @@ class Peers {
   Hub hub;
   Stats stats;
   bool stopping = false;
+  std::size_t bodies = 0;  ///< bytes of those that are read or worked on
   ClientId next_client = 1;
 
  private:

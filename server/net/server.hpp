@@ -35,14 +35,19 @@ using Response = boost::beast::http::response<boost::beast::http::string_body>;
 /// Dropping it uncalled closes the connection.
 using Respond = std::function<void(Response)>;
 
+/// The slowest client that may send a long body.
+inline constexpr std::size_t kSlowest_Bps = 64 * 1024;
+
 struct Limits {
   std::size_t header_bytes = 16 * 1024;
-  std::size_t body_bytes = 8 * 1024 * 1024;
+  std::size_t body_bytes = 8 * 1024 * 1024;  ///< where Handlers::body_limit says nothing else
+  /// Of all bodies that are read and worked on at the same time, together.
+  std::size_t all_bodies_bytes = 192 * 1024 * 1024;
   std::size_t message_bytes = 64 * 1024;  ///< one WebSocket message from a client
   int connections = 512;
   base::Duration idle = std::chrono::seconds(30);
-  /// Header and body must be in by then; a client that reads nothing of its answer for so long is
-  /// closed, too.
+  /// Header and body must be in by then (a long body may take longer: kSlowest_Bps); a client that
+  /// reads nothing of its answer for so long is closed, too.
   base::Duration request = std::chrono::seconds(30);
 };
 
@@ -56,6 +61,10 @@ struct Handlers {
   /// latest when its first byte was there (see connection.hpp). HEAD comes as it is; answer as for
   /// GET, net leaves out the body.
   std::function<void(Request, base::Time begun, Respond)> on_request;
+  /// The largest body of a request with this header. May be empty.
+  std::function<std::size_t(const Request& header)> body_limit{};
+  /// Frees what is large where it holds up nobody. May be empty.
+  std::function<void(std::string)> discard{};
   /// An upgrade request: nullopt accepts, a response refuses.
   std::function<std::optional<Response>(const Request&)> on_upgrade;
   std::function<void(ClientId)> on_client;

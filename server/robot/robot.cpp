@@ -66,8 +66,11 @@ std::shared_ptr<const MissionCopy> Robot::loaded() const {
 
 bool Robot::request(Command command, Time not_after, Reply reply) {
   // The stop itself never waits for room in a queue.
-  if (std::holds_alternative<Estop>(command)) impl_->estop_asked.store(true);
-  return impl_->commands.offer({std::move(command), not_after, std::move(reply)});
+  const bool stop = std::holds_alternative<Estop>(command);
+  if (stop) impl_->estop_asked.store(true);
+  const bool queued = impl_->commands.offer({std::move(command), not_after, std::move(reply)});
+  if (stop && alert) alert();
+  return queued;
 }
 
 nav::StartAt start_at(const StartMission& c) noexcept {
@@ -291,6 +294,19 @@ void Robot::Impl::take_measurements() {
   world.forget_stale(clock.now());
   estimator.advance(clock.now());
   pose = estimator.pose(clock.now());
+}
+
+void Robot::heed_stop(Time now) noexcept {
+  Impl& r = *impl_;
+  // Latched already: every tick sends what stands.
+  if (r.arm.latched() || r.clock.health().ticks == 0 || !r.estop_asked) return;
+  try {
+    r.take_estop();
+    r.sent = {};
+    if (send) send(r.sent, now);
+  } catch (...) {
+    r.estop_asked = true;  // the next tick's
+  }
 }
 
 void Robot::tick(Time now, base::WallTime wall, base::Duration lateness) noexcept {

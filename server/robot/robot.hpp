@@ -5,10 +5,11 @@
 //   inbox, commands ─▶ tick(now): take → estimate → modes and executor → arbiter → limits
 //                        → send → publish
 //
-// Thread rules: tick, and nothing else, runs on the control thread; it is noexcept, does no I/O but
-// the two callables `send` and `wake`, allocates little, and waits for nobody (queues are taken
-// with try_lock). measurements(), request(), snapshot(), replies(), events(), edits() may be used
-// from any thread. Without a thread, a test calls tick() with any times it likes.
+// Thread rules: tick and heed_stop run on the control thread, and nothing else does; they are
+// noexcept, do no I/O but the two callables `send` and `wake`, allocate little, and wait for nobody
+// (queues are taken with try_lock). measurements(), request(), snapshot(), replies(), events(),
+// edits() may be used from any thread. Without a thread, a test calls tick() with any times it
+// likes.
 
 #include <cstdint>
 #include <functional>
@@ -219,6 +220,10 @@ class Robot {
   /// must not wait (an eventfd write).
   std::function<void()> wake;
 
+  /// Set before the first tick. Called by request() on its caller's thread when a stop was asked
+  /// for: whoever runs the ticks is to call heed_stop() soon. Must not wait.
+  std::function<void()> alert;
+
   /// Before the first tick: what another life of this program learned.
   void recall(const nav::Learned& learned) noexcept;
   /// Before the first tick: what was found out while the program started.
@@ -271,6 +276,10 @@ class Robot {
   /// Control thread (or a test). @param now never goes backwards. @param wall for events only.
   /// @param lateness how much later than planned the loop woke; for the health figures.
   void tick(Time now, base::WallTime wall, base::Duration lateness = {}) noexcept;
+
+  /// The thread of tick(), between two ticks: a stop that was asked for is latched, and the command
+  /// that stands goes out now. Does nothing otherwise. @param now as with tick().
+  void heed_stop(Time now) noexcept;
 
  private:
   struct Impl;

@@ -24,7 +24,7 @@ struct Answer {
 
 class Client {
  public:
-  static constexpr std::chrono::milliseconds kPatience{20'000};
+  static constexpr std::chrono::milliseconds kPatience{120'000};
 
   /// Throws std::runtime_error if nobody listens.
   explicit Client(std::uint16_t port);

@@ -98,6 +98,13 @@ House::House(net::Limits limits, Vehicle vehicle, const Before& before)
     if (set != "farm" || zoom != 3) return std::nullopt;
     return store::Tile{std::to_string(x) + "," + std::to_string(y), "image/png", ""};
   };
+  deps.aside = [this](api::Aside a) {
+    const net::Lane lane = a.large ? net::Lane::Large : net::Lane::Small;
+    if (!a.must) return workers_.run(lane, std::move(a.work), std::move(a.then));
+    workers_.must_run(lane, std::move(a.work), std::move(a.then));
+    return true;
+  };
+  deps.later = [this](std::function<void()> call) { boost::asio::post(io_, std::move(call)); };
   api_ = std::make_unique<api::Api>(std::move(deps));
   serve(limits);
   bell_ = std::make_unique<net::Doorbell>(io_, [this] { api_->drain(); });
@@ -142,6 +149,8 @@ void House::serve(net::Limits limits) {
   h.on_request = [this](net::Request request, base::Time begun, net::Respond respond) {
     api_->on_request(std::move(request), begun, std::move(respond));
   };
+  h.body_limit = [this](const net::Request& header) { return api_->body_limit(header); };
+  h.discard = [this](std::string large) { api_->discard(std::move(large)); };
   h.on_upgrade = [this](const net::Request& request) { return api_->on_upgrade(request); };
   h.on_client = [this](net::ClientId id) { api_->on_client(id); };
   h.on_text = [this](net::ClientId id, base::Time begun, std::string_view text) {
@@ -179,6 +188,7 @@ House::~House() {
   });
   web_.join();
   services_.reset();
+  workers_.stop();
   store_.reset();
   std::error_code ignored;
   std::filesystem::remove_all(folder_, ignored);

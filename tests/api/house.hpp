@@ -19,6 +19,7 @@
 #include "client.hpp"
 #include "net/doorbell.hpp"
 #include "net/server.hpp"
+#include "net/workers.hpp"
 #include "robot/robot.hpp"
 #include "services/services.hpp"
 #include "store/store.hpp"
@@ -86,6 +87,7 @@ class House {
   std::unique_ptr<api::Api> api_;
   std::unique_ptr<net::Server> server_;
   std::unique_ptr<net::Doorbell> bell_;
+  net::Workers workers_{io_};
   std::mutex mutex_;
   base::DriveCommand sent_;  ///< guarded by mutex_
   std::atomic<bool> stop_{false};

@@ -41,14 +41,18 @@ Handler check_mission(const ContextPtr& context) {
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
     const auto answer = [context, call](base::Result<store::StoredMission> stored) {
       if (!stored) return call->respond(problem(stored.error()));
-      const std::string id = stored->id;
-      const std::int64_t number = stored->revision;
-      const Verdict verdict = judge(*context, {id, number, std::move(stored->plan)});
-      Json out = report_json(verdict.report, context->deps.profile);
-      out["mission_id"] = id;
-      out["revision"] = number;
-      out["fence_id"] = context->fence ? Json(context->fence->id) : Json(nullptr);
-      call->respond(json_response(http::status::ok, out));
+      const Effort effort{6 * bytes_of(stored->plan)};
+      context->answer_aside(
+          call, effort,
+          [judge = judge_now(*context), fence = context->fence, profile = context->deps.profile,
+           mission = std::move(*stored)]() mutable {
+            const Verdict verdict = judge({mission.id, mission.revision, std::move(mission.plan)});
+            Json out = report_json(verdict.report, profile);
+            out["mission_id"] = mission.id;
+            out["revision"] = mission.revision;
+            out["fence_id"] = fence ? Json(fence->id) : Json(nullptr);
+            return json_response(http::status::ok, out);
+          });
     };
     if (revision) {
       context->deps.store.read_revision(call->params.at("id"), *revision, answer);
@@ -106,25 +110,26 @@ std::vector<mission::Finding> not_laid_out(const base::Error& error,
   return out;
 }
 
-}  // namespace
-
-Verdict judge(const Context& context, robot::MissionCopy copy, const robot::StartMission& start) {
+/// What a verdict rests on.
+struct Bench {
+  robot::Robot& robot;
+  const store::StoredFence* fence;
+  const mission::VehicleLimits& limits;
   mission::Surroundings around;
-  const auto snapshot = context.deps.robot.snapshot();
-  if (snapshot && snapshot->pose &&
-      base::seconds(base::steady_now() - snapshot->pose->stamp) <= StaleAfter::kPosition_s) {
-    around.vehicle = snapshot->pose->global;
-  }
+};
+
+/// Beside the web thread.
+Verdict verdict_of(robot::MissionCopy copy, Bench bench) {
   Verdict out;
-  auto compiled = context.deps.robot.compile(copy);
+  auto compiled = bench.robot.compile(copy);
   // The robot compares with its fence, with the margin that it keeps. Where it has no map yet the
   // check itself looks whether the mission lies inside.
-  const bool compared = compiled && context.deps.robot.fenced(**compiled);
-  if (context.fence && !compared) around.fence = &context.fence->fence;
-  out.report = mission::check(copy.plan, context.deps.profile.limits, around);
+  const bool compared = compiled && bench.robot.fenced(**compiled);
+  if (bench.fence && !compared) bench.around.fence = &bench.fence->fence;
+  out.report = mission::check(copy.plan, bench.limits, bench.around);
   out.refusal.code = base::Code::Invalid;
   if (compiled) {
-    add_findings(out.report, context.deps.robot.objections(**compiled, start));
+    add_findings(out.report, bench.robot.objections(**compiled, {}));
     out.compiled = std::move(*compiled);
   } else {
     if (compiled.error().fields.empty()) out.refusal.code = compiled.error().code;
@@ -144,6 +149,21 @@ Verdict judge(const Context& context, robot::MissionCopy copy, const robot::Star
     out.refusal.detail += "; " + std::to_string(out.lasting) + " findings in all";
   }
   return out;
+}
+
+}  // namespace
+
+std::function<Verdict(robot::MissionCopy)> judge_now(const Context& context) {
+  mission::Surroundings around;
+  const auto snapshot = context.deps.robot.snapshot();
+  if (snapshot && snapshot->pose &&
+      base::seconds(base::steady_now() - snapshot->pose->stamp) <= StaleAfter::kPosition_s) {
+    around.vehicle = snapshot->pose->global;
+  }
+  return [around, &robot = context.deps.robot, fence = context.fence,
+          limits = context.deps.profile.limits](robot::MissionCopy copy) mutable {
+    return verdict_of(std::move(copy), {robot, fence.get(), limits, around});
+  };
 }
 
 Json finding_json(const mission::Finding& finding) {

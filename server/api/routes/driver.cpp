@@ -126,6 +126,7 @@ Handler set_lights(const ContextPtr& context) {
     const Light rear = read_light(members, "rear");
     const base::Time not_after = validity_of(members, *call, Moves::Yes);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
+    if (refused_as_late(call, not_after)) return;
     const auto& ask = context->deps.drivers.set_lights;
     if (!ask) {
       return call->respond(
@@ -147,6 +148,7 @@ Handler clear_errors(const ContextPtr& context) {
     const auto motor = members.whole("motor", 1, 2);
     const base::Time not_after = validity_of(members, *call, Moves::Yes);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
+    if (refused_as_late(call, not_after)) return;
     const auto& ask = context->deps.drivers.clear_errors;
     if (!ask) {
       return call->respond(

@@ -63,14 +63,17 @@ class Finder : public std::enable_shared_from_this<Finder> {
 void answer_page(const ContextPtr& context, const CallPtr& call, std::int64_t after,
                  base::Severity level, int limit) {
   context->deps.store.list_events(
-      after, level, limit, [call](base::Result<store::Page<store::StoredEvent>> page) {
+      after, level, limit, [context, call](base::Result<store::Page<store::StoredEvent>> page) {
         if (!page) return call->respond(problem(page.error()));
-        Json items = Json::array();
-        for (const auto& event : page->items) items.push_back(event_json(event));
-        const bool more = page->next_cursor && !page->items.empty();
-        Json body = {{"items", std::move(items)}, {"next_cursor", nullptr}};
-        if (more) body["next_cursor"] = std::to_string(page->items.back().id);
-        call->respond(json_response(http::status::ok, body));
+        const Effort effort{200 * page->items.size()};
+        context->answer_aside(call, effort, [page = std::move(*page)] {
+          Json items = Json::array();
+          for (const auto& event : page.items) items.push_back(event_json(event));
+          const bool more = page.next_cursor && !page.items.empty();
+          Json body = {{"items", std::move(items)}, {"next_cursor", nullptr}};
+          if (more) body["next_cursor"] = std::to_string(page.items.back().id);
+          return json_response(http::status::ok, body);
+        });
       });
 }
 

@@ -49,6 +49,35 @@ Handler plain(const ContextPtr& context, robot::Command command, Moves moves) {
   };
 }
 
+void lay_out(const ContextPtr& context, const CallPtr& call, store::StoredMission stored,
+             base::Time not_after) {
+  struct Laid {
+    Verdict verdict;
+    Context::Warnings warnings{};
+  };
+  const Effort effort{6 * bytes_of(stored.plan)};
+  context->aside(
+      call, effort,
+      [judge = judge_now(*context), stored = std::move(stored)]() mutable {
+        Laid laid{judge({stored.id, stored.revision, std::move(stored.plan)})};
+        laid.warnings = {stored.id, stored.revision,
+                         findings_json(laid.verdict.report, mission::Severity::Warning)};
+        return laid;
+      },
+      [context, call, not_after](Laid laid) {
+        if (laid.verdict.lasting > 0 || !laid.verdict.compiled) {
+          return call->respond(problem(laid.verdict.refusal));
+        }
+        run_command(context, call, robot::LoadMission{std::move(laid.verdict.compiled)}, not_after,
+                    [context, warnings = std::move(laid.warnings)](const base::Snapshot& snapshot) {
+                      context->warnings = warnings;
+                      Json out = progress_of(context)(snapshot);
+                      out["warnings"] = warnings.list;
+                      return out;
+                    });
+      });
+}
+
 Handler load(const ContextPtr& context) {
   return [context](const CallPtr& call) {
     const auto body = json_body(call->request);
@@ -62,21 +91,7 @@ Handler load(const ContextPtr& context) {
 
     const auto hand_over = [context, call, not_after](base::Result<store::StoredMission> stored) {
       if (!stored) return call->respond(problem(stored.error()));
-      const std::string found = stored->id;
-      const std::int64_t number = stored->revision;
-      Verdict verdict = judge(*context, {found, number, std::move(stored->plan)});
-      if (verdict.lasting > 0 || !verdict.compiled) {
-        return call->respond(problem(verdict.refusal));
-      }
-      Context::Warnings warnings{found, number,
-                                 findings_json(verdict.report, mission::Severity::Warning)};
-      run_command(context, call, robot::LoadMission{std::move(verdict.compiled)}, not_after,
-                  [context, warnings](const base::Snapshot& snapshot) {
-                    context->warnings = warnings;
-                    Json out = progress_of(context)(snapshot);
-                    out["warnings"] = warnings.list;
-                    return out;
-                  });
+      lay_out(context, call, std::move(*stored), not_after);
     };
     if (revision) {
       context->deps.store.read_revision(*id, *revision, hand_over);
@@ -214,11 +229,17 @@ Handler resume(const ContextPtr& context) {
                 problem({base::Code::Conflict,
                          "the mission that was left behind is gone: " + stored.error().detail}));
           }
-          auto compiled =
-              context->deps.robot.compile({stored->id, stored->revision, std::move(stored->plan)});
-          if (!compiled) return call->respond(problem(compiled.error()));
-          run_command(context, call, robot::ResumeAt{std::move(*compiled), place}, not_after,
-                      progress_of(context));
+          const Effort effort{2 * bytes_of(stored->plan)};
+          context->aside(
+              call, effort,
+              [&robot = context->deps.robot, mission = std::move(*stored)]() mutable {
+                return robot.compile({mission.id, mission.revision, std::move(mission.plan)});
+              },
+              [context, call, not_after, place](auto compiled) {
+                if (!compiled) return call->respond(problem(compiled.error()));
+                run_command(context, call, robot::ResumeAt{std::move(*compiled), place}, not_after,
+                            progress_of(context));
+              });
         });
   };
 }

@@ -6,6 +6,7 @@
 #include "api/json/plain_json.hpp"
 #include "api/mission_change.hpp"
 #include "mission/fence/fence_json.hpp"
+#include "mission/json/json.hpp"
 
 namespace roverd::api {
 
@@ -23,6 +24,16 @@ Json fence_json(const store::StoredFence& fence) {
   return out;
 }
 
+/// As text, about.
+std::size_t bytes_of(const mission::Fence& fence) noexcept {
+  std::size_t corners = 0;
+  for (const auto& area : fence.areas) {
+    const auto* polygon = std::get_if<mission::FencePolygon>(&area.shape);
+    corners += polygon != nullptr ? polygon->points.size() : 1;
+  }
+  return 50 * corners;
+}
+
 Response fence_response(http::status status, const store::StoredFence& fence) {
   Response response = json_response(status, fence_json(fence));
   response.set(http::field::etag, etag_of(fence.revision));
@@ -30,6 +41,13 @@ Response fence_response(http::status status, const store::StoredFence& fence) {
     response.set(http::field::location, "/api/v1/fences/" + fence.id);
   }
   return response;
+}
+
+void answer_fence(const ContextPtr& context, const CallPtr& call, http::status status,
+                  store::StoredFence fence) {
+  const Effort effort{bytes_of(fence.fence), true};
+  context->answer_aside(
+      call, effort, [status, fence = std::move(fence)] { return fence_response(status, fence); });
 }
 
 /// The robot keeps to it from now on.
@@ -63,7 +81,7 @@ store::Reply<store::StoredFence> fence_changed(const ContextPtr& context, const 
     }
     if (!stored) return call->respond(problem(stored.error()));
     if (stored->active) take_up(context, *stored);
-    call->respond(fence_response(status, *stored));
+    answer_fence(context, call, status, std::move(*stored));
   };
 }
 
@@ -78,30 +96,42 @@ std::optional<std::int64_t> expected_of(const CallPtr& call) {
   return std::nullopt;
 }
 
-base::Result<mission::Fence> read_fence(const Request& request) {
-  const auto body = json_body(request);
-  if (!body) return tl::unexpected<base::Error>(body.error());
-  return mission::fence_from_json(*body);
+void with_fence(const ContextPtr& context, const CallPtr& call,
+                std::function<void(mission::Fence)> then) {
+  if (auto ok = check_json_type(call->request); !ok) return call->respond(problem(ok.error()));
+  std::string body = std::move(call->request.body());
+  const Effort effort{body.size()};
+  context->aside(
+      call, effort,
+      [body = std::move(body)]() -> base::Result<mission::Fence> {
+        const auto read = mission::parse_json(body);
+        if (!read) return tl::unexpected<base::Error>(read.error());
+        return mission::fence_from_json(*read);
+      },
+      [call, then = std::move(then)](base::Result<mission::Fence> fence) {
+        if (!fence) return call->respond(problem(fence.error()));
+        then(std::move(*fence));
+      });
 }
 
 Handler create_fence(const ContextPtr& context) {
   return [context](const CallPtr& call) {
-    auto fence = read_fence(call->request);
-    if (!fence) return call->respond(problem(fence.error()));
-    context->deps.store.create_fence(std::move(*fence), {kAuthor, ""},
-                                     fence_changed(context, call, http::status::created));
+    with_fence(context, call, [context, call](mission::Fence fence) {
+      context->deps.store.create_fence(std::move(fence), {kAuthor, ""},
+                                       fence_changed(context, call, http::status::created));
+    });
   };
 }
 
 Handler replace_fence(const ContextPtr& context) {
   return [context](const CallPtr& call) {
-    auto fence = read_fence(call->request);
-    if (!fence) return call->respond(problem(fence.error()));
-    const auto expected = expected_of(call);
-    if (!expected) return;
-    context->deps.store.replace_fence(call->params.at("id"), *expected, std::move(*fence),
-                                      {kAuthor, ""},
-                                      fence_changed(context, call, http::status::ok));
+    with_fence(context, call, [context, call](mission::Fence fence) {
+      const auto expected = expected_of(call);
+      if (!expected) return;
+      context->deps.store.replace_fence(call->params.at("id"), *expected, std::move(fence),
+                                        {kAuthor, ""},
+                                        fence_changed(context, call, http::status::ok));
+    });
   };
 }
 
@@ -183,8 +213,12 @@ Handler fence_revisions(const ContextPtr& context) {
   };
 }
 
-Json active_json(const ContextPtr& context) {
-  return {{"fence", context->fence ? fence_json(*context->fence) : Json(nullptr)}};
+void answer_active(const ContextPtr& context, const CallPtr& call) {
+  const auto fence = context->fence;
+  const Effort effort{fence ? bytes_of(fence->fence) : 0, true};
+  context->answer_aside(call, effort, [fence] {
+    return json_response(http::status::ok, {{"fence", fence ? fence_json(*fence) : Json(nullptr)}});
+  });
 }
 
 /// {fence_id: "…" | null}
@@ -209,7 +243,7 @@ Handler activate(const ContextPtr& context) {
             return call->respond(problem(error));
           }
           take_up(context, std::move(*active));
-          call->respond(json_response(http::status::ok, active_json(context)));
+          answer_active(context, call);
         });
   };
 }
@@ -229,23 +263,22 @@ void add_fence_routes(const ContextPtr& c) {
   const auto put = http::verb::put;
   const std::vector<unsigned> kChange = {200, 400, 403, 404, 412, 413, 415, 422, 428, 429, 503};
   c->router.add({get, "/fences", {200, 400, 422, 503}, list_fences(c)});
-  c->router.add({post, "/fences", {201, 400, 403, 413, 415, 422, 429, 503}, create_fence(c)});
+  c->router.add(
+      {post, "/fences", {201, 400, 403, 413, 415, 422, 429, 503}, create_fence(c), kDocumentBytes});
   c->router.add({get, "/fences/{id}", {200, 404, 503}, [c](const CallPtr& call) {
-                   c->deps.store.read_fence(call->params.at("id"), [call](Stored fence) {
-                     call->respond(fence ? fence_response(http::status::ok, *fence)
-                                         : problem(fence.error()));
+                   c->deps.store.read_fence(call->params.at("id"), [c, call](Stored fence) {
+                     if (!fence) return call->respond(problem(fence.error()));
+                     answer_fence(c, call, http::status::ok, std::move(*fence));
                    });
                  }});
-  c->router.add({put, "/fences/{id}", kChange, replace_fence(c)});
+  c->router.add({put, "/fences/{id}", kChange, replace_fence(c), kDocumentBytes});
   c->router.add({http::verb::delete_,
                  "/fences/{id}",
                  {204, 400, 403, 404, 409, 412, 428, 429, 503},
                  delete_fence(c)});
   c->router.add({get, "/fences/{id}/revisions", {200, 400, 404, 422, 503}, fence_revisions(c)});
   c->router.add({post, "/fences/{id}/revert", kChange, revert_fence(c)});
-  c->router.add({get, "/fence", {200}, [c](const CallPtr& call) {
-                   call->respond(json_response(http::status::ok, active_json(c)));
-                 }});
+  c->router.add({get, "/fence", {200}, [c](const CallPtr& call) { answer_active(c, call); }});
   c->router.add({put, "/fence", {200, 400, 403, 413, 415, 422, 429, 503}, activate(c)});
 }
 

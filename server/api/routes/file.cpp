@@ -56,23 +56,58 @@ void keep_import(const ContextPtr& context, const CallPtr& call, Upload upload) 
   if (!file->plan.items.empty()) plans.push_back(std::move(file->plan));
   for (mission::Plan& plan : file->more) plans.push_back(std::move(plan));
   file->more.clear();
-  if (plans.empty() && !file->fence) return call->respond(import_response(*file, {}));
-  context->deps.store.create_import(std::move(plans), file->fence,
+  const auto tell = [context, call, file](store::StoredImport kept) {
+    std::size_t items = 0;
+    for (const auto& mission : kept.missions) items += mission.plan.items.size();
+    const Effort effort{100 * (items + file->rows.size()), true};
+    context->answer_aside(call, effort, [file = std::move(*file), kept = std::move(kept)] {
+      return import_response(file, kept);
+    });
+  };
+  if (plans.empty() && !file->fence) return tell({});
+  auto fence = file->fence;
+  context->deps.store.create_import(std::move(plans), std::move(fence),
                                     {"local", "imported from " + upload.from},
-                                    [context, call, file](base::Result<store::StoredImport> kept) {
+                                    [context, call, tell](base::Result<store::StoredImport> kept) {
                                       if (!kept) return call->respond(problem(kept.error()));
                                       for (const auto& mission : kept->missions)
                                         context->announce(mission.id, mission.revision);
-                                      call->respond(import_response(*file, *kept));
+                                      tell(std::move(*kept));
                                     });
 }
 
 Handler import_mission(const ContextPtr& context) {
   return [context](const CallPtr& call) {
-    auto upload = read_upload(call->request.body(), import_wish(*call));
-    if (!upload) return call->respond(problem(upload.error()));
-    keep_import(context, call, std::move(*upload));
+    std::string body = std::move(call->request.body());
+    const Effort effort{2 * body.size()};
+    context->aside(
+        call, effort,
+        [body = std::move(body), wish = import_wish(*call)] { return read_upload(body, wish); },
+        [context, call](base::Result<Upload> upload) {
+          if (!upload) return call->respond(problem(upload.error()));
+          keep_import(context, call, std::move(*upload));
+        });
   };
+}
+
+Response file_response(const store::StoredMission& stored, mission::Format format,
+                       const std::shared_ptr<const store::StoredFence>& fence) {
+  mission::ExportedFile file =
+      mission::export_file(stored.plan, format, fence ? &fence->fence : nullptr);
+  const auto count = [&file](mission::Outcome outcome) {
+    return std::to_string(
+        std::count_if(file.rows.begin(), file.rows.end(),
+                      [outcome](const auto& row) { return row.outcome == outcome; }));
+  };
+  Response response = text_response(
+      http::status::ok, file.binary ? file.media_type : file.media_type + "; charset=utf-8",
+      std::move(file.content));
+  response.set(http::field::content_disposition, attachment(file.file_name, stored.plan.name));
+  response.set(http::field::etag, etag_of(stored.revision));
+  // What the format could not hold: never lost in silence.
+  response.set("Items-Changed", count(mission::Outcome::Changed));
+  response.set("Items-Left-Out", count(mission::Outcome::LeftOut));
+  return response;
 }
 
 Handler export_mission(const ContextPtr& context) {
@@ -90,25 +125,14 @@ Handler export_mission(const ContextPtr& context) {
     }
     const auto fence = with_fence == "active" ? context->fence : nullptr;
     context->deps.store.read_mission(
-        call->params.at("id"), [call, format, fence](base::Result<store::StoredMission> stored) {
+        call->params.at("id"),
+        [context, call, format, fence](base::Result<store::StoredMission> stored) {
           if (!stored) return call->respond(problem(stored.error()));
-          mission::ExportedFile file =
-              mission::export_file(stored->plan, *format, fence ? &fence->fence : nullptr);
-          const auto count = [&file](mission::Outcome outcome) {
-            return std::to_string(
-                std::count_if(file.rows.begin(), file.rows.end(),
-                              [outcome](const auto& row) { return row.outcome == outcome; }));
-          };
-          Response response = text_response(
-              http::status::ok, file.binary ? file.media_type : file.media_type + "; charset=utf-8",
-              std::move(file.content));
-          response.set(http::field::content_disposition,
-                       attachment(file.file_name, stored->plan.name));
-          response.set(http::field::etag, etag_of(stored->revision));
-          // What the format could not hold: never lost in silence.
-          response.set("Items-Changed", count(mission::Outcome::Changed));
-          response.set("Items-Left-Out", count(mission::Outcome::LeftOut));
-          call->respond(std::move(response));
+          const Effort effort{2 * bytes_of(stored->plan)};
+          context->answer_aside(call, effort,
+                                [format = *format, fence, mission = std::move(*stored)] {
+                                  return file_response(mission, format, fence);
+                                });
         });
   };
 }
@@ -119,7 +143,8 @@ void add_file_routes(const ContextPtr& c) {
   c->router.add({http::verb::post,
                  "/missions/import",
                  {200, 201, 400, 403, 413, 415, 422, 429, 503},
-                 import_mission(c)});
+                 import_mission(c),
+                 kFileBytes});
   c->router.add(
       {http::verb::get, "/missions/{id}/export", {200, 400, 404, 422, 503}, export_mission(c)});
 }

@@ -78,28 +78,39 @@ Json map_with_nodes_json(const store::RouteMap& map) {
   return out;
 }
 
+store::Reply<store::RouteMap> imported(const ContextPtr& context, const CallPtr& call,
+                                       std::vector<mission::MapNote> notes) {
+  return [context, call, notes = std::move(notes)](base::Result<store::RouteMap> stored) {
+    if (!stored) return call->respond(problem(stored.error()));
+    Json body = map_json(stored->about);
+    body["notes"] = Json::array();
+    for (const mission::MapNote& note : notes) {
+      body["notes"].push_back({{"line", note.line}, {"detail", note.detail}});
+    }
+    Response response = json_response(http::status::created, body);
+    response.set(http::field::location, "/api/v1/routes/" + stored->about.id);
+    call->respond(std::move(response));
+    context->discard(std::move(*stored));
+  };
+}
+
 Handler import_map(const ContextPtr& context) {
   return [context](const CallPtr& call) {
     const auto frame = map_frame_of(*call);
     if (!frame) return call->respond(problem(frame.error()));
-    auto read = mission::graph_from_text(call->request.body());
-    if (!read) return call->respond(problem(read.error()));
-    store::RouteMap map;
-    map.about.name = mission::clean_name(query_text(*call, "name"), "Node map");
-    map.about.frame = *frame;
-    map.graph = std::move(read->graph);
-    context->deps.store.create_route_map(std::move(map), [call, notes = std::move(read->notes)](
-                                                             base::Result<store::RouteMap> stored) {
-      if (!stored) return call->respond(problem(stored.error()));
-      Json body = map_json(stored->about);
-      body["notes"] = Json::array();
-      for (const mission::MapNote& note : notes) {
-        body["notes"].push_back({{"line", note.line}, {"detail", note.detail}});
-      }
-      Response response = json_response(http::status::created, body);
-      response.set(http::field::location, "/api/v1/routes/" + stored->about.id);
-      call->respond(std::move(response));
-    });
+    std::string body = std::move(call->request.body());
+    const Effort effort{body.size()};
+    context->aside(
+        call, effort, [body = std::move(body)] { return mission::graph_from_text(body); },
+        [context, call, frame = *frame](auto read) {
+          if (!read) return call->respond(problem(read.error()));
+          store::RouteMap map;
+          map.about.name = mission::clean_name(query_text(*call, "name"), "Node map");
+          map.about.frame = frame;
+          map.graph = std::move(read->graph);
+          context->deps.store.create_route_map(std::move(map),
+                                               imported(context, call, std::move(read->notes)));
+        });
   };
 }
 
@@ -123,9 +134,12 @@ Handler list_maps(const ContextPtr& context) {
 Handler read_map(const ContextPtr& context) {
   return [context](const CallPtr& call) {
     context->deps.store.read_route_map(
-        call->params.at("id"), [call](base::Result<store::RouteMap> map) {
+        call->params.at("id"), [context, call](base::Result<store::RouteMap> map) {
           if (!map) return call->respond(problem(map.error()));
-          call->respond(json_response(http::status::ok, map_with_nodes_json(*map)));
+          const Effort effort{150 * map->graph.nodes.size()};
+          context->answer_aside(call, effort, [map = std::move(*map)] {
+            return json_response(http::status::ok, map_with_nodes_json(map));
+          });
         });
   };
 }
@@ -200,7 +214,7 @@ class WayRequest : public std::enable_shared_from_this<WayRequest> {
   void read(const std::string& id) {
     context_->deps.store.read_route_map(
         id, [self = shared_from_this()](base::Result<store::RouteMap> map) {
-          if (map) return self->plan(*map);
+          if (map) return self->plan(std::move(*map));
           base::Error error = std::move(map.error());
           if (error.code == base::Code::NotFound) {
             error.code = base::Code::Invalid;
@@ -211,7 +225,7 @@ class WayRequest : public std::enable_shared_from_this<WayRequest> {
   }
 
   base::Result<std::int64_t> node_of(const store::RouteMap& map, const Place& place,
-                                     const char* pointer) {
+                                     const char* pointer) const {
     const auto wrong = [pointer](std::string detail) {
       return base::fail(base::Code::Invalid, std::string(pointer + 1) + " " + detail,
                         {{pointer, detail}});
@@ -235,34 +249,64 @@ class WayRequest : public std::enable_shared_from_this<WayRequest> {
     return base::fail(base::Code::Conflict, "the vehicle is more than 10 km away from the map");
   }
 
-  void plan(const store::RouteMap& map) {
+  struct Way {
+    mission::Plan plan;
+    std::shared_ptr<Json> body;
+    std::string what;
+  };
+
+  void plan(store::RouteMap map) {
+    const Effort effort{20 * map.graph.nodes.size()};
+    context_->aside(
+        call_, effort,
+        [self = shared_from_this(), map = std::move(map)] { return self->way_on(map); },
+        [self = shared_from_this()](base::Result<Way> way) {
+          if (!way) return self->refuse(way.error());
+          self->answer(std::move(*way));
+        });
+  }
+
+  /// Beside the web thread: reads what nobody changes any more.
+  base::Result<Way> way_on(const store::RouteMap& map) const {
     const auto from = node_of(map, from_, "/from");
-    if (!from) return refuse(from.error());
+    if (!from) return tl::unexpected<base::Error>(from.error());
     const auto to = node_of(map, to_, "/to");
-    if (!to) return refuse(to.error());
+    if (!to) return tl::unexpected<base::Error>(to.error());
     const auto way = mission::shortest_way(map.graph, *from, *to);
-    if (!way) return refuse(way.error());
+    if (!way) return tl::unexpected<base::Error>(way.error());
     mission::Plan plan;
     plan.name = name_.value_or("Node " + std::to_string(*from) + " to " + std::to_string(*to));
     plan.settings.speed_mps = speed_mps_;
     plan.items = mission::items_along(map.graph, map.about.frame, *way);
-    if (const auto fine = mission::check_plan(plan); !fine) return refuse(fine.error());
+    if (const auto fine = mission::check_plan(plan); !fine) {
+      return tl::unexpected<base::Error>(fine.error());
+    }
     auto body = std::make_shared<Json>(Json{{"graph", map.about.id},
                                             {"nodes", *way},
                                             {"length_m", mission::way_length_m(map.graph, *way)}});
+    if (!name_) (*body)["mission"] = mission::plan_to_json(plan);
+    return Way{std::move(plan), std::move(body), "planned on " + map.about.name};
+  }
+
+  void answer(Way way) {
+    const Effort effort{2 * bytes_of(way.plan), true};
     if (!name_) {
-      (*body)["mission"] = mission::plan_to_json(plan);
-      return call_->respond(json_response(http::status::ok, *body));
+      return context_->answer_aside(call_, effort, [body = std::move(way.body)] {
+        return json_response(http::status::ok, *body);
+      });
     }
     context_->deps.store.create_mission(
-        std::move(plan), {kAuthor, "planned on " + map.about.name},
-        [self = shared_from_this(), body](base::Result<store::StoredMission> stored) {
+        std::move(way.plan), {kAuthor, way.what},
+        [self = shared_from_this(), body = std::move(way.body),
+         effort](base::Result<store::StoredMission> stored) {
           if (!stored) return self->refuse(stored.error());
           self->context_->announce(stored->id, stored->revision);
-          Response response = mission_response(http::status::created, *stored);
-          (*body)["mission"] = mission_json(*stored);
-          response.body() = json_response(http::status::created, *body).body();
-          self->call_->respond(std::move(response));
+          self->context_->answer_aside(self->call_, effort, [body, mission = std::move(*stored)] {
+            Response response = mission_response(http::status::created, mission);
+            (*body)["mission"] = mission_json(mission);
+            response.body() = json_response(http::status::created, *body).body();
+            return response;
+          });
         });
   }
 
@@ -279,7 +323,8 @@ class WayRequest : public std::enable_shared_from_this<WayRequest> {
 void add_route_routes(const ContextPtr& c) {
   const auto get = http::verb::get;
   const auto post = http::verb::post;
-  c->router.add({post, "/routes/import", {201, 400, 403, 413, 422, 429, 503}, import_map(c)});
+  c->router.add(
+      {post, "/routes/import", {201, 400, 403, 413, 422, 429, 503}, import_map(c), kDocumentBytes});
   c->router.add({get, "/routes", {200, 400, 422, 503}, list_maps(c)});
   c->router.add({get, "/routes/{id}", {200, 404, 503}, read_map(c)});
   c->router.add(

@@ -9,9 +9,18 @@ namespace roverd::api {
 
 namespace {
 
-base::Result<mission::Plan> read_plan(const Request& request) {
-  if (auto ok = check_json_type(request); !ok) return tl::unexpected<base::Error>(ok.error());
-  return mission::plan_from_text(request.body());
+/// The plan in the body; shared so that it need not be copied on its way.
+void with_plan(const ContextPtr& context, const CallPtr& call,
+               std::function<void(std::shared_ptr<mission::Plan>)> then) {
+  if (auto ok = check_json_type(call->request); !ok) return call->respond(problem(ok.error()));
+  std::string body = std::move(call->request.body());
+  const Effort effort{body.size()};
+  context->aside(
+      call, effort, [body = std::move(body)] { return mission::plan_from_text(body); },
+      [call, then = std::move(then)](base::Result<mission::Plan> plan) {
+        if (!plan) return call->respond(problem(plan.error()));
+        then(std::make_shared<mission::Plan>(std::move(*plan)));
+      });
 }
 
 bool not_modified(const CallPtr& call, std::int64_t revision) {
@@ -23,30 +32,30 @@ bool not_modified(const CallPtr& call, std::int64_t revision) {
   return true;
 }
 
-store::Reply<store::StoredMission> shown(const CallPtr& call) {
-  return [call](base::Result<store::StoredMission> stored) {
+store::Reply<store::StoredMission> shown(const ContextPtr& context, const CallPtr& call) {
+  return [context, call](base::Result<store::StoredMission> stored) {
     if (!stored) return call->respond(problem(stored.error()));
-    if (not_modified(call, stored->revision)) return;
-    call->respond(mission_response(http::status::ok, *stored));
+    if (not_modified(call, stored->revision)) return context->discard(std::move(*stored));
+    answer_mission(context, call, http::status::ok, std::move(*stored), false);
   };
 }
 
 Handler create(const ContextPtr& context) {
   return [context](const CallPtr& call) {
-    auto plan = read_plan(call->request);
-    if (!plan) return call->respond(problem(plan.error()));
-    context->deps.store.create_mission(std::move(*plan), {kAuthor, ""},
-                                       changed(context, call, http::status::created));
+    with_plan(context, call, [context, call](const std::shared_ptr<mission::Plan>& plan) {
+      context->deps.store.create_mission(std::move(*plan), {kAuthor, ""},
+                                         changed(context, call, http::status::created));
+    });
   };
 }
 
 Handler replace(const ContextPtr& context) {
   return [context](const CallPtr& call) {
-    auto plan = read_plan(call->request);
-    if (!plan) return call->respond(problem(plan.error()));
-    with_expected(context, call, [context, call, plan = std::move(*plan)](std::int64_t expected) {
-      context->deps.store.replace_mission(call->params.at("id"), expected, plan, {kAuthor, ""},
-                                          changed_or_present(context, call));
+    with_plan(context, call, [context, call](const std::shared_ptr<mission::Plan>& plan) {
+      with_expected(context, call, [context, call, plan](std::int64_t expected) {
+        context->deps.store.replace_mission(call->params.at("id"), expected, std::move(*plan),
+                                            {kAuthor, ""}, changed_or_present(context, call));
+      });
     });
   };
 }
@@ -121,10 +130,14 @@ Handler copy(const ContextPtr& context) {
 }
 
 template <class T>
-store::Reply<store::Page<T>> listed(const CallPtr& call, Json (*words)(const store::Page<T>&)) {
-  return [call, words](base::Result<store::Page<T>> page) {
+store::Reply<store::Page<T>> listed(const ContextPtr& context, const CallPtr& call,
+                                    Json (*words)(const store::Page<T>&)) {
+  return [context, call, words](base::Result<store::Page<T>> page) {
     if (!page) return call->respond(problem(page.error()));
-    call->respond(json_response(http::status::ok, words(*page)));
+    const Effort effort{page->items.size() * 250};
+    context->answer_aside(call, effort, [words, page = std::move(*page)] {
+      return json_response(http::status::ok, words(page));
+    });
   };
 }
 
@@ -163,7 +176,8 @@ Handler list_missions(const ContextPtr& context) {
     const bool gone = filter->which == store::Which::Deleted;
     context->deps.store.list_missions(
         *limit, query_text(*call, "cursor"),
-        listed<store::MissionSummary>(call, gone ? deleted_list_json : mission_list_json), *filter);
+        listed<store::MissionSummary>(context, call, gone ? deleted_list_json : mission_list_json),
+        *filter);
   };
 }
 
@@ -172,7 +186,7 @@ Handler list_tags(const ContextPtr& context) {
     const auto limit = limit_of(*call);
     if (!limit) return call->respond(problem(limit.error()));
     context->deps.store.list_tags(*limit, query_text(*call, "cursor"),
-                                  listed<store::TagCount>(call, tag_list_json));
+                                  listed<store::TagCount>(context, call, tag_list_json));
   };
 }
 
@@ -189,8 +203,9 @@ Handler revisions(const ContextPtr& context) {
   return [context](const CallPtr& call) {
     const auto limit = limit_of(*call);
     if (!limit) return call->respond(problem(limit.error()));
-    context->deps.store.list_revisions(call->params.at("id"), *limit, query_text(*call, "cursor"),
-                                       listed<store::RevisionSummary>(call, revision_list_json));
+    context->deps.store.list_revisions(
+        call->params.at("id"), *limit, query_text(*call, "cursor"),
+        listed<store::RevisionSummary>(context, call, revision_list_json));
   };
 }
 
@@ -202,7 +217,7 @@ Handler one_revision(const ContextPtr& context) {
                                     "the revision must be a whole number from 1",
                                     {{"revision", "must be a whole number from 1"}}}));
     }
-    context->deps.store.read_revision(call->params.at("id"), *revision, shown(call));
+    context->deps.store.read_revision(call->params.at("id"), *revision, shown(context, call));
   };
 }
 
@@ -231,9 +246,13 @@ Handler compare(const ContextPtr& context) {
       auto newer = std::make_shared<store::StoredMission>(std::move(*stored));
       context->deps.store.read_revision(
           id, from.value_or(std::max<std::int64_t>(1, newer->revision - 1)),
-          [call, newer](base::Result<store::StoredMission> older) {
+          [context, call, newer](base::Result<store::StoredMission> older) {
             if (!older) return call->respond(problem(older.error()));
-            call->respond(json_response(http::status::ok, differences_json(*older, *newer)));
+            const Effort effort{3 * (bytes_of(older->plan) + bytes_of(newer->plan))};
+            context->answer_aside(
+                call, effort, [older = std::move(*older), newer = std::move(*newer)] {
+                  return json_response(http::status::ok, differences_json(older, newer));
+                });
           });
     };
     if (*to) return context->deps.store.read_revision(id, **to, with_newer);
@@ -247,15 +266,17 @@ void add_mission_routes(const ContextPtr& c) {
   const auto get = http::verb::get;
   const auto post = http::verb::post;
   c->router.add({get, "/missions", {200, 400, 422, 503}, list_missions(c)});
-  c->router.add({post, "/missions", {201, 400, 403, 413, 415, 422, 429, 503}, create(c)});
+  c->router.add(
+      {post, "/missions", {201, 400, 403, 413, 415, 422, 429, 503}, create(c), kDocumentBytes});
   c->router.add({get, "/tags", {200, 422, 503}, list_tags(c)});
   c->router.add({get, "/missions/{id}", {200, 304, 404, 503}, [c](const CallPtr& call) {
-                   c->deps.store.read_mission(call->params.at("id"), shown(call));
+                   c->deps.store.read_mission(call->params.at("id"), shown(c, call));
                  }});
   c->router.add({http::verb::put,
                  "/missions/{id}",
                  {200, 400, 403, 404, 412, 413, 415, 422, 428, 429, 503},
-                 replace(c)});
+                 replace(c),
+                 kDocumentBytes});
   c->router.add(
       {http::verb::delete_, "/missions/{id}", {204, 400, 403, 404, 412, 428, 429, 503}, remove(c)});
   c->router.add({get, "/missions/{id}/revisions", {200, 400, 404, 422, 503}, revisions(c)});

@@ -46,17 +46,56 @@ Response done_response(const store::StoredMission& mission, const Json& body) {
   return response;
 }
 
-/// One operation on its way. Web thread.
+/// What an operation on one revision came to.
+struct Outcome {
+  base::Result<OperationRequest> request;
+  std::optional<base::Result<mission::Done>> done{};  ///< unless another mission is needed first
+  std::optional<base::Result<mission::Parts>> parts{};
+  std::optional<Response> ready{};  ///< nothing is to be kept
+};
+
+/// What the mission would be, or that it is what it was.
+Response unkept(const store::StoredMission& mission, mission::Done done, bool dry_run) {
+  if (!dry_run) {
+    done.what = "nothing changed";
+    return done_response(mission, done_json(mission, done));
+  }
+  store::StoredMission would = mission;
+  would.plan = std::move(done.plan);
+  Json body = done_json(would, done);
+  body["dry_run"] = true;
+  return done_response(mission, body);
+}
+
+void perform_on(const store::StoredMission& mission, const mission::Operation& operation,
+                bool dry_run, Outcome& out) {
+  out.done = mission::perform(mission.plan, operation);
+  if (!*out.done || (!dry_run && (*out.done)->plan != mission.plan)) return;
+  out.ready = unkept(mission, std::move(**out.done), dry_run);
+}
+
+void split_at(const store::StoredMission& mission, const SplitAfter& cut, Outcome& out) {
+  out.parts = mission::split(mission.plan, cut.item, cut.shared);
+  if (!*out.parts) return;
+  if (cut.name) (*out.parts)->rest.name = *cut.name;
+  if (auto fine = mission::check_plan((*out.parts)->rest); !fine) {
+    out.parts = tl::unexpected<base::Error>(fine.error());
+  }
+}
+
+/// One operation on its way. Web thread; what it costs is done beside it.
 class Work : public std::enable_shared_from_this<Work> {
  public:
-  Work(ContextPtr context, CallPtr call, Json body)
-      : context_(std::move(context)), call_(std::move(call)), body_(std::move(body)) {}
+  Work(ContextPtr context, CallPtr call) : context_(std::move(context)), call_(std::move(call)) {}
 
   void begin() {
+    if (auto ok = check_json_type(call_->request); !ok) return refuse(ok.error());
+    body_ = std::move(call_->request.body());
     with_expected(context_, call_, [self = shared_from_this()](std::int64_t expected) {
       self->expected_ = expected;
-      self->context_->deps.store.read_mission(self->call_->params.at("id"),
-                                              [self](auto stored) { self->have(stored); });
+      self->context_->deps.store.read_mission(
+          self->call_->params.at("id"),
+          [self](base::Result<store::StoredMission> stored) { self->have(std::move(stored)); });
     });
   }
 
@@ -68,7 +107,7 @@ class Work : public std::enable_shared_from_this<Work> {
     call_->respond(problem(error));
   }
 
-  void have(base::Result<store::StoredMission>& stored) {
+  void have(base::Result<store::StoredMission> stored) {
     if (!stored) return refuse(stored.error());
     if (expected_ == store::kAnyRevision) expected_ = stored->revision;
     if (stored->revision != expected_) {
@@ -77,18 +116,57 @@ class Work : public std::enable_shared_from_this<Work> {
                          ", the operation was asked for revision " + std::to_string(expected_),
                      {}});
     }
-    mission_ = std::move(*stored);
-    const auto request = read_operation(body_, facts_of(context_, mission_), dry_run_);
-    if (!request) return refuse(request.error());
-    if (const auto* join = std::get_if<JoinWith>(&*request)) return read_other(join->mission_id);
-    if (const auto* cut = std::get_if<SplitAfter>(&*request)) return split(*cut);
-    perform(std::get<mission::Operation>(*request));
+    const OperationFacts facts = facts_of(context_, *stored);
+    auto mission = std::make_shared<store::StoredMission>(std::move(*stored));
+    const Effort effort{body_.size() + 2 * bytes_of(mission->plan)};
+    context_->aside(
+        call_, effort,
+        [body = std::move(body_), facts, mission] { return judge(body, facts, *mission); },
+        [self = shared_from_this(), mission](Judged judged) {
+          self->dry_run_ = judged.dry_run;
+          self->take(std::move(judged.outcome), mission);
+        });
   }
 
-  void read_other(const std::string& id) {
+  struct Judged {
+    Outcome outcome;
+    bool dry_run = false;
+  };
+
+  static Judged judge(const std::string& text, const OperationFacts& facts,
+                      const store::StoredMission& mission) {
+    const auto body = mission::parse_json(text);
+    if (!body) return {{tl::unexpected<base::Error>(body.error())}};
+    bool dry_run = false;
+    Judged out{{read_operation(*body, facts, dry_run)}};
+    out.dry_run = dry_run;
+    if (!out.outcome.request) return out;
+    const OperationRequest& request = *out.outcome.request;
+    if (const auto* cut = std::get_if<SplitAfter>(&request)) {
+      split_at(mission, *cut, out.outcome);
+    } else if (const auto* operation = std::get_if<mission::Operation>(&request)) {
+      perform_on(mission, *operation, dry_run, out.outcome);
+    }
+    return out;
+  }
+
+  void take(Outcome outcome, const std::shared_ptr<store::StoredMission>& mission) {
+    if (!outcome.request) return refuse(outcome.request.error());
+    if (const auto* join = std::get_if<JoinWith>(&*outcome.request)) {
+      return read_other(join->mission_id, mission);
+    }
+    if (const auto* cut = std::get_if<SplitAfter>(&*outcome.request)) {
+      if (!*outcome.parts) return refuse(outcome.parts->error());
+      context_->discard(std::move(mission->plan));
+      return keep_parts(std::move(**outcome.parts), cut->item);
+    }
+    keep(std::move(outcome), mission);
+  }
+
+  void read_other(const std::string& id, const std::shared_ptr<store::StoredMission>& mission) {
     context_->deps.store.read_mission(
-        id, [self = shared_from_this()](base::Result<store::StoredMission> other) {
-          if (other) return self->perform(mission::Join{std::move(other->plan)});
+        id, [self = shared_from_this(), mission](base::Result<store::StoredMission> other) {
+          if (other) return self->join(std::move(*other), mission);
           base::Error error = std::move(other.error());
           if (error.code == base::Code::NotFound) {
             error.code = base::Code::Invalid;
@@ -98,60 +176,66 @@ class Work : public std::enable_shared_from_this<Work> {
         });
   }
 
-  /// What the mission would be; nothing is kept.
-  void show(const mission::Done& done) {
-    store::StoredMission would = mission_;
-    would.plan = done.plan;
-    Json body = done_json(would, done);
-    body["dry_run"] = true;
-    call_->respond(done_response(mission_, body));
-  }
-
-  void perform(const mission::Operation& operation) {
-    auto done = mission::perform(mission_.plan, operation);
-    if (!done) return refuse(done.error());
-    if (dry_run_) return show(*done);
-    if (done->plan == mission_.plan) {
-      // Nothing to keep: the same revision.
-      done->what = "nothing changed";
-      return call_->respond(done_response(mission_, done_json(mission_, *done)));
-    }
-    store::Change change{kAuthor, done->what};
-    mission::Plan plan = std::move(done->plan);
-    context_->deps.store.replace_mission(
-        mission_.id, expected_, std::move(plan), std::move(change),
-        [self = shared_from_this(), done = std::move(*done)](auto stored) {
-          if (!stored) return self->refuse(stored.error());
-          self->context_->announce(stored->id, stored->revision);
-          self->call_->respond(done_response(*stored, done_json(*stored, done)));
+  void join(store::StoredMission other, const std::shared_ptr<store::StoredMission>& mission) {
+    const Effort effort{2 * (bytes_of(other.plan) + bytes_of(mission->plan))};
+    context_->aside(
+        call_, effort,
+        [dry_run = dry_run_, mission, plan = std::move(other.plan)]() mutable {
+          Outcome out{mission::Operation{mission::Clear{}}};  // read, and fine
+          perform_on(*mission, mission::Join{std::move(plan)}, dry_run, out);
+          return out;
+        },
+        [self = shared_from_this(), mission](Outcome outcome) {
+          self->keep(std::move(outcome), mission);
         });
   }
 
-  void split(const SplitAfter& cut) {
-    auto parts = mission::split(mission_.plan, cut.item, cut.shared);
-    if (!parts) return refuse(parts.error());
-    if (cut.name) parts->rest.name = *cut.name;
-    if (auto fine = mission::check_plan(parts->rest); !fine) return refuse(fine.error());
+  void keep(Outcome outcome, const std::shared_ptr<store::StoredMission>& mission) {
+    if (!*outcome.done) return refuse(outcome.done->error());
+    const std::string id = mission->id;
+    context_->discard(std::move(mission->plan));
+    if (outcome.ready) return call_->respond(std::move(*outcome.ready));
+    mission::Done done = std::move(**outcome.done);
+    mission::Plan plan = std::move(done.plan);
+    done.plan = {};
+    context_->deps.store.replace_mission(
+        id, expected_, std::move(plan), {kAuthor, done.what},
+        [self = shared_from_this(), done](base::Result<store::StoredMission> stored) {
+          if (!stored) return self->refuse(stored.error());
+          self->context_->announce(stored->id, stored->revision);
+          self->show(std::move(*stored), done, std::nullopt);
+        });
+  }
+
+  void keep_parts(mission::Parts parts, int after) {
     mission::Done done;
-    done.what = "split after item " + std::to_string(cut.item);
+    done.what = "split after item " + std::to_string(after);
     context_->deps.store.split_mission(
-        mission_.id, expected_, std::move(parts->first), std::move(parts->rest),
+        call_->params.at("id"), expected_, std::move(parts.first), std::move(parts.rest),
         {kAuthor, done.what}, [self = shared_from_this(), done](base::Result<store::Halves> both) {
           if (!both) return self->refuse(both.error());
           self->context_->announce(both->first.id, both->first.revision);
           self->context_->announce(both->rest.id, both->rest.revision);
-          Json body = done_json(both->first, done);
-          body["done"]["created"] = mission_json(both->rest);
-          self->call_->respond(done_response(both->first, body));
+          self->show(std::move(both->first), done, std::move(both->rest));
         });
+  }
+
+  void show(store::StoredMission mission, const mission::Done& done,
+            std::optional<store::StoredMission> created) {
+    const Effort effort{2 * bytes_of(mission.plan) + (created ? bytes_of(created->plan) : 0), true};
+    context_->answer_aside(call_, effort,
+                           [mission = std::move(mission), done, created = std::move(created)] {
+                             Json body = done_json(mission, done);
+                             if (created) body["done"]["created"] = mission_json(*created);
+                             return done_response(mission, body);
+                           });
   }
 
   ContextPtr context_;
   CallPtr call_;
-  Json body_;
+  std::string body_;
   std::int64_t expected_ = 0;
   bool dry_run_ = false;
-  store::StoredMission mission_;
 };
 
 }  // namespace
@@ -160,11 +244,8 @@ void add_operation_routes(const ContextPtr& c) {
   c->router.add({http::verb::post,
                  "/missions/{id}/operations",
                  {200, 400, 403, 404, 409, 412, 413, 415, 422, 428, 429, 503},
-                 [c](const CallPtr& call) {
-                   auto body = json_body(call->request);
-                   if (!body) return call->respond(problem(body.error()));
-                   std::make_shared<Work>(c, call, std::move(*body))->begin();
-                 }});
+                 [c](const CallPtr& call) { std::make_shared<Work>(c, call)->begin(); },
+                 kDocumentBytes});
 }
 
 }  // namespace roverd::api

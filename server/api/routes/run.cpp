@@ -18,22 +18,26 @@ std::optional<std::int64_t> run_of(const CallPtr& call) {
   return id;
 }
 
-using Read = std::function<void(const CallPtr&, const store::StoredRun&,
-                                const std::vector<store::RunPoint>&)>;
+using Read = Response (*)(const Call&, const store::StoredRun&,
+                          const std::vector<store::RunPoint>&);
 
 /// Head and track, then `answer`.
 Handler with_track(const ContextPtr& context, Read answer) {
-  return [context, answer = std::move(answer)](const CallPtr& call) {
+  return [context, answer](const CallPtr& call) {
     const auto id = run_of(call);
     if (!id) return;
     store::Store& store = context->deps.store;
-    store.read_run(*id, [&store, call, answer, id = *id](base::Result<store::StoredRun> run) {
-      if (!run) return call->respond(problem(run.error()));
-      store.read_run_points(id, [call, answer, run = std::move(*run)](auto points) {
-        if (!points) return call->respond(problem(points.error()));
-        answer(call, run, *points);
-      });
-    });
+    store.read_run(
+        *id, [context, &store, call, answer, id = *id](base::Result<store::StoredRun> run) {
+          if (!run) return call->respond(problem(run.error()));
+          store.read_run_points(id, [context, call, answer, run = std::move(*run)](auto points) {
+            if (!points) return call->respond(problem(points.error()));
+            const Effort effort{300 * points->size() + bytes_of(run.plan)};
+            context->answer_aside(call, effort, [call, answer, run, points = std::move(*points)] {
+              return answer(*call, run, points);
+            });
+          });
+        });
   };
 }
 
@@ -43,14 +47,17 @@ Handler list_runs(const ContextPtr& context) {
     if (!limit) return call->respond(problem(limit.error()));
     context->deps.store.list_runs(
         *limit, query_text(*call, "cursor"),
-        [call](base::Result<store::Page<store::RunHead>> page) {
+        [context, call](base::Result<store::Page<store::RunHead>> page) {
           if (!page) return call->respond(problem(page.error()));
-          Json items = Json::array();
-          for (const store::RunHead& run : page->items) items.push_back(run_head_json(run));
-          const auto& next = page->next_cursor;
-          call->respond(json_response(
-              http::status::ok,
-              {{"items", std::move(items)}, {"next_cursor", next ? Json(*next) : Json(nullptr)}}));
+          const Effort effort{500 * page->items.size()};
+          context->answer_aside(call, effort, [page = std::move(*page)] {
+            Json items = Json::array();
+            for (const store::RunHead& run : page.items) items.push_back(run_head_json(run));
+            const auto& next = page.next_cursor;
+            return json_response(
+                http::status::ok,
+                {{"items", std::move(items)}, {"next_cursor", next ? Json(*next) : Json(nullptr)}});
+          });
         });
   };
 }
@@ -66,9 +73,9 @@ Handler get_run(const ContextPtr& context) {
   };
 }
 
-void answer_track(const CallPtr& call, const store::StoredRun& run,
-                  const std::vector<store::RunPoint>& points) {
-  const std::string word = query_text(*call, "format");
+Response track_response(const Call& call, const store::StoredRun& run,
+                        const std::vector<store::RunPoint>& points) {
+  const std::string word = query_text(call, "format");
   const std::string format = word.empty() ? "geojson" : word;
   std::string text;
   std::string_view type;
@@ -83,19 +90,19 @@ void answer_track(const CallPtr& call, const store::StoredRun& run,
     type = "application/gpx+xml";
   } else {
     const std::string rule = "format must be geojson, csv or gpx";
-    return call->respond(problem({base::Code::Invalid, rule, {{"format", rule}}}));
+    return problem({base::Code::Invalid, rule, {{"format", rule}}});
   }
   Response response = text_response(http::status::ok, type, std::move(text));
   response.set(http::field::content_disposition,
                "attachment; filename=\"run-" + std::to_string(run.head.id) + "." + format + "\"");
-  call->respond(std::move(response));
+  return response;
 }
 
-void answer_report(const CallPtr& call, const store::StoredRun& run,
-                   const std::vector<store::RunPoint>& points) {
+Response report_response(const Call&, const store::StoredRun& run,
+                         const std::vector<store::RunPoint>& points) {
   const auto report = report_of(run, points);
-  if (!report) return call->respond(problem(report.error()));
-  call->respond(json_response(http::status::ok, report_json(run.head, *report)));
+  if (!report) return problem(report.error());
+  return json_response(http::status::ok, report_json(run.head, *report));
 }
 
 }  // namespace
@@ -104,8 +111,8 @@ void add_run_routes(const ContextPtr& c) {
   const auto get = http::verb::get;
   c->router.add({get, "/runs", {200, 400, 422, 503}, list_runs(c)});
   c->router.add({get, "/runs/{id}", {200, 404, 503}, get_run(c)});
-  c->router.add({get, "/runs/{id}/track", {200, 404, 422, 503}, with_track(c, answer_track)});
-  c->router.add({get, "/runs/{id}/report", {200, 404, 409, 503}, with_track(c, answer_report)});
+  c->router.add({get, "/runs/{id}/track", {200, 404, 422, 503}, with_track(c, track_response)});
+  c->router.add({get, "/runs/{id}/report", {200, 404, 409, 503}, with_track(c, report_response)});
 }
 
 }  // namespace roverd::api

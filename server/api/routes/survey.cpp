@@ -1,5 +1,5 @@
-// POST /missions/survey: a coverage pattern, as an answer or as a stored mission. It is planned
-// aside of the web thread, where there is a thread for that: a large field takes a second.
+// POST /missions/survey: a coverage pattern, as an answer or as a stored mission. It is read and
+// planned beside the web thread: a large field takes a second.
 
 #include <memory>
 #include <utility>
@@ -12,9 +12,6 @@
 namespace roverd::api {
 
 namespace {
-
-/// At work and waiting; each is as long as a body can make it.
-constexpr int kSurveys = 4;
 
 SurveyFacts survey_facts(const ContextPtr& context) {
   SurveyFacts facts;
@@ -30,12 +27,6 @@ SurveyFacts survey_facts(const ContextPtr& context) {
   return facts;
 }
 
-/// One survey on its way. Only `result` is touched aside.
-struct Planning {
-  SurveyOrder order;
-  base::Result<mission::Survey> result = base::fail(base::Code::Unavailable, "not planned");
-};
-
 /// Pointers into a GeoJSON polygon have one step more.
 void point_into_geojson(base::Error& error) {
   constexpr std::string_view kPolygon = "/polygon";
@@ -46,46 +37,66 @@ void point_into_geojson(base::Error& error) {
   }
 }
 
-void answer_survey(const ContextPtr& context, const CallPtr& call, Planning& done) {
-  if (!done.result) return call->respond(problem(done.result.error()));
-  auto figures = std::make_shared<Json>(survey_json(*done.result));
+struct Planned {
+  Json figures;
   mission::Plan plan;
-  plan.name = done.order.name.value_or("Survey");
-  plan.settings.speed_mps = done.order.speed_mps;
-  plan.items = std::move(done.result->items);
-  if (!done.order.name) {
-    (*figures)["mission"] = mission::plan_to_json(plan);
-    return call->respond(json_response(http::status::ok, *figures));
+  bool keep = false;  ///< it has a name
+};
+
+base::Result<Planned> plan_now(const std::string& text, const SurveyFacts& facts) {
+  const auto body = mission::parse_json(text);
+  if (!body) return tl::unexpected<base::Error>(body.error());
+  const auto order = read_survey(*body, facts);
+  if (!order) return tl::unexpected<base::Error>(order.error());
+  auto survey = mission::plan_survey(order->request);
+  if (!survey) {
+    if (body->at("polygon").is_object()) point_into_geojson(survey.error());
+    return tl::unexpected<base::Error>(std::move(survey.error()));
   }
+  Planned out{survey_json(*survey), {}, order->name.has_value()};
+  out.plan.name = order->name.value_or("Survey");
+  out.plan.settings.speed_mps = order->speed_mps;
+  out.plan.items = std::move(survey->items);
+  if (!out.keep) out.figures["mission"] = mission::plan_to_json(out.plan);
+  return out;
+}
+
+void answer_survey(const ContextPtr& context, const CallPtr& call, Planned planned) {
+  if (!planned.keep) {
+    const Effort effort{bytes_of(planned.plan)};
+    return context->answer_aside(call, effort, [planned = std::move(planned)] {
+      return json_response(http::status::ok, planned.figures);
+    });
+  }
+  auto figures = std::make_shared<Json>(std::move(planned.figures));
   context->deps.store.create_mission(
-      std::move(plan), {kAuthor, "planned as a survey"},
+      std::move(planned.plan), {kAuthor, "planned as a survey"},
       [context, call, figures](base::Result<store::StoredMission> stored) {
         if (!stored) return call->respond(problem(stored.error()));
         context->announce(stored->id, stored->revision);
-        Response response = mission_response(http::status::created, *stored);
-        (*figures)["mission"] = mission_json(*stored);
-        response.body() = json_response(http::status::created, *figures).body();
-        call->respond(std::move(response));
+        const Effort effort{2 * bytes_of(stored->plan), true};
+        context->answer_aside(call, effort, [figures, mission = std::move(*stored)] {
+          Response response = mission_response(http::status::created, mission);
+          (*figures)["mission"] = mission_json(mission);
+          response.body() = json_response(http::status::created, *figures).body();
+          return response;
+        });
       });
 }
 
 Handler survey(const ContextPtr& context) {
-  return [context, busy = std::make_shared<int>(0)](const CallPtr& call) {
-    const auto body = json_body(call->request);
-    if (!body) return call->respond(problem(body.error()));
-    auto order = read_survey(*body, survey_facts(context));
-    if (!order) return call->respond(problem(order.error()));
-    if (*busy >= kSurveys) return call->respond(problem(429, "too many surveys are being planned"));
-    ++*busy;
-    const bool geojson = body->at("polygon").is_object();
-    auto planning = std::make_shared<Planning>();
-    planning->order = std::move(*order);
-    context->aside([planning] { planning->result = mission::plan_survey(planning->order.request); },
-                   [context, call, planning, busy, geojson] {
-                     --*busy;
-                     if (geojson && !planning->result) point_into_geojson(planning->result.error());
-                     answer_survey(context, call, *planning);
-                   });
+  return [context](const CallPtr& call) {
+    if (auto ok = check_json_type(call->request); !ok) return call->respond(problem(ok.error()));
+    // However short the request, the field may be large.
+    const Effort effort{Effort::kSmall + 1};
+    std::string body = std::move(call->request.body());
+    context->aside(
+        call, effort,
+        [body = std::move(body), facts = survey_facts(context)] { return plan_now(body, facts); },
+        [context, call](base::Result<Planned> planned) {
+          if (!planned) return call->respond(problem(planned.error()));
+          answer_survey(context, call, std::move(*planned));
+        });
   };
 }
 
@@ -95,7 +106,8 @@ void add_survey_routes(const ContextPtr& c) {
   c->router.add({http::verb::post,
                  "/missions/survey",
                  {200, 201, 400, 403, 409, 413, 415, 422, 429, 503},
-                 survey(c)});
+                 survey(c),
+                 kDocumentBytes});
 }
 
 }  // namespace roverd::api

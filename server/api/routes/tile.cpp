@@ -27,6 +27,29 @@ std::optional<std::int64_t> tile_number(std::string_view text) {
   return whole_number(text.substr(0, text.find('.')));
 }
 
+struct TilePlace {
+  int x = 0;
+  int y = 0;
+};
+
+Response tile_response(const Tiles& tiles, const Call& call, int zoom, TilePlace at) {
+  const std::string& set = call.params.at("set");
+  auto found = tiles.read ? tiles.read(set, zoom, at.x, at.y) : std::optional<store::Tile>{};
+  if (!found) return problem({base::Code::NotFound, "no such tile in set \"" + set + "\""});
+  const std::string tag = "\"" + std::to_string(std::hash<std::string>{}(found->bytes)) + "\"";
+  Response response = text_response(http::status::ok, found->content_type, std::move(found->bytes));
+  response.set(http::field::cache_control, "max-age=3600");
+  response.set(http::field::etag, tag);
+  if (!found->content_encoding.empty()) {
+    response.set(http::field::content_encoding, found->content_encoding);
+  }
+  if (header(call.request, http::field::if_none_match).find(tag) != std::string_view::npos) {
+    response.result(http::status::not_modified);
+    response.body().clear();
+  }
+  return response;
+}
+
 Handler tile(const ContextPtr& context) {
   return [context](const CallPtr& call) {
     std::vector<base::FieldError> errors;
@@ -44,25 +67,10 @@ Handler tile(const ContextPtr& context) {
       return call->respond(
           problem({base::Code::Invalid, "there is no such tile address", std::move(errors)}));
     }
-    const std::string& set = call->params.at("set");
-    auto found = context->deps.tiles.read ? context->deps.tiles.read(set, zoom, x, y)
-                                          : std::optional<store::Tile>{};
-    if (!found) {
-      return call->respond(problem({base::Code::NotFound, "no such tile in set \"" + set + "\""}));
-    }
-    const std::string tag = "\"" + std::to_string(std::hash<std::string>{}(found->bytes)) + "\"";
-    Response response =
-        text_response(http::status::ok, found->content_type, std::move(found->bytes));
-    response.set(http::field::cache_control, "max-age=3600");
-    response.set(http::field::etag, tag);
-    if (!found->content_encoding.empty()) {
-      response.set(http::field::content_encoding, found->content_encoding);
-    }
-    if (header(call->request, http::field::if_none_match).find(tag) != std::string_view::npos) {
-      response.result(http::status::not_modified);
-      response.body().clear();
-    }
-    call->respond(std::move(response));
+    const Effort effort{Effort::kAtOnce + 1};  // a disk may pause
+    context->answer_aside(call, effort, [context, call, zoom, x, y] {
+      return tile_response(context->deps.tiles, *call, zoom, {x, y});
+    });
   };
 }
 

@@ -229,7 +229,10 @@ void add_vehicle_routes(const ContextPtr& c) {
   c->router.add({http::verb::put, "/vehicle/mode", kCommand, set_mode(c)});
   c->router.add({post, "/vehicle/resume", kCommand, plain(c, robot::ResumeActivity{}, Moves::Yes)});
   c->router.add({post, "/vehicle/estop", kCommand,
-                 plain(c, robot::Estop{"the page or a script"}, Moves::No)});
+                 [c](const CallPtr& call) {  // whatever the body says
+                   run_command(c, call, robot::Estop{"the page or a script"}, base::Time::max(),
+                               whole_state(c));
+                 }});
   c->router.add(
       {post, "/vehicle/estop/reset", kCommand, plain(c, robot::ResetEstop{}, Moves::Yes)});
   c->router.add({http::verb::put, "/vehicle/home", kCommand, set_home(c)});

@@ -32,6 +32,34 @@ TEST(Arbiter, TheRadioGoesBeforeEverythingButTheEmergencyStop) {
   EXPECT_EQ(f.state()->control, base::Driver::None);
 }
 
+TEST(Arbiter, AStopThatWasAskedForGoesOutBetweenTwoTicks) {
+  Field f;
+  int alerts = 0;
+  f.robot.alert = [&alerts] { ++alerts; };
+  f.drive_mission();
+  f.run(2.0);
+  ASSERT_TRUE(f.moves());
+  // Given that nobody asked, nothing happens between two ticks;
+  int sends = f.sends;
+  f.robot.heed_stop(f.now);
+  EXPECT_EQ(f.sends, sends);
+  // when somebody asks, the loop is told, and what stands goes out at once, and once;
+  ASSERT_TRUE(f.robot.request(Estop{"a script"}, base::Time::max(), {}));
+  EXPECT_EQ(alerts, 1);
+  f.robot.heed_stop(f.now + std::chrono::milliseconds(3));
+  EXPECT_EQ(f.sends, ++sends);
+  EXPECT_EQ(f.command, base::DriveCommand{});
+  f.robot.heed_stop(f.now + std::chrono::milliseconds(4));
+  EXPECT_EQ(f.sends, sends);
+  // and the next tick knows of it.
+  f.tick();
+  EXPECT_EQ(f.command, base::DriveCommand{});
+  EXPECT_TRUE(f.state()->estop);
+  EXPECT_FALSE(f.state()->armed);
+  EXPECT_EQ(f.execution(), ExecutionState::Paused);
+  EXPECT_TRUE(f.has_event("estop"));
+}
+
 TEST(Arbiter, ALeverBetweenItsDetentsKeepsItsLastPosition) {
   Field f;
   f.drive_mission();
