@@ -25,7 +25,7 @@ Json fence_json(const store::StoredFence& fence) {
 }
 
 /// As text, about.
-std::size_t bytes_of(const mission::Fence& fence) noexcept {
+std::size_t fence_bytes(const mission::Fence& fence) noexcept {
   std::size_t corners = 0;
   for (const auto& area : fence.areas) {
     const auto* polygon = std::get_if<mission::FencePolygon>(&area.shape);
@@ -45,7 +45,7 @@ Response fence_response(http::status status, const store::StoredFence& fence) {
 
 void answer_fence(const ContextPtr& context, const CallPtr& call, http::status status,
                   store::StoredFence fence) {
-  const Effort effort{bytes_of(fence.fence), true};
+  const Effort effort{fence_bytes(fence.fence), true};
   context->answer_aside(
       call, effort, [status, fence = std::move(fence)] { return fence_response(status, fence); });
 }
@@ -215,7 +215,7 @@ Handler fence_revisions(const ContextPtr& context) {
 
 void answer_active(const ContextPtr& context, const CallPtr& call) {
   const auto fence = context->fence;
-  const Effort effort{fence ? bytes_of(fence->fence) : 0, true};
+  const Effort effort{fence ? fence_bytes(fence->fence) : 0, true};
   context->answer_aside(call, effort, [fence] {
     return json_response(http::status::ok, {{"fence", fence ? fence_json(*fence) : Json(nullptr)}});
   });
