@@ -51,7 +51,7 @@ test('“Go here” drives to the place that was tapped, and “Come home” bac
   expect(Math.abs(metres_between(start, station.sim.now) - Math.hypot(6, 4))).toBeLessThan(0.8);
 
   await press(page, 'Come home');
-  await expect(page.getByRole('region', { name: 'Come home' })).toContainText(/7\.\d+ m away/);
+  await expect(page.getByRole('region', { name: 'Come home' })).toContainText(/Home: 7\.\d+ m/);
   await press(page, 'Drive home');
   await expect(page.getByLabel('Activity')).toContainText('Coming home');
   await expect

@@ -58,6 +58,9 @@ describe('what became of a command without an answer', () => {
     );
     expect(told({ to: 'skip' }, mission({}), mission({ current_item: 2 }))[0]).toBe(true);
     expect(told({ to: 'skip' }, mission({}), mission({}))[0]).toBe(false);
+    const held = { mode: 'GUIDED', activity: { id: 4, kind: 'goto', state: 'held' } };
+    expect(told({ to: 'go_on' }, held, going(4, 'goto'))[0]).toBe(true);
+    expect(told({ to: 'go_on' }, held, held)).toEqual([false, 'the mode is GUIDED']);
     const at = { lat: 58, lon: 26 };
     expect(told({ to: 'home', at }, {}, { home: at })[0]).toBe(true);
     expect(told({ to: 'home', at }, {}, { home: { lat: 58.001, lon: 26 } })[0]).toBe(false);

@@ -146,6 +146,7 @@ type Question =
   | 'satellites'
   | 'checks'
   | 'preview'
+  | 'way_home'
   | 'left_behind'
   | 'recent_events'
   | 'events_since';
@@ -170,6 +171,7 @@ const questions: Pick<VehicleCalls, Question> = {
   satellites: () => request<Schemas['Satellites']>('/gnss/satellites'),
   checks: () => request<Schemas['Checks']>('/vehicle/checks'),
   preview: (from) => request<Schemas['Preview']>(`/execution/preview?from=${from}`),
+  way_home: (mode) => request<Schemas['WayHome']>(`/vehicle/way_home?mode=${mode}`),
   left_behind: async () => {
     const answer = await request<Schemas['Execution']>('/execution');
     return answer.ok ? { ok: true, value: answer.value.left_behind } : answer;
@@ -206,6 +208,7 @@ export const vehicle_calls = (seen: Seen): VehicleCalls => {
       }),
     start: (mission_id, revision, from) =>
       command<Schemas['Preview']>('POST', '/execution/start', { mission_id, revision, from }),
+    go_on: () => command('POST', '/vehicle/resume'),
     resume: () => command('POST', '/execution/resume'),
     skip: () => command('POST', '/execution/skip'),
     forget_left_behind: () =>

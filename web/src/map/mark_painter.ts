@@ -65,11 +65,14 @@ export const paint_goal = (
 ): void => {
   const { context } = paint;
   const [x, y] = place(paint, goal);
-  if (from) {
-    const [x0, y0] = place(paint, from);
+  const line = goal.line ?? (from ? [from, goal] : []);
+  if (line.length > 1) {
     context.beginPath();
-    context.moveTo(x0, y0);
-    context.lineTo(x, y);
+    line.forEach((at, k) => {
+      const [x_at, y_at] = place(paint, at);
+      if (k === 0) context.moveTo(x_at, y_at);
+      else context.lineTo(x_at, y_at);
+    });
     context.setLineDash([10, 8]);
     stroke_cased(context, colors.casing, colors.route, 3);
     context.setLineDash([]);

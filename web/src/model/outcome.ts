@@ -14,6 +14,7 @@ export type Wish =
   | { readonly to: 'do'; readonly kinds: readonly Activity['kind'][] }
   | { readonly to: 'load'; readonly id: string; readonly revision: number }
   | { readonly to: 'run' }
+  | { readonly to: 'go_on' }
   | { readonly to: 'skip' }
   | { readonly to: 'home'; readonly at: LatLon };
 
@@ -54,6 +55,13 @@ export const outcome = (wish: Wish, before: Vehicle | null, after: Vehicle): Out
     case 'run': {
       const runs = mission.state === 'running' || mission.state === 'finished';
       return { obeyed: runs && mission.state !== before?.mission.state, detail: is(after) };
+    }
+    case 'go_on': {
+      const { state } = after.activity;
+      return {
+        obeyed: state !== 'held' && state !== 'failed',
+        detail: `the mode is ${after.mode}`,
+      };
     }
     case 'skip': {
       const moved = mission.current_item !== before?.mission.current_item;

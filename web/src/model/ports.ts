@@ -5,6 +5,7 @@ import type { Driver } from './drivers';
 import type { Fence, FenceDraft, FenceSummary } from './fence';
 import type { LinkHealth } from './freshness';
 import type { Halt } from './halt';
+import type { WayHome } from './homeward';
 import type { Home, LatLon, Plan, Settings, Item } from './plan';
 import type { RunHead, RunReport } from './runs';
 import type { ReceiverSky } from './sky';
@@ -161,6 +162,10 @@ export interface VehicleCalls {
   drivers(): Promise<Answer<Page<Driver>>>;
   satellites(): Promise<Answer<{ receivers: readonly ReceiverSky[] }>>;
   restart_driver(name: string): Promise<Answer<unknown>>;
+  /** What a way home would do now. */
+  way_home(mode: 'RTL' | 'SMART_RTL'): Promise<Answer<WayHome>>;
+  /** Goes on with what the radio interrupted. */
+  go_on(): Promise<Answer<unknown>>;
   checks(): Promise<Answer<{ ready: boolean; checks: readonly Check[] }>>;
   load(mission_id: string, revision: number): Promise<Answer<unknown>>;
   preview(from: StartFrom): Promise<Answer<Preview>>;
@@ -280,6 +285,8 @@ export interface RunOnMap {
 /** A place on the map that means something, and how the robot faces there. */
 export interface Mark extends LatLon {
   readonly heading_deg: number | null;
+  /** The way there from the robot; left out: straight. */
+  readonly line?: readonly LatLon[];
 }
 export interface MapCalls {
   listen(events: MapEvents): void;

@@ -1,55 +1,67 @@
-// “Come home”, before it drives: where to, how far, and why it would do nothing.
+// “Come home”, before it drives: where to, how far, along which line, and why it would do nothing.
+// The robot is asked again and again while somebody looks.
 
-import { AT_HOME_M, refuge, type Refuge } from '../model/homeward';
+import { refusal_text } from '../model/answer';
+import { bearing_deg } from '../model/geo';
+import { why_not_home, type WayHome } from '../model/homeward';
 import { why_not_choose } from '../model/modes';
-import type { Mark } from '../model/ports';
+import type { Mark, VehicleCalls } from '../model/ports';
 import { robot_place } from '../model/vehicle';
-import type { Fences } from './fences.svelte';
 import type { Live } from './live.svelte';
 
-export type WayHome = 'RTL' | 'SMART_RTL';
+export type HomeMode = 'RTL' | 'SMART_RTL';
+
+const ASK_AGAIN_MS = 1000;
 
 export class Homeward {
-  /** The way that is being looked at; null: none. */
-  way = $state<WayHome | null>(null);
-  target = $derived.by<Refuge | null>(() => this.#target());
+  /** The mode that is being looked at; null: none. */
+  mode = $state<HomeMode | null>(null);
+  way = $state.raw<WayHome | null>(null);
+  failure = $state<string | null>(null);
+  bearing_deg = $derived.by<number | null>(() => {
+    const from = robot_place(this.#live.vehicle);
+    return from && this.way?.target ? bearing_deg(from, this.way.target) : null;
+  });
   mark = $derived<Mark | null>(
-    this.way === null || this.target === null ? null : { ...this.target.at, heading_deg: null },
+    this.mode !== null && this.way?.target
+      ? { ...this.way.target, heading_deg: null, line: this.way.line }
+      : null,
   );
-  why_not = $derived.by<string | null>(() => this.#why_not());
+  why_not = $derived.by<string | null>(() => {
+    if (this.way === null) return this.failure ?? 'The robot has not said yet.';
+    const before = why_not_choose(this.#live.facts, this.mode ?? 'RTL');
+    return before ?? why_not_home(this.way);
+  });
 
+  readonly #calls: VehicleCalls;
   readonly #live: Live;
-  readonly #fences: Fences;
+  #timer: ReturnType<typeof setTimeout> | undefined;
 
-  constructor(live: Live, fences: Fences) {
+  constructor(calls: VehicleCalls, live: Live) {
+    this.#calls = calls;
     this.#live = live;
-    this.#fences = fences;
   }
 
-  show(way: WayHome): void {
-    this.way = way;
+  /** @return when the robot has told */
+  async show(mode: HomeMode): Promise<void> {
+    clearTimeout(this.#timer);
+    this.mode = mode;
+    this.way = null;
+    await this.#ask(mode);
   }
 
   close(): void {
+    clearTimeout(this.#timer);
+    this.mode = null;
     this.way = null;
   }
 
-  #target(): Refuge | null {
-    const from = robot_place(this.#live.vehicle);
-    if (!from) return null;
-    const home = this.#live.vehicle?.home ?? null;
-    // The way it came ends at home, and keeps inside the fence by itself.
-    const fence = this.way === 'SMART_RTL' ? null : this.#fences.active;
-    return refuge(home, fence, from);
-  }
-
-  #why_not(): string | null {
-    const before = why_not_choose(this.#live.facts, this.way ?? 'RTL');
-    if (before !== null) return before;
-    if (robot_place(this.#live.vehicle) === null) return 'The robot does not know where it is.';
-    if (this.target === null) return 'Nothing can be reached straight inside the fence.';
-    return this.target.distance_m < AT_HOME_M
-      ? `It stands there already: ${this.target.name}.`
-      : null;
+  async #ask(mode: HomeMode): Promise<void> {
+    const answer = await this.#calls.way_home(mode);
+    if (this.mode !== mode) return;
+    if (answer.ok) this.way = answer.value;
+    this.failure = answer.ok ? null : refusal_text(answer.refusal);
+    clearTimeout(this.#timer);
+    this.#timer = setTimeout(() => void this.#ask(mode), ASK_AGAIN_MS);
   }
 }

@@ -60,6 +60,7 @@ export class Pilot {
   estop = (): void => this.halt('estop');
 
   arm = (): Promise<boolean> => this.#do('Arm', { to: 'arm' }, () => this.#calls.arm());
+  go_on = (): Promise<boolean> => this.#do('Go on', { to: 'go_on' }, () => this.#calls.go_on());
   resume = (): Promise<boolean> => this.#do('Resume', { to: 'run' }, () => this.#calls.resume());
   skip = (): Promise<boolean> => this.#do('Skip', { to: 'skip' }, () => this.#calls.skip());
   go_to = (goal: Goal): Promise<boolean> =>

@@ -27,7 +27,7 @@ import { Drivers } from './drivers.svelte';
 import { Editor, plan_of } from './editor.svelte';
 import { Fences } from './fences.svelte';
 import { Findings } from './findings.svelte';
-import { Homeward, type WayHome } from './homeward.svelte';
+import { Homeward, type HomeMode } from './homeward.svelte';
 import { Library } from './library.svelte';
 import { Live } from './live.svelte';
 import { Notices } from './notices.svelte';
@@ -128,7 +128,7 @@ export class Station {
     this.runs = new Runs(doors.runs);
     this.surveyor = new Surveyor(doors.survey, this.editor, this.notices);
     this.fences = new Fences(doors.fences, this.notices, this.dialogs);
-    this.homeward = new Homeward(this.live, this.fences);
+    this.homeward = new Homeward(doors.vehicle, this.live);
     this.resumption = new Resumption(doors.vehicle, this.pilot, this.notices, this.dialogs);
     this.findings = new Findings(doors.missions);
     this.teacher = new Teacher(doors.teach, this.editor, this.notices, this.dialogs);
@@ -224,16 +224,16 @@ export class Station {
   }
 
   /** Straight to where it can be seen what it would do. */
-  show_way_home(way: WayHome): void {
+  async show_way_home(mode: HomeMode): Promise<void> {
     this.dialogs.close();
     this.tab = 'drive';
     this.sheet_open = true;
-    this.homeward.show(way);
-    const { target } = this.homeward;
-    const robot = robot_place(this.live.vehicle);
-    if (!target || !robot) return;
+    await this.homeward.show(mode);
+    await this.settled();
+    const line = this.homeward.way?.line ?? [];
+    if (line.length < 2) return;
     this.set_follow(false);
-    void this.settled().then(() => this.map.fit([robot, target.at]));
+    this.map.fit(line);
   }
 
   /** Arms; what the check has found about the loaded mission is seen before. */
