@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "robot/impl.hpp"
-#include "robot/start_check.hpp"
+#include "robot/safety/start_check.hpp"
 
 namespace roverd::robot {
 

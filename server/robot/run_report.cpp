@@ -36,20 +36,36 @@ int item_at(const nav::Course& course, double s_m) {
   return course.nodes[i].item;
 }
 
-/// Where the mission begins: at the first item, or at the one before, if the robot stood there and
-/// passed it at once.
-std::size_t first_node(const nav::Course& course, int first_item, base::EnuPoint begun) {
-  constexpr double kThere_m = 0.5;
+/// Where what is judged begins.
+struct Begin {
+  double from_m = 0.0;
+  int item = 0;  ///< while this one or one before it is in hand, the robot only comes
+};
+
+/// At the first item; or on the way to it, where the run began there: at the item before, which was
+/// passed at once, or where a restart had left the mission.
+Begin begin_of(const nav::Course& course, int first_item, base::EnuPoint begun) {
+  constexpr double kOnIt_m = 0.5;
+  constexpr double kLook_m = 0.05;
+  const nav::Path& path = course.path;
   std::size_t node = 0;
   while (node + 1 < course.nodes.size() && course.nodes[node].item < first_item) ++node;
-  const bool before = node > 0 && course.nodes[node].item >= first_item &&
-                      base::distance_m(course.nodes[node - 1].at, begun) < kThere_m;
-  if (before) --node;
+  if (node > 0 && course.nodes[node].item >= first_item) {
+    Begin on_it;
+    double nearest_m = kOnIt_m;
+    for (double s_m = path.vertex_m[node - 1]; s_m < path.vertex_m[node]; s_m += kLook_m) {
+      const double off_m = base::distance_m(path.at(s_m), begun);
+      if (off_m >= nearest_m) continue;
+      nearest_m = off_m;
+      on_it = {s_m, course.nodes[node - 1].item};
+    }
+    if (nearest_m < kOnIt_m) return on_it;
+  }
   // Two points of one item: the first only leads to the second.
   while (node + 1 < course.nodes.size() && course.nodes[node + 1].item == course.nodes[node].item) {
     ++node;
   }
-  return node;
+  return {path.vertex_m[node], course.nodes[node].item};
 }
 
 /// The points of one lap in order: first the approach, then what counts.
@@ -133,17 +149,16 @@ base::Result<RunReport> report_run(
   sum_up(r, points);
   const nav::Course& course = route->forth;
   if (course.path.legs.empty()) return r;
-  const std::size_t first = first_node(course, first_item, frame.to_local(points.front().at));
-  Selection counted(course, frame, course.nodes[first].item);
+  const Begin begin = begin_of(course, first_item, frame.to_local(points.front().at));
+  Selection counted(course, frame, begin.item);
   counted.take(points);
   r.approach = counted.approach;
   if (counted.driven.size() < 2) return r;
   std::vector<base::EnuPoint> vertices;
   vertices.reserve(course.nodes.size());
   for (const nav::RouteNode& n : course.nodes) vertices.push_back(n.at);
-  const double from_m = course.path.vertex_m[first];
   // Runs of long ago did not keep the item in hand: there the place tells where it began.
-  r.measure = nav::measure_run(course.path, vertices, counted.driven, from_m,
+  r.measure = nav::measure_run(course.path, vertices, counted.driven, begin.from_m,
                                counted.begun ? nav::Counts::All : nav::Counts::FromNear);
   for (const nav::CornerMeasure& c : r.measure.corners) {
     r.corner_items.push_back(course.nodes[std::min(c.vertex, course.nodes.size() - 1)].item);

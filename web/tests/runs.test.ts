@@ -10,6 +10,8 @@ const report: RunReport = {
   driven_m: 80,
   energy_wh: null,
   laps: 1,
+  approach: null,
+  judged_m: 80,
   cross_track: { rms_m: 0.02, mean_m: 0.01, p95_m: 0.05, max_m: 0.12 },
   corner_mean_m: 0.03,
   corner_max_m: 0.06,
@@ -27,6 +29,21 @@ const row = (label: string, second: RunReport | null) =>
   report_rows(report, second).find((each) => each.label === label);
 
 describe('report', () => {
+  test('says nothing of how a run of two centimetres was driven', () => {
+    const short: RunReport = {
+      ...report,
+      cross_track: { rms_m: null, mean_m: null, p95_m: null, max_m: null },
+      heading_rms_deg: null,
+      approach: { time_s: 4, driven_m: 2.5 },
+      judged_m: 0.02,
+    };
+    const rows = report_rows(short, report);
+    const of = (label: string) => rows.find((each) => each.label === label);
+    expect(of('Off the path, rms')).toMatchObject({ first: '—', better: null });
+    expect(of('Heading, rms')?.first).toBe('—');
+    expect(of('Of it to the first item')).toMatchObject({ first: '2.50 m', second: '—' });
+  });
+
   test('shows one run alone, an unknown energy as unknown', () => {
     expect(row('Off the path, rms', null)).toEqual({
       label: 'Off the path, rms',

@@ -6,7 +6,7 @@
 #include "api/checks.hpp"
 #include "api/context.hpp"
 #include "robot/compile.hpp"
-#include "robot/start_check.hpp"
+#include "robot/safety/start_check.hpp"
 
 namespace roverd::api {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "robot/start_check.hpp"
+#include "robot/safety/start_check.hpp"
 
 namespace roverd::robot {
 namespace {

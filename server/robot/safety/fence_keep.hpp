@@ -44,7 +44,7 @@ class FenceKeep {
     double margin_m = 0.0;
     double within_m = 0.0;  ///< nav.behave.start_within_m
   };
-  /// Nothing of the list that check, load and preview show (robot/start_check.hpp).
+  /// Nothing of the list that check, load and preview show (robot/safety/start_check.hpp).
   base::Result<void> may_start(const CompiledMission& mission, const nav::StartAt& at,
                                const Start& start) const;
   /// The comparison with a mission is long and made on other threads. @param mission null: none

@@ -1,4 +1,4 @@
-#include "robot/start_check.hpp"
+#include "robot/safety/start_check.hpp"
 
 #include <cmath>
 #include <string>
