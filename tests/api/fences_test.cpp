@@ -124,7 +124,7 @@ TEST_F(FencesApi, WhatAStartRefusesIsFoundByEveryQuestionBeforeIt) {
   const auto made = call("POST", "/fences", ring);
   ASSERT_EQ(made.status, 201u) << made.raw.body;
   ASSERT_EQ(call("PUT", "/fence", Json{{"fence_id", made.body["id"]}}).status, 200u);
-  house.until([&] { return call("GET", "/vehicle").body["fence"].is_object(); }, "the fence holds");
+  until([&] { return call("GET", "/vehicle").body["fence"].is_object(); }, "the fence holds");
   const std::string beyond = mission({20, 30});
   const auto report = call("POST", "/missions/" + beyond + "/check");
   ASSERT_EQ(report.status, 200u) << report.raw.body;

@@ -77,8 +77,7 @@ TEST(StudyFiles, WhatIsWrongInACourseIsNamed) {
             "/courses/0/speed_mps must lie in 0.05 .. 10.0");
   EXPECT_EQ(courses_problem(with(points + R"(, "turn": "wide")")),
             "/courses/0/turn must be auto, pivot, arc or through");
-  EXPECT_EQ(courses_problem(with(points + R"(, "colour": 1)")),
-            "/courses/0/colour unknown member");
+  EXPECT_EQ(courses_problem(with(points + R"(, "colour": 1)")), "/courses/0/colour unknown member");
   EXPECT_EQ(courses_problem(R"({"courses": [{"name": "a", "points": [[0, 0], [1, 0]]},
                                             {"name": "a", "points": [[0, 0], [1, 0]]}]})"),
             "/courses/1/name is there twice");
