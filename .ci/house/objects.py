@@ -21,7 +21,7 @@ def archives(table, build):
     plan = build / "build.ninja"  # knows what is left over from an older one
     planned = plan.read_text(encoding="utf-8") if plan.exists() else None
     built = {p.name[3:-2]: p for p in build.rglob("lib*.a")
-             if planned is None or f"{p.relative_to(build)}:" in planned}
+             if "tests" not in p.relative_to(build).parts and (planned is None or f"{p.relative_to(build)}:" in planned)}
     found, missing = [], []
     for room in table.rooms.values():
         if not room.name.startswith(("server/", "drivers/")) or room.name.count("/") > 1:
