@@ -1,5 +1,6 @@
 #include "app/options.hpp"
 
+#include <charconv>
 #include <cstdlib>
 #include <iostream>
 #include <utility>
@@ -29,7 +30,8 @@ CLI::Validator number_in(double least, double most) {
 
 std::string check_run(const std::string& text) {
   std::int64_t id = 0;
-  if (CLI::detail::lexical_cast(text, id) && id >= 1) return {};
+  const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), id);
+  if (ec == std::errc{} && end == text.data() + text.size() && id >= 1) return {};
   return "\"" + text + "\" is no run's number";
 }
 

@@ -390,7 +390,8 @@ Station::~Station() {
   impl_->halt();
   impl_->workers.stop();
   impl_->keep_learned();
-  impl_->services->stop();  // what is on its way to the web is dropped with the io_context
+  if (impl_->services)
+    impl_->services->stop();  // what is on its way to the web is dropped with the io_context
   impl_->server.reset();
   impl_->services.reset();
   impl_->store.reset();  // its last answers are posted, and dropped with the io_context

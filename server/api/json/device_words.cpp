@@ -11,8 +11,10 @@ Json capabilities_json(const Profile& p, const std::string& version) {
   Json modes = Json::array();
   for (const base::Mode mode : p.modes) modes.push_back(base::to_string(mode));
   Json formats = Json::array();
+  Json written = Json::array();
   for (const mission::Format format : mission::kFormats) {
     formats.push_back(mission::to_string(format));
+    if (mission::is_written(format)) written.push_back(mission::to_string(format));
   }
   return {{"vehicle", p.name},
           {"title", p.title},
@@ -31,7 +33,7 @@ Json capabilities_json(const Profile& p, const std::string& version) {
           {"item_types", p.item_types},
           {"radio", p.radio},
           {"import_formats", formats},
-          {"export_formats", formats}};
+          {"export_formats", written}};
 }
 
 Json driver_json(const base::DriverStatus& d, std::optional<double> rate_hz, base::Time now) {
