@@ -66,6 +66,9 @@ test('a mission that was left behind can be forgotten, for good', async ({ page,
   await expect(card).toBeHidden();
   await station.kill();
   await station.begin_again();
+  await expect(page.getByRole('group', { name: 'Link' })).toContainText('Live', {
+    timeout: 20_000,
+  });
   expect((await execution(station)).left_behind).toBeNull();
   expect(await station.rest('GET', '/missions')).toMatchObject({ items: [{ name: 'North' }] });
 });

@@ -38,6 +38,13 @@ export class Stream implements LiveLink {
   #state: SocketState = 'closed';
   #opened_ms = 0;
   #last_message_ms: number | null = null;
+  #newest: {
+    readonly vehicle: Schemas['Vehicle'];
+    readonly mono_s: number;
+    readonly came_ms: number;
+  } | null = null;
+  /** It will be shown. */
+  #soon = false;
   /** The shown state: the robot's clock when it was sent, and when it came. */
   #shown: { readonly mono_s: number; readonly came_ms: number } | null = null;
   #attempt = 0;
@@ -118,9 +125,12 @@ export class Stream implements LiveLink {
         this.#events.on_hello(message.data.capabilities);
         break;
       case 'vehicle':
-        this.#shown = { mono_s: message.mono_s, came_ms: now_ms };
-        this.#events.on_vehicle(message.data, message.mono_s);
-        break;
+        // Drawing takes longer than reading: on a slow device states would queue up and grow old. All
+        // that wait already are read first, and the newest is shown.
+        this.#newest = { vehicle: message.data, mono_s: message.mono_s, came_ms: now_ms };
+        if (!this.#soon) setTimeout(() => this.#show_newest(), 0);
+        this.#soon = true;
+        return;
       case 'pong': {
         const sent_ms = this.#pings.answer(message.data.ping, now_ms);
         if (sent_ms !== null) this.#clock.take_round_trip(sent_ms, now_ms, message.mono_s);
@@ -139,6 +149,16 @@ export class Stream implements LiveLink {
         this.#events.on_refused({ ...message.data, errors: message.data.errors ?? [] });
         break;
     }
+    this.#report('open');
+  }
+
+  #show_newest(): void {
+    this.#soon = false;
+    const newest = this.#newest;
+    this.#newest = null;
+    if (!newest) return;
+    this.#shown = newest;
+    this.#events.on_vehicle(newest.vehicle, newest.mono_s);
     this.#report('open');
   }
 
@@ -173,6 +193,7 @@ export class Stream implements LiveLink {
   #drop(): void {
     const old = this.#socket;
     this.#socket = null;
+    this.#newest = null;
     old?.close();
     this.#report('closed');
     clearTimeout(this.#retry);
