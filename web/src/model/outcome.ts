@@ -22,7 +22,8 @@ export type Wish =
 export const CLICK_LIFE_S = 1;
 
 export interface Outcome {
-  readonly obeyed: boolean;
+  /** Null: its state does not tell. */
+  readonly obeyed: boolean | null;
   readonly detail: string;
 }
 
@@ -65,7 +66,11 @@ export const outcome = (wish: Wish, before: Vehicle | null, after: Vehicle): Out
     }
     case 'skip': {
       const moved = mission.current_item !== before?.mission.current_item;
-      return { obeyed: moved, detail: `item ${mission.current_item ?? '—'} is in hand` };
+      // It may have come to the end of that item by itself.
+      return {
+        obeyed: moved ? null : false,
+        detail: `item ${mission.current_item ?? '—'} is in hand`,
+      };
     }
     case 'home': {
       const obeyed = after.home !== null && distance_m(after.home, wish.at) < SAME_PLACE_M;
