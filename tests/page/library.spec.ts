@@ -2,7 +2,7 @@
 
 import type { Page } from '@playwright/test';
 
-import { arm, metres_between, open_page, press, tab, type Point } from './page';
+import { metres_between, open_page, press, tab, type Point } from './page';
 import { expect, test, type Station } from './station';
 
 interface Mission {
