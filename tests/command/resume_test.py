@@ -150,7 +150,7 @@ def cut_run(station, seconds):
 def case_run_cut():
     """Power cuts while a run is recorded: it is there up to the last second, and can be judged"""
     with Station(seed=5) as station:
-        for seconds in (4.3, 7.1, 6.2):  # past the first item, which is what a report begins with
+        for seconds in (7.3, 9.1, 6.8):  # past the first item, which is what a report begins with
             cut_run(station, seconds)
 
 
