@@ -173,10 +173,14 @@ test('what speaks against a mission is seen before it starts, and leads to the i
   await station.rest('POST', '/execution/load', { mission_id: mission.id });
   await tab(page, 'Drive');
   await expect(page.getByLabel('Mission state')).toHaveText('Loaded');
-  await press(page, 'Arm');
-  await expect(dialog.getByRole('list', { name: 'Findings' })).toContainText('Item 2');
-  await press(page, 'Arm anyway');
-  await expect(page.getByRole('button', { name: 'Disarm', exact: true })).toBeVisible();
+  await expect(async () => {
+    await press(page, 'Arm');
+    await expect(dialog.getByRole('list', { name: 'Findings' })).toContainText('Item 2');
+    await press(page, 'Arm anyway');
+    // Refused while the position is not yet trusted: then again.
+    const disarm = page.getByRole('button', { name: 'Disarm', exact: true });
+    await expect(disarm).toBeVisible({ timeout: 2000 });
+  }).toPass({ timeout: 40_000 });
   await press(page, 'Start…');
   await expect(dialog.getByRole('list', { name: 'Findings' })).toContainText('Item 2');
   await expect(dialog.getByLabel('Estimate')).toBeVisible();
