@@ -100,17 +100,19 @@ class Stage {
   std::map<std::string, std::vector<std::uint64_t>> quiet_;
 };
 
-/// No scene here reaches these: home_test, watches_test, path_tracking and the loop tests do.
-const std::set<std::string> kSeenElsewhere{"nav.estimate.compass_current_lag_s",
-                                           "nav.track.rejoin_m",
-                                           "nav.speed.reverse_max_mps",
-                                           "nav.behave.lost_s",
-                                           "nav.behave.missed_m",
-                                           "robot.home_at_arm",
-                                           "robot.safety.base_accept_s",
-                                           "robot.safety.spin_s",
-                                           "robot.safety.sigma_hold_m",
-                                           "robot.safety.sigma_hold_s"};
+/// No scene here reaches these. That they act is seen of home_at_arm (home_test),
+/// compass_current_lag_s (estimator_current_test), reverse_max_mps (api/modes_test) and
+/// sigma_hold_m (watches_test); of the others no test tells.
+const std::set<std::string> kNotReached{"nav.estimate.compass_current_lag_s",
+                                        "nav.track.rejoin_m",
+                                        "nav.speed.reverse_max_mps",
+                                        "nav.behave.lost_s",
+                                        "nav.behave.missed_m",
+                                        "robot.home_at_arm",
+                                        "robot.safety.base_accept_s",
+                                        "robot.safety.spin_s",
+                                        "robot.safety.sigma_hold_m",
+                                        "robot.safety.sigma_hold_s"};
 
 TEST(ParameterWalk, ASceneTwiceIsTheSame) {
   for (const Scene& scene : kScenes) {
@@ -126,7 +128,7 @@ TEST(ParameterWalk, WhatIsSaidToActAtOnceDoes) {
   Stage stage;
   for (const Parameter& p : Field{}.robot.parameters()) {
     const std::string name = p.section + "." + p.info.name;
-    if (p.at_once && !kSeenElsewhere.contains(name)) {
+    if (p.at_once && !kNotReached.contains(name)) {
       EXPECT_TRUE(stage.acts(p)) << name;
     }
   }
