@@ -267,6 +267,21 @@ def the_programs_start():
     on_its_own_computer(station.sim.process)
 
 
+def how_it_stands():
+    """The mission, what safety says and the last events: for the lines after a failure."""
+    vehicle = station.rest.get("/vehicle")
+    yield f"mission {vehicle['mission']}"
+    yield f"control {vehicle['control']}, armed {vehicle['armed']}, safety {vehicle['safety']}"
+    for event in station.rest.get("/events?limit=12")["items"]:
+        yield f"{event}"
+    frames = candump.read(LOG)
+    for frame_id in (0x111, 0x221, 0x241):
+        seen = candump.only(frames, frame_id, now() - 60)
+        gaps = sorted(((b.time_s - a.time_s, a.time_s) for a, b in zip(seen, seen[1:])), reverse=True)
+        yield f"0x{frame_id:03X} in the last minute: {len(seen)}, silent for " + ", ".join(
+            f"{gap:.2f} s {now() - at:.1f} s ago" for gap, at in gaps[:3])
+
+
 class Watcher:
     """candump, started anew when its interface was removed."""
 
@@ -296,7 +311,7 @@ def main():
         code |= run_cases([
             everything_comes_up, nothing_moves_before_arming, a_mission_drives,
             feedback_is_what_really_happens, commands_come_without_a_gap, the_radio_takes_over,
-            the_api_says_who_drives, no_request_fights_the_radio, the_mission_goes_on])
+            the_api_says_who_drives, no_request_fights_the_radio, the_mission_goes_on], how_it_stands)
         radio.silence()  # the simulator's own again: canplayer does not survive a lost interface
         station.control.ask({"fault": {"radio_loss": False, "radio_loss_unflagged": False}})
         rough = RoughBus(station, BUS, LOG, watcher.start)
@@ -307,7 +322,7 @@ def main():
             rough.the_interface_is_unplugged_and_plugged_in_again, both_programs_end_cleanly,
             rough.the_recording_is_whole_and_in_several_files,
             rough.nothing_of_the_base_is_missing_in_the_recording,
-            rough.canplayer_plays_the_recording])
+            rough.canplayer_plays_the_recording], how_it_stands)
     finally:
         if station:
             station.close()

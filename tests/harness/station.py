@@ -211,8 +211,17 @@ class Station:
             shutil.rmtree(self.scratch, ignore_errors=True)
 
 
-def run_cases(cases):
-    """Runs functions in order; a docstring is the case's name. @return the exit code."""
+def said_by(explain):
+    """What explain says; a robot that does not answer any more must not hide why the case failed."""
+    try:
+        return explain() if explain else []
+    except Exception as error:
+        return [f"nothing more is known: {error}"]
+
+
+def run_cases(cases, explain=None):
+    """Runs functions in order; a docstring is the case's name. @param explain lines that tell how things
+    stood when a case failed, or none. @return the exit code."""
     failed = 0
     for case in cases:
         name = " ".join((case.__doc__ or case.__name__).split())
@@ -224,4 +233,6 @@ def run_cases(cases):
             failed += 1
             cause = " ".join(str(error).split()) or type(error).__name__
             print(f"not ok - {name}: {cause}", flush=True)
+            for line in said_by(explain):
+                print(f"# {line}", flush=True)
     return 1 if failed else 0
