@@ -56,7 +56,7 @@ def refuses(what, wanted, **files):
 
 def names_what_is_wrong():
     """files, members, keys, vehicles and options"""
-    refuses([], "/courses/0/speed_mps must lie in",
+    refuses([], "/courses/0/speed_mps must be from",
             courses={"courses": [{"name": "a", "points": [[0, 0], [1, 0]], "speed_mps": -1}]})
     refuses([], "unknown key drive.slipp", disturbances={"disturbances": [{"name": "a", "sim": {"drive.slipp": 1}}]})
     refuses([], "unknown key nav.track.nothing",

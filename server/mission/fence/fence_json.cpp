@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "mission/json/json.hpp"
-#include "mission/json/members.hpp"
+#include "mission/json/object.hpp"
 
 namespace roverd::mission {
 
@@ -26,7 +26,7 @@ class FenceReader {
       problems_.add("", "must be an object");
       return tl::unexpected<Error>(std::move(problems_).error("the fence"));
     }
-    MemberReader reader(value, Place{""}, problems_);
+    Members reader(value, Place{}, problems_);
     reader.name("name", fence_.name);
     each(reader, "areas", kMaxAreas,
          [this](const json& one, const std::string& where) { area(one, where); });
@@ -41,12 +41,12 @@ class FenceReader {
  private:
   /// Calls `one` for each element. More than can be are left to check_fence to count.
   template <class F>
-  void each(MemberReader& reader, const char* name, std::size_t most, F one) {
+  void each(Members& reader, const char* name, std::size_t most, F one) {
     const json* list = reader.known(name);
     if (list == nullptr || list->is_null()) return;
-    if (!list->is_array()) return reader.add(name, "must be a list");
+    if (!list->is_array()) return reader.complain(name, "must be a list");
     if (list->size() > most) {
-      return reader.add(name, "has " + std::to_string(list->size()) + ", at most " +
+      return reader.complain(name, "has " + std::to_string(list->size()) + ", at most " +
                                   std::to_string(most) + " are possible");
     }
     for (std::size_t i = 0; i < list->size(); ++i) {
@@ -63,19 +63,19 @@ class FenceReader {
   void area(const json& value, const std::string& where) {
     if (!object(value, where)) return;
     FenceArea& made = fence_.areas.emplace_back();
-    MemberReader reader(value, Place{where}, problems_);
+    Members reader(value, Place{where}, problems_);
     reader.word("kind", made.kind);
     const json* polygon = reader.known("polygon");
     const json* circle = reader.known("circle");
     if ((polygon == nullptr) == (circle == nullptr)) {
-      reader.add("polygon",
+      reader.complain("polygon",
                  polygon == nullptr ? "or circle is required" : "and circle exclude each other");
     } else if (circle != nullptr) {
       made.shape = circle_in(*circle, where + "/circle");
     } else if (!polygon->is_array()) {
-      reader.add("polygon", "must be a list of corners {lat, lon}");
+      reader.complain("polygon", "must be a list of corners {lat, lon}");
     } else if (polygon->size() > kMaxFencePoints) {
-      reader.add("polygon", "has more than 10000 corners");
+      reader.complain("polygon", "has more than 10000 corners");
     } else {
       FencePolygon& corners = std::get<FencePolygon>(made.shape);
       corners.points.reserve(polygon->size());
@@ -90,7 +90,7 @@ class FenceReader {
   FenceCircle circle_in(const json& value, const std::string& where) {
     FenceCircle out;
     if (!object(value, where)) return out;
-    MemberReader reader(value, Place{where}, problems_);
+    Members reader(value, Place{where}, problems_);
     reader.number("lat", out.center.lat, kAnyNumber);
     reader.number("lon", out.center.lon, kAnyNumber);
     reader.number("radius_m", out.radius_m, kAnyNumber);
@@ -101,7 +101,7 @@ class FenceReader {
   base::LatLon corner_in(const json& value, const std::string& where) {
     base::LatLon out;
     if (!object(value, where)) return out;
-    MemberReader reader(value, Place{where}, problems_);
+    Members reader(value, Place{where}, problems_);
     reader.number("lat", out.lat, kAnyNumber);
     reader.number("lon", out.lon, kAnyNumber);
     reader.refuse_unknown();
@@ -111,7 +111,7 @@ class FenceReader {
   void rally(const json& value, const std::string& where) {
     if (!object(value, where)) return;
     RallyPoint& made = fence_.rally.emplace_back();
-    MemberReader reader(value, Place{where}, problems_);
+    Members reader(value, Place{where}, problems_);
     reader.number("lat", made.at.lat, kAnyNumber);
     reader.number("lon", made.at.lon, kAnyNumber);
     reader.number("alt_m", made.alt_m, kAnyNumber);

@@ -48,16 +48,20 @@ class Problems {
 
   /// Invalid; "the mission has 3 wrong values, first /items/3/lat must …".
   base::Error error(const std::string& subject) && {
-    std::string detail = subject + " has " + std::to_string(count_) +
-                         (count_ == 1 ? " wrong value: " : " wrong values, first ");
-    if (!fields_.empty()) {
-      const std::string& place = fields_.front().pointer;
-      detail += (place.empty() ? "the document" : place) + " " + fields_.front().detail;
-    }
-    return {base::Code::Invalid, std::move(detail), std::move(fields_)};
+    std::string front = subject + " has " + std::to_string(count_) +
+                        (count_ == 1 ? " wrong value: " : " wrong values, first ");
+    return {base::Code::Invalid, std::move(front) + first(), std::move(fields_)};
   }
+  /// Invalid; "/speed_mps must …": the first of them.
+  base::Error error() && { return {base::Code::Invalid, first(), std::move(fields_)}; }
 
  private:
+  std::string first() const {
+    if (fields_.empty()) return {};
+    const std::string& place = fields_.front().pointer;
+    return (place.empty() ? "the document" : place) + " " + fields_.front().detail;
+  }
+
   std::vector<base::FieldError> fields_;
   std::size_t count_ = 0;
 };

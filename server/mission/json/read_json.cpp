@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "mission/json/checker.hpp"
 #include "mission/json/json.hpp"
-#include "mission/json/members.hpp"
 #include "mission/json/quick_read.hpp"
 
 namespace roverd::mission {
@@ -53,13 +53,13 @@ Item read_item(const json& value, Place where, Problems& problems) {
     problems.add(where.text(), "must be an object");
     return item;
   }
-  MemberReader reader(value, where, problems);
+  Members reader(value, where, problems);
   const json* type = reader.known("type");
   if (type == nullptr) {
-    reader.add("type", "is required");
+    reader.complain("type", "is required");
   } else if (!type->is_string() ||
              !emplace_type(item, type->get_ref<const std::string&>(), kAllTypes)) {
-    reader.add("type", types_problem(kAllTypes));
+    reader.complain("type", types_problem(kAllTypes));
   } else {
     std::visit([&](auto& members) { fields(reader, members); }, item);
     reader.refuse_unknown();
@@ -73,7 +73,7 @@ void read_object(const json& value, const char* where, T& out, Problems& problem
     problems.add(where, "must be an object");
     return;
   }
-  MemberReader reader(value, Place{where}, problems);
+  Members reader(value, Place{where}, problems);
   fields(reader, out);
   reader.refuse_unknown();
 }
@@ -108,7 +108,7 @@ Result<Plan> plan_from_json(const json& value) {
     problems.add("", "must be an object");
     return tl::unexpected<Error>(std::move(problems).error("the mission"));
   }
-  MemberReader reader(value, Place{""}, problems);
+  Members reader(value, Place{}, problems);
   reader.name("name", plan.name);
   if (const json* home = reader.known("home"); home != nullptr && !home->is_null()) {
     read_object(*home, "/home", plan.home.emplace(), problems);
@@ -119,9 +119,9 @@ Result<Plan> plan_from_json(const json& value) {
   }
   const json* items = reader.known("items");
   if (items == nullptr) {
-    reader.add("items", "is required");
+    reader.complain("items", "is required");
   } else if (!items->is_array()) {
-    reader.add("items", "must be a list");
+    reader.complain("items", "must be a list");
   } else if (items->size() > kMaxItems) {
     return tl::unexpected<Error>(too_many(items->size()));
   } else {
@@ -153,7 +153,7 @@ Result<Item> item_from_json(const json& value, const std::string& pointer) {
 Result<void> check_plan(const Plan& plan) {
   if (plan.items.size() > kMaxItems) return tl::unexpected<Error>(too_many(plan.items.size()));
   Problems problems;
-  Checker(Place{""}, problems).name("name", plan.name);
+  Checker(Place{}, problems).name("name", plan.name);
   const auto check = [&problems](Place where, const auto& members) {
     Checker checker(where, problems);
     fields(checker, members);

@@ -61,10 +61,10 @@ TEST(Members, EveryOffendingFieldIsNamed) {
   ASSERT_FALSE(read);
   EXPECT_EQ(read.error().code, base::Code::Invalid);
   const std::vector<base::FieldError> expected = {{"/lat", "must be a number"},
-                                                  {"/lon", "must lie in -180.0 .. 180.0"},
+                                                  {"/lon", "must be from -180 to 180, is 181"},
                                                   {"/count", "must be a whole number"},
-                                                  {"/mode", "is missing"},
-                                                  {"/what~1ever", "unknown member"}};
+                                                  {"/mode", "is required"},
+                                                  {"/what~1ever", "is not a known member"}};
   EXPECT_EQ(read.error().fields, expected);
 }
 

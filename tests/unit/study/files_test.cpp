@@ -65,7 +65,7 @@ TEST(StudyFiles, WhatIsWrongInACourseIsNamed) {
   EXPECT_EQ(courses_problem("[]"), " must be an object with the member courses");
   EXPECT_EQ(courses_problem(R"({"courses": []})"), "/courses must be a list of at least one");
   EXPECT_EQ(courses_problem(R"({"courses": [7]})"), "/courses/0 must be an object");
-  EXPECT_EQ(courses_problem(R"({"courses": [{"points": []}]})"), "/courses/0/name is missing");
+  EXPECT_EQ(courses_problem(R"({"courses": [{"points": []}]})"), "/courses/0/name is required");
   EXPECT_EQ(courses_problem(with(R"("speed_mps": 1)")), "/courses/0 must have points or mission");
   EXPECT_EQ(courses_problem(with(R"("points": [[0, 0]])")),
             "/courses/0/points must be a list of two points or more");
@@ -74,10 +74,11 @@ TEST(StudyFiles, WhatIsWrongInACourseIsNamed) {
   EXPECT_EQ(courses_problem(with(R"("points": [[0, 0], [1, 99999]])")),
             "/courses/0/points/1 must be [east_m, north_m]");
   EXPECT_EQ(courses_problem(with(points + R"(, "speed_mps": 99)")),
-            "/courses/0/speed_mps must lie in 0.05 .. 10.0");
+            "/courses/0/speed_mps must be from 0.05 to 10, is 99");
   EXPECT_EQ(courses_problem(with(points + R"(, "turn": "wide")")),
             "/courses/0/turn must be auto, pivot, arc or through");
-  EXPECT_EQ(courses_problem(with(points + R"(, "colour": 1)")), "/courses/0/colour unknown member");
+  EXPECT_EQ(courses_problem(with(points + R"(, "colour": 1)")),
+            "/courses/0/colour is not a known member");
   EXPECT_EQ(courses_problem(R"({"courses": [{"name": "a", "points": [[0, 0], [1, 0]]},
                                             {"name": "a", "points": [[0, 0], [1, 0]]}]})"),
             "/courses/1/name is there twice");
