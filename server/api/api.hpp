@@ -86,6 +86,8 @@ struct Deps {
   /// The ground-control page; empty answers: no such file.
   std::function<std::optional<Response>(const Request&)> page{};
   std::function<NetFigures()> figures{};
+  /// What is wrong with this computer now. Empty: nobody looks.
+  std::function<std::vector<base::HostProblem>()> host{};
   /// Any number at a time, bounded. @return false: no room, nothing was taken. Empty: both at once.
   std::function<bool(Aside)> aside{};
   /// Calls it on the web thread after what is ready there already. Empty: at once.

@@ -23,6 +23,7 @@
 #include "config/settings.hpp"
 #include "replay/run.hpp"
 #include "robot/config.hpp"
+#include "store/backups.hpp"
 #include "store/store.hpp"
 #include "tools/decode.hpp"
 #include "tools/ntrip_table.hpp"
@@ -86,6 +87,11 @@ int serve(const roverd::Options& options) {
     return say(kRefused, logging.error().detail);
   }
   const auto database = std::filesystem::path(options.data) / "roverd.db";
+  // Before its parameters are read: they may come from the backup.
+  if (auto told = roverd::store::rescue(database)) {
+    base::log(base::Level::Error, "main", "damaged database", {{"done", *told}});
+    settings->rescued = std::move(*told);
+  }
   settings->left_out = take_kept_parameters(*settings, database);
   for (const std::string& why : settings->left_out) {
     base::log(base::Level::Warning, "main", "a kept parameter is left out", {{"reason", why}});

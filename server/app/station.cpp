@@ -1,7 +1,6 @@
 #include "app/station.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <optional>
@@ -15,7 +14,9 @@
 #include "api/api.hpp"
 #include "app/control_loop.hpp"
 #include "app/devices.hpp"
+#include "app/host_watch.hpp"
 #include "app/version.hpp"
+#include "app/wiring.hpp"
 #include "base/angle.hpp"
 #include "base/log.hpp"
 #include "base/params.hpp"
@@ -27,8 +28,10 @@
 #include "net/server.hpp"
 #include "net/workers.hpp"
 #include "robot/robot.hpp"
+#include "store/backups.hpp"
 #include "store/store.hpp"
 #include "store/tiles.hpp"
+#include "supervise/claim.hpp"
 #include "supervise/supervisor.hpp"
 
 namespace roverd {
@@ -39,106 +42,7 @@ using base::Result;
 
 constexpr base::Duration kGoodbye = std::chrono::milliseconds(500);
 constexpr base::Duration kKeepLearned = std::chrono::minutes(1);
-
-/// The simulated robot is not the real one: they differ in the link that moves them.
-std::string learner(const Settings& s) {
-  const auto scheme = [](const DriverWiring& w) { return w.link.substr(0, w.link.find(':')); };
-  for (const DriverWiring* w :
-       {&s.bunker.wiring, &s.ackermann.wiring, &s.ratio.wiring, &s.twist.wiring}) {
-    if (w->enabled) return s.vehicle.name + " " + scheme(*w);
-  }
-  return s.vehicle.name;
-}
-
-/// What missions are checked against.
-mission::VehicleLimits limits_of(const Settings& s) {
-  const nav::VehicleParams& v = s.robot.vehicle;
-  mission::VehicleLimits limits;
-  limits.max_speed_mps = std::min(v.max_speed_mps, s.robot.speed.max_mps);
-  limits.default_speed_mps = std::min(s.robot.speed.default_mps, limits.max_speed_mps);
-  limits.width_m = s.robot.vehicle.width_m;
-  limits.max_climb_deg = s.vehicle.max_climb_deg;
-  limits.yaw_rate_radps = s.robot.speed.max_yaw_rate_radps;
-  if (v.steered()) {
-    limits.turn_radius_m = v.wheelbase_m / std::tan(base::rad_from_deg(v.max_steering_deg));
-    // From full lock to one side to straight and in again takes twice the time of one.
-    limits.steer_in_m =
-        2.0 * limits.default_speed_mps * v.max_steering_deg / v.max_steering_rate_dps;
-    limits.settle_m = s.robot.track.lookahead_max_m;
-  }
-  const auto known = [](double value) { return value > 0.0 ? std::optional(value) : std::nullopt; };
-  limits.drive_power_w = known(s.vehicle.drive_power_w);
-  limits.idle_power_w = known(s.vehicle.idle_power_w);
-  limits.battery_wh = known(s.vehicle.battery_wh);
-  return limits;
-}
-
-api::Profile profile_of(const Settings& s, const Supervisor& supervisor) {
-  api::Profile profile;
-  profile.name = s.vehicle.name;
-  profile.title = s.vehicle.title;
-  profile.kinematics = s.robot.vehicle.kinematics;
-  profile.length_m = s.robot.vehicle.length_m;
-  profile.width_m = s.robot.vehicle.width_m;
-  profile.mass_kg = s.vehicle.mass_kg;
-  profile.max_speed_mps = std::min(s.robot.vehicle.max_speed_mps, s.robot.speed.max_mps);
-  profile.max_yaw_rate_radps = s.robot.speed.max_yaw_rate_radps;
-  profile.max_acceleration_mps2 = s.robot.speed.accel_mps2;
-  profile.pivot_angle_rad = base::rad_from_deg(s.robot.pivot.angle_deg);
-  profile.modes = {base::Mode::Manual, base::Mode::Hold,  base::Mode::Auto,
-                   base::Mode::Guided, base::Mode::Rtl,   base::Mode::SmartRtl,
-                   base::Mode::Follow, base::Mode::Dock,  base::Mode::Steering,
-                   base::Mode::Acro,   base::Mode::Simple};
-  profile.drivers = supervisor.names();
-  profile.lights = supervisor.has_lights();
-  profile.clears_errors = supervisor.clears_errors();
-  for (const base::ParamInfo& key : base::describe(s.robot.radio)) {
-    if (const auto* word = std::get_if<std::string>(&key.value)) profile.radio[key.name] = *word;
-  }
-  profile.item_types = {"waypoint", "local",       "move", "wait",
-                        "speed",    "return_home", "jump", "action"};
-  if (!s.robot.vehicle.steered()) profile.item_types.push_back("turn");
-  profile.limits = limits_of(s);
-  profile.limits.item_types = profile.item_types;
-  profile.limits.actions = robot::kActions;
-  return profile;
-}
-
-/// net's hub behind the callables that api knows.
-api::Stream stream_of(net::Hub& hub) {
-  return {
-      .add_sampled_topic =
-          [&hub](std::string topic, api::Stream::Render render) {
-            hub.add_sampled_topic(std::move(topic), std::move(render));
-          },
-      .add_event_topic = [&hub](std::string topic) { hub.add_event_topic(std::move(topic)); },
-      .subscribe = [&hub](net::ClientId client,
-                          const auto& rates_hz) { hub.subscribe(client, rates_hz); },
-      .publish = [&hub](std::string_view topic,
-                        const api::Stream::Render& render) { hub.publish(topic, render); },
-      .send = [&hub](net::ClientId client, std::string_view text) { hub.send(client, text); },
-      .close = [&hub](net::ClientId client, std::uint16_t code,
-                      std::string_view reason) { hub.close(client, code, reason); },
-  };
-}
-
-net::Handlers handlers_of(api::Api& api) {
-  return {
-      .on_request =
-          [&api](net::Request request, base::Time begun, net::Respond respond) {
-            api.on_request(std::move(request), begun, std::move(respond));
-          },
-      .body_limit = [&api](const net::Request& header) { return api.body_limit(header); },
-      .discard = [&api](std::string large) { api.discard(std::move(large)); },
-      .on_upgrade = [&api](const net::Request& request) { return api.on_upgrade(request); },
-      .on_client = [&api](net::ClientId client) { api.on_client(client); },
-      .on_text = [&api](net::ClientId client, base::Time begun,
-                        std::string_view text) { api.on_text(client, begun, text); },
-      .on_gone = [&api](net::ClientId client) { api.on_gone(client); },
-      .on_refused = api::Api::on_refused,
-      .on_second = [&api] { api.on_second(); },
-  };
-}
+constexpr base::Duration kLookAtHost = std::chrono::seconds(1);
 
 }  // namespace
 
@@ -151,6 +55,7 @@ struct Station::Impl {
   store::TileFolder tiles;
   std::unique_ptr<Supervisor> supervisor;
   std::unique_ptr<store::Store> store;
+  std::unique_ptr<store::Backups> backups;
   std::unique_ptr<services::Services> services;
   std::unique_ptr<api::Api> api;
   std::unique_ptr<net::Server> server;
@@ -158,7 +63,11 @@ struct Station::Impl {
   std::unique_ptr<ControlLoop> loop;
   asio::signal_set signals{web, SIGINT, SIGTERM};
   asio::steady_timer learned_timer{web};
-  std::filesystem::path learned_file;  ///< empty: a recording is played, nothing is kept
+  asio::steady_timer host_timer{web};
+  LatenessWatch lateness_watch;
+  std::vector<base::HostProblem> host;  ///< what is wrong with this computer
+  std::optional<Claim> claim;           ///< of the link that moves the robot
+  std::filesystem::path learned_file;   ///< empty: a recording is played, nothing is kept
   std::string learned_by;
   net::Workers workers{web};  ///< for what would keep the web waiting; ends first
   std::string address;
@@ -175,6 +84,9 @@ struct Station::Impl {
   void tell_left_out(const Settings& settings);
   void keep_learned();
   void keep_learned_soon();
+  Result<void> claim_robot(const Settings& settings, const Options& options);
+  void watch_host();
+  void watch_host_soon();
   void halt() noexcept;
   void stop();
 };
@@ -188,6 +100,7 @@ Result<void> Station::Impl::open(const Settings& settings, const Options& option
   supervisor = std::move(*made);
   if (auto done = open_tiles(settings); !done) return done;
   if (auto done = open_store(settings, options); !done) return done;
+  if (auto done = claim_robot(settings, options); !done) return done;
   services = std::make_unique<services::Services>(robot, *store, settings.vehicle.name);
   make_api(settings);
   if (auto done = open_server(settings, options); !done) return done;
@@ -216,6 +129,10 @@ Result<void> Station::Impl::open_store(const Settings& settings, const Options& 
       [this](std::function<void()> answer) { asio::post(web, std::move(answer)); }, std::move(how));
   if (!opened) return tl::unexpected(opened.error());
   store = std::move(*opened);
+  backups = std::make_unique<store::Backups>(
+      std::filesystem::path(options.data) / "roverd.db",
+      store::BackupOptions{.keep = settings.backups.keep,
+                           .period = std::chrono::hours(settings.backups.every_h)});
   return {};
 }
 
@@ -265,6 +182,7 @@ void Station::Impl::make_api(const Settings& settings) {
                            .connections = stats.connections,
                            .clients = stats.clients};
   };
+  deps.host = [this] { return host; };
   deps.aside = [this](api::Aside a) {
     const net::Lane lane = a.large ? net::Lane::Large : net::Lane::Small;
     if (!a.must) return workers.run(lane, std::move(a.work), std::move(a.then));
@@ -291,6 +209,9 @@ Result<void> Station::Impl::open_server(const Settings& settings, const Options&
 
 /// Nobody reads a log: what holds in place of a kept value is told where the robot's events are.
 void Station::Impl::tell_left_out(const Settings& settings) {
+  if (!settings.rescued.empty()) {
+    robot.tell({base::wall_now(), base::Severity::Error, "database_rescued", settings.rescued});
+  }
   for (const std::string& why : settings.left_out) {
     robot.tell({base::wall_now(), base::Severity::Warning, "parameter_left_out",
                 "a kept value is not taken any more, the one before it holds: " + why});
@@ -317,6 +238,7 @@ void Station::Impl::start() {
         robot.tick(now, wall, lateness);
       },
       [this](base::Time now) { robot.heed_stop(now); });
+  watch_host_soon();
   base::log(base::Level::Info, "main", "serving", {{"address", address}, {"version", kVersion}});
 }
 
@@ -369,6 +291,44 @@ void Station::Impl::keep_learned_soon() {
   });
 }
 
+/// A folder that was removed holds no lock any more: the link is what a second one would drive
+/// over.
+Result<void> Station::Impl::claim_robot(const Settings& settings, const Options& options) {
+  const std::string link = drive_link(settings);
+  if (link.empty() || !options.replays.empty()) return {};
+  auto taken = Claim::take(link);
+  if (!taken) return tl::unexpected(taken.error());
+  claim.emplace(std::move(*taken));
+  return {};
+}
+
+/// What is new is an event, too: nobody looks at GET /health all day.
+void Station::Impl::watch_host() {
+  const base::Time now = base::steady_now();
+  if (const auto snapshot = robot.snapshot()) lateness_watch.take(snapshot->loop, now);
+  auto found = host_problems({.now = now,
+                              .wall = base::wall_now(),
+                              .storage = store->storage(),
+                              .real_time = loop->real_time(),
+                              .lateness_s = lateness_watch.p999_s()});
+  for (const base::HostProblem& problem : found) {
+    const auto same = [&](const base::HostProblem& known) { return known.id == problem.id; };
+    if (!problem.alarming || std::any_of(host.begin(), host.end(), same)) continue;
+    robot.tell({base::wall_now(), base::Severity::Warning, problem.id, problem.detail});
+  }
+  host = found;
+  robot.measurements().put(base::HostStatus{now, std::move(found)});
+}
+
+void Station::Impl::watch_host_soon() {
+  host_timer.expires_after(kLookAtHost);
+  host_timer.async_wait([this](const boost::system::error_code& ec) {
+    if (ec || !loop) return;
+    watch_host();
+    watch_host_soon();
+  });
+}
+
 /// The robot first: no command after this, and the base is told to stand.
 void Station::Impl::halt() noexcept {
   loop.reset();
@@ -394,6 +354,7 @@ Station::~Station() {
     impl_->services->stop();  // what is on its way to the web is dropped with the io_context
   impl_->server.reset();
   impl_->services.reset();
+  impl_->backups.reset();
   impl_->store.reset();  // its last answers are posted, and dropped with the io_context
 }
 

@@ -237,10 +237,24 @@ struct DriverStatus {
   std::string recording_problem{};  ///< why Stopped; empty otherwise
 };
 
+/// What is wrong with the robot's own computer. Nothing of it stops the robot.
+struct HostProblem {
+  std::string
+      id;  ///< storage_failed storage_low storage_silent clock_unset loop_late realtime_refused
+  std::string detail;    ///< in words
+  bool alarming = true;  ///< also where safety is told; else in the checks and GET /health alone
+  friend bool operator==(const HostProblem&, const HostProblem&) = default;
+};
+
+struct HostStatus {
+  Time stamp;
+  std::vector<HostProblem> problems;
+};
+
 using Measurement =
     std::variant<GnssFix, GnssVelocity, Heading, Inertial, Attitude, SatellitesInView, WheelTravel,
                  BaseMotion, SteeringState, BaseStatus, BatteryState, MotorState, LightState,
-                 RadioState, Bumper, DriverStatus>;
+                 RadioState, Bumper, DriverStatus, HostStatus>;
 
 inline Time stamp_of(const Measurement& m) noexcept {
   return std::visit([](const auto& value) { return value.stamp; }, m);

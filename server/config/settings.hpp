@@ -115,12 +115,25 @@ void fields(V& v, RunSettings& p) {
   v("keep", p.keep, 1, 1'000'000, "the newest runs so many are kept, with their tracks");
 }
 
+struct BackupSettings {
+  int keep = 7;
+  int every_h = 24;
+};
+
+template <class V>
+void fields(V& v, BackupSettings& p) {
+  v("keep", p.keep, 0, 1000,
+    "copies of the database kept in DATA/backups, the oldest goes; 0: none");
+  v("every_h", p.every_h, 1, 8760, "a copy is made so often");
+}
+
 struct Settings {
   ServerSettings server;
   VehicleSettings vehicle;
   RecordingSettings recording;
   MissionSettings missions;
   RunSettings runs;
+  BackupSettings backups;
   Wired<bunker::Params> bunker;
   Wired<ackermann::Params> ackermann;
   Wired<ratio::Params> ratio;
@@ -133,6 +146,7 @@ struct Settings {
   std::map<std::string, std::filesystem::path> tiles;  ///< set name → MBTiles file
   std::map<std::string, std::string> places;           ///< key → where it was said last
   std::vector<std::string> left_out;  ///< kept parameters that were refused, and why
+  std::string rescued;                ///< what was done for a damaged database; empty: nothing
 
   /// For messages: "config/robot.toml:12: drivers.gnss.link"; the key alone if nobody said it.
   std::string where(const std::string& key) const;

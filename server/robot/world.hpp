@@ -31,6 +31,7 @@ struct World {
   std::optional<std::string> bumper_hit;
   std::optional<base::RadioState> radio;
   std::vector<base::DriverStatus> drivers;
+  std::vector<base::HostProblem> host;  ///< what is wrong with this computer
 
   base::Switch swb = base::Switch::Unknown;  ///< last position between detents
   std::optional<Time> radio_counted;         ///< when the radio's counter last changed
@@ -116,6 +117,7 @@ struct World {
     if (!radio || radio->count != m.count) radio_counted = m.stamp;
     radio = m;
   }
+  void put(base::HostStatus&& m) { host = std::move(m.problems); }
   void put(base::DriverStatus&& m) {
     for (base::DriverStatus& known : drivers) {
       if (known.name != m.name) continue;

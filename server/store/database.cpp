@@ -163,7 +163,8 @@ Result<std::unique_ptr<Database>> open_database(const fs::path& file,
   auto result = guarded([&]() -> Result<std::unique_ptr<Database>> {
     auto db = std::make_unique<Database>(Database{
         std::move(*lock),
-        SQLite::Database(name, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kBusyTimeout_ms)});
+        SQLite::Database(name, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kBusyTimeout_ms),
+        FolderWatch(file)});
     if (sqlite3_db_readonly(db->connection.getHandle(), "main") != 0) {
       return base::fail(Code::Unavailable, name + " may not be written: check its permissions");
     }

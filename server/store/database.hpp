@@ -13,6 +13,7 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 
 #include "base/result.hpp"
+#include "store/folder_watch.hpp"
 #include "store/migrations.hpp"
 
 namespace roverd::store {
@@ -36,6 +37,7 @@ class FileLock {
 struct Database {
   FileLock lock;
   SQLite::Database connection;
+  FolderWatch place;  ///< of the file
 };
 
 /// WAL, synchronous=FULL, foreign keys, all of `steps` applied: one transaction each.

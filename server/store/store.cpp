@@ -7,6 +7,10 @@ namespace roverd::store {
 using base::Error;
 using base::Result;
 
+namespace {
+constexpr base::Duration kLook = std::chrono::seconds(2);
+}  // namespace
+
 Store::Impl::Impl(std::unique_ptr<Database> database, Options options_)
     : db(std::move(database)), options(std::move(options_)) {
   thread = std::thread([this] { run(); });
@@ -46,13 +50,16 @@ void Store::Impl::close_runs() {
 void Store::Impl::run() {
   forget();
   close_runs();
+  look();
   std::vector<base::Event> new_events;
   std::deque<std::function<void()>> todo;
+  base::Time looked = base::steady_now();
   for (;;) {
     {
       std::unique_lock lock(mutex);
-      news.wait(lock, [this] { return closing || !jobs.empty() || !events.empty(); });
-      if (jobs.empty() && events.empty()) return;  // closing, and all is done
+      const bool asked = news.wait_for(
+          lock, kLook, [this] { return closing || !jobs.empty() || !events.empty(); });
+      if (asked && jobs.empty() && events.empty()) return;  // closing, and all is done
       new_events.swap(events);
       if (!jobs.empty()) {
         todo.push_back(std::move(jobs.front()));
@@ -64,11 +71,59 @@ void Store::Impl::run() {
     new_events.clear();
     for (auto& job : todo) job();
     todo.clear();
+    if (base::steady_now() - looked >= kLook) {
+      look();
+      looked = base::steady_now();
+    }
   }
 }
 
+void Store::Impl::set_trouble(std::string trouble) {
+  std::lock_guard lock(mutex);
+  storage.trouble = std::move(trouble);
+}
+
+bool Store::Impl::is_trouble(const Error& error) noexcept {
+  return error.code == base::Code::Unavailable;
+}
+
+tl::unexpected<Error> Store::Impl::not_kept(std::string gone) {
+  gone += ": nothing is kept any more; put it back and start roverd again";
+  set_trouble(gone);
+  return tl::unexpected<Error>({base::Code::Unavailable, std::move(gone), {}});
+}
+
+void Store::Impl::look() {
+  std::string trouble = db->place.gone();
+  if (trouble.empty()) trouble = db->place.unwritable();
+  bool try_it = false;
+  {
+    std::lock_guard lock(mutex);
+    try_it = trouble.empty() && !storage.trouble.empty();
+  }
+  if (try_it) {
+    // The smallest change there is: the first page, as it was.
+    const auto done = guarded([&]() -> Result<void> {
+      SQLite::Transaction transaction(db->connection, SQLite::TransactionBehavior::IMMEDIATE);
+      const int version = db->connection.execAndGet("PRAGMA user_version").getInt();
+      db->connection.exec("PRAGMA user_version = " + std::to_string(version));
+      transaction.commit();
+      return {};
+    });
+    if (!done) trouble = done.error().detail;
+  }
+  const auto free_bytes = db->place.free_bytes();
+  std::lock_guard lock(mutex);
+  storage = {base::steady_now(), std::move(trouble), free_bytes};
+}
+
+StorageState Store::storage() const {
+  std::lock_guard lock(impl_->mutex);
+  return impl_->storage;
+}
+
 void Store::Impl::write(const std::vector<base::Event>& list) {
-  const auto done = guarded([&]() -> Result<void> {
+  const auto done = kept([&]() -> Result<void> {
     write_events(db->connection, list, options.max_events);
     return {};
   });

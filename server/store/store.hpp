@@ -20,6 +20,7 @@
 #include "mission/fence/fence.hpp"
 #include "mission/graph/route_graph.hpp"
 #include "mission/plan.hpp"
+#include "store/folder_watch.hpp"
 #include "store/run_words.hpp"
 
 namespace roverd::store {
@@ -284,6 +285,8 @@ class Store {
   void add_event(base::Event event);
   /// Any thread.
   std::uint64_t lost_events() const noexcept;
+  /// Any thread; looked at every two seconds. While there is trouble every change is refused.
+  StorageState storage() const;
   /// Ascending ids greater than `after_id`, at least `level`.
   void list_events(std::int64_t after_id, base::Severity level, int limit,
                    Reply<Page<StoredEvent>> reply);

@@ -14,6 +14,7 @@
 
 #include "store/database.hpp"
 #include "store/fences.hpp"
+#include "store/folder_watch.hpp"
 #include "store/missions.hpp"
 #include "store/runs.hpp"
 #include "store/store.hpp"
@@ -34,6 +35,7 @@ struct Store::Impl {
   std::vector<base::Event> events;
   bool closing = false;
   std::atomic<std::uint64_t> lost_events{0};
+  StorageState storage{};  ///< under the mutex
   std::thread thread{};
 
   Impl(std::unique_ptr<Database> database, Options options_);
@@ -42,6 +44,25 @@ struct Store::Impl {
   void forget();
   void close_runs();
   void run();
+  /// How the disk is; after a failure it tries whether a change would be kept again.
+  void look();
+  void set_trouble(std::string trouble);
+  /// Runs `work` where it can be kept: a file that is gone takes every change, and loses it.
+  template <class Work>
+  auto kept(Work&& work) -> decltype(work()) {
+    if (std::string gone = db->place.gone(); !gone.empty()) return not_kept(std::move(gone));
+    const int before = db->connection.getTotalChanges();
+    auto result = guarded(work);
+    if (!result) {
+      if (is_trouble(result.error())) set_trouble(result.error().detail);
+    } else if (db->connection.getTotalChanges() != before) {
+      if (std::string gone = db->place.gone(); !gone.empty()) return not_kept(std::move(gone));
+      set_trouble({});
+    }
+    return result;
+  }
+  tl::unexpected<base::Error> not_kept(std::string gone);
+  static bool is_trouble(const base::Error& error) noexcept;
   void write(const std::vector<base::Event>& list);
 
   template <class T>
@@ -58,7 +79,7 @@ struct Store::Impl {
       std::lock_guard lock(mutex);
       if (jobs.size() < options.queue) {
         jobs.push_back([this, deliver, reply = std::move(reply), work = std::move(work)]() mutable {
-          answer(deliver, std::move(reply), guarded([&]() -> base::Result<T> { return work(); }));
+          answer(deliver, std::move(reply), kept([&]() -> base::Result<T> { return work(); }));
         });
         news.notify_one();
         return;

@@ -15,7 +15,17 @@ Json health_json(const Context& context) {
   const auto snapshot = context.deps.robot.snapshot();
   const base::Time now = base::steady_now();
   const bool alive = snapshot && base::seconds(now - snapshot->now) < kSilent_s;
-  return {{"status", alive ? "ok" : "degraded"},
+  Json problems = Json::array();
+  if (!alive)
+    problems.push_back({{"id", "loop_silent"}, {"detail", "the control loop does not run"}});
+  bool well = alive;
+  for (const base::HostProblem& p :
+       context.deps.host ? context.deps.host() : std::vector<base::HostProblem>{}) {
+    problems.push_back({{"id", p.id}, {"detail", p.detail}});
+    well = well && !p.alarming;
+  }
+  return {{"status", well ? "ok" : "degraded"},
+          {"problems", std::move(problems)},
           {"version", context.deps.version},
           {"mono_s", mono_s(now)},
           {"uptime_s", std::round(base::seconds(now - context.begun) * 1e3) / 1e3},

@@ -56,6 +56,9 @@ class Assessor {
     if (!radio) base_follows();
     position(radio);
     battery();
+    for (const base::HostProblem& problem : w.host) {
+      if (problem.alarming) add(Response::Warn, problem.id.c_str(), problem.detail);
+    }
     return std::move(out_);
   }
 
@@ -335,6 +338,13 @@ base::Check check_drivers(const World& w) {
   return check("drivers", text.empty(), Severity::Warning, text.empty() ? "all up" : text);
 }
 
+base::Check check_computer(const World& w) {
+  std::string text;
+  for (const base::HostProblem& problem : w.host)
+    text += (text.empty() ? "" : "; ") + problem.detail;
+  return check("computer", text.empty(), Severity::Warning, text.empty() ? "all is well" : text);
+}
+
 }  // namespace
 
 bool radio_drives(const World& w, const SafetyParams& p, Time now) noexcept {
@@ -380,7 +390,7 @@ std::vector<base::Check> arming_checks(const Facts& f, const SafetyParams& safet
                                        const ArmingParams& p, bool mission_loaded, Time now) {
   const World& w = f.world;
   std::vector<base::Check> all;
-  all.reserve(10);
+  all.reserve(11);
   all.push_back(check_gnss(f, safety, p, now));
   all.push_back(check_accuracy(f, p));
   all.push_back(check_heading(f, p));
@@ -395,6 +405,7 @@ std::vector<base::Check> arming_checks(const Facts& f, const SafetyParams& safet
   all.push_back(check("estop", !f.estop, Severity::Error,
                       f.estop ? "emergency stop is latched: reset it first" : "released"));
   all.push_back(check_drivers(w));
+  all.push_back(check_computer(w));
   all.push_back(check("mission", mission_loaded, Severity::Info,
                       mission_loaded ? "loaded" : "no mission is loaded"));
   return all;

@@ -17,6 +17,7 @@
 // | wheels turn, robot stands (AUTO)      | 3 s (parameter)    | Hold                           |
 // | position uncertain (AUTO)              | at once, 2 s worse | Slow, Hold                     |
 // | battery low, fault                     | at once            | Warn, Hold                     |
+// | this computer: disk, clock, lateness   | at once            | Warn                           |
 // Hold stops, goes to mode HOLD and stays there until an operator goes on. Only the radio's
 // take-over ends by itself. What is wrong with the position is listed in every mode, and followed
 // by something in AUTO only.

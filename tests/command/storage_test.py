@@ -1,0 +1,90 @@
+#!/usr/bin/env python3
+"""A data folder that is removed, a database that is damaged, a second roverd for the same robot: what
+is not kept is not said to be, the robot can be stopped and driven by hand, and the page knows why."""
+
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "harness"))
+from station import Program, Rest, Station, check, run_cases, until  # noqa: E402
+
+PLAN = {"name": "kept", "items": [{"type": "waypoint", "lat": 58.0, "lon": 26.0 + i * 1e-5} for i in range(50)]}
+
+
+def ids(items):
+    return [one["id"] for one in items]
+
+
+def arguments_of(station, data):
+    out = list(station.roverd.process.args)
+    out[out.index("--data") + 1] = str(data)
+    return out
+
+
+def drives_by_hand(rest, station):
+    """Armed, held by the stick's stream or a move: here by a move of one metre."""
+    until("the checks pass", 60, lambda: rest.get("/vehicle/checks")["ready"], 0.2)
+    until("it arms", 20, lambda: rest.call("POST", "/vehicle/arm", {"valid_for_s": 5})[0] == 200, 0.5)
+    before = station.control.ask({"get": "truth"})["driven_m"]
+    rest.do("POST", "/vehicle/move", {"forward_m": 1.0, "valid_for_s": 5})
+    until("it moves", 20, lambda: station.control.ask({"get": "truth"})["driven_m"] > before + 0.3, 0.1)
+    rest.do("POST", "/vehicle/estop")
+    time.sleep(1.0)
+    stood = station.control.ask({"get": "truth"})["driven_m"]
+    time.sleep(0.5)
+    moved = station.control.ask({"get": "truth"})["driven_m"] - stood
+    check(moved < 0.02, f"it drove {moved:.2f} m after the stop")
+    rest.do("POST", "/vehicle/estop/reset")
+
+
+def a_removed_data_folder():
+    """without its data folder nothing is said to be saved, and a second roverd is refused"""
+    with Station(seed=5) as station:
+        rest, data = station.rest, station.scratch / "data"
+        rest.do("POST", "/missions", PLAN)
+        health = rest.get("/health")
+        check(health["status"] == "ok", f"health {health}")
+        shutil.rmtree(data)
+        status, _, body = rest.call("POST", "/missions", PLAN)
+        check(status == 503, f"a mission saved into nothing answers {status}: {body}")
+        check(str(data) in body["detail"] and "removed" in body["detail"], f"it says {body}")
+        until("GET /health says so", 10, lambda: "storage_failed" in ids(rest.get("/health")["problems"]), 0.2)
+        check(rest.get("/health")["status"] == "degraded", f"health {rest.get('/health')}")
+        until("safety says so", 10, lambda: "storage_failed" in ids(rest.get("/vehicle")["safety"]), 0.2)
+        computer = next(c for c in rest.get("/vehicle/checks")["checks"] if c["id"] == "computer")
+        check(not computer["ok"] and "removed" in computer["detail"], f"the check says {computer}")
+        second = subprocess.run(arguments_of(station, station.scratch / "other"), capture_output=True, text=True,
+                                timeout=60, check=False)
+        check(second.returncode == 1, f"a second roverd ends with {second.returncode}: {second.stderr}")
+        check(f"another roverd (process {station.roverd.process.pid}) drives this robot" in second.stderr,
+              f"it says {second.stderr!r}")
+        drives_by_hand(rest, station)
+
+
+def a_damaged_database():
+    """a damaged database is set aside, and the robot can be driven and stopped"""
+    with Station(seed=6) as station:
+        data = station.scratch / "data"
+        station.rest.do("POST", "/missions", PLAN)
+        station.roverd.stop(signal.SIGKILL)
+        database = data / "roverd.db"
+        for part in ("-wal", "-shm"):
+            pathlib.Path(str(database) + part).unlink(missing_ok=True)
+        size = database.stat().st_size
+        database.write_bytes(b"\0" * size)
+        station.roverd = Program(*arguments_of(station, data))
+        station.rest = rest = Rest(station.roverd.wait_line(r"^listening on (http://\S+)")[1])
+        check((data / "roverd.db.damaged-1").stat().st_size == size, "the damaged file is not kept")
+        told = until("an event tells it", 10, lambda: [
+            e for e in rest.get("/events?level=error&limit=50")["items"] if e["kind"] == "database_rescued"], 0.2)
+        check("there is no backup" in told[0]["detail"], f"the event says {told}")
+        rest.do("POST", "/missions", PLAN)
+        drives_by_hand(rest, station)
+
+
+if __name__ == "__main__":
+    sys.exit(run_cases([a_removed_data_folder, a_damaged_database]))
