@@ -7,8 +7,6 @@
 #include <optional>
 #include <string>
 
-#include <sys/types.h>
-
 #include "base/time.hpp"
 
 namespace roverd::store {
@@ -36,8 +34,8 @@ class FolderWatch {
   std::filesystem::path file_;
   std::filesystem::path folder_;
   bool known_ = false;
-  dev_t device_{};
-  ino_t inode_{};
+  std::uint64_t device_ = 0;
+  std::uint64_t inode_ = 0;
 };
 
 }  // namespace roverd::store
