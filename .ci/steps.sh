@@ -209,15 +209,14 @@ step_tidy() {
   return "$code"
 }
 
-# sanitized NAME SANITIZERS: configures build/NAME. Asio uses fences, of which GCC warns that the
-# thread sanitizer does not see them.
-sanitized() {
-  configure "$build/$1" -DCMAKE_BUILD_TYPE=Sanitized -DCMAKE_CXX_FLAGS="-O1 -g1 -Wno-tsan" \
-    "${in_groups[@]}" -DROVERD_SANITIZE="$2"
+# One tree, by clang, for the address sanitizer's tests and for the fuzz targets: they share every room.
+by_clang() {
+  configure "$build/asan" -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Sanitized \
+    -DCMAKE_CXX_FLAGS="-O1 -g1" -DROVERD_FUZZ=ON "${in_groups[@]}"
 }
 
 step_asan() {
-  sanitized asan address,undefined
+  by_clang
   ninja_build "$build/asan"
   ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1 \
     UBSAN_OPTIONS=print_stacktrace=1 \
@@ -230,7 +229,9 @@ threaded='^(base|services|supervise|net|store|link|robot|net_socket|api_socket)_
 
 step_tsan() {
   local targets
-  sanitized tsan thread
+  # Asio uses fences, of which GCC warns that the thread sanitizer does not see them.
+  configure "$build/tsan" -DCMAKE_BUILD_TYPE=Sanitized -DCMAKE_CXX_FLAGS="-O1 -g1 -Wno-tsan" \
+    "${in_groups[@]}" -DROVERD_SANITIZE=thread
   cmake "$build/tsan" # knows tests that are new
   mapfile -t targets < <(ctest --test-dir "$build/tsan" -N -R "$threaded" |
     sed -n 's/^ *Test *#[0-9]*: //p')
@@ -246,7 +247,7 @@ fuzz_one() {
   local name found log
   name=$(basename "$1" _fuzz)
   log=$logs/fuzz-$name.log
-  found=$build/fuzz/corpus/$name # what it learns is kept for the next run
+  found=$build/asan/corpus/$name # what it learns is kept for the next run
   mkdir -p "$found" "$root/tests/data/fuzz/$name"
   if "$1" -max_total_time="${FUZZ_SECONDS:-5}" -timeout=10 -rss_limit_mb=2048 -verbosity=0 \
     -print_final_stats=1 -artifact_prefix="$logs/$name-" "$found" "$root/tests/data/fuzz/$name" \
@@ -260,13 +261,12 @@ fuzz_one() {
 }
 
 step_fuzz() {
-  configure "$build/fuzz" -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Sanitized \
-    -DCMAKE_CXX_FLAGS="-O1 -g1" -DROVERD_FUZZ=ON -DROVERD_TESTS=OFF "${in_groups[@]}"
-  ninja_build "$build/fuzz" fuzz
+  by_clang
+  ninja_build "$build/asan" fuzz
   export -f fuzz_one say
   export build root logs
   # shellcheck disable=SC2016
-  printf '%s\0' "$build/fuzz/bin/"*_fuzz |
+  printf '%s\0' "$build/asan/bin/"*_fuzz |
     xargs -0 -n 1 -P "$jobs" bash -euo pipefail -c 'fuzz_one "$1"' fuzz
 }
 

@@ -266,6 +266,8 @@ class RigBase {
   std::vector<sim::Truth> track;
   std::vector<base::Event> events;
   double fastest_mps = 0.0;
+  /// What somebody did to the robot computer's clock; nothing but shown times may change.
+  base::Duration clock_jump{};
 
  private:
   void fit_imu() {
@@ -293,7 +295,8 @@ class RigBase {
   }
 
   base::WallTime wall() const {
-    return base::WallTime{std::chrono::seconds(1'780'000'000)} + now_.time_since_epoch();
+    return base::WallTime{std::chrono::seconds(1'780'000'000)} + now_.time_since_epoch() +
+           clock_jump;
   }
 
   void drain() {
