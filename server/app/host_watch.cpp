@@ -11,8 +11,6 @@ constexpr std::uint64_t kLow_bytes = 200'000'000;
 constexpr double kSilent_s = 10.0;
 constexpr double kLate_s = 0.005;
 constexpr double kMinute_s = 60.0;
-/// 2025-01-01T00:00:00Z: this program is younger.
-constexpr base::WallTime kYoungest{std::chrono::seconds(1'735'689'600)};
 
 std::string with(const char* format, double value) {
   char text[96];

@@ -124,6 +124,10 @@ Result<void> Station::Impl::open_store(const Settings& settings, const Options& 
   store::Options how;
   how.keep_deleted = std::chrono::hours(24) * settings.missions.keep_deleted_days;
   how.keep_runs = settings.runs.keep;
+  // A clock that was never set knows no ages; one that is wrong by years would forget everything.
+  if (base::wall_now() >= kYoungest) {
+    how.keep_runs_for = std::chrono::hours(24) * settings.runs.keep_days;
+  }
   auto opened = store::Store::open(
       std::filesystem::path(options.data) / "roverd.db",
       [this](std::function<void()> answer) { asio::post(web, std::move(answer)); }, std::move(how));

@@ -108,11 +108,14 @@ void fields(V& v, MissionSettings& p) {
 
 struct RunSettings {
   int keep = 1000;
+  int keep_days = 0;
 };
 
 template <class V>
 void fields(V& v, RunSettings& p) {
   v("keep", p.keep, 1, 1'000'000, "the newest runs so many are kept, with their tracks");
+  v("keep_days", p.keep_days, 0, 36500,
+    "older ones go at the next start, by this computer's clock; 0: they stay");
 }
 
 struct BackupSettings {

@@ -97,6 +97,11 @@ void Store::read_run(std::int64_t id, Reply<StoredRun> reply) {
   impl_->ask(deliver_, std::move(reply), [impl = impl_.get(), id] { return impl->runs.read(id); });
 }
 
+void Store::delete_run(std::int64_t id, Reply<void> reply) {
+  impl_->ask(deliver_, std::move(reply),
+             [impl = impl_.get(), id] { return impl->runs.remove(id); });
+}
+
 void Store::read_run_points(std::int64_t id, Reply<std::vector<RunPoint>> reply) {
   impl_->ask(deliver_, std::move(reply),
              [impl = impl_.get(), id] { return impl->runs.points(id); });

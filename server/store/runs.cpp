@@ -187,6 +187,28 @@ base::Result<std::int64_t> Runs::begin(const StoredRun& run, std::int64_t keep) 
   return id;
 }
 
+base::Result<void> Runs::remove(std::int64_t id) {
+  SQLite::Transaction transaction(db_, SQLite::TransactionBehavior::IMMEDIATE);
+  SQLite::Statement known(db_, "SELECT ended_ns IS NULL FROM runs WHERE id = ?");
+  known.bind(1, id);
+  if (!known.executeStep()) return tl::unexpected(no_run(id));
+  if (known.getColumn(0).getInt() != 0) {
+    return base::fail(Code::Conflict, "run " + std::to_string(id) + " is being driven");
+  }
+  known.reset();
+  SQLite::Statement row(db_, "DELETE FROM runs WHERE id = ?");
+  row.bind(1, id);
+  row.exec();
+  transaction.commit();
+  return {};
+}
+
+void Runs::forget(base::WallTime before) {
+  SQLite::Statement rows(db_, "DELETE FROM runs WHERE ended_ns < ?");
+  rows.bind(1, ns(before));
+  rows.exec();
+}
+
 base::Result<void> Runs::add(std::int64_t id, const RunBatch& batch) {
   SQLite::Transaction transaction(db_, SQLite::TransactionBehavior::IMMEDIATE);
   SQLite::Statement known(db_, "SELECT 1 FROM runs WHERE id = ?");

@@ -21,6 +21,10 @@ class Runs {
   void close_interrupted();
   /// @param keep the newest so many stay, older ones go with all they have
   base::Result<std::int64_t> begin(const StoredRun& run, std::int64_t keep);
+  /// With its track and events. NotFound; Conflict while it is driven.
+  base::Result<void> remove(std::int64_t id);
+  /// Those that ended before.
+  void forget(base::WallTime before);
   /// NotFound if there is no such run (any more).
   base::Result<void> add(std::int64_t id, const RunBatch& batch);
   base::Result<Page<RunHead>> list(int limit, const std::string& cursor);

@@ -28,11 +28,14 @@ Store::Impl::~Impl() {
 void Store::Impl::forget() {
   const auto done = guarded([&]() -> Result<void> {
     missions.forget_deleted(options.clock() - options.keep_deleted);
+    if (options.keep_runs_for > base::Duration::zero()) {
+      runs.forget(options.clock() - options.keep_runs_for);
+    }
     return {};
   });
   static base::LogLimit limit(10.0);
   if (!done && limit.due()) {
-    base::log(base::Level::Warning, "store", "deleted missions cannot be forgotten",
+    base::log(base::Level::Warning, "store", "what is old cannot be forgotten",
               {{"reason", done.error().detail}});
   }
 }

@@ -160,7 +160,8 @@ struct Options {
   std::int64_t max_events = 100'000;       ///< beyond that the oldest go
   std::int64_t max_bytes = 4'000'000'000;  ///< of the file; then as if the disk were full
   base::Duration keep_deleted = std::chrono::hours(24 * 30);  ///< then they are forgotten for good
-  std::int64_t keep_runs = 1000;  ///< the newest; older ones go with their tracks
+  std::int64_t keep_runs = 1000;   ///< the newest; older ones go with their tracks
+  base::Duration keep_runs_for{};  ///< after their end; zero: for ever
   std::function<base::WallTime()> clock = base::wall_now;  ///< called on the store's thread
 };
 
@@ -255,6 +256,8 @@ class Store {
   /// Newest first.
   void list_runs(int limit, std::string cursor, Reply<Page<RunHead>> reply);
   void read_run(std::int64_t id, Reply<StoredRun> reply);
+  /// With its track and events. NotFound; Conflict while it is driven.
+  void delete_run(std::int64_t id, Reply<void> reply);
   void read_run_points(std::int64_t id, Reply<std::vector<RunPoint>> reply);
 
   /// Where the mission in hand stands; empty: none is.

@@ -177,6 +177,10 @@ TEST_F(ModesApi, ADrivenMissionBecomesARun) {
   EXPECT_NE(call("GET", "/runs/1/track?format=gpx").raw.body.find("<trkpt"), std::string::npos);
   EXPECT_EQ(call("GET", "/runs/1/track?format=pdf").status, 422u);
   EXPECT_EQ(call("GET", "/runs/7").status, 404u);
+  EXPECT_EQ(call("DELETE", "/runs/7").status, 404u);
+  EXPECT_EQ(call("DELETE", "/runs/1").status, 204u);
+  EXPECT_EQ(call("GET", "/runs/1").status, 404u);
+  EXPECT_EQ(call("GET", "/runs").body["items"].size(), 0u);
   EXPECT_EQ(call("GET", "/runs/seven/report").status, 404u);
   EXPECT_TRUE(call("GET", "/execution").body["left_behind"].is_null());
   EXPECT_EQ(call("DELETE", "/execution/left_behind").status, 204u);

@@ -73,6 +73,17 @@ Handler get_run(const ContextPtr& context) {
   };
 }
 
+Handler delete_run(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    const auto id = run_of(call);
+    if (!id) return;
+    context->deps.store.delete_run(*id, [call](base::Result<void> done) {
+      if (!done) return call->respond(problem(done.error()));
+      call->respond(Response{http::status::no_content, 11});
+    });
+  };
+}
+
 Response track_response(const Call& call, const store::StoredRun& run,
                         const std::vector<store::RunPoint>& points) {
   const std::string word = query_text(call, "format");
@@ -111,6 +122,7 @@ void add_run_routes(const ContextPtr& c) {
   const auto get = http::verb::get;
   c->router.add({get, "/runs", {200, 400, 422, 503}, list_runs(c)});
   c->router.add({get, "/runs/{id}", {200, 404, 503}, get_run(c)});
+  c->router.add({http::verb::delete_, "/runs/{id}", {204, 404, 409, 503}, delete_run(c)});
   c->router.add({get, "/runs/{id}/track", {200, 404, 422, 503}, with_track(c, track_response)});
   c->router.add({get, "/runs/{id}/report", {200, 404, 409, 503}, with_track(c, report_response)});
 }

@@ -87,6 +87,60 @@ TEST(Runs, AreReadBackAsTheyWereDriven) {
   EXPECT_EQ(read_run(folder.file("none.db"), 1).error().code, base::Code::NotFound);
 }
 
+TEST(Runs, OneIsForgottenWithAllItHasButNotWhileItIsDriven) {
+  // Given a run that ended and one that is being driven,
+  Folder folder;
+  auto store = open(folder);
+  const auto ended = begun(*store, "ended");
+  RunBatch last = batch(0, 10);
+  last.outcome = RunOutcome::Finished;
+  last.ended = base::WallTime{std::chrono::seconds(1'780'000'100)};
+  ASSERT_TRUE(answer_of<void>([&](auto r) { store->add_to_run(ended, last, r); }));
+  const auto driven = begun(*store, "driven");
+  // when both are deleted,
+  const auto forget = [&](std::int64_t id) {
+    return answer_of<void>([&](auto r) { store->delete_run(id, r); });
+  };
+  EXPECT_TRUE(forget(ended));
+  const auto refused = forget(driven);
+  // then the first is gone for good, and the second goes on.
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, base::Code::Conflict);
+  EXPECT_EQ(refused.error().detail, "run " + std::to_string(driven) + " is being driven");
+  EXPECT_TRUE(answer_of<void>([&](auto r) { store->add_to_run(driven, batch(0, 1), r); }));
+  EXPECT_EQ(forget(ended).error().code, base::Code::NotFound);
+  EXPECT_EQ(read_run(folder.file(), ended).error().code, base::Code::NotFound);
+  EXPECT_EQ(read_run(folder.file(), driven)->points.size(), 1u);
+}
+
+TEST(Runs, OlderThanTheirDaysAreForgottenAtTheNextStart) {
+  // Given runs that ended 100 and 9 days before now,
+  const base::WallTime now{std::chrono::seconds(1'790'000'000)};
+  const auto days = [](int n) { return std::chrono::hours(24) * n; };
+  Folder folder;
+  std::vector<std::int64_t> ids;
+  {
+    auto store = open(folder);
+    for (const int age : {100, 9}) {
+      ids.push_back(begun(*store, "run"));
+      RunBatch last;
+      last.outcome = RunOutcome::Finished;
+      last.ended = now - days(age);
+      ASSERT_TRUE(answer_of<void>([&](auto r) { store->add_to_run(ids.back(), last, r); }));
+    }
+  }
+  // when the program starts with ten days to keep,
+  Options options;
+  options.keep_runs_for = days(10);
+  options.clock = [now] { return now; };
+  auto store = Store::open(folder.file(), at_once, options);
+  ASSERT_TRUE(store);
+  // then the younger one is left.
+  const auto left = answer_of<Page<RunHead>>([&](auto r) { (*store)->list_runs(10, "", r); });
+  ASSERT_EQ(left->items.size(), 1u);
+  EXPECT_EQ(left->items[0].id, ids[1]);
+}
+
 TEST(Runs, OneThatWasCutOffIsInterruptedWithItsLastPoint) {
   Folder folder;
   std::int64_t id = 0;
