@@ -48,6 +48,14 @@ std::vector<base::HostProblem> host_problems(const HostFacts& f) {
              late,
          false});
   }
+  if (!f.memory_locked) {
+    out.push_back(
+        {"memory_unlocked",
+         "this system does not let the program lock its memory (CAP_IPC_LOCK, LimitMEMLOCK= "
+         "of a service): " +
+             late,
+         false});
+  }
   return out;
 }
 

@@ -32,6 +32,7 @@
 #include "store/store.hpp"
 #include "store/tiles.hpp"
 #include "supervise/claim.hpp"
+#include "supervise/service_manager.hpp"
 #include "supervise/supervisor.hpp"
 
 namespace roverd {
@@ -66,8 +67,11 @@ struct Station::Impl {
   asio::steady_timer host_timer{web};
   LatenessWatch lateness_watch;
   std::vector<base::HostProblem> host;  ///< what is wrong with this computer
-  std::optional<Claim> claim;           ///< of the link that moves the robot
-  std::filesystem::path learned_file;   ///< empty: a recording is played, nothing is kept
+  const bool memory_locked = lock_memory();
+  ServiceManager manager = ServiceManager::of_this_process();
+  asio::steady_timer alive_timer{web};
+  std::optional<Claim> claim;          ///< of the link that moves the robot
+  std::filesystem::path learned_file;  ///< empty: a recording is played, nothing is kept
   std::string learned_by;
   net::Workers workers{web};  ///< for what would keep the web waiting; ends first
   std::string address;
@@ -87,6 +91,7 @@ struct Station::Impl {
   Result<void> claim_robot(const Settings& settings, const Options& options);
   void watch_host();
   void watch_host_soon();
+  void tell_alive();
   void halt() noexcept;
   void stop();
 };
@@ -243,6 +248,8 @@ void Station::Impl::start() {
       },
       [this](base::Time now) { robot.heed_stop(now); });
   watch_host_soon();
+  manager.ready(address);
+  tell_alive();
   base::log(base::Level::Info, "main", "serving", {{"address", address}, {"version", kVersion}});
 }
 
@@ -314,6 +321,7 @@ void Station::Impl::watch_host() {
                               .wall = base::wall_now(),
                               .storage = store->storage(),
                               .real_time = loop->real_time(),
+                              .memory_locked = memory_locked,
                               .lateness_s = lateness_watch.p999_s()});
   for (const base::HostProblem& problem : found) {
     const auto same = [&](const base::HostProblem& known) { return known.id == problem.id; };
@@ -322,6 +330,17 @@ void Station::Impl::watch_host() {
   }
   host = found;
   robot.measurements().put(base::HostStatus{now, std::move(found)});
+}
+
+/// From the web thread: it must live as well as the loop.
+void Station::Impl::tell_alive() {
+  if (!manager.period() || !loop) return;
+  const auto snapshot = robot.snapshot();
+  manager.alive(snapshot ? snapshot->loop.ticks : 0);
+  alive_timer.expires_after(*manager.period());
+  alive_timer.async_wait([this](const boost::system::error_code& ec) {
+    if (!ec) tell_alive();
+  });
 }
 
 void Station::Impl::watch_host_soon() {
@@ -341,6 +360,7 @@ void Station::Impl::halt() noexcept {
 
 void Station::Impl::stop() {
   base::log(base::Level::Info, "main", "stopping");
+  manager.stopping();
   halt();
   server->stop(kGoodbye, [this] {
     bell->silence();

@@ -1,12 +1,16 @@
 #!/usr/bin/env python3
 """A data folder that is removed, a database that is damaged, a second roverd for the same robot: what
-is not kept is not said to be, the robot can be stopped and driven by hand, and the page knows why."""
+is not kept is not said to be, the robot can be stopped and driven by hand, and the page knows why. And
+what a service manager hears of it all."""
 
+import os
 import pathlib
 import shutil
 import signal
+import socket
 import subprocess
 import sys
+import tempfile
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "harness"))
@@ -86,5 +90,27 @@ def a_damaged_database():
         drives_by_hand(rest, station)
 
 
+def a_service_manager():
+    """a service manager hears that roverd serves, lives and stops"""
+    with tempfile.TemporaryDirectory() as folder, socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as manager:
+        manager.bind(f"{folder}/notify")
+        manager.settimeout(10)
+        os.environ.update(NOTIFY_SOCKET=f"{folder}/notify", WATCHDOG_USEC="300000")
+        try:
+            with Station(seed=7) as station:
+                check(manager.recv(999).decode() == f"READY=1\nSTATUS=serving {station.address}", "not ready")
+                begin = time.monotonic()
+                for _ in range(5):
+                    check(manager.recv(999) == b"WATCHDOG=1", "no sign of life")
+                passed_s = time.monotonic() - begin
+                check(0.3 < passed_s < 2.0, f"five signs of life in {passed_s:.2f} s, wanted one each 0.1 s")
+                station.roverd.stop()
+                while (word := manager.recv(999)) == b"WATCHDOG=1":
+                    pass
+                check(word == b"STOPPING=1", f"the last word is {word}")
+        finally:
+            del os.environ["NOTIFY_SOCKET"], os.environ["WATCHDOG_USEC"]
+
+
 if __name__ == "__main__":
-    sys.exit(run_cases([a_removed_data_folder, a_damaged_database]))
+    sys.exit(run_cases([a_removed_data_folder, a_damaged_database, a_service_manager]))

@@ -19,6 +19,7 @@ HostFacts all_well() {
   facts.wall = base::WallTime(seconds(1'770'000'000));
   facts.storage = {.looked = base::Time(seconds(999)), .trouble = {}, .free_bytes = 50'000'000'000};
   facts.real_time = true;
+  facts.memory_locked = true;
   facts.lateness_s = 0.0005;
   return facts;
 }
@@ -82,6 +83,9 @@ TEST(HostWatch, RefusedPriorityIsToldWithTheLatenessAndAlarmsOnlyWhenTheLoopIsLa
   EXPECT_TRUE(host_problems(facts)[0].alarming);
   facts.lateness_s.reset();
   EXPECT_EQ(ids(facts), Ids{"realtime_refused"});
+  facts.memory_locked = false;
+  ASSERT_EQ(ids(facts), (Ids{"realtime_refused", "memory_unlocked"}));
+  EXPECT_FALSE(host_problems(facts)[1].alarming);
 }
 
 TEST(LatenessWatch, NamesWhatAllButAThousandthWereBelow) {
