@@ -4,10 +4,10 @@
 # shellcheck source=.ci/lib.sh
 true
 
-all_steps=(doors shell format readme web build unit api command vehicles real can page asan tsan fuzz)
+all_steps=(doors shell format readme web build unit mutate api command vehicles real can page asan tsan fuzz)
 # Timing depends on what else the machine does, and clang-tidy takes long: by name.
 # shellcheck disable=SC2034
-named_steps=(figures tidy bench mutate)
+named_steps=(figures tidy bench)
 # shellcheck disable=SC2034
 quick_steps=(doors shell format web build unit)
 # shellcheck disable=SC2034
@@ -27,7 +27,7 @@ declare -A titles=(
   [page]="the page in a browser, against the simulated robot"
   [figures]="figures, measured shortly (twice the promise allowed)"
   [tidy]="clang-tidy finds nothing"
-  [mutate]="the gate's tests notice each change of the gate"
+  [mutate]="the gate: its tests run every line and notice every change"
   [asan]="unit, loop and API under address and undefined sanitizers"
   [tsan]="threaded rooms and API under the thread sanitizer"
   [fuzz]="every parser of foreign bytes against random input"
@@ -181,8 +181,8 @@ step_mutate() {
   local changed
   mapfile -t changed < <(touched drivers/gate tests/unit/gate server/base .ci/mutate)
   [ "${#changed[@]}" -gt 0 ] || { say "ok - nothing of the gate was changed" && return; }
-  ninja_build "$build" base
-  "$root/.ci/mutate" "$build"
+  configure "$build" "${release[@]}"
+  "$root/.ci/mutate" --lines "$build"
 }
 
 tidy_most=30 # of a change: about five minutes

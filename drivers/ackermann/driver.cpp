@@ -15,22 +15,14 @@ constexpr auto kStatusPeriod = std::chrono::milliseconds(100);
 /// A late tick may make up for so much; the gate's step is cut accordingly.
 constexpr double kLongestStep_s = 0.05;
 
-gate::MotionLimits limits_of(const Params& p) {
-  gate::MotionLimits limits;
+std::vector<gate::Table> table_of(const Params& p) {
+  gate::Limits limits;
   limits.max_speed = p.max_speed_mps + 1e-3;
   limits.max_turn = p.max_wheel_rad + std::abs(p.zero_rad) + p.zero_max_rad + 1e-3;
   limits.max_speed_step = p.max_accel_mps2 * kLongestStep_s + 1e-3;
   limits.max_turn_step = p.max_wheel_rate_radps * kLongestStep_s + 0.01;
-  limits.turn_holds = true;
-  limits.feedback_max_age_s = p.feedback_required ? p.feedback_timeout_s : 0.0;
-  return limits;
-}
-
-std::optional<gate::Motion> motion_of(Bytes bytes) {
-  const Decoded d = decode(bytes);
-  if (d.fault != Fault::None) return {};
-  return gate::Motion{d.message.speed_mps, d.message.wheel_rad,
-                      d.message.mode == DriveMode::Autonomous};
+  limits.feedback_max_age_s = p.feedback_timeout_s;
+  return gate::ackermann(limits, p.feedback_required);
 }
 
 }  // namespace
@@ -45,7 +37,7 @@ Driver::Driver(std::string name, const Params& params, MakeLink make_link,
                OnMeasurement on_measurement)
     : params_(params),
       on_measurement_(on_measurement),
-      gate_(limits_of(params)),
+      gate_(table_of(params)),
       zero_(params.zero_learn ? params.zero_max_rad : 0.0),
       port_(
           {std::move(name), params.feedback_required ? "waiting for feedback" : "opening",
@@ -58,7 +50,7 @@ Driver::Driver(std::string name, const Params& params, MakeLink make_link,
 void Driver::start(Time now) {
   spoken_ = false;
   replays_ = false;
-  gate_.need_feedback(params_.feedback_required ? params_.feedback_timeout_s : 0.0);
+  gate_.renew();
   port_.start(now);
 }
 
@@ -135,7 +127,7 @@ void Driver::drive(Time now) {
 /// @return false if the gate refused.
 bool Driver::transmit(const Message& message, Time now) {
   const auto bytes = encode(message);
-  if (const auto why = gate_.check(motion_of(bytes), now); why != gate::Refusal::None) {
+  if (!gate_.allows(bytes, now)) {
     port_.count("commands refused by the gate", 1);
     return false;
   }
@@ -171,10 +163,7 @@ void Driver::on_sent(Bytes bytes, Time stamp) {
 }
 
 void Driver::on_feedback(const Message& m, Time stamp) {
-  if (!spoken_) {
-    spoken_ = true;
-    gate_.need_feedback(params_.feedback_timeout_s);
-  }
+  spoken_ = true;
   gate_.saw(stamp);
   port_.received(stamp);
   port_.heard(stamp);

@@ -32,7 +32,7 @@
 #include "ackermann/zero.hpp"
 #include "base/drive_command.hpp"
 #include "gate/command_box.hpp"
-#include "gate/motion_gate.hpp"
+#include "gate/gate.hpp"
 #include "link/port.hpp"
 
 namespace roverd::ackermann {
@@ -75,7 +75,7 @@ class Driver {
   const Params params_;
   const OnMeasurement on_measurement_;
   gate::CommandBox box_;
-  gate::MotionGate gate_;
+  gate::Gate gate_;
   SteeringZero zero_;
   bool spoken_ = false;  ///< feedback was heard since the start
   std::optional<Message> heard_;

@@ -19,8 +19,8 @@ int percent_of(double value, double full) {
   return v1::percent(value, full, value);
 }
 
-gate::Limits limits_of(const Params& p) {
-  gate::Limits limits;
+gate::BunkerLimits limits_of(const Params& p) {
+  gate::BunkerLimits limits;
   // One wire step more than the driver's own cut: that one rounds to the nearest.
   limits.max_linear = static_cast<int>(p.max_linear_mps * 1000.0) + 1;
   limits.max_angular = static_cast<int>(p.max_angular_radps * 1000.0) + 1;
@@ -61,7 +61,7 @@ Driver::Driver(std::string name, const Params& params, MakeLink make_link,
     : params_(params),
       left_stick_(params.rc_left_stick_order == "lr_ud" ? LeftStick::LrUd : LeftStick::UdLr),
       on_measurement_(std::move(on_measurement)),
-      gate_(limits_of(params)),
+      gate_(gate::bunker(limits_of(params))),
       interpreter_(params.error_table == "old" ? kOldErrorBits : kErrorBits, on_measurement_),
       odometry_(params.odometer_max_mps),
       port_(

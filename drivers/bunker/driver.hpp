@@ -136,7 +136,7 @@ class Driver {
 
   // driver_receive.cpp
   /// What this driver reads or sends, of both protocols.
-  static std::vector<std::uint32_t> own_ids();
+  std::vector<std::uint32_t> own_ids() const;
   void on_frame(const CanFrame& frame, Time stamp);
   void on_v2(const CanFrame& frame, Time stamp);
   void on_v1(const CanFrame& frame, Time stamp);

@@ -2,9 +2,8 @@
 // own members, the atomics and the gate, nothing else; lights and error clearing are the device
 // thread's.
 
-#include <cmath>
-
 #include "bunker/driver.hpp"
+#include "gate/command_box.hpp"
 
 namespace roverd::bunker {
 
@@ -17,13 +16,6 @@ namespace {
 constexpr double kMaxStep = 0.2;
 /// After a longer pause the next command begins at zero, as the base's does.
 constexpr double kPause_s = 0.3;
-
-/// `to`, but not further from zero than the last value plus a step; a reversal begins at zero.
-double eased(double last, double to) noexcept {
-  const double from = (last < 0.0) == (to < 0.0) ? std::abs(last) : 0.0;
-  const double most = from + kMaxStep;
-  return std::abs(to) > most ? std::copysign(most, to) : to;
-}
 
 }  // namespace
 
@@ -48,8 +40,8 @@ void Driver::drive(base::BodyTwist twist, ControlMode mode, Time now) noexcept {
   }
   if (!last_motion_ || base::seconds(now - *last_motion_) > kPause_s) last_twist_ = {};
   MotionCommand m = limited(twist, params_.max_linear_mps, params_.max_angular_radps);
-  m.linear_mps = eased(last_twist_.linear_mps, m.linear_mps);
-  m.angular_radps = eased(last_twist_.angular_radps, m.angular_radps);
+  m.linear_mps = gate::eased(last_twist_.linear_mps, m.linear_mps, kMaxStep);
+  m.angular_radps = gate::eased(last_twist_.angular_radps, m.angular_radps, kMaxStep);
   last_motion_ = now;
   if (transmit(motion_frame(m), now) == Outcome::Refused) {
     last_twist_ = {};

@@ -12,13 +12,13 @@ constexpr double kPause_s = 0.5;
 constexpr double kMeasuredFresh_s = 0.5;
 constexpr auto kStatusPeriod = std::chrono::milliseconds(100);
 
-gate::MotionLimits limits_of(const Params& p) {
-  gate::MotionLimits limits;
+std::vector<gate::Table> table_of(const Params& p) {
+  gate::Limits limits;
   limits.max_speed = p.max_wheel_mps + 1e-3;
   limits.max_turn = 2.0;
   limits.max_speed_step = p.max_accel_mps2 * p.period_s * 2.0 + 2e-3;
   limits.max_turn_step = 2.0;  // at a small speed any ratio is harmless
-  return limits;
+  return gate::ratio(limits);
 }
 
 base::Bytes bytes_of(const std::string& text) {
@@ -31,7 +31,7 @@ Driver::Driver(std::string name, const Params& params, MakeLink make_link,
                OnMeasurement on_measurement)
     : params_(params),
       on_measurement_(on_measurement),
-      gate_(limits_of(params)),
+      gate_(table_of(params)),
       port_(
           {std::move(name), "connecting", params.retry_first_s, params.retry_max_s},
           std::move(make_link), [this](base::Bytes b, Time t) { on_bytes(b, t); },
@@ -54,7 +54,7 @@ void Driver::forget() {
 
 void Driver::stop(Time now) {
   box_.clear();
-  if (port_.is_open()) transmit({}, false, now);
+  if (port_.is_open()) transmit({}, now);
   port_.stop(now);
 }
 
@@ -84,7 +84,7 @@ void Driver::tick(Time now) {
     const bool due = !last_sent_ || base::seconds(now - *last_sent_) >= params_.period_s - 1e-3;
     const Message m = wanted(now);
     const bool stops = m.speed_mps == 0.0 && (last_.speed_mps != 0.0 || was_driving != driving_);
-    if (due || stops) transmit(m, driving_, now);
+    if (due || stops) transmit(m, now);
     if (measured_ && params_.silent_reopen_s > 0.0 &&
         base::seconds(now - *measured_) > params_.silent_reopen_s) {
       port_.fail("the robot does not answer", now);
@@ -94,20 +94,14 @@ void Driver::tick(Time now) {
   port_.tick(now);
 }
 
-void Driver::transmit(const Message& message, bool drives, Time now) {
+void Driver::transmit(const Message& message, Time now) {
   std::string line = encode(message);
-  const auto motion_of = [&]() -> std::optional<gate::Motion> {
-    const auto again = parse(std::string_view(line).substr(0, line.size() - 1));
-    if (!again) return {};
-    return gate::Motion{again->speed_mps, again->ratio, drives};
-  };
   last_ = message;
-  if (!gate_.allows(motion_of(), now)) {
+  if (!gate_.allows(bytes_of(line), now)) {
     port_.count("commands refused by the gate", 1);
     last_ = {};
-    drives = false;
     line = encode({});
-    if (!gate_.allows(motion_of(), now)) return;
+    if (!gate_.allows(bytes_of(line), now)) return;
   }
   last_sent_ = now;
   if (torn_) line.insert(line.begin(), '\n');

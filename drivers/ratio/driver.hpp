@@ -17,7 +17,7 @@
 
 #include "base/drive_command.hpp"
 #include "gate/command_box.hpp"
-#include "gate/motion_gate.hpp"
+#include "gate/gate.hpp"
 #include "link/port.hpp"
 #include "ratio/codec.hpp"
 #include "ratio/params.hpp"
@@ -46,13 +46,13 @@ class Driver {
   void on_sent(base::Bytes bytes, Time stamp);
   void forget();
   Message wanted(Time now);
-  void transmit(const Message& message, bool drives, Time now);
+  void transmit(const Message& message, Time now);
   void tell(Time now);
 
   const Params params_;
   const OnMeasurement on_measurement_;
   gate::CommandBox box_;
-  gate::MotionGate gate_;
+  gate::Gate gate_;
   Decoder decoder_;
   Decoder sent_;          ///< of a recording
   bool replays_ = false;  ///< a recording tells what was sent

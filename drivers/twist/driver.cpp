@@ -13,20 +13,14 @@ constexpr double kLongestStep_s = 0.1;
 constexpr int kLastStops = 3;
 constexpr auto kStatusPeriod = std::chrono::milliseconds(100);
 
-gate::MotionLimits limits_of(const Params& p) {
-  gate::MotionLimits limits;
+std::vector<gate::Table> table_of(const Params& p) {
+  gate::Limits limits;
   limits.max_speed = p.max_linear_mps + 1e-3;
   limits.max_turn = p.max_angular_radps + 1e-3;
   limits.max_speed_step = p.max_accel_mps2 * kLongestStep_s + 2e-3;
   limits.max_turn_step = p.max_turn_accel_radps2 * kLongestStep_s + 2e-3;
   limits.feedback_max_age_s = p.feedback_timeout_s;
-  return limits;
-}
-
-std::optional<gate::Motion> motion_of(const Said& said) {
-  const auto* c = std::get_if<Command>(&said);
-  if (c == nullptr) return {};
-  return gate::Motion{c->speed_mps, c->turn_radps, c->enable};
+  return p.form == "binary" ? gate::twist_binary(limits) : gate::twist_text(limits);
 }
 
 }  // namespace
@@ -42,7 +36,7 @@ Driver::Driver(std::string name, const Params& params, MakeLink make_link,
     : params_(params),
       binary_(params.form == "binary"),
       on_measurement_(on_measurement),
-      gate_(limits_of(params)),
+      gate_(table_of(params)),
       port_(
           {std::move(name), "waiting for feedback", params.retry_first_s, params.retry_max_s},
           std::move(make_link), [this](base::Bytes b, Time t) { on_bytes(b, t); },
@@ -100,18 +94,14 @@ void Driver::drive(Time now) {
 /// @return false if the gate refused.
 bool Driver::transmit(Command command, Time now) {
   command.seq = seq_;
-  Said again;
-  const auto keep = [&](const Said& said) { again = said; };
   std::vector<std::uint8_t> bytes;
   if (binary_) {
     bytes = encode_binary(command);
-    BinaryDecoder().feed(bytes, keep);
   } else {
     const std::string line = encode_text(command);
     bytes.assign(line.begin(), line.end());
-    TextDecoder().feed(bytes, keep);
   }
-  if (!gate_.allows(motion_of(again), now)) {
+  if (!gate_.allows(bytes, now)) {
     port_.count("commands refused by the gate", 1);
     return false;
   }

@@ -17,7 +17,7 @@
 
 #include "base/drive_command.hpp"
 #include "gate/command_box.hpp"
-#include "gate/motion_gate.hpp"
+#include "gate/gate.hpp"
 #include "link/port.hpp"
 #include "twist/binary.hpp"
 #include "twist/params.hpp"
@@ -56,7 +56,7 @@ class Driver {
   const bool binary_;
   const OnMeasurement on_measurement_;
   gate::CommandBox box_;
-  gate::MotionGate gate_;
+  gate::Gate gate_;
   TextDecoder text_;
   BinaryDecoder frames_;
   std::uint64_t damaged_ = 0;

@@ -62,7 +62,7 @@ auto there_and_back(const base::CanFrame& f, Decode decode) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  gate::Gate gate{gate::Limits{}};
+  gate::Gate gate{gate::bunker({})};
   gate.permit(true);
   bunker::Odometry odometry(4.0);
   bunker::Interpreter interpreter(bunker::kErrorBits, [](const base::Measurement&) {});

@@ -30,7 +30,7 @@ class GateTest : public ::testing::Test {
     EXPECT_EQ(refused(why), before + 1) << "reason " << static_cast<int>(why);
   }
 
-  Gate gate{Limits{}};
+  Gate gate{bunker({})};
   Time now = Time{} + 100s;
 };
 

@@ -77,7 +77,10 @@ TEST_F(GateV2Test, TheFirmwareMayBeAskedForOncePermittedAndNotTooOften) {
     expect_refused(frame(id, {1, 0, 0, 0, 0, 0, 0, 0}), Refusal::WrongLength);
     expect_refused(frame(id, {2}), Refusal::WrongContent);
     EXPECT_TRUE(gate.allows(frame(id, {1}), now));
+    now += 449ms;
     expect_refused(frame(id, {1}), Refusal::TooOften);
+    now += 1ms;
+    EXPECT_TRUE(gate.allows(frame(id, {1}), now));
   }
 }
 
@@ -100,7 +103,7 @@ TEST_F(GateV2Test, LetsOnlyWholeFramesOut) {
 
 TEST_F(GateV2Test, KeepsValuesInTheirLimits) {
   // Given steps as wide as the limits
-  Gate wide{Limits{.max_linear_step = 40000, .max_angular_step = 40000}};
+  Gate wide{bunker({.max_linear_step = 40000, .max_angular_step = 40000})};
   wide.permit(true);
   wide.saw(kMotionState, now);
   wide.saw(state(0, 1), now);

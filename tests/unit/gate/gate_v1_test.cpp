@@ -37,7 +37,7 @@ class GateV1Test : public GateTest {
 
 TEST_F(GateV1Test, TheFramesOfTheFactSheetPass) {
   EXPECT_EQ(command(1, 10, 0), frame(0x130, {0x01, 0, 0x0A, 0, 0, 0, 0, 0x44}));
-  Gate wide{Limits{.max_linear_step_pct = 100, .max_angular_step_pct = 100}};
+  Gate wide{bunker({.max_linear_step_pct = 100, .max_angular_step_pct = 100})};
   wide.permit(true);
   wide.saw(frame(0x131, {0x01, 0x2C, 0xFF, 0x9C, 0, 0, 0x07, 0x09}), now);
   wide.saw(frame(0x151, {0x00, 0x01, 0x00, 0xF5, 0, 0, 0x03, 0x53}), now);
@@ -184,6 +184,10 @@ TEST_F(GateV1Test, LetsSealedLightsOutWithinTheirBounds) {
   ++unsealed.data[7];
   expect_refused(unsealed, Refusal::WrongContent);
   EXPECT_TRUE(gate.allows(v1(0x140, {1, 3, 100, 3, 100, 0, 5}), now));
+  now += 14ms;
+  expect_refused(v1(0x140, {1, 3, 100, 3, 100, 0, 6}), Refusal::TooOften);
+  now += 1ms;
+  EXPECT_TRUE(gate.allows(v1(0x140, {1, 3, 100, 3, 100, 0, 6}), now));
 }
 
 }  // namespace
