@@ -47,7 +47,7 @@ class FenceReader {
     if (!list->is_array()) return reader.complain(name, "must be a list");
     if (list->size() > most) {
       return reader.complain(name, "has " + std::to_string(list->size()) + ", at most " +
-                                  std::to_string(most) + " are possible");
+                                       std::to_string(most) + " are possible");
     }
     for (std::size_t i = 0; i < list->size(); ++i) {
       one((*list)[i], "/" + std::string(name) + "/" + std::to_string(i));
@@ -68,8 +68,8 @@ class FenceReader {
     const json* polygon = reader.known("polygon");
     const json* circle = reader.known("circle");
     if ((polygon == nullptr) == (circle == nullptr)) {
-      reader.complain("polygon",
-                 polygon == nullptr ? "or circle is required" : "and circle exclude each other");
+      reader.complain("polygon", polygon == nullptr ? "or circle is required"
+                                                    : "and circle exclude each other");
     } else if (circle != nullptr) {
       made.shape = circle_in(*circle, where + "/circle");
     } else if (!polygon->is_array()) {
