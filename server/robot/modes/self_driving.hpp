@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "base/snapshot.hpp"
+#include "base/time.hpp"
 #include "nav/behave/dock.hpp"
 #include "nav/behave/follow.hpp"
 #include "nav/behave/guided.hpp"
@@ -34,7 +35,7 @@ class SelfDriving {
     nav::Vehicle vehicle;
     const base::LocalFrame& frame;
     double limit_mps = 0.0;
-    Time now;
+    base::Time now;
     double dt_s = 0.0;
   };
 
@@ -65,7 +66,7 @@ class SelfDriving {
 
   // Why this cannot be; empty: it can.
   std::string refusal(const nav::GuidedGoal& goal) const { return guided_.refusal(goal); }
-  std::string follow_refusal(base::EnuPoint here, Time now) const {
+  std::string follow_refusal(base::EnuPoint here, base::Time now) const {
     return follow_.refusal(here, now);
   }
   /// A target for FOLLOW, in any mode. Empty: taken; else why it is not believed.

@@ -1,3 +1,5 @@
+#include <cstdio>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -31,16 +33,81 @@ TEST(TwistText, BothMessagesComeBack) {
 }
 
 TEST(TwistText, EveryFlippedBitIsNoticed) {
+  // $RVC,7,0.500,-0.250,1*6E: only the case of the checksum's letter may change without harm.
   const std::string good = encode_text(kCommandExample);
+  std::size_t understood = 0;
   for (std::size_t i = 0; i < (good.size() - 2) * 8; ++i) {
     std::string bad = good;
     bad[i / 8] = static_cast<char>(bad[i / 8] ^ (1 << i % 8));
     TextDecoder decoder;
     decoder.feed(bytes_of(bad), [&](const Said& s) {
-      // Only the case of a checksum's letter may change without harm.
-      EXPECT_EQ(std::get<Command>(s), kCommandExample);
+      ++understood;
+      EXPECT_EQ(std::get<Command>(s), kCommandExample) << "bit " << i;
     });
   }
+  EXPECT_EQ(understood, 1U);
+}
+
+/// A sealed line of these fields.
+std::string line_of(const std::vector<std::string>& fields) {
+  std::string body;
+  for (const std::string& f : fields) body += (body.empty() ? "" : ",") + f;
+  unsigned sum = 0;
+  for (const char c : body) sum ^= static_cast<unsigned char>(c);
+  char seal[8];
+  std::snprintf(seal, sizeof seal, "*%02X", sum);
+  return "$" + body + seal;
+}
+
+const std::vector<std::string> kCommandFields{"RVC", "7", "0.500", "-0.250", "1"};
+const std::vector<std::string> kFeedbackFields{"RVF",    "9",      "7",     "0.480", "-0.200",
+                                               "12.345", "-0.500", "48.25", "33",    "1"};
+
+/// Refused with `bad`, understood with `good` as its field `at`.
+void expect_range(std::vector<std::string> fields, std::size_t at, const std::string& good,
+                  const std::string& bad) {
+  fields[at] = good;
+  EXPECT_NE(parse_text(line_of(fields)).index(), 0U) << at << " " << good;
+  fields[at] = bad;
+  EXPECT_EQ(parse_text(line_of(fields)).index(), 0U) << at << " " << bad;
+}
+
+TEST(TwistText, EachFieldHasItsRange) {
+  EXPECT_EQ(std::get<Command>(parse_text(line_of(kCommandFields))), kCommandExample);
+  EXPECT_EQ(std::get<Feedback>(parse_text(line_of(kFeedbackFields))), kFeedbackExample);
+  for (const auto& fields : {kCommandFields, kFeedbackFields}) {
+    for (std::size_t at = 1; at < fields.size(); ++at) {
+      for (const char* bad : {"", "x", "1x", " 1", "nan", "-inf", "1e9", "99999999"}) {
+        expect_range(fields, at, fields[at], bad);
+      }
+    }
+  }
+  for (const std::size_t at : {2U, 3U}) {
+    expect_range(kCommandFields, at, "-100.000", "-100.001");
+    expect_range(kFeedbackFields, at + 1, "100.000", "100.001");
+  }
+  for (const std::size_t at : {5U, 6U}) {
+    expect_range(kFeedbackFields, at, "-10000000", "-10000001");
+  }
+  expect_range(kFeedbackFields, 7, "1000", "1001");
+  expect_range(kCommandFields, 1, "255", "256");
+  expect_range(kCommandFields, 4, "0", "2");
+  for (const std::size_t at : {1U, 2U, 8U}) expect_range(kFeedbackFields, at, "255", "256");
+  expect_range(kFeedbackFields, 9, "0", "2");
+}
+
+TEST(TwistText, ALineWithTooManyOrTooFewFieldsIsNeither) {
+  for (auto fields : {kCommandFields, kFeedbackFields}) {
+    fields.emplace_back("0");
+    EXPECT_EQ(parse_text(line_of(fields)).index(), 0U);
+    fields.pop_back();
+    fields.pop_back();
+    EXPECT_EQ(parse_text(line_of(fields)).index(), 0U);
+  }
+  for (const char* line : {"", "$", "*00", "$*00", "$RVC*47", "$RVX,7,0.500,-0.250,1*75"}) {
+    EXPECT_EQ(parse_text(line).index(), 0U) << line;
+  }
+  EXPECT_EQ(parse_text(line_of(std::vector<std::string>(200, ""))).index(), 0U);
 }
 
 TEST(TwistBinary, BothMessagesComeBackBesideNoise) {
