@@ -73,7 +73,7 @@ api::Profile profile_of(const Settings& s, const Supervisor& supervisor) {
   }
   profile.item_types = {"waypoint", "local",       "move", "wait",
                         "speed",    "return_home", "jump", "action"};
-  if (!s.robot.vehicle.steered()) profile.item_types.push_back("turn");
+  if (!s.robot.vehicle.steered()) profile.item_types.emplace_back("turn");
   profile.limits = limits_of(s);
   profile.limits.item_types = profile.item_types;
   profile.limits.actions = robot::kActions;

@@ -73,7 +73,7 @@ std::string damage_of(const fs::path& file) {
 fs::path set_aside(const fs::path& file) {
   std::error_code ec;
   for (int i = 1; i < 10'000; ++i) {
-    const fs::path target = file.string() + ".damaged-" + std::to_string(i);
+    fs::path target = file.string() + ".damaged-" + std::to_string(i);
     if (fs::exists(target, ec)) continue;
     fs::rename(file, target, ec);
     if (ec) return {};
