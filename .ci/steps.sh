@@ -211,16 +211,16 @@ step_tidy() {
 
 # One tree, by clang, for the address sanitizer's tests and for the fuzz targets: they share every room.
 by_clang() {
-  configure "$build/asan" -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Sanitized \
+  configure "$build/clang" -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Sanitized \
     -DCMAKE_CXX_FLAGS="-O1 -g1" -DROVERD_FUZZ=ON "${in_groups[@]}"
 }
 
 step_asan() {
   by_clang
-  ninja_build "$build/asan"
+  ninja_build "$build/clang"
   ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1 \
     UBSAN_OPTIONS=print_stacktrace=1 \
-    run_ctest "$build/asan" 'unit|loop|api' "$logs/asan" -j "$jobs" >"$logs/asan-cases.log" 2>&1 ||
+    run_ctest "$build/clang" 'unit|loop|api' "$logs/asan" -j "$jobs" >"$logs/asan-cases.log" 2>&1 ||
     { cat "$logs/asan-cases.log" && return 1; }
   "$root/.ci/results" ctest "$logs/asan.xml"
 }
@@ -247,7 +247,7 @@ fuzz_one() {
   local name found log
   name=$(basename "$1" _fuzz)
   log=$logs/fuzz-$name.log
-  found=$build/asan/corpus/$name # what it learns is kept for the next run
+  found=$build/clang/corpus/$name # what it learns is kept for the next run
   mkdir -p "$found" "$root/tests/data/fuzz/$name"
   if "$1" -max_total_time="${FUZZ_SECONDS:-5}" -timeout=10 -rss_limit_mb=2048 -verbosity=0 \
     -print_final_stats=1 -artifact_prefix="$logs/$name-" "$found" "$root/tests/data/fuzz/$name" \
@@ -262,11 +262,11 @@ fuzz_one() {
 
 step_fuzz() {
   by_clang
-  ninja_build "$build/asan" fuzz
+  ninja_build "$build/clang" fuzz
   export -f fuzz_one say
   export build root logs
   # shellcheck disable=SC2016
-  printf '%s\0' "$build/asan/bin/"*_fuzz |
+  printf '%s\0' "$build/clang/bin/"*_fuzz |
     xargs -0 -n 1 -P "$jobs" bash -euo pipefail -c 'fuzz_one "$1"' fuzz
 }
 
