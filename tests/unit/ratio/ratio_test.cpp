@@ -31,6 +31,25 @@ TEST(RatioCodec, TwistsComeBackAlsoBackwardsAndOnTheSpot) {
   EXPECT_GT(from_twist({0.3, 0.2}, 0.4).ratio, 0.0) << "left turn: the left wheel is slower";
 }
 
+TEST(RatioCodec, TheWheelsTurnAsDescribed) {
+  // Tracks 0.4 m apart: left 0.95 and right 1.00 m/s turn by 0.05 / 0.4 rad/s.
+  const base::BodyTwist left = to_twist({1.0, 0.05}, 0.4);
+  EXPECT_DOUBLE_EQ(left.linear_mps, 0.975);
+  EXPECT_NEAR(left.angular_radps, 0.125, 1e-12);
+  const base::BodyTwist right = to_twist({1.0, -0.05}, 0.4);
+  EXPECT_DOUBLE_EQ(right.linear_mps, 0.975);
+  EXPECT_NEAR(right.angular_radps, -0.125, 1e-12);
+  const base::BodyTwist on_the_spot = to_twist({0.5, 2.0}, 0.4);
+  EXPECT_DOUBLE_EQ(on_the_spot.linear_mps, 0.0);
+  EXPECT_NEAR(on_the_spot.angular_radps, 2.5, 1e-12);
+  const Message spin = from_twist({0.0, 2.5}, 0.4);
+  EXPECT_DOUBLE_EQ(spin.speed_mps, 0.5);
+  EXPECT_DOUBLE_EQ(spin.ratio, 2.0);
+  const Message one_stands = from_twist({-0.25, 1.25}, 0.4);
+  EXPECT_DOUBLE_EQ(one_stands.speed_mps, -0.5);
+  EXPECT_DOUBLE_EQ(one_stands.ratio, -1.0);
+}
+
 TEST(RatioCodec, DamagedLinesAreCountedAndHalvesWait) {
   for (const char* bad : {"", "1", "1 2 3", "1 nan", "inf 0", "0.1 2.5", "0x1 0", " 1 0", "1  0"}) {
     EXPECT_FALSE(parse(bad)) << bad;

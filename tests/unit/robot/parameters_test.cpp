@@ -48,6 +48,14 @@ TEST(Parameters, AreRefusedWithAReasonAndChangeNothing) {
   EXPECT_EQ(f.robot.config()->speed.max_mps, Config{}.speed.max_mps);
 }
 
+/// What the estimator takes as its first guess means nothing later; all else of it acts at once.
+TEST(Parameters, OnlyWhatIsBelievedAtFirstWaitsForTheNextStart) {
+  EXPECT_TRUE(acts_at_next_start("nav.estimate", "map_lat"));
+  EXPECT_FALSE(acts_at_next_start("nav.estimate", "satellites_min"));
+  EXPECT_FALSE(acts_at_next_start("nav.track", "map_lat"));
+  EXPECT_TRUE(acts_at_next_start("vehicle", "wheelbase_m"));
+}
+
 /// File, change and start ask the same check: one text, whoever hears it.
 TEST(Parameters, WhatAStartWouldRefuseAChangeRefusesInTheSameWords) {
   struct Wrong {

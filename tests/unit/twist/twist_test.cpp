@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -124,6 +125,25 @@ TEST(TwistBinary, BothMessagesComeBackBesideNoise) {
   ASSERT_EQ(all.size(), 2U);
   EXPECT_EQ(std::get<Command>(all[0]), kCommandExample);
   EXPECT_EQ(std::get<Feedback>(all[1]), kFeedbackExample);
+}
+
+TEST(TwistBinary, WhatTheWireCannotHoldIsCutToItAndNoNumberIsZero) {
+  const auto there_and_back = [](const auto& message) {
+    Said said;
+    BinaryDecoder().feed(encode_binary(message), [&](const Said& s) { said = s; });
+    return said;
+  };
+  const auto most =
+      std::get<Feedback>(there_and_back(Feedback{1, 2, 99.0, -99.0, 3e6, -3e6, 700.0, 255, false}));
+  EXPECT_EQ(most, (Feedback{1, 2, 32.767, -32.768, 2147483.647, -2147483.648, 655.35, 255, false}));
+  const double nan = std::nan("");
+  const auto none =
+      std::get<Feedback>(there_and_back(Feedback{1, 2, nan, nan, nan, nan, nan, 0, true}));
+  EXPECT_EQ(none, (Feedback{1, 2, 0.0, 0.0, 0.0, 0.0, 0.0, 0, true}));
+  const auto below = std::get<Feedback>(there_and_back(Feedback{.battery_v = -1.0}));
+  EXPECT_EQ(below.battery_v, 0.0);
+  const auto command = std::get<Command>(there_and_back(Command{3, -99.0, 99.0, true}));
+  EXPECT_EQ(command, (Command{3, -32.768, 32.767, true}));
 }
 
 TEST(TwistBinary, EveryFlippedBitIsNoticed) {
