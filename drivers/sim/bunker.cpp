@@ -54,6 +54,8 @@ Vehicle::Moved Bunker::drive(double dt_s) {
   tracks_.step(params().drive, wanted.twist, wanted.brake, dt_s);
   const MotorState& left = tracks_.left();
   const MotorState& right = tracks_.right();
+  odometer_.step(faults(), left.travel_m, right.travel_m, tracks_.measured(),
+                 params().drive.track_width_m);
   left_heat_c_ = warmed(left_heat_c_, left.current_a, dt_s);
   right_heat_c_ = warmed(right_heat_c_, right.current_a, dt_s);
   return {tracks_.ground(), left.power_w + right.power_w, right.current_a - left.current_a};
@@ -64,10 +66,10 @@ void Bunker::report() {
   if (every(20, 13)) report_lights();
   if (speaks_v1()) return report_v1();
   if (every(4, 0)) {
-    const base::BodyTwist t = tracks_.measured();
+    const base::BodyTwist t = odometer_.twist();
     send(bunker::encode(bunker::MotionState{{t.linear_mps, t.angular_radps, 0.0, 0.0}}));
-    send(bunker::encode(bunker::Odometer{wrapped_mm(tracks_.left().travel_m),
-                                         wrapped_mm(tracks_.right().travel_m)}));
+    send(bunker::encode(
+        bunker::Odometer{wrapped_mm(odometer_.left_m()), wrapped_mm(odometer_.right_m())}));
   }
   if (every(4, 1)) report_radio();
   if (every(4, 2)) report_motors(false);
@@ -96,7 +98,7 @@ void Bunker::report_v1() {
                       .control_mode = machine_.shown_mode(now()),
                       .battery_v = battery().voltage_v(),
                       .error_code = static_cast<std::uint16_t>(code),
-                      .measured = tracks_.measured(),
+                      .measured = odometer_.twist(),
                       .right = motor(tracks_.right(), right_heat_c_),
                       .left = motor(tracks_.left(), left_heat_c_)};
   for (const CanFrame& f : v1_voice_.at(steps(), facts)) send(f);
@@ -200,6 +202,7 @@ void Bunker::describe(Truth& t) const {
 void Bunker::restart() {
   machine_.power_cycle();
   tracks_.zero_odometer();
+  odometer_ = {};
   state_count_ = radio_count_ = 0;
   last_radio_.reset();
   lights_.reset();

@@ -13,6 +13,7 @@
 #include "sim/base_v1.hpp"
 #include "sim/machine.hpp"
 #include "sim/noise.hpp"
+#include "sim/odometer.hpp"
 #include "sim/tracks.hpp"
 #include "sim/vehicle.hpp"
 
@@ -48,6 +49,7 @@ class Bunker final : public Vehicle {
   void obey(const V1Order& order);
 
   Tracks tracks_;
+  Odometer odometer_;
   Machine machine_;
   Noise to_base_, from_base_;
   double left_heat_c_ = 0.0;

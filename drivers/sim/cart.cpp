@@ -81,11 +81,15 @@ Vehicle::Moved Cart::roll(const Order& order, bool brake, double dt_s) {
   if (steered_) {
     car_.step(p.drive, p.car, {order.speed_mps, order.wheel_rad}, brake, dt_s);
     car_travel_m_ += car_.wheel_speed_mps() * dt_s;
+    odometer_.step(faults(), car_travel_m_, car_travel_m_, {car_.wheel_speed_mps(), 0.0},
+                   p.drive.track_width_m);
     return {car_.ground(), car_.power_w(), 0.0};
   }
   tracks_.step(p.drive, order.twist, brake, dt_s);
   const MotorState& left = tracks_.left();
   const MotorState& right = tracks_.right();
+  odometer_.step(faults(), left.travel_m, right.travel_m, tracks_.measured(),
+                 p.drive.track_width_m);
   return {tracks_.ground(), left.power_w + right.power_w, right.current_a - left.current_a};
 }
 
@@ -93,13 +97,14 @@ Condition Cart::condition() const {
   const Params& p = params();
   Condition c;
   if (steered_) {
-    c.twist = {car_.wheel_speed_mps(),
-               car_.wheel_speed_mps() * std::tan(car_.seen_rad()) / p.car.wheelbase_m};
-    c.left_m = c.right_m = car_travel_m_;
+    const double told_mps = odometer_.twist().linear_mps;
+    c.twist = {told_mps, told_mps * std::tan(car_.seen_rad()) / p.car.wheelbase_m};
+    c.left_m = odometer_.left_m();
+    c.right_m = odometer_.right_m();
   } else {
-    c.twist = tracks_.measured();
-    c.left_m = tracks_.left().travel_m;
-    c.right_m = tracks_.right().travel_m;
+    c.twist = odometer_.twist();
+    c.left_m = odometer_.left_m();
+    c.right_m = odometer_.right_m();
   }
   c.wheel_rad = car_.seen_rad();
   c.battery_v = battery().voltage_v();
@@ -152,6 +157,7 @@ void Cart::restart() {
   commanded_.reset();
   tracks_.zero_odometer();
   car_travel_m_ = 0.0;
+  odometer_ = {};
 }
 
 }  // namespace roverd::sim

@@ -19,6 +19,7 @@
 
 #include "sim/car.hpp"
 #include "sim/noise.hpp"
+#include "sim/odometer.hpp"
 #include "sim/tracks.hpp"
 #include "sim/vehicle.hpp"
 #include "sim/wire.hpp"
@@ -53,6 +54,7 @@ class Cart final : public Vehicle {
   const bool steered_;
   Car car_;
   Tracks tracks_;
+  Odometer odometer_;
   Noise to_base_, from_base_;
   std::optional<Time> commanded_;
   std::uint64_t commands_ = 0;

@@ -168,7 +168,8 @@ Imu::Measured Imu::measure(const Params& p, const Faults& faults, const BodyStat
       mti::leaning(base::rad_from_deg(p.imu.roll_deg), base::rad_from_deg(p.imu.pitch_deg));
   const mti::Mat3 R_BH = R_HB.transposed();
   const double rate_radps = dt_s > 0.0 ? turn_rad / dt_s : now.yaw_rate_radps;
-  const double bias = p.imu.gyro_bias_dps + faults.imu_gyro_extra_dps +
+  ramp_dps_ = faults.imu_gyro_ramp_dps2 == 0.0 ? 0.0 : ramp_dps_ + faults.imu_gyro_ramp_dps2 * dt_s;
+  const double bias = p.imu.gyro_bias_dps + faults.imu_gyro_extra_dps + ramp_dps_ +
                       p.imu.gyro_wander_dps * gyro_wander_.step(dt_s, kWanderTau_s);
   m.rate = R_BH * Vec3{0.0, 0.0, rate_radps};
   m.accel = R_BH * Vec3{ahead_mps2, left_mps2, kGravity_mps2};
@@ -178,12 +179,19 @@ Imu::Measured Imu::measure(const Params& p, const Faults& faults, const BodyStat
   }
   const bool rate_cut = cut(m.rate, kFullRate_radps);
   m.clipped = cut(m.accel, kFullAccel_mps2) || rate_cut;
+  if (faults.imu_gyro_frozen && rate_told_) m.rate = *rate_told_;
+  rate_told_ = m.rate;
 
-  const double slow_deg = p.compass.bias_deg + faults.compass_extra_deg +
-                          kick_.error_deg(p.compass) - p.compass.declination_deg;
-  const double noise_deg = compass_.normal() * p.compass.noise_deg;
-  const double seen_rad =
-      base::rad_from_deg(base::heading_from_yaw(now.yaw_rad) + slow_deg + noise_deg);
+  double slow_deg = p.compass.bias_deg + faults.compass_extra_deg + kick_.error_deg(p.compass) -
+                    p.compass.declination_deg;
+  double noise_deg = compass_.normal() * p.compass.noise_deg;
+  const double true_deg = base::heading_from_yaw(now.yaw_rad);
+  if (faults.compass_frozen && compass_shown_deg_) {
+    slow_deg = *compass_shown_deg_ - true_deg;
+    noise_deg = 0.0;
+  }
+  compass_shown_deg_ = true_deg + slow_deg + noise_deg;
+  const double seen_rad = base::rad_from_deg(*compass_shown_deg_);
   const double dip = base::rad_from_deg(kDip_deg);
   m.field = R_BH * Vec3{std::cos(dip) * std::cos(seen_rad), std::cos(dip) * std::sin(seen_rad),
                         -std::sin(dip)};

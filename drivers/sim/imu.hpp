@@ -71,6 +71,9 @@ class Imu {
   std::uint64_t samples_ = 0;
   std::deque<Pending> pending_;
   Packets frozen_;  ///< the message that a frozen unit repeats
+  double ramp_dps_ = 0.0;
+  std::optional<mti::Vec3> rate_told_;       ///< what a frozen gyro repeats
+  std::optional<double> compass_shown_deg_;  ///< what a frozen compass does
 };
 
 }  // namespace roverd::sim

@@ -24,6 +24,7 @@ enum class Stream : std::uint64_t {
   GyroWander,
   Accelerometer,
   ImuCompass,
+  Antennas,
 };
 
 class Noise {

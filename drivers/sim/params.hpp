@@ -181,6 +181,8 @@ struct GnssParams {
   double antenna_left_m = 0.0;
   double alt_msl_m = 62.0;
   double geoid_sep_m = 18.4;
+  bool antennas = false;
+  double antennas_noise_deg = 0.3;
 };
 
 template <class V>
@@ -193,6 +195,8 @@ void fields(V& v, GnssParams& p) {
   v("antenna_left_m", p.antenna_left_m, -3.0, 3.0, "antenna left of the body's origin");
   v("alt_msl_m", p.alt_msl_m, -500.0, 9000.0, "height above mean sea level, constant");
   v("geoid_sep_m", p.geoid_sep_m, -120.0, 120.0, "geoid above the ellipsoid");
+  v("antennas", p.antennas, "two antennas: HDT tells their heading, and no compass beside it");
+  v("antennas_noise_deg", p.antennas_noise_deg, 0.0, 45.0, "1 sigma of every heading of theirs");
 }
 
 /// The compass: in the inertial unit where there is one, else beside the receiver, where it speaks

@@ -38,11 +38,26 @@ struct Faults {
   double gnss_jump_east_m = 0.0;
   double gnss_jump_north_m = 0.0;
   double gnss_jump_s = 0.0;
+  double gnss_drift_east_mps = 0.0;
+  double gnss_drift_north_mps = 0.0;
+  bool gnss_position_frozen = false;
+  bool gnss_repeats = false;
+  bool gnss_velocity_frozen = false;
+  double gnss_velocity_east_mps = 0.0;
+  double gnss_velocity_north_mps = 0.0;
+  double antennas_extra_deg = 0.0;
+  bool antennas_frozen = false;
+  double odometry_share = 1.0;
+  bool odometry_frozen = false;
+  bool odometry_left_stuck = false;
+  bool compass_frozen = false;
   bool compass_off = false;
   double compass_extra_deg = 0.0;
   bool imu_silent = false;
   bool imu_freeze = false;
   double imu_gyro_extra_dps = 0.0;
+  double imu_gyro_ramp_dps2 = 0.0;
+  bool imu_gyro_frozen = false;
   int bumper = 0;
   bool bumper_silent = false;
 };
@@ -66,11 +81,33 @@ void fields(V& v, Faults& f) {
   v("gnss_jump_east_m", f.gnss_jump_east_m, -1000.0, 1000.0, "added to the position");
   v("gnss_jump_north_m", f.gnss_jump_north_m, -1000.0, 1000.0, "added to the position");
   v("gnss_jump_s", f.gnss_jump_s, 0.0, 86400.0, "the jump ends after this; 0: it stays");
+  v("gnss_drift_east_mps", f.gnss_drift_east_mps, -10.0, 10.0,
+    "the position runs away by so much a second; what has run stays until both are 0");
+  v("gnss_drift_north_mps", f.gnss_drift_north_mps, -10.0, 10.0, "likewise, northwards");
+  v("gnss_position_frozen", f.gnss_position_frozen,
+    "the receiver repeats its last position; its time and its velocity go on");
+  v("gnss_repeats", f.gnss_repeats, "the receiver repeats its last sentences, byte by byte");
+  v("gnss_velocity_frozen", f.gnss_velocity_frozen,
+    "the receiver repeats its last speed and course; its time and its position go on");
+  v("gnss_velocity_east_mps", f.gnss_velocity_east_mps, -20.0, 20.0, "added to the velocity");
+  v("gnss_velocity_north_mps", f.gnss_velocity_north_mps, -20.0, 20.0, "added to the velocity");
+  v("antennas_extra_deg", f.antennas_extra_deg, -180.0, 180.0,
+    "added to the heading of two antennas");
+  v("antennas_frozen", f.antennas_frozen, "two antennas repeat their last heading");
+  v("odometry_share", f.odometry_share, 0.0, 5.0,
+    "the tracks' counters and speeds tell this share of what the tracks do");
+  v("odometry_frozen", f.odometry_frozen, "the tracks' counters stand still; speeds are told on");
+  v("odometry_left_stuck", f.odometry_left_stuck, "the left track's encoder tells no motion");
+  v("compass_frozen", f.compass_frozen, "the compass repeats its last heading");
   v("compass_off", f.compass_off, "no HDT sentences, no field in the inertial unit's messages");
   v("compass_extra_deg", f.compass_extra_deg, -180.0, 180.0, "added to the compass heading");
   v("imu_silent", f.imu_silent, "no byte from the inertial unit");
   v("imu_freeze", f.imu_freeze, "the inertial unit repeats its last message");
   v("imu_gyro_extra_dps", f.imu_gyro_extra_dps, -100.0, 100.0, "added to the gyro's bias");
+  v("imu_gyro_ramp_dps2", f.imu_gyro_ramp_dps2, -10.0, 10.0,
+    "the gyro's bias grows by so much a second; what has grown stays until it is 0");
+  v("imu_gyro_frozen", f.imu_gyro_frozen,
+    "the inertial unit repeats its last rate of turn; its counters and all else go on");
   v("bumper", f.bumper, 0, 255, "switches pressed, one bit each: 1 front left, 2 front …");
   v("bumper_silent", f.bumper_silent, "no line from the bumper");
 }

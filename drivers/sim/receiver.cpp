@@ -68,6 +68,7 @@ Receiver::Receiver(std::uint64_t seed, const base::LocalFrame& frame)
       height_(seed, Stream::GnssHeight),
       velocity_(seed, Stream::GnssVelocity),
       compass_(seed, Stream::Compass),
+      antennas_(seed, Stream::Antennas),
       drift_east_(seed, Stream::GnssDriftEast),
       drift_north_(seed, Stream::GnssDriftNorth) {}
 
@@ -82,9 +83,11 @@ std::string Receiver::step(const Params& p, const Faults& faults, const BodyStat
   const bool is_new = last_epoch_ ? epoch > *last_epoch_ : age == base::Duration::zero();
   if (!last_epoch_) last_epoch_ = epoch;
   if (is_new) {
-    const Epoch seen = measure(p, faults, earlier(now, age));
+    Epoch seen = measure(p, faults, earlier(now, age));
+    corrupt(seen, faults);
     last_epoch_ = epoch;
-    pending_.push_back({epoch + base::from_seconds(p.gnss.latency_s), sentences(seen)});
+    if (!faults.gnss_repeats || !last_text_) last_text_ = sentences(seen);
+    pending_.push_back({epoch + base::from_seconds(p.gnss.latency_s), *last_text_});
   }
   std::string out;
   while (!pending_.empty() && pending_.front().due <= now.time) {
@@ -115,7 +118,10 @@ Epoch Receiver::measure(const Params& p, const Faults& faults, BodyState truth) 
   const double height = height_.normal() * 1.5 * (e.white_m + e.drift_m);
   const double vel_e = velocity_.normal() * e.velocity_mps;
   const double vel_n = velocity_.normal() * e.velocity_mps;
-  const double compass_deg = compass_.normal() * p.compass.noise_deg;
+  const bool drifts = faults.gnss_drift_east_mps != 0.0 || faults.gnss_drift_north_mps != 0.0;
+  run_away_ = drifts ? base::EnuPoint{run_away_.east_m + faults.gnss_drift_east_mps * dt_s,
+                                      run_away_.north_m + faults.gnss_drift_north_mps * dt_s}
+                     : base::EnuPoint{};
 
   // E: ENU, B: body FLU, A: antenna. p_EA = p_EB + R_EB·p_BA, and its derivative.
   const double c = std::cos(truth.yaw_rad);
@@ -123,25 +129,60 @@ Epoch Receiver::measure(const Params& p, const Faults& faults, BodyState truth) 
   const double arm_e = c * p.gnss.antenna_forward_m - s * p.gnss.antenna_left_m;
   const double arm_n = s * p.gnss.antenna_forward_m + c * p.gnss.antenna_left_m;
   if (fix != FixType::None) {
-    epoch.position =
-        frame_.to_global({truth.at.east_m + arm_e + faults.gnss_jump_east_m + drift_e + white_e,
-                          truth.at.north_m + arm_n + faults.gnss_jump_north_m + drift_n + white_n});
+    epoch.position = frame_.to_global(
+        {truth.at.east_m + arm_e + faults.gnss_jump_east_m + run_away_.east_m + drift_e + white_e,
+         truth.at.north_m + arm_n + faults.gnss_jump_north_m + run_away_.north_m + drift_n +
+             white_n});
     epoch.alt_msl_m = p.gnss.alt_msl_m + height;
     epoch.geoid_sep_m = p.gnss.geoid_sep_m;
-    const double east_mps = truth.east_mps - truth.yaw_rate_radps * arm_n + vel_e;
-    const double north_mps = truth.north_mps + truth.yaw_rate_radps * arm_e + vel_n;
+    const double east_mps =
+        truth.east_mps - truth.yaw_rate_radps * arm_n + vel_e + faults.gnss_velocity_east_mps;
+    const double north_mps =
+        truth.north_mps + truth.yaw_rate_radps * arm_e + vel_n + faults.gnss_velocity_north_mps;
     epoch.speed_mps = std::hypot(east_mps, north_mps);
     if (epoch.speed_mps >= kNoCourseBelow_mps) {
       epoch.course_deg = base::heading_from_yaw(std::atan2(north_mps, east_mps));
     }
     epoch.sigma_m = std::hypot(e.white_m, e.drift_m);
   }
-  if (p.compass.fitted && !p.imu.fitted && !faults.compass_off) {
-    const double error_deg =
-        p.compass.bias_deg + faults.compass_extra_deg + compass_deg + kick_.error_deg(p.compass);
-    epoch.heading_deg = base::heading_from_yaw(truth.yaw_rad - base::rad_from_deg(error_deg));
-  }
+  epoch.heading_deg = heading_deg(p, faults, truth);
   return epoch;
+}
+
+/// Of two antennas where they are, else of the compass beside the receiver.
+std::optional<double> Receiver::heading_deg(const Params& p, const Faults& faults,
+                                            const BodyState& truth) {
+  const double compass_deg = compass_.normal() * p.compass.noise_deg;
+  const double antennas_deg = antennas_.normal() * p.gnss.antennas_noise_deg;
+  const auto shown = [&](double error_deg) {
+    return base::heading_from_yaw(truth.yaw_rad - base::rad_from_deg(error_deg));
+  };
+  if (p.gnss.antennas) {
+    const bool fix = !faults.gnss_outage && faults.gnss_fix != "none";
+    if (!fix) return std::nullopt;
+    return shown(faults.antennas_extra_deg + antennas_deg);
+  }
+  if (!p.compass.fitted || p.imu.fitted || faults.compass_off) return std::nullopt;
+  return shown(p.compass.bias_deg + faults.compass_extra_deg + compass_deg +
+               kick_.error_deg(p.compass));
+}
+
+/// What stands still repeats what it told last; the streams of noise have gone on meanwhile.
+void Receiver::corrupt(Epoch& epoch, const Faults& faults) {
+  if (last_told_) {
+    const Epoch& last = *last_told_;
+    if (faults.gnss_position_frozen && epoch.position && last.position) {
+      epoch.position = last.position;
+      epoch.alt_msl_m = last.alt_msl_m;
+    }
+    if (faults.gnss_velocity_frozen && epoch.position && last.position) {
+      epoch.speed_mps = last.speed_mps;
+      epoch.course_deg = last.course_deg;
+    }
+    const bool heading = faults.antennas_frozen || faults.compass_frozen;
+    if (heading && epoch.heading_deg && last.heading_deg) epoch.heading_deg = last.heading_deg;
+  }
+  last_told_ = epoch;
 }
 
 }  // namespace roverd::sim

@@ -76,6 +76,8 @@ class Receiver {
 
  private:
   Epoch measure(const Params& p, const Faults& faults, BodyState truth);
+  std::optional<double> heading_deg(const Params& p, const Faults& faults, const BodyState& truth);
+  void corrupt(Epoch& epoch, const Faults& faults);
 
   struct Pending {
     Time due;
@@ -83,12 +85,15 @@ class Receiver {
   };
 
   base::LocalFrame frame_;
-  Noise east_, north_, height_, velocity_, compass_;
+  Noise east_, north_, height_, velocity_, compass_, antennas_;
   Drift drift_east_, drift_north_;
   Kick kick_;
   std::optional<Time> last_epoch_;
   std::optional<Time> last_step_;
   std::deque<Pending> pending_;
+  base::EnuPoint run_away_;               ///< by gnss_drift_*
+  std::optional<Epoch> last_told_;        ///< what a frozen receiver repeats of it
+  std::optional<std::string> last_text_;  ///< what one repeats that hangs
 };
 
 }  // namespace roverd::sim
