@@ -6,7 +6,9 @@
 
 namespace roverd::api {
 
-void Commands::run(robot::Command command, base::Time not_after, base::Time now, Done done) {
+void Commands::run(robot::Command command, const robot::Validity& validity, base::Time now,
+                   Done done) {
+  const base::Time not_after = validity.not_after;
   if (now > not_after) {
     return done(tl::unexpected<base::Error>(late_error(not_after, now)));
   }
@@ -16,7 +18,7 @@ void Commands::run(robot::Command command, base::Time not_after, base::Time now,
   }
   const std::uint64_t id = next_++;
   const std::weak_ptr<Commands*> self = self_;
-  const bool queued = robot_.request(std::move(command), not_after, [self, id](auto result) {
+  const bool queued = robot_.request(std::move(command), validity, [self, id](auto result) {
     if (const auto alive = self.lock()) (*alive)->answer(id, std::move(result));
   });
   if (!queued) {
@@ -55,8 +57,9 @@ void Commands::sweep(base::Time now) {
 }
 
 void run_command(const ContextPtr& context, const CallPtr& call, robot::Command command,
-                 base::Time not_after, std::function<Json(const base::Snapshot&)> state) {
-  context->commands.run(std::move(command), not_after, base::steady_now(),
+                 const robot::Validity& validity,
+                 std::function<Json(const base::Snapshot&)> state) {
+  context->commands.run(std::move(command), validity, base::steady_now(),
                         [context, call, state = std::move(state)](base::Result<void> result) {
                           if (!result) return call->respond(problem(result.error()));
                           if (const auto snapshot = context->snapshot_or_refuse(call)) {

@@ -30,8 +30,8 @@ class Commands {
   explicit Commands(robot::Robot& robot) : robot_(robot) {}
 
   /// `done` is called exactly once, later: with what the robot did, or Unavailable.
-  /// @param not_after the robot refuses it as late then.
-  void run(robot::Command command, base::Time not_after, base::Time now, Done done);
+  /// @param validity the robot refuses it as late by that.
+  void run(robot::Command command, const robot::Validity& validity, base::Time now, Done done);
   /// For what others than the robot answer: @return what to call with the answer, web thread. If
   /// nobody does until `give_up`, `done` hears Unavailable.
   Done expect(base::Time give_up, Done done);
@@ -168,6 +168,6 @@ void add_parameter_routes(const ContextPtr& context);
 
 /// Runs a command and answers with what `state` makes of the snapshot, or with the refusal.
 void run_command(const ContextPtr& context, const CallPtr& call, robot::Command command,
-                 base::Time not_after, std::function<Json(const base::Snapshot&)> state);
+                 const robot::Validity& validity, std::function<Json(const base::Snapshot&)> state);
 
 }  // namespace roverd::api

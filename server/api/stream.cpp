@@ -185,7 +185,7 @@ base::Result<void> StreamTexts::drive(ClientId id, Client& client, Members& mess
   const auto yaw_rate_dps = members.number("yaw_rate_dps", -kMostYawRate_dps, kMostYawRate_dps);
   const auto deadman = members.flag("deadman");
   const auto seq = members.whole("seq", 0, std::int64_t{1} << 53);
-  const base::Time not_after = stick_validity_of({begun, message, members});
+  const robot::Validity validity = stick_validity_of({begun, message, members});
   const auto outer = message.finish();
   if (auto read = members.finish(); !read || !outer) {
     // Whoever lets go has let go, and whoever drives must be understood.
@@ -200,19 +200,21 @@ base::Result<void> StreamTexts::drive(ClientId id, Client& client, Members& mess
     if (id == driver_) stop_driving();
     return {};
   }
-  return take_wheel(id, {{*speed_mps, base::rad_from_deg(*yaw_rate_dps)}, true}, not_after);
+  return take_wheel(id, {{*speed_mps, base::rad_from_deg(*yaw_rate_dps)}, true}, validity);
 }
 
 base::Result<void> StreamTexts::take_wheel(ClientId id, robot::Drive command,
-                                           base::Time not_after) {
+                                           const robot::Validity& validity) {
   const base::Time now = base::steady_now();
   if (driver_ != 0 && driver_ != id && now - driven_ < kDriverSilent) {
     return base::fail(base::Code::Conflict, "another client is driving");
   }
-  if (now > not_after) return tl::unexpected<base::Error>(late_error(not_after, now));
+  if (now > validity.not_after) {
+    return tl::unexpected<base::Error>(late_error(validity.not_after, now));
+  }
   driver_ = id;
   driven_ = now;
-  if (context_->deps.robot.request(command, not_after, {})) return {};
+  if (context_->deps.robot.request(command, validity, {})) return {};
   return base::fail(base::Code::Unavailable, "too many commands wait for the robot");
 }
 

@@ -41,7 +41,7 @@ class StreamTexts {
   base::Result<void> read(ClientId id, Client& client, const Json& message, base::Time begun);
   base::Result<void> subscribe(ClientId id, const Json& topics);
   base::Result<void> drive(ClientId id, Client& client, Members& message, base::Time begun);
-  base::Result<void> take_wheel(ClientId id, robot::Drive command, base::Time not_after);
+  base::Result<void> take_wheel(ClientId id, robot::Drive command, const robot::Validity& validity);
   void estop(ClientId id);
   base::Result<void> halt(const robot::Command& command);
   void answer_ping(ClientId id, double ping);

@@ -52,16 +52,17 @@ double mono_s(base::Time now) noexcept {
   return std::floor(base::seconds(now.time_since_epoch()) * 1e3) / 1e3;
 }
 
-base::Time validity_of(Members& members, const Call& call, Moves moves) {
+robot::Validity validity_of(Members& members, const Call& call, Moves moves) {
   if (moves == Moves::No) {
     (void)members.any("valid_for_s");  // nothing that it says can be in a stop's way
     return base::Time::max();
   }
   const double good_s = members.number("valid_for_s", 0.0, kLongestValid_s).value_or(kClickValid_s);
-  return seen_by(call, members).value_or(call.begun) + base::from_seconds(good_s);
+  const base::Time seen = seen_by(call, members).value_or(call.begun);
+  return {seen + base::from_seconds(good_s), seen};
 }
 
-base::Time stick_validity_of(const StreamAge& age) {
+robot::Validity stick_validity_of(const StreamAge& age) {
   const double good_s =
       age.inner.number("valid_for_s", 0.0, kLongestValid_s).value_or(kStickValid_s);
   base::Time from = age.begun;
@@ -72,7 +73,7 @@ base::Time stick_validity_of(const StreamAge& age) {
     if (!seen) where->complain("seen_s", kSeenRule);
     from = seen.value_or(from);
   }
-  return from + base::from_seconds(good_s);
+  return {from + base::from_seconds(good_s), from};
 }
 
 base::Error late_error(base::Time not_after, base::Time now) {
@@ -83,10 +84,10 @@ base::Error late_error(base::Time not_after, base::Time now) {
           {}};
 }
 
-bool refused_as_late(const CallPtr& call, base::Time not_after) {
+bool refused_as_late(const CallPtr& call, const robot::Validity& validity) {
   const base::Time now = base::steady_now();
-  if (now <= not_after) return false;
-  call->respond(problem(late_error(not_after, now)));
+  if (now <= validity.not_after) return false;
+  call->respond(problem(late_error(validity.not_after, now)));
   return true;
 }
 

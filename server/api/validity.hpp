@@ -6,12 +6,14 @@
 //
 // `seen` is the robot's own monotonic time at which the sender saw what they acted upon: every
 // stream message, GET /vehicle and GET /health tell it as `mono_s`, the sender adds what has passed
-// since. Without it the age counts from `begun`, the first sign of the request.
+// since. Without it the age counts from `begun`, the first sign of the request. A stop that the
+// robot took after `seen` refuses the command too: it overtook it (robot/safety/last_stop.hpp).
 
 #include <string_view>
 
 #include "api/body.hpp"
 #include "api/message.hpp"
+#include "robot/robot.hpp"
 
 namespace roverd::api {
 
@@ -27,8 +29,8 @@ enum class Moves { Yes, No };
 
 /// Takes `valid_for_s` out of the body (without it: kClickValid_s) and reads the header
 /// Roverd-Seen; complains of what cannot be, like a time in the future.
-/// @return when it is too late
-base::Time validity_of(Members& members, const Call& call, Moves moves);
+/// @return what the robot judges it by: what stops is never too late, and no stop refuses it
+robot::Validity validity_of(Members& members, const Call& call, Moves moves);
 
 /// The same for a message of the stream. @param begun when its first byte was there
 /// @param outer,inner what holds `seen_s`: the message itself, or what it says
@@ -37,11 +39,11 @@ struct StreamAge {
   Members& outer;
   Members& inner;
 };
-base::Time stick_validity_of(const StreamAge& age);
+robot::Validity stick_validity_of(const StreamAge& age);
 
 /// What was asked for too late.
 base::Error late_error(base::Time not_after, base::Time now);
 /// @return true: it is too late, and the caller has heard so.
-bool refused_as_late(const CallPtr& call, base::Time not_after);
+bool refused_as_late(const CallPtr& call, const robot::Validity& validity);
 
 }  // namespace roverd::api

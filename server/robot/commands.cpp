@@ -21,6 +21,12 @@ bool is_stop(const Command& c) noexcept {
          std::holds_alternative<PauseMission>(c) || std::holds_alternative<StopMission>(c);
 }
 
+/// Somebody wants the robot to stand. To let go of the stick says less: another way of driving may
+/// have been chosen before.
+bool halts(const Command& c) noexcept {
+  return is_stop(c) && !std::holds_alternative<Drive>(c);
+}
+
 bool carries_much(const Command& c) noexcept {
   return std::holds_alternative<LoadMission>(c) || std::holds_alternative<ReviseMission>(c) ||
          std::holds_alternative<ResumeAt>(c) || std::holds_alternative<SetFence>(c);
@@ -38,11 +44,7 @@ void Robot::Impl::take_commands() {
   if (outbox.full()) return;
   commands.try_take(command_batch);
   for (PendingCommand& pending : command_batch) {
-    base::Result<void> result =
-        base::fail(Code::Late, "the command arrived too late and was not carried out");
-    if (clock.now() <= pending.not_after || is_stop(pending.command)) {
-      result = std::visit([this](const auto& c) { return handle(c); }, pending.command);
-    }
+    base::Result<void> result = carry_out(pending);
     if (carries_much(pending.command)) {
       pending.reply = [reply = std::move(pending.reply), old = std::exchange(retired, nullptr),
                        command = std::move(pending.command)](base::Result<void> r) {
@@ -52,6 +54,17 @@ void Robot::Impl::take_commands() {
     outbox.reply(std::move(pending.reply), std::move(result));
   }
   command_batch.clear();
+}
+
+base::Result<void> Robot::Impl::carry_out(const PendingCommand& pending) {
+  if (halts(pending.command)) last_stop.take(clock.now());
+  if (!is_stop(pending.command)) {
+    if (clock.now() > pending.validity.not_after) {
+      return base::fail(Code::Late, "the command arrived too late and was not carried out");
+    }
+    if (auto ok = last_stop.permits(pending.validity.seen); !ok) return ok;
+  }
+  return std::visit([this](const auto& c) { return handle(c); }, pending.command);
 }
 
 base::Result<void> Robot::Impl::handle(const Arm&) {

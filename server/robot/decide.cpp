@@ -89,6 +89,7 @@ void Robot::Impl::watch_radio(bool drives) {
   if (std::exchange(radio_had_control, drives) == drives) return;
   event(Severity::Info, drives ? "radio_takeover" : "radio_released",
         drives ? "the radio took control" : "the radio gave control back");
+  if (drives) last_stop.take(clock.now(), "the radio took control");
   const bool interrupts = drives && machine.kind() == ModeKind::ByItself;
   if (interrupts && self_driving.hold(machine.mode())) {
     event(Severity::Warning, "activity_held", self_driving.held().why());

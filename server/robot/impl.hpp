@@ -37,6 +37,7 @@
 #include "robot/safety/base_watch.hpp"
 #include "robot/safety/estimate_watch.hpp"
 #include "robot/safety/fence_keep.hpp"
+#include "robot/safety/last_stop.hpp"
 #include "robot/safety/position_watch.hpp"
 #include "robot/safety/safety.hpp"
 #include "robot/world.hpp"
@@ -45,7 +46,7 @@ namespace roverd::robot {
 
 struct PendingCommand {
   Command command;
-  Time not_after;
+  Validity validity;
   Reply reply;
 };
 
@@ -81,6 +82,7 @@ struct Robot::Impl {
   base::EstimatorHealth health;  ///< of the estimator, at this tick
 
   ArmSwitch arm;
+  LastStop last_stop;
   ModeMachine machine;
   MissionKeeper missions;
   SelfDriving self_driving;
@@ -111,8 +113,9 @@ struct Robot::Impl {
   std::shared_ptr<const void> retired;  ///< by the command that is being carried out
 
   // tick, in this order (robot.cpp, commands.cpp, radio/panel.cpp, decide.cpp, publish.cpp)
-  void take_estop();
+  void take_estop(Time now);
   void take_commands();
+  base::Result<void> carry_out(const PendingCommand& pending);
   void take_measurements();
   void note_driver(const base::DriverStatus& d);
   void judge();

@@ -64,11 +64,11 @@ std::shared_ptr<const MissionCopy> Robot::loaded() const {
   return {mission, &mission->copy};
 }
 
-bool Robot::request(Command command, Time not_after, Reply reply) {
+bool Robot::request(Command command, Validity validity, Reply reply) {
   // The stop itself never waits for room in a queue.
   const bool stop = std::holds_alternative<Estop>(command);
   if (stop) impl_->estop_asked.store(true);
-  const bool queued = impl_->commands.offer({std::move(command), not_after, std::move(reply)});
+  const bool queued = impl_->commands.offer({std::move(command), validity, std::move(reply)});
   if (stop && alert) alert();
   return queued;
 }
@@ -250,8 +250,10 @@ base::Result<Preview> Robot::preview(const StartMission& start) const {
   return p;
 }
 
-void Robot::Impl::take_estop() {
-  if (estop_asked.exchange(false)) latch_estop("the operator");
+void Robot::Impl::take_estop(Time now) {
+  if (!estop_asked.exchange(false)) return;
+  last_stop.take(now);
+  latch_estop("the operator");
 }
 
 /// What changed about a driver, for those who look later.
@@ -301,7 +303,7 @@ void Robot::heed_stop(Time now) noexcept {
   // Latched already: every tick sends what stands.
   if (r.arm.latched() || r.clock.health().ticks == 0 || !r.estop_asked) return;
   try {
-    r.take_estop();
+    r.take_estop(now);
     r.sent = {};
     if (send) send(r.sent, now);
   } catch (...) {
@@ -313,7 +315,7 @@ void Robot::tick(Time now, base::WallTime wall, base::Duration lateness) noexcep
   Impl& r = *impl_;
   try {
     r.clock.begin(now, wall, lateness);
-    r.take_estop();
+    r.take_estop(now);
     r.take_commands();
     r.take_measurements();
     r.watch_estimate();

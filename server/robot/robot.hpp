@@ -167,6 +167,14 @@ using Command = std::variant<Arm, Disarm, SetMode, Estop, ResetEstop, StartMissi
                              SetAnchor, DropAnchor, Drive, LoadMission, ReviseMission, GoTo, MoveBy,
                              SetTarget, SetParameter, SetFence, ResumeAt>;
 
+/// How long a command is good, and what its sender had seen when it was given.
+struct Validity {
+  /// Not explicit: what moves nothing says only until when it is good.
+  Validity(Time until, Time seen_at = Time::max()) noexcept : not_after(until), seen(seen_at) {}
+  Time not_after;  ///< still waiting then, it is refused
+  Time seen;       ///< a stop that was taken later than this refuses it; max(): none does
+};
+
 /// Called with what the robot *did*. Runs on whatever thread drains replies().
 using Reply = std::function<void(base::Result<void>)>;
 
@@ -234,10 +242,10 @@ class Robot {
   /// Any thread: from drivers.
   base::Inbox<base::Measurement>& measurements() noexcept;
 
-  /// Any thread. The answer comes with the next tick through replies(). `not_after`: a command
-  /// still waiting then is refused as Late. @return false: no room, nothing was queued and `reply`
+  /// Any thread. The answer comes with the next tick through replies(): Late where `validity` says
+  /// so, but a stop is always carried out. @return false: no room, nothing was queued and `reply`
   /// will not be called.
-  bool request(Command command, Time not_after, Reply reply);
+  bool request(Command command, Validity validity, Reply reply);
 
   /// Any thread, at once: compiles a copy into a route in the robot's frame (or a new frame at its
   /// first point while the robot has none). Errors name the items (fields "/items/3").

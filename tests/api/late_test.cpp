@@ -137,6 +137,36 @@ TEST_F(LateApi, AKeptConnectionMayRestBetweenTwoRequests) {
   EXPECT_EQ(client.answer()->status, 200u);
 }
 
+/// A click that a stop overtook on its way, however young it is.
+TEST_F(LateApi, AStopRefusesWhatWasClickedBeforeItAndComesAfterIt) {
+  until_ready();
+  const std::string id = make_mission();
+  ASSERT_EQ(call("POST", "/execution/load", Json{{"mission_id", id}}).status, 200u);
+  const std::vector<Command> stops{{"PUT", "/vehicle/mode", {{"mode", "HOLD"}}},
+                                   {"POST", "/execution/pause", Json::object()},
+                                   {"POST", "/execution/stop", Json::object()},
+                                   {"POST", "/vehicle/disarm", Json::object()},
+                                   {"POST", "/vehicle/estop", Json::object()}};
+  for (const Command& stop : stops) {
+    const double seen_s = mono_s();
+    std::this_thread::sleep_for(30ms);
+    call(stop.method, stop.path, stop.body);  // with nothing to stop: 409, and heard all the same
+    for (const Command& c : all_that_move(id)) {
+      if (c.path == std::string("/drivers/gnss/restart")) break;  // and what follows: nothing moves
+      Json body = c.body;
+      body["valid_for_s"] = 5;
+      const Reply reply = call(c.method, c.path, body, seen(seen_s));
+      EXPECT_TRUE(is_late(reply)) << stop.path << ' ' << c.path << ' ' << reply.raw.body;
+      EXPECT_EQ(reply.body["detail"],
+                "the robot was stopped after this was clicked, so it was not carried out: look, "
+                "then click again");
+    }
+  }
+  EXPECT_FALSE(armed());
+  ASSERT_EQ(call("POST", "/vehicle/estop/reset", Json::object(), seen(mono_s())).status, 200u);
+  EXPECT_EQ(call("POST", "/vehicle/arm", Json::object(), seen(mono_s())).status, 200u);
+}
+
 /// By WebSocket.
 class LateStream : public LateApi {
  protected:
@@ -189,6 +219,17 @@ TEST_F(LateStream, AStickThatAnswersToWhatIsTooOldDoesNotMoveTheRobot) {
         return house.sent().twist.linear_mps > 0.1;
       },
       "the base is told to move");
+}
+
+TEST_F(LateStream, AHaltOnTheStreamOvertakesAClickToo) {
+  const double seen_s = stream_mono_s();
+  std::this_thread::sleep_for(30ms);
+  say({{"halt", "hold"}});
+  until([this] { return call("GET", "/vehicle").body["mode"] == "HOLD"; }, "it holds");
+  const Reply late =
+      call("PUT", "/vehicle/mode", Json{{"mode", "MANUAL"}, {"valid_for_s", 5}}, seen(seen_s));
+  EXPECT_TRUE(is_late(late)) << late.raw.body;
+  EXPECT_EQ(call("PUT", "/vehicle/mode", Json{{"mode", "MANUAL"}}, seen(mono_s())).status, 200u);
 }
 
 TEST_F(LateStream, AStickOfTheFutureIsRefusedByName) {

@@ -25,10 +25,9 @@ constexpr double kOldest_s = 60.0;
 
 /// Begun: the state tells how far it has come, under `activity`.
 void begin(const ContextPtr& context, const CallPtr& call, robot::Command command,
-           base::Time not_after) {
+           const robot::Validity& validity) {
   context->commands.run(
-      std::move(command), not_after, base::steady_now(),
-      [context, call](base::Result<void> result) {
+      std::move(command), validity, base::steady_now(), [context, call](base::Result<void> result) {
         if (!result) return call->respond(problem(result.error()));
         const auto snapshot = context->snapshot_or_refuse(call);
         if (!snapshot) return;
@@ -51,9 +50,9 @@ Handler go_to(const ContextPtr& context) {
       members.require("heading_deg");
       members.require("speed_mps");
     }
-    const base::Time not_after = validity_of(members, *call, Moves::Yes);
+    const robot::Validity validity = validity_of(members, *call, Moves::Yes);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
-    begin(context, call, goal, not_after);
+    begin(context, call, goal, validity);
   };
 }
 
@@ -71,13 +70,13 @@ Handler move_by(const ContextPtr& context) {
     if (turn_deg) move.turn_rad = -base::rad_from_deg(*turn_deg);
     if (heading_deg) move.yaw_rad = base::yaw_from_heading(*heading_deg);
     const int given = (move.forward_m ? 1 : 0) + (turn_deg ? 1 : 0) + (heading_deg ? 1 : 0);
-    const base::Time not_after = validity_of(members, *call, Moves::Yes);
+    const robot::Validity validity = validity_of(members, *call, Moves::Yes);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
     if (given != 1) {
       const std::string rule = "exactly one of forward_m, turn_deg and heading_deg is needed";
       return call->respond(problem({base::Code::Invalid, rule, {{"", rule}}}));
     }
-    begin(context, call, move, not_after);
+    begin(context, call, move, validity);
   };
 }
 
@@ -149,9 +148,9 @@ Handler set_target(const ContextPtr& context) {
     }
     read_offset(members, target);
     read_age(members, target);
-    const base::Time not_after = validity_of(members, *call, Moves::Yes);
+    const robot::Validity validity = validity_of(members, *call, Moves::Yes);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
-    run_command(context, call, target, not_after, [context](const base::Snapshot& snapshot) {
+    run_command(context, call, target, validity, [context](const base::Snapshot& snapshot) {
       return vehicle_json(snapshot, context->deps.profile.name, base::steady_now());
     });
   };

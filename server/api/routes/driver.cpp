@@ -49,9 +49,9 @@ Handler restart_driver(const ContextPtr& context) {
     const auto body = json_body(call->request, true);
     if (!body) return call->respond(problem(body.error()));
     Members members(*body);
-    const base::Time not_after = validity_of(members, *call, Moves::Yes);
+    const robot::Validity validity = validity_of(members, *call, Moves::Yes);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
-    if (refused_as_late(call, not_after)) return;
+    if (refused_as_late(call, validity)) return;
     const auto snapshot = context->snapshot_or_refuse(call);
     if (!snapshot) return;
     const std::string& name = call->params.at("name");
@@ -124,9 +124,9 @@ Handler set_lights(const ContextPtr& context) {
     if (wanted.commanded) members.require("front");
     const Light front = read_light(members, "front");
     const Light rear = read_light(members, "rear");
-    const base::Time not_after = validity_of(members, *call, Moves::Yes);
+    const robot::Validity validity = validity_of(members, *call, Moves::Yes);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
-    if (refused_as_late(call, not_after)) return;
+    if (refused_as_late(call, validity)) return;
     const auto& ask = context->deps.drivers.set_lights;
     if (!ask) {
       return call->respond(
@@ -136,7 +136,8 @@ Handler set_lights(const ContextPtr& context) {
     wanted.front_pct = front.pct;
     wanted.rear_mode = rear.mode;
     wanted.rear_pct = rear.pct;
-    ask(wanted, not_after, answer_later(context, call, not_after, present_lights));
+    ask(wanted, validity.not_after,
+        answer_later(context, call, validity.not_after, present_lights));
   };
 }
 
@@ -146,9 +147,9 @@ Handler clear_errors(const ContextPtr& context) {
     if (!body) return call->respond(problem(body.error()));
     Members members(*body);
     const auto motor = members.whole("motor", 1, 2);
-    const base::Time not_after = validity_of(members, *call, Moves::Yes);
+    const robot::Validity validity = validity_of(members, *call, Moves::Yes);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
-    if (refused_as_late(call, not_after)) return;
+    if (refused_as_late(call, validity)) return;
     const auto& ask = context->deps.drivers.clear_errors;
     if (!ask) {
       return call->respond(
@@ -161,8 +162,8 @@ Handler clear_errors(const ContextPtr& context) {
           problem({base::Code::Conflict,
                    "the robot is armed: motors that work again might move it; disarm first"}));
     }
-    ask(static_cast<int>(motor.value_or(0)), not_after,
-        answer_later(context, call, not_after, [context](const base::Snapshot& now) {
+    ask(static_cast<int>(motor.value_or(0)), validity.not_after,
+        answer_later(context, call, validity.not_after, [context](const base::Snapshot& now) {
           return context->vehicle(now, base::steady_now());
         }));
   };

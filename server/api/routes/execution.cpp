@@ -43,14 +43,14 @@ Handler plain(const ContextPtr& context, robot::Command command, Moves moves) {
     const auto body = json_body(call->request, true);
     if (!body) return call->respond(problem(body.error()));
     Members members(*body);
-    const base::Time not_after = validity_of(members, *call, moves);
+    const robot::Validity validity = validity_of(members, *call, moves);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
-    run_command(context, call, command, not_after, progress_of(context));
+    run_command(context, call, command, validity, progress_of(context));
   };
 }
 
 void lay_out(const ContextPtr& context, const CallPtr& call, store::StoredMission stored,
-             base::Time not_after) {
+             const robot::Validity& validity) {
   struct Laid {
     Verdict verdict;
     Context::Warnings warnings{};
@@ -64,11 +64,11 @@ void lay_out(const ContextPtr& context, const CallPtr& call, store::StoredMissio
                          findings_json(laid.verdict.report, mission::Severity::Warning)};
         return laid;
       },
-      [context, call, not_after](Laid laid) {
+      [context, call, validity](Laid laid) {
         if (laid.verdict.lasting > 0 || !laid.verdict.compiled) {
           return call->respond(problem(laid.verdict.refusal));
         }
-        run_command(context, call, robot::LoadMission{std::move(laid.verdict.compiled)}, not_after,
+        run_command(context, call, robot::LoadMission{std::move(laid.verdict.compiled)}, validity,
                     [context, warnings = std::move(laid.warnings)](const base::Snapshot& snapshot) {
                       context->warnings = warnings;
                       Json out = progress_of(context)(snapshot);
@@ -86,12 +86,12 @@ Handler load(const ContextPtr& context) {
     members.require("mission_id");
     const auto id = members.text("mission_id");
     const auto revision = members.whole("revision", 1, kMostRevisions);
-    const base::Time not_after = validity_of(members, *call, Moves::No);
+    const robot::Validity validity = validity_of(members, *call, Moves::No);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
 
-    const auto hand_over = [context, call, not_after](base::Result<store::StoredMission> stored) {
+    const auto hand_over = [context, call, validity](base::Result<store::StoredMission> stored) {
       if (!stored) return call->respond(problem(stored.error()));
-      lay_out(context, call, std::move(*stored), not_after);
+      lay_out(context, call, std::move(*stored), validity);
     };
     if (revision) {
       context->deps.store.read_revision(*id, *revision, hand_over);
@@ -130,7 +130,7 @@ Json present_preview(const ContextPtr& context, const robot::Preview& preview,
 }
 
 base::Result<robot::StartMission> read_start(const Json& body, const Call& call,
-                                             base::Time& not_after) {
+                                             robot::Validity& validity) {
   Members members(body);
   members.require("mission_id");
   members.require("revision");
@@ -143,7 +143,7 @@ base::Result<robot::StartMission> read_start(const Json& body, const Call& call,
     if (*from == "first" || *from == "nearest") start = read_from(from->get<std::string>());
     if (!start) members.complain("from", kFromRule);
   }
-  not_after = validity_of(members, call, Moves::Yes);
+  validity = validity_of(members, call, Moves::Yes);
   if (const auto read = members.finish(); !read) {
     return tl::unexpected<base::Error>(read.error());
   }
@@ -156,14 +156,14 @@ Handler start(const ContextPtr& context) {
   return [context](const CallPtr& call) {
     const auto body = json_body(call->request);
     if (!body) return call->respond(problem(body.error()));
-    base::Time not_after;
-    const auto command = read_start(*body, *call, not_after);
+    robot::Validity validity{base::Time::max()};
+    const auto command = read_start(*body, *call, validity);
     if (!command) return call->respond(problem(command.error()));
-    if (refused_as_late(call, not_after)) return;
+    if (refused_as_late(call, validity)) return;
     const auto preview = context->deps.robot.preview(*command);
     if (!preview) return call->respond(problem(as_conflict(preview.error())));
     context->commands.run(
-        *command, not_after, base::steady_now(),
+        *command, validity, base::steady_now(),
         [context, call, shown = *preview](base::Result<void> result) {
           if (!result) return call->respond(problem(result.error()));
           call->respond(json_response(http::status::ok, present_preview(context, shown, {})));
@@ -198,9 +198,9 @@ Handler skip(const ContextPtr& context) {
     if (!body) return call->respond(problem(body.error()));
     Members members(*body);
     const auto item = members.whole("item", 1, static_cast<std::int64_t>(mission::kMaxItems));
-    const base::Time not_after = validity_of(members, *call, Moves::Yes);
+    const robot::Validity validity = validity_of(members, *call, Moves::Yes);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
-    run_command(context, call, robot::SkipItem{static_cast<int>(item.value_or(0))}, not_after,
+    run_command(context, call, robot::SkipItem{static_cast<int>(item.value_or(0))}, validity,
                 progress_of(context));
   };
 }
@@ -212,18 +212,18 @@ Handler resume(const ContextPtr& context) {
     const auto body = json_body(call->request, true);
     if (!body) return call->respond(problem(body.error()));
     Members members(*body);
-    const base::Time not_after = validity_of(members, *call, Moves::Yes);
+    const robot::Validity validity = validity_of(members, *call, Moves::Yes);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
-    if (refused_as_late(call, not_after)) return;
+    if (refused_as_late(call, validity)) return;
     const auto now = context->deps.robot.snapshot();
     const auto offer = now ? context->offer(*now) : std::nullopt;
     const auto loaded = context->deps.robot.loaded();
     if (!offer || (loaded && loaded->id != offer->mission_id)) {
-      return run_command(context, call, robot::ResumeMission{}, not_after, progress_of(context));
+      return run_command(context, call, robot::ResumeMission{}, validity, progress_of(context));
     }
     context->deps.store.read_revision(
         offer->mission_id, offer->revision,
-        [context, call, not_after, place = offer->place](auto stored) {
+        [context, call, validity, place = offer->place](auto stored) {
           if (!stored) {
             return call->respond(
                 problem({base::Code::Conflict,
@@ -235,9 +235,9 @@ Handler resume(const ContextPtr& context) {
               [&robot = context->deps.robot, mission = std::move(*stored)]() mutable {
                 return robot.compile({mission.id, mission.revision, std::move(mission.plan)});
               },
-              [context, call, not_after, place](auto compiled) {
+              [context, call, validity, place](auto compiled) {
                 if (!compiled) return call->respond(problem(compiled.error()));
-                run_command(context, call, robot::ResumeAt{std::move(*compiled), place}, not_after,
+                run_command(context, call, robot::ResumeAt{std::move(*compiled), place}, validity,
                             progress_of(context));
               });
         });

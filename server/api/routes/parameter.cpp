@@ -144,13 +144,13 @@ Handler put_parameter(const ContextPtr& context) {
     if (body->is_object() && body->contains("value") && !value) {
       members.complain("value", "must be a number, true or false, or text");
     }
-    const base::Time not_after = validity_of(members, *call, Moves::No);
+    const robot::Validity validity = validity_of(members, *call, Moves::No);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
     if (const auto good = context->deps.robot.check_parameter(name, *value); !good) {
       return call->respond(problem(good.error()));
     }
     if (!p->at_once) return keep(context, call, {name, *value}, false);
-    context->commands.run(robot::SetParameter{name, *value}, not_after, base::steady_now(),
+    context->commands.run(robot::SetParameter{name, *value}, validity, base::steady_now(),
                           [context, call, name, value = *value](base::Result<void> result) {
                             if (!result) return call->respond(problem(result.error()));
                             keep(context, call, {name, value}, true);

@@ -48,9 +48,9 @@ Handler set_pose(const ContextPtr& context) {
     const bool nothing = body->is_object() && !body->contains("lat") && !body->contains("lon") &&
                          !body->contains("east_m") && !body->contains("north_m");
     if (nothing) members.require("heading_deg");
-    const base::Time not_after = validity_of(members, *call, Moves::No);
+    const robot::Validity validity = validity_of(members, *call, Moves::No);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
-    run_command(context, call, command, not_after, state_after(context));
+    run_command(context, call, command, validity, state_after(context));
   };
 }
 
@@ -68,9 +68,9 @@ Handler set_anchor(const ContextPtr& context) {
     }
     const bool nothing = body->is_object() && !body->contains("lat") && !body->contains("lon");
     if (nothing) members.require("item");
-    const base::Time not_after = validity_of(members, *call, Moves::No);
+    const robot::Validity validity = validity_of(members, *call, Moves::No);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
-    run_command(context, call, command, not_after, state_after(context));
+    run_command(context, call, command, validity, state_after(context));
   };
 }
 

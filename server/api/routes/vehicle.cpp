@@ -34,9 +34,9 @@ Handler plain(const ContextPtr& context, robot::Command command, Moves moves) {
     const auto body = json_body(call->request, true);
     if (!body) return call->respond(problem(body.error()));
     Members members(*body);
-    const base::Time not_after = validity_of(members, *call, moves);
+    const robot::Validity validity = validity_of(members, *call, moves);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
-    run_command(context, call, command, not_after, whole_state(context));
+    run_command(context, call, command, validity, whole_state(context));
   };
 }
 
@@ -45,10 +45,10 @@ Handler arm(const ContextPtr& context) {
     const auto body = json_body(call->request, true);
     if (!body) return call->respond(problem(body.error()));
     Members members(*body);
-    const base::Time not_after = validity_of(members, *call, Moves::Yes);
+    const robot::Validity validity = validity_of(members, *call, Moves::Yes);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
     context->commands.run(
-        robot::Arm{}, not_after, base::steady_now(), [context, call](base::Result<void> result) {
+        robot::Arm{}, validity, base::steady_now(), [context, call](base::Result<void> result) {
           const auto snapshot = context->deps.robot.snapshot();
           if (!result) {
             return call->respond(problem(with_checks(std::move(result.error()), snapshot)));
@@ -78,7 +78,7 @@ std::string outdated(const robot::MissionCopy& loaded,
 
 /// A mission that waits goes on. What is merely loaded is started only while it is the newest
 /// revision: nobody named one here.
-void set_auto(const ContextPtr& context, const CallPtr& call, base::Time not_after) {
+void set_auto(const ContextPtr& context, const CallPtr& call, const robot::Validity& validity) {
   const auto snapshot = context->snapshot_or_refuse(call);
   if (!snapshot) return;
   const base::ExecutionState state = snapshot->mission.state;
@@ -86,11 +86,11 @@ void set_auto(const ContextPtr& context, const CallPtr& call, base::Time not_aft
       state == base::ExecutionState::Paused || state == base::ExecutionState::Blocked;
   const auto loaded = context->deps.robot.loaded();
   if (waits || snapshot->mode == base::Mode::Auto || !loaded) {
-    return run_command(context, call, robot::SetMode{base::Mode::Auto}, not_after,
+    return run_command(context, call, robot::SetMode{base::Mode::Auto}, validity,
                        whole_state(context));
   }
   context->deps.store.read_mission(
-      loaded->id, [context, call, not_after, loaded](base::Result<store::StoredMission> stored) {
+      loaded->id, [context, call, validity, loaded](base::Result<store::StoredMission> stored) {
         if (!stored && stored.error().code != base::Code::NotFound) {
           return call->respond(problem(stored.error()));
         }
@@ -100,7 +100,7 @@ void set_auto(const ContextPtr& context, const CallPtr& call, base::Time not_aft
         robot::StartMission start;
         start.mission_id = loaded->id;
         start.revision = loaded->revision;
-        run_command(context, call, start, not_after, whole_state(context));
+        run_command(context, call, start, validity, whole_state(context));
       });
 }
 
@@ -119,7 +119,7 @@ Handler set_mode(const ContextPtr& context) {
     }
     // HOLD stops: that is never too late.
     const Moves moves = mode == base::Mode::Hold ? Moves::No : Moves::Yes;
-    const base::Time not_after = validity_of(members, *call, moves);
+    const robot::Validity validity = validity_of(members, *call, moves);
     robot::SetMode command{mode};
     if (mode == base::Mode::Dock) {
       command.goal = read_goal(members);
@@ -130,9 +130,9 @@ Handler set_mode(const ContextPtr& context) {
       }
     }
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
-    if (refused_as_late(call, not_after)) return;
-    if (mode == base::Mode::Auto) return set_auto(context, call, not_after);
-    run_command(context, call, command, not_after, whole_state(context));
+    if (refused_as_late(call, validity)) return;
+    if (mode == base::Mode::Auto) return set_auto(context, call, validity);
+    run_command(context, call, command, validity, whole_state(context));
   };
 }
 
@@ -153,11 +153,11 @@ Handler set_home(const ContextPtr& context) {
         }
       }
     }
-    const base::Time not_after = validity_of(members, *call, Moves::No);
+    const robot::Validity validity = validity_of(members, *call, Moves::No);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
     robot::SetHome command;
     if (lat && lon) command.at = base::LatLon{*lat, *lon};
-    run_command(context, call, command, not_after, whole_state(context));
+    run_command(context, call, command, validity, whole_state(context));
   };
 }
 

@@ -42,6 +42,13 @@ std::string_view meaning_of(const RadioAction* action) noexcept {
   return action != nullptr ? action->meaning : std::string_view{};
 }
 
+bool halts(const RadioAction& action) noexcept {
+  const RadioDeed deed = action.deed;
+  if (deed == RadioDeed::SetMode) return action.mode == Mode::Hold;
+  return deed == RadioDeed::Disarm || deed == RadioDeed::Estop || deed == RadioDeed::PauseMission ||
+         deed == RadioDeed::StopMission || deed == RadioDeed::ClearMission;
+}
+
 }  // namespace
 
 void Robot::Impl::press(const base::RadioState& frame) {
@@ -68,6 +75,7 @@ void Robot::Impl::act_on_radio() {
 }
 
 base::Result<void> Robot::Impl::carry_out(const RadioAction& action) {
+  if (halts(action)) last_stop.take(clock.now());
   switch (action.deed) {
     case RadioDeed::None:
     case RadioDeed::ByKnob:
