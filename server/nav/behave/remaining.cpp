@@ -53,10 +53,24 @@ std::optional<Executor::Left> Executor::left(const RouteStep& step,
                                              std::optional<EnuPoint> here) const noexcept {
   const Path& path = course_->path;
   const auto from = [&path](double s_m) { return Left{path.length_m() - s_m, path.left_s(s_m)}; };
-  if (doing_ == Doing::Path) return from(tracker_.path() == &path ? tracker_.s_m() : s_m_);
+  const double by_mps = std::max(0.1, route_->speed_mps);  // where no speed is planned
+  if (doing_ == Doing::Path) {
+    if (tracker_.path() == &path) return from(tracker_.s_m());
+    Left all = from(s_m_);
+    // It waits, and was moved meanwhile: back to the way first.
+    const double off_m = here ? base::distance_m(*here, path.at(s_m_)) : 0.0;
+    if (off_m > path_params_->track.rejoin_m) all = {all.m + off_m, all.s + off_m / by_mps};
+    return all;
+  }
   if (doing_ == Doing::Connector) {
-    const double at_m = tracker_.path() == &connector_ ? tracker_.s_m() : 0.0;
-    Left all{connector_.length_m() - at_m, connector_.left_s(at_m)};
+    const bool drives = tracker_.path() == &connector_;
+    if (connector_.points.empty() || (!drives && !here)) return std::nullopt;
+    // One that waits begins anew where the robot stands then.
+    const double length_m = connector_.length_m();
+    const double left_m =
+        drives ? length_m - tracker_.s_m() : base::distance_m(*here, connector_.points.back().at);
+    const double more_m = std::max(0.0, left_m - length_m);
+    Left all{left_m, connector_.left_s(std::max(0.0, length_m - left_m)) + more_m / by_mps};
     if (!rejoin_ && step.kind != StepKind::Go) return all;
     const double joins_m = rejoin_ ? s_m_ : path.vertex_m[step.node];
     const Left rest = from(joins_m);
@@ -73,7 +87,7 @@ std::optional<Executor::Left> Executor::left(const RouteStep& step,
   // Not on its way yet: straight to the waypoint first.
   const double there_m = base::distance_m(*here, course_->nodes[step.node].at);
   const Left rest = from(path.vertex_m[step.node]);
-  return Left{rest.m + there_m, rest.s + there_m / std::max(0.1, route_->speed_mps)};
+  return Left{rest.m + there_m, rest.s + there_m / by_mps};
 }
 
 Progress Executor::progress(std::optional<EnuPoint> here) const {

@@ -123,6 +123,46 @@ TEST(Executor, TellsTheWayThatIsLeftOnlyWhereItIsKnown) {
   EXPECT_FALSE(home.executor.progress(home.vehicle.at).distance_left_m);
 }
 
+/// What remains, not the whole way: also where the robot is on its way to the first waypoint, and
+/// where it was moved while the mission waited.
+TEST(Executor, AMissionThatWaitsTellsWhatRemainsOfIt) {
+  for (const double after_s : {4.0, 12.0, 20.0}) {
+    SCOPED_TRACE(after_s);
+    Ride r;
+    r.load(plan({at(8, 0), at(20, 0)}));
+    r.start();
+    ASSERT_FALSE(r.run(after_s));
+    const Progress driving = r.executor.progress(r.vehicle.at);
+    ASSERT_LT(driving.distance_left_m.value(), 20.0 - 0.5 * after_s);
+    r.executor.pause("test");
+    const Progress waits = r.executor.progress(r.vehicle.at);
+    EXPECT_NEAR(waits.distance_left_m.value(), 20.0 - r.vehicle.at.east_m, 0.1);
+    EXPECT_NEAR(waits.distance_left_m.value(), driving.distance_left_m.value(), 0.1);
+    EXPECT_NEAR(waits.eta_s.value(), driving.eta_s.value(), 2.0);
+    r.executor.interrupt();
+    EXPECT_NEAR(r.executor.progress(r.vehicle.at).distance_left_m.value(),
+                driving.distance_left_m.value(), 0.1);
+  }
+}
+
+TEST(Executor, AMissionThatWaitsCountsTheWayBackToIt) {
+  for (const double after_s : {4.0, 20.0}) {
+    SCOPED_TRACE(after_s);
+    Ride r;
+    r.load(plan({at(8, 0), at(20, 0)}));
+    r.start();
+    ASSERT_FALSE(r.run(after_s));
+    r.executor.pause("test");
+    const double before_m = r.executor.progress(r.vehicle.at).distance_left_m.value();
+    const double before_s = r.executor.progress(r.vehicle.at).eta_s.value();
+    const EnuPoint moved{r.vehicle.at.east_m - 6.0, 0.0};
+    EXPECT_NEAR(r.executor.progress(moved).distance_left_m.value(), before_m + 6.0, 0.1);
+    EXPECT_GT(r.executor.progress(moved).eta_s.value(), before_s + 4.0);
+    if (after_s > 4.0) continue;
+    EXPECT_FALSE(r.executor.progress(std::nullopt).distance_left_m);
+  }
+}
+
 TEST(Executor, JumpsAsOftenAsToldAndRefusesToSpinInPlace) {
   Ride r;
   r.load(plan({at(2, 0), at(4, 0), mission::Jump{1, 2}, at(6, 0)}));
