@@ -222,7 +222,7 @@ void House::tell(base::Time now, int count) {
   in.put(base::WheelTravel{now, 0.0, 0.0});
   base::RadioState radio;
   radio.stamp = now;
-  radio.swb = base::Switch::Up;
+  radio.swb = swb;
   radio.swa = swa;
   radio.swc = swc;
   radio.swd = swd;

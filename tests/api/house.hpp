@@ -52,8 +52,9 @@ class House {
   std::atomic<bool> healthy{true};
   /// The control loop runs (true at first) or hangs.
   std::atomic<bool> ticking{true};
-  /// The radio's levers and knob; SWB stays up.
+  /// The radio's levers and knob.
   std::atomic<base::Switch> swa{base::Switch::Up};
+  std::atomic<base::Switch> swb{base::Switch::Up};
   std::atomic<base::Switch> swc{base::Switch::Up};
   std::atomic<base::Switch> swd{base::Switch::Up};
   std::atomic<double> vra{0.0};

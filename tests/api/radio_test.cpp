@@ -105,6 +105,33 @@ TEST_F(RadioApi, WhatSomebodyElseSavedMeanwhileIsNotOverwritten) {
   EXPECT_EQ(execution()["state"], "running");
 }
 
+/// After a take-over only a mission goes on by itself: a goal waits for the word.
+TEST_F(RadioApi, WhatTheRadioInterruptedGoesOnWhenItIsTold) {
+  until_ready();
+  ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 5}}).status, 200u);
+  const Json goal = {{"lat", kStart.lat + 0.0002}, {"lon", kStart.lon}, {"valid_for_s", 5}};
+  ASSERT_EQ(call("POST", "/vehicle/goto", goal).status, 202u);
+  until([this] { return house.sent().twist.linear_mps > 0.1; }, "it drives");
+  EXPECT_EQ(call("POST", "/vehicle/resume", Json{{"valid_for_s", 5}}).status, 409u);
+  house.swb = Switch::Middle;
+  until([this] { return call("GET", "/vehicle").body["control"] == "rc"; }, "the radio drives");
+  const auto early = call("POST", "/vehicle/resume", Json{{"valid_for_s", 5}});
+  EXPECT_EQ(early.status, 409u);
+  EXPECT_EQ(early.body["detail"], "the radio drives: put its switch SWB up first");
+  house.swb = Switch::Up;
+  until([this] { return call("GET", "/vehicle").body["control"] != "rc"; }, "given back");
+  const Json held = call("GET", "/vehicle").body["activity"];
+  EXPECT_EQ(held["state"], "held");
+  EXPECT_EQ(held["reason"], "the radio took over: the goto waits until it is resumed");
+  EXPECT_EQ(house.sent().twist, base::BodyTwist{});
+  const auto resumed = call("POST", "/vehicle/resume", Json{{"valid_for_s", 5}});
+  ASSERT_EQ(resumed.status, 200u) << resumed.raw.body;
+  EXPECT_TRUE(has_event("activity_resumed"));
+  until([this] { return house.sent().twist.linear_mps > 0.1; }, "it goes on");
+  EXPECT_EQ(call("GET", "/vehicle").body["activity"]["state"], "driving");
+  EXPECT_EQ(call("GET", "/vehicle").body["activity"]["id"], held["id"]);
+}
+
 TEST_F(RadioApi, SwitchesArmAndChooseModesAndTheirMeaningIsTold) {
   until_ready();
   EXPECT_EQ(call("GET", "/vehicle").body["armed"], false);

@@ -187,3 +187,34 @@ test('a way that is driven by hand is recorded and becomes a mission', async ({
   await tab(page, 'Missions');
   await expect(page.getByLabel('Stored missions').getByRole('listitem')).toHaveCount(1);
 });
+
+test('what the radio interrupted waits for “Go on”, and goes on when it is pressed', async ({
+  page,
+  station,
+}) => {
+  test.setTimeout(120_000);
+  await open_page(page, station.url);
+  await arm(page);
+  await mark(page, 0, 12);
+  await press(page, 'Go here');
+  await expect.poll(() => station.sim.now.speed_mps, { timeout: 30_000 }).toBeGreaterThan(0.2);
+
+  station.sim.tell({ radio: { swb: 'middle' } });
+  await stands_still(station);
+  const activity = page.getByLabel('Activity');
+  await expect(activity).toContainText(/the radio took over/i);
+  const go_on = activity.getByRole('button', { name: 'Go on' });
+  await expect(go_on).toBeVisible();
+  station.sim.tell({ radio: { swb: 'up' } });
+  await expect
+    .poll(async () => (await station.rest<Vehicle>('GET', '/vehicle')).activity.state)
+    .toBe('held');
+  // Given back, it stands until somebody says so.
+  await page.waitForTimeout(1500);
+  expect(Math.abs(station.sim.now.speed_mps)).toBeLessThan(0.01);
+
+  await go_on.click();
+  await expect.poll(() => station.sim.now.speed_mps, { timeout: 15_000 }).toBeGreaterThan(0.2);
+  await expect(go_on).toBeHidden();
+  await expect(activity).toContainText(/left/);
+});
