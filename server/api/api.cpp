@@ -9,6 +9,7 @@
 #include "api/context.hpp"
 #include "api/idempotency.hpp"
 #include "api/json/teach_words.hpp"
+#include "api/profile.hpp"
 #include "api/stream.hpp"
 #include "base/log.hpp"
 
@@ -63,6 +64,12 @@ std::shared_ptr<const base::Snapshot> Context::snapshot_or_refuse(const CallPtr&
     call->respond(problem({base::Code::Unavailable, "the control loop has not started yet"}));
   }
   return snapshot;
+}
+
+Profile Context::profile() const {
+  Profile now = deps.profile;
+  take_parameters(now, *deps.robot.config());
+  return now;
 }
 
 Json Context::vehicle(const base::Snapshot& snapshot, base::Time now) const {

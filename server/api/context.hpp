@@ -86,6 +86,11 @@ struct Context {
   };
   Warnings warnings{};
 
+  /// Parameters that were changed for the next start, since this one.
+  std::map<std::string, base::ParamValue> kept{};
+
+  /// The vehicle as the parameters say it is now.
+  Profile profile() const;
   /// The whole state, with what the robot does not know of itself.
   Json vehicle(const base::Snapshot& snapshot, base::Time now) const;
   /// The mission that another life of the program left behind, if nothing else is in hand: what the

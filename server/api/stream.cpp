@@ -71,7 +71,7 @@ void StreamTexts::on_client(ClientId client) {
   const Json data = {
       {"version", context_->deps.version},
       {"topics", {kVehicle, kEvents, kMissions, kExecution}},
-      {"capabilities", capabilities_json(context_->deps.profile, context_->deps.version)}};
+      {"capabilities", capabilities_json(context_->profile(), context_->deps.version)}};
   stream_.send(client, stream_text("hello", 1, plain_json(data)));
 }
 

@@ -62,6 +62,14 @@ int exit_code(base::Code code) {
   return kRefused;
 }
 
+/// What somebody looked at before it came to the robot: profile and file. Alone they may make no
+/// whole: then what stands there together with the command line.
+roverd::robot::Config reviewed(const roverd::Options& options, const roverd::Settings& all) {
+  auto files = roverd::load_settings(
+      {.config = options.config, .vehicle = options.vehicle, .overrides = {}});
+  return files ? files->robot : all.robot;
+}
+
 /// What was changed while the program ran holds over the files, not over the command line. A value
 /// that this version does not take any more is left out, and said.
 std::vector<std::string> take_kept_parameters(roverd::Settings& settings,
@@ -79,6 +87,7 @@ int serve(const roverd::Options& options) {
   auto settings = roverd::load_settings(
       {.config = options.config, .vehicle = options.vehicle, .overrides = options.overrides});
   if (!settings) return say(kWrongInput, settings.error().detail);
+  settings->reviewed = reviewed(options, *settings);
   std::error_code ec;
   std::filesystem::create_directories(options.data, ec);
   if (ec) return say(kRefused, "data folder " + options.data + ": " + ec.message());

@@ -110,6 +110,7 @@ Result<void> Station::Impl::open(const Settings& settings, const Options& option
   make_api(settings);
   if (auto done = open_server(settings, options); !done) return done;
   recall(settings, options);
+  robot.reviewed(settings.reviewed);
   tell_left_out(settings);
   start();
   return {};

@@ -1,32 +1,17 @@
 #include "app/wiring.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
 
-#include "base/angle.hpp"
-#include "base/params.hpp"
+#include "api/profile.hpp"
 
 namespace roverd {
 namespace {
 
-/// What missions are checked against.
+/// What missions are checked against, beside what the parameters say.
 mission::VehicleLimits limits_of(const Settings& s) {
-  const nav::VehicleParams& v = s.robot.vehicle;
   mission::VehicleLimits limits;
-  limits.max_speed_mps = std::min(v.max_speed_mps, s.robot.speed.max_mps);
-  limits.default_speed_mps = std::min(s.robot.speed.default_mps, limits.max_speed_mps);
-  limits.width_m = s.robot.vehicle.width_m;
   limits.max_climb_deg = s.vehicle.max_climb_deg;
-  limits.yaw_rate_radps = s.robot.speed.max_yaw_rate_radps;
-  if (v.steered()) {
-    limits.turn_radius_m = v.wheelbase_m / std::tan(base::rad_from_deg(v.max_steering_deg));
-    // From full lock to one side to straight and in again takes twice the time of one.
-    limits.steer_in_m =
-        2.0 * limits.default_speed_mps * v.max_steering_deg / v.max_steering_rate_dps;
-    limits.settle_m = s.robot.track.lookahead_max_m;
-  }
   const auto known = [](double value) { return value > 0.0 ? std::optional(value) : std::nullopt; };
   limits.drive_power_w = known(s.vehicle.drive_power_w);
   limits.idle_power_w = known(s.vehicle.idle_power_w);
@@ -53,14 +38,7 @@ api::Profile profile_of(const Settings& s, const Supervisor& supervisor) {
   api::Profile profile;
   profile.name = s.vehicle.name;
   profile.title = s.vehicle.title;
-  profile.kinematics = s.robot.vehicle.kinematics;
-  profile.length_m = s.robot.vehicle.length_m;
-  profile.width_m = s.robot.vehicle.width_m;
   profile.mass_kg = s.vehicle.mass_kg;
-  profile.max_speed_mps = std::min(s.robot.vehicle.max_speed_mps, s.robot.speed.max_mps);
-  profile.max_yaw_rate_radps = s.robot.speed.max_yaw_rate_radps;
-  profile.max_acceleration_mps2 = s.robot.speed.accel_mps2;
-  profile.pivot_angle_rad = base::rad_from_deg(s.robot.pivot.angle_deg);
   profile.modes = {base::Mode::Manual, base::Mode::Hold,  base::Mode::Auto,
                    base::Mode::Guided, base::Mode::Rtl,   base::Mode::SmartRtl,
                    base::Mode::Follow, base::Mode::Dock,  base::Mode::Steering,
@@ -68,15 +46,13 @@ api::Profile profile_of(const Settings& s, const Supervisor& supervisor) {
   profile.drivers = supervisor.names();
   profile.lights = supervisor.has_lights();
   profile.clears_errors = supervisor.clears_errors();
-  for (const base::ParamInfo& key : base::describe(s.robot.radio)) {
-    if (const auto* word = std::get_if<std::string>(&key.value)) profile.radio[key.name] = *word;
-  }
   profile.item_types = {"waypoint", "local",       "move", "wait",
                         "speed",    "return_home", "jump", "action"};
   if (!s.robot.vehicle.steered()) profile.item_types.emplace_back("turn");
   profile.limits = limits_of(s);
   profile.limits.item_types = profile.item_types;
   profile.limits.actions = robot::kActions;
+  api::take_parameters(profile, s.robot);
   return profile;
 }
 

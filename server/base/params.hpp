@@ -7,7 +7,9 @@
 //   }
 //
 // That list loads and range-checks (set), and prints the documentation (describe). The unit is the
-// name's suffix.
+// name's suffix. What keeps people safe says so in its sentence, with the side that is stricter:
+//
+//   v("base_timeout_s", p.base_timeout_s, 0.1, 2.0, base::lower_is_stricter("no word: stop"));
 
 #include <algorithm>
 #include <cmath>
@@ -24,6 +26,33 @@ namespace roverd::base {
 
 using ParamValue = std::variant<bool, double, std::string>;
 
+/// Which change of a parameter makes the robot no less safe.
+enum class Stricter {
+  Any,     ///< it is no safety parameter
+  Lower,   ///< a smaller number
+  Higher,  ///< a larger number, or true
+  None     ///< no change is: geometry, words
+};
+
+/// A parameter's sentence for people, and what it has to do with safety.
+struct Sentence {
+  // Not explicit: most have nothing to do with it.
+  constexpr Sentence(const char* for_people, Stricter side = Stricter::Any) noexcept
+      : text(for_people), stricter(side) {}
+  constexpr operator std::string_view() const noexcept { return text; }
+  std::string_view text;
+  Stricter stricter;
+};
+constexpr Sentence lower_is_stricter(const char* text) noexcept {
+  return {text, Stricter::Lower};
+}
+constexpr Sentence higher_is_stricter(const char* text) noexcept {
+  return {text, Stricter::Higher};
+}
+constexpr Sentence only_disarmed(const char* text) noexcept {
+  return {text, Stricter::None};
+}
+
 struct ParamInfo {
   std::string name;
   ParamValue value;
@@ -31,7 +60,23 @@ struct ParamInfo {
   std::optional<double> max;
   bool integer = false;
   std::string description;
+  Stricter stricter = Stricter::Any;
 };
+
+/// Is this a step to the stricter side, or none? Numbers that are not finite are no step to it.
+inline bool keeps_safe(Stricter side, const ParamValue& from, const ParamValue& to) noexcept {
+  if (side == Stricter::Any || from == to) return true;
+  const auto number = [](const ParamValue& value) -> std::optional<double> {
+    if (const bool* flag = std::get_if<bool>(&value)) return *flag ? 1.0 : 0.0;
+    const double* given = std::get_if<double>(&value);
+    return given != nullptr ? std::optional(*given) : std::nullopt;
+  };
+  const auto before = number(from);
+  const auto after = number(to);
+  if (!before || !after) return false;
+  return (side == Stricter::Lower && *after <= *before) ||
+         (side == Stricter::Higher && *after >= *before);
+}
 
 namespace detail {
 
@@ -39,15 +84,17 @@ struct Describe {
   std::vector<ParamInfo> out;
 
   template <class N>
-  void operator()(std::string_view name, N& field, double min, double max, std::string_view text) {
+  void operator()(std::string_view name, N& field, double min, double max, Sentence says) {
     out.push_back({std::string(name), static_cast<double>(field), min, max, std::is_integral_v<N>,
-                   std::string(text)});
+                   std::string(says.text), says.stricter});
   }
-  void operator()(std::string_view name, bool& field, std::string_view text) {
-    out.push_back({std::string(name), field, std::nullopt, std::nullopt, false, std::string(text)});
+  void operator()(std::string_view name, bool& field, Sentence says) {
+    out.push_back({std::string(name), field, std::nullopt, std::nullopt, false,
+                   std::string(says.text), says.stricter});
   }
-  void operator()(std::string_view name, std::string& field, std::string_view text) {
-    out.push_back({std::string(name), field, std::nullopt, std::nullopt, false, std::string(text)});
+  void operator()(std::string_view name, std::string& field, Sentence says) {
+    out.push_back({std::string(name), field, std::nullopt, std::nullopt, false,
+                   std::string(says.text), says.stricter});
   }
 };
 

@@ -91,6 +91,7 @@ struct MissionProgress {
   std::optional<double> distance_left_m;
   std::optional<double> eta_s;
   std::optional<MissionPlace> place;  ///< running, paused or blocked
+  bool laid_by_old = false;           ///< its way was laid out by parameters that changed since
 };
 
 /// How far what a mode other than AUTO does has come.
@@ -117,7 +118,8 @@ struct FenceState {
   std::string name;
   bool inside = true;
   std::optional<double> distance_m;  ///< to its nearest limit; negative outside; empty: no limit
-  bool compared = true;  ///< with the loaded mission; false: both came at the same moment
+  bool compared = true;  ///< with the loaded mission; false: both came at the same moment, or the
+                         ///< margin was changed since
 };
 
 /// Something that prevents or limits motion now.

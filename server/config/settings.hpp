@@ -146,6 +146,7 @@ struct Settings {
   Wired<mti::Params> mti;
   Wired<ntrip::Params> ntrip;
   robot::Config robot;
+  robot::Config reviewed;  ///< as profile and file say, without --set and what was changed and kept
   std::map<std::string, std::filesystem::path> tiles;  ///< set name → MBTiles file
   std::map<std::string, std::string> places;           ///< key → where it was said last
   std::vector<std::string> left_out;  ///< kept parameters that were refused, and why

@@ -29,7 +29,8 @@ bool halts(const Command& c) noexcept {
 
 bool carries_much(const Command& c) noexcept {
   return std::holds_alternative<LoadMission>(c) || std::holds_alternative<ReviseMission>(c) ||
-         std::holds_alternative<ResumeAt>(c) || std::holds_alternative<SetFence>(c);
+         std::holds_alternative<ResumeAt>(c) || std::holds_alternative<LayAnew>(c) ||
+         std::holds_alternative<SetFence>(c);
 }
 
 }  // namespace
@@ -249,6 +250,16 @@ void Robot::Impl::adopt(std::shared_ptr<const CompiledMission> mission) {
   change_mode(ModeCause::MissionOver, "another mission was loaded");
   if (missions->copy.plan.home) home.choose(missions->copy.plan.home->at);
   event(Severity::Info, "mission_loaded", missions.name() + " loaded");
+}
+
+base::Result<void> Robot::Impl::handle(const LayAnew& c) {
+  if (!c.mission) return base::fail(Code::Invalid, "there is no mission to lay out");
+  if (auto ok = missions.may_lay_anew(*c.mission); !ok) return ok;
+  retire(missions.lay_anew(c.mission));
+  loaded.set(missions.get());
+  event(Severity::Info, "mission_laid_anew",
+        missions.name() + " was laid out anew, by the parameters as they are now");
+  return {};
 }
 
 base::Result<void> Robot::Impl::handle(const ResumeAt& c) {

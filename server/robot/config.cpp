@@ -97,4 +97,23 @@ bool acts_at_next_start(std::string_view section, std::string_view name) noexcep
   return section == "nav.estimate" && std::find(first.begin(), first.end(), name) != first.end();
 }
 
+bool acts_by_way(std::string_view section, std::string_view name) noexcept {
+  return (section == "nav.track" &&
+          (name == "corner_deviation_m" || name == "through_deviation_m")) ||
+         (section == "nav.speed" && name == "default_mps") ||
+         (section == "nav.pivot" && name == "angle_deg");
+}
+
+bool lays_way(std::string_view section, std::string_view name) noexcept {
+  return acts_by_way(section, name) || section == "nav.speed" || section == "nav.pivot";
+}
+
+base::Stricter stricter_side(std::string_view section, const base::ParamInfo& info) noexcept {
+  constexpr std::array<std::string_view, 5> kGuarded{"robot.safety", "robot.fence", "robot.arming",
+                                                     "vehicle", "radio"};
+  if (info.stricter != base::Stricter::Any) return info.stricter;
+  const bool guarded = std::find(kGuarded.begin(), kGuarded.end(), section) != kGuarded.end();
+  return guarded ? base::Stricter::None : base::Stricter::Any;
+}
+
 }  // namespace roverd::robot

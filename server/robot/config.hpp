@@ -3,6 +3,7 @@
 // names they have in the configuration file; each struct lists its fields (base/params.hpp).
 
 #include <algorithm>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -43,11 +44,16 @@ struct ManualParams {
 
 template <class V>
 void fields(V& v, ManualParams& p) {
-  v("max_mps", p.max_mps, 0.05, 3.0, "commands by hand are cut to this speed");
-  v("max_yaw_rate_radps", p.max_yaw_rate_radps, 0.05, 3.0, "and to this turn rate");
-  v("accel_mps2", p.accel_mps2, 0.1, 5.0, "speeding up; stopping is at once");
-  v("yaw_accel_radps2", p.yaw_accel_radps2, 0.1, 20.0, "change of the turn rate");
-  v("timeout_s", p.timeout_s, 0.1, 0.5, "without a newer command the robot stops");
+  v("max_mps", p.max_mps, 0.05, 3.0,
+    base::lower_is_stricter("commands by hand are cut to this speed"));
+  v("max_yaw_rate_radps", p.max_yaw_rate_radps, 0.05, 3.0,
+    base::lower_is_stricter("and to this turn rate"));
+  v("accel_mps2", p.accel_mps2, 0.1, 5.0,
+    base::lower_is_stricter("speeding up; stopping is at once"));
+  v("yaw_accel_radps2", p.yaw_accel_radps2, 0.1, 20.0,
+    base::lower_is_stricter("change of the turn rate"));
+  v("timeout_s", p.timeout_s, 0.1, 0.5,
+    base::lower_is_stricter("without a newer command the robot stops"));
 }
 
 /// What must hold while moving. Section [robot.safety].
@@ -72,29 +78,40 @@ struct SafetyParams {
 
 template <class V>
 void fields(V& v, SafetyParams& p) {
-  v("base_timeout_s", p.base_timeout_s, 0.1, 2.0, "no word from the base for so long: stop");
-  v("status_timeout_s", p.status_timeout_s, 0.3, 10.0, "no state of the base for so long: stop");
+  v("base_timeout_s", p.base_timeout_s, 0.1, 2.0,
+    base::lower_is_stricter("no word from the base for so long: stop"));
+  v("status_timeout_s", p.status_timeout_s, 0.3, 10.0,
+    base::lower_is_stricter("no state of the base for so long: stop"));
   v("base_accept_s", p.base_accept_s, 0.5, 30.0,
-    "a base that does not take commands for so long while armed: hold");
+    base::lower_is_stricter("a base that does not take commands for so long while armed: hold"));
   v("follow_timeout_s", p.follow_timeout_s, 0.1, 10.0,
-    "commanded motion that the base does not show for so long, beyond a lag of 0.4 s: hold");
+    base::lower_is_stricter(
+        "commanded motion that the base does not show for so long, beyond a lag of 0.4 s: hold"));
   v("radio_required", p.radio_required,
-    "a transmitter must be heard: it is the operator's way to take over");
+    base::higher_is_stricter("a transmitter must be heard: it is the operator's way to take over"));
   v("radio_timeout_s", p.radio_timeout_s, 0.2, 5.0,
-    "transmitter silent, or its counter frozen, for so long: stop");
+    base::lower_is_stricter("transmitter silent, or its counter frozen, for so long: stop"));
   v("bumper_timeout_s", p.bumper_timeout_s, 0.1, 10.0,
-    "a bumper that was heard once and then not for so long: hold");
+    base::lower_is_stricter("a bumper that was heard once and then not for so long: hold"));
   v("spin_s", p.spin_s, 0.5, 60.0,
-    "wheels that turn for so long while the receiver sees the robot all but stand: hold");
-  v("gnss_slow_s", p.gnss_slow_s, 0.5, 60.0, "no usable fix for so long: creep");
-  v("gnss_hold_s", p.gnss_hold_s, 1.0, 600.0, "no usable fix for so long, and no gyro: hold");
+    base::lower_is_stricter(
+        "wheels that turn for so long while the receiver sees the robot all but stand: hold"));
+  v("gnss_slow_s", p.gnss_slow_s, 0.5, 60.0,
+    base::lower_is_stricter("no usable fix for so long: creep"));
+  v("gnss_hold_s", p.gnss_hold_s, 1.0, 600.0,
+    base::lower_is_stricter("no usable fix for so long, and no gyro: hold"));
   v("gnss_free_m", p.gnss_free_m, 0.0, 10000.0,
-    "with a gyro the robot drives on without a fix for so many metres: then hold");
-  v("sigma_slow_m", p.sigma_slow_m, 0.02, 50.0, "position less certain than this: creep");
-  v("sigma_hold_m", p.sigma_hold_m, 0.05, 50.0, "position less certain than this: hold");
-  v("sigma_hold_s", p.sigma_hold_s, 0.1, 60.0, "for so long");
-  v("battery_warn_pct", p.battery_warn_pct, 0.0, 100.0, "charge below this: warn");
-  v("battery_stop_pct", p.battery_stop_pct, 0.0, 100.0, "charge below this: hold");
+    base::lower_is_stricter(
+        "with a gyro the robot drives on without a fix for so many metres: then hold"));
+  v("sigma_slow_m", p.sigma_slow_m, 0.02, 50.0,
+    base::lower_is_stricter("position less certain than this: creep"));
+  v("sigma_hold_m", p.sigma_hold_m, 0.05, 50.0,
+    base::lower_is_stricter("position less certain than this: hold"));
+  v("sigma_hold_s", p.sigma_hold_s, 0.1, 60.0, base::lower_is_stricter("for so long"));
+  v("battery_warn_pct", p.battery_warn_pct, 0.0, 100.0,
+    base::higher_is_stricter("charge below this: warn"));
+  v("battery_stop_pct", p.battery_stop_pct, 0.0, 100.0,
+    base::higher_is_stricter("charge below this: hold"));
 }
 
 /// What arming asks for. Section [robot.arming].
@@ -107,11 +124,15 @@ struct ArmingParams {
 
 template <class V>
 void fields(V& v, ArmingParams& p) {
-  v("healthy_s", p.healthy_s, 0.0, 120.0, "a usable fix must have lasted so long");
-  v("satellites_min", p.satellites_min, 0, 30, "satellites in use, where the receiver tells");
-  v("sigma_max_m", p.sigma_max_m, 0.02, 50.0, "the position must be this certain");
+  v("healthy_s", p.healthy_s, 0.0, 120.0,
+    base::higher_is_stricter("a usable fix must have lasted so long"));
+  v("satellites_min", p.satellites_min, 0, 30,
+    base::higher_is_stricter("satellites in use, where the receiver tells"));
+  v("sigma_max_m", p.sigma_max_m, 0.02, 50.0,
+    base::lower_is_stricter("the position must be this certain"));
   v("heading_sigma_deg", p.heading_sigma_deg, 0.5, 90.0,
-    "less certain of the heading, arming warns that the robot will creep at first");
+    base::lower_is_stricter(
+        "less certain of the heading, arming warns that the robot will creep at first"));
 }
 
 /// Keeping inside the fence. Section [robot.fence].
@@ -124,10 +145,16 @@ struct FenceParams {
 template <class V>
 void fields(V& v, FenceParams& p) {
   v("margin_m", p.margin_m, 0.0, 20.0,
-    "no part of the vehicle comes nearer to the fence; the position's uncertainty comes on top");
-  v("react_s", p.react_s, 0.1, 3.0, "from a command to standing, beside the braking itself");
-  v("decel_mps2", p.decel_mps2, 0.05, 5.0, "braking that can be relied on");
+    base::higher_is_stricter("no part of the vehicle comes nearer to the fence; the position's "
+                             "uncertainty comes on top"));
+  v("react_s", p.react_s, 0.1, 3.0,
+    base::higher_is_stricter("from a command to standing, beside the braking itself"));
+  v("decel_mps2", p.decel_mps2, 0.05, 5.0,
+    base::lower_is_stricter("braking that can be relied on"));
 }
+
+/// A way that is asked for must keep so much more than the margin: tracking is not exact.
+inline constexpr double kFenceAllowance_m = 0.2;
 
 /// The actions of missions that the robot does by itself. There are no others.
 inline const std::vector<std::string> kActions{"set_home"};
@@ -147,6 +174,8 @@ struct Config {
   ArmingParams arming;
   RadioParams radio;
   BatteryParams battery;
+  /// Counts the changes of what a mission's way is laid out by (lays_way); no parameter.
+  std::uint64_t way = 0;
 
   /// What the body's origin keeps to, so that no part of the body comes nearer than the margin.
   FenceParams kept_fence() const {
@@ -154,6 +183,9 @@ struct Config {
     p.margin_m += vehicle.reach_m();
     return p;
   }
+
+  /// And what a way that is asked for keeps of it: tracking is not exact.
+  double way_margin_m() const { return kept_fence().margin_m + kFenceAllowance_m; }
 
   /// What following a path needs; the vehicle goes no faster than it can.
   nav::PathParams path() const {
@@ -200,5 +232,16 @@ std::vector<std::string> take_kept(Config& config, std::vector<NamedValue> kept)
 /// What the vehicle is, and what is believed at first, has been taken in when the program started.
 /// All else acts at the next tick.
 bool acts_at_next_start(std::string_view section, std::string_view name) noexcept;
+
+/// Does it go into the way that a mission is laid out by when it is loaded (its corners, and the
+/// speeds planned for it)?
+bool lays_way(std::string_view section, std::string_view name) noexcept;
+/// And does it act nowhere else?
+bool acts_by_way(std::string_view section, std::string_view name) noexcept;
+
+/// The side to which a parameter may be changed while the robot is armed. In the sections that are
+/// there for safety's sake, and in those of geometry and of the radio's levers, what says nothing
+/// of itself changes only while it is disarmed.
+base::Stricter stricter_side(std::string_view section, const base::ParamInfo& info) noexcept;
 
 }  // namespace roverd::robot

@@ -132,7 +132,7 @@ base::DriveCommand Robot::Impl::choose() {
 
 /// What the body's origin keeps from the fence on a way that is asked for.
 double Robot::Impl::way_margin_m() const {
-  return config->kept_fence().margin_m + kFenceAllowance_m;
+  return config->way_margin_m();
 }
 
 /// The straight way there, against the fence.

@@ -59,6 +59,7 @@ struct Robot::Impl {
   explicit Impl(Config c);
 
   // Shared between threads; each is safe by itself.
+  std::shared_ptr<const Config> reviewed;  ///< set before the first tick
   base::Latest<Config> shared_config;
   base::Inbox<base::Measurement> measurements{4096};
   base::Inbox<PendingCommand> commands{64};
@@ -149,6 +150,8 @@ struct Robot::Impl {
   base::Result<void> handle(const SetParameter& c);
   base::Result<void> handle(const SetFence& c);
   base::Result<void> handle(const ResumeAt& c);
+  base::Result<void> handle(const LayAnew& c);
+  base::Result<void> may_change(const SetParameter& c, const Config& next) const;
   base::Result<void> may_drive_mission() const;
   base::Result<void> may_drive_by_itself() const;
   void adopt(std::shared_ptr<const CompiledMission> mission);

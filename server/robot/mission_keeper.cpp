@@ -43,6 +43,24 @@ MissionKeeper::Mission MissionKeeper::revise(const ReviseMission& r) {
   return old;
 }
 
+base::Result<void> MissionKeeper::may_lay_anew(const CompiledMission& mission) const {
+  const bool same = mission_ && mission_->copy.id == mission.copy.id &&
+                    mission_->copy.revision == mission.copy.revision &&
+                    mission_->frame.id() == mission.frame.id();
+  if (!same) return base::fail(Code::Conflict, "another mission was loaded meanwhile");
+  if (in_hand()) {
+    return base::fail(Code::Conflict, "the mission is " + std::string(to_string(executor.state())) +
+                                          ": its way stays as it is");
+  }
+  return {};
+}
+
+MissionKeeper::Mission MissionKeeper::lay_anew(Mission mission) {
+  Mission old = std::exchange(mission_, std::move(mission));
+  executor.lay_anew(route());
+  return old;
+}
+
 base::Result<void> MissionKeeper::may_restore(const ResumeAt& left, const ParameterSet& set,
                                               base::EnuPoint here) const {
   nav::Executor trial(set.path, set.behave, set.modes);

@@ -47,6 +47,10 @@ class MissionKeeper {
   /// Would it go on from there? @return why not
   base::Result<void> may_restore(const ResumeAt& left, const ParameterSet& set,
                                  base::EnuPoint here) const;
+  /// The same revision by other parameters: may it take the place of the loaded one?
+  base::Result<void> may_lay_anew(const CompiledMission& mission) const;
+  /// @return the one before
+  Mission lay_anew(Mission mission);
   /// After load, of the same mission.
   void restore(const base::MissionPlace& place);
 

@@ -1,6 +1,7 @@
 // Parameters that are changed while the program runs.
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "robot/impl.hpp"
@@ -21,7 +22,9 @@ struct List {
     std::vector<base::ParamInfo> now = base::describe(params);
     for (std::size_t i = 0; i < now.size(); ++i) {
       const bool at_once = !acts_at_next_start(section, now[i].name);
-      out.push_back({section, std::move(now[i]), defaults[i].value, at_once});
+      const bool by_way = acts_by_way(section, now[i].name);
+      now[i].stricter = stricter_side(section, now[i]);
+      out.push_back({section, std::move(now[i]), defaults[i].value, at_once, by_way});
     }
   }
 };
@@ -46,13 +49,21 @@ tl::unexpected<base::Error> at_value(base::Error error, const std::string& secti
   return tl::unexpected(std::move(error));
 }
 
+struct FullName {
+  std::string section;
+  std::string name;
+};
+FullName split(const std::string& full) {
+  const auto dot = full.rfind('.');
+  if (dot == std::string::npos) return {{}, full};
+  return {full.substr(0, dot), full.substr(dot + 1)};
+}
+
 /// A copy of `config` with one parameter changed.
 base::Result<Config> changed(const Config& config, const std::string& full,
                              const base::ParamValue& value) {
-  const auto dot = full.rfind('.');
-  const std::string name = dot == std::string::npos ? full : full.substr(dot + 1);
+  const auto [section, name] = split(full);
   Config next = config;
-  const std::string section = dot == std::string::npos ? std::string() : full.substr(0, dot);
   Change change{section, name, value};
   change(kVehicle, next.vehicle);
   sections(change, next);
@@ -61,17 +72,87 @@ base::Result<Config> changed(const Config& config, const std::string& full,
   }
   if (!*change.result) return at_value(std::move(change.result->error()), section + ".");
   if (auto good = check(next); !good) return at_value(std::move(good.error()), "");
+  if (lays_way(section, name)) ++next.way;
   return next;
+}
+
+std::vector<Parameter> list_of(Config config) {
+  List list;
+  list(kVehicle, config.vehicle);
+  sections(list, config);
+  return std::move(list.out);
+}
+
+/// Finds the one of that name.
+struct Find {
+  const FullName& wanted;
+  std::optional<base::ParamInfo> found{};
+
+  template <class P>
+  void operator()(const char* section, P& params) {
+    if (found || wanted.section != section) return;
+    for (base::ParamInfo& one : base::describe(params)) {
+      if (one.name != wanted.name) continue;
+      one.stricter = stricter_side(section, one);
+      found = std::move(one);
+    }
+  }
+};
+
+std::optional<base::ParamInfo> find(Config config, const FullName& name) {
+  Find found{name};
+  found(kVehicle, config.vehicle);
+  sections(found, config);
+  return std::move(found.found);
+}
+
+std::string text_of(const base::ParamValue& value) {
+  if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+  if (const auto* word = std::get_if<std::string>(&value)) return '"' + *word + '"';
+  return base::detail::Set::text(std::get<double>(value));
+}
+
+/// What may be done about it, while the robot is armed.
+std::string why_not_armed(const std::string& full, const base::ParamInfo& now) {
+  const std::string begin = full + " keeps people safe: while the robot is armed it ";
+  switch (now.stricter) {
+    case base::Stricter::Lower:
+      return begin + "is only lowered (it is " + text_of(now.value) + "); disarm first";
+    case base::Stricter::Higher:
+      return begin +
+             (std::holds_alternative<bool>(now.value) ? "is only switched on" : "is only raised") +
+             " (it is " + text_of(now.value) + "); disarm first";
+    case base::Stricter::None:
+    case base::Stricter::Any:
+      break;
+  }
+  return begin + "stays as it is; disarm first";
 }
 
 }  // namespace
 
 std::vector<Parameter> Robot::parameters() const {
-  Config now = *impl_->shared_config.get();
-  List list;
-  list(kVehicle, now.vehicle);
-  sections(list, now);
-  return std::move(list.out);
+  return list_of(*impl_->shared_config.get());
+}
+
+std::vector<mission::Finding> Robot::changed_safety() const {
+  const auto now = impl_->shared_config.get();
+  if (now == impl_->reviewed) return {};
+  const std::vector<Parameter> present = list_of(*now);
+  const std::vector<Parameter> profile = list_of(*impl_->reviewed);
+  std::vector<mission::Finding> out;
+  for (std::size_t i = 0; i < present.size(); ++i) {
+    const base::ParamInfo& info = present[i].info;
+    if (info.stricter == base::Stricter::Any || info.value == profile[i].info.value) continue;
+    const std::string name = present[i].section + "." + info.name;
+    const bool stricter = base::keeps_safe(info.stricter, profile[i].info.value, info.value);
+    out.push_back({mission::Severity::Warning, kSafetyParameter, "/parameters/" + name,
+                   std::nullopt,
+                   "the safety parameter " + name + " is " + text_of(info.value) +
+                       ", the vehicle's profile says " + text_of(profile[i].info.value) +
+                       (stricter ? " (this is stricter)" : "")});
+  }
+  return out;
 }
 
 base::Result<void> Robot::check_parameter(const std::string& name,
@@ -112,17 +193,37 @@ std::vector<std::string> take_kept(Config& config, std::vector<NamedValue> kept)
   return refused;
 }
 
+/// Armed, a safety parameter changes only to its stricter side.
+base::Result<void> Robot::Impl::may_change(const SetParameter& c, const Config& next) const {
+  if (!arm.armed()) return {};
+  const FullName name = split(c.name);
+  const auto now = find(*config, name);
+  const auto then = find(next, name);
+  if (!now || !then || base::keeps_safe(now->stricter, now->value, then->value)) return {};
+  return base::fail(Code::Conflict, why_not_armed(c.name, *now));
+}
+
 base::Result<void> Robot::Impl::handle(const SetParameter& c) {
-  const auto dot = std::min(c.name.rfind('.'), c.name.size());
-  const auto name = std::string_view(c.name).substr(std::min(dot + 1, c.name.size()));
-  if (acts_at_next_start(std::string_view(c.name).substr(0, dot), name)) {
+  const FullName name = split(c.name);
+  if (!c.next_start && acts_at_next_start(name.section, name.name)) {
     return base::fail(Code::Conflict, c.name + " acts at the next start of the program");
   }
   auto next = changed(*config, c.name, c.value);
   if (!next) return tl::unexpected(std::move(next.error()));
-  config.adopt(std::make_shared<const Config>(std::move(*next)));
-  config_unpublished = true;
-  event(base::Severity::Info, "parameter", c.name + " was changed");
+  if (auto ok = may_change(c, *next); !ok) return ok;
+  const auto before = find(*config, name);
+  const auto after = find(*next, name);
+  if (!before || !after) return {};
+  if (!c.next_start) {
+    config.adopt(std::make_shared<const Config>(std::move(*next)));
+    config_unpublished = true;
+  }
+  const bool safety = before->stricter != base::Stricter::Any;
+  event(safety ? base::Severity::Warning : base::Severity::Info,
+        safety ? kSafetyParameter : "parameter",
+        c.name + (c.next_start ? " will change at the next start from " : " was changed from ") +
+            text_of(before->value) + " to " + text_of(after->value) +
+            (c.who.empty() ? "" : " by " + c.who));
   return {};
 }
 

@@ -43,10 +43,11 @@ bool Robot::Impl::publish() {
   s->radio_meaning = radio_meaning();
   s->drivers = world.drivers;
   s->mission = missions.progress(pose, estimator.frame(), driver == base::Driver::Radio);
+  s->mission.laid_by_old = missions && missions->way != config->way;
   s->activity = self_driving.activity();
   if (const auto may = may_drive_by_itself(); !may) s->autonomy_refusal = may.error().detail;
   if (fence.get() != nullptr) {
-    s->fence = fence.state(pose, estimator.frame(), missions.get().get());
+    s->fence = fence.state(pose, estimator.frame(), missions.get().get(), way_margin_m());
   }
   s->command = sent;
   s->safety = std::move(assessment.conditions);

@@ -22,6 +22,7 @@ Robot::Impl::Impl(Config c)
       keys(config.radio, config.safety) {
   world.gauge = BatteryGauge(config.battery);
   shared_config.publish(config.whole());
+  reviewed = config.whole();
   measurement_batch.reserve(256);
   command_batch.reserve(64);
   pressed.reserve(64);
@@ -47,6 +48,9 @@ base::Inbox<MissionEdit>& Robot::edits() noexcept {
 }
 void Robot::recall(const nav::Learned& learned) noexcept {
   impl_->estimator.recall(learned);
+}
+void Robot::reviewed(const Config& config) {
+  impl_->reviewed = std::make_shared<const Config>(config);
 }
 void Robot::tell(base::Event event) {
   impl_->outbox.event(event.wall, event.level, event.kind.c_str(), std::move(event.detail));
@@ -132,12 +136,13 @@ base::Result<std::shared_ptr<const CompiledMission>> Robot::compile(MissionCopy 
   const auto config = impl_->shared_config.get();
   auto route = nav::lay_route(copy.plan, *frame, config->path());
   if (!route) return tl::unexpected(std::move(route.error()));
-  CompiledMission made{impl_->made.fetch_add(1), std::move(copy), *frame, std::move(*route)};
+  CompiledMission made{impl_->made.fetch_add(1), std::move(copy), *frame, std::move(*route),
+                       config->way};
   const auto fence = impl_->shared_fence.get();
   if (fence && fence->frame_id == frame->id()) {
     made.fence_id = fence->id;
-    made.fence_objection = route_objection(made.route, fence->limits,
-                                           config->kept_fence().margin_m + kFenceAllowance_m);
+    made.fence_margin_m = config->way_margin_m();
+    made.fence_objection = route_objection(made.route, fence->limits, made.fence_margin_m);
   }
   return std::make_shared<const CompiledMission>(std::move(made));
 }
@@ -158,9 +163,8 @@ std::shared_ptr<const LaidFence> Robot::lay_fence(
   const auto mission = impl_->loaded.get();
   if (!mission || mission->frame.id() != laid->frame_id) return laid;
   laid->mission_id = mission->id;
-  laid->objection =
-      route_objection(mission->route, laid->limits,
-                      impl_->shared_config.get()->kept_fence().margin_m + kFenceAllowance_m);
+  laid->margin_m = impl_->shared_config.get()->way_margin_m();
+  laid->objection = route_objection(mission->route, laid->limits, laid->margin_m);
   return laid;
 }
 
@@ -168,7 +172,7 @@ std::vector<mission::Finding> Robot::objections(const CompiledMission& mission,
                                                 const StartMission& start) const {
   const auto config = impl_->shared_config.get();
   const auto state = impl_->snapshot.get();
-  const double margin_m = config->kept_fence().margin_m + kFenceAllowance_m;
+  const double margin_m = config->way_margin_m();
   StartView view{.route = mission.route,
                  .margin_m = margin_m,
                  .within_m = config->behave.start_within_m,
@@ -187,10 +191,9 @@ std::vector<mission::Finding> Robot::objections(const CompiledMission& mission,
   const auto fence = impl_->shared_fence.get();
   std::optional<mission::Finding> legs;
   if (fence && fence->frame_id == mission.frame.id()) {
-    legs = mission.fence_id == fence->id ? mission.fence_objection
-           : fence->mission_id == mission.id
-               ? fence->objection
-               : route_objection(mission.route, fence->limits, margin_m);
+    const auto* compared = legs_of(mission, *fence, margin_m);
+    legs =
+        compared != nullptr ? *compared : route_objection(mission.route, fence->limits, margin_m);
     view.limits = &fence->limits;
     view.legs = &legs;
   }

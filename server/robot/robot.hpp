@@ -82,6 +82,9 @@ struct SetMode {
 struct SetParameter {
   std::string name;
   base::ParamValue value;
+  std::string who{};  ///< for the event
+  bool next_start =
+      false;  ///< it acts then: nothing changes now, but that it may be is judged here
 };
 struct LaidFence;  // see robot/safety/fence_guard.hpp
 /// What may be driven on from the next tick on. Null: no fence.
@@ -132,6 +135,11 @@ struct CompiledMission;  // route of one MissionCopy in one LocalFrame; see robo
 struct LoadMission {
   std::shared_ptr<const CompiledMission> mission;
 };
+/// The loaded revision by the present parameters, in the place of the one that was laid out by
+/// others. Conflict while it is in hand, or if another one is loaded.
+struct LayAnew {
+  std::shared_ptr<const CompiledMission> mission;
+};
 /// Loads a mission and goes on with it where another life of this program left it. All or nothing.
 struct ResumeAt {
   std::shared_ptr<const CompiledMission> mission;
@@ -165,7 +173,7 @@ struct ReviseMission {
 using Command = std::variant<Arm, Disarm, SetMode, Estop, ResetEstop, StartMission, PauseMission,
                              ResumeMission, ResumeActivity, StopMission, SkipItem, SetHome, SetPose,
                              SetAnchor, DropAnchor, Drive, LoadMission, ReviseMission, GoTo, MoveBy,
-                             SetTarget, SetParameter, SetFence, ResumeAt>;
+                             SetTarget, SetParameter, SetFence, ResumeAt, LayAnew>;
 
 /// How long a command is good, and what its sender had seen when it was given.
 struct Validity {
@@ -182,6 +190,9 @@ struct PendingReply {
   Reply reply;
   base::Result<void> result;
 };
+
+/// Code of Robot::changed_safety's findings.
+inline constexpr const char* kSafetyParameter = "safety_parameter";
 
 /// What `start` would do now. All unknowns empty.
 struct Preview {
@@ -212,6 +223,8 @@ struct Parameter {
   base::ParamInfo info;
   base::ParamValue initial;  ///< by default
   bool at_once = true;       ///< a change acts at the next tick; else at the next start
+  bool by_way =
+      false;  ///< it acts in the way of missions: that of a loaded one is laid anew for it
 };
 
 class Robot {
@@ -234,6 +247,9 @@ class Robot {
 
   /// Before the first tick: what another life of this program learned.
   void recall(const nav::Learned& learned) noexcept;
+  /// Before the first tick: what the vehicle's profile and the configuration's file say, before
+  /// anybody changed it. Without it: what the robot was made with.
+  void reviewed(const Config& config);
   /// Before the first tick: what was found out while the program started.
   void tell(base::Event event);
   /// Any thread. What is worth keeping, a second old at most; null: nothing yet.
@@ -267,8 +283,11 @@ class Robot {
   /// Any thread: the parameters as they are now, and as they are by default.
   std::vector<Parameter> parameters() const;
   /// Any thread. What no program would take: NotFound, Invalid. SetParameter also refuses, as
-  /// Conflict, what acts only at the next start.
+  /// Conflict, what acts only at the next start, and while the robot is armed all that makes it
+  /// less safe.
   base::Result<void> check_parameter(const std::string& name, const base::ParamValue& value) const;
+  /// Any thread. Safety parameters that are not as the profile says: warnings.
+  std::vector<mission::Finding> changed_safety() const;
   /// Any thread.
   std::shared_ptr<const Config> config() const;
   /// Any thread. What is loaded; null if nothing is.

@@ -16,9 +16,12 @@ class FenceKeeper {
  public:
   explicit FenceKeeper(robot::Robot& robot) : robot_(robot) {}
 
-  /// From now on. Null: none.
-  void use(std::shared_ptr<const mission::Fence> fence) {
+  /// From now on. @param fence null: none. @param held called once it holds, on the thread that
+  /// hands out the robot's answers; what was chosen before it and does not hold yet never will
+  void use(std::shared_ptr<const mission::Fence> fence, robot::Reply held) {
     fence_ = std::move(fence);
+    if (held_) held_(base::fail(base::Code::Conflict, "another fence was chosen meanwhile"));
+    held_ = std::move(held);
     due_ = true;
     lay();
   }
@@ -34,11 +37,13 @@ class FenceKeeper {
 
  private:
   void lay() {
-    due_ = !robot_.request(robot::SetFence{robot_.lay_fence(fence_)}, base::Time::max(), {});
+    due_ = !robot_.request(robot::SetFence{robot_.lay_fence(fence_)}, base::Time::max(), held_);
+    if (!due_) held_ = nullptr;
   }
 
   robot::Robot& robot_;
   std::shared_ptr<const mission::Fence> fence_;
+  robot::Reply held_;  ///< waits for room
   std::uint32_t frame_ = 0;
   bool due_ = false;
 };

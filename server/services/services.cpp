@@ -9,6 +9,7 @@ Services::Services(robot::Robot& robot, const store::Store& store, std::string v
       store_(store.desk(desk_.poster())),
       runs_(robot, *store_, std::move(vehicle)),
       fence_(robot),
+      way_(robot),
       radio_(robot, *store_, desk_) {
   view_.publish(std::make_shared<const View>());
 }
@@ -50,6 +51,7 @@ void Services::beat() {
     trail_.take(*snapshot);
     runs_.look(*snapshot);
     fence_.look(*snapshot);
+    way_.look(*snapshot);
     teach_->sample(*snapshot);
   }
   if (now - saved_ >= kSave) {
@@ -123,8 +125,21 @@ void Services::forget_left_behind(Done done) {
   desk_.post([this, done = std::move(done)] { runs_.forget(answered(done)); });
 }
 
-void Services::use_fence(std::shared_ptr<const mission::Fence> fence) {
-  desk_.post([this, fence = std::move(fence)]() mutable { fence_.use(std::move(fence)); });
+void Services::use_fence(std::shared_ptr<const mission::Fence> fence, Done done) {
+  desk_.post([this, fence = std::move(fence), done = std::move(done)]() mutable {
+    fence_.use(std::move(fence), done ? later(std::move(done)) : Done{});
+  });
+}
+
+void Services::lay_way_anew(Done done) {
+  desk_.post([this, done = std::move(done)] { way_.lay(later(done)); });
+}
+
+/// On the thread of answers, from whichever it is called on.
+Services::Done Services::later(Done done) {
+  return [this, done = std::move(done)](base::Result<void> result) {
+    answer([done, result = std::move(result)] { done(result); });
+  };
 }
 
 void Services::take(base::Event event) {

@@ -19,6 +19,7 @@
 #include "services/run_recorder.hpp"
 #include "services/teach.hpp"
 #include "services/trail.hpp"
+#include "services/way_keeper.hpp"
 
 namespace roverd::services {
 
@@ -70,8 +71,11 @@ class Services {
                   std::function<void(std::optional<std::string>)> done);
   /// The mission that another life of the program left behind is offered no more.
   void forget_left_behind(Done done);
-  /// From now on. Null: none.
-  void use_fence(std::shared_ptr<const mission::Fence> fence);
+  /// From now on. @param fence null: none. @param done empty, or called when the robot holds it
+  void use_fence(std::shared_ptr<const mission::Fence> fence, Done done = {});
+  /// The way of the loaded mission, by the parameters as they are now. Conflict while it is in
+  /// hand: it is done by itself when it is not any more.
+  void lay_way_anew(Done done);
   /// The robot said so.
   void take(base::Event event);
 
@@ -80,6 +84,7 @@ class Services {
   void publish();
   void answer(std::function<void()> work);
   Done answered(Done done);
+  Done later(Done done);
 
   robot::Robot& robot_;
   Desk desk_;
@@ -93,6 +98,7 @@ class Services {
   Trail trail_;
   RunRecorder runs_;
   FenceKeeper fence_;
+  WayKeeper way_;
   RadioEdits radio_;
   std::unique_ptr<TeachIn> teach_;  ///< from start() on
 };

@@ -77,6 +77,38 @@ TEST_F(FencesApi, OneOfThemIsTheActiveOne) {
   EXPECT_TRUE(call("PUT", "/fence", Json{{"fence_id", nullptr}}).body["fence"].is_null());
 }
 
+/// The answer tells what the robot did: when it comes, the robot holds the fence.
+TEST_F(FencesApi, TheAnswerComesWhenTheRobotHoldsTheFence) {
+  until_ready();
+  const std::string id = call("POST", "/fences", fence(30)).body["id"];
+  for (int i = 0; i < 5; ++i) {
+    ASSERT_EQ(call("PUT", "/fence", Json{{"fence_id", id}}).status, 200u);
+    ASSERT_TRUE(house.snapshot()->fence);
+    EXPECT_EQ(house.snapshot()->fence->name, "field");
+    Json renamed = fence(20 + i);
+    renamed["name"] = "yard";
+    ASSERT_EQ(call("PUT", "/fences/" + id, renamed, tag(2 * i + 1)).status, 200u);
+    EXPECT_EQ(house.snapshot()->fence->name, "yard");
+    ASSERT_EQ(call("PUT", "/fences/" + id, fence(30), tag(2 * i + 2)).status, 200u);
+    EXPECT_EQ(house.snapshot()->fence->name, "field");
+    ASSERT_EQ(call("PUT", "/fence", Json{{"fence_id", nullptr}}).status, 200u);
+    EXPECT_FALSE(house.snapshot()->fence);
+  }
+}
+
+TEST_F(FencesApi, AFenceThatTheRobotDoesNotTakeIsNotToldAsHeld) {
+  until_ready();
+  const std::string id = call("POST", "/fences", fence(30)).body["id"];
+  house.ticking = false;
+  const auto answer = call("PUT", "/fence", Json{{"fence_id", id}});
+  EXPECT_EQ(answer.status, 503u);
+  EXPECT_EQ(answer.body["detail"],
+            "it is stored and chosen, but the robot does not hold it yet: nobody answers: the "
+            "control loop or the driver hangs");
+  house.ticking = true;
+  until([this] { return house.snapshot()->fence.has_value(); }, "it holds after all");
+}
+
 TEST_F(FencesApi, AMissionIsCheckedAndItsErrorsAreNotLoaded) {
   until_ready();
   const std::string good = mission({5, 20, 20});

@@ -117,3 +117,27 @@ test('what the check has found is seen before arming, and arming is asked once m
     await expect(page.getByRole('button', { name: 'Disarm' })).toBeVisible({ timeout: 1500 });
   }).toPass({ timeout: 20_000 });
 });
+
+test('a safety parameter that is not as the profile says is a row before every start', async ({
+  page,
+  station,
+}) => {
+  test.setTimeout(120_000);
+  await page.setViewportSize({ width: 390, height: 844 });
+  await open_page(page, station.url);
+  const id = await store_mission(station);
+  await arm(page);
+  await station.rest('POST', '/execution/load', { mission_id: id });
+  const margin = '/parameters/robot.fence.margin_m';
+  await expect(station.rest('PUT', margin, { value: 0.02 })).rejects.toThrow(/disarm first/);
+  await press(page, 'Disarm');
+  await station.rest('PUT', margin, { value: 0.02 });
+  await station.rest('POST', '/vehicle/arm');
+  await press(page, 'Start…');
+  const findings = page.getByRole('dialog').getByRole('list', { name: 'Findings' });
+  await expect(findings.getByRole('listitem')).toHaveText(
+    /Setting\s*The safety parameter robot\.fence\.margin_m is 0\.02, the vehicle's profile says 0\.1/,
+  );
+  const start = page.getByRole('dialog').getByRole('button', { name: 'Start driving' });
+  await expect(start).toBeEnabled();
+});

@@ -44,7 +44,7 @@ Handler check_mission(const ContextPtr& context) {
       const Effort effort{6 * bytes_of(stored->plan)};
       context->answer_aside(
           call, effort,
-          [judge = judge_now(*context), fence = context->fence, profile = context->deps.profile,
+          [judge = judge_now(*context), fence = context->fence, profile = context->profile(),
            mission = std::move(*stored)]() mutable {
             const Verdict verdict = judge({mission.id, mission.revision, std::move(mission.plan)});
             Json out = report_json(verdict.report, profile);
@@ -128,6 +128,7 @@ Verdict verdict_of(robot::MissionCopy copy, Bench bench) {
   if (bench.fence && !compared) bench.around.fence = &bench.fence->fence;
   out.report = mission::check(copy.plan, bench.limits, bench.around);
   out.refusal.code = base::Code::Invalid;
+  add_findings(out.report, bench.robot.changed_safety());
   if (compiled) {
     add_findings(out.report, bench.robot.objections(**compiled, {}));
     out.compiled = std::move(*compiled);
@@ -161,7 +162,7 @@ std::function<Verdict(robot::MissionCopy)> judge_now(const Context& context) {
     around.vehicle = snapshot->pose->global;
   }
   return [around, &robot = context.deps.robot, fence = context.fence,
-          limits = context.deps.profile.limits](robot::MissionCopy copy) mutable {
+          limits = context.profile().limits](robot::MissionCopy copy) mutable {
     return verdict_of(std::move(copy), {robot, fence.get(), limits, around});
   };
 }

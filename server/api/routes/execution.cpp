@@ -107,12 +107,16 @@ base::Error as_conflict(base::Error error) {
   return error;
 }
 
-/// What was found at the load, and what a start finds now: the robot has moved, home may have.
-Json findings_now(const Json& at_load, const std::vector<mission::Finding>& now) {
+/// What was found at the load, and what a start finds now: the robot has moved, home may have, and
+/// parameters may have been changed.
+Json findings_now(const Json& at_load, const std::vector<mission::Finding>& now,
+                  const std::vector<mission::Finding>& parameters) {
   Json out = Json::array();
   for (const mission::Finding& finding : now) out.push_back(finding_json(finding));
+  for (const mission::Finding& finding : parameters) out.push_back(finding_json(finding));
   for (const Json& finding : at_load) {
-    if (finding["severity"] == "warning") out.push_back(finding);
+    const bool then = finding["code"] == robot::kSafetyParameter;
+    if (finding["severity"] == "warning" && !then) out.push_back(finding);
   }
   return out;
 }
@@ -125,7 +129,7 @@ Json present_preview(const ContextPtr& context, const robot::Preview& preview,
   const bool same = found.mission_id == preview.mission_id && found.revision == preview.revision;
   out["warnings"] = same ? found.list : Json::array();
   out["ready"] = now.empty();
-  out["findings"] = findings_now(out["warnings"], now);
+  out["findings"] = findings_now(out["warnings"], now, context->deps.robot.changed_safety());
   return out;
 }
 

@@ -50,12 +50,30 @@ void answer_fence(const ContextPtr& context, const CallPtr& call, http::status s
       call, effort, [status, fence = std::move(fence)] { return fence_response(status, fence); });
 }
 
-/// The robot keeps to it from now on.
-void take_up(const ContextPtr& context, std::optional<store::StoredFence> fence) {
+/// The robot keeps to it from now on. @param done empty, or what is called when it does
+void take_up(const ContextPtr& context, std::optional<store::StoredFence> fence,
+             services::Services::Done done = {}) {
   context->fence = fence ? std::make_shared<const store::StoredFence>(std::move(*fence)) : nullptr;
   context->deps.services.use_fence(
       context->fence ? std::shared_ptr<const mission::Fence>(context->fence, &context->fence->fence)
-                     : nullptr);
+                     : nullptr,
+      std::move(done));
+}
+
+/// The answer comes when the robot holds the fence, and says so if it does not.
+void take_up_then(const ContextPtr& context, const CallPtr& call,
+                  std::optional<store::StoredFence> fence, std::function<void()> then) {
+  auto held = context->commands.expect(
+      base::steady_now() + Commands::kPatience,
+      [call, then = std::move(then)](const base::Result<void>& result) {
+        if (result) return then();
+        base::Error error{
+            base::Code::Unavailable,
+            "it is stored and chosen, but the robot does not hold it yet: " + result.error().detail,
+            {}};
+        call->respond(problem(error));
+      });
+  take_up(context, std::move(fence), std::move(held));
 }
 
 /// 412 with the present state.
@@ -80,8 +98,10 @@ store::Reply<store::StoredFence> fence_changed(const ContextPtr& context, const 
       return refuse_with_present_fence(context, call, stored.error());
     }
     if (!stored) return call->respond(problem(stored.error()));
-    if (stored->active) take_up(context, *stored);
-    answer_fence(context, call, status, std::move(*stored));
+    if (!stored->active) return answer_fence(context, call, status, std::move(*stored));
+    take_up_then(context, call, *stored, [context, call, status, fence = *stored] {
+      answer_fence(context, call, status, fence);
+    });
   };
 }
 
@@ -242,8 +262,8 @@ Handler activate(const ContextPtr& context) {
             }
             return call->respond(problem(error));
           }
-          take_up(context, std::move(*active));
-          answer_active(context, call);
+          take_up_then(context, call, std::move(*active),
+                       [context, call] { answer_active(context, call); });
         });
   };
 }

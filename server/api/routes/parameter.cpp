@@ -45,21 +45,48 @@ Json param_value(const base::ParamValue& value) {
   return std::visit([](const auto& v) { return Json(v); }, value);
 }
 
-Json parameter_json(const robot::Parameter& p) {
+const char* acts_text(const robot::Parameter& p) {
+  if (!p.at_once) return "at_next_start";
+  return p.by_way ? "at_next_load" : "at_once";
+}
+
+Json stricter_json(base::Stricter side) {
+  switch (side) {
+    case base::Stricter::Any:
+      return nullptr;
+    case base::Stricter::Lower:
+      return "lower";
+    case base::Stricter::Higher:
+      return "higher";
+    case base::Stricter::None:
+      break;
+  }
+  return "none";
+}
+
+std::string full_name(const robot::Parameter& p) {
+  return p.section + "." + p.info.name;
+}
+
+Json parameter_json(const Context& context, const robot::Parameter& p) {
+  const auto kept = context.kept.find(full_name(p));
+  const base::ParamValue& later = kept == context.kept.end() ? p.info.value : kept->second;
   const bool number = std::holds_alternative<double>(p.info.value);
   const bool flag = std::holds_alternative<bool>(p.info.value);
-  return {{"name", p.section + "." + p.info.name},
+  return {{"name", full_name(p)},
           {"type", flag             ? "boolean"
                    : !number        ? "text"
                    : p.info.integer ? "integer"
                                     : "number"},
           {"unit", unit_json(p.info.name)},
           {"value", param_value(p.info.value)},
+          {"next_start_value", param_value(later)},
           {"default", param_value(p.initial)},
           {"min", p.info.min ? Json(*p.info.min) : Json(nullptr)},
           {"max", p.info.max ? Json(*p.info.max) : Json(nullptr)},
           {"description", p.info.description},
-          {"acts", p.at_once ? "at_once" : "at_next_start"}};
+          {"acts", acts_text(p)},
+          {"stricter", stricter_json(p.info.stricter)}};
 }
 
 const robot::Parameter* find(const std::vector<robot::Parameter>& all, std::string_view name) {
@@ -84,7 +111,7 @@ Handler list_parameters(const ContextPtr& context) {
   return [context](const CallPtr& call) {
     Json items = Json::array();
     for (const robot::Parameter& p : context->deps.robot.parameters()) {
-      items.push_back(parameter_json(p));
+      items.push_back(parameter_json(*context, p));
     }
     call->respond(
         json_response(http::status::ok, {{"items", std::move(items)}, {"next_cursor", nullptr}}));
@@ -96,7 +123,7 @@ Handler get_parameter(const ContextPtr& context) {
     const auto all = context->deps.robot.parameters();
     const robot::Parameter* p = find(all, name_of(*call));
     if (p == nullptr) return call->respond(no_parameter(name_of(*call)));
-    call->respond(json_response(http::status::ok, parameter_json(*p)));
+    call->respond(json_response(http::status::ok, parameter_json(*context, *p)));
   };
 }
 
@@ -108,26 +135,55 @@ std::optional<base::ParamValue> read_value(const Json* value) {
   return std::nullopt;
 }
 
+/// What became of a change.
+struct Changed {
+  std::string name;
+  base::ParamValue value;
+  bool taken = false;  ///< by the robot; else it is for the next start
+  bool acted = false;
+  std::string waits{};  ///< what it waits for, where the robot took it and it does not act yet
+};
+
 /// Keeps it for the next start, then answers with what holds now.
-void keep(const ContextPtr& context, const CallPtr& call, store::StoredParameter changed,
-          bool acted) {
-  const std::string name = changed.name;
-  const Json wanted = param_value(changed.value);
-  context->deps.store.keep_parameter(std::move(changed),
-                                     [context, call, name, wanted, acted](base::Result<void> kept) {
-                                       if (!kept && !acted)
-                                         return call->respond(problem(kept.error()));
-                                       const auto all = context->deps.robot.parameters();
-                                       const robot::Parameter* p = find(all, name);
-                                       if (p == nullptr) return call->respond(no_parameter(name));
-                                       Json out = parameter_json(*p);
-                                       if (acted)
-                                         out["value"] = wanted;  // the tick after it publishes it
-                                       out["acted"] = acted;
-                                       out["kept"] = kept.has_value();
-                                       out["next_start"] = kept ? wanted : Json(nullptr);
-                                       call->respond(json_response(http::status::ok, out));
-                                     });
+void keep(const ContextPtr& context, const CallPtr& call, Changed changed) {
+  store::StoredParameter stored{changed.name, changed.value};
+  context->deps.store.keep_parameter(
+      std::move(stored),
+      [context, call, changed = std::move(changed)](const base::Result<void>& kept) {
+        if (!kept && !changed.taken) return call->respond(problem(kept.error()));
+        if (kept) context->kept[changed.name] = changed.value;
+        const auto all = context->deps.robot.parameters();
+        const robot::Parameter* p = find(all, changed.name);
+        if (p == nullptr) return call->respond(no_parameter(changed.name));
+        Json out = parameter_json(*context, *p);
+        const Json wanted = param_value(changed.value);
+        if (changed.taken) out["value"] = wanted;  // the tick after it publishes it
+        out["acted"] = changed.acted;
+        out["waits_for"] = changed.waits.empty() ? Json(nullptr) : Json(changed.waits);
+        out["kept"] = kept.has_value();
+        out["next_start"] = kept ? wanted : Json(nullptr);
+        call->respond(json_response(http::status::ok, out));
+      });
+}
+
+/// The robot took it. What acts in the way of a mission acts when the loaded one is laid anew:
+/// at once, unless it is in hand.
+void settle(const ContextPtr& context, const CallPtr& call, Changed changed, bool by_way) {
+  changed.taken = true;
+  changed.acted = true;
+  if (!context->deps.robot.loaded()) return keep(context, call, std::move(changed));
+  auto done = context->commands.expect(
+      base::steady_now() + Commands::kPatience,
+      [context, call, changed = std::move(changed), by_way](const base::Result<void>& laid) {
+        Changed now = changed;
+        if (!laid) {
+          now.acted = !by_way;
+          now.waits =
+              "the loaded mission drives the way that was laid out before: " + laid.error().detail;
+        }
+        keep(context, call, std::move(now));
+      });
+  context->deps.services.lay_way_anew(std::move(done));
 }
 
 Handler put_parameter(const ContextPtr& context) {
@@ -149,11 +205,17 @@ Handler put_parameter(const ContextPtr& context) {
     if (const auto good = context->deps.robot.check_parameter(name, *value); !good) {
       return call->respond(problem(good.error()));
     }
-    if (!p->at_once) return keep(context, call, {name, *value}, false);
-    context->commands.run(robot::SetParameter{name, *value}, validity, base::steady_now(),
-                          [context, call, name, value = *value](base::Result<void> result) {
+    const bool later = !p->at_once;
+    const bool lays_way = robot::lays_way(p->section, p->info.name);
+    context->commands.run(robot::SetParameter{name, *value, "the page or a script", later},
+                          validity, base::steady_now(),
+                          [context, call, name, value = *value, later, lays_way,
+                           by_way = p->by_way](const base::Result<void>& result) {
                             if (!result) return call->respond(problem(result.error()));
-                            keep(context, call, {name, value}, true);
+                            Changed changed{name, value, !later, !later};
+                            if (lays_way && !later)
+                              return settle(context, call, std::move(changed), by_way);
+                            keep(context, call, std::move(changed));
                           });
   };
 }

@@ -15,7 +15,7 @@ namespace {
 
 SurveyFacts survey_facts(const ContextPtr& context) {
   SurveyFacts facts;
-  const Profile& profile = context->deps.profile;
+  const Profile profile = context->profile();
   if (profile.max_speed_mps > 0.0) {
     facts.speed_mps = std::min(facts.speed_mps, profile.max_speed_mps);
   }

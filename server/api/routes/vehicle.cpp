@@ -218,8 +218,8 @@ void add_vehicle_routes(const ContextPtr& c) {
                  }});
   c->router.add({get, "/vehicle/way_home", {200, 422, 503}, way_home(c)});
   c->router.add({get, "/vehicle/capabilities", {200}, [c](const CallPtr& call) {
-                   call->respond(json_response(
-                       http::status::ok, capabilities_json(c->deps.profile, c->deps.version)));
+                   call->respond(json_response(http::status::ok,
+                                               capabilities_json(c->profile(), c->deps.version)));
                  }});
   c->router.add({get, "/vehicle/trail", {200, 503}, [c](const CallPtr& call) {
                    if (c->snapshot_or_refuse(call)) answer_trail(c->deps.services, call);

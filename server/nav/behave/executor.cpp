@@ -68,6 +68,14 @@ void Executor::load(std::shared_ptr<const Route> route) {
   rejoin_.reset();
 }
 
+void Executor::lay_anew(std::shared_ptr<const Route> route) {
+  const ExecutionState state = state_;
+  std::string reason = std::move(reason_);
+  load(std::move(route));
+  state_ = state;
+  reason_ = std::move(reason);
+}
+
 void Executor::begin_at(std::size_t step) {
   tracker_.reset();
   rotation_.reset();

@@ -73,6 +73,9 @@ class Executor {
 
   /// Allowed unless Running. Null: nothing is loaded.
   void load(std::shared_ptr<const Route> route);
+  /// The same mission, laid out by other parameters. Not Running, Paused or Blocked; what became of
+  /// it stays told.
+  void lay_anew(std::shared_ptr<const Route> route);
   /// Conflict when nothing is loaded, it already runs, the item does not exist, or the first place
   /// is too far away.
   base::Result<void> start(const StartAt& at, EnuPoint here, std::optional<EnuPoint> home);

@@ -1,6 +1,8 @@
 #pragma once
 // What the modes other than AUTO hold to. Section [nav.modes].
 
+#include "base/params.hpp"
+
 namespace roverd::nav {
 
 struct ModeParams {
@@ -33,7 +35,7 @@ void fields(V& v, ModeParams& p) {
   v("move_back_mps", p.move_back_mps, 0.05, 2.0, "speed of a move backwards");
   v("turn_radps", p.turn_radps, 0.05, 2.0, "turn rate of a turn by an angle, over ground");
   v("stream_timeout_s", p.stream_timeout_s, 0.2, 10.0,
-    "GUIDED by heading and speed stops without a newer one for so long");
+    base::lower_is_stricter("GUIDED by heading and speed stops without a newer one for so long"));
   v("goal_cut_m", p.goal_cut_m, 0.0, 1000.0,
     "farther goals are cut to this distance in their direction, and looked at anew while driving; "
     "0: the whole line is driven");
@@ -47,10 +49,13 @@ void fields(V& v, ModeParams& p) {
   v("dock_within_deg", p.dock_within_deg, 0.5, 20.0, "DOCK: and this angle");
   v("follow_gap_m", p.follow_gap_m, 0.5, 50.0, "FOLLOW: distance to a standing target");
   v("follow_gap_s", p.follow_gap_s, 0.0, 10.0, "FOLLOW: and so much more for each m/s");
-  v("follow_stop_m", p.follow_stop_m, 0.3, 50.0, "FOLLOW: nearer than this it stands");
+  v("follow_stop_m", p.follow_stop_m, 0.3, 50.0,
+    base::higher_is_stricter("FOLLOW: nearer than this it stands"));
   v("follow_max_m", p.follow_max_m, 5.0, 1000.0, "FOLLOW: a target farther away is not followed");
-  v("follow_brake_s", p.follow_brake_s, 0.2, 10.0, "FOLLOW: an older target: brake");
-  v("follow_hold_s", p.follow_hold_s, 0.5, 60.0, "FOLLOW: no target for so long: HOLD");
+  v("follow_brake_s", p.follow_brake_s, 0.2, 10.0,
+    base::lower_is_stricter("FOLLOW: an older target: brake"));
+  v("follow_hold_s", p.follow_hold_s, 0.5, 60.0,
+    base::lower_is_stricter("FOLLOW: no target for so long: HOLD"));
   v("follow_jump_mps", p.follow_jump_mps, 0.5, 50.0,
     "FOLLOW: a target that seems faster has jumped, and is not believed");
   v("rate_gain", p.rate_gain, 0.0, 10.0, "ACRO: 1/s, how a turn rate that is off is made up for");

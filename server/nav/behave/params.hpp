@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "base/params.hpp"
+
 namespace roverd::nav {
 
 struct BehaveParams {
@@ -19,17 +21,24 @@ struct BehaveParams {
 template <class V>
 void fields(V& v, BehaveParams& p) {
   v("start_within_m", p.start_within_m, 1.0, 10000.0,
-    "a mission whose first point is farther away is not started, nor rejoined");
-  v("lost_m", p.lost_m, 0.2, 100.0, "farther from the path than this the robot stops");
-  v("lost_s", p.lost_s, 0.0, 10.0, "for so long");
+    base::lower_is_stricter(
+        "a mission whose first point is farther away is not started, nor rejoined"));
+  v("lost_m", p.lost_m, 0.2, 100.0,
+    base::lower_is_stricter("farther from the path than this the robot stops"));
+  v("lost_s", p.lost_s, 0.0, 10.0, base::lower_is_stricter("for so long"));
   v("missed_m", p.missed_m, 0.05, 10.0,
-    "a waypoint to stop at that is farther away then, and than its radius: blocked");
-  v("stuck_s", p.stuck_s, 1.0, 120.0, "no progress for so long while driving: blocked");
-  v("stuck_m", p.stuck_m, 0.05, 10.0, "less way than this is no progress");
-  v("stuck_deg", p.stuck_deg, 1.0, 90.0, "less turning than this is no progress");
+    base::lower_is_stricter(
+        "a waypoint to stop at that is farther away then, and than its radius: blocked"));
+  v("stuck_s", p.stuck_s, 1.0, 120.0,
+    base::lower_is_stricter("no progress for so long while driving: blocked"));
+  v("stuck_m", p.stuck_m, 0.05, 10.0,
+    base::higher_is_stricter("less way than this is no progress"));
+  v("stuck_deg", p.stuck_deg, 1.0, 90.0,
+    base::higher_is_stricter("less turning than this is no progress"));
   v("unreachable", p.unreachable,
-    "what follows when an item cannot be reached: stop (blocked), skip (the next item) or return "
-    "(home)");
+    base::only_disarmed("what follows when an item cannot be reached: stop (blocked), skip (the "
+                        "next item) or return "
+                        "(home)"));
 }
 
 }  // namespace roverd::nav

@@ -4,6 +4,8 @@
 #include <array>
 #include <string_view>
 
+#include "base/params.hpp"
+
 namespace roverd::nav {
 
 struct EstimateParams {
@@ -61,28 +63,32 @@ void compass_fields(V& v, EstimateParams& p) {
 template <class V>
 void gnss_fields(V& v, EstimateParams& p) {
   v("antenna_forward_m", p.antenna_forward_m, -5.0, 5.0,
-    "GNSS antenna ahead of the centre of rotation");
-  v("antenna_left_m", p.antenna_left_m, -5.0, 5.0, "GNSS antenna left of the centre of rotation");
+    base::only_disarmed("GNSS antenna ahead of the centre of rotation"));
+  v("antenna_left_m", p.antenna_left_m, -5.0, 5.0,
+    base::only_disarmed("GNSS antenna left of the centre of rotation"));
   v("antenna_up_m", p.antenna_up_m, 0.0, 10.0,
-    "GNSS antenna above the ground: it sways when the robot leans");
+    base::only_disarmed("GNSS antenna above the ground: it sways when the robot leans"));
   v("antenna_baseline_m", p.antenna_baseline_m, 0.1, 20.0,
-    "between two antennas: their heading is not better than 0.01 m over it");
+    base::only_disarmed("between two antennas: their heading is not better than 0.01 m over it"));
   v("gnss_latency_s", p.gnss_latency_s, 0.0, 0.8,
     "age of a position or velocity when its bytes arrive; too small weaves, too large as well");
   v("drift_scale", p.drift_scale, 0.0, 5.0,
     "scales the assumed slow drift of positions that are not RTK fixed");
-  v("satellites_min", p.satellites_min, 0, 30, "positions from fewer satellites are not used");
-  v("hdop_max", p.hdop_max, 1.0, 50.0, "nor those from satellites that stand worse than this");
+  v("satellites_min", p.satellites_min, 0, 30,
+    base::higher_is_stricter("positions from fewer satellites are not used"));
+  v("hdop_max", p.hdop_max, 1.0, 50.0,
+    base::lower_is_stricter("nor those from satellites that stand worse than this"));
   v("accuracy_max_m", p.accuracy_max_m, 0.05, 100.0,
-    "nor those of which the receiver is less sure (1 sigma)");
+    base::lower_is_stricter("nor those of which the receiver is less sure (1 sigma)"));
   v("speed_accuracy_max_mps", p.speed_accuracy_max_mps, 0.05, 10.0,
-    "velocities of which the receiver is less sure are not used");
+    base::lower_is_stricter("velocities of which the receiver is less sure are not used"));
 }
 
 template <class V>
 void fields(V& v, EstimateParams& p) {
   v("track_width_m", p.track_width_m, 0.1, 5.0,
-    "distance between the middles of the two tracks; slip is learned on top of it");
+    base::only_disarmed(
+        "distance between the middles of the two tracks; slip is learned on top of it"));
   gnss_fields(v, p);
   compass_fields(v, p);
   v("heading_sigma_deg", p.heading_sigma_deg, 0.05, 20.0,

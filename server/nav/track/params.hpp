@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "base/params.hpp"
+
 namespace roverd::nav {
 
 /// How the vehicle can move. The words of `kinematics`:
@@ -111,22 +113,28 @@ struct SpeedParams {
 template <class V>
 void fields(V& v, SpeedParams& p) {
   v("default_mps", p.default_mps, 0.1, 5.0, "when neither item nor mission gives a speed");
-  v("max_mps", p.max_mps, 0.1, 5.0, "no item drives faster");
-  v("reverse_max_mps", p.reverse_max_mps, 0.1, 5.0, "no item reverses faster");
-  v("creep_mps", p.creep_mps, 0.1, 2.0, "speed while heading or position are uncertain");
+  v("max_mps", p.max_mps, 0.1, 5.0, base::lower_is_stricter("no item drives faster"));
+  v("reverse_max_mps", p.reverse_max_mps, 0.1, 5.0,
+    base::lower_is_stricter("no item reverses faster"));
+  v("creep_mps", p.creep_mps, 0.1, 2.0,
+    base::lower_is_stricter("speed while heading or position are uncertain"));
   v("min_mps", p.min_mps, 0.02, 1.0, "slower, and the tracks stick");
-  v("accel_mps2", p.accel_mps2, 0.05, 5.0, "speeding up");
-  v("decel_mps2", p.decel_mps2, 0.05, 5.0, "slowing down for what is known in advance");
+  v("accel_mps2", p.accel_mps2, 0.05, 5.0, base::lower_is_stricter("speeding up"));
+  v("decel_mps2", p.decel_mps2, 0.05, 5.0,
+    base::lower_is_stricter("slowing down for what is known in advance"));
   v("jerk_mps3", p.jerk_mps3, 0.1, 100.0, "change of either while following a path");
   v("hold_decel_mps2", p.hold_decel_mps2, 0.05, 5.0,
-    "slowing down for a pause or a lost condition");
-  v("lateral_mps2", p.lateral_mps2, 0.05, 5.0, "sideways acceleration allowed in bends");
-  v("max_yaw_rate_radps", p.max_yaw_rate_radps, 0.1, 5.0, "largest turn rate ever commanded");
-  v("yaw_accel_radps2", p.yaw_accel_radps2, 0.1, 20.0, "change of the turn rate while it grows");
+    base::higher_is_stricter("slowing down for a pause or a lost condition"));
+  v("lateral_mps2", p.lateral_mps2, 0.05, 5.0,
+    base::lower_is_stricter("sideways acceleration allowed in bends"));
+  v("max_yaw_rate_radps", p.max_yaw_rate_radps, 0.1, 5.0,
+    base::lower_is_stricter("largest turn rate ever commanded"));
+  v("yaw_accel_radps2", p.yaw_accel_radps2, 0.1, 20.0,
+    base::lower_is_stricter("change of the turn rate while it grows"));
   v("yaw_decel_radps2", p.yaw_decel_radps2, 0.1, 20.0,
     "and while it falls; a skid-steer brakes half as hard as it accelerates");
   v("heading_sigma_deg", p.heading_sigma_deg, 0.5, 90.0,
-    "less certain of the heading than this, the robot creeps");
+    base::lower_is_stricter("less certain of the heading than this, the robot creeps"));
 }
 
 struct PivotParams {
@@ -143,11 +151,13 @@ void fields(V& v, PivotParams& p) {
   v("angle_deg", p.angle_deg, 5.0, 180.0,
     "sharper corners are turned on the spot, where the item does not say otherwise");
   v("done_deg", p.done_deg, 0.5, 15.0, "a turn on the spot ends this close");
-  v("max_rate_radps", p.max_rate_radps, 0.1, 3.0, "turn rate on the spot, over ground");
+  v("max_rate_radps", p.max_rate_radps, 0.1, 3.0,
+    base::lower_is_stricter("turn rate on the spot, over ground"));
   v("decel_radps2", p.decel_radps2, 0.05, 5.0,
     "braking of a turn; a skid-steer brakes half as hard as it accelerates");
   v("slew_radps2", p.slew_radps2, 0.1, 10.0, "change of the commanded turn rate");
-  v("timeout_s", p.timeout_s, 2.0, 300.0, "a turn that takes longer does not come to its end");
+  v("timeout_s", p.timeout_s, 2.0, 300.0,
+    base::lower_is_stricter("a turn that takes longer does not come to its end"));
 }
 
 }  // namespace roverd::nav

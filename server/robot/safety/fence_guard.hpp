@@ -33,11 +33,9 @@ struct LaidFence {
   mission::CompiledFence limits;
   std::vector<base::EnuPoint> rally;
   std::uint64_t mission_id = 0;               ///< CompiledMission::id of the one that was looked at
+  double margin_m = 0.0;                      ///< with this Config::way_margin_m
   std::optional<mission::Finding> objection;  ///< to it; empty: it stays inside
 };
-
-/// A way that is asked for must keep so much more than the margin: tracking is not exact.
-inline constexpr double kFenceAllowance_m = 0.2;
 
 /// Where a route leaves the fence, or comes nearer to its limit than the margin, jumps and laps
 /// included; names the item ("outside_fence"). Empty: nowhere. The ways home (Route::home_ends) are

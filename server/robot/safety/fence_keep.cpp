@@ -12,6 +12,15 @@ using base::Code;
 
 }  // namespace
 
+const std::optional<mission::Finding>* legs_of(const CompiledMission& mission,
+                                               const LaidFence& fence, double margin_m) noexcept {
+  if (mission.fence_id == fence.id && mission.fence_margin_m == margin_m) {
+    return &mission.fence_objection;
+  }
+  const bool known = fence.mission_id == mission.id && fence.margin_m == margin_m;
+  return known ? &fence.objection : nullptr;
+}
+
 base::Result<void> FenceKeep::inside(base::EnuPoint from, base::EnuPoint to,
                                      double margin_m) const {
   if (!fence_ || may_drive(fence_->limits, from, to, margin_m)) return {};
@@ -33,15 +42,11 @@ base::Result<void> FenceKeep::may_begin(base::EnuPoint here,
 
 base::Result<void> FenceKeep::may_start(const CompiledMission& mission, const nav::StartAt& at,
                                         const Start& start) const {
-  if (!compared(&mission)) {
-    return base::fail(
-        Code::Conflict,
-        "fence and mission came at the same moment and are being compared: try again");
+  if (!compared(&mission, start.margin_m)) {
+    return base::fail(Code::Conflict, "fence and mission are being compared: try again");
   }
   const std::optional<mission::Finding>* legs = nullptr;
-  if (fence_) {
-    legs = mission.fence_id == fence_->id ? &mission.fence_objection : &fence_->objection;
-  }
+  if (fence_) legs = legs_of(mission, *fence_, start.margin_m);
   const std::vector<mission::Finding> found =
       start_findings({.route = mission.route,
                       .limits = fence_ ? &fence_->limits : nullptr,
@@ -57,9 +62,8 @@ base::Result<void> FenceKeep::may_start(const CompiledMission& mission, const na
   return base::fail(Code::Conflict, mission::sentence(found.front()), std::move(fields));
 }
 
-bool FenceKeep::compared(const CompiledMission* mission) const noexcept {
-  return !fence_ || mission == nullptr || mission->fence_id == fence_->id ||
-         fence_->mission_id == mission->id;
+bool FenceKeep::compared(const CompiledMission* mission, double margin_m) const noexcept {
+  return !fence_ || mission == nullptr || legs_of(*mission, *fence_, margin_m) != nullptr;
 }
 
 FenceKeep::Verdict FenceKeep::judge(const base::BodyTwist& asked, const base::Pose& pose,
@@ -84,14 +88,14 @@ FenceKeep::Verdict FenceKeep::judge(const base::BodyTwist& asked, const base::Po
 
 base::FenceState FenceKeep::state(const std::optional<base::Pose>& pose,
                                   const std::optional<base::LocalFrame>& frame,
-                                  const CompiledMission* mission) const {
+                                  const CompiledMission* mission, double margin_m) const {
   base::FenceState s;
   s.name = fence_->fence->name;
   if (!frame || frame->id() != fence_->frame_id || !pose) return s;
   const double clear_m = fence_->limits.clearance_m(pose->at);
   s.inside = clear_m > 0.0;
   if (std::isfinite(clear_m)) s.distance_m = clear_m;
-  s.compared = compared(mission);
+  s.compared = compared(mission, margin_m);
   return s;
 }
 

@@ -48,7 +48,8 @@ class FenceKeep {
   base::Result<void> may_start(const CompiledMission& mission, const nav::StartAt& at,
                                const Start& start) const;
   /// The comparison with a mission is long and made on other threads. @param mission null: none
-  bool compared(const CompiledMission* mission) const noexcept;
+  /// @param margin_m Config::way_margin_m as it is now
+  bool compared(const CompiledMission* mission, double margin_m) const noexcept;
 
   struct Verdict {
     bool stops = false;
@@ -63,7 +64,7 @@ class FenceKeep {
   /// A fence holds.
   base::FenceState state(const std::optional<base::Pose>& pose,
                          const std::optional<base::LocalFrame>& frame,
-                         const CompiledMission* mission) const;
+                         const CompiledMission* mission, double margin_m) const;
 
  private:
   std::shared_ptr<const LaidFence> fence_;

@@ -1,5 +1,7 @@
 #include "base/params.hpp"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace roverd::base {
@@ -18,6 +20,22 @@ void fields(V& v, Sample& p) {
   v("retries", p.retries, 0, 10, "then it gives up");
   v("pivot", p.pivot, "turn on the spot");
   v("law", p.law, "which tracker");
+}
+
+TEST(Params, KnowTheSideThatIsStricter) {
+  EXPECT_TRUE(keeps_safe(Stricter::Any, 1.0, 99.0));
+  EXPECT_TRUE(keeps_safe(Stricter::Lower, 1.0, 0.5));
+  EXPECT_TRUE(keeps_safe(Stricter::Lower, 1.0, 1.0));
+  EXPECT_FALSE(keeps_safe(Stricter::Lower, 1.0, 1.1));
+  EXPECT_TRUE(keeps_safe(Stricter::Higher, 1.0, 1.1));
+  EXPECT_FALSE(keeps_safe(Stricter::Higher, 1.0, 0.9));
+  EXPECT_FALSE(keeps_safe(Stricter::Higher, 1.0, std::nan("")));
+  EXPECT_FALSE(keeps_safe(Stricter::Lower, 1.0, std::nan("")));
+  EXPECT_TRUE(keeps_safe(Stricter::Higher, false, true));
+  EXPECT_FALSE(keeps_safe(Stricter::Higher, true, false));
+  EXPECT_FALSE(keeps_safe(Stricter::None, 1.0, 0.5));
+  EXPECT_TRUE(keeps_safe(Stricter::None, std::string("stop"), std::string("stop")));
+  EXPECT_FALSE(keeps_safe(Stricter::None, std::string("stop"), std::string("skip")));
 }
 
 TEST(Params, AreDescribedWithDefaultAndRange) {

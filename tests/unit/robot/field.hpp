@@ -69,6 +69,7 @@ class Field {
   std::optional<double> receiver_late_s;  ///< its own time, behind ours; empty: it tells none
   bool obeys = true;                      ///< the base moves as it is told; else
   base::BodyTwist does{};                 ///< it moves so
+  double grip = 1.0;                      ///< part of the wheels' way that is driven over ground
   std::optional<double> battery_v;
   std::optional<double> hdop;
   std::optional<double> fix_sigma_m;
@@ -82,8 +83,8 @@ class Field {
   void tick() {
     now += std::chrono::milliseconds(20);
     const auto [v, w] = obeys ? command.twist : does;
-    at.east_m += v * 0.02 * std::cos(yaw_rad);
-    at.north_m += v * 0.02 * std::sin(yaw_rad);
+    at.east_m += grip * v * 0.02 * std::cos(yaw_rad);
+    at.north_m += grip * v * 0.02 * std::sin(yaw_rad);
     yaw_rad = base::wrap_rad(yaw_rad + w * 0.02);
     speak(v, w);
     if (more) more();
@@ -182,7 +183,8 @@ class Field {
     f.hdop = hdop;
     f.sigma_east_m = f.sigma_north_m = fix_sigma_m;
     in.put(f);
-    in.put(base::GnssVelocity{now, v * std::cos(yaw_rad), v * std::sin(yaw_rad), speed_sigma_mps});
+    in.put(base::GnssVelocity{now, grip * v * std::cos(yaw_rad), grip * v * std::sin(yaw_rad),
+                              speed_sigma_mps});
     in.put(base::Heading{now, yaw_rad, compass});
   }
 

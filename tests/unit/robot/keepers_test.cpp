@@ -178,18 +178,20 @@ TEST(FenceKeep, AMissionIsComparedBeforeItStarts) {
   EXPECT_TRUE(keep.may_start(*mission, {}, from)) << "no fence";
   auto laid = yard(1);
   keep.set(laid);
-  EXPECT_FALSE(keep.compared(mission.get()));
+  EXPECT_FALSE(keep.compared(mission.get(), from.margin_m));
   EXPECT_NE(keep.may_start(*mission, {}, from).error().detail.find("being compared"),
             std::string::npos);
   laid = yard(2);
   laid->mission_id = mission->id;
+  laid->margin_m = from.margin_m;
   EXPECT_EQ(keep.set(laid)->id, 1u);
-  EXPECT_TRUE(keep.compared(mission.get()));
+  EXPECT_TRUE(keep.compared(mission.get(), from.margin_m));
   EXPECT_TRUE(keep.may_start(*mission, {}, from));
   const FenceKeep::Start outside{{0, 30}, base::EnuPoint{0, 0}, 0.5, 50.0};
   EXPECT_FALSE(keep.may_start(*mission, {}, outside)) << "the way to the first point";
   laid = yard(3);
   laid->mission_id = mission->id;
+  laid->margin_m = from.margin_m;
   laid->objection =
       mission::Finding{mission::Severity::Error, "outside_fence", "/items/0", 1, "lies outside"};
   keep.set(laid);

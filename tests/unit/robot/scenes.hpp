@@ -52,6 +52,19 @@ inline void fade(Walk& w) {
   w.run(30.0);
 }
 
+/// The mission waits, the robot is driven off its way by hand, and goes on from there.
+inline void leave_and_resume(Walk& w) {
+  (void)w.ask(SetMode{Mode::Manual});
+  w.stick(0.0, -0.6, 2.8);
+  w.stick(0.6, 0.0, 2.4);
+  w.stick(0.0, 0.0, 0.5);
+  (void)w.ask(SetMode{Mode::Hold});
+  w.run(1.0);
+  (void)w.ask(ResumeMission{});
+}
+
+inline const std::vector<base::EnuPoint> kNorthwards{{0, 2}, {0, 5}, {0, 7}, {0, 9}, {0, 16}};
+
 // What the robot is taken through. The change comes in the middle, or before what reads it begins.
 inline const std::vector<Scene> kScenes = {
     {"a mission is driven",
@@ -150,6 +163,49 @@ inline const std::vector<Scene> kScenes = {
        w.run(15.0);
        w.at.east_m += 4.5;
        w.run(20.0);
+     }},
+    {"off the way by hand, and on again",
+     [](Walk& w) {
+       w.run(8.0);
+       w.go(plan_of(kNorthwards));
+       w.run(6.0);
+       w.change();
+       leave_and_resume(w);
+       w.run(15.0);
+     }},
+    {"beside the way, which it does not drive back to first",
+     [](Walk& w) {
+       w.run(8.0);
+       w.go(plan_of(kNorthwards));
+       w.run(6.0);
+       w.change();
+       leave_and_resume(w);
+       w.run(15.0);
+     },
+     [](Config& c) { c.track.rejoin_m = 10.0; }},
+    {"lost beside the way",
+     [](Walk& w) {
+       w.run(8.0);
+       w.go(plan_of(kNorthwards));
+       w.run(6.0);
+       w.change();
+       leave_and_resume(w);
+       w.run(10.0);
+     },
+     [](Config& c) {
+       c.track.rejoin_m = 10.0;
+       c.behave.lost_m = 0.2;
+     }},
+    {"backwards",
+     [](Walk& w) {
+       w.run(8.0);
+       (void)w.ask(Arm{});
+       w.change();
+       GoTo way;
+       way.yaw_rad = 0.5 * base::kPi;
+       way.speed_mps = -0.45;
+       (void)w.ask(way);
+       w.run(4.0);
      }},
     {"stuck",
      [](Walk& w) {
@@ -311,6 +367,15 @@ inline const std::vector<Scene> kScenes = {
        w.control_mode = base::ControlMode::Standby;
        w.run(8.0);
      }},
+    {"the base takes no commands while it drives",
+     [](Walk& w) {
+       w.run(8.0);
+       w.go(plan_of({{0, 15}}));
+       w.run(3.0);
+       w.change();
+       w.control_mode = base::ControlMode::Standby;
+       w.run(8.0);
+     }},
     {"the base does not move",
      [](Walk& w) {
        w.run(8.0);
@@ -339,7 +404,16 @@ inline const std::vector<Scene> kScenes = {
        w.change();
        w.run(5.0);
      }},
-    {"wheels spin",
+    {"wheels spin in mud",
+     [](Walk& w) {
+       w.run(8.0);
+       w.go(plan_of({{0, 15}}));
+       w.run(4.0);
+       w.change();
+       w.grip = 0.0;
+       w.run(8.0);
+     }},
+    {"wheels slip",
      [](Walk& w) {
        w.run(8.0);
        w.go(plan_of({{0, 15}}));
@@ -357,6 +431,19 @@ inline const std::vector<Scene> kScenes = {
        fade(w);
      },
      [](Config& c) { c.safety.gnss_hold_s = 60.0; }},
+    {"the position grows uncertain",
+     [](Walk& w) {
+       w.run(8.0);
+       w.go(plan_of({{0, 45}}));
+       w.run(3.0);
+       w.change();
+       fade(w);
+     },
+     [](Config& c) {
+       c.safety.gnss_hold_s = 60.0;
+       c.safety.sigma_slow_m = 0.1;
+       c.safety.sigma_hold_m = 0.3;
+     }},
     {"the position is lost",
      [](Walk& w) {
        w.run(8.0);
@@ -404,6 +491,19 @@ inline const std::vector<Scene> kScenes = {
        w.stick(0.8, 0.5, 4.0);
        (void)w.ask(SetMode{Mode::Rtl});
        w.run(15.0);
+     }},
+    {"armed a second time, after it stood",
+     [](Walk& w) {
+       w.run(8.0);
+       (void)w.ask(Arm{});
+       (void)w.ask(SetMode{Mode::Manual});
+       w.stick(0.8, 0.0, 6.0);
+       w.stick(0.0, 0.0, 1.0);
+       (void)w.ask(Disarm{});
+       w.run(2.0);
+       w.change();
+       (void)w.ask(Arm{});
+       w.run(1.0);
      }},
     {"a voltage",
      [](Walk& w) {

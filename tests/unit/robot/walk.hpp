@@ -17,8 +17,12 @@ inline constexpr const char* kNone = "";
 
 class Walk : public Field {
  public:
-  Walk(const Config& config, std::string name, base::ParamValue value)
-      : Field(config), name_(std::move(name)), value_(std::move(value)) {
+  /// Disarmed: the change comes when the robot has begun, before anybody arms it; else on the way.
+  enum class When { OnTheWay, Disarmed };
+
+  Walk(const Config& config, std::string name, base::ParamValue value, When when = When::OnTheWay)
+      : Field(config), name_(std::move(name)), value_(std::move(value)), when_(when) {
+    if (when_ == When::Disarmed) set();
     robot.send = [this](const base::DriveCommand& c, Time) {
       command = c;
       if (changed_) look();
@@ -27,14 +31,7 @@ class Walk : public Field {
 
   /// The moment of the change. Without a name everything else is the same.
   void change() {
-    const auto present = SetParameter{"robot.arming.healthy_s", robot.config()->arming.healthy_s};
-    if (name_ == kNone) {
-      EXPECT_TRUE(ask(present));
-    } else {
-      const auto done = ask(SetParameter{name_, value_});
-      taken = done.has_value();
-      refusal = done ? std::string() : done.error().detail;
-    }
+    if (when_ == When::OnTheWay) set();
     changed_ = true;
   }
 
@@ -67,6 +64,17 @@ class Walk : public Field {
   std::vector<std::uint64_t> seen;
 
  private:
+  void set() {
+    const auto present = SetParameter{"robot.arming.healthy_s", robot.config()->arming.healthy_s};
+    if (name_ == kNone) {
+      EXPECT_TRUE(ask(present));
+      return;
+    }
+    const auto done = ask(SetParameter{name_, value_});
+    taken = done.has_value();
+    refusal = done ? std::string() : done.error().detail;
+  }
+
   void mix(std::uint64_t v) { hash_ = (hash_ ^ v) * 1099511628211ULL; }
   void mix(double v) { mix(std::bit_cast<std::uint64_t>(v)); }
   void mix(std::string_view text) { mix(std::hash<std::string_view>{}(text)); }
@@ -97,16 +105,22 @@ class Walk : public Field {
       mix(s->estimator.advice);
       mix(s->estimator.rejected);
       mix(static_cast<std::uint64_t>(s->estimator.alignment));
+      if (s->home) {
+        mix(s->home->lat);
+        mix(s->home->lon);
+      }
       if (s->fence && s->fence->distance_m) mix(*s->fence->distance_m);
     }
     for (; told_ < events.size(); ++told_) {
-      if (events[told_].kind != "parameter") mix(events[told_].kind + events[told_].detail);
+      const base::Event& e = events[told_];
+      if (!e.kind.ends_with("parameter")) mix(e.kind + e.detail);
     }
     seen.push_back(hash_);
   }
 
   std::string name_;
   base::ParamValue value_;
+  When when_;
   bool changed_ = false;
   std::size_t told_ = 0;
   std::uint64_t hash_ = 14695981039346656037ULL;

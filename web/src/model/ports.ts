@@ -44,6 +44,8 @@ export interface MissionFilter {
 }
 export interface Finding {
   readonly severity: 'error' | 'warning';
+  /** What it is about, for programs: `outside_fence`, `safety_parameter`. */
+  readonly code: string;
   /** From 1; null: the mission as a whole. */
   readonly item: number | null;
   readonly detail: string;
