@@ -201,12 +201,12 @@ TEST(FenceKeep, AMissionIsComparedBeforeItStarts) {
 TEST(FenceKeep, SaysHowNearItIs) {
   FenceKeep keep;
   keep.set(yard(1));
-  const auto state = keep.state(standing_at({0, 7}), kFrame, nullptr);
+  const auto state = keep.state(standing_at({0, 7}), kFrame, nullptr, 0.5);
   EXPECT_EQ(state.name, "yard");
   EXPECT_TRUE(state.inside);
   EXPECT_NEAR(*state.distance_m, 3.0, 0.01);
-  EXPECT_FALSE(keep.state(standing_at({0, 12}), kFrame, nullptr).inside);
-  EXPECT_FALSE(keep.state(std::nullopt, kFrame, nullptr).distance_m);
+  EXPECT_FALSE(keep.state(standing_at({0, 12}), kFrame, nullptr, 0.5).inside);
+  EXPECT_FALSE(keep.state(std::nullopt, kFrame, nullptr, 0.5).distance_m);
 }
 
 // ---- the driven way ----

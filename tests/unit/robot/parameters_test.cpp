@@ -23,7 +23,7 @@ TEST(Parameters, ActAtTheNextTickWhileDriving) {
   EXPECT_LT(f.command.twist.linear_mps, 0.32);
   EXPECT_GT(f.command.twist.linear_mps, 0.2);
   EXPECT_EQ(f.robot.config()->speed.max_mps, 0.3);
-  EXPECT_TRUE(f.has_event("parameter"));
+  EXPECT_TRUE(f.has_event("safety_parameter"));
 }
 
 TEST(Parameters, AreRefusedWithAReasonAndChangeNothing) {
