@@ -215,6 +215,8 @@ struct DriverDetail {
   /// Dangers that this driver alone can see ("somebody else sends 0x111"). While one is listed the
   /// robot does not move.
   std::vector<std::string> hazards;
+  /// One of them: somebody else commands the vehicle. Nothing that is armed stays so.
+  bool others_command = false;
 };
 
 struct DriverStatus {

@@ -217,6 +217,16 @@ struct LoopHealth {
   std::array<std::uint64_t, 20> lateness_log2_us{};
 };
 
+/// Driving by hand over the network. Release: a stick must be let go before it acts.
+enum class TeleopPhase { Off, Release, Ready, Held };
+std::string_view to_string(TeleopPhase phase) noexcept;
+
+struct TeleopState {
+  TeleopPhase phase = TeleopPhase::Off;
+  std::string reason;                   ///< why it is off, or what helps; else empty
+  std::vector<std::uint64_t> released;  ///< the sources of which one may drive
+};
+
 struct Snapshot {
   Time now;
   WallTime wall;
@@ -251,6 +261,7 @@ struct Snapshot {
   std::string autonomy_refusal;  ///< why nothing may drive by itself now; empty: it may
   std::optional<FenceState> fence;
   DriveCommand command;  ///< what was sent at this tick
+  TeleopState teleop;
   std::vector<SafetyCondition> safety;
   std::vector<Check> checks;
   bool ready_to_arm = false;

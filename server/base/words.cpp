@@ -134,6 +134,20 @@ std::optional<Mode> mode_from(std::string_view text) noexcept {
   return std::nullopt;
 }
 
+std::string_view to_string(TeleopPhase phase) noexcept {
+  switch (phase) {
+    case TeleopPhase::Off:
+      return "off";
+    case TeleopPhase::Release:
+      return "release";
+    case TeleopPhase::Ready:
+      return "ready";
+    case TeleopPhase::Held:
+      return "held";
+  }
+  return "off";
+}
+
 std::string_view to_string(Driver driver) noexcept {
   switch (driver) {
     case Driver::None:

@@ -61,6 +61,15 @@ void Workers::must_run(Lane lane, std::function<void()> work, std::function<void
   put(lane, {std::move(work), std::move(then)}, true);
 }
 
+bool Workers::hand_over(const std::function<void()>& then) noexcept {
+  try {
+    boost::asio::post(web_, then);
+    return true;
+  } catch (...) {
+    return false;
+  }
+}
+
 void Workers::serve(Queue& queue, int niceness) noexcept {
   pthread_setname_np(pthread_self(), "worker");
   step_back(niceness);
@@ -76,8 +85,10 @@ void Workers::serve(Queue& queue, int niceness) noexcept {
     } catch (...) {
       // No room for it: `then` finds nothing done.
     }
-    job.work = nullptr;  // here, not on the web thread
-    if (job.then) boost::asio::post(web_, std::move(job.then));
+    job.work = nullptr;                         // here, not on the web thread
+    while (job.then && !hand_over(job.then)) {  // memory comes back
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
     job = {};
     lock.lock();
   }

@@ -58,6 +58,7 @@ class Workers {
   Queue& queue(Lane lane) { return queues_[lane == Lane::Small ? 0 : 1]; }
   bool put(Lane lane, Job job, bool must);
   void serve(Queue& queue, int niceness) noexcept;
+  bool hand_over(const std::function<void()>& then) noexcept;
 
   boost::asio::io_context& web_;
   std::mutex mutex_;  // leaf

@@ -46,6 +46,8 @@ void Robot::Impl::judge() {
     hold(assessment.cause);
     event(Severity::Warning, was_auto ? "mission_paused" : "stopped", assessment.cause);
   }
+  // In its CAN mode the base obeys whoever speaks; out of it, nobody.
+  if (assessment.others_command && arm.armed()) disarm("because somebody else commands the base");
   checks = arming_checks(facts(), p, config->arming, missions.get() != nullptr, clock.now());
 }
 
@@ -106,7 +108,7 @@ base::DriveCommand Robot::Impl::decide() {
     nav::Executor& executor = missions.executor;
     if (executor.running() && !executor.interrupted()) executor.interrupt();
     self_driving.interrupt();
-    by_hand.release();
+    by_hand.lock(radio ? "the radio drove" : "the base took no commands", clock.now());
   }
   if (radio && !arm.latched()) driver = Driver::Radio;
   if (!arm.armed() || radio) return {};
@@ -161,6 +163,8 @@ base::DriveCommand Robot::Impl::keep_inside(base::DriveCommand command) {
 }
 
 base::Result<void> Robot::Impl::handle(const SetFence& c) {
+  // A stick that is held against a fence must not drive on because the fence goes.
+  if (fence.stops()) by_hand.lock("the fence changed", clock.now());
   retire(fence.set(c.fence));
   shared_fence.set(c.fence);
   event(Severity::Info, "fence_set",

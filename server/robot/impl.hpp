@@ -106,6 +106,7 @@ struct Robot::Impl {
   base::Driver driver = base::Driver::None;
   base::DriveCommand sent;
   std::string speed_reason;
+  bool latch_told = false;  ///< to Robot::on_latch
 
   static constexpr const char* kOperator = "by the operator";
   const char* asker = kOperator;  ///< whose command is carried out, for the events
@@ -124,6 +125,7 @@ struct Robot::Impl {
   bool publish();
   void publish_driven_way();
   void survive(const char* what, const Robot& self) noexcept;
+  void tell_latch(const Robot& self);
 
   // commands.cpp: what was done, or why not
   base::Result<void> handle(const Arm&);
@@ -217,6 +219,8 @@ struct Robot::Impl {
   base::Result<void> ask_for_edit(RadioDeed deed);
   base::Result<void> ask_for_teach(TeachWish wish);
   base::RadioMeaning radio_meaning() const noexcept;
+
+  base::TeleopState teleop() const;
 
   void event(base::Severity level, const char* kind, std::string detail) {
     outbox.event(clock.wall(), level, kind, std::move(detail));

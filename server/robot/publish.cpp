@@ -50,6 +50,7 @@ bool Robot::Impl::publish() {
     s->fence = fence.state(pose, estimator.frame(), missions.get().get(), way_margin_m());
   }
   s->command = sent;
+  s->teleop = teleop();
   s->safety = std::move(assessment.conditions);
   s->checks = checks;
   s->ready_to_arm = std::none_of(checks.begin(), checks.end(), [](const base::Check& c) {

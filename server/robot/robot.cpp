@@ -55,6 +55,11 @@ void Robot::reviewed(const Config& config) {
 void Robot::tell(base::Event event) {
   impl_->outbox.event(event.wall, event.level, event.kind.c_str(), std::move(event.detail));
 }
+void Robot::begin_latched(const std::string& why, base::WallTime wall) {
+  (void)impl_->arm.latch();
+  impl_->latch_told = true;
+  tell({wall, base::Severity::Error, "estop", "emergency stop: " + why});
+}
 std::shared_ptr<const nav::Learned> Robot::learned() const {
   return impl_->learned.get();
 }
@@ -301,6 +306,12 @@ void Robot::Impl::take_measurements() {
   pose = estimator.pose(clock.now());
 }
 
+void Robot::Impl::tell_latch(const Robot& self) {
+  if (std::exchange(latch_told, arm.latched()) != arm.latched() && self.on_latch) {
+    self.on_latch(arm.latched());
+  }
+}
+
 void Robot::heed_stop(Time now) noexcept {
   Impl& r = *impl_;
   // Latched already: every tick sends what stands.
@@ -309,6 +320,7 @@ void Robot::heed_stop(Time now) noexcept {
     r.take_estop(now);
     r.sent = {};
     if (send) send(r.sent, now);
+    r.tell_latch(*this);
   } catch (...) {
     r.estop_asked = true;  // the next tick's
   }
@@ -328,6 +340,7 @@ void Robot::tick(Time now, base::WallTime wall, base::Duration lateness) noexcep
     if (r.pose) r.lay_way();
     r.sent = r.decide();
     if (send) send(r.sent, now);
+    r.tell_latch(*this);
     if (r.publish() && r.outbox.flush() && wake) wake();
   } catch (const std::exception& e) {
     r.survive(e.what(), *this);
@@ -354,8 +367,9 @@ void Robot::Impl::survive(const char* what, const Robot& self) noexcept {
   try_to([&] {
     if (self.send) self.send(sent, clock.now());
   });
+  try_to([&] { tell_latch(self); });
   try_to([&] {
-    by_hand.release();
+    by_hand.lock("the control loop had a fault", clock.now());
     change_mode(ModeCause::Fault, "a fault in the control loop");
     if (!due) return;
     event(Severity::Error, "loop_fault",

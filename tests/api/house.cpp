@@ -149,6 +149,11 @@ void House::serve(net::Limits limits) {
   h.on_request = [this](net::Request request, base::Time begun, net::Respond respond) {
     api_->on_request(std::move(request), begun, std::move(respond));
   };
+  h.urgency = [](const net::Request& header) {
+    return api::Api::is_estop(header)  ? net::Urgency::AtHeader
+           : api::Api::is_stop(header) ? net::Urgency::Whole
+                                       : net::Urgency::None;
+  };
   h.body_limit = [this](const net::Request& header) { return api_->body_limit(header); };
   h.discard = [this](std::string large) { api_->discard(std::move(large)); };
   h.on_upgrade = [this](const net::Request& request) { return api_->on_upgrade(request); };
@@ -156,6 +161,7 @@ void House::serve(net::Limits limits) {
   h.on_text = [this](net::ClientId id, base::Time begun, std::string_view text) {
     api_->on_text(id, begun, text);
   };
+  h.urgent_text = api::Api::is_estop_text;
   h.on_gone = [this](net::ClientId id) { api_->on_gone(id); };
   h.on_refused = api::Api::on_refused;
   h.on_second = [this] { api_->on_second(); };

@@ -371,6 +371,7 @@ TEST(LossOnce, DrivingByHandStopsWithoutFreshCommandsAndWantsTheHandleLetGo) {
   Rig rig({});
   rig.arm();
   ASSERT_TRUE(rig.ask(robot::SetMode{Mode::Manual}));
+  rig.let_go();
   for (int i = 0; i < 100; ++i) {
     rig.drive(0.5, 0.0);
     rig.tick();

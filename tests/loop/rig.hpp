@@ -95,6 +95,15 @@ class RigBase {
                   now_ + std::chrono::milliseconds(250), {});
   }
 
+  /// Sticks in the middle, dead-man off, until the robot has seen it.
+  void let_go() {
+    const auto ready = [this] {
+      drive(0.0, 0.0, false);
+      return state()->teleop.phase == base::TeleopPhase::Ready;
+    };
+    EXPECT_TRUE(run_until(ready, 3.0)) << state()->teleop.reason;
+  }
+
   /// Waits until the checks pass, and arms.
   void arm() {
     ASSERT_TRUE(run_until([&] { return state()->ready_to_arm; }, 30.0)) << failing_checks();

@@ -236,6 +236,7 @@ Json vehicle_json(const base::Snapshot& s, const std::string& name, base::Time n
           {"armed", s.armed},
           {"estop", s.estop},
           {"control", base::to_string(s.control)},
+          {"teleop", {{"state", base::to_string(s.teleop.phase)}, {"reason", s.teleop.reason}}},
           {"speed_reason", s.speed_reason},
           {"command",
            {{"speed_mps", rounded(s.command.twist.linear_mps, kPlaces3)},

@@ -47,6 +47,9 @@ base::DriveCommand Robot::Impl::drive_by_hand() {
   }
   if (step.held) driver = Driver::Teleop;
   if (!step.reason.empty()) speed_reason = std::string(step.reason);
+  if (!step.stale && by_hand.in_vain(clock.now())) {
+    assessment.conditions.push_back({"release_stick", by_hand.why()});
+  }
   if (step.stale) {
     assessment.conditions.push_back(
         {"teleop_stale", "the commands by hand stopped coming: let go once to drive on"});

@@ -55,7 +55,7 @@ bool Robot::Impl::change_mode(ModeCause cause, const std::string& why, Mode chos
     missions.executor.pause(cause == ModeCause::Chosen ? "mode " + name : why);
   }
   self_driving.leave(change->to, why, change->stands_first);
-  by_hand.release();
+  by_hand.lock("the mode changed", clock.now());
   event(Severity::Info, "mode", "mode " + name + ": " + why);
   return true;
 }

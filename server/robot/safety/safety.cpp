@@ -103,6 +103,7 @@ class Assessor {
   void hazards() {
     for (const base::DriverStatus& driver : f_.world.drivers) {
       if (!driver.detail) continue;
+      out_.others_command = out_.others_command || driver.detail->others_command;
       for (const std::string& hazard : driver.detail->hazards) {
         add(Response::Hold, "driver_hazard", driver.name + ": " + hazard);
       }
@@ -328,6 +329,17 @@ base::Check check_battery(const World& w, const SafetyParams& p) {
   return check(id, w.battery->charge_pct >= p.battery_warn_pct, Severity::Warning, text);
 }
 
+base::Check check_hazards(const World& w) {
+  std::string text;
+  for (const base::DriverStatus& d : w.drivers) {
+    if (!d.detail) continue;
+    for (const std::string& hazard : d.detail->hazards) {
+      text += (text.empty() ? "" : "; ") + d.name + ": " + hazard;
+    }
+  }
+  return check("driver_hazard", text.empty(), Severity::Error, text.empty() ? "none" : text);
+}
+
 base::Check check_drivers(const World& w) {
   std::string text;
   for (const base::DriverStatus& d : w.drivers) {
@@ -404,6 +416,7 @@ std::vector<base::Check> arming_checks(const Facts& f, const SafetyParams& safet
   all.push_back(check_battery(w, safety));
   all.push_back(check("estop", !f.estop, Severity::Error,
                       f.estop ? "emergency stop is latched: reset it first" : "released"));
+  all.push_back(check_hazards(w));
   all.push_back(check_drivers(w));
   all.push_back(check_computer(w));
   all.push_back(check("mission", mission_loaded, Severity::Info,

@@ -9,6 +9,8 @@
 // | bumper enabled and silent              | 1 s (parameter)    | Hold                           |
 // | base takes no commands while armed     | 3 s                | Hold; no motion before          |
 // | base leaves our control by itself      | at once            | Hold                            |
+// | a hazard that a driver sees            | at once            | Hold; no arming                 |
+// | of these: somebody else commands it    | at once            | Hold, disarmed                  |
 // | base does not do what it is told       | 0.3 s (parameter)  | Hold                            |
 // | radio silent, frozen, or reported lost | 0.5 s              | Hold                           |
 // | no usable fix (AUTO), a gyro           | 2 s, 35 m driven   | Warn, Hold                     |
@@ -55,6 +57,7 @@ struct Assessment {
   std::string cause;  ///< of the worst response
   std::vector<base::SafetyCondition> conditions;
   bool base_estop = false;
+  bool others_command = false;  ///< armed, the base would obey them: it must not be
 };
 
 /// Does the radio drive? The base says so, or the switch SWB stands elsewhere than up.

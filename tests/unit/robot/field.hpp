@@ -125,6 +125,12 @@ class Field {
     ASSERT_GT(command.twist.linear_mps, 0.3);
   }
 
+  /// Sticks in the middle, dead-man off.
+  void let_go() {
+    robot.request(Drive{{}, false}, now, {});
+    tick();
+  }
+
   std::shared_ptr<const base::Snapshot> state() const { return robot.snapshot(); }
   ExecutionState execution() const { return state()->mission.state; }
   bool moves() const { return command.twist != base::BodyTwist{}; }

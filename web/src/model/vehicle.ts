@@ -137,6 +137,11 @@ export interface Vehicle {
   readonly armed: boolean;
   readonly estop: boolean;
   readonly control: Control;
+  /** Sticks over the stream: whether one may act, and what helps. */
+  readonly teleop: {
+    readonly state: 'off' | 'release' | 'ready' | 'held';
+    readonly reason: string;
+  };
   readonly speed_reason: string;
   readonly position: Position;
   readonly estimator: Estimator;
