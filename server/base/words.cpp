@@ -236,8 +236,28 @@ std::string_view to_string(Refusal r) noexcept {
       return "jump";
     case Refusal::Receivers:
       return "receivers";
+    case Refusal::Outvoted:
+      return "outvoted";
   }
   return "impossible";
+}
+
+std::string_view to_string(Sense s) noexcept {
+  switch (s) {
+    case Sense::Tracks:
+      return "tracks";
+    case Sense::Gyro:
+      return "gyro";
+    case Sense::Position:
+      return "gnss_position";
+    case Sense::Velocity:
+      return "gnss_velocity";
+    case Sense::Compass:
+      return "compass";
+    case Sense::Antennas:
+      return "antennas";
+  }
+  return "tracks";
 }
 
 }  // namespace roverd::base

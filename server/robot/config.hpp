@@ -63,6 +63,8 @@ struct SafetyParams {
   double gnss_slow_s = 2.0;
   double gnss_hold_s = 6.0;
   double gnss_free_m = 35.0;
+  double contradiction_free_m = 5.0;
+  double reset_repeat_s = 60.0;
   double sigma_slow_m = 2.0;
   double sigma_hold_m = 3.0;
   double sigma_hold_s = 2.0;
@@ -90,6 +92,11 @@ void fields(V& v, SafetyParams& p) {
   v("gnss_hold_s", p.gnss_hold_s, 1.0, 600.0, "no usable fix for so long, and no gyro: hold");
   v("gnss_free_m", p.gnss_free_m, 0.0, 10000.0,
     "with a gyro the robot drives on without a fix for so many metres: then hold");
+  v("contradiction_free_m", p.contradiction_free_m, 0.0, 1000.0,
+    "the robot creeps on for so many metres while the satellites' position is left out because it "
+    "contradicts the other sensors: then hold");
+  v("reset_repeat_s", p.reset_repeat_s, 0.0, 3600.0,
+    "an estimate that is set anew twice within so long holds until a person acknowledged it");
   v("sigma_slow_m", p.sigma_slow_m, 0.02, 50.0, "position less certain than this: creep");
   v("sigma_hold_m", p.sigma_hold_m, 0.05, 50.0, "position less certain than this: hold");
   v("sigma_hold_s", p.sigma_hold_s, 0.1, 60.0, "for so long");

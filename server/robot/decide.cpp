@@ -1,5 +1,6 @@
 // From facts to a command: judge what is wrong, let the one with the right to drive drive.
 
+#include <cmath>
 #include <utility>
 
 #include "robot/impl.hpp"
@@ -29,7 +30,8 @@ Facts Robot::Impl::facts() const {
           .not_following = base_watch.disobeys_now(),
           .sigma_bad_since = position_watch.uncertain_since(),
           .spins = position_watch.spins(),
-          .estimate = health};
+          .estimate = health,
+          .latched = reset_latch.why()};
 }
 
 void Robot::Impl::judge() {
@@ -73,6 +75,17 @@ void Robot::Impl::watch_estimate() {
   const base::FixType fix = world.gnss ? world.gnss->fix : base::FixType::None;
   for (const EstimateWatch::News& n : estimate_watch.step(health, fix, clock.now())) {
     event(n.level, n.kind, n.detail);
+  }
+  for (const EstimateWatch::News& n : votes_watch.step(health.votes)) {
+    event(n.level, n.kind, n.detail);
+  }
+  if (reset_latch.step(health, config->safety.reset_repeat_s, clock.now())) {
+    if (const auto& reset = health.last_reset) {
+      estimator.distrust(std::hypot(reset->jump.east_m, reset->jump.north_m),
+                         std::abs(reset->jump_rad));
+      pose = estimator.pose(clock.now());
+    }
+    event(Severity::Warning, "estimate_latched", reset_latch.why());
   }
   if (estimate_watch.anchor_lost() && missions.executor.running()) {
     const std::string why = "the anchor was dropped: the fix class changed";

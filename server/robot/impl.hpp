@@ -38,7 +38,9 @@
 #include "robot/safety/estimate_watch.hpp"
 #include "robot/safety/fence_keep.hpp"
 #include "robot/safety/position_watch.hpp"
+#include "robot/safety/reset_latch.hpp"
 #include "robot/safety/safety.hpp"
+#include "robot/safety/votes_watch.hpp"
 #include "robot/world.hpp"
 
 namespace roverd::robot {
@@ -96,6 +98,8 @@ struct Robot::Impl {
 
   BaseWatch base_watch;
   EstimateWatch estimate_watch;
+  VotesWatch votes_watch;
+  ResetLatch reset_latch;
   PositionWatch position_watch;
   Assessment assessment;
   std::vector<base::Check> checks;
@@ -127,6 +131,7 @@ struct Robot::Impl {
   base::Result<void> handle(const SetMode& c);
   base::Result<void> handle(const Estop& c);
   base::Result<void> handle(const ResetEstop&);
+  base::Result<void> handle(const Acknowledge&);
   base::Result<void> handle(const StartMission& c);
   base::Result<void> handle(const PauseMission&);
   base::Result<void> handle(const ResumeMission&);
@@ -199,6 +204,7 @@ struct Robot::Impl {
 
   // positioning.cpp
   base::Result<void> may_be_placed() const;
+  void told_where();
   base::Result<base::EnuPoint> anchor_point(const SetAnchor& c) const;
   base::DriveCommand seek_heading();
   base::BodyTwist straight_first(const base::BodyTwist& wanted);

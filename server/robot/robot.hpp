@@ -92,6 +92,8 @@ struct Estop {
   std::string who;
 };
 struct ResetEstop {};
+/// A person has looked where the robot stands, after an estimate that was set anew far off.
+struct Acknowledge {};
 struct StartMission {
   std::string mission_id;
   std::int64_t revision = 0;
@@ -162,10 +164,11 @@ struct ReviseMission {
   std::shared_ptr<const CompiledMission> mission;  ///< null: nothing is left to drive
 };
 
-using Command = std::variant<Arm, Disarm, SetMode, Estop, ResetEstop, StartMission, PauseMission,
-                             ResumeMission, ResumeActivity, StopMission, SkipItem, SetHome, SetPose,
-                             SetAnchor, DropAnchor, Drive, LoadMission, ReviseMission, GoTo, MoveBy,
-                             SetTarget, SetParameter, SetFence, ResumeAt>;
+using Command =
+    std::variant<Arm, Disarm, SetMode, Estop, ResetEstop, Acknowledge, StartMission, PauseMission,
+                 ResumeMission, ResumeActivity, StopMission, SkipItem, SetHome, SetPose, SetAnchor,
+                 DropAnchor, Drive, LoadMission, ReviseMission, GoTo, MoveBy, SetTarget,
+                 SetParameter, SetFence, ResumeAt>;
 
 /// Called with what the robot *did*. Runs on whatever thread drains replies().
 using Reply = std::function<void(base::Result<void>)>;

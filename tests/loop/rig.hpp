@@ -39,6 +39,7 @@ struct RigOptions {
   double heading_deg = 0.0;
   sim::Params plant{};
   robot::Config robot{};
+  gnss::Params gnss{};
 };
 
 /// What every vehicle's loop has in common; which plant and which drivers, the heirs say.
@@ -201,6 +202,16 @@ class RigBase {
     return worst;
   }
 
+  /// From a place to the line between two others.
+  static double to_segment(base::EnuPoint p, Metres a, Metres b) {
+    const double e = b.east_m - a.east_m;
+    const double n = b.north_m - a.north_m;
+    const double square = std::max(1e-9, e * e + n * n);
+    const double t =
+        std::clamp(((p.east_m - a.east_m) * e + (p.north_m - a.north_m) * n) / square, 0.0, 1.0);
+    return std::hypot(p.east_m - a.east_m - t * e, p.north_m - a.north_m - t * n);
+  }
+
   double yaw_error_deg() const {
     const auto s = state();
     return s->pose
@@ -227,13 +238,14 @@ class RigBase {
   }
 
  protected:
-  RigBase(std::unique_ptr<sim::Vehicle> vehicle, const robot::Config& config)
+  RigBase(std::unique_ptr<sim::Vehicle> vehicle, const robot::Config& config,
+          const gnss::Params& receiver = {})
       : owned_(std::move(vehicle)),
         plant(*owned_),
         robot(config),
         bytes_(link::memory_byte_pair()),
         gnss_(
-            "gnss", {},
+            "gnss", receiver,
             [this] { return base::Result<std::unique_ptr<link::ByteLink>>(std::move(bytes_.a)); },
             [this](const base::Measurement& m) { robot.measurements().put(m); }),
         imu_bytes_(link::memory_byte_pair()) {
@@ -285,15 +297,6 @@ class RigBase {
     mti_->start(at_);
   }
 
-  static double to_segment(base::EnuPoint p, Metres a, Metres b) {
-    const double e = b.east_m - a.east_m;
-    const double n = b.north_m - a.north_m;
-    const double square = std::max(1e-9, e * e + n * n);
-    const double t =
-        std::clamp(((p.east_m - a.east_m) * e + (p.north_m - a.north_m) * n) / square, 0.0, 1.0);
-    return std::hypot(p.east_m - a.east_m - t * e, p.north_m - a.north_m - t * n);
-  }
-
   base::WallTime wall() const {
     return base::WallTime{std::chrono::seconds(1'780'000'000)} + now_.time_since_epoch() +
            clock_jump;
@@ -320,7 +323,8 @@ class RigBase {
 class Rig final : public RigBase {
  public:
   explicit Rig(const RigOptions& o)
-      : RigBase(std::make_unique<sim::Bunker>(o.plant, o.seed, start_of(o.heading_deg)), o.robot),
+      : RigBase(std::make_unique<sim::Bunker>(o.plant, o.seed, start_of(o.heading_deg)), o.robot,
+                o.gnss),
         base_(static_cast<sim::Bunker&>(plant)),
         can_(link::memory_frame_pair()),
         bunker_(

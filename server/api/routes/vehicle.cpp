@@ -235,6 +235,8 @@ void add_vehicle_routes(const ContextPtr& c) {
                  }});
   c->router.add(
       {post, "/vehicle/estop/reset", kCommand, plain(c, robot::ResetEstop{}, Moves::Yes)});
+  c->router.add(
+      {post, "/vehicle/acknowledge", kCommand, plain(c, robot::Acknowledge{}, Moves::Yes)});
   c->router.add({http::verb::put, "/vehicle/home", kCommand, set_home(c)});
 }
 

@@ -34,6 +34,8 @@ std::string cause_of(base::Refusal why) {
       return "they contradict what the robot did";
     case base::Refusal::Receivers:
       return "two receivers say different places";
+    case base::Refusal::Outvoted:
+      return "the other sensors contradict them";
   }
   return {};
 }

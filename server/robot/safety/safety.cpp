@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "base/angle.hpp"
+#include "robot/safety/votes_watch.hpp"
 
 namespace roverd::robot {
 namespace {
@@ -154,6 +155,7 @@ class Assessor {
     if (f_.estimate.receivers_disagree) {
       tell(Response::Hold, "gnss_disagree", "two receivers say different places");
     }
+    sensors(tell);
     without_gnss(tell);
     if (f_.spins)
       tell(Response::Hold, "wheels_spin", "the wheels turn and the robot does not move");
@@ -163,6 +165,31 @@ class Assessor {
           f_.sigma_bad_since && base::seconds(now_ - *f_.sigma_bad_since) > p_.sigma_hold_s;
       tell(hold ? Response::Hold : Response::Slow, "pose_uncertain",
            "the position is uncertain by " + number(sigma_m, "%.1f m"));
+    }
+  }
+
+  /// Who contradicts the others, and what is left without him.
+  template <class Tell>
+  void sensors(const Tell& tell) {
+    using base::Sense;
+    const base::Votes& votes = f_.estimate.votes;
+    if (!f_.latched.empty()) {
+      tell(Response::Hold, "estimate_latched",
+           std::string(f_.latched) + ": look where the robot stands, and acknowledge it");
+    }
+    if (votes.undecided) tell(Response::Hold, "sensors_contradict", undecided_words(votes));
+    int carrying = 0;  // of those that carry the estimate
+    for (const Sense s : {Sense::Tracks, Sense::Gyro, Sense::Position, Sense::Velocity}) {
+      carrying += votes[s].left_out ? 1 : 0;
+    }
+    for (std::size_t i = 0; i < base::kSenses; ++i) {
+      if (!votes.of[i].left_out) continue;
+      const Sense s = static_cast<Sense>(i);
+      const bool far = f_.estimate.free_m > p_.contradiction_free_m;
+      Response response = Response::Warn;
+      if (s == Sense::Position) response = far ? Response::Hold : Response::Slow;
+      if (s == Sense::Tracks || carrying > 1) response = Response::Hold;
+      tell(response, "sensor_left_out", contradiction_words(votes, s));
     }
   }
 

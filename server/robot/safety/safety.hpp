@@ -15,6 +15,12 @@
 // | no usable fix (AUTO), no gyro          | 2 s, 6 s           | Slow, Hold                     |
 // | two receivers disagree (AUTO)          | at once            | Hold                           |
 // | wheels turn, robot stands (AUTO)      | 3 s (parameter)    | Hold                           |
+// | a sensor contradicts the others (AUTO) | 0.6 s              | it is left out; gyro, velocity,|
+// |                                        |                    | compass, antennas: Warn        |
+// |   GNSS position                        | 5 m driven         | Slow, Hold                     |
+// |   odometry, or two sensors             | at once            | Hold                           |
+// | two sensors contradict, undecided      | 1.6 s              | Hold                           |
+// | estimate set anew far off, or twice    | at once            | Hold until acknowledged        |
 // | position uncertain (AUTO)              | at once, 2 s worse | Slow, Hold                     |
 // | battery low, fault                     | at once            | Warn, Hold                     |
 // | this computer: disk, clock, lateness   | at once            | Warn                           |
@@ -24,6 +30,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/snapshot.hpp"
@@ -48,6 +55,7 @@ struct Facts {
   std::optional<Time> sigma_bad_since;
   bool spins = false;  ///< see SpinWatch
   const base::EstimatorHealth& estimate;
+  std::string_view latched{};  ///< see ResetLatch; empty: not
 };
 
 struct Assessment {

@@ -72,6 +72,7 @@ class Field {
   std::optional<double> battery_v;
   std::optional<double> hdop;
   std::optional<double> fix_sigma_m;
+  base::EnuPoint receiver_off{};  ///< told minus true position
   std::optional<double> speed_sigma_mps;
   base::HeadingSource compass = base::HeadingSource::Compass;
   std::function<void()> more;  ///< says more at every tick, before the robot's
@@ -173,7 +174,7 @@ class Field {
     base::GnssFix f;
     f.stamp = now;
     f.fix = fix;
-    if (fix != base::FixType::None) f.position = kFrame.to_global(at);
+    if (fix != base::FixType::None) f.position = kFrame.to_global(at + receiver_off);
     f.satellites = satellites;
     if (receiver_late_s) {
       f.utc = base::WallTime{std::chrono::seconds(1'780'000'000)} + now.time_since_epoch() -

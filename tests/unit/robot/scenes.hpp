@@ -348,6 +348,17 @@ inline const std::vector<Scene> kScenes = {
        w.more = [&w] { w.at.north_m -= 0.02 * w.command.twist.linear_mps; };
        w.run(8.0);
      }},
+    {"the receiver jumps, and jumps again",
+     [](Walk& w) {
+       w.run(8.0);
+       w.go(plan_of({{0, 45}}));
+       w.run(3.0);
+       w.change();
+       w.receiver_off = {0.8, 0.0};
+       w.run(16.0);
+       w.receiver_off = {1.6, 0.0};
+       w.run(16.0);
+     }},
     {"the position fades",
      [](Walk& w) {
        w.run(8.0);
