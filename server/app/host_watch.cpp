@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint64_t kLow_bytes = 200'000'000;
 constexpr double kSilent_s = 10.0;
-constexpr double kLate_s = 0.005;
+constexpr double kLate_s = 0.020;
 constexpr double kMinute_s = 60.0;
 
 std::string with(const char* format, double value) {

@@ -29,7 +29,7 @@ struct HostFacts {
 };
 
 /// Pure. Below 200 MB the disk is low; without an answer for 10 s it is silent; before 2025 the
-/// clock was never set; from 5 ms on the loop is late.
+/// clock was never set; from one period, 20 ms, on the loop is late.
 std::vector<base::HostProblem> host_problems(const HostFacts& facts);
 
 /// The lateness that 99.9 % of the wake-ups of about the last minute were below.

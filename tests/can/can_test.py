@@ -272,7 +272,7 @@ def how_it_stands():
     vehicle = station.rest.get("/vehicle")
     yield f"mission {vehicle['mission']}"
     yield f"control {vehicle['control']}, armed {vehicle['armed']}, safety {vehicle['safety']}"
-    for event in station.rest.get("/events?limit=12")["items"]:
+    for event in station.rest.get("/events?limit=1000")["items"][-12:]:
         yield f"{event}"
     frames = candump.read(LOG)
     for frame_id in (0x111, 0x221, 0x241):

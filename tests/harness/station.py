@@ -214,7 +214,7 @@ class Station:
 def said_by(explain):
     """What explain says; a robot that does not answer any more must not hide why the case failed."""
     try:
-        return explain() if explain else []
+        return list(explain()) if explain else []
     except Exception as error:
         return [f"nothing more is known: {error}"]
 

@@ -78,7 +78,9 @@ TEST(HostWatch, RefusedPriorityIsToldWithTheLatenessAndAlarmsOnlyWhenTheLoopIsLa
   EXPECT_FALSE(quiet.alarming);
   EXPECT_NE(quiet.detail.find("the control loop wakes up to 0.5 ms late"), std::string::npos)
       << quiet.detail;
-  facts.lateness_s = 0.0082;
+  facts.lateness_s = 0.020;
+  EXPECT_EQ(ids(facts), Ids{"realtime_refused"});
+  facts.lateness_s = 0.0328;
   ASSERT_EQ(ids(facts), (Ids{"loop_late", "realtime_refused"}));
   EXPECT_TRUE(host_problems(facts)[0].alarming);
   facts.lateness_s.reset();
