@@ -54,10 +54,9 @@ const std::vector<ProblemKind>& problem_kinds() {
       {409, "conflict", "Conflict with the present state",
        "The detail says which state; nothing was changed."},
       {409, "late", "Too late",
-       "The command is older than it is good for, or the robot was stopped after what its sender "
-       "had "
-       "seen; nothing was done. Its age counts from Roverd-Seen, or, without that header, from the "
-       "first sign of the request."},
+       "The command is older than it is good for, or the robot was stopped after what its "
+       "sender had seen; nothing was done. Its age counts from Roverd-Seen, or, without that "
+       "header, from the first sign of the request."},
       {412, "revision-mismatch", "Somebody else changed it",
        "If-Match does not name the present revision; `current` holds that."},
       {413, "too-large", "Too large", "The body is larger than the server takes."},

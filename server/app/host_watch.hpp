@@ -23,8 +23,8 @@ struct HostFacts {
   store::StorageState storage{};
   bool real_time = false;  ///< the control loop's thread comes before all others
   bool memory_locked = false;
-  /// Share of the wake-ups of the last minute that all but a thousandth were earlier than; empty:
-  /// not known yet.
+  /// All but a thousandth of the last minute's wake-ups were earlier than this; empty: not known
+  /// yet.
   std::optional<double> lateness_s{};
 };
 

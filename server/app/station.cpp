@@ -375,8 +375,8 @@ Station::~Station() {
   impl_->halt();
   impl_->workers.stop();
   impl_->keep_learned();
-  if (impl_->services)
-    impl_->services->stop();  // what is on its way to the web is dropped with the io_context
+  // What is on its way to the web is dropped with the io_context.
+  if (impl_->services) impl_->services->stop();
   impl_->server.reset();
   impl_->services.reset();
   impl_->backups.reset();

@@ -55,11 +55,14 @@ bool sync(const fs::path& path) {
 }
 
 /// Why the file is no database any more; empty: it is one, or nobody knows.
-std::string damage_of(const fs::path& file) {
+/// @param every_page takes about 1 ms per MB; else the beginning alone
+std::string damage_of(const fs::path& file, bool every_page = true) {
   std::error_code ec;
   if (!fs::is_regular_file(file, ec) || fs::file_size(file, ec) == 0 || ec) return {};
   try {
     SQLite::Database db(file.string(), SQLite::OPEN_READWRITE, 2000);
+    db.execAndGet("SELECT count(*) FROM sqlite_schema").getInt();
+    if (!every_page) return {};
     const std::string verdict = db.execAndGet("PRAGMA quick_check(1)").getString();
     return verdict == "ok" ? std::string() : verdict;
   } catch (const SQLite::Exception& problem) {
@@ -145,7 +148,7 @@ std::optional<std::string> rescue(const fs::path& database) {
   if (!fs::exists(database, ec)) return std::nullopt;
   const auto lock = FileLock::take(database);
   if (!lock) return std::nullopt;  // in use, or nobody may write here: Store::open says which
-  const std::string damage = damage_of(database);
+  const std::string damage = damage_of(database, worth_checking(database));
   if (damage.empty()) return std::nullopt;
   const fs::path aside = set_aside(database);
   if (aside.empty()) return std::nullopt;

@@ -157,9 +157,7 @@ Result<std::unique_ptr<Database>> open_database(const fs::path& file,
   auto lock = FileLock::take(file);
   if (!lock) return tl::unexpected<Error>(lock.error());
   const std::string name = file.string();
-  std::error_code ec;
-  const bool crashed = fs::exists(name + "-wal", ec);
-  const auto size = fs::exists(file, ec) ? fs::file_size(file, ec) : 0;
+  const bool check = worth_checking(file);
   auto result = guarded([&]() -> Result<std::unique_ptr<Database>> {
     auto db = std::make_unique<Database>(Database{
         std::move(*lock),
@@ -171,7 +169,7 @@ Result<std::unique_ptr<Database>> open_database(const fs::path& file,
     const int newest = steps.empty() ? 0 : steps.back().number;
     const auto version = inspect_schema(db->connection, name, newest);
     if (!version) return tl::unexpected<Error>(version.error());
-    if (crashed || size <= kAlwaysChecked_bytes) {
+    if (check) {
       if (auto ok = check_pages(db->connection, name); !ok) {
         return tl::unexpected<Error>(ok.error());
       }
@@ -185,6 +183,12 @@ Result<std::unique_ptr<Database>> open_database(const fs::path& file,
     result.error().detail = name + ": " + result.error().detail;
   }
   return result;
+}
+
+bool worth_checking(const fs::path& file) {
+  std::error_code ec;
+  const bool crashed = fs::exists(file.string() + "-wal", ec);
+  return crashed || !fs::exists(file, ec) || fs::file_size(file, ec) <= kAlwaysChecked_bytes;
 }
 
 Error error_from(const SQLite::Exception& problem) {

@@ -46,6 +46,9 @@ base::Result<std::unique_ptr<Database>> open_database(const std::filesystem::pat
                                                       std::span<const Migration> steps,
                                                       std::int64_t max_bytes);
 
+/// Is every page to be looked at before the file is used? Small ones always, others after a crash.
+bool worth_checking(const std::filesystem::path& file);
+
 /// Always Unavailable: what fails here is the disk or the file, never the asker's values.
 base::Error error_from(const SQLite::Exception& problem);
 

@@ -52,8 +52,14 @@ inline void fade(Walk& w) {
   w.run(30.0);
 }
 
+inline const std::vector<base::EnuPoint> kNorthwards{{0, 2}, {0, 5}, {0, 7}, {0, 9}, {0, 16}};
+
 /// The mission waits, the robot is driven off its way by hand, and goes on from there.
 inline void leave_and_resume(Walk& w) {
+  w.run(8.0);
+  w.go(plan_of(kNorthwards));
+  w.run(6.0);
+  w.change();
   (void)w.ask(SetMode{Mode::Manual});
   w.stick(0.0, -0.6, 2.8);
   w.stick(0.6, 0.0, 2.4);
@@ -62,8 +68,6 @@ inline void leave_and_resume(Walk& w) {
   w.run(1.0);
   (void)w.ask(ResumeMission{});
 }
-
-inline const std::vector<base::EnuPoint> kNorthwards{{0, 2}, {0, 5}, {0, 7}, {0, 9}, {0, 16}};
 
 // What the robot is taken through. The change comes in the middle, or before what reads it begins.
 inline const std::vector<Scene> kScenes = {
@@ -166,29 +170,17 @@ inline const std::vector<Scene> kScenes = {
      }},
     {"off the way by hand, and on again",
      [](Walk& w) {
-       w.run(8.0);
-       w.go(plan_of(kNorthwards));
-       w.run(6.0);
-       w.change();
        leave_and_resume(w);
        w.run(15.0);
      }},
     {"beside the way, which it does not drive back to first",
      [](Walk& w) {
-       w.run(8.0);
-       w.go(plan_of(kNorthwards));
-       w.run(6.0);
-       w.change();
        leave_and_resume(w);
        w.run(15.0);
      },
      [](Config& c) { c.track.rejoin_m = 10.0; }},
     {"lost beside the way",
      [](Walk& w) {
-       w.run(8.0);
-       w.go(plan_of(kNorthwards));
-       w.run(6.0);
-       w.change();
        leave_and_resume(w);
        w.run(10.0);
      },
