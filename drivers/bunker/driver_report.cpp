@@ -40,6 +40,7 @@ std::shared_ptr<const base::DriverDetail> Driver::make_detail(Time now) {
   detail->facts.merge(bus.facts);
   detail->counts.merge(bus.counts);
   told_ = hazards(now);
+  detail->others_command = told_.foreign_motion;
   if (told_.foreign_motion) {
     detail->hazards.emplace_back(speaks_v1_.load() ? "somebody else sends motion commands (0x130)"
                                                    : "somebody else sends motion commands (0x111)");

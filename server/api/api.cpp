@@ -12,6 +12,7 @@
 #include "api/profile.hpp"
 #include "api/stream.hpp"
 #include "base/log.hpp"
+#include "mission/json/json.hpp"
 
 namespace roverd::api {
 
@@ -128,6 +129,7 @@ struct Api::Impl {
 
   void handle(const CallPtr& call);
   void handle_next();
+  void next_turn();
   void route(const CallPtr& call);
   void serve_page(const CallPtr& call, std::string_view path);
   void watch(const CallPtr& call, const Route& route);
@@ -137,6 +139,7 @@ struct Api::Impl {
   std::unique_ptr<StreamTexts> stream;
   int unanswered = 0;
   std::deque<CallPtr> turns;  ///< requests that wait for theirs
+  bool turn_comes = false;    ///< handle_next is on its way
   std::map<std::string, std::uint64_t> driver_counts;
   base::Time counted;
   std::vector<robot::PendingReply> replies;
@@ -270,10 +273,17 @@ void Api::Impl::handle(const CallPtr& call) {
 
 /// One at a time: between two of them the sockets are looked at, and a stop goes first.
 void Api::Impl::handle_next() {
+  turn_comes = false;
   const CallPtr call = std::move(turns.front());
   turns.pop_front();
-  if (!turns.empty()) context->deps.later([this] { handle_next(); });
+  next_turn();
   handle(call);
+}
+
+void Api::Impl::next_turn() {
+  if (turns.empty() || turn_comes) return;
+  context->deps.later([this] { handle_next(); });
+  turn_comes = true;
 }
 
 void Api::on_request(Request request, base::Time begun, Respond respond) {
@@ -293,7 +303,22 @@ void Api::on_request(Request request, base::Time begun, Respond respond) {
   };
   if (!impl_->context->deps.later || stops(path_of(call->request))) return impl_->handle(call);
   impl_->turns.push_back(std::move(call));
-  if (impl_->turns.size() == 1) impl_->context->deps.later([this] { impl_->handle_next(); });
+  impl_->next_turn();
+}
+
+bool Api::is_stop(const Request& header) {
+  const bool may = header.method() == http::verb::post || header.method() == http::verb::put;
+  return may && stops(path_of(header));
+}
+
+bool Api::is_estop(const Request& header) {
+  return header.method() == http::verb::post && path_of(header) == "/vehicle/estop";
+}
+
+bool Api::is_estop_text(std::string_view text) {
+  if (text.find("estop") == std::string_view::npos) return false;
+  const auto message = mission::parse_json(text);
+  return message && message->is_object() && message->value("estop", Json()) == true;
 }
 
 std::size_t Api::body_limit(const Request& header) const {
@@ -333,6 +358,7 @@ Response Api::on_refused(unsigned status, std::string_view detail) {
 void Api::on_second() {
   const base::Time now = base::steady_now();
   impl_->context->commands.sweep(now);
+  if (impl_->context->deps.later) impl_->next_turn();  // should there have been no memory for it
   if (impl_->stream) impl_->stream->look_at_execution();
   const auto snapshot = impl_->context->deps.robot.snapshot();
   if (!snapshot) return;

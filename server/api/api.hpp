@@ -92,6 +92,9 @@ struct Deps {
   std::function<bool(Aside)> aside{};
   /// Calls it on the web thread after what is ready there already. Empty: at once.
   std::function<void(std::function<void()>)> later{};
+  /// Calls it on the web thread as soon as the emergency stop, as it is now, survives the end of
+  /// this program, or after a moment. Empty: at once.
+  std::function<void(std::function<void()>)> when_estop_kept{};
 };
 
 /// One per program. All members but the constructor: web thread. It must live until the web thread
@@ -107,6 +110,12 @@ class Api {
   void attach(Stream stream);
 
   void on_request(Request request, base::Time begun, Respond respond);
+  /// What stops, or slows down: heard even in a full house.
+  static bool is_stop(const Request& header);
+  /// The emergency stop, whatever its body says.
+  static bool is_estop(const Request& header);
+  /// The same on the stream.
+  static bool is_estop_text(std::string_view text);
   /// The largest body that is read for a request with this header.
   std::size_t body_limit(const Request& header) const;
   /// Frees it beside the web thread.

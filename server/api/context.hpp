@@ -110,6 +110,9 @@ struct Context {
           [call](Response response) { call->respond(std::move(response)); });
   }
   /// Frees what is large beside the web thread.
+  void when_estop_kept(std::function<void()> then) const {
+    return deps.when_estop_kept ? deps.when_estop_kept(std::move(then)) : then();
+  }
   template <class T>
   void discard(T large) const {
     if (!deps.aside) return;

@@ -69,6 +69,8 @@ const std::vector<ProblemKind>& problem_kinds() {
        "If-Match with the ETag of the revision that the change is based on is needed."},
       {429, "too-many-requests", "Too many requests", "Too many requests wait; try again."},
       {431, "header-too-large", "Header too large", "The header is larger than the server takes."},
+      {501, "not-implemented", "Not implemented",
+       "The request's body is coded in a way that is not understood here."},
       {503, "unavailable", "Unavailable", "Busy, starting or closing; try again."},
   };
   return kKinds;

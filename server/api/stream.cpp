@@ -1,5 +1,6 @@
 #include "api/stream.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "api/json/plain_json.hpp"
@@ -11,7 +12,10 @@ namespace roverd::api {
 namespace {
 
 constexpr int kComplaintsInARow = 10;
-constexpr auto kDriverSilent = std::chrono::milliseconds(500);
+/// Between two words on the same refusal: sticks speak many times a second.
+constexpr auto kRefusedAgain = std::chrono::seconds(1);
+/// The robot need not hear more often that an operator is there.
+constexpr auto kOperatorAgain = std::chrono::milliseconds(100);
 // Wider than any vehicle: the robot cuts to its own limits.
 constexpr double kMostSpeed_mps = 10.0;
 constexpr double kMostYawRate_dps = 720.0;
@@ -76,8 +80,10 @@ void StreamTexts::on_client(ClientId client) {
 }
 
 void StreamTexts::on_gone(ClientId client) {
-  clients_.erase(client);
-  if (client == driver_) stop_driving();
+  const auto found = clients_.find(client);
+  if (found == clients_.end()) return;
+  stop_driving(client, found->second);
+  clients_.erase(found);
 }
 
 void StreamTexts::on_text(ClientId id, base::Time begun, std::string_view text) {
@@ -127,19 +133,28 @@ base::Result<void> StreamTexts::read(ClientId id, Client& client, const Json& me
         "a message has exactly one of the members estop, halt, subscribe, drive and ping");
   }
   if (halting) return halt(*halting);
-  if (topics != nullptr) return subscribe(id, *topics);
+  if (topics != nullptr) return subscribe(id, client, *topics);
+  tell_robot(client);
   if (driving != nullptr) return drive(id, client, members, begun);
   if (ping) answer_ping(id, *ping);
   return {};
 }
 
 void StreamTexts::estop(ClientId id) {
-  context_->commands.run(robot::Estop{"the page or a script"}, base::Time::max(),
-                         base::steady_now(), [this, id](base::Result<void> done) {
-                           // Without an answer the client says it again.
-                           if (!done || !clients_.contains(id)) return;
-                           stream_.send(id, stream_text("estop", 1, R"({"estop":true})"));
-                         });
+  context_->commands.run(
+      robot::Estop{"the page or a script"}, base::Time::max(), base::steady_now(),
+      [this, id](const base::Result<void>& done) {
+        // Without an answer the client says it again.
+        if (!done) return;
+        context_->when_estop_kept([self = std::weak_ptr<StreamTexts*>(self_), id] {
+          if (const auto alive = self.lock()) (*alive)->confirm_estop(id);
+        });
+      });
+}
+
+void StreamTexts::confirm_estop(ClientId id) {
+  if (!clients_.contains(id)) return;
+  stream_.send(id, stream_text("estop", 1, R"({"estop":true})"));
 }
 
 /// The state tells what came of it; where there was nothing to halt, nothing did.
@@ -149,11 +164,21 @@ base::Result<void> StreamTexts::halt(const robot::Command& command) {
 }
 
 /// So that a client can tell how old on this very connection the data is that it gets.
+/// Who watches the vehicle and says something is an operator who is there (robot.safety.link_lost).
+void StreamTexts::tell_robot(const Client& client) {
+  const base::Time now = base::steady_now();
+  if (!client.watches || now - operator_told_ < kOperatorAgain) return;
+  operator_told_ = now;
+  const auto watching = std::count_if(clients_.begin(), clients_.end(),
+                                      [](const auto& c) { return c.second.watches; });
+  context_->deps.robot.measurements().put(base::OperatorLink{now, static_cast<int>(watching)});
+}
+
 void StreamTexts::answer_ping(ClientId id, double ping) {
   stream_.send(id, stream_text("pong", 1, plain_json({{"ping", ping}})));
 }
 
-base::Result<void> StreamTexts::subscribe(ClientId id, const Json& topics) {
+base::Result<void> StreamTexts::subscribe(ClientId id, Client& client, const Json& topics) {
   Members members(topics);
   std::map<std::string, double> rates;
   std::vector<base::FieldError> unknown;
@@ -172,6 +197,8 @@ base::Result<void> StreamTexts::subscribe(ClientId id, const Json& topics) {
     return read;
   }
   stream_.subscribe(id, rates);
+  client.watches = rates.contains(kVehicle);
+  tell_robot(client);
   if (unknown.empty()) return {};
   std::string detail = "unknown topic " + unknown.front().pointer.substr(11);
   return base::fail(base::Code::NotFound, std::move(detail), std::move(unknown));
@@ -186,42 +213,65 @@ base::Result<void> StreamTexts::drive(ClientId id, Client& client, Members& mess
   const auto deadman = members.flag("deadman");
   const auto seq = members.whole("seq", 0, std::int64_t{1} << 53);
   const robot::Validity validity = stick_validity_of({begun, message, members});
-  const auto outer = message.finish();
+  auto outer = message.finish();
   if (auto read = members.finish(); !read || !outer) {
     // Whoever lets go has let go, and whoever drives must be understood.
-    if (id == driver_) stop_driving();
+    stop_driving(id, client);
     if (read) return outer;
     for (auto& field : read.error().fields) field.pointer = "/drive" + field.pointer;
     return read;
   }
   if (seq && client.drive_seq && *seq <= *client.drive_seq) return {};
   if (seq) client.drive_seq = seq;
-  if (!*deadman) {
-    if (id == driver_) stop_driving();
-    return {};
-  }
-  return take_wheel(id, {{*speed_mps, base::rad_from_deg(*yaw_rate_dps)}, true}, validity);
+  const robot::Drive command{
+      {*speed_mps, base::rad_from_deg(*yaw_rate_dps)}, *deadman, id, validity.seen};
+  if (!*deadman) let_go(client, command);
+  client.drives = *deadman;
+  return *deadman ? take_wheel(id, command, validity) : base::Result<void>{};
 }
 
-base::Result<void> StreamTexts::take_wheel(ClientId id, robot::Drive command,
+/// Whoever does not drive says so again and again, to be ready: the robot hears it when it counts.
+void StreamTexts::let_go(const Client& client, const robot::Drive& command) {
+  if (!client.drives) {
+    const auto snapshot = context_->deps.robot.snapshot();
+    if (!snapshot || snapshot->teleop.phase == base::TeleopPhase::Off) return;
+    const auto& released = snapshot->teleop.released;
+    const bool known =
+        std::find(released.begin(), released.end(), command.source) != released.end();
+    if (known == robot::neutral(command.twist)) return;
+  }
+  // Should there be no room, the robot's own time-out stops it.
+  context_->deps.robot.request(command, base::Time::max(), {});
+}
+
+base::Result<void> StreamTexts::take_wheel(ClientId id, const robot::Drive& command,
                                            const robot::Validity& validity) {
   const base::Time now = base::steady_now();
-  if (driver_ != 0 && driver_ != id && now - driven_ < kDriverSilent) {
-    return base::fail(base::Code::Conflict, "another client is driving");
-  }
   if (now > validity.not_after) {
     return tl::unexpected<base::Error>(late_error(validity.not_after, now));
   }
-  driver_ = id;
-  driven_ = now;
-  if (context_->deps.robot.request(command, validity, {})) return {};
+  const auto answered = [self = std::weak_ptr<StreamTexts*>(self_), id](base::Result<void> done) {
+    const auto alive = self.lock();
+    if (!done && alive) (*alive)->drive_refused(id, done.error());
+  };
+  if (context_->deps.robot.request(command, validity, answered)) return {};
   return base::fail(base::Code::Unavailable, "too many commands wait for the robot");
 }
 
-void StreamTexts::stop_driving() {
-  driver_ = 0;
-  // Should there be no room, the robot's own time-out stops it.
-  context_->deps.robot.request(robot::Drive{{}, false}, base::Time::max(), {});
+void StreamTexts::drive_refused(ClientId id, const base::Error& error) {
+  const auto found = clients_.find(id);
+  if (found == clients_.end()) return;
+  Client& client = found->second;
+  const base::Time now = base::steady_now();
+  if (client.refused_why == error.detail && now - client.refused_at < kRefusedAgain) return;
+  client.refused_why = error.detail;
+  client.refused_at = now;
+  complain(id, client, error);
+}
+
+void StreamTexts::stop_driving(ClientId id, Client& client) {
+  if (!std::exchange(client.drives, false)) return;
+  context_->deps.robot.request(robot::Drive{{}, false, id, {}, true}, base::Time::max(), {});
 }
 
 void StreamTexts::publish_event(const base::Event& event) {

@@ -2,7 +2,8 @@
 // The live stream's texts: hello, subscriptions, teleoperation, the stop, errors.
 //
 // One client at a time drives: the first who sends a drive message with the dead-man's switch held,
-// until it lets go, leaves, or is silent for half a second.
+// until it lets go, leaves, or is silent for half a second. Who that is, and whether a stick may
+// act at all, the robot decides (robot/modes/manual.hpp); what it refuses is told to the client.
 
 #include <cstdint>
 #include <memory>
@@ -36,27 +37,36 @@ class StreamTexts {
     int complaints = 0;  ///< in a row
     std::uint64_t errors_sent = 0;
     std::optional<std::int64_t> drive_seq;
+    bool watches = false;     ///< the vehicle
+    bool drives = false;      ///< it held the dead-man's switch in its last drive message
+    base::Time refused_at;    ///< told so, last
+    std::string refused_why;  ///< with that
   };
 
   base::Result<void> read(ClientId id, Client& client, const Json& message, base::Time begun);
-  base::Result<void> subscribe(ClientId id, const Json& topics);
+  base::Result<void> subscribe(ClientId id, Client& client, const Json& topics);
   base::Result<void> drive(ClientId id, Client& client, Members& message, base::Time begun);
-  base::Result<void> take_wheel(ClientId id, robot::Drive command, const robot::Validity& validity);
+  base::Result<void> take_wheel(ClientId id, const robot::Drive& command,
+                                const robot::Validity& validity);
+  void let_go(const Client& client, const robot::Drive& command);
+  void drive_refused(ClientId id, const base::Error& error);
   void estop(ClientId id);
+  void confirm_estop(ClientId id);
   base::Result<void> halt(const robot::Command& command);
   void answer_ping(ClientId id, double ping);
-  void stop_driving();
+  void stop_driving(ClientId id, Client& client);
+  void tell_robot(const Client& client);
   void complain(ClientId id, Client& client, const base::Error& error);
   std::optional<std::string> vehicle_text(std::uint64_t seq);
 
   ContextPtr context_;
   Stream stream_;
   std::unordered_map<ClientId, Client> clients_;
-  ClientId driver_ = 0;  ///< 0: nobody
-  base::Time driven_;    ///< last drive message
   std::uint64_t encoded_tick_ = 0;
   std::string encoded_;  ///< the vehicle's state at that tick
   std::string execution_seen_;
+  base::Time operator_told_;  ///< that one is there
+  std::shared_ptr<StreamTexts*> self_ = std::make_shared<StreamTexts*>(this);  ///< for late answers
 };
 
 }  // namespace roverd::api

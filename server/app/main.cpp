@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "app/logging.hpp"
+#include "app/memory_reserve.hpp"
 #include "app/options.hpp"
 #include "app/station.hpp"
 #include "base/log.hpp"
@@ -26,6 +27,7 @@
 #include "store/backups.hpp"
 #include "store/store.hpp"
 #include "tools/decode.hpp"
+#include "tools/failsafes.hpp"
 #include "tools/ntrip_table.hpp"
 #include "tools/report.hpp"
 
@@ -84,6 +86,7 @@ std::vector<std::string> take_kept_parameters(roverd::Settings& settings,
 }
 
 int serve(const roverd::Options& options) {
+  roverd::hold_memory_back();
   auto settings = roverd::load_settings(
       {.config = options.config, .vehicle = options.vehicle, .overrides = options.overrides});
   if (!settings) return say(kWrongInput, settings.error().detail);
@@ -146,6 +149,7 @@ int main(int argc, char** argv) {
       int operator()(const roverd::TableCommand& c) const {
         return roverd::ntrip_table(c.casters, c.json);
       }
+      int operator()(const roverd::FailsafesCommand& c) const { return roverd::failsafes(c.into); }
     };
     return std::visit(Run{}, roverd::read_command(argc, argv));
   } catch (const std::exception& error) {

@@ -120,6 +120,12 @@ Told add_ntrip(CLI::App& app, TableCommand& c) {
   return {n, "usage: roverd ntrip table CASTER [CASTER...] [--json]"};
 }
 
+Told add_failsafes(CLI::App& app, FailsafesCommand& c) {
+  CLI::App* f = app.add_subcommand("failsafes", "what the robot watches, and what follows from it");
+  f->add_option("--into", c.into, "writes the table into this page, between its marks");
+  return {f, "usage: roverd failsafes [--into FILE]"};
+}
+
 /// Why the arguments of a command are wrong.
 std::string cause_of(const CLI::ParseError& error, const CLI::App& app, const Told& command) {
   const std::string name = command.app->get_name();
@@ -145,11 +151,13 @@ Command read_command(int argc, char** argv) {
   ReplayCommand replay;
   ReportCommand report;
   TableCommand table;
+  FailsafesCommand failsafes;
   CLI::App app("roverd: the ground station that lives on the robot", "roverd");
   app.footer("roverd study: courses in simulated time, measured (roverd study --help)");
   add_station(app, options);
   const Told commands[] = {add_decode(app, decode), add_replay(app, replay),
-                           add_report(app, report), add_ntrip(app, table)};
+                           add_report(app, report), add_ntrip(app, table),
+                           add_failsafes(app, failsafes)};
   const auto chosen = [&commands]() -> const Told* {
     for (const Told& one : commands) {
       if (one.app->parsed()) return &one;
@@ -174,7 +182,8 @@ Command read_command(int argc, char** argv) {
   if (command->app == commands[0].app) return decode;
   if (command->app == commands[1].app) return replay;
   if (command->app == commands[2].app) return report;
-  return table;
+  if (command->app == commands[3].app) return table;
+  return failsafes;
 }
 
 }  // namespace roverd

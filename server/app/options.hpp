@@ -36,7 +36,11 @@ struct TableCommand {
   std::vector<std::string> casters;
   bool json = false;
 };
-using Command = std::variant<Options, DecodeCommand, ReplayCommand, ReportCommand, TableCommand>;
+struct FailsafesCommand {
+  std::string into;  ///< a page; empty: the table is printed
+};
+using Command = std::variant<Options, DecodeCommand, ReplayCommand, ReportCommand, TableCommand,
+                             FailsafesCommand>;
 
 /// Prints help, version or a one-line error and ends the program where the arguments say so
 /// (exit code 2 for wrong ones).

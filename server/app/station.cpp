@@ -14,7 +14,9 @@
 #include "api/api.hpp"
 #include "app/control_loop.hpp"
 #include "app/devices.hpp"
+#include "app/estop_keeper.hpp"
 #include "app/host_watch.hpp"
+#include "app/memory_reserve.hpp"
 #include "app/version.hpp"
 #include "app/wiring.hpp"
 #include "base/angle.hpp"
@@ -44,6 +46,8 @@ using base::Result;
 constexpr base::Duration kGoodbye = std::chrono::milliseconds(500);
 constexpr base::Duration kKeepLearned = std::chrono::minutes(1);
 constexpr base::Duration kLookAtHost = std::chrono::seconds(1);
+/// A stop that was obeyed is confirmed then, whether the disk has taken it or hangs.
+constexpr base::Duration kKeepEstop = std::chrono::milliseconds(200);
 
 }  // namespace
 
@@ -61,6 +65,7 @@ struct Station::Impl {
   std::unique_ptr<api::Api> api;
   std::unique_ptr<net::Server> server;
   std::unique_ptr<net::Doorbell> bell;
+  std::unique_ptr<EstopKeeper> estop;  ///< null: a recording is played, nothing is kept
   std::unique_ptr<ControlLoop> loop;
   asio::signal_set signals{web, SIGINT, SIGTERM};
   asio::steady_timer learned_timer{web};
@@ -79,6 +84,9 @@ struct Station::Impl {
   Result<void> open(const Settings& settings, const Options& options);
   Result<void> open_tiles(const Settings& settings);
   Result<void> open_store(const Settings& settings, const Options& options);
+  void open_estop(const Options& options, bool first);
+  void when_estop_kept(std::function<void()> then);
+  void serve();
   Result<void> open_server(const Settings& settings, const Options& options);
   void make_api(const Settings& settings);
   api::DriverDoor driver_door();
@@ -104,8 +112,10 @@ Result<void> Station::Impl::open(const Settings& settings, const Options& option
   if (!made) return tl::unexpected(made.error());
   supervisor = std::move(*made);
   if (auto done = open_tiles(settings); !done) return done;
+  const bool first = !std::filesystem::exists(std::filesystem::path(options.data) / "roverd.db");
   if (auto done = open_store(settings, options); !done) return done;
   if (auto done = claim_robot(settings, options); !done) return done;
+  open_estop(options, first);
   services = std::make_unique<services::Services>(robot, *store, settings.vehicle.name);
   make_api(settings);
   if (auto done = open_server(settings, options); !done) return done;
@@ -144,6 +154,36 @@ Result<void> Station::Impl::open_store(const Settings& settings, const Options& 
       store::BackupOptions{.keep = settings.backups.keep,
                            .period = std::chrono::hours(settings.backups.every_h)});
   return {};
+}
+
+void Station::Impl::open_estop(const Options& options, bool first) {
+  if (!options.replays.empty()) return;
+  const auto trouble = [this](const std::string& why) {
+    asio::post(web, [this, why] {
+      api->on_event({base::wall_now(), base::Severity::Error, "estop_not_kept", why});
+    });
+  };
+  estop = EstopKeeper::open(std::filesystem::path(options.data) / "estop", first, {trouble});
+  const EstopKeeper::Found& found = estop->found();
+  if (found.latched) robot.begin_latched(found.why, base::wall_now());
+  robot.on_latch = [this](bool latched) { estop->want(latched); };
+}
+
+/// Web thread.
+void Station::Impl::when_estop_kept(std::function<void()> then) {
+  if (!estop) return then();
+  const auto once = std::make_shared<std::function<void()>>(std::move(then));
+  const auto call = [once] {
+    if (const auto now = std::exchange(*once, nullptr)) now();
+  };
+  const auto patience = std::make_shared<asio::steady_timer>(web, kKeepEstop);
+  patience->async_wait([call, patience](const boost::system::error_code&) { call(); });
+  estop->when_kept([this, call, patience] {
+    asio::post(web, [call, patience] {
+      patience->cancel();
+      call();
+    });
+  });
 }
 
 /// What the web asks of drivers, and their answers back on the web thread.
@@ -200,6 +240,7 @@ void Station::Impl::make_api(const Settings& settings) {
     return true;
   };
   deps.later = [this](std::function<void()> call) { asio::post(web, std::move(call)); };
+  deps.when_estop_kept = [this](std::function<void()> then) { when_estop_kept(std::move(then)); };
   api = std::make_unique<api::Api>(std::move(deps));
 }
 
@@ -316,6 +357,7 @@ Result<void> Station::Impl::claim_robot(const Settings& settings, const Options&
 
 /// What is new is an event, too: nobody looks at GET /health all day.
 void Station::Impl::watch_host() {
+  refill_memory_reserve();
   const base::Time now = base::steady_now();
   if (const auto snapshot = robot.snapshot()) lateness_watch.take(snapshot->loop, now);
   auto found = host_problems({.now = now,
@@ -395,8 +437,28 @@ std::string Station::address() const {
   return impl_->address;
 }
 
+/// No memory for one request must not end the others, nor the robot's control: what it cut off is
+/// taken up again.
+void Station::Impl::serve() {
+  for (;;) {
+    try {
+      web.run();
+      return;
+    } catch (const std::exception& error) {
+      try {
+        base::log(base::Level::Error, "main", "a handler on the web thread failed",
+                  {{"what", error.what()}});
+        server->resume();
+        bell->resume();
+      } catch (const std::exception&) {
+        continue;  // again, with the next one
+      }
+    }
+  }
+}
+
 void Station::run() {
-  impl_->web.run();
+  impl_->serve();
 }
 
 }  // namespace roverd

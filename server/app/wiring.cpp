@@ -80,11 +80,18 @@ net::Handlers handlers_of(api::Api& api) {
             api.on_request(std::move(request), begun, std::move(respond));
           },
       .body_limit = [&api](const net::Request& header) { return api.body_limit(header); },
+      .urgency =
+          [](const net::Request& header) {
+            return api::Api::is_estop(header)  ? net::Urgency::AtHeader
+                   : api::Api::is_stop(header) ? net::Urgency::Whole
+                                               : net::Urgency::None;
+          },
       .discard = [&api](std::string large) { api.discard(std::move(large)); },
       .on_upgrade = [&api](const net::Request& request) { return api.on_upgrade(request); },
       .on_client = [&api](net::ClientId client) { api.on_client(client); },
       .on_text = [&api](net::ClientId client, base::Time begun,
                         std::string_view text) { api.on_text(client, begun, text); },
+      .urgent_text = api::Api::is_estop_text,
       .on_gone = [&api](net::ClientId client) { api.on_gone(client); },
       .on_refused = api::Api::on_refused,
       .on_second = [&api] { api.on_second(); },

@@ -51,9 +51,14 @@ void set_log_sink(LogSink new_sink) {
 void log(Level level, std::string_view room, std::string_view message,
          std::initializer_list<LogField> fields) {
   if (!sink()) return;
-  std::string line(message);
-  for (const auto& field : fields) append(line, field);
-  sink()(level, room, line);
+  try {
+    std::string line(message);
+    for (const auto& field : fields) append(line, field);
+    sink()(level, room, line);
+  } catch (...) {
+    // No memory for a line: whoever tells of that must not fall over it.
+    return;
+  }
 }
 
 bool LogLimit::due() noexcept {

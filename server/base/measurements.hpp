@@ -215,6 +215,8 @@ struct DriverDetail {
   /// Dangers that this driver alone can see ("somebody else sends 0x111"). While one is listed the
   /// robot does not move.
   std::vector<std::string> hazards;
+  /// One of them: somebody else commands the vehicle. Nothing that is armed stays so.
+  bool others_command = false;
 };
 
 struct DriverStatus {
@@ -237,6 +239,13 @@ struct DriverStatus {
   std::string recording_problem{};  ///< why Stopped; empty otherwise
 };
 
+/// An operator is there: a client of the stream that watches the vehicle said something, be it that
+/// it is there (a ping).
+struct OperatorLink {
+  Time stamp;
+  int clients = 0;  ///< that watch the vehicle
+};
+
 /// What is wrong with the robot's own computer. Nothing of it stops the robot.
 struct HostProblem {
   std::string id;        ///< storage_failed storage_low storage_silent clock_unset loop_late
@@ -254,7 +263,7 @@ struct HostStatus {
 using Measurement =
     std::variant<GnssFix, GnssVelocity, Heading, Inertial, Attitude, SatellitesInView, WheelTravel,
                  BaseMotion, SteeringState, BaseStatus, BatteryState, MotorState, LightState,
-                 RadioState, Bumper, DriverStatus, HostStatus>;
+                 RadioState, Bumper, OperatorLink, DriverStatus, HostStatus>;
 
 inline Time stamp_of(const Measurement& m) noexcept {
   return std::visit([](const auto& value) { return value.stamp; }, m);

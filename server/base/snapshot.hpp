@@ -152,8 +152,9 @@ enum class Refusal {
   Disturbed,   ///< a compass during and after a turn on the spot
   Jump,        ///< outside of what can be believed
   Receivers,   ///< another receiver says something else
+  Outvoted,    ///< the other sensors contradict it
 };
-inline constexpr std::size_t kRefusals = 11;
+inline constexpr std::size_t kRefusals = 12;
 std::string_view to_string(Refusal r) noexcept;  // not_finite impossible time zero …
 
 /// The newest comparison of a measurement with what was expected of it.
@@ -174,7 +175,9 @@ struct InputHealth {
 struct EstimateReset {
   std::string_view what;  ///< position, heading, pose, anchor
   EnuPoint jump;
-  double jump_rad = 0.0;  ///< of the yaw
+  double jump_rad = 0.0;   ///< of the yaw
+  double claimed_m = 0.0;  ///< 1 sigma that was claimed before, doubts left aside
+  double claimed_rad = 0.0;
   Time stamp;
 };
 
@@ -184,6 +187,42 @@ struct Anchor {
   LatLon at;        ///< of the point
   std::optional<int> item;
   Time stamp;
+};
+
+/// What tells of the motion, each for itself. A course over ground belongs to the velocity.
+enum class Sense { Tracks, Gyro, Position, Velocity, Compass, Antennas };
+inline constexpr std::size_t kSenses = 6;
+std::string_view to_string(Sense s) noexcept;  // tracks gyro gnss_position gnss_velocity …
+
+/// By how much two of them differ.
+struct Difference {
+  enum class Of { Turn, Way, Heading } of = Of::Turn;
+  double size = 0.0;      ///< Turn, Heading: rad, left positive; Way: m
+  double window_s = 0.0;  ///< Turn, Way: within so long
+};
+
+/// What the others make of one of them.
+struct SenseVote {
+  bool heard = false;                   ///< lately
+  bool frozen = false;                  ///< it says the same again and again
+  bool left_out = false;                ///< of the estimate, for it contradicts the others
+  std::optional<Time> since;            ///< left out
+  Difference off;                       ///< of the contradiction that it was left out for
+  std::array<bool, kSenses> against{};  ///< whom it contradicted then
+};
+
+/// Do they agree?
+struct Votes {
+  std::array<SenseVote, kSenses> of;  ///< by Sense
+  /// These two contradict each other, and nobody can tell which one is wrong.
+  std::optional<std::array<Sense, 2>> undecided;
+  Difference undecided_off;
+  /// What a contradiction that stands takes from every claim of accuracy.
+  double doubt_m = 0.0;
+  double doubt_rad = 0.0;
+  std::uint64_t accusations = 0;  ///< since the start
+
+  const SenseVote& operator[](Sense s) const noexcept { return of[static_cast<std::size_t>(s)]; }
 };
 
 struct EstimatorHealth {
@@ -205,6 +244,7 @@ struct EstimatorHealth {
   std::uint64_t resets = 0;
   std::optional<EstimateReset> last_reset;
   std::optional<Anchor> anchor;
+  Votes votes;
 };
 
 struct LoopHealth {
@@ -215,6 +255,17 @@ struct LoopHealth {
   /// Wake-ups counted by lateness: entry i holds those below 2^i us (and not below 2^(i−1)), the
   /// last one all that were later.
   std::array<std::uint64_t, 20> lateness_log2_us{};
+};
+
+/// Driving by hand over the network. Release: a stick must be let go before it acts.
+enum class TeleopPhase { Off, Release, Ready, Held };
+std::string_view to_string(TeleopPhase phase) noexcept;
+
+struct TeleopState {
+  TeleopPhase phase = TeleopPhase::Off;
+  std::string reason;                   ///< why it is off, or what helps; else empty
+  std::vector<std::uint64_t> released;  ///< the sources of which one may drive
+  std::optional<double> delay_s;        ///< of whoever drives: no command is later
 };
 
 struct Snapshot {
@@ -251,6 +302,7 @@ struct Snapshot {
   std::string autonomy_refusal;  ///< why nothing may drive by itself now; empty: it may
   std::optional<FenceState> fence;
   DriveCommand command;  ///< what was sent at this tick
+  TeleopState teleop;
   std::vector<SafetyCondition> safety;
   std::vector<Check> checks;
   bool ready_to_arm = false;

@@ -134,6 +134,20 @@ std::optional<Mode> mode_from(std::string_view text) noexcept {
   return std::nullopt;
 }
 
+std::string_view to_string(TeleopPhase phase) noexcept {
+  switch (phase) {
+    case TeleopPhase::Off:
+      return "off";
+    case TeleopPhase::Release:
+      return "release";
+    case TeleopPhase::Ready:
+      return "ready";
+    case TeleopPhase::Held:
+      return "held";
+  }
+  return "off";
+}
+
 std::string_view to_string(Driver driver) noexcept {
   switch (driver) {
     case Driver::None:
@@ -236,8 +250,28 @@ std::string_view to_string(Refusal r) noexcept {
       return "jump";
     case Refusal::Receivers:
       return "receivers";
+    case Refusal::Outvoted:
+      return "outvoted";
   }
   return "impossible";
+}
+
+std::string_view to_string(Sense s) noexcept {
+  switch (s) {
+    case Sense::Tracks:
+      return "tracks";
+    case Sense::Gyro:
+      return "gyro";
+    case Sense::Position:
+      return "gnss_position";
+    case Sense::Velocity:
+      return "gnss_velocity";
+    case Sense::Compass:
+      return "compass";
+    case Sense::Antennas:
+      return "antennas";
+  }
+  return "tracks";
 }
 
 }  // namespace roverd::base

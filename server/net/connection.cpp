@@ -1,6 +1,7 @@
 #include "net/connection.hpp"
 
 #include <array>
+#include <new>
 #include <utility>
 
 #include <boost/asio/write.hpp>
@@ -9,6 +10,7 @@
 #include <boost/beast/websocket/rfc6455.hpp>
 
 #include "net/arrival.hpp"
+#include "net/framing.hpp"
 #include "net/http_date.hpp"
 #include "net/session.hpp"
 
@@ -28,6 +30,9 @@ constexpr std::size_t kLargeBody = 64 * 1024;
 /// Header fields are read before it is known what they ask for.
 constexpr std::size_t kLargestBody = std::size_t{1} << 40U;
 constexpr base::Duration kLinger = std::chrono::seconds(2);
+constexpr base::Duration kLingerOnReserve = std::chrono::milliseconds(250);
+/// For a header, in a crowded house.
+constexpr base::Duration kHeaderInACrowd = std::chrono::seconds(2);
 constexpr std::size_t kDiscardBytes = 64 * 1024 * 1024;
 
 /// An answer that never has a body (RFC 9110, section 6.4.1).
@@ -49,12 +54,14 @@ Connection::Connection(std::shared_ptr<Peers> peers, tcp::socket socket)
 
 Connection::~Connection() {
   release_body();
+  peers_->answers -= leaving_;
   if (parser_) discard(parser_->get().body());
   if (response_) discard(response_->body());
   peers_->remove(this);
 }
 
-void Connection::start() {
+void Connection::start(bool reserve) {
+  reserve_ = reserve;
   error_code ignored;
   socket_.set_option(tcp::no_delay(true), ignored);
   earliest_ = peers_->not_seen_since(opened_at(socket_.native_handle(), base::steady_now()));
@@ -63,7 +70,7 @@ void Connection::start() {
 
 void Connection::wait() {
   phase_ = Phase::Waiting;
-  deadline_ = base::steady_now() + peers_->limits.idle;
+  deadline_ = base::steady_now() + (reserve_ ? peers_->limits.reserve_time : peers_->limits.idle);
   if (buffer_.size() > 0) return read_header();
   socket_.async_read_some(buffer_.prepare(kReadBytes),
                           [self = shared_from_this()](error_code ec, std::size_t n) {
@@ -74,12 +81,12 @@ void Connection::wait() {
 }
 
 void Connection::read_header() {
-  phase_ = Phase::Reading;
+  phase_ = Phase::Header;
   const base::Time now = base::steady_now();
   begun_ =
       earliest_ ? *earliest_ : peers_->not_seen_since(newest_arrival(socket_.native_handle(), now));
   earliest_.reset();
-  deadline_ = now + peers_->limits.request;
+  if (!reserve_) deadline_ = now + peers_->limits.request;
   parser_.emplace();
   parser_->header_limit(static_cast<std::uint32_t>(peers_->limits.header_bytes));
   parser_->body_limit(kLargestBody);
@@ -113,7 +120,21 @@ void Connection::on_header() {
   head_ = request.method() == http::verb::head;
   keep_alive_ = request.keep_alive() && !peers_->stopping;
   version_ = request.version();
+  if (const auto wrong = framing_fault(request)) return refuse(wrong->status, wrong->detail);
   if (boost::beast::websocket::is_upgrade(request)) return upgrade();
+  const Urgency urgency =
+      peers_->handlers.urgency ? peers_->handlers.urgency(request) : Urgency::None;
+  if (reserve_ && urgency == Urgency::None) {
+    return refuse(503, "too many connections: only what stops is served now");
+  }
+  if (urgency == Urgency::AtHeader) {
+    const auto length = parser_->content_length();
+    if (parser_->chunked() || (length && *length > buffer_.size())) {
+      keep_alive_ = false;  // what comes of the body is thrown away
+      return on_request();
+    }
+  }
+  phase_ = Phase::Body;
   if (!admit_body()) return;
   const auto expect = request[http::field::expect];
   if (expect.empty() || version_ < 11) return read_body();
@@ -139,8 +160,13 @@ bool Connection::admit_body() {
     refuse(503, "too many large bodies at the same time; try again");
     return false;
   }
+  try {
+    parser_->get().body().reserve(most);  // growing would copy it again and again
+  } catch (const std::bad_alloc&) {
+    refuse(503, "there is no memory for a body of " + std::to_string(most) + " bytes now");
+    return false;
+  }
   peers_->bodies += reserved_ = most;
-  if (!length) parser_->get().body().reserve(most);  // growing would copy it again and again
   *deadline_ += std::chrono::seconds(most / kSlowest_Bps);
   return true;
 }
@@ -148,6 +174,18 @@ bool Connection::admit_body() {
 void Connection::release_body() {
   peers_->bodies -= reserved_;
   reserved_ = 0;
+}
+
+/// Clients that ask for much and read slowly must not fill the memory. @return false: too much
+bool Connection::admit_answer(Response& response) {
+  const std::size_t bytes = response.body().size();
+  if (bytes <= kLargeBody) return true;
+  if (peers_->answers + bytes > peers_->limits.all_answers_bytes) {
+    discard(response.body());
+    return false;
+  }
+  peers_->answers += leaving_ = bytes;
+  return true;
 }
 
 void Connection::discard(std::string& body) const {
@@ -196,7 +234,9 @@ void Connection::upgrade() {
   if (auto refusal = peers_->handlers.on_upgrade(request)) return answer(std::move(*refusal));
   const auto bytes = buffer_.cdata();
   std::string early(static_cast<const char*>(bytes.data()), bytes.size());
-  const auto session = std::make_shared<Session>(peers_, std::move(socket_), std::move(early));
+  const auto session = std::make_shared<Session>(
+      peers_, std::move(socket_), std::move(early),
+      reserve_ ? std::optional(base::steady_now() + peers_->limits.reserve_time) : std::nullopt);
   peers_->add(session.get(), session);
   session->accept(std::move(request));
 }
@@ -210,7 +250,10 @@ void Connection::refuse(unsigned status, std::string_view detail) {
 void Connection::answer(Response response) {
   phase_ = Phase::Writing;
   release_body();
-  keep_alive_ = keep_alive_ && response.keep_alive();
+  if (!admit_answer(response)) {
+    response = peers_->refusal(503, "too many large answers are on their way; try again");
+  }
+  keep_alive_ = keep_alive_ && !reserve_ && response.keep_alive();
   response.version(version_);
   response.keep_alive(keep_alive_);
   response.set(http::field::date, http_date_now());
@@ -247,6 +290,7 @@ void Connection::on_written() {
   serializer_.reset();
   discard(response_->body());
   response_.reset();
+  peers_->answers -= std::exchange(leaving_, 0);
   parser_.reset();
   if (!keep_alive_ || peers_->stopping) return linger();
   error_code ignored;
@@ -257,7 +301,7 @@ void Connection::on_written() {
 
 void Connection::linger() {
   phase_ = Phase::Lingering;
-  deadline_ = base::steady_now() + kLinger;
+  deadline_ = base::steady_now() + (reserve_ ? kLingerOnReserve : kLinger);
   error_code ec;
   socket_.shutdown(tcp::socket::shutdown_send, ec);
   if (ec) return force();
@@ -275,7 +319,9 @@ void Connection::discard() {
 }
 
 void Connection::sweep(base::Time now) {
-  if (!deadline_ || now < *deadline_) return;
+  const bool dawdles = phase_ == Phase::Header && peers_->crowded() && deadline_ &&
+                       now > *deadline_ - peers_->limits.request + kHeaderInACrowd;
+  if (!deadline_ || (now < *deadline_ && !dawdles)) return;
   if (phase_ != Phase::Lingering) ++peers_->stats.timed_out;
   force();
 }
@@ -290,8 +336,11 @@ void Connection::force() {
   socket_.close(ignored);
 }
 
-std::optional<base::Time> Connection::waits_until() const {
-  return phase_ == Phase::Waiting && socket_.is_open() ? deadline_ : std::nullopt;
+std::optional<base::Time> Connection::gives_way() const {
+  if (!socket_.is_open()) return std::nullopt;
+  const bool asks_nothing = phase_ == Phase::Waiting || phase_ == Phase::Header;
+  const bool answered = reserve_ && phase_ == Phase::Lingering;
+  return asks_nothing || answered ? deadline_ : std::nullopt;
 }
 
 }  // namespace roverd::net

@@ -2,9 +2,12 @@
 // One HTTP/1.1 connection, request after request. What a client sends ahead (pipelining) waits in
 // the buffer: one request is answered before the next is read.
 //
-//   Waiting ─bytes─▶ Reading ─whole─▶ Handling ─answer─▶ Writing ─keep-alive─▶ Waiting
-//                      │ upgrade ▶ Session                   └─close─▶ Lingering ▶ gone
+//   Waiting ─bytes─▶ Header ─▶ Body ─whole─▶ Handling ─answer─▶ Writing ─keep-alive─▶ Waiting
+//                      │ upgrade ▶ Session                          └─close─▶ Lingering ▶ gone
 //                      └ refused (4xx, then close) ─▶ Writing
+//
+// What is urgent without its body is handled at its header. On the reserve (server.hpp) nothing
+// else is, and every answer is the last.
 //
 // How old a request is counts from the first sign of it: the opening of a new connection, the first
 // byte on one that was kept, the request before for one that was sent ahead of its turn.
@@ -32,25 +35,27 @@ class Connection : public Peer, public std::enable_shared_from_this<Connection> 
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
-  void start();
+  void start(bool reserve);
   /// Says no without reading anything.
   void refuse(unsigned status, std::string_view detail);
 
   void sweep(base::Time now) override;
   void stop() override;
   void force() override;
-  std::optional<base::Time> waits_until() const override;
+  std::optional<base::Time> gives_way() const override;
+  bool on_reserve() const override { return reserve_ && socket_.is_open(); }
 
  private:
   using Parser = boost::beast::http::request_parser<boost::beast::http::string_body>;
   using Serializer = boost::beast::http::response_serializer<boost::beast::http::string_body>;
-  enum class Phase { Waiting, Reading, Handling, Writing, Lingering };
+  enum class Phase { Waiting, Header, Body, Handling, Writing, Lingering };
 
   void wait();
   void read_header();
   void on_header();
   bool admit_body();
   void release_body();
+  bool admit_answer(Response& response);
   void discard(std::string& body) const;
   void expect_continue();
   void read_body();
@@ -80,6 +85,8 @@ class Connection : public Peer, public std::enable_shared_from_this<Connection> 
   std::size_t discarded_ = 0;
   std::size_t body_limit_ = 0;
   std::size_t reserved_ = 0;  ///< counted in Peers::bodies
+  std::size_t leaving_ = 0;   ///< counted in Peers::answers
+  bool reserve_ = false;
 };
 
 }  // namespace roverd::net

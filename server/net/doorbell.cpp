@@ -29,12 +29,20 @@ Doorbell::~Doorbell() = default;
 void Doorbell::listen() {
   fd_.async_wait(boost::asio::posix::stream_descriptor::wait_read,
                  [this](boost::system::error_code ec) {
+                   listening_ = false;
                    if (ec) return;
                    std::uint64_t rings = 0;
                    while (::read(fd_.native_handle(), &rings, sizeof rings) > 0) continue;
                    answer_();
                    if (fd_.is_open()) listen();
                  });
+  listening_ = true;
+}
+
+void Doorbell::resume() {
+  if (listening_) return;
+  ring();  // what was cut off is answered now
+  listen();
 }
 
 void Doorbell::ring() noexcept {

@@ -22,6 +22,8 @@ class Doorbell {
 
   /// Any thread, while this object lives.
   void ring() noexcept;
+  /// io_context's thread. An exception has left its run(): listens on if it had cut that off.
+  void resume();
   /// io_context's thread: no answers any more, so that the io_context can run out of work.
   void silence();
 
@@ -30,6 +32,7 @@ class Doorbell {
 
   boost::asio::posix::stream_descriptor fd_;
   std::function<void()> answer_;
+  bool listening_ = false;
 };
 
 }  // namespace roverd::net

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <new>
 #include <utility>
 
 #include "net/frame.hpp"
@@ -66,7 +67,11 @@ void Hub::arm(Channel& channel) {
     auto due = channel.timer.expiry() + channel.period;
     if (due <= now) due = now + channel.period;
     channel.timer.expires_at(due);
-    fire(channel);
+    try {
+      fire(channel);
+    } catch (const std::bad_alloc&) {
+      // This one is left out.
+    }
     arm(channel);
   });
 }

@@ -1,8 +1,23 @@
 #include "net/outlet.hpp"
 
+#include <array>
+
 #include <boost/asio/error.hpp>
 
 namespace roverd::net {
+
+Outlet::error_code Outlet::read_ahead() {
+  static thread_local std::array<char, kAheadBytes> bytes;
+  error_code ec;
+  std::size_t n = 0;
+  while (!ec && n < bytes.size()) {  // one read may give less than there is
+    n += socket_.read_some(boost::asio::buffer(bytes.data() + n, bytes.size() - n), ec);
+  }
+  ahead_.assign(bytes.data(), n);
+  taken_ = 0;
+  look(ahead_);
+  return n > 0 ? error_code{} : ec;  // an end comes again with the next read
+}
 
 bool Outlet::write(const std::string& bytes) {
   while (offset_ < bytes.size()) {

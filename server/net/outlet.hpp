@@ -6,6 +6,8 @@
 //   idle ──send──▶ idle            (the usual case: the kernel takes all of it at once)
 //   idle ──send──▶ blocked ──flush, when writable──▶ idle
 //
+// What a client says is read ahead of Beast, and a lookout sees it first.
+//
 // Never waits; the owner waits for the socket to become writable when on_blocked was called.
 
 #include <algorithm>
@@ -13,6 +15,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <boost/asio/async_result.hpp>
@@ -26,6 +29,7 @@
 
 #include "base/time.hpp"
 #include "net/frame.hpp"
+#include "net/lookout.hpp"
 
 namespace roverd::net {
 
@@ -37,7 +41,10 @@ class Outlet {
 
   /// @param early bytes that came after the upgrade request, read already.
   Outlet(next_layer_type socket, std::string early)
-      : socket_(std::move(socket)), early_(std::move(early)) {}
+      : socket_(std::move(socket)), ahead_(std::move(early)) {}
+
+  /// Each short text as soon as it is here, whatever was said before it.
+  std::function<void(std::string_view)> on_early_text;
 
   /// The socket is full: call flush() when it is writable. Called once until that flush.
   std::function<void()> on_blocked;
@@ -73,13 +80,14 @@ class Outlet {
     return boost::asio::async_initiate<Handler, void(error_code, std::size_t)>(
         [this](auto&& done, const auto& into) {
           if (reads_++ > 0 && !partial_since_) partial_since_ = base::steady_now();
-          if (early_.empty()) {
-            socket_.async_read_some(into, std::forward<decltype(done)>(done));
+          if (!looked_) look(ahead_);
+          looked_ = true;
+          if (taken_ < ahead_.size()) {
+            const std::size_t n = take_ahead(into);
+            complete(std::forward<decltype(done)>(done), error_code{}, n);
             return;
           }
-          const std::size_t n = boost::asio::buffer_copy(into, boost::asio::buffer(early_));
-          early_.erase(0, n);
-          complete(std::forward<decltype(done)>(done), error_code{}, n);
+          wait_readable(into, std::forward<decltype(done)>(done));
         },
         handler, buffers);
   }
@@ -102,11 +110,39 @@ class Outlet {
 
  private:
   static constexpr std::size_t kOwnBytes = 8 * 1024;
+  static constexpr std::size_t kAheadBytes = 64 * 1024;
 
   template <class Handler>
   void complete(Handler&& handler, error_code ec, std::size_t n) {
     boost::asio::post(get_executor(),
                       boost::beast::bind_front_handler(std::forward<Handler>(handler), ec, n));
+  }
+
+  template <class Buffers, class Handler>
+  void wait_readable(const Buffers& into, Handler&& handler) {
+    socket_.async_wait(next_layer_type::wait_read,
+                       [this, into, done = std::forward<Handler>(handler)](error_code ec) mutable {
+                         if (!ec) ec = read_ahead();
+                         if (ec == boost::asio::error::would_block) {
+                           return wait_readable(into, std::move(done));
+                         }
+                         const std::size_t n = ec ? 0 : take_ahead(into);
+                         std::move(done)(ec, n);
+                       });
+  }
+  template <class Buffers>
+  std::size_t take_ahead(const Buffers& into) {
+    const std::size_t n = boost::asio::buffer_copy(
+        into, boost::asio::buffer(ahead_.data() + taken_, ahead_.size() - taken_));
+    taken_ += n;
+    return n;
+  }
+  /// Only when all of what was read ahead is taken.
+  error_code read_ahead();
+  void look(std::string_view bytes) {
+    lookout_.feed(bytes, [this](std::string_view text) {
+      if (on_early_text) on_early_text(text);
+    });
   }
 
   template <class Buffers>
@@ -122,7 +158,10 @@ class Outlet {
   bool write(const std::string& bytes);  ///< from offset_; true if all of it went
 
   next_layer_type socket_;
-  std::string early_;
+  std::string ahead_;  ///< read, and from taken_ on not yet given to Beast
+  std::size_t taken_ = 0;
+  Lookout lookout_;
+  bool looked_ = false;  ///< at the first of it
   Frame current_;
   std::string own_;  ///< Beast's frames
   std::size_t offset_ = 0;

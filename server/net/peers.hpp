@@ -30,8 +30,10 @@ class Peer {
   virtual void stop() = 0;
   /// Closes the socket now.
   virtual void force() = 0;
-  /// Until when it may go on waiting for a request; empty: it has one, or is a WebSocket.
-  virtual std::optional<base::Time> waits_until() const = 0;
+  /// Until when it may sit here without a whole header; empty: it is busy, or a WebSocket. Those
+  /// of the reserve always have a time, but while they are served.
+  virtual std::optional<base::Time> gives_way() const = 0;
+  virtual bool on_reserve() const = 0;
 };
 
 class Peers {
@@ -55,14 +57,22 @@ class Peers {
     }
   }
 
+  int on_reserve() const {
+    return static_cast<int>(std::count_if(
+        open_.begin(), open_.end(), [](const auto& peer) { return peer.first->on_reserve(); }));
+  }
+  /// Nearly full: no time for half a header.
+  bool crowded() const noexcept { return count() >= limits.connections - limits.connections / 4; }
+
   /// Makes room for a newcomer: whoever has waited longest without a request goes. A crowd of
-  /// silent sockets must not keep out the one who is in a hurry.
+  /// silent or dawdling sockets must not keep out the one who is in a hurry.
   /// @return false if all are busy.
-  bool drop_longest_waiting() {
+  bool drop_longest_waiting(bool reserve) {
     std::shared_ptr<Peer> longest;
     std::optional<base::Time> until;
     for (const auto& [raw, peer] : open_) {
-      const auto waits = raw->waits_until();
+      if (raw->on_reserve() != reserve) continue;
+      const auto waits = raw->gives_way();
       if (!waits || (until && *until <= *waits)) continue;
       auto alive = peer.lock();
       if (!alive) continue;
@@ -98,7 +108,8 @@ class Peers {
   Hub hub;
   Stats stats;
   bool stopping = false;
-  std::size_t bodies = 0;  ///< bytes of those that are read or worked on
+  std::size_t bodies = 0;   ///< bytes of those that are read or worked on
+  std::size_t answers = 0;  ///< bytes of the large ones that are on their way
   ClientId next_client = 1;
 
  private:

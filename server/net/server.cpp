@@ -1,6 +1,8 @@
 #include "net/server.hpp"
 
+#include <algorithm>
 #include <memory>
+#include <new>
 #include <utility>
 
 #include <boost/asio/ip/tcp.hpp>
@@ -9,6 +11,7 @@
 #include "net/connection.hpp"
 #include "net/hub.hpp"
 #include "net/peers.hpp"
+#include "net/spares.hpp"
 
 namespace roverd::net {
 
@@ -17,9 +20,7 @@ using boost::system::error_code;
 
 namespace {
 
-constexpr int kBacklog = 512;
-/// Connections that may be told "503" at the same time; what is beyond is closed without a word.
-constexpr int kRefusedAtOnce = 32;
+constexpr int kBacklog = 1024;
 constexpr auto kRetryAccept = std::chrono::milliseconds(100);
 
 }  // namespace
@@ -42,6 +43,8 @@ struct Server::Impl : std::enable_shared_from_this<Server::Impl> {
 
   base::Result<void> open(const std::string& address, std::uint16_t port);
   void accept();
+  void accepted(error_code ec, tcp::socket socket);
+  void accept_failed(error_code why);
   void welcome(tcp::socket socket);
   void sweep();
   void stop(base::Duration grace, std::function<void()> done);
@@ -52,6 +55,10 @@ struct Server::Impl : std::enable_shared_from_this<Server::Impl> {
   boost::asio::steady_timer sweep_timer;
   boost::asio::steady_timer retry_timer;
   boost::asio::steady_timer stop_timer;
+  Spares spares;
+  bool on_spare = false;   ///< whoever is accepted next
+  bool accepting = false;  ///< or waiting to go on
+  bool sweeping = false;
   std::uint16_t port = 0;
   int sweeps = 0;
 };
@@ -78,47 +85,69 @@ base::Result<void> Server::Impl::open(const std::string& text, std::uint16_t wan
 
 void Server::Impl::accept() {
   acceptor.async_accept([self = shared_from_this()](error_code ec, tcp::socket socket) {
-    if (!self->acceptor.is_open()) return;
-    if (!ec) {
-      self->welcome(std::move(socket));
-      return self->accept();
-    }
-    // Out of file descriptors, or the client was gone already: go on a little later.
-    self->retry_timer.expires_after(kRetryAccept);
-    self->retry_timer.async_wait([self](error_code cancelled) {
-      if (!cancelled && self->acceptor.is_open()) self->accept();
-    });
+    self->accepting = false;
+    if (self->acceptor.is_open()) self->accepted(ec, std::move(socket));
   });
+  accepting = true;
+}
+
+void Server::Impl::accepted(error_code ec, tcp::socket socket) {
+  if (ec) return accept_failed(ec);
+  try {
+    welcome(std::move(socket));
+  } catch (const std::bad_alloc&) {
+    ++peers->stats.refused;  // and closed
+  }
+  accept();
+}
+
+void Server::Impl::accept_failed(error_code why) {
+  const bool no_descriptor = why == boost::asio::error::no_descriptors ||
+                             why == boost::system::errc::too_many_files_open_in_system;
+  if (no_descriptor) {
+    if (peers->drop_longest_waiting(false)) return accept();
+    on_spare = spares.give() || peers->drop_longest_waiting(true);
+    if (on_spare) return accept();
+  }
+  // The client was gone already, or nothing helps: go on a little later.
+  retry_timer.expires_after(kRetryAccept);
+  retry_timer.async_wait([self = shared_from_this()](error_code cancelled) {
+    self->accepting = false;
+    if (!cancelled && self->acceptor.is_open()) self->accept();
+  });
+  accepting = true;
 }
 
 void Server::Impl::welcome(tcp::socket socket) {
-  const int open = peers->count();
   ++peers->stats.accepted;
-  const bool full = open >= peers->limits.connections && !peers->drop_longest_waiting();
-  if (full) ++peers->stats.refused;
-  if (full && open >= peers->limits.connections + kRefusedAtOnce) return;
+  const bool spare = std::exchange(on_spare, false);
+  const int reserved = peers->on_reserve();
+  const bool full =
+      peers->count() - reserved >= peers->limits.connections && !peers->drop_longest_waiting(false);
+  const bool reserve = spare || full;
+  if (reserve) ++peers->stats.refused;
+  if (reserve && reserved >= peers->limits.reserve && !peers->drop_longest_waiting(true)) return;
   const auto connection = std::make_shared<Connection>(peers, std::move(socket));
   peers->add(connection.get(), connection);
-  if (full) {
-    connection->refuse(503, "too many connections; try again");
-  } else {
-    connection->start();
-  }
+  connection->start(reserve);
 }
 
 void Server::Impl::sweep() {
   sweep_timer.expires_after(Peers::kSweep);
   sweep_timer.async_wait([self = shared_from_this()](error_code ec) {
+    self->sweeping = false;
     if (ec) return;
     const base::Time now = base::steady_now();
     self->peers->awake(now);
     self->peers->each([now](Peer& peer) { peer.sweep(now); });
+    self->spares.refill();
     constexpr int kPerSecond = std::chrono::seconds(1) / Peers::kSweep;
     if (++self->sweeps % kPerSecond == 0 && self->peers->handlers.on_second) {
       self->peers->handlers.on_second();
     }
     self->sweep();
   });
+  sweeping = true;
 }
 
 void Server::Impl::close() {
@@ -155,6 +184,7 @@ Server::Server(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
 base::Result<std::unique_ptr<Server>> Server::listen(boost::asio::io_context& io,
                                                      const std::string& address, std::uint16_t port,
                                                      Limits limits, Handlers handlers) {
+  limits.connections = std::min(limits.connections, Spares::descriptors_left(limits.reserve));
   auto impl = std::make_shared<Impl>(io, limits, std::move(handlers));
   if (auto opened = impl->open(address, port); !opened) {
     return tl::unexpected<base::Error>(std::move(opened.error()));
@@ -172,6 +202,11 @@ Server::~Server() {
 
 std::uint16_t Server::port() const noexcept {
   return impl_->port;
+}
+
+void Server::resume() {
+  if (!impl_->sweeping) impl_->sweep();
+  if (!impl_->accepting && impl_->acceptor.is_open()) impl_->accept();
 }
 
 Hub& Server::hub() noexcept {

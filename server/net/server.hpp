@@ -8,6 +8,11 @@
 // Every connection is bounded: header, body and message bytes, the time for a request, idle time,
 // the time a client may refuse to read, the number of connections. What is beyond a bound is
 // refused with a status, or closed.
+//
+// What is urgent always gets in. A full house makes room by letting those go that wait or have sent
+// half a header, the oldest first. Are all busy, newcomers sit on a reserve: they have a second to
+// say what they want, and only what is urgent is served (on a WebSocket: all of that second). For
+// want of descriptors it is the same: some are held back and opened for the reserve (spares.hpp).
 
 #include <cstdint>
 #include <functional>
@@ -43,8 +48,12 @@ struct Limits {
   std::size_t body_bytes = 8 * 1024 * 1024;  ///< where Handlers::body_limit says nothing else
   /// Of all bodies that are read and worked on at the same time, together.
   std::size_t all_bodies_bytes = 192 * 1024 * 1024;
+  /// Of all large answers on their way, together.
+  std::size_t all_answers_bytes = 192 * 1024 * 1024;
   std::size_t message_bytes = 64 * 1024;  ///< one WebSocket message from a client
-  int connections = 512;
+  int connections = 512;                  ///< fewer where the system allows fewer descriptors
+  int reserve = 32;                       ///< more than those, for what is urgent
+  base::Duration reserve_time = std::chrono::seconds(1);
   base::Duration idle = std::chrono::seconds(30);
   /// Header and body must be in by then (a long body may take longer: kSlowest_Bps); a client that
   /// reads nothing of its answer for so long is closed, too.
@@ -52,6 +61,9 @@ struct Limits {
 };
 
 using ClientId = std::uint64_t;
+
+/// Whole: among the first, with its body. AtHeader: it needs no body and does not wait for one.
+enum class Urgency { None, Whole, AtHeader };
 
 /// One topic at one rate has one sequence; a text is shared by all its clients. See hub.hpp.
 class Hub;
@@ -63,6 +75,8 @@ struct Handlers {
   std::function<void(Request, base::Time begun, Respond)> on_request;
   /// The largest body of a request with this header. May be empty.
   std::function<std::size_t(const Request& header)> body_limit{};
+  /// What is served on the reserve, too. May be empty: nothing is.
+  std::function<Urgency(const Request& header)> urgency{};
   /// Frees what is large where it holds up nobody. May be empty.
   std::function<void(std::string)> discard{};
   /// An upgrade request: nullopt accepts, a response refuses.
@@ -70,8 +84,11 @@ struct Handlers {
   std::function<void(ClientId)> on_client;
   /// `begun`: when its first byte was there.
   std::function<void(ClientId, base::Time begun, std::string_view text)> on_text;
+  /// Of a short text: it goes to on_text before all that its client said earlier and that still
+  /// waits (64 KiB of it are looked through). May be empty.
+  std::function<bool(std::string_view text)> urgent_text{};
   std::function<void(ClientId)> on_gone;
-  /// The answer for requests that net itself refuses: 400 malformed, 413, 417, 431, 503.
+  /// The answer for requests that net itself refuses: 400 malformed, 413, 417, 431, 501, 503.
   std::function<Response(unsigned status, std::string_view detail)> on_refused;
   /// Once a second. May be empty.
   std::function<void()> on_second;
@@ -103,6 +120,9 @@ class Server {
   /// Lives as long as the server.
   Hub& hub() noexcept;
   Stats stats() const noexcept;
+  /// An exception (no memory) has left the io_context's run(): whatever it may have cut off goes
+  /// on.
+  void resume();
 
   /// Stops accepting, says goodbye to the WebSocket clients, lets running answers go out, and after
   /// `grace` closes what is left. `done` is called once, then or earlier.

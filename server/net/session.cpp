@@ -25,12 +25,13 @@ constexpr base::Duration kCloseGrace = std::chrono::seconds(2);
 }  // namespace
 
 Session::Session(std::shared_ptr<Peers> peers, boost::asio::ip::tcp::socket socket,
-                 std::string early)
+                 std::string early, std::optional<base::Time> leave_by)
     : peers_(std::move(peers)),
       ws_(std::move(socket), std::move(early)),
       buffer_(peers_->limits.message_bytes + 1024),
       heard_(base::steady_now()),
-      pinged_(heard_) {
+      pinged_(heard_),
+      leave_by_(leave_by) {
   ++peers_->stats.clients;
 }
 
@@ -56,6 +57,7 @@ void Session::accept(Request upgrade) {
     ws_.next_layer().frame_ended();
   });
   ws_.next_layer().on_blocked = [this] { wait_writable(); };
+  ws_.next_layer().on_early_text = [this](std::string_view text) { on_early_text(text); };
   ws_.async_accept(upgrade_, [self = shared_from_this()](error_code ec) {
     if (ec || self->phase_ != Phase::Accepting) return self->gone();
     self->opened();
@@ -88,12 +90,27 @@ void Session::on_message() {
       close(1003, "text only");
     } else if (peers_->handlers.on_text) {
       const auto bytes = buffer_.cdata();
-      peers_->handlers.on_text(id_, begun(),
-                               {static_cast<const char*>(bytes.data()), bytes.size()});
+      const std::string_view text(static_cast<const char*>(bytes.data()), bytes.size());
+      if (heeded_ > 0 && urgent(text)) {
+        --heeded_;
+      } else {
+        peers_->handlers.on_text(id_, begun(), text);
+      }
     }
   }
   buffer_.consume(buffer_.size());
   ws_.next_layer().frame_ended();
+}
+
+bool Session::urgent(std::string_view text) const {
+  return text.size() <= Lookout::kLongest && peers_->handlers.urgent_text &&
+         peers_->handlers.urgent_text(text);
+}
+
+void Session::on_early_text(std::string_view text) {
+  if (phase_ != Phase::Open || id_ == 0 || !urgent(text)) return;
+  ++heeded_;
+  peers_->handlers.on_text(id_, base::steady_now(), text);
 }
 
 /// When the first bytes of the message that was just read came in.
@@ -156,6 +173,9 @@ void Session::sweep(base::Time now) {
   if (mute || silent || overdue) {
     if (!overdue) ++peers_->stats.timed_out;
     return force();
+  }
+  if (leave_by_ && now > *leave_by_) {
+    return close(1013, "too many connections: only what stops is served now");
   }
   if (phase_ == Phase::Open && now - heard_ > idle / 2 && pinged_ <= heard_) {
     pinged_ = now;

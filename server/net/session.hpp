@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -24,7 +25,9 @@ namespace roverd::net {
 
 class Session : public Peer, public std::enable_shared_from_this<Session> {
  public:
-  Session(std::shared_ptr<Peers> peers, boost::asio::ip::tcp::socket socket, std::string early);
+  /// @param leave_by when it sits on the reserve: it is closed then
+  Session(std::shared_ptr<Peers> peers, boost::asio::ip::tcp::socket socket, std::string early,
+          std::optional<base::Time> leave_by);
   ~Session() override;
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -41,7 +44,8 @@ class Session : public Peer, public std::enable_shared_from_this<Session> {
   void sweep(base::Time now) override;
   void stop() override;
   void force() override;
-  std::optional<base::Time> waits_until() const override { return std::nullopt; }
+  std::optional<base::Time> gives_way() const override { return leave_by_; }
+  bool on_reserve() const override { return leave_by_.has_value() && phase_ != Phase::Gone; }
 
  private:
   using Stream = boost::beast::websocket::stream<Outlet, false>;
@@ -50,6 +54,8 @@ class Session : public Peer, public std::enable_shared_from_this<Session> {
   void opened();
   void read();
   void on_message();
+  bool urgent(std::string_view text) const;
+  void on_early_text(std::string_view text);
   base::Time begun();
   void wait_writable();
   void gone();
@@ -66,6 +72,8 @@ class Session : public Peer, public std::enable_shared_from_this<Session> {
   base::Time blocked_since_;
   bool blocked_ = false;
   base::Time close_by_;
+  int heeded_ = 0;  ///< urgent texts that were heard ahead, and whose turn is still to come
+  std::optional<base::Time> leave_by_;
 };
 
 }  // namespace roverd::net

@@ -61,6 +61,20 @@ void Workers::must_run(Lane lane, std::function<void()> work, std::function<void
   put(lane, {std::move(work), std::move(then)}, true);
 }
 
+/// What it holds is let go on the web thread, too: what is left here is empty then.
+bool Workers::hand_over(std::function<void()>& then, Shared& shared) noexcept {
+  try {
+    if (!shared) shared = std::make_shared<std::function<void()>>(std::move(then));
+    boost::asio::post(web_, [shared] {
+      const auto call = std::exchange(*shared, nullptr);
+      call();
+    });
+    return true;
+  } catch (...) {
+    return false;
+  }
+}
+
 void Workers::serve(Queue& queue, int niceness) noexcept {
   pthread_setname_np(pthread_self(), "worker");
   step_back(niceness);
@@ -77,7 +91,10 @@ void Workers::serve(Queue& queue, int niceness) noexcept {
       // No room for it: `then` finds nothing done.
     }
     job.work = nullptr;  // here, not on the web thread
-    if (job.then) boost::asio::post(web_, std::move(job.then));
+    Shared shared;
+    while ((job.then || shared) && !hand_over(job.then, shared)) {  // memory comes back
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
     job = {};
     lock.lock();
   }

@@ -58,6 +58,8 @@ class Workers {
   Queue& queue(Lane lane) { return queues_[lane == Lane::Small ? 0 : 1]; }
   bool put(Lane lane, Job job, bool must);
   void serve(Queue& queue, int niceness) noexcept;
+  using Shared = std::shared_ptr<std::function<void()>>;
+  bool hand_over(std::function<void()>& then, Shared& shared) noexcept;
 
   boost::asio::io_context& web_;
   std::mutex mutex_;  // leaf

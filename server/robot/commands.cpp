@@ -9,7 +9,6 @@ namespace roverd::robot {
 namespace {
 
 using base::Code;
-using base::ExecutionState;
 using base::Mode;
 using base::Severity;
 
@@ -34,6 +33,10 @@ bool carries_much(const Command& c) noexcept {
 }
 
 }  // namespace
+
+bool neutral(const base::BodyTwist& twist) noexcept {
+  return Manual::neutral(twist);
+}
 
 /// To free ten thousand items takes longer than a tick may: whoever takes the answer does it.
 void Robot::Impl::retire(std::shared_ptr<const void> old) {
@@ -76,7 +79,8 @@ base::Result<void> Robot::Impl::handle(const Arm&) {
   }
   if (!arm.arm()) return base::fail(Code::Conflict, "the emergency stop is latched");
   base_watch.ask_anew();
-  by_hand.release();
+  by_hand.lock("the robot was armed", clock.now());
+  reset_latch.armed();
   change_mode(ModeCause::Armed, "armed");
   const HomeAtArm rule = home_at_arm_from(config->robot.home_at_arm).value_or(HomeAtArm::Keep);
   if (pose && home.arm(pose->global, rule)) begin_way_anew();
@@ -90,7 +94,7 @@ base::Result<void> Robot::Impl::handle(const Disarm&) {
 }
 
 void Robot::Impl::disarm(const std::string& why) {
-  by_hand.release();
+  by_hand.lock("the robot was disarmed", clock.now());
   change_mode(ModeCause::Disarmed, "disarmed");
   if (!arm.disarm()) return;
   base_watch.ask_anew();
@@ -105,7 +109,7 @@ base::Result<void> Robot::Impl::handle(const Estop& c) {
 void Robot::Impl::latch_estop(const std::string& who) {
   const ArmSwitch::Latch latch = arm.latch();
   if (!latch.newly) return;
-  by_hand.release();
+  by_hand.lock("the emergency stop was pressed", clock.now());
   base_watch.ask_anew();
   if (latch.disarmed) event(Severity::Warning, "disarmed", "disarmed by the emergency stop");
   change_mode(ModeCause::Estop, "emergency stop");
@@ -183,7 +187,7 @@ base::Result<void> Robot::Impl::handle(const ResumeActivity&) {
   if (!self_driving.held().waits()) {
     return base::fail(Code::Conflict, "nothing was interrupted by the radio");
   }
-  if (auto ok = may_drive_by_itself(); !ok) return ok;
+  if (auto ok = may_drive_by_itself(leads_home(machine.mode())); !ok) return ok;
   return go_on();
 }
 
@@ -227,8 +231,47 @@ void Robot::Impl::choose_home(base::LatLon at) {
 base::Result<void> Robot::Impl::handle(const Drive& c) {
   const bool finite = std::isfinite(c.twist.linear_mps) && std::isfinite(c.twist.angular_radps);
   if (!finite) return base::fail(Code::Invalid, "speed and turn rate must be finite");
-  if (machine.kind() == ModeKind::ByHand) by_hand.drive(c.twist, c.deadman, clock.now());
+  const bool by_network = machine.kind() == ModeKind::ByHand;
+  if (c.deadman && !by_network) {
+    return base::fail(Code::Conflict, "the sticks do nothing in mode " +
+                                          std::string(base::to_string(machine.mode())));
+  }
+  if (c.deadman && !arm.armed()) return base::fail(Code::Conflict, "the robot is not armed");
+  if (c.deadman && driver == base::Driver::Radio) {
+    return base::fail(Code::Conflict, "the radio drives");
+  }
+  const Handle handle{c.twist, c.deadman, c.source, c.said.value_or(clock.now()), c.gone};
+  if (by_network && !by_hand.drive(handle, clock.now())) {
+    return base::fail(Code::Conflict, by_hand.why());
+  }
   return {};
+}
+
+base::TeleopState Robot::Impl::teleop() const {
+  base::TeleopState s;
+  if (machine.kind() != ModeKind::ByHand) {
+    s.reason = "the mode is " + std::string(base::to_string(machine.mode()));
+    return s;
+  }
+  if (!arm.armed() || driver == base::Driver::Radio) {
+    s.reason = arm.armed() ? "the radio drives" : "the robot is not armed";
+    return s;
+  }
+  s.released = by_hand.released();
+  s.delay_s = by_hand.delay_s(clock.now());
+  switch (by_hand.phase()) {
+    case Manual::Phase::Locked:
+      s.phase = base::TeleopPhase::Release;
+      s.reason = by_hand.why();
+      break;
+    case Manual::Phase::Ready:
+      s.phase = base::TeleopPhase::Ready;
+      break;
+    case Manual::Phase::Held:
+      s.phase = base::TeleopPhase::Held;
+      break;
+  }
+  return s;
 }
 
 base::Result<void> Robot::Impl::handle(const LoadMission& c) {

@@ -41,6 +41,16 @@ base::Result<void> check_words(const Config& c) {
       !good) {
     return good;
   }
+  if (auto good = check_word("robot.safety.link_lost", c.safety.link_lost,
+                             {"go_on", "hold", "return"}, "go_on, hold or return");
+      !good) {
+    return good;
+  }
+  if (auto good = check_word("robot.safety.battery_home", c.safety.battery_home,
+                             {"warn", "return", "hold"}, "warn, return or hold");
+      !good) {
+    return good;
+  }
   return check_word("nav.behave.unreachable", c.behave.unreachable, {"stop", "skip", "return"},
                     "stop, skip or return");
 }
@@ -57,6 +67,8 @@ base::Result<void> check_orders(const Config& c) {
       Order{c.speed.max_mps, c.speed.min_mps, "nav.speed.max_mps", "nav.speed.min_mps"},
       Order{c.speed.reverse_max_mps, c.speed.min_mps, "nav.speed.reverse_max_mps",
             "nav.speed.min_mps"},
+      Order{c.manual.delay_stop_s, c.manual.delay_free_s, "robot.manual.delay_stop_s",
+            "robot.manual.delay_free_s"},
       Order{c.modes.follow_hold_s, c.modes.follow_brake_s, "nav.modes.follow_hold_s",
             "nav.modes.follow_brake_s"},
       Order{c.safety.gnss_hold_s, c.safety.gnss_slow_s, "robot.safety.gnss_hold_s",
@@ -65,6 +77,8 @@ base::Result<void> check_orders(const Config& c) {
             "robot.safety.sigma_slow_m"},
       Order{c.safety.battery_warn_pct, c.safety.battery_stop_pct, "robot.safety.battery_warn_pct",
             "robot.safety.battery_stop_pct"},
+      Order{c.safety.tilt_stop_deg, c.safety.tilt_warn_deg, "robot.safety.tilt_stop_deg",
+            "robot.safety.tilt_warn_deg"},
   };
   for (const Order& o : orders) {
     if (o.upper < o.lower) return wrong(o.name, std::string("must not be below ") + o.than);

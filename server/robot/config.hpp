@@ -40,6 +40,8 @@ struct ManualParams {
   double accel_mps2 = 0.8;
   double yaw_accel_radps2 = 2.0;
   double timeout_s = 0.5;
+  double delay_free_s = 0.25;
+  double delay_stop_s = 0.5;
 };
 
 template <class V>
@@ -54,6 +56,10 @@ void fields(V& v, ManualParams& p) {
     base::lower_is_stricter("change of the turn rate"));
   v("timeout_s", p.timeout_s, 0.1, 0.5,
     base::lower_is_stricter("without a newer command the robot stops"));
+  v("delay_free_s", p.delay_free_s, 0.05, 1.0,
+    base::lower_is_stricter("commands by hand that are later than this are obeyed more slowly"));
+  v("delay_stop_s", p.delay_stop_s, 0.1, 2.0,
+    base::lower_is_stricter("and from here on not at all; in between the speed falls evenly"));
 }
 
 /// What must hold while moving. Section [robot.safety].
@@ -69,11 +75,19 @@ struct SafetyParams {
   double gnss_slow_s = 2.0;
   double gnss_hold_s = 6.0;
   double gnss_free_m = 35.0;
+  double contradiction_free_m = 8.0;
+  double reset_repeat_s = 60.0;
   double sigma_slow_m = 2.0;
   double sigma_hold_m = 3.0;
   double sigma_hold_s = 2.0;
   double battery_warn_pct = 20.0;
   double battery_stop_pct = 8.0;
+  std::string link_lost = "go_on";
+  double link_timeout_s = 10.0;
+  double tilt_warn_deg = 20.0;
+  double tilt_stop_deg = 30.0;
+  int driver_falls = 3;
+  std::string battery_home = "warn";
 };
 
 template <class V>
@@ -103,6 +117,13 @@ void fields(V& v, SafetyParams& p) {
   v("gnss_free_m", p.gnss_free_m, 0.0, 10000.0,
     base::lower_is_stricter(
         "with a gyro the robot drives on without a fix for so many metres: then hold"));
+  v("contradiction_free_m", p.contradiction_free_m, 0.0, 1000.0,
+    base::lower_is_stricter(
+        "the robot creeps on for so many metres while the satellites' position is left out because "
+        "it contradicts the other sensors: then hold"));
+  v("reset_repeat_s", p.reset_repeat_s, 0.0, 3600.0,
+    base::higher_is_stricter("an estimate set anew by over 0.5 m or 10 deg twice within so long "
+                             "holds until a person acknowledged it"));
   v("sigma_slow_m", p.sigma_slow_m, 0.02, 50.0,
     base::lower_is_stricter("position less certain than this: creep"));
   v("sigma_hold_m", p.sigma_hold_m, 0.05, 50.0,
@@ -112,6 +133,23 @@ void fields(V& v, SafetyParams& p) {
     base::higher_is_stricter("charge below this: warn"));
   v("battery_stop_pct", p.battery_stop_pct, 0.0, 100.0,
     base::higher_is_stricter("charge below this: hold"));
+  v("link_lost", p.link_lost,
+    base::only_disarmed(
+        "what follows when no operator is heard any more while the robot drives by "
+        "itself: go_on, hold or return (straight home; hold where that is not "
+        "possible). Heard is a stream that watches the vehicle and says something"));
+  v("link_timeout_s", p.link_timeout_s, 1.0, 600.0,
+    base::lower_is_stricter("after so long without a word of any operator"));
+  v("tilt_warn_deg", p.tilt_warn_deg, 1.0, 90.0,
+    base::lower_is_stricter("leaning more than this, whichever way: warn"));
+  v("tilt_stop_deg", p.tilt_stop_deg, 2.0, 90.0,
+    base::lower_is_stricter("leaning more than this: hold"));
+  v("driver_falls", p.driver_falls, 1, 60,
+    base::lower_is_stricter("a driver that was up and fell so often within a minute: warn"));
+  v("battery_home", p.battery_home,
+    base::only_disarmed("what follows when the charge above battery_stop_pct is not enough for 1.5 "
+                        "times the straight way home, by what the robot was seen to use: warn, "
+                        "return or hold"));
 }
 
 /// What arming asks for. Section [robot.arming].

@@ -1,5 +1,6 @@
 // From facts to a command: judge what is wrong, let the one with the right to drive drive.
 
+#include <cmath>
 #include <utility>
 
 #include "robot/impl.hpp"
@@ -15,7 +16,13 @@ constexpr double kSpun_m = 5.0;
 
 }  // namespace
 
+/// Empty: nothing tells, or not any more.
+std::optional<base::Attitude> Robot::Impl::attitude() const {
+  return estimator.attitude(clock.now());
+}
+
 Facts Robot::Impl::facts() const {
+  const auto home_at = pose ? home_point() : std::nullopt;
   return {.world = world,
           .pose = pose,
           .last_position = estimator.last_position(),
@@ -23,29 +30,45 @@ Facts Robot::Impl::facts() const {
           .estop = arm.latched(),
           .autonomous =
               machine.mode() == Mode::Auto ? missions.executor.running() : machine.by_itself(),
+          .homeward = leads_home(machine.mode()),
           .base_waited_since = base_watch.waited_since(),
           .base_left = base_watch.left(),
           .commands_lost = base_watch.commands_lost(),
           .not_following = base_watch.disobeys_now(),
           .sigma_bad_since = position_watch.uncertain_since(),
           .spins = position_watch.spins(),
-          .estimate = health};
+          .attitude = attitude(),
+          .leans_since = lean_watch.since(),
+          .gyro_lost = estimate_watch.gyro_lost(),
+          .falls = driver_falls.worst(clock.now()),
+          .home_m = home_at ? std::optional(base::distance_m(pose->at, *home_at)) : std::nullopt,
+          .use_pct_per_m = battery_use.pct_per_m(),
+          .self_test = self_test,
+          .estimate = health,
+          .latched = reset_latch.why(),
+          .moved_disarmed = reset_latch.disarmed_why()};
 }
 
 void Robot::Impl::judge() {
   const SafetyParams& p = config->safety;
   watch_base();
+  lean_watch.step(attitude(), p.tilt_stop_deg, clock.now());
+  battery_use.step(world.battery, world.motion ? world.motion->twist.linear_mps : 0.0,
+                   clock.dt_s());
   if (position_watch.step(pose, world, p, clock.now())) estimator.doubt_position(kSpun_m);
   assessment = assess(facts(), p, clock.now());
   if (assessment.base_estop) latch_estop("the button at the base");
   if (const auto hit = std::exchange(world.bumper_hit, std::nullopt)) {
     latch_estop("the bumper" + (hit->empty() ? "" : " (" + *hit + ")"));
   }
+  if (assessment.response == Response::Return) go_back(assessment.cause);
   if (assessment.response >= Response::Hold && machine.mode() != Mode::Hold) {
     const bool was_auto = machine.mode() == Mode::Auto;
     hold(assessment.cause);
     event(Severity::Warning, was_auto ? "mission_paused" : "stopped", assessment.cause);
   }
+  // In its CAN mode the base obeys whoever speaks; out of it, nobody.
+  if (!assessment.disarms.empty() && arm.armed()) disarm("because " + assessment.disarms);
   checks = arming_checks(facts(), p, config->arming, missions.get() != nullptr, clock.now());
 }
 
@@ -73,6 +96,17 @@ void Robot::Impl::watch_estimate() {
   const base::FixType fix = world.gnss ? world.gnss->fix : base::FixType::None;
   for (const EstimateWatch::News& n : estimate_watch.step(health, fix, clock.now())) {
     event(n.level, n.kind, n.detail);
+  }
+  for (const EstimateWatch::News& n : votes_watch.step(health.votes)) {
+    event(n.level, n.kind, n.detail);
+  }
+  if (reset_latch.step(health, arm.armed(), config->safety.reset_repeat_s, clock.now())) {
+    if (const auto& reset = health.last_reset) {
+      estimator.distrust(std::hypot(reset->jump.east_m, reset->jump.north_m),
+                         std::abs(reset->jump_rad));
+      pose = estimator.pose(clock.now());
+    }
+    event(Severity::Warning, "estimate_latched", reset_latch.why());
   }
   if (estimate_watch.anchor_lost() && missions.executor.running()) {
     const std::string why = "the anchor was dropped: the fix class changed";
@@ -106,7 +140,7 @@ base::DriveCommand Robot::Impl::decide() {
     nav::Executor& executor = missions.executor;
     if (executor.running() && !executor.interrupted()) executor.interrupt();
     self_driving.interrupt();
-    by_hand.release();
+    by_hand.lock(radio ? "the radio drove" : "the base took no commands", clock.now());
   }
   if (radio && !arm.latched()) driver = Driver::Radio;
   if (!arm.armed() || radio) return {};
@@ -161,6 +195,8 @@ base::DriveCommand Robot::Impl::keep_inside(base::DriveCommand command) {
 }
 
 base::Result<void> Robot::Impl::handle(const SetFence& c) {
+  // A stick that is held against a fence must not drive on because the fence goes.
+  if (fence.stops()) by_hand.lock("the fence changed", clock.now());
   retire(fence.set(c.fence));
   shared_fence.set(c.fence);
   event(Severity::Info, "fence_set",

@@ -35,11 +35,16 @@
 #include "robot/radio/keys.hpp"
 #include "robot/safety/arm_switch.hpp"
 #include "robot/safety/base_watch.hpp"
+#include "robot/safety/battery_use.hpp"
+#include "robot/safety/driver_falls.hpp"
 #include "robot/safety/estimate_watch.hpp"
 #include "robot/safety/fence_keep.hpp"
 #include "robot/safety/last_stop.hpp"
+#include "robot/safety/lean.hpp"
 #include "robot/safety/position_watch.hpp"
+#include "robot/safety/reset_latch.hpp"
 #include "robot/safety/safety.hpp"
+#include "robot/safety/votes_watch.hpp"
 #include "robot/world.hpp"
 
 namespace roverd::robot {
@@ -99,13 +104,20 @@ struct Robot::Impl {
 
   BaseWatch base_watch;
   EstimateWatch estimate_watch;
+  VotesWatch votes_watch;
+  ResetLatch reset_latch;
   PositionWatch position_watch;
+  LeanWatch lean_watch;
+  DriverFalls driver_falls;
+  BatteryUse battery_use;
+  std::string self_test;  ///< of the failsafes, at the start; empty: nothing is wrong with them
   Assessment assessment;
   std::vector<base::Check> checks;
 
   base::Driver driver = base::Driver::None;
   base::DriveCommand sent;
   std::string speed_reason;
+  bool latch_told = false;  ///< to Robot::on_latch
 
   static constexpr const char* kOperator = "by the operator";
   const char* asker = kOperator;  ///< whose command is carried out, for the events
@@ -124,6 +136,7 @@ struct Robot::Impl {
   bool publish();
   void publish_driven_way();
   void survive(const char* what, const Robot& self) noexcept;
+  void tell_latch(const Robot& self);
 
   // commands.cpp: what was done, or why not
   base::Result<void> handle(const Arm&);
@@ -131,6 +144,7 @@ struct Robot::Impl {
   base::Result<void> handle(const SetMode& c);
   base::Result<void> handle(const Estop& c);
   base::Result<void> handle(const ResetEstop&);
+  base::Result<void> handle(const Acknowledge&);
   base::Result<void> handle(const StartMission& c);
   base::Result<void> handle(const PauseMission&);
   base::Result<void> handle(const ResumeMission&);
@@ -153,7 +167,8 @@ struct Robot::Impl {
   base::Result<void> handle(const LayAnew& c);
   base::Result<void> may_change(const SetParameter& c, const Config& next) const;
   base::Result<void> may_drive_mission() const;
-  base::Result<void> may_drive_by_itself() const;
+  /// @param homeward what leads to where a return leads, too
+  base::Result<void> may_drive_by_itself(bool homeward = false) const;
   void adopt(std::shared_ptr<const CompiledMission> mission);
   void retire(std::shared_ptr<const void> old);
   base::Result<void> start(const nav::StartAt& at);
@@ -169,6 +184,7 @@ struct Robot::Impl {
   /// Needs a frame.
   bool within_reach(base::LatLon at) const;
   Facts facts() const;
+  std::optional<base::Attitude> attitude() const;
 
   // modes/enter.cpp, goals.cpp, returns.cpp: entering
   base::Result<void> guide(const nav::GuidedGoal& goal, std::string_view kind);
@@ -176,6 +192,8 @@ struct Robot::Impl {
   base::Result<void> go_on();
   base::Result<void> enter_guided();
   base::Result<void> enter_home(Mode to);
+  void begin_home(ModeCause cause, Mode to, const WayHome& found, const std::string& why);
+  void go_back(const std::string& why);
   base::Result<void> enter_follow();
   base::Result<void> enter_dock(const SetMode& c);
   base::Result<void> enter_sticks(Mode to);
@@ -205,6 +223,7 @@ struct Robot::Impl {
 
   // positioning.cpp
   base::Result<void> may_be_placed() const;
+  void told_where();
   base::Result<base::EnuPoint> anchor_point(const SetAnchor& c) const;
   base::DriveCommand seek_heading();
   base::BodyTwist straight_first(const base::BodyTwist& wanted);
@@ -217,6 +236,8 @@ struct Robot::Impl {
   base::Result<void> ask_for_edit(RadioDeed deed);
   base::Result<void> ask_for_teach(TeachWish wish);
   base::RadioMeaning radio_meaning() const noexcept;
+
+  base::TeleopState teleop() const;
 
   void event(base::Severity level, const char* kind, std::string detail) {
     outbox.event(clock.wall(), level, kind, std::move(detail));

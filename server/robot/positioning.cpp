@@ -26,6 +26,25 @@ base::Result<void> Robot::Impl::may_be_placed() const {
   return {};
 }
 
+/// An operator said where the robot is: that is no jump to tell of, and all else begins anew.
+void Robot::Impl::told_where() {
+  estimator.acquit_all();
+  estimator.trust();
+  estimate_watch.moved_on_purpose(estimator.health());
+  reset_latch.moved_on_purpose(estimator.health());
+}
+
+base::Result<void> Robot::Impl::handle(const Acknowledge&) {
+  if (const std::string& why = reset_latch.why(); !why.empty()) {
+    event(Severity::Info, "estimate_acknowledged",
+          std::string("acknowledged ") + asker + ": " + why);
+  }
+  reset_latch.acknowledge();
+  estimator.acquit_all();
+  estimator.trust();
+  return {};
+}
+
 base::Result<void> Robot::Impl::handle(const SetPose& c) {
   if (!c.at && !c.local && !c.heading_deg) {
     return base::fail(Code::Invalid, "neither a position nor a heading",
@@ -56,7 +75,7 @@ base::Result<void> Robot::Impl::handle(const SetPose& c) {
   std::optional<double> yaw_rad;
   if (c.heading_deg) yaw_rad = base::yaw_from_heading(*c.heading_deg);
   estimator.place(at, yaw_rad);
-  estimate_watch.moved_on_purpose(estimator.health());
+  told_where();
   event(Severity::Info, "pose_set", "the operator said where the robot stands");
   return {};
 }
@@ -77,7 +96,7 @@ base::Result<void> Robot::Impl::handle(const SetAnchor& c) {
     return base::fail(Code::Conflict, std::move(detail));
   }
   estimator.anchor(*at, c.item);
-  estimate_watch.moved_on_purpose(estimator.health());
+  told_where();
   estimate_watch.anchored(true);
   event(Severity::Info, "anchored",
         "the robot stands at " +

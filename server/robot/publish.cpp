@@ -29,7 +29,7 @@ bool Robot::Impl::publish() {
   s->home = home.at();
   s->gnss = world.gnss;
   s->gnss_velocity = world.gnss_velocity;
-  s->attitude = estimator.attitude(clock.now());
+  s->attitude = attitude();
   if (!s->attitude) s->attitude = world.attitude;
   s->satellites = world.satellites;
   s->base = world.base;
@@ -45,11 +45,12 @@ bool Robot::Impl::publish() {
   s->mission = missions.progress(pose, estimator.frame(), driver == base::Driver::Radio);
   s->mission.laid_by_old = missions && missions->way != config->way;
   s->activity = self_driving.activity();
-  if (const auto may = may_drive_by_itself(); !may) s->autonomy_refusal = may.error().detail;
+  if (const auto may = may_drive_by_itself(true); !may) s->autonomy_refusal = may.error().detail;
   if (fence.get() != nullptr) {
     s->fence = fence.state(pose, estimator.frame(), missions.get().get(), way_margin_m());
   }
   s->command = sent;
+  s->teleop = teleop();
   s->safety = std::move(assessment.conditions);
   s->checks = checks;
   s->ready_to_arm = std::none_of(checks.begin(), checks.end(), [](const base::Check& c) {

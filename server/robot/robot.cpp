@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "robot/impl.hpp"
+#include "robot/safety/self_test.hpp"
 #include "robot/safety/start_check.hpp"
 
 namespace roverd::robot {
@@ -19,7 +20,8 @@ Robot::Impl::Impl(Config c)
       self_driving(config),
       by_hand(config),
       driven(config->modes.crumb_m),
-      keys(config.radio, config.safety) {
+      keys(config.radio, config.safety),
+      self_test(test_failsafes()) {
   world.gauge = BatteryGauge(config.battery);
   shared_config.publish(config.whole());
   reviewed = config.whole();
@@ -54,6 +56,11 @@ void Robot::reviewed(const Config& config) {
 }
 void Robot::tell(base::Event event) {
   impl_->outbox.event(event.wall, event.level, event.kind.c_str(), std::move(event.detail));
+}
+void Robot::begin_latched(const std::string& why, base::WallTime wall) {
+  (void)impl_->arm.latch();
+  impl_->latch_told = true;
+  tell({wall, base::Severity::Error, "estop", "emergency stop: " + why});
 }
 std::shared_ptr<const nav::Learned> Robot::learned() const {
   return impl_->learned.get();
@@ -289,7 +296,10 @@ void Robot::Impl::take_measurements() {
                    });
   for (base::Measurement& m : measurement_batch) {
     estimator.take(m, clock.now());
-    if (const auto* d = std::get_if<base::DriverStatus>(&m)) note_driver(*d);
+    if (const auto* d = std::get_if<base::DriverStatus>(&m)) {
+      note_driver(*d);
+      driver_falls.take(*d);
+    }
     const auto* radio = std::get_if<base::RadioState>(&m);
     const auto frame = radio != nullptr ? std::optional(*radio) : std::nullopt;
     world.take(std::move(m));
@@ -301,6 +311,12 @@ void Robot::Impl::take_measurements() {
   pose = estimator.pose(clock.now());
 }
 
+void Robot::Impl::tell_latch(const Robot& self) {
+  if (std::exchange(latch_told, arm.latched()) != arm.latched() && self.on_latch) {
+    self.on_latch(arm.latched());
+  }
+}
+
 void Robot::heed_stop(Time now) noexcept {
   Impl& r = *impl_;
   // Latched already: every tick sends what stands.
@@ -309,6 +325,7 @@ void Robot::heed_stop(Time now) noexcept {
     r.take_estop(now);
     r.sent = {};
     if (send) send(r.sent, now);
+    r.tell_latch(*this);
   } catch (...) {
     r.estop_asked = true;  // the next tick's
   }
@@ -328,6 +345,7 @@ void Robot::tick(Time now, base::WallTime wall, base::Duration lateness) noexcep
     if (r.pose) r.lay_way();
     r.sent = r.decide();
     if (send) send(r.sent, now);
+    r.tell_latch(*this);
     if (r.publish() && r.outbox.flush() && wake) wake();
   } catch (const std::exception& e) {
     r.survive(e.what(), *this);
@@ -354,8 +372,9 @@ void Robot::Impl::survive(const char* what, const Robot& self) noexcept {
   try_to([&] {
     if (self.send) self.send(sent, clock.now());
   });
+  try_to([&] { tell_latch(self); });
   try_to([&] {
-    by_hand.release();
+    by_hand.lock("the control loop had a fault", clock.now());
     change_mode(ModeCause::Fault, "a fault in the control loop");
     if (!due) return;
     event(Severity::Error, "loop_fault",

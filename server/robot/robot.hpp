@@ -95,6 +95,8 @@ struct Estop {
   std::string who;
 };
 struct ResetEstop {};
+/// A person has looked where the robot stands, after an estimate that was set anew far off.
+struct Acknowledge {};
 struct StartMission {
   std::string mission_id;
   std::int64_t revision = 0;
@@ -126,11 +128,17 @@ struct SetAnchor {
   std::optional<int> item;  ///< of the loaded mission, if `at` is empty; from 1
 };
 struct DropAnchor {};
-/// Teleoperation; no answer is given. Void after 0.5 s without a newer one.
+/// Teleoperation. Void after 0.5 s without a newer one. Conflict while it may not act: see
+/// modes/manual.hpp for who must have let go since when.
 struct Drive {
   base::BodyTwist twist;
   bool deadman = false;
+  std::uint64_t source = 1;    ///< who says it; never used for two
+  std::optional<Time> said{};  ///< the state that its sender saw was true then; empty: now
+  bool gone = false;           ///< the source has left, or is not understood; with the dead-man off
 };
+/// Sticks in the middle; see modes/manual.hpp.
+bool neutral(const base::BodyTwist& twist) noexcept;
 struct CompiledMission;  // route of one MissionCopy in one LocalFrame; see robot/compile.hpp
 struct LoadMission {
   std::shared_ptr<const CompiledMission> mission;
@@ -170,10 +178,11 @@ struct ReviseMission {
   std::shared_ptr<const CompiledMission> mission;  ///< null: nothing is left to drive
 };
 
-using Command = std::variant<Arm, Disarm, SetMode, Estop, ResetEstop, StartMission, PauseMission,
-                             ResumeMission, ResumeActivity, StopMission, SkipItem, SetHome, SetPose,
-                             SetAnchor, DropAnchor, Drive, LoadMission, ReviseMission, GoTo, MoveBy,
-                             SetTarget, SetParameter, SetFence, ResumeAt, LayAnew>;
+using Command =
+    std::variant<Arm, Disarm, SetMode, Estop, ResetEstop, Acknowledge, StartMission, PauseMission,
+                 ResumeMission, ResumeActivity, StopMission, SkipItem, SetHome, SetPose, SetAnchor,
+                 DropAnchor, Drive, LoadMission, ReviseMission, GoTo, MoveBy, SetTarget,
+                 SetParameter, SetFence, ResumeAt, LayAnew>;
 
 /// How long a command is good, and what its sender had seen when it was given.
 struct Validity {
@@ -245,6 +254,12 @@ class Robot {
   /// for: whoever runs the ticks is to call heed_stop() soon. Must not wait.
   std::function<void()> alert;
 
+  /// Set before the first tick. Called by tick() and heed_stop() when the emergency stop was
+  /// latched or released, before the answers to it leave; must not wait.
+  std::function<void(bool latched)> on_latch;
+
+  /// Before the first tick: the emergency stop is latched from before. @param why for people
+  void begin_latched(const std::string& why, base::WallTime wall);
   /// Before the first tick: what another life of this program learned.
   void recall(const nav::Learned& learned) noexcept;
   /// Before the first tick: what the vehicle's profile and the configuration's file say, before

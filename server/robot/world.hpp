@@ -30,6 +30,7 @@ struct World {
   /// Where it was hit, until the robot has latched its stop: a hit shorter than a tick counts too.
   std::optional<std::string> bumper_hit;
   std::optional<base::RadioState> radio;
+  std::optional<base::OperatorLink> operators;
   std::vector<base::DriverStatus> drivers;
   std::vector<base::HostProblem> host;  ///< what is wrong with this computer
 
@@ -67,7 +68,7 @@ struct World {
     const bool usable = m.position && m.fix >= base::FixType::Single;
     if (!usable) end_good("it had no fix", m.stamp);
     if (usable && !gnss_good_since) gnss_good_since = m.stamp;
-    gnss = std::move(m);
+    gnss = m;
   }
   void put(base::GnssVelocity&& m) { gnss_velocity = m; }
   void put(base::BaseStatus&& m) {
@@ -117,6 +118,7 @@ struct World {
     if (!radio || radio->count != m.count) radio_counted = m.stamp;
     radio = m;
   }
+  void put(base::OperatorLink&& m) { operators = m; }
   void put(base::HostStatus&& m) { host = std::move(m.problems); }
   void put(base::DriverStatus&& m) {
     for (base::DriverStatus& known : drivers) {

@@ -21,7 +21,7 @@ class WayKeeper {
 
   /// Now. @param done what the robot did, on the thread that hands out its answers; at once if
   /// there is nothing to lay out
-  void lay(Done done) {
+  void lay(const Done& done) {
     const auto mission = robot_.loaded();
     if (!mission) return done({});
     auto compiled = robot_.compile(*mission);

@@ -72,7 +72,13 @@ void Store::Impl::run() {
     // Events first: whoever asks for the list after adding one finds it there.
     if (!new_events.empty()) write(new_events);
     new_events.clear();
-    for (auto& job : todo) job();
+    for (auto& job : todo) {
+      try {
+        job();
+      } catch (const std::exception& bug) {  // no memory, not even for the answer
+        base::log(base::Level::Error, "store", "an answer failed", {{"what", bug.what()}});
+      }
+    }
     todo.clear();
     if (base::steady_now() - looked >= kLook) {
       look();

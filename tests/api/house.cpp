@@ -149,6 +149,11 @@ void House::serve(net::Limits limits) {
   h.on_request = [this](net::Request request, base::Time begun, net::Respond respond) {
     api_->on_request(std::move(request), begun, std::move(respond));
   };
+  h.urgency = [](const net::Request& header) {
+    return api::Api::is_estop(header)  ? net::Urgency::AtHeader
+           : api::Api::is_stop(header) ? net::Urgency::Whole
+                                       : net::Urgency::None;
+  };
   h.body_limit = [this](const net::Request& header) { return api_->body_limit(header); };
   h.discard = [this](std::string large) { api_->discard(std::move(large)); };
   h.on_upgrade = [this](const net::Request& request) { return api_->on_upgrade(request); };
@@ -156,6 +161,7 @@ void House::serve(net::Limits limits) {
   h.on_text = [this](net::ClientId id, base::Time begun, std::string_view text) {
     api_->on_text(id, begun, text);
   };
+  h.urgent_text = api::Api::is_estop_text;
   h.on_gone = [this](net::ClientId id) { api_->on_gone(id); };
   h.on_refused = api::Api::on_refused;
   h.on_second = [this] { api_->on_second(); };
@@ -219,7 +225,11 @@ void House::tell(base::Time now, int count) {
   status.battery_v = 49.5;
   in.put(status);
   in.put(base::BaseMotion{now, sent().twist});  // the tracks do as told, in the air
-  in.put(base::WheelTravel{now, 0.0, 0.0});
+  // Tracks, position and velocity tell of the same way, but for a jump.
+  const double at_m = moved_m;
+  const double step_m = at_m - tracks_m_ < kJump_m ? at_m - tracks_m_ : 0.0;
+  tracks_m_ = at_m;
+  in.put(base::WheelTravel{now, step_m, step_m});
   base::RadioState radio;
   radio.stamp = now;
   radio.swb = swb;
@@ -234,14 +244,16 @@ void House::tell(base::Time now, int count) {
   base::GnssFix fix;
   fix.stamp = now;
   fix.fix = base::FixType::RtkFixed;
-  fix.position = base::destination(kStart, 0.0, moved_m);
+  fix.position = base::destination(kStart, 0.0, at_m);
   fix.alt_msl_m = 60.0;
   fix.satellites = 18;
   fix.hdop = 0.7;
   fix.sigma_east_m = 0.02;
   fix.sigma_north_m = 0.02;
   in.put(fix);
-  in.put(base::GnssVelocity{now, 0.0, 0.0, {}});
+  const double way_m = at_m - fix_m_ < kJump_m ? at_m - fix_m_ : 0.0;
+  fix_m_ = at_m;
+  in.put(base::GnssVelocity{now, 0.0, way_m / 0.2, {}});
   in.put(base::Heading{now, base::yaw_from_heading(0.0), base::HeadingSource::DualAntenna});
   base::DriverStatus driver;
   driver.stamp = now;

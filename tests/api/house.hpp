@@ -58,8 +58,9 @@ class House {
   std::atomic<base::Switch> swc{base::Switch::Up};
   std::atomic<base::Switch> swd{base::Switch::Up};
   std::atomic<double> vra{0.0};
-  /// How far north of kStart the receiver says it is.
+  /// How far north of kStart it is; a step of kJump_m is a jump of the receiver.
   std::atomic<double> moved_m{0.0};
+  static constexpr double kJump_m = 1.0;
   /// The vehicle's driver answers (true at first) or hangs.
   std::atomic<bool> driver_answers{true};
   /// Of the driver "gnss", as it says.
@@ -91,6 +92,9 @@ class House {
   net::Workers workers_{io_};
   std::mutex mutex_;
   base::DriveCommand sent_;  ///< guarded by mutex_
+  // Control thread: what tracks and receiver have told of moved_m.
+  double tracks_m_ = 0.0;
+  double fix_m_ = 0.0;
   std::atomic<bool> stop_{false};
   std::thread web_;
   std::thread control_;

@@ -1,5 +1,10 @@
 // HTTP over real sockets: what a connection does with right, wrong, slow and too many requests.
 
+#include <initializer_list>
+#include <memory>
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "net_house.hpp"
@@ -369,6 +374,7 @@ TEST(Http, BeyondTheLimitOfBusyConnectionsItIs503) {
     }
     // when one more comes, then it is told, and the others go on.
     Client more(house.port());
+    more.send(get("/more"));
     EXPECT_EQ(more.answer()->status, 503u);
     EXPECT_TRUE(more.closed_within(5s));
     a.send("ab");
@@ -383,6 +389,155 @@ TEST(Http, BeyondTheLimitOfBusyConnectionsItIs503) {
   Client again(house.port());
   again.send(get("/z"));
   EXPECT_EQ(again.answer()->status, 200u);
+}
+
+/// As the echo; "/stop" is urgent, and "/halt" at its header.
+net::Handlers with_stop() {
+  net::Handlers h = echo();
+  h.urgency = [](const net::Request& header) {
+    return header.target() == "/stop"   ? net::Urgency::Whole
+           : header.target() == "/halt" ? net::Urgency::AtHeader
+                                        : net::Urgency::None;
+  };
+  return h;
+}
+
+TEST(Http, WhoSentHalfAHeaderMakesRoomForANewcomer) {
+  NetHouse house(small(), echo());
+  std::vector<std::unique_ptr<Client>> slow;
+  for (int i = 0; i < 40; ++i) {
+    slow.push_back(std::make_unique<Client>(house.port()));
+    slow.back()->send("GET /x HTTP/1.1\r\nX-Slow: ");
+  }
+  for (int i = 0; i < 5; ++i) {
+    Client fine(house.port());
+    fine.send(get("/fine"));
+    const auto answer = fine.answer();
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->status, 200u);
+  }
+  EXPECT_TRUE(slow.front()->closed_within(5s));
+}
+
+TEST(Http, AFullHouseServesWhatIsUrgentAndNothingElse) {
+  NetHouse house(small(), with_stop());
+  std::vector<std::unique_ptr<Client>> streams;
+  for (int i = 0; i < 3; ++i) {
+    streams.push_back(std::make_unique<Client>(house.port()));
+    ASSERT_EQ(streams.back()->upgrade("/stream"), 101u);
+  }
+  // Those on the reserve that say nothing or half of it keep nobody out, however many they are.
+  std::vector<std::unique_ptr<Client>> slow;
+  for (int i = 0; i < 100; ++i) {
+    slow.push_back(std::make_unique<Client>(house.port()));
+    if (i % 2 == 0) slow.back()->send("POST /stop HT");
+  }
+  for (const char* path : {"/stop", "/halt"}) {
+    Client stop(house.port());
+    stop.send(get(path));
+    const auto answer = stop.answer();
+    ASSERT_TRUE(answer) << path;
+    EXPECT_EQ(answer->status, 200u) << path;
+    EXPECT_TRUE(stop.closed_within(5s)) << path;
+  }
+  Client other(house.port());
+  other.send(get("/other"));
+  const auto refused = other.answer();
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(refused->status, 503u);
+  for (const auto& one : slow) EXPECT_TRUE(one->closed_within(10s));
+  // A stream is let in for a moment, and told why it must go.
+  Client stream(house.port());
+  ASSERT_EQ(stream.upgrade("/stream"), 101u);
+  const auto bye = stream.frame();
+  ASSERT_TRUE(bye);
+  EXPECT_EQ(bye->close_code(), 1013u);
+  for (const auto& one : streams) EXPECT_FALSE(one->closed_within(1ms));
+}
+
+TEST(Http, WhatIsUrgentAtItsHeaderDoesNotWaitForItsBody) {
+  NetHouse house(small(), with_stop());
+  for (const char* framing : {"Content-Length: 5000", "Transfer-Encoding: chunked"}) {
+    Client client(house.port());
+    client.send("POST /halt HTTP/1.1\r\nHost: x\r\n" + std::string(framing) + "\r\n\r\nab");
+    const auto answer = client.answer();
+    ASSERT_TRUE(answer) << framing;
+    EXPECT_EQ(answer->body, "/halt+0") << framing;
+    EXPECT_TRUE(client.closed_within(5s)) << framing;
+  }
+  // A body that is there already does no harm, and the connection stays.
+  Client whole(house.port());
+  whole.send("POST /halt HTTP/1.1\r\nHost: x\r\nContent-Length: 2\r\n\r\nab" + get("/x"));
+  EXPECT_EQ(whole.answer()->body, "/halt+2");
+  EXPECT_EQ(whole.answer()->body, "/x+0");
+}
+
+TEST(Http, ABodyWhoseEndMayBeUnderstoodInTwoWaysIsRefusedAndTheConnectionClosed) {
+  struct Case {
+    const char* fields;
+    unsigned status;
+  };
+  const std::string hidden = "0\r\n\r\nGET /hidden HTTP/1.1\r\nHost: x\r\n\r\n";
+  for (const Case& c : std::initializer_list<Case>{
+           {"Transfer-Encoding: xchunked", 501},
+           {"Transfer-Encoding: gzip", 501},
+           {"Transfer-Encoding: gzip, chunked", 501},
+           {"Transfer-Encoding: chunked, identity", 501},
+           {"Transfer-Encoding: \"chunked\"", 501},
+           {"Transfer-Encoding: identity\r\nTransfer-Encoding: chunked", 501},
+           {"Transfer-Encoding:", 501},
+           {"Content-Length: 5\r\nTransfer-Encoding: chunked", 400},
+           {"Transfer-Encoding: chunked\r\nContent-Length: 5", 400},
+           {"Transfer-Encoding: xchunked\r\nContent-Length: 5", 400},
+           {"Content-Length: 5\r\nContent-Length: 5", 400},
+           {"Content-Length: 5\r\nContent-Length: 6", 400},
+           {"Content-Length: 5, 5", 400},
+           {"Content-Length: +5", 400},
+           {"Content-Length: 0x5", 400},
+           {"Content-Length:", 400}}) {
+    NetHouse house(small(), echo());
+    Client client(house.port());
+    client.send("POST /x HTTP/1.1\r\nHost: x\r\n" + std::string(c.fields) + "\r\n\r\n" + hidden);
+    const auto answer = client.answer();
+    ASSERT_TRUE(answer) << c.fields;
+    EXPECT_EQ(answer->status, c.status) << c.fields;
+    EXPECT_EQ(answer->header("connection"), "close") << c.fields;
+    EXPECT_FALSE(client.answer()) << c.fields << ": the hidden request was answered";
+  }
+  NetHouse house(small(), echo());
+  Client old(house.port());
+  old.send("POST /x HTTP/1.0\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n");
+  EXPECT_EQ(old.answer()->status, 400u);
+  Client fine(house.port());
+  fine.send(
+      "POST /x HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: CHUNKED\r\n\r\n2\r\nab\r\n0\r\n\r\n");
+  EXPECT_EQ(fine.answer()->body, "/x+2");
+}
+
+TEST(Http, LargeAnswersOnTheirWayAreBoundedTogether) {
+  net::Limits limits = small();
+  limits.all_answers_bytes = 30'000'000;
+  net::Handlers h;
+  h.on_request = [](const net::Request&, base::Time, const net::Respond& respond) {
+    net::Response response{http::status::ok, 11};
+    response.body() = std::string(20'000'000, 'x');
+    respond(std::move(response));
+  };
+  NetHouse house(limits, std::move(h));
+  Client reads_nothing(house.port());
+  reads_nothing.send(get("/a"));
+  const auto end = std::chrono::steady_clock::now() + 10s;
+  while (house.ask([&] { return house.server().stats().requests; }) == 0 &&
+         std::chrono::steady_clock::now() < end) {
+    std::this_thread::yield();
+  }
+  Client second(house.port());
+  second.send(get("/b"));
+  EXPECT_EQ(second.answer()->status, 503u);
+  EXPECT_EQ(reads_nothing.answer()->body.size(), 20'000'000u);
+  Client third(house.port());
+  third.send(get("/c"));
+  EXPECT_EQ(third.answer()->status, 200u);
 }
 
 TEST(Http, ABusyPortIsNamed) {

@@ -209,7 +209,15 @@ TEST_F(LateStream, AStickThatAnswersToWhatIsTooOldDoesNotMoveTheRobot) {
     EXPECT_TRUE(error["data"]["type"].get<std::string>().ends_with("late")) << error;
     EXPECT_EQ(house.sent().twist, base::BodyTwist{});
   }
-  // The same with a life time of its own is in time.
+  // The same with a life time of its own is in time, once the stick was let go.
+  const Json free = {{"drive", {{"speed_mps", 0}, {"yaw_rate_dps", 0}, {"deadman", false}}}};
+  until(
+      [&] {
+        say(free);
+        std::this_thread::sleep_for(20ms);
+        return house.snapshot()->teleop.phase == base::TeleopPhase::Ready;
+      },
+      "the robot has seen that the stick is free");
   Json longer = drive(0.0);
   longer["drive"]["valid_for_s"] = 5;
   until(
@@ -219,6 +227,16 @@ TEST_F(LateStream, AStickThatAnswersToWhatIsTooOldDoesNotMoveTheRobot) {
         return house.sent().twist.linear_mps > 0.1;
       },
       "the base is told to move");
+  // It is obeyed, slowly, and told so.
+  longer["seen_s"] = stream_mono_s() - 0.3;
+  say(longer);
+  until(
+      [this] {
+        const Json state = call("GET", "/vehicle").body;
+        return state["teleop"]["delay_s"].is_number() && state["teleop"]["delay_s"] >= 0.3 &&
+               state["speed_reason"] == "link_delay";
+      },
+      "the delay is told");
 }
 
 TEST_F(LateStream, AHaltOnTheStreamOvertakesAClickToo) {

@@ -35,6 +35,32 @@ class StreamApi : public HouseTest {
     return {{"drive",
              {{"speed_mps", speed_mps}, {"yaw_rate_dps", yaw_rate_dps}, {"deadman", deadman}}}};
   }
+  /// Sticks in the middle, dead-man off, until the robot has seen it.
+  void let_go(Client& client) {
+    until(
+        [&] {
+          say(client, drive(0.0, 0.0, false));
+          std::this_thread::sleep_for(20ms);
+          return house.snapshot()->teleop.phase == base::TeleopPhase::Ready;
+        },
+        "the robot has seen that the stick is free");
+  }
+  void arm_in_manual() {
+    until_ready();
+    ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 5}}).status, 200u);
+    ASSERT_EQ(call("PUT", "/vehicle/mode", Json{{"mode", "MANUAL"}}).status, 200u);
+  }
+  /// Holds a stick for so long. @return whether the base was told to move
+  bool push(Client& client, std::chrono::milliseconds for_ms = 300ms) {
+    bool moved = false;
+    const auto end = std::chrono::steady_clock::now() + for_ms;
+    while (std::chrono::steady_clock::now() < end) {
+      say(client, drive(0.4, 0.0, true));
+      std::this_thread::sleep_for(20ms);
+      moved = moved || house.sent().twist != base::BodyTwist{};
+    }
+    return moved;
+  }
 };
 
 TEST_F(StreamApi, HelloComesFirstThenTheWholeStateAtTheWantedRate) {
@@ -73,6 +99,34 @@ TEST_F(StreamApi, EventsMissionsAndExecutionAreToldAsTheyHappen) {
   } while (event["data"]["kind"] != "estop");
 }
 
+TEST_F(StreamApi, TheRobotHearsOfAnOperatorWhoWatchesAndSpeaks) {
+  until_ready();
+  ASSERT_EQ(call("PUT", "/parameters/robot.safety.link_lost", Json{{"value", "hold"}}).status,
+            200u);
+  ASSERT_EQ(call("PUT", "/parameters/robot.safety.link_timeout_s", Json{{"value", 1}}).status,
+            200u);
+  const auto lost = [&] {
+    const auto s = house.snapshot();
+    return std::any_of(s->safety.begin(), s->safety.end(),
+                       [](const auto& c) { return c.id == "link_lost"; });
+  };
+  until(lost, "nobody has been heard");
+  const auto client = connect();
+  say(*client, {{"ping", 1}});
+  say(*client, {{"subscribe", {{"events", 0}}}});
+  next(*client, "pong");
+  EXPECT_TRUE(lost()) << "who does not watch the vehicle watches over nothing";
+  say(*client, {{"subscribe", {{"vehicle", 10}}}});
+  until([&] { return !lost(); }, "the operator is heard");
+  until(lost, "an operator who is silent counts as gone");
+  until(
+      [&] {
+        say(*client, {{"ping", 2}});
+        return !lost();
+      },
+      "a ping is enough");
+}
+
 TEST_F(StreamApi, AnUnknownTopicIsSaidAndTheConnectionStays) {
   until_ready();
   const auto client = connect();
@@ -108,6 +162,7 @@ TEST_F(StreamApi, DrivingByHandMovesTheBaseAndLettingGoStopsIt) {
   ASSERT_EQ(call("PUT", "/vehicle/mode", Json{{"mode", "MANUAL"}}).status, 200u);
   auto client = connect();
   const auto hold = [&](double speed_mps, double yaw_rate_dps) {
+    let_go(*client);
     until(
         [&] {
           say(*client, drive(speed_mps, yaw_rate_dps, true));
@@ -166,25 +221,74 @@ TEST_F(StreamApi, ARunningMissionIsPausedAndStoppedOverTheOpenSocket) {
   until([&] { return is(base::ExecutionState::Aborted); }, "it is stopped");
 }
 
-TEST_F(StreamApi, OneDrivesAtATime) {
-  until_ready();
+TEST_F(StreamApi, OneDrivesAtATimeAndWhoeverTakesOverMustLetGoFirst) {
+  arm_in_manual();
   const auto first = connect();
   const auto second = connect();
-  say(*first, {{"subscribe", {{"vehicle", 1}}}});
-  next(*first, "vehicle");
-  say(*first, drive(0.2, 0.0, true));
-  std::this_thread::sleep_for(50ms);
-  say(*second, drive(0.2, 0.0, true));
+  let_go(*first);
+  ASSERT_TRUE(push(*first));
+  // When the second pushes, too, he hears why nothing comes of it;
+  say(*second, drive(-0.4, 0.0, true));
   const Json refused = next(*second, "error");
   EXPECT_EQ(refused["data"]["status"], 409);
-  // Once the first lets go, the second may.
+  EXPECT_EQ(refused["data"]["detail"], "another client is driving");
+  EXPECT_GE(house.sent().twist.linear_mps, 0.0);
+  // once the first lets go, his stick is still held, and is not obeyed
   say(*first, drive(0.0, 0.0, false));
-  std::this_thread::sleep_for(50ms);
-  say(*second, drive(0.2, 0.0, true));
-  say(*second, {{"subscribe", {{"vehicle", 1}}}});
-  const auto frame = second->frame();
-  ASSERT_TRUE(frame);
-  EXPECT_EQ(Json::parse(frame->payload)["topic"], "vehicle");
+  until([this] { return house.sent().twist == base::BodyTwist{}; }, "the base stands");
+  EXPECT_FALSE(push(*second));
+  EXPECT_EQ(next(*second, "error")["data"]["status"], 409);
+  // until he has let go.
+  let_go(*second);
+  EXPECT_TRUE(push(*second));
+}
+
+TEST_F(StreamApi, AStickThatWasHeldBeforeMovesNothingAfterArmingAnotherModeOrANewConnection) {
+  until_ready();
+  const auto client = connect();
+  const auto ask = [this](const char* method, const char* path, const Json& body) {
+    EXPECT_EQ(call(method, path, body).status, 200u) << path;
+  };
+  const Json soon = {{"valid_for_s", 5}};
+  // Held while the robot is disarmed and holds: each push tells why it does nothing.
+  EXPECT_FALSE(push(*client, 100ms));
+  EXPECT_EQ(next(*client, "error")["data"]["detail"], "the sticks do nothing in mode HOLD");
+  ask("PUT", "/vehicle/mode", {{"mode", "MANUAL"}});
+  EXPECT_FALSE(push(*client, 100ms));
+  EXPECT_EQ(next(*client, "error")["data"]["detail"], "the robot is not armed");
+  ask("POST", "/vehicle/arm", soon);
+  EXPECT_FALSE(push(*client));
+  const Json refused = next(*client, "error");
+  EXPECT_EQ(refused["data"]["status"], 409);
+  EXPECT_NE(refused["data"]["detail"].get<std::string>().find("release the stick"),
+            std::string::npos);
+  const Json teleop = call("GET", "/vehicle").body["teleop"];
+  EXPECT_EQ(teleop["state"], "release");
+  EXPECT_EQ(teleop["reason"], refused["data"]["detail"]);
+  // Sticks in the middle with the dead-man on, or pushed with it off, are not let go.
+  for (const Json& half : {drive(0.0, 0.0, true), drive(0.4, 0.0, false)}) {
+    say(*client, half);
+    EXPECT_FALSE(push(*client, 100ms)) << half;
+  }
+  let_go(*client);
+  EXPECT_EQ(call("GET", "/vehicle").body["teleop"]["state"], "ready");
+  EXPECT_TRUE(push(*client));
+  // Another mode and back, an emergency stop and its end, the same stick held all the time.
+  ask("PUT", "/vehicle/mode", {{"mode", "HOLD"}});
+  EXPECT_FALSE(push(*client, 100ms));
+  ask("PUT", "/vehicle/mode", {{"mode", "MANUAL"}});
+  EXPECT_FALSE(push(*client));
+  ask("POST", "/vehicle/estop", Json::object());
+  ask("POST", "/vehicle/estop/reset", Json::object());
+  ask("PUT", "/vehicle/mode", {{"mode", "MANUAL"}});
+  ask("POST", "/vehicle/arm", soon);
+  EXPECT_FALSE(push(*client));
+  // A new connection with a stick that is held, while the old one had let go.
+  let_go(*client);
+  const auto other = connect();
+  EXPECT_FALSE(push(*other));
+  let_go(*other);
+  EXPECT_TRUE(push(*other));
 }
 
 TEST_F(StreamApi, OnlyTheOwnPageMayOpenIt) {

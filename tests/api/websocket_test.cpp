@@ -1,6 +1,8 @@
 // WebSockets over real sockets: fan-out, slow clients, broken frames.
 
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <sys/socket.h>
 
 #include "net_house.hpp"
@@ -206,6 +208,39 @@ TEST_F(WebSocketTest, AFrameSentTogetherWithTheUpgradeIsNotLost) {
       std::string("\x81\x84\0\0\0\0", 6) + "echo");
   EXPECT_EQ(client.answer()->status, 101u);
   EXPECT_EQ(client.frame()->payload, "echo");
+}
+
+TEST_F(WebSocketTest, AnUrgentTextIsHeardBeforeAllThatItsClientSaidEarlier) {
+  // Given a client that has said much, and then what is urgent, before anybody listened,
+  std::vector<std::string> heard;
+  net::Handlers h;
+  h.on_upgrade = [](const net::Request&) { return std::optional<net::Response>{}; };
+  h.on_text = [&heard](net::ClientId, base::Time, std::string_view text) {
+    heard.emplace_back(text);
+  };
+  h.urgent_text = [](std::string_view text) { return text == "stop"; };
+  NetHouse own({}, std::move(h));
+  Client client(own.port());
+  ASSERT_EQ(client.upgrade("/stream"), 101u);
+  const int at_once = 1;  // else the last of it waits in the client for an acknowledgement
+  ::setsockopt(client.handle(), IPPROTO_TCP, TCP_NODELAY, &at_once, sizeof at_once);
+  own.run([&client] {
+    for (int i = 0; i < 500; ++i) client.send_frame(1, std::to_string(i));
+    client.send_frame(1, std::string(30'000, 'x'));
+    client.send_frame(1, "stop");
+    client.send_frame(1, "after");
+  });
+  // when it is listened to, then that comes first and once, and all else in its order.
+  const auto end = std::chrono::steady_clock::now() + 20s;
+  while (own.ask([&] { return heard.size(); }) < 503 && std::chrono::steady_clock::now() < end) {
+    std::this_thread::yield();
+  }
+  const auto all = own.ask([&] { return heard; });
+  ASSERT_EQ(all.size(), 503u);
+  EXPECT_EQ(all[0], "stop");
+  for (std::size_t i = 0; i < 500; ++i) EXPECT_EQ(all[i + 1], std::to_string(i));
+  EXPECT_EQ(all[501].size(), 30'000u);
+  EXPECT_EQ(all[502], "after");
 }
 
 TEST_F(WebSocketTest, AClientThatVanishesIsForgotten) {

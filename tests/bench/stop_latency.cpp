@@ -126,8 +126,13 @@ class Stopper {
   /// By hand, until the base is told to move. @return when
   base::Time drive() {
     const base::Time begin = base::steady_now();
-    while (bus_.moving() < begin) {
+    // A stick acts only after it was seen let go.
+    for (int i = 0; bus_.moving() < begin; ++i) {
       if (base::steady_now() - begin > 60s) throw std::runtime_error("it does not drive");
+      if (i % 10 == 0) {
+        say({{"drive", {{"speed_mps", 0}, {"yaw_rate_dps", 0}, {"deadman", false}}}});
+        std::this_thread::sleep_for(40ms);
+      }
       say({{"drive",
             {{"speed_mps", 0.3}, {"yaw_rate_dps", 0}, {"deadman", true}, {"valid_for_s", 5}}}});
       std::this_thread::sleep_for(20ms);

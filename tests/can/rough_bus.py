@@ -164,8 +164,9 @@ class RoughBus:
 
     def the_recording_is_whole_and_in_several_files(self):
         """the recording went on in a second file, and every file ends with a whole line"""
+        until("the recording goes on in a second file of at most 1 MB", 120,
+              lambda: len(self.recordings()) > 1, 0.5)
         files = self.recordings()
-        check(len(files) > 1, f"one file of at most 1 MB for all that: {files}")
         for file in files:
             text = file.read_text(encoding="ascii")
             check(text.endswith("\n"), f"{file.name} ends in the middle of a line")
@@ -188,7 +189,7 @@ class RoughBus:
         start = next((i for i in range(len(seen)) if seen[i:i + 20] == heard[:20]), None)
         check(start is not None, "the beginning of the recording is not in candump's log")
         both = min(len(seen) - start, len(heard))
-        check(both > 500, f"only {both} frames 0x221")
+        check(both > 250, f"only {both} frames 0x221")  # five seconds, however quick the cases before were
         other = next((i for i in range(both) if seen[start + i] != heard[i]), None)
         check(other is None, f"they differ at frame {other} of {both} ({len(seen)} seen, {len(heard)} "
                              f"heard): seen {seen[start + (other or 0):][:4]}, "
@@ -203,7 +204,7 @@ class RoughBus:
         replayed = part.with_name("replayed.txt")
         with open(replayed, "w", encoding="ascii") as out:
             watcher = subprocess.Popen(["candump", "-L", "-r", "8000000", "-n", str(len(lines)), "-T", "8000",
-                                        self.bus], stdout=out)
+                                        f"{self.bus},0:0,#FFFFFFFF"], stdout=out)  # error frames, too
             time.sleep(0.5)
             subprocess.run(["canplayer", "-I", part], check=True, timeout=60)
             watcher.wait(30)

@@ -39,6 +39,7 @@ WRONG = {
     ("ntrip", "list", "a"): "usage: roverd ntrip table CASTER",
     ("ntrip", "table", "host:99999"): "argument 1: ",
     ("ntrip", "table", "good.example", "http://x/"): "argument 2: ",
+    ("failsafes", "page.md"): "usage: roverd failsafes",
     ("--port", "65536"): "--port",
     ("--replay-speed", "nan"): "0 .. 1000",
     ("--loud",): "--loud",

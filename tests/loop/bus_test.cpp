@@ -29,11 +29,48 @@ TEST_F(Bus, ASecondCommanderStopsTheMissionAndNobodyArmsBesideIt) {
   EXPECT_TRUE(rig.has_condition("driver_hazard"));
   EXPECT_EQ(rig.execution(), ExecutionState::Paused);
   EXPECT_TRUE(rig.stands());
-  // When it is silent for a second, the operator may go on
+  EXPECT_FALSE(rig.state()->armed);
+  // When it is silent for a second, the operator may arm again and go on.
   rig.run(2.0);
   EXPECT_FALSE(rig.has_condition("driver_hazard"));
+  rig.arm();
   ASSERT_TRUE(rig.ask(robot::ResumeMission{}));
   ASSERT_TRUE(rig.finish(60.0));
+}
+
+TEST_F(Bus, NobodyArmsBesideASecondCommander) {
+  ASSERT_TRUE(rig.run_until([&] { return rig.state()->ready_to_arm; }, 30.0));
+  const auto theirs = bunker::encode(bunker::MotionCommand{{.linear_mps = 0.3}});
+  tick_with(theirs, 5);
+  EXPECT_FALSE(rig.state()->ready_to_arm);
+  const auto refused = rig.ask(robot::Arm{});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, base::Code::Conflict);
+  ASSERT_EQ(refused.error().fields.size(), 1u);
+  EXPECT_EQ(refused.error().fields[0].pointer, "/checks/driver_hazard");
+  EXPECT_NE(refused.error().detail.find("somebody else sends motion commands (0x111)"),
+            std::string::npos);
+  rig.run(2.0);
+  rig.arm();
+}
+
+TEST_F(Bus, ASecondCommanderWhoIsHeardAfterArmingOnlyDisarmsAtOnce) {
+  ASSERT_TRUE(rig.run_until([&] { return rig.state()->ready_to_arm; }, 30.0));
+  const auto theirs = bunker::encode(bunker::MotionCommand{{.linear_mps = 0.3}});
+  // Between the checks that allowed it and the word of arming, and while it stands in HOLD.
+  for (const int later : {0, 1, 50}) {
+    rig.arm();
+    const std::uint64_t events = rig.events.size();
+    rig.run(0.02 * later);
+    tick_with(theirs, 3);
+    EXPECT_FALSE(rig.state()->armed) << later;
+    EXPECT_FALSE(rig.state()->command.enabled) << later;
+    EXPECT_TRUE(std::any_of(
+        rig.events.begin() + static_cast<long>(events), rig.events.end(), [](const base::Event& e) {
+          return e.kind == "disarmed" && e.detail.find("somebody else") != std::string::npos;
+        }));
+    rig.run(2.5);
+  }
 }
 
 TEST_F(Bus, ImpossibleAndForeignFramesDoNotDisturbTheMission) {

@@ -40,6 +40,7 @@ double clear_m(const RigBase& rig, const nav::VehicleParams& v, double half_m) {
 }
 
 void push(RigBase& rig, double speed_mps, double rate_radps, double seconds) {
+  if (rig.state()->teleop.phase != base::TeleopPhase::Held) rig.let_go();
   for (double t = 0.0; t < seconds; t += 0.1) {
     rig.drive(speed_mps, rate_radps);
     rig.run(0.1);

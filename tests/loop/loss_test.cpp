@@ -273,6 +273,7 @@ TEST_P(Loss, AGyroThatFallsSilentIsReplacedByTheTracksAndComesBack) {
   rig->run(3.0);
   EXPECT_FALSE(rig->state()->estimator.gyro);
   EXPECT_TRUE(rig->has_event("gyro_lost"));
+  EXPECT_TRUE(rig->has_condition("gyro_lost"));
   EXPECT_LT(std::abs(rig->yaw_error_deg()), 2.0);
   rig->fault([](sim::Faults&) {});
   rig->events.clear();
@@ -371,6 +372,7 @@ TEST(LossOnce, DrivingByHandStopsWithoutFreshCommandsAndWantsTheHandleLetGo) {
   Rig rig({});
   rig.arm();
   ASSERT_TRUE(rig.ask(robot::SetMode{Mode::Manual}));
+  rig.let_go();
   for (int i = 0; i < 100; ++i) {
     rig.drive(0.5, 0.0);
     rig.tick();

@@ -78,6 +78,7 @@ TEST_P(Mission, RecoversFromACompassThatPointsTheOtherWay) {
   o.plant.compass.bias_deg = 180.0;
   Rig rig(o);
   rig.arm_and_start(rig.plan_of({{0, 12}}));
+  ASSERT_TRUE(rig.holds_until_a_person_looked(90.0)) << rig.state()->mission.reason;
   ASSERT_TRUE(rig.finish(150.0)) << rig.state()->mission.reason;
   EXPECT_LT(rig.distance_to_m({0, 12}), 0.2);
   EXPECT_LT(rig.farthest_from_line_m({0, 0}, {0, 12}), 2.5);

@@ -48,6 +48,7 @@ void warm_up(RigBase& rig) {
 
 /// What the sticks ask for, held for a time.
 void hold_stick(RigBase& rig, double speed_mps, double rate_radps, double seconds) {
+  if (rig.state()->teleop.phase != base::TeleopPhase::Held) rig.let_go();
   for (double t = 0.0; t < seconds; t += 0.1) {
     rig.drive(speed_mps, rate_radps);
     rig.run(0.1);

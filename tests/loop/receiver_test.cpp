@@ -102,7 +102,7 @@ TEST(BadStart, ACompassWrongByHalfATurnIsFoundOut) {
   o.plant.compass.bias_deg = 175.0;
   Rig rig(o);
   rig.arm_and_start(rig.plan_of({{0, 20}}));
-  drive_on(rig, 8.0, 90.0);
+  ASSERT_TRUE(rig.holds_until_a_person_looked(90.0)) << rig.state()->mission.reason;
   EXPECT_LT(std::abs(rig.yaw_error_deg()), 3.0);
   ASSERT_TRUE(rig.finish(150.0)) << rig.state()->mission.reason;
   EXPECT_LT(rig.distance_to_m({0, 20}), 0.3);
@@ -194,9 +194,13 @@ TEST(BadReceiver, AnAntennaThatChangesItsPlaceIsAJumpUntilItStays) {
   Underway u;
   tamper(u.rig, [](Fields& f) { shift_north(f, 1.5); });
   EXPECT_LT(worst_error_m(u.rig, 5.0), 0.5);
-  EXPECT_GT(refused(u.rig, base::Refusal::Jump), 10u);
+  EXPECT_GT(refused(u.rig, base::Refusal::Jump) + refused(u.rig, base::Refusal::Outvoted), 10u);
+  EXPECT_TRUE(u.rig.has_condition("sensor_left_out"));
+  EXPECT_EQ(u.rig.execution(), ExecutionState::Running);
   u.rig.run(12.0);
   EXPECT_GE(u.rig.state()->estimator.resets, 1u) << "whoever steers is told";
+  EXPECT_TRUE(u.rig.has_condition("estimate_latched")) << "and has to look";
+  EXPECT_EQ(u.rig.execution(), ExecutionState::Paused);
   EXPECT_NEAR(u.rig.position_error_m(), 1.5, 0.2) << "it is where the receiver says, from then on";
 }
 

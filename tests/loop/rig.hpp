@@ -39,6 +39,7 @@ struct RigOptions {
   double heading_deg = 0.0;
   sim::Params plant{};
   robot::Config robot{};
+  gnss::Params gnss{};
 };
 
 /// What every vehicle's loop has in common; which plant and which drivers, the heirs say.
@@ -93,6 +94,15 @@ class RigBase {
   void drive(double speed_mps, double yaw_rate_radps, bool deadman = true) {
     robot.request(robot::Drive{{speed_mps, yaw_rate_radps}, deadman},
                   now_ + std::chrono::milliseconds(250), {});
+  }
+
+  /// Sticks in the middle, dead-man off, until the robot has seen it.
+  void let_go() {
+    const auto ready = [this] {
+      drive(0.0, 0.0, false);
+      return state()->teleop.phase == base::TeleopPhase::Ready;
+    };
+    EXPECT_TRUE(run_until(ready, 3.0)) << state()->teleop.reason;
   }
 
   /// Waits until the checks pass, and arms.
@@ -201,6 +211,25 @@ class RigBase {
     return worst;
   }
 
+  /// The estimate was set anew so far that it holds. A person looks, and lets it go on.
+  bool holds_until_a_person_looked(double within_s) {
+    if (!run_until([&] { return has_condition("estimate_latched"); }, within_s)) return false;
+    run(3.0);
+    if (!stands() || execution() != ExecutionState::Paused) return false;
+    if (ask(robot::ResumeMission{})) return false;
+    return ask(robot::Acknowledge{}) && ask(robot::ResumeMission{});
+  }
+
+  /// From a place to the line between two others.
+  static double to_segment(base::EnuPoint p, Metres a, Metres b) {
+    const double e = b.east_m - a.east_m;
+    const double n = b.north_m - a.north_m;
+    const double square = std::max(1e-9, e * e + n * n);
+    const double t =
+        std::clamp(((p.east_m - a.east_m) * e + (p.north_m - a.north_m) * n) / square, 0.0, 1.0);
+    return std::hypot(p.east_m - a.east_m - t * e, p.north_m - a.north_m - t * n);
+  }
+
   double yaw_error_deg() const {
     const auto s = state();
     return s->pose
@@ -227,13 +256,14 @@ class RigBase {
   }
 
  protected:
-  RigBase(std::unique_ptr<sim::Vehicle> vehicle, const robot::Config& config)
+  RigBase(std::unique_ptr<sim::Vehicle> vehicle, const robot::Config& config,
+          const gnss::Params& receiver = {})
       : owned_(std::move(vehicle)),
         plant(*owned_),
         robot(config),
         bytes_(link::memory_byte_pair()),
         gnss_(
-            "gnss", {},
+            "gnss", receiver,
             [this] { return base::Result<std::unique_ptr<link::ByteLink>>(std::move(bytes_.a)); },
             [this](const base::Measurement& m) { robot.measurements().put(m); }),
         imu_bytes_(link::memory_byte_pair()) {
@@ -285,15 +315,6 @@ class RigBase {
     mti_->start(at_);
   }
 
-  static double to_segment(base::EnuPoint p, Metres a, Metres b) {
-    const double e = b.east_m - a.east_m;
-    const double n = b.north_m - a.north_m;
-    const double square = std::max(1e-9, e * e + n * n);
-    const double t =
-        std::clamp(((p.east_m - a.east_m) * e + (p.north_m - a.north_m) * n) / square, 0.0, 1.0);
-    return std::hypot(p.east_m - a.east_m - t * e, p.north_m - a.north_m - t * n);
-  }
-
   base::WallTime wall() const {
     return base::WallTime{std::chrono::seconds(1'780'000'000)} + now_.time_since_epoch() +
            clock_jump;
@@ -320,7 +341,8 @@ class RigBase {
 class Rig final : public RigBase {
  public:
   explicit Rig(const RigOptions& o)
-      : RigBase(std::make_unique<sim::Bunker>(o.plant, o.seed, start_of(o.heading_deg)), o.robot),
+      : RigBase(std::make_unique<sim::Bunker>(o.plant, o.seed, start_of(o.heading_deg)), o.robot,
+                o.gnss),
         base_(static_cast<sim::Bunker&>(plant)),
         can_(link::memory_frame_pair()),
         bunker_(

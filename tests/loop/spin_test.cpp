@@ -32,7 +32,8 @@ TEST(SpinningTracks, AreCaughtBeforeAWaypointCountsAsReachedAndTheMissionGoesOnL
   EXPECT_LT(base::distance_m(believed, rig.truth().local), 0.2);
   // When it is freed and told to go on, then it passes both waypoints
   set_slip(rig, 0.08);
-  ASSERT_TRUE(rig.ask(robot::ResumeMission{}));
+  const auto resumed = rig.ask(robot::ResumeMission{});
+  ASSERT_TRUE(resumed) << resumed.error().detail;
   ASSERT_TRUE(rig.finish(90.0));
   EXPECT_LT(rig.nearest_m({0, 10}), 0.3);
   EXPECT_LT(rig.distance_to_m({0, 20}), 0.3);

@@ -46,6 +46,7 @@ TEST_P(Teaching, ADrivenWayIsRepeatedWhereItWas) {
   Rig rig(o);
   rig.arm();
   ASSERT_TRUE(rig.ask(robot::SetMode{Mode::Manual}));
+  rig.let_go();
   // The heading is found while driving, before the recording begins.
   for (int i = 0; i < 400; ++i) {
     rig.drive(0.5, 0.0);

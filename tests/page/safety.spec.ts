@@ -172,6 +172,10 @@ test('driving by hand moves the robot while held, and letting go stops it', asyn
   const box = await pad.boundingBox();
   if (!box) throw new Error('no drive pad');
   const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  // While nobody pushes, the page says so: only then may a stick act.
+  const stick = async (): Promise<string> =>
+    (await station.rest<{ teleop: { state: string } }>('GET', '/vehicle')).teleop.state;
+  await expect.poll(stick, { timeout: 10_000 }).toBe('ready');
 
   await page.mouse.move(x, y);
   await page.mouse.down();
@@ -183,4 +187,39 @@ test('driving by hand moves the robot while held, and letting go stops it', asyn
   await expect
     .poll(() => Math.abs(station.sim.now.speed_mps), { timeout: 3000 })
     .toBeLessThan(0.01);
+});
+
+test('a key that is held while the mode changes moves nothing until it is pressed anew', async ({
+  page,
+  station,
+}) => {
+  await open_page(page, station.url);
+  await expect(async () => {
+    const disarm = page.getByRole('button', { name: 'Disarm', exact: true });
+    if (!(await disarm.isVisible())) await press(page, 'Arm');
+    await expect(disarm).toBeVisible({ timeout: 1000 });
+  }).toPass({ timeout: 20_000 });
+  await press(page, 'MANUAL');
+  const pad = page.getByLabel(/^Drive pad/);
+  await pad.focus();
+  const speed = (): number => station.sim.now.speed_mps;
+  await page.waitForTimeout(500);
+  await page.keyboard.down('ArrowUp');
+  await expect.poll(speed, { timeout: 10_000 }).toBeGreaterThan(0.2);
+  await station.rest('PUT', '/vehicle/mode', { mode: 'HOLD' });
+  await expect.poll(() => Math.abs(speed()), { timeout: 5000 }).toBeLessThan(0.01);
+  await station.rest('PUT', '/vehicle/mode', { mode: 'MANUAL' });
+  const from = station.sim.now;
+  await pad.focus();
+  // The keyboard repeats it all the time.
+  for (let i = 0; i < 20; i += 1) {
+    await page.keyboard.down('ArrowUp');
+    await page.waitForTimeout(100);
+  }
+  expect(metres_between(from, station.sim.now)).toBeLessThan(0.02);
+  await page.keyboard.up('ArrowUp');
+  await page.waitForTimeout(500);
+  await page.keyboard.down('ArrowUp');
+  await expect.poll(speed, { timeout: 10_000 }).toBeGreaterThan(0.2);
+  await page.keyboard.up('ArrowUp');
 });

@@ -2,6 +2,7 @@ import { describe, expect, test } from 'vitest';
 
 import { DEAD_ZONE, drive_wish, wish_of_keys } from '../src/model/drive';
 import {
+  why_not_acknowledge,
   why_not_arm,
   why_not_drive,
   why_not_load,
@@ -49,6 +50,15 @@ describe('operations', () => {
       expect(reason).toBe('No live connection to the robot.');
     }
     expect(why_not_arm({ link_stale: false, vehicle: null })).not.toBeNull();
+  });
+
+  test('there is something to look at while the estimate is latched', () => {
+    const waits = (...ids: string[]): Facts => ({
+      link_stale: false,
+      vehicle: { safety: ids.map((id) => ({ id, detail: '' })) } as unknown as Vehicle,
+    });
+    expect(why_not_acknowledge(waits('gnss_lost'))).toBe('There is nothing to look at.');
+    expect(why_not_acknowledge(waits('gnss_lost', 'estimate_latched'))).toBeNull();
   });
 
   test('what makes the robot stop is offered even when the link is silent', () => {

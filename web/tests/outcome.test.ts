@@ -34,6 +34,12 @@ describe('what became of a command without an answer', () => {
     expect(told({ to: 'reset' }, { estop: true }, { estop: true })[0]).toBe(false);
   });
 
+  test('that a person looked is seen in the conditions', () => {
+    const waiting = { safety: [{ id: 'estimate_latched', detail: 'set anew 3 m away' }] };
+    expect(told({ to: 'acknowledge' }, waiting, { safety: [] })).toEqual([true, 'it was taken']);
+    expect(told({ to: 'acknowledge' }, waiting, waiting)[0]).toBe(false);
+  });
+
   test('a drive to a place is obeyed only if it is another one than before', () => {
     const wish: Wish = { to: 'do', kinds: ['goto'] };
     expect(told(wish, {}, going(4, 'goto'))).toEqual([true, 'going to the place: 5.25 m left']);

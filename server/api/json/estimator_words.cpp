@@ -66,6 +66,26 @@ Json anchor_json(const std::optional<base::Anchor>& anchor, base::Time now) {
   return out;
 }
 
+Json votes_json(const base::Votes& v, base::Time now) {
+  Json out = Json::object();
+  Json& sensors = out["sensors"] = Json::object();
+  for (std::size_t i = 0; i < base::kSenses; ++i) {
+    const base::SenseVote& vote = v.of[i];
+    Json& one = sensors[std::string(base::to_string(static_cast<base::Sense>(i)))];
+    one = {{"heard", vote.heard}, {"frozen", vote.frozen}, {"left_out", vote.left_out}};
+    one["left_out_s"] =
+        vote.since ? rounded(std::max(0.0, base::seconds(now - *vote.since)), 1e1) : Json(nullptr);
+  }
+  out["undecided"] = nullptr;
+  if (v.undecided) {
+    out["undecided"] = {base::to_string((*v.undecided)[0]), base::to_string((*v.undecided)[1])};
+  }
+  out["doubt_m"] = rounded(v.doubt_m, 1e2);
+  out["doubt_deg"] = rounded(base::deg_from_rad(v.doubt_rad), 1e1);
+  out["contradictions"] = v.accusations;
+  return out;
+}
+
 }  // namespace
 
 Json estimator_json(const base::Snapshot& s) {
@@ -87,7 +107,8 @@ Json estimator_json(const base::Snapshot& s) {
           {"without_gnss_m", s.pose ? rounded(e.free_m, 1e2) : Json(nullptr)},
           {"resets", e.resets},
           {"last_reset", reset_json(e.last_reset, s.now)},
-          {"anchor", anchor_json(e.anchor, s.now)}};
+          {"anchor", anchor_json(e.anchor, s.now)},
+          {"votes", votes_json(e.votes, s.now)}};
 }
 
 }  // namespace roverd::api

@@ -60,6 +60,21 @@ Handler arm(const ContextPtr& context) {
   };
 }
 
+/// Whatever the body says. The answer waits for a moment: what it confirms is to outlive this
+/// program.
+void estop(const ContextPtr& context, const CallPtr& call) {
+  context->commands.run(
+      robot::Estop{"the page or a script"}, base::Time::max(), base::steady_now(),
+      [context, call](base::Result<void> result) {
+        if (!result) return call->respond(problem(result.error()));
+        context->when_estop_kept([context, call] {
+          if (const auto state = context->snapshot_or_refuse(call)) {
+            call->respond(json_response(http::status::ok, whole_state(context)(*state)));
+          }
+        });
+      });
+}
+
 /// Why a loaded revision is not the one that a person would expect to be driven; empty: it is.
 std::string outdated(const robot::MissionCopy& loaded,
                      const base::Result<store::StoredMission>& stored) {
@@ -228,13 +243,11 @@ void add_vehicle_routes(const ContextPtr& c) {
   c->router.add({post, "/vehicle/disarm", kCommand, plain(c, robot::Disarm{}, Moves::No)});
   c->router.add({http::verb::put, "/vehicle/mode", kCommand, set_mode(c)});
   c->router.add({post, "/vehicle/resume", kCommand, plain(c, robot::ResumeActivity{}, Moves::Yes)});
-  c->router.add({post, "/vehicle/estop", kCommand,
-                 [c](const CallPtr& call) {  // whatever the body says
-                   run_command(c, call, robot::Estop{"the page or a script"}, base::Time::max(),
-                               whole_state(c));
-                 }});
+  c->router.add({post, "/vehicle/estop", kCommand, [c](const CallPtr& call) { estop(c, call); }});
   c->router.add(
       {post, "/vehicle/estop/reset", kCommand, plain(c, robot::ResetEstop{}, Moves::Yes)});
+  c->router.add(
+      {post, "/vehicle/acknowledge", kCommand, plain(c, robot::Acknowledge{}, Moves::Yes)});
   c->router.add({http::verb::put, "/vehicle/home", kCommand, set_home(c)});
 }
 

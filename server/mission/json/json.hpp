@@ -33,7 +33,8 @@ inline constexpr std::size_t kMaxJsonMemory = 400u << 20u;
 /// Any JSON text, for every body the program reads. Malformed, with "byte N" counted from 0, if it
 /// is not JSON (in UTF-8, a byte order mark is allowed) or is nested deeper than kMaxJsonDepth.
 /// Invalid, with the member's JSON pointer, if a number does not fit a double (1e999) or a member
-/// is there twice. TooLarge: it would take more than kMaxJsonMemory.
+/// is there twice. TooLarge: it would take more than kMaxJsonMemory. Unavailable: there is not so
+/// much now.
 base::Result<nlohmann::json> parse_json(std::string_view text);
 
 /// `value` is a plan or it is Invalid; `fields` then names each offending member.

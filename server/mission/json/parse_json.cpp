@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <exception>
+#include <memory>
+#include <new>
 #include <utility>
 
 #include "mission/json/json.hpp"
@@ -15,10 +17,27 @@ using base::Code;
 using base::Error;
 using nlohmann::json;
 
+/// The library's own destructor lists all values before it frees them: without memory for that list
+/// it would end the program. From the leaves up it needs none.
+void dismantle(json& value) noexcept {
+  if (auto* array = value.get_ptr<json::array_t*>()) {
+    for (json& one : *array) dismantle(one);
+    array->clear();
+  } else if (auto* object = value.get_ptr<json::object_t*>()) {
+    for (auto& member : *object) dismantle(member.second);
+    object->clear();
+  }
+}
+
 /// Builds the value. Each level remembers the container it fills and, for objects, the key whose
 /// value comes next.
 class Builder {
  public:
+  Builder() = default;
+  ~Builder() { dismantle(root_); }
+  Builder(const Builder&) = delete;
+  Builder& operator=(const Builder&) = delete;
+
   using number_integer_t = json::number_integer_t;
   using number_unsigned_t = json::number_unsigned_t;
   using number_float_t = json::number_float_t;
@@ -60,6 +79,11 @@ class Builder {
   }
 
   json take() { return std::move(root_); }
+  /// Is there memory for the list that its destructor makes, later and elsewhere?
+  bool may_be_freed() const noexcept {
+    constexpr std::size_t kSmall = 1 << 20;
+    return bytes_ < kSmall || std::unique_ptr<char[]>(new (std::nothrow) char[bytes_]) != nullptr;
+  }
   Error error() { return std::move(error_); }
 
  private:
@@ -156,7 +180,11 @@ class Builder {
 base::Result<json> parse_json(std::string_view text) {
   Builder builder;
   try {
-    if (json::sax_parse(text.begin(), text.end(), &builder)) return builder.take();
+    const bool read = json::sax_parse(text.begin(), text.end(), &builder);
+    if (read && builder.may_be_freed()) return builder.take();
+    if (read) throw std::bad_alloc();
+  } catch (const std::bad_alloc&) {
+    return base::fail(Code::Unavailable, "there is no memory for all its values now");
   } catch (const std::exception& problem) {
     return base::fail(Code::Malformed, std::string("not JSON: ") + problem.what());
   }

@@ -38,7 +38,7 @@ class Dock {
 
   Dock(base::Setting<PathParams> path, base::Setting<BehaveParams> behave,
        base::Setting<ModeParams> modes)
-      : path_(path), modes_(std::move(modes)), trip_(path, std::move(behave)) {}
+      : path_(std::move(path)), modes_(std::move(modes)), trip_(path_, std::move(behave)) {}
 
   void begin(const DockGoal& goal, const Vehicle& vehicle);
   void reset() noexcept;

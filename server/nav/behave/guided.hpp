@@ -45,7 +45,7 @@ class Guided {
 
   Guided(base::Setting<PathParams> path, base::Setting<BehaveParams> behave,
          base::Setting<ModeParams> modes)
-      : path_(path), modes_(std::move(modes)), trip_(path, std::move(behave)) {}
+      : path_(std::move(path)), modes_(std::move(modes)), trip_(path_, std::move(behave)) {}
 
   /// Why this vehicle cannot do it; empty: it can. Pure.
   std::string refusal(const GuidedGoal& goal) const;

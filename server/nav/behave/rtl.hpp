@@ -30,7 +30,7 @@ class Rtl {
   enum class State { Idle, Driving, Home, Failed };
 
   Rtl(base::Setting<PathParams> path, base::Setting<BehaveParams> behave)
-      : path_(path), trip_(path, std::move(behave)) {}
+      : path_(std::move(path)), trip_(path_, std::move(behave)) {}
 
   /// @param way to be driven in order; the last one is home. Corners are rounded.
   /// @param retrace it was driven before: a steered vehicle, which cannot turn round on it, drives

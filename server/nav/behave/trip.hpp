@@ -43,7 +43,7 @@ class Trip {
   };
 
   Trip(base::Setting<PathParams> path, base::Setting<BehaveParams> behave)
-      : path_params_(path), behave_(std::move(behave)), tracker_(path) {}
+      : path_params_(std::move(path)), behave_(std::move(behave)), tracker_(path_params_) {}
 
   void begin(Order order, const Vehicle& vehicle, bool smoothly);
   void reset() noexcept;

@@ -27,7 +27,8 @@ class Arrival {
     if (!least_s_) begin(offset_s);
     // Both clocks drift against each other by less than this.
     if (utc_) *least_s_ += 2e-4 * std::clamp(base::seconds(stamp - stamp_), 0.0, 10.0);
-    const bool backwards = utc_ && *utc <= *utc_;
+    if (utc_ && *utc == *utc_) return std::nullopt;  // the same epoch, however often
+    const bool backwards = utc_ && *utc < *utc_;
     if (backwards || offset_s - *least_s_ > kOldest_s || *least_s_ - offset_s > kOldest_s) {
       if (++strange_ < kPatience) return std::nullopt;
       begin(offset_s);

@@ -34,6 +34,8 @@ const double kGyroEven_radps = rad_from_deg(0.3);
 const double kGyroBiasMost_radps = rad_from_deg(5.0);
 constexpr double kGyroFastest_radps = 8.0;
 constexpr double kAccelMost_mps2 = 160.0;
+// What a base was told and does otherwise: it sets off late, and is faster or slower (1 sigma).
+constexpr double kAssumedShare = 0.2;
 constexpr double kCompare_s = 0.2;  // of travel, before gyro and tracks are compared
 
 bool finite(const base::BodyVector& v, double most) noexcept {
@@ -136,8 +138,10 @@ void Estimator::take(const base::Inertial& inertial) {
   const double turn_radps = gyro_.rate_radps() - belief_.x(kGyroBias);
   tilt_.put(inertial, belief_.x(kScale) * tracks_.linear_mps, turn_radps);
   if (!inertial.rate_radps) return;
-  in.refused_since.reset();
-  gyro_.put(inertial.stamp, tilt_.level_radps(*inertial.rate_radps, inertial.stamp));
+  const double level_radps = tilt_.level_radps(*inertial.rate_radps, inertial.stamp);
+  gyro_.put(inertial.stamp, level_radps);
+  votes_.gyro(level_radps - belief_.x(kGyroBias), inertial.rate_radps->up, inertial.stamp);
+  if (!outvoted(base::Sense::Gyro, in)) in.refused_since.reset();
 }
 
 void Estimator::take(const base::Attitude& attitude) {
@@ -160,10 +164,11 @@ bool Estimator::gyro_stands(Time stamp) const noexcept {
 
 /// At rest a gyro shows its bias.
 void Estimator::learn_gyro_bias(Time stamp) noexcept {
-  if (!gyro_used_ || stamp - bias_learned_at_ < kStandsAfter) return;
+  const bool out = votes_.out(base::Sense::Gyro);
+  if ((!gyro_used_ && !out) || stamp - bias_learned_at_ < kStandsAfter) return;
   bias_learned_at_ = stamp;
   const auto seen = gyro_.spread(stamp - kStandsAfter);
-  if (!seen) return;
+  if (!seen || (out && std::abs(seen->mean_radps) > kGyroBiasMost_radps)) return;
   Observation<1> o;
   o.innovation(0) = seen->mean_radps - belief_.x(kGyroBias);
   o.H(0, kGyroBias) = 1.0;
@@ -217,9 +222,11 @@ void Estimator::take(const base::WheelTravel& travel) {
   if (dt_s > kMaxGap_s || std::abs(travel.left_m) > reach_m || std::abs(travel.right_m) > reach_m) {
     return refuse(in, Refusal::Impossible);
   }
-  in.refused_since.reset();
   const Travel t{0.5 * (travel.left_m + travel.right_m),
                  (travel.right_m - travel.left_m) / params_->track_width_m, dt_s};
+  votes_.tracks(t.ahead_m, t.turn_rad, travel.stamp);
+  if (outvoted(base::Sense::Tracks, in)) return;
+  in.refused_since.reset();
   step(t, travel.stamp);
   if (!last_motion_ || travel.stamp - *last_motion_ > kOdometryGone) {
     tracks_ = {t.ahead_m / dt_s, t.turn_rad / dt_s};
@@ -233,14 +240,34 @@ void Estimator::take(const base::BaseMotion& motion) {
   }
   const auto before = last_motion_;
   if (!in_order(in, last_motion_, motion.stamp)) return;
-  tracks_ = motion.twist;
   const bool travel_is_fresh = last_travel_ && motion.stamp - *last_travel_ < kOdometryGone;
+  const double dt_s = before ? std::min(seconds(motion.stamp - *before), 0.2) : 0.0;
+  const Travel t{motion.twist.linear_mps * dt_s, motion.twist.angular_radps * dt_s, dt_s};
+  // What the base was told is no witness of what it does.
+  if (motion.assumed) {
+    votes_.told_to(t.ahead_m, t.turn_rad);
+  } else if (!travel_is_fresh) {
+    votes_.tracks(t.ahead_m, t.turn_rad, motion.stamp);
+  }
+  if (outvoted(base::Sense::Tracks, in)) return;
+  tracks_ = motion.twist;
   if (travel_is_fresh || !before) {
     if (!travel_is_fresh) tracks_at_ = motion.stamp;
     return;
   }
-  const double dt_s = std::min(seconds(motion.stamp - *before), 0.2);
-  step({motion.twist.linear_mps * dt_s, motion.twist.angular_radps * dt_s, dt_s}, motion.stamp);
+  step(t, motion.stamp);
+  if (motion.assumed) doubt_assumed(dt_s);
+}
+
+/// A speed that nobody measured is wrong for long, not from moment to moment: what it adds up to
+/// grows with the time since the last position. d(sigma² t²) = 2 sigma² t dt
+void Estimator::doubt_assumed(double dt_s) noexcept {
+  if (!last_fused_) return;
+  const double sigma_mps = kAssumedShare * belief_.x(kScale) * tracks_.linear_mps;
+  const double blind_s = std::max(0.0, seconds(now_ - *last_fused_));
+  const double more = 2.0 * sigma_mps * sigma_mps * blind_s * dt_s;
+  belief_.P(kEast, kEast) += more;
+  belief_.P(kNorth, kNorth) += more;
 }
 
 /// Currents act on a compass through iron that remembers them for a while.
@@ -259,8 +286,10 @@ void Estimator::step(const Travel& travel, Time stamp) noexcept {
   const Time whole = stamp - base::from_seconds(t.dt_s);
   const bool near = filter_at_ && *filter_at_ <= stamp && stamp - *filter_at_ < milliseconds(400);
   t.gyro_rad = gyro_.turned_rad(near ? *filter_at_ : whole, stamp);
+  const bool out = votes_.out(base::Sense::Gyro);
+  if (out) t.gyro_rad.reset();
   if (t.gyro_rad) gyro_used_ = true;
-  if (!t.gyro_rad && !gyro_.fresh(stamp)) gyro_used_ = false;
+  if (!t.gyro_rad && (out || !gyro_.fresh(stamp))) gyro_used_ = false;
 
   tracks_at_ = stamp;
   watch_standing(t, stamp);
@@ -289,7 +318,8 @@ void Estimator::remember(Time stamp) noexcept {
 void Estimator::watch_standing(const Travel& t, Time stamp) noexcept {
   const double half_m = 0.5 * t.turn_rad * params_->track_width_m;
   const bool tracks = std::abs(t.ahead_m) + std::abs(half_m) > kStill_m;
-  const bool turned = !tracks && !gyro_stands(stamp);  // by hand
+  const bool out = votes_.out(base::Sense::Gyro);
+  const bool turned = !tracks && !out && !gyro_stands(stamp);  // by hand
   if (tracks || turned) moved_at_ = stamp;
   standing_ = !tracks && !turned && stamp - moved_at_ >= kStandsAfter;
   if (tracks) has_moved_ = true;
@@ -299,6 +329,7 @@ void Estimator::watch_standing(const Travel& t, Time stamp) noexcept {
 
 void Estimator::advance(Time now) noexcept {
   now_ = now;
+  vote(now);
   watch_alignment();
   if (!filter_at_) filter_at_ = now;
   if (has_odometry(now)) return;
@@ -306,7 +337,7 @@ void Estimator::advance(Time now) noexcept {
   const double dt_s = seconds(now - *filter_at_);
   if (dt_s <= 0.0) return;
   Coast c = coast(now);
-  c.gyro_rad = gyro_.turned_rad(*filter_at_, now);
+  if (!votes_.out(base::Sense::Gyro)) c.gyro_rad = gyro_.turned_rad(*filter_at_, now);
   gyro_used_ = c.gyro_rad.has_value();
   const double yaw_before = belief_.x(kYaw);
   if (located_ || heading_known_) predict_coasting(belief_, c, dt_s, drift_);
@@ -360,15 +391,20 @@ std::optional<base::Pose> Estimator::pose(Time now) const {
   }
   p.global = frame_->to_global(p.at);
   // Axes of the covariance: mean of the variances ± half their spread.
-  const double a = belief_.P(kEast, kEast);
-  const double b = belief_.P(kNorth, kNorth);
+  const double doubt_m2 = unknown_m() * unknown_m();
+  const double a = belief_.P(kEast, kEast) + doubt_m2;
+  const double b = belief_.P(kNorth, kNorth) + doubt_m2;
   const double c = belief_.P(kEast, kNorth);
   const double half = std::hypot(0.5 * (a - b), c);
   p.ellipse.major_m = std::sqrt(std::max(0.0, 0.5 * (a + b) + half));
   p.ellipse.minor_m = std::sqrt(std::max(0.0, 0.5 * (a + b) - half));
   p.ellipse.major_yaw_rad = 0.5 * std::atan2(2.0 * c, a - b);
   p.horizontal_sigma_m = p.ellipse.major_m;
-  p.yaw_sigma_rad = heading_known_ ? std::sqrt(std::max(0.0, belief_.P(kYaw, kYaw))) : base::kPi;
+  p.yaw_sigma_rad = base::kPi;
+  if (heading_known_) {
+    const double sigma_rad = std::sqrt(std::max(0.0, belief_.P(kYaw, kYaw)));
+    p.yaw_sigma_rad = std::min(base::kPi, std::hypot(sigma_rad, unknown_rad()));
+  }
   p.alt_msl_m = alt_msl_m_;
   p.source = !odometry ? "gnss" : gnss ? "gnss+odometry" : "odometry";
   return p;

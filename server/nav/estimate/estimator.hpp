@@ -17,8 +17,12 @@
 // by cause: values that are not finite, stamps that are doubled, out of order or in the future,
 // fixes beyond the limits of GnssLimits, receivers that disagree.
 //
+// Everything is also put to the vote (nav/vote): a sensor that contradicts the others is left out
+// until it agrees again, and what it may have spoiled is uncertain by as much as they differed.
+//
 // Not thread-safe; no allocation; nothing here reads a clock.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -36,6 +40,7 @@
 #include "nav/estimate/params.hpp"
 #include "nav/estimate/receivers.hpp"
 #include "nav/estimate/tilt.hpp"
+#include "nav/vote/votes.hpp"
 
 namespace roverd::nav {
 
@@ -74,6 +79,15 @@ class Estimator {
   /// Tracks that spun counted a way that was not driven: the position may be off by so much, and
   /// the next usable fix decides, even while standing. No reset by itself.
   void doubt_position(double sigma_m) noexcept;
+  /// A person has looked: sensors that were left out are heard again.
+  void acquit_all() noexcept { votes_.acquit_all(now_); }
+  /// The estimate was set anew by so much, and nobody knows whether that was right: no claim is
+  /// better, until trust().
+  void distrust(double moved_m, double turned_rad) noexcept {
+    distrust_m_ = std::max(distrust_m_, moved_m);
+    distrust_rad_ = std::max(distrust_rad_, turned_rad);
+  }
+  void trust() noexcept { distrust_m_ = distrust_rad_ = 0.0; }
 
   /// Empty until the first usable fix. Without a known heading the yaw sigma is π.
   std::optional<base::Pose> pose(Time now) const;
@@ -119,6 +133,7 @@ class Estimator {
 
   // estimator.cpp: time, tracks, gyro
   void step(const Travel& travel, Time stamp) noexcept;
+  void doubt_assumed(double dt_s) noexcept;
   void watch_standing(const Travel& travel, Time stamp) noexcept;
   bool gyro_stands(Time stamp) const noexcept;
   void learn_gyro_bias(Time stamp) noexcept;
@@ -158,6 +173,15 @@ class Estimator {
              const base::BodyTwist& odometry) noexcept;
   void velocity_refused(const base::GnssVelocity& v, double ahead_mps, double sigma_mps) noexcept;
 
+  // contradiction.cpp
+  void vote(Time now) noexcept;
+  void spoil(base::Sense liar) noexcept;
+  bool outvoted(base::Sense s, Input& input) noexcept;
+  double spoiled_way_m(const base::Difference& off) const noexcept;
+  double claimed_m(const Belief& b) const noexcept;
+  double unknown_m() const noexcept;
+  double unknown_rad() const noexcept;
+
   // positioning.cpp
   void move(base::EnuPoint to, double sigma_m) noexcept;
   void note_reset(std::string_view what, const Belief& before) noexcept;
@@ -170,6 +194,12 @@ class Estimator {
   Tilt tilt_;
   Arrival arrival_;
   Receivers receivers_;
+  Votes votes_;
+  double doubted_m_ = 0.0;  ///< what of the position's sigma is doubt since its source was left out
+  double distrust_m_ = 0.0;
+  double distrust_rad_ = 0.0;
+  double refused_m_ = 0.0;                    ///< how far off the position is that is refused now
+  std::optional<double> claimed_when_off_m_;  ///< when positions began to be refused
   std::optional<base::LocalFrame> frame_;
   std::uint32_t next_frame_id_ = 1;
   bool located_ = false;

@@ -50,7 +50,13 @@ void Estimator::take(const base::Heading& heading) {
   if (!in_order(in, compass ? last_compass_ : last_antennas_, heading.stamp)) return;
   if (compass) health_.compass_heard = true;
   const double latency_s = compass ? params_->compass_latency_s : params_->gnss_latency_s;
-  const auto past = history_.at(heading.stamp - base::from_seconds(latency_s));
+  const Time taken = heading.stamp - base::from_seconds(latency_s);
+  const auto past = history_.at(taken);
+  const base::Sense sense = compass ? base::Sense::Compass : base::Sense::Antennas;
+  const double noise_deg = compass ? params_->compass_sigma_deg : params_->heading_sigma_deg;
+  votes_.heading(sense, heading.yaw_rad, heading.sigma_rad.value_or(rad_from_deg(noise_deg)), taken,
+                 heading.stamp);
+  if (heading_known_ && outvoted(sense, in)) return;
   if (!heading_known_) {
     const double turned_since = past ? base::angle_diff_rad(past->x(kYaw), belief_.x(kYaw)) : 0.0;
     const double sigma_deg = compass ? params_->compass_sigma_deg : params_->heading_sigma_deg;

@@ -36,6 +36,8 @@ struct EstimateParams {
   double hdop_max = 2.5;
   double accuracy_max_m = 3.0;
   double speed_accuracy_max_mps = 0.5;
+  double contradiction_sigma = 4.0;
+  double contradiction_return_s = 10.0;
   double anchor_max_m = 10.0;
   double map_lat = 0.0;
   double map_lon = 0.0;
@@ -105,6 +107,10 @@ void fields(V& v, EstimateParams& p) {
     "how much the robot may bend to one side on straight tracks");
   v("gyro_bias_sigma_dps", p.gyro_bias_sigma_dps, 0.01, 10.0,
     "how much a gyro may show while the robot stands, before that was seen");
+  v("contradiction_sigma", p.contradiction_sigma, 2.0, 20.0,
+    "two sensors contradict each other when they differ by so many sigmas, and a floor");
+  v("contradiction_return_s", p.contradiction_return_s, 1.0, 600.0,
+    "a sensor that was left out is used again after agreeing with the others for so long");
   v("anchor_max_m", p.anchor_max_m, 0.1, 100.0,
     "an anchor may move the receiver's positions by no more than this");
   v("map_lat", p.map_lat, -90.0, 90.0,

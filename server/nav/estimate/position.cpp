@@ -74,9 +74,18 @@ void Estimator::take(const base::GnssFix& fix) {
   if (frame_) receivers_.put(frame_->to_local(*fix.position), fix.stamp);
   if (receivers_.disagree()) return refuse(in, Refusal::Receivers);
   if (history_.forgotten(taken_at(fix))) return refuse(in, Refusal::Stamp);
+  if (frame_) {
+    votes_.position({.t = taken_at(fix),
+                     .at = frame_->to_local(*fix.position),
+                     .sigma_m = std::max(quality->sigma_east_m, quality->sigma_north_m),
+                     .drift_m = quality->drift.sigma_m,
+                     .drift_s = quality->drift.tau_s},
+                    static_cast<int>(fix.fix), fix.stamp);
+  }
   const auto late_s = arrival_.late_s(fix.stamp, fix.utc);
   if (!late_s) return refuse(in, Refusal::Stamp);
   late_s_ = *late_s;
+  if (located_ && outvoted(base::Sense::Position, in)) return;
   if (fix.alt_msl_m && std::isfinite(*fix.alt_msl_m)) alt_msl_m_ = fix.alt_msl_m;
   if (!located_) {
     first_fix(fix, *quality);
@@ -170,7 +179,9 @@ void Estimator::fuse_position(const base::GnssFix& fix, const GnssQuality& q) no
   }
   // Doubt has opened the gate: what comes through it moves the position at once, and is told.
   std::optional<Belief> before;
-  if (position_off_since_ && seconds(fix.stamp - *position_off_since_) > kDoubtAfter_s) {
+  const bool doubted = doubted_m_ > 0.0;
+  if (doubted ||
+      (position_off_since_ && seconds(fix.stamp - *position_off_since_) > kDoubtAfter_s)) {
     before = belief_;
   }
   if (apply(in, o)) {
@@ -185,6 +196,8 @@ void Estimator::fuse_position(const base::GnssFix& fix, const GnssQuality& q) no
     placed_ = false;
     position_off_since_.reset();
     far_off_since_.reset();
+    claimed_when_off_m_.reset();
+    doubted_m_ = 0.0;
     return;
   }
   refuse(in, Refusal::Jump);
@@ -212,7 +225,11 @@ void Estimator::approach(Observation<2>& o) noexcept {
 
 void Estimator::position_refused(const base::GnssFix& fix, const GnssQuality& q,
                                  double off_m) noexcept {
-  if (!position_off_since_) position_off_since_ = fix.stamp;
+  if (!position_off_since_) {
+    position_off_since_ = fix.stamp;
+    claimed_when_off_m_ = claimed_m(belief_);
+  }
+  refused_m_ = off_m;
   if (off_m <= kFar_m) far_off_since_.reset();
   if (off_m > kFar_m && !far_off_since_) far_off_since_ = fix.stamp;
   const double off_s = seconds(fix.stamp - *position_off_since_);
@@ -223,6 +240,8 @@ void Estimator::position_refused(const base::GnssFix& fix, const GnssQuality& q,
     note_reset("position", before);
     position_off_since_.reset();
     far_off_since_.reset();
+    claimed_when_off_m_.reset();
+    doubted_m_ = 0.0;
     health_.position.refused_since.reset();
     last_fused_ = fix.stamp;
     free_m_ = 0.0;

@@ -27,6 +27,8 @@ void Estimator::note_reset(std::string_view what, const Belief& before) noexcept
     reset.jump = {before.x(kEast) - belief_.x(kEast), before.x(kNorth) - belief_.x(kNorth)};
   }
   reset.jump_rad = base::angle_diff_rad(belief_.x(kYaw), before.x(kYaw));
+  reset.claimed_m = claimed_when_off_m_.value_or(claimed_m(before));
+  reset.claimed_rad = std::sqrt(before.P(kYaw, kYaw));
   reset.stamp = now_;
   health_.last_reset = reset;
 }
@@ -52,6 +54,8 @@ void Estimator::place(std::optional<base::EnuPoint> at, std::optional<double> ya
     last_fused_ = now_;
     free_m_ = 0.0;
     approaching_ = false;
+    claimed_when_off_m_.reset();
+    doubted_m_ = 0.0;
     position_off_since_.reset();
     far_off_since_.reset();
   }
@@ -71,6 +75,7 @@ void Estimator::doubt_position(double sigma_m) noexcept {
     reset_state(belief_, i, belief_.x(i), std::hypot(known_m, sigma_m));
   }
   located_since_ = now_;
+  claimed_when_off_m_.reset();  // from now on it claims no more than that
 }
 
 void Estimator::anchor(base::EnuPoint at, std::optional<int> item) noexcept {
@@ -139,6 +144,7 @@ base::EstimatorHealth Estimator::health() const noexcept {
   h.receivers_disagree = receivers_.disagree();
   h.free_m = free_m_;
   h.placed = placed_;
+  h.votes = votes_.told();
   return h;
 }
 

@@ -33,9 +33,12 @@ void Estimator::take(const base::GnssVelocity& velocity) {
   }
   if (receivers_.disagree()) return refuse(in, Refusal::Receivers);
   if (history_.forgotten(taken_at(velocity))) return refuse(in, Refusal::Stamp);
+  const double sigma_mps = velocity_sigma_mps(fix_type_, velocity.sigma_mps);
+  votes_.velocity({velocity.east_mps, velocity.north_mps}, sigma_mps, taken_at(velocity),
+                  velocity.stamp);
+  if (outvoted(base::Sense::Velocity, in)) return;
   velocity_ = velocity;
   if (!located_) return;
-  const double sigma_mps = velocity_sigma_mps(fix_type_, velocity.sigma_mps);
   if (has_odometry(velocity.stamp)) {
     fuse_velocity(velocity, sigma_mps);
   } else {

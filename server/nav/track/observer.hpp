@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/geo.hpp"
 #include "nav/track/params.hpp"
 
 namespace roverd::nav {
@@ -19,10 +20,11 @@ class YawObserver {
   static constexpr double kSlow_mps = 0.15;
   static constexpr double kHard_radps = 0.3;
 
-  /// @param sent_radps over ground, one delay ago.
-  void step(double measured_radps, double sent_radps, double speed_mps, bool saturated,
-            const TrackParams& p, double dt_s) noexcept {
-    const bool model = !saturated && std::abs(speed_mps) > kSlow_mps &&
+  /// @param measured over ground. @param sent_radps likewise, one delay ago.
+  void step(base::BodyTwist measured, double sent_radps, bool saturated, const TrackParams& p,
+            double dt_s) noexcept {
+    const double measured_radps = measured.angular_radps;
+    const bool model = !saturated && std::abs(measured.linear_mps) > kSlow_mps &&
                        std::abs(sent_radps) < kHard_radps && std::isfinite(measured_radps);
     if (!model) return;
     const double share = std::min(1.0, dt_s / p.observer_s);

@@ -162,7 +162,7 @@ TrackOutput Tracker::track(const Vehicle& v, double limit_mps, double dt_s) noex
     return stop(v, dt_s);
   }
   const base::BodyTwist then = sent_before(params_->track.delay_s, dt_s);
-  observer_.step(v.yaw_rate_radps, then.angular_radps, v.speed_mps, saturated_, params_->track,
+  observer_.step({v.speed_mps, v.yaw_rate_radps}, then.angular_radps, saturated_, params_->track,
                  dt_s);
 
   // Reversing is driving forward with the tail: same curvature, other end.

@@ -2,8 +2,11 @@
 // The modes by hand over the network: MANUAL, and ACRO, STEERING, SIMPLE with help. The dead-man's
 // handle is that of modes/manual.hpp. Control thread.
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "nav/behave/sticks.hpp"
 #include "robot/modes/manual.hpp"
@@ -16,11 +19,16 @@ class ByHand {
   explicit ByHand(const ParameterSet& set)
       : params_(set.manual), manual_(set.manual), sticks_(set.path, set.modes) {}
 
-  void drive(const base::BodyTwist& twist, bool deadman, base::Time now) noexcept {
-    manual_.drive(twist, deadman, now);
-  }
-  /// Nobody holds the handle any more.
-  void release() noexcept { manual_.release(); }
+  /// @return false: not obeyed, see why().
+  bool drive(const Handle& handle, base::Time now) noexcept { return manual_.drive(handle, now); }
+  /// Something begins: whoever holds the handle must let go first. @param cause a static text
+  void lock(const char* cause, base::Time now) noexcept { manual_.lock(cause, now); }
+  Manual::Phase phase() const noexcept { return manual_.phase(); }
+  double share_of_speed(base::Time now) const noexcept { return manual_.share_of_speed(now); }
+  std::optional<double> delay_s(base::Time now) const noexcept { return manual_.delay_s(now); }
+  bool in_vain(base::Time now) const noexcept { return manual_.in_vain(now); }
+  std::string why() const { return manual_.why(); }
+  const std::vector<std::uint64_t>& released() const noexcept { return manual_.released(); }
 
   /// A mode with help begins.
   void begin(base::Mode mode, const nav::Vehicle& vehicle) noexcept {
@@ -43,6 +51,7 @@ class ByHand {
   }
   /// The others. @param vehicle null: where it is, is not known: it stands
   Step helped(const nav::Vehicle* vehicle, double limit_mps, base::Time now, double dt_s) noexcept {
+    if (vehicle == nullptr) manual_.lock("the position was not known", now);
     const base::BodyTwist stick = manual_.step(now, dt_s);
     Step step{{}, held(), stale(), stale() ? "teleop_stale" : ""};
     if (vehicle == nullptr) return step;
@@ -55,7 +64,7 @@ class ByHand {
 
  private:
   bool held() const noexcept { return manual_.phase() == Manual::Phase::Held; }
-  bool stale() const noexcept { return manual_.phase() == Manual::Phase::Stale; }
+  bool stale() const noexcept { return manual_.stale(); }
 
   base::Setting<ManualParams> params_;
   Manual manual_;

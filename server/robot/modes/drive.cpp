@@ -1,6 +1,7 @@
 // One tick of each kind of mode.
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -32,7 +33,7 @@ nav::Vehicle Robot::Impl::vehicle() const {
 /// What is allowed now, whatever a path was laid for.
 double Robot::Impl::limit_mps() const noexcept {
   const double most = std::min(config->speed.max_mps, config->vehicle.max_speed_mps);
-  return assessment.response >= Response::Slow ? std::min(most, config->speed.creep_mps) : most;
+  return assessment.slow ? std::min(most, config->speed.creep_mps) : most;
 }
 
 base::DriveCommand Robot::Impl::drive_by_hand() {
@@ -47,6 +48,17 @@ base::DriveCommand Robot::Impl::drive_by_hand() {
   }
   if (step.held) driver = Driver::Teleop;
   if (!step.reason.empty()) speed_reason = std::string(step.reason);
+  if (const double share = by_hand.share_of_speed(clock.now()); share < 1.0) {
+    speed_reason = "link_delay";
+    const auto late_ms = std::lround(1000.0 * by_hand.delay_s(clock.now()).value_or(0.0));
+    assessment.conditions.push_back(
+        {"link_delay", "whoever drives is up to " + std::to_string(late_ms) +
+                           " ms behind: no more than " +
+                           std::to_string(std::lround(100.0 * share)) + " % of the speed"});
+  }
+  if (!step.stale && by_hand.in_vain(clock.now())) {
+    assessment.conditions.push_back({"release_stick", by_hand.why()});
+  }
   if (step.stale) {
     assessment.conditions.push_back(
         {"teleop_stale", "the commands by hand stopped coming: let go once to drive on"});

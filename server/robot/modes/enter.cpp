@@ -55,23 +55,24 @@ bool Robot::Impl::change_mode(ModeCause cause, const std::string& why, Mode chos
     missions.executor.pause(cause == ModeCause::Chosen ? "mode " + name : why);
   }
   self_driving.leave(change->to, why, change->stands_first);
-  by_hand.release();
+  by_hand.lock("the mode changed", clock.now());
   event(Severity::Info, "mode", "mode " + name + ": " + why);
   return true;
 }
 
-base::Result<void> Robot::Impl::may_drive_by_itself() const {
+base::Result<void> Robot::Impl::may_drive_by_itself(bool homeward) const {
   if (arm.latched()) return base::fail(Code::Conflict, "the emergency stop is latched");
   if (!arm.armed()) return base::fail(Code::Conflict, "the robot is not armed");
   if (!pose) return base::fail(Code::Conflict, "the position is not known");
   if (radio_drives(world, config->safety, clock.now())) {
     return base::fail(Code::Conflict, "the radio drives: put its switch SWB up first");
   }
-  // What would hold it at the next tick refuses it now.
+  // What would hold it or lead it home at the next tick refuses it now.
   Facts as_if = facts();
   as_if.autonomous = true;
+  as_if.homeward = homeward;
   const Assessment then = assess(as_if, config->safety, clock.now());
-  if (then.response >= Response::Hold) return base::fail(Code::Conflict, then.cause);
+  if (then.response >= Response::Return) return base::fail(Code::Conflict, then.cause);
   return fence.may_begin(pose->at, estimator.frame());
 }
 

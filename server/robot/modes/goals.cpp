@@ -158,7 +158,7 @@ base::Result<void> Robot::Impl::enter_dock(const SetMode& c) {
     return base::fail(Code::Invalid, "DOCK needs the pose to dock at",
                       {{"/heading_deg", "with lat and lon, or east_m and north_m, is missing"}});
   }
-  if (auto ok = may_drive_by_itself(); !ok) return ok;
+  if (auto ok = may_drive_by_itself(true); !ok) return ok;
   const auto place = place_of(*c.goal);
   if (!place) return tl::unexpected(place.error());
   if (!std::isfinite(place->east_m + place->north_m + *c.goal->yaw_rad)) {

@@ -30,6 +30,7 @@ constexpr std::array kArrows{
     Arrow{ModeCause::Chosen, kAny, Leads::ToChosen},
     Arrow{ModeCause::MissionDrives, kAny, Leads::ToAuto},
     Arrow{ModeCause::Loss, kAny, Leads::ToHold},
+    Arrow{ModeCause::Return, kMission | kByItself, Leads::ToChosen},
     Arrow{ModeCause::Estop, kAny, Leads::ToHold},
     Arrow{ModeCause::EstopReset, kAny, Leads::ToHold},
     Arrow{ModeCause::Armed, kMission | kByItself, Leads::ToHold},
@@ -64,6 +65,10 @@ ModeKind kind_of(Mode mode) noexcept {
 
 bool drives_by_itself(Mode mode) noexcept {
   return kind_of(mode) == ModeKind::Mission || kind_of(mode) == ModeKind::ByItself;
+}
+
+bool leads_home(Mode mode) noexcept {
+  return mode == Mode::Rtl || mode == Mode::SmartRtl || mode == Mode::Dock;
 }
 
 std::optional<ModeChange> ModeMachine::would(ModeCause cause, Mode chosen) const noexcept {

@@ -10,6 +10,7 @@
 //   chosen            any                           the one that was chosen (never AUTO)
 //   mission drives    any                           AUTO
 //   a loss, a pause   any                           HOLD
+//   a return          by itself, AUTO included      the one that leads home
 //   e-stop, its reset any                           HOLD
 //   armed, disarmed   by itself, AUTO included      HOLD    (by hand stays: it stands all the same)
 //   a fault           by itself, AUTO included      HOLD
@@ -31,11 +32,14 @@ enum class ModeKind { ByHand, Standing, Mission, ByItself };
 ModeKind kind_of(base::Mode mode) noexcept;
 /// AUTO included.
 bool drives_by_itself(base::Mode mode) noexcept;
+/// RTL, SMART_RTL; DOCK, where it may be charged.
+bool leads_home(base::Mode mode) noexcept;
 
 enum class ModeCause {
   Chosen,
   MissionDrives,
   Loss,
+  Return,
   Estop,
   EstopReset,
   Armed,
@@ -58,7 +62,7 @@ class ModeMachine {
   ModeKind kind() const noexcept { return kind_of(mode_); }
   bool by_itself() const noexcept { return drives_by_itself(mode_); }
 
-  /// What `cause` would change; empty: nothing. @param chosen with ModeCause::Chosen
+  /// What `cause` would change; empty: nothing. @param chosen with ModeCause::Chosen and Return
   std::optional<ModeChange> would(ModeCause cause,
                                   base::Mode chosen = base::Mode::Hold) const noexcept;
   /// Does it.

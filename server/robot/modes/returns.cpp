@@ -16,14 +16,36 @@ WayHome Robot::Impl::way_home(Mode mode) const {
 }
 
 base::Result<void> Robot::Impl::enter_home(Mode to) {
-  if (auto ok = may_drive_by_itself(); !ok) return ok;
+  if (auto ok = may_drive_by_itself(true); !ok) return ok;
   if (machine.mode() == to) return go_on();
   const WayHome found = way_home(to);
   if (!found.refusal.empty()) return base::fail(Code::Conflict, found.refusal);
-  change_mode(ModeCause::Chosen, asker, to);
+  begin_home(ModeCause::Chosen, to, found, asker);
+  return {};
+}
+
+void Robot::Impl::begin_home(ModeCause cause, Mode to, const WayHome& found,
+                             const std::string& why) {
+  change_mode(cause, why, to);
   self_driving.go_home(found.way, to == Mode::SmartRtl, vehicle(),
                        estimator.frame()->to_global(found.way.back()), found.length_m(pose->at));
-  return {};
+}
+
+/// A failsafe asks for it. Where there is no way home the robot stays where it is.
+void Robot::Impl::go_back(const std::string& why) {
+  const bool was_auto = machine.mode() == Mode::Auto;
+  WayHome found;
+  found.refusal = "the position is not known";
+  if (pose) found = way_home(Mode::Rtl);
+  if (!found.refusal.empty()) {
+    const std::string both = why + ", and there is no way home: " + found.refusal;
+    hold(both);
+    event(base::Severity::Warning, was_auto ? "mission_paused" : "stopped", both);
+    return;
+  }
+  begin_home(ModeCause::Return, Mode::Rtl, found, why);
+  if (was_auto) event(base::Severity::Warning, "mission_paused", why);
+  event(base::Severity::Warning, "returns", "the robot returns home: " + why);
 }
 
 /// What RTL or SMART_RTL would do now, by the same rules.

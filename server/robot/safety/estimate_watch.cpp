@@ -34,6 +34,8 @@ std::string cause_of(base::Refusal why) {
       return "they contradict what the robot did";
     case base::Refusal::Receivers:
       return "two receivers say different places";
+    case base::Refusal::Outvoted:
+      return "the other sensors contradict them";
   }
   return {};
 }
@@ -51,6 +53,7 @@ const std::vector<EstimateWatch::News>& EstimateWatch::step(const base::Estimato
   watch_resets(health);
   if (health.gyro != gyro_) {
     gyro_ = health.gyro;
+    gyro_known_ = gyro_known_ || gyro_;
     tell(gyro_ ? Severity::Info : Severity::Warning, gyro_ ? "gyro_back" : "gyro_lost",
          gyro_ ? "turns are measured by the gyro"
                : "the gyro is silent: turns are measured by the tracks");

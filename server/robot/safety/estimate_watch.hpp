@@ -32,6 +32,8 @@ class EstimateWatch {
   /// He anchored it, or dropped the anchor.
   void anchored(bool is) noexcept { anchored_ = is; }
   /// At the last step the anchor was dropped by the estimator itself.
+  /// Turns were measured by a gyro once, and are not now.
+  bool gyro_lost() const noexcept { return gyro_known_ && !gyro_; }
   bool anchor_lost() const noexcept { return anchor_lost_; }
 
  private:
@@ -45,6 +47,7 @@ class EstimateWatch {
   std::vector<News> news_;
   std::uint64_t resets_ = 0;
   bool gyro_ = false;
+  bool gyro_known_ = false;
   bool anchored_ = false;
   bool anchor_lost_ = false;
   base::Alignment alignment_ = base::Alignment::Unknown;

@@ -61,6 +61,9 @@ class FenceKeep {
                 const std::optional<base::LocalFrame>& frame, bool by_hand,
                 const FenceParams& params);
 
+  /// The last command that was judged would have crossed it.
+  bool stops() const noexcept { return told_; }
+
   /// A fence holds.
   base::FenceState state(const std::optional<base::Pose>& pose,
                          const std::optional<base::LocalFrame>& frame,

@@ -1,9 +1,9 @@
 #include "robot/safety/safety.hpp"
 
 #include <cmath>
-#include <cstdio>
 
 #include "base/angle.hpp"
+#include "robot/safety/words.hpp"
 
 namespace roverd::robot {
 namespace {
@@ -15,189 +15,6 @@ using base::VehicleState;
 
 /// So long positions may be refused before arming waits for them.
 constexpr double kRefusedLong_s = 1.0;
-
-bool older(std::optional<Time> stamp, double limit_s, Time now) noexcept {
-  return !stamp || base::seconds(now - *stamp) > limit_s;
-}
-
-std::string number(double value, const char* format) {
-  char text[48];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
-std::string error_words(const base::BaseStatus& status) {
-  std::string text;
-  for (const std::string& e : status.errors) text += (text.empty() ? "" : ", ") + e;
-  return text.empty() ? "no error bit set" : text;
-}
-
-std::string in_brackets(const std::string& where) {
-  return where.empty() ? "" : " (" + where + ")";
-}
-
-class Assessor {
- public:
-  Assessor(const Facts& facts, const SafetyParams& p, Time now) : f_(facts), p_(p), now_(now) {}
-
-  Assessment run() {
-    const World& w = f_.world;
-    const bool radio = radio_drives(w, p_, now_);
-    if (f_.estop) add(Response::Stop, "estop", "emergency stop is latched");
-    base_state();
-    hazards();
-    bumper();
-    if (radio) add(Response::None, "radio_control", "the radio drives");
-    if (!radio && w.base_heard) {
-      const std::string trouble = radio_trouble(w, p_, now_);
-      if (!trouble.empty()) add(Response::Hold, "radio_lost", trouble);
-    }
-    if (!radio) base_waits();
-    if (!radio) base_follows();
-    position(radio);
-    battery();
-    for (const base::HostProblem& problem : w.host) {
-      if (problem.alarming) add(Response::Warn, problem.id.c_str(), problem.detail);
-    }
-    return std::move(out_);
-  }
-
- private:
-  void add(Response response, const char* id, std::string detail) {
-    if (response > out_.response) {
-      out_.response = response;
-      out_.cause = detail;
-    }
-    out_.conditions.push_back({id, std::move(detail)});
-  }
-
-  void base_state() {
-    const World& w = f_.world;
-    if (!w.base_heard) {
-      add(Response::Hold, "base_lost", "the base has not been heard yet");
-      return;
-    }
-    if (base_lost(w, p_, now_)) {
-      const double age_s = base::seconds(now_ - *w.base_heard);
-      add(Response::Hold, "base_lost",
-          age_s > p_.base_timeout_s ? "no word from the base for " + number(age_s, "%.1f s")
-                                    : std::string("the base does not tell its state"));
-    }
-    if (!w.base) return;
-    switch (w.base->vehicle_state) {
-      case VehicleState::Normal:
-        break;
-      case VehicleState::Estop:
-        out_.base_estop = true;
-        add(Response::Stop, "base_estop", "the emergency stop at the base is pressed");
-        break;
-      case VehicleState::Exception:
-        add(Response::Hold, "base_exception", "the base reports: " + error_words(*w.base));
-        break;
-      case VehicleState::Unknown:
-        add(Response::Hold, "base_exception", "the base is in a state unknown to this program");
-        break;
-    }
-  }
-
-  void hazards() {
-    for (const base::DriverStatus& driver : f_.world.drivers) {
-      if (!driver.detail) continue;
-      for (const std::string& hazard : driver.detail->hazards) {
-        add(Response::Hold, "driver_hazard", driver.name + ": " + hazard);
-      }
-    }
-  }
-
-  /// A hit itself latches the emergency stop (Robot::judge).
-  void bumper() {
-    const auto& bumper = f_.world.bumper;
-    if (!bumper) return;
-    if (bumper->pressed) {
-      add(Response::Stop, "bumper", "the bumper" + in_brackets(bumper->where) + " is pressed");
-    } else if (older(bumper->stamp, p_.bumper_timeout_s, now_)) {
-      add(Response::Hold, "bumper_lost", "the bumper is silent");
-    }
-  }
-
-  void base_waits() {
-    if (!f_.base_waited_since) return;
-    const double waited_s = base::seconds(now_ - *f_.base_waited_since);
-    add(waited_s > p_.base_accept_s ? Response::Hold : Response::None, "base_not_ready",
-        f_.world.base ? "the base is in control mode " +
-                            std::string(base::to_string(f_.world.base->control_mode)) +
-                            " and takes no commands"
-                      : std::string("the base does not tell its control mode"));
-  }
-
-  void base_follows() {
-    if (f_.base_left) {
-      add(Response::Hold, "base_left_control",
-          "the base left our control by itself: it was switched off and on, or heard no command");
-    }
-    if (!f_.commands_lost) return;
-    // While nothing is asked of it nothing more can be told, and an operator may try again.
-    add(f_.not_following ? Response::Hold : Response::None, "base_not_following",
-        "the base does not do what it is told: commands seem not to reach it");
-  }
-
-  /// True whatever the mode; only AUTO needs it.
-  void position(bool radio) {
-    const bool matters = f_.autonomous && !radio;
-    const auto tell = [&](Response response, const char* id, std::string detail) {
-      add(matters ? response : Response::None, id, std::move(detail));
-    };
-    if (!f_.pose) {
-      tell(Response::Hold, "pose_unknown", "the position is not known");
-      return;
-    }
-    if (f_.estimate.receivers_disagree) {
-      tell(Response::Hold, "gnss_disagree", "two receivers say different places");
-    }
-    without_gnss(tell);
-    if (f_.spins)
-      tell(Response::Hold, "wheels_spin", "the wheels turn and the robot does not move");
-    const double sigma_m = f_.pose->horizontal_sigma_m;
-    if (sigma_m > p_.sigma_slow_m) {
-      const bool hold =
-          f_.sigma_bad_since && base::seconds(now_ - *f_.sigma_bad_since) > p_.sigma_hold_s;
-      tell(hold ? Response::Hold : Response::Slow, "pose_uncertain",
-           "the position is uncertain by " + number(sigma_m, "%.1f m"));
-    }
-  }
-
-  /// With gyro and odometry the way counts; without a gyro the heading is soon worth little.
-  template <class Tell>
-  void without_gnss(const Tell& tell) {
-    const double age_s = f_.last_position ? base::seconds(now_ - *f_.last_position) : 1e9;
-    if (age_s <= p_.gnss_slow_s) return;
-    const double way_m = f_.estimate.free_m;
-    if (f_.estimate.gyro && f_.last_position) {
-      tell(way_m > p_.gnss_free_m ? Response::Hold : Response::Warn, "gnss_lost",
-           "no position from GNSS for " + number(way_m, "%.0f of ") +
-               number(p_.gnss_free_m, "%.0f m"));
-      return;
-    }
-    tell(age_s > p_.gnss_hold_s ? Response::Hold : Response::Slow, "gnss_lost",
-         "no usable position from GNSS for " + number(age_s, "%.0f s"));
-  }
-
-  void battery() {
-    const World& w = f_.world;
-    if (w.base && w.base->battery_fault) {
-      add(Response::Hold, "battery", "the base reports an empty battery");
-    } else if (w.battery && w.battery->charge_pct < p_.battery_stop_pct) {
-      add(Response::Hold, "battery", "charge is " + number(w.battery->charge_pct, "%.0f %%"));
-    } else if (w.battery && w.battery->charge_pct < p_.battery_warn_pct) {
-      add(Response::Warn, "battery_low", "charge is " + number(w.battery->charge_pct, "%.0f %%"));
-    }
-  }
-
-  const Facts& f_;
-  const SafetyParams& p_;
-  Time now_;
-  Assessment out_;
-};
 
 base::Check check(const char* id, bool ok, Severity severity, std::string detail) {
   return {id, ok, severity, std::move(detail)};
@@ -282,6 +99,21 @@ base::Check check_accuracy(const Facts& f, const ArmingParams& p) {
                    number(p.sigma_max_m, "%.2f m"));
 }
 
+/// Was it set anew, so far that somebody should look?
+base::Check check_estimate(const Facts& f) {
+  const char* id = "estimate";
+  const std::string look = ": look where the robot stands";
+  if (!f.latched.empty()) {
+    return check(id, false, Severity::Error,
+                 std::string(f.latched) + look + ", and acknowledge it");
+  }
+  if (!f.moved_disarmed.empty()) {
+    return check(id, false, Severity::Warning,
+                 std::string(f.moved_disarmed) + ", while it was disarmed" + look);
+  }
+  return check(id, true, Severity::Error, "was not set anew");
+}
+
 base::Check check_heading(const Facts& f, const ArmingParams& p) {
   const double sigma_deg = f.pose ? base::deg_from_rad(f.pose->yaw_sigma_rad) : 180.0;
   const bool ok = sigma_deg <= p.heading_sigma_deg;
@@ -328,6 +160,17 @@ base::Check check_battery(const World& w, const SafetyParams& p) {
   return check(id, w.battery->charge_pct >= p.battery_warn_pct, Severity::Warning, text);
 }
 
+base::Check check_hazards(const World& w) {
+  std::string text;
+  for (const base::DriverStatus& d : w.drivers) {
+    if (!d.detail) continue;
+    for (const std::string& hazard : d.detail->hazards) {
+      text += (text.empty() ? "" : "; ") + d.name + ": " + hazard;
+    }
+  }
+  return check("driver_hazard", text.empty(), Severity::Error, text.empty() ? "none" : text);
+}
+
 base::Check check_drivers(const World& w) {
   std::string text;
   for (const base::DriverStatus& d : w.drivers) {
@@ -366,8 +209,8 @@ bool base_listens(const World& w) noexcept {
 }
 
 bool base_lost(const World& w, const SafetyParams& p, Time now) noexcept {
-  const std::optional<Time> status = w.base ? std::optional(w.base->stamp) : std::nullopt;
-  return older(w.base_heard, p.base_timeout_s, now) || older(status, p.status_timeout_s, now);
+  const bool silent = older(w.base_heard, p.base_timeout_s, now);
+  return silent || !w.base || older(w.base->stamp, p.status_timeout_s, now);
 }
 
 std::string radio_trouble(const World& w, const SafetyParams& p, Time now) {
@@ -382,18 +225,37 @@ std::string radio_trouble(const World& w, const SafetyParams& p, Time now) {
   return {};
 }
 
-Assessment assess(const Facts& facts, const SafetyParams& p, Time now) {
-  return Assessor(facts, p, now).run();
+Assessment assess(const Facts& facts, const SafetyParams& p, Time now,
+                  std::span<const Failsafe> rows) {
+  Assessment out;
+  for (const Failsafe& row : rows) {
+    // Of one id the stronger row comes first, and speaks alone.
+    if (!out.conditions.empty() && out.conditions.back().id == row.id) continue;
+    std::optional<std::string> told = row.test(facts, p, now);
+    if (!told) continue;
+    const Response follows = acts_now(row, facts, p, now) ? row.response : Response::None;
+    out.slow = out.slow || follows == Response::Slow || follows >= Response::Hold;
+    if (follows == Response::Disarm) out.disarms = row.seen;
+    if (follows > out.response) {
+      out.response = follows;
+      out.cause = *told;
+    }
+    out.conditions.push_back({std::string(row.id), std::move(*told)});
+  }
+  const auto& base = facts.world.base;
+  out.base_estop = facts.world.base_heard && base && base->vehicle_state == VehicleState::Estop;
+  return out;
 }
 
 std::vector<base::Check> arming_checks(const Facts& f, const SafetyParams& safety,
                                        const ArmingParams& p, bool mission_loaded, Time now) {
   const World& w = f.world;
   std::vector<base::Check> all;
-  all.reserve(11);
+  all.reserve(13);
   all.push_back(check_gnss(f, safety, p, now));
   all.push_back(check_accuracy(f, p));
   all.push_back(check_heading(f, p));
+  all.push_back(check_estimate(f));
   const bool lost = base_lost(w, safety, now);
   all.push_back(check("base_link", !lost, Severity::Error,
                       !w.base_heard ? "the base has not been heard yet"
@@ -404,6 +266,10 @@ std::vector<base::Check> arming_checks(const Facts& f, const SafetyParams& safet
   all.push_back(check_battery(w, safety));
   all.push_back(check("estop", !f.estop, Severity::Error,
                       f.estop ? "emergency stop is latched: reset it first" : "released"));
+  all.push_back(check("self_test", f.self_test.empty(), Severity::Error,
+                      f.self_test.empty() ? std::string("every failsafe speaks when it must")
+                                          : std::string(f.self_test)));
+  all.push_back(check_hazards(w));
   all.push_back(check_drivers(w));
   all.push_back(check_computer(w));
   all.push_back(check("mission", mission_loaded, Severity::Info,

@@ -86,7 +86,7 @@ TEST(VehicleWords, AHeadingThatNobodyKnowsIsNullAndTheAdviceSaysWhatHelps) {
   EXPECT_TRUE(v["estimator"]["innovations"]["position_m"].is_null());
   EXPECT_TRUE(v["estimator"]["anchor"].is_null());
   // What is known, in the compass's sense: clockwise.
-  s.estimator.last_reset = base::EstimateReset{"heading", {3.0, 4.0}, 0.1, at(8s)};
+  s.estimator.last_reset = base::EstimateReset{"heading", {3.0, 4.0}, 0.1, 0.0, 0.0, at(8s)};
   s.estimator.compass = {base::Innovation{-0.1, 2.5}, 7, std::nullopt, base::Refusal::Jump};
   s.now = at(10s);
   const Json e = vehicle_json(s, "bunker", at(10s))["estimator"];

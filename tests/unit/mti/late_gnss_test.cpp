@@ -86,8 +86,9 @@ TEST(MtiLateGnss, PositionsOfEarlierSamplesAreToldWithTheirOwnTime) {
     const auto fixes = all_of<base::GnssFix>(u.heard);
     ASSERT_EQ(fixes.size(), 8u);
     for (std::size_t k = 0; k < fixes.size(); ++k) {
-      const auto sample = static_cast<std::uint32_t>(UnitWithReceiver::kFirst + 40'000 +
-                                                     2500 * (k + 1) - late / kTick);
+      const auto sample =
+          static_cast<std::uint32_t>(UnitWithReceiver::kFirst + 40'000 + 2500 * (k + 1)) -
+          static_cast<std::uint32_t>(late / kTick);
       EXPECT_EQ(fixes[k].stamp, u.at(sample)) << late.count();
       EXPECT_EQ(fixes[k].latency_s, 0.0);
       EXPECT_NEAR(fixes[k].position->lat, -33.5, 1e-9);

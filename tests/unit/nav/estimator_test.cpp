@@ -138,11 +138,24 @@ TEST(Estimator, AJumpThatStaysIsBelievedAfterTenSecondsAndCounted) {
   EXPECT_EQ(d.estimator.health().resets, 1u);
 }
 
-TEST(Estimator, AJumpBeyondTwentyFiveMetresIsBelievedSooner) {
+TEST(Estimator, AJumpBeyondTwentyFiveMetresIsBelievedSoonerWhereNobodyOutvotesIt) {
   Drive d;
+  d.speeds = false;
   d.run(5.0);
   d.offset_east_m = 100.0;
   d.run(2.0);
+  EXPECT_NEAR(d.position_error_m(), 100.0, 0.1);
+  EXPECT_EQ(d.estimator.health().resets, 1u);
+}
+
+TEST(Estimator, AJumpThatVelocityAndOdometryDenyIsLeftOutUntilItStayed) {
+  Drive d;
+  d.run(5.0);
+  d.offset_east_m = 100.0;
+  d.run(10.0);
+  EXPECT_TRUE(d.estimator.health().votes[base::Sense::Position].left_out);
+  EXPECT_LT(d.position_error_m(), 0.1);
+  d.run(3.0);
   EXPECT_NEAR(d.position_error_m(), 100.0, 0.1);
   EXPECT_EQ(d.estimator.health().resets, 1u);
 }

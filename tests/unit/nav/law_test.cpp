@@ -86,7 +86,7 @@ TEST(Law, TheLessTheHeadingIsKnownTheCalmer) {
 TEST(Observer, LearnsATurnThatNobodyCommanded) {
   const TrackParams p;
   YawObserver o;
-  for (int i = 0; i < 500; ++i) o.step(0.15, 0.1, 1.0, false, p, 0.02);
+  for (int i = 0; i < 500; ++i) o.step({1.0, 0.15}, 0.1, false, p, 0.02);
   EXPECT_NEAR(o.radps(), 0.05, 0.001);
 }
 
@@ -94,10 +94,10 @@ TEST(Observer, IsFrozenWhereItsModelIsWorthLittle) {
   const TrackParams p;
   YawObserver o;
   for (int i = 0; i < 500; ++i) {
-    o.step(0.9, 0.0, 0.1, false, p, 0.02);  // slow
-    o.step(0.9, 0.7, 1.0, false, p, 0.02);  // turning hard
-    o.step(0.9, 0.0, 1.0, true, p, 0.02);   // saturated
-    o.step(NAN, 0.0, 1.0, false, p, 0.02);
+    o.step({0.1, 0.9}, 0.0, false, p, 0.02);  // slow
+    o.step({1.0, 0.9}, 0.7, false, p, 0.02);  // turning hard
+    o.step({1.0, 0.9}, 0.0, true, p, 0.02);   // saturated
+    o.step({1.0, NAN}, 0.0, false, p, 0.02);
   }
   EXPECT_EQ(o.radps(), 0.0);
 }
@@ -105,10 +105,10 @@ TEST(Observer, IsFrozenWhereItsModelIsWorthLittle) {
 TEST(Observer, NeverCountersMoreThanAllowed) {
   TrackParams p;
   YawObserver o;
-  for (int i = 0; i < 5000; ++i) o.step(2.0, 0.0, 1.0, false, p, 0.02);
+  for (int i = 0; i < 5000; ++i) o.step({1.0, 2.0}, 0.0, false, p, 0.02);
   EXPECT_EQ(o.radps(), p.observer_max_radps);
   p.observer_max_radps = 0.0;
-  o.step(2.0, 0.0, 1.0, false, p, 0.02);
+  o.step({1.0, 2.0}, 0.0, false, p, 0.02);
   EXPECT_EQ(o.radps(), 0.0);
 }
 

@@ -28,6 +28,7 @@ class Drive {
   double yaw_scale = 0.8;  ///< true over measured turning
   base::FixType fix = base::FixType::RtkFixed;
   bool gnss = true;
+  bool speeds = true;                 ///< the receiver tells velocities
   std::optional<double> told_late_s;  ///< it comes so late, with the time at which it was measured
   bool compass = true;
   bool tracks = true;
@@ -108,6 +109,7 @@ class Drive {
       f.fix = fix;
       f.position = frame_.to_global({s.east_m, s.north_m});
       estimator.take(f, now_);
+      if (!speeds) continue;
       estimator.take(base::GnssVelocity{f.stamp, s.ve, s.vn, {}, f.latency_s}, now_);
     }
   }

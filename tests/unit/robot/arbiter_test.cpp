@@ -121,6 +121,7 @@ TEST(Arbiter, WhatAVehicleCannotDoIsNoSignOfALostCommand) {
   f.run(8.0);
   ASSERT_TRUE(f.ask(Arm{}));
   ASSERT_TRUE(f.ask(SetMode{Mode::Manual}));
+  f.let_go();
   const auto drive = [&f](base::BodyTwist twist, base::BodyTwist does) {
     f.does = does;
     for (int i = 0; i < 150; ++i) {
@@ -264,6 +265,7 @@ TEST(Arbiter, HandCommandsWorkInManualOnlyAndWhileFresh) {
   drive(0.5);
   EXPECT_FALSE(f.moves());  // HOLD
   ASSERT_TRUE(f.ask(SetMode{Mode::Manual}));
+  f.let_go();
   for (int i = 0; i < 100; ++i) drive(5.0);
   EXPECT_NEAR(f.command.twist.linear_mps, 1.0, 1e-9);  // cut to the limit
   f.run(0.48);
@@ -285,12 +287,14 @@ TEST(Arbiter, HandCommandsWorkInManualOnlyAndWhileFresh) {
 TEST(Manual, RefusesNothingButStopsOnEverythingOdd) {
   Manual m{ManualParams{}};
   const base::Time t{};
-  m.drive({0.4, 0.0}, true, t);
+  const auto hold = [&](double speed_mps) { m.drive({{speed_mps, 0.0}, true, 1, t}, t); };
+  m.drive({{}, false, 1, t}, t);
+  hold(0.4);
   for (int i = 0; i < 100; ++i) m.step(t, 0.02);
   EXPECT_DOUBLE_EQ(m.step(t, 0.02).linear_mps, 0.4);
-  m.drive({-0.4, 0.0}, true, t);
+  hold(-0.4);
   EXPECT_LT(m.step(t, 0.02).linear_mps, 0.0);  // through zero at once, then with the ramp
-  m.drive({0.0, 0.0}, true, t);
+  hold(0.0);
   EXPECT_EQ(m.step(t, 0.02), base::BodyTwist{});
 }
 

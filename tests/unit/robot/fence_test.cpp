@@ -32,6 +32,7 @@ struct Fenced : Field {
   }
   /// By hand, with the handle held.
   void stick(double speed_mps, double seconds) {
+    let_go();
     for (double t = 0.0; t < seconds; t += 0.1) {
       robot.request(Drive{{speed_mps, 0.0}, true}, now + std::chrono::milliseconds(250), {});
       run(0.1);

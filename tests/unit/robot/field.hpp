@@ -73,6 +73,7 @@ class Field {
   std::optional<double> battery_v;
   std::optional<double> hdop;
   std::optional<double> fix_sigma_m;
+  base::EnuPoint receiver_off{};  ///< told minus true position
   std::optional<double> speed_sigma_mps;
   base::HeadingSource compass = base::HeadingSource::Compass;
   std::function<void()> more;  ///< says more at every tick, before the robot's
@@ -125,6 +126,12 @@ class Field {
     ASSERT_GT(command.twist.linear_mps, 0.3);
   }
 
+  /// Sticks in the middle, dead-man off.
+  void let_go() {
+    robot.request(Drive{{}, false}, now, {});
+    tick();
+  }
+
   std::shared_ptr<const base::Snapshot> state() const { return robot.snapshot(); }
   ExecutionState execution() const { return state()->mission.state; }
   bool moves() const { return command.twist != base::BodyTwist{}; }
@@ -174,7 +181,7 @@ class Field {
     base::GnssFix f;
     f.stamp = now;
     f.fix = fix;
-    if (fix != base::FixType::None) f.position = kFrame.to_global(at);
+    if (fix != base::FixType::None) f.position = kFrame.to_global(at + receiver_off);
     f.satellites = satellites;
     if (receiver_late_s) {
       f.utc = base::WallTime{std::chrono::seconds(1'780'000'000)} + now.time_since_epoch() -

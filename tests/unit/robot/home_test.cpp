@@ -203,6 +203,8 @@ TEST(Home, AWayThatWasDrivenByRadioWhileDisarmedIsKnownTooButNotOneThatWasCarrie
   ASSERT_TRUE(f.ask(Disarm{}));
   f.at.north_m += 30.0;
   f.run(25.0);  // until it is believed
+  EXPECT_EQ(f.check("estimate").severity, base::Severity::Warning);
+  EXPECT_NE(f.check("estimate").detail.find("while it was disarmed"), std::string::npos);
   ASSERT_TRUE(f.ask(Arm{}));
   f.run(1.1);
   const auto carried = f.robot.way_home(Mode::SmartRtl);

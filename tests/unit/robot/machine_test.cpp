@@ -44,6 +44,7 @@ Mode expected(Mode from, ModeCause cause) {
     case ModeCause::Estop:
     case ModeCause::EstopReset:
       return Mode::Hold;
+    case ModeCause::Return:  // to HOLD here: no other mode was named
     case ModeCause::Armed:
     case ModeCause::Disarmed:
     case ModeCause::Fault:
@@ -61,7 +62,8 @@ INSTANTIATE_TEST_SUITE_P(Machine, EveryCause,
                          testing::Values(ModeCause::Chosen, ModeCause::MissionDrives,
                                          ModeCause::Loss, ModeCause::Estop, ModeCause::EstopReset,
                                          ModeCause::Armed, ModeCause::Disarmed, ModeCause::Fault,
-                                         ModeCause::MissionOver, ModeCause::ActivityOver));
+                                         ModeCause::MissionOver, ModeCause::ActivityOver,
+                                         ModeCause::Return));
 
 TEST_P(EveryCause, LeadsFromEachModeWhereTheTableSays) {
   for (const Mode from : kModes) {
@@ -90,6 +92,18 @@ TEST(Machine, AnyModeIsChosenFromAnyOtherAndTheRobotStandsBeforeItDrivesByItself
       EXPECT_EQ(change->stands_first, among(to, kToGoals)) << base::to_string(to);
       EXPECT_EQ(change->pauses_mission, from == Mode::Auto);
     }
+  }
+}
+
+TEST(Machine, AReturnLeadsHomeFromWhatDrivesByItselfOnly) {
+  for (const Mode from : kModes) {
+    ModeMachine m = in(from);
+    const bool by_itself = from == Mode::Auto || among(from, kToGoals);
+    const auto change = m.take(ModeCause::Return, Mode::Rtl);
+    EXPECT_EQ(m.mode(), by_itself ? Mode::Rtl : from) << base::to_string(from);
+    if (!change) continue;
+    EXPECT_TRUE(change->stands_first);
+    EXPECT_EQ(change->pauses_mission, from == Mode::Auto);
   }
 }
 

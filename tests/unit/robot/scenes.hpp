@@ -6,15 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "walk.hpp"
+#include "failsafe_scenes.hpp"
 
 namespace roverd::robot {
-
-struct Scene {
-  const char* name;
-  void (*play)(Walk&);
-  void (*prepare)(Config&) = [](Config&) {};
-};
 
 inline const std::vector<base::EnuPoint> kZigzag{{0, 6}, {3, 9}, {6, 9}, {6, 3}, {1, 3}};
 
@@ -70,7 +64,7 @@ inline void leave_and_resume(Walk& w) {
 }
 
 // What the robot is taken through. The change comes in the middle, or before what reads it begins.
-inline const std::vector<Scene> kScenes = {
+inline const std::vector<Scene> kDriveScenes = {
     {"a mission is driven",
      [](Walk& w) {
        w.run(8.0);
@@ -198,6 +192,28 @@ inline const std::vector<Scene> kScenes = {
        way.speed_mps = -0.45;
        (void)w.ask(way);
        w.run(4.0);
+     }},
+    {"backwards to a goal",
+     [](Walk& w) {
+       w.run(8.0);
+       (void)w.ask(Arm{});
+       w.change();
+       GoTo behind = w.to({0, -5});
+       behind.reverse = true;
+       (void)w.ask(behind);
+       w.run(8.0);
+     }},
+    {"a place that a car cannot come to",
+     [](Walk& w) {
+       w.run(8.0);
+       w.change();
+       w.go(plan_of({{0, 6}, {1.5, 7}, {1.5, 12}}));
+       w.run(40.0);
+     },
+     [](Config& c) {
+       c.vehicle.kinematics = "ackermann";
+       c.vehicle.wheelbase_m = 1.0;
+       c.vehicle.max_steering_deg = 25.0;
      }},
     {"stuck",
      [](Walk& w) {
@@ -341,6 +357,21 @@ inline const std::vector<Scene> kScenes = {
          w.run(1.0);
        }
      }},
+    {"by hand over a late link",
+     [](Walk& w) {
+       w.run(8.0);
+       (void)w.ask(Arm{});
+       (void)w.ask(SetMode{Mode::Manual});
+       w.let_go();
+       w.change();
+       for (const double late_s : {0.1, 0.3, 0.4}) {
+         for (double t = 0.0; t < 3.0; t += 0.1) {
+           const Drive stick{{0.8, 0.0}, true, 1, w.now - base::from_seconds(late_s)};
+           w.robot.request(stick, w.now + std::chrono::seconds(1), {});
+           w.run(0.1);
+         }
+       }
+     }},
     {"the base falls silent by parts",
      [](Walk& w) {
        w.run(8.0);
@@ -357,6 +388,15 @@ inline const std::vector<Scene> kScenes = {
        (void)w.ask(Arm{});
        w.change();
        w.control_mode = base::ControlMode::Standby;
+       w.run(8.0);
+     }},
+    {"the base never takes commands",
+     [](Walk& w) {
+       w.control_mode = base::ControlMode::Standby;
+       w.run(8.0);
+       w.change();
+       (void)w.ask(Arm{});
+       (void)w.ask(SetMode{Mode::Manual});
        w.run(8.0);
      }},
     {"the base takes no commands while it drives",
@@ -413,6 +453,17 @@ inline const std::vector<Scene> kScenes = {
        w.change();
        w.more = [&w] { w.at.north_m -= 0.02 * w.command.twist.linear_mps; };
        w.run(8.0);
+     }},
+    {"the receiver jumps, and jumps again",
+     [](Walk& w) {
+       w.run(8.0);
+       w.go(plan_of({{0, 45}}));
+       w.run(3.0);
+       w.change();
+       w.receiver_off = {0.8, 0.0};
+       w.run(16.0);
+       w.receiver_off = {1.6, 0.0};
+       w.run(18.0);
      }},
     {"the position fades",
      [](Walk& w) {
@@ -537,5 +588,7 @@ inline const std::vector<Scene> kScenes = {
        thrown(w.swa, base::Switch::Down, 0.3);
      }},
 };
+
+inline const std::vector<Scene> kScenes = joined(kDriveScenes, kFailsafeScenes);
 
 }  // namespace roverd::robot

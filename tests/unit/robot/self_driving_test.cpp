@@ -7,12 +7,14 @@
 #include <gtest/gtest.h>
 
 #include "base/angle.hpp"
+#include "robot/world.hpp"
 
 namespace roverd::robot {
 namespace {
 
 using base::ActivityState;
 using base::Mode;
+using base::Time;
 
 const base::LocalFrame kMap{3, {58.378, 26.729}};
 

@@ -36,6 +36,7 @@ class Walk : public Field {
   }
 
   void stick(double speed_mps, double turn_radps, double seconds) {
+    let_go();
     for (double t = 0.0; t < seconds; t += 0.1) {
       robot.request(Drive{{speed_mps, turn_radps}, true}, now + std::chrono::milliseconds(250), {});
       run(0.1);

@@ -169,7 +169,7 @@ TEST(EstimateWatch, TellsAFixClassThatLastsForASecond) {
 TEST(EstimateWatch, TellsResetsButNotThoseThatAnOperatorMade) {
   Told t;
   t.health.resets = 1;
-  t.health.last_reset = base::EstimateReset{"position", {3.0, 4.0}, 0.0, {}};
+  t.health.last_reset = base::EstimateReset{"position", {3.0, 4.0}, 0.0, 0.0, 0.0, {}};
   t.run(0.1);
   EXPECT_EQ(t.take(), Kinds{"estimate_reset"});
   EXPECT_EQ(t.details.back(),

@@ -194,6 +194,7 @@ export const vehicle_calls = (seen: Seen): VehicleCalls => {
     turn: (turn_deg) => command('POST', '/vehicle/move', { turn_deg }),
     set_home: ({ lat, lon }) => command('PUT', '/vehicle/home', { lat, lon }),
     reset_estop: () => command('POST', '/vehicle/estop/reset'),
+    acknowledge: () => command('POST', '/vehicle/acknowledge'),
     restart_driver: (name) =>
       request<unknown>(`/drivers/${encodeURIComponent(name)}/restart`, {
         method: 'POST',

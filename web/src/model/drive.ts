@@ -34,6 +34,49 @@ export const drive_wish = (
   yaw_rate_dps: 0 - shaped(right) * limits.max_yaw_rate_dps * share,
 });
 
+/** While nobody pushes the pad says so: the robot obeys only who was seen to let go before. */
+export const LET_GO_PERIOD_MS = 250;
+
+/**
+ * What is pressed, whether it drives or not. Only a fresh grip begins to drive: a finger or a key that
+ * is down already, or a key that the keyboard repeats, begins nothing.
+ */
+export class Grip {
+  #finger = false;
+  readonly #keys = new Set<string>();
+
+  get keys(): ReadonlySet<string> {
+    return this.#keys;
+  }
+  get free(): boolean {
+    return !this.#finger && this.#keys.size === 0;
+  }
+
+  /** @return true: a fresh grip */
+  finger_down(): boolean {
+    const fresh = this.free;
+    this.#finger = true;
+    return fresh;
+  }
+  finger_up(): void {
+    this.#finger = false;
+  }
+  /** @return true: a fresh grip */
+  key_down(key: string, repeated: boolean): boolean {
+    const fresh = this.free && !repeated;
+    this.#keys.add(key);
+    return fresh;
+  }
+  key_up(key: string): void {
+    this.#keys.delete(key);
+  }
+  /** The page does not hear any more when something is let go. */
+  lose_sight(): void {
+    this.#finger = false;
+    this.#keys.clear();
+  }
+}
+
 /** The same from keys held down; opposite keys cancel. */
 export const wish_of_keys = (
   held: ReadonlySet<string>,

@@ -42,6 +42,7 @@ const reasons: Readonly<Record<string, string>> = {
   stopping: 'stopping',
   standing: 'standing',
   manual: 'as fast as your hand says',
+  link_delay: 'slow: the link is late',
   teleop_stale: 'stopped: the page was not heard',
   fence: 'limited by the fence',
 };

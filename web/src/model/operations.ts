@@ -2,7 +2,7 @@
 // what it can know for certain; the last word is the robot's answer. Whatever makes the robot stop
 // is never refused here.
 
-import type { Mode, Vehicle } from './vehicle';
+import { estimate_waits, type Mode, type Vehicle } from './vehicle';
 
 export interface Facts {
   /** What is shown is old, or of unknown age. */
@@ -32,6 +32,10 @@ export const why_not_arm = (facts: Facts): Reason => no_link(facts) ?? no_stop(f
 
 export const why_not_reset_stop = (facts: Facts): Reason =>
   no_link(facts) ?? (facts.vehicle?.estop === true ? null : 'The emergency stop is not set.');
+
+export const why_not_acknowledge = (facts: Facts): Reason =>
+  no_link(facts) ??
+  (facts.vehicle && estimate_waits(facts.vehicle) ? null : 'There is nothing to look at.');
 
 export const why_not_mode = (facts: Facts, mode: string): Reason => {
   if (mode === 'HOLD') return null;

@@ -4,12 +4,13 @@
 import { distance_m } from './geo';
 import { activity_line } from './modes';
 import type { LatLon } from './plan';
-import type { Activity, Mode, Vehicle } from './vehicle';
+import { estimate_waits, type Activity, type Mode, type Vehicle } from './vehicle';
 
 /** What a command should lead to. */
 export type Wish =
   | { readonly to: 'arm' }
   | { readonly to: 'reset' }
+  | { readonly to: 'acknowledge' }
   | { readonly to: 'mode'; readonly mode: Mode }
   | { readonly to: 'do'; readonly kinds: readonly Activity['kind'][] }
   | { readonly to: 'load'; readonly id: string; readonly revision: number }
@@ -40,6 +41,10 @@ export const outcome = (wish: Wish, before: Vehicle | null, after: Vehicle): Out
         obeyed: !after.estop,
         detail: `the emergency stop is ${after.estop ? 'still latched' : 'reset'}`,
       };
+    case 'acknowledge': {
+      const waits = estimate_waits(after);
+      return { obeyed: !waits, detail: waits ? 'it still waits for that' : 'it was taken' };
+    }
     case 'mode':
       return { obeyed: after.mode === wish.mode, detail: `the mode is ${after.mode}` };
     case 'do': {

@@ -159,6 +159,8 @@ export interface VehicleCalls {
   turn(turn_deg: number): Promise<Answer<unknown>>;
   set_home(at: LatLon): Promise<Answer<unknown>>;
   reset_estop(): Promise<Answer<unknown>>;
+  /** A person has looked where the robot stands. */
+  acknowledge(): Promise<Answer<unknown>>;
   /** The way so far. */
   trail(): Promise<Answer<Remembered>>;
   drivers(): Promise<Answer<Page<Driver>>>;

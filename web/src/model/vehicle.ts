@@ -137,6 +137,12 @@ export interface Vehicle {
   readonly armed: boolean;
   readonly estop: boolean;
   readonly control: Control;
+  /** Sticks over the stream: whether one may act, and what helps. */
+  readonly teleop: {
+    readonly state: 'off' | 'release' | 'ready' | 'held';
+    readonly reason: string;
+    readonly delay_s: number | null;
+  };
   readonly speed_reason: string;
   readonly position: Position;
   readonly estimator: Estimator;
@@ -296,3 +302,7 @@ export const teach_words: Record<TeachBrief['state'], string> = {
   paused: 'Paused',
   interrupted: 'Interrupted',
 };
+
+/** The position was set anew so far that the robot holds until a person has looked. */
+export const estimate_waits = (vehicle: Vehicle): boolean =>
+  vehicle.safety.some(({ id }) => id === 'estimate_latched');

@@ -94,6 +94,17 @@ export class Pilot {
     if (sure) await this.#do('Reset', { to: 'reset' }, () => this.#calls.reset_estop());
   }
 
+  async acknowledge(): Promise<void> {
+    const sure = await this.#dialogs.ask({
+      title: 'Does the robot stand where the map shows it?',
+      text: 'It set its position anew, far from where it claimed to be. Look at the robot and at the map: after this it may drive by itself again.',
+      yes: 'I have looked',
+      danger: true,
+    });
+    if (sure)
+      await this.#do('I have looked', { to: 'acknowledge' }, () => this.#calls.acknowledge());
+  }
+
   /** Asks the robot what a start would do, and shows it. Nothing moves. */
   async preview(from: StartFrom): Promise<void> {
     await this.#one('Start', async () => {

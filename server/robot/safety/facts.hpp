@@ -1,0 +1,40 @@
+#pragma once
+// What the failsafes judge by: what the drivers said last, and what the watches made of it.
+// A view of one tick; control thread.
+
+#include <optional>
+#include <string_view>
+
+#include "base/snapshot.hpp"
+#include "robot/safety/driver_falls.hpp"
+#include "robot/world.hpp"
+
+namespace roverd::robot {
+
+struct Facts {
+  const World& world;
+  const std::optional<base::Pose>& pose;
+  std::optional<Time> last_position{};  ///< last one that was fused
+  bool armed = false;
+  bool estop = false;                       ///< latched
+  bool autonomous = false;                  ///< mode AUTO, mission running
+  bool homeward = false;                    ///< RTL, SMART_RTL, DOCK: there a return leads, too
+  std::optional<Time> base_waited_since{};  ///< armed, and the base takes no commands since
+  bool base_left = false;                   ///< just now, and nobody told it to
+  bool commands_lost = false;               ///< see ObedienceWatch
+  bool not_following = false;               ///< commands_lost, and told to move now
+  std::optional<Time> sigma_bad_since{};
+  bool spins = false;  ///< see SpinWatch
+  std::optional<base::Attitude> attitude{};
+  std::optional<Time> leans_since{};  ///< beyond tilt_stop_deg
+  bool gyro_lost = false;             ///< there was one in this life of the program
+  DriverFalls::Worst falls{};         ///< of drivers, within a minute
+  std::optional<double> home_m{};     ///< straight
+  std::optional<double> use_pct_per_m{};
+  std::string_view self_test{};  ///< what it found; empty: nothing
+  const base::EstimatorHealth& estimate;
+  std::string_view latched{};         ///< see ResetLatch; empty: not
+  std::string_view moved_disarmed{};  ///< likewise
+};
+
+}  // namespace roverd::robot

@@ -1,0 +1,125 @@
+// The failsafes of sensors that contradict each other: docs/sensors.md. Followed by something only
+// while the robot drives by itself.
+
+#include <array>
+
+#include "robot/safety/failsafe_words.hpp"
+#include "robot/safety/made_up.hpp"
+#include "robot/safety/votes_watch.hpp"
+
+namespace roverd::robot {
+namespace {
+
+using base::Sense;
+using Told = std::optional<std::string>;
+
+/// All that are left out, one after the other; empty: none is.
+Told left_out(const Facts& f) {
+  const base::Votes& votes = f.estimate.votes;
+  std::string text;
+  for (std::size_t i = 0; i < base::kSenses; ++i) {
+    if (!votes.of[i].left_out) continue;
+    if (!text.empty()) text += "; ";
+    text += contradiction_words(votes, static_cast<Sense>(i));
+  }
+  if (text.empty()) return {};
+  return text;
+}
+
+/// Too little is left to drive by.
+bool too_few(const Facts& f, const SafetyParams& p) noexcept {
+  const base::Votes& votes = f.estimate.votes;
+  int carrying = 0;  // of those that carry the estimate
+  for (const Sense s : {Sense::Tracks, Sense::Gyro, Sense::Position, Sense::Velocity}) {
+    carrying += votes[s].left_out ? 1 : 0;
+  }
+  const bool far = f.estimate.free_m > p.contradiction_free_m;
+  return votes[Sense::Tracks].left_out || carrying > 1 || (votes[Sense::Position].left_out && far);
+}
+
+void leave_out(MadeUp& m, Sense s) {
+  m.estimate.votes.of[static_cast<std::size_t>(s)].left_out = true;
+}
+
+constexpr std::array kSensorRows{
+    Failsafe{
+        .id = "estimate_latched",
+        .seen =
+            "the estimate was set anew far beyond what it had claimed, or twice in a short time",
+        .after = "at once; twice within {reset_repeat_s}",
+        .response = Response::Hold,
+        .acts = Acts::ByItself,
+        .ends = "a person has looked, and acknowledges it or says where it stands",
+        .over = kHands,
+        .test = [](const Facts& f, const SafetyParams&, Time) -> Told {
+          if (f.latched.empty()) return {};
+          return std::string(f.latched) + ": look where the robot stands, and acknowledge it";
+        },
+        .provoke = [](MadeUp& m) { m.facts.latched = "the position was set anew"; },
+    },
+    Failsafe{
+        .id = "sensors_contradict",
+        .seen = "two sensors contradict each other, and it cannot be told which one is wrong",
+        .after = "1.6 s",
+        .response = Response::Hold,
+        .acts = Acts::ByItself,
+        .ends = kGoneAndGoOn,
+        .over = kHands,
+        .test = [](const Facts& f, const SafetyParams&, Time) -> Told {
+          if (!f.estimate.votes.undecided) return {};
+          return undecided_words(f.estimate.votes);
+        },
+        .provoke =
+            [](MadeUp& m) {
+              m.estimate.votes.undecided = {Sense::Tracks, Sense::Gyro};
+            },
+    },
+    Failsafe{
+        .id = "sensor_left_out",
+        .seen = "odometry, or two that carry the estimate, contradict the others; or the position "
+                "does, and it was left out for so far",
+        .after = "0.6 s; {contradiction_free_m} driven",
+        .response = Response::Hold,
+        .acts = Acts::ByItself,
+        .ends = kGoneAndGoOn,
+        .over = kHands,
+        .test = [](const Facts& f, const SafetyParams& p, Time) -> Told {
+          if (!too_few(f, p)) return {};
+          return left_out(f);
+        },
+        .provoke = [](MadeUp& m) { leave_out(m, Sense::Tracks); },
+    },
+    Failsafe{
+        .id = "sensor_left_out",
+        .seen = "the satellites' position contradicts the others, and is left out",
+        .after = "0.6 s",
+        .response = Response::Slow,
+        .acts = Acts::ByItself,
+        .ends = kEndsByItself,
+        .over = kHands,
+        .test = [](const Facts& f, const SafetyParams&, Time) -> Told {
+          if (!f.estimate.votes[Sense::Position].left_out) return {};
+          return left_out(f);
+        },
+        .provoke = [](MadeUp& m) { leave_out(m, Sense::Position); },
+    },
+    Failsafe{
+        .id = "sensor_left_out",
+        .seen = "gyro, velocity, compass or antennas contradict the others: one is left out",
+        .after = "0.6 s",
+        .response = Response::Warn,
+        .acts = Acts::ByItself,
+        .ends = kEndsByItself,
+        .over = kNeedsNone,
+        .test = [](const Facts& f, const SafetyParams&, Time) -> Told { return left_out(f); },
+        .provoke = [](MadeUp& m) { leave_out(m, Sense::Gyro); },
+    },
+};
+
+}  // namespace
+
+std::span<const Failsafe> sensor_failsafes() noexcept {
+  return kSensorRows;
+}
+
+}  // namespace roverd::robot

@@ -1,0 +1,113 @@
+// What the sensors tell of a motion is compared: an honest one accuses nobody.
+
+#include "nav/vote/votes.hpp"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "base/angle.hpp"
+
+namespace roverd::nav {
+namespace {
+
+using base::rad_from_deg;
+
+/// A vehicle on a slope that falls to the east: it slides downhill by a part of its speed.
+class Slope {
+ public:
+  double slide = 0.0;
+  double slip = 0.1;
+  double gyro_extra_radps = 0.0;
+  bool tracks_speak = true;
+  Votes votes;
+
+  void drive(double speed_mps, double rate_radps, double for_s) {
+    for (int i = 0; i < for_s * 50.0; ++i) step(speed_mps, rate_radps);
+  }
+
+ private:
+  void step(double speed_mps, double rate_radps) {
+    constexpr double kDt_s = 0.02;
+    now_ += base::from_seconds(kDt_s);
+    yaw_rad_ += rate_radps * kDt_s;
+    const double over_ground = (1.0 - slip) * speed_mps;
+    const base::EnuPoint mps{over_ground * std::cos(yaw_rad_) + slide * std::abs(speed_mps),
+                             over_ground * std::sin(yaw_rad_)};
+    at_ = {at_.east_m + mps.east_m * kDt_s, at_.north_m + mps.north_m * kDt_s};
+    if (tracks_speak) votes.tracks(speed_mps * kDt_s, rate_radps * kDt_s / 0.7, now_);
+    const double gyro = rate_radps + gyro_extra_radps + 0.002 * normal_(random_);
+    votes.gyro(gyro, gyro, now_);
+    if (++count_ % 10 == 0) {
+      Spot spot;
+      spot.t = now_;
+      spot.at = {at_.east_m + 0.02 * normal_(random_), at_.north_m + 0.02 * normal_(random_)};
+      spot.sigma_m = 0.02;
+      votes.position(spot, 4, now_);
+      votes.velocity({mps.east_m + 0.03 * normal_(random_), mps.north_m + 0.03 * normal_(random_)},
+                     0.05, now_, now_);
+    }
+    Belonging b;
+    b.yaw_rad = yaw_rad_;
+    b.yaw_sigma_rad = rad_from_deg(3.0);
+    b.scale = 1.0 - slip;
+    b.scale_sigma = 0.02;
+    votes.step(b, 4.0, 10.0, now_);
+  }
+
+  Time now_{};
+  int count_ = 0;
+  double yaw_rad_ = 0.0;
+  base::EnuPoint at_;
+  std::mt19937_64 random_{7};
+  std::normal_distribution<double> normal_;
+};
+
+/// Straight, bent either way, turned on the spot, and back.
+void all_ways(Slope& slope, double speed_mps) {
+  for (int i = 0; i < 6; ++i) {
+    slope.drive(speed_mps, 0.0, 8.0);
+    slope.drive(0.0, 0.5, base::kPi);  // a quarter
+    slope.drive(speed_mps, 0.2, 6.0);
+    slope.drive(speed_mps, -0.3, 6.0);
+    slope.drive(0.0, 0.0, 2.0);
+    slope.drive(-speed_mps, 0.1, 6.0);
+    slope.drive(0.0, 0.0, 1.0);
+  }
+}
+
+TEST(Votes, AVehicleThatSlidesDownASlopeByATenthAccusesNobody) {
+  for (const double slide : {0.0, 0.05, 0.1}) {
+    for (const double speed_mps : {0.4, 0.8, 1.2}) {
+      Slope slope;
+      slope.slide = slide;
+      all_ways(slope, speed_mps);
+      EXPECT_EQ(slope.votes.told().accusations, 0u) << slide << " at " << speed_mps;
+      EXPECT_TRUE(slope.votes.told()[Sense::Gyro].heard);
+    }
+  }
+}
+
+TEST(Votes, AGyroThatLiesThereIsNamedAllTheSame) {
+  Slope slope;
+  slope.slide = 0.1;
+  all_ways(slope, 0.8);
+  slope.gyro_extra_radps = rad_from_deg(6.0);
+  slope.drive(0.8, 0.0, 9.0);
+  EXPECT_TRUE(slope.votes.out(Sense::Gyro));
+  EXPECT_EQ(slope.votes.told().accusations, 1u);
+}
+
+TEST(Votes, TracksThatWereSilentAreNotAccusedOfTheWayThatTheyDidNotTell) {
+  Slope slope;
+  slope.drive(0.8, 0.0, 10.0);
+  slope.tracks_speak = false;
+  slope.drive(0.8, 0.0, 3.0);
+  slope.tracks_speak = true;
+  slope.drive(0.8, 0.0, 12.0);
+  EXPECT_EQ(slope.votes.told().accusations, 0u);
+}
+
+}  // namespace
+}  // namespace roverd::nav

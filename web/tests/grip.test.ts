@@ -1,0 +1,44 @@
+import { describe, expect, it } from 'vitest';
+
+import { Grip } from '../src/model/drive';
+
+describe('a grip on the drive pad', () => {
+  it('is fresh when a finger or a key comes down on nothing', () => {
+    expect(new Grip().finger_down()).toBe(true);
+    expect(new Grip().key_down('w', false)).toBe(true);
+  });
+
+  it('is not fresh while something is down already', () => {
+    const grip = new Grip();
+    grip.finger_down();
+    expect(grip.key_down('w', false)).toBe(false);
+    grip.finger_up();
+    expect(grip.free).toBe(false);
+    expect(grip.key_down('a', false)).toBe(false);
+    expect(grip.finger_down()).toBe(false);
+  });
+
+  it('is not fresh when the keyboard repeats a key whose first press nobody saw', () => {
+    const grip = new Grip();
+    grip.key_down('w', false);
+    grip.lose_sight(); // the window lost the focus: its end will not be told
+    expect(grip.free).toBe(true);
+    expect(grip.key_down('w', true)).toBe(false);
+    expect(grip.free).toBe(false);
+    expect(grip.key_down('d', false)).toBe(false);
+    grip.key_up('w');
+    grip.key_up('d');
+    expect(grip.key_down('w', false)).toBe(true);
+  });
+
+  it('is free again only when all is up', () => {
+    const grip = new Grip();
+    grip.key_down('w', false);
+    grip.key_down('a', false);
+    expect([...grip.keys]).toEqual(['w', 'a']);
+    grip.key_up('w');
+    expect(grip.free).toBe(false);
+    grip.key_up('a');
+    expect(grip.free).toBe(true);
+  });
+});
