@@ -41,8 +41,9 @@ class RoughBus:
         until(f"the robot drives {way_m} m on", seconds, lambda: self.driven_m() > begin + way_m, 0.3)
 
     def recordings(self):
+        """In the order in which they were written: the first has no number, NAME.log, NAME.001.log."""
         folder = pathlib.Path(self.log).parent / "data/recordings"
-        return sorted(folder.glob("*-bunker*.log"))
+        return sorted(folder.glob("*-bunker*.log"), key=lambda file: file.name.removesuffix(".log"))
 
     def a_full_bus_does_not_stop_the_robot(self):
         """a bus full of somebody else's frames (cangen -g 0) neither stops nor disturbs the robot"""
