@@ -55,6 +55,7 @@ class RigBase {
 
   void tick() {
     now_ += kTick;
+    if (dead) return live_on();
     run_devices(now_);
     robot.tick(now_, wall());
     drain();
@@ -296,10 +297,17 @@ class RigBase {
   std::vector<sim::Truth> track;
   std::vector<base::Event> events;
   double fastest_mps = 0.0;
+  /// The program has been killed: what remains is the vehicle.
+  bool dead = false;
   /// What somebody did to the robot computer's clock; nothing but shown times may change.
   base::Duration clock_jump{};
 
  private:
+  void live_on() {
+    plant.advance_to(now_);
+    track.push_back(plant.truth());
+  }
+
   void fit_imu() {
     imu_bytes_.b->set_immediate([this] { return at_; });
     imu_bytes_.b->on_bytes = [this](base::Bytes b, Time) { plant.receive_imu(b); };
@@ -323,7 +331,9 @@ class RigBase {
   void drain() {
     std::vector<robot::PendingReply> replies;
     robot.replies().take(replies);
-    for (auto& r : replies) r.reply(std::move(r.result));
+    for (auto& r : replies) {
+      if (r.reply) r.reply(std::move(r.result));
+    }
     robot.events().take(events);
   }
 

@@ -63,7 +63,9 @@ class Atv {
     robot.tick(now_, base::WallTime{now_.time_since_epoch()});
     std::vector<robot::PendingReply> replies;
     robot.replies().take(replies);
-    for (auto& r : replies) r.reply(std::move(r.result));
+    for (auto& r : replies) {
+      if (r.reply) r.reply(std::move(r.result));
+    }
     std::vector<base::Event> events;
     robot.events().take(events);
   }
