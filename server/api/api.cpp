@@ -396,9 +396,9 @@ void Api::drain() {
   impl_->replies.clear();
   robot.replies().take(impl_->replies);
   for (robot::PendingReply& pending : impl_->replies) {
-    if (pending.reply) pending.reply(std::move(pending.result));
+    // It holds the connection, which is let go on this thread alone.
+    if (const auto reply = std::exchange(pending.reply, nullptr)) reply(std::move(pending.result));
   }
-  // They may hold the mission that was loaded before.
   if (!impl_->replies.empty()) impl_->context->discard(std::exchange(impl_->replies, {}));
   if (impl_->stream) impl_->stream->look_at_execution();
 }

@@ -1,9 +1,13 @@
 #include "net/connection.hpp"
 
 #include <array>
+#include <chrono>
+#include <memory>
 #include <new>
+#include <thread>
 #include <utility>
 
+#include <boost/asio/post.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/write.hpp>
@@ -44,6 +48,38 @@ bool bodyless(http::status status) {
 bool equals_no_case(boost::beast::string_view a, boost::beast::string_view b) {
   return boost::beast::iequals(a, b);
 }
+
+/// Held by who is to answer: on whichever thread it is let go of, the connection ends on its own.
+class Homing {
+ public:
+  Homing(std::shared_ptr<Connection> connection, boost::asio::io_context& home)
+      : box_(std::make_shared<Box>(std::move(connection))), home_(home) {}
+  ~Homing() {
+    if (home_.get_executor().running_in_this_thread()) return;
+    while (!sent_home()) std::this_thread::sleep_for(kMemoryComesBack);
+  }
+  Homing(const Homing&) = delete;
+  Homing& operator=(const Homing&) = delete;
+
+  Connection& connection() const noexcept { return **box_; }
+
+ private:
+  using Box = std::shared_ptr<Connection>;
+  static constexpr std::chrono::milliseconds kMemoryComesBack{20};
+
+  /// The box is emptied there: what is left of it here is never the last reference.
+  bool sent_home() const noexcept {
+    try {
+      boost::asio::post(home_, [box = box_] { box->reset(); });
+      return true;
+    } catch (...) {
+      return false;
+    }
+  }
+
+  std::shared_ptr<Box> box_;
+  boost::asio::io_context& home_;
+};
 
 }  // namespace
 
@@ -218,11 +254,11 @@ void Connection::on_request() {
   whole_ = base::steady_now();
   ++peers_->stats.requests;
   if (!peers_->handlers.on_request) return force();
-  peers_->handlers.on_request(parser_->release(), begun_,
-                              [self = shared_from_this()](Response response) {
-                                if (self->phase_ != Phase::Handling) return;
-                                self->answer(std::move(response));
-                              });
+  peers_->handlers.on_request(
+      parser_->release(), begun_,
+      [homing = std::make_shared<Homing>(shared_from_this(), peers_->io)](Response response) {
+        homing->connection().on_answer(std::move(response));
+      });
 }
 
 void Connection::upgrade() {
@@ -245,6 +281,10 @@ void Connection::refuse(unsigned status, std::string_view detail) {
   keep_alive_ = false;
   phase_ = Phase::Handling;
   answer(peers_->refusal(status, detail));
+}
+
+void Connection::on_answer(Response response) {
+  if (phase_ == Phase::Handling) answer(std::move(response));
 }
 
 void Connection::answer(Response response) {

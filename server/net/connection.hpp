@@ -43,6 +43,8 @@ class Connection : public Peer, public std::enable_shared_from_this<Connection> 
   void stop() override;
   void force() override;
   std::optional<base::Time> gives_way() const override;
+  /// What the handler says; nothing if the connection has been closed meanwhile.
+  void on_answer(Response response);
   bool on_reserve() const override { return reserve_ && socket_.is_open(); }
 
  private:

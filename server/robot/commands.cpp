@@ -32,6 +32,12 @@ bool carries_much(const Command& c) noexcept {
          std::holds_alternative<SetFence>(c);
 }
 
+/// What is left of a command when it was carried out.
+struct Left {
+  Command command;
+  std::shared_ptr<const void> old;
+};
+
 }  // namespace
 
 bool neutral(const base::BodyTwist& twist) noexcept {
@@ -49,13 +55,12 @@ void Robot::Impl::take_commands() {
   commands.try_take(command_batch);
   for (PendingCommand& pending : command_batch) {
     base::Result<void> result = carry_out(pending);
+    std::shared_ptr<const void> left;
     if (carries_much(pending.command)) {
-      pending.reply = [reply = std::move(pending.reply), old = std::exchange(retired, nullptr),
-                       command = std::move(pending.command)](base::Result<void> r) {
-        if (reply) reply(std::move(r));
-      };
+      left = std::make_shared<const Left>(
+          Left{std::move(pending.command), std::exchange(retired, nullptr)});
     }
-    outbox.reply(std::move(pending.reply), std::move(result));
+    outbox.reply(std::move(pending.reply), std::move(result), std::move(left));
   }
   command_batch.clear();
 }

@@ -26,8 +26,10 @@ class Outbox {
   base::Inbox<MissionEdit> edits{64};
   base::Inbox<TeachWish> wishes{64};
 
-  void reply(Reply to, base::Result<void> result) {
-    if (to) waiting_replies_.push_back({std::move(to), std::move(result)});
+  void reply(Reply to, base::Result<void> result, std::shared_ptr<const void> left = nullptr) {
+    if (to || left) {
+      waiting_replies_.push_back({std::move(to), std::move(result), std::move(left)});
+    }
   }
 
   void event(base::WallTime wall, base::Severity level, const char* kind, std::string detail) {

@@ -196,8 +196,10 @@ struct Validity {
 using Reply = std::function<void(base::Result<void>)>;
 
 struct PendingReply {
-  Reply reply;
+  Reply reply;  ///< may be empty
   base::Result<void> result;
+  /// What takes long to free (a mission that was loaded before): not for the thread of the reply.
+  std::shared_ptr<const void> left{};
 };
 
 /// Code of Robot::changed_safety's findings.

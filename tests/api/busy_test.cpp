@@ -113,6 +113,19 @@ TEST_F(BusyApi, ACommandHasASmallBodyAndADocumentALargerOne) {
   EXPECT_EQ(of("/missions/import", 64 * 1024 * 1024 + 1).status, 413u);
 }
 
+/// Only the web thread may let go of a connection: what the thread sanitizer would tell.
+TEST_F(BusyApi, AClientThatLeavesBeforeItsAnswerDisturbsNobody) {
+  until([this] { return call("GET", "/vehicle").status == 200; }, "a first state");
+  // Given commands whose clients do not wait for the answer,
+  for (int i = 0; i < 100; ++i) {
+    Client hasty(house.port());
+    EXPECT_TRUE(hasty.send(
+        "POST /api/v1/vehicle/disarm HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 0\r\n\r\n"));
+  }
+  // then the next one is served as ever.
+  EXPECT_EQ(call("POST", "/vehicle/disarm").status, 200u);
+}
+
 TEST_F(BusyApi, AStopStopsWhateverItsBodyIsAndHoweverOftenItIsSaid) {
   until([this] { return call("GET", "/vehicle").status == 200; }, "a first state");
   EXPECT_EQ(call("POST", "/vehicle/estop", "{ no JSON", "Content-Type: text/plain\r\n").status,

@@ -176,6 +176,26 @@ TEST(Http, AllBodiesTogetherAreBounded) {
   house.run([&kept] { kept.clear(); });
 }
 
+/// Judged by the thread sanitizer: what all connections share belongs to the web thread.
+TEST(Http, WhoeverLetsGoOfAnAnswerElsewhereDisturbsNobody) {
+  std::vector<std::thread> elsewhere;
+  net::Handlers h = echo();
+  h.on_request = [&elsewhere](const net::Request&, base::Time, net::Respond respond) {
+    elsewhere.emplace_back(
+        [held = std::make_unique<net::Respond>(std::move(respond))]() mutable { held.reset(); });
+  };
+  {
+    NetHouse house(small(), h);
+    for (int i = 0; i < 50; ++i) {
+      Client client(house.port());
+      client.send("GET / HTTP/1.1\r\nHost: a\r\n\r\n");
+      EXPECT_TRUE(client.closed_within(5s));
+    }
+  }
+  EXPECT_EQ(elsewhere.size(), 50u);
+  for (std::thread& thread : elsewhere) thread.join();
+}
+
 TEST(Http, ALargeAnswerComesWholeAndItsBytesAreFreedElsewhere) {
   std::atomic<std::size_t> freed{0};
   net::Handlers h = echo();

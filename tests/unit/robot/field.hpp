@@ -92,7 +92,9 @@ class Field {
     robot.tick(now, base::WallTime{now.time_since_epoch()});
     std::vector<PendingReply> replies;
     robot.replies().take(replies);
-    for (auto& r : replies) r.reply(std::move(r.result));
+    for (auto& r : replies) {
+      if (r.reply) r.reply(std::move(r.result));
+    }
     robot.events().take(events);
   }
 
