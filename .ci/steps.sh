@@ -216,9 +216,13 @@ by_clang() {
     -DCMAKE_CXX_FLAGS="-O1 -g1" -DROVERD_FUZZ=ON "${in_groups[@]}"
 }
 
-step_asan() {
+asan_tree() {
   by_clang
   ninja_build "$build/clang"
+}
+
+step_asan() {
+  asan_tree
   ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1 \
     UBSAN_OPTIONS=print_stacktrace=1 \
     run_ctest "$build/clang" 'unit|loop|api' "$logs/asan" -j "$jobs" >"$logs/asan-cases.log" 2>&1 ||
@@ -228,7 +232,7 @@ step_asan() {
 
 threaded='^(base|services|supervise|net|store|link|robot|net_socket|api_socket)_test$'
 
-step_tsan() {
+tsan_tree() {
   local targets
   # Asio uses fences, of which GCC warns that the thread sanitizer does not see them.
   configure "$build/tsan" -DCMAKE_BUILD_TYPE=Sanitized -DCMAKE_CXX_FLAGS="-O1 -g1 -Wno-tsan" \
@@ -237,11 +241,30 @@ step_tsan() {
   mapfile -t targets < <(ctest --test-dir "$build/tsan" -N -R "$threaded" |
     sed -n 's/^ *Test *#[0-9]*: //p')
   ninja_build "$build/tsan" roverd roverd-sim "${targets[@]}"
+}
+
+step_tsan() {
+  tsan_tree
   # Without address randomisation: newer kernels' layout is unknown to this sanitizer's runtime.
   TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1 \
     setarch -R ctest --test-dir "$build/tsan" -j "$jobs" -R "$threaded" --no-tests=error --output-on-failure \
     --timeout 600 --output-junit "$logs/tsan.xml"
   "$root/.ci/results" ctest "$logs/tsan.xml"
+}
+
+# The trees of the sanitizers, built while the steps before them mostly wait: for sockets, browsers,
+# simulated robots. Of the idle class, so that a robot that wants the processor has it at once. What
+# goes wrong here is told by the step that builds the same once more.
+waiting_steps=' api command vehicles real can page '
+trees_ahead() {
+  local step
+  chrt --idle --pid 0 $BASHPID || true
+  for step in "$@"; do
+    case $step in
+      asan) asan_tree ;;
+      tsan) tsan_tree ;;
+    esac || true
+  done
 }
 
 fuzz_one() {
