@@ -102,6 +102,9 @@ struct Settings {
   /// Of Repeat and BackAndForth: how often the way is driven, in either direction; 0 or empty: for
   /// ever. Without meaning otherwise.
   std::optional<int> times{};
+  /// Half width of the way that it may use: how exact the position must be, and how far off the
+  /// route the robot may be at most.
+  std::optional<double> corridor_m{};
   friend bool operator==(const Settings&, const Settings&) = default;
 };
 

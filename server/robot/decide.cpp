@@ -21,6 +21,10 @@ std::optional<base::Attitude> Robot::Impl::attitude() const {
   return estimator.attitude(clock.now());
 }
 
+std::optional<double> Robot::Impl::corridor_m() const noexcept {
+  return machine.mode() == Mode::Auto ? missions.executor.corridor_m() : std::nullopt;
+}
+
 Facts Robot::Impl::facts() const {
   const auto home_at = pose ? home_point() : std::nullopt;
   return {.world = world,
@@ -36,6 +40,8 @@ Facts Robot::Impl::facts() const {
           .commands_lost = base_watch.commands_lost(),
           .not_following = base_watch.disobeys_now(),
           .sigma_bad_since = position_watch.uncertain_since(),
+          .corridor_m = corridor_m(),
+          .corridor_bad_since = position_watch.too_wide_since(),
           .spins = position_watch.spins(),
           .attitude = attitude(),
           .leans_since = lean_watch.since(),
@@ -55,7 +61,8 @@ void Robot::Impl::judge() {
   lean_watch.step(attitude(), p.tilt_stop_deg, clock.now());
   battery_use.step(world.battery, world.motion ? world.motion->twist.linear_mps : 0.0,
                    clock.dt_s());
-  if (position_watch.step(pose, world, p, clock.now())) estimator.doubt_position(kSpun_m);
+  if (position_watch.step(pose, world, p, corridor_m(), clock.now()))
+    estimator.doubt_position(kSpun_m);
   assessment = assess(facts(), p, clock.now());
   if (assessment.base_estop) latch_estop("the button at the base");
   if (const auto hit = std::exchange(world.bumper_hit, std::nullopt)) {

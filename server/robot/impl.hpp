@@ -207,6 +207,8 @@ struct Robot::Impl {
   base::DriveCommand drive_by_itself();
   nav::Vehicle vehicle() const;
   double limit_mps() const noexcept;
+  /// Of the mission that runs.
+  std::optional<double> corridor_m() const noexcept;
   void tell_notices();
   void act(const nav::Notice& n);
   void lay_way();

@@ -81,6 +81,27 @@ TEST_P(Conditions, ALostRtkFixChangesToFloatAndSingleWithoutAJump) {
   EXPECT_LT(rig.distance_to_m({0, 40}), 0.3);
 }
 
+TEST_P(Conditions, AMissionsCorridorIsHeldByWhatIsKnownOfThePosition) {
+  // Given a mission between rows that leave 25 cm to each side,
+  Rig rig(options());
+  auto plan = rig.plan_of({{0, 30}, {0, 150}});
+  plan.settings.corridor_m = 0.25;
+  rig.arm_and_start(plan);
+  ASSERT_TRUE(rig.run_until([&] { return rig.truth().driven_m > 8.0; }, 60.0));
+  EXPECT_FALSE(rig.has_condition("corridor"));
+  // when the fix becomes too coarse for that,
+  rig.fault([](sim::Faults& f) { f.gnss_fix = "gps"; });
+  // then it creeps at first, and holds before it is beyond.
+  ASSERT_TRUE(rig.run_until([&] { return rig.has_condition("corridor"); }, 120.0));
+  ASSERT_TRUE(rig.run_until([&] { return rig.execution() == ExecutionState::Paused; }, 4.0));
+  EXPECT_LT(rig.farthest_from_line_m({0, 0}, {0, 150}), 0.25);
+  // With a good fix and the operator's word it goes on.
+  rig.fault([](sim::Faults&) {});
+  rig.run(12.0);
+  ASSERT_TRUE(rig.ask(robot::ResumeMission{}));
+  EXPECT_TRUE(rig.finish(240.0)) << rig.state()->mission.reason;
+}
+
 TEST_P(Conditions, AJumpThatStaysIsBelievedAfterTenSeconds) {
   Rig rig(options());
   rig.run(8.0);

@@ -59,6 +59,9 @@ class Writer {
     for (const auto& [command, item] : jumps_) {
       out_[command].p[0] = static_cast<double>(first[item] + 1);
     }
+    if (plan_.settings.corridor_m) {
+      note("/settings/corridor_m", "corridor", Outcome::LeftOut, kNoCommand);
+    }
     at_end();
     for (std::size_t i = 0; i < out_.size(); ++i) out_[i].number = static_cast<int>(i + 1);
     return std::move(out_);

@@ -44,6 +44,7 @@ inline constexpr Range kLat{-90.0, 90.0};
 inline constexpr Range kLon{-180.0, 180.0};
 inline constexpr Range kAlt_m{-1000.0, 10'000.0};
 inline constexpr Range kSpeed_mps{0.0, 10.0, true};
+inline constexpr Range kCorridor_m{0.05, 100.0};
 inline constexpr Range kRadius_m{0.0, 100.0, true};
 inline constexpr Range kHold_s{0.0, 86'400.0};
 inline constexpr Range kHeading_deg{0.0, 360.0, false, true};
@@ -140,6 +141,7 @@ void fields(V& v, Of<Settings> auto& p) {
   v.word_or("at_end", p.at_end, AtEnd::Hold);
   v.number("speed_mps", p.speed_mps, kSpeed_mps);
   v.count("times", p.times, kMaxTimes);
+  v.number("corridor_m", p.corridor_m, kCorridor_m);
 }
 
 }  // namespace roverd::mission

@@ -330,12 +330,12 @@ void Executor::finish() {
 void Executor::watch(const Vehicle& vehicle, double dt_s) {
   if (!running()) return;
   const TrackPhase phase = tracker_.phase();
-  lost_s_ = phase == TrackPhase::Track && std::abs(tracker_.cross_track_m()) > params_->lost_m
+  const double most_m = std::min(params_->lost_m, route_->corridor_m.value_or(params_->lost_m));
+  lost_s_ = phase == TrackPhase::Track && std::abs(tracker_.cross_track_m()) > most_m
                 ? lost_s_ + dt_s
                 : 0.0;
   if (lost_s_ > params_->lost_s) {
-    const std::string text =
-        std::to_string(std::lround(std::abs(tracker_.cross_track_m()))) + " m away from the path";
+    const std::string text = tenths(std::abs(tracker_.cross_track_m())) + " away from the path";
     pause(text);
     notices_.push_back({Notice::Kind::Lost, 0, text});
     return;

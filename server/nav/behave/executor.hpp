@@ -111,6 +111,10 @@ class Executor {
   const std::string& reason() const noexcept { return reason_; }
   bool running() const noexcept { return state_ == base::ExecutionState::Running; }
   bool interrupted() const noexcept { return interrupted_; }
+  /// Of the mission that runs; empty: it asks for none, or nothing runs.
+  std::optional<double> corridor_m() const noexcept {
+    return running() ? route_->corridor_m : std::nullopt;
+  }
   TrackPhase phase() const noexcept { return tracker_.phase(); }
   /// @param here empty: the position is not known, and neither is a way that begins there.
   Progress progress(std::optional<EnuPoint> here) const;

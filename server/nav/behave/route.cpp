@@ -19,6 +19,7 @@ class Layout {
     speed_mps_ = plan.settings.speed_mps.value_or(params.speed.default_mps);
     route_.speed_mps = speed_mps_;
     route_.at_end = plan.settings.at_end;
+    route_.corridor_m = plan.settings.corridor_m;
     route_.times = std::max(0, plan.settings.times.value_or(0));
     route_.items = static_cast<int>(plan.items.size());
   }

@@ -62,9 +62,10 @@ struct Route {
   mission::AtEnd at_end = mission::AtEnd::Hold;
   int times = 0;          ///< of Repeat and BackAndForth: ways that are driven; 0: for ever
   std::size_t jumps = 0;  ///< steps of that kind
-  std::vector<HomeEnd> home_ends;  ///< empty: it never goes there
-  std::optional<EnuPoint> home;    ///< the mission's own; the driver of the route decides on it
-  double speed_mps = 0.0;          ///< default, for ways outside of the path
+  std::vector<HomeEnd> home_ends;    ///< empty: it never goes there
+  std::optional<EnuPoint> home;      ///< the mission's own; the driver of the route decides on it
+  double speed_mps = 0.0;            ///< default, for ways outside of the path
+  std::optional<double> corridor_m;  ///< half width that the mission allows itself
   int items = 0;
 };
 

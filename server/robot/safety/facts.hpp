@@ -24,7 +24,9 @@ struct Facts {
   bool commands_lost = false;               ///< see ObedienceWatch
   bool not_following = false;               ///< commands_lost, and told to move now
   std::optional<Time> sigma_bad_since{};
-  bool spins = false;  ///< see SpinWatch
+  std::optional<double> corridor_m{};        ///< of the mission that runs
+  std::optional<Time> corridor_bad_since{};  ///< 2 sigma of the position pass it
+  bool spins = false;                        ///< see SpinWatch
   std::optional<base::Attitude> attitude{};
   std::optional<Time> leans_since{};  ///< beyond tilt_stop_deg
   bool gyro_lost = false;             ///< there was one in this life of the program

@@ -82,7 +82,7 @@ constexpr std::array kElsewhere{
     },
     Failsafe{
         .id = "cross_track_lost",
-        .seen = "off the route by more than `nav.behave.lost_m`",
+        .seen = "off the route by more than `nav.behave.lost_m`, or than the mission's corridor",
         .after = "`nav.behave.lost_s`",
         .response = Response::Hold,
         .acts = Acts::ByItself,

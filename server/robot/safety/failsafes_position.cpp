@@ -46,6 +46,18 @@ std::string uncertain_words(const Facts& f) {
   return "the position is uncertain by " + number(f.pose->horizontal_sigma_m, "%.1f m");
 }
 
+bool too_wide(const Facts& f) noexcept {
+  return f.pose && f.corridor_m && f.corridor_bad_since;
+}
+std::string corridor_words(const Facts& f) {
+  return "the position is uncertain by " + number(2.0 * f.pose->horizontal_sigma_m, "%.2f m") +
+         " (2 sigma), the mission's corridor has " + number(*f.corridor_m, "%.2f m");
+}
+void leave_the_corridor(MadeUp& m) {
+  m.facts.corridor_m = m.pose->horizontal_sigma_m;
+  m.facts.corridor_bad_since = m.now;
+}
+
 constexpr std::array kPositionRows{
     Failsafe{
         .id = "tilt",
@@ -241,6 +253,39 @@ constexpr std::array kPositionRows{
           return uncertain_words(f);
         },
         .provoke = [](MadeUp& m) { m.pose->horizontal_sigma_m = m.params.sigma_slow_m + 0.1; },
+    },
+    Failsafe{
+        .id = "corridor",
+        .seen = "the position is less certain (2 sigma) than the corridor of the mission is wide "
+                "(`settings.corridor_m`)",
+        .after = "{sigma_hold_s}",
+        .response = Response::Hold,
+        .acts = Acts::ByItself,
+        .ends = kGoneAndGoOn,
+        .over = kHands,
+        .test = [](const Facts& f, const SafetyParams& p, Time now) -> Told {
+          if (!too_wide(f) || !older(f.corridor_bad_since, p.sigma_hold_s, now)) return {};
+          return corridor_words(f);
+        },
+        .provoke =
+            [](MadeUp& m) {
+              leave_the_corridor(m);
+              m.facts.corridor_bad_since = m.now - seconds(90);
+            },
+    },
+    Failsafe{
+        .id = "corridor",
+        .seen = "the same, at first",
+        .after = "at once",
+        .response = Response::Slow,
+        .acts = Acts::ByItself,
+        .ends = kEndsByItself,
+        .over = kHands,
+        .test = [](const Facts& f, const SafetyParams&, Time) -> Told {
+          if (!too_wide(f)) return {};
+          return corridor_words(f);
+        },
+        .provoke = leave_the_corridor,
     },
 };
 

@@ -92,6 +92,19 @@ TEST(Export, TheEndBecomesALastCommand) {
             Item(Jump{1, 0}));
 }
 
+TEST(Export, ACorridorIsToldAsLeftOut) {
+  Plan plan;
+  plan.name = "x";
+  plan.items = {waypoint_at(58.1, 26.1)};
+  plan.settings.corridor_m = 0.5;
+  for (const Format format : {Format::Plan, Format::Waypoints}) {
+    const auto file = export_file(plan, format);
+    EXPECT_TRUE(std::any_of(file.rows.begin(), file.rows.end(), [](const auto& row) {
+      return row.what == "corridor" && row.outcome == Outcome::LeftOut;
+    }));
+  }
+}
+
 TEST(Export, APlanFileHasWhatQGroundControlAsksFor) {
   const auto file = export_file(plan_with_every_item(), Format::Plan);
   const json root = json::parse(file.content);

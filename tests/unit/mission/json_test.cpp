@@ -120,6 +120,18 @@ TEST(PlanJson, ForEverMustBeSaid) {
             Names{"/settings/times"});
 }
 
+TEST(PlanJson, AMissionMayHaveACorridor) {
+  const auto of = [](const std::string& metres) {
+    return R"({"name":"x","settings":{"corridor_m":)" + metres + R"(},"items":[]})";
+  };
+  EXPECT_EQ(plan_from_text(of("0.3"))->settings.corridor_m, 0.3);
+  EXPECT_EQ(plan_from_text(plan_to_text(*plan_from_text(of("0.3"))))->settings.corridor_m, 0.3);
+  EXPECT_EQ(plan_from_text(of("null"))->settings.corridor_m, std::nullopt);
+  for (const char* wrong : {"0", "0.04", "101", "-1", "\"0.3\"", "true", "1e999"}) {
+    EXPECT_EQ(wrong_in(of(wrong)), Names{"/settings/corridor_m"}) << wrong;
+  }
+}
+
 TEST(PlanText, IsFoldedForSearching) {
   EXPECT_EQ(folded("Põld ÕUNAAED Žürii ПОЛЕ Ω 100%"), "põld õunaaed žürii поле ω 100%");
   EXPECT_EQ(folded("\xc3\x97\xff\xc3"), "\xc3\x97\xff\xc3");

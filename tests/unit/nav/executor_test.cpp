@@ -264,7 +264,22 @@ TEST(Executor, TooFarFromThePathItPausesAndSaysHowFar) {
   r.vehicle.at.north_m = 5.0;
   ASSERT_TRUE(r.run(1.0));
   EXPECT_EQ(r.executor.state(), ExecutionState::Paused);
-  EXPECT_EQ(r.executor.reason(), "5 m away from the path");
+  EXPECT_EQ(r.executor.reason(), "5.0 m away from the path");
+}
+
+TEST(Executor, OutOfTheCorridorThatTheMissionAsksForItPausesToo) {
+  Ride r;
+  auto narrow = plan({at(0, 0), at(20, 0)});
+  narrow.settings.corridor_m = 0.5;
+  r.load(narrow);
+  r.start();
+  ASSERT_FALSE(r.run(6.0));
+  EXPECT_EQ(r.executor.corridor_m(), 0.5);
+  r.vehicle.at.north_m = 0.8;
+  ASSERT_TRUE(r.run(1.0));
+  EXPECT_EQ(r.executor.state(), ExecutionState::Paused);
+  EXPECT_EQ(r.executor.reason(), "0.8 m away from the path");
+  EXPECT_EQ(r.executor.corridor_m(), std::nullopt);
 }
 
 TEST(Executor, SkipsForwardsAndBackwards) {

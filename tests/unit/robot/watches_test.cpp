@@ -236,7 +236,7 @@ TEST(PositionWatch, CountsHowLongItIsUncertainAndCatchesSpinningWheelsOnce) {
     now += milliseconds(20);
     world.take(base::Measurement(base::BaseMotion{now, {0.8, 0.0}}));
     world.take(base::Measurement(base::GnssVelocity{now, 0.0, 0.0, 0.05}));
-    caught += watch->step(pose, world, p, now) ? 1 : 0;
+    caught += watch->step(pose, world, p, {}, now) ? 1 : 0;
   }
   EXPECT_EQ(caught, 1);
   EXPECT_TRUE(watch->spins());
@@ -244,9 +244,24 @@ TEST(PositionWatch, CountsHowLongItIsUncertainAndCatchesSpinningWheelsOnce) {
   EXPECT_NEAR(base::seconds(now - *watch->uncertain_since()), 5.98, 1e-6);
   pose->horizontal_sigma_m = 0.1;
   world.take(base::Measurement(base::BaseMotion{now, {}}));
-  EXPECT_FALSE(watch->step(pose, world, p, now));
+  EXPECT_FALSE(watch->step(pose, world, p, {}, now));
   EXPECT_FALSE(watch->spins());
   EXPECT_FALSE(watch->uncertain_since());
+}
+
+TEST(PositionWatch, ComparesTwoSigmaWithTheCorridorOfTheMission) {
+  PositionWatch watch;
+  World world;
+  std::optional<base::Pose> pose(std::in_place);
+  pose->horizontal_sigma_m = 0.25;
+  const Time now{std::chrono::seconds(5)};
+  watch.step(pose, world, {}, 0.5, now);
+  EXPECT_FALSE(watch.too_wide_since());
+  watch.step(pose, world, {}, 0.49, now);
+  watch.step(pose, world, {}, 0.49, now + milliseconds(20));
+  EXPECT_EQ(watch.too_wide_since(), now);
+  watch.step(pose, world, {}, {}, now + milliseconds(40));
+  EXPECT_FALSE(watch.too_wide_since());
 }
 
 // ---- the clock ----

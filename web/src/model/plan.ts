@@ -101,6 +101,8 @@ export interface Settings {
   readonly speed_mps?: number | null;
   /** With repeat and back_and_forth: how often; 0 or nothing: for ever. */
   readonly times?: number | null;
+  /** Half width of the way that it may use, metres. */
+  readonly corridor_m?: number | null;
 }
 export interface Plan {
   readonly name: string;
