@@ -223,3 +223,30 @@ test('a key that is held while the mode changes moves nothing until it is presse
   await expect.poll(speed, { timeout: 10_000 }).toBeGreaterThan(0.2);
   await page.keyboard.up('ArrowUp');
 });
+
+test('after a jump of the position the robot holds until somebody says that he has looked', async ({
+  page,
+  station,
+}) => {
+  test.setTimeout(150_000);
+  await page.setViewportSize({ width: 390, height: 844 });
+  await open_page(page, station.url);
+  await drive_north(page);
+  await expect.poll(() => station.sim.now.speed_mps, { timeout: 30_000 }).toBeGreaterThan(0.3);
+
+  station.sim.tell({ set: { gnss_jump_east_m: 5 } });
+
+  const looked = page.getByRole('button', { name: 'I have looked' });
+  await expect(looked).toBeVisible({ timeout: 60_000 });
+  await expect
+    .poll(() => Math.abs(station.sim.now.speed_mps), { timeout: 5000 })
+    .toBeLessThan(0.01);
+
+  // The alert says it; no message says it once more over the map.
+  await expect(
+    page.getByRole('log', { name: 'Messages' }).getByText('look where the robot stands'),
+  ).toBeHidden();
+  await looked.click();
+  await page.getByRole('dialog').getByRole('button', { name: 'I have looked' }).click();
+  await expect(looked).toBeHidden();
+});

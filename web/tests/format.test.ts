@@ -12,7 +12,22 @@ import {
   duration,
   metres,
   number_text,
+  said_in,
 } from '../src/model/format';
+
+describe('what was said already', () => {
+  const said = ['the position was set anew 5.0 m away: look where the robot stands', ''];
+
+  test('is a part of it, it with more words, or the same in other letters', () => {
+    expect(said_in('The position was set anew 5.0 m away', said)).toBe(true);
+    expect(said_in(`paused: ${said[0] ?? ''}`, said)).toBe(true);
+  });
+
+  test('is not anything else', () => {
+    expect(said_in('the battery is low', said)).toBe(false);
+    expect(said_in('the battery is low', [])).toBe(false);
+  });
+});
 
 describe('format', () => {
   test('an unknown value is a dash, never a zero', () => {

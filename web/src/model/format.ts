@@ -97,6 +97,15 @@ export const day_and_time = (stamp: string): string => {
 /** A sentence of the server's begins with a small letter; one on the page does not. */
 export const sentence = (text: string): string => text.charAt(0).toUpperCase() + text.slice(1);
 
+/** Whether one of `said` holds the text, or the text holds it: nothing new for the reader. */
+export const said_in = (text: string, said: readonly string[]): boolean => {
+  const folded = text.toLowerCase();
+  return said.some((other) => {
+    const known = other.toLowerCase();
+    return known !== '' && (known.includes(folded) || folded.includes(known));
+  });
+};
+
 export const count = (value: number, one: string, many = `${one}s`): string =>
   `${value} ${value === 1 ? one : many}`;
 
