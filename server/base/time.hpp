@@ -25,6 +25,9 @@ struct MonotonicClock {
 using Time = MonotonicClock::time_point;
 using WallTime = std::chrono::sys_time<Duration>;
 
+/// 2025-01-01T00:00:00Z: this program is younger. A clock before it was never set.
+inline constexpr WallTime kYoungest{std::chrono::seconds(1'735'689'600)};
+
 /// CLOCK_MONOTONIC. Thread-safe, does not allocate.
 Time steady_now() noexcept;
 /// CLOCK_REALTIME as UTC. Thread-safe, does not allocate.

@@ -1,5 +1,6 @@
 #include "store/events.hpp"
 
+#include <limits>
 #include <string>
 
 #include "store/missions.hpp"
@@ -46,6 +47,18 @@ void write_events(SQLite::Database& db, std::span<const base::Event> events,
   trim.bind(1, max_events);
   trim.exec();
   transaction.commit();
+}
+
+void forget_events(SQLite::Database& db, base::WallTime before) {
+  const auto ns = [](base::WallTime t) { return std::int64_t{t.time_since_epoch().count()}; };
+  SQLite::Statement rows(db,
+                         "DELETE FROM events WHERE id <= (SELECT max(id) FROM events WHERE "
+                         "time_ns >= ?1 AND time_ns < ?2 AND id < ifnull((SELECT min(id) FROM "
+                         "events WHERE time_ns >= ?2), ?3))");
+  rows.bind(1, ns(base::kYoungest));
+  rows.bind(2, ns(before));
+  rows.bind(3, std::numeric_limits<std::int64_t>::max());
+  rows.exec();
 }
 
 base::Result<Page<StoredEvent>> list_events(SQLite::Database& db, std::int64_t after_id,

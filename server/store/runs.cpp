@@ -1,5 +1,6 @@
 #include "store/runs.hpp"
 
+#include <limits>
 #include <utility>
 
 #include "mission/json/json.hpp"
@@ -137,6 +138,19 @@ base::MissionPlace place_of(const Json& j) {
   return p;
 }
 
+// As in migration 10.
+constexpr std::int64_t kRun_bytes = 200;
+constexpr std::int64_t kPoint_bytes = 100;
+constexpr std::int64_t kRunEvent_bytes = 100;
+
+std::int64_t bytes_of(const RunBatch& batch) {
+  std::int64_t bytes = kPoint_bytes * static_cast<std::int64_t>(batch.points.size());
+  for (const base::Event& e : batch.events) {
+    bytes += kRunEvent_bytes + static_cast<std::int64_t>(e.detail.size());
+  }
+  return bytes;
+}
+
 base::Error no_run(std::int64_t id) {
   return {Code::NotFound, "there is no run " + std::to_string(id)};
 }
@@ -167,7 +181,8 @@ base::Result<std::int64_t> Runs::begin(const StoredRun& run, std::int64_t keep) 
   SQLite::Transaction transaction(db_, SQLite::TransactionBehavior::IMMEDIATE);
   SQLite::Statement row(db_,
                         "INSERT INTO runs (begun_ns, outcome, mission_id, revision, name, vehicle, "
-                        "first_item, plan, parameters) VALUES (?, 'running', ?, ?, ?, ?, ?, ?, ?)");
+                        "first_item, plan, parameters, bytes) "
+                        "VALUES (?, 'running', ?, ?, ?, ?, ?, ?, ?, ?)");
   Json parameters = Json::object();
   for (const RunParameter& p : run.parameters) parameters[p.name] = value_json(p.value);
   row.bind(1, ns(run.head.begun));
@@ -176,8 +191,11 @@ base::Result<std::int64_t> Runs::begin(const StoredRun& run, std::int64_t keep) 
   row.bind(4, run.head.name);
   row.bind(5, run.head.vehicle);
   row.bind(6, run.head.first_item);
-  row.bind(7, mission::plan_to_json(run.plan).dump());
-  row.bind(8, parameters.dump());
+  const std::string plan = mission::plan_to_json(run.plan).dump();
+  const std::string changed = parameters.dump();
+  row.bind(7, plan);
+  row.bind(8, changed);
+  row.bind(9, kRun_bytes + static_cast<std::int64_t>(plan.size() + changed.size()));
   row.exec();
   const std::int64_t id = db_.getLastInsertRowid();
   SQLite::Statement trim(db_, "DELETE FROM runs WHERE id <= ?");
@@ -203,10 +221,30 @@ base::Result<void> Runs::remove(std::int64_t id) {
   return {};
 }
 
-void Runs::forget(base::WallTime before) {
-  SQLite::Statement rows(db_, "DELETE FROM runs WHERE ended_ns < ?");
-  rows.bind(1, ns(before));
-  rows.exec();
+std::optional<Runs::Spare> Runs::spare(std::optional<base::WallTime> before,
+                                       std::int64_t max_bytes) {
+  const auto found = [](SQLite::Statement& row) -> std::optional<Spare> {
+    if (!row.executeStep()) return std::nullopt;
+    return Spare{row.getColumn(0).getInt64(), row.getColumn(1).getInt64()};
+  };
+  if (before) {
+    // One that ended before the clock was set is of unknown age: it goes with those after it.
+    SQLite::Statement old(
+        db_,
+        "SELECT id, bytes FROM runs WHERE ended_ns IS NOT NULL AND id <= (SELECT max(id) FROM runs "
+        "WHERE ended_ns >= ?1 AND ended_ns < ?2 AND id < ifnull((SELECT min(id) FROM runs WHERE "
+        "ended_ns >= ?2), ?3)) ORDER BY id LIMIT 1");
+    old.bind(1, ns(base::kYoungest));
+    old.bind(2, ns(*before));
+    old.bind(3, std::numeric_limits<std::int64_t>::max());
+    if (auto spare = found(old)) return spare;
+  }
+  if (max_bytes <= 0) return std::nullopt;
+  SQLite::Statement many(db_,
+                         "SELECT id, bytes FROM runs WHERE ended_ns IS NOT NULL AND "
+                         "(SELECT sum(bytes) FROM runs) > ? ORDER BY id LIMIT 1");
+  many.bind(1, max_bytes);
+  return found(many);
 }
 
 base::Result<void> Runs::add(std::int64_t id, const RunBatch& batch) {
@@ -217,6 +255,10 @@ base::Result<void> Runs::add(std::int64_t id, const RunBatch& batch) {
   known.reset();
   add_points(db_, id, batch.points);
   add_run_events(db_, id, batch.events);
+  SQLite::Statement grown(db_, "UPDATE runs SET bytes = bytes + ? WHERE id = ?");
+  grown.bind(1, bytes_of(batch));
+  grown.bind(2, id);
+  grown.exec();
   if (batch.outcome) {
     SQLite::Statement end(db_, "UPDATE runs SET outcome = ?, ended_ns = ? WHERE id = ?");
     end.bind(1, std::string(to_string(*batch.outcome)));

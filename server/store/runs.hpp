@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,8 +24,13 @@ class Runs {
   base::Result<std::int64_t> begin(const StoredRun& run, std::int64_t keep);
   /// With its track and events. NotFound; Conflict while it is driven.
   base::Result<void> remove(std::int64_t id);
-  /// Those that ended before.
-  void forget(base::WallTime before);
+  /// The oldest that is to go; none that is being driven. @param before it ended then, by a clock
+  /// that was set; empty: ages do not count. @param max_bytes of all runs; 0: room does not count
+  struct Spare {
+    std::int64_t id = 0;
+    std::int64_t bytes = 0;  ///< about, with its track
+  };
+  std::optional<Spare> spare(std::optional<base::WallTime> before, std::int64_t max_bytes);
   /// NotFound if there is no such run (any more).
   base::Result<void> add(std::int64_t id, const RunBatch& batch);
   base::Result<Page<RunHead>> list(int limit, const std::string& cursor);

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <utility>
+
 #include "base/log.hpp"
 #include "store/events.hpp"
 #include "store/store_impl.hpp"
@@ -28,9 +31,6 @@ Store::Impl::~Impl() {
 void Store::Impl::forget() {
   const auto done = guarded([&]() -> Result<void> {
     missions.forget_deleted(options.clock() - options.keep_deleted);
-    if (options.keep_runs_for > base::Duration::zero()) {
-      runs.forget(options.clock() - options.keep_runs_for);
-    }
     return {};
   });
   static base::LogLimit limit(10.0);
@@ -38,6 +38,56 @@ void Store::Impl::forget() {
     base::log(base::Level::Warning, "store", "what is old cannot be forgotten",
               {{"reason", done.error().detail}});
   }
+}
+
+bool Store::Impl::tidy() {
+  const base::WallTime now = options.clock();
+  // A clock that was never set knows no ages.
+  const auto before = [&](base::Duration keep) {
+    const bool known = keep > base::Duration::zero() && now >= base::kYoungest;
+    return known ? std::optional(now - keep) : std::nullopt;
+  };
+  const auto step = kept([&]() -> Result<bool> {
+    const auto spare = runs.spare(before(options.keep_runs_for), options.max_run_bytes);
+    if (!spare) {
+      if (const auto old = before(options.keep_events_for)) {
+        forget_events(db->connection, *old);
+      }
+      return false;
+    }
+    if (auto done = runs.remove(spare->id); !done) return tl::unexpected<Error>(done.error());
+    if (tidied.runs++ == 0) tidied.first = spare->id;
+    tidied.last = spare->id;
+    tidied.bytes += spare->bytes;
+    return true;
+  });
+  if (step) return *step;
+  static base::LogLimit limit(600.0);  // why it fails, the state of the disk tells
+  if (limit.due()) {
+    base::log(base::Level::Warning, "store", "old runs and events cannot be removed",
+              {{"reason", step.error().detail}});
+  }
+  return false;
+}
+
+void Store::Impl::tell_tidied() {
+  const auto done = std::exchange(tidied, {});
+  if (done.runs == 0 || !options.tell) return;
+  const std::string first = std::to_string(done.first);
+  const std::string which = done.runs == 1 ? "run " + first + " was"
+                                           : std::to_string(done.runs) + " runs, " + first +
+                                                 " to " + std::to_string(done.last) + ", were";
+  std::string why;
+  if (options.keep_runs_for > base::Duration::zero()) {
+    why = "older than " + std::to_string(options.keep_runs_for / std::chrono::hours(24)) + " days";
+  }
+  if (options.max_run_bytes > 0) {
+    why += std::string(why.empty() ? "" : ", or ") + "beyond " +
+           std::to_string(options.max_run_bytes / 1'000'000) + " MB";
+  }
+  options.tell(
+      {options.clock(), base::Severity::Info, "runs_removed",
+       which + " removed (about " + std::to_string((done.bytes + 500) / 1000) + " kB): " + why});
 }
 
 void Store::Impl::close_runs() {
@@ -53,15 +103,23 @@ void Store::Impl::close_runs() {
 void Store::Impl::run() {
   forget();
   close_runs();
+  bool tidying = true;
   look();
   std::vector<base::Event> new_events;
   std::deque<std::function<void()>> todo;
   base::Time looked = base::steady_now();
+  base::Time tidied_at = looked;
   for (;;) {
+    if (tidying) {
+      tidying = tidy();
+      if (!tidying) tell_tidied();
+      tidied_at = base::steady_now();
+    }
     {
       std::unique_lock lock(mutex);
-      const bool asked = news.wait_for(
-          lock, kLook, [this] { return closing || !jobs.empty() || !events.empty(); });
+      const auto wait = tidying ? base::Duration::zero() : std::min(kLook, options.tidy_every);
+      const bool asked =
+          news.wait_for(lock, wait, [this] { return closing || !jobs.empty() || !events.empty(); });
       if (asked && jobs.empty() && events.empty()) return;  // closing, and all is done
       new_events.swap(events);
       if (!jobs.empty()) {
@@ -80,6 +138,7 @@ void Store::Impl::run() {
       }
     }
     todo.clear();
+    if (base::steady_now() - tidied_at >= options.tidy_every) tidying = true;
     if (base::steady_now() - looked >= kLook) {
       look();
       looked = base::steady_now();

@@ -158,11 +158,17 @@ struct Change {
 struct Options {
   std::size_t queue = 256;                 ///< waiting calls (and, apart from them, waiting events)
   std::int64_t max_events = 100'000;       ///< beyond that the oldest go
+  base::Duration keep_events_for{};        ///< zero: for ever
   std::int64_t max_bytes = 4'000'000'000;  ///< of the file; then as if the disk were full
   base::Duration keep_deleted = std::chrono::hours(24 * 30);  ///< then they are forgotten for good
   std::int64_t keep_runs = 1000;   ///< the newest; older ones go with their tracks
   base::Duration keep_runs_for{};  ///< after their end; zero: for ever
+  /// Of all runs with their tracks, about; the oldest go, but never one that is driven. 0: no bound
+  std::int64_t max_run_bytes = 0;
+  base::Duration tidy_every = std::chrono::minutes(10);    ///< ages and room are looked at
   std::function<base::WallTime()> clock = base::wall_now;  ///< called on the store's thread
+  /// Runs were removed for their age or the room; called on the store's thread. May be empty.
+  std::function<void(base::Event)> tell{};
 };
 
 inline constexpr int kMaxPage = 1000;  ///< largest `limit` of a list; below 1 or above is Invalid

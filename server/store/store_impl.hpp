@@ -36,12 +36,22 @@ struct Store::Impl {
   bool closing = false;
   std::atomic<std::uint64_t> lost_events{0};
   StorageState storage{};  ///< under the mutex
+  struct {
+    int runs = 0;
+    std::int64_t bytes = 0;
+    std::int64_t first = 0;  ///< ids
+    std::int64_t last = 0;
+  } tidied{};  ///< since it was told; store's thread
   std::thread thread{};
 
   Impl(std::unique_ptr<Database> database, Options options_);
   ~Impl();
   /// What was deleted too long ago. If that fails it stays until the next time.
   void forget();
+  /// One step of what age and room demand, so that calls are served in between.
+  /// @return there may be more to do
+  bool tidy();
+  void tell_tidied();
   void close_runs();
   void run();
   /// How the disk is; after a failure it tries whether a change would be kept again.
