@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
@@ -39,6 +40,9 @@ base::Result<void> RecordFile::begin(const std::string& path) {
     return base::fail(base::Code::Unavailable,
                       "cannot make the recording " + path + ": " + errno_text(errno));
   }
+  // Held for as long as it is written: who tidies up leaves it. Without locks (some network disks)
+  // it is written all the same.
+  ::flock(fd, LOCK_SH | LOCK_NB);
   if (fd_ >= 0) {
     ::fdatasync(fd_);
     ::close(fd_);

@@ -5,7 +5,8 @@
 //
 // A file that has reached its size is followed by the next, and the oldest goes when there are more
 // than wanted. Text is written whole: no line or record begins in one file and ends in the next,
-// and what a full disk took only in part is cut off again.
+// and what a full disk took only in part is cut off again. The file that is being written is held
+// by a shared flock().
 
 #include <cstdint>
 #include <deque>

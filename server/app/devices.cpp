@@ -313,7 +313,7 @@ Result<std::vector<DevicePlan>> plan_devices(const Settings& s, const Options& o
   if (!replays) return tl::unexpected(replays.error());
   for (const std::string& remark : replays->remarks) base::log(base::Level::Info, "replay", remark);
   auto workshop = std::make_shared<Workshop>();
-  workshop->folder = (std::filesystem::path(options.data) / "recordings").string();
+  workshop->folder = (std::filesystem::path(options.data) / kRecordings).string();
   workshop->records = options.replays.empty() && (s.recording.enabled || options.record);
   workshop->record.max_bytes = static_cast<std::uint64_t>(s.recording.max_mb) * 1'000'000;
   workshop->record.keep_files = s.recording.keep_files;

@@ -31,7 +31,7 @@ std::vector<base::HostProblem> host_problems(const HostFacts& f) {
     out.push_back({"storage_low", with("the disk is nearly full: %.0f MB are left",
                                        static_cast<double>(*f.storage.free_bytes) / 1e6)});
   }
-  if (f.wall < kYoungest) {
+  if (f.wall < base::kYoungest) {
     out.push_back(
         {"clock_unset",
          "the clock of this computer is not set: dates and times of what is kept are wrong"});

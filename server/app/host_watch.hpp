@@ -14,9 +14,6 @@
 
 namespace roverd {
 
-/// 2025-01-01T00:00:00Z: this program is younger. A clock before it was never set.
-inline constexpr base::WallTime kYoungest{std::chrono::seconds(1'735'689'600)};
-
 struct HostFacts {
   base::Time now{};
   base::WallTime wall{};

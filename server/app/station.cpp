@@ -17,8 +17,10 @@
 #include "app/estop_keeper.hpp"
 #include "app/host_watch.hpp"
 #include "app/memory_reserve.hpp"
+#include "app/recordings.hpp"
 #include "app/version.hpp"
 #include "app/wiring.hpp"
+#include "app/workshop.hpp"
 #include "base/angle.hpp"
 #include "base/log.hpp"
 #include "base/params.hpp"
@@ -46,6 +48,7 @@ using base::Result;
 constexpr base::Duration kGoodbye = std::chrono::milliseconds(500);
 constexpr base::Duration kKeepLearned = std::chrono::minutes(1);
 constexpr base::Duration kLookAtHost = std::chrono::seconds(1);
+constexpr base::Duration kTidyRecordings = std::chrono::minutes(1);
 /// A stop that was obeyed is confirmed then, whether the disk has taken it or hangs.
 constexpr base::Duration kKeepEstop = std::chrono::milliseconds(200);
 
@@ -70,6 +73,8 @@ struct Station::Impl {
   asio::signal_set signals{web, SIGINT, SIGTERM};
   asio::steady_timer learned_timer{web};
   asio::steady_timer host_timer{web};
+  asio::steady_timer tidy_timer{web};
+  std::shared_ptr<RecordingTidier> tidier;  ///< null: a recording is played, none is removed
   LatenessWatch lateness_watch;
   std::vector<base::HostProblem> host;  ///< what is wrong with this computer
   const bool memory_locked = lock_memory();
@@ -96,6 +101,7 @@ struct Station::Impl {
   void tell_left_out(const Settings& settings);
   void keep_learned();
   void keep_learned_soon();
+  void tidy_recordings();
   Result<void> claim_robot(const Settings& settings, const Options& options);
   void watch_host();
   void watch_host_soon();
@@ -120,6 +126,10 @@ Result<void> Station::Impl::open(const Settings& settings, const Options& option
   make_api(settings);
   if (auto done = open_server(settings, options); !done) return done;
   recall(settings, options);
+  if (options.replays.empty()) {
+    const auto folder = std::filesystem::path(options.data) / kRecordings;
+    tidier = std::make_shared<RecordingTidier>(folder, bounds_of(settings.recording));
+  }
   robot.reviewed(settings.reviewed);
   tell_left_out(settings);
   start();
@@ -140,10 +150,13 @@ Result<void> Station::Impl::open_store(const Settings& settings, const Options& 
   store::Options how;
   how.keep_deleted = std::chrono::hours(24) * settings.missions.keep_deleted_days;
   how.keep_runs = settings.runs.keep;
-  // A clock that was never set knows no ages; one that is wrong by years would forget everything.
-  if (base::wall_now() >= kYoungest) {
-    how.keep_runs_for = std::chrono::hours(24) * settings.runs.keep_days;
-  }
+  how.keep_runs_for = std::chrono::hours(24) * settings.runs.keep_days;
+  how.max_run_bytes = std::int64_t{settings.runs.total_mb} * 1'000'000;
+  how.max_events = settings.events.keep;
+  how.keep_events_for = std::chrono::hours(24) * settings.events.keep_days;
+  how.tell = [this](base::Event event) {
+    asio::post(web, [this, event = std::move(event)] { api->on_event(event); });
+  };
   auto opened = store::Store::open(
       std::filesystem::path(options.data) / "roverd.db",
       [this](std::function<void()> answer) { asio::post(web, std::move(answer)); }, std::move(how));
@@ -284,6 +297,7 @@ void Station::Impl::start() {
   supervisor->start();
   start_services();
   keep_learned_soon();
+  tidy_recordings();
   loop = std::make_unique<ControlLoop>(
       [this](base::Time now, base::WallTime wall, base::Duration lateness) {
         robot.tick(now, wall, lateness);
@@ -342,6 +356,21 @@ void Station::Impl::keep_learned_soon() {
     workers.must_run(net::Lane::Small, [this] { keep_learned(); }, {});
     keep_learned_soon();
   });
+}
+
+/// At once and then every minute, each when the one before is done: a disk may take its time.
+void Station::Impl::tidy_recordings() {
+  if (!tidier) return;
+  const auto events = std::make_shared<std::vector<base::Event>>();
+  workers.must_run(
+      net::Lane::Large, [tidier = tidier, events] { *events = tidier->tidy(base::wall_now()); },
+      [this, events] {
+        for (base::Event& event : *events) api->on_event(std::move(event));
+        tidy_timer.expires_after(kTidyRecordings);
+        tidy_timer.async_wait([this](const boost::system::error_code& ec) {
+          if (!ec) tidy_recordings();
+        });
+      });
 }
 
 /// A folder that was removed holds no lock any more: the link is what a second one would drive

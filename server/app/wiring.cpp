@@ -29,6 +29,11 @@ std::string drive_link(const Settings& s) {
   return {};
 }
 
+RecordingBounds bounds_of(const RecordingSettings& recording) {
+  return {static_cast<std::uint64_t>(recording.total_mb) * 1'000'000,
+          std::chrono::hours(24) * recording.keep_days};
+}
+
 std::string learner(const Settings& s) {
   const std::string link = drive_link(s);
   return link.empty() ? s.vehicle.name : s.vehicle.name + " " + link.substr(0, link.find(':'));

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "api/api.hpp"
+#include "app/recordings.hpp"
 #include "config/settings.hpp"
 #include "net/hub.hpp"
 #include "net/server.hpp"
@@ -14,6 +15,7 @@ namespace roverd {
 
 /// The link that moves the robot; empty: none does.
 std::string drive_link(const Settings& s);
+RecordingBounds bounds_of(const RecordingSettings& recording);
 /// Who learned something. The simulated robot is not the real one: they differ in the link that
 /// moves them.
 std::string learner(const Settings& s);

@@ -21,6 +21,8 @@ struct Workshop {
 };
 using WorkshopPtr = std::shared_ptr<const Workshop>;
 
+/// Below the data folder.
+inline constexpr const char* kRecordings = "recordings";
 inline constexpr const char* kBytesEnding = ".raw";
 
 /// A file that is not there yet (20260301T120000Z-NAME.raw), in a folder that is.

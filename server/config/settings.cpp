@@ -131,6 +131,7 @@ Sections sections_of(Settings& s) {
       {"recording", section(s.recording)},
       {"missions", section(s.missions)},
       {"runs", section(s.runs)},
+      {"events", section(s.events)},
       {"backups", section(s.backups)},
       {"tiles", [&s](std::string_view name, const ParamValue& v) { return set_tiles(s, name, v); }},
   };

@@ -86,6 +86,8 @@ struct RecordingSettings {
   bool enabled = false;
   int max_mb = 64;
   int keep_files = 20;
+  int total_mb = 20'000;
+  int keep_days = 0;
 };
 
 template <class V>
@@ -94,6 +96,9 @@ void fields(V& v, RecordingSettings& p) {
   v("max_mb", p.max_mb, 1, 4000, "a file that has grown so large is followed by the next");
   v("keep_files", p.keep_files, 1, 10000,
     "files kept of each device's recording, the oldest goes; 1: recording stops when it is full");
+  v("total_mb", p.total_mb, 0, 100'000'000,
+    "all files of all starts together; the oldest go, but none that is being written; 0: no bound");
+  v("keep_days", p.keep_days, 0, 36500, "older files go, by this computer's clock; 0: they stay");
 }
 
 struct MissionSettings {
@@ -109,13 +114,27 @@ void fields(V& v, MissionSettings& p) {
 struct RunSettings {
   int keep = 1000;
   int keep_days = 0;
+  int total_mb = 2000;
 };
 
 template <class V>
 void fields(V& v, RunSettings& p) {
   v("keep", p.keep, 1, 1'000'000, "the newest runs so many are kept, with their tracks");
-  v("keep_days", p.keep_days, 0, 36500,
-    "older ones go at the next start, by this computer's clock; 0: they stay");
+  v("keep_days", p.keep_days, 0, 36500, "older ones go, by this computer's clock; 0: they stay");
+  v("total_mb", p.total_mb, 0, 4000,
+    "room for all of them in the database; the oldest go, but never the one that is being driven; "
+    "0: no bound but the database's own");
+}
+
+struct EventSettings {
+  int keep = 100'000;
+  int keep_days = 0;
+};
+
+template <class V>
+void fields(V& v, EventSettings& p) {
+  v("keep", p.keep, 100, 10'000'000, "the newest events so many are kept");
+  v("keep_days", p.keep_days, 0, 36500, "older ones go, by this computer's clock; 0: they stay");
 }
 
 struct BackupSettings {
@@ -136,6 +155,7 @@ struct Settings {
   RecordingSettings recording;
   MissionSettings missions;
   RunSettings runs;
+  EventSettings events;
   BackupSettings backups;
   Wired<bunker::Params> bunker;
   Wired<ackermann::Params> ackermann;

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A data folder that is removed, a database that is damaged, a second roverd for the same robot: what
 is not kept is not said to be, the robot can be stopped and driven by hand, and the page knows why. And
-what a service manager hears of it all."""
+what a service manager hears of it all; and what goes when recordings take too much room."""
 
 import os
 import pathlib
@@ -112,5 +112,25 @@ def a_service_manager():
             del os.environ["NOTIFY_SOCKET"], os.environ["WATCHDOG_USEC"]
 
 
+def old_recordings():
+    """recordings of earlier starts go by their room, and an event says so; the one being written stays"""
+    with tempfile.TemporaryDirectory() as folder:
+        data = pathlib.Path(folder, "data")
+        recordings = data / "recordings"
+        recordings.mkdir(parents=True)
+        for day in range(1, 4):
+            file = recordings / f"2026030{day}T120000Z-bunker.log"
+            file.write_bytes(b"x" * 600_000)
+            os.utime(file, (day * 86400 + 1_772_000_000,) * 2)
+        (recordings / "notes.txt").write_bytes(b"x" * 2_000_000)
+        with Station(seed=8, data=data, arguments=("--record", "--set", "recording.total_mb=1")) as station:
+            told = until("an event tells it", 20, lambda: [
+                e for e in station.rest.get("/events?limit=500")["items"] if e["kind"] == "recordings_removed"], 0.1)
+            check("2 recordings, 20260301T120000Z-bunker.log to 20260302T120000Z-bunker.log, were removed (1.2 MB)"
+                  in told[0]["detail"], f"it says {told}")
+            names = {file.name for file in recordings.iterdir()}
+            check({"notes.txt", "20260303T120000Z-bunker.log"} < names and len(names) >= 4, f"left are {names}")
+
+
 if __name__ == "__main__":
-    sys.exit(run_cases([a_removed_data_folder, a_damaged_database, a_service_manager]))
+    sys.exit(run_cases([a_removed_data_folder, a_damaged_database, a_service_manager, old_recordings]))
