@@ -9,7 +9,6 @@ import pathlib
 import random
 import shutil
 import signal
-import sqlite3
 import sys
 import tempfile
 import threading
@@ -17,6 +16,7 @@ import time
 import urllib.parse
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "harness"))
+from cuts import examine  # noqa: E402
 from station import BIN, ROOT, Program, Rest, Station, check, run_cases, until  # noqa: E402
 
 SEED = 20260301
@@ -103,19 +103,6 @@ def verify(address, acknowledged):
         listed += len(page["items"])
         cursor = page["next_cursor"]
     return listed
-
-
-def examine(data, copy, when):
-    """A copy of the files, as the cut left them: to open them is to mend them."""
-    copy.mkdir()
-    for file in data.glob("roverd.db*"):
-        shutil.copy(file, copy)
-    database = sqlite3.connect(copy / "roverd.db")
-    verdict = database.execute("PRAGMA integrity_check").fetchall()
-    strays = database.execute("PRAGMA foreign_key_check").fetchall()
-    database.close()
-    shutil.rmtree(copy)
-    check(verdict == [("ok",)] and not strays, f"{when}: {verdict[:3]} {strays[:3]}")
 
 
 def saves_survive_power_cuts():

@@ -7,14 +7,13 @@ import datetime
 import io
 import math
 import pathlib
-import shutil
 import signal
-import sqlite3
 import subprocess
 import sys
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "harness"))
+from cuts import examine  # noqa: E402
 from station import BIN, ROOT, Program, Rest, Station, check, run_cases, until  # noqa: E402
 
 METRE_LAT = 1 / 111_360.0
@@ -103,20 +102,6 @@ MEASURES = ("time_s", "driving_s", "driven_m", "energy_wh", "laps", "cross_track
             "jerk_rms_mps3", "end_m", "corners", "straights")
 
 
-def examine(station):
-    """A copy of the files, as the cut left them: to open them is to mend them."""
-    copy = station.scratch / "copy"
-    shutil.rmtree(copy, ignore_errors=True)
-    copy.mkdir()
-    for file in (station.scratch / "data").glob("roverd.db*"):
-        shutil.copy(file, copy)
-    database = sqlite3.connect(copy / "roverd.db")
-    verdict = database.execute("PRAGMA integrity_check").fetchall()
-    strays = database.execute("PRAGMA foreign_key_check").fetchall()
-    database.close()
-    check(verdict == [("ok",)] and not strays, f"{verdict[:3]} {strays[:3]}")
-
-
 def cut_run(station, seconds):
     """Starts a mission, cuts the power so long after, and looks at what is left of its run."""
     rest = station.rest
@@ -131,7 +116,7 @@ def cut_run(station, seconds):
     time.sleep(seconds)
     cut_at = time.time()
     station.roverd.stop(signal.SIGKILL)
-    examine(station)
+    examine(station.scratch / "data", station.scratch / "copy", f"cut after {seconds} s")
     rest = restarted(station)
     run = rest.get("/runs")["items"][0]
     check(run["mission_id"] == mission and run["outcome"] == "interrupted", f"the run is {run}")
