@@ -7,7 +7,7 @@ true
 all_steps=(doors shell format readme web build unit mutate api command vehicles real can page asan tsan fuzz)
 # Timing depends on what else the machine does, and clang-tidy takes long: by name.
 # shellcheck disable=SC2034
-named_steps=(figures tidy bench)
+named_steps=(figures tidy bench soak)
 # shellcheck disable=SC2034
 quick_steps=(doors shell format web build unit)
 # shellcheck disable=SC2034
@@ -20,7 +20,7 @@ declare -A titles=(
   [build]="release build without warnings; objects need what their rooms may use"
   [unit]="rooms, and the loop in simulated time"
   [api]="the API over real sockets"
-  [command]="./run: options, bad input, Ctrl-C, second start; roverd decode; NTRIP casters; power cuts; stops in a full house"
+  [command]="./run: options, bad input, Ctrl-C, second start; roverd decode; NTRIP casters; power cuts and kills; stops in a full house"
   [vehicles]="the main job with every vehicle: ./run --vehicle NAME, judged by the true pose"
   [real]="recordings and mission files from the field"
   [can]="a real CAN interface in the user-mode kernel"
@@ -31,6 +31,7 @@ declare -A titles=(
   [asan]="unit, loop and API under address and undefined sanitizers"
   [tsan]="threaded rooms and API under the thread sanitizer"
   [fuzz]="every parser of foreign bytes against random input"
+  [soak]="a thousand kills lose nothing; twenty minutes of faults, clients and stops"
   [bench]="all figures of the README, in full"
 )
 
@@ -142,6 +143,7 @@ step_command() {
   for name in decode arguments run ntrip power_cut stop storage study resume learned gpsd; do
     ordinary python3 "$root/tests/command/${name}_test.py" || code=$?
   done
+  ordinary python3 "$root/tests/soak/kills" --count 25 || code=$?
   return "$code"
 }
 
@@ -303,6 +305,14 @@ build_benchmarks() {
 step_figures() {
   build_benchmarks
   "$root/tests/bench/run" --short
+}
+
+step_soak() {
+  local code=0
+  build_product
+  python3 "$root/tests/soak/kills" --count "${SOAK_KILLS:-1000}" || code=$?
+  python3 "$root/tests/soak/soak" --minutes "${SOAK_MINUTES:-20}" || code=$?
+  return "$code"
 }
 
 step_bench() {
