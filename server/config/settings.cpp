@@ -145,6 +145,19 @@ Sections sections_of(Settings& s) {
   return out;
 }
 
+/// All fields of a section under their full names.
+struct Tell {
+  std::vector<robot::NamedValue>& out;
+
+  template <class P>
+  void operator()(const std::string& section, const P& params) {
+    for (auto& field : base::describe(params)) {
+      if (field.name == "link" && section.starts_with("drivers.")) continue;
+      out.emplace_back(section + "." + field.name, std::move(field.value));
+    }
+  }
+};
+
 /// "drivers" is none itself, but leads to some.
 bool leads_to_section(const Sections& sections, const std::string& key) {
   return sections.contains(key) ||
@@ -267,6 +280,31 @@ Result<Settings> load_settings(const SettingsSource& source) {
   for (const Layer layer : {Layer{&*profile}, Layer{&*config}, Layer{&overrides}, Layer{&chosen}}) {
     if (auto done = set_all(settings, *layer); !done) return tl::unexpected(done.error());
   }
+  if (auto good = check_all(settings); !good) return tl::unexpected(good.error());
+  return settings;
+}
+
+std::vector<robot::NamedValue> told(Settings settings) {
+  std::vector<robot::NamedValue> out;
+  Tell tell{out};
+  tell("vehicle", settings.vehicle);
+  tell("vehicle", settings.robot.vehicle);
+  drivers(
+      [&tell](const std::string& name, const auto& driver) {
+        tell("drivers." + name, driver.wiring);
+        tell("drivers." + name, driver.params);
+      },
+      settings);
+  robot::sections(tell, settings.robot);
+  return out;
+}
+
+Result<Settings> settings_from(const std::vector<robot::NamedValue>& values) {
+  std::vector<Entry> entries;
+  entries.reserve(values.size());
+  for (const auto& [key, value] : values) entries.push_back({key, value, "settings"});
+  Settings settings;
+  if (auto done = set_all(settings, entries); !done) return tl::unexpected(done.error());
   if (auto good = check_all(settings); !good) return tl::unexpected(good.error());
   return settings;
 }

@@ -197,4 +197,11 @@ struct SettingsSource {
 
 base::Result<Settings> load_settings(const SettingsSource& source);
 
+/// What the vehicle, its drivers and the robot are told, by full names ("drivers.gnss.enabled"),
+/// for another program of ours: no links (they may hold passwords), nothing of the server.
+std::vector<robot::NamedValue> told(Settings settings);
+/// From that list alone, no file: told() of the answer is the same. Invalid, naming the key:
+/// unknown or out of range.
+base::Result<Settings> settings_from(const std::vector<robot::NamedValue>& values);
+
 }  // namespace roverd

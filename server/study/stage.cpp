@@ -117,8 +117,10 @@ void Stage::tick() {
   for (const base::Time t : {now_ - kTick / 2, now_}) {
     plant_->advance_to(t);
     at_ = t;
+    if (!alive_) continue;
     for (const auto& tick : ticks_) tick(t);
   }
+  if (!alive_) return;
   const auto before = std::chrono::steady_clock::now();
   robot_.tick(now_, wall_ + now_.time_since_epoch());
   const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - before;

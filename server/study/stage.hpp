@@ -29,6 +29,12 @@ class Stage {
   void tick();
   base::Result<void> ask(robot::Command command);
 
+  /// The program dies: from now on only the vehicle goes on.
+  void kill_program() noexcept { alive_ = false; }
+  bool alive() const noexcept { return alive_; }
+  /// Somebody else on the bus sends this. On a vehicle without one: nothing happens.
+  void put_on_bus(const base::CanFrame& frame) { can_.b->send(frame); }
+
   sim::Vehicle& plant() noexcept { return *plant_; }
   robot::Robot& robot() noexcept { return robot_; }
   double now_s() const noexcept { return base::seconds(now_.time_since_epoch()); }
@@ -49,6 +55,7 @@ class Stage {
   base::Time now_{};
   base::Time at_{};  ///< finer than now_: when a frame leaves within a tick
   double tick_us_ = 0.0;
+  bool alive_ = true;
   link::MemoryFramePair can_;
   link::MemoryBytePair drive_;
   link::MemoryBytePair bumper_;
