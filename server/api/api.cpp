@@ -170,6 +170,7 @@ Api::Api(Deps deps) : impl_(std::make_unique<Impl>(std::move(deps))) {
   add_drive_routes(c);
   add_run_routes(c);
   add_parameter_routes(c);
+  add_drill_routes(c);
   load_active_fence(c);
 }
 

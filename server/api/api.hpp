@@ -55,6 +55,19 @@ struct DriverDoor {
   std::function<void(int motor, base::Time not_after, Done)> clear_errors{};
 };
 
+/// Another program that plays failures in simulated time; the live robot has no part in it.
+struct DrillDoor {
+  using Line = std::function<void(const std::string&)>;
+  using End = std::function<void(const std::string& problem)>;
+  /// Any thread: puts into the order what that program must know of this vehicle.
+  std::function<void(Json& order)> equip{};
+  /// Web thread, and so are the calls of `line` for each line and of `end`, once; its problem is
+  /// empty where all went well. Errors: Conflict (one runs), Unavailable. Empty: there is none.
+  std::function<base::Result<void>(std::string order, Line line, End end)> start{};
+  /// Ends it; neither is called any more.
+  std::function<void()> stop{};
+};
+
 /// Figures of net for /metrics.
 struct NetFigures {
   std::uint64_t accepted = 0;
@@ -83,6 +96,7 @@ struct Deps {
   Profile profile;
   Tiles tiles{};
   DriverDoor drivers{};
+  DrillDoor drill{};
   /// The ground-control page; empty answers: no such file.
   std::function<std::optional<Response>(const Request&)> page{};
   std::function<NetFigures()> figures{};

@@ -173,6 +173,7 @@ void add_tile_routes(const ContextPtr& context);
 void add_drive_routes(const ContextPtr& context);
 void add_run_routes(const ContextPtr& context);
 void add_parameter_routes(const ContextPtr& context);
+void add_drill_routes(const ContextPtr& context);
 
 /// Runs a command and answers with what `state` makes of the snapshot, or with the refusal.
 void run_command(const ContextPtr& context, const CallPtr& call, robot::Command command,

@@ -15,6 +15,7 @@
 
 #include <unistd.h>
 
+#include "app/drill.hpp"
 #include "app/logging.hpp"
 #include "app/memory_reserve.hpp"
 #include "app/options.hpp"
@@ -122,11 +123,8 @@ int serve(const roverd::Options& options) {
   return 0;
 }
 
-/// The study holds the simulated vehicle, which this program is not to know: it lies beside it.
 int become_study(char** argv) {
-  std::error_code ec;
-  const auto here = std::filesystem::read_symlink("/proc/self/exe", ec);
-  const std::string program = (here.parent_path() / "roverd-study").string();
+  const std::string program = roverd::study_program();
   ::execv(program.c_str(), argv + 1);
   return say(kRefused, program + ": " + std::strerror(errno));
 }

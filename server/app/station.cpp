@@ -12,8 +12,10 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "api/api.hpp"
+#include "app/child_process.hpp"
 #include "app/control_loop.hpp"
 #include "app/devices.hpp"
+#include "app/drill.hpp"
 #include "app/estop_keeper.hpp"
 #include "app/host_watch.hpp"
 #include "app/memory_reserve.hpp"
@@ -83,6 +85,7 @@ struct Station::Impl {
   std::optional<Claim> claim;          ///< of the link that moves the robot
   std::filesystem::path learned_file;  ///< empty: a recording is played, nothing is kept
   std::string learned_by;
+  ChildProcess drill{web};    ///< plays failures, beside all this
   net::Workers workers{web};  ///< for what would keep the web waiting; ends first
   std::string address;
 
@@ -93,7 +96,7 @@ struct Station::Impl {
   void when_estop_kept(std::function<void()> then);
   void serve();
   Result<void> open_server(const Settings& settings, const Options& options);
-  void make_api(const Settings& settings);
+  void make_api(const Settings& settings, const Options& options);
   api::DriverDoor driver_door();
   void start();
   void start_services();
@@ -123,7 +126,7 @@ Result<void> Station::Impl::open(const Settings& settings, const Options& option
   if (auto done = claim_robot(settings, options); !done) return done;
   open_estop(options, first);
   services = std::make_unique<services::Services>(robot, *store, settings.vehicle.name);
-  make_api(settings);
+  make_api(settings, options);
   if (auto done = open_server(settings, options); !done) return done;
   recall(settings, options);
   if (options.replays.empty()) {
@@ -223,7 +226,7 @@ api::DriverDoor Station::Impl::driver_door() {
   return door;
 }
 
-void Station::Impl::make_api(const Settings& settings) {
+void Station::Impl::make_api(const Settings& settings, const Options& options) {
   api::Deps deps{.robot = robot,
                  .store = *store,
                  .services = *services,
@@ -233,6 +236,7 @@ void Station::Impl::make_api(const Settings& settings) {
                   return tiles.read(set, zoom, x, y);
                 }};
   deps.drivers = driver_door();
+  deps.drill = drill_door(drill, robot, settings, options);
   deps.page = [this](const net::Request& request) { return page.answer(request); };
   deps.figures = [this] {
     const net::Stats stats = server->stats();
@@ -434,6 +438,7 @@ void Station::Impl::stop() {
   base::log(base::Level::Info, "main", "stopping");
   manager.stopping();
   halt();
+  drill.stop();
   server->stop(kGoodbye, [this] {
     bell->silence();
     web.stop();

@@ -25,9 +25,9 @@ constexpr double kArrives_s = 120.0;  ///< and twice the time that the way up to
 constexpr double kBefore_m = 0.1;     ///< a stop on the way is driven to as exactly as that
 constexpr double kMoves_mps = 0.01;
 constexpr double kMoves_radps = 0.01;
-constexpr double kRests_s = 2.0;  ///< standing so long, with nothing that drives it on
-constexpr double kTrackEvery_m = 0.1;
-constexpr std::size_t kTrackMost = 2000;
+constexpr double kRests_s = 2.0;       ///< standing so long, with nothing that drives it on
+constexpr double kTrackEvery_m = 0.1;  ///< at first
+constexpr std::size_t kTrackMost = 200;
 constexpr int kWordEvery = 25;  ///< ticks from an operator's word to the next
 
 bool moving(const sim::Truth& t) {
@@ -235,6 +235,7 @@ class Player {
     }
     const sim::Truth t = stage_.plant().truth();
     out_.last = pose_of(t);
+    if (out_.track.back() != t.at) out_.track.push_back(t.at);
     out_.way_m = t.driven_m - began_m_;
     out_.off_way_m = off_way_m(place_, t.at, out_.way_m);
     out_.fence_m = surveyor_.nearest_m();
@@ -246,8 +247,7 @@ class Player {
 
   void note(const sim::Truth& t) {
     surveyor_.look(t);
-    const double last_m = base::distance_bearing(out_.track.back(), t.at).distance_m;
-    if (last_m >= kTrackEvery_m && out_.track.size() < kTrackMost) out_.track.push_back(t.at);
+    draw(t.at);
     if (!stage_.alive()) return;
     for (const auto& condition : state().safety) {
       if (std::find(known_.begin(), known_.end(), condition.id) != known_.end()) continue;
@@ -259,6 +259,17 @@ class Player {
         *told = condition;
       }
     }
+  }
+
+  /// A long way is drawn in longer steps.
+  void draw(base::LatLon at) {
+    auto& track = out_.track;
+    if (base::distance_bearing(track.back(), at).distance_m < track_every_m_) return;
+    track.push_back(at);
+    if (track.size() < kTrackMost) return;
+    for (std::size_t i = 1; 2 * i < track.size(); ++i) track[i] = track[2 * i];
+    track.resize((track.size() + 1) / 2);
+    track_every_m_ *= 2.0;
   }
 
   /// It stands: for good, as far as anybody can tell?
@@ -309,6 +320,7 @@ class Player {
   DrillResult out_;
   std::shared_ptr<const base::Snapshot> now_;
   std::vector<std::string> known_;  ///< conditions that there were before
+  double track_every_m_ = kTrackEvery_m;
   double began_s_ = 0.0;
   double began_m_ = 0.0;
   int ticks_ = 0;

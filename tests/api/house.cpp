@@ -80,6 +80,7 @@ House::House(net::Limits limits, Vehicle vehicle, const Before& before)
                  .version = "test",
                  .profile = profile()};
   deps.drivers = door(vehicle);
+  deps.drill = drill_door();
   deps.page = [](const net::Request& request) -> std::optional<net::Response> {
     if (request.target() != "/docs.html") return std::nullopt;
     net::Response file{boost::beast::http::status::ok, 11};
@@ -116,6 +117,33 @@ House::House(net::Limits limits, Vehicle vehicle, const Before& before)
   start_services();
   web_ = std::thread([this] { io_.run(); });
   control_ = std::thread([this] { play(); });
+}
+
+api::DrillDoor House::drill_door() {
+  api::DrillDoor out;
+  out.equip = [](Json& order) { order["sim"] = "plant"; };
+  out.start = [this](std::string order, auto line, auto end) -> base::Result<void> {
+    std::lock_guard lock(mutex_);
+    drill_order_ = std::move(order);
+    drill_line_ = std::move(line);
+    drill_end_ = std::move(end);
+    return {};
+  };
+  out.stop = [this] { ++drills_stopped; };
+  return out;
+}
+
+std::string House::drill_order() {
+  std::lock_guard lock(mutex_);
+  return drill_order_;
+}
+
+void House::drill_says(const std::string& line) {
+  boost::asio::post(io_, [this, line] { drill_line_(line); });
+}
+
+void House::drill_ends(const std::string& problem) {
+  boost::asio::post(io_, [this, problem] { drill_end_(problem); });
 }
 
 api::DriverDoor House::door(Vehicle vehicle) {

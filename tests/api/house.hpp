@@ -71,6 +71,11 @@ class House {
   /// What went to the base last.
   base::DriveCommand sent();
   std::shared_ptr<const base::Snapshot> snapshot() { return robot_.snapshot(); }
+  /// The program that plays drills: what it was told last, and what it says; a problem ends it.
+  std::string drill_order();
+  void drill_says(const std::string& line);
+  void drill_ends(const std::string& problem);
+  std::atomic<int> drills_stopped{0};
   /// A device says something more.
   void hear(base::Measurement m) { robot_.measurements().put(std::move(m)); }
 
@@ -80,6 +85,7 @@ class House {
   void serve(net::Limits limits);
   void start_services();
   api::DriverDoor door(Vehicle vehicle);
+  api::DrillDoor drill_door();
 
   std::filesystem::path folder_;
   boost::asio::io_context io_{net::kWebConcurrency};
@@ -91,7 +97,10 @@ class House {
   std::unique_ptr<net::Doorbell> bell_;
   net::Workers workers_{io_};
   std::mutex mutex_;
-  base::DriveCommand sent_;  ///< guarded by mutex_
+  base::DriveCommand sent_;          ///< guarded by mutex_
+  std::string drill_order_;          ///< guarded by mutex_
+  api::DrillDoor::Line drill_line_;  ///< web thread
+  api::DrillDoor::End drill_end_;    ///< web thread
   // Control thread: what tracks and receiver have told of moved_m.
   double tracks_m_ = 0.0;
   double fix_m_ = 0.0;
