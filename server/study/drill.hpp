@@ -95,7 +95,7 @@ struct DrillResult {
   std::string mode;               ///< afterwards; empty: there is no program any more
   bool armed = false;
   bool estop = false;
-  std::vector<base::SafetyCondition> said;  ///< conditions that came, as they were told last
+  std::vector<base::SafetyCondition> said;  ///< conditions that came, as they were told first
   std::vector<base::LatLon> track;
 };
 

@@ -251,13 +251,9 @@ class Player {
     if (!stage_.alive()) return;
     for (const auto& condition : state().safety) {
       if (std::find(known_.begin(), known_.end(), condition.id) != known_.end()) continue;
-      const auto told = std::find_if(out_.said.begin(), out_.said.end(),
-                                     [&](const auto& c) { return c.id == condition.id; });
-      if (told == out_.said.end()) {
-        out_.said.push_back(condition);
-      } else {
-        *told = condition;
-      }
+      const bool told = std::any_of(out_.said.begin(), out_.said.end(),
+                                    [&](const auto& c) { return c.id == condition.id; });
+      if (!told) out_.said.push_back(condition);
     }
   }
 

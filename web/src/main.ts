@@ -2,6 +2,7 @@
 
 import { mount } from 'svelte';
 
+import { drill_calls } from './link/drill';
 import { fence_calls, survey_calls } from './link/fields';
 import { mission_calls, tile_sets, vehicle_calls } from './link/rest';
 import { run_calls } from './link/runs';
@@ -27,6 +28,7 @@ const station = new Station({
   vehicle: vehicle_calls(() => late.stream?.seen_s() ?? null),
   teach: teach_calls,
   runs: run_calls,
+  drill: drill_calls,
   survey: survey_calls,
   fences: fence_calls,
   map,

@@ -11,6 +11,7 @@ import XYZ from 'ol/source/XYZ';
 import type { FenceDraft } from '../model/fence';
 import { EMPTY_PLAN, type LatLon, type Plan } from '../model/plan';
 import type {
+  DrillOnMap,
   MapCalls,
   MapEvents,
   MapMode,
@@ -22,6 +23,7 @@ import type {
 } from '../model/ports';
 import type { Tracks } from '../model/tracks';
 import { canvas_layer } from './canvas';
+import { prepare_drill } from './drill_painter';
 import { EditInteraction } from './edit';
 import type { Cover } from './grid';
 import { on_palette_change } from './palette';
@@ -34,6 +36,8 @@ import { make_scale_bar } from './scale_bar';
 const WORLD_ZOOM = 2;
 /** About a hundred metres across a laptop screen at middle latitudes. */
 const WORK_ZOOM = 20;
+/** A vehicle fills a tenth of it. */
+const CLOSE_ZOOM = 23;
 const MAX_ZOOM = 25;
 const FIT_MARGIN_PX = 48;
 
@@ -184,6 +188,11 @@ export class FieldMap implements MapCalls {
     this.#map.render();
   }
 
+  show_drill(drill: DrillOnMap | null): void {
+    this.#scene.drill = drill && prepare_drill(drill);
+    this.#map.render();
+  }
+
   show_fence(fence: FenceDraft | null): void {
     this.#scene.fence = fence;
     this.#map.render();
@@ -214,11 +223,11 @@ export class FieldMap implements MapCalls {
     if (follow && this.#scene.robot) this.#center_on(this.#scene.robot.at);
   }
 
-  fit(points: readonly LatLon[]): void {
+  fit(points: readonly LatLon[], closely = false): void {
     if (points.length === 0) return;
     this.#placed = true;
     const padding = Array<number>(4).fill(FIT_MARGIN_PX);
-    this.#view.fit(extent_of(points), { padding, maxZoom: WORK_ZOOM + 1 });
+    this.#view.fit(extent_of(points), { padding, maxZoom: closely ? CLOSE_ZOOM : WORK_ZOOM + 1 });
   }
 
   center_robot(): void {

@@ -5,6 +5,7 @@ import type { FenceDraft } from '../model/fence';
 import { EMPTY_PLAN, type LatLon, type Plan } from '../model/plan';
 import type { MapEvents, Mark, RobotOnMap } from '../model/ports';
 import type { Paint, Painter } from './canvas';
+import { paint_drill, type DrawnDrill } from './drill_painter';
 import type { Drag } from './edit';
 import { paint_fence } from './fence_painter';
 import { paint_grid, type Cover } from './grid';
@@ -65,6 +66,7 @@ export class Scene {
   robot: RobotOnMap | null = null;
   home: LatLon | null = null;
   runs: readonly DrawnRun[] = [];
+  drill: DrawnDrill | null = null;
   fence: FenceDraft | null = null;
   /** The place that the person chose. */
   pin: Mark | null = null;
@@ -103,6 +105,9 @@ export class Scene {
       },
       (paint) => this.#paint_driven(paint),
       (paint) => this.#paint_edited(paint),
+      (paint) => {
+        if (this.drill) paint_drill(paint, this.drill, this.size, palette());
+      },
       (paint) => {
         if (this.home) paint_home(paint, this.home, palette());
       },

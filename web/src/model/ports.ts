@@ -1,6 +1,7 @@
 // What the rooms of the page hand each other through main.ts: types only.
 
 import type { Answer, Refusal } from './answer';
+import type { Drill, DrillTone, DrillWish } from './drill';
 import type { Driver } from './drivers';
 import type { Fence, FenceDraft, FenceSummary } from './fence';
 import type { LinkHealth } from './freshness';
@@ -192,6 +193,13 @@ export interface RunCalls {
   plan(id: number): Promise<Answer<Plan>>;
   track_address(id: number, format: 'csv' | 'gpx' | 'geojson'): string;
 }
+/** Failures in simulated time. */
+export interface DrillCalls {
+  /** The one that runs, or the last one. */
+  read(): Promise<Answer<Drill>>;
+  begin(wish: DrillWish): Promise<Answer<Drill>>;
+  cancel(): Promise<Answer<Drill>>;
+}
 export interface SurveyCalls {
   /** Works it out; nothing is stored. */
   preview(wish: SurveyWish): Promise<Answer<Survey>>;
@@ -286,6 +294,20 @@ export interface RunOnMap {
   readonly lines: readonly (readonly LatLon[])[];
   readonly planned: readonly LatLon[];
 }
+/** Where the robot would stand after a failure, or be at the end of the simulated time. */
+export interface DrilledPlace extends LatLon {
+  readonly heading_deg: number;
+  /** The way there from the failure. */
+  readonly line: readonly LatLon[];
+  readonly tone: DrillTone;
+  readonly label: string;
+  /** It is looked at. */
+  readonly chosen: boolean;
+}
+export interface DrillOnMap {
+  readonly begins: LatLon | null;
+  readonly places: readonly DrilledPlace[];
+}
 /** A place on the map that means something, and how the robot faces there. */
 export interface Mark extends LatLon {
   readonly heading_deg: number | null;
@@ -312,6 +334,8 @@ export interface MapCalls {
   show_marks(pin: Mark | null, goal: Mark | null): void;
   /** Runs, or a survey that is being planned, instead of the way so far; none: that one again. */
   show_runs(runs: readonly RunOnMap[]): void;
+  /** What a drill found; null: none is looked at. */
+  show_drill(drill: DrillOnMap | null): void;
   /** Footprint of the vehicle, drawn to scale. */
   set_size(length_m: number, width_m: number): void;
   /** What panels cover, pixels: the robot, the edited item and fitted routes stay in the free
@@ -320,7 +344,8 @@ export interface MapCalls {
   set_follow(follow: boolean): void;
   /** Once, also where the map does not follow. */
   center_robot(): void;
-  fit(points: readonly LatLon[]): void;
+  /** @param closely also where that is a metre across */
+  fit(points: readonly LatLon[], closely?: boolean): void;
   zoom_by(levels: number): void;
   use_tiles(set: TileSet | null): void;
 }

@@ -7,6 +7,7 @@ import { activity_mark } from '../model/modes';
 import { EMPTY_PLAN, spots, type Plan } from '../model/plan';
 import type {
   DraftStorage,
+  DrillCalls,
   FenceCalls,
   ImportedArea,
   LiveLink,
@@ -22,6 +23,7 @@ import type {
 import { field_places } from '../model/survey';
 import { robot_place, type Check } from '../model/vehicle';
 import { Dialogs } from './dialogs.svelte';
+import { Drills, type DrillSubject } from './drill.svelte';
 import type { Drawing } from './drawing.svelte';
 import { Drivers } from './drivers.svelte';
 import { Editor, plan_of } from './editor.svelte';
@@ -59,6 +61,7 @@ export interface Doors {
   readonly vehicle: VehicleCalls;
   readonly teach: TeachCalls;
   readonly runs: RunCalls;
+  readonly drill: DrillCalls;
   readonly survey: SurveyCalls;
   readonly fences: FenceCalls;
   readonly map: MapCalls;
@@ -85,6 +88,24 @@ export class Station {
     return fencing && this.fences.draft ? this.fences : null;
   });
 
+  /** On what a drill would be played: the loaded mission, else the one in the editor as it is
+   * stored. */
+  drill_subject = $derived.by<DrillSubject | null>(() => {
+    const { id, revision, name } = this.live.vehicle?.mission ?? {};
+    if (id && typeof revision === 'number') {
+      const plan = this.route ?? EMPTY_PLAN;
+      return { id, revision, name: name ?? '', plan, loaded: true };
+    }
+    const { stored, plan, unsaved } = this.editor;
+    if (!stored || unsaved) return null;
+    return { id: stored.id, revision: stored.revision, name: plan.name, plan, loaded: false };
+  });
+
+  /** Once the robot drives, what it is driven with goes before. */
+  drilling = $derived.by<boolean>(
+    () => this.drills.open && this.live.vehicle?.mission.state !== 'running',
+  );
+
   readonly live = new Live();
   readonly target = new Target(this.live);
   readonly notices = new Notices();
@@ -96,6 +117,7 @@ export class Station {
   readonly sky: Sky;
   readonly teacher: Teacher;
   readonly runs: Runs;
+  readonly drills: Drills;
   readonly surveyor: Surveyor;
   readonly fences: Fences;
   readonly homeward: Homeward;
@@ -126,6 +148,7 @@ export class Station {
     this.drivers = new Drivers(doors.vehicle, this.notices, this.dialogs);
     this.sky = new Sky(doors.vehicle);
     this.runs = new Runs(doors.runs);
+    this.drills = new Drills(doors.drill);
     this.surveyor = new Surveyor(doors.survey, this.editor, this.notices);
     this.fences = new Fences(doors.fences, this.notices, this.dialogs);
     this.homeward = new Homeward(doors.vehicle, this.live);
@@ -346,6 +369,9 @@ export class Station {
       void fence_name;
       untrack(() => void this.fences.refresh_active());
     });
+    $effect(() =>
+      map.show_drill(this.tab === 'drive' && this.drilling ? this.drills.on_map : null),
+    );
     $effect(() => map.show_route(this.route, live.vehicle?.mission.current_item ?? 0));
     $effect(() => map.show_robot(live.robot, live.tracks));
     $effect(() => map.show_home(live.vehicle?.home ?? null));
