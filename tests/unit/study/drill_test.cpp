@@ -31,7 +31,7 @@ json told_settings(const std::string& vehicle = "bunker") {
   EXPECT_TRUE(settings);
   json out = json::object();
   for (const auto& [key, value] : told(*settings)) {
-    std::visit([&out, &key](const auto& v) { out[key] = v; }, value);
+    std::visit([&out, &name = key](const auto& v) { out[name] = v; }, value);
   }
   return out;
 }
@@ -95,7 +95,7 @@ TEST(DrillOrder, IsWhatTheRunningProgramTold) {
   EXPECT_EQ(read->fence->name, "around");
   json again = json::object();
   for (const auto& [key, value] : told(read->settings)) {
-    std::visit([&again, &key](const auto& v) { again[key] = v; }, value);
+    std::visit([&again, &name = key](const auto& v) { again[name] = v; }, value);
   }
   EXPECT_EQ(again, document["settings"]);
 }
