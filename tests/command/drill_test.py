@@ -200,19 +200,19 @@ def cancelled_and_killed():
 
         # Given one that runs, stopped where it is so that it cannot end too early
         pid = begin()[0]
-        until("it stepped back", 5, lambda: os.getpriority(os.PRIO_PROCESS, pid) >= 10, 0.002)
+        until("it stepped back", 20, lambda: os.getpriority(os.PRIO_PROCESS, pid) >= 10, 0.002)
         os.kill(pid, signal.SIGSTOP)
         # When it is cancelled, then it is gone at once, and GET says so
         drill = rest.do("DELETE", DRILL)
         check(drill["state"] == "cancelled", f"{drill['state']}")
-        until("the study is gone", 5, lambda: not children(station), 0.02)
+        until("the study is gone", 20, lambda: not children(station), 0.02)
         check(rest.call("DELETE", DRILL)[0] == 409, "there is none any more")
         # When the next one is killed from outside
         pid = begin()[0]
         os.kill(pid, signal.SIGSTOP)
         os.kill(pid, signal.SIGKILL)
         # Then the drill failed, by that program's name and the signal's
-        drill = ended(rest, 10)
+        drill = ended(rest, 30)
         check(drill["state"] == "failed", f"{drill['state']}")
         check("roverd-study" in drill["detail"] and "signal 9" in drill["detail"], drill["detail"])
         # and the robot is as well as before, and plays the next one
@@ -221,7 +221,7 @@ def cancelled_and_killed():
         # When roverd ends, killed, nothing of it is left
         pid = begin()[0]
         station.roverd.stop(signal.SIGKILL)
-        until("the study went with it", 5, lambda: not os.path.exists(f"/proc/{pid}"), 0.02)
+        until("the study went with it", 30, lambda: not os.path.exists(f"/proc/{pid}"), 0.02)
 
 
 def a_missing_program():
