@@ -45,6 +45,25 @@ TEST(Backups, ACopyOfADatabaseInUseIsWholeAndHasWhatWasSaved) {
   EXPECT_FALSE(read(*copy, later->id));
 }
 
+TEST(Backups, OneMoreDescriptorIsHeldForAllOfThem) {
+  // SQLite must not close what the first copy read while the store holds its locks (POSIX drops
+  // them all with any descriptor of the file): it keeps it for the next one. Given a first backup,
+  Folder folder;
+  const auto store = open_store(folder.file());
+  ASSERT_TRUE(create(*store, plan_named("saved")));
+  const auto held = [] {
+    const fs::directory_iterator all("/proc/self/fd");
+    return std::distance(fs::begin(all), fs::end(all));
+  };
+  const auto before = held();
+  ASSERT_TRUE(back_up(folder.file(), 3));
+  const auto after_one = held();
+  EXPECT_LE(after_one, before + 1);
+  // when more are made, then no more are held.
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(back_up(folder.file(), 3));
+  EXPECT_EQ(held(), after_one);
+}
+
 TEST(Backups, TheNewestAreKept) {
   Folder folder;
   const auto store = open_store(folder.file());
