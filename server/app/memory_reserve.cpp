@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <new>
 
+#include <malloc.h>
+
 namespace roverd {
 
 namespace {
@@ -12,6 +14,9 @@ namespace {
 /// Never touched, so that it takes room only where room is counted when it is asked for; so large
 /// that malloc takes it from the system, and gives it back there.
 constexpr std::size_t kReserve = std::size_t{48} << 20U;
+
+/// From here on a block is the system's own, and so much that is free goes back to it.
+constexpr int kLargeBlock = 256 << 10;
 
 std::atomic<void*> reserve{nullptr};
 
@@ -23,6 +28,10 @@ std::atomic<void*> reserve{nullptr};
 }  // namespace
 
 void hold_memory_back() {
+  // Else the first large block that is freed moves both limits up to its size, and more of what a
+  // large request needed stays with its thread's heap: after a file of 20,000 points 31 MB, not 12.
+  ::mallopt(M_MMAP_THRESHOLD, kLargeBlock);
+  ::mallopt(M_TRIM_THRESHOLD, kLargeBlock);
   refill_memory_reserve();
   std::set_new_handler(give_and_fail);
 }

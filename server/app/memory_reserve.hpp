@@ -5,8 +5,9 @@
 
 namespace roverd {
 
-/// Once, before there are other threads: from then on the first allocation that fails gives the
-/// reserve back to all others, and fails all the same.
+/// Once, before there are other threads: large blocks are given back when they are freed, and from
+/// then on the first allocation that fails gives the reserve back to all others, and fails all the
+/// same.
 void hold_memory_back();
 
 /// Takes what was given away anew, if it can be had. Any thread; quick while nothing is missing.
