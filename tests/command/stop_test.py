@@ -160,6 +160,7 @@ def over_a_kill():
     as latched, and is told"""
     with Station() as station:
         file = station.scratch / "data" / "estop"
+        until("the control loop has started", 20, lambda: station.rest.call("GET", "/vehicle")[0] == 200, 0.05)
         check(not station.rest.get("/vehicle")["estop"], "a new robot begins with its stop latched")
         for _ in range(5):
             armed(station.rest)
