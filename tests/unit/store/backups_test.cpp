@@ -8,6 +8,7 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 
 #include "folder.hpp"
 
@@ -62,6 +63,21 @@ TEST(Backups, OneMoreDescriptorIsHeldForAllOfThem) {
   // when more are made, then no more are held.
   for (int i = 0; i < 10; ++i) ASSERT_TRUE(back_up(folder.file(), 3));
   EXPECT_EQ(held(), after_one);
+}
+
+TEST(Backups, OneTakesLittleMemory) {
+  // Given a database of some megabytes,
+  Folder folder;
+  {
+    const auto store = open_store(folder.file());
+    for (int i = 0; i < 10; ++i) ASSERT_TRUE(create(*store, noisy_plan("large", 20'000)));
+  }
+  ASSERT_GT(fs::file_size(folder.file()), 3'000'000u);
+  // when it is backed up, then SQLite takes less than two for it: its caches and a row.
+  const auto before = sqlite3_memory_used();
+  sqlite3_memory_highwater(1);
+  ASSERT_TRUE(back_up(folder.file(), 3));
+  EXPECT_LT(sqlite3_memory_highwater(0) - before, 2'000'000);
 }
 
 TEST(Backups, TheNewestAreKept) {
