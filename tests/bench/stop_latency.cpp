@@ -1,13 +1,15 @@
-// roverd-stop PATH PORT COUNT http|stream: stops a robot that is driven by hand COUNT times, and
-// prints how long it took from the first byte of the request to the first frame with a zero
+// roverd-stop PATH PORT COUNT http|stream|key: stops a robot that is driven by hand COUNT times,
+// and prints how long it took from the first byte of the request to the first frame with a zero
 // command on the bus, as one JSON object: stops, p50_ms, p99_ms, max_ms. A stop over HTTP comes
-// through a new connection each time, as from a script.
+// through a new connection each time, as from a script. With `key` somebody else stops it: asked by
+// a line "press", he answers with the moment at which he did, in milliseconds since 1970.
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <iostream>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -83,6 +85,26 @@ class Stopper {
     const int at_once = 1;
     ::setsockopt(stream_.handle(), IPPROTO_TCP, TCP_NODELAY, &at_once, sizeof at_once);
     if (stream_.upgrade("/api/v1/stream") != 101) throw std::runtime_error("no stream");
+  }
+
+  /// @return from the key's press, as its page saw it, to the zero on the bus
+  base::Duration wait_for_key() {
+    get_ready();
+    drive();
+    std::this_thread::sleep_for(std::chrono::microseconds(anywhere_(random_)));
+    const base::Time asked = base::steady_now();
+    std::puts("press");
+    std::fflush(stdout);
+    double pressed_ms = 0.0;
+    if (!(std::cin >> pressed_ms)) throw std::runtime_error("nobody presses");
+    while (bus_.zero() < asked) {
+      if (base::steady_now() - asked > 10s) throw std::runtime_error("no zero within 10 s");
+      std::this_thread::sleep_for(200us);
+    }
+    const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
+    const base::Duration ago = base::steady_now() - bus_.zero();
+    return std::chrono::duration_cast<base::Duration>(since_epoch) - ago -
+           base::from_seconds(pressed_ms / 1e3);
   }
 
   /// @return from the request's first byte to the zero on the bus
@@ -169,8 +191,8 @@ double at_share(const std::vector<double>& sorted, double share) {
 
 int main(int argc, char** argv) {
   const std::string way = argc == 5 ? argv[4] : "";
-  if (way != "http" && way != "stream") {
-    std::fputs("usage: roverd-stop PATH PORT COUNT http|stream\n", stderr);
+  if (way != "http" && way != "stream" && way != "key") {
+    std::fputs("usage: roverd-stop PATH PORT COUNT http|stream|key\n", stderr);
     return 2;
   }
   try {
@@ -178,7 +200,9 @@ int main(int argc, char** argv) {
     Stopper stopper(argv[1], static_cast<std::uint16_t>(std::atoi(argv[2])));
     std::vector<double> took_ms;
     for (int i = 0; i < std::atoi(argv[3]); ++i) {
-      took_ms.push_back(1e3 * base::seconds(stopper.stop_once(way == "stream")));
+      const base::Duration took =
+          way == "key" ? stopper.wait_for_key() : stopper.stop_once(way == "stream");
+      took_ms.push_back(1e3 * base::seconds(took));
     }
     std::sort(took_ms.begin(), took_ms.end());
     std::printf("{\"stops\":%zu,\"p50_ms\":%.3f,\"p99_ms\":%.3f,\"max_ms\":%.3f}\n", took_ms.size(),
