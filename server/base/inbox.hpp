@@ -30,10 +30,10 @@ class Inbox {
   }
 
   /// Any thread, all or nothing: refuses instead of dropping another entry. For commands, whose
-  /// sender must hear that there was no room.
-  bool offer(T value) {
+  /// sender must hear that there was no room. @param more beyond the capacity, for what must get in
+  bool offer(T value, std::size_t more = 0) {
     std::lock_guard lock(mutex_);
-    if (queue_.size() >= capacity_) return false;
+    if (queue_.size() >= capacity_ + more) return false;
     queue_.push_back(std::move(value));
     return true;
   }

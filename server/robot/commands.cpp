@@ -12,14 +12,6 @@ using base::Code;
 using base::Mode;
 using base::Severity;
 
-/// Stops are never too late: they are carried out whenever they arrive.
-bool is_stop(const Command& c) noexcept {
-  if (const auto* mode = std::get_if<SetMode>(&c)) return mode->mode == Mode::Hold;
-  if (const auto* drive = std::get_if<Drive>(&c)) return !drive->deadman;
-  return std::holds_alternative<Estop>(c) || std::holds_alternative<Disarm>(c) ||
-         std::holds_alternative<PauseMission>(c) || std::holds_alternative<StopMission>(c);
-}
-
 /// Somebody wants the robot to stand. To let go of the stick says less: another way of driving may
 /// have been chosen before.
 bool halts(const Command& c) noexcept {
@@ -39,6 +31,13 @@ struct Left {
 };
 
 }  // namespace
+
+bool is_stop(const Command& c) noexcept {
+  if (const auto* mode = std::get_if<SetMode>(&c)) return mode->mode == Mode::Hold;
+  if (const auto* drive = std::get_if<Drive>(&c)) return !drive->deadman;
+  return std::holds_alternative<Estop>(c) || std::holds_alternative<Disarm>(c) ||
+         std::holds_alternative<PauseMission>(c) || std::holds_alternative<StopMission>(c);
+}
 
 bool neutral(const base::BodyTwist& twist) noexcept {
   return Manual::neutral(twist);

@@ -122,8 +122,8 @@ TEST_F(BusyApi, AClientThatLeavesBeforeItsAnswerDisturbsNobody) {
     EXPECT_TRUE(hasty.send(
         "POST /api/v1/vehicle/disarm HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 0\r\n\r\n"));
   }
-  // then, once those are carried out, the next one is served as ever.
-  until([this] { return call("POST", "/vehicle/disarm").status == 200; }, "an answer");
+  // then the next one is served as ever: what stops is not refused for the others.
+  EXPECT_EQ(call("POST", "/vehicle/disarm").status, 200u);
 }
 
 TEST_F(BusyApi, AStopStopsWhateverItsBodyIsAndHoweverOftenItIsSaid) {

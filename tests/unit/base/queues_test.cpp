@@ -29,6 +29,17 @@ TEST(Inbox, AnOfferIsRefusedRatherThanDroppingSomebodyElses) {
   EXPECT_EQ(out, std::vector<int>{1});
 }
 
+TEST(Inbox, WhatMustGetInHasRoomBeyondTheOthers) {
+  Inbox<int> inbox(1);
+  EXPECT_TRUE(inbox.offer(1));
+  EXPECT_FALSE(inbox.offer(2));
+  EXPECT_TRUE(inbox.offer(3, 1));
+  EXPECT_FALSE(inbox.offer(4, 1));
+  std::vector<int> out;
+  ASSERT_TRUE(inbox.try_take(out));
+  EXPECT_EQ(out, (std::vector<int>{1, 3}));
+}
+
 TEST(Inbox, LosesNothingBetweenTwoThreads) {
   Inbox<int> inbox(1'000'000);
   std::thread writer([&] {

@@ -159,12 +159,33 @@ TEST(Commands, NoReplyIsEverLostAndAFullQueueSaysSo) {
   int answers = 0;
   int accepted = 0;
   for (int i = 0; i < 100; ++i) {
-    accepted += f.robot.request(Disarm{}, f.now, [&](base::Result<void>) { ++answers; }) ? 1 : 0;
+    accepted += f.robot.request(Arm{}, f.now, [&](base::Result<void>) { ++answers; }) ? 1 : 0;
   }
   EXPECT_EQ(accepted, 64);
   f.tick();
   EXPECT_EQ(answers, accepted);
   EXPECT_GE(f.wakes, 1);
+}
+
+TEST(Commands, WhatStopsGetsInBesideACrowdOfOtherCommands) {
+  // Given a robot on its way, and more commands than it takes
+  Field f;
+  f.drive_mission();
+  while (f.robot.request(SkipItem{}, f.now, {})) {
+  }
+  // when somebody stops it, and a hundred others do,
+  const std::vector<Command> stops{SetMode{Mode::Hold}, PauseMission{}, StopMission{}, Disarm{}};
+  int done = 0;
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_TRUE(f.robot.request(stops[static_cast<std::size_t>(i) % stops.size()], f.now,
+                                [&](base::Result<void> r) { done += r ? 1 : 0; }));
+  }
+  EXPECT_FALSE(f.robot.request(Arm{}, f.now, {}));
+  // then all of them are heard at the next tick.
+  f.tick();
+  EXPECT_GE(done, 50);
+  EXPECT_FALSE(f.state()->armed);
+  EXPECT_FALSE(f.moves());
 }
 
 TEST(Commands, TheEmergencyStopWorksEvenIfNoCommandFitsIntoTheQueue) {
