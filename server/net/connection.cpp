@@ -359,7 +359,7 @@ void Connection::discard() {
 }
 
 void Connection::sweep(base::Time now) {
-  const bool dawdles = phase_ == Phase::Header && peers_->crowded() && deadline_ &&
+  const bool dawdles = phase_ == Phase::Header && !reserve_ && peers_->crowded() && deadline_ &&
                        now > *deadline_ - peers_->limits.request + kHeaderInACrowd;
   if (!deadline_ || (now < *deadline_ && !dawdles)) return;
   if (phase_ != Phase::Lingering) ++peers_->stats.timed_out;

@@ -319,8 +319,9 @@ def main():
             rough.a_full_bus_does_not_stop_the_robot, rough.strangers_are_counted_and_change_nothing,
             rough.a_second_commander_makes_the_robot_hold,
             rough.the_interface_goes_down_and_comes_back,
-            rough.the_interface_is_unplugged_and_plugged_in_again, both_programs_end_cleanly,
-            rough.the_recording_is_whole_and_in_several_files,
+            rough.the_interface_is_unplugged_and_plugged_in_again,
+            rough.the_recording_goes_on_in_a_second_file, both_programs_end_cleanly,
+            rough.the_recording_is_whole,
             rough.nothing_of_the_base_is_missing_in_the_recording,
             rough.canplayer_plays_the_recording], how_it_stands)
     finally:
