@@ -407,7 +407,7 @@ void Connection::discard() {
 
 void Connection::sweep(base::Time now) {
   const bool begins = phase_ == Phase::Header || phase_ == Phase::Greeting;
-  const bool dawdles = begins && peers_->crowded() && deadline_ &&
+  const bool dawdles = begins && !reserve_ && peers_->crowded() && deadline_ &&
                        now > *deadline_ - peers_->limits.request + kHeaderInACrowd;
   if (!deadline_ || (now < *deadline_ && !dawdles)) return;
   if (phase_ != Phase::Lingering) ++peers_->stats.timed_out;
