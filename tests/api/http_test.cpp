@@ -476,29 +476,6 @@ TEST(Http, AFullHouseServesWhatIsUrgentAndNothingElse) {
   for (const auto& one : streams) EXPECT_FALSE(one->closed_within(1ms));
 }
 
-TEST(Http, OnTheReserveASlowLinkHasItsWholeSecond) {
-  // Given a full house,
-  net::Limits limits = small();
-  limits.reserve_time = 8s;
-  NetHouse house(limits, with_stop());
-  std::vector<std::unique_ptr<Client>> streams;
-  for (int i = 0; i < 3; ++i) {
-    streams.push_back(std::make_unique<Client>(house.port()));
-    ASSERT_EQ(streams.back()->upgrade("/stream"), 101u);
-  }
-  // when a stop comes in pieces, some of the sweeps apart,
-  Client stop(house.port());
-  for (const char* piece :
-       {"POST /st", "op HTTP/1.1\r\nHost: x\r\n", "Content-Length: 0\r\n\r\n"}) {
-    EXPECT_TRUE(stop.send(piece));
-    std::this_thread::sleep_for(600ms);
-  }
-  // then it is heard.
-  const auto answer = stop.answer();
-  ASSERT_TRUE(answer);
-  EXPECT_EQ(answer->status, 200u);
-}
-
 TEST(Http, WhatIsUrgentAtItsHeaderDoesNotWaitForItsBody) {
   NetHouse house(small(), with_stop());
   for (const char* framing : {"Content-Length: 5000", "Transfer-Encoding: chunked"}) {
