@@ -24,6 +24,7 @@ namespace roverd {
 struct ServerSettings {
   std::string bind = "127.0.0.1";
   int port = 8080;
+  bool access = false;
   std::string log_level = "info";
 };
 
@@ -31,6 +32,9 @@ template <class V>
 void fields(V& v, ServerSettings& p) {
   v("bind", p.bind, "address to listen on; only loopback until access control is in place");
   v("port", p.port, 0, 65535, "TCP port; 0 chooses a free one");
+  v("access", p.access,
+    "true: people log in and scripts show a token; the first admin is made with the code that "
+    "roverd prints. May be false on loopback only");
   v("log_level", p.log_level, "debug, info, warning or error");
 }
 
