@@ -123,6 +123,8 @@ export interface Station {
 export interface MortalStation extends Station {
   kill(): Promise<void>;
   begin_again(): Promise<void>;
+  /** The printed code of the first admin, with access control. */
+  code(): Promise<string>;
 }
 
 const rest_of =
@@ -141,6 +143,8 @@ const rest_of =
 const config = join(ROOT, 'config/robot.toml');
 
 export const test = base.extend<{
+  /** Access control is on. */
+  access: boolean;
   station: MortalStation;
   /** The way from the browser to that station: it can be slow or broken. */
   link: SlowLink;
@@ -149,8 +153,8 @@ export const test = base.extend<{
   /** Plays a recording, `speed` times as fast as it was recorded. @return the address */
   replay: (file: string, speed: number) => Promise<string>;
 }>({
-  // eslint-disable-next-line no-empty-pattern
-  station: async ({}, use) => {
+  access: [false, { option: true }],
+  station: async ({ access }, use) => {
     const folder = mkdtempSync(join(tmpdir(), 'roverd-page.'));
     const programs: Program[] = [];
     let sim: SideChannel | undefined;
@@ -171,6 +175,7 @@ export const test = base.extend<{
         const program = new Program('roverd', [
           ...['--config', config, '--data', join(folder, 'data'), '--port', port],
           ...links.flatMap((setting) => ['--set', setting]),
+          ...(access ? ['--set', 'server.access=true'] : []),
         ]);
         programs.unshift(program);
         return program;
@@ -183,6 +188,7 @@ export const test = base.extend<{
         sim,
         rest: rest_of(url),
         kill: () => roverd.kill(),
+        code: async () => (await roverd.line(/ with the code (\S+)$/))[1] ?? '',
         begin_again: async () => {
           roverd = begin(new URL(url).port);
           await roverd.line(ready);
