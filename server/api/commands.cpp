@@ -12,8 +12,9 @@ void Commands::run(robot::Command command, const robot::Validity& validity, base
   if (now > not_after) {
     return done(tl::unexpected<base::Error>(late_error(not_after, now)));
   }
-  const bool stop = std::holds_alternative<robot::Estop>(command);  // always has room
-  if (waiting_.size() >= kWaiting && !stop) {
+  const bool estop = std::holds_alternative<robot::Estop>(command);  // always has room
+  const std::size_t most = kWaiting + (robot::is_stop(command) ? robot::kStopsWaiting : 0);
+  if (waiting_.size() >= most && !estop) {
     return done(base::fail(base::Code::Unavailable, "too many commands wait for the robot"));
   }
   const std::uint64_t id = next_++;

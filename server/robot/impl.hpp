@@ -55,9 +55,6 @@ struct PendingCommand {
   Reply reply;
 };
 
-/// Stops are never too late: they are carried out whenever they arrive.
-bool is_stop(const Command& c) noexcept;
-
 /// The words of the public command in those of nav.
 nav::StartAt start_at(const StartMission& c) noexcept;
 
@@ -71,8 +68,6 @@ struct Robot::Impl {
   base::Latest<Config> shared_config;
   base::Inbox<base::Measurement> measurements{4096};
   static constexpr std::size_t kCommands = 64;
-  /// More than those, for what stops: a crowd of other commands does not keep it out.
-  static constexpr std::size_t kStops = 512;
   base::Inbox<PendingCommand> commands{kCommands};
   base::Latest<base::Snapshot> snapshot;
   base::Latest<nav::Learned> learned;

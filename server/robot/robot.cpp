@@ -79,7 +79,7 @@ bool Robot::request(Command command, Validity validity, Reply reply) {
   // The stop itself never waits for room in a queue.
   const bool stop = std::holds_alternative<Estop>(command);
   if (stop) impl_->estop_asked.store(true);
-  const std::size_t more = is_stop(command) ? Impl::kStops : 0;
+  const std::size_t more = is_stop(command) ? kStopsWaiting : 0;
   const bool queued = impl_->commands.offer({std::move(command), validity, std::move(reply)}, more);
   if (stop && alert) alert();
   return queued;

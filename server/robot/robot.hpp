@@ -184,6 +184,12 @@ using Command =
                  DropAnchor, Drive, LoadMission, ReviseMission, GoTo, MoveBy, SetTarget,
                  SetParameter, SetFence, ResumeAt, LayAnew>;
 
+/// Whoever says it wants the robot to stand, or lets go of it. Stops are never too late: they are
+/// carried out whenever they arrive.
+bool is_stop(const Command& c) noexcept;
+/// So many of them find room where other commands do not any more.
+inline constexpr std::size_t kStopsWaiting = 512;
+
 /// How long a command is good, and what its sender had seen when it was given.
 struct Validity {
   /// Not explicit: what moves nothing says only until when it is good.
