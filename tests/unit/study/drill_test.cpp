@@ -163,7 +163,7 @@ TEST(DrillPlace, RefusesWhatLiesBehindTheEndAndAMissionWithoutAWay) {
   ASSERT_FALSE(behind);
   EXPECT_EQ(behind.error().fields.front().pointer, "/at_m");
   document = order();
-  document["mission"]["plan"]["items"] = {waypoint(0, 0)};
+  document["mission"]["plan"]["items"] = json::array({waypoint(0, 0)});
   const auto none = place_of(*read_drill(document.dump()));
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().fields.front().pointer, "/mission_id");
