@@ -127,7 +127,9 @@ void Stage::tick() {
   tick_us_ = took.count();
   replies_.clear();
   robot_.replies().take(replies_);
-  for (auto& r : replies_) r.reply(std::move(r.result));
+  for (auto& r : replies_) {
+    if (r.reply) r.reply(std::move(r.result));
+  }
   events_.clear();
   robot_.events().take(events_);
 }

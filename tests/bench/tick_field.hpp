@@ -88,7 +88,9 @@ class Field {
     events_.clear();
     robot.replies().take(replies_);
     robot.events().take(events_);
-    for (auto& r : replies_) r.reply(std::move(r.result));
+    for (auto& r : replies_) {
+      if (r.reply) r.reply(std::move(r.result));
+    }
   }
 
   void run(int ticks) {
