@@ -15,6 +15,15 @@ const drive_north = async (page: Parameters<typeof open_page>[0]): Promise<void>
   await drive_it(page);
 };
 
+/** Once the checks allow it. */
+const arm = async (page: Parameters<typeof open_page>[0]): Promise<void> => {
+  await expect(async () => {
+    const disarm = page.getByRole('button', { name: 'Disarm', exact: true });
+    if (!(await disarm.isVisible())) await press(page, 'Arm');
+    await expect(disarm).toBeVisible({ timeout: 1000 });
+  }).toPass({ timeout: 20_000 });
+};
+
 test('the stop button stops the moving robot, latches, and is reset after a question', async ({
   page,
   station,
@@ -162,11 +171,7 @@ test('driving by hand moves the robot while held, and letting go stops it', asyn
   station,
 }) => {
   await open_page(page, station.url);
-  await expect(async () => {
-    const disarm = page.getByRole('button', { name: 'Disarm', exact: true });
-    if (!(await disarm.isVisible())) await press(page, 'Arm');
-    await expect(disarm).toBeVisible({ timeout: 1000 });
-  }).toPass({ timeout: 20_000 });
+  await arm(page);
   await press(page, 'MANUAL');
   const pad = page.getByLabel(/^Drive pad/);
   const box = await pad.boundingBox();
@@ -194,11 +199,7 @@ test('a key that is held while the mode changes moves nothing until it is presse
   station,
 }) => {
   await open_page(page, station.url);
-  await expect(async () => {
-    const disarm = page.getByRole('button', { name: 'Disarm', exact: true });
-    if (!(await disarm.isVisible())) await press(page, 'Arm');
-    await expect(disarm).toBeVisible({ timeout: 1000 });
-  }).toPass({ timeout: 20_000 });
+  await arm(page);
   await press(page, 'MANUAL');
   const pad = page.getByLabel(/^Drive pad/);
   await pad.focus();
