@@ -83,9 +83,9 @@ class Homing {
 
 }  // namespace
 
-Connection::Connection(std::shared_ptr<Peers> peers, tcp::socket socket)
+Connection::Connection(std::shared_ptr<Peers> peers, Wire wire)
     : peers_(std::move(peers)),
-      socket_(std::move(socket)),
+      wire_(std::move(wire)),
       buffer_(peers_->limits.header_bytes + 64 * 1024) {}
 
 Connection::~Connection() {
@@ -99,35 +99,72 @@ Connection::~Connection() {
 void Connection::start(bool reserve) {
   reserve_ = reserve;
   error_code ignored;
-  socket_.set_option(tcp::no_delay(true), ignored);
-  earliest_ = peers_->not_seen_since(opened_at(socket_.native_handle(), base::steady_now()));
+  wire_.socket().set_option(tcp::no_delay(true), ignored);
+  earliest_ = peers_->not_seen_since(opened_at(wire_.handle(), base::steady_now()));
+  if (peers_->tls) return greet();
   wait();
 }
 
-void Connection::wait() {
+/// Does the client begin with TLS?
+void Connection::greet() {
+  be_patient();
+  wire_.when_readable([self = shared_from_this()](error_code ec) {
+    if (ec) return self->force();
+    self->greeted();
+  });
+}
+
+void Connection::greeted() {
+  switch (wire_.first()) {
+    case Wire::First::None:
+      return greet();
+    case Wire::First::Gone:
+      return force();
+    case Wire::First::Plain:
+      in_the_open_ = true;
+      return wait();
+    case Wire::First::Tls:
+      break;
+  }
+  phase_ = Phase::Greeting;  // it has the time of a header
+  if (!reserve_) deadline_ = base::steady_now() + peers_->limits.request;
+  wire_.shake(*peers_->tls, [self = shared_from_this()](error_code ec) {
+    if (ec) return self->force();
+    self->earliest_ = self->peers_->not_seen_since(self->wire_.shaken_after());
+    self->wait();
+  });
+}
+
+/// On the reserve handshake and header have their time together.
+void Connection::be_patient() {
   phase_ = Phase::Waiting;
-  deadline_ = base::steady_now() + (reserve_ ? peers_->limits.reserve_time : peers_->limits.idle);
+  if (reserve_ && deadline_) return;
+  const auto& limits = peers_->limits;
+  deadline_ = base::steady_now() + (reserve_ ? limits.reserve_time : limits.idle);
+}
+
+void Connection::wait() {
+  be_patient();
   if (buffer_.size() > 0) return read_header();
-  socket_.async_read_some(buffer_.prepare(kReadBytes),
-                          [self = shared_from_this()](error_code ec, std::size_t n) {
-                            if (ec) return self->force();
-                            self->buffer_.commit(n);
-                            self->read_header();
-                          });
+  wire_.async_read_some(buffer_.prepare(kReadBytes),
+                        [self = shared_from_this()](error_code ec, std::size_t n) {
+                          if (ec) return self->force();
+                          self->buffer_.commit(n);
+                          self->read_header();
+                        });
 }
 
 void Connection::read_header() {
   phase_ = Phase::Header;
   const base::Time now = base::steady_now();
-  begun_ =
-      earliest_ ? *earliest_ : peers_->not_seen_since(newest_arrival(socket_.native_handle(), now));
+  begun_ = earliest_ ? *earliest_ : peers_->not_seen_since(newest_arrival(wire_.handle(), now));
   earliest_.reset();
   if (!reserve_) deadline_ = now + peers_->limits.request;
   parser_.emplace();
   parser_->header_limit(static_cast<std::uint32_t>(peers_->limits.header_bytes));
   parser_->body_limit(kLargestBody);
   body_limit_ = peers_->limits.body_bytes;
-  http::async_read_header(socket_, buffer_, *parser_,
+  http::async_read_header(wire_, buffer_, *parser_,
                           [self = shared_from_this()](error_code ec, std::size_t) {
                             if (self->on_read_error(ec)) return;
                             self->on_header();
@@ -156,6 +193,13 @@ void Connection::on_header() {
   head_ = request.method() == http::verb::head;
   keep_alive_ = request.keep_alive() && !peers_->stopping;
   version_ = request.version();
+  if (in_the_open_) {
+    keep_alive_ = false;
+    phase_ = Phase::Handling;
+    return answer(peers_->handlers.on_plain
+                      ? peers_->handlers.on_plain(request)
+                      : peers_->refusal(403, "only TLS is spoken here: https"));
+  }
   if (const auto wrong = framing_fault(request)) return refuse(wrong->status, wrong->detail);
   if (boost::beast::websocket::is_upgrade(request)) return upgrade();
   const Urgency urgency =
@@ -232,7 +276,7 @@ void Connection::discard(std::string& body) const {
 
 void Connection::expect_continue() {
   static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
-  boost::asio::async_write(socket_, boost::asio::buffer(kContinue),
+  boost::asio::async_write(wire_, boost::asio::buffer(kContinue),
                            [self = shared_from_this()](error_code ec, std::size_t) {
                              if (ec) return self->force();
                              self->read_body();
@@ -241,7 +285,7 @@ void Connection::expect_continue() {
 
 void Connection::read_body() {
   if (parser_->is_done()) return on_request();
-  http::async_read(socket_, buffer_, *parser_,
+  http::async_read(wire_, buffer_, *parser_,
                    [self = shared_from_this()](error_code ec, std::size_t) {
                      if (self->on_read_error(ec)) return;
                      self->on_request();
@@ -271,7 +315,7 @@ void Connection::upgrade() {
   const auto bytes = buffer_.cdata();
   std::string early(static_cast<const char*>(bytes.data()), bytes.size());
   const auto session = std::make_shared<Session>(
-      peers_, std::move(socket_), std::move(early),
+      peers_, std::move(wire_), std::move(early),
       reserve_ ? std::optional(base::steady_now() + peers_->limits.reserve_time) : std::nullopt);
   peers_->add(session.get(), session);
   session->accept(std::move(request));
@@ -320,9 +364,9 @@ void Connection::write() {
     self->write();
   };
   if (head_) {
-    http::async_write_header(socket_, *serializer_, next);
+    http::async_write_header(wire_, *serializer_, next);
   } else {
-    http::async_write_some(socket_, *serializer_, next);
+    http::async_write_some(wire_, *serializer_, next);
   }
 }
 
@@ -334,7 +378,8 @@ void Connection::on_written() {
   parser_.reset();
   if (!keep_alive_ || peers_->stopping) return linger();
   error_code ignored;
-  const bool sent_ahead = buffer_.size() > 0 || socket_.available(ignored) > 0;
+  const bool sent_ahead =
+      buffer_.size() > 0 || wire_.holds_input() || wire_.socket().available(ignored) > 0;
   if (sent_ahead) earliest_ = whole_;
   wait();
 }
@@ -343,23 +388,26 @@ void Connection::linger() {
   phase_ = Phase::Lingering;
   deadline_ = base::steady_now() + (reserve_ ? kLingerOnReserve : kLinger);
   error_code ec;
-  socket_.shutdown(tcp::socket::shutdown_send, ec);
+  wire_.say_goodbye();
+  wire_.socket().shutdown(tcp::socket::shutdown_send, ec);
   if (ec) return force();
   buffer_.clear();
   discard();
 }
 
 void Connection::discard() {
-  socket_.async_read_some(buffer_.prepare(64 * 1024),
-                          [self = shared_from_this()](error_code ec, std::size_t n) {
-                            self->discarded_ += n;
-                            if (ec || self->discarded_ > kDiscardBytes) return self->force();
-                            self->discard();
-                          });
+  // Past TLS: what nobody reads is not opened.
+  wire_.socket().async_read_some(buffer_.prepare(64 * 1024),
+                                 [self = shared_from_this()](error_code ec, std::size_t n) {
+                                   self->discarded_ += n;
+                                   if (ec || self->discarded_ > kDiscardBytes) return self->force();
+                                   self->discard();
+                                 });
 }
 
 void Connection::sweep(base::Time now) {
-  const bool dawdles = phase_ == Phase::Header && !reserve_ && peers_->crowded() && deadline_ &&
+  const bool begins = phase_ == Phase::Header || phase_ == Phase::Greeting;
+  const bool dawdles = begins && !reserve_ && peers_->crowded() && deadline_ &&
                        now > *deadline_ - peers_->limits.request + kHeaderInACrowd;
   if (!deadline_ || (now < *deadline_ && !dawdles)) return;
   if (phase_ != Phase::Lingering) ++peers_->stats.timed_out;
@@ -368,17 +416,17 @@ void Connection::sweep(base::Time now) {
 
 void Connection::stop() {
   keep_alive_ = false;
-  if (phase_ == Phase::Waiting || phase_ == Phase::Lingering) force();
+  if (phase_ == Phase::Greeting || phase_ == Phase::Waiting || phase_ == Phase::Lingering) force();
 }
 
 void Connection::force() {
-  error_code ignored;
-  socket_.close(ignored);
+  wire_.close();
 }
 
 std::optional<base::Time> Connection::gives_way() const {
-  if (!socket_.is_open()) return std::nullopt;
-  const bool asks_nothing = phase_ == Phase::Waiting || phase_ == Phase::Header;
+  if (!wire_.is_open()) return std::nullopt;
+  const bool asks_nothing =
+      phase_ == Phase::Greeting || phase_ == Phase::Waiting || phase_ == Phase::Header;
   const bool answered = reserve_ && phase_ == Phase::Lingering;
   return asks_nothing || answered ? deadline_ : std::nullopt;
 }

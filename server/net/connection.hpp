@@ -2,6 +2,7 @@
 // One HTTP/1.1 connection, request after request. What a client sends ahead (pipelining) waits in
 // the buffer: one request is answered before the next is read.
 //
+//   Waiting ─TLS's first byte─▶ Greeting ─handshake─▶ Waiting   (only where TLS is spoken)
 //   Waiting ─bytes─▶ Header ─▶ Body ─whole─▶ Handling ─answer─▶ Writing ─keep-alive─▶ Waiting
 //                      │ upgrade ▶ Session                          └─close─▶ Lingering ▶ gone
 //                      └ refused (4xx, then close) ─▶ Writing
@@ -10,7 +11,10 @@
 // else is, and every answer is the last.
 //
 // How old a request is counts from the first sign of it: the opening of a new connection, the first
-// byte on one that was kept, the request before for one that was sent ahead of its turn.
+// byte on one that was kept, under TLS the end of the handshake, the request before for one that
+// was sent ahead of its turn.
+//
+// Where TLS is spoken, a client that begins without it is told so at its header, by on_plain.
 //
 // Lingering: after the last answer the write side is shut and what still comes is thrown away for
 // a moment, because closing at once would reset the connection and destroy the answer on its way.
@@ -19,18 +23,18 @@
 #include <optional>
 #include <string>
 
-#include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/serializer.hpp>
 
 #include "net/peers.hpp"
+#include "net/wire.hpp"
 
 namespace roverd::net {
 
 class Connection : public Peer, public std::enable_shared_from_this<Connection> {
  public:
-  Connection(std::shared_ptr<Peers> peers, boost::asio::ip::tcp::socket socket);
+  Connection(std::shared_ptr<Peers> peers, Wire wire);
   ~Connection() override;
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -45,13 +49,16 @@ class Connection : public Peer, public std::enable_shared_from_this<Connection> 
   std::optional<base::Time> gives_way() const override;
   /// What the handler says; nothing if the connection has been closed meanwhile.
   void on_answer(Response response);
-  bool on_reserve() const override { return reserve_ && socket_.is_open(); }
+  bool on_reserve() const override { return reserve_ && wire_.is_open(); }
 
  private:
   using Parser = boost::beast::http::request_parser<boost::beast::http::string_body>;
   using Serializer = boost::beast::http::response_serializer<boost::beast::http::string_body>;
-  enum class Phase { Waiting, Header, Body, Handling, Writing, Lingering };
+  enum class Phase { Waiting, Greeting, Header, Body, Handling, Writing, Lingering };
 
+  void greet();
+  void greeted();
+  void be_patient();
   void wait();
   void read_header();
   void on_header();
@@ -71,7 +78,7 @@ class Connection : public Peer, public std::enable_shared_from_this<Connection> 
   void discard();
 
   std::shared_ptr<Peers> peers_;
-  boost::asio::ip::tcp::socket socket_;
+  Wire wire_;
   boost::beast::flat_buffer buffer_;
   std::optional<Parser> parser_;
   std::optional<Response> response_;
@@ -89,6 +96,7 @@ class Connection : public Peer, public std::enable_shared_from_this<Connection> 
   std::size_t reserved_ = 0;  ///< counted in Peers::bodies
   std::size_t leaving_ = 0;   ///< counted in Peers::answers
   bool reserve_ = false;
+  bool in_the_open_ = false;  ///< no TLS where there should be
 };
 
 }  // namespace roverd::net

@@ -11,7 +11,7 @@ Outlet::error_code Outlet::read_ahead() {
   error_code ec;
   std::size_t n = 0;
   while (!ec && n < bytes.size()) {  // one read may give less than there is
-    n += socket_.read_some(boost::asio::buffer(bytes.data() + n, bytes.size() - n), ec);
+    n += wire_.read_some(bytes.data() + n, bytes.size() - n, ec);
   }
   ahead_.assign(bytes.data(), n);
   taken_ = 0;
@@ -22,8 +22,7 @@ Outlet::error_code Outlet::read_ahead() {
 bool Outlet::write(const std::string& bytes) {
   while (offset_ < bytes.size()) {
     error_code ec;
-    offset_ +=
-        socket_.write_some(boost::asio::buffer(bytes.data() + offset_, bytes.size() - offset_), ec);
+    offset_ += wire_.write_some(bytes.data() + offset_, bytes.size() - offset_, ec);
     if (!ec) continue;
     if (ec != boost::asio::error::would_block) {  // broken: the read side hears of it, too
       finished_ = true;
@@ -31,7 +30,7 @@ bool Outlet::write(const std::string& bytes) {
       own_.clear();
       offset_ = 0;
       error_code ignored;
-      socket_.shutdown(next_layer_type::shutdown_both, ignored);
+      wire_.socket().shutdown(Wire::Socket::shutdown_both, ignored);
       return true;
     }
     if (!blocked_) {

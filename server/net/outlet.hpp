@@ -20,7 +20,6 @@
 
 #include <boost/asio/async_result.hpp>
 #include <boost/asio/buffer.hpp>
-#include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/beast/core/bind_handler.hpp>
 #include <boost/beast/core/error.hpp>
@@ -30,18 +29,19 @@
 #include "base/time.hpp"
 #include "net/frame.hpp"
 #include "net/lookout.hpp"
+#include "net/wire.hpp"
 
 namespace roverd::net {
 
 class Outlet {
  public:
-  using next_layer_type = boost::asio::ip::tcp::socket;
+  using next_layer_type = Wire;
   using executor_type = next_layer_type::executor_type;
   using error_code = boost::beast::error_code;
 
   /// @param early bytes that came after the upgrade request, read already.
-  Outlet(next_layer_type socket, std::string early)
-      : socket_(std::move(socket)), ahead_(std::move(early)) {}
+  Outlet(next_layer_type wire, std::string early)
+      : wire_(std::move(wire)), ahead_(std::move(early)) {}
 
   /// Each short text as soon as it is here, whatever was said before it.
   std::function<void(std::string_view)> on_early_text;
@@ -49,9 +49,9 @@ class Outlet {
   /// The socket is full: call flush() when it is writable. Called once until that flush.
   std::function<void()> on_blocked;
 
-  executor_type get_executor() { return socket_.get_executor(); }
-  next_layer_type& next_layer() noexcept { return socket_; }
-  const next_layer_type& next_layer() const noexcept { return socket_; }
+  executor_type get_executor() { return wire_.get_executor(); }
+  next_layer_type& next_layer() noexcept { return wire_; }
+  const next_layer_type& next_layer() const noexcept { return wire_; }
 
   /// Nothing waits to be sent.
   bool idle() const noexcept { return current_ == nullptr && own_.empty(); }
@@ -120,15 +120,14 @@ class Outlet {
 
   template <class Buffers, class Handler>
   void wait_readable(const Buffers& into, Handler&& handler) {
-    socket_.async_wait(next_layer_type::wait_read,
-                       [this, into, done = std::forward<Handler>(handler)](error_code ec) mutable {
-                         if (!ec) ec = read_ahead();
-                         if (ec == boost::asio::error::would_block) {
-                           return wait_readable(into, std::move(done));
-                         }
-                         const std::size_t n = ec ? 0 : take_ahead(into);
-                         std::move(done)(ec, n);
-                       });
+    wire_.when_readable([this, into, done = std::forward<Handler>(handler)](error_code ec) mutable {
+      if (!ec) ec = read_ahead();
+      if (ec == boost::asio::error::would_block) {
+        return wait_readable(into, std::move(done));
+      }
+      const std::size_t n = ec ? 0 : take_ahead(into);
+      std::move(done)(ec, n);
+    });
   }
   template <class Buffers>
   std::size_t take_ahead(const Buffers& into) {
@@ -157,7 +156,7 @@ class Outlet {
 
   bool write(const std::string& bytes);  ///< from offset_; true if all of it went
 
-  next_layer_type socket_;
+  next_layer_type wire_;
   std::string ahead_;  ///< read, and from taken_ on not yet given to Beast
   std::size_t taken_ = 0;
   Lookout lookout_;
@@ -173,11 +172,13 @@ class Outlet {
 };
 
 inline void teardown(boost::beast::role_type role, Outlet& outlet, Outlet::error_code& ec) {
-  boost::beast::websocket::teardown(role, outlet.next_layer(), ec);
+  outlet.next_layer().say_goodbye();
+  boost::beast::websocket::teardown(role, outlet.next_layer().socket(), ec);
 }
 template <class Handler>
 void async_teardown(boost::beast::role_type role, Outlet& outlet, Handler&& handler) {
-  boost::beast::websocket::async_teardown(role, outlet.next_layer(),
+  outlet.next_layer().say_goodbye();
+  boost::beast::websocket::async_teardown(role, outlet.next_layer().socket(),
                                           std::forward<Handler>(handler));
 }
 

@@ -17,6 +17,7 @@
 #include "base/time.hpp"
 #include "net/hub.hpp"
 #include "net/server.hpp"
+#include "net/tls.hpp"
 
 namespace roverd::net {
 
@@ -99,6 +100,8 @@ class Peers {
     }
     swept_ = now;
   }
+
+  std::shared_ptr<Tls> tls;  ///< null: none is spoken
 
   Response refusal(unsigned status, std::string_view detail) const;
 

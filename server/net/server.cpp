@@ -127,7 +127,7 @@ void Server::Impl::welcome(tcp::socket socket) {
   const bool reserve = spare || full;
   if (reserve) ++peers->stats.refused;
   if (reserve && reserved >= peers->limits.reserve && !peers->drop_longest_waiting(true)) return;
-  const auto connection = std::make_shared<Connection>(peers, std::move(socket));
+  const auto connection = std::make_shared<Connection>(peers, Wire(std::move(socket)));
   peers->add(connection.get(), connection);
   connection->start(reserve);
 }
@@ -198,6 +198,10 @@ Server::~Server() {
   impl_->close();
   impl_->stop_timer.cancel();
   impl_->peers->handlers = {};
+}
+
+void Server::secure(std::shared_ptr<Tls> tls) {
+  impl_->peers->tls = std::move(tls);
 }
 
 std::uint16_t Server::port() const noexcept {

@@ -1,7 +1,8 @@
 #pragma once
-// HTTP/1.1 and WebSocket on Beast. Knows bytes, requests and topics; no word of what they mean.
-// Everything runs on one io_context with one thread (the web thread); every call and callback here
-// belongs to that thread, unless it says otherwise. Make that io_context with kWebConcurrency.
+// HTTP/1.1 and WebSocket on Beast, plain or over TLS. Knows bytes, requests and topics; no word of
+// what they mean. Everything runs on one io_context with one thread (the web thread); every call
+// and callback here belongs to that thread, unless it says otherwise. Make that io_context with
+// kWebConcurrency.
 //
 //   Server (listener) ─accept─▶ Connection (HTTP) ─upgrade─▶ Session (WebSocket) ◀─frames─ Hub
 //
@@ -55,12 +56,15 @@ struct Limits {
   int reserve = 32;                       ///< more than those, for what is urgent
   base::Duration reserve_time = std::chrono::seconds(1);
   base::Duration idle = std::chrono::seconds(30);
-  /// Header and body must be in by then (a long body may take longer: kSlowest_Bps); a client that
-  /// reads nothing of its answer for so long is closed, too.
+  /// TLS's handshake must be over by then. Header and body must be in by then (a long body may take
+  /// longer: kSlowest_Bps); a client that reads nothing of its answer for so long is closed, too.
   base::Duration request = std::chrono::seconds(30);
 };
 
 using ClientId = std::uint64_t;
+
+/// See tls.hpp.
+class Tls;
 
 /// Whole: among the first, with its body. AtHeader: it needs no body and does not wait for one.
 enum class Urgency { None, Whole, AtHeader };
@@ -88,6 +92,8 @@ struct Handlers {
   /// waits (64 KiB of it are looked through). May be empty.
   std::function<bool(std::string_view text)> urgent_text{};
   std::function<void(ClientId)> on_gone;
+  /// Where TLS is spoken: the answer to a request without, at its header. May be empty.
+  std::function<Response(const Request& header)> on_plain{};
   /// The answer for requests that net itself refuses: 400 malformed, 413, 417, 431, 501, 503.
   std::function<Response(unsigned status, std::string_view detail)> on_refused;
   /// Once a second. May be empty.
@@ -115,6 +121,9 @@ class Server {
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
+
+  /// Every connection speaks TLS. Before the io_context runs.
+  void secure(std::shared_ptr<Tls> tls);
 
   std::uint16_t port() const noexcept;
   /// Lives as long as the server.

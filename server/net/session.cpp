@@ -24,10 +24,10 @@ constexpr base::Duration kCloseGrace = std::chrono::seconds(2);
 
 }  // namespace
 
-Session::Session(std::shared_ptr<Peers> peers, boost::asio::ip::tcp::socket socket,
-                 std::string early, std::optional<base::Time> leave_by)
+Session::Session(std::shared_ptr<Peers> peers, Wire wire, std::string early,
+                 std::optional<base::Time> leave_by)
     : peers_(std::move(peers)),
-      ws_(std::move(socket), std::move(early)),
+      ws_(std::move(wire), std::move(early)),
       buffer_(peers_->limits.message_bytes + 1024),
       heard_(base::steady_now()),
       pinged_(heard_),
@@ -42,7 +42,7 @@ Session::~Session() {
 
 void Session::accept(Request upgrade) {
   upgrade_ = std::move(upgrade);
-  auto& socket = ws_.next_layer().next_layer();
+  auto& socket = ws_.next_layer().next_layer().socket();
   error_code ignored;
   socket.non_blocking(true, ignored);
   using NotSentLowAt = boost::asio::detail::socket_option::integer<IPPROTO_TCP, TCP_NOTSENT_LOWAT>;
@@ -117,7 +117,7 @@ void Session::on_early_text(std::string_view text) {
 base::Time Session::begun() {
   Outlet& outlet = ws_.next_layer();
   if (outlet.partial_since()) return *outlet.partial_since();
-  return peers_->not_seen_since(newest_arrival(outlet.next_layer().native_handle(), heard_));
+  return peers_->not_seen_since(newest_arrival(outlet.next_layer().handle(), heard_));
 }
 
 void Session::offer(std::uint64_t slot, const Frame& frame) {
@@ -139,21 +139,20 @@ void Session::push(const Frame& frame) {
 void Session::wait_writable() {
   if (!blocked_) blocked_since_ = base::steady_now();
   blocked_ = true;
-  ws_.next_layer().next_layer().async_wait(
-      boost::asio::ip::tcp::socket::wait_write, [self = shared_from_this()](error_code ec) {
-        if (ec) return;
-        Outlet& outlet = self->ws_.next_layer();
-        self->blocked_since_ = base::steady_now();  // it took something
-        while (outlet.flush()) {
-          Frame frame = self->backlog_.next();
-          if (!frame) {
-            self->blocked_ = false;
-            return;
-          }
-          outlet.send(std::move(frame));
-          if (!outlet.idle()) return;  // blocked again, and waited for again
-        }
-      });
+  ws_.next_layer().next_layer().when_writable([self = shared_from_this()](error_code ec) {
+    if (ec) return;
+    Outlet& outlet = self->ws_.next_layer();
+    self->blocked_since_ = base::steady_now();  // it took something
+    while (outlet.flush()) {
+      Frame frame = self->backlog_.next();
+      if (!frame) {
+        self->blocked_ = false;
+        return;
+      }
+      outlet.send(std::move(frame));
+      if (!outlet.idle()) return;  // blocked again, and waited for again
+    }
+  });
 }
 
 void Session::close(std::uint16_t code, std::string_view reason) {
@@ -189,8 +188,7 @@ void Session::stop() {
 }
 
 void Session::force() {
-  error_code ignored;
-  ws_.next_layer().next_layer().close(ignored);
+  ws_.next_layer().next_layer().close();
 }
 
 void Session::gone() {

@@ -13,7 +13,6 @@
 #include <string>
 #include <string_view>
 
-#include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/websocket/stream.hpp>
 
@@ -26,7 +25,7 @@ namespace roverd::net {
 class Session : public Peer, public std::enable_shared_from_this<Session> {
  public:
   /// @param leave_by when it sits on the reserve: it is closed then
-  Session(std::shared_ptr<Peers> peers, boost::asio::ip::tcp::socket socket, std::string early,
+  Session(std::shared_ptr<Peers> peers, Wire wire, std::string early,
           std::optional<base::Time> leave_by);
   ~Session() override;
   Session(const Session&) = delete;

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,6 +22,12 @@ struct Answer {
     return found == headers.end() ? std::string{} : found->second;
   }
 };
+
+struct Secret;  // TLS over the socket
+
+/// Where ROVERD_TEST_TLS is set ("1.2", "1.3"), all clients speak that TLS from their first sending
+/// on, and NetHouse expects it: the same tests hold for both.
+const char* tls_version();
 
 class Client {
  public:
@@ -57,6 +64,7 @@ class Client {
   bool receive(std::chrono::steady_clock::time_point until);
 
   int handle_ = -1;
+  std::unique_ptr<Secret> secret_;
   std::string in_;
   bool closed_ = false;
 };

@@ -13,8 +13,18 @@
 #include "client.hpp"
 #include "net/hub.hpp"
 #include "net/server.hpp"
+#include "net/tls.hpp"
+#include "trust/certificate.hpp"
 
 namespace roverd::test {
+
+/// Like a first start.
+inline std::shared_ptr<net::Tls> test_tls() {
+  const auto authority = trust::make_authority("test");
+  const auto shown = trust::make_server(authority.value(), {{"localhost"}, {"127.0.0.1"}},
+                                        base::WallTime(std::chrono::seconds(1'780'272'000)));
+  return net::Tls::make(shown.value().certificate, shown.value().key).value();
+}
 
 class NetHouse {
  public:
@@ -23,6 +33,7 @@ class NetHouse {
     auto made = net::Server::listen(io_, "127.0.0.1", 0, limits, std::move(handlers));
     if (!made) throw std::runtime_error(made.error().detail);
     server_ = std::move(*made);
+    if (tls_version() != nullptr) server_->secure(test_tls());
     if (prepare) prepare(server_->hub());
     thread_ = std::thread([this] { io_.run(); });
   }
