@@ -288,7 +288,8 @@ void Api::Impl::next_turn() {
 }
 
 void Api::on_request(Request request, base::Time begun, Respond respond) {
-  if (auto refusal = guard_request(request)) return respond(std::move(*refusal));
+  if (auto refusal = guard_request(request, impl_->context->deps.tls))
+    return respond(std::move(*refusal));
   const auto answered = std::make_shared<bool>(false);
   // Bodies are freed beside the web thread.
   auto call = CallPtr(new Call, [context = impl_->context](Call* old) {
@@ -333,7 +334,7 @@ void Api::discard(std::string large) const {
 }
 
 std::optional<Response> Api::on_upgrade(const Request& request) {
-  if (auto refusal = guard_upgrade(request)) return refusal;
+  if (auto refusal = guard_upgrade(request, impl_->context->deps.tls)) return refusal;
   const auto parts = parse_target(target(request));
   if (!parts) return problem(parts.error());
   if (parts->path != std::string(kBase) + "/stream" || !impl_->stream) {

@@ -109,6 +109,7 @@ struct Deps {
   /// Calls it on the web thread as soon as the emergency stop, as it is now, survives the end of
   /// this program, or after a moment. Empty: at once.
   std::function<void(std::function<void()>)> when_estop_kept{};
+  bool tls = false;  ///< every request comes through it
 };
 
 /// One per program. All members but the constructor: web thread. It must live until the web thread

@@ -51,13 +51,13 @@ std::optional<Response> check_host(const Request& request) {
                           "\" is not served: only 127.0.0.1, localhost and [::1] are");
 }
 
-std::optional<Response> check_origin(const Request& request) {
+std::optional<Response> check_origin(const Request& request, bool tls) {
   if (request.count(http::field::origin) == 0) return std::nullopt;  // not a browser
   const std::string_view origin = header(request, http::field::origin);
   const std::string_view host = header(request, http::field::host);
-  constexpr std::string_view kScheme = "http://";
-  if (request.count(http::field::origin) == 1 && origin.starts_with(kScheme) &&
-      same_text(origin.substr(kScheme.size()), host)) {
+  const std::string_view scheme = tls ? "https://" : "http://";
+  if (request.count(http::field::origin) == 1 && origin.starts_with(scheme) &&
+      same_text(origin.substr(scheme.size()), host)) {
     return std::nullopt;
   }
   return problem(403, "a page of \"" + std::string(origin) + "\" may not command this server");
@@ -65,7 +65,12 @@ std::optional<Response> check_origin(const Request& request) {
 
 }  // namespace
 
-base::Result<void> check_bind_address(std::string_view address) {
+base::Result<void> check_bind_address(std::string_view address, bool lan) {
+  if (lan) {
+    return base::fail(base::Code::Invalid,
+                      "cannot listen in the network: access control is not there yet, so anybody "
+                      "in it could drive; on this computer --tls shows what it will be");
+  }
   const bool v4 = address.starts_with("127.") && address.size() <= 15 &&
                   std::all_of(address.begin(), address.end(),
                               [](char c) { return c == '.' || (c >= '0' && c <= '9'); });
@@ -81,14 +86,14 @@ bool is_loopback_host(std::string_view host) noexcept {
   return same_text(name, "localhost") || name == "127.0.0.1" || name == "[::1]";
 }
 
-std::optional<Response> guard_request(const Request& request) {
+std::optional<Response> guard_request(const Request& request, bool tls) {
   if (auto refusal = check_host(request)) return refusal;
-  return changes_something(request) ? check_origin(request) : std::nullopt;
+  return changes_something(request) ? check_origin(request, tls) : std::nullopt;
 }
 
-std::optional<Response> guard_upgrade(const Request& request) {
+std::optional<Response> guard_upgrade(const Request& request, bool tls) {
   if (auto refusal = check_host(request)) return refusal;
-  return check_origin(request);
+  return check_origin(request, tls);
 }
 
 std::optional<Response> guard_handshake(const Request& request) {

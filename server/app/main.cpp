@@ -91,6 +91,8 @@ int serve(const roverd::Options& options) {
   auto settings = roverd::load_settings(
       {.config = options.config, .vehicle = options.vehicle, .overrides = options.overrides});
   if (!settings) return say(kWrongInput, settings.error().detail);
+  if (options.tls) settings->server.tls = true;
+  if (options.lan) settings->server.listen = "lan";
   settings->reviewed = reviewed(options, *settings);
   std::error_code ec;
   std::filesystem::create_directories(options.data, ec);
@@ -116,6 +118,7 @@ int serve(const roverd::Options& options) {
       return say(exit_code(station.error().code), station.error().detail);
     }
     std::printf("listening on %s\n", (*station)->address().c_str());
+    std::printf("%s", (*station)->invitation(::isatty(STDOUT_FILENO) == 1).c_str());
     std::fflush(stdout);
     (*station)->run();
   }

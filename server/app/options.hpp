@@ -22,6 +22,8 @@ struct Options {
   std::vector<std::string> replays;
   double replay_speed = 1.0;  ///< 0: as fast as possible
   bool record = false;
+  bool tls = false;  ///< as server.tls
+  bool lan = false;  ///< as server.listen = "lan"
 };
 
 struct DecodeCommand {

@@ -17,6 +17,7 @@
 #include "app/devices.hpp"
 #include "app/drill.hpp"
 #include "app/estop_keeper.hpp"
+#include "app/front.hpp"
 #include "app/host_watch.hpp"
 #include "app/memory_reserve.hpp"
 #include "app/recordings.hpp"
@@ -51,6 +52,7 @@ constexpr base::Duration kGoodbye = std::chrono::milliseconds(500);
 constexpr base::Duration kKeepLearned = std::chrono::minutes(1);
 constexpr base::Duration kLookAtHost = std::chrono::seconds(1);
 constexpr base::Duration kTidyRecordings = std::chrono::minutes(1);
+constexpr base::Duration kLookAtNames = std::chrono::seconds(30);
 /// A stop that was obeyed is confirmed then, whether the disk has taken it or hangs.
 constexpr base::Duration kKeepEstop = std::chrono::milliseconds(200);
 
@@ -67,6 +69,7 @@ struct Station::Impl {
   std::unique_ptr<store::Store> store;
   std::unique_ptr<store::Backups> backups;
   std::unique_ptr<services::Services> services;
+  std::unique_ptr<Front> front;  ///< null: no TLS
   std::unique_ptr<api::Api> api;
   std::unique_ptr<net::Server> server;
   std::unique_ptr<net::Doorbell> bell;
@@ -77,6 +80,7 @@ struct Station::Impl {
   asio::steady_timer host_timer{web};
   asio::steady_timer tidy_timer{web};
   std::shared_ptr<RecordingTidier> tidier;  ///< null: a recording is played, none is removed
+  asio::steady_timer names_timer{web};
   LatenessWatch lateness_watch;
   std::vector<base::HostProblem> host;  ///< what is wrong with this computer
   const bool memory_locked = lock_memory();
@@ -108,6 +112,8 @@ struct Station::Impl {
   Result<void> claim_robot(const Settings& settings, const Options& options);
   void watch_host();
   void watch_host_soon();
+  void tell_certificate();
+  void watch_names_soon();
   void tell_alive();
   void halt() noexcept;
   void stop();
@@ -126,6 +132,11 @@ Result<void> Station::Impl::open(const Settings& settings, const Options& option
   if (auto done = claim_robot(settings, options); !done) return done;
   open_estop(options, first);
   services = std::make_unique<services::Services>(robot, *store, settings.vehicle.name);
+  if (settings.server.tls) {
+    auto opened = Front::open(settings.server, options.data);
+    if (!opened) return tl::unexpected(opened.error());
+    front = std::move(*opened);
+  }
   make_api(settings, options);
   if (auto done = open_server(settings, options); !done) return done;
   recall(settings, options);
@@ -135,6 +146,7 @@ Result<void> Station::Impl::open(const Settings& settings, const Options& option
   }
   robot.reviewed(settings.reviewed);
   tell_left_out(settings);
+  tell_certificate();
   start();
   return {};
 }
@@ -237,7 +249,11 @@ void Station::Impl::make_api(const Settings& settings, const Options& options) {
                 }};
   deps.drivers = driver_door();
   deps.drill = drill_door(drill, robot, settings, options);
-  deps.page = [this](const net::Request& request) { return page.answer(request); };
+  deps.page = [this](const net::Request& request) {
+    auto answer = front ? front->answer(request) : std::nullopt;
+    return answer ? std::move(answer) : page.answer(request);
+  };
+  deps.tls = front != nullptr;
   deps.figures = [this] {
     const net::Stats stats = server->stats();
     return api::NetFigures{.accepted = stats.accepted,
@@ -263,15 +279,20 @@ void Station::Impl::make_api(const Settings& settings, const Options& options) {
 
 Result<void> Station::Impl::open_server(const Settings& settings, const Options& options) {
   const std::string& bind = settings.server.bind;
-  if (auto allowed = api::check_bind_address(bind); !allowed) return allowed;
+  const bool lan = settings.server.listen == "lan";
+  if (auto allowed = api::check_bind_address(bind, lan); !allowed) return allowed;
   const int port = options.port.value_or(settings.server.port);
   auto listening = net::Server::listen(web, bind, static_cast<std::uint16_t>(port), net::Limits{},
-                                       handlers_of(*api));
+                                       handlers_of(*api, front.get()));
   if (!listening) return tl::unexpected(listening.error());
   server = std::move(*listening);
   api->attach(stream_of(server->hub()));
   const bool v6 = bind.find(':') != std::string::npos;
-  address = "http://" + (v6 ? "[" + bind + "]" : bind) + ":" + std::to_string(server->port());
+  address = (front ? "https://" : "http://") + (v6 ? "[" + bind + "]" : bind) + ":" +
+            std::to_string(server->port());
+  if (!front) return {};
+  server->secure(front->tls());
+  front->set_address(address);
   return {};
 }
 
@@ -308,6 +329,7 @@ void Station::Impl::start() {
       },
       [this](base::Time now) { robot.heed_stop(now); });
   watch_host_soon();
+  watch_names_soon();
   manager.ready(address);
   tell_alive();
   base::log(base::Level::Info, "main", "serving", {{"address", address}, {"version", kVersion}});
@@ -428,6 +450,34 @@ void Station::Impl::watch_host_soon() {
   });
 }
 
+/// It changes what devices must trust, or may have to be done again: not only for the log.
+void Station::Impl::tell_certificate() {
+  if (!front) return;
+  for (const trust::Told& one : front->news()) {
+    const auto level = one.alarming ? base::Level::Warning : base::Level::Info;
+    const auto severity = one.alarming ? base::Severity::Warning : base::Severity::Info;
+    base::log(level, "main", "certificate", {{"done", one.text}});
+    robot.tell({base::wall_now(), severity, "certificate", one.text});
+  }
+}
+
+/// Names, addresses and clock change while the robot runs.
+void Station::Impl::watch_names_soon() {
+  if (!front) return;
+  names_timer.expires_after(kLookAtNames);
+  names_timer.async_wait([this](const boost::system::error_code& ec) {
+    if (ec) return;
+    const auto found = std::make_shared<std::optional<Result<trust::Identity>>>();
+    workers.must_run(
+        net::Lane::Small, [this, found] { *found = front->look(); },
+        [this, found] {
+          if (*found) front->take(std::move(**found));
+          tell_certificate();
+          watch_names_soon();
+        });
+  });
+}
+
 /// The robot first: no command after this, and the base is told to stand.
 void Station::Impl::halt() noexcept {
   loop.reset();
@@ -469,6 +519,10 @@ Result<std::unique_ptr<Station>> Station::open(const Settings& settings, const O
 
 std::string Station::address() const {
   return impl_->address;
+}
+
+std::string Station::invitation(bool drawn) const {
+  return impl_->front ? impl_->front->invitation(drawn) : std::string();
 }
 
 /// No memory for one request must not end the others, nor the robot's control: what it cut off is

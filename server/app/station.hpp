@@ -29,7 +29,9 @@ class Station {
   Station(const Station&) = delete;
   Station& operator=(const Station&) = delete;
 
-  std::string address() const;  ///< "http://127.0.0.1:8080"
+  std::string address() const;  ///< "http://127.0.0.1:8080"; https with TLS
+  /// How a phone comes to trust it, for the terminal; empty without TLS. @param drawn with QR code
+  std::string invitation(bool drawn) const;
   /// Serves until SIGINT or SIGTERM.
   void run();
 

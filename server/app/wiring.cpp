@@ -78,7 +78,7 @@ api::Stream stream_of(net::Hub& hub) {
   };
 }
 
-net::Handlers handlers_of(api::Api& api) {
+net::Handlers handlers_of(api::Api& api, const Front* front) {
   return {
       .on_request =
           [&api](net::Request request, base::Time begun, net::Respond respond) {
@@ -98,6 +98,8 @@ net::Handlers handlers_of(api::Api& api) {
                         std::string_view text) { api.on_text(client, begun, text); },
       .urgent_text = api::Api::is_estop_text,
       .on_gone = [&api](net::ClientId client) { api.on_gone(client); },
+      .on_plain = front == nullptr ? decltype(net::Handlers::on_plain)()
+                                   : [front](const net::Request& r) { return front->on_plain(r); },
       .on_refused = api::Api::on_refused,
       .on_second = [&api] { api.on_second(); },
   };

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "api/api.hpp"
+#include "app/front.hpp"
 #include "app/recordings.hpp"
 #include "config/settings.hpp"
 #include "net/hub.hpp"
@@ -22,6 +23,7 @@ std::string learner(const Settings& s);
 api::Profile profile_of(const Settings& s, const Supervisor& supervisor);
 /// net's hub behind the callables that api knows. Both must outlive what is made here.
 api::Stream stream_of(net::Hub& hub);
-net::Handlers handlers_of(api::Api& api);
+/// @param front null: no TLS
+net::Handlers handlers_of(api::Api& api, const Front* front);
 
 }  // namespace roverd

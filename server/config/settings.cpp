@@ -204,9 +204,23 @@ Result<void> check_robot(const Settings& s) {
   return base::fail(error.code, s.where(key) + detail);
 }
 
+Result<void> check_server(const Settings& s) {
+  const ServerSettings& server = s.server;
+  if (server.listen != "loopback" && server.listen != "lan") {
+    return base::fail(
+        base::Code::Invalid,
+        s.where("server.listen") + " must be loopback or lan, is \"" + server.listen + "\"");
+  }
+  if (server.tls_certificate.empty() == server.tls_key.empty()) return {};
+  return base::fail(base::Code::Invalid,
+                    s.where(server.tls_key.empty() ? "server.tls_certificate" : "server.tls_key") +
+                        " needs the other one, too: server.tls_certificate and server.tls_key");
+}
+
 /// What only the whole tells.
 Result<void> check_all(const Settings& s) {
   if (auto good = check_robot(s); !good) return good;
+  if (auto good = check_server(s); !good) return good;
   const std::string& level = s.server.log_level;
   if (level != "debug" && level != "info" && level != "warning" && level != "error") {
     return base::fail(base::Code::Invalid, s.where("server.log_level") +

@@ -23,14 +23,28 @@ namespace roverd {
 
 struct ServerSettings {
   std::string bind = "127.0.0.1";
+  std::string listen = "loopback";
   int port = 8080;
+  bool tls = false;
+  std::string tls_certificate;
+  std::string tls_key;
+  std::string names;
   std::string log_level = "info";
 };
 
 template <class V>
 void fields(V& v, ServerSettings& p) {
   v("bind", p.bind, "address to listen on; only loopback until access control is in place");
+  v("listen", p.listen,
+    "loopback: on the address of bind; lan: on all addresses of this computer, with TLS (refused "
+    "until access control is in place)");
   v("port", p.port, 0, 65535, "TCP port; 0 chooses a free one");
+  v("tls", p.tls, "https instead of http; how a phone comes to trust it: docs/phone.md");
+  v("tls_certificate", p.tls_certificate,
+    "certificate and chain, a PEM file; empty: roverd makes its own");
+  v("tls_key", p.tls_key, "the key of that certificate, a PEM file that only its owner can read");
+  v("names", p.names,
+    "more names and addresses of this computer for its certificate, with blanks between them");
   v("log_level", p.log_level, "debug, info, warning or error");
 }
 

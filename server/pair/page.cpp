@@ -149,7 +149,7 @@ std::optional<File> file_at(std::string_view path, const Facts& facts) {
   }
   if (path == "/ca.pem") return File{"application/x-pem-file", facts.authority, "roverd-ca.pem"};
   if (path == "/ca.mobileconfig") {
-    return File{"application/x-apple-aspen-config", apple_profile(facts), "roverd.mobileconfig"};
+    return File{"application/x-apple-aspen-config", apple_profile(facts), {}};
   }
   return std::nullopt;
 }

@@ -43,8 +43,7 @@ Result<void> keep(const fs::path& file, const Credential& credential) {
 }
 
 /// @param told what was done is added
-Result<Credential> authority_in(const fs::path& file, const Names& names,
-                                std::vector<std::string>& told) {
+Result<Credential> authority_in(const fs::path& file, const Names& names, std::vector<Told>& told) {
   auto kept = read_kept(file);
   if (!kept) return tl::unexpected(kept.error());
   if (kept->credential && !read_certificate(kept->credential->certificate)->authority) {
@@ -56,10 +55,11 @@ Result<Credential> authority_in(const fs::path& file, const Names& names,
   auto made = make_authority(names.hosts.empty() ? "robot" : names.hosts.front());
   if (!made) return made;
   if (auto done = keep(file, *made); !done) return tl::unexpected(done.error());
-  told.push_back(kept->damaged.empty()
-                     ? "a certificate authority was made: " + file.string()
-                     : "the certificate authority was damaged (it lies in " + kept->damaged +
-                           " now) and a new one was made: every device must be paired again");
+  const bool damaged = !kept->damaged.empty();
+  told.push_back({damaged ? "the certificate authority was damaged (it lies in " + kept->damaged +
+                                " now) and a new one was made: every device must be paired again"
+                          : "a certificate authority was made: " + file.string(),
+                  damaged});
   return made;
 }
 
@@ -100,7 +100,7 @@ Result<Identity> own_identity(const fs::path& folder, const Names& names,
   if (!made) return tl::unexpected(made.error());
   if (auto done = keep(file, *made); !done) return tl::unexpected(done.error());
   identity.server = std::move(*made);
-  identity.told.push_back("a server certificate was made: " + *why);
+  identity.told.push_back({"a server certificate was made: " + *why});
   return identity;
 }
 
@@ -124,15 +124,16 @@ Result<Identity> given_identity(const fs::path& certificate, const fs::path& key
                                          base::to_rfc3339(facts->not_after));
   }
   if (now && *now < facts->not_before) {
-    identity.told.push_back(certificate.string() + " is not valid before " +
-                            base::to_rfc3339(facts->not_before));
+    identity.told.push_back(
+        {certificate.string() + " is not valid before " + base::to_rfc3339(facts->not_before),
+         true});
   }
   if (facts->names.hosts.empty() && facts->names.addresses.empty()) {
     return base::fail(Code::Invalid, certificate.string() +
                                          " names nothing (no subjectAltName): no browser takes it");
   }
   for (const auto& missing : names_missing(*facts, names)) {
-    identity.told.push_back(certificate.string() + " does not name " + missing);
+    identity.told.push_back({certificate.string() + " does not name " + missing});
   }
   identity.authority = *last_certificate(identity.server.certificate);
   return identity;

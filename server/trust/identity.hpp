@@ -21,10 +21,16 @@
 
 namespace roverd::trust {
 
+/// What was done, or is doubtful, for people.
+struct Told {
+  std::string text;
+  bool alarming = false;  ///< devices must be paired again, or cannot connect
+};
+
 struct Identity {
-  Credential server;              ///< chain and key
-  std::string authority;          ///< certificate that clients are to trust, PEM
-  std::vector<std::string> told;  ///< what was done, or is doubtful, for people
+  Credential server;      ///< chain and key
+  std::string authority;  ///< certificate that clients are to trust, PEM
+  std::vector<Told> told;
   friend bool operator==(const Identity& a, const Identity& b) {
     return a.server.certificate == b.server.certificate && a.authority == b.authority;
   }

@@ -11,6 +11,7 @@ import re
 import shutil
 import signal
 import socket
+import ssl
 import subprocess
 import tempfile
 import threading
@@ -132,8 +133,10 @@ class Control:
 class Rest:
     """The API of one running roverd."""
 
-    def __init__(self, address):
+    def __init__(self, address, authority=None):
+        """@param authority PEM file of whom to trust, for https"""
         self.address = address
+        self.trust = ssl.create_default_context(cafile=authority) if authority else None
 
     def call(self, method, path, body=None, headers=None, seconds=30):
         """@param body bytes go as they are, anything else as JSON. @return status, headers, body
@@ -144,7 +147,7 @@ class Rest:
         if data is not None and not request.has_header("Content-type"):
             request.add_header("Content-Type", "application/json")
         try:
-            with urllib.request.urlopen(request, timeout=seconds) as answer:
+            with urllib.request.urlopen(request, timeout=seconds, context=self.trust) as answer:
                 return answer.status, answer.headers, self._decode(answer)
         except urllib.error.HTTPError as error:
             with error:
@@ -172,7 +175,9 @@ class Rest:
 class Station:
     """roverd-sim and roverd, each on free ports, with a data folder of their own."""
 
-    def __init__(self, can=None, seed=1, sim=(), arguments=(), config=None, data=None):
+    def __init__(self, can=None, seed=1, sim=(), arguments=(), config=None, data=None,
+                 authority=None):
+        """@param authority whom to trust with --tls, if it is not roverd's own"""
         self.scratch = pathlib.Path(tempfile.mkdtemp(prefix="roverd-test."))
         self.sim = self.roverd = self.control = None
         try:
@@ -188,8 +193,10 @@ class Station:
                                   "--set", f"drivers.gnss.link={ready[2]}",
                                   *(("--set", f"drivers.mti.link={ready[3]}") if ready[3] else ()),
                                   *arguments)
-            self.address = self.roverd.wait_line(r"^listening on (http://\S+)")[1]
-            self.rest = Rest(self.address)
+            self.address = self.roverd.wait_line(r"^listening on (https?://\S+)")[1]
+            own = pathlib.Path(data or self.scratch / "data") / "tls/authority.pem"
+            self.authority = authority or (own if self.address.startswith("https:") else None)
+            self.rest = Rest(self.address, self.authority)
         except BaseException:
             self.close()
             raise

@@ -72,5 +72,24 @@ TEST(Guard, AWebSocketNeedsTheOwnOriginToo) {
             403u);
 }
 
+TEST(Guard, UnderTlsOnlyThePageThatCameThroughItIsOurs) {
+  const auto post = [](const char* origin) {
+    return status(guard_request(request(http::verb::post, "localhost:8080", origin), true));
+  };
+  const auto upgrade = [](const char* origin) {
+    return status(guard_upgrade(request(http::verb::get, "localhost:8080", origin), true));
+  };
+  for (const auto& ask : {+post, +upgrade}) {
+    EXPECT_EQ(ask("https://localhost:8080"), 0u);
+    EXPECT_EQ(ask("http://localhost:8080"), 403u);
+    EXPECT_EQ(ask("https://localhost:8081"), 403u);
+  }
+}
+
+TEST(Guard, TheNetworkIsRefusedUntilThereIsAccessControl) {
+  EXPECT_TRUE(check_bind_address("127.0.0.1"));
+  EXPECT_FALSE(check_bind_address("127.0.0.1", true));
+}
+
 }  // namespace
 }  // namespace roverd::api

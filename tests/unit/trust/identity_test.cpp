@@ -57,7 +57,7 @@ TEST_F(OwnIdentity, IsRenewedUnderTheSameAuthority) {
   EXPECT_EQ(second->authority, first->authority);
   EXPECT_NE(second->server.certificate, first->server.certificate);
   ASSERT_EQ(second->told.size(), 1U);
-  EXPECT_EQ(second->told[0], "a server certificate was made: it does not name 10.0.0.3");
+  EXPECT_EQ(second->told[0].text, "a server certificate was made: it does not name 10.0.0.3");
   EXPECT_EQ(read_certificate(look(kAutumn + kYear, moved)->server.certificate)->not_before,
             kAutumn + kYear - kBackdated);
 }
@@ -98,7 +98,8 @@ TEST_F(OwnIdentity, ADamagedServerFileIsSetAsideAndMadeAnew) {
     ASSERT_TRUE(next);
     EXPECT_EQ(next->authority, first->authority);
     ASSERT_EQ(next->told.size(), 1U);
-    EXPECT_NE(next->told[0].find("it was damaged, see "), std::string::npos) << next->told[0];
+    EXPECT_NE(next->told[0].text.find("it was damaged, see "), std::string::npos)
+        << next->told[0].text;
   }
   EXPECT_EQ(content(tls / "server.pem.damaged-2"), whole.substr(0, 300));
 }
@@ -113,8 +114,9 @@ TEST_F(OwnIdentity, ADamagedAuthorityIsToldLoudlyAndTheServersCertificateFollows
   EXPECT_NE(next->authority, first->authority);
   EXPECT_TRUE(signed_by(next->server.certificate, next->authority));
   ASSERT_EQ(next->told.size(), 2U);
-  EXPECT_NE(next->told[0].find("every device must be paired again"), std::string::npos);
-  EXPECT_EQ(next->told[1], "a server certificate was made: another authority had signed it");
+  EXPECT_NE(next->told[0].text.find("every device must be paired again"), std::string::npos);
+  EXPECT_TRUE(next->told[0].alarming);
+  EXPECT_EQ(next->told[1].text, "a server certificate was made: another authority had signed it");
 }
 
 TEST_F(OwnIdentity, AServersCertificateIsNoAuthority) {
@@ -169,7 +171,7 @@ TEST_F(GivenIdentity, IsTakenAsItIs) {
 TEST_F(GivenIdentity, WhatItDoesNotNameIsTold) {
   const auto taken = given(kAutumn, {{"rover", "farm.example"}, {"10.0.0.1"}});
   ASSERT_EQ(taken->told.size(), 2U);
-  EXPECT_EQ(taken->told[0], certificate.string() + " does not name farm.example");
+  EXPECT_EQ(taken->told[0].text, certificate.string() + " does not name farm.example");
 }
 
 TEST_F(GivenIdentity, IsRefusedWhenOverAndToldWhenNotYetValid) {
