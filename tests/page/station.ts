@@ -123,6 +123,8 @@ export interface Station {
 export interface MortalStation extends Station {
   kill(): Promise<void>;
   begin_again(): Promise<void>;
+  /** The data folder. */
+  readonly data: string;
 }
 
 const rest_of =
@@ -141,6 +143,8 @@ const rest_of =
 const config = join(ROOT, 'config/robot.toml');
 
 export const test = base.extend<{
+  /** More arguments for roverd, by test.use(). */
+  more: readonly string[];
   station: MortalStation;
   /** The way from the browser to that station: it can be slow or broken. */
   link: SlowLink;
@@ -149,8 +153,8 @@ export const test = base.extend<{
   /** Plays a recording, `speed` times as fast as it was recorded. @return the address */
   replay: (file: string, speed: number) => Promise<string>;
 }>({
-  // eslint-disable-next-line no-empty-pattern
-  station: async ({}, use) => {
+  more: [[], { option: true }],
+  station: async ({ more }, use) => {
     const folder = mkdtempSync(join(tmpdir(), 'roverd-page.'));
     const programs: Program[] = [];
     let sim: SideChannel | undefined;
@@ -171,16 +175,18 @@ export const test = base.extend<{
         const program = new Program('roverd', [
           ...['--config', config, '--data', join(folder, 'data'), '--port', port],
           ...links.flatMap((setting) => ['--set', setting]),
+          ...more,
         ]);
         programs.unshift(program);
         return program;
       };
       let roverd = begin('0');
-      const ready = /^listening on (http:\S+)/;
+      const ready = /^listening on (https?:\S+)/;
       const [, url = ''] = await roverd.line(ready);
       await use({
         url,
         sim,
+        data: join(folder, 'data'),
         rest: rest_of(url),
         kill: () => roverd.kill(),
         begin_again: async () => {
