@@ -85,6 +85,8 @@ bool set_rules(SSL_CTX* context) {
   // An idle connection holds no buffers; a blocked write is tried again from wherever it lies then.
   SSL_CTX_set_mode(context, SSL_MODE_RELEASE_BUFFERS | SSL_MODE_ENABLE_PARTIAL_WRITE |
                                 SSL_MODE_ACCEPT_MOVING_WRITE_BUFFER);
+  // One record a call, also of TLS's own: a flood of them must not keep the thread.
+  SSL_CTX_clear_mode(context, SSL_MODE_AUTO_RETRY);
   SSL_CTX_set_read_ahead(context, 1);  // one system call for many records
   SSL_CTX_set_session_cache_mode(context, SSL_SESS_CACHE_OFF);
   SSL_CTX_set_timeout(
@@ -132,7 +134,9 @@ struct Tls::Callbacks {
                                         seals) == 1 &&
                       EVP_MAC_CTX_set_params(mac, how) == 1;
     if (!good) return -1;
-    return used == keys.begin() ? 1 : 2;
+    // In TLS 1.3 each ticket is for one use, so that nobody can tell that it is the same client.
+    const bool stays = used == keys.begin() && SSL_version(connection) < TLS1_3_VERSION;
+    return stays ? 1 : 2;
   }
 };
 

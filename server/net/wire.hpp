@@ -159,7 +159,7 @@ class Wire {
   Socket socket_;
   std::unique_ptr<ssl_st, FreeTls> secret_;
   base::Time shaken_after_{};
-  bool drained_ = false;  ///< what OpenSSL still holds is no whole record
+  bool drained_ = false;  ///< the socket has no more; what OpenSSL still holds is no whole record
   bool shaken_ = false;
   bool broken_ = false;
 };

@@ -135,6 +135,21 @@ TEST_F(TlsHouse, AClientThatComesBackResumes) {
   }
 }
 
+TEST_F(TlsHouse, TlssOwnWordsInBetweenHoldUpNothing) {
+  // Given a client that changes its keys again and again,
+  start();
+  Peer peer(house->port());
+  for (int round = 0; round < 3; ++round) {
+    for (int i = 0; i < 100; ++i) {
+      SSL_key_update(peer.ssl(), SSL_KEY_UPDATE_NOT_REQUESTED);
+      ASSERT_EQ(SSL_do_handshake(peer.ssl()), 1);
+    }
+    // then what it says in the same breath is answered.
+    EXPECT_NE(peer.ask().find("hello"), std::string::npos);
+    SSL_key_update(peer.ssl(), SSL_KEY_UPDATE_REQUESTED);
+  }
+}
+
 TEST_F(TlsHouse, ANewCertificateIsShownToNewConnectionsAndTheOldOnesStay) {
   start();
   Peer before(house->port());
