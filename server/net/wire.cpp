@@ -98,6 +98,7 @@ void Wire::shake(Tls& tls, std::function<void(error_code)> done) {
 
 void Wire::shake_on(std::function<void(error_code)> done) {
   ERR_clear_error();
+  drained_ = false;  // the first request may come with the client's last word of it
   const int result = SSL_do_handshake(secret_.get());
   if (result == 1) {
     shaken_ = true;

@@ -4,11 +4,15 @@
 #include <chrono>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <openssl/ssl.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -42,6 +46,7 @@ class Peer {
     int version = TLS1_3_VERSION;
     SSL_SESSION* session = nullptr;
     std::string protocols{};  ///< each with its length before it
+    bool gathers = false;     ///< what follows closely goes in one packet
   };
   explicit Peer(std::uint16_t port) : Peer(port, How{}) {}
   Peer(std::uint16_t port, const How& how)
@@ -53,6 +58,8 @@ class Peer {
     to.sin_port = htons(port);
     to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     ::connect(socket_, reinterpret_cast<const sockaddr*>(&to), sizeof to);
+    const int cork = how.gathers ? 1 : 0;
+    ::setsockopt(socket_, IPPROTO_TCP, TCP_CORK, &cork, sizeof cork);
     SSL_set_min_proto_version(ssl_, how.version);
     SSL_set_max_proto_version(ssl_, how.version);
     if (how.version < TLS1_2_VERSION) SSL_set_security_level(ssl_, 0);
@@ -65,6 +72,7 @@ class Peer {
     shaken_ = SSL_connect(ssl_) == 1;
   }
   ~Peer() {
+    SSL_set_shutdown(ssl_, SSL_SENT_SHUTDOWN | SSL_RECEIVED_SHUTDOWN);  // else its session is void
     SSL_free(ssl_);
     SSL_CTX_free(context_);
     ::close(socket_);
@@ -79,6 +87,8 @@ class Peer {
     constexpr std::string_view kAsk = "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n";
     SSL_write(ssl_, kAsk.data(), static_cast<int>(kAsk.size()));
     char bytes[4096];
+    pollfd ready{socket_, POLLIN, 0};
+    ::poll(&ready, 1, 20'000);
     const int n = SSL_read(ssl_, bytes, sizeof bytes);
     return n > 0 ? std::string(bytes, static_cast<std::size_t>(n)) : std::string();
   }
@@ -133,6 +143,18 @@ TEST_F(TlsHouse, AClientThatComesBackResumes) {
     EXPECT_NE(second.ask().find("hello"), std::string::npos) << version;
     SSL_SESSION_free(session);
   }
+}
+
+TEST_F(TlsHouse, ARequestThatComesWithTheEndOfTheHandshakeIsHeard) {
+  start();
+  SSL_SESSION* session = nullptr;
+  for (const bool resumes : {false, true}) {
+    Peer peer(house->port(), {.session = session, .gathers = true});
+    EXPECT_EQ(peer.resumed(), resumes);
+    EXPECT_NE(peer.ask().find("hello"), std::string::npos);
+    SSL_SESSION_free(std::exchange(session, peer.session()));
+  }
+  SSL_SESSION_free(session);
 }
 
 TEST_F(TlsHouse, TlssOwnWordsInBetweenHoldUpNothing) {
