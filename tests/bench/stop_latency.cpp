@@ -50,7 +50,10 @@ class Bus {
       if (f.id != kMotion || f.extended || f.len < 4) return;
       const bool zero = std::all_of(f.data.begin(), f.data.begin() + 4,
                                     [](std::uint8_t byte) { return byte == 0; });
-      (zero ? zero_ : moving_) = t.time_since_epoch().count();
+      if (!zero) moving_ = t.time_since_epoch().count();
+      // The first since it was asked for: whoever waits for a key looks only later.
+      base::Duration::rep none = 0;
+      if (zero) zero_.compare_exchange_strong(none, t.time_since_epoch().count());
     };
     if (const auto opened = link_.open(); !opened) {
       throw std::runtime_error(opened.error().detail);
@@ -67,6 +70,8 @@ class Bus {
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
 
+  void look_for_zero() { zero_ = 0; }
+  /// The first zero command since it was looked for; the clock's beginning: none yet
   base::Time zero() const { return base::Time(base::Duration(zero_)); }
   base::Time moving() const { return base::Time(base::Duration(moving_)); }
 
@@ -91,7 +96,15 @@ class Stopper {
   base::Duration wait_for_key() {
     get_ready();
     drive();
+    // Not in the moment in which the page draws that the robot was armed and drives off: that is
+    // when nobody presses yet. Anywhere in its ordinary work, whatever that is just then.
+    const auto ready = base::steady_now() + std::chrono::milliseconds(300 + seen_(random_));
+    while (base::steady_now() < ready) {
+      keep_driving();
+      std::this_thread::sleep_for(20ms);
+    }
     std::this_thread::sleep_for(std::chrono::microseconds(anywhere_(random_)));
+    bus_.look_for_zero();
     const base::Time asked = base::steady_now();
     std::puts("press");
     std::fflush(stdout);
@@ -112,6 +125,7 @@ class Stopper {
     get_ready();
     const base::Time from = drive();
     std::this_thread::sleep_for(std::chrono::microseconds(anywhere_(random_)));
+    bus_.look_for_zero();
     const base::Time asked = base::steady_now();
     std::optional<test::Client> http;
     if (by_stream) {
@@ -155,11 +169,15 @@ class Stopper {
         say({{"drive", {{"speed_mps", 0}, {"yaw_rate_dps", 0}, {"deadman", false}}}});
         std::this_thread::sleep_for(40ms);
       }
-      say({{"drive",
-            {{"speed_mps", 0.3}, {"yaw_rate_dps", 0}, {"deadman", true}, {"valid_for_s", 5}}}});
+      keep_driving();
       std::this_thread::sleep_for(20ms);
     }
     return bus_.moving();
+  }
+
+  void keep_driving() {
+    say({{"drive",
+          {{"speed_mps", 0.3}, {"yaw_rate_dps", 0}, {"deadman", true}, {"valid_for_s", 5}}}});
   }
 
   void say(const Json& message) { stream_.send_frame(1, message.dump()); }
@@ -181,6 +199,7 @@ class Stopper {
   std::string said_;
   std::mt19937 random_{1};
   std::uniform_int_distribution<int> anywhere_{0, 20'000};
+  std::uniform_int_distribution<int> seen_{0, 500};
 };
 
 double at_share(const std::vector<double>& sorted, double share) {
