@@ -196,6 +196,9 @@ void ChildProcess::Job::reap() {
   const pid_t done = ::waitpid(pid, &status, WNOHANG);
   if (done == 0) return reap_soon();
   pid = -1;
+  error_code none;  // nobody may start another one for a day
+  out.close(none);
+  err.close(none);
   tell_end(status);
 }
 

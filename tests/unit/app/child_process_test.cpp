@@ -3,6 +3,8 @@
 #include "app/child_process.hpp"
 
 #include <chrono>
+#include <filesystem>
+#include <iterator>
 #include <optional>
 
 #include <gtest/gtest.h>
@@ -112,6 +114,20 @@ TEST_F(ChildProcessTest, InheritsNoDescriptorAndNoBlockedSignal) {
   // Then that is input, output, errors and the folder that is listed, and no signal
   EXPECT_EQ(descriptors, (std::vector<std::string>{"0", "1", "2", "3"}));
   EXPECT_EQ(lines, (std::vector<std::string>{"SigBlk:\t0000000000000000"}));
+}
+
+TEST_F(ChildProcessTest, HoldsNoDescriptorWhenItHasEnded) {
+  const auto held = [] {
+    const std::filesystem::directory_iterator all("/proc/self/fd");
+    return std::distance(std::filesystem::begin(all), std::filesystem::end(all));
+  };
+  EXPECT_EQ(shell("exit 0"), "");  // asio may have opened some of its own
+  child.stop();
+  const auto before = held();
+  EXPECT_EQ(shell("echo said; exit 0"), "");
+  EXPECT_EQ(held(), before);
+  EXPECT_EQ(shell("exit 3"), "sh ended with exit code 3");
+  EXPECT_EQ(held(), before);
 }
 
 }  // namespace
