@@ -15,6 +15,7 @@
 
 #include <unistd.h>
 
+#include "app/backup_keeper.hpp"
 #include "app/drill.hpp"
 #include "app/logging.hpp"
 #include "app/memory_reserve.hpp"
@@ -126,6 +127,13 @@ int serve(const roverd::Options& options) {
   return 0;
 }
 
+int back_up(const roverd::BackupCommand& command) {
+  const auto made = roverd::make_backup(command);
+  if (!made) return say(kRefused, "backup: " + made.error().detail);
+  std::printf("%s\n", made->c_str());
+  return 0;
+}
+
 int become_study(char** argv) {
   const std::string program = roverd::study_program();
   ::execv(program.c_str(), argv + 1);
@@ -150,6 +158,7 @@ int main(int argc, char** argv) {
       int operator()(const roverd::TableCommand& c) const {
         return roverd::ntrip_table(c.casters, c.json);
       }
+      int operator()(const roverd::BackupCommand& c) const { return back_up(c); }
       int operator()(const roverd::FailsafesCommand& c) const { return roverd::failsafes(c.into); }
     };
     return std::visit(Run{}, roverd::read_command(argc, argv));

@@ -122,6 +122,19 @@ Told add_ntrip(CLI::App& app, TableCommand& c) {
   return {n, "usage: roverd ntrip table CASTER [CASTER...] [--json]"};
 }
 
+Told add_backup(CLI::App& app, BackupCommand& c) {
+  CLI::App* b = app.add_subcommand("backup", "a copy of the database, also while roverd runs");
+  b->footer(
+      "Prints the name of the copy. The newest backup that is whole takes the place of a\n"
+      "database that is found damaged when roverd starts.");
+  b->add_option("--data", c.data, "folder of the database")->capture_default_str();
+  b->add_option("--keep", c.keep, "the newest so many are kept, the oldest go")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  b->add_option("--ends-with", c.ends_with)->group("");  // roverd's own, not shown
+  return {b, "usage: roverd backup [--data DIR] [--keep N]"};
+}
+
 Told add_failsafes(CLI::App& app, FailsafesCommand& c) {
   CLI::App* f = app.add_subcommand("failsafes", "what the robot watches, and what follows from it");
   f->add_option("--into", c.into, "writes the table into this page, between its marks");
@@ -153,13 +166,14 @@ Command read_command(int argc, char** argv) {
   ReplayCommand replay;
   ReportCommand report;
   TableCommand table;
+  BackupCommand backup;
   FailsafesCommand failsafes;
   CLI::App app("roverd: the ground station that lives on the robot", "roverd");
   app.footer("roverd study: courses in simulated time, measured (roverd study --help)");
   add_station(app, options);
   const Told commands[] = {add_decode(app, decode), add_replay(app, replay),
                            add_report(app, report), add_ntrip(app, table),
-                           add_failsafes(app, failsafes)};
+                           add_backup(app, backup), add_failsafes(app, failsafes)};
   const auto chosen = [&commands]() -> const Told* {
     for (const Told& one : commands) {
       if (one.app->parsed()) return &one;
@@ -185,6 +199,7 @@ Command read_command(int argc, char** argv) {
   if (command->app == commands[1].app) return replay;
   if (command->app == commands[2].app) return report;
   if (command->app == commands[3].app) return table;
+  if (command->app == commands[4].app) return backup;
   return failsafes;
 }
 

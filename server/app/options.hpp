@@ -38,11 +38,16 @@ struct TableCommand {
   std::vector<std::string> casters;
   bool json = false;
 };
+struct BackupCommand {
+  std::string data = "data";
+  int keep = 7;
+  int ends_with = 0;  ///< the process that started it; 0: it goes on without
+};
 struct FailsafesCommand {
   std::string into;  ///< a page; empty: the table is printed
 };
 using Command = std::variant<Options, DecodeCommand, ReplayCommand, ReportCommand, TableCommand,
-                             FailsafesCommand>;
+                             BackupCommand, FailsafesCommand>;
 
 /// Prints help, version or a one-line error and ends the program where the arguments say so
 /// (exit code 2 for wrong ones).

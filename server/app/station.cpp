@@ -12,6 +12,7 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "api/api.hpp"
+#include "app/backup_keeper.hpp"
 #include "app/child_process.hpp"
 #include "app/control_loop.hpp"
 #include "app/devices.hpp"
@@ -35,7 +36,6 @@
 #include "net/server.hpp"
 #include "net/workers.hpp"
 #include "robot/robot.hpp"
-#include "store/backups.hpp"
 #include "store/store.hpp"
 #include "store/tiles.hpp"
 #include "supervise/claim.hpp"
@@ -67,7 +67,7 @@ struct Station::Impl {
   store::TileFolder tiles;
   std::unique_ptr<Supervisor> supervisor;
   std::unique_ptr<store::Store> store;
-  std::unique_ptr<store::Backups> backups;
+  std::unique_ptr<BackupKeeper> backups;
   std::unique_ptr<services::Services> services;
   std::unique_ptr<Front> front;  ///< null: no TLS
   std::unique_ptr<api::Api> api;
@@ -177,10 +177,14 @@ Result<void> Station::Impl::open_store(const Settings& settings, const Options& 
       [this](std::function<void()> answer) { asio::post(web, std::move(answer)); }, std::move(how));
   if (!opened) return tl::unexpected(opened.error());
   store = std::move(*opened);
-  backups = std::make_unique<store::Backups>(
-      std::filesystem::path(options.data) / "roverd.db",
-      store::BackupOptions{.keep = settings.backups.keep,
-                           .period = std::chrono::hours(settings.backups.every_h)});
+  if (settings.backups.keep > 0) {
+    backups = std::make_unique<BackupKeeper>(
+        options.data, backup_options(settings), [this](const std::string& why) {
+          asio::post(web, [this, why] {
+            api->on_event({base::wall_now(), base::Severity::Warning, "backup_failed", why});
+          });
+        });
+  }
   return {};
 }
 

@@ -154,6 +154,7 @@ void fields(V& v, EventSettings& p) {
 struct BackupSettings {
   int keep = 7;
   int every_h = 24;
+  int first_s = 600;
 };
 
 template <class V>
@@ -161,6 +162,8 @@ void fields(V& v, BackupSettings& p) {
   v("keep", p.keep, 0, 1000,
     "copies of the database kept in DATA/backups, the oldest goes; 0: none");
   v("every_h", p.every_h, 1, 8760, "a copy is made so often");
+  v("first_s", p.first_s, 0, 86400,
+    "the first one so long after the start, unless the newest is younger than every_h");
 }
 
 struct Settings {

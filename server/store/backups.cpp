@@ -13,9 +13,9 @@
 
 #include <fcntl.h>
 #include <sqlite3.h>
+#include <sys/file.h>
 #include <unistd.h>
 
-#include "base/log.hpp"
 #include "store/database.hpp"
 
 namespace roverd::store {
@@ -27,6 +27,7 @@ using base::Result;
 
 constexpr std::string_view kFront = "roverd-";
 constexpr std::string_view kEnd = ".db";
+constexpr const char* kUnfinished = "unfinished";
 /// What belongs to one database.
 constexpr std::array<const char*, 3> kParts{"", "-wal", "-shm"};
 
@@ -53,6 +54,29 @@ bool sync(const fs::path& path) {
   ::close(fd);
   return done;
 }
+
+/// Held by whoever makes a backup.
+class FolderLock {
+ public:
+  explicit FolderLock(const fs::path& folder)
+      : fd_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    if (fd_ < 0) {
+      problem_ = folder.string() + ": " + std::generic_category().message(errno);
+    } else if (::flock(fd_, LOCK_EX | LOCK_NB) != 0) {
+      problem_ = "another backup is being made";
+    }
+  }
+  ~FolderLock() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+  const std::string& problem() const noexcept { return problem_; }  ///< empty: it is held
+
+ private:
+  int fd_;
+  std::string problem_;
+};
 
 /// Why the file is no database any more; empty: it is one, or nobody knows.
 /// @param every_page takes about 1 ms per MB; else the beginning alone
@@ -103,6 +127,50 @@ std::string bring_back(const fs::path& file) {
   return {};
 }
 
+/// Where they lie, made if only that is missing.
+Result<fs::path> folder_for(const fs::path& database) {
+  fs::path folder = backup_folder(database);
+  std::error_code ec;
+  fs::create_directory(folder, ec);
+  if (ec) return base::fail(Code::Unavailable, folder.string() + ": " + ec.message());
+  return folder;
+}
+
+fs::path next_name(const fs::path& folder, const std::map<int, fs::path>& known) {
+  std::array<char, 16> digits{};
+  std::snprintf(digits.data(), digits.size(), "%06d",
+                known.empty() ? 1 : known.rbegin()->first + 1);
+  return folder / (std::string(kFront) + digits.data() + std::string(kEnd));
+}
+
+/// Every page of the copy is looked at.
+Result<void> copy_into(const fs::path& database, const fs::path& copy) {
+  return guarded([&]() -> Result<void> {
+    {
+      SQLite::Database db(database.string(), SQLite::OPEN_READONLY, 2000);
+      // Pages pass by once, here and in the copy: more of them at a time would be no faster.
+      db.exec("PRAGMA cache_size = -256");
+      SQLite::Statement vacuum(db, "VACUUM INTO ?");
+      vacuum.bind(1, copy.string());
+      vacuum.exec();
+    }
+    SQLite::Database made(copy.string(), SQLite::OPEN_READONLY);
+    made.exec("PRAGMA cache_size = -256");
+    const std::string verdict = made.execAndGet("PRAGMA quick_check(1)").getString();
+    if (verdict == "ok") return {};
+    return base::fail(Code::Unavailable, "the copy is not whole: " + verdict);
+  });
+}
+
+void drop_beyond(int keep, const std::map<int, fs::path>& known) {
+  const std::size_t most = static_cast<std::size_t>(std::max(keep, 1)) - 1;  // and the new one
+  auto oldest = known.begin();
+  for (std::size_t count = known.size(); count > most; --count) {
+    std::error_code ec;
+    fs::remove((oldest++)->second, ec);
+  }
+}
+
 }  // namespace
 
 fs::path backup_folder(const fs::path& database) {
@@ -110,40 +178,50 @@ fs::path backup_folder(const fs::path& database) {
 }
 
 Result<fs::path> back_up(const fs::path& database, int keep) {
-  const fs::path folder = backup_folder(database);
+  const auto folder = folder_for(database);
+  if (!folder) return folder;
+  const FolderLock lock(*folder);
+  if (!lock.problem().empty()) return base::fail(Code::Unavailable, lock.problem());
   std::error_code ec;
-  fs::create_directories(folder, ec);
-  if (ec) return base::fail(Code::Unavailable, folder.string() + ": " + ec.message());
-  const auto known = backups_in(folder);
-  const int number = known.empty() ? 1 : known.rbegin()->first + 1;
-  std::array<char, 16> digits{};
-  std::snprintf(digits.data(), digits.size(), "%06d", number);
-  const fs::path target = folder / (std::string(kFront) + digits.data() + std::string(kEnd));
-  const fs::path unfinished = folder / "unfinished";
-  fs::remove(unfinished, ec);
-  auto done = guarded([&]() -> Result<fs::path> {
-    SQLite::Database db(database.string(), SQLite::OPEN_READONLY, 2000);
-    // Pages pass by once, here and in the copy: more would stay with this thread's heap, 4 MB of
-    // it.
-    db.exec("PRAGMA cache_size = -256");
-    SQLite::Statement copy(db, "VACUUM INTO ?");
-    copy.bind(1, unfinished.string());
-    copy.exec();
-    return target;
-  });
-  if (!done) {
-    fs::remove(unfinished, ec);
-    return done;
+  if (!fs::exists(database, ec)) {
+    return base::fail(Code::Unavailable, "there is no database " + database.string());
   }
-  fs::rename(unfinished, target, ec);
-  if (ec || !sync(target) || !sync(folder)) {
+  const auto known = backups_in(*folder);
+  const fs::path target = next_name(*folder, known);
+  const fs::path unfinished = *folder / kUnfinished;
+  fs::remove(unfinished, ec);
+  if (const auto done = copy_into(database, unfinished); !done) {
+    fs::remove(unfinished, ec);
+    return tl::unexpected(done.error());
+  }
+  // Only what is on the disk gets the name of a backup.
+  const bool kept = sync(unfinished);
+  if (kept) fs::rename(unfinished, target, ec);
+  if (!kept || ec || !sync(*folder)) {
+    fs::remove(unfinished, ec);
     return base::fail(Code::Unavailable, "the disk did not keep " + target.string());
   }
-  const std::size_t spare =
-      known.size() + 1 - std::min(known.size() + 1, static_cast<std::size_t>(std::max(keep, 1)));
-  auto oldest = known.begin();
-  for (std::size_t i = 0; i < spare; ++i) fs::remove((oldest++)->second, ec);
-  return done;
+  drop_beyond(keep, known);
+  return target;
+}
+
+void drop_unfinished(const fs::path& database) {
+  const fs::path folder = backup_folder(database);
+  const FolderLock lock(folder);
+  if (!lock.problem().empty()) return;
+  std::error_code ec;
+  for (const char* part : kParts) fs::remove((folder / kUnfinished).string() + part, ec);
+}
+
+base::Duration first_backup_in(const fs::path& database, const BackupOptions& options) {
+  const auto known = backups_in(backup_folder(database));
+  if (known.empty()) return options.first;
+  std::error_code ec;
+  const auto age =
+      fs::file_time_type::clock::now() - fs::last_write_time(known.rbegin()->second, ec);
+  if (ec || age < age.zero() || age >= options.period) return options.first;
+  return std::max<base::Duration>(options.first,
+                                  options.period - std::chrono::duration_cast<base::Duration>(age));
 }
 
 std::optional<std::string> rescue(const fs::path& database) {
@@ -164,45 +242,6 @@ std::optional<std::string> rescue(const fs::path& database) {
                                "the damaged file";
   std::replace(told.begin(), told.end(), '\n', ' ');
   return told;
-}
-
-Backups::Backups(fs::path database, BackupOptions options)
-    : database_(std::move(database)), options_(options) {
-  if (options_.keep > 0) thread_ = std::thread([this] { run(); });
-}
-
-Backups::~Backups() {
-  {
-    std::lock_guard lock(mutex_);
-    ending_ = true;
-  }
-  end_.notify_one();
-  if (thread_.joinable()) thread_.join();
-}
-
-void Backups::run() {
-  // A clock that was set back makes the newest one lie in the future: then one more is made.
-  std::error_code ec;
-  base::Duration wait = options_.first;
-  if (const auto known = backups_in(backup_folder(database_)); !known.empty()) {
-    const auto age =
-        fs::file_time_type::clock::now() - fs::last_write_time(known.rbegin()->second, ec);
-    if (!ec && age >= age.zero() && age < options_.period) {
-      wait = std::max<base::Duration>(
-          wait, options_.period - std::chrono::duration_cast<base::Duration>(age));
-    }
-  }
-  for (;;) {
-    {
-      std::unique_lock lock(mutex_);
-      if (end_.wait_for(lock, wait, [this] { return ending_; })) return;
-    }
-    const auto made = back_up(database_, options_.keep);
-    base::log(made ? base::Level::Info : base::Level::Warning, "store",
-              made ? "backed up" : "no backup could be made",
-              {{made ? "file" : "reason", made ? made->string() : made.error().detail}});
-    wait = options_.period;
-  }
 }
 
 }  // namespace roverd::store

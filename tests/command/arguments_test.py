@@ -39,6 +39,8 @@ WRONG = {
     ("ntrip", "list", "a"): "usage: roverd ntrip table CASTER",
     ("ntrip", "table", "host:99999"): "argument 1: ",
     ("ntrip", "table", "good.example", "http://x/"): "argument 2: ",
+    ("backup", "roverd.db"): "usage: roverd backup [--data DIR] [--keep N] (roverd backup --help)",
+    ("backup", "--keep", "0"): "--keep",
     ("failsafes", "page.md"): "usage: roverd failsafes",
     ("--port", "65536"): "--port",
     ("--replay-speed", "nan"): "0 .. 1000",
@@ -64,10 +66,12 @@ def wrong_ones_are_named():
 
 def help_is_given():
     """every command tells its arguments and ends with 0"""
-    for arguments, words in ((("--help",), ("--config", "--port", "decode", "replay", "report", "ntrip", "study")),
+    for arguments, words in ((("--help",), ("--config", "--port", "decode", "replay", "report", "backup", "ntrip",
+                                            "study")),
                              (("decode", "--help"), ("KIND", "FILE", "bunker", "nmea", "ubx", "mti")),
                              (("replay", "-h"), ("FILE", "--report", "--format", "--every", "--vehicle", "--set")),
                              (("report", "--help"), ("RUN", "--data")),
+                             (("backup", "--help"), ("--data", "--keep")),
                              (("ntrip", "--help"), ("table",)),
                              (("ntrip", "table", "--help"), ("CASTER", "--json"))):
         done = run(*arguments)

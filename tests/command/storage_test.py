@@ -14,7 +14,7 @@ import tempfile
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "harness"))
-from station import Program, Rest, Station, check, run_cases, until  # noqa: E402
+from station import BIN, Program, Rest, Station, check, make_large, run_cases, until  # noqa: E402
 
 PLAN = {"name": "kept", "items": [{"type": "waypoint", "lat": 58.0, "lon": 26.0 + i * 1e-5} for i in range(50)]}
 
@@ -90,6 +90,91 @@ def a_damaged_database():
         drives_by_hand(rest, station)
 
 
+def backed_up(data):
+    """@return the names of what counts as a backup"""
+    return sorted(file.name for file in (data / "backups").glob("roverd-*.db"))
+
+
+def a_backup_by_hand():
+    """a backup can be made while roverd runs, has what was acknowledged, and is refused where there is none"""
+    with Station(seed=9) as station:
+        data = station.scratch / "data"
+        made = station.rest.do("POST", "/missions", PLAN)
+        done = subprocess.run([BIN / "roverd", "backup", "--data", data], capture_output=True, text=True,
+                              timeout=60, check=False)
+        check((done.returncode, done.stdout) == (0, f"{data}/backups/roverd-000001.db\n"), f"it says {done}")
+        station.roverd.stop()
+        shutil.copy(data / "backups/roverd-000001.db", data / "roverd.db")
+        station.roverd = Program(*arguments_of(station, data))
+        rest = Rest(station.roverd.wait_line(r"^listening on (http://\S+)")[1])
+        check(rest.get(f"/missions/{made['id']}")["name"] == "kept", "the mission is not in the copy")
+    done = subprocess.run([BIN / "roverd", "backup", "--data", "/nowhere"], capture_output=True, text=True,
+                          timeout=60, check=False)
+    check(done.returncode == 1 and done.stderr.startswith("roverd: backup: /nowhere/backups: "), f"it says {done}")
+
+
+def a_backup_that_fails():
+    """a backup that cannot be made is told as an event"""
+    with tempfile.TemporaryDirectory() as folder:
+        data = pathlib.Path(folder, "data")
+        data.mkdir()
+        (data / "backups").write_text("in the way")
+        with Station(seed=10, data=data, arguments=("--set", "backups.first_s=1")) as station:
+            told = until("an event tells it", 30, lambda: [
+                e for e in station.rest.get("/events?level=warning&limit=50")["items"] if e["kind"] == "backup_failed"],
+                0.1)
+            check(told[0]["detail"].startswith("no backup could be made: roverd ended with exit code 1: roverd: backup: ")
+                  and str(data / "backups") in told[0]["detail"], f"it says {told}")
+
+
+def stat_of(pid):
+    """What /proc tells of it after its name; empty: there is none."""
+    try:
+        return pathlib.Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rsplit(")", 1)[1].split()
+    except OSError:
+        return []
+
+
+def held_by(pid):
+    """The files behind its descriptors, but for what it is told and says."""
+    try:
+        return {os.readlink(link) for link in pathlib.Path(f"/proc/{pid}/fd").iterdir() if int(link.name) > 2}
+    except OSError:
+        return set()
+
+
+def child_at_work(pid):
+    """The backup that roverd has started, half through; 0: there is none yet."""
+    for children in pathlib.Path(f"/proc/{pid}/task").glob("*/children"):
+        for child in children.read_text(encoding="ascii").split():
+            if any(name.endswith("/backups/unfinished") for name in held_by(child)):
+                return int(child)
+    return 0
+
+
+def a_backup_that_is_cut_off():
+    """a backup in progress holds nothing of roverd's, dies with it, and does not count"""
+    with tempfile.TemporaryDirectory() as folder:
+        data = pathlib.Path(folder, "data")
+        with Station(seed=11, data=data):
+            pass
+        make_large(data / "roverd.db", 200)
+        with Station(seed=11, data=data, arguments=("--set", "backups.first_s=2")) as station:
+            child = until("a backup is being made", 60, lambda: child_at_work(station.roverd.process.pid), 0.002)
+            os.kill(child, signal.SIGSTOP)
+            held = held_by(child)
+            check(all(name.startswith(f"{data}/") for name in held), f"it holds {held}")
+            check(stat_of(child)[16] == "19", f"its nice value is {stat_of(child)[16]}")
+            station.roverd.stop(signal.SIGKILL)
+            until("it is gone", 20, lambda: stat_of(child)[:1] in ([], ["Z"]))  # who inherits it may be slow
+            check(backed_up(data) == [], f"half a copy counts: {backed_up(data)}")
+            arguments = arguments_of(station, data)
+            arguments[-1] = "backups.first_s=0"
+            station.roverd = Program(*arguments)
+            until("the next one is made", 60, lambda: backed_up(data) == ["roverd-000001.db"])
+            check(not (data / "backups/unfinished").exists(), "half a copy is left")
+
+
 def a_service_manager():
     """a service manager hears that roverd serves, lives and stops"""
     with tempfile.TemporaryDirectory() as folder, socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as manager:
@@ -133,4 +218,5 @@ def old_recordings():
 
 
 if __name__ == "__main__":
-    sys.exit(run_cases([a_removed_data_folder, a_damaged_database, a_service_manager, old_recordings]))
+    sys.exit(run_cases([a_removed_data_folder, a_damaged_database, a_backup_by_hand, a_backup_that_fails,
+                        a_backup_that_is_cut_off, a_service_manager, old_recordings]))

@@ -4,6 +4,7 @@
         station.rest("GET", "/vehicle")
 """
 
+import contextlib
 import json
 import os
 import pathlib
@@ -11,7 +12,11 @@ import re
 import shutil
 import signal
 import socket
+<<<<<<< HEAD
 import ssl
+=======
+import sqlite3
+>>>>>>> 4cb7a7e (Make backups in a program of their own)
 import subprocess
 import tempfile
 import threading
@@ -216,6 +221,13 @@ class Station:
                     program.stop()
         finally:
             shutil.rmtree(self.scratch, ignore_errors=True)
+
+
+def make_large(database, megabytes):
+    """A table of noise in the database of a roverd that does not run."""
+    with contextlib.closing(sqlite3.connect(database)) as connection, connection:
+        connection.execute("CREATE TABLE noise (bytes BLOB)")
+        connection.executemany("INSERT INTO noise VALUES (randomblob(2000))", [()] * (500 * megabytes))
 
 
 def said_by(explain):

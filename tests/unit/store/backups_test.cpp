@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <fstream>
-#include <thread>
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sqlite3.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include "folder.hpp"
 
@@ -94,19 +96,93 @@ TEST(Backups, WithoutADatabaseThereIsNone) {
   EXPECT_TRUE(names_in(backup_folder(folder.file())).empty());
 }
 
-TEST(Backups, TheyAreMadeByThemselves) {
+TEST(Backups, WhatIsNotFinishedNeverCounts) {
+  // Given what a backup that was killed has left,
   Folder folder;
   const auto store = open_store(folder.file());
-  const Backups backups(
-      folder.file(),
-      {.keep = 2, .period = std::chrono::milliseconds(30), .first = std::chrono::milliseconds(1)});
-  const auto first = backup_folder(folder.file()) / "roverd-000001.db";
-  const auto third = backup_folder(folder.file()) / "roverd-000003.db";
-  const auto done = [&] { return fs::exists(third) && !fs::exists(first); };
-  for (int i = 0; i < 1000 && !done(); ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  const auto saved = create(*store, plan_named("saved"));
+  fs::create_directories(backup_folder(folder.file()));
+  for (const char* name : {"unfinished", "unfinished-wal"}) {
+    std::ofstream(backup_folder(folder.file()) / name) << "half";
   }
-  EXPECT_TRUE(done());
+  // when the program starts anew, then it goes; and when it is not even gone,
+  drop_unfinished(folder.file());
+  EXPECT_TRUE(names_in(backup_folder(folder.file())).empty());
+  std::ofstream(backup_folder(folder.file()) / "unfinished") << "half";
+  // then the next one takes its place.
+  const auto made = back_up(folder.file(), 3);
+  ASSERT_TRUE(made) << made.error().detail;
+  EXPECT_EQ(names_in(backup_folder(folder.file())), std::vector<std::string>{"roverd-000001.db"});
+  EXPECT_EQ(read(*open_store(*made), saved->id)->plan, saved->plan);
+}
+
+TEST(Backups, OneAtATime) {
+  // Given one that is being made by somebody else,
+  Folder folder;
+  const auto store = open_store(folder.file());
+  const fs::path backups = backup_folder(folder.file());
+  fs::create_directories(backups);
+  std::ofstream(backups / "unfinished") << "half";
+  const int theirs = ::open(backups.c_str(), O_RDONLY | O_DIRECTORY);
+  ASSERT_EQ(::flock(theirs, LOCK_EX | LOCK_NB), 0);
+  // when another one is wanted, then it is refused, and the file of the first is left alone.
+  const auto made = back_up(folder.file(), 3);
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().detail, "another backup is being made");
+  drop_unfinished(folder.file());
+  EXPECT_EQ(names_in(backups), std::vector<std::string>{"unfinished"});
+  ::close(theirs);
+  EXPECT_TRUE(back_up(folder.file(), 3));
+}
+
+TEST(Backups, ADamagedDatabaseGivesNone) {
+  Folder folder;
+  {
+    const auto store = open_store(folder.file());
+    ASSERT_TRUE(create(*store, noisy_plan("kept", 3000)));
+    ASSERT_TRUE(back_up(folder.file(), 1));
+  }
+  overwrite_with_noise(folder.file(), 4096);
+  EXPECT_FALSE(back_up(folder.file(), 1));
+  EXPECT_EQ(names_in(backup_folder(folder.file())), std::vector<std::string>{"roverd-000001.db"});
+}
+
+TEST(Backups, ACopyThatIsNotWholeGivesNone) {
+  // Given a table that holds what its own words forbid: copied as it is, and found by the check
+  Folder folder;
+  {
+    SQLite::Database db(folder.file(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+    db.exec("CREATE TABLE t (a)");
+    db.exec("INSERT INTO t VALUES (NULL)");
+    db.exec("PRAGMA writable_schema = ON");
+    db.exec("UPDATE sqlite_schema SET sql = 'CREATE TABLE t (a NOT NULL)'");
+  }
+  const auto made = back_up(folder.file(), 1);
+  ASSERT_FALSE(made);
+  EXPECT_NE(made.error().detail.find("NULL value in t.a"), std::string::npos)
+      << made.error().detail;
+  EXPECT_TRUE(names_in(backup_folder(folder.file())).empty());
+}
+
+TEST(Backups, TheFirstComesWhenTheNewestIsOldEnough) {
+  using namespace std::chrono_literals;
+  const BackupOptions daily{.keep = 7, .period = 24h, .first = 10min};
+  Folder folder;
+  const auto store = open_store(folder.file());
+  // Without one: soon.
+  EXPECT_EQ(first_backup_in(folder.file(), daily), daily.first);
+  const auto newest = back_up(folder.file(), 7);
+  ASSERT_TRUE(newest);
+  const auto made_before = [&](std::chrono::hours age) {
+    fs::last_write_time(*newest, fs::file_time_type::clock::now() - age);
+    return first_backup_in(folder.file(), daily);
+  };
+  // With one of today: in what is left of the day, to the second.
+  EXPECT_GT(made_before(20h), 4h - 10s);
+  EXPECT_LE(made_before(20h), 4h);
+  // With an old one, or one of the future: soon.
+  EXPECT_EQ(made_before(25h), daily.first);
+  EXPECT_EQ(made_before(-3h), daily.first);
 }
 
 TEST(Rescue, AWholeDatabaseIsLeftAlone) {
