@@ -1,0 +1,72 @@
+#include "api/context.hpp"
+
+#include <exception>
+#include <utility>
+
+#include "api/json/teach_words.hpp"
+#include "api/profile.hpp"
+#include "base/log.hpp"
+
+namespace roverd::api {
+
+std::shared_ptr<const base::Snapshot> Context::snapshot_or_refuse(const CallPtr& call) const {
+  auto snapshot = deps.robot.snapshot();
+  if (!snapshot) {
+    call->respond(problem({base::Code::Unavailable, "the control loop has not started yet"}));
+  }
+  return snapshot;
+}
+
+Profile Context::profile() const {
+  Profile now = deps.profile;
+  take_parameters(now, *deps.robot.config());
+  return now;
+}
+
+Json Context::vehicle(const base::Snapshot& snapshot, base::Time now) const {
+  Json out = vehicle_json(snapshot, deps.profile.name, now);
+  out["teach"] = teach_brief_json(deps.services.view()->teach);
+  return out;
+}
+
+std::optional<store::StoredPlace> Context::offer(const base::Snapshot& snapshot) const {
+  const base::MissionProgress& m = snapshot.mission;
+  const bool in_hand = m.state == base::ExecutionState::Running ||
+                       m.state == base::ExecutionState::Paused ||
+                       m.state == base::ExecutionState::Blocked;
+  const auto offer = deps.services.view()->offer;
+  const bool other = offer && !m.mission_id.empty() && m.mission_id != offer->mission_id;
+  return in_hand || other ? std::nullopt : offer;
+}
+
+void Context::go_aside(const CallPtr& call, Effort effort, std::function<void()> work,
+                       std::function<bool()> then) const {
+  const auto tried = [work = std::move(work)] {
+    try {
+      work();
+    } catch (const std::exception& bug) {
+      base::log(base::Level::Error, "api", "work failed", {{"what", bug.what()}});
+    }
+  };
+  const auto ended = [call, then = std::move(then)] {
+    try {
+      if (then()) return;
+    } catch (const std::exception& bug) {
+      base::log(base::Level::Error, "api", "a handler failed", {{"what", bug.what()}});
+    }
+    call->respond(problem({base::Code::Unavailable, "the request could not be handled"}));
+  };
+  if (!deps.aside || effort.bytes <= Effort::kAtOnce) {
+    tried();
+    return ended();
+  }
+  if (deps.aside({tried, ended, effort.bytes > Effort::kSmall, effort.must})) return;
+  call->respond(
+      problem({base::Code::Unavailable, "too much is being worked on; nothing was done"}));
+}
+
+void Context::announce(const std::string& id, std::optional<std::int64_t> revision) const {
+  if (on_mission_change) on_mission_change(id, revision);
+}
+
+}  // namespace roverd::api
