@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/angle.hpp"
+#include "nav/vote/stretch.hpp"
 
 namespace roverd::nav {
 namespace {
@@ -33,8 +34,6 @@ const double kCompass_rad = rad_from_deg(8.0);
 constexpr double kPivotMemory_s = 6.0;
 const double kHeading_rad = rad_from_deg(12.0);  // by which a vehicle drives beside its heading
 
-constexpr double kVelocityBiasRtk_mps = 0.015;
-constexpr double kVelocityBias_mps = 0.03;
 constexpr double kScaleKnown = 0.03;
 constexpr double kSpinShare = 0.4;
 constexpr double kSpinWindow_s = 1.0;
@@ -44,10 +43,6 @@ constexpr double kSlip = 0.08;  // of dead reckoning, from one moment to the nex
 
 double norm(EnuPoint p) noexcept {
   return std::hypot(p.east_m, p.north_m);
-}
-
-EnuPoint times(double s, EnuPoint p) noexcept {
-  return {s * p.east_m, s * p.north_m};
 }
 
 base::Duration span(double s) noexcept {
@@ -226,52 +221,10 @@ class Comparer {
 
   // ---- ways ------------------------------------------------------------------------------------
 
-  struct Leg {
-    EnuPoint m;
-    double sigma_m = 0.0;
-  };
-
-  std::optional<Leg> by_position(Time begin, Time end) const noexcept {
-    const std::size_t to = f_.spots.not_after(end);
-    const std::size_t from = f_.spots.not_after(begin);
-    if (from >= f_.spots.size()) return std::nullopt;
-    const Spot& a = f_.spots[from];
-    const Spot& b = f_.spots[to];
-    if (a.run != b.run || a.t != begin || b.t != end) return std::nullopt;
-    const double lately = -std::expm1(-seconds(end - begin) / std::max(1.0, b.drift_s));
-    const double sigma = std::hypot(a.sigma_m, b.sigma_m, b.drift_m * std::sqrt(2.0 * lately));
-    return Leg{b.at - a.at, sigma};
-  }
-
-  std::optional<EnuPoint> sum_at(Time t, int run) const noexcept {
-    const std::size_t i = f_.paces.not_after(t);
-    if (i >= f_.paces.size() || f_.paces[i].run != run) return std::nullopt;
-    const Pace& a = f_.paces[i];
-    const double after_s = seconds(t - a.t);
-    if (i == 0) {
-      if (after_s > 0.3) return std::nullopt;
-      return a.sum_m + times(after_s, a.mps);
-    }
-    const Pace& b = f_.paces[i - 1];
-    const double part = after_s / std::max(1e-3, seconds(b.t - a.t));
-    return a.sum_m + times(after_s, a.mps + times(0.5 * part, b.mps - a.mps));
-  }
-
-  std::optional<Leg> by_velocity(Time begin, Time end) const noexcept {
-    if (f_.paces.empty()) return std::nullopt;
-    const Pace& newest = f_.paces.newest();
-    const auto a = sum_at(begin, newest.run);
-    const auto b = sum_at(end, newest.run);
-    if (!a || !b) return std::nullopt;
-    const double w = seconds(end - begin);
-    const double bias = (f_.rtk ? kVelocityBiasRtk_mps : kVelocityBias_mps) * w;
-    return Leg{*b - *a, std::hypot(newest.sigma_mps * std::sqrt(newest.every_s * w), bias)};
-  }
-
   void ways(double w) noexcept {
     if (heard(Sense::Position) && !f_.spots.empty()) {
       const Time end = f_.spots.newest().t;
-      if (const auto begin = spot_before(end - span(w))) position_ways(*begin, end);
+      if (const auto begin = spot_before(f_, end - span(w))) position_ways(*begin, end);
     }
     if (heard(Sense::Velocity) && !f_.paces.empty()) {
       const Time end = f_.paces.newest().t;
@@ -279,19 +232,12 @@ class Comparer {
     }
   }
 
-  /// The moment of the position at or before `t`, not much before.
-  std::optional<Time> spot_before(Time t) const noexcept {
-    const std::size_t i = f_.spots.not_after(t);
-    if (i >= f_.spots.size() || seconds(t - f_.spots[i].t) > 1.1) return std::nullopt;
-    return f_.spots[i].t;
-  }
-
   void position_ways(Time begin, Time end) noexcept {
-    const auto spots = by_position(begin, end);
+    const auto spots = by_position(f_, begin, end);
     if (!spots || !covers(Sense::Position, begin)) return;
     const double w = seconds(end - begin);
     const auto paces = heard(Sense::Velocity) && covers(Sense::Velocity, begin)
-                           ? by_velocity(begin, end)
+                           ? by_velocity(f_, begin, end)
                            : std::nullopt;
     if (paces) {
       const double off = norm(spots->m - paces->m);
@@ -304,11 +250,11 @@ class Comparer {
   }
 
   void velocity_way(Time begin, Time end) noexcept {
-    const auto paces = by_velocity(begin, end);
+    const auto paces = by_velocity(f_, begin, end);
     if (!paces || !covers(Sense::Velocity, begin)) return;
-    const auto from = spot_before(begin);
+    const auto from = spot_before(f_, begin);
     const auto spots = from && heard(Sense::Position) && !f_.spots.empty()
-                           ? by_position(*from, f_.spots.newest().t)
+                           ? by_position(f_, *from, f_.spots.newest().t)
                            : std::nullopt;
     const bool both_stand =
         stands(paces->m, begin, end) && (!spots || stands(spots->m, begin, end));
@@ -321,13 +267,13 @@ class Comparer {
     const Time begin = end - span(kSpinWindow_s);
     const auto from = f_.curve.at(begin);
     const auto to = f_.curve.at(end);
-    const auto paces = by_velocity(begin, end);
+    const auto paces = by_velocity(f_, begin, end);
     if (!from || !to || !paces || std::abs(to->ahead_m - from->ahead_m) < kSpinLeast_m)
       return false;
     if (!stands(paces->m, begin, end)) return false;
     if (!heard(Sense::Position) || f_.spots.empty()) return true;
-    const auto spot = spot_before(f_.spots.newest().t - span(kSpinWindow_s));
-    const auto spots = spot ? by_position(*spot, f_.spots.newest().t) : std::nullopt;
+    const auto spot = spot_before(f_, f_.spots.newest().t - span(kSpinWindow_s));
+    const auto spots = spot ? by_position(f_, *spot, f_.spots.newest().t) : std::nullopt;
     return !spots || stands(spots->m, *spot, f_.spots.newest().t);
   }
 
@@ -339,7 +285,7 @@ class Comparer {
   }
 
   /// Length of the way against what the tracks allow.
-  void track_way(Sense s, const Leg& leg, Time begin, Time end) noexcept {
+  void track_way(Sense s, const Stretch& stretch, Time begin, Time end) noexcept {
     const double w = seconds(end - begin);
     if (w > kTrackWindow_s || !heard(Sense::Tracks) || !covers(Sense::Tracks, begin)) return;
     const auto from = f_.curve.at(begin);
@@ -355,10 +301,10 @@ class Comparer {
     const double arm_m = f_.arm_m * std::min(2.0, turn_rad);
     const double low_m = least * chord * std::abs(to->ahead_m - from->ahead_m) - arm_m;
     const double high_m = most * (to->path_m - from->path_m) + arm_m;
-    const double way_m = norm(leg.m);
+    const double way_m = norm(stretch.m);
     const double off = way_m < low_m ? way_m - low_m : way_m > high_m ? way_m - high_m : 0.0;
-    put(s, Sense::Tracks, {Difference::Of::Way, off, w}, sigmas_ * leg.sigma_m + kTrackWayFloor_m,
-        0.0);
+    put(s, Sense::Tracks, {Difference::Of::Way, off, w},
+        sigmas_ * stretch.sigma_m + kTrackWayFloor_m, 0.0);
   }
 
   /// Tracks, laid out from the heading that was believed when the window began.
