@@ -1,5 +1,5 @@
 #pragma once
-// The SQLite file: missions by revision, events. One thread of its own owns the connection (WAL,
+// The SQLite file: missions by revision, events, users. One thread of its own owns the connection (WAL,
 // foreign keys, STRICT tables, synchronous=FULL: robots lose power). Calls come from any thread,
 // go into a bounded queue, and are answered through `deliver` (which posts to the asker's
 // executor). A full queue answers Unavailable at once. An acknowledged change survives a power cut.
@@ -20,6 +20,7 @@
 #include "mission/fence/fence.hpp"
 #include "mission/graph/route_graph.hpp"
 #include "mission/plan.hpp"
+#include "people/words.hpp"
 #include "store/folder_watch.hpp"
 #include "store/run_words.hpp"
 
@@ -288,6 +289,10 @@ class Store {
   void discard_teach(Reply<void> reply);
   /// Makes a mission and forgets the recording, both or neither.
   void finish_teach(mission::Plan plan, Change change, Reply<StoredMission> reply);
+
+  /// Who may come in.
+  void read_people(Reply<people::Everybody> reply);
+  void change_people(people::Change change, Reply<void> reply);
 
   /// No answer; when there is no room or the disk is full the event is lost and counted. A list
   /// asked for later has it.

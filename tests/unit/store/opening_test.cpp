@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <future>
 #include <iterator>
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -142,6 +143,11 @@ TEST(Opening, EveryOlderSchemaIsUpgradedWithItsData) {
     EXPECT_TRUE(replace(*store, "0123456789ab", 2, plan_named("three")));
     store->add_event({base::WallTime{}, base::Severity::Info, "armed", "x"});
     EXPECT_EQ(events(*store, 0, base::Severity::Info, 10)->items.size(), 1u);
+    const people::User anna{"anna", people::Role::Admin, "hash", {}};
+    std::promise<base::Result<void>> kept;
+    store->change_people({.now = {.users = {anna}, .sessions = {}, .tokens = {}}},
+                         [&](base::Result<void> done) { kept.set_value(std::move(done)); });
+    EXPECT_TRUE(kept.get_future().get());
   }
 }
 

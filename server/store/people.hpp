@@ -1,0 +1,15 @@
+#pragma once
+// Users, sessions and tokens in the file. The store's thread.
+
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include "base/result.hpp"
+#include "people/words.hpp"
+
+namespace roverd::store {
+
+people::Everybody read_people(SQLite::Database& db);
+/// All of it or nothing.
+base::Result<void> change_people(SQLite::Database& db, const people::Change& change);
+
+}  // namespace roverd::store
