@@ -71,6 +71,7 @@ struct Api::Impl {
   void route(const CallPtr& call);
   void serve_page(const CallPtr& call, std::string_view path);
   void watch(const CallPtr& call, const Route& route);
+  void look_at_people();
 
   ContextPtr context;
   Idempotency idempotency;
@@ -109,6 +110,13 @@ Api::Api(Deps deps) : impl_(std::make_unique<Impl>(std::move(deps))) {
   add_run_routes(c);
   add_parameter_routes(c);
   add_drill_routes(c);
+  add_session_routes(c);
+  add_token_routes(c);
+  add_user_routes(c);
+  c->on_access_change = [this] {
+    if (impl_->stream) impl_->stream->look_at_people();
+  };
+  load_people(c);
   load_active_fence(c);
 }
 
@@ -117,6 +125,7 @@ Api::~Api() {
   impl_->context->router = Router{};
   impl_->context->deps.aside = nullptr;
   impl_->context->on_mission_change = nullptr;
+  impl_->context->on_access_change = nullptr;
   impl_->context->commands.abandon();
 }
 
@@ -179,6 +188,9 @@ void Api::Impl::route(const CallPtr& call) {
     return call->respond(std::move(response));
   }
   const auto& match = std::get<Router::Match>(found);
+  if (auto refusal = context->access.check(call->request, match.route->need, call->who)) {
+    return call->respond(std::move(*refusal));
+  }
   call->params = match.params;
   call->query = std::move(target_parts->query);
   if (unanswered >= kUnanswered && !stops(path)) {
@@ -187,7 +199,9 @@ void Api::Impl::route(const CallPtr& call) {
   watch(call, *match.route);
   // A stop is carried out however often it is said.
   const bool repeats = path == "/vehicle/estop" || path == "/vehicle/disarm";
-  if (reading || repeats) return match.route->handler(call);
+  // Nobody hears the answer that somebody unknown was given: there may be a cookie in it.
+  const bool unknown = context->access.on() && !call->who;
+  if (reading || repeats || unknown) return match.route->handler(call);
   const bool keyed = !header(call->request, "Idempotency-Key").empty();
   const Effort effort{keyed ? call->request.body().size() : 0};
   if (effort.bytes <= Effort::kSmall) {
@@ -199,6 +213,17 @@ void Api::Impl::route(const CallPtr& call) {
       [this, call, route = match.route](std::size_t hash) {
         if (idempotency.admit(*call, hash)) route->handler(call);
       });
+}
+
+/// What is over goes, and when somebody was seen is kept now and then.
+void Api::Impl::look_at_people() {
+  people::Book& book = context->access.book();
+  if (!book.loaded()) return;
+  book.sweep(Access::now());
+  if (auto change = book.take_change(); !change.empty()) {
+    context->deps.store.change_people(std::move(change), [](const base::Result<void>&) {});
+  }
+  if (stream) stream->look_at_people();
 }
 
 void Api::Impl::handle(const CallPtr& call) {
@@ -264,7 +289,12 @@ bool Api::is_estop_text(std::string_view text) {
 std::size_t Api::body_limit(const Request& header) const {
   const auto found = impl_->context->router.find(header.method(), path_of(header));
   const auto* match = std::get_if<Router::Match>(&found);
-  return match != nullptr ? match->route->body_bytes : kCommandBytes;
+  if (match == nullptr) return kCommandBytes;
+  // Who may not send it need not be heard out.
+  const std::size_t bytes = match->route->body_bytes;
+  const bool welcome =
+      bytes <= kCommandBytes || impl_->context->access.would_pass(header, match->route->need);
+  return welcome ? bytes : kCommandBytes;
 }
 
 void Api::discard(std::string large) const {
@@ -278,11 +308,15 @@ std::optional<Response> Api::on_upgrade(const Request& request) {
   if (parts->path != std::string(kBase) + "/stream" || !impl_->stream) {
     return problem({base::Code::NotFound, "the stream is at /api/v1/stream"});
   }
-  return guard_handshake(request);
+  if (auto refusal = guard_handshake(request)) return refusal;
+  std::optional<people::Who> who;
+  return impl_->context->access.check_upgrade(request, who);
 }
 
-void Api::on_client(ClientId client) {
-  impl_->stream->on_client(client);
+void Api::on_client(ClientId client, const Request& upgrade) {
+  std::optional<people::Who> who;
+  const bool welcome = !impl_->context->access.check_upgrade(upgrade, who);
+  impl_->stream->on_client(client, welcome ? std::move(who) : std::nullopt);
 }
 void Api::on_text(ClientId client, base::Time begun, std::string_view text) {
   impl_->stream->on_text(client, begun, text);
@@ -298,6 +332,7 @@ Response Api::on_refused(unsigned status, std::string_view detail) {
 void Api::on_second() {
   const base::Time now = base::steady_now();
   impl_->context->commands.sweep(now);
+  if (impl_->context->access.on()) impl_->look_at_people();
   if (impl_->context->deps.later) impl_->next_turn();  // should there have been no memory for it
   if (impl_->stream) impl_->stream->look_at_execution();
   const auto snapshot = impl_->context->deps.robot.snapshot();
@@ -341,6 +376,15 @@ void Api::drain() {
   }
   if (!impl_->replies.empty()) impl_->context->discard(std::exchange(impl_->replies, {}));
   if (impl_->stream) impl_->stream->look_at_execution();
+}
+
+std::map<std::string, std::string_view> Api::needs() const {
+  std::map<std::string, std::string_view> out;
+  for (const Route& route : impl_->context->router.routes()) {
+    const auto method = http::to_string(route.method);
+    out[std::string(method.data(), method.size()) + " " + route.pattern] = to_string(route.need);
+  }
+  return out;
 }
 
 std::map<std::string, std::vector<unsigned>> Api::documented() const {

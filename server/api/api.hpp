@@ -2,7 +2,7 @@
 // The public interface: routes, JSON ↔ words, refusals, stream texts. Knows no sockets: main plugs
 // the functions below into net. Everything runs on the web thread; nothing here waits.
 //
-//   net ─on_request─▶ guard ─▶ idempotency ─▶ router ─▶ handler ─▶ robot.request / store ─▶ answer
+//   net ─on_request─▶ guard ─▶ router ─▶ access ─▶ idempotency ─▶ handler ─▶ robot.request, store
 //   net ─on_text────▶ subscribe, drive
 //   robot.wake ─▶ drain(): answers of commands; events → store, stream and services
 
@@ -17,6 +17,7 @@
 #include "api/guard.hpp"
 #include "api/json/words.hpp"
 #include "api/message.hpp"
+#include "people/book.hpp"
 #include "robot/robot.hpp"
 #include "services/services.hpp"
 #include "store/store.hpp"
@@ -109,7 +110,12 @@ struct Deps {
   /// Calls it on the web thread as soon as the emergency stop, as it is now, survives the end of
   /// this program, or after a moment. Empty: at once.
   std::function<void(std::function<void()>)> when_estop_kept{};
-  bool tls = false;  ///< every request comes through it
+  /// Every request comes through it, so cookies go that way only.
+  bool tls = false;
+  /// Who may do what; null: access control is off. Web thread only from now on.
+  people::Book* people = nullptr;
+  /// Shows the one-time code of the first admin to whoever stands before this computer.
+  std::function<void(const std::string& code)> tell_code{};
 };
 
 /// One per program. All members but the constructor: web thread. It must live until the web thread
@@ -137,7 +143,8 @@ class Api {
   void discard(std::string large) const;
   /// Empty: welcome.
   std::optional<Response> on_upgrade(const Request& request);
-  void on_client(ClientId client);
+  /// @param upgrade the request that on_upgrade welcomed
+  void on_client(ClientId client, const Request& upgrade);
   /// @param begun when its first byte was there
   void on_text(ClientId client, base::Time begun, std::string_view text);
   /// A client that was driving stops the robot.
@@ -154,6 +161,8 @@ class Api {
 
   /// For the test that compares with the OpenAPI document: "POST /vehicle/arm" → statuses.
   std::map<std::string, std::vector<unsigned>> documented() const;
+  /// And with what x-role there says: "POST /vehicle/arm" → "operator".
+  std::map<std::string, std::string_view> needs() const;
 
  private:
   struct Impl;

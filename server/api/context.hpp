@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "api/access.hpp"
 #include "api/api.hpp"
 #include "api/body.hpp"
 #include "api/json/words.hpp"
@@ -67,9 +68,13 @@ inline std::size_t bytes_of(const mission::Plan& plan) noexcept {
 
 struct Context {
   explicit Context(Deps with)
-      : deps(std::move(with)), commands(deps.robot), begun(base::steady_now()) {}
+      : deps(std::move(with)),
+        access(deps.people, deps.tls),
+        commands(deps.robot),
+        begun(base::steady_now()) {}
 
   Deps deps;
+  Access access;
   Commands commands;
   Router router;
   base::Time begun;
@@ -77,6 +82,13 @@ struct Context {
   std::string openapi_tag;
   std::function<void(const std::string& id, std::optional<std::int64_t> revision)>
       on_mission_change;
+  /// Sessions, tokens or roles changed: who lost a right loses the stream.
+  std::function<void()> on_access_change;
+  /// Makes the one-time code of the first admin, and tells it.
+  void tell_code() const {
+    const std::string code = access.book().make_code();
+    if (deps.tell_code) deps.tell_code(code);
+  }
   std::shared_ptr<const store::StoredFence> fence;  ///< the active one; null: none
   /// What the check found when the loaded mission was loaded.
   struct Warnings {
@@ -174,6 +186,11 @@ void add_drive_routes(const ContextPtr& context);
 void add_run_routes(const ContextPtr& context);
 void add_parameter_routes(const ContextPtr& context);
 void add_drill_routes(const ContextPtr& context);
+void add_session_routes(const ContextPtr& context);
+void add_token_routes(const ContextPtr& context);
+void add_user_routes(const ContextPtr& context);
+/// Asks the store who may come in; until it answers nobody may.
+void load_people(const ContextPtr& context);
 
 /// Runs a command and answers with what `state` makes of the snapshot, or with the refusal.
 void run_command(const ContextPtr& context, const CallPtr& call, robot::Command command,

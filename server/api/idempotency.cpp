@@ -26,7 +26,8 @@ bool Idempotency::admit(Call& call, std::size_t body_hash) {
   }
   const auto method = call.request.method_string();
   const std::string key = std::string(method.data(), method.size()) + ' ' +
-                          std::string(target(call.request)) + ' ' + std::string(given);
+                          std::string(target(call.request)) + ' ' + std::string(given) + ' ' +
+                          (call.who ? call.who->id : std::string());
   const auto [at, is_new] = entries_.try_emplace(key);
   Entry& entry = at->second;
   if (is_new) {

@@ -1,7 +1,7 @@
 #pragma once
 // Idempotency-Key: the same key gives the first answer again, also while the first is still on its
-// way. Bounded: the oldest finished answers go first. A refusal that says "try again" (429, 503) is
-// not kept: nothing was done.
+// way, and nobody else. Bounded: the oldest finished answers go first. A refusal that says "try
+// again" (429, 503) is not kept: nothing was done.
 
 #include <cstddef>
 #include <deque>

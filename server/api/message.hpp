@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -13,6 +14,7 @@
 
 #include "base/result.hpp"
 #include "base/time.hpp"
+#include "people/book.hpp"
 
 namespace roverd::api {
 
@@ -32,6 +34,7 @@ struct Call {
   std::map<std::string, std::string, std::less<>> params{};  ///< from the path, decoded
   std::map<std::string, std::string, std::less<>> query{};   ///< decoded
   Respond respond;
+  std::optional<people::Who> who{};  ///< empty: nobody known, or access control is off
 };
 using CallPtr = std::shared_ptr<Call>;
 

@@ -48,7 +48,10 @@ unsigned status_of(base::Code code) noexcept {
 const std::vector<ProblemKind>& problem_kinds() {
   static const std::vector<ProblemKind> kKinds = {
       {400, "malformed", "Malformed request", "The request, or the JSON in it, cannot be read."},
-      {403, "forbidden", "Forbidden", "Host or Origin is not this server."},
+      {401, "unauthorized", "Not logged in",
+       "Log in, or show a token that is valid; or what was shown is wrong or over."},
+      {403, "forbidden", "Forbidden",
+       "Host or Origin is not this server, or the role is too low for this."},
       {404, "not-found", "Not found", "There is no such thing."},
       {405, "method-not-allowed", "Method not allowed", "Allow names the methods of this path."},
       {409, "conflict", "Conflict with the present state",
@@ -67,7 +70,9 @@ const std::vector<ProblemKind>& problem_kinds() {
       {426, "upgrade-required", "Upgrade required", "This address is a WebSocket."},
       {428, "precondition-missing", "Precondition missing",
        "If-Match with the ETag of the revision that the change is based on is needed."},
-      {429, "too-many-requests", "Too many requests", "Too many requests wait; try again."},
+      {429, "too-many-requests", "Too many requests",
+       "Too many requests wait, or too many log-ins were wrong; Retry-After says when to try "
+       "again."},
       {431, "header-too-large", "Header too large", "The header is larger than the server takes."},
       {501, "not-implemented", "Not implemented",
        "The request's body is coded in a way that is not understood here."},

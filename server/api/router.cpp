@@ -99,6 +99,15 @@ base::Result<Target> parse_target(std::string_view target) {
 }
 
 void Router::add(Route route) {
+  const auto method = http::to_string(route.method);
+  const std::string name = std::string(method.data(), method.size()) + " " + route.pattern;
+  route.need = need_of(name).value_or(Need::Admin);
+  if (route.need != Need::Anyone) {
+    for (const unsigned refusal : {401U, 403U}) {
+      if (std::find(route.statuses.begin(), route.statuses.end(), refusal) == route.statuses.end())
+        route.statuses.push_back(refusal);
+    }
+  }
   std::sort(route.statuses.begin(), route.statuses.end());
   routes_.push_back(std::move(route));
 }

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "api/access.hpp"
 #include "api/message.hpp"
 
 namespace roverd::api {
@@ -26,6 +27,7 @@ struct Route {
   std::vector<unsigned> statuses;  ///< as documented, ascending
   Handler handler;
   std::size_t body_bytes = kCommandBytes;
+  Need need = Need::Admin;  ///< see Router::add
 };
 
 /// Splits "/a/b%20c?x=1&y" into path and decoded query. Malformed: broken percent signs.
@@ -40,6 +42,8 @@ base::Result<std::string> percent_decoded(std::string_view text, bool plus_is_bl
 
 class Router {
  public:
+  /// Fills in what it needs, by the table of access.hpp (what that does not name needs an admin),
+  /// and the refusals that come of it.
   void add(Route route);
   const std::vector<Route>& routes() const noexcept { return routes_; }
 

@@ -21,6 +21,8 @@ constexpr double kMostSpeed_mps = 10.0;
 constexpr double kMostYawRate_dps = 720.0;
 constexpr double kMostRate_hz = 50.0;
 constexpr std::uint16_t kPolicyViolation = 1008;
+/// As 401, in the range that programs may choose from.
+constexpr std::uint16_t kLogInAgain = 4401;
 
 constexpr const char* kVehicle = "vehicle";
 constexpr const char* kEvents = "events";
@@ -70,13 +72,54 @@ std::optional<std::string> StreamTexts::vehicle_text(std::uint64_t seq) {
   return stream_text(kVehicle, seq, encoded_);
 }
 
-void StreamTexts::on_client(ClientId client) {
-  clients_[client];
+void StreamTexts::on_client(ClientId client, std::optional<people::Who> who) {
+  // It may have ended while the stream was being opened.
+  if (context_->access.on() && !who) {
+    return stream_.close(client, kLogInAgain, "the log-in has ended");
+  }
+  clients_[client].who = std::move(who);
   const Json data = {
       {"version", context_->deps.version},
       {"topics", {kVehicle, kEvents, kMissions, kExecution}},
       {"capabilities", capabilities_json(context_->profile(), context_->deps.version)}};
   stream_.send(client, stream_text("hello", 1, plain_json(data)));
+}
+
+void StreamTexts::look_at_people() {
+  Access& access = context_->access;
+  if (!access.on()) return;
+  std::vector<ClientId> over;
+  for (auto& [id, client] : clients_) {
+    if (client.who) client.who = access.book().still(*client.who, Access::now());
+    if (client.who) continue;
+    stop_driving(id, client);
+    over.push_back(id);
+  }
+  for (const ClientId id : over) stream_.close(id, kLogInAgain, "the log-in has ended");
+}
+
+/// By the role of now. @return false: told so.
+bool StreamTexts::may(ClientId id, Client& client, const Json& message) {
+  Access& access = context_->access;
+  if (!access.on() || !message.is_object()) return true;
+  Need need = Need::Viewer;
+  for (const auto& [member, value] : message.items()) {
+    need = std::max(need, need_of_message(member).value_or(Need::Viewer));
+  }
+  if (client.who) client.who = access.book().still(*client.who, Access::now());
+  if (!client.who) {
+    stop_driving(id, client);
+    stream_.close(id, kLogInAgain, "the log-in has ended");
+    return false;
+  }
+  if (suffices(client.who->role, need)) return true;
+  stop_driving(id, client);
+  stream_.send(
+      id, stream_text("error", ++client.errors_sent,
+                      plain_json(problem_json(
+                          403, "the role " + std::string(to_string(client.who->role)) +
+                                   " is too low: this needs " + std::string(to_string(need))))));
+  return false;
 }
 
 void StreamTexts::on_gone(ClientId client) {
@@ -110,8 +153,9 @@ void StreamTexts::complain(ClientId id, Client& client, const base::Error& error
 
 base::Result<void> StreamTexts::read(ClientId id, Client& client, const Json& message,
                                      base::Time begun) {
-  // Before all else, and whatever else the message says.
+  // Before all else, whatever else the message says, and whoever says it.
   if (message.is_object() && message.value("estop", Json()) == true) estop(id);
+  if (!may(id, client, message)) return {};
   Members members(message);
   const auto stop = members.flag("estop");
   const auto word = members.text("halt");

@@ -22,7 +22,10 @@ class StreamTexts {
  public:
   StreamTexts(ContextPtr context, Stream stream);
 
-  void on_client(ClientId client);
+  /// @param who empty: nobody is known, or access control is off
+  void on_client(ClientId client, std::optional<people::Who> who);
+  /// Who is not let in any more is closed.
+  void look_at_people();
   /// @param begun when its first byte was there
   void on_text(ClientId client, base::Time begun, std::string_view text);
   void on_gone(ClientId client);
@@ -34,6 +37,7 @@ class StreamTexts {
 
  private:
   struct Client {
+    std::optional<people::Who> who{};
     int complaints = 0;  ///< in a row
     std::uint64_t errors_sent = 0;
     std::optional<std::int64_t> drive_seq;
@@ -43,6 +47,7 @@ class StreamTexts {
     std::string refused_why;  ///< with that
   };
 
+  bool may(ClientId id, Client& client, const Json& message);
   base::Result<void> read(ClientId id, Client& client, const Json& message, base::Time begun);
   base::Result<void> subscribe(ClientId id, Client& client, const Json& topics);
   base::Result<void> drive(ClientId id, Client& client, Members& message, base::Time begun);

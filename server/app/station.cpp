@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <utility>
@@ -69,6 +70,7 @@ struct Station::Impl {
   std::unique_ptr<store::Store> store;
   std::unique_ptr<BackupKeeper> backups;
   std::unique_ptr<services::Services> services;
+  people::Book people;  ///< web thread
   std::unique_ptr<Front> front;  ///< null: no TLS
   std::unique_ptr<api::Api> api;
   std::unique_ptr<net::Server> server;
@@ -278,6 +280,13 @@ void Station::Impl::make_api(const Settings& settings, const Options& options) {
   };
   deps.later = [this](std::function<void()> call) { asio::post(web, std::move(call)); };
   deps.when_estop_kept = [this](std::function<void()> then) { when_estop_kept(std::move(then)); };
+  if (settings.server.access) deps.people = &people;
+  deps.tell_code = [this](const std::string& code) {
+    // For whoever stands here; never for the log.
+    std::printf("nobody can log in yet: make the first admin at %s with the code %s\n",
+                address.c_str(), code.c_str());
+    std::fflush(stdout);
+  };
   api = std::make_unique<api::Api>(std::move(deps));
 }
 

@@ -29,6 +29,7 @@ struct ServerSettings {
   std::string tls_certificate;
   std::string tls_key;
   std::string names;
+  bool access = false;
   std::string log_level = "info";
 };
 
@@ -45,6 +46,9 @@ void fields(V& v, ServerSettings& p) {
   v("tls_key", p.tls_key, "the key of that certificate, a PEM file that only its owner can read");
   v("names", p.names,
     "more names and addresses of this computer for its certificate, with blanks between them");
+  v("access", p.access,
+    "true: people log in and scripts show a token; the first admin is made with the code that "
+    "roverd prints. May be false on loopback only");
   v("log_level", p.log_level, "debug, info, warning or error");
 }
 

@@ -292,6 +292,14 @@ void Connection::read_body() {
                    });
 }
 
+Request Connection::released() {
+  Request request = parser_->release();
+  error_code ignored;
+  const std::string address = wire_.socket().remote_endpoint(ignored).address().to_string();
+  request.set(boost::beast::string_view(kPeerHeader.data(), kPeerHeader.size()), address);
+  return request;
+}
+
 void Connection::on_request() {
   phase_ = Phase::Handling;
   deadline_.reset();  // the handler keeps its own time
@@ -299,7 +307,7 @@ void Connection::on_request() {
   ++peers_->stats.requests;
   if (!peers_->handlers.on_request) return force();
   peers_->handlers.on_request(
-      parser_->release(), begun_,
+      released(), begun_,
       [homing = std::make_shared<Homing>(shared_from_this(), peers_->io)](Response response) {
         homing->connection().on_answer(std::move(response));
       });
@@ -309,7 +317,7 @@ void Connection::upgrade() {
   phase_ = Phase::Handling;
   deadline_.reset();
   ++peers_->stats.requests;
-  Request request = parser_->release();
+  Request request = released();
   if (!peers_->handlers.on_upgrade) return force();
   if (auto refusal = peers_->handlers.on_upgrade(request)) return answer(std::move(*refusal));
   const auto bytes = buffer_.cdata();

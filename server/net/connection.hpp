@@ -68,6 +68,8 @@ class Connection : public Peer, public std::enable_shared_from_this<Connection> 
   void discard(std::string& body) const;
   void expect_continue();
   void read_body();
+  /// With the address it came from.
+  Request released();
   void on_request();
   bool on_read_error(boost::system::error_code ec);
   void upgrade();

@@ -72,6 +72,9 @@ enum class Urgency { None, Whole, AtHeader };
 /// One topic at one rate has one sequence; a text is shared by all its clients. See hub.hpp.
 class Hub;
 
+/// Of every request that a handler sees: the address it came from, set here, whatever was sent.
+inline constexpr std::string_view kPeerHeader = "Roverd-Peer";
+
 struct Handlers {
   /// Any request that is not a WebSocket upgrade. `begun`: it cannot have been sent before; at the
   /// latest when its first byte was there (see connection.hpp). HEAD comes as it is; answer as for
@@ -85,7 +88,8 @@ struct Handlers {
   std::function<void(std::string)> discard{};
   /// An upgrade request: nullopt accepts, a response refuses.
   std::function<std::optional<Response>(const Request&)> on_upgrade;
-  std::function<void(ClientId)> on_client;
+  /// @param upgrade the request that on_upgrade accepted
+  std::function<void(ClientId, const Request& upgrade)> on_client;
   /// `begun`: when its first byte was there.
   std::function<void(ClientId, base::Time begun, std::string_view text)> on_text;
   /// Of a short text: it goes to on_text before all that its client said earlier and that still

@@ -66,12 +66,12 @@ void Session::accept(Request upgrade) {
 
 void Session::opened() {
   phase_ = Phase::Open;
-  upgrade_ = {};
+  const Request upgrade = std::exchange(upgrade_, {});
   heard_ = base::steady_now();
   if (peers_->stopping) return close(1001, "the server is stopping");
   id_ = peers_->next_client++;
   peers_->hub.join(id_, this);
-  if (peers_->handlers.on_client) peers_->handlers.on_client(id_);
+  if (peers_->handlers.on_client) peers_->handlers.on_client(id_, upgrade);
   read();
 }
 

@@ -106,6 +106,11 @@ House::House(net::Limits limits, Vehicle vehicle, const Before& before)
     return true;
   };
   deps.later = [this](std::function<void()> call) { boost::asio::post(io_, std::move(call)); };
+  if (before.access) deps.people = &people_;
+  deps.tell_code = [this](const std::string& code) {
+    std::lock_guard lock(mutex_);
+    code_ = code;
+  };
   api_ = std::make_unique<api::Api>(std::move(deps));
   serve(limits);
   bell_ = std::make_unique<net::Doorbell>(io_, [this] { api_->drain(); });
@@ -185,7 +190,9 @@ void House::serve(net::Limits limits) {
   h.body_limit = [this](const net::Request& header) { return api_->body_limit(header); };
   h.discard = [this](std::string large) { api_->discard(std::move(large)); };
   h.on_upgrade = [this](const net::Request& request) { return api_->on_upgrade(request); };
-  h.on_client = [this](net::ClientId id) { api_->on_client(id); };
+  h.on_client = [this](net::ClientId id, const net::Request& upgrade) {
+    api_->on_client(id, upgrade);
+  };
   h.on_text = [this](net::ClientId id, base::Time begun, std::string_view text) {
     api_->on_text(id, begun, text);
   };
@@ -226,6 +233,11 @@ House::~House() {
   store_.reset();
   std::error_code ignored;
   std::filesystem::remove_all(folder_, ignored);
+}
+
+std::string House::code() {
+  std::lock_guard lock(mutex_);
+  return code_;
 }
 
 base::DriveCommand House::sent() {

@@ -33,6 +33,7 @@ struct Before {
   /// Writes what an earlier run left: the database's file, which is not open yet.
   std::function<void(const std::filesystem::path& file)> data{};
   std::function<void(robot::Config&)> config{};
+  bool access = false;  ///< access control is on
 };
 
 class House {
@@ -76,6 +77,8 @@ class House {
   void drill_says(const std::string& line);
   void drill_ends(const std::string& problem);
   std::atomic<int> drills_stopped{0};
+  /// The one-time code of the first admin, as it was told last; empty: none.
+  std::string code();
   /// A device says something more.
   void hear(base::Measurement m) { robot_.measurements().put(std::move(m)); }
 
@@ -97,7 +100,9 @@ class House {
   std::unique_ptr<net::Doorbell> bell_;
   net::Workers workers_{io_};
   std::mutex mutex_;
+  people::Book people_;              ///< web thread
   base::DriveCommand sent_;          ///< guarded by mutex_
+  std::string code_;                 ///< guarded by mutex_
   std::string drill_order_;          ///< guarded by mutex_
   api::DrillDoor::Line drill_line_;  ///< web thread
   api::DrillDoor::End drill_end_;    ///< web thread

@@ -101,7 +101,9 @@ net::Handlers handlers(net::Hub*& hub) {
     respond(net::Response{boost::beast::http::status::not_found, 11});
   };
   h.on_upgrade = [](const net::Request&) { return std::optional<net::Response>{}; };
-  h.on_client = [&hub](net::ClientId client) { hub->subscribe(client, {{"state", kRate_hz}}); };
+  h.on_client = [&hub](net::ClientId client, const net::Request&) {
+    hub->subscribe(client, {{"state", kRate_hz}});
+  };
   h.on_text = [](net::ClientId, base::Time, std::string_view) {};
   h.on_gone = [](net::ClientId) {};
   h.on_refused = [](unsigned status, std::string_view) {

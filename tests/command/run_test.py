@@ -235,6 +235,44 @@ def only_loopback_is_served():
             names=["0.0.0.0"])
 
 
+def access_control_asks_for_a_log_in():
+    """[server] access: the printed code makes the first admin, who is known after a restart; no secret is in any file"""
+    config_with()
+    config = scratch / "config/access.toml"
+    shipped = (ROOT / "config/robot.toml").read_text(encoding="utf-8")
+    config.write_text(shipped.replace("[server]\n", "[server]\naccess = true\n", 1), encoding="utf-8")
+    password = "four tractors in a barn"
+    with running("--config", config, data="access") as (program, rest):
+        code = program.wait_line(r"with the code (\S{4}-\S{4})$")[1]
+        check(rest.call("GET", "/vehicle")[0] == 401, "the state is open")
+        check(rest.call("POST", "/vehicle/estop")[0] == 200, "not everybody may stop")
+        check(rest.call("GET", "/health")[0] == 200, "health is closed")
+        wrong = {"code": "AAAA-AAAA", "user": "anna", "password": password}
+        check(rest.call("POST", "/setup", wrong)[0] == 401, "a wrong code makes an admin")
+        status, headers, state = rest.call("POST", "/setup", wrong | {"code": code})
+        check(status == 200 and state["role"] == "admin", f"setup answers {status}: {state}")
+        cookie = {"Cookie": headers["Set-Cookie"].split(";")[0], "Origin": rest.address}
+        check(rest.call("GET", "/vehicle", headers=cookie)[0] == 200, "the cookie is not taken")
+        draft = {"name": "logger", "role": "viewer"}
+        status, _, token = rest.call("POST", "/tokens", draft, cookie)
+        check(status == 201, f"POST /tokens answers {status}: {token}")
+    with running("--config", config, data="access") as (program, rest):
+        bearer = {"Authorization": "Bearer " + token["token"]}
+        until("the token is known after a restart", 10,
+              lambda: rest.call("GET", "/vehicle", headers=bearer)[0] == 200)
+        check(rest.call("POST", "/vehicle/arm", headers=bearer)[0] == 403, "a viewer may arm")
+        check(rest.call("GET", "/users", headers=cookie)[0] == 200, "the session did not outlive the restart")
+        login = {"user": "anna", "password": password}
+        check(rest.call("POST", "/session", login)[0] == 200, "anna cannot log in")
+        check(rest.call("POST", "/session", login | {"password": "no" + password})[0] == 401, "anybody is anna")
+        check("code" not in program.said(), "a code was printed though there is an admin")
+    secrets = [password, cookie["Cookie"].split("=")[1], token["token"], code]
+    for file in (scratch / "access").rglob("*"):
+        text = file.read_bytes() if file.is_file() else b""
+        for secret in secrets:
+            check(secret.encode() not in text, f"a secret is in {file}")
+
+
 def a_missing_can_interface_is_named():
     """with --no-sim and no CAN interface the start is refused by its name"""
     config = config_with('[drivers.bunker]', 'link = "can:nocan7"')
@@ -362,7 +400,7 @@ if __name__ == "__main__":
             a_vehicle_without_a_simulation_is_refused, an_unwritable_data_folder_is_named,
             wrong_configuration_is_named, wrong_links_are_named, wrong_input_has_its_own_exit_code,
             both_recordings_of_a_run_play, recordings_that_do_not_belong_together_are_refused,
-            a_recorder_that_cannot_write_is_told, only_loopback_is_served, a_missing_can_interface_is_named,
+            a_recorder_that_cannot_write_is_told, only_loopback_is_served, access_control_asks_for_a_log_in, a_missing_can_interface_is_named,
             a_vehicle_over_udp_needs_its_peer, the_product_starts,
             a_second_start_is_quick, both_end, a_killed_script_leaves_nothing,
             one_dies_the_other_ends, a_busy_port_is_named, a_newer_database_is_refused])
