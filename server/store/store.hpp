@@ -1,7 +1,7 @@
 #pragma once
-// The SQLite file: missions by revision, events, users. One thread of its own owns the connection (WAL,
-// foreign keys, STRICT tables, synchronous=FULL: robots lose power). Calls come from any thread,
-// go into a bounded queue, and are answered through `deliver` (which posts to the asker's
+// The SQLite file: missions by revision, events, users. One thread of its own owns the connection
+// (WAL, foreign keys, STRICT tables, synchronous=FULL: robots lose power). Calls come from any
+// thread, go into a bounded queue, and are answered through `deliver` (which posts to the asker's
 // executor). A full queue answers Unavailable at once. An acknowledged change survives a power cut.
 
 #include <cstddef>

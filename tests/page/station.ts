@@ -125,6 +125,8 @@ export interface MortalStation extends Station {
   begin_again(): Promise<void>;
   /** The data folder. */
   readonly data: string;
+  /** The printed code of the first admin, with access control. */
+  code(): Promise<string>;
 }
 
 const rest_of =
@@ -189,6 +191,7 @@ export const test = base.extend<{
         data: join(folder, 'data'),
         rest: rest_of(url),
         kill: () => roverd.kill(),
+        code: async () => (await roverd.line(/ with the code (\S+)$/))[1] ?? '',
         begin_again: async () => {
           roverd = begin(new URL(url).port);
           await roverd.line(ready);

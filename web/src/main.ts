@@ -2,6 +2,7 @@
 
 import { mount } from 'svelte';
 
+import { access_calls } from './link/access';
 import { drill_calls } from './link/drill';
 import { fence_calls, survey_calls } from './link/fields';
 import { mission_calls, tile_sets, vehicle_calls } from './link/rest';
@@ -10,9 +11,13 @@ import { draft_storage } from './link/storage';
 import { Stream } from './link/stream';
 import { teach_calls } from './link/teach';
 import { FieldMap } from './map/map';
+import type { Account } from './model/access';
 import App from './ui/App.svelte';
+import LogIn from './ui/LogIn.svelte';
 import { Station } from './ui/station.svelte';
 import './ui/style.css';
+
+const LOOK_MS = 10_000;
 
 const element = (id: string): HTMLElement => {
   const found = document.getElementById(id);
@@ -20,36 +25,71 @@ const element = (id: string): HTMLElement => {
   return found;
 };
 
-const map = new FieldMap(element('map'));
-/** The station needs a way to send before there is a stream, and the stream needs the station. */
-const late: { stream: Stream | null } = { stream: null };
-const station = new Station({
-  missions: mission_calls,
-  vehicle: vehicle_calls(() => late.stream?.seen_s() ?? null),
-  teach: teach_calls,
-  runs: run_calls,
-  drill: drill_calls,
-  survey: survey_calls,
-  fences: fence_calls,
-  map,
-  storage: draft_storage,
-  link: {
-    send_drive: (...wish) => late.stream?.send_drive(...wish) ?? false,
-    send_halt: (halt) => late.stream?.send_halt(halt) ?? false,
-    seen_s: () => late.stream?.seen_s() ?? null,
-    robot_s: () => late.stream?.robot_s() ?? null,
-  },
-});
-late.stream = new Stream(station.stream_events);
-mount(App, { target: element('app'), props: { station } });
+/** As at first: whoever is not logged in any more finds the log-in. */
+const again = (): void => {
+  location.reload();
+};
 
-void tile_sets().then((sets) => map.use_tiles(sets[0] ?? null));
-window.addEventListener('online', () => late.stream?.hurry());
-document.addEventListener('visibilitychange', () => {
-  if (document.visibilityState === 'visible') late.stream?.hurry();
-  else station.editor.write_draft();
-});
-window.addEventListener('beforeunload', (event) => {
-  station.editor.write_draft();
-  if (station.editor.unsaved) event.preventDefault();
+const begin = (account: Account | null): void => {
+  const map = new FieldMap(element('map'));
+  /** The station needs a way to send before there is a stream, and the stream needs the station. */
+  const late: { stream: Stream | null } = { stream: null };
+  const station = new Station({
+    missions: mission_calls,
+    vehicle: vehicle_calls(() => late.stream?.seen_s() ?? null),
+    teach: teach_calls,
+    runs: run_calls,
+    drill: drill_calls,
+    survey: survey_calls,
+    fences: fence_calls,
+    map,
+    storage: draft_storage,
+    link: {
+      send_drive: (...wish) => late.stream?.send_drive(...wish) ?? false,
+      send_halt: (halt) => late.stream?.send_halt(halt) ?? false,
+      seen_s: () => late.stream?.seen_s() ?? null,
+      robot_s: () => late.stream?.robot_s() ?? null,
+    },
+  });
+  late.stream = new Stream(station.stream_events, again);
+  mount(App, { target: element('app'), props: { station, account, left: again } });
+
+  void tile_sets().then((sets) => map.use_tiles(sets[0] ?? null));
+  window.addEventListener('online', () => late.stream?.hurry());
+  document.addEventListener('visibilitychange', () => {
+    if (document.visibilityState === 'visible') late.stream?.hurry();
+    else station.editor.write_draft();
+  });
+  window.addEventListener('beforeunload', (event) => {
+    station.editor.write_draft();
+    if (station.editor.unsaved) event.preventDefault();
+  });
+};
+
+/** A robot that was started anew may not know us any more. */
+const watch_log_in = (): void => {
+  setInterval(() => {
+    if (document.visibilityState !== 'visible') return;
+    void access_calls.state().then((state) => {
+      if (state.ok && state.value.access && state.value.user === null) again();
+    });
+  }, LOOK_MS);
+};
+
+void access_calls.state().then((answer) => {
+  if (!answer.ok || !answer.value.access) {
+    begin(null);
+    if (!answer.ok) watch_log_in();
+    return;
+  }
+  const { setup, user, role } = answer.value;
+  if (user === null || role === null) {
+    mount(LogIn, {
+      target: element('app'),
+      props: { calls: access_calls, setup, entered: again },
+    });
+    return;
+  }
+  begin({ calls: access_calls, user, role });
+  watch_log_in();
 });

@@ -21,6 +21,8 @@ type Message =
   | Schemas['StreamStopped']
   | Schemas['StreamError'];
 
+/** The server's close code for it. */
+const LOG_IN_AGAIN = 4401;
 const WATCH_MS = 500;
 const PING_MS = 1000;
 const SUBSCRIBE = JSON.stringify({ subscribe: { vehicle: 10, events: 0, missions: 0 } });
@@ -51,7 +53,11 @@ export class Stream implements LiveLink {
   #retry: ReturnType<typeof setTimeout> | undefined;
   #drive_seq = 0;
 
-  constructor(events: StreamEvents) {
+  /** @param logged_out the robot closed it because the log-in has ended */
+  constructor(
+    events: StreamEvents,
+    private readonly logged_out: () => void = () => undefined,
+  ) {
     this.#events = events;
     setInterval(() => this.#watch(), WATCH_MS);
     setInterval(() => this.#ping(), PING_MS);
@@ -109,7 +115,8 @@ export class Stream implements LiveLink {
     socket.onmessage = ({ data }) => {
       if (this.#socket === socket && typeof data === 'string') this.#take(data);
     };
-    socket.onclose = () => {
+    socket.onclose = ({ code }) => {
+      if (code === LOG_IN_AGAIN) this.logged_out();
       if (this.#socket === socket) this.#drop();
     };
   }
