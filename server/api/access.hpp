@@ -18,6 +18,17 @@ enum class Need { Anyone, Viewer, Operator, Admin };
 std::string_view to_string(Need need) noexcept;
 bool suffices(people::Role role, Need need) noexcept;
 
+/// Must whoever calls it hold control (control.hpp)?
+enum class NeedsControl {
+  No,
+  Yes,
+  UnlessHold,  ///< a mode: HOLD stops
+  IfActive,    ///< a fence: only the active one acts on the robot
+};
+std::string_view to_string(NeedsControl needs) noexcept;
+/// Yes for what is not in the table.
+NeedsControl needs_control(std::string_view operation);
+
 /// "POST /vehicle/arm" → what it needs. Empty: it is not in the table.
 std::optional<Need> need_of(std::string_view operation);
 /// Of a message on the stream, by its member: "drive". Empty: no such message.

@@ -1,5 +1,7 @@
-// What each call needs. Anyone may stop: to take part in a stop nobody has to be known. What is not
-// in here needs an admin.
+// What each call needs: which role, and whether control must be held. Control: what moves or arms
+// the robot, or changes its mode, its mission, its limits or what it believes. Not: what stops or
+// slows it, what is stored only. Anyone may stop: to take part in a stop nobody has to be known.
+// What is not in here needs an admin who holds control.
 
 #include <algorithm>
 #include <array>
@@ -13,16 +15,19 @@ namespace {
 struct Row {
   std::string_view operation;
   Need need;
+  /// Of what only reads: no. Whatever changes something says it.
+  NeedsControl control = NeedsControl::No;
 };
 
 constexpr Row kTable[] = {
     // who is not known yet, and the stop
     {"GET /health", Need::Anyone},
     {"GET /session", Need::Anyone},
-    {"POST /session", Need::Anyone},
-    {"POST /setup", Need::Anyone},
-    {"POST /vehicle/estop", Need::Anyone},
+    {"POST /session", Need::Anyone, NeedsControl::No},
+    {"POST /setup", Need::Anyone, NeedsControl::No},
+    {"POST /vehicle/estop", Need::Anyone, NeedsControl::No},
     // reads
+    {"GET /control", Need::Viewer},
     {"GET /drivers", Need::Viewer},
     {"GET /drivers/{name}", Need::Viewer},
     {"GET /events", Need::Viewer},
@@ -50,9 +55,9 @@ constexpr Row kTable[] = {
     {"GET /runs/{id}/report", Need::Viewer},
     {"GET /runs/{id}/track", Need::Viewer},
     {"GET /safety/drill", Need::Viewer},
-    {"DELETE /session", Need::Viewer},
+    {"DELETE /session", Need::Viewer, NeedsControl::No},
     {"GET /sessions", Need::Viewer},
-    {"DELETE /sessions/{id}", Need::Viewer},
+    {"DELETE /sessions/{id}", Need::Viewer, NeedsControl::No},
     {"GET /stream", Need::Viewer},
     {"GET /tags", Need::Viewer},
     {"GET /teach", Need::Viewer},
@@ -65,87 +70,116 @@ constexpr Row kTable[] = {
     {"GET /vehicle/trail", Need::Viewer},
     {"GET /vehicle/way_home", Need::Viewer},
     // drives and edits
-    {"POST /drivers/{name}/restart", Need::Operator},
-    {"DELETE /execution/left_behind", Need::Operator},
-    {"POST /execution/load", Need::Operator},
-    {"POST /execution/pause", Need::Operator},
-    {"POST /execution/resume", Need::Operator},
-    {"POST /execution/skip", Need::Operator},
-    {"POST /execution/start", Need::Operator},
-    {"POST /execution/stop", Need::Operator},
-    {"PUT /fence", Need::Operator},
-    {"POST /fences", Need::Operator},
-    {"DELETE /fences/{id}", Need::Operator},
-    {"PUT /fences/{id}", Need::Operator},
-    {"POST /fences/{id}/revert", Need::Operator},
-    {"POST /missions", Need::Operator},
-    {"POST /missions/import", Need::Operator},
-    {"POST /missions/survey", Need::Operator},
-    {"DELETE /missions/{id}", Need::Operator},
-    {"PATCH /missions/{id}", Need::Operator},
-    {"PUT /missions/{id}", Need::Operator},
-    {"POST /missions/{id}/check", Need::Operator},
-    {"POST /missions/{id}/copy", Need::Operator},
-    {"POST /missions/{id}/operations", Need::Operator},
-    {"POST /missions/{id}/restore", Need::Operator},
-    {"POST /missions/{id}/revert", Need::Operator},
-    {"POST /routes/import", Need::Operator},
-    {"POST /routes/plan", Need::Operator},
-    {"DELETE /routes/{id}", Need::Operator},
-    {"DELETE /runs/{id}", Need::Operator},
-    {"DELETE /safety/drill", Need::Operator},
-    {"POST /safety/drill", Need::Operator},
-    {"POST /teach/discard", Need::Operator},
-    {"POST /teach/pause", Need::Operator},
-    {"POST /teach/resume", Need::Operator},
-    {"POST /teach/start", Need::Operator},
-    {"POST /teach/stop", Need::Operator},
-    {"POST /vehicle/acknowledge", Need::Operator},
-    {"DELETE /vehicle/anchor", Need::Operator},
-    {"POST /vehicle/anchor", Need::Operator},
-    {"POST /vehicle/arm", Need::Operator},
-    {"POST /vehicle/disarm", Need::Operator},
-    {"POST /vehicle/errors/clear", Need::Operator},
-    {"POST /vehicle/estop/reset", Need::Operator},
-    {"POST /vehicle/goto", Need::Operator},
-    {"PUT /vehicle/home", Need::Operator},
-    {"PUT /vehicle/lights", Need::Operator},
-    {"PUT /vehicle/mode", Need::Operator},
-    {"POST /vehicle/move", Need::Operator},
-    {"PUT /vehicle/pose", Need::Operator},
-    {"POST /vehicle/resume", Need::Operator},
-    {"PUT /vehicle/target", Need::Operator},
+    {"POST /control/handover", Need::Operator, NeedsControl::No},
+    {"POST /control/release", Need::Operator, NeedsControl::No},
+    {"POST /control/take", Need::Operator, NeedsControl::No},
+    {"POST /drivers/{name}/restart", Need::Operator, NeedsControl::Yes},
+    {"DELETE /execution/left_behind", Need::Operator, NeedsControl::Yes},
+    {"POST /execution/load", Need::Operator, NeedsControl::Yes},
+    {"POST /execution/pause", Need::Operator, NeedsControl::No},
+    {"POST /execution/resume", Need::Operator, NeedsControl::Yes},
+    {"POST /execution/skip", Need::Operator, NeedsControl::Yes},
+    {"POST /execution/start", Need::Operator, NeedsControl::Yes},
+    {"POST /execution/stop", Need::Operator, NeedsControl::No},
+    {"PUT /fence", Need::Operator, NeedsControl::Yes},
+    {"POST /fences", Need::Operator, NeedsControl::No},
+    {"DELETE /fences/{id}", Need::Operator, NeedsControl::IfActive},
+    {"PUT /fences/{id}", Need::Operator, NeedsControl::IfActive},
+    {"POST /fences/{id}/revert", Need::Operator, NeedsControl::IfActive},
+    {"POST /missions", Need::Operator, NeedsControl::No},
+    {"POST /missions/import", Need::Operator, NeedsControl::No},
+    {"POST /missions/survey", Need::Operator, NeedsControl::No},
+    {"DELETE /missions/{id}", Need::Operator, NeedsControl::No},
+    {"PATCH /missions/{id}", Need::Operator, NeedsControl::No},
+    {"PUT /missions/{id}", Need::Operator, NeedsControl::No},
+    {"POST /missions/{id}/check", Need::Operator, NeedsControl::No},
+    {"POST /missions/{id}/copy", Need::Operator, NeedsControl::No},
+    {"POST /missions/{id}/operations", Need::Operator, NeedsControl::No},
+    {"POST /missions/{id}/restore", Need::Operator, NeedsControl::No},
+    {"POST /missions/{id}/revert", Need::Operator, NeedsControl::No},
+    {"POST /routes/import", Need::Operator, NeedsControl::No},
+    {"POST /routes/plan", Need::Operator, NeedsControl::No},
+    {"DELETE /routes/{id}", Need::Operator, NeedsControl::No},
+    {"DELETE /runs/{id}", Need::Operator, NeedsControl::No},
+    {"DELETE /safety/drill", Need::Operator, NeedsControl::No},
+    {"POST /safety/drill", Need::Operator, NeedsControl::No},
+    {"POST /teach/discard", Need::Operator, NeedsControl::Yes},
+    {"POST /teach/pause", Need::Operator, NeedsControl::Yes},
+    {"POST /teach/resume", Need::Operator, NeedsControl::Yes},
+    {"POST /teach/start", Need::Operator, NeedsControl::Yes},
+    {"POST /teach/stop", Need::Operator, NeedsControl::Yes},
+    {"POST /vehicle/acknowledge", Need::Operator, NeedsControl::Yes},
+    {"DELETE /vehicle/anchor", Need::Operator, NeedsControl::Yes},
+    {"POST /vehicle/anchor", Need::Operator, NeedsControl::Yes},
+    {"POST /vehicle/arm", Need::Operator, NeedsControl::Yes},
+    {"POST /vehicle/disarm", Need::Operator, NeedsControl::No},
+    {"POST /vehicle/errors/clear", Need::Operator, NeedsControl::Yes},
+    {"POST /vehicle/estop/reset", Need::Operator, NeedsControl::Yes},
+    {"POST /vehicle/goto", Need::Operator, NeedsControl::Yes},
+    {"PUT /vehicle/home", Need::Operator, NeedsControl::Yes},
+    {"PUT /vehicle/lights", Need::Operator, NeedsControl::No},
+    {"PUT /vehicle/mode", Need::Operator, NeedsControl::UnlessHold},
+    {"POST /vehicle/move", Need::Operator, NeedsControl::Yes},
+    {"PUT /vehicle/pose", Need::Operator, NeedsControl::Yes},
+    {"POST /vehicle/resume", Need::Operator, NeedsControl::Yes},
+    {"PUT /vehicle/target", Need::Operator, NeedsControl::Yes},
     // sets parameters, users, tokens
-    {"PUT /parameters/{name}", Need::Admin},
+    {"PUT /parameters/{name}", Need::Admin, NeedsControl::Yes},
     {"GET /tokens", Need::Admin},
-    {"POST /tokens", Need::Admin},
-    {"DELETE /tokens/{id}", Need::Admin},
+    {"POST /tokens", Need::Admin, NeedsControl::No},
+    {"DELETE /tokens/{id}", Need::Admin, NeedsControl::No},
     {"GET /users", Need::Admin},
-    {"POST /users", Need::Admin},
-    {"DELETE /users/{name}", Need::Admin},
-    {"PATCH /users/{name}", Need::Admin},
+    {"POST /users", Need::Admin, NeedsControl::No},
+    {"DELETE /users/{name}", Need::Admin, NeedsControl::No},
+    {"PATCH /users/{name}", Need::Admin, NeedsControl::No},
 };
 
 constexpr Row kMessages[] = {
-    {"estop", Need::Anyone},  {"subscribe", Need::Viewer}, {"ping", Need::Viewer},
-    {"halt", Need::Operator}, {"drive", Need::Operator},
+    {"estop", Need::Anyone},
+    {"subscribe", Need::Viewer},
+    {"ping", Need::Viewer},
+    {"halt", Need::Operator},
+    {"drive", Need::Operator, NeedsControl::Yes},
 };
 
 template <std::size_t n>
-std::optional<Need> find(const Row (&table)[n], std::string_view name) {
+const Row* find(const Row (&table)[n], std::string_view name) {
   const auto* const row = std::find_if(std::begin(table), std::end(table),
                                        [&](const Row& r) { return r.operation == name; });
-  return row == std::end(table) ? std::nullopt : std::optional(row->need);
+  return row == std::end(table) ? nullptr : row;
+}
+
+std::optional<Need> need_in(const Row* row) {
+  return row == nullptr ? std::nullopt : std::optional(row->need);
 }
 
 }  // namespace
 
 std::optional<Need> need_of(std::string_view operation) {
-  return find(kTable, operation);
+  return need_in(find(kTable, operation));
 }
 
 std::optional<Need> need_of_message(std::string_view member) {
-  return find(kMessages, member);
+  return need_in(find(kMessages, member));
+}
+
+NeedsControl needs_control(std::string_view operation) {
+  const Row* const row = find(kTable, operation);
+  return row == nullptr ? NeedsControl::Yes : row->control;
+}
+
+std::string_view to_string(NeedsControl needs) noexcept {
+  switch (needs) {
+    case NeedsControl::No:
+      return "not needed";
+    case NeedsControl::Yes:
+      return "needed";
+    case NeedsControl::UnlessHold:
+      return "needed, except for HOLD";
+    case NeedsControl::IfActive:
+      return "needed if it is in force";
+  }
+  return "";
 }
 
 }  // namespace roverd::api

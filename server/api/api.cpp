@@ -113,8 +113,17 @@ Api::Api(Deps deps) : impl_(std::make_unique<Impl>(std::move(deps))) {
   add_session_routes(c);
   add_token_routes(c);
   add_user_routes(c);
+  add_control_routes(c);
   c->on_access_change = [this] {
     if (impl_->stream) impl_->stream->look_at_people();
+    impl_->context->control.step();
+  };
+  c->control.linked = [this](const people::Driver& who) {
+    return impl_->stream && impl_->stream->is_linked(who);
+  };
+  c->control.on_notice = [this](const Control::Notice& notice) {
+    if (impl_->stream) impl_->stream->control_changed(notice);
+    if (auto event = event_of(notice)) on_event(std::move(*event));
   };
   load_people(c);
   load_active_fence(c);
@@ -126,6 +135,8 @@ Api::~Api() {
   impl_->context->deps.aside = nullptr;
   impl_->context->on_mission_change = nullptr;
   impl_->context->on_access_change = nullptr;
+  impl_->context->control.linked = nullptr;
+  impl_->context->control.on_notice = nullptr;
   impl_->context->commands.abandon();
 }
 
@@ -193,6 +204,11 @@ void Api::Impl::route(const CallPtr& call) {
   }
   call->params = match.params;
   call->query = std::move(target_parts->query);
+  const auto caller = context->control.driver(call->who, peer_of(call->request));
+  context->control.heard(caller);
+  if (acts(*context, *match.route, *call) && !context->control.may(caller)) {
+    return call->respond(problem_response(403, context->control.problem()));
+  }
   if (unanswered >= kUnanswered && !stops(path)) {
     return call->respond(problem(429, "too many requests wait for an answer"));
   }
@@ -224,6 +240,7 @@ void Api::Impl::look_at_people() {
     context->deps.store.change_people(std::move(change), [](const base::Result<void>&) {});
   }
   if (stream) stream->look_at_people();
+  context->control.step();
 }
 
 void Api::Impl::handle(const CallPtr& call) {
@@ -316,13 +333,16 @@ std::optional<Response> Api::on_upgrade(const Request& request) {
 void Api::on_client(ClientId client, const Request& upgrade) {
   std::optional<people::Who> who;
   const bool welcome = !impl_->context->access.check_upgrade(upgrade, who);
-  impl_->stream->on_client(client, welcome ? std::move(who) : std::nullopt);
+  impl_->stream->on_client(client, welcome ? std::move(who) : std::nullopt, peer_of(upgrade));
+  impl_->context->control.step();
 }
 void Api::on_text(ClientId client, base::Time begun, std::string_view text) {
   impl_->stream->on_text(client, begun, text);
 }
 void Api::on_gone(ClientId client) {
+  impl_->context->control.step();  // its link was there until now
   impl_->stream->on_gone(client);
+  impl_->context->control.step();
 }
 
 Response Api::on_refused(unsigned status, std::string_view detail) {
@@ -383,6 +403,15 @@ std::map<std::string, std::string_view> Api::needs() const {
   for (const Route& route : impl_->context->router.routes()) {
     const auto method = http::to_string(route.method);
     out[std::string(method.data(), method.size()) + " " + route.pattern] = to_string(route.need);
+  }
+  return out;
+}
+
+std::map<std::string, std::string_view> Api::control_needs() const {
+  std::map<std::string, std::string_view> out;
+  for (const Route& route : impl_->context->router.routes()) {
+    const auto method = http::to_string(route.method);
+    out[std::string(method.data(), method.size()) + " " + route.pattern] = to_string(route.control);
   }
   return out;
 }

@@ -114,6 +114,8 @@ struct Deps {
   bool tls = false;
   /// Who may do what; null: access control is off. Web thread only from now on.
   people::Book* people = nullptr;
+  /// Whoever holds control and is not heard any more keeps it so long.
+  base::Duration control_grace = std::chrono::seconds(10);
   /// Shows the one-time code of the first admin to whoever stands before this computer.
   std::function<void(const std::string& code)> tell_code{};
 };
@@ -163,6 +165,8 @@ class Api {
   std::map<std::string, std::vector<unsigned>> documented() const;
   /// And with what x-role there says: "POST /vehicle/arm" → "operator".
   std::map<std::string, std::string_view> needs() const;
+  /// And with what x-control there says: "POST /vehicle/arm" → "needed".
+  std::map<std::string, std::string_view> control_needs() const;
 
  private:
   struct Impl;

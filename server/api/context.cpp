@@ -26,6 +26,7 @@ Profile Context::profile() const {
 Json Context::vehicle(const base::Snapshot& snapshot, base::Time now) const {
   Json out = vehicle_json(snapshot, deps.profile.name, now);
   out["teach"] = teach_brief_json(deps.services.view()->teach);
+  out["holder"] = control.holder();
   return out;
 }
 

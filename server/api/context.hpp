@@ -13,6 +13,7 @@
 #include "api/access.hpp"
 #include "api/api.hpp"
 #include "api/body.hpp"
+#include "api/control.hpp"
 #include "api/json/words.hpp"
 #include "api/problem.hpp"
 #include "api/router.hpp"
@@ -70,11 +71,13 @@ struct Context {
   explicit Context(Deps with)
       : deps(std::move(with)),
         access(deps.people, deps.tls),
+        control(access, deps.control_grace),
         commands(deps.robot),
         begun(base::steady_now()) {}
 
   Deps deps;
   Access access;
+  Control control;
   Commands commands;
   Router router;
   base::Time begun;
@@ -189,8 +192,13 @@ void add_drill_routes(const ContextPtr& context);
 void add_session_routes(const ContextPtr& context);
 void add_token_routes(const ContextPtr& context);
 void add_user_routes(const ContextPtr& context);
+void add_control_routes(const ContextPtr& context);
 /// Asks the store who may come in; until it answers nobody may.
 void load_people(const ContextPtr& context);
+
+/// Whether this very call acts on the robot, so that control must be held. What cannot be read acts
+/// on nothing: its handler says what is wrong.
+bool acts(const Context& context, const Route& route, const Call& call);
 
 /// Runs a command and answers with what `state` makes of the snapshot, or with the refusal.
 void run_command(const ContextPtr& context, const CallPtr& call, robot::Command command,

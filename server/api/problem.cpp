@@ -52,6 +52,9 @@ const std::vector<ProblemKind>& problem_kinds() {
        "Log in, or show a token that is valid; or what was shown is wrong or over."},
       {403, "forbidden", "Forbidden",
        "Host or Origin is not this server, or the role is too low for this."},
+      {403, "control", "Control is not held",
+       "This acts on the robot, and another has control, or nobody: `holder` says who. Take it, "
+       "or ask for it."},
       {404, "not-found", "Not found", "There is no such thing."},
       {405, "method-not-allowed", "Method not allowed", "Allow names the methods of this path."},
       {409, "conflict", "Conflict with the present state",
@@ -108,23 +111,19 @@ Json problem_json(const base::Error& error) {
   return out;
 }
 
-namespace {
-
-Response problem_response(const Json& body, unsigned status) {
+Response problem_response(unsigned status, const Json& body) {
   Response response = json_response(http::int_to_status(status), body);
   response.set(http::field::content_type, "application/problem+json");
   if (status == 429 || status == 503) response.set(http::field::retry_after, "1");
   return response;
 }
 
-}  // namespace
-
 Response problem(const base::Error& error) {
-  return problem_response(problem_json(error), status_of(error.code));
+  return problem_response(status_of(error.code), problem_json(error));
 }
 
 Response problem(unsigned status, std::string_view detail) {
-  return problem_response(problem_json(status, detail), status);
+  return problem_response(status, problem_json(status, detail));
 }
 
 }  // namespace roverd::api

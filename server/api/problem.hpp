@@ -18,6 +18,8 @@ Response problem(const base::Error& error);
 /// For refusals that are no Error of a room: 403, 405, 417, 426, 429, 431 … and net's.
 Json problem_json(unsigned status, std::string_view detail);
 Response problem(unsigned status, std::string_view detail);
+/// For members of its own.
+Response problem_response(unsigned status, const Json& body);
 
 /// A status's short name, as in `type` and `title`: {"conflict", "Conflict with the present
 /// state"}.

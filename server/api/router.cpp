@@ -102,6 +102,7 @@ void Router::add(Route route) {
   const auto method = http::to_string(route.method);
   const std::string name = std::string(method.data(), method.size()) + " " + route.pattern;
   route.need = need_of(name).value_or(Need::Admin);
+  route.control = needs_control(name);
   if (route.need != Need::Anyone) {
     for (const unsigned refusal : {401U, 403U}) {
       if (std::find(route.statuses.begin(), route.statuses.end(), refusal) == route.statuses.end())

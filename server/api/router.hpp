@@ -28,6 +28,7 @@ struct Route {
   Handler handler;
   std::size_t body_bytes = kCommandBytes;
   Need need = Need::Admin;  ///< see Router::add
+  NeedsControl control = NeedsControl::Yes;
 };
 
 /// Splits "/a/b%20c?x=1&y" into path and decoded query. Malformed: broken percent signs.

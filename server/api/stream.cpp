@@ -28,6 +28,7 @@ constexpr const char* kVehicle = "vehicle";
 constexpr const char* kEvents = "events";
 constexpr const char* kMissions = "missions";
 constexpr const char* kExecution = "execution";
+constexpr const char* kControl = "control";
 
 /// What stops or slows without a latch, by its word. None of it is ever late.
 std::optional<robot::Command> halt_of(std::string_view word) {
@@ -56,6 +57,7 @@ StreamTexts::StreamTexts(ContextPtr context, Stream stream)
   stream_.add_event_topic(kEvents);
   stream_.add_event_topic(kMissions);
   stream_.add_event_topic(kExecution);
+  stream_.add_event_topic(kControl);
 }
 
 std::optional<std::string> StreamTexts::vehicle_text(std::uint64_t seq) {
@@ -72,15 +74,17 @@ std::optional<std::string> StreamTexts::vehicle_text(std::uint64_t seq) {
   return stream_text(kVehicle, seq, encoded_);
 }
 
-void StreamTexts::on_client(ClientId client, std::optional<people::Who> who) {
+void StreamTexts::on_client(ClientId client, std::optional<people::Who> who,
+                            const std::string& address) {
   // It may have ended while the stream was being opened.
   if (context_->access.on() && !who) {
     return stream_.close(client, kLogInAgain, "the log-in has ended");
   }
+  clients_[client].driver = context_->control.driver(who, address);
   clients_[client].who = std::move(who);
   const Json data = {
       {"version", context_->deps.version},
-      {"topics", {kVehicle, kEvents, kMissions, kExecution}},
+      {"topics", {kVehicle, kEvents, kMissions, kExecution, kControl}},
       {"capabilities", capabilities_json(context_->profile(), context_->deps.version)}};
   stream_.send(client, stream_text("hello", 1, plain_json(data)));
 }
@@ -228,8 +232,8 @@ base::Result<void> StreamTexts::subscribe(ClientId id, Client& client, const Jso
   std::vector<base::FieldError> unknown;
   if (topics.is_object()) {
     for (const auto& [name, value] : topics.items()) {
-      const bool known =
-          name == kVehicle || name == kEvents || name == kMissions || name == kExecution;
+      const bool known = name == kVehicle || name == kEvents || name == kMissions ||
+                         name == kExecution || name == kControl;
       if (!known) unknown.push_back({"/subscribe/" + name, "unknown topic"});
       const auto rate = members.number(name, 0.0, kMostRate_hz);
       if (value.is_null()) members.complain(name, "must be a number");
@@ -243,6 +247,7 @@ base::Result<void> StreamTexts::subscribe(ClientId id, Client& client, const Jso
   stream_.subscribe(id, rates);
   client.watches = rates.contains(kVehicle);
   tell_robot(client);
+  if (rates.contains(kControl)) tell_control(id);
   if (unknown.empty()) return {};
   std::string detail = "unknown topic " + unknown.front().pointer.substr(11);
   return base::fail(base::Code::NotFound, std::move(detail), std::move(unknown));
@@ -267,6 +272,14 @@ base::Result<void> StreamTexts::drive(ClientId id, Client& client, Members& mess
   }
   if (seq && client.drive_seq && *seq <= *client.drive_seq) return {};
   if (seq) client.drive_seq = seq;
+  if (!context_->control.may(client.driver)) {
+    // The robot hears no stick but the holder's: one that is let go now must be let go again when
+    // control comes, before it acts.
+    drop_stick(id, client);
+    if (*deadman) without_control(id, client);
+    return {};
+  }
+  client.at_stick = true;
   const robot::Drive command{
       {*speed_mps, base::rad_from_deg(*yaw_rate_dps)}, *deadman, id, validity.seen};
   if (!*deadman) let_go(client, command);
@@ -316,6 +329,42 @@ void StreamTexts::drive_refused(ClientId id, const base::Error& error) {
 void StreamTexts::stop_driving(ClientId id, Client& client) {
   if (!std::exchange(client.drives, false)) return;
   context_->deps.robot.request(robot::Drive{{}, false, id, {}, true}, base::Time::max(), {});
+}
+
+void StreamTexts::drop_stick(ClientId id, Client& client) {
+  client.drives = false;
+  if (!std::exchange(client.at_stick, false)) return;
+  context_->deps.robot.request(robot::Drive{{}, false, id, {}, true}, base::Time::max(), {});
+}
+
+void StreamTexts::without_control(ClientId id, Client& client) {
+  const base::Time now = base::steady_now();
+  const Json why = context_->control.problem();
+  const std::string detail = why["detail"];
+  if (client.refused_why == detail && now - client.refused_at < kRefusedAgain) return;
+  client.refused_why = detail;
+  client.refused_at = now;
+  stream_.send(id, stream_text("error", ++client.errors_sent, plain_json(why)));
+}
+
+bool StreamTexts::is_linked(const people::Driver& who) const {
+  return std::any_of(clients_.begin(), clients_.end(), [&](const auto& c) {
+    return c.second.driver && people::same(*c.second.driver, who);
+  });
+}
+
+void StreamTexts::control_changed(const Control::Notice& notice) {
+  for (auto& [id, client] : clients_) {
+    if (!context_->control.may(client.driver)) drop_stick(id, client);
+  }
+  stream_.publish(kControl, [&](std::uint64_t seq) {
+    return stream_text(kControl, seq, plain_json(context_->control.state_with(notice)));
+  });
+}
+
+/// Whoever begins to listen hears first how it is.
+void StreamTexts::tell_control(ClientId id) {
+  stream_.send(id, stream_text(kControl, 0, plain_json(context_->control.state())));
 }
 
 void StreamTexts::publish_event(const base::Event& event) {

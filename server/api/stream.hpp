@@ -23,12 +23,16 @@ class StreamTexts {
   StreamTexts(ContextPtr context, Stream stream);
 
   /// @param who empty: nobody is known, or access control is off
-  void on_client(ClientId client, std::optional<people::Who> who);
+  void on_client(ClientId client, std::optional<people::Who> who, const std::string& address);
   /// Who is not let in any more is closed.
   void look_at_people();
   /// @param begun when its first byte was there
   void on_text(ClientId client, base::Time begun, std::string_view text);
   void on_gone(ClientId client);
+  /// That one has a stream open.
+  bool is_linked(const people::Driver& who) const;
+  /// Tells everyone; sticks of those who do not hold control any more are dropped.
+  void control_changed(const Control::Notice& notice);
 
   void publish_event(const base::Event& event);
   void publish_mission(const std::string& id, std::optional<std::int64_t> revision);
@@ -41,8 +45,10 @@ class StreamTexts {
     int complaints = 0;  ///< in a row
     std::uint64_t errors_sent = 0;
     std::optional<std::int64_t> drive_seq;
-    bool watches = false;     ///< the vehicle
-    bool drives = false;      ///< it held the dead-man's switch in its last drive message
+    bool watches = false;   ///< the vehicle
+    bool drives = false;    ///< it held the dead-man's switch in its last drive message
+    bool at_stick = false;  ///< the robot heard of its stick
+    std::optional<people::Driver> driver{};
     base::Time refused_at;    ///< told so, last
     std::string refused_why;  ///< with that
   };
@@ -60,6 +66,9 @@ class StreamTexts {
   base::Result<void> halt(const robot::Command& command);
   void answer_ping(ClientId id, double ping);
   void stop_driving(ClientId id, Client& client);
+  void drop_stick(ClientId id, Client& client);
+  void without_control(ClientId id, Client& client);
+  void tell_control(ClientId id);
   void tell_robot(const Client& client);
   void complain(ClientId id, Client& client, const base::Error& error);
   std::optional<std::string> vehicle_text(std::uint64_t seq);

@@ -281,6 +281,7 @@ void Station::Impl::make_api(const Settings& settings, const Options& options) {
   deps.later = [this](std::function<void()> call) { asio::post(web, std::move(call)); };
   deps.when_estop_kept = [this](std::function<void()> then) { when_estop_kept(std::move(then)); };
   if (settings.server.access) deps.people = &people;
+  deps.control_grace = base::from_seconds(settings.server.control_grace_s);
   deps.tell_code = [this](const std::string& code) {
     // For whoever stands here; never for the log.
     std::printf("nobody can log in yet: make the first admin at %s with the code %s\n",

@@ -30,6 +30,7 @@ struct ServerSettings {
   std::string tls_key;
   std::string names;
   bool access = false;
+  double control_grace_s = 10.0;
   std::string log_level = "info";
 };
 
@@ -49,6 +50,9 @@ void fields(V& v, ServerSettings& p) {
   v("access", p.access,
     "true: people log in and scripts show a token; the first admin is made with the code that "
     "roverd prints. May be false on loopback only");
+  v("control_grace_s", p.control_grace_s, 2.0, 300.0,
+    "with access: whoever has control and is not heard any more (no stream, no call) keeps it so "
+    "long");
   v("log_level", p.log_level, "debug, info, warning or error");
 }
 

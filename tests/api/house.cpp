@@ -107,6 +107,7 @@ House::House(net::Limits limits, Vehicle vehicle, const Before& before)
   };
   deps.later = [this](std::function<void()> call) { boost::asio::post(io_, std::move(call)); };
   if (before.access) deps.people = &people_;
+  deps.control_grace = before.control_grace;
   deps.tell_code = [this](const std::string& code) {
     std::lock_guard lock(mutex_);
     code_ = code;

@@ -34,6 +34,7 @@ struct Before {
   std::function<void(const std::filesystem::path& file)> data{};
   std::function<void(robot::Config&)> config{};
   bool access = false;  ///< access control is on
+  base::Duration control_grace = std::chrono::seconds(10);
 };
 
 class House {
