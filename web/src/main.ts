@@ -3,6 +3,7 @@
 import { mount } from 'svelte';
 
 import { access_calls } from './link/access';
+import { control_calls } from './link/control';
 import { drill_calls } from './link/drill';
 import { fence_calls, survey_calls } from './link/fields';
 import { mission_calls, tile_sets, vehicle_calls } from './link/rest';
@@ -13,6 +14,7 @@ import { teach_calls } from './link/teach';
 import { FieldMap } from './map/map';
 import type { Account } from './model/access';
 import App from './ui/App.svelte';
+import { ControlDesk } from './ui/control.svelte';
 import LogIn from './ui/LogIn.svelte';
 import { Station } from './ui/station.svelte';
 import './ui/style.css';
@@ -30,7 +32,7 @@ const again = (): void => {
   location.reload();
 };
 
-const begin = (account: Account | null): void => {
+const begin = (account: Account | null, session: string | null): void => {
   const map = new FieldMap(element('map'));
   /** The station needs a way to send before there is a stream, and the stream needs the station. */
   const late: { stream: Stream | null } = { stream: null };
@@ -51,8 +53,12 @@ const begin = (account: Account | null): void => {
       robot_s: () => late.stream?.robot_s() ?? null,
     },
   });
-  late.stream = new Stream(station.stream_events, again);
-  mount(App, { target: element('app'), props: { station, account, left: again } });
+  const desk = account && session ? new ControlDesk(control_calls, session, account.role) : null;
+  const events = desk
+    ? { ...station.stream_events, on_control: desk.take_message }
+    : station.stream_events;
+  late.stream = new Stream(events, again);
+  mount(App, { target: element('app'), props: { station, account, desk, left: again } });
 
   void tile_sets().then((sets) => map.use_tiles(sets[0] ?? null));
   window.addEventListener('online', () => late.stream?.hurry());
@@ -78,11 +84,11 @@ const watch_log_in = (): void => {
 
 void access_calls.state().then((answer) => {
   if (!answer.ok || !answer.value.access) {
-    begin(null);
+    begin(null, null);
     if (!answer.ok) watch_log_in();
     return;
   }
-  const { setup, user, role } = answer.value;
+  const { setup, user, role, id } = answer.value;
   if (user === null || role === null) {
     mount(LogIn, {
       target: element('app'),
@@ -90,6 +96,6 @@ void access_calls.state().then((answer) => {
     });
     return;
   }
-  begin({ calls: access_calls, user, role });
+  begin({ calls: access_calls, user, role }, id);
   watch_log_in();
 });

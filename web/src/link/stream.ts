@@ -17,6 +17,7 @@ type Message =
   | Schemas['StreamVehicle']
   | Schemas['StreamEvent']
   | Schemas['StreamMissions']
+  | Schemas['StreamControl']
   | Schemas['StreamPong']
   | Schemas['StreamStopped']
   | Schemas['StreamError'];
@@ -25,7 +26,9 @@ type Message =
 const LOG_IN_AGAIN = 4401;
 const WATCH_MS = 500;
 const PING_MS = 1000;
-const SUBSCRIBE = JSON.stringify({ subscribe: { vehicle: 10, events: 0, missions: 0 } });
+const SUBSCRIBE = JSON.stringify({
+  subscribe: { vehicle: 10, events: 0, missions: 0, control: 0 },
+});
 /** Bytes not yet taken by the network: a drive command behind them would come too late. */
 const DRIVE_BACKLOG = 512;
 
@@ -151,6 +154,9 @@ export class Stream implements LiveLink {
         break;
       case 'missions':
         this.#events.on_mission_changed(message.data.id, message.data.revision);
+        break;
+      case 'control':
+        this.#events.on_control?.(message.data);
         break;
       case 'error':
         this.#events.on_refused({ ...message.data, errors: message.data.errors ?? [] });

@@ -9,6 +9,8 @@ export interface LogInState {
   readonly setup: boolean;
   readonly user: string | null;
   readonly role: string | null;
+  /** Of the session. */
+  readonly id: string | null;
 }
 
 export interface Device {

@@ -1,6 +1,7 @@
 // What the rooms of the page hand each other through main.ts: types only.
 
 import type { Answer, Refusal } from './answer';
+import type { ControlState } from './control';
 import type { Drill, DrillTone, DrillWish } from './drill';
 import type { Driver } from './drivers';
 import type { Fence, FenceDraft, FenceSummary } from './fence';
@@ -253,6 +254,8 @@ export interface StreamEvents {
   on_event(event: StationEvent): void;
   /** A stored mission changed; revision null: it was deleted. */
   on_mission_changed(id: string, revision: number | null): void;
+  /** Who has control: at once, and with every change. */
+  on_control?(control: ControlState): void;
 }
 
 /** What the page keeps on the device, so that a dead battery loses nothing. */

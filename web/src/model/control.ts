@@ -1,0 +1,91 @@
+// Who has control: one drives, everyone may watch, anyone may stop.
+
+import type { Answer } from './answer';
+
+export interface Driver {
+  readonly id: string;
+  readonly user: string;
+  readonly name: string;
+  readonly kind: 'browser' | 'script';
+}
+
+export interface ControlHolder extends Driver {
+  /** Lost then, if nothing is heard; null: it is heard. */
+  readonly grace_left_s?: number | null;
+}
+
+export interface ControlRequest extends Driver {
+  readonly request: number;
+  readonly expires_in_s: number;
+}
+
+export interface ControlState {
+  readonly on: boolean;
+  readonly holder: ControlHolder | null;
+  readonly requests: readonly ControlRequest[];
+  readonly change?: {
+    readonly what: string;
+    readonly detail: string;
+    readonly from: Driver | null;
+    readonly to: Driver | null;
+  };
+}
+
+export type TakeWish = { readonly ask?: true } | { readonly force: true; readonly reason: string };
+
+export interface ControlCalls {
+  state: () => Promise<Answer<ControlState>>;
+  take: (wish: TakeWish) => Promise<Answer<ControlState>>;
+  release: () => Promise<Answer<ControlState>>;
+  hand_over: (request: number, accept: boolean) => Promise<Answer<ControlState>>;
+}
+
+export const LONGEST_REASON = 200;
+
+/** What this browser is to the one who has control. */
+export type Seat = 'free' | 'mine' | 'asked' | 'others';
+
+const is = (driver: Driver | null, me: string): boolean =>
+  driver !== null && driver.kind === 'browser' && driver.id === me;
+
+/** @param me the id of this browser's session */
+export const seat_of = (state: ControlState, me: string): Seat => {
+  if (state.holder === null) return 'free';
+  if (is(state.holder, me)) return 'mine';
+  return state.requests.some((one) => is(one, me)) ? 'asked' : 'others';
+};
+
+export const driver_name = ({ user, name, kind }: Driver): string =>
+  `${user} (${kind === 'script' ? `script ${name}` : device_name(name)})`;
+
+const MACHINES = ['iPhone', 'iPad', 'Android', 'Windows', 'Macintosh', 'CrOS', 'Linux'];
+
+/** A browser calls itself a long name, of which a person wants to know the machine. */
+export const device_name = (device: string): string => {
+  const machine = MACHINES.find((word) => device.includes(word));
+  return machine !== undefined && device.startsWith('Mozilla/') ? machine : device;
+};
+
+/** One line for the header. */
+export const seat_words = (state: ControlState, me: string): string => {
+  switch (seat_of(state, me)) {
+    case 'free':
+      return 'Nobody has control';
+    case 'mine':
+      return 'You have control';
+    case 'asked':
+    case 'others':
+      return state.holder ? `${driver_name(state.holder)} has control` : '';
+  }
+};
+
+/** What this person must hear of a change; empty: nothing. */
+export const told_of = (state: ControlState, me: string): string => {
+  const { change } = state;
+  if (!change) return '';
+  const { what, from, to, detail } = change;
+  const for_holder = is(from, me) && ['forced', 'lost', 'ended'].includes(what);
+  const for_asker =
+    is(to, me) && ['refused', 'expired', 'handed_over'].includes(what) && !is(from, me);
+  return for_holder || for_asker ? detail : '';
+};

@@ -1,0 +1,60 @@
+// Control as this browser sees it: who has it, and what may be done about that.
+
+import { failure_text, type Answer } from '../model/answer';
+import {
+  seat_of,
+  seat_words,
+  told_of,
+  type ControlCalls,
+  type ControlState,
+  type TakeWish,
+} from '../model/control';
+
+const NOBODY: ControlState = { on: true, holder: null, requests: [] };
+
+export class ControlDesk {
+  state = $state.raw<ControlState>(NOBODY);
+  /** Not known yet. */
+  known = $state(false);
+  busy = $state(false);
+  /** What went wrong, or what others did. */
+  told = $state('');
+  seat = $derived.by(() => seat_of(this.state, this.#me));
+  words = $derived.by(() => (this.known ? seat_words(this.state, this.#me) : 'Control: not known'));
+
+  readonly #calls: ControlCalls;
+  readonly #me: string;
+
+  /** May take it; a viewer watches. */
+  readonly drives: boolean;
+
+  /** @param me the id of this browser's session */
+  constructor(calls: ControlCalls, me: string, role: string) {
+    this.drives = role !== 'viewer';
+    this.#calls = calls;
+    this.#me = me;
+  }
+
+  take_message = (state: ControlState): void => {
+    this.state = state;
+    this.known = true;
+    const told = told_of(state, this.#me);
+    if (told !== '') this.told = told;
+  };
+
+  take = (wish: TakeWish = {}): Promise<boolean> => this.#do('taken', () => this.#calls.take(wish));
+  release = (): Promise<boolean> => this.#do('given up', () => this.#calls.release());
+  answer = (request: number, accept: boolean): Promise<boolean> =>
+    this.#do('answered', () => this.#calls.hand_over(request, accept));
+
+  async #do(what: string, call: () => Promise<Answer<ControlState>>): Promise<boolean> {
+    if (this.busy) return false;
+    this.busy = true;
+    this.told = '';
+    const answer = await call();
+    this.busy = false;
+    // What came of it the stream tells, in the order in which it happened.
+    if (!answer.ok) this.told = failure_text(what, answer.refusal);
+    return answer.ok;
+  }
+}

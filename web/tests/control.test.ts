@@ -1,0 +1,57 @@
+import { expect, test } from 'vitest';
+
+import {
+  device_name,
+  driver_name,
+  seat_of,
+  seat_words,
+  told_of,
+  type ControlState,
+  type Driver,
+} from '../src/model/control';
+
+const anna: Driver = { id: 's1', user: 'anna', name: 'tablet', kind: 'browser' };
+const ben: Driver = { id: 's2', user: 'ben', name: 'phone', kind: 'browser' };
+const script: Driver = { id: 's1', user: 'anna', name: 'rows', kind: 'script' };
+
+const held = (holder: Driver | null, asks: readonly Driver[] = []): ControlState => ({
+  on: true,
+  holder,
+  requests: asks.map((one, index) => ({ ...one, request: index + 1, expires_in_s: 30 })),
+});
+
+test('a browser is the holder, or asks, or another one holds it', () => {
+  expect(seat_of(held(null), 's1')).toBe('free');
+  expect(seat_of(held(anna), 's1')).toBe('mine');
+  expect(seat_of(held(anna), 's2')).toBe('others');
+  expect(seat_of(held(anna, [ben]), 's2')).toBe('asked');
+  // The id of a token is never that of a session.
+  expect(seat_of(held(script), 's1')).toBe('others');
+});
+
+test('the header says who has control', () => {
+  expect(seat_words(held(null), 's1')).toBe('Nobody has control');
+  expect(seat_words(held(anna), 's1')).toBe('You have control');
+  expect(seat_words(held(ben), 's1')).toBe('ben (phone) has control');
+  expect(driver_name(script)).toBe('anna (script rows)');
+});
+
+test('of a browser that calls itself a long name the machine is shown', () => {
+  expect(device_name('Mozilla/5.0 (X11; Linux x86_64) AppleWebKit/537.36')).toBe('Linux');
+  expect(device_name('Mozilla/5.0 (Linux; Android 14; Pixel 8) Chrome')).toBe('Android');
+  expect(device_name('Pixel (mine)')).toBe('Pixel (mine)');
+});
+
+test('who loses control, or hears no yes, is told why', () => {
+  const change = (what: string, from: Driver | null, to: Driver | null): ControlState => ({
+    ...held(to),
+    change: { what, from, to, detail: `${what}!` },
+  });
+  expect(told_of(change('forced', anna, ben), 's1')).toBe('forced!');
+  expect(told_of(change('forced', anna, ben), 's2')).toBe('');
+  expect(told_of(change('refused', anna, ben), 's2')).toBe('refused!');
+  expect(told_of(change('expired', anna, ben), 's2')).toBe('expired!');
+  expect(told_of(change('refused', anna, ben), 's1')).toBe('');
+  expect(told_of(change('taken', null, anna), 's1')).toBe('');
+  expect(told_of(held(anna), 's1')).toBe('');
+});
