@@ -106,6 +106,7 @@ void Store::Impl::run() {
   bool tidying = true;
   look();
   std::vector<base::Event> new_events;
+  std::vector<people::Deed> new_deeds;
   std::deque<std::function<void()>> todo;
   base::Time looked = base::steady_now();
   base::Time tidied_at = looked;
@@ -119,9 +120,13 @@ void Store::Impl::run() {
       std::unique_lock lock(mutex);
       const auto wait = tidying ? base::Duration::zero() : std::min(kLook, options.tidy_every);
       const bool asked =
-          news.wait_for(lock, wait, [this] { return closing || !jobs.empty() || !events.empty(); });
-      if (asked && jobs.empty() && events.empty()) return;  // closing, and all is done
+          news.wait_for(lock, wait, [this] {
+        return closing || !jobs.empty() || !events.empty() || !deeds.empty();
+      });
+      // Closing, and all is done.
+      if (asked && jobs.empty() && events.empty() && deeds.empty()) return;
       new_events.swap(events);
+      new_deeds.swap(deeds);
       if (!jobs.empty()) {
         todo.push_back(std::move(jobs.front()));
         jobs.pop_front();
@@ -130,6 +135,8 @@ void Store::Impl::run() {
     // Events first: whoever asks for the list after adding one finds it there.
     if (!new_events.empty()) write(new_events);
     new_events.clear();
+    if (!new_deeds.empty()) write_deeds(new_deeds);
+    new_deeds.clear();
     for (auto& job : todo) {
       try {
         job();

@@ -20,6 +20,7 @@
 #include "mission/fence/fence.hpp"
 #include "mission/graph/route_graph.hpp"
 #include "mission/plan.hpp"
+#include "people/audit.hpp"
 #include "people/words.hpp"
 #include "store/folder_watch.hpp"
 #include "store/run_words.hpp"
@@ -121,6 +122,23 @@ struct Page {
   std::optional<std::string> next_cursor;  ///< empty on the last page
 };
 
+/// Of the audit; empty: all of it.
+struct AuditFilter {
+  std::optional<std::string> user{};     ///< exactly; "": nobody known
+  std::optional<std::string> address{};  ///< exactly
+  std::optional<std::string> call{};     ///< what it must contain: "PUT", "/missions", "/session"
+  std::optional<base::WallTime> from{};
+  std::optional<base::WallTime> to{};     ///< without that moment
+  std::optional<bool> refused{};          ///< answered with 400 and above, or not
+};
+
+/// Of the audit in order, with what its first row hangs on.
+struct AuditStretch {
+  std::int64_t before_id = 0;
+  std::string before_hash{};
+  std::vector<people::KeptDeed> rows{};
+};
+
 struct StoredEvent {
   std::int64_t id = 0;
   base::Event event;
@@ -158,6 +176,7 @@ struct Change {
 
 struct Options {
   std::size_t queue = 256;                 ///< waiting calls (and, apart from them, waiting events)
+  std::int64_t max_audit_bytes = 50'000'000;  ///< about; beyond that the oldest rows go
   std::int64_t max_events = 100'000;       ///< beyond that the oldest go
   base::Duration keep_events_for{};        ///< zero: for ever
   std::int64_t max_bytes = 4'000'000'000;  ///< of the file; then as if the disk were full
@@ -293,6 +312,14 @@ class Store {
   /// Who may come in.
   void read_people(Reply<people::Everybody> reply);
   void change_people(people::Change change, Reply<void> reply);
+
+  /// Who did what. No answer; what cannot be kept is counted, and the next row tells how many.
+  void add_deed(people::Deed deed);
+  /// Newest first. @param before_id above all ids: from the end
+  void list_audit(AuditFilter filter, std::int64_t before_id, int limit,
+                  Reply<Page<people::KeptDeed>> reply);
+  /// Oldest first, for who checks the chain or takes it away.
+  void read_audit(std::int64_t after_id, int limit, Reply<AuditStretch> reply);
 
   /// No answer; when there is no room or the disk is full the event is lost and counted. A list
   /// asked for later has it.

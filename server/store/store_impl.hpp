@@ -33,8 +33,13 @@ struct Store::Impl {
   std::condition_variable news;
   std::deque<std::function<void()>> jobs;
   std::vector<base::Event> events;
+  std::vector<people::Deed> deeds;
   bool closing = false;
   std::atomic<std::uint64_t> lost_events{0};
+  std::atomic<std::uint64_t> lost_deeds{0};  ///< since it was told
+  /// After so many rows it is looked whether the oldest must go.
+  static constexpr std::size_t kCutEvery = 1000;
+  std::size_t deeds_since_cut = kCutEvery;  ///< store's thread; at first they are counted
   StorageState storage{};  ///< under the mutex
   struct {
     int runs = 0;
@@ -74,6 +79,7 @@ struct Store::Impl {
   tl::unexpected<base::Error> not_kept(std::string gone);
   static bool is_trouble(const base::Error& error) noexcept;
   void write(const std::vector<base::Event>& list);
+  void write_deeds(const std::vector<people::Deed>& list);
 
   template <class T>
   void answer(const Deliver& deliver, Reply<T> reply, base::Result<T> result) {
