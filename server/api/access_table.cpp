@@ -125,6 +125,9 @@ constexpr Row kTable[] = {
     {"PUT /vehicle/target", Need::Operator, NeedsControl::Yes},
     // sets parameters, users, tokens
     {"PUT /parameters/{name}", Need::Admin, NeedsControl::Yes},
+    {"GET /audit", Need::Admin},
+    {"GET /audit/check", Need::Admin},
+    {"GET /audit/export", Need::Admin},
     {"GET /tokens", Need::Admin},
     {"POST /tokens", Need::Admin, NeedsControl::No},
     {"DELETE /tokens/{id}", Need::Admin, NeedsControl::No},

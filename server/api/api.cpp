@@ -114,6 +114,7 @@ Api::Api(Deps deps) : impl_(std::make_unique<Impl>(std::move(deps))) {
   add_token_routes(c);
   add_user_routes(c);
   add_control_routes(c);
+  add_audit_routes(c);
   c->on_access_change = [this] {
     if (impl_->stream) impl_->stream->look_at_people();
     impl_->context->control.step();
@@ -124,6 +125,7 @@ Api::Api(Deps deps) : impl_(std::make_unique<Impl>(std::move(deps))) {
   c->control.on_notice = [this](const Control::Notice& notice) {
     if (impl_->stream) impl_->stream->control_changed(notice);
     if (auto event = event_of(notice)) on_event(std::move(*event));
+    impl_->context->audit.control(notice, Access::now());
   };
   load_people(c);
   load_active_fence(c);
@@ -137,6 +139,7 @@ Api::~Api() {
   impl_->context->on_access_change = nullptr;
   impl_->context->control.linked = nullptr;
   impl_->context->control.on_notice = nullptr;
+  impl_->context->audit.flush();
   impl_->context->commands.abandon();
 }
 
@@ -199,6 +202,7 @@ void Api::Impl::route(const CallPtr& call) {
     return call->respond(std::move(response));
   }
   const auto& match = std::get<Router::Match>(found);
+  call->operation = match.route->pattern;
   if (auto refusal = context->access.check(call->request, match.route->need, call->who)) {
     return call->respond(std::move(*refusal));
   }
@@ -268,8 +272,6 @@ void Api::Impl::next_turn() {
 }
 
 void Api::on_request(Request request, base::Time begun, Respond respond) {
-  if (auto refusal = guard_request(request, impl_->context->deps.tls))
-    return respond(std::move(*refusal));
   const auto answered = std::make_shared<bool>(false);
   // Bodies are freed beside the web thread.
   auto call = CallPtr(new Call, [context = impl_->context](Call* old) {
@@ -279,10 +281,15 @@ void Api::on_request(Request request, base::Time begun, Respond respond) {
   });
   call->request = std::move(request);
   call->begun = begun;
-  call->respond = [answered, respond](Response response) {
+  // Whoever answers holds the call.
+  call->respond = [answered, respond, of = call.get(),
+                   context = impl_->context](Response response) {
     if (std::exchange(*answered, true)) return;
+    context->audit.answered(*of, response, Access::now());
     respond(std::move(response));
   };
+  if (auto refusal = guard_request(call->request, impl_->context->deps.tls))
+    return call->respond(std::move(*refusal));
   if (!impl_->context->deps.later || stops(path_of(call->request))) return impl_->handle(call);
   impl_->turns.push_back(std::move(call));
   impl_->next_turn();
@@ -327,7 +334,10 @@ std::optional<Response> Api::on_upgrade(const Request& request) {
   }
   if (auto refusal = guard_handshake(request)) return refusal;
   std::optional<people::Who> who;
-  return impl_->context->access.check_upgrade(request, who);
+  auto refusal = impl_->context->access.check_upgrade(request, who);
+  const int status = refusal ? static_cast<int>(refusal->result_int()) : 101;
+  impl_->context->audit.upgraded(request, who, status, Access::now());
+  return refusal;
 }
 
 void Api::on_client(ClientId client, const Request& upgrade) {
@@ -353,6 +363,7 @@ void Api::on_second() {
   const base::Time now = base::steady_now();
   impl_->context->commands.sweep(now);
   if (impl_->context->access.on()) impl_->look_at_people();
+  impl_->context->audit.sweep(now);
   if (impl_->context->deps.later) impl_->next_turn();  // should there have been no memory for it
   if (impl_->stream) impl_->stream->look_at_execution();
   const auto snapshot = impl_->context->deps.robot.snapshot();

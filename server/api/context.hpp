@@ -12,6 +12,7 @@
 
 #include "api/access.hpp"
 #include "api/api.hpp"
+#include "api/audit.hpp"
 #include "api/body.hpp"
 #include "api/control.hpp"
 #include "api/json/words.hpp"
@@ -72,12 +73,14 @@ struct Context {
       : deps(std::move(with)),
         access(deps.people, deps.tls),
         control(access, deps.control_grace),
+        audit([this](people::Deed deed) { deps.store.add_deed(std::move(deed)); }),
         commands(deps.robot),
         begun(base::steady_now()) {}
 
   Deps deps;
   Access access;
   Control control;
+  Audit audit;
   Commands commands;
   Router router;
   base::Time begun;
@@ -193,6 +196,7 @@ void add_session_routes(const ContextPtr& context);
 void add_token_routes(const ContextPtr& context);
 void add_user_routes(const ContextPtr& context);
 void add_control_routes(const ContextPtr& context);
+void add_audit_routes(const ContextPtr& context);
 /// Asks the store who may come in; until it answers nobody may.
 void load_people(const ContextPtr& context);
 

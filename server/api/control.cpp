@@ -37,6 +37,8 @@ Json begun_at(base::Time mono, const people::Now& now) {
   return time_or_null(now.wall < base::kYoungest ? now.wall : now.wall - (now.mono - mono));
 }
 
+}  // namespace
+
 std::string_view word_of(Kind kind) noexcept {
   switch (kind) {
     case Kind::Taken:
@@ -63,7 +65,6 @@ std::string_view word_of(Kind kind) noexcept {
   return "";
 }
 
-/// One sentence for people.
 std::string sentence(const Lease::Notice& n) {
   const std::string from = in_words(n.from);
   const std::string to = in_words(n.to);
@@ -91,8 +92,6 @@ std::string sentence(const Lease::Notice& n) {
   }
   return "";
 }
-
-}  // namespace
 
 std::optional<base::Event> event_of(const Lease::Notice& notice) {
   const auto event = [&](std::string kind, base::Severity level) {

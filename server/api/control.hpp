@@ -59,6 +59,9 @@ class Control {
   people::Lease lease_;
 };
 
+std::string_view word_of(people::Lease::Notice::Kind kind) noexcept;
+/// For people.
+std::string sentence(const people::Lease::Notice& notice);
 /// For the log of events; empty where a question was asked or answered only.
 std::optional<base::Event> event_of(const people::Lease::Notice& notice);
 

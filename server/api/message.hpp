@@ -35,6 +35,8 @@ struct Call {
   std::map<std::string, std::string, std::less<>> query{};   ///< decoded
   Respond respond;
   std::optional<people::Who> who{};  ///< empty: nobody known, or access control is off
+  std::string operation{};           ///< "/missions/{id}"; empty: none of ours
+  std::string named{};               ///< the user that a log-in is for, if there is such a one
 };
 using CallPtr = std::shared_ptr<Call>;
 

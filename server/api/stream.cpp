@@ -82,6 +82,7 @@ void StreamTexts::on_client(ClientId client, std::optional<people::Who> who,
   }
   clients_[client].driver = context_->control.driver(who, address);
   clients_[client].who = std::move(who);
+  clients_[client].address = address;
   const Json data = {
       {"version", context_->deps.version},
       {"topics", {kVehicle, kEvents, kMissions, kExecution, kControl}},
@@ -158,7 +159,10 @@ void StreamTexts::complain(ClientId id, Client& client, const base::Error& error
 base::Result<void> StreamTexts::read(ClientId id, Client& client, const Json& message,
                                      base::Time begun) {
   // Before all else, whatever else the message says, and whoever says it.
-  if (message.is_object() && message.value("estop", Json()) == true) estop(id);
+  if (message.is_object() && message.value("estop", Json()) == true) {
+    estop(id);
+    context_->audit.stopped(client.who, client.address, "estop", Access::now());
+  }
   if (!may(id, client, message)) return {};
   Members members(message);
   const auto stop = members.flag("estop");
@@ -180,7 +184,11 @@ base::Result<void> StreamTexts::read(ClientId id, Client& client, const Json& me
         base::Code::Invalid,
         "a message has exactly one of the members estop, halt, subscribe, drive and ping");
   }
-  if (halting) return halt(*halting);
+  if (halting) {
+    auto done = halt(*halting);
+    if (done) context_->audit.stopped(client.who, client.address, *word, Access::now());
+    return done;
+  }
   if (topics != nullptr) return subscribe(id, client, *topics);
   tell_robot(client);
   if (driving != nullptr) return drive(id, client, members, begun);

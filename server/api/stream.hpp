@@ -42,6 +42,7 @@ class StreamTexts {
  private:
   struct Client {
     std::optional<people::Who> who{};
+    std::string address{};
     int complaints = 0;  ///< in a row
     std::uint64_t errors_sent = 0;
     std::optional<std::int64_t> drive_seq;

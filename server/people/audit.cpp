@@ -38,7 +38,8 @@ std::string plain(std::string_view text) {
   std::string out;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t size = sign_at(text, at);
-    const bool control = size == 1 && (static_cast<unsigned char>(text[at]) < 0x20 || text[at] == 0x7F);
+    const bool control =
+        size == 1 && (static_cast<unsigned char>(text[at]) < 0x20 || text[at] == 0x7F);
     const std::string_view sign = size == 0 || control ? "?" : text.substr(at, size);
     if (out.size() + sign.size() > Deed::kLongest) break;
     out += sign;

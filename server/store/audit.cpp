@@ -144,8 +144,8 @@ AuditStretch read_audit(SQLite::Database& db, std::int64_t after_id, int limit) 
   }
   out.before_id = before.id;
   out.before_hash = before.hash;
-  SQLite::Statement rows(db, std::string("SELECT ") + kColumns +
-                                 " FROM audit WHERE id > ? ORDER BY id LIMIT ?");
+  SQLite::Statement rows(
+      db, std::string("SELECT ") + kColumns + " FROM audit WHERE id > ? ORDER BY id LIMIT ?");
   rows.bind(1, before.id);
   rows.bind(2, limit);
   while (rows.executeStep()) out.rows.push_back(kept_in(rows));

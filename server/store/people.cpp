@@ -13,7 +13,7 @@ using people::Session;
 using people::Token;
 using people::User;
 
-std::int64_t ns(base::WallTime time) {
+std::int64_t kept_ns(base::WallTime time) {
   return time.time_since_epoch().count();
 }
 
@@ -43,7 +43,7 @@ std::string joined(const std::vector<std::string>& words) {
 }
 
 void bind_time(SQLite::Statement& row, int at, const std::optional<base::WallTime>& time) {
-  if (time) return row.bind(at, ns(*time));
+  if (time) return row.bind(at, kept_ns(*time));
   row.bind(at);
 }
 
@@ -55,7 +55,7 @@ void keep(SQLite::Database& db, const User& user) {
   row.bind(1, user.name);
   row.bind(2, std::string(people::to_string(user.role)));
   row.bind(3, user.password);
-  row.bind(4, ns(user.created));
+  row.bind(4, kept_ns(user.created));
   row.exec();
 }
 
@@ -69,8 +69,8 @@ void keep(SQLite::Database& db, const Session& s) {
   row.bind(3, s.user);
   row.bind(4, s.device);
   row.bind(5, s.address);
-  row.bind(6, ns(s.created));
-  row.bind(7, ns(s.seen));
+  row.bind(6, kept_ns(s.created));
+  row.bind(7, kept_ns(s.seen));
   row.exec();
 }
 
@@ -85,7 +85,7 @@ void keep(SQLite::Database& db, const Token& t) {
   row.bind(4, t.user);
   row.bind(5, std::string(people::to_string(t.role)));
   row.bind(6, joined(t.methods));
-  row.bind(7, ns(t.created));
+  row.bind(7, kept_ns(t.created));
   bind_time(row, 8, t.expires);
   bind_time(row, 9, t.used);
   row.exec();

@@ -119,8 +119,7 @@ void Store::Impl::run() {
     {
       std::unique_lock lock(mutex);
       const auto wait = tidying ? base::Duration::zero() : std::min(kLook, options.tidy_every);
-      const bool asked =
-          news.wait_for(lock, wait, [this] {
+      const bool asked = news.wait_for(lock, wait, [this] {
         return closing || !jobs.empty() || !events.empty() || !deeds.empty();
       });
       // Closing, and all is done.

@@ -128,8 +128,8 @@ struct AuditFilter {
   std::optional<std::string> address{};  ///< exactly
   std::optional<std::string> call{};     ///< what it must contain: "PUT", "/missions", "/session"
   std::optional<base::WallTime> from{};
-  std::optional<base::WallTime> to{};     ///< without that moment
-  std::optional<bool> refused{};          ///< answered with 400 and above, or not
+  std::optional<base::WallTime> to{};  ///< without that moment
+  std::optional<bool> refused{};       ///< answered with 400 and above, or not
 };
 
 /// Of the audit in order, with what its first row hangs on.
@@ -175,11 +175,11 @@ struct Change {
 };
 
 struct Options {
-  std::size_t queue = 256;                 ///< waiting calls (and, apart from them, waiting events)
+  std::size_t queue = 256;  ///< waiting calls (and, apart from them, waiting events)
   std::int64_t max_audit_bytes = 50'000'000;  ///< about; beyond that the oldest rows go
-  std::int64_t max_events = 100'000;       ///< beyond that the oldest go
-  base::Duration keep_events_for{};        ///< zero: for ever
-  std::int64_t max_bytes = 4'000'000'000;  ///< of the file; then as if the disk were full
+  std::int64_t max_events = 100'000;          ///< beyond that the oldest go
+  base::Duration keep_events_for{};           ///< zero: for ever
+  std::int64_t max_bytes = 4'000'000'000;     ///< of the file; then as if the disk were full
   base::Duration keep_deleted = std::chrono::hours(24 * 30);  ///< then they are forgotten for good
   std::int64_t keep_runs = 1000;   ///< the newest; older ones go with their tracks
   base::Duration keep_runs_for{};  ///< after their end; zero: for ever

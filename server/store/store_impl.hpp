@@ -40,7 +40,7 @@ struct Store::Impl {
   /// After so many rows it is looked whether the oldest must go.
   static constexpr std::size_t kCutEvery = 1000;
   std::size_t deeds_since_cut = kCutEvery;  ///< store's thread; at first they are counted
-  StorageState storage{};  ///< under the mutex
+  StorageState storage{};                   ///< under the mutex
   struct {
     int runs = 0;
     std::int64_t bytes = 0;

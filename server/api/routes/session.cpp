@@ -100,6 +100,7 @@ class Hashing {
 
 void let_in(const ContextPtr& c, const CallPtr& call, const people::Opened<Session>& opened) {
   const auto* user = c->access.book().user(opened.row.user);
+  call->named = opened.row.user;
   people::Who who{opened.row.user, user->role, people::Who::By::Session, opened.row.id, {}};
   // A disk that fails keeps nobody from the robot: the session then ends with the program.
   keep_people(c, [c, call, who, secret = opened.secret](const base::Result<void>&) {
@@ -136,6 +137,8 @@ Handler log_in(const ContextPtr& c, Hashing& hashing) {
     if (refuse_without_access(c, call)) return;
     auto typed = typed_in(call, false);
     if (!typed) return;
+    // Not what is no user's name: people type passwords there.
+    if (c->access.book().user(typed->user) != nullptr) call->named = typed->user;
     const auto slot = may_try(c, call, hashing, typed->user);
     if (!slot) return;
     const auto attempt =
