@@ -139,7 +139,6 @@ Api::~Api() {
   impl_->context->on_access_change = nullptr;
   impl_->context->control.linked = nullptr;
   impl_->context->control.on_notice = nullptr;
-  impl_->context->audit.flush();
   impl_->context->commands.abandon();
 }
 
@@ -357,6 +356,10 @@ void Api::on_gone(ClientId client) {
 
 Response Api::on_refused(unsigned status, std::string_view detail) {
   return problem(status, detail);
+}
+
+void Api::on_end() {
+  impl_->context->audit.flush();
 }
 
 void Api::on_second() {

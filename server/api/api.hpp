@@ -152,6 +152,8 @@ class Api {
   /// A client that was driving stops the robot.
   void on_gone(ClientId client);
   static Response on_refused(unsigned status, std::string_view detail);
+  /// The program ends: what was only counted is handed to the store.
+  void on_end();
   /// Once a second: driver rates, answers that never came.
   void on_second();
   /// Something happened that people must know of: to stream, run and store.

@@ -505,6 +505,7 @@ void Station::Impl::stop() {
   drill.stop();
   server->stop(kGoodbye, [this] {
     bell->silence();
+    api->on_end();
     web.stop();
   });
 }
