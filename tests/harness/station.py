@@ -12,11 +12,8 @@ import re
 import shutil
 import signal
 import socket
-<<<<<<< HEAD
-import ssl
-=======
 import sqlite3
->>>>>>> 4cb7a7e (Make backups in a program of their own)
+import ssl
 import subprocess
 import tempfile
 import threading
