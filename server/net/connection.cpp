@@ -45,6 +45,15 @@ bool bodyless(http::status status) {
          http::to_status_class(status) == http::status_class::informational;
 }
 
+/// A client of IPv4 is one, also where a socket of IPv6 takes it in.
+std::string address_text(const boost::asio::ip::address& address) {
+  namespace ip = boost::asio::ip;
+  if (address.is_v6() && address.to_v6().is_v4_mapped()) {
+    return ip::make_address_v4(ip::v4_mapped, address.to_v6()).to_string();
+  }
+  return address.to_string();
+}
+
 bool equals_no_case(boost::beast::string_view a, boost::beast::string_view b) {
   return boost::beast::iequals(a, b);
 }
@@ -188,8 +197,18 @@ bool Connection::on_read_error(error_code ec) {
   return true;
 }
 
+/// Once, while the client is there.
+void Connection::look_at_ends() {
+  error_code ignored;
+  peer_ = address_text(wire_.socket().remote_endpoint(ignored).address());
+  here_ = address_text(wire_.socket().local_endpoint(ignored).address());
+}
+
 void Connection::on_header() {
-  const auto& request = parser_->get();
+  auto& request = parser_->get();
+  if (peer_.empty()) look_at_ends();
+  request.set(boost::beast::string_view(kPeerHeader.data(), kPeerHeader.size()), peer_);
+  request.set(boost::beast::string_view(kHereHeader.data(), kHereHeader.size()), here_);
   head_ = request.method() == http::verb::head;
   keep_alive_ = request.keep_alive() && !peers_->stopping;
   version_ = request.version();
@@ -292,14 +311,6 @@ void Connection::read_body() {
                    });
 }
 
-Request Connection::released() {
-  Request request = parser_->release();
-  error_code ignored;
-  const std::string address = wire_.socket().remote_endpoint(ignored).address().to_string();
-  request.set(boost::beast::string_view(kPeerHeader.data(), kPeerHeader.size()), address);
-  return request;
-}
-
 void Connection::on_request() {
   phase_ = Phase::Handling;
   deadline_.reset();  // the handler keeps its own time
@@ -307,7 +318,7 @@ void Connection::on_request() {
   ++peers_->stats.requests;
   if (!peers_->handlers.on_request) return force();
   peers_->handlers.on_request(
-      released(), begun_,
+      parser_->release(), begun_,
       [homing = std::make_shared<Homing>(shared_from_this(), peers_->io)](Response response) {
         homing->connection().on_answer(std::move(response));
       });
@@ -317,7 +328,7 @@ void Connection::upgrade() {
   phase_ = Phase::Handling;
   deadline_.reset();
   ++peers_->stats.requests;
-  Request request = released();
+  Request request = parser_->release();
   if (!peers_->handlers.on_upgrade) return force();
   if (auto refusal = peers_->handlers.on_upgrade(request)) return answer(std::move(*refusal));
   const auto bytes = buffer_.cdata();

@@ -61,6 +61,7 @@ class Connection : public Peer, public std::enable_shared_from_this<Connection> 
   void be_patient();
   void wait();
   void read_header();
+  void look_at_ends();
   void on_header();
   bool admit_body();
   void release_body();
@@ -68,8 +69,6 @@ class Connection : public Peer, public std::enable_shared_from_this<Connection> 
   void discard(std::string& body) const;
   void expect_continue();
   void read_body();
-  /// With the address it came from.
-  Request released();
   void on_request();
   bool on_read_error(boost::system::error_code ec);
   void upgrade();
@@ -98,6 +97,8 @@ class Connection : public Peer, public std::enable_shared_from_this<Connection> 
   std::size_t reserved_ = 0;  ///< counted in Peers::bodies
   std::size_t leaving_ = 0;   ///< counted in Peers::answers
   bool reserve_ = false;
+  std::string peer_;          ///< address of the other end
+  std::string here_;          ///< and of this one
   bool in_the_open_ = false;  ///< no TLS where there should be
 };
 

@@ -4,9 +4,13 @@
 #include <memory>
 #include <new>
 #include <utility>
+#include <vector>
 
+#include <boost/asio/detail/socket_option.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ip/v6_only.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <netinet/in.h>
 
 #include "net/connection.hpp"
 #include "net/hub.hpp"
@@ -22,6 +26,28 @@ namespace {
 
 constexpr int kBacklog = 1024;
 constexpr auto kRetryAccept = std::chrono::milliseconds(100);
+/// For a port that the system chose and that is taken at the next address.
+constexpr int kOtherPorts = 20;
+constexpr const char* kEveryAddress = "::";
+constexpr const char* kEveryIpv4 = "0.0.0.0";
+
+/// An address that this computer does not have yet can be listened on.
+using FreeBind = boost::asio::detail::socket_option::boolean<IPPROTO_IP, IP_FREEBIND>;
+
+error_code bind_to(tcp::acceptor& acceptor, const tcp::endpoint& endpoint) {
+  error_code ec;
+  error_code ignored;
+  acceptor.open(endpoint.protocol(), ec);
+  if (!ec) acceptor.set_option(tcp::acceptor::reuse_address(true), ec);
+  if (!ec && endpoint.address().is_v6()) {
+    acceptor.set_option(boost::asio::ip::v6_only(!endpoint.address().is_unspecified()), ec);
+  }
+  if (!ec) acceptor.set_option(FreeBind(true), ignored);
+  if (!ec) acceptor.bind(endpoint, ec);
+  if (!ec) acceptor.listen(kBacklog, ec);
+  if (ec) acceptor.close(ignored);
+  return ec;
+}
 
 }  // namespace
 
@@ -34,88 +60,117 @@ Response Peers::refusal(unsigned status, std::string_view detail) const {
 }
 
 struct Server::Impl : std::enable_shared_from_this<Server::Impl> {
+  /// One address on which newcomers come in.
+  struct Listener {
+    explicit Listener(boost::asio::io_context& io) : acceptor(io), retry_timer(io) {}
+    tcp::acceptor acceptor;
+    boost::asio::steady_timer retry_timer;
+    bool accepting = false;  ///< or waiting to go on
+  };
+
   Impl(boost::asio::io_context& io, Limits limits, Handlers handlers)
       : peers(std::make_shared<Peers>(io, limits, std::move(handlers))),
-        acceptor(io),
         sweep_timer(io),
-        retry_timer(io),
         stop_timer(io) {}
 
-  base::Result<void> open(const std::string& address, std::uint16_t port);
-  void accept();
-  void accepted(error_code ec, tcp::socket socket);
-  void accept_failed(error_code why);
+  base::Result<void> open(const std::vector<std::string>& addresses, std::uint16_t port);
+  base::Result<void> open_all(const std::vector<std::string>& addresses, std::uint16_t port);
+  base::Result<void> open_one(const std::string& address, std::uint16_t port);
+  void accept(Listener& at);
+  void accepted(Listener& at, error_code ec, tcp::socket socket);
+  void accept_failed(Listener& at, error_code why);
   void welcome(tcp::socket socket);
   void sweep();
   void stop(base::Duration grace, std::function<void()> done);
+  void shut();
   void close();
 
   std::shared_ptr<Peers> peers;
-  tcp::acceptor acceptor;
+  std::vector<std::unique_ptr<Listener>> listeners;  ///< they stay
   boost::asio::steady_timer sweep_timer;
-  boost::asio::steady_timer retry_timer;
   boost::asio::steady_timer stop_timer;
   Spares spares;
-  bool on_spare = false;   ///< whoever is accepted next
-  bool accepting = false;  ///< or waiting to go on
+  bool on_spare = false;  ///< whoever is accepted next
   bool sweeping = false;
   std::uint16_t port = 0;
   int sweeps = 0;
 };
 
-base::Result<void> Server::Impl::open(const std::string& text, std::uint16_t wanted) {
+base::Result<void> Server::Impl::open_one(const std::string& text, std::uint16_t wanted) {
   error_code ec;
   const auto address = boost::asio::ip::make_address(text, ec);
   if (ec) return base::fail(base::Code::Invalid, "\"" + text + "\" is not an IP address");
-  const tcp::endpoint endpoint(address, wanted);
+  auto made = std::make_unique<Listener>(peers->io);
+  ec = bind_to(made->acceptor, tcp::endpoint(address, wanted));
+  if (ec == boost::asio::error::address_family_not_supported && text == kEveryAddress) {
+    return open_one(kEveryIpv4, wanted);
+  }
   const std::string name = "port " + std::to_string(wanted);
-  acceptor.open(endpoint.protocol(), ec);
-  if (!ec) acceptor.set_option(tcp::acceptor::reuse_address(true), ec);
-  if (!ec) acceptor.bind(endpoint, ec);
-  if (!ec) acceptor.listen(kBacklog, ec);
   if (ec == boost::asio::error::address_in_use) {
     return base::fail(base::Code::Conflict, name + " is in use");
   }
-  if (ec)
+  if (ec) {
     return base::fail(base::Code::Unavailable,
                       "cannot listen on " + text + " " + name + ": " + ec.message());
-  port = acceptor.local_endpoint(ec).port();
+  }
+  port = made->acceptor.local_endpoint(ec).port();
+  listeners.push_back(std::move(made));
   return {};
 }
 
-void Server::Impl::accept() {
-  acceptor.async_accept([self = shared_from_this()](error_code ec, tcp::socket socket) {
-    self->accepting = false;
-    if (self->acceptor.is_open()) self->accepted(ec, std::move(socket));
-  });
-  accepting = true;
+/// All at the same port.
+base::Result<void> Server::Impl::open_all(const std::vector<std::string>& addresses,
+                                          std::uint16_t wanted) {
+  listeners.clear();
+  for (const std::string& address : addresses) {
+    if (auto done = open_one(address, listeners.empty() ? wanted : port); !done) return done;
+  }
+  return {};
 }
 
-void Server::Impl::accepted(error_code ec, tcp::socket socket) {
-  if (ec) return accept_failed(ec);
+base::Result<void> Server::Impl::open(const std::vector<std::string>& addresses,
+                                      std::uint16_t wanted) {
+  auto done = open_all(addresses, wanted);
+  for (int i = 0; i < kOtherPorts && wanted == 0; ++i) {
+    if (done || done.error().code != base::Code::Conflict) break;
+    done = open_all(addresses, wanted);
+  }
+  return done;
+}
+
+void Server::Impl::accept(Listener& at) {
+  at.acceptor.async_accept([self = shared_from_this(), &at](error_code ec, tcp::socket socket) {
+    at.accepting = false;
+    if (at.acceptor.is_open()) self->accepted(at, ec, std::move(socket));
+  });
+  at.accepting = true;
+}
+
+void Server::Impl::accepted(Listener& at, error_code ec, tcp::socket socket) {
+  if (ec) return accept_failed(at, ec);
   try {
     welcome(std::move(socket));
   } catch (const std::bad_alloc&) {
     ++peers->stats.refused;  // and closed
   }
-  accept();
+  accept(at);
 }
 
-void Server::Impl::accept_failed(error_code why) {
+void Server::Impl::accept_failed(Listener& at, error_code why) {
   const bool no_descriptor = why == boost::asio::error::no_descriptors ||
                              why == boost::system::errc::too_many_files_open_in_system;
   if (no_descriptor) {
-    if (peers->drop_longest_waiting(false)) return accept();
+    if (peers->drop_longest_waiting(false)) return accept(at);
     on_spare = spares.give() || peers->drop_longest_waiting(true);
-    if (on_spare) return accept();
+    if (on_spare) return accept(at);
   }
   // The client was gone already, or nothing helps: go on a little later.
-  retry_timer.expires_after(kRetryAccept);
-  retry_timer.async_wait([self = shared_from_this()](error_code cancelled) {
-    self->accepting = false;
-    if (!cancelled && self->acceptor.is_open()) self->accept();
+  at.retry_timer.expires_after(kRetryAccept);
+  at.retry_timer.async_wait([self = shared_from_this(), &at](error_code cancelled) {
+    at.accepting = false;
+    if (!cancelled && at.acceptor.is_open()) self->accept(at);
   });
-  accepting = true;
+  at.accepting = true;
 }
 
 void Server::Impl::welcome(tcp::socket socket) {
@@ -150,18 +205,23 @@ void Server::Impl::sweep() {
   sweeping = true;
 }
 
-void Server::Impl::close() {
+/// Nobody comes in any more.
+void Server::Impl::shut() {
   error_code ignored;
-  acceptor.close(ignored);
+  for (const auto& at : listeners) {
+    at->acceptor.close(ignored);
+    at->retry_timer.cancel();
+  }
+}
+
+void Server::Impl::close() {
+  shut();
   sweep_timer.cancel();
-  retry_timer.cancel();
   peers->each([](Peer& peer) { peer.force(); });
 }
 
 void Server::Impl::stop(base::Duration grace, std::function<void()> done) {
-  error_code ignored;
-  acceptor.close(ignored);
-  retry_timer.cancel();
+  shut();
   peers->stopping = true;
   peers->each([](Peer& peer) { peer.stop(); });
   const auto end = std::chrono::steady_clock::now() + grace;
@@ -184,12 +244,19 @@ Server::Server(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
 base::Result<std::unique_ptr<Server>> Server::listen(boost::asio::io_context& io,
                                                      const std::string& address, std::uint16_t port,
                                                      Limits limits, Handlers handlers) {
+  return listen(io, std::vector<std::string>{address}, port, limits, std::move(handlers));
+}
+
+base::Result<std::unique_ptr<Server>> Server::listen(boost::asio::io_context& io,
+                                                     const std::vector<std::string>& addresses,
+                                                     std::uint16_t port, Limits limits,
+                                                     Handlers handlers) {
   limits.connections = std::min(limits.connections, Spares::descriptors_left(limits.reserve));
   auto impl = std::make_shared<Impl>(io, limits, std::move(handlers));
-  if (auto opened = impl->open(address, port); !opened) {
+  if (auto opened = impl->open(addresses, port); !opened) {
     return tl::unexpected<base::Error>(std::move(opened.error()));
   }
-  impl->accept();
+  for (const auto& at : impl->listeners) impl->accept(*at);
   impl->sweep();
   return std::unique_ptr<Server>(new Server(std::move(impl)));
 }
@@ -210,7 +277,9 @@ std::uint16_t Server::port() const noexcept {
 
 void Server::resume() {
   if (!impl_->sweeping) impl_->sweep();
-  if (!impl_->accepting && impl_->acceptor.is_open()) impl_->accept();
+  for (const auto& at : impl_->listeners) {
+    if (!at->accepting && at->acceptor.is_open()) impl_->accept(*at);
+  }
 }
 
 Hub& Server::hub() noexcept {

@@ -21,6 +21,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <boost/asio/detail/concurrency_hint.hpp>
 #include <boost/asio/io_context.hpp>
@@ -72,8 +73,10 @@ enum class Urgency { None, Whole, AtHeader };
 /// One topic at one rate has one sequence; a text is shared by all its clients. See hub.hpp.
 class Hub;
 
-/// Of every request that a handler sees: the address it came from, set here, whatever was sent.
+/// Of every request that a handler sees, set here, whatever was sent: the address it came from, and
+/// the one it came to. Those of IPv4 as such, also where they come in through IPv6.
 inline constexpr std::string_view kPeerHeader = "Roverd-Peer";
+inline constexpr std::string_view kHereHeader = "Roverd-Here";
 
 struct Handlers {
   /// Any request that is not a WebSocket upgrade. `begun`: it cannot have been sent before; at the
@@ -119,6 +122,12 @@ class Server {
   /// address), Conflict ("port 8080 is in use"), Unavailable (the system's reason).
   static base::Result<std::unique_ptr<Server>> listen(boost::asio::io_context& io,
                                                       const std::string& address,
+                                                      std::uint16_t port, Limits limits,
+                                                      Handlers handlers);
+  /// On several addresses, at one port. "::" is every address that this computer has or will have,
+  /// of IPv4, too (and only of IPv4 where there is no IPv6). Others need not be there yet.
+  static base::Result<std::unique_ptr<Server>> listen(boost::asio::io_context& io,
+                                                      const std::vector<std::string>& addresses,
                                                       std::uint16_t port, Limits limits,
                                                       Handlers handlers);
   /// Closes everything at once; no handler is called any more.

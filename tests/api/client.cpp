@@ -79,15 +79,28 @@ struct Secret {
   bool shaken = false;
 };
 
-Client::Client(std::uint16_t port) : handle_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
-  sockaddr_in to{};
-  to.sin_family = AF_INET;
-  to.sin_port = htons(port);
-  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  if (::connect(handle_, reinterpret_cast<const sockaddr*>(&to), sizeof to) != 0) {
-    ::close(handle_);
-    throw std::runtime_error("nobody listens");
-  }
+namespace {
+
+int connected(const std::string& address, std::uint16_t port) {
+  sockaddr_in v4{};
+  v4.sin_family = AF_INET;
+  v4.sin_port = htons(port);
+  sockaddr_in6 v6{};
+  v6.sin6_family = AF_INET6;
+  v6.sin6_port = htons(port);
+  const bool old = ::inet_pton(AF_INET, address.c_str(), &v4.sin_addr) == 1;
+  ::inet_pton(AF_INET6, address.c_str(), &v6.sin6_addr);
+  const int handle = ::socket(old ? AF_INET : AF_INET6, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const int refused = old ? ::connect(handle, reinterpret_cast<const sockaddr*>(&v4), sizeof v4)
+                          : ::connect(handle, reinterpret_cast<const sockaddr*>(&v6), sizeof v6);
+  if (refused == 0) return handle;
+  ::close(handle);
+  throw std::runtime_error("nobody listens");
+}
+
+}  // namespace
+
+Client::Client(std::uint16_t port, const std::string& address) : handle_(connected(address, port)) {
   if (tls_version() == nullptr) return;
   std::signal(SIGPIPE, SIG_IGN);  // OpenSSL does not ask send() to be silent
   secret_ = std::make_unique<Secret>(handle_);

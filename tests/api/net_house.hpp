@@ -4,8 +4,10 @@
 #include <future>
 #include <memory>
 #include <stdexcept>
+#include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
@@ -28,9 +30,9 @@ inline std::shared_ptr<net::Tls> test_tls() {
 
 class NetHouse {
  public:
-  NetHouse(net::Limits limits, net::Handlers handlers,
-           std::function<void(net::Hub&)> prepare = {}) {
-    auto made = net::Server::listen(io_, "127.0.0.1", 0, limits, std::move(handlers));
+  NetHouse(net::Limits limits, net::Handlers handlers, std::function<void(net::Hub&)> prepare = {},
+           const std::vector<std::string>& addresses = {"127.0.0.1"}) {
+    auto made = net::Server::listen(io_, addresses, 0, limits, std::move(handlers));
     if (!made) throw std::runtime_error(made.error().detail);
     server_ = std::move(*made);
     if (tls_version() != nullptr) server_->secure(test_tls());
