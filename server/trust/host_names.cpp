@@ -122,4 +122,19 @@ std::vector<std::string> interface_addresses() {
   return found;
 }
 
+std::string outward_address() {
+  const int udp = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (udp < 0) return {};
+  sockaddr_in far{};
+  far.sin_family = AF_INET;
+  far.sin_port = htons(9);
+  ::inet_pton(AF_INET, "192.0.2.1", &far.sin_addr);  // in documents only, so behind the last router
+  sockaddr_in own{};
+  socklen_t size = sizeof own;
+  const bool known = ::connect(udp, reinterpret_cast<const sockaddr*>(&far), sizeof far) == 0 &&
+                     ::getsockname(udp, reinterpret_cast<sockaddr*>(&own), &size) == 0;
+  ::close(udp);
+  return known ? address_of(reinterpret_cast<const sockaddr&>(own)) : std::string();
+}
+
 }  // namespace roverd::trust

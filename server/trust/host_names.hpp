@@ -23,5 +23,8 @@ base::Result<Names> all_names(std::string_view host, std::vector<std::string> ad
 /// As the system says now. Link-local IPv6 addresses are left out: no browser takes them.
 std::string host_name();
 std::vector<std::string> interface_addresses();
+/// The one that faces the rest of the world, by the routes; empty: there is no way there. Nothing
+/// is sent.
+std::string outward_address();
 
 }  // namespace roverd::trust

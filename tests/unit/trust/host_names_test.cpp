@@ -54,5 +54,12 @@ TEST(HostNames, ThisComputerHasLoopback) {
   EXPECT_NE(std::find(all.begin(), all.end(), "127.0.0.1"), all.end());
 }
 
+TEST(HostNames, TheAddressThatFacesTheWorldIsOneOfThisComputersOrThereIsNone) {
+  const auto all = interface_addresses();
+  const std::string outward = outward_address();
+  EXPECT_TRUE(outward.empty() || std::find(all.begin(), all.end(), outward) != all.end())
+      << outward;
+}
+
 }  // namespace
 }  // namespace roverd::trust
