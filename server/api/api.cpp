@@ -287,7 +287,8 @@ void Api::on_request(Request request, base::Time begun, Respond respond) {
     context->audit.answered(*of, response, Access::now());
     respond(std::move(response));
   };
-  if (auto refusal = guard_request(call->request, impl_->context->deps.tls))
+  if (auto refusal =
+          guard_request(call->request, impl_->context->deps.tls, impl_->context->deps.is_ours))
     return call->respond(std::move(*refusal));
   if (!impl_->context->deps.later || stops(path_of(call->request))) return impl_->handle(call);
   impl_->turns.push_back(std::move(call));
@@ -325,7 +326,8 @@ void Api::discard(std::string large) const {
 }
 
 std::optional<Response> Api::on_upgrade(const Request& request) {
-  if (auto refusal = guard_upgrade(request, impl_->context->deps.tls)) return refusal;
+  const Deps& deps = impl_->context->deps;
+  if (auto refusal = guard_upgrade(request, deps.tls, deps.is_ours)) return refusal;
   const auto parts = parse_target(target(request));
   if (!parts) return problem(parts.error());
   if (parts->path != std::string(kBase) + "/stream" || !impl_->stream) {

@@ -112,6 +112,8 @@ struct Deps {
   std::function<void(std::function<void()>)> when_estop_kept{};
   /// Every request comes through it, so cookies go that way only.
   bool tls = false;
+  /// How this computer is called, where it listens in a network. See guard.hpp.
+  IsOurs is_ours{};
   /// Who may do what; null: access control is off. Web thread only from now on.
   people::Book* people = nullptr;
   /// Whoever holds control and is not heard any more keeps it so long.

@@ -21,13 +21,8 @@ bool is_port(std::string_view text) noexcept {
          std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// The name without the port; empty if it is not "name" or "name:port".
-std::string_view host_name(std::string_view host) noexcept {
-  const auto from = host.starts_with('[') ? host.find(']') : 0;
-  if (from == std::string_view::npos) return {};
-  const auto colon = host.find(':', from);
-  if (colon == std::string_view::npos) return host;
-  return is_port(host.substr(colon + 1)) ? host.substr(0, colon) : std::string_view{};
+bool is_loopback_name(std::string_view name) noexcept {
+  return name == "localhost" || name == "127.0.0.1" || name == "::1";
 }
 
 bool changes_something(const Request& request) {
@@ -41,14 +36,21 @@ bool changes_something(const Request& request) {
   }
 }
 
-std::optional<Response> check_host(const Request& request) {
+std::optional<Response> check_host(const Request& request, const IsOurs& is_ours) {
   if (request.count(http::field::host) != 1) {
     return problem(400, "exactly one Host header is needed");
   }
   const std::string_view host = header(request, http::field::host);
-  if (is_loopback_host(host)) return std::nullopt;
-  return problem(403, "the host \"" + std::string(host) +
-                          "\" is not served: only 127.0.0.1, localhost and [::1] are");
+  const std::string name = bare_name(host);
+  // A page under a foreign name that was pointed here has that name as its host. An address cannot
+  // be pointed elsewhere: the one that the client came to is ours.
+  const bool served = is_loopback_name(name) || (is_ours && !name.empty() && is_ours(name)) ||
+                      (!name.empty() && name == header(request, "Roverd-Here"));
+  if (served) return std::nullopt;
+  return problem(403, "the host \"" + std::string(host) + "\" is not served: " +
+                          (is_ours ? "it is none of this computer's names and addresses; "
+                                     "server.names adds some"
+                                   : "only 127.0.0.1, localhost and [::1] are"));
 }
 
 std::optional<Response> check_origin(const Request& request, bool tls) {
@@ -65,34 +67,32 @@ std::optional<Response> check_origin(const Request& request, bool tls) {
 
 }  // namespace
 
-base::Result<void> check_bind_address(std::string_view address, bool lan) {
-  if (lan) {
-    return base::fail(base::Code::Invalid,
-                      "cannot listen in the network: access control is not there yet, so anybody "
-                      "in it could drive; on this computer --tls shows what it will be");
-  }
-  const bool v4 = address.starts_with("127.") && address.size() <= 15 &&
-                  std::all_of(address.begin(), address.end(),
-                              [](char c) { return c == '.' || (c >= '0' && c <= '9'); });
-  if (v4 || address == "::1") return {};
-  return base::fail(base::Code::Invalid,
-                    "cannot listen on \"" + std::string(address) +
-                        "\": access control is not there yet, so only loopback addresses "
-                        "(127.0.0.1, ::1) are allowed");
+std::string bare_name(std::string_view host) {
+  const bool v6 = host.starts_with('[');
+  const auto end = v6 ? host.find(']') : host.find(':');
+  if (v6 && end == std::string_view::npos) return {};
+  const std::string_view name = host.substr(v6, end - v6);
+  const std::string_view rest = host.substr(std::min(host.size(), v6 ? end + 1 : end));
+  const bool whole = rest.empty() || (rest.starts_with(':') && is_port(rest.substr(1)));
+  // Only an address of IPv6 has brackets and colons.
+  if (!whole || v6 != (name.find(':') != std::string_view::npos)) return {};
+  std::string bare(name);
+  std::transform(bare.begin(), bare.end(), bare.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return bare;
 }
 
-bool is_loopback_host(std::string_view host) noexcept {
-  const std::string_view name = host_name(host);
-  return same_text(name, "localhost") || name == "127.0.0.1" || name == "[::1]";
+bool is_loopback_host(std::string_view host) {
+  return is_loopback_name(bare_name(host));
 }
 
-std::optional<Response> guard_request(const Request& request, bool tls) {
-  if (auto refusal = check_host(request)) return refusal;
+std::optional<Response> guard_request(const Request& request, bool tls, const IsOurs& is_ours) {
+  if (auto refusal = check_host(request, is_ours)) return refusal;
   return changes_something(request) ? check_origin(request, tls) : std::nullopt;
 }
 
-std::optional<Response> guard_upgrade(const Request& request, bool tls) {
-  if (auto refusal = check_host(request)) return refusal;
+std::optional<Response> guard_upgrade(const Request& request, bool tls, const IsOurs& is_ours) {
+  if (auto refusal = check_host(request, is_ours)) return refusal;
   return check_origin(request, tls);
 }
 

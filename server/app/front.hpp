@@ -1,11 +1,13 @@
 #pragma once
 // What a client meets first where TLS is spoken: the certificate, the page by which it comes to
-// trust it (/pair), and, in the open, nothing but that page and the way to https.
+// trust it (/pair), and, in the open, nothing but that page and the way to https. Knows how this
+// computer is called now, and so under which names and addresses it can be reached.
 //
 //   worker ─look(): names, addresses, clock, files─▶ web thread ─take()─▶ new connections
 //
 // Web thread, but for look().
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -31,14 +33,25 @@ class Front {
                                                    const std::filesystem::path& data);
 
   const std::shared_ptr<net::Tls>& tls() const noexcept { return tls_; }
-  /// Under which clients reach the server: "https://127.0.0.1:8080".
-  void set_address(const std::string& address);
+  /// Once the server listens.
+  void set_port(std::uint16_t port);
+  /// Under which clients reach the server: "https://192.168.4.1:8080". Where it is reached from a
+  /// network, loopback's is the last choice.
+  std::string address() const;
+  /// One of the certificate's names, or of this computer's as it is called now, or a configured
+  /// one.
+  bool is_ours(const std::string& name) const;
 
+  struct Found {
+    trust::Identity identity;
+    trust::Names names;   ///< of this computer, and the configured ones
+    std::string outward;  ///< of its addresses, the one that others are likely to know
+  };
   /// The certificate as it must be now; reads files and may write them. A worker's thread, one at a
   /// time.
-  base::Result<trust::Identity> look() const;
+  base::Result<Found> look() const;
   /// What look() found.
-  void take(base::Result<trust::Identity> next);
+  void take(base::Result<Found> next);
   /// What was done since the last time, for people. The same trouble is told once.
   std::vector<trust::Told> news() { return std::exchange(news_, {}); }
 
@@ -54,12 +67,17 @@ class Front {
   Front(ServerSettings settings, std::filesystem::path folder)
       : settings_(std::move(settings)), folder_(std::move(folder)) {}
   void show(trust::Identity next);
-  bool is_ours(std::string_view host) const;
+  void call(trust::Names names, std::string outward);
+  std::string at(const std::string& address) const;
+  bool is_host(const net::Request& request) const;
 
   const ServerSettings settings_;
   const std::filesystem::path folder_;
+  std::uint16_t port_ = 0;
   trust::Identity identity_;
+  trust::Names shown_;  ///< in the certificate
   trust::Names names_;
+  std::string outward_;
   std::shared_ptr<net::Tls> tls_;
   pair::Facts facts_;
   std::vector<trust::Told> news_;

@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -89,11 +90,12 @@ std::vector<std::string> take_kept_parameters(roverd::Settings& settings,
 
 int serve(const roverd::Options& options) {
   roverd::hold_memory_back();
+  auto overrides = options.overrides;
+  if (options.tls) overrides.emplace_back("server.tls=true");
+  if (options.lan) overrides.emplace_back("server.listen=lan");
   auto settings = roverd::load_settings(
-      {.config = options.config, .vehicle = options.vehicle, .overrides = options.overrides});
+      {.config = options.config, .vehicle = options.vehicle, .overrides = std::move(overrides)});
   if (!settings) return say(kWrongInput, settings.error().detail);
-  if (options.tls) settings->server.tls = true;
-  if (options.lan) settings->server.listen = "lan";
   settings->reviewed = reviewed(options, *settings);
   std::error_code ec;
   std::filesystem::create_directories(options.data, ec);

@@ -45,7 +45,10 @@ void add_station(CLI::App& app, Options& o) {
   app.add_option("--port", o.port, "TCP port, instead of the config's; 0 chooses a free one")
       ->check(CLI::Range(0, 65535));
   app.add_flag("--tls", o.tls, "https instead of http, with a certificate of its own");
-  app.add_flag("--lan", o.lan, "listens on all addresses of this computer, with TLS");
+  app.add_flag(
+      "--lan", o.lan,
+      "for phones and others in the network: on all addresses of this computer, with TLS and "
+      "log-in");
   app.add_option("--set", o.overrides,
                  "one setting: key=value, e.g. nav.track.lookahead_min_m=0.8");
   app.add_option("--replay", o.replays,

@@ -30,6 +30,7 @@
 #include "base/log.hpp"
 #include "base/params.hpp"
 #include "config/learned.hpp"
+#include "config/reach.hpp"
 #include "net/assets.hpp"
 #include "net/doorbell.hpp"
 #include "net/hub.hpp"
@@ -53,7 +54,7 @@ constexpr base::Duration kGoodbye = std::chrono::milliseconds(500);
 constexpr base::Duration kKeepLearned = std::chrono::minutes(1);
 constexpr base::Duration kLookAtHost = std::chrono::seconds(1);
 constexpr base::Duration kTidyRecordings = std::chrono::minutes(1);
-constexpr base::Duration kLookAtNames = std::chrono::seconds(30);
+constexpr base::Duration kLookAtNames = std::chrono::seconds(5);
 /// A stop that was obeyed is confirmed then, whether the disk has taken it or hangs.
 constexpr base::Duration kKeepEstop = std::chrono::milliseconds(200);
 
@@ -70,7 +71,7 @@ struct Station::Impl {
   std::unique_ptr<store::Store> store;
   std::unique_ptr<BackupKeeper> backups;
   std::unique_ptr<services::Services> services;
-  people::Book people;  ///< web thread
+  people::Book people;           ///< web thread
   std::unique_ptr<Front> front;  ///< null: no TLS
   std::unique_ptr<api::Api> api;
   std::unique_ptr<net::Server> server;
@@ -115,6 +116,7 @@ struct Station::Impl {
   void watch_host();
   void watch_host_soon();
   void tell_certificate();
+  void tell_address();
   void watch_names_soon();
   void tell_alive();
   void halt() noexcept;
@@ -260,6 +262,9 @@ void Station::Impl::make_api(const Settings& settings, const Options& options) {
     return answer ? std::move(answer) : page.answer(request);
   };
   deps.tls = front != nullptr;
+  if (front && reaches_out(settings.server)) {
+    deps.is_ours = [this](const std::string& name) { return front->is_ours(name); };
+  }
   deps.figures = [this] {
     const net::Stats stats = server->stats();
     return api::NetFigures{.accepted = stats.accepted,
@@ -292,21 +297,22 @@ void Station::Impl::make_api(const Settings& settings, const Options& options) {
 }
 
 Result<void> Station::Impl::open_server(const Settings& settings, const Options& options) {
-  const std::string& bind = settings.server.bind;
-  const bool lan = settings.server.listen == "lan";
-  if (auto allowed = api::check_bind_address(bind, lan); !allowed) return allowed;
+  const auto addresses = addresses_of(settings.server);
   const int port = options.port.value_or(settings.server.port);
-  auto listening = net::Server::listen(web, bind, static_cast<std::uint16_t>(port), net::Limits{},
-                                       handlers_of(*api, front.get()));
+  auto listening = net::Server::listen(web, addresses, static_cast<std::uint16_t>(port),
+                                       net::Limits{}, handlers_of(*api, front.get()));
   if (!listening) return tl::unexpected(listening.error());
   server = std::move(*listening);
   api->attach(stream_of(server->hub()));
-  const bool v6 = bind.find(':') != std::string::npos;
-  address = (front ? "https://" : "http://") + (v6 ? "[" + bind + "]" : bind) + ":" +
-            std::to_string(server->port());
-  if (!front) return {};
-  server->secure(front->tls());
-  front->set_address(address);
+  if (front) {
+    server->secure(front->tls());
+    front->set_port(server->port());
+    address = front->address();
+    return {};
+  }
+  const std::string& own = addresses.front();
+  const bool v6 = own.find(':') != std::string::npos;
+  address = "http://" + (v6 ? "[" + own + "]" : own) + ":" + std::to_string(server->port());
   return {};
 }
 
@@ -475,18 +481,27 @@ void Station::Impl::tell_certificate() {
   }
 }
 
+/// For whoever stands before the terminal.
+void Station::Impl::tell_address() {
+  if (front->address() == address) return;
+  address = front->address();
+  std::printf("now at %s\n", address.c_str());
+  std::fflush(stdout);
+}
+
 /// Names, addresses and clock change while the robot runs.
 void Station::Impl::watch_names_soon() {
   if (!front) return;
   names_timer.expires_after(kLookAtNames);
   names_timer.async_wait([this](const boost::system::error_code& ec) {
     if (ec) return;
-    const auto found = std::make_shared<std::optional<Result<trust::Identity>>>();
+    const auto found = std::make_shared<std::optional<Result<Front::Found>>>();
     workers.must_run(
         net::Lane::Small, [this, found] { *found = front->look(); },
         [this, found] {
           if (*found) front->take(std::move(**found));
           tell_certificate();
+          tell_address();
           watch_names_soon();
         });
   });

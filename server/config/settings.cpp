@@ -9,6 +9,7 @@
 #include <toml++/toml.h>
 
 #include "base/params.hpp"
+#include "config/reach.hpp"
 
 namespace roverd {
 namespace {
@@ -206,11 +207,6 @@ Result<void> check_robot(const Settings& s) {
 
 Result<void> check_server(const Settings& s) {
   const ServerSettings& server = s.server;
-  if (server.listen != "loopback" && server.listen != "lan") {
-    return base::fail(
-        base::Code::Invalid,
-        s.where("server.listen") + " must be loopback or lan, is \"" + server.listen + "\"");
-  }
   if (server.tls_certificate.empty() == server.tls_key.empty()) return {};
   return base::fail(base::Code::Invalid,
                     s.where(server.tls_key.empty() ? "server.tls_certificate" : "server.tls_key") +
@@ -295,6 +291,7 @@ Result<Settings> load_settings(const SettingsSource& source) {
     if (auto done = set_all(settings, *layer); !done) return tl::unexpected(done.error());
   }
   if (auto good = check_all(settings); !good) return tl::unexpected(good.error());
+  if (auto done = settle_server(settings); !done) return tl::unexpected(done.error());
   return settings;
 }
 

@@ -36,20 +36,22 @@ struct ServerSettings {
 
 template <class V>
 void fields(V& v, ServerSettings& p) {
-  v("bind", p.bind, "address to listen on; only loopback until access control is in place");
+  v("bind", p.bind,
+    "address of loopback to listen on; of a network only where tls and access are true");
   v("listen", p.listen,
-    "loopback: on the address of bind; lan: on all addresses of this computer, with TLS (refused "
-    "until access control is in place)");
+    "loopback: on the address of bind; lan: on every address that this computer has or will have; "
+    "or addresses with blanks between them. What reaches into a network turns on tls and access");
   v("port", p.port, 0, 65535, "TCP port; 0 chooses a free one");
   v("tls", p.tls, "https instead of http; how a phone comes to trust it: docs/phone.md");
   v("tls_certificate", p.tls_certificate,
     "certificate and chain, a PEM file; empty: roverd makes its own");
   v("tls_key", p.tls_key, "the key of that certificate, a PEM file that only its owner can read");
   v("names", p.names,
-    "more names and addresses of this computer for its certificate, with blanks between them");
+    "more names and addresses of this computer, for its certificate and as hosts that it answers "
+    "to, with blanks between them");
   v("access", p.access,
     "true: people log in and scripts show a token; the first admin is made with the code that "
-    "roverd prints. May be false on loopback only");
+    "roverd prints. Always on where listen reaches into a network");
   v("control_grace_s", p.control_grace_s, 2.0, 300.0,
     "with access: whoever has control and is not heard any more (no stream, no call) keeps it so "
     "long");

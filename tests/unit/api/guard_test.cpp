@@ -16,18 +16,6 @@ unsigned status(const std::optional<Response>& refusal) {
   return refusal ? refusal->result_int() : 0;
 }
 
-TEST(BindAddress, OnlyLoopbackIsAllowedAndTheReasonIsSaid) {
-  EXPECT_TRUE(check_bind_address("127.0.0.1"));
-  EXPECT_TRUE(check_bind_address("127.0.0.53"));
-  EXPECT_TRUE(check_bind_address("::1"));
-  for (const char* address : {"0.0.0.0", "::", "192.168.1.5", "10.0.0.1", "127.evil.example", "",
-                              "localhost", "1127.0.0.1"}) {
-    const auto result = check_bind_address(address);
-    ASSERT_FALSE(result) << address;
-    EXPECT_NE(result.error().detail.find("access control is not there yet"), std::string::npos);
-  }
-}
-
 TEST(Host, LoopbackNamesWithAnyPortPass) {
   for (const char* host :
        {"127.0.0.1", "127.0.0.1:8080", "localhost", "LOCALHOST:1", "[::1]", "[::1]:65535"}) {
@@ -86,9 +74,44 @@ TEST(Guard, UnderTlsOnlyThePageThatCameThroughItIsOurs) {
   }
 }
 
-TEST(Guard, TheNetworkIsRefusedUntilThereIsAccessControl) {
-  EXPECT_TRUE(check_bind_address("127.0.0.1"));
-  EXPECT_FALSE(check_bind_address("127.0.0.1", true));
+TEST(Host, ABareNameHasNoPortNoBracketsAndSmallLetters) {
+  EXPECT_EQ(bare_name("Rover.local:8080"), "rover.local");
+  EXPECT_EQ(bare_name("192.168.4.1"), "192.168.4.1");
+  EXPECT_EQ(bare_name("[FD00::2]:443"), "fd00::2");
+  for (const char* host : {"", ":80", "rover:", "rover:x", "[rover]", "[::1", "::1", "[::1]x"}) {
+    EXPECT_EQ(bare_name(host), "") << host;
+  }
+}
+
+TEST(Guard, InANetworkItsOwnNamesPassAndAForeignOneThatIsPointedHereDoesNot) {
+  const IsOurs ours = [](const std::string& name) { return name == "rover.local"; };
+  const auto get = [&ours](const char* host) {
+    return status(guard_request(request(http::verb::get, host), true, ours));
+  };
+  EXPECT_EQ(get("rover.local:8080"), 0u);
+  EXPECT_EQ(get("ROVER.local"), 0u);
+  EXPECT_EQ(get("localhost:8080"), 0u);
+  EXPECT_EQ(get("rover.local.evil.example"), 403u);
+  EXPECT_EQ(get("evil.example"), 403u);
+  EXPECT_EQ(get(""), 403u);
+  const auto upgrade = [&ours](const char* host, const char* origin) {
+    return status(guard_upgrade(request(http::verb::get, host, origin), true, ours));
+  };
+  EXPECT_EQ(upgrade("rover.local", "https://rover.local"), 0u);
+  EXPECT_EQ(upgrade("rover.local", "https://evil.example"), 403u);
+  EXPECT_EQ(upgrade("evil.example", "https://evil.example"), 403u);
+}
+
+TEST(Guard, TheAddressThatARequestCameToIsOursHoweverNewItIs) {
+  const auto came_to = [](const char* here, const char* host) {
+    Request out = request(http::verb::get, host);
+    out.set("Roverd-Here", here);
+    return status(guard_request(out, true, [](const std::string&) { return false; }));
+  };
+  EXPECT_EQ(came_to("192.168.4.1", "192.168.4.1:8080"), 0u);
+  EXPECT_EQ(came_to("fd00::2", "[fd00::2]:8080"), 0u);
+  EXPECT_EQ(came_to("192.168.4.1", "192.168.4.2"), 403u);
+  EXPECT_EQ(came_to("", ""), 403u);
 }
 
 }  // namespace
