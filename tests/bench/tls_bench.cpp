@@ -42,7 +42,9 @@ double used_s() {
 net::Handlers handlers(net::Hub*& hub) {
   net::Handlers h;
   h.on_upgrade = [](const net::Request&) { return std::optional<net::Response>{}; };
-  h.on_client = [&hub](net::ClientId client) { hub->subscribe(client, {{"state", kRate_hz}}); };
+  h.on_client = [&hub](net::ClientId client, const net::Request&) {
+    hub->subscribe(client, {{"state", kRate_hz}});
+  };
   h.on_text = [](net::ClientId, base::Time, std::string_view) {};
   h.on_gone = [](net::ClientId) {};
   return h;
