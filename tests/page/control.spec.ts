@@ -5,7 +5,7 @@ import type { Browser, Page } from '@playwright/test';
 import { press } from './page';
 import { expect, test } from './station';
 
-test.use({ access: true });
+test.use({ more: ['--set', 'server.access=true'] });
 
 const PASSWORD = 'four tractors in a barn';
 
