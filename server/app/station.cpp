@@ -299,8 +299,10 @@ void Station::Impl::make_api(const Settings& settings, const Options& options) {
 Result<void> Station::Impl::open_server(const Settings& settings, const Options& options) {
   const auto addresses = addresses_of(settings.server);
   const int port = options.port.value_or(settings.server.port);
-  auto listening = net::Server::listen(web, addresses, static_cast<std::uint16_t>(port),
-                                       net::Limits{}, handlers_of(*api, front.get()));
+  net::Limits limits;
+  limits.per_address = settings.server.connections_per_address;
+  auto listening = net::Server::listen(web, addresses, static_cast<std::uint16_t>(port), limits,
+                                       handlers_of(*api, front.get()));
   if (!listening) return tl::unexpected(listening.error());
   server = std::move(*listening);
   api->attach(stream_of(server->hub()));

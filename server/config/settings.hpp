@@ -31,6 +31,7 @@ struct ServerSettings {
   std::string names;
   bool access = false;
   double control_grace_s = 10.0;
+  int connections_per_address = 64;
   std::string log_level = "info";
 };
 
@@ -55,6 +56,9 @@ void fields(V& v, ServerSettings& p) {
   v("control_grace_s", p.control_grace_s, 2.0, 300.0,
     "with access: whoever has control and is not heard any more (no stream, no call) keeps it so "
     "long");
+  v("connections_per_address", p.connections_per_address, 0, 512,
+    "so many connections of one other address at the same time, streams included; beyond them only "
+    "what stops is served. 0: no limit. 127.0.0.1 and ::1 have none");
   v("log_level", p.log_level, "debug, info, warning or error");
 }
 

@@ -13,6 +13,7 @@
 #include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 
+#include "net/address.hpp"
 #include "net/arrival.hpp"
 #include "net/framing.hpp"
 #include "net/http_date.hpp"
@@ -43,15 +44,6 @@ constexpr std::size_t kDiscardBytes = 64 * 1024 * 1024;
 bool bodyless(http::status status) {
   return status == http::status::no_content || status == http::status::not_modified ||
          http::to_status_class(status) == http::status_class::informational;
-}
-
-/// A client of IPv4 is one, also where a socket of IPv6 takes it in.
-std::string address_text(const boost::asio::ip::address& address) {
-  namespace ip = boost::asio::ip;
-  if (address.is_v6() && address.to_v6().is_v4_mapped()) {
-    return ip::make_address_v4(ip::v4_mapped, address.to_v6()).to_string();
-  }
-  return address.to_string();
 }
 
 bool equals_no_case(boost::beast::string_view a, boost::beast::string_view b) {
@@ -336,7 +328,7 @@ void Connection::upgrade() {
   const auto session = std::make_shared<Session>(
       peers_, std::move(wire_), std::move(early),
       reserve_ ? std::optional(base::steady_now() + peers_->limits.reserve_time) : std::nullopt);
-  peers_->add(session.get(), session);
+  peers_->add(session.get(), session, peers_->from_of(this));
   session->accept(std::move(request));
 }
 

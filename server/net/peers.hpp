@@ -8,7 +8,9 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include <boost/asio/io_context.hpp>
@@ -44,15 +46,22 @@ class Peers {
   Peers(boost::asio::io_context& io_context, Limits with, Handlers calls)
       : io(io_context), limits(with), handlers(std::move(calls)), hub(io_context) {}
 
-  void add(Peer* raw, std::weak_ptr<Peer> peer) { open_[raw] = std::move(peer); }
+  /// @param from as counted_as has it (address.hpp)
+  void add(Peer* raw, std::weak_ptr<Peer> peer, std::string from) {
+    open_[raw] = {std::move(peer), std::move(from)};
+  }
   void remove(Peer* raw) { open_.erase(raw); }
   int count() const noexcept { return static_cast<int>(open_.size()); }
+  std::string from_of(Peer* raw) const {
+    const auto found = open_.find(raw);
+    return found == open_.end() ? std::string() : found->second.from;
+  }
 
   /// Safe against peers that come and go meanwhile.
   void each(const std::function<void(Peer&)>& call) {
     std::vector<std::weak_ptr<Peer>> all;
     all.reserve(open_.size());
-    for (const auto& [raw, peer] : open_) all.push_back(peer);
+    for (const auto& [raw, one] : open_) all.push_back(one.peer);
     for (const auto& peer : all) {
       if (const auto alive = peer.lock()) call(*alive);
     }
@@ -62,20 +71,28 @@ class Peers {
     return static_cast<int>(std::count_if(
         open_.begin(), open_.end(), [](const auto& peer) { return peer.first->on_reserve(); }));
   }
+  /// Of one address, on the reserve or beside it.
+  int count_of(const std::string& from, bool reserve) const {
+    return static_cast<int>(
+        std::count_if(open_.begin(), open_.end(), [&from, reserve](const auto& entry) {
+          return entry.second.from == from && entry.first->on_reserve() == reserve;
+        }));
+  }
   /// Nearly full: no time for half a header.
   bool crowded() const noexcept { return count() >= limits.connections - limits.connections / 4; }
 
   /// Makes room for a newcomer: whoever has waited longest without a request goes. A crowd of
   /// silent or dawdling sockets must not keep out the one who is in a hurry.
+  /// @param from one address only; empty: any
   /// @return false if all are busy.
-  bool drop_longest_waiting(bool reserve) {
+  bool drop_longest_waiting(bool reserve, const std::string& from = {}) {
     std::shared_ptr<Peer> longest;
     std::optional<base::Time> until;
-    for (const auto& [raw, peer] : open_) {
-      if (raw->on_reserve() != reserve) continue;
+    for (const auto& [raw, one] : open_) {
+      if (raw->on_reserve() != reserve || (!from.empty() && one.from != from)) continue;
       const auto waits = raw->gives_way();
       if (!waits || (until && *until <= *waits)) continue;
-      auto alive = peer.lock();
+      auto alive = one.peer.lock();
       if (!alive) continue;
       longest = std::move(alive);
       until = waits;
@@ -118,7 +135,11 @@ class Peers {
  private:
   static constexpr base::Duration kHung = 2 * kSweep;
 
-  std::unordered_map<Peer*, std::weak_ptr<Peer>> open_;
+  struct Open {
+    std::weak_ptr<Peer> peer;
+    std::string from;
+  };
+  std::unordered_map<Peer*, Open> open_;
   base::Time swept_ = base::steady_now();  ///< the web thread was awake then
   base::Time hung_from_;
   base::Time caught_up_;

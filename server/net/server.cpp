@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 #include <new>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <netinet/in.h>
 
+#include "net/address.hpp"
 #include "net/connection.hpp"
 #include "net/hub.hpp"
 #include "net/peers.hpp"
@@ -80,6 +82,9 @@ struct Server::Impl : std::enable_shared_from_this<Server::Impl> {
   void accepted(Listener& at, error_code ec, tcp::socket socket);
   void accept_failed(Listener& at, error_code why);
   void welcome(tcp::socket socket);
+  bool is_full(int reserved);
+  bool has_its_share(const std::string& from);
+  bool room_on_reserve(int reserved, const std::string& from);
   void sweep();
   void stop(base::Duration grace, std::function<void()> done);
   void shut();
@@ -176,15 +181,34 @@ void Server::Impl::accept_failed(Listener& at, error_code why) {
 void Server::Impl::welcome(tcp::socket socket) {
   ++peers->stats.accepted;
   const bool spare = std::exchange(on_spare, false);
+  error_code gone;
+  const std::string from = counted_as(socket.remote_endpoint(gone).address());
   const int reserved = peers->on_reserve();
-  const bool full =
-      peers->count() - reserved >= peers->limits.connections && !peers->drop_longest_waiting(false);
-  const bool reserve = spare || full;
+  const bool reserve = spare || has_its_share(from) || is_full(reserved);
   if (reserve) ++peers->stats.refused;
-  if (reserve && reserved >= peers->limits.reserve && !peers->drop_longest_waiting(true)) return;
+  if (reserve && !room_on_reserve(reserved, from)) return;
   const auto connection = std::make_shared<Connection>(peers, Wire(std::move(socket)));
-  peers->add(connection.get(), connection);
+  peers->add(connection.get(), connection, from);
   connection->start(reserve);
+}
+
+bool Server::Impl::is_full(int reserved) {
+  return peers->count() - reserved >= peers->limits.connections &&
+         !peers->drop_longest_waiting(false);
+}
+
+/// As many of one address as may be, and all of them busy.
+bool Server::Impl::has_its_share(const std::string& from) {
+  const int most = peers->limits.per_address;
+  if (most == 0 || from.empty() || peers->count_of(from, false) < most) return false;
+  return !peers->drop_longest_waiting(false, from);
+}
+
+bool Server::Impl::room_on_reserve(int reserved, const std::string& from) {
+  const int most = std::max(1, peers->limits.reserve / 4);
+  const bool shared = peers->limits.per_address > 0 && !from.empty();
+  if (shared && peers->count_of(from, true) >= most) return peers->drop_longest_waiting(true, from);
+  return reserved < peers->limits.reserve || peers->drop_longest_waiting(true);
 }
 
 void Server::Impl::sweep() {

@@ -14,6 +14,9 @@
 // half a header, the oldest first. Are all busy, newcomers sit on a reserve: they have a second to
 // say what they want, and only what is urgent is served (on a WebSocket: all of that second). For
 // want of descriptors it is the same: some are held back and opened for the reserve (spares.hpp).
+//
+// So it is with one address, too: beyond its share its own waiting ones go, then it sits on the
+// reserve, of which it may have a quarter.
 
 #include <cstdint>
 #include <functional>
@@ -55,6 +58,8 @@ struct Limits {
   std::size_t message_bytes = 64 * 1024;  ///< one WebSocket message from a client
   int connections = 512;                  ///< fewer where the system allows fewer descriptors
   int reserve = 32;                       ///< more than those, for what is urgent
+  /// Of one address, but 127.0.0.1 and ::1; 0: as many as there may be.
+  int per_address = 0;
   base::Duration reserve_time = std::chrono::seconds(1);
   base::Duration idle = std::chrono::seconds(30);
   /// TLS's handshake must be over by then. Header and body must be in by then (a long body may take
@@ -109,7 +114,7 @@ struct Handlers {
 
 struct Stats {
   std::uint64_t accepted = 0;
-  std::uint64_t refused = 0;    ///< beyond the number of connections
+  std::uint64_t refused = 0;    ///< beyond the number of connections, in all or of one address
   std::uint64_t timed_out = 0;  ///< too slow or silent for too long
   std::uint64_t requests = 0;
   int connections = 0;  ///< open now, WebSockets included

@@ -81,7 +81,7 @@ struct Secret {
 
 namespace {
 
-int connected(const std::string& address, std::uint16_t port) {
+int connected(const std::string& address, std::uint16_t port, const std::string& source) {
   sockaddr_in v4{};
   v4.sin_family = AF_INET;
   v4.sin_port = htons(port);
@@ -91,6 +91,14 @@ int connected(const std::string& address, std::uint16_t port) {
   const bool old = ::inet_pton(AF_INET, address.c_str(), &v4.sin_addr) == 1;
   ::inet_pton(AF_INET6, address.c_str(), &v6.sin6_addr);
   const int handle = ::socket(old ? AF_INET : AF_INET6, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  if (!source.empty()) {
+    sockaddr_in from{};
+    from.sin_family = AF_INET;
+    ::inet_pton(AF_INET, source.c_str(), &from.sin_addr);
+    if (::bind(handle, reinterpret_cast<const sockaddr*>(&from), sizeof from) != 0) {
+      throw std::runtime_error("no such source: " + source);
+    }
+  }
   const int refused = old ? ::connect(handle, reinterpret_cast<const sockaddr*>(&v4), sizeof v4)
                           : ::connect(handle, reinterpret_cast<const sockaddr*>(&v6), sizeof v6);
   if (refused == 0) return handle;
@@ -100,7 +108,8 @@ int connected(const std::string& address, std::uint16_t port) {
 
 }  // namespace
 
-Client::Client(std::uint16_t port, const std::string& address) : handle_(connected(address, port)) {
+Client::Client(std::uint16_t port, const std::string& address, const std::string& source)
+    : handle_(connected(address, port, source)) {
   if (tls_version() == nullptr) return;
   std::signal(SIGPIPE, SIG_IGN);  // OpenSSL does not ask send() to be silent
   secret_ = std::make_unique<Secret>(handle_);

@@ -34,7 +34,9 @@ class Client {
   static constexpr std::chrono::milliseconds kPatience{120'000};
 
   /// Throws std::runtime_error if nobody listens.
-  explicit Client(std::uint16_t port, const std::string& address = "127.0.0.1");
+  /// @param source from which of this computer's addresses; empty: whichever the system takes
+  explicit Client(std::uint16_t port, const std::string& address = "127.0.0.1",
+                  const std::string& source = {});
   ~Client();
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
