@@ -8,6 +8,7 @@
 
 #include "api/context.hpp"
 #include "api/idempotency.hpp"
+#include "api/shares.hpp"
 #include "api/stream.hpp"
 #include "base/log.hpp"
 #include "mission/json/json.hpp"
@@ -25,6 +26,9 @@ constexpr const char* kDocsPolicy =
 constexpr std::string_view kDocsFile = "/docs.html";
 /// Requests that may wait for the robot or the store at the same time.
 constexpr int kUnanswered = 256;
+/// Of one user. There must be room for the others.
+constexpr int kUnansweredEach = 48;
+constexpr int kStreamsEach = 64;
 
 /// The path inside the interface; empty if the page is meant. A few addresses also work without the
 /// base path, as the tools that use them expect.
@@ -70,6 +74,7 @@ struct Api::Impl {
   void next_turn();
   void route(const CallPtr& call);
   void serve_page(const CallPtr& call, std::string_view path);
+  bool is_too_much(const Call& call) const;
   void watch(const CallPtr& call, const Route& route);
   void look_at_people();
 
@@ -77,6 +82,7 @@ struct Api::Impl {
   Idempotency idempotency;
   std::unique_ptr<StreamTexts> stream;
   int unanswered = 0;
+  Shares unanswered_of{kUnansweredEach};
   std::deque<CallPtr> turns;  ///< requests that wait for theirs
   bool turn_comes = false;    ///< handle_next is on its way
   std::map<std::string, std::uint64_t> driver_counts;
@@ -166,8 +172,11 @@ void Api::Impl::serve_page(const CallPtr& call, std::string_view path) {
 /// document does not promise.
 void Api::Impl::watch(const CallPtr& call, const Route& route) {
   ++unanswered;
-  call->respond = [this, &route, respond = std::move(call->respond)](Response response) {
+  const std::string user = call->who ? call->who->user : std::string();
+  unanswered_of.take(user);
+  call->respond = [this, &route, user, respond = std::move(call->respond)](Response response) {
     --unanswered;
+    unanswered_of.give_back(user);
     const auto& known = route.statuses;
     if (std::find(known.begin(), known.end(), response.result_int()) == known.end()) {
       const auto method = http::to_string(route.method);
@@ -178,6 +187,10 @@ void Api::Impl::watch(const CallPtr& call, const Route& route) {
     }
     respond(std::move(response));
   };
+}
+
+bool Api::Impl::is_too_much(const Call& call) const {
+  return unanswered >= kUnanswered || (call.who && unanswered_of.used_up(call.who->user));
 }
 
 void Api::Impl::route(const CallPtr& call) {
@@ -212,7 +225,7 @@ void Api::Impl::route(const CallPtr& call) {
   if (acts(*context, *match.route, *call) && !context->control.may(caller)) {
     return call->respond(problem_response(403, context->control.problem()));
   }
-  if (unanswered >= kUnanswered && !stops(path)) {
+  if (is_too_much(*call) && !stops(path)) {
     return call->respond(problem(429, "too many requests wait for an answer"));
   }
   watch(call, *match.route);
@@ -336,6 +349,9 @@ std::optional<Response> Api::on_upgrade(const Request& request) {
   if (auto refusal = guard_handshake(request)) return refusal;
   std::optional<people::Who> who;
   auto refusal = impl_->context->access.check_upgrade(request, who);
+  if (!refusal && who && impl_->stream->streams_of(who->user) >= kStreamsEach) {
+    refusal = problem(429, "this user has " + std::to_string(kStreamsEach) + " streams already");
+  }
   const int status = refusal ? static_cast<int>(refusal->result_int()) : 101;
   impl_->context->audit.upgraded(request, who, status, Access::now());
   return refusal;

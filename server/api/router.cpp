@@ -104,7 +104,7 @@ void Router::add(Route route) {
   route.need = need_of(name).value_or(Need::Admin);
   route.control = needs_control(name);
   if (route.need != Need::Anyone) {
-    for (const unsigned refusal : {401U, 403U}) {
+    for (const unsigned refusal : {401U, 403U, 429U}) {
       if (std::find(route.statuses.begin(), route.statuses.end(), refusal) == route.statuses.end())
         route.statuses.push_back(refusal);
     }

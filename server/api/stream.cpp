@@ -127,6 +127,12 @@ bool StreamTexts::may(ClientId id, Client& client, const Json& message) {
   return false;
 }
 
+int StreamTexts::streams_of(const std::string& user) const {
+  return static_cast<int>(std::count_if(
+      clients_.begin(), clients_.end(),
+      [&user](const auto& entry) { return entry.second.who && entry.second.who->user == user; }));
+}
+
 void StreamTexts::on_gone(ClientId client) {
   const auto found = clients_.find(client);
   if (found == clients_.end()) return;

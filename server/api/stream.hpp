@@ -29,6 +29,7 @@ class StreamTexts {
   /// @param begun when its first byte was there
   void on_text(ClientId client, base::Time begun, std::string_view text);
   void on_gone(ClientId client);
+  int streams_of(const std::string& user) const;
   /// That one has a stream open.
   bool is_linked(const people::Driver& who) const;
   /// Tells everyone; sticks of those who do not hold control any more are dropped.

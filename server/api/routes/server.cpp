@@ -71,7 +71,7 @@ void add_server_routes(const ContextPtr& c) {
                  }});
   c->router.add(
       {get, "/openapi.json", {200, 304}, [c](const CallPtr& call) { answer_openapi(*c, call); }});
-  c->router.add({get, "/stream", {101, 400, 403, 426, 503}, [](const CallPtr& call) {
+  c->router.add({get, "/stream", {101, 400, 403, 426, 429, 503}, [](const CallPtr& call) {
                    Response response = problem(426, "this address is a WebSocket");
                    response.set(http::field::upgrade, "websocket");
                    call->respond(std::move(response));
