@@ -16,6 +16,8 @@ using people::Who;
 
 /// A refusal is small; anything larger is not one of ours.
 constexpr std::size_t kLongestProblem = 8192;
+/// Anyone may, known or not, as often as they like.
+constexpr std::string_view kStop = "POST /vehicle/estop";
 
 std::string credential_of(const std::optional<Who>& who) {
   if (!who) return {};
@@ -68,9 +70,9 @@ void Audit::answered(const Call& call, const Response& response, Now now) {
   deed.call = method_of(method) + " " + (call.operation.empty() ? "(unknown)" : call.operation);
   deed.target = asked_for(call.request);
   deed.status = status;
-  if (status < 400) return keep_(std::move(deed));
-  deed.detail = detail_of(response);
-  refused(std::move(deed), now.mono);
+  if (status < 400 && deed.call != kStop) return keep_(std::move(deed));
+  if (status >= 400) deed.detail = detail_of(response);
+  count(std::move(deed), now.mono);
 }
 
 void Audit::upgraded(const Request& request, const std::optional<Who>& who, int status, Now now) {
@@ -82,8 +84,7 @@ void Audit::upgraded(const Request& request, const std::optional<Who>& who, int 
   deed.call = "GET /stream";
   deed.target = asked_for(request);
   deed.status = status;
-  if (status < 400) return keep_(std::move(deed));
-  refused(std::move(deed), now.mono);
+  count(std::move(deed), now.mono);
 }
 
 void Audit::stopped(const std::optional<Who>& who, const std::string& address, std::string_view how,
@@ -96,7 +97,7 @@ void Audit::stopped(const std::optional<Who>& who, const std::string& address, s
   deed.call = "STREAM " + std::string(how);
   deed.status = 202;  // heard; the robot's events tell what came of it
   // A page says its stop again until it has been heard.
-  refused(std::move(deed), now.mono);
+  count(std::move(deed), now.mono);
 }
 
 void Audit::control(const people::Lease::Notice& notice, Now now) {
@@ -115,7 +116,7 @@ void Audit::control(const people::Lease::Notice& notice, Now now) {
 }
 
 /// The first of a kind at once, what follows together.
-void Audit::refused(Deed deed, base::Time now) {
+void Audit::count(Deed deed, base::Time now) {
   std::string kind = deed.user + '\n' + deed.credential + '\n' + deed.address + '\n' + deed.call +
                      '\n' + std::to_string(deed.status);
   if (!counted_.contains(kind) && counted_.size() >= kKinds) {
@@ -124,7 +125,7 @@ void Audit::refused(Deed deed, base::Time now) {
     others.time = deed.time;
     others.call = "OTHERS";
     others.status = deed.status;
-    others.detail = "refused calls of many kinds or addresses at once";
+    others.detail = "calls of many kinds or addresses at once";
     deed = std::move(others);
   }
   const auto [at, is_new] = counted_.try_emplace(std::move(kind), Counted{deed, now});

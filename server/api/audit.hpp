@@ -1,7 +1,8 @@
 #pragma once
 // What is written down of the calls: every change and every log-in with its answer, and what was
-// refused. What is refused again and again (a forgotten log-in, a wrong password, an attack)
-// becomes one row with a number every ten seconds, so that nobody can fill the disk by asking.
+// refused. What is refused again and again (a forgotten log-in, a wrong password, an attack), and
+// what anyone or any viewer may do again and again (stop, open a stream), becomes one row with a
+// number every ten seconds, so that nobody can fill the disk by asking.
 // Never a body, a query, a cookie, a token or a password. Web thread only.
 
 #include <functional>
@@ -19,7 +20,7 @@ class Audit {
  public:
   using Keep = std::function<void(people::Deed)>;
   static constexpr base::Duration kTogether = std::chrono::seconds(10);
-  /// Kinds of refusals that are counted apart; the others are counted together.
+  /// Kinds that are counted apart; the others are counted together.
   static constexpr std::size_t kKinds = 256;
 
   explicit Audit(Keep keep) : keep_(std::move(keep)) {}
@@ -44,7 +45,8 @@ class Audit {
     people::Deed deed;  ///< with the number of those that were not written down yet
     base::Time since;
   };
-  void refused(people::Deed deed, base::Time now);
+  /// The first of a kind at once, what follows together.
+  void count(people::Deed deed, base::Time now);
   void write(Counted& counted);
 
   Keep keep_;

@@ -80,6 +80,21 @@ TEST_F(AuditApi, CountsWhatIsRefusedAgainAndAgain) {
   EXPECT_EQ(read, 20);
 }
 
+TEST_F(AuditApi, CountsStopsAndStreamsTooSoThatNobodyFillsTheDiskWithThem) {
+  for (int i = 0; i < 50; ++i) (void)as("nobody", "POST", "/vehicle/estop");
+  for (int i = 0; i < 30; ++i) {
+    Client viewer(house.port());
+    ASSERT_EQ(viewer.upgrade("/api/v1/stream", as("viewer")), 101u);
+  }
+  const Json all = rows();
+  EXPECT_LE(all.size(), 6u) << all.dump(1);
+  int stops = 0;
+  for (const Json& row : all) {
+    if (row["call"] == "POST /vehicle/estop") stops += row["times"].get<int>();
+  }
+  EXPECT_EQ(stops, 50);
+}
+
 TEST_F(AuditApi, HasStreamsAndTheStopsOnThem) {
   Client viewer(house.port());
   ASSERT_EQ(viewer.upgrade("/api/v1/stream", as("token of viewer")), 101u);
