@@ -32,6 +32,8 @@ void Book::load(Everybody kept, Now now) {
   }
   tokens_.clear();
   for (Token& row : kept.tokens) tokens_.push_back({std::move(row), now.mono});
+  devices_ = std::move(kept.devices);
+  invited_.clear();
   loaded_ = true;
 }
 
@@ -70,7 +72,8 @@ Result<void> Book::add_user(const std::string& name, Role role, std::string pass
 }
 
 Result<void> Book::change_user(const std::string& name, std::optional<Role> role,
-                               std::optional<std::string> password_hash, const std::string& keep) {
+                               std::optional<std::string> password_hash, const std::string& keep,
+                               const std::string& keep_device) {
   User* const user = find(name);
   if (user == nullptr) return no_such("user");
   if (role && *role != Role::Admin && is_last_admin(*user)) {
@@ -79,7 +82,9 @@ Result<void> Book::change_user(const std::string& name, std::optional<Role> role
   if (role) user->role = *role;
   if (password_hash) {
     user->password = std::move(*password_hash);
+    drop_invitations(name);
     drop_sessions([&](const Live& s) { return s.row.user == name && s.row.id != keep; });
+    drop_devices([&](const Device& d) { return d.user == name && d.id != keep_device; });
   }
   change_.now.users.push_back(*user);
   return {};
@@ -91,7 +96,9 @@ Result<void> Book::remove_user(const std::string& name) {
   if (is_last_admin(*user) && users_.size() > 1) {
     return base::fail(Code::Conflict, "\"" + name + "\" is the only admin, and one is needed");
   }
+  drop_invitations(name);
   drop_sessions([&](const Live& s) { return s.row.user == name; });
+  drop_devices([&](const Device& d) { return d.user == name; });
   drop_tokens([&](const Token& t) { return t.user == name; });
   std::erase_if(users_, [&](const User& u) { return u.name == name; });
   std::erase_if(change_.now.users, [&](const User& u) { return u.name == name; });
@@ -122,6 +129,12 @@ Result<void> Book::end_session(const std::string& user, const std::string& id) {
   const std::size_t before = sessions_.size();
   drop_sessions([&](const Live& s) { return s.row.user == user && s.row.id == id; });
   return sessions_.size() < before ? Result<void>{} : no_such("session");
+}
+
+std::size_t Book::end_other_sessions(const std::string& user, const std::string& keep) {
+  const std::size_t before = sessions_.size();
+  drop_sessions([&](const Live& s) { return s.row.user == user && s.row.id != keep; });
+  return before - sessions_.size();
 }
 
 // ---- tokens

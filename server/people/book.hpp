@@ -1,9 +1,10 @@
 #pragma once
-// The book of users, sessions and tokens: who is it that asks, and what may they do. Pure but for
-// chance: time is an argument, passwords are hashed elsewhere (they take long), rows are kept
-// elsewhere (take_change). One thread at a time.
+// The book of users, sessions, tokens and devices: who is it that asks, and what may they do. Pure
+// but for chance: time is an argument, passwords are hashed elsewhere (they take long), rows are
+// kept elsewhere (take_change). One thread at a time.
 //
 //   log-in:  login_wait ─▶ begin_login ─▶ (is_password, beside) ─▶ end_login ─▶ a cookie
+//   PIN:     login_wait ─▶ begin_pin ─▶ (is_password, beside) ─▶ end_pin ─▶ a cookie
 //   request: by_session or by_token ─▶ Who
 //
 // A session lives by the monotonic clock: wall time that jumps neither ends nor lengthens it. One
@@ -46,6 +47,20 @@ struct Attempt {
   std::string hash;
 };
 
+/// A PIN that is being compared. It counted as wrong when it began.
+struct PinAttempt {
+  std::string device;
+  std::string address;
+  std::string hash;
+};
+
+/// What a one-time code is good for.
+struct Invitation {
+  std::string inviter;
+  std::string user;  ///< whose device it will be
+  Role role = Role::Viewer;
+};
+
 /// The secret is told once.
 template <class T>
 struct Opened {
@@ -58,6 +73,12 @@ class Book {
   static constexpr std::size_t kUsers = 100;
   static constexpr std::size_t kSessionsEach = 20;
   static constexpr std::size_t kTokens = 200;
+  static constexpr std::size_t kDevicesEach = 10;
+  /// So many wrong PINs, and the device wants the password or a new pairing.
+  static constexpr int kWrongPins = 5;
+  /// A device that is not used so long is paired no more.
+  static constexpr base::Duration kPaired = std::chrono::hours(24 * 365);
+  static constexpr base::Duration kInvited = std::chrono::minutes(10);
   static constexpr base::Duration kIdle = std::chrono::hours(12);
   static constexpr base::Duration kAbsolute = std::chrono::hours(24 * 7);
   /// How often "seen" is written.
@@ -83,6 +104,9 @@ class Book {
   std::optional<Opened<Session>> end_login(const Attempt& attempt, bool right,
                                            const std::string& device, Now now);
 
+  /// The password was right, but nobody comes in by it.
+  void clear_login(const Attempt& attempt);
+
   // Who is it?
   std::optional<Who> by_session(std::string_view secret, Now now);
   std::optional<Who> by_token(std::string_view secret, Now now);
@@ -92,10 +116,11 @@ class Book {
   // Users. Errors: Conflict (name taken, too many, the last admin), NotFound.
   base::Result<void> add_user(const std::string& name, Role role, std::string password_hash,
                               Now now);
-  /// A new password ends all of the user's sessions but `keep`.
+  /// A new password ends all of the user's sessions but `keep`, all pairings but `keep_device`, and
+  /// the invitation.
   base::Result<void> change_user(const std::string& name, std::optional<Role> role,
                                  std::optional<std::string> password_hash,
-                                 const std::string& keep = {});
+                                 const std::string& keep = {}, const std::string& keep_device = {});
   base::Result<void> remove_user(const std::string& name);
   const std::vector<User>& users() const noexcept { return users_; }
   const User* user(std::string_view name) const noexcept;
@@ -104,6 +129,41 @@ class Book {
   std::vector<Session> sessions_of(const std::string& user) const;
   /// NotFound: that user has none of this id.
   base::Result<void> end_session(const std::string& user, const std::string& id);
+
+  /// All but `keep`. @return how many
+  std::size_t end_other_sessions(const std::string& user, const std::string& keep);
+
+  // Paired devices. Conflict: too many; NotFound: no such user.
+  /// @param replaced the secret of what that browser was before: that pairing ends. @param session
+  /// of the caller, which goes on as the new device's if it was that one's.
+  base::Result<Opened<Device>> pair(Device wanted, std::string_view replaced,
+                                    const std::string& session, Now now);
+  /// Conflict: `user` has as many as there may be.
+  base::Result<void> may_pair(const std::string& user) const;
+  /// Null: paired no more, or never. Opens nothing.
+  const Device* by_device(std::string_view secret, Now now) const;
+  std::vector<Device> devices_of(const std::string& user) const;
+  /// With its sessions.
+  base::Result<void> end_device(const std::string& user, const std::string& id);
+  static bool is_locked(const Device& device) noexcept { return device.wrong >= kWrongPins; }
+  /// Its user logged in with the password there.
+  void unlock(std::string_view secret, const std::string& user, Now now);
+
+  /// Zero: may try.
+  base::Duration pin_wait(const Device& device, const std::string& address, Now now) const;
+  /// Of a device that is not locked. Keep what changed before the PIN is compared: a restart then
+  /// gives no tries back.
+  PinAttempt begin_pin(const Device& device, const std::string& address, Now now);
+  /// Empty: wrong, or the device is gone or got another PIN in between.
+  std::optional<Opened<Session>> end_pin(const PinAttempt& attempt, bool right, Now now);
+
+  // Invitations: one for each inviter, in memory only.
+  /// A new code; the inviter's one before it is dead.
+  std::string invite(Invitation invitation, Now now);
+  /// It is used up by that. Counts as a try, see login_wait with no user. Empty: no such code, or
+  /// it is over.
+  std::optional<Invitation> take_invitation(std::string_view typed, const std::string& address,
+                                            Now now);
 
   // Tokens. Conflict: too many.
   base::Result<Opened<Token>> add_token(Token wanted, Now now);
@@ -124,6 +184,11 @@ class Book {
     base::Time kept{};     ///< its row
     bool earlier = false;  ///< from before this start, and not judged yet
   };
+  struct Invited {
+    Invitation invitation;
+    std::string hash;  ///< of its code
+    base::Time over{};
+  };
   struct Shown {
     Token row;
     base::Time kept{};
@@ -137,17 +202,23 @@ class Book {
   std::optional<Who> who_of(const Token& token) const;
   std::string door_of(const std::string& user, const std::string& address) const;
   Opened<Session> open_session(const std::string& user, const std::string& address,
-                               const std::string& device, Now now);
+                               const std::string& device, Now now, const std::string& paired = {});
   User* find(std::string_view name) noexcept;
+  Device* find_device(std::string_view id) noexcept;
   bool is_last_admin(const User& user) const noexcept;
   void drop_sessions(const std::function<bool(const Live&)>& which);
   void drop_tokens(const std::function<bool(const Token&)>& which);
+  void drop_devices(const std::function<bool(const Device&)>& which);
+  void drop_invitations(const std::string& of);
+  void keep(const Device& device);
 
   bool loaded_ = false;
   std::string code_;
   std::vector<User> users_;
   std::vector<Live> sessions_;
   std::vector<Shown> tokens_;
+  std::vector<Device> devices_;
+  std::vector<Invited> invited_;
   /// Short, or somebody in the network could lock people out; addresses may wait longer.
   Backoff users_wait_{std::chrono::seconds(30), 256};
   Backoff addresses_wait_{std::chrono::minutes(5), 1024};

@@ -65,13 +65,17 @@ std::optional<Opened<Session>> Book::end_login(const Attempt& attempt, bool righ
                                                const std::string& device, Now now) {
   const User* const known = user(attempt.user);
   if (!right || known == nullptr || known->password != attempt.hash) return std::nullopt;
-  users_wait_.clear(door_of(attempt.user, attempt.address));
-  addresses_wait_.clear(attempt.address);
+  clear_login(attempt);
   return open_session(attempt.user, attempt.address, device, now);
 }
 
+void Book::clear_login(const Attempt& attempt) {
+  users_wait_.clear(door_of(attempt.user, attempt.address));
+  addresses_wait_.clear(attempt.address);
+}
+
 Opened<Session> Book::open_session(const std::string& user, const std::string& address,
-                                   const std::string& device, Now now) {
+                                   const std::string& device, Now now, const std::string& paired) {
   while (sessions_of(user).size() >= kSessionsEach) {
     const Live* oldest = nullptr;
     for (const Live& s : sessions_) {
@@ -84,7 +88,8 @@ Opened<Session> Book::open_session(const std::string& user, const std::string& a
     drop_sessions([&id](const Live& s) { return s.row.id == id; });
   }
   std::string secret = random_secret();
-  Session row{random_id(), digest(secret), user, short_text(device), address, now.wall, now.wall};
+  Session row{random_id(), digest(secret), user,     short_text(device),
+              address,     now.wall,       now.wall, paired};
   sessions_.push_back({row, now.mono, now.mono, now.mono, false});
   change_.now.sessions.push_back(row);
   return {std::move(secret), std::move(row)};
@@ -125,7 +130,13 @@ void Book::see(Live& live, Now now) {
 std::optional<Who> Book::who_of(const Live& live) const {
   const User* const known = user(live.row.user);
   if (known == nullptr) return std::nullopt;
-  return Who{known->name, known->role, Who::By::Session, live.row.id};
+  Role role = known->role;
+  if (!live.row.paired.empty()) {
+    const Device* const device = const_cast<Book*>(this)->find_device(live.row.paired);
+    if (device == nullptr) return std::nullopt;
+    role = std::min(role, device->role);
+  }
+  return Who{known->name, role, Who::By::Session, live.row.id};
 }
 
 std::optional<Who> Book::who_of(const Token& token) const {

@@ -125,6 +125,25 @@ std::string password_problem(std::string_view password, std::string_view user) {
   return one ? "must not be one character again and again" : "";
 }
 
+std::string pin_problem(std::string_view pin) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (pin.size() < kShortestPin || pin.size() > kLongestPin ||
+      !std::all_of(pin.begin(), pin.end(), is_digit)) {
+    return "must be " + std::to_string(kShortestPin) + " to " + std::to_string(kLongestPin) +
+           " digits";
+  }
+  // Steps from digit to digit, 9 before 0: 1111, 1234, 7890, 4321, 1212.
+  bool equal = true;
+  bool pairs = true;
+  for (std::size_t i = 1; i < pin.size(); ++i) {
+    equal = equal && (pin[i] - pin[i - 1] + 10) % 10 == (pin[1] - pin[0] + 10) % 10;
+    pairs = pairs && (i < 2 || pin[i] == pin[i - 2]);
+  }
+  const int step = (pin[1] - pin[0] + 10) % 10;
+  const bool run = equal && (step == 0 || step == 1 || step == 9);
+  return run || pairs ? "must not be as easy to guess as 0000, 1234 or 1212" : "";
+}
+
 std::string user_name_problem(std::string_view name) {
   const bool fine =
       !name.empty() && name.size() <= 40 && std::all_of(name.begin(), name.end(), [](char c) {

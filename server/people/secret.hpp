@@ -35,6 +35,10 @@ inline constexpr std::size_t kShortestPassword = 10;
 inline constexpr std::size_t kLongestPassword = 200;
 /// What is wrong with it; empty: nothing. Never tells the password.
 std::string password_problem(std::string_view password, std::string_view user);
+inline constexpr std::size_t kShortestPin = 4;
+inline constexpr std::size_t kLongestPin = 8;
+/// What is wrong with it, as those before: digits only, and none of those that are tried first.
+std::string pin_problem(std::string_view pin);
 /// 1 to 40 letters, digits, dots, hyphens, underscores.
 std::string user_name_problem(std::string_view name);
 

@@ -1,6 +1,6 @@
 #pragma once
-// Who may do what: users, their sessions and tokens, as they are kept. None of it holds a secret
-// that opens a door: of passwords, cookies and tokens there are only hashes.
+// Who may do what: users, their sessions, tokens and paired devices, as they are kept. None of it
+// holds a secret that opens a door: of passwords, PINs, cookies and tokens there are only hashes.
 
 #include <array>
 #include <optional>
@@ -38,6 +38,21 @@ struct Session {
   std::string address;
   base::WallTime created{};
   base::WallTime seen{};
+  std::string
+      paired{};  ///< the device whose PIN made it, and with which it goes; empty: a password
+};
+
+/// A browser that its user paired: what it keeps and a PIN together make a session.
+struct Device {
+  std::string id;    ///< names it, opens nothing
+  std::string hash;  ///< of its cookie, which alone opens nothing
+  std::string user;
+  std::string name;
+  Role role = Role::Viewer;  ///< never more, whatever the user may
+  std::string pin;           ///< argon2id
+  int wrong = 0;             ///< PINs since the last right one
+  base::WallTime created{};
+  std::optional<base::WallTime> used{};
 };
 
 /// What a script shows instead of a cookie.
@@ -58,18 +73,21 @@ struct Everybody {
   std::vector<User> users;
   std::vector<Session> sessions;
   std::vector<Token> tokens;
+  std::vector<Device> devices{};
 };
 
 /// What is to be written: rows as they are now, and the ids of those that are gone. With a user go
-/// the user's sessions and tokens.
+/// the user's sessions, tokens and devices, with a device its sessions.
 struct Change {
   Everybody now{};
   std::vector<std::string> gone_users{};
   std::vector<std::string> gone_sessions{};
   std::vector<std::string> gone_tokens{};
+  std::vector<std::string> gone_devices{};
   bool empty() const noexcept {
-    return now.users.empty() && now.sessions.empty() && now.tokens.empty() && gone_users.empty() &&
-           gone_sessions.empty() && gone_tokens.empty();
+    return now.users.empty() && now.sessions.empty() && now.tokens.empty() && now.devices.empty() &&
+           gone_users.empty() && gone_sessions.empty() && gone_tokens.empty() &&
+           gone_devices.empty();
   }
 };
 

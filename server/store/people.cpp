@@ -9,6 +9,7 @@ namespace roverd::store {
 
 namespace {
 
+using people::Device;
 using people::Session;
 using people::Token;
 using people::User;
@@ -62,8 +63,9 @@ void keep(SQLite::Database& db, const User& user) {
 void keep(SQLite::Database& db, const Session& s) {
   SQLite::Statement row(db,
                         "INSERT INTO sessions (id, hash, user, device, address, created_ns, "
-                        "seen_ns) VALUES (?, ?, ?, ?, ?, ?, ?) ON CONFLICT (id) DO UPDATE SET "
-                        "created_ns = excluded.created_ns, seen_ns = excluded.seen_ns");
+                        "seen_ns, paired) VALUES (?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (id) DO "
+                        "UPDATE SET created_ns = excluded.created_ns, seen_ns = excluded.seen_ns, "
+                        "paired = excluded.paired");
   row.bind(1, s.id);
   row.bind(2, s.hash);
   row.bind(3, s.user);
@@ -71,6 +73,10 @@ void keep(SQLite::Database& db, const Session& s) {
   row.bind(5, s.address);
   row.bind(6, kept_ns(s.created));
   row.bind(7, kept_ns(s.seen));
+  if (s.paired.empty())
+    row.bind(8);
+  else
+    row.bind(8, s.paired);
   row.exec();
 }
 
@@ -91,6 +97,35 @@ void keep(SQLite::Database& db, const Token& t) {
   row.exec();
 }
 
+void keep(SQLite::Database& db, const Device& d) {
+  SQLite::Statement row(db,
+                        "INSERT INTO devices (id, hash, user, name, role, pin, wrong, created_ns, "
+                        "used_ns) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (id) DO UPDATE "
+                        "SET wrong = excluded.wrong, used_ns = excluded.used_ns");
+  row.bind(1, d.id);
+  row.bind(2, d.hash);
+  row.bind(3, d.user);
+  row.bind(4, d.name);
+  row.bind(5, std::string(people::to_string(d.role)));
+  row.bind(6, d.pin);
+  row.bind(7, d.wrong);
+  row.bind(8, kept_ns(d.created));
+  bind_time(row, 9, d.used);
+  row.exec();
+}
+
+void read_devices(SQLite::Database& db, std::vector<Device>& out) {
+  SQLite::Statement row(db,
+                        "SELECT id, hash, user, name, role, pin, wrong, created_ns, used_ns "
+                        "FROM devices ORDER BY created_ns, id");
+  while (row.executeStep()) {
+    out.push_back(
+        {row.getColumn(0).getString(), row.getColumn(1).getString(), row.getColumn(2).getString(),
+         row.getColumn(3).getString(), role_in(row.getColumn(4)), row.getColumn(5).getString(),
+         row.getColumn(6).getInt(), wall_of(row.getColumn(7)), maybe_wall_of(row.getColumn(8))});
+  }
+}
+
 void drop(SQLite::Database& db, const char* sql, const std::vector<std::string>& keys) {
   for (const std::string& key : keys) {
     SQLite::Statement row(db, sql);
@@ -109,13 +144,13 @@ people::Everybody read_people(SQLite::Database& db) {
                          users.getColumn(2).getString(), wall_of(users.getColumn(3))});
   }
   SQLite::Statement sessions(db,
-                             "SELECT id, hash, user, device, address, created_ns, seen_ns "
-                             "FROM sessions ORDER BY created_ns, id");
+                             "SELECT id, hash, user, device, address, created_ns, seen_ns, "
+                             "ifnull(paired, '') FROM sessions ORDER BY created_ns, id");
   while (sessions.executeStep()) {
     out.sessions.push_back({sessions.getColumn(0).getString(), sessions.getColumn(1).getString(),
                             sessions.getColumn(2).getString(), sessions.getColumn(3).getString(),
                             sessions.getColumn(4).getString(), wall_of(sessions.getColumn(5)),
-                            wall_of(sessions.getColumn(6))});
+                            wall_of(sessions.getColumn(6)), sessions.getColumn(7).getString()});
   }
   SQLite::Statement tokens(db,
                            "SELECT id, hash, name, user, role, methods, created_ns, expires_ns, "
@@ -127,6 +162,7 @@ people::Everybody read_people(SQLite::Database& db) {
                           wall_of(tokens.getColumn(6)), maybe_wall_of(tokens.getColumn(7)),
                           maybe_wall_of(tokens.getColumn(8))});
   }
+  read_devices(db, out.devices);
   return out;
 }
 
@@ -136,7 +172,9 @@ base::Result<void> change_people(SQLite::Database& db, const people::Change& cha
   drop(db, "DELETE FROM users WHERE name = ?", change.gone_users);
   drop(db, "DELETE FROM sessions WHERE id = ?", change.gone_sessions);
   drop(db, "DELETE FROM tokens WHERE id = ?", change.gone_tokens);
+  drop(db, "DELETE FROM devices WHERE id = ?", change.gone_devices);
   for (const User& user : change.now.users) keep(db, user);
+  for (const Device& device : change.now.devices) keep(db, device);
   for (const Session& session : change.now.sessions) keep(db, session);
   for (const Token& token : change.now.tokens) keep(db, token);
   transaction.commit();

@@ -1,5 +1,5 @@
 #pragma once
-// Users, sessions and tokens in the file. The store's thread.
+// Users, sessions, tokens and paired devices in the file. The store's thread.
 
 #include <SQLiteCpp/SQLiteCpp.h>
 

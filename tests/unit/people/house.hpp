@@ -33,6 +33,10 @@ class BookTest : public testing::Test {
     for (const User& u : c.now.users) put(kept.users, u, &User::name);
     for (const Session& s : c.now.sessions) put(kept.sessions, s, &Session::id);
     for (const Token& t : c.now.tokens) put(kept.tokens, t, &Token::id);
+    for (const Device& d : c.now.devices) put(kept.devices, d, &Device::id);
+    for (const auto& id : c.gone_devices) {
+      std::erase_if(kept.devices, [&](const Device& d) { return d.id == id; });
+    }
     for (const auto& id : c.gone_sessions) {
       std::erase_if(kept.sessions, [&](const Session& s) { return s.id == id; });
     }

@@ -128,6 +128,12 @@ TEST(Opening, EveryOlderSchemaIsUpgradedWithItsData) {
           "'{\"name\":\"one\",\"items\":[]}'),"
           "('0123456789ab', 2, 2000, 'bert', 'replaced', 'two', 1, 0, "
           "'{\"name\":\"two\",\"items\":[{\"type\":\"waypoint\",\"lat\":1,\"lon\":2}]}')");
+      if (known >= 11) {
+        c.exec("INSERT INTO users VALUES ('carl', 'viewer', 'hash', 1000)");
+        c.exec(
+            "INSERT INTO sessions (id, hash, user, device, address, created_ns, seen_ns) VALUES "
+            "('s0', 'earlier', 'carl', 'phone', 'here', 1000, 1000)");
+      }
       c.exec("COMMIT");
     }
     EXPECT_EQ(user_version(folder.file()), static_cast<int>(known));
@@ -145,9 +151,22 @@ TEST(Opening, EveryOlderSchemaIsUpgradedWithItsData) {
     EXPECT_EQ(events(*store, 0, base::Severity::Info, 10)->items.size(), 1u);
     const people::User anna{"anna", people::Role::Admin, "hash", {}};
     std::promise<base::Result<void>> kept;
-    store->change_people({.now = {.users = {anna}, .sessions = {}, .tokens = {}}},
-                         [&](base::Result<void> done) { kept.set_value(std::move(done)); });
+    const people::Device phone{"d1",  "shown", "anna", "phone", people::Role::Admin,
+                               "pin", 0,       {},     {}};
+    const people::Session by_pin{"s1", "cookie", "anna", "phone", "here", {}, {}, "d1"};
+    store->change_people(
+        {.now = {.users = {anna}, .sessions = {by_pin}, .tokens = {}, .devices = {phone}}},
+        [&](base::Result<void> done) { kept.set_value(std::move(done)); });
     EXPECT_TRUE(kept.get_future().get());
+    std::promise<people::Everybody> read_back;
+    store->read_people([&](base::Result<people::Everybody> everybody) {
+      read_back.set_value(everybody.value_or(people::Everybody{}));
+    });
+    const auto everybody = read_back.get_future().get();
+    EXPECT_EQ(everybody.devices.size(), 1u);
+    EXPECT_EQ(everybody.sessions.size(), known >= 11 ? 2u : 1u);
+    // A session of an earlier program was made by a password.
+    EXPECT_EQ(everybody.sessions.back().paired, known >= 11 ? "" : "d1");
   }
 }
 

@@ -41,7 +41,7 @@ class PeopleStore : public testing::Test {
   static Change some() {
     Change c;
     c.now.users = {{"anna", Role::Admin, "hash a", kNoon}, {"bert", Role::Viewer, "hash b", {}}};
-    c.now.sessions = {{"s1", "cookie", "anna", "phone", "10.0.0.2", kNoon, kNoon}};
+    c.now.sessions = {{"s1", "cookie", "anna", "phone", "10.0.0.2", kNoon, kNoon, ""}};
     c.now.tokens = {{"t1",
                      "shown",
                      "script",
@@ -78,6 +78,54 @@ TEST_F(PeopleStore, EverybodyIsThereAfterARestart) {
   EXPECT_EQ(all.tokens[0].methods, (std::vector<std::string>{"GET", "POST"}));
   EXPECT_EQ(all.tokens[0].expires, kNoon + std::chrono::hours(1));
   EXPECT_FALSE(all.tokens[0].used);
+}
+
+TEST_F(PeopleStore, PairedDevicesAreKeptWithTheirTries) {
+  Change c = some();
+  c.now.devices = {
+      {"d1", "shown", "anna", "glove phone", Role::Operator, "hash of the PIN", 2, kNoon, {}}};
+  c.now.sessions[0].paired = "d1";
+  ASSERT_TRUE(change(c));
+  open();
+  Everybody all = read();
+  ASSERT_EQ(all.devices.size(), 1u);
+  EXPECT_EQ(all.devices[0].hash, "shown");
+  EXPECT_EQ(all.devices[0].user, "anna");
+  EXPECT_EQ(all.devices[0].name, "glove phone");
+  EXPECT_EQ(all.devices[0].role, Role::Operator);
+  EXPECT_EQ(all.devices[0].pin, "hash of the PIN");
+  EXPECT_EQ(all.devices[0].wrong, 2);
+  EXPECT_EQ(all.devices[0].created, kNoon);
+  EXPECT_FALSE(all.devices[0].used);
+  EXPECT_EQ(all.sessions[0].paired, "d1");
+  // when it was tried and used
+  all.devices[0].wrong = 5;
+  all.devices[0].used = kNoon;
+  ASSERT_TRUE(change({.now = {.users = {}, .sessions = {}, .tokens = {}, .devices = all.devices}}));
+  EXPECT_EQ(read().devices[0].wrong, 5);
+  EXPECT_EQ(read().devices[0].used, kNoon);
+  // then it goes with its sessions, as with its user
+  ASSERT_TRUE(change({.gone_devices = {"d1"}}));
+  EXPECT_TRUE(read().devices.empty());
+  EXPECT_TRUE(read().sessions.empty());
+  ASSERT_TRUE(change(c));
+  ASSERT_TRUE(change({.gone_users = {"anna"}}));
+  EXPECT_TRUE(read().devices.empty());
+}
+
+TEST_F(PeopleStore, ASessionMayPassToTheDeviceThatReplacesItsOwn) {
+  Change c = some();
+  c.now.devices = {{"d1", "one", "anna", "phone", Role::Admin, "h", 0, kNoon, {}}};
+  c.now.sessions[0].paired = "d1";
+  ASSERT_TRUE(change(c));
+  Change next;
+  next.now.devices = {{"d2", "two", "anna", "phone", Role::Admin, "h", 0, kNoon, {}}};
+  next.now.sessions = c.now.sessions;
+  next.now.sessions[0].paired = "d2";
+  next.gone_devices = {"d1"};
+  ASSERT_TRUE(change(next));
+  ASSERT_EQ(read().sessions.size(), 1u);
+  EXPECT_EQ(read().sessions[0].paired, "d2");
 }
 
 TEST_F(PeopleStore, ARowIsWrittenOver) {
