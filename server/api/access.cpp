@@ -19,15 +19,15 @@ Response unknown_caller(std::string_view detail) {
   return out;
 }
 
-/// The value of our cookie in "a=1; roverd_session=x; b=2"; empty: it is not there.
-std::string_view cookie_in(std::string_view header) {
+/// The value of a cookie in "a=1; roverd_session=x; b=2"; empty: it is not there.
+std::string_view cookie_in(std::string_view header, std::string_view name) {
   while (!header.empty()) {
     const std::size_t end = std::min(header.find(';'), header.size());
     std::string_view one = header.substr(0, end);
     header.remove_prefix(std::min(end + 1, header.size()));
     while (one.starts_with(' ')) one.remove_prefix(1);
-    if (one.starts_with(Access::kCookie) && one.substr(Access::kCookie.size()).starts_with('=')) {
-      return one.substr(Access::kCookie.size() + 1);
+    if (one.starts_with(name) && one.substr(name.size()).starts_with('=')) {
+      return one.substr(name.size() + 1);
     }
   }
   return {};
@@ -92,7 +92,7 @@ std::optional<Response> Access::identify(const Request& request, std::optional<W
     if (who) return std::nullopt;
     return unknown_caller("the token is not valid: unknown, ended or expired");
   }
-  const std::string_view cookie = cookie_in(header(request, http::field::cookie));
+  const std::string_view cookie = cookie_in(header(request, http::field::cookie), kCookie);
   if (cookie.empty() || cookie.size() > kLongestSecret) return std::nullopt;
   who = book_->by_session(cookie, now());
   // guard.cpp looks whether Origin is ours, where there is one; every browser sends one with these.
@@ -143,11 +143,25 @@ bool Access::would_pass(const Request& request, Need need) {
   return !check(request, need, who);
 }
 
-std::string Access::cookie(std::string_view secret) const {
-  const auto week = std::chrono::duration_cast<std::chrono::seconds>(people::Book::kAbsolute);
-  return std::string(kCookie) + "=" + std::string(secret) + "; Path=/; HttpOnly; SameSite=Strict" +
+std::string Access::set_cookie(std::string_view name, std::string_view secret,
+                               base::Duration age) const {
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(age);
+  return std::string(name) + "=" + std::string(secret) + "; Path=/; HttpOnly; SameSite=Strict" +
          (secure_ ? "; Secure" : "") +
-         "; Max-Age=" + std::to_string(secret.empty() ? 0 : week.count());
+         "; Max-Age=" + std::to_string(secret.empty() ? 0 : seconds.count());
+}
+
+std::string Access::cookie(std::string_view secret) const {
+  return set_cookie(kCookie, secret, people::Book::kAbsolute);
+}
+
+std::string Access::device_cookie(std::string_view secret) const {
+  return set_cookie(kDeviceCookie, secret, people::Book::kPaired);
+}
+
+std::string Access::device_secret(const Request& request) {
+  const auto value = cookie_in(header(request, http::field::cookie), kDeviceCookie);
+  return value.size() > kLongestSecret ? std::string() : std::string(value);
 }
 
 }  // namespace roverd::api

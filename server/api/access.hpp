@@ -40,6 +40,7 @@ std::string peer_of(const Request& request);
 class Access {
  public:
   static constexpr std::string_view kCookie = "roverd_session";
+  static constexpr std::string_view kDeviceCookie = "roverd_device";
 
   /// @param book null: off. @param secure the cookie goes through TLS only
   Access(people::Book* book, bool secure) : book_(book), secure_(secure) {}
@@ -58,11 +59,16 @@ class Access {
 
   /// Set-Cookie. @param secret empty: forget it
   std::string cookie(std::string_view secret) const;
+  /// The same of a paired device.
+  std::string device_cookie(std::string_view secret) const;
+  /// What a paired device shows; empty: nothing. Identifies nobody.
+  static std::string device_secret(const Request& request);
 
  private:
   std::optional<Response> identify(const Request& request, std::optional<people::Who>& who);
   std::optional<Response> judge(const std::optional<people::Who>& who, std::string_view method,
                                 Need need) const;
+  std::string set_cookie(std::string_view name, std::string_view secret, base::Duration age) const;
 
   people::Book* book_;
   bool secure_;

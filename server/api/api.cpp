@@ -117,6 +117,7 @@ Api::Api(Deps deps) : impl_(std::make_unique<Impl>(std::move(deps))) {
   add_parameter_routes(c);
   add_drill_routes(c);
   add_session_routes(c);
+  add_device_routes(c);
   add_token_routes(c);
   add_user_routes(c);
   add_control_routes(c);

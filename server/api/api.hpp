@@ -89,6 +89,12 @@ struct Aside {
   bool must = false;             ///< never refused
 };
 
+/// An address that another device may open.
+struct Poster {
+  std::string address;
+  std::string svg;
+};
+
 struct Deps {
   robot::Robot& robot;
   store::Store& store;
@@ -120,6 +126,9 @@ struct Deps {
   base::Duration control_grace = std::chrono::seconds(10);
   /// Shows the one-time code of the first admin to whoever stands before this computer.
   std::function<void(const std::string& code)> tell_code{};
+  /// What to open on another device, and its QR code as SVG. @param path "/#invite=…". Empty:
+  /// nobody knows the address.
+  std::function<Poster(const std::string& path)> poster{};
 };
 
 /// One per program. All members but the constructor: web thread. It must live until the web thread

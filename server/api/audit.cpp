@@ -64,7 +64,7 @@ void Audit::answered(const Call& call, const Response& response, Now now) {
   Deed deed;
   deed.time = now.wall;
   deed.user = call.who ? call.who->user : call.named;
-  deed.credential = credential_of(call.who);
+  deed.credential = call.who ? credential_of(call.who) : call.named_by;
   deed.address = peer_of(call.request);
   // What is no call of ours has no name that a stranger could not choose.
   deed.call = method_of(method) + " " + (call.operation.empty() ? "(unknown)" : call.operation);

@@ -1,6 +1,7 @@
 #pragma once
 // What the handlers of the routes share. Web thread only.
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -84,6 +85,8 @@ struct Context {
   Commands commands;
   Router router;
   base::Time begun;
+  /// Passwords and PINs that are being hashed; log_in.hpp bounds them.
+  std::shared_ptr<std::atomic<int>> hashing = std::make_shared<std::atomic<int>>(0);
   std::map<std::string, double> driver_rates;
   std::string openapi_tag;
   std::function<void(const std::string& id, std::optional<std::int64_t> revision)>
@@ -193,6 +196,7 @@ void add_run_routes(const ContextPtr& context);
 void add_parameter_routes(const ContextPtr& context);
 void add_drill_routes(const ContextPtr& context);
 void add_session_routes(const ContextPtr& context);
+void add_device_routes(const ContextPtr& context);
 void add_token_routes(const ContextPtr& context);
 void add_user_routes(const ContextPtr& context);
 void add_control_routes(const ContextPtr& context);

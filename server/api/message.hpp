@@ -37,6 +37,7 @@ struct Call {
   std::optional<people::Who> who{};  ///< empty: nobody known, or access control is off
   std::string operation{};           ///< "/missions/{id}"; empty: none of ours
   std::string named{};               ///< the user that a log-in is for, if there is such a one
+  std::string named_by{};  ///< "device 1f…": what it showed to be named so; opens nothing
 };
 using CallPtr = std::shared_ptr<Call>;
 

@@ -37,6 +37,7 @@
 #include "net/page.hpp"
 #include "net/server.hpp"
 #include "net/workers.hpp"
+#include "pair/code.hpp"
 #include "robot/robot.hpp"
 #include "store/store.hpp"
 #include "store/tiles.hpp"
@@ -292,6 +293,10 @@ void Station::Impl::make_api(const Settings& settings, const Options& options) {
     std::printf("nobody can log in yet: make the first admin at %s with the code %s\n",
                 address.c_str(), code.c_str());
     std::fflush(stdout);
+  };
+  deps.poster = [this](const std::string& path) {
+    const auto code = pair::qr_code(address + path);
+    return api::Poster{address + path, code ? pair::svg_of(*code) : std::string()};
   };
   api = std::make_unique<api::Api>(std::move(deps));
 }

@@ -35,7 +35,8 @@ Answer read_head(std::string_view head) {
     head.remove_prefix(std::min(end + 2, head.size()));
     const auto colon = line.find(": ");
     if (colon == std::string_view::npos) continue;
-    out.headers[lower(std::string(line.substr(0, colon)))] = std::string(line.substr(colon + 2));
+    std::string& value = out.headers[lower(std::string(line.substr(0, colon)))];
+    value += (value.empty() ? "" : "\n") + std::string(line.substr(colon + 2));
   }
   return out;
 }

@@ -14,7 +14,8 @@ namespace roverd::test {
 
 struct Answer {
   unsigned status = 0;
-  std::map<std::string, std::string> headers;  ///< names in lower case
+  std::map<std::string, std::string>
+      headers;  ///< names in lower case; what is said twice, line by line
   std::string body;
 
   std::string header(const std::string& name) const {

@@ -1,12 +1,13 @@
-// Log-in, log-out, the first admin, and where somebody is logged in.
+// Log-in by password and by PIN, log-out, the first admin, where somebody is logged in, and a new
+// password of one's own.
 
-#include <atomic>
-#include <cmath>
-#include <memory>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "api/access_change.hpp"
 #include "api/context.hpp"
+#include "api/log_in.hpp"
 #include "people/secret.hpp"
 
 namespace roverd::api {
@@ -16,26 +17,6 @@ namespace {
 using people::Book;
 using people::Session;
 
-/// Hashing costs much: so many wait or are at work, the others try again.
-constexpr int kHashing = 3;
-/// Beside what is small and must not wait for it.
-constexpr Effort kHash{Effort::kSmall + 1};
-
-Json session_json(const Context& context, const std::optional<people::Who>& who) {
-  const Access& access = context.access;
-  Json out = {{"access", access.on()},
-              {"setup", access.on() && access.book().needs_setup()},
-              {"user", nullptr},
-              {"role", nullptr},
-              {"id", nullptr}};
-  if (who) {
-    out["user"] = who->user;
-    out["role"] = to_string(who->role);
-    out["id"] = who->id;
-  }
-  return out;
-}
-
 Json one_session(const Session& s, const std::string& mine) {
   return {{"id", s.id},
           {"device", s.device},
@@ -43,13 +24,6 @@ Json one_session(const Session& s, const std::string& mine) {
           {"created", time_or_null(s.created)},
           {"seen", time_or_null(s.seen)},
           {"current", s.id == mine}};
-}
-
-Response too_soon(base::Duration wait) {
-  const auto seconds = std::to_string(static_cast<long>(std::ceil(base::seconds(wait))));
-  Response out = problem(429, "too many wrong log-ins: try again in " + seconds + " s");
-  out.set(http::field::retry_after, seconds);
-  return out;
 }
 
 struct Typed {
@@ -85,77 +59,88 @@ std::optional<Typed> typed_in(const CallPtr& call, bool first) {
   return out;
 }
 
-/// Lets one hash at a time be counted, wherever its work is dropped.
-class Hashing {
- public:
-  /// Null: too many.
-  std::shared_ptr<void> begin() {
-    auto slot = std::shared_ptr<void>(count_.get(), [count = count_](void*) { --*count; });
-    return ++*count_ > kHashing ? nullptr : slot;
+base::Duration wait_of(const ContextPtr& c, const CallPtr& call, const std::string& user) {
+  return c->access.book().login_wait(user, peer_of(call->request), Access::now());
+}
+
+void log_in(const ContextPtr& c, const CallPtr& call) {
+  auto typed = typed_in(call, false);
+  if (!typed) return;
+  // Not what is no user's name: people type passwords there.
+  if (c->access.book().user(typed->user) != nullptr) call->named = typed->user;
+  const auto slot = may_hash(c, call, wait_of(c, call, typed->user));
+  if (!slot) return;
+  const auto attempt =
+      c->access.book().begin_login(typed->user, peer_of(call->request), Access::now());
+  c->aside(
+      call, kHash,
+      [attempt, typed = *typed] { return people::is_password(attempt.hash, typed.password); },
+      [c, call, attempt, slot, device = typed->device](bool right) {
+        Book& book = c->access.book();
+        const auto opened = book.end_login(attempt, right, device, Access::now());
+        if (!opened) return call->respond(problem(401, "user or password is wrong"));
+        book.unlock(Access::device_secret(call->request), attempt.user, Access::now());
+        let_in(c, call, *opened);
+      });
+}
+
+std::string what_is_left(const people::Device* device) {
+  const int left = device == nullptr ? 0 : Book::kWrongPins - device->wrong;
+  if (left > 0) return "the PIN is wrong; it may be tried " + std::to_string(left) + " more times";
+  return "the PIN is wrong; this device is locked now, and wants the password";
+}
+
+/// By a paired device. Its tries are kept before the PIN is compared.
+void log_in_by_pin(const ContextPtr& c, const CallPtr& call, const std::string& pin) {
+  Book& book = c->access.book();
+  const std::string secret = Access::device_secret(call->request);
+  const people::Device* const device = book.by_device(secret, Access::now());
+  if (device == nullptr) {
+    return call->respond(problem(401, "this device is not paired: use the password"));
   }
-
- private:
-  std::shared_ptr<std::atomic<int>> count_ = std::make_shared<std::atomic<int>>(0);
-};
-
-void let_in(const ContextPtr& c, const CallPtr& call, const people::Opened<Session>& opened) {
-  const auto* user = c->access.book().user(opened.row.user);
-  call->named = opened.row.user;
-  people::Who who{opened.row.user, user->role, people::Who::By::Session, opened.row.id, {}};
-  // A disk that fails keeps nobody from the robot: the session then ends with the program.
-  keep_people(c, [c, call, who, secret = opened.secret](const base::Result<void>&) {
-    Response out = json_response(http::status::ok, session_json(*c, who));
-    out.set(http::field::set_cookie, c->access.cookie(secret));
-    call->respond(std::move(out));
+  call->named = device->user;
+  call->named_by = "device " + device->id;
+  if (call->request.count(http::field::origin) != 1) {
+    return call->respond(problem(403, "a PIN needs the Origin that every browser sends"));
+  }
+  if (Book::is_locked(*device)) {
+    return call->respond(problem(401,
+                                 "this device is locked after too many wrong PINs: use the "
+                                 "password"));
+  }
+  const std::string peer = peer_of(call->request);
+  const auto slot = may_hash(c, call, book.pin_wait(*device, peer, Access::now()));
+  if (!slot) return;
+  const auto attempt = book.begin_pin(*device, peer, Access::now());
+  keep_people(c, [c, call, attempt, slot, secret, pin](const base::Result<void>&) {
+    c->aside(
+        call, kHash, [attempt, pin] { return people::is_password(attempt.hash, pin); },
+        [c, call, attempt, slot, secret](bool right) {
+          Book& house = c->access.book();
+          const auto opened = house.end_pin(attempt, right, Access::now());
+          // The cookie lives a year from here.
+          if (opened) return let_in(c, call, *opened, secret);
+          call->respond(problem(401, what_is_left(house.by_device(secret, Access::now()))));
+        });
   });
 }
 
-bool refuse_without_access(const ContextPtr& c, const CallPtr& call) {
-  if (c->access.on() && c->access.book().loaded()) return false;
-  call->respond(problem(
-      c->access.on() ? base::Error{base::Code::Unavailable, "the users have not been read yet"}
-                     : base::Error{base::Code::Conflict,
-                                   "access control is off: there is nothing to log in to"}));
-  return true;
-}
-
-/// Refuses whom there is no time for. @return null: answered already
-std::shared_ptr<void> may_try(const ContextPtr& c, const CallPtr& call, Hashing& hashing,
-                              const std::string& user) {
-  const auto wait = c->access.book().login_wait(user, peer_of(call->request), Access::now());
-  if (wait > base::Duration::zero()) {
-    call->respond(too_soon(wait));
-    return nullptr;
+void enter(const ContextPtr& c, const CallPtr& call) {
+  if (refuse_without_access(c, call)) return;
+  const auto body = json_body(call->request);
+  if (!body || !body->is_object() || !body->contains("pin")) return log_in(c, call);
+  Members members(*body);
+  const std::string pin = members.text("pin").value_or("");
+  // A slip of the glove costs no try.
+  if (pin.size() < people::kShortestPin || pin.size() > people::kLongestPin) {
+    members.complain("pin", "must be 4 to 8 digits");
   }
-  auto slot = hashing.begin();
-  if (!slot) call->respond(problem(429, "others are logging in just now; try again"));
-  return slot;
+  if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
+  log_in_by_pin(c, call, pin);
 }
 
-Handler log_in(const ContextPtr& c, Hashing& hashing) {
-  return [c, &hashing](const CallPtr& call) {
-    if (refuse_without_access(c, call)) return;
-    auto typed = typed_in(call, false);
-    if (!typed) return;
-    // Not what is no user's name: people type passwords there.
-    if (c->access.book().user(typed->user) != nullptr) call->named = typed->user;
-    const auto slot = may_try(c, call, hashing, typed->user);
-    if (!slot) return;
-    const auto attempt =
-        c->access.book().begin_login(typed->user, peer_of(call->request), Access::now());
-    c->aside(
-        call, kHash,
-        [attempt, typed = *typed] { return people::is_password(attempt.hash, typed.password); },
-        [c, call, attempt, slot, device = typed->device](bool right) {
-          const auto opened = c->access.book().end_login(attempt, right, device, Access::now());
-          if (!opened) return call->respond(problem(401, "user or password is wrong"));
-          let_in(c, call, *opened);
-        });
-  };
-}
-
-Handler set_up(const ContextPtr& c, Hashing& hashing) {
-  return [c, &hashing](const CallPtr& call) {
+Handler set_up(const ContextPtr& c) {
+  return [c](const CallPtr& call) {
     if (refuse_without_access(c, call)) return;
     Book& book = c->access.book();
     if (!book.needs_setup()) {
@@ -163,7 +148,7 @@ Handler set_up(const ContextPtr& c, Hashing& hashing) {
     }
     auto typed = typed_in(call, true);
     if (!typed) return;
-    const auto slot = may_try(c, call, hashing, {});
+    const auto slot = may_hash(c, call, wait_of(c, call, {}));
     if (!slot) return;
     const std::string peer = peer_of(call->request);
     if (!book.is_code(typed->code, peer, Access::now())) {
@@ -227,31 +212,121 @@ void end_one(const ContextPtr& c, const CallPtr& call) {
   });
 }
 
+/// Also those that a PIN made; the pairings stay.
+void end_others(const ContextPtr& c, const CallPtr& call) {
+  if (refuse_without_access(c, call)) return;
+  if (call->who->by != people::Who::By::Session) {
+    return call->respond(
+        problem({base::Code::Conflict, "which ones are the others: ask by a session"}));
+  }
+  c->access.book().end_other_sessions(call->who->user, call->who->id);
+  keep_people(c, [call](const base::Result<void>& kept) {
+    if (kept) return call->respond(Response{http::status::no_content, 11});
+    call->respond(
+        problem({base::Code::Unavailable,
+                 "they are over now, but may be back after a restart: " + kept.error().detail}));
+  });
+}
+
+/// The old and the new one.
+struct Passwords {
+  std::string old;
+  std::string next;
+};
+
+/// @return empty: answered already
+std::optional<Passwords> passwords_in(const CallPtr& call) {
+  const auto body = json_body(call->request);
+  if (!body) {
+    call->respond(problem(body.error()));
+    return std::nullopt;
+  }
+  Members members(*body);
+  for (const char* name : {"password", "new_password"}) members.require(name);
+  Passwords out{members.text("password").value_or(""), members.text("new_password").value_or("")};
+  if (auto wrong = people::password_problem(out.next, call->who->user); !wrong.empty()) {
+    members.complain("new_password", std::move(wrong));
+  }
+  if (const auto read = members.finish(); !read) {
+    call->respond(problem(read.error()));
+    return std::nullopt;
+  }
+  return out;
+}
+
+void take_new_password(const ContextPtr& c, const CallPtr& call, const people::Attempt& attempt,
+                       std::string hash) {
+  Book& book = c->access.book();
+  const people::User* const user = book.user(attempt.user);
+  if (user == nullptr || user->password != attempt.hash || !book.still(*call->who, Access::now())) {
+    return call->respond(problem({base::Code::Conflict, "the password was changed meanwhile"}));
+  }
+  const auto* device = book.by_device(Access::device_secret(call->request), Access::now());
+  const std::string here = device != nullptr ? device->id : std::string();
+  book.clear_login(attempt);
+  if (auto done = book.change_user(attempt.user, {}, std::move(hash), call->who->id, here); !done) {
+    return call->respond(problem(done.error()));
+  }
+  keep_people(c, [call](const base::Result<void>& kept) {
+    if (kept) return call->respond(Response{http::status::no_content, 11});
+    call->respond(problem({base::Code::Unavailable,
+                           "it holds now, but not after a restart: " + kept.error().detail}));
+  });
+}
+
+void change_password(const ContextPtr& c, const CallPtr& call) {
+  if (refuse_without_access(c, call)) return;
+  if (call->who->by != people::Who::By::Session) {
+    return call->respond(
+        problem({base::Code::Conflict, "a password is changed by somebody who has logged in"}));
+  }
+  const auto typed = passwords_in(call);
+  if (!typed) return;
+  const auto slot = may_hash(c, call, wait_of(c, call, call->who->user));
+  if (!slot) return;
+  const auto attempt =
+      c->access.book().begin_login(call->who->user, peer_of(call->request), Access::now());
+  // Empty: the old one is wrong.
+  using Made = std::optional<base::Result<std::string>>;
+  c->aside(
+      call, kHash,
+      [attempt, typed = *typed]() -> Made {
+        if (!people::is_password(attempt.hash, typed.old)) return std::nullopt;
+        return people::hash_password(typed.next);
+      },
+      [c, call, attempt, slot](Made made) {
+        if (!made) return call->respond(problem(403, "the old password is wrong"));
+        if (!*made) return call->respond(problem(made->error()));
+        take_new_password(c, call, attempt, std::move(**made));
+      });
+}
+
 }  // namespace
 
 void add_session_routes(const ContextPtr& c) {
-  const auto hashing = std::make_shared<Hashing>();
-  const auto held = [hashing](Handler handler) {
-    return [hashing, handler = std::move(handler)](CallPtr call) { handler(std::move(call)); };
-  };
   const auto get = http::verb::get;
   const auto post = http::verb::post;
   const auto del = http::verb::delete_;
   c->router.add({get, "/session", {200}, [c](const CallPtr& call) {
-                   call->respond(json_response(http::status::ok, session_json(*c, call->who)));
+                   call->respond(
+                       json_response(http::status::ok, session_json(*c, call->request, call->who)));
                  }});
   c->router.add({post,
                  "/session",
                  {200, 400, 401, 403, 409, 413, 415, 422, 429, 503},
-                 held(log_in(c, *hashing))});
-  c->router.add({post,
-                 "/setup",
-                 {200, 400, 401, 403, 409, 413, 415, 422, 429, 503},
-                 held(set_up(c, *hashing))});
+                 [c](const CallPtr& call) { enter(c, call); }});
+  c->router.add({post, "/setup", {200, 400, 401, 403, 409, 413, 415, 422, 429, 503}, set_up(c)});
   c->router.add({del, "/session", {204, 403, 404, 409, 429, 503}, [c](const CallPtr& call) {
                    log_out(c, call);
                  }});
+  c->router.add({post,
+                 "/session/password",
+                 {204, 400, 403, 409, 413, 415, 422, 429, 503},
+                 [c](const CallPtr& call) { change_password(c, call); }});
   c->router.add({get, "/sessions", {200}, [c](const CallPtr& call) { list_sessions(c, call); }});
+  c->router.add({del, "/sessions", {204, 403, 409, 429, 503}, [c](const CallPtr& call) {
+                   end_others(c, call);
+                 }});
   c->router.add({del, "/sessions/{id}", {204, 403, 404, 429, 503}, [c](const CallPtr& call) {
                    end_one(c, call);
                  }});
