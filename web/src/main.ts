@@ -12,7 +12,7 @@ import { draft_storage } from './link/storage';
 import { Stream } from './link/stream';
 import { teach_calls } from './link/teach';
 import { FieldMap } from './map/map';
-import type { Account } from './model/access';
+import { invitation_in, type Account } from './model/access';
 import App from './ui/App.svelte';
 import { ControlDesk } from './ui/control.svelte';
 import LogIn from './ui/LogIn.svelte';
@@ -88,11 +88,14 @@ void access_calls.state().then((answer) => {
     if (!answer.ok) watch_log_in();
     return;
   }
-  const { setup, user, role, id } = answer.value;
+  const { user, role, id } = answer.value;
+  const invitation = invitation_in(location.hash);
+  // It is good once: neither the address bar nor the history keeps it.
+  if (invitation !== null) history.replaceState(null, '', location.pathname);
   if (user === null || role === null) {
     mount(LogIn, {
       target: element('app'),
-      props: { calls: access_calls, setup, entered: again },
+      props: { calls: access_calls, at_first: answer.value, invitation, entered: again },
     });
     return;
   }

@@ -47,3 +47,7 @@ export const refused_items = (refusal: Refusal): ReadonlySet<number> => {
 /** A table in metres that does not say from where. */
 export const wants_origin = (refusal: Refusal): boolean =>
   refusal.errors.some(({ detail }) => detail.includes('needs an origin'));
+
+/** What is wrong with what was typed, field by field. */
+export const complaint = ({ detail, errors }: Refusal): string =>
+  [detail, ...errors.map((e) => `${e.pointer.slice(1)} ${e.detail}`)].join('; ');
