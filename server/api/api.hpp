@@ -25,6 +25,15 @@
 
 namespace roverd::api {
 
+/// By what people tell this robot from others.
+struct Identity {
+  std::string name;
+  std::string host;     ///< "kask.local"; empty: the networks are not told
+  std::string colour;   ///< "blue"
+  std::string rgb;      ///< "#0b57d0"
+  std::string picture;  ///< path: "/robot.svg"
+};
+
 /// Offline map tiles; both may be empty.
 struct Tiles {
   std::vector<store::TileSet> sets;
@@ -107,6 +116,8 @@ struct Deps {
   /// The ground-control page; empty answers: no such file.
   std::function<std::optional<Response>(const Request&)> page{};
   std::function<NetFigures()> figures{};
+  /// Empty: it has none.
+  std::function<Identity()> identity{};
   /// What is wrong with this computer now. Empty: nobody looks.
   std::function<std::vector<base::HostProblem>()> host{};
   /// Any number at a time, bounded. @return false: no room, nothing was taken. Empty: both at once.

@@ -44,8 +44,9 @@ bool in_certificate(const trust::Names& names, const std::string& name) {
 }  // namespace
 
 Result<std::unique_ptr<Front>> Front::open(const ServerSettings& settings,
-                                           const std::filesystem::path& data) {
-  std::unique_ptr<Front> front(new Front(settings, data / "tls"));
+                                           const std::filesystem::path& data,
+                                           const Presence& presence) {
+  std::unique_ptr<Front> front(new Front(settings, data / "tls", presence));
   auto found = front->look();
   if (!found) return tl::unexpected(found.error());
   const trust::Credential& server = found->identity.server;
@@ -66,7 +67,11 @@ Result<std::unique_ptr<Front>> Front::open(const ServerSettings& settings,
 
 Result<Front::Found> Front::look() const {
   const std::string host = trust::host_name();
-  auto names = trust::all_names(host, trust::interface_addresses(), settings_.names);
+  std::string also = settings_.names;
+  for (const std::string& one : presence_.hosts()) {
+    if (trust::is_host_name(one)) also += " " + one;
+  }
+  auto names = trust::all_names(host, trust::interface_addresses(), also);
   if (!names) return base::fail(names.error().code, "server.names: " + names.error().detail);
   const auto now = trust::believed(base::wall_now(), base::kYoungest);
   const bool own = settings_.tls_certificate.empty();
@@ -108,13 +113,11 @@ void Front::show(trust::Identity next) {
 void Front::call(trust::Names names, std::string outward) {
   names_ = std::move(names);
   outward_ = std::move(outward);
-  facts_.name = names_.hosts.empty() ? "robot" : names_.hosts.front();
   set_port(port_);
 }
 
 std::string Front::at(const std::string& address) const {
-  const bool v6 = address.find(':') != std::string::npos;
-  return "https://" + (v6 ? "[" + address + "]" : address) + ":" + std::to_string(port_);
+  return "https://" + authority_of(address, port_);
 }
 
 std::string Front::address() const {
@@ -148,9 +151,13 @@ void Front::set_port(std::uint16_t port) {
 
 std::optional<net::Response> Front::answer(const net::Request& request) const {
   if (request.method() != http::verb::get && request.method() != http::verb::head) return {};
+  if (auto picture = presence_.answer(request)) return picture;
   const std::string_view target = view(request.target());
   // Whoever reached it under one name or address goes on there.
   pair::Facts facts = facts_;
+  const badge::Badge badge = presence_.badge();
+  facts.name = badge.name;
+  facts.picture = badge::picture_path(badge);
   if (is_host(request)) facts.address = "https://" + std::string(view(request[http::field::host]));
   std::erase(facts.addresses, facts.address);
   auto file = pair::file_at(target.substr(0, target.find('?')), facts);
@@ -202,7 +209,7 @@ net::Response Front::on_plain(const net::Request& request) const {
 }
 
 std::string Front::invitation(bool drawn) const {
-  std::string text;
+  std::string text = "this robot is " + presence_.badge().name + "\n";
   for (const std::string& other : facts_.addresses) text += "also at " + other + "\n";
   const std::string said = pair::code_text(facts_);
   text +=

@@ -5,7 +5,7 @@
 //
 //   worker ─look(): names, addresses, clock, files─▶ web thread ─take()─▶ new connections
 //
-// Web thread, but for look().
+// Web thread, but for look(), and what it asks the presence for.
 
 #include <cstdint>
 #include <filesystem>
@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/presence.hpp"
 #include "base/result.hpp"
 #include "config/settings.hpp"
 #include "net/server.hpp"
@@ -28,13 +29,16 @@ namespace roverd {
 class Front {
  public:
   /// Reads or makes what is needed, at the start. Errors as trust::own_identity and given_identity
-  /// have them.
+  /// have them. @param presence lives longer
   static base::Result<std::unique_ptr<Front>> open(const ServerSettings& settings,
-                                                   const std::filesystem::path& data);
+                                                   const std::filesystem::path& data,
+                                                   const Presence& presence);
 
   const std::shared_ptr<net::Tls>& tls() const noexcept { return tls_; }
   /// Once the server listens.
   void set_port(std::uint16_t port);
+  /// Of the authority, as pairs.
+  const std::string& fingerprint() const noexcept { return facts_.fingerprint; }
   /// Under which clients reach the server: "https://192.168.4.1:8080". Where it is reached from a
   /// network, loopback's is the last choice.
   std::string address() const;
@@ -55,7 +59,8 @@ class Front {
   /// What was done since the last time, for people. The same trouble is told once.
   std::vector<trust::Told> news() { return std::exchange(news_, {}); }
 
-  /// /pair and what belongs to it, GET and HEAD; empty: something else was asked for.
+  /// /pair and what belongs to it, the robot's picture, GET and HEAD; empty: something else was
+  /// asked for.
   std::optional<net::Response> answer(const net::Request& request) const;
   /// To a request in the open: the same, or the way to https, or a refusal.
   net::Response on_plain(const net::Request& request) const;
@@ -64,8 +69,8 @@ class Front {
   std::string invitation(bool drawn) const;
 
  private:
-  Front(ServerSettings settings, std::filesystem::path folder)
-      : settings_(std::move(settings)), folder_(std::move(folder)) {}
+  Front(ServerSettings settings, std::filesystem::path folder, const Presence& presence)
+      : settings_(std::move(settings)), folder_(std::move(folder)), presence_(presence) {}
   void show(trust::Identity next);
   void call(trust::Names names, std::string outward);
   std::string at(const std::string& address) const;
@@ -73,6 +78,7 @@ class Front {
 
   const ServerSettings settings_;
   const std::filesystem::path folder_;
+  const Presence& presence_;
   std::uint16_t port_ = 0;
   trust::Identity identity_;
   trust::Names shown_;  ///< in the certificate

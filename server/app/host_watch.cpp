@@ -56,6 +56,10 @@ std::vector<base::HostProblem> host_problems(const HostFacts& f) {
              late,
          false});
   }
+  if (!f.unannounced.empty()) {
+    out.push_back(
+        {"not_announced", "nobody finds this robot by its name: " + f.unannounced, false});
+  }
   return out;
 }
 

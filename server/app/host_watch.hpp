@@ -23,6 +23,7 @@ struct HostFacts {
   /// All but a thousandth of the last minute's wake-ups were earlier than this; empty: not known
   /// yet.
   std::optional<double> lateness_s{};
+  std::string unannounced{};  ///< why the networks do not know this robot; empty: they do
 };
 
 /// Pure. Below 200 MB the disk is low; without an answer for 10 s it is silent; before 2025 the

@@ -22,6 +22,7 @@
 #include "app/front.hpp"
 #include "app/host_watch.hpp"
 #include "app/memory_reserve.hpp"
+#include "app/presence.hpp"
 #include "app/recordings.hpp"
 #include "app/version.hpp"
 #include "app/wiring.hpp"
@@ -72,8 +73,9 @@ struct Station::Impl {
   std::unique_ptr<store::Store> store;
   std::unique_ptr<BackupKeeper> backups;
   std::unique_ptr<services::Services> services;
-  people::Book people;           ///< web thread
-  std::unique_ptr<Front> front;  ///< null: no TLS
+  people::Book people;                 ///< web thread
+  std::unique_ptr<Presence> presence;  ///< before front, which asks it
+  std::unique_ptr<Front> front;        ///< null: no TLS
   std::unique_ptr<api::Api> api;
   std::unique_ptr<net::Server> server;
   std::unique_ptr<net::Doorbell> bell;
@@ -137,8 +139,11 @@ Result<void> Station::Impl::open(const Settings& settings, const Options& option
   if (auto done = claim_robot(settings, options); !done) return done;
   open_estop(options, first);
   services = std::make_unique<services::Services>(robot, *store, settings.vehicle.name);
+  auto known = Presence::open(settings);
+  if (!known) return tl::unexpected(known.error());
+  presence = std::move(*known);
   if (settings.server.tls) {
-    auto opened = Front::open(settings.server, options.data);
+    auto opened = Front::open(settings.server, options.data, *presence);
     if (!opened) return tl::unexpected(opened.error());
     front = std::move(*opened);
   }
@@ -152,6 +157,11 @@ Result<void> Station::Impl::open(const Settings& settings, const Options& option
   robot.reviewed(settings.reviewed);
   tell_left_out(settings);
   tell_certificate();
+  presence->announce(server->port(), front ? front->fingerprint() : "", [this](auto news) {
+    asio::post(web, [this, news = std::move(news)] {
+      if (auto event = presence->heard(news)) robot.tell(std::move(*event));
+    });
+  });
   start();
   return {};
 }
@@ -259,7 +269,7 @@ void Station::Impl::make_api(const Settings& settings, const Options& options) {
   deps.drivers = driver_door();
   deps.drill = drill_door(drill, robot, settings, options);
   deps.page = [this](const net::Request& request) {
-    auto answer = front ? front->answer(request) : std::nullopt;
+    auto answer = front ? front->answer(request) : presence->answer(request);
     return answer ? std::move(answer) : page.answer(request);
   };
   deps.tls = front != nullptr;
@@ -277,6 +287,7 @@ void Station::Impl::make_api(const Settings& settings, const Options& options) {
                            .connections = stats.connections,
                            .clients = stats.clients};
   };
+  deps.identity = [this] { return presence->identity(); };
   deps.host = [this] { return host; };
   deps.aside = [this](api::Aside a) {
     const net::Lane lane = a.large ? net::Lane::Large : net::Lane::Small;
@@ -317,9 +328,7 @@ Result<void> Station::Impl::open_server(const Settings& settings, const Options&
     address = front->address();
     return {};
   }
-  const std::string& own = addresses.front();
-  const bool v6 = own.find(':') != std::string::npos;
-  address = "http://" + (v6 ? "[" + own + "]" : own) + ":" + std::to_string(server->port());
+  address = "http://" + authority_of(addresses.front(), server->port());
   return {};
 }
 
@@ -359,7 +368,8 @@ void Station::Impl::start() {
   watch_names_soon();
   manager.ready(address);
   tell_alive();
-  base::log(base::Level::Info, "main", "serving", {{"address", address}, {"version", kVersion}});
+  base::log(base::Level::Info, "main", "serving",
+            {{"robot", presence->badge().name}, {"address", address}, {"version", kVersion}});
 }
 
 void Station::Impl::start_services() {
@@ -447,7 +457,8 @@ void Station::Impl::watch_host() {
                               .storage = store->storage(),
                               .real_time = loop->real_time(),
                               .memory_locked = memory_locked,
-                              .lateness_s = lateness_watch.p999_s()});
+                              .lateness_s = lateness_watch.p999_s(),
+                              .unannounced = presence->unannounced()});
   for (const base::HostProblem& problem : found) {
     const auto same = [&](const base::HostProblem& known) { return known.id == problem.id; };
     if (!problem.alarming || std::any_of(host.begin(), host.end(), same)) continue;
@@ -507,6 +518,7 @@ void Station::Impl::watch_names_soon() {
         net::Lane::Small, [this, found] { *found = front->look(); },
         [this, found] {
           if (*found) front->take(std::move(**found));
+          presence->vouched_by(front->fingerprint());
           tell_certificate();
           tell_address();
           watch_names_soon();
@@ -537,6 +549,7 @@ Station::Station(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Station::~Station() {
   impl_->halt();
   impl_->workers.stop();
+  if (impl_->presence) impl_->presence->hush();
   impl_->keep_learned();
   // What is on its way to the web is dropped with the io_context.
   if (impl_->services) impl_->services->stop();

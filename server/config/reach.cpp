@@ -68,6 +68,11 @@ bool reaches_out(const ServerSettings& server) {
   return !std::all_of(addresses.begin(), addresses.end(), is_loopback);
 }
 
+std::string authority_of(const std::string& address, int port) {
+  const bool v6 = address.find(':') != std::string::npos;
+  return (v6 ? "[" + address + "]" : address) + ":" + std::to_string(port);
+}
+
 Result<void> settle_server(Settings& s) {
   const auto addresses = addresses_of(s.server);
   if (s.server.listen == "loopback") return check_bind(s);

@@ -22,4 +22,7 @@ bool is_loopback(const std::string& address) noexcept;
 /// Others than this computer can come in.
 bool reaches_out(const ServerSettings& server);
 
+/// As it stands in a URL: "192.168.4.1:8080", "[fd00::1]:8080".
+std::string authority_of(const std::string& address, int port);
+
 }  // namespace roverd

@@ -8,6 +8,7 @@
 
 #include <toml++/toml.h>
 
+#include "badge/badge.hpp"
 #include "base/params.hpp"
 #include "config/reach.hpp"
 
@@ -128,6 +129,7 @@ Result<void> set_tiles(Settings& settings, std::string_view name, const ParamVal
 Sections sections_of(Settings& s) {
   Sections out{
       {"server", section(s.server)},
+      {"robot", section(s.badge, s.robot.robot)},
       {"vehicle", section(s.vehicle, s.robot.vehicle)},
       {"recording", section(s.recording)},
       {"missions", section(s.missions)},
@@ -213,10 +215,21 @@ Result<void> check_server(const Settings& s) {
                         " needs the other one, too: server.tls_certificate and server.tls_key");
 }
 
+Result<void> check_badge(const Settings& s) {
+  if (auto good = badge::check_name(s.badge.name); !good) {
+    return base::fail(good.error().code, s.where("robot.name") + " " + good.error().detail);
+  }
+  if (auto good = badge::colour_of(s.badge.colour, s.badge.name); !good) {
+    return base::fail(good.error().code, s.where("robot.colour") + " " + good.error().detail);
+  }
+  return {};
+}
+
 /// What only the whole tells.
 Result<void> check_all(const Settings& s) {
   if (auto good = check_robot(s); !good) return good;
   if (auto good = check_server(s); !good) return good;
+  if (auto good = check_badge(s); !good) return good;
   const std::string& level = s.server.log_level;
   if (level != "debug" && level != "info" && level != "warning" && level != "error") {
     return base::fail(base::Code::Invalid, s.where("server.log_level") +

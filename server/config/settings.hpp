@@ -30,6 +30,7 @@ struct ServerSettings {
   std::string tls_key;
   std::string names;
   bool access = false;
+  bool announce = true;
   double control_grace_s = 10.0;
   int connections_per_address = 64;
   std::string log_level = "info";
@@ -53,6 +54,9 @@ void fields(V& v, ServerSettings& p) {
   v("access", p.access,
     "true: people log in and scripts show a token; the first admin is made with the code that "
     "roverd prints. Always on where listen reaches into a network");
+  v("announce", p.announce,
+    "tells the networks by the avahi-daemon that the robot is here, where listen reaches all of "
+    "them: found as NAME.local");
   v("control_grace_s", p.control_grace_s, 2.0, 300.0,
     "with access: whoever has control and is not heard any more (no stream, no call) keeps it so "
     "long");
@@ -60,6 +64,23 @@ void fields(V& v, ServerSettings& p) {
     "so many connections of one other address at the same time, streams included; beyond them only "
     "what stops is served. 0: no limit. 127.0.0.1 and ::1 have none");
   v("log_level", p.log_level, "debug, info, warning or error");
+}
+
+/// Which of several robots this is; in section [robot], beside robot::RobotParams.
+struct BadgeSettings {
+  std::string name;
+  std::string colour;
+  std::string picture;
+};
+
+template <class V>
+void fields(V& v, BadgeSettings& p) {
+  v("name", p.name,
+    "the robot's own name, for people and as NAME.local; empty: this computer's name");
+  v("colour", p.colour,
+    "blue, green, purple, brown, teal, pink, olive, navy, slate or black; empty: the name chooses");
+  v("picture", p.picture,
+    "a PNG, JPEG or WebP file of 256 KiB at most; empty: the name's first letters on the colour");
 }
 
 /// What a person must know of the vehicle; served as GET /vehicle/capabilities. Its size and
@@ -182,6 +203,7 @@ void fields(V& v, BackupSettings& p) {
 
 struct Settings {
   ServerSettings server;
+  BadgeSettings badge;
   VehicleSettings vehicle;
   RecordingSettings recording;
   MissionSettings missions;

@@ -11,6 +11,8 @@ namespace {
 constexpr std::string_view kStyle = R"(:root { color-scheme: light dark; }
 body { font: 1.1rem/1.5 system-ui, sans-serif; max-width: 40rem; margin: 0 auto; padding: 1rem; }
 img { width: 16rem; max-width: 100%; }
+h1 { display: flex; align-items: center; gap: 0.8rem; overflow-wrap: anywhere; }
+h1 img { flex: none; width: 3.5rem; height: 3.5rem; object-fit: cover; border-radius: 0.7rem; }
 code { overflow-wrap: anywhere; }
 .button { display: inline-block; padding: 0.8rem 1.2rem; margin: 0.3rem 0.3rem 0.3rem 0;
   border: 2px solid; border-radius: 0.5rem; font-weight: bold; text-decoration: none; }
@@ -76,9 +78,11 @@ std::string page_text(const Facts& facts) {
   }
   return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
-         "<link rel=\"stylesheet\" href=\"/pair.css\"><title>Pair with " +
-         escaped(facts.name) + "</title></head><body>\n<h1>Pair with " + escaped(facts.name) +
-         "</h1>\n<p>This robot has no internet: it vouches for itself. Once you trust its "
+         "<link rel=\"stylesheet\" href=\"/pair.css\"><link rel=\"icon\" href=\"" +
+         escaped(facts.picture) + "\"><title>" + escaped(facts.name) +
+         " – pair – roverd</title></head><body>\n<h1><img src=\"" + escaped(facts.picture) +
+         "\" alt=\"\"><span>Pair with " + escaped(facts.name) +
+         "</span></h1>\n<p>This robot has no internet: it vouches for itself. Once you trust its "
          "certificate, the connection is encrypted, and nobody else can pose as the robot.</p>\n"
          "<p><img src=\"/pair.svg\" alt=\"QR code of this page\"></p>\n"
          "<h2>1. Compare</h2>\n<p>The robot's own terminal or screen shows the same SHA-256 "

@@ -11,6 +11,7 @@ namespace roverd::pair {
 
 struct Facts {
   std::string name;                    ///< of the robot, for people
+  std::string picture;                 ///< of the robot, its path on this server
   std::string address;                 ///< "https://192.168.4.1:8080", without a path
   std::vector<std::string> addresses;  ///< others under which it may be reached, the same way
   std::string fingerprint;             ///< of the authority, as pairs

@@ -11,6 +11,16 @@ namespace {
 /// A control loop that published nothing for so long hangs.
 constexpr double kSilent_s = 0.5;
 
+Json identity_json(const Context& context) {
+  if (!context.deps.identity) return nullptr;
+  const Identity robot = context.deps.identity();
+  return {{"name", robot.name},
+          {"host", robot.host.empty() ? Json(nullptr) : Json(robot.host)},
+          {"colour", robot.colour},
+          {"rgb", robot.rgb},
+          {"picture", robot.picture}};
+}
+
 Json health_json(const Context& context) {
   const auto snapshot = context.deps.robot.snapshot();
   const base::Time now = base::steady_now();
@@ -26,6 +36,7 @@ Json health_json(const Context& context) {
   }
   return {{"status", well ? "ok" : "degraded"},
           {"problems", std::move(problems)},
+          {"robot", identity_json(context)},
           {"version", context.deps.version},
           {"mono_s", mono_s(now)},
           {"uptime_s", std::round(base::seconds(now - context.begun) * 1e3) / 1e3},

@@ -90,6 +90,15 @@ TEST(HostWatch, RefusedPriorityIsToldWithTheLatenessAndAlarmsOnlyWhenTheLoopIsLa
   EXPECT_FALSE(host_problems(facts)[1].alarming);
 }
 
+TEST(HostWatch, ThatNobodyFindsItByNameIsToldAndAlarmsNobody) {
+  HostFacts facts = all_well();
+  facts.unannounced = "no avahi-daemon runs";
+  ASSERT_EQ(ids(facts), Ids{"not_announced"});
+  EXPECT_FALSE(host_problems(facts)[0].alarming);
+  EXPECT_EQ(host_problems(facts)[0].detail,
+            "nobody finds this robot by its name: no avahi-daemon runs");
+}
+
 TEST(LatenessWatch, NamesWhatAllButAThousandthWereBelow) {
   // Given 1000 wake-ups: 998 below 64 us, two between 4.1 and 8.2 ms,
   LatenessWatch watch;

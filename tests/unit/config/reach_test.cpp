@@ -81,6 +81,11 @@ TEST(Reach, BindOpensNoNetworkUnlessBothAreOn) {
   }
 }
 
+TEST(Reach, AddressesStandInUrlsAsUrlsWantThem) {
+  EXPECT_EQ(authority_of("192.168.4.1", 8080), "192.168.4.1:8080");
+  EXPECT_EQ(authority_of("fd00::1", 80), "[fd00::1]:80");
+}
+
 TEST(Reach, WhatIsNoAddressIsRefused) {
   for (const char* listen :
        {"", "world", "lan 192.168.4.1", "192.168.4.1,127.0.0.1", "robot.local"}) {

@@ -12,6 +12,7 @@ Facts facts() {
   for (int i = 0; i < 32; ++i)
     pairs += std::string(i > 0 ? ":" : "") + "A" + "0123456789ABCDEF"[i % 16];
   return {.name = "rover <1>",
+          .picture = "/robot.svg",
           .address = "https://192.168.4.1:8080",
           .addresses = {"https://rover.local:8080"},
           .fingerprint = pairs,
@@ -25,7 +26,10 @@ TEST(PairPage, ShowsAddressFingerprintAndDownloadsAndNeedsNoScript) {
   EXPECT_EQ(page->content_type, "text/html; charset=utf-8");
   for (const auto& part :
        {facts().address, facts().fingerprint, facts().addresses[0], std::string("href=\"/ca.crt\""),
-        std::string("/ca.mobileconfig"), std::string("Pair with rover &lt;1&gt;")}) {
+        std::string("/ca.mobileconfig"), std::string("Pair with rover &lt;1&gt;"),
+        std::string("<title>rover &lt;1&gt; – pair – roverd</title>"),
+        std::string("<img src=\"/robot.svg\""),
+        std::string("<link rel=\"icon\" href=\"/robot.svg\">")}) {
     EXPECT_NE(page->body.find(part), std::string::npos) << part;
   }
   for (const char* word : {"<script", "style=", "onclick", "rover <1>"}) {
