@@ -6,6 +6,7 @@ import { access_calls } from './link/access';
 import { control_calls } from './link/control';
 import { drill_calls } from './link/drill';
 import { fence_calls, survey_calls } from './link/fields';
+import { read_identity } from './link/identity';
 import { mission_calls, tile_sets, vehicle_calls } from './link/rest';
 import { run_calls } from './link/runs';
 import { draft_storage } from './link/storage';
@@ -15,11 +16,22 @@ import { FieldMap } from './map/map';
 import { invitation_in, type Account } from './model/access';
 import App from './ui/App.svelte';
 import { ControlDesk } from './ui/control.svelte';
+import { Identity } from './ui/identity.svelte';
 import LogIn from './ui/LogIn.svelte';
 import { Station } from './ui/station.svelte';
 import './ui/style.css';
 
 const LOOK_MS = 10_000;
+const WHO_MS = 30_000;
+
+const identity = new Identity();
+
+/** Another robot may come into the network and have the name; and the first answer may be lost. */
+const learn_who = async (): Promise<void> => {
+  const answer = document.visibilityState === 'visible' ? await read_identity() : null;
+  if (answer?.ok) identity.take(answer.value);
+  setTimeout(() => void learn_who(), identity.robot ? WHO_MS : LOOK_MS);
+};
 
 const element = (id: string): HTMLElement => {
   const found = document.getElementById(id);
@@ -58,7 +70,7 @@ const begin = (account: Account | null, session: string | null): void => {
     ? { ...station.stream_events, on_control: desk.take_message }
     : station.stream_events;
   late.stream = new Stream(events, again);
-  mount(App, { target: element('app'), props: { station, account, desk, left: again } });
+  mount(App, { target: element('app'), props: { station, identity, account, desk, left: again } });
 
   void tile_sets().then((sets) => map.use_tiles(sets[0] ?? null));
   window.addEventListener('online', () => late.stream?.hurry());
@@ -82,6 +94,7 @@ const watch_log_in = (): void => {
   }, LOOK_MS);
 };
 
+void learn_who();
 void access_calls.state().then((answer) => {
   if (!answer.ok || !answer.value.access) {
     begin(null, null);
@@ -95,7 +108,7 @@ void access_calls.state().then((answer) => {
   if (user === null || role === null) {
     mount(LogIn, {
       target: element('app'),
-      props: { calls: access_calls, at_first: answer.value, invitation, entered: again },
+      props: { calls: access_calls, identity, at_first: answer.value, invitation, entered: again },
     });
     return;
   }
