@@ -14,6 +14,7 @@
 #include <variant>
 #include <vector>
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "app/backup_keeper.hpp"
@@ -88,7 +89,26 @@ std::vector<std::string> take_kept_parameters(roverd::Settings& settings,
   return roverd::robot::take_kept(settings.robot, std::move(kept));
 }
 
+constexpr mode_t kOwnerAlone = S_IRWXG | S_IRWXO;
+
+/// In the database are hashes of passwords; an older version let others read it.
+void close_to_others(const std::filesystem::path& data) {
+  namespace fs = std::filesystem;
+  constexpr auto kOthers = fs::perms::group_all | fs::perms::others_all;
+  std::error_code ec;
+  std::vector<fs::path> files;
+  for (const char* ending : {"", "-wal", "-shm"}) {
+    files.push_back(data / (std::string("roverd.db") + ending));
+  }
+  for (const auto& one : fs::directory_iterator(data / "backups", ec)) files.push_back(one.path());
+  for (const auto& file : files) {
+    if (!fs::is_regular_file(fs::symlink_status(file, ec))) continue;
+    fs::permissions(file, kOthers, fs::perm_options::remove, ec);
+  }
+}
+
 int serve(const roverd::Options& options) {
+  ::umask(kOwnerAlone);
   roverd::hold_memory_back();
   auto overrides = options.overrides;
   if (options.tls) overrides.emplace_back("server.tls=true");
@@ -104,6 +124,7 @@ int serve(const roverd::Options& options) {
   if (auto logging = roverd::start_logging(log_file, settings->server.log_level); !logging) {
     return say(kRefused, logging.error().detail);
   }
+  close_to_others(options.data);
   const auto database = std::filesystem::path(options.data) / "roverd.db";
   // Before its parameters are read: they may come from the backup.
   if (auto told = roverd::store::rescue(database)) {
@@ -130,6 +151,7 @@ int serve(const roverd::Options& options) {
 }
 
 int back_up(const roverd::BackupCommand& command) {
+  ::umask(kOwnerAlone);
   const auto made = roverd::make_backup(command);
   if (!made) return say(kRefused, "backup: " + made.error().detail);
   std::printf("%s\n", made->c_str());

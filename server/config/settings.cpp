@@ -1,6 +1,9 @@
 #include "config/settings.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string_view>
@@ -52,6 +55,32 @@ Result<void> flatten(const toml::table& table, const std::string& prefix, const 
   return {};
 }
 
+/// "ntrip://USER:PASSWORD@HOST:PORT/MOUNTPOINT" somewhere in it.
+bool has_login(std::string_view text) {
+  const auto scheme = text.find("://");
+  return scheme != std::string_view::npos && text.find('@', scheme) != std::string_view::npos;
+}
+
+/// A file with somebody's login is for its owner alone.
+Result<void> check_logins(const std::filesystem::path& file, const std::vector<Entry>& entries) {
+  namespace fs = std::filesystem;
+  constexpr fs::perms kOthers = fs::perms::group_all | fs::perms::others_all;
+  std::error_code ec;
+  const fs::perms mode = fs::status(file, ec).permissions();
+  if (ec || (mode & kOthers) == fs::perms::none) return {};
+  for (const auto& entry : entries) {
+    const auto* text = entry.value ? std::get_if<std::string>(&*entry.value) : nullptr;
+    if (text == nullptr || !has_login(*text)) continue;
+    std::array<char, 8> octal{};
+    std::snprintf(octal.data(), octal.size(), "%04o", static_cast<unsigned>(mode) & 07777U);
+    return base::fail(base::Code::Invalid, entry.place + ": " + entry.key +
+                                               " has a login, and the file can be read or changed "
+                                               "by others (mode " +
+                                               octal.data() + "): chmod go= " + file.string());
+  }
+  return {};
+}
+
 Result<std::vector<Entry>> read_file(const std::filesystem::path& file) {
   std::error_code ec;
   if (!std::filesystem::is_regular_file(file, ec)) {
@@ -62,6 +91,9 @@ Result<std::vector<Entry>> read_file(const std::filesystem::path& file) {
     std::vector<Entry> entries;
     if (auto done = flatten(table, "", file.string(), entries); !done) {
       return tl::unexpected(done.error());
+    }
+    if (auto closed = check_logins(file, entries); !closed) {
+      return tl::unexpected(closed.error());
     }
     return entries;
   } catch (const toml::parse_error& error) {
@@ -79,7 +111,8 @@ Result<Entry> read_override(const std::string& text) {
   }
   const std::string key = text.substr(0, equals);
   const std::string raw = text.substr(equals + 1);
-  const std::string place = "--set " + text;
+  // What is wrong with it is told with its place.
+  const std::string place = "--set " + (has_login(raw) ? key + "=..." : text);
   if (raw == "true" || raw == "false") return Entry{key, raw == "true", place};
   char* end = nullptr;
   const double number = std::strtod(raw.c_str(), &end);

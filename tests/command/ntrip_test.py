@@ -150,6 +150,7 @@ gga_period_s = 1
 [recording]
 enabled = {str(record).lower()}
 """)
+        config.chmod(0o600)
         self.program = Program(BIN / "roverd", "--config", config, "--data", self.folder / "data",
                                "--port", "0", env=env, cwd=self.folder)
         base = self.program.wait_line(r"listening on (http://\S+)")[1]

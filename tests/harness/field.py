@@ -39,7 +39,7 @@ class Caller:
             answer = line.getresponse()
             text = answer.read()
             kind = answer.getheader("Content-Type", "")
-            return answer.status, answer.headers, json.loads(text) if "json" in kind else text
+            return answer.status, answer.headers, json.loads(text) if kind.split(";")[0].endswith("json") else text
 
     def do(self, method, path, body=None, status=200, headers=()):
         got, _, answer = self.call(method, path, body, headers)
