@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Where secrets may be and where not: passwords, cookies, tokens, the first code, a caster's login.
+"""Where secrets may be and where not: passwords, PINs, cookies, tokens, codes, a caster's login.
 
 A run of the real programs uses them all. Afterwards everything that was written and answered is searched."""
 
@@ -121,6 +121,31 @@ def use_everything(field):
     return used
 
 
+def use_devices(field):
+    """Pairs a browser and a phone. @return the secrets that were used"""
+    used = {"PIN": "40719358", "wrong PIN": "82640917", "phone's PIN": "95283074"}
+    browser = {"Origin": field.station.address}
+
+    def kept(headers, name):
+        cookies = dict(one.split(";")[0].split("=", 1) for one in headers.get_all("Set-Cookie"))
+        used[f"{name}'s cookies"] = cookies["roverd_device"]
+        return {**browser, "Cookie": "roverd_device=" + cookies["roverd_device"]}
+    _, headers, _ = field.anna.call("POST", "/devices", {"name": "tractor", "pin": used["PIN"]})
+    tractor = Caller(field.station, kept(headers, "tractor"))
+    check(tractor.call("POST", "/session", {"pin": used["wrong PIN"]})[0] == 401, "a wrong PIN is taken")
+    status, headers, answer = tractor.call("POST", "/session", {"pin": used["PIN"]})
+    check(status == 200, f"the PIN is not taken: {answer}")
+    used["cookie by PIN"] = headers["Set-Cookie"].split(";")[0].split("=", 1)[1]
+    used["invitation"] = field.anna.do("POST", "/invitations", {}, 201)["code"]
+    phone = {"code": used["invitation"], "name": "phone", "pin": used["phone's PIN"]}
+    wrong = Caller(field.station, browser).call("POST", "/invitations/accept", {**phone, "code": "ZZZZ-ZZZZ"})
+    check(wrong[0] == 401, f"a wrong code: {wrong[0]}")
+    status, headers, answer = Caller(field.station, browser).call("POST", "/invitations/accept", phone)
+    check(status == 200, f"the phone is not paired: {answer}")
+    kept(headers, "phone")
+    return used
+
+
 def answers(field):
     """Of everything that can be read, by the highest role. @return address → bytes"""
     out = {}
@@ -152,7 +177,7 @@ def secrets():
         port = caster.server.getsockname()[1]
         config = configured(pathlib.Path(name), f"ntrip://{LOGIN.replace(' ', '%20')}@127.0.0.1:{port}/A")
         with Field("--set", "server.log_level=debug", config=config) as field:
-            used = use_everything(field)
+            used = {**use_everything(field), **use_devices(field)}
             basic = base64.b64encode(f"rover:{CASTER}".encode())
             until("the caster is asked", 20, lambda: any(basic in one for one in caster.asked))
             until("its refusal is told", 20, lambda: field.admin.do("GET", "/drivers/ntrip")["state"] != "up")
