@@ -1,0 +1,238 @@
+#include "app/station_impl.hpp"
+
+namespace roverd {
+
+namespace {
+/// A stop that was obeyed is confirmed then, whether the disk has taken it or hangs.
+constexpr base::Duration kKeepEstop = std::chrono::milliseconds(200);
+}  // namespace
+
+Result<void> Station::Impl::open(const Settings& settings, const Options& options) {
+  auto plans = plan_devices(settings, options);
+  if (!plans) return tl::unexpected(plans.error());
+  auto made = Supervisor::make(std::move(*plans),
+                               [this](const base::Measurement& m) { robot.measurements().put(m); });
+  if (!made) return tl::unexpected(made.error());
+  supervisor = std::move(*made);
+  if (auto done = open_tiles(settings); !done) return done;
+  const bool first = !std::filesystem::exists(std::filesystem::path(options.data) / "roverd.db");
+  if (auto done = open_store(settings, options); !done) return done;
+  if (auto done = claim_robot(settings, options); !done) return done;
+  open_estop(options, first);
+  services = std::make_unique<services::Services>(robot, *store, settings.vehicle.name);
+  auto known = Presence::open(settings);
+  if (!known) return tl::unexpected(known.error());
+  presence = std::move(*known);
+  if (settings.server.tls) {
+    auto opened = Front::open(settings.server, options.data, *presence);
+    if (!opened) return tl::unexpected(opened.error());
+    front = std::move(*opened);
+  }
+  make_api(settings, options);
+  if (auto done = open_server(settings, options); !done) return done;
+  recall(settings, options);
+  if (options.replays.empty()) {
+    const auto folder = std::filesystem::path(options.data) / kRecordings;
+    tidier = std::make_shared<RecordingTidier>(folder, bounds_of(settings.recording));
+  }
+  robot.reviewed(settings.reviewed);
+  tell_left_out(settings);
+  tell_certificate();
+  presence->announce(server->port(), front ? front->fingerprint() : "", [this](auto news) {
+    asio::post(web, [this, news = std::move(news)] {
+      if (auto event = presence->heard(news)) robot.tell(std::move(*event));
+    });
+  });
+  start();
+  return {};
+}
+
+Result<void> Station::Impl::open_tiles(const Settings& settings) {
+  for (const auto& set : settings.tiles) {  // one by one first, to name the line of the wrong one
+    if (auto done = store::TileFolder().open({set}); !done) {
+      return base::fail(done.error().code,
+                        settings.where("tiles." + set.first) + ": " + done.error().detail);
+    }
+  }
+  return tiles.open(settings.tiles);
+}
+
+Result<void> Station::Impl::open_store(const Settings& settings, const Options& options) {
+  store::Options how;
+  how.keep_deleted = std::chrono::hours(24) * settings.missions.keep_deleted_days;
+  how.keep_runs = settings.runs.keep;
+  how.keep_runs_for = std::chrono::hours(24) * settings.runs.keep_days;
+  how.max_run_bytes = std::int64_t{settings.runs.total_mb} * 1'000'000;
+  how.max_events = settings.events.keep;
+  how.keep_events_for = std::chrono::hours(24) * settings.events.keep_days;
+  how.tell = [this](base::Event event) {
+    asio::post(web, [this, event = std::move(event)] { api->on_event(event); });
+  };
+  auto opened = store::Store::open(
+      std::filesystem::path(options.data) / "roverd.db",
+      [this](std::function<void()> answer) { asio::post(web, std::move(answer)); }, std::move(how));
+  if (!opened) return tl::unexpected(opened.error());
+  store = std::move(*opened);
+  if (settings.backups.keep > 0) {
+    backups = std::make_unique<BackupKeeper>(
+        options.data, backup_options(settings), [this](const std::string& why) {
+          asio::post(web, [this, why] {
+            api->on_event({base::wall_now(), base::Severity::Warning, "backup_failed", why});
+          });
+        });
+  }
+  return {};
+}
+
+void Station::Impl::open_estop(const Options& options, bool first) {
+  if (!options.replays.empty()) return;
+  const auto trouble = [this](const std::string& why) {
+    asio::post(web, [this, why] {
+      api->on_event({base::wall_now(), base::Severity::Error, "estop_not_kept", why});
+    });
+  };
+  estop = EstopKeeper::open(std::filesystem::path(options.data) / "estop", first, {trouble});
+  const EstopKeeper::Found& found = estop->found();
+  if (found.latched) robot.begin_latched(found.why, base::wall_now());
+  robot.on_latch = [this](bool latched) { estop->want(latched); };
+}
+
+/// Web thread.
+void Station::Impl::when_estop_kept(std::function<void()> then) {
+  if (!estop) return then();
+  const auto once = std::make_shared<std::function<void()>>(std::move(then));
+  const auto call = [once] {
+    if (const auto now = std::exchange(*once, nullptr)) now();
+  };
+  const auto patience = std::make_shared<asio::steady_timer>(web, kKeepEstop);
+  patience->async_wait([call, patience](const boost::system::error_code&) { call(); });
+  estop->when_kept([this, call, patience] {
+    asio::post(web, [call, patience] {
+      patience->cancel();
+      call();
+    });
+  });
+}
+
+/// What the web asks of drivers, and their answers back on the web thread.
+api::DriverDoor Station::Impl::driver_door() {
+  const auto on_web = [this](api::DriverDoor::Done done) {
+    return [this, done = std::move(done)](Result<void> result) {
+      asio::post(web, [done, result = std::move(result)] { done(result); });
+    };
+  };
+  api::DriverDoor door;
+  door.restart = [this](const std::string& name) { return supervisor->restart(name); };
+  if (supervisor->has_lights()) {
+    door.set_lights = [this, on_web](const base::LightState& lights, base::Time not_after,
+                                     api::DriverDoor::Done done) {
+      supervisor->set_lights(lights, not_after, on_web(std::move(done)));
+    };
+  }
+  if (supervisor->clears_errors()) {
+    door.clear_errors = [this, on_web](int motor, base::Time not_after,
+                                       api::DriverDoor::Done done) {
+      supervisor->clear_errors(motor, not_after, on_web(std::move(done)));
+    };
+  }
+  return door;
+}
+
+void Station::Impl::make_api(const Settings& settings, const Options& options) {
+  api::Deps deps{.robot = robot,
+                 .store = *store,
+                 .services = *services,
+                 .version = kVersion,
+                 .profile = profile_of(settings, *supervisor)};
+  deps.tiles = {tiles.sets(), [this](const std::string& set, int zoom, int x, int y) {
+                  return tiles.read(set, zoom, x, y);
+                }};
+  deps.drivers = driver_door();
+  deps.drill = drill_door(drill, robot, settings, options);
+  deps.page = [this](const net::Request& request) {
+    auto answer = front ? front->answer(request) : presence->answer(request);
+    return answer ? std::move(answer) : page.answer(request);
+  };
+  deps.tls = front != nullptr;
+  if (front && reaches_out(settings.server)) {
+    deps.is_ours = [this](const std::string& name) { return front->is_ours(name); };
+  }
+  deps.figures = [this] {
+    const net::Stats stats = server->stats();
+    return api::NetFigures{.accepted = stats.accepted,
+                           .refused = stats.refused,
+                           .timed_out = stats.timed_out,
+                           .requests = stats.requests,
+                           .delivered = server->hub().delivered(),
+                           .dropped = server->hub().dropped(),
+                           .connections = stats.connections,
+                           .clients = stats.clients};
+  };
+  deps.identity = [this] { return presence->identity(); };
+  deps.host = [this] { return host; };
+  deps.aside = [this](api::Aside a) {
+    const net::Lane lane = a.large ? net::Lane::Large : net::Lane::Small;
+    if (!a.must) return workers.run(lane, std::move(a.work), std::move(a.then));
+    workers.must_run(lane, std::move(a.work), std::move(a.then));
+    return true;
+  };
+  deps.later = [this](std::function<void()> call) { asio::post(web, std::move(call)); };
+  deps.when_estop_kept = [this](std::function<void()> then) { when_estop_kept(std::move(then)); };
+  if (settings.server.access) deps.people = &people;
+  deps.control_grace = base::from_seconds(settings.server.control_grace_s);
+  deps.tell_code = [this](const std::string& code) {
+    // For whoever stands here; never for the log.
+    std::printf("nobody can log in yet: make the first admin at %s with the code %s\n",
+                address.c_str(), code.c_str());
+    std::fflush(stdout);
+  };
+  deps.poster = [this](const std::string& path) {
+    const auto code = pair::qr_code(address + path);
+    return api::Poster{address + path, code ? pair::svg_of(*code) : std::string()};
+  };
+  api = std::make_unique<api::Api>(std::move(deps));
+}
+
+Result<void> Station::Impl::open_server(const Settings& settings, const Options& options) {
+  const auto addresses = addresses_of(settings.server);
+  const int port = options.port.value_or(settings.server.port);
+  net::Limits limits;
+  limits.per_address = settings.server.connections_per_address;
+  auto listening = net::Server::listen(web, addresses, static_cast<std::uint16_t>(port), limits,
+                                       handlers_of(*api, front.get()));
+  if (!listening) return tl::unexpected(listening.error());
+  server = std::move(*listening);
+  api->attach(stream_of(server->hub()));
+  if (front) {
+    server->secure(front->tls());
+    front->set_port(server->port());
+    address = front->address();
+    return {};
+  }
+  address = "http://" + authority_of(addresses.front(), server->port());
+  return {};
+}
+
+/// Nobody reads a log: what holds in place of a kept value is told where the robot's events are.
+void Station::Impl::tell_left_out(const Settings& settings) {
+  if (!settings.rescued.empty()) {
+    robot.tell({base::wall_now(), base::Severity::Error, "database_rescued", settings.rescued});
+  }
+  for (const std::string& why : settings.left_out) {
+    robot.tell({base::wall_now(), base::Severity::Warning, "parameter_left_out",
+                "a kept value is not taken any more, the one before it holds: " + why});
+  }
+}
+
+Result<void> Station::Impl::claim_robot(const Settings& settings, const Options& options) {
+  const std::string link = drive_link(settings);
+  if (link.empty() || !options.replays.empty()) return {};
+  auto taken = Claim::take(link);
+  if (!taken) return tl::unexpected(taken.error());
+  claim.emplace(std::move(*taken));
+  return {};
+}
+
+/// What is new is an event, too: nobody looks at GET /health all day.
+
+}  // namespace roverd

@@ -1,0 +1,145 @@
+#include "app/station_impl.hpp"
+
+namespace roverd {
+
+namespace {
+constexpr base::Duration kKeepLearned = std::chrono::minutes(1);
+constexpr base::Duration kLookAtHost = std::chrono::seconds(1);
+constexpr base::Duration kTidyRecordings = std::chrono::minutes(1);
+constexpr base::Duration kLookAtNames = std::chrono::seconds(5);
+}  // namespace
+
+void Station::Impl::recall(const Settings& settings, const Options& options) {
+  if (!options.replays.empty()) return;
+  learned_file = std::filesystem::path(options.data) / "learned.json";
+  learned_by = learner(settings);
+  const nav::Learned known = read_learned(learned_file, learned_by, base::wall_now());
+  robot.recall(known);
+  if (!known.odometry_scale && !known.gyro_bias_radps) return;
+  const auto text = [](const std::optional<nav::LearnedValue>& v) {
+    return v ? std::to_string(v->value) : std::string("not known");
+  };
+  base::log(base::Level::Info, "main", "learned before",
+            {{"odometry_scale", text(known.odometry_scale)},
+             {"gyro_bias_radps", text(known.gyro_bias_radps)}});
+}
+
+/// A disk may pause: on a worker's thread, or, at the end, after all others.
+void Station::Impl::keep_learned() {
+  const auto learned = robot.learned();
+  if (learned_file.empty() || !learned) return;
+  if (!learned->odometry_scale && !learned->gyro_bias_radps) return;
+  const auto kept = write_learned(learned_file, *learned, learned_by, base::wall_now());
+  if (!kept) {
+    base::log(base::Level::Warning, "main", "what was learned is not kept",
+              {{"reason", kept.error().detail}});
+  }
+}
+
+void Station::Impl::keep_learned_soon() {
+  learned_timer.expires_after(kKeepLearned);
+  learned_timer.async_wait([this](const boost::system::error_code& ec) {
+    if (ec) return;
+    workers.must_run(net::Lane::Small, [this] { keep_learned(); }, {});
+    keep_learned_soon();
+  });
+}
+
+/// At once and then every minute, each when the one before is done: a disk may take its time.
+void Station::Impl::tidy_recordings() {
+  if (!tidier) return;
+  const auto events = std::make_shared<std::vector<base::Event>>();
+  workers.must_run(
+      net::Lane::Large, [tidier = tidier, events] { *events = tidier->tidy(base::wall_now()); },
+      [this, events] {
+        for (base::Event& event : *events) api->on_event(std::move(event));
+        tidy_timer.expires_after(kTidyRecordings);
+        tidy_timer.async_wait([this](const boost::system::error_code& ec) {
+          if (!ec) tidy_recordings();
+        });
+      });
+}
+
+/// A folder that was removed holds no lock any more: the link is what a second one would drive
+/// over.
+void Station::Impl::watch_host() {
+  refill_memory_reserve();
+  const base::Time now = base::steady_now();
+  if (const auto snapshot = robot.snapshot()) lateness_watch.take(snapshot->loop, now);
+  auto found = host_problems({.now = now,
+                              .wall = base::wall_now(),
+                              .storage = store->storage(),
+                              .real_time = loop->real_time(),
+                              .memory_locked = memory_locked,
+                              .lateness_s = lateness_watch.p999_s(),
+                              .unannounced = presence->unannounced()});
+  for (const base::HostProblem& problem : found) {
+    const auto same = [&](const base::HostProblem& known) { return known.id == problem.id; };
+    if (!problem.alarming || std::any_of(host.begin(), host.end(), same)) continue;
+    robot.tell({base::wall_now(), base::Severity::Warning, problem.id, problem.detail});
+  }
+  host = found;
+  robot.measurements().put(base::HostStatus{now, std::move(found)});
+}
+
+/// From the web thread: it must live as well as the loop.
+void Station::Impl::tell_alive() {
+  if (!manager.period() || !loop) return;
+  const auto snapshot = robot.snapshot();
+  manager.alive(snapshot ? snapshot->loop.ticks : 0);
+  alive_timer.expires_after(*manager.period());
+  alive_timer.async_wait([this](const boost::system::error_code& ec) {
+    if (!ec) tell_alive();
+  });
+}
+
+void Station::Impl::watch_host_soon() {
+  host_timer.expires_after(kLookAtHost);
+  host_timer.async_wait([this](const boost::system::error_code& ec) {
+    if (ec || !loop) return;
+    watch_host();
+    watch_host_soon();
+  });
+}
+
+/// It changes what devices must trust, or may have to be done again: not only for the log.
+void Station::Impl::tell_certificate() {
+  if (!front) return;
+  for (const trust::Told& one : front->news()) {
+    const auto level = one.alarming ? base::Level::Warning : base::Level::Info;
+    const auto severity = one.alarming ? base::Severity::Warning : base::Severity::Info;
+    base::log(level, "main", "certificate", {{"done", one.text}});
+    robot.tell({base::wall_now(), severity, "certificate", one.text});
+  }
+}
+
+/// For whoever stands before the terminal.
+void Station::Impl::tell_address() {
+  if (front->address() == address) return;
+  address = front->address();
+  std::printf("now at %s\n", address.c_str());
+  std::fflush(stdout);
+}
+
+/// Names, addresses and clock change while the robot runs.
+void Station::Impl::watch_names_soon() {
+  if (!front) return;
+  names_timer.expires_after(kLookAtNames);
+  names_timer.async_wait([this](const boost::system::error_code& ec) {
+    if (ec) return;
+    const auto found = std::make_shared<std::optional<Result<Front::Found>>>();
+    workers.must_run(
+        net::Lane::Small, [this, found] { *found = front->look(); },
+        [this, found] {
+          if (*found) front->take(std::move(**found));
+          presence->vouched_by(front->fingerprint());
+          tell_certificate();
+          tell_address();
+          watch_names_soon();
+        });
+  });
+}
+
+/// The robot first: no command after this, and the base is told to stand.
+
+}  // namespace roverd
