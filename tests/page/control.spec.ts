@@ -1,55 +1,51 @@
 // Two browsers and one robot: one drives, the other watches, asks, and takes it by force.
 
-import type { Browser, Page } from "@playwright/test";
+import type { Browser, Page } from '@playwright/test';
 
-import { press } from "./page";
-import { expect, test } from "./station";
+import { press } from './page';
+import { expect, test } from './station';
 
-test.use({ more: ["--set", "server.access=true"] });
+test.use({ more: ['--set', 'server.access=true'] });
 
-const PASSWORD = "four tractors in a barn";
+const PASSWORD = 'four tractors in a barn';
 
-const control = (page: Page) => page.getByRole("region", { name: "Control" });
+const control = (page: Page) => page.getByRole('region', { name: 'Control' });
 
 const enter = async (page: Page, url: string, user: string): Promise<void> => {
   await page.goto(url);
-  await page.getByLabel("User").fill(user);
-  await page.getByLabel("Password").fill(PASSWORD);
-  await press(page, "Log in");
-  await expect(page.getByRole("group", { name: "Link" })).toContainText("Live");
+  await page.getByLabel('User').fill(user);
+  await page.getByLabel('Password').fill(PASSWORD);
+  await press(page, 'Log in');
+  await expect(page.getByRole('group', { name: 'Link' })).toContainText('Live');
 };
 
-const another = async (
-  browser: Browser,
-  url: string,
-  user: string,
-): Promise<Page> => {
+const another = async (browser: Browser, url: string, user: string): Promise<Page> => {
   const page = await (await browser.newContext()).newPage();
   await enter(page, url, user);
   return page;
 };
 
-test("control is taken, asked for, handed over, and taken by force", async ({
+test('control is taken, asked for, handed over, and taken by force', async ({
   page: anna,
   browser,
   station,
 }) => {
   // given: anna, the admin, and ben, an operator
   await anna.goto(station.url);
-  await anna.getByLabel("Code").fill(await station.code());
-  await anna.getByLabel("User").fill("anna");
-  await anna.getByLabel("Password").fill(PASSWORD);
-  await press(anna, "Make the first admin");
-  await expect(control(anna)).toContainText("Nobody has control");
+  await anna.getByLabel('Code').fill(await station.code());
+  await anna.getByLabel('User').fill('anna');
+  await anna.getByLabel('Password').fill(PASSWORD);
+  await press(anna, 'Make the first admin');
+  await expect(control(anna)).toContainText('Nobody has control');
   const made = await anna.evaluate(async (password) => {
     const answers: number[] = [];
     for (const [name, role] of Object.entries({
-      ben: "operator",
-      cleo: "viewer",
+      ben: 'operator',
+      cleo: 'viewer',
     })) {
-      const answer = await fetch("/api/v1/users", {
-        method: "POST",
-        headers: { "Content-Type": "application/json" },
+      const answer = await fetch('/api/v1/users', {
+        method: 'POST',
+        headers: { 'Content-Type': 'application/json' },
         body: JSON.stringify({ name, role, password }),
       });
       answers.push(answer.status);
@@ -57,54 +53,52 @@ test("control is taken, asked for, handed over, and taken by force", async ({
     return answers;
   }, PASSWORD);
   expect(made).toEqual([201, 201]);
-  const ben = await another(browser, station.url, "ben");
+  const ben = await another(browser, station.url, 'ben');
 
   // when: anna takes it; then both see so
-  await press(anna, "Take control");
-  await expect(control(anna)).toContainText("You have control");
-  await expect(control(ben)).toContainText("anna");
-  await expect(control(ben)).toContainText("has control");
+  await press(anna, 'Take control');
+  await expect(control(anna)).toContainText('You have control');
+  await expect(control(ben)).toContainText('anna');
+  await expect(control(ben)).toContainText('has control');
 
   // and: a viewer sees it, and is offered nothing
-  const cleo = await another(browser, station.url, "cleo");
-  await expect(control(cleo)).toContainText("has control");
-  await expect(control(cleo)).toContainText("You watch, and may stop.");
-  await expect(control(cleo).getByRole("button")).toHaveCount(0);
+  const cleo = await another(browser, station.url, 'cleo');
+  await expect(control(cleo)).toContainText('has control');
+  await expect(control(cleo)).toContainText('You watch, and may stop.');
+  await expect(control(cleo).getByRole('button')).toHaveCount(0);
 
   // when: ben asks, and anna keeps it
-  await press(ben, "Ask");
-  const question = anna.getByRole("alertdialog", {
-    name: "Somebody asks for control",
+  await press(ben, 'Ask');
+  const question = anna.getByRole('alertdialog', {
+    name: 'Somebody asks for control',
   });
-  await expect(question).toContainText("ben");
-  await question.getByRole("button", { name: "Keep" }).click();
-  await expect(control(ben).getByRole("alert")).toContainText("keeps control");
+  await expect(question).toContainText('ben');
+  await question.getByRole('button', { name: 'Keep' }).click();
+  await expect(control(ben).getByRole('alert')).toContainText('keeps control');
   await expect(question).toHaveCount(0);
 
   // when: he asks again, and she hands it over
-  await press(ben, "Ask");
-  await question.getByRole("button", { name: "Hand over" }).click();
-  await expect(control(ben)).toContainText("You have control");
-  await expect(control(anna)).toContainText("ben");
+  await press(ben, 'Ask');
+  await question.getByRole('button', { name: 'Hand over' }).click();
+  await expect(control(ben)).toContainText('You have control');
+  await expect(control(anna)).toContainText('ben');
 
   // when: she takes it back by force; then he reads why
-  await press(anna, "Force …");
-  await anna.getByLabel("Why, for everyone to read").fill("the gate is open");
-  await press(anna, "Take it by force");
-  await expect(control(anna)).toContainText("You have control");
-  await expect(control(ben).getByRole("alert")).toContainText(
-    "by force: the gate is open",
-  );
+  await press(anna, 'Force …');
+  await anna.getByLabel('Why, for everyone to read').fill('the gate is open');
+  await press(anna, 'Take it by force');
+  await expect(control(anna)).toContainText('You have control');
+  await expect(control(ben).getByRole('alert')).toContainText('by force: the gate is open');
 
   // Anyone may stop.
-  await press(ben, "Emergency stop");
-  await expect(anna.getByText("Emergency stop is latched.")).toBeVisible();
+  await press(ben, 'Emergency stop');
+  await expect(anna.getByText('Emergency stop is latched.')).toBeVisible();
 
   // when: anna's page is gone; then it is free after the grace, by itself
   await anna.close();
-  await expect(control(ben)).toContainText("Nobody has control", {
+  await expect(control(ben)).toContainText('Nobody has control', {
     timeout: 40_000,
   });
-  await press(ben, "Take control");
-  await expect(control(ben)).toContainText("You have control");
+  await press(ben, 'Take control');
+  await expect(control(ben)).toContainText('You have control');
 });
