@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Other people's programs as judges: openssl, sslscan, curl, Python's requests and websockets, with a token.
 
 What tests/command/tls_test.py asks of openssl (versions, resumption, renegotiation) is not asked again."""
