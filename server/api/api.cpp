@@ -223,9 +223,8 @@ void Api::Impl::route(const CallPtr& call) {
   call->query = std::move(target_parts->query);
   const auto caller = context->control.driver(call->who, peer_of(call->request));
   context->control.heard(caller);
-  if (acts(*context, *match.route, *call) && !context->control.may(caller)) {
-    return call->respond(problem_response(403, context->control.problem()));
-  }
+  call->acts = acts(*context, *match.route, *call);
+  if (auto refusal = context->without_control(*call)) return call->respond(std::move(*refusal));
   if (is_too_much(*call) && !stops(path)) {
     return call->respond(problem(429, "too many requests wait for an answer"));
   }
@@ -238,13 +237,13 @@ void Api::Impl::route(const CallPtr& call) {
   const bool keyed = !header(call->request, "Idempotency-Key").empty();
   const Effort effort{keyed ? call->request.body().size() : 0};
   if (effort.bytes <= Effort::kSmall) {
-    if (idempotency.admit(*call)) match.route->handler(call);
+    if (idempotency.admit(call)) match.route->handler(call);
     return;
   }
   context->aside(
       call, effort, [call] { return Idempotency::hash_of(call->request.body()); },
       [this, call, route = match.route](std::size_t hash) {
-        if (idempotency.admit(*call, hash)) route->handler(call);
+        if (idempotency.admit(call, hash)) route->handler(call);
       });
 }
 

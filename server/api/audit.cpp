@@ -70,7 +70,6 @@ void Audit::answered(const Call& call, const Response& response, Now now) {
   deed.call = method_of(method) + " " + (call.operation.empty() ? "(unknown)" : call.operation);
   deed.target = asked_for(call.request);
   deed.status = status;
-  if (status < 400 && deed.call != kStop) return keep_(std::move(deed));
   if (status >= 400) deed.detail = detail_of(response);
   count(std::move(deed), now.mono);
 }
@@ -119,6 +118,8 @@ void Audit::control(const people::Lease::Notice& notice, Now now) {
 void Audit::count(Deed deed, base::Time now) {
   std::string kind = deed.user + '\n' + deed.credential + '\n' + deed.address + '\n' + deed.call +
                      '\n' + std::to_string(deed.status);
+  // What was done is told for each thing that it was done to, as far as there is room.
+  if (deed.status < 400) kind += '\n' + deed.target;
   if (!counted_.contains(kind) && counted_.size() >= kKinds) {
     kind = "others";
     Deed others;

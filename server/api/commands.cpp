@@ -60,6 +60,8 @@ void Commands::sweep(base::Time now) {
 void run_command(const ContextPtr& context, const CallPtr& call, robot::Command command,
                  const robot::Validity& validity,
                  std::function<Json(const base::Snapshot&)> state) {
+  // It may have waited for the store, and control was lost or taken meanwhile.
+  if (auto refusal = context->without_control(*call)) return call->respond(std::move(*refusal));
   context->commands.run(std::move(command), validity, base::steady_now(),
                         [context, call, state = std::move(state)](base::Result<void> result) {
                           if (!result) return call->respond(problem(result.error()));

@@ -23,6 +23,12 @@ Profile Context::profile() const {
   return now;
 }
 
+std::optional<Response> Context::without_control(const Call& call) const {
+  if (!call.acts || control.may(control.driver(call.who, peer_of(call.request))))
+    return std::nullopt;
+  return problem_response(403, control.problem());
+}
+
 Json Context::vehicle(const base::Snapshot& snapshot, base::Time now) const {
   Json out = vehicle_json(snapshot, deps.profile.name, now);
   out["teach"] = teach_brief_json(deps.services.view()->teach);

@@ -112,6 +112,8 @@ struct Context {
 
   /// The vehicle as the parameters say it is now.
   Profile profile() const;
+  /// The refusal of a call that acts on the robot, of whom control is not held by now.
+  std::optional<Response> without_control(const Call& call) const;
   /// The whole state, with what the robot does not know of itself.
   Json vehicle(const base::Snapshot& snapshot, base::Time now) const;
   /// The mission that another life of the program left behind, if nothing else is in hand: what the

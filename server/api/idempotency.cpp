@@ -17,22 +17,22 @@ std::size_t Idempotency::hash_of(const std::string& body) noexcept {
   return std::hash<std::string>{}(body);
 }
 
-bool Idempotency::admit(Call& call, std::size_t body_hash) {
-  const std::string_view given = header(call.request, "Idempotency-Key");
+bool Idempotency::admit(const CallPtr& call, std::size_t body_hash) {
+  const std::string_view given = header(call->request, "Idempotency-Key");
   if (given.empty()) return true;
   if (given.size() > kLongestKey) {
-    call.respond(problem({base::Code::Invalid, "Idempotency-Key is longer than 200 characters"}));
+    call->respond(problem({base::Code::Invalid, "Idempotency-Key is longer than 200 characters"}));
     return false;
   }
-  const auto method = call.request.method_string();
+  const auto method = call->request.method_string();
   const std::string key = std::string(method.data(), method.size()) + ' ' +
-                          std::string(target(call.request)) + ' ' + std::string(given) + ' ' +
-                          (call.who ? call.who->id : std::string());
+                          std::string(target(call->request)) + ' ' + std::string(given) + ' ' +
+                          (call->who ? call->who->id : std::string());
   const auto [at, is_new] = entries_.try_emplace(key);
   Entry& entry = at->second;
   if (is_new) {
     entry.body_hash = body_hash;
-    call.respond = [this, key, respond = std::move(call.respond)](Response response) {
+    call->respond = [this, key, respond = std::move(call->respond)](Response response) {
       const auto answer = std::make_shared<const Response>(std::move(response));
       finish(key, answer);
       give(respond, answer);
@@ -40,12 +40,15 @@ bool Idempotency::admit(Call& call, std::size_t body_hash) {
     return true;
   }
   if (entry.body_hash != body_hash) {
-    call.respond(
+    call->respond(
         problem({base::Code::Invalid, "this Idempotency-Key was used before with another body"}));
   } else if (entry.answer) {
-    give(call.respond, entry.answer);
+    give(call->respond, entry.answer);
   } else {
-    entry.waiting.push_back(std::move(call.respond));
+    // It holds its call, as whoever answers does: what answers looks at the request again.
+    entry.waiting.push_back([call, respond = std::move(call->respond)](Response response) {
+      respond(std::move(response));
+    });
   }
   return false;
 }

@@ -23,9 +23,9 @@ class Idempotency {
   /// @return true: this is the first; carry it out and answer through the replaced
   /// `call.respond`. false: it was or will be answered from the first one (or refused: the same
   /// key with another body is a mistake, 422). Without the header: true, nothing changed.
-  bool admit(Call& call) { return admit(call, hash_of(call.request.body())); }
+  bool admit(const CallPtr& call) { return admit(call, hash_of(call->request.body())); }
   /// The same for a body that was judged elsewhere.
-  bool admit(Call& call, std::size_t body_hash);
+  bool admit(const CallPtr& call, std::size_t body_hash);
   static std::size_t hash_of(const std::string& body) noexcept;
 
   /// Where large answers are copied: `work` there, then `then` here. Empty: at once.

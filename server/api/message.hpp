@@ -35,6 +35,7 @@ struct Call {
   std::map<std::string, std::string, std::less<>> query{};   ///< decoded
   Respond respond;
   std::optional<people::Who> who{};  ///< empty: nobody known, or access control is off
+  bool acts = false;                 ///< on the robot: control must be held
   std::string operation{};           ///< "/missions/{id}"; empty: none of ours
   std::string named{};               ///< the user that a log-in is for, if there is such a one
   std::string named_by{};  ///< "device 1f…": what it showed to be named so; opens nothing

@@ -117,13 +117,16 @@ bool StreamTexts::may(ClientId id, Client& client, const Json& message) {
     stream_.close(id, kLogInAgain, "the log-in has ended");
     return false;
   }
-  if (suffices(client.who->role, need)) return true;
+  const bool good_for_it = need < Need::Operator || client.who->may("POST");
+  if (suffices(client.who->role, need) && good_for_it) return true;
   stop_driving(id, client);
   stream_.send(
-      id, stream_text("error", ++client.errors_sent,
-                      plain_json(problem_json(
-                          403, "the role " + std::string(to_string(client.who->role)) +
-                                   " is too low: this needs " + std::string(to_string(need))))));
+      id, stream_text(
+              "error", ++client.errors_sent,
+              plain_json(problem_json(
+                  403, good_for_it ? "the role " + std::string(to_string(client.who->role)) +
+                                         " is too low: this needs " + std::string(to_string(need))
+                                   : "this token is not good for POST"))));
   return false;
 }
 

@@ -438,8 +438,9 @@ std::optional<base::Time> Connection::gives_way() const {
   if (!wire_.is_open()) return std::nullopt;
   const bool asks_nothing =
       phase_ == Phase::Greeting || phase_ == Phase::Waiting || phase_ == Phase::Header;
-  const bool answered = reserve_ && phase_ == Phase::Lingering;
-  return asks_nothing || answered ? deadline_ : std::nullopt;
+  // On the reserve a body that does not come keeps nobody out either.
+  const bool lingers = reserve_ && (phase_ == Phase::Lingering || phase_ == Phase::Body);
+  return asks_nothing || lingers ? deadline_ : std::nullopt;
 }
 
 }  // namespace roverd::net

@@ -127,12 +127,14 @@ std::vector<Session> Book::sessions_of(const std::string& user) const {
 
 Result<void> Book::end_session(const std::string& user, const std::string& id) {
   const std::size_t before = sessions_.size();
+  drop_invitations(user);
   drop_sessions([&](const Live& s) { return s.row.user == user && s.row.id == id; });
   return sessions_.size() < before ? Result<void>{} : no_such("session");
 }
 
 std::size_t Book::end_other_sessions(const std::string& user, const std::string& keep) {
   const std::size_t before = sessions_.size();
+  drop_invitations(user);
   drop_sessions([&](const Live& s) { return s.row.user == user && s.row.id != keep; });
   return before - sessions_.size();
 }

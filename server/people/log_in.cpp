@@ -41,6 +41,8 @@ bool Book::is_code(std::string_view typed, const std::string& address, Now now) 
 /// Whoever has been here before from that address is not kept out by others' guesses. Names that do
 /// not exist share few entries, and wait alike.
 std::string Book::door_of(const std::string& user, const std::string& address) const {
+  // Of one-time codes: nobody's guesses keep others waiting.
+  if (user.empty()) return "code@" + address;
   if (this->user(user) == nullptr) return "?" + digest(user).substr(0, 1);
   const bool was_here = std::any_of(sessions_.begin(), sessions_.end(), [&](const Live& s) {
     return s.row.user == user && s.row.address == address;

@@ -100,6 +100,7 @@ std::vector<Device> Book::devices_of(const std::string& user) const {
 
 Result<void> Book::end_device(const std::string& user, const std::string& id) {
   const std::size_t before = devices_.size();
+  drop_invitations(user);  // a phone that was sent away must not come back by what it invited
   drop_devices([&](const Device& d) { return d.user == user && d.id == id; });
   if (devices_.size() < before) return {};
   return base::fail(Code::NotFound, "there is no such device");

@@ -301,6 +301,46 @@ TEST_F(AccessApi, OnTheStreamTheRoleCountsForEachMessage) {
   until([this] { return as("viewer", "GET", "/vehicle").body["estop"] == true; }, "it stopped");
 }
 
+TEST_F(AccessApi, ATokenForReadingHaltsNothingOnTheStreamEither) {
+  const auto made =
+      as("admin", "POST", "/tokens", R"({"name":"reader","role":"operator","methods":["GET"]})");
+  ASSERT_EQ(made.status, 201u) << made.raw.body;
+  Client reader(house.port());
+  ASSERT_EQ(reader.upgrade("/api/v1/stream", as_token(made.body["token"])), 101u);
+  reader.send_frame(1, R"({"halt":"disarm"})");
+  std::string error;
+  while (const auto frame = reader.frame()) {
+    if (frame->opcode != 1) continue;
+    const Json message = Json::parse(frame->payload);
+    if (message["topic"] != "error") continue;
+    error = message["data"]["detail"];
+    break;
+  }
+  EXPECT_EQ(error, "this token is not good for POST");
+}
+
+TEST_F(AccessApi, TwoRequestsOfOneKeyOnTheirWayAreBothAnswered) {
+  const std::string home = "{\"lat\":58.37802,\"lon\":26.7289}";
+  ASSERT_EQ(as("token of operator", "POST", "/control/take").status, 200u);
+  const std::string ask =
+      "PUT /api/v1/vehicle/home HTTP/1.1\r\nHost: 127.0.0.1\r\n"
+      "Content-Type: application/json\r\nIdempotency-Key: both\r\n" +
+      as("token of operator") + "Content-Length: " + std::to_string(home.size()) + "\r\n\r\n" +
+      home;
+  house.ticking = false;
+  Client first(house.port());
+  Client again(house.port());
+  first.send(ask);
+  again.send(ask);
+  (void)as("viewer", "GET", "/missions");  // both were read by then
+  house.ticking = true;
+  const auto one = first.answer();
+  const auto two = again.answer();
+  ASSERT_TRUE(one && two);
+  EXPECT_EQ(one->body, two->body);
+  EXPECT_EQ(one->status, two->status);
+}
+
 TEST_F(AccessApi, SecretsAreInNoEventAndNoAnswer) {
   (void)call("POST", "/session", Json{{"user", "admin"}, {"password", "wrong horse"}});
   const std::string events = as("admin", "GET", "/events").raw.body;

@@ -95,6 +95,20 @@ TEST_F(AuditApi, CountsStopsAndStreamsTooSoThatNobodyFillsTheDiskWithThem) {
   EXPECT_EQ(stops, 50);
 }
 
+TEST_F(AuditApi, TellsEachThingThatWasDoneAndCountsTheSameDoneAgain) {
+  for (int i = 0; i < 40; ++i) (void)as("viewer", "DELETE", "/sessions");
+  for (int i = 0; i < 3; ++i)
+    (void)as("operator", "POST", "/missions", R"({"name":"a","items":[]})");
+  EXPECT_EQ(as("operator", "DELETE", "/runs/7").status, 404u);
+  int ended = 0;
+  const Json all = rows();
+  EXPECT_LE(all.size(), 6u) << all.dump(1);
+  for (const Json& row : all) {
+    if (row["call"] == "DELETE /sessions") ended += row["times"].get<int>();
+  }
+  EXPECT_EQ(ended, 40);
+}
+
 TEST_F(AuditApi, HasStreamsAndTheStopsOnThem) {
   Client viewer(house.port());
   ASSERT_EQ(viewer.upgrade("/api/v1/stream", as("token of viewer")), 101u);

@@ -48,8 +48,14 @@ void with_hash(const ContextPtr& c, const CallPtr& call, std::string password, T
   c->aside(
       call, Effort{Effort::kSmall + 1},
       [password = std::move(password)] { return people::hash_password(password); },
-      [call, then = std::move(then)](Result<std::string> hash) {
+      [c, call, then = std::move(then)](Result<std::string> hash) {
         if (!hash) return call->respond(problem(hash.error()));
+        // Hashing takes its time, and who asked may be no admin any more.
+        const auto still = call->who ? c->access.book().still(*call->who, Access::now())
+                                     : std::optional<people::Who>();
+        if (!still || still->role != Role::Admin) {
+          return call->respond(problem(403, "the right to do this has ended meanwhile"));
+        }
         then(std::move(*hash));
       });
 }
@@ -116,6 +122,8 @@ void remove_user(const ContextPtr& c, const CallPtr& call) {
   if (refuse_while_off(c, call)) return;
   const auto done = c->access.book().remove_user(call->params["name"]);
   if (!done) return call->respond(problem(done.error()));
+  // Whoever was the last one leaves a robot that wants its first admin again.
+  if (c->access.book().needs_setup()) c->tell_code();
   keep_people(c, [call](const Result<void>& kept) {
     if (kept) return call->respond(Response{http::status::no_content, 11});
     call->respond(

@@ -196,6 +196,22 @@ TEST_F(Pairing, AnInvitationNeedsAnInviterWhoMayStill) {
   EXPECT_FALSE(book.take_invitation(gone, "a", now));
 }
 
+TEST_F(Pairing, WhatALostPhoneInvitedEndsWithIt) {
+  const auto lost = pair();
+  const auto stolen = enter(lost.secret, true);
+  const std::string by_device = book.invite({"anna", "anna", Role::Admin}, now);
+  ASSERT_TRUE(book.end_device("anna", lost.row.id));
+  EXPECT_FALSE(book.take_invitation(by_device, "a", now));
+  const auto here = pair();
+  const auto mine = enter(here.secret, true);
+  const std::string by_session = book.invite({"anna", "anna", Role::Admin}, now);
+  ASSERT_TRUE(book.end_session("anna", mine->row.id));
+  EXPECT_FALSE(book.take_invitation(by_session, "a", now));
+  const std::string by_other = book.invite({"anna", "anna", Role::Admin}, now);
+  (void)book.end_other_sessions("anna", "");
+  EXPECT_FALSE(book.take_invitation(by_other, "a", now));
+}
+
 TEST_F(Pairing, GuessingCodesMustWait) {
   (void)book.invite({"anna", "anna", Role::Operator}, now);
   for (int i = 0; i < 8; ++i) EXPECT_FALSE(book.take_invitation("AAAA-AAAA", "10.0.0.9", now));
