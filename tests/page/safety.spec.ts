@@ -230,9 +230,9 @@ test('after a jump of the position the robot holds until somebody says that he h
   station,
 }) => {
   test.setTimeout(150_000);
-  await page.setViewportSize({ width: 390, height: 844 });
   await open_page(page, station.url);
   await drive_north(page);
+  await page.setViewportSize({ width: 390, height: 844 });
   await expect.poll(() => station.sim.now.speed_mps, { timeout: 30_000 }).toBeGreaterThan(0.3);
 
   station.sim.tell({ set: { gnss_jump_east_m: 5 } });
