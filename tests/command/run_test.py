@@ -295,7 +295,8 @@ def the_product_starts():
     """./run --port 0 prints data folder and address; page and API answer there"""
     with running() as (program, rest):
         check(any(str(scratch / "data") in line for line in program.lines), "data folder not shown")
-        check(rest.get("/health")["status"] == "ok", "not healthy")
+        health = rest.get("/health")
+        check(health["status"] == "ok", f"not healthy: {health}")
         status, headers, page = page_of(rest)
         check(status == 200 and b"<html" in page.lower(), f"the page answers {status}")
         check("text/html" in headers["Content-Type"], headers["Content-Type"])
