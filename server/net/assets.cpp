@@ -1,5 +1,6 @@
 #include "net/assets.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -38,8 +39,13 @@ std::string content_tag(std::string_view bytes) {
   return out.data();
 }
 
+/// Beast's own iequals (1.81) reads one sign beyond words that differ in case.
 bool same_word(std::string_view a, std::string_view b) {
-  return boost::beast::iequals({a.data(), a.size()}, {b.data(), b.size()});
+  const auto lower = [](char sign) {
+    return sign >= 'A' && sign <= 'Z' ? static_cast<char>(sign - 'A' + 'a') : sign;
+  };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [&](char one, char other) { return lower(one) == lower(other); });
 }
 
 bool forbidden(std::string_view parameters) {
