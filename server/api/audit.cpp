@@ -121,6 +121,8 @@ void Audit::count(Deed deed, base::Time now) {
   // What was done is told for each thing that it was done to, as far as there is room.
   if (deed.status < 400) kind += '\n' + deed.target;
   if (!counted_.contains(kind) && counted_.size() >= kKinds) {
+    // What was done keeps its name; only what was refused may come in any number of kinds.
+    if (deed.status < 400) return keep_(std::move(deed));
     kind = "others";
     Deed others;
     others.time = deed.time;
