@@ -128,6 +128,7 @@ step_build() {
   build_product
   ninja_build "$build"
   "$root/.ci/doors" --built "$build"
+  "$root/.ci/hardened" "$bin/roverd" "$bin/roverd-sim" "$bin/roverd-study"
 }
 
 step_unit() {

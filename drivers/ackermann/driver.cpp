@@ -180,12 +180,21 @@ void Driver::on_feedback(const Message& m, Time stamp) {
       base::BaseMotion{stamp, twist_from_wheel(m.speed_mps, seen_rad, params_.wheelbase_m)});
 }
 
+/// What it was told is not yet what it does.
+base::BodyTwist Driver::assumed_now() {
+  const double speed_mps = mode_ == DriveMode::Autonomous ? speed_mps_ : 0.0;
+  told_at_ = (told_at_ + 1) % told_.size();
+  told_[told_at_] = twist_from_wheel(speed_mps, wheel_rad_, params_.wheelbase_m);
+  const auto late = std::lround(params_.assumed_delay_s / base::seconds(kMotionPeriod));
+  const auto back = std::min(told_.size() - 1, static_cast<std::size_t>(late));
+  return told_[(told_at_ + told_.size() - back) % told_.size()];
+}
+
 void Driver::tell(Time now) {
   if (!port_.is_up()) return;
   if (!spoken_ && now >= next_motion_) {
     next_motion_ = now + kMotionPeriod;
-    const double speed_mps = mode_ == DriveMode::Autonomous ? speed_mps_ : 0.0;
-    base::BaseMotion motion{now, twist_from_wheel(speed_mps, wheel_rad_, params_.wheelbase_m)};
+    base::BaseMotion motion{now, assumed_now()};
     motion.assumed = true;
     on_measurement_(motion);
   }

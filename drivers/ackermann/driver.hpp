@@ -12,8 +12,8 @@
 //                               drives it from there, else park
 //
 // A controller that has once sent the layout back must go on doing so: its silence stops the car.
-// One that never did is believed to do what it is told (BaseMotion::assumed), and the base counts
-// as normal while the link is open.
+// One that never did is believed to do what it is told, so much later as it takes
+// (BaseMotion::assumed), and the base counts as normal while the link is open.
 //
 // In a recording, what was sent then stands for what would be sent now: where nothing comes back,
 // it is all that is known of the motion.
@@ -22,6 +22,8 @@
 //
 // Threads: send() belongs to the control thread, everything else to the device thread.
 
+#include <array>
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -70,6 +72,7 @@ class Driver {
   Message wanted(Time now, double dt_s);
   bool transmit(const Message& message, Time now);
   void tell(Time now);
+  base::BodyTwist assumed_now();
   double zero_rad() const noexcept { return params_.zero_rad + zero_.zero_rad(); }
 
   const Params params_;
@@ -83,6 +86,9 @@ class Driver {
   double speed_mps_ = 0.0;  ///< of the last command that left
   double wheel_rad_ = 0.0;  ///< the same, without the zero
   DriveMode mode_ = DriveMode::Park;
+  /// What was told lately, one every kMotionPeriod, for a car that tells nothing.
+  std::array<base::BodyTwist, 64> told_{};
+  std::size_t told_at_ = 0;
   bool replays_ = false;  ///< a recording tells what was sent
   std::optional<Time> last_sent_;
   Time next_motion_{};

@@ -14,6 +14,7 @@ struct Params {
   double zero_rad = 0.0;
   bool zero_learn = true;
   double zero_max_rad = 0.12;
+  double assumed_delay_s = 0.25;
   double command_timeout_s = 0.25;
   bool feedback_required = false;
   double feedback_timeout_s = 0.3;
@@ -35,6 +36,8 @@ void fields(V& v, Params& p) {
   v("zero_learn", p.zero_learn,
     "correct the zero further while driving straight, where the controller reports the angle");
   v("zero_max_rad", p.zero_max_rad, 0.0, 0.5, "the learned part is never larger");
+  v("assumed_delay_s", p.assumed_delay_s, 0.0, 1.2,
+    "a controller that tells nothing is believed to do so late what it was told");
   v("command_timeout_s", p.command_timeout_s, 0.05, 0.25, "an older command: speed 0, park");
   v("feedback_required", p.feedback_required,
     "the controller sends the same layout back; without it the car is lost");

@@ -14,6 +14,12 @@ void Battery::step(const BatteryParams& p, double motors_w, double dt_s) {
   set_charge_pct(charge_pct_ - 100.0 * used_ah / p.capacity_ah);
 }
 
+double Battery::reach(const BatteryParams& p) const noexcept {
+  const double missing =
+      std::clamp((p.full_v - voltage_v_) / std::max(0.01, p.full_v - p.empty_v), 0.0, 1.0);
+  return voltage_v_ > 0.0 ? 1.0 - p.uneven * missing : 1.0;
+}
+
 void Battery::set_charge_pct(double percent) noexcept {
   charge_pct_ = std::clamp(percent, 0.0, 100.0);
 }

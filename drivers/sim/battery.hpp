@@ -16,6 +16,8 @@ class Battery {
   double charge_pct() const noexcept { return charge_pct_; }
   double voltage_v() const noexcept { return voltage_v_; }
   double current_a() const noexcept { return current_a_; }  ///< drawn: positive
+  /// Of what is wanted of the motors, what they reach.
+  double reach(const BatteryParams& p) const noexcept;
   bool warning(const BatteryParams& p) const noexcept { return charge_pct_ < p.warn_pct; }
   bool fault(const BatteryParams& p) const noexcept { return charge_pct_ < p.fault_pct; }
 

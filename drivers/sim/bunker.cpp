@@ -51,14 +51,23 @@ Vehicle::Moved Bunker::drive(double dt_s) {
                      .battery_fault = battery().fault(params().battery),
                      .motor_fault = (static_cast<unsigned>(faults().error_bits) & kMotorBits) != 0},
                     now());
-  tracks_.step(params().drive, wanted.twist, wanted.brake, dt_s);
+  const base::BodyTwist reached{wanted.twist.linear_mps * reach(),
+                                wanted.twist.angular_radps * reach()};
+  const ForeignState* foreign = foreign_moved(
+      {0.0, wanted.brake, wanted.twist.linear_mps, wanted.twist.angular_radps, std::nullopt});
+  if (foreign != nullptr) {
+    tracks_.follow(params().drive, foreign->left_mps, foreign->right_mps, dt_s);
+  } else {
+    tracks_.step(drive_now(), reached, wanted.brake, dt_s);
+  }
   const MotorState& left = tracks_.left();
   const MotorState& right = tracks_.right();
   odometer_.step(faults(), left.travel_m, right.travel_m, tracks_.measured(),
                  params().drive.track_width_m);
   left_heat_c_ = warmed(left_heat_c_, left.current_a, dt_s);
   right_heat_c_ = warmed(right_heat_c_, right.current_a, dt_s);
-  return {tracks_.ground(), left.power_w + right.power_w, right.current_a - left.current_a};
+  return {tracks_.ground(), left.power_w + right.power_w, right.current_a - left.current_a,
+          tracks_.travel_mps()};
 }
 
 /// The periods of the real base; the phases spread the load over the bus.

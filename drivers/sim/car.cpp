@@ -26,7 +26,7 @@ void Car::step(const DriveParams& d, const CarParams& c, Wanted wanted, bool bra
     speed_mps_ = unstick(speed_mps_, driven_mps_, d.stick_mps);
     steer(c, now.wheel_rad, dt_s);
   }
-  const double v = speed_mps_ * (1.0 - d.slip);
+  const double v = speed_mps_ * std::max(0.0, 1.0 - d.slip - (d.slip_left + d.slip_right) / 2.0);
   ground_ = {{v, v * std::tan(wheel_rad_) / c.wheelbase_m}, 0.0};
   const double force_n = d.mass_kg * ((speed_mps_ - before_mps) / dt_s +
                                       (speed_mps_ == 0.0 ? 0.0 : std::copysign(1.0, speed_mps_)) *

@@ -24,6 +24,12 @@ class Car {
   /// @param brake the e-stop: brakes at once, whatever is wanted.
   void step(const DriveParams& d, const CarParams& c, Wanted wanted, bool brake, double dt_s);
 
+  /// Somebody else moves it: this only counts.
+  void follow(double speed_mps, std::optional<double> wheel_rad) noexcept {
+    speed_mps_ = lagged_mps_ = driven_mps_ = speed_mps;
+    if (wheel_rad) motor_rad_ = wheel_rad_ = *wheel_rad;
+  }
+
   GroundMotion ground() const noexcept { return ground_; }
   double wheel_speed_mps() const noexcept { return speed_mps_; }
   double seen_rad() const noexcept { return motor_rad_; }   ///< by the sensor at the motor

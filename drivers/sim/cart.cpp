@@ -78,19 +78,33 @@ Vehicle::Moved Cart::drive(double dt_s) {
 
 Vehicle::Moved Cart::roll(const Order& order, bool brake, double dt_s) {
   const Params& p = params();
+  const ForeignState* foreign =
+      foreign_moved({0.0, brake, steered_ ? order.speed_mps : order.twist.linear_mps,
+                     steered_ ? 0.0 : order.twist.angular_radps, order.wheel_rad});
   if (steered_) {
-    car_.step(p.drive, p.car, {order.speed_mps, order.wheel_rad}, brake, dt_s);
+    if (foreign != nullptr) {
+      car_.follow(foreign->left_mps, foreign->wheel_rad);
+    } else {
+      car_.step(drive_now(), p.car, {order.speed_mps * reach(), order.wheel_rad}, brake, dt_s);
+    }
     car_travel_m_ += car_.wheel_speed_mps() * dt_s;
     odometer_.step(faults(), car_travel_m_, car_travel_m_, {car_.wheel_speed_mps(), 0.0},
                    p.drive.track_width_m);
-    return {car_.ground(), car_.power_w(), 0.0};
+    return {car_.ground(), car_.power_w(), 0.0, std::abs(car_.wheel_speed_mps())};
   }
-  tracks_.step(p.drive, order.twist, brake, dt_s);
+  const base::BodyTwist reached{order.twist.linear_mps * reach(),
+                                order.twist.angular_radps * reach()};
+  if (foreign != nullptr) {
+    tracks_.follow(p.drive, foreign->left_mps, foreign->right_mps, dt_s);
+  } else {
+    tracks_.step(drive_now(), reached, brake, dt_s);
+  }
   const MotorState& left = tracks_.left();
   const MotorState& right = tracks_.right();
   odometer_.step(faults(), left.travel_m, right.travel_m, tracks_.measured(),
                  p.drive.track_width_m);
-  return {tracks_.ground(), left.power_w + right.power_w, right.current_a - left.current_a};
+  return {tracks_.ground(), left.power_w + right.power_w, right.current_a - left.current_a,
+          tracks_.travel_mps()};
 }
 
 Condition Cart::condition() const {

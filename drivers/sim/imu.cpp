@@ -154,6 +154,8 @@ Imu::Measured Imu::measure(const Params& p, const Faults& faults, const BodyStat
   double turn_rad = now.yaw_rate_radps * dt_s;
   double ahead_mps2 = 0.0;
   double left_mps2 = 0.0;
+  double up_mps2 = 0.0;
+  Vec3 leaning_radps{};
   if (last_ && dt_s > 0.0) {
     const double turned = base::angle_diff_rad(last_->yaw_rad, now.yaw_rad);
     if (std::abs(turned) < kPlaced_rad) turn_rad = turned;
@@ -163,20 +165,27 @@ Imu::Measured Imu::measure(const Params& p, const Faults& faults, const BodyStat
     const double yaw = now.yaw_rad - turn_rad / 2.0;
     ahead_mps2 = std::cos(yaw) * east + std::sin(yaw) * north;
     left_mps2 = -std::sin(yaw) * east + std::cos(yaw) * north;
+    up_mps2 = (now.up_mps - last_->up_mps) / dt_s;
+    const double roll_radps = (now.roll_rad - last_->roll_rad) / dt_s;
+    const double pitch_radps = (now.pitch_rad - last_->pitch_rad) / dt_s;
+    leaning_radps = {roll_radps, -pitch_radps * std::cos(now.roll_rad),
+                     pitch_radps * std::sin(now.roll_rad)};
   }
-  const mti::Mat3 R_HB =
-      mti::leaning(base::rad_from_deg(p.imu.roll_deg), base::rad_from_deg(p.imu.pitch_deg));
+  const mti::Mat3 R_HB = mti::leaning(base::rad_from_deg(p.imu.roll_deg) + now.roll_rad,
+                                      base::rad_from_deg(p.imu.pitch_deg) + now.pitch_rad);
   const mti::Mat3 R_BH = R_HB.transposed();
   const double rate_radps = dt_s > 0.0 ? turn_rad / dt_s : now.yaw_rate_radps;
   ramp_dps_ = faults.imu_gyro_ramp_dps2 == 0.0 ? 0.0 : ramp_dps_ + faults.imu_gyro_ramp_dps2 * dt_s;
   const double bias = p.imu.gyro_bias_dps + faults.imu_gyro_extra_dps + ramp_dps_ +
                       p.imu.gyro_wander_dps * gyro_wander_.step(dt_s, kWanderTau_s);
   m.rate = R_BH * Vec3{0.0, 0.0, rate_radps};
-  m.accel = R_BH * Vec3{ahead_mps2, left_mps2, kGravity_mps2};
+  m.accel = R_BH * Vec3{ahead_mps2, left_mps2, kGravity_mps2 + up_mps2};
   for (std::size_t i = 0; i < 3; ++i) {
-    m.rate[i] += base::rad_from_deg(bias + gyro_.normal() * p.imu.gyro_noise_dps);
+    m.rate[i] +=
+        leaning_radps[i] + base::rad_from_deg(bias + gyro_.normal() * p.imu.gyro_noise_dps);
     m.accel[i] += p.imu.accel_bias_mps2 + accel_.normal() * p.imu.accel_noise_mps2;
   }
+  if (now.gyro_radps) m.rate = {0.0, 0.0, *now.gyro_radps};
   const bool rate_cut = cut(m.rate, kFullRate_radps);
   m.clipped = cut(m.accel, kFullAccel_mps2) || rate_cut;
   if (faults.imu_gyro_frozen && rate_told_) m.rate = *rate_told_;
@@ -186,6 +195,10 @@ Imu::Measured Imu::measure(const Params& p, const Faults& faults, const BodyStat
                     p.compass.declination_deg;
   double noise_deg = compass_.normal() * p.compass.noise_deg;
   const double true_deg = base::heading_from_yaw(now.yaw_rad);
+  if (now.compass_deg) {
+    slow_deg = *now.compass_deg - true_deg - p.compass.declination_deg;
+    noise_deg = 0.0;
+  }
   if (faults.compass_frozen && compass_shown_deg_) {
     slow_deg = *compass_shown_deg_ - true_deg;
     noise_deg = 0.0;

@@ -6,6 +6,7 @@
 #include <deque>
 
 #include "base/geo.hpp"
+#include "sim/noise.hpp"
 
 namespace roverd::sim {
 
@@ -42,7 +43,7 @@ class Delay {
  public:
   T step(const T& in, double delay_s, double dt_s) {
     const auto length = static_cast<std::size_t>(std::lround(delay_s / dt_s));
-    const T oldest = pipe_.empty() ? T{} : pipe_.front();
+    const T oldest = pipe_.empty() ? last_ : pipe_.front();
     while (pipe_.size() < length) pipe_.push_front(oldest);
     pipe_.push_back(in);
     T out = in;
@@ -50,12 +51,38 @@ class Delay {
       out = pipe_.front();
       pipe_.pop_front();
     }
+    last_ = out;
     return out;
   }
-  void clear() noexcept { pipe_.clear(); }
+  void clear() noexcept {
+    pipe_.clear();
+    last_ = {};
+  }
 
  private:
+  T last_{};            ///< came out
   std::deque<T> pipe_;  ///< on their way, oldest first
+};
+
+/// What comes on top of a pure delay: uniform up to a most, drawn anew every now and then.
+class Jitter {
+ public:
+  explicit Jitter(std::uint64_t seed) : draws_(seed, Stream::DelayJitter) {}
+
+  /// Once a step. @return seconds, 0..most_s.
+  double step(double most_s, double hold_s, double dt_s) {
+    held_s_ -= dt_s;
+    if (held_s_ <= 0.0) {
+      share_ = draws_.uniform();
+      held_s_ = hold_s;
+    }
+    return most_s * share_;
+  }
+
+ private:
+  Noise draws_;
+  double share_ = 0.0;
+  double held_s_ = 0.0;
 };
 
 }  // namespace roverd::sim

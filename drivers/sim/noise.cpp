@@ -3,17 +3,13 @@
 #include <cmath>
 
 namespace roverd::sim {
-namespace {
 
-/// Spreads neighbouring seeds apart. Source: Steele, Lea, Flood 2014 (SplitMix64).
-std::uint64_t mix(std::uint64_t z) {
+std::uint64_t mix(std::uint64_t z) noexcept {
   z += 0x9E3779B97F4A7C15u;
   z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
   z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
   return z ^ (z >> 31);
 }
-
-}  // namespace
 
 Noise::Noise(std::uint64_t seed, Stream stream)
     : engine_(mix(mix(seed) ^ static_cast<std::uint64_t>(stream))) {}

@@ -25,7 +25,20 @@ enum class Stream : std::uint64_t {
   Accelerometer,
   ImuCompass,
   Antennas,
+  DelayJitter,
+  TreesEast,
+  TreesNorth,
+  TreesFix,
+  PlainSlowEast,
+  PlainSlowNorth,
+  PlainFastEast,
+  PlainFastNorth,
+  PlainVelocityEast,
+  PlainVelocityNorth,
 };
+
+/// Spreads neighbouring numbers apart. Source: Steele, Lea, Flood 2014 (SplitMix64).
+std::uint64_t mix(std::uint64_t z) noexcept;
 
 class Noise {
  public:

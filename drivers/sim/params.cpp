@@ -38,7 +38,7 @@ std::vector<std::string_view> words_of(std::string_view key) {
   if (key == "device.wire") return {"can", "ackermann", "ratio", "twist_text", "twist_binary"};
   if (key == "device.port") return {"udp", "tcp", "pty"};
   if (key == "base.protocol") return {"v2", "v1"};
-  if (key == "gnss.profile") return {"rtk", "float", "consumer"};
+  if (key == "gnss.profile") return {"rtk", "float", "consumer", "plain"};
   if (key == "radio.linear_stick") return {"right_ud", "left_ud"};
   if (key == "radio.turn_stick") return {"left_lr", "right_lr"};
   return {};

@@ -8,6 +8,7 @@
 
 #include "base/params.hpp"
 #include "base/result.hpp"
+#include "sim/ground_params.hpp"
 
 namespace roverd::sim {
 
@@ -57,9 +58,14 @@ struct DriveParams {
   double turn_loss = 1.3;
   double slip = 0.08;
   double side_difference = 0.02;
+  double slip_left = 0.0;
+  double slip_right = 0.0;
+  double crab = 0.0;
   double slip_wander = 0.005;
   double pivot_centre_m = 0.03;
   double delay_s = 0.06;
+  double delay_jitter_s = 0.0;
+  double delay_hold_s = 0.3;
   double lag_s = 0.09;
   double accel_mps2 = 1.0;
   double decel_mps2 = 1.2;
@@ -72,6 +78,7 @@ struct DriveParams {
   double command_timeout_s = 0.5;
   bool timeout_leaves_can = false;
   double mass_kg = 150.0;
+  double payload = 1.0;
   double rolling_resistance = 0.08;
   double scrub_friction = 0.5;
   double contact_length_m = 0.70;
@@ -87,10 +94,17 @@ void fields(V& v, DriveParams& p) {
   v("slip", p.slip, 0.0, 0.9, "share of the track's travel that does not become way over ground");
   v("side_difference", p.side_difference, -0.2, 0.2,
     "the right track grips better by this share, so a straight command bends left");
+  v("slip_left", p.slip_left, 0.0, 0.9, "share that the left track loses besides");
+  v("slip_right", p.slip_right, 0.0, 0.9, "likewise the right one; a car loses their mean");
+  v("crab", p.crab, -0.5, 0.5,
+    "share of the way that slides sideways, to the right; negative: to the left");
   v("slip_wander", p.slip_wander, 0.0, 0.2,
     "1 sigma of a slow random change of either track's slip");
   v("pivot_centre_m", p.pivot_centre_m, -0.5, 0.5, "centre of rotation ahead of the body's origin");
   v("delay_s", p.delay_s, 0.0, 1.0, "pure delay between a frame and the motors");
+  v("delay_jitter_s", p.delay_jitter_s, 0.0, 1.0,
+    "the delay is longer by up to this, anew every delay_hold_s; commands keep their order");
+  v("delay_hold_s", p.delay_hold_s, 0.005, 60.0, "so long one of those delays stays");
   v("lag_s", p.lag_s, 0.0, 2.0, "time constant of the speed loop, after the delay");
   v("accel_mps2", p.accel_mps2, 0.05, 10.0, "limit while the speed grows");
   v("decel_mps2", p.decel_mps2, 0.05, 10.0, "limit while the speed falls");
@@ -105,6 +119,8 @@ void fields(V& v, DriveParams& p) {
   v("timeout_leaves_can", p.timeout_leaves_can,
     "after that time-out the base also goes to standby");
   v("mass_kg", p.mass_kg, 10.0, 2000.0, "for motor currents");
+  v("payload", p.payload, 1.0, 5.0,
+    "times the mass; every acceleration and braking is so much weaker, and the robot is not told");
   v("rolling_resistance", p.rolling_resistance, 0.0, 1.0, "force over weight, straight ahead");
   v("scrub_friction", p.scrub_friction, 0.0, 2.0, "sideways friction of the tracks in a turn");
   v("contact_length_m", p.contact_length_m, 0.1, 3.0, "of a track on the ground");
@@ -140,6 +156,7 @@ struct BatteryParams {
   double electronics_w = 45.0;
   double warn_pct = 15.0;
   double fault_pct = 5.0;
+  double uneven = 0.0;
 };
 
 template <class V>
@@ -152,6 +169,9 @@ void fields(V& v, BatteryParams& p) {
   v("electronics_w", p.electronics_w, 0.0, 500.0, "drawn while standing");
   v("warn_pct", p.warn_pct, 0.0, 100.0, "below it the under-voltage warning bit is set");
   v("fault_pct", p.fault_pct, 0.0, 100.0, "below it the fault bit is set and the base stops");
+  v("uneven", p.uneven, 0.0, 0.9,
+    "share of every wanted speed that the motors miss at empty_v, less above, none at full_v, "
+    "under load too; the encoders tell it");
 }
 
 struct RadioParams {
@@ -179,24 +199,31 @@ struct GnssParams {
   double noise_scale = 1.0;
   double antenna_forward_m = 0.0;
   double antenna_left_m = 0.0;
+  double antenna_up_m = 0.0;
   double alt_msl_m = 62.0;
   double geoid_sep_m = 18.4;
   bool antennas = false;
   double antennas_noise_deg = 0.3;
+  double antennas_offset_deg = 0.0;
 };
 
 template <class V>
 void fields(V& v, GnssParams& p) {
-  v("profile", p.profile, "rtk, float or consumer: the receiver's fix class and its errors");
+  v("profile", p.profile,
+    "rtk, float, consumer or plain: the receiver's fix class and its errors; plain is a consumer's "
+    "with errors of several time constants, Doppler's too");
   v("rate_hz", p.rate_hz, 1.0, 10.0, "epochs a second, on whole fractions of the UTC second");
   v("latency_s", p.latency_s, 0.0, 2.0, "from the epoch to the last byte of its sentences");
   v("noise_scale", p.noise_scale, 0.0, 20.0, "times the profile's position and velocity noise");
   v("antenna_forward_m", p.antenna_forward_m, -3.0, 3.0, "antenna ahead of the body's origin");
   v("antenna_left_m", p.antenna_left_m, -3.0, 3.0, "antenna left of the body's origin");
+  v("antenna_up_m", p.antenna_up_m, -1.0, 5.0, "antenna above the body's origin: sways on slopes");
   v("alt_msl_m", p.alt_msl_m, -500.0, 9000.0, "height above mean sea level, constant");
   v("geoid_sep_m", p.geoid_sep_m, -120.0, 120.0, "geoid above the ellipsoid");
   v("antennas", p.antennas, "two antennas: HDT tells their heading, and no compass beside it");
   v("antennas_noise_deg", p.antennas_noise_deg, 0.0, 45.0, "1 sigma of every heading of theirs");
+  v("antennas_offset_deg", p.antennas_offset_deg, -180.0, 180.0,
+    "they are mounted so far off: shown minus true heading, and nobody told the robot");
 }
 
 /// The compass: in the inertial unit where there is one, else beside the receiver, where it speaks
@@ -248,7 +275,7 @@ void fields(V& v, ImuParams& p) {
   v("gyro_noise_dps", p.gyro_noise_dps, 0.0, 20.0, "1 sigma of every sample");
   v("accel_bias_mps2", p.accel_bias_mps2, -5.0, 5.0, "of each axis, constant");
   v("accel_noise_mps2", p.accel_noise_mps2, 0.0, 5.0, "1 sigma of every sample");
-  v("roll_deg", p.roll_deg, -45.0, 45.0, "how the ground leans the robot, right side down");
+  v("roll_deg", p.roll_deg, -45.0, 45.0, "how the robot leans besides the slope, right side down");
   v("pitch_deg", p.pitch_deg, -45.0, 45.0, "the same, nose up");
 }
 
@@ -262,6 +289,8 @@ struct Params {
   GnssParams gnss;
   CompassParams compass;
   ImuParams imu;
+  GroundParams ground;
+  TreesParams trees;
 };
 
 /// Lists the sections: their names are the tables of the configuration file.
@@ -276,6 +305,8 @@ void sections(V& v, Params& p) {
   v("gnss", p.gnss);
   v("compass", p.compass);
   v("imu", p.imu);
+  v("ground", p.ground);
+  v("trees", p.trees);
 }
 
 /// @param key "section.name". Unknown key, wrong type, out of range, unknown word: an error that

@@ -40,6 +40,9 @@ struct Faults {
   double gnss_jump_s = 0.0;
   double gnss_drift_east_mps = 0.0;
   double gnss_drift_north_mps = 0.0;
+  double gnss_base_shift_east_m = 0.0;
+  double gnss_base_shift_north_m = 0.0;
+  double gnss_time_step_s = 0.0;
   bool gnss_position_frozen = false;
   bool gnss_repeats = false;
   bool gnss_velocity_frozen = false;
@@ -84,6 +87,11 @@ void fields(V& v, Faults& f) {
   v("gnss_drift_east_mps", f.gnss_drift_east_mps, -10.0, 10.0,
     "the position runs away by so much a second; what has run stays until both are 0");
   v("gnss_drift_north_mps", f.gnss_drift_north_mps, -10.0, 10.0, "likewise, northwards");
+  v("gnss_base_shift_east_m", f.gnss_base_shift_east_m, -1000.0, 1000.0,
+    "corrections come from another base, whose place is wrong by this; its number is another too");
+  v("gnss_base_shift_north_m", f.gnss_base_shift_north_m, -1000.0, 1000.0, "likewise, northwards");
+  v("gnss_time_step_s", f.gnss_time_step_s, -86400.0, 86400.0,
+    "the receiver's clock is so far ahead of the truth, negative: it has stepped back");
   v("gnss_position_frozen", f.gnss_position_frozen,
     "the receiver repeats its last position; its time and its velocity go on");
   v("gnss_repeats", f.gnss_repeats, "the receiver repeats its last sentences, byte by byte");

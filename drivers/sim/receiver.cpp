@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/angle.hpp"
+#include "mti/rotation.hpp"
 
 namespace roverd::sim {
 namespace {
@@ -11,6 +12,27 @@ namespace {
 using base::FixType;
 
 constexpr double kNoCourseBelow_mps = 0.1;
+
+/// A consumer receiver as its errors really are: most of a metre that hardly changes within a run,
+/// and a smooth way. Sources: D. L. Wilson, GPS error correlation; P. Misra, P. Enge, Global
+/// Positioning System, chapters 5 and 6.
+constexpr FixErrors kPlain{.fix = FixType::Single,
+                           .white_m = 0.03,
+                           .drift_m = 0.6,
+                           .drift_tau_s = 60.0,
+                           .velocity_mps = 0.04,
+                           .satellites = 14,
+                           .hdop = 0.9,
+                           .slow_m = 1.2,
+                           .slow_tau_s = 900.0,
+                           .fast_m = 0.2,
+                           .fast_tau_s = 4.0,
+                           .velocity_drift_mps = 0.03,
+                           .velocity_tau_s = 10.0};
+
+bool is_corrected(FixType fix) noexcept {
+  return fix == FixType::RtkFixed || fix == FixType::RtkFloat || fix == FixType::Differential;
+}
 
 /// The newest epoch at or before `utc`: epochs lie on whole multiples of the period.
 base::WallTime epoch_before(base::WallTime utc, double rate_hz) {
@@ -25,6 +47,7 @@ BodyState earlier(BodyState s, base::Duration by) {
   s.utc -= by;
   s.at = {s.at.east_m - s.east_mps * dt_s, s.at.north_m - s.north_mps * dt_s};
   s.yaw_rad -= s.yaw_rate_radps * dt_s;
+  s.up_m -= s.up_mps * dt_s;
   return s;
 }
 
@@ -48,8 +71,12 @@ FixErrors errors_of(FixType fix) noexcept {
   return {};
 }
 
+FixErrors errors_of(FixType fix, std::string_view profile) noexcept {
+  return profile == "plain" && fix == FixType::Single ? kPlain : errors_of(fix);
+}
+
 FixType fix_of_profile(std::string_view profile) noexcept {
-  if (profile == "consumer") return FixType::Single;
+  if (profile == "consumer" || profile == "plain") return FixType::Single;
   return profile == "float" ? FixType::RtkFloat : FixType::RtkFixed;
 }
 
@@ -70,7 +97,14 @@ Receiver::Receiver(std::uint64_t seed, const base::LocalFrame& frame)
       compass_(seed, Stream::Compass),
       antennas_(seed, Stream::Antennas),
       drift_east_(seed, Stream::GnssDriftEast),
-      drift_north_(seed, Stream::GnssDriftNorth) {}
+      drift_north_(seed, Stream::GnssDriftNorth),
+      slow_east_(seed, Stream::PlainSlowEast),
+      slow_north_(seed, Stream::PlainSlowNorth),
+      fast_east_(seed, Stream::PlainFastEast),
+      fast_north_(seed, Stream::PlainFastNorth),
+      velocity_east_(seed, Stream::PlainVelocityEast),
+      velocity_north_(seed, Stream::PlainVelocityNorth),
+      canopy_(seed) {}
 
 std::string Receiver::step(const Params& p, const Faults& faults, const BodyState& now,
                            double motor_difference_a) {
@@ -78,6 +112,12 @@ std::string Receiver::step(const Params& p, const Faults& faults, const BodyStat
   last_step_ = now.time;
   kick_.step(p.compass, motor_difference_a, dt_s);
 
+  if (now.own_gnss) {
+    if (!now.fix) return {};
+    Epoch told = pass_on(p, faults, now);
+    corrupt(told, faults);
+    return faults.gnss_silent ? std::string() : sentences(told);
+  }
   const base::Duration age = now.utc - epoch_before(now.utc, p.gnss.rate_hz);
   const Time epoch = now.time - age;
   const bool is_new = last_epoch_ ? epoch > *last_epoch_ : age == base::Duration::zero();
@@ -98,71 +138,128 @@ std::string Receiver::step(const Params& p, const Faults& faults, const BodyStat
 }
 
 Epoch Receiver::measure(const Params& p, const Faults& faults, BodyState truth) {
+  const double dt_s = last_epoch_ ? base::seconds(truth.time - *last_epoch_) : 0.0;
+  canopy_.step(p.trees, truth.under_trees, dt_s);
   const auto forced = fix_from(faults.gnss_fix);
-  const FixType fix =
+  const FixType open =
       faults.gnss_outage ? FixType::None : forced.value_or(fix_of_profile(p.gnss.profile));
+  const FixType fix = canopy_.through(p.trees, open);
   Epoch epoch;
-  epoch.utc = truth.utc;
-  epoch.errors = errors_of(fix);
+  epoch.utc = truth.utc + base::from_seconds(faults.gnss_time_step_s);
+  epoch.errors = errors_of(fix, p.gnss.profile);
   FixErrors& e = epoch.errors;
-  e.white_m *= p.gnss.noise_scale;
-  e.drift_m *= p.gnss.noise_scale;
-  e.velocity_mps *= p.gnss.noise_scale;
+  for (double* sigma :
+       {&e.white_m, &e.drift_m, &e.slow_m, &e.fast_m, &e.velocity_mps, &e.velocity_drift_mps}) {
+    *sigma *= p.gnss.noise_scale;
+  }
+  // What is claimed is what the class has in the open.
+  epoch.sigma_m = std::hypot(std::hypot(e.white_m, e.drift_m), std::hypot(e.slow_m, e.fast_m));
+  if (canopy_.under() && fix != FixType::None) {
+    e.white_m *= p.trees.noise;
+    e.satellites = (e.satellites + 1) / 2;
+    e.hdop *= 2.0;
+  }
   // The streams advance at every epoch, with or without a fix: an outage does not shift what
   // comes after it.
-  const double dt_s = last_epoch_ ? base::seconds(truth.time - *last_epoch_) : 0.0;
+  Added added = noise(e, dt_s);
+  lie(added, faults, fix, dt_s);
+  if (fix != FixType::None) {
+    const bool shifted =
+        faults.gnss_base_shift_east_m != 0.0 || faults.gnss_base_shift_north_m != 0.0;
+    epoch.station = shifted ? 2 : 1;
+    look(epoch, p, truth, added);
+  }
+  epoch.heading_deg = heading_deg(p, faults, truth, fix != FixType::None);
+  return epoch;
+}
+
+Receiver::Added Receiver::noise(const FixErrors& e, double dt_s) {
+  Added a;
   const double drift_e = drift_east_.step(dt_s, e.drift_tau_s) * e.drift_m;
   const double drift_n = drift_north_.step(dt_s, e.drift_tau_s) * e.drift_m;
-  const double white_e = east_.normal() * e.white_m;
-  const double white_n = north_.normal() * e.white_m;
-  const double height = height_.normal() * 1.5 * (e.white_m + e.drift_m);
-  const double vel_e = velocity_.normal() * e.velocity_mps;
-  const double vel_n = velocity_.normal() * e.velocity_mps;
+  const double plain_e = slow_east_.step(dt_s, e.slow_tau_s) * e.slow_m +
+                         fast_east_.step(dt_s, e.fast_tau_s) * e.fast_m;
+  const double plain_n = slow_north_.step(dt_s, e.slow_tau_s) * e.slow_m +
+                         fast_north_.step(dt_s, e.fast_tau_s) * e.fast_m;
+  a.east_m = drift_e + east_.normal() * e.white_m + plain_e;
+  a.north_m = drift_n + north_.normal() * e.white_m + plain_n;
+  a.up_m = height_.normal() * 1.5 * (e.white_m + e.drift_m);
+  a.east_mps = velocity_.normal() * e.velocity_mps;
+  a.north_mps = velocity_.normal() * e.velocity_mps;
+  a.east_mps += velocity_east_.step(dt_s, e.velocity_tau_s) * e.velocity_drift_mps;
+  a.north_mps += velocity_north_.step(dt_s, e.velocity_tau_s) * e.velocity_drift_mps;
+  return a;
+}
+
+void Receiver::lie(Added& added, const Faults& faults, FixType fix, double dt_s) {
   const bool drifts = faults.gnss_drift_east_mps != 0.0 || faults.gnss_drift_north_mps != 0.0;
   run_away_ = drifts ? base::EnuPoint{run_away_.east_m + faults.gnss_drift_east_mps * dt_s,
                                       run_away_.north_m + faults.gnss_drift_north_mps * dt_s}
                      : base::EnuPoint{};
+  added.east_m += faults.gnss_jump_east_m + run_away_.east_m + canopy_.east_m();
+  added.north_m += faults.gnss_jump_north_m + run_away_.north_m + canopy_.north_m();
+  if (is_corrected(fix)) {
+    added.east_m += faults.gnss_base_shift_east_m;
+    added.north_m += faults.gnss_base_shift_north_m;
+  }
+  added.east_mps += faults.gnss_velocity_east_mps;
+  added.north_mps += faults.gnss_velocity_north_mps;
+}
 
-  // E: ENU, B: body FLU, A: antenna. p_EA = p_EB + R_EB·p_BA, and its derivative.
+void Receiver::look(Epoch& epoch, const Params& p, const BodyState& truth,
+                    const Added& added) const {
+  // E: ENU, H: level with the body's yaw, B: body FLU. p_EA = p_EB + R_EH·R_HB·p_BA, and its
+  // derivative.
+  const mti::Vec3 p_HA =
+      mti::leaning(truth.roll_rad, truth.pitch_rad) *
+      mti::Vec3{p.gnss.antenna_forward_m, p.gnss.antenna_left_m, p.gnss.antenna_up_m};
   const double c = std::cos(truth.yaw_rad);
   const double s = std::sin(truth.yaw_rad);
-  const double arm_e = c * p.gnss.antenna_forward_m - s * p.gnss.antenna_left_m;
-  const double arm_n = s * p.gnss.antenna_forward_m + c * p.gnss.antenna_left_m;
-  if (fix != FixType::None) {
-    epoch.position = frame_.to_global(
-        {truth.at.east_m + arm_e + faults.gnss_jump_east_m + run_away_.east_m + drift_e + white_e,
-         truth.at.north_m + arm_n + faults.gnss_jump_north_m + run_away_.north_m + drift_n +
-             white_n});
-    epoch.alt_msl_m = p.gnss.alt_msl_m + height;
-    epoch.geoid_sep_m = p.gnss.geoid_sep_m;
-    const double east_mps =
-        truth.east_mps - truth.yaw_rate_radps * arm_n + vel_e + faults.gnss_velocity_east_mps;
-    const double north_mps =
-        truth.north_mps + truth.yaw_rate_radps * arm_e + vel_n + faults.gnss_velocity_north_mps;
-    epoch.speed_mps = std::hypot(east_mps, north_mps);
-    if (epoch.speed_mps >= kNoCourseBelow_mps) {
-      epoch.course_deg = base::heading_from_yaw(std::atan2(north_mps, east_mps));
-    }
-    epoch.sigma_m = std::hypot(e.white_m, e.drift_m);
+  const double arm_e = c * p_HA[0] - s * p_HA[1];
+  const double arm_n = s * p_HA[0] + c * p_HA[1];
+  epoch.position = frame_.to_global(
+      {truth.at.east_m + arm_e + added.east_m, truth.at.north_m + arm_n + added.north_m});
+  epoch.alt_msl_m = p.gnss.alt_msl_m + added.up_m + truth.up_m + p_HA[2];
+  epoch.geoid_sep_m = p.gnss.geoid_sep_m;
+  const double east_mps = truth.east_mps - truth.yaw_rate_radps * arm_n + added.east_mps;
+  const double north_mps = truth.north_mps + truth.yaw_rate_radps * arm_e + added.north_mps;
+  epoch.speed_mps = std::hypot(east_mps, north_mps);
+  if (epoch.speed_mps >= kNoCourseBelow_mps) {
+    epoch.course_deg = base::heading_from_yaw(std::atan2(north_mps, east_mps));
   }
-  epoch.heading_deg = heading_deg(p, faults, truth);
+}
+
+Epoch Receiver::pass_on(const Params& p, const Faults& faults, const BodyState& now) const {
+  const ForeignFix& fix = *now.fix;
+  Epoch epoch;
+  epoch.utc = now.utc - base::from_seconds(fix.age_s - faults.gnss_time_step_s);
+  epoch.errors = errors_of(faults.gnss_outage ? FixType::None : fix.fix);
+  epoch.sigma_m = fix.sigma_m;
+  epoch.heading_deg = fix.heading_deg ? fix.heading_deg : now.compass_deg;
+  if (epoch.errors.fix == FixType::None) return epoch;
+  epoch.position = frame_.to_global(
+      {fix.at.east_m + faults.gnss_jump_east_m, fix.at.north_m + faults.gnss_jump_north_m});
+  epoch.alt_msl_m = p.gnss.alt_msl_m;
+  epoch.geoid_sep_m = p.gnss.geoid_sep_m;
+  epoch.speed_mps = fix.speed_mps;
+  epoch.course_deg = fix.course_deg;
   return epoch;
 }
 
 /// Of two antennas where they are, else of the compass beside the receiver.
 std::optional<double> Receiver::heading_deg(const Params& p, const Faults& faults,
-                                            const BodyState& truth) {
+                                            const BodyState& truth, bool fix) {
   const double compass_deg = compass_.normal() * p.compass.noise_deg;
   const double antennas_deg = antennas_.normal() * p.gnss.antennas_noise_deg;
   const auto shown = [&](double error_deg) {
     return base::heading_from_yaw(truth.yaw_rad - base::rad_from_deg(error_deg));
   };
   if (p.gnss.antennas) {
-    const bool fix = !faults.gnss_outage && faults.gnss_fix != "none";
     if (!fix) return std::nullopt;
-    return shown(faults.antennas_extra_deg + antennas_deg);
+    return shown(p.gnss.antennas_offset_deg + faults.antennas_extra_deg + antennas_deg);
   }
   if (!p.compass.fitted || p.imu.fitted || faults.compass_off) return std::nullopt;
+  if (truth.compass_deg) return truth.compass_deg;
   return shown(p.compass.bias_deg + faults.compass_extra_deg + compass_deg +
                kick_.error_deg(p.compass));
 }

@@ -67,7 +67,7 @@ gnss::Gga gga_of(const Epoch& epoch, double time_s) {
   s.geoid_sep_m = epoch.geoid_sep_m;
   if (epoch.errors.fix != FixType::Single) {  // corrected by some reference station
     s.dgps_age_s = 1.0;
-    s.station = 1;
+    s.station = epoch.station;
   }
   return s;
 }

@@ -47,19 +47,31 @@ void Tracks::step(const DriveParams& p, base::BodyTwist wanted, bool brake, doub
              unstick(right_.track_mps, v + w * half_m, p.stick_mps), dt_s);
 }
 
-void Tracks::set_tracks(const DriveParams& p, double left_mps, double right_mps, double dt_s) {
-  const double left_mps2 = (left_mps - left_.track_mps) / dt_s;
-  const double right_mps2 = (right_mps - right_.track_mps) / dt_s;
+void Tracks::count(const DriveParams& p, double left_mps, double right_mps, double dt_s) {
   left_.travel_m += (left_mps + left_.track_mps) / 2.0 * dt_s;
   right_.travel_m += (right_mps + right_.track_mps) / 2.0 * dt_s;
   left_.track_mps = left_mps;
   right_.track_mps = right_mps;
   measured_ = {(left_mps + right_mps) / 2.0, (right_mps - left_mps) / p.track_width_m};
+}
+
+void Tracks::follow(const DriveParams& p, double left_mps, double right_mps, double dt_s) {
+  count(p, left_mps, right_mps, dt_s);
+  delay_.clear();
+  lagged_ = driven_ = measured_;
+}
+
+void Tracks::set_tracks(const DriveParams& p, double left_mps, double right_mps, double dt_s) {
+  const double left_mps2 = (left_mps - left_.track_mps) / dt_s;
+  const double right_mps2 = (right_mps - right_.track_mps) / dt_s;
+  count(p, left_mps, right_mps, dt_s);
 
   const double wander_left = p.slip_wander * left_slip_.step(dt_s, kSlipWanderTau_s);
   const double wander_right = p.slip_wander * right_slip_.step(dt_s, kSlipWanderTau_s);
-  const double over_left = left_mps * (1.0 - p.slip - p.side_difference / 2.0 - wander_left);
-  const double over_right = right_mps * (1.0 - p.slip + p.side_difference / 2.0 - wander_right);
+  const double over_left =
+      left_mps * std::max(0.0, 1.0 - p.slip - p.side_difference / 2.0 - wander_left - p.slip_left);
+  const double over_right = right_mps * std::max(0.0, 1.0 - p.slip + p.side_difference / 2.0 -
+                                                          wander_right - p.slip_right);
   const double w = (over_right - over_left) / (p.track_width_m * p.turn_loss);
   // The point `pivot_centre_m` ahead does not move sideways; the origin behind it does.
   ground_ = {{(over_left + over_right) / 2.0, w}, -w * p.pivot_centre_m};

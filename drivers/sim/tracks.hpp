@@ -4,6 +4,7 @@
 //   wanted ─▶ delay ─▶ lag ─▶ limits ─▶ left, right track ─▶ slip, scrub ─▶ true twist
 //                                          └─▶ encoders see this
 
+#include <cmath>
 #include <cstdint>
 
 #include "base/geo.hpp"
@@ -29,9 +30,15 @@ class Tracks {
   /// braked at once, whatever is wanted.
   void step(const DriveParams& p, base::BodyTwist wanted, bool brake, double dt_s);
 
+  /// Somebody else moves them: they only count.
+  void follow(const DriveParams& p, double left_mps, double right_mps, double dt_s);
+
   GroundMotion ground() const noexcept { return ground_; }
   /// What the base reports: from the tracks, with the nominal width, blind to slip.
   base::BodyTwist measured() const noexcept { return measured_; }
+  double travel_mps() const noexcept {
+    return (std::abs(left_.track_mps) + std::abs(right_.track_mps)) / 2.0;
+  }
   const MotorState& left() const noexcept { return left_; }
   const MotorState& right() const noexcept { return right_; }
 
@@ -40,6 +47,7 @@ class Tracks {
   void zero_odometer() noexcept { left_.travel_m = right_.travel_m = 0.0; }
 
  private:
+  void count(const DriveParams& p, double left_mps, double right_mps, double dt_s);
   void set_tracks(const DriveParams& p, double left_mps, double right_mps, double dt_s);
   void load(const DriveParams& p, double left_mps2, double right_mps2);
 

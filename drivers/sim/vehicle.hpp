@@ -19,6 +19,8 @@
 #include "base/result.hpp"
 #include "base/time.hpp"
 #include "sim/battery.hpp"
+#include "sim/foreign.hpp"
+#include "sim/ground.hpp"
 #include "sim/imu.hpp"
 #include "sim/motion.hpp"
 #include "sim/params.hpp"
@@ -44,7 +46,10 @@ struct Truth {
   base::LatLon at;
   base::EnuPoint local;
   double yaw_rad = 0.0;         ///< (−π, π]
+  double roll_rad = 0.0;        ///< right side down positive, as the slope leans it
+  double pitch_rad = 0.0;       ///< nose up positive
   base::BodyTwist twist;        ///< over ground, at the body's origin
+  double lateral_mps = 0.0;     ///< likewise, to the left
   double left_track_mps = 0.0;  ///< what the encoders see; of a car: the driven wheels
   double right_track_mps = 0.0;
   double wheel_rad = 0.0;  ///< of a car: where the front wheels really stand, left positive
@@ -87,6 +92,9 @@ class Vehicle {
   /// Takes effect at the next step; start values (battery.start_pct, [device]) do not.
   void set_params(const Params& params) { params_ = params; }
 
+  /// From now on that one moves instead of our own tracks or wheels; it must outlive this.
+  void set_foreign(Foreign* foreign) noexcept { foreign_ = foreign; }
+
   /// @param percent is cut to 0..100.
   void set_battery_pct(double percent) { battery_.set_charge_pct(percent); }
   /// Puts the vehicle somewhere else, standing. @param at valid.
@@ -102,6 +110,7 @@ class Vehicle {
     GroundMotion ground;
     double power_w = 0.0;             ///< drawn from the battery
     double motor_difference_a = 0.0;  ///< right minus left: disturbs the compass
+    double travel_mps = 0.0;          ///< mean of both tracks' speeds, without sign
   };
   virtual Moved drive(double dt_s) = 0;
   /// After each step: what leaves on the wire now.
@@ -112,6 +121,12 @@ class Vehicle {
   virtual void halt() = 0;
   virtual void restart() = 0;
 
+  /// Null without one. Otherwise it gets the order, twice as seldom as steps are made.
+  const ForeignState* foreign_moved(const ForeignOrder& order);
+  /// Of what is wanted, what the motors reach with this battery.
+  double reach() const noexcept { return battery_.reach(params_.battery); }
+  /// The drive in this step: as it stands in the parameters, with its load, on this ground.
+  const DriveParams& drive_now() const noexcept { return drive_now_; }
   Time now() const noexcept { return now_; }
   std::int64_t steps() const noexcept { return steps_; }
   /// Reports with a period of so many steps; the phases spread the load.
@@ -127,11 +142,15 @@ class Vehicle {
  private:
   void step();
   void move(const Moved& moved, double dt_s);
+  void follow(const ForeignState& shown, double dt_s);
+  void measure(const BodyState& body, double motor_difference_a);
 
   Params params_;
+  const std::uint64_t seed_;
   const Start start_;
   const base::LocalFrame frame_;
   Battery battery_;
+  Jitter jitter_;
   Receiver receiver_;
   Imu imu_;
   Radio radio_;
@@ -143,6 +162,10 @@ class Vehicle {
   double yaw_rad_;
   double driven_m_ = 0.0;
   base::BodyTwist twist_;
+  double lateral_mps_ = 0.0;
+  DriveParams drive_now_;
+  Footing footing_;
+  Foreign* foreign_ = nullptr;
 };
 
 }  // namespace roverd::sim

@@ -21,6 +21,8 @@ namespace {
 constexpr const char* kNoDaemon = "no avahi-daemon runs";
 constexpr int kLook_ms = 200;  // so soon it hears that it is to end
 constexpr auto kAgain = std::chrono::seconds(5);
+/// To take everything back. A daemon that hangs holds its caller for half a minute.
+constexpr auto kGoodbye = std::chrono::seconds(1);
 constexpr int kMostRobots = 99;
 constexpr std::uint32_t kAliasLives_s = 120;  // as host names do
 
@@ -45,20 +47,32 @@ std::unique_ptr<AvahiStringList, FreeList> list_of(const std::vector<std::string
 
 }  // namespace
 
-class Announcer::Impl {
+/// Its thread holds it, too, and outlives the announcer where the daemon hangs.
+class Announcer::Impl : public std::enable_shared_from_this<Announcer::Impl> {
  public:
   Impl(Service service, std::function<void(News)> tell)
       : tell_(std::move(tell)), service_(std::move(service)) {
     set_name();
-    thread_ = std::thread([this] { run(); });
   }
-  ~Impl() {
+  ~Impl() = default;
+  void begin() {
+    std::thread([self = shared_from_this()] {
+      self->run();
+      const std::lock_guard lock(self->mutex_);
+      self->gone_ = true;
+      self->end_.notify_all();
+    }).detach();
+  }
+  /// Nothing is told any more when this returns.
+  void end() {
     {
       const std::lock_guard lock(mutex_);
       ended_ = true;
     }
     end_.notify_all();
-    thread_.join();
+    const std::lock_guard telling(telling_);
+    std::unique_lock lock(mutex_);
+    end_.wait_for(lock, kGoodbye, [this] { return gone_; });
   }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
@@ -186,7 +200,7 @@ class Announcer::Impl {
       now = state_;
     }
     const std::string text = "this robot is found as " + now.name + ", at " + now.host;
-    if (std::exchange(told_, text) != text) tell_({text});
+    if (std::exchange(told_, text) != text) say({text});
   }
 
   bool next_name() {
@@ -199,7 +213,7 @@ class Announcer::Impl {
       ++which_;
     }
     set_name();
-    tell_({text, true});
+    say({text, true});
     return true;
   }
 
@@ -217,7 +231,12 @@ class Announcer::Impl {
       state_.told = false;
       state_.trouble = why;
     }
-    if (std::exchange(told_, why) != why) tell_({why, true});
+    if (std::exchange(told_, why) != why) say({why, true});
+  }
+
+  void say(News news) {
+    const std::lock_guard telling(telling_);
+    if (!ended_) tell_(std::move(news));
   }
 
   std::pair<Service, int> wanted() const {
@@ -234,6 +253,8 @@ class Announcer::Impl {
   std::atomic<bool> changed_{false};
   std::condition_variable end_;
   mutable std::mutex mutex_;
+  std::mutex telling_;  ///< held while something is told; before mutex_
+  bool gone_ = false;   ///< the thread; guarded by mutex_
   Service service_;
   State state_;
   int which_ = 1;
@@ -242,13 +263,16 @@ class Announcer::Impl {
   AvahiEntryGroup* group_ = nullptr;  ///< the client's, and freed with it
   std::string computer_;              ///< "raspberrypi.local"
   std::string told_;
-  std::thread thread_;
 };
 
 Announcer::Announcer(Service service, std::function<void(News)> tell)
-    : impl_(std::make_unique<Impl>(std::move(service), std::move(tell))) {}
+    : impl_(std::make_shared<Impl>(std::move(service), std::move(tell))) {
+  impl_->begin();
+}
 
-Announcer::~Announcer() = default;
+Announcer::~Announcer() {
+  impl_->end();
+}
 
 State Announcer::state() const {
   return impl_->state();

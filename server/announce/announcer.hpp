@@ -36,7 +36,7 @@ class Announcer {
  public:
   /// @param tell called on its own thread, each trouble once
   Announcer(Service service, std::function<void(News)> tell);
-  /// Takes everything back.
+  /// Takes everything back; after a second at the latest, whether the daemon answers or not.
   ~Announcer();
   Announcer(const Announcer&) = delete;
   Announcer& operator=(const Announcer&) = delete;
@@ -46,7 +46,7 @@ class Announcer {
 
  private:
   class Impl;
-  std::unique_ptr<Impl> impl_;
+  std::shared_ptr<Impl> impl_;
 };
 
 }  // namespace roverd::announce

@@ -1,5 +1,7 @@
 #include "api/access.hpp"
 
+#include <algorithm>
+
 #include "api/problem.hpp"
 
 namespace roverd::api {
@@ -12,6 +14,8 @@ using people::Who;
 constexpr std::string_view kBearer = "Bearer ";
 /// Longer than any secret of ours: it is not looked at.
 constexpr std::size_t kLongestSecret = 128;
+constexpr std::size_t kKnown = 256;
+constexpr base::Duration kLately = std::chrono::hours(12);
 
 Response unknown_caller(std::string_view detail) {
   Response out = problem(401, detail);
@@ -81,6 +85,21 @@ people::Now Access::now() {
   return {base::steady_now(), base::wall_now()};
 }
 
+/// Those that were seen longest ago make room.
+void Access::note(const std::string& address) {
+  if (!known_.contains(address) && known_.size() >= kKnown) {
+    known_.erase(std::min_element(known_.begin(), known_.end(), [](const auto& a, const auto& b) {
+      return a.second < b.second;
+    }));
+  }
+  known_[address] = base::steady_now();
+}
+
+bool Access::knows(const std::string& address) const {
+  const auto found = known_.find(address);
+  return found != known_.end() && base::steady_now() - found->second < kLately;
+}
+
 /// A token goes before a cookie: whoever sends one means it. Refused here: what is forged or over,
 /// and a foreign page that uses somebody's cookie.
 std::optional<Response> Access::identify(const Request& request, std::optional<Who>& who) {
@@ -92,7 +111,8 @@ std::optional<Response> Access::identify(const Request& request, std::optional<W
     if (who) return std::nullopt;
     return unknown_caller("the token is not valid: unknown, ended or expired");
   }
-  const std::string_view cookie = cookie_in(header(request, http::field::cookie), kCookie);
+  const std::string_view cookie =
+      cookie_in(header(request, http::field::cookie), cookie_name(kCookie));
   if (cookie.empty() || cookie.size() > kLongestSecret) return std::nullopt;
   who = book_->by_session(cookie, now());
   // guard.cpp looks whether Origin is ours, where there is one; every browser sends one with these.
@@ -122,6 +142,7 @@ std::optional<Response> Access::judge(const std::optional<Who>& who, std::string
 std::optional<Response> Access::check(const Request& request, Need need, std::optional<Who>& who) {
   if (!on()) return std::nullopt;
   auto refusal = identify(request, who);
+  if (who) note(peer_of(request));
   if (need == Need::Anyone) return std::nullopt;
   if (refusal) return refusal;
   const auto method = request.method_string();
@@ -143,10 +164,14 @@ bool Access::would_pass(const Request& request, Need need) {
   return !check(request, need, who);
 }
 
+std::string Access::cookie_name(std::string_view name) const {
+  return (secure_ ? "__Host-" : "") + std::string(name);
+}
+
 std::string Access::set_cookie(std::string_view name, std::string_view secret,
                                base::Duration age) const {
   const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(age);
-  return std::string(name) + "=" + std::string(secret) + "; Path=/; HttpOnly; SameSite=Strict" +
+  return cookie_name(name) + "=" + std::string(secret) + "; Path=/; HttpOnly; SameSite=Strict" +
          (secure_ ? "; Secure" : "") +
          "; Max-Age=" + std::to_string(secret.empty() ? 0 : seconds.count());
 }
@@ -159,8 +184,8 @@ std::string Access::device_cookie(std::string_view secret) const {
   return set_cookie(kDeviceCookie, secret, people::Book::kPaired);
 }
 
-std::string Access::device_secret(const Request& request) {
-  const auto value = cookie_in(header(request, http::field::cookie), kDeviceCookie);
+std::string Access::device_secret(const Request& request) const {
+  const auto value = cookie_in(header(request, http::field::cookie), cookie_name(kDeviceCookie));
   return value.size() > kLongestSecret ? std::string() : std::string(value);
 }
 

@@ -39,10 +39,12 @@ std::string peer_of(const Request& request);
 
 class Access {
  public:
+  /// Without TLS. With it they are named __Host-…: a browser takes such a one over TLS only, from
+  /// this very host, for all of it.
   static constexpr std::string_view kCookie = "roverd_session";
   static constexpr std::string_view kDeviceCookie = "roverd_device";
 
-  /// @param book null: off. @param secure the cookie goes through TLS only
+  /// @param book null: off. @param secure the cookies go through TLS only
   Access(people::Book* book, bool secure) : book_(book), secure_(secure) {}
 
   bool on() const noexcept { return book_ != nullptr; }
@@ -54,6 +56,8 @@ class Access {
   std::optional<Response> check(const Request& request, Need need, std::optional<people::Who>& who);
   /// The same for the stream's request; a browser must say where it comes from.
   std::optional<Response> check_upgrade(const Request& request, std::optional<people::Who>& who);
+  /// Somebody has shown a valid cookie or token from there lately.
+  bool knows(const std::string& address) const;
   /// The same, for a question that is asked before.
   bool would_pass(const Request& request, Need need);
 
@@ -62,16 +66,19 @@ class Access {
   /// The same of a paired device.
   std::string device_cookie(std::string_view secret) const;
   /// What a paired device shows; empty: nothing. Identifies nobody.
-  static std::string device_secret(const Request& request);
+  std::string device_secret(const Request& request) const;
 
  private:
   std::optional<Response> identify(const Request& request, std::optional<people::Who>& who);
+  void note(const std::string& address);
   std::optional<Response> judge(const std::optional<people::Who>& who, std::string_view method,
                                 Need need) const;
+  std::string cookie_name(std::string_view name) const;
   std::string set_cookie(std::string_view name, std::string_view secret, base::Duration age) const;
 
   people::Book* book_;
   bool secure_;
+  std::map<std::string, base::Time> known_{};  ///< addresses, and when they were seen last
 };
 
 }  // namespace roverd::api

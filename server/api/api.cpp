@@ -99,6 +99,7 @@ Api::Api(Deps deps) : impl_(std::make_unique<Impl>(std::move(deps))) {
   };
   add_vehicle_routes(c);
   add_place_routes(c);
+  add_calibration_routes(c);
   add_execution_routes(c);
   add_mission_routes(c);
   add_operation_routes(c);
@@ -107,6 +108,7 @@ Api::Api(Deps deps) : impl_(std::make_unique<Impl>(std::move(deps))) {
   add_fence_routes(c);
   add_file_routes(c);
   add_event_routes(c);
+  add_slip_routes(c);
   add_server_routes(c);
   add_driver_routes(c);
   add_teach_routes(c);
@@ -332,6 +334,10 @@ std::size_t Api::body_limit(const Request& header) const {
   const bool welcome =
       bytes <= kCommandBytes || impl_->context->access.would_pass(header, match->route->need);
   return welcome ? bytes : kCommandBytes;
+}
+
+bool Api::knows(const std::string& address) const {
+  return impl_->context->access.knows(address);
 }
 
 void Api::discard(std::string large) const {

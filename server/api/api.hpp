@@ -165,6 +165,8 @@ class Api {
   std::size_t body_limit(const Request& header) const;
   /// Frees it beside the web thread.
   void discard(std::string large) const;
+  /// Somebody has logged in from there lately.
+  bool knows(const std::string& address) const;
   /// Empty: welcome.
   std::optional<Response> on_upgrade(const Request& request);
   /// @param upgrade the request that on_upgrade welcomed

@@ -2,8 +2,7 @@
 
 #include <charconv>
 
-#include <boost/beast/core/string.hpp>
-
+#include "base/same_word.hpp"
 #include "mission/json/json.hpp"
 
 namespace roverd::api {
@@ -12,7 +11,7 @@ base::Result<void> check_json_type(const Request& request) {
   std::string_view type = header(request, http::field::content_type);
   type = type.substr(0, type.find(';'));
   while (type.ends_with(' ')) type.remove_suffix(1);
-  if (!boost::beast::iequals({type.data(), type.size()}, "application/json")) {
+  if (!base::same_word(type, "application/json")) {
     return base::fail(base::Code::Unsupported, "the body must be sent as application/json");
   }
   return {};

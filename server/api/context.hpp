@@ -178,6 +178,7 @@ void Context::aside(const CallPtr& call, Effort effort, Work work, Then then) co
 
 void add_vehicle_routes(const ContextPtr& context);
 void add_place_routes(const ContextPtr& context);
+void add_calibration_routes(const ContextPtr& context);
 void add_execution_routes(const ContextPtr& context);
 void add_mission_routes(const ContextPtr& context);
 void add_operation_routes(const ContextPtr& context);
@@ -188,6 +189,7 @@ void add_fence_routes(const ContextPtr& context);
 void load_active_fence(const ContextPtr& context);
 void add_file_routes(const ContextPtr& context);
 void add_event_routes(const ContextPtr& context);
+void add_slip_routes(const ContextPtr& context);
 void add_server_routes(const ContextPtr& context);
 void add_driver_routes(const ContextPtr& context);
 void add_teach_routes(const ContextPtr& context);

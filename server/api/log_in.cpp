@@ -15,7 +15,7 @@ constexpr int kHashing = 3;
 Json paired_json(const Context& context, const Request& request) {
   const auto* const device =
       context.access.on()
-          ? context.access.book().by_device(Access::device_secret(request), Access::now())
+          ? context.access.book().by_device(context.access.device_secret(request), Access::now())
           : nullptr;
   if (device == nullptr) return nullptr;
   return {{"id", device->id},

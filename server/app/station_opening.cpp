@@ -198,6 +198,7 @@ Result<void> Station::Impl::open_server(const Settings& settings, const Options&
   const int port = options.port.value_or(settings.server.port);
   net::Limits limits;
   limits.per_address = settings.server.connections_per_address;
+  limits.kept = limits.connections / 8;
   auto listening = net::Server::listen(web, addresses, static_cast<std::uint16_t>(port), limits,
                                        handlers_of(*api, front.get()));
   if (!listening) return tl::unexpected(listening.error());

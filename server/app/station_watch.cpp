@@ -7,6 +7,12 @@ constexpr base::Duration kKeepLearned = std::chrono::minutes(1);
 constexpr base::Duration kLookAtHost = std::chrono::seconds(1);
 constexpr base::Duration kTidyRecordings = std::chrono::minutes(1);
 constexpr base::Duration kLookAtNames = std::chrono::seconds(5);
+
+bool anything(const nav::Learned& l) {
+  return l.odometry_scale || l.gyro_bias_radps || l.delay_s || l.braking_mps2 ||
+         l.acceleration_mps2 || l.yaw_scale || l.pull_1pm || l.forgotten;
+}
+
 }  // namespace
 
 void Station::Impl::recall(const Settings& settings, const Options& options) {
@@ -15,20 +21,22 @@ void Station::Impl::recall(const Settings& settings, const Options& options) {
   learned_by = learner(settings);
   const nav::Learned known = read_learned(learned_file, learned_by, base::wall_now());
   robot.recall(known);
-  if (!known.odometry_scale && !known.gyro_bias_radps) return;
+  if (!anything(known)) return;
   const auto text = [](const std::optional<nav::LearnedValue>& v) {
     return v ? std::to_string(v->value) : std::string("not known");
   };
   base::log(base::Level::Info, "main", "learned before",
             {{"odometry_scale", text(known.odometry_scale)},
-             {"gyro_bias_radps", text(known.gyro_bias_radps)}});
+             {"gyro_bias_radps", text(known.gyro_bias_radps)},
+             {"delay_s", text(known.delay_s)},
+             {"braking_mps2", text(known.braking_mps2)}});
 }
 
 /// A disk may pause: on a worker's thread, or, at the end, after all others.
 void Station::Impl::keep_learned() {
   const auto learned = robot.learned();
   if (learned_file.empty() || !learned) return;
-  if (!learned->odometry_scale && !learned->gyro_bias_radps) return;
+  if (!anything(*learned)) return;
   const auto kept = write_learned(learned_file, *learned, learned_by, base::wall_now());
   if (!kept) {
     base::log(base::Level::Warning, "main", "what was learned is not kept",

@@ -44,15 +44,16 @@ api::Profile profile_of(const Settings& s, const Supervisor& supervisor) {
   profile.name = s.vehicle.name;
   profile.title = s.vehicle.title;
   profile.mass_kg = s.vehicle.mass_kg;
-  profile.modes = {base::Mode::Manual, base::Mode::Hold,  base::Mode::Auto,
-                   base::Mode::Guided, base::Mode::Rtl,   base::Mode::SmartRtl,
-                   base::Mode::Follow, base::Mode::Dock,  base::Mode::Steering,
-                   base::Mode::Acro,   base::Mode::Simple};
+  profile.modes = {base::Mode::Manual, base::Mode::Hold,   base::Mode::Auto,
+                   base::Mode::Guided, base::Mode::Rtl,    base::Mode::SmartRtl,
+                   base::Mode::Follow, base::Mode::Dock,   base::Mode::Steering,
+                   base::Mode::Acro,   base::Mode::Simple, base::Mode::Loiter,
+                   base::Mode::Circle};
   profile.drivers = supervisor.names();
   profile.lights = supervisor.has_lights();
   profile.clears_errors = supervisor.clears_errors();
-  profile.item_types = {"waypoint", "local",       "move", "wait",
-                        "speed",    "return_home", "jump", "action"};
+  profile.item_types = {"waypoint",    "local", "move",   "wait",   "speed",
+                        "return_home", "jump",  "action", "loiter", "circle"};
   if (!s.robot.vehicle.steered()) profile.item_types.emplace_back("turn");
   profile.limits = limits_of(s);
   profile.limits.item_types = profile.item_types;
@@ -91,6 +92,7 @@ net::Handlers handlers_of(api::Api& api, const Front* front) {
                    : api::Api::is_stop(header) ? net::Urgency::Whole
                                                : net::Urgency::None;
           },
+      .knows = [&api](const std::string& address) { return api.knows(address); },
       .discard = [&api](std::string large) { api.discard(std::move(large)); },
       .on_upgrade = [&api](const net::Request& request) { return api.on_upgrade(request); },
       .on_client = [&api](net::ClientId client,

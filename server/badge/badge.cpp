@@ -75,6 +75,16 @@ std::string escaped_text(std::string_view text) {
   return out;
 }
 
+/// In JSON; a name has no control characters.
+std::string quoted(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + '"';
+}
+
 }  // namespace
 
 base::Result<void> check_name(std::string_view name) {
@@ -171,7 +181,17 @@ std::string_view picture_path(const Badge& badge) noexcept {
   return badge.picture ? badge.picture->path : kDrawn;
 }
 
+std::string manifest_of(const Badge& badge) {
+  const std::string_view type = badge.picture ? badge.picture->content_type : "image/svg+xml";
+  return "{\"name\":" + quoted(badge.name) + ",\"short_name\":" + quoted(badge.name) +
+         ",\"start_url\":\"/\",\"display\":\"standalone\",\"background_color\":\"#f3f1ea\","
+         "\"theme_color\":" +
+         quoted(badge.colour.rgb) + ",\"icons\":[{\"src\":" + quoted(picture_path(badge)) +
+         ",\"sizes\":\"any\",\"type\":" + quoted(type) + "}]}\n";
+}
+
 std::optional<File> file_at(std::string_view path, const Badge& badge) {
+  if (path == "/roverd.webmanifest") return File{"application/manifest+json", manifest_of(badge)};
   if (path == kDrawn) return File{"image/svg+xml", svg_of(badge)};
   if (badge.picture && path == badge.picture->path) {
     return File{badge.picture->content_type, badge.picture->bytes};

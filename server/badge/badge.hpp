@@ -63,7 +63,9 @@ struct File {
   std::string_view content_type;
   std::string body;
 };
-/// /robot.svg, and the picture where there is one. Empty: neither.
+/// What a page that is put on a phone's home screen is called there, and looks like.
+std::string manifest_of(const Badge& badge);
+/// /robot.svg, the picture where there is one, and /roverd.webmanifest. Empty: none of them.
 std::optional<File> file_at(std::string_view path, const Badge& badge);
 
 }  // namespace roverd::badge

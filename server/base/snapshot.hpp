@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/calibration.hpp"
 #include "base/drive_command.hpp"
 #include "base/geo.hpp"
 #include "base/measurements.hpp"
@@ -18,7 +19,21 @@
 
 namespace roverd::base {
 
-enum class Mode { Manual, Hold, Auto, Guided, Rtl, SmartRtl, Follow, Steering, Acro, Simple, Dock };
+enum class Mode {
+  Manual,
+  Hold,
+  Auto,
+  Guided,
+  Rtl,
+  SmartRtl,
+  Follow,
+  Steering,
+  Acro,
+  Simple,
+  Dock,
+  Loiter,
+  Circle
+};
 std::string_view to_string(Mode mode) noexcept;  // MANUAL HOLD AUTO GUIDED RTL SMART_RTL …
 std::optional<Mode> mode_from(std::string_view text) noexcept;
 
@@ -87,7 +102,9 @@ struct MissionProgress {
   int items = 0;
   std::optional<double> distance_to_item_m;
   std::optional<double> bearing_to_item_deg;
-  std::optional<double> cross_track_m;  ///< positive: the robot is left of the path
+  std::optional<double> cross_track_m;        ///< positive: the robot is left of the path
+  std::optional<double> arrival_radius_m;     ///< within it the item in hand counts as reached
+  std::optional<double> cross_track_limit_m;  ///< farther off its way the robot pauses
   std::optional<double> distance_left_m;
   std::optional<double> eta_s;
   std::optional<MissionPlace> place;  ///< running, paused or blocked
@@ -103,6 +120,7 @@ std::string_view to_string(ActivityState s) noexcept;  // none driving turning w
 struct Activity {
   std::uint64_t id = 0;   ///< counts what was begun; 0: nothing yet
   std::string_view kind;  ///< "goto" "heading" "move" "turn" "return" "retrace" "follow" "dock"
+                          ///< "calibration" "loiter" "circle"
   ActivityState state = ActivityState::None;
   std::string reason;  ///< why failed, held or waiting
   std::optional<LatLon> goal;
@@ -189,6 +207,20 @@ struct Anchor {
   Time stamp;
 };
 
+/// The receiver's positions moved by so much, all at once, and stay so: its base was moved, or the
+/// robot was carried. They are not used until a person has chosen.
+struct BaseShift {
+  EnuPoint offset;  ///< new minus old
+  Time since;
+};
+
+/// Two antennas that do not point where the robot drives.
+struct Askew {
+  double offset_rad = 0.0;  ///< their heading minus the course, left positive
+  double sigma_rad = 0.0;
+  double way_m = 0.0;  ///< over which it was measured
+};
+
 /// What tells of the motion, each for itself. A course over ground belongs to the velocity.
 enum class Sense { Tracks, Gyro, Position, Velocity, Compass, Antennas };
 inline constexpr std::size_t kSenses = 6;
@@ -234,6 +266,9 @@ struct EstimatorHealth {
   bool compass_heard = false;
   double odometry_scale = 1.0;
   double pull_1pm = 0.0;  ///< curvature of a vehicle that is told to go straight; left positive
+  /// Metres to its left for each metre ahead: it slides down a slope. Not where it points counts
+  /// for its way, but where it goes.
+  double side_slip = 0.0;
   std::optional<EnuPoint> gnss_offset;  ///< slow error of the receiver, as estimated
   InputHealth position, velocity, compass, heading, odometry, inertial;
   std::uint64_t rejected = 0;
@@ -244,6 +279,9 @@ struct EstimatorHealth {
   std::uint64_t resets = 0;
   std::optional<EstimateReset> last_reset;
   std::optional<Anchor> anchor;
+  std::optional<BaseShift> base_shift;
+  std::optional<Askew> antennas_askew;  ///< not used until a person has confirmed the offset
+  double antennas_offset_rad = 0.0;     ///< confirmed: what is taken from their headings
   Votes votes;
 };
 
@@ -255,6 +293,28 @@ struct LoopHealth {
   /// Wake-ups counted by lateness: entry i holds those below 2^i us (and not below 2^(i−1)), the
   /// last one all that were later.
   std::array<std::uint64_t, 20> lateness_log2_us{};
+};
+
+struct LearnedNumber {
+  double value = 0.0;
+  double sigma = 0.0;  ///< > 0
+};
+
+/// How the vehicle answers, as it was learned by driving, beside what was set. All unknowns empty.
+struct VehicleLearned {
+  std::optional<LearnedNumber> delay_s;            ///< from a command to its motion, for steering
+  std::optional<LearnedNumber> drive_delay_s;      ///< likewise, of the speed; this start's
+  std::optional<LearnedNumber> braking_mps2;       ///< it brakes no harder; empty: as it was told
+  std::optional<LearnedNumber> acceleration_mps2;  ///< likewise
+  std::optional<double> braking_shown_mps2;        ///< at least, since it was armed
+  double delay_set_s = 0.0;
+  double delay_used_s = 0.0;
+  double braking_set_mps2 = 0.0;
+  double braking_used_mps2 = 0.0;  ///< stops are planned with it
+  bool braking_proved = false;     ///< since arming; until then a stop begins as for half of it
+  double acceleration_set_mps2 = 0.0;
+  double acceleration_used_mps2 = 0.0;
+  bool kept = false;  ///< something of it was measured by a calibration drive, and kept
 };
 
 /// Driving by hand over the network. Release: a stick must be let go before it acts.
@@ -307,6 +367,9 @@ struct Snapshot {
   std::vector<Check> checks;
   bool ready_to_arm = false;
   EstimatorHealth estimator;
+  VehicleLearned learned;
+  CalibrationState calibration;
+  bool antennas_heard = false;  ///< a heading of two antennas, since the start
   LoopHealth loop;
 };
 

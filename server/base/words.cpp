@@ -122,12 +122,16 @@ std::string_view to_string(Mode mode) noexcept {
       return "SIMPLE";
     case Mode::Dock:
       return "DOCK";
+    case Mode::Loiter:
+      return "LOITER";
+    case Mode::Circle:
+      return "CIRCLE";
   }
   return "HOLD";
 }
 
 std::optional<Mode> mode_from(std::string_view text) noexcept {
-  for (int i = 0; i <= static_cast<int>(Mode::Dock); ++i) {
+  for (int i = 0; i <= static_cast<int>(Mode::Circle); ++i) {
     const Mode mode = static_cast<Mode>(i);
     if (to_string(mode) == text) return mode;
   }
@@ -272,6 +276,71 @@ std::string_view to_string(Sense s) noexcept {
       return "antennas";
   }
   return "tracks";
+}
+
+std::string_view to_string(CalibrationKind kind) noexcept {
+  switch (kind) {
+    case CalibrationKind::Drive:
+      return "drive";
+    case CalibrationKind::Steering:
+      return "steering";
+    case CalibrationKind::Compass:
+      return "compass";
+    case CalibrationKind::Antennas:
+      return "antennas";
+  }
+  return "drive";
+}
+
+std::optional<CalibrationKind> calibration_from(std::string_view text) noexcept {
+  for (const CalibrationKind kind : kCalibrationKinds) {
+    if (to_string(kind) == text) return kind;
+  }
+  return std::nullopt;
+}
+
+std::string_view to_string(CalibrationPhase phase) noexcept {
+  switch (phase) {
+    case CalibrationPhase::None:
+      return "none";
+    case CalibrationPhase::Running:
+      return "running";
+    case CalibrationPhase::Done:
+      return "done";
+    case CalibrationPhase::Failed:
+      return "failed";
+    case CalibrationPhase::Aborted:
+      return "aborted";
+  }
+  return "none";
+}
+
+std::string_view to_string(Quantity q) noexcept {
+  switch (q) {
+    case Quantity::SteeringDelay:
+      return "steering_delay";
+    case Quantity::DriveDelay:
+      return "drive_delay";
+    case Quantity::Braking:
+      return "braking";
+    case Quantity::Acceleration:
+      return "acceleration";
+    case Quantity::SpeedScale:
+      return "speed_scale";
+    case Quantity::TurnScale:
+      return "turn_scale";
+    case Quantity::SideBias:
+      return "side_bias";
+    case Quantity::SteeringZero:
+      return "steering_zero";
+    case Quantity::CompassOffset:
+      return "compass_offset";
+    case Quantity::CompassSpread:
+      return "compass_spread";
+    case Quantity::AntennasOffset:
+      return "antennas_offset";
+  }
+  return "braking";
 }
 
 }  // namespace roverd::base

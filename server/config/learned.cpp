@@ -37,6 +37,13 @@ struct Kind {
 constexpr Kind kScaleKind{"odometry_scale", "odometry_scale_sigma", 0.6, 1.15, 0.005, 365.0};
 constexpr Kind kBiasKind{"gyro_bias_dps", "gyro_bias_sigma_dps", -3.0, 3.0, 0.05, 60.0};
 
+constexpr Kind kDelayKind{"delay_s", "delay_sigma_s", 0.0, 0.8, 0.003, 90.0};
+constexpr Kind kBrakingKind{"braking_mps2", "braking_sigma_mps2", 0.05, 10.0, 0.02, 90.0};
+constexpr Kind kSpeedingKind{
+    "acceleration_mps2", "acceleration_sigma_mps2", 0.05, 10.0, 0.02, 90.0};
+constexpr Kind kTurnKind{"yaw_scale", "yaw_scale_sigma", 0.3, 1.5, 0.005, 90.0};
+constexpr Kind kPullKind{"pull_1pm", "pull_sigma_1pm", -0.3, 0.3, 0.001, 90.0};
+
 std::optional<double> number(const Json& json, const char* name) {
   const auto at = json.find(name);
   if (at == json.end() || !at->is_number()) return std::nullopt;
@@ -85,7 +92,17 @@ std::string text_of(const std::filesystem::path& file) {
 void put(Json& json, const Kind& kind, const LearnedValue& value, double scale, double days) {
   json[kind.name] = value.value * scale;
   json[kind.sigma_name] = value.sigma * scale;
-  json[std::string(kind.name) + "_day"] = days;
+  json[std::string(kind.name) + "_day"] = days - value.age_s / kDay_s;
+}
+
+/// What a person said is to be forgotten; the gyro's bias is the sensor's, not the vehicle's.
+void forget(Json& json) {
+  for (const Kind& kind :
+       {kScaleKind, kDelayKind, kBrakingKind, kSpeedingKind, kTurnKind, kPullKind}) {
+    json.erase(kind.name);
+    json.erase(kind.sigma_name);
+    json.erase(std::string(kind.name) + "_day");
+  }
 }
 
 Json merged(Json json, const nav::Learned& learned, const std::string& vehicle,
@@ -93,10 +110,16 @@ Json merged(Json json, const nav::Learned& learned, const std::string& vehicle,
   json["vehicle"] = vehicle;
   json["time"] = base::to_rfc3339(now);
   const double days = days_of(now);
+  if (learned.forgotten) forget(json);
   if (learned.odometry_scale) put(json, kScaleKind, *learned.odometry_scale, 1.0, days);
   if (learned.gyro_bias_radps) {
     put(json, kBiasKind, *learned.gyro_bias_radps, base::deg_from_rad(1.0), days);
   }
+  if (learned.delay_s) put(json, kDelayKind, *learned.delay_s, 1.0, days);
+  if (learned.braking_mps2) put(json, kBrakingKind, *learned.braking_mps2, 1.0, days);
+  if (learned.acceleration_mps2) put(json, kSpeedingKind, *learned.acceleration_mps2, 1.0, days);
+  if (learned.yaw_scale) put(json, kTurnKind, *learned.yaw_scale, 1.0, days);
+  if (learned.pull_1pm) put(json, kPullKind, *learned.pull_1pm, 1.0, days);
   return json;
 }
 
@@ -133,6 +156,11 @@ nav::Learned learned_from(std::string_view text, const std::string& vehicle, bas
   };
   nav::Learned out;
   out.odometry_scale = kept(kScaleKind);
+  out.delay_s = kept(kDelayKind);
+  out.braking_mps2 = kept(kBrakingKind);
+  out.acceleration_mps2 = kept(kSpeedingKind);
+  out.yaw_scale = kept(kTurnKind);
+  out.pull_1pm = kept(kPullKind);
   if (const auto bias = kept(kBiasKind)) {
     out.gyro_bias_radps =
         LearnedValue{base::rad_from_deg(bias->value), base::rad_from_deg(bias->sigma)};

@@ -1,5 +1,5 @@
 #pragma once
-// What the estimator learned of this robot, in a small file of the data folder: written whole or
+// What was learned of this robot, in a small file of the data folder: written whole or
 // not at all, read once at the start. A file that is missing, damaged, of another vehicle, or of
 // values that no robot has, is as none.
 //

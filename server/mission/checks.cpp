@@ -6,6 +6,7 @@
 
 #include "base/angle.hpp"
 #include "base/tangent_plane.hpp"
+#include "mission/circle.hpp"
 #include "mission/fence/plane_lines.hpp"
 #include "mission/text.hpp"
 
@@ -22,6 +23,12 @@ constexpr double kDuplicate_m = 0.01;
 std::string tenths(double value) {
   return fixed_number(std::round(value * 10.0) / 10.0, 1);
 }
+
+/// Where the way of an item lies, for the fence.
+struct Round {
+  int item = 0;
+  CircleWay way;
+};
 
 /// A place the mission leads to, in order.
 struct Target {
@@ -82,6 +89,7 @@ class PlanCheck {
             "jumps to item " + std::to_string(jump->item) + " for ever");
       }
       if (const auto* speed = std::get_if<Speed>(&item)) speed_limit(number, speed->speed_mps);
+      if (const auto* circle = std::get_if<Circle>(&item)) this->circle(number, *circle);
       if (std::holds_alternative<TurnBy>(item) && vehicle_.turn_radius_m > 0.0) {
         add(Severity::Error, "turn_too_tight", number,
             "is a turn on the spot: this vehicle cannot");
@@ -97,16 +105,46 @@ class PlanCheck {
             " m/s will be driven");
   }
 
-  void targets() {
-    const Waypoint* first = nullptr;
-    for (const Item& item : plan_.items) {
-      first = first == nullptr ? std::get_if<Waypoint>(&item) : first;
+  void circle(int item, const Circle& circle) {
+    speed_limit(item, circle.speed_mps.value_or(0.0));
+    if (!(vehicle_.turn_radius_m > 0.0)) return;
+    if (circle.radius_m < vehicle_.turn_radius_m) {
+      add(Severity::Error, "turn_too_tight", item,
+          "is a circle with a radius of " + tenths(circle.radius_m) +
+              " m; this vehicle's turning radius is " + tenths(vehicle_.turn_radius_m) + " m");
     }
+    if (stations_of(circle) > 0) {
+      add(Severity::Error, "turn_too_tight", item,
+          "has stations at which to turn to the centre on the spot: this vehicle cannot");
+    }
+  }
+
+  std::optional<LatLon> first_place() const {
+    for (const Item& item : plan_.items) {
+      if (const auto at = place_of(item)) return at;
+    }
+    return plan_.home ? std::optional(plan_.home->at) : std::nullopt;
+  }
+
+  /// Its entry and its end; nothing leads straight from one to the other.
+  void round(Target target, const Circle& circle, const base::TangentPlane& plane, bool broken) {
+    const bool known = !targets_.empty() && !broken;
+    const auto before = known ? std::optional(targets_.back().at)
+                        : targets_.empty() && plan_.home
+                            ? std::optional(plane.to_local(plan_.home->at))
+                            : std::nullopt;
+    const CircleWay way = circle_way(circle, plane.to_local(circle.at), before);
+    rounds_.push_back({target.item, way});
+    target.at = way.entry();
+    targets_.push_back(target);
+    target.at = way.end();
+    target.after_break = true;
+    targets_.push_back(target);
+  }
+
+  void targets() {
     if (plan_.home) home_.emplace(plan_.home->at);
-    const auto origin = around_.vehicle    ? around_.vehicle
-                        : first != nullptr ? std::optional(first->at)
-                        : plan_.home       ? std::optional(plan_.home->at)
-                                           : std::nullopt;
+    const auto origin = around_.vehicle ? around_.vehicle : first_place();
     if (!origin) return;
     frame_.emplace(1, *origin);
     const base::TangentPlane plane(*origin);
@@ -114,18 +152,25 @@ class PlanCheck {
     for (std::size_t i = 0; i < plan_.items.size(); ++i) {
       const Item& item = plan_.items[i];
       Target target{static_cast<int>(i) + 1, {}, std::get_if<Waypoint>(&item), broken};
-      if (target.waypoint != nullptr) {
-        const double far_m = base::distance_bearing(*origin, target.waypoint->at).distance_m;
+      if (const auto place = place_of(item)) {
+        const double far_m = base::distance_bearing(*origin, *place).distance_m;
         if (far_m > kReach_m) {
           add(Severity::Error, "too_far", target.item,
               "lies " + tenths(far_m / 1000.0) + " km from " +
-                  (around_.vehicle ? "the vehicle" : "the first waypoint") +
+                  (around_.vehicle ? "the vehicle" : "the first position") +
                   "; at most 10 km are possible");
           broken = true;
           continue;
         }
-        target.at = plane.to_local(target.waypoint->at);
-        speed_limit(target.item, target.waypoint->speed_mps.value_or(0.0));
+        if (const auto* circle = std::get_if<Circle>(&item)) {
+          round(target, *circle, plane, broken);
+          broken = false;
+          continue;
+        }
+        target.at = plane.to_local(*place);
+        if (target.waypoint != nullptr) {
+          speed_limit(target.item, target.waypoint->speed_mps.value_or(0.0));
+        }
       } else if (const auto* local = std::get_if<Local>(&item); local != nullptr && home_) {
         target.at = plane.to_local(home_->to_global({local->east_m, local->north_m}));
       } else {
@@ -139,7 +184,7 @@ class PlanCheck {
 
   static bool leads_elsewhere(const Item& item) {
     return !std::holds_alternative<Wait>(item) && !std::holds_alternative<Speed>(item) &&
-           !std::holds_alternative<Action>(item) && !std::holds_alternative<Waypoint>(item);
+           !std::holds_alternative<Action>(item) && !std::holds_alternative<Loiter>(item);
   }
 
   void distances() {
@@ -238,6 +283,28 @@ class PlanCheck {
                 " m from the fence, less than half the vehicle's width");
       }
     }
+    for (const Round& round : rounds_) around(round, limits);
+  }
+
+  /// Chords outside of the arc, so that none of it is farther out.
+  void around(const Round& round, const CompiledFence& limits) {
+    constexpr double kChord_rad = 0.05;
+    const double sweep_rad = std::clamp(round.way.sweep_rad, -2.0 * base::kPi, 2.0 * base::kPi);
+    const double pieces = std::ceil(std::abs(sweep_rad) / kChord_rad);
+    CircleWay outside = round.way;
+    outside.radius_m /= std::cos(0.5 * kChord_rad);
+    double room_m = 1e300;
+    for (double i = 0.0; i < pieces; i += 1.0) {
+      room_m = std::min(room_m, limits.clearance_m(outside.at(sweep_rad * i / pieces),
+                                                   outside.at(sweep_rad * (i + 1.0) / pieces)));
+    }
+    if (!(room_m > 0.0)) {
+      add(Severity::Error, "outside_fence", round.item, "leaves the fence on its way round");
+    } else if (room_m < vehicle_.width_m / 2.0) {
+      add(Severity::Warning, "near_fence", round.item,
+          "comes to " + tenths(room_m) +
+              " m from the fence on its way round, less than half the vehicle's width");
+    }
   }
 
   const Plan& plan_;
@@ -247,6 +314,7 @@ class PlanCheck {
   std::optional<base::TangentPlane> home_;
   std::optional<base::LocalFrame> frame_;
   std::vector<Target> targets_;
+  std::vector<Round> rounds_;
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "base/angle.hpp"
 #include "base/tangent_plane.hpp"
 #include "mission/checks.hpp"
+#include "mission/circle.hpp"
 #include "mission/fence/plane_lines.hpp"
 
 namespace roverd::mission {
@@ -71,6 +72,7 @@ class Walk {
         break;
     }
     out.length_m = length_m_;
+    ends = ends && !endless_;
     if (!ends) return out;
     out.time_s = drive_s_ + wait_s_;
     if (vehicle_.drive_power_w) {
@@ -104,6 +106,25 @@ class Walk {
   void pass(const Wall&) {}
   void pass(const Landmarks&) {}
   void pass(const Action&) {}
+  void pass(const Loiter& loiter) {
+    if (const auto at = loiter.at()) go(*at, speed_mps_);
+    if (loiter.seconds) wait_s_ += *loiter.seconds;
+    if (!loiter.seconds) endless_ = true;
+  }
+  void pass(const Circle& circle) {
+    const base::TangentPlane plane(circle.at);
+    const auto before = at_ ? std::optional(plane.to_local(*at_)) : std::nullopt;
+    const CircleWay round = circle_way(circle, {}, before);
+    const double speed_mps = circle.speed_mps.value_or(speed_mps_);
+    go(plane.to_global(round.entry()), speed_mps);
+    if (way_ && !round.tangent) turn_by(base::kPi / 2.0);
+    add_way(round.length_m(), speed_mps);
+    const auto stations = static_cast<double>(stations_of(circle));
+    wait_s_ += stations * circle.hold_s.value_or(0.0);
+    if (stations > 0.0) drive_s_ += stations * base::kPi / vehicle_.yaw_rate_radps;
+    at_ = plane.to_global(round.end());
+    way_.reset();
+  }
 
   void go(LatLon to, double speed_mps) {
     if (at_ && !(*at_ == to)) {
@@ -135,6 +156,7 @@ class Walk {
 
   const Plan& plan_;
   const VehicleLimits& vehicle_;
+  bool endless_ = false;   ///< stays somewhere until somebody says to go on
   std::vector<int> left_;  ///< repetitions left, by item; −1: not begun
   double speed_mps_;
   std::optional<base::TangentPlane> home_;

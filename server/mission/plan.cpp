@@ -2,24 +2,44 @@
 
 #include <array>
 
+#include "base/tangent_plane.hpp"
+#include "mission/circle.hpp"
+
 namespace roverd::mission {
 
 std::string_view type_name(const Item& item) noexcept {
   // In the order of the variant.
   static constexpr std::array<std::string_view, std::variant_size_v<Item>> kNames{
-      "waypoint", "local", "move",      "turn", "wait",        "speed",
-      "row",      "wall",  "landmarks", "jump", "return_home", "action"};
+      "waypoint", "local",     "move", "turn",        "wait",   "speed",  "row",
+      "wall",     "landmarks", "jump", "return_home", "action", "loiter", "circle"};
   return item.valueless_by_exception() ? std::string_view{} : kNames[item.index()];
+}
+
+std::optional<LatLon> place_of(const Item& item) noexcept {
+  if (const auto* waypoint = std::get_if<Waypoint>(&item)) return waypoint->at;
+  if (const auto* loiter = std::get_if<Loiter>(&item)) return loiter->at();
+  if (const auto* circle = std::get_if<Circle>(&item)) return circle->at;
+  return std::nullopt;
 }
 
 double length_m(const Plan& plan) noexcept {
   double sum_m = 0.0;
-  const Waypoint* before = nullptr;
+  std::optional<LatLon> before;
+  const auto go = [&](LatLon to) {
+    if (before) sum_m += base::distance_bearing(*before, to).distance_m;
+    before = to;
+  };
   for (const Item& item : plan.items) {
-    const auto* waypoint = std::get_if<Waypoint>(&item);
-    if (waypoint == nullptr) continue;
-    if (before != nullptr) sum_m += base::distance_bearing(before->at, waypoint->at).distance_m;
-    before = waypoint;
+    if (const auto* circle = std::get_if<Circle>(&item)) {
+      const base::TangentPlane plane(circle->at);
+      const CircleWay round =
+          circle_way(*circle, {}, before ? std::optional(plane.to_local(*before)) : std::nullopt);
+      go(plane.to_global(round.entry()));
+      sum_m += round.length_m();
+      before = plane.to_global(round.end());
+    } else if (const auto at = place_of(item)) {
+      go(*at);
+    }
   }
   return sum_m;
 }

@@ -84,8 +84,41 @@ struct Action {
   friend bool operator==(const Action&, const Action&) = default;
 };
 
+/// Stay at a place, or where the robot stands; driven away from it, drive back.
+struct Loiter {
+  std::optional<double> lat;  ///< both or none
+  std::optional<double> lon;
+  std::optional<double> seconds;   ///< empty: until somebody says to go on
+  std::optional<double> radius_m;  ///< farther away it drives back; empty: kLoiterRadius_m
+  std::optional<LatLon> at() const {
+    return lat && lon ? std::optional(LatLon{*lat, *lon}) : std::nullopt;
+  }
+  double within_m() const;
+  friend bool operator==(const Loiter&, const Loiter&) = default;
+};
+inline constexpr double kLoiterRadius_m = 1.0;
+inline double Loiter::within_m() const {
+  return radius_m.value_or(kLoiterRadius_m);
+}
+/// Around a place, entered along its tangent (mission/circle.hpp).
+struct Circle {
+  LatLon at;  ///< its centre
+  double radius_m = 0.0;
+  std::optional<double> turns;  ///< empty: one
+  bool clockwise = false;
+  std::optional<double> speed_mps;
+  std::optional<int> stations;   ///< a turn: there it stops and turns to face the centre
+  std::optional<double> hold_s;  ///< and holds
+  double whole_turns() const { return turns.value_or(1.0); }
+  friend bool operator==(const Circle&, const Circle&) = default;
+};
+
 using Item = std::variant<Waypoint, Local, Move, TurnBy, Wait, Speed, Row, Wall, Landmarks, Jump,
-                          ReturnHome, Action>;
+                          ReturnHome, Action, Loiter, Circle>;
+
+/// Where an item with a position of its own lies: a waypoint, a loiter at a place, a circle's
+/// centre.
+std::optional<LatLon> place_of(const Item& item) noexcept;
 
 /// The word of the public interface: "waypoint", "local", "move", "turn", "wait", …
 std::string_view type_name(const Item& item) noexcept;

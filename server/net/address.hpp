@@ -2,8 +2,11 @@
 // Addresses as they are told and counted.
 
 #include <string>
+#include <utility>
 
 #include <boost/asio/ip/address.hpp>
+
+#include "base/network.hpp"
 
 namespace roverd::net {
 
@@ -16,12 +19,19 @@ inline std::string address_text(const boost::asio::ip::address& address) {
   return address.to_string();
 }
 
-/// By what an address's connections are counted; empty: they are not. Whoever is on this computer
-/// under its usual addresses could do worse than to open connections.
-inline std::string counted_as(const boost::asio::ip::address& address) {
+/// By what connections are counted; empty: they are not.
+struct From {
+  std::string address;
+  std::string
+      network;  ///< its /64, of IPv6 only: one computer has as many addresses there as it likes
+};
+
+/// Whoever is on this computer under its usual addresses could do worse than to open connections.
+inline From counted_as(const boost::asio::ip::address& address) {
   std::string text = address_text(address);
   if (text == "127.0.0.1" || text == "::1") text.clear();
-  return text;
+  std::string network = base::network_of(text);
+  return {std::move(text), std::move(network)};
 }
 
 }  // namespace roverd::net

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include <boost/beast/core/string.hpp>
+#include "base/same_word.hpp"
 
 namespace roverd::net {
 
@@ -37,15 +37,6 @@ std::string content_tag(std::string_view bytes) {
   std::array<char, 17> out{};
   std::snprintf(out.data(), out.size(), "%016llx", static_cast<unsigned long long>(hash));
   return out.data();
-}
-
-/// Beast's own iequals (1.81) reads one sign beyond words that differ in case.
-bool same_word(std::string_view a, std::string_view b) {
-  const auto lower = [](char sign) {
-    return sign >= 'A' && sign <= 'Z' ? static_cast<char>(sign - 'A' + 'a') : sign;
-  };
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [&](char one, char other) { return lower(one) == lower(other); });
 }
 
 bool forbidden(std::string_view parameters) {
@@ -89,8 +80,8 @@ Coding choose_coding(std::string_view accept, bool has_gzip, bool has_brotli) {
     std::string_view part = next_part(accept, ',');
     const std::string_view name = next_part(part, ';');
     const int allowed = forbidden(part) ? 0 : 1;
-    if (same_word(name, "br")) brotli = allowed;
-    if (same_word(name, "gzip") || same_word(name, "x-gzip")) gzip = allowed;
+    if (base::same_word(name, "br")) brotli = allowed;
+    if (base::same_word(name, "gzip") || base::same_word(name, "x-gzip")) gzip = allowed;
     if (name == "*") any = allowed;
   }
   if (has_brotli && (brotli < 0 ? any : brotli) > 0) return Coding::Brotli;

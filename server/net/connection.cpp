@@ -13,6 +13,7 @@
 #include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 
+#include "base/same_word.hpp"
 #include "net/address.hpp"
 #include "net/arrival.hpp"
 #include "net/framing.hpp"
@@ -44,10 +45,6 @@ constexpr std::size_t kDiscardBytes = 64 * 1024 * 1024;
 bool bodyless(http::status status) {
   return status == http::status::no_content || status == http::status::not_modified ||
          http::to_status_class(status) == http::status_class::informational;
-}
-
-bool equals_no_case(boost::beast::string_view a, boost::beast::string_view b) {
-  return boost::beast::iequals(a, b);
 }
 
 /// Held by who is to answer: on whichever thread it is let go of, the connection ends on its own.
@@ -229,7 +226,7 @@ void Connection::on_header() {
   if (!admit_body()) return;
   const auto expect = request[http::field::expect];
   if (expect.empty() || version_ < 11) return read_body();
-  if (!equals_no_case(expect, "100-continue")) {
+  if (!base::same_word({expect.data(), expect.size()}, "100-continue")) {
     return refuse(417, "the only expectation understood is 100-continue");
   }
   expect_continue();

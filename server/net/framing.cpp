@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <boost/beast/core/string.hpp>
+#include "base/same_word.hpp"
 
 namespace roverd::net {
 
@@ -23,7 +23,8 @@ std::optional<FramingFault> framing_fault(const Request& header) {
   if (header.version() < 11) {
     return FramingFault{400, "HTTP/1.0 has no Transfer-Encoding"};
   }
-  if (codings == 1 && boost::beast::iequals(header[http::field::transfer_encoding], "chunked")) {
+  const auto coding = header[http::field::transfer_encoding];
+  if (codings == 1 && base::same_word(std::string_view(coding.data(), coding.size()), "chunked")) {
     return std::nullopt;
   }
   return FramingFault{501, "the only Transfer-Encoding understood is chunked"};

@@ -17,6 +17,7 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "base/time.hpp"
+#include "net/address.hpp"
 #include "net/hub.hpp"
 #include "net/server.hpp"
 #include "net/tls.hpp"
@@ -46,15 +47,14 @@ class Peers {
   Peers(boost::asio::io_context& io_context, Limits with, Handlers calls)
       : io(io_context), limits(with), handlers(std::move(calls)), hub(io_context) {}
 
-  /// @param from as counted_as has it (address.hpp)
-  void add(Peer* raw, std::weak_ptr<Peer> peer, std::string from) {
+  void add(Peer* raw, std::weak_ptr<Peer> peer, From from) {
     open_[raw] = {std::move(peer), std::move(from)};
   }
   void remove(Peer* raw) { open_.erase(raw); }
   int count() const noexcept { return static_cast<int>(open_.size()); }
-  std::string from_of(Peer* raw) const {
+  From from_of(Peer* raw) const {
     const auto found = open_.find(raw);
-    return found == open_.end() ? std::string() : found->second.from;
+    return found == open_.end() ? From() : found->second.from;
   }
 
   /// Safe against peers that come and go meanwhile.
@@ -71,25 +71,29 @@ class Peers {
     return static_cast<int>(std::count_if(
         open_.begin(), open_.end(), [](const auto& peer) { return peer.first->on_reserve(); }));
   }
-  /// Of one address, on the reserve or beside it.
+  /// Of one address or network, on the reserve or beside it.
   int count_of(const std::string& from, bool reserve) const {
     return static_cast<int>(
         std::count_if(open_.begin(), open_.end(), [&from, reserve](const auto& entry) {
-          return entry.second.from == from && entry.first->on_reserve() == reserve;
+          return entry.second.is_of(from) && entry.first->on_reserve() == reserve;
         }));
   }
+  /// Room for one more among the ordinary ones, where needed by letting one go that waits.
+  bool makes_room(const From& from);
+  /// The same on the reserve.
+  bool makes_room_on_reserve(const From& from);
   /// Nearly full: no time for half a header.
   bool crowded() const noexcept { return count() >= limits.connections - limits.connections / 4; }
 
   /// Makes room for a newcomer: whoever has waited longest without a request goes. A crowd of
   /// silent or dawdling sockets must not keep out the one who is in a hurry.
-  /// @param from one address only; empty: any
+  /// @param from one address or network only; empty: any
   /// @return false if all are busy.
   bool drop_longest_waiting(bool reserve, const std::string& from = {}) {
     std::shared_ptr<Peer> longest;
     std::optional<base::Time> until;
     for (const auto& [raw, one] : open_) {
-      if (raw->on_reserve() != reserve || (!from.empty() && one.from != from)) continue;
+      if (raw->on_reserve() != reserve || (!from.empty() && !one.is_of(from))) continue;
       const auto waits = raw->gives_way();
       if (!waits || (until && *until <= *waits)) continue;
       auto alive = one.peer.lock();
@@ -135,9 +139,12 @@ class Peers {
  private:
   static constexpr base::Duration kHung = 2 * kSweep;
 
+  bool has_its_share(const From& from);
+
   struct Open {
     std::weak_ptr<Peer> peer;
-    std::string from;
+    From from;
+    bool is_of(const std::string& one) const { return from.address == one || from.network == one; }
   };
   std::unordered_map<Peer*, Open> open_;
   base::Time swept_ = base::steady_now();  ///< the web thread was awake then

@@ -53,14 +53,6 @@ error_code bind_to(tcp::acceptor& acceptor, const tcp::endpoint& endpoint) {
 
 }  // namespace
 
-Response Peers::refusal(unsigned status, std::string_view detail) const {
-  if (handlers.on_refused) return handlers.on_refused(status, detail);
-  Response response{boost::beast::http::int_to_status(status), 11};
-  response.set(boost::beast::http::field::content_type, "text/plain; charset=utf-8");
-  response.body() = std::string(detail) + "\n";
-  return response;
-}
-
 struct Server::Impl : std::enable_shared_from_this<Server::Impl> {
   /// One address on which newcomers come in.
   struct Listener {
@@ -82,9 +74,6 @@ struct Server::Impl : std::enable_shared_from_this<Server::Impl> {
   void accepted(Listener& at, error_code ec, tcp::socket socket);
   void accept_failed(Listener& at, error_code why);
   void welcome(tcp::socket socket);
-  bool is_full(int reserved);
-  bool has_its_share(const std::string& from);
-  bool room_on_reserve(int reserved, const std::string& from);
   void sweep();
   void stop(base::Duration grace, std::function<void()> done);
   void shut();
@@ -182,33 +171,13 @@ void Server::Impl::welcome(tcp::socket socket) {
   ++peers->stats.accepted;
   const bool spare = std::exchange(on_spare, false);
   error_code gone;
-  const std::string from = counted_as(socket.remote_endpoint(gone).address());
-  const int reserved = peers->on_reserve();
-  const bool reserve = spare || has_its_share(from) || is_full(reserved);
+  const From from = counted_as(socket.remote_endpoint(gone).address());
+  const bool reserve = spare || !peers->makes_room(from);
   if (reserve) ++peers->stats.refused;
-  if (reserve && !room_on_reserve(reserved, from)) return;
+  if (reserve && !peers->makes_room_on_reserve(from)) return;
   const auto connection = std::make_shared<Connection>(peers, Wire(std::move(socket)));
   peers->add(connection.get(), connection, from);
   connection->start(reserve);
-}
-
-bool Server::Impl::is_full(int reserved) {
-  return peers->count() - reserved >= peers->limits.connections &&
-         !peers->drop_longest_waiting(false);
-}
-
-/// As many of one address as may be, and all of them busy.
-bool Server::Impl::has_its_share(const std::string& from) {
-  const int most = peers->limits.per_address;
-  if (most == 0 || from.empty() || peers->count_of(from, false) < most) return false;
-  return !peers->drop_longest_waiting(false, from);
-}
-
-bool Server::Impl::room_on_reserve(int reserved, const std::string& from) {
-  const int most = std::max(1, peers->limits.reserve / 4);
-  const bool shared = peers->limits.per_address > 0 && !from.empty();
-  if (shared && peers->count_of(from, true) >= most) return peers->drop_longest_waiting(true, from);
-  return reserved < peers->limits.reserve || peers->drop_longest_waiting(true);
 }
 
 void Server::Impl::sweep() {

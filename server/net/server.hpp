@@ -16,7 +16,8 @@
 // want of descriptors it is the same: some are held back and opened for the reserve (spares.hpp).
 //
 // So it is with one address, too: beyond its share its own waiting ones go, then it sits on the
-// reserve, of which it may have a quarter.
+// reserve, of which it may have a quarter. A /64 of IPv6 may have four times an address's share,
+// and half of the reserve.
 
 #include <cstdint>
 #include <functional>
@@ -57,6 +58,7 @@ struct Limits {
   std::size_t all_answers_bytes = 192 * 1024 * 1024;
   std::size_t message_bytes = 64 * 1024;  ///< one WebSocket message from a client
   int connections = 512;                  ///< fewer where the system allows fewer descriptors
+  int kept = 0;                           ///< of those, at most an eighth, for whom Handlers::knows
   int reserve = 32;                       ///< more than those, for what is urgent
   /// Of one address, but 127.0.0.1 and ::1; 0: as many as there may be.
   int per_address = 0;
@@ -92,6 +94,8 @@ struct Handlers {
   std::function<std::size_t(const Request& header)> body_limit{};
   /// What is served on the reserve, too. May be empty: nothing is.
   std::function<Urgency(const Request& header)> urgency{};
+  /// Somebody from this address belongs here. May be empty: nobody is told apart.
+  std::function<bool(const std::string& address)> knows{};
   /// Frees what is large where it holds up nobody. May be empty.
   std::function<void(std::string)> discard{};
   /// An upgrade request: nullopt accepts, a response refuses.

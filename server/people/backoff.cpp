@@ -16,8 +16,8 @@ void Backoff::tried(const std::string& key, base::Time now) {
   if (f.count > 0 && now - f.last > kForget) f = {};
   ++f.count;
   f.last = f.free_at = now;
-  if (f.count < kFree) return;
-  const int doublings = std::min(f.count - kFree, 20);
+  if (f.count < free_) return;
+  const int doublings = std::min(f.count - free_, 20);
   f.free_at = now + std::min(longest_, kFirst * (1 << doublings));
 }
 

@@ -16,7 +16,9 @@ class Backoff {
   static constexpr base::Duration kFirst = std::chrono::seconds(1);
   static constexpr base::Duration kForget = std::chrono::hours(1);
 
-  Backoff(base::Duration longest, std::size_t most) : longest_(longest), most_(most) {}
+  /// @param most keys that are remembered @param free tries that nobody waits after
+  Backoff(base::Duration longest, std::size_t most, int free = kFree)
+      : longest_(longest), most_(most), free_(free) {}
 
   /// Zero: may try now.
   base::Duration wait(const std::string& key, base::Time now) const;
@@ -35,6 +37,7 @@ class Backoff {
 
   base::Duration longest_;
   std::size_t most_;
+  int free_;
   std::unordered_map<std::string, Failures> known_;
 };
 

@@ -11,6 +11,7 @@
 // from before this start is judged by the wall clock when that is known; until then it opens
 // nothing. A token that expires opens nothing while the time is not known.
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -59,6 +60,7 @@ struct Invitation {
   std::string inviter;
   std::string user;  ///< whose device it will be
   Role role = Role::Viewer;
+  std::uint64_t number = 0;  ///< filled in by the book
 };
 
 /// The secret is told once.
@@ -160,10 +162,14 @@ class Book {
   // Invitations: one for each inviter, in memory only.
   /// A new code; the inviter's one before it is dead.
   std::string invite(Invitation invitation, Now now);
-  /// It is used up by that. Counts as a try, see login_wait with no user. Empty: no such code, or
-  /// it is over.
+  /// Its code is used up by that. Counts as a try, see login_wait with no user. Empty: no such
+  /// code, or it is over.
   std::optional<Invitation> take_invitation(std::string_view typed, const std::string& address,
                                             Now now);
+  /// Of one that was taken, once, when the device is about to be paired: it is still good. Not so
+  /// if meanwhile whoever invited was sent away, lost the right to, or ended what they invited
+  /// from.
+  bool end_invitation(const Invitation& taken, Now now);
 
   // Tokens. Conflict: too many.
   base::Result<Opened<Token>> add_token(Token wanted, Now now);
@@ -186,7 +192,7 @@ class Book {
   };
   struct Invited {
     Invitation invitation;
-    std::string hash;  ///< of its code
+    std::string hash;  ///< of its code; empty: it was taken
     base::Time over{};
   };
   struct Shown {
@@ -200,7 +206,10 @@ class Book {
   void see(Live& live, Now now);
   std::optional<Who> who_of(const Live& live) const;
   std::optional<Who> who_of(const Token& token) const;
+  bool was_here(const std::string& user, const std::string& address) const;
   std::string door_of(const std::string& user, const std::string& address) const;
+  void tried(const std::string& door, const std::string& address, Now now);
+  void tried_rightly(const std::string& door, const std::string& address);
   Opened<Session> open_session(const std::string& user, const std::string& address,
                                const std::string& device, Now now, const std::string& paired = {});
   User* find(std::string_view name) noexcept;
@@ -210,6 +219,7 @@ class Book {
   void drop_tokens(const std::function<bool(const Token&)>& which);
   void drop_devices(const std::function<bool(const Device&)>& which);
   void drop_invitations(const std::string& of);
+  bool may_invite(const Invitation& invitation) const noexcept;
   void keep(const Device& device);
 
   bool loaded_ = false;
@@ -219,9 +229,13 @@ class Book {
   std::vector<Shown> tokens_;
   std::vector<Device> devices_;
   std::vector<Invited> invited_;
+  std::uint64_t invitations_ = 0;  ///< made so far
   /// Short, or somebody in the network could lock people out; addresses may wait longer.
   Backoff users_wait_{std::chrono::seconds(30), 256};
   Backoff addresses_wait_{std::chrono::minutes(5), 1024};
+  /// Of the /64 of IPv6 from which somebody may come under ever other addresses, and in which
+  /// others live, too: not for long, and only whoever has not been here from their address.
+  Backoff networks_wait_{std::chrono::seconds(30), 256, 4 * Backoff::kFree};
   Change change_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/network.hpp"
 #include "people/book.hpp"
 #include "people/secret.hpp"
 
@@ -32,10 +33,27 @@ std::string Book::make_code() {
 }
 
 bool Book::is_code(std::string_view typed, const std::string& address, Now now) {
-  users_wait_.tried(door_of({}, address), now.mono);
-  addresses_wait_.tried(address, now.mono);
+  tried(door_of({}, address), address, now);
   if (!needs_setup() || code_.empty()) return false;
   return same(digest(plain_code(typed)), digest(code_));
+}
+
+bool Book::was_here(const std::string& user, const std::string& address) const {
+  return std::any_of(sessions_.begin(), sessions_.end(),
+                     [&](const Live& s) { return s.row.user == user && s.row.address == address; });
+}
+
+void Book::tried(const std::string& door, const std::string& address, Now now) {
+  users_wait_.tried(door, now.mono);
+  addresses_wait_.tried(address, now.mono);
+  const std::string network = base::network_of(address);
+  if (!network.empty()) networks_wait_.tried(network, now.mono);
+}
+
+void Book::tried_rightly(const std::string& door, const std::string& address) {
+  users_wait_.clear(door);
+  addresses_wait_.clear(address);
+  networks_wait_.clear(base::network_of(address));
 }
 
 /// Whoever has been here before from that address is not kept out by others' guesses. Names that do
@@ -44,21 +62,20 @@ std::string Book::door_of(const std::string& user, const std::string& address) c
   // Of one-time codes: nobody's guesses keep others waiting.
   if (user.empty()) return "code@" + address;
   if (this->user(user) == nullptr) return "?" + digest(user).substr(0, 1);
-  const bool was_here = std::any_of(sessions_.begin(), sessions_.end(), [&](const Live& s) {
-    return s.row.user == user && s.row.address == address;
-  });
-  return was_here ? user + "@" + address : user;
+  return was_here(user, address) ? user + "@" + address : user;
 }
 
 base::Duration Book::login_wait(const std::string& user, const std::string& address,
                                 Now now) const {
-  return std::max(users_wait_.wait(door_of(user, address), now.mono),
-                  addresses_wait_.wait(address, now.mono));
+  const auto of_network = was_here(user, address)
+                              ? base::Duration::zero()
+                              : networks_wait_.wait(base::network_of(address), now.mono);
+  return std::max({users_wait_.wait(door_of(user, address), now.mono),
+                   addresses_wait_.wait(address, now.mono), of_network});
 }
 
 Attempt Book::begin_login(const std::string& user, const std::string& address, Now now) {
-  users_wait_.tried(door_of(user, address), now.mono);
-  addresses_wait_.tried(address, now.mono);
+  tried(door_of(user, address), address, now);
   const User* const known = this->user(user);
   return {user, address, known != nullptr ? known->password : nobodys_hash()};
 }
@@ -72,8 +89,7 @@ std::optional<Opened<Session>> Book::end_login(const Attempt& attempt, bool righ
 }
 
 void Book::clear_login(const Attempt& attempt) {
-  users_wait_.clear(door_of(attempt.user, attempt.address));
-  addresses_wait_.clear(attempt.address);
+  tried_rightly(door_of(attempt.user, attempt.address), attempt.address);
 }
 
 Opened<Session> Book::open_session(const std::string& user, const std::string& address,

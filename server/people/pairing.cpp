@@ -125,8 +125,7 @@ base::Duration Book::pin_wait(const Device& device, const std::string& address, 
 PinAttempt Book::begin_pin(const Device& device, const std::string& address, Now now) {
   Device* const known = find_device(device.id);
   if (known == nullptr) return {{}, address, nobodys_hash()};
-  users_wait_.tried(pin_door(*known), now.mono);
-  addresses_wait_.tried(address, now.mono);
+  tried(pin_door(*known), address, now);
   ++known->wrong;
   keep(*known);
   return {known->id, address, known->pin};
@@ -135,8 +134,7 @@ PinAttempt Book::begin_pin(const Device& device, const std::string& address, Now
 std::optional<Opened<Session>> Book::end_pin(const PinAttempt& attempt, bool right, Now now) {
   Device* const known = find_device(attempt.device);
   if (!right || known == nullptr || known->pin != attempt.hash) return std::nullopt;
-  users_wait_.clear(pin_door(*known));
-  addresses_wait_.clear(attempt.address);
+  tried_rightly(pin_door(*known), attempt.address);
   known->wrong = 0;
   if (now.wall >= base::kYoungest) known->used = now.wall;
   keep(*known);
@@ -153,33 +151,47 @@ void Book::drop_invitations(const std::string& of) {
 
 std::string Book::invite(Invitation invitation, Now now) {
   std::erase_if(invited_, [&](const Invited& i) {
-    return now.mono >= i.over || i.invitation.inviter == invitation.inviter;
+    const bool open = !i.hash.empty() && i.invitation.inviter == invitation.inviter;
+    return now.mono >= i.over || open;
   });
   std::string code = spoken_code();
+  invitation.number = ++invitations_;
   invited_.push_back({std::move(invitation), digest(code), now.mono + kInvited});
   return code;
+}
+
+bool Book::may_invite(const Invitation& i) const noexcept {
+  const User* const inviter = user(i.inviter);
+  const bool may = inviter != nullptr && (i.inviter == i.user || inviter->role == Role::Admin);
+  return may && user(i.user) != nullptr;
 }
 
 /// Whoever invited must still be allowed to.
 std::optional<Invitation> Book::take_invitation(std::string_view typed, const std::string& address,
                                                 Now now) {
-  users_wait_.tried(door_of({}, address), now.mono);
-  addresses_wait_.tried(address, now.mono);
+  tried(door_of({}, address), address, now);
   const std::string hash = digest(plain_code(typed));
   for (auto at = invited_.begin(); at != invited_.end(); ++at) {
-    if (!same(at->hash, hash)) continue;
-    const Invitation found = std::move(at->invitation);
-    const bool over = now.mono >= at->over;
-    invited_.erase(at);
-    const User* const inviter = user(found.inviter);
-    const bool may =
-        inviter != nullptr && (found.inviter == found.user || inviter->role == Role::Admin);
-    if (over || !may || user(found.user) == nullptr) return std::nullopt;
-    users_wait_.clear(door_of({}, address));
-    addresses_wait_.clear(address);
-    return found;
+    if (at->hash.empty() || !same(at->hash, hash)) continue;
+    if (now.mono >= at->over || !may_invite(at->invitation)) {
+      invited_.erase(at);
+      return std::nullopt;
+    }
+    at->hash.clear();
+    tried_rightly(door_of({}, address), address);
+    return at->invitation;
   }
   return std::nullopt;
+}
+
+bool Book::end_invitation(const Invitation& taken, Now now) {
+  const auto at = std::find_if(invited_.begin(), invited_.end(), [&](const Invited& i) {
+    return i.hash.empty() && i.invitation.number == taken.number;
+  });
+  if (at == invited_.end()) return false;
+  const bool good = now.mono < at->over && may_invite(at->invitation);
+  invited_.erase(at);
+  return good;
 }
 
 }  // namespace roverd::people

@@ -31,7 +31,7 @@ bool is_password(const std::string& hash, std::string_view password) noexcept;
 /// the time tells nothing.
 const std::string& nobodys_hash();
 
-inline constexpr std::size_t kShortestPassword = 10;
+inline constexpr std::size_t kShortestPassword = 12;
 inline constexpr std::size_t kLongestPassword = 200;
 /// What is wrong with it; empty: nothing. Never tells the password.
 std::string password_problem(std::string_view password, std::string_view user);

@@ -85,6 +85,7 @@ base::Result<void> Robot::Impl::handle(const Arm&) {
   base_watch.ask_anew();
   by_hand.lock("the robot was armed", clock.now());
   reset_latch.armed();
+  handling.armed();
   change_mode(ModeCause::Armed, "armed");
   const HomeAtArm rule = home_at_arm_from(config->robot.home_at_arm).value_or(HomeAtArm::Keep);
   if (pose && home.arm(pose->global, rule)) begin_way_anew();
@@ -140,10 +141,12 @@ base::Result<void> Robot::Impl::may_drive_mission() const {
 
 base::Result<void> Robot::Impl::start(const nav::StartAt& at) {
   if (auto ok = may_drive_mission(); !ok) return ok;
-  const FenceKeep::Start from{.here = pose->at,
+  const nav::PathParams path = config->path();
+  const FenceKeep::Start from{.stand = stand_of(*pose),
                               .home = home_point(),
                               .margin_m = way_margin_m(),
-                              .within_m = config->behave.start_within_m};
+                              .path = path,
+                              .behave = config->behave};
   if (auto ok = fence.may_start(*missions.get(), at, from); !ok) return ok;
   if (auto ok = missions.executor.start(at, pose->at, from.home); !ok) return ok;
   straight.reset();
@@ -172,6 +175,8 @@ base::Result<void> Robot::Impl::handle(const StartMission& c) {
 }
 
 base::Result<void> Robot::Impl::handle(const PauseMission&) {
+  // Said twice, over the stream and by a call: it is as was asked for.
+  if (missions.executor.state() == base::ExecutionState::Paused) return {};
   if (!missions.executor.running()) {
     return base::fail(Code::Conflict, "no mission runs: it is " +
                                           std::string(to_string(missions.executor.state())));

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/geo.hpp"
 #include "mission/checks.hpp"
@@ -24,6 +25,9 @@ struct CompiledMission {
   double fence_margin_m = 0.0;  ///< with this Config::way_margin_m
   std::optional<mission::Finding> fence_objection{};  ///< of that fence; empty: it stays inside
 };
+
+/// What of it is driven as smooth ways: at most kSmoothedShown, those farthest beside first.
+std::vector<SmoothedItems> smoothed_items(const CompiledMission& mission);
 
 struct LaidFence;
 /// What the fence has against the mission's legs, if the two were compared with this margin; null:

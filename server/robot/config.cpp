@@ -113,7 +113,7 @@ bool acts_at_next_start(std::string_view section, std::string_view name) noexcep
 
 bool acts_by_way(std::string_view section, std::string_view name) noexcept {
   return (section == "nav.track" &&
-          (name == "corner_deviation_m" || name == "through_deviation_m")) ||
+          (name == "corner_deviation_m" || name == "through_deviation_m" || name == "smooth_m")) ||
          (section == "nav.speed" && name == "default_mps") ||
          (section == "nav.pivot" && name == "angle_deg");
 }

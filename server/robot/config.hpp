@@ -77,6 +77,7 @@ struct SafetyParams {
   double gnss_free_m = 35.0;
   double contradiction_free_m = 8.0;
   double reset_repeat_s = 60.0;
+  double sigma_free_m = 1.0;
   double sigma_slow_m = 2.0;
   double sigma_hold_m = 3.0;
   double sigma_hold_s = 2.0;
@@ -124,6 +125,9 @@ void fields(V& v, SafetyParams& p) {
   v("reset_repeat_s", p.reset_repeat_s, 0.0, 3600.0,
     base::higher_is_stricter("an estimate set anew by over 0.5 m or 10 deg twice within so long "
                              "holds until a person acknowledged it"));
+  v("sigma_free_m", p.sigma_free_m, 0.02, 50.0,
+    base::lower_is_stricter("up to this uncertainty of the position nothing is slower; from here "
+                            "to sigma_slow_m the speed falls evenly"));
   v("sigma_slow_m", p.sigma_slow_m, 0.02, 50.0,
     base::lower_is_stricter("position less certain than this: creep"));
   v("sigma_hold_m", p.sigma_hold_m, 0.05, 50.0,
@@ -203,6 +207,7 @@ struct Config {
   nav::TrackParams track;
   nav::SpeedParams speed;
   nav::PivotParams pivot;
+  nav::SlopeParams slope;
   nav::BehaveParams behave;
   nav::ModeParams modes;
   RobotParams robot;
@@ -227,7 +232,7 @@ struct Config {
 
   /// What following a path needs; the vehicle goes no faster than it can.
   nav::PathParams path() const {
-    nav::PathParams p{track, speed, pivot, vehicle};
+    nav::PathParams p{track, speed, pivot, vehicle, slope};
     p.speed.max_mps = std::min(speed.max_mps, vehicle.max_speed_mps);
     return p;
   }
@@ -239,6 +244,7 @@ void sections(V& v, Config& c) {
   v("nav.track", c.track);
   v("nav.speed", c.speed);
   v("nav.pivot", c.pivot);
+  v("nav.slope", c.slope);
   v("nav.behave", c.behave);
   v("nav.modes", c.modes);
   v("robot", c.robot);

@@ -21,6 +21,10 @@ std::optional<base::Attitude> Robot::Impl::attitude() const {
   return estimator.attitude(clock.now());
 }
 
+double Robot::Impl::most_roll_deg() const noexcept {
+  return base::deg_from_rad(nav::most_roll_rad(config->vehicle, config->slope));
+}
+
 std::optional<double> Robot::Impl::corridor_m() const noexcept {
   return machine.mode() == Mode::Auto ? missions.executor.corridor_m() : std::nullopt;
 }
@@ -45,6 +49,8 @@ Facts Robot::Impl::facts() const {
           .spins = position_watch.spins(),
           .attitude = attitude(),
           .leans_since = lean_watch.since(),
+          .rolls_since = roll_watch.since(),
+          .most_roll_deg = most_roll_deg(),
           .gyro_lost = estimate_watch.gyro_lost(),
           .falls = driver_falls.worst(clock.now()),
           .home_m = home_at ? std::optional(base::distance_m(pose->at, *home_at)) : std::nullopt,
@@ -58,7 +64,10 @@ Facts Robot::Impl::facts() const {
 void Robot::Impl::judge() {
   const SafetyParams& p = config->safety;
   watch_base();
-  lean_watch.step(attitude(), p.tilt_stop_deg, clock.now());
+  auto lean = attitude();
+  lean_watch.step(lean, p.tilt_stop_deg, clock.now());
+  if (lean) lean->pitch_rad = 0.0;
+  roll_watch.step(lean, most_roll_deg(), clock.now());
   battery_use.step(world.battery, world.motion ? world.motion->twist.linear_mps : 0.0,
                    clock.dt_s());
   if (position_watch.step(pose, world, p, corridor_m(), clock.now()))
@@ -77,6 +86,20 @@ void Robot::Impl::judge() {
   // In its CAN mode the base obeys whoever speaks; out of it, nobody.
   if (!assessment.disarms.empty() && arm.armed()) disarm("because " + assessment.disarms);
   checks = arming_checks(facts(), p, config->arming, missions.get() != nullptr, clock.now());
+}
+
+/// What tells how the vehicle answers.
+nav::VehicleLearner::Seen Robot::Impl::seen() const {
+  nav::VehicleLearner::Seen out;
+  out.ours = arm.armed() && base_listens(world) && !arm.latched() &&
+             !radio_drives(world, config->safety, clock.now());
+  if (world.motion && !world.motion->assumed) {
+    out.tracks = world.motion->twist;
+    out.tracks_stamp = world.motion->stamp;
+  }
+  if (pose) out.yaw_rate_radps = pose->yaw_rate_radps;
+  out.now = clock.now();
+  return out;
 }
 
 /// Whether our commands reach the base, by what it shows of them.
@@ -99,6 +122,7 @@ void Robot::Impl::watch_base() {
 
 /// What changed about the estimate and the receiver that an operator wants to find later.
 void Robot::Impl::watch_estimate() {
+  estimator.ask_about_shifts(arm.armed());
   health = estimator.health();
   const base::FixType fix = world.gnss ? world.gnss->fix : base::FixType::None;
   for (const EstimateWatch::News& n : estimate_watch.step(health, fix, clock.now())) {
@@ -185,8 +209,10 @@ base::Result<void> Robot::Impl::inside(base::EnuPoint to) const {
 base::DriveCommand Robot::Impl::keep_inside(base::DriveCommand command) {
   if (!pose) return command;
   const bool hands = !machine.by_itself();
+  FenceParams kept = config->kept_fence();
+  kept.decel_mps2 = handling.braking_mps2(kept.decel_mps2);
   const FenceKeep::Verdict verdict =
-      fence.judge(command.twist, *pose, estimator.frame(), hands, config->kept_fence());
+      fence.judge(command.twist, *pose, estimator.frame(), hands, kept);
   if (!verdict.stops) return command;
   assessment.conditions.push_back({"fence", verdict.why});
   if (verdict.newly) event(Severity::Warning, "fence", verdict.why);

@@ -19,8 +19,10 @@
 #include <vector>
 
 #include "nav/estimate/estimator.hpp"
+#include "robot/calibration.hpp"
 #include "robot/compile.hpp"
 #include "robot/delivered.hpp"
+#include "robot/handling.hpp"
 #include "robot/loop_clock.hpp"
 #include "robot/mission_keeper.hpp"
 #include "robot/modes/by_hand.hpp"
@@ -57,6 +59,12 @@ struct PendingCommand {
 
 /// The words of the public command in those of nav.
 nav::StartAt start_at(const StartMission& c) noexcept;
+
+/// As far as a mission's beginning needs it.
+inline nav::Stand stand_of(const base::Pose& pose) noexcept {
+  return {pose.at, pose.heading_known ? std::optional(pose.yaw_rad) : std::nullopt,
+          pose.horizontal_sigma_m};
+}
 
 struct Robot::Impl {
   using Mode = base::Mode;
@@ -109,8 +117,12 @@ struct Robot::Impl {
   ResetLatch reset_latch;
   PositionWatch position_watch;
   LeanWatch lean_watch;
+  LeanWatch roll_watch;
   DriverFalls driver_falls;
   BatteryUse battery_use;
+  Handling handling;
+  KeptCalibration calibrated;
+  base::Time calibration_seen{};  ///< headings up to here
   std::string self_test;  ///< of the failsafes, at the start; empty: nothing is wrong with them
   Assessment assessment;
   std::vector<base::Check> checks;
@@ -132,6 +144,7 @@ struct Robot::Impl {
   base::Result<void> carry_out(const PendingCommand& pending);
   void take_measurements();
   void note_driver(const base::DriverStatus& d);
+  nav::VehicleLearner::Seen seen() const;
   void judge();
   base::DriveCommand decide();
   bool publish();
@@ -156,6 +169,11 @@ struct Robot::Impl {
   base::Result<void> handle(const SetPose& c);
   base::Result<void> handle(const SetAnchor& c);
   base::Result<void> handle(const DropAnchor&);
+  base::Result<void> handle(const SettleShift& c);
+  base::Result<void> handle(const CorrectAntennas& c);
+  base::Result<void> handle(const Calibrate& c);
+  base::Result<void> handle(const SettleCalibration& c);
+  base::Result<void> handle(const ForgetCalibration&);
   base::Result<void> handle(const Drive& c);
   base::Result<void> handle(const LoadMission& c);
   base::Result<void> handle(const ReviseMission& c);
@@ -186,6 +204,7 @@ struct Robot::Impl {
   bool within_reach(base::LatLon at) const;
   Facts facts() const;
   std::optional<base::Attitude> attitude() const;
+  double most_roll_deg() const noexcept;
 
   // modes/enter.cpp, goals.cpp, returns.cpp: entering
   base::Result<void> guide(const nav::GuidedGoal& goal, std::string_view kind);
@@ -197,6 +216,9 @@ struct Robot::Impl {
   void go_back(const std::string& why);
   base::Result<void> enter_follow();
   base::Result<void> enter_dock(const SetMode& c);
+  base::Result<void> enter_loiter(const SetMode& c);
+  base::Result<void> enter_circle(const SetMode& c);
+  base::Result<void> circle_inside(const nav::OrbitGoal& goal) const;
   base::Result<void> enter_sticks(Mode to);
   WayHome way_home(Mode mode) const;
   void choose_home(base::LatLon at);
@@ -230,6 +252,12 @@ struct Robot::Impl {
   base::Result<base::EnuPoint> anchor_point(const SetAnchor& c) const;
   base::DriveCommand seek_heading();
   base::BodyTwist straight_first(const base::BodyTwist& wanted);
+
+  // calibration.cpp
+  base::Result<void> keep_calibration(const base::CalibrationState& state);
+  nav::CalibrationSight calibration_sight();
+  void see_handling();
+  void sent_handling();
 
   // radio/panel.cpp
   void press(const base::RadioState& frame);

@@ -83,13 +83,17 @@ base::MissionProgress MissionKeeper::progress(const std::optional<base::Pose>& p
   p.name = mission_->copy.plan.name;
   p.state = executor.state();
   p.reason = executor.reason();
+  if (executor.waits_for_word()) p.reason = "stays here until it is resumed, or skipped";
   if (executor.running() && radio) {
     p.reason = "the radio drives; the mission goes on when it gives control back";
   }
   p.items = static_cast<int>(mission_->copy.plan.items.size());
-  const nav::Progress at = executor.progress(pose ? std::optional(pose->at) : std::nullopt);
+  const nav::Progress at = executor.progress(pose ? std::optional(pose->at) : std::nullopt,
+                                             pose ? pose->horizontal_sigma_m : 0.0);
   p.current_item = at.current_item;
   p.cross_track_m = at.cross_track_m;
+  p.arrival_radius_m = at.arrival_radius_m;
+  p.cross_track_limit_m = at.cross_track_limit_m;
   p.distance_left_m = at.distance_left_m;
   p.eta_s = at.eta_s;
   p.place = executor.place();

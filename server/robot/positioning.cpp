@@ -130,6 +130,39 @@ base::Result<void> Robot::Impl::handle(const DropAnchor&) {
   return {};
 }
 
+base::Result<void> Robot::Impl::handle(const SettleShift& c) {
+  if (auto ok = may_be_placed(); !ok) return ok;
+  const auto shift = estimator.health().base_shift;
+  if (!shift) return base::fail(Code::Conflict, "the receiver's positions have not moved");
+  estimator.settle_shift(c.keep);
+  told_where();
+  estimate_watch.anchored(estimator.health().anchor.has_value());
+  const std::string by = tenths_of(std::hypot(shift->offset.east_m, shift->offset.north_m));
+  event(Severity::Info, "base_shift_settled",
+        c.keep ? "the old place is kept: the receiver's positions are moved back by " + by + " m"
+               : "the new place is taken: the robot's position is moved by " + by + " m");
+  return {};
+}
+
+base::Result<void> Robot::Impl::handle(const CorrectAntennas& c) {
+  if (auto ok = may_be_placed(); !ok) return ok;
+  const base::EstimatorHealth known = estimator.health();
+  if (c.apply && !known.antennas_askew) {
+    return base::fail(Code::Conflict, "the two antennas were not seen to be askew");
+  }
+  if (!c.apply && known.antennas_offset_rad == 0.0) {
+    return base::fail(Code::Conflict, "nothing is taken from the antennas' headings");
+  }
+  c.apply ? estimator.correct_antennas() : estimator.uncorrect_antennas();
+  const double off_deg = base::deg_from_rad(estimator.health().antennas_offset_rad);
+  event(Severity::Info, "antennas_corrected",
+        c.apply ? "the two antennas' headings are turned by " + tenths_of(off_deg) +
+                      " deg to the " + (off_deg > 0.0 ? "right" : "left") +
+                      ", until the program starts anew: drivers.gnss.heading_offset_deg keeps it"
+                : "the two antennas' headings are taken as they are");
+  return {};
+}
+
 /// Nobody knows where the robot points, not even roughly: straight on, slowly.
 base::DriveCommand Robot::Impl::seek_heading() {
   speed_reason = "heading_unknown";

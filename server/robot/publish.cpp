@@ -57,11 +57,18 @@ bool Robot::Impl::publish() {
     return !c.ok && c.severity == base::Severity::Error;
   });
   s->estimator = health;
+  s->learned = handling.learned();
+  s->learned.kept = calibrated.measured();
+  s->calibration = self_driving.calibration().tell();
+  s->antennas_heard = world.antennas.has_value();
   s->loop = clock.health();
   bool all = loaded.deliver();
   all = shared_fence.deliver() && all;
   if (clock.health().ticks % 50 == 0) {  // once a second; who missed it gets the next
-    learned.publish(std::make_shared<const nav::Learned>(estimator.learned()));
+    nav::Learned known = estimator.learned();
+    handling.tell(known);
+    calibrated.tell(known, clock.now());
+    learned.publish(std::make_shared<const nav::Learned>(known));
     publish_driven_way();
   }
   if (config_unpublished) {

@@ -21,6 +21,7 @@ Robot::Impl::Impl(Config c)
       by_hand(config),
       driven(config->modes.crumb_m),
       keys(config.radio, config.safety),
+      handling(config),
       self_test(test_failsafes()) {
   world.gauge = BatteryGauge(config.battery);
   shared_config.publish(config.whole());
@@ -50,6 +51,8 @@ base::Inbox<MissionEdit>& Robot::edits() noexcept {
 }
 void Robot::recall(const nav::Learned& learned) noexcept {
   impl_->estimator.recall(learned);
+  impl_->handling.recall(learned);
+  impl_->calibrated.recall(learned);
 }
 void Robot::reviewed(const Config& config) {
   impl_->reviewed = std::make_shared<const Config>(config);
@@ -123,11 +126,9 @@ base::Result<std::shared_ptr<const CompiledMission>> Robot::compile(MissionCopy 
   if (state) frame = state->frame;
   bool local = false;
   for (std::size_t i = 0; !frame && i < copy.plan.items.size(); ++i) {
-    local = local || !std::holds_alternative<mission::Waypoint>(copy.plan.items[i]);
-    const auto* first = std::get_if<mission::Waypoint>(&copy.plan.items[i]);
-    if (first != nullptr && base::is_valid(first->at)) {
-      frame.emplace(impl_->frame_ids.fetch_add(1), first->at);
-    }
+    const auto first = mission::place_of(copy.plan.items[i]);
+    local = local || !first;
+    if (first && base::is_valid(*first)) frame.emplace(impl_->frame_ids.fetch_add(1), *first);
   }
   if (!frame && copy.plan.home && local) {
     frame.emplace(impl_->frame_ids.fetch_add(1), copy.plan.home->at);
@@ -181,12 +182,14 @@ std::vector<mission::Finding> Robot::objections(const CompiledMission& mission,
   const auto config = impl_->shared_config.get();
   const auto state = impl_->snapshot.get();
   const double margin_m = config->way_margin_m();
+  const nav::PathParams path = config->path();
   StartView view{.route = mission.route,
                  .margin_m = margin_m,
-                 .within_m = config->behave.start_within_m,
+                 .path = path,
+                 .behave = config->behave,
                  .at = start_at(start)};
   if (state && state->pose && state->frame && state->frame->id() == mission.frame.id()) {
-    view.here = state->pose->at;
+    view.stand = stand_of(*state->pose);
   }
   const auto& own = mission.copy.plan.home;
   const auto loaded = impl_->loaded.get();
@@ -220,45 +223,6 @@ bool Robot::fenced(const CompiledMission& mission) const {
 
 std::shared_ptr<const Config> Robot::config() const {
   return impl_->shared_config.get();
-}
-
-base::Result<Preview> Robot::preview(const StartMission& start) const {
-  const auto mission = impl_->loaded.get();
-  if (!mission) return base::fail(Code::NotFound, "no mission is loaded");
-  const auto state = impl_->snapshot.get();
-  const nav::Route& route = mission->route;
-  std::optional<base::EnuPoint> here;
-  std::optional<base::EnuPoint> home;
-  if (state && state->pose) here = state->pose->at;
-  if (state && state->home) home = mission->frame.to_local(*state->home);
-  const std::size_t step = nav::first_step(route, start_at(start), here);
-  if (step >= route.forth.steps.size()) {
-    return base::fail(Code::Conflict, "item " + std::to_string(start.item) +
-                                          " has nothing to drive to; the mission has " +
-                                          std::to_string(route.items) + " items");
-  }
-  Preview p;
-  p.mission_id = mission->copy.id;
-  p.revision = mission->copy.revision;
-  p.name = mission->copy.plan.name;
-  p.first_item = route.forth.steps[step].item;
-  p.speed_mps = route.speed_mps;
-  p.at_end = route.at_end;
-  for (std::size_t i = step; i < route.forth.steps.size(); ++i) {
-    if (route.forth.steps[i].kind != nav::StepKind::Go) continue;
-    p.speed_mps = route.forth.nodes[route.forth.steps[i].node].speed_mps;
-    break;
-  }
-  p.speed_mps = std::min(p.speed_mps, impl_->shared_config.get()->path().speed.max_mps);
-  if (const auto target = nav::first_target(route, step, home)) {
-    p.first_target = mission->frame.to_global(*target);
-    if (state && state->pose) {
-      const auto to = base::distance_bearing(state->pose->global, *p.first_target);
-      p.distance_m = to.distance_m;
-      p.bearing_deg = to.bearing_deg;
-    }
-  }
-  return p;
 }
 
 void Robot::Impl::take_estop(Time now) {
@@ -344,7 +308,9 @@ void Robot::tick(Time now, base::WallTime wall, base::Duration lateness) noexcep
     r.act_on_radio();
     r.judge();
     if (r.pose) r.lay_way();
+    r.see_handling();
     r.sent = r.decide();
+    r.sent_handling();
     if (send) send(r.sent, now);
     r.tell_latch(*this);
     if (r.publish() && r.outbox.flush() && wake) wake();

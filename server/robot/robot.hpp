@@ -76,7 +76,12 @@ struct SetTarget {
 };
 struct SetMode {
   base::Mode mode = base::Mode::Hold;
-  std::optional<GoTo> goal{};  ///< of DOCK: the pose, needed; reverse: with the tail
+  /// Of DOCK: the pose, needed; reverse: with the tail. Of CIRCLE: its centre, needed; of LOITER:
+  /// the place, empty: here; with a speed.
+  std::optional<GoTo> goal{};
+  std::optional<double> radius_m{};  ///< CIRCLE, LOITER
+  std::optional<double> turns{};     ///< CIRCLE; empty: without end
+  bool clockwise = false;            ///< CIRCLE
 };
 /// One parameter, by the name of its section and its own: "nav.track.lookahead_min_m".
 struct SetParameter {
@@ -128,6 +133,27 @@ struct SetAnchor {
   std::optional<int> item;  ///< of the loaded mission, if `at` is empty; from 1
 };
 struct DropAnchor {};
+/// The receiver's positions moved for good (EstimatorHealth::base_shift): which ones count?
+/// Conflict while it moves, or when nothing has moved.
+struct SettleShift {
+  bool keep = false;  ///< the old ones; the receiver's are moved back as by an anchor
+};
+/// The two antennas are mounted askew as measured (EstimatorHealth::antennas_askew): take that from
+/// their headings, or take nothing from them any more. Conflict while it moves, or without either.
+struct CorrectAntennas {
+  bool apply = false;
+};
+/// Begins a guided calibration drive from here. Conflict as of any goal, and where its figure does
+/// not fit.
+struct Calibrate {
+  base::CalibrationKind kind = base::CalibrationKind::Drive;
+};
+/// What the last one measured. Conflict where it measured nothing, or while the robot moves.
+struct SettleCalibration {
+  bool keep = false;
+};
+/// What was kept of earlier ones, and all else that was learned of the vehicle.
+struct ForgetCalibration {};
 /// Teleoperation. Void after 0.5 s without a newer one. Conflict while it may not act: see
 /// modes/manual.hpp for who must have let go since when.
 struct Drive {
@@ -181,8 +207,9 @@ struct ReviseMission {
 using Command =
     std::variant<Arm, Disarm, SetMode, Estop, ResetEstop, Acknowledge, StartMission, PauseMission,
                  ResumeMission, ResumeActivity, StopMission, SkipItem, SetHome, SetPose, SetAnchor,
-                 DropAnchor, Drive, LoadMission, ReviseMission, GoTo, MoveBy, SetTarget,
-                 SetParameter, SetFence, ResumeAt, LayAnew>;
+                 DropAnchor, SettleShift, CorrectAntennas, Drive, LoadMission, ReviseMission, GoTo,
+                 MoveBy, SetTarget, SetParameter, SetFence, ResumeAt, LayAnew, Calibrate,
+                 SettleCalibration, ForgetCalibration>;
 
 /// Whoever says it wants the robot to stand, or lets go of it. Stops are never too late: they are
 /// carried out whenever they arrive.
@@ -212,17 +239,39 @@ struct PendingReply {
 inline constexpr const char* kSafetyParameter = "safety_parameter";
 
 /// What `start` would do now. All unknowns empty.
+/// Items that are driven as one smooth way.
+struct SmoothedItems {
+  int first = 0;  ///< 1-based
+  int last = 0;
+  double deviation_m = 0.0;  ///< the way passes beside them, and their legs, by no more
+};
+
 struct Preview {
   std::string mission_id;
   std::int64_t revision = 0;
   std::string name;
   int first_item = 0;  ///< 1-based
   std::optional<base::LatLon> first_target;
+  /// It goes on from where the robot stands, so far behind the begin of its way.
+  std::optional<double> joins_after_m;
+  int left_out = 0;  ///< items of that way that are not driven to
   std::optional<double> distance_m;
   std::optional<double> bearing_deg;
   double speed_mps = 0.0;
   mission::AtEnd at_end = mission::AtEnd::Hold;
+  std::vector<SmoothedItems> smoothed{};  ///< at most kSmoothedShown, those farthest beside first
 };
+inline constexpr std::size_t kSmoothedShown = 50;
+
+/// The way through the loaded mission as it is laid out: corners rounded, dense points smoothed.
+struct MissionWay {
+  std::string mission_id;
+  std::int64_t revision = 0;
+  double length_m = 0.0;
+  double within_m = 0.0;             ///< the way is nowhere farther from the line
+  std::vector<base::LatLon> line{};  ///< at most kWayPoints; none where it drives nowhere by itself
+};
+inline constexpr std::size_t kWayPoints = 5'000;
 
 /// What RTL or SMART_RTL would do now. All unknowns empty.
 struct WayHomePreview {
@@ -232,6 +281,16 @@ struct WayHomePreview {
   std::optional<base::LatLon> target;
   std::optional<double> distance_m;  ///< along the line
   std::vector<base::LatLon> line;    ///< from the robot to the target, in outline; may be empty
+};
+
+/// What a calibration drive would need now. All unknowns empty.
+struct CalibrationPreview {
+  base::CalibrationKind kind = base::CalibrationKind::Drive;
+  bool possible = false;
+  std::string reason;  ///< why not
+  base::CalibrationSpace space;
+  double seconds = 0.0;
+  std::vector<base::LatLon> corners;  ///< of the space, around; empty: nobody knows where
 };
 
 /// One parameter of the robot's sections.
@@ -300,6 +359,10 @@ class Robot {
   base::Result<Preview> preview(const StartMission& start) const;
   /// Any thread. Invalid unless RTL or SMART_RTL is asked for. Linear in fence and driven way.
   base::Result<WayHomePreview> way_home(base::Mode mode) const;
+  /// Any thread; takes long for a long mission. Empty: nothing is loaded.
+  std::optional<MissionWay> mission_way() const;
+  /// Any thread: what Calibrate would do now.
+  base::Result<CalibrationPreview> calibration(base::CalibrationKind kind) const;
   /// Any thread, at once: lays a fence out in the robot's frame, and looks at the loaded mission.
   /// Without a frame yet it forbids every drive without hands; lay it again when there is one.
   std::shared_ptr<const LaidFence> lay_fence(std::shared_ptr<const mission::Fence> fence) const;

@@ -26,6 +26,8 @@ struct World {
   std::optional<base::BatteryState> battery;
   std::vector<base::MotorState> motors;
   std::optional<base::LightState> lights;
+  std::optional<base::Heading> compass;   ///< as shown
+  std::optional<base::Heading> antennas;  ///< likewise
   std::optional<base::Bumper> bumper;
   /// Where it was hit, until the robot has latched its stop: a hit shorter than a tick counts too.
   std::optional<std::string> bumper_hit;
@@ -82,7 +84,9 @@ struct World {
     motion = m;
   }
   void put(base::WheelTravel&& m) { base_heard = m.stamp; }
-  void put(base::Heading&&) {}
+  void put(base::Heading&& m) {
+    (m.source == base::HeadingSource::Compass ? compass : antennas) = m;
+  }
   void put(base::Inertial&&) {}
   void put(base::Attitude&& m) { attitude = m; }
   void put(base::SatellitesInView&& m) {

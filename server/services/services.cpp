@@ -30,6 +30,8 @@ void Services::start(Ears ears) {
   teach_ = std::make_unique<TeachIn>(*store_);  // its thread has not begun yet
   teach_->tell = radio_.tell;
   teach_->announce = changed;
+  // What the disk does not take now is not asked for again.
+  slips_.note = [this](const store::Slip& slip) { store_->note_slip(slip, [](auto&&) {}); };
   runs_.recall();
   desk_.start(kSample, [this] { beat(); });
 }
@@ -50,6 +52,7 @@ void Services::beat() {
   if (const auto snapshot = robot_.snapshot()) {
     trail_.take(*snapshot);
     runs_.look(*snapshot);
+    slips_.look(*snapshot);
     fence_.look(*snapshot);
     way_.look(*snapshot);
     teach_->sample(*snapshot);

@@ -1,6 +1,6 @@
 #pragma once
-// What goes on beside the driving, on a thread of its own: the trail, the runs, teach-in, the
-// radio's edits, and which fence holds. It looks at the robot's snapshots and speaks with the
+// What goes on beside the driving, on a thread of its own: the trail, the runs, slips, teach-in,
+// the radio's edits, and which fence holds. It looks at the robot's snapshots and speaks with the
 // store; neither the control loop nor the web ever waits for it.
 //
 //   robot ─snapshots, edits, wishes─▶ ┌──────────┐ ─revisions, runs, points─▶ store
@@ -17,6 +17,7 @@
 #include "services/fence_keeper.hpp"
 #include "services/radio_edits.hpp"
 #include "services/run_recorder.hpp"
+#include "services/slip_recorder.hpp"
 #include "services/teach.hpp"
 #include "services/trail.hpp"
 #include "services/way_keeper.hpp"
@@ -97,6 +98,7 @@ class Services {
 
   Trail trail_;
   RunRecorder runs_;
+  SlipRecorder slips_;
   FenceKeeper fence_;
   WayKeeper way_;
   RadioEdits radio_;

@@ -60,6 +60,11 @@ Result<Fences::Head> Fences::head(const std::string& id, std::int64_t expected, 
   return found;
 }
 
+Result<void> Fences::check_spared(const Head& head, const Change& change) {
+  if (!head.active || !change.spares_active) return {};
+  return base::fail(Code::Conflict, "the fence is the active one: it acts on the robot");
+}
+
 void Fences::add_revision(const Head& head, const Entry& entry) {
   const std::string& name = entry.fence != nullptr ? entry.fence->name : head.name;
   SQLite::Statement revision(db_,
@@ -171,6 +176,7 @@ Result<StoredFence> Fences::replace(const std::string& id, std::int64_t expected
   SQLite::Transaction transaction(db_, SQLite::TransactionBehavior::IMMEDIATE);
   auto found = head(id, expected, false);
   if (!found) return tl::unexpected<Error>(found.error());
+  if (auto ok = check_spared(*found, change); !ok) return tl::unexpected<Error>(ok.error());
   found->revision += 1;
   add_revision(*found, {change, "replaced", now, &fence});
   transaction.commit();
@@ -197,6 +203,7 @@ Result<StoredFence> Fences::revert(const std::string& id, std::int64_t expected,
   SQLite::Transaction transaction(db_, SQLite::TransactionBehavior::IMMEDIATE);
   auto found = head(id, expected, true);
   if (!found) return tl::unexpected<Error>(found.error());
+  if (auto ok = check_spared(*found, change); !ok) return tl::unexpected<Error>(ok.error());
   auto old = read_revision(id, to_revision);
   if (!old) return old;
   found->revision += 1;

@@ -36,6 +36,7 @@ class Fences {
   struct Head;
   struct Entry;
   base::Result<Head> head(const std::string& id, std::int64_t expected, bool deleted_too);
+  static base::Result<void> check_spared(const Head& head, const Change& change);
   void add_revision(const Head& head, const Entry& entry);
   SQLite::Database& db_;
 };

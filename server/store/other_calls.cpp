@@ -1,6 +1,7 @@
 // What Store is asked about fences, runs, node maps and recordings.
 
 #include "store/routes.hpp"
+#include "store/slips.hpp"
 #include "store/store_impl.hpp"
 #include "store/teach.hpp"
 
@@ -177,6 +178,27 @@ void Store::keep_parameter(StoredParameter parameter, Reply<void> reply) {
                impl->runs.keep_parameter(parameter, impl->options.clock());
                return {};
              });
+}
+
+void Store::note_slip(Slip slip, Reply<void> reply) {
+  impl_->ask(deliver_, std::move(reply), [impl = impl_.get(), slip]() -> Result<void> {
+    store::note_slip(impl->db->connection, slip);
+    return {};
+  });
+}
+
+void Store::list_slips(SlipFilter filter, int limit, std::string cursor, Reply<Page<Slip>> reply) {
+  impl_->ask(deliver_, std::move(reply),
+             [impl = impl_.get(), filter, limit, cursor = std::move(cursor)] {
+               return store::list_slips(impl->db->connection, filter, limit, cursor);
+             });
+}
+
+void Store::clear_slips(Reply<void> reply) {
+  impl_->ask(deliver_, std::move(reply), [impl = impl_.get()]() -> Result<void> {
+    store::clear_slips(impl->db->connection);
+    return {};
+  });
 }
 
 }  // namespace roverd::store

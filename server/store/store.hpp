@@ -24,6 +24,7 @@
 #include "people/words.hpp"
 #include "store/folder_watch.hpp"
 #include "store/run_words.hpp"
+#include "store/slip_words.hpp"
 
 namespace roverd::store {
 
@@ -172,6 +173,8 @@ struct TeachRecord {
 struct Change {
   std::string author;
   std::string what;
+  /// Of a fence that is replaced or reverted: Conflict if it is the active one by then.
+  bool spares_active = false;
 };
 
 struct Options {
@@ -308,6 +311,12 @@ class Store {
   void discard_teach(Reply<void> reply);
   /// Makes a mission and forgets the recording, both or neither.
   void finish_teach(mission::Plan plan, Change change, Reply<StoredMission> reply);
+
+  /// Where the ground gave way; one that is near a known one is that one again.
+  void note_slip(Slip slip, Reply<void> reply);
+  /// Newest first. Malformed if the cursor is not one of ours.
+  void list_slips(SlipFilter filter, int limit, std::string cursor, Reply<Page<Slip>> reply);
+  void clear_slips(Reply<void> reply);
 
   /// Who may come in.
   void read_people(Reply<people::Everybody> reply);

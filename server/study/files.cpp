@@ -7,9 +7,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/angle.hpp"
 #include "mission/json/json.hpp"
 #include "mission/json/object.hpp"
 #include "sim/params.hpp"
+#include "sim/radio.hpp"
+#include "sim/receiver.hpp"
 #include "study/study.hpp"
 
 namespace roverd::study {
@@ -68,6 +71,35 @@ Result<void> read_points(const json& list, const std::string& pointer, Course& c
   return {};
 }
 
+/// Points every 5 cm along arcs that follow each other, from the origin northwards.
+Result<void> read_arcs(const json& list, const std::string& pointer, Course& course) {
+  constexpr double kStep_m = 0.05;
+  constexpr double kLongest_m = 5000.0;
+  base::EnuPoint at;
+  double yaw_rad = base::kPi / 2.0;
+  course.points.push_back(at);
+  for (std::size_t i = 0; list.is_array() && i < list.size(); ++i) {
+    const json& arc = list[i];
+    const bool good = arc.is_array() && arc.size() == 2 && arc[0].is_number() &&
+                      arc[1].is_number() && arc[0].get<double>() > 0.0 &&
+                      arc[0].get<double>() <= kLongest_m && std::abs(arc[1].get<double>()) <= 10.0;
+    if (!good || i >= 100) {
+      return wrong(pointer + "/" + std::to_string(i), "must be [length_m, curvature_1pm]");
+    }
+    const double length_m = arc[0].get<double>();
+    const int steps = static_cast<int>(std::ceil(length_m / kStep_m));
+    const double step_m = length_m / steps;
+    const double half_rad = 0.5 * step_m * arc[1].get<double>();
+    for (int k = 0; k < steps; ++k, yaw_rad += 2.0 * half_rad) {
+      at.east_m += step_m * std::cos(yaw_rad + half_rad);
+      at.north_m += step_m * std::sin(yaw_rad + half_rad);
+      course.points.push_back(at);
+    }
+  }
+  if (course.points.size() < 2) return wrong(pointer, "must be a list of one arc or more");
+  return {};
+}
+
 void read_turn(Members& members, Course& course) {
   const auto word = members.text("turn");
   if (!word) return;
@@ -90,16 +122,22 @@ Result<Course> read_course(
   course.start_heading_deg = members.number("start_heading_deg", 0.0, 360.0);
   const bool closed = members.flag("closed").value_or(false);
   course.reverse = members.flag("reverse").value_or(false);
+  course.every_m = members.number("every_m", 0.01, 100.0).value_or(0.0);
+  course.noise_m = members.number("noise_m", 0.0, 1.0).value_or(0.0);
+  course.taught = members.flag("taught").value_or(false);
   read_turn(members, course);
+  const json* arcs = members.any("arcs");
   const json* points = members.any("points");
   const json* file = members.any("mission");
   if (auto good = members.finish(); !good) return tl::unexpected(good.error());
-  if ((points == nullptr) == (file == nullptr))
-    return wrong(pointer, "must have points or mission");
-  if (points != nullptr) {
-    if (auto good = read_points(*points, pointer + "/points", course); !good) {
-      return tl::unexpected(good.error());
-    }
+  if ((points != nullptr) + (file != nullptr) + (arcs != nullptr) != 1)
+    return wrong(pointer, "must have points, arcs or mission");
+  if ((course.noise_m > 0.0 || course.taught) && course.every_m == 0.0)
+    return wrong(pointer, "must have every_m with noise_m and taught");
+  if (file == nullptr) {
+    auto good = points != nullptr ? read_points(*points, pointer + "/points", course)
+                                  : read_arcs(*arcs, pointer + "/arcs", course);
+    if (!good) return tl::unexpected(good.error());
     if (closed) course.points.push_back(course.points.front());
     return course;
   }
@@ -125,25 +163,104 @@ std::string as_override(const std::string& key, const json& value) {
   return key + "=" + (value.is_string() ? value.get<std::string>() : value.dump());
 }
 
+/// @param trial takes each, and refuses what it does not know.
+template <class Set>
+Result<Changes> read_changes(const json* part, const std::string& pointer, Set&& trial) {
+  Changes out;
+  if (part == nullptr) return out;
+  if (!part->is_object()) return wrong(pointer, "must be an object");
+  for (const auto& [key, entry] : part->items()) {
+    auto read = value_of(entry, pointer + "/" + key);
+    if (!read) return tl::unexpected(read.error());
+    if (base::Result<void> good = trial(key, *read); !good) {
+      return wrong(pointer, good.error().detail);
+    }
+    out.emplace_back(key, *read);
+  }
+  return out;
+}
+
+Result<void> try_fault(const std::string& key, const base::ParamValue& value) {
+  sim::Faults trial;
+  if (auto good = base::set_param(trial, key, value); !good) {
+    return base::fail(base::Code::Invalid, key + ": " + good.error().detail);
+  }
+  if (trial.gnss_fix.empty() || sim::fix_from(trial.gnss_fix)) return {};
+  return base::fail(base::Code::Invalid, "gnss_fix: no fix has this name");
+}
+
+Result<Later> read_later(const json& value, const std::string& pointer) {
+  if (!value.is_object()) return wrong(pointer, "must be an object");
+  Later later;
+  Members members(value, pointer);
+  members.require("after_s");
+  later.after_s = members.number("after_s", 0.0, 1e6).value_or(0.0);
+  const json* sim = members.any("sim");
+  const json* fault = members.any("fault");
+  if (auto good = members.finish(); !good) return tl::unexpected(good.error());
+  sim::Params trial;
+  auto changed = read_changes(sim, pointer + "/sim", [&](const auto& key, const auto& v) {
+    return sim::set_param(trial, key, v);
+  });
+  if (!changed) return tl::unexpected(changed.error());
+  later.sim = std::move(*changed);
+  changed = read_changes(fault, pointer + "/fault", try_fault);
+  if (!changed) return tl::unexpected(changed.error());
+  later.fault = std::move(*changed);
+  return later;
+}
+
+Result<void> read_offset(const json* list, const std::string& pointer, Disturbance& d) {
+  if (list == nullptr) return {};
+  const auto near = [](const json& n) {
+    return n.is_number() && std::abs(n.get<double>()) <= 100.0;
+  };
+  if (!list->is_array() || list->size() != 2 || !near((*list)[0]) || !near((*list)[1])) {
+    return wrong(pointer, "must be [forward_m, left_m], at most 100 m");
+  }
+  d.start_forward_m = (*list)[0].get<double>();
+  d.start_left_m = (*list)[1].get<double>();
+  return {};
+}
+
+Result<void> read_laters(const json* list, const std::string& pointer, Disturbance& d) {
+  if (list == nullptr) return {};
+  if (!list->is_array()) return wrong(pointer, "must be a list");
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    auto later = read_later((*list)[i], pointer + "/" + std::to_string(i));
+    if (!later) return tl::unexpected(later.error());
+    d.later.push_back(std::move(*later));
+  }
+  return {};
+}
+
 Result<Disturbance> read_disturbance(const json& value, const std::string& pointer) {
   Disturbance d;
   Members members(value, pointer);
   d.name = named(members);
   const json* sim = members.any("sim");
   const json* robot = members.any("robot");
+  const json* later = members.any("later");
+  const json* offset = members.any("start_offset_m");
+  d.start_heading_off_deg = members.number("start_heading_off_deg", -180.0, 180.0).value_or(0.0);
+  d.start_off_m = members.number("start_off_m", 0.0, 100.0).value_or(0.0);
+  d.start_turn_deg = members.number("start_turn_deg", 0.0, 180.0).value_or(0.0);
   if (auto good = members.finish(); !good) return tl::unexpected(good.error());
   for (const json* part : {sim, robot}) {
     if (part != nullptr && !part->is_object()) return wrong(pointer, "sim and robot are objects");
   }
   sim::Params trial;
   const json none = json::object();
-  for (const auto& [key, entry] : (sim != nullptr ? *sim : none).items()) {
-    auto read = value_of(entry, pointer + "/sim/" + key);
-    if (!read) return tl::unexpected(read.error());
-    if (auto good = sim::set_param(trial, key, *read); !good) {
-      return wrong(pointer + "/sim", good.error().detail);
-    }
-    d.sim.emplace_back(key, *read);
+  auto changed = read_changes(sim, pointer + "/sim", [&](const auto& key, const auto& v) {
+    return sim::set_param(trial, key, v);
+  });
+  if (!changed) return tl::unexpected(changed.error());
+  d.sim = std::move(*changed);
+  if (auto good = read_offset(offset, pointer + "/start_offset_m", d); !good) {
+    return tl::unexpected(good.error());
+  }
+  if (auto good = read_laters(later, pointer + "/later", d); !good) {
+    return tl::unexpected(good.error());
   }
   for (const auto& [key, entry] : (robot != nullptr ? *robot : none).items()) {
     if (auto read = value_of(entry, pointer + "/robot/" + key); !read) {

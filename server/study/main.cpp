@@ -72,6 +72,8 @@ void define(CLI::App& app, Options& o) {
   app.add_option("--json", o.json, "write every measure of every run to this file");
   app.add_option("--svg", o.svg, "write a plot for each course and disturbance to this folder");
   app.add_option("--set", o.setup.overrides, "one setting of the robot: key=value");
+  app.add_option("--plant", o.setup.plant,
+                 "somebody else's plant: a command that speaks the lines of docs/studies.md");
   app.add_option("--sim", o.setup.sim_overrides, "one parameter of the simulator: key=value");
 }
 
@@ -111,6 +113,7 @@ bool write_plots(const fs::path& folder, const std::vector<study::Run>& runs) {
 }
 
 int run(const Options& o) {
+  (void)std::signal(SIGPIPE, SIG_IGN);  // a plant of somebody else may die
   const auto folder = fs::path(o.courses).parent_path();
   auto text = read_file(o.courses);
   if (!text) return say(kWrongInput, text.error().detail);

@@ -49,6 +49,11 @@ constexpr std::array kColumns{
     Column{"slalom m", [](const Run& r) { return r.truth.slalom_mean_m; }, 3},
     Column{"swept m", [](const Run& r) { return r.swept_half_width_m; }, 3},
     Column{"believed rms", [](const Run& r) { return r.believed.cross.rms_m; }, 3},
+    Column{"in 95 %", [](const Run& r) { return r.honesty.inside_pct; }, 1},
+    Column{"heading deg",
+           [](const Run& r) { return base::deg_from_rad(r.honesty.heading_rms_rad); }, 2},
+    Column{"of sigma", [](const Run& r) { return r.honesty.heading_sigmas; }, 2},
+    Column{"resets", [](const Run& r) { return static_cast<double>(r.honesty.resets); }, 0},
     Column{"time s", [](const Run& r) { return r.truth.time_s; }, 1},
 };
 
@@ -144,19 +149,59 @@ std::string to_table(const std::vector<Run>& runs) {
   return out;
 }
 
+namespace {
+
+double to_mm(double metres) {
+  return std::round(metres * 1000.0) / 1000.0;
+}
+
+ordered_json track_json(const Run& run) {
+  ordered_json out = ordered_json::array();
+  for (const nav::DrivenPoint& p : run.driven) {
+    out.push_back(
+        ordered_json::array({to_mm(p.t_s), to_mm(p.at.east_m), to_mm(p.at.north_m),
+                             to_mm(base::heading_from_yaw(p.yaw_rad)), to_mm(p.speed_mps)}));
+  }
+  return out;
+}
+
+ordered_json way_json(const Run& run) {
+  ordered_json out = ordered_json::array();
+  for (const base::EnuPoint& p : run.way) {
+    out.push_back(ordered_json::array({to_mm(p.east_m), to_mm(p.north_m)}));
+  }
+  return out;
+}
+
+}  // namespace
+
 std::string to_json(const std::vector<Run>& runs, const Setup& setup) {
+  ordered_json ways = ordered_json::object();
   ordered_json list = ordered_json::array();
   for (const Run& r : runs) {
+    if (!r.way.empty() && !ways.contains(r.course)) ways[r.course] = way_json(r);
     list.push_back({{"course", r.course},
                     {"disturbance", r.disturbance},
                     {"seed", r.seed},
                     {"problem", r.problem.empty() ? ordered_json() : ordered_json(r.problem)},
                     {"truth", measure_json(r.truth)},
                     {"believed", measure_json(r.believed)},
+                    {"honesty",
+                     {{"inside_pct", r.honesty.inside_pct},
+                      {"position_rms_m", r.honesty.position_rms_m},
+                      {"heading_rms_deg", base::deg_from_rad(r.honesty.heading_rms_rad)},
+                      {"heading_sigmas", r.honesty.heading_sigmas},
+                      {"resets", r.honesty.resets}}},
                     {"swept_half_width_m", r.swept_half_width_m},
-                    {"tick_p99_us", r.tick_p99_us}});
+                    {"tick_p99_us", r.tick_p99_us},
+                    {"track", track_json(r)}});
   }
-  const ordered_json whole{{"vehicle", setup.vehicle}, {"set", setup.overrides}, {"runs", list}};
+  const ordered_json whole{
+      {"vehicle", setup.vehicle},
+      {"plant", setup.plant.empty() ? ordered_json() : ordered_json(setup.plant)},
+      {"set", setup.overrides},
+      {"runs", list},
+      {"ways", ways}};
   return whole.dump(1) + "\n";
 }
 

@@ -80,14 +80,16 @@ std::string map_of(const std::vector<const Run*>& runs) {
   Box box;
   for (const auto& p : runs[0]->way) box.take(p.east_m, p.north_m);
   for (const Run* r : runs) {
-    for (const auto& p : r->driven) box.take(p.east_m, p.north_m);
+    for (const auto& p : r->driven) box.take(p.at.east_m, p.at.north_m);
   }
   const Frame frame(box, 0.0, kSide_px, kSide_px, true);
   const auto east = [](const base::EnuPoint& p) { return p.east_m; };
   const auto north = [](const base::EnuPoint& p) { return p.north_m; };
+  const auto driven_east = [](const nav::DrivenPoint& p) { return p.at.east_m; };
+  const auto driven_north = [](const nav::DrivenPoint& p) { return p.at.north_m; };
   std::string out = line(runs[0]->way, frame, east, north, "stroke=\"#bbb\" stroke-width=\"4\"");
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    out += line(runs[i]->driven, frame, east, north, colour(i, runs.size()));
+    out += line(runs[i]->driven, frame, driven_east, driven_north, colour(i, runs.size()));
   }
   out += text(
       kMargin_px, kSide_px - 12,

@@ -215,6 +215,12 @@ TEST_F(AccessApi, ATokenIsShownOnceDoesWhatItIsForAndEnds) {
                 .body["errors"]
                 .size(),
             3u);
+  for (const char* name : {"", " ", "   "}) {
+    const auto unnamed =
+        as("admin", "POST", "/tokens", Json{{"name", name}, {"role", "viewer"}}.dump());
+    EXPECT_EQ(unnamed.status, 422u);
+    EXPECT_EQ(unnamed.body["errors"][0]["pointer"], "/name") << unnamed.raw.body;
+  }
   EXPECT_EQ(as("admin", "POST", "/tokens",
                R"({"name":"x","role":"viewer","expires":"2001-01-01T00:00:00Z"})")
                 .status,
@@ -233,7 +239,7 @@ TEST_F(AccessApi, UsersAreMadeChangedAndRemoved) {
   EXPECT_EQ(call("POST", "/vehicle/disarm", "", line).status, 403u);
   EXPECT_EQ(as("admin", "PATCH", "/users/carl", R"({"role":"operator"})").status, 200u);
   EXPECT_EQ(call("POST", "/vehicle/disarm", "", line).status, 200u);  // at once
-  EXPECT_EQ(as("admin", "PATCH", "/users/carl", R"({"password":"tractor red"})").status, 200u);
+  EXPECT_EQ(as("admin", "PATCH", "/users/carl", R"({"password":"tractor crimson"})").status, 200u);
   EXPECT_EQ(call("GET", "/vehicle", "", line).status, 401u);
   EXPECT_EQ(as("admin", "DELETE", "/users/carl").status, 204u);
   EXPECT_EQ(as("admin", "DELETE", "/users/carl").status, 404u);
@@ -244,6 +250,13 @@ TEST_F(AccessApi, UsersAreMadeChangedAndRemoved) {
   EXPECT_EQ(weak.status, 422u);
   EXPECT_EQ(weak.body["errors"].size(), 3u);
   EXPECT_EQ(weak.raw.body.find("\"short\""), std::string::npos);
+  for (const char* name : {"", " "}) {
+    const auto unnamed =
+        as("admin", "POST", "/users",
+           Json{{"name", name}, {"role", "viewer"}, {"password", kPassword}}.dump());
+    EXPECT_EQ(unnamed.status, 422u);
+    EXPECT_EQ(unnamed.body["errors"][0]["pointer"], "/name") << unnamed.raw.body;
+  }
 }
 
 TEST_F(AccessApi, ARepeatedKeyOfSomebodyElseIsAnotherRequest) {
@@ -378,6 +391,26 @@ TEST_F(FirstAdmin, IsMadeOnceWithTheCodeThatWasTold) {
   EXPECT_EQ(call("GET", "/users", "", line).body["items"][0]["name"], "anna");
   EXPECT_EQ(set_up(house.code()).status, 409u);
   EXPECT_EQ(call("GET", "/session").body["setup"], false);
+}
+
+TEST_F(FirstAdmin, IsMadeAnewWithANewCodeWhenTheLastUserLeft) {
+  until([this] { return !house.code().empty(); }, "a code");
+  const std::string first = house.code();
+  const auto set_up = [this](const std::string& code) {
+    return call("POST", "/setup", Json{{"code", code}, {"user", "anna"}, {"password", kPassword}});
+  };
+  const auto made = set_up(first);
+  ASSERT_EQ(made.status, 200u) << made.raw.body;
+  // when the only user leaves,
+  const std::string cookie = made.raw.header("set-cookie");
+  const std::string line =
+      "Cookie: " + cookie.substr(0, cookie.find(';')) + "\r\nOrigin: http://127.0.0.1\r\n";
+  EXPECT_EQ(call("DELETE", "/users/anna", "", line).status, 204u);
+  // then another code is told, and that one alone opens.
+  EXPECT_EQ(call("GET", "/session").body["setup"], true);
+  EXPECT_NE(house.code(), first);
+  EXPECT_EQ(set_up(first).status, 401u);
+  EXPECT_EQ(set_up(house.code()).status, 200u);
 }
 
 class NoAccess : public HouseTest {};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <future>
 #include <stdexcept>
 
 #include <boost/asio/post.hpp>
@@ -239,6 +240,17 @@ House::~House() {
 std::string House::code() {
   std::lock_guard lock(mutex_);
   return code_;
+}
+
+std::shared_ptr<void> House::hold_large() {
+  // More than it has threads; what is left over ends as soon as it is begun.
+  constexpr int kMostThreads = 4;
+  auto until = std::make_shared<std::promise<void>>();
+  const std::shared_future<void> let_go = until->get_future().share();
+  for (int i = 0; i < kMostThreads; ++i) {
+    workers_.must_run(net::Lane::Large, [let_go] { let_go.wait(); }, {});
+  }
+  return {nullptr, [until](void*) { until->set_value(); }};
 }
 
 base::DriveCommand House::sent() {

@@ -80,6 +80,8 @@ class House {
   std::atomic<int> drills_stopped{0};
   /// The one-time code of the first admin, as it was told last; empty: none.
   std::string code();
+  /// Nothing large is begun until what this gives is let go.
+  [[nodiscard]] std::shared_ptr<void> hold_large();
   /// A device says something more.
   void hear(base::Measurement m) { robot_.measurements().put(std::move(m)); }
 

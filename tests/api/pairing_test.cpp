@@ -138,6 +138,9 @@ TEST_F(PairingApi, WhoMayPairAndWithWhichPin) {
   EXPECT_EQ(weak.status, 422u);
   EXPECT_EQ(weak.body["errors"].size(), 3u) << weak.raw.body;
   EXPECT_EQ(weak.raw.body.find("\"1234\""), std::string::npos);
+  const auto unnamed = as("admin", "POST", "/devices", R"({"name":"  ","pin":"2580"})");
+  EXPECT_EQ(unnamed.status, 422u);
+  EXPECT_EQ(unnamed.body["errors"][0]["pointer"], "/name") << unnamed.raw.body;
 }
 
 TEST_F(PairingApi, AnotherPhoneIsInvitedOnceAndForWhatTheInviterChose) {

@@ -48,5 +48,32 @@ TEST(Reserve, ASlowLinkHasItsWholeSecond) {
   EXPECT_EQ(answer->status, 200u);
 }
 
+TEST(Reserve, WhoeverSendsHalfABodyThereKeepsNobodyFromStopping) {
+  // Given a full house, and a reserve full of stops whose bodies do not come,
+  net::Limits limits;
+  limits.connections = 3;
+  limits.reserve = 4;
+  limits.request = 60s;
+  limits.reserve_time = 60s;
+  NetHouse house(limits, with_stop_only());
+  std::vector<std::unique_ptr<Client>> crowd;
+  for (int i = 0; i < 3; ++i) {
+    crowd.push_back(std::make_unique<Client>(house.port()));
+    ASSERT_EQ(crowd.back()->upgrade("/stream"), 101u);
+  }
+  for (int i = 0; i < 4; ++i) {
+    crowd.push_back(std::make_unique<Client>(house.port()));
+    crowd.back()->send("POST /stop HTTP/1.1\r\nHost: x\r\nContent-Length: 10\r\n\r\nhalf");
+  }
+  // (they sent all of that before the stop comes, and are read in order)
+  std::this_thread::sleep_for(500ms);
+  // when somebody stops, then that is heard.
+  Client stop(house.port());
+  EXPECT_TRUE(stop.send("POST /stop HTTP/1.1\r\nHost: x\r\nContent-Length: 0\r\n\r\n"));
+  const auto answer = stop.answer();
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->status, 200u);
+}
+
 }  // namespace
 }  // namespace roverd::test

@@ -245,6 +245,50 @@ TEST_F(VehicleApi, ACommandWhoseBodyTrickledInIsTooLate) {
   EXPECT_EQ(call("GET", "/vehicle").body["armed"], false);
 }
 
+/// Every 30 cm one, 2 cm to either side of a line to the north.
+Json dense_points(int count) {
+  Json items = Json::array();
+  for (int i = 0; i < count; ++i) {
+    items.push_back({{"type", "waypoint"},
+                     {"lat", kStart.lat + 2.7e-6 * (i + 30)},
+                     {"lon", kStart.lon + (i % 2 == 0 ? 3.4e-7 : -3.4e-7)}});
+  }
+  return items;
+}
+
+TEST_F(VehicleApi, TheWayIsToldAsItWillBeDrivenNotAsItsPointsLie) {
+  until_ready();
+  EXPECT_EQ(call("GET", "/execution/way").status, 409u);
+  // Given a driven track, as a receiver tells it,
+  const auto made =
+      call("POST", "/missions", Json{{"name", "track"}, {"items", dense_points(200)}});
+  ASSERT_EQ(made.status, 201u);
+  const std::string id = made.body["id"];
+  const auto checked = call("POST", "/missions/" + id + "/check");
+  ASSERT_EQ(checked.body["smoothed"].size(), 1u);
+  const Json& stretch = checked.body["smoothed"][0];
+  EXPECT_EQ(stretch["first_item"], 1);
+  EXPECT_EQ(stretch["last_item"], 200);
+  EXPECT_GT(stretch["deviation_m"], 0.01);
+  EXPECT_LT(stretch["deviation_m"], 0.05);
+  // when it is loaded,
+  ASSERT_EQ(call("POST", "/execution/load", Json{{"mission_id", id}}).status, 200u);
+  EXPECT_EQ(call("GET", "/execution/preview").body["smoothed"], checked.body["smoothed"]);
+  // then the way that is drawn goes through the middle of its points.
+  const auto way = call("GET", "/execution/way");
+  ASSERT_EQ(way.status, 200u);
+  EXPECT_EQ(way.body["mission_id"], id);
+  EXPECT_EQ(way.body["revision"], 1);
+  EXPECT_EQ(way.body["within_m"], 0.01);
+  EXPECT_NEAR(way.body["length_m"], 199 * 0.3, 0.3);
+  const Json& line = way.body["line"];
+  ASSERT_GE(line.size(), 2u);
+  EXPECT_LT(line.size(), 40u);
+  for (std::size_t i = 1; i + 1 < line.size(); ++i) {
+    EXPECT_NEAR(line[i]["lon"], kStart.lon, 2.6e-7) << i;  // 1.5 cm
+  }
+}
+
 TEST_F(VehicleApi, AMissionIsLoadedPreviewedStartedPausedAndStopped) {
   until_ready();
   const std::string id = make_mission();
@@ -267,6 +311,7 @@ TEST_F(VehicleApi, AMissionIsLoadedPreviewedStartedPausedAndStopped) {
   EXPECT_NEAR(first.body["distance_m"], 11.1, 0.2);
   EXPECT_NEAR(first.body["bearing_deg"], 0.0, 0.5);
   EXPECT_EQ(first.body["at_end"], "hold");
+  EXPECT_EQ(first.body["smoothed"], Json::array());
   // Start is refused while not armed, and for what is not loaded.
   EXPECT_EQ(call("POST", "/execution/start", start).status, 409u);
   ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 5}}).status, 200u);
@@ -281,6 +326,10 @@ TEST_F(VehicleApi, AMissionIsLoadedPreviewedStartedPausedAndStopped) {
   until([this] { return house.sent().twist.linear_mps > 0.0; }, "the base is told to move");
   // Pause, resume, stop.
   EXPECT_EQ(call("POST", "/execution/pause").body["state"], "paused");
+  // Said twice, as the page does over the stream and by a call: it is as was asked for.
+  const auto again = call("POST", "/execution/pause");
+  EXPECT_EQ(again.status, 200u);
+  EXPECT_EQ(again.body["state"], "paused");
   EXPECT_EQ(call("POST", "/execution/resume").body["state"], "running");
   EXPECT_EQ(call("POST", "/execution/skip", Json{{"item", 2}}).body["current_item"], 2);
   EXPECT_EQ(call("POST", "/execution/stop").status, 200u);

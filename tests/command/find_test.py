@@ -9,6 +9,7 @@ import contextlib
 import os
 import pathlib
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -69,6 +70,7 @@ def its_own_name():
             check(who(station) == {"name": "Põllu kask", "host": None, "colour": "pink", "rgb": "#ad1457",
                                    "picture": "/robot.png"}, who(station))
             for path, kind, part in (("/robot.png", "image/png", PNG), ("/robot.svg", "image/svg+xml", b">PK</text>"),
+                                     ("/roverd.webmanifest", "application/manifest+json", '"name":"Põllu kask"'.encode()),
                                      ("/pair", "text/html; charset=utf-8", "Pair with Põllu kask".encode()),
                                      ("/pair", "text/html; charset=utf-8", b'<img src="/robot.png"')):
                 status, sort, body = fetch(station, path)
@@ -295,6 +297,31 @@ def no_bus():
             check(log_of(station).count("no avahi-daemon can be reached") == 1, log_of(station))
 
 
+def a_daemon_that_hangs():
+    """an avahi-daemon that hangs, since before the start or since the robot was told, keeps it from neither: it
+    serves, and it ends as fast as ever"""
+    for told in (True, False):
+        with Computer("robot") as robot:
+            robot.begin_avahi()
+            hang = robot.daemon.process
+            if not told:
+                hang.send_signal(signal.SIGSTOP)
+            with robot_in_the_networks(*named(name="kask"), computer=robot) as station:
+                try:
+                    if told:
+                        until("it is found", 60, lambda: robot.names() == ["kask"])
+                        hang.send_signal(signal.SIGSTOP)
+                    check(station.rest.get("/health")["status"] == "ok", station.rest.get("/health"))
+                    began = time.monotonic()
+                    check(station.roverd.stop(seconds=60) == 0, station.roverd.said())
+                    took_s = time.monotonic() - began
+                finally:
+                    hang.send_signal(signal.SIGCONT)
+            since = "after it was told" if told else "before the start"
+            print(f"with a daemon that hangs since {since} it ends in {took_s:.2f} s", flush=True)
+            check(took_s < 5, f"{took_s:.1f} s")
+
+
 def two_of_one_name():
     """the second robot of a name is NAME-2, in the network, on its page, in its certificate and in its log; it has
     another colour"""
@@ -342,7 +369,7 @@ def run_networks():
 
 
 CASES = [its_own_name, its_default_name, refusals]
-IN_NETWORKS = [found_by_others, a_daemon_that_comes_and_goes, no_bus, two_of_one_name]
+IN_NETWORKS = [found_by_others, a_daemon_that_comes_and_goes, no_bus, a_daemon_that_hangs, two_of_one_name]
 
 
 def in_networks():

@@ -102,6 +102,7 @@ def the_first_admin():
         cookie = headers["Set-Cookie"]
         for word in ("Secure", "HttpOnly", "SameSite=Strict"):
             check(word in cookie, f"{word} is missing: {cookie}")
+        check(cookie.startswith("__Host-roverd_session=") and "Domain" not in cookie, f"a wider cookie: {cookie}")
         known = {"Cookie": cookie.split(";")[0]}
         check(call("GET", "/vehicle", headers=known)[0] == 200, "the cookie is not taken")
         upgrade = {**OPENING, **known}

@@ -128,8 +128,9 @@ def use_devices(field):
 
     def kept(headers, name):
         cookies = dict(one.split(";")[0].split("=", 1) for one in headers.get_all("Set-Cookie"))
-        used[f"{name}'s cookies"] = cookies["roverd_device"]
-        return {**browser, "Cookie": "roverd_device=" + cookies["roverd_device"]}
+        device, secret = next(one for one in cookies.items() if one[0].endswith("roverd_device"))
+        used[f"{name}'s cookies"] = secret
+        return {**browser, "Cookie": f"{device}={secret}"}
     _, headers, _ = field.anna.call("POST", "/devices", {"name": "tractor", "pin": used["PIN"]})
     tractor = Caller(field.station, kept(headers, "tractor"))
     check(tractor.call("POST", "/session", {"pin": used["wrong PIN"]})[0] == 401, "a wrong PIN is taken")

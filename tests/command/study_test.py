@@ -40,6 +40,59 @@ def drives_and_writes():
         check(picture.tag.endswith("svg"), picture.tag)
 
 
+def true_tracks_in_the_courses_frame():
+    """the tracks of all seeds begin where the course says, beside it by the offset"""
+    with tempfile.TemporaryDirectory() as folder:
+        out = pathlib.Path(folder) / "out.json"
+        beside = {"disturbances": [{"name": "beside", "start_offset_m": [-1.0, 0.5], "start_heading_off_deg": 20}]}
+        done = study(folder, "--json", out, disturbances=beside)
+        check(done.returncode == 0, f"exit code {done.returncode}: {done.stderr}{done.stdout}")
+        answer = json.loads(out.read_text())
+        for run in answer["runs"]:
+            _t, east, north, heading, _speed = run["track"][0]
+            # The first leg goes north: one metre behind is south, half a metre left is west.
+            check(abs(east + 0.5) < 0.02 and abs(north + 1.0) < 0.02, f"begins at {east}, {north}")
+            check(abs(heading - 20) < 1, f"looks to {heading}")
+            _t, east, north, *_ = run["track"][-1]
+            check(abs(east) < 0.3 and abs(north - 5) < 0.3, f"ends at {east}, {north}")
+        check(abs(answer["ways"]["short"][-1][1] - 5) < 0.05, f"way {answer['ways']['short'][-1]}")
+
+
+def what_comes_later():
+    """a disturbance that comes on the way: from then on, and not before"""
+    later = {"disturbances": [{"name": "late", "later": [{"after_s": 3, "fault": {"estop": True}}]}]}
+    with tempfile.TemporaryDirectory() as folder:
+        out = pathlib.Path(folder) / "out.json"
+        done = study(folder, "--json", out, disturbances=later)
+        check(done.returncode == 1, f"exit code {done.returncode}: {done.stdout}")
+        for run in json.loads(out.read_text())["runs"]:
+            check(run["problem"] and 0.5 < run["track"][-1][2] < 4, f"{run['problem']} at {run['track'][-1]}")
+
+
+def a_plant_of_somebody_else():
+    """the example drives the course, and the robot follows it by its own bytes"""
+    with tempfile.TemporaryDirectory() as folder:
+        out = pathlib.Path(folder) / "out.json"
+        done = study(folder, "--json", out, "--plant", f"{sys.executable} docs/plant_example.py")
+        check(done.returncode == 0, f"exit code {done.returncode}: {done.stderr}{done.stdout}")
+        answer = json.loads(out.read_text())
+        check("plant_example" in answer["plant"], f"plant {answer['plant']}")
+        for run in answer["runs"]:
+            check(0 < run["truth"]["cross_track"]["rms_m"] < 0.1, f"rms {run['truth']['cross_track']}")
+            check(abs(run["track"][-1][2] - 5) < 0.3, f"ends at {run['track'][-1]}")
+
+
+def plants_that_fail():
+    """a plant that dies, or tells nonsense: the run's problem says so"""
+    for plant, wanted in (("exit 4", "the plant program ended with exit code 4"),
+                          ("read x; echo nothing; cat", "the plant program answered the hello with nothing"),
+                          ("for i in $(seq 400); do read -r x; echo \"$x\"; done | python3 docs/plant_example.py",
+                           "the plant program ended with exit code 0")):
+        with tempfile.TemporaryDirectory() as folder:
+            done = study(folder, "--plant", plant)
+            check(done.returncode == 1 and wanted in done.stdout, f"{plant}: {done.returncode}, {done.stdout}")
+
+
 def same_whatever_the_threads():
     """one thread or two: the same figures"""
     with tempfile.TemporaryDirectory() as folder:
@@ -77,5 +130,6 @@ def says_what_did_not_arrive():
 
 
 if __name__ == "__main__":
-    sys.exit(run_cases([drives_and_writes, same_whatever_the_threads, names_what_is_wrong,
-                        says_what_did_not_arrive]))
+    sys.exit(run_cases([drives_and_writes, true_tracks_in_the_courses_frame, what_comes_later,
+                        a_plant_of_somebody_else, plants_that_fail,
+                        same_whatever_the_threads, names_what_is_wrong, says_what_did_not_arrive]))

@@ -92,7 +92,7 @@ TEST_P(CarRetrace, DrivesBackAlongTheWayTailFirst) {
   ASSERT_TRUE(rig.run_until([&] { return ended(rig); }, 500.0));
   EXPECT_EQ(rig.state()->activity.state, ActivityState::Reached) << rig.state()->activity.reason;
   EXPECT_LT(rig.distance_to_m({0, 0}), 0.6);
-  EXPECT_LT(rig.farthest_from_path_m(driven), large ? 1.3 : 1.0);
+  EXPECT_LT(rig.farthest_from_path_m(driven), large ? 1.5 : 1.0);  // a swing of its own
   EXPECT_LT(degrees_off(heading_of(rig.truth()), 0.0), 12.0);
 }
 

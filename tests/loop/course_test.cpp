@@ -1,6 +1,9 @@
 // How closely paths are followed: a fast part of what `roverd study` measures (tests/bench: all of
 // it), each figure against the true pose.
 
+#include <algorithm>
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "study/study.hpp"
@@ -131,6 +134,35 @@ TEST(Course, ADelayThatIsWrongByATenthIsStillStable) {
     const auto run = drive(course_of({{0, 0}, {0, 10}, {3, 20}, {3, 35}}), d);
     EXPECT_LT(run.truth.slalom_max_m, 0.15) << wrong_s;
     EXPECT_LT(run.truth.cross.max_m, 0.2) << wrong_s;
+  }
+}
+
+TEST(Course, ADelayThatIsWrongByTwoTenthsIsLearnedBeforeItWeaves) {
+  for (const double wrong_s : {-0.2, 0.2}) {
+    Disturbance d = hard(0.25, 0.1);
+    d.robot = {"nav.track.delay_s=" + std::to_string(0.35 + wrong_s)};
+    const auto run = drive(course_of({{0, 0}, {0, 20}, {20, 20}}), d);
+    EXPECT_LT(run.truth.cross.max_m, 0.1) << wrong_s;
+    EXPECT_LT(run.truth.cross.rms_m, 0.025) << wrong_s;
+  }
+}
+
+//   1 ─────── 2     at every corner it stops, and turns on the spot
+//   │   4 ─ 3 │
+//   0   └───▶       its brakes are half as good as they are taken for, and nobody said so
+TEST(Course, BrakesHalfAsGoodAreSeenAtTheFirstStop) {
+  for (const std::uint64_t seed : {1u, 2u}) {
+    Disturbance d = hard();
+    d.sim.emplace_back("drive.decel_mps2", 0.3);
+    d.sim.emplace_back("drive.accel_mps2", 0.5);
+    const auto run =
+        drive(course_of({{0, 0}, {0, 12}, {12, 12}, {12, 0}, {4, 0}, {4, 8}}), d, seed);
+    EXPECT_LT(run.truth.cross.max_m, 0.3) << seed;
+    double later_m = 0.0;
+    for (const nav::Matched& at : run.matched) {
+      if (at.s_m > 30.0) later_m = std::max(later_m, std::abs(at.cross_m));
+    }
+    EXPECT_LT(later_m, 0.1) << seed;
   }
 }
 

@@ -31,6 +31,14 @@ const Plant kPlants[] = {
     {"mud", [](RigOptions& o) { o.plant.drive.slip = 0.4; }},
     {"ruts", ruts},
     {"one_side_slips", [](RigOptions& o) { o.plant.drive.side_difference = -0.1; }},
+    {"crabs", [](RigOptions& o) { o.plant.drive.crab = 0.10; }},
+    {"slope_of_10_deg",
+     [](RigOptions& o) {
+       o.plant.ground.slope_deg = 10.0;
+       o.plant.ground.uphill_deg = 80.0;
+     }},
+    {"holds_unlike_everywhere", [](RigOptions& o) { o.plant.ground.slip_patches = 0.4; }},
+    {"slides_unlike_everywhere", [](RigOptions& o) { o.plant.ground.crab_patches = 0.1; }},
     {"turns_about_its_front", [](RigOptions& o) { o.plant.drive.pivot_centre_m = 0.15; }},
     {"turns_about_its_back", [](RigOptions& o) { o.plant.drive.pivot_centre_m = -0.15; }},
     {"obeys_late", [](RigOptions& o) { o.plant.drive.delay_s = 0.4; }},

@@ -174,6 +174,7 @@ TEST_P(SteeringZeroLoop, IsLearnedFromTheWayAloneAndTheOffsetGoesAway) {
 TEST(SteeringZeroParameter, AsAParameterLeavesNothingToLearn) {
   ackermann::Params params;
   params.zero_rad = -base::rad_from_deg(3.0);
+  params.assumed_delay_s = 0.0;  // this one has none
   Atv atv(base::rad_from_deg(3.0), params);
   atv.drive(60.0);
   double worst_m = 0.0;

@@ -210,7 +210,7 @@ inline const std::vector<Fault> kFaults = {
      .brakes_s = 0.6},
     {.name = "commands to the base lost",
      .breaks = with<[](sim::Faults& f) { f.loss_to_base = 1.0; }>,
-     .zero_s = 1.8,
+     .zero_s = 2.6,
      .brakes_s = 0.6},
     {.name = "frames of the base lost",
      .breaks = with<[](sim::Faults& f) { f.loss_from_base = 1.0; }>,

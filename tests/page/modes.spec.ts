@@ -1,8 +1,6 @@
 // Modes other than the mission: a place on the map, home, single moves, and what the robot refuses.
 
-import type { Page } from '@playwright/test';
-
-import { arm, map_middle, metres_between, open_page, pixels_per_m, press, tab } from './page';
+import { arm, mark, metres_between, open_page, press, tab } from './page';
 import { expect, test, type Station } from './station';
 
 interface Vehicle {
@@ -13,20 +11,6 @@ interface Vehicle {
 
 const stands_still = (station: Station): Promise<void> =>
   expect.poll(() => Math.abs(station.sim.now.speed_mps), { timeout: 5000 }).toBeLessThan(0.01);
-
-/** Marks a place by a tap, metres right and up of the middle of the map. */
-const mark = async (page: Page, right_m: number, up_m: number): Promise<void> => {
-  // An alert that comes or goes moves the middle, and the robot with it.
-  let [x, y] = [NaN, NaN];
-  await expect(async () => {
-    const before = [x, y];
-    [x, y] = await map_middle(page);
-    expect([x, y]).toEqual(before);
-  }).toPass({ intervals: [400] });
-  const scale = await pixels_per_m(page);
-  await page.mouse.click(x + right_m * scale, y - up_m * scale);
-  await expect(page.getByLabel('Chosen place')).toBeVisible();
-};
 
 test('“Go here” drives to the place that was tapped, and “Come home” back again', async ({
   page,

@@ -54,6 +54,20 @@ export const pixels_per_m = async (page: Page): Promise<number> => {
   return width / (Number(figure) * ({ cm: 0.01, km: 1000 }[unit] ?? 1));
 };
 
+/** Marks a place by a tap, metres right and up of the middle of the map. */
+export const mark = async (page: Page, right_m: number, up_m: number): Promise<void> => {
+  // An alert that comes or goes moves the middle, and the robot with it.
+  let [x, y] = [NaN, NaN];
+  await expect(async () => {
+    const before = [x, y];
+    [x, y] = await map_middle(page);
+    expect([x, y]).toEqual(before);
+  }).toPass({ intervals: [400] });
+  const scale = await pixels_per_m(page);
+  await page.mouse.click(x + right_m * scale, y - up_m * scale);
+  await expect(page.getByLabel('Chosen place')).toBeVisible();
+};
+
 /** Taps the map at places given from the middle of its free part, pixels right and down. */
 export const draw = async (
   page: Page,

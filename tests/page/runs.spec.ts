@@ -37,7 +37,7 @@ test('a run has a report and a track, and is compared with another one', async (
 
   await tab(page, 'Drive');
   await arm(page);
-  await drive(station, 'Slow bend', 0.6);
+  await drive(station, 'Slow bend', 0.4);
   await drive(station, 'Quick bend', 1.2);
 
   await tab(page, 'Missions');

@@ -235,7 +235,7 @@ test('after a jump of the position the robot holds until somebody says that he h
   await page.setViewportSize({ width: 390, height: 844 });
   await expect.poll(() => station.sim.now.speed_mps, { timeout: 30_000 }).toBeGreaterThan(0.3);
 
-  station.sim.tell({ set: { gnss_jump_east_m: 5 } });
+  station.sim.tell({ set: { gnss_jump_east_m: 60 } });
 
   const looked = page.getByRole('button', { name: 'I have looked' });
   await expect(looked).toBeVisible({ timeout: 60_000 });
@@ -250,4 +250,27 @@ test('after a jump of the position the robot holds until somebody says that he h
   await looked.click();
   await page.getByRole('dialog').getByRole('button', { name: 'I have looked' }).click();
   await expect(looked).toBeHidden();
+});
+
+test('after the base was moved somebody says which place counts, and the robot drives on', async ({
+  page,
+  station,
+}) => {
+  test.setTimeout(150_000);
+  await open_page(page, station.url);
+  await drive_north(page);
+  await page.setViewportSize({ width: 390, height: 844 });
+  await expect.poll(() => station.sim.now.speed_mps, { timeout: 30_000 }).toBeGreaterThan(0.3);
+
+  station.sim.tell({ set: { gnss_base_shift_east_m: 3 } });
+
+  const keep = page.getByRole('button', { name: 'Keep old place' });
+  await expect(keep).toBeVisible({ timeout: 60_000 });
+  await expect(page.getByRole('button', { name: 'Take new place' })).toBeVisible();
+  await expect
+    .poll(() => Math.abs(station.sim.now.speed_mps), { timeout: 5000 })
+    .toBeLessThan(0.01);
+  await keep.click();
+  await page.getByRole('dialog').getByRole('button', { name: 'Keep' }).click();
+  await expect(keep).toBeHidden();
 });

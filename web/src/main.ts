@@ -3,12 +3,14 @@
 import { mount } from 'svelte';
 
 import { access_calls } from './link/access';
+import { audit_calls } from './link/audit';
 import { control_calls } from './link/control';
 import { drill_calls } from './link/drill';
 import { fence_calls, survey_calls } from './link/fields';
 import { read_identity } from './link/identity';
 import { mission_calls, tile_sets, vehicle_calls } from './link/rest';
 import { run_calls } from './link/runs';
+import { slip_calls } from './link/slips';
 import { draft_storage } from './link/storage';
 import { Stream } from './link/stream';
 import { teach_calls } from './link/teach';
@@ -53,6 +55,7 @@ const begin = (account: Account | null, session: string | null): void => {
     vehicle: vehicle_calls(() => late.stream?.seen_s() ?? null),
     teach: teach_calls,
     runs: run_calls,
+    slips: slip_calls,
     drill: drill_calls,
     survey: survey_calls,
     fences: fence_calls,
@@ -70,7 +73,9 @@ const begin = (account: Account | null, session: string | null): void => {
     ? { ...station.stream_events, on_control: desk.take_message }
     : station.stream_events;
   late.stream = new Stream(events, again);
-  mount(App, { target: element('app'), props: { station, identity, account, desk, left: again } });
+  const audit = account?.role === 'admin' ? audit_calls : null;
+  const props = { station, identity, account, desk, audit, left: again };
+  mount(App, { target: element('app'), props });
 
   void tile_sets().then((sets) => map.use_tiles(sets[0] ?? null));
   window.addEventListener('online', () => late.stream?.hurry());

@@ -77,6 +77,10 @@ describe('actions', () => {
     const turned = reverse_items(before);
     expect(lats(turned)).toEqual(['jump', 3, 2, 1]);
     expect(turned.items[0]).toEqual(jump(4));
+    const round: Item = { type: 'circle', lat: 1, lon: 2, radius_m: 3, clockwise: true };
+    expect(reverse_items(plan(round)).items).toEqual([{ ...round, clockwise: false }]);
+    const moved = move_waypoint(0, { lat: 5, lon: 6 })(plan(round));
+    expect(moved.items).toEqual([{ ...round, lat: 5, lon: 6 }]);
   });
 
   test('that would change nothing return the plan itself', () => {

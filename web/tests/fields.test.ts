@@ -8,7 +8,14 @@ import {
   with_field,
   type NumberField,
 } from '../src/model/fields';
-import { item_title, spots, type Item, type ItemType, type Plan } from '../src/model/plan';
+import {
+  item_title,
+  place_of,
+  spots,
+  type Item,
+  type ItemType,
+  type Plan,
+} from '../src/model/plan';
 
 const number_field = (type: ItemType, key: string): NumberField => {
   const field = fields_of[type].find((each) => each.key === key);
@@ -49,19 +56,40 @@ describe('fields', () => {
 
   test('every kind of item has a title, and a fresh one passes its own checks', () => {
     for (const type of Object.keys(fields_of) as ItemType[]) {
-      const item: Item = type === 'waypoint' ? { type, lat: 1, lon: 2 } : fresh_item(type);
+      const item: Item = type === 'waypoint' ? { type, lat: 1, lon: 2 } : fresh_item(type, null);
       expect(item_title(item)).not.toBe('');
       const draft = { plan: { name: 'P', items: [item] }, stored: null, unsaved: true };
       expect(parse_draft(draft_text(draft))).toEqual(draft);
     }
   });
 
-  test('only waypoints have a place of their own', () => {
+  test('a place is latitude and longitude, or none', () => {
+    const here = { lat: 58.1, lon: 26.2 };
+    const item = fresh_item('loiter', here);
+    expect(item).toEqual({ type: 'loiter', ...here, seconds: 30 });
+    expect(with_field(item, 'lon', null)).toEqual({ type: 'loiter', seconds: 30 });
+    expect(place_of(fresh_item('loiter', null))).toBeNull();
+    expect(place_of(fresh_item('circle', here))).toEqual(here);
+    expect(item_title({ type: 'circle', ...here, radius_m: 4, clockwise: true })).toBe(
+      'Circle of 4 m, 1 turn to the right',
+    );
+  });
+
+  test('items without a place are none on the map', () => {
     const plan: Plan = {
       name: 'P',
-      items: [fresh_item('wait'), { type: 'waypoint', lat: 1, lon: 2 }, fresh_item('turn')],
+      items: [
+        fresh_item('wait', null),
+        { type: 'waypoint', lat: 1, lon: 2 },
+        fresh_item('turn', null),
+        fresh_item('loiter', null),
+        fresh_item('circle', { lat: 3, lon: 4 }),
+      ],
     };
-    expect(spots(plan)).toEqual([{ index: 1, lat: 1, lon: 2 }]);
+    expect(spots(plan)).toEqual([
+      { index: 1, lat: 1, lon: 2 },
+      { index: 4, lat: 3, lon: 4 },
+    ]);
   });
 });
 

@@ -2,6 +2,7 @@ import { describe, expect, it } from 'vitest';
 
 import {
   by_signal,
+  handling_lines,
   position_lines,
   satellite_name,
   signal_tone,
@@ -9,7 +10,7 @@ import {
   sky_summary,
   type Satellite,
 } from '../src/model/sky';
-import type { Estimator, Position } from '../src/model/vehicle';
+import type { Estimator, Learned, Position } from '../src/model/vehicle';
 
 const satellite = (change: Partial<Satellite>): Satellite => ({
   system: 'gps',
@@ -95,6 +96,7 @@ describe('what is known of the position', () => {
     gyro_bias_dps: 0.301,
     compass_bias_deg: -19.96,
     odometry_scale: 0.92,
+    side_slip: -0.0462,
     rejected: { position: 3, heading: 0 },
     resets: 1,
   };
@@ -107,12 +109,54 @@ describe('what is known of the position', () => {
       ['Compass is off by', '−20.0°'],
       ['Gyro is off by', '0.301 °/s'],
       ['Odometry, true over told', '0.920'],
+      ['Drives aside by', '5 cm a metre, to the right'],
       ['Refused', 'position 3'],
       ['Set anew', '1 time'],
     ]);
     expect(position_lines({ ...position, ellipse: null }, undefined)[0]).toEqual([
       'Position, 1σ',
       '2.0 cm',
+    ]);
+  });
+});
+
+describe('how the vehicle answers', () => {
+  const set: Learned = {
+    delay_s: null,
+    delay_set_s: 0.15,
+    delay_used_s: 0.15,
+    braking_mps2: null,
+    braking_set_mps2: 0.6,
+    braking_used_mps2: 0.6,
+    braking_proved: true,
+  };
+
+  it('is as it was set while nothing else is known', () => {
+    expect(handling_lines(set)).toEqual([
+      ['Answers after', '0.15 s (as set)'],
+      ['Brakes with', '0.60 m/s² (as set)'],
+    ]);
+    expect(handling_lines(undefined)).toEqual([]);
+  });
+
+  it('tells what was learned beside what was set', () => {
+    const learned: Learned = {
+      ...set,
+      delay_s: 0.312,
+      delay_used_s: 0.312,
+      braking_mps2: 0.43,
+      braking_used_mps2: 0.396,
+    };
+    expect(handling_lines(learned)).toEqual([
+      ['Answers after', '0.31 s (learned; set 0.15 s)'],
+      ['Brakes with', '0.40 m/s² (learned; set 0.60 m/s²)'],
+    ]);
+  });
+
+  it('says that the brakes were not seen yet', () => {
+    expect(handling_lines({ ...set, braking_proved: false })[1]).toEqual([
+      'Brakes with',
+      '0.60 m/s² (as set, not seen yet)',
     ]);
   });
 });

@@ -66,6 +66,21 @@ Json anchor_json(const std::optional<base::Anchor>& anchor, base::Time now) {
   return out;
 }
 
+Json shift_json(const std::optional<base::BaseShift>& shift, base::Time now) {
+  if (!shift) return nullptr;
+  Json out = metres_json(shift->offset);
+  out["age_s"] = rounded(std::max(0.0, base::seconds(now - shift->since)), 1e2);
+  return out;
+}
+
+/// Clockwise positive, as headings are.
+Json askew_json(const std::optional<base::Askew>& askew) {
+  if (!askew) return nullptr;
+  return {{"offset_deg", rounded(-base::deg_from_rad(askew->offset_rad), 1e2)},
+          {"sigma_deg", rounded(base::deg_from_rad(askew->sigma_rad), 1e2)},
+          {"way_m", rounded(askew->way_m, 1e1)}};
+}
+
 Json votes_json(const base::Votes& v, base::Time now) {
   Json out = Json::object();
   Json& sensors = out["sensors"] = Json::object();
@@ -88,6 +103,29 @@ Json votes_json(const base::Votes& v, base::Time now) {
 
 }  // namespace
 
+/// What was set, what was learned, and which of the two is used.
+Json learned_json(const base::VehicleLearned& l) {
+  const auto value = [](const std::optional<base::LearnedNumber>& n) {
+    return n ? rounded(n->value, 1e3) : Json(nullptr);
+  };
+  const auto sigma = [](const std::optional<base::LearnedNumber>& n) {
+    return n ? rounded(n->sigma, 1e3) : Json(nullptr);
+  };
+  return {{"delay_s", value(l.delay_s)},
+          {"delay_sigma_s", sigma(l.delay_s)},
+          {"delay_set_s", rounded(l.delay_set_s, 1e3)},
+          {"delay_used_s", rounded(l.delay_used_s, 1e3)},
+          {"braking_mps2", value(l.braking_mps2)},
+          {"braking_sigma_mps2", sigma(l.braking_mps2)},
+          {"braking_set_mps2", rounded(l.braking_set_mps2, 1e3)},
+          {"braking_used_mps2", rounded(l.braking_used_mps2, 1e3)},
+          {"braking_proved", l.braking_proved},
+          {"acceleration_mps2", value(l.acceleration_mps2)},
+          {"acceleration_set_mps2", rounded(l.acceleration_set_mps2, 1e3)},
+          {"acceleration_used_mps2", rounded(l.acceleration_used_mps2, 1e3)},
+          {"calibrated", l.kept}};
+}
+
 Json estimator_json(const base::Snapshot& s) {
   const base::EstimatorHealth& e = s.estimator;
   const bool compass = s.pose && e.compass_heard;
@@ -100,6 +138,7 @@ Json estimator_json(const base::Snapshot& s) {
            compass ? rounded(-base::deg_from_rad(e.compass_bias_rad), 1e2) : Json(nullptr)},
           {"odometry_scale", s.pose ? rounded(e.odometry_scale, 1e4) : Json(nullptr)},
           {"pull_1pm", s.pose ? rounded(e.pull_1pm, 1e4) : Json(nullptr)},
+          {"side_slip", s.pose ? rounded(e.side_slip, 1e4) : Json(nullptr)},
           {"gnss_offset", e.gnss_offset ? metres_json(*e.gnss_offset) : Json(nullptr)},
           {"innovations", innovations_json(e)},
           {"rejected", rejected_json(e)},
@@ -108,6 +147,9 @@ Json estimator_json(const base::Snapshot& s) {
           {"resets", e.resets},
           {"last_reset", reset_json(e.last_reset, s.now)},
           {"anchor", anchor_json(e.anchor, s.now)},
+          {"base_shift", shift_json(e.base_shift, s.now)},
+          {"antennas_askew", askew_json(e.antennas_askew)},
+          {"antennas_offset_deg", rounded(-base::deg_from_rad(e.antennas_offset_rad), 1e2)},
           {"votes", votes_json(e.votes, s.now)}};
 }
 

@@ -174,6 +174,8 @@ Json progress_json(const base::MissionProgress& p, const char* id_word) {
           {"distance_to_item_m", rounded(p.distance_to_item_m, kPlaces3)},
           {"bearing_to_item_deg", rounded(p.bearing_to_item_deg, kPlaces2)},
           {"cross_track_m", rounded(p.cross_track_m, kPlaces3)},
+          {"arrival_radius_m", rounded(p.arrival_radius_m, kPlaces3)},
+          {"cross_track_limit_m", rounded(p.cross_track_limit_m, kPlaces3)},
           {"distance_left_m", rounded(p.distance_left_m, kPlaces3)},
           {"eta_s", rounded(p.eta_s, kPlaces2)}};
 }
@@ -260,6 +262,7 @@ Json vehicle_json(const base::Snapshot& s, const std::string& name, base::Time n
           {"compass_bias_deg", s.pose ? degrees(-s.estimator.compass_bias_rad) : Json(nullptr)},
           {"pull_1pm", s.pose ? rounded(s.estimator.pull_1pm, 1e4) : Json(nullptr)},
           {"estimator", estimator_json(s)},
+          {"learned", learned_json(s.learned)},
           {"ready_to_arm", s.ready_to_arm},
           {"loop", loop_json(s.loop)}};
 }
@@ -306,12 +309,35 @@ Json way_home_json(const robot::WayHomePreview& p) {
           {"reason", p.reason}};
 }
 
+Json smoothed_json(const std::vector<robot::SmoothedItems>& stretches) {
+  Json out = Json::array();
+  for (const robot::SmoothedItems& s : stretches) {
+    out.push_back({{"first_item", s.first},
+                   {"last_item", s.last},
+                   {"deviation_m", rounded(s.deviation_m, kPlaces3)}});
+  }
+  return out;
+}
+
+Json mission_way_json(const robot::MissionWay& way) {
+  Json line = Json::array();
+  for (const base::LatLon& at : way.line) line.push_back(point_json(at));
+  return {{"mission_id", way.mission_id},
+          {"revision", way.revision},
+          {"length_m", rounded(way.length_m, kPlaces3)},
+          {"within_m", way.within_m},
+          {"line", std::move(line)}};
+}
+
 Json preview_json(const robot::Preview& p, base::ExecutionState state) {
-  return {{"mission_id", p.mission_id},
+  return {{"smoothed", smoothed_json(p.smoothed)},
+          {"mission_id", p.mission_id},
           {"revision", p.revision},
           {"name", p.name},
           {"first_item", p.first_item},
           {"first_target", point_json(p.first_target)},
+          {"joins_after_m", rounded(p.joins_after_m, kPlaces3)},
+          {"left_out", p.left_out},
           {"distance_m", rounded(p.distance_m, kPlaces3)},
           {"bearing_deg", rounded(p.bearing_deg, kPlaces2)},
           {"speed_mps", rounded(p.speed_mps, kPlaces3)},

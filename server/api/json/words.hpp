@@ -54,6 +54,9 @@ struct Profile {
 Json vehicle_json(const base::Snapshot& snapshot, const std::string& name, base::Time now);
 /// How well the robot knows where it is: a part of vehicle_json.
 Json estimator_json(const base::Snapshot& snapshot);
+Json learned_json(const base::VehicleLearned& learned);
+Json calibration_json(const base::Snapshot& snapshot);
+Json calibration_preview_json(const robot::CalibrationPreview& preview);
 /// @param snapshot the last one that the trail has taken
 Json trail_json(const services::Trail& trail, const base::Snapshot& snapshot);
 /// Every receiver's satellites, newest word of each.
@@ -64,6 +67,8 @@ Json execution_json(const base::MissionProgress& progress,
                     const std::optional<store::StoredPlace>& offer = std::nullopt);
 Json way_home_json(const robot::WayHomePreview& preview);
 Json preview_json(const robot::Preview& preview, base::ExecutionState state);
+Json smoothed_json(const std::vector<robot::SmoothedItems>& stretches);
+Json mission_way_json(const robot::MissionWay& way);
 Json capabilities_json(const Profile& profile, const std::string& version);
 /// @param rate_hz received per second
 Json driver_json(const base::DriverStatus& driver, std::optional<double> rate_hz, base::Time now);

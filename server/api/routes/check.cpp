@@ -50,6 +50,9 @@ Handler check_mission(const ContextPtr& context) {
             Json out = report_json(verdict.report, profile);
             out["mission_id"] = mission.id;
             out["revision"] = mission.revision;
+            out["smoothed"] =
+                smoothed_json(verdict.compiled ? robot::smoothed_items(*verdict.compiled)
+                                               : std::vector<robot::SmoothedItems>{});
             out["fence_id"] = fence ? Json(fence->id) : Json(nullptr);
             return json_response(http::status::ok, out);
           });

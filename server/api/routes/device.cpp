@@ -108,8 +108,8 @@ void pair_this(const ContextPtr& c, const CallPtr& call) {
     wanted.name = draft.name;
     wanted.role = std::min(who->role, draft.role.value_or(who->role));
     wanted.pin = std::move(pin);
-    auto made =
-        book.pair(std::move(wanted), Access::device_secret(call->request), who->id, Access::now());
+    auto made = book.pair(std::move(wanted), c->access.device_secret(call->request), who->id,
+                          Access::now());
     if (!made) return call->respond(problem(made.error()));
     keep_people(c, [c, call, made = *made](const Result<void>& kept) {
       if (!kept) {
@@ -127,7 +127,8 @@ void list_devices(const ContextPtr& c, const CallPtr& call) {
   Json items = Json::array();
   if (call->who) {
     const Book& book = c->access.book();
-    const Device* const here = book.by_device(Access::device_secret(call->request), Access::now());
+    const Device* const here =
+        book.by_device(c->access.device_secret(call->request), Access::now());
     for (const Device& d : book.devices_of(call->who->user)) items.push_back(device_json(d, here));
   }
   call->respond(json_response(http::status::ok, {{"items", items}, {"next_cursor", nullptr}}));
@@ -196,6 +197,10 @@ void accept_invitation(const ContextPtr& c, const CallPtr& call) {
   hash_pin(c, call, draft->pin, std::move(slot),
            [c, call, invited = *invited, name = draft->name, peer](std::string pin) {
              Book& house = c->access.book();
+             // Hashing takes its time, and the inviter may be nobody any more.
+             if (!house.end_invitation(invited, Access::now())) {
+               return call->respond(problem(401, "the invitation has ended meanwhile"));
+             }
              Device wanted;
              wanted.user = invited.user;
              wanted.name = name;
@@ -203,7 +208,7 @@ void accept_invitation(const ContextPtr& c, const CallPtr& call) {
              wanted.pin = std::move(pin);
              const auto now = Access::now();
              const auto made =
-                 house.pair(std::move(wanted), Access::device_secret(call->request), {}, now);
+                 house.pair(std::move(wanted), c->access.device_secret(call->request), {}, now);
              if (!made) return call->respond(problem(made.error()));
              call->named_by = "device " + made->row.id;
              const auto opened = house.end_pin(house.begin_pin(made->row, peer, now), true, now);

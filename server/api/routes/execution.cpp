@@ -196,6 +196,18 @@ Handler preview(const ContextPtr& context) {
   };
 }
 
+Handler way(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    const auto loaded = context->deps.robot.loaded();
+    const Effort effort{loaded ? bytes_of(loaded->plan) : 0};
+    context->answer_aside(call, effort, [&robot = context->deps.robot] {
+      const auto laid = robot.mission_way();
+      if (!laid) return problem({base::Code::Conflict, "no mission is loaded (state idle)"});
+      return json_response(http::status::ok, mission_way_json(*laid));
+    });
+  };
+}
+
 Handler skip(const ContextPtr& context) {
   return [context](const CallPtr& call) {
     const auto body = json_body(call->request, true);
@@ -272,6 +284,7 @@ void add_execution_routes(const ContextPtr& c) {
                  }});
   c->router.add({http::verb::delete_, "/execution/left_behind", {204, 403, 503}, forget(c)});
   c->router.add({get, "/execution/preview", {200, 409, 422, 503}, preview(c)});
+  c->router.add({get, "/execution/way", {200, 409, 503}, way(c)});
   c->router.add({post, "/execution/load", with_404, load(c)});
   c->router.add({post, "/execution/start", kCommand, start(c)});
   c->router.add({post, "/execution/pause", kCommand, plain(c, robot::PauseMission{}, Moves::No)});

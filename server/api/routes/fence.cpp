@@ -91,11 +91,21 @@ void refuse_with_present_fence(const ContextPtr& context, const CallPtr& call, b
                                  });
 }
 
+/// While it waits for the store a fence may become the active one: the change of whoever does not
+/// hold control is then refused.
+store::Change change_by(const ContextPtr& context, const CallPtr& call) {
+  const auto& control = context->control;
+  return {kAuthor, "", !control.may(control.driver(call->who, peer_of(call->request)))};
+}
+
 store::Reply<store::StoredFence> fence_changed(const ContextPtr& context, const CallPtr& call,
                                                http::status status) {
   return [context, call, status](Stored stored) {
     if (!stored && stored.error().code == base::Code::RevisionMismatch) {
       return refuse_with_present_fence(context, call, stored.error());
+    }
+    if (!stored && stored.error().code == base::Code::Conflict) {
+      return call->respond(problem_response(403, context->control.problem()));
     }
     if (!stored) return call->respond(problem(stored.error()));
     if (!stored->active) return answer_fence(context, call, status, std::move(*stored));
@@ -149,7 +159,7 @@ Handler replace_fence(const ContextPtr& context) {
       const auto expected = expected_of(call);
       if (!expected) return;
       context->deps.store.replace_fence(call->params.at("id"), *expected, std::move(fence),
-                                        {kAuthor, ""},
+                                        change_by(context, call),
                                         fence_changed(context, call, http::status::ok));
     });
   };
@@ -179,7 +189,8 @@ Handler revert_fence(const ContextPtr& context) {
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
     const auto expected = expected_of(call);
     if (!expected) return;
-    context->deps.store.revert_fence(call->params.at("id"), *expected, *revision, {kAuthor, ""},
+    context->deps.store.revert_fence(call->params.at("id"), *expected, *revision,
+                                     change_by(context, call),
                                      fence_changed(context, call, http::status::ok));
   };
 }

@@ -80,6 +80,34 @@ Handler drop_anchor(const ContextPtr& context) {
   };
 }
 
+Handler settle_shift(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    const auto body = json_body(call->request);
+    if (!body) return call->respond(problem(body.error()));
+    Members members(*body);
+    members.require("keep");
+    robot::SettleShift command;
+    command.keep = members.flag("keep").value_or(false);
+    const robot::Validity validity = validity_of(members, *call, Moves::No);
+    if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
+    run_command(context, call, command, validity, state_after(context));
+  };
+}
+
+Handler correct_antennas(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    const auto body = json_body(call->request);
+    if (!body) return call->respond(problem(body.error()));
+    Members members(*body);
+    members.require("apply");
+    robot::CorrectAntennas command;
+    command.apply = members.flag("apply").value_or(false);
+    const robot::Validity validity = validity_of(members, *call, Moves::No);
+    if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
+    run_command(context, call, command, validity, state_after(context));
+  };
+}
+
 }  // namespace
 
 void add_place_routes(const ContextPtr& c) {
@@ -87,6 +115,8 @@ void add_place_routes(const ContextPtr& c) {
   c->router.add({http::verb::post, "/vehicle/anchor", kPlaced, set_anchor(c)});
   c->router.add(
       {http::verb::delete_, "/vehicle/anchor", {200, 403, 409, 429, 503}, drop_anchor(c)});
+  c->router.add({http::verb::post, "/vehicle/base-shift", kPlaced, settle_shift(c)});
+  c->router.add({http::verb::post, "/vehicle/antennas-offset", kPlaced, correct_antennas(c)});
 }
 
 }  // namespace roverd::api

@@ -79,7 +79,7 @@ void log_in(const ContextPtr& c, const CallPtr& call) {
         Book& book = c->access.book();
         const auto opened = book.end_login(attempt, right, device, Access::now());
         if (!opened) return call->respond(problem(401, "user or password is wrong"));
-        book.unlock(Access::device_secret(call->request), attempt.user, Access::now());
+        book.unlock(c->access.device_secret(call->request), attempt.user, Access::now());
         let_in(c, call, *opened);
       });
 }
@@ -93,7 +93,7 @@ std::string what_is_left(const people::Device* device) {
 /// By a paired device. Its tries are kept before the PIN is compared.
 void log_in_by_pin(const ContextPtr& c, const CallPtr& call, const std::string& pin) {
   Book& book = c->access.book();
-  const std::string secret = Access::device_secret(call->request);
+  const std::string secret = c->access.device_secret(call->request);
   const people::Device* const device = book.by_device(secret, Access::now());
   if (device == nullptr) {
     return call->respond(problem(401, "this device is not paired: use the password"));
@@ -261,7 +261,7 @@ void take_new_password(const ContextPtr& c, const CallPtr& call, const people::A
   if (user == nullptr || user->password != attempt.hash || !book.still(*call->who, Access::now())) {
     return call->respond(problem({base::Code::Conflict, "the password was changed meanwhile"}));
   }
-  const auto* device = book.by_device(Access::device_secret(call->request), Access::now());
+  const auto* device = book.by_device(c->access.device_secret(call->request), Access::now());
   const std::string here = device != nullptr ? device->id : std::string();
   book.clear_login(attempt);
   if (auto done = book.change_user(attempt.user, {}, std::move(hash), call->who->id, here); !done) {

@@ -46,9 +46,11 @@ Token token_in(Members& members, const people::Who& who) {
   Token out;
   out.user = who.user;
   for (const char* name : {"name", "role"}) members.require(name);
-  out.name = members.text("name").value_or("");
-  if (auto wrong = mission::name_problem(out.name); !out.name.empty() && !wrong.empty()) {
-    members.complain("name", std::move(wrong));
+  if (const auto name = members.text("name")) {
+    if (auto wrong = mission::name_problem(*name); !wrong.empty()) {
+      members.complain("name", std::move(wrong));
+    }
+    out.name = *name;
   }
   if (const auto word = members.text("role")) {
     const auto role = people::role_of(*word);

@@ -119,6 +119,27 @@ void set_auto(const ContextPtr& context, const CallPtr& call, const robot::Valid
       });
 }
 
+/// Where CIRCLE drives round, or LOITER stays.
+void read_round(Members& members, robot::SetMode& command) {
+  const bool circle = command.mode == base::Mode::Circle;
+  command.goal = read_goal(members);
+  if (command.goal->yaw_rad) members.complain("heading_deg", "is none of this mode's");
+  if (command.goal->reverse) members.complain("reverse", "is none of this mode's");
+  if (command.goal->speed_mps && !(*command.goal->speed_mps > 0.0)) {
+    members.complain("speed_mps", "must be more than 0");
+  }
+  command.radius_m =
+      circle ? members.number("radius_m", 0.5, 1000.0) : members.number("radius_m", 0.1, 100.0);
+  if (!circle) return;
+  command.turns = members.number("turns", 0.05, 1000.0);
+  command.clockwise = members.flag("clockwise").value_or(false);
+  members.require("radius_m");
+  if (!command.goal->at && !command.goal->local) {
+    members.require("lat");
+    members.require("lon");
+  }
+}
+
 Handler set_mode(const ContextPtr& context) {
   return [context](const CallPtr& call) {
     const auto body = json_body(call->request);
@@ -144,6 +165,7 @@ Handler set_mode(const ContextPtr& context) {
         members.require("lon");
       }
     }
+    if (mode == base::Mode::Loiter || mode == base::Mode::Circle) read_round(members, command);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
     if (refused_as_late(call, validity)) return;
     if (mode == base::Mode::Auto) return set_auto(context, call, validity);

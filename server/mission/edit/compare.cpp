@@ -95,10 +95,10 @@ class Comparison {
   static int number(std::size_t index) { return static_cast<int>(index) + 1; }
 
   static std::optional<double> moved_m(const Item& a, const Item& b) {
-    const auto* from = std::get_if<Waypoint>(&a);
-    const auto* to = std::get_if<Waypoint>(&b);
-    if (from == nullptr || to == nullptr || from->at == to->at) return std::nullopt;
-    return base::distance_bearing(from->at, to->at).distance_m;
+    const auto from = place_of(a);
+    const auto to = place_of(b);
+    if (a.index() != b.index() || !from || !to || *from == *to) return std::nullopt;
+    return base::distance_bearing(*from, *to).distance_m;
   }
 
   void note(ItemDifference difference) {

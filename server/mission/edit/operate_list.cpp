@@ -67,6 +67,9 @@ Result<Done> apply(Plan plan, const Reverse&) {
   std::iota(new_number.rbegin(), new_number.rend(), 1);
   lead_jumps(plan.items, new_number);
   std::reverse(plan.items.begin(), plan.items.end());
+  for (Item& item : plan.items) {
+    if (auto* circle = std::get_if<Circle>(&item)) circle->clockwise = !circle->clockwise;
+  }
   return Done{std::move(plan), "reversed", std::nullopt, {}};
 }
 

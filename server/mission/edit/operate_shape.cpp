@@ -17,7 +17,7 @@ using base::TangentPlane;
 
 namespace {
 
-/// Where a position stands in the plan: a waypoint or a local item, by index.
+/// Where a position stands in the plan: an item with a place or a local one, by index.
 struct Spot {
   std::size_t item = 0;
   LatLon at;
@@ -43,8 +43,8 @@ Result<std::vector<Spot>> places_in(const Plan& plan, const Numbers& which) {
   if (plan.home) home.emplace(plan.home->at);
   for (int number = which.first; number <= which.last; ++number) {
     const auto i = static_cast<std::size_t>(number) - 1;
-    if (const auto* waypoint = std::get_if<Waypoint>(&plan.items[i])) {
-      out.push_back({i, waypoint->at});
+    if (const auto at = place_of(plan.items[i])) {
+      out.push_back({i, *at});
     } else if (const auto* local = std::get_if<Local>(&plan.items[i])) {
       if (!home) {
         return tl::unexpected<Error>(
@@ -63,6 +63,11 @@ void put(Plan& plan, const std::vector<Spot>& places) {
   for (const Spot& place : places) {
     if (auto* waypoint = std::get_if<Waypoint>(&plan.items[place.item])) {
       waypoint->at = place.at;
+    } else if (auto* loiter = std::get_if<Loiter>(&plan.items[place.item])) {
+      loiter->lat = place.at.lat;
+      loiter->lon = place.at.lon;
+    } else if (auto* circle = std::get_if<Circle>(&plan.items[place.item])) {
+      circle->at = place.at;
     } else if (auto* local = std::get_if<Local>(&plan.items[place.item]); local && home) {
       const EnuPoint p = home->to_local(place.at);
       local->east_m = p.east_m;
@@ -244,8 +249,8 @@ Result<Done> apply(Plan plan, const Offset& offset) {
   places.reserve(static_cast<std::size_t>(which->last - which->first + 1));
   for (int number = which->first; number <= which->last; ++number) {
     const auto i = static_cast<std::size_t>(number) - 1;
-    if (const auto* waypoint = std::get_if<Waypoint>(&plan.items[i])) {
-      places.push_back({i, waypoint->at});
+    if (const auto at = place_of(plan.items[i])) {
+      places.push_back({i, *at});
     } else if (auto* local = std::get_if<Local>(&plan.items[i])) {
       local->east_m += offset.by.east_m;
       local->north_m += offset.by.north_m;
@@ -280,6 +285,7 @@ Result<Done> apply(Plan plan, const ScaleRotate& change) {
   map_headings(plan, [&](double deg) { return deg + change.turn_deg; });
   for (Item& item : plan.items) {
     if (auto* move = std::get_if<Move>(&item)) move->forward_m *= change.factor;
+    if (auto* circle = std::get_if<Circle>(&item)) circle->radius_m *= change.factor;
   }
   std::string what;
   if (change.factor != 1.0) what = "scaled by " + rounded_text(change.factor);
@@ -309,6 +315,8 @@ Result<Done> apply(Plan plan, const Mirror& mirror) {
       wall->side = other(wall->side);
     } else if (auto* marks = std::get_if<Landmarks>(&item)) {
       marks->offset_m = -marks->offset_m;
+    } else if (auto* circle = std::get_if<Circle>(&item)) {
+      circle->clockwise = !circle->clockwise;
     }
   }
   std::string what = "mirrored about the axis " + rounded_text(compass(mirror.axis_deg)) +

@@ -61,6 +61,7 @@ inline constexpr int kLoiterTime = 19;
 inline constexpr int kReturn = 20;
 inline constexpr int kLand = 21;
 inline constexpr int kTakeoff = 22;
+inline constexpr int kOrbit = 34;
 inline constexpr int kSpline = 82;
 inline constexpr int kDelay = 93;
 inline constexpr int kConditionDelay = 112;

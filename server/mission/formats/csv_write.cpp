@@ -40,7 +40,7 @@ base::EnuPoint follower_point(const TangentPlane& plane, LatLon origin, LatLon a
 std::optional<LatLon> origin_of(const Plan& plan) {
   if (plan.home) return plan.home->at;
   for (const Item& item : plan.items) {
-    if (const auto* point = std::get_if<Waypoint>(&item)) return point->at;
+    if (const auto at = place_of(item)) return at;
   }
   return std::nullopt;
 }
@@ -49,16 +49,15 @@ std::optional<LatLon> origin_of(const Plan& plan) {
 
 std::string write_csv(const Plan& plan, std::vector<FileRow>& rows) {
   report_left_out(plan, {true, true}, rows);
+  const auto positions = positions_of(plan);
   std::string out = "lat,lon,alt,speed\n";
-  for (const Item& item : plan.items) {
-    const auto* point = std::get_if<Waypoint>(&item);
-    if (point == nullptr) continue;
+  for (const Waypoint& point : positions) {
     constexpr int kDecimals = 9;
-    out += fixed_number(point->at.lat, kDecimals) + ',' + fixed_number(point->at.lon, kDecimals);
+    out += fixed_number(point.at.lat, kDecimals) + ',' + fixed_number(point.at.lon, kDecimals);
     out += ',';
-    if (point->alt_m) append_number(out, *point->alt_m);
+    if (point.alt_m) append_number(out, *point.alt_m);
     out += ',';
-    if (point->speed_mps) append_number(out, *point->speed_mps);
+    if (point.speed_mps) append_number(out, *point.speed_mps);
     out += '\n';
   }
   return out;
@@ -66,6 +65,7 @@ std::string write_csv(const Plan& plan, std::vector<FileRow>& rows) {
 
 std::string write_follower(const Plan& plan, std::vector<FileRow>& rows) {
   report_left_out(plan, {true, true}, rows);
+  const auto positions = positions_of(plan);
   std::string out;
   std::vector<base::EnuPoint> points;
   std::vector<const Waypoint*> waypoints;
@@ -74,11 +74,9 @@ std::string write_follower(const Plan& plan, std::vector<FileRow>& rows) {
     out += "# origin " + fixed_number(origin->lat, kDecimals) + ' ' +
            fixed_number(origin->lon, kDecimals) + '\n';
     const TangentPlane plane(*origin);
-    for (const Item& item : plan.items) {
-      const auto* point = std::get_if<Waypoint>(&item);
-      if (point == nullptr) continue;
-      points.push_back(follower_point(plane, *origin, point->at));
-      waypoints.push_back(point);
+    for (const Waypoint& point : positions) {
+      points.push_back(follower_point(plane, *origin, point.at));
+      waypoints.push_back(&point);
     }
   }
   out += "x,y,z,yaw,velocity\n";

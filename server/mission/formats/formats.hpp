@@ -13,15 +13,18 @@
 //              "LAT LON" a line) or rally points ("RALLY LAT LON ALT …")
 //
 // gpx to follower carry positions: each becomes a waypoint, with a height and a speed where the
-// format has them. Lines, tracks and routes that do not touch are missions of their own
-// (track_points.hpp). .plan and .waypoints carry MAVLink mission commands. A rover that drives on
-// the ground cannot do all of them: every row of a file is accounted for as taken, changed or left
-// out, with the reason.
+// format has them; a circle is written as points of its way, a loiter as its place. Lines, tracks
+// and routes that do not touch are missions of their own (track_points.hpp). .plan and .waypoints
+// carry MAVLink mission commands. A rover that drives on the ground cannot do all of them: every
+// row of a file is accounted for as taken, changed or left out, with the reason.
 //
 //   command                       item                  parameters
 //   16 NAV_WAYPOINT               waypoint              p1 hold_s, p2 radius_m
-//   19 NAV_LOITER_TIME            waypoint              p1 hold_s
-//   17, 18 NAV_LOITER_*, 21 LAND, 82 SPLINE_WAYPOINT    waypoint, changed: the position only
+//   17 NAV_LOITER_UNLIM           loiter                p3 radius_m; without end
+//   19 NAV_LOITER_TIME            loiter                p1 seconds, p3 radius_m
+//   18 NAV_LOITER_TURNS           circle                p1 turns, p3 radius: clockwise positive
+//   34 DO_ORBIT (read)            circle                p1 radius, p2 m/s, p4 rad
+//   21 LAND, 82 SPLINE_WAYPOINT   waypoint, changed: the position only
 //   20 NAV_RETURN_TO_LAUNCH       return_home
 //   93 NAV_DELAY, 112 CONDITION_DELAY                   wait: p1 seconds
 //   115 CONDITION_YAW             turn                  p1 deg, p3 −1: left, p4 1: relative

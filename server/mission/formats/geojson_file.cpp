@@ -241,13 +241,11 @@ std::string write_geojson(const Plan& plan, const Fence* fence, std::vector<File
   json coordinates = json::array();
   json settings = json::array();
   bool any = false;
-  for (const Item& item : plan.items) {
-    const auto* point = std::get_if<Waypoint>(&item);
-    if (point == nullptr) continue;
-    json position = {point->at.lon, point->at.lat};
-    if (point->alt_m) position.push_back(*point->alt_m);
+  for (const Waypoint& point : positions_of(plan)) {
+    json position = {point.at.lon, point.at.lat};
+    if (point.alt_m) position.push_back(*point.alt_m);
     coordinates.push_back(std::move(position));
-    json more = item_to_json(item);
+    json more = item_to_json(point);
     for (const char* name : {"type", "lat", "lon", "alt_m"}) more.erase(name);
     any = any || !more.empty();
     settings.push_back(std::move(more));

@@ -146,6 +146,7 @@ Result<ImportedFile> read_gpx(std::string_view content) {
 
 std::string write_gpx(const Plan& plan, std::vector<FileRow>& rows) {
   report_left_out(plan, {true, false}, rows);
+  const auto positions = positions_of(plan);
   const std::string name = xml_escaped(plan.name);
   std::string out =
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
@@ -153,12 +154,10 @@ std::string write_gpx(const Plan& plan, std::vector<FileRow>& rows) {
       " <rte>\n  <name>" +
       name + "</name>\n";
   constexpr int kDecimals = 9;
-  for (const Item& item : plan.items) {
-    const auto* point = std::get_if<Waypoint>(&item);
-    if (point == nullptr) continue;
-    out += "  <rtept lat=\"" + fixed_number(point->at.lat, kDecimals) + "\" lon=\"" +
-           fixed_number(point->at.lon, kDecimals) + '"';
-    out += point->alt_m ? "><ele>" + fixed_number(*point->alt_m, 0) + "</ele></rtept>\n" : "/>\n";
+  for (const Waypoint& point : positions) {
+    out += "  <rtept lat=\"" + fixed_number(point.at.lat, kDecimals) + "\" lon=\"" +
+           fixed_number(point.at.lon, kDecimals) + '"';
+    out += point.alt_m ? "><ele>" + fixed_number(*point.alt_m, 0) + "</ele></rtept>\n" : "/>\n";
   }
   return out + " </rte>\n</gpx>\n";
 }

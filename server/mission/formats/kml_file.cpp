@@ -276,14 +276,13 @@ Result<ImportedFile> read_kml(std::string_view content) {
 
 std::string write_kml(const Plan& plan, const Fence* fence, std::vector<FileRow>& rows) {
   report_left_out(plan, {true, false}, rows);
+  const auto positions = positions_of(plan);
   constexpr int kDecimals = 9;
   std::string points;
   int count = 0;
-  for (const Item& item : plan.items) {
-    const auto* point = std::get_if<Waypoint>(&item);
-    if (point == nullptr) continue;
-    points += fixed_number(point->at.lon, kDecimals) + ',' + fixed_number(point->at.lat, kDecimals);
-    if (point->alt_m) points += ',' + fixed_number(*point->alt_m, 0);
+  for (const Waypoint& point : positions) {
+    points += fixed_number(point.at.lon, kDecimals) + ',' + fixed_number(point.at.lat, kDecimals);
+    if (point.alt_m) points += ',' + fixed_number(*point.alt_m, 0);
     points += '\n';
     ++count;
   }

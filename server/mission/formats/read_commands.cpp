@@ -66,17 +66,21 @@ class CommandReader {
     Draft draft{{c.row, command_name(c.id), Outcome::Taken, {}, std::nullopt}, {}, {}};
     switch (c.id) {
       case cmd::kWaypoint:
-      case cmd::kLoiterTime:
         position(draft, c);
+        break;
+      case cmd::kLoiterForever:
+      case cmd::kLoiterTime:
+        loiter(draft, c);
+        break;
+      case cmd::kLoiterTurns:
+        circle(draft, c, c.p[2].value_or(0.0), c.p[0]);
+        break;
+      case cmd::kOrbit:
+        orbit(draft, c);
         break;
       case cmd::kSpline:
         position(draft, c);
         if (draft.item) change(draft, "driven straight, not as a curve");
-        break;
-      case cmd::kLoiterForever:
-      case cmd::kLoiterTurns:
-        position(draft, c);
-        if (draft.item) change(draft, "driven to without circling, and on from there");
         break;
       case cmd::kLand:
         position(draft, c);
@@ -122,14 +126,72 @@ class CommandReader {
     }
   }
 
+  static bool here(const Command& c) noexcept {
+    return (!c.lat && !c.lon) || (c.lat == 0.0 && c.lon == 0.0);
+  }
+
+  /// At 0/0 it stays where the vehicle is.
+  void loiter(Draft& draft, const Command& c) {
+    if (!is_geographic(c.frame)) {
+      return leave_out(draft, "frame " + std::to_string(c.frame) + " is not geographic");
+    }
+    Loiter item;
+    if (!here(c)) {
+      check_position(c, problems_);
+      item.lat = c.lat.value_or(0.0);
+      item.lon = c.lon.value_or(0.0);
+    }
+    if (c.id == cmd::kLoiterTime) {
+      item.seconds = usable(draft, c.p[0], kHold_s, "a stay of").value_or(0.0);
+      if (here(c) && *item.seconds == 0.0) {
+        return leave_out(draft, "0/0 means where the vehicle is: nothing to drive to");
+      }
+    }
+    if (const auto radius_m = c.p[2]; radius_m && *radius_m != 0.0) {
+      item.radius_m = usable(draft, std::abs(*radius_m), kDrift_m, "a radius of");
+    }
+    draft.item = item;
+  }
+
+  /// @param radius_m clockwise positive
+  void circle(Draft& draft, const Command& c, double radius_m, std::optional<double> turns) {
+    Circle item;
+    item.radius_m = std::abs(radius_m);
+    item.clockwise = radius_m > 0.0;
+    if (here(c) || !kCircle_m.holds(item.radius_m)) {
+      position(draft, c);
+      if (draft.item) change(draft, "driven to without circling, and on from there");
+      return;
+    }
+    if (!is_geographic(c.frame)) {
+      return leave_out(draft, "frame " + std::to_string(c.frame) + " is not geographic");
+    }
+    check_position(c, problems_);
+    item.at = {c.lat.value_or(0.0), c.lon.value_or(0.0)};
+    item.turns = usable(draft, turns, kCircleTurns, "turns:");
+    draft.item = item;
+  }
+
+  void orbit(Draft& draft, const Command& c) {
+    constexpr double kTurn_rad = 6.283185307179586;
+    constexpr double kAlong = 3.0;  // ORBIT_YAW_BEHAVIOUR: tangent to the circle
+    const double rad = c.p[3].value_or(0.0);
+    circle(draft, c, c.p[0].value_or(0.0),
+           rad > 0.0 ? std::optional(rad / kTurn_rad) : std::nullopt);
+    auto* item = draft.item ? std::get_if<Circle>(&*draft.item) : nullptr;
+    if (item == nullptr) return;
+    item->speed_mps = usable(draft, c.p[1], kSpeed_mps, "a speed of");
+    if (!(rad > 0.0)) change(draft, "one turn: an item has an end");
+    if (c.p[2] && *c.p[2] != kAlong) change(draft, "it looks where it drives");
+  }
+
   void position(Draft& draft, const Command& c) {
     if (!is_geographic(c.frame)) {
       return leave_out(draft, "frame " + std::to_string(c.frame) + " is not geographic");
     }
     const bool waypoint = c.id == cmd::kWaypoint || c.id == cmd::kSpline;
     const bool not_given = !waypoint && !c.lat && !c.lon;
-    const bool has_hold = waypoint || c.id == cmd::kLoiterTime;
-    const auto hold_s = has_hold ? usable(draft, c.p[0], kHold_s, "a hold of") : std::nullopt;
+    const auto hold_s = waypoint ? usable(draft, c.p[0], kHold_s, "a hold of") : std::nullopt;
     if (not_given || (c.lat == 0.0 && c.lon == 0.0)) {
       if (!hold_s) return leave_out(draft, "0/0 means where the vehicle is: nothing to drive to");
       draft.item = Wait{*hold_s};
@@ -301,6 +363,7 @@ std::string command_name(int id) {
                                     {21, "NAV_LAND"},
                                     {22, "NAV_TAKEOFF"},
                                     {31, "NAV_LOITER_TO_ALT"},
+                                    {34, "DO_ORBIT"},
                                     {80, "NAV_ROI"},
                                     {82, "NAV_SPLINE_WAYPOINT"},
                                     {84, "NAV_VTOL_TAKEOFF"},

@@ -4,7 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include "base/angle.hpp"
 #include "base/geo.hpp"
+#include "base/tangent_plane.hpp"
+#include "mission/circle.hpp"
 #include "mission/json/fields.hpp"
 #include "mission/json/json.hpp"
 #include "mission/text.hpp"
@@ -239,6 +242,32 @@ base::Result<ImportedFile> TrackBuilder::finish() && {
   return std::move(file_);
 }
 
+std::vector<Waypoint> positions_of(const Plan& plan) {
+  const double kPiece_rad = base::rad_from_deg(10.0);
+  constexpr double kMostTurns = 10.0;
+  std::vector<Waypoint> out;
+  for (const Item& item : plan.items) {
+    if (const auto* point = std::get_if<Waypoint>(&item)) {
+      out.push_back(*point);
+    } else if (const auto* circle = std::get_if<Circle>(&item)) {
+      Circle whole = *circle;
+      whole.turns = std::min(circle->whole_turns(), kMostTurns);
+      const base::TangentPlane plane(circle->at);
+      const auto before = out.empty() ? std::nullopt : std::optional(plane.to_local(out.back().at));
+      const CircleWay way = circle_way(whole, {}, before);
+      const double pieces = std::ceil(std::abs(way.sweep_rad) / kPiece_rad - 1e-6);
+      for (double i = 0.0; i <= pieces; i += 1.0) {
+        Waypoint& on = out.emplace_back();
+        on.at = plane.to_global(way.at(way.sweep_rad * i / pieces));
+        on.speed_mps = circle->speed_mps;
+      }
+    } else if (const auto at = place_of(item)) {
+      out.emplace_back().at = *at;
+    }
+  }
+  return out;
+}
+
 void report_left_out(const Plan& plan, TrackHolds holds, std::vector<FileRow>& rows) {
   if (plan.home) {
     rows.push_back({"/home", "home", Outcome::LeftOut, "the format has no home", std::nullopt});
@@ -261,6 +290,12 @@ void report_left_out(const Plan& plan, TrackHolds holds, std::vector<FileRow>& r
       row.reason = "of its settings the format holds only position";
       if (holds.alt) row.reason += ", height";
       if (holds.speed) row.reason += ", speed";
+    } else if (std::holds_alternative<Circle>(plan.items[i])) {
+      row.outcome = Outcome::Changed;
+      row.reason = "written as points of its way";
+    } else if (place_of(plan.items[i])) {
+      row.outcome = Outcome::Changed;
+      row.reason = "of its settings the format holds only position";
     }
     rows.push_back(std::move(row));
   }

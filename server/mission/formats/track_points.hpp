@@ -101,6 +101,10 @@ class TrackBuilder {
   bool overflow_ = false;
 };
 
+/// What position files hold of a mission: its waypoints, the places of loiters and points 10 deg
+/// apart of circles, ten turns at most.
+std::vector<Waypoint> positions_of(const Plan& plan);
+
 /// What a format of positions cannot hold of a plan, item by item: everything but waypoints, and
 /// what waypoints have beside the given.
 struct TrackHolds {

@@ -20,6 +20,9 @@ bool is_at_zero(const Waypoint& waypoint) noexcept {
 /// Jumps apart, can the format hold it?
 bool can_be_written(const Item& item) noexcept {
   if (const auto* waypoint = std::get_if<Waypoint>(&item)) return !is_at_zero(*waypoint);
+  if (std::holds_alternative<Loiter>(item) || std::holds_alternative<Circle>(item)) {
+    return place_of(item) != LatLon{0.0, 0.0};
+  }
   return std::holds_alternative<TurnBy>(item) || std::holds_alternative<Wait>(item) ||
          std::holds_alternative<Speed>(item) || std::holds_alternative<ReturnHome>(item);
 }
@@ -113,6 +116,35 @@ class Writer {
     jumps_.emplace_back(out_.size(), to);
     action(cmd::kJump, 0.0, j.times == 0 ? -1.0 : static_cast<double>(j.times));
   }
+  /// Without a place: 0/0, where the vehicle is.
+  void add(const Loiter& l) {
+    const auto at = l.at();
+    if (at == LatLon{0.0, 0.0}) return leave_out("0/0 means where the vehicle is");
+    if (at) leg_speed(speed_);
+    place(l.seconds ? cmd::kLoiterTime : cmd::kLoiterForever, at.value_or(LatLon{}));
+    Command& c = out_.back();
+    c.p = {l.seconds.value_or(0.0), 0.0, l.radius_m.value_or(0.0), std::nullopt};
+  }
+  void add(const Circle& circle) {
+    if (circle.at == LatLon{0.0, 0.0}) return leave_out("0/0 means where the vehicle is");
+    leg_speed(circle.speed_mps ? circle.speed_mps : speed_);
+    std::string reason;
+    if (circle.speed_mps) reason = "its speed is a command";
+    if (circle.stations.value_or(0) > 0 || circle.hold_s) {
+      reason += (reason.empty() ? "" : "; ") + std::string("its stations are lost");
+    }
+    if (!reason.empty()) note_item(Outcome::Changed, reason);
+    place(cmd::kLoiterTurns, circle.at);
+    out_.back().p = {circle.whole_turns(), 0.0,
+                     circle.clockwise ? circle.radius_m : -circle.radius_m, std::nullopt};
+  }
+  void place(int id, LatLon at) {
+    Command& c = out_.emplace_back();
+    c.id = id;
+    c.lat = at.lat;
+    c.lon = at.lon;
+    c.alt = 0.0;
+  }
   void add(const Local&) { leave_out(kNoCommand); }
   void add(const Move&) { leave_out(kNoCommand); }
   void add(const Row&) { leave_out(kNoCommand); }
@@ -179,6 +211,8 @@ class Writer {
       for (const Item& item : plan_.items) {
         const auto* waypoint = std::get_if<Waypoint>(&item);
         if (waypoint != nullptr && waypoint->speed_mps) own_speed_ = true;
+        const auto* circle = std::get_if<Circle>(&item);
+        if (circle != nullptr && circle->speed_mps) own_speed_ = true;
       }
     }
     return *own_speed_;

@@ -53,6 +53,9 @@ class Checker {
     if (has_a && has_b) add(b, std::string(kTwoOfOne));
     if (!has_a && !has_b) add(a, "or " + std::string(b) + " is required");
   }
+  void together(std::string_view a, bool has_a, std::string_view b, bool has_b) {
+    if (has_a != has_b) add(has_a ? b : a, "is required where the other one is given");
+  }
 
  private:
   void add(std::string_view name, std::string detail) {

@@ -13,6 +13,7 @@
 //   v.name(name, string&)                     required
 //   v.rest(json&)                             all members that no other line names
 //   v.exactly_one(a, has_a, b, has_b)
+//   v.together(a, has_a, b, has_b)            both or none
 
 #include <array>
 #include <optional>
@@ -52,6 +53,10 @@ inline constexpr Range kTurn_deg{-360.0, 360.0};
 inline constexpr Range kLocal_m{-10'000.0, 10'000.0};
 inline constexpr Range kBeside_m{0.0, 20.0, true};
 inline constexpr Range kOffset_m{-20.0, 20.0};
+inline constexpr Range kDrift_m{0.1, 100.0};
+inline constexpr Range kCircle_m{0.5, 1000.0};
+inline constexpr Range kCircleTurns{0.05, 1000.0};
+inline constexpr int kMaxStations = 36;  ///< a turn
 inline constexpr int kMaxTimes = 10'000;
 
 template <class E>
@@ -129,6 +134,25 @@ template <class V>
 void fields(V& v, Of<Action> auto& p) {
   v.name("name", p.name);
   v.rest(p.arguments);
+}
+template <class V>
+void fields(V& v, Of<Loiter> auto& p) {
+  v.number("lat", p.lat, kLat);
+  v.number("lon", p.lon, kLon);
+  v.number("seconds", p.seconds, kHold_s);
+  v.number("radius_m", p.radius_m, kDrift_m);
+  v.together("lat", p.lat.has_value(), "lon", p.lon.has_value());
+}
+template <class V>
+void fields(V& v, Of<Circle> auto& p) {
+  v.number("lat", p.at.lat, kLat);
+  v.number("lon", p.at.lon, kLon);
+  v.number("radius_m", p.radius_m, kCircle_m);
+  v.number("turns", p.turns, kCircleTurns);
+  v.flag("clockwise", p.clockwise);
+  v.number("speed_mps", p.speed_mps, kSpeed_mps);
+  v.count("stations", p.stations, kMaxStations);
+  v.number("hold_s", p.hold_s, kHold_s);
 }
 template <class V>
 void fields(V& v, Of<Home> auto& p) {

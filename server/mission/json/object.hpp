@@ -113,6 +113,11 @@ class Members {
       complain(a, "or " + std::string(b) + " is required");
     }
   }
+  void together(std::string_view a, bool has_a, std::string_view b, bool has_b) {
+    if (has_a != has_b && (has_a ? any(b) : any(a)) == nullptr) {
+      complain(has_a ? b : a, "is required where the other one is given");
+    }
+  }
 
  private:
   const nlohmann::json* required(std::string_view name);

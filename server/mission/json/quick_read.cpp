@@ -164,6 +164,9 @@ class QuickMembers {
   void exactly_one(std::string_view, bool has_a, std::string_view, bool has_b) {
     if (has_a == has_b) fine = false;
   }
+  void together(std::string_view, bool has_a, std::string_view, bool has_b) {
+    if (has_a != has_b) fine = false;
+  }
 
   std::string_view type() {
     const Simple* m = required("type", Simple::Kind::Text);

@@ -40,6 +40,7 @@ class ValueWriter {
     for (const auto& [key, member] : value.items()) out_.emplace(key, member);
   }
   void exactly_one(const char*, bool, const char*, bool) {}
+  void together(const char*, bool, const char*, bool) {}
 
  private:
   json& out_;
@@ -99,6 +100,7 @@ class TextWriter {
     }
   }
   void exactly_one(const char*, bool, const char*, bool) {}
+  void together(const char*, bool, const char*, bool) {}
 
   void key(const char* name) {
     separate();

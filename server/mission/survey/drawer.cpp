@@ -10,6 +10,7 @@ namespace roverd::mission::survey {
 namespace {
 
 constexpr double kSamePlace_m = 0.01;
+constexpr double kStub = 0.3;  // of an arc's chord
 
 double yaw_of(EnuPoint from, EnuPoint to) noexcept {
   return std::atan2(to.north_m - from.north_m, to.east_m - from.east_m);
@@ -67,22 +68,25 @@ void Drawer::put(EnuPoint at, Turn turn, bool reverse) {
   points_.push_back({at, reverse, turn});
 }
 
-/// The shortest turn that stays inside.
+/// The shortest turn that stays inside; with changes of direction where none does at one go.
 bool Drawer::arc_to(const Pose& to) {
   const Pose from{points_.back().at, yaw_rad_};
-  for (const auto& way : turns_between(from, to, manner_.radius_m, step_m_)) {
+  const auto fits = [&](const std::vector<TurnPoint>& way) {
     EnuPoint before = from.at;
-    const bool fits = std::all_of(way.begin(), way.end(), [&](const TurnPoint& p) {
+    return std::all_of(way.begin(), way.end(), [&](const TurnPoint& p) {
       const bool free = ways_.clear(before, p.at);
       before = p.at;
       return free;
     });
-    if (!fits) continue;
-    for (const TurnPoint& p : way) put(p.at, Turn::Arc, p.reverse);
-    yaw_rad_ = to.yaw_rad;
-    return true;
-  }
-  return false;
+  };
+  const auto turns = turns_between(from, to, manner_.radius_m, step_m_);
+  const auto first = std::find_if(turns.begin(), turns.end(), fits);
+  const auto way =
+      first != turns.end() ? *first : turn_reversing(from, to, manner_.radius_m, step_m_, fits);
+  if (way.empty()) return false;
+  for (const TurnPoint& p : way) put(p.at, Turn::Arc, p.reverse);
+  yaw_rad_ = to.yaw_rad;
+  return true;
 }
 
 void Drawer::reach(const Pose& to) {
@@ -113,8 +117,14 @@ void Drawer::line(EnuPoint from, EnuPoint to) {
 }
 
 void Drawer::round(const Ring& ring, EnuPoint start) {
-  const OnRing here = nearest_on(ring, at().value_or(start));
+  OnRing here = nearest_on(ring, at().value_or(start));
   const std::size_t n = ring.size();
+  if (manner_.turn == SurveyTurn::Arc) {
+    // A chord of some centimetres shows another direction than those beside it.
+    const std::size_t next = (here.edge + 1) % n;
+    if (base::distance_m(here.at, ring[next]) < kStub * step_m_) here = {next, ring[next]};
+    if (base::distance_m(here.at, ring[here.edge]) < kStub * step_m_) here.at = ring[here.edge];
+  }
   const Turn turn = manner_.turn == SurveyTurn::Arc ? Turn::Arc : Turn::Auto;
   reach({here.at, yaw_of(here.at, ring[(here.edge + 1) % n])});
   for (std::size_t k = 1; k <= n; ++k) put(ring[(here.edge + k) % n], turn);

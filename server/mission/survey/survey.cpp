@@ -35,6 +35,8 @@ std::string square_text(double m2) {
 int tight_turns(const std::vector<PathPoint>& path, double radius_m) {
   constexpr double kGrace = 1.3;  // chords are shorter than their arcs, and rounded to 0.1 mm
   constexpr double kGrace_rad = 0.05;
+  constexpr double kChord_rad = 0.7;  // no chord of an arc spans more
+  const double most_m = kChord_rad * radius_m;
   int count = 0;
   for (std::size_t i = 1; i + 1 < path.size(); ++i) {
     const EnuPoint a = path[i].at - path[i - 1].at;
@@ -42,8 +44,8 @@ int tight_turns(const std::vector<PathPoint>& path, double radius_m) {
     double turn = std::abs(
         base::angle_diff_rad(std::atan2(a.north_m, a.east_m), std::atan2(b.north_m, b.east_m)));
     if (path[i].reverse != path[i + 1].reverse) turn = base::kPi - turn;
-    const double chord_m =
-        std::max(std::hypot(a.east_m, a.north_m), std::hypot(b.east_m, b.north_m));
+    const double chord_m = 0.5 * (std::min(most_m, std::hypot(a.east_m, a.north_m)) +
+                                  std::min(most_m, std::hypot(b.east_m, b.north_m)));
     if (turn > kGrace * chord_m / radius_m + kGrace_rad) ++count;
   }
   return count;

@@ -129,28 +129,118 @@ std::optional<std::vector<TurnPoint>> fishtail(const Pose& a, const Pose& b, dou
   return pen.take();
 }
 
+Pose moved(const Pose& p, double ahead_m) noexcept {
+  return {p.at + EnuPoint{ahead_m * std::cos(p.yaw_rad), ahead_m * std::sin(p.yaw_rad)}, p.yaw_rad};
+}
+
+/// The same place, seen by who drives backwards.
+Pose turned(const Pose& p) noexcept {
+  return {p.at, p.yaw_rad + base::kPi};
+}
+
+std::vector<Word> words_between(const Pose& a, const Pose& b, double radius_m) {
+  const EnuPoint way = b.at - a.at;
+  const double direction = std::atan2(way.north_m, way.east_m);
+  const double d = std::hypot(way.east_m, way.north_m) / radius_m;
+  return words_for(d, turn_of(a.yaw_rad - direction), turn_of(b.yaw_rad - direction));
+}
+
+/// Empty: each formula has its corner cases, and what does not arrive is none.
+std::vector<TurnPoint> drawn(const Word& word, const Pose& a, const Pose& b, double radius_m,
+                             double step_m) {
+  Pen pen(a, radius_m, step_m);
+  for (std::size_t i = 0; i < 3; ++i) pen.draw(word.bends[i], word.lengths[i] * radius_m);
+  const double miss_m = base::distance_m(pen.pose().at, b.at);
+  const double miss_rad = std::abs(base::angle_diff_rad(pen.pose().yaw_rad, b.yaw_rad));
+  constexpr double kGood = 1e-3;
+  if (miss_m > kGood * std::max(1.0, radius_m) || miss_rad > kGood) return {};
+  return pen.take();
+}
+
+/// A straight, a word of arcs, a straight; each forwards or backwards.
+struct Shunt {
+  double first_m = 0.0;  ///< from a; below 0: backwards
+  double last_m = 0.0;   ///< to b, likewise
+  bool reverse = false;  ///< the arcs are driven backwards
+  Word word{};
+  double cost_m = 0.0;
+};
+
+/// Before and behind it the way goes forwards.
+double cost_m(const Shunt& s, double radius_m) noexcept {
+  constexpr double kChange = 3.0;  // in radii
+  bool back = false;
+  int changes = 0;
+  const auto next = [&](bool reverse) {
+    if (reverse != back) ++changes;
+    back = reverse;
+  };
+  if (s.first_m != 0.0) next(s.first_m < 0.0);
+  next(s.reverse);
+  if (s.last_m != 0.0) next(s.last_m < 0.0);
+  next(false);
+  return std::abs(s.first_m) + std::abs(s.last_m) +
+         (s.word.length() + kChange * changes) * radius_m;
+}
+
+std::vector<Shunt> shunts_between(const Pose& a, const Pose& b, double radius_m) {
+  constexpr double kRadii[] = {-4.0, -3.0, -2.0, -1.5, -1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 2.0, 3.0};
+  std::vector<Shunt> out;
+  for (const double first : kRadii) {
+    for (const double last : kRadii) {
+      const Pose from = moved(a, first * radius_m);
+      const Pose to = moved(b, -last * radius_m);
+      for (const bool reverse : {false, true}) {
+        for (const Word& word : reverse ? words_between(turned(from), turned(to), radius_m)
+                                        : words_between(from, to, radius_m)) {
+          out.push_back({first * radius_m, last * radius_m, reverse, word, 0.0});
+          out.back().cost_m = cost_m(out.back(), radius_m);
+        }
+      }
+    }
+  }
+  std::ranges::stable_sort(out, {}, &Shunt::cost_m);
+  return out;
+}
+
+std::vector<TurnPoint> drawn(const Shunt& s, const Pose& a, const Pose& b, double radius_m,
+                             double step_m) {
+  const Pose from = moved(a, s.first_m);
+  const Pose to = moved(b, -s.last_m);
+  auto arcs = s.reverse ? drawn(s.word, turned(from), turned(to), radius_m, step_m)
+                        : drawn(s.word, from, to, radius_m, step_m);
+  if (arcs.empty()) return {};
+  std::vector<TurnPoint> out;
+  if (s.first_m != 0.0) out.push_back({from.at, s.first_m < 0.0});
+  for (TurnPoint& p : arcs) out.push_back({p.at, s.reverse});
+  if (s.last_m != 0.0) out.push_back({b.at, s.last_m < 0.0});
+  return out;
+}
+
 }  // namespace
 
 std::vector<std::vector<TurnPoint>> turns_between(const Pose& a, const Pose& b, double radius_m,
                                                   double step_m) {
-  const EnuPoint way = b.at - a.at;
-  const double direction = std::atan2(way.north_m, way.east_m);
-  const double d = std::hypot(way.east_m, way.north_m) / radius_m;
-  auto words = words_for(d, turn_of(a.yaw_rad - direction), turn_of(b.yaw_rad - direction));
+  auto words = words_between(a, b, radius_m);
   std::sort(words.begin(), words.end(),
             [](const Word& x, const Word& y) { return x.length() < y.length(); });
   std::vector<std::vector<TurnPoint>> out;
   for (const Word& word : words) {
-    Pen pen(a, radius_m, step_m);
-    for (std::size_t i = 0; i < 3; ++i) pen.draw(word.bends[i], word.lengths[i] * radius_m);
-    // Each formula has its corner cases: what does not arrive is none.
-    const double miss_m = base::distance_m(pen.pose().at, b.at);
-    const double miss_rad = std::abs(base::angle_diff_rad(pen.pose().yaw_rad, b.yaw_rad));
-    constexpr double kGood = 1e-3;
-    if (miss_m < kGood * std::max(1.0, radius_m) && miss_rad < kGood) out.push_back(pen.take());
+    auto way = drawn(word, a, b, radius_m, step_m);
+    if (!way.empty()) out.push_back(std::move(way));
   }
   if (auto tail = fishtail(a, b, radius_m, step_m)) out.push_back(std::move(*tail));
   return out;
+}
+
+std::vector<TurnPoint> turn_reversing(
+    const Pose& a, const Pose& b, double radius_m, double step_m,
+    const std::function<bool(const std::vector<TurnPoint>&)>& fits) {
+  for (const Shunt& shunt : shunts_between(a, b, radius_m)) {
+    auto way = drawn(shunt, a, b, radius_m, step_m);
+    if (!way.empty() && fits(way)) return way;
+  }
+  return {};
 }
 
 }  // namespace roverd::mission::survey

@@ -1,6 +1,7 @@
 #pragma once
 // Turns of a vehicle that cannot turn on the spot. Pure.
 
+#include <functional>
 #include <vector>
 
 #include "base/geo.hpp"
@@ -30,5 +31,18 @@ struct TurnPoint {
 /// @param radius_m > 0. @param step_m along the arcs, > 0
 std::vector<std::vector<TurnPoint>> turns_between(const Pose& a, const Pose& b, double radius_m,
                                                   double step_m);
+
+/// Where none of those has room: with straight pieces before and behind them, either way, and the
+/// arcs forwards or backwards.
+///
+///     │   ╭──╮   │ border      back from a, two arcs, on along b's way, back to b
+///     │  a   │   │
+///     │  ↓   ↓b  │
+///
+/// @param fits is asked about the cheapest ones first: a change of direction costs as much as three
+/// radii of way. @return the first that fits; empty: none
+std::vector<TurnPoint> turn_reversing(
+    const Pose& a, const Pose& b, double radius_m, double step_m,
+    const std::function<bool(const std::vector<TurnPoint>&)>& fits);
 
 }  // namespace roverd::mission::survey

@@ -23,7 +23,7 @@ void Dock::reset() noexcept {
 /// A steered vehicle needs room to come onto the line.
 double Dock::straight_m() const noexcept {
   return path_->vehicle.steered()
-             ? std::max(modes_->dock_approach_m, 2.0 * min_radius_m(path_->vehicle))
+             ? std::max(modes_->dock_approach_m, 3.0 * min_radius_m(path_->vehicle))
              : modes_->dock_approach_m;
 }
 

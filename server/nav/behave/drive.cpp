@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/angle.hpp"
 #include "nav/behave/executor.hpp"
+#include "nav/behave/text.hpp"
 
 namespace roverd::nav {
 namespace {
@@ -24,11 +26,6 @@ double there_m(const Vehicle& vehicle, const PathParams& params) {
   return turned ? 3.0 * kThere_m : kThere_m;
 }
 
-std::string tenths(double m) {
-  const long rounded = std::lround(m * 10.0);
-  return std::to_string(rounded / 10) + "." + std::to_string(rounded % 10) + " m";
-}
-
 }  // namespace
 
 TrackOutput Executor::step(const Vehicle& vehicle, double limit_mps, std::optional<EnuPoint> home,
@@ -37,11 +34,14 @@ TrackOutput Executor::step(const Vehicle& vehicle, double limit_mps, std::option
   home_ = home;
   if (doing_ == Doing::Nothing) enter(vehicle, home);
   if (!running()) return {};
+  if (stays_) wait_s_ = std::max(0.0, wait_s_ - dt_s);
+  if (doing_ == Doing::Stay) step_stay(vehicle);
+  if (!running() || doing_ == Doing::Stay || doing_ == Doing::Nothing) return {};
   if (doing_ == Doing::Wait) {
     wait_s_ -= dt_s;
     if (wait_s_ > 0.0) return {};
     wait_s_ = 0.0;
-    if (step_now()->kind == StepKind::Wait) {
+    if (step_now()->kind == StepKind::Wait && !step_now()->silent) {
       notices_.push_back({Notice::Kind::ItemReached, step_now()->item, {}});
     }
     ++at_;
@@ -79,6 +79,9 @@ void Executor::enter(const Vehicle& vehicle, std::optional<EnuPoint> home) {
 
 bool Executor::enter_step(const RouteStep& step, const Vehicle& vehicle,
                           std::optional<EnuPoint> home) {
+  const bool stays = step.kind == StepKind::Act || step.kind == StepKind::Wait;
+  joins_ = joins_ && (stays || step.kind == StepKind::Go);
+  stays_.reset();
   switch (step.kind) {
     case StepKind::Go:
       return enter_go(step, vehicle);
@@ -86,6 +89,8 @@ bool Executor::enter_step(const RouteStep& step, const Vehicle& vehicle,
       wait_s_ = step.seconds;
       doing_ = Doing::Wait;
       return true;
+    case StepKind::Stay:
+      return enter_stay(step, vehicle);
     case StepKind::Move:
       return enter_move(step, vehicle);
     case StepKind::Face:
@@ -124,14 +129,16 @@ bool Executor::enter_step(const RouteStep& step, const Vehicle& vehicle,
 }
 
 bool Executor::enter_go(const RouteStep& step, const Vehicle& vehicle) {
+  if (std::exchange(joins_, false) && begin_here(step, vehicle)) return doing_ != Doing::Nothing;
   const Path& path = course_->path;
-  const bool in_order = standing_ && *standing_ + 1 == step.node && modes_->goal_cut_m <= 0.0;
   const RouteNode& node = course_->nodes[step.node];
+  const bool cuts = modes_->goal_cut_m > 0.0 && node.curvature_1pm == 0.0;
+  const bool in_order = standing_ && *standing_ + 1 == step.node && !cuts;
   if (in_order) {
     const double from_m = path.vertex_m[*standing_];
     if (path.vertex_m[step.node] - from_m > 1e-6) {
       const double off_m = base::distance_m(vehicle.at, path.at(from_m));
-      if (off_m <= std::max(path_params_->track.rejoin_m, 0.5)) {
+      if (off_m <= beside_m(vehicle)) {
         doing_ = Doing::Path;
         drove_ = true;
         tracker_.begin(path, path.leg_from(from_m), from_m);
@@ -257,8 +264,9 @@ void Executor::pass_nodes(const Vehicle& vehicle) {
     // What the corner leaves out is meant; what the robot drove beside it is not.
     const double off_m = base::distance_m(vehicle.at, node.at);
     const double meant_m = std::max(node.radius_m, base::distance_m(path.at(at_m), node.at));
-    if (off_m > meant_m + params_->missed_m) {
-      notices_.push_back({Notice::Kind::ItemMissed, step->item, "missed by " + tenths(off_m)});
+    if (off_m >
+        std::max(meant_m + params_->missed_m, arrival_radius_m(&node, vehicle.sigma_m, *params_))) {
+      notices_.push_back({Notice::Kind::ItemMissed, step->item, "missed by " + tenths_text(off_m)});
       pass(*step);
     } else {
       reached(*step);
@@ -267,6 +275,10 @@ void Executor::pass_nodes(const Vehicle& vehicle) {
 }
 
 void Executor::leg_done(const Vehicle& vehicle) {
+  if (stays_) {
+    doing_ = Doing::Stay;
+    return;
+  }
   if (!rejoin_ && missed(vehicle)) return;
   if (rejoin_) {
     rejoin_.reset();
@@ -287,18 +299,24 @@ void Executor::leg_done(const Vehicle& vehicle) {
 /// stand beside it then. That is not claimed as reached.
 bool Executor::missed(const Vehicle& vehicle) {
   const Path& path = *tracker_.path();
-  if (path.legs.empty()) return false;  // it stood there already
+  if (tracker_.leg() >= path.legs.size()) return false;  // it stood there already
   const double off_m = base::distance_m(vehicle.at, path.points[path.legs[tracker_.leg()].last].at);
   const RouteStep* step = step_now();
-  double allowed_m = params_->missed_m;
-  if (step != nullptr && step->kind == StepKind::Go) {
-    allowed_m = std::max(allowed_m, course_->nodes[step->node].radius_m);
-  }
+  const bool goes = step != nullptr && step->kind == StepKind::Go;
+  const double allowed_m =
+      arrival_radius_m(goes ? &course_->nodes[step->node] : nullptr, vehicle.sigma_m, *params_);
   if (off_m <= allowed_m) return false;
+  if (passed_by(step, off_m)) return true;
+  if (back_up(vehicle, off_m)) {
+    notices_.push_back({Notice::Kind::Overshot, step != nullptr ? step->item : 0,
+                        "overshot by " + tenths_text(off_m)});
+    return true;
+  }
   const std::string what = step == nullptr || step->kind == StepKind::Home
                                ? "home"
                                : "item " + std::to_string(step->item);
-  block(what + " missed by " + tenths(off_m));
+  block(what + " missed by " + tenths_text(off_m) + "; at most " + tenths_text(allowed_m) +
+        " count");
   return true;
 }
 
@@ -310,6 +328,8 @@ void Executor::reached(const RouteStep& step) {
 }
 
 void Executor::pass(const RouteStep& step) {
+  backed_up_ = false;
+  stays_.reset();
   if (step.kind == StepKind::Go) standing_ = step.node;
   if (step.kind == StepKind::Go && step.seconds > 0.0) {
     wait_s_ = step.seconds;
@@ -330,12 +350,14 @@ void Executor::finish() {
 void Executor::watch(const Vehicle& vehicle, double dt_s) {
   if (!running()) return;
   const TrackPhase phase = tracker_.phase();
-  const double most_m = std::min(params_->lost_m, route_->corridor_m.value_or(params_->lost_m));
+  if (going_round_m_ > 0.0 && has_joined(vehicle)) going_round_m_ = 0.0;
+  const double most_m = cross_track_limit_m(vehicle.sigma_m);
   lost_s_ = phase == TrackPhase::Track && std::abs(tracker_.cross_track_m()) > most_m
                 ? lost_s_ + dt_s
                 : 0.0;
   if (lost_s_ > params_->lost_s) {
-    const std::string text = tenths(std::abs(tracker_.cross_track_m())) + " away from the path";
+    const std::string text =
+        tenths_text(std::abs(tracker_.cross_track_m())) + " away from the path";
     pause(text);
     notices_.push_back({Notice::Kind::Lost, 0, text});
     return;
@@ -359,6 +381,8 @@ void Executor::watch_stuck(const Vehicle& vehicle, double dt_s) {
   std::string text;
   if (stuck_s_ > params_->stuck_s) {
     text = "no progress for " + std::to_string(std::lround(params_->stuck_s)) + " s";
+  } else if (tracker_.too_steep()) {
+    text = steep_text(vehicle, path_params_->slope);
   } else if (tracker_.turn_timed_out()) {
     text = "a turn on the spot does not come to its end";
   } else {

@@ -11,6 +11,8 @@ namespace {
 using base::Code;
 using base::ExecutionState;
 
+constexpr double kSame_m = 1e-3;
+
 std::string metres(double m) {
   return std::to_string(std::lround(m)) + " m";
 }
@@ -32,7 +34,7 @@ std::size_t first_step(const Route& route, const StartAt& start,
   for (std::size_t i = 0; here && i < course.steps.size(); ++i) {
     if (course.steps[i].kind != StepKind::Go) continue;
     const double far_m = base::distance_m(*here, course.nodes[course.steps[i].node].at);
-    if (far_m >= best_m) continue;
+    if (far_m > best_m - kSame_m) continue;  // of a circle's turns the first
     best_m = far_m;
     best = i;
   }
@@ -66,6 +68,7 @@ void Executor::load(std::shared_ptr<const Route> route) {
   at_ = 0;
   standing_.reset();
   rejoin_.reset();
+  stays_.reset();
 }
 
 void Executor::lay_anew(std::shared_ptr<const Route> route) {
@@ -84,8 +87,9 @@ void Executor::begin_at(std::size_t step) {
   at_ = step;
   standing_.reset();
   rejoin_.reset();
-  wait_s_ = lost_s_ = stuck_s_ = 0.0;
-  returning_ = rolled_on_ = false;
+  stays_.reset();
+  wait_s_ = lost_s_ = stuck_s_ = going_round_m_ = 0.0;
+  returning_ = rolled_on_ = joins_ = backed_up_ = false;
 }
 
 base::Result<void> Executor::start(const StartAt& at, EnuPoint here, std::optional<EnuPoint> home) {
@@ -105,6 +109,7 @@ base::Result<void> Executor::start(const StartAt& at, EnuPoint here, std::option
   }
   course_ = &route_->forth;
   begin_at(step);
+  joins_ = at.from != StartAt::From::Item;
   jumps_left_.assign(route_->jumps, -1);
   drove_ = false;
   interrupted_ = false;
@@ -150,12 +155,19 @@ std::optional<EnuPoint> Executor::place_to_go_on() const noexcept {
     case Doing::Nothing:
     case Doing::Wait:
     case Doing::Turn:
+    case Doing::Stay:
       return std::nullopt;
   }
   return std::nullopt;
 }
 
+bool Executor::waits_for_word() const noexcept {
+  const RouteStep* step = step_now();
+  return running() && !interrupted_ && stays_ && step != nullptr && step->endless;
+}
+
 base::Result<void> Executor::may_resume(EnuPoint here) const {
+  if (waits_for_word()) return {};
   if (state_ != ExecutionState::Paused && state_ != ExecutionState::Blocked) {
     return base::fail(Code::Conflict, "the mission is " + std::string(base::to_string(state_)));
   }
@@ -171,6 +183,12 @@ base::Result<void> Executor::may_resume(EnuPoint here) const {
 
 base::Result<void> Executor::resume(EnuPoint here) {
   if (auto ok = may_resume(here); !ok) return ok;
+  if (waits_for_word()) {
+    doing_ = Doing::Nothing;
+    tracker_.reset();
+    reached(*step_now());
+    return {};
+  }
   state_ = ExecutionState::Running;
   reason_.clear();
   interrupted_ = true;
@@ -222,6 +240,7 @@ base::Result<void> Executor::skip(int item) {
                   state_ != ExecutionState::Blocked)) {
     return base::fail(Code::Conflict, "no mission is running or paused");
   }
+  if (item == 0 && waits_for_word()) return resume({});
   std::size_t to = at_ + 1;
   if (item != 0) {
     const auto found = std::find_if(course_->steps.begin(), course_->steps.end(),

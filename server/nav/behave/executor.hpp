@@ -20,6 +20,7 @@
 #include "base/result.hpp"
 #include "base/setting.hpp"
 #include "base/snapshot.hpp"
+#include "nav/behave/join.hpp"
 #include "nav/behave/mode_params.hpp"
 #include "nav/behave/params.hpp"
 #include "nav/behave/rotate_in_place.hpp"
@@ -39,7 +40,8 @@ struct Notice {
   enum class Kind {
     ItemReached,
     ItemMissed,
-    Action,  ///< `detail`: its name, then a blank and its arguments as JSON
+    Overshot,  ///< it stands beyond a stop, and backs up to it
+    Action,    ///< `detail`: its name, then a blank and its arguments as JSON
     Finished,
     Lap,
     Blocked,
@@ -54,6 +56,8 @@ struct Progress {
   std::optional<int> current_item;  ///< empty: none in hand
   std::optional<EnuPoint> target;
   std::optional<double> cross_track_m;
+  std::optional<double> arrival_radius_m;     ///< within it the item in hand counts as reached
+  std::optional<double> cross_track_limit_m;  ///< farther off its way the robot is lost
   /// To the end of the mission; of this lap where it repeats for ever. Jumps are not counted.
   std::optional<double> distance_left_m;
   std::optional<double> eta_s;  ///< until then, as the speeds are planned
@@ -62,6 +66,16 @@ struct Progress {
 /// The step a start would begin with; steps.size() if there is none.
 std::size_t first_step(const Route& route, const StartAt& start,
                        std::optional<EnuPoint> here) noexcept;
+/// Where a start begins, as far as it is known before anything moves.
+struct Beginning {
+  std::size_t step = 0;          ///< steps.size(): there is no such item
+  std::optional<Joining> joins;  ///< it goes on from where the robot stands
+  std::optional<EnuPoint> target;
+};
+/// @param stand empty: not known where. @param home for return_home.
+Beginning beginning(const Route& route, const StartAt& at, const std::optional<Stand>& stand,
+                    std::optional<EnuPoint> home, const PathParams& path,
+                    const BehaveParams& behave) noexcept;
 /// The first place a mission drives to from that step on. @param home for return_home.
 std::optional<EnuPoint> first_target(const Route& route, std::size_t step,
                                      std::optional<EnuPoint> home) noexcept;
@@ -81,8 +95,11 @@ class Executor {
   base::Result<void> start(const StartAt& at, EnuPoint here, std::optional<EnuPoint> home);
   void pause(std::string reason);
   void stop(std::string reason);
-  /// Conflict unless Paused or Blocked, or when the place to go on with is too far away.
+  /// Conflict unless Paused or Blocked, or staying until this word; or when the place to go on with
+  /// is too far away.
   base::Result<void> resume(EnuPoint here);
+  /// It stays at a place until somebody says to go on: resume.
+  bool waits_for_word() const noexcept;
   /// What resume would refuse, without doing it.
   base::Result<void> may_resume(EnuPoint here) const;
   /// Where it stands; empty: nothing is in hand.
@@ -117,12 +134,13 @@ class Executor {
   }
   TrackPhase phase() const noexcept { return tracker_.phase(); }
   /// @param here empty: the position is not known, and neither is a way that begins there.
-  Progress progress(std::optional<EnuPoint> here) const;
+  /// @param sigma_m of that position.
+  Progress progress(std::optional<EnuPoint> here, double sigma_m = 0.0) const;
   /// What happened since the last call.
   std::vector<Notice>& notices() noexcept { return notices_; }
 
  private:
-  enum class Doing { Nothing, Path, Connector, Wait, Turn };
+  enum class Doing { Nothing, Path, Connector, Wait, Turn, Stay };
   /// Way and time, jumps not counted.
   struct Left {
     double m = 0.0;
@@ -133,11 +151,19 @@ class Executor {
   void enter(const Vehicle& vehicle, std::optional<EnuPoint> home);
   bool enter_step(const RouteStep& step, const Vehicle& vehicle, std::optional<EnuPoint> home);
   bool enter_go(const RouteStep& step, const Vehicle& vehicle);
+  bool begin_here(const RouteStep& step, const Vehicle& vehicle);
+  void join(const Joining& where, const Vehicle& vehicle);
+  bool has_joined(const Vehicle& vehicle) const noexcept;
+  double beside_m(const Vehicle& vehicle) const noexcept;
+  bool passed_by(const RouteStep* step, double off_m);
+  double cross_track_limit_m(double sigma_m) const noexcept;
   bool connect(EnuPoint to, const RouteNode* node, const Vehicle& vehicle);
   bool lay_connector(Vertex end, const Vehicle& vehicle);
   bool enter_move(const RouteStep& step, const Vehicle& vehicle);
   bool enter_turn(const RouteStep& step);
   TrackOutput step_turn(const Vehicle& vehicle, double dt_s);
+  bool enter_stay(const RouteStep& step, const Vehicle& vehicle);
+  void step_stay(const Vehicle& vehicle);
   bool cut_goal(const Vehicle& vehicle, double dt_s);
   EnuPoint cut(EnuPoint to, EnuPoint here) const noexcept;
   bool at_end(const Vehicle& vehicle, std::optional<EnuPoint> home);
@@ -145,6 +171,7 @@ class Executor {
   void pass_nodes(const Vehicle& vehicle);
   void leg_done(const Vehicle& vehicle);
   bool missed(const Vehicle& vehicle);
+  bool back_up(const Vehicle& vehicle, double off_m);
   void block(std::string why);
   void reached(const RouteStep& step);
   void pass(const RouteStep& step);
@@ -177,6 +204,7 @@ class Executor {
   Doing doing_ = Doing::Nothing;
   std::size_t at_ = 0;                   ///< index of the step in hand
   std::optional<std::size_t> standing_;  ///< node at which the robot is
+  std::optional<EnuPoint> stays_;        ///< Stay: here, also while it drives back
   std::optional<EnuPoint> rejoin_;       ///< the connector leads back to the path here
   std::size_t leg_ = 0;                  ///< kept place on the path
   double s_m_ = 0.0;
@@ -185,12 +213,15 @@ class Executor {
   double looked_s_ = 0.0;  ///< since a cut goal was looked at
   std::size_t skipped_ = 0;
   int laps_ = 0;                  ///< driven
+  bool joins_ = false;            ///< started: the way may be joined ahead of item 1
+  double going_round_m_ = 0.0;    ///< farther from the way than lost_m, until it has joined it
   bool rolled_on_ = false;        ///< restored: it was under way when its place was kept
   std::optional<EnuPoint> home_;  ///< of the last step
   std::string fled_;              ///< why it returns before its end
   bool interrupted_ = false;
   bool returning_ = false;  ///< the way home after the last step
   bool drove_ = false;      ///< in this lap
+  bool backed_up_ = false;  ///< to the stop in hand, once
   double lost_s_ = 0.0;
   double stuck_s_ = 0.0;
   Vehicle stuck_at_;

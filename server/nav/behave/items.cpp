@@ -5,6 +5,8 @@
 
 #include "base/angle.hpp"
 #include "nav/behave/executor.hpp"
+#include "nav/behave/text.hpp"
+#include "nav/track/corner.hpp"
 
 namespace roverd::nav {
 
@@ -38,6 +40,10 @@ bool Executor::enter_turn(const RouteStep& step) {
 }
 
 TrackOutput Executor::step_turn(const Vehicle& vehicle, double dt_s) {
+  if (too_steep_to_turn(vehicle, path_params_->slope)) {
+    block(steep_text(vehicle, path_params_->slope));
+    return {};
+  }
   const TrackOutput out = rotation_.step(vehicle, *path_params_, dt_s);
   if (rotation_.state() == RotateInPlace::State::Failed)
     block("a turn on the spot does not come to its end");
@@ -46,6 +52,38 @@ TrackOutput Executor::step_turn(const Vehicle& vehicle, double dt_s) {
     reached(*step_now());
   }
   return out;
+}
+
+/// Begun anew, or with what is left after a restart.
+bool Executor::enter_stay(const RouteStep& step, const Vehicle& vehicle) {
+  stays_ = step.place.value_or(vehicle.at);
+  if (!(wait_s_ > 0.0)) wait_s_ = step.seconds;
+  doing_ = Doing::Stay;
+  return true;
+}
+
+/// Its time goes on while it drives back. Pushed away, it drives to where it stood: backwards, if
+/// that is shorter than to turn round.
+void Executor::step_stay(const Vehicle& vehicle) {
+  const RouteStep& step = *step_now();
+  const double off_m = base::distance_m(vehicle.at, *stays_);
+  const bool away = off_m > std::max(step.within_m, params_->arrive_sigmas * vehicle.sigma_m);
+  if (away) {
+    const EnuPoint place = *stays_;
+    const double bearing_rad =
+        base::angle_diff_rad(vehicle.yaw_rad, direction_rad(vehicle.at, place));
+    Vertex end;
+    end.at = place;
+    end.reverse = std::abs(bearing_rad) > base::kPi / 2.0;
+    end.speed_mps = route_->speed_mps;
+    standing_.reset();
+    if (lay_connector(end, vehicle)) return;
+    doing_ = Doing::Stay;
+  }
+  if (step.endless || wait_s_ > 0.0) return;
+  doing_ = Doing::Nothing;
+  tracker_.reset();  // it is done with the way here, not with the next one
+  reached(step);
 }
 
 /// Where the parameters ask for it, only so far towards a place.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/angle.hpp"
 #include "nav/behave/executor.hpp"
 
 namespace roverd::nav {
@@ -16,6 +17,16 @@ constexpr double kLook_m = 0.05;
 constexpr double kOtherWay_m = 0.3;
 constexpr double kCarried_m = 3.0;  // farther beside the way nobody rolls
 constexpr double kBefore_m = 0.03;
+const double kTurned_rad = base::rad_from_deg(120.0);  // nobody rolls round that
+
+double direction_at(const Path& path, double s_m) {
+  const Leg& leg = path.legs[std::min(path.leg_from(s_m), path.legs.size() - 1)];
+  const auto next =
+      std::upper_bound(path.points.begin(), path.points.end(), s_m,
+                       [](double s, const PathPoint& point) { return s < point.s_m; });
+  const auto near = static_cast<std::size_t>(next - path.points.begin());
+  return path.yaw_rad(leg, s_m, near > 0 ? near - 1 : 0);
+}
 
 }  // namespace
 
@@ -30,7 +41,7 @@ std::optional<base::MissionPlace> Executor::place() const {
   } else if (rejoin_) {
     p.s_m = s_m_;
   }
-  if (doing_ == Doing::Wait) p.wait_s = wait_s_;
+  if (doing_ == Doing::Wait || stays_) p.wait_s = wait_s_;
   const RouteStep* step = step_now();
   const bool counts = step != nullptr && !step->yaw_rad;
   if (counts && step->kind == StepKind::Turn) {
@@ -80,6 +91,8 @@ base::Result<void> Executor::restore(std::shared_ptr<const Route> route,
     doing_ = Doing::Path;
     s_m_ = std::min(p.s_m, course_->path.length_m());
     leg_ = std::min(course_->path.leg_from(s_m_), course_->path.legs.size() - 1);
+  } else if (p.wait_s > 0.0 && step != nullptr && step->kind == StepKind::Stay) {
+    wait_s_ = p.wait_s;  // where it stays is looked up anew
   } else if (p.wait_s > 0.0 && step != nullptr) {
     doing_ = Doing::Wait;
     wait_s_ = p.wait_s;
@@ -113,10 +126,12 @@ void Executor::catch_up(EnuPoint here) {
   const double end_m = may_have_come_to_m();
   double s_m = s_m_;
   double off_m = base::distance_m(here, path.at(s_m_));
+  const double way_rad = direction_at(path, s_m_);
   for (double at_m = s_m_; at_m < end_m;) {
     at_m = std::min(end_m, at_m + kLook_m);
     const double far_m = base::distance_m(here, path.at(at_m));
     if (far_m > off_m + kOtherWay_m) break;  // a lane beside it may come nearer again
+    if (std::abs(base::angle_diff_rad(way_rad, direction_at(path, at_m))) > kTurned_rad) break;
     if (far_m < off_m) {
       off_m = far_m;
       s_m = at_m;

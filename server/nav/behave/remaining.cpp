@@ -82,7 +82,8 @@ std::optional<Executor::Left> Executor::left(const RouteStep& step,
     }
     return all;
   }
-  if (doing_ == Doing::Wait && standing_) return from(path.vertex_m[*standing_]);
+  const bool rests = doing_ == Doing::Wait || step.kind == StepKind::Stay;
+  if (rests && standing_) return from(path.vertex_m[*standing_]);
   if (step.kind != StepKind::Go || !here) return std::nullopt;
   // Not on its way yet: straight to the waypoint first.
   const double there_m = base::distance_m(*here, course_->nodes[step.node].at);
@@ -90,7 +91,7 @@ std::optional<Executor::Left> Executor::left(const RouteStep& step,
   return Left{rest.m + there_m, rest.s + there_m / by_mps};
 }
 
-Progress Executor::progress(std::optional<EnuPoint> here) const {
+Progress Executor::progress(std::optional<EnuPoint> here, double sigma_m) const {
   Progress p;
   const RouteStep* step = step_now();
   if (step == nullptr || state_ == base::ExecutionState::Idle ||
@@ -99,6 +100,11 @@ Progress Executor::progress(std::optional<EnuPoint> here) const {
   }
   if (state_ != base::ExecutionState::Loaded) p.current_item = step->item;
   if (step->kind == StepKind::Go) p.target = course_->nodes[step->node].at;
+  if (here && in_hand() && step->kind == StepKind::Go) {
+    p.arrival_radius_m = arrival_radius_m(&course_->nodes[step->node], sigma_m, *params_);
+  }
+  if (here && in_hand()) p.cross_track_limit_m = cross_track_limit_m(sigma_m);
+  if (stays_) p.target = stays_;
   if (step->kind != StepKind::Go && doing_ == Doing::Connector) {
     p.target = connector_.points.back().at;
   }
@@ -107,10 +113,11 @@ Progress Executor::progress(std::optional<EnuPoint> here) const {
   if (running() && tracking) p.cross_track_m = tracker_.cross_track_m();
   if (const auto lap = left(*step, here)) {
     const Left more = laps_left();
-    const bool waits = doing_ == Doing::Wait;
+    const bool waits = doing_ == Doing::Wait || (stays_ && !step->endless);
     const double pauses_s = course_->pauses_s[at_ + (waits ? 1 : 0)] + (waits ? wait_s_ : 0.0);
     p.distance_left_m = std::max(0.0, lap->m) + more.m;
-    p.eta_s = std::max(0.0, lap->s) + pauses_s + more.s;
+    const double eta_s = std::max(0.0, lap->s) + pauses_s + more.s;
+    if (std::isfinite(eta_s)) p.eta_s = eta_s;
   }
   return p;
 }

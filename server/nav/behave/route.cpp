@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/angle.hpp"
+#include "mission/circle.hpp"
+#include "nav/behave/text.hpp"
 #include "nav/track/corner.hpp"
 
 namespace roverd::nav {
@@ -11,6 +14,10 @@ namespace {
 
 using base::FieldError;
 using mission::AtEnd;
+
+constexpr double kNodeEvery_rad = base::kPi / 12.0;  // of a circle
+constexpr double kMostCircled_m = 50'000.0;
+constexpr double kMostPlaces = 200'000.0;  // as many as a mission may have items
 
 class Layout {
  public:
@@ -36,7 +43,8 @@ class Layout {
     const bool drives =
         std::any_of(forth().steps.begin(), forth().steps.end(), [](const RouteStep& step) {
           return step.kind == StepKind::Go || step.kind == StepKind::Home ||
-                 step.kind == StepKind::Move || step.kind == StepKind::Turn;
+                 step.kind == StepKind::Move || step.kind == StepKind::Turn ||
+                 step.kind == StepKind::Stay;
         });
     if (problems_.empty() && !drives) {
       problems_.push_back({"/items", "the mission has no waypoint"});
@@ -57,7 +65,8 @@ class Layout {
   Course& forth() { return route_.forth; }
 
   static bool belongs_before(StepKind kind) {
-    return kind == StepKind::Wait || kind == StepKind::Face || kind == StepKind::Act;
+    return kind == StepKind::Wait || kind == StepKind::Face || kind == StepKind::Act ||
+           kind == StepKind::Stay;
   }
 
   void refuse(std::string detail) { problems_.push_back({pointer_, std::move(detail)}); }
@@ -81,9 +90,7 @@ class Layout {
     if (!at) return;
     RouteNode node{
         *at, w.speed_mps.value_or(speed_mps_), w.radius_m.value_or(0.0), w.reverse, w.turn, item_};
-    const double hold_s = std::max(0.0, w.hold_s.value_or(0.0));
-    forth().steps.push_back({StepKind::Go, item_, forth().nodes.size(), hold_s});
-    forth().nodes.push_back(node);
+    go(node).seconds = std::max(0.0, w.hold_s.value_or(0.0));
   }
   void add(const mission::Wait& w) {
     forth().steps.push_back({.kind = StepKind::Wait, .item = item_, .seconds = w.seconds});
@@ -111,6 +118,7 @@ class Layout {
       return refuse("lies more than 10 km from the robot's map");
     }
     RouteNode node{at, speed_mps_, 0.0, false, mission::Turn::Auto, item_};
+    leave_circle();
     const bool faces = l.heading_deg.has_value();
     const double yaw_rad = base::yaw_from_heading(l.heading_deg.value_or(0.0));
     if (faces && params_.vehicle.steered()) {
@@ -149,6 +157,136 @@ class Layout {
                              .action = a.name,
                              .arguments = a.arguments.empty() ? "" : a.arguments.dump()});
   }
+  void add(const mission::Loiter& l) {
+    RouteStep stay{.kind = StepKind::Stay, .item = item_, .seconds = l.seconds.value_or(0.0)};
+    stay.within_m = l.within_m();
+    stay.endless = !l.seconds;
+    if (const auto at = l.at()) {
+      stay.place = place(*at, pointer_);
+      if (!stay.place) return;
+      go({.at = *stay.place, .speed_mps = speed_mps_, .item = item_}).silent = true;
+    }
+    forth().steps.push_back(std::move(stay));
+  }
+  void add(const mission::Circle& c) {
+    const auto centre = place(c.at, pointer_);
+    if (!centre) return;
+    const bool steered = params_.vehicle.steered();
+    const std::size_t stations = mission::stations_of(c);
+    if (c.radius_m < min_radius_m(params_.vehicle)) {
+      return refuse("is a circle too narrow for this vehicle: its radius must be at least " +
+                    tenths_text(min_radius_m(params_.vehicle)));
+    }
+    if (steered && stations > 0) {
+      return refuse("has stations to turn on the spot: this vehicle cannot");
+    }
+    const mission::CircleWay way = mission::circle_way(c, *centre, before_circle());
+    circled_m_ += way.length_m();
+    if (circled_m_ > kMostCircled_m) return refuse("the mission's circles are longer than 50 km");
+    const double places = std::abs(way.sweep_rad) / kNodeEvery_rad + 3.0 * double(stations);
+    if (double(forth().steps.size()) + places > kMostPlaces) {
+      return refuse("the mission's circles have too many places to drive by");
+    }
+    RouteNode node{.at = way.entry(),
+                   .speed_mps = c.speed_mps.value_or(speed_mps_),
+                   .item = item_,
+                   .tangent = way.tangent || steered,
+                   .halt = !way.tangent && !steered};
+    if (steered && !way.tangent) lead_in(way, node);
+    go(node).silent = true;
+    round(c, way, stations, node);
+    if (steered) leave_ = LeadOut{way, node.speed_mps};
+  }
+
+  /// Where the way to a circle begins, as far as a plan tells.
+  std::optional<EnuPoint> before_circle() const {
+    const auto& steps = route_.forth.steps;
+    for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
+      if (step->kind == StepKind::Go) return route_.forth.nodes[step->node].at;
+      const bool elsewhere = step->kind == StepKind::Home || step->kind == StepKind::Move ||
+                             (step->kind == StepKind::Stay && !step->place);
+      if (elsewhere || step->kind == StepKind::Jump) return std::nullopt;
+    }
+    return route_.home;
+  }
+
+  /// A steered vehicle comes onto a circle only along it.
+  void lead_in(const mission::CircleWay& way, RouteNode node) {
+    const double run_m = std::max(2.0, 1.5 * min_radius_m(params_.vehicle));
+    node.at = beside(way, 0.0, -run_m);
+    node.tangent = false;
+    go(node).silent = true;
+  }
+
+  /// On the tangent at a place of the circle, so far along the way.
+  static EnuPoint beside(const mission::CircleWay& way, double along_rad, double by_m) {
+    const double side = way.sweep_rad > 0.0 ? 1.0 : -1.0;
+    const double yaw_rad = way.from_rad + along_rad + side * base::kPi / 2.0;
+    const EnuPoint on = way.at(along_rad);
+    return {on.east_m + by_m * std::cos(yaw_rad), on.north_m + by_m * std::sin(yaw_rad)};
+  }
+
+  void round(const mission::Circle& c, const mission::CircleWay& way, std::size_t stations,
+             RouteNode node) {
+    const double side = way.sweep_rad > 0.0 ? 1.0 : -1.0;
+    const double each_rad = stations > 0 ? 2.0 * base::kPi / c.stations.value_or(1) : 0.0;
+    const double whole_rad = std::abs(way.sweep_rad);
+    double done_rad = 0.0;
+    for (std::size_t k = 1; done_rad < whole_rad - 1e-6; ++k) {
+      const double stop_rad = k <= stations ? std::min(whole_rad, each_rad * double(k)) : whole_rad;
+      const double arc_rad = stop_rad - done_rad;
+      const int pieces = static_cast<int>(std::ceil(arc_rad / kNodeEvery_rad - 1e-9));
+      for (int i = 1; i <= pieces; ++i) {
+        const double to_rad = done_rad + arc_rad * i / pieces;
+        node.at = way.at(side * to_rad);
+        node.curvature_1pm = side / way.radius_m;
+        const bool end = to_rad > whole_rad - 1e-6;
+        const bool station = i == pieces && k <= stations;
+        node.halt = station || (end && !params_.vehicle.steered());
+        node.tangent = !node.halt;
+        RouteStep& step = go(node);
+        step.silent = !end || station;
+      }
+      done_rad = stop_rad;
+      if (k <= stations) {
+        station(way, side * done_rad, c.hold_s.value_or(0.0), done_rad > whole_rad - 1e-6);
+      }
+    }
+  }
+
+  /// Turns to the centre and holds.
+  void station(const mission::CircleWay& way, double at_rad, double hold_s, bool last) {
+    const double yaw_rad = base::wrap_rad(way.from_rad + at_rad + base::kPi);
+    forth().steps.push_back({.kind = StepKind::Face,
+                             .item = item_,
+                             .yaw_rad = yaw_rad,
+                             .silent = !last || hold_s > 0.0});
+    if (hold_s > 0.0) {
+      forth().steps.push_back(
+          {.kind = StepKind::Wait, .item = item_, .seconds = hold_s, .silent = !last});
+    }
+  }
+
+  RouteStep& go(const RouteNode& node) {
+    leave_circle();
+    forth().steps.push_back({.kind = StepKind::Go, .item = item_, .node = forth().nodes.size()});
+    forth().nodes.push_back(node);
+    return forth().steps.back();
+  }
+
+  /// A steered vehicle goes on straight before it bends to what comes next.
+  void leave_circle() {
+    const auto out = std::exchange(leave_, std::nullopt);
+    if (!out) return;
+    const double run_m = std::max(2.0, 2.5 * min_radius_m(params_.vehicle));
+    const int item = forth().nodes.back().item;
+    forth().steps.push_back(
+        {.kind = StepKind::Go, .item = item, .node = forth().nodes.size(), .silent = true});
+    forth().nodes.push_back({.at = beside(out->way, out->way.sweep_rad, run_m),
+                             .speed_mps = out->speed_mps,
+                             .item = item});
+  }
+
   void not_back_and_forth(const char* what) {
     if (route_.at_end == AtEnd::BackAndForth) {
       refuse(std::string(what) + " cannot be driven back and forth");
@@ -166,6 +304,11 @@ class Layout {
     for (RouteStep& step : forth().steps) {
       if (step.kind != StepKind::Jump) continue;
       step.target = first_step_[static_cast<std::size_t>(jump_items_[k] - 1)];
+      // The way off a circle belongs to the circle.
+      while (step.target < forth().steps.size() &&
+             forth().steps[step.target].item < jump_items_[k]) {
+        ++step.target;
+      }
       step.node = k++;
     }
   }
@@ -179,12 +322,19 @@ class Layout {
       vertices.push_back(
           {n.at, n.speed_mps, n.reverse, false, n.turn,
            n.turn == mission::Turn::Through ? through : params_.track.corner_deviation_m});
+      vertices.back().curvature_1pm = n.curvature_1pm;
+      vertices.back().tangent = n.tangent;
     }
     for (std::size_t i = 0; i < course.steps.size(); ++i) {
       const RouteStep& step = course.steps[i];
       if (step.kind != StepKind::Go) continue;
       const bool on = i + 1 < course.steps.size() && course.steps[i + 1].kind == StepKind::Go;
-      vertices[step.node].stop = !on || step.seconds > 0.0;
+      const RouteNode& node = course.nodes[step.node];
+      vertices[step.node].stop = !on || step.seconds > 0.0 || node.halt;
+      const bool round = node.tangent || node.halt || node.curvature_1pm != 0.0;
+      const bool bends = node.turn == mission::Turn::Auto ||
+                         (node.turn == mission::Turn::Arc && params_.vehicle.steered());
+      vertices[step.node].dense = bends && !round;
     }
     return build_path(vertices, params_);
   }
@@ -196,10 +346,12 @@ class Layout {
     Course& back = route_.back;
     const Course& there = route_.forth;
     back.nodes.assign(there.nodes.rbegin(), there.nodes.rend());
+    back.nodes.front().curvature_1pm = 0.0;
     for (std::size_t i = 1; i < back.nodes.size(); ++i) {
       const RouteNode& way = there.nodes[there.nodes.size() - i];
       back.nodes[i].speed_mps = way.speed_mps;
       back.nodes[i].reverse = way.reverse;
+      back.nodes[i].curvature_1pm = -way.curvature_1pm;
     }
     for (std::size_t end = there.steps.size(); end > 0;) {
       std::size_t begin = end - 1;
@@ -212,7 +364,18 @@ class Layout {
       }
       end = begin;
     }
+    tell_circles_last(back);
     back.path = path_of(back);
+  }
+
+  /// Whichever way round, a circle counts when all of it is driven.
+  void tell_circles_last(Course& course) const {
+    for (std::size_t i = 0; i < course.steps.size(); ++i) {
+      const int item = course.steps[i].item;
+      const auto& what = plan_.items[static_cast<std::size_t>(item - 1)];
+      if (!std::holds_alternative<mission::Circle>(what)) continue;
+      course.steps[i].silent = i + 1 < course.steps.size() && course.steps[i + 1].item == item;
+    }
   }
 
   double pause_s(const RouteStep& step) const {
@@ -221,6 +384,8 @@ class Layout {
       case StepKind::Go:
       case StepKind::Wait:
         return step.seconds;
+      case StepKind::Stay:
+        return step.endless ? std::numeric_limits<double>::infinity() : step.seconds;
       case StepKind::Move:
         return std::abs(step.by) / std::max(0.1, params_.speed.creep_mps);
       case StepKind::Face:
@@ -262,12 +427,19 @@ class Layout {
     if (route_.at_end == AtEnd::Return && before) route_.home_ends.push_back({*before, 0});
   }
 
+  struct LeadOut {
+    mission::CircleWay way;
+    double speed_mps = 0.0;
+  };
+
   const mission::Plan& plan_;
   const base::LocalFrame& frame_;
   const PathParams& params_;
   Route route_;
   double speed_mps_ = 0.0;
   int item_ = 0;
+  double circled_m_ = 0.0;
+  std::optional<LeadOut> leave_;  ///< of the circle that was laid last
   std::string pointer_;
   std::vector<std::size_t> first_step_;  ///< of each item
   std::vector<int> jump_items_;

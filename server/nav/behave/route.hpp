@@ -13,20 +13,23 @@
 
 namespace roverd::nav {
 
-/// Face and Act belong to the waypoint before them.
-enum class StepKind { Go, Wait, Home, Jump, Face, Turn, Move, Act };
+/// Face, Act and Stay belong to the waypoint before them.
+enum class StepKind { Go, Wait, Home, Jump, Face, Turn, Move, Act, Stay };
 
 /// One thing to do. `item` is the number people see (from 1).
 struct RouteStep {
   StepKind kind = StepKind::Go;
   int item = 0;
   std::size_t node = 0;    ///< Go: index of the waypoint. Jump: how many jumps come before it
-  double seconds = 0.0;    ///< Wait: how long. Go: how long to hold there
+  double seconds = 0.0;    ///< Wait, Stay: how long. Go: how long to hold there
   std::size_t target = 0;  ///< Jump: index of the step to go on with
   int times = 0;           ///< Jump: repetitions; 0 = for ever
   double by = 0.0;         ///< Move: m, negative backwards. Turn: rad, left positive
   std::optional<double> yaw_rad{};  ///< Face: to this; Turn: to this instead of by an angle
   bool silent = false;              ///< Go: a point on the way to the item's own
+  std::optional<EnuPoint> place{};  ///< Stay: here; empty: where the robot stands
+  double within_m = 0.0;            ///< Stay: farther from there it drives back
+  bool endless = false;             ///< Stay: until somebody says to go on
   std::string action{};             ///< Act: its name
   std::string arguments{};          ///< Act: JSON
 };
@@ -39,6 +42,9 @@ struct RouteNode {
   bool reverse = false;
   mission::Turn turn = mission::Turn::Auto;
   int item = 0;
+  double curvature_1pm = 0.0;  ///< of the way that leads here, left positive
+  bool tangent = false;        ///< the way goes on without a corner
+  bool halt = false;           ///< stop here, whatever comes next
 };
 
 /// One direction through the mission.
@@ -46,7 +52,8 @@ struct Course {
   std::vector<RouteNode> nodes;
   std::vector<RouteStep> steps;
   Path path;  ///< through all nodes in order; vertex i is node i
-  /// Of each step, and one more: what holds, waits, moves and turns take from it to the end, s.
+  /// Of each step, and one more: what holds, waits, moves and turns take from it to the end, s;
+  /// infinite before a stay without end.
   std::vector<double> pauses_s;
 };
 
@@ -73,8 +80,9 @@ struct Route {
 /// 10 km from the frame's origin, jumps to nowhere, a plan without anything to drive: Invalid,
 /// every such item named in `fields` ("/items/3", from 0 as a JSON pointer counts). `local` items
 /// count from the mission's home, or, if it has none, from the frame's origin. A steered vehicle
-/// comes to a heading on a straight before it, and does not turn on the spot. Pure; linear in the
-/// number of items.
+/// comes to a heading on a straight before it, and does not turn on the spot. A circle is a row of
+/// waypoints on it (mission/circle.hpp), of which the last one counts. Pure; linear in the number
+/// of items and the length of circles.
 base::Result<Route> lay_route(const mission::Plan& plan, const base::LocalFrame& frame,
                               const PathParams& params);
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/angle.hpp"
+#include "nav/behave/text.hpp"
 #include "nav/track/corner.hpp"
 
 namespace roverd::nav {
@@ -73,6 +74,11 @@ void Trip::lay(const Vehicle& v, bool smoothly) {
     lead_ = 2;
   }
   all.insert(all.end(), order_.way.begin() + static_cast<std::ptrdiff_t>(next_), order_.way.end());
+  if (all[lead_].curvature_1pm != 0.0) {  // onto the bend from wherever it stands
+    all[lead_].curvature_1pm = 0.0;
+    all[lead_].tangent = path_params_->vehicle.steered();
+    all[lead_].stop = !all[lead_].tangent;
+  }
   slot_ = 1 - slot_;
   paths_[slot_] = build_path(all, *path_params_);
   const Path& path = paths_[slot_];
@@ -116,6 +122,10 @@ TrackOutput Trip::step(const Vehicle& v, double limit_mps, double dt_s) {
     }
   }
   if (state_ == State::Face) {
+    if (too_steep_to_turn(v, path_params_->slope)) {
+      fail(steep_text(v, path_params_->slope));
+      return {};
+    }
     const TrackOutput out = rotation_.step(v, *path_params_, dt_s);
     if (rotation_.state() == RotateInPlace::State::Done) state_ = State::There;
     if (rotation_.state() == RotateInPlace::State::Failed)
@@ -146,6 +156,20 @@ TrackOutput Trip::step(const Vehicle& v, double limit_mps, double dt_s) {
   return out;
 }
 
+bool Trip::again(std::size_t first, std::size_t points) noexcept {
+  if (state_ != State::Way || next_ < first + points) return false;
+  if (!interrupted_) {
+    // The path may have begun behind it.
+    if (next_ <= first_ + points) return false;
+    const Path& path = paths_[slot_];
+    const double next_m = path.vertex_m[lead_ + next_ - first_];
+    const double back_m = next_m - path.vertex_m[lead_ + next_ - first_ - points];
+    tracker_.move_to(path, tracker_.leg(), tracker_.s_m() - back_m);
+  }
+  next_ -= points;
+  return true;
+}
+
 void Trip::watch(const Vehicle& v, double dt_s) {
   const TrackPhase phase = tracker_.phase();
   const bool driving = phase == TrackPhase::Track || phase == TrackPhase::Pivot;
@@ -158,7 +182,9 @@ void Trip::watch(const Vehicle& v, double dt_s) {
   } else {
     stuck_s_ += dt_s;
   }
-  if (stuck_s_ > behave_->stuck_s) {
+  if (tracker_.too_steep()) {
+    fail(steep_text(v, path_params_->slope));
+  } else if (stuck_s_ > behave_->stuck_s) {
     fail("no progress for " + std::to_string(std::lround(behave_->stuck_s)) + " s");
   } else if (phase == TrackPhase::Track && std::abs(tracker_.cross_track_m()) > behave_->lost_m) {
     fail(std::to_string(std::lround(std::abs(tracker_.cross_track_m()))) + " m away from the way");

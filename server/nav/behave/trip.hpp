@@ -51,6 +51,9 @@ class Trip {
   void interrupt() noexcept { interrupted_ = state_ == State::Way || state_ == State::Face; }
 
   TrackOutput step(const Vehicle& vehicle, double limit_mps, double dt_s);
+  /// The way goes round, and repeats after so many points: back by them, as soon as that leads to
+  /// one of `first` or later. @return whether it did
+  bool again(std::size_t first, std::size_t points) noexcept;
 
   State state() const noexcept { return state_; }
   bool busy() const noexcept { return state_ == State::Way || state_ == State::Face; }

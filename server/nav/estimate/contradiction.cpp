@@ -14,6 +14,7 @@ using base::Sense;
 
 constexpr double kLeastSpeed_mps = 0.3;  // slower, a velocity's error says nothing of a direction
 constexpr double kMostDoubt_rad = 1.0;
+const double kUnproved_rad = base::rad_from_deg(3.0);  // of antennas whose mounting nobody saw
 constexpr double kScaleDoubt = 0.05;
 constexpr base::Duration kRefusedLasts = std::chrono::milliseconds(350);  // more than one outlier
 constexpr base::Duration kRefusedCounts = std::chrono::seconds(1);
@@ -60,11 +61,14 @@ double Estimator::unknown_m() const noexcept {
   const bool refused = !votes_.out(Sense::Position) && position_off_since_ && last_fix_ &&
                        now_ - *last_fix_ < kRefusedCounts &&
                        *last_fix_ - *position_off_since_ >= kRefusedLasts;
-  return std::hypot(votes_.told().doubt_m, distrust_m_, refused ? refused_m_ : 0.0);
+  const bool unsettled = refused || health_.base_shift;
+  return std::hypot(votes_.told().doubt_m, distrust_m_, unsettled ? refused_m_ : 0.0);
 }
 
 double Estimator::unknown_rad() const noexcept {
-  return std::hypot(votes_.told().doubt_rad, distrust_rad_);
+  const bool antennas = last_antennas_ && now_ - *last_antennas_ < kGnssGone;
+  const bool unproved = antennas && !health_.antennas_askew && !askew_watch_.proved();
+  return std::hypot(votes_.told().doubt_rad, distrust_rad_, unproved ? kUnproved_rad : 0.0);
 }
 
 /// What was believed of the one that is left out from now on is as uncertain as it was

@@ -30,9 +30,11 @@ const double kBiasNoise_rad = rad_from_deg(0.7);
 const double kBiasNoiseStanding_rad = rad_from_deg(0.1);
 const double kBiasNoisePivot_rad = rad_from_deg(6.0);
 constexpr double kScaleNoise = 0.006;
-constexpr double kScaleNoiseGyro = 0.0006;
 constexpr double kYawScaleNoise = 0.02;
 constexpr double kPullNoise_1pm = 0.004;
+// The way after which crab and slide are forgotten.
+constexpr double kCrabFades_m = 100.0;
+constexpr double kSlideFades_m = 60.0;
 constexpr double kCoastNoise_m = 0.3;
 const double kCoastYawNoise_rad = rad_from_deg(15.0);
 
@@ -40,26 +42,49 @@ void add_noise(Belief& b, int i, double density, double dt_s) noexcept {
   b.P(i, i) += density * density * dt_s;
 }
 
+/// Towards zero with the way driven; `fresh` is what comes in its place.
+void fade(Belief& b, int i, double keep, double fresh) noexcept {
+  b.x(i) *= keep;
+  b.P.row(i) *= keep;
+  b.P.col(i) *= keep;
+  b.P(i, i) += fresh;
+}
+
 /// What changes with time alone: the receiver's drift and the gyro's bias.
 void age(Belief& b, const Drift& drift, double dt_s) noexcept {
   const double keep = std::exp(-dt_s / drift.tau_s);
   const double fresh = drift.sigma_m * drift.sigma_m * (1.0 - keep * keep);
-  for (const int i : {kDriftE, kDriftN}) {
-    b.x(i) *= keep;
-    b.P.row(i) *= keep;
-    b.P.col(i) *= keep;
-    b.P(i, i) += fresh;
-  }
+  for (const int i : {kDriftE, kDriftN}) fade(b, i, keep, fresh);
   add_noise(b, kGyroBias, kGyroBiasNoise_radps, dt_s);
 }
 
-void carry(Belief& b, const StateMatrix& F) noexcept {
-  const StateMatrix carried = F * b.P * F.transpose();
-  b.P = 0.5 * (carried + carried.transpose());
+/// The first three rows of the step's Jacobian F; the others are those of the unit matrix.
+using Moved = Eigen::Matrix<double, 3, kStates>;
+static_assert(kEast == 0 && kNorth == 1 && kYaw == 2);
+
+Moved unmoved() noexcept {
+  return Moved::Identity();
+}
+
+/// P = F·P·Fᵀ, of which only three rows and columns change.
+void carry(Belief& b, const Moved& F) noexcept {
+  const Moved FP = F * b.P;
+  const Eigen::Matrix3d corner = FP * F.transpose();
+  b.P.topRows<3>() = FP;
+  b.P.leftCols<3>() = FP.transpose();
+  b.P.topLeftCorner<3, 3>() = 0.5 * (corner + corner.transpose());
+}
+
+void fade_slip(Belief& b, const Slip& slip, double way_m) noexcept {
+  if (way_m <= 0.0) return;
+  const double keep = std::exp(-way_m / kCrabFades_m);
+  fade(b, kCrab, keep, slip.crab_sigma * slip.crab_sigma * (1.0 - keep * keep));
+  const double fresh = slip.slide_noise * slip.slide_noise * way_m;
+  for (const int i : {kSlideE, kSlideN}) fade(b, i, std::exp(-way_m / kSlideFades_m), fresh);
 }
 
 /// The step's turn, and in which states it is linear. @return rad.
-double turn(const Belief& b, const Travel& t, StateMatrix& F) noexcept {
+double turn(const Belief& b, const Travel& t, Moved& F) noexcept {
   if (t.gyro_rad) {
     F(kYaw, kGyroBias) = -t.dt_s;
     return *t.gyro_rad - b.x(kGyroBias) * t.dt_s;
@@ -69,7 +94,7 @@ double turn(const Belief& b, const Travel& t, StateMatrix& F) noexcept {
   return b.x(kYawScale) * t.turn_rad + b.x(kPull) * t.ahead_m;
 }
 
-void add_motion_noise(Belief& b, const Travel& t, double turned_rad) noexcept {
+void add_motion_noise(Belief& b, const Travel& t, const Slip& slip, double turned_rad) noexcept {
   const double turn_rate = std::abs(turned_rad) / t.dt_s;
   const double speed = std::abs(t.ahead_m) / t.dt_s;
   // With a gyro, what the heading lacks is not asked of place and scale.
@@ -84,14 +109,23 @@ void add_motion_noise(Belief& b, const Travel& t, double turned_rad) noexcept {
   // Motor currents of a turn on the spot move a compass by many degrees.
   const bool pivot = turn_rate > 0.3 && speed < 0.15;
   add_noise(b, kBias, pivot ? kBiasNoisePivot_rad : kBiasNoise_rad, t.dt_s);
-  add_noise(b, kScale, (t.gyro_rad ? kScaleNoiseGyro : kScaleNoise) * std::min(1.0, speed), t.dt_s);
+  const double scale = t.gyro_rad ? slip.scale_noise : std::max(kScaleNoise, slip.scale_noise);
+  b.P(kScale, kScale) += scale * scale * std::min(speed, speed * speed) * t.dt_s;
   add_noise(b, kYawScale, kYawScaleNoise * std::min(1.0, turn_rate), t.dt_s);
   add_noise(b, kPull, kPullNoise_1pm * std::min(1.0, speed), t.dt_s);
 }
 
 }  // namespace
 
-void predict(Belief& b, const Travel& t, const Drift& drift, bool standing) noexcept {
+Eigen::Vector2d way_per_m(const StateVector& x, double yaw_rad, double way) noexcept {
+  const double c = std::cos(yaw_rad);
+  const double s = std::sin(yaw_rad);
+  return {way * (x(kScale) * c - x(kCrab) * s) + x(kSlideE),
+          way * (x(kScale) * s + x(kCrab) * c) + x(kSlideN)};
+}
+
+void predict(Belief& b, const Travel& t, const Slip& slip, const Drift& drift,
+             bool standing) noexcept {
   age(b, drift, t.dt_s);
   if (standing) {
     add_noise(b, kEast, kStandingNoise_m, t.dt_s);
@@ -99,28 +133,36 @@ void predict(Belief& b, const Travel& t, const Drift& drift, bool standing) noex
     add_noise(b, kBias, kBiasNoiseStanding_rad, t.dt_s);
     return;
   }
-  StateMatrix F = StateMatrix::Identity();
+  Moved F = unmoved();
   const double turned_rad = turn(b, t, F);
-  const double k = b.x(kScale);
-  const double middle_rad = b.x(kYaw) + 0.5 * turned_rad;
-  const double east = std::cos(middle_rad);
-  const double north = std::sin(middle_rad);
-  const double ahead_m = k * t.ahead_m;
   // The middle of the step points along yaw + turned/2.
-  F(kEast, kYaw) = -ahead_m * north;
-  F(kNorth, kYaw) = ahead_m * east;
+  const double middle_rad = b.x(kYaw) + 0.5 * turned_rad;
+  const double way_m = std::abs(t.ahead_m);
+  const double back = t.ahead_m < 0.0 ? -1.0 : 1.0;
+  const Eigen::Vector2d moved = way_m * way_per_m(b.x, middle_rad, back);
+  const double c = t.ahead_m * std::cos(middle_rad);
+  const double s = t.ahead_m * std::sin(middle_rad);
+  // What of the way turns with the robot.
+  const double own_east = moved.x() - way_m * b.x(kSlideE);
+  const double own_north = moved.y() - way_m * b.x(kSlideN);
+  F(kEast, kYaw) = -own_north;
+  F(kNorth, kYaw) = own_east;
   for (const int i : {kGyroBias, kYawScale, kPull}) {
-    F(kEast, i) = -0.5 * ahead_m * north * F(kYaw, i);
-    F(kNorth, i) = 0.5 * ahead_m * east * F(kYaw, i);
+    F(kEast, i) = -0.5 * own_north * F(kYaw, i);
+    F(kNorth, i) = 0.5 * own_east * F(kYaw, i);
   }
-  F(kEast, kScale) = t.ahead_m * east;
-  F(kNorth, kScale) = t.ahead_m * north;
+  F(kEast, kScale) = c;
+  F(kNorth, kScale) = s;
+  F(kEast, kCrab) = -s;
+  F(kNorth, kCrab) = c;
+  F(kEast, kSlideE) = F(kNorth, kSlideN) = way_m;
 
-  b.x(kEast) += ahead_m * east;
-  b.x(kNorth) += ahead_m * north;
+  b.x(kEast) += moved.x();
+  b.x(kNorth) += moved.y();
   b.x(kYaw) = base::wrap_rad(b.x(kYaw) + turned_rad);
   carry(b, F);
-  add_motion_noise(b, t, turned_rad);
+  fade_slip(b, slip, way_m);
+  add_motion_noise(b, t, slip, turned_rad);
 }
 
 void predict_coasting(Belief& b, const Coast& coast, double dt_s, const Drift& drift) noexcept {
@@ -134,7 +176,7 @@ void predict_coasting(Belief& b, const Coast& coast, double dt_s, const Drift& d
   add_noise(b, kEast, kCoastNoise_m, dt_s);
   add_noise(b, kNorth, kCoastNoise_m, dt_s);
   if (coast.gyro_rad) {
-    StateMatrix F = StateMatrix::Identity();
+    Moved F = unmoved();
     const double turned_rad = turn(b, {0.0, 0.0, dt_s, coast.gyro_rad}, F);
     b.x(kYaw) = base::wrap_rad(b.x(kYaw) + turned_rad);
     carry(b, F);
@@ -171,13 +213,15 @@ bool update(Belief& b, const Observation<M>& o, StateVector& change, double& nis
   b.x(kScale) = std::clamp(b.x(kScale), 0.5, 1.2);
   b.x(kYawScale) = std::clamp(b.x(kYawScale), 0.3, 1.5);
   b.x(kPull) = std::clamp(b.x(kPull), -0.3, 0.3);
+  b.x(kCrab) = std::clamp(b.x(kCrab), -0.3, 0.3);
+  for (const int i : {kSlideE, kSlideN}) b.x(i) = std::clamp(b.x(i), -0.4, 0.4);
   change = b.x - before;
   change(kYaw) = base::wrap_rad(change(kYaw));
 
-  // Joseph form: right for any gain, so also for one with rows struck out.
-  const StateMatrix A = StateMatrix::Identity() - K * o.H;
-  const StateMatrix P = A * b.P * A.transpose() + K * o.R * K.transpose();
-  b.P = 0.5 * (P + P.transpose());
+  // Joseph's form, right for any gain and so for one with rows struck out, multiplied out:
+  // (I−KH)P(I−KH)ᵀ + KRKᵀ = P − K(HP) − (HP)ᵀKᵀ + KSKᵀ
+  const Eigen::Matrix<double, kStates, M> half = PHt - 0.5 * K * S;
+  b.P -= K * half.transpose() + half * K.transpose();
   return true;
 }
 

@@ -2,8 +2,9 @@
 // The filter's arithmetic, without sensors or time: one belief, one prediction, one update.
 //
 //   x = [east_m, north_m, yaw_rad, gyro_bias_radps, compass_bias_rad, compass_left_radpa,
-//        compass_right_radpa, odometry_scale, yaw_scale, pull_1pm, drift_east_m, drift_north_m]ᵀ ,
-//   P is 12×12 in that order.
+//        compass_right_radpa, odometry_scale, yaw_scale, pull_1pm, drift_east_m, drift_north_m,
+//        crab, slide_east, slide_north]ᵀ ,
+//   P is 15×15 in that order.
 //
 // The position is the centre of rotation in the local frame. A gyro shows w + gyro_bias. A compass
 // shows yaw + compass_bias + compass_left·I_left + compass_right·I_right (motor currents, A). The
@@ -11,6 +12,12 @@
 // w = yaw_scale·w_odo + pull·v_odo: a skid-steer turns less than its tracks claim, and bends to one
 // side where one track grips better. A receiver shows position + drift, drift being a slow
 // Gauss-Markov process that vanishes with RTK fixed.
+//
+// No robot drives exactly where it points. For each metre of its tracks it moves `crab` metres to
+// its left (to the right when it reverses), and by the vector `slide`, the same whichever way it
+// points: downhill. On one straight line a heading, the crab and the slide across it cannot be told
+// apart, and need not be; the first turn parts the slide from the other two. Both fade with the way
+// driven, for the ground changes.
 //
 // The yaw is the gyro's integral where there is one: Pentzer 2014 found 0.42 m of error over 40 m
 // for the best that tracks can tell. Without a gyro it is the tracks'.
@@ -34,6 +41,9 @@ enum StateIndex : int {
   kPull,
   kDriftE,
   kDriftN,
+  kCrab,
+  kSlideE,
+  kSlideN,
   kStates
 };
 
@@ -59,10 +69,21 @@ struct Drift {
   double tau_s = 60.0;
 };
 
+/// How little the way over the ground may be what the tracks make of it.
+struct Slip {
+  double scale_noise = 6e-4;  ///< of the scale, per √m
+  double slide_noise = 2e-3;  ///< of the slide, each way, per √m
+  double crab_sigma = 0.01;   ///< of the crab, where nothing is known of it
+};
+
 /// Advances the belief by one step of odometry. `standing`: nothing turns, so nothing but the drift
 /// and the sensors' biases get less certain. Noise densities are those of a 1.3 m/s tracked
 /// vehicle.
-void predict(Belief& b, const Travel& travel, const Drift& drift, bool standing) noexcept;
+void predict(Belief& b, const Travel& travel, const Slip& slip, const Drift& drift,
+             bool standing) noexcept;
+
+/// The way of one metre forwards (`way` 1) or backwards (−1) of the tracks, in ENU.
+Eigen::Vector2d way_per_m(const StateVector& x, double yaw_rad, double way) noexcept;
 
 /// What is known of the motion without odometry.
 struct Coast {
@@ -91,8 +112,8 @@ struct Observation {
   StateVector may_change = StateVector::Ones();
 };
 
-/// Joseph form, symmetrised, yaw wrapped, scales bounded to [0.5, 1.2] and [0.3, 1.5], pull to
-/// ±0.3 /m, the gyro's bias to ±0.2 rad/s.
+/// Right for any gain, symmetrised, yaw wrapped, scales bounded to [0.5, 1.2] and [0.3, 1.5], pull
+/// to ±0.3 /m, the gyro's bias to ±0.2 rad/s, crab to ±0.3, the slide to ±0.4 each way.
 /// @param change what was added to x (for past states). @param nis y'S⁻¹y, NaN where not finite.
 /// @return false: outside the gate, or not finite; nothing changed.
 template <int M>

@@ -32,13 +32,17 @@
 #include "base/setting.hpp"
 #include "base/snapshot.hpp"
 #include "nav/estimate/arrival.hpp"
+#include "nav/estimate/askew_watch.hpp"
 #include "nav/estimate/ekf.hpp"
+#include "nav/estimate/fix_trust.hpp"
 #include "nav/estimate/gnss_quality.hpp"
 #include "nav/estimate/gyro.hpp"
 #include "nav/estimate/history.hpp"
 #include "nav/estimate/learned.hpp"
 #include "nav/estimate/params.hpp"
 #include "nav/estimate/receivers.hpp"
+#include "nav/estimate/shift_watch.hpp"
+#include "nav/estimate/slip_watch.hpp"
 #include "nav/estimate/tilt.hpp"
 #include "nav/vote/votes.hpp"
 
@@ -55,6 +59,10 @@ class Estimator {
   /// What another life of this program learned, before the first measurement. Values beyond what
   /// update() allows, and those less certain than the parameters' own, are left out.
   void recall(const Learned& learned) noexcept;
+  /// What a person says was measured of the vehicle: believed from now on.
+  void adopt(const Learned& learned) noexcept;
+  /// All that was learned of the vehicle itself is as at the first start.
+  void forget_vehicle() noexcept;
   /// What is worth keeping. Empty: not learned, or not again since it was recalled.
   Learned learned() const noexcept;
 
@@ -76,6 +84,19 @@ class Estimator {
   /// accordingly until the fix class changes (for 2 s). Needs a pose. Counted as a reset.
   void anchor(base::EnuPoint at, std::optional<int> item) noexcept;
   void drop_anchor() noexcept;
+  /// Are positions that moved for good a question to a person (health().base_shift), or simply the
+  /// new ones? A robot that nobody drives may be carried.
+  void ask_about_shifts(bool ask) noexcept { asks_about_shifts_ = ask; }
+  /// The answer. Keep: the place is the old one, the positions are moved back as by an anchor.
+  /// Otherwise the new one is taken. Without a shift nothing happens. Counted as a reset.
+  void settle_shift(bool keep) noexcept;
+  /// A person confirms that the two antennas are mounted askew by what was measured
+  /// (health().antennas_askew): from now on it is taken from their headings.
+  void correct_antennas() noexcept;
+  /// A person confirms an offset that was measured otherwise: left positive, all of it.
+  void correct_antennas_by(double offset_rad) noexcept;
+  /// What they say is taken as it is again.
+  void uncorrect_antennas() noexcept;
   /// Tracks that spun counted a way that was not driven: the position may be off by so much, and
   /// the next usable fix decides, even while standing. No reset by itself.
   void doubt_position(double sigma_m) noexcept;
@@ -104,6 +125,9 @@ class Estimator {
   std::optional<Time> last_position() const noexcept { return last_fused_; }
   double yaw_scale() const noexcept { return belief_.x(kYawScale); }
   double pull_1pm() const noexcept { return belief_.x(kPull); }
+  /// Where it drives beside where it points, for each metre (see Belief): to its left, and in ENU.
+  double crab() const noexcept { return belief_.x(kCrab); }
+  base::EnuPoint slide() const noexcept { return {belief_.x(kSlideE), belief_.x(kSlideN)}; }
   /// All turning since the start, without the jumps of corrections; not wrapped.
   double turned_rad() const noexcept { return sums_.turned_rad; }
   /// All way since the start, backwards negative, likewise.
@@ -113,11 +137,18 @@ class Estimator {
 
  private:
   using Input = base::InputHealth;
+  static constexpr base::Duration kOdometryGone = std::chrono::milliseconds(300);
+  static constexpr base::Duration kGnssGone = std::chrono::milliseconds(2000);
+  static constexpr double kSlideAtFirst = 0.015;  ///< 1 sigma, each way
+  /// Of the crab. A robot that drives beside where it points shows it only against two antennas;
+  /// else what it points to is found by where it drives.
+  static constexpr double kCrabSeen = 0.05;
+  static constexpr double kCrabUnseen = 0.03;
   struct Arm {  ///< from the centre of rotation to the antenna, in ENU
     double east_m, north_m;
   };
 
-  void take(const base::GnssFix& fix);
+  void take(const base::GnssFix& told);
   void take(const base::GnssVelocity& velocity);
   void take(const base::Heading& heading);
   void take(const base::Inertial& inertial);
@@ -131,7 +162,7 @@ class Estimator {
   template <int M>
   bool apply(Input& input, const Observation<M>& o) noexcept;
 
-  // estimator.cpp: time, tracks, gyro
+  // estimator.cpp, tracks.cpp: time, tracks, gyro
   void step(const Travel& travel, Time stamp) noexcept;
   void doubt_assumed(double dt_s) noexcept;
   void watch_standing(const Travel& travel, Time stamp) noexcept;
@@ -139,6 +170,7 @@ class Estimator {
   void learn_gyro_bias(Time stamp) noexcept;
   void learn_tracks(const Travel& travel) noexcept;
   void remember(Time stamp) noexcept;
+  Slip slip() const noexcept;
   bool has_odometry(Time at) const noexcept;
   Coast coast(Time now) const noexcept;
   void watch_alignment() noexcept;
@@ -147,16 +179,19 @@ class Estimator {
   // heading.cpp
   void first_heading(double yaw_rad, double sigma_rad, bool compass) noexcept;
   void fuse_compass(const base::Heading& heading, const StateVector& at) noexcept;
+  bool askew(const base::Heading& heading) noexcept;
   void fuse_antennas(const base::Heading& heading, const StateVector& at) noexcept;
   void set_heading(double yaw_rad, double sigma_rad) noexcept;
   double shown_bias_rad(const StateVector& x) const noexcept;
 
   // position.cpp
-  bool settled(const base::GnssFix& fix) noexcept;
   void change_class(const base::GnssFix& fix, const GnssQuality& q) noexcept;
   void first_fix(const base::GnssFix& fix, const GnssQuality& q);
   void fuse_position(const base::GnssFix& fix, const GnssQuality& q) noexcept;
   void approach(Observation<2>& o) noexcept;
+  bool shifted(const base::GnssFix& fix, const GnssQuality& q) noexcept;
+  double doubt_after_s(const GnssQuality& q) const noexcept;
+  void watch_slip(const Observation<2>& o, double yaw_rad, Time stamp) noexcept;
   void position_refused(const base::GnssFix& fix, const GnssQuality& q, double off_m) noexcept;
   void reset_position(base::EnuPoint at, const GnssQuality& q) noexcept;
   base::EnuPoint local(const base::GnssFix& fix) const noexcept;
@@ -195,6 +230,11 @@ class Estimator {
   Arrival arrival_;
   Receivers receivers_;
   Votes votes_;
+  SlipWatch slip_watch_;
+  ShiftWatch shift_watch_;
+  AskewWatch askew_watch_;
+  double askew_way_m_ = 0.0;  ///< counted_m_ when it was last asked
+  bool asks_about_shifts_ = false;
   double doubted_m_ = 0.0;  ///< what of the position's sigma is doubt since its source was left out
   double distrust_m_ = 0.0;
   double distrust_rad_ = 0.0;
@@ -217,6 +257,7 @@ class Estimator {
   Travel untold_;                  ///< travel of which gyro and tracks were not compared yet
   double untold_turned_rad_ = 0.0;
   double free_m_ = 0.0;
+  double counted_m_ = 0.0;    ///< all way, either direction
   Time moved_at_{};           ///< last time the tracks moved, or the gyro turned
   Time bias_learned_at_{};    ///< likewise for the gyro's bias
   base::BodyTwist tracks_{};  ///< present speed by the tracks, unscaled
@@ -235,10 +276,9 @@ class Estimator {
   std::optional<Time> located_since_, heading_since_, pivot_at_;
   std::optional<Time> position_off_since_, velocity_off_since_, compass_off_since_;
   std::optional<Time> antennas_off_since_, far_off_since_, anchor_off_since_;
-  base::FixType fix_type_ = base::FixType::None;
+  FixTrust fix_trust_;
   base::FixType fused_type_ = base::FixType::None;
   base::FixType anchor_type_ = base::FixType::None;
-  Time fix_type_since_{};
   Time approach_until_{};
   std::optional<double> alt_msl_m_;
   Drift drift_{};

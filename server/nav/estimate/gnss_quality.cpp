@@ -25,7 +25,7 @@ std::optional<Row> row_of(FixType fix) noexcept {
     case FixType::Differential:
       return Row{0.3, 0.8, 100.0, 0.05};
     case FixType::Single:
-      return Row{0.5, 1.2, 60.0, 0.055};
+      return Row{0.5, 1.2, 400.0, 0.055};
     case FixType::None:
     case FixType::Unknown:
     case FixType::Estimated:

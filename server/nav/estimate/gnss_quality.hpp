@@ -28,12 +28,12 @@ struct GnssLimits {
 using NoQuality = std::optional<base::Refusal>;
 
 /// The whole error is the receiver's own figure, at least `least`; without one that of `typical`
-/// times hdop (above 1). It is white only in part: the rest wanders within a minute.
-/// | class     | least   | typical | white | drift | tau   |
+/// times hdop (above 1). It is white only in part: the rest wanders within minutes, and averaging
+/// it would make claims that are not true. | class     | least   | typical | white | drift | tau |
 /// | rtk_fixed | 0.015 m | 0.015 m | × 1.5 | none  |       |
 /// | rtk_float | 0.1 m   | 0.35 m  | 1/4   | 0.968 | 60 s  |
 /// | dgps      | 0.3 m   | 0.8 m   | 1/4   | 0.968 | 100 s |
-/// | gps       | 0.5 m   | 1.2 m   | 1/4   | 0.968 | 60 s  |
+/// | gps       | 0.5 m   | 1.2 m   | 1/4   | 0.968 | 400 s |
 /// Sources: D. L. Wilson, GPS error correlation; Sensors 2020, 20(21) 6050; limits as PX4's.
 /// @param settled false during the first seconds of a new RTK fix, which may still be a wrong one.
 tl::expected<GnssQuality, NoQuality> gnss_quality(const base::GnssFix& fix, bool settled,

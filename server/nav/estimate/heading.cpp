@@ -15,6 +15,11 @@ using base::Refusal;
 constexpr base::Duration kDropAfterPivot = std::chrono::seconds(2);
 constexpr base::Duration kLearnAnew = std::chrono::seconds(5);
 constexpr base::Duration kSetAnew = std::chrono::seconds(10);
+constexpr base::Duration kCourseFresh = std::chrono::milliseconds(300);
+// A few courses of a slow robot: what follows has to be believed of the heading, not of slip.
+constexpr double kJustAskew_rad = 0.2;
+constexpr double kCourse_mps = 0.3;       // slower, a velocity tells no course
+constexpr double kStraight_radps = 0.15;  // faster, an antenna swings, and both are late
 constexpr double kAntennas_m = 0.01;  // of a baseline's ends, so that its heading is this over it
 
 }  // namespace
@@ -43,12 +48,15 @@ double Estimator::shown_bias_rad(const StateVector& x) const noexcept {
   return x(kBias) + x(kCompassLeft) * left_.ampere + x(kCompassRight) * right_.ampere;
 }
 
-void Estimator::take(const base::Heading& heading) {
-  const bool compass = heading.source == base::HeadingSource::Compass;
+void Estimator::take(const base::Heading& told) {
+  const bool compass = told.source == base::HeadingSource::Compass;
+  base::Heading heading = told;
+  if (!compass) heading.yaw_rad = base::wrap_rad(told.yaw_rad - health_.antennas_offset_rad);
   Input& in = compass ? health_.compass : health_.heading;
   if (!std::isfinite(heading.yaw_rad)) return refuse(in, Refusal::NotFinite);
   if (!in_order(in, compass ? last_compass_ : last_antennas_, heading.stamp)) return;
   if (compass) health_.compass_heard = true;
+  if (!compass && askew(heading)) return refuse(in, Refusal::Outvoted);
   const double latency_s = compass ? params_->compass_latency_s : params_->gnss_latency_s;
   const Time taken = heading.stamp - base::from_seconds(latency_s);
   const auto past = history_.at(taken);
@@ -72,6 +80,59 @@ void Estimator::take(const base::Heading& heading) {
   } else {
     fuse_antennas(heading, at);
   }
+}
+
+/// Their heading against the satellites' own course: neither knows of the other.
+/// @return true: they are mounted askew, so that their heading is not used.
+bool Estimator::askew(const base::Heading& heading) noexcept {
+  const double speed = velocity_ ? std::hypot(velocity_->east_mps, velocity_->north_mps) : 0.0;
+  const bool fresh = velocity_ && heading.stamp - velocity_->stamp < kCourseFresh;
+  const bool straight =
+      std::abs(gyro_used_ ? gyro_.rate_radps() : tracks_.angular_radps) < kStraight_radps;
+  const double way_m = counted_m_ - askew_way_m_;
+  askew_way_m_ = counted_m_;
+  if (fresh && straight && speed > kCourse_mps && has_odometry(heading.stamp)) {
+    const double back = tracks_.linear_mps < 0.0 ? base::kPi : 0.0;
+    const double course = std::atan2(velocity_->north_mps, velocity_->east_mps) + back;
+    const double sigma_rad = velocity_sigma_mps(fix_trust_.fix(), velocity_->sigma_mps) / speed;
+    askew_watch_.take(base::angle_diff_rad(course, heading.yaw_rad), sigma_rad, way_m);
+  }
+  const auto off = askew_watch_.measured();
+  if (!askew_watch_.askew() || !off) {
+    if (askew_watch_.proved()) health_.antennas_askew.reset();
+    return health_.antennas_askew.has_value();
+  }
+  const bool known = health_.antennas_askew.has_value();
+  health_.antennas_askew = base::Askew{off->rad, off->sigma_rad, off->way_m};
+  if (known || !heading_known_) return true;
+  // What was believed of heading and compass came from them; what did not fit was taken for slip.
+  const Belief before = belief_;
+  set_heading(heading.yaw_rad - off->rad, kJustAskew_rad);
+  reset_state(belief_, kBias, belief_.x(kBias), rad_from_deg(params_->compass_bias_sigma_deg));
+  reset_state(belief_, kCrab, 0.0, kCrabUnseen);
+  for (const StateIndex i : {kSlideE, kSlideN}) reset_state(belief_, i, 0.0, kCrabUnseen);
+  note_reset("heading", before);
+  return true;
+}
+
+void Estimator::correct_antennas() noexcept {
+  if (!health_.antennas_askew) return;
+  health_.antennas_offset_rad =
+      base::wrap_rad(health_.antennas_offset_rad + health_.antennas_askew->offset_rad);
+  health_.antennas_askew.reset();
+  askew_watch_.forget();
+}
+
+void Estimator::correct_antennas_by(double offset_rad) noexcept {
+  health_.antennas_offset_rad = base::wrap_rad(offset_rad);
+  health_.antennas_askew.reset();
+  askew_watch_.forget();
+}
+
+void Estimator::uncorrect_antennas() noexcept {
+  health_.antennas_offset_rad = 0.0;
+  health_.antennas_askew.reset();
+  askew_watch_.forget();
 }
 
 void Estimator::fuse_compass(const base::Heading& heading, const StateVector& at) noexcept {

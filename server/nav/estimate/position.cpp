@@ -12,15 +12,28 @@ namespace {
 using base::Refusal;
 using base::seconds;
 
-constexpr base::Duration kSettled = std::chrono::seconds(3);
 constexpr base::Duration kAnchorClass = std::chrono::seconds(2);
 constexpr base::Duration kApproach = std::chrono::seconds(20);
 constexpr double kApproach_mps = 0.25;  // to a better fix class: slower than the robot steers
 constexpr double kFar_m = 25.0;
+constexpr double kSurprises = 6.0;  // sigmas, that a position is off
 constexpr double kDoubtAfter_s = 2.0;
+constexpr double kDoubtShiftAfter_s = 8.0;  // where a shift would be a person's question
 constexpr double kResetAfter_s = 10.0;
 constexpr double kToldFrom_m = 0.2;
+constexpr double kSlips = 0.4;        // of the way since the last position, at most
+constexpr double kSlipsFrom = 9.0;    // of y'S⁻¹y, so that it was not foreseen
 constexpr double kDoubt_m2ps = 0.05;  // slow enough not to believe a jump of 3 m within 5 s
+
+constexpr double kShaken_m = 0.35;  // of a fixed solution that comes and goes
+
+/// A fixed solution that comes and goes, as what it is worth: a float one.
+base::GnssFix as_float(base::GnssFix fix) noexcept {
+  fix.fix = base::FixType::RtkFloat;
+  fix.sigma_east_m = std::max(kShaken_m, fix.sigma_east_m.value_or(0.0));
+  fix.sigma_north_m = std::max(kShaken_m, fix.sigma_north_m.value_or(0.0));
+  return fix;
+}
 
 bool long_ago(const std::optional<base::WallTime>& utc) noexcept {
   using std::chrono::sys_days, std::chrono::year;
@@ -28,14 +41,6 @@ bool long_ago(const std::optional<base::WallTime>& utc) noexcept {
 }
 
 }  // namespace
-
-bool Estimator::settled(const base::GnssFix& fix) noexcept {
-  if (fix.fix != fix_type_) {
-    fix_type_ = fix.fix;
-    fix_type_since_ = fix.stamp;
-  }
-  return fix.stamp - fix_type_since_ >= kSettled;
-}
 
 /// The receiver's position in the robot's frame, moved by the anchor.
 base::EnuPoint Estimator::local(const base::GnssFix& fix) const noexcept {
@@ -59,12 +64,13 @@ Estimator::Arm Estimator::arm(double yaw_rad) const noexcept {
   return {c * forward_m - s * left_m, s * forward_m + c * left_m};
 }
 
-void Estimator::take(const base::GnssFix& fix) {
+void Estimator::take(const base::GnssFix& told) {
   Input& in = health_.position;
-  if (!in_order(in, last_fix_, fix.stamp)) return;
-  const bool is_settled = settled(fix);
+  if (!in_order(in, last_fix_, told.stamp)) return;
+  fix_trust_.take(told.fix, told.stamp);
+  const base::GnssFix fix = fix_trust_.shaken() ? as_float(told) : told;
   const auto quality = gnss_quality(
-      fix, is_settled,
+      fix, fix_trust_.settled(),
       {params_->satellites_min, params_->hdop_max, params_->accuracy_max_m, params_->drift_scale});
   if (!quality) {
     if (quality.error()) refuse(in, *quality.error());
@@ -85,6 +91,7 @@ void Estimator::take(const base::GnssFix& fix) {
   const auto late_s = arrival_.late_s(fix.stamp, fix.utc);
   if (!late_s) return refuse(in, Refusal::Stamp);
   late_s_ = *late_s;
+  if (located_ && shifted(fix, *quality)) return refuse(in, Refusal::Jump);
   if (located_ && outvoted(base::Sense::Position, in)) return;
   if (fix.alt_msl_m && std::isfinite(*fix.alt_msl_m)) alt_msl_m_ = fix.alt_msl_m;
   if (!located_) {
@@ -94,6 +101,34 @@ void Estimator::take(const base::GnssFix& fix) {
   }
   change_class(fix, *quality);
   fuse_position(fix, *quality);
+}
+
+/// @return true: the positions moved for good, and a person is asked which ones count.
+bool Estimator::shifted(const base::GnssFix& fix, const GnssQuality& q) noexcept {
+  const auto past = history_.at(taken_at(fix));
+  if (!past || !heading_known_ || q.drift.sigma_m > 0.0 || !asks_about_shifts_) {
+    if (!health_.base_shift || !asks_about_shifts_) shift_watch_.forget();
+  } else {
+    const Arm to_antenna = arm(past->x(kYaw));
+    const base::EnuPoint at{past->x(kEast) + to_antenna.east_m,
+                            past->x(kNorth) + to_antenna.north_m};
+    const base::EnuPoint off = local(fix) - at;
+    const double honest_m = kSurprises * std::hypot(claimed_m(belief_), q.sigma_east_m);
+    const double far_m = std::hypot(off.east_m, off.north_m);
+    shift_watch_.take(off, far_m > honest_m && far_m < kFar_m, counted_m_, fix.stamp);
+  }
+  const auto by = shift_watch_.shift();
+  if (by && !health_.base_shift) health_.base_shift = {*by, shift_watch_.since()};
+  if (by) health_.base_shift->offset = *by;
+  if (!by && (!asks_about_shifts_ || shift_watch_.agrees())) health_.base_shift.reset();
+  if (!health_.base_shift) return false;
+  refused_m_ = std::hypot(health_.base_shift->offset.east_m, health_.base_shift->offset.north_m);
+  if (!position_off_since_) position_off_since_ = fix.stamp;
+  return true;
+}
+
+double Estimator::doubt_after_s(const GnssQuality& q) const noexcept {
+  return asks_about_shifts_ && q.drift.sigma_m <= 0.0 ? kDoubtShiftAfter_s : kDoubtAfter_s;
 }
 
 /// A worse fix: the position stays, and the offset of the new class is open. A better one: the
@@ -161,16 +196,23 @@ void Estimator::fuse_position(const base::GnssFix& fix, const GnssQuality& q) no
   o.H(0, kEast) = o.H(1, kNorth) = 1.0;
   if (q.drift.sigma_m > 0.0) o.H(0, kDriftE) = o.H(1, kDriftN) = 1.0;
   if (heading_known_) {
-    // The present yaw turns the way since then as well: an antenna that trails behind.
+    // What is believed now of yaw and slip is true of the way since then as well: an antenna that
+    // trails behind.
     const double behind_e = at(kEast) - belief_.x(kEast);
     const double behind_n = at(kNorth) - belief_.x(kNorth);
+    const double scale = belief_.x(kScale);
     o.H(0, kYaw) = -(to_antenna.north_m + behind_n);
     o.H(1, kYaw) = to_antenna.east_m + behind_e;
+    o.H(0, kScale) = o.H(1, kCrab) = behind_e / scale;
+    o.H(1, kScale) = behind_n / scale;
+    o.H(0, kCrab) = -behind_n / scale;
+    o.H(0, kSlideE) = o.H(1, kSlideN) = -std::hypot(behind_e, behind_n);
   }
   o.R(0, 0) = q.sigma_east_m * q.sigma_east_m;
   o.R(1, 1) = q.sigma_north_m * q.sigma_north_m;
   o.gate = kGate2;
   if (approaching_) approach(o);
+  if (q.drift.sigma_m <= 0.0 && !approaching_) watch_slip(o, at(kYaw), fix.stamp);
   if (standing_) {
     const bool hold = settled_in(located_since_) && q.drift.sigma_m > 0.0 && !approaching_;
     o.may_change.setZero();
@@ -181,7 +223,7 @@ void Estimator::fuse_position(const base::GnssFix& fix, const GnssQuality& q) no
   std::optional<Belief> before;
   const bool doubted = doubted_m_ > 0.0;
   if (doubted ||
-      (position_off_since_ && seconds(fix.stamp - *position_off_since_) > kDoubtAfter_s)) {
+      (position_off_since_ && seconds(fix.stamp - *position_off_since_) > doubt_after_s(q))) {
     before = belief_;
   }
   if (apply(in, o)) {
@@ -202,6 +244,29 @@ void Estimator::fuse_position(const base::GnssFix& fix, const GnssQuality& q) no
   }
   refuse(in, Refusal::Jump);
   position_refused(fix, q, o.innovation.norm());
+}
+
+/// What the innovation says of the ground. One that is too large for the filter, but not for a
+/// robot that slipped on the way since the last position, opens the filter instead of being
+/// refused.
+void Estimator::watch_slip(const Observation<2>& o, double yaw_rad, Time stamp) noexcept {
+  if (standing_ || !has_odometry(stamp) || !last_fused_) return;
+  const Eigen::Vector2d along{std::cos(yaw_rad), std::sin(yaw_rad)};
+  const Eigen::Vector2d aside{-along.y(), along.x()};
+  Eigen::Matrix2d S = o.H * belief_.P * o.H.transpose() + o.R;
+  const double dt_s = seconds(stamp - *last_fused_);
+  const double nis = o.innovation.dot(S.inverse() * o.innovation);
+  const double slipped_m = kSlips * free_m_;
+  if (nis > kSlipsFrom && o.innovation.norm() < slipped_m + 3.0 * std::sqrt(o.R(0, 0))) {
+    slip_watch_.burst();
+    belief_.P(kEast, kEast) += 0.25 * slipped_m * slipped_m;
+    belief_.P(kNorth, kNorth) += 0.25 * slipped_m * slipped_m;
+    S = o.H * belief_.P * o.H.transpose() + o.R;
+  }
+  const double off_along = o.innovation.dot(along);
+  const double off_aside = o.innovation.dot(aside);
+  slip_watch_.take(off_along * off_along / along.dot(S * along),
+                   off_aside * off_aside / aside.dot(S * aside), dt_s);
 }
 
 /// Weakens a fix so much that it moves the estimate no faster than it may. With y what is missing
@@ -246,7 +311,7 @@ void Estimator::position_refused(const base::GnssFix& fix, const GnssQuality& q,
     last_fused_ = fix.stamp;
     free_m_ = 0.0;
     placed_ = false;
-  } else if (off_s > kDoubtAfter_s) {
+  } else if (off_s > doubt_after_s(q)) {
     const double more = kDoubt_m2ps * 0.2;
     belief_.P(kEast, kEast) += more;
     belief_.P(kNorth, kNorth) += more;

@@ -13,6 +13,7 @@ using base::rad_from_deg;
 
 constexpr double kPlaced_m = 0.10;    // how well a person says where it stands
 constexpr double kAnchored_m = 0.15;  // and drives it onto a point
+constexpr double kShifted_m = 0.10;   // of a shift, as it was measured while driving
 const double kPlaced_rad = rad_from_deg(3.0);
 const double kHint_rad = rad_from_deg(20.0);  // less certain: hardly more than a guess
 constexpr double kLeaveAligned = 1.5;         // hysteresis
@@ -106,6 +107,31 @@ void Estimator::drop_anchor() noexcept {
   approach_until_ = now_ + std::chrono::seconds(20);
 }
 
+void Estimator::settle_shift(bool keep) noexcept {
+  if (!health_.base_shift) return;
+  const Belief before = belief_;
+  const base::EnuPoint by = health_.base_shift->offset;
+  const base::EnuPoint here{belief_.x(kEast), belief_.x(kNorth)};
+  if (keep) {
+    base::Anchor a;
+    a.offset = base::EnuPoint{} - by;
+    if (health_.anchor) a.offset = a.offset + health_.anchor->offset;
+    a.at = frame_->to_global(here);
+    a.stamp = now_;
+    health_.anchor = a;
+    anchor_type_ = fused_type_;
+    anchor_off_since_.reset();
+  }
+  move(keep ? here : here + by, std::hypot(claimed_m(before), kShifted_m));
+  health_.base_shift.reset();
+  shift_watch_.forget();
+  position_off_since_.reset();
+  far_off_since_.reset();
+  claimed_when_off_m_.reset();
+  doubted_m_ = 0.0;
+  note_reset(keep ? "anchor" : "position", before);
+}
+
 void Estimator::watch_alignment() noexcept {
   const double sigma_rad = heading_known_ ? std::sqrt(belief_.P(kYaw, kYaw)) : base::kPi;
   const bool was = alignment_ == Alignment::Aligned;
@@ -138,6 +164,8 @@ base::EstimatorHealth Estimator::health() const noexcept {
   h.compass_bias_rad = belief_.x(kBias);
   h.odometry_scale = belief_.x(kScale);
   h.pull_1pm = belief_.x(kPull);
+  const Eigen::Vector2d way = way_per_m(belief_.x, belief_.x(kYaw), 1.0);
+  h.side_slip = std::cos(belief_.x(kYaw)) * way.y() - std::sin(belief_.x(kYaw)) * way.x();
   if (located_ && drift_.sigma_m > 0.0) {
     h.gnss_offset = base::EnuPoint{belief_.x(kDriftE), belief_.x(kDriftN)};
   }

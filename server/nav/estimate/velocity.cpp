@@ -17,7 +17,7 @@ using std::chrono::milliseconds;
 constexpr double kSlowest_mps = 0.15;  // below, a velocity says nothing of the direction
 constexpr double kReceiverMost_mps = 60.0;
 const double kCoarse_rad = rad_from_deg(10.0);  // less certain, an angle is fused, not a vector
-const double kCourse_rad = rad_from_deg(3.0);   // how well a vehicle drives where it points
+const double kCourse_rad = rad_from_deg(0.5);   // of a course, beside the velocity's noise
 const double kCarried_rad = rad_from_deg(5.0);  // the same of one that tells nothing of itself
 
 }  // namespace
@@ -33,7 +33,7 @@ void Estimator::take(const base::GnssVelocity& velocity) {
   }
   if (receivers_.disagree()) return refuse(in, Refusal::Receivers);
   if (history_.forgotten(taken_at(velocity))) return refuse(in, Refusal::Stamp);
-  const double sigma_mps = velocity_sigma_mps(fix_type_, velocity.sigma_mps);
+  const double sigma_mps = velocity_sigma_mps(fix_trust_.fix(), velocity.sigma_mps);
   votes_.velocity({velocity.east_mps, velocity.north_mps}, sigma_mps, taken_at(velocity),
                   velocity.stamp);
   if (outvoted(base::Sense::Velocity, in)) return;
@@ -94,14 +94,28 @@ bool Estimator::align(const base::GnssVelocity& velocity, double sigma_mps, cons
   const double back = odometry.linear_mps < 0.0 ? base::kPi : 0.0;
   const double facing = base::wrap_rad(std::atan2(north, east) + back);
   const double sigma = std::hypot(sigma_mps / speed, kCourse_rad, 0.05 * w);
+  // It drives beside where it points by crab and slide, so that a course tells of all three.
+  const double way = odometry.linear_mps < 0.0 ? -1.0 : 1.0;
+  const double scale = at.x(kScale);
+  const auto seen = [&](double yaw_rad) {
+    Observation<1> o;
+    const double s = std::sin(yaw_rad);
+    const double c = std::cos(yaw_rad);
+    const double left = at.x(kCrab) + way * (c * at.x(kSlideN) - s * at.x(kSlideE));
+    o.innovation(0) = base::angle_diff_rad(yaw_rad + left / scale, facing);
+    o.H(0, kYaw) = 1.0;
+    o.H(0, kCrab) = 1.0 / scale;
+    o.H(0, kSlideE) = -way * s / scale;
+    o.H(0, kSlideN) = way * c / scale;
+    o.R(0, 0) = sigma * sigma;
+    return o;
+  };
   if (!heading_known_) {
-    set_heading(facing + base::angle_diff_rad(at.x(kYaw), belief_.x(kYaw)), sigma);
+    set_heading(facing + base::angle_diff_rad(at.x(kYaw), belief_.x(kYaw)), base::kPi);
+    apply(health_.velocity, seen(facing));
     return true;
   }
-  Observation<1> o;
-  o.innovation(0) = base::angle_diff_rad(at.x(kYaw), facing);
-  o.H(0, kYaw) = 1.0;
-  o.R(0, 0) = sigma * sigma;
+  Observation<1> o = seen(at.x(kYaw));
   o.gate = kGate1;
   if (apply(health_.velocity, o)) {
     velocity_off_since_.reset();
@@ -117,16 +131,22 @@ void Estimator::fuse_vector(const base::GnssVelocity& velocity, double sigma_mps
                             const base::BodyTwist& odometry) noexcept {
   const double v = at.x(kScale) * odometry.linear_mps;
   const double w = odometry.angular_radps;
-  const double c = std::cos(at.x(kYaw));
-  const double s = std::sin(at.x(kYaw));
+  const double tracks_mps = std::abs(odometry.linear_mps);
+  const double c = odometry.linear_mps * std::cos(at.x(kYaw));
+  const double s = odometry.linear_mps * std::sin(at.x(kYaw));
+  const Eigen::Vector2d drives =
+      tracks_mps * way_per_m(at.x, at.x(kYaw), odometry.linear_mps < 0.0 ? -1.0 : 1.0);
   const Arm to_antenna = arm(at.x(kYaw));
   Observation<2> o;
-  o.innovation << velocity.east_mps - (v * c - w * to_antenna.north_m),
-      velocity.north_mps - (v * s + w * to_antenna.east_m);
-  o.H(0, kYaw) = -v * s - w * to_antenna.east_m;
-  o.H(1, kYaw) = v * c - w * to_antenna.north_m;
-  o.H(0, kScale) = odometry.linear_mps * c;
-  o.H(1, kScale) = odometry.linear_mps * s;
+  o.innovation << velocity.east_mps - (drives.x() - w * to_antenna.north_m),
+      velocity.north_mps - (drives.y() + w * to_antenna.east_m);
+  o.H(0, kYaw) = -(drives.y() - tracks_mps * at.x(kSlideN)) - w * to_antenna.east_m;
+  o.H(1, kYaw) = drives.x() - tracks_mps * at.x(kSlideE) - w * to_antenna.north_m;
+  o.H(0, kScale) = c;
+  o.H(1, kScale) = s;
+  o.H(0, kCrab) = -s;
+  o.H(1, kCrab) = c;
+  o.H(0, kSlideE) = o.H(1, kSlideN) = tracks_mps;
   // While turning, an error of the latency shows as one of the direction.
   const double turning = 0.05 * std::abs(w * v);
   o.R(0, 0) = o.R(1, 1) = sigma_mps * sigma_mps + turning * turning;

@@ -16,7 +16,7 @@ constexpr double kMoving_mps = 0.02;  // slower, the sign of a speed says nothin
 constexpr double kCornerReach_m = 2.5;
 constexpr double kTrim_m = 1.0;
 constexpr double kShortest_m = 3.0;
-constexpr double kMean_s = 6.0;
+constexpr double kMeanOver_s = 6.0;
 constexpr double kGrid_s = 0.2;
 const double kCorner_rad = base::rad_from_deg(10.0);
 
@@ -106,6 +106,25 @@ class Matcher {
   double s_m_;
   std::size_t leg_ = 0;
 };
+
+/// The driven point, seen from where it thought to be; near a stop, from the nearer of both legs.
+void see_from(const Path& path, Matched& m, const DrivenPoint& driven, const DrivenPoint& thought) {
+  const double reach_m = kNearEnd_m + base::distance_m(driven.at, thought.at);
+  const std::size_t last = std::min(m.leg + 1, path.legs.size() - 1);
+  Seen nearest;
+  for (std::size_t leg = m.leg > 0 ? m.leg - 1 : 0; leg <= last; ++leg) {
+    const bool meets =
+        path.legs[leg].start_m <= m.s_m + reach_m && path.legs[leg].end_m >= m.s_m - reach_m;
+    if (!meets) continue;
+    const Seen seen = look(path, leg, driven, m.s_m - reach_m, m.s_m + reach_m);
+    if (leg == m.leg) {
+      m.lateral_m = seen.lateral_m;
+      m.heading_rad = seen.heading_rad;
+    }
+    if (seen.off_m < nearest.off_m) nearest = seen;
+  }
+  m.cross_m = std::copysign(nearest.off_m, nearest.lateral_m);
+}
 
 std::size_t first_counted(const Path& path, std::span<const DrivenPoint> driven, double from_m) {
   const EnuPoint start = path.at(from_m);
@@ -210,10 +229,10 @@ double slalom_m(std::span<const Matched> part) {
   std::size_t last = 0;
   double sum = 0.0;
   for (const Matched& m : part) {
-    while (last < part.size() && part[last].t_s <= m.t_s + kMean_s / 2.0) {
+    while (last < part.size() && part[last].t_s <= m.t_s + kMeanOver_s / 2.0) {
       sum += part[last++].cross_m;
     }
-    while (part[first].t_s < m.t_s - kMean_s / 2.0) sum -= part[first++].cross_m;
+    while (part[first].t_s < m.t_s - kMeanOver_s / 2.0) sum -= part[first++].cross_m;
     rest.emplace_back(m.cross_m - sum / static_cast<double>(last - first), m.weight_m);
   }
   return percentile(rest, 0.975) - percentile(rest, 0.025);
@@ -284,29 +303,32 @@ void smoothness(RunMeasure& run, std::span<const Matched> all,
 }  // namespace
 
 std::vector<Matched> match_run(const Path& path, std::span<const DrivenPoint> driven, double from_m,
-                               Counts counts) {
+                               Counts counts, Thought thought) {
   std::vector<Matched> out;
   if (path.legs.empty() || driven.empty()) return out;
-  const std::size_t first = counts == Counts::All ? 0 : first_counted(path, driven, from_m);
+  const auto places = thought.size() == driven.size() ? thought : driven;
+  const std::size_t first = counts == Counts::All ? 0 : first_counted(path, places, from_m);
   out.reserve(driven.size() - first);
   Matcher matcher(path, from_m);
   for (std::size_t i = first; i < driven.size(); ++i) {
-    const double moved_m = i > first ? base::distance_m(driven[i - 1].at, driven[i].at) : 0.0;
-    out.push_back(matcher.match(driven[i], moved_m));
+    const double moved_m = i > first ? base::distance_m(places[i - 1].at, places[i].at) : 0.0;
+    out.push_back(matcher.match(places[i], moved_m));
+    if (&places[i] != &driven[i]) see_from(path, out.back(), driven[i], places[i]);
     if (driven[i].apart) out.back().weight_m = 0.0;
   }
   return out;
 }
 
 RunMeasure measure_run(const Path& path, std::span<const EnuPoint> vertices,
-                       std::span<const DrivenPoint> driven, double from_m, Counts counts) {
+                       std::span<const DrivenPoint> driven, double from_m, Counts counts,
+                       Thought thought) {
   RunMeasure run;
   if (driven.empty()) return run;
   run.time_s = driven.back().t_s - driven.front().t_s;
   for (std::size_t i = 1; i < driven.size(); ++i) {
     if (!driven[i].apart) run.driven_m += base::distance_m(driven[i - 1].at, driven[i].at);
   }
-  const std::vector<Matched> all = match_run(path, driven, from_m, counts);
+  const std::vector<Matched> all = match_run(path, driven, from_m, counts, thought);
   const auto counted = driven.last(all.size());
   smoothness(run, all, counted);
   if (all.empty()) return run;

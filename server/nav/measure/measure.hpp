@@ -92,16 +92,22 @@ enum class Counts {
   All        ///< the way to the path is not among them
 };
 
+/// Whose places on the path count. A robot that is metres off by its receiver's error is not on the
+/// lane that it happens to stand on, but beside the one that it believed to drive.
+using Thought = std::span<const DrivenPoint>;
+
 /// @param from_m where on the path the drive began.
+/// @param thought empty: the driven points' own places count; else as many, of the same times
 /// @return as many as count; empty for an empty path.
 std::vector<Matched> match_run(const Path& path, std::span<const DrivenPoint> driven,
-                               double from_m = 0.0, Counts counts = Counts::FromNear);
+                               double from_m = 0.0, Counts counts = Counts::FromNear,
+                               Thought thought = {});
 
 /// One run along a path, one lap of it. @param vertices where the mission's points are: vertex i is
 /// passed at path.vertex_m[i]; those at the begin and before it are no corners of this run.
 /// @param driven without times in which somebody else drove.
 RunMeasure measure_run(const Path& path, std::span<const EnuPoint> vertices,
                        std::span<const DrivenPoint> driven, double from_m = 0.0,
-                       Counts counts = Counts::FromNear);
+                       Counts counts = Counts::FromNear, Thought thought = {});
 
 }  // namespace roverd::nav

@@ -9,7 +9,9 @@
 //           │                                        ╲│  counter-arc, tangent to the way out
 //           ▼                                         ▼
 //
-// Pure. Angles rad, left positive; lengths m.
+// A steered vehicle's curvature comes and goes over a window (nav/track/ease.hpp) that its wheels
+// have the time to turn in. Where there is no room for a swing that passes as near as allowed, it
+// passes farther off, at last on a mere arc. Pure. Angles rad, left positive; lengths m.
 
 #include <span>
 
@@ -24,6 +26,7 @@ struct Corner {
   double radius_m = 0.0;   ///< 0: neither arc nor swing
   double tangent_m = 0.0;  ///< the arc begins so far before the corner
   double swing_rad = 0.0;  ///< not 0: the arc goes on by β beyond the new direction, and back by β
+  double ease_m = 0.0;     ///< the window over which its curvature changes; 0: at once
 };
 
 /// Yaw of the way from one point to another.

@@ -20,6 +20,8 @@ struct VehicleParams {
   double max_steering_rate_dps = 30.0;
   double length_m = 1.023;
   double width_m = 0.778;
+  double support_width_m = 0.6;
+  double mass_height_m = 0.25;
 
   bool steered() const noexcept { return kinematics == "ackermann"; }
   /// Farthest that any part of the body is from its origin: the middle of a vehicle that turns on
@@ -39,6 +41,10 @@ void fields(V& v, VehicleParams& p) {
     "ackermann: how fast that angle changes");
   v("length_m", p.length_m, 0.1, 10.0, "over everything");
   v("width_m", p.width_m, 0.1, 5.0, "over everything");
+  v("support_width_m", p.support_width_m, 0.05, 5.0,
+    "between the middles of the tracks or outer wheels: over one of them it tips");
+  v("mass_height_m", p.mass_height_m, 0.02, 5.0,
+    "of the centre of mass above the ground, with the load it carries");
 }
 
 /// How the robot steers back to its path. The words of `law` (nav/track/law.hpp):
@@ -59,6 +65,7 @@ struct TrackParams {
   double observer_max_radps = 0.25;
   double corner_deviation_m = 0.10;
   double through_deviation_m = 0.5;
+  double smooth_m = 0.15;
   double arrive_m = 0.04;
   double rejoin_m = 0.5;
 };
@@ -88,6 +95,9 @@ void fields(V& v, TrackParams& p) {
     "how far a rounded corner may pass beside its waypoint");
   v("through_deviation_m", p.through_deviation_m, 0.02, 5.0,
     "the same for waypoints with turn \"through\" that give no radius");
+  v("smooth_m", p.smooth_m, 0.0, 2.0,
+    "dense points (up to 2 m apart) are driven as one smooth way, so far beside them at most; 0: "
+    "each of them is met");
   v("arrive_m", p.arrive_m, 0.01, 1.0, "a stop counts as reached this close, along the path");
   v("rejoin_m", p.rejoin_m, 0.1, 10.0,
     "farther than this from the place where a mission goes on, the robot first drives there");

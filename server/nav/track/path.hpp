@@ -18,6 +18,7 @@
 #include "base/geo.hpp"
 #include "mission/plan.hpp"
 #include "nav/track/params.hpp"
+#include "nav/track/slope.hpp"
 
 namespace roverd::nav {
 
@@ -34,6 +35,7 @@ enum class SpeedReason {
   Steer,
   Accel,
   Slow,
+  Slope,
   Pivot,
   Stopping,
   Standing
@@ -49,6 +51,10 @@ struct Vertex {
   mission::Turn turn = mission::Turn::Auto;
   double deviation_m = 0.1;         ///< allowed between vertex and rounded corner
   std::optional<double> yaw_rad{};  ///< at the path's end or a stop: point so before it counts
+  bool dense = false;  ///< may be one of many points of a smooth way (nav/track/smooth.hpp)
+  /// Of the way that leads here, left positive; 0: straight. Not for dense ones.
+  double curvature_1pm = 0.0;
+  bool tangent = false;  ///< the way goes on here without a corner: between a straight and an arc
 };
 
 struct PathPoint {
@@ -74,9 +80,17 @@ struct Leg {
   std::optional<double> end_yaw_rad{};  ///< to be turned to on the spot before it is done
 };
 
+/// Vertices [first, last] that are driven as one smooth curve.
+struct SmoothStretch {
+  std::size_t first = 0;
+  std::size_t last = 0;
+  double deviation_m = 0.0;  ///< the curve and the polyline are nowhere farther apart
+};
+
 struct Path {
   std::vector<PathPoint> points;
   std::vector<Leg> legs;
+  std::vector<SmoothStretch> smoothed;
   std::vector<double> vertex_m;  ///< arc length at which each vertex counts as passed
 
   double length_m() const noexcept { return points.empty() ? 0.0 : points.back().s_m; }
@@ -97,6 +111,10 @@ struct PathParams {
   SpeedParams speed;
   PivotParams pivot;
   VehicleParams vehicle{};
+  SlopeParams slope{};
+  /// speed.decel_mps2 is a guess: the next stop is begun with a short braking that shows what the
+  /// brakes can, as early as half of it needs.
+  bool prove_braking = false;
 };
 
 /// Vertices nearer than 1 mm to each other are one. Fewer than two different ones: a path without
@@ -105,6 +123,7 @@ struct PathParams {
 ///   turn arc and through, as far as the neighbours leave room), else a stop with a turn on the
 ///   spot. An arc cannot reverse: above 150° it is a pivot as well. A steered vehicle never turns
 ///   on the spot; what is too sharp for it becomes a swing (nav/track/corner.hpp).
+/// Dense vertices that may be so are smoothed first (nav/track/smooth.hpp).
 /// Speed limits: item, bends (nav/track/profile.hpp), and braking for what follows.
 /// Pure; any finite points. Time and memory linear.
 Path build_path(std::span<const Vertex> vertices, const PathParams& params);

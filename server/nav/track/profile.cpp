@@ -9,9 +9,8 @@
 namespace roverd::nav {
 namespace {
 
-constexpr double kOnset_s = 0.2;            // turn rate of a vehicle that turns on the spot
-constexpr double kOnsetDeviation_m = 0.05;  // what the wheels' slowness may cost in a bend
-constexpr double kStanding_s = 0.5;         // until a stop is noticed and the next leg begins
+constexpr double kStanding_s = 0.5;  // until a stop is noticed and the next leg begins
+constexpr double kTurnOver_m = 0.5;  // of the way, over which the wheels' turning is averaged
 
 void backward_pass(Path& path, const Leg& leg, const SpeedParams& speed) noexcept {
   path.points[leg.last].speed_mps = 0.0;
@@ -74,21 +73,39 @@ double leg_yaw_rad(const Path& path, const Leg& leg, bool at_end) noexcept {
 
 }  // namespace
 
-double bend_onset_s(const VehicleParams& vehicle) noexcept {
-  if (!vehicle.steered()) return kOnset_s;
-  return std::clamp(2.0 * vehicle.max_steering_deg / vehicle.max_steering_rate_dps, kOnset_s, 3.0);
-}
-
 SpeedLimit bend_limit(double curvature_1pm, const PathParams& params) noexcept {
   const SpeedParams& p = params.speed;
   const double k = std::max(curvature_1pm, 1e-6);
   SpeedLimit limit{std::sqrt(p.lateral_mps2 / k), SpeedReason::Bend};
   limit.cut(0.7 * p.max_yaw_rate_radps / k, SpeedReason::Turn);
-  if (params.vehicle.steered()) {
-    const double onset_s = bend_onset_s(params.vehicle);
-    limit.cut(std::sqrt(24.0 * kOnsetDeviation_m / k) / onset_s, SpeedReason::Steer);
-  }
   return limit;
+}
+
+/// The segments a window ahead and behind are compared: single ones carry noise.
+void limit_steering(Path& path, const PathParams& params) noexcept {
+  const VehicleParams& car = params.vehicle;
+  if (!car.steered()) return;
+  const double rate_radps = kSteeringShare * base::rad_from_deg(car.max_steering_rate_dps);
+  const auto wheel_rad = [&](std::size_t i) {
+    return std::atan(car.wheelbase_m * path.points[i].curvature_1pm);
+  };
+  for (const Leg& leg : path.legs) {
+    std::size_t last = leg.first;
+    for (std::size_t first = leg.first; first + 1 < leg.last; ++first) {
+      const double from_m = path.points[first + 1].s_m;  // where its segment ends
+      last = std::max(last, first + 1);
+      while (last + 1 < leg.last && path.points[last].s_m - from_m < kTurnOver_m) ++last;
+      const double way_m = std::max(kTurnOver_m, path.points[last].s_m - from_m);
+      const double turn_rad = std::abs(wheel_rad(last) - wheel_rad(first));
+      const double mps =
+          std::max(rate_radps * way_m / std::max(1e-6, turn_rad), params.speed.min_mps);
+      for (std::size_t i = first + 1; i <= last; ++i) {
+        if (mps >= path.points[i].segment_mps) continue;
+        path.points[i].segment_mps = mps;
+        path.points[i].segment_reason = SpeedReason::Steer;
+      }
+    }
+  }
 }
 
 void plan_speeds(Path& path, const PathParams& params) noexcept {

@@ -9,6 +9,8 @@
 namespace roverd::nav {
 namespace {
 
+constexpr double kSameLane = -0.5;  // cosine of the largest turn within what is looked at at once
+
 using base::angle_diff_rad;
 using base::rad_from_deg;
 
@@ -17,21 +19,34 @@ constexpr double kStill_radps = 0.06;
 constexpr double kStillFor_s = 0.1;
 constexpr double kTurned_radps = 0.15;
 constexpr double kTurnedFor_s = 0.1;
+const double kArcInstead_rad = rad_from_deg(50.0);
 constexpr double kNear_m = 0.3;  // closer to the path, its direction counts, not the way to it
 
 bool finite(const Vehicle& v) noexcept {
   return std::isfinite(v.at.east_m) && std::isfinite(v.at.north_m) && std::isfinite(v.yaw_rad) &&
          std::isfinite(v.yaw_sigma_rad) && std::isfinite(v.speed_mps) &&
          std::isfinite(v.yaw_rate_radps) && std::isfinite(v.odometry_scale) &&
-         std::isfinite(v.yaw_scale) && std::isfinite(v.pull_1pm) && v.odometry_scale > 0.0 &&
-         v.yaw_scale > 0.0;
+         std::isfinite(v.roll_rad) && std::isfinite(v.pitch_rad) && std::isfinite(v.yaw_scale) &&
+         std::isfinite(v.pull_1pm) && v.odometry_scale > 0.0 && v.yaw_scale > 0.0 &&
+         std::isfinite(v.crab) && std::isfinite(v.slide.east_m) && std::isfinite(v.slide.north_m);
 }
 
 }  // namespace
 
+double course_off_rad(const Vehicle& v, bool reverse) noexcept {
+  const double tail = reverse ? -1.0 : 1.0;
+  const double c = tail * std::cos(v.yaw_rad);
+  const double s = tail * std::sin(v.yaw_rad);
+  const double ahead = v.odometry_scale + c * v.slide.east_m + s * v.slide.north_m;
+  const double left = v.crab - s * v.slide.east_m + c * v.slide.north_m;
+  return std::clamp(std::atan2(left, std::max(0.2, ahead)), -0.5, 0.5);
+}
+
 void Tracker::enter(TrackPhase phase) noexcept {
   phase_ = phase;
   still_s_ = astray_s_ = turning_s_ = 0.0;
+  too_steep_ = false;
+  if (phase != TrackPhase::Track) proof_mps_.reset();
   if (phase != TrackPhase::Track) accel_mps2_ = 0.0;
 }
 
@@ -61,7 +76,7 @@ void Tracker::begin_turn(double yaw_rad) noexcept {
 void Tracker::reset() noexcept {
   path_ = nullptr;
   enter(TrackPhase::Idle);
-  speed_mps_ = rate_radps_ = curvature_1pm_ = 0.0;
+  speed_mps_ = rate_radps_ = wheel_rad_ = 0.0;
   saturated_ = false;
   observer_.reset();
   sent_.fill({});
@@ -121,12 +136,18 @@ Tracker::Projection Tracker::project(EnuPoint at, double s_m, double ahead_m) co
   const double to_m = std::min(leg.end_m, s_m + ahead_m);
   Projection best;
   double best_m = 1e300;
+  const std::size_t here = path_->segment_at(leg, s_m, segment_);
+  const EnuPoint way = path_->points[here + 1].at - path_->points[here].at;
+  const double way_m = std::hypot(way.east_m, way.north_m);
   for (std::size_t i = path_->segment_at(leg, from_m, segment_); i < leg.last; ++i) {
     const PathPoint& a = path_->points[i];
     const PathPoint& b = path_->points[i + 1];
     if (a.s_m > to_m) break;
     const double length = b.s_m - a.s_m;
     const EnuPoint d = b.at - a.at;
+    // Behind a turn that is still to come: the lane beside this one.
+    const double same = d.east_m * way.east_m + d.north_m * way.north_m;
+    if (i > here && same < kSameLane * length * way_m) continue;
     const EnuPoint p = at - a.at;
     const double c = d.east_m / length;
     const double s = d.north_m / length;
@@ -162,7 +183,7 @@ double Tracker::facing_error(const Vehicle& v, const Projection& on) const noexc
     wanted = std::atan2(d.north_m, d.east_m);
   }
   if (leg_now().reverse) wanted += base::kPi;
-  return angle_diff_rad(v.yaw_rad, wanted);
+  return angle_diff_rad(v.yaw_rad + course_off_rad(v, leg_now().reverse), wanted);
 }
 
 TrackOutput Tracker::command(const Vehicle& v, double speed_mps, double rate_radps,
@@ -188,18 +209,38 @@ TrackOutput Tracker::command(const Vehicle& v, double speed_mps, double rate_rad
   return {t, reason};
 }
 
+bool too_steep_to_turn(const Vehicle& v, const SlopeParams& p) noexcept {
+  return lean_rad(v.roll_rad, v.pitch_rad) > rad_from_deg(p.pivot_deg);
+}
+
+/// On a slope that is too steep for it, a slight turn is driven as an arc instead.
+bool Tracker::slight(const Vehicle& v, double error_rad) const noexcept {
+  return too_steep_to_turn(v, params_->slope) && std::abs(error_rad) < kArcInstead_rad;
+}
+
+/// Turning on the spot it would lean to each side in turn, and slide.
+bool Tracker::may_pivot(const Vehicle& v) noexcept {
+  too_steep_ = too_steep_to_turn(v, params_->slope);
+  return !too_steep_;
+}
+
 TrackOutput Tracker::settle(const Vehicle& v, double dt_s) noexcept {
   const double step = params_->speed.hold_decel_mps2 * dt_s;
   const double turn_step = params_->pivot.slew_radps2 * dt_s;
   if (still(v, dt_s)) {
     if (path_ == nullptr) {
-      enter(TrackPhase::Turn);
+      if (may_pivot(v)) enter(TrackPhase::Turn);
       return command(v, 0.0, 0.0, SpeedReason::Stopping);
     }
     const Projection on = project(v.at, s_m_, 1.0);
     cross_track_m_ = leg_now().reverse ? -on.cross_m : on.cross_m;
-    const bool away = std::abs(facing_error(v, on)) > leg_now().align_rad;
-    enter(away ? TrackPhase::Pivot : TrackPhase::Track);
+    const double error_rad = facing_error(v, on);
+    const bool away = std::abs(error_rad) > leg_now().align_rad;
+    if (!away || slight(v, error_rad)) {
+      enter(TrackPhase::Track);
+    } else if (may_pivot(v)) {
+      enter(TrackPhase::Pivot);
+    }
   }
   return command(v, slew(speed_mps_, 0.0, step, step), slew(rate_radps_, 0.0, turn_step, turn_step),
                  SpeedReason::Stopping);
@@ -247,6 +288,8 @@ TrackOutput Tracker::stop(const Vehicle& v, double dt_s) noexcept {
   if (still(v, dt_s)) {
     if (leg_now().end_m - s_m_ > params_->track.arrive_m) {
       enter(TrackPhase::Track);
+    } else if (leg_now().end_yaw_rad && !may_pivot(v)) {
+      return out;
     } else if (leg_now().end_yaw_rad) {
       turn_to_rad_ = *leg_now().end_yaw_rad;
       enter(TrackPhase::Turn);

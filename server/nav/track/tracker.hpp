@@ -19,6 +19,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <utility>
 
 #include "base/geo.hpp"
@@ -42,7 +43,20 @@ struct Vehicle {
   double yaw_scale = 1.0;       ///< true over track turn rate
   double pull_1pm = 0.0;        ///< turn per metre on straight tracks
   double sigma_m = 0.0;         ///< of the position
+  double roll_rad = 0.0;        ///< right side down positive; 0 where nothing tells
+  double pitch_rad = 0.0;       ///< nose up positive; likewise
+  /// It does not drive where it points: for each metre it moves so far to its left (to its right
+  /// reversing), and by this vector, whichever way it points.
+  double crab = 0.0;
+  EnuPoint slide;
 };
+
+/// The angle from where it points to where it goes; reversing, from where its tail points. Left
+/// positive, at most 0.5 rad: more is no side slip.
+double course_off_rad(const Vehicle& v, bool reverse) noexcept;
+
+/// It leans more than a turn on the spot is allowed at.
+bool too_steep_to_turn(const Vehicle& v, const SlopeParams& p) noexcept;
 
 enum class TrackPhase { Idle, Settle, Pivot, Track, Stop, Turn, Done };
 
@@ -75,8 +89,12 @@ class Tracker {
   double s_m() const noexcept { return s_m_; }
   /// Positive: the vehicle is left of the way it drives.
   double cross_track_m() const noexcept { return cross_track_m_; }
-  /// The turn on the spot takes longer than nav.pivot.timeout_s.
-  bool turn_timed_out() const noexcept { return turning_s_ > params_->pivot.timeout_s; }
+  /// The turn on the spot takes longer than nav.pivot.timeout_s, or may not begin.
+  bool turn_timed_out() const noexcept {
+    return too_steep_ || turning_s_ > params_->pivot.timeout_s;
+  }
+  /// It would have to turn on the spot where it leans more than nav.slope.pivot_deg: it stands.
+  bool too_steep() const noexcept { return too_steep_; }
   /// What turns the robot without being commanded.
   double yaw_disturbance_radps() const noexcept { return observer_.radps(); }
 
@@ -96,6 +114,7 @@ class Tracker {
   base::BodyTwist sent_before(double age_s, double dt_s) const noexcept;
   double facing_error(const Vehicle& v, const Projection& on) const noexcept;
   SpeedLimit profile(double s_m) const noexcept;
+  void prove_braking(SpeedLimit& limit) noexcept;
 
   TrackOutput settle(const Vehicle& v, double dt_s) noexcept;
   TrackOutput pivot(const Vehicle& v, double dt_s) noexcept;
@@ -113,6 +132,8 @@ class Tracker {
   SpeedLimit limits(const Vehicle& v, double limit_mps, double curvature_1pm,
                     double course_error_rad) noexcept;
   double speed_up_or_down(double limit_mps, double dt_s) noexcept;
+  bool slight(const Vehicle& v, double error_rad) const noexcept;
+  bool may_pivot(const Vehicle& v) noexcept;
   bool still(const Vehicle& v, double dt_s) noexcept;
   void enter(TrackPhase phase) noexcept;
 
@@ -127,12 +148,16 @@ class Tracker {
   double still_s_ = 0.0;
   double astray_s_ = 0.0;
   double turning_s_ = 0.0;
+  double down_rad_ = 0.0;  ///< the way goes down by, where it drives
+  bool too_steep_ = false;
+  std::optional<double> proof_mps_;  ///< down to it the brakes are tried on this leg
   bool creeping_ = false;
   bool saturated_ = false;
-  double speed_mps_ = 0.0;      ///< last commanded over ground
-  double rate_radps_ = 0.0;     ///< likewise, as wanted
-  double accel_mps2_ = 0.0;     ///< of the commanded speed's size
-  double curvature_1pm_ = 0.0;  ///< steered vehicles: where the wheels were told to point
+  double speed_mps_ = 0.0;   ///< last commanded over ground
+  double rate_radps_ = 0.0;  ///< likewise, as wanted
+  double accel_mps2_ = 0.0;  ///< of the commanded speed's size
+  double wheel_rad_ = 0.0;   ///< steered vehicles: where the wheels were told to point
+  double unturned_s_ = 0.0;  ///< so long they need to where they should
   YawObserver observer_;
 
   std::array<base::BodyTwist, 64>

@@ -14,12 +14,13 @@ using base::rad_from_deg;
 using base::seconds;
 
 constexpr std::array kTurnWindows_s{1.5, 4.0, 8.0, 11.0, 16.0};
-constexpr std::array kWayWindows_s{1.0, 2.5, 5.0, 10.0};
+constexpr std::array kWayWindows_s{1.0, 1.8, 2.5, 3.3, 5.0, 7.0, 10.0};
 constexpr double kTrackWindow_s = 5.6;  // longer, slip and bends add up
 constexpr double kChordReach_s = 1.2;   // half a chord of positions, and one of them
 constexpr double kMean_s = 1.0;         // directions are averaged at both ends of a window
 const double kTurnFloor_rad = rad_from_deg(2.0);
 constexpr double kWayFloor_m = 0.10;
+constexpr double kWayFloorRtk_m = 0.05;
 constexpr double kTrackWayFloor_m = 0.15;
 
 const double kGyro_rad = rad_from_deg(0.5);
@@ -241,7 +242,8 @@ class Comparer {
                            : std::nullopt;
     if (paces) {
       const double off = norm(spots->m - paces->m);
-      const double limit = sigmas_ * std::hypot(spots->sigma_m, paces->sigma_m) + kWayFloor_m;
+      const double limit = sigmas_ * std::hypot(spots->sigma_m, paces->sigma_m) +
+                           (f_.rtk ? kWayFloorRtk_m : kWayFloor_m);
       put(Sense::Position, Sense::Velocity, {Difference::Of::Way, off, w}, limit, 0.0);
       if (off > limit) ask_dead_reckoning(begin, end, spots->m, paces->m);
     }

@@ -12,7 +12,7 @@
 // | tracks    | 0.25 to 1.25 of what they say,          | 0.65 to 1.4 of what they say times the  |
 // |           |   and the learned pull, ± 3 deg and 0.2 |   learned scale; 0.45 to 1.3 unlearned; |
 // |           |   rad/m: one side slips by 15 % more    |   the antenna swings by arm · turn      |
-// | velocity  | sigma/speed of each course, arm ·       | its noise, and 0.015 m/s · W (0.03      |
+// | velocity  | sigma/speed of each course, arm ·       | its noise, and 0.01 m/s · W (0.03      |
 // |           |   rate/speed, 1 deg; after a turn 11 deg|   without RTK)                          |
 // |           |   at most: it slides down a slope       |                                         |
 // | position  | of chords over 2 s                      | sigma at both ends, its class's drift   |

@@ -9,7 +9,7 @@ namespace {
 using base::EnuPoint;
 using base::seconds;
 
-constexpr double kVelocityBiasRtk_mps = 0.015;
+constexpr double kVelocityBiasRtk_mps = 0.01;
 constexpr double kVelocityBias_mps = 0.03;
 
 EnuPoint times(double s, EnuPoint p) noexcept {

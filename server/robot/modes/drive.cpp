@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "robot/impl.hpp"
+#include "robot/safety/certainty.hpp"
 
 namespace roverd::robot {
 namespace {
@@ -19,6 +20,7 @@ using base::Severity;
 
 nav::Vehicle Robot::Impl::vehicle() const {
   const nav::Belief& b = estimator.belief();
+  const auto lean = attitude();
   return {pose->at,
           pose->yaw_rad,
           pose->yaw_sigma_rad,
@@ -27,13 +29,20 @@ nav::Vehicle Robot::Impl::vehicle() const {
           b.x(nav::kScale),
           b.x(nav::kYawScale),
           b.x(nav::kPull),
-          pose->horizontal_sigma_m};
+          pose->horizontal_sigma_m,
+          lean ? lean->roll_rad : 0.0,
+          lean ? lean->pitch_rad : 0.0,
+          estimator.crab(),
+          estimator.slide()};
 }
 
 /// What is allowed now, whatever a path was laid for.
 double Robot::Impl::limit_mps() const noexcept {
   const double most = std::min(config->speed.max_mps, config->vehicle.max_speed_mps);
-  return assessment.slow ? std::min(most, config->speed.creep_mps) : most;
+  if (assessment.slow) return std::min(most, config->speed.creep_mps);
+  if (!pose) return most;
+  return certain_mps(pose->horizontal_sigma_m, corridor_m(), most, config->speed.creep_mps,
+                     config->safety);
 }
 
 base::DriveCommand Robot::Impl::drive_by_hand() {
@@ -104,6 +113,10 @@ void Robot::Impl::tell_notices() {
         break;
       case nav::Notice::Kind::ItemMissed:
         event(Severity::Warning, "item_missed", "item " + std::to_string(n.item) + " " + n.detail);
+        break;
+      case nav::Notice::Kind::Overshot:
+        event(Severity::Warning, "overshot",
+              "item " + std::to_string(n.item) + " " + n.detail + ": the robot backs up to it");
         break;
       case nav::Notice::Kind::Action:
         act(n);

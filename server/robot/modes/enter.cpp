@@ -43,6 +43,10 @@ base::Result<void> Robot::Impl::handle(const SetMode& c) {
       return enter_follow();
     case Mode::Dock:
       return enter_dock(c);
+    case Mode::Loiter:
+      return enter_loiter(c);
+    case Mode::Circle:
+      return enter_circle(c);
   }
   return base::fail(Code::Invalid, "there is no such mode");
 }

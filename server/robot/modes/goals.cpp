@@ -1,7 +1,9 @@
-// The modes that are told where to go: GUIDED, FOLLOW, DOCK.
+// The modes that are told where to go: GUIDED, FOLLOW, DOCK, LOITER, CIRCLE.
 
+#include <algorithm>
 #include <cmath>
 
+#include "base/angle.hpp"
 #include "robot/impl.hpp"
 
 namespace roverd::robot {
@@ -173,6 +175,70 @@ base::Result<void> Robot::Impl::enter_dock(const SetMode& c) {
   }
   change_mode(ModeCause::Chosen, asker, Mode::Dock);
   self_driving.dock({*place, *c.goal->yaw_rad, c.goal->reverse}, vehicle());
+  return {};
+}
+
+// ---- LOITER, CIRCLE ----
+
+base::Result<void> Robot::Impl::enter_loiter(const SetMode& c) {
+  if (auto ok = may_drive_by_itself(); !ok) return ok;
+  nav::StayGoal goal{pose->at, c.radius_m.value_or(mission::kLoiterRadius_m)};
+  if (c.goal) goal.speed_mps = c.goal->speed_mps;
+  if (c.goal && (c.goal->at || c.goal->local)) {
+    const auto place = place_of(*c.goal);
+    if (!place) return tl::unexpected(place.error());
+    if (auto ok = inside(*place); !ok) return ok;
+    goal.at = *place;
+  }
+  if (!std::isfinite(goal.within_m) || !(goal.speed_mps.value_or(1.0) > 0.0)) {
+    return base::fail(Code::Invalid, "radius and speed are above zero");
+  }
+  change_mode(ModeCause::Chosen, asker, Mode::Loiter);
+  self_driving.stay(goal, vehicle());
+  return {};
+}
+
+/// None of the way leads outside: to it, and round.
+base::Result<void> Robot::Impl::circle_inside(const nav::OrbitGoal& goal) const {
+  constexpr int kChords = 72;
+  const mission::CircleWay way = nav::Orbit::way_of(goal, pose->at);
+  if (auto ok = inside(way.entry()); !ok) return ok;
+  if (const auto lead = nav::Orbit::lead_of(way, config->vehicle)) {
+    if (auto ok = inside(*lead); !ok) return ok;
+    if (auto ok = fence.inside(*lead, way.entry(), way_margin_m()); !ok) return ok;
+  }
+  const double sweep_rad = std::clamp(way.sweep_rad, -2.0 * base::kPi, 2.0 * base::kPi);
+  // So far out that the chords lie outside of the arc.
+  mission::CircleWay outer = way;
+  outer.radius_m /= std::cos(base::kPi / kChords);
+  for (int i = 0; i < kChords; ++i) {
+    const base::EnuPoint from = outer.at(sweep_rad * i / kChords);
+    const base::EnuPoint to = outer.at(sweep_rad * (i + 1) / kChords);
+    if (auto ok = fence.inside(from, to, way_margin_m()); !ok) return ok;
+  }
+  return {};
+}
+
+base::Result<void> Robot::Impl::enter_circle(const SetMode& c) {
+  if (!c.goal || (!c.goal->at && !c.goal->local) || !c.radius_m) {
+    return base::fail(Code::Invalid, "CIRCLE needs its centre and its radius",
+                      {{c.radius_m ? "/lat" : "/radius_m", "is missing"}});
+  }
+  if (auto ok = may_drive_by_itself(); !ok) return ok;
+  const auto place = place_of(*c.goal);
+  if (!place) return tl::unexpected(place.error());
+  const nav::OrbitGoal goal{*place, *c.radius_m, c.clockwise, c.turns, c.goal->speed_mps};
+  const bool finite = std::isfinite(goal.radius_m) && std::isfinite(goal.turns.value_or(1.0)) &&
+                      std::isfinite(goal.speed_mps.value_or(1.0));
+  if (!finite || goal.radius_m <= 0.0 || goal.turns.value_or(1.0) <= 0.0) {
+    return base::fail(Code::Invalid, "a circle has a radius, and turns if any, above zero");
+  }
+  if (const std::string no = self_driving.refusal(goal); !no.empty()) {
+    return base::fail(Code::Conflict, no);
+  }
+  if (auto ok = circle_inside(goal); !ok) return ok;
+  change_mode(ModeCause::Chosen, asker, Mode::Circle);
+  self_driving.circle(goal, vehicle());
   return {};
 }
 

@@ -58,6 +58,8 @@ ModeKind kind_of(Mode mode) noexcept {
     case Mode::SmartRtl:
     case Mode::Follow:
     case Mode::Dock:
+    case Mode::Loiter:
+    case Mode::Circle:
       return ModeKind::ByItself;
   }
   return ModeKind::Standing;

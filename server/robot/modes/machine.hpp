@@ -4,7 +4,7 @@
 //   by hand                      standing       by itself
 //   MANUAL                                      AUTO                     a mission
 //   ACRO STEERING SIMPLE  ◀────▶  HOLD  ◀────▶  GUIDED                   one goal after the other
-//                                               RTL SMART_RTL FOLLOW DOCK
+//                                               RTL SMART_RTL FOLLOW DOCK LOITER CIRCLE
 //
 //   cause             from                          to
 //   chosen            any                           the one that was chosen (never AUTO)
@@ -15,7 +15,7 @@
 //   armed, disarmed   by itself, AUTO included      HOLD    (by hand stays: it stands all the same)
 //   a fault           by itself, AUTO included      HOLD
 //   mission over      AUTO                          HOLD    (finished, stopped, failed, replaced)
-//   activity over     RTL SMART_RTL FOLLOW DOCK     HOLD    (GUIDED stays: another goal may come)
+//   activity over     by itself, but AUTO, GUIDED   HOLD    (GUIDED stays: another goal may come)
 //
 // What is not in the table changes nothing. Whether a chosen mode may begin is asked before
 // (modes/enter.cpp). Leaving AUTO pauses the mission; between two modes that drive by themselves,

@@ -6,6 +6,8 @@ namespace {
 using base::ActivityState;
 using base::Mode;
 
+constexpr std::string_view kCalibration = "calibration";
+
 bool under_way(ActivityState s) noexcept {
   return s == ActivityState::Driving || s == ActivityState::Turning ||
          s == ActivityState::Waiting || s == ActivityState::Held;
@@ -17,9 +19,13 @@ SelfDriving::SelfDriving(const ParameterSet& set)
     : guided_(set.path, set.behave, set.modes),
       dock_(set.path, set.behave, set.modes),
       rtl_(set.path, set.behave),
-      follow_(set.path, set.modes) {}
+      follow_(set.path, set.modes),
+      calibrate_(set.path),
+      stay_(set.path, set.behave),
+      orbit_(set.path, set.behave) {}
 
 void SelfDriving::begin(std::string_view kind) {
+  calibrate_.end("the robot was told of something else to do: " + std::string(kind));
   const std::uint64_t id = activity_.id + 1;
   held_.go_on();
   activity_ = {};
@@ -57,13 +63,45 @@ void SelfDriving::dock(const nav::DockGoal& goal, const nav::Vehicle& vehicle) {
   begin("dock");
 }
 
+void SelfDriving::begin_calibration(base::CalibrationKind kind, const nav::Vehicle& vehicle,
+                                    const nav::CalibrationBefore& before,
+                                    const nav::PathParams& set) {
+  guided_.reset();
+  begin(kCalibration);
+  calibrate_.begin(kind, vehicle, before, set);
+}
+
+void SelfDriving::stay(const nav::StayGoal& goal, const nav::Vehicle& vehicle) {
+  stay_.begin(goal, vehicle);
+  begin("loiter");
+}
+
+void SelfDriving::circle(const nav::OrbitGoal& goal, const nav::Vehicle& vehicle) {
+  orbit_.begin(goal, vehicle);
+  begin("circle");
+}
+
 void SelfDriving::interrupt() noexcept {
+  if (calibrate_.running()) {
+    calibrate_.end("somebody else drove, or the base took no commands");
+  }
+  lay_anew();
+}
+
+void SelfDriving::lay_anew() noexcept {
+  stay_.interrupt();
+  orbit_.interrupt();
   guided_.interrupt();
   dock_.interrupt();
   rtl_.interrupt();
 }
 
 bool SelfDriving::hold(Mode mode) {
+  // A figure that was broken off measures nothing.
+  if (calibrate_.running()) {
+    calibrate_.end("the radio took over");
+    return false;
+  }
   const bool no_goal = mode == Mode::Guided && activity_.state == ActivityState::Waiting;
   if (held_.waits() || no_goal || !under_way(activity_.state)) return false;
   held_.take(activity_.kind);
@@ -77,10 +115,13 @@ void SelfDriving::leave(Mode to, const std::string& why, bool stands_first) {
     activity_.state = ActivityState::Failed;
     activity_.reason = "ended by mode " + std::string(base::to_string(to)) + ": " + why;
   }
+  calibrate_.end("ended by mode " + std::string(base::to_string(to)) + ": " + why);
   guided_.reset();
   dock_.reset();
   rtl_.reset();
   follow_.reset();
+  stay_.reset();
+  orbit_.reset();
   held_.go_on();
   changeover_.skip();
   if (stands_first) changeover_.begin();
@@ -88,7 +129,7 @@ void SelfDriving::leave(Mode to, const std::string& why, bool stands_first) {
 
 SelfDriving::Step SelfDriving::step(const Facts& f) {
   if (held_.waits()) return {{}, "held", false, {}};
-  if (changeover_.ends(f.vehicle.speed_mps, f.vehicle.yaw_rate_radps, f.dt_s)) interrupt();
+  if (changeover_.ends(f.vehicle.speed_mps, f.vehicle.yaw_rate_radps, f.dt_s)) lay_anew();
   if (changeover_.waits()) return {{}, "stopping", false, {}};
   const nav::TrackOutput out = step_mode(f);
   Step step{out.command, nav::to_string(out.reason), false, {}};
@@ -113,6 +154,7 @@ SelfDriving::Step SelfDriving::step(const Facts& f) {
 nav::TrackOutput SelfDriving::step_mode(const Facts& f) {
   switch (f.mode) {
     case Mode::Guided:
+      if (activity_.kind == kCalibration) return calibrate_.step(f.vehicle, f.limit_mps, f.dt_s);
       return guided_.step(f.vehicle, f.limit_mps, f.dt_s);
     case Mode::Rtl:
     case Mode::SmartRtl:
@@ -121,6 +163,10 @@ nav::TrackOutput SelfDriving::step_mode(const Facts& f) {
       return follow_.step(f.vehicle, f.limit_mps, f.now, f.dt_s);
     case Mode::Dock:
       return dock_.step(f.vehicle, f.limit_mps, f.dt_s);
+    case Mode::Loiter:
+      return stay_.step(f.vehicle, f.limit_mps, f.dt_s);
+    case Mode::Circle:
+      return orbit_.step(f.vehicle, f.limit_mps, f.dt_s);
     case Mode::Auto:
     case Mode::Manual:
     case Mode::Hold:
@@ -130,6 +176,23 @@ nav::TrackOutput SelfDriving::step_mode(const Facts& f) {
       break;
   }
   return {};
+}
+
+std::optional<SelfDriving::Ending> SelfDriving::calibrated() const {
+  switch (calibrate_.state()) {
+    case nav::Calibrate::State::Done:
+      return Ending{ActivityState::Reached, "calibration_done",
+                    "the calibration of the " + std::string(to_string(calibrate_.kind())) +
+                        " is measured: keep or discard it"};
+    case nav::Calibrate::State::Failed:
+    case nav::Calibrate::State::Ended:
+    case nav::Calibrate::State::Idle:
+      return Ending{ActivityState::Failed, "calibration_failed",
+                    "the calibration measured nothing: " + calibrate_.reason()};
+    case nav::Calibrate::State::Running:
+      break;
+  }
+  return std::nullopt;
 }
 
 /// What the machine of this mode came to.
@@ -142,6 +205,7 @@ std::optional<SelfDriving::Ending> SelfDriving::ending(Mode mode) const {
   };
   switch (mode) {
     case Mode::Guided:
+      if (activity_.kind == kCalibration) return calibrated();
       if (guided_.state() == nav::Guided::State::Reached) {
         return reached("goal_reached",
                        "the goal of this " + std::string(activity_.kind) + " is reached");
@@ -170,6 +234,19 @@ std::optional<SelfDriving::Ending> SelfDriving::ending(Mode mode) const {
         return failed("dock_failed", "not docked: " + dock_.reason());
       }
       break;
+    case Mode::Loiter:
+      if (stay_.state() == nav::Stay::State::Failed) {
+        return failed("goal_failed", "back to the place: " + stay_.reason());
+      }
+      break;
+    case Mode::Circle:
+      if (orbit_.state() == nav::Orbit::State::Done) {
+        return reached("goal_reached", "the circle's turns are driven");
+      }
+      if (orbit_.state() == nav::Orbit::State::Failed) {
+        return failed("goal_failed", "the circle: " + orbit_.reason());
+      }
+      break;
     case Mode::Auto:
     case Mode::Manual:
     case Mode::Hold:
@@ -193,6 +270,20 @@ void SelfDriving::tell_guided(const Facts& f) {
   a.turn_rad = guided_.trip().turn_left_rad();
 }
 
+void SelfDriving::tell_place(const Facts& f) {
+  base::Activity& a = activity_;
+  if (f.mode == Mode::Circle) {
+    a.goal = f.frame.to_global(orbit_.goal().centre);
+    a.distance_m = orbit_.distance_left_m();
+    return;
+  }
+  a.goal = f.frame.to_global(stay_.goal().at);
+  a.distance_m = stay_.distance_m(f.vehicle.at);
+  if (stay_.state() != nav::Stay::State::Staying) return;
+  a.state = ActivityState::Waiting;
+  a.reason = "stays here";
+}
+
 /// Where the mode stands, in the words of the snapshot.
 void SelfDriving::tell(const Facts& f) {
   base::Activity& a = activity_;
@@ -200,10 +291,14 @@ void SelfDriving::tell(const Facts& f) {
   a.reason.clear();
   a.turn_rad.reset();
   a.distance_m.reset();
-  if (f.mode == Mode::Guided) {
+  if (activity_.kind == kCalibration) {
+    a.reason = calibrate_.reason();
+  } else if (f.mode == Mode::Guided) {
     tell_guided(f);
   } else if (f.mode == Mode::Rtl || f.mode == Mode::SmartRtl) {
     a.distance_m = rtl_.trip().distance_left_m();
+  } else if (f.mode == Mode::Loiter || f.mode == Mode::Circle) {
+    tell_place(f);
   } else if (f.mode == Mode::Dock) {
     a.goal = f.frame.to_global(dock_.goal().at);
     a.goal_yaw_rad = dock_.goal().yaw_rad;

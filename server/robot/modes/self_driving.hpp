@@ -1,6 +1,6 @@
 #pragma once
-// The modes that drive by themselves and are no mission: GUIDED, RTL, SMART_RTL, FOLLOW, DOCK. One
-// of them is in hand; what it does is the activity.
+// The modes that drive by themselves and are no mission: GUIDED, RTL, SMART_RTL, FOLLOW, DOCK,
+// LOITER, CIRCLE. One of them is in hand; what it does is the activity.
 //
 //   begin ──▶ Driving ──there──▶ Reached            of GUIDED another goal begins anew
 //     │        │  ▲  └─cannot──▶ Failed
@@ -21,7 +21,10 @@
 #include "nav/behave/dock.hpp"
 #include "nav/behave/follow.hpp"
 #include "nav/behave/guided.hpp"
+#include "nav/behave/orbit.hpp"
 #include "nav/behave/rtl.hpp"
+#include "nav/behave/stay.hpp"
+#include "nav/calibrate/calibrate.hpp"
 #include "robot/modes/changeover.hpp"
 #include "robot/modes/held_by_radio.hpp"
 #include "robot/parameter_set.hpp"
@@ -63,9 +66,19 @@ class SelfDriving {
                base::LatLon to, double length_m);
   void follow();
   void dock(const nav::DockGoal& goal, const nav::Vehicle& vehicle);
+  /// GUIDED, by a figure in the place of a goal. @param set as the parameters say
+  void begin_calibration(base::CalibrationKind kind, const nav::Vehicle& vehicle,
+                         const nav::CalibrationBefore& before, const nav::PathParams& set);
+  /// It drives, and measures.
+  bool calibrates() const noexcept { return calibrate_.running(); }
+  nav::Calibrate& calibration() noexcept { return calibrate_; }
+  const nav::Calibrate& calibration() const noexcept { return calibrate_; }
+  void stay(const nav::StayGoal& goal, const nav::Vehicle& vehicle);
+  void circle(const nav::OrbitGoal& goal, const nav::Vehicle& vehicle);
 
   // Why this cannot be; empty: it can.
   std::string refusal(const nav::GuidedGoal& goal) const { return guided_.refusal(goal); }
+  std::string refusal(const nav::OrbitGoal& goal) const { return orbit_.refusal(goal); }
   std::string follow_refusal(base::EnuPoint here, base::Time now) const {
     return follow_.refusal(here, now);
   }
@@ -92,15 +105,22 @@ class SelfDriving {
 
  private:
   void begin(std::string_view kind);
+  /// The way in hand, from where it stands now.
+  void lay_anew() noexcept;
   nav::TrackOutput step_mode(const Facts& f);
   std::optional<Ending> ending(base::Mode mode) const;
+  std::optional<Ending> calibrated() const;
   void tell(const Facts& f);
   void tell_guided(const Facts& f);
+  void tell_place(const Facts& f);
 
   nav::Guided guided_;
   nav::Dock dock_;
   nav::Rtl rtl_;
   nav::Follow follow_;
+  nav::Calibrate calibrate_;
+  nav::Stay stay_;
+  nav::Orbit orbit_;
   Changeover changeover_;
   HeldByRadio held_;
   base::Activity activity_;

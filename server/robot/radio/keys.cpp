@@ -20,6 +20,7 @@ constexpr RadioAction kSwitchActions[] = {
     {"mode.acro", "mode ACRO", RadioDeed::SetMode, Mode::Acro},
     {"mode.simple", "mode SIMPLE", RadioDeed::SetMode, Mode::Simple},
     {"mode.dock", "mode DOCK", RadioDeed::SetMode, Mode::Dock},
+    {"mode.loiter", "mode LOITER, here", RadioDeed::SetMode, Mode::Loiter},
     {"arm", "arm", RadioDeed::Arm},
     {"disarm", "disarm", RadioDeed::Disarm},
     {"estop", "emergency stop", RadioDeed::Estop},

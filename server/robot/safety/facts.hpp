@@ -29,6 +29,8 @@ struct Facts {
   bool spins = false;                        ///< see SpinWatch
   std::optional<base::Attitude> attitude{};
   std::optional<Time> leans_since{};  ///< beyond tilt_stop_deg
+  std::optional<Time> rolls_since{};  ///< to a side, beyond most_roll_deg
+  double most_roll_deg = 90.0;        ///< that nav.slope.roll_over_share allows this vehicle
   bool gyro_lost = false;             ///< there was one in this life of the program
   DriverFalls::Worst falls{};         ///< of drivers, within a minute
   std::optional<double> home_m{};     ///< straight

@@ -95,6 +95,28 @@ constexpr std::array kPositionRows{
             },
     },
     Failsafe{
+        .id = "roll_over",
+        .seen = "the robot leans to a side by more than `nav.slope.roll_over_share` of what tips "
+                "it over (`vehicle.support_width_m`, `vehicle.mass_height_m`)",
+        .after = "0.3 s",
+        .response = Response::Hold,
+        .ends = kGoneAndGoOn,
+        .over = "the radio's sticks; disarmed, the limit may be raised",
+        .test = [](const Facts& f, const SafetyParams&, Time now) -> Told {
+          if (!f.attitude || !f.rolls_since || !older(f.rolls_since, LeanWatch::kLasts_s, now)) {
+            return {};
+          }
+          return "the robot leans to a side by " +
+                 number(std::abs(base::deg_from_rad(f.attitude->roll_rad)), "%.0f deg") +
+                 "; it may by " + number(f.most_roll_deg, "%.0f deg");
+        },
+        .provoke =
+            [](MadeUp& m) {
+              m.facts.attitude = base::Attitude{m.now, 0.5, 0.0};
+              m.facts.rolls_since = m.now - seconds(1);
+            },
+    },
+    Failsafe{
         .id = "pose_unknown",
         .seen = "there is no position at all",
         .after = "at once",
@@ -242,7 +264,8 @@ constexpr std::array kPositionRows{
     },
     Failsafe{
         .id = "pose_uncertain",
-        .seen = "the position's uncertainty (1 sigma) passes {sigma_slow_m}",
+        .seen = "the position's uncertainty (1 sigma) passes {sigma_slow_m}; slower, evenly, from "
+                "{sigma_free_m} on",
         .after = "at once",
         .response = Response::Slow,
         .acts = Acts::ByItself,

@@ -2,10 +2,13 @@
 // while the robot drives by itself.
 
 #include <array>
+#include <cmath>
 
+#include "base/angle.hpp"
 #include "robot/safety/failsafe_words.hpp"
 #include "robot/safety/made_up.hpp"
 #include "robot/safety/votes_watch.hpp"
+#include "robot/safety/words.hpp"
 
 namespace roverd::robot {
 namespace {
@@ -24,6 +27,21 @@ Told left_out(const Facts& f) {
   }
   if (text.empty()) return {};
   return text;
+}
+
+std::string shift_words(base::EnuPoint by) {
+  const double towards_deg = base::heading_from_yaw(std::atan2(by.north_m, by.east_m));
+  return "the receiver's positions moved by " +
+         number(std::hypot(by.east_m, by.north_m), "%.1f m") + number(towards_deg, " to %.0f deg") +
+         " and stay so: was its base moved, or the robot carried?";
+}
+
+std::string askew_words(const base::Askew& off) {
+  const double deg = base::deg_from_rad(off.offset_rad);
+  return "the two antennas point " + number(std::abs(deg), "%.1f deg") + " to the " +
+         (deg > 0.0 ? "left" : "right") + " of where the robot drives, measured over " +
+         number(off.way_m, "%.0f m") +
+         ": they are not used. Correct them by that, if they are mounted so";
 }
 
 /// Too little is left to drive by.
@@ -56,6 +74,40 @@ constexpr std::array kSensorRows{
           return std::string(f.latched) + ": look where the robot stands, and acknowledge it";
         },
         .provoke = [](MadeUp& m) { m.facts.latched = "the position was set anew"; },
+    },
+    Failsafe{
+        .id = "base_moved",
+        .seen = "the receiver's positions moved at once by 0.3 m or more, and stay so (RTK fixed)",
+        .after = "6.5 s",
+        .response = Response::Hold,
+        .acts = Acts::ByItself,
+        .ends = "a person has chosen the old place or the new one, or the positions are back",
+        .over = kHands,
+        .test = [](const Facts& f, const SafetyParams&, Time) -> Told {
+          if (!f.estimate.base_shift) return {};
+          return shift_words(f.estimate.base_shift->offset);
+        },
+        .provoke =
+            [](MadeUp& m) {
+              m.estimate.base_shift = {{3.0, 0.0}, m.now};
+            },
+    },
+    Failsafe{
+        .id = "antennas_askew",
+        .seen = "two antennas do not point where the robot drives, by more than 8.6 deg and always",
+        .after = "1 m driven",
+        .response = Response::Warn,
+        .acts = Acts::ByItself,
+        .ends = "a person confirms the offset, or they point right again",
+        .over = kNeedsNone,
+        .test = [](const Facts& f, const SafetyParams&, Time) -> Told {
+          if (!f.estimate.antennas_askew) return {};
+          return askew_words(*f.estimate.antennas_askew);
+        },
+        .provoke =
+            [](MadeUp& m) {
+              m.estimate.antennas_askew = {0.35, 0.01, 3.0};
+            },
     },
     Failsafe{
         .id = "sensors_contradict",

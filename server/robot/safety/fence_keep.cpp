@@ -52,8 +52,9 @@ base::Result<void> FenceKeep::may_start(const CompiledMission& mission, const na
                       .limits = fence_ ? &fence_->limits : nullptr,
                       .legs = legs,
                       .margin_m = start.margin_m,
-                      .within_m = start.within_m,
-                      .here = start.here,
+                      .path = start.path,
+                      .behave = start.behave,
+                      .stand = start.stand,
                       .home = start.home,
                       .at = at});
   if (found.empty()) return {};

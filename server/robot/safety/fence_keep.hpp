@@ -39,10 +39,11 @@ class FenceKeep {
                                const std::optional<base::LocalFrame>& frame) const;
 
   struct Start {
-    base::EnuPoint here;
+    nav::Stand stand;
     std::optional<base::EnuPoint> home;
     double margin_m = 0.0;
-    double within_m = 0.0;  ///< nav.behave.start_within_m
+    const nav::PathParams& path;
+    const nav::BehaveParams& behave;
   };
   /// Nothing of the list that check, load and preview show (robot/safety/start_check.hpp).
   base::Result<void> may_start(const CompiledMission& mission, const nav::StartAt& at,

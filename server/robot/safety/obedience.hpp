@@ -7,7 +7,8 @@
 //
 // Lost stays while the robot stands: only motion, or a change of mode that we asked for, shows that
 // the commands arrive again. Judged is the larger demand alone: speed ahead, or the turn rate of a
-// turn on the spot. What counts as told is the least of the last 0.4 s, so that a base may lag.
+// turn on the spot. What counts as told is the least of the last 0.4 s, so that a base may lag; and
+// one that is still getting faster does it, as far as a load or a slope lets it.
 // Control thread.
 
 #include <algorithm>
@@ -26,6 +27,8 @@ class ObedienceWatch {
   static constexpr double kSpeed_mps = 0.1;     ///< slower commands prove nothing
   static constexpr double kTurn_radps = 0.15;   ///< likewise
   static constexpr double kShare = 0.5;         ///< less than this of what was told is not done
+  static constexpr double kGains_mps = 0.04;    ///< faster by this within the limit: it obeys
+  static constexpr double kGains_radps = 0.06;  ///< likewise
   static constexpr std::size_t kLagTicks = 20;  ///< 0.4 s
 
   /// Once a tick. @param told sent at the tick before. @param does empty: the base does not tell.
@@ -49,7 +52,12 @@ class ObedienceWatch {
       lost_ = false;
       return;
     }
-    if (!off_since_) off_since_ = now;
+    const double now_does = part(*does) * (wanted > 0.0 ? 1.0 : -1.0);
+    const double gains = turning ? kGains_radps : kGains_mps;
+    if (!off_since_ || now_does >= slowest_ + gains) {
+      off_since_ = now;
+      slowest_ = now_does;
+    }
     if (base::seconds(now - *off_since_) < limit_s) return;
     lost_ = true;
   }
@@ -77,6 +85,7 @@ class ObedienceWatch {
   std::array<base::BodyTwist, kLagTicks> told_{};
   std::size_t at_ = 0;
   std::optional<base::Time> off_since_;
+  double slowest_ = 0.0;  ///< what it did then, towards what was told
   bool lost_ = false;
 };
 

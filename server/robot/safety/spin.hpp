@@ -27,7 +27,9 @@ class SpinWatch {
   /// Once a tick, with what was heard last of either.
   void step(const std::optional<base::BaseMotion>& wheels,
             const std::optional<base::GnssVelocity>& ground, base::Time now) noexcept {
-    if (!spins(wheels, ground, now)) {
+    // Seen beyond doubt once, it lasts while nothing speaks against it: a robot that slows down,
+    // because it does not know its place, is no less stuck.
+    if (!spins(wheels, ground, since_ ? -0.5 : 2.0, now)) {
       since_.reset();
     } else if (!since_) {
       since_ = now;
@@ -40,13 +42,14 @@ class SpinWatch {
 
  private:
   static bool spins(const std::optional<base::BaseMotion>& wheels,
-                    const std::optional<base::GnssVelocity>& ground, base::Time now) noexcept {
+                    const std::optional<base::GnssVelocity>& ground, double sigmas,
+                    base::Time now) noexcept {
     if (!wheels || !ground) return false;
     if (now - wheels->stamp > kFresh || now - ground->stamp > kFresh) return false;
     const double told_mps = std::abs(wheels->twist.linear_mps);
     const double seen_mps = std::hypot(ground->east_mps, ground->north_mps);
     const double sigma_mps = ground->sigma_mps.value_or(kSigma_mps);
-    return told_mps >= kSpeed_mps && seen_mps + 2.0 * sigma_mps < kShare * told_mps;
+    return told_mps >= kSpeed_mps && seen_mps + sigmas * sigma_mps < kShare * told_mps;
   }
 
   std::optional<base::Time> since_;

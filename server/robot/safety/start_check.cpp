@@ -52,20 +52,21 @@ std::vector<Finding> start_findings(const StartView& view) {
   if (fenced) {
     if (auto home = way_home(view)) out.push_back(std::move(*home));
   }
-  const std::size_t step = nav::first_step(view.route, view.at, view.here);
-  if (!view.here || step >= view.route.forth.steps.size()) return out;
-  const auto target = nav::first_target(view.route, step, view.home);
-  if (!target) return out;
-  const int item = view.route.forth.steps[step].item;
-  if (fenced && !may_drive(*view.limits, *view.here, *target, view.margin_m)) {
+  const nav::Beginning begins =
+      nav::beginning(view.route, view.at, view.stand, view.home, view.path, view.behave);
+  if (!view.stand || !begins.target) return out;
+  const std::size_t first = begins.joins ? begins.joins->step : begins.step;
+  const int item = view.route.forth.steps[first].item;
+  const base::EnuPoint here = view.stand->at;
+  if (fenced && !may_drive(*view.limits, here, *begins.target, view.margin_m)) {
     out.push_back(at_item(kApproach, item,
                           "is reached from where the robot stands by a way that leaves the fence"));
   }
-  const double far_m = base::distance_m(*view.here, *target);
-  if (far_m > view.within_m) {
+  const double far_m = base::distance_m(here, *begins.target);
+  if (far_m > view.behave.start_within_m) {
     out.push_back(at_item(kTooFar, item,
                           "is " + metres_text(far_m) + " away from the robot; a start allows " +
-                              metres_text(view.within_m)));
+                              metres_text(view.behave.start_within_m)));
   }
   return out;
 }

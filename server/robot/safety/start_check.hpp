@@ -6,6 +6,9 @@
 //   approach_outside_fence  the straight way from the robot to the first item does
 //   start_too_far           the first item is farther away than nav.behave.start_within_m
 //
+// Where the robot joins its way ahead of the first item (nav/behave/join.hpp), that place stands in
+// for it.
+//
 // Pure, any thread. The legs were compared when mission or fence came (route_objection); all that
 // depends on the moment costs little.
 
@@ -23,8 +26,9 @@ struct StartView {
   const mission::CompiledFence* limits = nullptr;         ///< null: no fence
   const std::optional<mission::Finding>* legs = nullptr;  ///< route_objection; null: no fence
   double margin_m = 0.0;  ///< of a way that is asked for: kept margin and kFenceAllowance_m
-  double within_m = 0.0;
-  std::optional<base::EnuPoint> here{};
+  const nav::PathParams& path;
+  const nav::BehaveParams& behave;
+  std::optional<nav::Stand> stand{};  ///< empty: not known
   std::optional<base::EnuPoint> home{};
   nav::StartAt at{};
 };

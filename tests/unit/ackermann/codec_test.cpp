@@ -62,6 +62,17 @@ TEST(SteeringZero, IsLearnedWhileDrivingStraightAndOnlyThen) {
   EXPECT_NEAR(zero.zero_rad(), 0.03, 1e-3);
 }
 
+TEST(SteeringZero, IsLearnedThoughTheCommandTremblesWithEveryPosition) {
+  SteeringZero zero(0.1);
+  double wheel_rad = 0.0;
+  for (int i = 0; i < 500; ++i) {
+    const double told_rad = (i / 10 % 2 == 0 ? 0.01 : -0.01);  // another one five times a second
+    wheel_rad += (told_rad + zero.zero_rad() - 0.02 - wheel_rad) * 0.02 / 0.2;
+    zero.add(2.0, told_rad, wheel_rad, 0.02);
+  }
+  EXPECT_NEAR(zero.zero_rad(), 0.02, 2e-3);
+}
+
 TEST(SteeringZero, IsNeverLargerThanAllowed) {
   SteeringZero zero(0.05);
   for (int i = 0; i < 5000; ++i) zero.add(1.0, 0.0, -0.5, 0.02);

@@ -138,6 +138,20 @@ TEST_F(Car, FeedbackIsMeasuredAndItsSilenceStopsTheCar) {
   EXPECT_EQ(driver->status(now).phase, base::DriverPhase::Faulty);
 }
 
+TEST_F(Car, WhatTellsNothingIsBelievedToFollowLate) {
+  Params p;
+  p.assumed_delay_s = 0.4;
+  make(p);
+  command = base::DriveCommand{{1.0, 0.0}, true};
+  run(2.0);
+  EXPECT_NEAR(last<base::BaseMotion>()->twist.linear_mps, 1.0, 1e-6);
+  command = base::DriveCommand{{1.0, 0.2}, true};
+  run(0.3);
+  EXPECT_EQ(last<base::BaseMotion>()->twist.angular_radps, 0.0);
+  run(2.0);
+  EXPECT_NEAR(last<base::BaseMotion>()->twist.angular_radps, 0.2, 1e-6);
+}
+
 TEST_F(Car, SaysRemoteWhileAPersonDrivesFromThere) {
   make({});
   answers = true;

@@ -98,6 +98,22 @@ TEST(VehicleWords, AHeadingThatNobodyKnowsIsNullAndTheAdviceSaysWhatHelps) {
   EXPECT_EQ(e["rejected"]["compass"], 7);
 }
 
+TEST(VehicleWords, WhatWasLearnedStandsBesideWhatWasSet) {
+  base::Snapshot s;
+  s.learned.delay_s = base::LearnedNumber{0.3124, 0.0081};
+  s.learned.delay_set_s = 0.15;
+  s.learned.delay_used_s = 0.3124;
+  s.learned.braking_set_mps2 = 0.6;
+  s.learned.braking_used_mps2 = 0.3;
+  const Json l = vehicle_json(s, "bunker", at(10s))["learned"];
+  EXPECT_EQ(l["delay_s"], 0.312);
+  EXPECT_EQ(l["delay_sigma_s"], 0.008);
+  EXPECT_EQ(l["delay_set_s"], 0.15);
+  EXPECT_TRUE(l["braking_mps2"].is_null());
+  EXPECT_EQ(l["braking_used_mps2"], 0.3);
+  EXPECT_EQ(l["braking_proved"], false);
+}
+
 TEST(VehicleWords, OldValuesStayVisibleAndAreMarked) {
   base::Snapshot s;
   s.base = base::BaseStatus{};
@@ -136,6 +152,8 @@ TEST(VehicleWords, AMessageIsAboutOneKilobyte) {
   Json v = vehicle_json(s, "bunker", at(1s));
   EXPECT_LT(v["estimator"].dump().size(), 1300u);
   v.erase("estimator");
+  EXPECT_LT(v["learned"].dump().size(), 350u);
+  v.erase("learned");
   EXPECT_LT(v.dump().size(), 2500u);
 }
 

@@ -104,5 +104,20 @@ TEST(Badge, WithoutAPictureItIsDrawn) {
   EXPECT_NE(svg.find(">KA</text>"), std::string::npos) << svg;
 }
 
+TEST(Badge, OnAHomeScreenTheRobotHasItsOwnNameAndPicture) {
+  const auto file = file_at("/roverd.webmanifest", Badge{R"(Anna's "kask" \ 2)", kColours[1]});
+  ASSERT_TRUE(file);
+  EXPECT_EQ(file->content_type, "application/manifest+json");
+  EXPECT_EQ(file->body, R"({"name":"Anna's \"kask\" \\ 2","short_name":"Anna's \"kask\" \\ 2",)"
+                        R"("start_url":"/","display":"standalone","background_color":"#f3f1ea",)"
+                        R"("theme_color":"#146c2e",)"
+                        R"("icons":[{"src":"/robot.svg","sizes":"any","type":"image/svg+xml"}]})"
+                        "\n");
+  const auto png = picture_of("\x89PNG\r\n\x1a\nrest");
+  const auto shown = manifest_of({"kask", kColours[1], std::make_shared<const Picture>(*png)});
+  EXPECT_NE(shown.find(R"("src":"/robot.png","sizes":"any","type":"image/png")"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace roverd::badge

@@ -34,6 +34,55 @@ TEST(Learned, ComesBackAsItWasAndLessCertainWithAge) {
   EXPECT_NEAR(later.gyro_bias_radps->sigma, base::rad_from_deg(0.25), 1e-4);
 }
 
+TEST(Learned, HowTheVehicleAnswersIsKeptForNinetyDays) {
+  nav::Learned known = sample();
+  known.delay_s = nav::LearnedValue{0.31, 0.01};
+  known.braking_mps2 = nav::LearnedValue{0.4, 0.02};
+  const std::string text = learned_text(known, "bunker can", kNow);
+  const auto later = learned_from(text, "bunker can", kNow + 89 * kDay);
+  ASSERT_TRUE(later.delay_s && later.braking_mps2);
+  EXPECT_NEAR(later.delay_s->value, 0.31, 1e-9);
+  EXPECT_GT(later.delay_s->sigma, 0.02);
+  EXPECT_NEAR(later.braking_mps2->value, 0.4, 1e-9);
+  const auto old = learned_from(text, "bunker can", kNow + 91 * kDay);
+  EXPECT_FALSE(old.delay_s || old.braking_mps2);
+  EXPECT_TRUE(old.odometry_scale);
+}
+
+TEST(Learned, WhatACalibrationMeasuredIsKeptForNinetyDaysFromThenOn) {
+  nav::Learned known;
+  known.acceleration_mps2 = nav::LearnedValue{0.46, 0.02};
+  known.yaw_scale = nav::LearnedValue{0.71, 0.004};
+  known.pull_1pm = nav::LearnedValue{-0.02, 0.002, 30.0 * 86'400.0};
+  const std::string text = learned_text(known, "bunker can", kNow);
+  const auto later = learned_from(text, "bunker can", kNow + 59 * kDay);
+  ASSERT_TRUE(later.acceleration_mps2 && later.yaw_scale && later.pull_1pm);
+  EXPECT_NEAR(later.acceleration_mps2->value, 0.46, 1e-9);
+  EXPECT_NEAR(later.yaw_scale->value, 0.71, 1e-9);
+  EXPECT_GT(later.yaw_scale->sigma, 0.03);
+  EXPECT_NEAR(later.pull_1pm->value, -0.02, 1e-9);
+  const auto old = learned_from(text, "bunker can", kNow + 61 * kDay);
+  EXPECT_FALSE(old.pull_1pm) << "it was thirty days old already";
+  EXPECT_TRUE(old.yaw_scale);
+}
+
+TEST(Learned, WhatAPersonForgotIsNotInTheFileAnyMore) {
+  const auto file = std::filesystem::temp_directory_path() /
+                    ("learned_forgotten_" + std::to_string(::getpid()) + ".json");
+  nav::Learned known = sample();
+  known.yaw_scale = nav::LearnedValue{0.71, 0.004};
+  ASSERT_TRUE(write_learned(file, known, "bunker can", kNow));
+  nav::Learned forgotten;
+  forgotten.delay_s = nav::LearnedValue{0.2, 0.01};  // learned since
+  forgotten.forgotten = true;
+  ASSERT_TRUE(write_learned(file, forgotten, "bunker can", kNow));
+  const auto left = read_learned(file, "bunker can", kNow);
+  EXPECT_FALSE(left.yaw_scale || left.odometry_scale);
+  EXPECT_TRUE(left.delay_s);
+  EXPECT_TRUE(left.gyro_bias_radps) << "the sensor's, not the vehicle's";
+  std::filesystem::remove(file);
+}
+
 TEST(Learned, IsForgottenWhenItIsTooOld) {
   const std::string text = learned_text(sample(), "bunker can", kNow);
   const auto old = learned_from(text, "bunker can", kNow + 100 * kDay);

@@ -294,6 +294,18 @@ TEST(PlanJson, RangesEndWhereTheyShould) {
            {R"({"type":"jump","item":99999999999999999999,"times":1})", false},
            {R"({"type":"action","name":"spray","level":{"a":[1]}})", true},
            {R"({"type":"action","level":1})", false},
+           {R"({"type":"loiter"})", true},
+           {R"({"type":"loiter","lat":58,"lon":26,"seconds":5,"radius_m":0.5})", true},
+           {R"({"type":"loiter","lat":58})", false},
+           {R"({"type":"loiter","lon":26,"lat":null})", false},
+           {R"({"type":"loiter","radius_m":0})", false},
+           {R"({"type":"circle","lat":58,"lon":26,"radius_m":3})", true},
+           {R"({"type":"circle","lat":58,"lon":26,"radius_m":3,"turns":0.5,"clockwise":true})",
+            true},
+           {R"({"type":"circle","lat":58,"lon":26,"radius_m":3,"turns":0})", false},
+           {R"({"type":"circle","lat":58,"lon":26})", false},
+           {R"({"type":"circle","lat":58,"lon":26,"radius_m":0.4})", false},
+           {R"({"type":"circle","lat":58,"lon":26,"radius_m":3,"stations":37})", false},
            {R"({"type":"return_home","now":true})", false}}) {
     const auto plan = plan_from_text(R"({"name":"x","items":[{"type":"wait","seconds":1},)" +
                                      std::string(c.item) + "]}");

@@ -41,7 +41,11 @@ inline Plan plan_with_every_item() {
                 Landmarks{"cone", 0.7},
                 Jump{2, 0},
                 Action{"spray", {{"nozzle", 3}, {"on", true}, {"note", {1, "a", nullptr}}}},
-                ReturnHome{}};
+                ReturnHome{},
+                Loiter{58.1, 26.5, 30.0, 2.5},
+                Loiter{},
+                Circle{{58.2, 26.6}, 12.5, 2.25, true, 0.6, 8, 3.0},
+                Circle{{58.2, 26.6}, 4.0, {}, false, {}, {}, {}}};
   return plan;
 }
 
@@ -95,7 +99,7 @@ class RandomPlans {
   Side side() { return coin() ? Side::Left : Side::Right; }
 
   Item item(int index, int items) {
-    switch (whole(0, 10)) {
+    switch (whole(0, 12)) {
       case 0:
         return Local{number(-1e4, 1e4), number(-1e4, 1e4), maybe(0.0, 359.0)};
       case 1:
@@ -120,6 +124,22 @@ class RandomPlans {
       }
       case 9:
         return Action{"horn", {{"times", whole(1, 5)}, {"volume", number(0.0, 1.0)}}};
+      case 10: {
+        Loiter loiter{{}, {}, maybe(0.0, 86'400.0), maybe(0.1, 100.0)};
+        if (coin()) {
+          const LatLon at = position();
+          loiter.lat = at.lat;
+          loiter.lon = at.lon;
+        }
+        return loiter;
+      }
+      case 11: {
+        Circle circle{
+            position(), number(0.5, 1000.0), maybe(0.05, 1000.0), coin(), maybe(0.001, 10.0),
+            {},         maybe(0.0, 86'400.0)};
+        if (coin()) circle.stations = whole(0, 36);
+        return circle;
+      }
       default: {
         Waypoint waypoint;
         waypoint.at = position();

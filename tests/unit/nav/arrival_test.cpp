@@ -23,7 +23,7 @@ TEST(Arrival, BesideThePlaceTheMissionIsBlockedAndGoesOnWithTheSameItem) {
   slide_aside_at_the_end(r, 2.3);
   ASSERT_TRUE(r.run(5.0));
   EXPECT_EQ(r.executor.state(), ExecutionState::Blocked);
-  EXPECT_EQ(r.executor.reason(), "item 2 missed by 2.3 m");
+  EXPECT_EQ(r.executor.reason(), "item 2 missed by 2.3 m; at most 0.5 m count");
   EXPECT_TRUE(r.reached.empty());
   EXPECT_EQ(r.executor.progress(r.vehicle.at).current_item, 2);
   ASSERT_TRUE(r.executor.resume(r.vehicle.at));
@@ -39,7 +39,7 @@ TEST(Arrival, OnTheMissionsOwnPathItIsBlockedLikewiseAndDrivesBackToTheEnd) {
   r.start();
   slide_aside_at_the_end(r, -1.5);
   ASSERT_TRUE(r.run(5.0));
-  EXPECT_EQ(r.executor.reason(), "item 2 missed by 1.5 m");
+  EXPECT_EQ(r.executor.reason(), "item 2 missed by 1.5 m; at most 0.5 m count");
   EXPECT_EQ(r.reached, (std::vector<int>{1}));
   ASSERT_TRUE(r.executor.resume(r.vehicle.at));
   ASSERT_TRUE(r.run(60.0));
@@ -65,7 +65,7 @@ TEST(Arrival, HomeCanBeMissedToo) {
   r.start();
   slide_aside_at_the_end(r, 1.0);
   ASSERT_TRUE(r.run(5.0));
-  EXPECT_EQ(r.executor.reason(), "home missed by 1.0 m");
+  EXPECT_EQ(r.executor.reason(), "home missed by 1.0 m; at most 0.5 m count");
   EXPECT_EQ(r.reached, (std::vector<int>{1}));
 }
 

@@ -137,7 +137,8 @@ TEST(EstimatorGyro, TwoAntennasGiveTheHeadingAtRest) {
   }
   EXPECT_EQ(d.estimator.alignment(), Alignment::Aligned);
   EXPECT_LT(std::abs(d.yaw_error_deg()), 0.4);
-  EXPECT_LT(d.pose()->yaw_sigma_rad, rad_from_deg(1.0));
+  // How they are mounted is only seen while driving: no claim is better than 3 degrees before.
+  EXPECT_NEAR(d.pose()->yaw_sigma_rad, rad_from_deg(3.0), rad_from_deg(0.2));
 }
 
 TEST(EstimatorGyro, WithoutGnssTheDoubtGrowsAndCoversTheError) {
@@ -226,7 +227,7 @@ TEST(EstimatorGyro, TheCovarianceStaysPositiveOverAMillionSteps) {
   for (int i = 0; i < 1'000'000; ++i) {
     Travel t{0.016, 0.002, 0.02, 0.002};
     if (i % 5000 > 4000) t.gyro_rad.reset();
-    predict(b, t, {0.8, 60.0}, false);
+    predict(b, t, {}, {0.8, 60.0}, false);
     if (i % 100 != 0) continue;
     Observation<2> o;
     o.innovation << 0.1 * std::sin(i), 0.1 * std::cos(i);

@@ -245,6 +245,53 @@ TEST(Executor, RejoinsThePathWhereItLeftItNotFurtherOn) {
   EXPECT_LT(nearest, 0.2);
 }
 
+/// Slides on from its first stop by so much, once.
+void slide_at_stop(Ride& r, double by_m) {
+  for (int i = 0; i < 3000 && r.executor.phase() != TrackPhase::Stop; ++i) r.tick();
+  ASSERT_EQ(r.executor.phase(), TrackPhase::Stop);
+  r.vehicle.at.east_m += by_m;
+}
+
+//   v0 ───────────▶ v1 ·····▶ x      x: where it stands
+//                   │◀────────┘
+TEST(Executor, AStopThatWasOvershotIsBackedUpToAndTheMissionGoesOn) {
+  Ride r;
+  r.load(plan({at(10, 0), at(10, 10)}));
+  r.start();
+  slide_at_stop(r, 0.9);
+  while (r.executor.running() && r.reached.empty()) r.tick();
+  ASSERT_TRUE(r.executor.running()) << r.executor.reason();
+  EXPECT_LT(base::distance_m(r.vehicle.at, {10, 0}), 0.1);
+  ASSERT_TRUE(r.run(60.0));
+  EXPECT_EQ(r.executor.state(), ExecutionState::Finished);
+  EXPECT_EQ(r.reached, (std::vector<int>{1, 2}));
+  EXPECT_TRUE(r.missed.empty());
+}
+
+TEST(Executor, ACarBacksUpToItsLastStopToo) {
+  PathParams car;
+  car.vehicle.kinematics = "ackermann";
+  car.vehicle.wheelbase_m = 1.3;
+  Ride r;
+  r.path.adopt(std::make_shared<const PathParams>(car));
+  r.load(plan({at(10, 0)}));
+  r.start();
+  slide_at_stop(r, 0.9);
+  r.vehicle.at.north_m = 0.05;
+  ASSERT_TRUE(r.run(60.0));
+  EXPECT_EQ(r.executor.state(), ExecutionState::Finished) << r.executor.reason();
+  EXPECT_LT(base::distance_m(r.vehicle.at, {10, 0}), 0.1);
+}
+
+TEST(Executor, AStopThatWasOvershotByFarIsNotBackedUpTo) {
+  Ride r;
+  r.load(plan({at(10, 0), at(10, 10)}));
+  r.start();
+  slide_at_stop(r, 3.5);
+  EXPECT_TRUE(r.run(10.0));
+  EXPECT_EQ(r.executor.state(), ExecutionState::Blocked);
+}
+
 TEST(Executor, ARobotThatDoesNotMoveIsBlockedAfterTenSeconds) {
   Ride r;
   r.load(plan({at(10, 0)}));
@@ -293,6 +340,32 @@ TEST(Executor, SkipsForwardsAndBackwards) {
   ASSERT_TRUE(r.executor.skip(2));
   ASSERT_TRUE(r.run(60.0));
   EXPECT_EQ(r.reached, (std::vector<int>{2, 3}));
+}
+
+//    dense points beside their way in turn: driven smoothly, and each of them counts
+TEST(Executor, EveryItemOfADenseNoisyCurveIsReachedWithoutSlowingDown) {
+  Ride r;
+  std::vector<mission::Item> items;
+  std::vector<int> all;
+  for (int i = 0; i < 60; ++i) {
+    const double s = 0.3 * i;
+    const double beside_m = 0.02 * std::sin(7.0 * i * i);
+    items.push_back(at(8.0 * std::sin(s / 8.0), 8.0 - 8.0 * std::cos(s / 8.0) + beside_m));
+    if (i == 40) items.push_back(mission::Action{"set_home", {}});
+    all.push_back(static_cast<int>(items.size()));
+    if (i == 40) all.back() = 41;
+  }
+  r.load(plan(std::move(items)));
+  r.start();
+  double turned_rad = 0.0;
+  for (int i = 0; i < 50 * 120 && r.executor.running(); ++i) {
+    r.tick();
+    turned_rad += std::abs(r.vehicle.yaw_rate_radps) * 0.02;
+  }
+  EXPECT_FALSE(r.executor.running());
+  EXPECT_EQ(r.reached, all);
+  EXPECT_TRUE(r.missed.empty());
+  EXPECT_LT(turned_rad, 1.5 * 18.0 / 8.0);
 }
 
 TEST(Executor, PassesParallelLanesOneAfterTheOther) {

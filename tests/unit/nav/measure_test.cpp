@@ -104,6 +104,28 @@ TEST(Measure, ACrossingDoesNotShortenTheWay) {
 
 //  ───────────╮ cut 0.5 m before the corner: 0.354 m from it
 //             │
+TEST(Measure, WhoIsAWholeLaneOffIsOffByThatAndNotOnTheNextOne) {
+  // Given lanes 2 m apart, and a receiver that is 2.2 m off to where the next lane is,
+  std::vector<EnuPoint> lanes;
+  for (int i = 0; i < 6; ++i) {
+    const double north = 2.0 * i;
+    lanes.push_back({i % 2 == 0 ? 0.0 : 30.0, north});
+    lanes.push_back({i % 2 == 0 ? 30.0 : 0.0, north});
+  }
+  const auto thought = drive(lanes);
+  auto driven = thought;
+  for (DrivenPoint& p : driven) p.at.north_m += 2.2;
+  // then it was at most as far off its way as the receiver was, on whichever lane,
+  const Path path = path_through(lanes);
+  const auto run = measure_run(path, lanes, driven, 0.0, Counts::All, thought);
+  EXPECT_NEAR(run.cross.max_m, 2.2, 0.05);
+  EXPECT_GT(run.cross.mean_m, 1.9);  // along the headlands, it is off along them
+  EXPECT_NEAR(run.matched_m, path.length_m(), 0.1);
+  // and who knows where it is is measured by where it is.
+  const auto known = measure_run(path, lanes, thought, 0.0, Counts::All, thought);
+  EXPECT_LT(known.cross.max_m, 0.2);
+}
+
 TEST(Measure, ACutCornerIsInsideAndFarFromItsVertex) {
   const std::vector<EnuPoint> way{{0, 0}, {10, 0}, {10, 10}};
   const auto run =

@@ -1,5 +1,6 @@
 #include "nav/track/profile.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -71,7 +72,15 @@ TEST(Profile, TheReasonOfALimitIsNamed) {
   p.vehicle.kinematics = "ackermann";
   p.vehicle.max_steering_rate_dps = 10.0;
   p.speed.lateral_mps2 = 2.0;
-  EXPECT_EQ(to_string(bend_limit(0.3, p).reason), "steering");
+  std::vector<Vertex> corner(3);
+  corner[1].at = {20.0, 0.0};
+  corner[2].at = {20.0, 20.0};
+  const Path path = build_path(corner, p);
+  const bool named = std::ranges::any_of(path.points, [](const PathPoint& at) {
+    return at.segment_reason == SpeedReason::Steer && at.segment_mps < 0.5;
+  });
+  EXPECT_TRUE(named);
+  EXPECT_EQ(to_string(SpeedReason::Steer), "steering");
 }
 
 /// A body that does at once what it is told.

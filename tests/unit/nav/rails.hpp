@@ -5,6 +5,7 @@
 #include <deque>
 #include <optional>
 #include <random>
+#include <utility>
 
 #include "base/angle.hpp"
 #include "nav/estimate/estimator.hpp"
@@ -24,6 +25,10 @@ class Drive {
   double north_m = 0.0;
   double yaw_rad = base::kPi / 2.0;
   double compass_bias_rad = 0.0;
+  double crab = 0.0;        ///< for each metre so far to its left, reversing to its right
+  double slide_east = 0.0;  ///< for each metre, whichever way it points
+  double slide_north = 0.0;
+  bool antennas = false;
   double slip = 1.0;       ///< true over measured travel
   double yaw_scale = 0.8;  ///< true over measured turning
   base::FixType fix = base::FixType::RtkFixed;
@@ -58,8 +63,9 @@ class Drive {
     now_ += std::chrono::milliseconds(20);
     const double dt = 0.02;
     const double middle = yaw_rad + 0.5 * rate_radps * dt;
-    east_m += speed_mps * dt * std::cos(middle);
-    north_m += speed_mps * dt * std::sin(middle);
+    const auto [east_mps, north_mps] = over_ground(middle);
+    east_m += east_mps * dt;
+    north_m += north_mps * dt;
     yaw_rad = base::wrap_rad(yaw_rad + rate_radps * dt);
     if (gyro) {
       for (const int ms : {10, 0}) {
@@ -87,12 +93,18 @@ class Drive {
     double east_m, north_m, yaw_rad, ve, vn;
   };
 
+  std::pair<double, double> over_ground(double yaw) const {
+    const double c = std::cos(yaw);
+    const double s = std::sin(yaw);
+    return {speed_mps * (c - crab * s) + std::abs(speed_mps) * slide_east,
+            speed_mps * (s + crab * c) + std::abs(speed_mps) * slide_north};
+  }
   void sense() {
+    const auto [east_mps, north_mps] = over_ground(yaw_rad);
     const double late_s = told_late_s.value_or(params_.gnss_latency_s);
     seen_.push_back({now_ + base::from_seconds(late_s), now_,
                      east_m + offset_east_m + noise_m * normal_(random_),
-                     north_m + noise_m * normal_(random_), yaw_rad, speed_mps * std::cos(yaw_rad),
-                     speed_mps * std::sin(yaw_rad)});
+                     north_m + noise_m * normal_(random_), yaw_rad, east_mps, north_mps});
   }
   void deliver() {
     while (!seen_.empty() && seen_.front().due <= now_) {
@@ -101,6 +113,9 @@ class Drive {
       if (compass) {
         const double shown = base::wrap_rad(s.yaw_rad + compass_bias_rad);
         estimator.take(base::Heading{now_, shown, base::HeadingSource::Compass}, now_);
+      }
+      if (antennas) {
+        estimator.take(base::Heading{now_, s.yaw_rad, base::HeadingSource::DualAntenna}, now_);
       }
       if (!gnss) continue;
       base::GnssFix f;

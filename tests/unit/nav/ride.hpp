@@ -38,7 +38,7 @@ inline mission::Plan plan(std::vector<mission::Item> items,
 
 /// An ideal robot that does at once what it is told.
 struct Ride {
-  PathParams path;
+  base::Setting<PathParams> path;
   BehaveParams behave;
   Executor executor{path, behave};
   Vehicle vehicle;

@@ -122,6 +122,27 @@ TEST(HardTracker, ADelayWrongByATenthOfASecondIsStable) {
   }
 }
 
+//   ────╮     at 5 m/s the predicted place is 2 m ahead
+TEST(HardTracker, ABendIsFollowedWhereItIsDrivenFast) {
+  std::vector<Vertex> circle;
+  for (double s = 0.0; s < 100.0; s += 1.0) {
+    Vertex v;
+    v.at = {30.0 * std::sin(s / 30.0), 30.0 * (1.0 - std::cos(s / 30.0))};
+    v.speed_mps = 5.0;
+    v.dense = true;
+    circle.push_back(v);
+  }
+  PathParams p;
+  p.speed.max_mps = 5.0;
+  p.speed.lateral_mps2 = 1.0;
+  p.track.settle_time_s = 1.2;
+  p.track.delay_s = 0.4;
+  Body body(0.4, 0.0);
+  const Driven c = drive(build_path(circle, p), body, p);
+  EXPECT_TRUE(c.done);
+  EXPECT_LT(c.most_m, 0.1);
+}
+
 TEST(HardTracker, EveryLawTakesAStepOfHalfAMetre) {
   for (const std::string law : {"path_frame", "pure_pursuit", "stanley"}) {
     Body body(0.1, 0.05);

@@ -42,6 +42,23 @@ TEST_F(Login, ManyAddressesTogetherWaitForTheUser) {
   EXPECT_EQ(book.login_wait("anna", "10.0.2.1", now), 30s);
 }
 
+/// One computer has 2^64 of them.
+TEST_F(Login, AddressesOfOneNetworkOfIpv6WaitTogetherButForThoseWhoWereHere) {
+  log_in("anna", "2001:db8::2");
+  for (int i = 0; i < 40; ++i) guess(1, "nobody", "2001:db8::9:" + std::to_string(i));
+  // Others of that network wait, not for longer than half a minute, as do those with a code;
+  EXPECT_EQ(book.login_wait("anna", "2001:db8::3", now), 30s);
+  EXPECT_EQ(book.login_wait("", "2001:db8::4", now), 30s);
+  // whoever was here does not, nor do other networks, nor do IPv4's neighbours for each other.
+  EXPECT_EQ(book.login_wait("anna", "2001:db8::2", now), 0s);
+  EXPECT_EQ(book.login_wait("anna", "2001:db8:0:1::3", now), 0s);
+  for (int i = 0; i < 40; ++i) guess(1, "x", "10.0.1." + std::to_string(i));
+  EXPECT_EQ(book.login_wait("", "10.0.1.99", now), 0s);
+  // A few slips of a house full of people cost nothing.
+  guess(15, "carl", "2001:db8:0:2::1");
+  EXPECT_EQ(book.login_wait("anna", "2001:db8:0:2::2", now), 0s);
+}
+
 TEST_F(Login, WhoeverIsKnownFromThereIsNotLockedOutByOthers) {
   log_in("anna", "10.0.0.2");
   for (int i = 0; i < 50; ++i) guess(1, "anna", "10.0.1." + std::to_string(i));

@@ -196,6 +196,32 @@ TEST_F(Pairing, AnInvitationNeedsAnInviterWhoMayStill) {
   EXPECT_FALSE(book.take_invitation(gone, "a", now));
 }
 
+TEST_F(Pairing, AnInvitationThatWasTakenEndsOnceAndWithItsInvitersRight) {
+  ASSERT_TRUE(book.add_user("bert", Role::Admin, "h", now));
+  ASSERT_TRUE(book.add_user("carl", Role::Operator, "h", now));
+  const auto taken = [&](const std::string& inviter) {
+    return *book.take_invitation(book.invite({inviter, "carl", Role::Operator}, now), "a", now);
+  };
+  const auto good = taken("bert");
+  EXPECT_TRUE(book.end_invitation(good, now));
+  EXPECT_FALSE(book.end_invitation(good, now));
+  // while the PIN is hashed: another invitation of the same inviter does no harm,
+  const auto first = taken("bert");
+  const auto second = taken("bert");
+  EXPECT_TRUE(book.end_invitation(first, now));
+  EXPECT_TRUE(book.end_invitation(second, now));
+  // but it ends with the inviter's role, with the device or session that invited, and in time.
+  const auto demoted = taken("bert");
+  ASSERT_TRUE(book.change_user("bert", Role::Operator, std::nullopt));
+  EXPECT_FALSE(book.end_invitation(demoted, now));
+  const auto lost = taken("anna");
+  (void)book.end_other_sessions("anna", "");
+  EXPECT_FALSE(book.end_invitation(lost, now));
+  const auto late = taken("anna");
+  pass(10min);
+  EXPECT_FALSE(book.end_invitation(late, now));
+}
+
 TEST_F(Pairing, WhatALostPhoneInvitedEndsWithIt) {
   const auto lost = pair();
   const auto stolen = enter(lost.secret, true);

@@ -75,7 +75,7 @@ TEST(Password, NobodysHashAndBrokenOnesFitNothing) {
 
 TEST(Password, WeakOnesAndStrangeNamesAreNamed) {
   EXPECT_EQ(password_problem("correct horse", "anna"), "");
-  EXPECT_EQ(password_problem("short", "anna"), "must have at least 10 characters");
+  EXPECT_EQ(password_problem("short", "anna"), "must have at least 12 characters");
   EXPECT_EQ(password_problem("annaannaanna", "annaannaanna"), "must not be the user's name");
   EXPECT_EQ(password_problem("aaaaaaaaaaaa", "anna"), "must not be one character again and again");
   EXPECT_EQ(password_problem(std::string(201, 'a'), "anna"), "must have at most 200 bytes");

@@ -167,6 +167,37 @@ TEST(ObedienceWatch, AllowsForALagAndNamesABaseThatDoesNotMove) {
   EXPECT_FALSE(w.lost());
 }
 
+/// Uphill with a load: 0.2 m/s each second, told 1 m/s.
+TEST(ObedienceWatch, ABaseThatStillGetsFasterObeysAndOneThatStaysSlowDoesNot) {
+  ObedienceWatch w;
+  base::Time t{};
+  double does_mps = 0.0;
+  const auto run = [&](double accel_mps2, int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      t += std::chrono::milliseconds(20);
+      does_mps += accel_mps2 * 0.02;
+      w.step({1.0, 0.0}, base::BodyTwist{does_mps, 0.0}, t, 0.3);
+    }
+  };
+  run(0.0, 20);
+  run(0.2, 150);
+  EXPECT_FALSE(w.lost());
+  does_mps = 0.3;
+  run(0.0, 60);
+  EXPECT_TRUE(w.lost());
+}
+
+/// A track that is off rattles: that is no getting faster.
+TEST(ObedienceWatch, RattlingIsNoProgress) {
+  ObedienceWatch w;
+  base::Time t{};
+  for (int i = 0; i < 100; ++i) {
+    t += std::chrono::milliseconds(20);
+    w.step({1.0, 0.0}, base::BodyTwist{i % 2 == 0 ? 0.1 : 0.0, 0.0}, t, 0.3);
+  }
+  EXPECT_TRUE(w.lost());
+}
+
 TEST(ObedienceWatch, JudgesATurnOnTheSpotByItsRateAndNothingWithoutAWord) {
   ObedienceWatch w;
   base::Time t{};

@@ -113,10 +113,24 @@ TEST(Contradiction, AReceiverThatJumpsIsLeftOutHoldsAndItsReturnWantsAPerson) {
   // and then goes on as it would without the receiver, whose jump it never believed
   EXPECT_EQ(f.execution(), ExecutionState::Running);
   EXPECT_LT(f.state()->pose->horizontal_sigma_m, 0.2);
-  // When the receiver has agreed for long about how the robot moves, but not where it is
-  f.run(16.0);
-  EXPECT_TRUE(f.has_event("sensor_back"));
-  // Then a person has to look
+  // When it stays there
+  f.run(8.0);
+  // Then a person has to choose
+  EXPECT_EQ(f.execution(), ExecutionState::Paused);
+  ASSERT_TRUE(f.has_condition("base_moved"));
+  EXPECT_GT(f.state()->pose->horizontal_sigma_m, 2.0);
+  EXPECT_FALSE(f.ask(ResumeMission{}));
+  ASSERT_TRUE(f.ask(SettleShift{true}));
+  f.run(0.1);
+  EXPECT_FALSE(f.has_condition("base_moved"));
+  EXPECT_TRUE(f.ask(ResumeMission{}));
+}
+
+TEST(Contradiction, APlaceThatIsSetAnewFarAwayWantsAPerson) {
+  Field f;
+  f.drive_mission();
+  f.receiver_off = {60.0, 0.0};
+  f.run(20.0);
   EXPECT_EQ(f.execution(), ExecutionState::Paused);
   ASSERT_TRUE(f.has_condition("estimate_latched"));
   EXPECT_GT(f.state()->pose->horizontal_sigma_m, 2.0);
@@ -133,8 +147,8 @@ TEST(Contradiction, AReceiverThatJumpsIsLeftOutHoldsAndItsReturnWantsAPerson) {
 TEST(Contradiction, ALatchedEstimateIsNotArmedByUnlessAPersonLooked) {
   Field f;
   f.drive_mission();
-  f.receiver_off = {2.5, 0.0};
-  f.run(18.0);
+  f.receiver_off = {60.0, 0.0};
+  f.run(20.0);
   ASSERT_TRUE(f.has_condition("estimate_latched"));
   ASSERT_TRUE(f.ask(Disarm{}));
   f.run(0.1);

@@ -92,7 +92,7 @@ TEST(Decide, WhatChangedAboutTheReceiverIsAnEvent) {
 TEST(Decide, FromTheTickOfAResetOnNothingIsClaimedThatIsNotKnown) {
   Field f;
   f.drive_mission();
-  f.receiver_off = {2.5, 0.0};
+  f.receiver_off = {60.0, 0.0};
   for (int i = 0; i < 1500 && !f.has_event("estimate_latched"); ++i) f.tick();
   ASSERT_TRUE(f.has_event("estimate_latched"));
   EXPECT_GT(f.state()->pose->horizontal_sigma_m, 2.0);

@@ -59,6 +59,23 @@ TEST(Tilt, WarnsFirstAndHoldsBeforeItRollsOver) {
   EXPECT_TRUE(f.ask(ResumeMission{}));
 }
 
+TEST(Tilt, WhatTipsOverEarlierHoldsEarlierAndToASideOnly) {
+  Config config;
+  config.vehicle.support_width_m = 0.6;
+  config.vehicle.mass_height_m = 0.5;  // a tank on top: tips over at 31 deg, holds at 18.6
+  Leaning f(config);
+  f.drive_mission();
+  f.roll_deg = 18.0;
+  f.run(1.0);
+  EXPECT_FALSE(f.has_condition("roll_over"));
+  EXPECT_EQ(f.state()->speed_reason, "slope");
+  f.roll_deg = -19.0;
+  f.run(1.0);
+  EXPECT_EQ(told(f, "roll_over"), "the robot leans to a side by 19 deg; it may by 19 deg");
+  EXPECT_FALSE(f.moves());
+  EXPECT_EQ(f.execution(), ExecutionState::Paused);
+}
+
 TEST(Tilt, HoldsByHandTooAndABlowDoesNot) {
   Leaning f;
   f.run(8.0);

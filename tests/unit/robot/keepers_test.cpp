@@ -174,7 +174,9 @@ TEST(FenceKeep, StopsAtItsLimitTellsItOnceAndLetsBack) {
 TEST(FenceKeep, AMissionIsComparedBeforeItStarts) {
   FenceKeep keep;
   const auto mission = compiled({{0, 5}});
-  const FenceKeep::Start from{{0, 0}, base::EnuPoint{0, 0}, 0.5, 50.0};
+  const nav::PathParams path;
+  const nav::BehaveParams behave;
+  const FenceKeep::Start from{{{0, 0}}, base::EnuPoint{0, 0}, 0.5, path, behave};
   EXPECT_TRUE(keep.may_start(*mission, {}, from)) << "no fence";
   auto laid = yard(1);
   keep.set(laid);
@@ -187,7 +189,7 @@ TEST(FenceKeep, AMissionIsComparedBeforeItStarts) {
   EXPECT_EQ(keep.set(laid)->id, 1u);
   EXPECT_TRUE(keep.compared(mission.get(), from.margin_m));
   EXPECT_TRUE(keep.may_start(*mission, {}, from));
-  const FenceKeep::Start outside{{0, 30}, base::EnuPoint{0, 0}, 0.5, 50.0};
+  const FenceKeep::Start outside{{{0, 30}}, base::EnuPoint{0, 0}, 0.5, path, behave};
   EXPECT_FALSE(keep.may_start(*mission, {}, outside)) << "the way to the first point";
   laid = yard(3);
   laid->mission_id = mission->id;

@@ -13,9 +13,11 @@ using base::Mode;
 
 constexpr std::array kModes{Mode::Manual, Mode::Hold,     Mode::Auto,   Mode::Guided,
                             Mode::Rtl,    Mode::SmartRtl, Mode::Follow, Mode::Steering,
-                            Mode::Acro,   Mode::Simple,   Mode::Dock};
+                            Mode::Acro,   Mode::Simple,   Mode::Dock,   Mode::Loiter,
+                            Mode::Circle};
 constexpr std::array kByHand{Mode::Manual, Mode::Acro, Mode::Steering, Mode::Simple};
-constexpr std::array kToGoals{Mode::Guided, Mode::Rtl, Mode::SmartRtl, Mode::Follow, Mode::Dock};
+constexpr std::array kToGoals{Mode::Guided, Mode::Rtl,    Mode::SmartRtl, Mode::Follow,
+                              Mode::Dock,   Mode::Loiter, Mode::Circle};
 
 template <class All>
 bool among(Mode mode, const All& all) {

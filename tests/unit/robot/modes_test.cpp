@@ -90,6 +90,43 @@ TEST(Missions, ThePreviewTellsTheFirstTargetBeforeAnythingMoves) {
   EXPECT_FALSE(f.moves());
 }
 
+TEST(Missions, ThePreviewTellsWhereItJoinsItsWayAndTheStartDoesSo) {
+  Field f;
+  f.run(8.0);
+  // Item 1 lies 2 m behind the robot, which points north.
+  ASSERT_TRUE(f.load(plan_of({{0.3, -2}, {0.3, 20}, {20, 20}})));
+  const auto p = f.robot.preview({"m", 1});
+  ASSERT_TRUE(p);
+  EXPECT_EQ(p->first_item, 2);
+  EXPECT_NEAR(p->joins_after_m.value(), 2.0, 0.2);
+  EXPECT_EQ(p->left_out, 1);
+  const auto asked = f.robot.preview({"m", 1, StartMission::From::Item, 1});
+  EXPECT_FALSE(asked->joins_after_m);
+  EXPECT_EQ(asked->first_item, 1);
+  ASSERT_TRUE(f.ask(Arm{}));
+  ASSERT_TRUE(f.ask(StartMission{"m", 1}));
+  f.run(6.0);
+  EXPECT_GT(f.at.north_m, 1.0);
+  EXPECT_EQ(f.state()->mission.current_item, 2);
+  EXPECT_TRUE(f.has_event("item_missed"));
+  EXPECT_NEAR(f.state()->mission.arrival_radius_m.value(), 0.5, 1e-9);
+  EXPECT_NEAR(f.state()->mission.cross_track_limit_m.value(), 3.0, 1e-9);
+}
+
+TEST(Missions, ThePreviewTellsHowFarTheSmoothWayIsFromTheItems) {
+  Field f;
+  f.run(8.0);
+  std::vector<base::EnuPoint> points{{0, 20}, {0, 25}};
+  for (int i = 1; i < 40; ++i) points.push_back({i % 2 == 0 ? 0.02 : -0.02, 25.0 + 0.3 * i});
+  ASSERT_TRUE(f.load(plan_of(points)));
+  const auto p = f.robot.preview({"m", 1});
+  ASSERT_TRUE(p);
+  ASSERT_EQ(p->smoothed.size(), 1u);
+  EXPECT_EQ(p->smoothed[0].first, 2);
+  EXPECT_EQ(p->smoothed[0].last, 41);
+  EXPECT_NEAR(p->smoothed[0].deviation_m, 0.03, 0.015);
+}
+
 TEST(Missions, CompilingNamesTheItemThatCannotBeDriven) {
   Field f;
   f.run(1.0);

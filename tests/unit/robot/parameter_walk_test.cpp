@@ -154,7 +154,7 @@ TEST(ParameterWalk, WhatIsSaidToActAtTheNextStartDoesThenAndNotBefore) {
       EXPECT_TRUE(stage.begins(p)) << p.section << "." << p.info.name;
     }
   }
-  EXPECT_EQ(walked, 17);
+  EXPECT_EQ(walked, 19);
 }
 
 }  // namespace

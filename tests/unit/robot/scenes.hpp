@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "failsafe_scenes.hpp"
+#include "ground_scenes.hpp"
 
 namespace roverd::robot {
 
@@ -589,6 +590,7 @@ inline const std::vector<Scene> kDriveScenes = {
      }},
 };
 
-inline const std::vector<Scene> kScenes = joined(kDriveScenes, kFailsafeScenes);
+inline const std::vector<Scene> kScenes =
+    joined(joined(kDriveScenes, kGroundScenes), kFailsafeScenes);
 
 }  // namespace roverd::robot

@@ -10,6 +10,7 @@
 
 #include "robot/loop_clock.hpp"
 #include "robot/safety/base_watch.hpp"
+#include "robot/safety/certainty.hpp"
 #include "robot/safety/estimate_watch.hpp"
 #include "robot/safety/position_watch.hpp"
 
@@ -284,6 +285,19 @@ TEST(LoopClock, MeasuresTicksWithinReasonAndTellsFaultsEveryTenSeconds) {
   clock.begin(now += milliseconds(200), {}, {});
   EXPECT_TRUE(clock.fault());
   EXPECT_EQ(clock.health().faults, 3u);
+}
+
+TEST(Certainty, ARobotThatKnowsItsPlaceLessWellIsSlower) {
+  const SafetyParams p;
+  EXPECT_DOUBLE_EQ(certain_mps(1.0, {}, 1.2, 0.4, p), 1.2);
+  EXPECT_NEAR(certain_mps(1.5, {}, 1.2, 0.4, p), 0.8, 1e-9);
+  EXPECT_DOUBLE_EQ(certain_mps(2.5, {}, 1.2, 0.4, p), 0.4);
+  // A corridor asks for more: slower from where 2 sigma fill half of it.
+  EXPECT_DOUBLE_EQ(certain_mps(0.1, 0.5, 1.2, 0.4, p), 1.2);
+  EXPECT_NEAR(certain_mps(0.1875, 0.5, 1.2, 0.4, p), 0.8, 1e-9);
+  EXPECT_DOUBLE_EQ(certain_mps(0.25, 0.5, 1.2, 0.4, p), 0.4);
+  // One that is slower anyway stays so.
+  EXPECT_DOUBLE_EQ(certain_mps(2.5, {}, 0.3, 0.4, p), 0.3);
 }
 
 }  // namespace

@@ -39,6 +39,62 @@ TEST(Drive, TheLagIsOneTimeConstantToSixtyThreePercent) {
   EXPECT_NEAR(plant.truth().left_track_mps, 0.5 * (1.0 - std::exp(-80.0 / 90.0)), 0.02);
 }
 
+//   told 0 → 1 again and again; how long the tracks take to begin
+TEST(Drive, ADelayThatJittersStaysWithinItsBoundsAndKeepsTheOrder) {
+  Params p = ideal();
+  p.drive.delay_s = 0.05;
+  p.drive.delay_jitter_s = 0.35;
+  p.drive.delay_hold_s = 0.7;
+  p.drive.lag_s = 0.0;
+  p.drive.accel_mps2 = p.drive.decel_mps2 = 10.0;
+  Plant plant(p);
+  plant.enter_can();
+  double least_s = 1.0;
+  double most_s = 0.0;
+  for (int i = 0; i < 60; ++i) {
+    double waited_s = 0.0;
+    while (plant.truth().left_track_mps == 0.0 && waited_s < 1.0) {
+      plant.bunker.receive(drive_frame(0.5, 0.0));
+      plant.wait(5ms);
+      waited_s += 0.005;
+    }
+    least_s = std::min(least_s, waited_s);
+    most_s = std::max(most_s, waited_s);
+    plant.drive(0.0, 0.0, 1s);
+    ASSERT_EQ(plant.truth().left_track_mps, 0.0);
+  }
+  EXPECT_GE(least_s, 0.05);
+  EXPECT_LT(least_s, 0.12);
+  EXPECT_GT(most_s, 0.3);
+  EXPECT_LE(most_s, 0.405);
+}
+
+TEST(Drive, CommandsNeverOvertakeEachOther) {
+  Delay<double> delay;
+  double last = 0.0;
+  for (int i = 1; i <= 1000; ++i) {
+    const double delay_s = 0.005 * static_cast<double>((i * 37) % 61);
+    const double out = delay.step(static_cast<double>(i), delay_s, 0.005);
+    EXPECT_GE(out, last);
+    last = out;
+  }
+}
+
+TEST(Drive, AnUnevenBatteryReachesLessAndTheEncodersTellIt) {
+  Params p = ideal();
+  p.battery.uneven = 0.3;
+  p.battery.resistance_ohm = 0.0;
+  for (const double charge_pct : {100.0, 50.0, 20.0}) {
+    Plant plant(p);
+    plant.bunker.set_battery_pct(charge_pct);
+    plant.enter_can();
+    plant.drive(1.0, 0.0, 4s);
+    const double reached_mps = 1.0 - 0.3 * (1.0 - charge_pct / 100.0);
+    EXPECT_NEAR(plant.truth().twist.linear_mps, reached_mps, 0.002);
+    EXPECT_NEAR(i16(plant.last(0x221), 0) / 1000.0, reached_mps, 0.002);
+  }
+}
+
 //        ╭─╮  a left pivot: the left track runs back, the right one ahead
 //    L ▼ │·│ ▲ R
 TEST(Drive, APivotScrubsAwayPartOfTheTurn) {

@@ -71,6 +71,26 @@ TEST(SimImu, AHundredSamplesASecondThatShowGravity) {
   EXPECT_NEAR(l.samples.back().rate_radps->up, 0.0, 1e-7);
 }
 
+//  uphill north; the robot looks east, then turns to the north: roll becomes pitch
+TEST(SimImu, ASlopeShowsInAttitudeAndAccelerometers) {
+  Params p = with_imu();
+  p.ground.slope_deg = 10.0;
+  p.ground.uphill_deg = 0.0;
+  Listening l(p);
+  l.wait(1s);
+  EXPECT_NEAR(l.attitude->roll_rad, base::rad_from_deg(10.0), 1e-3);
+  EXPECT_NEAR(l.attitude->pitch_rad, 0.0, 1e-3);
+  EXPECT_NEAR(l.samples.back().accel_mps2->left, 9.81 * std::sin(base::rad_from_deg(10.0)), 1e-3);
+  EXPECT_NEAR(l.samples.back().accel_mps2->up, 9.81 * std::cos(base::rad_from_deg(10.0)), 1e-3);
+
+  l.plant.bunker.place(l.plant.truth().at, 0.0);
+  l.wait(1s);
+  EXPECT_NEAR(l.attitude->roll_rad, 0.0, 1e-3);
+  EXPECT_NEAR(l.attitude->pitch_rad, base::rad_from_deg(10.0), 1e-3);
+  EXPECT_NEAR(l.samples.back().accel_mps2->forward, 9.81 * std::sin(base::rad_from_deg(10.0)),
+              1e-3);
+}
+
 TEST(SimImu, TheTurnsSumIsTheTrueTurn) {
   Listening l;
   l.plant.enter_can();

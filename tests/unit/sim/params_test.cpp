@@ -27,7 +27,7 @@ TEST(SimParams, BadOnesNameTheWholeKeyAndChangeNothing) {
   EXPECT_EQ(set_param(p, "drive.slip", 1.5).error().detail, "drive.slip must lie in 0.0 .. 0.9");
   EXPECT_EQ(set_param(p, "drive.slip", true).error().detail, "drive.slip must be a number");
   EXPECT_EQ(set_param(p, "gnss.profile", std::string("best")).error().detail,
-            "gnss.profile must be one of rtk float consumer");
+            "gnss.profile must be one of rtk float consumer plain");
   EXPECT_EQ(p.drive.slip, Params{}.drive.slip);
   EXPECT_EQ(p.gnss.profile, "rtk");
 }

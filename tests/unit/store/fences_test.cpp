@@ -67,6 +67,28 @@ TEST(Fences, EveryChangeIsARevision) {
   EXPECT_EQ(history->items[3].author, "anna");
 }
 
+TEST(Fences, AChangeThatSparesTheActiveOneIsRefusedThere) {
+  Folder folder;
+  auto store = open_store(folder.file());
+  const std::string id = create(*store, fence_named("field"))->id;
+  const Change sparing{"anna", "", true};
+  const auto replaced = [&](std::int64_t expected) {
+    return answer_of<StoredFence>([&](auto reply) {
+      store->replace_fence(id, expected, fence_named("field", 60.0), sparing, reply);
+    });
+  };
+  // Given a fence that is not active, it may be changed;
+  ASSERT_TRUE(replaced(1));
+  // when it is active, neither way is open, and it stays as it was.
+  ASSERT_TRUE(activate(*store, id));
+  EXPECT_EQ(replaced(2).error().code, Code::Conflict);
+  const auto reverted =
+      answer_of<StoredFence>([&](auto reply) { store->revert_fence(id, 2, 1, sparing, reply); });
+  EXPECT_EQ(reverted.error().code, Code::Conflict);
+  EXPECT_EQ(read_fence(*store, id)->revision, 2);
+  EXPECT_EQ(read_fence(*store, id)->fence, fence_named("field", 60.0));
+}
+
 TEST(Fences, OneIsActiveAlsoAfterARestart) {
   Folder folder;
   auto store = open_store(folder.file());

@@ -17,7 +17,7 @@ Run run_of(const std::string& course, std::uint64_t seed, double rms_m, std::str
   r.truth.cross.rms_m = rms_m;
   r.truth.time_s = 10.0;
   r.way = {{0, 0}, {10, 0}};
-  r.driven = {{0, 0}, {10, 0.1}};
+  r.driven = {{0.0, {0, 0}, 0.0, 1.0, 0.0}, {10.0, {10, 0.1}, 0.0, 1.0, 0.0}};
   r.matched.resize(2);
   r.matched[1].s_m = 10.0;
   r.matched[1].cross_m = 0.1;
@@ -44,6 +44,8 @@ TEST(StudyReport, TheJsonHasEveryRun) {
   EXPECT_EQ(whole["runs"][0]["problem"], nullptr);
   EXPECT_EQ(whole["runs"][1]["problem"], "lost");
   EXPECT_EQ(whole["runs"][1]["truth"]["cross_track"]["rms_m"], 0.04);
+  EXPECT_EQ(whole["runs"][1]["track"].dump(), "[[0.0,0.0,0.0,90.0,1.0],[10.0,10.0,0.1,90.0,1.0]]");
+  EXPECT_EQ(whole["ways"]["L"].dump(), "[[0.0,0.0],[10.0,0.0]]");
 }
 
 TEST(StudyReport, ThePlotHasTheWayAndEachTrack) {

@@ -146,7 +146,9 @@ type Question =
   | 'satellites'
   | 'checks'
   | 'preview'
+  | 'mission_way'
   | 'way_home'
+  | 'calibration'
   | 'left_behind'
   | 'recent_events'
   | 'events_since';
@@ -168,9 +170,11 @@ const questions: Pick<VehicleCalls, Question> = {
   vehicle: () => request<Schemas['Vehicle']>('/vehicle'),
   trail,
   drivers: () => request<Schemas['DriverList']>('/drivers'),
+  calibration: () => request<Schemas['Calibration']>('/vehicle/calibration'),
   satellites: () => request<Schemas['Satellites']>('/gnss/satellites'),
   checks: () => request<Schemas['Checks']>('/vehicle/checks'),
   preview: (from) => request<Schemas['Preview']>(`/execution/preview?from=${from}`),
+  mission_way: () => request<Schemas['MissionWay']>('/execution/way', { limit_ms: LARGE_LIMIT_MS }),
   way_home: (mode) => request<Schemas['WayHome']>(`/vehicle/way_home?mode=${mode}`),
   left_behind: async () => {
     const answer = await request<Schemas['Execution']>('/execution');
@@ -190,11 +194,23 @@ export const vehicle_calls = (seen: Seen): VehicleCalls => {
     set_mode: (mode) => command('PUT', '/vehicle/mode', { mode }),
     go_to: (goal) => command('POST', '/vehicle/goto', goal),
     dock: (goal) => command('PUT', '/vehicle/mode', { mode: 'DOCK', ...goal }),
+    loiter: (goal) => command('PUT', '/vehicle/mode', { mode: 'LOITER', ...goal }),
+    circle: (goal) => command('PUT', '/vehicle/mode', { mode: 'CIRCLE', ...goal }),
     move: (forward_m) => command('POST', '/vehicle/move', { forward_m }),
     turn: (turn_deg) => command('POST', '/vehicle/move', { turn_deg }),
     set_home: ({ lat, lon }) => command('PUT', '/vehicle/home', { lat, lon }),
     reset_estop: () => command('POST', '/vehicle/estop/reset'),
     acknowledge: () => command('POST', '/vehicle/acknowledge'),
+    calibrate: (kind) => command<Schemas['Calibration']>('POST', '/vehicle/calibration', { kind }),
+    settle_calibration: (keep) =>
+      command<Schemas['Calibration']>('POST', `/vehicle/calibration/${keep ? 'keep' : 'discard'}`),
+    forget_calibration: () =>
+      request<Schemas['Calibration']>('/vehicle/calibration', {
+        method: 'DELETE',
+        lane: 'command',
+      }),
+    correct_antennas: () => command('POST', '/vehicle/antennas-offset', { apply: true }),
+    settle_shift: (keep) => command('POST', '/vehicle/base-shift', { keep }),
     restart_driver: (name) =>
       request<unknown>(`/drivers/${encodeURIComponent(name)}/restart`, {
         method: 'POST',

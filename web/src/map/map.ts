@@ -23,11 +23,13 @@ import type {
 } from '../model/ports';
 import type { Tracks } from '../model/tracks';
 import { canvas_layer } from './canvas';
+import type { Slip } from '../model/slips';
 import { prepare_drill } from './drill_painter';
+import { prepare_slips } from './slip_painter';
 import { EditInteraction } from './edit';
 import type { Cover } from './grid';
 import { on_palette_change } from './palette';
-import { from_plane, to_plane } from './projection';
+import { from_plane, to_plane, to_plane_line } from './projection';
 import { Scene } from './scene';
 import { prepare_run } from './run_painter';
 import { make_scale_bar } from './scale_bar';
@@ -158,8 +160,10 @@ export class FieldMap implements MapCalls {
     this.#map.render();
   }
 
-  show_route(route: Plan | null, current_item: number): void {
+  /** @param way the route as it is laid out; empty: not known */
+  show_route(route: Plan | null, way: readonly LatLon[], current_item: number): void {
     this.#scene.route.take(route ?? EMPTY_PLAN);
+    this.#scene.way = to_plane_line(way);
     this.#scene.current_item = current_item;
     this.#map.render();
   }
@@ -185,6 +189,11 @@ export class FieldMap implements MapCalls {
 
   show_runs(runs: readonly RunOnMap[]): void {
     this.#scene.runs = runs.map(prepare_run);
+    this.#map.render();
+  }
+
+  show_slips(slips: readonly Slip[]): void {
+    this.#scene.slips = prepare_slips(slips);
     this.#map.render();
   }
 

@@ -13,6 +13,8 @@ export interface Palette {
   readonly on_point: string;
   readonly route: string;
   readonly route_done: string;
+  /** Within the route. */
+  readonly way: string;
   readonly current: string;
   readonly trail: string;
   readonly fixes: string;
@@ -40,6 +42,7 @@ const light: Palette = {
   on_point: '#ffffff',
   route: '#146c2e',
   route_done: 'rgba(20, 108, 46, 0.35)',
+  way: '#06260f',
   current: '#e8710a',
   trail: '#a8327a',
   fixes: '#8a6d00',
@@ -67,6 +70,7 @@ const dark: Palette = {
   on_point: '#0d0f13',
   route: '#6dd58c',
   route_done: 'rgba(109, 213, 140, 0.35)',
+  way: '#f0fff3',
   current: '#ffb066',
   trail: '#ff8fd0',
   fixes: '#e0c14a',

@@ -6,7 +6,13 @@ import { spots, type Plan, type Spot } from '../model/plan';
 import type { PlanShape } from '../model/ports';
 import { stroke_cased, trace, type Paint } from './canvas';
 import { palette, type Palette } from './palette';
-import { to_plane, to_plane_line, type PlaneLine, type PlanePoint } from './projection';
+import {
+  to_plane,
+  to_plane_line,
+  units_per_m,
+  type PlaneLine,
+  type PlanePoint,
+} from './projection';
 
 /** A plan ready to draw: projected once, when it changes. */
 export interface DrawnPlan {
@@ -14,9 +20,22 @@ export interface DrawnPlan {
   readonly line: PlaneLine;
   /** Items without a place that follow each spot. */
   readonly chips: readonly number[];
+  readonly rings: readonly Ring[];
+}
+
+/** A circle around a spot. */
+export interface Ring {
+  /** Of the spot. */
+  readonly k: number;
+  readonly radius_m: number;
+  readonly clockwise: boolean;
+  /** Whole circles; the area in which a loiter stays is no way. */
+  readonly way: boolean;
+  readonly units_per_m: number;
 }
 
 const POINT_PX = 14;
+const WAY_PX = 2;
 const NUMBERS_APART_PX = 33;
 /** With more points in sight than this, only some numbers are drawn. */
 const CROWD = 150;
@@ -29,8 +48,20 @@ const ARROW_FROM_PX = 110;
 export const prepare_plan = (plan: Plan): DrawnPlan => {
   const found = spots(plan);
   const chips = found.map((spot, k) => (found[k + 1]?.index ?? plan.items.length) - spot.index - 1);
-  return { spots: found, line: to_plane_line(found), chips };
+  return { spots: found, line: to_plane_line(found), chips, rings: rings_of(plan, found) };
 };
+
+const rings_of = (plan: Plan, found: readonly Spot[]): Ring[] =>
+  found.flatMap((spot, k): Ring[] => {
+    const item = plan.items[spot.index];
+    const scale = units_per_m(spot.lat).east;
+    if (item?.type === 'circle') {
+      const { radius_m, clockwise } = item;
+      return [{ k, radius_m, clockwise: clockwise === true, way: true, units_per_m: scale }];
+    }
+    if (item?.type !== 'loiter') return [];
+    return [{ k, radius_m: item.radius_m ?? 1, clockwise: false, way: false, units_per_m: scale }];
+  });
 
 /** The line with one point elsewhere: what a drag will give. */
 export const with_point = (line: PlaneLine, k: number, to: PlanePoint): PlaneLine => {
@@ -240,6 +271,37 @@ const paint_line = (paint: Paint, line: PlaneLine, look: PlanLook, colors: Palet
   if (look.shape === 'line') paint_arrows(paint, line, colors.plan, 0.36);
 };
 
+/** Circles with an arrow at three places that tells which way round. */
+const paint_rings = (paint: Paint, drawn: DrawnPlan, line: PlaneLine, colors: Palette): void => {
+  const { context } = paint;
+  for (const ring of drawn.rings) {
+    const x = paint.x_px(line.xs[ring.k] ?? 0);
+    const y = paint.y_px(line.ys[ring.k] ?? 0);
+    const r = (ring.radius_m * ring.units_per_m) / paint.resolution;
+    if (!on_screen(paint, x, y, r + 20)) continue;
+    disc(context, x, y, r);
+    context.setLineDash(ring.way ? [] : [4, 5]);
+    stroke_cased(context, colors.casing, colors.plan, ring.way ? 3.5 : 1.5);
+    context.setLineDash([]);
+    if (!ring.way || r < 15) continue;
+    context.beginPath();
+    for (const at of [0.5, 2.6, 4.7]) {
+      // On the screen angles grow clockwise.
+      const heading = at + (ring.clockwise ? Math.PI / 2 : -Math.PI / 2);
+      const tip_x = x + r * Math.cos(at);
+      const tip_y = y + r * Math.sin(at);
+      for (const side of [2.5, -2.5]) {
+        context.moveTo(tip_x, tip_y);
+        context.lineTo(
+          tip_x + 11 * Math.cos(heading + side),
+          tip_y + 11 * Math.sin(heading + side),
+        );
+      }
+    }
+    stroke_cased(context, colors.casing, colors.plan, 3);
+  }
+};
+
 /** @param line where the points are now: the drawn plan's own line, or one in the middle of a drag */
 export const paint_plan = (
   paint: Paint,
@@ -252,7 +314,10 @@ export const paint_plan = (
     paint_line(paint, line, look, colors);
     if (look.handles) paint_handles(paint, line, colors);
   }
-  if (line.xs.length === drawn.spots.length) paint_points(paint, drawn, line, look);
+  if (line.xs.length === drawn.spots.length) {
+    paint_rings(paint, drawn, line, colors);
+    paint_points(paint, drawn, line, look);
+  }
 };
 
 /** The loaded mission: what is done is faint, the item being driven to is marked. */
@@ -273,4 +338,15 @@ export const paint_route = (paint: Paint, drawn: DrawnPlan, current_item: number
   const [tx, ty] = to_plane(target);
   disc(context, paint.x_px(tx), paint.y_px(ty), POINT_PX + 9);
   stroke_cased(context, colors.casing, colors.current, 4.5);
+};
+
+/** How the loaded mission will be driven: corners rounded, dense points smoothed. */
+export const paint_way = (paint: Paint, { xs, ys }: PlaneLine): void => {
+  if (xs.length < 2) return;
+  const { context } = paint;
+  context.beginPath();
+  trace(paint, xs, ys);
+  context.strokeStyle = palette().way;
+  context.lineWidth = WAY_PX;
+  context.stroke();
 };

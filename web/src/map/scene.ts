@@ -14,16 +14,18 @@ import { palette } from './palette';
 import {
   paint_plan,
   paint_route,
+  paint_way,
   prepare_plan,
   with_inserted,
   with_point,
   type DrawnPlan,
   type PlanLook,
 } from './plan_painter';
-import { from_plane, units_per_m } from './projection';
+import { from_plane, type PlaneLine, to_plane_line, units_per_m } from './projection';
 import { paint_accuracy, paint_home, paint_robot, TrailLine, type Size } from './robot_painter';
 import { paint_runs, type DrawnRun } from './run_painter';
 import type { ScaleBar } from './scale_bar';
+import { paint_slips, type DrawnSlip } from './slip_painter';
 
 /** Beyond this from its origin the grid gets a new one. */
 const GRID_REACH_M = 10_000;
@@ -58,6 +60,8 @@ export class Scene {
   events = NO_EVENTS;
   readonly plan = new Projected(EMPTY_PLAN);
   readonly route = new Projected(EMPTY_PLAN);
+  /** The route as it is laid out. */
+  way: PlaneLine = to_plane_line([]);
   readonly driven = new TrailLine();
   readonly fixes = new TrailLine();
   look: PlanLook = { selected: null, refused: new Set(), handles: false, shape: 'line' };
@@ -67,6 +71,7 @@ export class Scene {
   home: LatLon | null = null;
   runs: readonly DrawnRun[] = [];
   drill: DrawnDrill | null = null;
+  slips: readonly DrawnSlip[] = [];
   fence: FenceDraft | null = null;
   /** The place that the person chose. */
   pin: Mark | null = null;
@@ -101,9 +106,14 @@ export class Scene {
         if (this.fence) paint_fence(paint, this.fence, palette());
       },
       (paint) => {
-        if (this.runs.length === 0) paint_route(paint, this.route.drawn, this.current_item);
+        if (this.runs.length > 0) return;
+        paint_route(paint, this.route.drawn, this.current_item);
+        paint_way(paint, this.way);
       },
       (paint) => this.#paint_driven(paint),
+      (paint) => {
+        if (this.slips.length > 0) paint_slips(paint, this.slips, palette());
+      },
       (paint) => this.#paint_edited(paint),
       (paint) => {
         if (this.drill) paint_drill(paint, this.drill, this.size, palette());

@@ -3,6 +3,7 @@
 // itself. Items that name other items by number (jump) keep pointing at the same item.
 
 import { rounded } from './geo';
+import { place_of } from './plan';
 import type { Home, Item, LatLon, Plan, Settings, Waypoint } from './plan';
 
 export type PlanAction = (plan: Plan) => Plan;
@@ -53,13 +54,13 @@ export const replace_item =
       ? plan
       : { ...plan, items: plan.items.map((old, k) => (k === index ? item : old)) };
 
-/** Moves a waypoint; any other item stays as it is. */
+/** Moves an item that has a place; any other stays as it is. */
 export const move_waypoint =
   (index: number, to: LatLon): PlanAction =>
   (plan) => {
     const item = plan.items[index];
-    if (item?.type !== 'waypoint') return plan;
-    return replace_item(index, { ...item, ...rounded(to) })(plan);
+    if (!item || place_of(item) === null) return plan;
+    return replace_item(index, { ...item, ...rounded(to) } as Item)(plan);
   };
 
 /** Changes some fields of a waypoint. A null takes the field out: the mission's default holds. */
@@ -86,11 +87,14 @@ export const reorder_item =
     return { ...plan, items: order.map((old) => items[old] ?? item) };
   };
 
-/** The same items in the opposite order. */
+/** The same items in the opposite order; circles the other way round. */
 export const reverse_items: PlanAction = (plan) => {
   const count = plan.items.length;
   const items = renumber_jumps(plan.items, (number) => count + 1 - number);
-  return { ...plan, items: items.reverse() };
+  const turned = items.map((item) =>
+    item.type === 'circle' ? { ...item, clockwise: item.clockwise !== true } : item,
+  );
+  return { ...plan, items: turned.reverse() };
 };
 
 export const clear_items: PlanAction = (plan) =>

@@ -1,7 +1,7 @@
 // The fields of every kind of item: label, unit, range. One table makes the editor, reads what was
 // typed and names what is wrong. The server checks again.
 
-import type { Item, ItemType } from './plan';
+import type { Item, ItemType, LatLon } from './plan';
 
 export interface NumberField {
   readonly kind: 'number';
@@ -105,10 +105,26 @@ export const fields_of: Record<ItemType, readonly Field[]> = {
   ],
   return_home: [],
   action: [{ kind: 'text', key: 'name', label: 'Name' }],
+  loiter: [
+    may('lat', 'Latitude', '°', [-90, 90]),
+    may('lon', 'Longitude', '°', [-180, 180]),
+    may('seconds', 'Stay', 's', [0, 86_400]),
+    may('radius_m', 'Back beyond', 'm', [0.1, 100]),
+  ],
+  circle: [
+    must('lat', 'Latitude', '°', [-90, 90]),
+    must('lon', 'Longitude', '°', [-180, 180]),
+    must('radius_m', 'Radius', 'm', [0.5, 1000]),
+    may('turns', 'Turns', '', [0.05, 1000]),
+    may('speed_mps', 'Speed', 'm/s', [0.01, 10]),
+    whole(may('stations', 'Looks in, a turn', '', [0, 36])),
+    may('hold_s', 'Hold there', 's', [0, 86_400]),
+    { kind: 'flag', key: 'clockwise', label: 'Clockwise' },
+  ],
 };
 
 /** A new item of a kind, with sensible values. Waypoints are made on the map. */
-export const fresh_item = (type: Exclude<ItemType, 'waypoint'>): Item => {
+export const fresh_item = (type: Exclude<ItemType, 'waypoint'>, near: LatLon | null): Item => {
   switch (type) {
     case 'local':
       return { type, east_m: 0, north_m: 0 };
@@ -132,6 +148,10 @@ export const fresh_item = (type: Exclude<ItemType, 'waypoint'>): Item => {
       return { type };
     case 'action':
       return { type, name: 'action' };
+    case 'loiter':
+      return near ? { type, ...near, seconds: 30 } : { type, seconds: 30 };
+    case 'circle':
+      return { type, ...(near ?? { lat: 0, lon: 0 }), radius_m: 5, turns: 1 };
   }
 };
 
@@ -148,6 +168,8 @@ export const type_words: Record<ItemType, string> = {
   jump: 'Jump',
   return_home: 'Return home',
   action: 'Action',
+  loiter: 'Stay at a place',
+  circle: 'Circle',
 };
 
 export type Read =
@@ -173,9 +195,16 @@ export const read_number = (field: NumberField, text: string): Read => {
   return { ok: true, value };
 };
 
-/** The item with one field set; null takes it out. A turn is either relative or absolute. */
+/**
+ * The item with one field set; null takes it out. A turn is either relative or absolute; a place is
+ * latitude and longitude, or none.
+ */
 export const with_field = (item: Item, key: string, value: unknown): Item => {
-  const entries = Object.entries(item).filter(([name]) => name !== key);
+  const without_place =
+    item.type === 'loiter' && value === null && (key === 'lat' || key === 'lon');
+  const entries = Object.entries(item).filter(
+    ([name]) => name !== key && !(without_place && (name === 'lat' || name === 'lon')),
+  );
   const rest =
     item.type === 'turn' && value !== null
       ? entries.filter(([name]) => name !== 'turn_deg' && name !== 'heading_deg')

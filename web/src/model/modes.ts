@@ -19,6 +19,8 @@ export const mode_words: Record<Mode, ModeWords> = {
   SMART_RTL: { title: 'Home the same way', does: 'Drives back where it came from.' },
   FOLLOW: { title: 'Follow', does: 'Keeps behind a target that another program tells.' },
   DOCK: { title: 'Dock', does: 'Drives slowly and straight into a place, facing a given way.' },
+  LOITER: { title: 'Stay here', does: 'Stays where it is; slid away, it drives back.' },
+  CIRCLE: { title: 'Circle', does: 'Drives around a place.' },
   STEERING: { title: 'Steering', does: 'You drive; it keeps its heading and takes bends gently.' },
   ACRO: { title: 'Turn rate', does: 'You drive; let go sideways and it goes straight on.' },
   SIMPLE: {
@@ -38,6 +40,7 @@ const reasons: Readonly<Record<string, string>> = {
   steering: 'slower: steering turns first',
   acceleration: 'speeding up or slowing down',
   position_uncertain: 'slower: position uncertain',
+  slope: 'slower: on a slope',
   pivot: 'turning on the spot',
   stopping: 'stopping',
   standing: 'standing',
@@ -58,8 +61,11 @@ const heads: Readonly<Record<NonNullable<Activity['kind']>, string>> = {
   turn: 'Turning',
   return: 'Coming home',
   retrace: 'Coming home the same way',
+  calibration: 'Measuring how it drives',
   follow: 'Following',
   dock: 'Docking',
+  loiter: 'Staying at the place',
+  circle: 'Circling',
 };
 
 export interface ActivityLine {
@@ -125,6 +131,8 @@ export const why_not_choose = (facts: Facts, mode: Mode): string | null => {
       return facts.vehicle?.activity.target === null ? 'Nothing has told where to follow.' : null;
     case 'DOCK':
       return 'Tap the map where it shall dock.';
+    case 'CIRCLE':
+      return 'Tap the map where it shall circle.';
     default:
       return null;
   }

@@ -2,7 +2,7 @@
 // what it can know for certain; the last word is the robot's answer. Whatever makes the robot stop
 // is never refused here.
 
-import { estimate_waits, type Mode, type Vehicle } from './vehicle';
+import { antennas_wait, estimate_waits, shift_waits, type Mode, type Vehicle } from './vehicle';
 
 export interface Facts {
   /** What is shown is old, or of unknown age. */
@@ -36,6 +36,14 @@ export const why_not_reset_stop = (facts: Facts): Reason =>
 export const why_not_acknowledge = (facts: Facts): Reason =>
   no_link(facts) ??
   (facts.vehicle && estimate_waits(facts.vehicle) ? null : 'There is nothing to look at.');
+
+export const why_not_settle_shift = (facts: Facts): Reason =>
+  no_link(facts) ??
+  (facts.vehicle && shift_waits(facts.vehicle) ? null : 'The positions have not moved.');
+
+export const why_not_correct_antennas = (facts: Facts): Reason =>
+  no_link(facts) ??
+  (facts.vehicle && antennas_wait(facts.vehicle) ? null : 'The antennas are not askew.');
 
 export const why_not_mode = (facts: Facts, mode: string): Reason => {
   if (mode === 'HOLD') return null;

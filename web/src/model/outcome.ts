@@ -4,13 +4,22 @@
 import { distance_m } from './geo';
 import { activity_line } from './modes';
 import type { LatLon } from './plan';
-import { estimate_waits, type Activity, type Mode, type Vehicle } from './vehicle';
+import {
+  antennas_wait,
+  estimate_waits,
+  shift_waits,
+  type Activity,
+  type Mode,
+  type Vehicle,
+} from './vehicle';
 
 /** What a command should lead to. */
 export type Wish =
   | { readonly to: 'arm' }
   | { readonly to: 'reset' }
   | { readonly to: 'acknowledge' }
+  | { readonly to: 'settle_shift' }
+  | { readonly to: 'correct_antennas' }
   | { readonly to: 'mode'; readonly mode: Mode }
   | { readonly to: 'do'; readonly kinds: readonly Activity['kind'][] }
   | { readonly to: 'load'; readonly id: string; readonly revision: number }
@@ -30,6 +39,11 @@ export interface Outcome {
 
 const SAME_PLACE_M = 0.01;
 
+const settled = (obeyed: boolean, still: string, done: string): Outcome => ({
+  obeyed,
+  detail: obeyed ? done : still,
+});
+
 /** @param before the state that the person acted upon; null: none was seen */
 export const outcome = (wish: Wish, before: Vehicle | null, after: Vehicle): Outcome => {
   const { mission } = after;
@@ -41,10 +55,12 @@ export const outcome = (wish: Wish, before: Vehicle | null, after: Vehicle): Out
         obeyed: !after.estop,
         detail: `the emergency stop is ${after.estop ? 'still latched' : 'reset'}`,
       };
-    case 'acknowledge': {
-      const waits = estimate_waits(after);
-      return { obeyed: !waits, detail: waits ? 'it still waits for that' : 'it was taken' };
-    }
+    case 'acknowledge':
+      return settled(!estimate_waits(after), 'it still waits for that', 'it was taken');
+    case 'settle_shift':
+      return settled(!shift_waits(after), 'it still asks which place counts', 'it was taken');
+    case 'correct_antennas':
+      return settled(!antennas_wait(after), 'they are still not used', 'they are corrected');
     case 'mode':
       return { obeyed: after.mode === wish.mode, detail: `the mode is ${after.mode}` };
     case 'do': {

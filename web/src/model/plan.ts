@@ -77,6 +77,28 @@ export interface Action {
   readonly [argument: string]: unknown;
 }
 
+/** Stays at a place, or where the robot stands; driven away from it, it drives back. */
+export interface Loiter {
+  readonly type: 'loiter';
+  /** Both or none. */
+  readonly lat?: number | null;
+  readonly lon?: number | null;
+  /** Nothing: until somebody says to go on. */
+  readonly seconds?: number | null;
+  readonly radius_m?: number | null;
+}
+/** Around a place: its centre. */
+export interface Circle extends LatLon {
+  readonly type: 'circle';
+  readonly radius_m: number;
+  readonly turns?: number | null;
+  readonly clockwise?: boolean;
+  readonly speed_mps?: number | null;
+  /** So many times a turn it stops and faces the centre. */
+  readonly stations?: number | null;
+  readonly hold_s?: number | null;
+}
+
 export type Item =
   | Waypoint
   | Local
@@ -89,7 +111,9 @@ export type Item =
   | Landmarks
   | Jump
   | ReturnHome
-  | Action;
+  | Action
+  | Loiter
+  | Circle;
 export type ItemType = Item['type'];
 
 export interface Home extends LatLon {
@@ -118,11 +142,21 @@ export interface Spot extends LatLon {
   readonly index: number;
 }
 
+/** Where an item lies on the map: a waypoint, a loiter at a place, a circle's centre. */
+export const place_of = (item: Item): LatLon | null => {
+  if (item.type === 'waypoint' || item.type === 'circle') return { lat: item.lat, lon: item.lon };
+  if (item.type !== 'loiter') return null;
+  return typeof item.lat === 'number' && typeof item.lon === 'number'
+    ? { lat: item.lat, lon: item.lon }
+    : null;
+};
+
 /** The items that have a place on the map, in driving order. */
 export const spots = (plan: Plan): Spot[] => {
   const found: Spot[] = [];
   plan.items.forEach((item, index) => {
-    if (item.type === 'waypoint') found.push({ index, lat: item.lat, lon: item.lon });
+    const at = place_of(item);
+    if (at) found.push({ index, ...at });
   });
   return found;
 };
@@ -156,6 +190,17 @@ export const item_title = (item: Item): string => {
       return 'Return home';
     case 'action':
       return `Action “${item.name}”`;
+    case 'loiter': {
+      const where = place_of(item) === null ? 'Stay here' : 'Stay';
+      return typeof item.seconds === 'number'
+        ? `${where} ${item.seconds} s`
+        : `${where} until resumed`;
+    }
+    case 'circle': {
+      const turns = item.turns ?? 1;
+      const way = item.clockwise === true ? 'right' : 'left';
+      return `Circle of ${item.radius_m} m, ${turns} ${turns === 1 ? 'turn' : 'turns'} to the ${way}`;
+    }
   }
 };
 

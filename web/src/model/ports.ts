@@ -1,6 +1,7 @@
 // What the rooms of the page hand each other through main.ts: types only.
 
 import type { Answer, Refusal } from './answer';
+import type { Calibration, CalibrationKind } from './calibration';
 import type { ControlState } from './control';
 import type { Drill, DrillTone, DrillWish } from './drill';
 import type { Driver } from './drivers';
@@ -10,10 +11,20 @@ import type { Halt } from './halt';
 import type { WayHome } from './homeward';
 import type { Home, LatLon, Plan, Settings, Item } from './plan';
 import type { RunHead, RunReport } from './runs';
+import type { Slip } from './slips';
 import type { ReceiverSky } from './sky';
 import type { Survey, SurveyWish } from './survey';
 import type { Remembered, Tracks } from './tracks';
-import type { Capabilities, Check, Position, Preview, StationEvent, Vehicle } from './vehicle';
+import type {
+  Capabilities,
+  Check,
+  MissionWay,
+  Position,
+  Preview,
+  SmoothedItems,
+  StationEvent,
+  Vehicle,
+} from './vehicle';
 
 /** One stored revision. */
 export interface Mission {
@@ -63,6 +74,7 @@ export interface CheckReport {
   readonly energy_wh: number | null;
   /** Of a full battery. */
   readonly battery_pct: number | null;
+  readonly smoothed: readonly SmoothedItems[];
 }
 export interface Page<T> {
   readonly items: readonly T[];
@@ -132,6 +144,16 @@ export interface MissionCalls {
   import_file(file: File, origin: LatLon | null): Promise<Answer<ImportResult>>;
   export_address(id: string, format: string): string;
 }
+/** LOITER: farther away than the radius it drives back. */
+export interface StayGoal extends LatLon {
+  readonly radius_m?: number;
+}
+/** CIRCLE: without turns it has no end. */
+export interface CircleGoal extends LatLon {
+  readonly radius_m: number;
+  readonly turns?: number;
+  readonly clockwise?: boolean;
+}
 /** A place to drive to. */
 export interface Goal extends LatLon {
   /** How it faces there; left out: as it comes. */
@@ -155,6 +177,8 @@ export interface VehicleCalls {
   set_mode(mode: string): Promise<Answer<unknown>>;
   go_to(goal: Goal): Promise<Answer<unknown>>;
   dock(goal: Goal & { readonly heading_deg: number }): Promise<Answer<unknown>>;
+  loiter(goal: StayGoal): Promise<Answer<unknown>>;
+  circle(goal: CircleGoal): Promise<Answer<unknown>>;
   /** @param forward_m negative: backwards */
   move(forward_m: number): Promise<Answer<unknown>>;
   /** @param turn_deg clockwise positive */
@@ -163,6 +187,16 @@ export interface VehicleCalls {
   reset_estop(): Promise<Answer<unknown>>;
   /** A person has looked where the robot stands. */
   acknowledge(): Promise<Answer<unknown>>;
+  /** Which place counts, after the receiver's positions moved. @param keep the old one */
+  settle_shift(keep: boolean): Promise<Answer<unknown>>;
+  /** What a calibration drive needs, does and measured. */
+  calibration(): Promise<Answer<Calibration>>;
+  calibrate(kind: CalibrationKind): Promise<Answer<Calibration>>;
+  /** @param keep what was measured acts from now on; else it is dropped */
+  settle_calibration(keep: boolean): Promise<Answer<Calibration>>;
+  forget_calibration(): Promise<Answer<Calibration>>;
+  /** Takes from the two antennas' headings what they were measured to be off. */
+  correct_antennas(): Promise<Answer<unknown>>;
   /** The way so far. */
   trail(): Promise<Answer<Remembered>>;
   drivers(): Promise<Answer<Page<Driver>>>;
@@ -175,6 +209,8 @@ export interface VehicleCalls {
   checks(): Promise<Answer<{ ready: boolean; checks: readonly Check[] }>>;
   load(mission_id: string, revision: number): Promise<Answer<unknown>>;
   preview(from: StartFrom): Promise<Answer<Preview>>;
+  /** The way through the loaded mission, as it will be driven. */
+  mission_way(): Promise<Answer<MissionWay>>;
   start(mission_id: string, revision: number, from: StartFrom): Promise<Answer<Preview>>;
   resume(): Promise<Answer<unknown>>;
   skip(): Promise<Answer<unknown>>;
@@ -193,6 +229,11 @@ export interface RunCalls {
   /** The mission as it was driven. */
   plan(id: number): Promise<Answer<Plan>>;
   track_address(id: number, format: 'csv' | 'gpx' | 'geojson'): string;
+}
+export interface SlipCalls {
+  /** Newest first. */
+  all(): Promise<Answer<readonly Slip[]>>;
+  clear(): Promise<Answer<unknown>>;
 }
 /** Failures in simulated time. */
 export interface DrillCalls {
@@ -330,13 +371,16 @@ export interface MapCalls {
   /** Where to stay and where not to go; null: nothing of the kind. */
   show_fence(fence: FenceDraft | null): void;
   /** The mission the robot has loaded; null hides it. @param current_item from 1; 0: none */
-  show_route(route: Plan | null, current_item: number): void;
+  /** @param way as it is laid out; empty: not known */
+  show_route(route: Plan | null, way: readonly LatLon[], current_item: number): void;
   show_robot(robot: RobotOnMap | null, tracks: Tracks): void;
   show_home(home: LatLon | null): void;
   /** @param pin the place that the person chose; @param goal where the robot drives to */
   show_marks(pin: Mark | null, goal: Mark | null): void;
   /** Runs, or a survey that is being planned, instead of the way so far; none: that one again. */
   show_runs(runs: readonly RunOnMap[]): void;
+  /** Where the ground gave way. */
+  show_slips(slips: readonly Slip[]): void;
   /** What a drill found; null: none is looked at. */
   show_drill(drill: DrillOnMap | null): void;
   /** Footprint of the vehicle, drawn to scale. */

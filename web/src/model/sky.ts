@@ -1,7 +1,7 @@
 // The sky as the receivers see it, and how sure the robot is of where it is.
 
 import { count, degrees_text, metres, number_text } from './format';
-import type { Estimator, Position } from './vehicle';
+import type { Estimator, Learned, Position } from './vehicle';
 
 export interface Satellite {
   readonly system: string;
@@ -86,6 +86,31 @@ export const sky_summary = (satellites: readonly Satellite[]): string => {
   return `${used.length} used, ${tracked.length} heard, ${satellites.length} in view`;
 };
 
+/** In centimetres for a metre of way: it is steered against. */
+const side_slip_text = (share: number | null): string => {
+  if (share === null) return '—';
+  const cm = Math.round(Math.abs(share) * 100);
+  return cm === 0 ? 'nothing' : `${cm} cm a metre, to the ${share > 0 ? 'left' : 'right'}`;
+};
+
+/** How the vehicle answers: what is used, and what was set where that is something else. */
+export const handling_lines = (
+  learned: Learned | undefined,
+): readonly (readonly [string, string])[] => {
+  if (!learned) return [];
+  const delay = `${learned.delay_used_s.toFixed(2)} s`;
+  const delay_why =
+    learned.delay_s === null ? 'as set' : `learned; set ${learned.delay_set_s.toFixed(2)} s`;
+  const braking = `${learned.braking_used_mps2.toFixed(2)} m/s²`;
+  const as_set = learned.braking_used_mps2 >= learned.braking_set_mps2 - 0.005;
+  const set = `learned; set ${learned.braking_set_mps2.toFixed(2)} m/s²`;
+  const braking_why = (as_set ? 'as set' : set) + (learned.braking_proved ? '' : ', not seen yet');
+  return [
+    ['Answers after', `${delay} (${delay_why})`],
+    ['Brakes with', `${braking} (${braking_why})`],
+  ];
+};
+
 /** What the robot knows of its place and heading, as pairs of name and value. */
 export const position_lines = (
   position: Position,
@@ -109,6 +134,7 @@ export const position_lines = (
     out.push(['Gyro is off by', number_text(estimator.gyro_bias_dps, 3, '°/s')]);
   }
   out.push(['Odometry, true over told', number_text(estimator.odometry_scale, 3)]);
+  out.push(['Drives aside by', side_slip_text(estimator.side_slip)]);
   const refused = Object.entries(estimator.rejected)
     .filter(([, times]) => times > 0)
     .map(([what, times]) => `${what} ${times}`);

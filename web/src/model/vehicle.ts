@@ -14,7 +14,9 @@ export type Mode =
   | 'STEERING'
   | 'ACRO'
   | 'SIMPLE'
-  | 'DOCK';
+  | 'DOCK'
+  | 'LOITER'
+  | 'CIRCLE';
 export type Fix = 'none' | 'unknown' | 'estimated' | 'gps' | 'dgps' | 'rtk_float' | 'rtk_fixed';
 export type Control = 'none' | 'auto' | 'teleop' | 'rc';
 export type ExecutionState =
@@ -62,9 +64,22 @@ export interface Estimator {
   readonly gyro_bias_dps: number | null;
   readonly compass_bias_deg: number | null;
   readonly odometry_scale: number | null;
+  /** Metres to its left for each metre ahead. */
+  readonly side_slip: number | null;
   /** Measurements that were not believed, by kind. */
   readonly rejected: Readonly<Record<string, number>>;
   readonly resets: number;
+}
+/** How the vehicle answers, learned while it drives, beside what was set. */
+export interface Learned {
+  readonly delay_s: number | null;
+  readonly delay_set_s: number;
+  readonly delay_used_s: number;
+  readonly braking_mps2: number | null;
+  readonly braking_set_mps2: number;
+  readonly braking_used_mps2: number;
+  /** Seen since it was armed. */
+  readonly braking_proved: boolean;
 }
 type Switch = 'up' | 'middle' | 'down' | 'unknown' | null;
 export interface Rc extends Measured {
@@ -93,6 +108,10 @@ export interface MissionProgress {
   readonly distance_to_item_m: number | null;
   readonly bearing_to_item_deg: number | null;
   readonly cross_track_m: number | null;
+  /** Within it the item in hand counts as reached. */
+  readonly arrival_radius_m: number | null;
+  /** Farther off its way the mission pauses. */
+  readonly cross_track_limit_m: number | null;
   readonly distance_left_m: number | null;
   readonly eta_s: number | null;
 }
@@ -101,7 +120,18 @@ export interface Activity {
   /** Another number: it was replaced. */
   readonly id: number;
   readonly kind:
-    'goto' | 'heading' | 'move' | 'turn' | 'return' | 'retrace' | 'follow' | 'dock' | null;
+    | 'goto'
+    | 'heading'
+    | 'move'
+    | 'turn'
+    | 'return'
+    | 'retrace'
+    | 'follow'
+    | 'dock'
+    | 'loiter'
+    | 'circle'
+    | 'calibration'
+    | null;
   readonly state: 'none' | 'driving' | 'turning' | 'waiting' | 'held' | 'reached' | 'failed';
   /** Why waiting or failed. */
   readonly reason: string;
@@ -146,6 +176,7 @@ export interface Vehicle {
   readonly speed_reason: string;
   readonly position: Position;
   readonly estimator: Estimator;
+  readonly learned: Learned;
   readonly gnss: Gnss;
   readonly base: Base;
   readonly battery: Battery;
@@ -180,6 +211,13 @@ export interface Capabilities {
   readonly import_formats: readonly string[];
   readonly export_formats: readonly string[];
 }
+/** Dense points that are driven as one smooth way. */
+export interface SmoothedItems {
+  readonly first_item: number;
+  readonly last_item: number;
+  /** The way passes beside them by no more. */
+  readonly deviation_m: number;
+}
 /** What `start` would do; nothing has moved yet. */
 export interface Preview {
   readonly mission_id: string;
@@ -187,10 +225,19 @@ export interface Preview {
   readonly name: string;
   readonly first_item: number;
   readonly first_target: LatLon | null;
+  /** It goes on from where it stands, so far after the begin of its way; null: it drives to first_item. */
+  readonly joins_after_m: number | null;
+  readonly left_out: number;
   readonly distance_m: number | null;
   readonly bearing_deg: number | null;
   readonly speed_mps: number;
   readonly at_end: 'hold' | 'return' | 'repeat' | 'back_and_forth';
+}
+/** The loaded mission as it is laid out: corners rounded, dense points smoothed. */
+export interface MissionWay {
+  readonly mission_id: string;
+  readonly revision: number;
+  readonly line: readonly LatLon[];
 }
 export interface StationEvent {
   readonly time: string;
@@ -304,5 +351,13 @@ export const teach_words: Record<TeachBrief['state'], string> = {
 };
 
 /** The position was set anew so far that the robot holds until a person has looked. */
+/** The receiver's positions moved for good: a person says which place counts. */
+export const shift_waits = (vehicle: Vehicle): boolean =>
+  vehicle.safety.some(({ id }) => id === 'base_moved');
+
+/** Two antennas are mounted askew, and the offset waits to be confirmed. */
+export const antennas_wait = (vehicle: Vehicle): boolean =>
+  vehicle.safety.some(({ id }) => id === 'antennas_askew');
+
 export const estimate_waits = (vehicle: Vehicle): boolean =>
   vehicle.safety.some(({ id }) => id === 'estimate_latched');

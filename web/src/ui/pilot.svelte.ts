@@ -6,7 +6,15 @@ import type { Answer, Refusal } from '../model/answer';
 import type { Halt } from '../model/halt';
 import { CLICK_LIFE_S, outcome, type Outcome, type Wish } from '../model/outcome';
 import type { LatLon } from '../model/plan';
-import type { Goal, LiveLink, SendDrive, StartFrom, VehicleCalls } from '../model/ports';
+import type {
+  CircleGoal,
+  Goal,
+  LiveLink,
+  SendDrive,
+  StartFrom,
+  StayGoal,
+  VehicleCalls,
+} from '../model/ports';
 import type { Mode, StationEvent, Vehicle } from '../model/vehicle';
 import type { Dialogs } from './dialogs.svelte';
 import { Halts } from './halts.svelte';
@@ -67,6 +75,10 @@ export class Pilot {
     this.#do('Go here', { to: 'do', kinds: ['goto'] }, () => this.#calls.go_to(goal));
   dock = (goal: Goal & { readonly heading_deg: number }): Promise<boolean> =>
     this.#do('Dock here', { to: 'mode', mode: 'DOCK' }, () => this.#calls.dock(goal));
+  loiter = (goal: StayGoal): Promise<boolean> =>
+    this.#do('Stay here', { to: 'mode', mode: 'LOITER' }, () => this.#calls.loiter(goal));
+  circle = (goal: CircleGoal): Promise<boolean> =>
+    this.#do('Circle here', { to: 'mode', mode: 'CIRCLE' }, () => this.#calls.circle(goal));
   move = (forward_m: number): Promise<boolean> =>
     this.#do('Move', { to: 'do', kinds: ['move'] }, () => this.#calls.move(forward_m));
   turn = (turn_deg: number): Promise<boolean> =>
@@ -103,6 +115,36 @@ export class Pilot {
     });
     if (sure)
       await this.#do('I have looked', { to: 'acknowledge' }, () => this.#calls.acknowledge());
+  }
+
+  async settle_shift(keep: boolean): Promise<void> {
+    const sure = await this.#dialogs.ask({
+      title: keep ? 'Keep the old place?' : 'Take the new place?',
+      text: keep
+        ? 'The robot stands where the map shows it, and the receiver is corrected by as much as it moved: for a base that was set up anew. Look at the robot and at the map.'
+        : 'The robot is moved on the map to where the receiver says: for a robot that was carried, or a base that stood wrong before. Routes and fence stay where they are.',
+      yes: keep ? 'Keep' : 'Take',
+      danger: true,
+    });
+    if (sure)
+      await this.#do(
+        keep ? 'Keep the old place' : 'Take the new place',
+        { to: 'settle_shift' },
+        () => this.#calls.settle_shift(keep),
+      );
+  }
+
+  async correct_antennas(): Promise<void> {
+    const sure = await this.#dialogs.ask({
+      title: 'Are the two antennas mounted askew?',
+      text: 'What was measured is taken from their heading until the program starts anew. The setting drivers.gnss.heading_offset_deg keeps it for good.',
+      yes: 'Correct them',
+      danger: true,
+    });
+    if (sure)
+      await this.#do('Correct antennas', { to: 'correct_antennas' }, () =>
+        this.#calls.correct_antennas(),
+      );
   }
 
   /** Asks the robot what a start would do, and shows it. Nothing moves. */

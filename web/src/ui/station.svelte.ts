@@ -4,7 +4,7 @@ import { tick, untrack } from 'svelte';
 
 import { refusal_text } from '../model/answer';
 import { activity_mark } from '../model/modes';
-import { EMPTY_PLAN, spots, type Plan } from '../model/plan';
+import { EMPTY_PLAN, spots } from '../model/plan';
 import type {
   DraftStorage,
   DrillCalls,
@@ -15,6 +15,7 @@ import type {
   MapEvents,
   MissionCalls,
   RunCalls,
+  SlipCalls,
   StreamEvents,
   SurveyCalls,
   TeachCalls,
@@ -22,11 +23,12 @@ import type {
 } from '../model/ports';
 import { field_places } from '../model/survey';
 import { robot_place, type Check } from '../model/vehicle';
+import { Calibrator } from './calibrator.svelte';
 import { Dialogs } from './dialogs.svelte';
 import { Drills, type DrillSubject } from './drill.svelte';
 import type { Drawing } from './drawing.svelte';
 import { Drivers } from './drivers.svelte';
-import { Editor, plan_of } from './editor.svelte';
+import { Editor } from './editor.svelte';
 import { Fences } from './fences.svelte';
 import { Findings } from './findings.svelte';
 import { Homeward, type HomeMode } from './homeward.svelte';
@@ -34,8 +36,10 @@ import { Library } from './library.svelte';
 import { Live } from './live.svelte';
 import { Notices } from './notices.svelte';
 import { Pilot } from './pilot.svelte';
+import { LoadedRoute } from './route.svelte';
 import { Resumption } from './resumption.svelte';
 import { Runs } from './runs.svelte';
+import { Slips } from './slips.svelte';
 import { Sky } from './sky.svelte';
 import { Surveyor } from './survey.svelte';
 import { Target } from './target.svelte';
@@ -53,7 +57,7 @@ export type Tab = 'drive' | 'plan' | 'missions' | 'log';
 /** What is shown under Missions. */
 export type Shelf = 'missions' | 'runs' | 'fences';
 /** What is pulled out in the Drive panel. */
-export type Drawer = 'move' | 'teach' | null;
+export type Drawer = 'move' | 'teach' | 'calibrate' | null;
 
 /** What main.ts hands in: the doors to the server, the map and the device. */
 export interface Doors {
@@ -61,6 +65,7 @@ export interface Doors {
   readonly vehicle: VehicleCalls;
   readonly teach: TeachCalls;
   readonly runs: RunCalls;
+  readonly slips: SlipCalls;
   readonly drill: DrillCalls;
   readonly survey: SurveyCalls;
   readonly fences: FenceCalls;
@@ -76,7 +81,6 @@ export class Station {
   sheet_open = $state(true);
   drawer = $state<Drawer>(null);
   shelf = $state<Shelf>('missions');
-  route = $state.raw<Plan | null>(null);
   checks = $state.raw<readonly Check[]>([]);
   /** There is room for the panel beside the map. */
   wide = $state(false);
@@ -93,7 +97,7 @@ export class Station {
   drill_subject = $derived.by<DrillSubject | null>(() => {
     const { id, revision, name } = this.live.vehicle?.mission ?? {};
     if (id && typeof revision === 'number') {
-      const plan = this.route ?? EMPTY_PLAN;
+      const plan = this.route.plan ?? EMPTY_PLAN;
       return { id, revision, name: name ?? '', plan, loaded: true };
     }
     const { stored, plan, unsaved } = this.editor;
@@ -117,15 +121,17 @@ export class Station {
   readonly sky: Sky;
   readonly teacher: Teacher;
   readonly runs: Runs;
+  readonly slips: Slips;
   readonly drills: Drills;
   readonly surveyor: Surveyor;
   readonly fences: Fences;
   readonly homeward: Homeward;
+  readonly route: LoadedRoute;
+  readonly calibrator: Calibrator;
   readonly resumption: Resumption;
   readonly findings: Findings;
   readonly map: MapCalls;
   readonly #doors: Doors;
-  #route_key = '';
   /** The way before this connection is not drawn yet. */
   #trail_missing = false;
   /** When it may be asked for. */
@@ -148,10 +154,13 @@ export class Station {
     this.drivers = new Drivers(doors.vehicle, this.notices, this.dialogs);
     this.sky = new Sky(doors.vehicle);
     this.runs = new Runs(doors.runs);
+    this.slips = new Slips(doors.slips, this.dialogs);
     this.drills = new Drills(doors.drill);
     this.surveyor = new Surveyor(doors.survey, this.editor, this.notices);
     this.fences = new Fences(doors.fences, this.notices, this.dialogs);
     this.homeward = new Homeward(doors.vehicle, this.live);
+    this.route = new LoadedRoute(doors.missions, doors.vehicle, this.notices);
+    this.calibrator = new Calibrator(doors.vehicle, this.dialogs);
     this.resumption = new Resumption(doors.vehicle, this.pilot, this.notices, this.dialogs);
     this.findings = new Findings(doors.missions);
     this.teacher = new Teacher(doors.teach, this.editor, this.notices, this.dialogs);
@@ -182,7 +191,7 @@ export class Station {
       this.pilot.halts.on_vehicle(vehicle, mono_s);
       this.findings.take(vehicle);
       void this.#complete_trail();
-      void this.#follow_route();
+      if (this.route.take(vehicle)) void this.resumption.refresh();
     },
     on_refused: (refusal) => this.live.refuse_stick(refusal_text(refusal)),
     on_stopped: () => this.pilot.halts.on_stopped(),
@@ -224,7 +233,7 @@ export class Station {
   /** Shows the edited mission, or the loaded one, or the way so far. */
   fit(): void {
     const edited = spots(this.editor.plan);
-    const points = edited.length > 0 ? edited : this.route ? spots(this.route) : [];
+    const points = edited.length > 0 ? edited : this.route.plan ? spots(this.route.plan) : [];
     const all = points.length > 0 ? points : this.live.places;
     if (all.length === 0) return;
     this.set_follow(false);
@@ -298,25 +307,6 @@ export class Station {
     this.map.show_robot(this.live.robot, tracks);
   }
 
-  /** The robot drives its own copy of one revision: fetch exactly that one. */
-  async #follow_route(): Promise<void> {
-    const { id, revision } = this.live.vehicle?.mission ?? { id: null, revision: null };
-    const key = id === null || revision === null ? '' : `${id} ${revision}`;
-    if (key === this.#route_key) return;
-    this.#route_key = key;
-    void this.resumption.refresh();
-    if (id === null || revision === null) {
-      this.route = null;
-      return;
-    }
-    const answer = await this.#doors.missions.read_revision(id, revision);
-    if (this.#route_key !== key) return;
-    this.route = answer.ok ? plan_of(answer.value) : null;
-    if (!answer.ok) {
-      this.notices.show('warning', `The route cannot be shown: ${refusal_text(answer.refusal)}`);
-    }
-  }
-
   #map_events(): MapEvents {
     const drawn = (): Drawing => this.drawing ?? this.editor;
     return {
@@ -372,7 +362,10 @@ export class Station {
     $effect(() =>
       map.show_drill(this.tab === 'drive' && this.drilling ? this.drills.on_map : null),
     );
-    $effect(() => map.show_route(this.route, live.vehicle?.mission.current_item ?? 0));
+    $effect(() =>
+      map.show_route(this.route.plan, this.route.way, live.vehicle?.mission.current_item ?? 0),
+    );
+    $effect(() => map.show_slips(this.slips.on_map));
     $effect(() => map.show_robot(live.robot, live.tracks));
     $effect(() => map.show_home(live.vehicle?.home ?? null));
     $effect(() => {

@@ -1,0 +1,73 @@
+// Two antennas that are mounted twenty degrees askew, and say a tenth of a degree of themselves.
+//
+//   they point ↗   it drives ↑   so the heading is found by driving, and they wait for a person
+
+#include "rig.hpp"
+
+namespace roverd::loop {
+namespace {
+
+RigOptions mounted(double off_deg) {
+  RigOptions o;
+  o.plant.gnss.profile = "rtk";
+  o.plant.gnss.antennas = true;
+  o.plant.gnss.antennas_offset_deg = off_deg;
+  o.gnss.heading_source = "dual_antenna";
+  return o;
+}
+
+TEST(Askew, AntennasAreFoundOutAndTheRobotKeepsToItsWay) {
+  for (const double off_deg : {-20.0, -12.0, 12.0, 20.0}) {
+    Rig rig(mounted(off_deg));
+    rig.arm_and_start(rig.plan_of({{0, 15}, {10, 15}}));
+    ASSERT_TRUE(rig.run_until([&] { return rig.has_condition("antennas_askew"); }, 20.0))
+        << off_deg;
+    EXPECT_LT(rig.truth().driven_m, 4.0) << off_deg;
+    const auto askew = rig.state()->estimator.antennas_askew;
+    ASSERT_TRUE(askew);
+    if (rig.execution() !=
+        ExecutionState::Running) {  // far beyond what was claimed: a person looks
+      rig.run(2.0);
+      ASSERT_TRUE(rig.ask(robot::Acknowledge{})) << off_deg;
+      ASSERT_TRUE(rig.ask(robot::ResumeMission{})) << off_deg;
+    }
+    ASSERT_TRUE(rig.run_until([&] { return rig.execution() != ExecutionState::Running; }, 120.0));
+    EXPECT_EQ(rig.execution(), ExecutionState::Finished)
+        << off_deg << ": " << rig.state()->mission.reason;
+    EXPECT_LT(rig.farthest_from_path_m({{0, 0}, {0, 15}, {10, 15}}), 0.5) << off_deg;
+    EXPECT_LT(std::abs(rig.yaw_error_deg()), 3.0) << off_deg;
+    // Clockwise they are off, and left is positive.
+    const double told_deg = base::deg_from_rad(rig.state()->estimator.antennas_askew->offset_rad);
+    EXPECT_NEAR(told_deg, -off_deg, 1.5);
+  }
+}
+
+TEST(Askew, ConfirmedTheyAreCorrectedAndUsedAgain) {
+  Rig rig(mounted(20.0));
+  rig.arm_and_start(rig.plan_of({{0, 12}}));
+  ASSERT_TRUE(rig.run_until([&] { return rig.has_condition("antennas_askew"); }, 20.0));
+  rig.run(8.0);
+  ASSERT_TRUE(rig.ask(robot::SetMode{Mode::Hold}));
+  rig.run(3.0);
+  ASSERT_TRUE(rig.ask(robot::CorrectAntennas{true}));
+  rig.run(1.0);
+  EXPECT_FALSE(rig.has_condition("antennas_askew"));
+  EXPECT_NEAR(base::deg_from_rad(rig.state()->estimator.antennas_offset_rad), -20.0, 2.0);
+  EXPECT_LT(std::abs(rig.yaw_error_deg()), 2.5);
+  EXPECT_FALSE(rig.ask(robot::CorrectAntennas{true}));
+  EXPECT_TRUE(rig.ask(robot::CorrectAntennas{false}));
+  EXPECT_FALSE(rig.ask(robot::CorrectAntennas{false}));
+}
+
+TEST(Askew, BeforeItHasDrivenTheirHeadingClaimsNoTenthOfADegree) {
+  Rig rig(mounted(0.0));
+  rig.run(5.0);
+  EXPECT_GE(base::deg_from_rad(rig.state()->pose->yaw_sigma_rad), 3.0);
+  rig.arm_and_start(rig.plan_of({{0, 10}}));
+  ASSERT_TRUE(rig.run_until([&] { return rig.truth().driven_m > 6.0; }, 40.0));
+  EXPECT_LT(base::deg_from_rad(rig.state()->pose->yaw_sigma_rad), 1.0);
+  EXPECT_FALSE(rig.has_condition("antennas_askew"));
+}
+
+}  // namespace
+}  // namespace roverd::loop

@@ -1,0 +1,100 @@
+// Staying and circling: as items of a mission, and as modes.
+
+import { arm, draw, items, mark, metres_between, open_page, press, save, tab } from './page';
+import { expect, test, type Station } from './station';
+
+interface Vehicle {
+  readonly mode: string;
+  readonly activity: { readonly kind: string | null; readonly state: string };
+}
+interface Mission {
+  readonly items: readonly Record<string, unknown>[];
+}
+
+const stands_still = (station: Station): Promise<void> =>
+  expect.poll(() => Math.abs(station.sim.now.speed_mps), { timeout: 5000 }).toBeLessThan(0.01);
+
+for (const [device, width, height] of [
+  ['phone', 390, 844],
+  ['laptop', 1440, 900],
+] as const) {
+  test(`a circle and a loiter are added to a mission and edited on a ${device}`, async ({
+    page,
+    station,
+  }) => {
+    await page.setViewportSize({ width, height });
+    await open_page(page, station.url);
+    await tab(page, 'Plan');
+    await draw(page, [[-40, 0]]);
+    await expect(items(page)).toHaveCount(1);
+    const kinds = page.getByLabel('Add another kind of item');
+    await kinds.selectOption('circle');
+    await page.getByLabel('Radius, m').fill('4,5');
+    await page.getByLabel('Radius, m').press('Enter');
+    await page.getByLabel('Turns', { exact: true }).fill('0.5');
+    await page.getByLabel('Turns', { exact: true }).press('Enter');
+    await page.getByLabel('Clockwise').check();
+    await expect(items(page).nth(1)).toContainText('Circle of 4.5 m, 0.5 turns to the right');
+    await page.getByLabel('Radius, m').fill('0.2');
+    await page.getByLabel('Radius, m').press('Enter');
+    await expect(page.getByText('Radius must be from 0.5 to 1000.')).toBeVisible();
+    await kinds.selectOption('loiter');
+    await page.getByLabel('Stay, s').fill('');
+    await page.getByLabel('Stay, s').press('Enter');
+    await expect(items(page).nth(2)).toContainText('Stay until resumed');
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+    expect(wide).toBeLessThanOrEqual(width);
+    await save(page);
+    const listed = await station.rest<{ items: readonly { id: string }[] }>('GET', '/missions');
+    const mission = await station.rest<Mission>('GET', `/missions/${listed.items[0]?.id ?? ''}`);
+    expect(mission.items[1]).toMatchObject({
+      type: 'circle',
+      radius_m: 4.5,
+      turns: 0.5,
+      clockwise: true,
+    });
+    expect(mission.items[2]?.['type']).toBe('loiter');
+    expect(mission.items[2]?.['seconds'] ?? null).toBeNull();
+  });
+}
+
+test('“Circle here” drives around the place that was tapped, “Stay here” stays', async ({
+  page,
+  station,
+}) => {
+  test.setTimeout(180_000);
+  await page.setViewportSize({ width: 390, height: 844 });
+  await open_page(page, station.url);
+  await arm(page);
+  await station.rest('POST', '/vehicle/move', { forward_m: 4 });
+  await expect(page.getByLabel('Activity')).toContainText('Done.', { timeout: 40_000 });
+  await mark(page, 0, 5);
+  await press(page, 'Stay or circle…');
+  await page.getByLabel('Circle’s radius, m').fill('2');
+  await page.getByLabel('Circle’s radius, m').press('Enter');
+  await page.getByLabel('Turns (none: no end)').fill('1');
+  await page.getByLabel('Turns (none: no end)').press('Enter');
+  await press(page, 'Circle here');
+  await expect(page.getByLabel('Mode').getByRole('button', { name: 'CIRCLE' })).toBeVisible();
+  await expect(page.getByLabel('Activity')).toContainText('Circling');
+  const state = async (): Promise<Vehicle['activity']> =>
+    (await station.rest<Vehicle>('GET', '/vehicle')).activity;
+  const from = station.sim.now;
+  let farthest_m = 0;
+  await expect
+    .poll(
+      async () => {
+        farthest_m = Math.max(farthest_m, metres_between(from, station.sim.now));
+        return (await state()).state;
+      },
+      { timeout: 120_000, intervals: [300] },
+    )
+    .toBe('reached');
+  expect(farthest_m).toBeGreaterThan(3.5);
+  await stands_still(station);
+
+  await press(page, 'More…');
+  await page.getByRole('button', { name: 'LOITER', exact: true }).click();
+  await expect(page.getByLabel('Activity')).toContainText('Staying at the place');
+  await expect.poll(async () => (await state()).state).toBe('waiting');
+});

@@ -1,0 +1,51 @@
+// Where it slipped: on the map, in the log, and forgotten.
+
+import { arm, metres_between, open_page, press, tab } from './page';
+import { expect, test } from './station';
+
+test('the log switches on where it slipped, and forgets it', async ({ page, station }) => {
+  await page.setViewportSize({ width: 390, height: 844 });
+  await open_page(page, station.url);
+  await tab(page, 'Log');
+  const card = page.getByRole('region', { name: 'Where it slipped' });
+  await expect(card.getByText('Show on the map (0 places)')).toBeVisible();
+  await expect(card.getByRole('button', { name: 'Forget all' })).toHaveAttribute(
+    'title',
+    'There are none.',
+  );
+  const slip = { id: 1, lat: 58.378, lon: 26.729, time: '2026-05-01T10:00:00Z' };
+  let kept: readonly object[] = [{ ...slip, kind: 'slip', percent: 40, times: 3 }];
+  await page.route('**/api/v1/slips**', async (route) => {
+    if (route.request().method() === 'DELETE') {
+      kept = [];
+      await route.fulfill({ status: 204 });
+    } else {
+      await route.fulfill({ json: { items: kept, next_cursor: null } });
+    }
+  });
+  await card.getByLabel('Show on the map').check();
+  await expect(card).toContainText('slipped by 40 %, 3 times');
+  await card.getByRole('button', { name: 'Forget all' }).click();
+  await press(page, 'Forget them');
+  await expect(card).toContainText('0 places');
+});
+
+test('a stretch of loose ground is remembered where the robot drove', async ({ page, station }) => {
+  test.setTimeout(150_000);
+  await open_page(page, station.url);
+  await arm(page);
+  await station.rest('POST', '/vehicle/move', { forward_m: 4 });
+  await expect(page.getByLabel('Activity')).toContainText('Done.', { timeout: 40_000 });
+  station.sim.tell({ set: { 'drive.slip': 0.5 } });
+  const begun = station.sim.now;
+  await station.rest('POST', '/vehicle/move', { forward_m: 8 });
+  interface Slips {
+    readonly items: readonly { lat: number; lon: number; kind: string; percent: number }[];
+  }
+  const slips = async (): Promise<Slips['items']> =>
+    (await station.rest<Slips>('GET', '/slips')).items.filter(({ kind }) => kind === 'slip');
+  await expect.poll(async () => (await slips()).length, { timeout: 90_000 }).toBeGreaterThan(0);
+  const [first] = await slips();
+  expect(first?.percent).toBeGreaterThan(25);
+  expect(first ? metres_between(begun, first) : 99).toBeLessThan(9);
+});

@@ -1,0 +1,55 @@
+// The places where the robot slipped: read while they are shown on the map.
+
+import { refusal_text } from '../model/answer';
+import type { SlipCalls } from '../model/ports';
+import type { Slip } from '../model/slips';
+import type { Dialogs } from './dialogs.svelte';
+
+const NONE: readonly Slip[] = [];
+const RENEWED_MS = 10_000;
+
+export class Slips {
+  shown = $state(false);
+  items = $state.raw<readonly Slip[]>(NONE);
+  failure = $state<string | null>(null);
+  on_map = $derived(this.shown ? this.items : NONE);
+
+  readonly #calls: SlipCalls;
+  readonly #dialogs: Dialogs;
+
+  constructor(calls: SlipCalls, dialogs: Dialogs) {
+    this.#calls = calls;
+    this.#dialogs = dialogs;
+  }
+
+  show(shown: boolean): void {
+    this.shown = shown;
+    if (shown) void this.refresh();
+  }
+
+  /** Asks now and then while they are shown. @return ends it */
+  watch(): () => void {
+    const again = setInterval(() => void this.refresh(), RENEWED_MS);
+    void this.refresh();
+    return () => clearInterval(again);
+  }
+
+  async refresh(): Promise<void> {
+    const answer = await this.#calls.all();
+    this.failure = answer.ok ? null : refusal_text(answer.refusal);
+    if (answer.ok) this.items = answer.value;
+  }
+
+  async forget(): Promise<void> {
+    const sure = await this.#dialogs.ask({
+      title: 'Forget where it slipped?',
+      text: `${this.items.length} places go for good, for everybody.`,
+      yes: 'Forget them',
+      danger: true,
+    });
+    if (!sure) return;
+    const answer = await this.#calls.clear();
+    this.failure = answer.ok ? null : refusal_text(answer.refusal);
+    if (answer.ok) this.items = NONE;
+  }
+}
