@@ -2,6 +2,7 @@
 // the log and the events.
 
 #include "base/measurements.hpp"
+#include "base/sight.hpp"
 #include "base/snapshot.hpp"
 
 namespace roverd::base {
@@ -96,6 +97,20 @@ std::string_view to_string(Recording r) noexcept {
       return "stopped";
   }
   return "stopped";
+}
+
+std::string_view to_string(Window w) noexcept {
+  switch (w) {
+    case Window::Unknown:
+      return "unknown";
+    case Window::Clean:
+      return "clean";
+    case Window::Dirty:
+      return "dirty";
+    case Window::Blocked:
+      return "blocked";
+  }
+  return "unknown";
 }
 
 std::string_view to_string(Mode mode) noexcept {
