@@ -30,11 +30,20 @@ void step_back(int niceness) noexcept {
 Workers::Workers(boost::asio::io_context& web) : web_(web) {
   queue(Lane::Small).most = kSmallWaiting;
   queue(Lane::Large).most = kLargeWaiting;
-  const unsigned large = std::clamp(std::thread::hardware_concurrency() / 4, 1U, kMostLarge);
+  const unsigned large = large_at_once();
   threads_.emplace_back([this] { serve(queue(Lane::Small), kSmallNice); });
   for (unsigned i = 0; i < large; ++i) {
     threads_.emplace_back([this] { serve(queue(Lane::Large), kLargeNice); });
   }
+}
+
+unsigned Workers::large_at_once() {
+  return std::clamp(std::thread::hardware_concurrency() / 4, 1U, kMostLarge);
+}
+
+std::size_t Workers::waiting(Lane lane) const {
+  std::lock_guard lock(mutex_);
+  return queues_[place(lane)].jobs.size();
 }
 
 Workers::~Workers() {

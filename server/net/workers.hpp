@@ -41,6 +41,10 @@ class Workers {
   /// Any thread. Never refused: for the answer to what was done already, and for what is only to be
   /// freed.
   void must_run(Lane lane, std::function<void()> work, std::function<void()> then);
+  /// Any thread. How many of a lane wait to be begun.
+  [[nodiscard]] std::size_t waiting(Lane lane) const;
+  /// How many large things are done at once.
+  static unsigned large_at_once();
   /// Waits for what is at work, and drops the rest. Idempotent.
   void stop();
 
@@ -55,14 +59,15 @@ class Workers {
     std::size_t most = 0;
   };
 
-  Queue& queue(Lane lane) { return queues_[lane == Lane::Small ? 0 : 1]; }
+  static std::size_t place(Lane lane) { return lane == Lane::Small ? 0 : 1; }
+  Queue& queue(Lane lane) { return queues_[place(lane)]; }
   bool put(Lane lane, Job job, bool must);
   void serve(Queue& queue, int niceness) noexcept;
   using Shared = std::shared_ptr<std::function<void()>>;
   bool hand_over(std::function<void()>& then, Shared& shared) noexcept;
 
   boost::asio::io_context& web_;
-  std::mutex mutex_;  // leaf
+  mutable std::mutex mutex_;  // leaf
   std::array<Queue, 2> queues_;
   bool stopping_ = false;
   std::vector<std::thread> threads_;

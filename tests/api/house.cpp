@@ -243,14 +243,17 @@ std::string House::code() {
 }
 
 std::shared_ptr<void> House::hold_large() {
-  // More than it has threads; what is left over ends as soon as it is begun.
-  constexpr int kMostThreads = 4;
   auto until = std::make_shared<std::promise<void>>();
   const std::shared_future<void> let_go = until->get_future().share();
-  for (int i = 0; i < kMostThreads; ++i) {
+  for (unsigned i = 0; i < net::Workers::large_at_once(); ++i) {
     workers_.must_run(net::Lane::Large, [let_go] { let_go.wait(); }, {});
   }
+  while (large_waiting() > 0) std::this_thread::yield();  // until the lane is at them
   return {nullptr, [until](void*) { until->set_value(); }};
+}
+
+std::size_t House::large_waiting() const {
+  return workers_.waiting(net::Lane::Large);
 }
 
 base::DriveCommand House::sent() {

@@ -82,6 +82,7 @@ class House {
   std::string code();
   /// Nothing large is begun until what this gives is let go.
   [[nodiscard]] std::shared_ptr<void> hold_large();
+  [[nodiscard]] std::size_t large_waiting() const;
   /// A device says something more.
   void hear(base::Measurement m) { robot_.measurements().put(std::move(m)); }
 
