@@ -13,7 +13,7 @@ constexpr double kCoarser = 1.5;
 
 struct Foot {
   EnuPoint at;
-  double off_m = 0.0;
+  double off_m2 = 0.0;  ///< squared: a root for each of them is most of the work
 };
 
 /// The nearest point of a segment.
@@ -25,10 +25,60 @@ Foot foot_on(EnuPoint p, EnuPoint a, EnuPoint b) noexcept {
       square > 0.0 ? std::clamp((q.east_m * d.east_m + q.north_m * d.north_m) / square, 0.0, 1.0)
                    : 0.0;
   const EnuPoint at{a.east_m + t * d.east_m, a.north_m + t * d.north_m};
-  return {at, base::distance_m(p, at)};
+  const EnuPoint off = p - at;
+  return {at, off.east_m * off.east_m + off.north_m * off.north_m};
+}
+
+/// Iterative Ramer-Douglas-Peucker. The ends of a gap stay. @param keep, stack room to work in
+void simplify(std::vector<Crumb>& all, double most_m, std::vector<char>& keep,
+              std::vector<std::pair<std::size_t, std::size_t>>& stack) {
+  if (all.size() < 3) return;
+  keep.assign(all.size(), 0);
+  keep.front() = keep.back() = 1;
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    if (all[i].gap) keep[i] = keep[i - 1] = 1;
+  }
+  stack.clear();
+  std::size_t from = 0;
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    if (keep[i] == 0) continue;
+    stack.emplace_back(from, i);
+    from = i;
+  }
+  while (!stack.empty()) {
+    const auto [a, b] = stack.back();
+    stack.pop_back();
+    double worst_m2 = most_m * most_m;
+    std::size_t worst = a;
+    for (std::size_t i = a + 1; i < b; ++i) {
+      const double off_m2 = foot_on(all[i].at, all[a].at, all[b].at).off_m2;
+      if (off_m2 <= worst_m2) continue;
+      worst_m2 = off_m2;
+      worst = i;
+    }
+    if (worst == a) continue;
+    keep[worst] = 1;
+    stack.emplace_back(a, worst);
+    stack.emplace_back(worst, b);
+  }
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (keep[i] != 0) all[n++] = all[i];
+  }
+  all.resize(n);
 }
 
 }  // namespace
+
+std::vector<EnuPoint> way_back(std::vector<Crumb> crumbs, double accuracy_m) {
+  std::vector<char> keep;
+  std::vector<std::pair<std::size_t, std::size_t>> stack;
+  simplify(crumbs, accuracy_m / 2.0, keep, stack);
+  std::vector<EnuPoint> way;
+  way.reserve(crumbs.size());
+  for (auto c = crumbs.rbegin(); c != crumbs.rend(); ++c) way.push_back(c->at);
+  return way;
+}
 
 Breadcrumbs::Breadcrumbs(double accuracy_m) : accuracy_m_(accuracy_m) {
   crumbs_.reserve(kMost + 4);
@@ -76,7 +126,7 @@ void Breadcrumbs::prune(EnuPoint at, const May& may) {
   for (std::size_t i = 0; i < end; ++i) {
     if (crumbs_[i + 1].gap) continue;
     const Foot foot = foot_on(at, crumbs_[i].at, crumbs_[i + 1].at);
-    if (foot.off_m >= kNear * accuracy_m_) continue;
+    if (foot.off_m2 >= kNear * kNear * accuracy_m_ * accuracy_m_) continue;
     if (may && !may(foot.at, at)) continue;
     crumbs_.resize(i + 1);
     if (base::distance_m(foot.at, crumbs_.back().at) > 0.05) crumbs_.push_back({foot.at, false});
@@ -84,62 +134,19 @@ void Breadcrumbs::prune(EnuPoint at, const May& may) {
   }
 }
 
-/// Iterative Ramer-Douglas-Peucker. The ends of a gap stay.
-void Breadcrumbs::simplify(std::vector<Crumb>& all, double most_m) const {
-  if (all.size() < 3) return;
-  keep_.assign(all.size(), 0);
-  keep_.front() = keep_.back() = 1;
-  for (std::size_t i = 1; i < all.size(); ++i) {
-    if (all[i].gap) keep_[i] = keep_[i - 1] = 1;
-  }
-  stack_.clear();
-  std::size_t from = 0;
-  for (std::size_t i = 1; i < all.size(); ++i) {
-    if (keep_[i] == 0) continue;
-    stack_.emplace_back(from, i);
-    from = i;
-  }
-  while (!stack_.empty()) {
-    const auto [a, b] = stack_.back();
-    stack_.pop_back();
-    double worst_m = most_m;
-    std::size_t worst = a;
-    for (std::size_t i = a + 1; i < b; ++i) {
-      const double off_m = foot_on(all[i].at, all[a].at, all[b].at).off_m;
-      if (off_m <= worst_m) continue;
-      worst_m = off_m;
-      worst = i;
-    }
-    if (worst == a) continue;
-    keep_[worst] = 1;
-    stack_.emplace_back(a, worst);
-    stack_.emplace_back(worst, b);
-  }
-  std::size_t n = 0;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (keep_[i] != 0) all[n++] = all[i];
-  }
-  all.resize(n);
-}
-
 void Breadcrumbs::thin() {
   if (coarse_m_ <= 0.0) coarse_m_ = accuracy_m_ / 2.0;
-  simplify(crumbs_, coarse_m_);
+  simplify(crumbs_, coarse_m_, keep_, stack_);
   while (crumbs_.size() > kMost * 3 / 4 && coarse_m_ < 1e3) {
     coarse_m_ *= kCoarser;
-    simplify(crumbs_, coarse_m_);
+    simplify(crumbs_, coarse_m_, keep_, stack_);
   }
   // Gaps and nothing else: the oldest of them cannot be driven anyway.
   if (crumbs_.size() >= kMost) crumbs_.erase(crumbs_.begin(), crumbs_.begin() + kMost / 4);
 }
 
 std::vector<EnuPoint> Breadcrumbs::way_back() const {
-  std::vector<Crumb> all = crumbs_;
-  simplify(all, accuracy_m_ / 2.0);
-  std::vector<EnuPoint> way;
-  way.reserve(all.size());
-  for (auto c = all.rbegin(); c != all.rend(); ++c) way.push_back(c->at);
-  return way;
+  return nav::way_back(crumbs_, accuracy_m_);
 }
 
 double Breadcrumbs::longest_gap_m() const noexcept {

@@ -27,6 +27,15 @@ namespace roverd::nav {
 
 using base::EnuPoint;
 
+struct Crumb {
+  EnuPoint at;
+  bool gap = false;  ///< what leads here from the crumb before was not driven so
+};
+
+/// The way back along crumbs, newest first, without those that a straight line explains within half
+/// the accuracy. Any thread; for 500 crumbs some 50 us, which a control tick has not.
+std::vector<EnuPoint> way_back(std::vector<Crumb> crumbs, double accuracy_m);
+
 class Breadcrumbs {
  public:
   static constexpr std::size_t kMost = 500;
@@ -48,27 +57,24 @@ class Breadcrumbs {
   std::uint64_t changes() const noexcept { return changes_; }
   /// From the newest crumb to the first one, without those that a straight line explains.
   std::vector<EnuPoint> way_back() const;
+  /// All of them, oldest first, for nav::way_back elsewhere.
+  const std::vector<Crumb>& crumbs() const noexcept { return crumbs_; }
+  double accuracy_m() const noexcept { return accuracy_m_; }
   /// Longest piece of it that was not driven as it is drawn, m.
   double longest_gap_m() const noexcept;
   double length_m() const noexcept;
 
  private:
-  struct Crumb {
-    EnuPoint at;
-    bool gap = false;  ///< what leads here from the crumb before was not driven so
-  };
-
   void prune(EnuPoint at, const May& may);
   void thin();
-  void simplify(std::vector<Crumb>& all, double most_m) const;
 
   double accuracy_m_;
   double coarse_m_ = 0.0;
   bool jumped_ = false;
   std::uint64_t changes_ = 0;
   std::vector<Crumb> crumbs_;
-  mutable std::vector<char> keep_;
-  mutable std::vector<std::pair<std::size_t, std::size_t>> stack_;
+  std::vector<char> keep_;
+  std::vector<std::pair<std::size_t, std::size_t>> stack_;
 };
 
 }  // namespace roverd::nav

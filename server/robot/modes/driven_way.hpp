@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <utility>
 
 #include "base/snapshot.hpp"
 #include "nav/behave/breadcrumbs.hpp"
@@ -47,7 +48,10 @@ class DrivenWayKeeper {
   std::shared_ptr<const DrivenWay> news(std::uint64_t& told, std::uint32_t frame_id) const {
     if (crumbs_.changes() == told) return nullptr;
     told = crumbs_.changes();
-    return std::make_shared<const DrivenWay>(way(frame_id));
+    DrivenWay news{frame_id, {}, crumbs_.longest_gap_m()};
+    news.crumbs = crumbs_.crumbs();
+    news.accuracy_m = crumbs_.accuracy_m();
+    return std::make_shared<const DrivenWay>(std::move(news));
   }
 
  private:

@@ -64,13 +64,13 @@ WayHome straight_home(const WayHomeFacts& f) {
 WayHome driven_home(const WayHomeFacts& f, const DrivenWay& driven) {
   WayHome out;
   out.end = HomeEnd::Begin;
-  if (driven.back.empty()) {
+  out.way = driven.crumbs.empty() ? driven.back : nav::way_back(driven.crumbs, driven.accuracy_m);
+  if (out.way.empty()) {
     out.refusal =
         "the way from home is not known: it is kept from arming on, "
         "where the position is certain enough";
     return out;
   }
-  out.way = driven.back;
   if (f.home && base::distance_m(out.way.back(), *f.home) <= kSameHome_m) {
     out.way.back() = *f.home;
     out.end = HomeEnd::Home;

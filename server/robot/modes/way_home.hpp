@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "base/geo.hpp"
+#include "nav/behave/breadcrumbs.hpp"
 #include "robot/safety/fence_guard.hpp"
 
 namespace roverd::robot {
@@ -31,6 +32,9 @@ struct DrivenWay {
   std::uint32_t frame_id = 0;
   std::vector<base::EnuPoint> back;  ///< from the newest point to the first; empty: none is known
   double longest_gap_m = 0.0;        ///< of pieces that were not driven as they are drawn
+  /// Not empty: `back` is still to be made of them, by whoever asks (nav::way_back).
+  std::vector<nav::Crumb> crumbs{};
+  double accuracy_m = 0.0;
 };
 
 enum class HomeEnd { Home, Rally, Begin };         ///< Begin: where the driven way began
