@@ -102,6 +102,7 @@ base::Result<void> check(const Config& c) {
   if (auto good = check_words(c); !good) return good;
   if (auto good = check_orders(c); !good) return good;
   if (auto good = in_section("radio", check(c.radio)); !good) return good;
+  if (auto good = in_section("nav.tool", check(c.tool)); !good) return good;
   return in_section("battery", check(c.battery));
 }
 
@@ -112,7 +113,8 @@ bool acts_at_next_start(std::string_view section, std::string_view name) noexcep
 }
 
 bool acts_by_way(std::string_view section, std::string_view name) noexcept {
-  return (section == "nav.track" &&
+  return section == "nav.tool" ||
+         (section == "nav.track" &&
           (name == "corner_deviation_m" || name == "through_deviation_m" || name == "smooth_m")) ||
          (section == "nav.speed" && name == "default_mps") ||
          (section == "nav.pivot" && name == "angle_deg");

@@ -15,6 +15,7 @@
 #include "nav/behave/params.hpp"
 #include "nav/estimate/params.hpp"
 #include "nav/track/path.hpp"
+#include "nav/track/tool.hpp"
 #include "robot/radio/actions.hpp"
 #include "robot/safety/battery_gauge.hpp"
 
@@ -208,6 +209,7 @@ struct Config {
   nav::SpeedParams speed;
   nav::PivotParams pivot;
   nav::SlopeParams slope;
+  nav::ToolParams tool;
   nav::BehaveParams behave;
   nav::ModeParams modes;
   RobotParams robot;
@@ -223,16 +225,17 @@ struct Config {
   /// What the body's origin keeps to, so that no part of the body comes nearer than the margin.
   FenceParams kept_fence() const {
     FenceParams p = fence;
-    p.margin_m += vehicle.reach_m();
+    p.margin_m += std::max(vehicle.reach_m(), tool.reach_m());
     return p;
   }
 
   /// And what a way that is asked for keeps of it: tracking is not exact.
   double way_margin_m() const { return kept_fence().margin_m + kFenceAllowance_m; }
 
-  /// What following a path needs; the vehicle goes no faster than it can.
+  /// What following a path needs; the vehicle goes no faster than it can, and with a trailer it
+  /// takes bends as a steered one.
   nav::PathParams path() const {
-    nav::PathParams p{track, speed, pivot, vehicle, slope};
+    nav::PathParams p{track, speed, pivot, nav::pulling(vehicle, tool), slope, tool};
     p.speed.max_mps = std::min(speed.max_mps, vehicle.max_speed_mps);
     return p;
   }
@@ -245,6 +248,7 @@ void sections(V& v, Config& c) {
   v("nav.speed", c.speed);
   v("nav.pivot", c.pivot);
   v("nav.slope", c.slope);
+  v("nav.tool", c.tool);
   v("nav.behave", c.behave);
   v("nav.modes", c.modes);
   v("robot", c.robot);

@@ -16,6 +16,7 @@
 #include "study/plant_program.hpp"
 #include "study/stage.hpp"
 #include "study/study.hpp"
+#include "study/tool_track.hpp"
 
 namespace roverd::study {
 namespace {
@@ -261,13 +262,27 @@ void keep_ways(Run& run, const Recorder& seen, const nav::Path& way, const base:
   for (const nav::PathPoint& p : way.points) run.way.push_back(moved(p.at));
 }
 
+/// A tool's point in the place of the vehicle.
+void follow_tool(Recorder& seen, const nav::ToolParams& tool) {
+  if (!tool.fitted()) return;
+  seen.truth = tool_track(seen.truth, tool);
+  seen.believed = tool_track(seen.believed, tool);
+  // The point's way and the vehicle's are not equally long.
+  if (seen.joined) seen.joined->s_m = std::max(0.0, seen.joined->s_m - 2.0 * tool.reach_m());
+}
+
 void judge(Run& run, const Recorder& seen, const Task& task, const robot::CompiledMission& mission,
            base::LatLon datum, const nav::VehicleParams& vehicle) {
   const nav::Course& course = mission.route.forth;
+  const bool led = !course.point_path.points.empty();
   std::vector<base::EnuPoint> vertices;
-  for (const nav::RouteNode& n : course.nodes) vertices.push_back(n.at);
+  for (std::size_t i = 0; i < course.nodes.size(); ++i) {
+    vertices.push_back(led ? course.point_path.at(course.point_path.vertex_m[i])
+                           : course.nodes[i].at);
+  }
   const bool noisy = task.course->every_m > 0.0;
-  const nav::Path meant = noisy ? way_itself(*task.course, mission.frame) : course.path;
+  const nav::Path& laid = led ? course.point_path : course.path;
+  const nav::Path meant = noisy ? way_itself(*task.course, mission.frame) : laid;
   if (noisy) vertices.clear();
   const Recorder::Joined from = seen.joined.value_or(Recorder::Joined{});
   const double from_m = noisy ? 0.0 : from.s_m;
@@ -360,6 +375,7 @@ Result<Run> run_one(const Setup& setup, const Task& task) {
                       ? "not there after " + std::to_string(std::lround(limit_s)) + " s"
                       : std::string(base::to_string(state)) + ": " + reason;
   }
+  follow_tool(seen, prepared->settings.robot.tool);
   judge(run, seen, task, **compiled, prepared->datum, prepared->settings.robot.vehicle);
   return run;
 }

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/angle.hpp"
 #include "study/study.hpp"
 
 namespace roverd::study {
@@ -218,6 +219,25 @@ TEST(Course, WhatIsSetWronglyIsToldByName) {
   EXPECT_EQ(refused.error().detail,
             "--set nav.track.law=zigzag must be path_frame, pure_pursuit or stanley, is "
             "\"zigzag\"");
+}
+
+//   the point of a tool on a circle of 5 m; the vehicle itself goes beside it
+TEST(Course, AToolsPointIsLedAlongTheWayInPlaceOfTheVehicle) {
+  std::vector<base::EnuPoint> round;
+  for (int i = 0; i <= 18; ++i) {
+    const double at = base::rad_from_deg(10.0 * i);
+    round.push_back({5.0 - 5.0 * std::cos(at), 5.0 * std::sin(at)});
+  }
+  for (const auto& tool : std::vector<std::vector<std::string>>{
+           {"nav.tool.forward_m=0.6", "nav.tool.left_m=0.4"},
+           {"nav.tool.forward_m=-0.8"},
+           {"nav.tool.hitch_m=0.5", "nav.tool.trailer_m=1.2"}}) {
+    Disturbance d = hard();
+    d.robot.insert(d.robot.end(), tool.begin(), tool.end());
+    const auto run = drive(course_of(round), d);
+    EXPECT_LT(run.truth.cross.rms_m, 0.03) << tool[0];
+    EXPECT_LT(run.truth.end_m, 0.06) << tool[0];
+  }
 }
 
 }  // namespace

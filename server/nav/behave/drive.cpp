@@ -287,12 +287,24 @@ void Executor::leg_done(const Vehicle& vehicle) {
     return;
   }
   const bool on_path = doing_ == Doing::Path;
-  doing_ = Doing::Nothing;
   const RouteStep* step = step_now();
+  if (on_path && leads_on(step)) return;
+  doing_ = Doing::Nothing;
   if (step == nullptr) return;  // on the way home: at_end decides
   reached(*step);
   // A robot that did not stop at a vertex of its own still goes on with its path.
   if (on_path && doing_ == Doing::Nothing) leg_ = 0;
+}
+
+/// With a tool a leg may end between two places: the vehicle goes round until the tool is where
+/// its way goes on.
+bool Executor::leads_on(const RouteStep* step) {
+  const Path& path = course_->path;
+  const std::size_t leg = tracker_.leg();
+  if (step == nullptr || step->kind != StepKind::Go || leg + 1 >= path.legs.size()) return false;
+  if (path.vertex_m[step->node] <= path.legs[leg].end_m + 1e-6) return false;
+  tracker_.begin(path, leg + 1, path.legs[leg].end_m);
+  return true;
 }
 
 /// The tracker stops where it is level with the place; a vehicle that cannot turn on the spot may

@@ -170,6 +170,7 @@ class Executor {
   void turn_round();
   void pass_nodes(const Vehicle& vehicle);
   void leg_done(const Vehicle& vehicle);
+  bool leads_on(const RouteStep* step);
   bool missed(const Vehicle& vehicle);
   bool back_up(const Vehicle& vehicle, double off_m);
   void block(std::string why);

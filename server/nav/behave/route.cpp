@@ -8,6 +8,7 @@
 #include "mission/circle.hpp"
 #include "nav/behave/text.hpp"
 #include "nav/track/corner.hpp"
+#include "nav/track/tool.hpp"
 
 namespace roverd::nav {
 namespace {
@@ -57,6 +58,7 @@ class Layout {
     forth().path = path_of(forth());
     if (route_.at_end == AtEnd::BackAndForth) turn_round();
     for (Course* course : {&route_.forth, &route_.back}) add_pauses(*course);
+    if (auto led = lead_by_tool(); !led) return tl::unexpected(led.error());
     find_home_ends();
     return std::move(route_);
   }
@@ -336,7 +338,31 @@ class Layout {
                          (node.turn == mission::Turn::Arc && params_.vehicle.steered());
       vertices[step.node].dense = bends && !round;
     }
-    return build_path(vertices, params_);
+    return build_path(vertices, point_params(params_));
+  }
+
+  /// With a tool the vehicle itself goes beside the places of the mission.
+  base::Result<void> lead_by_tool() {
+    if (!params_.tool.fitted()) return {};
+    for (Course* course : {&route_.forth, &route_.back}) {
+      course->point_path = std::move(course->path);
+      const std::vector<double>& places_m = course->point_path.vertex_m;
+      double at_m = 0.0;
+      auto led = led_way(course->point_path, params_, at_m);
+      if (!led) {
+        const auto node = std::lower_bound(places_m.begin(), places_m.end() - 1, at_m);
+        const int item = course->nodes[std::size_t(node - places_m.begin())].item;
+        const std::string pointer = "/items/" + std::to_string(item - 1);
+        return base::fail(base::Code::Invalid, pointer + " " + led.error().detail,
+                          {{pointer, led.error().detail}});
+      }
+      course->path = std::move(*led);
+      if (course->path.legs.empty()) continue;
+      for (std::size_t i = 0; i < course->nodes.size(); ++i) {
+        course->nodes[i].at = course->path.at(course->path.vertex_m[i]);
+      }
+    }
+    return {};
   }
 
   /// The same way in the other direction. What is done at a

@@ -52,6 +52,9 @@ struct Course {
   std::vector<RouteNode> nodes;
   std::vector<RouteStep> steps;
   Path path;  ///< through all nodes in order; vertex i is node i
+  /// With a tool (nav/track/tool.hpp): its point's own way, and the nodes are where the vehicle is
+  /// when the point is at theirs. Empty without one.
+  Path point_path{};
   /// Of each step, and one more: what holds, waits, moves and turns take from it to the end, s;
   /// infinite before a stay without end.
   std::vector<double> pauses_s;

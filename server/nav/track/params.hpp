@@ -47,6 +47,42 @@ void fields(V& v, VehicleParams& p) {
     "of the centre of mass above the ground, with the load it carries");
 }
 
+/// Which point follows the way: the vehicle's origin, a tool's, or a trailer's axle
+/// (nav/track/tool.hpp).
+struct ToolParams {
+  double forward_m = 0.0;
+  double left_m = 0.0;
+  double hitch_m = 0.0;
+  double trailer_m = 0.0;
+
+  bool fitted() const noexcept { return forward_m != 0.0 || left_m != 0.0 || pulled(); }
+  bool pulled() const noexcept { return trailer_m > 0.0; }
+  /// Farthest that the point is from the vehicle's origin.
+  double reach_m() const noexcept {
+    return pulled() ? hitch_m + std::hypot(trailer_m, left_m) : std::hypot(forward_m, left_m);
+  }
+};
+
+template <class V>
+void fields(V& v, ToolParams& p) {
+  v("forward_m", p.forward_m, -5.0, 5.0,
+    base::only_disarmed("the point that follows the mission's way, so far ahead of the vehicle's "
+                        "origin; negative: behind; 0 with a trailer"));
+  v("left_m", p.left_m, -5.0, 5.0,
+    base::only_disarmed("and so far to the left; negative: to the right"));
+  v("hitch_m", p.hitch_m, 0.0, 5.0,
+    base::only_disarmed("a trailer's coupling lies so far behind the vehicle's origin"));
+  v("trailer_m", p.trailer_m, 0.0, 10.0,
+    base::only_disarmed("from the coupling to the trailer's axle, which then follows the way; 0: "
+                        "no trailer"));
+}
+
+inline base::Result<void> check(const ToolParams& p) {
+  if (!p.pulled() || p.forward_m == 0.0) return {};
+  return base::fail(base::Code::Invalid, "forward_m must be 0 with a trailer: its axle follows",
+                    {{"forward_m", "must be 0 with a trailer"}});
+}
+
 /// How the robot steers back to its path. The words of `law` (nav/track/law.hpp):
 ///   path_frame    feedback of offset and heading on the path's own curvature; the default
 ///   pure_pursuit  an arc to a point ahead; calm, cuts corners

@@ -112,6 +112,7 @@ struct PathParams {
   PivotParams pivot;
   VehicleParams vehicle{};
   SlopeParams slope{};
+  ToolParams tool{};
   /// speed.decel_mps2 is a guess: the next stop is begun with a short braking that shows what the
   /// brakes can, as early as half of it needs.
   bool prove_braking = false;

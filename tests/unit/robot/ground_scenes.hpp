@@ -55,6 +55,14 @@ inline const std::vector<Scene> kGroundScenes = {
        w.go(plan_of({{0.4, -1.5}, {0.4, 12}, {6, 12}}));
        w.run(10.0);
      }},
+    {"a trailer",
+     [](Walk& w) {
+       w.run(8.0);
+       w.change();
+       w.go(plan_of({{0, 4}, {6, 8}, {12, 8}}));
+       w.run(15.0);
+     },
+     [](Config& c) { c.tool.trailer_m = 1.0; }},
     {"dense points",
      [](Walk& w) {
        w.run(8.0);
