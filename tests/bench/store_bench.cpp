@@ -253,8 +253,9 @@ BENCHMARK_CAPTURE(ListPage, ByTag, store::Filter{store::Which::Present, "", "fie
 
 /// 20,000 tags, 21 different ones.
 void ListTags(benchmark::State& state) {
+  ManyMissions& many = many_missions();  // made before anything is timed
   for (auto _ : state) {
-    if (many_missions().tags().items.size() != 21) state.SkipWithError("not all tags");
+    if (many.tags().items.size() != 21) state.SkipWithError("not all tags");
   }
 }
 BENCHMARK(ListTags)->Unit(benchmark::kMillisecond)->UseRealTime();
