@@ -76,8 +76,9 @@ Told add_decode(CLI::App& app, DecodeCommand& c) {
       "  bunker   CAN frames of a Bunker: the text of candump or candump -L\n"
       "  nmea     bytes of a GNSS receiver\n"
       "  ubx      the same, with the frames of u-blox receivers read\n"
-      "  mti      bytes of an Xsens MTi");
-  d->add_option("KIND", c.kind, "bunker, nmea, ubx or mti")->required();
+      "  mti      bytes of an Xsens MTi\n"
+      "  vlp16    datagrams of a Velodyne VLP-16: a capture (pcap), or one after another");
+  d->add_option("KIND", c.kind, "bunker, nmea, ubx, mti or vlp16")->required();
   d->add_option("FILE", c.file, "the recording; - is standard input")->required();
   return {d, "decode wants KIND and FILE"};
 }

@@ -5,6 +5,7 @@
 //   nmea     the bytes of a GNSS receiver, UBX and RTCM3 between   decode_nmea.cpp
 //   ubx      the same bytes, the UBX frames read too               decode_ubx.cpp
 //   mti      the bytes of an Xsens MTi                             decode_mti.cpp
+//   vlp16    datagrams of a Velodyne VLP-16: a capture, or bare    decode_vlp16.cpp
 //
 // Fields are named as in the fact sheets' tables. What is not understood is a line too, with the
 // reason under "refused". Files of any size: nothing but the present block is kept. New kinds are a
@@ -39,13 +40,16 @@ Reader ubx_reader(OnObject on_object);
 nlohmann::ordered_json ubx_object(base::Bytes frame);
 /// Objects: message, mid and fields; MTData2: packets, each with xdi, content and its fields.
 Reader mti_reader(OnObject on_object);
+/// Takes a capture (pcap) or packets one after another. Objects: packet (counted from 0), message
+/// (data, position) and fields; of a capture also time, from, to_port.
+Reader vlp16_reader(OnObject on_object);
 
 /// The text of one line, with its line feed. Bytes that are not UTF-8 are replaced.
 std::string to_line(const nlohmann::ordered_json& object);
 
-/// roverd decode KIND FILE. @param kind "bunker", "nmea", "ubx" or "mti" @param file "-": standard
-/// input. @return exit code: 0 all was read (or nobody wants to hear more), 1 the file cannot be
-/// read or the output not written, 2 there is no such kind.
+/// roverd decode KIND FILE. @param kind "bunker", "nmea", "ubx", "mti" or "vlp16" @param file "-":
+/// standard input. @return exit code: 0 all was read (or nobody wants to hear more), 1 the file
+/// cannot be read or the output not written, 2 there is no such kind.
 int decode(const std::string& kind, const std::string& file);
 
 }  // namespace roverd
