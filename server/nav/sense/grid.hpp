@@ -1,0 +1,117 @@
+#pragma once
+// The rolling grid: what is known of the ground around the robot, by all sensors together. Cells
+// lie fixed in the odometry's frame O; the window moves with the robot and takes no memory beyond
+// its own.
+//
+//   Unknown ──seen free──▶ Free ──hit──▶ Occupied ──seen through clear_scans times──▶ Free
+//      ▲                     │keep_free_s     │keep_hit_s
+//      └─────────────────────┴────────────────┘  (out of sight)
+//
+// Blind is not free: a cell is free only where a ray passed low enough (sectors.hpp). What is low
+// is not cleared by rays that pass above it.
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/time.hpp"
+#include "nav/sense/params.hpp"
+#include "nav/sense/reduce.hpp"
+#include "nav/sense/sectors.hpp"
+
+namespace roverd::nav::sense {
+
+enum class Known : std::uint8_t { Unknown, Free, Occupied, Drop };
+
+/// What the control thread and the page read: a square of the grid at one time, immutable once
+/// made.
+struct Patch {
+  struct Cell {
+    Known known = Known::Unknown;
+    std::uint8_t sensor = 0;   ///< number of the sensor that told it last
+    std::uint16_t age_ds = 0;  ///< tenths of a second at `stamp`
+  };
+  base::Time stamp;
+  double cell_m = 0.05;
+  std::int32_t x0 =
+      0;  ///< cell of the corner with the least x and y: it begins at x0 · cell_m in O
+  std::int32_t y0 = 0;
+  std::int32_t side = 0;
+  std::vector<Cell> cells;  ///< rows of equal y, x upwards
+
+  /// Outside of the patch: Unknown.
+  Cell at(std::int32_t ix, std::int32_t iy) const noexcept {
+    const auto x = static_cast<std::uint32_t>(ix - x0);
+    const auto y = static_cast<std::uint32_t>(iy - y0);
+    if (x >= static_cast<std::uint32_t>(side) || y >= static_cast<std::uint32_t>(side)) return {};
+    return cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(side) + x];
+  }
+};
+
+/// Not shared between threads.
+class Grid {
+ public:
+  explicit Grid(const GridParams& params);
+
+  /// Takes one judged piece. @param pose X_OB of both. @param stamp not older than the last by more
+  /// than a second. @param sensor its number, for Patch::Cell.
+  void take(const Reduced& in, const Sectors& sectors, std::uint8_t sensor);
+  /// Everything is unknown again: the odometry began anew.
+  void forget() noexcept;
+
+  Known at(double x_m, double y_m, base::Time now) const noexcept;
+  /// @param reach_m half side; cut to the window. @param out its buffer is used again.
+  void patch(const Pose2& about, double reach_m, base::Time now, Patch& out) const;
+
+  double cell_m() const noexcept { return p_.cell_m; }
+  std::int32_t side() const noexcept { return side_; }
+
+ private:
+  struct Cell {
+    Known known = Known::Unknown;
+    std::uint8_t misses = 0;  ///< scans that saw through it since it was hit
+    std::uint8_t top = 0;     ///< of the obstacle, in 2 cm above the body's plane
+    std::uint8_t sensor = 0;
+    std::uint32_t ms = 0;  ///< since the first piece
+  };
+  Cell& cell(std::int32_t ix, std::int32_t iy) noexcept {
+    return cells_[static_cast<std::size_t>(iy & mask_) * static_cast<std::size_t>(mask_ + 1) +
+                  static_cast<std::size_t>(ix & mask_)];
+  }
+  const Cell& cell(std::int32_t ix, std::int32_t iy) const noexcept {
+    return const_cast<Grid*>(this)->cell(ix, iy);
+  }
+  bool inside(std::int32_t ix, std::int32_t iy) const noexcept {
+    return static_cast<std::uint32_t>(ix - x0_) < static_cast<std::uint32_t>(side_) &&
+           static_cast<std::uint32_t>(iy - y0_) < static_cast<std::uint32_t>(side_);
+  }
+  std::uint32_t ms(base::Time t) const noexcept;
+  Known known(const Cell& c, std::uint32_t now_ms) const noexcept;
+  void move_to(const Pose2& body);
+  void hit(const Reduced& in, std::uint8_t sensor, std::uint32_t now_ms);
+  void see_through(const Pose2& body, const Sectors& s, std::uint8_t sensor, std::uint32_t now_ms);
+  void look_along(double x, double y, double dx, double dy, std::size_t from, std::size_t to,
+                  const Sector& sector, const Sectors& s, std::uint8_t sensor,
+                  std::uint32_t now_ms) noexcept;
+
+  GridParams p_;
+  std::int32_t side_;  ///< a power of two
+  std::int32_t mask_;
+  std::int32_t x0_ = 0;
+  std::int32_t y0_ = 0;
+  base::Time begin_;
+  bool begun_ = false;
+  std::vector<Cell> cells_;
+};
+
+/// The patch as pairs of bytes for the stream: Known (two upper bits) and a run of 1 to 64 cells
+/// (six lower bits: length − 1), row by row. Bounded by the number of cells.
+std::vector<std::uint8_t> run_lengths(const Patch& patch);
+
+/// Metres from every cell's middle to the nearest cell that is Occupied or Drop (or, if so asked,
+/// Unknown); at most max_m. Exact (Felzenszwalb and Huttenlocher, Distance transforms of sampled
+/// functions, 2012). @param out side x side, rows as the patch's.
+void clearance(const Patch& patch, bool unknown_too, float max_m, std::vector<float>& out);
+
+}  // namespace roverd::nav::sense

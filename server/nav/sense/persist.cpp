@@ -1,0 +1,70 @@
+#include "nav/sense/persist.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace roverd::nav::sense {
+
+Persist::Persist(const PersistParams& params, double range_m) : p_(params) {
+  const auto across = static_cast<std::uint32_t>(std::ceil(2.0 * range_m / p_.cell_m)) + 3;
+  const auto side = std::bit_ceil(std::clamp(across, 8U, 2048U));
+  mask_ = static_cast<std::int32_t>(side) - 1;
+  cells_.resize(static_cast<std::size_t>(side) * side);
+}
+
+std::size_t Persist::at(std::int32_t ix, std::int32_t iy) const noexcept {
+  return static_cast<std::size_t>(iy & mask_) * static_cast<std::size_t>(mask_ + 1) +
+         static_cast<std::size_t>(ix & mask_);
+}
+
+std::uint32_t Persist::judge(std::vector<Voxel>& voxels, const Pose2& pose) {
+  ++scan_;
+  where_.clear();
+  const double c = std::cos(pose.yaw_rad) / p_.cell_m;
+  const double s = std::sin(pose.yaw_rad) / p_.cell_m;
+  const double x0 = pose.x_m / p_.cell_m;
+  const double y0 = pose.y_m / p_.cell_m;
+  for (const Voxel& v : voxels) {
+    if (v.kind != Kind::Obstacle) continue;
+    const auto x = static_cast<double>(v.x_m);
+    const auto y = static_cast<double>(v.y_m);
+    const auto ix = static_cast<std::int32_t>(std::floor(x0 + c * x - s * y));
+    const auto iy = static_cast<std::int32_t>(std::floor(y0 + s * x + c * y));
+    where_.push_back(ix);
+    where_.push_back(iy);
+    Cell& cell = cells_[at(ix, iy)];
+    if (cell.scan != scan_) {
+      const std::uint32_t ago = scan_ - cell.scan;
+      cell.seen = ago > 15 ? std::uint16_t{0} : static_cast<std::uint16_t>(cell.seen << ago);
+      cell.seen |= 1U;
+      cell.scan = scan_;
+      cell.voxels = 0;
+    }
+    if (cell.voxels < 0xFFFFU) ++cell.voxels;
+  }
+  const std::uint32_t recent = (1U << static_cast<std::uint32_t>(p_.of_scans)) - 1U;
+  std::uint32_t held = 0;
+  std::size_t i = 0;
+  for (Voxel& v : voxels) {
+    if (v.kind != Kind::Obstacle) continue;
+    std::uint32_t seen = 0;
+    int now = 0;
+    for (std::int32_t dy = -1; dy <= 1; ++dy) {
+      for (std::int32_t dx = -1; dx <= 1; ++dx) {
+        const Cell& cell = cells_[at(where_[i] + dx, where_[i + 1] + dy)];
+        const std::uint32_t ago = scan_ - cell.scan;
+        if (ago > 15) continue;
+        seen |= static_cast<std::uint32_t>(cell.seen) << ago;
+        if (ago == 0) now += cell.voxels;
+      }
+    }
+    i += 2;
+    if (now >= p_.at_once || std::popcount(seen & recent) >= p_.hits) continue;
+    v.kind = Kind::Passing;
+    ++held;
+  }
+  return held;
+}
+
+}  // namespace roverd::nav::sense

@@ -1,0 +1,42 @@
+#pragma once
+// Rain, dust, insects, a swinging leaf: an obstacle is what is there more than once.
+//
+// For one sensor, in cells fixed to the odometry. A voxel counts when, in three by three cells
+// about it, `hits` of the last `of_scans` scans saw something, or this scan alone sees `at_once`
+// voxels. So a real thing that gives few echoes is late by (hits − 1) scans: at 50 Hz 40 ms, at
+// 10 Hz 0.2 s; one that fills at_once voxels is not late at all.
+
+#include <cstdint>
+#include <vector>
+
+#include "nav/sense/params.hpp"
+#include "nav/sense/reduce.hpp"
+
+namespace roverd::nav::sense {
+
+class Persist {
+ public:
+  /// @param range_m how far from the body it remembers; cells of the odometry repeat beyond twice
+  /// that, so that it needs no moving.
+  Persist(const PersistParams& params, double range_m);
+
+  /// Sets voxels that are Obstacle and not (yet) believed to Passing. Once a scan, in order.
+  /// @param pose X_OB of the voxels. @return how many were held back.
+  std::uint32_t judge(std::vector<Voxel>& voxels, const Pose2& pose);
+
+ private:
+  struct Cell {
+    std::uint32_t scan = 0;    ///< the last that saw it
+    std::uint16_t seen = 0;    ///< bit n: n scans before that one
+    std::uint16_t voxels = 0;  ///< of that scan
+  };
+  std::size_t at(std::int32_t ix, std::int32_t iy) const noexcept;
+
+  PersistParams p_;
+  std::int32_t mask_;
+  std::uint32_t scan_ = 0;
+  std::vector<Cell> cells_;
+  std::vector<std::int32_t> where_;  ///< cell indices of the obstacles of this scan, x and y
+};
+
+}  // namespace roverd::nav::sense

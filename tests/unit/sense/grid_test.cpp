@@ -1,0 +1,216 @@
+// The rolling grid and the polar picture of it, fed by cast rays.
+#include "nav/sense/grid.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "nav/sense/ground.hpp"
+#include "nav/sense/polar.hpp"
+#include "scene.hpp"
+
+namespace roverd::nav::sense {
+namespace {
+
+const Footprint kHull = Footprint::box(1.0, 0.8, 0.5);
+const base::Mount kFront{.x_m = 0.45, .z_m = 0.3};
+
+/// A robot with one sensor and a grid. The world's z is the body's.
+struct Robot {
+  Grid grid;
+  Reducer reducer{{}, kHull};
+  Reduced seen;
+  Sectors sectors;
+  Ground ground{{}, 8.0, kHull};
+  std::mt19937 random{1};
+  base::Mount mount = kFront;
+  SightedParams sighted{.planar = true};
+  Rays rays = planar();
+
+  explicit Robot(GridParams p = {}) : grid(p) {}
+
+  void scan(const Scene& scene, double t, const Pose2& pose = {}, double range_m = 30.0) {
+    const auto way = [pose](double) { return pose; };
+    const auto sight = look(scene, rays, mount, t, standing(pose), random, range_m);
+    ASSERT_TRUE(reducer.reduce(sight, mount, driven(t + 0.11, way), seen).has_value());
+    if (!sighted.planar) ground.judge(seen.voxels);
+    sight_sectors(seen, sight.half_step_rad, sighted, sectors);
+    grid.take(seen, sectors, 7);
+  }
+  Known at(double x, double y, double t = 1.0) const { return grid.at(x, y, sense::at(t)); }
+};
+
+Scene wall() {
+  Scene s;
+  s.blocks.push_back({3.0, 3.2, -2.0, 2.0, 0.0, 1.0});
+  return s;
+}
+
+//   ▭──────▌????   free before the wall, occupied at it, unknown behind it and behind the robot
+TEST(GridTest, BeforeTheWallIsFreeBehindItIsUnknown) {
+  Robot r;
+  EXPECT_EQ(r.at(1.0, 0.0), Known::Unknown);
+  r.scan(wall(), 1.0);
+  EXPECT_EQ(r.at(1.5, 0.0), Known::Free);
+  EXPECT_EQ(r.at(2.8, 0.3), Known::Free);
+  EXPECT_EQ(r.at(3.02, 0.3), Known::Occupied);
+  EXPECT_EQ(r.at(3.3, 0.3), Known::Unknown);
+  EXPECT_EQ(r.at(-2.0, 0.0), Known::Unknown) << "no beam goes there";
+}
+
+TEST(GridTest, BlindDirectionsStayUnknown) {
+  Robot r;
+  Scene nothing;
+  nothing.ground = [](double, double) { return -90.0; };
+  r.scan(nothing, 1.0);  // no echo at all: Echo::Unknown
+  EXPECT_EQ(r.at(1.5, 0.0), Known::Unknown);
+}
+
+TEST(GridTest, NearerThanTheSensorSeesIsUnknown) {
+  Robot r;
+  r.sighted.blind_m = 0.5;
+  r.scan(wall(), 1.0);
+  EXPECT_EQ(r.at(0.80, 0.0), Known::Unknown);
+  EXPECT_EQ(r.at(1.15, 0.0), Known::Free);
+}
+
+TEST(GridTest, CellsStayInTheirPlaceWhileTheRobotDrivesAndTurns) {
+  Robot r;
+  // Every 10 cm a scan, forty metres long: the window moves along.
+  Scene hall;
+  hall.blocks.push_back({-5.0, 60.0, 2.0, 2.2, 0.0, 1.0});
+  hall.blocks.push_back({-5.0, 60.0, -2.2, -2.0, 0.0, 1.0});
+  double t = 1.0;
+  for (double x = 0.0; x < 40.0; x += 0.1, t += 0.05) r.scan(hall, t, {x, 0.0, 0.2 * std::sin(x)});
+  EXPECT_EQ(r.at(38.0, 2.02, t), Known::Occupied);
+  EXPECT_EQ(r.at(38.0, 1.5, t), Known::Free);
+  EXPECT_EQ(r.at(38.0, 2.5, t), Known::Unknown);
+  EXPECT_EQ(r.at(5.0, 0.0, t), Known::Unknown) << "out of the window";
+}
+
+TEST(GridTest, ANearbyBoxIsRememberedBesideTheRobotWhereNoBeamSeesItAndFadesInTime) {
+  GridParams p;
+  p.keep_hit_s = 5.0;
+  p.keep_free_s = 2.0;
+  Robot r(p);
+  r.scan(wall(), 1.0);
+  EXPECT_EQ(r.at(3.02, 0.3, 5.9), Known::Occupied);
+  EXPECT_EQ(r.at(1.5, 0.0, 3.2), Known::Unknown) << "what was free fades sooner";
+  EXPECT_EQ(r.at(3.02, 0.3, 6.2), Known::Unknown) << "and never to free";
+}
+
+//   A person walks across before a wall: two scans later where they were is free.
+TEST(GridTest, AWalkingPersonLeavesNoTrail) {
+  Robot r;
+  double t = 1.0;
+  for (double y = -1.5; y < 1.5; y += 0.05, t += 0.05) {
+    Scene s;
+    s.blocks.push_back({3.0, 3.2, -6.0, 6.0, 0.0, 1.0});
+    s.blocks.push_back({1.82, 2.1, y, y + 0.4, 0.0, 1.8});
+    r.scan(s, t);
+  }
+  // The last stood at y 1.45 to 1.85. Three steps (15 cm) back nothing may be left.
+  for (double y = -1.4; y < 1.25; y += 0.05) {
+    EXPECT_NE(r.at(1.83, y, t), Known::Occupied) << y;
+  }
+  EXPECT_EQ(r.at(1.83, 1.6, t), Known::Occupied);
+  EXPECT_EQ(r.at(1.5, 0.0, t), Known::Free);
+}
+
+//   A low box is seen from afar by rays that go down to it; near, the rays pass above it. It stays.
+TEST(GridTest, ALowBoxIsNotClearedByRaysThatPassAboveIt) {
+  Robot r;
+  r.mount = {.x_m = 0.0, .z_m = 0.7};
+  r.rays = sixteen_rings();
+  r.sighted = {};
+  Scene s;
+  s.blocks.push_back({4.0, 4.3, -0.3, 0.3, 0.0, 0.15});
+  double t = 1.0;
+  for (double x = 0.0; x < 3.2; x += 0.1, t += 0.1) r.scan(s, t, {x, 0.0, 0.0});
+  int left = 0;
+  for (double y = -0.28; y < 0.3; y += 0.05) {
+    for (double x = 3.97; x < 4.2; x += 0.05) left += r.at(x, y, t) == Known::Occupied;
+  }
+  EXPECT_GE(left, 8);
+  EXPECT_EQ(r.at(4.15, 1.0, t), Known::Free) << "beside it the ground was seen";
+}
+
+TEST(GridTest, RunLengthsGiveThePatchBack) {
+  Robot r;
+  r.scan(wall(), 1.0);
+  Patch patch;
+  r.grid.patch({}, 5.0, at(1.0), patch);
+  ASSERT_EQ(patch.side, 200);
+  const auto runs = run_lengths(patch);
+  std::size_t i = 0;
+  for (const std::uint8_t byte : runs) {
+    for (unsigned n = 0; n < (byte & 63U) + 1U; ++n) {
+      ASSERT_LT(i, patch.cells.size());
+      ASSERT_EQ(static_cast<unsigned>(patch.cells[i++].known), byte >> 6U);
+    }
+  }
+  EXPECT_EQ(i, patch.cells.size());
+  EXPECT_LT(runs.size(), 6000U) << "of 40,000 cells";
+}
+
+TEST(GridTest, ClearanceIsTheDistanceThatTryingAllCellsGives) {
+  Patch patch;
+  patch.cell_m = 0.1;
+  patch.side = 40;
+  patch.cells.resize(1600);
+  std::mt19937 random(5);
+  for (auto& c : patch.cells) c.known = Known::Free;
+  for (int i = 0; i < 12; ++i)
+    patch.cells[random() % 1600].known = i % 2 == 0 ? Known::Occupied : Known::Drop;
+  std::vector<float> far;
+  clearance(patch, false, 1.0F, far);
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 0; x < 40; ++x) {
+      double best = 1.0;
+      for (int v = 0; v < 40; ++v) {
+        for (int u = 0; u < 40; ++u) {
+          if (patch.at(u, v).known != Known::Free)
+            best = std::min(best, 0.1 * std::hypot(u - x, v - y));
+        }
+      }
+      ASSERT_NEAR(static_cast<double>(far[static_cast<std::size_t>(40 * y + x)]), best, 1e-5);
+    }
+  }
+}
+
+TEST(PolarTest, TheWallIsAtItsDistanceInEveryDirectionThatMeetsIt) {
+  Robot r;
+  const Pose2 pose{10.0, 20.0, 1.0};
+  Scene s;  // the same wall, as the body sees it, needs turned blocks: a ring of posts in a room
+  for (int i = 0; i < 12; ++i) {
+    const double a = i * base::kPi / 6.0;
+    const double x = 10.0 + 4.0 * std::cos(a);
+    const double y = 20.0 + 4.0 * std::sin(a);
+    s.blocks.push_back({x - 0.1, x + 0.1, y - 0.1, y + 0.1, 0.0, 1.0});
+  }
+  s.blocks.push_back({2.0, 18.0, 26.0, 26.2, 0.0, 1.0});
+  s.blocks.push_back({2.0, 18.0, 13.8, 14.0, 0.0, 1.0});
+  s.blocks.push_back({16.0, 16.2, 12.0, 28.0, 0.0, 1.0});
+  s.blocks.push_back({3.8, 4.0, 12.0, 28.0, 0.0, 1.0});
+  r.scan(s, 1.0, pose);
+  Patch patch;
+  r.grid.patch(pose, 8.0, at(1.2), patch);
+  Polar polar;
+  polar_of(patch, pose, kHull, 8.0, polar);
+  for (int i = 0; i < 12; ++i) {
+    const double bearing = base::wrap_rad(i * base::kPi / 6.0 - 1.0);
+    if (std::abs(bearing) > 2.0) continue;
+    const auto bin = static_cast<std::size_t>((bearing + base::kPi) * 360.0 / base::kPi);
+    const Bearing& b = polar.of[bin % 720];
+    EXPECT_NEAR(static_cast<double>(b.hit_m), 3.9, 0.12) << bearing;
+    EXPECT_GT(b.free_m, 3.5F);
+    EXPECT_EQ(b.sensor, 7);
+    EXPECT_EQ(b.age_ds, 1);
+  }
+  const Bearing& behind = polar.of[0];
+  EXPECT_EQ(behind.hit_m, 0.0F);
+  EXPECT_EQ(behind.free_m, 0.0F) << "blind is not free";
+}
+
+}  // namespace
+}  // namespace roverd::nav::sense

@@ -1,0 +1,83 @@
+// Rain is held back; what stays is not.
+#include "nav/sense/persist.hpp"
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace roverd::nav::sense {
+namespace {
+
+Voxel obstacle(double x, double y) {
+  return {static_cast<float>(x), static_cast<float>(y), 0.3F, 1, Kind::Obstacle};
+}
+
+std::size_t believed(Persist& persist, std::vector<Voxel> voxels, const Pose2& pose = {}) {
+  const std::size_t all = voxels.size();
+  return all - persist.judge(voxels, pose);
+}
+
+TEST(PersistTest, AThinPoleIsBelievedAtTheThirdScan) {
+  Persist persist({}, 8.0);
+  EXPECT_EQ(believed(persist, {obstacle(2.0, 0.0)}), 0U);
+  EXPECT_EQ(believed(persist, {obstacle(2.0, 0.0)}), 0U);
+  EXPECT_EQ(believed(persist, {obstacle(2.0, 0.0)}), 1U);
+}
+
+TEST(PersistTest, AThingThatIsSeenAtSeveralPlacesAtOnceIsNotLate) {
+  Persist persist({}, 8.0);
+  EXPECT_EQ(believed(persist, {obstacle(2.0, 0.0), obstacle(2.05, 0.0), obstacle(2.0, 0.06)}), 3U);
+}
+
+TEST(PersistTest, AScanThatMissesItOnceOrTwiceDoesNotForgetIt) {
+  Persist persist({}, 8.0);
+  std::size_t last = 0;
+  for (const bool seen : {true, false, true, false, true}) {
+    last = seen ? believed(persist, {obstacle(2.0, 0.0)}) : (believed(persist, {}), std::size_t{0});
+  }
+  EXPECT_EQ(last, 1U) << "3 of 5";
+}
+
+TEST(PersistTest, APoleStaysWhereItIsWhileTheRobotDrives) {
+  Persist persist({}, 8.0);
+  std::size_t last = 0;
+  for (int i = 0; i < 3; ++i) {
+    const double x = 0.13 * i;  // 1.3 m/s at 10 Hz
+    last = believed(persist, {obstacle(2.0 - x, 0.0)}, {100.0 + x, -50.0, 0.0});
+  }
+  EXPECT_EQ(last, 1U);
+}
+
+//   Drops at random places of a quarter circle, two per scan, 50 scans a second for a minute.
+TEST(PersistTest, RainIsHeldBack) {
+  Persist persist({}, 8.0);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> range(0.5, 8.0);
+  std::uniform_real_distribution<double> bearing(-2.3, 2.3);
+  std::size_t drops = 0;
+  std::size_t passed = 0;
+  for (int scan = 0; scan < 3000; ++scan) {
+    std::vector<Voxel> voxels;
+    for (int i = 0; i < 2; ++i) {
+      const double r = range(random);
+      const double b = bearing(random);
+      voxels.push_back(obstacle(r * std::cos(b), r * std::sin(b)));
+    }
+    drops += voxels.size();
+    passed += believed(persist, voxels);
+  }
+  EXPECT_EQ(drops, 6000U);
+  EXPECT_LE(passed, 6U) << "one in a thousand";
+}
+
+TEST(PersistTest, WhatIsNoObstacleIsLeftAlone) {
+  Persist persist({}, 8.0);
+  std::vector<Voxel> voxels{obstacle(2.0, 0.0), obstacle(3.0, 0.0)};
+  voxels[0].kind = Kind::Ground;
+  EXPECT_EQ(persist.judge(voxels, {}), 1U);
+  EXPECT_EQ(voxels[0].kind, Kind::Ground);
+  EXPECT_EQ(voxels[1].kind, Kind::Passing);
+}
+
+}  // namespace
+}  // namespace roverd::nav::sense
