@@ -1,0 +1,67 @@
+#include "nav/sense/rays_rule.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/angle.hpp"
+
+namespace roverd::nav::sense {
+
+void rays_of(const Reduced& in, const RaysParams& params, std::vector<Ray>& out) {
+  const double fan = base::rad_from_deg(params.fan_deg);
+  const double step = base::rad_from_deg(params.step_deg);
+  const auto steps = static_cast<int>(std::lround(fan / step));
+  out.resize(static_cast<std::size_t>(2 * steps + 1));
+  for (int i = -steps; i <= steps; ++i) {
+    out[static_cast<std::size_t>(i + steps)] = {static_cast<float>(i * step),
+                                                static_cast<float>(params.far_as_m), true};
+  }
+  const auto band = static_cast<float>(params.band_m);
+  const auto far = static_cast<float>(params.far_m);
+  const auto blind = static_cast<float>(params.blind_m);
+  const auto per_step = static_cast<float>(1.0 / step);
+  for (const Voxel& v : in.voxels) {
+    if (v.kind == Kind::Clear || v.kind == Kind::Passing) continue;
+    if (!(std::abs(v.z_m - in.origin_m[2]) <= band)) continue;
+    const float dx = v.x_m - in.origin_m[0];
+    const float dy = v.y_m - in.origin_m[1];
+    const float d = std::sqrt(dx * dx + dy * dy);
+    if (d < blind || d > far) continue;
+    const auto i = static_cast<int>(std::lround(std::atan2(dy, dx) * per_step));
+    if (i < -steps || i > steps) continue;
+    Ray& ray = out[static_cast<std::size_t>(i + steps)];
+    if (ray.endless || d < ray.range_m) {
+      ray.range_m = d;
+      ray.endless = false;
+    }
+  }
+}
+
+Counted count_rays(const std::vector<Ray>& rays, const RaysParams& params) noexcept {
+  Counted c;
+  const double fan = base::rad_from_deg(params.stop_fan_deg);
+  for (const Ray& ray : rays) {
+    if (ray.endless || std::abs(static_cast<double>(ray.bearing_rad)) > fan) continue;
+    if (static_cast<double>(ray.range_m) >= params.stop_m) continue;
+    ++c.rays;
+    if (c.nearest_m == 0.0F || ray.range_m < c.nearest_m) c.nearest_m = ray.range_m;
+  }
+  c.stop = c.rays >= params.stop_rays;
+  return c;
+}
+
+Sides sides_of(const std::vector<Ray>& rays, int n) noexcept {
+  Sides s;
+  const std::size_t count = std::min(rays.size(), static_cast<std::size_t>(std::max(n, 0)));
+  for (std::size_t i = 0; i < count; ++i) {
+    const Ray& right = rays[i];
+    const Ray& left = rays[rays.size() - 1 - i];
+    if (!right.endless) s.right_m += right.range_m, ++s.right;
+    if (!left.endless) s.left_m += left.range_m, ++s.left;
+  }
+  if (s.right > 0) s.right_m /= static_cast<float>(s.right);
+  if (s.left > 0) s.left_m /= static_cast<float>(s.left);
+  return s;
+}
+
+}  // namespace roverd::nav::sense

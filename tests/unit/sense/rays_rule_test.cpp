@@ -1,0 +1,75 @@
+// The planar scan and the simple stop of the field systems.
+#include "nav/sense/rays_rule.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "base/angle.hpp"
+
+namespace roverd::nav::sense {
+namespace {
+
+Reduced seen(std::vector<Voxel> voxels) {
+  Reduced r;
+  r.origin_m = {0.4F, 0.0F, 0.5F};
+  r.voxels = std::move(voxels);
+  return r;
+}
+
+Voxel from_eye(double range, double bearing_deg, double up = 0.0, Kind kind = Kind::Obstacle) {
+  const double b = base::rad_from_deg(bearing_deg);
+  return {static_cast<float>(0.4 + range * std::cos(b)), static_cast<float>(range * std::sin(b)),
+          static_cast<float>(0.5 + up), 1, kind};
+}
+
+TEST(RaysRuleTest, SixtyNineRaysOfADegreeFromRightToLeft) {
+  std::vector<Ray> rays;
+  rays_of(seen({from_eye(2.0, 10.2)}), {}, rays);
+  ASSERT_EQ(rays.size(), 69U);
+  EXPECT_NEAR(base::deg_from_rad(static_cast<double>(rays[0].bearing_rad)), -34.0, 1e-4);
+  EXPECT_NEAR(rays[44].range_m, 2.0F, 1e-4F);
+  EXPECT_FALSE(rays[44].endless);
+  EXPECT_TRUE(rays[43].endless);
+  EXPECT_EQ(rays[43].range_m, 4.0F) << "written as 4 m";
+}
+
+TEST(RaysRuleTest, WhatIsOutsideOfTheBandTooFarTooNearOrOnlyPassingDoesNotCount) {
+  std::vector<Ray> rays;
+  rays_of(seen({from_eye(2.0, 0.0, 0.31), from_eye(2.0, 0.0, -0.31), from_eye(3.1, 0.0),
+                from_eye(0.45, 0.0), from_eye(1.0, 0.0, 0.0, Kind::Passing),
+                from_eye(1.0, 0.0, 0.0, Kind::Clear), from_eye(1.0, 40.0)}),
+          {}, rays);
+  for (const Ray& ray : rays) EXPECT_TRUE(ray.endless);
+}
+
+TEST(RaysRuleTest, FiveShortRaysStopAndFourDoNot) {
+  std::vector<Voxel> voxels;
+  for (const double b : {-15.0, -8.0, 0.0, 15.0}) voxels.push_back(from_eye(0.69, b));
+  voxels.push_back(from_eye(0.60, 16.0));  // beyond ±15.94
+  voxels.push_back(from_eye(0.71, 3.0));   // not shorter than 0.70
+  std::vector<Ray> rays;
+  rays_of(seen(voxels), {}, rays);
+  EXPECT_EQ(count_rays(rays, {}).rays, 4);
+  EXPECT_FALSE(count_rays(rays, {}).stop);
+  voxels.push_back(from_eye(0.65, 5.0));
+  rays_of(seen(voxels), {}, rays);
+  EXPECT_TRUE(count_rays(rays, {}).stop);
+  EXPECT_NEAR(count_rays(rays, {}).nearest_m, 0.65F, 1e-4F);
+}
+
+TEST(RaysRuleTest, TheSidesAreTheMeansOfTheOuterFive) {
+  std::vector<Voxel> voxels;
+  for (int i = 0; i < 5; ++i) voxels.push_back(from_eye(1.0 + 0.1 * i, 34.0 - i));
+  voxels.push_back(from_eye(2.0, -33.0));
+  std::vector<Ray> rays;
+  rays_of(seen(voxels), {}, rays);
+  const Sides sides = sides_of(rays, 5);
+  EXPECT_NEAR(sides.left_m, 1.2F, 1e-4F);
+  EXPECT_EQ(sides.left, 5);
+  EXPECT_NEAR(sides.right_m, 2.0F, 1e-4F) << "rays beyond 3 m do not count";
+  EXPECT_EQ(sides.right, 1);
+}
+
+}  // namespace
+}  // namespace roverd::nav::sense
