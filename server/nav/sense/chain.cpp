@@ -1,0 +1,82 @@
+#include "nav/sense/chain.hpp"
+
+#include <utility>
+
+#include "nav/sense/mount.hpp"
+
+namespace roverd::nav::sense {
+
+Chain::Chain(const ChainParams& params, const Footprint& body)
+    : p_(params),
+      reducer_(params.reduce, body),
+      ground_(params.ground, params.reduce.max_range_m, body),
+      grid_(params.grid) {}
+
+base::Result<Chain> Chain::of(ChainParams params, std::vector<SensorSetup> sensors,
+                              const Footprint& body, base::Time now) {
+  using base::Code;
+  if (sensors.size() > kMaxSensors) return base::fail(Code::TooLarge, "more than 32 sensors");
+  Chain chain(params, body);
+  for (SensorSetup& s : sensors) {
+    for (const EyeOf& other : chain.eyes_) {
+      if (other.setup.name == s.name) {
+        return base::fail(Code::Invalid, "two sensors are called " + s.name,
+                          {{"/" + s.name, "the name is there twice"}});
+      }
+    }
+    if (auto checked = check_mount(s.mount); !checked) {
+      base::Error error = checked.error();
+      error.detail = s.name + ": " + error.detail;
+      for (base::FieldError& f : error.fields) f.pointer = "/" + s.name + f.pointer;
+      return tl::unexpected<base::Error>(std::move(error));
+    }
+    SightedParams sighted;
+    sighted.planar = s.planar;
+    sighted.blind_m = s.blind_m;
+    sighted.vouch_m = params.vouch_m;
+    sighted.low_m = params.ground.min_height_m;
+    sighted.range_m = params.reduce.max_range_m;
+    chain.eyes_.push_back(
+        {s, sighted, Persist(s.persist, params.reduce.max_range_m), HealthWatch(s.health, now)});
+  }
+  return chain;
+}
+
+base::Result<std::size_t> Chain::take(const base::Sight& sight, const PoseHistory& history,
+                                      base::Time now) {
+  std::size_t i = 0;
+  while (i < eyes_.size() && eyes_[i].setup.name != sight.sensor) ++i;
+  if (i == eyes_.size()) {
+    return base::fail(base::Code::NotFound, "there is no sensor called " + sight.sensor);
+  }
+  EyeOf& eye = eyes_[i];
+  if (!sight.good) {
+    eye.health.took(sight, std::nullopt, now);
+    return base::fail(base::Code::Unavailable, sight.sensor + " says that its data are not good");
+  }
+  if (auto done = reducer_.reduce(sight, eye.setup.mount, history, reduced_); !done) {
+    eye.health.took(sight, std::nullopt, now);
+    return tl::unexpected<base::Error>(done.error());
+  }
+  eye.health.took(sight, reduced_.counts, now);
+  if (!eye.setup.planar) ground_.judge(reduced_.voxels);
+  eye.persist.judge(reduced_.voxels, reduced_.pose);
+  // Behind a blocked window what was not met is not clear.
+  if (sight.window == base::Window::Blocked) {
+    std::erase_if(reduced_.voxels, [](const Voxel& v) { return v.kind != Kind::Obstacle; });
+  }
+  sight_sectors(reduced_, sight.half_step_rad, eye.sighted, *sectors_);
+  grid_.take(reduced_, *sectors_, static_cast<std::uint8_t>(i));
+  return i;
+}
+
+std::optional<std::string> Chain::blind(base::Time now) const {
+  for (const EyeOf& eye : eyes_) {
+    if (!eye.setup.needed) continue;
+    const Fitness f = eye.health.at(now);
+    if (f.eye == Eye::Blind) return eye.setup.name + ": " + f.reason;
+  }
+  return std::nullopt;
+}
+
+}  // namespace roverd::nav::sense
