@@ -55,11 +55,12 @@ base::Result<void> Reducer::reduce(const base::Sight& sight, const base::Mount& 
 
 base::Result<void> Reducer::lay_knots(const base::Sight& sight, const base::Mount& mount,
                                       const PoseHistory& history, Reduced& out) {
+  // In the order in which they were measured; one out of its order is moved by the nearest knot.
   float first = 0.0F;
   float last = 0.0F;
-  for (const base::SightPoint& p : sight.points) {
-    first = std::min(first, p.after_s);
-    last = std::max(last, p.after_s);
+  if (!sight.points.empty()) {
+    first = std::min(sight.points.front().after_s, sight.points.back().after_s);
+    last = std::max(sight.points.front().after_s, sight.points.back().after_s);
   }
   if (!(last - first <= kLongest_s)) {
     return base::fail(base::Code::Invalid, sight.sensor + " gave a piece longer than 2 s");
@@ -138,18 +139,22 @@ void Reducer::points(const base::Sight& sight, Reduced& out) {
     float x = k->r[0] * p.x_m + k->r[1] * p.y_m + k->r[2] * p.z_m + k->t[0];
     float y = k->r[3] * p.x_m + k->r[4] * p.y_m + k->r[5] * p.z_m + k->t[1];
     float z = k->r[6] * p.x_m + k->r[7] * p.y_m + k->r[8] * p.z_m + k->t[2];
-    float d2 = x * x + y * y;
+    const float d2 = x * x + y * y;
     bool clear = p.echo == base::Echo::Clear;
     if (clear || d2 > max2) {
       ++n.clear;
-      if (d2 > max2) {  // pulled back along its ray
-        const float part = 0.999F * max_range / std::sqrt(d2);
-        x = k->t[0] + (x - k->t[0]) * part;
-        y = k->t[1] + (y - k->t[1]) * part;
+      if (d2 > max2) {  // pulled back along its ray, to where that leaves the crop
+        const float ux = x - k->t[0];
+        const float uy = y - k->t[1];
+        const float a = ux * ux + uy * uy;
+        const float b = k->t[0] * ux + k->t[1] * uy;
+        const float c = k->t[0] * k->t[0] + k->t[1] * k->t[1] - max2;
+        const float part = 0.999F * (std::sqrt(b * b - a * c) - b) / a;
+        x = k->t[0] + ux * part;
+        y = k->t[1] + uy * part;
         z = k->t[2] + (z - k->t[2]) * part;
         clear = true;
-        d2 = x * x + y * y;
-        if (!(d2 <= max2)) continue;
+        if (!(x * x + y * y <= max2)) continue;  // a sensor that stands outside of the crop itself
       }
       if (z > high || z < low) continue;
     } else {

@@ -107,6 +107,22 @@ TEST(ReduceTest, EveryPointIsCountedOnce) {
   EXPECT_NEAR(out.voxels[1].x_m, 8.0F, 0.02F);
 }
 
+TEST(ReduceTest, WhatIsBeyondTheCropIsClearAsFarAsThatFromASensorOffTheMiddle) {
+  Reducer reducer({}, kBody);
+  Reduced out;
+  const auto sight = one({hit(6.0, 6.0, 0.6), hit(-9.0, 1.0, 0.0)});
+  const base::Mount mount{.x_m = 0.45, .y_m = -0.2, .z_m = 0.3};
+  ASSERT_TRUE(reducer.reduce(sight, mount, still(), out).has_value());
+  ASSERT_EQ(out.voxels.size(), 2U);
+  for (const Voxel& v : out.voxels) {
+    EXPECT_EQ(v.kind, Kind::Clear);
+    EXPECT_NEAR(std::hypot(v.x_m, v.y_m), 8.0F, 0.02F);
+  }
+  const Voxel& v = out.voxels[0];
+  EXPECT_NEAR((v.y_m + 0.2F) / (v.x_m - 0.45F), 1.0F, 1e-5F) << "along its ray";
+  EXPECT_NEAR((v.z_m - 0.3F) / (v.x_m - 0.45F), 0.1F, 1e-5F);
+}
+
 TEST(ReduceTest, AFilteredBodyDoesNotHideWhatStandsBesideOrAboveIt) {
   Reducer reducer({}, kBody);
   Reduced out;
