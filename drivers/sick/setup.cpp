@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "sick/scan.hpp"
+
 namespace roverd::sick {
 namespace {
 
