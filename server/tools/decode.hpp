@@ -6,6 +6,7 @@
 //   ubx      the same bytes, the UBX frames read too               decode_ubx.cpp
 //   mti      the bytes of an Xsens MTi                             decode_mti.cpp
 //   vlp16    datagrams of a Velodyne VLP-16: a capture, or bare    decode_vlp16.cpp
+//   sick     the bytes of a SICK scanner, or a session as text    decode_sick.cpp
 //
 // Fields are named as in the fact sheets' tables. What is not understood is a line too, with the
 // reason under "refused". Files of any size: nothing but the present block is kept. New kinds are a
@@ -43,11 +44,15 @@ Reader mti_reader(OnObject on_object);
 /// Takes a capture (pcap) or packets one after another. Objects: packet (counted from 0), message
 /// (data, position) and fields; of a capture also time, from, to_port.
 Reader vlp16_reader(OnObject on_object);
+/// Objects: of a session line, time and direction; then dialect, type and command of the telegram
+/// and its fields: of a scan all, angles in deg, frequencies in Hz, values as the scanner has them.
+Reader sick_reader(OnObject on_object);
 
 /// The text of one line, with its line feed. Bytes that are not UTF-8 are replaced.
 std::string to_line(const nlohmann::ordered_json& object);
 
 /// roverd decode KIND FILE. @param kind "bunker", "nmea", "ubx", "mti" or "vlp16" @param file "-":
+/// roverd decode KIND FILE. @param kind "bunker", "nmea", "ubx", "mti" or "sick" @param file "-":
 /// standard input. @return exit code: 0 all was read (or nobody wants to hear more), 1 the file
 /// cannot be read or the output not written, 2 there is no such kind.
 int decode(const std::string& kind, const std::string& file);

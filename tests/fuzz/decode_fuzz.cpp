@@ -35,6 +35,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const base::Bytes bytes(data + 2, size - 2);
   const std::size_t piece = data[0] % 64U + 1U;
   constexpr std::array kReaders{bunker_reader, nmea_reader, ubx_reader, mti_reader, vlp16_reader};
+  constexpr std::array kReaders{bunker_reader, nmea_reader, ubx_reader, mti_reader, sick_reader};
   const auto make = kReaders[data[1] % kReaders.size()];
   const std::string whole = lines(make, bytes, size);
   // Skipped bytes are told piece by piece.
