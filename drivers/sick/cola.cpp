@@ -52,6 +52,7 @@ void Framer::forget() noexcept {
 
 void Framer::drop_used() {
   const auto used = static_cast<std::ptrdiff_t>(head_);
+  dropped_ += head_;
   bytes_.erase(bytes_.begin(), bytes_.begin() + used);
   sums_.erase(sums_.begin(), sums_.begin() + used);
   looked_ = looked_ > head_ ? looked_ - head_ : 0;

@@ -70,6 +70,8 @@ class Framer {
   /// The beginning of a telegram is kept.
   bool waiting() const noexcept { return head_ < bytes_.size(); }
   const Counts& counts() const noexcept { return counts_; }
+  /// Bytes since the beginning that are done with: in a sink, up to the telegram's end.
+  std::uint64_t position() const noexcept { return dropped_ + head_; }
 
  private:
   enum class Look { Found, More, Again };
@@ -85,7 +87,8 @@ class Framer {
   /// sums_[i] is the XOR of all bytes before bytes_[i]: a wrong beginning costs no second pass.
   std::vector<std::uint8_t> sums_{0};
   std::size_t head_ = 0;
-  std::size_t looked_ = 0;  ///< no end of the text at head_ before here
+  std::uint64_t dropped_ = 0;  ///< bytes before bytes_[0]
+  std::size_t looked_ = 0;     ///< no end of the text at head_ before here
   Counts counts_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "gnss/stream_clock.hpp"
 #include "mti/stream_clock.hpp"
+#include "sick/stream_clock.hpp"
 
 namespace {
 
@@ -47,5 +48,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::size_t piece = data[0] % 64U + 1U;
   check(run(gnss::stream_clock(), bytes, bytes.size()) == run(gnss::stream_clock(), bytes, piece));
   check(run(mti::stream_clock(), bytes, bytes.size()) == run(mti::stream_clock(), bytes, piece));
+  check(run(sick::stream_clock(), bytes, bytes.size()) == run(sick::stream_clock(), bytes, piece));
   return 0;
 }
