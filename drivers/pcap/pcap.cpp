@@ -213,7 +213,9 @@ std::optional<Bytes> Reader::network_layer(Bytes frame, const char*& cause) cons
 
 void Reader::read_record(std::uint32_t seconds, std::uint32_t fraction, Bytes frame) {
   Datagram d;
-  const auto ns = static_cast<std::int64_t>(fraction) * (nanoseconds_ ? 1 : 1000);
+  // A fraction of more than a second is damage; the datagram need not be.
+  const auto ns = std::min<std::int64_t>(
+      static_cast<std::int64_t>(fraction) * (nanoseconds_ ? 1 : 1000), 999'999'999);
   d.stamp = base::WallTime{std::chrono::seconds(seconds) + std::chrono::nanoseconds(ns)};
   const char* cause = nullptr;
   const auto ip = network_layer(frame, cause);

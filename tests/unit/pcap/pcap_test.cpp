@@ -177,6 +177,15 @@ std::string problem(const Blob& file) {
   return ended ? "" : ended.error().detail;
 }
 
+TEST(Pcap, AFractionBeyondASecondStaysWithinIt) {
+  const Writer w;
+  Reading r;
+  ASSERT_TRUE(
+      r.reader.feed(w.file(0xA1B2C3D4, 101) + w.record(0xFFFFFFFF, 0xFFFFFFFF, ip_of({1}))));
+  ASSERT_EQ(r.seen.size(), 1U);
+  EXPECT_EQ(r.seen[0].stamp.time_since_epoch(), 4'294'967'295s + 999'999'999ns);
+}
+
 TEST(Pcap, FilesThatAreNoneAreRefusedByByte) {
   const Writer w;
   EXPECT_EQ(problem({}), "byte 0: no header of a capture");
