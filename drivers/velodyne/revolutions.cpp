@@ -8,7 +8,6 @@
 namespace roverd::velodyne {
 namespace {
 
-constexpr double kDrift = 100e-6;
 constexpr double kRadPerCdeg = std::numbers::pi / 18'000.0;
 /// A fall of the azimuth by less is a head that trembles, no new turn.
 constexpr int kTremble_cdeg = 500;
@@ -39,7 +38,7 @@ Revolutions::Revolutions(std::string sensor, const Params& params, OnTurn on_tur
 
 void Revolutions::forget() {
   known_ = false;
-  delay_.reset();
+  delay_.forget();
   sight_.reset();
 }
 
@@ -72,7 +71,7 @@ bool Revolutions::follows(const Packet& packet, Time arrival) {
       ++counts_.jumps;
       finish();
       known_ = false;
-      delay_.reset();
+      delay_.forget();
     } else if (on_us == 0) {
       ++counts_.duplicates;
       return false;
@@ -93,23 +92,12 @@ bool Revolutions::follows(const Packet& packet, Time arrival) {
   return true;
 }
 
-/// The first firing of this packet lies at total_us_ + delay_.
-void Revolutions::align(const Packet& packet, Time arrival) {
-  const auto sent = arrival - base::from_seconds(packet.period_us() * 1e-6);
-  const base::Duration raw = sent.time_since_epoch() - micros(total_us_);
-  if (!delay_ || std::abs(base::seconds(raw - *delay_)) > kJump_s) {
-    delay_ = raw;
-  } else {
-    const double aged_s = std::max(0.0, base::seconds(arrival - arrived_));
-    delay_ = std::min(raw, *delay_ + base::from_seconds(aged_s * kDrift));
-  }
-  arrived_ = arrival;
-}
-
 void Revolutions::add(const Packet& packet, Time arrival) {
   if (!follows(packet, arrival)) return;
   period_us_ = packet.period_us();
-  align(packet, arrival);
+  // It leaves the sensor when its last firing is done.
+  first_firing_ = delay_.at(micros(total_us_), arrival - base::from_seconds(period_us_ * 1e-6));
+  arrived_ = arrival;
   if (product_ != packet.product) {
     finish();
     choose(packet.product);
@@ -143,7 +131,8 @@ void Revolutions::begin(double at_us) {
   sight_->sensor = sensor_;
   sight_->points.reserve(expected_);
   began_us_ = at_us;
-  sight_->stamp = Time{base::from_seconds(at_us * 1e-6) + *delay_};
+  sight_->stamp =
+      first_firing_ + base::from_seconds((at_us - static_cast<double>(total_us_)) * 1e-6);
   sight_->clear_to_m = static_cast<float>(params_.clear_to_m);
   missing_ = firings_ = 0;
 }

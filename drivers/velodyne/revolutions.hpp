@@ -22,6 +22,7 @@
 #include <optional>
 #include <string>
 
+#include "base/least_delay.hpp"
 #include "base/sight.hpp"
 #include "velodyne/codec.hpp"
 #include "velodyne/params.hpp"
@@ -77,7 +78,6 @@ class Revolutions {
   };
 
   bool follows(const Packet& packet, Time arrival);
-  void align(const Packet& packet, Time arrival);
   void choose(Product product);
   void take_blocks(const Packet& packet, const Steps& steps, std::size_t b, double block_us);
   void add_return(Return r, const Laser& laser, float sin_a, float cos_a, float after_s);
@@ -97,8 +97,9 @@ class Revolutions {
   std::uint32_t last_us_ = 0;
   double period_us_ = 0.0;
   std::uint64_t total_us_ = 0;  ///< counted on over the hours
-  std::optional<base::Duration> delay_;
+  base::LeastDelay delay_{kJump_s};
   Time arrived_{};
+  Time first_firing_{};  ///< of the packet that is being read, at total_us_
 
   // The turn that has begun.
   std::shared_ptr<base::Sight> sight_;
