@@ -65,7 +65,10 @@ class TcpServer final : public ByteLink {
   static constexpr std::size_t kMaxWaiting = 64 * 1024;
 
   /// @param address numeric, to bind to: "127.0.0.1". @param port 0: the kernel chooses.
-  TcpServer(asio::io_context& io, std::string address, std::uint16_t port);
+  /// @param most_clients 1..kMaxClients; further ones are turned away and counted (strangers): 1
+  /// where what two of them say must not be mixed.
+  TcpServer(asio::io_context& io, std::string address, std::uint16_t port,
+            std::size_t most_clients = kMaxClients);
   ~TcpServer() override;
 
   base::Result<void> open() override;
@@ -73,6 +76,7 @@ class TcpServer final : public ByteLink {
   /// Any thread; the bytes are copied and sent on the device thread. Sent also without a client.
   SendResult write(Bytes bytes) noexcept override;
   std::string describe() const override;
+  std::uint64_t strangers() const noexcept override { return turned_away_; }
 
   /// Device thread, after open(): the port listened on.
   std::uint16_t port() const noexcept { return port_; }
@@ -94,6 +98,8 @@ class TcpServer final : public ByteLink {
   asio::io_context& io_;
   const std::string address_;
   std::uint16_t port_;
+  const std::size_t most_clients_;
+  std::uint64_t turned_away_ = 0;  ///< device thread
   asio::ip::tcp::acceptor acceptor_;
   std::vector<std::shared_ptr<Client>> clients_;
   /// Held by nobody else; handlers hold it weakly and do nothing once it is gone.

@@ -23,10 +23,12 @@ struct TcpServer::Client {
   std::size_t waiting_bytes = 0;
 };
 
-TcpServer::TcpServer(asio::io_context& io, std::string address, std::uint16_t port)
+TcpServer::TcpServer(asio::io_context& io, std::string address, std::uint16_t port,
+                     std::size_t most_clients)
     : io_(io),
       address_(std::move(address)),
       port_(port),
+      most_clients_(std::min(most_clients, kMaxClients)),
       acceptor_(io),
       self_(std::make_shared<TcpServer*>(this)) {}
 
@@ -80,7 +82,9 @@ void TcpServer::accept() {
   acceptor_.async_accept(
       [this, weak = std::weak_ptr(self_)](const boost::system::error_code& ec, tcp::socket socket) {
         if (weak.expired() || ec == asio::error::operation_aborted || !acceptor_.is_open()) return;
-        if (!ec && clients_.size() < kMaxClients) {
+        if (!ec && clients_.size() >= most_clients_) {
+          ++turned_away_;
+        } else if (!ec) {
           boost::system::error_code ignored;
           socket.set_option(tcp::no_delay(true), ignored);
           clients_.push_back(std::make_shared<Client>(std::move(socket)));
