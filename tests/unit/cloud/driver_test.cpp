@@ -1,0 +1,170 @@
+// The driver on a memory link, and the example of the documentation over a real port.
+
+#include "cloud/driver.hpp"
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "frames.hpp"
+#include "link/memory.hpp"
+#include "link/tcp.hpp"
+#include "unit/link/pump.hpp"
+
+namespace roverd::cloud {
+namespace {
+
+using namespace std::chrono_literals;
+using base::DriverPhase;
+
+struct OnWire : ::testing::Test {
+  OnWire() {
+    EXPECT_TRUE(wire.b->open());
+    driver.start(now);
+  }
+  void send(const Blob& frame) {
+    wire.b->write(frame);
+    ours->deliver(now);
+  }
+  std::uint64_t counted(const std::string& what) const {
+    const auto counts = driver.status(now).detail->counts;
+    return counts.contains(what) ? counts.at(what) : 0;
+  }
+  std::string fact(const std::string& key) const {
+    return driver.status(now).detail->facts.at(key);
+  }
+
+  Time now{std::chrono::hours(1)};
+  link::MemoryBytePair wire = link::memory_byte_pair();
+  link::MemoryByteLink* ours = wire.a.get();
+  std::vector<std::shared_ptr<const base::Sight>> sights;
+  Driver driver{"camera",
+                {},
+                [this] { return base::Result<std::unique_ptr<link::ByteLink>>(std::move(wire.a)); },
+                [](const base::Measurement&) {},
+                [this](std::shared_ptr<const base::Sight> s) { sights.push_back(std::move(s)); }};
+};
+
+TEST_F(OnWire, AFrameIsToldAtOnceAndItsSilenceIsAFault) {
+  EXPECT_EQ(driver.status(now).phase, DriverPhase::Opening);
+  send(depth_frame(header_of(1), 4, std::vector<std::uint16_t>{1000, 0, 1000, 1000}));
+  ASSERT_EQ(sights.size(), 1U);
+  EXPECT_EQ(sights[0]->sensor, "camera");
+  EXPECT_EQ(sights[0]->points.size(), 4U);
+  EXPECT_EQ(sights[0]->stamp, now);
+  EXPECT_EQ(driver.status(now).phase, DriverPhase::Up);
+  EXPECT_EQ(fact("frame"), "depth image 4x1");
+  EXPECT_EQ(fact("missing_pct"), "25.0");
+  now += 310ms;
+  driver.tick(now);
+  EXPECT_EQ(driver.status(now).phase, DriverPhase::Faulty);
+  EXPECT_EQ(driver.status(now).reason, "no frame");
+  send(cloud_frame(header_of(2, 1'310'000'000), {}));
+  EXPECT_EQ(driver.status(now).phase, DriverPhase::Up);
+  EXPECT_EQ(fact("missing_pct"), "100.0") << "a cloud of no point sees nothing";
+}
+
+TEST_F(OnWire, WhatHadToWaitIsStampedAsItWasMeasured) {
+  const Time first = now;
+  for (std::uint32_t i = 0; i < 10; ++i) {
+    const bool late = i == 5;
+    now = first + i * 50ms + (late ? 30ms : 0ms);
+    send(cloud_frame(header_of(i, 7'000'000'000 + i * 50'000'000), {1.0F, 0.0F, 0.0F}));
+  }
+  ASSERT_EQ(sights.size(), 10U);
+  EXPECT_NEAR(base::seconds(sights[5]->stamp - first), 0.25, 1e-4);
+}
+
+TEST_F(OnWire, LostRepeatedAndRestartedSendersAreTold) {
+  send(cloud_frame(header_of(10, 1'000), {}));
+  send(cloud_frame(header_of(10, 1'000), {}));
+  send(cloud_frame(header_of(14, 50'000'000), {}));
+  EXPECT_EQ(counted("a frame twice"), 1U);
+  EXPECT_EQ(counted("frames lost"), 3U);
+  ASSERT_EQ(sights.size(), 2U);
+  EXPECT_EQ(sights[1]->count, 4U) << "the gap shows";
+  send(cloud_frame(header_of(0, 0), {}));  // began anew
+  EXPECT_EQ(counted("stamps that go back"), 1U);
+  EXPECT_EQ(counted("frames lost"), 3U);
+  EXPECT_EQ(sights.back()->count, 5U);
+  EXPECT_EQ(sights.back()->stamp, now);
+  // Clocks at their ends.
+  send(cloud_frame(header_of(1, 4'000'000'000'000'000'000), {}));
+  send(cloud_frame(header_of(2, 0), {}));
+  EXPECT_EQ(sights.back()->stamp, now);
+}
+
+TEST_F(OnWire, RefusedFramesAreCountedByCauseAndNotHeard) {
+  send(depth_frame(header_of(1), 1, {1000}, 0.5F));
+  send({1, 2, 3, 4, 5});
+  EXPECT_TRUE(sights.empty());
+  EXPECT_EQ(driver.status(now).phase, DriverPhase::Opening);
+  EXPECT_EQ(counted("intrinsics that are none"), 1U);
+  EXPECT_EQ(counted("bytes outside any frame"), 5U);
+}
+
+/// A camera's program, run as a process.
+class Sender {
+ public:
+  Sender(const std::string& script, std::uint16_t port, const std::string& images) {
+    std::string port_text = std::to_string(port);
+    std::string path = script;
+    std::string host = "127.0.0.1";
+    std::string count = images;
+    std::string python = "python3";
+    std::array<char*, 6> args{python.data(),    path.data(),  host.data(),
+                              port_text.data(), count.data(), nullptr};
+    EXPECT_EQ(::posix_spawnp(&pid_, "python3", nullptr, nullptr, args.data(), environ), 0);
+  }
+  ~Sender() {
+    if (pid_ <= 0) return;
+    ::kill(pid_, SIGKILL);
+    ::waitpid(pid_, nullptr, 0);
+  }
+  Sender(const Sender&) = delete;
+  Sender& operator=(const Sender&) = delete;
+
+ private:
+  pid_t pid_ = 0;
+};
+
+TEST(CloudExample, TheSenderOfTheDocumentationIsUnderstood) {
+  boost::asio::io_context io;
+  link::TcpServer* port = nullptr;
+  std::vector<std::shared_ptr<const base::Sight>> sights;
+  Params params;
+  params.silent_after_s = 10.0;  // the machine may be busy
+  Driver driver(
+      "camera", params,
+      [&]() -> base::Result<std::unique_ptr<link::ByteLink>> {
+        auto made = std::make_unique<link::TcpServer>(io, "127.0.0.1", 0, 1);
+        port = made.get();
+        return made;
+      },
+      [](const base::Measurement&) {},
+      [&](std::shared_ptr<const base::Sight> s) { sights.push_back(std::move(s)); });
+  driver.start(base::steady_now());
+  ASSERT_NE(port, nullptr);
+  const Sender sender(CLOUD_SENDER, port->port(), "3");
+  link::Pump<Driver> pump(io, driver);
+  ASSERT_TRUE(pump.until([&] { return sights.size() == 3; }));
+  EXPECT_EQ(pump.status().refused, 0U);
+  EXPECT_EQ(sights[2]->count, 2U);
+  EXPECT_GT(base::seconds(sights[2]->stamp - sights[0]->stamp), 0.19);
+  const auto& points = sights[0]->points;
+  ASSERT_EQ(points.size(), 160U * 120U);
+  // The wall at the left edge, the post in the middle, as the script draws them.
+  const auto& wall = points[60 * 160];
+  EXPECT_NEAR(wall.x_m, 3.0, 1e-5);
+  EXPECT_NEAR(wall.y_m, 3.0 * 79.5 / 131.25, 1e-5);
+  EXPECT_NEAR(points[60 * 160 + 80].x_m, 1.5, 1e-5);
+}
+
+}  // namespace
+}  // namespace roverd::cloud
