@@ -17,6 +17,9 @@ namespace roverd::link {
 namespace {
 
 constexpr std::size_t kLargestDatagram = 65'536;
+/// Wanted of the kernel, which may give less: a lidar sends 1.8 MB a second, and this thread may be
+/// late by a tenth of one.
+constexpr int kReceiveBuffer = 1 << 20;
 
 base::Error cannot_bind(std::uint16_t port, int error) {
   return {base::Code::Unavailable,
@@ -65,6 +68,7 @@ base::Result<int> UdpLink::bind_socket() {
     ::close(fd);
     return tl::unexpected(cannot_bind(port_, error));
   }
+  ::setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &kReceiveBuffer, sizeof kReceiveBuffer);
   return fd;
 }
 
