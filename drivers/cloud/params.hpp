@@ -9,7 +9,7 @@ struct Params {
   double min_range_m = 0.1;
   double max_range_m = 20.0;
   double clear_to_m = 0.0;
-  int decimate = 1;
+  int decimate = 2;
   int max_points = 1'000'000;
   double latency_s = 0.0;
   double silent_after_s = 0.3;

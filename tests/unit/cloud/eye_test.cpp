@@ -16,9 +16,17 @@ namespace {
 using base::Echo;
 using base::SightPoint;
 
+Params every_pixel() {
+  Params params;
+  params.decimate = 1;
+  return params;
+}
+
 /// Shows one encoded frame to an eye.
 struct Look {
-  explicit Look(const Blob& bytes, const Params& params = {}) : eye(params) { show(bytes); }
+  explicit Look(const Blob& bytes, const Params& params = every_pixel()) : eye(params) {
+    show(bytes);
+  }
   void show(const Blob& bytes) {
     Decoder decoder(kMaxPoints);
     decoder.feed(bytes, [&](const Frame& f) {
@@ -60,7 +68,7 @@ TEST(CloudEye, ADepthImageIsSeenThroughItsLens) {
   //  u  0     1     2          f = 100, c = (1, 0.5)
   const std::vector<std::uint16_t> pixels{1000, 2000, 0,  //
                                           1000, 50,   30'000};
-  Params params;
+  Params params = every_pixel();
   const Look look(depth_frame(header_of(1), 3, pixels), params);
   ASSERT_EQ(look.sight.points.size(), 6U);
   expect_at(look[0], 1.0, 0.01, 0.005);
