@@ -77,10 +77,9 @@ Told add_decode(CLI::App& app, DecodeCommand& c) {
       "  nmea     bytes of a GNSS receiver\n"
       "  ubx      the same, with the frames of u-blox receivers read\n"
       "  mti      bytes of an Xsens MTi\n"
+      "  sick     bytes of a SICK scanner, or a session of one as text\n"
       "  vlp16    datagrams of a Velodyne VLP-16: a capture (pcap), or one after another");
-  d->add_option("KIND", c.kind, "bunker, nmea, ubx, mti or vlp16")->required();
-      "  sick     bytes of a SICK scanner, or a session of one as text");
-  d->add_option("KIND", c.kind, "bunker, nmea, ubx, mti or sick")->required();
+  d->add_option("KIND", c.kind, "bunker, nmea, ubx, mti, sick or vlp16")->required();
   d->add_option("FILE", c.file, "the recording; - is standard input")->required();
   return {d, "decode wants KIND and FILE"};
 }
