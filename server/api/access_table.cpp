@@ -64,6 +64,7 @@ constexpr Row kTable[] = {
     {"GET /sessions", Need::Viewer},
     {"DELETE /sessions", Need::Viewer, NeedsControl::No},
     {"DELETE /sessions/{id}", Need::Viewer, NeedsControl::No},
+    {"GET /sensors", Need::Viewer},
     {"GET /slips", Need::Viewer},
     {"GET /stream", Need::Viewer},
     {"GET /tags", Need::Viewer},

@@ -108,6 +108,7 @@ Api::Api(Deps deps) : impl_(std::make_unique<Impl>(std::move(deps))) {
   add_fence_routes(c);
   add_file_routes(c);
   add_event_routes(c);
+  add_sensor_routes(c);
   add_slip_routes(c);
   add_server_routes(c);
   add_driver_routes(c);

@@ -189,6 +189,7 @@ void add_fence_routes(const ContextPtr& context);
 void load_active_fence(const ContextPtr& context);
 void add_file_routes(const ContextPtr& context);
 void add_event_routes(const ContextPtr& context);
+void add_sensor_routes(const ContextPtr& context);
 void add_slip_routes(const ContextPtr& context);
 void add_server_routes(const ContextPtr& context);
 void add_driver_routes(const ContextPtr& context);

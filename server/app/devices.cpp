@@ -16,16 +16,21 @@
 #include "base/log.hpp"
 #include "bumper/driver.hpp"
 #include "bunker/driver.hpp"
+#include "cloud/driver.hpp"
 #include "config/receiver_params.hpp"
 #include "gnss/driver.hpp"
 #include "gpsd/driver.hpp"
 #include "link/address.hpp"
 #include "link/record.hpp"
+#include "link/tcp.hpp"
 #include "mti/driver.hpp"
 #include "ntrip/driver.hpp"
+#include "ranges/driver.hpp"
 #include "ratio/driver.hpp"
 #include "replay/replays.hpp"
+#include "sick/driver.hpp"
 #include "twist/driver.hpp"
+#include "velodyne/driver.hpp"
 
 namespace roverd {
 namespace {
@@ -184,6 +189,9 @@ std::shared_ptr<gnss::Driver> corrected(const std::string& name, const gnss::Par
   return driver;
 }
 
+template <class Driver>
+using Of = std::type_identity<Driver>;
+
 /// Plans the wanted ones of the drivers that there are.
 class Planner {
  public:
@@ -227,6 +235,40 @@ class Planner {
         return device_of(corrected(name, params, make_link, ears, c));
       }
       return device_of(std::make_shared<Driver>(name, params, make_link, ears.on_measurement));
+    };
+    plans_.push_back(std::move(plan));
+    return {};
+  }
+
+  /// What looks around tells what it sees elsewhere than to the robot.
+  Result<void> add_sensor(const std::string& name, const Sensor& sensor,
+                          const base::OnSight& on_sight) {
+    if (!replays_.file_of.empty() || !sensor.said.enabled) return {};
+    const std::string who = settings_.where("sensors." + name + ".link");
+    const std::string address = sensor.said.link;
+    const int port = sensor.said.listens();
+    if (port == 0) {
+      if (auto good = check_link(who, address); !good) return good;
+      if (auto good = check_kind<ByteStream>(who, address); !good) return good;
+    }
+    DevicePlan plan;
+    plan.name = name;
+    plan.make = [w = workshop_, name, sensor, address, port, on_sight](asio::io_context& io,
+                                                                       const DeviceEars& ears) {
+      const link::BytePort::MakeLink make_link =
+          [w, name, address, port, ears, &io]() -> Result<std::unique_ptr<link::ByteLink>> {
+        if (port == 0) return open_link<ByteStream>(*w, io, ears, name, address);
+        return std::make_unique<link::TcpServer>(io, "127.0.0.1", std::uint16_t(port), 1);
+      };
+      const auto made = [&](auto kind, const auto& params) {
+        using Driver = typename decltype(kind)::type;
+        return device_of(
+            std::make_shared<Driver>(name, params, make_link, ears.on_measurement, on_sight));
+      };
+      if (sensor.said.kind == "cloud") return made(Of<cloud::Driver>{}, sensor.cloud);
+      if (sensor.said.kind == "ranges") return made(Of<ranges::Driver>{}, sensor.ranges);
+      if (sensor.said.kind == "sick") return made(Of<sick::Driver>{}, sensor.sick);
+      return made(Of<velodyne::Driver>{}, sensor.velodyne);
     };
     plans_.push_back(std::move(plan));
     return {};
@@ -308,7 +350,8 @@ class Planner {
 
 }  // namespace
 
-Result<std::vector<DevicePlan>> plan_devices(const Settings& s, const Options& options) {
+Result<std::vector<DevicePlan>> plan_devices(const Settings& s, const Options& options,
+                                             const base::OnSight& on_sight) {
   auto replays = read_replays(options.replays, options.replay_speed);
   if (!replays) return tl::unexpected(replays.error());
   for (const std::string& remark : replays->remarks) base::log(base::Level::Info, "replay", remark);
@@ -327,6 +370,9 @@ Result<std::vector<DevicePlan>> plan_devices(const Settings& s, const Options& o
   if (done) done = planner.add_receiver(s.gnss);
   if (done) done = planner.add<ByteStream, mti::Driver>("mti", s.mti);
   if (done) done = planner.add_ntrip(s.ntrip);
+  for (const auto& [name, sensor] : s.sensors) {
+    if (done) done = planner.add_sensor(name, sensor, on_sight);
+  }
   if (!done) return tl::unexpected(done.error());
   return planner.take();
 }

@@ -5,14 +5,15 @@
 
 #include "app/options.hpp"
 #include "base/result.hpp"
+#include "base/sight.hpp"
 #include "config/settings.hpp"
 #include "supervise/device.hpp"
 
 namespace roverd {
 
 /// Every driver that is enabled, or that the recordings to play are for. Errors name file, line and
-/// key, or the recording.
-base::Result<std::vector<DevicePlan>> plan_devices(const Settings& settings,
-                                                   const Options& options);
+/// key, or the recording. @param on_sight what sensors see, on their drivers' threads.
+base::Result<std::vector<DevicePlan>> plan_devices(const Settings& settings, const Options& options,
+                                                   const base::OnSight& on_sight);
 
 }  // namespace roverd

@@ -27,6 +27,7 @@
 #include "app/memory_reserve.hpp"
 #include "app/presence.hpp"
 #include "app/recordings.hpp"
+#include "app/sense_loop.hpp"
 #include "app/station.hpp"
 #include "app/version.hpp"
 #include "app/wiring.hpp"
@@ -62,6 +63,7 @@ struct Station::Impl {
   robot::Robot robot;
   net::Files page{net::page_entries()};
   store::TileFolder tiles;
+  std::unique_ptr<SenseLoop> sense;  ///< null: no sensors; before the drivers, which call it
   std::unique_ptr<Supervisor> supervisor;
   std::unique_ptr<store::Store> store;
   std::unique_ptr<BackupKeeper> backups;
@@ -93,6 +95,7 @@ struct Station::Impl {
   std::string address;
 
   Result<void> open(const Settings& settings, const Options& options);
+  Result<void> open_senses(const Settings& settings, const Options& options);
   Result<void> open_tiles(const Settings& settings);
   Result<void> open_store(const Settings& settings, const Options& options);
   void open_estop(const Options& options, bool first);

@@ -8,7 +8,10 @@ constexpr base::Duration kKeepEstop = std::chrono::milliseconds(200);
 }  // namespace
 
 Result<void> Station::Impl::open(const Settings& settings, const Options& options) {
-  auto plans = plan_devices(settings, options);
+  if (auto done = open_senses(settings, options); !done) return done;
+  auto plans = plan_devices(settings, options, [this](std::shared_ptr<const base::Sight> sight) {
+    if (sense) sense->see(std::move(sight));
+  });
   if (!plans) return tl::unexpected(plans.error());
   auto made = Supervisor::make(std::move(*plans),
                                [this](const base::Measurement& m) { robot.measurements().put(m); });
@@ -44,6 +47,18 @@ Result<void> Station::Impl::open(const Settings& settings, const Options& option
     });
   });
   start();
+  return {};
+}
+
+/// A recording is looked at without eyes: nothing moves by it.
+Result<void> Station::Impl::open_senses(const Settings& settings, const Options& options) {
+  const bool any = std::ranges::any_of(settings.sensors,
+                                       [](const auto& one) { return one.second.said.enabled; });
+  if (!any || !options.replays.empty()) return {};
+  auto lookout = lookout_of(settings, base::steady_now());
+  if (!lookout) return tl::unexpected(lookout.error());
+  robot.guard_by(settings.sense.protect);
+  sense = std::make_unique<SenseLoop>(robot, std::move(*lookout));
   return {};
 }
 

@@ -15,6 +15,7 @@
 #include "base/geo.hpp"
 #include "base/measurements.hpp"
 #include "base/result.hpp"
+#include "base/sensing.hpp"
 #include "base/time.hpp"
 
 namespace roverd::base {
@@ -361,7 +362,9 @@ struct Snapshot {
   Activity activity;
   std::string autonomy_refusal;  ///< why nothing may drive by itself now; empty: it may
   std::optional<FenceState> fence;
-  DriveCommand command;  ///< what was sent at this tick
+  DriveCommand command;              ///< what was sent at this tick
+  std::optional<Obstacle> obstacle;  ///< that limits the speed, or stops
+  std::vector<SensorState> sensors;  ///< of the profile; empty: it has none, or nothing came yet
   TeleopState teleop;
   std::vector<SafetyCondition> safety;
   std::vector<Check> checks;

@@ -2,6 +2,7 @@
 // the log and the events.
 
 #include "base/measurements.hpp"
+#include "base/sensing.hpp"
 #include "base/sight.hpp"
 #include "base/snapshot.hpp"
 
@@ -111,6 +112,34 @@ std::string_view to_string(Window w) noexcept {
       return "blocked";
   }
   return "unknown";
+}
+
+std::string_view to_string(SensorHealth h) noexcept {
+  switch (h) {
+    case SensorHealth::Silent:
+      return "silent";
+    case SensorHealth::Blind:
+      return "blind";
+    case SensorHealth::Degraded:
+      return "degraded";
+    case SensorHealth::Good:
+      return "good";
+  }
+  return "silent";
+}
+
+std::string_view to_string(GuardAction a) noexcept {
+  switch (a) {
+    case GuardAction::None:
+      return "none";
+    case GuardAction::Slow:
+      return "slow";
+    case GuardAction::Creep:
+      return "creep";
+    case GuardAction::Stop:
+      return "stop";
+  }
+  return "stop";
 }
 
 std::string_view to_string(Mode mode) noexcept {

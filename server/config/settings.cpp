@@ -176,9 +176,40 @@ Sections sections_of(Settings& s) {
         out.emplace("drivers." + name, section(driver.wiring, driver.params));
       },
       s);
+  for (auto& [name, sensor] : s.sensors) {
+    Sensor* one = &sensor;
+    out.emplace("sensors." + name, [one](std::string_view key, const ParamValue& value) {
+      Result<void> done = base::set_param(one->said, key, value);
+      if (done || done.error().detail != "unknown key") return done;
+      with_kind(*one, [&](auto& params) { done = base::set_param(params, key, value); });
+      return done;
+    });
+  }
   Collect collect{out};
   robot::sections(collect, s.robot);
+  sections(collect, s.sense);
   return out;
+}
+
+/// A sensor's section makes it; its kind is read first, for it says which other keys there are.
+Result<void> make_sensors(Settings& s, const std::vector<Entry>& entries) {
+  for (const auto& entry : entries) {
+    const std::string name(sensor_of(entry.key));
+    if (name.empty()) continue;
+    if (!is_sensor_name(name)) {
+      return base::fail(base::Code::Invalid, entry.place +
+                                                 ": a sensor's name has a to z, 0 to 9 "
+                                                 "and _, 24 signs at most");
+    }
+    Sensor& sensor = s.sensors[name];
+    if (s.sensors.size() > kMostSensors) {
+      return base::fail(base::Code::Invalid,
+                        entry.place + ": more than " + std::to_string(kMostSensors) + " sensors");
+    }
+    if (entry.key != "sensors." + name + ".kind" || !entry.value) continue;
+    if (const auto* kind = std::get_if<std::string>(&*entry.value)) sensor.said.kind = *kind;
+  }
+  return {};
 }
 
 /// All fields of a section under their full names.
@@ -203,6 +234,7 @@ bool leads_to_section(const Sections& sections, const std::string& key) {
 }
 
 Result<void> set_all(Settings& settings, const std::vector<Entry>& entries) {
+  if (auto made = make_sensors(settings, entries); !made) return made;
   const auto sections = sections_of(settings);
   for (const auto& entry : entries) {
     if (!entry.value) {
@@ -228,9 +260,8 @@ Result<void> set_all(Settings& settings, const std::vector<Entry>& entries) {
   return {};
 }
 
-/// What the robot's own check has to say, at the place where it was written.
-Result<void> check_robot(const Settings& s) {
-  const auto good = robot::check(s.robot);
+/// What a check of a part has to say, at the place where it was written.
+Result<void> at_its_place(const Settings& s, const Result<void>& good) {
   if (good) return {};
   const base::Error& error = good.error();
   if (error.fields.empty()) return tl::unexpected(error);
@@ -260,7 +291,8 @@ Result<void> check_badge(const Settings& s) {
 
 /// What only the whole tells.
 Result<void> check_all(const Settings& s) {
-  if (auto good = check_robot(s); !good) return good;
+  if (auto good = at_its_place(s, robot::check(s.robot)); !good) return good;
+  if (auto good = at_its_place(s, check(s.sensors)); !good) return good;
   if (auto good = check_server(s); !good) return good;
   if (auto good = check_badge(s); !good) return good;
   const std::string& level = s.server.log_level;

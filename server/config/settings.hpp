@@ -12,6 +12,7 @@
 #include "base/result.hpp"
 #include "bumper/params.hpp"
 #include "bunker/driver.hpp"
+#include "config/sensors.hpp"
 #include "gnss/driver.hpp"
 #include "mti/params.hpp"
 #include "ntrip/params.hpp"
@@ -218,6 +219,8 @@ struct Settings {
   Wired<gnss::Params> gnss;
   Wired<mti::Params> mti;
   Wired<ntrip::Params> ntrip;
+  Sensors sensors;  ///< by name
+  SenseSettings sense;
   robot::Config robot;
   robot::Config reviewed;  ///< as profile and file say, without --set and what was changed and kept
   std::map<std::string, std::filesystem::path> tiles;  ///< set name → MBTiles file
@@ -251,7 +254,8 @@ struct SettingsSource {
 base::Result<Settings> load_settings(const SettingsSource& source);
 
 /// What the vehicle, its drivers and the robot are told, by full names ("drivers.gnss.enabled"),
-/// for another program of ours: no links (they may hold passwords), nothing of the server.
+/// for another program of ours: no links (they may hold passwords), no sensors (it has no world to
+/// see), nothing of the server.
 std::vector<robot::NamedValue> told(Settings settings);
 /// From that list alone, no file: told() of the answer is the same. Invalid, naming the key:
 /// unknown or out of range.

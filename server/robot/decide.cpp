@@ -58,7 +58,8 @@ Facts Robot::Impl::facts() const {
           .self_test = self_test,
           .estimate = health,
           .latched = reset_latch.why(),
-          .moved_disarmed = reset_latch.disarmed_why()};
+          .moved_disarmed = reset_latch.disarmed_why(),
+          .blind = blind};
 }
 
 void Robot::Impl::judge() {
@@ -177,7 +178,7 @@ base::DriveCommand Robot::Impl::decide() {
   if (!arm.armed() || radio) return {};
   if (base_lost(world, config->safety, clock.now())) return {};
   if (!listens) return {{}, true};
-  return keep_inside(choose());
+  return keep_off(keep_inside(choose()));
 }
 
 /// Who may drive in this mode, and what he wants.

@@ -7,7 +7,7 @@
 //   commands ─▶ commands.cpp, modes/: what is asked                          │
 //        who drives:  e-stop > radio > by_hand > missions | self_driving ◀───┘
 //                                   │
-//                     fence: the last word ─▶ send ─▶ publish
+//                     fence, guard: the last words ─▶ send ─▶ publish
 //
 // Each part is a class with its own diagram and tests; Impl knows them all, hands each what it
 // needs and nothing more, and keeps what belongs to no one: where the robot is, and what was sent.
@@ -22,6 +22,7 @@
 #include "robot/calibration.hpp"
 #include "robot/compile.hpp"
 #include "robot/delivered.hpp"
+#include "robot/guard/guard.hpp"
 #include "robot/handling.hpp"
 #include "robot/loop_clock.hpp"
 #include "robot/mission_keeper.hpp"
@@ -75,6 +76,8 @@ struct Robot::Impl {
   std::shared_ptr<const Config> reviewed;  ///< set before the first tick
   base::Latest<Config> shared_config;
   base::Inbox<base::Measurement> measurements{4096};
+  base::Inbox<std::shared_ptr<const Surroundings>> surroundings{4};
+  base::Inbox<nav::sense::Odometry> odometry{256};
   static constexpr std::size_t kCommands = 64;
   base::Inbox<PendingCommand> commands{kCommands};
   base::Latest<base::Snapshot> snapshot;
@@ -107,6 +110,9 @@ struct Robot::Impl {
   DrivenWayKeeper driven;
   std::uint64_t driven_told = 0;
   FenceKeep fence;
+  Guard guard;
+  std::string blind;  ///< why nothing may drive by itself: a sensor; empty: nothing is wrong
+  std::vector<std::shared_ptr<const Surroundings>> surroundings_batch;
   RadioKeys keys;
   std::vector<RadioKey> pressed;
   bool radio_had_control = false;
@@ -239,6 +245,10 @@ struct Robot::Impl {
   // decide.cpp
   base::DriveCommand choose();
   base::DriveCommand keep_inside(base::DriveCommand command);
+  // guard/watched.cpp
+  void look_around();
+  base::DriveCommand keep_off(base::DriveCommand command);
+  bool waits_for_way();
   base::Result<void> inside(base::EnuPoint to) const;
   double way_margin_m() const;
   void watch_frame();

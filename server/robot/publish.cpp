@@ -50,6 +50,8 @@ bool Robot::Impl::publish() {
     s->fence = fence.state(pose, estimator.frame(), missions.get().get(), way_margin_m());
   }
   s->command = sent;
+  if (guard.obstacle().action != base::GuardAction::None) s->obstacle = guard.obstacle();
+  if (const auto& around = guard.around()) s->sensors = around->sensors;
   s->teleop = teleop();
   s->safety = std::move(assessment.conditions);
   s->checks = checks;

@@ -37,6 +37,15 @@ Robot::~Robot() = default;
 base::Inbox<base::Measurement>& Robot::measurements() noexcept {
   return impl_->measurements;
 }
+void Robot::guard_by(const nav::sense::ProtectParams& params) {
+  impl_->guard.set(params, impl_->config->vehicle, true);
+}
+base::Inbox<std::shared_ptr<const Surroundings>>& Robot::surroundings() noexcept {
+  return impl_->surroundings;
+}
+base::Inbox<nav::sense::Odometry>& Robot::odometry() noexcept {
+  return impl_->odometry;
+}
 base::Inbox<PendingReply>& Robot::replies() noexcept {
   return impl_->outbox.replies;
 }
@@ -303,6 +312,7 @@ void Robot::tick(Time now, base::WallTime wall, base::Duration lateness) noexcep
     r.take_estop(now);
     r.take_commands();
     r.take_measurements();
+    r.look_around();
     r.watch_estimate();
     r.watch_frame();
     r.act_on_radio();

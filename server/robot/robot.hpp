@@ -31,11 +31,15 @@
 #include "mission/fence/fence.hpp"
 #include "mission/plan.hpp"
 #include "nav/estimate/learned.hpp"
+#include "nav/sense/odometry.hpp"
+#include "nav/sense/params.hpp"
 #include "robot/config.hpp"
 
 namespace roverd::robot {
 
 using base::Time;
+
+struct Surroundings;  // see robot/guard/surroundings.hpp
 
 /// One revision of a mission as the api hands it over. Immutable.
 struct MissionCopy {
@@ -339,6 +343,13 @@ class Robot {
 
   /// Any thread: from drivers.
   base::Inbox<base::Measurement>& measurements() noexcept;
+  /// Before the first tick: the profile has sensors, and by this the guard (guard/guard.hpp) keeps
+  /// from what they see. Without it the robot drives blind, as it is told.
+  void guard_by(const nav::sense::ProtectParams& params);
+  /// Any thread: what stands around it; the newest counts.
+  base::Inbox<std::shared_ptr<const Surroundings>>& surroundings() noexcept;
+  /// Any thread: how the body moved, 50 times a second, for whoever makes the surroundings.
+  base::Inbox<nav::sense::Odometry>& odometry() noexcept;
 
   /// Any thread. The answer comes with the next tick through replies(): Late where `validity` says
   /// so, but a stop is always carried out. @return false: no room, nothing was queued and `reply`

@@ -68,7 +68,7 @@ def help_is_given():
     """every command tells its arguments and ends with 0"""
     for arguments, words in ((("--help",), ("--config", "--port", "decode", "replay", "report", "backup", "ntrip",
                                             "study")),
-                             (("decode", "--help"), ("KIND", "FILE", "bunker", "nmea", "ubx", "mti", "sick")),
+                             (("decode", "--help"), ("KIND", "FILE", "bunker", "nmea", "ubx", "mti", "sick", "vlp16")),
                              (("replay", "-h"), ("FILE", "--report", "--format", "--every", "--vehicle", "--set")),
                              (("report", "--help"), ("RUN", "--data")),
                              (("backup", "--help"), ("--data", "--keep")),

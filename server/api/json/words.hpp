@@ -59,6 +59,10 @@ Json calibration_json(const base::Snapshot& snapshot);
 Json calibration_preview_json(const robot::CalibrationPreview& preview);
 /// @param snapshot the last one that the trail has taken
 Json trail_json(const services::Trail& trail, const base::Snapshot& snapshot);
+/// Null: nothing limits or stops.
+Json obstacle_json(const std::optional<base::Obstacle>& obstacle, base::Time now);
+/// All of the profile, as they were seen last.
+Json sensors_json(const base::Snapshot& snapshot, base::Time now);
 /// Every receiver's satellites, newest word of each.
 Json satellites_json(const base::Snapshot& snapshot, base::Time now);
 Json checks_json(const base::Snapshot& snapshot);

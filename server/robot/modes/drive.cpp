@@ -38,7 +38,8 @@ nav::Vehicle Robot::Impl::vehicle() const {
 
 /// What is allowed now, whatever a path was laid for.
 double Robot::Impl::limit_mps() const noexcept {
-  const double most = std::min(config->speed.max_mps, config->vehicle.max_speed_mps);
+  double most = std::min(config->speed.max_mps, config->vehicle.max_speed_mps);
+  most = std::min(most, std::max(guard.limit_mps(), 0.5 * config->speed.min_mps));
   if (assessment.slow) return std::min(most, config->speed.creep_mps);
   if (!pose) return most;
   return certain_mps(pose->horizontal_sigma_m, corridor_m(), most, config->speed.creep_mps,
@@ -77,6 +78,10 @@ base::DriveCommand Robot::Impl::drive_by_hand() {
 
 base::DriveCommand Robot::Impl::drive_by_itself() {
   if (!pose) return {{}, true};
+  if (waits_for_way()) {
+    self_driving.interrupt();
+    return {{}, true};
+  }
   const SelfDriving::Step step = self_driving.step(
       {machine.mode(), vehicle(), *estimator.frame(), limit_mps(), clock.now(), clock.dt_s()});
   speed_reason = std::string(step.reason);
@@ -92,6 +97,10 @@ base::DriveCommand Robot::Impl::drive_by_itself() {
 base::DriveCommand Robot::Impl::drive_mission() {
   if (!missions.executor.running() || !pose) return {{}, true};
   driver = Driver::Autonomy;
+  if (waits_for_way()) {
+    missions.executor.interrupt();
+    return {{}, true};
+  }
   if (!pose->heading_known) return seek_heading();
   missions.executor.go_on(pose->at);
   const nav::TrackOutput out =

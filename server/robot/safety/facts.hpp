@@ -39,6 +39,7 @@ struct Facts {
   const base::EstimatorHealth& estimate;
   std::string_view latched{};         ///< see ResetLatch; empty: not
   std::string_view moved_disarmed{};  ///< likewise
+  std::string_view blind{};           ///< which required sensor does not see, and why; empty: none
 };
 
 }  // namespace roverd::robot

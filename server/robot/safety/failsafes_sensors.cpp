@@ -110,6 +110,20 @@ constexpr std::array kSensorRows{
             },
     },
     Failsafe{
+        .id = "blind",
+        .seen = "a sensor that the profile demands is silent, dirty or blinded",
+        .after = "0.3 s",
+        .response = Response::Hold,
+        .acts = Acts::ByItself,
+        .ends = kGoneAndGoOn,
+        .over = kHands,
+        .test = [](const Facts& f, const SafetyParams&, Time) -> Told {
+          if (f.blind.empty()) return {};
+          return std::string(f.blind);
+        },
+        .provoke = [](MadeUp& m) { m.facts.blind = "the sensor front is silent"; },
+    },
+    Failsafe{
         .id = "sensors_contradict",
         .seen = "two sensors contradict each other, and it cannot be told which one is wrong",
         .after = "1.6 s",

@@ -243,7 +243,7 @@ TEST(DrivenWayKeeper, TellsNewsOnce) {
   const auto news = keeper.news(told, 4);
   ASSERT_NE(news, nullptr);
   EXPECT_EQ(news->frame_id, 4u);
-  EXPECT_EQ(news->back.size(), 1u);
+  EXPECT_EQ(news->crumbs.size(), 1u);
   EXPECT_EQ(keeper.news(told, 4), nullptr);
 }
 

@@ -1,0 +1,56 @@
+// What looks around, and what stands in the way.
+
+#include <cmath>
+
+#include "api/json/measured.hpp"
+#include "api/json/words.hpp"
+#include "base/angle.hpp"
+
+namespace roverd::api {
+
+Json obstacle_json(const std::optional<base::Obstacle>& o, base::Time now) {
+  if (!o) return nullptr;
+  return {{"action", base::to_string(o->action)},
+          {"what", o->what},
+          {"distance_m", rounded(std::hypot(o->ahead_m, o->left_m), kPlaces2)},
+          // Bearings on the body count clockwise.
+          {"bearing_deg", degrees(-o->bearing_rad)},
+          {"ahead_m", rounded(o->ahead_m, kPlaces2)},
+          {"left_m", rounded(o->left_m, kPlaces2)},
+          {"way_m", rounded(o->distance_m, kPlaces2)},
+          {"sensor", o->sensor.empty() ? Json(nullptr) : Json(o->sensor)},
+          {"age_s", rounded(o->age_s, kPlaces2)},
+          {"stopped_s", o->stopped_since
+                            ? Json(rounded(base::seconds(now - *o->stopped_since), kPlaces2))
+                            : Json(nullptr)},
+          {"reason", o->reason}};
+}
+
+Json sensors_json(const base::Snapshot& s, base::Time now) {
+  Json items = Json::array();
+  for (const base::SensorState& one : s.sensors) {
+    const base::Mount& m = one.mount;
+    items.push_back({{"name", one.name},
+                     {"kind", one.kind},
+                     {"required", one.required},
+                     {"health", base::to_string(one.health)},
+                     {"reason", one.reason},
+                     {"window", base::to_string(one.window)},
+                     {"age_s", one.seen ? Json(rounded(base::seconds(now - *one.seen), kPlaces2))
+                                        : Json(nullptr)},
+                     {"rate_hz", rounded(one.rate_hz, kPlaces2)},
+                     {"unknown_part", rounded(one.unknown_part, kPlaces3)},
+                     {"points", one.points},
+                     {"refused", one.refused},
+                     {"mount",
+                      {{"x_m", rounded(m.x_m, kPlaces3)},
+                       {"y_m", rounded(m.y_m, kPlaces3)},
+                       {"z_m", rounded(m.z_m, kPlaces3)},
+                       {"roll_deg", degrees(m.roll_rad)},
+                       {"pitch_deg", degrees(m.pitch_rad)},
+                       {"yaw_deg", degrees(m.yaw_rad)}}}});
+  }
+  return {{"items", std::move(items)}};
+}
+
+}  // namespace roverd::api

@@ -1,0 +1,88 @@
+#include "app/sense_loop.hpp"
+
+#include <algorithm>
+#include <ctime>
+#include <utility>
+
+#include <pthread.h>
+
+#include "base/log.hpp"
+
+namespace roverd {
+namespace {
+
+constexpr long kWake_ns = 20'000'000;  // also without a sight: what waits, and who fell silent
+
+}  // namespace
+
+SenseLoop::SenseLoop(robot::Robot& robot, robot::Lookout lookout)
+    : robot_(robot), lookout_(std::move(lookout)) {
+  sem_init(&news_, 0, 0);
+  thread_ = std::thread([this] { run(); });
+}
+
+SenseLoop::~SenseLoop() {
+  stop_ = true;
+  sem_post(&news_);
+  thread_.join();
+  sem_destroy(&news_);
+}
+
+void SenseLoop::see(std::shared_ptr<const base::Sight> sight) {
+  sights_.put(std::move(sight));
+  sem_post(&news_);
+}
+
+void SenseLoop::run() noexcept {
+  pthread_setname_np(pthread_self(), "sense");
+  std::vector<std::shared_ptr<const base::Sight>> sights;
+  std::vector<nav::sense::Odometry> moved;
+  while (!stop_) {
+    timespec until{};
+    clock_gettime(CLOCK_REALTIME, &until);
+    until.tv_nsec += kWake_ns;
+    until.tv_sec += until.tv_nsec / 1'000'000'000;
+    until.tv_nsec %= 1'000'000'000;
+    (void)sem_timedwait(&news_, &until);
+    try {
+      sights.clear();
+      moved.clear();
+      sights_.take(sights);
+      robot_.odometry().take(moved);
+      for (const auto& o : moved) lookout_.moved(o);
+      const base::Time now = base::steady_now();
+      for (auto& s : sights) lookout_.see(std::move(s), now);
+      if (auto picture = lookout_.picture(now)) robot_.surroundings().put(std::move(picture));
+    } catch (const std::exception& e) {
+      base::log(base::Level::Error, "sense", e.what());  // the next sight is another one
+    }
+  }
+}
+
+base::Result<robot::Lookout> lookout_of(const Settings& s, base::Time now) {
+  using namespace nav::sense;
+  const nav::VehicleParams& v = s.robot.vehicle;
+  const double back_m = v.steered() ? 0.5 * (v.length_m - v.wheelbase_m) : 0.5 * v.length_m;
+  const Footprint body = Footprint::box(v.length_m, v.width_m, std::max(0.01, back_m));
+  std::vector<SensorSetup> setups;
+  std::vector<std::string> kinds;
+  for (const auto& [name, sensor] : s.sensors) {
+    if (!sensor.said.enabled) continue;
+    SensorSetup one;
+    one.name = "sensors." + name;
+    one.mount = sensor.said.mount();
+    one.planar = sensor.said.planar();
+    one.needed = sensor.said.required;
+    one.persist = s.sense.persist;
+    one.health = s.sense.health;
+    one.health.rate_hz = sensor.said.rate_hz;
+    setups.push_back(std::move(one));
+    kinds.push_back(sensor.said.kind);
+  }
+  ChainParams params{s.sense.reduce, s.sense.ground, s.sense.grid};
+  auto chain = Chain::of(params, std::move(setups), body, now);
+  if (!chain) return tl::unexpected(chain.error());
+  return robot::Lookout(std::move(*chain), std::move(kinds), s.sense.protect.reach_m + 1.0);
+}
+
+}  // namespace roverd

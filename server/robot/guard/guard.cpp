@@ -1,0 +1,185 @@
+#include "robot/guard/guard.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "base/angle.hpp"
+
+namespace roverd::robot {
+namespace {
+
+using base::BodyTwist;
+using nav::sense::Limit;
+
+constexpr double kLeast_mps = 0.05;  // slower, and it stands
+constexpr double kLeast_radps = 0.05;
+constexpr double kProbe_mps = 0.15;  // what a stopped drive tries
+constexpr double kProbe_radps = 0.15;
+constexpr double kClear_s = 1.0;
+
+bool stands(const BodyTwist& t) noexcept {
+  return std::abs(t.linear_mps) < 1e-6 && std::abs(t.angular_radps) < 1e-6;
+}
+
+BodyTwist times(const BodyTwist& t, double part) noexcept {
+  return {t.linear_mps * part, t.angular_radps * part};
+}
+
+/// The same curve, so slowly as it is tried.
+BodyTwist probe_of(const BodyTwist& wanted) noexcept {
+  const double v = std::abs(wanted.linear_mps);
+  const double w = std::abs(wanted.angular_radps);
+  const double part = std::max(v / kProbe_mps, w / kProbe_radps);
+  return part > 1.0 ? times(wanted, 1.0 / part) : wanted;
+}
+
+bool too_slow(const BodyTwist& t) noexcept {
+  return std::abs(t.linear_mps) < kLeast_mps && std::abs(t.angular_radps) < kLeast_radps;
+}
+
+std::string sentence(const base::Obstacle& o) {
+  char text[160];
+  const double deg = base::deg_from_rad(o.bearing_rad);
+  if (o.what == "blind") {
+    return "nothing is seen any more: the picture of the surroundings is too old";
+  }
+  const char* side = std::abs(deg) < 15.0 ? "ahead" : deg > 0.0 ? "left" : "right";
+  const char* where = std::abs(deg) > 150.0 ? "behind" : side;
+  const char* what = o.what == "drop"     ? "the ground ends"
+                     : o.what == "unseen" ? "no sensor has seen the way"
+                                          : "something stands in the way";
+  std::snprintf(text, sizeof text, "%s, %.1f m %s%s%s", what, std::hypot(o.ahead_m, o.left_m),
+                where, o.sensor.empty() ? "" : ", seen by ", o.sensor.c_str());
+  return text;
+}
+
+}  // namespace
+
+void Guard::set(const nav::sense::ProtectParams& params, const nav::VehicleParams& vehicle,
+                bool sees) {
+  params_ = params;
+  sees_ = sees;
+  const double back_m =
+      vehicle.steered() ? 0.5 * (vehicle.length_m - vehicle.wheelbase_m) : 0.5 * vehicle.length_m;
+  body_ = nav::sense::Footprint::box(vehicle.length_m, vehicle.width_m, std::max(0.01, back_m));
+}
+
+void Guard::take(std::shared_ptr<const Surroundings> news) noexcept {
+  around_ = std::move(news);
+}
+
+const nav::sense::Odometry& Guard::move(const BodyTwist& measured, base::Time now) noexcept {
+  const double dt_s = began_ ? base::seconds(now - odometry_.stamp) : 0.0;
+  const bool usable = std::isfinite(measured.linear_mps) && std::isfinite(measured.angular_radps);
+  const BodyTwist t = usable ? measured : BodyTwist{};
+  if (dt_s > 0.0 && dt_s < 1.0) {
+    odometry_.pose = odometry_.pose * nav::sense::along(t.linear_mps, t.angular_radps, dt_s);
+  }
+  began_ = true;
+  odometry_.stamp = now;
+  odometry_.v_mps = t.linear_mps;
+  odometry_.yaw_rate_radps = t.angular_radps;
+  return odometry_;
+}
+
+nav::sense::Verdict Guard::look(const BodyTwist& twist, base::Time now) const noexcept {
+  nav::sense::Verdict v;
+  const bool old = !around_ || base::seconds(now - around_->patch.stamp) > kTooOld_s;
+  if (!old) return protect(around_->patch, odometry_.pose, body_, twist, params_);
+  // Nothing is known: as if the very next step were unseen.
+  const bool ahead = twist.linear_mps > 0.0;
+  const double most_mps = ahead ? params_.creep_mps : params_.creep_back_mps;
+  const double by_way =
+      std::abs(twist.linear_mps) > 1e-6 ? most_mps / std::abs(twist.linear_mps) : 1.0;
+  const bool spot = std::abs(twist.linear_mps) < kLeast_mps;
+  const double by_turn = spot && std::abs(twist.angular_radps) > 1e-6
+                             ? params_.creep_turn_radps / std::abs(twist.angular_radps)
+                             : 1.0;
+  v.part = std::clamp(std::min(by_way, by_turn), 0.0, 1.0);
+  v.limit = Limit::Unseen;
+  v.found = true;
+  v.age_s = around_ ? base::seconds(now - around_->patch.stamp) : 0.0;
+  return v;
+}
+
+BodyTwist Guard::judge(const BodyTwist& wanted, bool by_itself, base::Time now) {
+  limit_mps_ = 1e9;
+  if (!sees_ || stands(wanted)) {
+    if (!stopped_since_) obstacle_ = {};
+    return wanted;
+  }
+  wanted_ = wanted;
+  const nav::sense::Verdict v = look(wanted, now);
+  BodyTwist out = times(wanted, v.part);
+  if (v.limit != Limit::None && too_slow(out)) {
+    out = {};
+    clear_since_.reset();
+    if (!stopped_since_) {
+      stopped_since_ = now;
+      news_ = true;
+    }
+    tell(v, base::GuardAction::Stop, now);
+    return out;
+  }
+  // A hand that draws back is let go at once; a drive by itself waits (may_go_on).
+  if (stopped_since_ && !by_itself) {
+    stopped_since_.reset();
+    news_ = false;
+  }
+  if (v.limit == Limit::None) {
+    obstacle_ = {};
+    return out;
+  }
+  const bool creeps = v.limit == Limit::Unseen;
+  tell(v, creeps ? base::GuardAction::Creep : base::GuardAction::Slow, now);
+  limit_mps_ = std::abs(out.linear_mps);
+  return out;
+}
+
+bool Guard::may_go_on(base::Time now) {
+  if (!stopped_since_) return true;
+  const nav::sense::Verdict v = look(probe_of(wanted_), now);
+  const BodyTwist out = times(probe_of(wanted_), v.part);
+  if (v.limit != Limit::None && too_slow(out)) {
+    clear_since_.reset();
+    tell(v, base::GuardAction::Stop, now);
+    return false;
+  }
+  if (!clear_since_) clear_since_ = now;
+  if (base::seconds(now - *clear_since_) < kClear_s) return false;
+  stopped_since_.reset();
+  clear_since_.reset();
+  news_ = false;
+  obstacle_ = {};
+  return true;
+}
+
+void Guard::forget() noexcept {
+  if (stopped_since_) news_ = false;
+  stopped_since_.reset();
+  clear_since_.reset();
+  wanted_ = {};
+  limit_mps_ = 1e9;
+  obstacle_ = {};
+}
+
+void Guard::tell(const nav::sense::Verdict& v, base::GuardAction action, base::Time now) {
+  const bool old = !around_ || base::seconds(now - around_->patch.stamp) > kTooOld_s;
+  obstacle_.action = action;
+  obstacle_.what = old ? "blind" : nav::sense::to_string(v.limit);
+  obstacle_.distance_m = v.distance_m;
+  obstacle_.bearing_rad = v.bearing_rad;
+  obstacle_.ahead_m = v.at.x;
+  obstacle_.left_m = v.at.y;
+  obstacle_.sensor.clear();
+  if (!old && v.limit != Limit::Unseen && v.sensor < around_->sensors.size()) {
+    obstacle_.sensor = around_->sensors[v.sensor].name;
+  }
+  obstacle_.age_s = v.age_s;
+  obstacle_.stopped_since = stopped_since_;
+  obstacle_.reason = sentence(obstacle_);
+}
+
+}  // namespace roverd::robot

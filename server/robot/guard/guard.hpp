@@ -1,0 +1,76 @@
+#pragma once
+// The last word on moving where the robot sees: nothing is touched. Holds for every mode that
+// moves, sticks included.
+//
+//   Free ──something on the commanded curve──▶ Slowed ──too near to drive on──▶ Stopped
+//     ▲                                          │                                │ the way has
+//     └────────── the way is clear ──────────────┴────────────────────────────────┘ been clear for
+//                                                                                   clear_s
+// While it stops an autonomous drive it tries the curve that was wanted last. Without any sensor in
+// the profile it lets everything pass. A picture that is too old is none: what was seen then is
+// not believed any more, and the creep speeds of what no sensor sees hold.
+//
+// Control thread; allocates for the sentence of a stop only.
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "base/sensing.hpp"
+#include "nav/sense/footprint.hpp"
+#include "nav/sense/odometry.hpp"
+#include "nav/sense/params.hpp"
+#include "nav/sense/protect.hpp"
+#include "nav/track/params.hpp"
+#include "robot/guard/surroundings.hpp"
+
+namespace roverd::robot {
+
+class Guard {
+ public:
+  static constexpr double kTooOld_s = 0.5;  ///< of the picture
+
+  /// Before the first tick. @param sees whether the profile has sensors
+  void set(const nav::sense::ProtectParams& params, const nav::VehicleParams& vehicle, bool sees);
+  bool sees() const noexcept { return sees_; }
+
+  void take(std::shared_ptr<const Surroundings> news) noexcept;
+  /// Once a tick: how the body moved. @param measured over ground
+  const nav::sense::Odometry& move(const base::BodyTwist& measured, base::Time now) noexcept;
+
+  /// What may leave of a wanted twist. @param by_itself nobody's hand is on it: after a stop it
+  /// waits until the way has been clear for a while
+  base::BodyTwist judge(const base::BodyTwist& wanted, bool by_itself, base::Time now);
+  /// It stops a drive: the drive is not asked any more until may_go_on().
+  bool stops() const noexcept { return stopped_since_.has_value(); }
+  /// While it stops: looks along the curve that was wanted last.
+  bool may_go_on(base::Time now);
+  /// What the tracker should plan with, so that the last word need not cut.
+  double limit_mps() const noexcept { return limit_mps_; }
+  /// Somebody else begins: what was wanted before says nothing.
+  void forget() noexcept;
+
+  const base::Obstacle& obstacle() const noexcept { return obstacle_; }
+  /// It stopped just now, or let go; empty: neither. Told once.
+  std::optional<bool> news() noexcept { return std::exchange(news_, std::nullopt); }
+  const std::shared_ptr<const Surroundings>& around() const noexcept { return around_; }
+
+ private:
+  nav::sense::Verdict look(const base::BodyTwist& twist, base::Time now) const noexcept;
+  void tell(const nav::sense::Verdict& v, base::GuardAction action, base::Time now);
+
+  bool sees_ = false;
+  nav::sense::ProtectParams params_;
+  nav::sense::Footprint body_ = nav::sense::Footprint::box(1.0, 0.8, 0.5);
+  std::shared_ptr<const Surroundings> around_;
+  nav::sense::Odometry odometry_;
+  bool began_ = false;
+  base::BodyTwist wanted_;
+  double limit_mps_ = 1e9;
+  std::optional<base::Time> stopped_since_;
+  std::optional<base::Time> clear_since_;
+  std::optional<bool> news_;
+  base::Obstacle obstacle_;
+};
+
+}  // namespace roverd::robot

@@ -1,0 +1,98 @@
+#include "robot/guard/lookout.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace roverd::robot {
+namespace {
+
+constexpr double kWaits_s = 0.2;
+constexpr double kTellAnyway_s = 0.1;
+constexpr std::size_t kMostWaiting = 64;
+
+base::SensorHealth health_of(nav::sense::Eye eye, bool seen) noexcept {
+  if (!seen) return base::SensorHealth::Silent;
+  switch (eye) {
+    case nav::sense::Eye::Ok:
+      return base::SensorHealth::Good;
+    case nav::sense::Eye::Degraded:
+      return base::SensorHealth::Degraded;
+    case nav::sense::Eye::Blind:
+      return base::SensorHealth::Blind;
+  }
+  return base::SensorHealth::Blind;
+}
+
+/// When its last point was measured.
+base::Time end_of(const base::Sight& sight) noexcept {
+  const double after_s = sight.points.empty() ? 0.0 : double(sight.points.back().after_s);
+  return sight.stamp + base::from_seconds(after_s);
+}
+
+}  // namespace
+
+Lookout::Lookout(nav::sense::Chain chain, std::vector<std::string> kinds, double reach_m)
+    : chain_(std::move(chain)),
+      kinds_(std::move(kinds)),
+      last_(chain_.sensors()),
+      reach_m_(reach_m) {
+  kinds_.resize(chain_.sensors());
+}
+
+void Lookout::moved(const nav::sense::Odometry& o) noexcept {
+  (void)history_.push(o);
+}
+
+void Lookout::see(std::shared_ptr<const base::Sight> sight, base::Time now) {
+  if (waiting_.size() >= kMostWaiting) waiting_.pop_front();
+  waiting_.push_back(std::move(sight));
+  take_waiting(now);
+}
+
+void Lookout::take_waiting(base::Time now) {
+  while (!waiting_.empty()) {
+    const base::Sight& first = *waiting_.front();
+    const bool known = !history_.empty() && end_of(first) <= history_.newest().stamp;
+    if (!known && base::seconds(now - end_of(first)) < kWaits_s) return;
+    take(first, now);
+    waiting_.pop_front();
+  }
+}
+
+void Lookout::take(const base::Sight& sight, base::Time now) {
+  const auto number = chain_.take(sight, history_, now);
+  if (!number) return;
+  last_[*number] = {sight.points.size(), end_of(sight)};
+  news_ = true;
+}
+
+std::shared_ptr<const Surroundings> Lookout::picture(base::Time now) {
+  take_waiting(now);
+  const bool due = !told_ || base::seconds(now - *told_) >= kTellAnyway_s;
+  if ((!news_ && !due) || history_.empty()) return nullptr;
+  auto out = std::make_shared<Surroundings>();
+  chain_.grid().patch(history_.newest().pose, reach_m_, now, out->patch);
+  for (std::size_t i = 0; i < chain_.sensors(); ++i) {
+    const nav::sense::SensorSetup& setup = chain_.sensor(i);
+    const nav::sense::Fitness fit = chain_.health(i, now);
+    base::SensorState s;
+    s.name = setup.name;
+    s.kind = kinds_[i];
+    s.required = setup.needed;
+    s.health = health_of(fit.eye, last_[i].seen.has_value());
+    s.reason = fit.reason;
+    s.window = fit.window;
+    s.seen = last_[i].seen;
+    s.rate_hz = fit.rate_hz;
+    s.unknown_part = fit.unknown_part;
+    s.refused = fit.refused;
+    s.points = last_[i].points;
+    s.mount = setup.mount;
+    out->sensors.push_back(std::move(s));
+  }
+  news_ = false;
+  told_ = now;
+  return out;
+}
+
+}  // namespace roverd::robot

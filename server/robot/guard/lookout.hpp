@@ -1,0 +1,54 @@
+#pragma once
+// The sense thread's work, without the thread: what sensors saw and how the body moved in, the
+// surroundings out.
+//
+//   Odometry, 50 Hz ─▶ PoseHistory ┐
+//   Sight, as they come ───────────┴▶ Chain ─▶ picture(now) ─▶ Robot::surroundings()
+//
+// A sight that is newer than the odometry waits for it, 0.2 s at most. Not shared between threads;
+// time is an argument.
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/sensing.hpp"
+#include "base/sight.hpp"
+#include "nav/sense/chain.hpp"
+#include "robot/guard/surroundings.hpp"
+
+namespace roverd::robot {
+
+class Lookout {
+ public:
+  /// @param kinds of the chain's sensors, as their profile says
+  Lookout(nav::sense::Chain chain, std::vector<std::string> kinds, double reach_m);
+
+  void moved(const nav::sense::Odometry& o) noexcept;
+  /// @param sight one of the chain's sensors, or it is left out
+  void see(std::shared_ptr<const base::Sight> sight, base::Time now);
+  /// Takes what waited; then what is known around the robot. Null: nothing was seen since the last
+  /// one, and that is younger than 0.1 s.
+  std::shared_ptr<const Surroundings> picture(base::Time now);
+
+ private:
+  void take_waiting(base::Time now);
+  void take(const base::Sight& sight, base::Time now);
+
+  nav::sense::Chain chain_;
+  nav::sense::PoseHistory history_;
+  std::vector<std::string> kinds_;
+  struct Last {
+    std::uint64_t points = 0;
+    std::optional<base::Time> seen;
+  };
+  std::vector<Last> last_;
+  double reach_m_;
+  std::deque<std::shared_ptr<const base::Sight>> waiting_;
+  bool news_ = false;
+  std::optional<base::Time> told_;
+};
+
+}  // namespace roverd::robot

@@ -1,0 +1,197 @@
+// What stands in the way is not driven against, whoever drives: the guard in the whole robot.
+
+#include "robot/guard/guard.hpp"
+
+#include <cmath>
+#include <memory>
+
+#include "field.hpp"
+
+namespace roverd::robot {
+namespace {
+
+using nav::sense::Known;
+
+/// The ground around the robot: all seen and free, but what a test puts there.
+class Seeing : public ::testing::Test {
+ protected:
+  Seeing() {
+    field.robot.guard_by({});
+    field.more = [this] { look(); };
+  }
+
+  /// A wall across the way, so far ahead of where the robot was at the begin; 1 m thick.
+  void wall_at(double north_m) { wall_m = north_m; }
+
+  void look() {
+    std::vector<nav::sense::Odometry> moved;
+    field.robot.odometry().take(moved);
+    for (const auto& o : moved) pose = o.pose;
+    if (!sees) return;
+    auto s = std::make_shared<Surroundings>();
+    s->patch.stamp = field.now;
+    s->patch.side = 280;
+    s->patch.x0 = static_cast<std::int32_t>(std::floor(pose.x_m / 0.05)) - 140;
+    s->patch.y0 = static_cast<std::int32_t>(std::floor(pose.y_m / 0.05)) - 140;
+    s->patch.cells.assign(280 * 280, {seen, 0, 0});
+    if (wall_m) {
+      for (std::int32_t y = 0; y < 280; ++y) {
+        for (std::int32_t x = 0; x < 280; ++x) {
+          const double ahead_m = (s->patch.x0 + x) * 0.05;
+          if (ahead_m < *wall_m || ahead_m > *wall_m + 1.0) continue;
+          s->patch.cells[std::size_t(y * 280 + x)].known = Known::Occupied;
+        }
+      }
+    }
+    base::SensorState state;
+    state.name = "front";
+    state.kind = "velodyne";
+    state.health = health;
+    state.reason = "the glass is blocked";
+    if (heard) state.seen = field.now;
+    s->sensors.push_back(state);
+    field.robot.surroundings().put(std::move(s));
+  }
+
+  /// From the origin of the body to the wall, less half of the body.
+  double gap_m() const { return *wall_m - 0.5 * VehicleLength - driven_m(); }
+  double driven_m() const { return field.at.north_m; }
+
+  static constexpr double VehicleLength = 1.023;
+  Field field;
+  bool sees = true;
+  bool heard = true;
+  Known seen = Known::Free;
+  base::SensorHealth health = base::SensorHealth::Good;
+  std::optional<double> wall_m;
+  nav::sense::Pose2 pose;
+};
+
+TEST_F(Seeing, AMissionStopsBeforeAWallAndGoesOnWhenItIsGone) {
+  // Given a mission straight through a place where a wall stands,
+  field.drive_mission();
+  wall_at(driven_m() + 5.0);
+  // when it is driven,
+  field.run(20.0);
+  // then it stands before it, says why, and the mission waits as it is.
+  EXPECT_FALSE(field.moves());
+  EXPECT_GT(gap_m(), 0.05);
+  EXPECT_LT(gap_m(), 0.45);
+  EXPECT_TRUE(field.has_condition("obstacle"));
+  ASSERT_TRUE(field.state()->obstacle);
+  EXPECT_EQ(field.state()->obstacle->action, base::GuardAction::Stop);
+  EXPECT_EQ(field.state()->obstacle->sensor, "front");
+  EXPECT_NEAR(field.state()->obstacle->bearing_rad, 0.0, 0.9);
+  EXPECT_EQ(field.execution(), ExecutionState::Running);
+  EXPECT_TRUE(field.has_event("obstacle"));
+  // And when the wall is gone, it goes on after a while, by itself.
+  wall_m.reset();
+  field.run(0.5);
+  EXPECT_FALSE(field.moves());
+  field.run(3.0);
+  EXPECT_TRUE(field.moves());
+  EXPECT_TRUE(field.has_event("obstacle_gone"));
+  field.run(40.0);
+  EXPECT_EQ(field.execution(), ExecutionState::Finished);
+}
+
+TEST_F(Seeing, ItSlowsDownBeforeItStops) {
+  field.drive_mission();
+  wall_at(driven_m() + 4.0);
+  double fastest_near = 0.0;
+  double slowest = 1.0;
+  for (int i = 0; i < 1000 && field.moves(); ++i) {
+    field.tick();
+    if (gap_m() < 0.6) fastest_near = std::max(fastest_near, field.command.twist.linear_mps);
+    if (field.moves()) slowest = std::min(slowest, field.command.twist.linear_mps);
+  }
+  EXPECT_LT(fastest_near, 0.6);
+  EXPECT_LT(slowest, 0.2);
+}
+
+TEST_F(Seeing, TheSticksAreStoppedTooAndMayDriveAway) {
+  field.run(8.0);
+  ASSERT_TRUE(field.ask(Arm{}));
+  ASSERT_TRUE(field.ask(SetMode{Mode::Manual}));
+  wall_at(2.0);
+  field.let_go();
+  const auto hold = [&](double v, double seconds) {
+    for (int i = 0; i < seconds * 50.0; ++i) {
+      field.robot.request(Drive{{v, 0.0}, true}, field.now + std::chrono::seconds(1), {});
+      field.tick();
+    }
+  };
+  hold(0.8, 10.0);
+  EXPECT_FALSE(field.moves());
+  EXPECT_GT(gap_m(), 0.05);
+  EXPECT_LT(gap_m(), 0.45);
+  const double stood_m = driven_m();
+  hold(-0.3, 2.0);
+  EXPECT_LT(driven_m(), stood_m - 0.3);
+}
+
+TEST_F(Seeing, WhatNoSensorSawIsCreptIntoAndNotReversedInto) {
+  seen = Known::Unknown;
+  field.run(8.0);
+  ASSERT_TRUE(field.ask(Arm{}));
+  ASSERT_TRUE(field.ask(SetMode{Mode::Manual}));
+  field.let_go();
+  for (const double v : {0.8, -0.5}) {
+    for (int i = 0; i < 100; ++i) {
+      field.robot.request(Drive{{v, 0.0}, true}, field.now + std::chrono::seconds(1), {});
+      field.tick();
+    }
+    const double creep = nav::sense::ProtectParams{}.creep_mps;
+    EXPECT_NEAR(field.command.twist.linear_mps, v > 0.0 ? creep : 0.0, 0.02);
+  }
+}
+
+TEST_F(Seeing, ARequiredSensorThatFallsSilentStopsTheMission) {
+  field.drive_mission();
+  heard = false;
+  field.run(0.4);
+  EXPECT_TRUE(field.has_condition("blind"));
+  EXPECT_EQ(field.state()->mode, Mode::Hold);
+}
+
+TEST_F(Seeing, ABlockedGlassStopsItToo) {
+  field.drive_mission();
+  health = base::SensorHealth::Blind;
+  field.run(0.2);
+  EXPECT_TRUE(field.has_condition("blind"));
+  field.run(3.0);
+  EXPECT_FALSE(field.moves());
+}
+
+TEST_F(Seeing, APictureThatIsTooOldIsNotBelieved) {
+  field.drive_mission();
+  sees = false;
+  field.run(0.7);
+  EXPECT_TRUE(field.has_condition("blind"));
+  field.run(3.0);
+  EXPECT_FALSE(field.moves());
+}
+
+TEST(Guard, WithoutSensorsEverythingPasses) {
+  Guard guard;
+  const base::BodyTwist fast{1.2, 0.5};
+  EXPECT_EQ(guard.judge(fast, true, base::Time{}), fast);
+  EXPECT_EQ(guard.obstacle().action, base::GuardAction::None);
+}
+
+TEST(Guard, ItsOdometryFollowsAnArcExactly) {
+  Guard guard;
+  base::Time now{};
+  (void)guard.move({}, now);
+  for (int i = 0; i < 500; ++i) {
+    now += std::chrono::milliseconds(20);
+    (void)guard.move({1.0, 0.5}, now);
+  }
+  // 10 s at 1 m/s on a circle of 2 m.
+  const auto& o = guard.move({}, now);
+  EXPECT_NEAR(o.pose.x_m, 2.0 * std::sin(5.0), 1e-6);
+  EXPECT_NEAR(o.pose.y_m, 2.0 * (1.0 - std::cos(5.0)), 1e-6);
+}
+
+}  // namespace
+}  // namespace roverd::robot
