@@ -123,11 +123,14 @@ struct Activity {
   std::string_view kind;  ///< "goto" "heading" "move" "turn" "return" "retrace" "follow" "dock"
                           ///< "calibration" "loiter" "circle"
   ActivityState state = ActivityState::None;
-  std::string reason;  ///< why failed, held or waiting
-  std::optional<LatLon> goal;
+  std::string reason;          ///< why failed, held or waiting
+  std::optional<LatLon> goal;  ///< of CIRCLE: its centre
   std::optional<double> goal_yaw_rad;
   std::optional<double> distance_m;  ///< left to the goal, along the way; of FOLLOW: to the target
   std::optional<double> turn_rad;    ///< left to turn, left positive
+  std::optional<double> radius_m;    ///< of CIRCLE; of LOITER: farther away it drives back
+  std::optional<double> turns;       ///< of CIRCLE; empty: without end
+  std::optional<bool> clockwise;     ///< of CIRCLE
   std::optional<LatLon> target;      ///< of FOLLOW, as it was told last
   std::optional<double> target_age_s;
 };

@@ -17,11 +17,19 @@ TEST_F(RoundsApi, TheModesAreBegunAndTold) {
   const auto begun = call("PUT", "/vehicle/mode", circle);
   ASSERT_EQ(begun.status, 200u) << begun.body.dump();
   EXPECT_EQ(begun.body["mode"], "CIRCLE");
-  EXPECT_EQ(begun.body["activity"]["kind"], "circle");
+  const Json& round = begun.body["activity"];
+  EXPECT_EQ(round["kind"], "circle");
+  EXPECT_NEAR(round["goal"]["lat"], kStart.lat + 0.0001, 1e-7);
+  EXPECT_EQ(round["radius_m"], 4.0);
+  EXPECT_EQ(round["turns"], 2.0);
+  EXPECT_EQ(round["clockwise"], true);
   const auto stays = call("PUT", "/vehicle/mode", Json{{"mode", "LOITER"}, {"valid_for_s", 5}});
   ASSERT_EQ(stays.status, 200u) << stays.body.dump();
   EXPECT_EQ(stays.body["mode"], "LOITER");
   EXPECT_EQ(stays.body["activity"]["kind"], "loiter");
+  EXPECT_EQ(stays.body["activity"]["radius_m"], 1.0);
+  EXPECT_EQ(stays.body["activity"]["turns"], nullptr);
+  EXPECT_EQ(stays.body["activity"]["clockwise"], nullptr);
   const Json far = {
       {"mode", "LOITER"}, {"lat", kStart.lat + 1.0}, {"lon", kStart.lon}, {"valid_for_s", 5}};
   EXPECT_EQ(call("PUT", "/vehicle/mode", far).status, 422u);

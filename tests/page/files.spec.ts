@@ -5,7 +5,18 @@ import { basename } from 'node:path';
 
 import { expect as expect_base, type Page } from '@playwright/test';
 
-import { items, map_middle, metres_between, pixels_per_m, press, tab, type Point } from './page';
+import {
+  items,
+  map_middle,
+  map_pixels,
+  metres_between,
+  pixels_per_m,
+  press,
+  tab,
+  type Color,
+  type Pixel,
+  type Point,
+} from './page';
 import { expect, real_file, test } from './station';
 
 interface Mission {
@@ -103,8 +114,6 @@ test('a broken file is refused with the reason, and nothing is stored', async ({
   await expect(page.getByText('No missions stored yet.')).toBeVisible();
 });
 
-type Color = readonly [red: number, green: number, blue: number];
-type Pixel = readonly [x: number, y: number];
 const FIXES: Color = [138, 109, 0];
 const DRIVEN: Color = [168, 50, 122];
 const ROBOT: Color = [17, 19, 24];
@@ -113,23 +122,6 @@ const ROBOT_STALE: Color = [138, 141, 147];
 const HOME: Color = [95, 61, 196];
 /** Around the robot and its home, and on both sides of the line. */
 const CASING_PX = 4;
-
-/** Where the map's canvas shows one of these colours. */
-const pixels = (page: Page, colors: readonly Color[]): Promise<Pixel[]> =>
-  page.evaluate((wanted) => {
-    const canvas = document.querySelector<HTMLCanvasElement>('#map canvas');
-    const context = canvas?.getContext('2d');
-    const found: [number, number][] = [];
-    if (!canvas || !context) return found;
-    const { data, width } = context.getImageData(0, 0, canvas.width, canvas.height);
-    for (let k = 0; k < data.length; k += 4) {
-      const fits = wanted.some((color) =>
-        color.every((value, n) => Math.abs((data[k + n] ?? 0) - value) <= 1),
-      );
-      if (fits) found.push([((k / 4) % width) + 0.5, Math.floor(k / 4 / width) + 0.5]);
-    }
-    return found;
-  }, colors);
 
 /** Metres to the east and to the south of a place. */
 const offset_m = (from: Point, to: Point): Pixel => [
@@ -229,9 +221,9 @@ test('a recorded RTK receiver is replayed, and its track is drawn for whoever co
       };
       const recorded_px = recorded.map(on_screen);
       const pieces_px = trail.estimated.map((piece) => points_of(piece).map(on_screen));
-      const dots = await pixels(each, [FIXES]);
-      const line = await pixels(each, [DRIVEN]);
-      const above = await pixels(each, [ROBOT, ROBOT_STALE, HOME, DRIVEN]);
+      const dots = await map_pixels(each, [FIXES]);
+      const line = await map_pixels(each, [DRIVEN]);
+      const above = await map_pixels(each, [ROBOT, ROBOT_STALE, HOME, DRIVEN]);
       // How many pixels there are depends on the scale; that enough is drawn is asked below.
       expect(dots.length).toBeGreaterThan(0);
       expect(line.length).toBeGreaterThan(0);

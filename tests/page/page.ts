@@ -54,6 +54,33 @@ export const pixels_per_m = async (page: Page): Promise<number> => {
   return width / (Number(figure) * ({ cm: 0.01, km: 1000 }[unit] ?? 1));
 };
 
+export type Pixel = readonly [x: number, y: number];
+export type Color = readonly [red: number, green: number, blue: number];
+
+/** Where the map's canvas shows one of these colours. */
+export const map_pixels = (page: Page, colors: readonly Color[]): Promise<Pixel[]> =>
+  page.evaluate((wanted) => {
+    const canvas = document.querySelector<HTMLCanvasElement>('#map canvas');
+    const context = canvas?.getContext('2d');
+    const found: [number, number][] = [];
+    if (!canvas || !context) return found;
+    const { data, width } = context.getImageData(0, 0, canvas.width, canvas.height);
+    for (let k = 0; k < data.length; k += 4) {
+      const fits = wanted.some((color) =>
+        color.every((value, n) => Math.abs((data[k + n] ?? 0) - value) <= 1),
+      );
+      if (fits) found.push([((k / 4) % width) + 0.5, Math.floor(k / 4 / width) + 0.5]);
+    }
+    return found;
+  }, colors);
+
+/** How wide and how high those are altogether, pixels. */
+export const extent_px = (found: readonly Pixel[]): Pixel => {
+  const span = (values: readonly number[]): number =>
+    values.length === 0 ? 0 : Math.max(...values) - Math.min(...values);
+  return [span(found.map(([x]) => x)), span(found.map(([, y]) => y))];
+};
+
 /** Marks a place by a tap, metres right and up of the middle of the map. */
 export const mark = async (page: Page, right_m: number, up_m: number): Promise<void> => {
   // An alert that comes or goes moves the middle, and the robot with it.

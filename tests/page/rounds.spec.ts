@@ -1,6 +1,22 @@
 // Staying and circling: as items of a mission, and as modes.
 
-import { arm, draw, items, mark, metres_between, open_page, press, save, tab } from './page';
+import {
+  arm,
+  draw,
+  items,
+  map_middle,
+  map_pixels,
+  mark,
+  metres_between,
+  open_page,
+  pixels_per_m,
+  press,
+  save,
+  tab,
+  type Color,
+  type Pixel,
+  type Point,
+} from './page';
 import { expect, test, type Station } from './station';
 
 interface Vehicle {
@@ -10,6 +26,14 @@ interface Vehicle {
 interface Mission {
   readonly items: readonly Record<string, unknown>[];
 }
+
+const PLAN: Color = [11, 87, 208];
+const CHOSEN: Color = [184, 80, 10];
+const ROUTE: Color = [20, 108, 46];
+
+/** How many of them lie on the ring around a place, within 2 px. */
+const on_ring = (found: readonly Pixel[], [x, y]: Pixel, radius_px: number): number =>
+  found.filter(([at_x, at_y]) => Math.abs(Math.hypot(at_x - x, at_y - y) - radius_px) < 2).length;
 
 const stands_still = (station: Station): Promise<void> =>
   expect.poll(() => Math.abs(station.sim.now.speed_mps), { timeout: 5000 }).toBeLessThan(0.01);
@@ -74,7 +98,15 @@ test('“Circle here” drives around the place that was tapped, “Stay here”
   await page.getByLabel('Circle’s radius, m').press('Enter');
   await page.getByLabel('Turns (none: no end)').fill('1');
   await page.getByLabel('Turns (none: no end)').press('Enter');
+  // It is seen before anything moves, around the place that was tapped.
+  const scale = await pixels_per_m(page);
+  const [x, y] = await map_middle(page);
+  await expect
+    .poll(async () => on_ring(await map_pixels(page, [CHOSEN]), [x, y - 5 * scale], 2 * scale))
+    .toBeGreaterThan(30);
   await press(page, 'Circle here');
+  await expect(page.getByLabel('Activity')).toContainText('2.00 m around, to the left, 1 turn');
+  await expect.poll(async () => (await map_pixels(page, [ROUTE])).length).toBeGreaterThan(60);
   await expect(page.getByLabel('Mode').getByRole('button', { name: 'CIRCLE' })).toBeVisible();
   await expect(page.getByLabel('Activity')).toContainText('Circling');
   const state = async (): Promise<Vehicle['activity']> =>
@@ -97,4 +129,41 @@ test('“Circle here” drives around the place that was tapped, “Stay here”
   await page.getByRole('button', { name: 'LOITER', exact: true }).click();
   await expect(page.getByLabel('Activity')).toContainText('Staying at the place');
   await expect.poll(async () => (await state()).state).toBe('waiting');
+});
+
+test('the line of a mission goes around a circle, not through its centre', async ({
+  page,
+  station,
+}) => {
+  await page.setViewportSize({ width: 1440, height: 900 });
+  await open_page(page, station.url);
+  await tab(page, 'Plan');
+  await draw(page, [[-90, -40]]);
+  await page.getByLabel('Add another kind of item').selectOption('circle');
+  await page.getByLabel('Radius, m').fill('5');
+  await page.getByLabel('Radius, m').press('Enter');
+  await draw(page, [[200, 160]]);
+  await expect(items(page)).toHaveCount(3);
+  await save(page);
+  const listed = await station.rest<{ items: readonly { id: string }[] }>('GET', '/missions');
+  const path = `/missions/${listed.items[0]?.id ?? ''}`;
+  const drawn = (await station.rest<{ items: readonly Point[] }>('GET', path)).items;
+  const [first, centre] = drawn;
+  if (!first || !centre) throw new Error('nothing was drawn');
+  // The first place was tapped where it is known; the centre lies so far from it.
+  const scale = await pixels_per_m(page);
+  const [middle_x, middle_y] = await map_middle(page);
+  const east_m =
+    Math.sign(centre.lon - first.lon) * metres_between(first, { ...centre, lat: first.lat });
+  const north_m =
+    Math.sign(centre.lat - first.lat) * metres_between(first, { ...centre, lon: first.lon });
+  const [x, y] = [middle_x - 90 + east_m * scale, middle_y - 40 - north_m * scale];
+  const found = await map_pixels(page, [PLAN]);
+  expect(on_ring(found, [x, y], 5 * scale)).toBeGreaterThan(100);
+  // Inside there is its number, and nothing else.
+  const inside = found.filter(([at_x, at_y]) => {
+    const away = Math.hypot(at_x - x, at_y - y);
+    return away > 24 && away < 5 * scale - 14;
+  });
+  expect(inside).toEqual([]);
 });

@@ -19,6 +19,9 @@ const activity: Activity = {
   reason: '',
   goal: { lat: 58, lon: 26 },
   goal_heading_deg: 90,
+  radius_m: null,
+  turns: null,
+  clockwise: null,
   distance_m: 12.34,
   turn_deg: null,
   target: null,
@@ -79,6 +82,24 @@ describe('modes', () => {
 });
 
 describe('activity', () => {
+  test('a circle says how it is driven, and is drawn around its centre', () => {
+    const circle = { ...activity, kind: 'circle' as const, goal_heading_deg: null, radius_m: 3 };
+    const endless = { ...circle, clockwise: true, distance_m: null };
+    expect(activity_line(vehicle({ activity: endless }))?.detail).toBe(
+      '3.00 m around, to the right, no end',
+    );
+    const twice = { ...circle, clockwise: false, turns: 2 };
+    expect(activity_line(vehicle({ activity: twice }))?.detail).toBe(
+      '3.00 m around, to the left, 2 turns, 12.3 m left',
+    );
+    expect(activity_mark(vehicle({ activity: twice }))).toEqual({
+      lat: 58,
+      lon: 26,
+      heading_deg: null,
+      ring: { radius_m: 3, clockwise: false },
+    });
+  });
+
   test('says what is left while it goes on', () => {
     expect(activity_line(vehicle({}))).toEqual({
       head: 'Going to the place',

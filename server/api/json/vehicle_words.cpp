@@ -197,6 +197,9 @@ Json activity_json(const base::Activity& a) {
           {"distance_m", rounded(a.distance_m, kPlaces3)},
           // Compass turns count clockwise.
           {"turn_deg", a.turn_rad ? degrees(-*a.turn_rad) : Json(nullptr)},
+          {"radius_m", rounded(a.radius_m, kPlaces3)},
+          {"turns", rounded(a.turns, kPlaces3)},
+          {"clockwise", a.clockwise ? Json(*a.clockwise) : Json(nullptr)},
           {"target", point_json(a.target)},
           {"target_age_s", rounded(a.target_age_s, kPlaces2)}};
 }

@@ -194,7 +194,7 @@ base::Result<void> Robot::Impl::enter_loiter(const SetMode& c) {
     return base::fail(Code::Invalid, "radius and speed are above zero");
   }
   change_mode(ModeCause::Chosen, asker, Mode::Loiter);
-  self_driving.stay(goal, vehicle());
+  self_driving.stay(goal, vehicle(), estimator.frame()->to_global(goal.at));
   return {};
 }
 
@@ -238,7 +238,7 @@ base::Result<void> Robot::Impl::enter_circle(const SetMode& c) {
   }
   if (auto ok = circle_inside(goal); !ok) return ok;
   change_mode(ModeCause::Chosen, asker, Mode::Circle);
-  self_driving.circle(goal, vehicle());
+  self_driving.circle(goal, vehicle(), estimator.frame()->to_global(*place));
   return {};
 }
 

@@ -71,14 +71,21 @@ void SelfDriving::begin_calibration(base::CalibrationKind kind, const nav::Vehic
   calibrate_.begin(kind, vehicle, before, set);
 }
 
-void SelfDriving::stay(const nav::StayGoal& goal, const nav::Vehicle& vehicle) {
+void SelfDriving::stay(const nav::StayGoal& goal, const nav::Vehicle& vehicle, base::LatLon at) {
   stay_.begin(goal, vehicle);
   begin("loiter");
+  activity_.goal = at;
+  activity_.radius_m = goal.within_m;
 }
 
-void SelfDriving::circle(const nav::OrbitGoal& goal, const nav::Vehicle& vehicle) {
+void SelfDriving::circle(const nav::OrbitGoal& goal, const nav::Vehicle& vehicle,
+                         base::LatLon centre) {
   orbit_.begin(goal, vehicle);
   begin("circle");
+  activity_.goal = centre;
+  activity_.radius_m = goal.radius_m;
+  activity_.turns = goal.turns;
+  activity_.clockwise = goal.clockwise;
 }
 
 void SelfDriving::interrupt() noexcept {

@@ -73,8 +73,10 @@ class SelfDriving {
   bool calibrates() const noexcept { return calibrate_.running(); }
   nav::Calibrate& calibration() noexcept { return calibrate_; }
   const nav::Calibrate& calibration() const noexcept { return calibrate_; }
-  void stay(const nav::StayGoal& goal, const nav::Vehicle& vehicle);
-  void circle(const nav::OrbitGoal& goal, const nav::Vehicle& vehicle);
+  /// @param at the same place
+  void stay(const nav::StayGoal& goal, const nav::Vehicle& vehicle, base::LatLon at);
+  /// @param centre likewise
+  void circle(const nav::OrbitGoal& goal, const nav::Vehicle& vehicle, base::LatLon centre);
 
   // Why this cannot be; empty: it can.
   std::string refusal(const nav::GuidedGoal& goal) const { return guided_.refusal(goal); }

@@ -70,7 +70,14 @@ TEST(CircleMode, DrivesItsTurnsAndHolds) {
     SetMode c = circle({0, 10}, 4.0, 1.5);
     c.clockwise = clockwise;
     ASSERT_TRUE(f.ask(c));
-    EXPECT_EQ(f.state()->activity.kind, "circle");
+    // Told from its first moment, so that it can be drawn before anything moves.
+    const base::Activity& told = f.state()->activity;
+    EXPECT_EQ(told.kind, "circle");
+    EXPECT_EQ(told.radius_m, 4.0);
+    EXPECT_EQ(told.turns, 1.5);
+    EXPECT_EQ(told.clockwise, clockwise);
+    ASSERT_TRUE(told.goal);
+    EXPECT_LT(base::distance_m(kFrame.to_local(*told.goal), {0, 10}), 0.01);
     const Round r = go_round(f, {0, 10}, 4.0, 120.0);
     EXPECT_EQ(f.state()->mode, Mode::Hold);
     EXPECT_EQ(f.state()->activity.state, ActivityState::Reached);
@@ -90,6 +97,7 @@ TEST(CircleMode, GoesOnWithoutAnEndOrForAsManyTurnsAsAsked) {
   EXPECT_GT(endless.turned_rad, 8.0 * 2.0 * base::kPi);
   EXPECT_LT(endless.worst_m, 0.15);
   EXPECT_FALSE(f.state()->activity.distance_m);
+  EXPECT_FALSE(f.state()->activity.turns);
   ASSERT_TRUE(f.ask(SetMode{Mode::Hold}));
 
   Field seven;

@@ -10,6 +10,7 @@ import type MapBrowserEvent from 'ol/MapBrowserEvent';
 import PointerInteraction from 'ol/interaction/Pointer';
 
 import type { MapEvents, MapMode } from '../model/ports';
+import { leg } from './band';
 import { HANDLE_FROM_PX, type DrawnPlan } from './plan_painter';
 import { from_plane, type PlanePoint } from './projection';
 
@@ -154,8 +155,8 @@ export class EditInteraction extends PointerInteraction {
   }
 
   #middle_before(k: number): PlanePoint {
-    const { xs, ys } = this.#port.drawn().line;
-    return [((xs[k - 1] ?? 0) + (xs[k] ?? 0)) / 2, ((ys[k - 1] ?? 0) + (ys[k] ?? 0)) / 2];
+    const [from, to] = leg(this.#port.drawn().band, k);
+    return [(from[0] + to[0]) / 2, (from[1] + to[1]) / 2];
   }
 
   #find(pixel: Pixel, device: Device): Hit | null {
@@ -165,8 +166,9 @@ export class EditInteraction extends PointerInteraction {
     if (this.#mode === 'watch') return null;
     const handle = nearest(count, HANDLE_REACH_PX[device], pixel, (k) => {
       if (k === 0) return null;
-      const [x0, y0] = this.#spot_pixel(k - 1);
-      const [x1, y1] = this.#spot_pixel(k);
+      const [from, to] = leg(this.#port.drawn().band, k);
+      const [x0, y0] = this.#port.pixel_of(from);
+      const [x1, y1] = this.#port.pixel_of(to);
       return Math.hypot(x1 - x0, y1 - y0) < HANDLE_FROM_PX ? null : [(x0 + x1) / 2, (y0 + y1) / 2];
     });
     return handle === null ? null : { what: 'handle', k: handle };

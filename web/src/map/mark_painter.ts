@@ -1,13 +1,18 @@
 // Draws the place that the person chose, and where the robot drives to outside of a mission.
 
+import { circle_way } from '../model/circle';
 import type { LatLon } from '../model/plan';
 import type { Mark } from '../model/ports';
 import { stroke_cased, type Paint } from './canvas';
 import type { Palette } from './palette';
-import { to_plane } from './projection';
+import { to_plane, units_per_m, type PlanePoint } from './projection';
+import { paint_ring_arrows, paint_ring_line } from './ring_painter';
 
 const PIN_PX = 15;
 const FACING_PX = 46;
+
+/** Farther outside of its circle than this the robot still drives to it. */
+const AWAY_M = 0.6;
 
 const place = (paint: Paint, at: LatLon): readonly [x: number, y: number] => {
   const [x, y] = to_plane(at);
@@ -32,9 +37,41 @@ const paint_facing = (paint: Paint, at: Mark, color: string, casing: string): vo
   context.restore();
 };
 
+const paint_round = (paint: Paint, at: Mark, color: string, casing: string): void => {
+  if (!at.ring) return;
+  const [x, y] = place(paint, at);
+  const { radius_m, clockwise } = at.ring;
+  const r = (radius_m * units_per_m(at.lat).east) / paint.resolution;
+  const look = { clockwise, line_px: clockwise === null ? null : 3.5, color, casing };
+  paint_ring_line(paint, x, y, r, look);
+  paint_ring_arrows(paint, x, y, r, look);
+};
+
+/** Where the way to a mark leads, from the robot. */
+const line_to = (goal: Mark, from: LatLon | null): readonly PlanePoint[] => {
+  if (goal.line) return goal.line.map(to_plane);
+  if (!from) return [];
+  const start = to_plane(from);
+  const centre = to_plane(goal);
+  const clockwise = goal.ring?.clockwise ?? null;
+  if (!goal.ring || clockwise === null) return [start, centre];
+  // Around a place: along the tangent.
+  const scale = units_per_m(goal.lat).east;
+  const radius = goal.ring.radius_m * scale;
+  const wish = { radius, clockwise, turns: 1, on: AWAY_M * scale };
+  const way = circle_way(wish, [start[0] - centre[0], start[1] - centre[1]]);
+  if (!way.tangent) return [];
+  const { from_rad } = way;
+  return [
+    start,
+    [centre[0] + radius * Math.cos(from_rad), centre[1] + radius * Math.sin(from_rad)],
+  ];
+};
+
 /** A drop that stands with its tip on the place. */
 export const paint_pin = (paint: Paint, pin: Mark, colors: Palette): void => {
   const { context } = paint;
+  paint_round(paint, pin, colors.selected, colors.casing);
   paint_facing(paint, pin, colors.selected, colors.casing);
   const [x, y] = place(paint, pin);
   const top = y - 2.2 * PIN_PX;
@@ -65,13 +102,13 @@ export const paint_goal = (
 ): void => {
   const { context } = paint;
   const [x, y] = place(paint, goal);
-  const line = goal.line ?? (from ? [from, goal] : []);
+  const line = line_to(goal, from);
+  paint_round(paint, goal, colors.route, colors.casing);
   if (line.length > 1) {
     context.beginPath();
-    line.forEach((at, k) => {
-      const [x_at, y_at] = place(paint, at);
-      if (k === 0) context.moveTo(x_at, y_at);
-      else context.lineTo(x_at, y_at);
+    line.forEach(([x_at, y_at], k) => {
+      if (k === 0) context.moveTo(paint.x_px(x_at), paint.y_px(y_at));
+      else context.lineTo(paint.x_px(x_at), paint.y_px(y_at));
     });
     context.setLineDash([10, 8]);
     stroke_cased(context, colors.casing, colors.route, 3);

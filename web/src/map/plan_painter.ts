@@ -4,15 +4,11 @@
 
 import { spots, type Plan, type Spot } from '../model/plan';
 import type { PlanShape } from '../model/ports';
+import { band_of, leg, rings_of, type Band, type Ring } from './band';
 import { stroke_cased, trace, type Paint } from './canvas';
 import { palette, type Palette } from './palette';
-import {
-  to_plane,
-  to_plane_line,
-  units_per_m,
-  type PlaneLine,
-  type PlanePoint,
-} from './projection';
+import { to_plane, to_plane_line, type PlaneLine, type PlanePoint } from './projection';
+import { paint_ring_arrows, paint_ring_line } from './ring_painter';
 
 /** A plan ready to draw: projected once, when it changes. */
 export interface DrawnPlan {
@@ -21,17 +17,8 @@ export interface DrawnPlan {
   /** Items without a place that follow each spot. */
   readonly chips: readonly number[];
   readonly rings: readonly Ring[];
-}
-
-/** A circle around a spot. */
-export interface Ring {
-  /** Of the spot. */
-  readonly k: number;
-  readonly radius_m: number;
-  readonly clockwise: boolean;
-  /** Whole circles; the area in which a loiter stays is no way. */
-  readonly way: boolean;
-  readonly units_per_m: number;
+  /** As the line is driven. */
+  readonly band: Band;
 }
 
 const POINT_PX = 14;
@@ -48,20 +35,10 @@ const ARROW_FROM_PX = 110;
 export const prepare_plan = (plan: Plan): DrawnPlan => {
   const found = spots(plan);
   const chips = found.map((spot, k) => (found[k + 1]?.index ?? plan.items.length) - spot.index - 1);
-  return { spots: found, line: to_plane_line(found), chips, rings: rings_of(plan, found) };
+  const line = to_plane_line(found);
+  const rings = rings_of(plan, found);
+  return { spots: found, line, chips, rings, band: band_of(line, rings) };
 };
-
-const rings_of = (plan: Plan, found: readonly Spot[]): Ring[] =>
-  found.flatMap((spot, k): Ring[] => {
-    const item = plan.items[spot.index];
-    const scale = units_per_m(spot.lat).east;
-    if (item?.type === 'circle') {
-      const { radius_m, clockwise } = item;
-      return [{ k, radius_m, clockwise: clockwise === true, way: true, units_per_m: scale }];
-    }
-    if (item?.type !== 'loiter') return [];
-    return [{ k, radius_m: item.radius_m ?? 1, clockwise: false, way: false, units_per_m: scale }];
-  });
 
 /** The line with one point elsewhere: what a drag will give. */
 export const with_point = (line: PlaneLine, k: number, to: PlanePoint): PlaneLine => {
@@ -94,13 +71,14 @@ const on_screen = (paint: Paint, x: number, y: number, margin: number): boolean 
 
 type Visit = (k: number, x: number, y: number) => void;
 
-/** Calls for every segment longer than a length whose middle is on the screen. */
-const long_segments = (paint: Paint, line: PlaneLine, from_px: number, visit: Visit): void => {
-  for (let k = 1; k < line.xs.length; k += 1) {
-    const x0 = paint.x_px(line.xs[k - 1] ?? 0);
-    const y0 = paint.y_px(line.ys[k - 1] ?? 0);
-    const x1 = paint.x_px(line.xs[k] ?? 0);
-    const y1 = paint.y_px(line.ys[k] ?? 0);
+/** Calls for every way between spots longer than a length whose middle is on the screen. */
+const long_legs = (paint: Paint, band: Band, from_px: number, visit: Visit): void => {
+  for (let k = 1; k < band.begin.length; k += 1) {
+    const [[from_x, from_y], [to_x, to_y]] = leg(band, k);
+    const x0 = paint.x_px(from_x);
+    const y0 = paint.y_px(from_y);
+    const x1 = paint.x_px(to_x);
+    const y1 = paint.y_px(to_y);
     if (Math.hypot(x1 - x0, y1 - y0) < from_px) continue;
     const x = (x0 + x1) / 2;
     const y = (y0 + y1) / 2;
@@ -109,17 +87,18 @@ const long_segments = (paint: Paint, line: PlaneLine, from_px: number, visit: Vi
 };
 
 /** A small open arrow beside the middle of long segments: which way it goes. */
-const paint_arrows = (paint: Paint, line: PlaneLine, color: string, share: number): void => {
+const paint_arrows = (paint: Paint, band: Band, color: string, share: number): void => {
   const { context } = paint;
   context.strokeStyle = color;
   context.lineWidth = 2.5;
   context.lineCap = 'round';
   context.beginPath();
-  long_segments(paint, line, ARROW_FROM_PX, (k) => {
-    const x0 = paint.x_px(line.xs[k - 1] ?? 0);
-    const y0 = paint.y_px(line.ys[k - 1] ?? 0);
-    const dx = paint.x_px(line.xs[k] ?? 0) - x0;
-    const dy = paint.y_px(line.ys[k] ?? 0) - y0;
+  long_legs(paint, band, ARROW_FROM_PX, (k) => {
+    const [from, to] = leg(band, k);
+    const x0 = paint.x_px(from[0]);
+    const y0 = paint.y_px(from[1]);
+    const dx = paint.x_px(to[0]) - x0;
+    const dy = paint.y_px(to[1]) - y0;
     const angle = Math.atan2(dy, dx);
     const x = x0 + dx * share;
     const y = y0 + dy * share;
@@ -131,9 +110,9 @@ const paint_arrows = (paint: Paint, line: PlaneLine, color: string, share: numbe
   context.stroke();
 };
 
-const paint_handles = (paint: Paint, line: PlaneLine, colors: Palette): void => {
+const paint_handles = (paint: Paint, band: Band, colors: Palette): void => {
   const { context } = paint;
-  long_segments(paint, line, HANDLE_FROM_PX, (_, x, y) => {
+  long_legs(paint, band, HANDLE_FROM_PX, (_, x, y) => {
     disc(context, x, y, 9);
     context.fillStyle = colors.ground;
     context.fill();
@@ -258,80 +237,74 @@ const paint_points = (paint: Paint, drawn: DrawnPlan, line: PlaneLine, look: Pla
   }
 };
 
-const paint_line = (paint: Paint, line: PlaneLine, look: PlanLook, colors: Palette): void => {
+const paint_line = (paint: Paint, band: Band, look: PlanLook, colors: Palette): void => {
   const { context } = paint;
   context.beginPath();
-  trace(paint, line.xs, line.ys);
+  trace(paint, band.line.xs, band.line.ys);
   if (look.shape === 'ring') {
     context.closePath();
     context.fillStyle = colors.ring;
     context.fill();
   }
   stroke_cased(context, colors.casing, colors.plan, 3.5);
-  if (look.shape === 'line') paint_arrows(paint, line, colors.plan, 0.36);
+  if (look.shape === 'line') paint_arrows(paint, band, colors.plan, 0.36);
 };
 
-/** Circles with an arrow at three places that tells which way round. */
-const paint_rings = (paint: Paint, drawn: DrawnPlan, line: PlaneLine, colors: Palette): void => {
-  const { context } = paint;
-  for (const ring of drawn.rings) {
+/** Calls for every ring in sight. */
+const each_ring = (
+  paint: Paint,
+  rings: readonly Ring[],
+  line: PlaneLine,
+  visit: typeof paint_ring_line,
+): void => {
+  const { plan, casing } = palette();
+  for (const ring of rings) {
     const x = paint.x_px(line.xs[ring.k] ?? 0);
     const y = paint.y_px(line.ys[ring.k] ?? 0);
     const r = (ring.radius_m * ring.units_per_m) / paint.resolution;
     if (!on_screen(paint, x, y, r + 20)) continue;
-    disc(context, x, y, r);
-    context.setLineDash(ring.way ? [] : [4, 5]);
-    stroke_cased(context, colors.casing, colors.plan, ring.way ? 3.5 : 1.5);
-    context.setLineDash([]);
-    if (!ring.way || r < 15) continue;
-    context.beginPath();
-    for (const at of [0.5, 2.6, 4.7]) {
-      // On the screen angles grow clockwise.
-      const heading = at + (ring.clockwise ? Math.PI / 2 : -Math.PI / 2);
-      const tip_x = x + r * Math.cos(at);
-      const tip_y = y + r * Math.sin(at);
-      for (const side of [2.5, -2.5]) {
-        context.moveTo(tip_x, tip_y);
-        context.lineTo(
-          tip_x + 11 * Math.cos(heading + side),
-          tip_y + 11 * Math.sin(heading + side),
-        );
-      }
-    }
-    stroke_cased(context, colors.casing, colors.plan, 3);
+    const clockwise = ring.way ? ring.clockwise : null;
+    visit(paint, x, y, r, { clockwise, line_px: null, color: plan, casing });
   }
 };
 
-/** @param line where the points are now: the drawn plan's own line, or one in the middle of a drag */
+/**
+ * @param line where the points are now: the drawn plan's own line, or one in the middle of a drag
+ * @param rings of that line
+ */
 export const paint_plan = (
   paint: Paint,
   drawn: DrawnPlan,
   line: PlaneLine,
+  rings: readonly Ring[],
   look: PlanLook,
 ): void => {
   const colors = palette();
+  const still = line === drawn.line;
+  // What is driven of them is part of the line, and the arrows stand on it.
+  each_ring(paint, rings, line, paint_ring_line);
   if (look.shape !== 'points') {
-    paint_line(paint, line, look, colors);
-    if (look.handles) paint_handles(paint, line, colors);
+    const band = still ? drawn.band : band_of(line, rings);
+    paint_line(paint, band, look, colors);
+    if (look.handles) paint_handles(paint, band, colors);
   }
-  if (line.xs.length === drawn.spots.length) {
-    paint_rings(paint, drawn, line, colors);
-    paint_points(paint, drawn, line, look);
-  }
+  each_ring(paint, rings, line, paint_ring_arrows);
+  if (line.xs.length === drawn.spots.length) paint_points(paint, drawn, line, look);
 };
 
 /** The loaded mission: what is done is faint, the item being driven to is marked. */
 export const paint_route = (paint: Paint, drawn: DrawnPlan, current_item: number): void => {
   const colors = palette();
   const { context } = paint;
-  const { xs, ys } = drawn.line;
+  const { line, end } = drawn.band;
   const next = drawn.spots.findIndex((spot) => spot.index + 1 >= current_item);
-  const done = next < 0 ? xs.length : next;
+  const done = next < 0 ? drawn.spots.length : next;
+  const left_from = done > 0 ? (end[done - 1] ?? 0) : 0;
   context.beginPath();
-  trace(paint, xs, ys, 0, done);
+  if (done > 0) trace(paint, line.xs, line.ys, 0, left_from + 1);
   stroke_cased(context, colors.casing, colors.route_done, 9);
   context.beginPath();
-  trace(paint, xs, ys, Math.max(0, done - 1));
+  trace(paint, line.xs, line.ys, left_from);
   stroke_cased(context, colors.casing, colors.route, 9);
   const target = current_item > 0 ? drawn.spots[done] : undefined;
   if (!target) return;

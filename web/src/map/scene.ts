@@ -4,6 +4,7 @@ import { distance_m } from '../model/geo';
 import type { FenceDraft } from '../model/fence';
 import { EMPTY_PLAN, type LatLon, type Plan } from '../model/plan';
 import type { MapEvents, Mark, RobotOnMap } from '../model/ports';
+import { ring_behind } from './band';
 import type { Paint, Painter } from './canvas';
 import { paint_drill, type DrawnDrill } from './drill_painter';
 import type { Drag } from './edit';
@@ -152,6 +153,8 @@ export class Scene {
         : drag.what === 'spot'
           ? with_point(drawn.line, drag.k, drag.to)
           : with_inserted(drawn.line, drag.k, drag.to);
-    paint_plan(paint, drawn, line, this.look);
+    const rings =
+      drag?.what === 'handle' ? drawn.rings.map((ring) => ring_behind(ring, drag.k)) : drawn.rings;
+    paint_plan(paint, drawn, line, rings, this.look);
   }
 }

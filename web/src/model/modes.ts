@@ -74,8 +74,17 @@ export interface ActivityLine {
   readonly detail: string;
 }
 
-const left = ({ distance_m, turn_deg }: Activity): string => {
-  const parts: string[] = [];
+/** "3 m around, to the left, 2 turns". */
+const round = ({ kind, radius_m, turns, clockwise }: Activity): string[] => {
+  if (kind !== 'circle') return [];
+  const side = clockwise ? 'to the right' : 'to the left';
+  const often = turns === null ? 'no end' : turns === 1 ? '1 turn' : `${turns} turns`;
+  return [`${metres(radius_m)} around`, side, often];
+};
+
+const left = (activity: Activity): string => {
+  const { distance_m, turn_deg } = activity;
+  const parts = round(activity);
   if (distance_m !== null) parts.push(`${metres(distance_m)} left`);
   if (turn_deg !== null && Math.abs(turn_deg) >= 0.5) {
     parts.push(`${Math.abs(turn_deg).toFixed(0)}° to the ${turn_deg < 0 ? 'left' : 'right'}`);
@@ -109,10 +118,12 @@ export const activity_line = (vehicle: Vehicle | null): ActivityLine | null => {
 /** Where a mode other than AUTO drives to, while it does. */
 export const activity_mark = (vehicle: Vehicle | null): Mark | null => {
   if (!vehicle) return null;
-  const { state, goal, goal_heading_deg } = vehicle.activity;
+  const { state, goal, goal_heading_deg, radius_m, clockwise } = vehicle.activity;
   const under_way =
     state === 'driving' || state === 'turning' || state === 'waiting' || state === 'held';
-  return under_way && goal ? { ...goal, heading_deg: goal_heading_deg } : null;
+  if (!under_way || !goal) return null;
+  const mark = { ...goal, heading_deg: goal_heading_deg };
+  return radius_m === null ? mark : { ...mark, ring: { radius_m, clockwise } };
 };
 
 /** Why it cannot drive by itself now; null: it may. */

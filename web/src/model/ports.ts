@@ -2,6 +2,7 @@
 
 import type { Answer, Refusal } from './answer';
 import type { Calibration, CalibrationKind } from './calibration';
+import type { CircleGoal, StayGoal } from './circle';
 import type { ControlState } from './control';
 import type { Drill, DrillTone, DrillWish } from './drill';
 import type { Driver } from './drivers';
@@ -143,16 +144,6 @@ export interface MissionCalls {
   /** @param origin of a table in metres that does not tell its own */
   import_file(file: File, origin: LatLon | null): Promise<Answer<ImportResult>>;
   export_address(id: string, format: string): string;
-}
-/** LOITER: farther away than the radius it drives back. */
-export interface StayGoal extends LatLon {
-  readonly radius_m?: number;
-}
-/** CIRCLE: without turns it has no end. */
-export interface CircleGoal extends LatLon {
-  readonly radius_m: number;
-  readonly turns?: number;
-  readonly clockwise?: boolean;
 }
 /** A place to drive to. */
 export interface Goal extends LatLon {
@@ -357,6 +348,8 @@ export interface Mark extends LatLon {
   readonly heading_deg: number | null;
   /** The way there from the robot; left out: straight. */
   readonly line?: readonly LatLon[];
+  /** Around it; clockwise null: no way, but the area in which the robot stays. */
+  readonly ring?: { readonly radius_m: number; readonly clockwise: boolean | null };
 }
 export interface MapCalls {
   listen(events: MapEvents): void;

@@ -137,6 +137,11 @@ export interface Activity {
   readonly reason: string;
   readonly goal: LatLon | null;
   readonly goal_heading_deg: number | null;
+  /** Of CIRCLE; of LOITER: farther away it drives back. */
+  readonly radius_m: number | null;
+  /** Of CIRCLE; null: without end. */
+  readonly turns: number | null;
+  readonly clockwise: boolean | null;
   readonly distance_m: number | null;
   /** Left to turn, clockwise positive. */
   readonly turn_deg: number | null;

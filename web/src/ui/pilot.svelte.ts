@@ -3,18 +3,11 @@
 // was obeyed: it says so, and asks the robot.
 
 import type { Answer, Refusal } from '../model/answer';
+import type { CircleGoal, StayGoal } from '../model/circle';
 import type { Halt } from '../model/halt';
 import { CLICK_LIFE_S, outcome, type Outcome, type Wish } from '../model/outcome';
 import type { LatLon } from '../model/plan';
-import type {
-  CircleGoal,
-  Goal,
-  LiveLink,
-  SendDrive,
-  StartFrom,
-  StayGoal,
-  VehicleCalls,
-} from '../model/ports';
+import type { Goal, LiveLink, SendDrive, StartFrom, VehicleCalls } from '../model/ports';
 import type { Mode, StationEvent, Vehicle } from '../model/vehicle';
 import type { Dialogs } from './dialogs.svelte';
 import { Halts } from './halts.svelte';

@@ -11,7 +11,15 @@ export class Target {
   /** Null: as it comes. */
   heading_deg = $state<number | null>(null);
   reverse = $state(false);
-  mark = $derived<Mark | null>(this.at && { ...this.at, heading_deg: this.heading_deg });
+  /** What it would drive around the place; null: nothing is said of it. */
+  ring = $state.raw<{ readonly radius_m: number; readonly clockwise: boolean } | null>(null);
+  mark = $derived<Mark | null>(
+    this.at && {
+      ...this.at,
+      heading_deg: this.heading_deg,
+      ...(this.ring ? { ring: this.ring } : {}),
+    },
+  );
   /** From the robot. */
   distance_m = $derived.by(() => (this.at && this.#from ? distance_m(this.#from, this.at) : null));
   bearing_deg = $derived.by(() =>
@@ -33,6 +41,7 @@ export class Target {
     this.at = null;
     this.heading_deg = null;
     this.reverse = false;
+    this.ring = null;
   }
 
   /** Clockwise. From nothing it begins with the way that leads there. */
