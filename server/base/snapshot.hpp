@@ -101,6 +101,7 @@ struct MissionProgress {
   std::string reason;               ///< why paused, blocked, aborted
   std::optional<int> current_item;  ///< 1-based
   int items = 0;
+  /// To where the item in hand counts as reached; of a circle along its way.
   std::optional<double> distance_to_item_m;
   std::optional<double> bearing_to_item_deg;
   std::optional<double> cross_track_m;        ///< positive: the robot is left of the path

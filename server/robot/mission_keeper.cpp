@@ -97,9 +97,9 @@ base::MissionProgress MissionKeeper::progress(const std::optional<base::Pose>& p
   p.distance_left_m = at.distance_left_m;
   p.eta_s = at.eta_s;
   p.place = executor.place();
-  if (pose && at.target && frame) {
-    const auto to = base::distance_bearing(pose->global, frame->to_global(*at.target));
-    p.distance_to_item_m = to.distance_m;
+  if (pose && at.item_end && frame) {
+    const auto to = base::distance_bearing(pose->global, frame->to_global(*at.item_end));
+    p.distance_to_item_m = at.way_to_item_end_m.value_or(to.distance_m);
     p.bearing_to_item_deg = to.bearing_deg;
   }
   return p;

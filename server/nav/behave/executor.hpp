@@ -53,8 +53,10 @@ struct Notice {
 
 /// Where the mission stands, in the words of the snapshot.
 struct Progress {
-  std::optional<int> current_item;  ///< empty: none in hand
-  std::optional<EnuPoint> target;
+  std::optional<int> current_item;          ///< empty: none in hand
+  std::optional<EnuPoint> target;           ///< the next place on its way
+  std::optional<EnuPoint> item_end;         ///< where the item in hand counts as reached
+  std::optional<double> way_to_item_end_m;  ///< along the way; empty: straight to it
   std::optional<double> cross_track_m;
   std::optional<double> arrival_radius_m;     ///< within it the item in hand counts as reached
   std::optional<double> cross_track_limit_m;  ///< farther off its way the robot is lost
@@ -186,6 +188,7 @@ class Executor {
   void catch_up(EnuPoint here);
   double may_have_come_to_m() const noexcept;
   std::optional<Left> left(const RouteStep& step, std::optional<EnuPoint> here) const noexcept;
+  void tell_item_end(Progress& p, std::optional<EnuPoint> here) const noexcept;
   Left laps_left() const noexcept;
 
   base::Setting<PathParams> path_params_;

@@ -91,6 +91,33 @@ std::optional<Executor::Left> Executor::left(const RouteStep& step,
   return Left{rest.m + there_m, rest.s + there_m / by_mps};
 }
 
+/// An item of several places, such as a circle, is reached at the last of them that counts.
+void Executor::tell_item_end(Progress& p, std::optional<EnuPoint> here) const noexcept {
+  p.item_end = p.target;
+  const auto& steps = course_->steps;
+  const int item = steps[at_].item;
+  std::optional<std::size_t> next;  // nodes
+  std::optional<std::size_t> end;
+  for (std::size_t i = at_; i < steps.size() && steps[i].item == item; ++i) {
+    const bool goes = steps[i].kind == StepKind::Go;
+    if (goes && !next) next = steps[i].node;
+    if (goes) end = steps[i].node;
+    if (!steps[i].silent && end) break;
+  }
+  const bool several = end && (*end != *next || steps[at_].kind != StepKind::Go);
+  if (!several || stays_) return;
+  const Path& path = course_->path;
+  p.item_end = course_->nodes[*end].at;
+  const double rest_m = path.vertex_m[*end] - path.vertex_m[*next];
+  std::optional<double> to_next_m;
+  if (doing_ == Doing::Path && tracker_.path() == &path) {
+    to_next_m = path.vertex_m[*next] - tracker_.s_m();
+  } else if (here) {
+    to_next_m = base::distance_m(*here, course_->nodes[*next].at);
+  }
+  if (to_next_m) p.way_to_item_end_m = std::max(0.0, *to_next_m + rest_m);
+}
+
 Progress Executor::progress(std::optional<EnuPoint> here, double sigma_m) const {
   Progress p;
   const RouteStep* step = step_now();
@@ -108,6 +135,7 @@ Progress Executor::progress(std::optional<EnuPoint> here, double sigma_m) const 
   if (step->kind != StepKind::Go && doing_ == Doing::Connector) {
     p.target = connector_.points.back().at;
   }
+  tell_item_end(p, here);
   const bool tracking = (doing_ == Doing::Path && tracker_.path() == &course_->path) ||
                         (doing_ == Doing::Connector && tracker_.path() == &connector_);
   if (running() && tracking) p.cross_track_m = tracker_.cross_track_m();

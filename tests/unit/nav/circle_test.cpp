@@ -115,6 +115,56 @@ TEST(Circle, TellsHowMuchOfItIsLeftWhileItIsDriven) {
   EXPECT_GT(p.eta_s.value(), 30.0);
 }
 
+// The end of two turns is where the circle was entered.
+TEST(Circle, IsTheItemToWhichTheWayIsToldNotItsNextPiece) {
+  Ride r;
+  r.load(plan({at(1, 0), circle(8, 0, 4.0, 2.0), at(20, 0)}));
+  r.start();
+  while (r.executor.progress(r.vehicle.at).current_item != 2) r.tick();
+  r.run(2.0);
+  // From outside along the tangent, at its right side.
+  const double aside_rad = std::acos(4.0 / 7.0);
+  const EnuPoint end{8.0 - 4.0 * std::cos(aside_rad), -4.0 * std::sin(aside_rad)};
+  double before_m = std::sqrt(33.0) + 16.0 * base::kPi;
+  for (int i = 0; i < 20; ++i) {
+    r.run(2.0);
+    const Progress p = r.executor.progress(r.vehicle.at);
+    ASSERT_EQ(p.current_item, 2);
+    EXPECT_LT(base::distance_m(p.item_end.value(), end), 0.01);
+    const double left_m = p.way_to_item_end_m.value();
+    EXPECT_LT(left_m, before_m - 0.5) << "it always comes nearer";
+    before_m = left_m;
+    EXPECT_NEAR(p.distance_left_m.value() - left_m, base::distance_m(end, {20, 0}), 0.3);
+  }
+  // Paused it is told likewise; a place is told straight.
+  r.executor.pause("test");
+  EXPECT_NEAR(r.executor.progress(r.vehicle.at).way_to_item_end_m.value(), before_m, 1.2);
+  ASSERT_TRUE(r.executor.resume(r.vehicle.at));
+  while (r.executor.progress(r.vehicle.at).current_item == 2) r.tick();
+  const Progress last = r.executor.progress(r.vehicle.at);
+  EXPECT_FALSE(last.way_to_item_end_m);
+  EXPECT_LT(base::distance_m(last.item_end.value(), {20, 0}), 0.01);
+}
+
+TEST(Circle, ToldFromItsStationsIsStillAllOfIt) {
+  Ride r;
+  mission::Circle c = circle(8, 0, 2.0);
+  c.stations = 4;
+  c.hold_s = 3.0;
+  r.load(plan({at(1, 0), c}));
+  r.start();
+  while (r.executor.progress(r.vehicle.at).current_item != 2) r.tick();
+  double before_m = 1e9;
+  while (r.executor.running()) {
+    r.run(0.2);
+    const Progress p = r.executor.progress(r.vehicle.at);
+    if (!p.way_to_item_end_m) break;  // its last piece is told straight
+    EXPECT_LT(*p.way_to_item_end_m, before_m + 0.5);
+    before_m = std::min(before_m, *p.way_to_item_end_m);
+  }
+  EXPECT_LT(before_m, 0.8);
+}
+
 // Paused in the second of three turns, carried 1 m aside, restarted: what is left is driven, not
 // the whole.
 TEST(Circle, GoesOnInItsMiddleAfterAPauseAndAfterARestart) {
