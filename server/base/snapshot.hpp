@@ -110,6 +110,7 @@ struct MissionProgress {
   std::optional<double> distance_left_m;
   std::optional<double> eta_s;
   std::optional<MissionPlace> place;  ///< running, paused or blocked
+  bool waits_for_word = false;        ///< it stays at a place until somebody says to go on
   bool laid_by_old = false;           ///< its way was laid out by parameters that changed since
 };
 

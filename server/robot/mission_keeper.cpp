@@ -83,7 +83,8 @@ base::MissionProgress MissionKeeper::progress(const std::optional<base::Pose>& p
   p.name = mission_->copy.plan.name;
   p.state = executor.state();
   p.reason = executor.reason();
-  if (executor.waits_for_word()) p.reason = "stays here until it is resumed, or skipped";
+  p.waits_for_word = executor.waits_for_word();
+  if (p.waits_for_word) p.reason = "stays here until it is resumed, or skipped";
   if (executor.running() && radio) {
     p.reason = "the radio drives; the mission goes on when it gives control back";
   }

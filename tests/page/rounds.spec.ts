@@ -35,6 +35,11 @@ const ROUTE: Color = [20, 108, 46];
 const on_ring = (found: readonly Pixel[], [x, y]: Pixel, radius_px: number): number =>
   found.filter(([at_x, at_y]) => Math.abs(Math.hypot(at_x - x, at_y - y) - radius_px) < 2).length;
 
+const metres_to = (from: Point, east_m: number, north_m: number): Point => ({
+  lat: from.lat + north_m / 111_250,
+  lon: from.lon + east_m / (111_320 * Math.cos((from.lat * Math.PI) / 180)),
+});
+
 const stands_still = (station: Station): Promise<void> =>
   expect.poll(() => Math.abs(station.sim.now.speed_mps), { timeout: 5000 }).toBeLessThan(0.01);
 
@@ -166,4 +171,62 @@ test('the line of a mission goes around a circle, not through its centre', async
     return away > 24 && away < 5 * scale - 14;
   });
   expect(inside).toEqual([]);
+});
+
+test('a circle is told as one item, and a stay without a time goes on by “Resume”', async ({
+  page,
+  station,
+}) => {
+  test.setTimeout(150_000);
+  await page.setViewportSize({ width: 390, height: 844 });
+  await open_page(page, station.url);
+  await arm(page);
+  await station.rest('POST', '/vehicle/move', { forward_m: 4 });
+  await expect(page.getByLabel('Activity')).toContainText('Done.', { timeout: 40_000 });
+  const here = station.sim.now;
+  const mission = await station.rest<{ id: string }>('POST', '/missions', {
+    name: 'Round and stay',
+    items: [
+      { type: 'waypoint', ...metres_to(here, 2, 2) },
+      { type: 'circle', ...metres_to(here, 6, 2), radius_m: 1.5 },
+      { type: 'loiter' },
+      { type: 'waypoint', ...metres_to(here, 6, 6) },
+    ],
+  });
+  await station.rest('POST', '/execution/load', { mission_id: mission.id });
+  const preview = await station.rest<{ revision: number }>('GET', '/execution/preview');
+  await station.rest('POST', '/execution/start', {
+    mission_id: mission.id,
+    revision: preview.revision,
+  });
+  interface Progress {
+    readonly current_item: number | null;
+    readonly distance_to_item_m: number | null;
+    readonly waits_for_word: boolean;
+  }
+  const told: number[] = [];
+  await expect
+    .poll(
+      async () => {
+        const at = await station.rest<Progress>('GET', '/execution');
+        if (at.current_item === 2) told.push(at.distance_to_item_m ?? Infinity);
+        return at.waits_for_word;
+      },
+      { timeout: 90_000, intervals: [300] },
+    )
+    .toBe(true);
+  // A tangent of 3.7 m and the whole ring, ever less.
+  expect(told[0]).toBeGreaterThan(10);
+  expect(told.at(-1)).toBeLessThan(1.5);
+  const nearer = told.every((left_m, k) => k === 0 || left_m <= (told[k - 1] ?? 0) + 0.02);
+  expect(nearer, told.join(' ')).toBe(true);
+
+  const card = page.getByRole('region', { name: 'Mission' });
+  await expect(card).toContainText('stays here until it is resumed');
+  await stands_still(station);
+  await card.getByRole('button', { name: 'Resume', exact: true }).click();
+  await expect(card).toContainText('4 of 4');
+  await expect(card.getByRole('button', { name: 'Resume', exact: true })).toBeHidden();
+  await expect(page.getByLabel('Mission state')).toHaveText('Finished', { timeout: 60_000 });
+  await expect(page.getByRole('alert', { name: 'Refused' })).toBeHidden();
 });

@@ -24,14 +24,15 @@ interface Given {
   readonly estop?: boolean;
   readonly mode?: string;
   readonly state?: ExecutionState;
+  readonly waits_for_word?: boolean;
 }
-const facts = ({ stale, armed, estop, mode, state }: Given): Facts => ({
+const facts = ({ stale, armed, estop, mode, state, waits_for_word }: Given): Facts => ({
   link_stale: stale ?? false,
   vehicle: {
     armed: armed ?? false,
     estop: estop ?? false,
     mode: mode ?? 'HOLD',
-    mission: { state: state ?? 'idle' },
+    mission: { state: state ?? 'idle', waits_for_word: waits_for_word ?? false },
   } as unknown as Vehicle,
 });
 
@@ -77,6 +78,8 @@ describe('operations', () => {
       expect(why_not_pause(waiting)).toBe('No mission is running.');
     }
     expect(why_not_resume(facts({ armed: true, state: 'running' }))).not.toBeNull();
+    const stays = facts({ armed: true, state: 'running', waits_for_word: true });
+    expect(why_not_resume(stays)).toBeNull();
   });
 
   test('a latched stop refuses everything but its reset', () => {

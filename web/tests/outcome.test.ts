@@ -57,6 +57,9 @@ describe('what became of a command without an answer', () => {
     expect(told(load, {}, mission({ revision: 1 }))[0]).toBe(false);
     expect(told(load, {}, {})).toEqual([false, 'no mission is loaded']);
     const run: Wish = { to: 'run' };
+    const stays = mission({ state: 'running', waits_for_word: true });
+    expect(told(run, stays, mission({ state: 'running', waits_for_word: false }))[0]).toBe(true);
+    expect(told(run, stays, stays)[0]).toBe(false);
     expect(told(run, mission({}), mission({ state: 'running' }))[0]).toBe(true);
     expect(told(run, mission({}), mission({}))).toEqual([false, 'the mission is loaded']);
     expect(told(run, mission({ state: 'finished' }), mission({ state: 'finished' }))[0]).toBe(

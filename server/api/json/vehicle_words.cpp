@@ -169,6 +169,7 @@ Json progress_json(const base::MissionProgress& p, const char* id_word) {
           {"name", none ? Json(nullptr) : Json(p.name)},
           {"state", base::to_string(p.state)},
           {"reason", p.reason},
+          {"waits_for_word", p.waits_for_word},
           {"current_item", p.current_item ? Json(*p.current_item) : Json(nullptr)},
           {"items", p.items},
           {"distance_to_item_m", rounded(p.distance_to_item_m, kPlaces3)},

@@ -78,10 +78,14 @@ export const why_not_pause = (facts: Facts): Reason => {
 export const waits = ({ vehicle }: Facts): boolean =>
   vehicle?.mission.state === 'paused' || vehicle?.mission.state === 'blocked';
 
+/** It runs, but stays at a place without a time: until somebody says to go on. */
+export const waits_for_word = ({ vehicle }: Facts): boolean =>
+  vehicle?.mission.state === 'running' && vehicle.mission.waits_for_word;
+
 export const why_not_resume = (facts: Facts): Reason => {
   const before = no_link(facts) ?? no_stop(facts);
   if (before !== null) return before;
-  return waits(facts) ? null : 'The mission is not paused.';
+  return waits(facts) || waits_for_word(facts) ? null : 'The mission is not paused.';
 };
 
 export const why_not_stop_mission = (facts: Facts): Reason => {

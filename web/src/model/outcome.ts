@@ -76,7 +76,9 @@ export const outcome = (wish: Wish, before: Vehicle | null, after: Vehicle): Out
     }
     case 'run': {
       const runs = mission.state === 'running' || mission.state === 'finished';
-      return { obeyed: runs && mission.state !== before?.mission.state, detail: is(after) };
+      const other = mission.state !== before?.mission.state;
+      const left = before?.mission.waits_for_word === true && !mission.waits_for_word;
+      return { obeyed: runs && (other || left), detail: is(after) };
     }
     case 'go_on': {
       const { state } = after.activity;

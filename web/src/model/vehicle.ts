@@ -102,6 +102,8 @@ export interface MissionProgress {
   readonly name: string | null;
   readonly state: ExecutionState;
   readonly reason: string;
+  /** It stays at a place until somebody says to go on. */
+  readonly waits_for_word: boolean;
   /** From 1; null: none. */
   readonly current_item: number | null;
   readonly items: number;
