@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "base/geo.hpp"
+
 namespace roverd::base {
 
 /// Drive: all of how it answers. Steering: of a steered vehicle, its wheels alone. Compass: offset
@@ -71,6 +73,8 @@ struct CalibrationState {
   double share = 0.0;  ///< done, 0..1
   double left_s = 0.0;
   CalibrationSpace space;
+  EnuPoint from;  ///< where it began, in the robot's frame; of any phase but None
+  double from_yaw_rad = 0.0;
   std::array<CalibrationValue, kQuantities> values{};
   std::size_t count = 0;  ///< of them
 };

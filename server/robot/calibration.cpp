@@ -329,7 +329,13 @@ base::Result<CalibrationPreview> Robot::calibration(base::CalibrationKind kind) 
   }
   if (!state->autonomy_refusal.empty()) out.reason = state->autonomy_refusal;
   out.possible = out.reason.empty();
-  for (const base::EnuPoint& p : calibration_corners(out.space, *state->pose)) {
+  base::Pose from = *state->pose;
+  const base::CalibrationState& drive = state->calibration;
+  if (drive.phase == CalibrationPhase::Running && drive.kind == kind) {  // its space stays
+    from.at = drive.from;
+    from.yaw_rad = drive.from_yaw_rad;
+  }
+  for (const base::EnuPoint& p : calibration_corners(out.space, from)) {
     out.corners.push_back(state->frame->to_global(p));
   }
   return out;

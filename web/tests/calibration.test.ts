@@ -2,6 +2,7 @@ import { describe, expect, it } from 'vitest';
 
 import {
   calibration_rows,
+  kept_words,
   need_words,
   worth_keeping,
   type Calibration,
@@ -54,6 +55,13 @@ describe('a calibration', () => {
     expect(notes({ after: null, sigma: null, inside: false })).toBe('not measured');
     expect(notes({ after: 99, inside: false })).toBe('no vehicle is so: not kept');
     expect(notes({ at_least: true, keeps: false })).toBe('as it was told: more was not asked');
+  });
+
+  it('says what is used once it is kept', () => {
+    const values = [value({}), value({ quantity: 'turn_scale' }), value({ keeps: false })];
+    expect(kept_words(calibration({ values }))).toBe(
+      'Kept, and used from now on: Braking, Turn over ground.',
+    );
   });
 
   it('is worth keeping only when it is done and something of it would act', () => {

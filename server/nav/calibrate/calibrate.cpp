@@ -349,6 +349,8 @@ base::CalibrationState Calibrate::tell() const {
   out.id = id_;
   out.kind = kind_;
   out.space = space_;
+  out.from = start_;
+  out.from_yaw_rad = yaw_rad_;
   out.reason = reason_;
   switch (state_) {
     case State::Idle:

@@ -8,6 +8,7 @@ import { defaults as default_interactions } from 'ol/interaction/defaults';
 import TileLayer from 'ol/layer/Tile';
 import XYZ from 'ol/source/XYZ';
 
+import type { SpaceOnMap } from '../model/calibration';
 import type { FenceDraft } from '../model/fence';
 import { EMPTY_PLAN, type LatLon, type Plan } from '../model/plan';
 import type {
@@ -32,6 +33,7 @@ import { on_palette_change } from './palette';
 import { from_plane, to_plane, to_plane_line } from './projection';
 import { Scene } from './scene';
 import { prepare_run } from './run_painter';
+import { prepare_space } from './space_painter';
 import { make_scale_bar } from './scale_bar';
 
 /** Until something is known: the whole world, in degrees. */
@@ -194,6 +196,11 @@ export class FieldMap implements MapCalls {
 
   show_slips(slips: readonly Slip[]): void {
     this.#scene.slips = prepare_slips(slips);
+    this.#map.render();
+  }
+
+  show_space(space: SpaceOnMap | null): void {
+    this.#scene.space = space && prepare_space(space);
     this.#map.render();
   }
 

@@ -26,6 +26,7 @@ import { from_plane, type PlaneLine, to_plane_line, units_per_m } from './projec
 import { paint_accuracy, paint_home, paint_robot, TrailLine, type Size } from './robot_painter';
 import { paint_runs, type DrawnRun } from './run_painter';
 import type { ScaleBar } from './scale_bar';
+import { paint_space, type DrawnSpace } from './space_painter';
 import { paint_slips, type DrawnSlip } from './slip_painter';
 
 /** Beyond this from its origin the grid gets a new one. */
@@ -72,6 +73,7 @@ export class Scene {
   home: LatLon | null = null;
   runs: readonly DrawnRun[] = [];
   drill: DrawnDrill | null = null;
+  space: DrawnSpace | null = null;
   slips: readonly DrawnSlip[] = [];
   fence: FenceDraft | null = null;
   /** The place that the person chose. */
@@ -105,6 +107,9 @@ export class Scene {
       },
       (paint) => {
         if (this.fence) paint_fence(paint, this.fence, palette());
+      },
+      (paint) => {
+        if (this.space) paint_space(paint, this.space, palette());
       },
       (paint) => {
         if (this.runs.length > 0) return;

@@ -27,6 +27,12 @@ export interface CalibrationNeed {
   readonly seconds: number;
   readonly corners: readonly LatLon[];
 }
+/** The ground of one. */
+export interface SpaceOnMap {
+  readonly corners: readonly LatLon[];
+  /** It can be begun there. */
+  readonly possible: boolean;
+}
 export interface Calibration {
   readonly id: number;
   readonly state: 'none' | 'running' | 'done' | 'failed' | 'aborted';
@@ -105,6 +111,13 @@ export const calibration_rows = ({ values }: Calibration): readonly CalibrationR
 /** At least one of them would act. */
 export const worth_keeping = ({ state, values }: Calibration): boolean =>
   state === 'done' && values.some(({ inside, keeps }) => inside && keeps);
+
+/** What acts from now on: "Kept, and used from now on: Braking, Delay of turning." */
+export const kept_words = ({ values }: Calibration): string => {
+  const used = values.filter(({ inside, keeps }) => inside && keeps);
+  const names = used.map(({ quantity }) => titles[quantity] ?? quantity);
+  return `Kept, and used from now on: ${names.join(', ')}.`;
+};
 
 /** "It needs 9 m ahead, 3 m behind and 2 m to either side, and about 2 minutes." */
 export const need_words = ({ space, seconds }: CalibrationNeed): string => {

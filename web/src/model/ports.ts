@@ -1,7 +1,7 @@
 // What the rooms of the page hand each other through main.ts: types only.
 
 import type { Answer, Refusal } from './answer';
-import type { Calibration, CalibrationKind } from './calibration';
+import type { Calibration, CalibrationKind, SpaceOnMap } from './calibration';
 import type { CircleGoal, StayGoal } from './circle';
 import type { ControlState } from './control';
 import type { Drill, DrillTone, DrillWish } from './drill';
@@ -374,6 +374,8 @@ export interface MapCalls {
   show_runs(runs: readonly RunOnMap[]): void;
   /** Where the ground gave way. */
   show_slips(slips: readonly Slip[]): void;
+  /** What a calibration drive needs; null: none is looked at. */
+  show_space(space: SpaceOnMap | null): void;
   /** What a drill found; null: none is looked at. */
   show_drill(drill: DrillOnMap | null): void;
   /** Footprint of the vehicle, drawn to scale. */

@@ -1,7 +1,12 @@
 // The guided calibration drive: asked about, begun, watched, kept or discarded.
 
 import { refusal_text, type Answer } from '../model/answer';
-import type { Calibration, CalibrationKind } from '../model/calibration';
+import {
+  kept_words,
+  type Calibration,
+  type CalibrationKind,
+  type SpaceOnMap,
+} from '../model/calibration';
 import type { VehicleCalls } from '../model/ports';
 import type { Dialogs } from './dialogs.svelte';
 
@@ -12,7 +17,19 @@ export class Calibrator {
   kind = $state<CalibrationKind>('drive');
   failure = $state<string | null>(null);
   busy = $state(false);
+  /** What became of the last one, once a person has chosen. */
+  said = $state<string | null>(null);
+  /** The ground that it needs; null: nobody looks. */
+  space = $derived.by<SpaceOnMap | null>(() => {
+    const { last } = this;
+    const running = last?.state === 'running';
+    if (!this.#looked || !last || (last.state !== 'none' && !running)) return null;
+    const need = last.kinds.find(({ kind }) => kind === (running ? last.kind : this.kind));
+    if (!need) return null;
+    return { corners: need.corners, possible: running || need.possible };
+  });
 
+  #looked = $state(false);
   readonly #calls: VehicleCalls;
   readonly #dialogs: Dialogs;
 
@@ -25,6 +42,8 @@ export class Calibrator {
   watch(): () => void {
     let timer: ReturnType<typeof setTimeout> | undefined;
     let over = false;
+    this.#looked = true;
+    this.said = null;
     const ask = async (): Promise<void> => {
       const answer = await this.#calls.calibration();
       if (over) return;
@@ -34,13 +53,19 @@ export class Calibrator {
     void ask();
     return () => {
       over = true;
+      this.#looked = false;
       clearTimeout(timer);
     };
   }
 
-  begin = (): Promise<void> => this.#do(() => this.#calls.calibrate(this.kind));
-  keep = (): Promise<void> => this.#do(() => this.#calls.settle_calibration(true));
-  discard = (): Promise<void> => this.#do(() => this.#calls.settle_calibration(false));
+  begin = (): Promise<void> => this.#do(null, () => this.#calls.calibrate(this.kind));
+  keep = (): Promise<void> =>
+    this.#do(this.last && kept_words(this.last), () => this.#calls.settle_calibration(true));
+  discard = (): Promise<void> => {
+    const measured = this.last?.state === 'done';
+    const said = measured ? 'Discarded: it drives as before.' : null;
+    return this.#do(said, () => this.#calls.settle_calibration(false));
+  };
 
   async forget(): Promise<void> {
     const sure = await this.#dialogs.ask({
@@ -49,14 +74,19 @@ export class Calibrator {
       yes: 'Forget it',
       danger: true,
     });
-    if (sure) await this.#do(() => this.#calls.forget_calibration());
+    const said = 'Forgotten: it drives by its settings, and learns anew.';
+    if (sure) await this.#do(said, () => this.#calls.forget_calibration());
   }
 
-  async #do(call: () => Promise<Answer<Calibration>>): Promise<void> {
+  /** @param said once it is done */
+  async #do(said: string | null, call: () => Promise<Answer<Calibration>>): Promise<void> {
     this.busy = true;
+    this.said = null;
     const answer = await call();
     this.busy = false;
     this.failure = answer.ok ? null : refusal_text(answer.refusal);
-    if (answer.ok) this.last = answer.value;
+    if (!answer.ok) return;
+    this.last = answer.value;
+    this.said = said;
   }
 }

@@ -366,6 +366,7 @@ export class Station {
       map.show_route(this.route.plan, this.route.way, live.vehicle?.mission.current_item ?? 0),
     );
     $effect(() => map.show_slips(this.slips.on_map));
+    $effect(() => map.show_space(this.calibrator.space));
     $effect(() => map.show_robot(live.robot, live.tracks));
     $effect(() => map.show_home(live.vehicle?.home ?? null));
     $effect(() => {
