@@ -98,6 +98,33 @@ test('a move by metres and a turn by degrees are carried out and can be stopped'
   await stands_still(station);
 });
 
+test.describe('by touch', () => {
+  test.use({ viewport: { width: 390, height: 844 }, hasTouch: true });
+
+  test('a button that does nothing now says why when it is tapped', async ({ page, station }) => {
+    await open_page(page, station.url);
+    await page.getByRole('button', { name: 'Move, turn', exact: true }).tap();
+    const forward = page.getByRole('button', { name: 'Forward', exact: true });
+    await forward.scrollIntoViewIfNeeded();
+    await forward.tap({ force: true }); // although it is disabled
+    const why = page.getByRole('status', { name: 'Why not' });
+    await expect(why).toHaveText('Arm the robot first.');
+    const bubble = await why.getByText('Arm the robot first.').boundingBox();
+    const button = await forward.boundingBox();
+    if (!bubble || !button) throw new Error('nothing to be seen');
+    expect(bubble.x).toBeGreaterThanOrEqual(0);
+    expect(bubble.x + bubble.width).toBeLessThanOrEqual(390);
+    expect(bubble.y + bubble.height).toBeLessThanOrEqual(button.y);
+    expect(button.y - bubble.y - bubble.height).toBeLessThan(20);
+    const auto = page.getByRole('button', { name: 'AUTO', exact: true });
+    await auto.scrollIntoViewIfNeeded();
+    await auto.tap({ force: true });
+    await expect(why).toHaveText('Load a mission first.');
+    await page.getByRole('button', { name: 'Longer', exact: true }).tap(); // anything else
+    await expect(why).toHaveText('');
+  });
+});
+
 test('the menu offers every mode of the profile, says why not, and shows a refusal in words', async ({
   page,
   station,

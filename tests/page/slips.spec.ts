@@ -1,7 +1,10 @@
 // Where it slipped: on the map, in the log, and forgotten.
 
-import { arm, metres_between, open_page, press, tab } from './page';
+import { arm, map_pixels, metres_between, open_page, press, tab, type Color } from './page';
 import { expect, test } from './station';
+
+/** The edge of a diamond. */
+const SLIP: Color = [179, 38, 30];
 
 test('the log switches on where it slipped, and forgets it', async ({ page, station }) => {
   await page.setViewportSize({ width: 390, height: 844 });
@@ -28,6 +31,24 @@ test('the log switches on where it slipped, and forgets it', async ({ page, stat
   await card.getByRole('button', { name: 'Forget all' }).click();
   await press(page, 'Forget them');
   await expect(card).toContainText('0 places');
+});
+
+test('the map looks again where it slipped, whatever panel is open', async ({ page, station }) => {
+  await open_page(page, station.url);
+  const here = station.sim.now;
+  let kept: readonly object[] = [];
+  await page.route('**/api/v1/slips**', (route) =>
+    route.fulfill({ json: { items: kept, next_cursor: null } }),
+  );
+  await tab(page, 'Log');
+  await page.getByLabel('Show on the map').check();
+  await tab(page, 'Drive');
+  expect(await map_pixels(page, [SLIP])).toEqual([]);
+  const at = { lat: here.lat + 0.00004, lon: here.lon };
+  kept = [{ id: 1, ...at, time: '2026-05-01T10:00:00Z', kind: 'dug', percent: 90, times: 1 }];
+  await expect
+    .poll(async () => (await map_pixels(page, [SLIP])).length, { timeout: 25_000 })
+    .toBeGreaterThan(5);
 });
 
 test('a stretch of loose ground is remembered where the robot drove', async ({ page, station }) => {

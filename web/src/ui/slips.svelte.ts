@@ -27,7 +27,7 @@ export class Slips {
     if (shown) void this.refresh();
   }
 
-  /** Asks now and then while they are shown. @return ends it */
+  /** Asks now and then. @return ends it */
   watch(): () => void {
     const again = setInterval(() => void this.refresh(), RENEWED_MS);
     void this.refresh();

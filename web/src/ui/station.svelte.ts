@@ -366,6 +366,9 @@ export class Station {
       map.show_route(this.route.plan, this.route.way, live.vehicle?.mission.current_item ?? 0),
     );
     $effect(() => map.show_slips(this.slips.on_map));
+    // As long as somebody sees them: in the log, or on the map.
+    const slips_seen = $derived(this.slips.shown || this.tab === 'log');
+    $effect(() => (slips_seen ? untrack(() => this.slips.watch()) : undefined));
     $effect(() => map.show_space(this.calibrator.space));
     $effect(() => map.show_robot(live.robot, live.tracks));
     $effect(() => map.show_home(live.vehicle?.home ?? null));
