@@ -1,11 +1,29 @@
 #include "sim/world/terrain.hpp"
 
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <numbers>
 
 #include "sim/world/draw.hpp"
 
 namespace roverd::sim::world {
+
+/// One square of a layer's knots, kept from one place to the next: rays go on in small steps.
+struct Knots {
+  std::int64_t column = std::numeric_limits<std::int64_t>::min();
+  std::int64_t row = 0;
+  double a = 0.0;  ///< south-west, and what the others differ from it
+  double east = 0.0;
+  double north = 0.0;
+  double both = 0.0;
+};
+
+/// As many layers as a file may have.
+struct Terrain::Squares {
+  std::array<Knots, 8> of;
+};
+
 namespace {
 
 constexpr double kClose_m = 2e-4;
@@ -18,21 +36,26 @@ double knot_of(std::uint64_t seed, std::int64_t column, std::int64_t row) noexce
   return 2.0 * share_of(spread(seed ^ c ^ (r << 1 | r >> 63))) - 1.0;
 }
 
+std::int64_t floor_of(double x) noexcept {
+  const auto whole = static_cast<std::int64_t>(x);
+  return whole - (x < static_cast<double>(whole) ? 1 : 0);
+}
+
 /// −1 .. 1
-double eased_noise(std::uint64_t seed, double x, double y) noexcept {
-  const double column = std::floor(x);
-  const double row = std::floor(y);
+double eased_noise(std::uint64_t seed, double x, double y, Knots& square) noexcept {
+  const std::int64_t i = floor_of(x);
+  const std::int64_t k = floor_of(y);
+  if (square.column != i || square.row != k) {
+    const double a = knot_of(seed, i, k);
+    const double b = knot_of(seed, i + 1, k);
+    const double c = knot_of(seed, i, k + 1);
+    const double d = knot_of(seed, i + 1, k + 1);
+    square = {i, k, a, b - a, c - a, a - b - c + d};
+  }
   const auto ease = [](double s) { return s * s * (3.0 - 2.0 * s); };
-  const double across = ease(x - column);
-  const double up = ease(y - row);
-  const auto i = static_cast<std::int64_t>(column);
-  const auto k = static_cast<std::int64_t>(row);
-  const double a = knot_of(seed, i, k);
-  const double b = knot_of(seed, i + 1, k);
-  const double c = knot_of(seed, i, k + 1);
-  const double d = knot_of(seed, i + 1, k + 1);
-  const double below = a + across * (b - a);
-  return below + up * (c + across * (d - c) - below);
+  const double across = ease(x - static_cast<double>(i));
+  const double up = ease(y - static_cast<double>(k));
+  return square.a + across * square.east + up * (square.north + across * square.both);
 }
 
 /// Where the ray leaves the polygon first after begin_m, in plan; max_m if it does not.
@@ -71,13 +94,14 @@ Terrain::Terrain(const Ground& ground, std::uint64_t seed)
       rise_y_(std::tan(ground.slope_rad) * std::sin(ground.uphill_rad)),
       bumps_(ground.bumps),
       drops_(ground.drops) {
-  for (std::size_t i = 0; i < ground.uneven.size(); ++i) {
+  for (std::size_t i = 0; i < std::min<std::size_t>(8, ground.uneven.size()); ++i) {
     const Uneven& u = ground.uneven[i];
     layers_.push_back({u.height_m, 1.0 / u.patch_m, spread(seed + i)});
     low_m_ -= u.height_m;
     high_m_ += u.height_m;
-    // 1.5 is the steepest of the easing; neighbouring knots differ by two heights at most.
-    steep_ += 3.0 * std::numbers::sqrt2 * u.height_m / u.patch_m;
+    // 1.5 is the steepest of the easing; neighbouring knots differ by two heights at most, and
+    // where they do so to one side they cannot to the other.
+    steep_ += 3.0 * u.height_m / u.patch_m;
     step_m_ = std::min(step_m_, u.patch_m / 16.0);
   }
   for (const Bump& b : bumps_) {
@@ -95,10 +119,11 @@ Terrain::Terrain(const Ground& ground, std::uint64_t seed)
   }
 }
 
-double Terrain::detail_m(Vec2 at) const noexcept {
+double Terrain::detail_m(Vec2 at, Squares& squares) const noexcept {
   double sum = 0.0;
-  for (const Layer& l : layers_) {
-    sum += l.height_m * eased_noise(l.seed, at.x * l.per_m, at.y * l.per_m);
+  for (std::size_t i = 0; i < layers_.size(); ++i) {
+    const Layer& l = layers_[i];
+    sum += l.height_m * eased_noise(l.seed, at.x * l.per_m, at.y * l.per_m, squares.of[i]);
   }
   for (const Bump& b : bumps_) {
     const double off2 = dot(at - b.at, at - b.at);
@@ -109,7 +134,8 @@ double Terrain::detail_m(Vec2 at) const noexcept {
 }
 
 double Terrain::surface_m(Vec2 at) const noexcept {
-  return rise_x_ * at.x + rise_y_ * at.y + detail_m(at);
+  Squares squares;
+  return rise_x_ * at.x + rise_y_ * at.y + detail_m(at, squares);
 }
 
 const Drop* Terrain::drop_at(Vec2 at) const noexcept {
@@ -135,9 +161,10 @@ double Terrain::facing(Vec3 dir, Vec2 at) const noexcept {
   double dy = rise_y_;
   if (!layers_.empty() || !bumps_.empty()) {
     constexpr double kAside_m = 0.01;
-    const double here = detail_m(at);
-    dx += (detail_m({at.x + kAside_m, at.y}) - here) / kAside_m;
-    dy += (detail_m({at.x, at.y + kAside_m}) - here) / kAside_m;
+    Squares squares;
+    const double here = detail_m(at, squares);
+    dx += (detail_m({at.x + kAside_m, at.y}, squares) - here) / kAside_m;
+    dy += (detail_m({at.x, at.y + kAside_m}, squares) - here) / kAside_m;
   }
   const double steep = std::sqrt(1.0 + dx * dx + dy * dy);
   return std::clamp(-(dir.z - dx * dir.x - dy * dir.y) / steep, 0.0, 1.0);
@@ -160,8 +187,9 @@ std::optional<double> Terrain::march(Vec3 from, Vec3 dir, double begin_m, double
   const double flat = std::hypot(dir.x, dir.y);
   const double closing = std::abs(b) + steep_ * flat;
   const double least_m = step_m_ / std::max(flat, 0.05);
+  Squares squares;
   const auto gap = [&](double at_m) {
-    return a + b * at_m - detail_m({from.x + at_m * dir.x, from.y + at_m * dir.y});
+    return a + b * at_m - detail_m({from.x + at_m * dir.x, from.y + at_m * dir.y}, squares);
   };
   double before = t;
   for (int i = 0; i < kMostSteps; ++i) {

@@ -15,6 +15,7 @@ namespace roverd::sim::world {
 class Terrain {
  public:
   Terrain() = default;
+  /// Of more than eight uneven layers the first eight count.
   Terrain(const Ground& ground, std::uint64_t seed);
 
   /// Up, above the level of the start's plane.
@@ -50,7 +51,8 @@ class Terrain {
   struct Sides {
     Vec2 low, high;
   };
-  double detail_m(Vec2 at) const noexcept;
+  struct Squares;
+  double detail_m(Vec2 at, Squares& squares) const noexcept;
   std::optional<double> march(Vec3 from, Vec3 dir, double begin_m, double max_m,
                               double shift_m) const noexcept;
   const Drop* drop_at(Vec2 at) const noexcept;
