@@ -6,6 +6,8 @@
 
 #include <toml++/toml.h>
 
+#include "sim/world/random.hpp"
+
 namespace roverd::sim {
 namespace {
 
@@ -27,8 +29,40 @@ tl::unexpected<base::Error> refuse(std::string detail) {
   return base::fail(base::Code::Invalid, std::move(detail));
 }
 
+/// One key of one sensor; what it then is must be good as a whole.
+Result<void> set_sensor_key(world::SensorParams& sensor, const std::string& key,
+                            const ParamValue& value) {
+  auto done = base::set_param(sensor, key, value);
+  if (done) return done;
+  return refuse(done.error().detail == "unknown key" ? "unknown key sensor." + key
+                                                     : "sensor." + done.error().detail);
+}
+
+/// "sensor.NAME.rate_hz"
+Result<void> set_sensor(Config& config, const std::string& key, const ParamValue& value) {
+  const auto name_at = key.find('.') + 1;
+  const auto dot = key.rfind('.');
+  for (world::SensorParams& sensor : config.sensors) {
+    if (dot < name_at || sensor.name != key.substr(name_at, dot - name_at)) continue;
+    world::SensorParams draft = sensor;
+    if (auto done = set_sensor_key(draft, key.substr(dot + 1), value); !done) return done;
+    if (auto good = world::check(draft); !good) return refuse("sensor." + good.error().detail);
+    sensor = draft;
+    return {};
+  }
+  return refuse("unknown key " + key);
+}
+
 Result<void> set_key(Config& config, const std::string& key, const ParamValue& value) {
   constexpr std::string_view kStart = "start.";
+  constexpr std::string_view kSensor = "sensor.";
+  if (key == "world.file") {
+    const auto* text = std::get_if<std::string>(&value);
+    if (text == nullptr) return refuse("world.file must be text");
+    config.world = *text;
+    return {};
+  }
+  if (key.starts_with(kSensor)) return set_sensor(config, key, value);
   if (!key.starts_with(kStart)) return set_param(config.params, key, value);
   StartFields start{config.start};
   auto done = base::set_param(start, key.substr(kStart.size()), value);
@@ -54,8 +88,50 @@ std::string place(const std::string& file, const toml::source_region& source) {
   return file + ":" + std::to_string(source.begin.line) + ": ";
 }
 
+/// One [[sensor]]. Its kind comes first: it says what is usual.
+Result<void> read_sensor(Config& config, const toml::table& table, const std::string& file) {
+  const auto* kind = table.get_as<std::string>("kind");
+  world::SensorParams sensor = world::usual(kind != nullptr ? kind->get() : "lms");
+  for (const auto& [name, node] : table) {
+    const auto value = value_of(node);
+    const auto done = value ? set_sensor_key(sensor, std::string(name.str()), *value)
+                            : Result<void>(refuse("sensor." + std::string(name.str()) +
+                                                  " must be a number, a text or true/false"));
+    if (!done) return refuse(place(file, name.source()) + done.error().detail);
+  }
+  if (sensor.name.empty()) sensor.name = sensor.kind;
+  const auto bad = [&](const std::string& what) {
+    return refuse(place(file, table.source()) + "sensor." + what);
+  };
+  if (auto good = world::check(sensor); !good) return bad(good.error().detail);
+  for (const world::SensorParams& other : config.sensors) {
+    if (other.name == sensor.name) return bad("name " + sensor.name + " is there twice");
+    if (!sensor.port.empty() && other.port == sensor.port &&
+        sensor.port.find(':') != std::string::npos) {
+      return bad("port " + sensor.port + " is " + other.name + "'s");
+    }
+  }
+  if (config.sensors.size() == kMaxSensors) return bad("is there more than 16 times");
+  config.sensors.push_back(std::move(sensor));
+  return {};
+}
+
+Result<void> read_sensors(Config& config, const toml::array& list, const std::string& file) {
+  config.sensors.clear();
+  for (const toml::node& node : list) {
+    const auto* one = node.as_table();
+    if (one == nullptr) return refuse(place(file, node.source()) + "sensor must be tables");
+    if (auto done = read_sensor(config, *one, file); !done) return done;
+  }
+  return {};
+}
+
 Result<void> read_table(Config& config, const toml::table& table, const std::string& file) {
   for (const auto& [section, node] : table) {
+    if (const auto* list = node.as_array(); list != nullptr && section.str() == "sensor") {
+      if (auto done = read_sensors(config, *list, file); !done) return done;
+      continue;
+    }
     const auto* inner = node.as_table();
     if (inner == nullptr) {
       return refuse(place(file, section.source()) + "unknown key " + std::string(section.str()));
@@ -151,6 +227,22 @@ Result<void> read_start(Start& start, const std::string& text) {
   return {};
 }
 
+Result<world::World> load_world(const std::string& name) {
+  if (auto random = world::random_world_named(name)) return std::move(*random);
+  if (name.starts_with("random:")) {
+    return refuse(name +
+                  ": must be random:N or random:N:KIND with static, moving, grass or crowded");
+  }
+  std::ifstream in(name, std::ios::binary);
+  std::ostringstream text;
+  if (!in || !(text << in.rdbuf())) {
+    return base::fail(base::Code::NotFound, "cannot read the world " + name);
+  }
+  auto world = world::read_world(text.str());
+  if (!world) return base::fail(world.error().code, name + ": " + world.error().detail);
+  return world;
+}
+
 std::string parameter_list(const Config& config) {
   Start start = config.start;
   std::ostringstream out;
@@ -161,6 +253,11 @@ std::string parameter_list(const Config& config) {
   };
   for (const auto& info : base::describe(StartFields{start})) print("start." + info.name, info);
   for (const auto& info : describe(config.params)) print(info.name, info);
+  for (const world::SensorParams& sensor : config.sensors) {
+    for (const auto& info : base::describe(sensor)) {
+      print("sensor." + sensor.name + "." + info.name, info);
+    }
+  }
   return out.str();
 }
 

@@ -1,5 +1,7 @@
 #include "sim/control.hpp"
 
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
 #include "base/angle.hpp"
@@ -37,6 +39,35 @@ json truth_object(const Truth& t, Time start) {
           {"commands", t.commands}};
 }
 
+/// Contacts: solids and edges; brushes: leaves.
+void add_contacts(json& out, const Surroundings* around) {
+  if (around == nullptr) return;
+  const world::Witness& witness = around->witness();
+  out["contacts"] = witness.hard();
+  out["brushes"] = witness.soft();
+  out["clearance_m"] = witness.now().clearance_m;
+}
+
+json world_object(const Surroundings& around) {
+  const world::Scene& scene = around.scene();
+  const world::Witness& witness = around.witness();
+  json out{{"world", around.on()}, {"name", scene.world().name}};
+  add_contacts(out, &around);
+  out["nearest"] = scene.name_of(witness.now().nearest);
+  out["least_clearance_m"] = std::min(witness.least_m(), 1000.0);
+  out["touched"] = json::array();
+  for (const world::Witness::Seen& s : witness.seen()) {
+    out["touched"].push_back({{"t_s", s.at_s},
+                              {"what", scene.name_of(s.thing)},
+                              {"soft", s.soft},
+                              {"moving", s.moving},
+                              {"speed_mps", s.speed_mps},
+                              {"east_m", s.at.x},
+                              {"north_m", s.at.y}});
+  }
+  return out;
+}
+
 /// What a line wants, put together before anything is changed.
 struct Wish {
   Radio radio;
@@ -47,6 +78,9 @@ struct Wish {
   std::optional<base::LatLon> at;
   std::optional<double> heading_deg;
   bool power_cycle = false;
+  std::optional<bool> world;
+  bool forget = false;
+  bool has_world = false;  ///< to be told or switched
   std::string get;
 };
 
@@ -192,12 +226,21 @@ Result<void> read_member(Wish& wish, const std::string& name, const json& value,
     wish.power_cycle = value.get<bool>();
     return {};
   }
+  if (name == "world" || name == "forget") {
+    if (!wish.has_world) return refuse_line("there is no world: " + name);
+    if (!value.is_boolean()) return refuse_line(name + " must be true or false");
+    if (name == "world") wish.world = value.get<bool>();
+    if (name == "forget") wish.forget = value.get<bool>();
+    return {};
+  }
   if (name == "get") {
     wish.get = value.is_string() ? value.get<std::string>() : "";
     for (const char* word : {"truth", "faults", "radio", "params"}) {
       if (wish.get == word) return {};
     }
-    return refuse_line("get must be truth, faults, radio or params");
+    if (wish.get == "world" && wish.has_world) return {};
+    return refuse_line(std::string("get must be truth, faults, radio") +
+                       (wish.has_world ? ", params or world" : " or params"));
   }
   if (name == "id") return {};
   return refuse_line("unknown key " + name);
@@ -233,8 +276,13 @@ json radio_object(const Radio& r) {
           {"vra", r.vra}};
 }
 
-json got(const std::string& what, const Vehicle& vehicle, Time start) {
-  if (what == "truth") return truth_object(vehicle.truth(), start);
+json got(const std::string& what, const Vehicle& vehicle, Time start, const Surroundings* around) {
+  if (what == "truth") {
+    json out = truth_object(vehicle.truth(), start);
+    add_contacts(out, around);
+    return out;
+  }
+  if (what == "world" && around != nullptr) return world_object(*around);
   if (what == "faults") return listed(base::describe(vehicle.faults()));
   if (what == "radio") return radio_object(vehicle.radio());
   if (what == "params") return listed(describe(vehicle.params()));
@@ -247,11 +295,13 @@ std::string text_of(const json& object) {
 
 }  // namespace
 
-std::string truth_line(const Truth& truth, Time start) {
-  return text_of(truth_object(truth, start));
+std::string truth_line(const Truth& truth, Time start, const Surroundings* around) {
+  json out = truth_object(truth, start);
+  add_contacts(out, around);
+  return text_of(out);
 }
 
-ControlAnswer carry_out(std::string_view line, Vehicle& vehicle, Time start) {
+ControlAnswer carry_out(std::string_view line, Vehicle& vehicle, Time start, Surroundings* around) {
   const json object = json::parse(line, nullptr, false);
   if (!object.is_object()) return {R"({"error":"a line must be one JSON object"})", {}};
   const auto failed = [&](const std::string& detail) {
@@ -263,13 +313,16 @@ ControlAnswer carry_out(std::string_view line, Vehicle& vehicle, Time start) {
   wish.radio = vehicle.radio();
   wish.faults = vehicle.faults();
   wish.params = vehicle.params();
+  wish.has_world = around != nullptr;
   for (const auto& [name, value] : object.items()) {
     if (auto done = read_member(wish, name, value, vehicle); !done) {
       return failed(done.error().detail);
     }
   }
   if (auto done = grant(wish, vehicle); !done) return failed(done.error().detail);
-  json answer = got(wish.get, vehicle, start);
+  if (wish.world) around->set_on(*wish.world);
+  if (wish.forget) around->forget_contacts();
+  json answer = got(wish.get, vehicle, start, around);
   answer["ok"] = true;
   if (object.contains("id")) answer["id"] = object["id"];
   return {text_of(answer), wish.truth_hz};

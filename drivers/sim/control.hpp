@@ -12,7 +12,10 @@
 //   {"radio":{"swb":"middle","right_ud":0.5}}     switches up, middle, down, unknown; axes −1..1
 //   {"pose":{"lat":…,"lon":…,"heading_deg":…}}    or east_m, north_m; what is missing stays
 //   {"power_cycle":true}
-//   {"get":"truth"}                               or "faults", "radio", "params": after the rest
+//   {"world":false}                               nothing stands around it; true: as before
+//   {"forget":true}                               contacts are counted from 0
+//   {"get":"truth"}                               or "faults", "radio", "params", "world" (what it
+//        touched, and when): after the rest
 //   {"id":7, …}                                   comes back in the answer
 // Answer: {"ok":true, …} or {"error":"unknown key gnss_outtage"}.
 
@@ -20,6 +23,7 @@
 #include <string>
 #include <string_view>
 
+#include "sim/surroundings.hpp"
 #include "sim/vehicle.hpp"
 
 namespace roverd::sim {
@@ -30,7 +34,8 @@ inline constexpr double kMinTruthHz = 0.1;
 inline constexpr double kMaxTruthHz = 200.0;
 
 /// One line without the line end.
-std::string truth_line(const Truth& truth, Time start);
+/// @param around null: no world; otherwise contacts, brushes and clearance_m are told, too.
+std::string truth_line(const Truth& truth, Time start, const Surroundings* around = nullptr);
 
 struct ControlAnswer {
   std::string line;                ///< without the line end
@@ -38,6 +43,7 @@ struct ControlAnswer {
 };
 
 /// Carries out one line. Whatever it holds, the answer is a line and nothing is thrown.
-ControlAnswer carry_out(std::string_view line, Vehicle& vehicle, Time start);
+ControlAnswer carry_out(std::string_view line, Vehicle& vehicle, Time start,
+                        Surroundings* around = nullptr);
 
 }  // namespace roverd::sim

@@ -95,6 +95,15 @@ Footing footing_at(const Params& p, std::uint64_t seed, base::EnuPoint at, doubl
   return f;
 }
 
+Footing on_ground(Footing f, const Lie& lie) {
+  f.ahead = lie.ahead;
+  f.leftward = lie.leftward;
+  f.pitch_rad = std::atan(f.ahead);
+  f.roll_rad = std::atan(f.leftward * std::cos(f.pitch_rad));
+  f.height_m = lie.height_m;
+  return f;
+}
+
 bool under_trees(const TreesParams& p, std::uint64_t seed, base::EnuPoint at) {
   return p.share > 0.0 && field_at(seed, kTrees, at, p.patch_m) >= 1.0 - p.share;
 }

@@ -23,6 +23,15 @@ struct Footing {
   double height_m = 0.0;  ///< above the start
 };
 
+/// How the ground of a world lies under the vehicle.
+struct Lie {
+  double ahead = 0.0;     ///< metres up for each horizontal metre ahead
+  double leftward = 0.0;  ///< the same to the left
+  double height_m = 0.0;
+};
+/// The footing on such ground: its slope in place of the field's plane.
+Footing on_ground(Footing footing, const Lie& lie);
+
 /// 0..1, smooth, the same whenever asked. @param layer keeps several fields apart.
 double field_at(std::uint64_t seed, int layer, base::EnuPoint at, double patch_m);
 

@@ -61,4 +61,23 @@ void fields(V& v, TreesParams& p) {
   v("hold_s", p.hold_s, 0.1, 60.0, "so long a fix class stays before it is drawn anew");
 }
 
+/// The outline of the body, about its origin on the ground, and what it stands over. For touches;
+/// the robot has its own idea of it.
+struct BodyParams {
+  double front_m = 0.51;
+  double rear_m = 0.51;
+  double width_m = 0.78;
+  double height_m = 0.4;
+  double clearance_m = 0.05;
+};
+
+template <class V>
+void fields(V& v, BodyParams& p) {
+  v("front_m", p.front_m, 0.05, 20.0, "from the origin to the foremost edge");
+  v("rear_m", p.rear_m, 0.05, 20.0, "from the origin to the rearmost edge");
+  v("width_m", p.width_m, 0.1, 10.0, "of the whole body");
+  v("height_m", p.height_m, 0.1, 10.0, "what hangs higher passes over it");
+  v("clearance_m", p.clearance_m, 0.0, 2.0, "what is lower passes under it");
+}
+
 }  // namespace roverd::sim

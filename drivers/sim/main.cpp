@@ -27,6 +27,7 @@
 #include "sim/pace.hpp"
 #include "sim/port.hpp"
 #include "sim/pty.hpp"
+#include "sim/surroundings.hpp"
 
 namespace roverd::sim {
 namespace {
@@ -158,6 +159,11 @@ class Simulation {
         control_(io, options.control_port,
                  {.truth = [this] { return truth(); },
                   .carry_out = [this](std::string_view line) { return carry_out(line); }}) {
+    if (options.world || !options.config.sensors.empty()) {
+      around_ = std::make_unique<Surroundings>(options.world.value_or(world::World{}),
+                                               options.config.params.body, began_);
+      around_->attend(vehicle_);
+    }
     if (options.gnss_port) {
       auto server = std::make_unique<link::TcpServer>(io, "127.0.0.1", *options.gnss_port);
       tcp_ = server.get();
@@ -225,18 +231,19 @@ class Simulation {
 
   std::string truth() {
     catch_up();
-    return truth_line(vehicle_.truth(), began_);
+    return truth_line(vehicle_.truth(), began_, around_.get());
   }
 
   ControlAnswer carry_out(std::string_view line) {
     catch_up();
-    return sim::carry_out(line, vehicle_, began_);
+    return sim::carry_out(line, vehicle_, began_, around_.get());
   }
 
   const Time began_;
   Pace pace_;
   std::unique_ptr<Side> side_;
   Vehicle& vehicle_;  ///< of side_
+  std::unique_ptr<Surroundings> around_;
   std::unique_ptr<link::ByteLink> gnss_;
   link::TcpServer* tcp_ = nullptr;  ///< gnss_, when it is one
   Port imu_;

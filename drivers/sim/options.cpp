@@ -18,6 +18,7 @@ struct Raw {
   std::string config_file;
   std::vector<std::string> overrides;
   std::string start;
+  std::string world;
   bool list_parameters = false;
 };
 
@@ -85,6 +86,12 @@ base::Result<void> read_values(Options& options, const Raw& raw) {
   for (const auto& text : raw.overrides) {
     if (auto done = apply_override(options.config, text); !done) return done;
   }
+  if (!raw.world.empty()) options.config.world = raw.world;
+  if (!options.config.world.empty()) {
+    auto world = load_world(options.config.world);
+    if (!world) return tl::unexpected(world.error());
+    options.world = std::move(*world);
+  }
   return raw.start.empty() ? base::Result<void>{} : read_start(options.config.start, raw.start);
 }
 
@@ -113,6 +120,7 @@ Parsed parse_options(int argc, const char* const* argv) {
   app.add_option("--set", raw.overrides, "section.key=value, may be repeated")
       ->allow_extra_args(false);
   app.add_option("--start", raw.start, "LAT,LON or LAT,LON,HEADING, degrees");
+  app.add_option("--world", raw.world, "what stands around: a file of docs/worlds.md, or random:N");
   app.add_flag("--die-with-parent", options.die_with_parent, "end when the starting process ends");
   app.add_flag("--parameters", raw.list_parameters, "print every parameter and end");
   try {

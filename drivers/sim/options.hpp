@@ -23,6 +23,7 @@ struct Options {
   PortSpec imu{PortSpec::Kind::Tcp, 0, {}};                   ///< where there is one
   std::uint16_t control_port = 0;                             ///< 0: choose
   std::uint64_t seed = 1;
+  std::optional<world::World> world;  ///< read already
   bool die_with_parent = false;
   Config config;
 };

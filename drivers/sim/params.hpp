@@ -291,6 +291,7 @@ struct Params {
   ImuParams imu;
   GroundParams ground;
   TreesParams trees;
+  BodyParams body;
 };
 
 /// Lists the sections: their names are the tables of the configuration file.
@@ -307,6 +308,7 @@ void sections(V& v, Params& p) {
   v("imu", p.imu);
   v("ground", p.ground);
   v("trees", p.trees);
+  v("body", p.body);
 }
 
 /// @param key "section.name". Unknown key, wrong type, out of range, unknown word: an error that

@@ -5,6 +5,7 @@
 
 #include "base/measurements.hpp"
 #include "base/result.hpp"
+#include "sim/world/faults.hpp"
 
 namespace roverd::sim {
 
@@ -63,6 +64,7 @@ struct Faults {
   bool imu_gyro_frozen = false;
   int bumper = 0;
   bool bumper_silent = false;
+  world::SensorFaults see;
 };
 
 template <class V>
@@ -118,6 +120,7 @@ void fields(V& v, Faults& f) {
     "the inertial unit repeats its last rate of turn; its counters and all else go on");
   v("bumper", f.bumper, 0, 255, "switches pressed, one bit each: 1 front left, 2 front …");
   v("bumper_silent", f.bumper_silent, "no line from the bumper");
+  fields(v, f.see);
 }
 
 }  // namespace roverd::sim

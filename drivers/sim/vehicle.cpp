@@ -32,7 +32,7 @@ void Vehicle::step() {
     faults_.gnss_jump_east_m = faults_.gnss_jump_north_m = faults_.gnss_jump_s = 0.0;
     jump_until_.reset();
   }
-  footing_ = footing_at(params_, seed_, at_, yaw_rad_);
+  footing_ = footing();
   drive_now_ = drive_on(params_.drive, params_.ground, footing_, twist_.linear_mps);
   drive_now_.delay_s +=
       jitter_.step(params_.drive.delay_jitter_s, params_.drive.delay_hold_s, dt_s);
@@ -40,6 +40,12 @@ void Vehicle::step() {
   battery_.step(params_.battery, moved.power_w, dt_s);
   move(moved, dt_s);
   report();
+  if (on_step) on_step();
+}
+
+Footing Vehicle::footing() const {
+  const Footing plane = footing_at(params_, seed_, at_, yaw_rad_);
+  return lie_ ? on_ground(plane, lie_(at_, yaw_rad_)) : plane;
 }
 
 void Vehicle::move(const Moved& moved, double dt_s) {
@@ -55,7 +61,7 @@ void Vehicle::move(const Moved& moved, double dt_s) {
   driven_m_ += std::hypot(east_mps, north_mps) * dt_s;
   twist_ = g.twist;
   lateral_mps_ = g.lateral_mps;
-  footing_ = footing_at(params_, seed_, at_, yaw_rad_);
+  footing_ = footing();
 
   measure({now_, start_.wall + (now_ - start_.time), at_, yaw_rad_, east_mps, north_mps,
            g.twist.angular_radps, footing_.roll_rad, footing_.pitch_rad, footing_.height_m,

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <utility>
 
 #include "base/bytes.hpp"
 #include "base/geo.hpp"
@@ -60,6 +61,14 @@ struct Truth {
   std::uint64_t commands = 0;  ///< motion commands that reached the vehicle
 };
 
+/// As Truth, without what costs geodesy: for whoever looks at every step.
+struct Stance {
+  Time time;
+  base::EnuPoint at;
+  double yaw_rad = 0.0;
+  double speed_mps = 0.0;
+};
+
 class Vehicle {
  public:
   static constexpr base::Duration kStep = std::chrono::milliseconds(5);
@@ -73,6 +82,8 @@ class Vehicle {
   std::function<void(Bytes, Time)> on_gnss;
   /// The same of the inertial unit's messages.
   std::function<void(Bytes, Time)> on_imu;
+  /// Called after each step. May be empty.
+  std::function<void()> on_step;
   /// From the host to the inertial unit.
   void receive_imu(Bytes bytes) { imu_.receive(bytes); }
 
@@ -80,6 +91,7 @@ class Vehicle {
   void advance_to(Time now);
 
   Truth truth() const;
+  Stance stance() const noexcept { return {now_, at_, yaw_rad_, twist_.linear_mps}; }
   const base::LocalFrame& frame() const noexcept { return frame_; }  ///< ENU at the start
 
   const Radio& radio() const noexcept { return radio_; }
@@ -94,6 +106,10 @@ class Vehicle {
 
   /// From now on that one moves instead of our own tracks or wheels; it must outlive this.
   void set_foreign(Foreign* foreign) noexcept { foreign_ = foreign; }
+
+  /// From now on it stands on this ground, not on the plane of its parameters; slip, ruts and trees
+  /// stay. Not with a foreign one.
+  void set_lie(std::function<Lie(base::EnuPoint at, double yaw_rad)> lie) { lie_ = std::move(lie); }
 
   /// @param percent is cut to 0..100.
   void set_battery_pct(double percent) { battery_.set_charge_pct(percent); }
@@ -141,6 +157,7 @@ class Vehicle {
 
  private:
   void step();
+  Footing footing() const;
   void move(const Moved& moved, double dt_s);
   void follow(const ForeignState& shown, double dt_s);
   void measure(const BodyState& body, double motor_difference_a);
@@ -165,6 +182,7 @@ class Vehicle {
   double lateral_mps_ = 0.0;
   DriveParams drive_now_;
   Footing footing_;
+  std::function<Lie(base::EnuPoint, double)> lie_;
   Foreign* foreign_ = nullptr;
 };
 
