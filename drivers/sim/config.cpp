@@ -6,6 +6,7 @@
 
 #include <toml++/toml.h>
 
+#include "sim/port.hpp"
 #include "sim/world/random.hpp"
 
 namespace roverd::sim {
@@ -38,6 +39,18 @@ Result<void> set_sensor_key(world::SensorParams& sensor, const std::string& key,
                                                      : "sensor." + done.error().detail);
 }
 
+Result<void> check_port(const world::SensorParams& sensor) {
+  if (sensor.port.empty()) return {};
+  const auto spec = read_port(sensor.port);
+  if (!spec) return refuse("port " + spec.error().detail);
+  const bool datagrams = spec->kind == PortSpec::Kind::Udp;
+  if (datagrams != (sensor.kind == "vlp16")) {
+    return refuse(datagrams ? "port must be tcp or pty, udp is a vlp16's"
+                            : "port must be udp:PORT");
+  }
+  return {};
+}
+
 /// "sensor.NAME.rate_hz"
 Result<void> set_sensor(Config& config, const std::string& key, const ParamValue& value) {
   const auto name_at = key.find('.') + 1;
@@ -47,6 +60,7 @@ Result<void> set_sensor(Config& config, const std::string& key, const ParamValue
     world::SensorParams draft = sensor;
     if (auto done = set_sensor_key(draft, key.substr(dot + 1), value); !done) return done;
     if (auto good = world::check(draft); !good) return refuse("sensor." + good.error().detail);
+    if (auto good = check_port(draft); !good) return refuse("sensor." + good.error().detail);
     sensor = draft;
     return {};
   }
@@ -104,6 +118,7 @@ Result<void> read_sensor(Config& config, const toml::table& table, const std::st
     return refuse(place(file, table.source()) + "sensor." + what);
   };
   if (auto good = world::check(sensor); !good) return bad(good.error().detail);
+  if (auto good = check_port(sensor); !good) return bad(good.error().detail);
   for (const world::SensorParams& other : config.sensors) {
     if (other.name == sensor.name) return bad("name " + sensor.name + " is there twice");
     if (!sensor.port.empty() && other.port == sensor.port &&

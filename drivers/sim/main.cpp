@@ -20,9 +20,11 @@
 #include "link/cansock.hpp"
 #include "link/socketcan.hpp"
 #include "link/tcp.hpp"
+#include "link/udp.hpp"
 #include "sim/bunker.hpp"
 #include "sim/cart.hpp"
 #include "sim/control_server.hpp"
+#include "sim/eyes.hpp"
 #include "sim/options.hpp"
 #include "sim/pace.hpp"
 #include "sim/port.hpp"
@@ -146,6 +148,58 @@ std::unique_ptr<Side> make_side(asio::io_context& io, const Options& o, base::Ti
   return std::make_unique<CartSide>(io, o, start);
 }
 
+/// A sensor with its socket: an lms listens on TCP, a vlp16 sends to a port of this computer, a
+/// range sensor has a pseudo-terminal. A depth camera has none yet.
+class EyeSide {
+ public:
+  EyeSide(asio::io_context& io, const world::SensorParams& p, std::uint64_t seed)
+      : eye_(p, seed, 0.0) {
+    if (p.kind == "depth") return;
+    if (p.kind != "vlp16") {
+      const std::string usual = p.kind == "lms" ? "tcp:0" : "pty";
+      port_ = std::make_unique<Port>(io, read_port(p.port.empty() ? usual : p.port).value());
+      return;
+    }
+    const PortSpec spec = read_port(p.port.empty() ? "udp:2368" : p.port).value();
+    datagrams_ = std::make_unique<link::UdpLink>(
+        io, 0, link::UdpLink::Peer{"127.0.0.1", spec.port == 0 ? std::uint16_t{2368} : spec.port});
+    to_ = "udp:127.0.0.1:" + std::to_string(spec.port == 0 ? 2368 : spec.port);
+  }
+
+  base::Result<void> open(std::function<void()> catch_up) {
+    if (datagrams_) return datagrams_->open();
+    if (!port_) return {};
+    port_->on_bytes = [this, catch_up = std::move(catch_up)](Bytes bytes) {
+      catch_up();
+      const auto answer = eye_.receive(bytes);
+      if (!answer.empty()) port_->write(answer);
+    };
+    return port_->open();
+  }
+  void close() noexcept {
+    if (port_) port_->close();
+    if (datagrams_) datagrams_->close();
+  }
+  /// " front=tcp:127.0.0.1:40123"
+  std::string link() const {
+    if (!port_ && !datagrams_) return "";
+    return " " + eye_.params().name + "=" + (port_ ? port_->address() : to_);
+  }
+  void tick(const Surroundings& around, const world::SensorFaults& faults) {
+    eye_.advance(around, faults, [this](Bytes bytes) {
+      if (port_) port_->write(bytes);
+      if (datagrams_) datagrams_->write(bytes);
+    });
+    if (port_) port_->cut(eye_.cut());
+  }
+
+ private:
+  Eye eye_;
+  std::unique_ptr<Port> port_;
+  std::unique_ptr<link::UdpLink> datagrams_;
+  std::string to_;
+};
+
 class Simulation {
  public:
   Simulation(asio::io_context& io, const Options& options)
@@ -163,6 +217,9 @@ class Simulation {
       around_ = std::make_unique<Surroundings>(options.world.value_or(world::World{}),
                                                options.config.params.body, began_);
       around_->attend(vehicle_);
+      for (const world::SensorParams& sensor : options.config.sensors) {
+        eyes_.push_back(std::make_unique<EyeSide>(io, sensor, options.seed));
+      }
     }
     if (options.gnss_port) {
       auto server = std::make_unique<link::TcpServer>(io, "127.0.0.1", *options.gnss_port);
@@ -178,6 +235,9 @@ class Simulation {
     if (auto done = side_->open([this] { catch_up(); }); !done) return done;
     if (auto done = gnss_->open(); !done) return done;
     if (auto done = open_imu(); !done) return done;
+    for (const auto& eye : eyes_) {
+      if (auto done = eye->open([this] { catch_up(); }); !done) return done;
+    }
     if (auto done = control_.open(); !done) return done;
     due_ = std::chrono::steady_clock::now();
     schedule();
@@ -189,7 +249,7 @@ class Simulation {
     const std::string gnss =
         tcp_ != nullptr ? "tcp:127.0.0.1:" + std::to_string(tcp_->port()) : gnss_->describe();
     return "ready " + side_->links() + " gnss=" + gnss +
-           (has_imu_ ? " mti=" + imu_.address() : "") +
+           (has_imu_ ? " mti=" + imu_.address() : "") + links_of_eyes() +
            " control=127.0.0.1:" + std::to_string(control_.port());
   }
 
@@ -198,10 +258,17 @@ class Simulation {
     control_.close();
     gnss_->close();
     imu_.close();
+    for (const auto& eye : eyes_) eye->close();
     side_->close();
   }
 
  private:
+  std::string links_of_eyes() const {
+    std::string out;
+    for (const auto& eye : eyes_) out += eye->link();
+    return out;
+  }
+
   base::Result<void> open_imu() {
     if (!has_imu_) return {};
     vehicle_.on_imu = [this](Bytes bytes, Time) { imu_.write(bytes); };
@@ -225,6 +292,7 @@ class Simulation {
       if (ec) return;
       catch_up();
       side_->tick();
+      for (const auto& eye : eyes_) eye->tick(*around_, vehicle_.faults().see);
       schedule();
     });
   }
@@ -244,6 +312,7 @@ class Simulation {
   std::unique_ptr<Side> side_;
   Vehicle& vehicle_;  ///< of side_
   std::unique_ptr<Surroundings> around_;
+  std::vector<std::unique_ptr<EyeSide>> eyes_;
   std::unique_ptr<link::ByteLink> gnss_;
   link::TcpServer* tcp_ = nullptr;  ///< gnss_, when it is one
   Port imu_;

@@ -127,6 +127,8 @@ TEST(SensorTables, AreReadStrictly) {
       error(
           "[[sensor]]\nname=\"a\"\nport=\"tcp:2111\"\n[[sensor]]\nname=\"b\"\nport=\"tcp:2111\"\n"),
       "sim.toml:4: sensor.port tcp:2111 is a's");
+  EXPECT_EQ(error("[[sensor]]\nport=\"udp:5000\"\n"),
+            "sim.toml:1: sensor.port must be tcp or pty, udp is a vlp16's");
   EXPECT_EQ(error("[world]\nfile = 3\n"), "sim.toml:2: world.file must be text");
   EXPECT_EQ(c.sensors.size(), 2u) << "refused texts change nothing";
   EXPECT_TRUE(load_world("random:3:moving"));

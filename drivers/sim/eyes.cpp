@@ -1,0 +1,207 @@
+#include "sim/eyes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+namespace roverd::sim {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+/// What a scanner says of a beam that was dazzled or met its own window: a reserved word.
+constexpr std::uint16_t kReserved = 1;
+constexpr std::size_t kMostWaiting = 4096;
+
+/// Of its name and dialect only: all that the driver asks for is granted.
+void write_answer(sick::Writer& out, std::string_view kind, std::string_view name) {
+  if (name == "STlms") {
+    out.u16(sick::kMeasuring);
+    out.u16(0);
+  } else if (name == "DeviceIdent") {
+    out.text("LMS1xx_SIM");
+    out.text("V1.0");
+  } else if (name == "SerialNumber" || name == "FirmwareVersion") {
+    out.text("1");
+  } else if (name == "mLMPsetscancfg") {
+    out.u8(0);
+    sick::write(out, sick::ScanConfig{});
+  } else if (name == "LMDscandata") {
+    out.u8(1);
+  } else if (kind == "sMN") {
+    out.u8(name == "LMCstartmeas" || name == "LMCstopmeas" ? 0 : 1);
+  }
+}
+
+std::uint32_t wrapped_us(double s) {
+  return static_cast<std::uint32_t>(static_cast<std::uint64_t>(std::max(0.0, s) * 1e6));
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> LmsVoice::receive(base::Bytes bytes) {
+  std::vector<std::uint8_t> out;
+  framer_.feed(bytes, [&](const sick::Telegram& telegram) {
+    const auto words = sick::words_of(telegram);
+    if (!words) return;
+    const auto said = answer(telegram, *words);
+    out.insert(out.end(), said.begin(), said.end());
+  });
+  return out;
+}
+
+std::vector<std::uint8_t> LmsVoice::answer(const sick::Telegram& telegram,
+                                           const sick::Words& words) {
+  dialect_ = telegram.dialect;
+  const std::string_view kind = words.kind == "sRN"   ? "sRA"
+                                : words.kind == "sWN" ? "sWA"
+                                : words.kind == "sMN" ? "sAN"
+                                : words.kind == "sEN" ? "sEA"
+                                                      : "";
+  if (kind.empty()) {
+    sick::Writer refused(dialect_, "sFA", "");
+    refused.u8(3);
+    return refused.framed();
+  }
+  sick::Writer out(dialect_, kind, words.name);
+  if (words.kind == "sEN" && words.name == sick::kScanData) {
+    sick::Fields fields(telegram.dialect, telegram.body, words.fields_at);
+    subscribed_ = fields.u8("on") != 0;
+    return out.u8(subscribed_ ? 1 : 0).framed();
+  }
+  if (words.kind != "sWN") write_answer(out, words.kind, words.name);
+  return out.framed();
+}
+
+std::vector<std::uint8_t> LmsVoice::say(const world::Sweep& sweep,
+                                        const world::SensorFaults& faults) {
+  ++scans_;
+  if (!subscribed_) return {};
+  sick::Scan scan;
+  scan.serial = 4711;
+  scan.status[1] =
+      static_cast<std::uint8_t>((faults.sensor_heating ? 1 : 0) | (sweep.blocked        ? 4
+                                                                   : sweep.dirty > 0.0F ? 2
+                                                                                        : 0));
+  scan.telegram_count = ++telegrams_;
+  scan.scan_count = scans_;
+  scan.start_us = wrapped_us(sweep.at_s - begin_s_);
+  scan.sent_us = wrapped_us(sweep.until_s - begin_s_);
+  scan.scan_frequency_chz = static_cast<std::uint32_t>(std::lround(params_.rate_hz * 100.0));
+  scan.measuring_hhz =
+      static_cast<std::uint32_t>(std::lround(params_.rate_hz * 360.0 / params_.step_deg / 100.0));
+  sick::Channel distance;
+  distance.name = "DIST1";
+  // The scanner's angles: 90 degrees ahead.
+  distance.start_e4deg =
+      static_cast<std::int32_t>(std::lround((params_.fov_from_deg + 90.0) * 1e4));
+  distance.step_e4deg = static_cast<std::uint16_t>(std::lround(params_.step_deg * 1e4));
+  distance.scale = params_.far_m > 60.0 ? 2.0F : 1.0F;
+  sick::Channel remission = distance;
+  remission.name = "RSSI1";
+  remission.scale = 1.0F;
+  for (const world::Shot& s : sweep.shots) {
+    const double raw =
+        static_cast<double>(s.range_m) * 1000.0 / static_cast<double>(distance.scale);
+    const bool dazzled =
+        s.cause == world::Cause::Sun || (s.cause == world::Cause::Window && s.range_m <= 0.0F);
+    distance.values.push_back(
+        dazzled ? kReserved : static_cast<std::uint16_t>(std::clamp(std::lround(raw), 0L, 65535L)));
+    remission.values.push_back(
+        static_cast<std::uint16_t>(std::lround(std::clamp(s.intensity, 0.0F, 1.0F) * 1000.0F)));
+  }
+  scan.channels = {std::move(distance), std::move(remission)};
+  return sick::encode(scan, dialect_);
+}
+
+void LmsVoice::restart(double now_s) {
+  begin_s_ = now_s;
+  subscribed_ = false;
+  telegrams_ = scans_ = 0;
+  framer_.forget();
+}
+
+std::vector<std::uint8_t> vlp16_packet(const world::Sweep& sweep, double at_s) {
+  velodyne::Packet packet;
+  for (std::size_t i = 0; i < sweep.shots.size() && i < velodyne::kBlocks * velodyne::kChannels;
+       ++i) {
+    const world::Shot& s = sweep.shots[i];
+    velodyne::Block& block = packet.blocks[i / velodyne::kChannels];
+    if (i % velodyne::kChannels == 0) {
+      const double turn = std::fmod(720.0 - static_cast<double>(s.bearing_rad) / kDegree, 360.0);
+      block.azimuth_cdeg =
+          static_cast<std::uint16_t>(std::lround(turn * 100.0) % velodyne::kTurn_cdeg);
+    }
+    const bool second = s.second_m > 0.0F && s.second_intensity > s.intensity;
+    const double range_m = static_cast<double>(second ? s.second_m : s.range_m);
+    const float light = second ? s.second_intensity : s.intensity;
+    velodyne::Return& out = block.channels[i % velodyne::kChannels];
+    out.distance = static_cast<std::uint16_t>(
+        std::clamp(std::lround(range_m / velodyne::kUnit_m), 0L, 65535L));
+    out.reflectivity = static_cast<std::uint8_t>(std::clamp(light * 100.0F, 0.0F, 100.0F));
+  }
+  const auto us = static_cast<std::uint64_t>(std::llround(std::max(0.0, at_s) * 1e6));
+  packet.stamp_us = static_cast<std::uint32_t>(us % velodyne::kHour_us);
+  const auto bytes = velodyne::encode(packet);
+  return {bytes.begin(), bytes.end()};
+}
+
+std::vector<std::uint8_t> range_line(const world::Sweep& sweep) {
+  const float range_m = sweep.shots.empty() ? 0.0F : sweep.shots.front().range_m;
+  char text[32];
+  const int size = range_m > 0.0F
+                       ? std::snprintf(text, sizeof text, "%.3f\n", static_cast<double>(range_m))
+                       : std::snprintf(text, sizeof text, "inf\n");
+  return {text, text + size};
+}
+
+Eye::Eye(const world::SensorParams& p, std::uint64_t seed, double begin_s)
+    : sensor_(p, seed, begin_s) {
+  if (p.kind == "lms") lms_.emplace(p, begin_s);
+}
+
+std::vector<std::uint8_t> Eye::receive(base::Bytes bytes) {
+  return lms_ && !cut_ ? lms_->receive(bytes) : std::vector<std::uint8_t>{};
+}
+
+std::vector<std::uint8_t> Eye::bytes_of(const world::SensorFaults& faults) {
+  if (lms_) return lms_->say(sweep_, faults);
+  if (params().kind == "vlp16") return vlp16_packet(sweep_, sweep_.at_s);
+  if (params().kind == "range") return range_line(sweep_);
+  return {};
+}
+
+void Eye::advance(const Surroundings& around, const world::SensorFaults& all,
+                  const std::function<void(base::Bytes)>& say) {
+  const world::SensorFaults faults = world::faults_of(all, params().name);
+  const double now_s = around.now_s();
+  if (cut_ && !faults.sensor_restart && lms_) lms_->restart(now_s);
+  cut_ = faults.sensor_restart;
+  if (cut_ || faults.sensor_silent) {
+    sensor_.skip_to(now_s);
+    waiting_.clear();
+    return;
+  }
+  while (sensor_.next_s() <= now_s) {
+    if (faults.sensor_freeze && !sweep_.shots.empty()) {
+      world::Sweep anew;
+      anew.at_s = sensor_.next_s() - (sweep_.until_s - sweep_.at_s);
+      sensor_.skip_to(sensor_.next_s());
+      sweep_.until_s += anew.at_s - sweep_.at_s;
+      sweep_.at_s = anew.at_s;
+    } else {
+      sensor_.sweep(
+          around.scene(), [&](double at_s) { return around.pose_at(at_s); }, faults, sweep_);
+    }
+    auto bytes = bytes_of(faults);
+    if (bytes.empty() || waiting_.size() >= kMostWaiting) continue;
+    waiting_.push_back(
+        {sweep_.until_s + params().latency_s + faults.sensor_latency_s, std::move(bytes)});
+  }
+  while (!waiting_.empty() && waiting_.front().due_s <= now_s) {
+    say(waiting_.front().bytes);
+    waiting_.pop_front();
+  }
+}
+
+}  // namespace roverd::sim

@@ -1,0 +1,84 @@
+#pragma once
+// What simulated sensors say: shots made into the bytes of the devices. Pure: time is an argument,
+// the sockets are the caller's.
+//
+//   lms     CoLa A or B, as it is asked; scans once they are subscribed to
+//   vlp16   data packets, strongest return, one for each 24 firings
+//   range   lines of metres, "1.234"; nothing within reach: "inf"
+//   depth   no bytes yet: its shots are for studies
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/bytes.hpp"
+#include "sick/commands.hpp"
+#include "sick/scan.hpp"
+#include "sim/surroundings.hpp"
+#include "sim/world/sensor.hpp"
+#include "velodyne/codec.hpp"
+
+namespace roverd::sim {
+
+/// One LMS1xx as its client sees it: answers to requests, and scans of sweeps.
+class LmsVoice {
+ public:
+  /// @param begin_s when it was switched on: its clock's zero.
+  LmsVoice(const world::SensorParams& p, double begin_s) : params_(p), begin_s_(begin_s) {}
+
+  /// Bytes from the client. @return the answers, in the dialect that was asked in.
+  std::vector<std::uint8_t> receive(base::Bytes bytes);
+  /// Empty: nobody subscribed.
+  std::vector<std::uint8_t> say(const world::Sweep& sweep, const world::SensorFaults& faults);
+  void restart(double now_s);
+
+ private:
+  std::vector<std::uint8_t> answer(const sick::Telegram& telegram, const sick::Words& words);
+
+  world::SensorParams params_;
+  double begin_s_;
+  sick::Framer framer_;
+  sick::Dialect dialect_ = sick::Dialect::B;
+  bool subscribed_ = false;
+  std::uint16_t telegrams_ = 0;
+  std::uint16_t scans_ = 0;
+};
+
+/// A data packet of a vlp16's sweep. @param at_s of its first firing, since the top of the hour.
+std::vector<std::uint8_t> vlp16_packet(const world::Sweep& sweep, double at_s);
+/// "1.234\\n"
+std::vector<std::uint8_t> range_line(const world::Sweep& sweep);
+
+/// A sensor with its voice, its faults and its delay.
+class Eye {
+ public:
+  Eye(const world::SensorParams& p, std::uint64_t seed, double begin_s);
+
+  const world::SensorParams& params() const noexcept { return sensor_.params(); }
+  /// Runs up to now: what is due to leave goes to `say`, in order.
+  void advance(const Surroundings& around, const world::SensorFaults& all,
+               const std::function<void(base::Bytes)>& say);
+  /// Bytes from the host. @return the answer; may be empty.
+  std::vector<std::uint8_t> receive(base::Bytes bytes);
+  /// Its connection is to be cut (fault sensor_restart).
+  bool cut() const noexcept { return cut_; }
+
+ private:
+  struct Waiting {
+    double due_s;
+    std::vector<std::uint8_t> bytes;
+  };
+  std::vector<std::uint8_t> bytes_of(const world::SensorFaults& faults);
+
+  world::Sensor sensor_;
+  std::optional<LmsVoice> lms_;
+  world::Sweep sweep_;
+  std::deque<Waiting> waiting_;
+  bool cut_ = false;
+};
+
+}  // namespace roverd::sim

@@ -1,0 +1,167 @@
+// The simulated sensors' bytes, read by the codecs of the devices.
+
+#include "sim/eyes.hpp"
+
+#include <gtest/gtest.h>
+
+#include "plant.hpp"
+
+namespace roverd::sim {
+namespace {
+
+/// A wall 4 m to the east, and a robot that stands before it and looks there.
+struct Sight : Plant {
+  Sight() : Plant(ideal()), around(wall(), BodyParams{}, Time{}) { around.attend(bunker); }
+  static world::World wall() {
+    world::Thing t;
+    t.kind = world::Kind::Wall;
+    t.points = {{4.1, -50}, {4.1, 50}};
+    t.height_m = 30.0;
+    world::World w;
+    w.things = {t};
+    return w;
+  }
+  static world::SensorParams exact(std::string_view kind) {
+    world::SensorParams p = world::usual(kind);
+    p.x_m = p.sigma_m = p.sigma_share = p.dropout = p.beam_mrad = 0.0;
+    return p;
+  }
+  /// What the eye says within so long.
+  std::vector<std::vector<std::uint8_t>> hear(Eye& eye, base::Duration d,
+                                              const world::SensorFaults& f = {}) {
+    std::vector<std::vector<std::uint8_t>> out;
+    for (base::Duration t{}; t < d; t += 5ms) {
+      wait(5ms);
+      eye.advance(around, f, [&](base::Bytes b) { out.emplace_back(b.begin(), b.end()); });
+    }
+    return out;
+  }
+  Surroundings around;
+};
+
+std::vector<sick::Scan> scans_in(const std::vector<std::vector<std::uint8_t>>& said) {
+  std::vector<sick::Scan> out;
+  sick::Framer framer;
+  for (const auto& bytes : said) {
+    framer.feed(bytes, [&](const sick::Telegram& t) {
+      if (const auto scan = sick::decode_scan(t)) out.push_back(*scan);
+    });
+  }
+  return out;
+}
+
+TEST(SimulatedLms, SpeaksOnceItIsAskedAndInTheDialectThatAsks) {
+  for (const sick::Dialect d : {sick::Dialect::A, sick::Dialect::B}) {
+    Sight s;
+    Eye eye(Sight::exact("lms"), 1, 0.0);
+    EXPECT_TRUE(s.hear(eye, 200ms).empty()) << "nobody subscribed";
+    EXPECT_FALSE(eye.receive(sick::subscribe(d, true)).empty());
+    const auto said = s.hear(eye, 1s);
+    const auto scans = scans_in(said);
+    ASSERT_NEAR(static_cast<double>(scans.size()), 25.0, 1.0);
+    EXPECT_EQ(said[0][1] == 2, d == sick::Dialect::B);
+    const sick::Scan& scan = scans[3];
+    EXPECT_EQ(scan.scan_count, static_cast<std::uint16_t>(scans[2].scan_count + 1));
+    EXPECT_EQ(scan.start_us - scans[2].start_us, 40'000u);
+    EXPECT_EQ(scan.channels.at(0).values.size(), 541u);
+    EXPECT_EQ(scan.channels[0].values[270], 4000) << "ahead, in millimetres";
+    EXPECT_EQ(scan.channels[0].start_e4deg, -450'000);
+    EXPECT_EQ(scan.channels[0].values[0], 0) << "nothing behind";
+  }
+}
+
+TEST(SimulatedLms, AnswersWhatItsDriverAsks) {
+  LmsVoice lms(Sight::exact("lms"), 0.0);
+  const auto ask = [&](const sick::Request& request) {
+    std::string out;
+    sick::Framer framer;
+    framer.feed(lms.receive(request), [&](const sick::Telegram& t) {
+      const auto words = sick::words_of(t);
+      if (!words) return;
+      out = std::string(words->kind) + " " + std::string(words->name) + " " +
+            std::string(sick::refusal_in(t, *words));
+      if (words->name == "STlms") out += std::to_string(sick::state_in(t, *words).value_or(-1));
+    });
+    return out;
+  };
+  const auto b = sick::Dialect::B;
+  EXPECT_EQ(ask(sick::login(b)), "sAN SetAccessMode ");
+  EXPECT_EQ(ask(sick::read(b, "STlms")), "sRA STlms 7");
+  EXPECT_EQ(ask(sick::set(b, sick::ScanConfig{})), "sAN mLMPsetscancfg ");
+  EXPECT_EQ(ask(sick::set(b, sick::DataConfig{})), "sWA LMDscandatacfg ");
+  EXPECT_EQ(ask(sick::call(b, "LMCstartmeas")), "sAN LMCstartmeas ");
+  EXPECT_EQ(ask(sick::call(b, "Run")), "sAN Run ");
+  EXPECT_EQ(ask(sick::subscribe(b, true)), "sEA LMDscandata ");
+}
+
+TEST(SimulatedLms, TellsItsWindowAndItsDazzledBeams) {
+  Sight s;
+  Eye eye(Sight::exact("lms"), 1, 0.0);
+  eye.receive(sick::subscribe(sick::Dialect::B, true));
+  world::SensorFaults f;
+  f.dirt_from_deg = -10;
+  f.dirt_to_deg = 10;
+  f.dirt_share = 1.0;
+  auto scans = scans_in(s.hear(eye, 200ms, f));
+  ASSERT_FALSE(scans.empty());
+  EXPECT_TRUE(sick::status_of(scans.back()).blocked);
+  f = {};
+  f.sun_heading_deg = 90.0;
+  f.sun_elevation_deg = 0.0;
+  f.sun_width_deg = 10.0;
+  scans = scans_in(s.hear(eye, 200ms, f));
+  EXPECT_EQ(scans.back().channels.at(0).values[270], 1) << "a reserved word";
+  f = {};
+  f.sensor_silent = true;
+  s.hear(eye, 100ms, f);
+  EXPECT_TRUE(s.hear(eye, 200ms, f).empty());
+  EXPECT_FALSE(s.hear(eye, 200ms).empty()) << "it comes back";
+}
+
+TEST(SimulatedVlp16, SendsPacketsThatItsCodecReads) {
+  Sight s;
+  Eye eye(Sight::exact("vlp16"), 1, 0.0);
+  const auto said = s.hear(eye, 1s);
+  EXPECT_NEAR(static_cast<double>(said.size()), 753.0, 2.0);
+  std::uint32_t before = 0;
+  int ahead = 0;
+  for (const auto& datagram : said) {
+    const velodyne::Decoded d = velodyne::decode(datagram);
+    ASSERT_EQ(d.fault, velodyne::Fault::None);
+    if (before > 0) {
+      EXPECT_NEAR(d.packet.stamp_us - before, 1327.0, 1.0);
+    }
+    before = d.packet.stamp_us;
+    for (const velodyne::Block& block : d.packet.blocks) {
+      if (block.azimuth_cdeg > 20) continue;
+      ++ahead;
+      // Laser 1 looks one degree up: 4 m over its cosine, and over that of the azimuth.
+      EXPECT_NEAR(block.channels[1].distance * velodyne::kUnit_m, 4.0006, 0.002);
+    }
+  }
+  EXPECT_GE(ahead, 5);
+}
+
+TEST(SimulatedRange, SaysMetres) {
+  Sight s;
+  world::SensorParams p = Sight::exact("range");
+  p.far_m = 6.0;
+  p.dark_m = 30.0;
+  p.z_m = 2.0;
+  Eye eye(p, 1, 0.0);
+  const auto said = s.hear(eye, 500ms);
+  ASSERT_GT(said.size(), 5u);
+  EXPECT_EQ(std::string(said[0].begin(), said[0].end()), "4.000\n");
+}
+
+TEST(SimulatedSensors, AreLateByTheirLatency) {
+  Sight s;
+  Eye eye(Sight::exact("vlp16"), 1, 0.0);
+  world::SensorFaults f;
+  f.sensor_latency_s = 0.3;
+  EXPECT_TRUE(s.hear(eye, 290ms, f).empty());
+  EXPECT_FALSE(s.hear(eye, 50ms, f).empty());
+}
+
+}  // namespace
+}  // namespace roverd::sim
