@@ -146,12 +146,41 @@ std::vector<std::uint8_t> vlp16_packet(const world::Sweep& sweep, double at_s) {
   return {bytes.begin(), bytes.end()};
 }
 
+std::vector<std::uint8_t> depth_frame(const world::SensorParams& p, const world::Sweep& sweep,
+                                      double at_s, bool good) {
+  cloud::Header header;
+  header.kind = cloud::Kind::Depth;
+  header.good = good;
+  header.stamp_ns = std::llround(std::max(0.0, at_s) * 1e9);
+  header.sequence = static_cast<std::uint32_t>(sweep.count);
+  cloud::Depth image;
+  image.width = static_cast<std::uint16_t>(p.columns);
+  image.height = static_cast<std::uint16_t>(p.rows);
+  image.fx = static_cast<float>(p.columns / 2.0 / std::tan(p.fov_h_deg * kDegree / 2.0));
+  image.fy = static_cast<float>(p.rows / 2.0 / std::tan(p.fov_v_deg * kDegree / 2.0));
+  // The middle of the first pixel is 0.
+  image.cx = static_cast<float>((p.columns - 1) / 2.0);
+  image.cy = static_cast<float>((p.rows - 1) / 2.0);
+  std::vector<std::uint16_t> pixels;
+  pixels.reserve(sweep.shots.size());
+  for (const world::Shot& s : sweep.shots) {
+    const double ahead_m = static_cast<double>(s.range_m) *
+                           std::cos(static_cast<double>(s.bearing_rad)) *
+                           std::cos(static_cast<double>(s.elevation_rad));
+    pixels.push_back(
+        static_cast<std::uint16_t>(std::clamp(std::lround(ahead_m * 1e3), 0L, 65535L)));
+  }
+  const auto data = cloud::bytes_of(pixels);
+  image.data = data;
+  return cloud::encode(header, image);
+}
+
 std::vector<std::uint8_t> range_line(const world::Sweep& sweep) {
   const float range_m = sweep.shots.empty() ? 0.0F : sweep.shots.front().range_m;
   char text[32];
   const int size = range_m > 0.0F
                        ? std::snprintf(text, sizeof text, "%.3f\n", static_cast<double>(range_m))
-                       : std::snprintf(text, sizeof text, "inf\n");
+                       : std::snprintf(text, sizeof text, "oor\n");
   return {text, text + size};
 }
 
@@ -168,7 +197,7 @@ std::vector<std::uint8_t> Eye::bytes_of(const world::SensorFaults& faults) {
   if (lms_) return lms_->say(sweep_, faults);
   if (params().kind == "vlp16") return vlp16_packet(sweep_, sweep_.at_s);
   if (params().kind == "range") return range_line(sweep_);
-  return {};
+  return depth_frame(params(), sweep_, sweep_.at_s, !faults.sensor_heating);
 }
 
 void Eye::advance(const Surroundings& around, const world::SensorFaults& all,

@@ -4,8 +4,8 @@
 //
 //   lms     CoLa A or B, as it is asked; scans once they are subscribed to
 //   vlp16   data packets, strongest return, one for each 24 firings
-//   range   lines of metres, "1.234"; nothing within reach: "inf"
-//   depth   no bytes yet: its shots are for studies
+//   range   lines of metres, "1.234"; nothing within reach: "oor"
+//   depth   depth images of docs/cloud-format.md, millimetres along the optical axis
 
 #include <cstdint>
 #include <deque>
@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "base/bytes.hpp"
+#include "cloud/codec.hpp"
 #include "sick/commands.hpp"
 #include "sick/scan.hpp"
 #include "sim/surroundings.hpp"
@@ -50,6 +51,9 @@ class LmsVoice {
 
 /// A data packet of a vlp16's sweep. @param at_s of its first firing, since the top of the hour.
 std::vector<std::uint8_t> vlp16_packet(const world::Sweep& sweep, double at_s);
+/// Of a depth sensor. @param at_s on the camera's clock.
+std::vector<std::uint8_t> depth_frame(const world::SensorParams& p, const world::Sweep& sweep,
+                                      double at_s, bool good);
 /// "1.234\\n"
 std::vector<std::uint8_t> range_line(const world::Sweep& sweep);
 

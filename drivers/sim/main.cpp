@@ -148,15 +148,14 @@ std::unique_ptr<Side> make_side(asio::io_context& io, const Options& o, base::Ti
   return std::make_unique<CartSide>(io, o, start);
 }
 
-/// A sensor with its socket: an lms listens on TCP, a vlp16 sends to a port of this computer, a
-/// range sensor has a pseudo-terminal. A depth camera has none yet.
+/// A sensor with its socket: an lms or depth camera listens on TCP, a vlp16 sends to a port of this
+/// computer, a range sensor has a pseudo-terminal.
 class EyeSide {
  public:
   EyeSide(asio::io_context& io, const world::SensorParams& p, std::uint64_t seed)
       : eye_(p, seed, 0.0) {
-    if (p.kind == "depth") return;
     if (p.kind != "vlp16") {
-      const std::string usual = p.kind == "lms" ? "tcp:0" : "pty";
+      const std::string usual = p.kind == "range" ? "pty" : "tcp:0";
       port_ = std::make_unique<Port>(io, read_port(p.port.empty() ? usual : p.port).value());
       return;
     }
@@ -168,7 +167,6 @@ class EyeSide {
 
   base::Result<void> open(std::function<void()> catch_up) {
     if (datagrams_) return datagrams_->open();
-    if (!port_) return {};
     port_->on_bytes = [this, catch_up = std::move(catch_up)](Bytes bytes) {
       catch_up();
       const auto answer = eye_.receive(bytes);
@@ -182,7 +180,6 @@ class EyeSide {
   }
   /// " front=tcp:127.0.0.1:40123"
   std::string link() const {
-    if (!port_ && !datagrams_) return "";
     return " " + eye_.params().name + "=" + (port_ ? port_->address() : to_);
   }
   void tick(const Surroundings& around, const world::SensorFaults& faults) {

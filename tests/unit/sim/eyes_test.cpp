@@ -154,6 +154,28 @@ TEST(SimulatedRange, SaysMetres) {
   EXPECT_EQ(std::string(said[0].begin(), said[0].end()), "4.000\n");
 }
 
+TEST(SimulatedDepthCamera, SendsImagesOfItsFormat) {
+  Sight s;
+  world::SensorParams p = Sight::exact("depth");
+  p.columns = 9;
+  p.rows = 5;
+  p.z_m = 3.0;
+  Eye eye(p, 1, 0.0);
+  cloud::Decoder decoder(1000);
+  int images = 0;
+  for (const auto& bytes : s.hear(eye, 500ms)) {
+    decoder.feed(bytes, [&](const cloud::Frame& frame) {
+      ++images;
+      const auto& image = std::get<cloud::Depth>(frame.body);
+      EXPECT_EQ(image.width, 9);
+      for (std::size_t i = 0; i < 9; ++i) {
+        EXPECT_EQ(cloud::u16_at(image.data.data() + 2 * i), 4000) << "a plane is flat";
+      }
+    });
+  }
+  EXPECT_GE(images, 6);
+}
+
 TEST(SimulatedSensors, AreLateByTheirLatency) {
   Sight s;
   Eye eye(Sight::exact("vlp16"), 1, 0.0);
