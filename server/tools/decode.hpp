@@ -52,8 +52,8 @@ Reader sick_reader(OnObject on_object);
 std::string to_line(const nlohmann::ordered_json& object);
 
 /// roverd decode KIND FILE. @param kind "bunker", "nmea", "ubx", "mti", "sick" or "vlp16"
-/// @param file "-": standard input. @return exit code: 0 all was read (or nobody wants to hear more), 1 the file
-/// cannot be read or the output not written, 2 there is no such kind.
+/// @param file "-": standard input. @return exit code: 0 all was read (or nobody wants to hear
+/// more), 1 the file cannot be read or the output not written, 2 there is no such kind.
 int decode(const std::string& kind, const std::string& file);
 
 }  // namespace roverd

@@ -228,10 +228,10 @@ TEST(Course, AToolsPointIsLedAlongTheWayInPlaceOfTheVehicle) {
     const double at = base::rad_from_deg(10.0 * i);
     round.push_back({5.0 - 5.0 * std::cos(at), 5.0 * std::sin(at)});
   }
-  for (const auto& tool : std::vector<std::vector<std::string>>{
-           {"nav.tool.forward_m=0.6", "nav.tool.left_m=0.4"},
-           {"nav.tool.forward_m=-0.8"},
-           {"nav.tool.hitch_m=0.5", "nav.tool.trailer_m=1.2"}}) {
+  for (const auto& tool :
+       std::vector<std::vector<std::string>>{{"nav.tool.forward_m=0.6", "nav.tool.left_m=0.4"},
+                                             {"nav.tool.forward_m=-0.8"},
+                                             {"nav.tool.hitch_m=0.5", "nav.tool.trailer_m=1.2"}}) {
     Disturbance d = hard();
     d.robot.insert(d.robot.end(), tool.begin(), tool.end());
     const auto run = drive(course_of(round), d);
