@@ -20,7 +20,7 @@ declare -A titles=(
   [build]="release build without warnings; objects need what their rooms may use"
   [unit]="rooms, and the loop in simulated time"
   [api]="the API over real sockets"
-  [command]="./run: options, bad input, Ctrl-C, second start; who has control; roverd decode; NTRIP casters; power cuts and kills; stops in a full house; TLS; under attack; secrets; openssl, sslscan, curl, requests and websockets as peers; the network"
+  [command]="./run: options, bad input, Ctrl-C, second start; who has control; roverd decode; NTRIP casters; power cuts and kills; stops in a full house; TLS; under attack; secrets; a robot that sees; openssl, sslscan, curl, requests and websockets as peers; the network"
   [vehicles]="the main job with every vehicle: ./run --vehicle NAME, judged by the true pose"
   [real]="recordings and mission files from the field"
   [can]="a real CAN interface in the user-mode kernel"
@@ -141,7 +141,7 @@ step_api() { run_ctest "$build" api "$logs/api"; }
 step_command() {
   local code=0 name
   "$root/tests/command/packages_test" || code=$?
-  for name in decode arguments run control ntrip power_cut stop storage study drill resume learned gpsd memory tls abuse secrets peers lan; do
+  for name in decode arguments run control ntrip power_cut stop storage study drill resume learned gpsd memory tls abuse secrets peers lan see; do
     ordinary python3 "$root/tests/command/${name}_test.py" || code=$?
   done
   ordinary python3 "$root/tests/soak/kills" --count 25 || code=$?

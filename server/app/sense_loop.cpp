@@ -11,6 +11,7 @@
 namespace roverd {
 namespace {
 
+constexpr double kSky = 0.95;
 constexpr long kWake_ns = 20'000'000;  // also without a sight: what waits, and who fell silent
 
 }  // namespace
@@ -69,13 +70,17 @@ base::Result<robot::Lookout> lookout_of(const Settings& s, base::Time now) {
   for (const auto& [name, sensor] : s.sensors) {
     if (!sensor.said.enabled) continue;
     SensorSetup one;
-    one.name = "sensors." + name;
+    one.name = name;
     one.mount = sensor.said.mount();
     one.planar = sensor.said.planar();
     one.needed = sensor.said.required;
     one.persist = s.sense.persist;
     one.health = s.sense.health;
     one.health.rate_hz = sensor.said.rate_hz;
+    // Half of what a lidar looks at is the sky, from where nothing comes back.
+    if (sensor.said.kind == "velodyne") {
+      one.health.max_unknown_part = std::max(kSky, one.health.max_unknown_part);
+    }
     setups.push_back(std::move(one));
     kinds.push_back(sensor.said.kind);
   }

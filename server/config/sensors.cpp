@@ -12,7 +12,8 @@ namespace {
 
 base::Result<void> refuse(const std::string& name, const std::string& member, std::string detail) {
   const std::string key = "sensors." + name + "." + member;
-  return base::fail(base::Code::Invalid, key + " " + detail, {{key, std::move(detail)}});
+  std::string whole = key + " " + detail;
+  return base::fail(base::Code::Invalid, std::move(whole), {{key, std::move(detail)}});
 }
 
 /// They stand in one list with the drivers.
@@ -43,8 +44,9 @@ base::Result<void> check_one(const std::string& name, const Sensor& sensor) {
   if (sensor.said.link.empty()) {
     return refuse(name, "link", "must say where the sensor is heard");
   }
-  if ((sensor.said.kind == "cloud") != (sensor.said.listens() > 0)) {
-    return refuse(name, "link", "must be listen:PORT for a cloud, and for a cloud only");
+  const bool listens = std::string_view(sensor.said.link).starts_with("listen:");
+  if (listens && (sensor.said.kind != "cloud" || sensor.said.listens() == 0)) {
+    return refuse(name, "link", "may be listen:PORT (1 to 65535) for a cloud only");
   }
   return {};
 }

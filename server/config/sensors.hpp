@@ -52,8 +52,8 @@ void fields(V& v, SensorSettings& p) {
   v("enabled", p.enabled, "false: it is not there");
   v("kind", p.kind, "which driver hears it: cloud, ranges, sick or velodyne");
   v("link", p.link,
-    "serial:DEVICE:BAUD|auto, tcp:HOST:PORT, udp:[HOST:]PORT, as of the drivers; of a cloud "
-    "listen:PORT: the camera's program on this computer comes to that port");
+    "serial:DEVICE:BAUD|auto, tcp:HOST:PORT, udp:[HOST:]PORT, as of the drivers; for a cloud "
+    "also listen:PORT, where the camera's program on this computer comes to that port");
   v("required", p.required,
     base::higher_is_stricter("nothing drives by itself while it is silent, dirty or blinded"));
   v("x_m", p.x_m, -5.0, 5.0, "ahead of the vehicle's origin");

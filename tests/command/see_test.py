@@ -1,0 +1,161 @@
+#!/usr/bin/env python3
+"""A robot that sees, in a world that it does not know: roverd-sim casts the rays and speaks the scanner's
+and the lidar's bytes, roverd hears them and keeps off. Judged by what the simulator says was touched."""
+
+import json
+import math
+import pathlib
+import shutil
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "harness"))
+from station import BIN, ROOT, Control, Program, Rest, check, run_cases, until  # noqa: E402
+
+METRE_LAT = 1 / 111_360.0
+WORLD = {"name": "wall", "ground": {"grass_m": 0.03},
+         "things": [{"kind": "wall", "points": [[-6, 9], [6, 9]], "height_m": 2}]}
+EYES = """
+[[sensor]]
+kind = "vlp16"
+name = "top"
+z_m = 0.7
+port = "udp:{port}"
+
+[[sensor]]
+kind = "lms"
+name = "front"
+x_m = 0.55
+z_m = 0.3
+rate_hz = 50
+"""
+# Beside it no sensor sees the ground: it may turn there slowly.
+SENSORS = """
+[sense.protect]
+creep_turn_radps = 0.3
+
+[sensors.top]
+kind = "velodyne"
+link = "udp:{port}"
+z_m = 0.7
+
+[sensors.front]
+kind = "sick"
+link = "{front}"
+x_m = 0.55
+z_m = 0.3
+rate_hz = 50
+"""
+
+
+def free_port():
+    import socket
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+class Field:
+    def __init__(self):
+        self.scratch = pathlib.Path(tempfile.mkdtemp(prefix="roverd-see."))
+        self.sim = self.roverd = self.control = None
+        try:
+            self.begin()
+        except BaseException:
+            self.close()
+            raise
+
+    def begin(self):
+        port = free_port()
+        (self.scratch / "world.json").write_text(json.dumps(WORLD))
+        (self.scratch / "sim.toml").write_text((ROOT / "config/sim/bunker.toml").read_text()
+                                               + EYES.format(port=port))
+        self.sim = Program(BIN / "roverd-sim", "--cansock", self.scratch / "can", "--gnss", "tcp:0",
+                           "--control", "0", "--seed", "1", "--config", self.scratch / "sim.toml",
+                           "--world", self.scratch / "world.json")
+        line = self.sim.wait_line(r"^ready (.*)$")[1]
+        at = dict(word.split("=", 1) for word in line.split())
+        shutil.copytree(ROOT / "config/vehicles", self.scratch / "vehicles")
+        config = self.scratch / "robot.toml"
+        config.write_text((ROOT / "config/robot.toml").read_text()
+                          + SENSORS.format(port=port, front=at["front"]))
+        self.control = Control(at["control"])
+        self.roverd = Program(BIN / "roverd", "--config", config, "--data", self.scratch / "data",
+                              "--port", "0", "--set", f"drivers.bunker.link={at['can']}",
+                              "--set", f"drivers.gnss.link={at['gnss']}",
+                              "--set", f"drivers.mti.link={at['mti']}")
+        self.rest = Rest(self.roverd.wait_line(r"^listening on (https?://\S+)")[1])
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def close(self):
+        if self.control:
+            self.control.close()
+        for program in (self.roverd, self.sim):
+            if program:
+                program.stop()
+        shutil.rmtree(self.scratch, ignore_errors=True)
+
+    def truth(self):
+        return self.control.ask({"get": "truth"})
+
+    def drive_north(self, metres):
+        """A mission straight to the north of where it stands."""
+        truth = self.truth()
+        lat, lon = truth["lat"], truth["lon"]
+        items = [{"type": "waypoint", "lat": lat + n * METRE_LAT, "lon": lon} for n in (1, metres)]
+        made = self.rest.do("POST", "/missions", {"name": "north", "items": items})
+        self.rest.do("POST", "/execution/load", {"mission_id": made["id"]})
+        until("it is ready", 30, lambda: self.rest.get("/vehicle")["ready_to_arm"])
+        self.rest.do("POST", "/vehicle/arm", {})
+        self.rest.do("POST", "/execution/start",
+                     {"mission_id": made["id"], "revision": made["revision"]})
+
+
+def sees_and_stops():
+    """what stands in the way is seen by scanner and lidar, and not touched"""
+    with Field() as field:
+        until("both sensors see", 20, lambda: sorted(
+            (s["name"], s["health"]) for s in field.rest.get("/sensors")["items"])
+            == [("front", "good"), ("top", "good")], 0.2)
+        field.drive_north(14)
+        until("it stands before the wall", 60, lambda: (
+            (field.rest.get("/vehicle")["obstacle"] or {}).get("action") == "stop"), 0.2)
+        time.sleep(1.0)
+        vehicle, truth = field.rest.get("/vehicle"), field.truth()
+        obstacle = vehicle["obstacle"]
+        check(truth["contacts"] == 0, f"it touched something: {truth}")
+        check(0.03 <= truth["clearance_m"] <= 0.6, f"it stands {truth['clearance_m']} m before it")
+        check(obstacle["what"] == "obstacle" and obstacle["sensor"] in ("front", "top"),
+              f"what blocks is told: {obstacle}")
+        check(abs(obstacle["bearing_deg"]) < 60, f"it is ahead: {obstacle}")
+        check(any(c["id"] == "obstacle" for c in vehicle["safety"]), "the condition is listed")
+        check(field.rest.get("/execution")["state"] == "running", "the mission waits")
+        field.control.ask({"world": False})
+        until("the way is clear, and it goes on", 30,
+              lambda: field.rest.get("/execution")["state"] == "finished", 0.3)
+
+
+def a_silent_sensor_stops_it():
+    """a required sensor that falls silent stops the mission"""
+    with Field() as field:
+        until("both sensors see", 20, lambda: all(
+            s["health"] == "good" for s in field.rest.get("/sensors")["items"])
+            and len(field.rest.get("/sensors")["items"]) == 2, 0.2)
+        field.drive_north(7)
+        until("it drives", 40, lambda: abs(field.truth()["speed_mps"]) > 0.3)
+        field.control.ask({"fault": {"sensor": "front", "sensor_silent": True}})
+        until("it holds, and says which sensor", 3, lambda: any(
+            c["id"] == "blind" and "front" in c["detail"]
+            for c in field.rest.get("/vehicle")["safety"]), 0.02)
+        until("it stands", 4, lambda: math.fabs(field.truth()["speed_mps"]) < 0.01)
+        check(field.rest.get("/vehicle")["mode"] == "HOLD", "the mode is HOLD")
+
+
+if __name__ == "__main__":
+    sys.exit(run_cases([sees_and_stops, a_silent_sensor_stops_it]))
