@@ -11,6 +11,7 @@
 namespace roverd {
 namespace {
 
+constexpr double kMissed = 2.5;
 constexpr double kSky = 0.95;
 constexpr long kWake_ns = 20'000'000;  // also without a sight: what waits, and who fell silent
 
@@ -23,10 +24,14 @@ SenseLoop::SenseLoop(robot::Robot& robot, robot::Lookout lookout)
 }
 
 SenseLoop::~SenseLoop() {
+  stop();
+  sem_destroy(&news_);
+}
+
+void SenseLoop::stop() {
   stop_ = true;
   sem_post(&news_);
-  thread_.join();
-  sem_destroy(&news_);
+  if (thread_.joinable()) thread_.join();
 }
 
 void SenseLoop::see(std::shared_ptr<const base::Sight> sight) {
@@ -38,6 +43,7 @@ void SenseLoop::run() noexcept {
   pthread_setname_np(pthread_self(), "sense");
   std::vector<std::shared_ptr<const base::Sight>> sights;
   std::vector<nav::sense::Odometry> moved;
+  std::vector<std::shared_ptr<const robot::Surroundings>> done;
   while (!stop_) {
     timespec until{};
     clock_gettime(CLOCK_REALTIME, &until);
@@ -50,6 +56,8 @@ void SenseLoop::run() noexcept {
       moved.clear();
       sights_.take(sights);
       robot_.odometry().take(moved);
+      done.clear();
+      robot_.surroundings_done().take(done);
       for (const auto& o : moved) lookout_.moved(o);
       const base::Time now = base::steady_now();
       for (auto& s : sights) lookout_.see(std::move(s), now);
@@ -77,6 +85,8 @@ base::Result<robot::Lookout> lookout_of(const Settings& s, base::Time now) {
     one.persist = s.sense.persist;
     one.health = s.sense.health;
     one.health.rate_hz = sensor.said.rate_hz;
+    // A slow one is not silent between two pieces.
+    one.health.silent_s = std::max(one.health.silent_s, kMissed / sensor.said.rate_hz);
     // Half of what a lidar looks at is the sky, from where nothing comes back.
     if (sensor.said.kind == "velodyne") {
       one.health.max_unknown_part = std::max(kSky, one.health.max_unknown_part);

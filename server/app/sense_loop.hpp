@@ -29,6 +29,8 @@ class SenseLoop {
   SenseLoop(const SenseLoop&) = delete;
   SenseLoop& operator=(const SenseLoop&) = delete;
 
+  /// Ends the thread. Idempotent; what is seen from then on is left.
+  void stop();
   /// Any thread; never waits for the work.
   void see(std::shared_ptr<const base::Sight> sight);
 

@@ -63,7 +63,7 @@ struct Station::Impl {
   robot::Robot robot;
   net::Files page{net::page_entries()};
   store::TileFolder tiles;
-  std::unique_ptr<SenseLoop> sense;  ///< null: no sensors; before the drivers, which call it
+  std::shared_ptr<SenseLoop> sense;  ///< null: no sensors
   std::unique_ptr<Supervisor> supervisor;
   std::unique_ptr<store::Store> store;
   std::unique_ptr<BackupKeeper> backups;

@@ -9,9 +9,11 @@ constexpr base::Duration kKeepEstop = std::chrono::milliseconds(200);
 
 Result<void> Station::Impl::open(const Settings& settings, const Options& options) {
   if (auto done = open_senses(settings, options); !done) return done;
-  auto plans = plan_devices(settings, options, [this](std::shared_ptr<const base::Sight> sight) {
-    if (sense) sense->see(std::move(sight));
-  });
+  // A driver that hangs may come back when all else is gone.
+  const auto see = [to = std::weak_ptr(sense)](std::shared_ptr<const base::Sight> sight) {
+    if (const auto eyes = to.lock()) eyes->see(std::move(sight));
+  };
+  auto plans = plan_devices(settings, options, see);
   if (!plans) return tl::unexpected(plans.error());
   auto made = Supervisor::make(std::move(*plans),
                                [this](const base::Measurement& m) { robot.measurements().put(m); });
@@ -57,8 +59,11 @@ Result<void> Station::Impl::open_senses(const Settings& settings, const Options&
   if (!any || !options.replays.empty()) return {};
   auto lookout = lookout_of(settings, base::steady_now());
   if (!lookout) return tl::unexpected(lookout.error());
-  robot.guard_by(settings.sense.protect);
-  sense = std::make_unique<SenseLoop>(robot, std::move(*lookout));
+  const bool demands = std::ranges::any_of(settings.sensors, [](const auto& one) {
+    return one.second.said.enabled && one.second.said.required;
+  });
+  robot.guard_by(settings.sense.protect, demands);
+  sense = std::make_shared<SenseLoop>(robot, std::move(*lookout));
   return {};
 }
 

@@ -369,7 +369,9 @@ struct Snapshot {
   std::optional<FenceState> fence;
   DriveCommand command;              ///< what was sent at this tick
   std::optional<Obstacle> obstacle;  ///< that limits the speed, or stops
-  std::vector<SensorState> sensors;  ///< of the profile; empty: it has none, or nothing came yet
+  std::shared_ptr<const std::vector<SensorState>>
+      sensors;                 ///< of the profile; empty: it has none, or nothing came yet
+  bool sensors_stale = false;  ///< what they said of themselves is too old to be true
   TeleopState teleop;
   std::vector<SafetyCondition> safety;
   std::vector<Check> checks;

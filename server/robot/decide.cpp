@@ -175,6 +175,7 @@ base::DriveCommand Robot::Impl::decide() {
     by_hand.lock(radio ? "the radio drove" : "the base took no commands", clock.now());
   }
   if (radio && !arm.latched()) driver = Driver::Radio;
+  if (radio || !arm.armed() || !listens) guard.forget();
   if (!arm.armed() || radio) return {};
   if (base_lost(world, config->safety, clock.now())) return {};
   if (!listens) return {{}, true};

@@ -77,6 +77,7 @@ struct Robot::Impl {
   base::Latest<Config> shared_config;
   base::Inbox<base::Measurement> measurements{4096};
   base::Inbox<std::shared_ptr<const Surroundings>> surroundings{4};
+  base::Inbox<std::shared_ptr<const Surroundings>> surroundings_done{16};
   base::Inbox<nav::sense::Odometry> odometry{256};
   static constexpr std::size_t kCommands = 64;
   base::Inbox<PendingCommand> commands{kCommands};
@@ -111,6 +112,9 @@ struct Robot::Impl {
   std::uint64_t driven_told = 0;
   FenceKeep fence;
   Guard guard;
+  Mode guarded_mode = Mode::Hold;
+  bool waits_before = false;  ///< the drive was not asked at this tick: something stands before it
+  std::optional<base::Time> blind_since;
   std::string blind;  ///< why nothing may drive by itself: a sensor; empty: nothing is wrong
   std::vector<std::shared_ptr<const Surroundings>> surroundings_batch;
   RadioKeys keys;

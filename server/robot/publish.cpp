@@ -51,7 +51,10 @@ bool Robot::Impl::publish() {
   }
   s->command = sent;
   if (guard.obstacle().action != base::GuardAction::None) s->obstacle = guard.obstacle();
-  if (const auto& around = guard.around()) s->sensors = around->sensors;
+  if (const auto& around = guard.around()) {
+    s->sensors = around->sensors;
+    s->sensors_stale = guard.too_old(clock.now());
+  }
   s->teleop = teleop();
   s->safety = std::move(assessment.conditions);
   s->checks = checks;

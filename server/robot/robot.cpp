@@ -37,11 +37,14 @@ Robot::~Robot() = default;
 base::Inbox<base::Measurement>& Robot::measurements() noexcept {
   return impl_->measurements;
 }
-void Robot::guard_by(const nav::sense::ProtectParams& params) {
-  impl_->guard.set(params, impl_->config->vehicle, true);
+void Robot::guard_by(const nav::sense::ProtectParams& params, bool demands) {
+  impl_->guard.set(params, impl_->config->vehicle, demands);
 }
 base::Inbox<std::shared_ptr<const Surroundings>>& Robot::surroundings() noexcept {
   return impl_->surroundings;
+}
+base::Inbox<std::shared_ptr<const Surroundings>>& Robot::surroundings_done() noexcept {
+  return impl_->surroundings_done;
 }
 base::Inbox<nav::sense::Odometry>& Robot::odometry() noexcept {
   return impl_->odometry;

@@ -345,9 +345,12 @@ class Robot {
   base::Inbox<base::Measurement>& measurements() noexcept;
   /// Before the first tick: the profile has sensors, and by this the guard (guard/guard.hpp) keeps
   /// from what they see. Without it the robot drives blind, as it is told.
-  void guard_by(const nav::sense::ProtectParams& params);
+  /// @param demands what drives by itself needs one of them at least.
+  void guard_by(const nav::sense::ProtectParams& params, bool demands = true);
   /// Any thread: what stands around it; the newest counts.
   base::Inbox<std::shared_ptr<const Surroundings>>& surroundings() noexcept;
+  /// The same thread: those that are not needed any more, to be let go.
+  base::Inbox<std::shared_ptr<const Surroundings>>& surroundings_done() noexcept;
   /// Any thread: how the body moved, 50 times a second, for whoever makes the surroundings.
   base::Inbox<nav::sense::Odometry>& odometry() noexcept;
 

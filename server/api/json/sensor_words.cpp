@@ -28,13 +28,15 @@ Json obstacle_json(const std::optional<base::Obstacle>& o, base::Time now) {
 
 Json sensors_json(const base::Snapshot& s, base::Time now) {
   Json items = Json::array();
-  for (const base::SensorState& one : s.sensors) {
+  static const std::vector<base::SensorState> kNone;
+  const std::string_view silent = base::to_string(base::SensorHealth::Silent);
+  for (const base::SensorState& one : s.sensors ? *s.sensors : kNone) {
     const base::Mount& m = one.mount;
     items.push_back({{"name", one.name},
                      {"kind", one.kind},
                      {"required", one.required},
-                     {"health", base::to_string(one.health)},
-                     {"reason", one.reason},
+                     {"health", s.sensors_stale ? silent : base::to_string(one.health)},
+                     {"reason", s.sensors_stale ? "nothing has been seen lately" : one.reason},
                      {"window", base::to_string(one.window)},
                      {"age_s", one.seen ? Json(rounded(base::seconds(now - *one.seen), kPlaces2))
                                         : Json(nullptr)},

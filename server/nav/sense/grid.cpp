@@ -15,6 +15,13 @@ std::int32_t floored(double v) noexcept {
   return static_cast<std::int32_t>(std::floor(v));
 }
 
+/// Pieces may come a little out of order.
+std::uint32_t age_ms(std::uint32_t now, std::uint32_t then) noexcept {
+  constexpr std::uint32_t kOutOfOrder = 10'000;
+  const std::uint32_t age = now - then;
+  return age > 0U - kOutOfOrder ? 0 : age;
+}
+
 }  // namespace
 
 Grid::Grid(const GridParams& params) : p_(params) {
@@ -29,15 +36,17 @@ void Grid::forget() noexcept {
   begun_ = false;
 }
 
+/// Goes round after 49.7 days: only differences mean something (age_ms).
 std::uint32_t Grid::ms(base::Time t) const noexcept {
   const double s = std::max(base::seconds(t - begin_), 0.0);
-  return static_cast<std::uint32_t>(std::min(s * 1e3, 4.2e9));
+  return static_cast<std::uint32_t>(static_cast<std::uint64_t>(s * 1e3));
 }
 
 Known Grid::known(const Cell& c, std::uint32_t now_ms) const noexcept {
   if (c.known == Known::Unknown) return Known::Unknown;
-  const std::uint32_t age = now_ms > c.ms ? now_ms - c.ms : 0;
+  const std::uint32_t age = age_ms(now_ms, c.ms);
   const double keep_s = c.known == Known::Free ? p_.keep_free_s : p_.keep_hit_s;
+  if (c.known != Known::Free && keep_s <= 0.0) return c.known;
   return static_cast<double>(age) > keep_s * 1e3 ? Known::Unknown : c.known;
 }
 
@@ -189,7 +198,7 @@ void Grid::patch(const Pose2& about, double reach_m, base::Time now, Patch& out)
       if (!inside(x, y)) continue;
       const Cell& c = cell(x, y);
       if (c.known == Known::Unknown) continue;
-      const std::uint32_t age = now_ms > c.ms ? now_ms - c.ms : 0;
+      const std::uint32_t age = age_ms(now_ms, c.ms);
       out.cells[i] = {known(c, now_ms), c.sensor,
                       static_cast<std::uint16_t>(std::min(age / 100U, 65535U))};
     }

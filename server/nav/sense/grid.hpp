@@ -5,7 +5,7 @@
 //
 //   Unknown ──seen free──▶ Free ──hit──▶ Occupied ──seen through clear_scans times──▶ Free
 //      ▲                     │keep_free_s     │keep_hit_s
-//      └─────────────────────┴────────────────┘  (out of sight)
+//      └─────────────────────┴────────────────┘  (out of sight; hits stay by default)
 //
 // Blind is not free: a cell is free only where a ray passed low enough (sectors.hpp). What is low
 // is not cleared by rays that pass above it.

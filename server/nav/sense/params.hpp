@@ -75,7 +75,7 @@ struct GridParams {
   double cell_m = 0.05;
   int clear_scans = 2;
   double keep_free_s = 30.0;
-  double keep_hit_s = 60.0;
+  double keep_hit_s = 0.0;
 };
 
 template <class V>
@@ -86,8 +86,9 @@ void fields(V& v, GridParams& p) {
     base::higher_is_stricter("an obstacle is gone when so many scans saw through it"));
   v("keep_free_s", p.keep_free_s, 0.5, 3600.0,
     base::lower_is_stricter("out of sight, what was free is unknown after this"));
-  v("keep_hit_s", p.keep_hit_s, 0.5, 3600.0,
-    base::higher_is_stricter("out of sight, an obstacle is unknown after this"));
+  v("keep_hit_s", p.keep_hit_s, 0.0, 36000.0,
+    base::only_disarmed("out of sight, an obstacle is unknown after this; 0: it stays until it was "
+                        "seen through, or the robot has gone away from it"));
 }
 
 /// A sensor's health.

@@ -45,6 +45,9 @@ Drive drive_of(const Footprint& body, const base::BodyTwist& twist, const Protec
   const double brake_s = std::max(0.5 * v / p.decel_mps2, 0.5 * w / p.turn_decel_radps2);
   const double fastest = std::max({v + w * body.reach_m(), 1e-3});
   d.horizon_s = std::min({p.horizon_s, p.reach_m / fastest, p.delay_s + brake_s + 1.0});
+  // The gap lies beyond the place where it stands still.
+  const double gap_s = std::max(0.0, p.gap_m - p.side_m) / fastest;
+  d.horizon_s = std::min(d.horizon_s + gap_s, p.reach_m / fastest);
   // A full turn sees everything.
   if (w > 1e-5) d.horizon_s = std::min(d.horizon_s, 2.0 * base::kPi / w);
   d.margin_m = p.side_m + cell_radius_m;

@@ -18,6 +18,10 @@ constexpr double kLeast_radps = 0.05;
 constexpr double kProbe_mps = 0.15;  // what a stopped drive tries
 constexpr double kProbe_radps = 0.15;
 constexpr double kClear_s = 1.0;
+constexpr double kAsk_s = 3.0;     // so often a stopped drive is asked anew,
+constexpr double kAskFor_s = 1.0;  // for so long: it first makes sure that it stands
+constexpr double kWishless_s = 0.5;
+constexpr double kTurnsRound_m = 0.03;  // beyond what a turn on the spot needs
 
 bool stands(const BodyTwist& t) noexcept {
   return std::abs(t.linear_mps) < 1e-6 && std::abs(t.angular_radps) < 1e-6;
@@ -32,7 +36,7 @@ BodyTwist probe_of(const BodyTwist& wanted) noexcept {
   const double v = std::abs(wanted.linear_mps);
   const double w = std::abs(wanted.angular_radps);
   const double part = std::max(v / kProbe_mps, w / kProbe_radps);
-  return part > 1.0 ? times(wanted, 1.0 / part) : wanted;
+  return part > 1e-6 ? times(wanted, 1.0 / part) : wanted;
 }
 
 bool too_slow(const BodyTwist& t) noexcept {
@@ -58,16 +62,30 @@ std::string sentence(const base::Obstacle& o) {
 }  // namespace
 
 void Guard::set(const nav::sense::ProtectParams& params, const nav::VehicleParams& vehicle,
-                bool sees) {
+                bool demands) {
   params_ = params;
-  sees_ = sees;
+  decel_set_mps2_ = params.decel_mps2;
+  sees_ = true;
+  demands_ = demands;
   const double back_m =
       vehicle.steered() ? 0.5 * (vehicle.length_m - vehicle.wheelbase_m) : 0.5 * vehicle.length_m;
   body_ = nav::sense::Footprint::box(vehicle.length_m, vehicle.width_m, std::max(0.01, back_m));
+  if (vehicle.steered()) return;
+  // Where it stopped it must still be able to turn away.
+  const double turns_m = body_.reach_m() + params_.side_m - 0.5 * vehicle.length_m;
+  params_.gap_m = std::max(params_.gap_m, turns_m + kTurnsRound_m);
 }
 
-void Guard::take(std::shared_ptr<const Surroundings> news) noexcept {
-  around_ = std::move(news);
+std::shared_ptr<const Surroundings> Guard::take(std::shared_ptr<const Surroundings> news) noexcept {
+  return std::exchange(around_, std::move(news));
+}
+
+void Guard::brake_by(double decel_mps2) noexcept {
+  params_.decel_mps2 = std::clamp(decel_mps2, 0.05, decel_set_mps2_);
+}
+
+bool Guard::too_old(base::Time now) const noexcept {
+  return !around_ || !around_->seen || base::seconds(now - *around_->seen) > around_->lasts_s;
 }
 
 const nav::sense::Odometry& Guard::move(const BodyTwist& measured, base::Time now) noexcept {
@@ -86,8 +104,7 @@ const nav::sense::Odometry& Guard::move(const BodyTwist& measured, base::Time no
 
 nav::sense::Verdict Guard::look(const BodyTwist& twist, base::Time now) const noexcept {
   nav::sense::Verdict v;
-  const bool old = !around_ || base::seconds(now - around_->patch.stamp) > kTooOld_s;
-  if (!old) return protect(around_->patch, odometry_.pose, body_, twist, params_);
+  if (!too_old(now)) return protect(around_->patch, odometry_.pose, body_, twist, params_);
   // Nothing is known: as if the very next step were unseen.
   const bool ahead = twist.linear_mps > 0.0;
   const double most_mps = ahead ? params_.creep_mps : params_.creep_back_mps;
@@ -100,17 +117,23 @@ nav::sense::Verdict Guard::look(const BodyTwist& twist, base::Time now) const no
   v.part = std::clamp(std::min(by_way, by_turn), 0.0, 1.0);
   v.limit = Limit::Unseen;
   v.found = true;
-  v.age_s = around_ ? base::seconds(now - around_->patch.stamp) : 0.0;
   return v;
 }
 
 BodyTwist Guard::judge(const BodyTwist& wanted, bool by_itself, base::Time now) {
   limit_mps_ = 1e9;
-  if (!sees_ || stands(wanted)) {
+  if (!sees_) return wanted;
+  if (stands(wanted)) {
+    // A hand that let go, or a drive that is done, waits for nothing.
+    if (!wishless_since_) wishless_since_ = now;
+    const bool wants_nothing = base::seconds(now - *wishless_since_) > kWishless_s;
+    if (stopped_since_ && (!by_itself || wants_nothing)) forget();
     if (!stopped_since_) obstacle_ = {};
     return wanted;
   }
+  wishless_since_.reset();
   wanted_ = wanted;
+  if (stopped_since_ && by_itself) return {};  // asked, and held until the way has been clear
   const nav::sense::Verdict v = look(wanted, now);
   BodyTwist out = times(wanted, v.part);
   if (v.limit != Limit::None && too_slow(out)) {
@@ -118,6 +141,7 @@ BodyTwist Guard::judge(const BodyTwist& wanted, bool by_itself, base::Time now) 
     clear_since_.reset();
     if (!stopped_since_) {
       stopped_since_ = now;
+      asked_ = now - base::from_seconds(kAskFor_s);
       news_ = true;
     }
     tell(v, base::GuardAction::Stop, now);
@@ -139,7 +163,16 @@ BodyTwist Guard::judge(const BodyTwist& wanted, bool by_itself, base::Time now) 
 }
 
 bool Guard::may_go_on(base::Time now) {
-  if (!stopped_since_) return true;
+  if (!stopped_since_ || clear_long_enough(now)) return true;
+  const double since_s = base::seconds(now - asked_);
+  if (since_s >= kAsk_s) {
+    asked_ = now;
+    wishless_since_.reset();
+  }
+  return since_s >= kAsk_s || since_s < kAskFor_s;
+}
+
+bool Guard::clear_long_enough(base::Time now) {
   const nav::sense::Verdict v = look(probe_of(wanted_), now);
   const BodyTwist out = times(probe_of(wanted_), v.part);
   if (v.limit != Limit::None && too_slow(out)) {
@@ -157,7 +190,7 @@ bool Guard::may_go_on(base::Time now) {
 }
 
 void Guard::forget() noexcept {
-  if (stopped_since_) news_ = false;
+  news_.reset();  // that the way is clear was not seen
   stopped_since_.reset();
   clear_since_.reset();
   wanted_ = {};
@@ -166,7 +199,7 @@ void Guard::forget() noexcept {
 }
 
 void Guard::tell(const nav::sense::Verdict& v, base::GuardAction action, base::Time now) {
-  const bool old = !around_ || base::seconds(now - around_->patch.stamp) > kTooOld_s;
+  const bool old = too_old(now);
   obstacle_.action = action;
   obstacle_.what = old ? "blind" : nav::sense::to_string(v.limit);
   obstacle_.distance_m = v.distance_m;
@@ -174,10 +207,10 @@ void Guard::tell(const nav::sense::Verdict& v, base::GuardAction action, base::T
   obstacle_.ahead_m = v.at.x;
   obstacle_.left_m = v.at.y;
   obstacle_.sensor.clear();
-  if (!old && v.limit != Limit::Unseen && v.sensor < around_->sensors.size()) {
-    obstacle_.sensor = around_->sensors[v.sensor].name;
+  if (!old && v.limit != Limit::Unseen && v.sensor < around_->sensors->size()) {
+    obstacle_.sensor = (*around_->sensors)[v.sensor].name;
   }
-  obstacle_.age_s = v.age_s;
+  obstacle_.age_s = v.age_s + (around_ ? base::seconds(now - around_->patch.stamp) : 0.0);
   obstacle_.stopped_since = stopped_since_;
   obstacle_.reason = sentence(obstacle_);
 }

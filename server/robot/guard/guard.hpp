@@ -6,15 +6,16 @@
 //     ▲                                          │                                │ the way has
 //     └────────── the way is clear ──────────────┴────────────────────────────────┘ been clear for
 //                                                                                   clear_s
-// While it stops an autonomous drive it tries the curve that was wanted last. Without any sensor in
-// the profile it lets everything pass. A picture that is too old is none: what was seen then is
-// not believed any more, and the creep speeds of what no sensor sees hold.
+// While it stops an autonomous drive it looks along the curve that was wanted last. Without any
+// sensor in the profile it lets everything pass. A picture that is too old is none: what was seen
+// then is not believed any more, and the creep speeds of what no sensor sees hold.
 //
 // Control thread; allocates for the sentence of a stop only.
 
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "base/sensing.hpp"
 #include "nav/sense/footprint.hpp"
@@ -28,13 +29,18 @@ namespace roverd::robot {
 
 class Guard {
  public:
-  static constexpr double kTooOld_s = 0.5;  ///< of the picture
-
-  /// Before the first tick. @param sees whether the profile has sensors
-  void set(const nav::sense::ProtectParams& params, const nav::VehicleParams& vehicle, bool sees);
+  /// Before the first tick, where the profile has sensors. @param demands one of them at least
+  void set(const nav::sense::ProtectParams& params, const nav::VehicleParams& vehicle,
+           bool demands);
   bool sees() const noexcept { return sees_; }
+  bool demands() const noexcept { return demands_; }
+  /// Once a tick: braking that is known to be there; what was set bounds it.
+  void brake_by(double decel_mps2) noexcept;
+  /// What the sensors saw last is older than it may be.
+  bool too_old(base::Time now) const noexcept;
 
-  void take(std::shared_ptr<const Surroundings> news) noexcept;
+  /// @return what it replaces, for somebody else to free
+  std::shared_ptr<const Surroundings> take(std::shared_ptr<const Surroundings> news) noexcept;
   /// Once a tick: how the body moved. @param measured over ground
   const nav::sense::Odometry& move(const base::BodyTwist& measured, base::Time now) noexcept;
 
@@ -43,7 +49,9 @@ class Guard {
   base::BodyTwist judge(const base::BodyTwist& wanted, bool by_itself, base::Time now);
   /// It stops a drive: the drive is not asked any more until may_go_on().
   bool stops() const noexcept { return stopped_since_.has_value(); }
-  /// While it stops: looks along the curve that was wanted last.
+  /// While it stops: looks along the curve that was wanted last. Now and then the drive is to be
+  /// asked anew, for it may want to go elsewhere by now: then this is true as well, and judge()
+  /// holds what it wants.
   bool may_go_on(base::Time now);
   /// What the tracker should plan with, so that the last word need not cut.
   double limit_mps() const noexcept { return limit_mps_; }
@@ -59,8 +67,12 @@ class Guard {
   nav::sense::Verdict look(const base::BodyTwist& twist, base::Time now) const noexcept;
   void tell(const nav::sense::Verdict& v, base::GuardAction action, base::Time now);
 
+  bool clear_long_enough(base::Time now);
+
   bool sees_ = false;
+  bool demands_ = false;
   nav::sense::ProtectParams params_;
+  double decel_set_mps2_ = 0.6;
   nav::sense::Footprint body_ = nav::sense::Footprint::box(1.0, 0.8, 0.5);
   std::shared_ptr<const Surroundings> around_;
   nav::sense::Odometry odometry_;
@@ -69,6 +81,8 @@ class Guard {
   double limit_mps_ = 1e9;
   std::optional<base::Time> stopped_since_;
   std::optional<base::Time> clear_since_;
+  base::Time asked_{};                        ///< the drive, while it stops
+  std::optional<base::Time> wishless_since_;  ///< asked, it wants to stand
   std::optional<bool> news_;
   base::Obstacle obstacle_;
 };

@@ -8,10 +8,11 @@ namespace {
 
 constexpr double kWaits_s = 0.2;
 constexpr double kTellAnyway_s = 0.1;
+constexpr double kMissed = 2.5;  // pieces that may be missing
 constexpr std::size_t kMostWaiting = 64;
 
-base::SensorHealth health_of(nav::sense::Eye eye, bool seen) noexcept {
-  if (!seen) return base::SensorHealth::Silent;
+base::SensorHealth health_of(nav::sense::Eye eye, bool silent) noexcept {
+  if (silent) return base::SensorHealth::Silent;
   switch (eye) {
     case nav::sense::Eye::Ok:
       return base::SensorHealth::Good;
@@ -49,13 +50,19 @@ void Lookout::see(std::shared_ptr<const base::Sight> sight, base::Time now) {
   take_waiting(now);
 }
 
+/// One that has to wait keeps no other sensor's waiting; one from the future is taken as it is, and
+/// refused by the chain.
 void Lookout::take_waiting(base::Time now) {
-  while (!waiting_.empty()) {
-    const base::Sight& first = *waiting_.front();
-    const bool known = !history_.empty() && end_of(first) <= history_.newest().stamp;
-    if (!known && base::seconds(now - end_of(first)) < kWaits_s) return;
-    take(first, now);
-    waiting_.pop_front();
+  for (auto one = waiting_.begin(); one != waiting_.end();) {
+    const base::Sight& sight = **one;
+    const double past_s = base::seconds(now - end_of(sight));
+    const bool known = !history_.empty() && end_of(sight) <= history_.newest().stamp;
+    if (!known && past_s < kWaits_s && past_s > -kWaits_s) {
+      ++one;
+      continue;
+    }
+    take(sight, now);
+    one = waiting_.erase(one);
   }
 }
 
@@ -72,6 +79,7 @@ std::shared_ptr<const Surroundings> Lookout::picture(base::Time now) {
   if ((!news_ && !due) || history_.empty()) return nullptr;
   auto out = std::make_shared<Surroundings>();
   chain_.grid().patch(history_.newest().pose, reach_m_, now, out->patch);
+  auto sensors = std::make_shared<std::vector<base::SensorState>>();
   for (std::size_t i = 0; i < chain_.sensors(); ++i) {
     const nav::sense::SensorSetup& setup = chain_.sensor(i);
     const nav::sense::Fitness fit = chain_.health(i, now);
@@ -79,7 +87,7 @@ std::shared_ptr<const Surroundings> Lookout::picture(base::Time now) {
     s.name = setup.name;
     s.kind = kinds_[i];
     s.required = setup.needed;
-    s.health = health_of(fit.eye, last_[i].seen.has_value());
+    s.health = health_of(fit.eye, !last_[i].seen || fit.age_s > setup.health.silent_s);
     s.reason = fit.reason;
     s.window = fit.window;
     s.seen = last_[i].seen;
@@ -88,8 +96,11 @@ std::shared_ptr<const Surroundings> Lookout::picture(base::Time now) {
     s.refused = fit.refused;
     s.points = last_[i].points;
     s.mount = setup.mount;
-    out->sensors.push_back(std::move(s));
+    if (s.seen && (!out->seen || *s.seen > *out->seen)) out->seen = s.seen;
+    out->lasts_s = std::max(out->lasts_s, kMissed / std::max(0.1, setup.health.rate_hz));
+    sensors->push_back(std::move(s));
   }
+  out->sensors = std::move(sensors);
   news_ = false;
   told_ = now;
   return out;

@@ -1,7 +1,8 @@
 #pragma once
 // What stands around the robot, as the sense thread hands it to the control thread. Immutable.
 
-#include <string>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "base/sensing.hpp"
@@ -12,7 +13,10 @@ namespace roverd::robot {
 
 struct Surroundings {
   nav::sense::Patch patch;
-  std::vector<base::SensorState> sensors;  ///< by number, as Patch::Cell counts them
+  /// By number, as Patch::Cell counts them. Shared with the snapshots.
+  std::shared_ptr<const std::vector<base::SensorState>> sensors;
+  std::optional<base::Time> seen;  ///< by any of them, last
+  double lasts_s = 0.5;            ///< so long that is believed
 };
 
 }  // namespace roverd::robot

@@ -9,21 +9,20 @@ namespace {
 
 using base::SensorHealth;
 
+constexpr base::Duration kBlindFor = std::chrono::milliseconds(250);
+
 /// Which sensor does not see, of those that the profile demands.
-std::string blind_words(const Surroundings* around, base::Time now) {
-  constexpr double kSilent_s = 0.3;
+std::string blind_words(const Guard& guard, base::Time now) {
+  const Surroundings* around = guard.around().get();
   if (around == nullptr) return "the sensors have not been heard yet";
-  if (base::seconds(now - around->patch.stamp) > Guard::kTooOld_s) {
-    return "the picture of the surroundings is too old";
-  }
-  for (const base::SensorState& s : around->sensors) {
+  for (const base::SensorState& s : *around->sensors) {
     if (!s.required) continue;
-    const bool silent = !s.seen || base::seconds(now - *s.seen) > kSilent_s;
-    if (silent) return "the sensor " + s.name + " is silent";
-    if (s.health == SensorHealth::Silent || s.health == SensorHealth::Blind) {
+    if (s.health == SensorHealth::Silent) return "the sensor " + s.name + " is silent";
+    if (s.health == SensorHealth::Blind) {
       return "the sensor " + s.name + " does not see: " + s.reason;
     }
   }
+  if (guard.too_old(now)) return "the picture of the surroundings is too old";
   return {};
 }
 
@@ -33,7 +32,11 @@ void Robot::Impl::look_around() {
   if (!guard.sees()) return;
   surroundings_batch.clear();
   if (surroundings.try_take(surroundings_batch) && !surroundings_batch.empty()) {
-    guard.take(std::move(surroundings_batch.back()));
+    for (auto& one : surroundings_batch) one = guard.take(std::move(one));
+  }
+  // Large: whoever made them frees them, unless he is busy.
+  for (auto& one : surroundings_batch) {
+    if (one) (void)surroundings_done.try_offer(one);
   }
   surroundings_batch.clear();
   base::BodyTwist moved = world.motion ? world.motion->twist : base::BodyTwist{};
@@ -41,13 +44,22 @@ void Robot::Impl::look_around() {
   if (pose && pose->yaw_rate_radps) moved.angular_radps = *pose->yaw_rate_radps;
   nav::sense::Odometry state = guard.move(moved, clock.now());
   (void)odometry.try_offer(state);  // one that is missed is a gap of 20 ms
-  blind = blind_words(guard.around().get(), clock.now());
+  guard.brake_by(handling.braking_mps2(config->fence.decel_mps2));
+  std::string words = guard.demands() ? blind_words(guard, clock.now()) : std::string();
+  if (words.empty()) blind_since.reset();
+  if (!words.empty() && !blind_since) blind_since = clock.now();
+  // One piece that is of no use is no blindness; silence was waited for already.
+  const bool silent = words.ends_with("is silent") || guard.too_old(clock.now());
+  const bool long_enough = blind_since && clock.now() - *blind_since >= kBlindFor;
+  blind = silent || long_enough ? std::move(words) : std::string();
 }
 
 /// What is in the way is not driven against, whoever drives.
 base::DriveCommand Robot::Impl::keep_off(base::DriveCommand command) {
   if (!guard.sees()) return command;
-  command.twist = guard.judge(command.twist, machine.by_itself(), clock.now());
+  const bool waits = std::exchange(waits_before, false);
+  if (std::exchange(guarded_mode, machine.mode()) != machine.mode()) guard.forget();
+  if (!waits) command.twist = guard.judge(command.twist, machine.by_itself(), clock.now());
   const base::Obstacle& o = guard.obstacle();
   if (o.action != base::GuardAction::None) {
     speed_reason = "obstacle";
@@ -66,6 +78,7 @@ base::DriveCommand Robot::Impl::keep_off(base::DriveCommand command) {
 bool Robot::Impl::waits_for_way() {
   if (!guard.sees() || !guard.stops()) return false;
   if (guard.may_go_on(clock.now())) return false;
+  waits_before = true;
   driver = base::Driver::Autonomy;
   speed_reason = "obstacle";
   return true;

@@ -111,7 +111,7 @@ constexpr std::array kSensorRows{
     },
     Failsafe{
         .id = "blind",
-        .seen = "a sensor that the profile demands is silent, dirty or blinded",
+        .seen = "a sensor that the profile demands is silent, covered or blinded",
         .after = "0.3 s",
         .response = Response::Hold,
         .acts = Acts::ByItself,

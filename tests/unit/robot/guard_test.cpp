@@ -48,8 +48,9 @@ class Seeing : public ::testing::Test {
     state.kind = "velodyne";
     state.health = health;
     state.reason = "the glass is blocked";
-    if (heard) state.seen = field.now;
-    s->sensors.push_back(state);
+    if (!heard) state.health = base::SensorHealth::Silent;
+    if (heard) state.seen = s->seen = field.now;
+    s->sensors = std::make_shared<const std::vector<base::SensorState>>(1, state);
     field.robot.surroundings().put(std::move(s));
   }
 
@@ -130,6 +131,43 @@ TEST_F(Seeing, TheSticksAreStoppedTooAndMayDriveAway) {
   EXPECT_LT(driven_m(), stood_m - 0.3);
 }
 
+TEST_F(Seeing, AStickThatWasStoppedKeepsNoMissionFromGoingTheOtherWay) {
+  // Given a robot that was driven by hand against a wall in the south, and stopped,
+  field.run(8.0);
+  ASSERT_TRUE(field.load(plan_of({{0, 6}})));
+  ASSERT_TRUE(field.ask(Arm{}));
+  ASSERT_TRUE(field.ask(SetMode{Mode::Manual}));
+  field.let_go();
+  wall_m = -2.5;  // of 1 m, behind it
+  for (int i = 0; i < 400; ++i) {
+    field.robot.request(Drive{{-0.4, 0.0}, true}, field.now + std::chrono::seconds(1), {});
+    field.tick();
+  }
+  ASSERT_FALSE(field.moves());
+  // when a mission to the north begins,
+  field.let_go();
+  ASSERT_TRUE(field.ask(StartMission{"m", 1}));
+  field.run(3.0);
+  // then it drives.
+  EXPECT_GT(field.command.twist.linear_mps, 0.2);
+}
+
+TEST_F(Seeing, AMissionThatIsSentElsewhereWhileItWaitsGoesThere) {
+  // Given a mission that stands before a wall that stays,
+  field.run(8.0);
+  ASSERT_TRUE(field.load(plan_of({{0, 20}, {0, -6}})));
+  ASSERT_TRUE(field.ask(Arm{}));
+  ASSERT_TRUE(field.ask(StartMission{"m", 1}));
+  wall_at(5.0);
+  field.run(20.0);
+  ASSERT_FALSE(field.moves());
+  // when it is told to skip to the item behind it,
+  ASSERT_TRUE(field.ask(SkipItem{2}));
+  field.run(30.0);
+  // then it turns round and goes there.
+  EXPECT_LT(driven_m(), 1.0);
+}
+
 TEST_F(Seeing, WhatNoSensorSawIsCreptIntoAndNotReversedInto) {
   seen = Known::Unknown;
   field.run(8.0);
@@ -157,6 +195,8 @@ TEST_F(Seeing, ARequiredSensorThatFallsSilentStopsTheMission) {
 TEST_F(Seeing, ABlockedGlassStopsItToo) {
   field.drive_mission();
   health = base::SensorHealth::Blind;
+  field.run(0.1);
+  EXPECT_FALSE(field.has_condition("blind")) << "one piece of no use is none";
   field.run(0.2);
   EXPECT_TRUE(field.has_condition("blind"));
   field.run(3.0);
@@ -170,6 +210,52 @@ TEST_F(Seeing, APictureThatIsTooOldIsNotBelieved) {
   EXPECT_TRUE(field.has_condition("blind"));
   field.run(3.0);
   EXPECT_FALSE(field.moves());
+}
+
+TEST_F(Seeing, WhatIsWrittenInTheGapIsKeptAlsoWhereItIsWide) {
+  nav::sense::ProtectParams wide;
+  wide.gap_m = 1.5;
+  field.robot.guard_by(wide);
+  field.drive_mission();
+  wall_at(driven_m() + 6.0);
+  field.run(30.0);
+  EXPECT_FALSE(field.moves());
+  EXPECT_GT(gap_m(), 1.3);
+  EXPECT_LT(gap_m(), 1.8);
+}
+
+TEST_F(Seeing, WithBrakesThatAreKnownToBeWeakItStopsInTime) {
+  Config config;
+  config.fence.decel_mps2 = 0.2;
+  Guard guard;
+  guard.set({}, config.vehicle, true);
+  guard.brake_by(0.2);
+  wall_m = 2.5;
+  field.more = nullptr;
+  look();
+  std::vector<std::shared_ptr<const Surroundings>> made;
+  field.robot.surroundings().take(made);
+  (void)guard.take(made.back());
+  (void)guard.move({}, field.now);
+  // 1 m/s needs 2.5 m and the delay's way; 1.7 are left.
+  EXPECT_LT(guard.judge({1.0, 0.0}, false, field.now).linear_mps, 0.85);
+  guard.brake_by(5.0);  // more than was set does not count
+  EXPECT_GT(guard.judge({1.0, 0.0}, false, field.now).linear_mps, 0.95);
+}
+
+TEST_F(Seeing, ADriveThatHasNothingLeftToDoIsNotHeldByWhatStoppedItOnce) {
+  field.run(8.0);
+  mission::Plan plan = plan_of({{0, 20}});
+  plan.items.emplace_back(mission::Wait{5.0});
+  ASSERT_TRUE(field.load(plan));
+  ASSERT_TRUE(field.ask(Arm{}));
+  ASSERT_TRUE(field.ask(StartMission{"m", 1}));
+  wall_at(5.0);
+  field.run(20.0);
+  ASSERT_FALSE(field.moves());
+  ASSERT_TRUE(field.ask(SkipItem{2}));
+  field.run(15.0);
+  EXPECT_EQ(field.execution(), ExecutionState::Finished);
 }
 
 TEST(Guard, WithoutSensorsEverythingPasses) {

@@ -99,6 +99,12 @@ TEST(GridTest, ANearbyBoxIsRememberedBesideTheRobotWhereNoBeamSeesItAndFadesInTi
   EXPECT_EQ(r.at(3.02, 0.3, 6.2), Known::Unknown) << "and never to free";
 }
 
+TEST(GridTest, WhatStoodThereStaysUntilItWasSeenThroughHoweverLongAgoThatWas) {
+  Robot r;
+  r.scan(wall(), 1.0);
+  EXPECT_EQ(r.at(3.02, 0.3, 1.0 + 3600.0), Known::Occupied);
+}
+
 //   A person walks across before a wall: two scans later where they were is free.
 TEST(GridTest, AWalkingPersonLeavesNoTrail) {
   Robot r;
