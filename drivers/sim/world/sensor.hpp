@@ -27,7 +27,7 @@ struct SensorParams {
   std::string name;
   std::string kind = "lms";
   std::string port;
-  double x_m = 0.3;
+  double x_m = 0.0;
   double y_m = 0.0;
   double z_m = 0.3;
   double roll_deg = 0.0;

@@ -145,6 +145,9 @@ class Layout {
     forth().steps.push_back({.kind = StepKind::Move, .item = item_, .by = m.forward_m});
   }
   void add(const mission::TurnBy& t) {
+    if (params_.tool.pulled()) {
+      return refuse("with a trailer (nav.tool.trailer_m) nothing turns on the spot");
+    }
     if (params_.vehicle.steered()) return refuse("this vehicle cannot turn on the spot");
     not_back_and_forth("a turn");
     RouteStep step{.kind = StepKind::Turn, .item = item_};

@@ -67,7 +67,8 @@ Fitness HealthWatch::at(base::Time now) const {
   if (f.unknown_part > p_.max_unknown_part) say(Eye::Blind, "too many directions tell nothing");
   if (f.bad_part > p_.max_bad_part) say(Eye::Blind, "too many of its points are no points");
   if (f.window == base::Window::Dirty) say(Eye::Degraded, "its window is dirty");
-  if (f.unknown_part > 0.5 * p_.max_unknown_part)
+  // Half of it, or near it: of what a lidar looks at half is sky.
+  if (f.unknown_part > std::max(0.5 * p_.max_unknown_part, p_.max_unknown_part - 0.25))
     say(Eye::Degraded, "many directions tell nothing");
   if (f.bad_part > 0.5 * p_.max_bad_part) say(Eye::Degraded, "many of its points are no points");
   if (used_ > 3 && f.rate_hz < p_.min_rate_part * p_.rate_hz) say(Eye::Degraded, "it is slow");

@@ -193,7 +193,7 @@ class Leader {
     for (std::size_t k = 0; k < legs; ++k) {
       const std::size_t i = from_end ? legs - 1 - k : k;
       const Leg& leg = given_.legs[i];
-      if (leg.reverse && params_.tool.pulled()) return refuse(leg.start_m, at_m);
+      if (leg.reverse && params_.tool.pulled()) return refuse(leg.end_m, at_m);
       const auto places = sampled(given_, leg, piece_m);
       const auto joint = joint_rad(ways, i, from_end, places);
       ways[i] = led_leg(places, params_.tool, leg.reverse, joint, piece_m);
@@ -329,10 +329,13 @@ base::Result<Path> led_way(const Path& point_way, const PathParams& params, doub
   if (!params.tool.fitted() || point_way.legs.empty()) return point_way;
   Leader leader(point_way, params);
   if (!leader.lay(at_m)) {
+    const auto leg = std::ranges::find(point_way.legs, at_m, &Leg::end_m);
+    const bool pushed = params.tool.pulled() && leg != point_way.legs.end() && leg->reverse;
     return base::fail(base::Code::Invalid,
-                      params.tool.pulled()
-                          ? "a trailer cannot be pushed, nor pulled through so narrow a bend"
-                          : "a bend is too narrow for the tool's point to follow it");
+                      pushed ? "cannot be reached backwards: a trailer is pulled "
+                               "(nav.tool.trailer_m)"
+                             : "cannot be reached: a bend before it is too narrow for what follows "
+                               "the way (nav.tool)");
   }
   Path path = leader.take();
   limit_steering(path, params);

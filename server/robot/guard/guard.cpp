@@ -20,6 +20,7 @@ constexpr double kProbe_radps = 0.15;
 constexpr double kClear_s = 1.0;
 constexpr double kAsk_s = 3.0;     // so often a stopped drive is asked anew,
 constexpr double kAskFor_s = 1.0;  // for so long: it first makes sure that it stands
+constexpr double kHandTurns_radps = 0.3;
 constexpr double kWishless_s = 0.5;
 constexpr double kTurnsRound_m = 0.03;  // beyond what a turn on the spot needs
 
@@ -49,14 +50,24 @@ std::string sentence(const base::Obstacle& o) {
   if (o.what == "blind") {
     return "nothing is seen any more: the picture of the surroundings is too old";
   }
-  const char* side = std::abs(deg) < 15.0 ? "ahead" : deg > 0.0 ? "left" : "right";
-  const char* where = std::abs(deg) > 150.0 ? "behind" : side;
+  const char* side = deg > 0.0 ? "to the left" : "to the right";
+  const bool front = std::abs(deg) < 75.0;
+  const bool back = std::abs(deg) > 105.0;
+  std::string where = front ? "ahead" : back ? "behind" : "";
+  if (std::abs(deg) > 15.0 && std::abs(deg) < 165.0) {
+    where += (where.empty() ? "" : ", ") + std::string(side);
+  }
   const char* what = o.what == "drop"     ? "the ground ends"
                      : o.what == "unseen" ? "no sensor has seen the way"
                                           : "something stands in the way";
   std::snprintf(text, sizeof text, "%s, %.1f m %s%s%s", what, std::hypot(o.ahead_m, o.left_m),
-                where, o.sensor.empty() ? "" : ", seen by ", o.sensor.c_str());
-  return text;
+                where.c_str(), o.sensor.empty() ? "" : ", seen by ", o.sensor.c_str());
+  std::string told = text;
+  // Who may help: a person who sees it, or whoever sets how the robot goes there.
+  if (o.what == "unseen" && o.action == base::GuardAction::Stop) {
+    told += ": drive it by hand, or let it creep there (sense.protect.creep_...)";
+  }
+  return told;
 }
 
 }  // namespace
@@ -102,17 +113,28 @@ const nav::sense::Odometry& Guard::move(const BodyTwist& measured, base::Time no
   return odometry_;
 }
 
-nav::sense::Verdict Guard::look(const BodyTwist& twist, base::Time now) const noexcept {
+/// A person who drives sees what no sensor does, and may always creep away.
+nav::sense::ProtectParams Guard::params_of(bool by_itself) const noexcept {
+  nav::sense::ProtectParams p = params_;
+  if (by_itself) return p;
+  p.creep_back_mps = std::max(p.creep_back_mps, p.creep_mps);
+  p.creep_turn_radps = std::max(p.creep_turn_radps, kHandTurns_radps);
+  return p;
+}
+
+nav::sense::Verdict Guard::look(const BodyTwist& twist, bool by_itself,
+                                base::Time now) const noexcept {
   nav::sense::Verdict v;
-  if (!too_old(now)) return protect(around_->patch, odometry_.pose, body_, twist, params_);
+  const nav::sense::ProtectParams params = params_of(by_itself);
+  if (!too_old(now)) return protect(around_->patch, odometry_.pose, body_, twist, params);
   // Nothing is known: as if the very next step were unseen.
   const bool ahead = twist.linear_mps > 0.0;
-  const double most_mps = ahead ? params_.creep_mps : params_.creep_back_mps;
+  const double most_mps = ahead ? params.creep_mps : params.creep_back_mps;
   const double by_way =
       std::abs(twist.linear_mps) > 1e-6 ? most_mps / std::abs(twist.linear_mps) : 1.0;
   const bool spot = std::abs(twist.linear_mps) < kLeast_mps;
   const double by_turn = spot && std::abs(twist.angular_radps) > 1e-6
-                             ? params_.creep_turn_radps / std::abs(twist.angular_radps)
+                             ? params.creep_turn_radps / std::abs(twist.angular_radps)
                              : 1.0;
   v.part = std::clamp(std::min(by_way, by_turn), 0.0, 1.0);
   v.limit = Limit::Unseen;
@@ -134,7 +156,7 @@ BodyTwist Guard::judge(const BodyTwist& wanted, bool by_itself, base::Time now) 
   wishless_since_.reset();
   wanted_ = wanted;
   if (stopped_since_ && by_itself) return {};  // asked, and held until the way has been clear
-  const nav::sense::Verdict v = look(wanted, now);
+  const nav::sense::Verdict v = look(wanted, by_itself, now);
   BodyTwist out = times(wanted, v.part);
   if (v.limit != Limit::None && too_slow(out)) {
     out = {};
@@ -173,7 +195,7 @@ bool Guard::may_go_on(base::Time now) {
 }
 
 bool Guard::clear_long_enough(base::Time now) {
-  const nav::sense::Verdict v = look(probe_of(wanted_), now);
+  const nav::sense::Verdict v = look(probe_of(wanted_), true, now);
   const BodyTwist out = times(probe_of(wanted_), v.part);
   if (v.limit != Limit::None && too_slow(out)) {
     clear_since_.reset();

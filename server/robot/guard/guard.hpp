@@ -64,7 +64,9 @@ class Guard {
   const std::shared_ptr<const Surroundings>& around() const noexcept { return around_; }
 
  private:
-  nav::sense::Verdict look(const base::BodyTwist& twist, base::Time now) const noexcept;
+  nav::sense::ProtectParams params_of(bool by_itself) const noexcept;
+  nav::sense::Verdict look(const base::BodyTwist& twist, bool by_itself,
+                           base::Time now) const noexcept;
   void tell(const nav::sense::Verdict& v, base::GuardAction action, base::Time now);
 
   bool clear_long_enough(base::Time now);

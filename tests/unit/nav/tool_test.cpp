@@ -240,6 +240,7 @@ TEST(Tool, WhatCannotBeFollowedIsRefusedWithItsItem) {
   back.reverse = true;
   const auto pushed = lay_route(plan({at(0, 0), at(10, 0), back}), kFrame, p);
   ASSERT_FALSE(pushed);
+  EXPECT_EQ(pushed.error().fields.at(0).pointer, "/items/2");
   EXPECT_NE(pushed.error().detail.find("trailer"), std::string::npos);
 }
 

@@ -168,7 +168,7 @@ TEST_F(Seeing, AMissionThatIsSentElsewhereWhileItWaitsGoesThere) {
   EXPECT_LT(driven_m(), 1.0);
 }
 
-TEST_F(Seeing, WhatNoSensorSawIsCreptIntoAndNotReversedInto) {
+TEST_F(Seeing, WhatNoSensorSawIsCreptIntoByHand) {
   seen = Known::Unknown;
   field.run(8.0);
   ASSERT_TRUE(field.ask(Arm{}));
@@ -180,8 +180,20 @@ TEST_F(Seeing, WhatNoSensorSawIsCreptIntoAndNotReversedInto) {
       field.tick();
     }
     const double creep = nav::sense::ProtectParams{}.creep_mps;
-    EXPECT_NEAR(field.command.twist.linear_mps, v > 0.0 ? creep : 0.0, 0.02);
+    EXPECT_NEAR(field.command.twist.linear_mps, std::copysign(creep, v), 0.02);
   }
+}
+
+TEST_F(Seeing, ByItselfItDoesNotReverseIntoWhatNoSensorSaw) {
+  seen = Known::Unknown;
+  field.run(8.0);
+  ASSERT_TRUE(field.ask(Arm{}));
+  ASSERT_TRUE(field.ask(SetMode{Mode::Guided}));
+  ASSERT_TRUE(field.ask(MoveBy{-2.0, {}, {}, {}}));
+  field.run(4.0);
+  EXPECT_FALSE(field.moves());
+  ASSERT_TRUE(field.state()->obstacle);
+  EXPECT_NE(field.state()->obstacle->reason.find("by hand"), std::string::npos);
 }
 
 TEST_F(Seeing, ARequiredSensorThatFallsSilentStopsTheMission) {
