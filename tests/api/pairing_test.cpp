@@ -1,6 +1,7 @@
 // A PIN instead of the password, the invitation of another phone, and one's own account.
 
 #include <algorithm>
+#include <regex>
 
 #include "access_house.hpp"
 
@@ -112,8 +113,8 @@ TEST_F(PairingApi, FivePinsLockTheDeviceUntilThePassword) {
   ASSERT_NE(by_pin, audit.end()) << audit.dump(1);
   EXPECT_EQ((*by_pin)["user"], "operator");
   EXPECT_EQ((*by_pin)["credential"].get<std::string>().substr(0, 7), "device ");
-  EXPECT_EQ(audit.dump().find(kPin), std::string::npos);
-  EXPECT_EQ(audit.dump().find("8520"), std::string::npos);
+  // As a word: four digits stand in some hash or other by chance.
+  EXPECT_FALSE(std::regex_search(audit.dump(), std::regex("\\b(2580|8520)\\b"))) << audit.dump(1);
 }
 
 TEST_F(PairingApi, APinNeedsAPairedDeviceAndABrowser) {
