@@ -7,6 +7,7 @@
 #include <pthread.h>
 
 #include "base/log.hpp"
+#include "robot/guard/guard.hpp"
 
 namespace roverd {
 namespace {
@@ -70,9 +71,7 @@ void SenseLoop::run() noexcept {
 
 base::Result<robot::Lookout> lookout_of(const Settings& s, base::Time now) {
   using namespace nav::sense;
-  const nav::VehicleParams& v = s.robot.vehicle;
-  const double back_m = v.steered() ? 0.5 * (v.length_m - v.wheelbase_m) : 0.5 * v.length_m;
-  const Footprint body = Footprint::box(v.length_m, v.width_m, std::max(0.01, back_m));
+  const Footprint body = robot::footprint_of(s.robot.vehicle);
   std::vector<SensorSetup> setups;
   std::vector<std::string> kinds;
   for (const auto& [name, sensor] : s.sensors) {

@@ -27,7 +27,7 @@ base::Result<void> check_one(const std::string& name, const Sensor& sensor) {
   if (is_driver(name)) return refuse(name, "kind", "is of a name that a driver has");
   bool known = false;
   base::Result<void> good;
-  with_kind(const_cast<Sensor&>(sensor), [&](const auto& params) {
+  with_kind(sensor, [&](const auto& params) {
     known = true;
     good = validate(params);
   });

@@ -99,8 +99,8 @@ using Sensors = std::map<std::string, Sensor>;
 inline constexpr std::size_t kMostSensors = 16;
 
 /// The parameters of its kind, as sections are read: v(params). Nothing for an unknown kind.
-template <class V>
-void with_kind(Sensor& s, V&& v) {
+template <class S, class V>
+void with_kind(S& s, V&& v) {
   if (s.said.kind == "cloud") v(s.cloud);
   if (s.said.kind == "ranges") v(s.ranges);
   if (s.said.kind == "sick") v(s.sick);

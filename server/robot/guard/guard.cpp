@@ -72,15 +72,18 @@ std::string sentence(const base::Obstacle& o) {
 
 }  // namespace
 
+nav::sense::Footprint footprint_of(const nav::VehicleParams& v) noexcept {
+  const double back_m = v.steered() ? 0.5 * (v.length_m - v.wheelbase_m) : 0.5 * v.length_m;
+  return nav::sense::Footprint::box(v.length_m, v.width_m, std::max(0.01, back_m));
+}
+
 void Guard::set(const nav::sense::ProtectParams& params, const nav::VehicleParams& vehicle,
                 bool demands) {
   params_ = params;
   decel_set_mps2_ = params.decel_mps2;
   sees_ = true;
   demands_ = demands;
-  const double back_m =
-      vehicle.steered() ? 0.5 * (vehicle.length_m - vehicle.wheelbase_m) : 0.5 * vehicle.length_m;
-  body_ = nav::sense::Footprint::box(vehicle.length_m, vehicle.width_m, std::max(0.01, back_m));
+  body_ = footprint_of(vehicle);
   if (vehicle.steered()) return;
   // Where it stopped it must still be able to turn away.
   const double turns_m = body_.reach_m() + params_.side_m - 0.5 * vehicle.length_m;
@@ -195,8 +198,9 @@ bool Guard::may_go_on(base::Time now) {
 }
 
 bool Guard::clear_long_enough(base::Time now) {
-  const nav::sense::Verdict v = look(probe_of(wanted_), true, now);
-  const BodyTwist out = times(probe_of(wanted_), v.part);
+  const BodyTwist probe = probe_of(wanted_);
+  const nav::sense::Verdict v = look(probe, true, now);
+  const BodyTwist out = times(probe, v.part);
   if (v.limit != Limit::None && too_slow(out)) {
     clear_since_.reset();
     tell(v, base::GuardAction::Stop, now);

@@ -27,6 +27,9 @@
 
 namespace roverd::robot {
 
+/// The vehicle from above, about its origin: its middle, or the middle of the rear axle.
+nav::sense::Footprint footprint_of(const nav::VehicleParams& vehicle) noexcept;
+
 class Guard {
  public:
   /// Before the first tick, where the profile has sensors. @param demands one of them at least
@@ -75,7 +78,7 @@ class Guard {
   bool demands_ = false;
   nav::sense::ProtectParams params_;
   double decel_set_mps2_ = 0.6;
-  nav::sense::Footprint body_ = nav::sense::Footprint::box(1.0, 0.8, 0.5);
+  nav::sense::Footprint body_ = footprint_of({});
   std::shared_ptr<const Surroundings> around_;
   nav::sense::Odometry odometry_;
   bool began_ = false;
