@@ -1,6 +1,7 @@
 #pragma once
 // When bytes reached this machine, by the kernel's own word (TCP_INFO): what lay in a socket while
-// nobody looked is older than the moment at which it is read. To about 4 ms (the kernel's tick).
+// nobody looked is older than the moment at which it is read. Never before it was, and up to two of
+// the kernel's ticks (4 ms each, mostly) after.
 
 #include "base/time.hpp"
 
