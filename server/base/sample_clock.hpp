@@ -6,7 +6,9 @@
 //   stamp = count + min(arrival − count), the minimum rising by 100 ppm against two clocks that
 //   drift apart
 //
-// Stamps never lie after the arrival and go on as evenly as the device counts. What is told of an
+// Stamps never lie after the arrival and go on as evenly as the device counts. A device whose clock
+// stood still for a moment is late by that from then on: where no sample of kStood_s came earlier
+// than kShift_s after its stamp, the delay is that of the least late one. What is told of an
 // earlier sample (a receiver's position) is read against it and moves nothing. Pure state.
 
 #include <algorithm>
@@ -29,6 +31,8 @@ class SampleClock {
   /// A count this far off the arrivals has jumped: the delay is learned anew.
   static constexpr double kJump_s = 0.5;
   static constexpr double kOldest_s = 5.0;
+  static constexpr double kStood_s = 2.0;
+  static constexpr double kShift_s = 0.03;
 
   struct Read {
     Step step = Step::First;
@@ -48,11 +52,13 @@ class SampleClock {
     const Duration raw = arrival.time_since_epoch() - total_;
     if (!delay_ || std::abs(seconds(raw - *delay_)) > kJump_s) {
       delay_ = raw;
+      least_.reset();
     } else {
       const double aged_s = std::max(0.0, seconds(arrival - arrived_));
       delay_ = std::min(raw, *delay_ + from_seconds(aged_s * kDrift));
     }
     arrived_ = arrival;
+    follow(raw);
     return {step, Time{total_ + *delay_}};
   }
   /// When that sample was taken, if it lies at most kOldest_s before the arrival and not after it;
@@ -77,10 +83,21 @@ class SampleClock {
     return on > 0 ? Step::On : on == 0 ? Step::Same : Step::Back;
   }
 
+  /// A device that lost a moment, rather than a link that was slow for one.
+  void follow(Duration raw) noexcept {
+    if (!least_) least_since_ = arrived_;
+    least_ = least_ ? std::min(*least_, raw) : raw;
+    if (arrived_ >= least_since_ && seconds(arrived_ - least_since_) < kStood_s) return;
+    if (seconds(*least_ - *delay_) > kShift_s) delay_ = *least_;
+    least_.reset();
+  }
+
   bool known_ = false;
   std::uint32_t last_ = 0;
   Duration total_{};
   std::optional<Duration> delay_;
+  std::optional<Duration> least_;  ///< raw delay since least_since_
+  Time least_since_{};
   Time arrived_{};
 };
 
