@@ -113,6 +113,7 @@ class House {
   // Control thread: what tracks and receiver have told of moved_m.
   double tracks_m_ = 0.0;
   double fix_m_ = 0.0;
+  base::Time told_slow_{};  ///< battery, receiver and driver
   std::atomic<bool> stop_{false};
   std::thread web_;
   std::thread control_;

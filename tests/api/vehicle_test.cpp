@@ -330,7 +330,8 @@ TEST_F(VehicleApi, AMissionIsLoadedPreviewedStartedPausedAndStopped) {
   const auto again = call("POST", "/execution/pause");
   EXPECT_EQ(again.status, 200u);
   EXPECT_EQ(again.body["state"], "paused");
-  EXPECT_EQ(call("POST", "/execution/resume").body["state"], "running");
+  const auto resumed = call("POST", "/execution/resume");
+  EXPECT_EQ(resumed.body["state"], "running") << resumed.body.dump();
   EXPECT_EQ(call("POST", "/execution/skip", Json{{"item", 2}}).body["current_item"], 2);
   EXPECT_EQ(call("POST", "/execution/stop").status, 200u);
   EXPECT_NE(call("GET", "/execution").body["state"], "running");
@@ -355,7 +356,8 @@ TEST_F(VehicleApi, AutoGoesOnButStartsOnlyTheNewestRevision) {
   EXPECT_EQ(call("GET", "/vehicle").body["mode"], "HOLD");
   // The newest is,
   ASSERT_EQ(call("POST", "/execution/load", Json{{"mission_id", id}}).status, 200u);
-  EXPECT_EQ(call("PUT", "/vehicle/mode", autonomous).body["mission"]["state"], "running");
+  const auto begun = call("PUT", "/vehicle/mode", autonomous);
+  EXPECT_EQ(begun.body["mission"]["state"], "running") << begun.body.dump();
   EXPECT_EQ(call("PUT", "/vehicle/mode", autonomous).status, 200u);  // and again: nothing happens
   // and what waits goes on, whatever became of the stored one.
   EXPECT_EQ(call("POST", "/execution/pause").body["state"], "paused");

@@ -272,6 +272,10 @@ def how_it_stands():
     vehicle = station.rest.get("/vehicle")
     yield f"mission {vehicle['mission']}"
     yield f"control {vehicle['control']}, armed {vehicle['armed']}, safety {vehicle['safety']}"
+    for part in ("position", "attitude", "gnss", "estimator", "activity", "command", "loop"):
+        yield f"{part} {vehicle[part]}"
+    for driver in station.rest.get("/drivers")["items"]:
+        yield f"driver {driver}"
     for event in station.rest.get("/events?limit=1000")["items"][-12:]:
         yield f"{event}"
     frames = candump.read(LOG)
