@@ -30,7 +30,7 @@ class Audit {
   /// A stream was opened, or not.
   void upgraded(const Request& request, const std::optional<people::Who>& who, int status,
                 people::Now now);
-  /// Somebody stopped the robot by a message on a stream.
+  /// Somebody stopped the robot by a message on a stream, or held its guard off.
   void stopped(const std::optional<people::Who>& who, const std::string& address,
                std::string_view how, people::Now now);
   /// Control changed hands, or was asked for.

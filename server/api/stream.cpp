@@ -277,6 +277,7 @@ base::Result<void> StreamTexts::drive(ClientId id, Client& client, Members& mess
   const auto speed_mps = members.number("speed_mps", -kMostSpeed_mps, kMostSpeed_mps);
   const auto yaw_rate_dps = members.number("yaw_rate_dps", -kMostYawRate_dps, kMostYawRate_dps);
   const auto deadman = members.flag("deadman");
+  const auto override_guard = members.flag("override_guard");
   const auto seq = members.whole("seq", 0, std::int64_t{1} << 53);
   const robot::Validity validity = stick_validity_of({begun, message, members});
   auto outer = message.finish();
@@ -297,8 +298,13 @@ base::Result<void> StreamTexts::drive(ClientId id, Client& client, Members& mess
     return {};
   }
   client.at_stick = true;
-  const robot::Drive command{
+  robot::Drive command{
       {*speed_mps, base::rad_from_deg(*yaw_rate_dps)}, *deadman, id, validity.seen};
+  command.override_guard = *deadman && override_guard.value_or(false);
+  if (command.override_guard && client.who) command.who = client.who->user;
+  if (command.override_guard) {
+    context_->audit.stopped(client.who, client.address, "override_guard", Access::now());
+  }
   if (!*deadman) let_go(client, command);
   client.drives = *deadman;
   return *deadman ? take_wheel(id, command, validity) : base::Result<void>{};

@@ -62,7 +62,7 @@ Result<void> Station::Impl::open_senses(const Settings& settings, const Options&
   const bool demands = std::ranges::any_of(settings.sensors, [](const auto& one) {
     return one.second.said.enabled && one.second.said.required;
   });
-  robot.guard_by(settings.sense.protect, demands);
+  robot.guard_by(settings.sense.protect, demands, settings.sense.blocked);
   sense = std::make_shared<SenseLoop>(robot, std::move(*lookout));
   return {};
 }

@@ -31,8 +31,9 @@ struct SensorState {
 };
 
 /// What the guard does about what it knows of the way.
-enum class GuardAction { None, Slow, Creep, Stop };
-std::string_view to_string(GuardAction a) noexcept;  // none slow creep stop
+/// Overridden: a hand drives on at its own risk, slowly.
+enum class GuardAction { None, Slow, Creep, Stop, Overridden };
+std::string_view to_string(GuardAction a) noexcept;  // none slow creep stop overridden
 
 /// What lies on the commanded curve.
 struct Obstacle {
@@ -45,7 +46,11 @@ struct Obstacle {
   std::string sensor;  ///< that saw it; empty: none did
   double age_s = 0.0;  ///< since it was seen
   std::optional<Time> stopped_since;
-  std::string reason;  ///< one sentence for people
+  std::optional<Time> since;       ///< it limits the speed, or stops, without a pause
+  bool blocked = false;            ///< a drive by itself, for longer than it may last
+  std::string_view then;           ///< what follows when it is blocked; empty: a hand drives
+  std::optional<Time> decides_at;  ///< when that will be; empty: it is, or never will
+  std::string reason;              ///< one sentence for people
 };
 
 }  // namespace roverd::base

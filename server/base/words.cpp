@@ -138,6 +138,8 @@ std::string_view to_string(GuardAction a) noexcept {
       return "creep";
     case GuardAction::Stop:
       return "stop";
+    case GuardAction::Overridden:
+      return "overridden";
   }
   return "stop";
 }

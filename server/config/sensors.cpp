@@ -85,6 +85,14 @@ bool is_sensor_name(std::string_view name) noexcept {
   });
 }
 
+base::Result<void> check(const SenseSettings& sense) {
+  const auto good = check(sense.blocked);
+  if (good) return {};
+  const base::FieldError& field = good.error().fields.front();
+  const std::string key = "sense.blocked." + field.pointer;
+  return base::fail(base::Code::Invalid, key + " " + field.detail, {{key, field.detail}});
+}
+
 base::Result<void> check(const Sensors& sensors) {
   std::map<std::string, std::string> heard;
   for (const auto& [name, sensor] : sensors) {

@@ -22,6 +22,7 @@
 #include "cloud/params.hpp"
 #include "nav/sense/params.hpp"
 #include "ranges/params.hpp"
+#include "robot/guard/blocked.hpp"
 #include "sick/params.hpp"
 #include "velodyne/params.hpp"
 
@@ -82,6 +83,7 @@ struct SenseSettings {
   nav::sense::GridParams grid;
   nav::sense::HealthParams health;
   nav::sense::ProtectParams protect;
+  robot::BlockedParams blocked;
 };
 
 template <class V>
@@ -92,6 +94,7 @@ void sections(V& v, SenseSettings& s) {
   v("sense.grid", s.grid);
   v("sense.health", s.health);
   v("sense.protect", s.protect);
+  v("sense.blocked", s.blocked);
 }
 
 using Sensors = std::map<std::string, Sensor>;
@@ -115,5 +118,7 @@ bool is_sensor_name(std::string_view name) noexcept;
 /// What only the whole tells: kinds, ranges that contradict each other, two that hear one port.
 /// Invalid; the field is the key ("sensors.front.kind").
 base::Result<void> check(const Sensors& sensors);
+/// Words; the field is the key.
+base::Result<void> check(const SenseSettings& sense);
 
 }  // namespace roverd

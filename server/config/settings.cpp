@@ -293,6 +293,7 @@ Result<void> check_badge(const Settings& s) {
 Result<void> check_all(const Settings& s) {
   if (auto good = at_its_place(s, robot::check(s.robot)); !good) return good;
   if (auto good = at_its_place(s, check(s.sensors)); !good) return good;
+  if (auto good = at_its_place(s, check(s.sense)); !good) return good;
   if (auto good = check_server(s); !good) return good;
   if (auto good = check_badge(s); !good) return good;
   const std::string& level = s.server.log_level;

@@ -249,10 +249,12 @@ base::Result<void> Robot::Impl::handle(const Drive& c) {
   if (c.deadman && driver == base::Driver::Radio) {
     return base::fail(Code::Conflict, "the radio drives");
   }
-  const Handle handle{c.twist, c.deadman, c.source, c.said.value_or(clock.now()), c.gone};
+  const Handle handle{c.twist, c.deadman,       c.source, c.said.value_or(clock.now()),
+                      c.gone,  c.override_guard};
   if (by_network && !by_hand.drive(handle, clock.now())) {
     return base::fail(Code::Conflict, by_hand.why());
   }
+  if (c.override_guard && by_hand.overrides_guard()) overrider = c.who;
   return {};
 }
 

@@ -175,9 +175,13 @@ base::DriveCommand Robot::Impl::decide() {
     by_hand.lock(radio ? "the radio drove" : "the base took no commands", clock.now());
   }
   if (radio && !arm.latched()) driver = Driver::Radio;
-  if (radio || !arm.armed() || !listens) guard.forget();
+  const bool lost = base_lost(world, config->safety, clock.now());
+  if (radio || !arm.armed() || !listens || lost) {
+    guard.forget();
+    keep_guard();
+  }
   if (!arm.armed() || radio) return {};
-  if (base_lost(world, config->safety, clock.now())) return {};
+  if (lost) return {};
   if (!listens) return {{}, true};
   return keep_off(keep_inside(choose()));
 }

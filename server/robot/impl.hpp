@@ -113,6 +113,8 @@ struct Robot::Impl {
   FenceKeep fence;
   Guard guard;
   Mode guarded_mode = Mode::Hold;
+  bool overridden = false;    ///< a hand holds the guard off, and was told so
+  std::string overrider;      ///< who does
   bool waits_before = false;  ///< the drive was not asked at this tick: something stands before it
   std::optional<base::Time> blind_since;
   std::string blind;  ///< why nothing may drive by itself: a sensor; empty: nothing is wrong
@@ -159,6 +161,7 @@ struct Robot::Impl {
   base::DriveCommand decide();
   bool publish();
   void publish_driven_way();
+  void tell_wait(base::Snapshot& s) const;
   void survive(const char* what, const Robot& self) noexcept;
   void tell_latch(const Robot& self);
 
@@ -252,7 +255,11 @@ struct Robot::Impl {
   // guard/watched.cpp
   void look_around();
   base::DriveCommand keep_off(base::DriveCommand command);
+  base::BodyTwist guarded(const base::BodyTwist& wanted);
+  void keep_guard();
   bool waits_for_way();
+  void be_blocked(Then then);
+  void give_up(const std::string& why);
   base::Result<void> inside(base::EnuPoint to) const;
   double way_margin_m() const;
   void watch_frame();

@@ -14,6 +14,21 @@ void Robot::Impl::publish_driven_way() {
   if (news && shared_way.publish(std::move(news))) driven_told = told;
 }
 
+/// What drives by itself stands before something: why, where people look for it.
+void Robot::Impl::tell_wait(base::Snapshot& s) const {
+  const std::string why = (guard.blocked() ? "blocked: " : "waits: ") + guard.why();
+  if (s.mode == Mode::Auto) {
+    if (s.mission.state == base::ExecutionState::Running) s.mission.reason = why;
+    return;
+  }
+  if (s.activity.state != base::ActivityState::Driving &&
+      s.activity.state != base::ActivityState::Turning) {
+    return;
+  }
+  s.activity.state = base::ActivityState::Waiting;
+  s.activity.reason = why;
+}
+
 bool Robot::Impl::publish() {
   auto s = std::make_shared<base::Snapshot>();
   s->now = clock.now();
@@ -45,6 +60,7 @@ bool Robot::Impl::publish() {
   s->mission = missions.progress(pose, estimator.frame(), driver == base::Driver::Radio);
   s->mission.laid_by_old = missions && missions->way != config->way;
   s->activity = self_driving.activity();
+  if (machine.by_itself() && !guard.why().empty()) tell_wait(*s);
   if (const auto may = may_drive_by_itself(true); !may) s->autonomy_refusal = may.error().detail;
   if (fence.get() != nullptr) {
     s->fence = fence.state(pose, estimator.frame(), missions.get().get(), way_margin_m());

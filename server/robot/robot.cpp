@@ -37,8 +37,9 @@ Robot::~Robot() = default;
 base::Inbox<base::Measurement>& Robot::measurements() noexcept {
   return impl_->measurements;
 }
-void Robot::guard_by(const nav::sense::ProtectParams& params, bool demands) {
-  impl_->guard.set(params, impl_->config->vehicle, demands);
+void Robot::guard_by(const nav::sense::ProtectParams& params, bool demands,
+                     const BlockedParams& blocked) {
+  impl_->guard.set(params, impl_->config->vehicle, demands, blocked);
 }
 base::Inbox<std::shared_ptr<const Surroundings>>& Robot::surroundings() noexcept {
   return impl_->surroundings;

@@ -34,6 +34,7 @@
 #include "nav/sense/odometry.hpp"
 #include "nav/sense/params.hpp"
 #include "robot/config.hpp"
+#include "robot/guard/blocked.hpp"
 
 namespace roverd::robot {
 
@@ -166,6 +167,9 @@ struct Drive {
   std::uint64_t source = 1;    ///< who says it; never used for two
   std::optional<Time> said{};  ///< the state that its sender saw was true then; empty: now
   bool gone = false;           ///< the source has left, or is not understood; with the dead-man off
+  /// Held down with the dead-man: on, slowly, where the guard would stop (guard/guard.hpp).
+  bool override_guard = false;
+  std::string who{};  ///< with override_guard, for the events; empty: not known
 };
 /// Sticks in the middle; see modes/manual.hpp.
 bool neutral(const base::BodyTwist& twist) noexcept;
@@ -345,8 +349,10 @@ class Robot {
   base::Inbox<base::Measurement>& measurements() noexcept;
   /// Before the first tick: the profile has sensors, and by this the guard (guard/guard.hpp) keeps
   /// from what they see. Without it the robot drives blind, as it is told.
-  /// @param demands what drives by itself needs one of them at least.
-  void guard_by(const nav::sense::ProtectParams& params, bool demands = true);
+  /// @param demands what drives by itself needs one of them at least. @param blocked what becomes
+  /// of a drive that they stopped; its word passed check().
+  void guard_by(const nav::sense::ProtectParams& params, bool demands = true,
+                const BlockedParams& blocked = {});
   /// Any thread: what stands around it; the newest counts.
   base::Inbox<std::shared_ptr<const Surroundings>>& surroundings() noexcept;
   /// The same thread: those that are not needed any more, to be let go.

@@ -1,5 +1,6 @@
 // What looks around, and what stands in the way.
 
+#include <algorithm>
 #include <cmath>
 
 #include "api/json/measured.hpp"
@@ -10,20 +11,28 @@ namespace roverd::api {
 
 Json obstacle_json(const std::optional<base::Obstacle>& o, base::Time now) {
   if (!o) return nullptr;
-  return {{"action", base::to_string(o->action)},
-          {"what", o->what},
-          {"distance_m", rounded(std::hypot(o->ahead_m, o->left_m), kPlaces2)},
-          // Bearings on the body count clockwise.
-          {"bearing_deg", degrees(-o->bearing_rad)},
-          {"ahead_m", rounded(o->ahead_m, kPlaces2)},
-          {"left_m", rounded(o->left_m, kPlaces2)},
-          {"way_m", rounded(o->distance_m, kPlaces2)},
-          {"sensor", o->sensor.empty() ? Json(nullptr) : Json(o->sensor)},
-          {"age_s", rounded(o->age_s, kPlaces2)},
-          {"stopped_s", o->stopped_since
-                            ? Json(rounded(base::seconds(now - *o->stopped_since), kPlaces2))
-                            : Json(nullptr)},
-          {"reason", o->reason}};
+  return {
+      {"action", base::to_string(o->action)},
+      {"what", o->what},
+      {"distance_m", rounded(std::hypot(o->ahead_m, o->left_m), kPlaces2)},
+      // Bearings on the body count clockwise.
+      {"bearing_deg", degrees(-o->bearing_rad)},
+      {"ahead_m", rounded(o->ahead_m, kPlaces2)},
+      {"left_m", rounded(o->left_m, kPlaces2)},
+      {"way_m", rounded(o->distance_m, kPlaces2)},
+      {"sensor", o->sensor.empty() ? Json(nullptr) : Json(o->sensor)},
+      {"age_s", rounded(o->age_s, kPlaces2)},
+      {"stopped_s", o->stopped_since
+                        ? Json(rounded(base::seconds(now - *o->stopped_since), kPlaces2))
+                        : Json(nullptr)},
+      {"since_s",
+       o->since ? Json(rounded(base::seconds(now - *o->since), kPlaces2)) : Json(nullptr)},
+      {"blocked", o->blocked},
+      {"then", o->then.empty() ? Json(nullptr) : Json(o->then)},
+      {"decides_in_s",
+       o->decides_at ? Json(rounded(std::max(0.0, base::seconds(*o->decides_at - now)), kPlaces2))
+                     : Json(nullptr)},
+      {"reason", o->reason}};
 }
 
 Json sensors_json(const base::Snapshot& s, base::Time now) {

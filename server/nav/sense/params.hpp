@@ -154,6 +154,8 @@ struct ProtectParams {
   double creep_mps = 0.25;
   double creep_back_mps = 0.0;
   double creep_turn_radps = 0.0;
+  double override_mps = 0.15;
+  double dock_m = 0.6;
 };
 
 template <class V>
@@ -173,6 +175,13 @@ void fields(V& v, ProtectParams& p) {
     base::lower_is_stricter("the same backwards; 0: only where it was seen"));
   v("creep_turn_radps", p.creep_turn_radps, 0.0, 1.0,
     base::lower_is_stricter("the same when turning on the spot; 0: only where it was seen"));
+  v("override_mps", p.override_mps, 0.02, 0.5,
+    base::lower_is_stricter(
+        "a hand that overrides the guard drives no faster, and no corner of the "
+        "body turns faster"));
+  v("dock_m", p.dock_m, 0.0, 3.0,
+    base::lower_is_stricter("this near to where DOCK ends, what stands within 0.3 m of the "
+                            "vehicle's end there is the dock, and does not stop it; 0: it does"));
 }
 
 }  // namespace roverd::nav::sense

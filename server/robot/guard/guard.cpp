@@ -78,8 +78,9 @@ nav::sense::Footprint footprint_of(const nav::VehicleParams& v) noexcept {
 }
 
 void Guard::set(const nav::sense::ProtectParams& params, const nav::VehicleParams& vehicle,
-                bool demands) {
+                bool demands, const BlockedParams& blocked) {
   params_ = params;
+  blocked_.set(blocked);
   decel_set_mps2_ = params.decel_mps2;
   sees_ = true;
   demands_ = demands;
@@ -187,6 +188,23 @@ BodyTwist Guard::judge(const BodyTwist& wanted, bool by_itself, base::Time now) 
   return out;
 }
 
+BodyTwist Guard::overrule(const BodyTwist& wanted, base::Time now) {
+  const BodyTwist kept = judge(wanted, false, now);
+  if (!sees_ || stands(wanted) || obstacle_.action == base::GuardAction::None) return kept;
+  const double fastest =
+      std::abs(wanted.linear_mps) + std::abs(wanted.angular_radps) * body_.reach_m();
+  const BodyTwist least = times(wanted, std::min(1.0, params_.override_mps / fastest));
+  const bool enough = std::abs(kept.linear_mps) >= std::abs(least.linear_mps) &&
+                      std::abs(kept.angular_radps) >= std::abs(least.angular_radps);
+  if (enough) return kept;
+  obstacle_.action = base::GuardAction::Overridden;
+  obstacle_.stopped_since.reset();
+  stopped_since_.reset();
+  news_.reset();  // the hand knows
+  limit_mps_ = params_.override_mps;
+  return least;
+}
+
 bool Guard::may_go_on(base::Time now) {
   if (!stopped_since_ || clear_long_enough(now)) return true;
   const double since_s = base::seconds(now - asked_);
@@ -195,6 +213,28 @@ bool Guard::may_go_on(base::Time now) {
     wishless_since_.reset();
   }
   return since_s >= kAsk_s || since_s < kAskFor_s;
+}
+
+std::optional<Then> Guard::decide(bool by_itself, base::Time now) noexcept {
+  const bool solid = obstacle_.what == "obstacle" || obstacle_.what == "drop";
+  const auto what_then = blocked_.step(by_itself && stops(), solid, odometry_.pose, now);
+  const bool stop = obstacle_.action == base::GuardAction::Stop;
+  if (!stop) why_.clear();
+  if (obstacle_.action == base::GuardAction::None) {
+    limits_since_.reset();
+    return what_then;
+  }
+  if (!limits_since_ || stop != limits_by_stop_) limits_since_ = now;
+  limits_by_stop_ = stop;
+  if (stop && (why_.empty() || why_what_ != obstacle_.what)) {
+    why_ = obstacle_.reason;
+    why_what_ = obstacle_.what;
+  }
+  obstacle_.since = limits_since_;
+  obstacle_.blocked = blocked_.blocked();
+  obstacle_.then = by_itself ? to_string(blocked_.then()) : std::string_view{};
+  obstacle_.decides_at = blocked_.decides_at();
+  return what_then;
 }
 
 bool Guard::clear_long_enough(base::Time now) {
@@ -216,6 +256,9 @@ bool Guard::clear_long_enough(base::Time now) {
 }
 
 void Guard::forget() noexcept {
+  blocked_.forget();
+  why_.clear();
+  limits_since_.reset();
   news_.reset();  // that the way is clear was not seen
   stopped_since_.reset();
   clear_since_.reset();

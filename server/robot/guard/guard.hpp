@@ -23,6 +23,7 @@
 #include "nav/sense/params.hpp"
 #include "nav/sense/protect.hpp"
 #include "nav/track/params.hpp"
+#include "robot/guard/blocked.hpp"
 #include "robot/guard/surroundings.hpp"
 
 namespace roverd::robot {
@@ -33,8 +34,8 @@ nav::sense::Footprint footprint_of(const nav::VehicleParams& vehicle) noexcept;
 class Guard {
  public:
   /// Before the first tick, where the profile has sensors. @param demands one of them at least
-  void set(const nav::sense::ProtectParams& params, const nav::VehicleParams& vehicle,
-           bool demands);
+  void set(const nav::sense::ProtectParams& params, const nav::VehicleParams& vehicle, bool demands,
+           const BlockedParams& blocked = {});
   bool sees() const noexcept { return sees_; }
   bool demands() const noexcept { return demands_; }
   /// Once a tick: braking that is known to be there; what was set bounds it.
@@ -50,12 +51,25 @@ class Guard {
   /// What may leave of a wanted twist. @param by_itself nobody's hand is on it: after a stop it
   /// waits until the way has been clear for a while
   base::BodyTwist judge(const base::BodyTwist& wanted, bool by_itself, base::Time now);
+  /// A hand that holds the guard off: the wanted twist where the guard would let it pass, else as
+  /// much of it as it lets, but at least that at which no corner moves faster than
+  /// sense.protect.override_mps. Never for what drives by itself.
+  base::BodyTwist overrule(const base::BodyTwist& wanted, base::Time now);
   /// It stops a drive: the drive is not asked any more until may_go_on().
   bool stops() const noexcept { return stopped_since_.has_value(); }
   /// While it stops: looks along the curve that was wanted last. Now and then the drive is to be
   /// asked anew, for it may want to go elsewhere by now: then this is true as well, and judge()
   /// holds what it wants.
   bool may_go_on(base::Time now);
+  /// Once a tick, after those two. @param by_itself nobody's hand drives
+  /// @return what is to become of a drive that has been stopped for too long; told once
+  std::optional<Then> decide(bool by_itself, base::Time now) noexcept;
+  /// For the control thread: a way around what stands there is wanted (blocked.hpp). Until there is
+  /// a planner that answers it, the robot waits.
+  bool wants_around() const noexcept { return blocked_.wants_around(); }
+  bool blocked() const noexcept { return blocked_.blocked(); }
+  /// Why it stops, in words that stay while the reason does; empty: it does not.
+  const std::string& why() const noexcept { return why_; }
   /// What the tracker should plan with, so that the last word need not cut.
   double limit_mps() const noexcept { return limit_mps_; }
   /// Somebody else begins: what was wanted before says nothing.
@@ -89,6 +103,11 @@ class Guard {
   base::Time asked_{};                        ///< the drive, while it stops
   std::optional<base::Time> wishless_since_;  ///< asked, it wants to stand
   std::optional<bool> news_;
+  Blocked blocked_;
+  std::string why_;
+  std::string_view why_what_;
+  std::optional<base::Time> limits_since_;
+  bool limits_by_stop_ = false;
   base::Obstacle obstacle_;
 };
 

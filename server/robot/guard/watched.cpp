@@ -58,8 +58,10 @@ void Robot::Impl::look_around() {
 base::DriveCommand Robot::Impl::keep_off(base::DriveCommand command) {
   if (!guard.sees()) return command;
   const bool waits = std::exchange(waits_before, false);
+  const bool by_itself = machine.by_itself();
   if (std::exchange(guarded_mode, machine.mode()) != machine.mode()) guard.forget();
-  if (!waits) command.twist = guard.judge(command.twist, machine.by_itself(), clock.now());
+  if (!waits) command.twist = guarded(command.twist);
+  const auto then = guard.decide(by_itself, clock.now());
   const base::Obstacle& o = guard.obstacle();
   if (o.action != base::GuardAction::None) {
     speed_reason = "obstacle";
@@ -71,7 +73,66 @@ base::DriveCommand Robot::Impl::keep_off(base::DriveCommand command) {
     event(*stopped ? base::Severity::Warning : base::Severity::Info,
           *stopped ? "obstacle" : "obstacle_gone", *stopped ? o.reason : "the way is clear again");
   }
+  if (then) be_blocked(*then);
   return command;
+}
+
+/// A hand that holds it off is told so, and so is everybody else, until it does not any more.
+base::BodyTwist Robot::Impl::guarded(const base::BodyTwist& wanted) {
+  const bool by_hand_only = machine.kind() == ModeKind::ByHand;
+  if (!by_hand_only || !by_hand.overrides_guard()) {
+    keep_guard();
+    return guard.judge(wanted, machine.by_itself(), clock.now());
+  }
+  const base::BodyTwist out = guard.overrule(wanted, clock.now());
+  const base::Obstacle& o = guard.obstacle();
+  if (o.action == base::GuardAction::Overridden && !std::exchange(overridden, true)) {
+    event(base::Severity::Warning, "guard_overridden",
+          "the guard is overridden" + (overrider.empty() ? "" : " by " + overrider) + ": " +
+              o.reason);
+  }
+  return out;
+}
+
+/// Nobody holds it off any more.
+void Robot::Impl::keep_guard() {
+  if (!std::exchange(overridden, false)) return;
+  event(base::Severity::Info, "guard_kept",
+        "the guard holds again; it was overridden" + (overrider.empty() ? "" : " by " + overrider));
+}
+
+/// What was chosen for a drive by itself that something has stopped for too long.
+void Robot::Impl::be_blocked(Then then) {
+  const std::string why = guard.why();
+  const bool homeward = leads_home(machine.mode());
+  const auto told = [&](const char* follows) {
+    event(base::Severity::Warning, "blocked", "blocked: " + why + "; " + follows);
+  };
+  switch (then) {
+    case Then::Wait:
+      return told("it waits until the way is clear");
+    case Then::Around:
+      return told("no way around it is known: it waits until the way is clear");
+    case Then::Return:
+      if (homeward) return told("it is on its way home already: it waits until the way is clear");
+      told("it returns home");
+      return go_back("blocked: " + why);
+    case Then::Abort:
+      told(machine.mode() == Mode::Auto ? "the mission ends" : "it gives up");
+      return give_up("blocked: " + why);
+  }
+}
+
+/// What drives by itself ends here, for good.
+void Robot::Impl::give_up(const std::string& why) {
+  driver = base::Driver::None;
+  if (machine.mode() != Mode::Auto) {
+    hold(why);
+    return event(base::Severity::Warning, "stopped", why);
+  }
+  missions.executor.stop(why);
+  event(base::Severity::Error, "mission_aborted", why);
+  change_mode(ModeCause::MissionOver, why);
 }
 
 /// A drive by itself stands before something until the way has been clear for a while.

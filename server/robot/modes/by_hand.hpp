@@ -26,6 +26,7 @@ class ByHand {
   Manual::Phase phase() const noexcept { return manual_.phase(); }
   double share_of_speed(base::Time now) const noexcept { return manual_.share_of_speed(now); }
   std::optional<double> delay_s(base::Time now) const noexcept { return manual_.delay_s(now); }
+  bool overrides_guard() const noexcept { return manual_.overrides_guard(); }
   bool in_vain(base::Time now) const noexcept { return manual_.in_vain(now); }
   std::string why() const { return manual_.why(); }
   const std::vector<std::uint64_t>& released() const noexcept { return manual_.released(); }

@@ -34,9 +34,10 @@ namespace roverd::robot {
 struct Handle {
   base::BodyTwist twist;
   bool deadman = false;
-  std::uint64_t source = 0;  ///< who holds it
-  base::Time said;           ///< the sender saw the robot's state of then
-  bool gone = false;         ///< the source does not speak any more; with the dead-man off
+  std::uint64_t source = 0;     ///< who holds it
+  base::Time said;              ///< the sender saw the robot's state of then
+  bool gone = false;            ///< the source does not speak any more; with the dead-man off
+  bool override_guard = false;  ///< on, slowly, where the guard would stop
 };
 
 class Manual {
@@ -69,6 +70,7 @@ class Manual {
     holder_ = h.source;
     last_ = now;
     wanted_ = h.twist;
+    overrides_ = h.override_guard;
     delay_.take(h.said, now);
     return true;
   }
@@ -78,6 +80,7 @@ class Manual {
   void lock(const char* cause, base::Time now) noexcept {
     holder_.reset();
     released_.clear();
+    overrides_ = false;
     wanted_ = now_ = {};
     cause_ = cause;
     began_ = now;
@@ -109,6 +112,8 @@ class Manual {
   Phase phase() const noexcept {
     return holder_ ? Phase::Held : released_.empty() ? Phase::Locked : Phase::Ready;
   }
+  /// Whoever drives holds the guard off as well, as of his last word.
+  bool overrides_guard() const noexcept { return holder_ && overrides_; }
   bool stale() const noexcept { return phase() == Phase::Locked && cause_ == kSilent; }
   /// Somebody pushes it just now and is not obeyed.
   bool in_vain(base::Time now) const noexcept {
@@ -157,6 +162,7 @@ class Manual {
   base::Time last_{};
   std::optional<base::Time> in_vain_;
   LinkDelay delay_;  ///< of the holder
+  bool overrides_ = false;
   base::BodyTwist wanted_{};
   base::BodyTwist now_{};
 };

@@ -78,6 +78,18 @@ TEST(Sensors, WhatIsWrongIsRefusedWithItsPlace) {
             std::string::npos);
 }
 
+TEST(Sensors, WhatFollowsWhenTheyBlockADriveIsOneOfFourWords) {
+  const auto s = with("[sense.blocked]\nafter_s = 25\nthen = \"return\"\nresume_blind = true\n");
+  ASSERT_TRUE(s) << s.error().detail;
+  EXPECT_EQ(s->sense.blocked.after_s, 25.0);
+  EXPECT_EQ(s->sense.blocked.then, "return");
+  EXPECT_TRUE(s->sense.blocked.resume_blind);
+  EXPECT_FALSE(s->sense.blocked.around_at_once);
+  const std::string no = refused("[sense.blocked]\nthen = \"jump\"\n");
+  EXPECT_NE(no.find("robot.toml:2: sense.blocked.then must be wait"), std::string::npos) << no;
+  EXPECT_NE(refused("[sense.blocked]\nafter_s = 0\n").find("after_s"), std::string::npos);
+}
+
 TEST(Sensors, TwoOnOnePortAreRefused) {
   EXPECT_NE(refused(R"(
 [sensors.a]

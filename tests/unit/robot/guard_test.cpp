@@ -2,6 +2,7 @@
 
 #include "robot/guard/guard.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -268,6 +269,311 @@ TEST_F(Seeing, ADriveThatHasNothingLeftToDoIsNotHeldByWhatStoppedItOnce) {
   ASSERT_TRUE(field.ask(SkipItem{2}));
   field.run(15.0);
   EXPECT_EQ(field.execution(), ExecutionState::Finished);
+}
+
+// ---- blocked ----
+
+TEST_F(Seeing, AMissionThatWaitsSaysWhyWhereItIsLookedFor) {
+  field.drive_mission();
+  wall_at(driven_m() + 5.0);
+  field.run(14.0);
+  ASSERT_FALSE(field.moves());
+  EXPECT_NE(field.state()->mission.reason.find("something stands in the way"), std::string::npos);
+  EXPECT_EQ(field.execution(), ExecutionState::Running);
+  // And it is silent about it when it drives again.
+  wall_m.reset();
+  field.run(4.0);
+  EXPECT_EQ(field.state()->mission.reason, "");
+}
+
+TEST_F(Seeing, AGoalThatWaitsSaysSoToo) {
+  field.run(8.0);
+  ASSERT_TRUE(field.ask(Arm{}));
+  ASSERT_TRUE(field.ask(SetMode{Mode::Guided}));
+  ASSERT_TRUE(field.ask(MoveBy{10.0, {}, {}, {}}));
+  wall_at(4.0);
+  field.run(15.0);
+  ASSERT_FALSE(field.moves());
+  EXPECT_EQ(field.state()->activity.state, base::ActivityState::Waiting);
+  EXPECT_NE(field.state()->activity.reason.find("something stands"), std::string::npos);
+  wall_m.reset();
+  field.run(30.0);
+  EXPECT_EQ(field.state()->activity.state, base::ActivityState::Reached);
+}
+
+TEST_F(Seeing, WhatStandsTooLongBlocksAndIsToldOnce) {
+  // Given a mission that stands before a wall that stays,
+  field.drive_mission();
+  wall_at(driven_m() + 3.0);
+  while (field.moves()) field.tick();
+  field.run(9.0);
+  EXPECT_FALSE(field.has_event("blocked"));
+  ASSERT_TRUE(field.state()->obstacle);
+  EXPECT_FALSE(field.state()->obstacle->blocked);
+  EXPECT_EQ(field.state()->obstacle->then, "wait");
+  ASSERT_TRUE(field.state()->obstacle->decides_at);
+  EXPECT_NEAR(base::seconds(*field.state()->obstacle->decides_at - field.now), 1.0, 0.3);
+  // when ten seconds have passed,
+  field.run(1.3);
+  // then it is blocked, once, and says what, who saw it and what follows,
+  field.run(30.0);
+  EXPECT_EQ(std::count_if(field.events.begin(), field.events.end(),
+                          [](const auto& e) { return e.kind == "blocked"; }),
+            1);
+  const auto told = std::find_if(field.events.begin(), field.events.end(),
+                                 [](const auto& e) { return e.kind == "blocked"; });
+  EXPECT_EQ(told->level, base::Severity::Warning);
+  EXPECT_NE(told->detail.find("seen by front"), std::string::npos) << told->detail;
+  EXPECT_NE(told->detail.find("it waits"), std::string::npos) << told->detail;
+  EXPECT_TRUE(field.state()->obstacle->blocked);
+  EXPECT_FALSE(field.state()->obstacle->decides_at);
+  EXPECT_TRUE(field.state()->mission.reason.starts_with("blocked: "));
+  // and still goes on by itself when the way is clear.
+  wall_m.reset();
+  field.run(5.0);
+  EXPECT_TRUE(field.moves());
+}
+
+TEST_F(Seeing, BlockedItReturnsWhereThatIsChosen) {
+  BlockedParams blocked;
+  blocked.after_s = 5.0;
+  blocked.then = "return";
+  field.robot.guard_by({}, true, blocked);
+  field.drive_mission();
+  const double begin_m = driven_m();
+  wall_at(begin_m + 4.0);
+  field.run(20.0);
+  EXPECT_EQ(field.state()->mode, Mode::Rtl);
+  EXPECT_EQ(field.execution(), ExecutionState::Paused);
+  EXPECT_TRUE(field.has_event("returns"));
+  field.run(60.0);
+  EXPECT_TRUE(field.has_event("home_reached"));
+  EXPECT_LT(driven_m(), 1.0);
+}
+
+TEST_F(Seeing, OnTheWayHomeItWaitsWhateverWasChosen) {
+  BlockedParams blocked;
+  blocked.after_s = 5.0;
+  blocked.then = "return";
+  field.robot.guard_by({}, true, blocked);
+  field.drive_mission();
+  field.run(8.0);
+  wall_m = -0.5;  // of 1 m, between it and home
+  ASSERT_TRUE(field.ask(SetMode{Mode::Rtl}));
+  field.run(60.0);
+  EXPECT_EQ(field.state()->mode, Mode::Rtl);
+  EXPECT_TRUE(field.has_event("blocked"));
+  EXPECT_EQ(field.state()->activity.state, base::ActivityState::Waiting);
+}
+
+TEST_F(Seeing, BlockedTheMissionEndsWhereThatIsChosen) {
+  BlockedParams blocked;
+  blocked.after_s = 5.0;
+  blocked.then = "abort";
+  field.robot.guard_by({}, true, blocked);
+  field.drive_mission();
+  wall_at(driven_m() + 4.0);
+  field.run(20.0);
+  EXPECT_EQ(field.execution(), ExecutionState::Aborted);
+  EXPECT_EQ(field.state()->mode, Mode::Hold);
+  EXPECT_NE(field.state()->mission.reason.find("something stands in the way"), std::string::npos);
+  EXPECT_TRUE(field.has_event("mission_aborted"));
+  // A goal of GUIDED fails alike.
+  ASSERT_TRUE(field.ask(SetMode{Mode::Guided}));
+  ASSERT_TRUE(field.ask(MoveBy{5.0, {}, {}, {}}));
+  field.run(12.0);
+  EXPECT_EQ(field.state()->mode, Mode::Hold);
+  EXPECT_EQ(field.state()->activity.state, base::ActivityState::Failed);
+  EXPECT_NE(field.state()->activity.reason.find("blocked"), std::string::npos);
+}
+
+TEST_F(Seeing, AHandIsStoppedAndNeverBlocked) {
+  BlockedParams blocked;
+  blocked.after_s = 1.0;
+  blocked.then = "abort";
+  field.robot.guard_by({}, true, blocked);
+  field.run(8.0);
+  ASSERT_TRUE(field.ask(Arm{}));
+  ASSERT_TRUE(field.ask(SetMode{Mode::Manual}));
+  wall_at(2.0);
+  field.let_go();
+  for (int i = 0; i < 600; ++i) {
+    field.robot.request(Drive{{0.5, 0.0}, true}, field.now + std::chrono::seconds(1), {});
+    field.tick();
+  }
+  EXPECT_FALSE(field.moves());
+  EXPECT_FALSE(field.has_event("blocked"));
+  ASSERT_TRUE(field.state()->obstacle);
+  EXPECT_EQ(field.state()->obstacle->then, "");
+  EXPECT_GT(base::seconds(field.now - *field.state()->obstacle->since), 5.0);
+  EXPECT_EQ(field.state()->mode, Mode::Manual);
+}
+
+// ---- overridden by a hand ----
+
+class Overriding : public Seeing {
+ protected:
+  /// In MANUAL before a wall that stopped it.
+  void stand_before_wall() {
+    field.run(8.0);
+    ASSERT_TRUE(field.ask(Arm{}));
+    ASSERT_TRUE(field.ask(SetMode{Mode::Manual}));
+    wall_at(2.0);
+    field.let_go();
+    push(0.5, 0.0, 10.0, false);
+    ASSERT_FALSE(field.moves());
+  }
+
+  void push(double v, double w, double seconds, bool held_off) {
+    Drive d{{v, w}, true};
+    d.override_guard = held_off;
+    if (held_off) d.who = "anna";
+    for (int i = 0; i < seconds * 50.0; ++i) {
+      field.robot.request(d, field.now + std::chrono::seconds(1), {});
+      field.tick();
+    }
+  }
+
+  int told(const std::string& kind) const {
+    return int(std::count_if(field.events.begin(), field.events.end(),
+                             [&](const auto& e) { return e.kind == kind; }));
+  }
+};
+
+TEST_F(Overriding, ItCreepsTowardsWhatStopsItAndSaysWho) {
+  stand_before_wall();
+  const double stood_m = driven_m();
+  // When the guard is held off,
+  push(0.8, 0.0, 1.0, true);
+  // then it creeps, tells who did it, and what it does.
+  EXPECT_NEAR(field.command.twist.linear_mps, nav::sense::ProtectParams{}.override_mps, 1e-9);
+  EXPECT_GT(driven_m(), stood_m + 0.08);
+  ASSERT_TRUE(field.state()->obstacle);
+  EXPECT_EQ(field.state()->obstacle->action, base::GuardAction::Overridden);
+  EXPECT_EQ(told("guard_overridden"), 1);
+  const auto event = std::find_if(field.events.begin(), field.events.end(),
+                                  [](const auto& e) { return e.kind == "guard_overridden"; });
+  EXPECT_NE(event->detail.find("by anna: something stands"), std::string::npos) << event->detail;
+  // And without that it stands at once, and that is told.
+  push(0.8, 0.0, 0.1, false);
+  EXPECT_FALSE(field.moves());
+  EXPECT_EQ(told("guard_kept"), 1);
+  EXPECT_EQ(field.state()->obstacle->action, base::GuardAction::Stop);
+}
+
+TEST_F(Overriding, ItTurnsSlowlyBesideAWall) {
+  stand_before_wall();
+  push(0.6, 0.0, 2.0, true);  // so near that its corners need the room of the wall
+  push(0.0, 0.8, 0.5, false);
+  ASSERT_FALSE(field.moves());
+  push(0.0, 0.8, 0.5, true);
+  const double corner_mps = std::abs(field.command.twist.angular_radps) * std::hypot(0.5115, 0.389);
+  EXPECT_NEAR(corner_mps, 0.15, 0.005);
+}
+
+TEST_F(Overriding, WhereNothingIsInTheWayItChangesNothing) {
+  field.run(8.0);
+  ASSERT_TRUE(field.ask(Arm{}));
+  ASSERT_TRUE(field.ask(SetMode{Mode::Manual}));
+  field.let_go();
+  push(0.6, 0.0, 3.0, true);
+  EXPECT_NEAR(field.command.twist.linear_mps, 0.6, 0.01);
+  EXPECT_EQ(told("guard_overridden"), 0);
+}
+
+TEST_F(Overriding, ItEndsWithTheHandTheRadioAndTheEmergencyStop) {
+  stand_before_wall();
+  // A hand that falls silent.
+  push(0.8, 0.0, 0.3, true);
+  field.run(0.7);
+  EXPECT_FALSE(field.moves());
+  EXPECT_EQ(told("guard_kept"), 1);
+  // The radio.
+  field.let_go();
+  push(0.8, 0.0, 0.3, true);
+  ASSERT_TRUE(field.moves());
+  field.swb = base::Switch::Middle;
+  push(0.8, 0.0, 0.3, true);
+  EXPECT_FALSE(field.moves());
+  EXPECT_EQ(told("guard_kept"), 2);
+  field.swb = base::Switch::Up;
+  field.run(1.0);
+  // The emergency stop.
+  field.let_go();
+  push(0.8, 0.0, 0.3, true);
+  ASSERT_TRUE(field.moves());
+  ASSERT_TRUE(field.ask(Estop{"a test"}));
+  push(0.8, 0.0, 0.3, true);
+  EXPECT_FALSE(field.moves());
+  EXPECT_EQ(told("guard_kept"), 3);
+}
+
+TEST_F(Overriding, WhatDrivesByItselfOverridesNothing) {
+  field.drive_mission();
+  wall_at(driven_m() + 3.0);
+  push(0.5, 0.0, 15.0, true);
+  EXPECT_FALSE(field.moves());
+  EXPECT_EQ(told("guard_overridden"), 0);
+  EXPECT_EQ(field.state()->obstacle->action, base::GuardAction::Stop);
+}
+
+/// The diagram of blocked.hpp.
+class BlockedFor : public ::testing::Test {
+ protected:
+  void set(const char* then, bool at_once = false) {
+    BlockedParams p;
+    p.then = then;
+    p.around_at_once = at_once;
+    blocked.set(p);
+  }
+  /// @return what it decided within that time
+  std::optional<Then> pass(double seconds, bool stops, bool solid = true) {
+    std::optional<Then> out;
+    for (int i = 0; i < seconds * 50.0 + 0.5; ++i) {
+      now += std::chrono::milliseconds(20);
+      if (const auto then = blocked.step(stops, solid, at, now)) out = then;
+    }
+    return out;
+  }
+
+  Blocked blocked;
+  nav::sense::Pose2 at;
+  base::Time now{};
+};
+
+TEST_F(BlockedFor, AWayThatIsClearForAMomentEndsNothing) {
+  set("return");
+  EXPECT_FALSE(pass(6.0, true));
+  EXPECT_FALSE(pass(1.5, false));
+  EXPECT_FALSE(blocked.decides_at());
+  EXPECT_EQ(pass(3.0, true), Then::Return);
+  EXPECT_TRUE(blocked.blocked());
+  // Longer, and it begins anew; so it does where the robot came farther.
+  EXPECT_FALSE(pass(4.0, false));
+  EXPECT_FALSE(pass(9.0, true));
+  at.x_m = 0.5;
+  EXPECT_FALSE(pass(9.0, true));
+  EXPECT_EQ(pass(1.5, true), Then::Return);
+}
+
+TEST_F(BlockedFor, AWayAroundIsAskedForWhereThatIsChosen) {
+  set("wait");
+  (void)pass(20.0, true);
+  EXPECT_FALSE(blocked.wants_around());
+  set("around");
+  blocked.forget();
+  (void)pass(5.0, true);
+  EXPECT_FALSE(blocked.wants_around());
+  EXPECT_EQ(pass(6.0, true), Then::Around);
+  EXPECT_TRUE(blocked.wants_around());
+  (void)pass(0.1, true, false);
+  EXPECT_FALSE(blocked.wants_around()) << "what nobody has seen is not gone around";
+  (void)pass(0.1, false);
+  EXPECT_FALSE(blocked.wants_around());
+  set("around", true);
+  blocked.forget();
+  (void)pass(0.1, true);
+  EXPECT_TRUE(blocked.wants_around()) << "at once";
 }
 
 TEST(Guard, WithoutSensorsEverythingPasses) {
