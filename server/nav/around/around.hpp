@@ -89,6 +89,7 @@ enum class Why : std::uint8_t {
   Unseen,    ///< it leads through what no sensor has seen
   Turning,   ///< the vehicle cannot turn as narrowly
   Touching,  ///< the body stands in something
+  Target,    ///< the route's end, where the mission wants to stand, lies in something
   Effort     ///< the search was given up
 };
 std::string_view to_string(Why why) noexcept;  // none gap corridor fence unseen turning …
@@ -96,7 +97,8 @@ std::string_view to_string(Why why) noexcept;  // none gap corridor fence unseen
 std::string_view sentence(Why why) noexcept;
 
 enum class Found : std::uint8_t {
-  Clear,  ///< nothing stands on the route as far as is known; no path
+  Clear,  ///< the robot is on the route, and nothing stands there as far as is known; no path.
+          ///< Beside a clear route: a way back to it
   Way,
   Part,  ///< as far as is seen, and good to drive: ask again on the way
   None
