@@ -52,8 +52,8 @@ void Ahead::look(const Question& q, const Lane& lane, const Field& field, const 
     if (!field.inside(p.x, p.y, reach)) break;
     end_m_ += kLook_m;
   }
-  const bool whole = end_m_ + kLook_m > lane.end_m();
-  if (whole) end_m_ = lane.end_m();
+  ends_ = end_m_ + kLook_m > lane.end_m();
+  if (ends_) end_m_ = lane.end_m();
   find_blocked(q, lane, body);
   if (from_m_ == to_m_ && from_m_ == q.here_m) {
     const Pose2 on = lane.pose(q.here_m);
@@ -74,7 +74,7 @@ void Ahead::look(const Question& q, const Lane& lane, const Field& field, const 
   };
   for (double s = to_m_; s <= last - kTargets_m; s += kTargets_m) take(s, kRoomOn_m);
   take(last, kRoomOn_m);
-  lost_ = targets_.empty() && whole && q.at_end && to_m_ >= end_m_;
+  lost_ = targets_.empty() && ends_ && q.at_end && to_m_ >= end_m_;
 }
 
 }  // namespace roverd::nav::around

@@ -21,6 +21,9 @@ class Ahead {
   double blocked_to_m() const noexcept { return to_m_; }
   /// How far the window reaches along the route.
   double end_m() const noexcept { return end_m_; }
+  /// That is the route's end.
+  bool ends() const noexcept { return ends_; }
+  void give_up_targets() noexcept { targets_.clear(); }
   std::span<const Target> targets() const noexcept { return targets_; }
 
  private:
@@ -28,6 +31,7 @@ class Ahead {
 
   bool clear_ = false;
   bool lost_ = false;
+  bool ends_ = false;
   double from_m_ = 0.0;
   double to_m_ = 0.0;
   double end_m_ = 0.0;

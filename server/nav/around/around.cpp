@@ -33,7 +33,8 @@ struct Planner::Impl {
   std::vector<Field::Goal> goals;
 
   void plan(const sense::Patch& patch, const Question& q, Answer& a);
-  void set_goals(const Question& q);
+  void set_goals();
+  Ended try_onwards(const Question& q, Wanted& w, const Price& price);
   Why unreached(const Question& q);
   bool reaches(const Question& q, Borders borders);
   void answer(const sense::Patch& patch, const Question& q, Answer& a);
@@ -72,14 +73,13 @@ base::Result<void> Planner::plan(const sense::Patch& patch, const Question& ques
   return {};
 }
 
-void Planner::Impl::set_goals(const Question& q) {
+void Planner::Impl::set_goals() {
   goals.clear();
   for (const Target& t : ahead.targets()) {
     goals.push_back({{t.pose.x_m, t.pose.y_m}, t.cost});
   }
   // Blocked as far as the window goes: to its end, anywhere in the corridor.
   if (goals.empty()) field.across(ahead.end_m() - 0.5, ahead.end_m() + 0.1, goals);
-  static_cast<void>(q);
 }
 
 bool Planner::Impl::reaches(const Question& q, Borders borders) {
@@ -115,7 +115,7 @@ void Planner::Impl::plan(const sense::Patch& patch, const Question& q, Answer& a
     a.why = Why::Target;
     return;
   }
-  set_goals(q);
+  set_goals();
   field.flood(goals, {q.pose.x_m, q.pose.y_m}, beyond(q));
   if (field.to_go(q.pose.x_m, q.pose.y_m) >= Field::kNever) {
     a.why = unreached(q);
@@ -131,8 +131,12 @@ void Planner::Impl::plan(const sense::Patch& patch, const Question& q, Answer& a
                                    : kWheelPlay * q.kinematics.min_radius_m;
   w.expand = effort.expand;
   const Price price{&field, &body, q.body.reach_m()};
-  const Ended ended = search.run(w, price);
+  Ended ended = search.run(w, price);
   a.expanded = search.expanded();
+  if (ended != Ended::Found && !ahead.ends()) {
+    ended = try_onwards(q, w, price);
+    a.expanded += search.expanded();
+  }
   if (ended != Ended::Found) {
     a.why = ended == Ended::GivenUp ? Why::Effort : Why::Turning;
     return;
@@ -140,6 +144,17 @@ void Planner::Impl::plan(const sense::Patch& patch, const Question& q, Answer& a
   pieces = search.pieces();
   polish.run(q.pose, q.kinematics, w.radius_m, price, pieces);
   answer(patch, q, a);
+}
+
+/// It is too near behind what blocks to join the route as far as the window goes: a way to the
+/// window's end, to be joined later.
+Ended Planner::Impl::try_onwards(const Question& q, Wanted& w, const Price& price) {
+  ahead.give_up_targets();
+  set_goals();
+  field.flood(goals, {q.pose.x_m, q.pose.y_m}, beyond(q));
+  w.targets = {};
+  w.expand = std::max<std::size_t>(1000, w.expand / 4);
+  return search.run(w, price);
 }
 
 void Planner::Impl::answer(const sense::Patch& patch, const Question& q, Answer& a) {

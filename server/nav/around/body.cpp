@@ -23,6 +23,19 @@ void along_outline(const sense::Footprint& shape, double apart_m, std::vector<Ve
   }
 }
 
+/// Points within the outline, so that none within it is farther than 0.71 times `apart_m` from one
+/// of them or half of that from the outline.
+void within_outline(const sense::Footprint& shape, double apart_m, std::vector<Vec2>& out) {
+  out.clear();
+  const auto n = static_cast<int>(std::ceil(shape.reach_m() / apart_m));
+  for (int y = -n; y <= n; ++y) {
+    for (int x = -n; x <= n; ++x) {
+      const Vec2 p{x * apart_m, y * apart_m};
+      if (shape.distance_m(p) <= -0.5 * apart_m) out.push_back(p);
+    }
+  }
+}
+
 /// The highest and lowest y of the outline at one x.
 std::pair<double, double> slice(const sense::Footprint& shape, double x) noexcept {
   double low = 1e9;
@@ -53,6 +66,8 @@ void Body::set(const sense::Footprint& shape, double least_m, const Field& field
   sample_m_ = std::sqrt(least_m_ * least_m_ + static_cast<float>(2.0 * kApart_m * kApart_m));
   along_outline(shape, 2.0 * kApart_m, outline_);
   along_outline(shape, 0.4 * kApart_m, dense_);
+  within_outline(shape, 4.0 * kApart_m, inner_);
+  within_outline(shape, 2.0 * kApart_m, dense_inner_);
   double back = 1e9;
   double front = -1e9;
   double half = 0.0;
@@ -125,33 +140,33 @@ bool Body::fits(const Pose2& pose) const noexcept {
   const double dy = pose.y_m - start_.y_m;
   float clear = sample_m_;
   float room = kRoom_m;
-  const std::vector<Vec2>* points = &outline_;
   if (allowed_ && dx * dx + dy * dy < kAboutStart_m * kAboutStart_m &&
       (start_clear_m_ < clear || start_room_m_ < room)) {
     clear = std::min(clear, start_clear_m_);
     room = std::min(room, start_room_m_);
-    points = &dense_;
+    return all_clear(pose, dense_, clear, room) &&
+           all_clear(pose, dense_inner_, static_cast<float>(1.42 * kApart_m), -Field::kFar_m);
   }
-  for (const Vec2 p : *points) {
+  return all_clear(pose, outline_, clear, room) &&
+         all_clear(pose, inner_, static_cast<float>(2.83 * kApart_m), -Field::kFar_m);
+}
+
+bool Body::all_clear(const Pose2& pose, const std::vector<Vec2>& points, float clear,
+                     float room) const noexcept {
+  const double c = std::cos(pose.yaw_rad);
+  const double s = std::sin(pose.yaw_rad);
+  return std::all_of(points.begin(), points.end(), [&](Vec2 p) {
     const double x = pose.x_m + c * p.x - s * p.y;
     const double y = pose.y_m + s * p.x + c * p.y;
-    if (field_->clear_m(x, y) < clear || field_->room_m(x, y) < room) return false;
-  }
-  // What stands wholly inside of the outline is met by the circles' middles.
-  return std::all_of(cover_.begin(), cover_.end(), [&](const Circle& k) {
-    const double x = pose.x_m + c * k.at.x - s * k.at.y;
-    const double y = pose.y_m + s * k.at.x + c * k.at.y;
-    return field_->clear_m(x, y) > 0.8F * k.radius_m;
+    return field_->clear_m(x, y) >= clear &&
+           (room <= -Field::kFar_m || field_->room_m(x, y) >= room);
   });
 }
 
 bool Body::clears(const Pose2& pose) const noexcept {
-  const double c = std::cos(pose.yaw_rad);
-  const double s = std::sin(pose.yaw_rad);
-  if (circles_fit(pose, c, s, false)) return true;
-  return std::all_of(outline_.begin(), outline_.end(), [&](Vec2 p) {
-    return field_->clear_m(pose.x_m + c * p.x - s * p.y, pose.y_m + s * p.x + c * p.y) >= sample_m_;
-  });
+  if (circles_fit(pose, std::cos(pose.yaw_rad), std::sin(pose.yaw_rad), false)) return true;
+  return all_clear(pose, outline_, sample_m_, -Field::kFar_m) &&
+         all_clear(pose, inner_, static_cast<float>(2.83 * kApart_m), -Field::kFar_m);
 }
 
 bool Body::touches(const sense::Patch& patch, const sense::Footprint& shape, const Pose2& pose) {

@@ -35,10 +35,15 @@ class Body {
   };
   bool circles_fit(const Pose2& pose, double c, double s, bool borders) const noexcept;
 
+  bool all_clear(const Pose2& pose, const std::vector<Vec2>& points, float clear,
+                 float room) const noexcept;
+
   const Field* field_ = nullptr;
   std::vector<Circle> cover_;
   std::vector<Vec2> outline_;  ///< 2 kApart_m apart
   std::vector<Vec2> dense_;    ///< a fifth of that, for what is near at the start
+  std::vector<Vec2> inner_;    ///< within: what is small and stands wholly inside is met by these
+  std::vector<Vec2> dense_inner_;
   Circle about_;
   double inner_m_ = 0.0;
   double reach_m_ = 0.0;

@@ -10,9 +10,9 @@ namespace {
 
 constexpr double kCoarse_m = 0.1;
 constexpr double kUnseenAbout_m = 0.35;  // beside the body nobody sees; it stands there already
-constexpr double kBeside_m = 0.4;       // as wide is the way that was answered last
-constexpr float kOther = 1.17F;         // elsewhere a metre costs this
-constexpr float kNear = 1.5F;           // more, where a thing is touched almost
+constexpr double kBeside_m = 0.4;        // as wide is the way that was answered last
+constexpr float kOther = 1.17F;          // elsewhere a metre costs this
+constexpr float kNear = 1.5F;            // more, where a thing is touched almost
 constexpr float kBucket_m = 0.05F;
 constexpr std::size_t kBuckets = 2400;
 

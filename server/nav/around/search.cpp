@@ -9,7 +9,7 @@ namespace {
 constexpr double kStep_m = 0.3;
 constexpr double kTurn_rad = base::kPi / 12.0;
 constexpr double kCell_m = 0.1;
-constexpr int kHeadings = 72;
+constexpr double kHeadings = 72.0;
 constexpr float kGreed = 1.1F;          // of what is still to go
 constexpr float kGoodEnough_m = 0.15F;  // a better way by less is not looked for
 constexpr float kGoodEnough = 0.05F;
@@ -28,6 +28,8 @@ void Search::reserve(std::size_t expand) {
 void Search::set_primitives(const Wanted& w) {
   primitives_.clear();
   const double bend = 1.0 / w.radius_m;
+  // The narrowest arc must lead to another heading, or it is never driven twice in a row.
+  headings_ = std::clamp(std::ceil(2.0 * base::kPi / (0.75 * kStep_m * bend)), kHeadings, 720.0);
   for (const double c : {0.0, bend, -bend, 0.4 * bend, -0.4 * bend}) {
     primitives_.push_back({c, kStep_m, 0.0});
   }
@@ -60,10 +62,10 @@ void Search::offer(const Pose2& at, float g, std::uint32_t parent, std::uint8_t 
   if (f >= best_) return;
   const auto ix = static_cast<std::int64_t>(std::floor(at.x_m / kCell_m)) & 0xFFFFFF;
   const auto iy = static_cast<std::int64_t>(std::floor(at.y_m / kCell_m)) & 0xFFFFFF;
-  const auto turns = (at.yaw_rad + base::kPi) / (2.0 * base::kPi) * kHeadings;
-  const auto ih = static_cast<std::int64_t>(turns + 0.5) % kHeadings;
+  const auto turns = (at.yaw_rad + base::kPi) / (2.0 * base::kPi) * headings_;
+  const auto ih = static_cast<std::int64_t>(turns + 0.5) % static_cast<std::int64_t>(headings_);
   std::uint32_t* known =
-      slot((static_cast<std::uint64_t>(ix) << 32U) | (static_cast<std::uint64_t>(iy) << 8U) |
+      slot((static_cast<std::uint64_t>(ix) << 34U) | (static_cast<std::uint64_t>(iy) << 10U) |
            static_cast<std::uint64_t>(ih));
   if (*known != 0) {
     const Node& other = nodes_[*known - 1];

@@ -82,6 +82,7 @@ class Search {
   };
   std::vector<Slot> slots_;
   std::uint32_t run_ = 0;
+  double headings_ = 72.0;  ///< that are told apart
   std::size_t room_ = 0;
   bool full_ = false;
   std::size_t expanded_ = 0;
