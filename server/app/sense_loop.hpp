@@ -13,9 +13,7 @@
 #include <semaphore.h>
 
 #include "base/inbox.hpp"
-#include "base/result.hpp"
 #include "base/sight.hpp"
-#include "config/settings.hpp"
 #include "robot/guard/lookout.hpp"
 #include "robot/robot.hpp"
 
@@ -44,8 +42,5 @@ class SenseLoop {
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };
-
-/// The lookout of the profile's sensors. Invalid: a mount that cannot be, with its key.
-base::Result<robot::Lookout> lookout_of(const Settings& settings, base::Time now);
 
 }  // namespace roverd

@@ -1,4 +1,5 @@
 #include "app/station_impl.hpp"
+#include "config/lookout.hpp"
 
 namespace roverd {
 

@@ -1,0 +1,46 @@
+#include "config/lookout.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "robot/guard/guard.hpp"
+
+namespace roverd {
+namespace {
+
+constexpr double kMissed = 2.5;
+constexpr double kSky = 0.95;
+
+}  // namespace
+
+base::Result<robot::Lookout> lookout_of(const Settings& s, base::Time now) {
+  using namespace nav::sense;
+  const Footprint body = robot::footprint_of(s.robot.vehicle);
+  std::vector<SensorSetup> setups;
+  std::vector<std::string> kinds;
+  for (const auto& [name, sensor] : s.sensors) {
+    if (!sensor.said.enabled) continue;
+    SensorSetup one;
+    one.name = name;
+    one.mount = sensor.said.mount();
+    one.planar = sensor.said.planar();
+    one.needed = sensor.said.required;
+    one.persist = s.sense.persist;
+    one.health = s.sense.health;
+    one.health.rate_hz = sensor.said.rate_hz;
+    // A slow one is not silent between two pieces.
+    one.health.silent_s = std::max(one.health.silent_s, kMissed / sensor.said.rate_hz);
+    // Half of what a lidar looks at is the sky, from where nothing comes back.
+    if (sensor.said.kind == "velodyne") {
+      one.health.max_unknown_part = std::max(kSky, one.health.max_unknown_part);
+    }
+    setups.push_back(std::move(one));
+    kinds.push_back(sensor.said.kind);
+  }
+  ChainParams params{s.sense.reduce, s.sense.ground, s.sense.grid};
+  auto chain = Chain::of(params, std::move(setups), body, now);
+  if (!chain) return tl::unexpected(chain.error());
+  return robot::Lookout(std::move(*chain), std::move(kinds), s.sense.protect.reach_m + 1.0);
+}
+
+}  // namespace roverd
