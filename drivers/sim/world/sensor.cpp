@@ -104,8 +104,11 @@ SensorParams usual(std::string_view kind) {
   return p;
 }
 
-Sensor::Sensor(SensorParams p, std::uint64_t seed, double begin_s)
-    : params_(std::move(p)), mount_(mount_of(params_)), begin_s_(begin_s) {
+Sensor::Sensor(SensorParams p, std::uint64_t seed, double begin_s, int thin)
+    : params_(std::move(p)),
+      thin_(std::max(1, thin)),
+      mount_(mount_of(params_)),
+      begin_s_(begin_s) {
   if (params_.name.empty()) params_.name = params_.kind;
   key_ = spread(seed) ^ key_of(params_.name);
   period_s_ = 1.0 / params_.rate_hz;
@@ -152,7 +155,7 @@ void Sensor::prepare_vlp16() {
 void Sensor::turn_vlp16() {
   looks_.clear();
   const double rate_radps = 2.0 * kPi * params_.rate_hz;
-  for (int firing = 0; firing < kVlpFirings; ++firing) {
+  for (int firing = 0; firing < kVlpFirings; firing += thin_) {
     for (int laser = 0; laser < 16; ++laser) {
       const auto ring = static_cast<std::uint8_t>(laser % 2 == 0 ? laser / 2 : 8 + laser / 2);
       const double after_s = firing * kVlpFiring_s + laser * kVlpShot_s;

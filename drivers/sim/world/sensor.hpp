@@ -131,7 +131,9 @@ using PoseAt = std::function<Pose(double at_s)>;
 class Sensor {
  public:
   /// @param p good (check). @param seed of the simulation; each sensor draws by its name.
-  Sensor(SensorParams p, std::uint64_t seed, double begin_s = 0.0);
+  /// @param thin vlp16: only every so manieth firing is cast, for studies that have no time for
+  /// all.
+  Sensor(SensorParams p, std::uint64_t seed, double begin_s = 0.0, int thin = 1);
 
   const SensorParams& params() const noexcept { return params_; }
   /// When the next piece will be complete.
@@ -169,6 +171,7 @@ class Sensor {
 
   SensorParams params_;
   std::uint64_t key_;
+  int thin_;
   Frame mount_;
   std::vector<Look> looks_;
   double begin_s_;
