@@ -19,6 +19,7 @@
 
 #include "study/drill.hpp"
 #include "study/study.hpp"
+#include "study/world/worlds.hpp"
 
 namespace {
 
@@ -34,6 +35,7 @@ struct Options {
   study::Setup setup;
   std::string courses;
   std::string disturbances;
+  std::string world;  ///< instead of disturbances
   int seeds = 5;
   int jobs = 0;
   std::string json;
@@ -65,6 +67,9 @@ void define(CLI::App& app, Options& o) {
   app.add_option("--courses", o.courses, "JSON file of courses")->capture_default_str();
   app.add_option("--disturbances", o.disturbances, "JSON file of disturbances")
       ->capture_default_str();
+  app.add_option("--world", o.world,
+                 "drive in a simulated world and count what is touched: a file, random:N[:SEED] or "
+                 "open:N[:SEED]");
   app.add_option("--seeds", o.seeds, "runs of each course under each disturbance, seeds 1 to N")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
@@ -112,6 +117,11 @@ bool write_plots(const fs::path& folder, const std::vector<study::Run>& runs) {
   });
 }
 
+int jobs_of(const Options& o) {
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return o.jobs > 0 ? o.jobs : cores;
+}
+
 int run(const Options& o) {
   (void)std::signal(SIGPIPE, SIG_IGN);  // a plant of somebody else may die
   const auto folder = fs::path(o.courses).parent_path();
@@ -126,8 +136,7 @@ int run(const Options& o) {
   if (!disturbances) return say(kWrongInput, o.disturbances + ": " + disturbances.error().detail);
 
   const auto tasks = tasks_of(*courses, *disturbances, o.seeds);
-  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  const auto runs = study::run_all(o.setup, tasks, o.jobs > 0 ? o.jobs : cores, [&](std::size_t n) {
+  const auto runs = study::run_all(o.setup, tasks, jobs_of(o), [&](std::size_t n) {
     std::fprintf(stderr, "\r%zu of %zu runs%s", n, tasks.size(), n == tasks.size() ? "\n" : "");
   });
   if (!runs) return say(kWrongInput, runs.error().detail);
@@ -139,6 +148,67 @@ int run(const Options& o) {
   const bool all = std::all_of(runs->begin(), runs->end(),
                                [](const study::Run& r) { return r.problem.empty(); });
   return all ? 0 : kFailed;
+}
+
+bool write_world_plots(const fs::path& folder, const std::vector<study::WorldRun>& runs) {
+  constexpr std::size_t kAllOf = 50;  // of more than that only what is worth looking at
+  std::error_code ec;
+  fs::create_directories(folder, ec);
+  return std::ranges::all_of(runs, [&](const study::WorldRun& run) {
+    if (runs.size() > kAllOf && !study::remarkable(run)) return true;
+    const auto name = run.scenario.kind + "-" + std::to_string(run.scenario.number) + ".svg";
+    return write_file(folder / name, study::to_svg(run));
+  });
+}
+
+/// @param given courses were named; otherwise the usual ones
+int run_in_worlds(const Options& o, bool given) {
+  const auto order = study::parse_worlds(o.world);
+  if (!order) return say(kWrongInput, order.error().detail);
+  std::vector<study::Course> courses;
+  if (given) {
+    const auto folder = fs::path(o.courses).parent_path();
+    const auto text = read_file(o.courses);
+    if (!text) return say(kWrongInput, text.error().detail);
+    auto read = study::read_courses(
+        *text, [&](const std::string& name) { return read_file(folder / name); });
+    if (!read) return say(kWrongInput, o.courses + ": " + read.error().detail);
+    courses = std::move(*read);
+  }
+  roverd::sim::world::World world;
+  const bool file = order->kind == study::WorldOrder::Kind::File;
+  if (file) {
+    const auto text = read_file(order->file);
+    if (!text) return say(kWrongInput, text.error().detail);
+    auto read = roverd::sim::world::read_world(*text);
+    if (!read) return say(kWrongInput, order->file.string() + ": " + read.error().detail);
+    world = std::move(*read);
+  }
+  std::vector<study::Scenario> scenarios;
+  for (int i = 0; i < (file ? o.seeds : order->count); ++i) {
+    auto one =
+        study::scenario_of(*order, order->seed + static_cast<std::uint64_t>(i), courses, world);
+    if (!one) return say(kWrongInput, one.error().detail);
+    scenarios.push_back(std::move(*one));
+  }
+  const auto runs = study::run_worlds(o.setup, scenarios, jobs_of(o), [&](std::size_t n) {
+    std::fprintf(stderr, "\r%zu of %zu worlds%s", n, scenarios.size(),
+                 n == scenarios.size() ? "\n" : "");
+  });
+  if (!runs) return say(kWrongInput, runs.error().detail);
+  std::fputs(study::to_table(*runs).c_str(), stdout);
+  if (!o.json.empty() && !write_file(o.json, study::to_json(*runs, o.setup))) {
+    return say(kFailed, "cannot write " + o.json);
+  }
+  if (!o.svg.empty() && !write_world_plots(o.svg, *runs)) {
+    return say(kFailed, "cannot write to " + o.svg);
+  }
+  const bool none = std::ranges::none_of(*runs, [](const study::WorldRun& run) {
+    return !run.problem.empty() || std::ranges::any_of(run.touches, [](const auto& t) {
+      return t.blame == study::Blame::Ours;
+    });
+  });
+  return none ? 0 : kFailed;
 }
 
 /// Beside a robot that may drive: behind all that wants to run, and gone with who started it.
@@ -172,7 +242,8 @@ int main(int argc, char** argv) {
       "drill", "where a robot would stand; roverd starts it: one JSON document in, JSON lines out");
   try {
     app.parse(argc, argv);
-    return played->parsed() ? run_drill() : run(o);
+    if (played->parsed()) return run_drill();
+    return o.world.empty() ? run(o) : run_in_worlds(o, app.count("--courses") > 0);
   } catch (const CLI::CallForHelp&) {
     std::cout << app.help();
     return 0;

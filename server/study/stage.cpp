@@ -119,6 +119,7 @@ void Stage::tick() {
     at_ = t;
     if (!alive_) continue;
     for (const auto& tick : ticks_) tick(t);
+    if (on_heard) on_heard(t);
   }
   if (!alive_) return;
   const auto before = std::chrono::steady_clock::now();

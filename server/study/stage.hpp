@@ -27,6 +27,9 @@ class Stage {
   Stage& operator=(const Stage&) = delete;
 
   void tick();
+  /// Within a tick, each time that the devices have been heard and before the robot acts: every 10
+  /// ms. May be empty.
+  std::function<void(base::Time)> on_heard;
   base::Result<void> ask(robot::Command command);
 
   /// The program dies: from now on only the vehicle goes on.

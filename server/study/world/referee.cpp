@@ -1,0 +1,314 @@
+#include "study/world/referee.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/angle.hpp"
+#include "sim/world/contact.hpp"
+
+namespace roverd::study {
+namespace {
+
+namespace world = sim::world;
+
+constexpr double kMoves_mps = 0.02;  // of the outline
+constexpr double kCurve_mps = 0.10;  // so fast it shows which way it goes
+constexpr double kBeside_m = 0.25;   // a thing so near to what the guard blames is what it means
+constexpr double kThere_m = 0.05;
+constexpr double kMap_m = 40.0;  // half side
+constexpr double kMapCell_m = 0.1;
+constexpr auto kMapSide = static_cast<std::size_t>(2.0 * kMap_m / kMapCell_m);
+constexpr double kSightEvery_s = 0.09;
+constexpr double kMarch_m = 1.0;
+constexpr double kMarchStep_m = 0.01;
+constexpr double kStandsFor_s = 0.3;
+constexpr double kSightReach_m = 8.0;  // farther nothing is looked at
+
+std::string_view word_of(world::Cause cause) {
+  switch (cause) {
+    case world::Cause::Thing:
+      return "edge";  // of something near, but no thing is there
+    case world::Cause::Ground:
+      return "ground";
+    case world::Cause::Mixed:
+      return "mixed";
+    case world::Cause::Rain:
+      return "rain";
+    case world::Cause::Dust:
+      return "dust";
+    case world::Cause::Window:
+      return "window";
+    default:
+      return "nothing";
+  }
+}
+
+bool touches_any(const world::Scene& scene, const world::Moment& moment, const world::Pose& pose,
+                 const world::Body& body) {
+  return !world::contact(scene, moment, pose, body, 0.01).touches.empty();
+}
+
+world::Body grown(world::Body body, double by_m) {
+  for (world::Vec2& p : body.outline) {
+    p = {p.x + (p.x < 0.0 ? -by_m : by_m), p.y + (p.y < 0.0 ? -by_m : by_m)};
+  }
+  return body;
+}
+
+}  // namespace
+
+Referee::Referee(const sim::Surroundings& around, const nav::sense::ProtectParams& brakes,
+                 double pass_below_m)
+    : around_(around), brakes_(brakes), pass_below_m_(pass_below_m), met_(kMapSide * kMapSide) {
+  reach_m_ = 0.0;
+  for (const world::Vec2 p : around_.witness().body().outline) {
+    reach_m_ = std::max(reach_m_, std::hypot(p.x, p.y));
+  }
+  sights_.resize(around_.scene().world().things.size());
+}
+
+Referee::Met* Referee::met_at(double x_m, double y_m) {
+  const double column = std::floor((x_m + kMap_m) / kMapCell_m);
+  const double row = std::floor((y_m + kMap_m) / kMapCell_m);
+  const auto side = static_cast<double>(kMapSide);
+  if (!(column >= 0.0 && column < side && row >= 0.0 && row < side)) return nullptr;
+  return &met_[static_cast<std::size_t>(row) * kMapSide + static_cast<std::size_t>(column)];
+}
+
+void Referee::saw(const std::vector<world::Sweep>& sweeps, const world::Pose& mount, double now_s) {
+  const auto& things = around_.scene().world().things;
+  for (const world::Sweep& sweep : sweeps) {
+    const world::Frame sensor = world::Frame(around_.pose_at(sweep.at_s)) * world::Frame(mount);
+    for (const world::Shot& s : sweep.shots) {
+      const auto range_m = static_cast<double>(s.range_m);
+      if (range_m <= 0.0 || range_m > kSightReach_m) continue;
+      const auto b = static_cast<double>(s.bearing_rad);
+      const auto e = static_cast<double>(s.elevation_rad);
+      const world::Vec3 at =
+          sensor * world::Vec3{range_m * std::cos(e) * std::cos(b),
+                               range_m * std::cos(e) * std::sin(b), range_m * std::sin(e)};
+      if (Met* met = met_at(at.x, at.y)) *met = {static_cast<float>(now_s), s.cause};
+      if (s.thing < 0 || s.cause != world::Cause::Thing) continue;
+      const auto thing = static_cast<std::size_t>(s.thing);
+      std::vector<double>& seen = sights_[thing];
+      const bool moving = world::moves(things[thing].kind);
+      if (seen.empty() || (moving && now_s - seen.back() > kSightEvery_s)) seen.push_back(now_s);
+    }
+  }
+}
+
+void Referee::begin() {
+  counts_ = true;
+  began_s_ = around_.now_s();
+  hard_ = around_.witness().hard();
+  soft_before_ = around_.witness().soft();
+}
+
+void Referee::look() {
+  const double now_s = around_.now_s();
+  const world::Pose pose = around_.pose_at(now_s);
+  Was was{now_s, pose, 0.0, 0.0, 0.0};
+  if (!trail_.empty()) {
+    const Was& before = trail_.back();
+    const double dt_s = now_s - before.at_s;
+    if (dt_s <= 0.0) return;
+    const double along = std::cos(pose.yaw_rad) * (pose.x_m - before.pose.x_m) +
+                         std::sin(pose.yaw_rad) * (pose.y_m - before.pose.y_m);
+    was.v_mps = along / dt_s;
+    was.w_radps = base::angle_diff_rad(before.pose.yaw_rad, pose.yaw_rad) / dt_s;
+    was.way_m = before.way_m + (std::abs(was.v_mps) + std::abs(was.w_radps) * reach_m_) * dt_s;
+    if (counts_) driven_m_ += std::abs(along);
+  }
+  trail_.push_back(was);
+  const double moves_mps = std::abs(was.v_mps) + std::abs(was.w_radps) * reach_m_;
+  if (moves_mps > kMoves_mps) still_since_s_ = now_s;
+  if (moves_mps > kCurve_mps) {
+    curve_v_ = was.v_mps;
+    curve_w_ = was.w_radps;
+  }
+  const auto& witness = around_.witness();
+  soft_ = witness.soft();
+  if (witness.hard() == hard_) return;
+  const auto& seen = witness.seen();
+  std::size_t fresh = witness.hard() - hard_;
+  hard_ = witness.hard();
+  for (std::size_t i = seen.size(); i-- > 0 && fresh > 0;) {
+    if (seen[i].soft) continue;
+    --fresh;
+    if (counts_) judge(seen[i]);
+  }
+}
+
+double Referee::stands_s() const noexcept {
+  return around_.now_s() - still_since_s_;
+}
+
+std::size_t Referee::index_at(double at_s) const {
+  const auto after = std::ranges::lower_bound(trail_, at_s, {}, &Was::at_s);
+  const auto i = static_cast<std::size_t>(after - trail_.begin());
+  return std::min(i, trail_.size() - 1);
+}
+
+/// The time since which the thing has been where the body touched it.
+double Referee::there_since_s(int thing, const world::Pose& pose, double at_s) const {
+  const world::Body body = grown(around_.witness().body(), kThere_m);
+  world::Moment moment;
+  double since_s = at_s;
+  for (double t = at_s; t > 0.0; t -= 0.05) {
+    around_.scene().move_to(moment, t);
+    const auto there = world::contact(around_.scene(), moment, pose, body, 0.01);
+    if (std::ranges::find(there.touches, thing, &world::Touch::thing) == there.touches.end()) break;
+    since_s = t;
+  }
+  return since_s;
+}
+
+void Referee::judge(const world::Witness::Seen& seen) {
+  const Was& now = trail_[index_at(seen.at_s)];
+  TouchSeen out;
+  out.at_s = seen.at_s - began_s_;
+  out.thing = around_.scene().name_of(seen.thing);
+  out.speed_mps = now.v_mps;
+  out.yaw_rate_radps = now.w_radps;
+  out.at = {seen.at.x, seen.at.y};
+  const double outline_mps = std::abs(now.v_mps) + std::abs(now.w_radps) * reach_m_;
+  double from_s = 1e9;
+  if (seen.thing >= 0) {
+    const double there_s = seen.moving ? there_since_s(seen.thing, now.pose, seen.at_s) : -1e9;
+    for (const double t : sights_[static_cast<std::size_t>(seen.thing)]) {
+      if (t < there_s && seen.moving) continue;
+      from_s = t;
+      break;
+    }
+  }
+  if (outline_mps < kMoves_mps) {
+    out.blame = Blame::Standing;
+  } else if (from_s > seen.at_s) {
+    const bool ever = seen.thing >= 0 && !sights_[static_cast<std::size_t>(seen.thing)].empty();
+    out.blame = ever ? Blame::Late : Blame::Unseen;
+  } else {
+    const Was& then = trail_[index_at(from_s)];
+    const double u = std::abs(then.v_mps) + std::abs(then.w_radps) * reach_m_;
+    const double brake_s = std::max(0.5 * std::abs(then.v_mps) / brakes_.decel_mps2,
+                                    0.5 * std::abs(then.w_radps) / brakes_.turn_decel_radps2);
+    out.needed_m = u * (brakes_.delay_s + brake_s);
+    out.way_m = now.way_m - then.way_m;
+    out.seen_before_s = seen.at_s - from_s;
+    out.blame = out.way_m > out.needed_m ? Blame::Ours : Blame::Late;
+  }
+  touches_.push_back(std::move(out));
+}
+
+void Referee::heed(const std::optional<base::Obstacle>& obstacle) {
+  const auto action = obstacle ? obstacle->action : base::GuardAction::None;
+  const bool slow = action == base::GuardAction::Slow;
+  if (slow && !slowing_ && !stopping_ && counts_) ++slows_;
+  slowing_ = slow;
+  const bool stop = action == base::GuardAction::Stop;
+  if (stop && !stopping_) {
+    measured_ = false;
+    if (counts_) stops_.push_back(stop_of(*obstacle));
+  }
+  stopping_ = stop;
+  if (!stop || measured_ || stops_.empty() || stands_s() < kStandsFor_s) return;
+  measured_ = true;
+  StopSeen& last = stops_.back();
+  if (last.cause == "thing") last.stands_m = left_m();
+}
+
+StopSeen Referee::stop_of(const base::Obstacle& o) const {
+  const world::Pose pose = around_.pose_at(around_.now_s());
+  const double c = std::cos(pose.yaw_rad);
+  const double s = std::sin(pose.yaw_rad);
+  world::Pose there = pose;
+  there.x_m += c * o.ahead_m - s * o.left_m;
+  there.y_m += s * o.ahead_m + c * o.left_m;
+  there.z_m = around_.scene().terrain().height_m({there.x_m, there.y_m});
+  there.roll_rad = there.pitch_rad = 0.0;
+  StopSeen out;
+  out.at_s = around_.now_s() - began_s_;
+  out.what = std::string(o.what);
+  out.at = {there.x_m, there.y_m};
+  if (out.what == "obstacle" || out.what == "drop") out.cause = cause_of(o, there, out.needless);
+  return out;
+}
+
+std::string Referee::cause_of(const base::Obstacle& o, const world::Pose& there,
+                              bool& needless) const {
+  const world::Body about =
+      world::Body::rectangle(kBeside_m, kBeside_m, 2.0 * kBeside_m, pass_below_m_ + 0.1, 0.02);
+  world::Moment moment;
+  around_.scene().move_to(moment, around_.now_s());
+  needless = false;
+  if (touches_any(around_.scene(), moment, there, about)) return "thing";
+  needless = true;
+  const double met_s = around_.now_s() - o.age_s;
+  for (const double before_s : {0.0, 0.1, 0.2, 0.4, 0.8}) {
+    around_.scene().move_to(moment, std::max(0.0, met_s - before_s));
+    if (touches_any(around_.scene(), moment, there, about)) return "left";
+  }
+  // What the rays met there, last.
+  Met last;
+  for (int dy = -1; dy <= 1; ++dy) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      const Met* met = const_cast<Referee*>(this)->met_at(there.x_m + dx * kMapCell_m,
+                                                          there.y_m + dy * kMapCell_m);
+      if (met != nullptr && met->at_s > last.at_s) last = *met;
+    }
+  }
+  return std::string(word_of(last.cause));
+}
+
+/// Along the curve that it drove last, until it would touch what does not move.
+std::optional<double> Referee::left_m() const {
+  const double v = curve_v_;
+  const double w = curve_w_;
+  if (std::abs(v) < std::abs(w) * reach_m_) return std::nullopt;  // a turn on the spot
+  world::Moment moment;
+  around_.scene().move_to(moment, around_.now_s());
+  world::Pose pose = around_.pose_at(around_.now_s());
+  const double step_s = kMarchStep_m / std::abs(v);
+  const auto& things = around_.scene().world().things;
+  for (double way_m = 0.0; way_m <= kMarch_m; way_m += kMarchStep_m) {
+    const auto met = world::contact(around_.scene(), moment, pose, around_.witness().body(), 0.01);
+    for (const world::Touch& t : met.touches) {
+      if (t.thing < 0 || world::moves(things[static_cast<std::size_t>(t.thing)].kind)) continue;
+      return way_m;
+    }
+    pose.x_m += v * step_s * std::cos(pose.yaw_rad);
+    pose.y_m += v * step_s * std::sin(pose.yaw_rad);
+    pose.yaw_rad += w * step_s;
+  }
+  return std::nullopt;
+}
+
+std::optional<double> Referee::nearest_rad() const {
+  constexpr double kLooks_m = 9.0;
+  const world::Pose pose = around_.pose_at(around_.now_s());
+  world::Moment moment;
+  around_.scene().move_to(moment, around_.now_s());
+  double best_m = kLooks_m;
+  std::optional<double> out;
+  around_.scene().near({pose.x_m, pose.y_m}, kLooks_m, moment, [&](const world::Shape& shape) {
+    const double away_m = std::hypot(shape.x - pose.x_m, shape.y - pose.y_m);
+    if (away_m >= best_m) return;
+    best_m = away_m;
+    out = base::angle_diff_rad(pose.yaw_rad, std::atan2(shape.y - pose.y_m, shape.x - pose.x_m));
+  });
+  return out;
+}
+
+void Referee::report(WorldRun& run) {
+  run.driven_m = driven_m_;
+  run.driven_s = around_.now_s() - began_s_;
+  run.touches = std::move(touches_);
+  run.stops = std::move(stops_);
+  run.slows = slows_;
+  run.brushes = soft_ - soft_before_;
+  constexpr std::size_t kTrackEvery = 20;
+  for (std::size_t i = index_at(began_s_); i < trail_.size(); i += kTrackEvery) {
+    run.track.push_back({trail_[i].pose.x_m, trail_[i].pose.y_m});
+  }
+}
+
+}  // namespace roverd::study

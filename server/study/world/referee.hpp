@@ -1,0 +1,94 @@
+#pragma once
+// Who knows the truth: what was touched and whose it was, what the guard stopped for and whether
+// that stands there, and how far before it the robot stands.
+//
+// A contact is ours when the outline went farther than it takes to stop, since the first moment at
+// which the thing was both in sight and where it was touched:
+//
+//   u·delay + u·max(v / 2a, ω / 2α),   u = |v| + |ω|·reach
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/sensing.hpp"
+#include "nav/sense/params.hpp"
+#include "sim/surroundings.hpp"
+#include "sim/world/sensor.hpp"
+#include "study/world/worlds.hpp"
+
+namespace roverd::study {
+
+class Referee {
+ public:
+  /// @param pass_below_m what hangs higher is no obstacle.
+  Referee(const sim::Surroundings& around, const nav::sense::ProtectParams& brakes,
+          double pass_below_m);
+
+  /// A sensor's piece came. @param mount of the sensor
+  void saw(const std::vector<sim::world::Sweep>& sweeps, const sim::world::Pose& mount,
+           double now_s);
+  /// Every 10 ms.
+  void look();
+  /// Once a tick of the robot. @param obstacle of its snapshot
+  void heed(const std::optional<base::Obstacle>& obstacle);
+  /// From now on it counts.
+  void begin();
+  /// Into the run, at its end.
+  void report(WorldRun& run);
+
+  double driven_m() const noexcept { return driven_m_; }
+  /// It stands since; 0 while it moves.
+  double stands_s() const noexcept;
+  bool stopped() const noexcept { return stopping_; }
+  /// What somebody at the sticks sees: bearing of the nearest thing, left positive.
+  std::optional<double> nearest_rad() const;
+
+ private:
+  struct Was {
+    double at_s;
+    sim::world::Pose pose;
+    double v_mps;
+    double w_radps;
+    double way_m;  ///< of the outline so far
+  };
+  struct Met {
+    float at_s = -1e9F;
+    sim::world::Cause cause = sim::world::Cause::Nothing;
+  };
+
+  void judge(const sim::world::Witness::Seen& seen);
+  double there_since_s(int thing, const sim::world::Pose& pose, double at_s) const;
+  std::size_t index_at(double at_s) const;
+  StopSeen stop_of(const base::Obstacle& obstacle) const;
+  std::string cause_of(const base::Obstacle& obstacle, const sim::world::Pose& there,
+                       bool& needless) const;
+  std::optional<double> left_m() const;
+  Met* met_at(double x_m, double y_m);
+
+  const sim::Surroundings& around_;
+  const nav::sense::ProtectParams brakes_;
+  const double pass_below_m_;
+  double reach_m_ = 0.5;
+  std::vector<Was> trail_;
+  std::vector<std::vector<double>> sights_;  ///< of each thing, when it came in sight; static: once
+  std::vector<Met> met_;
+  std::size_t hard_ = 0;
+  std::size_t soft_ = 0;
+  std::size_t soft_before_ = 0;
+  double driven_m_ = 0.0;
+  double began_s_ = 0.0;
+  bool counts_ = false;
+  std::vector<TouchSeen> touches_;
+  std::vector<StopSeen> stops_;
+  std::size_t slows_ = 0;
+  bool stopping_ = false;
+  bool slowing_ = false;
+  bool measured_ = false;  ///< where it stands at this stop
+  double still_since_s_ = 0.0;
+  double curve_v_ = 1.0;  ///< driven last
+  double curve_w_ = 0.0;
+};
+
+}  // namespace roverd::study

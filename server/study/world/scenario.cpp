@@ -1,0 +1,191 @@
+// What is driven, where and in which weather: all of it from a number.
+
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+#include "sim/world/draw.hpp"
+#include "sim/world/random.hpp"
+#include "study/world/worlds.hpp"
+
+namespace roverd::study {
+namespace {
+
+using base::Result;
+using sim::world::Draw;
+
+constexpr int kMostWorlds = 100'000;
+constexpr std::uint64_t kScenario = 15;
+constexpr double kSpeeds_mps[] = {0.5, 1.0, 1.3};
+constexpr double kOpen_s = 120.0;
+
+std::vector<Course> usual_courses() {
+  const auto course = [](std::string name, std::vector<base::EnuPoint> points) {
+    Course c;
+    c.name = std::move(name);
+    c.points = std::move(points);
+    return c;
+  };
+  return {course("straight", {{0, 0}, {0, 20}}), course("L", {{0, 0}, {0, 10}, {10, 10}}),
+          course("slalom", {{0, 0}, {3, 4}, {-3, 8}, {3, 12}, {-3, 16}, {0, 20}})};
+}
+
+/// Turned about the start, so that it goes through another part of the world.
+void turn(Course& course, double by_rad) {
+  const double c = std::cos(by_rad);
+  const double s = std::sin(by_rad);
+  for (base::EnuPoint& p : course.points) {
+    p = {c * p.east_m - s * p.north_m, s * p.east_m + c * p.north_m};
+  }
+}
+
+/// Nearer together, so that a drive of a minute meets something; around the start nothing stands.
+void draw_in(sim::world::World& world, double share) {
+  constexpr double kFree_m = 2.2;
+  std::erase_if(world.things, [&](sim::world::Thing& t) {
+    for (auto& p : t.points) p = {share * p.x, share * p.y};
+    const double half_m = std::hypot(t.length_m, t.width_m) / 2.0 + t.radius_m + t.thickness_m;
+    for (std::size_t i = 0; i < t.points.size(); ++i) {
+      const auto& a = t.points[i];
+      const auto& b = t.points[i + 1 < t.points.size() ? i + 1 : i];
+      for (int k = 0; k <= 20; ++k) {
+        const double u = k / 20.0;
+        const double x = std::lerp(a.x, b.x, u);
+        const double y = std::lerp(a.y, b.y, u);
+        if (std::hypot(x, y) < kFree_m + half_m) return true;
+      }
+    }
+    return false;
+  });
+}
+
+void choose_fault(Scenario& out, Draw& draw) {
+  using Set = void (*)(sim::world::SensorFaults&, Draw&);
+  struct Fault {
+    const char* name;
+    Set set;
+  };
+  static constexpr Fault kFaults[] = {
+      {"rain", [](auto& f, Draw& d) { f.rain_per_m = d.uniform(0.002, 0.03); }},
+      {"dust", [](auto& f, Draw& d) { f.dust_per_m = d.uniform(0.005, 0.05); }},
+      {"dropouts", [](auto& f, Draw& d) { f.sensor_dropout = d.uniform(0.05, 0.4); }},
+      {"sun",
+       [](auto& f, Draw& d) {
+         f.sun_heading_deg = d.uniform(0.0, 360.0);
+         f.sun_elevation_deg = d.uniform(0.0, 12.0);
+         f.sun_width_deg = d.uniform(10.0, 40.0);
+       }},
+      {"dirt",
+       [](auto& f, Draw& d) {
+         f.dirt_from_deg = d.uniform(-120.0, 60.0);
+         f.dirt_to_deg = f.dirt_from_deg + d.uniform(5.0, 60.0);
+         f.dirt_share = d.uniform() < 0.3 ? 1.0 : d.uniform(0.1, 0.9);
+       }},
+      {"noise", [](auto& f, Draw& d) { f.sensor_noise_m = d.uniform(0.01, 0.05); }},
+      {"dead",
+       [](auto& f, Draw& d) {
+         f.sensor = d.uniform() < 0.5 ? "front" : "back";
+         f.sensor_silent = true;
+       }},
+  };
+  const Fault& one = kFaults[draw.below(static_cast<int>(std::size(kFaults)))];
+  out.fault = one.name;
+  one.set(out.faults, draw);
+  if (out.fault == "dead" && out.lidar && out.faults.sensor == "back") out.faults.sensor = "top";
+  out.fault_after_s = draw.uniform(0.0, 12.0);
+}
+
+bool read_number(std::string_view& text, std::uint64_t& out) {
+  const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), out);
+  if (ec != std::errc{}) return false;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return true;
+}
+
+}  // namespace
+
+Result<WorldOrder> parse_worlds(std::string_view text) {
+  WorldOrder out;
+  for (const auto& [word, kind] : {std::pair{std::string_view("random:"), WorldOrder::Kind::Random},
+                                   std::pair{std::string_view("open:"), WorldOrder::Kind::Open}}) {
+    if (!text.starts_with(word)) continue;
+    out.kind = kind;
+    std::string_view rest = text.substr(word.size());
+    const std::string form = std::string(word) + "N or " + std::string(word) + "N:SEED";
+    std::uint64_t count = 0;
+    const bool counts = read_number(rest, count);
+    const bool seeds = !rest.empty() && rest.front() == ':';
+    if (seeds) rest.remove_prefix(1);
+    if (!counts || (seeds && !read_number(rest, out.seed)) || !rest.empty()) {
+      return base::fail(base::Code::Invalid, "--world " + std::string(text) + " must be " + form);
+    }
+    if (count < 1 || count > kMostWorlds) {
+      return base::fail(base::Code::Invalid, "N of --world " + form + " must lie in 1 .. 100000");
+    }
+    out.count = static_cast<int>(count);
+    return out;
+  }
+  if (text.empty()) return base::fail(base::Code::Invalid, "--world needs a file or random:N");
+  out.file = text;
+  return out;
+}
+
+Result<Scenario> scenario_of(const WorldOrder& order, std::uint64_t number,
+                             const std::vector<Course>& courses, const sim::world::World& world) {
+  using sim::world::RandomKind;
+  Draw draw(number, kScenario + static_cast<std::uint64_t>(order.kind));
+  Scenario out;
+  out.number = number;
+  out.fault = "none";
+  const std::vector<Course> all = courses.empty() ? usual_courses() : courses;
+  out.course = all[static_cast<std::size_t>(draw.below(static_cast<int>(all.size())))];
+  if (out.course.points.size() < 2) {
+    return base::fail(base::Code::Invalid,
+                      "the course " + out.course.name + " has no points to drive in a world");
+  }
+  out.speed_mps = kSpeeds_mps[draw.below(3)];
+  out.lidar = draw.uniform() < 0.25;
+  const double how = draw.uniform();
+  out.sticks = how < 0.35;
+  out.course.reverse = how > 0.75;
+  switch (order.kind) {
+    case WorldOrder::Kind::File:
+      out.world = world;
+      out.kind = world.name.empty() ? "file" : world.name;
+      break;
+    case WorldOrder::Kind::Random:
+      out.kind = draw.uniform() < 0.6 ? "static" : "moving";
+      out.world =
+          random_world(number, out.kind == "static" ? RandomKind::Static : RandomKind::Moving);
+      if (draw.uniform() < 0.7) draw_in(out.world, draw.uniform(0.35, 0.6));
+      if (draw.uniform() < 0.4) choose_fault(out, draw);
+      break;
+    case WorldOrder::Kind::Open:
+      out.kind = "open";
+      out.world = random_world(number, RandomKind::Grass);
+      out.fault = "rain";
+      out.faults.rain_per_m = draw.uniform(0.002, 0.02);
+      out.fault_after_s = 0.0;
+      out.time_s = kOpen_s;
+      out.sticks = out.course.reverse = false;
+      out.lidar = true;  // a plane meets every hill
+      out.speed_mps = std::max(1.0, out.speed_mps);
+      break;
+  }
+  if (order.kind != WorldOrder::Kind::File)
+    turn(out.course, 2.0 * std::numbers::pi * draw.uniform());
+  if (order.kind == WorldOrder::Kind::Open) {
+    // Longer: to and fro.
+    const auto once = out.course.points;
+    for (int i = 0; i < 5; ++i) {
+      const bool back = i % 2 == 0;
+      for (std::size_t k = 1; k < once.size(); ++k) {
+        out.course.points.push_back(once[back ? once.size() - 1 - k : k]);
+      }
+    }
+  }
+  out.course.speed_mps = out.speed_mps;
+  return out;
+}
+
+}  // namespace roverd::study
