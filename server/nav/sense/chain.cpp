@@ -60,7 +60,8 @@ base::Result<std::size_t> Chain::take(const base::Sight& sight, const PoseHistor
   }
   eye.health.took(sight, reduced_.counts, now);
   if (!eye.setup.planar) ground_.judge(reduced_.voxels);
-  eye.persist.judge(reduced_.voxels, reduced_.pose);
+  eye.persist.judge(reduced_.voxels, reduced_.pose,
+                    {reduced_.origin_m[0], reduced_.origin_m[1], 2.0F * sight.half_step_rad});
   // Behind a blocked window what was not met is not clear.
   if (sight.window == base::Window::Blocked) {
     std::erase_if(reduced_.voxels, [](const Voxel& v) { return v.kind != Kind::Obstacle; });

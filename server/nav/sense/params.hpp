@@ -58,6 +58,7 @@ struct PersistParams {
   int hits = 3;
   int of_scans = 5;
   int at_once = 3;
+  double least_m = 0.02;
 };
 
 template <class V>
@@ -67,6 +68,9 @@ void fields(V& v, PersistParams& p) {
   v("of_scans", p.of_scans, 1, 8, base::higher_is_stricter("of the last so many saw it"));
   v("at_once", p.at_once, 1, 100,
     base::lower_is_stricter("or when one scan sees that many voxels of it: no delay"));
+  v("least_m", p.least_m, 0.0, 0.1,
+    base::lower_is_stricter("what returns fewer echoes than a thing of this width is a drop: near a "
+                            "sensor many beams would meet it"));
 }
 
 /// The rolling grid.

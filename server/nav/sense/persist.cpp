@@ -18,8 +18,7 @@ std::size_t Persist::at(std::int32_t ix, std::int32_t iy) const noexcept {
          static_cast<std::size_t>(ix & mask_);
 }
 
-std::uint32_t Persist::judge(std::vector<Voxel>& voxels, const Pose2& pose) {
-  ++scan_;
+void Persist::fill(const std::vector<Voxel>& voxels, const Pose2& pose) {
   where_.clear();
   const double c = std::cos(pose.yaw_rad) / p_.cell_m;
   const double s = std::sin(pose.yaw_rad) / p_.cell_m;
@@ -37,30 +36,57 @@ std::uint32_t Persist::judge(std::vector<Voxel>& voxels, const Pose2& pose) {
     if (cell.scan != scan_) {
       const std::uint32_t ago = scan_ - cell.scan;
       cell.seen = ago > 15 ? std::uint16_t{0} : static_cast<std::uint16_t>(cell.seen << ago);
-      cell.seen |= 1U;
       cell.scan = scan_;
       cell.voxels = 0;
+      cell.points = 0;
     }
     if (cell.voxels < 0xFFFFU) ++cell.voxels;
+    cell.points += v.points;
+  }
+}
+
+Persist::Around Persist::around(std::int32_t ix, std::int32_t iy) const noexcept {
+  Around out;
+  for (std::int32_t dy = -1; dy <= 1; ++dy) {
+    for (std::int32_t dx = -1; dx <= 1; ++dx) {
+      const Cell& cell = cells_[at(ix + dx, iy + dy)];
+      const std::uint32_t ago = scan_ - cell.scan;
+      if (ago > 15) continue;
+      out.seen |= static_cast<std::uint32_t>(cell.seen) << ago;
+      if (ago != 0) continue;
+      out.voxels += cell.voxels;
+      out.points += cell.points;
+    }
+  }
+  return out;
+}
+
+std::uint32_t Persist::judge(std::vector<Voxel>& voxels, const Pose2& pose, const From& from) {
+  ++scan_;
+  fill(voxels, pose);
+  const float wide = from.step_rad > 0.0F ? static_cast<float>(p_.least_m) / from.step_rad : 0.0F;
+  least_.clear();
+  std::size_t i = 0;
+  for (const Voxel& v : voxels) {
+    if (v.kind != Kind::Obstacle) continue;
+    const float away = std::max(0.05F, std::hypot(v.x_m - from.x_m, v.y_m - from.y_m));
+    least_.push_back(wide / away);
+    const Around here = around(where_[i], where_[i + 1]);
+    if (static_cast<float>(here.points) >= least_.back()) {
+      cells_[at(where_[i], where_[i + 1])].seen |= 1U;
+    }
+    i += 2;
   }
   const std::uint32_t recent = (1U << static_cast<std::uint32_t>(p_.of_scans)) - 1U;
   std::uint32_t held = 0;
-  std::size_t i = 0;
+  i = 0;
   for (Voxel& v : voxels) {
     if (v.kind != Kind::Obstacle) continue;
-    std::uint32_t seen = 0;
-    int now = 0;
-    for (std::int32_t dy = -1; dy <= 1; ++dy) {
-      for (std::int32_t dx = -1; dx <= 1; ++dx) {
-        const Cell& cell = cells_[at(where_[i] + dx, where_[i + 1] + dy)];
-        const std::uint32_t ago = scan_ - cell.scan;
-        if (ago > 15) continue;
-        seen |= static_cast<std::uint32_t>(cell.seen) << ago;
-        if (ago == 0) now += cell.voxels;
-      }
-    }
-    i += 2;
-    if (now >= p_.at_once || std::popcount(seen & recent) >= p_.hits) continue;
+    const Around here = around(where_[2 * i], where_[2 * i + 1]);
+    const float at_once = static_cast<float>(p_.at_once) * least_[i];
+    ++i;
+    if (here.voxels >= p_.at_once && static_cast<float>(here.points) >= at_once) continue;
+    if (std::popcount(here.seen & recent) >= p_.hits) continue;
     v.kind = Kind::Passing;
     ++held;
   }

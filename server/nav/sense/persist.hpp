@@ -5,6 +5,10 @@
 // about it, `hits` of the last `of_scans` scans saw something, or this scan alone sees `at_once`
 // voxels. So a real thing that gives few echoes is late by (hits − 1) scans: at 50 Hz 40 ms, at
 // 10 Hz 0.2 s; one that fills at_once voxels is not late at all.
+//
+// Near the sensor three by three cells lie before many beams, and among many beams there is always
+// one that meets a drop: there a scan saw something only where it got the echoes that a thing
+// least_m wide would have returned, least_m / (distance · step); at once, at_once times as many.
 
 #include <cstdint>
 #include <vector>
@@ -20,16 +24,35 @@ class Persist {
   /// that, so that it needs no moving.
   Persist(const PersistParams& params, double range_m);
 
+  /// From where it was looked: the sensor in B, and the angle between neighbouring beams (0: not
+  /// known, one echo is enough at any distance).
+  struct From {
+    float x_m = 0.0F;
+    float y_m = 0.0F;
+    float step_rad = 0.0F;
+  };
+
   /// Sets voxels that are Obstacle and not (yet) believed to Passing. Once a scan, in order.
   /// @param pose X_OB of the voxels. @return how many were held back.
-  std::uint32_t judge(std::vector<Voxel>& voxels, const Pose2& pose);
+  std::uint32_t judge(std::vector<Voxel>& voxels, const Pose2& pose, const From& from);
+  std::uint32_t judge(std::vector<Voxel>& voxels, const Pose2& pose) {
+    return judge(voxels, pose, From{});
+  }
 
  private:
   struct Cell {
     std::uint32_t scan = 0;    ///< the last that saw it
     std::uint16_t seen = 0;    ///< bit n: n scans before that one
     std::uint16_t voxels = 0;  ///< of that scan
+    std::uint32_t points = 0;  ///< likewise
   };
+  struct Around {
+    int voxels = 0;
+    std::uint32_t points = 0;
+    std::uint32_t seen = 0;
+  };
+  void fill(const std::vector<Voxel>& voxels, const Pose2& pose);
+  Around around(std::int32_t ix, std::int32_t iy) const noexcept;
   std::size_t at(std::int32_t ix, std::int32_t iy) const noexcept;
 
   PersistParams p_;
@@ -37,6 +60,7 @@ class Persist {
   std::uint32_t scan_ = 0;
   std::vector<Cell> cells_;
   std::vector<std::int32_t> where_;  ///< cell indices of the obstacles of this scan, x and y
+  std::vector<float> least_;         ///< echoes that each of them needs
 };
 
 }  // namespace roverd::nav::sense
