@@ -57,7 +57,8 @@ class TcpLink final : public ByteLink {
 };
 
 /// Server: write() goes to every client, on_bytes hears every client. A client that is slow loses
-/// whole writes (never parts of one) once kMaxWaiting bytes wait for it, counted in dropped().
+/// whole writes (never parts of one) once kMaxWaiting bytes wait for it, counted in dropped(); one
+/// that is larger alone, an image, goes when nothing waits.
 /// on_closed is never called: a server stays when clients come and go.
 class TcpServer final : public ByteLink {
  public:

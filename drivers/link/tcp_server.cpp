@@ -121,7 +121,7 @@ SendResult TcpServer::write(Bytes bytes) noexcept {
 }
 
 void TcpServer::offer(const std::shared_ptr<Client>& client, const Message& message) {
-  if (client->waiting_bytes + message->size() > kMaxWaiting) {
+  if (!client->waiting.empty() && client->waiting_bytes + message->size() > kMaxWaiting) {
     dropped_.fetch_add(1, std::memory_order_relaxed);
     return;
   }

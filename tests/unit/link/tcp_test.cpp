@@ -131,6 +131,20 @@ TEST_F(Tcp, AClientThatDoesNotReadLosesWholeWritesWithinABound) {
   EXPECT_EQ(server.clients(), 2u);
 }
 
+TEST_F(Tcp, AnImageLargerThanWhatMayWaitArrivesWhole) {
+  const auto good = connect();
+  // As of a depth camera: 640 x 480 pixels of two bytes, with their header.
+  std::string image(640 * 480 * 2 + 80, '\0');
+  for (std::size_t i = 0; i < image.size(); ++i) image[i] = static_cast<char>(i * 7 % 251);
+  ASSERT_GT(image.size(), TcpServer::kMaxWaiting);
+  for (std::size_t i = 1; i <= 3; ++i) {
+    server.write(bytes_of(image));
+    ASSERT_TRUE(run_until(io, [&] { return good->heard.size() == i * image.size(); }));
+  }
+  EXPECT_EQ(good->heard, image + image + image);
+  EXPECT_EQ(server.dropped(), 0u);
+}
+
 TEST_F(Tcp, AClientMayCloseInTheCallback) {
   const auto client = connect();
   client->link->on_bytes = [&](Bytes, Time) { client->link->close(); };
