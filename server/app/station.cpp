@@ -51,6 +51,7 @@ void Station::Impl::start_services() {
 void Station::Impl::halt() noexcept {
   loop.reset();
   if (supervisor) supervisor->stop();
+  if (around) around->stop();
   if (sense) sense->stop();  // a driver that hangs may hold it for longer than the robot lives
 }
 

@@ -16,6 +16,7 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "api/api.hpp"
+#include "app/around_loop.hpp"
 #include "app/backup_keeper.hpp"
 #include "app/child_process.hpp"
 #include "app/control_loop.hpp"
@@ -63,6 +64,7 @@ struct Station::Impl {
   robot::Robot robot;
   net::Files page{net::page_entries()};
   store::TileFolder tiles;
+  std::unique_ptr<AroundLoop> around;  ///< null: nobody goes around anything
   std::shared_ptr<SenseLoop> sense;  ///< null: no sensors
   std::unique_ptr<Supervisor> supervisor;
   std::unique_ptr<store::Store> store;

@@ -65,6 +65,7 @@ Result<void> Station::Impl::open_senses(const Settings& settings, const Options&
   });
   robot.guard_by(settings.sense.protect, demands, settings.sense.blocked);
   sense = std::make_shared<SenseLoop>(robot, std::move(*lookout));
+  if (settings.sense.blocked.then == "around") around = std::make_unique<AroundLoop>(robot);
   return {};
 }
 

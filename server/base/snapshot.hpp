@@ -368,6 +368,9 @@ struct Snapshot {
   std::string autonomy_refusal;  ///< why nothing may drive by itself now; empty: it may
   std::optional<FenceState> fence;
   DriveCommand command;              ///< what was sent at this tick
+  /// The way around what stands before the mission, while it is driven: the robot's own place on it
+  /// first. Null: none.
+  std::shared_ptr<const std::vector<LatLon>> detour;
   std::optional<Obstacle> obstacle;  ///< that limits the speed, or stops
   std::shared_ptr<const std::vector<SensorState>>
       sensors;                 ///< of the profile; empty: it has none, or nothing came yet

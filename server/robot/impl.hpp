@@ -22,6 +22,7 @@
 #include "robot/calibration.hpp"
 #include "robot/compile.hpp"
 #include "robot/delivered.hpp"
+#include "robot/guard/detour.hpp"
 #include "robot/guard/guard.hpp"
 #include "robot/handling.hpp"
 #include "robot/loop_clock.hpp"
@@ -79,6 +80,8 @@ struct Robot::Impl {
   base::Inbox<std::shared_ptr<const Surroundings>> surroundings{4};
   base::Inbox<std::shared_ptr<const Surroundings>> surroundings_done{16};
   base::Inbox<nav::sense::Odometry> odometry{256};
+  base::Inbox<std::shared_ptr<const AroundQuestion>> around_questions{2};
+  base::Inbox<std::shared_ptr<const AroundAnswer>> around_answers{4};
   static constexpr std::size_t kCommands = 64;
   base::Inbox<PendingCommand> commands{kCommands};
   base::Latest<base::Snapshot> snapshot;
@@ -112,6 +115,12 @@ struct Robot::Impl {
   std::uint64_t driven_told = 0;
   FenceKeep fence;
   Guard guard;
+  Detour detour{config.path, config.behave};
+  std::shared_ptr<const std::vector<base::LatLon>> detour_told;
+  base::Time detour_told_at{};
+  double around_left_m = 0.0;    ///< arc length of the mission's way where it left it
+  bool around_hopeless = false;  ///< there is no way around, and that was told
+  std::vector<std::shared_ptr<const AroundAnswer>> around_batch;
   Mode guarded_mode = Mode::Hold;
   bool overridden = false;    ///< a hand holds the guard off, and was told so
   std::string overrider;      ///< who does
@@ -256,6 +265,14 @@ struct Robot::Impl {
   void look_around();
   base::DriveCommand keep_off(base::DriveCommand command);
   base::BodyTwist guarded(const base::BodyTwist& wanted);
+  nav::sense::Pose2 local_in_odometry() const noexcept;
+  bool ask_around();
+  void take_around();
+  void no_way_around(const AroundAnswer& answer);
+  std::optional<base::BodyTwist> drive_around();
+  std::shared_ptr<const std::vector<base::LatLon>> detour_way();
+  void end_detour();
+  void go_on_behind(double at_m);
   void keep_guard();
   bool waits_for_way();
   void be_blocked(Then then);

@@ -66,6 +66,7 @@ bool Robot::Impl::publish() {
     s->fence = fence.state(pose, estimator.frame(), missions.get().get(), way_margin_m());
   }
   s->command = sent;
+  s->detour = detour_way();
   if (guard.obstacle().action != base::GuardAction::None) s->obstacle = guard.obstacle();
   if (const auto& around = guard.around()) {
     s->sensors = around->sensors;

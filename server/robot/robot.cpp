@@ -50,6 +50,12 @@ base::Inbox<std::shared_ptr<const Surroundings>>& Robot::surroundings_done() noe
 base::Inbox<nav::sense::Odometry>& Robot::odometry() noexcept {
   return impl_->odometry;
 }
+base::Inbox<std::shared_ptr<const AroundQuestion>>& Robot::around_questions() noexcept {
+  return impl_->around_questions;
+}
+base::Inbox<std::shared_ptr<const AroundAnswer>>& Robot::around_answers() noexcept {
+  return impl_->around_answers;
+}
 base::Inbox<PendingReply>& Robot::replies() noexcept {
   return impl_->outbox.replies;
 }

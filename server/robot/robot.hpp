@@ -40,7 +40,9 @@ namespace roverd::robot {
 
 using base::Time;
 
-struct Surroundings;  // see robot/guard/surroundings.hpp
+struct AroundAnswer;    // see robot/guard/around.hpp
+struct AroundQuestion;  // likewise
+struct Surroundings;    // see robot/guard/surroundings.hpp
 
 /// One revision of a mission as the api hands it over. Immutable.
 struct MissionCopy {
@@ -357,6 +359,10 @@ class Robot {
   base::Inbox<std::shared_ptr<const Surroundings>>& surroundings() noexcept;
   /// The same thread: those that are not needed any more, to be let go.
   base::Inbox<std::shared_ptr<const Surroundings>>& surroundings_done() noexcept;
+  /// Any thread: ways around what stands before a mission are asked for here, the newest counts,
+  base::Inbox<std::shared_ptr<const AroundQuestion>>& around_questions() noexcept;
+  /// and answered here (guard/around.hpp). While nobody answers the robot waits.
+  base::Inbox<std::shared_ptr<const AroundAnswer>>& around_answers() noexcept;
   /// Any thread: how the body moved, 50 times a second, for whoever makes the surroundings.
   base::Inbox<nav::sense::Odometry>& odometry() noexcept;
 

@@ -57,7 +57,10 @@ def free_port():
 
 
 class Field:
-    def __init__(self):
+    def __init__(self, things=None, more=""):
+        """@param things of the world; without them the wall. @param more of the configuration"""
+        self.world = dict(WORLD, things=things) if things is not None else WORLD
+        self.more = more
         self.scratch = pathlib.Path(tempfile.mkdtemp(prefix="roverd-see."))
         self.sim = self.roverd = self.control = None
         try:
@@ -68,7 +71,7 @@ class Field:
 
     def begin(self):
         port = free_port()
-        (self.scratch / "world.json").write_text(json.dumps(WORLD))
+        (self.scratch / "world.json").write_text(json.dumps(self.world))
         (self.scratch / "sim.toml").write_text((ROOT / "config/sim/bunker.toml").read_text()
                                                + EYES.format(port=port))
         self.sim = Program(BIN / "roverd-sim", "--cansock", self.scratch / "can", "--gnss", "tcp:0",
@@ -79,7 +82,7 @@ class Field:
         shutil.copytree(ROOT / "config/vehicles", self.scratch / "vehicles")
         config = self.scratch / "robot.toml"
         config.write_text((ROOT / "config/robot.toml").read_text()
-                          + SENSORS.format(port=port, front=at["front"]))
+                          + SENSORS.format(port=port, front=at["front"]) + self.more)
         self.control = Control(at["control"])
         self.roverd = Program(BIN / "roverd", "--config", config, "--data", self.scratch / "data",
                               "--port", "0", "--set", f"drivers.bunker.link={at['can']}",
@@ -157,5 +160,60 @@ def a_silent_sensor_stops_it():
         check(field.rest.get("/vehicle")["mode"] == "HOLD", "the mode is HOLD")
 
 
+def kinds(field):
+    return [e["kind"] for e in field.rest.get("/events?limit=1000")["items"]]
+
+
+AROUND = """
+[sense.blocked]
+after_s = 2
+then = "around"
+"""
+
+
+def goes_around():
+    """what stays is driven around, within the corridor, and the mission ends where it should"""
+    box = {"kind": "box", "at": [0.1, 6.0], "length_m": 0.9, "width_m": 0.6, "height_m": 1.0}
+    with Field([box], AROUND) as field:
+        until("both sensors see", 20, lambda: all(
+            s["health"] == "good" for s in field.rest.get("/sensors")["items"])
+            and len(field.rest.get("/sensors")["items"]) == 2, 0.2)
+        begin = field.truth()
+        field.drive_north(13)
+        detour = until("a way around is shown", 60, lambda: field.rest.get("/vehicle")["detour"], 0.1)
+        check(len(detour) > 5, f"the way around has {len(detour)} places")
+        widest = 0.0
+        def finished():
+            nonlocal widest
+            east_m = (field.truth()["lon"] - begin["lon"]) / METRE_LAT * math.cos(math.radians(begin["lat"]))
+            widest = max(widest, abs(east_m))
+            return field.rest.get("/execution")["state"] == "finished"
+        until("the mission is finished", 90, finished, 0.2)
+        truth = field.truth()
+        check(truth["contacts"] == 0, f"it touched something: {truth}")
+        check(0.7 < widest < 3.0, f"it was {widest:.2f} m beside its way at most")
+        north_m = (truth["lat"] - begin["lat"]) / METRE_LAT
+        check(abs(north_m - 13) < 0.2, f"it ended {north_m:.2f} m north")
+        happened = kinds(field)
+        for kind in ("obstacle", "blocked", "going_around", "around_done", "mission_finished"):
+            check(kind in happened, f"{kind} is no event of {happened}")
+        check(field.rest.get("/vehicle")["detour"] is None, "no way around is shown any more")
+
+
+def says_that_there_is_no_way_around():
+    """a wall across the whole corridor is not gone around, and that is said"""
+    with Field(None, AROUND) as field:
+        until("both sensors see", 20, lambda: all(
+            s["health"] == "good" for s in field.rest.get("/sensors")["items"])
+            and len(field.rest.get("/sensors")["items"]) == 2, 0.2)
+        field.drive_north(14)
+        until("it is said that there is no way", 60, lambda: "no_way_around" in kinds(field), 0.3)
+        time.sleep(3.0)
+        check(kinds(field).count("no_way_around") == 1, "it is said once")
+        truth = field.truth()
+        check(truth["contacts"] == 0 and abs(truth["speed_mps"]) < 0.01, f"it stands: {truth}")
+
+
 if __name__ == "__main__":
-    sys.exit(run_cases([sees_and_stops, a_silent_sensor_stops_it]))
+    sys.exit(run_cases([sees_and_stops, a_silent_sensor_stops_it, goes_around,
+                        says_that_there_is_no_way_around]))

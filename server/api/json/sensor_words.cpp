@@ -9,6 +9,19 @@
 
 namespace roverd::api {
 
+Json detour_json(const base::Snapshot& s) {
+  if (!s.detour) return nullptr;
+  constexpr std::size_t kMost = 200;
+  Json out = Json::array();
+  const std::size_t every = s.detour->size() / kMost + 1;
+  for (std::size_t i = 0; i < s.detour->size(); ++i) {
+    if (i % every != 0 && i + 1 != s.detour->size()) continue;
+    const base::LatLon& at = (*s.detour)[i];
+    out.push_back({rounded(at.lat, kPlaces9), rounded(at.lon, kPlaces9)});
+  }
+  return out;
+}
+
 Json obstacle_json(const std::optional<base::Obstacle>& o, base::Time now) {
   if (!o) return nullptr;
   return {

@@ -259,6 +259,7 @@ Json vehicle_json(const base::Snapshot& s, const std::string& name, base::Time n
           {"mission", progress_json(s.mission, "id")},
           {"activity", activity_json(s.activity)},
           {"fence", fence_json(s.fence)},
+          {"detour", detour_json(s)},
           {"obstacle", obstacle_json(s.obstacle, now)},
           {"safety", std::move(safety)},
           {"home", point_json(s.home)},

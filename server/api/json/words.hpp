@@ -60,6 +60,8 @@ Json calibration_preview_json(const robot::CalibrationPreview& preview);
 /// @param snapshot the last one that the trail has taken
 Json trail_json(const services::Trail& trail, const base::Snapshot& snapshot);
 /// Null: nothing limits or stops.
+/// [[lat, lon], …], 200 at most; null: none.
+Json detour_json(const base::Snapshot& s);
 Json obstacle_json(const std::optional<base::Obstacle>& obstacle, base::Time now);
 /// All of the profile, as they were seen last.
 Json sensors_json(const base::Snapshot& snapshot, base::Time now);

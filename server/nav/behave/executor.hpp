@@ -65,6 +65,15 @@ struct Progress {
   std::optional<double> eta_s;  ///< until then, as the speeds are planned
 };
 
+/// The way in hand ahead of its place, for whoever looks for a way around what stands on it.
+struct WayAhead {
+  std::vector<EnuPoint> way;  ///< at most kStep_m apart; two at least
+  double from_m = 0.0;        ///< arc length of the first point
+  bool at_end = false;        ///< the last one must be come to, for `item` or a stop
+  int item = 0;               ///< 0: none
+  static constexpr double kStep_m = 0.2;
+};
+
 /// The step a start would begin with; steps.size() if there is none.
 std::size_t first_step(const Route& route, const StartAt& start,
                        std::optional<EnuPoint> here) noexcept;
@@ -122,6 +131,16 @@ class Executor {
   /// After interrupt(). Pauses when the place is too far away.
   void go_on(EnuPoint here);
 
+  /// As far as reach_m, or to the next place that must be come to. Places of a smooth way need not,
+  /// nor do items that may be left out (BehaveParams::unreachable). Empty: it does not run, stands,
+  /// turns or drives backwards.
+  std::optional<WayAhead> ahead(EnuPoint here, double reach_m) const;
+  /// The robot drove around what stood on the way and goes on with it at to_m; what lies between
+  /// the two arc lengths was left out, and is told so.
+  void bypass(double from_m, double to_m, EnuPoint here);
+  /// The item in hand lies in what stands there: as any that cannot be reached.
+  void give_up_item(std::string why) { block(std::move(why)); }
+
   /// One control step while Running. @param home for return_home where the mission has none.
   TrackOutput step(const Vehicle& vehicle, double limit_mps, std::optional<EnuPoint> home,
                    double dt_s);
@@ -176,6 +195,7 @@ class Executor {
   bool missed(const Vehicle& vehicle);
   bool back_up(const Vehicle& vehicle, double off_m);
   void block(std::string why);
+  bool must_come_to(const RouteStep& step) const noexcept;
   void reached(const RouteStep& step);
   void pass(const RouteStep& step);
   void finish();

@@ -18,7 +18,7 @@ constexpr double kBias_m = 0.003;  // between curve and points, this is not wort
 constexpr double kSurprise = 3.5;  // sigmas of a mean
 constexpr double kChord = 1e-3;    // weight of what lies between two points
 constexpr double kHeld = 1e4;
-constexpr double kPull = 4.0;
+constexpr double kPullPoint = 4.0;
 constexpr double kPullChord = 30.0;
 constexpr int kPulls = 10;
 constexpr int kPullsHard = 3;  // the last ones: with a more supple curve
@@ -249,7 +249,7 @@ void PieceFit::keep_tolerance() {
     bool pulled = false;
     for (SplineDatum& d : data_) {
       if (d.weight >= kHeld || size(curve_.at(d.u) - d.at) <= most_m) continue;
-      d.weight = std::min(kHeld, d.weight * (d.weight < 1.0 ? kPullChord : kPull));
+      d.weight = std::min(kHeld, d.weight * (d.weight < 1.0 ? kPullChord : kPullPoint));
       if (round >= kPulls - kPullsHard) soften_about(d.u, 0.5, softer);
       pulled = true;
     }

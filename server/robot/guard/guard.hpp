@@ -75,6 +75,15 @@ class Guard {
   /// Somebody else begins: what was wanted before says nothing.
   void forget() noexcept;
 
+  base::Duration stopped_for(base::Time now) const noexcept {
+    return stopped_since_ ? now - *stopped_since_ : base::Duration{};
+  }
+  const nav::sense::Odometry& odometry() const noexcept { return odometry_; }
+  const nav::sense::Footprint& body() const noexcept { return body_; }
+  double side_m() const noexcept { return params_.side_m; }
+  /// What nobody has seen is driven into by what drives by itself, slowly.
+  bool creeps() const noexcept { return params_.creep_mps > 0.0; }
+
   const base::Obstacle& obstacle() const noexcept { return obstacle_; }
   /// It stopped just now, or let go; empty: neither. Told once.
   std::optional<bool> news() noexcept { return std::exchange(news_, std::nullopt); }

@@ -112,7 +112,7 @@ void Robot::Impl::be_blocked(Then then) {
     case Then::Wait:
       return told("it waits until the way is clear");
     case Then::Around:
-      return told("no way around it is known: it waits until the way is clear");
+      return told("a way around it is looked for");
     case Then::Return:
       if (homeward) return told("it is on its way home already: it waits until the way is clear");
       told("it returns home");

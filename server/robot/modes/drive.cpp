@@ -97,6 +97,10 @@ base::DriveCommand Robot::Impl::drive_by_itself() {
 base::DriveCommand Robot::Impl::drive_mission() {
   if (!missions.executor.running() || !pose) return {{}, true};
   driver = Driver::Autonomy;
+  if (const auto twist = drive_around()) {
+    tell_notices();
+    return {*twist, true};
+  }
   if (waits_for_way()) {
     missions.executor.interrupt();
     return {{}, true};

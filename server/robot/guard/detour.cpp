@@ -1,0 +1,144 @@
+#include "robot/guard/detour.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/angle.hpp"
+
+namespace roverd::robot {
+namespace {
+
+using nav::around::Place;
+
+constexpr base::Duration kLost = std::chrono::seconds(5);  // a question nobody answers
+constexpr base::Duration kLeft = std::chrono::milliseconds(500);
+constexpr double kSameBend_1pm = 0.02;
+constexpr double kHand_m = 0.12;
+constexpr double kLook_m = 0.2;
+
+bool same_piece(const Place& a, const Place& b) noexcept {
+  return a.reverse == b.reverse && !a.pivot && !b.pivot &&
+         std::abs(a.curvature_1pm - b.curvature_1pm) < kSameBend_1pm;
+}
+
+base::EnuPoint place_in(const nav::sense::Pose2& odometry_in_local, const Place& p) noexcept {
+  const auto at = odometry_in_local * p.pose;
+  return {at.x_m, at.y_m};
+}
+
+}  // namespace
+
+std::vector<nav::Vertex> way_of(const AroundAnswer& answer, double speed_mps) {
+  const std::vector<Place>& path = answer.found.path;
+  const auto back = nav::sense::inverse(answer.asked->local);
+  std::vector<nav::Vertex> out;
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const Place& p = path[i];
+    if (p.pivot) continue;
+    const bool last = i + 1 == path.size();
+    // Bends of one kind are one arc: its end is what counts.
+    if (!last && same_piece(p, path[i + 1])) continue;
+    const bool turns = !last && (path[i + 1].pivot || path[i + 1].reverse != p.reverse);
+    nav::Vertex v;
+    v.at = place_in(back, p);
+    v.speed_mps = speed_mps;
+    v.reverse = p.reverse;
+    v.stop = last || turns;
+    v.deviation_m = 0.02;
+    v.tangent = !v.stop;
+    v.curvature_1pm = out.empty() ? 0.0 : p.curvature_1pm;
+    out.push_back(v);
+  }
+  return out;
+}
+
+bool Detour::may_ask(base::Time now) const noexcept {
+  if (open_) return now - asked_at_ > kLost;
+  return asked_ == 0 || now - asked_at_ >= kAskEvery;
+}
+
+std::uint64_t Detour::asks(base::Time now) noexcept {
+  open_ = true;
+  asked_at_ = now;
+  return ++asked_;
+}
+
+std::vector<Place> Detour::rest(const nav::sense::Pose2& local) const {
+  std::vector<Place> out;
+  if (!answer_) return out;
+  const nav::Path& path = trip_.path();
+  const auto move = local * nav::sense::inverse(answer_->asked->local);
+  const base::EnuPoint here = path.at(trip_.s_m());
+  const auto back = nav::sense::inverse(answer_->asked->local);
+  const auto& all = answer_->found.path;
+  // The nearest place of those found is where the rest begins.
+  std::size_t from = 0;
+  double least_m = 1e9;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const double far_m = base::distance_m(here, place_in(back, all[i]));
+    if (far_m < least_m) {
+      least_m = far_m;
+      from = i;
+    }
+  }
+  for (std::size_t i = from; i < all.size(); ++i) {
+    Place p = all[i];
+    p.pose = move * p.pose;
+    out.push_back(p);
+  }
+  return out;
+}
+
+/// Nowhere farther than a hand's breadth from what is driven already, and no longer.
+bool Detour::same_way(const std::vector<nav::Vertex>& way) const noexcept {
+  const nav::Path& path = trip_.path();
+  if (path.points.empty() || way.empty()) return false;
+  const auto near = [&](base::EnuPoint p) {
+    for (double s_m = trip_.s_m(); s_m < path.length_m() + kLook_m; s_m += kHand_m) {
+      if (base::distance_m(path.at(std::min(s_m, path.length_m())), p) < 1.5 * kHand_m) return true;
+    }
+    return false;
+  };
+  return std::all_of(way.begin(), way.end(), [&](const nav::Vertex& v) { return near(v.at); }) &&
+         base::distance_m(way.back().at, path.points.back().at) < 2.0 * kHand_m;
+}
+
+bool Detour::take(std::shared_ptr<const AroundAnswer> answer, const nav::Vehicle& vehicle,
+                  double speed_mps) {
+  if (answer->asked->id != asked_) return false;
+  open_ = false;
+  using nav::around::Found;
+  if (answer->found.found != Found::Way && answer->found.found != Found::Part) return false;
+  std::vector<nav::Vertex> way = way_of(*answer, speed_mps);
+  if (way.empty()) return false;
+  const bool drove = drives();
+  if (drove && trip_.busy() && same_way(way)) {
+    answer_ = std::move(answer);
+    return false;
+  }
+  answer_ = std::move(answer);
+  nav::Trip::Order order;
+  order.way = std::move(way);
+  trip_.begin(std::move(order), vehicle, drove);
+  return !drove;
+}
+
+nav::TrackOutput Detour::step(const nav::Vehicle& vehicle, double limit_mps, base::Time now,
+                              double dt_s) {
+  stepped_at_ = now;
+  return trip_.step(vehicle, limit_mps, dt_s);
+}
+
+void Detour::reset() noexcept {
+  answer_.reset();
+  trip_.reset();
+  open_ = false;
+  ++asked_;  // what is still being answered is not for now
+}
+
+bool Detour::left_alone(base::Time now) const noexcept {
+  return drives() && now - stepped_at_ > kLeft;
+}
+
+}  // namespace roverd::robot

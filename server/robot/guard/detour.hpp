@@ -1,0 +1,68 @@
+#pragma once
+// Drives a way around what stands before a mission, and says when to ask for another one.
+//
+//   Idle ──a way is found──▶ Drives ──at its end──▶ Done: the mission goes on behind it
+//     ▲                        │  ▲
+//     └──── none any more ─────┘  └─ another one, from where the robot is: the view grew
+//
+// The way was found in the odometry's frame and is driven in the robot's: the two drift against
+// each other slowly, and every answer is placed anew. Control thread; allocates when a way begins.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/setting.hpp"
+#include "nav/behave/trip.hpp"
+#include "robot/guard/around.hpp"
+
+namespace roverd::robot {
+
+/// The found way as a trip drives it, in the robot's frame. @param speed_mps at most
+std::vector<nav::Vertex> way_of(const AroundAnswer& answer, double speed_mps);
+
+class Detour {
+ public:
+  static constexpr base::Duration kAskEvery = std::chrono::seconds(1);
+
+  Detour(base::Setting<nav::PathParams> path, base::Setting<nav::BehaveParams> behave)
+      : trip_(std::move(path), std::move(behave)) {}
+
+  bool drives() const noexcept { return answer_ != nullptr; }
+  /// No question is open, and the last one was long enough ago.
+  bool may_ask(base::Time now) const noexcept;
+  /// @return the id of the question that is asked now
+  std::uint64_t asks(base::Time now) noexcept;
+  /// The places that are still to be driven, where `X_OL` is as given.
+  std::vector<nav::around::Place> rest(const nav::sense::Pose2& local) const;
+
+  bool answers(const AroundAnswer& answer) const noexcept { return answer.asked->id == asked_; }
+  /// Of the last question. @return whether a way is driven now that was not before
+  bool take(std::shared_ptr<const AroundAnswer> answer, const nav::Vehicle& vehicle,
+            double speed_mps);
+  nav::TrackOutput step(const nav::Vehicle& vehicle, double limit_mps, base::Time now, double dt_s);
+  /// It stands before something on the way around.
+  void interrupt() noexcept { trip_.interrupt(); }
+  bool done() const noexcept { return trip_.state() == nav::Trip::State::There; }
+  bool failed() const noexcept { return trip_.state() == nav::Trip::State::Failed; }
+  /// While it drives: what it drives, and how the way goes on.
+  const AroundAnswer& answer() const noexcept { return *answer_; }
+  const nav::Path& path() const noexcept { return trip_.path(); }
+  double s_m() const noexcept { return trip_.s_m(); }
+  void reset() noexcept;
+  /// Nobody asked it to drive for a while: somebody else does something else.
+  bool left_alone(base::Time now) const noexcept;
+
+ private:
+  bool same_way(const std::vector<nav::Vertex>& way) const noexcept;
+
+  nav::Trip trip_;
+  std::shared_ptr<const AroundAnswer> answer_;
+  std::uint64_t asked_ = 0;
+  bool open_ = false;
+  base::Time asked_at_{};
+  base::Time stepped_at_{};
+};
+
+}  // namespace roverd::robot
