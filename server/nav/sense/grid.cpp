@@ -1,6 +1,7 @@
 #include "nav/sense/grid.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -182,7 +183,8 @@ Known Grid::at(double x_m, double y_m, base::Time now) const noexcept {
   return begun_ && inside(ix, iy) ? known(cell(ix, iy), ms(now)) : Known::Unknown;
 }
 
-void Grid::patch(const Pose2& about, double reach_m, base::Time now, Patch& out) const {
+void Grid::patch(const Pose2& about, double reach_m, base::Time now, Patch& out,
+                 std::span<const double> free_for_s) const {
   const std::int32_t reach = std::clamp(floored(reach_m / p_.cell_m), 1, side_ / 2);
   out.stamp = now;
   out.cell_m = p_.cell_m;
@@ -192,6 +194,11 @@ void Grid::patch(const Pose2& about, double reach_m, base::Time now, Patch& out)
   out.cells.assign(static_cast<std::size_t>(out.side) * static_cast<std::size_t>(out.side), {});
   if (!begun_) return;
   const std::uint32_t now_ms = ms(now);
+  std::array<std::uint32_t, 256> free_ms{};
+  free_ms.fill(std::numeric_limits<std::uint32_t>::max());
+  for (std::size_t n = 0; n < std::min(free_for_s.size(), free_ms.size()); ++n) {
+    free_ms[n] = static_cast<std::uint32_t>(std::clamp(free_for_s[n], 0.0, 4e6) * 1e3);
+  }
   std::size_t i = 0;
   for (std::int32_t y = out.y0; y < out.y0 + out.side; ++y) {
     for (std::int32_t x = out.x0; x < out.x0 + out.side; ++x, ++i) {
@@ -199,6 +206,8 @@ void Grid::patch(const Pose2& about, double reach_m, base::Time now, Patch& out)
       const Cell& c = cell(x, y);
       if (c.known == Known::Unknown) continue;
       const std::uint32_t age = age_ms(now_ms, c.ms);
+      const bool gone = c.known == Known::Free && age > free_ms[c.sensor];
+      if (gone) continue;
       out.cells[i] = {known(c, now_ms), c.sensor,
                       static_cast<std::uint16_t>(std::min(age / 100U, 65535U))};
     }

@@ -5,13 +5,15 @@
 //
 //   Unknown ──seen free──▶ Free ──hit──▶ Occupied ──seen through clear_scans times──▶ Free
 //      ▲                     │keep_free_s     │keep_hit_s
-//      └─────────────────────┴────────────────┘  (out of sight; hits stay by default)
+//      └─────────────────────┴────────────────┘  (out of sight; hits stay by default; what a
+//                                                 sensor that is blind saw free, sooner)
 //
 // Blind is not free: a cell is free only where a ray passed low enough (sectors.hpp). What is low
 // is not cleared by rays that pass above it.
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -62,7 +64,10 @@ class Grid {
 
   Known at(double x_m, double y_m, base::Time now) const noexcept;
   /// @param reach_m half side; cut to the window. @param out its buffer is used again.
-  void patch(const Pose2& about, double reach_m, base::Time now, Patch& out) const;
+  /// @param free_for_s by the number of the sensor: older than this, what it told free is unknown;
+  /// empty: as the parameters say of all of them
+  void patch(const Pose2& about, double reach_m, base::Time now, Patch& out,
+             std::span<const double> free_for_s = {}) const;
 
   double cell_m() const noexcept { return p_.cell_m; }
   std::int32_t side() const noexcept { return side_; }

@@ -10,6 +10,7 @@ constexpr double kWaits_s = 0.2;
 constexpr double kTellAnyway_s = 0.1;
 constexpr double kMissed = 2.5;  // pieces that may be missing
 constexpr std::size_t kMostWaiting = 64;
+constexpr double kAsKept_s = 1e6;  // as long as the grid keeps it
 
 base::SensorHealth health_of(nav::sense::Eye eye, bool silent) noexcept {
   if (silent) return base::SensorHealth::Silent;
@@ -36,6 +37,7 @@ Lookout::Lookout(nav::sense::Chain chain, std::vector<std::string> kinds, double
     : chain_(std::move(chain)),
       kinds_(std::move(kinds)),
       last_(chain_.sensors()),
+      free_for_s_(chain_.sensors(), kAsKept_s),
       reach_m_(reach_m) {
   kinds_.resize(chain_.sensors());
 }
@@ -78,7 +80,6 @@ std::shared_ptr<const Surroundings> Lookout::picture(base::Time now) {
   const bool due = !told_ || base::seconds(now - *told_) >= kTellAnyway_s;
   if ((!news_ && !due) || history_.empty()) return nullptr;
   auto out = std::make_shared<Surroundings>();
-  chain_.grid().patch(history_.newest().pose, reach_m_, now, out->patch);
   auto sensors = std::make_shared<std::vector<base::SensorState>>();
   for (std::size_t i = 0; i < chain_.sensors(); ++i) {
     const nav::sense::SensorSetup& setup = chain_.sensor(i);
@@ -95,11 +96,17 @@ std::shared_ptr<const Surroundings> Lookout::picture(base::Time now) {
     s.unknown_part = fit.unknown_part;
     s.refused = fit.refused;
     s.points = last_[i].points;
+    const double pieces_s = kMissed / std::max(0.1, setup.health.rate_hz);
+    // What it saw free is not vouched for any more, however fresh the others are.
+    const bool sees =
+        s.health == base::SensorHealth::Good || s.health == base::SensorHealth::Degraded;
+    free_for_s_[i] = sees ? kAsKept_s : std::max(setup.health.silent_s, pieces_s);
     s.mount = setup.mount;
     if (s.seen && (!out->seen || *s.seen > *out->seen)) out->seen = s.seen;
-    out->lasts_s = std::max(out->lasts_s, kMissed / std::max(0.1, setup.health.rate_hz));
+    out->lasts_s = std::max(out->lasts_s, pieces_s);
     sensors->push_back(std::move(s));
   }
+  chain_.grid().patch(history_.newest().pose, reach_m_, now, out->patch, free_for_s_);
   out->sensors = std::move(sensors);
   news_ = false;
   told_ = now;

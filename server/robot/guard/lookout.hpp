@@ -5,6 +5,9 @@
 //   Odometry, 50 Hz ─▶ PoseHistory ┐
 //   Sight, as they come ───────────┴▶ Chain ─▶ picture(now) ─▶ Robot::surroundings()
 //
+// What a sensor saw free that is silent or blind by now is unknown again after 2.5 of its pieces,
+// whatever the others tell; what stood there stays.
+//
 // A sight that is newer than the odometry waits for it, 0.2 s at most. Not shared between threads;
 // time is an argument.
 
@@ -45,6 +48,7 @@ class Lookout {
     std::optional<base::Time> seen;
   };
   std::vector<Last> last_;
+  std::vector<double> free_for_s_;  ///< what each of them told free, is believed so long
   double reach_m_;
   std::deque<std::shared_ptr<const base::Sight>> waiting_;
   bool news_ = false;
