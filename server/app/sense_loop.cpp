@@ -6,6 +6,7 @@
 #include <pthread.h>
 
 #include "base/log.hpp"
+#include "robot/guard/outline.hpp"
 
 namespace roverd {
 namespace {
@@ -63,6 +64,37 @@ void SenseLoop::run() noexcept {
       base::log(base::Level::Error, "sense", e.what());  // the next sight is another one
     }
   }
+}
+
+base::Result<robot::Lookout> lookout_of(const Settings& s, base::Time now) {
+  using namespace nav::sense;
+  const Footprint body = robot::footprint_of(s.robot.vehicle, s.robot.tool, s.sense.outline);
+  std::vector<SensorSetup> setups;
+  std::vector<std::string> kinds;
+  for (const auto& [name, sensor] : s.sensors) {
+    if (!sensor.said.enabled) continue;
+    SensorSetup one;
+    one.name = name;
+    one.mount = sensor.said.mount();
+    one.planar = sensor.said.planar();
+    one.needed = sensor.said.required;
+    one.persist = s.sense.persist;
+    one.health = s.sense.health;
+    one.health.rate_hz = sensor.said.rate_hz;
+    // A slow one is not silent between two pieces.
+    one.health.silent_s = std::max(one.health.silent_s, kMissed / sensor.said.rate_hz);
+    // Half of what a lidar looks at is the sky, from where nothing comes back.
+    if (sensor.said.kind == "velodyne") {
+      one.health.max_unknown_part = std::max(kSky, one.health.max_unknown_part);
+    }
+    setups.push_back(std::move(one));
+    kinds.push_back(sensor.said.kind);
+  }
+  ChainParams params{s.sense.reduce, s.sense.ground, s.sense.grid};
+  params.pulled = robot::pulled_of(s.robot.tool, s.sense.outline);
+  auto chain = Chain::of(params, std::move(setups), body, now);
+  if (!chain) return tl::unexpected(chain.error());
+  return robot::Lookout(std::move(*chain), std::move(kinds), s.sense.protect.reach_m + 1.0);
 }
 
 }  // namespace roverd

@@ -63,7 +63,7 @@ Result<void> Station::Impl::open_senses(const Settings& settings, const Options&
   const bool demands = std::ranges::any_of(settings.sensors, [](const auto& one) {
     return one.second.said.enabled && one.second.said.required;
   });
-  robot.guard_by(settings.sense.protect, demands, settings.sense.blocked);
+  robot.guard_by(settings.sense.protect, demands, settings.sense.blocked, settings.sense.outline);
   sense = std::make_shared<SenseLoop>(robot, std::move(*lookout));
   if (settings.sense.blocked.then == "around") around = std::make_unique<AroundLoop>(robot);
   return {};

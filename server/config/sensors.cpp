@@ -86,10 +86,15 @@ bool is_sensor_name(std::string_view name) noexcept {
 }
 
 base::Result<void> check(const SenseSettings& sense) {
-  const auto good = check(sense.blocked);
+  std::string section = "sense.blocked.";
+  auto good = robot::check(sense.blocked);
+  if (good) {
+    section = "nav.tool.";
+    good = robot::check(sense.outline);
+  }
   if (good) return {};
   const base::FieldError& field = good.error().fields.front();
-  const std::string key = "sense.blocked." + field.pointer;
+  const std::string key = section + field.pointer;
   return base::fail(base::Code::Invalid, key + " " + field.detail, {{key, field.detail}});
 }
 

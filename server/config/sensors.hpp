@@ -23,6 +23,7 @@
 #include "nav/sense/params.hpp"
 #include "ranges/params.hpp"
 #include "robot/guard/blocked.hpp"
+#include "robot/guard/outline.hpp"
 #include "sick/params.hpp"
 #include "velodyne/params.hpp"
 
@@ -84,6 +85,7 @@ struct SenseSettings {
   nav::sense::HealthParams health;
   nav::sense::ProtectParams protect;
   robot::BlockedParams blocked;
+  robot::OutlineParams outline;  ///< further keys of [nav.tool]
 };
 
 template <class V>

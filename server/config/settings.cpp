@@ -188,6 +188,7 @@ Sections sections_of(Settings& s) {
   Collect collect{out};
   robot::sections(collect, s.robot);
   sections(collect, s.sense);
+  out.insert_or_assign("nav.tool", section(s.robot.tool, s.sense.outline));
   return out;
 }
 

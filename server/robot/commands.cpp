@@ -65,7 +65,10 @@ void Robot::Impl::take_commands() {
 }
 
 base::Result<void> Robot::Impl::carry_out(const PendingCommand& pending) {
-  if (halts(pending.command)) last_stop.take(clock.now());
+  if (halts(pending.command)) {
+    last_stop.take(clock.now());
+    blind_pause = false;  // somebody wants it to stand
+  }
   if (!is_stop(pending.command)) {
     if (clock.now() > pending.validity.not_after) {
       return base::fail(Code::Late, "the command arrived too late and was not carried out");

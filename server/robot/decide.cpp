@@ -59,7 +59,8 @@ Facts Robot::Impl::facts() const {
           .estimate = health,
           .latched = reset_latch.why(),
           .moved_disarmed = reset_latch.disarmed_why(),
-          .blind = blind};
+          .blind = blind,
+          .looks = guard.sees()};
 }
 
 void Robot::Impl::judge() {
@@ -83,7 +84,10 @@ void Robot::Impl::judge() {
     const bool was_auto = machine.mode() == Mode::Auto;
     hold(assessment.cause);
     event(Severity::Warning, was_auto ? "mission_paused" : "stopped", assessment.cause);
+    blind_pause = was_auto && !blind.empty() && assessment.cause == blind;
+    sees_since.reset();
   }
+  watch_blind_pause();
   // In its CAN mode the base obeys whoever speaks; out of it, nobody.
   if (!assessment.disarms.empty() && arm.armed()) disarm("because " + assessment.disarms);
   checks = arming_checks(facts(), p, config->arming, missions.get() != nullptr, clock.now());
@@ -156,6 +160,7 @@ void Robot::Impl::watch_radio(bool drives) {
   event(Severity::Info, drives ? "radio_takeover" : "radio_released",
         drives ? "the radio took control" : "the radio gave control back");
   if (drives) last_stop.take(clock.now(), "the radio took control");
+  if (drives) blind_pause = false;
   const bool interrupts = drives && machine.kind() == ModeKind::ByItself;
   if (interrupts && self_driving.hold(machine.mode())) {
     event(Severity::Warning, "activity_held", self_driving.held().why());

@@ -126,7 +126,9 @@ struct Robot::Impl {
   std::string overrider;      ///< who does
   bool waits_before = false;  ///< the drive was not asked at this tick: something stands before it
   std::optional<base::Time> blind_since;
-  std::string blind;  ///< why nothing may drive by itself: a sensor; empty: nothing is wrong
+  std::string blind;         ///< why nothing may drive by itself: a sensor; empty: nothing is wrong
+  bool blind_pause = false;  ///< the mission waits because of it, and nobody has said a word since
+  std::optional<base::Time> sees_since;
   std::vector<std::shared_ptr<const Surroundings>> surroundings_batch;
   RadioKeys keys;
   std::vector<RadioKey> pressed;
@@ -274,6 +276,8 @@ struct Robot::Impl {
   void end_detour();
   void go_on_behind(double at_m);
   void keep_guard();
+  void spare_dock();
+  void watch_blind_pause();
   bool waits_for_way();
   void be_blocked(Then then);
   void give_up(const std::string& why);

@@ -38,8 +38,8 @@ base::Inbox<base::Measurement>& Robot::measurements() noexcept {
   return impl_->measurements;
 }
 void Robot::guard_by(const nav::sense::ProtectParams& params, bool demands,
-                     const BlockedParams& blocked) {
-  impl_->guard.set(params, impl_->config->vehicle, demands, blocked);
+                     const BlockedParams& blocked, const OutlineParams& outline) {
+  impl_->guard.set(params, impl_->config->vehicle, demands, blocked, impl_->config->tool, outline);
 }
 base::Inbox<std::shared_ptr<const Surroundings>>& Robot::surroundings() noexcept {
   return impl_->surroundings;
@@ -209,6 +209,10 @@ std::vector<mission::Finding> Robot::objections(const CompiledMission& mission,
                  .at = start_at(start)};
   if (state && state->pose && state->frame && state->frame->id() == mission.frame.id()) {
     view.stand = stand_of(*state->pose);
+  }
+  for (const base::SafetyCondition& c :
+       state ? state->safety : std::vector<base::SafetyCondition>{}) {
+    if (c.id == "blind") view.blind = c.detail;
   }
   const auto& own = mission.copy.plan.home;
   const auto loaded = impl_->loaded.get();

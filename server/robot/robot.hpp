@@ -35,6 +35,7 @@
 #include "nav/sense/params.hpp"
 #include "robot/config.hpp"
 #include "robot/guard/blocked.hpp"
+#include "robot/guard/outline.hpp"
 
 namespace roverd::robot {
 
@@ -352,9 +353,9 @@ class Robot {
   /// Before the first tick: the profile has sensors, and by this the guard (guard/guard.hpp) keeps
   /// from what they see. Without it the robot drives blind, as it is told.
   /// @param demands what drives by itself needs one of them at least. @param blocked what becomes
-  /// of a drive that they stopped; its word passed check().
+  /// of a drive that they stopped; its word passed check(). @param outline of the tool.
   void guard_by(const nav::sense::ProtectParams& params, bool demands = true,
-                const BlockedParams& blocked = {});
+                const BlockedParams& blocked = {}, const OutlineParams& outline = {});
   /// Any thread: what stands around it; the newest counts.
   base::Inbox<std::shared_ptr<const Surroundings>>& surroundings() noexcept;
   /// The same thread: those that are not needed any more, to be let go.

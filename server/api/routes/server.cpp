@@ -34,6 +34,12 @@ Json health_json(const Context& context) {
     problems.push_back({{"id", p.id}, {"detail", p.detail}});
     well = well && !p.alarming;
   }
+  for (const base::SafetyCondition& c :
+       snapshot ? snapshot->safety : std::vector<base::SafetyCondition>{}) {
+    if (c.id != "blind") continue;
+    problems.push_back({{"id", "sensor_blind"}, {"detail", c.detail}});
+    well = false;
+  }
   return {{"status", well ? "ok" : "degraded"},
           {"problems", std::move(problems)},
           {"robot", identity_json(context)},

@@ -8,7 +8,7 @@ namespace roverd::nav::sense {
 
 Chain::Chain(const ChainParams& params, const Footprint& body)
     : p_(params),
-      reducer_(params.reduce, body),
+      reducer_(params.reduce, body, params.pulled),
       ground_(params.ground, params.reduce.max_range_m, body),
       grid_(params.grid) {}
 

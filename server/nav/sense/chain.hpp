@@ -41,6 +41,7 @@ struct ChainParams {
   ReduceParams reduce{};
   GroundParams ground{};
   GridParams grid{};
+  std::optional<Footprint> pulled{};  ///< what is seen within it is a trailer, wherever it stands
   double vouch_m = 0.25;  ///< clouds: a thing this high would have been seen where it says free
 };
 

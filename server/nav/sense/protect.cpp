@@ -111,6 +111,16 @@ Reach reach_of(const Footprint& body, const Drive& d) noexcept {
   return {r.x0 - between, r.x1 + between, r.y0 - between, r.y1 + between};
 }
 
+bool is_spared(const Spared* spared, Vec2 p) noexcept {
+  if (spared == nullptr) return false;
+  const Vec2 e = spared->to - spared->from;
+  const Vec2 d = p - spared->from;
+  const double length2 = dot(e, e);
+  const double part = length2 > 0.0 ? std::clamp(dot(d, e) / length2, 0.0, 1.0) : 0.0;
+  const Vec2 off = d - part * e;
+  return dot(off, off) <= spared->within_m * spared->within_m;
+}
+
 struct Nearest {
   std::optional<double> touch_s;
   Vec2 at{};
@@ -162,16 +172,17 @@ void each_taken(const Patch& patch, const Pose2& pose, const Reach& r, const Eac
 }
 
 /// Obstacles, exactly: every cell that is taken.
-Nearest nearest_taken(const Patch& patch, const Pose2& pose, const Footprint& body,
-                      Drive& d) noexcept {
+Nearest nearest_taken(const Patch& patch, const Pose2& pose, const Footprint& body, Drive& d,
+                      const Spared* spared) noexcept {
   const double about = body.reach_m() + d.margin_m;
   each_taken(patch, pose, {-about, about, -about, about}, [&](Vec2 p, const Patch::Cell&) {
     const double now_m = body.distance_m(p);
-    if (now_m > 0.0) d.clear_m = std::min(d.clear_m, now_m);
+    if (now_m > 0.0 && !is_spared(spared, p)) d.clear_m = std::min(d.clear_m, now_m);
   });
   if (d.clear_m < d.margin_m) d.grown_m = std::max(0.0, d.clear_m - kLess_m);
   Nearest best;
   each_taken(patch, pose, reach_of(body, d), [&](Vec2 p, const Patch::Cell& cell) {
+    if (is_spared(spared, p)) return;
     if (const auto t = touches(body, p, d)) nearer(best, *t, p, cell);
   });
   return best;
@@ -179,8 +190,8 @@ Nearest nearest_taken(const Patch& patch, const Pose2& pose, const Footprint& bo
 
 /// The unseen, by looking along the body's outline at steps of a cell: the first place that it
 /// comes to. To a cell's accuracy.
-Nearest nearest_unseen(const Patch& patch, const Pose2& pose, const Footprint& body,
-                       const Drive& d) noexcept {
+Nearest nearest_unseen(const Patch& patch, const Pose2& pose, const Footprint& body, const Drive& d,
+                       const Spared* spared) noexcept {
   const double speed =
       std::abs(d.twist.linear_mps) + std::abs(d.twist.angular_radps) * body.reach_m();
   const int steps = std::min(400, static_cast<int>(speed * d.horizon_s / patch.cell_m) + 1);
@@ -216,6 +227,7 @@ Nearest nearest_unseen(const Patch& patch, const Pose2& pose, const Footprint& b
         const Pose2 now =
             inverse(pose) * Pose2{(ix + 0.5) * patch.cell_m, (iy + 0.5) * patch.cell_m, 0.0};
         if (body.distance_m({now.x_m, now.y_m}) <= 0.0) continue;
+        if (is_spared(spared, {now.x_m, now.y_m})) continue;
         return {d.horizon_s * (i - 1) / steps, {now.x_m, now.y_m}, cell};
       }
     }
@@ -270,14 +282,15 @@ double part_for(double touch_s, const base::BodyTwist& twist,
 }
 
 Verdict protect(const Patch& patch, const Pose2& pose, const Footprint& body,
-                const base::BodyTwist& twist, const ProtectParams& params) noexcept {
+                const base::BodyTwist& twist, const ProtectParams& params,
+                const Spared* spared) noexcept {
   Verdict verdict;
   if (std::abs(twist.linear_mps) < kStill_mps && std::abs(twist.angular_radps) < kStill_radps) {
     return verdict;
   }
   // A cell may hold its thing anywhere: half of its diagonal.
   Drive d = drive_of(body, twist, params, patch.cell_m * std::sqrt(0.5));
-  const Nearest taken = nearest_taken(patch, pose, body, d);
+  const Nearest taken = nearest_taken(patch, pose, body, d, spared);
   if (taken.touch_s) {
     tell(verdict, taken, d);
     // The gap ahead is larger than that beside: the rest of it is way, at this speed.
@@ -289,7 +302,7 @@ Verdict protect(const Patch& patch, const Pose2& pose, const Footprint& body,
       verdict.limit = taken.cell.known == Known::Drop ? Limit::Drop : Limit::Obstacle;
     }
   }
-  const Nearest unseen = nearest_unseen(patch, pose, body, d);
+  const Nearest unseen = nearest_unseen(patch, pose, body, d, spared);
   if (!unseen.touch_s) return verdict;
   const double part =
       std::max(part_for(*unseen.touch_s, twist, params), std::min(1.0, creep_part(d, params)));

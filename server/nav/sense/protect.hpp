@@ -49,10 +49,20 @@ struct Verdict {
   double age_s = 0.0;  ///< since it was seen, at the patch's stamp
 };
 
+/// What is within reach of this stretch (in B, now) is where the robot wants to be, and in nobody's
+/// way: a dock.
+struct Spared {
+  Vec2 from{};
+  Vec2 to{};
+  double within_m = 0.0;
+};
+
+/// @param spared null: nothing is.
 /// @param twist commanded, finite. @param pose X_OB now. @param body its footprint.
 /// O(cells within reach): about 30 us for 3 m.
 Verdict protect(const Patch& patch, const Pose2& pose, const Footprint& body,
-                const base::BodyTwist& twist, const ProtectParams& params) noexcept;
+                const base::BodyTwist& twist, const ProtectParams& params,
+                const Spared* spared = nullptr) noexcept;
 
 /// λ of (1), 0..1. @param touch_s 0 or more.
 double part_for(double touch_s, const base::BodyTwist& twist, const ProtectParams& params) noexcept;

@@ -22,7 +22,9 @@ std::uint32_t hashed(std::uint32_t key) noexcept {
 
 }  // namespace
 
-Reducer::Reducer(const ReduceParams& params, const Footprint& body) : p_(params), body_(body) {
+Reducer::Reducer(const ReduceParams& params, const Footprint& body,
+                 const std::optional<Footprint>& pulled)
+    : p_(params), body_(body), pulled_(pulled) {
   // Keys have room for so many cells; a finer voxel than that is made coarser.
   const double across = 2.0 * p_.max_range_m / static_cast<double>(kCellsAcross - 2);
   const double up = (p_.high_m - p_.low_m) / static_cast<double>(kCellsUp - 2);
@@ -113,7 +115,8 @@ void Reducer::points(const base::Sight& sight, Reduced& out) {
   const auto per_knot = static_cast<float>(1.0 / kKnot_s);
   const auto first = static_cast<float>(first_s_);
   const auto last_knot = static_cast<std::uint32_t>(knots_.size() - 1);
-  const float near = static_cast<float>(body_.reach_m() + p_.body_margin_m);
+  const double reach_m = std::max(body_.reach_m(), pulled_ ? pulled_->reach_m() : 0.0);
+  const float near = static_cast<float>(reach_m + p_.body_margin_m);
   const float near2 = near * near;
   Counts& n = out.counts;
   std::uint32_t last_key = 0;
@@ -187,8 +190,10 @@ void Reducer::points(const base::Sight& sight, Reduced& out) {
 }
 
 bool Reducer::is_body(float x, float y, float z) const noexcept {
-  return z <= static_cast<float>(p_.body_height_m + p_.body_margin_m) &&
-         body_.distance_m({static_cast<double>(x), static_cast<double>(y)}) <= p_.body_margin_m;
+  if (z > static_cast<float>(p_.body_height_m + p_.body_margin_m)) return false;
+  const Vec2 p{static_cast<double>(x), static_cast<double>(y)};
+  return body_.distance_m(p) <= p_.body_margin_m ||
+         (pulled_ && pulled_->distance_m(p) <= p_.body_margin_m);
 }
 
 std::uint32_t Reducer::find(std::uint32_t key, std::vector<Voxel>& voxels) {

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/sight.hpp"
@@ -63,7 +64,9 @@ class Reducer {
   /// A larger piece is refused: memory is bounded by it.
   static constexpr std::size_t kMaxPoints = 1'000'000;
 
-  Reducer(const ReduceParams& params, const Footprint& body);
+  /// @param pulled within it everything is the robot, too
+  Reducer(const ReduceParams& params, const Footprint& body,
+          const std::optional<Footprint>& pulled = {});
 
   /// @param mount passed check_mount. @param history must reach from Sight::stamp to its last
   /// point, else the piece is refused (Unavailable). @param out its buffers are used again.
@@ -88,6 +91,7 @@ class Reducer {
 
   ReduceParams p_;
   Footprint body_;
+  std::optional<Footprint> pulled_;
   std::vector<Knot> knots_;
   double first_s_ = 0.0;
   std::vector<Slot> slots_;

@@ -67,6 +67,7 @@ class Blocked {
   /// as long as this is so, and driven when there is one; while there is none the robot waits.
   bool wants_around() const noexcept;
   Then then() const noexcept { return then_; }
+  const BlockedParams& params() const noexcept { return params_; }
 
  private:
   BlockedParams params_;

@@ -13,6 +13,7 @@ namespace {
 using base::BodyTwist;
 using nav::sense::Limit;
 
+constexpr double kPicture_s = 0.5;   // older, and whoever makes them stands still
 constexpr double kLeast_mps = 0.05;  // slower, and it stands
 constexpr double kLeast_radps = 0.05;
 constexpr double kProbe_mps = 0.15;  // what a stopped drive tries
@@ -22,6 +23,7 @@ constexpr double kAsk_s = 3.0;     // so often a stopped drive is asked anew,
 constexpr double kAskFor_s = 1.0;  // for so long: it first makes sure that it stands
 constexpr double kHandTurns_radps = 0.3;
 constexpr double kWishless_s = 0.5;
+constexpr double kDockIs_m = 0.3;       // what stands within this of the vehicle's end, docked
 constexpr double kTurnsRound_m = 0.03;  // beyond what a turn on the spot needs
 
 bool stands(const BodyTwist& t) noexcept {
@@ -72,22 +74,24 @@ std::string sentence(const base::Obstacle& o) {
 
 }  // namespace
 
-nav::sense::Footprint footprint_of(const nav::VehicleParams& v) noexcept {
-  const double back_m = v.steered() ? 0.5 * (v.length_m - v.wheelbase_m) : 0.5 * v.length_m;
-  return nav::sense::Footprint::box(v.length_m, v.width_m, std::max(0.01, back_m));
-}
-
 void Guard::set(const nav::sense::ProtectParams& params, const nav::VehicleParams& vehicle,
-                bool demands, const BlockedParams& blocked) {
+                bool demands, const BlockedParams& blocked, const nav::ToolParams& tool,
+                const OutlineParams& outline) {
   params_ = params;
   blocked_.set(blocked);
   decel_set_mps2_ = params.decel_mps2;
   sees_ = true;
   demands_ = demands;
-  body_ = footprint_of(vehicle);
+  body_ = footprint_of(vehicle, tool, outline);
   if (vehicle.steered()) return;
   // Where it stopped it must still be able to turn away.
-  const double turns_m = body_.reach_m() + params_.side_m - 0.5 * vehicle.length_m;
+  double front_m = 0.0;
+  double swings_m = 0.0;  // of what is ahead of the origin: it turns towards what stands there
+  for (const nav::sense::Vec2 c : body_.corners()) {
+    front_m = std::max(front_m, c.x);
+    if (c.x > 0.0) swings_m = std::max(swings_m, std::hypot(c.x, c.y));
+  }
+  const double turns_m = swings_m + params_.side_m - front_m;
   params_.gap_m = std::max(params_.gap_m, turns_m + kTurnsRound_m);
 }
 
@@ -100,7 +104,8 @@ void Guard::brake_by(double decel_mps2) noexcept {
 }
 
 bool Guard::too_old(base::Time now) const noexcept {
-  return !around_ || !around_->seen || base::seconds(now - *around_->seen) > around_->lasts_s;
+  return !around_ || !around_->seen || base::seconds(now - *around_->seen) > around_->lasts_s ||
+         base::seconds(now - around_->patch.stamp) > kPicture_s;
 }
 
 const nav::sense::Odometry& Guard::move(const BodyTwist& measured, base::Time now) noexcept {
@@ -130,7 +135,10 @@ nav::sense::Verdict Guard::look(const BodyTwist& twist, bool by_itself,
                                 base::Time now) const noexcept {
   nav::sense::Verdict v;
   const nav::sense::ProtectParams params = params_of(by_itself);
-  if (!too_old(now)) return protect(around_->patch, odometry_.pose, body_, twist, params);
+  if (!too_old(now)) {
+    return protect(around_->patch, odometry_.pose, body_, twist, params,
+                   spared_ ? &*spared_ : nullptr);
+  }
   // Nothing is known: as if the very next step were unseen.
   const bool ahead = twist.linear_mps > 0.0;
   const double most_mps = ahead ? params.creep_mps : params.creep_back_mps;
@@ -215,6 +223,23 @@ bool Guard::may_go_on(base::Time now) {
   return since_s >= kAsk_s || since_s < kAskFor_s;
 }
 
+void Guard::spare_dock(const std::optional<nav::sense::Pose2>& docked, bool reverse) noexcept {
+  spared_.reset();
+  if (!docked || std::hypot(docked->x_m, docked->y_m) > params_.dock_m) return;
+  double end_m = 0.0;
+  double side_m = 0.0;
+  for (const nav::sense::Vec2 corner : body_.corners()) {
+    if (reverse ? corner.x < end_m : corner.x > end_m) end_m = corner.x;
+    side_m = std::max(side_m, std::abs(corner.y));
+  }
+  const double c = std::cos(docked->yaw_rad);
+  const double s = std::sin(docked->yaw_rad);
+  const auto place = [&](double y) {
+    return nav::sense::Vec2{docked->x_m + c * end_m - s * y, docked->y_m + s * end_m + c * y};
+  };
+  spared_ = nav::sense::Spared{place(-side_m), place(side_m), kDockIs_m};
+}
+
 std::optional<Then> Guard::decide(bool by_itself, base::Time now) noexcept {
   const bool solid = obstacle_.what == "obstacle" || obstacle_.what == "drop";
   const auto what_then = blocked_.step(by_itself && stops(), solid, odometry_.pose, now);
@@ -259,6 +284,7 @@ void Guard::forget() noexcept {
   blocked_.forget();
   why_.clear();
   limits_since_.reset();
+  spared_.reset();
   news_.reset();  // that the way is clear was not seen
   stopped_since_.reset();
   clear_since_.reset();

@@ -24,18 +24,17 @@
 #include "nav/sense/protect.hpp"
 #include "nav/track/params.hpp"
 #include "robot/guard/blocked.hpp"
+#include "robot/guard/outline.hpp"
 #include "robot/guard/surroundings.hpp"
 
 namespace roverd::robot {
-
-/// The vehicle from above, about its origin: its middle, or the middle of the rear axle.
-nav::sense::Footprint footprint_of(const nav::VehicleParams& vehicle) noexcept;
 
 class Guard {
  public:
   /// Before the first tick, where the profile has sensors. @param demands one of them at least
   void set(const nav::sense::ProtectParams& params, const nav::VehicleParams& vehicle, bool demands,
-           const BlockedParams& blocked = {});
+           const BlockedParams& blocked = {}, const nav::ToolParams& tool = {},
+           const OutlineParams& outline = {});
   bool sees() const noexcept { return sees_; }
   bool demands() const noexcept { return demands_; }
   /// Once a tick: braking that is known to be there; what was set bounds it.
@@ -68,8 +67,14 @@ class Guard {
   /// a planner that answers it, the robot waits.
   bool wants_around() const noexcept { return blocked_.wants_around(); }
   bool blocked() const noexcept { return blocked_.blocked(); }
+  const BlockedParams& when_blocked() const noexcept { return blocked_.params(); }
   /// Why it stops, in words that stay while the reason does; empty: it does not.
   const std::string& why() const noexcept { return why_; }
+  /// Once a tick, before the others: what stands at the dock is not in the way of who docks there,
+  /// within sense.protect.dock_m. @param docked X_BD, where the body will stand; empty: it docks
+  /// not
+  /// @param reverse its tail is there
+  void spare_dock(const std::optional<nav::sense::Pose2>& docked, bool reverse) noexcept;
   /// What the tracker should plan with, so that the last word need not cut.
   double limit_mps() const noexcept { return limit_mps_; }
   /// Somebody else begins: what was wanted before says nothing.
@@ -102,6 +107,7 @@ class Guard {
   nav::sense::ProtectParams params_;
   double decel_set_mps2_ = 0.6;
   nav::sense::Footprint body_ = footprint_of({});
+  std::optional<nav::sense::Spared> spared_;
   std::shared_ptr<const Surroundings> around_;
   nav::sense::Odometry odometry_;
   bool began_ = false;

@@ -1,7 +1,9 @@
 // The guard in the robot: what it is told each tick, and what follows from its word.
 
+#include <cmath>
 #include <utility>
 
+#include "base/angle.hpp"
 #include "robot/impl.hpp"
 
 namespace roverd::robot {
@@ -60,6 +62,7 @@ base::DriveCommand Robot::Impl::keep_off(base::DriveCommand command) {
   const bool waits = std::exchange(waits_before, false);
   const bool by_itself = machine.by_itself();
   if (std::exchange(guarded_mode, machine.mode()) != machine.mode()) guard.forget();
+  spare_dock();
   if (!waits) command.twist = guarded(command.twist);
   const auto then = guard.decide(by_itself, clock.now());
   const base::Obstacle& o = guard.obstacle();
@@ -75,6 +78,45 @@ base::DriveCommand Robot::Impl::keep_off(base::DriveCommand command) {
   }
   if (then) be_blocked(*then);
   return command;
+}
+
+/// Who docks comes near to the dock.
+void Robot::Impl::spare_dock() {
+  const auto goal = machine.mode() == Mode::Dock ? self_driving.docks_at() : std::nullopt;
+  if (!goal || !pose) return guard.spare_dock(std::nullopt, false);
+  const base::EnuPoint to = goal->at - pose->at;
+  const double c = std::cos(pose->yaw_rad);
+  const double s = std::sin(pose->yaw_rad);
+  guard.spare_dock(
+      nav::sense::Pose2{c * to.east_m + s * to.north_m, -s * to.east_m + c * to.north_m,
+                        base::angle_diff_rad(pose->yaw_rad, goal->yaw_rad)},
+      goal->reverse);
+}
+
+/// A mission that a blind sensor paused: it sees again.
+void Robot::Impl::watch_blind_pause() {
+  if (!blind_pause) return;
+  const bool waits = arm.armed() && machine.mode() == Mode::Hold &&
+                     missions.executor.state() == base::ExecutionState::Paused;
+  if (!waits) {
+    blind_pause = false;
+    return;
+  }
+  if (!blind.empty() || guard.too_old(clock.now())) sees_since.reset();
+  if (!blind.empty() || guard.too_old(clock.now())) return;
+  if (!sees_since) sees_since = clock.now();
+  const BlockedParams& p = guard.when_blocked();
+  if (base::seconds(clock.now() - *sees_since) < p.resume_after_s) return;
+  blind_pause = false;
+  const std::string again = "the sensors see again";
+  if (!p.resume_blind) {
+    return event(base::Severity::Info, "sees_again", again + "; the mission waits for a word");
+  }
+  if (const auto done = resume(); !done) {
+    return event(base::Severity::Warning, "sees_again",
+                 again + ", and the mission does not go on: " + done.error().detail);
+  }
+  event(base::Severity::Info, "sees_again", again + ": the mission goes on by itself");
 }
 
 /// A hand that holds it off is told so, and so is everybody else, until it does not any more.

@@ -73,6 +73,10 @@ class SelfDriving {
   bool calibrates() const noexcept { return calibrate_.running(); }
   nav::Calibrate& calibration() noexcept { return calibrate_; }
   const nav::Calibrate& calibration() const noexcept { return calibrate_; }
+  /// On the last straight to it.
+  std::optional<nav::DockGoal> docks_at() const {
+    return dock_.state() == nav::Dock::State::Straight ? std::optional(dock_.goal()) : std::nullopt;
+  }
   /// @param at the same place
   void stay(const nav::StayGoal& goal, const nav::Vehicle& vehicle, base::LatLon at);
   /// @param centre likewise

@@ -40,6 +40,7 @@ struct Facts {
   std::string_view latched{};         ///< see ResetLatch; empty: not
   std::string_view moved_disarmed{};  ///< likewise
   std::string_view blind{};           ///< which required sensor does not see, and why; empty: none
+  bool looks = false;                 ///< there are sensors that look around
 };
 
 }  // namespace roverd::robot

@@ -115,7 +115,8 @@ constexpr std::array kSensorRows{
         .after = "0.3 s",
         .response = Response::Hold,
         .acts = Acts::ByItself,
-        .ends = kGoneAndGoOn,
+        .ends = "the cause is gone, then an operator's word; a mission without one, where "
+                "`sense.blocked.resume_blind` says so",
         .over = kHands,
         .test = [](const Facts& f, const SafetyParams&, Time) -> Told {
           if (f.blind.empty()) return {};

@@ -171,6 +171,13 @@ base::Check check_hazards(const World& w) {
   return check("driver_hazard", text.empty(), Severity::Error, text.empty() ? "none" : text);
 }
 
+/// By hand it may be driven blind.
+base::Check check_sensors(const Facts& f) {
+  return check("sensors", f.blind.empty(), Severity::Warning,
+               f.blind.empty() ? "all that are required see"
+                               : std::string(f.blind) + ": nothing drives by itself");
+}
+
 base::Check check_drivers(const World& w) {
   std::string text;
   for (const base::DriverStatus& d : w.drivers) {
@@ -251,7 +258,7 @@ std::vector<base::Check> arming_checks(const Facts& f, const SafetyParams& safet
                                        const ArmingParams& p, bool mission_loaded, Time now) {
   const World& w = f.world;
   std::vector<base::Check> all;
-  all.reserve(13);
+  all.reserve(15);
   all.push_back(check_gnss(f, safety, p, now));
   all.push_back(check_accuracy(f, p));
   all.push_back(check_heading(f, p));
@@ -271,6 +278,7 @@ std::vector<base::Check> arming_checks(const Facts& f, const SafetyParams& safet
                                           : std::string(f.self_test)));
   all.push_back(check_hazards(w));
   all.push_back(check_drivers(w));
+  if (f.looks) all.push_back(check_sensors(f));
   all.push_back(check_computer(w));
   all.push_back(check("mission", mission_loaded, Severity::Info,
                       mission_loaded ? "loaded" : "no mission is loaded"));

@@ -13,6 +13,7 @@ using mission::Finding;
 constexpr std::size_t kMostHomeEnds = 100;
 constexpr const char* kApproach = "approach_outside_fence";
 constexpr const char* kTooFar = "start_too_far";
+constexpr const char* kBlind = "sensor_blind";
 
 Finding at_item(const char* code, int item, std::string detail) {
   return {mission::Severity::Error, code, "/items/" + std::to_string(item - 1), item,
@@ -48,6 +49,10 @@ std::string metres_text(double m) {
 std::vector<Finding> start_findings(const StartView& view) {
   std::vector<Finding> out;
   const bool fenced = view.limits != nullptr && !view.limits->empty();
+  if (!view.blind.empty()) {
+    out.push_back(
+        {mission::Severity::Error, kBlind, "", std::nullopt, "cannot begin: " + view.blind});
+  }
   if (view.legs != nullptr && *view.legs) out.push_back(**view.legs);
   if (fenced) {
     if (auto home = way_home(view)) out.push_back(std::move(*home));
@@ -72,7 +77,7 @@ std::vector<Finding> start_findings(const StartView& view) {
 }
 
 bool of_the_moment(const Finding& finding) noexcept {
-  return finding.code == kApproach || finding.code == kTooFar;
+  return finding.code == kApproach || finding.code == kTooFar || finding.code == kBlind;
 }
 
 }  // namespace roverd::robot

@@ -4,6 +4,7 @@
 //
 //   outside_fence           a way of the mission leaves the fence: legs, jumps, laps, ways home
 //   approach_outside_fence  the straight way from the robot to the first item does
+//   sensor_blind            a sensor that the profile demands sees nothing
 //   start_too_far           the first item is farther away than nav.behave.start_within_m
 //
 // Where the robot joins its way ahead of the first item (nav/behave/join.hpp), that place stands in
@@ -13,6 +14,7 @@
 // depends on the moment costs little.
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "mission/checks.hpp"
@@ -31,6 +33,7 @@ struct StartView {
   std::optional<nav::Stand> stand{};  ///< empty: not known
   std::optional<base::EnuPoint> home{};
   nav::StartAt at{};
+  std::string blind{};  ///< which sensor, and why; empty: all see
 };
 
 /// Errors all of them; at most one of a kind. Empty: a start has nothing against it.

@@ -90,6 +90,16 @@ TEST(Sensors, WhatFollowsWhenTheyBlockADriveIsOneOfFourWords) {
   EXPECT_NE(refused("[sense.blocked]\nafter_s = 0\n").find("after_s"), std::string::npos);
 }
 
+TEST(Sensors, TheToolsOutlineStandsBesideItsPoint) {
+  const auto s = with("[nav.tool]\nforward_m = -1.0\nlength_m = 0.8\nwidth_m = 1.6\n");
+  ASSERT_TRUE(s) << s.error().detail;
+  EXPECT_EQ(s->robot.tool.forward_m, -1.0);
+  EXPECT_EQ(s->sense.outline.length_m, 0.8);
+  EXPECT_EQ(s->sense.outline.width_m, 1.6);
+  const std::string no = refused("[nav.tool]\nlength_m = 0.8\n");
+  EXPECT_NE(no.find("nav.tool.width_m must be given as well"), std::string::npos) << no;
+}
+
 TEST(Sensors, TwoOnOnePortAreRefused) {
   EXPECT_NE(refused(R"(
 [sensors.a]

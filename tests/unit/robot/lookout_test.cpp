@@ -2,10 +2,12 @@
 
 #include "robot/guard/lookout.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "base/angle.hpp"
 #include "robot/guard/guard.hpp"
 
 namespace roverd::robot {
@@ -35,7 +37,7 @@ std::shared_ptr<const base::Sight> wall(const std::string& sensor, double s, std
   return sight;
 }
 
-Lookout lookout() {
+Lookout lookout(double front_hz = 50.0, nav::sense::ChainParams params = {}) {
   std::vector<nav::sense::SensorSetup> eyes(2);
   eyes[0].name = "front";
   eyes[1].name = "rear";
@@ -44,7 +46,10 @@ Lookout lookout() {
     eye.planar = true;
     eye.health.rate_hz = 50.0;
   }
-  auto chain = nav::sense::Chain::of({}, eyes, footprint_of({}), at(0.0));
+  eyes[0].health.rate_hz = front_hz;
+  eyes[0].health.silent_s = std::max(0.3, 2.5 / front_hz);
+  eyes[1].mount.yaw_rad = base::kPi;
+  auto chain = nav::sense::Chain::of(params, eyes, footprint_of({}), at(0.0));
   EXPECT_TRUE(chain);
   return {std::move(*chain), {"sick", "sick"}, 6.0};
 }
@@ -54,7 +59,7 @@ void stand(Lookout& l, double from_s, double to_s) {
 }
 
 Known ahead(const Surroundings& s, double x_m) {
-  return s.patch.at(static_cast<std::int32_t>(x_m / s.patch.cell_m), 0).known;
+  return s.patch.at(static_cast<std::int32_t>(std::floor(x_m / s.patch.cell_m)), 0).known;
 }
 
 TEST(Lookout, TellsWhatStandsThereAndWhoSawItWhen) {
@@ -104,6 +109,101 @@ TEST(Lookout, ASensorThatFallsSilentIsToldSoAndWhatItSawGrowsOld) {
   EXPECT_TRUE(guard.too_old(at(2.0)));
   (void)guard.take(early);
   EXPECT_FALSE(guard.too_old(at(1.0)));
+}
+
+/// A slow sensor that looks ahead and a fast one that looks back, from 0 s on.
+class SlowAndFast : public ::testing::Test {
+ protected:
+  /// @param front it still tells. @param good what it tells is of use
+  void run(double to_s, bool front, bool good = true) {
+    for (; t_s < to_s; t_s += 0.02) {
+      l.moved({.stamp = at(t_s), .pose = {}});
+      l.see(wall("rear", t_s, rear++), at(t_s));
+      if (!front || t_s < next_s) continue;
+      next_s += 0.5;
+      auto sight = std::make_shared<base::Sight>(*wall("front", t_s, ahead_count++));
+      // Dazzled: it tells of no direction anything.
+      for (auto& p : sight->points) p.echo = good ? p.echo : base::Echo::Unknown;
+      l.see(std::move(sight), at(t_s));
+    }
+  }
+
+  Lookout l = lookout(2.0);
+  double t_s = 0.0;
+  double next_s = 0.0;
+  std::uint64_t rear = 0;
+  std::uint64_t ahead_count = 0;
+};
+
+TEST_F(SlowAndFast, WhatTheDeadOneSawFreeIsBelievedForItsOwnPeriodsOnly) {
+  // Given both, and then the rear one alone: between two pieces of the slow one nothing changes,
+  run(5.4, true);
+  EXPECT_EQ(ahead(*l.picture(at(t_s)), 1.2), Known::Free);
+  run(6.0, false);
+  EXPECT_EQ(ahead(*l.picture(at(t_s)), 1.2), Known::Free);
+  // when it should have told three times,
+  run(7.5, false);
+  // then nobody knows any more what is before it, though the other one is as fresh as ever;
+  const auto s = l.picture(at(t_s));
+  EXPECT_EQ((*s->sensors)[0].health, SensorHealth::Silent);
+  EXPECT_EQ((*s->sensors)[1].health, SensorHealth::Good);
+  EXPECT_EQ(ahead(*s, 1.2), Known::Unknown);
+  EXPECT_EQ(ahead(*s, 2.02), Known::Occupied) << "what stood there still does";
+  EXPECT_EQ(ahead(*s, -1.2), Known::Free) << "the other one sees";
+  // and the guard lets it creep there, no faster, and drive back as it will.
+  Guard guard;
+  guard.set({}, {}, true);
+  (void)guard.move({}, at(t_s));
+  (void)guard.take(s);
+  EXPECT_FALSE(guard.too_old(at(t_s)));
+  EXPECT_NEAR(guard.judge({0.4, 0.0}, true, at(t_s)).linear_mps, 0.25, 1e-9);
+  EXPECT_EQ(guard.obstacle().what, "unseen");
+  EXPECT_NEAR(guard.judge({-0.4, 0.0}, true, at(t_s)).linear_mps, -0.4, 1e-9);
+}
+
+TEST_F(SlowAndFast, WhatABlindOneSawIsNotBelievedEither) {
+  run(5.0, true);
+  run(7.5, true, false);
+  const auto s = l.picture(at(t_s));
+  EXPECT_EQ((*s->sensors)[0].health, SensorHealth::Blind);
+  EXPECT_EQ(ahead(*s, 1.2), Known::Unknown);
+  EXPECT_EQ(ahead(*s, 2.02), Known::Occupied);
+  // And when it sees again, it is.
+  run(8.1, true);
+  EXPECT_EQ(ahead(*l.picture(at(t_s)), 1.2), Known::Free);
+}
+
+TEST_F(SlowAndFast, APictureThatNobodyMadeAnewIsNotBelievedAsLongAsTheSlowOneMayTake) {
+  run(5.0, true);
+  Guard guard;
+  guard.set({}, {}, true);
+  (void)guard.take(l.picture(at(t_s)));
+  EXPECT_FALSE(guard.too_old(at(t_s + 0.3)));
+  EXPECT_TRUE(guard.too_old(at(t_s + 0.7))) << "whoever makes the pictures stands still";
+}
+
+TEST(Lookout, ATrailerIsNothingInTheWay) {
+  // Given something 2 m behind, wider than a trailer's sector,
+  nav::sense::ChainParams with;
+  nav::ToolParams tool;
+  tool.hitch_m = 0.5;
+  tool.trailer_m = 1.5;
+  with.pulled = pulled_of(tool, {1.2, 0.9});
+  for (const bool pulls : {false, true}) {
+    Lookout l = lookout(50.0, pulls ? with : nav::sense::ChainParams{});
+    stand(l, 0.0, 0.5);
+    for (int i = 0; i < 5; ++i) l.see(wall("rear", 0.1 * i, std::uint64_t(i)), at(0.5));
+    const auto s = l.picture(at(0.5));
+    const auto beside = [&](std::int32_t iy) {
+      bool any = false;
+      for (std::int32_t ix = -42; ix < -38; ++ix)
+        any |= s->patch.at(ix, iy).known == Known::Occupied;
+      return any;
+    };
+    // then what may be the trailer is not seen, and what lies beside that is.
+    EXPECT_EQ(beside(0), !pulls);
+    EXPECT_TRUE(beside(37));
+  }
 }
 
 TEST(Lookout, TheNumberOfWaitingSightsIsBounded) {
