@@ -7,7 +7,7 @@ namespace roverd::nav::around {
 
 namespace {
 
-constexpr float kBetween_m = 0.004F;  // what interpolation may tell too much
+constexpr float kBetween_m = 0.010F;  // what interpolation may tell too much
 constexpr float kRoom_m = 0.02F;      // the same of coarse cells
 constexpr double kAboutStart_m = 1.5;
 constexpr float kNearer_m = 0.003F;

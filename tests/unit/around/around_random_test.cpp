@@ -1,0 +1,57 @@
+// Hundreds of random worlds: every answer is judged, and the share of the solvable that are solved.
+#include <gtest/gtest.h>
+
+#include "worlds.hpp"
+
+namespace roverd::nav::around {
+namespace {
+
+using tests::along_x;
+using tests::objection;
+using tests::Scene;
+
+constexpr std::uint64_t kWorlds = 400;
+constexpr std::array<double, 5> kHalves{1.5, 2.0, 3.0, 5.0, 10.0};
+constexpr std::array<int, 5> kThings{1, 3, 8, 16, 30};
+
+TEST(AroundRandomTest, WhatCanBePassedIsPassedByNearlyTheShortestWay) {
+  Planner planner;
+  Answer a;
+  tests::Reference reference(Question{}.body, 0.3);
+  int solvable = 0;
+  int solved = 0;
+  int near = 0;
+  double worst = 0.0;
+  for (std::uint64_t seed = 1; seed <= kWorlds; ++seed) {
+    Scene s;
+    const double half = kHalves[seed % 5];
+    tests::strew(s, seed, kThings[(seed / 5) % 5], half);
+    Question q = along_x(half);
+    q.rejoin_within_m = 8.0;
+    ASSERT_TRUE(planner.plan(s.patch, q, a));
+    EXPECT_EQ(objection(s.patch, q, a), "") << "seed " << seed;
+    const double shortest = reference.shortest_m(s, half);
+    if (!std::isfinite(shortest) || a.found == Found::Clear) continue;
+    ++solvable;
+    if (a.found != Found::Way) {
+      std::printf("seed %d half %.1f: %s %s, %.2f m expanded %zu\n", static_cast<int>(seed), half,
+                  to_string(a.found).data(), to_string(a.why).data(), shortest, a.expanded);
+      continue;
+    }
+    ++solved;
+    const double ratio = (a.length_m + tests::kGoal_m + 2.0 - a.rejoin_m) / shortest;
+    worst = std::max(worst, ratio);
+    if (ratio <= 1.25)
+      ++near;
+    else
+      std::printf("seed %d half %.1f: ratio %.2f\n", static_cast<int>(seed), half, ratio);
+  }
+  std::printf("%d solvable, %d solved, %d within 1.25, worst %.3f\n", solvable, solved, near,
+              worst);
+  EXPECT_GE(solvable, 200);
+  EXPECT_GE(solved, 0.98 * solvable);
+  EXPECT_EQ(near, solved);
+}
+
+}  // namespace
+}  // namespace roverd::nav::around
