@@ -83,7 +83,7 @@ void Planner::Impl::set_goals() {
 }
 
 bool Planner::Impl::reaches(const Question& q, Borders borders) {
-  field.price_all(q, body.inner_m(), borders);
+  field.price_all(q, body.inner_m(), body.least_m(), borders);
   field.flood(goals, {q.pose.x_m, q.pose.y_m}, 0.0F);
   return field.to_go(q.pose.x_m, q.pose.y_m) < Field::kNever;
 }
@@ -103,7 +103,7 @@ void Planner::Impl::plan(const sense::Patch& patch, const Question& q, Answer& a
   }
   field.lay(patch, q, lane);
   body.set(q.body, q.least_m, field);
-  field.price_all(q, body.inner_m(), {});
+  field.price_all(q, body.inner_m(), body.least_m(), {});
   ahead.look(q, lane, field, body);
   a.blocked_from_m = ahead.blocked_from_m();
   a.blocked_to_m = ahead.blocked_to_m();
@@ -153,7 +153,7 @@ Ended Planner::Impl::try_onwards(const Question& q, Wanted& w, const Price& pric
   set_goals();
   field.flood(goals, {q.pose.x_m, q.pose.y_m}, beyond(q));
   w.targets = {};
-  w.expand = std::max<std::size_t>(1000, w.expand / 4);
+  w.expand = w.expand / 4;
   return search.run(w, price);
 }
 

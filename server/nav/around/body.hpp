@@ -27,6 +27,10 @@ class Body {
   /// Something stands within the outline.
   static bool touches(const sense::Patch& patch, const sense::Footprint& shape, const Pose2& pose);
   double inner_m() const noexcept { return inner_m_; }
+  /// What the outline keeps to the middle of what stands there, if asked about any cell's middle.
+  double least_m() const noexcept {
+    return static_cast<double>(sample_m_) - 0.7072 * field_->cell_m();
+  }
 
  private:
   struct Circle {

@@ -123,7 +123,7 @@ void Field::mark_before(const Question& q) {
   }
 }
 
-void Field::price_all(const Question& q, double inner_m, Borders borders) {
+void Field::price_all(const Question& q, double inner_m, double least_m, Borders borders) {
   const auto n = static_cast<std::size_t>(n_);
   room_.resize(n * n);
   for (std::size_t i = 0; i < n * n; ++i) {
@@ -137,7 +137,7 @@ void Field::price_all(const Question& q, double inner_m, Borders borders) {
   const auto wanted = static_cast<float>(q.wanted_m);
   // A cell may be passed if any place in it may.
   const auto half = static_cast<float>(0.71 * coarse_m_);
-  const float fits = inner + static_cast<float>(q.least_m);
+  const float fits = inner + static_cast<float>(least_m);
   for (std::int32_t y = 0; y < n_; ++y) {
     for (std::int32_t x = 0; x < n_; ++x) {
       const std::size_t i = static_cast<std::size_t>(y) * n + static_cast<std::size_t>(x);

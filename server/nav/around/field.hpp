@@ -44,8 +44,9 @@ class Field {
   bool unseen(double x, double y) const noexcept;
 
   /// A metre's price in each coarse cell, 0 where the body does not fit whatever its heading.
-  /// @param inner_m radius of the largest circle about the origin within the body
-  void price_all(const Question& q, double inner_m, Borders borders);
+  /// @param inner_m radius of the largest circle about the origin within the body. @param least_m
+  /// from that to the middle of what stands there
+  void price_all(const Question& q, double inner_m, double least_m, Borders borders);
 
   struct Goal {
     Vec2 at;

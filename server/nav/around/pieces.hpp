@@ -29,7 +29,9 @@ struct Piece {
   }
   /// Poses of a sweep so that no point of a body of this reach goes farther than apart_m.
   int steps(double apart_m, double reach_m) const noexcept {
-    const double way = pivot() ? std::abs(turn_rad) * reach_m : std::abs(length_m);
+    const double way = pivot()
+                           ? std::abs(turn_rad) * reach_m
+                           : std::abs(length_m) * (1.0 + 0.8 * std::abs(curvature_1pm) * reach_m);
     return std::max(1, static_cast<int>(std::ceil(way / apart_m)));
   }
 };

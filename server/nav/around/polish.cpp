@@ -64,7 +64,8 @@ bool Polish::shorten(std::size_t from, std::size_t to, const Kinematics& kinemat
     const float most = now - ends - kWorth_m;
     if (Price::least(link) >= most) return false;
     ++tries_;
-    if (price.of(a, link, most) >= most) return false;
+    if (price.of(a, link, std::min(most, Field::kNever)) >= std::min(most, Field::kNever))
+      return false;
     replace(from, to, link, price);
     return true;
   };

@@ -45,6 +45,11 @@ struct Price {
     }
     return sum;
   }
+  static float least(const Piece& piece) noexcept {
+    if (piece.pivot()) return kPivot_m + kTurn_m * static_cast<float>(std::abs(piece.turn_rad));
+    const auto way = static_cast<float>(std::abs(piece.length_m));
+    return way * (piece.length_m < 0.0 ? kReverse : 1.0F);
+  }
   /// The least that a link can cost.
   static float least(const Link& link) noexcept {
     return static_cast<float>(link.length_m) + kTurn_m * static_cast<float>(link.turned_rad);

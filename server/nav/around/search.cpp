@@ -8,11 +8,12 @@ namespace {
 
 constexpr double kStep_m = 0.3;
 constexpr double kTurn_rad = base::kPi / 12.0;
-constexpr double kCell_m = 0.1;
-constexpr double kHeadings = 72.0;
-constexpr float kGreed = 1.1F;          // of what is still to go
+constexpr double kCell_m = 0.15;
+constexpr double kHeadings = 24.0;
+constexpr float kGreed = 1.5F;          // of what is still to go
 constexpr float kGoodEnough_m = 0.15F;  // a better way by less is not looked for
 constexpr float kGoodEnough = 0.05F;
+constexpr float kSame_m = 1e-4F;
 constexpr std::size_t kBranches = 9;
 constexpr std::size_t kAims = 3;  // targets that are tried from one place
 
@@ -54,31 +55,26 @@ std::uint32_t* Search::slot(std::uint64_t key) noexcept {
   return &slots_[i].node;
 }
 
-void Search::offer(const Pose2& at, float g, std::uint32_t parent, std::uint8_t by,
-                   const Price& price) {
-  const float to_go = price.field->to_go(at.x_m, at.y_m);
-  if (to_go >= Field::kNever) return;
-  const float f = g + kGreed * to_go;
-  if (f >= best_) return;
+std::uint32_t* Search::slot(const Pose2& at) noexcept {
   const auto ix = static_cast<std::int64_t>(std::floor(at.x_m / kCell_m)) & 0xFFFFFF;
   const auto iy = static_cast<std::int64_t>(std::floor(at.y_m / kCell_m)) & 0xFFFFFF;
   const auto turns = (at.yaw_rad + base::kPi) / (2.0 * base::kPi) * headings_;
   const auto ih = static_cast<std::int64_t>(turns + 0.5) % static_cast<std::int64_t>(headings_);
-  std::uint32_t* known =
-      slot((static_cast<std::uint64_t>(ix) << 34U) | (static_cast<std::uint64_t>(iy) << 10U) |
-           static_cast<std::uint64_t>(ih));
-  if (*known != 0) {
-    const Node& other = nodes_[*known - 1];
-    if (other.g <= g + 1e-4F) return;
-  }
+  return slot((static_cast<std::uint64_t>(ix) << 34U) | (static_cast<std::uint64_t>(iy) << 10U) |
+              static_cast<std::uint64_t>(ih));
+}
+
+void Search::offer(const Pose2& at, float g, std::uint32_t parent, std::uint8_t by, float to_go,
+                   std::uint32_t& known) {
+  const float f = g + kGreed * to_go;
   if (nodes_.size() >= room_) {
     full_ = true;
     return;
   }
-  if (*known != 0) nodes_[*known - 1].closed = true;
+  if (known != 0) nodes_[known - 1].closed = true;
   nodes_.push_back({at.x_m, at.y_m, at.yaw_rad, g, parent, by, false});
-  *known = static_cast<std::uint32_t>(nodes_.size());
-  open_.push_back({f, *known - 1});
+  known = static_cast<std::uint32_t>(nodes_.size());
+  open_.push_back({f, known - 1});
   std::push_heap(open_.begin(), open_.end());
 }
 
@@ -90,12 +86,20 @@ void Search::expand(std::uint32_t from, const Price& price) {
     // Back to where it came from.
     if (p.pivot() && last.pivot() && (p.turn_rad > 0.0) != (last.turn_rad > 0.0)) continue;
     const Pose2 to = p.after(pose(n), 1.0);
-    if (price.field->to_go(to.x_m, to.y_m) >= Field::kNever) continue;
-    float cost = price.of(pose(n), p);
+    const float to_go = price.field->to_go(to.x_m, to.y_m);
+    if (to_go >= Field::kNever) continue;
+    float g = n.g;
+    if (p.pivot() && last.pivot()) g -= Price::kPivot_m;
+    if (p.length_m * last.length_m < 0.0) g += Price::kSwitch_m;
+    // First what is cheap to ask: may it be any use?
+    const float least = g + Price::least(p);
+    if (least + to_go >= best_) continue;
+    std::uint32_t* known = slot(to);
+    if (*known != 0 && nodes_[*known - 1].g <= least + kSame_m) continue;
+    const float cost = price.of(pose(n), p);
     if (cost >= Field::kNever) continue;
-    if (p.pivot() && last.pivot()) cost -= Price::kPivot_m;
-    if (p.length_m * last.length_m < 0.0) cost += Price::kSwitch_m;
-    offer(to, n.g + cost, from, k, price);
+    if (*known != 0 && nodes_[*known - 1].g <= g + cost + kSame_m) continue;
+    offer(to, g + cost, from, k, to_go, *known);
   }
 }
 
@@ -164,7 +168,7 @@ Ended Search::run(const Wanted& w, const Price& price) {
   best_ = Field::kNever;
   best_link_ = {};
   target_ = kNone;
-  offer(w.start, 0.0F, 0, kStart, price);
+  offer(w.start, 0.0F, 0, kStart, price.field->to_go(w.start.x_m, w.start.y_m), *slot(w.start));
   bool reached = false;
   while (!open_.empty() && !reached) {
     const Open top = open_.front();

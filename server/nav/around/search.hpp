@@ -27,7 +27,7 @@ struct Wanted {
   const Lane* lane = nullptr;
   Kinematics kinematics;
   double radius_m = 0.6;  ///< of the narrowest arc
-  std::size_t expand = 12'000;
+  std::size_t expand = 3000;
 };
 
 enum class Ended : std::uint8_t { Found, Exhausted, GivenUp };
@@ -63,13 +63,15 @@ class Search {
 
   void set_primitives(const Wanted& w);
   void expand(std::uint32_t from, const Price& price);
-  void offer(const Pose2& at, float g, std::uint32_t parent, std::uint8_t by, const Price& price);
+  void offer(const Pose2& at, float g, std::uint32_t parent, std::uint8_t by, float to_go,
+             std::uint32_t& known);
   void aim(std::uint32_t from, const Wanted& w, const Price& price);
   void try_link(std::uint32_t from, const Link& link, std::size_t target, const Wanted& w,
                 const Price& price);
   bool arrived(const Node& n, const Wanted& w, const Price& price) const noexcept;
   void collect(std::uint32_t from);
   std::uint32_t* slot(std::uint64_t key) noexcept;
+  std::uint32_t* slot(const Pose2& at) noexcept;
   static Pose2 pose(const Node& n) noexcept { return {n.x, n.y, n.yaw}; }
 
   std::vector<Piece> primitives_;
