@@ -11,6 +11,7 @@ namespace roverd::nav::around {
 namespace {
 
 using sense::Known;
+using sense::Pose2;
 using tests::along_x;
 using tests::objection;
 using tests::Scene;
@@ -224,6 +225,79 @@ TEST(AroundTest, ACurvedRouteIsLeftAndJoinedToo) {
     q.route.push_back({6.0 * std::sin(t), 6.0 - 6.0 * std::cos(t)});
   }
   EXPECT_EQ(ask(s, q).found, Found::Way);
+}
+
+/// What is seen from a place of a world, added to what was seen before.
+void look(const Scene& world, const Pose2& from, Scene& known) {
+  for (int i = 0; i < 1440; ++i) {
+    const double angle = base::kPi / 720.0 * i;
+    for (double r = 0.0; r < 8.0; r += 0.025) {
+      const std::int32_t x = known.cell(from.x_m + r * std::cos(angle));
+      const std::int32_t y = known.cell(from.y_m + r * std::sin(angle));
+      const Known k = world.patch.at(x, y).known;
+      known.set(x, y, k);
+      if (k != Known::Free) break;
+    }
+  }
+}
+
+/// Drives at 0.5 m/s, looks and asks five times a second. @return how often the side changed
+int drive(const Scene& world, const Question& first, double to_x_m) {
+  Planner planner;
+  Scene known(Known::Unknown);
+  Question q = first;
+  Answer a;
+  Side side = Side::None;
+  int changes = 0;
+  for (int tick = 0; tick < 200 && q.pose.x_m < to_x_m; ++tick) {
+    look(world, q.pose, known);
+    q.here_m = std::max(0.0, q.pose.x_m - q.route.front().x);
+    EXPECT_TRUE(planner.plan(known.patch, q, a));
+    EXPECT_EQ(objection(known.patch, q, a), "") << "tick " << tick;
+    if (a.found == Found::None) {
+      ADD_FAILURE() << sentence(a.why) << " at tick " << tick;
+      return changes;
+    }
+    EXPECT_GT(tests::clearance_of(world.patch, q.body, q.pose), 0.05) << "tick " << tick;
+    if (a.found == Found::Clear) {
+      q.pose.x_m += 0.1;
+      q.before.clear();
+      continue;
+    }
+    if (side != Side::None && a.side != Side::None && a.side != side) ++changes;
+    if (a.side != Side::None) side = a.side;
+    double way = 0.0;
+    std::size_t i = 0;
+    while (i + 1 < a.path.size() && way < 0.1) {
+      ++i;
+      way += a.path[i].pivot ? 0.03
+                             : std::hypot(a.path[i].pose.x_m - a.path[i - 1].pose.x_m,
+                                          a.path[i].pose.y_m - a.path[i - 1].pose.y_m);
+    }
+    q.pose = a.path[i].pose;
+    q.before = a.path;
+  }
+  EXPECT_GE(q.pose.x_m, to_x_m) << "it did not arrive";
+  return changes;
+}
+
+TEST(AroundTest, BeforeAPoleItDoesNotHesitate) {
+  Scene world;
+  world.pole(2.0, 0.0, 0.3);
+  Question q = along_x(3.0);
+  q.pose = {-4.0, 0.0, 0.0};
+  q.route = {{-4.0, 0.0}, {9.0, 0.0}};
+  EXPECT_EQ(drive(world, q, 4.0), 0);
+}
+
+TEST(AroundTest, AsTheViewGrowsItFindsItsWayBetweenBoxes) {
+  Scene world;
+  world.box(0.0, -1.0, 0.5, 0.8);
+  world.box(2.8, -0.6, 3.2, 3.0);
+  Question q = along_x(4.0);
+  q.pose = {-4.0, 0.0, 0.0};
+  q.route = {{-4.0, 0.0}, {9.0, 0.0}};
+  EXPECT_LE(drive(world, q, 5.0), 1) << "left of one, right of the other";
 }
 
 TEST(AroundTest, EqualQuestionsHaveEqualAnswers) {
