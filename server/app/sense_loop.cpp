@@ -11,12 +11,17 @@
 namespace roverd {
 namespace {
 
+constexpr double kMissed = 2.5;
+constexpr double kSky = 0.95;
+constexpr auto kWatchedEvery = std::chrono::milliseconds(200);
+constexpr auto kAnywayEvery = std::chrono::seconds(1);
+constexpr auto kWatchedFor = std::chrono::seconds(2);
 constexpr long kWake_ns = 20'000'000;  // also without a sight: what waits, and who fell silent
 
 }  // namespace
 
-SenseLoop::SenseLoop(robot::Robot& robot, robot::Lookout lookout)
-    : robot_(robot), lookout_(std::move(lookout)) {
+SenseLoop::SenseLoop(robot::Robot& robot, robot::Lookout lookout, robot::OutlookParams shown)
+    : robot_(robot), lookout_(std::move(lookout)), shown_(shown) {
   sem_init(&news_, 0, 0);
   thread_ = std::thread([this] { run(); });
 }
@@ -35,6 +40,18 @@ void SenseLoop::stop() {
 void SenseLoop::see(std::shared_ptr<const base::Sight> sight) {
   sights_.put(std::move(sight));
   sem_post(&news_);
+}
+
+std::shared_ptr<const robot::Outlook> SenseLoop::outlook() {
+  asked_.store(base::steady_now(), std::memory_order_relaxed);
+  return outlook_.get();
+}
+
+void SenseLoop::look_out(base::Time now) {
+  const bool watched = now - asked_.load(std::memory_order_relaxed) < kWatchedFor;
+  if (told_ && now - *told_ < (watched ? kWatchedEvery : kAnywayEvery)) return;
+  if (auto outlook = lookout_.outlook(shown_, now)) outlook_.publish(std::move(outlook));
+  told_ = now;
 }
 
 void SenseLoop::run() noexcept {
@@ -60,10 +77,18 @@ void SenseLoop::run() noexcept {
       const base::Time now = base::steady_now();
       for (auto& s : sights) lookout_.see(std::move(s), now);
       if (auto picture = lookout_.picture(now)) robot_.surroundings().put(std::move(picture));
+      look_out(now);
     } catch (const std::exception& e) {
       base::log(base::Level::Error, "sense", e.what());  // the next sight is another one
     }
   }
+}
+
+robot::OutlookParams shown_of(const Settings& s) noexcept {
+  return {.body = robot::footprint_of(s.robot.vehicle),
+          .side_m = s.sense.protect.side_m,
+          .horizon_s = s.sense.protect.horizon_s,
+          .range_m = s.sense.reduce.max_range_m};
 }
 
 base::Result<robot::Lookout> lookout_of(const Settings& s, base::Time now) {

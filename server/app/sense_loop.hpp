@@ -3,16 +3,20 @@
 // surroundings. Control never waits for it, nor it for control.
 //
 //   drivers ─see()─▶ inbox (bounded, the oldest goes) ─▶ Lookout ─▶ Robot::surroundings()
-//                          robot.odometry() ────────────────┘
+//                          robot.odometry() ────────────────┤
+//                                                           └▶ outlook(), for people
 
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <thread>
 #include <vector>
 
 #include <semaphore.h>
 
 #include "base/inbox.hpp"
+#include "base/latest.hpp"
+#include "base/result.hpp"
 #include "base/sight.hpp"
 #include "robot/guard/lookout.hpp"
 #include "robot/robot.hpp"
@@ -22,7 +26,7 @@ namespace roverd {
 class SenseLoop {
  public:
   /// Starts the thread. @param robot outlives it.
-  SenseLoop(robot::Robot& robot, robot::Lookout lookout);
+  SenseLoop(robot::Robot& robot, robot::Lookout lookout, robot::OutlookParams shown);
   ~SenseLoop();
   SenseLoop(const SenseLoop&) = delete;
   SenseLoop& operator=(const SenseLoop&) = delete;
@@ -32,15 +36,29 @@ class SenseLoop {
   /// Any thread; never waits for the work.
   void see(std::shared_ptr<const base::Sight> sight);
 
+  /// Any thread but control's: what people are shown. Whoever asks gets it anew five times a
+  /// second; for nobody it is made once a second. Null: nothing is known yet.
+  std::shared_ptr<const robot::Outlook> outlook();
+
  private:
   void run() noexcept;
+  void look_out(base::Time now);
 
   robot::Robot& robot_;
   robot::Lookout lookout_;
   base::Inbox<std::shared_ptr<const base::Sight>> sights_{64};
   sem_t news_{};
   std::atomic<bool> stop_{false};
+  const robot::OutlookParams shown_;
+  base::Latest<robot::Outlook> outlook_;
+  std::atomic<base::Time> asked_{};  ///< for an outlook
+  std::optional<base::Time> told_;   ///< one
   std::thread thread_;
 };
+
+/// How the outlook is made for this profile.
+robot::OutlookParams shown_of(const Settings& settings) noexcept;
+/// The lookout of the profile's sensors. Invalid: a mount that cannot be, with its key.
+base::Result<robot::Lookout> lookout_of(const Settings& settings, base::Time now);
 
 }  // namespace roverd

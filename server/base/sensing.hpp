@@ -30,6 +30,14 @@ struct SensorState {
   Mount mount;
 };
 
+/// Where the body is in the odometry's own frame O, which drifts and never jumps: what sensors saw
+/// is kept there. Metres; yaw left positive.
+struct OdometryPlace {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double yaw_rad = 0.0;
+};
+
 /// What the guard does about what it knows of the way.
 /// Overridden: a hand drives on at its own risk, slowly.
 enum class GuardAction { None, Slow, Creep, Stop, Overridden };

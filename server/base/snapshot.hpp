@@ -375,6 +375,7 @@ struct Snapshot {
   std::shared_ptr<const std::vector<SensorState>>
       sensors;                 ///< of the profile; empty: it has none, or nothing came yet
   bool sensors_stale = false;  ///< what they said of themselves is too old to be true
+  std::optional<OdometryPlace> odometry;  ///< at this tick; empty: nothing looks around
   TeleopState teleop;
   std::vector<SafetyCondition> safety;
   std::vector<Check> checks;

@@ -68,6 +68,10 @@ bool Robot::Impl::publish() {
   s->command = sent;
   s->detour = detour_way();
   if (guard.obstacle().action != base::GuardAction::None) s->obstacle = guard.obstacle();
+  if (guard.sees()) {
+    const nav::sense::Pose2& at = guard.odometry().pose;
+    s->odometry = {at.x_m, at.y_m, at.yaw_rad};
+  }
   if (const auto& around = guard.around()) {
     s->sensors = around->sensors;
     s->sensors_stale = guard.too_old(clock.now());

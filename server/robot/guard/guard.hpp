@@ -47,6 +47,8 @@ class Guard {
   /// Once a tick: how the body moved. @param measured over ground
   const nav::sense::Odometry& move(const base::BodyTwist& measured, base::Time now) noexcept;
 
+  const nav::sense::Odometry& odometry() const noexcept { return odometry_; }
+
   /// What may leave of a wanted twist. @param by_itself nobody's hand is on it: after a stop it
   /// waits until the way has been clear for a while
   base::BodyTwist judge(const base::BodyTwist& wanted, bool by_itself, base::Time now);

@@ -38,6 +38,7 @@ Lookout::Lookout(nav::sense::Chain chain, std::vector<std::string> kinds, double
       kinds_(std::move(kinds)),
       last_(chain_.sensors()),
       free_for_s_(chain_.sensors(), kAsKept_s),
+      scans_(chain_.sensors()),
       reach_m_(reach_m) {
   kinds_.resize(chain_.sensors());
 }
@@ -72,6 +73,7 @@ void Lookout::take(const base::Sight& sight, base::Time now) {
   const auto number = chain_.take(sight, history_, now);
   if (!number) return;
   last_[*number] = {sight.points.size(), end_of(sight)};
+  scans_[*number].keep(chain_.last(), end_of(sight));
   news_ = true;
 }
 
@@ -111,6 +113,11 @@ std::shared_ptr<const Surroundings> Lookout::picture(base::Time now) {
   news_ = false;
   told_ = now;
   return out;
+}
+
+std::shared_ptr<const Outlook> Lookout::outlook(const OutlookParams& params, base::Time now) const {
+  if (history_.empty()) return nullptr;
+  return std::make_shared<Outlook>(outlook_of(chain_, scans_, history_.newest(), params, now));
 }
 
 }  // namespace roverd::robot

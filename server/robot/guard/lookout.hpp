@@ -20,6 +20,7 @@
 #include "base/sensing.hpp"
 #include "base/sight.hpp"
 #include "nav/sense/chain.hpp"
+#include "robot/guard/outlook.hpp"
 #include "robot/guard/surroundings.hpp"
 
 namespace roverd::robot {
@@ -35,6 +36,8 @@ class Lookout {
   /// Takes what waited; then what is known around the robot. Null: nothing was seen since the last
   /// one, and that is younger than 0.1 s.
   std::shared_ptr<const Surroundings> picture(base::Time now);
+  /// For people, as often as they look. Null: the body has not moved or stood yet.
+  std::shared_ptr<const Outlook> outlook(const OutlookParams& params, base::Time now) const;
 
  private:
   void take_waiting(base::Time now);
@@ -49,6 +52,7 @@ class Lookout {
   };
   std::vector<Last> last_;
   std::vector<double> free_for_s_;  ///< what each of them told free, is believed so long
+  std::vector<KeptScan> scans_;
   double reach_m_;
   std::deque<std::shared_ptr<const base::Sight>> waiting_;
   bool news_ = false;

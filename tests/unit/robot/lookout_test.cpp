@@ -219,5 +219,68 @@ TEST(Lookout, ASightOfNobodysIsLeft) {
   EXPECT_FALSE(l.picture(at(0.3))->seen);
 }
 
+OutlookParams shown() {
+  return {.body = footprint_of({}), .side_m = 0.08, .horizon_s = 6.0, .range_m = 8.0};
+}
+
+TEST(Lookout, ShowsPeopleTheWallAsOneThingAsRaysAsPointsAndAsCells) {
+  Lookout l = lookout();
+  EXPECT_EQ(l.outlook(shown(), at(0.0)), nullptr) << "the body's place is not known yet";
+  stand(l, 0.0, 0.5);
+  for (int i = 0; i < 5; ++i) l.see(wall("front", 0.1 * i, std::uint64_t(i)), at(0.5));
+  const auto o = l.outlook(shown(), at(0.5));
+  ASSERT_NE(o, nullptr);
+  EXPECT_EQ(*o->seen, at(0.4));
+  // It is 4 m wide as far as it is seen, and begins 2 m ahead.
+  ASSERT_EQ(o->things.size(), 1u);
+  const Outlook::Thing& thing = o->things[0];
+  EXPECT_FALSE(thing.drop);
+  EXPECT_NEAR(thing.ahead_m, 2.0, 0.06);
+  EXPECT_NEAR(thing.clearance_m, 2.0 - 0.5 * nav::VehicleParams{}.length_m, 0.06);
+  EXPECT_NEAR(thing.size_m, 4.0, 0.2);
+  EXPECT_EQ(thing.sensor, "front");
+  EXPECT_FALSE(thing.on_way) << "it stands";
+  EXPECT_NEAR(o->rays[180].hit_m, 2.0, 0.06);
+  EXPECT_NEAR(o->rays[180].free_m, 1.95, 0.06);
+  EXPECT_NEAR(o->rays[180 + 30].hit_m, 2.0 / std::cos(0.5236), 0.1);
+  EXPECT_EQ(o->rays[0].hit_m, 0.0F) << "nobody looks behind";
+  ASSERT_EQ(o->scans.size(), 1u) << "the rear one has said nothing";
+  EXPECT_EQ(o->scans[0].sensor, "front");
+  EXPECT_GT(o->scans[0].spots.size(), 50u);
+  for (const auto& spot : o->scans[0].spots) EXPECT_NEAR(spot.ahead_m, 2.0F, 0.03F);
+  // Two by two cells are one; the square is whole and bounded.
+  EXPECT_DOUBLE_EQ(o->grid.cell_m, 0.1);
+  EXPECT_NEAR(o->grid.side, 160, 2);
+  EXPECT_LE(o->grid.runs.size(), 200u * 200u);
+  std::size_t cells = 0;
+  for (const std::uint8_t run : o->grid.runs) cells += (run & 63U) + 1;
+  EXPECT_EQ(cells, static_cast<std::size_t>(o->grid.side) * static_cast<std::size_t>(o->grid.side));
+}
+
+TEST(Lookout, ShowsWhatWasSeenFromTheBodyAsItStandsNowAndWhatItDrivesAgainst) {
+  Lookout l = lookout();
+  stand(l, 0.0, 0.5);
+  for (int i = 0; i < 5; ++i) l.see(wall("front", 0.1 * i, std::uint64_t(i)), at(0.5));
+  // Half a metre on, at half a metre a second.
+  for (double t = 0.5; t < 1.5; t += 0.02) {
+    l.moved({.stamp = at(t), .pose = {0.5 * (t - 0.5), 0.0, 0.0}, .v_mps = 0.5});
+  }
+  const auto o = l.outlook(shown(), at(1.5));
+  ASSERT_EQ(o->things.size(), 1u);
+  EXPECT_NEAR(o->things[0].ahead_m, 1.51, 0.06);
+  EXPECT_TRUE(o->things[0].on_way);
+  EXPECT_NEAR(o->scans[0].spots[0].ahead_m, 1.51F, 0.06F);
+}
+
+TEST(KeptScan, IsBoundedHoweverMuchWasSeen) {
+  nav::sense::Reduced in;
+  in.voxels.assign(100'000, {.x_m = 1.0F, .kind = nav::sense::Kind::Obstacle});
+  in.voxels.resize(150'000, {.kind = nav::sense::Kind::Ground});
+  KeptScan kept;
+  kept.keep(in, at(0.0));
+  EXPECT_LE(kept.voxels.size(), Outlook::kMostDots);
+  EXPECT_GT(kept.voxels.size(), Outlook::kMostDots / 2);
+}
+
 }  // namespace
 }  // namespace roverd::robot
