@@ -49,6 +49,7 @@ constexpr Row kTable[] = {
     {"GET /missions/{id}/export", Need::Viewer},
     {"GET /missions/{id}/revisions", Need::Viewer},
     {"GET /missions/{id}/revisions/{revision}", Need::Viewer},
+    {"GET /obstacles", Need::Viewer},
     {"GET /openapi.json", Need::Viewer},
     {"GET /parameters", Need::Viewer},
     {"GET /parameters/{name}", Need::Viewer},

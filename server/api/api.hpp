@@ -18,6 +18,7 @@
 #include "api/json/words.hpp"
 #include "api/message.hpp"
 #include "people/book.hpp"
+#include "robot/guard/outlook.hpp"
 #include "robot/robot.hpp"
 #include "services/services.hpp"
 #include "store/store.hpp"
@@ -118,6 +119,8 @@ struct Deps {
   std::function<NetFigures()> figures{};
   /// Empty: it has none.
   std::function<Identity()> identity{};
+  /// What the sensors see, for people; null: nothing yet. Empty: the robot has no sensors.
+  std::function<std::shared_ptr<const robot::Outlook>()> outlook{};
   /// What is wrong with this computer now. Empty: nobody looks.
   std::function<std::vector<base::HostProblem>()> host{};
   /// Any number at a time, bounded. @return false: no room, nothing was taken. Empty: both at once.

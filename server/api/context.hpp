@@ -119,6 +119,10 @@ struct Context {
   /// The mission that another life of the program left behind, if nothing else is in hand: what the
   /// services say of it is older than the snapshot by up to their beat.
   std::optional<store::StoredPlace> offer(const base::Snapshot& snapshot) const;
+  /// What the sensors see; null: nothing yet, or there are none.
+  std::shared_ptr<const robot::Outlook> outlook() const {
+    return deps.outlook ? deps.outlook() : nullptr;
+  }
   /// Answers 503 and returns null before the robot's first tick.
   std::shared_ptr<const base::Snapshot> snapshot_or_refuse(const CallPtr& call) const;
   /// What costs much leaves the web thread: `work` gives a value and touches nothing that others

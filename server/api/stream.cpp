@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "api/json/plain_json.hpp"
+#include "api/topics.hpp"
 #include "base/angle.hpp"
 #include "mission/json/json.hpp"
 
@@ -23,12 +24,6 @@ constexpr double kMostRate_hz = 50.0;
 constexpr std::uint16_t kPolicyViolation = 1008;
 /// As 401, in the range that programs may choose from.
 constexpr std::uint16_t kLogInAgain = 4401;
-
-constexpr const char* kVehicle = "vehicle";
-constexpr const char* kEvents = "events";
-constexpr const char* kMissions = "missions";
-constexpr const char* kExecution = "execution";
-constexpr const char* kControl = "control";
 
 /// What stops or slows without a latch, by its word. None of it is ever late.
 std::optional<robot::Command> halt_of(std::string_view word) {
@@ -58,6 +53,7 @@ StreamTexts::StreamTexts(ContextPtr context, Stream stream)
   stream_.add_event_topic(kMissions);
   stream_.add_event_topic(kExecution);
   stream_.add_event_topic(kControl);
+  add_seen_topics();
 }
 
 std::optional<std::string> StreamTexts::vehicle_text(std::uint64_t seq) {
@@ -85,7 +81,7 @@ void StreamTexts::on_client(ClientId client, std::optional<people::Who> who,
   clients_[client].address = address;
   const Json data = {
       {"version", context_->deps.version},
-      {"topics", {kVehicle, kEvents, kMissions, kExecution, kControl}},
+      {"topics", kTopics},
       {"capabilities", capabilities_json(context_->profile(), context_->deps.version)}};
   stream_.send(client, stream_text("hello", 1, plain_json(data)));
 }
@@ -249,12 +245,11 @@ base::Result<void> StreamTexts::subscribe(ClientId id, Client& client, const Jso
   std::vector<base::FieldError> unknown;
   if (topics.is_object()) {
     for (const auto& [name, value] : topics.items()) {
-      const bool known = name == kVehicle || name == kEvents || name == kMissions ||
-                         name == kExecution || name == kControl;
+      const bool known = is_topic(name);
       if (!known) unknown.push_back({"/subscribe/" + name, "unknown topic"});
       const auto rate = members.number(name, 0.0, kMostRate_hz);
       if (value.is_null()) members.complain(name, "must be a number");
-      if (known && rate) rates[name] = *rate;
+      if (known && rate) rates[name] = rate_of(name, *rate);
     }
   }
   if (auto read = members.finish(); !read) {

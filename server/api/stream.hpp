@@ -74,6 +74,7 @@ class StreamTexts {
   void tell_robot(const Client& client);
   void complain(ClientId id, Client& client, const base::Error& error);
   std::optional<std::string> vehicle_text(std::uint64_t seq);
+  void add_seen_topics();
 
   ContextPtr context_;
   Stream stream_;

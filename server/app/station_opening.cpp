@@ -66,6 +66,8 @@ Result<void> Station::Impl::open_senses(const Settings& settings, const Options&
   robot.guard_by(settings.sense.protect, demands, settings.sense.blocked, settings.sense.outline);
   sense = std::make_shared<SenseLoop>(robot, std::move(*lookout));
   if (settings.sense.blocked.then == "around") around = std::make_unique<AroundLoop>(robot);
+  robot.guard_by(settings.sense.protect, demands);
+  sense = std::make_shared<SenseLoop>(robot, std::move(*lookout), shown_of(settings));
   return {};
 }
 
@@ -190,6 +192,7 @@ void Station::Impl::make_api(const Settings& settings, const Options& options) {
                            .connections = stats.connections,
                            .clients = stats.clients};
   };
+  if (sense) deps.outlook = [this] { return sense->outlook(); };
   deps.identity = [this] { return presence->identity(); };
   deps.host = [this] { return host; };
   deps.aside = [this](api::Aside a) {

@@ -108,6 +108,10 @@ House::House(net::Limits limits, Vehicle vehicle, const Before& before)
     return true;
   };
   deps.later = [this](std::function<void()> call) { boost::asio::post(io_, std::move(call)); };
+  if (before.sees) {
+    robot_.guard_by({}, false);
+    deps.outlook = [this] { return seen_.get(); };
+  }
   if (before.access) deps.people = &people_;
   deps.control_grace = before.control_grace;
   deps.tell_code = [this](const std::string& code) {

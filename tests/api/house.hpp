@@ -16,6 +16,7 @@
 #include <nlohmann/json.hpp>
 
 #include "api/api.hpp"
+#include "base/latest.hpp"
 #include "client.hpp"
 #include "net/doorbell.hpp"
 #include "net/server.hpp"
@@ -34,6 +35,7 @@ struct Before {
   std::function<void(const std::filesystem::path& file)> data{};
   std::function<void(robot::Config&)> config{};
   bool access = false;  ///< access control is on
+  bool sees = false;    ///< it has sensors
   base::Duration control_grace = std::chrono::seconds(10);
 };
 
@@ -78,6 +80,8 @@ class House {
   void drill_says(const std::string& line);
   void drill_ends(const std::string& problem);
   std::atomic<int> drills_stopped{0};
+  /// What its sensors see from now on, if it has any.
+  void sees(std::shared_ptr<const robot::Outlook> outlook) { seen_.publish(std::move(outlook)); }
   /// The one-time code of the first admin, as it was told last; empty: none.
   std::string code();
   /// Nothing large is begun until what this gives is let go.
@@ -104,8 +108,9 @@ class House {
   std::unique_ptr<net::Doorbell> bell_;
   net::Workers workers_{io_};
   std::mutex mutex_;
-  people::Book people_;              ///< web thread
-  base::DriveCommand sent_;          ///< guarded by mutex_
+  people::Book people_;      ///< web thread
+  base::DriveCommand sent_;  ///< guarded by mutex_
+  base::Latest<robot::Outlook> seen_;
   std::string code_;                 ///< guarded by mutex_
   std::string drill_order_;          ///< guarded by mutex_
   api::DrillDoor::Line drill_line_;  ///< web thread

@@ -7,6 +7,20 @@
 
 namespace roverd::api {
 
+namespace {
+
+Json guard_json(const std::optional<GuardProfile>& g) {
+  if (!g) return nullptr;
+  return {{"back_m", rounded(g->back_m, kPlaces3)},
+          {"side_m", rounded(g->side_m, kPlaces3)},
+          {"gap_m", rounded(g->gap_m, kPlaces3)},
+          {"delay_s", rounded(g->delay_s, kPlaces3)},
+          {"decel_mps2", rounded(g->decel_mps2, kPlaces3)},
+          {"turn_decel_dps2", degrees(g->turn_decel_radps2)}};
+}
+
+}  // namespace
+
 Json capabilities_json(const Profile& p, const std::string& version) {
   Json modes = Json::array();
   for (const base::Mode mode : p.modes) modes.push_back(base::to_string(mode));
@@ -26,6 +40,7 @@ Json capabilities_json(const Profile& p, const std::string& version) {
             {"max_yaw_rate_dps", degrees(p.max_yaw_rate_radps)},
             {"max_acceleration_mps2", p.max_acceleration_mps2},
             {"pivot_angle_deg", degrees(p.pivot_angle_rad)}}},
+          {"guard", guard_json(p.guard)},
           {"modes", std::move(modes)},
           {"drivers", p.drivers},
           {"lights", p.lights},

@@ -12,6 +12,7 @@
 #include "base/snapshot.hpp"
 #include "mission/checks.hpp"
 #include "mission/formats/formats.hpp"
+#include "robot/guard/outlook.hpp"
 #include "robot/robot.hpp"
 #include "services/trail.hpp"
 #include "store/store.hpp"
@@ -31,6 +32,16 @@ struct StaleAfter {
 };
 
 /// What main says of the vehicle; fixed while the program runs.
+/// By what the guard reckons how far ahead it must be free.
+struct GuardProfile {
+  double back_m = 0.0;  ///< from the vehicle's origin to its rear end
+  double side_m = 0.0;
+  double gap_m = 0.0;
+  double delay_s = 0.0;
+  double decel_mps2 = 0.0;
+  double turn_decel_radps2 = 0.0;
+};
+
 struct Profile {
   std::string name;
   std::string title;
@@ -49,6 +60,7 @@ struct Profile {
   std::vector<std::string> item_types;       ///< those that execution can drive
   std::map<std::string, std::string> radio;  ///< "swc_up" → "mode.manual"
   mission::VehicleLimits limits{};           ///< what missions are checked against
+  std::optional<GuardProfile> guard{};       ///< empty: it drives blind
 };
 
 Json vehicle_json(const base::Snapshot& snapshot, const std::string& name, base::Time now);
@@ -65,6 +77,12 @@ Json detour_json(const base::Snapshot& s);
 Json obstacle_json(const std::optional<base::Obstacle>& obstacle, base::Time now);
 /// All of the profile, as they were seen last.
 Json sensors_json(const base::Snapshot& snapshot, base::Time now);
+/// What stands around the robot, of topic and call `obstacles`. @param seen null: nothing yet
+Json obstacles_json(const robot::Outlook* seen, const base::Snapshot& snapshot, base::Time now);
+/// What the sensors saw last, about the robot.
+Json scan_json(const robot::Outlook& seen, const base::Snapshot& snapshot, base::Time now);
+/// What is known of the ground about the robot.
+Json grid_json(const robot::Outlook& seen, const base::Snapshot& snapshot, base::Time now);
 /// Every receiver's satellites, newest word of each.
 Json satellites_json(const base::Snapshot& snapshot, base::Time now);
 Json checks_json(const base::Snapshot& snapshot);
