@@ -10,8 +10,9 @@ import { fence_calls, survey_calls } from './link/fields';
 import { read_identity } from './link/identity';
 import { mission_calls, tile_sets, vehicle_calls } from './link/rest';
 import { run_calls } from './link/runs';
+import { seen_calls } from './link/seen';
 import { slip_calls } from './link/slips';
-import { draft_storage } from './link/storage';
+import { draft_storage, layer_storage } from './link/storage';
 import { Stream } from './link/stream';
 import { teach_calls } from './link/teach';
 import { FieldMap } from './map/map';
@@ -56,16 +57,19 @@ const begin = (account: Account | null, session: string | null): void => {
     teach: teach_calls,
     runs: run_calls,
     slips: slip_calls,
+    seen: seen_calls,
     drill: drill_calls,
     survey: survey_calls,
     fences: fence_calls,
     map,
     storage: draft_storage,
+    layers: layer_storage,
     link: {
       send_drive: (...wish) => late.stream?.send_drive(...wish) ?? false,
       send_halt: (halt) => late.stream?.send_halt(halt) ?? false,
       seen_s: () => late.stream?.seen_s() ?? null,
       robot_s: () => late.stream?.robot_s() ?? null,
+      watch: (rates) => late.stream?.watch(rates),
     },
   });
   const desk = account && session ? new ControlDesk(control_calls, session, account.role) : null;

@@ -1,23 +1,25 @@
-// The draft on the device. Private windows and full disks refuse: that is no error of the page.
+// What the page keeps on the device: the draft, and which layers are shown. Private windows and full
+// disks refuse: that is no error of the page.
 
 import type { DraftStorage } from '../model/ports';
 
-const KEY = 'roverd.draft';
-
-export const draft_storage: DraftStorage = {
+const storage_of = (key: string): DraftStorage => ({
   read: () => {
     try {
-      return localStorage.getItem(KEY);
+      return localStorage.getItem(key);
     } catch {
       return null;
     }
   },
   write: (text) => {
     try {
-      localStorage.setItem(KEY, text);
+      localStorage.setItem(key, text);
       return true;
     } catch {
       return false;
     }
   },
-};
+});
+
+export const draft_storage = storage_of('roverd.draft');
+export const layer_storage = storage_of('roverd.layers');

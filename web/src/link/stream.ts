@@ -9,7 +9,9 @@ import { Pings, RobotClock } from '../model/clock';
 import { backoff_ms, should_reopen, type LinkHealth, type SocketState } from '../model/freshness';
 import type { Halt } from '../model/halt';
 import type { LiveLink, StreamEvents } from '../model/ports';
+import type { SeenTopic } from '../model/seen';
 import type { components } from './schema';
+import { bytes_of } from './seen';
 
 type Schemas = components['schemas'];
 type Message =
@@ -18,6 +20,9 @@ type Message =
   | Schemas['StreamEvent']
   | Schemas['StreamMissions']
   | Schemas['StreamControl']
+  | Schemas['StreamScan']
+  | Schemas['StreamGrid']
+  | Schemas['StreamObstacles']
   | Schemas['StreamPong']
   | Schemas['StreamStopped']
   | Schemas['StreamError'];
@@ -26,9 +31,7 @@ type Message =
 const LOG_IN_AGAIN = 4401;
 const WATCH_MS = 500;
 const PING_MS = 1000;
-const SUBSCRIBE = JSON.stringify({
-  subscribe: { vehicle: 10, events: 0, missions: 0, control: 0 },
-});
+const TOPICS = { vehicle: 10, events: 0, missions: 0, control: 0 };
 /** Bytes not yet taken by the network: a drive command behind them would come too late. */
 const DRIVE_BACKLOG = 512;
 
@@ -55,6 +58,8 @@ export class Stream implements LiveLink {
   #attempt = 0;
   #retry: ReturnType<typeof setTimeout> | undefined;
   #drive_seq = 0;
+  /** What is looked at besides. */
+  #more: Readonly<Partial<Record<SeenTopic, number>>> = {};
 
   /** @param logged_out the robot closed it because the log-in has ended */
   constructor(
@@ -68,13 +73,20 @@ export class Stream implements LiveLink {
   }
 
   /** Teleoperation. @return false: not connected or congested, nothing was sent */
-  send_drive = (speed_mps: number, yaw_rate_dps: number, deadman: boolean): boolean => {
+  send_drive = (
+    speed_mps: number,
+    yaw_rate_dps: number,
+    deadman: boolean,
+    past = false,
+  ): boolean => {
     const backlog = this.#socket?.bufferedAmount ?? 0;
     if (deadman && backlog > DRIVE_BACKLOG) return false;
     const seq = this.#drive_seq + 1;
     const seen_s = this.seen_s();
     const seen = seen_s === null ? {} : { seen_s };
-    const sent = this.#send({ drive: { speed_mps, yaw_rate_dps, deadman, seq, ...seen } });
+    const over = deadman && past ? { override_guard: true } : {};
+    const drive = { speed_mps, yaw_rate_dps, deadman, seq, ...seen, ...over };
+    const sent = this.#send({ drive });
     if (sent) this.#drive_seq = seq;
     return sent;
   };
@@ -95,6 +107,12 @@ export class Stream implements LiveLink {
     return this.#clock.robot_s(performance.now());
   }
 
+  watch(rates_hz: Readonly<Partial<Record<SeenTopic, number>>>): void {
+    if (JSON.stringify(rates_hz) === JSON.stringify(this.#more)) return;
+    this.#more = rates_hz;
+    this.#subscribe();
+  }
+
   /** Try at once, for example when the device woke up. */
   hurry(): void {
     if (this.#socket !== null) return;
@@ -109,7 +127,7 @@ export class Stream implements LiveLink {
     this.#opened_ms = performance.now();
     this.#report('connecting');
     socket.onopen = () => {
-      socket.send(SUBSCRIBE);
+      this.#subscribe();
       this.#pings.restart();
       this.#ping();
       this.#opened_ms = performance.now();
@@ -158,11 +176,24 @@ export class Stream implements LiveLink {
       case 'control':
         this.#events.on_control?.(message.data);
         break;
+      case 'scan':
+        this.#events.on_scan?.(message.data);
+        break;
+      case 'grid':
+        this.#events.on_grid?.({ ...message.data, runs: bytes_of(message.data.runs) });
+        break;
+      case 'obstacles':
+        this.#events.on_things?.(message.data);
+        break;
       case 'error':
         this.#events.on_refused({ ...message.data, errors: message.data.errors ?? [] });
         break;
     }
     this.#report('open');
+  }
+
+  #subscribe(): void {
+    this.#send({ subscribe: { ...TOPICS, ...this.#more } });
   }
 
   #show_newest(): void {

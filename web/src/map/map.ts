@@ -22,6 +22,7 @@ import type {
   RunOnMap,
   TileSet,
 } from '../model/ports';
+import type { AheadOnMap, SeenOnMap } from '../model/seen';
 import type { Tracks } from '../model/tracks';
 import { canvas_layer } from './canvas';
 import type { Slip } from '../model/slips';
@@ -114,6 +115,7 @@ export class FieldMap implements MapCalls {
   #pressed_long = false;
   /** The view shows something that matters; before, the robot's first position sets it. */
   #placed = false;
+  #seen_asked = false;
 
   /** @param target fills the window; gets the scale bar and the tiles' credit too */
   constructor(target: HTMLElement) {
@@ -220,6 +222,18 @@ export class FieldMap implements MapCalls {
     this.#map.render();
   }
 
+  show_seen(seen: SeenOnMap | null): void {
+    this.#scene.seen = seen;
+    if (seen) this.#load_seen_painter();
+    this.#map.render();
+  }
+
+  show_ahead(ahead: AheadOnMap | null): void {
+    this.#scene.ahead = ahead;
+    if (ahead) this.#load_seen_painter();
+    this.#map.render();
+  }
+
   set_size(length_m: number, width_m: number): void {
     this.#scene.size = { length_m, width_m };
   }
@@ -265,6 +279,19 @@ export class FieldMap implements MapCalls {
       maxZoom: set.max_zoom,
     });
     this.#tiles.setSource(source);
+  }
+
+  /** Most robots see nothing, and most pages need not draw it. */
+  #load_seen_painter(): void {
+    if (this.#seen_asked) return;
+    this.#seen_asked = true;
+    import('./seen_painter').then(
+      (painter) => {
+        this.#scene.seen_painter = painter;
+        this.#map.render();
+      },
+      () => (this.#seen_asked = false), // again with the next picture
+    );
   }
 
   /** A finger that rests, or the right mouse button: marks a place, also where a tap would select. */

@@ -88,6 +88,8 @@ const dark: Palette = {
 
 const dark_wanted = matchMedia('(prefers-color-scheme: dark)');
 
+export const is_dark = (): boolean => dark_wanted.matches;
+
 export const palette = (): Palette => (dark_wanted.matches ? dark : light);
 
 export const on_palette_change = (redraw: () => void): void => {

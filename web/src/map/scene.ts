@@ -4,6 +4,7 @@ import { distance_m } from '../model/geo';
 import type { FenceDraft } from '../model/fence';
 import { EMPTY_PLAN, type LatLon, type Plan } from '../model/plan';
 import type { MapEvents, Mark, RobotOnMap } from '../model/ports';
+import type { AheadOnMap, SeenOnMap } from '../model/seen';
 import { ring_behind } from './band';
 import type { Paint, Painter } from './canvas';
 import { paint_drill, type DrawnDrill } from './drill_painter';
@@ -26,6 +27,7 @@ import { from_plane, type PlaneLine, to_plane_line, units_per_m } from './projec
 import { paint_accuracy, paint_home, paint_robot, TrailLine, type Size } from './robot_painter';
 import { paint_runs, type DrawnRun } from './run_painter';
 import type { ScaleBar } from './scale_bar';
+import type * as SeenPainter from './seen_painter';
 import { paint_space, type DrawnSpace } from './space_painter';
 import { paint_slips, type DrawnSlip } from './slip_painter';
 
@@ -76,6 +78,10 @@ export class Scene {
   space: DrawnSpace | null = null;
   slips: readonly DrawnSlip[] = [];
   fence: FenceDraft | null = null;
+  seen: SeenOnMap | null = null;
+  ahead: AheadOnMap | null = null;
+  /** Loaded when a robot with sensors is looked at. */
+  seen_painter: typeof SeenPainter | null = null;
   /** The place that the person chose. */
   pin: Mark | null = null;
   /** Where the robot drives to outside of a mission. */
@@ -106,6 +112,9 @@ export class Scene {
         if (this.robot) paint_accuracy(paint, this.robot, palette());
       },
       (paint) => {
+        if (this.seen) this.seen_painter?.paint_ground(paint, this.seen.grid);
+      },
+      (paint) => {
         if (this.fence) paint_fence(paint, this.fence, palette());
       },
       (paint) => {
@@ -134,7 +143,14 @@ export class Scene {
         if (this.pin) paint_pin(paint, this.pin, palette());
       },
       (paint) => {
+        if (this.ahead) this.seen_painter?.paint_ahead(paint, this.ahead, palette());
+        if (this.seen) this.seen_painter?.paint_seen(paint, this.seen, palette());
+      },
+      (paint) => {
         if (this.robot) paint_robot(paint, this.robot, this.size, palette());
+      },
+      (paint) => {
+        if (this.ahead) this.seen_painter?.paint_block(paint, this.ahead, palette());
       },
     ];
   }

@@ -12,6 +12,7 @@ import type { Halt } from './halt';
 import type { WayHome } from './homeward';
 import type { Home, LatLon, Plan, Settings, Item } from './plan';
 import type { RunHead, RunReport } from './runs';
+import type { SeenEvents, SeenLink, SeenMap } from './seen';
 import type { Slip } from './slips';
 import type { ReceiverSky } from './sky';
 import type { Survey, SurveyWish } from './survey';
@@ -260,11 +261,17 @@ export interface TeachCalls {
   discard(): Promise<Answer<unknown>>;
   stop(): Promise<Answer<Mission>>;
 }
-/** Teleoperation over the live stream. @return false: not connected, nothing was sent */
-export type SendDrive = (speed_mps: number, yaw_rate_dps: number, deadman: boolean) => boolean;
+/** Teleoperation over the live stream. @param past the hand also holds the guard off, to creep past
+ * what stands there. @return false: not connected, nothing was sent */
+export type SendDrive = (
+  speed_mps: number,
+  yaw_rate_dps: number,
+  deadman: boolean,
+  past?: boolean,
+) => boolean;
 
 /** What the open socket can do besides. */
-export interface LiveLink {
+export interface LiveLink extends SeenLink {
   readonly send_drive: SendDrive;
   /** @return false: not connected, nothing was sent */
   send_halt(halt: Halt): boolean;
@@ -274,7 +281,7 @@ export interface LiveLink {
   robot_s(): number | null;
 }
 
-export interface StreamEvents {
+export interface StreamEvents extends SeenEvents {
   on_link(link: LinkHealth): void;
   on_hello(capabilities: Capabilities): void;
   /** @param mono_s the robot's clock when this was true */
@@ -351,7 +358,7 @@ export interface Mark extends LatLon {
   /** Around it; clockwise null: no way, but the area in which the robot stays. */
   readonly ring?: { readonly radius_m: number; readonly clockwise: boolean | null };
 }
-export interface MapCalls {
+export interface MapCalls extends SeenMap {
   listen(events: MapEvents): void;
   set_mode(mode: MapMode): void;
   /** What is edited: a mission, a ring, or places that nothing joins. */
@@ -363,8 +370,8 @@ export interface MapCalls {
   ): void;
   /** Where to stay and where not to go; null: nothing of the kind. */
   show_fence(fence: FenceDraft | null): void;
-  /** The mission the robot has loaded; null hides it. @param current_item from 1; 0: none */
-  /** @param way as it is laid out; empty: not known */
+  /** The mission the robot has loaded; null hides it. @param way as it is laid out; empty: not known.
+   * @param current_item from 1; 0: none */
   show_route(route: Plan | null, way: readonly LatLon[], current_item: number): void;
   show_robot(robot: RobotOnMap | null, tracks: Tracks): void;
   show_home(home: LatLon | null): void;

@@ -1,7 +1,9 @@
 // The state of the vehicle as the stream sends it, and the words for it. An unknown value is null
 // and is shown as "—", never as zero.
 
+import type { Obstacle } from './obstacle';
 import type { LatLon } from './plan';
+import type { GuardFigures, Twist } from './sweep';
 
 export type Mode =
   | 'MANUAL'
@@ -193,6 +195,12 @@ export interface Vehicle {
   readonly fence: FenceState | null;
   readonly teach?: TeachBrief;
   readonly safety: readonly SafetyCondition[];
+  /** What was sent to the vehicle. */
+  readonly command?: Twist;
+  /** What limits the drive, or stops it. */
+  readonly obstacle?: Obstacle | null;
+  /** The way around it: latitudes and longitudes. */
+  readonly detour?: readonly (readonly number[])[] | null;
   readonly home: LatLon | null;
   readonly ready_to_arm: boolean;
 }
@@ -213,6 +221,8 @@ export interface Capabilities {
   readonly title: string;
   readonly size: { readonly length_m: number; readonly width_m: number };
   readonly limits: { readonly max_speed_mps: number; readonly max_yaw_rate_dps: number };
+  /** Null: it has no sensors that look around. */
+  readonly guard: GuardFigures | null;
   readonly modes: readonly Mode[];
   readonly item_types: readonly string[];
   readonly import_formats: readonly string[];

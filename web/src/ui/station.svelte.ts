@@ -21,6 +21,7 @@ import type {
   TeachCalls,
   VehicleCalls,
 } from '../model/ports';
+import type { SeenCalls } from '../model/seen';
 import { field_places } from '../model/survey';
 import { robot_place, type Check } from '../model/vehicle';
 import { Calibrator } from './calibrator.svelte';
@@ -39,6 +40,7 @@ import { Pilot } from './pilot.svelte';
 import { LoadedRoute } from './route.svelte';
 import { Resumption } from './resumption.svelte';
 import { Runs } from './runs.svelte';
+import { Seen } from './seen.svelte';
 import { Slips } from './slips.svelte';
 import { Sky } from './sky.svelte';
 import { Surveyor } from './survey.svelte';
@@ -66,11 +68,13 @@ export interface Doors {
   readonly teach: TeachCalls;
   readonly runs: RunCalls;
   readonly slips: SlipCalls;
+  readonly seen: SeenCalls;
   readonly drill: DrillCalls;
   readonly survey: SurveyCalls;
   readonly fences: FenceCalls;
   readonly map: MapCalls;
   readonly storage: DraftStorage;
+  readonly layers: DraftStorage;
   readonly link: LiveLink;
 }
 
@@ -122,6 +126,7 @@ export class Station {
   readonly teacher: Teacher;
   readonly runs: Runs;
   readonly slips: Slips;
+  readonly seen: Seen;
   readonly drills: Drills;
   readonly surveyor: Surveyor;
   readonly fences: Fences;
@@ -155,6 +160,7 @@ export class Station {
     this.sky = new Sky(doors.vehicle);
     this.runs = new Runs(doors.runs);
     this.slips = new Slips(doors.slips, this.dialogs);
+    this.seen = new Seen(doors.seen, doors.link, this.live, doors.layers);
     this.drills = new Drills(doors.drill);
     this.surveyor = new Surveyor(doors.survey, this.editor, this.notices);
     this.fences = new Fences(doors.fences, this.notices, this.dialogs);
@@ -195,7 +201,13 @@ export class Station {
     },
     on_refused: (refusal) => this.live.refuse_stick(refusal_text(refusal)),
     on_stopped: () => this.pilot.halts.on_stopped(),
-    on_event: (event) => this.notices.event(event),
+    on_event: (event) => {
+      this.notices.event(event);
+      this.seen.on_event(event.kind);
+    },
+    on_grid: (grid) => this.seen.stream_events.on_grid?.(grid),
+    on_scan: (scan) => this.seen.stream_events.on_scan?.(scan),
+    on_things: (things) => this.seen.stream_events.on_things?.(things),
     on_mission_changed: (id, revision) => {
       void this.editor.stored_changed(id, revision);
       if (this.tab === 'missions') void this.library.refresh();
@@ -369,6 +381,9 @@ export class Station {
     // As long as somebody sees them: in the log, or on the map.
     const slips_seen = $derived(this.slips.shown || this.tab === 'log');
     $effect(() => (slips_seen ? untrack(() => this.slips.watch()) : undefined));
+    $effect(() => this.seen.follow_layers());
+    $effect(() => map.show_seen(this.seen.on_map));
+    $effect(() => map.show_ahead(this.seen.ahead));
     $effect(() => map.show_space(this.calibrator.space));
     $effect(() => map.show_robot(live.robot, live.tracks));
     $effect(() => map.show_home(live.vehicle?.home ?? null));

@@ -1,0 +1,104 @@
+// What the guard does about what stands in the way: the words for it, the place on the map, and which
+// sound it makes.
+
+import { sentence } from './format';
+import { offset_from } from './geo';
+import type { LatLon } from './plan';
+
+export interface Obstacle {
+  readonly action: 'slow' | 'creep' | 'stop';
+  readonly what: 'obstacle' | 'drop' | 'unseen' | 'blind';
+  /** From the vehicle's origin. */
+  readonly distance_m: number;
+  /** On the body, clockwise from straight ahead. */
+  readonly bearing_deg: number;
+  readonly sensor: string | null;
+  readonly age_s: number;
+  /** The drive has been stopped for so long; null: it is not. */
+  readonly stopped_s: number | null;
+  readonly reason: string;
+  /** It has limited or stopped the drive for so long. */
+  readonly since_s?: number | null;
+  /** The drive waits for somebody to help. */
+  readonly blocked?: boolean | null;
+  /** What comes of waiting. */
+  readonly then?: string | null;
+  readonly decides_in_s?: number | null;
+}
+
+const then_words: Readonly<Record<string, string>> = {
+  wait: 'it waits on',
+  go_around: 'it looks for a way around',
+  around: 'it looks for a way around',
+  return: 'it drives back',
+  abort: 'the mission ends',
+};
+
+/** "12 s", "3 min" */
+const lasting = (seconds: number): string =>
+  seconds < 90 ? `${Math.max(1, Math.round(seconds))} s` : `${Math.round(seconds / 60)} min`;
+
+/** Since when, and what comes next: "For 12 s. In 8 s it looks for a way around."
+ * @param older_s since the robot said so */
+export const obstacle_since = (obstacle: Obstacle, older_s: number): string => {
+  const parts: string[] = [];
+  const since_s = obstacle.stopped_s ?? obstacle.since_s ?? null;
+  if (since_s !== null) parts.push(`For ${lasting(since_s + older_s)}.`);
+  if (obstacle.blocked === true) parts.push('Blocked.');
+  const then = obstacle.then ?? null;
+  if (then !== null && then !== '') {
+    const words = then_words[then] ?? then.replaceAll('_', ' ');
+    const left_s = obstacle.decides_in_s ?? null;
+    const soon = left_s === null ? 'Then' : `In ${lasting(Math.max(0, left_s - older_s))}`;
+    parts.push(`${soon} ${words}.`);
+  }
+  return parts.join(' ');
+};
+
+/** "It slows: something stands in the way, 1.2 m ahead, seen by front." */
+export const obstacle_line = ({ action, reason }: Obstacle): string => {
+  if (action === 'stop') return `${sentence(reason)}.`;
+  return `${action === 'creep' ? 'It creeps' : 'It slows'}: ${reason}.`;
+};
+
+/** A place on the body, on the map. @param heading_deg of the body */
+export const place_on_body = (
+  from: LatLon,
+  heading_deg: number,
+  ahead_m: number,
+  left_m: number,
+): LatLon => {
+  const heading = (heading_deg * Math.PI) / 180;
+  return offset_from(from, {
+    east_m: ahead_m * Math.sin(heading) - left_m * Math.cos(heading),
+    north_m: ahead_m * Math.cos(heading) + left_m * Math.sin(heading),
+  });
+};
+
+/** Where what limits the drive stands; nothing: that is no place. */
+export const obstacle_place = (
+  obstacle: Obstacle | null | undefined,
+  from: LatLon | null,
+  heading_deg: number | null,
+): LatLon | null => {
+  if (!obstacle || obstacle.what === 'blind' || !from || heading_deg === null) return null;
+  const bearing = (obstacle.bearing_deg * Math.PI) / 180;
+  const { distance_m } = obstacle;
+  const [ahead_m, left_m] = [distance_m * Math.cos(bearing), -distance_m * Math.sin(bearing)];
+  return place_on_body(from, heading_deg, ahead_m, left_m);
+};
+
+export type Sound = 'stopped' | 'free' | 'blocked';
+
+/** What is heard when something happens on the robot; null: nothing. */
+export const sound_of = (kind: string): Sound | null => {
+  if (kind === 'obstacle') return 'stopped';
+  if (kind === 'obstacle_gone') return 'free';
+  return kind === 'blocked' || kind === 'mission_blocked' ? 'blocked' : null;
+};
+
+/** A hand may hold the guard off while it limits that hand's drive. */
+export const may_override = (
+  obstacle: Obstacle | null | undefined,
+  teleop: 'off' | 'release' | 'ready' | 'held' | undefined,
+): boolean => !!obstacle && (teleop === 'held' || teleop === 'ready');

@@ -1,0 +1,222 @@
+// What the robot's sensors see, as the interface tells it, and the words for it.
+
+import type { Answer } from './answer';
+import { age, number_text } from './format';
+import type { LatLon } from './plan';
+import type { Sweep } from './sweep';
+
+/** A place on the map, and a direction there. */
+export interface Placed extends LatLon {
+  readonly heading_deg: number;
+}
+export interface SeenGrid {
+  readonly age_s: number;
+  /** The corner of the first cell; rows run along the heading, the next row lies to its left. */
+  readonly at: Placed | null;
+  readonly cell_m: number;
+  readonly columns: number;
+  readonly rows: number;
+  /** A byte for each run of equal cells: the kind in the two upper bits, one less than the length in
+   * the others. */
+  readonly runs: ArrayLike<number>;
+}
+export interface SensorDots {
+  readonly sensor: string;
+  readonly age_s: number;
+  /** Ahead and left of one point after the other. */
+  readonly obstacle_cm: readonly number[];
+  readonly overhang_cm: readonly number[];
+  readonly drop_cm: readonly number[];
+  readonly passing_cm: readonly number[];
+}
+export interface SeenScan {
+  readonly age_s: number;
+  /** Where the robot was. */
+  readonly at: Placed | null;
+  readonly sensors: readonly SensorDots[];
+}
+export interface SeenThing {
+  readonly what: 'obstacle' | 'drop';
+  readonly lat: number | null;
+  readonly lon: number | null;
+  readonly distance_m: number;
+  readonly bearing_deg: number;
+  readonly clearance_m: number;
+  readonly size_m: number;
+  readonly age_s: number;
+  readonly sensor: string | null;
+  readonly on_way: boolean;
+}
+export interface SeenThings {
+  readonly age_s: number | null;
+  readonly complete: boolean;
+  readonly items: readonly SeenThing[];
+}
+export interface Sensor {
+  readonly name: string;
+  readonly kind: string;
+  readonly required: boolean;
+  readonly health: 'silent' | 'blind' | 'degraded' | 'good';
+  readonly reason: string;
+  readonly window: 'unknown' | 'clean' | 'dirty' | 'blocked';
+  readonly age_s: number | null;
+  readonly rate_hz: number;
+  /** Of its directions. */
+  readonly unknown_part: number;
+  readonly points: number;
+  readonly refused: number;
+  readonly mount: {
+    readonly x_m: number;
+    readonly y_m: number;
+    readonly z_m: number;
+    readonly roll_deg: number;
+    readonly pitch_deg: number;
+    readonly yaw_deg: number;
+  };
+}
+
+/** What of it is drawn. */
+export interface SeenOnMap {
+  readonly grid: SeenGrid | null;
+  readonly scan: SeenScan | null;
+  readonly things: readonly SeenThing[];
+}
+/** What the robot is about to do, by what it sees. */
+export interface AheadOnMap {
+  readonly sweep: Sweep | null;
+  /** What limits the drive, or stops it. */
+  readonly block: (LatLon & { readonly stops: boolean }) | null;
+  /** A way around it. */
+  readonly detour: readonly LatLon[];
+}
+
+export type SeenTopic = 'grid' | 'scan' | 'obstacles';
+export interface SeenLink {
+  /** Topics besides those of every page, with their rates; instead of those before. */
+  watch(rates_hz: Readonly<Partial<Record<SeenTopic, number>>>): void;
+}
+export interface SeenEvents {
+  on_grid?(grid: SeenGrid): void;
+  on_scan?(scan: SeenScan): void;
+  on_things?(things: SeenThings): void;
+}
+export interface SeenCalls {
+  sensors(): Promise<Answer<{ readonly items: readonly Sensor[] }>>;
+}
+export interface SeenMap {
+  /** What the sensors see; null: it is not looked at. */
+  show_seen(seen: SeenOnMap | null): void;
+  /** What comes of it for the drive. */
+  show_ahead(ahead: AheadOnMap | null): void;
+}
+
+export const UNKNOWN = 0;
+export const FREE = 1;
+export const OCCUPIED = 2;
+export const DROP = 3;
+/** The server's bound: a longer side is none of its. */
+const MOST_CELLS = 200 * 200;
+
+/** The cells of a grid, row by row; null: it is not what it says. */
+export const cells_of = ({ runs, columns, rows }: SeenGrid): Uint8Array | null => {
+  const count = columns * rows;
+  if (!(count >= 0 && count <= MOST_CELLS)) return null;
+  const cells = new Uint8Array(count);
+  let at = 0;
+  for (let k = 0; k < runs.length; k += 1) {
+    const byte = runs[k] ?? 0;
+    const end = at + (byte & 63) + 1;
+    if (end > count) return null;
+    cells.fill(byte >> 6, at, end);
+    at = end;
+  }
+  return at === count ? cells : null;
+};
+
+export interface Layers {
+  readonly scan: boolean;
+  readonly grid: boolean;
+  /** Stops and the end of waiting are heard. */
+  readonly sound: boolean;
+}
+export const AT_FIRST: Layers = { scan: false, grid: true, sound: true };
+
+/** As it was kept on the device; what is none is as at first. */
+export const layers_from = (text: string | null): Layers => {
+  try {
+    const kept = JSON.parse(text ?? '{}') as Partial<Record<keyof Layers, unknown>> | null;
+    const flag = (name: keyof Layers): boolean => {
+      const value = kept?.[name];
+      return typeof value === 'boolean' ? value : AT_FIRST[name];
+    };
+    return { scan: flag('scan'), grid: flag('grid'), sound: flag('sound') };
+  } catch {
+    return AT_FIRST;
+  }
+};
+
+/** What the stream must tell for it, Hz. */
+export const rates_of = (layers: Layers): Partial<Record<SeenTopic, number>> => ({
+  obstacles: 2,
+  ...(layers.grid ? { grid: 2 } : {}),
+  ...(layers.scan ? { scan: 5 } : {}),
+});
+
+export const health_words: Record<Sensor['health'], string> = {
+  good: 'Sees',
+  degraded: 'Sees badly',
+  blind: 'Blind',
+  silent: 'Silent',
+};
+
+/** One that is not needed stops nothing. */
+export const sensor_tone = ({ health, required }: Sensor): 'good' | 'warn' | 'bad' => {
+  if (health === 'good') return 'good';
+  return health === 'degraded' || !required ? 'warn' : 'bad';
+};
+
+/** "25.0 Hz · 0.04 s ago · 12 % missing" */
+export const sensor_line = (sensor: Sensor): string =>
+  [
+    number_text(sensor.rate_hz, 1, 'Hz'),
+    sensor.age_s === null ? 'nothing seen yet' : `${age(sensor.age_s)} ago`,
+    `${Math.round(sensor.unknown_part * 100)} % missing`,
+  ].join(' · ');
+
+const window_words: Record<Sensor['window'], string> = {
+  unknown: 'not told',
+  clean: 'clean',
+  dirty: 'dirty',
+  blocked: 'covered',
+};
+
+export const sensor_details = (sensor: Sensor): readonly (readonly [string, string])[] => {
+  const { mount } = sensor;
+  const place = `${number_text(mount.x_m, 2, 'm')} ahead, ${number_text(mount.y_m, 2, 'm')} left, ${number_text(mount.z_m, 2, 'm')} up`;
+  const turned = `yaw ${number_text(mount.yaw_deg, 1, '°')}, pitch ${number_text(mount.pitch_deg, 1, '°')}, roll ${number_text(mount.roll_deg, 1, '°')}`;
+  return [
+    ['Kind', sensor.kind],
+    ['Window', window_words[sensor.window]],
+    ['Points of the last piece', String(sensor.points)],
+    ['Refused', String(sensor.refused)],
+    ['Needed to drive by itself', sensor.required ? 'yes' : 'no'],
+    ['Mounted', place],
+    ['Turned', turned],
+  ];
+};
+
+/** "ahead", "30° to the left", "behind" */
+const direction = (bearing_deg: number): string => {
+  const size = Math.round(Math.abs(bearing_deg));
+  if (size <= 10) return 'ahead';
+  if (size >= 170) return 'behind';
+  return `${size}° to the ${bearing_deg < 0 ? 'left' : 'right'}`;
+};
+
+/** "Obstacle 1.2 m ahead, 0.4 m wide, seen by front" */
+export const thing_line = (thing: SeenThing): string => {
+  const what = thing.what === 'drop' ? 'The ground ends' : 'Obstacle';
+  const by = thing.sensor === null ? '' : `, seen by ${thing.sensor}`;
+  const old = thing.age_s >= 2 ? ` ${age(thing.age_s)} ago` : '';
+  return `${what} ${number_text(thing.distance_m, 1, 'm')} ${direction(thing.bearing_deg)}, ${number_text(thing.size_m, 1, 'm')} wide${by}${old}`;
+};

@@ -1,0 +1,85 @@
+// What stands in the way, in words, on the map and as a sound.
+
+import { describe, expect, it } from 'vitest';
+
+import { bearing_deg, distance_m } from '../src/model/geo';
+import {
+  may_override,
+  obstacle_line,
+  obstacle_place,
+  obstacle_since,
+  sound_of,
+  type Obstacle,
+} from '../src/model/obstacle';
+
+const HERE = { lat: 58.378, lon: 26.729 };
+const wall: Obstacle = {
+  action: 'stop',
+  what: 'obstacle',
+  distance_m: 2,
+  bearing_deg: -30,
+  sensor: 'front',
+  age_s: 0.1,
+  stopped_s: 12.3,
+  reason: 'something stands in the way, 2.0 m ahead, to the left, seen by front',
+};
+
+describe('its words', () => {
+  it('say what it is, and that a slower robot still drives', () => {
+    expect(obstacle_line(wall)).toBe(
+      'Something stands in the way, 2.0 m ahead, to the left, seen by front.',
+    );
+    expect(obstacle_line({ ...wall, action: 'slow', reason: 'a thing' })).toBe(
+      'It slows: a thing.',
+    );
+    expect(obstacle_line({ ...wall, action: 'creep', reason: 'a thing' })).toBe(
+      'It creeps: a thing.',
+    );
+  });
+  it('say since when, also while the link is late', () => {
+    expect(obstacle_since(wall, 0)).toBe('For 12 s.');
+    expect(obstacle_since(wall, 3)).toBe('For 15 s.');
+    expect(obstacle_since({ ...wall, stopped_s: 150 }, 0)).toBe('For 3 min.');
+    expect(obstacle_since({ ...wall, stopped_s: null }, 0)).toBe('');
+  });
+  it('say what comes of waiting where the robot tells it', () => {
+    const blocked = { ...wall, since_s: 12, blocked: true, then: 'go_around', decides_in_s: 8 };
+    expect(obstacle_since(blocked, 0)).toBe('For 12 s. Blocked. In 8 s it looks for a way around.');
+    expect(obstacle_since({ ...blocked, decides_in_s: null, then: 'back_off' }, 0)).toBe(
+      'For 12 s. Blocked. Then back off.',
+    );
+  });
+});
+
+describe('its place', () => {
+  it('lies by its distance and bearing from the robot, as that faces', () => {
+    const place = obstacle_place(wall, HERE, 90);
+    expect(place && distance_m(HERE, place)).toBeCloseTo(2, 3);
+    expect(place && bearing_deg(HERE, place)).toBeCloseTo(60, 2);
+  });
+  it('is not known of a picture that is too old, or of a robot that is lost', () => {
+    expect(obstacle_place({ ...wall, what: 'blind' }, HERE, 90)).toBeNull();
+    expect(obstacle_place(wall, HERE, null)).toBeNull();
+    expect(obstacle_place(wall, null, 90)).toBeNull();
+    expect(obstacle_place(null, HERE, 90)).toBeNull();
+  });
+});
+
+describe('its sound', () => {
+  it('is for a stop, for what is free again, and for what is blocked', () => {
+    expect(sound_of('obstacle')).toBe('stopped');
+    expect(sound_of('obstacle_gone')).toBe('free');
+    expect(sound_of('blocked')).toBe('blocked');
+    expect(sound_of('armed')).toBeNull();
+  });
+});
+
+describe('the hand that holds the guard off', () => {
+  it('is offered only while the guard limits a stick', () => {
+    expect(may_override(wall, 'held')).toBe(true);
+    expect(may_override(wall, 'ready')).toBe(true);
+    expect(may_override(wall, 'off')).toBe(false);
+    expect(may_override(null, 'held')).toBe(false);
+    expect(may_override(undefined, undefined)).toBe(false);
+  });
+});
