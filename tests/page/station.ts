@@ -2,7 +2,8 @@
 // with a data folder of their own. The side channel gives the true pose, which roverd never sees.
 
 import { spawn, type ChildProcess } from 'node:child_process';
-import { existsSync, mkdtempSync, rmSync } from 'node:fs';
+import { cpSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { createSocket } from 'node:dgram';
 import { connect, type Socket } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
@@ -144,9 +145,68 @@ const rest_of =
 
 const config = join(ROOT, 'config/robot.toml');
 
+const free_udp_port = (): Promise<number> =>
+  new Promise((resolve_port) => {
+    const socket = createSocket('udp4');
+    socket.bind(0, '127.0.0.1', () => {
+      const { port } = socket.address();
+      socket.close(() => resolve_port(port));
+    });
+  });
+
+/** A lidar and a scanner, as the simulator casts their rays and as the profile names them. */
+const eyes = (port: number): string => `
+[[sensor]]
+kind = "vlp16"
+name = "top"
+z_m = 0.7
+port = "udp:${port}"
+
+[[sensor]]
+kind = "lms"
+name = "front"
+x_m = 0.55
+z_m = 0.3
+rate_hz = 25
+`;
+const sensors = (port: number, front: string): string => `
+[sense.protect]
+creep_turn_radps = 0.3
+
+[sensors.top]
+kind = "velodyne"
+link = "udp:${port}"
+z_m = 0.7
+
+[sensors.front]
+kind = "sick"
+link = "${front}"
+x_m = 0.55
+z_m = 0.3
+rate_hz = 25
+`;
+
+/** The files of a robot that sees, in a world of its own. @return arguments for the simulator */
+const with_world = (folder: string, world: object, port: number): readonly string[] => {
+  const simulated = readFileSync(join(ROOT, 'config/sim/bunker.toml'), 'utf8');
+  writeFileSync(join(folder, 'world.json'), JSON.stringify(world));
+  writeFileSync(join(folder, 'sim.toml'), simulated + eyes(port));
+  return ['--config', join(folder, 'sim.toml'), '--world', join(folder, 'world.json')];
+};
+
+/** @param front where the scanner listens. @return the profile */
+const with_sensors = (folder: string, port: number, front: string): string => {
+  cpSync(join(ROOT, 'config/vehicles'), join(folder, 'vehicles'), { recursive: true });
+  const path = join(folder, 'robot.toml');
+  writeFileSync(path, readFileSync(config, 'utf8') + sensors(port, front));
+  return path;
+};
+
 export const test = base.extend<{
   /** More arguments for roverd, by test.use(). */
   more: readonly string[];
+  /** The robot has sensors, and stands in this world (docs/worlds.md); null: it drives blind. */
+  world: object | null;
   station: MortalStation;
   /** The way from the browser to that station: it can be slow or broken. */
   link: SlowLink;
@@ -156,26 +216,31 @@ export const test = base.extend<{
   replay: (file: string, speed: number) => Promise<string>;
 }>({
   more: [[], { option: true }],
-  station: async ({ more }, use) => {
+  world: [null, { option: true }],
+  station: async ({ more, world }, use) => {
     const folder = mkdtempSync(join(tmpdir(), 'roverd-page.'));
     const programs: Program[] = [];
     let sim: SideChannel | undefined;
     try {
       const bus = ['--cansock', join(folder, 'can'), '--gnss', 'tcp:0', '--control', '0'];
-      const simulator = new Program('roverd-sim', [...bus, '--seed', '7']);
+      const port = world ? await free_udp_port() : 0;
+      const around = world ? with_world(folder, world, port) : [];
+      const simulator = new Program('roverd-sim', [...bus, '--seed', '7', ...around]);
       programs.push(simulator);
-      const [, can, gnss, mti, control = ''] = await simulator.line(
-        /^ready can=(\S+) gnss=(\S+) mti=(\S+) control=(\S+)/,
+      const [ready_line, can, gnss, mti, control = ''] = await simulator.line(
+        /^ready can=(\S+) gnss=(\S+) mti=(\S+) control=(\S+).*/,
       );
+      const front = / front=(\S+)/.exec(ready_line)?.[1] ?? '';
+      const profile = world ? with_sensors(folder, port, front) : config;
       sim = new SideChannel(control);
       const links = [
         `drivers.bunker.link=${can}`,
         `drivers.gnss.link=${gnss}`,
         `drivers.mti.link=${mti}`,
       ];
-      const begin = (port: string): Program => {
+      const begin = (web_port: string): Program => {
         const program = new Program('roverd', [
-          ...['--config', config, '--data', join(folder, 'data'), '--port', port],
+          ...['--config', profile, '--data', join(folder, 'data'), '--port', web_port],
           ...links.flatMap((setting) => ['--set', setting]),
           ...more,
         ]);
