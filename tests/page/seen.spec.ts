@@ -123,7 +123,9 @@ test('what blocks is said with its sensor and since when, and heard', async ({ p
     timeout: 60_000,
   });
   await expect(banner).toContainText(/For [2-9] s\./);
-  await expect(card_of(page).getByLabel('In the way')).toContainText('Something stands in the way');
+  await expect(
+    card_of(page).getByRole('list', { name: 'Things around' }).getByRole('listitem').first(),
+  ).toContainText('Obstacle');
   const heard = () => page.evaluate(() => (window as unknown as { notes: number[] }).notes);
   expect((await heard()).slice(0, 2)).toEqual([660, 440]);
   station.sim.tell({ world: false });

@@ -228,7 +228,7 @@ export const test = base.extend<{
       const simulator = new Program('roverd-sim', [...bus, '--seed', '7', ...around]);
       programs.push(simulator);
       const [ready_line, can, gnss, mti, control = ''] = await simulator.line(
-        /^ready can=(\S+) gnss=(\S+) mti=(\S+) control=(\S+).*/,
+        /^ready can=(\S+) gnss=(\S+) mti=(\S+).* control=(\S+)/,
       );
       const front = / front=(\S+)/.exec(ready_line)?.[1] ?? '';
       const profile = world ? with_sensors(folder, port, front) : config;

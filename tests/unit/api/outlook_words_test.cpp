@@ -90,10 +90,11 @@ TEST(OutlookWords, WhatTheGuardStopsForIsOnTheWayAlsoOfARobotThatStands) {
   o.things.push_back(o.things[0]);
   o.things[1].ahead_m = 7.0;
   auto s = standing();
-  s->obstacle = base::Obstacle{.action = base::GuardAction::Stop,
-                               .what = "obstacle",
-                               .ahead_m = 2.1,  // as the robot stands now
-                               .left_m = 1.9};
+  s->obstacle.emplace();
+  s->obstacle->action = base::GuardAction::Stop;
+  s->obstacle->what = "obstacle";
+  s->obstacle->ahead_m = 2.1;  // as the robot stands now
+  s->obstacle->left_m = 1.9;
   Json items = obstacles_json(&o, *s, at_s(10.0))["items"];
   EXPECT_EQ(items.at(0)["on_way"], true);
   EXPECT_EQ(items.at(1)["on_way"], false);

@@ -112,7 +112,9 @@ const body_to_pixel = (paint: Paint, at: LatLon, heading_deg: number): ToPixel =
   return (ahead, left) => [x0 + ahead * sin - left * cos, y0 - ahead * cos - left * sin];
 };
 
-const DOT_PX = 4;
+const DOT_PX = 3;
+const RING_PX = 2.5;
+const CROSS_PX = 3;
 
 const each_dot = (dots: readonly number[], to: ToPixel, draw: (x: number, y: number) => void) => {
   for (let k = 0; k + 1 < dots.length; k += 2) draw(...to(dots[k] ?? 0, dots[k + 1] ?? 0));
@@ -129,18 +131,19 @@ const paint_dots = (paint: Paint, dots: SensorDots, to: ToPixel, colors: Palette
   context.fill();
   context.beginPath();
   each_dot(dots.overhang_cm, to, (x, y) => {
-    context.moveTo(x + DOT_PX, y);
-    context.arc(x, y, DOT_PX, 0, 2 * Math.PI);
+    context.moveTo(x + RING_PX, y);
+    context.arc(x, y, RING_PX, 0, 2 * Math.PI);
   });
   context.strokeStyle = colors.plan;
-  context.lineWidth = 1.5;
+  context.lineWidth = 1;
   context.stroke();
+  context.lineWidth = 1.5;
   context.beginPath();
   each_dot(dots.drop_cm, to, (x, y) => {
-    context.moveTo(x - DOT_PX, y - DOT_PX);
-    context.lineTo(x + DOT_PX, y + DOT_PX);
-    context.moveTo(x + DOT_PX, y - DOT_PX);
-    context.lineTo(x - DOT_PX, y + DOT_PX);
+    context.moveTo(x - CROSS_PX, y - CROSS_PX);
+    context.lineTo(x + CROSS_PX, y + CROSS_PX);
+    context.moveTo(x + CROSS_PX, y - CROSS_PX);
+    context.lineTo(x - CROSS_PX, y + CROSS_PX);
   });
   context.strokeStyle = colors.home;
   context.stroke();
@@ -211,7 +214,7 @@ export const paint_ahead = (paint: Paint, ahead: AheadOnMap, colors: Palette): v
   context.setLineDash([]);
 };
 
-const BLOCK_PX = 13;
+const BLOCK_PX = 10;
 
 /** A road sign: a full disc with a bar where it stops, a ring where it only slows. */
 export const paint_block = (paint: Paint, { block }: AheadOnMap, colors: Palette): void => {
@@ -225,5 +228,5 @@ export const paint_block = (paint: Paint, { block }: AheadOnMap, colors: Palette
   context.fill();
   if (!block.stops) return;
   context.fillStyle = colors.on_point;
-  context.fillRect(x - BLOCK_PX * 0.6, y - 3, BLOCK_PX * 1.2, 6);
+  context.fillRect(x - BLOCK_PX * 0.6, y - 2.5, BLOCK_PX * 1.2, 5);
 };
