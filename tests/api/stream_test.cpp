@@ -130,10 +130,10 @@ TEST_F(StreamApi, TheRobotHearsOfAnOperatorWhoWatchesAndSpeaks) {
 TEST_F(StreamApi, AnUnknownTopicIsSaidAndTheConnectionStays) {
   until_ready();
   const auto client = connect();
-  say(*client, {{"subscribe", {{"scan", 5}, {"vehicle", 10}}}});
+  say(*client, {{"subscribe", {{"weather", 5}, {"vehicle", 10}}}});
   const Json error = next(*client, "error");
   EXPECT_EQ(fault("StreamError", error), "");
-  EXPECT_EQ(error["data"]["errors"][0]["pointer"], "/subscribe/scan");
+  EXPECT_EQ(error["data"]["errors"][0]["pointer"], "/subscribe/weather");
   EXPECT_FALSE(next(*client, "vehicle").is_null());
 }
 

@@ -138,6 +138,11 @@ def sees_and_stops():
               f"what blocks is told: {obstacle}")
         check(abs(obstacle["bearing_deg"]) < 60, f"it is ahead: {obstacle}")
         check(any(c["id"] == "obstacle" for c in vehicle["safety"]), "the condition is listed")
+        things = field.rest.get("/obstacles")["items"]
+        wall = max(things, key=lambda thing: thing["size_m"])
+        check(wall["on_way"] and 10 < wall["size_m"] < 14, f"the wall is one thing on the way: {things}")
+        north_m = (wall["lat"] - truth["lat"]) / METRE_LAT
+        check(0.4 < north_m < 1.3, f"and its place on the map is before the robot: {wall}, {truth}")
         check(field.rest.get("/execution")["state"] == "running", "the mission waits")
         field.control.ask({"world": False})
         until("the way is clear, and it goes on", 30,
