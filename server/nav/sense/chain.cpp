@@ -1,10 +1,34 @@
 #include "nav/sense/chain.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "nav/sense/mount.hpp"
 
 namespace roverd::nav::sense {
+
+namespace {
+
+/// From one ring to the next, by the first points that tell of several. 0: there is one only.
+float step_up_rad(const base::Sight& sight) noexcept {
+  constexpr std::size_t kLooks = 64;
+  const base::SightPoint* low = nullptr;
+  const base::SightPoint* high = nullptr;
+  for (std::size_t i = 0; i < std::min(kLooks, sight.points.size()); ++i) {
+    const base::SightPoint& p = sight.points[i];
+    if (low == nullptr || p.ring < low->ring) low = &p;
+    if (high == nullptr || p.ring > high->ring) high = &p;
+  }
+  if (low == nullptr || low->ring == high->ring) return 0.0F;
+  const auto up = [](const base::SightPoint& p) {
+    return std::atan2(p.z_m, std::hypot(p.x_m, p.y_m));
+  };
+  const float step = (up(*high) - up(*low)) / static_cast<float>(high->ring - low->ring);
+  return std::isfinite(step) ? std::abs(step) : 0.0F;
+}
+
+}  // namespace
 
 Chain::Chain(const ChainParams& params, const Footprint& body)
     : p_(params),
@@ -60,8 +84,9 @@ base::Result<std::size_t> Chain::take(const base::Sight& sight, const PoseHistor
   }
   eye.health.took(sight, reduced_.counts, now);
   if (!eye.setup.planar) ground_.judge(reduced_.voxels);
-  eye.persist.judge(reduced_.voxels, reduced_.pose,
-                    {reduced_.origin_m[0], reduced_.origin_m[1], 2.0F * sight.half_step_rad});
+  eye.persist.judge(
+      reduced_.voxels, reduced_.pose,
+      {reduced_.origin_m[0], reduced_.origin_m[1], 2.0F * sight.half_step_rad, step_up_rad(sight)});
   // Behind a blocked window what was not met is not clear.
   if (sight.window == base::Window::Blocked) {
     std::erase_if(reduced_.voxels, [](const Voxel& v) { return v.kind != Kind::Obstacle; });

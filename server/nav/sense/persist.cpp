@@ -6,6 +6,10 @@
 
 namespace roverd::nav::sense {
 
+namespace {
+constexpr float kLow_m = 0.08F;  // nothing lower is looked for
+}  // namespace
+
 Persist::Persist(const PersistParams& params, double range_m) : p_(params) {
   const auto across = static_cast<std::uint32_t>(std::ceil(2.0 * range_m / p_.cell_m)) + 3;
   const auto side = std::bit_ceil(std::clamp(across, 8U, 2048U));
@@ -70,7 +74,9 @@ std::uint32_t Persist::judge(std::vector<Voxel>& voxels, const Pose2& pose, cons
   for (const Voxel& v : voxels) {
     if (v.kind != Kind::Obstacle) continue;
     const float away = std::max(0.05F, std::hypot(v.x_m - from.x_m, v.y_m - from.y_m));
-    least_.push_back(wide / away);
+    const float rows =
+        from.step_up_rad > 0.0F ? std::max(1.0F, kLow_m / (away * from.step_up_rad)) : 1.0F;
+    least_.push_back(rows * wide / away);
     const Around here = around(where_[i], where_[i + 1]);
     if (static_cast<float>(here.points) >= least_.back()) {
       cells_[at(where_[i], where_[i + 1])].seen |= 1U;

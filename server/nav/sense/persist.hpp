@@ -8,7 +8,8 @@
 //
 // Near the sensor three by three cells lie before many beams, and among many beams there is always
 // one that meets a drop: there a scan saw something only where it got the echoes that a thing
-// least_m wide would have returned, least_m / (distance · step); at once, at_once times as many.
+// least_m wide (of several rows: and 8 cm high) would have returned, least_m / (distance · step);
+// at once, at_once times as many.
 
 #include <cstdint>
 #include <vector>
@@ -30,6 +31,7 @@ class Persist {
     float x_m = 0.0F;
     float y_m = 0.0F;
     float step_rad = 0.0F;
+    float step_up_rad = 0.0F;  ///< from row to row; 0: one row
   };
 
   /// Sets voxels that are Obstacle and not (yet) believed to Passing. Once a scan, in order.

@@ -15,6 +15,7 @@ constexpr double kLongest_s = 2.0;            // of one piece
 constexpr std::uint32_t kCellsAcross = 2047;  // 11 bits in x and y, 9 in z, one for Clear
 constexpr std::uint32_t kCellsUp = 511;
 constexpr float kInSensor_m = 0.01F;
+constexpr float kGlass_m = 0.15F;  // a dirty window echoes from about there
 
 std::uint32_t hashed(std::uint32_t key) noexcept {
   return key * 2654435769U;  // Knuth's multiplicative hash: the upper bits are the good ones
@@ -118,6 +119,8 @@ void Reducer::points(const base::Sight& sight, Reduced& out) {
   const double reach_m = std::max(body_.reach_m(), pulled_ ? pulled_->reach_m() : 0.0);
   const float near = static_cast<float>(reach_m + p_.body_margin_m);
   const float near2 = near * near;
+  const bool dirty = sight.window == base::Window::Dirty || sight.window == base::Window::Blocked;
+  const float glass2 = dirty ? kGlass_m * kGlass_m : 0.0F;
   Counts& n = out.counts;
   std::uint32_t last_key = 0;
   std::uint32_t at = 0;
@@ -128,6 +131,10 @@ void Reducer::points(const base::Sight& sight, Reduced& out) {
       continue;
     }
     const float s2 = p.x_m * p.x_m + p.y_m * p.y_m + p.z_m * p.z_m;
+    if (p.echo == base::Echo::Hit && s2 < glass2) {
+      ++n.unknown;
+      continue;
+    }
     // Also false for NaN; infinity and what is farther than any sensor sees fail the other side.
     if (!(s2 > kInSensor_m * kInSensor_m && s2 < 1e8F)) {
       ++n.bad;

@@ -107,6 +107,22 @@ TEST(PersistTest, AThinPoleBeforeTheGlassIsBelieved) {
   EXPECT_EQ(held, 0U);
 }
 
+//   Sixteen rows look through the same column of air: two drops in it are no thing.
+TEST(PersistTest, OfSeveralRowsMoreEchoesAreWanted) {
+  const auto held = [](std::uint32_t echoes) {
+    Persist persist({}, 8.0);
+    std::size_t last = 0;
+    for (int scan = 0; scan < 3; ++scan) {
+      std::vector<Voxel> voxels{obstacle(0.5, 0.0)};
+      voxels[0].points = echoes;
+      last = persist.judge(voxels, {}, {0.0F, 0.0F, 0.0140F, 0.0349F});
+    }
+    return last;
+  };
+  EXPECT_EQ(held(12), 1U) << "2 cm · 8 cm at half a metre: 2.9 beams of 4.6 rows, 13.1 echoes";
+  EXPECT_EQ(held(14), 0U);
+}
+
 TEST(PersistTest, WhatIsNoObstacleIsLeftAlone) {
   Persist persist({}, 8.0);
   std::vector<Voxel> voxels{obstacle(2.0, 0.0), obstacle(3.0, 0.0)};

@@ -132,6 +132,20 @@ TEST(ReduceTest, AFilteredBodyDoesNotHideWhatStandsBesideOrAboveIt) {
 }
 
 //   While the body turns, a wall is seen from many headings: it must stay one straight wall.
+//   A scanner on the bumper whose window is dirty gets echoes of the glass itself.
+TEST(ReduceTest, OfADirtyWindowWhatIsAtTheGlassTellsNothing) {
+  Reducer reducer({}, kBody);
+  Reduced out;
+  base::Sight sight = one({hit(0.09, 0.02, 0.0), hit(0.2, 0.0, 0.0)});
+  const base::Mount bumper{.x_m = 0.52, .z_m = 0.3};
+  ASSERT_TRUE(reducer.reduce(sight, bumper, still(), out).has_value());
+  EXPECT_EQ(out.counts.kept, 2U) << "clean: something stands there";
+  sight.window = base::Window::Dirty;
+  ASSERT_TRUE(reducer.reduce(sight, bumper, still(), out).has_value());
+  EXPECT_EQ(out.counts.unknown, 1U);
+  EXPECT_EQ(out.counts.kept, 1U);
+}
+
 TEST(ReduceTest, AWallStaysStraightWhileTheBodyDrivesAndTurns) {
   Scene scene;
   scene.ground = [](double, double) { return -100.0; };
