@@ -9,6 +9,8 @@ namespace {
 
 /// A stamp that is so far off the arrivals was set.
 constexpr double kJump_s = 0.5;
+/// An image does not wait for longer.
+constexpr double kOld_s = 1.0;
 /// A sequence that goes on by more began anew.
 constexpr std::uint32_t kMostLost = 1000;
 
@@ -87,6 +89,10 @@ Time Driver::measured_at(const Header& header, Time arrival) {
     delay_.forget();
   }
   last_ns_ = header.stamp_ns;
+  const Time told{base::Duration{header.stamp_ns}};
+  if (params_.same_clock && told <= arrival && base::seconds(arrival - told) < kOld_s) {
+    return told - base::from_seconds(params_.latency_s);
+  }
   return delay_.at(base::Duration{header.stamp_ns}, arrival) -
          base::from_seconds(params_.latency_s);
 }

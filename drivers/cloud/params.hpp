@@ -16,6 +16,8 @@ struct Params {
   double silent_reopen_s = 5.0;
   double retry_first_s = 0.5;
   double retry_max_s = 5.0;
+  /// No setting: the sender's clock is this computer's own steady one.
+  bool same_clock = false;
 };
 
 template <class V>

@@ -4,6 +4,7 @@
 // send/write may be called from one other thread (the control loop): they write the raw handle,
 // never wait, and never touch an Asio object.
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -23,6 +24,13 @@ using base::Time;
 /// Sent: handed to the kernel whole. Busy: no room now, dropped. Closed: the link is down.
 enum class SendResult { Sent, Busy, Closed };
 
+/// Between whom a datagram went, by IPv4. Zeros: not known, or by IPv6.
+struct Ends {
+  std::array<std::uint8_t, 4> peer{};  ///< 192.168.1.201: {192, 168, 1, 201}
+  std::uint16_t peer_port = 0;
+  std::uint16_t port = 0;  ///< ours
+};
+
 /// A stream or datagram transport.
 class ByteLink {
  public:
@@ -40,6 +48,12 @@ class ByteLink {
   virtual std::string describe() const = 0;
   /// Device thread. What came from somebody else than the peer and was not handed over.
   virtual std::uint64_t strangers() const noexcept { return 0; }
+
+  /// Device thread. What was heard and could not be handed over, in words.
+  virtual std::map<std::string, std::uint64_t> troubles() const { return {}; }
+
+  /// Device thread, within on_bytes: whose datagram this is. Zeros of a stream.
+  virtual Ends ends() const noexcept { return {}; }
 
   /// Device thread, not from a callback. What comes makes no sense to the driver: tries the next
   /// way of listening (a serial port's next baud rate, the next port). @return false: there is

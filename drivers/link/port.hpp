@@ -37,6 +37,12 @@ inline std::uint64_t strangers_of(const ByteLink& link) noexcept {
 inline std::uint64_t strangers_of(const FrameLink&) noexcept {
   return 0;
 }
+inline std::map<std::string, std::uint64_t> troubles_of(const ByteLink& link) {
+  return link.troubles();
+}
+inline std::map<std::string, std::uint64_t> troubles_of(const FrameLink&) {
+  return {};
+}
 
 /// @tparam Link ByteLink or FrameLink. @tparam Item what it carries: Bytes or const CanFrame&.
 template <class Link, class Item>
@@ -182,6 +188,10 @@ class Port {
       s.link_open = open_;
       const std::uint64_t strangers = strangers_of(*link_);
       if (strangers > 0) detail->counts["from a foreign address"] = strangers;
+      for (const auto& [what, n] : troubles_of(*link_)) {
+        detail->counts[what] += n;
+        s.refused += n;
+      }
     }
     detail->facts = facts_;
     detail->hazards = hazards_;

@@ -6,6 +6,7 @@
 
 #include "link/candump.hpp"
 #include "link/recording.hpp"
+#include "pcap/pcap.hpp"
 
 namespace roverd::link {
 namespace {
@@ -18,6 +19,18 @@ bool is_bus_name(const std::string& name) {
   return !name.empty() && name.size() <= 15 && std::all_of(name.begin(), name.end(), [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '.';
   });
+}
+
+/// One datagram as a record of a capture.
+void append_datagram(std::string& out, base::Duration stamp, bool sent, const Ends& ends,
+                     Bytes bytes) {
+  const pcap::Address ours{{}, ends.port};
+  const pcap::Address peer{ends.peer, ends.peer_port};
+  const auto record = pcap::record({.stamp = base::WallTime{stamp},
+                                    .from = sent ? ours : peer,
+                                    .to = sent ? peer : ours,
+                                    .payload = bytes});
+  out.append(record.begin(), record.end());
 }
 
 }  // namespace
@@ -83,11 +96,20 @@ RecordStatus ByteTape::status() const {
 }
 
 base::Result<std::unique_ptr<RecordedByteLink>> RecordedByteLink::create(
-    std::unique_ptr<ByteLink> inner, const std::string& file, const RecordOptions& options) {
-  auto out = RecordFile::create(file, options, recording_header(inner->describe()));
+    std::unique_ptr<ByteLink> inner, const std::string& file, const RecordOptions& options,
+    ByteForm form) {
+  const bool captures = form == ByteForm::Capture;
+  const auto head = pcap::file_header();
+  auto out = RecordFile::create(
+      file, options,
+      captures ? std::string(head.begin(), head.end()) : recording_header(inner->describe()));
   if (!out) return tl::unexpected(out.error());
-  const auto format = [](std::string& text, const Entry& entry, base::Duration stamp) {
-    append_record(text, stamp, entry.sent, entry.bytes);
+  const auto format = [captures](std::string& text, const Entry& entry, base::Duration stamp) {
+    if (captures) {
+      append_datagram(text, stamp, entry.sent, entry.ends, entry.bytes);
+    } else {
+      append_record(text, stamp, entry.sent, entry.bytes);
+    }
   };
   auto writer = std::make_unique<Writer>(std::move(*out), format, options, kChunksWaiting);
   return std::unique_ptr<RecordedByteLink>(
@@ -97,7 +119,7 @@ base::Result<std::unique_ptr<RecordedByteLink>> RecordedByteLink::create(
 RecordedByteLink::RecordedByteLink(std::unique_ptr<ByteLink> inner, std::unique_ptr<Writer> writer)
     : writer_(std::move(writer)), inner_(std::move(inner)) {
   inner_->on_bytes = [this](Bytes bytes, Time t) {
-    writer_->put({t, false, {bytes.begin(), bytes.end()}});
+    writer_->put({t, false, {bytes.begin(), bytes.end()}, inner_->ends()});
     if (on_bytes) on_bytes(bytes, t);
   };
   inner_->on_closed = [this](const std::string& reason) {
@@ -110,7 +132,7 @@ RecordedByteLink::~RecordedByteLink() = default;
 SendResult RecordedByteLink::write(Bytes bytes) noexcept {
   const SendResult result = inner_->write(bytes);
   if (result == SendResult::Sent && !bytes.empty()) {
-    writer_->put({base::steady_now(), true, {bytes.begin(), bytes.end()}});
+    writer_->put({base::steady_now(), true, {bytes.begin(), bytes.end()}, {}});
   }
   return result;
 }

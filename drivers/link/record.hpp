@@ -1,7 +1,8 @@
 #pragma once
 // A link that records what passes through it: what was heard, with its arrival stamp, and what was
 // sent, marked as such. CAN goes into a candump log (candump.hpp) that can-utils' canplayer and
-// log2asc read, bytes into a recording (recording.hpp); link/replay.hpp plays both.
+// log2asc read, bytes into a recording (recording.hpp), a sensor's datagrams into a capture
+// (pcap/pcap.hpp) that tcpdump and Wireshark read; link/replay.hpp plays them all.
 //
 // Times in the file are UTC by the clock as it was when recording began.
 
@@ -75,12 +76,16 @@ class ByteTape {
   const std::unique_ptr<Writer> writer_;
 };
 
+/// How bytes are written down: with stamps of microseconds, or as datagrams of IPv4 with those of
+/// nanoseconds. In a capture what we sent comes from our port, and the address of ours is 0.0.0.0.
+enum class ByteForm { Recording, Capture };
+
 /// Wraps a byte link and behaves like it.
 class RecordedByteLink final : public ByteLink {
  public:
-  static base::Result<std::unique_ptr<RecordedByteLink>> create(std::unique_ptr<ByteLink> inner,
-                                                                const std::string& file,
-                                                                const RecordOptions& options = {});
+  static base::Result<std::unique_ptr<RecordedByteLink>> create(
+      std::unique_ptr<ByteLink> inner, const std::string& file, const RecordOptions& options = {},
+      ByteForm form = ByteForm::Recording);
   ~RecordedByteLink() override;
 
   base::Result<void> open() override { return inner_->open(); }
@@ -88,6 +93,8 @@ class RecordedByteLink final : public ByteLink {
   SendResult write(Bytes bytes) noexcept override;
   std::string describe() const override { return inner_->describe(); }
   std::uint64_t strangers() const noexcept override { return inner_->strangers(); }
+  std::map<std::string, std::uint64_t> troubles() const override { return inner_->troubles(); }
+  Ends ends() const noexcept override { return inner_->ends(); }
   bool retune() override { return inner_->retune(); }
 
   /// Any thread.
@@ -98,6 +105,7 @@ class RecordedByteLink final : public ByteLink {
     Time stamp;
     bool sent = false;
     std::vector<std::uint8_t> bytes;
+    Ends ends{};
   };
   using Writer = RecordWriter<Entry>;
   RecordedByteLink(std::unique_ptr<ByteLink> inner, std::unique_ptr<Writer> writer);

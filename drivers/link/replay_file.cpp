@@ -159,7 +159,10 @@ base::Result<void> ByteFile::begin_file() {
   begin_ = 0;
   offset_ = 0;
   chunk_sent_ = false;
+  capture_.reset();
+  datagrams_.clear();
   if (!fill()) return base::fail(Code::Invalid, "replay file " + playing_ + " is empty");
+  if (buffer_.size() >= 4 && pcap::begins_capture(Bytes(buffer_).first(4))) return begin_capture();
   const std::string_view start(reinterpret_cast<const char*>(buffer_.data()), buffer_.size());
   if (!start.starts_with(kRecordingMagic)) {
     if (playing_ == path_) return begin_plain();
@@ -172,6 +175,19 @@ base::Result<void> ByteFile::begin_file() {
   }
   take(header.used);
   return {};
+}
+
+base::Result<void> ByteFile::begin_capture() {
+  pace_ = Pace::Stamped;
+  capture_.emplace([this](const pcap::Datagram& d) {
+    if (d.payload.empty()) return;
+    datagrams_.push_back({d.stamp.time_since_epoch(), {d.payload.begin(), d.payload.end()}});
+  });
+  const auto fed = capture_->feed(rest());
+  take(rest().size());
+  if (fed || !datagrams_.empty()) return {};  // what is wrong later is told there
+  return base::fail(Code::Malformed, "replay file " + playing_ + " " + fed.error().detail,
+                    fed.error().fields);
 }
 
 /// The file that this recording goes on in. @return false: there is none.
@@ -218,6 +234,7 @@ bool ByteFile::read_on() {
 }
 
 MaybeDue ByteFile::advance() {
+  if (capture_) return advance_capture();
   if (pace_ == Pace::Stamped) return advance_recording();
   return advance_plain();
 }
@@ -249,6 +266,27 @@ MaybeDue ByteFile::advance_recording() {
     take(step.used);
     if (wanted) return at_;
   }
+}
+
+MaybeDue ByteFile::advance_capture() {
+  while (datagrams_.empty()) {
+    const auto fed = capture_->feed(rest());  // of nothing: what was wrong before
+    take(rest().size());
+    if (!fed) {
+      return base::fail(Code::Malformed, "replay file " + playing_ + " " + fed.error().detail,
+                        fed.error().fields);
+    }
+    if (!datagrams_.empty() || fill()) continue;
+    if (auto next = follow(); !next || !*next) {  // a record that was cut off counts as the end
+      return next ? MaybeDue(std::nullopt) : tl::unexpected(next.error());
+    }
+  }
+  Datagram next = std::move(datagrams_.front());
+  datagrams_.pop_front();
+  if (!last_stamp_) first_stamp_ = next.stamp;
+  at_ += step_to(next.stamp, last_stamp_);
+  chunk_ = std::move(next.bytes);
+  return at_;
 }
 
 /// Bytes up to where the next message ends, with the line end behind it: a line is none before.

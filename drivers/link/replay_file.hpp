@@ -15,6 +15,7 @@
 #include "base/result.hpp"
 #include "base/time.hpp"
 #include "link/replay_options.hpp"
+#include "pcap/pcap.hpp"
 
 namespace roverd::link {
 
@@ -77,11 +78,12 @@ class FrameFile final : public ReplayFile {
   base::CanFrame frame_;
 };
 
-/// A recording with stamps (recording.hpp), or any plain file. A plain one is played message by
-/// message, as options.make_clock cuts it, and timed by what the messages say if one in the first
-/// 64 kB tells a time, else at the fallback rate; its bytes arrive exactly as they stand in the
-/// file. A message that is late by less than kLate_s waits for nothing; a clock that is set anew,
-/// or jumps by more than kSet_s, goes on from there.
+/// A recording with stamps (recording.hpp), a capture of datagrams (pcap/pcap.hpp: each whole one,
+/// whatever its addresses; an empty one is left out), or any plain file. A plain one is played
+/// message by message, as options.make_clock cuts it, and timed by what the messages say if one in
+/// the first 64 kB tells a time, else at the fallback rate; its bytes arrive exactly as they stand
+/// in the file. A message that is late by less than kLate_s waits for nothing; a clock that is set
+/// anew, or jumps by more than kSet_s, goes on from there.
 class ByteFile final : public ReplayFile {
  public:
   using Receiver = std::function<void(base::Bytes, base::Time)>;
@@ -100,6 +102,10 @@ class ByteFile final : public ReplayFile {
   static constexpr double kSet_s = 3600.0;
 
  private:
+  struct Datagram {
+    base::Duration stamp{};  ///< since 1970
+    std::vector<std::uint8_t> bytes;
+  };
   struct Reading {
     double s = 0.0;       ///< what that clock said last
     base::Duration at{};  ///< and when that was
@@ -111,9 +117,11 @@ class ByteFile final : public ReplayFile {
   base::Result<void> begin_file();
   base::Result<bool> follow();
   base::Result<void> begin_plain();
+  base::Result<void> begin_capture();
   bool read_on();
   std::size_t next_piece(std::optional<base::StreamTime>& time);
   base::Result<std::optional<base::Duration>> advance_recording();
+  base::Result<std::optional<base::Duration>> advance_capture();
   std::optional<base::Duration> advance_plain();
   void wait_for(const base::StreamTime& time);
 
@@ -124,6 +132,8 @@ class ByteFile final : public ReplayFile {
   std::vector<std::uint8_t> buffer_;  // read from the file; played up to begin_
   std::size_t begin_ = 0;
   std::uint64_t offset_ = 0;  // of begin_ in the file
+  std::optional<pcap::Reader> capture_;
+  std::deque<Datagram> datagrams_;  ///< of what was read, not played yet
   std::vector<std::uint8_t> chunk_;
   bool chunk_sent_ = false;
   std::optional<base::Duration> last_stamp_;

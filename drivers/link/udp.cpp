@@ -143,6 +143,7 @@ void UdpLink::read() {
       continue;
     }
     if (n > 0 && on_bytes) {
+      heard_ = sender;
       on_bytes({buffer.data(), static_cast<std::size_t>(n)}, base::steady_now());
     }
   }
@@ -160,6 +161,21 @@ bool UdpLink::is_peer(const Address& sender) const noexcept {
   const auto& b = reinterpret_cast<const sockaddr_in6&>(target_.storage);
   return a.sin6_port == b.sin6_port &&
          std::memcmp(&a.sin6_addr, &b.sin6_addr, sizeof a.sin6_addr) == 0;
+}
+
+Ends UdpLink::ends() const noexcept {
+  Ends out;
+  out.port = bound_port_;
+  const auto* v4 = reinterpret_cast<const sockaddr_in*>(&heard_.storage);
+  const auto* v6 = reinterpret_cast<const sockaddr_in6*>(&heard_.storage);
+  if (heard_.storage.ss_family == AF_INET) {
+    std::memcpy(out.peer.data(), &v4->sin_addr, out.peer.size());
+    out.peer_port = ntohs(v4->sin_port);
+  } else if (heard_.storage.ss_family == AF_INET6 && IN6_IS_ADDR_V4MAPPED(&v6->sin6_addr)) {
+    std::memcpy(out.peer.data(), v6->sin6_addr.s6_addr + 12, out.peer.size());
+    out.peer_port = ntohs(v6->sin6_port);
+  }
+  return out;
 }
 
 std::string UdpLink::describe() const {

@@ -33,6 +33,7 @@ class UdpLink final : public ByteLink {
   SendResult write(Bytes bytes) noexcept override;
   std::string describe() const override;
   std::uint64_t strangers() const noexcept override { return strangers_; }
+  Ends ends() const noexcept override;
 
   /// Device thread, after open(): the port received on.
   std::uint16_t port() const noexcept { return bound_port_; }
@@ -53,6 +54,7 @@ class UdpLink final : public ByteLink {
   const std::optional<Peer> peer_;
   std::uint16_t bound_port_ = 0;
   std::uint64_t strangers_ = 0;  ///< device thread
+  Address heard_;                ///< device thread: who sent the datagram that is handed over
   Descriptor socket_;
   std::mutex mutex_;  // leaf; guards target_, taken by the device thread when the sender changes
   Address target_;
