@@ -10,6 +10,7 @@
 #include <net/if.h>
 
 #include "ackermann/driver.hpp"
+#include "app/tape.hpp"
 #include "app/workshop.hpp"
 #include "base/inbox.hpp"
 #include "base/latest.hpp"
@@ -21,13 +22,12 @@
 #include "gnss/driver.hpp"
 #include "gpsd/driver.hpp"
 #include "link/address.hpp"
-#include "link/record.hpp"
-#include "link/tcp.hpp"
 #include "mti/driver.hpp"
 #include "ntrip/driver.hpp"
 #include "ranges/driver.hpp"
 #include "ratio/driver.hpp"
 #include "replay/replays.hpp"
+#include "replay/sensors.hpp"
 #include "sick/driver.hpp"
 #include "twist/driver.hpp"
 #include "velodyne/driver.hpp"
@@ -44,48 +44,6 @@ struct Corrections {
   base::Latest<base::GnssFix> fix;
 };
 using CorrectionsPtr = std::shared_ptr<Corrections>;
-
-/// Frames or bytes: how such a link is made, and taped.
-struct Frames {
-  using Link = link::FrameLink;
-  using Taped = link::RecordedFrameLink;
-  static constexpr auto kMake = link::make_frame_link;
-  static constexpr const char* kEnding = ".log";
-};
-struct ByteStream {
-  using Link = link::ByteLink;
-  using Taped = link::RecordedByteLink;
-  static constexpr auto kMake = link::make_byte_link;
-  static constexpr const char* kEnding = kBytesEnding;
-};
-
-/// The bus keeps its name in the log where it has one.
-std::string bus_name(const std::string& address) {
-  const auto parsed = link::parse_address(address);
-  return parsed && parsed->scheme == link::Scheme::Can ? parsed->target : link::RecordOptions{}.bus;
-}
-
-/// A recording that cannot be written never keeps a driver from its work.
-template <class Kind>
-Result<std::unique_ptr<typename Kind::Link>> open_link(const Workshop& w, asio::io_context& io,
-                                                       const DeviceEars& ears,
-                                                       const std::string& name,
-                                                       const std::string& address) {
-  auto made = Kind::kMake(io, address, w.replay);
-  if (!made || !w.records) return made;
-  const auto file = recording_file(w, name, Kind::kEnding);
-  if (!file) {
-    recording_refused(ears, file.error().detail);
-    return made;
-  }
-  link::RecordOptions record = record_options(w, ears);
-  record.bus = bus_name(address);
-  ears.on_recording(base::Recording::On, "");  // before: the writer may refuse at once
-  auto taped = Kind::Taped::create(std::move(*made), *file, record);
-  if (taped) return std::move(*taped);
-  recording_refused(ears, taped.error().detail);
-  return Kind::kMake(io, address, w.replay);
-}
 
 Result<void> check_can(const std::string& who, const std::string& interface) {
   if (::if_nametoindex(interface.c_str()) == 0) {
@@ -241,24 +199,25 @@ class Planner {
   }
 
   /// What looks around tells what it sees elsewhere than to the robot.
-  Result<void> add_sensor(const std::string& name, const Sensor& sensor,
+  Result<void> add_sensor(const std::string& name, const Sensor& configured,
                           const base::OnSight& on_sight) {
-    if (!replays_.file_of.empty() || !sensor.said.enabled) return {};
+    const bool replaying = !replays_.file_of.empty();
+    const auto replay = replays_.file_of.find(name);
+    if (replaying ? replay == replays_.file_of.end() : !configured.said.enabled) return {};
     const std::string who = settings_.where("sensors." + name + ".link");
-    const std::string address = sensor.said.link;
-    const int port = sensor.said.listens();
-    if (port == 0) {
+    const std::string address = replaying ? "replay:" + replay->second : configured.said.link;
+    Sensor sensor = address.starts_with("replay:") ? as_recorded(configured) : configured;
+    sensor.said.link = address;
+    if (sensor.said.listens() == 0 && v4l2::path_of(address).empty()) {
       if (auto good = check_link(who, address); !good) return good;
       if (auto good = check_kind<ByteStream>(who, address); !good) return good;
     }
     DevicePlan plan;
     plan.name = name;
-    plan.make = [w = workshop_, name, sensor, address, port, on_sight](asio::io_context& io,
-                                                                       const DeviceEars& ears) {
-      const link::BytePort::MakeLink make_link =
-          [w, name, address, port, ears, &io]() -> Result<std::unique_ptr<link::ByteLink>> {
-        if (port == 0) return open_link<ByteStream>(*w, io, ears, name, address);
-        return std::make_unique<link::TcpServer>(io, "127.0.0.1", std::uint16_t(port), 1);
+    plan.make = [w = workshop_, name, sensor, address, on_sight](asio::io_context& io,
+                                                                 const DeviceEars& ears) {
+      const link::BytePort::MakeLink make_link = [w, name, address, sensor, ears, &io] {
+        return open_sensor(*w, io, ears, name, address, sensor);
       };
       const auto made = [&](auto kind, const auto& params) {
         using Driver = typename decltype(kind)::type;
@@ -266,6 +225,7 @@ class Planner {
             std::make_shared<Driver>(name, params, make_link, ears.on_measurement, on_sight));
       };
       if (sensor.said.kind == "cloud") return made(Of<cloud::Driver>{}, sensor.cloud);
+      if (sensor.said.kind == "depth") return made(Of<cloud::Driver>{}, as_heard(sensor));
       if (sensor.said.kind == "ranges") return made(Of<ranges::Driver>{}, sensor.ranges);
       if (sensor.said.kind == "sick") return made(Of<sick::Driver>{}, sensor.sick);
       return made(Of<velodyne::Driver>{}, sensor.velodyne);
@@ -352,7 +312,7 @@ class Planner {
 
 Result<std::vector<DevicePlan>> plan_devices(const Settings& s, const Options& options,
                                              const base::OnSight& on_sight) {
-  auto replays = read_replays(options.replays, options.replay_speed);
+  auto replays = read_replays(options.replays, options.replay_speed, s.sensors);
   if (!replays) return tl::unexpected(replays.error());
   for (const std::string& remark : replays->remarks) base::log(base::Level::Info, "replay", remark);
   auto workshop = std::make_shared<Workshop>();

@@ -151,8 +151,10 @@ bool is_recording_name(std::string_view name) noexcept {
     const bool digit = std::isdigit(static_cast<unsigned char>(name[i])) != 0;
     if (kForm[i] == '0' ? !digit : name[i] != kForm[i]) return false;
   }
-  if (!name.ends_with(".log") && !name.ends_with(".raw")) return false;
-  std::string_view device = name.substr(kForm.size(), name.size() - kForm.size() - 4);
+  const auto ending = name.rfind('.');
+  const std::string_view last = name.substr(std::min(ending, name.size()));
+  if (last != ".log" && last != ".raw" && last != ".pcap") return false;
+  std::string_view device = name.substr(kForm.size(), ending - kForm.size());
   if (const auto dot = device.find('.'); dot != std::string_view::npos) {
     const std::size_t digits = digits_at(device, dot + 1);
     if (digits < 3 || dot + 1 + digits != device.size()) return false;

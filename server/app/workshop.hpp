@@ -24,6 +24,7 @@ using WorkshopPtr = std::shared_ptr<const Workshop>;
 /// Below the data folder.
 inline constexpr const char* kRecordings = "recordings";
 inline constexpr const char* kBytesEnding = ".raw";
+inline constexpr const char* kCaptureEnding = ".pcap";
 
 /// A file that is not there yet (20260301T120000Z-NAME.raw), in a folder that is.
 base::Result<std::string> recording_file(const Workshop& w, const std::string& name,

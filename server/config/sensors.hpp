@@ -25,6 +25,7 @@
 #include "robot/guard/blocked.hpp"
 #include "robot/guard/outline.hpp"
 #include "sick/params.hpp"
+#include "v4l2/params.hpp"
 #include "velodyne/params.hpp"
 
 namespace roverd {
@@ -52,10 +53,12 @@ struct SensorSettings {
 template <class V>
 void fields(V& v, SensorSettings& p) {
   v("enabled", p.enabled, "false: it is not there");
-  v("kind", p.kind, "which driver hears it: cloud, ranges, sick or velodyne");
+  v("kind", p.kind, "which driver hears it: cloud, depth, ranges, sick or velodyne");
   v("link", p.link,
-    "serial:DEVICE:BAUD|auto, tcp:HOST:PORT, udp:[HOST:]PORT, as of the drivers; for a cloud "
-    "also listen:PORT, where the camera's program on this computer comes to that port");
+    "velodyne: udp:[HOST:]PORT; sick: tcp:HOST:PORT; ranges: serial:DEVICE:BAUD|auto; cloud: "
+    "tcp:HOST:PORT, or listen:PORT, where the camera's program on this computer comes to that "
+    "port; "
+    "depth: v4l2:/dev/videoN; any: replay:FILE");
   v("required", p.required,
     base::higher_is_stricter("nothing drives by itself while it is silent, dirty or blinded"));
   v("x_m", p.x_m, -5.0, 5.0, "ahead of the vehicle's origin");
@@ -71,10 +74,15 @@ void fields(V& v, SensorSettings& p) {
 struct Sensor {
   SensorSettings said;
   cloud::Params cloud;
+  v4l2::Params depth;  ///< what hears its images is the cloud driver, with its own
   ranges::Params ranges;
   sick::Params sick;
   velodyne::Params velodyne;
+  bool recorded = false;  ///< no setting: it is a recording that is heard
 };
+
+/// The cloud driver's parameters for a camera of kind cloud or depth.
+cloud::Params as_heard(const Sensor& sensor);
 
 /// How what they see is made one picture. Sections [sense], [sense.ground], …
 struct SenseSettings {
@@ -103,10 +111,12 @@ using Sensors = std::map<std::string, Sensor>;
 
 inline constexpr std::size_t kMostSensors = 16;
 
-/// The parameters of its kind, as sections are read: v(params). Nothing for an unknown kind.
+/// The parameters of its kind, as sections are read: v(params), once for each struct that they
+/// stand in. Nothing for an unknown kind.
 template <class S, class V>
 void with_kind(S& s, V&& v) {
-  if (s.said.kind == "cloud") v(s.cloud);
+  if (s.said.kind == "cloud" || s.said.kind == "depth") v(s.cloud);
+  if (s.said.kind == "depth") v(s.depth);
   if (s.said.kind == "ranges") v(s.ranges);
   if (s.said.kind == "sick") v(s.sick);
   if (s.said.kind == "velodyne") v(s.velodyne);
@@ -122,5 +132,15 @@ bool is_sensor_name(std::string_view name) noexcept;
 base::Result<void> check(const Sensors& sensors);
 /// Words; the field is the key.
 base::Result<void> check(const SenseSettings& sense);
+/// What listens or opens something at this computer, for the question whether two meet there.
+struct Ear {
+  std::string key;  ///< "drivers.gnss.link"
+  std::string link;
+};
+
+/// What only the whole tells: kinds and links that do not fit, ranges that contradict each other,
+/// two that hear one port or open one device. Invalid; the field is the key ("sensors.front.kind").
+/// @param drivers the enabled ones.
+base::Result<void> check(const Sensors& sensors, const std::vector<Ear>& drivers = {});
 
 }  // namespace roverd

@@ -13,6 +13,7 @@
 
 #include "badge/badge.hpp"
 #include "base/params.hpp"
+#include "config/ears.hpp"
 #include "config/reach.hpp"
 
 namespace roverd {
@@ -181,7 +182,10 @@ Sections sections_of(Settings& s) {
     out.emplace("sensors." + name, [one](std::string_view key, const ParamValue& value) {
       Result<void> done = base::set_param(one->said, key, value);
       if (done || done.error().detail != "unknown key") return done;
-      with_kind(*one, [&](auto& params) { done = base::set_param(params, key, value); });
+      with_kind(*one, [&](auto& params) {
+        if (done || done.error().detail != "unknown key") return;
+        done = base::set_param(params, key, value);
+      });
       return done;
     });
   }
@@ -295,6 +299,7 @@ Result<void> check_all(const Settings& s) {
   if (auto good = at_its_place(s, robot::check(s.robot)); !good) return good;
   if (auto good = at_its_place(s, check(s.sensors)); !good) return good;
   if (auto good = at_its_place(s, check(s.sense)); !good) return good;
+  if (auto good = at_its_place(s, check(s.sensors, ears_of(s))); !good) return good;
   if (auto good = check_server(s); !good) return good;
   if (auto good = check_badge(s); !good) return good;
   const std::string& level = s.server.log_level;

@@ -9,15 +9,20 @@
 #include "ackermann/driver.hpp"
 #include "bumper/driver.hpp"
 #include "bunker/driver.hpp"
+#include "cloud/driver.hpp"
 #include "config/receiver_params.hpp"
 #include "gnss/driver.hpp"
 #include "gpsd/driver.hpp"
 #include "link/memory.hpp"
 #include "mti/driver.hpp"
+#include "ranges/driver.hpp"
 #include "ratio/driver.hpp"
 #include "replay/replays.hpp"
+#include "replay/sensors.hpp"
 #include "rtcm/framer.hpp"
+#include "sick/driver.hpp"
 #include "twist/driver.hpp"
+#include "velodyne/driver.hpp"
 
 namespace roverd {
 namespace {
@@ -90,6 +95,47 @@ class BytePart final : public ReplayPart {
   const link::ByteLink* const ear_;  ///< the driver's end, which it keeps
   Driver driver_;
 };
+
+/// What looks around says nothing of where the robot is: what it saw is told to whoever asks.
+template <class Driver, class Params>
+class SensorPart final : public ReplayPart {
+ public:
+  SensorPart(const std::string& name, const Params& params, const base::OnSight& on_sight)
+      : wire_(link::memory_byte_pair()),
+        driver_(
+            name, params,
+            [this] { return Result<std::unique_ptr<link::ByteLink>>(std::move(wire_.a)); },
+            [](const base::Measurement&) {}, on_sight) {
+    wire_.b->set_immediate([this] { return clock_; });
+    static_cast<void>(wire_.b->open());
+  }
+  void start(Time now) override { driver_.start(now); }
+  void tick(Time now) override { driver_.tick(now); }
+  base::DriverStatus status(Time now) const override { return driver_.status(now); }
+
+ private:
+  Result<std::unique_ptr<link::ReplayFile>> make_file(const std::string& path) override {
+    return byte_file(path, [this](base::Bytes b, Time) { wire_.b->write(b); }, {});
+  }
+  link::MemoryBytePair wire_;
+  Driver driver_;
+};
+
+std::unique_ptr<ReplayPart> sensor_part(const std::string& name, const Sensor& configured,
+                                        const base::OnSight& on_sight) {
+  const Sensor s = as_recorded(configured);
+  if (s.said.kind == "cloud" || s.said.kind == "depth") {
+    return std::make_unique<SensorPart<cloud::Driver, cloud::Params>>(name, as_heard(s), on_sight);
+  }
+  if (s.said.kind == "ranges") {
+    return std::make_unique<SensorPart<ranges::Driver, ranges::Params>>(name, s.ranges, on_sight);
+  }
+  if (s.said.kind == "sick") {
+    return std::make_unique<SensorPart<sick::Driver, sick::Params>>(name, s.sick, on_sight);
+  }
+  return std::make_unique<SensorPart<velodyne::Driver, velodyne::Params>>(name, s.velodyne,
+                                                                          on_sight);
+}
 
 /// Corrections say nothing of the robot: their frames are counted.
 class CorrectionsPart final : public ReplayPart {
@@ -164,7 +210,10 @@ Result<void> ReplayPart::load() {
 }
 
 std::unique_ptr<ReplayPart> replay_part(const std::string& driver, const Settings& s,
-                                        const Tell& tell) {
+                                        const Tell& tell, const base::OnSight& on_sight) {
+  if (const auto sensor = s.sensors.find(driver); sensor != s.sensors.end()) {
+    return sensor_part(driver, sensor->second, on_sight);
+  }
   if (driver == "bunker") {
     bunker::Params p = s.bunker.params;
     p.silent_reopen_s = 0.0;

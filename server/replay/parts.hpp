@@ -9,6 +9,7 @@
 
 #include "base/measurements.hpp"
 #include "base/result.hpp"
+#include "base/sight.hpp"
 #include "base/time.hpp"
 #include "config/settings.hpp"
 #include "link/replay_file.hpp"
@@ -48,8 +49,10 @@ class ReplayPart {
   base::Duration lead_{};             ///< how much later than the run that is
 };
 
-/// @param driver as look_into says. @param tell hears its measurements.
+/// @param driver as tell_apart says. @param tell hears its measurements. @param on_sight what a
+/// sensor saw.
 std::unique_ptr<ReplayPart> replay_part(const std::string& driver, const Settings& settings,
-                                        const std::function<void(const base::Measurement&)>& tell);
+                                        const std::function<void(const base::Measurement&)>& tell,
+                                        const base::OnSight& on_sight);
 
 }  // namespace roverd

@@ -1,6 +1,7 @@
 #include "replay/replays.hpp"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -11,6 +12,7 @@
 #include "gnss/stream_clock.hpp"
 #include "link/replay_file.hpp"
 #include "mti/stream_clock.hpp"
+#include "replay/sensors.hpp"
 #include "replay/speaker.hpp"
 
 namespace roverd {
@@ -29,12 +31,31 @@ std::optional<base::Duration> begin_of(File& file) {
   return file.begin();
 }
 
-const char* kind_in_words(const std::string& driver) {
+/// @param driver one of them, or the name of a sensor.
+std::string kind_in_words(const std::string& driver) {
+  constexpr std::array<std::string_view, 5> kDrives{"ackermann", "bunker", "bumper", "ratio",
+                                                    "twist"};
+  const bool base = std::ranges::find(kDrives, driver) != kDrives.end();
   if (driver == "bunker") return "a CAN bus";
   if (driver == "gnss" || driver == "gpsd") return "a receiver";
   if (driver == "mti") return "an inertial unit";
   if (driver == "ntrip") return "corrections";
+  if (!base) return "sensor " + driver;
   return driver == "bumper" ? "a bumper" : "a drive link";
+}
+
+/// From the kind of a sensor to its name. None of that kind: the recording is left out, and its
+/// driver empty.
+Result<void> settle_sensor(Recording& seen, const Sensors& sensors, RunFiles& run) {
+  if (!is_sensor_kind(seen.driver)) return {};
+  auto name = sensor_of_recording(seen.file, seen.driver, sensors);
+  if (!name) return tl::unexpected(name.error());
+  if (name->empty()) {
+    run.left_out.push_back(seen.file + " is of a sensor of the kind " + seen.driver +
+                           ", and none is configured: left out");
+  }
+  seen.driver = std::move(*name);
+  return {};
 }
 
 /// Listens with both until it is clear who speaks: from the first part of the stream on, the clock
@@ -90,7 +111,7 @@ Result<Recording> look_into(const std::string& path) {
                    bytes.pace() == link::ByteFile::Pace::Clocked};
 }
 
-Result<RunFiles> tell_apart(const std::vector<std::string>& files) {
+Result<RunFiles> tell_apart(const std::vector<std::string>& files, const Sensors& sensors) {
   RunFiles out;
   std::set<std::string> known;
   std::optional<base::Duration> last;
@@ -100,12 +121,16 @@ Result<RunFiles> tell_apart(const std::vector<std::string>& files) {
     if (!seen) return tl::unexpected(seen.error());
     for (std::string& part : link::ReplayFile::parts_of(path)) known.insert(std::move(part));
     if (seen->driver.empty()) continue;  // a device that never said anything
-    const std::string_view kind = kind_in_words(seen->driver);
+    if (auto heard = settle_sensor(*seen, sensors, out); !heard) {
+      return tl::unexpected(heard.error());
+    }
+    if (seen->driver.empty()) continue;
+    const std::string kind = kind_in_words(seen->driver);
     const auto same = std::ranges::find_if(
         out.of, [&](const auto& other) { return kind == kind_in_words(other.first); });
     if (same != out.of.end()) {
-      return base::fail(Code::Invalid, same->second.file + " and " + path +
-                                           " are both recordings of " + std::string(kind));
+      return base::fail(Code::Invalid,
+                        same->second.file + " and " + path + " are both recordings of " + kind);
     }
     if (seen->begin) {
       out.begin = std::min(out.begin.value_or(*seen->begin), *seen->begin);
@@ -120,13 +145,15 @@ Result<RunFiles> tell_apart(const std::vector<std::string>& files) {
   return out;
 }
 
-Result<Replays> read_replays(const std::vector<std::string>& files, double speed) {
+Result<Replays> read_replays(const std::vector<std::string>& files, double speed,
+                             const Sensors& sensors) {
   Replays out;
   out.how.speed = speed;
   out.how.make_clock = device_clock;
   if (files.empty()) return out;
-  const auto run = tell_apart(files);
+  const auto run = tell_apart(files, sensors);
   if (!run) return tl::unexpected(told(run.error()));
+  out.remarks = run->left_out;
   if (run->of.empty() || (run->of.size() == 1 && run->of.contains("ntrip"))) {
     return base::fail(Code::Invalid, "--replay: " + files.front() +
                                          " holds nothing that a robot could be driven by");

@@ -111,17 +111,24 @@ class Run {
 
  private:
   Result<void> open() {
-    const auto run = tell_apart(plan_.files);
+    const auto run = tell_apart(plan_.files, settings_.sensors);
     if (!run) return tl::unexpected(run.error());
     if (run->of.empty()) return base::fail(Code::Invalid, "the recordings are empty");
     begin_ = run->begin;
+    report_.left_out = run->left_out;
     for (const auto& [driver, recording] : run->of) {
       auto parts = link::ReplayFile::parts_of(recording.file);
       report_.files.insert(report_.files.end(), parts.begin(), parts.end());
       if (recording.by_device) report_.by_device.push_back(recording.file);
-      auto part = replay_part(driver, settings_, [this](const base::Measurement& m) {
-        if (!std::holds_alternative<base::DriverStatus>(m)) heard_.push_back(m);
-      });
+      auto part = replay_part(
+          driver, settings_,
+          [this](const base::Measurement& m) {
+            if (!std::holds_alternative<base::DriverStatus>(m)) heard_.push_back(m);
+          },
+          [this](const std::shared_ptr<const base::Sight>& sight) {
+            ++report_.sights[sight->sensor];
+            if (plan_.on_sight) plan_.on_sight(sight);
+          });
       if (auto opened = part->open(recording.file); !opened) return opened;
       part->align(begin_);
       parts_.emplace(driver, std::move(part));

@@ -16,6 +16,7 @@
 
 #include "base/measurements.hpp"
 #include "base/result.hpp"
+#include "base/sight.hpp"
 #include "base/snapshot.hpp"
 #include "config/settings.hpp"
 
@@ -44,16 +45,19 @@ struct ReplayReport {
   std::uint64_t items = 0;  ///< frames and pieces of byte streams
   std::uint64_t poses = 0;  ///< of all ticks
   double way_m = 0.0;
-  std::map<std::string, ReplayInput> inputs;  ///< position, velocity, compass, heading …
-  base::EstimatorHealth health;               ///< at the end
-  std::vector<base::DriverStatus> drivers;    ///< at the end
-  std::vector<std::string> files;             ///< by driver, as they were played
-  std::vector<std::string> by_device;         ///< of them: paced by the device's own time
+  std::map<std::string, ReplayInput> inputs;    ///< position, velocity, compass, heading …
+  base::EstimatorHealth health;                 ///< at the end
+  std::vector<base::DriverStatus> drivers;      ///< at the end
+  std::vector<std::string> files;               ///< by driver, as they were played
+  std::vector<std::string> by_device;           ///< of them: paced by the device's own time
+  std::vector<std::string> left_out;            ///< sentences: recordings that nobody here hears
+  std::map<std::string, std::uint64_t> sights;  ///< by sensor: scans, turns, images
 };
 
 struct ReplayPlan {
   std::vector<std::string> files;
-  double every_s = 0.1;  ///< between two poses told; 0: every tick
+  double every_s = 0.1;      ///< between two poses told; 0: every tick
+  base::OnSight on_sight{};  ///< what sensors saw; null: it is counted only
 };
 
 /// @param on_pose called in order. Errors: a file that is missing, damaged or no recording, two of

@@ -1,5 +1,6 @@
 #include "replay/speaker.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -8,20 +9,27 @@
 
 #include "ackermann/codec.hpp"
 #include "bumper/codec.hpp"
+#include "cloud/codec.hpp"
 #include "gnss/decoder.hpp"
 #include "gpsd/report.hpp"
 #include "link/replay_file.hpp"
 #include "mti/xbus.hpp"
+#include "ranges/codec.hpp"
 #include "ratio/codec.hpp"
 #include "rtcm/framer.hpp"
+#include "sick/cola.hpp"
 #include "twist/binary.hpp"
 #include "twist/text.hpp"
+#include "velodyne/codec.hpp"
 
 namespace roverd {
 namespace {
 
 /// So much of a file tells whose bytes they are.
 constexpr std::size_t kEnough = 65'536;
+constexpr std::size_t kMost = 4'000'000;
+/// Of a line: numbers alone may be anybody's.
+constexpr double kMetres = 1.0;
 
 /// A drive link in both directions.
 struct DriveEars {
@@ -43,15 +51,30 @@ class Jury {
       if (line.starts_with("{\"class\":")) ++reports_;
     });
     hear_drive(back_, bytes);
+    hear_sensors(bytes);
   }
   void hear_sent(base::Bytes bytes) {
     seen_ += bytes.size();
     hear_drive(forth_, bytes);
   }
   std::size_t seen() const noexcept { return seen_; }
+  bool hears_nobody() const {
+    return std::ranges::all_of(votes(), [](const auto& vote) { return vote.second == 0; });
+  }
 
   std::string verdict() const {
-    const std::array<std::pair<const char*, std::uint64_t>, 8> votes{{
+    const auto all = votes();
+    const auto* best = all.data();
+    for (const auto& vote : all) {
+      if (vote.second > best->second) best = &vote;
+    }
+    return best->first;
+  }
+
+ private:
+  using Votes = std::array<std::pair<const char*, std::uint64_t>, 12>;
+  Votes votes() const {
+    return {{
         {"gnss", receiver_.counts().intact()},
         {"mti", unit_.counts().messages},
         {"gpsd", reports_},
@@ -60,15 +83,12 @@ class Jury {
         {"ratio", ratios_},
         {"twist", twists_},
         {"bumper", bumpers_},
+        {"sick", scanner_.counts().telegrams},
+        {"velodyne", packets_},
+        {"cloud", images_},
+        {"ranges", ranges_},
     }};
-    const auto* best = votes.data();
-    for (const auto& vote : votes) {
-      if (vote.second > best->second) best = &vote;
-    }
-    return best->first;
   }
-
- private:
   void hear_drive(DriveEars& ears, base::Bytes bytes) {
     if (ackermann::decode(bytes).fault == ackermann::Fault::None) ++datagrams_;
     ears.ratio.feed(bytes, [this](const ratio::Message&) { ++ratios_; });
@@ -77,12 +97,30 @@ class Jury {
     ears.binary.feed(bytes, said);
   }
 
+  void hear_sensors(base::Bytes bytes) {
+    scanner_.feed(bytes, [](const sick::Telegram&) {});
+    if (velodyne::decode(bytes).fault == velodyne::Fault::None) ++packets_;
+    camera_.feed(bytes, [this](const cloud::Frame&) { ++images_; });
+    range_lines_.feed(
+        bytes,
+        [this](std::string_view line) {
+          if (ranges::parse(line, kMetres).fault == nullptr) ++ranges_;
+        },
+        [] {});
+  }
+
   gnss::Decoder receiver_;
   mti::Framer unit_;
   rtcm::Framer corrections_;
   bumper::Decoder bumper_;
   gpsd::Lines lines_;
   DriveEars back_, forth_;
+  sick::Framer scanner_;
+  cloud::Decoder camera_{cloud::kMaxPoints};
+  ranges::Lines range_lines_;
+  std::uint64_t packets_ = 0;
+  std::uint64_t images_ = 0;
+  std::uint64_t ranges_ = 0;
   std::uint64_t reports_ = 0;
   std::uint64_t datagrams_ = 0;
   std::uint64_t ratios_ = 0;
@@ -99,7 +137,7 @@ std::string speaker_of(const std::string& path, const link::ReplayOptions& how) 
       path, how, [&](base::Bytes bytes, base::Time now) { jury.hear(bytes, now); },
       [&](base::Bytes bytes, base::Time) { jury.hear_sent(bytes); });
   if (!file.open()) return "gnss";
-  while (jury.seen() < kEnough) {
+  while (jury.seen() < kEnough || (jury.seen() < kMost && jury.hears_nobody())) {
     const auto next = file.advance();
     if (!next) return jury.verdict();
     if (!*next) break;

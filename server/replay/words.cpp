@@ -48,6 +48,7 @@ double rms(const ReplayInput& in) {
 Json report_json(const ReplayReport& r) {
   Json out = {{"files", r.files},
               {"paced_by_the_device", r.by_device},
+              {"left_out", r.left_out},
               {"duration_s", rounded_to(r.duration_s, 1e3)},
               {"items", r.items},
               {"poses", r.poses},
@@ -70,6 +71,7 @@ Json report_json(const ReplayReport& r) {
     out["drivers"][d.name] = {{"received", d.received}, {"refused", d.refused}};
     if (d.detail) out["drivers"][d.name]["counts"] = d.detail->counts;
   }
+  for (const auto& [name, n] : r.sights) out["sights"][name] = n;
   return out;
 }
 
@@ -104,6 +106,7 @@ std::string report_text(const ReplayReport& r) {
   for (const std::string& file : r.by_device) {
     out += "# file " + file + " has no time stamps: paced by the time that the device told\n";
   }
+  for (const std::string& sentence : r.left_out) out += "# " + sentence + "\n";
   append_f(out, "# duration_s %.3f, items %llu, poses %llu, way_m %.3f, resets %llu\n",
            r.duration_s, static_cast<unsigned long long>(r.items),
            static_cast<unsigned long long>(r.poses), r.way_m,
@@ -128,6 +131,9 @@ std::string report_text(const ReplayReport& r) {
     for (const auto& [what, n] : d.detail->counts) {
       out += "# driver " + d.name + ": " + what + ": " + std::to_string(n) + "\n";
     }
+  }
+  for (const auto& [name, n] : r.sights) {
+    out += "# sensor " + name + ": " + std::to_string(n) + " sights\n";
   }
   return out;
 }

@@ -68,7 +68,8 @@ class Recordings : public testing::Test {
 
 TEST(RecordingNames, AreOursByTheirForm) {
   for (const char* ours : {"20260301T120000Z-bunker.log", "20260301T120000Z-gnss-2.raw",
-                           "20260301T120000Z-mti.002.raw", "20260301T120000Z-bunker.1000.log"}) {
+                           "20260301T120000Z-mti.002.raw", "20260301T120000Z-bunker.1000.log",
+                           "20260301T120000Z-top.pcap", "20260301T120000Z-top_2.003.pcap"}) {
     EXPECT_TRUE(is_recording_name(ours)) << ours;
   }
   for (const char* foreign :
@@ -76,7 +77,8 @@ TEST(RecordingNames, AreOursByTheirForm) {
         "20260301T120000Z-bunker.log.bak", "20260301T120000Z-bunker.2.log",
         "20260301T120000Z-bunker.00x.log", "20260301T120000Z-bunker.002.003.log",
         "2026-03-01T120000Z-bunker.log", "x20260301T120000Z-bunker.log", "20260301T120000Z-a b.raw",
-        "20260301T120000Z-../x.raw", "20260301T120000Z-bunker.csv"}) {
+        "20260301T120000Z-../x.raw", "20260301T120000Z-bunker.csv", "20260301T120000Z-top.pcapng",
+        "20260301T120000Z-.pcap"}) {
     EXPECT_FALSE(is_recording_name(foreign)) << foreign;
   }
 }

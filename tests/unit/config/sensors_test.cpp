@@ -110,6 +110,119 @@ kind = "velodyne"
 link = "udp:2368"
 )")
                 .find("is that of sensor \"a\", too"),
+/// Two sensors of their kinds on their links, and more of the configuration.
+std::string together(const std::string& a, const std::string& b, const std::string& more = "") {
+  return refused(more + "[sensors.a]\n" + a + "[sensors.b]\n" + b);
+TEST(Sensors, TwoOnOnePortAreRefusedWithBothKeys) {
+  const std::string lidar = "kind = \"velodyne\"\nlink = \"udp:2368\"\n";
+  const std::string twice = together(lidar, lidar);
+  EXPECT_NE(twice.find("robot.toml:6: sensors.b.link takes UDP port 2368, which sensors.a.link "
+                       "(udp:2368) has, too"),
+            std::string::npos)
+      << twice;
+  // The same port, said otherwise.
+  EXPECT_NE(together(lidar, "kind = \"velodyne\"\nlink = \"udp:2368:192.168.1.201:2368\"\n")
+                .find("takes UDP port 2368, which sensors.a.link"),
+            std::string::npos);
+  EXPECT_NE(
+      together(lidar, "kind = \"velodyne\"\nlink = \"udp:02368\"\n").find("takes UDP port 2368"),
+      std::string::npos);
+  // A peer alone is heard at some other port: no lidar sends there.
+  EXPECT_NE(together(lidar, "kind = \"velodyne\"\nlink = \"udp:127.0.0.1:2368\"\n")
+                .find("sensors.b.link must name the port here, too"),
+            std::string::npos);
+  EXPECT_EQ(together(lidar, "kind = \"velodyne\"\nlink = \"udp:2369\"\n"), "taken");
+  // One that is not there takes nothing.
+  EXPECT_EQ(together(lidar, lidar + "enabled = false\n"), "taken");
+TEST(Sensors, OneDeviceOrPortForTwoIsRefusedAlsoOfADriverOrTheServer) {
+  const std::string lidar = "kind = \"velodyne\"\nlink = \"udp:2368\"\n";
+  const std::string rangers = "kind = \"ranges\"\nlink = \"serial:/dev/ttyUSB7:115200\"\n";
+  EXPECT_NE(together(rangers, "kind = \"ranges\"\nlink = \"serial:/dev/ttyUSB7:9600\"\n")
+                .find("sensors.b.link takes /dev/ttyUSB7, which sensors.a.link"),
+            std::string::npos);
+  EXPECT_NE(together(lidar, rangers,
+                     "[drivers.gnss]\nenabled = true\nlink = \"serial:/dev/ttyUSB7:auto\"\n")
+                .find("sensors.b.link takes /dev/ttyUSB7, which drivers.gnss.link "
+                      "(serial:/dev/ttyUSB7:auto) has, too"),
+            std::string::npos);
+  const std::string camera = "kind = \"cloud\"\nlink = \"listen:7001\"\n";
+  EXPECT_NE(together(camera, camera).find("takes TCP port 7001, which sensors.a.link"),
+            std::string::npos);
+  EXPECT_NE(together(lidar, camera, "[server]\nport = 7001\n")
+                .find("takes TCP port 7001, which server.port"),
+            std::string::npos);
+  const std::string scanner = "kind = \"sick\"\nlink = \"tcp:10.0.0.2:2111\"\n";
+  EXPECT_NE(together(scanner, scanner).find("sensors.b.link is the same that sensors.a.link"),
+            std::string::npos);
+  EXPECT_EQ(together(scanner, "kind = \"sick\"\nlink = \"tcp:10.0.0.3:2111\"\n"), "taken");
+  // Another name of the same device.
+  const auto folder = std::filesystem::temp_directory_path();
+  const auto real = folder / "roverd-sensors-device";
+  const auto other = folder / "roverd-sensors-by-id";
+  std::ofstream(real) << "";
+  std::error_code ec;
+  std::filesystem::remove(other, ec);
+  std::filesystem::create_symlink(real, other);
+  EXPECT_NE(together("kind = \"ranges\"\nlink = \"serial:" + real.string() + ":9600\"\n",
+                     "kind = \"ranges\"\nlink = \"serial:" + other.string() + ":9600\"\n")
+                .find("roverd-sensors-device, which sensors.a.link"),
+            std::string::npos);
+  std::filesystem::remove(other);
+  std::filesystem::remove(real);
+TEST(Sensors, AKindIsHeardByItsOwnLinksOnly) {
+  const auto of = [](const std::string& kind, const std::string& link) {
+    const std::string more = kind == "depth" ? "fx = 525\n" : "";
+    return refused("[sensors.a]\nkind = \"" + kind + "\"\nlink = \"" + link + "\"\n" + more);
+  };
+  EXPECT_NE(of("velodyne", "tcp:10.0.0.2:2368")
+                .find("robot.toml:3: sensors.a.link must be udp:PORT or udp:PORT:HOST:PORT for the "
+                      "kind velodyne, is \"tcp:10.0.0.2:2368\""),
+            std::string::npos);
+  for (const auto& [kind, link] :
+       std::vector<std::pair<std::string, std::string>>{{"sick", "udp:2111"},
+                                                        {"sick", "listen:2111"},
+                                                        {"velodyne", "serial:/dev/ttyUSB0:9600"},
+                                                        {"cloud", "udp:7001"},
+                                                        {"cloud", "listen:0"},
+                                                        {"cloud", "listen:65536"},
+                                                        {"ranges", "tcp:10.0.0.2:1"},
+                                                        {"depth", "/dev/video0"},
+                                                        {"depth", "v4l2:video0"},
+                                                        {"depth", "tcp:10.0.0.2:1"},
+                                                        {"cloud", "nonsense"}}) {
+    EXPECT_NE(of(kind, link).find("sensors.a.link must"), std::string::npos) << kind << link;
+  }
+  for (const auto& [kind, link] :
+       std::vector<std::pair<std::string, std::string>>{{"sick", "tcp:10.0.0.2:2111"},
+                                                        {"sick", "replay:a.raw"},
+                                                        {"velodyne", "udp:2368"},
+                                                        {"velodyne", "replay:a.pcap"},
+                                                        {"cloud", "listen:7001"},
+                                                        {"cloud", "tcp:10.0.0.2:7001"},
+                                                        {"ranges", "serial:/dev/ttyUSB0:9600"},
+                                                        {"depth", "v4l2:/dev/video2"}}) {
+    EXPECT_EQ(of(kind, link), "taken") << kind << link;
+  }
+TEST(Sensors, ADepthCameraHasItsOwnSettingsAndThoseOfItsDriver) {
+  const auto s = with(R"(
+[sensors.face]
+kind = "depth"
+link = "v4l2:/dev/video2"
+width = 1280
+height = 720
+fx = 640.5
+depth_unit_m = 0.0005
+decimate = 4
+)");
+  const Sensor& face = s->sensors.at("face");
+  EXPECT_EQ(face.depth.width, 1280);
+  EXPECT_EQ(face.depth.fx, 640.5);
+  EXPECT_EQ(face.cloud.decimate, 4);
+  EXPECT_FALSE(face.said.planar());
+  EXPECT_TRUE(as_heard(face).same_clock);
+  EXPECT_GE(as_heard(face).max_points, 1280 * 720);
+  EXPECT_NE(refused("[sensors.face]\nkind = \"depth\"\nlink = \"v4l2:/dev/video2\"\n")
+                .find("sensors.face.fx must be said"),
             std::string::npos);
 }
 
