@@ -81,7 +81,7 @@ def help_tells_every_option():
     """./run --help tells every option, and ends with 0"""
     done = subprocess.run([str(RUN), "--help"], capture_output=True, text=True, timeout=20)
     check(done.returncode == 0, f"exit code {done.returncode}")
-    for option in ("--port", "--data", "--config", "--vehicle", "--seed", "--replay", "--no-sim"):
+    for option in ("--port", "--data", "--config", "--vehicle", "--seed", "--world", "--replay", "--no-sim"):
         check(option in done.stdout, f"{option} is not told")
 
 
@@ -101,6 +101,9 @@ def missing_files_are_named():
     """a missing configuration, recording or vehicle is refused by name"""
     refused("--config", "/nowhere/robot.toml", names=["/nowhere/robot.toml"])
     refused("--replay", "/nowhere/field.log", names=["/nowhere/field.log"])
+    refused("--world", "nowhere", names=["--world", "nowhere", "yard"])
+    refused("--world", "yard", "--vehicle", "husky", names=["--world", "bunker"])
+    refused("--world", "yard", "--no-sim", names=["--world", "simulator"])
     refused("--port", "0", "--data", scratch / "v", "--vehicle", "hovercraft", names=["hovercraft"])
 
 
@@ -304,6 +307,16 @@ def the_product_starts():
             d["state"] == "up" for d in rest.get("/drivers")["items"]))
 
 
+def in_a_world_it_sees():
+    """./run --world NAME starts a robot with a lidar and a scanner that see that world"""
+    with running("--world", "yard", data="world") as (_, rest):
+        until("both sensors are heard", 30, lambda: sorted(
+            (s["name"], s["kind"]) for s in rest.get("/sensors")["items"] if s["points"] > 0)
+            == [("front", "sick"), ("top", "velodyne")], 0.2)
+    with running(data="blind") as (_, rest):
+        check(rest.get("/sensors")["items"] == [], "without a world there is no sensor")
+
+
 def without_network():
     """Words to put before a command. It hears of any tool that would fetch, build or ask for packages
     in scratch/asked; where the system lets an ordinary user do that, there is no network either."""
@@ -402,7 +415,7 @@ if __name__ == "__main__":
             wrong_configuration_is_named, wrong_links_are_named, wrong_input_has_its_own_exit_code,
             both_recordings_of_a_run_play, recordings_that_do_not_belong_together_are_refused,
             a_recorder_that_cannot_write_is_told, only_loopback_is_served, access_control_asks_for_a_log_in, a_missing_can_interface_is_named,
-            a_vehicle_over_udp_needs_its_peer, the_product_starts,
+            a_vehicle_over_udp_needs_its_peer, the_product_starts, in_a_world_it_sees,
             a_second_start_is_quick, both_end, a_killed_script_leaves_nothing,
             one_dies_the_other_ends, a_busy_port_is_named, a_newer_database_is_refused])
     finally:
