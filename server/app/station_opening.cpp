@@ -53,18 +53,20 @@ Result<void> Station::Impl::open(const Settings& settings, const Options& option
   return {};
 }
 
-/// What recorded sensors saw is looked at, too, but nobody guards by it: nothing moves.
+/// What recorded sensors saw is looked at, too; nothing moves by a recording, so none of them is
+/// demanded.
 Result<void> Station::Impl::open_senses(const Settings& settings, const Options& options) {
   const bool any = std::ranges::any_of(settings.sensors,
                                        [](const auto& one) { return one.second.said.enabled; });
   if (!any) return {};
   auto lookout = lookout_of(settings, base::steady_now());
   if (!lookout) return tl::unexpected(lookout.error());
-  const bool demands = std::ranges::any_of(settings.sensors, [](const auto& one) {
+  const bool required = std::ranges::any_of(settings.sensors, [](const auto& one) {
     return one.second.said.enabled && one.second.said.required;
   });
   robot.guard_by(settings.sense.protect, demands, settings.sense.blocked, settings.sense.outline);
   if (options.replays.empty()) robot.guard_by(settings.sense.protect, demands);
+  robot.guard_by(settings.sense.protect, required && options.replays.empty());
   sense = std::make_shared<SenseLoop>(robot, std::move(*lookout));
   if (settings.sense.blocked.then == "around") around = std::make_unique<AroundLoop>(robot);
   robot.guard_by(settings.sense.protect, demands);
