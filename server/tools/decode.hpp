@@ -7,6 +7,8 @@
 //   mti      the bytes of an Xsens MTi                             decode_mti.cpp
 //   vlp16    datagrams of a Velodyne VLP-16: a capture, or bare    decode_vlp16.cpp
 //   sick     the bytes of a SICK scanner, or a session as text    decode_sick.cpp
+//   cloud    frames of docs/cloud-format.md                        decode_cloud.cpp
+//   ranges   lines of ultrasonic and infrared rangers              decode_cloud.cpp
 //
 // Fields are named as in the fact sheets' tables. What is not understood is a line too, with the
 // reason under "refused". Files of any size: nothing but the present block is kept. New kinds are a
@@ -48,10 +50,17 @@ Reader vlp16_reader(OnObject on_object);
 /// and its fields: of a scan all, angles in deg, frequencies in Hz, values as the scanner has them.
 Reader sick_reader(OnObject on_object);
 
+/// Objects: message (cloud, depth, ranges), sequence, stamp_ns, good, pose and the fields of each;
+/// of images and clouds how many points they have, not each. Causes of refusal with their count.
+Reader cloud_reader(OnObject on_object);
+/// Objects: line and range_m: metres (a bare number is taken as such), "nothing" or "unknown".
+Reader ranges_reader(OnObject on_object);
+
 /// The text of one line, with its line feed. Bytes that are not UTF-8 are replaced.
 std::string to_line(const nlohmann::ordered_json& object);
 
-/// roverd decode KIND FILE. @param kind "bunker", "nmea", "ubx", "mti", "sick" or "vlp16"
+/// roverd decode KIND FILE. @param kind "bunker", "nmea", "ubx", "mti", "sick", "vlp16", "cloud" or
+/// "ranges"
 /// @param file "-": standard input. @return exit code: 0 all was read (or nobody wants to hear
 /// more), 1 the file cannot be read or the output not written, 2 there is no such kind.
 int decode(const std::string& kind, const std::string& file);

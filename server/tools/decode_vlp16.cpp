@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -135,9 +136,20 @@ class Vlp16Bytes {
 
   /// 0: what comes there is neither.
   static std::size_t size_at(base::Bytes bytes) {
-    constexpr std::size_t kSentenceAt = 206;
     if (bytes[0] == 0xFF && bytes[1] == 0xEE) return velodyne::kPacketSize;
-    return bytes[kSentenceAt] == '$' ? velodyne::kPositionSize : 0;
+    return looks_like_position(bytes) ? velodyne::kPositionSize : 0;
+  }
+  /// Without a capture's addresses only what no text has tells it: the state of the pulse is a
+  /// small number with three zeros behind it, and then the sentence begins.
+  static bool looks_like_position(base::Bytes bytes) {
+    constexpr std::size_t kStateAt = 202;
+    constexpr std::size_t kSentenceAt = 206;
+    if (bytes[kStateAt] > 3) return false;
+    for (std::size_t i = kStateAt + 1; i < kSentenceAt; ++i) {
+      if (bytes[i] != 0) return false;
+    }
+    const std::string_view sentence(reinterpret_cast<const char*>(bytes.data()) + kSentenceAt, 7);
+    return sentence.starts_with("$G") && sentence.substr(3) == "RMC,";
   }
   void read_plain() {
     std::size_t at = 0;

@@ -109,6 +109,26 @@ TEST(DecodeVlp16, OtherSensorsAndCutFilesAreRefusedInWords) {
   EXPECT_TRUE(vlp16_objects({}, 1).empty());
 }
 
+TEST(DecodeVlp16, WhatIsNoPacketIsSkippedAndNothingIsInvented) {
+  // A receiver's log is full of these sentences, and none of them is a position packet.
+  Blob log;
+  const std::string line = "$GPRMC,120000.00,A,5822.5,N,02642.3,E,0.0,0.0,010126,,,A*5C\r\n";
+  for (int i = 0; i < 60; ++i) append(log, Blob(line.begin(), line.end()));
+  Blob dollars(4000, '$');
+  Blob zeros(206, 0);
+  append(zeros, Blob(800, '$'));
+  for (const Blob& file : {log, dollars, zeros}) {
+    for (const std::size_t piece : {1U, 777U}) {
+      std::size_t skipped = 0;
+      for (const Json& object : vlp16_objects(file, piece)) {
+        ASSERT_TRUE(object.contains("skipped_bytes")) << object.dump();
+        skipped += object["skipped_bytes"].get<std::size_t>();
+      }
+      EXPECT_EQ(skipped, file.size());
+    }
+  }
+}
+
 TEST(DecodeVlp16, TheRealPacketsAreAllThere) {
   ROVERD_REAL_DATA(path, "sensors/velodyne/vlp16-packets.bin");
   const auto objects = vlp16_objects(tests::read_file(path), 65'536);
