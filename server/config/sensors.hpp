@@ -55,7 +55,8 @@ void fields(V& v, SensorSettings& p) {
   v("enabled", p.enabled, "false: it is not there");
   v("kind", p.kind, "which driver hears it: cloud, depth, ranges, sick or velodyne");
   v("link", p.link,
-    "velodyne: udp:[HOST:]PORT; sick: tcp:HOST:PORT; ranges: serial:DEVICE:BAUD|auto; cloud: "
+    "velodyne: udp:PORT, udp:PORT:HOST:PORT; sick: tcp:HOST:PORT; ranges: serial:DEVICE:BAUD|auto; "
+    "cloud: "
     "tcp:HOST:PORT, or listen:PORT, where the camera's program on this computer comes to that "
     "port; "
     "depth: v4l2:/dev/videoN; any: replay:FILE");
