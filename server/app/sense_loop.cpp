@@ -6,13 +6,12 @@
 #include <pthread.h>
 
 #include "base/log.hpp"
+#include "robot/guard/guard.hpp"
 #include "robot/guard/outline.hpp"
 
 namespace roverd {
 namespace {
 
-constexpr double kMissed = 2.5;
-constexpr double kSky = 0.95;
 constexpr auto kWatchedEvery = std::chrono::milliseconds(200);
 constexpr auto kAnywayEvery = std::chrono::seconds(1);
 constexpr auto kWatchedFor = std::chrono::seconds(2);
@@ -85,41 +84,10 @@ void SenseLoop::run() noexcept {
 }
 
 robot::OutlookParams shown_of(const Settings& s) noexcept {
-  return {.body = robot::footprint_of(s.robot.vehicle),
+  return {.body = robot::footprint_of(s.robot.vehicle, s.robot.tool, s.sense.outline),
           .side_m = s.sense.protect.side_m,
           .horizon_s = s.sense.protect.horizon_s,
           .range_m = s.sense.reduce.max_range_m};
-}
-
-base::Result<robot::Lookout> lookout_of(const Settings& s, base::Time now) {
-  using namespace nav::sense;
-  const Footprint body = robot::footprint_of(s.robot.vehicle, s.robot.tool, s.sense.outline);
-  std::vector<SensorSetup> setups;
-  std::vector<std::string> kinds;
-  for (const auto& [name, sensor] : s.sensors) {
-    if (!sensor.said.enabled) continue;
-    SensorSetup one;
-    one.name = name;
-    one.mount = sensor.said.mount();
-    one.planar = sensor.said.planar();
-    one.needed = sensor.said.required;
-    one.persist = s.sense.persist;
-    one.health = s.sense.health;
-    one.health.rate_hz = sensor.said.rate_hz;
-    // A slow one is not silent between two pieces.
-    one.health.silent_s = std::max(one.health.silent_s, kMissed / sensor.said.rate_hz);
-    // Half of what a lidar looks at is the sky, from where nothing comes back.
-    if (sensor.said.kind == "velodyne") {
-      one.health.max_unknown_part = std::max(kSky, one.health.max_unknown_part);
-    }
-    setups.push_back(std::move(one));
-    kinds.push_back(sensor.said.kind);
-  }
-  ChainParams params{s.sense.reduce, s.sense.ground, s.sense.grid};
-  params.pulled = robot::pulled_of(s.robot.tool, s.sense.outline);
-  auto chain = Chain::of(params, std::move(setups), body, now);
-  if (!chain) return tl::unexpected(chain.error());
-  return robot::Lookout(std::move(*chain), std::move(kinds), s.sense.protect.reach_m + 1.0);
 }
 
 }  // namespace roverd

@@ -58,7 +58,5 @@ class SenseLoop {
 
 /// How the outlook is made for this profile.
 robot::OutlookParams shown_of(const Settings& settings) noexcept;
-/// The lookout of the profile's sensors. Invalid: a mount that cannot be, with its key.
-base::Result<robot::Lookout> lookout_of(const Settings& settings, base::Time now);
 
 }  // namespace roverd

@@ -65,7 +65,7 @@ struct Station::Impl {
   net::Files page{net::page_entries()};
   store::TileFolder tiles;
   std::unique_ptr<AroundLoop> around;  ///< null: nobody goes around anything
-  std::shared_ptr<SenseLoop> sense;  ///< null: no sensors
+  std::shared_ptr<SenseLoop> sense;    ///< null: no sensors
   std::unique_ptr<Supervisor> supervisor;
   std::unique_ptr<store::Store> store;
   std::unique_ptr<BackupKeeper> backups;

@@ -64,13 +64,10 @@ Result<void> Station::Impl::open_senses(const Settings& settings, const Options&
   const bool required = std::ranges::any_of(settings.sensors, [](const auto& one) {
     return one.second.said.enabled && one.second.said.required;
   });
-  robot.guard_by(settings.sense.protect, demands, settings.sense.blocked, settings.sense.outline);
-  if (options.replays.empty()) robot.guard_by(settings.sense.protect, demands);
-  robot.guard_by(settings.sense.protect, required && options.replays.empty());
-  sense = std::make_shared<SenseLoop>(robot, std::move(*lookout));
-  if (settings.sense.blocked.then == "around") around = std::make_unique<AroundLoop>(robot);
-  robot.guard_by(settings.sense.protect, demands);
+  robot.guard_by(settings.sense.protect, required && options.replays.empty(),
+                 settings.sense.blocked, settings.sense.outline);
   sense = std::make_shared<SenseLoop>(robot, std::move(*lookout), shown_of(settings));
+  if (settings.sense.blocked.then == "around") around = std::make_unique<AroundLoop>(robot);
   return {};
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "robot/guard/guard.hpp"
+#include "robot/guard/outline.hpp"
 
 namespace roverd {
 namespace {
@@ -15,7 +16,7 @@ constexpr double kSky = 0.95;
 
 base::Result<robot::Lookout> lookout_of(const Settings& s, base::Time now) {
   using namespace nav::sense;
-  const Footprint body = robot::footprint_of(s.robot.vehicle);
+  const Footprint body = robot::footprint_of(s.robot.vehicle, s.robot.tool, s.sense.outline);
   std::vector<SensorSetup> setups;
   std::vector<std::string> kinds;
   for (const auto& [name, sensor] : s.sensors) {
@@ -38,6 +39,7 @@ base::Result<robot::Lookout> lookout_of(const Settings& s, base::Time now) {
     kinds.push_back(sensor.said.kind);
   }
   ChainParams params{s.sense.reduce, s.sense.ground, s.sense.grid};
+  params.pulled = robot::pulled_of(s.robot.tool, s.sense.outline);
   auto chain = Chain::of(params, std::move(setups), body, now);
   if (!chain) return tl::unexpected(chain.error());
   return robot::Lookout(std::move(*chain), std::move(kinds), s.sense.protect.reach_m + 1.0);

@@ -176,8 +176,6 @@ base::Result<void> check(const SenseSettings& sense) {
   return base::fail(base::Code::Invalid, key + " " + field.detail, {{key, field.detail}});
 }
 
-base::Result<void> check(const Sensors& sensors) {
-  std::map<std::string, std::string> heard;
 base::Result<void> check(const Sensors& sensors, const std::vector<Ear>& drivers) {
   std::vector<Ear> heard = drivers;
   for (const auto& [name, sensor] : sensors) {

@@ -128,9 +128,6 @@ std::string_view sensor_of(std::string_view key) noexcept;
 /// A name that a section may have: a to z, 0 to 9 and _, 24 signs at most.
 bool is_sensor_name(std::string_view name) noexcept;
 
-/// What only the whole tells: kinds, ranges that contradict each other, two that hear one port.
-/// Invalid; the field is the key ("sensors.front.kind").
-base::Result<void> check(const Sensors& sensors);
 /// Words; the field is the key.
 base::Result<void> check(const SenseSettings& sense);
 /// What listens or opens something at this computer, for the question whether two meet there.

@@ -24,7 +24,7 @@ constexpr double kAskFor_s = 1.0;  // for so long: it first makes sure that it s
 constexpr double kHandTurns_radps = 0.3;
 constexpr double kWishless_s = 0.5;
 constexpr double kDockIs_m = 0.3;       // what stands within this of the vehicle's end, docked
-constexpr double kTurnsRound_m = 0.03;  // beyond what a turn on the spot needs
+constexpr double kTurnsRound_m = 0.08;  // so that a way around, too, may begin with a turn
 
 bool stands(const BodyTwist& t) noexcept {
   return std::abs(t.linear_mps) < 1e-6 && std::abs(t.angular_radps) < 1e-6;

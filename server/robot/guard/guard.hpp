@@ -85,7 +85,6 @@ class Guard {
   base::Duration stopped_for(base::Time now) const noexcept {
     return stopped_since_ ? now - *stopped_since_ : base::Duration{};
   }
-  const nav::sense::Odometry& odometry() const noexcept { return odometry_; }
   const nav::sense::Footprint& body() const noexcept { return body_; }
   double side_m() const noexcept { return params_.side_m; }
   /// What nobody has seen is driven into by what drives by itself, slowly.
