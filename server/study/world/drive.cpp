@@ -126,7 +126,8 @@ class WorldDrive {
         made_(made),
         stage_(made.settings, made.plant, s.number, made.start),
         around_(s.world, made.plant.body, base::Time{}),
-        referee_(around_, made.settings.sense.protect, made.settings.sense.ground.pass_below_m),
+        referee_(around_, made.settings.sense.protect, made.settings.sense.ground.pass_below_m,
+                 s.lidar ? 0.0 : made.eyes.front().seen.z_m),
         lookout_(std::move(lookout)) {
     around_.attend(stage_.plant());
     stage_.robot().guard_by(made.settings.sense.protect, true);
@@ -256,6 +257,8 @@ std::string_view to_string(Blame blame) noexcept {
       return "ours";
     case Blame::Late:
       return "late";
+    case Blame::Below:
+      return "below";
     case Blame::Unseen:
       return "unseen";
     case Blame::Standing:

@@ -19,6 +19,7 @@ constexpr double kMap_m = 40.0;  // half side
 constexpr double kMapCell_m = 0.1;
 constexpr auto kMapSide = static_cast<std::size_t>(2.0 * kMap_m / kMapCell_m);
 constexpr double kSightEvery_s = 0.09;
+constexpr double kAnew_m = 0.05;
 constexpr double kMarch_m = 1.0;
 constexpr double kMarchStep_m = 0.01;
 constexpr double kStandsFor_s = 0.3;
@@ -58,13 +59,18 @@ world::Body grown(world::Body body, double by_m) {
 }  // namespace
 
 Referee::Referee(const sim::Surroundings& around, const nav::sense::ProtectParams& brakes,
-                 double pass_below_m)
-    : around_(around), brakes_(brakes), pass_below_m_(pass_below_m), met_(kMapSide * kMapSide) {
+                 double pass_below_m, double plane_m)
+    : around_(around),
+      brakes_(brakes),
+      pass_below_m_(pass_below_m),
+      plane_m_(plane_m),
+      met_(kMapSide * kMapSide) {
   reach_m_ = 0.0;
   for (const world::Vec2 p : around_.witness().body().outline) {
     reach_m_ = std::max(reach_m_, std::hypot(p.x, p.y));
   }
   sights_.resize(around_.scene().world().things.size());
+  beams_.resize(sights_.size());
 }
 
 Referee::Met* Referee::met_at(double x_m, double y_m) {
@@ -91,6 +97,7 @@ void Referee::saw(const std::vector<world::Sweep>& sweeps, const world::Pose& mo
       if (s.thing < 0 || s.cause != world::Cause::Thing) continue;
       const auto thing = static_cast<std::size_t>(s.thing);
       std::vector<double>& seen = sights_[thing];
+      ++beams_[thing];
       const bool moving = world::moves(things[thing].kind);
       if (seen.empty() || (moving && now_s - seen.back() > kSightEvery_s)) seen.push_back(now_s);
     }
@@ -163,6 +170,19 @@ double Referee::there_since_s(int thing, const world::Pose& pose, double at_s) c
   return since_s;
 }
 
+/// Of what was touched nothing reaches into the scanners' plane there.
+bool Referee::beneath_plane(int thing, const world::Pose& pose, double at_s) const {
+  constexpr double kUneven_m = 0.03;
+  if (plane_m_ <= 0.0) return false;
+  world::Body above = grown(around_.witness().body(), 0.02);
+  above.clearance_m = plane_m_ - kUneven_m;
+  above.height_m = std::max(above.height_m, plane_m_ + kUneven_m);
+  world::Moment moment;
+  around_.scene().move_to(moment, at_s);
+  const auto there = world::contact(around_.scene(), moment, pose, above, 0.01);
+  return std::ranges::find(there.touches, thing, &world::Touch::thing) == there.touches.end();
+}
+
 void Referee::judge(const world::Witness::Seen& seen) {
   const Was& now = trail_[index_at(seen.at_s)];
   TouchSeen out;
@@ -174,6 +194,8 @@ void Referee::judge(const world::Witness::Seen& seen) {
   const double outline_mps = std::abs(now.v_mps) + std::abs(now.w_radps) * reach_m_;
   double from_s = 1e9;
   if (seen.thing >= 0) {
+    out.height_m = around_.scene().world().things[static_cast<std::size_t>(seen.thing)].height_m;
+    out.beams = beams_[static_cast<std::size_t>(seen.thing)];
     const double there_s = seen.moving ? there_since_s(seen.thing, now.pose, seen.at_s) : -1e9;
     for (const double t : sights_[static_cast<std::size_t>(seen.thing)]) {
       if (t < there_s && seen.moving) continue;
@@ -194,7 +216,9 @@ void Referee::judge(const world::Witness::Seen& seen) {
     out.needed_m = u * (brakes_.delay_s + brake_s);
     out.way_m = now.way_m - then.way_m;
     out.seen_before_s = seen.at_s - from_s;
-    out.blame = out.way_m > out.needed_m ? Blame::Ours : Blame::Late;
+    out.blame = out.way_m <= out.needed_m                        ? Blame::Late
+                : beneath_plane(seen.thing, now.pose, seen.at_s) ? Blame::Below
+                                                                 : Blame::Ours;
   }
   touches_.push_back(std::move(out));
 }
@@ -205,10 +229,13 @@ void Referee::heed(const std::optional<base::Obstacle>& obstacle) {
   if (slow && !slowing_ && !stopping_ && counts_) ++slows_;
   slowing_ = slow;
   const bool stop = action == base::GuardAction::Stop;
-  if (stop && !stopping_) {
+  // One that only asks whether the way is clear by now, and has not moved, still stands.
+  const double way_m = trail_.empty() ? 0.0 : trail_.back().way_m;
+  if (stop && !stopping_ && counts_ && (stops_.empty() || way_m > stopped_at_m_ + kAnew_m)) {
     measured_ = false;
-    if (counts_) stops_.push_back(stop_of(*obstacle));
+    stops_.push_back(stop_of(*obstacle));
   }
+  if (stop) stopped_at_m_ = way_m;
   stopping_ = stop;
   if (!stop || measured_ || stops_.empty() || stands_s() < kStandsFor_s) return;
   measured_ = true;
@@ -259,7 +286,22 @@ std::string Referee::cause_of(const base::Obstacle& o, const world::Pose& there,
   return std::string(word_of(last.cause));
 }
 
-/// Along the curve that it drove last, until it would touch what does not move.
+/// In plan, between the outline and a thing; to a centimetre.
+double Referee::room_m(int thing) const {
+  const world::Pose pose = around_.pose_at(around_.now_s());
+  world::Moment moment;
+  around_.scene().move_to(moment, around_.now_s());
+  double room_m = 0.0;
+  for (; room_m < kMarch_m; room_m += kMarchStep_m) {
+    const auto met = world::contact(around_.scene(), moment, pose,
+                                    grown(around_.witness().body(), room_m), 0.01);
+    const auto it = std::ranges::find(met.touches, thing, &world::Touch::thing);
+    if (it != met.touches.end()) break;
+  }
+  return room_m;
+}
+
+/// The room before what does not move, and what the curve that it drove last would touch.
 std::optional<double> Referee::left_m() const {
   const double v = curve_v_;
   const double w = curve_w_;
@@ -273,7 +315,7 @@ std::optional<double> Referee::left_m() const {
     const auto met = world::contact(around_.scene(), moment, pose, around_.witness().body(), 0.01);
     for (const world::Touch& t : met.touches) {
       if (t.thing < 0 || world::moves(things[static_cast<std::size_t>(t.thing)].kind)) continue;
-      return way_m;
+      return room_m(t.thing);
     }
     pose.x_m += v * step_s * std::cos(pose.yaw_rad);
     pose.y_m += v * step_s * std::sin(pose.yaw_rad);

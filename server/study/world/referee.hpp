@@ -23,8 +23,9 @@ namespace roverd::study {
 class Referee {
  public:
   /// @param pass_below_m what hangs higher is no obstacle.
+  /// @param plane_m over the ground: all its sensors look along it; 0: not so.
   Referee(const sim::Surroundings& around, const nav::sense::ProtectParams& brakes,
-          double pass_below_m);
+          double pass_below_m, double plane_m);
 
   /// A sensor's piece came. @param mount of the sensor
   void saw(const std::vector<sim::world::Sweep>& sweeps, const sim::world::Pose& mount,
@@ -59,20 +60,24 @@ class Referee {
   };
 
   void judge(const sim::world::Witness::Seen& seen);
+  bool beneath_plane(int thing, const sim::world::Pose& pose, double at_s) const;
   double there_since_s(int thing, const sim::world::Pose& pose, double at_s) const;
   std::size_t index_at(double at_s) const;
   StopSeen stop_of(const base::Obstacle& obstacle) const;
   std::string cause_of(const base::Obstacle& obstacle, const sim::world::Pose& there,
                        bool& needless) const;
   std::optional<double> left_m() const;
+  double room_m(int thing) const;
   Met* met_at(double x_m, double y_m);
 
   const sim::Surroundings& around_;
   const nav::sense::ProtectParams brakes_;
   const double pass_below_m_;
+  const double plane_m_;
   double reach_m_ = 0.5;
   std::vector<Was> trail_;
   std::vector<std::vector<double>> sights_;  ///< of each thing, when it came in sight; static: once
+  std::vector<std::size_t> beams_;           ///< that met it
   std::vector<Met> met_;
   std::size_t hard_ = 0;
   std::size_t soft_ = 0;
@@ -84,6 +89,7 @@ class Referee {
   std::vector<StopSeen> stops_;
   std::size_t slows_ = 0;
   bool stopping_ = false;
+  double stopped_at_m_ = 0.0;  ///< of the outline's way
   bool slowing_ = false;
   bool measured_ = false;  ///< where it stands at this stop
   double still_since_s_ = 0.0;

@@ -66,7 +66,7 @@ void choose_fault(Scenario& out, Draw& draw) {
     Set set;
   };
   static constexpr Fault kFaults[] = {
-      {"rain", [](auto& f, Draw& d) { f.rain_per_m = d.uniform(0.002, 0.03); }},
+      {"rain", [](auto& f, Draw& d) { f.rain_per_m = d.uniform(0.001, 0.01); }},
       {"dust", [](auto& f, Draw& d) { f.dust_per_m = d.uniform(0.005, 0.05); }},
       {"dropouts", [](auto& f, Draw& d) { f.sensor_dropout = d.uniform(0.05, 0.4); }},
       {"sun",
@@ -164,7 +164,7 @@ Result<Scenario> scenario_of(const WorldOrder& order, std::uint64_t number,
       out.kind = "open";
       out.world = random_world(number, RandomKind::Grass);
       out.fault = "rain";
-      out.faults.rain_per_m = draw.uniform(0.002, 0.02);
+      out.faults.rain_per_m = draw.uniform(0.001, 0.01);
       out.fault_after_s = 0.0;
       out.time_s = kOpen_s;
       out.sticks = out.course.reverse = false;

@@ -64,10 +64,11 @@ base::Result<Scenario> scenario_of(const WorldOrder& order, std::uint64_t number
 enum class Blame {
   Ours,      ///< braking from the first sight would have avoided it
   Late,      ///< it was there, or in sight, too late for any brakes
+  Below,     ///< its scanners look along one plane, and what was touched lies beneath it
   Unseen,    ///< no sensor ever saw it: too low, too high, too dark
   Standing,  ///< the robot stood: it came
 };
-std::string_view to_string(Blame blame) noexcept;  // ours late unseen standing
+std::string_view to_string(Blame blame) noexcept;  // ours late below unseen standing
 
 struct TouchSeen {
   double at_s = 0.0;
@@ -78,6 +79,8 @@ struct TouchSeen {
   double seen_before_s = 0.0;  ///< the first sight that counts
   double way_m = 0.0;          ///< of the outline since then
   double needed_m = 0.0;       ///< to stop
+  double height_m = 0.0;       ///< of the thing
+  std::size_t beams = 0;       ///< that met it before, from the first one on
   base::EnuPoint at;
 };
 
@@ -88,7 +91,7 @@ struct StopSeen {
   std::string cause;      ///< of obstacle and drop: thing, left (it was there), or what was met
   bool needless = false;  ///< nothing true on the swept way
   base::EnuPoint at;      ///< what was said to stand there
-  std::optional<double> stands_m;  ///< way that is left until a static thing would be touched
+  std::optional<double> stands_m;  ///< room before the static thing that it would touch
 };
 
 struct WorldRun {

@@ -1,0 +1,205 @@
+// Drives through simulated worlds: what --world says, what reaches the robot's eyes, and what the
+// referee counts.
+
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "sick/sight.hpp"
+#include "sim/eyes.hpp"
+#include "sim/world/random.hpp"
+#include "study/world/eyes.hpp"
+#include "study/world/worlds.hpp"
+
+namespace roverd::study {
+namespace {
+
+TEST(WorldOrderTest, AFileANumberOfWorldsOrOpenFields) {
+  const auto file = parse_worlds("config/worlds/yard.json");
+  ASSERT_TRUE(file);
+  EXPECT_EQ(file->kind, WorldOrder::Kind::File);
+  EXPECT_EQ(file->file, "config/worlds/yard.json");
+
+  const auto random = parse_worlds("random:2000");
+  ASSERT_TRUE(random);
+  EXPECT_EQ(random->kind, WorldOrder::Kind::Random);
+  EXPECT_EQ(random->count, 2000);
+  EXPECT_EQ(random->seed, 1U);
+
+  const auto open = parse_worlds("open:20:7");
+  ASSERT_TRUE(open);
+  EXPECT_EQ(open->kind, WorldOrder::Kind::Open);
+  EXPECT_EQ(open->count, 20);
+  EXPECT_EQ(open->seed, 7U);
+}
+
+TEST(WorldOrderTest, NonsenseIsNamed) {
+  for (const char* text : {"", "random:", "random:0", "random:100001", "random:x", "random:5:",
+                           "random:5:x", "random:5:1:2", "random:-5", "open:", "open:5 "}) {
+    const auto order = parse_worlds(text);
+    ASSERT_FALSE(order) << text;
+    EXPECT_NE(order.error().detail.find("--world"), std::string::npos) << order.error().detail;
+  }
+}
+
+TEST(ScenarioTest, TheNumberTellsAllOfIt) {
+  const WorldOrder order = *parse_worlds("random:1");
+  for (const std::uint64_t number : {std::uint64_t{3}, std::uint64_t{4}, std::uint64_t{5}}) {
+    const auto one = scenario_of(order, number, {}, {});
+    const auto two = scenario_of(order, number, {}, {});
+    ASSERT_TRUE(one && two);
+    EXPECT_EQ(one->world, two->world);
+    EXPECT_EQ(one->course.points, two->course.points);
+    EXPECT_EQ(one->speed_mps, two->speed_mps);
+    EXPECT_EQ(one->fault, two->fault);
+  }
+}
+
+TEST(ScenarioTest, AllSpeedsAllWaysAndFaultsOccur) {
+  const WorldOrder order = *parse_worlds("random:200");
+  std::map<double, int> speeds;
+  std::map<std::string, int> faults;
+  int sticks = 0;
+  int backwards = 0;
+  int lidars = 0;
+  for (std::uint64_t number = 1; number <= 200; ++number) {
+    const auto s = scenario_of(order, number, {}, {});
+    ASSERT_TRUE(s);
+    ++speeds[s->speed_mps];
+    ++faults[s->fault];
+    sticks += s->sticks ? 1 : 0;
+    backwards += !s->sticks && s->course.reverse ? 1 : 0;
+    lidars += s->lidar ? 1 : 0;
+  }
+  EXPECT_EQ(speeds.size(), 3U);
+  EXPECT_EQ(faults.size(), 8U) << "none, rain, dust, dropouts, sun, dirt, noise, dead";
+  EXPECT_GT(sticks, 40);
+  EXPECT_GT(backwards, 25);
+  EXPECT_GT(lidars, 25);
+}
+
+TEST(ScenarioTest, ACourseWithoutPointsIsRefused) {
+  Course course;
+  course.name = "mission";
+  const auto s = scenario_of(*parse_worlds("random:1"), 1, {course}, {});
+  ASSERT_FALSE(s);
+  EXPECT_NE(s.error().detail.find("mission"), std::string::npos);
+}
+
+/// A sweep of a scanner two metres before a wall, in the rain.
+sim::world::Sweep a_sweep(const sim::world::SensorParams& p) {
+  sim::world::World world;
+  sim::world::Thing wall;
+  wall.kind = sim::world::Kind::Wall;
+  wall.points = {{2.0, -3.0}, {2.0, 3.0}};
+  world.things.push_back(wall);
+  const sim::world::Scene scene(world);
+  sim::world::Sensor sensor(p, 1);
+  sim::world::SensorFaults faults;
+  faults.rain_per_m = 0.02;
+  sim::world::Sweep sweep;
+  sensor.sweep(
+      scene, [](double) { return sim::world::Pose{}; }, faults, sweep);
+  return sweep;
+}
+
+//   shots ─▶ scan_of ───────────────────────────────▶ Sight
+//        └─▶ telegram ─▶ bytes ─▶ the driver's codec ─▶ the same
+TEST(WorldEyeTest, AScanIsWhatItsBytesWouldTell) {
+  const EyeSetup front = usual_eyes({}, false).front();
+  const sim::world::Sweep sweep = a_sweep(front.seen);
+  const base::Sight direct = scan_of(front.seen, sweep, 8.0);
+
+  sim::LmsVoice voice(front.seen, 0.0);
+  sick::Writer on(sick::Dialect::B, "sEN", "LMDscandata");
+  on.u8(1);
+  (void)voice.receive(on.framed());
+  const auto bytes = voice.say(sweep, {});
+  ASSERT_FALSE(bytes.empty());
+  std::optional<base::Sight> heard;
+  sick::Framer framer;
+  framer.feed(bytes, [&](const sick::Telegram& t) {
+    const auto scan = sick::decode_scan(t);
+    ASSERT_TRUE(scan) << scan.error().detail;
+    const auto sight = sick::to_sight(*scan, {90.0, 8.0});
+    ASSERT_TRUE(sight) << sight.error().detail;
+    heard = *sight;
+  });
+  ASSERT_TRUE(heard);
+  ASSERT_EQ(direct.points.size(), 541U);
+  ASSERT_EQ(heard->points.size(), direct.points.size());
+  EXPECT_NEAR(direct.half_step_rad, heard->half_step_rad, 1e-6F);
+  EXPECT_EQ(direct.window, heard->window);
+  for (std::size_t i = 0; i < direct.points.size(); ++i) {
+    const base::SightPoint& a = direct.points[i];
+    const base::SightPoint& b = heard->points[i];
+    ASSERT_EQ(a.echo, b.echo) << i;
+    ASSERT_NEAR(a.x_m, b.x_m, 1e-3F) << i;
+    ASSERT_NEAR(a.y_m, b.y_m, 1e-3F) << i;
+    ASSERT_NEAR(a.after_s, b.after_s, 1e-5F) << i;
+  }
+}
+
+Setup setup_of() {
+  Setup setup;
+  setup.config = std::filesystem::path(CONFIG_FOLDER) / "robot.toml";
+  setup.vehicle = "bunker";
+  return setup;
+}
+
+/// Straight to the north at 1 m/s, and what stands there.
+Scenario ahead(const std::string& things) {
+  Scenario s;
+  const auto world = sim::world::read_world(R"({"things": [)" + things + "]}");
+  EXPECT_TRUE(world) << world.error().detail;
+  if (world) s.world = *world;
+  s.kind = "file";
+  s.fault = "none";
+  s.course.name = "straight";
+  s.course.points = {{0, 0}, {0, 12}};
+  s.course.speed_mps = 1.0;
+  s.time_s = 14.0;
+  return s;
+}
+
+TEST(WorldRunTest, StandsBeforeAWallAndTouchesNothing) {
+  const auto run = run_world(
+      setup_of(), ahead(R"({"kind": "wall", "points": [[-3, 6], [3, 6]], "height_m": 1})"));
+  ASSERT_TRUE(run) << run.error().detail;
+  EXPECT_EQ(run->problem, "");
+  EXPECT_TRUE(run->touches.empty());
+  ASSERT_EQ(run->stops.size(), 1U);
+  EXPECT_EQ(run->stops[0].what, "obstacle");
+  EXPECT_EQ(run->stops[0].cause, "thing");
+  EXPECT_FALSE(run->stops[0].needless);
+  ASSERT_TRUE(run->stops[0].stands_m);
+  EXPECT_GE(*run->stops[0].stands_m, 0.05);
+  EXPECT_LE(*run->stops[0].stands_m, 0.40);
+  // The wall's near side at 5.9 m, half of the vehicle 0.51 m.
+  EXPECT_NEAR(run->driven_m, 5.9 - 0.51 - *run->stops[0].stands_m, 0.1);
+}
+
+//   The scanners look over a beam that lies on the ground; the body does not.
+TEST(WorldRunTest, WhatNoSensorSeesIsTouchedAndSaidSo) {
+  const auto run = run_world(
+      setup_of(),
+      ahead(R"({"kind": "box", "at": [0, 4], "length_m": 2, "width_m": 0.2, "height_m": 0.15})"));
+  ASSERT_TRUE(run) << run.error().detail;
+  ASSERT_FALSE(run->touches.empty());
+  EXPECT_EQ(run->touches[0].blame, Blame::Unseen);
+  EXPECT_NEAR(run->touches[0].speed_mps, 1.0, 0.2);
+}
+
+TEST(WorldRunTest, TheSameNumberDrivesTheSame) {
+  auto scenario = scenario_of(*parse_worlds("random:1"), 6, {}, {});
+  ASSERT_TRUE(scenario);
+  scenario->time_s = 4.0;
+  const auto one = run_world(setup_of(), *scenario);
+  const auto two = run_world(setup_of(), *scenario);
+  ASSERT_TRUE(one && two);
+  EXPECT_EQ(to_json({*one}, setup_of()), to_json({*two}, setup_of()));
+  EXPECT_NE(to_table({*one}).find("all"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace roverd::study
