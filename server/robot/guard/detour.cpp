@@ -16,6 +16,7 @@ constexpr base::Duration kLeft = std::chrono::milliseconds(500);
 constexpr double kSameBend_1pm = 0.02;
 constexpr double kHand_m = 0.12;
 constexpr double kLook_m = 0.2;
+constexpr double kShorter = 0.8;
 
 bool same_piece(const Place& a, const Place& b) noexcept {
   return a.reverse == b.reverse && !a.pivot && !b.pivot &&
@@ -90,6 +91,15 @@ std::vector<Place> Detour::rest(const nav::sense::Pose2& local) const {
   return out;
 }
 
+/// What is driven is kept: each change costs a look around. Another way counts where this one ends
+/// at the edge of what was seen, or is stopped, or is longer by a quarter.
+bool Detour::worth(const AroundAnswer& answer, const std::vector<nav::Vertex>& way) const noexcept {
+  if (same_way(way)) return false;
+  if (stopped_ || answer_->found.found == nav::around::Found::Part) return true;
+  const double rest_m = trip_.path().length_m() - trip_.s_m();
+  return answer.found.found == nav::around::Found::Way && answer.found.length_m < kShorter * rest_m;
+}
+
 /// Nowhere farther than a hand's breadth from what is driven already, and no longer.
 bool Detour::same_way(const std::vector<nav::Vertex>& way) const noexcept {
   const nav::Path& path = trip_.path();
@@ -113,10 +123,8 @@ bool Detour::take(std::shared_ptr<const AroundAnswer> answer, const nav::Vehicle
   std::vector<nav::Vertex> way = way_of(*answer, speed_mps);
   if (way.empty()) return false;
   const bool drove = drives();
-  if (drove && trip_.busy() && same_way(way)) {
-    answer_ = std::move(answer);
-    return false;
-  }
+  if (drove && trip_.busy() && !worth(*answer, way)) return false;
+  stopped_ = false;
   answer_ = std::move(answer);
   nav::Trip::Order order;
   order.way = std::move(way);
@@ -130,7 +138,13 @@ nav::TrackOutput Detour::step(const nav::Vehicle& vehicle, double limit_mps, bas
   return trip_.step(vehicle, limit_mps, dt_s);
 }
 
+void Detour::interrupt() noexcept {
+  trip_.interrupt();
+  stopped_ = true;
+}
+
 void Detour::reset() noexcept {
+  stopped_ = false;
   answer_.reset();
   trip_.reset();
   open_ = false;

@@ -43,7 +43,7 @@ class Detour {
             double speed_mps);
   nav::TrackOutput step(const nav::Vehicle& vehicle, double limit_mps, base::Time now, double dt_s);
   /// It stands before something on the way around.
-  void interrupt() noexcept { trip_.interrupt(); }
+  void interrupt() noexcept;
   bool done() const noexcept { return trip_.state() == nav::Trip::State::There; }
   bool failed() const noexcept { return trip_.state() == nav::Trip::State::Failed; }
   /// While it drives: what it drives, and how the way goes on.
@@ -55,12 +55,14 @@ class Detour {
   bool left_alone(base::Time now) const noexcept;
 
  private:
+  bool worth(const AroundAnswer& answer, const std::vector<nav::Vertex>& way) const noexcept;
   bool same_way(const std::vector<nav::Vertex>& way) const noexcept;
 
   nav::Trip trip_;
   std::shared_ptr<const AroundAnswer> answer_;
   std::uint64_t asked_ = 0;
   bool open_ = false;
+  bool stopped_ = false;  ///< by what stands on the way around
   base::Time asked_at_{};
   base::Time stepped_at_{};
 };

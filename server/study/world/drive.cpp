@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <memory>
 #include <mutex>
 #include <numbers>
 #include <optional>
@@ -11,6 +12,7 @@
 #include "base/angle.hpp"
 #include "config/lookout.hpp"
 #include "robot/compile.hpp"
+#include "robot/guard/around.hpp"
 #include "robot/guard/lookout.hpp"
 #include "robot/guard/surroundings.hpp"
 #include "sim/config.hpp"
@@ -130,7 +132,8 @@ class WorldDrive {
                  s.lidar ? 0.0 : made.eyes.front().seen.z_m),
         lookout_(std::move(lookout)) {
     around_.attend(stage_.plant());
-    stage_.robot().guard_by(made.settings.sense.protect, true);
+    stage_.robot().guard_by(made.settings.sense.protect, true, made.settings.sense.blocked,
+                            made.settings.sense.outline);
     for (const EyeSetup& eye : made.eyes) eyes_.emplace_back(eye, s.number);
     stage_.on_heard = [this](base::Time t) { sense(t); };
   }
@@ -150,6 +153,7 @@ class WorldDrive {
       by_itself(out);
     }
     referee_.report(out);
+    out.detours = detours_;
     return out;
   }
 
@@ -175,6 +179,12 @@ class WorldDrive {
       });
     }
     if (auto picture = lookout_.picture(t)) stage_.robot().surroundings().put(std::move(picture));
+    asked_.clear();
+    stage_.robot().around_questions().take(asked_);
+    if (!asked_.empty()) {
+      if (!planner_) planner_ = std::make_unique<nav::around::Planner>();
+      stage_.robot().around_answers().put(robot::answer_around(*planner_, asked_.back()));
+    }
     referee_.look();
   }
 
@@ -184,7 +194,11 @@ class WorldDrive {
       stage_.robot().measurements().put(base::OperatorLink{now, 1});
     }
     stage_.tick();
-    referee_.heed(stage_.robot().snapshot()->obstacle);
+    const auto shown = stage_.robot().snapshot();
+    referee_.heed(shown->obstacle);
+    const bool around = shown->detour != nullptr;
+    if (around && !goes_around_) ++detours_;
+    goes_around_ = around;
   }
 
   Result<void> become_ready() {
@@ -245,6 +259,10 @@ class WorldDrive {
   std::vector<WorldEye> eyes_;
   std::vector<nav::sense::Odometry> moved_;
   std::vector<std::shared_ptr<const robot::Surroundings>> done_;
+  std::vector<std::shared_ptr<const robot::AroundQuestion>> asked_;
+  std::unique_ptr<nav::around::Planner> planner_;
+  std::size_t detours_ = 0;
+  bool goes_around_ = false;
   double began_s_ = 0.0;
   int ticks_ = 0;
 };
