@@ -78,8 +78,8 @@ base::DriveCommand Robot::Impl::drive_by_hand() {
 
 base::DriveCommand Robot::Impl::drive_by_itself() {
   if (!pose) return {{}, true};
-  if (self_driving.calibrates() && guard.stops()) {
-    // A figure that stood still in between measures nothing: it does not wait.
+  if (self_driving.calibrates() && guard.obstacle().action != base::GuardAction::None) {
+    // A figure that was slowed, or stood in between, measures nothing: it does not wait.
     self_driving.calibration().end(guard.obstacle().reason);
   } else if (waits_for_way()) {
     self_driving.interrupt();
