@@ -70,6 +70,7 @@ House::House(net::Limits limits, Vehicle vehicle, const Before& before)
   if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
   folder_ = name;
   if (before.data) before.data(folder_ / "roverd.db");
+  if (before.sees) robot_.guard_by({});
   auto opened = store::Store::open(folder_ / "roverd.db", [this](std::function<void()> answer) {
     boost::asio::post(io_, std::move(answer));
   });

@@ -21,6 +21,7 @@
 #include "net/doorbell.hpp"
 #include "net/server.hpp"
 #include "net/workers.hpp"
+#include "robot/guard/surroundings.hpp"
 #include "robot/robot.hpp"
 #include "services/services.hpp"
 #include "store/store.hpp"
@@ -36,6 +37,7 @@ struct Before {
   std::function<void(robot::Config&)> config{};
   bool access = false;  ///< access control is on
   bool sees = false;    ///< it has sensors
+  bool sees = false;    ///< it has sensors that look around: see()
   base::Duration control_grace = std::chrono::seconds(10);
 };
 
@@ -89,6 +91,10 @@ class House {
   [[nodiscard]] std::size_t large_waiting() const;
   /// A device says something more.
   void hear(base::Measurement m) { robot_.measurements().put(std::move(m)); }
+  /// What stands around it; to be said again and again.
+  void see(std::shared_ptr<const robot::Surroundings> s) {
+    robot_.surroundings().put(std::move(s));
+  }
 
  private:
   void play();
