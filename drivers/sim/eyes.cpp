@@ -13,7 +13,26 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr std::uint16_t kReserved = 1;
 constexpr std::size_t kMostWaiting = 4096;
 
-/// Of its name and dialect only: all that the driver asks for is granted.
+/// Of the fact sheet: what sFA says.
+constexpr int kDenied = 1;
+constexpr int kUnknownVariable = 3;
+constexpr int kInvalidData = 5;
+/// What mLMPsetscancfg answers.
+constexpr std::uint8_t kDone = 0;
+constexpr std::uint8_t kFrequencyError = 1;
+constexpr std::uint8_t kResolutionError = 2;
+
+std::int32_t e4deg(double deg) {
+  return static_cast<std::int32_t>(std::lround(deg * 1e4));
+}
+/// 25 Hz with 0.25 or 0.5 degrees, 50 Hz with 0.5.
+std::uint8_t lms1xx_can(const sick::ScanConfig& c) {
+  if (c.frequency_chz != 2500 && c.frequency_chz != 5000) return kFrequencyError;
+  const bool fine = c.step_e4deg == 2500 && c.frequency_chz == 2500;
+  return fine || c.step_e4deg == 5000 ? kDone : kResolutionError;
+}
+
+/// Of its name and dialect only.
 void write_answer(sick::Writer& out, std::string_view kind, std::string_view name) {
   if (name == "STlms") {
     out.u16(sick::kMeasuring);
@@ -23,9 +42,6 @@ void write_answer(sick::Writer& out, std::string_view kind, std::string_view nam
     out.text("V1.0");
   } else if (name == "SerialNumber" || name == "FirmwareVersion") {
     out.text("1");
-  } else if (name == "mLMPsetscancfg") {
-    out.u8(0);
-    sick::write(out, sick::ScanConfig{});
   } else if (name == "LMDscandata") {
     out.u8(1);
   } else if (kind == "sMN") {
@@ -58,11 +74,14 @@ std::vector<std::uint8_t> LmsVoice::answer(const sick::Telegram& telegram,
                                 : words.kind == "sMN" ? "sAN"
                                 : words.kind == "sEN" ? "sEA"
                                                       : "";
-  if (kind.empty()) {
-    sick::Writer refused(dialect_, "sFA", "");
-    refused.u8(3);
-    return refused.framed();
+  if (kind.empty()) return refused(kUnknownVariable);
+  if (words.kind == "sMN" && words.name == "SetAccessMode") {
+    sick::Fields fields(telegram.dialect, telegram.body, words.fields_at);
+    const bool client = fields.u8("level") >= 3 && fields.u32("hash") == sick::kClientPassword;
+    logged_in_ = client && fields.ok();
+    return sick::Writer(dialect_, "sAN", words.name).u8(logged_in_ ? 1 : 0).framed();
   }
+  if (words.kind == "sWN" || words.name == "mLMPsetscancfg") return set(telegram, words);
   sick::Writer out(dialect_, kind, words.name);
   if (words.kind == "sEN" && words.name == sick::kScanData) {
     sick::Fields fields(telegram.dialect, telegram.body, words.fields_at);
@@ -73,10 +92,57 @@ std::vector<std::uint8_t> LmsVoice::answer(const sick::Telegram& telegram,
   return out.framed();
 }
 
+std::vector<std::uint8_t> LmsVoice::refused(int code) const {
+  sick::Writer out(dialect_, "sFA", "");
+  out.u8(static_cast<std::uint8_t>(code));
+  return out.framed();
+}
+
+std::vector<std::uint8_t> LmsVoice::set(const sick::Telegram& telegram, const sick::Words& words) {
+  if (!logged_in_) return refused(kDenied);
+  sick::Fields fields(telegram.dialect, telegram.body, words.fields_at);
+  if (words.name == "mLMPsetscancfg") return set_scan(fields);
+  if (words.name == "LMPoutputRange") {
+    const sick::OutputRange range = sick::read_output_range(fields);
+    if (!fields.ok() || range.start_e4deg >= range.stop_e4deg) return refused(kInvalidData);
+    range_ = range;
+  } else if (words.name == "LMDscandatacfg") {
+    const sick::DataConfig data = sick::read_data_config(fields);
+    if (!fields.ok() || data.every == 0) return refused(kInvalidData);
+    data_ = data;
+  } else {
+    return refused(kUnknownVariable);
+  }
+  return sick::Writer(dialect_, "sWA", words.name).framed();
+}
+
+/// Its field is what it is: only frequency and resolution change.
+std::vector<std::uint8_t> LmsVoice::set_scan(sick::Fields& fields) {
+  const sick::ScanConfig wanted = sick::read_scan_config(fields);
+  if (!fields.ok()) return refused(kInvalidData);
+  const std::uint8_t status = lms1xx_can(wanted);
+  if (status == kDone) {
+    params_.rate_hz = wanted.frequency_chz / 100.0;
+    params_.step_deg = wanted.step_e4deg / 1e4;
+  }
+  sick::Writer out(dialect_, "sAN", "mLMPsetscancfg");
+  out.u8(status);
+  sick::write(out, {.frequency_chz = static_cast<std::uint32_t>(e4deg(params_.rate_hz) / 100),
+                    .sectors = 1,
+                    .step_e4deg = static_cast<std::uint32_t>(e4deg(params_.step_deg)),
+                    .start_e4deg = e4deg(params_.fov_from_deg + 90.0),
+                    .stop_e4deg = e4deg(params_.fov_to_deg + 90.0)});
+  return out.framed();
+}
+
+bool LmsVoice::sends(std::int32_t angle_e4deg) const noexcept {
+  return !range_ || (angle_e4deg >= range_->start_e4deg && angle_e4deg <= range_->stop_e4deg);
+}
+
 std::vector<std::uint8_t> LmsVoice::say(const world::Sweep& sweep,
                                         const world::SensorFaults& faults) {
   ++scans_;
-  if (!subscribed_) return {};
+  if (!subscribed_ || scans_ % data_.every != 0) return {};
   sick::Scan scan;
   scan.serial = 4711;
   scan.status[1] =
@@ -100,7 +166,11 @@ std::vector<std::uint8_t> LmsVoice::say(const world::Sweep& sweep,
   sick::Channel remission = distance;
   remission.name = "RSSI1";
   remission.scale = 1.0F;
+  std::int32_t angle_e4deg = distance.start_e4deg - distance.step_e4deg;
   for (const world::Shot& s : sweep.shots) {
+    angle_e4deg += distance.step_e4deg;
+    if (!sends(angle_e4deg)) continue;
+    if (distance.values.empty()) distance.start_e4deg = remission.start_e4deg = angle_e4deg;
     const double raw =
         static_cast<double>(s.range_m) * 1000.0 / static_cast<double>(distance.scale);
     const bool dazzled =
@@ -110,13 +180,17 @@ std::vector<std::uint8_t> LmsVoice::say(const world::Sweep& sweep,
     remission.values.push_back(
         static_cast<std::uint16_t>(std::lround(std::clamp(s.intensity, 0.0F, 1.0F) * 1000.0F)));
   }
-  scan.channels = {std::move(distance), std::move(remission)};
+  scan.channels.push_back(std::move(distance));
+  if (data_.remission) scan.channels.push_back(std::move(remission));
   return sick::encode(scan, dialect_);
 }
 
 void LmsVoice::restart(double now_s) {
   begin_s_ = now_s;
-  subscribed_ = false;
+  params_ = usual_;
+  subscribed_ = logged_in_ = false;
+  range_.reset();
+  data_ = {};
   telegrams_ = scans_ = 0;
   framer_.forget();
 }
@@ -185,12 +259,24 @@ std::vector<std::uint8_t> range_line(const world::Sweep& sweep) {
 }
 
 Eye::Eye(const world::SensorParams& p, std::uint64_t seed, double begin_s)
-    : sensor_(p, seed, begin_s) {
+    : seed_(seed), sensor_(p, seed, begin_s) {
   if (p.kind == "lms") lms_.emplace(p, begin_s);
 }
 
 std::vector<std::uint8_t> Eye::receive(base::Bytes bytes) {
-  return lms_ && !cut_ ? lms_->receive(bytes) : std::vector<std::uint8_t>{};
+  if (!lms_ || cut_) return {};
+  auto out = lms_->receive(bytes);
+  take_wanted();
+  return out;
+}
+
+/// From the piece on that comes next, it is cast as was set.
+void Eye::take_wanted() {
+  const world::SensorParams& now = sensor_.params();
+  const world::SensorParams& wanted = lms_->wanted();
+  if (wanted.rate_hz == now.rate_hz && wanted.step_deg == now.step_deg) return;
+  sensor_ = world::Sensor(wanted, seed_, sensor_.next_s() - 1.0 / now.rate_hz);
+  sweep_.shots.clear();
 }
 
 std::vector<std::uint8_t> Eye::bytes_of(const world::SensorFaults& faults) {
@@ -204,7 +290,10 @@ void Eye::advance(const Surroundings& around, const world::SensorFaults& all,
                   const std::function<void(base::Bytes)>& say) {
   const world::SensorFaults faults = world::faults_of(all, params().name);
   const double now_s = around.now_s();
-  if (cut_ && !faults.sensor_restart && lms_) lms_->restart(now_s);
+  if (cut_ && !faults.sensor_restart && lms_) {
+    lms_->restart(now_s);
+    take_wanted();
+  }
   cut_ = faults.sensor_restart;
   if (cut_ || faults.sensor_silent) {
     sensor_.skip_to(now_s);

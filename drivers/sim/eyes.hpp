@@ -25,26 +25,39 @@
 
 namespace roverd::sim {
 
-/// One LMS1xx as its client sees it: answers to requests, and scans of sweeps.
+/// One LMS1xx as its client sees it: answers to requests, and scans of sweeps. Who has logged in
+/// may set frequency and resolution (as an LMS1xx has them), the part of the field that is sent,
+/// and what a scan holds; others are refused. It forgets all of it when it is restarted.
 class LmsVoice {
  public:
   /// @param begin_s when it was switched on: its clock's zero.
-  LmsVoice(const world::SensorParams& p, double begin_s) : params_(p), begin_s_(begin_s) {}
+  LmsVoice(const world::SensorParams& p, double begin_s)
+      : usual_(p), params_(p), begin_s_(begin_s) {}
 
   /// Bytes from the client. @return the answers, in the dialect that was asked in.
   std::vector<std::uint8_t> receive(base::Bytes bytes);
   /// Empty: nobody subscribed.
   std::vector<std::uint8_t> say(const world::Sweep& sweep, const world::SensorFaults& faults);
   void restart(double now_s);
+  /// With what was set of it: how the beams are to be cast from now on.
+  const world::SensorParams& wanted() const noexcept { return params_; }
 
  private:
   std::vector<std::uint8_t> answer(const sick::Telegram& telegram, const sick::Words& words);
+  std::vector<std::uint8_t> refused(int code) const;
+  std::vector<std::uint8_t> set(const sick::Telegram& telegram, const sick::Words& words);
+  std::vector<std::uint8_t> set_scan(sick::Fields& fields);
+  bool sends(std::int32_t angle_e4deg) const noexcept;
 
+  const world::SensorParams usual_;
   world::SensorParams params_;
   double begin_s_;
   sick::Framer framer_;
   sick::Dialect dialect_ = sick::Dialect::B;
   bool subscribed_ = false;
+  bool logged_in_ = false;
+  std::optional<sick::OutputRange> range_;  ///< empty: the whole field
+  sick::DataConfig data_;
   std::uint16_t telegrams_ = 0;
   std::uint16_t scans_ = 0;
 };
@@ -77,7 +90,9 @@ class Eye {
     std::vector<std::uint8_t> bytes;
   };
   std::vector<std::uint8_t> bytes_of(const world::SensorFaults& faults);
+  void take_wanted();
 
+  const std::uint64_t seed_;
   world::Sensor sensor_;
   std::optional<LmsVoice> lms_;
   world::Sweep sweep_;

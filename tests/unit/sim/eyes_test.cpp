@@ -94,6 +94,69 @@ TEST(SimulatedLms, AnswersWhatItsDriverAsks) {
   EXPECT_EQ(ask(sick::subscribe(b, true)), "sEA LMDscandata ");
 }
 
+/// The answer's kind, its name, and the numbers after them (CoLa A, each in hexadecimal).
+std::string said_to(Eye& eye, const sick::Request& request) {
+  std::string out;
+  sick::Framer framer;
+  framer.feed(eye.receive(request), [&](const sick::Telegram& t) {
+    out.assign(reinterpret_cast<const char*>(t.body.data()), t.body.size());
+  });
+  return out;
+}
+
+TEST(SimulatedLms, IsConfiguredByWhoHasLoggedInAsAnLms1xxIs) {
+  const auto a = sick::Dialect::A;
+  Sight s;
+  Eye eye(Sight::exact("lms"), 1, 0.0);
+  const sick::ScanConfig fine{.frequency_chz = 2500, .step_e4deg = 2500};
+  const sick::OutputRange ahead{
+      .sectors = 1, .step_e4deg = 2500, .start_e4deg = 600'000, .stop_e4deg = 1'200'000};
+  // Given: nobody has logged in. Then: access is denied (1).
+  EXPECT_EQ(said_to(eye, sick::set(a, fine)), "sFA 1");
+  EXPECT_EQ(said_to(eye, sick::set(a, ahead)), "sFA 1");
+  EXPECT_EQ(said_to(eye, sick::login(a)), "sAN SetAccessMode 1");
+  // What an LMS1xx cannot do is refused by its own numbers, and what it does is told: 25 Hz, 0.5
+  // deg.
+  EXPECT_TRUE(
+      said_to(eye, sick::set(a, sick::ScanConfig{.frequency_chz = 5000, .step_e4deg = 2500}))
+          .starts_with("sAN mLMPsetscancfg 2 9C4 1 1388 "));
+  EXPECT_TRUE(said_to(eye, sick::set(a, sick::ScanConfig{.frequency_chz = 1000}))
+                  .starts_with("sAN mLMPsetscancfg 1 "));
+  // 25 Hz with a quarter of a degree: 1081 beams (Telegram listing).
+  EXPECT_EQ(said_to(eye, sick::set(a, fine)), "sAN mLMPsetscancfg 0 9C4 1 9C4 FFF92230 225510");
+  EXPECT_FALSE(eye.receive(sick::subscribe(a, true)).empty());
+  auto scans = scans_in(s.hear(eye, 1s));
+  ASSERT_NEAR(static_cast<double>(scans.size()), 25.0, 1.0);
+  EXPECT_EQ(scans.back().channels.at(0).values.size(), 1081u);
+  EXPECT_EQ(scans.back().channels[0].step_e4deg, 2500);
+  EXPECT_EQ(scans.back().channels[0].values[540], 4000) << "ahead";
+  // A part of the field, no remission, each second scan.
+  EXPECT_EQ(said_to(eye, sick::set(a, ahead)), "sWA LMPoutputRange");
+  EXPECT_EQ(said_to(eye, sick::set(a, sick::DataConfig{.remission = false, .every = 2})),
+            "sWA LMDscandatacfg");
+  scans = scans_in(s.hear(eye, 1s));
+  ASSERT_NEAR(static_cast<double>(scans.size()), 12.5, 1.5);
+  const sick::Scan& scan = scans.back();
+  ASSERT_EQ(scan.channels.size(), 1u);
+  EXPECT_EQ(scan.channels[0].start_e4deg, 600'000);
+  ASSERT_EQ(scan.channels[0].values.size(), 241u) << "60 degrees in quarters, both ends";
+  EXPECT_EQ(scan.channels[0].values[120], 4000) << "90 degrees are ahead";
+  EXPECT_EQ(static_cast<std::uint16_t>(scan.scan_count - scans[scans.size() - 2].scan_count), 2);
+  // A range that is none is refused (5: invalid data), and nothing changes.
+  EXPECT_EQ(said_to(eye, sick::set(a, sick::OutputRange{.start_e4deg = 5, .stop_e4deg = 5})),
+            "sFA 5");
+  // When: it is restarted. Then: it has forgotten all of it.
+  world::SensorFaults restart;
+  restart.sensor_restart = true;
+  s.hear(eye, 100ms, restart);
+  s.hear(eye, 100ms);
+  EXPECT_FALSE(eye.receive(sick::subscribe(a, true)).empty());
+  scans = scans_in(s.hear(eye, 500ms));
+  ASSERT_FALSE(scans.empty());
+  EXPECT_EQ(scans.back().channels.at(0).values.size(), 541u);
+  EXPECT_EQ(scans.back().channels.size(), 2u);
+}
+
 TEST(SimulatedLms, TellsItsWindowAndItsDazzledBeams) {
   Sight s;
   Eye eye(Sight::exact("lms"), 1, 0.0);
