@@ -99,6 +99,7 @@ struct Robot::Impl {
   bool config_unpublished = true;
   LoopClock clock;
   World world;
+  std::vector<std::string> down_told;  ///< drivers that are down, and were told to be
   nav::Estimator estimator;
   std::optional<base::Pose> pose;
   base::EstimatorHealth health;  ///< of the estimator, at this tick

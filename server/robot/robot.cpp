@@ -254,15 +254,20 @@ void Robot::Impl::take_estop(Time now) {
   latch_estop("the operator");
 }
 
-/// What changed about a driver, for those who look later.
+/// What changed about a driver, for those who look later. One that is tried again and again, and is
+/// not there, is told of once: until it is up.
 void Robot::Impl::note_driver(const base::DriverStatus& d) {
   using Phase = base::DriverPhase;
   const auto known = std::find_if(world.drivers.begin(), world.drivers.end(),
                                   [&](const auto& k) { return k.name == d.name; });
   const bool is_new = known == world.drivers.end();
   if (is_new || known->phase != d.phase) {
-    if (d.phase == Phase::Up) event(Severity::Info, "driver_up", d.name + " is up");
-    if (d.phase == Phase::Faulty) {
+    if (d.phase == Phase::Up) {
+      std::erase(down_told, d.name);
+      event(Severity::Info, "driver_up", d.name + " is up");
+    }
+    if (d.phase == Phase::Faulty && std::ranges::count(down_told, d.name) == 0) {
+      down_told.push_back(d.name);
       event(Severity::Warning, "driver_down", d.name + ": " + d.reason);
     }
     if (d.phase == Phase::Failed) {

@@ -36,7 +36,6 @@ struct Before {
   std::function<void(const std::filesystem::path& file)> data{};
   std::function<void(robot::Config&)> config{};
   bool access = false;  ///< access control is on
-  bool sees = false;    ///< it has sensors
   bool sees = false;    ///< it has sensors that look around: see()
   base::Duration control_grace = std::chrono::seconds(10);
 };

@@ -43,7 +43,7 @@ describe('its words', () => {
     expect(obstacle_since({ ...wall, stopped_s: null }, 0)).toBe('');
   });
   it('say what comes of waiting where the robot tells it', () => {
-    const blocked = { ...wall, since_s: 12, blocked: true, then: 'go_around', decides_in_s: 8 };
+    const blocked = { ...wall, since_s: 12, blocked: true, then: 'around', decides_in_s: 8 };
     expect(obstacle_since(blocked, 0)).toBe('For 12 s. Blocked. In 8 s it looks for a way around.');
     expect(obstacle_since({ ...blocked, decides_in_s: null, then: 'back_off' }, 0)).toBe(
       'For 12 s. Blocked. Then back off.',

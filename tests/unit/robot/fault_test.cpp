@@ -51,5 +51,34 @@ TEST(Faults, OneAtEveryTickIsCountedEachTimeAndToldEveryTenSeconds) {
             "an exception ended a tick of the control loop: the wire is cut");
 }
 
+TEST(DriverEvents, ADriverThatIsTriedAgainAndAgainIsToldToBeDownOnce) {
+  Field f;
+  const auto says = [&](base::DriverPhase phase, const std::string& reason) {
+    base::DriverStatus s;
+    s.stamp = f.now;
+    s.name = "camera";
+    s.phase = phase;
+    s.reason = reason;
+    f.robot.measurements().put(s);
+    f.tick();
+  };
+  using Phase = base::DriverPhase;
+  // Given: an optional camera that is not there: opened and refused every few seconds.
+  for (int i = 0; i < 5; ++i) {
+    says(Phase::Opening, "waiting for a frame");
+    says(Phase::Faulty, i % 2 == 0 ? "connection refused" : "no frame");
+  }
+  // Then: one event says so.
+  EXPECT_EQ(details_of(f, "driver_down"), std::vector<std::string>{"camera: connection refused"});
+  // When: it comes and goes. Then: it is told again, once.
+  says(Phase::Up, "");
+  says(Phase::Faulty, "no frame");
+  says(Phase::Opening, "waiting for a frame");
+  says(Phase::Faulty, "no frame");
+  EXPECT_EQ(details_of(f, "driver_up"), std::vector<std::string>{"camera is up"});
+  EXPECT_EQ(details_of(f, "driver_down"),
+            (std::vector<std::string>{"camera: connection refused", "camera: no frame"}));
+}
+
 }  // namespace
 }  // namespace roverd::robot

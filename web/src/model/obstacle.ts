@@ -28,7 +28,6 @@ export interface Obstacle {
 
 const then_words: Readonly<Record<string, string>> = {
   wait: 'it waits on',
-  go_around: 'it looks for a way around',
   around: 'it looks for a way around',
   return: 'it drives back',
   abort: 'the mission ends',
