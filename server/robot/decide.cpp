@@ -188,6 +188,7 @@ base::DriveCommand Robot::Impl::decide() {
   if (!arm.armed() || radio) return {};
   if (lost) return {};
   if (!listens) return {{}, true};
+  guard.follow(false);
   return keep_off(keep_inside(choose()));
 }
 

@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 
 Before seeing() {
   Before before;
-  before.sees = true;
+  before.sees = before.demands = true;
   return before;
 }
 

@@ -70,7 +70,7 @@ House::House(net::Limits limits, Vehicle vehicle, const Before& before)
   if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
   folder_ = name;
   if (before.data) before.data(folder_ / "roverd.db");
-  if (before.sees) robot_.guard_by({});
+  if (before.sees) robot_.guard_by({}, before.demands);
   auto opened = store::Store::open(folder_ / "roverd.db", [this](std::function<void()> answer) {
     boost::asio::post(io_, std::move(answer));
   });
@@ -109,10 +109,7 @@ House::House(net::Limits limits, Vehicle vehicle, const Before& before)
     return true;
   };
   deps.later = [this](std::function<void()> call) { boost::asio::post(io_, std::move(call)); };
-  if (before.sees) {
-    robot_.guard_by({}, false);
-    deps.outlook = [this] { return seen_.get(); };
-  }
+  if (before.sees) deps.outlook = [this] { return seen_.get(); };
   if (before.access) deps.people = &people_;
   deps.control_grace = before.control_grace;
   deps.tell_code = [this](const std::string& code) {

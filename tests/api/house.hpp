@@ -35,8 +35,9 @@ struct Before {
   /// Writes what an earlier run left: the database's file, which is not open yet.
   std::function<void(const std::filesystem::path& file)> data{};
   std::function<void(robot::Config&)> config{};
-  bool access = false;  ///< access control is on
-  bool sees = false;    ///< it has sensors that look around: see()
+  bool access = false;   ///< access control is on
+  bool sees = false;     ///< it has sensors that look around: see()
+  bool demands = false;  ///< and drives by itself with them only
   base::Duration control_grace = std::chrono::seconds(10);
 };
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "base/angle.hpp"
 #include "robot/safety/fence_guard.hpp"
@@ -14,6 +15,9 @@ using nav::around::Question;
 using nav::around::Ring;
 
 constexpr int kCircleCorners = 64;
+constexpr double kHolds_m = 0.09;  // what the guard leaves beside it, and a cell's roundness
+constexpr double kHere_m = 0.3;
+constexpr double kEdge_m = 0.1;
 
 nav::sense::Vec2 in_odometry(const AroundQuestion& asked, base::LatLon at) {
   const base::EnuPoint p = asked.frame.to_local(at);
@@ -40,6 +44,34 @@ Ring ring_of(const AroundQuestion& asked, const mission::FenceArea& area) {
   return out;
 }
 
+/// Nothing has come to be seen on it. Where the robot stands now it cannot be helped.
+bool holds(const nav::sense::Patch& patch, const Question& q) {
+  if (q.before.empty()) return false;
+  std::vector<float> room_m;
+  nav::sense::clearance(patch, false, 0.5F, room_m);
+  const auto corners = q.body.corners();
+  const auto clear = [&](nav::sense::Vec2 p) {
+    const auto x = static_cast<std::int32_t>(std::floor(p.x / patch.cell_m)) - patch.x0;
+    const auto y = static_cast<std::int32_t>(std::floor(p.y / patch.cell_m)) - patch.y0;
+    if (x < 0 || y < 0 || x >= patch.side || y >= patch.side) return true;
+    return static_cast<double>(room_m[static_cast<std::size_t>(y * patch.side + x)]) >= kHolds_m;
+  };
+  for (const nav::around::Place& place : q.before) {
+    if (std::hypot(place.pose.x_m - q.pose.x_m, place.pose.y_m - q.pose.y_m) < kHere_m) continue;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const nav::sense::Vec2 a = corners[i];
+      const nav::sense::Vec2 along = corners[(i + 1) % corners.size()] - a;
+      const int pieces = static_cast<int>(std::sqrt(dot(along, along)) / kEdge_m) + 1;
+      for (int k = 0; k < pieces; ++k) {
+        const nav::sense::Vec2 p = a + (double(k) / pieces) * along;
+        const auto at = place.pose * nav::sense::Pose2{p.x, p.y, 0.0};
+        if (!clear({at.x_m, at.y_m})) return false;
+      }
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 nav::sense::Pose2 to_odometry(const nav::sense::Pose2& local, base::EnuPoint at,
@@ -60,6 +92,7 @@ std::shared_ptr<const AroundAnswer> answer_around(nav::around::Planner& planner,
   if (auto ok = planner.plan(asked->around->patch, q, out->found); !ok) {
     out->refused = ok.error().detail;
   }
+  out->before_holds = holds(asked->around->patch, q);
   // What is large goes here, and not where the answer is let go.
   auto kept = std::make_shared<AroundQuestion>(*asked);
   kept->around.reset();

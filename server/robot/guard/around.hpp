@@ -34,7 +34,8 @@ struct AroundQuestion {
 struct AroundAnswer {
   std::shared_ptr<const AroundQuestion> asked;  ///< without `around` and `fence`
   nav::around::Answer found;
-  std::string refused;  ///< why the question was none; empty: it was
+  bool before_holds = false;  ///< what is being driven (Question::before) is free as it was
+  std::string refused;        ///< why the question was none; empty: it was
 };
 
 /// X_LB as a pose in the odometry's frame, and back.

@@ -92,10 +92,11 @@ std::vector<Place> Detour::rest(const nav::sense::Pose2& local) const {
 }
 
 /// What is driven is kept: each change costs a look around. Another way counts where this one ends
-/// at the edge of what was seen, or is stopped, or is longer by a quarter.
+/// at the edge of what was seen, or leads into what came to be seen, or is longer by a quarter.
 bool Detour::worth(const AroundAnswer& answer, const std::vector<nav::Vertex>& way) const noexcept {
   if (same_way(way)) return false;
-  if (stopped_ || answer_->found.found == nav::around::Found::Part) return true;
+  const bool part = answer_->found.found == nav::around::Found::Part;
+  if (stopped_ || part || !answer.before_holds) return true;
   const double rest_m = trip_.path().length_m() - trip_.s_m();
   return answer.found.found == nav::around::Found::Way && answer.found.length_m < kShorter * rest_m;
 }

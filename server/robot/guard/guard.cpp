@@ -23,7 +23,8 @@ constexpr double kAsk_s = 3.0;     // so often a stopped drive is asked anew,
 constexpr double kAskFor_s = 1.0;  // for so long: it first makes sure that it stands
 constexpr double kHandTurns_radps = 0.3;
 constexpr double kWishless_s = 0.5;
-constexpr double kDockIs_m = 0.3;       // what stands within this of the vehicle's end, docked
+constexpr double kDockIs_m = 0.3;  // what stands within this of the vehicle's end, docked
+constexpr double kFollows_m = 0.02;
 constexpr double kTurnsRound_m = 0.08;  // so that a way around, too, may begin with a turn
 
 bool stands(const BodyTwist& t) noexcept {
@@ -125,6 +126,9 @@ const nav::sense::Odometry& Guard::move(const BodyTwist& measured, base::Time no
 /// A person who drives sees what no sensor does, and may always creep away.
 nav::sense::ProtectParams Guard::params_of(bool by_itself) const noexcept {
   nav::sense::ProtectParams p = params_;
+  // A way that was found to be clear bends past what stands there: each of its bends, driven on and
+  // on, would lead into that. It still stops before, only nearer.
+  if (by_itself && follows_) p.gap_m = std::min(p.gap_m, p.side_m + kFollows_m);
   if (by_itself) return p;
   p.creep_back_mps = std::max(p.creep_back_mps, p.creep_mps);
   p.creep_turn_radps = std::max(p.creep_turn_radps, kHandTurns_radps);

@@ -82,6 +82,8 @@ class Guard {
   /// Somebody else begins: what was wanted before says nothing.
   void forget() noexcept;
 
+  /// At each tick of a drive: it follows a way that was planned around what stands there.
+  void follow(bool planned) noexcept { follows_ = planned; }
   base::Duration stopped_for(base::Time now) const noexcept {
     return stopped_since_ ? now - *stopped_since_ : base::Duration{};
   }
@@ -104,6 +106,7 @@ class Guard {
   bool clear_long_enough(base::Time now);
 
   bool sees_ = false;
+  bool follows_ = false;
   bool demands_ = false;
   nav::sense::ProtectParams params_;
   double decel_set_mps2_ = 0.6;

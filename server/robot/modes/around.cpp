@@ -133,6 +133,7 @@ std::optional<base::BodyTwist> Robot::Impl::drive_around() {
   const bool look = detour.drives() || wanted;
   if (look && detour.may_ask(clock.now())) (void)ask_around();
   if (!detour.drives()) return std::nullopt;
+  guard.follow(true);
   missions.executor.interrupt();
   driver = base::Driver::Autonomy;
   if (guard.stops() && !guard.may_go_on(clock.now())) {
