@@ -88,7 +88,7 @@ class Driver {
     std::uint32_t sent_us;
   };
   std::optional<Last> last_;
-  base::SampleClock<1> clock_;
+  base::SampleClock<1> clock_{false};
   std::uint64_t count_ = 0;  ///< of the next sight
   std::optional<Beams> beams_;
   std::optional<std::array<std::uint8_t, 2>> status_told_;

@@ -39,6 +39,11 @@ class SampleClock {
     Time stamp;
   };
 
+  /// @param follows a device whose clock stood still for a moment. Not where a stamp that is too
+  /// young is worse than one that is too old, and a link may be slow for long: a scanner's points
+  /// would lie where they are not.
+  explicit SampleClock(bool follows = true) noexcept : follows_(follows) {}
+
   Read read(std::uint32_t count, Time arrival) noexcept {
     const Step step = step_to(count);
     if (step == Step::First || step == Step::Back) {
@@ -85,6 +90,7 @@ class SampleClock {
 
   /// A device that lost a moment, rather than a link that was slow for one.
   void follow(Duration raw) noexcept {
+    if (!follows_) return;
     if (!least_) least_since_ = arrived_;
     least_ = least_ ? std::min(*least_, raw) : raw;
     if (arrived_ >= least_since_ && seconds(arrived_ - least_since_) < kStood_s) return;
@@ -92,6 +98,7 @@ class SampleClock {
     least_.reset();
   }
 
+  bool follows_;
   bool known_ = false;
   std::uint32_t last_ = 0;
   Duration total_{};

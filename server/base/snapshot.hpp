@@ -367,7 +367,7 @@ struct Snapshot {
   Activity activity;
   std::string autonomy_refusal;  ///< why nothing may drive by itself now; empty: it may
   std::optional<FenceState> fence;
-  DriveCommand command;              ///< what was sent at this tick
+  DriveCommand command;  ///< what was sent at this tick
   /// The way around what stands before the mission, while it is driven: the robot's own place on it
   /// first. Null: none.
   std::shared_ptr<const std::vector<LatLon>> detour;

@@ -297,7 +297,6 @@ Result<void> check_badge(const Settings& s) {
 /// What only the whole tells.
 Result<void> check_all(const Settings& s) {
   if (auto good = at_its_place(s, robot::check(s.robot)); !good) return good;
-  if (auto good = at_its_place(s, check(s.sensors)); !good) return good;
   if (auto good = at_its_place(s, check(s.sense)); !good) return good;
   if (auto good = at_its_place(s, check(s.sensors, ears_of(s))); !good) return good;
   if (auto good = check_server(s); !good) return good;

@@ -1,7 +1,6 @@
 #pragma once
 // When bytes reached this machine, by the kernel's own word (TCP_INFO): what lay in a socket while
-// nobody looked is older than the moment at which it is read. Never before it was, and up to two of
-// the kernel's ticks (4 ms each, mostly) after.
+// nobody looked is older than the moment at which it is read. To about 4 ms (the kernel's tick).
 
 #include "base/time.hpp"
 

@@ -119,7 +119,10 @@ struct Robot::Impl {
   Detour detour{config.path, config.behave};
   std::shared_ptr<const std::vector<base::LatLon>> detour_told;
   base::Time detour_told_at{};
-  double around_left_m = 0.0;    ///< arc length of the mission's way where it left it
+  double around_left_m = 0.0;  ///< arc length of the mission's way where it left it
+  std::uint64_t around_way_id = 0;
+  bool around_again = false;  ///< it was held on its way around: one from here is looked for
+  base::Time around_again_at{};
   bool around_hopeless = false;  ///< there is no way around, and that was told
   std::vector<std::shared_ptr<const AroundAnswer>> around_batch;
   Mode guarded_mode = Mode::Hold;
@@ -272,7 +275,9 @@ struct Robot::Impl {
   bool ask_around();
   void take_around();
   void no_way_around(const AroundAnswer& answer);
+  void watch_detour();
   std::optional<base::BodyTwist> drive_around();
+  base::BodyTwist step_detour();
   std::shared_ptr<const std::vector<base::LatLon>> detour_way();
   void end_detour();
   void go_on_behind(double at_m);

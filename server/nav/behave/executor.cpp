@@ -58,6 +58,7 @@ Executor::Executor(base::Setting<PathParams> path, base::Setting<BehaveParams> b
 }
 
 void Executor::load(std::shared_ptr<const Route> route) {
+  ++way_id_;
   route_ = std::move(route);
   course_ = route_ ? &route_->forth : nullptr;
   state_ = route_ ? ExecutionState::Loaded : ExecutionState::Idle;
@@ -80,6 +81,7 @@ void Executor::lay_anew(std::shared_ptr<const Route> route) {
 }
 
 void Executor::begin_at(std::size_t step) {
+  ++way_id_;
   tracker_.reset();
   rotation_.reset();
   doing_ = Doing::Nothing;
@@ -277,6 +279,7 @@ void Executor::extend(std::shared_ptr<const Route> route) {
 
 /// The place on the old course, on the new one: the same way before the same waypoint.
 void Executor::move_to(const Course& fresh, std::size_t more_steps, std::size_t more_nodes) {
+  ++way_id_;
   const Course& old = *course_;
   const bool tracking = tracker_.path() == &old.path;
   const RouteStep* step = step_now();

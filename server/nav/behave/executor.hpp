@@ -12,6 +12,7 @@
 // somebody else drives; go_on() continues at the same place, driving back to it first if the robot
 // was moved. Control thread; allocates only when a new way begins.
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -146,6 +147,8 @@ class Executor {
                    double dt_s);
 
   base::ExecutionState state() const noexcept { return state_; }
+  /// Another one: what was found out about the way ahead is of no use any more.
+  std::uint64_t way_id() const noexcept { return way_id_; }
   const std::string& reason() const noexcept { return reason_; }
   bool running() const noexcept { return state_ == base::ExecutionState::Running; }
   bool interrupted() const noexcept { return interrupted_; }
@@ -242,6 +245,7 @@ class Executor {
   bool rolled_on_ = false;        ///< restored: it was under way when its place was kept
   std::optional<EnuPoint> home_;  ///< of the last step
   std::string fled_;              ///< why it returns before its end
+  std::uint64_t way_id_ = 0;
   bool interrupted_ = false;
   bool returning_ = false;  ///< the way home after the last step
   bool drove_ = false;      ///< in this lap

@@ -69,8 +69,9 @@ void fields(V& v, PersistParams& p) {
   v("at_once", p.at_once, 1, 100,
     base::lower_is_stricter("or when one scan sees that many voxels of it: no delay"));
   v("least_m", p.least_m, 0.0, 0.1,
-    base::lower_is_stricter("what returns fewer echoes than a thing of this width is a drop: near a "
-                            "sensor many beams would meet it"));
+    base::lower_is_stricter(
+        "what returns fewer echoes than a thing of this width is a drop: near a "
+        "sensor many beams would meet it"));
 }
 
 /// The rolling grid.

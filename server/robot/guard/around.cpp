@@ -53,7 +53,7 @@ bool holds(const nav::sense::Patch& patch, const Question& q) {
   const auto clear = [&](nav::sense::Vec2 p) {
     const auto x = static_cast<std::int32_t>(std::floor(p.x / patch.cell_m)) - patch.x0;
     const auto y = static_cast<std::int32_t>(std::floor(p.y / patch.cell_m)) - patch.y0;
-    if (x < 0 || y < 0 || x >= patch.side || y >= patch.side) return true;
+    if (x < 0 || y < 0 || x >= patch.side || y >= patch.side) return false;
     return static_cast<double>(room_m[static_cast<std::size_t>(y * patch.side + x)]) >= kHolds_m;
   };
   for (const nav::around::Place& place : q.before) {

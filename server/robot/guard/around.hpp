@@ -28,6 +28,8 @@ struct AroundQuestion {
   base::LocalFrame frame{1, {}};           ///< the robot's, L
   nav::sense::Pose2 local;                 ///< X_OL at the moment of the question
   double from_m = 0.0;                     ///< arc length of the way at the question's first point
+  std::uint64_t way_id = 0;                ///< nav::Executor::way_id
+  std::uint64_t fence_id = 0;              ///< 0: no fence
   int item = 0;                            ///< that the route's end must be come to for; 0: none
 };
 

@@ -12,11 +12,13 @@ namespace {
 using nav::around::Place;
 
 constexpr base::Duration kLost = std::chrono::seconds(5);  // a question nobody answers
+constexpr base::Duration kOfNow = std::chrono::milliseconds(1500);
 constexpr base::Duration kLeft = std::chrono::milliseconds(500);
 constexpr double kSameBend_1pm = 0.02;
 constexpr double kHand_m = 0.12;
 constexpr double kLook_m = 0.2;
 constexpr double kShorter = 0.8;
+constexpr double kArc_m = 0.25;
 
 bool same_piece(const Place& a, const Place& b) noexcept {
   return a.reverse == b.reverse && !a.pivot && !b.pivot &&
@@ -34,12 +36,17 @@ std::vector<nav::Vertex> way_of(const AroundAnswer& answer, double speed_mps) {
   const std::vector<Place>& path = answer.found.path;
   const auto back = nav::sense::inverse(answer.asked->local);
   std::vector<nav::Vertex> out;
+  double since_m = 0.0;
   for (std::size_t i = 1; i < path.size(); ++i) {
     const Place& p = path[i];
     if (p.pivot) continue;
     const bool last = i + 1 == path.size();
-    // Bends of one kind are one arc: its end is what counts.
-    if (!last && same_piece(p, path[i + 1])) continue;
+    // Bends of one kind are one arc. Not long ones: whoever begins in the middle of one goes
+    // straight to its end.
+    since_m += std::hypot(p.pose.x_m - path[i - 1].pose.x_m, p.pose.y_m - path[i - 1].pose.y_m);
+    const bool joins = !out.empty() && since_m < kArc_m;
+    if (!last && joins && same_piece(p, path[i + 1])) continue;
+    since_m = 0.0;
     const bool turns = !last && (path[i + 1].pivot || path[i + 1].reverse != p.reverse);
     nav::Vertex v;
     v.at = place_in(back, p);
@@ -96,7 +103,8 @@ std::vector<Place> Detour::rest(const nav::sense::Pose2& local) const {
 bool Detour::worth(const AroundAnswer& answer, const std::vector<nav::Vertex>& way) const noexcept {
   if (same_way(way)) return false;
   const bool part = answer_->found.found == nav::around::Found::Part;
-  if (stopped_ || part || !answer.before_holds) return true;
+  const bool fence = answer.asked->fence_id != answer_->asked->fence_id;
+  if (stopped_ || part || fence || !answer.before_holds) return true;
   const double rest_m = trip_.path().length_m() - trip_.s_m();
   return answer.found.found == nav::around::Found::Way && answer.found.length_m < kShorter * rest_m;
 }
@@ -115,22 +123,25 @@ bool Detour::same_way(const std::vector<nav::Vertex>& way) const noexcept {
          base::distance_m(way.back().at, path.points.back().at) < 2.0 * kHand_m;
 }
 
-bool Detour::take(std::shared_ptr<const AroundAnswer> answer, const nav::Vehicle& vehicle,
-                  double speed_mps) {
-  if (answer->asked->id != asked_) return false;
+bool Detour::answers(const AroundAnswer& answer, base::Time now) const noexcept {
+  return open_ && answer.asked->id == asked_ && now - asked_at_ < kOfNow;
+}
+
+Detour::Taken Detour::take(std::shared_ptr<const AroundAnswer> answer, const nav::Vehicle& vehicle,
+                           double speed_mps) {
   open_ = false;
   using nav::around::Found;
-  if (answer->found.found != Found::Way && answer->found.found != Found::Part) return false;
+  if (answer->found.found != Found::Way && answer->found.found != Found::Part) return Taken::Left;
   std::vector<nav::Vertex> way = way_of(*answer, speed_mps);
-  if (way.empty()) return false;
+  if (way.empty()) return Taken::Left;
   const bool drove = drives();
-  if (drove && trip_.busy() && !worth(*answer, way)) return false;
+  if (drove && trip_.busy() && !worth(*answer, way)) return Taken::Left;
   stopped_ = false;
   answer_ = std::move(answer);
   nav::Trip::Order order;
   order.way = std::move(way);
   trip_.begin(std::move(order), vehicle, drove);
-  return !drove;
+  return drove ? Taken::Adopted : Taken::Begun;
 }
 
 nav::TrackOutput Detour::step(const nav::Vehicle& vehicle, double limit_mps, base::Time now,
@@ -139,7 +150,8 @@ nav::TrackOutput Detour::step(const nav::Vehicle& vehicle, double limit_mps, bas
   return trip_.step(vehicle, limit_mps, dt_s);
 }
 
-void Detour::interrupt() noexcept {
+void Detour::interrupt(base::Time now) noexcept {
+  stepped_at_ = now;
   trip_.interrupt();
   stopped_ = true;
 }

@@ -37,13 +37,15 @@ class Detour {
   /// The places that are still to be driven, where `X_OL` is as given.
   std::vector<nav::around::Place> rest(const nav::sense::Pose2& local) const;
 
-  bool answers(const AroundAnswer& answer) const noexcept { return answer.asked->id == asked_; }
-  /// Of the last question. @return whether a way is driven now that was not before
-  bool take(std::shared_ptr<const AroundAnswer> answer, const nav::Vehicle& vehicle,
-            double speed_mps);
+  /// Of the last question, and not long ago.
+  bool answers(const AroundAnswer& answer, base::Time now) const noexcept;
+  enum class Taken { Left, Adopted, Begun };
+  /// Such an answer.
+  Taken take(std::shared_ptr<const AroundAnswer> answer, const nav::Vehicle& vehicle,
+             double speed_mps);
   nav::TrackOutput step(const nav::Vehicle& vehicle, double limit_mps, base::Time now, double dt_s);
   /// It stands before something on the way around.
-  void interrupt() noexcept;
+  void interrupt(base::Time now) noexcept;
   bool done() const noexcept { return trip_.state() == nav::Trip::State::There; }
   bool failed() const noexcept { return trip_.state() == nav::Trip::State::Failed; }
   /// While it drives: what it drives, and how the way goes on.

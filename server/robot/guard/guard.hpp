@@ -65,8 +65,7 @@ class Guard {
   /// Once a tick, after those two. @param by_itself nobody's hand drives
   /// @return what is to become of a drive that has been stopped for too long; told once
   std::optional<Then> decide(bool by_itself, base::Time now) noexcept;
-  /// For the control thread: a way around what stands there is wanted (blocked.hpp). Until there is
-  /// a planner that answers it, the robot waits.
+  /// For the control thread: a way around what stands there is wanted (blocked.hpp).
   bool wants_around() const noexcept { return blocked_.wants_around(); }
   bool blocked() const noexcept { return blocked_.blocked(); }
   const BlockedParams& when_blocked() const noexcept { return blocked_.params(); }

@@ -21,6 +21,7 @@ constexpr double kTracking_m = 0.04;  // beside the margin of the guard, which h
 constexpr double kComfort_m = 0.35;
 constexpr double kTellStep_m = 0.3;
 constexpr base::Duration kTellEvery = std::chrono::milliseconds(500);
+constexpr base::Duration kAgainFor = std::chrono::seconds(2);
 constexpr base::Duration kStandsFirst = std::chrono::seconds(1);
 
 /// How far along the way the place is, not farther than most_m: a lane beside it may be nearer.
@@ -49,7 +50,8 @@ nav::sense::Pose2 Robot::Impl::local_in_odometry() const noexcept {
 }
 
 bool Robot::Impl::ask_around() {
-  const auto ahead = missions.executor.ahead(pose->at, kReach_m);
+  const auto ahead =
+      missions.executor.ahead(pose->at, kReach_m + (detour.drives() ? detour.s_m() : 0.0));
   if (!ahead || !guard.around() || ahead->way.size() < 2) return false;
   auto asked = std::make_shared<AroundQuestion>();
   asked->around = guard.around();
@@ -58,6 +60,8 @@ bool Robot::Impl::ask_around() {
   asked->fence = fence.shared();
   asked->from_m = ahead->from_m;
   asked->item = ahead->item;
+  asked->way_id = missions.executor.way_id();
+  asked->fence_id = asked->fence ? asked->fence->id : 0;
   Question& q = asked->question;
   q.pose = guard.odometry().pose;
   q.body = guard.body();
@@ -78,7 +82,8 @@ bool Robot::Impl::ask_around() {
   q.through_unknown = guard.creeps();
   q.before = detour.rest(asked->local);
   asked->id = detour.asks(clock.now());
-  around_questions.put(std::move(asked));
+  std::shared_ptr<const AroundQuestion> question = std::move(asked);
+  (void)around_questions.try_offer(question);  // one that is lost is asked again
   return true;
 }
 
@@ -86,16 +91,23 @@ void Robot::Impl::take_around() {
   around_batch.clear();
   if (!around_answers.try_take(around_batch)) return;
   for (auto& answer : around_batch) {
-    if (!detour.answers(*answer)) continue;
+    if (!detour.answers(*answer, clock.now())) continue;
+    if (answer->asked->way_id != missions.executor.way_id()) continue;
     const double speed_mps = std::min(kDetour_mps, config->speed.default_mps);
     const bool way = answer->found.found == Found::Way || answer->found.found == Found::Part;
     const auto side = nav::around::to_string(answer->found.side);
     const double length_m = answer->found.length_m;
     if (detour.drives() && answer->found.found == Found::Clear) {
       go_on_behind(answer->asked->from_m + answer->asked->question.here_m);
-    } else if (detour.take(answer, vehicle(), speed_mps)) {
+      continue;
+    }
+    const Detour::Taken taken = detour.take(answer, vehicle(), speed_mps);
+    const double left_m = answer->asked->from_m + answer->found.leave_m;
+    around_again = false;
+    if (taken == Detour::Taken::Adopted) around_left_m = std::min(around_left_m, left_m);
+    if (taken == Detour::Taken::Begun) {
       around_hopeless = false;
-      around_left_m = answer->asked->from_m + answer->found.leave_m;
+      around_left_m = left_m;
       guard.forget();
       event(Severity::Info, "going_around",
             "around what stands there, on the " + std::string(side) + ", " +
@@ -122,32 +134,58 @@ void Robot::Impl::no_way_around(const AroundAnswer& answer) {
   if (newly) event(Severity::Warning, "no_way_around", "no way around it: " + why);
 }
 
+/// What was found is of no use any more: another way, another map, another mission.
+void Robot::Impl::watch_detour() {
+  const bool other = around_way_id != missions.executor.way_id();
+  around_way_id = missions.executor.way_id();
+  if (other || !pose->heading_known) {
+    detour.reset();
+    around_again = around_hopeless = false;
+    return;
+  }
+  if (!detour.left_alone(clock.now())) return;
+  // Somebody held it on its way around: from here there is a way on, not from where it left.
+  detour.reset();
+  around_again = true;
+  around_again_at = clock.now();
+}
+
 /// @return empty: the mission is to be driven as it is
 std::optional<base::BodyTwist> Robot::Impl::drive_around() {
   if (!guard.sees()) return std::nullopt;
-  if (detour.left_alone(clock.now())) detour.reset();
+  watch_detour();
+  if (!pose->heading_known) return std::nullopt;
   take_around();
+  if (!missions.executor.running()) return base::BodyTwist{};
+  if (around_again && clock.now() - around_again_at > kAgainFor) around_again = false;
   const bool stands = guard.stopped_for(clock.now()) >= kStandsFirst;
   if (!guard.stops() && !detour.drives()) around_hopeless = false;
   const bool wanted = guard.wants_around() && stands;
-  const bool look = detour.drives() || wanted;
-  if (look && detour.may_ask(clock.now())) (void)ask_around();
-  if (!detour.drives()) return std::nullopt;
+  const bool look = detour.drives() || wanted || around_again;
+  if (look && detour.may_ask(clock.now()) && !ask_around()) {
+    detour.reset();
+    around_again = false;
+  }
+  if (around_again) return base::BodyTwist{};
+  return detour.drives() ? std::optional(step_detour()) : std::nullopt;
+}
+
+base::BodyTwist Robot::Impl::step_detour() {
   guard.follow(true);
   missions.executor.interrupt();
   driver = base::Driver::Autonomy;
   if (guard.stops() && !guard.may_go_on(clock.now())) {
     waits_before = true;
     speed_reason = "obstacle";
-    detour.interrupt();
-    return base::BodyTwist{};
+    detour.interrupt(clock.now());
+    return {};
   }
   const nav::TrackOutput out = detour.step(vehicle(), limit_mps(), clock.now(), clock.dt_s());
   speed_reason = "around";
   if (detour.failed()) {
     event(Severity::Warning, "no_way_around", "the way around could not be driven");
     detour.reset();
-    return base::BodyTwist{};
+    return {};
   }
   if (detour.done()) end_detour();
   return out.command;
@@ -162,7 +200,8 @@ void Robot::Impl::end_detour() {
 
 /// For people to see: told anew twice a second, as the robot comes on.
 std::shared_ptr<const std::vector<base::LatLon>> Robot::Impl::detour_way() {
-  if (!detour.drives() || !estimator.frame() || machine.mode() != Mode::Auto) {
+  const bool runs = machine.mode() == Mode::Auto && missions.executor.running();
+  if (!detour.drives() || !estimator.frame() || !runs) {
     detour_told.reset();
   } else if (!detour_told || clock.now() - detour_told_at > kTellEvery) {
     const nav::Path& path = detour.path();

@@ -39,6 +39,7 @@ class Seeing : public ::testing::Test {
         for (std::int32_t x = 0; x < 280; ++x) {
           const double ahead_m = (s->patch.x0 + x) * 0.05;
           if (ahead_m < *wall_m || ahead_m > *wall_m + 1.0) continue;
+          if (std::abs((s->patch.y0 + y) * 0.05) > 0.5 * wall_wide_m) continue;
           s->patch.cells[std::size_t(y * 280 + x)].known = Known::Occupied;
         }
       }
@@ -65,6 +66,7 @@ class Seeing : public ::testing::Test {
   Known seen = Known::Free;
   base::SensorHealth health = base::SensorHealth::Good;
   std::optional<double> wall_m;
+  double wall_wide_m = 1e3;
   nav::sense::Pose2 pose;
 };
 

@@ -6,7 +6,7 @@ import { offset_from } from './geo';
 import type { LatLon } from './plan';
 
 export interface Obstacle {
-  readonly action: 'slow' | 'creep' | 'stop';
+  readonly action: 'slow' | 'creep' | 'stop' | 'overridden';
   readonly what: 'obstacle' | 'drop' | 'unseen' | 'blind';
   /** From the vehicle's origin. */
   readonly distance_m: number;
@@ -57,6 +57,7 @@ export const obstacle_since = (obstacle: Obstacle, older_s: number): string => {
 /** "It slows: something stands in the way, 1.2 m ahead, seen by front." */
 export const obstacle_line = ({ action, reason }: Obstacle): string => {
   if (action === 'stop') return `${sentence(reason)}.`;
+  if (action === 'overridden') return `The guard is overridden by hand: ${reason}.`;
   return `${action === 'creep' ? 'It creeps' : 'It slows'}: ${reason}.`;
 };
 

@@ -1,0 +1,164 @@
+// A mission and a box that stays on its way. The planner is asked as the program's thread asks it,
+// but the test says when the answer comes.
+
+#include <algorithm>
+#include <memory>
+
+#include "robot/guard/around.hpp"
+#include "seeing.hpp"
+
+namespace roverd::robot {
+namespace {
+
+class Detours : public Seeing {
+ protected:
+  Detours() {
+    BlockedParams blocked;
+    blocked.after_s = 1.0;
+    blocked.then = "around";
+    field.robot.guard_by({}, true, blocked);
+    field.more = [this] {
+      look();
+      std::vector<std::shared_ptr<const AroundQuestion>> asked;
+      field.robot.around_questions().take(asked);
+      if (!asked.empty()) {
+        ++questions;
+        answer = answer_around(planner, asked.back());
+      }
+      if (answers && answer) field.robot.around_answers().put(std::exchange(answer, nullptr));
+    };
+  }
+
+  std::ptrdiff_t told(const char* kind) const {
+    return std::count_if(field.events.begin(), field.events.end(),
+                         [&](const auto& e) { return e.kind == kind; });
+  }
+  void box_ahead(double by_m) {
+    wall_wide_m = 1.0;
+    wall_at(driven_m() + by_m);
+  }
+  /// Northwards, by two places.
+  void drive_path() {
+    field.run(8.0);
+    ASSERT_TRUE(field.load(plan_of({{0, 1}, {0, 20}})));
+    ASSERT_TRUE(field.ask(Arm{}));
+    ASSERT_TRUE(field.ask(StartMission{"m", 1}));
+    for (int i = 0; i < 50 * 20 && driven_m() < 3.0; ++i) field.tick();
+    ASSERT_GT(driven_m(), 2.9);
+  }
+  void until_around(double seconds = 40.0) {
+    for (double t = 0.0; t < seconds && !field.state()->detour; t += 0.02) field.tick();
+    ASSERT_TRUE(field.state()->detour) << field.state()->mission.reason;
+  }
+  /// Beside the box.
+  void until_beside() {
+    until_around();
+    for (int i = 0; i < 3000 && std::abs(field.at.east_m) < 0.8; ++i) field.tick();
+    ASSERT_GT(std::abs(field.at.east_m), 0.8);
+  }
+
+  nav::around::Planner planner;
+  std::shared_ptr<const AroundAnswer> answer;
+  bool answers = true;
+  int questions = 0;
+};
+
+TEST_F(Detours, ABoxThatStaysIsDrivenAroundAndTheMissionGoesOnBehindIt) {
+  // Given a mission northwards, and a box on its way,
+  drive_path();
+  box_ahead(4.0);
+  const double box_m = *wall_m;
+  // when nobody takes it away,
+  double beside_m = 0.0;
+  double nearest_m = 1e9;
+  for (int i = 0; i < 50 * 90 && told("around_done") == 0; ++i) {
+    field.tick();
+    beside_m = std::max(beside_m, std::abs(field.at.east_m));
+    const double ahead_m =
+        std::max({box_m - field.at.north_m, field.at.north_m - box_m - 1.0, 0.0});
+    const double aside_m = std::max(std::abs(field.at.east_m) - 0.5, 0.0);
+    nearest_m = std::min(nearest_m, std::hypot(ahead_m, aside_m));
+  }
+  // then it is driven around: nothing is touched, and it is back on its way behind the box.
+  EXPECT_EQ(told("going_around"), 1);
+  EXPECT_EQ(told("around_done"), 1);
+  EXPECT_EQ(told("no_way_around"), 0);
+  EXPECT_GT(nearest_m, 0.39 + 0.05);  // half of its width
+  EXPECT_LT(beside_m, 2.5);
+  EXPECT_GT(field.at.north_m, box_m + 1.0);
+  EXPECT_EQ(field.execution(), ExecutionState::Running);
+  field.run(1.0);
+  EXPECT_FALSE(field.state()->detour);
+  EXPECT_LT(std::abs(field.at.east_m), 0.3);
+}
+
+TEST_F(Detours, WhoHoldsItOnItsWayAroundAndLetsItGoOnSeesItGoOnFromThere) {
+  drive_path();
+  box_ahead(4.0);
+  until_beside();
+  // Given a pause while it is beside the box,
+  ASSERT_TRUE(field.ask(PauseMission{}));
+  field.run(3.0);
+  EXPECT_FALSE(field.moves());
+  EXPECT_FALSE(field.state()->detour);
+  const double paused_m = field.at.north_m;
+  // when it may go on,
+  ASSERT_TRUE(field.ask(ResumeMission{}));
+  double least_m = paused_m;
+  for (int i = 0; i < 50 * 60 && told("around_done") == 0; ++i) {
+    field.tick();
+    least_m = std::min(least_m, field.at.north_m);
+  }
+  // then it does so from there, and not from before the box.
+  EXPECT_EQ(told("around_done"), 1);
+  EXPECT_GT(least_m, paused_m - 0.5);
+}
+
+TEST_F(Detours, AnAnswerThatComesTooLateIsNotDriven) {
+  field.drive_mission();
+  box_ahead(3.0);
+  // Given a question whose answer takes its time,
+  answers = false;
+  for (int i = 0; i < 50 * 30 && questions == 0; ++i) field.tick();
+  ASSERT_EQ(questions, 1);
+  // when the robot was told to hold meanwhile, and goes on later,
+  ASSERT_TRUE(field.ask(SetMode{Mode::Hold}));
+  field.run(3.0);
+  std::shared_ptr<const AroundAnswer> old = answer;
+  ASSERT_TRUE(old);
+  answer.reset();
+  field.robot.around_answers().put(old);
+  ASSERT_TRUE(field.ask(ResumeMission{}));
+  field.run(0.5);
+  // then that answer is of no use.
+  EXPECT_EQ(told("going_around"), 0);
+  EXPECT_FALSE(field.state()->detour);
+}
+
+TEST_F(Detours, TheEmergencyStopAndAnotherItemEndIt) {
+  field.run(8.0);
+  ASSERT_TRUE(field.load(plan_of({{0, 20}, {10, 20}})));
+  ASSERT_TRUE(field.ask(Arm{}));
+  ASSERT_TRUE(field.ask(StartMission{"m", 1}));
+  field.run(5.0);
+  box_ahead(4.0);
+  until_beside();
+  ASSERT_TRUE(field.ask(SkipItem{0}));
+  field.run(0.1);
+  EXPECT_FALSE(field.state()->detour) << "the operator's word counts";
+  ASSERT_TRUE(field.ask(Estop{"a test"}));
+  field.run(1.0);
+  EXPECT_FALSE(field.moves());
+}
+
+TEST_F(Detours, WithoutAWayItSaysSoOnceAndWaits) {
+  field.drive_mission();
+  wall_at(driven_m() + 3.0);  // across everything
+  field.run(30.0);
+  EXPECT_EQ(told("no_way_around"), 1);
+  EXPECT_FALSE(field.moves());
+  EXPECT_EQ(field.execution(), ExecutionState::Running);
+}
+
+}  // namespace
+}  // namespace roverd::robot
