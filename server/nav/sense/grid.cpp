@@ -94,12 +94,17 @@ void Grid::hit(const Reduced& in, std::uint8_t sensor, std::uint32_t now_ms) {
   const double c = std::cos(in.pose.yaw_rad);
   const double s = std::sin(in.pose.yaw_rad);
   for (const Voxel& v : in.voxels) {
-    if (v.kind != Kind::Obstacle && v.kind != Kind::Drop) continue;
+    const bool passing = v.kind == Kind::Passing;
+    if (v.kind != Kind::Obstacle && v.kind != Kind::Drop && !passing) continue;
     const auto x = static_cast<double>(v.x_m);
     const auto y = static_cast<double>(v.y_m);
     const std::int32_t ix = floored((in.pose.x_m + c * x - s * y) / p_.cell_m);
     const std::int32_t iy = floored((in.pose.y_m + s * x + c * y) / p_.cell_m);
     if (!inside(ix, iy)) continue;
+    if (passing) {
+      stay(ix, iy, sensor, now_ms);
+      continue;
+    }
     Cell& o = cell(ix, iy);
     const auto top = static_cast<std::uint8_t>(std::clamp(v.z_m / kTop_m, 0.0F, 255.0F));
     const bool was = o.known == Known::Occupied || o.known == Known::Drop;
@@ -108,6 +113,20 @@ void Grid::hit(const Reduced& in, std::uint8_t sensor, std::uint32_t now_ms) {
     o.misses = 0;
     o.sensor = sensor;
     o.ms = now_ms;
+  }
+}
+
+void Grid::stay(std::int32_t ix, std::int32_t iy, std::uint8_t sensor,
+                std::uint32_t now_ms) noexcept {
+  for (std::int32_t y = iy - 1; y <= iy + 1; ++y) {
+    for (std::int32_t x = ix - 1; x <= ix + 1; ++x) {
+      if (!inside(x, y)) continue;
+      Cell& o = cell(x, y);
+      if (o.known != Known::Occupied && o.known != Known::Drop) continue;
+      o.misses = 0;
+      o.sensor = sensor;
+      o.ms = now_ms;
+    }
   }
 }
 

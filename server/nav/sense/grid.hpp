@@ -9,7 +9,9 @@
 //                                                 sensor that is blind saw free, sooner)
 //
 // Blind is not free: a cell is free only where a ray passed low enough (sectors.hpp). What is low
-// is not cleared by rays that pass above it.
+// is not cleared by rays that pass above it. What is too thin or too new to be believed (Passing)
+// makes no cell occupied; but where something was believed, an echo in its cell or beside it says
+// that it still stands there, however many rays pass it by.
 
 #include <cstddef>
 #include <cstdint>
@@ -95,6 +97,8 @@ class Grid {
   Known known(const Cell& c, std::uint32_t now_ms) const noexcept;
   void move_to(const Pose2& body);
   void hit(const Reduced& in, std::uint8_t sensor, std::uint32_t now_ms);
+  /// Something returned from there: what is taken there or beside it is not seen through now.
+  void stay(std::int32_t ix, std::int32_t iy, std::uint8_t sensor, std::uint32_t now_ms) noexcept;
   void see_through(const Pose2& body, const Sectors& s, std::uint8_t sensor, std::uint32_t now_ms);
   void look_along(double x, double y, double dx, double dy, std::size_t from, std::size_t to,
                   const Sector& sector, const Sectors& s, std::uint8_t sensor,

@@ -8,6 +8,14 @@ namespace roverd::nav::sense {
 
 namespace {
 constexpr float kLow_m = 0.08F;  // nothing lower is looked for
+// More is not asked for, whatever step was told: with too small a step all would be drops.
+constexpr float kMostAcross = 6.0F;
+constexpr float kMostUp = 16.0F;
+
+/// How many beams meet it. @param steps_m the distance at which it is as wide as one step
+float beams(float steps_m, float away_m, float most) noexcept {
+  return std::min(most, steps_m / away_m);
+}
 }  // namespace
 
 Persist::Persist(const PersistParams& params, double range_m) : p_(params) {
@@ -69,14 +77,15 @@ std::uint32_t Persist::judge(std::vector<Voxel>& voxels, const Pose2& pose, cons
   ++scan_;
   fill(voxels, pose);
   const float wide = from.step_rad > 0.0F ? static_cast<float>(p_.least_m) / from.step_rad : 0.0F;
+  const float high = from.step_up_rad > 0.0F ? kLow_m / from.step_up_rad : 0.0F;
   least_.clear();
   std::size_t i = 0;
   for (const Voxel& v : voxels) {
     if (v.kind != Kind::Obstacle) continue;
     const float away = std::max(0.05F, std::hypot(v.x_m - from.x_m, v.y_m - from.y_m));
-    const float rows =
-        from.step_up_rad > 0.0F ? std::max(1.0F, kLow_m / (away * from.step_up_rad)) : 1.0F;
-    least_.push_back(rows * wide / away);
+    const float rows = std::max(1.0F, beams(high, away, kMostUp));
+    // Beams are whole: what is as wide as two and a half steps is sure of two.
+    least_.push_back(std::max(1.0F, std::floor(rows * beams(wide, away, kMostAcross))));
     const Around here = around(where_[i], where_[i + 1]);
     if (static_cast<float>(here.points) >= least_.back()) {
       cells_[at(where_[i], where_[i + 1])].seen |= 1U;

@@ -8,8 +8,9 @@
 //
 // Near the sensor three by three cells lie before many beams, and among many beams there is always
 // one that meets a drop: there a scan saw something only where it got the echoes that a thing
-// least_m wide (of several rows: and 8 cm high) would have returned, least_m / (distance · step);
-// at once, at_once times as many.
+// least_m wide (of several rows: and 8 cm high) would have returned, least_m / (distance · step) as
+// a whole number, 6 across and 16 rows at most; at once, at_once times as many. A thinner thing
+// that was believed from afar is Passing then; the grid does not lose it (grid.hpp).
 
 #include <cstdint>
 #include <vector>

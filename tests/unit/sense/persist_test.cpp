@@ -123,6 +123,36 @@ TEST(PersistTest, OfSeveralRowsMoreEchoesAreWanted) {
   EXPECT_EQ(held(14), 0U);
 }
 
+//   A step that a strange program told: a hundred-thousandth of a radian would ask a thing a metre
+//   away for two thousand echoes.
+TEST(PersistTest, HoweverFineTheStepIsSixEchoesOfARowAreEnough) {
+  const auto held = [](std::uint32_t echoes) {
+    Persist persist({}, 8.0);
+    std::size_t last = 0;
+    for (int scan = 0; scan < 3; ++scan) {
+      std::vector<Voxel> voxels{obstacle(1.0, 0.0)};
+      voxels[0].points = echoes;
+      last = persist.judge(voxels, {}, {0.0F, 0.0F, 1e-5F});
+    }
+    return last;
+  };
+  EXPECT_EQ(held(5), 1U);
+  EXPECT_EQ(held(6), 0U);
+}
+
+//   1.2 cm at 1.5 m before a scanner with half degrees: 0.92 steps, one echo; 2 cm: 1.53, and one
+//   of them is sure.
+TEST(PersistTest, AThingOfTheLeastWidthNeedsNoMoreEchoesThanAreSureToMeetIt) {
+  Persist persist({}, 8.0);
+  const Persist::From scanner{0.0F, 0.0F, 0.00873F};
+  std::size_t held = 0;
+  for (int scan = 0; scan < 3; ++scan) {
+    std::vector<Voxel> stake{obstacle(1.5, 0.0)};
+    held = persist.judge(stake, {}, scanner);
+  }
+  EXPECT_EQ(held, 0U);
+}
+
 TEST(PersistTest, WhatIsNoObstacleIsLeftAlone) {
   Persist persist({}, 8.0);
   std::vector<Voxel> voxels{obstacle(2.0, 0.0), obstacle(3.0, 0.0)};
