@@ -1,8 +1,11 @@
 #include "nav/sense/chain.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
+
+#include <Eigen/Geometry>
 
 #include "nav/sense/mount.hpp"
 
@@ -26,6 +29,32 @@ float step_up_rad(const base::Sight& sight) noexcept {
   };
   const float step = (up(*high) - up(*low)) / static_cast<float>(high->ring - low->ring);
   return std::isfinite(step) ? std::abs(step) : 0.0F;
+}
+
+/// Between neighbouring points. Where the points lie much farther apart than was told, what was
+/// told is of no use: 0. Of several rings neighbours do not follow one another; they are told by
+/// devices that are known.
+float step_across_rad(const base::Sight& sight, float step_up) {
+  constexpr std::size_t kLooks = 64;
+  constexpr float kFar = 8.0F;  // times: a row's end, a point left out
+  const float told = 2.0F * sight.half_step_rad;
+  const std::size_t n = sight.points.size();
+  if (step_up > 0.0F || n < 2) return told;
+  std::array<float, kLooks> apart;
+  std::size_t looks = 0;
+  for (std::size_t i = 0; i < kLooks; ++i) {
+    const std::size_t k = i * (n - 1) / kLooks;
+    const base::SightPoint& p = sight.points[k];
+    const base::SightPoint& q = sight.points[k + 1];
+    const Eigen::Vector3f a(p.x_m, p.y_m, p.z_m);
+    const Eigen::Vector3f b(q.x_m, q.y_m, q.z_m);
+    const float angle = std::atan2(a.cross(b).norm(), a.dot(b));
+    if (std::isfinite(angle)) apart[looks++] = angle;
+  }
+  if (looks == 0) return told;
+  const auto middle = apart.begin() + static_cast<std::ptrdiff_t>(looks / 2);
+  std::nth_element(apart.begin(), middle, apart.begin() + static_cast<std::ptrdiff_t>(looks));
+  return *middle > kFar * told ? 0.0F : told;
 }
 
 }  // namespace
@@ -84,9 +113,9 @@ base::Result<std::size_t> Chain::take(const base::Sight& sight, const PoseHistor
   }
   eye.health.took(sight, reduced_.counts, now);
   if (!eye.setup.planar) ground_.judge(reduced_.voxels);
-  eye.persist.judge(
-      reduced_.voxels, reduced_.pose,
-      {reduced_.origin_m[0], reduced_.origin_m[1], 2.0F * sight.half_step_rad, step_up_rad(sight)});
+  const float up = step_up_rad(sight);
+  eye.persist.judge(reduced_.voxels, reduced_.pose,
+                    {reduced_.origin_m[0], reduced_.origin_m[1], step_across_rad(sight, up), up});
   // Behind a blocked window what was not met is not clear.
   if (sight.window == base::Window::Blocked) {
     std::erase_if(reduced_.voxels, [](const Voxel& v) { return v.kind != Kind::Obstacle; });

@@ -133,6 +133,32 @@ TEST(ChainTest, SilenceOfANeededSensorIsToldWithinThreeTenthsOfASecond) {
   EXPECT_EQ(chain.blind(at(1.31)).value_or(""), "eye: it is silent");
 }
 
+//   A camera's program says that its points lie 0.00001 rad apart. They do not.
+TEST(ChainTest, ATooFineStepThatACameraTellsHidesNoObstacle) {
+  for (const auto& [across, up] : {std::pair{40, 30}, std::pair{160, 120}}) {
+    auto eye = scanner();
+    eye.planar = false;
+    eye.mount = {.x_m = 0.45, .z_m = 0.5};
+    Chain chain = chain_of({eye});
+    Scene scene;
+    scene.blocks.push_back({2.5, 2.7, -0.1, 0.1, 0.0, 0.6});
+    Rays rays = camera(across, up);
+    rays.half_step_rad = 0.5e-5F;
+    std::mt19937 random(1);
+    for (double t = 1.0; t < 1.45; t += 0.1) {
+      const auto sight = look(scene, rays, eye.mount, t, standing(), random);
+      const auto still = driven(t + 0.02, [](double) { return Pose2{}; });
+      ASSERT_TRUE(chain.take(sight, still, at(t)).has_value());
+    }
+    int taken = 0;
+    for (double y = -0.075; y < 0.1; y += 0.05) {
+      taken += chain.grid().at(2.475, y, at(1.45)) == Known::Occupied ||
+               chain.grid().at(2.525, y, at(1.45)) == Known::Occupied;
+    }
+    EXPECT_GE(taken, 2) << across << " by " << up;
+  }
+}
+
 TEST(ChainTest, PiecesOfStrangersAndOfSensorsThatAreNotReadyChangeNothing) {
   Chain chain = chain_of({scanner()});
   base::Sight sight;
