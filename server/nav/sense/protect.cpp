@@ -18,6 +18,8 @@ constexpr double kSoon_s = 0.05;
 constexpr double kNearer_m = 1e-4;
 // And the margin for all else shrinks with it, so that a wall beside the robot does not hold it.
 constexpr double kLess_m = 0.02;
+// A dock may be seen so much before where it is come to: half a cell, and what a range is out.
+constexpr double kBefore_m = 0.05;
 
 /// The commanded motion, once per verdict.
 struct Drive {
@@ -111,10 +113,11 @@ Reach reach_of(const Footprint& body, const Drive& d) noexcept {
   return {r.x0 - between, r.x1 + between, r.y0 - between, r.y1 + between};
 }
 
-bool is_spared(const Spared* spared, Vec2 p) noexcept {
-  if (spared == nullptr) return false;
+bool is_spared(const Spared* spared, Vec2 p, Known known) noexcept {
+  if (spared == nullptr || known == Known::Drop) return false;
   const Vec2 e = spared->to - spared->from;
   const Vec2 d = p - spared->from;
+  if (dot(d, spared->ahead) < -kBefore_m) return false;
   const double length2 = dot(e, e);
   const double part = length2 > 0.0 ? std::clamp(dot(d, e) / length2, 0.0, 1.0) : 0.0;
   const Vec2 off = d - part * e;
@@ -171,27 +174,27 @@ void each_taken(const Patch& patch, const Pose2& pose, const Reach& r, const Eac
   }
 }
 
-/// Obstacles, exactly: every cell that is taken.
+/// Obstacles, exactly: every cell that is taken. @param dock the nearest that is spared
 Nearest nearest_taken(const Patch& patch, const Pose2& pose, const Footprint& body, Drive& d,
-                      const Spared* spared) noexcept {
+                      const Spared* spared, Nearest& dock) noexcept {
   const double about = body.reach_m() + d.margin_m;
-  each_taken(patch, pose, {-about, about, -about, about}, [&](Vec2 p, const Patch::Cell&) {
+  each_taken(patch, pose, {-about, about, -about, about}, [&](Vec2 p, const Patch::Cell& cell) {
     const double now_m = body.distance_m(p);
-    if (now_m > 0.0 && !is_spared(spared, p)) d.clear_m = std::min(d.clear_m, now_m);
+    if (now_m > 0.0 && !is_spared(spared, p, cell.known)) d.clear_m = std::min(d.clear_m, now_m);
   });
   if (d.clear_m < d.margin_m) d.grown_m = std::max(0.0, d.clear_m - kLess_m);
   Nearest best;
   each_taken(patch, pose, reach_of(body, d), [&](Vec2 p, const Patch::Cell& cell) {
-    if (is_spared(spared, p)) return;
-    if (const auto t = touches(body, p, d)) nearer(best, *t, p, cell);
+    Nearest& whose = is_spared(spared, p, cell.known) ? dock : best;
+    if (const auto t = touches(body, p, d)) nearer(whose, *t, p, cell);
   });
   return best;
 }
 
 /// The unseen, by looking along the body's outline at steps of a cell: the first place that it
-/// comes to. To a cell's accuracy.
+/// comes to. To a cell's accuracy. @param dock the nearest that is spared
 Nearest nearest_unseen(const Patch& patch, const Pose2& pose, const Footprint& body, const Drive& d,
-                       const Spared* spared) noexcept {
+                       const Spared* spared, Nearest& dock) noexcept {
   const double speed =
       std::abs(d.twist.linear_mps) + std::abs(d.twist.angular_radps) * body.reach_m();
   const int steps = std::min(400, static_cast<int>(speed * d.horizon_s / patch.cell_m) + 1);
@@ -227,8 +230,10 @@ Nearest nearest_unseen(const Patch& patch, const Pose2& pose, const Footprint& b
         const Pose2 now =
             inverse(pose) * Pose2{(ix + 0.5) * patch.cell_m, (iy + 0.5) * patch.cell_m, 0.0};
         if (body.distance_m({now.x_m, now.y_m}) <= 0.0) continue;
-        if (is_spared(spared, {now.x_m, now.y_m})) continue;
-        return {d.horizon_s * (i - 1) / steps, {now.x_m, now.y_m}, cell};
+        const double before_s = d.horizon_s * (i - 1) / steps;
+        const Vec2 there{now.x_m, now.y_m};
+        if (!is_spared(spared, there, cell.known)) return {before_s, there, cell};
+        nearer(dock, before_s, there, cell);
       }
     }
   }
@@ -290,26 +295,34 @@ Verdict protect(const Patch& patch, const Pose2& pose, const Footprint& body,
   }
   // A cell may hold its thing anywhere: half of its diagonal.
   Drive d = drive_of(body, twist, params, patch.cell_m * std::sqrt(0.5));
-  const Nearest taken = nearest_taken(patch, pose, body, d, spared);
+  Nearest dock;
+  const Nearest taken = nearest_taken(patch, pose, body, d, spared, dock);
+  const double speed =
+      std::max(std::abs(twist.linear_mps), std::abs(twist.angular_radps) * body.reach_m());
   if (taken.touch_s) {
     tell(verdict, taken, d);
     // The gap ahead is larger than that beside: the rest of it is way, at this speed.
-    const double speed =
-        std::max(std::abs(twist.linear_mps), std::abs(twist.angular_radps) * body.reach_m());
     const double rest_s = std::max(0.0, params.gap_m - d.grown_m) / speed;
     verdict.part = part_for(*taken.touch_s - (d.turning ? 0.0 : rest_s), twist, params);
     if (verdict.part < 1.0) {
       verdict.limit = taken.cell.known == Known::Drop ? Limit::Drop : Limit::Obstacle;
     }
   }
-  const Nearest unseen = nearest_unseen(patch, pose, body, d, spared);
-  if (!unseen.touch_s) return verdict;
-  const double part =
-      std::max(part_for(*unseen.touch_s, twist, params), std::min(1.0, creep_part(d, params)));
-  if (part < verdict.part) {
-    verdict.part = part;
-    verdict.limit = Limit::Unseen;
-    tell(verdict, unseen, d);
+  const Nearest unseen = nearest_unseen(patch, pose, body, d, spared, dock);
+  if (unseen.touch_s) {
+    const double part =
+        std::max(part_for(*unseen.touch_s, twist, params), std::min(1.0, creep_part(d, params)));
+    if (part < verdict.part) {
+      verdict.part = part;
+      verdict.limit = Limit::Unseen;
+      tell(verdict, unseen, d);
+    }
+  }
+  // The dock is come to so slowly that it may be touched.
+  if (dock.touch_s && spared->most_mps < verdict.part * speed) {
+    verdict.part = spared->most_mps / speed;
+    verdict.limit = dock.cell.known == Known::Unknown ? Limit::Unseen : Limit::Obstacle;
+    tell(verdict, dock, d);
   }
   return verdict;
 }

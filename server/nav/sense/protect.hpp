@@ -49,12 +49,15 @@ struct Verdict {
   double age_s = 0.0;  ///< since it was seen, at the patch's stamp
 };
 
-/// What is within reach of this stretch (in B, now) is where the robot wants to be, and in nobody's
-/// way: a dock.
+/// What is within reach of this stretch (in B, now) and behind it is where the robot wants to be,
+/// and in nobody's way: a dock. What stands before it stops, and where the ground ends is never
+/// spared.
 struct Spared {
   Vec2 from{};
   Vec2 to{};
   double within_m = 0.0;
+  Vec2 ahead{1.0, 0.0};   ///< across the stretch, the way in which it is come to; of length 1
+  double most_mps = 0.1;  ///< while something that is spared lies on the way, no faster than this
 };
 
 /// @param spared null: nothing is.

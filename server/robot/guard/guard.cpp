@@ -23,7 +23,8 @@ constexpr double kAsk_s = 3.0;     // so often a stopped drive is asked anew,
 constexpr double kAskFor_s = 1.0;  // for so long: it first makes sure that it stands
 constexpr double kHandTurns_radps = 0.3;
 constexpr double kWishless_s = 0.5;
-constexpr double kDockIs_m = 0.3;  // what stands within this of the vehicle's end, docked
+constexpr double kDockIs_m = 0.3;  // what stands within this beyond the vehicle's end, docked
+constexpr double kDockLeast_mps = 0.06;
 constexpr double kFollows_m = 0.02;
 constexpr double kTurnsRound_m = 0.08;  // so that a way around, too, may begin with a turn
 
@@ -241,7 +242,10 @@ void Guard::spare_dock(const std::optional<nav::sense::Pose2>& docked, bool reve
   const auto place = [&](double y) {
     return nav::sense::Vec2{docked->x_m + c * end_m - s * y, docked->y_m + s * end_m + c * y};
   };
-  spared_ = nav::sense::Spared{place(-side_m), place(side_m), kDockIs_m};
+  // Slower than it can be driven it would not be come to.
+  const double most_mps = std::max(params_.override_mps, kDockLeast_mps);
+  const nav::sense::Vec2 ahead = reverse ? nav::sense::Vec2{-c, -s} : nav::sense::Vec2{c, s};
+  spared_ = nav::sense::Spared{place(-side_m), place(side_m), kDockIs_m, ahead, most_mps};
 }
 
 std::optional<Then> Guard::decide(bool by_itself, base::Time now) noexcept {

@@ -131,6 +131,35 @@ TEST_F(Docking, WithoutThatItStandsBeforeTheDock) {
   EXPECT_LT(driven_m(), 3.95);
 }
 
+TEST_F(Docking, ItComesToTheDockNoFasterThanAHandPassesTheGuard) {
+  double fastest_mps = 0.0;
+  field.more = [&] {
+    look();
+    if (wall_m && driven_m() > 3.55 && driven_m() < 3.9) {
+      fastest_mps = std::max(fastest_mps, field.command.twist.linear_mps);
+    }
+  };
+  dock(0.05);
+  EXPECT_TRUE(field.has_event("docked"));
+  EXPECT_GT(fastest_mps, 0.05);
+  EXPECT_LE(fastest_mps, nav::sense::ProtectParams{}.override_mps + 1e-6);
+}
+
+TEST_F(Docking, ACrateRightBeforeTheDockStopsIt) {
+  dock(-0.15);
+  EXPECT_FALSE(field.has_event("docked"));
+  EXPECT_FALSE(field.moves());
+  EXPECT_GT(gap_m(), 0.05);
+}
+
+TEST_F(Docking, WhereTheGroundEndsIsNoDock) {
+  wall_is = Known::Drop;
+  dock(0.05);
+  EXPECT_FALSE(field.has_event("docked"));
+  EXPECT_FALSE(field.moves());
+  EXPECT_GT(gap_m(), 0.05);
+}
+
 TEST_F(Docking, WhatStandsBeforeTheDockIsNotTheDock) {
   dock(-0.45);
   EXPECT_FALSE(field.has_event("docked"));

@@ -41,6 +41,7 @@ class Seeing : public ::testing::Test {
           if (ahead_m < *wall_m || ahead_m > *wall_m + 1.0) continue;
           if (std::abs((s->patch.y0 + y) * 0.05) > 0.5 * wall_wide_m) continue;
           s->patch.cells[std::size_t(y * 280 + x)].known = Known::Occupied;
+          s->patch.cells[std::size_t(y * 280 + x)].known = wall_is;
         }
       }
     }
@@ -67,6 +68,7 @@ class Seeing : public ::testing::Test {
   base::SensorHealth health = base::SensorHealth::Good;
   std::optional<double> wall_m;
   double wall_wide_m = 1e3;
+  Known wall_is = Known::Occupied;
   nav::sense::Pose2 pose;
 };
 
