@@ -141,7 +141,7 @@ TEST(ChainTest, ATooFineStepThatACameraTellsHidesNoObstacle) {
     eye.mount = {.x_m = 0.45, .z_m = 0.5};
     Chain chain = chain_of({eye});
     Scene scene;
-    scene.blocks.push_back({2.5, 2.7, -0.1, 0.1, 0.0, 0.6});
+    scene.blocks.push_back({2.5, 2.6, 0.0, 0.08, 0.0, 0.3});  // three echoes of the coarser
     Rays rays = camera(across, up);
     rays.half_step_rad = 0.5e-5F;
     std::mt19937 random(1);
@@ -151,11 +151,11 @@ TEST(ChainTest, ATooFineStepThatACameraTellsHidesNoObstacle) {
       ASSERT_TRUE(chain.take(sight, still, at(t)).has_value());
     }
     int taken = 0;
-    for (double y = -0.075; y < 0.1; y += 0.05) {
+    for (const double y : {0.025, 0.075}) {
       taken += chain.grid().at(2.475, y, at(1.45)) == Known::Occupied ||
                chain.grid().at(2.525, y, at(1.45)) == Known::Occupied;
     }
-    EXPECT_GE(taken, 2) << across << " by " << up;
+    EXPECT_GE(taken, 1) << across << " by " << up;
   }
 }
 
