@@ -40,7 +40,6 @@ class Seeing : public ::testing::Test {
           const double ahead_m = (s->patch.x0 + x) * 0.05;
           if (ahead_m < *wall_m || ahead_m > *wall_m + 1.0) continue;
           if (std::abs((s->patch.y0 + y) * 0.05) > 0.5 * wall_wide_m) continue;
-          s->patch.cells[std::size_t(y * 280 + x)].known = Known::Occupied;
           s->patch.cells[std::size_t(y * 280 + x)].known = wall_is;
         }
       }
