@@ -45,6 +45,7 @@ const reasons: Readonly<Record<string, string>> = {
   stopping: 'stopping',
   standing: 'standing',
   manual: 'as fast as your hand says',
+  obstacle: 'limited by what stands there',
   around: 'goes around what stands there',
   link_delay: 'slow: the link is late',
   teleop_stale: 'stopped: the page was not heard',
