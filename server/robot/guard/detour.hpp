@@ -30,6 +30,8 @@ class Detour {
       : trip_(std::move(path), std::move(behave)) {}
 
   bool drives() const noexcept { return answer_ != nullptr; }
+  /// What is driven led too near to something, and stands.
+  bool stopped() const noexcept { return stopped_; }
   /// No question is open, and the last one was long enough ago.
   bool may_ask(base::Time now) const noexcept;
   /// @return the id of the question that is asked now

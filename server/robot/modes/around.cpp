@@ -17,8 +17,8 @@ using nav::around::Why;
 
 constexpr double kReach_m = 12.0;     // ahead on the route; the patch ends at 10
 constexpr double kDetour_mps = 0.5;   // at most
-constexpr double kTracking_m = 0.04;  // beside the margin of the guard, which has the last word
-constexpr double kComfort_m = 0.35;
+constexpr double kTracking_m = 0.05;  // beside the margin of the guard, which has the last word
+constexpr double kComfort_m = 0.50;
 constexpr double kTellStep_m = 0.3;
 constexpr base::Duration kTellEvery = std::chrono::milliseconds(500);
 constexpr base::Duration kAgainFor = std::chrono::seconds(2);
@@ -65,8 +65,9 @@ bool Robot::Impl::ask_around() {
   Question& q = asked->question;
   q.pose = guard.odometry().pose;
   q.body = guard.body();
+  // One that turns on the spot backs off only from where the guard stopped it on its way around.
   q.kinematics = {nav::min_radius_m(config->vehicle), !config->vehicle.steered(),
-                  config->vehicle.steered()};
+                  config->vehicle.steered() || detour.stopped()};
   for (const base::EnuPoint& p : ahead->way) {
     const auto at = to_odometry(asked->local, p, 0.0);
     q.route.push_back({at.x_m, at.y_m});

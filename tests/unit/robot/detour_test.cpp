@@ -48,7 +48,7 @@ class Detours : public Seeing {
   }
   void until_around(double seconds = 40.0) {
     for (double t = 0.0; t < seconds && !field.state()->detour; t += 0.02) field.tick();
-    ASSERT_TRUE(field.state()->detour) << field.state()->mission.reason;
+    ASSERT_TRUE(field.state()->detour) << field.events.back().detail;
   }
   /// Beside the box.
   void until_beside() {
@@ -82,7 +82,7 @@ TEST_F(Detours, ABoxThatStaysIsDrivenAroundAndTheMissionGoesOnBehindIt) {
   // then it is driven around: nothing is touched, and it is back on its way behind the box.
   EXPECT_EQ(told("going_around"), 1);
   EXPECT_EQ(told("around_done"), 1);
-  EXPECT_EQ(told("no_way_around"), 0);
+  EXPECT_EQ(told("no_way_around"), 0) << field.events.back().detail;
   EXPECT_GT(nearest_m, 0.39 + 0.05);  // half of its width
   EXPECT_LT(beside_m, 2.5);
   EXPECT_GT(field.at.north_m, box_m + 1.0);
