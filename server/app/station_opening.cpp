@@ -65,7 +65,7 @@ Result<void> Station::Impl::open_senses(const Settings& settings, const Options&
     return one.second.said.enabled && one.second.said.required;
   });
   robot.guard_by(settings.sense.protect, required && options.replays.empty(),
-                 settings.sense.blocked, settings.sense.outline);
+                 settings.sense.blocked, settings.sense.outline, settings.sense.rays);
   sense = std::make_shared<SenseLoop>(robot, std::move(*lookout), shown_of(settings));
   if (settings.sense.blocked.then == "around") around = std::make_unique<AroundLoop>(robot);
   return {};

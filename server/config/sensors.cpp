@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/angle.hpp"
+#include "nav/sense/rays_rule.hpp"
 
 namespace roverd {
 namespace {
@@ -166,6 +167,10 @@ bool is_sensor_name(std::string_view name) noexcept {
 base::Result<void> check(const SenseSettings& sense) {
   std::string section = "sense.blocked.";
   auto good = robot::check(sense.blocked);
+  if (good) {
+    section = "sense.rays.";
+    good = nav::sense::check(sense.rays);
+  }
   if (good) {
     section = "nav.tool.";
     good = robot::check(sense.outline);

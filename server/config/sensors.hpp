@@ -92,6 +92,7 @@ struct SenseSettings {
   nav::sense::PersistParams persist;
   nav::sense::GridParams grid;
   nav::sense::HealthParams health;
+  nav::sense::RaysParams rays;
   nav::sense::ProtectParams protect;
   robot::BlockedParams blocked;
   robot::OutlineParams outline;  ///< further keys of [nav.tool]
@@ -104,6 +105,7 @@ void sections(V& v, SenseSettings& s) {
   v("sense.persist", s.persist);
   v("sense.grid", s.grid);
   v("sense.health", s.health);
+  v("sense.rays", s.rays);
   v("sense.protect", s.protect);
   v("sense.blocked", s.blocked);
 }

@@ -38,8 +38,10 @@ base::Inbox<base::Measurement>& Robot::measurements() noexcept {
   return impl_->measurements;
 }
 void Robot::guard_by(const nav::sense::ProtectParams& params, bool demands,
-                     const BlockedParams& blocked, const OutlineParams& outline) {
-  impl_->guard.set(params, impl_->config->vehicle, demands, blocked, impl_->config->tool, outline);
+                     const BlockedParams& blocked, const OutlineParams& outline,
+                     const nav::sense::RaysParams& rays) {
+  impl_->guard.set(params, impl_->config->vehicle, demands, blocked, impl_->config->tool, outline,
+                   rays);
 }
 base::Inbox<std::shared_ptr<const Surroundings>>& Robot::surroundings() noexcept {
   return impl_->surroundings;

@@ -354,8 +354,10 @@ class Robot {
   /// from what they see. Without it the robot drives blind, as it is told.
   /// @param demands what drives by itself needs one of them at least. @param blocked what becomes
   /// of a drive that they stopped; its word passed check(). @param outline of the tool.
+  /// @param rays the stop by counted rays, where it is enabled.
   void guard_by(const nav::sense::ProtectParams& params, bool demands = true,
-                const BlockedParams& blocked = {}, const OutlineParams& outline = {});
+                const BlockedParams& blocked = {}, const OutlineParams& outline = {},
+                const nav::sense::RaysParams& rays = {});
   /// Any thread: what stands around it; the newest counts.
   base::Inbox<std::shared_ptr<const Surroundings>>& surroundings() noexcept;
   /// The same thread: those that are not needed any more, to be let go.

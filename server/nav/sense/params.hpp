@@ -121,12 +121,14 @@ void fields(V& v, HealthParams& p) {
 /// The planar scan out of a cloud, and the simple stop by counted rays (systems of the field,
 /// sections 3 and 5).
 struct RaysParams {
+  bool enabled = false;
+  bool instead = false;
   double fan_deg = 34.0;
   double step_deg = 1.0;
   double band_m = 0.30;
   double far_m = 3.0;
   double far_as_m = 4.0;
-  double blind_m = 0.5;
+  double blind_m = 0.0;
   double stop_fan_deg = 15.94;
   double stop_m = 0.70;
   int stop_rays = 5;
@@ -134,12 +136,17 @@ struct RaysParams {
 
 template <class V>
 void fields(V& v, RaysParams& p) {
+  v("enabled", p.enabled,
+    base::higher_is_stricter("what drives ahead is stopped by counted rays as well"));
+  v("instead", p.instead,
+    base::lower_is_stricter("by them alone: nothing slows down before, and nothing that is swept "
+                            "beside, behind or in a turn stops it"));
   v("fan_deg", p.fan_deg, 1.0, 180.0, "to either side of straight ahead");
   v("step_deg", p.step_deg, 0.1, 10.0, "between neighbouring rays");
   v("band_m", p.band_m, 0.02, 2.0, "points so far above and below the sensor's height count");
   v("far_m", p.far_m, 0.5, 30.0, "farther rays count as endless");
   v("far_as_m", p.far_as_m, 0.5, 60.0, "and are written as this");
-  v("blind_m", p.blind_m, 0.0, 2.0, "nearer than this the sensor cannot measure");
+  v("blind_m", p.blind_m, 0.0, 2.0, "what seems nearer to the sensor than this is left out");
   v("stop_fan_deg", p.stop_fan_deg, 1.0, 180.0,
     base::higher_is_stricter("rays within this of straight ahead are counted"));
   v("stop_m", p.stop_m, 0.1, 10.0, base::higher_is_stricter("where they are shorter than this"));

@@ -2,10 +2,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "base/angle.hpp"
 
 namespace roverd::nav::sense {
+
+base::Result<void> check(const RaysParams& p) {
+  const auto refuse = [](const std::string& key, const std::string& detail) {
+    return base::fail(base::Code::Invalid, key + " " + detail, {{key, detail}});
+  };
+  if (p.instead && !p.enabled) return refuse("instead", "needs enabled: nothing would stop it");
+  if (p.far_as_m < p.far_m) return refuse("far_as_m", "must not be less than far_m");
+  if (p.stop_m > p.far_m) return refuse("stop_m", "must not be more than far_m");
+  if (p.blind_m >= p.stop_m) return refuse("blind_m", "must be less than stop_m");
+  if (p.stop_fan_deg > p.fan_deg) return refuse("stop_fan_deg", "must not be more than fan_deg");
+  const double most = 2.0 * std::floor(p.stop_fan_deg / p.step_deg) + 1.0;
+  if (p.stop_rays > most) {
+    return refuse("stop_rays", "must not be more than the " + std::to_string(std::lround(most)) +
+                                   " rays within stop_fan_deg");
+  }
+  return {};
+}
 
 void rays_of(const Reduced& in, const RaysParams& params, std::vector<Ray>& out) {
   const double fan = base::rad_from_deg(params.fan_deg);
@@ -42,9 +60,11 @@ Counted count_rays(const std::vector<Ray>& rays, const RaysParams& params) noexc
   const double fan = base::rad_from_deg(params.stop_fan_deg);
   for (const Ray& ray : rays) {
     if (ray.endless || std::abs(static_cast<double>(ray.bearing_rad)) > fan) continue;
-    if (static_cast<double>(ray.range_m) >= params.stop_m) continue;
+    if (ray.range_m >= static_cast<float>(params.stop_m)) continue;
     ++c.rays;
-    if (c.nearest_m == 0.0F || ray.range_m < c.nearest_m) c.nearest_m = ray.range_m;
+    if (c.nearest_m > 0.0F && ray.range_m >= c.nearest_m) continue;
+    c.nearest_m = ray.range_m;
+    c.nearest_rad = ray.bearing_rad;
   }
   c.stop = c.rays >= params.stop_rays;
   return c;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/result.hpp"
 #include "nav/sense/params.hpp"
 #include "nav/sense/reduce.hpp"
 
@@ -17,16 +18,21 @@ struct Ray {
   bool endless = true;       ///< nothing within far_m
 };
 
+/// Numbers that contradict each other: a stop that could never come. Invalid; the field is its key.
+base::Result<void> check(const RaysParams& params);
+
 /// The nearest voxel of every step, from right to left, -fan to +fan. Of all voxels but Clear and
 /// Passing within ±band of the sensor's height, nearer than blind_m left out.
 /// @param out its buffer is used again.
 void rays_of(const Reduced& in, const RaysParams& params, std::vector<Ray>& out);
 
 struct Counted {
-  int rays = 0;            ///< within the stopping fan and shorter than stop_m
-  float nearest_m = 0.0F;  ///< of those; 0: none
-  bool stop = false;       ///< as many as stop_rays, or more
+  int rays = 0;              ///< within the stopping fan and shorter than stop_m
+  float nearest_m = 0.0F;    ///< of those; 0: none
+  float nearest_rad = 0.0F;  ///< its bearing in B, left positive
+  bool stop = false;         ///< as many as stop_rays, or more
 };
+/// @param rays of rays_of().
 Counted count_rays(const std::vector<Ray>& rays, const RaysParams& params) noexcept;
 
 /// Mean of the n leftmost and rightmost rays that are not endless, for centring between rows.

@@ -78,8 +78,9 @@ std::string sentence(const base::Obstacle& o) {
 
 void Guard::set(const nav::sense::ProtectParams& params, const nav::VehicleParams& vehicle,
                 bool demands, const BlockedParams& blocked, const nav::ToolParams& tool,
-                const OutlineParams& outline) {
+                const OutlineParams& outline, const nav::sense::RaysParams& rays) {
   params_ = params;
+  rays_ = rays;
   blocked_.set(blocked);
   decel_set_mps2_ = params.decel_mps2;
   sees_ = true;
@@ -136,13 +137,15 @@ nav::sense::ProtectParams Guard::params_of(bool by_itself) const noexcept {
   return p;
 }
 
-nav::sense::Verdict Guard::look(const BodyTwist& twist, bool by_itself,
-                                base::Time now) const noexcept {
-  nav::sense::Verdict v;
+Guard::Looked Guard::look(const BodyTwist& twist, bool by_itself, base::Time now) const noexcept {
+  Looked v;
   const nav::sense::ProtectParams params = params_of(by_itself);
   if (!too_old(now)) {
-    return protect(around_->patch, odometry_.pose, body_, twist, params,
-                   spared_ ? &*spared_ : nullptr);
+    const bool counts = rays_.enabled && !spared_;
+    if (counts && around_->rays && twist.linear_mps > 0.0) return stop_by(*around_->rays);
+    if (counts && rays_.instead) return v;
+    return {protect(around_->patch, odometry_.pose, body_, twist, params,
+                    spared_ ? &*spared_ : nullptr)};
   }
   // Nothing is known: as if the very next step were unseen.
   const bool ahead = twist.linear_mps > 0.0;
@@ -156,6 +159,21 @@ nav::sense::Verdict Guard::look(const BodyTwist& twist, bool by_itself,
   v.part = std::clamp(std::min(by_way, by_turn), 0.0, 1.0);
   v.limit = Limit::Unseen;
   v.found = true;
+  return v;
+}
+
+Guard::Looked Guard::stop_by(const RaysStop& stop) const noexcept {
+  const nav::sense::Pose2 at =
+      inverse(odometry_.pose) * nav::sense::Pose2{stop.at.x, stop.at.y, 0.0};
+  Looked v;
+  v.part = 0.0;
+  v.limit = Limit::Obstacle;
+  v.found = true;
+  v.at = {at.x_m, at.y_m};
+  v.bearing_rad = std::atan2(at.y_m, at.x_m);
+  v.sensor = stop.sensor;
+  v.age_s = base::seconds(around_->patch.stamp - stop.seen);
+  v.rays = stop.rays;
   return v;
 }
 
@@ -173,7 +191,7 @@ BodyTwist Guard::judge(const BodyTwist& wanted, bool by_itself, base::Time now) 
   wishless_since_.reset();
   wanted_ = wanted;
   if (stopped_since_ && by_itself) return {};  // asked, and held until the way has been clear
-  const nav::sense::Verdict v = look(wanted, by_itself, now);
+  const Looked v = look(wanted, by_itself, now);
   BodyTwist out = times(wanted, v.part);
   if (v.limit != Limit::None && too_slow(out)) {
     out = {};
@@ -272,7 +290,7 @@ std::optional<Then> Guard::decide(bool by_itself, base::Time now) noexcept {
 
 bool Guard::clear_long_enough(base::Time now) {
   const BodyTwist probe = probe_of(wanted_);
-  const nav::sense::Verdict v = look(probe, true, now);
+  const Looked v = look(probe, true, now);
   const BodyTwist out = times(probe, v.part);
   if (v.limit != Limit::None && too_slow(out)) {
     clear_since_.reset();
@@ -301,7 +319,7 @@ void Guard::forget() noexcept {
   obstacle_ = {};
 }
 
-void Guard::tell(const nav::sense::Verdict& v, base::GuardAction action, base::Time now) {
+void Guard::tell(const Looked& v, base::GuardAction action, base::Time now) {
   const bool old = too_old(now);
   obstacle_.action = action;
   obstacle_.what = old ? "blind" : nav::sense::to_string(v.limit);
@@ -316,6 +334,11 @@ void Guard::tell(const nav::sense::Verdict& v, base::GuardAction action, base::T
   obstacle_.age_s = v.age_s + (around_ ? base::seconds(now - around_->patch.stamp) : 0.0);
   obstacle_.stopped_since = stopped_since_;
   obstacle_.reason = sentence(obstacle_);
+  if (v.rays > 0) {
+    char text[64];
+    std::snprintf(text, sizeof text, ": %d rays shorter than %.2f m", v.rays, rays_.stop_m);
+    obstacle_.reason += text;
+  }
 }
 
 }  // namespace roverd::robot

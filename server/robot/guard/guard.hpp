@@ -10,6 +10,10 @@
 // sensor in the profile it lets everything pass. A picture that is too old is none: what was seen
 // then is not believed any more, and the creep speeds of what no sensor sees hold.
 //
+// Where the stop by counted rays (nav/sense/rays_rule.hpp) is enabled, it stops whatever drives
+// ahead, too; or alone, and then the curve is not looked along. It knows no dock: while who docks
+// is within sense.protect.dock_m of it, the curve alone is looked along.
+//
 // Control thread; allocates for the sentence of a stop only.
 
 #include <memory>
@@ -34,7 +38,7 @@ class Guard {
   /// Before the first tick, where the profile has sensors. @param demands one of them at least
   void set(const nav::sense::ProtectParams& params, const nav::VehicleParams& vehicle, bool demands,
            const BlockedParams& blocked = {}, const nav::ToolParams& tool = {},
-           const OutlineParams& outline = {});
+           const OutlineParams& outline = {}, const nav::sense::RaysParams& rays = {});
   bool sees() const noexcept { return sees_; }
   bool demands() const noexcept { return demands_; }
   /// Once a tick: braking that is known to be there; what was set bounds it.
@@ -98,9 +102,12 @@ class Guard {
 
  private:
   nav::sense::ProtectParams params_of(bool by_itself) const noexcept;
-  nav::sense::Verdict look(const base::BodyTwist& twist, bool by_itself,
-                           base::Time now) const noexcept;
-  void tell(const nav::sense::Verdict& v, base::GuardAction action, base::Time now);
+  struct Looked : nav::sense::Verdict {
+    int rays = 0;  ///< not 0: it was they that said stop
+  };
+  Looked look(const base::BodyTwist& twist, bool by_itself, base::Time now) const noexcept;
+  Looked stop_by(const RaysStop& stop) const noexcept;
+  void tell(const Looked& v, base::GuardAction action, base::Time now);
 
   bool clear_long_enough(base::Time now);
 
@@ -108,6 +115,7 @@ class Guard {
   bool follows_ = false;
   bool demands_ = false;
   nav::sense::ProtectParams params_;
+  nav::sense::RaysParams rays_;
   double decel_set_mps2_ = 0.6;
   nav::sense::Footprint body_ = footprint_of({});
   std::optional<nav::sense::Spared> spared_;

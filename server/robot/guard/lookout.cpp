@@ -1,6 +1,7 @@
 #include "robot/guard/lookout.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace roverd::robot {
@@ -33,12 +34,15 @@ base::Time end_of(const base::Sight& sight) noexcept {
 
 }  // namespace
 
-Lookout::Lookout(nav::sense::Chain chain, std::vector<std::string> kinds, double reach_m)
+Lookout::Lookout(nav::sense::Chain chain, std::vector<std::string> kinds, double reach_m,
+                 const nav::sense::RaysParams& rays)
     : chain_(std::move(chain)),
       kinds_(std::move(kinds)),
       last_(chain_.sensors()),
       free_for_s_(chain_.sensors(), kAsKept_s),
       scans_(chain_.sensors()),
+      rays_(rays),
+      counted_(chain_.sensors()),
       reach_m_(reach_m) {
   kinds_.resize(chain_.sensors());
 }
@@ -74,7 +78,24 @@ void Lookout::take(const base::Sight& sight, base::Time now) {
   if (!number) return;
   last_[*number] = {sight.points.size(), end_of(sight)};
   scans_[*number].keep(chain_.last(), end_of(sight));
+  if (rays_.enabled) count(*number, end_of(sight), now);
   news_ = true;
+}
+
+/// A piece of a sensor that does not see clears nothing.
+void Lookout::count(std::size_t number, base::Time seen, base::Time now) {
+  const nav::sense::Reduced& in = chain_.last();
+  nav::sense::rays_of(in, rays_, fan_);
+  const nav::sense::Counted c = nav::sense::count_rays(fan_, rays_);
+  if (!c.stop) {
+    if (chain_.health(number, now).eye != nav::sense::Eye::Blind) counted_[number].reset();
+    return;
+  }
+  const double x_m = double(in.origin_m[0] + c.nearest_m * std::cos(c.nearest_rad));
+  const double y_m = double(in.origin_m[1] + c.nearest_m * std::sin(c.nearest_rad));
+  const nav::sense::Pose2 met = in.pose * nav::sense::Pose2{x_m, y_m, 0.0};
+  counted_[number] = {c.nearest_m,
+                      {static_cast<std::uint8_t>(number), c.rays, {met.x_m, met.y_m}, seen}};
 }
 
 std::shared_ptr<const Surroundings> Lookout::picture(base::Time now) {
@@ -110,6 +131,12 @@ std::shared_ptr<const Surroundings> Lookout::picture(base::Time now) {
   }
   chain_.grid().patch(history_.newest().pose, reach_m_, now, out->patch, free_for_s_);
   out->sensors = std::move(sensors);
+  float nearest_m = 0.0F;
+  for (const auto& one : counted_) {
+    if (!one || (out->rays && one->nearest_m >= nearest_m)) continue;
+    out->rays = one->stop;
+    nearest_m = one->nearest_m;
+  }
   news_ = false;
   told_ = now;
   return out;

@@ -8,18 +8,23 @@
 // What a sensor saw free that is silent or blind by now is unknown again after 2.5 of its pieces,
 // whatever the others tell; what stood there stays.
 //
+// Where the stop by counted rays is enabled, each piece of a sensor that sees is counted, and its
+// word holds until that sensor's next one: who falls silent or blind takes back nothing.
+//
 // A sight that is newer than the odometry waits for it, 0.2 s at most. Not shared between threads;
 // time is an argument.
 
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/sensing.hpp"
 #include "base/sight.hpp"
 #include "nav/sense/chain.hpp"
+#include "nav/sense/rays_rule.hpp"
 #include "robot/guard/outlook.hpp"
 #include "robot/guard/surroundings.hpp"
 
@@ -28,7 +33,9 @@ namespace roverd::robot {
 class Lookout {
  public:
   /// @param kinds of the chain's sensors, as their profile says
-  Lookout(nav::sense::Chain chain, std::vector<std::string> kinds, double reach_m);
+  /// @param rays where it is enabled, every piece is counted by it; it passed check()
+  Lookout(nav::sense::Chain chain, std::vector<std::string> kinds, double reach_m,
+          const nav::sense::RaysParams& rays = {});
 
   void moved(const nav::sense::Odometry& o) noexcept;
   /// @param sight one of the chain's sensors, or it is left out
@@ -42,6 +49,7 @@ class Lookout {
  private:
   void take_waiting(base::Time now);
   void take(const base::Sight& sight, base::Time now);
+  void count(std::size_t number, base::Time seen, base::Time now);
 
   nav::sense::Chain chain_;
   nav::sense::PoseHistory history_;
@@ -53,6 +61,13 @@ class Lookout {
   std::vector<Last> last_;
   std::vector<double> free_for_s_;  ///< what each of them told free, is believed so long
   std::vector<KeptScan> scans_;
+  nav::sense::RaysParams rays_;
+  std::vector<nav::sense::Ray> fan_;  ///< of the last piece
+  struct Counted {
+    float nearest_m = 0.0F;
+    RaysStop stop;
+  };
+  std::vector<std::optional<Counted>> counted_;  ///< by sensor: it says stop
   double reach_m_;
   std::deque<std::shared_ptr<const base::Sight>> waiting_;
   bool news_ = false;

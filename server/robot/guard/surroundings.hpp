@@ -1,15 +1,25 @@
 #pragma once
 // What stands around the robot, as the sense thread hands it to the control thread. Immutable.
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "base/sensing.hpp"
 #include "base/time.hpp"
+#include "nav/sense/footprint.hpp"
 #include "nav/sense/grid.hpp"
 
 namespace roverd::robot {
+
+/// The stop by counted rays (nav/sense/rays_rule.hpp): what the last piece of a sensor says.
+struct RaysStop {
+  std::uint8_t sensor = 0;  ///< as Patch::Cell counts them
+  int rays = 0;             ///< shorter than they may be
+  nav::sense::Vec2 at{};    ///< the nearest that they met, in O
+  base::Time seen;
+};
 
 struct Surroundings {
   nav::sense::Patch patch;
@@ -17,6 +27,9 @@ struct Surroundings {
   std::shared_ptr<const std::vector<base::SensorState>> sensors;
   std::optional<base::Time> seen;  ///< by any of them, last
   double lasts_s = 0.5;            ///< so long that is believed
+  /// Of the sensors whose rays say stop, the one with the nearest. Empty: none does, or the rule is
+  /// off.
+  std::optional<RaysStop> rays;
 };
 
 }  // namespace roverd::robot

@@ -133,7 +133,7 @@ class WorldDrive {
         lookout_(std::move(lookout)) {
     around_.attend(stage_.plant());
     stage_.robot().guard_by(made.settings.sense.protect, true, made.settings.sense.blocked,
-                            made.settings.sense.outline);
+                            made.settings.sense.outline, made.settings.sense.rays);
     for (const EyeSetup& eye : made.eyes) eyes_.emplace_back(eye, s.number);
     stage_.on_heard = [this](base::Time t) { sense(t); };
   }

@@ -90,6 +90,24 @@ TEST(Sensors, WhatFollowsWhenTheyBlockADriveIsOneOfFourWords) {
   EXPECT_NE(refused("[sense.blocked]\nafter_s = 0\n").find("after_s"), std::string::npos);
 }
 
+TEST(Sensors, TheStopByCountedRaysIsOffUntilItIsSet) {
+  EXPECT_FALSE(with("")->sense.rays.enabled);
+  const auto s =
+      with("[sense.rays]\nenabled = true\ninstead = true\nstop_m = 0.9\nstop_rays = 7\n");
+  ASSERT_TRUE(s) << s.error().detail;
+  EXPECT_TRUE(s->sense.rays.enabled);
+  EXPECT_TRUE(s->sense.rays.instead);
+  EXPECT_EQ(s->sense.rays.stop_m, 0.9);
+  EXPECT_EQ(s->sense.rays.stop_rays, 7);
+  EXPECT_EQ(s->sense.rays.stop_fan_deg, 15.94);
+  const std::string no = refused("[sense.rays]\nenabled = true\nstop_m = 3.5\n");
+  EXPECT_NE(no.find("robot.toml:3: sense.rays.stop_m must not be more than far_m"),
+            std::string::npos)
+      << no;
+  EXPECT_NE(refused("[sense.rays]\ninstead = true\n").find("sense.rays.instead needs enabled"),
+            std::string::npos);
+}
+
 TEST(Sensors, TheToolsOutlineStandsBesideItsPoint) {
   const auto s = with("[nav.tool]\nforward_m = -1.0\nlength_m = 0.8\nwidth_m = 1.6\n");
   ASSERT_TRUE(s) << s.error().detail;

@@ -161,6 +161,95 @@ TEST_F(SlowAndFast, WhatTheDeadOneSawFreeIsBelievedForItsOwnPeriodsOnly) {
   EXPECT_NEAR(guard.judge({-0.4, 0.0}, true, at(t_s)).linear_mps, -0.4, 1e-9);
 }
 
+/// A scanner's piece: so many beams of a degree, from that one on to the left, are met at that
+/// range.
+std::shared_ptr<const base::Sight> beams(double s, std::uint64_t count, int met, double range_m,
+                                         double from_deg = -2.0) {
+  auto sight = std::make_shared<base::Sight>();
+  sight->sensor = "front";
+  sight->stamp = at(s);
+  sight->count = count;
+  sight->half_step_rad = 0.009F;
+  sight->clear_to_m = 8.0F;
+  for (int i = -90; i <= 90; ++i) {
+    const double bearing = base::rad_from_deg(i);
+    const bool hit = i >= from_deg && i < from_deg + met;
+    const double r = hit ? range_m : 8.0;
+    sight->points.push_back({float(r * std::cos(bearing)), float(r * std::sin(bearing)), 0.0F, 0.0F,
+                             0, 0, hit ? base::Echo::Hit : base::Echo::Clear});
+  }
+  return sight;
+}
+
+/// What the rays say of five pieces alike of a scanner at the front of the body.
+std::optional<RaysStop> rays_said(int met, double range_m, double from_deg = -2.0,
+                                  bool enabled = true) {
+  nav::sense::SensorSetup eye;
+  eye.name = "front";
+  eye.mount.x_m = 0.6;
+  eye.mount.z_m = 0.3;
+  eye.planar = true;
+  eye.health.rate_hz = 50.0;
+  nav::sense::ChainParams chain;
+  chain.reduce.voxel_m = 0.01;  // a beam a voxel
+  nav::sense::RaysParams rays;
+  rays.enabled = enabled;
+  Lookout l(*nav::sense::Chain::of(chain, {eye}, footprint_of({}), at(0.0)), {"sick"}, 6.0, rays);
+  stand(l, 0.0, 0.2);
+  for (int i = 0; i < 5; ++i) {
+    l.see(beams(0.02 * i, std::uint64_t(i), met, range_m, from_deg), at(0.1));
+  }
+  return l.picture(at(0.1))->rays;
+}
+
+TEST(CountedRays, FiveShortOnesStopAndFourDoNot) {
+  EXPECT_FALSE(rays_said(4, 0.69));
+  const auto five = rays_said(5, 0.69);
+  ASSERT_TRUE(five);
+  EXPECT_EQ(five->rays, 5);
+  EXPECT_EQ(five->sensor, 0);
+  EXPECT_EQ(five->seen, at(0.08));
+  EXPECT_NEAR(std::hypot(five->at.x - 0.6, five->at.y), 0.69, 0.001) << "from the sensor";
+  EXPECT_FALSE(rays_said(5, 0.71));
+  EXPECT_FALSE(rays_said(30, 0.71));
+  EXPECT_TRUE(rays_said(60, 0.3, -30.0)) << "nearer, too";
+}
+
+TEST(CountedRays, OnlyThoseWithinTheStoppingFanCount) {
+  // 12 to 15 degrees are four within 15.94, and 16 on are outside of it.
+  EXPECT_FALSE(rays_said(20, 0.65, 12.0));
+  EXPECT_TRUE(rays_said(20, 0.65, 11.0));
+  EXPECT_FALSE(rays_said(20, 0.65, -31.0)) << "-31 to -12: the same on the right";
+  EXPECT_FALSE(rays_said(5, 0.5, -2.0, false)) << "unless it is enabled";
+}
+
+TEST(CountedRays, ASensorThatFallsBlindTakesNothingBack) {
+  nav::sense::SensorSetup eye;
+  eye.name = "front";
+  eye.mount.x_m = 0.6;
+  eye.mount.z_m = 0.3;
+  eye.planar = true;
+  eye.health.rate_hz = 50.0;
+  nav::sense::RaysParams rays;
+  rays.enabled = true;
+  Lookout l(*nav::sense::Chain::of({}, {eye}, footprint_of({}), at(0.0)), {"sick"}, 6.0, rays);
+  stand(l, 0.0, 2.0);
+  std::uint64_t n = 0;
+  double t = 0.0;
+  for (; t < 0.4; t += 0.02) l.see(beams(t, n++, 30, 0.6, -15.0), at(t));
+  EXPECT_TRUE(l.picture(at(t))->rays);
+  for (; t < 0.8; t += 0.02) {
+    auto dazzled = std::make_shared<base::Sight>(*beams(t, n++, 0, 0.6));
+    for (auto& p : dazzled->points) p.echo = base::Echo::Unknown;
+    l.see(std::move(dazzled), at(t));
+  }
+  EXPECT_TRUE(l.picture(at(t))->rays);
+  EXPECT_TRUE(l.picture(at(t + 1.0))->rays) << "silent";
+  // One that sees again, and nothing there, does.
+  for (; t < 1.4; t += 0.02) l.see(beams(t, n++, 0, 0.6), at(t));
+  EXPECT_FALSE(l.picture(at(t))->rays);
+}
+
 TEST_F(SlowAndFast, WhatABlindOneSawIsNotBelievedEither) {
   run(5.0, true);
   run(7.5, true, false);

@@ -51,6 +51,7 @@ class Seeing : public ::testing::Test {
     state.reason = "the glass is blocked";
     if (!heard) state.health = base::SensorHealth::Silent;
     if (heard) state.seen = s->seen = field.now;
+    s->rays = rays;
     s->sensors = std::make_shared<const std::vector<base::SensorState>>(1, state);
     field.robot.surroundings().put(std::move(s));
   }
@@ -68,6 +69,7 @@ class Seeing : public ::testing::Test {
   std::optional<double> wall_m;
   double wall_wide_m = 1e3;
   Known wall_is = Known::Occupied;
+  std::optional<RaysStop> rays;  ///< what the stop by counted rays says
   nav::sense::Pose2 pose;
 };
 

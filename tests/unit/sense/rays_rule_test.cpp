@@ -35,11 +35,13 @@ TEST(RaysRuleTest, SixtyNineRaysOfADegreeFromRightToLeft) {
 }
 
 TEST(RaysRuleTest, WhatIsOutsideOfTheBandTooFarTooNearOrOnlyPassingDoesNotCount) {
+  RaysParams p;
+  p.blind_m = 0.5;
   std::vector<Ray> rays;
   rays_of(seen({from_eye(2.0, 0.0, 0.31), from_eye(2.0, 0.0, -0.31), from_eye(3.1, 0.0),
                 from_eye(0.45, 0.0), from_eye(1.0, 0.0, 0.0, Kind::Passing),
                 from_eye(1.0, 0.0, 0.0, Kind::Clear), from_eye(1.0, 40.0)}),
-          {}, rays);
+          p, rays);
   for (const Ray& ray : rays) EXPECT_TRUE(ray.endless);
 }
 
@@ -56,6 +58,33 @@ TEST(RaysRuleTest, FiveShortRaysStopAndFourDoNot) {
   rays_of(seen(voxels), {}, rays);
   EXPECT_TRUE(count_rays(rays, {}).stop);
   EXPECT_NEAR(count_rays(rays, {}).nearest_m, 0.65F, 1e-4F);
+  EXPECT_NEAR(base::deg_from_rad(double(count_rays(rays, {}).nearest_rad)), 5.0, 1e-4);
+}
+
+TEST(RaysRuleTest, RaysOfSeventyCentimetresAreNotShorterThanThat) {
+  std::vector<Ray> rays;
+  for (int i = -4; i <= 4; ++i) rays.push_back({float(0.03 * i), 0.7F, false});
+  EXPECT_EQ(count_rays(rays, {}).rays, 0);
+  for (Ray& ray : rays) ray.range_m = 0.699F;
+  EXPECT_EQ(count_rays(rays, {}).rays, 9);
+}
+
+TEST(RaysRuleTest, NumbersThatContradictEachOtherAreRefusedByTheirKey) {
+  const auto refused = [](auto&& change) {
+    RaysParams p;
+    change(p);
+    const auto good = check(p);
+    return good ? std::string() : good.error().fields.at(0).pointer;
+  };
+  EXPECT_EQ(refused([](RaysParams& p) { p.enabled = true; }), "");
+  EXPECT_EQ(refused([](RaysParams& p) { p.instead = true; }), "instead");
+  EXPECT_EQ(refused([](RaysParams& p) { p.far_as_m = 2.9; }), "far_as_m");
+  EXPECT_EQ(refused([](RaysParams& p) { p.stop_m = 3.1; }), "stop_m");
+  EXPECT_EQ(refused([](RaysParams& p) { p.blind_m = 0.7; }), "blind_m");
+  EXPECT_EQ(refused([](RaysParams& p) { p.stop_fan_deg = 35.0; }), "stop_fan_deg");
+  // 15 rays to either side and one straight ahead.
+  EXPECT_EQ(refused([](RaysParams& p) { p.stop_rays = 31; }), "");
+  EXPECT_EQ(refused([](RaysParams& p) { p.stop_rays = 32; }), "stop_rays");
 }
 
 TEST(RaysRuleTest, TheSidesAreTheMeansOfTheOuterFive) {
