@@ -82,13 +82,15 @@ void Lookout::take(const base::Sight& sight, base::Time now) {
   news_ = true;
 }
 
-/// A piece of a sensor that does not see clears nothing.
+/// A piece of a sensor that does not see clears nothing. Nor does one in which any ray is still too
+/// short: what comes nearer is met by fewer of them, for a cloud is thinned.
 void Lookout::count(std::size_t number, base::Time seen, base::Time now) {
   const nav::sense::Reduced& in = chain_.last();
   nav::sense::rays_of(in, rays_, fan_);
   const nav::sense::Counted c = nav::sense::count_rays(fan_, rays_);
   if (!c.stop) {
-    if (chain_.health(number, now).eye != nav::sense::Eye::Blind) counted_[number].reset();
+    const bool sees = chain_.health(number, now).eye != nav::sense::Eye::Blind;
+    if (sees && c.rays == 0) counted_[number].reset();
     return;
   }
   const double x_m = double(in.origin_m[0] + c.nearest_m * std::cos(c.nearest_rad));

@@ -245,6 +245,9 @@ TEST(CountedRays, ASensorThatFallsBlindTakesNothingBack) {
   }
   EXPECT_TRUE(l.picture(at(t))->rays);
   EXPECT_TRUE(l.picture(at(t + 1.0))->rays) << "silent";
+  // So does not what came so near that its cubes are fewer than five rays.
+  for (; t < 1.0; t += 0.02) l.see(beams(t, n++, 30, 0.2, -15.0), at(t));
+  EXPECT_TRUE(l.picture(at(t))->rays);
   // One that sees again, and nothing there, does.
   for (; t < 1.4; t += 0.02) l.see(beams(t, n++, 0, 0.6), at(t));
   EXPECT_FALSE(l.picture(at(t))->rays);
