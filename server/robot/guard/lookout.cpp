@@ -8,6 +8,7 @@ namespace roverd::robot {
 namespace {
 
 constexpr double kWaits_s = 0.2;
+constexpr double kAhead_s = 0.025;  // a tick, and how late it may be
 constexpr double kTellAnyway_s = 0.1;
 constexpr double kMissed = 2.5;  // pieces that may be missing
 constexpr std::size_t kMostWaiting = 64;
@@ -63,7 +64,8 @@ void Lookout::take_waiting(base::Time now) {
   for (auto one = waiting_.begin(); one != waiting_.end();) {
     const base::Sight& sight = **one;
     const double past_s = base::seconds(now - end_of(sight));
-    const bool known = !history_.empty() && end_of(sight) <= history_.newest().stamp;
+    const bool known =
+        !history_.empty() && base::seconds(end_of(sight) - history_.newest().stamp) <= kAhead_s;
     if (!known && past_s < kWaits_s && past_s > -kWaits_s) {
       ++one;
       continue;

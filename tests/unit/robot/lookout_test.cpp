@@ -94,6 +94,25 @@ TEST(Lookout, ASightThatWaitsForTheOdometryKeepsNoOtherWaiting) {
   EXPECT_EQ((*l.picture(at(0.5))->sensors)[0].seen, at(0.4));
 }
 
+TEST(Lookout, ASightFromWithinTheTickThatRunsWaitsForNothingAndIsPlacedAlongTheTwist) {
+  Lookout l = lookout();
+  // Given a robot that drives at 5 m/s, and was 1.4 m from its begin when it last told,
+  for (int i = 0; i <= 14; ++i) {
+    l.moved({.stamp = at(0.02 * i), .pose = {0.1 * i, 0.0, 0.0}, .v_mps = 5.0});
+  }
+  // when a wall two metres ahead is seen one tick later, and it has not told again,
+  l.see(wall("front", 0.30, 0), at(0.30));
+  // then it stands two metres before where the robot is by then, not before where it was.
+  const auto s = l.picture(at(0.30));
+  ASSERT_NE(s, nullptr);
+  EXPECT_EQ((*s->sensors)[0].seen, at(0.30));
+  EXPECT_EQ(ahead(*s, 3.52), Known::Occupied);
+  EXPECT_NE(ahead(*s, 3.42), Known::Occupied);
+  // One that is farther ahead waits.
+  l.see(wall("front", 0.32, 1), at(0.32));
+  EXPECT_EQ((*l.picture(at(0.42))->sensors)[0].seen, at(0.30));
+}
+
 TEST(Lookout, ASensorThatFallsSilentIsToldSoAndWhatItSawGrowsOld) {
   Lookout l = lookout();
   stand(l, 0.0, 2.0);
