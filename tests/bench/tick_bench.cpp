@@ -1,12 +1,14 @@
 // One control tick: measurements of a full bus and a receiver in, estimate, mode, mission of 1,000
 // and of 10,000 items, command and snapshot out. Reports the median and the 99th percentile of
-// single ticks; for loading a mission those of the ticks that take it.
+// single ticks; for loading a mission those of the ticks that take it. The same with what sensors
+// see: a scanner's picture in each tick, a lidar's in each fifth besides, and the guard.
 
 #include <algorithm>
 #include <memory>
 
 #include <benchmark/benchmark.h>
 
+#include "robot/guard/surroundings.hpp"
 #include "tick_field.hpp"
 
 namespace roverd::robot {
@@ -59,6 +61,87 @@ void one_tick(benchmark::State& state) {
   }
 }
 BENCHMARK(one_tick)->Arg(10)->Arg(1'000)->Arg(10'000)->UseManualTime()->MinTime(1.0);
+
+/// What the sense thread tells: seen all around, and poles on both sides of a lane, 1 m apart, but
+/// where it turns.
+class Seen {
+ public:
+  explicit Seen(Field& field) : field_(field) {
+    base::SensorState state;
+    state.name = "front";
+    state.health = base::SensorHealth::Good;
+    sensors_.assign(2, state);
+    sensors_[1].name = "top";
+  }
+
+  void tell() {
+    field_.robot.odometry().take(moved_);
+    if (!moved_.empty()) pose_ = moved_.back().pose;
+    moved_.clear();
+    field_.robot.surroundings_done().take(done_);
+    done_.clear();
+    put();
+    if (++count_ % 5 == 0) put();
+  }
+
+ private:
+  static constexpr std::int32_t kSide = 280;
+
+  static void pole(nav::sense::Patch& patch, const nav::sense::Pose2& at) {
+    const auto x = static_cast<std::int32_t>(std::floor(at.x_m / patch.cell_m)) - patch.x0;
+    const auto y = static_cast<std::int32_t>(std::floor(at.y_m / patch.cell_m)) - patch.y0;
+    patch.cells[static_cast<std::size_t>(y * kSide + x)].known = nav::sense::Known::Occupied;
+  }
+
+  void put() {
+    auto s = std::make_shared<Surroundings>();
+    s->seen = s->patch.stamp = field_.now;
+    s->patch.side = kSide;
+    s->patch.x0 = static_cast<std::int32_t>(std::floor(pose_.x_m / s->patch.cell_m)) - kSide / 2;
+    s->patch.y0 = static_cast<std::int32_t>(std::floor(pose_.y_m / s->patch.cell_m)) - kSide / 2;
+    s->patch.cells.assign(std::size_t{kSide} * kSide, {nav::sense::Known::Free, 0, 0});
+    const bool on_lane = pose_.x_m > 6.0 && pose_.x_m < 24.0;
+    for (int i = -6; on_lane && i <= 6; ++i) {
+      for (const double left_m : {-0.75, 0.75})
+        pole(s->patch, pose_ * nav::sense::Pose2{1.0 * i, left_m, 0.0});
+    }
+    for (auto& one : sensors_) one.seen = field_.now;
+    s->sensors = std::make_shared<const std::vector<base::SensorState>>(sensors_);
+    field_.robot.surroundings().put(std::move(s));
+  }
+
+  Field& field_;
+  nav::sense::Pose2 pose_;
+  std::uint64_t count_ = 0;
+  std::vector<base::SensorState> sensors_;
+  std::vector<nav::sense::Odometry> moved_;
+  std::vector<std::shared_ptr<const Surroundings>> done_;
+};
+
+void tick_that_sees(benchmark::State& state) {
+  Field field;
+  field.robot.guard_by({});
+  Seen seen(field);
+  field.more = [&seen] { seen.tell(); };
+  if (!field.start(static_cast<int>(state.range(0)))) {
+    state.SkipWithError("the mission did not start");
+    return;
+  }
+  Watch watch(state);
+  std::uint64_t ticks = 0;
+  std::uint64_t standing = 0;
+  for (auto _ : state) {
+    watch.tick(field);
+    ++ticks;
+    const auto& obstacle = field.robot.snapshot()->obstacle;
+    standing += obstacle && obstacle->action == base::GuardAction::Stop ? 1u : 0u;
+  }
+  if (10 * standing > ticks) state.SkipWithError("it stands, and has nothing to sweep");
+  if (field.robot.snapshot()->mission.state != base::ExecutionState::Running) {
+    state.SkipWithError("the mission stopped on the way");
+  }
+}
+BENCHMARK(tick_that_sees)->Arg(1'000)->Arg(10'000)->UseManualTime()->Iterations(5'000);
 
 /// What the mode needs before it can begin, then the mode.
 bool enter(Field& field, base::Mode mode) {

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "base/angle.hpp"
@@ -33,42 +34,15 @@ class Field {
  public:
   Robot robot{Config{}};
   base::Time now{};
+  std::function<void()> more;  ///< at the end of sense(), if there is one
 
   Field() {
     robot.send = [this](const base::DriveCommand& c, base::Time) { command_ = c; };
   }
 
   void sense() {
-    now += std::chrono::milliseconds(20);
-    const auto [v, w] = command_.twist;
-    at_.east_m += v * 0.02 * std::cos(yaw_);
-    at_.north_m += v * 0.02 * std::sin(yaw_);
-    yaw_ = base::wrap_rad(yaw_ + w * 0.02);
-    auto& in = robot.measurements();
-    in.put(base::WheelTravel{now, (v - w * 0.3) * 0.02, (v + w * 0.3) * 0.02});
-    in.put(base::BaseMotion{now, command_.twist});
-    base::RadioState radio;
-    radio.stamp = now;
-    radio.swb = base::Switch::Up;
-    radio.count = ++count_;
-    in.put(radio);
-    if (count_ % 5 == 0) {
-      base::BaseStatus status;
-      status.stamp = now;
-      status.vehicle_state = base::VehicleState::Normal;
-      status.control_mode = base::ControlMode::Can;
-      status.battery_v = 50.0;
-      in.put(status);
-    }
-    if (count_ % 10 != 0) return;
-    base::GnssFix fix;
-    fix.stamp = now;
-    fix.fix = base::FixType::RtkFixed;
-    fix.position = kFrame.to_global(at_);
-    fix.satellites = 20;
-    in.put(fix);
-    in.put(base::GnssVelocity{now, v * std::cos(yaw_), v * std::sin(yaw_), {}});
-    in.put(base::Heading{now, yaw_, base::HeadingSource::Compass});
+    hear();
+    if (more) more();
   }
 
   void tick() { robot.tick(now, base::WallTime{now.time_since_epoch()}); }
@@ -110,6 +84,39 @@ class Field {
   }
 
  private:
+  void hear() {
+    now += std::chrono::milliseconds(20);
+    const auto [v, w] = command_.twist;
+    at_.east_m += v * 0.02 * std::cos(yaw_);
+    at_.north_m += v * 0.02 * std::sin(yaw_);
+    yaw_ = base::wrap_rad(yaw_ + w * 0.02);
+    auto& in = robot.measurements();
+    in.put(base::WheelTravel{now, (v - w * 0.3) * 0.02, (v + w * 0.3) * 0.02});
+    in.put(base::BaseMotion{now, command_.twist});
+    base::RadioState radio;
+    radio.stamp = now;
+    radio.swb = base::Switch::Up;
+    radio.count = ++count_;
+    in.put(radio);
+    if (count_ % 5 == 0) {
+      base::BaseStatus status;
+      status.stamp = now;
+      status.vehicle_state = base::VehicleState::Normal;
+      status.control_mode = base::ControlMode::Can;
+      status.battery_v = 50.0;
+      in.put(status);
+    }
+    if (count_ % 10 != 0) return;
+    base::GnssFix fix;
+    fix.stamp = now;
+    fix.fix = base::FixType::RtkFixed;
+    fix.position = kFrame.to_global(at_);
+    fix.satellites = 20;
+    in.put(fix);
+    in.put(base::GnssVelocity{now, v * std::cos(yaw_), v * std::sin(yaw_), {}});
+    in.put(base::Heading{now, yaw_, base::HeadingSource::Compass});
+  }
+
   base::DriveCommand command_;
   base::EnuPoint at_{};
   double yaw_ = base::kPi / 2.0;
