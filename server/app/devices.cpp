@@ -214,6 +214,7 @@ class Planner {
     }
     DevicePlan plan;
     plan.name = name;
+    plan.sees = true;
     plan.make = [w = workshop_, name, sensor, address, on_sight](asio::io_context& io,
                                                                  const DeviceEars& ears) {
       const link::BytePort::MakeLink make_link = [w, name, address, sensor, ears, &io] {

@@ -8,6 +8,7 @@
 #include "base/log.hpp"
 #include "robot/guard/guard.hpp"
 #include "robot/guard/outline.hpp"
+#include "supervise/urgency.hpp"
 
 namespace roverd {
 namespace {
@@ -55,6 +56,7 @@ void SenseLoop::look_out(base::Time now) {
 
 void SenseLoop::run() noexcept {
   pthread_setname_np(pthread_self(), "sense");
+  make_prompt();
   std::vector<std::shared_ptr<const base::Sight>> sights;
   std::vector<nav::sense::Odometry> moved;
   std::vector<std::shared_ptr<const robot::Surroundings>> done;

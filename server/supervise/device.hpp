@@ -39,6 +39,7 @@ struct DeviceEars {
 struct DevicePlan {
   std::string name;
   bool moves = false;  ///< it has `send`
+  bool sees = false;   ///< what it tells may have to stop the vehicle
   bool lights = false;
   bool clears_errors = false;
   /// On the driver's thread; may throw. Its links live on `io`.

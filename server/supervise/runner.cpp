@@ -44,6 +44,7 @@ void Runner::doing(const char* what) noexcept {
 void Runner::run() noexcept {
   pthread_setname_np(pthread_self(), plan_.name.substr(0, 15).c_str());
   if (plan_.moves) make_urgent(Urgency::Drive);
+  if (plan_.sees) make_prompt();
   try {
     live();
   } catch (const std::exception& error) {

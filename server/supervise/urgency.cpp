@@ -44,11 +44,15 @@ bool make_urgent(Urgency urgency) noexcept {
   priority.sched_priority = urgency == Urgency::Control ? 20 : 15;
   // 0 is the calling thread alone. Its children (a recording's writer) begin as ordinary threads.
   if (::sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &priority) == 0) return true;
+  make_prompt();  // second best
+  return false;
+}
+
+void make_prompt() noexcept {
   const sched_param ordinary{};
   ::sched_setscheduler(0, SCHED_OTHER | SCHED_RESET_ON_FORK, &ordinary);
-  ::setpriority(PRIO_PROCESS, 0, -10);  // second best; refused to most users as well
+  ::setpriority(PRIO_PROCESS, 0, -10);  // refused to most users as well
   ask_for_short_slices();
-  return false;
 }
 
 }  // namespace roverd

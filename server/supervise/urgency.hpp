@@ -13,4 +13,9 @@ enum class Urgency { Control, Drive };
 /// ordinary threads is then asked for.
 bool make_urgent(Urgency urgency) noexcept;
 
+/// For threads that see: of the ordinary ones the calling thread is run first, as far as its rights
+/// go, and never keeps others from running, however much it has to look at. Threads that it starts
+/// are ordinary ones.
+void make_prompt() noexcept;
+
 }  // namespace roverd
