@@ -11,8 +11,6 @@
 // Where the stop by counted rays is enabled, each piece of a sensor that sees is counted, and its
 // word holds until that sensor's next one: who falls silent or blind takes back nothing.
 //
-// A sight that is newer than the odometry waits for it, 0.2 s at most. Not shared between threads;
-// time is an argument.
 // A sight that is newer than the odometry by no more than a tick is placed along the last twist:
 // within 25 ms a change by 2 m/s2 and 2 rad/s2 is 0.6 mm and 0.6 mrad, and to wait for the next
 // tick would cost one. A newer one waits for the odometry, 0.2 s at most. Not shared
