@@ -18,6 +18,7 @@
 #include "base/latest.hpp"
 #include "base/result.hpp"
 #include "base/sight.hpp"
+#include "config/settings.hpp"
 #include "robot/guard/lookout.hpp"
 #include "robot/robot.hpp"
 
