@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/angle.hpp"
 #include "base/geo.hpp"
 
 namespace roverd::robot {
