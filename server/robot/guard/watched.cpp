@@ -154,7 +154,9 @@ void Robot::Impl::be_blocked(Then then) {
     case Then::Wait:
       return told("it waits until the way is clear");
     case Then::Around:
-      return told("a way around it is looked for");
+      // Ways are looked for around what stands before a mission, and before nothing else.
+      return told(machine.mode() == Mode::Auto ? "a way around it is looked for"
+                                               : "it waits until the way is clear");
     case Then::Return:
       if (homeward) return told("it is on its way home already: it waits until the way is clear");
       told("it returns home");

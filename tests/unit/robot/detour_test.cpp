@@ -151,6 +151,20 @@ TEST_F(Detours, TheEmergencyStopAndAnotherItemEndIt) {
   EXPECT_FALSE(field.moves());
 }
 
+TEST_F(Detours, WhatIsNoMissionWaitsAndClaimsNoMore) {
+  field.run(8.0);
+  ASSERT_TRUE(field.ask(Arm{}));
+  ASSERT_TRUE(field.ask(SetMode{Mode::Guided}));
+  ASSERT_TRUE(field.ask(MoveBy{10.0, {}, {}, {}}));
+  wall_at(4.0);
+  field.run(20.0);
+  EXPECT_EQ(questions, 0);
+  const auto said = std::find_if(field.events.begin(), field.events.end(),
+                                 [](const auto& e) { return e.kind == "blocked"; });
+  ASSERT_NE(said, field.events.end());
+  EXPECT_NE(said->detail.find("it waits until the way is clear"), std::string::npos);
+}
+
 TEST_F(Detours, WithoutAWayItSaysSoOnceAndWaits) {
   field.drive_mission();
   wall_at(driven_m() + 3.0);  // across everything
