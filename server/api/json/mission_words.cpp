@@ -27,7 +27,8 @@ std::optional<std::int64_t> revision_of(std::string_view etag) noexcept {
   constexpr std::string_view kBegin = "\"rev-";
   if (!etag.starts_with(kBegin) || !etag.ends_with('"')) return std::nullopt;
   const std::string_view digits = etag.substr(kBegin.size(), etag.size() - kBegin.size() - 1);
-  if (digits.starts_with('0')) return std::nullopt;
+  // As etag_of writes it and no other way: no sign and no zero before it.
+  if (digits.empty() || digits.front() < '1' || digits.front() > '9') return std::nullopt;
   return whole_number(digits);
 }
 

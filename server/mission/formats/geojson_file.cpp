@@ -14,6 +14,7 @@
 #include "mission/formats/file_formats.hpp"
 #include "mission/formats/geojson_fence.hpp"
 #include "mission/formats/track_points.hpp"
+#include "mission/text.hpp"
 
 namespace roverd::mission {
 

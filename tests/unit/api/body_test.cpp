@@ -93,8 +93,9 @@ TEST(Limit, IsBounded) {
 TEST(ETag, HoldsTheRevision) {
   EXPECT_EQ(etag_of(3), "\"rev-3\"");
   EXPECT_EQ(revision_of("\"rev-3\""), 3);
-  for (const char* tag : {"rev-3", "W/\"rev-3\"", "\"rev-\"", "\"rev-03\"", "\"rev-3x\"", "\"", "",
-                          "\"rev--3\"", "\"rev-99999999999999999999\""}) {
+  for (const char* tag :
+       {"rev-3", "W/\"rev-3\"", "\"rev-\"", "\"rev-03\"", "\"rev-3x\"", "\"", "", "\"rev--3\"",
+        "\"rev--00\"", "\"rev-0\"", "\"rev-+3\"", "\"rev-99999999999999999999\""}) {
     EXPECT_FALSE(revision_of(tag)) << tag;
   }
 }
