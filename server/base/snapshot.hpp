@@ -73,7 +73,9 @@ struct Pose {
                                     ///< odometry, then never negative
   std::optional<double> yaw_rate_radps;  ///< empty without odometry
   double horizontal_sigma_m = 0.0;       ///< 1σ, larger axis of the ellipse
-  double yaw_sigma_rad = 0.0;
+  double yaw_sigma_rad = 0.0;            ///< 1σ of yaw_rad as that tells where it will drive
+  double heading_sigma_rad = 0.0;  ///< 1σ of yaw_rad as that tells where it points: larger where
+                                   ///< only driving showed it, and driving may go a bit aside
   Ellipse ellipse;
   std::optional<double> alt_msl_m;
   std::string source;  ///< "gnss", "gnss+odometry", "odometry"

@@ -209,7 +209,7 @@ class Recorder {
     off_m2_ += off.east_m * off.east_m + off.north_m * off.north_m;
     const double turned_rad = base::angle_diff_rad(yaw_rad, pose.yaw_rad);
     yaw_off_rad2_ += turned_rad * turned_rad;
-    yaw_off_sigmas2_ += std::pow(turned_rad / pose.yaw_sigma_rad, 2);
+    yaw_off_sigmas2_ += std::pow(turned_rad / pose.heading_sigma_rad, 2);
   }
 
   base::LocalFrame frame_;

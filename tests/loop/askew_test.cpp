@@ -69,5 +69,44 @@ TEST(Askew, BeforeItHasDrivenTheirHeadingClaimsNoTenthOfADegree) {
   EXPECT_FALSE(rig.has_condition("antennas_askew"));
 }
 
+//   ↖ points    a crab goes there: ↑    nobody sees it but two antennas
+struct Claim {
+  double error_in_sigmas = 0.0;  // rms, while it drives
+  double sigma_deg = 0.0;        // at the end
+};
+
+Claim claim_of(RigOptions o) {
+  Rig rig(o);
+  rig.arm_and_start(rig.plan_of({{0, 15}, {10, 15}}));
+  EXPECT_TRUE(rig.run_until([&] { return rig.truth().driven_m > 5.0; }, 40.0));
+  double sum = 0.0;
+  int n = 0;
+  while (rig.execution() == ExecutionState::Running && n < 100) {
+    rig.run(0.5);
+    const double sigma_deg = base::deg_from_rad(rig.state()->pose->heading_sigma_rad);
+    sum += std::pow(rig.yaw_error_deg() / sigma_deg, 2);
+    ++n;
+  }
+  EXPECT_EQ(rig.execution(), ExecutionState::Finished) << rig.state()->mission.reason;
+  return {std::sqrt(sum / n), base::deg_from_rad(rig.state()->pose->heading_sigma_rad)};
+}
+
+TEST(HeadingClaim, WhatOnlyDrivingShowedIsNoSurerThanACrabLeavesIt) {
+  for (const double crab : {-0.10, -0.03, 0.05, 0.08, 0.10}) {
+    RigOptions o;
+    o.plant.gnss.profile = "rtk";
+    o.plant.drive.crab = crab;
+    EXPECT_LT(claim_of(o).error_in_sigmas, 1.3) << crab;
+  }
+}
+
+TEST(HeadingClaim, TwoAntennasThatProvedThemselvesSeeTheCrab) {
+  RigOptions o = mounted(0.0);
+  o.plant.drive.crab = 0.05;
+  const Claim claim = claim_of(o);
+  EXPECT_LT(claim.error_in_sigmas, 1.3);
+  EXPECT_LT(claim.sigma_deg, 1.0);
+}
+
 }  // namespace
 }  // namespace roverd::loop

@@ -43,7 +43,7 @@ Json position_json(const std::optional<base::Pose>& pose, base::Time now) {
   out["alt_m"] = rounded(pose->alt_msl_m, kPlaces3);
   if (pose->heading_known) {
     out["heading_deg"] = heading_json(pose->yaw_rad);
-    out["heading_accuracy_deg"] = degrees(pose->yaw_sigma_rad);
+    out["heading_accuracy_deg"] = degrees(pose->heading_sigma_rad);
   }
   out["speed_mps"] = rounded(pose->speed_mps, kPlaces3);
   out["yaw_rate_dps"] = degrees(pose->yaw_rate_radps);

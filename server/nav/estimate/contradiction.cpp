@@ -71,6 +71,16 @@ double Estimator::unknown_rad() const noexcept {
   return std::hypot(votes_.told().doubt_rad, distrust_rad_, unproved ? kUnproved_rad : 0.0);
 }
 
+/// How far it may point beside where it drives without anybody seeing it. A crab that stays is no
+/// error of the way, so that the belief holds it for a heading; who asks where it points is told.
+double Estimator::aside_rad() const noexcept {
+  const bool antennas = last_antennas_ && now_ - *last_antennas_ < kGnssGone;
+  if (antennas && !health_.antennas_askew && askew_watch_.proved()) return 0.0;
+  const auto lean = tilt_.at(now_);
+  const double grade = lean ? std::hypot(std::tan(lean->roll_rad), std::tan(lean->pitch_rad)) : 0.0;
+  return kAside_rad + kAsidePerGrade_rad * grade;
+}
+
 /// What was believed of the one that is left out from now on is as uncertain as it was
 /// contradicted.
 void Estimator::spoil(Sense liar) noexcept {

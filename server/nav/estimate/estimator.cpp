@@ -205,9 +205,11 @@ std::optional<base::Pose> Estimator::pose(Time now) const {
   p.ellipse.major_yaw_rad = 0.5 * std::atan2(2.0 * c, a - b);
   p.horizontal_sigma_m = p.ellipse.major_m;
   p.yaw_sigma_rad = base::kPi;
+  p.heading_sigma_rad = base::kPi;
   if (heading_known_) {
     const double sigma_rad = std::sqrt(std::max(0.0, belief_.P(kYaw, kYaw)));
     p.yaw_sigma_rad = std::min(base::kPi, std::hypot(sigma_rad, unknown_rad()));
+    p.heading_sigma_rad = std::min(base::kPi, std::hypot(p.yaw_sigma_rad, aside_rad()));
   }
   p.alt_msl_m = alt_msl_m_;
   p.source = !odometry ? "gnss" : gnss ? "gnss+odometry" : "odometry";

@@ -144,6 +144,10 @@ class Estimator {
   /// else what it points to is found by where it drives.
   static constexpr double kCrabSeen = 0.05;
   static constexpr double kCrabUnseen = 0.03;
+  /// 1 sigma of what the heading is said to be uncertain by for it: tracks crab by up to 10 % of
+  /// their way, on a slope by more.
+  static constexpr double kAside_rad = 0.08;
+  static constexpr double kAsidePerGrade_rad = 0.1;
   struct Arm {  ///< from the centre of rotation to the antenna, in ENU
     double east_m, north_m;
   };
@@ -216,6 +220,7 @@ class Estimator {
   double claimed_m(const Belief& b) const noexcept;
   double unknown_m() const noexcept;
   double unknown_rad() const noexcept;
+  double aside_rad() const noexcept;
 
   // positioning.cpp
   void move(base::EnuPoint to, double sigma_m) noexcept;

@@ -51,7 +51,8 @@ TEST(VehicleWords, YawBecomesHeadingAndRadiansDegrees) {
   s.pose->global = {58.378020123456, 26.728900987654};
   s.pose->yaw_rad = base::kPi / 4;
   s.pose->yaw_rate_radps = 0.1;
-  s.pose->yaw_sigma_rad = base::rad_from_deg(2.0);
+  s.pose->yaw_sigma_rad = base::rad_from_deg(0.5);
+  s.pose->heading_sigma_rad = base::rad_from_deg(2.0);
   s.pose->speed_mps = -0.25;
   s.pose->source = "gnss+odometry";
   const Json p = vehicle_json(s, "bunker", at(10s))["position"];
@@ -72,7 +73,7 @@ TEST(VehicleWords, AHeadingThatNobodyKnowsIsNullAndTheAdviceSaysWhatHelps) {
   base::Snapshot s;
   s.pose = base::Pose{};
   s.pose->heading_known = false;
-  s.pose->yaw_sigma_rad = base::kPi;
+  s.pose->heading_sigma_rad = base::kPi;
   s.pose->ellipse = {1.5, 0.5, base::kPi / 2.0};
   s.estimator.advice = "drive 3 m straight to find the heading";
   const Json v = vehicle_json(s, "bunker", at(10s));
