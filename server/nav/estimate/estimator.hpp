@@ -39,6 +39,7 @@
 #include "nav/estimate/gyro.hpp"
 #include "nav/estimate/history.hpp"
 #include "nav/estimate/learned.hpp"
+#include "nav/estimate/noise_watch.hpp"
 #include "nav/estimate/params.hpp"
 #include "nav/estimate/receivers.hpp"
 #include "nav/estimate/shift_watch.hpp"
@@ -193,6 +194,7 @@ class Estimator {
   void first_fix(const base::GnssFix& fix, const GnssQuality& q);
   void fuse_position(const base::GnssFix& fix, const GnssQuality& q) noexcept;
   void approach(Observation<2>& o) noexcept;
+  base::GnssFix worth(const base::GnssFix& told) noexcept;
   bool shifted(const base::GnssFix& fix, const GnssQuality& q) noexcept;
   double doubt_after_s(const GnssQuality& q) const noexcept;
   void watch_slip(const Observation<2>& o, double yaw_rad, Time stamp) noexcept;
@@ -282,6 +284,7 @@ class Estimator {
   std::optional<Time> position_off_since_, velocity_off_since_, compass_off_since_;
   std::optional<Time> antennas_off_since_, far_off_since_, anchor_off_since_;
   FixTrust fix_trust_;
+  NoiseWatch noise_watch_;
   base::FixType fused_type_ = base::FixType::None;
   base::FixType anchor_type_ = base::FixType::None;
   Time approach_until_{};

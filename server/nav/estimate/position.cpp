@@ -25,9 +25,10 @@ constexpr double kSlips = 0.4;        // of the way since the last position, at 
 constexpr double kSlipsFrom = 9.0;    // of y'S⁻¹y, so that it was not foreseen
 constexpr double kDoubt_m2ps = 0.05;  // slow enough not to believe a jump of 3 m within 5 s
 
+constexpr double kFixed_m = 0.02;   // 1 sigma of what scatters in an honest fixed solution
 constexpr double kShaken_m = 0.35;  // of a fixed solution that comes and goes
 
-/// A fixed solution that comes and goes, as what it is worth: a float one.
+/// A fixed solution that comes and goes, or scatters, as what it is worth: a float one.
 base::GnssFix as_float(base::GnssFix fix) noexcept {
   fix.fix = base::FixType::RtkFloat;
   fix.sigma_east_m = std::max(kShaken_m, fix.sigma_east_m.value_or(0.0));
@@ -68,7 +69,7 @@ void Estimator::take(const base::GnssFix& told) {
   Input& in = health_.position;
   if (!in_order(in, last_fix_, told.stamp)) return;
   fix_trust_.take(told.fix, told.stamp);
-  const base::GnssFix fix = fix_trust_.shaken() ? as_float(told) : told;
+  const base::GnssFix fix = worth(told);
   const auto quality = gnss_quality(
       fix, fix_trust_.settled(),
       {params_->satellites_min, params_->hdop_max, params_->accuracy_max_m, params_->drift_scale});
@@ -101,6 +102,21 @@ void Estimator::take(const base::GnssFix& told) {
   }
   change_class(fix, *quality);
   fuse_position(fix, *quality);
+}
+
+/// A fixed solution that shows that it stands under trees or beside walls counts as a float one,
+/// whatever it claims.
+base::GnssFix Estimator::worth(const base::GnssFix& told) noexcept {
+  if (told.fix != base::FixType::RtkFixed || !told.position) return told;
+  if (const auto past = located_ ? history_.at(taken_at(told)) : std::nullopt) {
+    const Arm to_antenna = arm(past->x(kYaw));
+    const base::EnuPoint at{past->x(kEast) + to_antenna.east_m,
+                            past->x(kNorth) + to_antenna.north_m};
+    noise_watch_.take(local(told) - at, std::max(kFixed_m, told.sigma_east_m.value_or(kFixed_m)),
+                      told.stamp);
+  }
+  const bool less = fix_trust_.shaken() || noise_watch_.noisy();
+  return less ? as_float(told) : told;
 }
 
 /// @return true: the positions moved for good, and a person is asked which ones count.
