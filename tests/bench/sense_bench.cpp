@@ -12,6 +12,7 @@
 
 #include "lzf.hpp"
 #include "nav/sense/chain.hpp"
+#include "nav/sense/marks.hpp"
 #include "nav/sense/polar.hpp"
 #include "nav/sense/protect.hpp"
 #include "nav/sense/rays_rule.hpp"
@@ -186,6 +187,12 @@ void copy_patch(benchmark::State& state) {
   for (auto _ : state) all.grid().patch({}, 5.0, at(2.1), patch);
 }
 BENCHMARK(copy_patch)->Unit(benchmark::kMicrosecond);
+void mark_patch(benchmark::State& state) {
+  const Patch patch = seen();
+  Marks marks;
+  for (auto _ : state) marks.mark(patch);
+}
+BENCHMARK(mark_patch)->Unit(benchmark::kMicrosecond);
 void polar(benchmark::State& state) {
   const Patch patch = seen();
   Polar out;
@@ -201,7 +208,11 @@ void one_look(benchmark::State& state, base::BodyTwist twist) {
     c.known =
         random() % 1000 < static_cast<unsigned>(state.range(0)) ? Known::Occupied : Known::Free;
   }
-  for (auto _ : state) benchmark::DoNotOptimize(protect(patch, {}, kRobot, twist, {}));
+  Marks marks;
+  marks.mark(patch);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(protect(patch, {}, kRobot, twist, {}, nullptr, &marks));
+  }
 }
 BENCHMARK_CAPTURE(one_look, straight, base::BodyTwist{1.3, 0.0})
     ->Arg(0)

@@ -105,6 +105,7 @@ class Seen {
       for (const double left_m : {-0.75, 0.75})
         pole(s->patch, pose_ * nav::sense::Pose2{1.0 * i, left_m, 0.0});
     }
+    s->marks.mark(s->patch);
     for (auto& one : sensors_) one.seen = field_.now;
     s->sensors = std::make_shared<const std::vector<base::SensorState>>(sensors_);
     field_.robot.surroundings().put(std::move(s));

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 
+#include "nav/sense/protect_parts.hpp"
 #include "nav/sense/sweep.hpp"
 
 namespace roverd::nav::sense {
@@ -20,20 +22,6 @@ constexpr double kNearer_m = 1e-4;
 constexpr double kLess_m = 0.02;
 // A dock may be seen so much before where it is come to: half a cell, and what a range is out.
 constexpr double kBefore_m = 0.05;
-
-/// The commanded motion, once per verdict.
-struct Drive {
-  base::BodyTwist twist;
-  double horizon_s = 0.0;
-  bool turning = false;  ///< on the spot
-  Vec2 centre{};         ///< of the turn, in B; of no use when straight
-  bool straight = false;
-  double margin_m = 0.0;  ///< side_m and the size of a cell
-  double grown_m = 0.0;   ///< that, or what is left of it now
-  double clear_m = 0.0;   ///< to the nearest thing now; the margin, if that is farther
-  double least2 = 0.0;    ///< of the ring that the grown body sweeps about the centre
-  double most2 = 0.0;
-};
 
 Drive drive_of(const Footprint& body, const base::BodyTwist& twist, const ProtectParams& p,
                double cell_radius_m) noexcept {
@@ -113,31 +101,10 @@ Reach reach_of(const Footprint& body, const Drive& d) noexcept {
   return {r.x0 - between, r.x1 + between, r.y0 - between, r.y1 + between};
 }
 
-bool is_spared(const Spared* spared, Vec2 p, Known known) noexcept {
-  if (spared == nullptr || known == Known::Drop) return false;
-  const Vec2 e = spared->to - spared->from;
-  const Vec2 d = p - spared->from;
-  if (dot(d, spared->ahead) < -kBefore_m) return false;
-  const double length2 = dot(e, e);
-  const double part = length2 > 0.0 ? std::clamp(dot(d, e) / length2, 0.0, 1.0) : 0.0;
-  const Vec2 off = d - part * e;
-  return dot(off, off) <= spared->within_m * spared->within_m;
-}
-
-struct Nearest {
-  std::optional<double> touch_s;
-  Vec2 at{};
-  Patch::Cell cell;
-};
-
-void nearer(Nearest& best, double t, Vec2 at, const Patch::Cell& cell) noexcept {
-  if (best.touch_s && t >= *best.touch_s) return;
-  best = {t, at, cell};
-}
-
 /// Calls back with every cell that is taken within a rectangle of B.
 template <class Each>
-void each_taken(const Patch& patch, const Pose2& pose, const Reach& r, const Each& each) noexcept {
+void each_taken(const Picture& seen, const Pose2& pose, const Reach& r, const Each& each) noexcept {
+  const Patch& patch = seen.patch;
   const double c = std::cos(pose.yaw_rad);
   const double s = std::sin(pose.yaw_rad);
   // The rectangle, turned into the grid's axes.
@@ -160,84 +127,46 @@ void each_taken(const Patch& patch, const Pose2& pose, const Reach& r, const Eac
   const std::int32_t x_to = std::min(cell_of(high_x), patch.x0 + patch.side - 1);
   const std::int32_t y_from = std::max(cell_of(low_y), patch.y0);
   const std::int32_t y_to = std::min(cell_of(high_y), patch.y0 + patch.side - 1);
+  const auto offer = [&](std::int32_t ix, std::int32_t iy) {
+    const double x = (ix + 0.5) * patch.cell_m - pose.x_m;
+    const double y = (iy + 0.5) * patch.cell_m - pose.y_m;
+    const Vec2 p{c * x + s * y, -s * x + c * y};
+    if (p.x >= r.x0 && p.x <= r.x1 && p.y >= r.y0 && p.y <= r.y1) each(p, patch.at(ix, iy));
+  };
+  if (seen.marks != nullptr) {
+    seen.marks->each_taken(x_from, x_to, y_from, y_to, offer);
+    return;
+  }
   for (std::int32_t iy = y_from; iy <= y_to; ++iy) {
-    const Patch::Cell* row = patch.cells.data() + static_cast<std::size_t>(iy - patch.y0) *
-                                                      static_cast<std::size_t>(patch.side);
     for (std::int32_t ix = x_from; ix <= x_to; ++ix) {
-      const Patch::Cell& cell = row[ix - patch.x0];
-      if (cell.known != Known::Occupied && cell.known != Known::Drop) continue;
-      const double x = (ix + 0.5) * patch.cell_m - pose.x_m;
-      const double y = (iy + 0.5) * patch.cell_m - pose.y_m;
-      const Vec2 p{c * x + s * y, -s * x + c * y};
-      if (p.x >= r.x0 && p.x <= r.x1 && p.y >= r.y0 && p.y <= r.y1) each(p, cell);
+      if (patch.at(ix, iy).known >= Known::Occupied) offer(ix, iy);
     }
   }
 }
 
+/// So long it takes at least until the margin can come to a place: a turn brings nothing nearer to
+/// the origin.
+double soonest_s(const Footprint& body, Vec2 p, const Drive& d) noexcept {
+  const double way = std::hypot(p.x, p.y) - body.reach_m() - d.margin_m;
+  return way / std::max(std::abs(d.twist.linear_mps), 1e-9);
+}
+
 /// Obstacles, exactly: every cell that is taken. @param dock the nearest that is spared
-Nearest nearest_taken(const Patch& patch, const Pose2& pose, const Footprint& body, Drive& d,
+Nearest nearest_taken(const Picture& seen, const Pose2& pose, const Footprint& body, Drive& d,
                       const Spared* spared, Nearest& dock) noexcept {
   const double about = body.reach_m() + d.margin_m;
-  each_taken(patch, pose, {-about, about, -about, about}, [&](Vec2 p, const Patch::Cell& cell) {
+  each_taken(seen, pose, {-about, about, -about, about}, [&](Vec2 p, const Patch::Cell& cell) {
     const double now_m = body.distance_m(p);
     if (now_m > 0.0 && !is_spared(spared, p, cell.known)) d.clear_m = std::min(d.clear_m, now_m);
   });
   if (d.clear_m < d.margin_m) d.grown_m = std::max(0.0, d.clear_m - kLess_m);
   Nearest best;
-  each_taken(patch, pose, reach_of(body, d), [&](Vec2 p, const Patch::Cell& cell) {
+  each_taken(seen, pose, reach_of(body, d), [&](Vec2 p, const Patch::Cell& cell) {
     Nearest& whose = is_spared(spared, p, cell.known) ? dock : best;
+    if (whose.touch_s && soonest_s(body, p, d) > *whose.touch_s) return;
     if (const auto t = touches(body, p, d)) nearer(whose, *t, p, cell);
   });
   return best;
-}
-
-/// The unseen, by looking along the body's outline at steps of a cell: the first place that it
-/// comes to. To a cell's accuracy. @param dock the nearest that is spared
-Nearest nearest_unseen(const Patch& patch, const Pose2& pose, const Footprint& body, const Drive& d,
-                       const Spared* spared, Nearest& dock) noexcept {
-  const double speed =
-      std::abs(d.twist.linear_mps) + std::abs(d.twist.angular_radps) * body.reach_m();
-  const int steps = std::min(400, static_cast<int>(speed * d.horizon_s / patch.cell_m) + 1);
-  const auto corners = body.corners();
-  for (int i = 1; i <= steps; ++i) {
-    const double t = d.horizon_s * i / steps;
-    const Pose2 here = along(d.twist.linear_mps, d.twist.angular_radps, t);
-    const Pose2 at = pose * here;
-    const double c = std::cos(at.yaw_rad);
-    const double s = std::sin(at.yaw_rad);
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-      const Vec2 a = corners[k];
-      const Vec2 e = corners[k + 1 == corners.size() ? 0 : k + 1] - a;
-      const double length = std::hypot(e.x, e.y);
-      const Vec2 out{e.y / length, -e.x / length};
-      // Only sides that go outwards: their middle, or one of their ends (a turn).
-      const auto outwards = [&](Vec2 q) {
-        const Vec2 v{d.twist.linear_mps - d.twist.angular_radps * q.y, d.twist.angular_radps * q.x};
-        return dot(v, out) > 1e-6;
-      };
-      if (!outwards(a) && !outwards(a + e)) continue;
-      const int looks = static_cast<int>(length / patch.cell_m) + 1;
-      for (int n = 0; n <= looks; ++n) {
-        const Vec2 q = a + (static_cast<double>(n) / looks) * e;
-        if (!outwards(q)) continue;
-        const auto ix =
-            static_cast<std::int32_t>(std::floor((at.x_m + c * q.x - s * q.y) / patch.cell_m));
-        const auto iy =
-            static_cast<std::int32_t>(std::floor((at.y_m + s * q.x + c * q.y) / patch.cell_m));
-        const Patch::Cell cell = patch.at(ix, iy);
-        if (cell.known != Known::Unknown) continue;
-        // Where the body stands now it need not have been seen.
-        const Pose2 now =
-            inverse(pose) * Pose2{(ix + 0.5) * patch.cell_m, (iy + 0.5) * patch.cell_m, 0.0};
-        if (body.distance_m({now.x_m, now.y_m}) <= 0.0) continue;
-        const double before_s = d.horizon_s * (i - 1) / steps;
-        const Vec2 there{now.x_m, now.y_m};
-        if (!is_spared(spared, there, cell.known)) return {before_s, there, cell};
-        nearer(dock, before_s, there, cell);
-      }
-    }
-  }
-  return {};
 }
 
 /// The part of the twist that is a creep into what nobody has seen.
@@ -259,6 +188,17 @@ void tell(Verdict& v, const Nearest& n, const Drive& d) noexcept {
 }
 
 }  // namespace
+
+bool is_spared(const Spared* spared, Vec2 p, Known known) noexcept {
+  if (spared == nullptr || known == Known::Drop) return false;
+  const Vec2 e = spared->to - spared->from;
+  const Vec2 d = p - spared->from;
+  if (dot(d, spared->ahead) < -kBefore_m) return false;
+  const double length2 = dot(e, e);
+  const double part = length2 > 0.0 ? std::clamp(dot(d, e) / length2, 0.0, 1.0) : 0.0;
+  const Vec2 off = d - part * e;
+  return dot(off, off) <= spared->within_m * spared->within_m;
+}
 
 std::string_view to_string(Limit limit) noexcept {
   switch (limit) {
@@ -287,16 +227,17 @@ double part_for(double touch_s, const base::BodyTwist& twist,
 }
 
 Verdict protect(const Patch& patch, const Pose2& pose, const Footprint& body,
-                const base::BodyTwist& twist, const ProtectParams& params,
-                const Spared* spared) noexcept {
+                const base::BodyTwist& twist, const ProtectParams& params, const Spared* spared,
+                const Marks* marks) noexcept {
   Verdict verdict;
   if (std::abs(twist.linear_mps) < kStill_mps && std::abs(twist.angular_radps) < kStill_radps) {
     return verdict;
   }
   // A cell may hold its thing anywhere: half of its diagonal.
   Drive d = drive_of(body, twist, params, patch.cell_m * std::sqrt(0.5));
+  const Picture seen{patch, marks != nullptr && marks->fit(patch) ? marks : nullptr};
   Nearest dock;
-  const Nearest taken = nearest_taken(patch, pose, body, d, spared, dock);
+  const Nearest taken = nearest_taken(seen, pose, body, d, spared, dock);
   const double speed =
       std::max(std::abs(twist.linear_mps), std::abs(twist.angular_radps) * body.reach_m());
   if (taken.touch_s) {
@@ -308,7 +249,7 @@ Verdict protect(const Patch& patch, const Pose2& pose, const Footprint& body,
       verdict.limit = taken.cell.known == Known::Drop ? Limit::Drop : Limit::Obstacle;
     }
   }
-  const Nearest unseen = nearest_unseen(patch, pose, body, d, spared, dock);
+  const Nearest unseen = nearest_unseen(seen, pose, body, d, spared, dock);
   if (unseen.touch_s) {
     const double part =
         std::max(part_for(*unseen.touch_s, twist, params), std::min(1.0, creep_part(d, params)));

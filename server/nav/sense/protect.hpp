@@ -24,6 +24,7 @@
 #include "base/geo.hpp"
 #include "nav/sense/footprint.hpp"
 #include "nav/sense/grid.hpp"
+#include "nav/sense/marks.hpp"
 #include "nav/sense/params.hpp"
 
 namespace roverd::nav::sense {
@@ -62,10 +63,11 @@ struct Spared {
 
 /// @param spared null: nothing is.
 /// @param twist commanded, finite. @param pose X_OB now. @param body its footprint.
-/// O(cells within reach): about 30 us for 3 m.
+/// @param marks of the patch; null, or of another: the same word, more slowly
+/// O(cells within reach): about 30 us for 3 m; with marks O(taken cells within reach), 2 us.
 Verdict protect(const Patch& patch, const Pose2& pose, const Footprint& body,
                 const base::BodyTwist& twist, const ProtectParams& params,
-                const Spared* spared = nullptr) noexcept;
+                const Spared* spared = nullptr, const Marks* marks = nullptr) noexcept;
 
 /// λ of (1), 0..1. @param touch_s 0 or more.
 double part_for(double touch_s, const base::BodyTwist& twist, const ProtectParams& params) noexcept;

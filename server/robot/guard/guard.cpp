@@ -145,7 +145,7 @@ Guard::Looked Guard::look(const BodyTwist& twist, bool by_itself, base::Time now
     if (counts && around_->rays && twist.linear_mps > 0.0) return stop_by(*around_->rays);
     if (counts && rays_.instead) return v;
     return {protect(around_->patch, odometry_.pose, body_, twist, params,
-                    spared_ ? &*spared_ : nullptr)};
+                    spared_ ? &*spared_ : nullptr, &around_->marks)};
   }
   // Nothing is known: as if the very next step were unseen.
   const bool ahead = twist.linear_mps > 0.0;

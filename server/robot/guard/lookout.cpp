@@ -134,6 +134,7 @@ std::shared_ptr<const Surroundings> Lookout::picture(base::Time now) {
     sensors->push_back(std::move(s));
   }
   chain_.grid().patch(history_.newest().pose, reach_m_, now, out->patch, free_for_s_);
+  out->marks.mark(out->patch);
   out->sensors = std::move(sensors);
   float nearest_m = 0.0F;
   for (const auto& one : counted_) {

@@ -10,6 +10,7 @@
 #include "base/time.hpp"
 #include "nav/sense/footprint.hpp"
 #include "nav/sense/grid.hpp"
+#include "nav/sense/marks.hpp"
 
 namespace roverd::robot {
 
@@ -23,6 +24,7 @@ struct RaysStop {
 
 struct Surroundings {
   nav::sense::Patch patch;
+  nav::sense::Marks marks;  ///< of the patch; empty: the guard looks more slowly
   /// By number, as Patch::Cell counts them. Shared with the snapshots.
   std::shared_ptr<const std::vector<base::SensorState>> sensors;
   std::optional<base::Time> seen;  ///< by any of them, last
