@@ -49,6 +49,41 @@ void write_answer(sick::Writer& out, std::string_view kind, std::string_view nam
   }
 }
 
+std::uint16_t azimuth_cdeg_of(const world::Shot& s) {
+  const double turn = std::fmod(720.0 - static_cast<double>(s.bearing_rad) / kDegree, 360.0);
+  return static_cast<std::uint16_t>(std::lround(turn * 100.0) % velodyne::kTurn_cdeg);
+}
+
+velodyne::Return vlp_return(float range_m, float light) {
+  velodyne::Return out;
+  out.distance = static_cast<std::uint16_t>(
+      std::clamp(std::lround(static_cast<double>(range_m) / velodyne::kUnit_m), 0L, 65535L));
+  out.reflectivity = static_cast<std::uint8_t>(std::clamp(light * 100.0F, 0.0F, 100.0F));
+  return out;
+}
+
+/// Of one firing of one laser; where there is one echo all three are it.
+struct VlpReturns {
+  velodyne::Return strongest;
+  velodyne::Return last;   ///< the farther
+  velodyne::Return other;  ///< that which the last is not
+};
+
+VlpReturns vlp_returns(const world::Shot& s) {
+  const velodyne::Return first = vlp_return(s.range_m, s.intensity);
+  if (s.second_m <= 0.0F) return {first, first, first};
+  const velodyne::Return second = vlp_return(s.second_m, s.second_intensity);
+  const bool behind = second.distance >= first.distance;
+  return {.strongest = s.second_intensity > s.intensity ? second : first,
+          .last = behind ? second : first,
+          .other = behind ? first : second};
+}
+
+velodyne::ReturnMode mode_of(const world::SensorParams& p) {
+  if (p.returns == "dual") return velodyne::ReturnMode::Dual;
+  return p.returns == "last" ? velodyne::ReturnMode::Last : velodyne::ReturnMode::Strongest;
+}
+
 std::uint32_t wrapped_us(double s) {
   return static_cast<std::uint32_t>(static_cast<std::uint64_t>(std::max(0.0, s) * 1e6));
 }
@@ -195,25 +230,26 @@ void LmsVoice::restart(double now_s) {
   framer_.forget();
 }
 
-std::vector<std::uint8_t> vlp16_packet(const world::Sweep& sweep, double at_s) {
+std::vector<std::uint8_t> vlp16_packet(const world::Sweep& sweep, velodyne::ReturnMode mode,
+                                       std::size_t first) {
   velodyne::Packet packet;
-  for (std::size_t i = 0; i < sweep.shots.size() && i < velodyne::kBlocks * velodyne::kChannels;
-       ++i) {
-    const world::Shot& s = sweep.shots[i];
-    velodyne::Block& block = packet.blocks[i / velodyne::kChannels];
-    if (i % velodyne::kChannels == 0) {
-      const double turn = std::fmod(720.0 - static_cast<double>(s.bearing_rad) / kDegree, 360.0);
-      block.azimuth_cdeg =
-          static_cast<std::uint16_t>(std::lround(turn * 100.0) % velodyne::kTurn_cdeg);
-    }
-    const bool second = s.second_m > 0.0F && s.second_intensity > s.intensity;
-    const double range_m = static_cast<double>(second ? s.second_m : s.range_m);
-    const float light = second ? s.second_intensity : s.intensity;
-    velodyne::Return& out = block.channels[i % velodyne::kChannels];
-    out.distance = static_cast<std::uint16_t>(
-        std::clamp(std::lround(range_m / velodyne::kUnit_m), 0L, 65535L));
-    out.reflectivity = static_cast<std::uint8_t>(std::clamp(light * 100.0F, 0.0F, 100.0F));
+  packet.mode = mode;
+  const std::size_t together = packet.together();
+  const std::size_t begin = first * velodyne::kLasers;
+  const std::size_t shots = velodyne::kBlocks / together * velodyne::kChannels;
+  for (std::size_t i = 0; i < shots && begin + i < sweep.shots.size(); ++i) {
+    const world::Shot& s = sweep.shots[begin + i];
+    const std::size_t channel = i % velodyne::kChannels;
+    velodyne::Block& even = packet.blocks[i / velodyne::kChannels * together];
+    if (channel == 0) even.azimuth_cdeg = azimuth_cdeg_of(s);
+    const VlpReturns r = vlp_returns(s);
+    even.channels[channel] = mode == velodyne::ReturnMode::Strongest ? r.strongest : r.last;
+    if (together == 1) continue;
+    velodyne::Block& odd = packet.blocks[i / velodyne::kChannels * together + 1];
+    odd.azimuth_cdeg = even.azimuth_cdeg;
+    odd.channels[channel] = r.strongest == r.last ? r.other : r.strongest;
   }
+  const double at_s = sweep.at_s + static_cast<double>(first) * world::kVlpFiring_s;
   const auto us = static_cast<std::uint64_t>(std::llround(std::max(0.0, at_s) * 1e6));
   packet.stamp_us = static_cast<std::uint32_t>(us % velodyne::kHour_us);
   const auto bytes = velodyne::encode(packet);
@@ -279,11 +315,30 @@ void Eye::take_wanted() {
   sweep_.shots.clear();
 }
 
-std::vector<std::uint8_t> Eye::bytes_of(const world::SensorFaults& faults) {
-  if (lms_) return lms_->say(sweep_, faults);
-  if (params().kind == "vlp16") return vlp16_packet(sweep_, sweep_.at_s);
-  if (params().kind == "range") return range_line(sweep_);
-  return depth_frame(params(), sweep_, sweep_.at_s, !faults.sensor_heating);
+void Eye::wait(double due_s, std::vector<std::uint8_t> bytes) {
+  if (bytes.empty() || waiting_.size() >= kMostWaiting) return;
+  waiting_.push_back({due_s, std::move(bytes)});
+}
+
+/// A packet leaves when its last firing is done.
+void Eye::speak_vlp16(double late_s) {
+  const velodyne::ReturnMode mode = mode_of(params());
+  const std::size_t firings = world::kVlpFirings / (mode == velodyne::ReturnMode::Dual ? 2 : 1);
+  for (std::size_t first = 0; first < world::kVlpFirings; first += firings) {
+    const std::size_t end = std::min((first + firings) * velodyne::kLasers, sweep_.shots.size());
+    if (end <= first * velodyne::kLasers) return;
+    const double until_s = sweep_.at_s + static_cast<double>(sweep_.shots[end - 1].after_s);
+    wait(until_s + late_s, vlp16_packet(sweep_, mode, first));
+  }
+}
+
+void Eye::speak(const world::SensorFaults& faults) {
+  const double late_s = params().latency_s + faults.sensor_latency_s;
+  if (params().kind == "vlp16") return speak_vlp16(late_s);
+  const double due_s = sweep_.until_s + late_s;
+  if (lms_) return wait(due_s, lms_->say(sweep_, faults));
+  if (params().kind == "range") return wait(due_s, range_line(sweep_));
+  wait(due_s, depth_frame(params(), sweep_, sweep_.at_s, !faults.sensor_heating));
 }
 
 void Eye::advance(const Surroundings& around, const world::SensorFaults& all,
@@ -311,10 +366,7 @@ void Eye::advance(const Surroundings& around, const world::SensorFaults& all,
       sensor_.sweep(
           around.scene(), [&](double at_s) { return around.pose_at(at_s); }, faults, sweep_);
     }
-    auto bytes = bytes_of(faults);
-    if (bytes.empty() || waiting_.size() >= kMostWaiting) continue;
-    waiting_.push_back(
-        {sweep_.until_s + params().latency_s + faults.sensor_latency_s, std::move(bytes)});
+    speak(faults);
   }
   while (!waiting_.empty() && waiting_.front().due_s <= now_s) {
     say(waiting_.front().bytes);

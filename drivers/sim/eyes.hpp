@@ -3,7 +3,7 @@
 // the sockets are the caller's.
 //
 //   lms     CoLa A or B, as it is asked; scans once they are subscribed to
-//   vlp16   data packets, strongest return, one for each 24 firings
+//   vlp16   data packets of 24 firings, strongest or last return; of 12 firings with both
 //   range   lines of metres, "1.234"; nothing within reach: "oor"
 //   depth   depth images of docs/cloud-format.md, millimetres along the optical axis
 
@@ -62,8 +62,11 @@ class LmsVoice {
   std::uint16_t scans_ = 0;
 };
 
-/// A data packet of a vlp16's sweep. @param at_s of its first firing, since the top of the hour.
-std::vector<std::uint8_t> vlp16_packet(const world::Sweep& sweep, double at_s);
+/// A data packet of a vlp16's sweep, stamped with the sweep's time.
+/// @param first firing of the sweep that it begins with; with dual return it holds 12 firings, else
+/// 24.
+std::vector<std::uint8_t> vlp16_packet(const world::Sweep& sweep, velodyne::ReturnMode mode,
+                                       std::size_t first = 0);
 /// Of a depth sensor. @param at_s on the camera's clock.
 std::vector<std::uint8_t> depth_frame(const world::SensorParams& p, const world::Sweep& sweep,
                                       double at_s, bool good);
@@ -89,7 +92,9 @@ class Eye {
     double due_s;
     std::vector<std::uint8_t> bytes;
   };
-  std::vector<std::uint8_t> bytes_of(const world::SensorFaults& faults);
+  void speak(const world::SensorFaults& faults);
+  void speak_vlp16(double late_s);
+  void wait(double due_s, std::vector<std::uint8_t> bytes);
   void take_wanted();
 
   const std::uint64_t seed_;

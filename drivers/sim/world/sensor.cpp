@@ -56,6 +56,10 @@ base::Result<void> check(const SensorParams& p) {
   if (p.kind != "lms" && p.kind != "vlp16" && p.kind != "depth" && p.kind != "range") {
     return refuse("kind must be lms, vlp16, depth or range");
   }
+  if (p.returns != "strongest" && p.returns != "last" && p.returns != "dual") {
+    return refuse("returns must be strongest, last or dual");
+  }
+  if (p.returns != "strongest" && p.kind != "vlp16") return refuse("returns is a vlp16's");
   if (p.kind == "lms" && p.fov_to_deg < p.fov_from_deg + p.step_deg) {
     return refuse("fov_to_deg must lie at least one step_deg beyond fov_from_deg");
   }

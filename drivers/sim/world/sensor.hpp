@@ -50,6 +50,7 @@ struct SensorParams {
   double beam_mrad = 7.5;
   double merge_m = 0.15;
   double latency_s = 0.005;
+  std::string returns = "strongest";
 };
 
 template <class V>
@@ -82,9 +83,10 @@ void fields(V& v, SensorParams& p) {
   v("merge_m", p.merge_m, 0.0, 5.0,
     "two echoes nearer to each other are measured as one between them");
   v("latency_s", p.latency_s, 0.0, 2.0, "from the last beam of a piece to its last byte");
+  v("returns", p.returns, "vlp16: which echoes of a beam it tells: strongest, last or dual");
 }
 
-/// Unknown word in kind, an empty field of view: an error that names the member.
+/// Unknown word in kind or returns, an empty field of view: an error that names the member.
 base::Result<void> check(const SensorParams& p);
 /// Usual figures of a kind, which the configuration then changes; unknown kinds: as lms.
 SensorParams usual(std::string_view kind);

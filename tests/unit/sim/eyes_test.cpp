@@ -2,9 +2,14 @@
 
 #include "sim/eyes.hpp"
 
+#include <cmath>
+#include <numbers>
+#include <set>
+
 #include <gtest/gtest.h>
 
 #include "plant.hpp"
+#include "velodyne/revolutions.hpp"
 
 namespace roverd::sim {
 namespace {
@@ -203,6 +208,129 @@ TEST(SimulatedVlp16, SendsPacketsThatItsCodecReads) {
     }
   }
   EXPECT_GE(ahead, 5);
+}
+
+/// The robot looks east at the wall through a bush, 2 m away.
+struct Foliage : Sight {
+  Foliage() : seen(world_with_bush(), BodyParams{}, Time{}) { seen.attend(bunker); }
+  static world::World world_with_bush() {
+    world::World w = wall();
+    world::Thing bush;
+    bush.kind = world::Kind::Bush;
+    bush.points = {{2.0, 0.0}};
+    bush.radius_m = 0.6;
+    bush.height_m = 1.6;
+    bush.density_pm = 1.0;
+    w.things.push_back(bush);
+    return w;
+  }
+  /// A second of it, read as the driver reads it: points between the rings' ends, all of one turn
+  /// or more.
+  std::vector<base::SightPoint> look(const std::string& returns) {
+    world::SensorParams p = world::usual("vlp16");
+    p.dropout = p.sigma_m = 0.0;
+    p.returns = returns;
+    EXPECT_TRUE(world::check(p));
+    Eye eye(p, 1, 0.0);
+    std::vector<base::SightPoint> points;
+    velodyne::Revolutions turns("top", velodyne::Params{}, [&](const velodyne::Turn& turn) {
+      points.insert(points.end(), turn.sight->points.begin(), turn.sight->points.end());
+    });
+    for (int i = 0; i < 60; ++i) {
+      wait(5ms);
+      eye.advance(seen, {}, [&](base::Bytes bytes) {
+        const velodyne::Decoded d = velodyne::decode(bytes);
+        ASSERT_EQ(d.fault, velodyne::Fault::None) << velodyne::describe(d);
+        ++packets;
+        modes.insert(d.packet.mode);
+        turns.add(d.packet, Time{} + now.time_since_epoch());
+      });
+    }
+    turns.finish();
+    counts = turns.counts();
+    return points;
+  }
+  Surroundings seen;
+  int packets = 0;
+  std::set<velodyne::ReturnMode> modes;
+  velodyne::Revolutions::Counts counts;
+};
+
+TEST(SimulatedVlp16, TellsTheLeafAndTheWallBehindItWithTwoReturns) {
+  Foliage f;
+  const auto points = f.look("dual");
+  EXPECT_EQ(f.modes, std::set{velodyne::ReturnMode::Dual});
+  EXPECT_NEAR(f.packets, 0.3 * 1507.0, 3.0) << "a packet every 663.552 us";
+  EXPECT_EQ(f.counts.lost + f.counts.late + f.counts.duplicates + f.counts.jumps, 0u);
+  // Two points of one laser at one time are two returns of one firing: the farther one comes first.
+  int both = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const base::SightPoint& last = points[i - 1];
+    const base::SightPoint& nearer = points[i];
+    if (last.after_s != nearer.after_s || last.ring != nearer.ring) continue;
+    EXPECT_GT(std::hypot(last.x_m, last.y_m), std::hypot(nearer.x_m, nearer.y_m) + 0.4F);
+    if (last.ring < 8 || nearer.x_m < 0.0F || std::abs(last.x_m - 4.0F) > 0.05F) continue;
+    EXPECT_NEAR(last.x_m, 4.0F, 0.01F) << "the wall, through the leaves";
+    EXPECT_LT(std::hypot(nearer.x_m - 2.0F, nearer.y_m), 0.65F) << "a leaf";
+    ++both;
+  }
+  EXPECT_GT(both, 100);
+}
+
+TEST(SimulatedVlp16, TellsOneOfTwoEchoesAsItIsSet) {
+  const auto wall_share = [](const std::string& returns) {
+    Foliage f;
+    int wall = 0;
+    int leaves = 0;
+    for (const base::SightPoint& p : f.look(returns)) {
+      if (p.echo != base::Echo::Hit || p.ring < 8 || std::abs(p.y_m) > 0.25F * p.x_m) continue;
+      if (p.x_m > 3.9F) ++wall;
+      if (p.x_m > 1.3F && p.x_m < 2.7F) ++leaves;
+    }
+    EXPECT_NEAR(f.packets, 0.3 * 753.5, 2.0) << returns;
+    return static_cast<double>(wall) / (wall + leaves);
+  };
+  EXPECT_GT(wall_share("last"), wall_share("strongest") + 0.05) << "behind the leaves is the wall";
+}
+
+TEST(SimulatedVlp16, OfTwoEchoesTheEvenBlockIsTheFartherTheOddTheStrongestOrTheOther) {
+  // Given: firings whose nearer echo, whose farther echo, and whose only echo is the strongest.
+  world::Sweep sweep;
+  sweep.at_s = 3601.0;
+  sweep.shots.resize(world::kVlpFirings * velodyne::kLasers);
+  const auto echo = [&](std::size_t i, float m, float light, float second_m, float second_light) {
+    world::Shot& s = sweep.shots[i];
+    s.range_m = m;
+    s.intensity = light;
+    s.second_m = second_m;
+    s.second_intensity = second_light;
+  };
+  echo(0, 2.0F, 0.5F, 6.0F, 0.2F);
+  echo(1, 2.0F, 0.2F, 6.0F, 0.5F);
+  echo(2, 3.0F, 0.3F, 0.0F, 0.0F);
+  sweep.shots[12 * velodyne::kLasers].bearing_rad = -std::numbers::pi_v<float> / 2.0F;
+  echo(12 * velodyne::kLasers, 4.0F, 0.3F, 0.0F, 0.0F);
+  // When: written with both.
+  const auto first = velodyne::decode(vlp16_packet(sweep, velodyne::ReturnMode::Dual)).packet;
+  const auto then = velodyne::decode(vlp16_packet(sweep, velodyne::ReturnMode::Dual, 12)).packet;
+  // Then: distances in units of 2 mm.
+  EXPECT_EQ(first.blocks[0].channels[0], (velodyne::Return{3000, 20}));
+  EXPECT_EQ(first.blocks[1].channels[0], (velodyne::Return{1000, 50}));
+  EXPECT_EQ(first.blocks[0].channels[1], (velodyne::Return{3000, 50}));
+  EXPECT_EQ(first.blocks[1].channels[1], (velodyne::Return{1000, 20})) << "the second strongest";
+  EXPECT_EQ(first.blocks[0].channels[2], (velodyne::Return{1500, 30}));
+  EXPECT_EQ(first.blocks[1].channels[2], (velodyne::Return{1500, 30}));
+  EXPECT_EQ(first.stamp_us, 1'000'000u);
+  EXPECT_EQ(then.stamp_us, 1'000'664u) << "twelve firings later";
+  EXPECT_EQ(then.blocks[0].azimuth_cdeg, 9000);
+  EXPECT_EQ(then.blocks[1].azimuth_cdeg, 9000);
+  EXPECT_EQ(then.blocks[1].channels[0].distance, 2000);
+  const auto strongest = velodyne::decode(vlp16_packet(sweep, velodyne::ReturnMode::Strongest));
+  EXPECT_EQ(strongest.packet.blocks[0].channels[0].distance, 1000);
+  EXPECT_EQ(strongest.packet.blocks[0].channels[1].distance, 3000);
+  const auto last = velodyne::decode(vlp16_packet(sweep, velodyne::ReturnMode::Last));
+  EXPECT_EQ(last.packet.blocks[0].channels[0].distance, 3000);
+  EXPECT_EQ(last.packet.blocks[6].azimuth_cdeg, 9000);
 }
 
 TEST(SimulatedRange, SaysMetres) {

@@ -119,6 +119,10 @@ TEST(SensorTables, AreReadStrictly) {
 
   EXPECT_EQ(error("[[sensor]]\nkind = \"sonar\"\n"),
             "sim.toml:1: sensor.kind must be lms, vlp16, depth or range");
+  EXPECT_EQ(error("[[sensor]]\nkind = \"vlp16\"\nreturns = \"both\"\n"),
+            "sim.toml:1: sensor.returns must be strongest, last or dual");
+  EXPECT_EQ(error("[[sensor]]\nkind = \"lms\"\nreturns = \"dual\"\n"),
+            "sim.toml:1: sensor.returns is a vlp16's");
   EXPECT_EQ(error("[[sensor]]\nrange_m = 3\n"), "sim.toml:2: unknown key sensor.range_m");
   EXPECT_EQ(error("[[sensor]]\nrate_hz = 500\n"),
             "sim.toml:2: sensor.rate_hz must lie in 0.1 .. 100.0");
