@@ -27,6 +27,11 @@ void take_parameters(Profile& profile, const robot::Config& config) {
   profile.max_speed_mps = limits.max_speed_mps;
   profile.max_yaw_rate_radps = config.speed.max_yaw_rate_radps;
   profile.max_acceleration_mps2 = config.speed.accel_mps2;
+  if (profile.guard) {
+    const nav::sense::ProtectParams& p = config.protect;
+    profile.guard = {profile.guard->back_m, p.side_m,           p.gap_m, p.delay_s,
+                     p.decel_mps2,          p.turn_decel_radps2};
+  }
   profile.pivot_angle_rad = base::rad_from_deg(config.pivot.angle_deg);
   for (const base::ParamInfo& key : base::describe(config.radio)) {
     if (const auto* word = std::get_if<std::string>(&key.value)) profile.radio[key.name] = *word;

@@ -50,7 +50,11 @@ std::shared_ptr<const robot::Outlook> SenseLoop::outlook() {
 void SenseLoop::look_out(base::Time now) {
   const bool watched = now - asked_.load(std::memory_order_relaxed) < kWatchedFor;
   if (told_ && now - *told_ < (watched ? kWatchedEvery : kAnywayEvery)) return;
-  if (auto outlook = lookout_.outlook(shown_, now)) outlook_.publish(std::move(outlook));
+  robot::OutlookParams shown = shown_;
+  const auto config = robot_.config();
+  shown.side_m = config->protect.side_m;
+  shown.horizon_s = config->protect.horizon_s;
+  if (auto outlook = lookout_.outlook(shown, now)) outlook_.publish(std::move(outlook));
   told_ = now;
 }
 
@@ -74,6 +78,8 @@ void SenseLoop::run() noexcept {
       robot_.odometry().take(moved);
       done.clear();
       robot_.surroundings_done().take(done);
+      const auto config = robot_.config();
+      lookout_.follow(config->protect, config->rays);
       for (const auto& o : moved) lookout_.moved(o);
       const base::Time now = base::steady_now();
       for (auto& s : sights) lookout_.see(std::move(s), now);
@@ -87,8 +93,8 @@ void SenseLoop::run() noexcept {
 
 robot::OutlookParams shown_of(const Settings& s) noexcept {
   return {.body = robot::footprint_of(s.robot.vehicle, s.robot.tool, s.sense.outline),
-          .side_m = s.sense.protect.side_m,
-          .horizon_s = s.sense.protect.horizon_s,
+          .side_m = s.robot.protect.side_m,
+          .horizon_s = s.robot.protect.horizon_s,
           .range_m = s.sense.reduce.max_range_m};
 }
 

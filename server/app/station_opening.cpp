@@ -64,10 +64,11 @@ Result<void> Station::Impl::open_senses(const Settings& settings, const Options&
   const bool required = std::ranges::any_of(settings.sensors, [](const auto& one) {
     return one.second.said.enabled && one.second.said.required;
   });
-  robot.guard_by(settings.sense.protect, required && options.replays.empty(),
-                 settings.sense.blocked, settings.sense.outline, settings.sense.rays);
+  const robot::Config& c = settings.robot;
+  robot.guard_by(c.protect, required && options.replays.empty(), c.blocked, settings.sense.outline,
+                 c.rays);
   sense = std::make_shared<SenseLoop>(robot, std::move(*lookout), shown_of(settings));
-  if (settings.sense.blocked.then == "around") around = std::make_unique<AroundLoop>(robot);
+  around = std::make_unique<AroundLoop>(robot);  // `then` may become "around" at any time
   return {};
 }
 

@@ -58,9 +58,8 @@ api::Profile profile_of(const Settings& s, const Supervisor& supervisor) {
   if (!s.robot.vehicle.steered()) profile.item_types.emplace_back("turn");
   if (std::ranges::any_of(s.sensors, [](const auto& one) { return one.second.said.enabled; })) {
     const nav::VehicleParams& v = s.robot.vehicle;
-    const nav::sense::ProtectParams& p = s.sense.protect;
     const double back_m = v.steered() ? 0.5 * (v.length_m - v.wheelbase_m) : 0.5 * v.length_m;
-    profile.guard = {back_m, p.side_m, p.gap_m, p.delay_s, p.decel_mps2, p.turn_decel_radps2};
+    profile.guard = {.back_m = back_m};  // the rest: take_parameters
   }
   profile.limits = limits_of(s);
   profile.limits.item_types = profile.item_types;

@@ -42,8 +42,10 @@ base::Result<robot::Lookout> lookout_of(const Settings& s, base::Time now) {
   params.pulled = robot::pulled_of(s.robot.tool, s.sense.outline);
   auto chain = Chain::of(params, std::move(setups), body, now);
   if (!chain) return tl::unexpected(chain.error());
-  return robot::Lookout(std::move(*chain), std::move(kinds), s.sense.protect.reach_m + 1.0,
-                        s.sense.rays);
+  robot::Lookout lookout(std::move(*chain), std::move(kinds), s.robot.protect.reach_m,
+                         s.robot.rays);
+  lookout.follow(s.robot.protect, s.robot.rays);
+  return lookout;
 }
 
 }  // namespace roverd

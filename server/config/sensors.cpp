@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "base/angle.hpp"
-#include "nav/sense/rays_rule.hpp"
 
 namespace roverd {
 namespace {
@@ -165,19 +164,10 @@ bool is_sensor_name(std::string_view name) noexcept {
 }
 
 base::Result<void> check(const SenseSettings& sense) {
-  std::string section = "sense.blocked.";
-  auto good = robot::check(sense.blocked);
-  if (good) {
-    section = "sense.rays.";
-    good = nav::sense::check(sense.rays);
-  }
-  if (good) {
-    section = "nav.tool.";
-    good = robot::check(sense.outline);
-  }
+  const auto good = robot::check(sense.outline);
   if (good) return {};
   const base::FieldError& field = good.error().fields.front();
-  const std::string key = section + field.pointer;
+  const std::string key = "nav.tool." + field.pointer;
   return base::fail(base::Code::Invalid, key + " " + field.detail, {{key, field.detail}});
 }
 

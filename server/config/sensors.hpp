@@ -22,7 +22,6 @@
 #include "cloud/params.hpp"
 #include "nav/sense/params.hpp"
 #include "ranges/params.hpp"
-#include "robot/guard/blocked.hpp"
 #include "robot/guard/outline.hpp"
 #include "sick/params.hpp"
 #include "v4l2/params.hpp"
@@ -85,16 +84,14 @@ struct Sensor {
 /// The cloud driver's parameters for a camera of kind cloud or depth.
 cloud::Params as_heard(const Sensor& sensor);
 
-/// How what they see is made one picture. Sections [sense], [sense.ground], …
+/// How what they see is made one picture. Sections [sense], [sense.ground], … What the guard makes
+/// of it stands in robot::Config.
 struct SenseSettings {
   nav::sense::ReduceParams reduce;
   nav::sense::GroundParams ground;
   nav::sense::PersistParams persist;
   nav::sense::GridParams grid;
   nav::sense::HealthParams health;
-  nav::sense::RaysParams rays;
-  nav::sense::ProtectParams protect;
-  robot::BlockedParams blocked;
   robot::OutlineParams outline;  ///< further keys of [nav.tool]
 };
 
@@ -105,9 +102,6 @@ void sections(V& v, SenseSettings& s) {
   v("sense.persist", s.persist);
   v("sense.grid", s.grid);
   v("sense.health", s.health);
-  v("sense.rays", s.rays);
-  v("sense.protect", s.protect);
-  v("sense.blocked", s.blocked);
 }
 
 using Sensors = std::map<std::string, Sensor>;

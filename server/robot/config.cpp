@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "nav/sense/rays_rule.hpp"
+
 namespace roverd::robot {
 namespace {
 
@@ -103,11 +105,18 @@ base::Result<void> check(const Config& c) {
   if (auto good = check_orders(c); !good) return good;
   if (auto good = in_section("radio", check(c.radio)); !good) return good;
   if (auto good = in_section("nav.tool", check(c.tool)); !good) return good;
+  if (auto good = in_section("sense.rays", nav::sense::check(c.rays)); !good) return good;
+  if (auto good = in_section("sense.blocked", check(c.blocked)); !good) return good;
   return in_section("battery", check(c.battery));
 }
 
 bool acts_at_next_start(std::string_view section, std::string_view name) noexcept {
   if (section == "vehicle") return true;
+  if (section == "sense.rays") {
+    constexpr std::array<std::string_view, 6> kFan{"fan_deg", "step_deg", "band_m",
+                                                   "far_m",   "far_as_m", "blind_m"};
+    return std::find(kFan.begin(), kFan.end(), name) != kFan.end();
+  }
   const auto& first = nav::kBelievedAtFirst;
   return section == "nav.estimate" && std::find(first.begin(), first.end(), name) != first.end();
 }

@@ -14,8 +14,10 @@
 #include "nav/behave/mode_params.hpp"
 #include "nav/behave/params.hpp"
 #include "nav/estimate/params.hpp"
+#include "nav/sense/params.hpp"
 #include "nav/track/path.hpp"
 #include "nav/track/tool.hpp"
+#include "robot/guard/blocked.hpp"
 #include "robot/radio/actions.hpp"
 #include "robot/safety/battery_gauge.hpp"
 
@@ -219,6 +221,10 @@ struct Config {
   ArmingParams arming;
   RadioParams radio;
   BatteryParams battery;
+  // The guard's, where the robot sees.
+  nav::sense::RaysParams rays;
+  nav::sense::ProtectParams protect;
+  BlockedParams blocked;
   /// Counts the changes of what a mission's way is laid out by (lays_way); no parameter.
   std::uint64_t way = 0;
 
@@ -258,6 +264,9 @@ void sections(V& v, Config& c) {
   v("robot.arming", c.arming);
   v("radio", c.radio);
   v("battery", c.battery);
+  v("sense.rays", c.rays);
+  v("sense.protect", c.protect);
+  v("sense.blocked", c.blocked);
 }
 
 /// The check of the whole, beyond the range of each: words, rules within a section, values that are
@@ -277,8 +286,8 @@ using NamedValue = std::pair<std::string, base::ParamValue>;
 /// @return why, one sentence for each that was left out, beginning with its name.
 std::vector<std::string> take_kept(Config& config, std::vector<NamedValue> kept);
 
-/// What the vehicle is, and what is believed at first, has been taken in when the program started.
-/// All else acts at the next tick.
+/// What the vehicle is, what is believed at first, and which rays are made of what a sensor saw, has
+/// been taken in when the program started. All else acts at the next tick.
 bool acts_at_next_start(std::string_view section, std::string_view name) noexcept;
 
 /// Does it go into the way that a mission is laid out by when it is loaded (its corners, and the

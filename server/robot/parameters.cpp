@@ -217,6 +217,7 @@ base::Result<void> Robot::Impl::handle(const SetParameter& c) {
   if (!c.next_start) {
     config.adopt(std::make_shared<const Config>(std::move(*next)));
     config_unpublished = true;
+    if (guard.sees()) guard.change(config->protect, config->blocked, config->rays);
   }
   const bool safety = before->stricter != base::Stricter::Any;
   event(safety ? base::Severity::Warning : base::Severity::Info,

@@ -42,6 +42,12 @@ void Robot::guard_by(const nav::sense::ProtectParams& params, bool demands,
                      const nav::sense::RaysParams& rays) {
   impl_->guard.set(params, impl_->config->vehicle, demands, blocked, impl_->config->tool, outline,
                    rays);
+  Config said = *impl_->config;
+  said.protect = params;
+  said.blocked = blocked;
+  said.rays = rays;
+  impl_->config.adopt(std::make_shared<const Config>(std::move(said)));
+  impl_->shared_config.publish(impl_->config.whole());
 }
 base::Inbox<std::shared_ptr<const Surroundings>>& Robot::surroundings() noexcept {
   return impl_->surroundings;

@@ -354,7 +354,8 @@ class Robot {
   /// from what they see. Without it the robot drives blind, as it is told.
   /// @param demands what drives by itself needs one of them at least. @param blocked what becomes
   /// of a drive that they stopped; its word passed check(). @param outline of the tool.
-  /// @param rays the stop by counted rays, where it is enabled.
+  /// @param rays the stop by counted rays, where it is enabled. These sections hold in place of
+  /// those that the robot was made with, until one of them is changed as a parameter.
   void guard_by(const nav::sense::ProtectParams& params, bool demands = true,
                 const BlockedParams& blocked = {}, const OutlineParams& outline = {},
                 const nav::sense::RaysParams& rays = {});

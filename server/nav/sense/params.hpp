@@ -179,8 +179,9 @@ void fields(V& v, ProtectParams& p) {
   v("decel_mps2", p.decel_mps2, 0.05, 5.0, base::lower_is_stricter("braking that is sure"));
   v("turn_decel_radps2", p.turn_decel_radps2, 0.05, 10.0,
     base::lower_is_stricter("braking of a turn that is sure"));
-  v("horizon_s", p.horizon_s, 1.0, 20.0, "the commanded curve is followed so far ahead");
-  v("reach_m", p.reach_m, 1.0, 30.0, "and not farther than this");
+  v("horizon_s", p.horizon_s, 1.0, 20.0,
+    base::higher_is_stricter("the commanded curve is followed so far ahead"));
+  v("reach_m", p.reach_m, 1.0, 30.0, base::higher_is_stricter("and not farther than this"));
   v("creep_mps", p.creep_mps, 0.0, 1.0,
     base::lower_is_stricter("ahead into what no sensor sees; 0: not at all"));
   v("creep_back_mps", p.creep_back_mps, 0.0, 1.0,

@@ -26,6 +26,7 @@ std::string_view to_string(Then then) noexcept;  // wait around return abort
 std::optional<Then> then_from(std::string_view word) noexcept;
 
 struct BlockedParams {
+  double clear_s = 1.0;
   double after_s = 10.0;
   std::string then = "wait";
   bool around_at_once = false;
@@ -35,6 +36,9 @@ struct BlockedParams {
 
 template <class V>
 void fields(V& v, BlockedParams& p) {
+  v("clear_s", p.clear_s, 0.2, 60.0,
+    base::higher_is_stricter(
+        "what drives by itself goes on when its way has been clear for so long"));
   v("after_s", p.after_s, 0.5, 3600.0, "what drives by itself and is stopped so long is blocked");
   v("then", p.then,
     "wait: until the way is clear; around: the same, and a way around is looked for; return: home, "
@@ -42,8 +46,10 @@ void fields(V& v, BlockedParams& p) {
   v("around_at_once", p.around_at_once,
     "then = \"around\": a way around is looked for at once, not after after_s");
   v("resume_blind", p.resume_blind,
-    "a mission that a blind sensor paused goes on by itself when the sensor sees again");
-  v("resume_after_s", p.resume_after_s, 0.0, 3600.0, "and has seen for so long");
+    base::lower_is_stricter(
+        "a mission that a blind sensor paused goes on by itself when the sensor sees again"));
+  v("resume_after_s", p.resume_after_s, 0.0, 3600.0,
+    base::higher_is_stricter("and has seen for so long"));
 }
 
 /// Invalid: a word that is none; the field is its name.

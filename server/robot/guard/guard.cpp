@@ -18,7 +18,6 @@ constexpr double kLeast_mps = 0.05;  // slower, and it stands
 constexpr double kLeast_radps = 0.05;
 constexpr double kProbe_mps = 0.15;  // what a stopped drive tries
 constexpr double kProbe_radps = 0.15;
-constexpr double kClear_s = 1.0;
 constexpr double kAsk_s = 3.0;     // so often a stopped drive is asked anew,
 constexpr double kAskFor_s = 1.0;  // for so long: it first makes sure that it stands
 constexpr double kHandTurns_radps = 0.3;
@@ -79,23 +78,32 @@ std::string sentence(const base::Obstacle& o) {
 void Guard::set(const nav::sense::ProtectParams& params, const nav::VehicleParams& vehicle,
                 bool demands, const BlockedParams& blocked, const nav::ToolParams& tool,
                 const OutlineParams& outline, const nav::sense::RaysParams& rays) {
+  sees_ = true;
+  demands_ = demands;
+  body_ = footprint_of(vehicle, tool, outline);
+  swings_m_.reset();
+  if (!vehicle.steered()) {
+    double front_m = 0.0;
+    double swings_m = 0.0;  // of what is ahead of the origin: it turns towards what stands there
+    for (const nav::sense::Vec2 c : body_.corners()) {
+      front_m = std::max(front_m, c.x);
+      if (c.x > 0.0) swings_m = std::max(swings_m, std::hypot(c.x, c.y));
+    }
+    swings_m_ = swings_m - front_m;
+  }
+  change(params, blocked, rays);
+}
+
+void Guard::change(const nav::sense::ProtectParams& params, const BlockedParams& blocked,
+                   const nav::sense::RaysParams& rays) {
   params_ = params;
   rays_ = rays;
   blocked_.set(blocked);
   decel_set_mps2_ = params.decel_mps2;
-  sees_ = true;
-  demands_ = demands;
-  body_ = footprint_of(vehicle, tool, outline);
-  if (vehicle.steered()) return;
   // Where it stopped it must still be able to turn away.
-  double front_m = 0.0;
-  double swings_m = 0.0;  // of what is ahead of the origin: it turns towards what stands there
-  for (const nav::sense::Vec2 c : body_.corners()) {
-    front_m = std::max(front_m, c.x);
-    if (c.x > 0.0) swings_m = std::max(swings_m, std::hypot(c.x, c.y));
+  if (swings_m_) {
+    params_.gap_m = std::max(params_.gap_m, *swings_m_ + params_.side_m + kTurnsRound_m);
   }
-  const double turns_m = swings_m + params_.side_m - front_m;
-  params_.gap_m = std::max(params_.gap_m, turns_m + kTurnsRound_m);
 }
 
 std::shared_ptr<const Surroundings> Guard::take(std::shared_ptr<const Surroundings> news) noexcept {
@@ -298,7 +306,7 @@ bool Guard::clear_long_enough(base::Time now) {
     return false;
   }
   if (!clear_since_) clear_since_ = now;
-  if (base::seconds(now - *clear_since_) < kClear_s) return false;
+  if (base::seconds(now - *clear_since_) < blocked_.params().clear_s) return false;
   stopped_since_.reset();
   clear_since_.reset();
   news_ = false;

@@ -39,6 +39,9 @@ class Guard {
   void set(const nav::sense::ProtectParams& params, const nav::VehicleParams& vehicle, bool demands,
            const BlockedParams& blocked = {}, const nav::ToolParams& tool = {},
            const OutlineParams& outline = {}, const nav::sense::RaysParams& rays = {});
+  /// Between two ticks: other figures, for the same body and sensors. What stops it goes on to.
+  void change(const nav::sense::ProtectParams& params, const BlockedParams& blocked,
+              const nav::sense::RaysParams& rays);
   bool sees() const noexcept { return sees_; }
   bool demands() const noexcept { return demands_; }
   /// Once a tick: braking that is known to be there; what was set bounds it.
@@ -117,6 +120,7 @@ class Guard {
   nav::sense::ProtectParams params_;
   nav::sense::RaysParams rays_;
   double decel_set_mps2_ = 0.6;
+  std::optional<double> swings_m_;  ///< ahead of its front: turning on the spot; empty: it does not
   nav::sense::Footprint body_ = footprint_of({});
   std::optional<nav::sense::Spared> spared_;
   std::shared_ptr<const Surroundings> around_;

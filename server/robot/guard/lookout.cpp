@@ -12,6 +12,7 @@ constexpr double kAhead_s = 0.025;  // a tick, and how late it may be
 constexpr double kTellAnyway_s = 0.1;
 constexpr double kMissed = 2.5;  // pieces that may be missing
 constexpr std::size_t kMostWaiting = 64;
+constexpr double kBeyond_m = 1.0;  // the picture reaches on, for the body's own size
 constexpr double kAsKept_s = 1e6;  // as long as the grid keeps it
 
 base::SensorHealth health_of(nav::sense::Eye eye, bool silent) noexcept {
@@ -46,6 +47,13 @@ Lookout::Lookout(nav::sense::Chain chain, std::vector<std::string> kinds, double
       counted_(chain_.sensors()),
       reach_m_(reach_m) {
   kinds_.resize(chain_.sensors());
+}
+
+void Lookout::follow(const nav::sense::ProtectParams& protect, const nav::sense::RaysParams& rays) {
+  reach_m_ = protect.reach_m + kBeyond_m;
+  rays_ = rays;
+  if (rays_.enabled) return;
+  for (auto& one : counted_) one.reset();
 }
 
 void Lookout::moved(const nav::sense::Odometry& o) noexcept {

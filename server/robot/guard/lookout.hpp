@@ -39,6 +39,9 @@ class Lookout {
   Lookout(nav::sense::Chain chain, std::vector<std::string> kinds, double reach_m,
           const nav::sense::RaysParams& rays = {});
 
+  /// What may change while it looks: how far the guard looks, and its counted rays (checked).
+  void follow(const nav::sense::ProtectParams& protect, const nav::sense::RaysParams& rays);
+
   void moved(const nav::sense::Odometry& o) noexcept;
   /// @param sight one of the chain's sensors, or it is left out
   void see(std::shared_ptr<const base::Sight> sight, base::Time now);

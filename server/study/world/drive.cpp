@@ -128,12 +128,12 @@ class WorldDrive {
         made_(made),
         stage_(made.settings, made.plant, s.number, made.start),
         around_(s.world, made.plant.body, base::Time{}),
-        referee_(around_, made.settings.sense.protect, made.settings.sense.ground.pass_below_m,
+        referee_(around_, made.settings.robot.protect, made.settings.sense.ground.pass_below_m,
                  s.lidar ? 0.0 : made.eyes.front().seen.z_m),
         lookout_(std::move(lookout)) {
     around_.attend(stage_.plant());
-    stage_.robot().guard_by(made.settings.sense.protect, true, made.settings.sense.blocked,
-                            made.settings.sense.outline, made.settings.sense.rays);
+    stage_.robot().guard_by(made.settings.robot.protect, true, made.settings.robot.blocked,
+                            made.settings.sense.outline, made.settings.robot.rays);
     for (const EyeSetup& eye : made.eyes) eyes_.emplace_back(eye, s.number);
     stage_.on_heard = [this](base::Time t) { sense(t); };
   }

@@ -54,6 +54,10 @@ TEST(SenseKeys, AllStandInThePageAsTheyAreAndNoOthers) {
   Rows rows;
   SenseSettings sense;
   sections(rows, sense);
+  robot::Config guard;
+  rows("sense.rays", guard.rays);
+  rows("sense.protect", guard.protect);
+  rows("sense.blocked", guard.blocked);
   rows("", SensorSettings{});
   rows("", cloud::Params{});
   rows("", v4l2::Params{});
@@ -77,7 +81,7 @@ TEST(SenseKeys, TheHuskyHasTheRulesOfTheBerryRows) {
   EXPECT_EQ(s->sense.reduce.max_range_m, 8.0);
   EXPECT_EQ(s->sense.reduce.voxel_m, 0.05);
   // The planar scan out of its depth camera, and the stop by counted rays.
-  const nav::sense::RaysParams& rays = s->sense.rays;
+  const nav::sense::RaysParams& rays = s->robot.rays;
   EXPECT_EQ(rays.fan_deg, 34.0);
   EXPECT_EQ(rays.step_deg, 1.0);
   EXPECT_EQ(rays.band_m, 0.30);

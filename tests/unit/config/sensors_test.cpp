@@ -51,7 +51,7 @@ gap_m = 0.4
   EXPECT_TRUE(s->sensors.at("front").said.planar());
   EXPECT_NEAR(s->sensors.at("front").said.mount().yaw_rad, base::kPi / 2.0, 1e-12);
   EXPECT_FALSE(s->sensors.at("top").said.required);
-  EXPECT_EQ(s->sense.protect.gap_m, 0.4);
+  EXPECT_EQ(s->robot.protect.gap_m, 0.4);
 }
 
 TEST(Sensors, OfTheCommandLineOverrideTheFile) {
@@ -81,25 +81,25 @@ TEST(Sensors, WhatIsWrongIsRefusedWithItsPlace) {
 TEST(Sensors, WhatFollowsWhenTheyBlockADriveIsOneOfFourWords) {
   const auto s = with("[sense.blocked]\nafter_s = 25\nthen = \"return\"\nresume_blind = true\n");
   ASSERT_TRUE(s) << s.error().detail;
-  EXPECT_EQ(s->sense.blocked.after_s, 25.0);
-  EXPECT_EQ(s->sense.blocked.then, "return");
-  EXPECT_TRUE(s->sense.blocked.resume_blind);
-  EXPECT_FALSE(s->sense.blocked.around_at_once);
+  EXPECT_EQ(s->robot.blocked.after_s, 25.0);
+  EXPECT_EQ(s->robot.blocked.then, "return");
+  EXPECT_TRUE(s->robot.blocked.resume_blind);
+  EXPECT_FALSE(s->robot.blocked.around_at_once);
   const std::string no = refused("[sense.blocked]\nthen = \"jump\"\n");
   EXPECT_NE(no.find("robot.toml:2: sense.blocked.then must be wait"), std::string::npos) << no;
   EXPECT_NE(refused("[sense.blocked]\nafter_s = 0\n").find("after_s"), std::string::npos);
 }
 
 TEST(Sensors, TheStopByCountedRaysIsOffUntilItIsSet) {
-  EXPECT_FALSE(with("")->sense.rays.enabled);
+  EXPECT_FALSE(with("")->robot.rays.enabled);
   const auto s =
       with("[sense.rays]\nenabled = true\ninstead = true\nstop_m = 0.9\nstop_rays = 7\n");
   ASSERT_TRUE(s) << s.error().detail;
-  EXPECT_TRUE(s->sense.rays.enabled);
-  EXPECT_TRUE(s->sense.rays.instead);
-  EXPECT_EQ(s->sense.rays.stop_m, 0.9);
-  EXPECT_EQ(s->sense.rays.stop_rays, 7);
-  EXPECT_EQ(s->sense.rays.stop_fan_deg, 15.94);
+  EXPECT_TRUE(s->robot.rays.enabled);
+  EXPECT_TRUE(s->robot.rays.instead);
+  EXPECT_EQ(s->robot.rays.stop_m, 0.9);
+  EXPECT_EQ(s->robot.rays.stop_rays, 7);
+  EXPECT_EQ(s->robot.rays.stop_fan_deg, 15.94);
   const std::string no = refused("[sense.rays]\nenabled = true\nstop_m = 3.5\n");
   EXPECT_NE(no.find("robot.toml:3: sense.rays.stop_m must not be more than far_m"),
             std::string::npos)

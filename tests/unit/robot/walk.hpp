@@ -111,6 +111,12 @@ class Walk : public Field {
         mix(s->home->lon);
       }
       if (s->fence && s->fence->distance_m) mix(*s->fence->distance_m);
+      if (s->obstacle) {
+        mix(static_cast<std::uint64_t>(s->obstacle->action));
+        mix(s->obstacle->reason);
+        mix(s->obstacle->then);
+        if (const auto by = s->obstacle->decides_at) mix(base::seconds(*by - now));
+      }
     }
     for (; told_ < events.size(); ++told_) {
       const base::Event& e = events[told_];
