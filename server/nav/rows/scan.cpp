@@ -1,0 +1,51 @@
+#include "nav/rows/scan.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/angle.hpp"
+
+namespace roverd::nav::rows {
+namespace {
+
+std::size_t bearing_at(double rad) noexcept {
+  const auto deg = static_cast<long>(std::floor(base::deg_from_rad(base::wrap_rad(rad)) + 180.0));
+  const auto n = static_cast<long>(RowScan::kBearings);
+  return static_cast<std::size_t>(((deg % n) + n) % n);
+}
+
+}  // namespace
+
+double RowScan::reach_to(double x_m, double y_m) const noexcept {
+  const double rad = std::atan2(y_m - eye_y_m, x_m - eye_x_m);
+  return double(reach_m[bearing_at(rad)]);
+}
+
+void scan_of(const sense::Reduced& in, const RowParams& params, RowScan& out) {
+  out.stamp = in.stamp;
+  out.pose = in.pose;
+  out.eye_x_m = double(in.origin_m[0]);
+  out.eye_y_m = double(in.origin_m[1]);
+  const sense::Counts& n = in.counts;
+  out.blind = n.points == 0 || double(n.unknown) > params.blind_part * double(n.points);
+  out.points.clear();
+  out.reach_m.fill(0.0F);
+  for (const sense::Voxel& v : in.voxels) {
+    const bool level =
+        v.z_m >= static_cast<float>(params.low_m) && v.z_m <= static_cast<float>(params.high_m);
+    if (!level) continue;
+    if (v.kind == sense::Kind::Obstacle) out.points.push_back({v.x_m, v.y_m});
+    const double dx = double(v.x_m) - out.eye_x_m;
+    const double dy = double(v.y_m) - out.eye_y_m;
+    float& reach = out.reach_m[bearing_at(std::atan2(dy, dx))];
+    reach = std::max(reach, static_cast<float>(std::hypot(dx, dy)));
+  }
+  sense::RaysParams fan;
+  fan.fan_deg = params.rays_fan_deg;
+  fan.band_m = params.rays_band_m;
+  fan.far_m = params.rays_far_m;
+  fan.far_as_m = params.rays_far_m + 1.0;
+  sense::rays_of(in, fan, out.rays);
+}
+
+}  // namespace roverd::nav::rows
