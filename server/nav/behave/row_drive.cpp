@@ -160,6 +160,7 @@ TrackOutput RowDrive::step(const RowSight& sight, const Vehicle& vehicle, double
   v.yaw_rad = sight.body.yaw_rad;
   v.yaw_sigma_rad = std::min(v.yaw_sigma_rad, kYawSigma_rad);
   v.slide = {};
+  v.crab = sight.view != nullptr ? -sight.view->drift : 0.0;  // what O knows of it
   const bool sees = usable(sight);
   if (sees) {
     if (state_ == State::Seeking) {

@@ -24,6 +24,8 @@ constexpr double kJump_m = 0.30;             // farther at once the line does no
 constexpr double kWidthPart = 0.25;          // nor changes its width by more
 constexpr double kShiftPerRootMetre = 0.02;  // what the odometry loses
 constexpr double kTurnPerRootMetre = 0.01;
+constexpr double kDriftOver_m = 3.0;  // of way it is learned
+constexpr double kMostDrift = 0.08;
 constexpr double kLeast_m = 0.01;  // nobody knows a hedge better than this
 
 constexpr double kBin_m = 0.25;
@@ -74,7 +76,7 @@ void RowFinder::each_side(Do&& what) {
 void RowFinder::forget() {
   lose();
   marks_.clear();
-  gone_m_ = 0.0;
+  gone_m_ = learned_at_m_ = 0.0;
   sides_ = {};
   cleared_to_ = 0;
   fitted_.reset();
@@ -106,6 +108,7 @@ void RowFinder::see(const RowScan& scan) {
   if (!fitted_ || base::seconds(scan.stamp - *fitted_) >= kFitEvery_s) {
     fitted_ = scan.stamp;
     marks_.read(read_);
+    undrift();
     fit();
     if (line_) find_plants();
   }
@@ -131,7 +134,7 @@ void RowFinder::begin(const RowScan& scan) {
 void RowFinder::advance(const RowScan& scan) {
   const Pose2 body = sense::inverse(line_->at) * scan.pose;
   const Along at = beside_arc(body.x_m, body.y_m, line_->curvature_1pm);
-  line_->at = line_->at * on_arc(at.s_m, line_->curvature_1pm);
+  line_->at = line_->at * on_arc(at.s_m, line_->curvature_1pm) * Pose2{0.0, drift_ * at.s_m, 0.0};
   gone_m_ += at.s_m;
   const double way_m = std::abs(at.s_m);
   unfitted_m_ += way_m;
@@ -149,6 +152,16 @@ void RowFinder::advance(const RowScan& scan) {
   }
   const bool gone = unfitted_m_ > kLostAfter_m || std::sqrt(p(0, 0)) > kLostSigma_m;
   if (gone) unfitted_m_ = kLostAfter_m + 1.0;
+}
+
+/// What was seen a while ago has moved since, as the odometry counts.
+void RowFinder::undrift() {
+  const double east = -std::sin(line_->at.yaw_rad) * drift_;
+  const double north = std::cos(line_->at.yaw_rad) * drift_;
+  for (Mark& m : read_) {
+    m.x_m += east * m.ago_m;
+    m.y_m += north * m.ago_m;
+  }
 }
 
 void RowFinder::fit() {
@@ -171,6 +184,9 @@ void RowFinder::fit() {
   unfitted_m_ = 0.0;
   last_ = fitted;
   *line_ = now;
+  const double learned = std::clamp((gone_m_ - learned_at_m_) / kDriftOver_m, 0.0, 0.2);
+  learned_at_m_ = gone_m_;
+  drift_ = std::clamp(drift_ + learned * fitted.drift, -kMostDrift, kMostDrift);
   // The fit may have moved L along: it lies beside the robot again with the next scan.
   if (order_.sides == Sides::Both && fitted.left >= 3 && fitted.right >= 3) {
     const double sigma_w = std::sqrt(now.covariance[15]);
@@ -271,6 +287,7 @@ void RowFinder::tell(const RowScan& scan) {
   view.line = line_->at;
   view.curvature_1pm = line_->curvature_1pm;
   view.width_m = order_.sides == Sides::Both ? line_->width_m : 0.0;
+  view.drift = drift_;
   view.width_sigma_m = std::sqrt(std::max(0.0, line_->covariance[15]));
   for (std::size_t r = 0; r < 3; ++r) {
     for (std::size_t c = 0; c < 3; ++c) view.covariance[3 * r + c] = line_->covariance[4 * r + c];

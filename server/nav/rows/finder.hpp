@@ -46,6 +46,7 @@ class RowFinder {
   };
   void begin(const RowScan& scan);
   void advance(const RowScan& scan);
+  void undrift();
   void fit();
   void tell(const RowScan& scan);
   void look_through(const RowScan& scan);
@@ -66,6 +67,8 @@ class RowFinder {
   std::array<Side, 2> sides_;  ///< left, right
   double gone_m_ = 0.0;        ///< of L, along the row
   double unfitted_m_ = 0.0;
+  double learned_at_m_ = 0.0;
+  double drift_ = 0.0;   ///< RowView::drift
   long cleared_to_ = 0;  ///< bins of the ring that are new ones
   std::optional<base::Time> fitted_;
   Fitted last_;

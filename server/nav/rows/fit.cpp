@@ -13,12 +13,17 @@ constexpr double kPiece_m = 0.5;
 constexpr std::size_t kLeastMarks = 3;   // of a piece
 constexpr double kMarkSigma_m = 0.10;    // foliage: of one mark within its piece
 constexpr double kDriftPerMetre = 0.01;  // of the odometry, since a mark was seen
+constexpr double kSameLook_m = 0.4;      // of way
+constexpr double kDriftSigma = 0.02;     // of what is known of the drift
 constexpr double kStraight_1pm = 0.08;   // 1 sigma of a row's curvature: radii down to 12 m
 constexpr double kTightest_1pm = 1.0 / 10.0;
 constexpr double kAside_m = 1.0;  // what is known before: nearly nothing
 constexpr double kTurned_rad = 0.5;
 constexpr double kCauchy = 2.0;
 constexpr int kRounds = 4;
+
+using Vector5 = Eigen::Matrix<double, 5, 1>;
+using Matrix5 = Eigen::Matrix<double, 5, 5>;
 
 double median_of(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -33,12 +38,13 @@ void pieces_of(const std::vector<Mark>& marks, const Line& line, Sides sides, do
   out.clear();
   const auto count =
       static_cast<std::size_t>(std::ceil((params.ahead_m + params.behind_m) / kPiece_m));
-  struct Held {
-    std::vector<double> d_m;
-    double s_m = 0.0;
+  struct Seen {
+    Along at;
     double ago_m = 0.0;
-    double from_m = 1e9;
-    double to_m = -1e9;
+  };
+  struct Held {
+    std::vector<Seen> seen;
+    double newest_m = 1e9;
   };
   std::vector<Held> held(2 * count);
   const Pose2 to_line = sense::inverse(line.at);
@@ -55,21 +61,31 @@ void pieces_of(const std::vector<Mark>& marks, const Line& line, Sides sides, do
     const auto i =
         std::min(count - 1, static_cast<std::size_t>((at.s_m + params.behind_m) / kPiece_m));
     Held& h = held[side > 0 ? i : count + i];
-    h.d_m.push_back(at.d_m);
-    h.s_m += at.s_m;
-    h.ago_m += m.ago_m;
-    h.from_m = std::min(h.from_m, at.s_m);
-    h.to_m = std::max(h.to_m, at.s_m);
+    h.seen.push_back({at, m.ago_m});
+    h.newest_m = std::min(h.newest_m, m.ago_m);
   }
+  std::vector<double> d_m;
   for (std::size_t i = 0; i < held.size(); ++i) {
-    Held& h = held[i];
-    if (h.d_m.size() < kLeastMarks) continue;
-    const auto n = double(h.d_m.size());
-    const double drift_m = kDriftPerMetre * h.ago_m / n;
-    const double sigma_m = std::sqrt(params.plant_m * params.plant_m +
-                                     kMarkSigma_m * kMarkSigma_m / n + drift_m * drift_m);
-    out.push_back(
-        {h.s_m / n, median_of(h.d_m), sigma_m, i < count ? 1 : -1, h.d_m.size(), h.from_m, h.to_m});
+    const Held& h = held[i];
+    Piece piece;
+    d_m.clear();
+    // Where it is still seen, what it looked like from afar does not count.
+    for (const Seen& one : h.seen) {
+      if (one.ago_m > h.newest_m + kSameLook_m) continue;
+      d_m.push_back(one.at.d_m);
+      piece.s_m += one.at.s_m;
+      piece.ago_m += one.ago_m;
+    }
+    if (d_m.size() < kLeastMarks) continue;
+    const auto n = double(d_m.size());
+    piece.s_m /= n;
+    piece.ago_m /= n;
+    const double drift_m = kDriftPerMetre * piece.ago_m;
+    piece.sigma_m = std::sqrt(params.plant_m * params.plant_m + kMarkSigma_m * kMarkSigma_m / n +
+                              drift_m * drift_m);
+    piece.d_m = median_of(d_m);
+    piece.side = i < count ? 1 : -1;
+    out.push_back(piece);
   }
 }
 
@@ -77,8 +93,9 @@ Fitted fit_line(const std::vector<Mark>& marks, Sides sides, double gate_m, cons
                 const RowParams& params, Line& line, std::vector<Piece>& pieces) {
   Fitted out;
   Line now = line;
-  const double prior_1pm[4] = {kAside_m, kTurned_rad, kStraight_1pm, prior.sigma_m};
-  Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
+  const double before[5] = {kAside_m, kTurned_rad, kStraight_1pm, std::max(1e-4, prior.sigma_m),
+                            kDriftSigma};
+  Matrix5 information = Matrix5::Zero();
   double chi = 0.0;
   double weights = 0.0;
   std::vector<double> off;
@@ -88,37 +105,38 @@ Fitted fit_line(const std::vector<Mark>& marks, Sides sides, double gate_m, cons
     off.clear();
     for (const Piece& p : pieces) off.push_back(std::abs(p.d_m - p.side * 0.5 * now.width_m));
     out.spread_m = 1.4826 * median_of(off);
-    Eigen::Vector4d gradient = Eigen::Vector4d::Zero();
+    Vector5 gradient = Vector5::Zero();
     information.setZero();
-    // What is known before: rows are rather straight, and as wide as they were.
-    for (int i = 0; i < 3; ++i) information(i, i) = 1.0 / (prior_1pm[i] * prior_1pm[i]);
+    // What is known before: rows are rather straight, as wide as they were, and drift as they did.
+    for (int i = 0; i < 5; ++i) information(i, i) = 1.0 / (before[i] * before[i]);
     gradient(2) = -now.curvature_1pm * information(2, 2);
-    const double width_sigma_m = std::max(1e-4, prior_1pm[3]);
-    information(3, 3) = 1.0 / (width_sigma_m * width_sigma_m);
     gradient(3) = (prior.width_m - now.width_m) * information(3, 3);
+    gradient(4) = -out.drift * information(4, 4);
     chi = weights = 0.0;
     for (const Piece& p : pieces) {
-      const double r = p.d_m - p.side * 0.5 * now.width_m;
+      const double r = p.d_m - p.side * 0.5 * now.width_m + out.drift * p.ago_m;
       const double part = r / (kCauchy * p.sigma_m);
       const double robust = 1.0 / (1.0 + part * part);
       const double w = robust / (p.sigma_m * p.sigma_m);
-      const Eigen::Vector4d j(1.0, p.s_m, 0.5 * p.s_m * p.s_m, 0.5 * p.side);
+      Vector5 j;
+      j << 1.0, p.s_m, 0.5 * p.s_m * p.s_m, 0.5 * p.side, -p.ago_m;
       information += w * j * j.transpose();
       gradient += w * r * j;
       chi += w * r * r;
       weights += robust;
     }
-    const Eigen::Vector4d step = information.ldlt().solve(gradient);
+    const Vector5 step = information.ldlt().solve(gradient);
     if (!step.allFinite()) return out;
     now.at = now.at * Pose2{0.0, step(0), step(1)};
     now.curvature_1pm = std::clamp(now.curvature_1pm + step(2), -kTightest_1pm, kTightest_1pm);
     now.width_m += step(3);
+    out.drift += step(4);
   }
   if (now.width_m < 0.5 * params.width_min_m || now.width_m > 2.0 * params.width_max_m) return out;
   for (const Piece& p : pieces) ++(p.side > 0 ? out.left : out.right);
   // Where plants scatter more than was said, so does the line.
   const double worse = std::max(1.0, chi / std::max(1.0, weights - 4.0));
-  const Eigen::Matrix4d p = worse * information.ldlt().solve(Eigen::Matrix4d::Identity());
+  const Matrix5 p = worse * information.ldlt().solve(Matrix5::Identity());
   for (int r = 0; r < 4; ++r) {
     for (int c = 0; c < 4; ++c) now.covariance[static_cast<std::size_t>(4 * r + c)] = p(r, c);
   }

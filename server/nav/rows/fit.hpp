@@ -32,16 +32,15 @@ struct Piece {
   double s_m = 0.0;  ///< from L, mean
   double d_m = 0.0;  ///< median
   double sigma_m = 0.0;
-  int side = 1;  ///< +1 left, −1 right
-  std::size_t marks = 0;
-  double from_m = 0.0;  ///< s of its first mark
-  double to_m = 0.0;    ///< and of its last one
+  int side = 1;        ///< +1 left, −1 right
+  double ago_m = 0.0;  ///< way since it was seen, mean
 };
 
 struct Fitted {
   bool good = false;  ///< there was enough to fit
   int left = 0;       ///< pieces
   int right = 0;
+  double drift = 0.0;     ///< of older marks to the right for each metre since: RowView::drift
   double spread_m = 0.0;  ///< by which pieces stand off the line, robust 1 sigma
 };
 

@@ -40,6 +40,9 @@ struct RowView {
   double curvature_1pm = 0.0;  ///< of the line
   double width_m = 0.0;        ///< between the plants of both sides; 0: not known
   double width_sigma_m = 0.0;
+  /// The row moves so far to the left in O for each metre that the body drives: what slides to the
+  /// right without the odometry's knowing.
+  double drift = 0.0;
   /// Covariance of where the line lies: [shift to the left at L, m; direction, rad; curvature,
   /// 1/m].
   std::array<double, 9> covariance{};
