@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <bitset>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "base/angle.hpp"
 
@@ -19,7 +20,8 @@ constexpr double kLeastPart = 0.3;  // of the pieces ahead must have plants, to 
 constexpr std::size_t kLeastPieces = 5;
 constexpr double kBesides_m = 0.6;  // from the middle to the robot
 
-using Counts = std::array<std::bitset<kAlongs>, kLanes>;
+using Counts = std::array<std::uint64_t, kLanes>;  // a bit a piece
+static_assert(kAlongs == 64);
 
 struct Found {
   double score = 0.0;
@@ -30,10 +32,10 @@ struct Found {
 
 /// Plants of three neighbouring lanes, each piece once.
 std::size_t stands(const Counts& lanes, std::size_t i) {
-  std::bitset<kAlongs> all = lanes[i];
+  std::uint64_t all = lanes[i];
   if (i > 0) all |= lanes[i - 1];
   if (i + 1 < kLanes) all |= lanes[i + 1];
-  return all.count();
+  return static_cast<std::size_t>(std::popcount(all));
 }
 
 /// From the robot outwards: the first lane in which enough stands, and of its neighbours the
@@ -73,7 +75,7 @@ Found look_along(const std::vector<Mark>& marks, const Pose2& frame, const RowOr
     const double lane = y / kLane_m + double(kLanes) / 2.0;
     if (lane < 0.0 || lane >= double(kLanes)) continue;
     const auto along = std::min(kAlongs - 1, static_cast<std::size_t>((x + 1.0) / kAlong_m));
-    lanes[static_cast<std::size_t>(lane)].set(along);
+    lanes[static_cast<std::size_t>(lane)] |= std::uint64_t{1} << along;
     far_m = std::max(far_m, x);
     near_m = std::min(near_m, x);
   }
@@ -86,7 +88,7 @@ Found look_along(const std::vector<Mark>& marks, const Pose2& frame, const RowOr
   if ((order.sides != Sides::Right && !left) || (order.sides != Sides::Left && !right)) return out;
   // The sharper the sides stand out of what is beside them, the better the direction.
   const auto sharp = [&](std::size_t i) {
-    return double(stands(lanes, i)) + 0.5 * double(lanes[i].count());
+    return double(stands(lanes, i)) + 0.5 * double(std::popcount(lanes[i]));
   };
   if (left && order.sides != Sides::Right) {
     out.left_m = lane_m(*left);

@@ -1,7 +1,5 @@
 // Closed loop: scanner, chain, finder, drive and a slipping robot between simulated rows.
 
-#include <cstdio>
-
 #include <gtest/gtest.h>
 
 #include "field.hpp"
@@ -9,16 +7,81 @@
 namespace roverd::nav::rows::tests {
 namespace {
 
-TEST(RowDriving, StaysInTheMiddle) {
-  BlockParams p;
-  p.bends = {{25.0, 0.0}};
-  const Block block(p);
+constexpr double kEndWithin_m = 0.5;
+
+void expect_driven(const DriveTold& t, double end_m) {
+  EXPECT_TRUE(t.done) << t.reason;
+  EXPECT_LT(t.rms_m, 0.04);
+  EXPECT_LT(t.worst_m, 0.15) << "at " << t.worst_at_m;
+  EXPECT_EQ(t.touched, 0U);
+  EXPECT_NEAR(t.stopped_m, end_m, kEndWithin_m);
+}
+
+//   ▓▓ ▓▓▓    ▓▓▓▓ ▓  ▓▓▓      gaps up to 2 m, leaves ±15 cm, weeds at the sides
+//  ─▶─────────────────────|
+//   ▓▓▓▓  ▓▓▓▓     ▓▓ ▓▓▓▓
+TEST(RowDriving, StaysInTheMiddleToTheEndAndKnowsHowWell) {
+  const Block block({.bends = {{30.0, 0.0}}, .seed = 3});
   const DriveTold t = drive_row(block, {});
-  std::printf(
-      "done %d %s rms %.3f worst %.3f at %.1f stop %.2f end %.2f touched %zu least %.2f nees %.2f "
-      "bias %.3f view %.3f sigma %.3f\n",
-      t.done, t.reason.c_str(), t.rms_m, t.worst_m, t.worst_at_m, t.stopped_m, block.end_m(),
-      t.touched, t.least_m, t.nees, t.bias_m, t.view_rms_m, t.sigma_m);
+  expect_driven(t, block.end_m());
+  // What it says of itself holds: (error/sigma)² is about one.
+  EXPECT_LT(t.nees, 2.5);
+  EXPECT_GT(t.nees, 0.2);
+}
+
+TEST(RowDriving, FollowsBendsOf15Metres) {
+  const Block block({.bends = {{8.0, 0.0}, {12.0, 1.0 / 15.0}, {12.0, -1.0 / 15.0}}, .seed = 2});
+  const DriveTold t = drive_row(block, {});
+  expect_driven(t, block.end_m());
+}
+
+TEST(RowDriving, GoesOnWhereOneSideIsMissingForAWhile) {
+  const Block block({.bends = {{26.0, 0.0}}, .no_left = {{10.0, 16.0}}, .seed = 5});
+  const DriveTold t = drive_row(block, {});
+  EXPECT_TRUE(t.done) << t.reason;
+  EXPECT_LT(t.worst_m, 0.15) << "at " << t.worst_at_m;
+  EXPECT_NEAR(t.stopped_m, block.end_m(), kEndWithin_m);
+}
+
+// The left row ends 3 m later: the lane ends with it.
+TEST(RowDriving, EndsWithTheSideThatIsLonger) {
+  const Block block({.bends = {{18.0, 0.0}}, .gaps = 0.2, .ragged_m = 3.0, .seed = 6});
+  const DriveTold t = drive_row(block, {});
+  EXPECT_TRUE(t.done) << t.reason;
+  EXPECT_NEAR(t.stopped_m, block.left_end_m(), kEndWithin_m);
+}
+
+TEST(RowDriving, FollowsOneSideAtItsDistance) {
+  const Block block({.bends = {{25.0, 0.0}}, .weeds_per_m = 0.0, .seed = 4});
+  DriveSetup setup;
+  setup.order.sides = Sides::Left;
+  setup.order.gap_m = 1.25 - 0.16;  // to the leaves, so that it is in the middle as well
+  const DriveTold t = drive_row(block, setup);
+  EXPECT_TRUE(t.done) << t.reason;
+  EXPECT_LT(t.worst_m, 0.20);
+  EXPECT_NEAR(t.stopped_m, block.left_end_m(), kEndWithin_m);
+}
+
+// All directions unknown is no end of the row: it stops and says why.
+TEST(RowDriving, StopsWhereItIsDazzled) {
+  const Block block({.bends = {{25.0, 0.0}}, .seed = 7});
+  DriveSetup setup;
+  setup.blind_from_s = 15.0;
+  const DriveTold t = drive_row(block, setup);
+  EXPECT_FALSE(t.done);
+  EXPECT_EQ(t.reason, "the row is lost");
+  EXPECT_LT(t.stopped_m, 10.0);
+  EXPECT_LT(t.time_s, 25.0);
+}
+
+TEST(RowDriving, SaysWhereThereIsNoRow) {
+  const Block block({.bends = {{25.0, 0.0}}, .seed = 8});
+  DriveSetup setup;
+  setup.start_s_m = 29.0;  // behind its end
+  const DriveTold t = drive_row(block, setup);
+  EXPECT_FALSE(t.done);
+  EXPECT_EQ(t.reason, "no row is seen within 3.0 m");
+  EXPECT_NEAR(t.driven_m, 3.0, 0.15);
 }
 
 }  // namespace

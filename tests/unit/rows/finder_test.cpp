@@ -1,1 +1,198 @@
+// What the finder makes of scans whose truth is known exactly.
+
+#include "nav/rows/finder.hpp"
+
+#include <cmath>
+#include <limits>
+
 #include <gtest/gtest.h>
+
+#include "base/angle.hpp"
+#include "nav/rows/rays.hpp"
+
+namespace roverd::nav::rows::tests {
+namespace {
+
+constexpr double kSeen_m = 7.0;
+
+/// A scan from a body at `pose` of two lines of points y = ±half along x of O; nothing from
+/// gap_from to gap_to, nor behind end.
+struct Lane {
+  double half_m = 1.0;
+  double gap_from_m = 1e9;
+  double gap_to_m = -1e9;
+  double end_m = 1e9;
+  bool left = true;
+  bool right = true;
+
+  RowScan scan(double at_s, const Pose2& pose) const {
+    RowScan out;
+    out.stamp = base::Time{base::from_seconds(at_s)};
+    out.pose = pose;
+    out.reach_m.fill(static_cast<float>(kSeen_m + 1.0));  // an open field
+    const Pose2 in = sense::inverse(pose);
+    for (double x = std::floor(pose.x_m - 5.0); x < pose.x_m + kSeen_m; x += 0.05) {
+      if (x < 0.0 || x > end_m || (x > gap_from_m && x < gap_to_m)) continue;
+      for (const double side : {1.0, -1.0}) {
+        if ((side > 0.0 && !left) || (side < 0.0 && !right)) continue;
+        const Pose2 p = in * Pose2{x + 0.01, side * half_m, 0.0};
+        const double far_m = std::hypot(p.x_m, p.y_m);
+        if (far_m > kSeen_m) continue;
+        out.points.push_back({static_cast<float>(p.x_m), static_cast<float>(p.y_m)});
+        const auto i = static_cast<std::size_t>(
+            std::floor(base::deg_from_rad(std::atan2(p.y_m, p.x_m)) + 180.0));
+        out.reach_m[i % 360] = static_cast<float>(far_m);
+      }
+    }
+    return out;
+  }
+};
+
+/// Drives straight along x of O, 0.1 m from scan to scan.
+std::optional<RowView> drive(RowFinder& finder, const Lane& lane, double from_m, double to_m,
+                             double y_m = 0.0, double yaw_rad = 0.0) {
+  double t = from_m;
+  for (double x = from_m; x <= to_m; x += 0.1, t += 0.1) {
+    finder.see(lane.scan(100.0 + t, {x, y_m, yaw_rad}));
+  }
+  return finder.view();
+}
+
+TEST(RowFinder, TellsOffsetDirectionAndWidth) {
+  RowFinder finder({}, {});
+  const auto view = drive(finder, {}, 1.0, 4.0, 0.12, base::rad_from_deg(3.0));
+  ASSERT_TRUE(view);
+  EXPECT_NEAR(beside_line(*view, {4.0, 0.12, 0.0}).d_m, 0.12, 0.01);
+  EXPECT_NEAR(view->line.yaw_rad, 0.0, base::rad_from_deg(0.5));
+  EXPECT_NEAR(view->width_m, 2.0, 0.02);
+  EXPECT_NEAR(view->curvature_1pm, 0.0, 0.002);
+  EXPECT_LT(view->sigma_m(0.0), 0.05);
+  EXPECT_LT(view->sigma_m(0.0), view->sigma_m(6.0)) << "far ahead it is less sure";
+  EXPECT_FALSE(view->to_end_m);
+}
+
+TEST(RowFinder, SeesNoEndInAGapOfTwoMetres) {
+  RowFinder finder({}, {});
+  Lane lane;
+  lane.gap_from_m = 6.0;
+  lane.gap_to_m = 8.0;
+  for (double x = 1.0; x < 9.0; x += 0.1) {
+    finder.see(lane.scan(100.0 + x, {x, 0.0, 0.0}));
+    if (x < 2.0) continue;
+    ASSERT_TRUE(finder.view()) << x;
+    EXPECT_FALSE(finder.view()->to_end_m) << x;
+  }
+}
+
+TEST(RowFinder, SeesTheEndFromInsideTheRow) {
+  RowFinder finder({}, {});
+  Lane lane;
+  lane.end_m = 8.0;
+  const auto view = drive(finder, lane, 1.0, 6.5);
+  ASSERT_TRUE(view && view->to_end_m);
+  const Along at = beside_line(*view, {6.5, 0.0, 0.0});
+  EXPECT_NEAR(*view->to_end_m - at.s_m, 1.5, 0.15);
+}
+
+TEST(RowFinder, TakesAnEndBackWherePlantsAppearBehindIt) {
+  RowFinder finder({}, {});
+  Lane lane;
+  lane.end_m = 8.0;
+  ASSERT_TRUE(drive(finder, lane, 1.0, 6.5)->to_end_m);
+  lane.end_m = 1e9;  // they were hidden
+  const auto view = drive(finder, lane, 6.6, 8.0);
+  ASSERT_TRUE(view);
+  EXPECT_FALSE(view->to_end_m);
+}
+
+TEST(RowFinder, TakesWhatIsNotSeenForNoEnd) {
+  RowFinder finder({}, {});
+  Lane lane;
+  lane.end_m = 8.0;
+  for (double x = 1.0; x < 7.5; x += 0.1) {
+    RowScan scan = lane.scan(100.0 + x, {x, 0.0, 0.0});
+    scan.reach_m.fill(0.0F);  // no ray says that it went through anywhere
+    finder.see(scan);
+  }
+  ASSERT_TRUE(finder.view());
+  EXPECT_FALSE(finder.view()->to_end_m);
+}
+
+TEST(RowFinder, KnowsTheMiddleByOneSideAndTheWidthItHasLearned) {
+  RowFinder finder({}, {});
+  Lane lane;
+  ASSERT_TRUE(drive(finder, lane, 1.0, 4.0));
+  const double sure_m = finder.view()->sigma_m(0.0);
+  lane.left = false;
+  const auto view = drive(finder, lane, 4.1, 14.5, 0.1);
+  ASSERT_TRUE(view);
+  EXPECT_NEAR(beside_line(*view, {14.5, 0.1, 0.0}).d_m, 0.1, 0.05);
+  EXPECT_GT(view->sigma_m(0.0), sure_m);
+  EXPECT_EQ(view->left, 0);
+}
+
+TEST(RowFinder, GivesARowUpThatIsNotSeenForThreeMetres) {
+  RowFinder finder({}, {});
+  Lane lane;
+  ASSERT_TRUE(drive(finder, lane, 1.0, 5.0));
+  lane.left = lane.right = false;
+  EXPECT_FALSE(drive(finder, lane, 5.1, 14.0));
+}
+
+TEST(RowFinder, TakesOnePlantForNoRow) {
+  RowFinder finder({}, {});
+  Lane lane;
+  lane.gap_from_m = 0.4;
+  lane.gap_to_m = 1e9;
+  EXPECT_FALSE(drive(finder, lane, -1.0, 3.0));
+}
+
+TEST(RowFinder, StandsForeignPoints) {
+  RowFinder finder({}, {});
+  RowScan scan;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float inf = std::numeric_limits<float>::infinity();
+  scan.points = {{nan, 1.0F}, {inf, inf}, {1e30F, -1e30F}, {0.0F, 0.0F}};
+  for (int i = 0; i < 20; ++i) {
+    scan.stamp = base::Time{base::from_seconds(i)};
+    finder.see(scan);
+  }
+  EXPECT_FALSE(finder.view());
+}
+
+sense::Ray ray(double deg, double range_m) {
+  const bool endless = range_m > 3.0;
+  return {static_cast<float>(base::rad_from_deg(deg)), static_cast<float>(endless ? 4.0 : range_m),
+          endless};
+}
+
+RowScan fan(double left_m, double right_m) {
+  RowScan scan;
+  for (int deg = -34; deg <= 34; ++deg) {
+    const double range_m = deg < -20 ? right_m : deg > 20 ? left_m : 5.0;
+    scan.rays.push_back(ray(deg, range_m));
+  }
+  return scan;
+}
+
+TEST(Rays, SteerToTheMiddleBetweenTheFiveOutermost) {
+  const RowView even = view_by_rays(fan(2.0, 2.0), {}, {});
+  EXPECT_NEAR(even.line.yaw_rad, 0.0, 1e-6);
+  EXPECT_EQ(even.left, 5);
+  // Nearer to the right: to the left. Mean aside (2.4 − 2.0)/2 · sin 32° over 2.2 cos 32° ahead.
+  const RowView off = view_by_rays(fan(2.4, 2.0), {}, {});
+  EXPECT_NEAR(off.line.yaw_rad, std::atan(0.2 * std::sin(0.5585) / (2.2 * std::cos(0.5585))), 2e-3);
+  EXPECT_FALSE(off.to_end_m);
+}
+
+TEST(Rays, DoNotCountBeyondThreeMetresAndEndWhereTenAreEndless) {
+  const RowView left = view_by_rays(fan(2.0, 3.5), {}, {});
+  EXPECT_EQ(left.right, 0);
+  EXPECT_FALSE(left.to_end_m);
+  const RowView none = view_by_rays(fan(3.5, 3.5), {}, {});
+  ASSERT_TRUE(none.to_end_m);
+  EXPECT_EQ(*none.to_end_m, 0.0);
+}
+
+}  // namespace
+}  // namespace roverd::nav::rows::tests
