@@ -31,6 +31,7 @@
 #include "sick/driver.hpp"
 #include "twist/driver.hpp"
 #include "velodyne/driver.hpp"
+#include "vision/driver.hpp"
 
 namespace roverd {
 namespace {
@@ -200,7 +201,7 @@ class Planner {
 
   /// What looks around tells what it sees elsewhere than to the robot.
   Result<void> add_sensor(const std::string& name, const Sensor& configured,
-                          const base::OnSight& on_sight) {
+                          const base::OnSight& on_sight, const base::OnVision& on_vision) {
     const bool replaying = !replays_.file_of.empty();
     const auto replay = replays_.file_of.find(name);
     if (replaying ? replay == replays_.file_of.end() : !configured.said.enabled) return {};
@@ -215,8 +216,8 @@ class Planner {
     DevicePlan plan;
     plan.name = name;
     plan.sees = true;
-    plan.make = [w = workshop_, name, sensor, address, on_sight](asio::io_context& io,
-                                                                 const DeviceEars& ears) {
+    plan.make = [w = workshop_, name, sensor, address, on_sight, on_vision](
+                    asio::io_context& io, const DeviceEars& ears) {
       const link::BytePort::MakeLink make_link = [w, name, address, sensor, ears, &io] {
         return open_sensor(*w, io, ears, name, address, sensor);
       };
@@ -229,6 +230,10 @@ class Planner {
       if (sensor.said.kind == "depth") return made(Of<cloud::Driver>{}, as_heard(sensor));
       if (sensor.said.kind == "ranges") return made(Of<ranges::Driver>{}, sensor.ranges);
       if (sensor.said.kind == "sick") return made(Of<sick::Driver>{}, sensor.sick);
+      if (sensor.said.kind == "vision") {
+        return device_of(std::make_shared<vision::Driver>(name, sensor.vision, make_link,
+                                                          ears.on_measurement, on_vision));
+      }
       return made(Of<velodyne::Driver>{}, sensor.velodyne);
     };
     plans_.push_back(std::move(plan));
@@ -312,7 +317,8 @@ class Planner {
 }  // namespace
 
 Result<std::vector<DevicePlan>> plan_devices(const Settings& s, const Options& options,
-                                             const base::OnSight& on_sight) {
+                                             const base::OnSight& on_sight,
+                                             const base::OnVision& on_vision) {
   auto replays = read_replays(options.replays, options.replay_speed, s.sensors);
   if (!replays) return tl::unexpected(replays.error());
   for (const std::string& remark : replays->remarks) base::log(base::Level::Info, "replay", remark);
@@ -332,7 +338,7 @@ Result<std::vector<DevicePlan>> plan_devices(const Settings& s, const Options& o
   if (done) done = planner.add<ByteStream, mti::Driver>("mti", s.mti);
   if (done) done = planner.add_ntrip(s.ntrip);
   for (const auto& [name, sensor] : s.sensors) {
-    if (done) done = planner.add_sensor(name, sensor, on_sight);
+    if (done) done = planner.add_sensor(name, sensor, on_sight, on_vision);
   }
   if (!done) return tl::unexpected(done.error());
   return planner.take();

@@ -80,8 +80,10 @@ Told add_decode(CLI::App& app, DecodeCommand& c) {
       "  sick     bytes of a SICK scanner, or a session of one as text\n"
       "  vlp16    datagrams of a Velodyne VLP-16: a capture (pcap), or one after another\n"
       "  cloud    frames of a camera's program (docs/cloud-format.md)\n"
-      "  ranges   lines of ultrasonic and infrared rangers");
-  d->add_option("KIND", c.kind, "bunker, nmea, ubx, mti, sick, vlp16, cloud or ranges")->required();
+      "  ranges   lines of ultrasonic and infrared rangers\n"
+      "  vision   datagrams of a vision program: a capture (pcap), or one a line");
+  d->add_option("KIND", c.kind, "bunker, nmea, ubx, mti, sick, vlp16, cloud, ranges or vision")
+      ->required();
   d->add_option("FILE", c.file, "the recording; - is standard input")->required();
   return {d, "decode wants KIND and FILE"};
 }

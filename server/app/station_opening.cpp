@@ -14,7 +14,9 @@ Result<void> Station::Impl::open(const Settings& settings, const Options& option
   const auto see = [to = std::weak_ptr(sense)](std::shared_ptr<const base::Sight> sight) {
     if (const auto eyes = to.lock()) eyes->see(std::move(sight));
   };
-  auto plans = plan_devices(settings, options, see);
+  // Nothing steers by it yet: its health stands in the drivers' list.
+  const auto recognise = [](const std::shared_ptr<const base::Vision>&) {};
+  auto plans = plan_devices(settings, options, see, recognise);
   if (!plans) return tl::unexpected(plans.error());
   auto made = Supervisor::make(std::move(*plans),
                                [this](const base::Measurement& m) { robot.measurements().put(m); });
@@ -56,13 +58,14 @@ Result<void> Station::Impl::open(const Settings& settings, const Options& option
 /// What recorded sensors saw is looked at, too; nothing moves by a recording, so none of them is
 /// demanded.
 Result<void> Station::Impl::open_senses(const Settings& settings, const Options& options) {
-  const bool any = std::ranges::any_of(settings.sensors,
-                                       [](const auto& one) { return one.second.said.enabled; });
+  const bool any = std::ranges::any_of(settings.sensors, [](const auto& one) {
+    return one.second.said.enabled && one.second.said.ranging();
+  });
   if (!any) return {};
   auto lookout = lookout_of(settings, base::steady_now());
   if (!lookout) return tl::unexpected(lookout.error());
   const bool required = std::ranges::any_of(settings.sensors, [](const auto& one) {
-    return one.second.said.enabled && one.second.said.required;
+    return one.second.said.enabled && one.second.said.ranging() && one.second.said.required;
   });
   const robot::Config& c = settings.robot;
   robot.guard_by(c.protect, required && options.replays.empty(), c.blocked, settings.sense.outline,

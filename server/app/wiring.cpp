@@ -56,7 +56,9 @@ api::Profile profile_of(const Settings& s, const Supervisor& supervisor) {
   profile.item_types = {"waypoint",    "local", "move",   "wait",   "speed",
                         "return_home", "jump",  "action", "loiter", "circle"};
   if (!s.robot.vehicle.steered()) profile.item_types.emplace_back("turn");
-  if (std::ranges::any_of(s.sensors, [](const auto& one) { return one.second.said.enabled; })) {
+  if (std::ranges::any_of(s.sensors, [](const auto& one) {
+        return one.second.said.enabled && one.second.said.ranging();
+      })) {
     const nav::VehicleParams& v = s.robot.vehicle;
     const double back_m = v.steered() ? 0.5 * (v.length_m - v.wheelbase_m) : 0.5 * v.length_m;
     profile.guard = {.back_m = back_m};  // the rest: take_parameters

@@ -20,7 +20,7 @@ base::Result<robot::Lookout> lookout_of(const Settings& s, base::Time now) {
   std::vector<SensorSetup> setups;
   std::vector<std::string> kinds;
   for (const auto& [name, sensor] : s.sensors) {
-    if (!sensor.said.enabled) continue;
+    if (!sensor.said.enabled || !sensor.said.ranging()) continue;
     SensorSetup one;
     one.name = name;
     one.mount = sensor.said.mount();

@@ -30,12 +30,13 @@ struct Way {
   std::array<std::string_view, 2> schemes;
   std::string_view form;
 };
-constexpr std::array<Way, 5> kWays{{
+constexpr std::array<Way, 6> kWays{{
     {"cloud", {"tcp", "listen"}, "tcp:HOST:PORT or listen:PORT"},
     {"depth", {"v4l2", "v4l2"}, "v4l2:/dev/videoN"},
     {"ranges", {"serial", "serial"}, "serial:DEVICE:BAUD"},
     {"sick", {"tcp", "tcp"}, "tcp:HOST:PORT"},
     {"velodyne", {"udp", "udp"}, "udp:PORT or udp:PORT:HOST:PORT"},
+    {"vision", {"udp", "udp"}, "udp:PORT or udp:PORT:HOST:PORT"},
 }};
 
 std::string_view scheme_of(std::string_view link) noexcept {
@@ -79,7 +80,7 @@ base::Result<void> check_link(const std::string& name, const SensorSettings& sai
   if (scheme == "listen" && said.listens() == 0) {
     return refuse(name, "link", "must name a port of 1 to 65535: listen:PORT");
   }
-  // A peer alone is heard at a port of the kernel's choice, where no lidar sends to.
+  // A peer alone is heard at a port of the kernel's choice, where nobody sends to.
   if (scheme == "udp" && taken_by(said.link).empty()) {
     return refuse(
         name, "link",
@@ -107,12 +108,18 @@ base::Result<void> check_one(const std::string& name, const Sensor& sensor) {
   if (!known) {
     return refuse(
         name, "kind",
-        "must be cloud, depth, ranges, sick or velodyne, is \"" + sensor.said.kind + "\"");
+        "must be cloud, depth, ranges, sick, velodyne or vision, is \"" + sensor.said.kind + "\"");
   }
   if (!good) {
     const auto& fields = good.error().fields;
     return refuse(name, fields.empty() ? "kind" : fields[0].pointer,
                   fields.empty() ? good.error().detail : fields[0].detail);
+  }
+  if (sensor.said.kind == "vision" && sensor.said.roll_deg != 0.0) {
+    return refuse(name, "roll_deg", "must be 0: the vision program tells places upright");
+  }
+  if (sensor.said.kind == "vision" && sensor.said.pitch_deg != 0.0) {
+    return refuse(name, "pitch_deg", "must be 0: the vision program tells places upright");
   }
   if (!sensor.said.enabled) return {};
   if (sensor.said.link.empty()) {

@@ -26,6 +26,7 @@
 #include "sick/params.hpp"
 #include "v4l2/params.hpp"
 #include "velodyne/params.hpp"
+#include "vision/params.hpp"
 
 namespace roverd {
 
@@ -45,6 +46,9 @@ struct SensorSettings {
   base::Mount mount() const noexcept;
   /// It sees one plane only.
   bool planar() const noexcept { return kind == "sick" || kind == "ranges"; }
+  /// It is part of the picture of what is free and what is not. What a vision program recognised
+  /// tells of neither.
+  bool ranging() const noexcept { return kind != "vision"; }
   /// Of "listen:PORT"; 0: it says something else.
   int listens() const noexcept;
 };
@@ -52,15 +56,17 @@ struct SensorSettings {
 template <class V>
 void fields(V& v, SensorSettings& p) {
   v("enabled", p.enabled, "false: it is not there");
-  v("kind", p.kind, "which driver hears it: cloud, depth, ranges, sick or velodyne");
+  v("kind", p.kind, "which driver hears it: cloud, depth, ranges, sick, velodyne or vision");
   v("link", p.link,
-    "velodyne: udp:PORT, udp:PORT:HOST:PORT; sick: tcp:HOST:PORT; ranges: serial:DEVICE:BAUD|auto; "
+    "velodyne, vision: udp:PORT, udp:PORT:HOST:PORT; sick: tcp:HOST:PORT; ranges: "
+    "serial:DEVICE:BAUD|auto; "
     "cloud: "
     "tcp:HOST:PORT, or listen:PORT, where the camera's program on this computer comes to that "
     "port; "
     "depth: v4l2:/dev/videoN; any: replay:FILE");
   v("required", p.required,
-    base::higher_is_stricter("nothing drives by itself while it is silent, dirty or blinded"));
+    base::higher_is_stricter(
+        "nothing drives by itself while it is silent, dirty or blinded; not of the kind vision"));
   v("x_m", p.x_m, -5.0, 5.0, "ahead of the vehicle's origin");
   v("y_m", p.y_m, -5.0, 5.0, "left of it");
   v("z_m", p.z_m, 0.02, 5.0, "above the ground");
@@ -78,6 +84,7 @@ struct Sensor {
   ranges::Params ranges;
   sick::Params sick;
   velodyne::Params velodyne;
+  vision::Params vision;
   bool recorded = false;  ///< no setting: it is a recording that is heard
 };
 
@@ -117,6 +124,7 @@ void with_kind(S& s, V&& v) {
   if (s.said.kind == "ranges") v(s.ranges);
   if (s.said.kind == "sick") v(s.sick);
   if (s.said.kind == "velodyne") v(s.velodyne);
+  if (s.said.kind == "vision") v(s.vision);
 }
 
 /// "sensors.front.link" is of "front"; empty: it is no key of a sensor.

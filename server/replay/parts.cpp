@@ -23,6 +23,7 @@
 #include "sick/driver.hpp"
 #include "twist/driver.hpp"
 #include "velodyne/driver.hpp"
+#include "vision/driver.hpp"
 
 namespace roverd {
 namespace {
@@ -100,12 +101,13 @@ class BytePart final : public ReplayPart {
 template <class Driver, class Params>
 class SensorPart final : public ReplayPart {
  public:
-  SensorPart(const std::string& name, const Params& params, const base::OnSight& on_sight)
+  template <class OnSeen>
+  SensorPart(const std::string& name, const Params& params, const OnSeen& on_seen)
       : wire_(link::memory_byte_pair()),
         driver_(
             name, params,
             [this] { return Result<std::unique_ptr<link::ByteLink>>(std::move(wire_.a)); },
-            [](const base::Measurement&) {}, on_sight) {
+            [](const base::Measurement&) {}, on_seen) {
     wire_.b->set_immediate([this] { return clock_; });
     static_cast<void>(wire_.b->open());
   }
@@ -132,6 +134,10 @@ std::unique_ptr<ReplayPart> sensor_part(const std::string& name, const Sensor& c
   }
   if (s.said.kind == "sick") {
     return std::make_unique<SensorPart<sick::Driver, sick::Params>>(name, s.sick, on_sight);
+  }
+  if (s.said.kind == "vision") {
+    const base::OnVision nobody = [](const std::shared_ptr<const base::Vision>&) {};
+    return std::make_unique<SensorPart<vision::Driver, vision::Params>>(name, s.vision, nobody);
   }
   return std::make_unique<SensorPart<velodyne::Driver, velodyne::Params>>(name, s.velodyne,
                                                                           on_sight);

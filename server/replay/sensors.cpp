@@ -19,7 +19,7 @@ std::string listed(const std::vector<std::string>& names) {
 }  // namespace
 
 bool is_sensor_kind(std::string_view speaker) noexcept {
-  constexpr std::array<std::string_view, 4> kKinds{"cloud", "ranges", "sick", "velodyne"};
+  constexpr std::array<std::string_view, 5> kKinds{"cloud", "ranges", "sick", "velodyne", "vision"};
   return std::ranges::find(kKinds, speaker) != kKinds.end();
 }
 
@@ -56,6 +56,7 @@ Sensor as_recorded(Sensor sensor) {
   sensor.cloud.silent_reopen_s = 0.0;
   sensor.ranges.silent_reopen_s = 0.0;
   sensor.velodyne.silent_reopen_s = 0.0;
+  sensor.vision.silent_reopen_s = 0.0;
   sensor.sick.silent_after_s = kNever_s;  // then the connection would be made anew
   sensor.sick.configure = false;
   sensor.recorded = true;

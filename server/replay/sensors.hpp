@@ -10,7 +10,7 @@
 
 namespace roverd {
 
-/// "sick", "velodyne", "cloud" or "ranges": a kind of sensors, and no driver.
+/// "sick", "velodyne", "vision", "cloud" or "ranges": a kind of sensors, and no driver.
 bool is_sensor_kind(std::string_view speaker) noexcept;
 
 /// The name that recording_file() gave, as far as it is one of ours: "20260301T120000Z-front.pcap"

@@ -21,6 +21,7 @@
 #include "twist/binary.hpp"
 #include "twist/text.hpp"
 #include "velodyne/codec.hpp"
+#include "vision/codec.hpp"
 
 namespace roverd {
 namespace {
@@ -75,7 +76,7 @@ class Jury {
   }
 
  private:
-  using Votes = std::array<std::pair<const char*, std::uint64_t>, 12>;
+  using Votes = std::array<std::pair<const char*, std::uint64_t>, 13>;
   Votes votes() const {
     return {{
         {"gnss", receiver_.counts().intact()},
@@ -88,6 +89,7 @@ class Jury {
         {"bumper", bumpers_},
         {"sick", scanner_.counts().telegrams},
         {"velodyne", packets_},
+        {"vision", visions_},
         {"cloud", images_},
         {kRangers, ranges_},
     }};
@@ -103,6 +105,7 @@ class Jury {
   void hear_sensors(base::Bytes bytes) {
     scanner_.feed(bytes, [](const sick::Telegram&) {});
     if (velodyne::decode(bytes).fault == velodyne::Fault::None) ++packets_;
+    if (vision::decode(bytes).fault == vision::Fault::None) ++visions_;
     camera_.feed(bytes, [this](const cloud::Frame&) { ++images_; });
     range_lines_.feed(
         bytes,
@@ -122,6 +125,7 @@ class Jury {
   cloud::Decoder camera_{cloud::kMaxPoints};
   ranges::Lines range_lines_;
   std::uint64_t packets_ = 0;
+  std::uint64_t visions_ = 0;
   std::uint64_t images_ = 0;
   std::uint64_t ranges_ = 0;
   std::uint64_t reports_ = 0;

@@ -22,10 +22,10 @@ struct Kind {
   std::string_view name;
   Reader (*make)(OnObject);
 };
-constexpr std::array kKinds{Kind{"bunker", bunker_reader}, Kind{"nmea", nmea_reader},
-                            Kind{"ubx", ubx_reader},       Kind{"mti", mti_reader},
-                            Kind{"sick", sick_reader},     Kind{"vlp16", vlp16_reader},
-                            Kind{"cloud", cloud_reader},   Kind{"ranges", ranges_reader}};
+constexpr std::array kKinds{
+    Kind{"bunker", bunker_reader}, Kind{"nmea", nmea_reader},     Kind{"ubx", ubx_reader},
+    Kind{"mti", mti_reader},       Kind{"sick", sick_reader},     Kind{"vlp16", vlp16_reader},
+    Kind{"cloud", cloud_reader},   Kind{"ranges", ranges_reader}, Kind{"vision", vision_reader}};
 
 int say(int code, const std::string& cause) {
   std::fprintf(stderr, "roverd: %s\n", cause.c_str());

@@ -9,6 +9,7 @@
 //   sick     the bytes of a SICK scanner, or a session as text    decode_sick.cpp
 //   cloud    frames of docs/cloud-format.md                        decode_cloud.cpp
 //   ranges   lines of ultrasonic and infrared rangers              decode_cloud.cpp
+//   vision   datagrams of a vision program: a capture, or lines    decode_vision.cpp
 //
 // Fields are named as in the fact sheets' tables. What is not understood is a line too, with the
 // reason under "refused". Files of any size: nothing but the present block is kept. New kinds are a
@@ -55,12 +56,16 @@ Reader sick_reader(OnObject on_object);
 Reader cloud_reader(OnObject on_object);
 /// Objects: line and range_m: metres (a bare number is taken as such), "nothing" or "unknown".
 Reader ranges_reader(OnObject on_object);
+/// Takes a capture (pcap) or one datagram a line. Objects: packet (counted from 0), names,
+/// landmarks (name, x_m, y_m, z_m), obstacles, planes (centre, normal, size), in the camera's axes;
+/// of a capture also time, from, to_port.
+Reader vision_reader(OnObject on_object);
 
 /// The text of one line, with its line feed. Bytes that are not UTF-8 are replaced.
 std::string to_line(const nlohmann::ordered_json& object);
 
-/// roverd decode KIND FILE. @param kind "bunker", "nmea", "ubx", "mti", "sick", "vlp16", "cloud" or
-/// "ranges"
+/// roverd decode KIND FILE. @param kind "bunker", "nmea", "ubx", "mti", "sick", "vlp16", "cloud",
+/// "ranges" or "vision"
 /// @param file "-": standard input. @return exit code: 0 all was read (or nobody wants to hear
 /// more), 1 the file cannot be read or the output not written, 2 there is no such kind.
 int decode(const std::string& kind, const std::string& file);

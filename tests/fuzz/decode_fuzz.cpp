@@ -34,8 +34,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size < 2) return 0;
   const base::Bytes bytes(data + 2, size - 2);
   const std::size_t piece = data[0] % 64U + 1U;
-  constexpr std::array kReaders{bunker_reader, nmea_reader, ubx_reader,
-                                mti_reader,    sick_reader, vlp16_reader};
+  constexpr std::array kReaders{bunker_reader, nmea_reader,  ubx_reader,   mti_reader,
+                                sick_reader,   vlp16_reader, vision_reader};
   const auto make = kReaders[data[1] % kReaders.size()];
   const std::string whole = lines(make, bytes, size);
   // Skipped bytes are told piece by piece.

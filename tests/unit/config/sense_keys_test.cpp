@@ -64,6 +64,7 @@ TEST(SenseKeys, AllStandInThePageAsTheyAreAndNoOthers) {
   rows("", ranges::Params{});
   rows("", sick::Params{});
   rows("", velodyne::Params{});
+  rows("", vision::Params{});
   const auto page = rows_of_the_page();
   for (const std::string& line : rows.out) {
     EXPECT_EQ(page.count(line), rows.out.count(line)) << "in docs/sense-keys.md is missing:\n"

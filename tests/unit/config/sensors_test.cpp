@@ -196,6 +196,7 @@ TEST(Sensors, AKindIsHeardByItsOwnLinksOnly) {
        std::vector<std::pair<std::string, std::string>>{{"sick", "udp:2111"},
                                                         {"sick", "listen:2111"},
                                                         {"velodyne", "serial:/dev/ttyUSB0:9600"},
+                                                        {"vision", "tcp:10.0.0.2:7101"},
                                                         {"cloud", "udp:7001"},
                                                         {"cloud", "listen:0"},
                                                         {"cloud", "listen:65536"},
@@ -240,6 +241,19 @@ decimate = 4
   EXPECT_GE(as_heard(face).max_points, 1280 * 720);
   EXPECT_NE(refused("[sensors.face]\nkind = \"depth\"\nlink = \"v4l2:/dev/video2\"\n")
                 .find("sensors.face.fx must be said"),
+            std::string::npos);
+}
+
+TEST(Sensors, AVisionProgramTellsWhatItRecognisedAndIsNoPartOfThePicture) {
+  const std::string front = "[sensors.front]\nkind = \"vision\"\nlink = \"udp:7101\"\n";
+  const auto s = with(front + "latency_s = 0.3\nyaw_deg = 20\nx_m = 0.2\n");
+  ASSERT_TRUE(s) << s.error().detail;
+  EXPECT_EQ(s->sensors.at("front").vision.latency_s, 0.3);
+  EXPECT_FALSE(s->sensors.at("front").said.ranging());
+  EXPECT_NE(refused(front + "pitch_deg = 5\n").find("sensors.front.pitch_deg must be 0"),
+            std::string::npos);
+  EXPECT_NE(refused(front + "[sensors.side]\nkind = \"vision\"\nlink = \"udp:7101\"\n")
+                .find("takes UDP port 7101"),
             std::string::npos);
 }
 
