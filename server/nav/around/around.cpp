@@ -17,6 +17,8 @@ constexpr double kArc_m = 0.6;        // of what could turn on the spot
 constexpr double kWheelPlay = 1.05;   // a tenth of the steering is the tracker's, half of it ours
 constexpr double kSwing_m = 4.0;      // so much farther than the start ways are looked for
 constexpr double kShortest_m = 0.25;  // a part that is shorter is none
+constexpr double kOnwards_m = 0.5;    // so near to the window's end is its end
+constexpr float kOnwardsCost = 2.0F;  // of what drives there instead of joining the route
 
 }  // namespace
 
@@ -31,12 +33,16 @@ struct Planner::Impl {
   Trace trace;
   std::vector<Piece> pieces;
   std::vector<Field::Goal> goals;
+  bool onwards = false;  ///< the window's end is as good, but for this
+  float onwards_cost = 0.0F;
 
   void plan(const sense::Patch& patch, const Question& q, Answer& a);
   void set_goals();
+  void aim_onwards(Wanted& w) const;
   Ended try_onwards(const Question& q, Wanted& w, const Price& price);
   Why unreached(const Question& q);
   bool reaches(const Question& q, Borders borders);
+  bool leads_out(const Question& q);
   void answer(const sense::Patch& patch, const Question& q, Answer& a);
   float beyond(const Question& q) const noexcept {
     return static_cast<float>(kSwing_m + 2.0 * q.kinematics.min_radius_m);
@@ -79,7 +85,10 @@ void Planner::Impl::set_goals() {
     goals.push_back({{t.pose.x_m, t.pose.y_m}, t.cost});
   }
   // Blocked as far as the window goes: to its end, anywhere in the corridor.
-  if (goals.empty()) field.across(ahead.end_m() - 0.5, ahead.end_m() + 0.1, goals);
+  if (goals.empty()) onwards_cost = 0.0F;
+  if (goals.empty() || onwards) {
+    field.across(ahead.end_m() - kOnwards_m, ahead.end_m() + 0.1, onwards_cost, goals);
+  }
 }
 
 bool Planner::Impl::reaches(const Question& q, Borders borders) {
@@ -88,12 +97,27 @@ bool Planner::Impl::reaches(const Question& q, Borders borders) {
   return field.to_go(q.pose.x_m, q.pose.y_m) < Field::kNever;
 }
 
+void Planner::Impl::aim_onwards(Wanted& w) const {
+  if (!w.targets.empty() && !onwards) return;
+  w.onwards_m = ahead.end_m() - kOnwards_m;
+  w.onwards_cost = onwards_cost;
+}
+
+/// Within the corridor and the fence it may leave the window, not merely backwards, and so go
+/// round.
+bool Planner::Impl::leads_out(const Question& q) {
+  field.price_all(q, body.inner_m(), body.least_m(), {});
+  const Field::Goal here{{q.pose.x_m, q.pose.y_m}, 0.0F};
+  field.flood({&here, 1}, here.at, Field::kNever);
+  return field.edge_reached(q.here_m);
+}
+
 /// What would have to be otherwise.
 Why Planner::Impl::unreached(const Question& q) {
   if (reaches(q, {false, true})) return Why::Corridor;
   if (reaches(q, {true, false})) return Why::Fence;
   if (reaches(q, {false, false})) return Why::Corridor;
-  return Why::Gap;
+  return leads_out(q) ? Why::Reach : Why::Gap;
 }
 
 void Planner::Impl::plan(const sense::Patch& patch, const Question& q, Answer& a) {
@@ -115,6 +139,9 @@ void Planner::Impl::plan(const sense::Patch& patch, const Question& q, Answer& a
     a.why = Why::Target;
     return;
   }
+  // What needs metres to turn seldom joins the route again within the window: both at once.
+  onwards = !q.kinematics.pivots && !ahead.ends();
+  onwards_cost = kOnwardsCost;
   set_goals();
   field.flood(goals, {q.pose.x_m, q.pose.y_m}, beyond(q));
   if (field.to_go(q.pose.x_m, q.pose.y_m) >= Field::kNever) {
@@ -130,10 +157,11 @@ void Planner::Impl::plan(const sense::Patch& patch, const Question& q, Answer& a
   w.radius_m = q.kinematics.pivots ? std::max(q.kinematics.min_radius_m, kArc_m)
                                    : kWheelPlay * q.kinematics.min_radius_m;
   w.expand = effort.expand;
+  aim_onwards(w);
   const Price price{&field, &body, q.body.reach_m()};
   Ended ended = search.run(w, price);
   a.expanded = search.expanded();
-  if (ended != Ended::Found && !ahead.ends()) {
+  if (ended != Ended::Found && !ahead.ends() && !w.onwards_m) {
     ended = try_onwards(q, w, price);
     a.expanded += search.expanded();
   }
@@ -154,12 +182,13 @@ Ended Planner::Impl::try_onwards(const Question& q, Wanted& w, const Price& pric
   field.flood(goals, {q.pose.x_m, q.pose.y_m}, beyond(q));
   w.targets = {};
   w.expand = w.expand / 4;
+  aim_onwards(w);
   return search.run(w, price);
 }
 
 void Planner::Impl::answer(const sense::Patch& patch, const Question& q, Answer& a) {
   trace.lay(q.pose, pieces, q.body.reach_m(), a.path);
-  const bool whole = !ahead.targets().empty();
+  const bool whole = search.target() != Search::kNone;
   a.found = whole ? Found::Way : Found::Part;
   a.why = whole ? Why::None : Why::Unseen;
   const std::size_t seen = trace.seen(patch, q, field, a.path);
@@ -211,6 +240,8 @@ std::string_view to_string(Why why) noexcept {
   switch (why) {
     case Why::Gap:
       return "gap";
+    case Why::Reach:
+      return "reach";
     case Why::Corridor:
       return "corridor";
     case Why::Fence:
@@ -235,6 +266,8 @@ std::string_view sentence(Why why) noexcept {
   switch (why) {
     case Why::Gap:
       return "no gap is wide enough";
+    case Why::Reach:
+      return "what stands there goes on beyond what is looked at";
     case Why::Corridor:
       return "the corridor leaves no way";
     case Why::Fence:

@@ -84,6 +84,7 @@ struct Question {
 enum class Why : std::uint8_t {
   None,
   Gap,       ///< no gap is wide enough
+  Reach,     ///< as far as the window goes there is none; there may be one beyond
   Corridor,  ///< there is one outside of the corridor
   Fence,     ///< there is one outside of the fence
   Unseen,    ///< it leads through what no sensor has seen
@@ -92,7 +93,7 @@ enum class Why : std::uint8_t {
   Target,    ///< the route's end, where the mission wants to stand, lies in something
   Effort     ///< the search was given up
 };
-std::string_view to_string(Why why) noexcept;  // none gap corridor fence unseen turning …
+std::string_view to_string(Why why) noexcept;  // none gap reach corridor fence unseen …
 /// For people: "no gap is wide enough".
 std::string_view sentence(Why why) noexcept;
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 namespace roverd::nav::around {
 
@@ -11,6 +13,8 @@ constexpr float kBetween_m = 0.010F;  // what interpolation may tell too much
 constexpr float kRoom_m = 0.02F;      // the same of coarse cells
 constexpr double kAboutStart_m = 1.5;
 constexpr float kNearer_m = 0.003F;
+constexpr float kVouches_m = 0.03F;  // what interpolation may tell too much, twice
+constexpr double kBeyond_m = 3.0 * Body::kApart_m;
 
 void along_outline(const sense::Footprint& shape, double apart_m, std::vector<Vec2>& out) {
   out.clear();
@@ -60,14 +64,23 @@ std::pair<double, double> slice(const sense::Footprint& shape, double x) noexcep
 void Body::set(const sense::Footprint& shape, double least_m, const Field& field) {
   field_ = &field;
   allowed_ = false;
-  reach_m_ = shape.reach_m();
   inner_m_ = std::max(0.0, -shape.distance_m({0.0, 0.0}));
   least_m_ = static_cast<float>(least_m + 0.7072 * field.cell_m()) + kBetween_m;
   sample_m_ = std::sqrt(least_m_ * least_m_ + static_cast<float>(2.0 * kApart_m * kApart_m));
-  along_outline(shape, 2.0 * kApart_m, outline_);
-  along_outline(shape, 0.4 * kApart_m, dense_);
-  within_outline(shape, 4.0 * kApart_m, inner_);
-  within_outline(shape, 2.0 * kApart_m, dense_inner_);
+  lay(shape, 2.0 * kApart_m, 4.0 * kApart_m, coarse_);
+  lay(shape, 0.4 * kApart_m, 2.0 * kApart_m, dense_);
+  cover(shape);
+}
+
+void Body::lay(const sense::Footprint& shape, double apart_m, double inner_apart_m, Points& out) {
+  out.apart_m = apart_m;
+  along_outline(shape, apart_m, out.outline);
+  within_outline(shape, inner_apart_m, out.inner);
+  out.inner_m = static_cast<float>(0.7075 * inner_apart_m);
+}
+
+/// Circles in a row, and one about everything.
+void Body::cover(const sense::Footprint& shape) {
   double back = 1e9;
   double front = -1e9;
   double half = 0.0;
@@ -76,32 +89,51 @@ void Body::set(const sense::Footprint& shape, double least_m, const Field& field
     front = std::max(front, c.x);
     half = std::max(half, std::abs(c.y));
   }
-  const int n = std::clamp(static_cast<int>(std::ceil((front - back) / (0.8 * half))), 1, 12);
-  cover_.clear();
-  for (int i = 0; i < n; ++i) {
-    const double a = back + (front - back) * i / n;
-    const double b = back + (front - back) * (i + 1) / n;
-    double low = 1e9;
-    double high = -1e9;
-    const auto take = [&](double x) {
-      const auto [l, h] = slice(shape, x);
-      low = std::min(low, l);
-      high = std::max(high, h);
-    };
-    take(a);
-    take(b);
-    for (const Vec2 c : shape.corners()) {
-      if (c.x > a && c.x < b) take(c.x);
-    }
-    const Vec2 middle{0.5 * (a + b), 0.5 * (low + high)};
-    cover_.push_back({middle, static_cast<float>(std::hypot(0.5 * (b - a), 0.5 * (high - low)))});
-  }
   about_.at = {0.5 * (back + front), 0.0};
   about_.radius_m = 0.0F;
   for (const Vec2 c : shape.corners()) {
     const Vec2 d = c - about_.at;
     about_.radius_m = std::max(about_.radius_m, static_cast<float>(std::hypot(d.x, d.y)));
   }
+  const int n = std::clamp(static_cast<int>(std::ceil((front - back) / (0.8 * half))), 1, 12);
+  cover_.clear();
+  for (int i = 0; i < n; ++i) {
+    cover_.push_back(
+        circle_of(shape, back + (front - back) * i / n, back + (front - back) * (i + 1) / n));
+  }
+}
+
+/// About what of the body lies between two x.
+Body::Circle Body::circle_of(const sense::Footprint& shape, double from, double to) const {
+  double low = 1e9;
+  double high = -1e9;
+  const auto take = [&](double x) {
+    const auto [l, h] = slice(shape, x);
+    low = std::min(low, l);
+    high = std::max(high, h);
+  };
+  take(from);
+  take(to);
+  for (const Vec2 c : shape.corners()) {
+    if (c.x > from && c.x < to) take(c.x);
+  }
+  Circle circle;
+  circle.at = {0.5 * (from + to), 0.5 * (low + high)};
+  circle.radius_m = static_cast<float>(std::hypot(0.5 * (to - from), 0.5 * (high - low)));
+  // What lies just beyond, too: between two points it is the nearer one that vouches.
+  const auto lies = [&](Vec2 p) { return p.x >= from - kBeyond_m && p.x <= to + kBeyond_m; };
+  const auto pick = [&](const Points& points, Circle::Part& part) {
+    for (std::size_t k = 0; k < points.outline.size(); ++k) {
+      if (!lies(points.outline[k])) continue;
+      const bool goes_on = !part.outline.empty() && part.outline.back().last == k;
+      if (!goes_on) part.outline.push_back({k, k});
+      part.outline.back().last = k + 1;
+    }
+    std::ranges::copy_if(points.inner, std::back_inserter(part.inner), lies);
+  };
+  pick(coarse_, circle.coarse);
+  pick(dense_, circle.dense);
+  return circle;
 }
 
 void Body::allow_start(const Pose2& start) {
@@ -109,11 +141,10 @@ void Body::allow_start(const Pose2& start) {
   allowed_ = true;
   start_clear_m_ = Field::kFar_m;
   start_room_m_ = Field::kFar_m;
-  const double c = std::cos(start.yaw_rad);
-  const double s = std::sin(start.yaw_rad);
-  for (const Vec2 p : dense_) {
-    const double x = start.x_m + c * p.x - s * p.y;
-    const double y = start.y_m + s * p.x + c * p.y;
+  const Stand at{start};
+  for (const Vec2 p : dense_.outline) {
+    const double x = at.x_m + at.cos * p.x - at.sin * p.y;
+    const double y = at.y_m + at.sin * p.x + at.cos * p.y;
     start_clear_m_ = std::min(start_clear_m_, field_->clear_m(x, y));
     start_room_m_ = std::min(start_room_m_, field_->room_m(x, y));
   }
@@ -121,52 +152,69 @@ void Body::allow_start(const Pose2& start) {
   start_room_m_ -= kNearer_m;
 }
 
-bool Body::circles_fit(const Pose2& pose, double c, double s, bool borders) const noexcept {
-  const auto fits = [&](const Circle& k) {
-    const double x = pose.x_m + c * k.at.x - s * k.at.y;
-    const double y = pose.y_m + s * k.at.x + c * k.at.y;
-    return field_->clear_m(x, y) >= k.radius_m + least_m_ &&
-           (!borders || field_->room_m(x, y) >= k.radius_m + kRoom_m);
-  };
-  return fits(about_) || std::all_of(cover_.begin(), cover_.end(), fits);
+bool Body::circle_fits(const Stand& at, const Circle& circle, bool borders) const noexcept {
+  const double x = at.x_m + at.cos * circle.at.x - at.sin * circle.at.y;
+  const double y = at.y_m + at.sin * circle.at.x + at.cos * circle.at.y;
+  return field_->clear_m(x, y) >= circle.radius_m + least_m_ &&
+         (!borders || field_->room_m(x, y) >= circle.radius_m + kRoom_m);
 }
 
-bool Body::fits(const Pose2& pose) const noexcept {
-  if (!field_->inside(pose.x_m, pose.y_m, 0.0)) return false;
-  const double c = std::cos(pose.yaw_rad);
-  const double s = std::sin(pose.yaw_rad);
-  if (circles_fit(pose, c, s, true)) return true;
-  const double dx = pose.x_m - start_.x_m;
-  const double dy = pose.y_m - start_.y_m;
-  float clear = sample_m_;
-  float room = kRoom_m;
-  if (allowed_ && dx * dx + dy * dy < kAboutStart_m * kAboutStart_m &&
-      (start_clear_m_ < clear || start_room_m_ < room)) {
-    clear = std::min(clear, start_clear_m_);
-    room = std::min(room, start_room_m_);
-    return all_clear(pose, dense_, clear, room) &&
-           all_clear(pose, dense_inner_, static_cast<float>(1.42 * kApart_m), -Field::kFar_m);
-  }
-  return all_clear(pose, outline_, clear, room) &&
-         all_clear(pose, inner_, static_cast<float>(2.83 * kApart_m), -Field::kFar_m);
+/// Where a circle has room, what of the body lies in it has.
+bool Body::stands(const Stand& at, bool borders) const noexcept {
+  const float room = borders ? kRoom_m : -Field::kFar_m;
+  return std::all_of(cover_.begin(), cover_.end(), [&](const Circle& circle) {
+    return circle_fits(at, circle, borders) ||
+           part_fits(at, coarse_, circle.coarse, sample_m_, room);
+  });
 }
 
-bool Body::all_clear(const Pose2& pose, const std::vector<Vec2>& points, float clear,
+/// As near as it is there, and no nearer.
+bool Body::stands_as_at_start(const Stand& at) const noexcept {
+  const float clear = std::min(sample_m_, start_clear_m_);
+  const float room = std::min(kRoom_m, start_room_m_);
+  return std::all_of(cover_.begin(), cover_.end(), [&](const Circle& circle) {
+    return circle_fits(at, circle, true) || part_fits(at, dense_, circle.dense, clear, room);
+  });
+}
+
+bool Body::fits(const Stand& at) const noexcept {
+  if (!field_->inside(at.x_m, at.y_m, 0.0)) return false;
+  if (circle_fits(at, about_, true)) return true;
+  const double dx = at.x_m - start_.x_m;
+  const double dy = at.y_m - start_.y_m;
+  const bool as_at_start = allowed_ && dx * dx + dy * dy < kAboutStart_m * kAboutStart_m &&
+                           (start_clear_m_ < sample_m_ || start_room_m_ < kRoom_m);
+  return as_at_start ? stands_as_at_start(at) : stands(at, true);
+}
+
+/// Along the outline nothing comes nearer faster than one goes: what has more room than is asked
+/// for vouches for its neighbours.
+bool Body::part_fits(const Stand& at, const Points& points, const Circle::Part& part, float clear,
                      float room) const noexcept {
-  const double c = std::cos(pose.yaw_rad);
-  const double s = std::sin(pose.yaw_rad);
-  return std::all_of(points.begin(), points.end(), [&](Vec2 p) {
-    const double x = pose.x_m + c * p.x - s * p.y;
-    const double y = pose.y_m + s * p.x + c * p.y;
-    return field_->clear_m(x, y) >= clear &&
-           (room <= -Field::kFar_m || field_->room_m(x, y) >= room);
+  const bool borders = room > -Field::kFar_m;
+  const auto place = [&at](Vec2 p) {
+    return Vec2{at.x_m + at.cos * p.x - at.sin * p.y, at.y_m + at.sin * p.x + at.cos * p.y};
+  };
+  const auto per_point = static_cast<float>(1.0 / points.apart_m);
+  for (const Run& run : part.outline) {
+    for (std::size_t i = run.first; i < run.last;) {
+      const Vec2 p = place(points.outline[i]);
+      float more = field_->clear_m(p.x, p.y) - clear;
+      if (more < 0.0F) return false;
+      if (borders) more = std::min(more, field_->room_m(p.x, p.y) - room);
+      if (more < 0.0F) return false;
+      i += 1 + static_cast<std::size_t>(std::max(0.0F, more - kVouches_m) * per_point);
+    }
+  }
+  return std::ranges::all_of(part.inner, [&](Vec2 q) {
+    const Vec2 p = place(q);
+    return field_->clear_m(p.x, p.y) >= points.inner_m;
   });
 }
 
 bool Body::clears(const Pose2& pose) const noexcept {
-  if (circles_fit(pose, std::cos(pose.yaw_rad), std::sin(pose.yaw_rad), false)) return true;
-  return all_clear(pose, outline_, sample_m_, -Field::kFar_m) &&
-         all_clear(pose, inner_, static_cast<float>(2.83 * kApart_m), -Field::kFar_m);
+  const Stand at{pose};
+  return circle_fits(at, about_, false) || stands(at, false);
 }
 
 bool Body::touches(const sense::Patch& patch, const sense::Footprint& shape, const Pose2& pose) {

@@ -1,16 +1,29 @@
 #pragma once
 // May the body stand here? Asked some hundred thousand times a question, so in three steps: one
-// circle about everything, a row of circles that cover the body, and where these say no, points
-// along its outline.
+// circle about everything, a row of circles that cover the body, and where one of these says no,
+// points along the outline in it.
 //
 // Between two points, and between two poses of a sweep, something could come nearer than both say:
 // as both lie at most kApart_m from what was looked at, by Pythagoras the distance asked for grows.
 
+#include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "nav/around/field.hpp"
 
 namespace roverd::nav::around {
+
+/// A pose with its heading as a direction.
+struct Stand {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double cos = 1.0;
+  double sin = 0.0;
+
+  explicit Stand(const Pose2& pose) noexcept
+      : x_m(pose.x_m), y_m(pose.y_m), cos(std::cos(pose.yaw_rad)), sin(std::sin(pose.yaw_rad)) {}
+};
 
 class Body {
  public:
@@ -21,7 +34,8 @@ class Body {
   /// Where the robot stands it may stand, and about there come no nearer to anything.
   void allow_start(const Pose2& start);
 
-  bool fits(const Pose2& pose) const noexcept;
+  bool fits(const Stand& at) const noexcept;
+  bool fits(const Pose2& pose) const noexcept { return fits(Stand{pose}); }
   /// Of what stands there only, without borders and the allowance of the start.
   bool clears(const Pose2& pose) const noexcept;
   /// Something stands within the outline.
@@ -33,24 +47,44 @@ class Body {
   }
 
  private:
+  /// Of a row of points, from `first` on, `last` left out.
+  struct Run {
+    std::size_t first = 0;
+    std::size_t last = 0;
+  };
+  /// The whole body as points.
+  struct Points {
+    double apart_m = 0.0;
+    std::vector<Vec2> outline;  ///< in order
+    std::vector<Vec2> inner;    ///< what is small and stands wholly inside is met by these,
+    float inner_m = 0.0F;       ///< if it comes so near
+  };
   struct Circle {
     Vec2 at;
     float radius_m = 0.0F;
+    /// What of the points lies in it.
+    struct Part {
+      std::vector<Run> outline;
+      std::vector<Vec2> inner;
+    };
+    Part coarse;
+    Part dense;
   };
-  bool circles_fit(const Pose2& pose, double c, double s, bool borders) const noexcept;
-
-  bool all_clear(const Pose2& pose, const std::vector<Vec2>& points, float clear,
+  static void lay(const sense::Footprint& shape, double apart_m, double inner_apart_m, Points& out);
+  void cover(const sense::Footprint& shape);
+  Circle circle_of(const sense::Footprint& shape, double from, double to) const;
+  bool circle_fits(const Stand& at, const Circle& circle, bool borders) const noexcept;
+  bool stands(const Stand& at, bool borders) const noexcept;
+  bool stands_as_at_start(const Stand& at) const noexcept;
+  bool part_fits(const Stand& at, const Points& points, const Circle::Part& part, float clear,
                  float room) const noexcept;
 
   const Field* field_ = nullptr;
-  std::vector<Circle> cover_;
-  std::vector<Vec2> outline_;  ///< 2 kApart_m apart
-  std::vector<Vec2> dense_;    ///< a fifth of that, for what is near at the start
-  std::vector<Vec2> inner_;    ///< within: what is small and stands wholly inside is met by these
-  std::vector<Vec2> dense_inner_;
   Circle about_;
+  std::vector<Circle> cover_;
+  Points coarse_;  ///< 2 kApart_m apart
+  Points dense_;   ///< a fifth of that, for what is near at the start
   double inner_m_ = 0.0;
-  double reach_m_ = 0.0;
   float least_m_ = 0.0F;  ///< from any point of the body to the middle of what stands there
   float sample_m_ = 0.0F;
   Pose2 start_;

@@ -210,13 +210,26 @@ void Field::flood(std::span<const Goal> goals, Vec2 from, float beyond) {
   }
 }
 
-void Field::across(double from_m, double to_m, std::vector<Goal>& out) const {
+bool Field::edge_reached(double after_m) const noexcept {
+  const auto n = static_cast<std::size_t>(n_);
+  const auto reached = [&](std::size_t i) {
+    return to_go_[i]<kNever&& static_cast<double>(along_[i])> after_m;
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    if (reached(i) || reached((n - 1) * n + i) || reached(i * n) || reached(i * n + n - 1)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void Field::across(double from_m, double to_m, float cost, std::vector<Goal>& out) const {
   const auto n = static_cast<std::size_t>(n_);
   for (std::int32_t y = 0; y < n_; ++y) {
     for (std::int32_t x = 0; x < n_; ++x) {
       const std::size_t i = static_cast<std::size_t>(y) * n + static_cast<std::size_t>(x);
       const auto along = static_cast<double>(along_[i]);
-      if (price_[i] > 0.0F && along >= from_m && along <= to_m) out.push_back({middle(x, y), 0.0F});
+      if (price_[i] > 0.0F && along >= from_m && along <= to_m) out.push_back({middle(x, y), cost});
     }
   }
 }

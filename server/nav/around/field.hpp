@@ -60,7 +60,15 @@ class Field {
   }
 
   /// Every coarse cell that the body may pass and that lies between two places of the route.
-  void across(double from_m, double to_m, std::vector<Goal>& out) const;
+  void across(double from_m, double to_m, float cost, std::vector<Goal>& out) const;
+  /// Along the route, of its place nearest to the coarse cell there; outside less than any.
+  double along_m(double x, double y) const noexcept {
+    const std::size_t i = coarse(x, y);
+    return i == kNowhere ? -1e9 : static_cast<double>(along_[i]);
+  }
+
+  /// flood() came to the window's edge, beside a place of the route after this one.
+  bool edge_reached(double after_m) const noexcept;
 
   double cell_m() const noexcept { return cell_m_; }
   bool inside(double x, double y, double margin_m) const noexcept;

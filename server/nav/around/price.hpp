@@ -23,11 +23,20 @@ struct Price {
 
   float of(const Pose2& from, const Piece& piece) const noexcept {
     const int n = piece.steps(2.0 * Body::kApart_m, reach_m);
+    // Every step is the same, seen from the pose before: no angle is taken in between.
+    const Pose2 step = piece.after({}, 1.0 / n);
+    const double step_cos = std::cos(step.yaw_rad);
+    const double step_sin = std::sin(step.yaw_rad);
+    Stand at{from};
     float sum = 0.0F;
     for (int i = 1; i <= n; ++i) {
-      const Pose2 p = piece.after(from, static_cast<double>(i) / n);
-      if (!body->fits(p)) return Field::kNever;
-      sum += field->price(p.x_m, p.y_m);
+      at.x_m += at.cos * step.x_m - at.sin * step.y_m;
+      at.y_m += at.sin * step.x_m + at.cos * step.y_m;
+      const double cos = at.cos;
+      at.cos = cos * step_cos - at.sin * step_sin;
+      at.sin = at.sin * step_cos + cos * step_sin;
+      if (!body->fits(at)) return Field::kNever;
+      sum += field->price(at.x_m, at.y_m);
     }
     if (piece.pivot()) return kPivot_m + kTurn_m * static_cast<float>(std::abs(piece.turn_rad));
     const auto way = static_cast<float>(std::abs(piece.length_m));

@@ -139,10 +139,19 @@ void Search::aim(std::uint32_t from, const Wanted& w, const Price& price) {
   }
 }
 
-bool Search::arrived(const Node& n, const Wanted& w, const Price& price) const noexcept {
-  if (price.field->to_go(n.x, n.y) > 0.0F) return false;
-  const double route_rad = w.lane->pose(w.lane->beside({n.x, n.y}).along_m).yaw_rad;
-  return std::abs(base::angle_diff_rad(route_rad, n.yaw)) < base::kPi / 3.0;
+/// The window's end is an end, if nothing better is found.
+void Search::arrive(std::uint32_t at, const Wanted& w) noexcept {
+  const Node& n = nodes_[at];
+  const Beside by = w.lane->beside({n.x, n.y});
+  if (by.along_m < *w.onwards_m) return;
+  const double route_rad = w.lane->pose(by.along_m).yaw_rad;
+  if (std::abs(base::angle_diff_rad(route_rad, n.yaw)) >= base::kPi / 3.0) return;
+  const float cost = n.g + w.onwards_cost * (1.0F + static_cast<float>(by.distance_m));
+  if (cost >= best_) return;
+  best_ = cost;
+  best_from_ = at;
+  best_link_ = {};
+  target_ = kNone;
 }
 
 void Search::collect(std::uint32_t from) {
@@ -169,8 +178,7 @@ Ended Search::run(const Wanted& w, const Price& price) {
   best_link_ = {};
   target_ = kNone;
   offer(w.start, 0.0F, 0, kStart, price.field->to_go(w.start.x_m, w.start.y_m), *slot(w.start));
-  bool reached = false;
-  while (!open_.empty() && !reached) {
+  while (!open_.empty()) {
     const Open top = open_.front();
     if (best_ < Field::kNever && top.f >= best_ - std::max(kGoodEnough_m, kGoodEnough * best_)) {
       break;
@@ -182,11 +190,9 @@ Ended Search::run(const Wanted& w, const Price& price) {
     if (n.closed) continue;
     n.closed = true;
     ++expanded_;
-    if (w.targets.empty() && arrived(n, w, price)) {
-      best_ = n.g;
-      best_from_ = top.node;
-      reached = true;
-      break;
+    if (w.onwards_m && price.field->along_m(n.x, n.y) >= *w.onwards_m - kCell_m) {
+      arrive(top.node, w);
+      if (w.targets.empty() && best_ < Field::kNever) break;
     }
     const float to_go = price.field->to_go(n.x, n.y);
     const auto now_and_then = static_cast<std::size_t>(std::clamp(2.0F * to_go, 1.0F, 24.0F));

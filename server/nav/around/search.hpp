@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -23,7 +24,11 @@ struct Target {
 
 struct Wanted {
   Pose2 start;
-  std::span<const Target> targets;  ///< empty: to anywhere that Field::flood began from
+  std::span<const Target> targets;
+  /// From here on along the route, pointing along it within 60 degrees, is an end as well: the
+  /// window's. Empty: it is none.
+  std::optional<double> onwards_m;
+  float onwards_cost = 0.0F;  ///< of ending there, and of every metre beside the route in addition
   const Lane* lane = nullptr;
   Kinematics kinematics;
   double radius_m = 0.6;  ///< of the narrowest arc
@@ -41,6 +46,7 @@ class Search {
 
   /// Of what was found.
   const std::vector<Piece>& pieces() const noexcept { return pieces_; }
+  /// kNone: onwards.
   std::size_t target() const noexcept { return target_; }
   std::size_t expanded() const noexcept { return expanded_; }
 
@@ -68,7 +74,7 @@ class Search {
   void aim(std::uint32_t from, const Wanted& w, const Price& price);
   void try_link(std::uint32_t from, const Link& link, std::size_t target, const Wanted& w,
                 const Price& price);
-  bool arrived(const Node& n, const Wanted& w, const Price& price) const noexcept;
+  void arrive(std::uint32_t at, const Wanted& w) noexcept;
   void collect(std::uint32_t from);
   std::uint32_t* slot(std::uint64_t key) noexcept;
   std::uint32_t* slot(const Pose2& at) noexcept;

@@ -75,6 +75,14 @@ TEST(AroundTest, AGapThatIsTooNarrowIsNone) {
   EXPECT_EQ(a.why, Why::Gap);
 }
 
+//   The corridor is wider than what is looked at: behind the wall's end there may be a way.
+TEST(AroundTest, AWallThatGoesOnBeyondTheWindowIsNamed) {
+  Scene s;
+  s.box(5.0, -10.0, 5.3, 10.0);
+  EXPECT_EQ(ask(s, along_x(12.0)).why, Why::Reach);
+  EXPECT_EQ(ask(s, along_x(5.0)).why, Why::Gap);
+}
+
 TEST(AroundTest, ACorridorThatIsTooNarrowIsNamed) {
   Scene s;
   s.box(4.0, -0.5, 5.0, 0.5);
