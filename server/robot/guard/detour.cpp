@@ -19,6 +19,8 @@ constexpr double kHand_m = 0.12;
 constexpr double kLook_m = 0.2;
 constexpr double kShorter = 0.8;
 constexpr double kArc_m = 0.25;
+constexpr double kTurn_radps = 0.4;
+constexpr double kElsewhere_m = 0.3;
 
 bool same_piece(const Place& a, const Place& b) noexcept {
   return a.reverse == b.reverse && !a.pivot && !b.pivot &&
@@ -74,7 +76,7 @@ std::uint64_t Detour::asks(base::Time now) noexcept {
 
 std::vector<Place> Detour::rest(const nav::sense::Pose2& local) const {
   std::vector<Place> out;
-  if (!answer_) return out;
+  if (!answer_ || turns_) return out;
   const nav::Path& path = trip_.path();
   const auto move = local * nav::sense::inverse(answer_->asked->local);
   const base::EnuPoint here = path.at(trip_.s_m());
@@ -133,14 +135,34 @@ Detour::Taken Detour::take(std::shared_ptr<const AroundAnswer> answer, const nav
   using nav::around::Found;
   if (answer->found.found != Found::Way && answer->found.found != Found::Part) return Taken::Left;
   std::vector<nav::Vertex> way = way_of(*answer, speed_mps);
-  if (way.empty()) return Taken::Left;
   const bool drove = drives();
-  if (drove && trip_.busy() && !worth(*answer, way)) return Taken::Left;
+  if (way.empty()) return drove && trip_.busy() ? Taken::Left : turn(std::move(answer), vehicle);
+  if (drove && !turns_ && trip_.busy() && !worth(*answer, way)) return Taken::Left;
+  const bool turned = std::exchange(turns_, false);
   stopped_ = false;
+  turned_at_.reset();
   answer_ = std::move(answer);
   nav::Trip::Order order;
   order.way = std::move(way);
   trip_.begin(std::move(order), vehicle, drove);
+  return drove && !turned ? Taken::Adopted : Taken::Begun;
+}
+
+/// To see more: as far as all is seen, the way only turns.
+Detour::Taken Detour::turn(std::shared_ptr<const AroundAnswer> answer,
+                           const nav::Vehicle& vehicle) {
+  const bool again = turned_at_ && base::distance_m(*turned_at_, vehicle.at) < kElsewhere_m;
+  if (again || answer->found.path.empty()) return Taken::Useless;
+  const bool drove = drives();
+  stopped_ = false;
+  turns_ = true;
+  turned_at_ = vehicle.at;
+  nav::Trip::Order order;
+  const auto back = nav::sense::inverse(answer->asked->local);
+  order.face_yaw_rad = (back * answer->found.path.back().pose).yaw_rad;
+  order.turn_radps = kTurn_radps;
+  answer_ = std::move(answer);
+  trip_.begin(std::move(order), vehicle, false);
   return drove ? Taken::Adopted : Taken::Begun;
 }
 
@@ -157,7 +179,7 @@ void Detour::interrupt(base::Time now) noexcept {
 }
 
 void Detour::reset() noexcept {
-  stopped_ = false;
+  stopped_ = turns_ = false;
   answer_.reset();
   trip_.reset();
   open_ = false;

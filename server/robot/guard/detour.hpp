@@ -13,13 +13,15 @@
 #include <optional>
 #include <vector>
 
+#include "base/geo.hpp"
 #include "base/setting.hpp"
 #include "nav/behave/trip.hpp"
 #include "robot/guard/around.hpp"
 
 namespace roverd::robot {
 
-/// The found way as a trip drives it, in the robot's frame. @param speed_mps at most
+/// The found way as a trip drives it, in the robot's frame; empty: it only turns on the spot.
+/// @param speed_mps at most
 std::vector<nav::Vertex> way_of(const AroundAnswer& answer, double speed_mps);
 
 class Detour {
@@ -41,8 +43,13 @@ class Detour {
 
   /// Of the last question, and not long ago.
   bool answers(const AroundAnswer& answer, base::Time now) const noexcept;
-  enum class Taken { Left, Adopted, Begun };
-  /// Such an answer.
+  enum class Taken {
+    Left,     ///< there is none, or what is driven is as good
+    Useless,  ///< it would only turn on the spot, where it turned already
+    Adopted,
+    Begun
+  };
+  /// Such an answer. One that is only a turn is driven once at a place: what is seen then decides.
   Taken take(std::shared_ptr<const AroundAnswer> answer, const nav::Vehicle& vehicle,
              double speed_mps);
   nav::TrackOutput step(const nav::Vehicle& vehicle, double limit_mps, base::Time now, double dt_s);
@@ -52,8 +59,10 @@ class Detour {
   bool failed() const noexcept { return trip_.state() == nav::Trip::State::Failed; }
   /// While it drives: what it drives, and how the way goes on.
   const AroundAnswer& answer() const noexcept { return *answer_; }
-  const nav::Path& path() const noexcept { return trip_.path(); }
-  double s_m() const noexcept { return trip_.s_m(); }
+  const nav::Path& path() const noexcept { return turns_ ? nowhere_ : trip_.path(); }
+  double s_m() const noexcept { return turns_ ? 0.0 : trip_.s_m(); }
+  /// What it drives is a turn on the spot.
+  bool turns() const noexcept { return drives() && turns_; }
   void reset() noexcept;
   /// Nobody asked it to drive for a while: somebody else does something else.
   bool left_alone(base::Time now) const noexcept;
@@ -61,8 +70,12 @@ class Detour {
  private:
   bool worth(const AroundAnswer& answer, const std::vector<nav::Vertex>& way) const noexcept;
   bool same_way(const std::vector<nav::Vertex>& way) const noexcept;
+  Taken turn(std::shared_ptr<const AroundAnswer> answer, const nav::Vehicle& vehicle);
 
   nav::Trip trip_;
+  nav::Path nowhere_;
+  bool turns_ = false;
+  std::optional<base::EnuPoint> turned_at_;  ///< it drove no way since
   std::shared_ptr<const AroundAnswer> answer_;
   std::uint64_t asked_ = 0;
   bool open_ = false;

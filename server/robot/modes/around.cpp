@@ -111,9 +111,10 @@ void Robot::Impl::take_around() {
       around_left_m = left_m;
       guard.forget();
       event(Severity::Info, "going_around",
-            "around what stands there, on the " + std::string(side) + ", " +
-                std::to_string(std::lround(length_m)) + " m");
-    } else if (!way) {
+            detour.turns() ? "it turns on the spot to look for a way around what stands there"
+                           : "around what stands there, on the " + std::string(side) + ", " +
+                                 std::to_string(std::lround(length_m)) + " m");
+    } else if (!way || taken == Detour::Taken::Useless) {
       no_way_around(*answer);
     }
   }

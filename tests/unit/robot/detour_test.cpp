@@ -2,8 +2,10 @@
 // but the test says when the answer comes.
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
+#include "base/angle.hpp"
 #include "robot/guard/around.hpp"
 #include "seeing.hpp"
 
@@ -24,6 +26,7 @@ class Detours : public Seeing {
       if (!asked.empty()) {
         ++questions;
         answer = answer_around(planner, asked.back());
+        if (only_turns) answer = turned(*answer);
       }
       if (answers && answer) field.robot.around_answers().put(std::exchange(answer, nullptr));
     };
@@ -57,7 +60,25 @@ class Detours : public Seeing {
     ASSERT_GT(std::abs(field.at.east_m), 0.8);
   }
 
+  /// As far as all is seen it is a turn on the spot, 60 degrees to the left.
+  static std::shared_ptr<const AroundAnswer> turned(const AroundAnswer& by) {
+    auto out = std::make_shared<AroundAnswer>(by);
+    out->found = {};
+    out->found.found = nav::around::Found::Part;
+    out->found.why = nav::around::Why::Unseen;
+    nav::around::Place at;
+    at.pose = by.asked->question.pose;
+    out->found.path.push_back(at);
+    at.pivot = true;
+    for (int i = 0; i < 12; ++i) {
+      at.pose.yaw_rad = base::wrap_rad(at.pose.yaw_rad + base::rad_from_deg(5.0));
+      out->found.path.push_back(at);
+    }
+    return out;
+  }
+
   nav::around::Planner planner;
+  bool only_turns = false;
   std::shared_ptr<const AroundAnswer> answer;
   bool answers = true;
   int questions = 0;
@@ -163,6 +184,40 @@ TEST_F(Detours, WhatIsNoMissionWaitsAndClaimsNoMore) {
                                  [](const auto& e) { return e.kind == "blocked"; });
   ASSERT_NE(said, field.events.end());
   EXPECT_NE(said->detail.find("it waits until the way is clear"), std::string::npos);
+}
+
+TEST_F(Detours, AWayThatIsOnlyATurnIsTurnedOnceAndThenToldToBeNone) {
+  // Given a box, and a way around it that is seen no farther than a turn on the spot,
+  drive_path();
+  only_turns = true;
+  box_ahead(4.0);
+  for (int i = 0; i < 50 * 40 && told("going_around") == 0; ++i) field.tick();
+  ASSERT_EQ(told("going_around"), 1);
+  const double before_rad = field.yaw_rad;
+  const double north_m = driven_m();
+  // when it has turned there and sees no more than before,
+  double most_rad = 0.0;
+  for (int i = 0; i < 50 * 12 && told("no_way_around") == 0; ++i) {
+    field.tick();
+    most_rad = std::max(most_rad, base::angle_diff_rad(before_rad, field.yaw_rad));
+  }
+  // then it says so, and has not driven.
+  EXPECT_NEAR(base::deg_from_rad(most_rad), 60.0, 6.0);
+  EXPECT_EQ(told("no_way_around"), 1);
+  EXPECT_NEAR(driven_m(), north_m, 0.05);
+  EXPECT_EQ(field.execution(), ExecutionState::Running);
+}
+
+TEST_F(Detours, WhenTheTurnShowsAWayItIsDriven) {
+  drive_path();
+  only_turns = true;
+  box_ahead(4.0);
+  for (int i = 0; i < 50 * 40 && told("going_around") == 0; ++i) field.tick();
+  only_turns = false;
+  for (int i = 0; i < 50 * 90 && told("around_done") == 0; ++i) field.tick();
+  EXPECT_EQ(told("going_around"), 2);
+  EXPECT_EQ(told("around_done"), 1);
+  EXPECT_EQ(told("no_way_around"), 0);
 }
 
 TEST_F(Detours, WithoutAWayItSaysSoOnceAndWaits) {
