@@ -7,8 +7,9 @@ namespace roverd::nav::around {
 namespace {
 
 constexpr double kStep_m = 0.3;
+constexpr double kStepOfRadius = 0.12;
+constexpr double kMostStep_m = 0.6;
 constexpr double kTurn_rad = base::kPi / 12.0;
-constexpr double kCell_m = 0.15;
 constexpr double kHeadings = 24.0;
 constexpr float kGreed = 1.5F;          // of what is still to go
 constexpr float kGoodEnough_m = 0.15F;  // a better way by less is not looked for
@@ -29,20 +30,22 @@ void Search::reserve(std::size_t expand) {
 void Search::set_primitives(const Wanted& w) {
   primitives_.clear();
   const double bend = 1.0 / w.radius_m;
+  const double step_m = std::clamp(kStepOfRadius * w.radius_m, kStep_m, kMostStep_m);
+  cell_m_ = 0.5 * step_m;
   // The narrowest arc must lead to another heading, or it is never driven twice in a row.
-  headings_ = std::clamp(std::ceil(2.0 * base::kPi / (0.75 * kStep_m * bend)), kHeadings, 720.0);
+  headings_ = std::clamp(std::ceil(2.0 * base::kPi / (0.75 * step_m * bend)), kHeadings, 720.0);
   for (const double c : {0.0, bend, -bend, 0.4 * bend, -0.4 * bend}) {
-    primitives_.push_back({c, kStep_m, 0.0});
+    primitives_.push_back({c, step_m, 0.0});
   }
   if (w.kinematics.pivots) {
     primitives_.push_back({0.0, 0.0, kTurn_rad});
     primitives_.push_back({0.0, 0.0, -kTurn_rad});
   }
   if (w.kinematics.may_reverse) {
-    primitives_.push_back({0.0, -kStep_m, 0.0});
+    primitives_.push_back({0.0, -step_m, 0.0});
     if (!w.kinematics.pivots) {
-      primitives_.push_back({bend, -kStep_m, 0.0});
-      primitives_.push_back({-bend, -kStep_m, 0.0});
+      primitives_.push_back({bend, -step_m, 0.0});
+      primitives_.push_back({-bend, -step_m, 0.0});
     }
   }
 }
@@ -56,8 +59,8 @@ std::uint32_t* Search::slot(std::uint64_t key) noexcept {
 }
 
 std::uint32_t* Search::slot(const Pose2& at) noexcept {
-  const auto ix = static_cast<std::int64_t>(std::floor(at.x_m / kCell_m)) & 0xFFFFFF;
-  const auto iy = static_cast<std::int64_t>(std::floor(at.y_m / kCell_m)) & 0xFFFFFF;
+  const auto ix = static_cast<std::int64_t>(std::floor(at.x_m / cell_m_)) & 0xFFFFFF;
+  const auto iy = static_cast<std::int64_t>(std::floor(at.y_m / cell_m_)) & 0xFFFFFF;
   const auto turns = (at.yaw_rad + base::kPi) / (2.0 * base::kPi) * headings_;
   const auto ih = static_cast<std::int64_t>(turns + 0.5) % static_cast<std::int64_t>(headings_);
   return slot((static_cast<std::uint64_t>(ix) << 34U) | (static_cast<std::uint64_t>(iy) << 10U) |
@@ -190,7 +193,7 @@ Ended Search::run(const Wanted& w, const Price& price) {
     if (n.closed) continue;
     n.closed = true;
     ++expanded_;
-    if (w.onwards_m && price.field->along_m(n.x, n.y) >= *w.onwards_m - kCell_m) {
+    if (w.onwards_m && price.field->along_m(n.x, n.y) >= *w.onwards_m - cell_m_) {
       arrive(top.node, w);
       if (w.targets.empty() && best_ < Field::kNever) break;
     }

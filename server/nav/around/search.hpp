@@ -90,6 +90,7 @@ class Search {
   };
   std::vector<Slot> slots_;
   std::uint32_t run_ = 0;
+  double cell_m_ = 0.15;    ///< places in one are the same
   double headings_ = 72.0;  ///< that are told apart
   std::size_t room_ = 0;
   bool full_ = false;
