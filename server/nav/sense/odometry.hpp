@@ -1,7 +1,9 @@
 #pragma once
 // Where the body was: the last seconds of the odometry, to bring what was measured at different
 // moments to one. Frame O of the odometry: it drifts and never jumps; x, y in metres, yaw left
-// positive. Plane motion: roll and pitch within one scan are not known here.
+// positive. Where something tells how the body leans, its lie is kept as well: heights over O's
+// plane are comparable from one scan to the next however the ground tips the body. Where nothing
+// does, the body is level.
 
 #include <array>
 #include <cmath>
@@ -35,11 +37,25 @@ inline Pose2 inverse(const Pose2& ab) noexcept {
   return {-c * ab.x_m - s * ab.y_m, s * ab.x_m - c * ab.y_m, base::wrap_rad(-ab.yaw_rad)};
 }
 
+/// How the body lies in O. Angles as base::Attitude tells them.
+struct Lie3 {
+  double z_m = 0.0;        ///< of the body's origin
+  double roll_rad = 0.0;   ///< right side down positive
+  double pitch_rad = 0.0;  ///< nose up positive
+};
+
+/// What to multiply a place in B with for its height in O, less z_m: the vertical, seen from B.
+inline std::array<double, 3> up_in_body(const Lie3& lie) noexcept {
+  const double level = std::cos(lie.pitch_rad);
+  return {std::sin(lie.pitch_rad), std::sin(lie.roll_rad) * level, std::cos(lie.roll_rad) * level};
+}
+
 struct Odometry {
   base::Time stamp;
   Pose2 pose;  ///< X_OB
   double v_mps = 0.0;
   double yaw_rate_radps = 0.0;
+  Lie3 lie{};
 };
 
 /// Along the arc of a twist. Source: the unicycle's exact integral.
@@ -59,7 +75,8 @@ class PoseHistory {
 
   bool push(const Odometry& o) noexcept {
     if (size_ > 0 && o.stamp <= back(0).stamp) return false;
-    if (!std::isfinite(o.pose.x_m + o.pose.y_m + o.pose.yaw_rad + o.v_mps + o.yaw_rate_radps)) {
+    if (!std::isfinite(o.pose.x_m + o.pose.y_m + o.pose.yaw_rad + o.v_mps + o.yaw_rate_radps) ||
+        !std::isfinite(o.lie.z_m + o.lie.roll_rad + o.lie.pitch_rad)) {
       return false;
     }
     head_ = (head_ + 1) % ring_.size();
@@ -80,17 +97,35 @@ class PoseHistory {
       if (ahead_s > kAhead_s) return std::nullopt;
       return back(0).pose * along(back(0).v_mps, back(0).yaw_rate_radps, ahead_s);
     }
-    std::size_t newer = 0;  // by halves: back(newer) is later than t, back(older) is not
+    if (t < back(size_ - 1).stamp) return std::nullopt;
+    const std::size_t newer = next_after(t);
+    return between(back(newer + 1), back(newer), t);
+  }
+
+  /// How it lay then; of a time that is not kept: as it did at the nearest that is.
+  Lie3 lie_at(base::Time t) const noexcept {
+    if (size_ == 0) return {};
+    if (t >= back(0).stamp) return back(0).lie;
+    if (t <= back(size_ - 1).stamp) return back(size_ - 1).lie;
+    const std::size_t newer = next_after(t);
+    const Odometry& a = back(newer + 1);
+    const Odometry& b = back(newer);
+    const double part = base::seconds(t - a.stamp) / base::seconds(b.stamp - a.stamp);
+    return {std::lerp(a.lie.z_m, b.lie.z_m, part), std::lerp(a.lie.roll_rad, b.lie.roll_rad, part),
+            std::lerp(a.lie.pitch_rad, b.lie.pitch_rad, part)};
+  }
+
+ private:
+  /// The first that is later than t, by halves. @param t from the oldest to before the newest
+  std::size_t next_after(base::Time t) const noexcept {
+    std::size_t newer = 0;
     std::size_t older = size_ - 1;
-    if (t < back(older).stamp) return std::nullopt;
     while (older - newer > 1) {
       const std::size_t middle = (newer + older) / 2;
       (back(middle).stamp > t ? newer : older) = middle;
     }
-    return between(back(older), back(newer), t);
+    return newer;
   }
-
- private:
   const Odometry& back(std::size_t n) const noexcept {
     return ring_[(head_ + ring_.size() - n) % ring_.size()];
   }

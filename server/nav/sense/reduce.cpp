@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "nav/sense/mount.hpp"
 
 namespace roverd::nav::sense {
@@ -16,6 +18,13 @@ constexpr std::uint32_t kCellsAcross = 2047;  // 11 bits in x and y, 9 in z, one
 constexpr std::uint32_t kCellsUp = 511;
 constexpr float kInSensor_m = 0.01F;
 constexpr float kGlass_m = 0.15F;  // a dirty window echoes from about there
+
+/// B to the level frame with its yaw: nose up is a turn about the left, to the right.
+Eigen::Matrix3d leaning(const Lie3& lie) {
+  return (Eigen::AngleAxisd(-lie.pitch_rad, Eigen::Vector3d::UnitY()) *
+          Eigen::AngleAxisd(lie.roll_rad, Eigen::Vector3d::UnitX()))
+      .toRotationMatrix();
+}
 
 std::uint32_t hashed(std::uint32_t key) noexcept {
   return key * 2654435769U;  // Knuth's multiplicative hash: the upper bits are the good ones
@@ -76,13 +85,16 @@ base::Result<void> Reducer::lay_knots(const base::Sight& sight, const base::Moun
                       "where the body was when " + sight.sensor + " looked is not known");
   }
   out.pose = *reference;
+  out.lie = history.lie_at(out.stamp);
   const Pose2 x_bo = inverse(*reference);
+  const Eigen::Matrix3d level_to_body = leaning(out.lie).transpose();
   const Eigen::Matrix3d r = rotation(mount);
   const auto knots = static_cast<std::size_t>((last - first) / kKnot_s) + 2;
   knots_.resize(last > first ? knots : 1);
   for (std::size_t i = 0; i < knots_.size(); ++i) {
     const double after_s = std::min<double>(first + kKnot_s * static_cast<double>(i), last);
-    const auto then = history.at(sight.stamp + base::from_seconds(after_s));
+    const base::Time when = sight.stamp + base::from_seconds(after_s);
+    const auto then = history.at(when);
     if (!then) {
       return base::fail(base::Code::Unavailable,
                         "where the body was when " + sight.sensor + " began is not known");
@@ -92,9 +104,12 @@ base::Result<void> Reducer::lay_knots(const base::Sight& sight, const base::Moun
     const double s = std::sin(moved.yaw_rad);
     Eigen::Matrix3d turn;
     turn << c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0;
+    const Lie3 lie = history.lie_at(when);
+    turn = level_to_body * turn * leaning(lie);
     const Eigen::Matrix3d all = turn * r;
-    const Eigen::Vector3d at = turn * Eigen::Vector3d(mount.x_m, mount.y_m, mount.z_m) +
-                               Eigen::Vector3d(moved.x_m, moved.y_m, 0.0);
+    const Eigen::Vector3d at =
+        turn * Eigen::Vector3d(mount.x_m, mount.y_m, mount.z_m) +
+        level_to_body * Eigen::Vector3d(moved.x_m, moved.y_m, lie.z_m - out.lie.z_m);
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 3; ++column) {
         knots_[i].r[static_cast<std::size_t>(3 * row + column)] =
@@ -104,6 +119,8 @@ base::Result<void> Reducer::lay_knots(const base::Sight& sight, const base::Moun
     }
   }
   out.origin_m = knots_.back().t;
+  out.from_m.clear();
+  for (const Knot& k : knots_) out.from_m.push_back(k.t);
   return {};
 }
 
@@ -187,6 +204,9 @@ void Reducer::points(const base::Sight& sight, Reduced& out) {
       last_key = key;
       at = find(key, out.voxels);
       if (clear) out.voxels[at].kind = Kind::Clear;
+      if (out.voxels[at].points == 0) {
+        out.voxels[at].from = static_cast<std::uint16_t>(k - knots_.data());  // 1001 at most
+      }
     }
     Voxel& v = out.voxels[at];
     v.x_m += x;

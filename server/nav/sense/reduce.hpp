@@ -4,6 +4,9 @@
 //
 //   p_B(ref) = X_B(ref)O X_OB(t) (R p_S + t_S),   t = stamp + after_s
 //
+// X_OB is the pose in the plane and how the body lies (odometry.hpp): a bump within a lidar's turn
+// is taken out, as far as the attitude is known.
+//
 // The reference is the time of the last point. The way of the body in between is taken in steps of
 // 2 ms: at 1.3 m/s 1.3 mm, at 1 rad/s and 8 m 8 mm.
 
@@ -37,6 +40,7 @@ struct Voxel {
   float z_m = 0.0F;
   std::uint32_t points = 0;
   Kind kind = Kind::Obstacle;
+  std::uint16_t from = 0;  ///< where its first ray came from: Reduced::from_m
 };
 
 /// Where every point went. The sum of all but `points` is `points`.
@@ -51,10 +55,12 @@ struct Counts {
 };
 
 struct Reduced {
-  base::Time stamp;                 ///< the reference
-  Pose2 pose;                       ///< X_OB then
-  std::array<float, 3> origin_m{};  ///< of the sensor, in B
-  std::vector<Voxel> voxels;        ///< Obstacle and Clear only
+  base::Time stamp;                          ///< the reference
+  Pose2 pose;                                ///< X_OB then
+  Lie3 lie;                                  ///< likewise
+  std::array<float, 3> origin_m{};           ///< of the sensor, in B
+  std::vector<std::array<float, 3>> from_m;  ///< where it was on the way to there; may be empty
+  std::vector<Voxel> voxels;                 ///< Obstacle and Clear only
   Counts counts;
 };
 

@@ -119,12 +119,22 @@ bool Guard::too_old(base::Time now) const noexcept {
          base::seconds(now - around_->patch.stamp) > kPicture_s;
 }
 
-const nav::sense::Odometry& Guard::move(const BodyTwist& measured, base::Time now) noexcept {
+const nav::sense::Odometry& Guard::move(const BodyTwist& measured, base::Time now,
+                                        const std::optional<base::Attitude>& lean) noexcept {
   const double dt_s = began_ ? base::seconds(now - odometry_.stamp) : 0.0;
   const bool usable = std::isfinite(measured.linear_mps) && std::isfinite(measured.angular_radps);
   const BodyTwist t = usable ? measured : BodyTwist{};
   if (dt_s > 0.0 && dt_s < 1.0) {
     odometry_.pose = odometry_.pose * nav::sense::along(t.linear_mps, t.angular_radps, dt_s);
+  }
+  if (lean && std::isfinite(lean->roll_rad + lean->pitch_rad)) {
+    odometry_.lie.roll_rad = lean->roll_rad;
+    odometry_.lie.pitch_rad = lean->pitch_rad;
+    if (dt_s > 0.0 && dt_s < 1.0) {
+      odometry_.lie.z_m += std::sin(lean->pitch_rad) * t.linear_mps * dt_s;
+    }
+  } else {
+    odometry_.lie.roll_rad = odometry_.lie.pitch_rad = 0.0;
   }
   began_ = true;
   odometry_.stamp = now;

@@ -51,8 +51,9 @@ class Guard {
 
   /// @return what it replaces, for somebody else to free
   std::shared_ptr<const Surroundings> take(std::shared_ptr<const Surroundings> news) noexcept;
-  /// Once a tick: how the body moved. @param measured over ground
-  const nav::sense::Odometry& move(const base::BodyTwist& measured, base::Time now) noexcept;
+  /// Once a tick: how the body moved. @param measured over ground. @param lean empty: level
+  const nav::sense::Odometry& move(const base::BodyTwist& measured, base::Time now,
+                                   const std::optional<base::Attitude>& lean = {}) noexcept;
 
   const nav::sense::Odometry& odometry() const noexcept { return odometry_; }
 

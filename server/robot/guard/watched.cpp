@@ -44,7 +44,7 @@ void Robot::Impl::look_around() {
   base::BodyTwist moved = world.motion ? world.motion->twist : base::BodyTwist{};
   if (pose && pose->speed_mps) moved.linear_mps = *pose->speed_mps;
   if (pose && pose->yaw_rate_radps) moved.angular_radps = *pose->yaw_rate_radps;
-  nav::sense::Odometry state = guard.move(moved, clock.now());
+  nav::sense::Odometry state = guard.move(moved, clock.now(), attitude());
   (void)odometry.try_offer(state);  // one that is missed is a gap of 20 ms
   guard.brake_by(handling.braking_mps2(config->fence.decel_mps2));
   std::string words = guard.demands() ? blind_words(guard, clock.now()) : std::string();

@@ -233,5 +233,24 @@ TEST(Guard, ItsOdometryFollowsAnArcExactly) {
   EXPECT_NEAR(o.pose.y_m, 2.0 * (1.0 - std::cos(5.0)), 1e-6);
 }
 
+//   Ten metres up a slope of 6 degrees; then nothing tells how it leans any more: the height stays.
+TEST(Guard, ItsOdometryClimbsAsTheBodyLeans) {
+  Guard guard;
+  base::Time now{};
+  const auto lean = [&] { return base::Attitude{now, 0.05, base::rad_from_deg(6.0)}; };
+  (void)guard.move({}, now, lean());
+  for (int i = 0; i < 500; ++i) {
+    now += std::chrono::milliseconds(20);
+    (void)guard.move({1.0, 0.0}, now, lean());
+  }
+  const double up_m = 10.0 * std::sin(base::rad_from_deg(6.0));
+  EXPECT_NEAR(guard.odometry().lie.z_m, up_m, 1e-6);
+  EXPECT_EQ(guard.odometry().lie.roll_rad, 0.05);
+  now += std::chrono::milliseconds(20);
+  const auto& o = guard.move({1.0, 0.0}, now);
+  EXPECT_NEAR(o.lie.z_m, up_m, 1e-6);
+  EXPECT_EQ(o.lie.pitch_rad, 0.0);
+}
+
 }  // namespace
 }  // namespace roverd::robot

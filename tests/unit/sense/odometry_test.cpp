@@ -49,6 +49,18 @@ TEST(OdometryTest, ItKnowsNothingBeforeItsOldestAndLongAfterItsNewest) {
   EXPECT_FALSE(h.at(at(20.3)).has_value());
 }
 
+TEST(OdometryTest, ItKnowsHowTheBodyLayAndStaysWithTheNewestBeyondIt) {
+  PoseHistory h;
+  EXPECT_EQ(h.lie_at(at(1.0)).z_m, 0.0);
+  h.push({at(1.0), {}, 0.0, 0.0, {0.1, 0.0, 0.2}});
+  h.push({at(1.1), {}, 0.0, 0.0, {0.2, -0.1, 0.0}});
+  EXPECT_NEAR(h.lie_at(at(1.05)).z_m, 0.15, 1e-9);
+  EXPECT_NEAR(h.lie_at(at(1.05)).roll_rad, -0.05, 1e-9);
+  EXPECT_NEAR(h.lie_at(at(1.05)).pitch_rad, 0.1, 1e-9);
+  EXPECT_EQ(h.lie_at(at(5.0)).z_m, 0.2);
+  EXPECT_EQ(h.lie_at(at(0.5)).pitch_rad, 0.2);
+}
+
 TEST(OdometryTest, WhatGoesBackInTimeOrIsNoNumberIsRefused) {
   PoseHistory h;
   EXPECT_TRUE(h.push({at(1.0), {}, 0.0, 0.0}));

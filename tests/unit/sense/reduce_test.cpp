@@ -170,6 +170,35 @@ TEST(ReduceTest, AWallStaysStraightWhileTheBodyDrivesAndTurns) {
   EXPECT_GT(looked, 1000U);
 }
 
+//   Over a bump the nose rises and the body rolls within one turn of a lidar; the ground stays
+//   flat.
+TEST(ReduceTest, TheGroundStaysFlatWhileTheBodyLeansMoreAndMore) {
+  const auto pose = [](double t) { return along(1.0, 0.3, t - 1.0); };
+  const auto lie = [](double t) {
+    return Lie3{0.1 * (t - 1.0), -0.3 * (t - 1.0), 0.6 * (t - 1.0)};
+  };
+  const auto body = [&](double t) {
+    return planar_pose(pose(t), lie(t).z_m, -lie(t).pitch_rad) *
+           Eigen::Isometry3d(Eigen::AngleAxisd(lie(t).roll_rad, Eigen::Vector3d::UnitX()));
+  };
+  const base::Mount mount{.x_m = 0.3, .y_m = 0.1, .z_m = 0.6, .yaw_rad = 0.2};
+  std::mt19937 random(1);
+  const auto sight = look({}, sixteen_rings(), mount, 1.0, body, random, 6.0);
+  Reducer reducer({.voxel_m = 0.02, .high_m = 5.0}, kBody);
+  Reduced out;
+  ASSERT_TRUE(reducer.reduce(sight, mount, driven(1.1, pose, lie), out).has_value());
+  EXPECT_NEAR(out.lie.pitch_rad, 0.06, 1e-9) << "the reference is the turn's end";
+  const auto up = up_in_body(out.lie);
+  std::size_t looked = 0;
+  for (const Voxel& v : out.voxels) {
+    const double height_m = out.lie.z_m + up[0] * static_cast<double>(v.x_m) +
+                            up[1] * static_cast<double>(v.y_m) + up[2] * static_cast<double>(v.z_m);
+    ASSERT_NEAR(height_m, 0.0, 0.01) << v.x_m << " " << v.y_m;
+    ++looked;
+  }
+  EXPECT_GT(looked, 500U);
+}
+
 TEST(ReduceTest, WithoutTheBodysWayAPieceIsRefused) {
   Reducer reducer({}, kBody);
   Reduced out;

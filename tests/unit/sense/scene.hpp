@@ -171,11 +171,13 @@ inline auto standing(const Pose2& where = {}, double z_m = 0.0, double pitch_rad
   return [=](double) { return planar_pose(where, z_m, pitch_rad); };
 }
 
-/// What the odometry told from 0 to `until_s`, every 20 ms. @param pose (time in s) X_OB
-inline PoseHistory driven(double until_s, const std::function<Pose2(double)>& pose) {
+/// What the odometry told from 0 to `until_s`, every 20 ms. @param pose (time in s) X_OB.
+/// @param lie (time in s) how the body lies; empty: nothing tells
+inline PoseHistory driven(double until_s, const std::function<Pose2(double)>& pose,
+                          const std::function<Lie3(double)>& lie = {}) {
   PoseHistory h;
   for (double t = std::max(0.0, until_s - 4.0); t < until_s + 0.021; t += 0.02)
-    h.push({at(t), pose(t), 0.0, 0.0});
+    h.push({at(t), pose(t), 0.0, 0.0, lie ? lie(t) : Lie3{}});
   return h;
 }
 
