@@ -10,7 +10,14 @@ namespace roverd::nav::sense {
 
 namespace {
 
-constexpr float kTop_m = 0.02F;
+constexpr float kFades_m = 0.005F;   // of a span, with each piece that meets its thing again
+constexpr float kGrazes_m = 0.003F;  // a ray along an edge: more would take its thing away
+// What is seen lower than this over the body's plane stands on the ground: its foot is there, too.
+constexpr float kStands_m = 0.15F;
+constexpr float kFoot_m = 0.05F;
+// Higher than this over the body's plane an echo that was taken for ground, where something is
+// known to stand, is that: so near that it hides the ground, a wall may be a slope as well.
+constexpr float kNoGround_m = 0.25F;
 
 std::int32_t floored(double v) noexcept {
   return static_cast<std::int32_t>(std::floor(v));
@@ -29,7 +36,9 @@ Grid::Grid(const GridParams& params) : p_(params) {
   const auto wanted = static_cast<std::uint32_t>(std::ceil(p_.size_m / p_.cell_m));
   side_ = static_cast<std::int32_t>(std::bit_ceil(std::clamp(wanted, 16U, 4096U)));
   mask_ = side_ - 1;
-  cells_.resize(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_));
+  stride_ = static_cast<std::size_t>(side_) + 8;
+  cells_.resize(static_cast<std::size_t>(side_) * stride_);
+  spans_.resize(cells_.size());
 }
 
 void Grid::forget() noexcept {
@@ -93,22 +102,35 @@ void Grid::take(const Reduced& in, const Sectors& sectors, std::uint8_t sensor) 
 void Grid::hit(const Reduced& in, std::uint8_t sensor, std::uint32_t now_ms) {
   const double c = std::cos(in.pose.yaw_rad);
   const double s = std::sin(in.pose.yaw_rad);
+  const auto up = up_in_body(in.lie);
   for (const Voxel& v : in.voxels) {
-    const bool passing = v.kind == Kind::Passing;
-    if (v.kind != Kind::Obstacle && v.kind != Kind::Drop && !passing) continue;
+    const bool again = v.kind == Kind::Passing || (v.kind == Kind::Ground && v.z_m > kNoGround_m);
+    if (v.kind != Kind::Obstacle && v.kind != Kind::Drop && !again) continue;
     const auto x = static_cast<double>(v.x_m);
     const auto y = static_cast<double>(v.y_m);
-    const std::int32_t ix = floored((in.pose.x_m + c * x - s * y) / p_.cell_m);
-    const std::int32_t iy = floored((in.pose.y_m + s * x + c * y) / p_.cell_m);
+    const double u = (in.pose.x_m + c * x - s * y) / p_.cell_m;
+    const double w = (in.pose.y_m + s * x + c * y) / p_.cell_m;
+    const std::int32_t ix = floored(u);
+    const std::int32_t iy = floored(w);
     if (!inside(ix, iy)) continue;
-    if (passing) {
+    if (again) {
       stay(ix, iy, sensor, now_ms);
       continue;
     }
     Cell& o = cell(ix, iy);
-    const auto top = static_cast<std::uint8_t>(std::clamp(v.z_m / kTop_m, 0.0F, 255.0F));
-    const bool was = o.known == Known::Occupied || o.known == Known::Drop;
-    o.top = was ? std::max(o.top, top) : top;
+    const auto z =
+        static_cast<float>(in.lie.z_m + up[0] * x + up[1] * y + up[2] * static_cast<double>(v.z_m));
+    Span& span = spans_[index(ix, iy)];
+    if (o.known != Known::Occupied) {
+      span.low_m = span.top_m = z;
+    } else if (o.ms != now_ms) {
+      const float fades = std::min(kFades_m, 0.5F * (span.top_m - span.low_m));
+      span.low_m += fades;
+      span.top_m -= fades;
+    }
+    const float foot = v.z_m < kStands_m ? kFoot_m : 0.0F;
+    span = {std::min(span.low_m, z - foot), std::max(span.top_m, z), static_cast<float>(u - ix),
+            static_cast<float>(w - iy)};
     o.known = v.kind == Kind::Drop ? Known::Drop : Known::Occupied;
     o.misses = 0;
     o.sensor = sensor;
@@ -133,67 +155,102 @@ void Grid::stay(std::int32_t ix, std::int32_t iy, std::uint8_t sensor,
 void Grid::see_through(const Pose2& body, const Sectors& s, std::uint8_t sensor,
                        std::uint32_t now_ms) {
   const Pose2 eye = body * Pose2{static_cast<double>(s.x_m), static_cast<double>(s.y_m), 0.0};
-  const double x = eye.x_m / p_.cell_m;
-  const double y = eye.y_m / p_.cell_m;
   const double sector_rad = 2.0 * base::kPi / Sectors::kSectors;
   // Beyond this one line a sector would leave cells out.
-  const auto wide = static_cast<std::size_t>(p_.cell_m / sector_rad / p_.cell_m);
+  const auto wide = static_cast<std::size_t>(1.0 / sector_rad);
   const auto end = static_cast<std::size_t>(static_cast<double>(s.range_m) / p_.cell_m);
+  // Directions are turned by the body's, and by a quarter of a sector, without a sine for each.
+  static const auto kDirections = [] {
+    std::array<std::array<double, 2>, Sectors::kSectors> out{};
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      out[i] = {std::cos(bearing_rad(i)), std::sin(bearing_rad(i))};
+    }
+    return out;
+  }();
+  const double c = std::cos(body.yaw_rad);
+  const double sn = std::sin(body.yaw_rad);
+  const double beside = std::sin(0.25 * sector_rad);
   for (std::size_t i = 0; i < Sectors::kSectors; ++i) {
     const Sector& sector = s.of[i];
-    if (sector.seen == 0) continue;
+    if (sector.far_m <= 0.0F) continue;
+    // The step of the sector in which the last ray ends was looked at as well.
+    const float until_m = sector.hit_m > 0.0F
+                              ? sector.hit_m
+                              : sector.far_m + s.range_m / static_cast<float>(Sectors::kSteps);
     const std::size_t to =
-        sector.hit_m > 0.0F
-            ? std::min(end, static_cast<std::size_t>(static_cast<double>(sector.hit_m) / p_.cell_m))
-            : end;
-    const double angle = body.yaw_rad + bearing_rad(i);
-    look_along(x, y, std::cos(angle), std::sin(angle), 0, std::min(to, wide), sector, s, sensor,
-               now_ms);
+        std::min(end, static_cast<std::size_t>(static_cast<double>(until_m) / p_.cell_m));
+    const auto& b = kDirections[i];
+    Line line{
+        eye.x_m / p_.cell_m, eye.y_m / p_.cell_m, c * b[0] - sn * b[1], sn * b[0] + c * b[1], 0,
+        std::min(to, wide)};
+    look_along(line, i, s, sensor, now_ms);
     if (to <= wide) continue;
-    for (const double beside : {-0.25 * sector_rad, 0.25 * sector_rad}) {
-      look_along(x, y, std::cos(angle + beside), std::sin(angle + beside), wide, to, sector, s,
-                 sensor, now_ms);
+    line.from = wide;
+    line.to = to;
+    const double dx = line.dx;
+    const double dy = line.dy;
+    for (const double off : {-beside, beside}) {
+      line.dx = dx - off * dy;
+      line.dy = dy + off * dx;
+      look_along(line, i, s, sensor, now_ms);
     }
   }
 }
 
-void Grid::look_along(double x, double y, double dx, double dy, std::size_t from, std::size_t to,
-                      const Sector& sector, const Sectors& s, std::uint8_t sensor,
+void Grid::look_along(const Line& line, std::size_t sector, const Sectors& s, std::uint8_t sensor,
                       std::uint32_t now_ms) noexcept {
   const double bits =
       static_cast<double>(Sectors::kSteps) * p_.cell_m / static_cast<double>(s.range_m);
   // Fixed point with 16 bits behind the comma: a step is two additions.
   constexpr double kOne = 65536.0;
-  const double ox = std::floor(x);
-  const double oy = std::floor(y);
+  const double ox = std::floor(line.x);
+  const double oy = std::floor(line.y);
   const auto base_x = static_cast<std::int32_t>(ox);
   const auto base_y = static_cast<std::int32_t>(oy);
-  const auto step_x = static_cast<std::int32_t>(std::lround(dx * kOne));
-  const auto step_y = static_cast<std::int32_t>(std::lround(dy * kOne));
-  const auto f = static_cast<double>(from) + 0.5;
-  auto px = static_cast<std::int32_t>((x - ox + dx * f) * kOne);
-  auto py = static_cast<std::int32_t>((y - oy + dy * f) * kOne);
+  const auto step_x = static_cast<std::int32_t>(std::lround(line.dx * kOne));
+  const auto step_y = static_cast<std::int32_t>(std::lround(line.dy * kOne));
+  const auto f = static_cast<double>(line.from) + 0.5;
+  auto px = static_cast<std::int32_t>((line.x - ox + line.dx * f) * kOne);
+  auto py = static_cast<std::int32_t>((line.y - oy + line.dy * f) * kOne);
   const auto step_bit = static_cast<std::uint32_t>(bits * kOne);
   auto bit = static_cast<std::uint32_t>(f * bits * kOne);
-  for (std::size_t i = from; i < to; ++i, px += step_x, py += step_y, bit += step_bit) {
+  const std::uint64_t seen = s.of[sector].seen;
+  for (std::size_t n = line.from; n < line.to; ++n, px += step_x, py += step_y, bit += step_bit) {
     const std::uint32_t b = bit >> 16U;
     if (b >= Sectors::kSteps) return;
-    if (((sector.seen >> b) & 1U) == 0) continue;
     const std::int32_t ix = base_x + (px >> 16);
     const std::int32_t iy = base_y + (py >> 16);
     if (!inside(ix, iy)) return;
-    Cell& c = cell(ix, iy);
+    const std::size_t i = index(ix, iy);
+    Cell& c = cells_[i];
+    const bool looked = ((seen >> b) & 1U) != 0;
     if (c.known == Known::Occupied || c.known == Known::Drop) {
-      if (c.ms == now_ms) continue;  // hit in this very piece, or seen through already
-      const bool tall = static_cast<float>(c.top) * kTop_m >= s.tall_m;
-      if ((((tall ? sector.tall : sector.low) >> b) & 1U) == 0) continue;
-      c.ms = now_ms;
-      if (++c.misses < p_.clear_scans) continue;
+      const double u = ix + static_cast<double>(spans_[i].x) - line.x;
+      const double w = iy + static_cast<double>(spans_[i].y) - line.y;
+      const double d_m = (u * line.dx + w * line.dy) * p_.cell_m;
+      if (!seen_through(i, d_m, std::uint64_t{1} << b, sector, s, now_ms)) continue;
+      c.known = Known::Unknown;  // gone; whether the ground is free is another ray's word
     }
+    if (!looked) continue;
     c.known = Known::Free;
     c.sensor = sensor;
     c.ms = now_ms;
   }
+}
+
+/// Often enough by now, that is.
+bool Grid::seen_through(std::size_t i, double d_m, std::uint64_t bit, std::size_t sector,
+                        const Sectors& s, std::uint32_t now_ms) noexcept {
+  Cell& c = cells_[i];
+  if (c.ms == now_ms) return false;  // hit in this very piece, or seen through already
+  const Span& span = spans_[i];
+  const bool through = c.known == Known::Drop
+                           ? (s.of[sector].low & bit) != 0
+                           : s.passes(sector, static_cast<float>(d_m), span.low_m - kGrazes_m,
+                                      span.top_m + kGrazes_m);
+  if (!through) return false;
+  c.ms = now_ms;
+  return ++c.misses >= p_.clear_scans;
 }
 
 Known Grid::at(double x_m, double y_m, base::Time now) const noexcept {
@@ -213,22 +270,29 @@ void Grid::patch(const Pose2& about, double reach_m, base::Time now, Patch& out,
   out.cells.assign(static_cast<std::size_t>(out.side) * static_cast<std::size_t>(out.side), {});
   if (!begun_) return;
   const std::uint32_t now_ms = ms(now);
+  // The oldest that is still told: of what is free by its sensor, of what stands for all.
+  constexpr std::uint32_t kAlways = std::numeric_limits<std::uint32_t>::max();
+  const auto as_ms = [](double s) {
+    return static_cast<std::uint32_t>(std::clamp(s, 0.0, 4e6) * 1e3);
+  };
+  const std::uint32_t hit_ms = p_.keep_hit_s > 0.0 ? as_ms(p_.keep_hit_s) : kAlways;
   std::array<std::uint32_t, 256> free_ms{};
-  free_ms.fill(std::numeric_limits<std::uint32_t>::max());
+  free_ms.fill(as_ms(p_.keep_free_s));
   for (std::size_t n = 0; n < std::min(free_for_s.size(), free_ms.size()); ++n) {
-    free_ms[n] = static_cast<std::uint32_t>(std::clamp(free_for_s[n], 0.0, 4e6) * 1e3);
+    free_ms[n] = std::min(free_ms[n], as_ms(free_for_s[n]));
   }
-  std::size_t i = 0;
-  for (std::int32_t y = out.y0; y < out.y0 + out.side; ++y) {
-    for (std::int32_t x = out.x0; x < out.x0 + out.side; ++x, ++i) {
-      if (!inside(x, y)) continue;
+  const std::int32_t x_from = std::max(out.x0, x0_);
+  const std::int32_t x_to = std::min(out.x0 + out.side, x0_ + side_);
+  for (std::int32_t y = std::max(out.y0, y0_); y < std::min(out.y0 + out.side, y0_ + side_); ++y) {
+    Patch::Cell* row = out.cells.data() +
+                       static_cast<std::size_t>(y - out.y0) * static_cast<std::size_t>(out.side);
+    for (std::int32_t x = x_from; x < x_to; ++x) {
       const Cell& c = cell(x, y);
       if (c.known == Known::Unknown) continue;
       const std::uint32_t age = age_ms(now_ms, c.ms);
-      const bool gone = c.known == Known::Free && age > free_ms[c.sensor];
-      if (gone) continue;
-      out.cells[i] = {known(c, now_ms), c.sensor,
-                      static_cast<std::uint16_t>(std::min(age / 100U, 65535U))};
+      if (age > (c.known == Known::Free ? free_ms[c.sensor] : hit_ms)) continue;
+      row[x - out.x0] = {c.known, c.sensor,
+                         static_cast<std::uint16_t>(std::min(age / 100U, 65535U))};
     }
   }
 }

@@ -8,10 +8,13 @@
 //      └─────────────────────┴────────────────┘  (out of sight; hits stay by default; what a
 //                                                 sensor that is blind saw free, sooner)
 //
-// Blind is not free: a cell is free only where a ray passed low enough (sectors.hpp). What is low
-// is not cleared by rays that pass above it. What is too thin or too new to be believed (Passing)
-// makes no cell occupied; but where something was believed, an echo in its cell or beside it says
-// that it still stands there, however many rays pass it by.
+// Blind is not free: a cell is free only where a ray passed low enough (sectors.hpp). Of what
+// stands in a cell the heights are kept between which it was seen lately, in O: only a ray that
+// passes between them and goes on says that it left. What a ray passes above or below stays, and so
+// does what sinks out of every sensor's view as the robot comes near, leans or climbs. (Where
+// nothing tells how the body leans, its plane is taken for O's.) What is too thin or too new to be
+// believed (Passing) makes no cell occupied; but where something was believed, an echo in its cell
+// or beside it says that it still stands there, however many rays pass it by.
 
 #include <cstddef>
 #include <cstdint>
@@ -78,16 +81,23 @@ class Grid {
   struct Cell {
     Known known = Known::Unknown;
     std::uint8_t misses = 0;  ///< scans that saw through it since it was hit
-    std::uint8_t top = 0;     ///< of the obstacle, in 2 cm above the body's plane
     std::uint8_t sensor = 0;
     std::uint32_t ms = 0;  ///< since the first piece
   };
-  Cell& cell(std::int32_t ix, std::int32_t iy) noexcept {
-    return cells_[static_cast<std::size_t>(iy & mask_) * static_cast<std::size_t>(mask_ + 1) +
-                  static_cast<std::size_t>(ix & mask_)];
+  /// Heights in O between which something was seen, and where in the cell it was met last: a ray
+  /// falls by a centimetre within a cell, and one that grazes the far edge must not count.
+  struct Span {
+    float low_m = 0.0F;
+    float top_m = 0.0F;
+    float x = 0.0F;  ///< in cells, from the cell's corner
+    float y = 0.0F;
+  };
+  std::size_t index(std::int32_t ix, std::int32_t iy) const noexcept {
+    return static_cast<std::size_t>(iy & mask_) * stride_ + static_cast<std::size_t>(ix & mask_);
   }
+  Cell& cell(std::int32_t ix, std::int32_t iy) noexcept { return cells_[index(ix, iy)]; }
   const Cell& cell(std::int32_t ix, std::int32_t iy) const noexcept {
-    return const_cast<Grid*>(this)->cell(ix, iy);
+    return cells_[index(ix, iy)];
   }
   bool inside(std::int32_t ix, std::int32_t iy) const noexcept {
     return static_cast<std::uint32_t>(ix - x0_) < static_cast<std::uint32_t>(side_) &&
@@ -100,18 +110,31 @@ class Grid {
   /// Something returned from there: what is taken there or beside it is not seen through now.
   void stay(std::int32_t ix, std::int32_t iy, std::uint8_t sensor, std::uint32_t now_ms) noexcept;
   void see_through(const Pose2& body, const Sectors& s, std::uint8_t sensor, std::uint32_t now_ms);
-  void look_along(double x, double y, double dx, double dy, std::size_t from, std::size_t to,
-                  const Sector& sector, const Sectors& s, std::uint8_t sensor,
+  /// One line of cells: from the `from`-th to before the `to`-th, away from (x, y) cells.
+  struct Line {
+    double x = 0.0;
+    double y = 0.0;
+    double dx = 1.0;
+    double dy = 0.0;
+    std::size_t from = 0;
+    std::size_t to = 0;
+  };
+  void look_along(const Line& line, std::size_t sector, const Sectors& s, std::uint8_t sensor,
                   std::uint32_t now_ms) noexcept;
+  bool seen_through(std::size_t i, double d_m, std::uint64_t bit, std::size_t sector,
+                    const Sectors& s, std::uint32_t now_ms) noexcept;
 
   GridParams p_;
   std::int32_t side_;  ///< a power of two
   std::int32_t mask_;
+  std::size_t
+      stride_;  ///< from row to row: no power of two, which would share few lines of a cache
   std::int32_t x0_ = 0;
   std::int32_t y0_ = 0;
   base::Time begin_;
   bool begun_ = false;
   std::vector<Cell> cells_;
+  std::vector<Span> spans_;  ///< of the cells that are Occupied
 };
 
 /// The patch as pairs of bytes for the stream: Known (two upper bits) and a run of 1 to 64 cells

@@ -1,7 +1,9 @@
 #include "nav/sense/sectors.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "base/angle.hpp"
 
@@ -30,7 +32,75 @@ float below_from(float from_m, float to_m, float d, float height) noexcept {
   return d * (from_m - height) / (from_m - to_m);
 }
 
+constexpr float kBeyond_m = 0.10F;  // less may be the same thing's other side, or noise
+
+/// Where voxels stand, in O.
+class Heights {
+ public:
+  explicit Heights(const Lie3& lie)
+      : z_m_(static_cast<float>(lie.z_m)), level_(lie.roll_rad == 0.0 && lie.pitch_rad == 0.0) {
+    const auto up = up_in_body(lie);
+    for (std::size_t i = 0; i < 3; ++i) up_[i] = static_cast<float>(up[i]);
+  }
+  float of(float x, float y, float z) const noexcept {
+    return level_ ? z_m_ + z : z_m_ + up_[0] * x + up_[1] * y + up_[2] * z;
+  }
+
+ private:
+  std::array<float, 3> up_{};
+  float z_m_;
+  bool level_;
+};
+
+std::size_t sector_at(float at) noexcept {
+  constexpr int n = static_cast<int>(Sectors::kSectors);
+  return static_cast<std::size_t>((static_cast<int>(std::floor(at)) % n + n) % n);
+}
+
+/// Sorted by their sectors: counted first, then laid in.
+void keep_rays(const Reduced& in, const std::vector<float>& at, Sectors& out) {
+  out.begin.fill(0);
+  for (const float a : at) {
+    if (a >= 0.0F) ++out.begin[sector_at(a) + 1];
+  }
+  for (std::size_t i = 0; i < Sectors::kSectors; ++i) out.begin[i + 1] += out.begin[i];
+  out.rays.resize(out.begin.back());
+  auto next = out.begin;
+  const Heights heights(in.lie);
+  for (std::size_t i = 0; i < in.voxels.size(); ++i) {
+    if (at[i] < 0.0F) continue;
+    const Voxel& v = in.voxels[i];
+    const auto& from = v.from < in.from_m.size() ? in.from_m[v.from] : in.origin_m;
+    const float dx = v.x_m - out.x_m;
+    const float dy = v.y_m - out.y_m;
+    const float d = std::sqrt(dx * dx + dy * dy);
+    const float back = ((out.x_m - from[0]) * dx + (out.y_m - from[1]) * dy) / d;
+    out.rays[next[sector_at(at[i])]++] = {at[i], d, back, heights.of(from[0], from[1], from[2]),
+                                          heights.of(v.x_m, v.y_m, v.z_m)};
+  }
+}
+
 }  // namespace
+
+bool Sectors::passes(std::size_t sector, float d_m, float low_m, float top_m) const noexcept {
+  if (d_m < blind_m) return false;
+  const auto middle = static_cast<float>(sector) + 0.5F;
+  const auto round = static_cast<float>(kSectors);
+  const auto beside = static_cast<std::size_t>(std::ceil(half_sectors));
+  for (std::size_t n = 0; n <= 2 * beside; ++n) {
+    const std::size_t k = (sector + kSectors - beside + n) % kSectors;
+    for (std::uint32_t i = begin[k]; i < begin[k + 1]; ++i) {
+      const Ray& ray = rays[i];
+      if (ray.end_m <= d_m + kBeyond_m) continue;
+      const float off = std::abs(ray.at - middle);
+      if (std::min(off, round - off) > half_sectors + 0.5F) continue;
+      const float part = (d_m + ray.back_m) / (ray.end_m + ray.back_m);
+      const float z = ray.from_z_m + (ray.end_z_m - ray.from_z_m) * part;
+      if (z >= low_m && z <= top_m) return true;
+    }
+  }
+  return false;
+}
 
 double bearing_rad(std::size_t sector) noexcept {
   return (static_cast<double>(sector) + 0.5) * 2.0 * base::kPi / Sectors::kSectors - base::kPi;
@@ -43,21 +113,24 @@ void sight_sectors(const Reduced& in, float half_step_rad, const SightedParams& 
   out.x_m = in.origin_m[0];
   out.y_m = in.origin_m[1];
   const float z0 = in.origin_m[2];
-  // What the plane met reaches as high as the plane, give or take a rounding.
-  out.tall_m = params.planar ? z0 - 0.03F : static_cast<float>(params.vouch_m);
+  const float half = std::min(half_step_rad * kPerRad, 30.0F) * 0.999F;
+  out.half_sectors = half;
+  out.blind_m = static_cast<float>(params.blind_m);
+  std::vector<float> directions(in.voxels.size(), -1.0F);
   const auto blind = static_cast<float>(params.blind_m);
   const auto vouch = static_cast<float>(params.vouch_m);
   const auto low = static_cast<float>(params.low_m);
   const float per_m = static_cast<float>(Sectors::kSteps) / out.range_m;
   // A voxel stands for many rays: at least for its own width.
-  for (const Voxel& v : in.voxels) {
+  for (std::size_t n = 0; n < in.voxels.size(); ++n) {
+    const Voxel& v = in.voxels[n];
     if (v.kind == Kind::Drop) continue;
     const float dx = v.x_m - out.x_m;
     const float dy = v.y_m - out.y_m;
     const float d = std::sqrt(dx * dx + dy * dy);
     if (d < 0.01F) continue;
     const float at = (std::atan2(dy, dx) + kPi_f) * kPerRad;
-    const float half = std::min(half_step_rad * kPerRad, 30.0F) * 0.999F;
+    directions[n] = std::max(0.0F, at);
     std::uint64_t seen = 0;
     std::uint64_t down = 0;
     std::uint64_t here = 0;
@@ -75,14 +148,15 @@ void sight_sectors(const Reduced& in, float half_step_rad, const SightedParams& 
     const auto first = static_cast<int>(std::floor(at - half));
     const auto last = static_cast<int>(std::floor(at + half));
     for (int i = first; i <= last; ++i) {
-      constexpr int n = static_cast<int>(Sectors::kSectors);
-      Sector& sector = out.of[static_cast<std::size_t>((i % n + n) % n)];
+      constexpr int all = static_cast<int>(Sectors::kSectors);
+      Sector& sector = out.of[static_cast<std::size_t>((i % all + all) % all)];
+      sector.far_m = std::max(sector.far_m, d);
       sector.seen |= seen | here;
-      sector.tall |= seen;
       sector.low |= down;
       if (v.kind == Kind::Obstacle && (sector.hit_m == 0.0F || d < sector.hit_m)) sector.hit_m = d;
     }
   }
+  keep_rays(in, directions, out);
 }
 
 }  // namespace roverd::nav::sense

@@ -7,6 +7,10 @@
 //                  ───___      vouches for the stretch where it is below vouch_m (`seen`), and for
 //   ─────────────────────▀▀──  low things where it is below low_m (`low`).
 //               seen  low D
+//
+// For what already stands in the grid each ray is kept as it went, with its heights in O: only one
+// that passed through the heights in which something was seen, and clearly beyond it, says that it
+// left. One above or below says nothing, however low it is: a bar hangs in the air.
 
 #include <array>
 #include <cstdint>
@@ -27,10 +31,10 @@ struct SightedParams {
 /// One of kSectors directions about the sensor, half a degree wide, from −π.
 struct Sector {
   float hit_m = 0.0F;  ///< to the nearest obstacle, from the sensor, in the plane; 0: none
+  float far_m = 0.0F;  ///< as far as any ray went, from the sensor
   // Bit i: from i/64 to (i+1)/64 of the range.
   std::uint64_t seen = 0;  ///< free, as far as it was unknown
-  std::uint64_t tall = 0;  ///< free wholly, so that what is tall is gone
-  std::uint64_t low = 0;   ///< the same for what is low
+  std::uint64_t low = 0;   ///< free wholly, down to what is low
 };
 
 struct Sectors {
@@ -40,10 +44,25 @@ struct Sectors {
   float range_m = 8.0F;
   float x_m = 0.0F;  ///< the sensor in B
   float y_m = 0.0F;
-  float tall_m = 0.0F;  ///< obstacles of this height are gone where `tall` says so
+
+  struct Ray {
+    float at = 0.0F;      ///< its direction, in sectors from −π
+    float end_m = 0.0F;   ///< how far it went, from (x_m, y_m)
+    float back_m = 0.0F;  ///< it came from so far behind that place, along its direction
+    float from_z_m = 0.0F;
+    float end_z_m = 0.0F;  ///< heights in O
+  };
+  std::vector<Ray> rays;  ///< by direction
+  std::array<std::uint32_t, kSectors + 1> begin{};
+  float half_sectors = 0.0F;  ///< a ray is that wide, to either side
+  float blind_m = 0.0F;
+
+  /// Some ray of this direction went through at d_m from the sensor, between two heights in O.
+  bool passes(std::size_t sector, float d_m, float low_m, float top_m) const noexcept;
 };
 
-/// @param in judged voxels. @param half_step_rad of the sight: how wide a ray is.
+/// @param in judged voxels; the rays take one place each, whatever their width. @param
+/// half_step_rad of the sight: how wide a ray is.
 void sight_sectors(const Reduced& in, float half_step_rad, const SightedParams& params,
                    Sectors& out);
 

@@ -29,10 +29,13 @@ struct Robot {
 
   explicit Robot(GridParams p = {}) : grid(p) {}
 
-  void scan(const Scene& scene, double t, const Pose2& pose = {}, double range_m = 30.0) {
+  void scan(const Scene& scene, double t, const Pose2& pose = {}, double range_m = 30.0,
+            const Lie3& lie = {}) {
     const auto way = [pose](double) { return pose; };
-    const auto sight = look(scene, rays, mount, t, standing(pose), random, range_m);
-    ASSERT_TRUE(reducer.reduce(sight, mount, driven(t + 0.11, way), seen).has_value());
+    const auto body = standing(pose, lie.z_m, -lie.pitch_rad);
+    const auto sight = look(scene, rays, mount, t, body, random, range_m);
+    const auto history = driven(t + 0.11, way, [lie](double) { return lie; });
+    ASSERT_TRUE(reducer.reduce(sight, mount, history, seen).has_value());
     if (!sighted.planar) ground.judge(seen.voxels);
     sight_sectors(seen, sight.half_step_rad, sighted, sectors);
     grid.take(seen, sectors, 7);
@@ -139,6 +142,91 @@ TEST(GridTest, ALowBoxIsNotClearedByRaysThatPassAboveIt) {
   }
   EXPECT_GE(left, 8);
   EXPECT_EQ(r.at(4.15, 1.0, t), Known::Free) << "beside it the ground was seen";
+}
+
+/// Columns of 5 cm across a bar at x 5.00 to 5.10 that have it.
+int columns_of_bar(const Robot& r, double t) {
+  int out = 0;
+  for (double y = -0.975; y < 1.0; y += 0.05) {
+    bool there = false;
+    for (double x = 4.975; x < 5.15; x += 0.05) there |= r.at(x, y, t) == Known::Occupied;
+    out += there ? 1 : 0;
+  }
+  return out;
+}
+
+Scene bar(double bottom_m, double top_m) {
+  Scene s;
+  s.blocks.push_back({5.0, 5.1, -1.0, 1.0, bottom_m, top_m});
+  return s;
+}
+
+//   ●──___         A bar in the air. Rays pass below it to the ground behind, and when the robot
+//       ══ ‾‾──__  is near all of them pass above it: it stays from the first sight on.
+TEST(GridTest, ABarInTheAirIsNotClearedByRaysThatPassBelowOrAboveIt) {
+  for (const double speed_mps : {0.4, 1.3}) {
+    for (const double bottom_m : {0.20, 0.35, 0.50}) {
+      Robot r;
+      r.mount = {.x_m = 0.0, .z_m = 0.8};
+      r.rays = sixteen_rings(240);
+      r.sighted = {};
+      const Scene s = bar(bottom_m, bottom_m + 0.1);
+      double t = 1.0;
+      double x = speed_mps < 1.0 ? 1.5 : 0.0;
+      int most = 0;
+      for (; x < 4.4; x += 0.1 * speed_mps, t += 0.1) {
+        r.scan(s, t, {x, 0.0, 0.0});
+        const int now = columns_of_bar(r, t);
+        EXPECT_GE(now, most - 2) << bottom_m << " m high, " << 5.0 - x << " m away";
+        most = std::max(most, now);
+      }
+      EXPECT_GE(most, 36) << bottom_m;
+    }
+  }
+}
+
+//   The same robot, standing: the bar is taken away, and so are its cells.
+TEST(GridTest, ABarThatIsTakenAwayIsSeenThrough) {
+  Robot r;
+  r.mount = {.x_m = 0.0, .z_m = 0.8};
+  r.rays = sixteen_rings(900);
+  r.sighted = {};
+  double t = 1.0;
+  for (; t < 1.5; t += 0.1) r.scan(bar(0.5, 0.6), t, {2.5, 0.0, 0.0});
+  EXPECT_GE(columns_of_bar(r, t), 36);
+  for (; t < 2.0; t += 0.1) r.scan({}, t, {2.5, 0.0, 0.0});
+  EXPECT_EQ(columns_of_bar(r, t), 0);
+}
+
+//   A scanner of one plane meets a low wall; then the nose comes up by 4 degrees, and it looks
+//   over it. The body's lean is told: the wall stays. A beam in its height would take it away.
+TEST(GridTest, WhatALeaningBodyLooksOverStays) {
+  Scene low;
+  low.blocks.push_back({3.0, 3.2, -2.0, 2.0, 0.0, 0.35});
+  Robot r;
+  r.scan(low, 1.0);
+  ASSERT_EQ(r.at(3.02, 0.3), Known::Occupied);
+  const Lie3 nose_up{0.0, 0.0, base::rad_from_deg(4.0)};
+  for (double t = 1.1; t < 3.0; t += 0.1) r.scan(low, t, {}, 30.0, nose_up);
+  EXPECT_EQ(r.at(3.02, 0.3, 3.0), Known::Occupied);
+  Scene behind;
+  behind.blocks.push_back({6.0, 6.2, -4.0, 4.0, 0.0, 2.0});
+  for (double t = 3.0; t < 3.3; t += 0.1) r.scan(behind, t);
+  EXPECT_NE(r.at(3.02, 0.3, 3.3), Known::Occupied) << "it is gone, and the body level again";
+}
+
+//   Up a slope: what was met from below is no longer in the plane's height above. It stays.
+TEST(GridTest, HeightsAreThoseOfTheGroundThatWasDrivenNotOfTheBody) {
+  Scene low;
+  low.blocks.push_back({4.0, 4.2, -2.0, 2.0, 0.0, 0.35});
+  Robot r;
+  r.scan(low, 1.0);
+  ASSERT_EQ(r.at(4.02, 0.3), Known::Occupied);
+  for (double t = 1.1; t < 2.0; t += 0.1) {
+    const double x = 2.0 * (t - 1.0);
+    r.scan(low, t, {x, 0.0, 0.0}, 30.0, {0.1 * x, 0.0, 0.0});  // it climbs, and is level there
+  }
+  EXPECT_EQ(r.at(4.02, 0.3, 2.0), Known::Occupied);
 }
 
 TEST(GridTest, RunLengthsGiveThePatchBack) {
