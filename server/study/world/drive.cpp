@@ -32,6 +32,7 @@ constexpr double kReadyWithin_s = 60.0;
 constexpr double kGivesUp_s = 6.0;  // AUTO that stands so long before what does not move is done
 constexpr double kAway_m = 18.0;    // somebody drunk turns back here
 constexpr int kWordEvery_ticks = 25;
+constexpr int kHeardPerTick = 2;
 const base::WallTime kWorldWall{std::chrono::seconds(1'780'000'000)};
 
 /// Arcs, reversals, turns on the spot, and straight at whatever stands nearest.
@@ -178,7 +179,10 @@ class WorldDrive {
         lookout_.see(told.sight, t);
       });
     }
-    if (auto picture = lookout_.picture(t)) stage_.robot().surroundings().put(std::move(picture));
+    // Of two between the same ticks the robot would take the later one only.
+    if (heard_++ % kHeardPerTick == kHeardPerTick - 1) {
+      if (auto picture = lookout_.picture(t)) stage_.robot().surroundings().put(std::move(picture));
+    }
     asked_.clear();
     stage_.robot().around_questions().take(asked_);
     if (!asked_.empty()) {
@@ -265,6 +269,7 @@ class WorldDrive {
   bool goes_around_ = false;
   double began_s_ = 0.0;
   int ticks_ = 0;
+  int heard_ = 0;
 };
 
 }  // namespace
