@@ -165,6 +165,23 @@ class Port {
   void count(const std::string& cause, std::uint64_t more) {
     refused_ += more;
     counts_[cause] += more;
+    refused_last_ = cause;
+    refused_last_at_ = last_item_ ? *last_item_ : now_;
+  }
+  /// Bytes that belong to nothing: counted one by one, and once as a refusal.
+  void stray(const std::string& cause, std::uint64_t bytes) {
+    if (bytes == 0) return;
+    refused(cause);
+    note(cause, bytes - 1);
+  }
+  /// As note, of pieces that the device counted and that never came; that came again.
+  void lost(const std::string& what, std::uint64_t more) {
+    lost_ += more;
+    note(what, more);
+  }
+  void twice(const std::string& what) {
+    ++twice_;
+    note(what, 1);
   }
   /// As count, of what is no refusal: of no use, lost on the way.
   void note(const std::string& what, std::uint64_t more) { counts_[what] += more; }
@@ -183,11 +200,16 @@ class Port {
     s.last_received = last_received_;
     auto detail = std::make_shared<base::DriverDetail>();
     detail->counts = counts_;
+    detail->lost = lost_;
+    detail->twice = twice_;
+    detail->refused_last = refused_last_;
+    detail->refused_last_at = refused_last_at_;
     if (link_) {
       s.link = link_->describe();
       s.link_open = open_;
       const std::uint64_t strangers = strangers_of(*link_);
       if (strangers > 0) detail->counts["from a foreign address"] = strangers;
+      detail->foreign = strangers;
       for (const auto& [what, n] : troubles_of(*link_)) {
         detail->counts[what] += n;
         s.refused += n;
@@ -257,6 +279,10 @@ class Port {
   std::uint64_t received_ = 0;
   std::uint64_t refused_ = 0;
   std::uint64_t sent_ = 0;
+  std::uint64_t lost_ = 0;
+  std::uint64_t twice_ = 0;
+  std::string refused_last_;
+  std::optional<Time> refused_last_at_;
   std::map<std::string, std::uint64_t> counts_;
   std::map<std::string, std::string> facts_;
   std::vector<std::string> hazards_;

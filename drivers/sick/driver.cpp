@@ -160,7 +160,7 @@ bool Driver::is_new(const Scan& scan) {
   if (!before) return true;
   const auto on = static_cast<std::uint16_t>(here.scan_count - before->scan_count);
   if (on == 0 && here.start_us == before->start_us) {
-    port_.note("scan that came twice", 1);
+    port_.twice("scan that came twice");
     return false;
   }
   if (on == 0 || on > 0x7FFFU) {
@@ -169,7 +169,7 @@ bool Driver::is_new(const Scan& scan) {
   }
   const auto every = static_cast<unsigned>(params_.every);
   const unsigned steps = std::max(1U, (on + every / 2) / every);
-  if (steps > 1) port_.note("lost scan", steps - 1);
+  if (steps > 1) port_.lost("lost scan", steps - 1);
   count_ += steps - 1;
   return true;
 }

@@ -101,6 +101,8 @@ void Driver::complete(base::DriverStatus& status) const {
   const auto tell = [&](const char* what, std::uint64_t n) {
     if (n > 0) detail->counts[what] = n;
   };
+  detail->lost = c.lost;
+  detail->twice = c.duplicates;
   tell("packets lost", c.lost);
   tell("packets twice", c.duplicates);
   tell("packets late", c.late);

@@ -212,6 +212,11 @@ struct DriverDetail {
   std::map<std::string, std::uint64_t> counts;  ///< refusals by cause: "0x221 too short"
   std::map<std::string, double> rates_hz;       ///< by message: "0x221"
   std::map<std::string, std::string> facts;     ///< "protocol": "V2", "can_state": "error active"
+  std::uint64_t lost = 0;      ///< pieces that the device counted and that never came
+  std::uint64_t twice = 0;     ///< pieces that came again, and were not used again
+  std::uint64_t foreign = 0;   ///< what somebody else sent to its port
+  std::string refused_last{};  ///< cause of the last refusal; empty: nothing was refused
+  std::optional<Time> refused_last_at{};
   /// Dangers that this driver alone can see ("somebody else sends 0x111"). While one is listed the
   /// robot does not move.
   std::vector<std::string> hazards;

@@ -48,6 +48,22 @@ Json obstacle_json(const std::optional<base::Obstacle>& o, base::Time now) {
       {"reason", o->reason}};
 }
 
+/// What came over the sensor's link and was not what it should be; its driver has its name.
+void add_losses(Json& out, const base::Snapshot& s, const std::string& name, base::Time now) {
+  static const base::DriverDetail kNone;
+  const auto driver = std::ranges::find(s.drivers, name, &base::DriverStatus::name);
+  const bool known = driver != s.drivers.end();
+  const base::DriverDetail& detail = known && driver->detail ? *driver->detail : kNone;
+  out["lost"] = detail.lost;
+  out["duplicates"] = detail.twice;
+  out["malformed"] = known ? driver->refused : 0;
+  out["foreign"] = detail.foreign;
+  out["malformed_last"] = detail.refused_last.empty() ? Json(nullptr) : Json(detail.refused_last);
+  out["malformed_age_s"] =
+      detail.refused_last_at ? Json(rounded(base::seconds(now - *detail.refused_last_at), kPlaces2))
+                             : Json(nullptr);
+}
+
 Json sensors_json(const base::Snapshot& s, base::Time now) {
   Json items = Json::array();
   static const std::vector<base::SensorState> kNone;
@@ -73,6 +89,7 @@ Json sensors_json(const base::Snapshot& s, base::Time now) {
                        {"roll_deg", degrees(m.roll_rad)},
                        {"pitch_deg", degrees(m.pitch_rad)},
                        {"yaw_deg", degrees(m.yaw_rad)}}}});
+    add_losses(items.back(), s, one.name, now);
   }
   return {{"items", std::move(items)}};
 }

@@ -20,6 +20,8 @@ TEST(SickDriverScans, GapsAreLostScansAndASecondCopyIsNone) {
   EXPECT_EQ(b.seen.back()->count, 7u);
   EXPECT_EQ(b.status().received, 5u);
   EXPECT_EQ(b.status().refused, 0u);
+  EXPECT_EQ(b.status().detail->lost, 3u);
+  EXPECT_EQ(b.status().detail->twice, 1u);
 }
 
 TEST(SickDriverScans, OfEachThirdScanNoneIsLost) {

@@ -116,6 +116,7 @@ TEST_F(OnWire, LossesStandInTheCounts) {
   now += 5 * 1327104ns;
   turn(1);
   EXPECT_EQ(counted("packets lost"), 5U);
+  EXPECT_EQ(driver.status(now).detail->lost, 5U);
 }
 
 TEST_F(OnWire, PositionPacketsAreFacts) {
