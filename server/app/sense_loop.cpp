@@ -63,6 +63,7 @@ void SenseLoop::run() noexcept {
   make_prompt();
   std::vector<std::shared_ptr<const base::Sight>> sights;
   std::vector<nav::sense::Odometry> moved;
+  std::vector<robot::RowQuestion> rows;
   std::vector<std::shared_ptr<const robot::Surroundings>> done;
   while (!stop_) {
     timespec until{};
@@ -80,6 +81,9 @@ void SenseLoop::run() noexcept {
       robot_.surroundings_done().take(done);
       const auto config = robot_.config();
       lookout_.follow(config->protect, config->rays);
+      rows.clear();
+      robot_.row_questions().take(rows);
+      if (!rows.empty()) lookout_.look_for(rows.back());
       for (const auto& o : moved) lookout_.moved(o);
       const base::Time now = base::steady_now();
       for (auto& s : sights) lookout_.see(std::move(s), now);

@@ -102,7 +102,10 @@ class Walk {
     if (plan_.home) go(plan_.home->at, speed_mps_);
   }
   void pass(const Jump&) {}
-  void pass(const Row&) {}  // how long it is shows on the way
+  /// One that goes to its end shows on the way how long it is.
+  void pass(const Row& row) {
+    if (row.distance_m) add_way(*row.distance_m, row.speed_mps.value_or(speed_mps_));
+  }
   void pass(const Wall&) {}
   void pass(const Landmarks&) {}
   void pass(const Action&) {}

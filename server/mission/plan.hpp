@@ -19,6 +19,8 @@ using base::LatLon;
 
 enum class Turn { Auto, Pivot, Arc, Through };
 enum class Side { Left, Right };
+enum class RowSide { Both, Left, Right };
+enum class RowSeeing { Line, Rays };
 enum class AtEnd { Hold, Return, Repeat, BackAndForth };
 
 struct Waypoint {
@@ -55,9 +57,13 @@ struct Speed {
   double speed_mps = 0.0;  ///< for the items that follow
   friend bool operator==(const Speed&, const Speed&) = default;
 };
+/// Along plants to both sides, in the middle, or along those of one side.
 struct Row {
-  Side side = Side::Left;
-  std::optional<double> gap_m;
+  RowSide side = RowSide::Both;
+  std::optional<double> gap_m;       ///< of one side: from its plants to the vehicle's middle
+  std::optional<double> speed_mps;   ///< empty: as the profile says for rows
+  std::optional<double> distance_m;  ///< done after so much way; empty: at the row's end
+  RowSeeing seeing = RowSeeing::Line;
   friend bool operator==(const Row&, const Row&) = default;
 };
 struct Wall {

@@ -13,8 +13,10 @@
 #include "base/result.hpp"
 #include "nav/behave/mode_params.hpp"
 #include "nav/behave/params.hpp"
+#include "nav/behave/row_drive.hpp"
 #include "nav/estimate/params.hpp"
 #include "nav/sense/params.hpp"
+#include "nav/rows/params.hpp"
 #include "nav/track/path.hpp"
 #include "nav/track/tool.hpp"
 #include "robot/guard/blocked.hpp"
@@ -214,6 +216,8 @@ struct Config {
   nav::ToolParams tool;
   nav::BehaveParams behave;
   nav::ModeParams modes;
+  nav::RowDriveParams row;
+  nav::rows::RowParams rows;
   RobotParams robot;
   ManualParams manual;
   SafetyParams safety;
@@ -257,6 +261,8 @@ void sections(V& v, Config& c) {
   v("nav.tool", c.tool);
   v("nav.behave", c.behave);
   v("nav.modes", c.modes);
+  v("nav.row", c.row);
+  v("nav.rows", c.rows);
   v("robot", c.robot);
   v("robot.manual", c.manual);
   v("robot.safety", c.safety);

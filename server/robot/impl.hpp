@@ -24,6 +24,7 @@
 #include "robot/delivered.hpp"
 #include "robot/guard/detour.hpp"
 #include "robot/guard/guard.hpp"
+#include "robot/guard/row_watch.hpp"
 #include "robot/handling.hpp"
 #include "robot/loop_clock.hpp"
 #include "robot/mission_keeper.hpp"
@@ -79,6 +80,7 @@ struct Robot::Impl {
   base::Inbox<base::Measurement> measurements{4096};
   base::Inbox<std::shared_ptr<const Surroundings>> surroundings{4};
   base::Inbox<std::shared_ptr<const Surroundings>> surroundings_done{16};
+  base::Inbox<RowQuestion> row_questions{8};
   base::Inbox<nav::sense::Odometry> odometry{256};
   base::Inbox<std::shared_ptr<const AroundQuestion>> around_questions{2};
   base::Inbox<std::shared_ptr<const AroundAnswer>> around_answers{4};
@@ -133,6 +135,7 @@ struct Robot::Impl {
   std::string blind;         ///< why nothing may drive by itself: a sensor; empty: nothing is wrong
   bool blind_pause = false;  ///< the mission waits because of it, and nobody has said a word since
   std::optional<base::Time> sees_since;
+  RowQuestion row_asked;
   std::vector<std::shared_ptr<const Surroundings>> surroundings_batch;
   RadioKeys keys;
   std::vector<RadioKey> pressed;
@@ -271,6 +274,8 @@ struct Robot::Impl {
   void look_around();
   base::DriveCommand keep_off(base::DriveCommand command);
   base::BodyTwist guarded(const base::BodyTwist& wanted);
+  void ask_for_row();
+  std::optional<nav::RowSight> row_sight() const;
   nav::sense::Pose2 local_in_odometry() const noexcept;
   bool ask_around();
   void take_around();

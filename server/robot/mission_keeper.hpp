@@ -23,7 +23,8 @@ class MissionKeeper {
  public:
   using Mission = std::shared_ptr<const CompiledMission>;
 
-  explicit MissionKeeper(const ParameterSet& set) : executor(set.path, set.behave, set.modes) {}
+  explicit MissionKeeper(const ParameterSet& set)
+      : executor(set.path, set.behave, set.modes, set.row) {}
 
   const Mission& get() const noexcept { return mission_; }
   explicit operator bool() const noexcept { return mission_ != nullptr; }

@@ -30,6 +30,7 @@ class ParameterSet {
     estimate.adopt(section(all_->estimate));
     behave.adopt(section(all_->behave));
     modes.adopt(section(all_->modes));
+    row.adopt(section(all_->row));
     manual.adopt(section(all_->manual));
     safety.adopt(section(all_->safety));
     radio.adopt(section(all_->radio));
@@ -44,6 +45,7 @@ class ParameterSet {
   base::Setting<nav::PathParams> path;
   base::Setting<nav::BehaveParams> behave;
   base::Setting<nav::ModeParams> modes;
+  base::Setting<nav::RowDriveParams> row;
   base::Setting<ManualParams> manual;
   base::Setting<SafetyParams> safety;
   base::Setting<RadioParams> radio;

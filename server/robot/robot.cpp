@@ -55,6 +55,9 @@ base::Inbox<std::shared_ptr<const Surroundings>>& Robot::surroundings() noexcept
 base::Inbox<std::shared_ptr<const Surroundings>>& Robot::surroundings_done() noexcept {
   return impl_->surroundings_done;
 }
+base::Inbox<RowQuestion>& Robot::row_questions() noexcept {
+  return impl_->row_questions;
+}
 base::Inbox<nav::sense::Odometry>& Robot::odometry() noexcept {
   return impl_->odometry;
 }

@@ -43,6 +43,7 @@ using base::Time;
 
 struct AroundAnswer;    // see robot/guard/around.hpp
 struct AroundQuestion;  // likewise
+struct RowQuestion;     // see robot/guard/row_watch.hpp
 struct Surroundings;    // see robot/guard/surroundings.hpp
 
 /// One revision of a mission as the api hands it over. Immutable.
@@ -367,6 +368,8 @@ class Robot {
   base::Inbox<std::shared_ptr<const AroundQuestion>>& around_questions() noexcept;
   /// and answered here (guard/around.hpp). While nobody answers the robot waits.
   base::Inbox<std::shared_ptr<const AroundAnswer>>& around_answers() noexcept;
+  /// Any thread: what row is to be looked for by whoever makes the surroundings; the newest counts.
+  base::Inbox<RowQuestion>& row_questions() noexcept;
   /// Any thread: how the body moved, 50 times a second, for whoever makes the surroundings.
   base::Inbox<nav::sense::Odometry>& odometry() noexcept;
 

@@ -310,7 +310,9 @@ Result<Done> apply(Plan plan, const Mirror& mirror) {
     if (auto* turn = std::get_if<TurnBy>(&item); turn && turn->turn_deg) {
       turn->turn_deg = -*turn->turn_deg;
     } else if (auto* row = std::get_if<Row>(&item)) {
-      row->side = other(row->side);
+      row->side = row->side == RowSide::Left    ? RowSide::Right
+                  : row->side == RowSide::Right ? RowSide::Left
+                                                : RowSide::Both;
     } else if (auto* wall = std::get_if<Wall>(&item)) {
       wall->side = other(wall->side);
     } else if (auto* marks = std::get_if<Landmarks>(&item)) {

@@ -52,6 +52,7 @@ inline constexpr Range kHeading_deg{0.0, 360.0, false, true};
 inline constexpr Range kTurn_deg{-360.0, 360.0};
 inline constexpr Range kLocal_m{-10'000.0, 10'000.0};
 inline constexpr Range kBeside_m{0.0, 20.0, true};
+inline constexpr Range kRow_m{0.0, 10'000.0, true};
 inline constexpr Range kOffset_m{-20.0, 20.0};
 inline constexpr Range kDrift_m{0.1, 100.0};
 inline constexpr Range kCircle_m{0.5, 1000.0};
@@ -65,6 +66,10 @@ template <>
 inline constexpr std::array kWordsOf<Turn>{Turn::Auto, Turn::Pivot, Turn::Arc, Turn::Through};
 template <>
 inline constexpr std::array kWordsOf<Side>{Side::Left, Side::Right};
+template <>
+inline constexpr std::array kWordsOf<RowSide>{RowSide::Both, RowSide::Left, RowSide::Right};
+template <>
+inline constexpr std::array kWordsOf<RowSeeing>{RowSeeing::Line, RowSeeing::Rays};
 template <>
 inline constexpr std::array kWordsOf<AtEnd>{AtEnd::Hold, AtEnd::Return, AtEnd::Repeat,
                                             AtEnd::BackAndForth};
@@ -110,8 +115,11 @@ void fields(V& v, Of<Speed> auto& p) {
 }
 template <class V>
 void fields(V& v, Of<Row> auto& p) {
-  v.word("side", p.side);
+  v.word_or("side", p.side, RowSide::Both);
   v.number("gap_m", p.gap_m, kBeside_m);
+  v.number("speed_mps", p.speed_mps, kSpeed_mps);
+  v.number("distance_m", p.distance_m, kRow_m);
+  v.word_or("seeing", p.seeing, RowSeeing::Line);
 }
 template <class V>
 void fields(V& v, Of<Wall> auto& p) {

@@ -9,8 +9,8 @@
 // Ranges: lat −90..90, lon −180..180, alt_m −1000..10000, speed_mps 0 < v ≤ 10, radius_m and
 // waypoint distances 0 < r ≤ 100, hold_s and seconds 0..86400, heading_deg 0 ≤ h < 360, turn_deg
 // −360..360, east_m, north_m and forward_m −10000..10000, gap_m and distance_m 0 < d ≤ 20, offset_m
-// −20..20, jump item 1..number of items and never itself, times 0..10000. Names: 1..200 characters,
-// not only blanks, no control characters.
+// −20..20, distance_m of a row 0 < d ≤ 10000, jump item 1..number of items and never itself, times
+// 0..10000. Names: 1..200 characters, not only blanks, no control characters.
 
 #include <cstddef>
 #include <string>
@@ -56,8 +56,10 @@ nlohmann::json item_to_json(const Item& item);
 std::string plan_to_text(const Plan& plan);
 
 /// The words of the public interface for the enumerations of a plan.
-std::string_view to_string(Turn turn) noexcept;     // auto pivot arc through
-std::string_view to_string(Side side) noexcept;     // left right
-std::string_view to_string(AtEnd at_end) noexcept;  // hold return repeat back_and_forth
+std::string_view to_string(Turn turn) noexcept;         // auto pivot arc through
+std::string_view to_string(Side side) noexcept;         // left right
+std::string_view to_string(RowSide side) noexcept;      // both left right
+std::string_view to_string(RowSeeing seeing) noexcept;  // line rays
+std::string_view to_string(AtEnd at_end) noexcept;      // hold return repeat back_and_forth
 
 }  // namespace roverd::mission

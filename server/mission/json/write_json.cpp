@@ -199,6 +199,28 @@ std::string_view to_string(Side side) noexcept {
   return "left";
 }
 
+std::string_view to_string(RowSide side) noexcept {
+  switch (side) {
+    case RowSide::Both:
+      return "both";
+    case RowSide::Left:
+      return "left";
+    case RowSide::Right:
+      return "right";
+  }
+  return "both";
+}
+
+std::string_view to_string(RowSeeing seeing) noexcept {
+  switch (seeing) {
+    case RowSeeing::Line:
+      return "line";
+    case RowSeeing::Rays:
+      return "rays";
+  }
+  return "line";
+}
+
 std::string_view to_string(AtEnd at_end) noexcept {
   switch (at_end) {
     case AtEnd::Hold:

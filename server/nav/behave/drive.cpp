@@ -49,6 +49,7 @@ TrackOutput Executor::step(const Vehicle& vehicle, double limit_mps, std::option
     if (!running()) return {};
   }
   if (doing_ == Doing::Turn) return step_turn(vehicle, dt_s);
+  if (doing_ == Doing::Row) return step_row(vehicle, limit_mps, dt_s);
   if (doing_ == Doing::Wait || cut_goal(vehicle, dt_s)) return {};
   const TrackOutput out = tracker_.step(vehicle, limit_mps, dt_s);
   if (doing_ == Doing::Path) pass_nodes(vehicle);
@@ -93,6 +94,8 @@ bool Executor::enter_step(const RouteStep& step, const Vehicle& vehicle,
       return enter_stay(step, vehicle);
     case StepKind::Move:
       return enter_move(step, vehicle);
+    case StepKind::Row:
+      return enter_row(step);
     case StepKind::Face:
     case StepKind::Turn:
       return enter_turn(step);

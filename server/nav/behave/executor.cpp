@@ -52,8 +52,12 @@ std::optional<EnuPoint> first_target(const Route& route, std::size_t step,
 }
 
 Executor::Executor(base::Setting<PathParams> path, base::Setting<BehaveParams> behave,
-                   base::Setting<ModeParams> modes)
-    : path_params_(path), params_(std::move(behave)), modes_(std::move(modes)), tracker_(path) {
+                   base::Setting<ModeParams> modes, base::Setting<RowDriveParams> rows)
+    : path_params_(path),
+      params_(std::move(behave)),
+      modes_(std::move(modes)),
+      tracker_(path),
+      row_(path, std::move(rows)) {
   notices_.reserve(16);
 }
 
@@ -84,6 +88,7 @@ void Executor::begin_at(std::size_t step) {
   ++way_id_;
   tracker_.reset();
   rotation_.reset();
+  row_.reset();
   doing_ = Doing::Nothing;
   left_ = looked_s_ = 0.0;
   at_ = step;
@@ -144,6 +149,7 @@ void Executor::interrupt() noexcept {
     s_m_ = tracker_.s_m();
   }
   tracker_.reset();
+  row_.interrupt();
   lost_s_ = stuck_s_ = 0.0;
   interrupted_ = true;
 }
@@ -158,6 +164,7 @@ std::optional<EnuPoint> Executor::place_to_go_on() const noexcept {
     case Doing::Wait:
     case Doing::Turn:
     case Doing::Stay:
+    case Doing::Row:
       return std::nullopt;
   }
   return std::nullopt;
@@ -206,6 +213,7 @@ void Executor::go_on(EnuPoint here) {
     left_ = rotation_.left_rad();
     doing_ = Doing::Nothing;  // the rest of it is begun anew
   }
+  if (doing_ == Doing::Row) ++rows_begun_;  // it is looked for anew
   const auto place = place_to_go_on();
   if (!place) return;
   const double far_m = base::distance_m(here, *place);

@@ -26,6 +26,7 @@
 #include "nav/behave/params.hpp"
 #include "nav/behave/rotate_in_place.hpp"
 #include "nav/behave/route.hpp"
+#include "nav/behave/row_drive.hpp"
 #include "nav/track/tracker.hpp"
 
 namespace roverd::nav {
@@ -92,10 +93,16 @@ Beginning beginning(const Route& route, const StartAt& at, const std::optional<S
 std::optional<EnuPoint> first_target(const Route& route, std::size_t step,
                                      std::optional<EnuPoint> home) noexcept;
 
+/// What should be looked for.
+struct RowWanted {
+  std::uint64_t id = 0;  ///< another one: another row, or the same anew
+  rows::RowOrder order;
+};
+
 class Executor {
  public:
   Executor(base::Setting<PathParams> path, base::Setting<BehaveParams> behave,
-           base::Setting<ModeParams> modes = {});
+           base::Setting<ModeParams> modes = {}, base::Setting<RowDriveParams> rows = {});
 
   /// Allowed unless Running. Null: nothing is loaded.
   void load(std::shared_ptr<const Route> route);
@@ -146,6 +153,11 @@ class Executor {
   TrackOutput step(const Vehicle& vehicle, double limit_mps, std::optional<EnuPoint> home,
                    double dt_s);
 
+  /// A row is to be driven by sight: what should be looked for. Empty: none.
+  std::optional<RowWanted> row_wanted() const noexcept;
+  /// Before step(): what is seen of it. Empty: nothing on this robot looks around.
+  void see_row(const std::optional<RowSight>& sight) noexcept { row_sight_ = sight; }
+
   base::ExecutionState state() const noexcept { return state_; }
   /// Another one: what was found out about the way ahead is of no use any more.
   std::uint64_t way_id() const noexcept { return way_id_; }
@@ -156,7 +168,9 @@ class Executor {
   std::optional<double> corridor_m() const noexcept {
     return running() ? route_->corridor_m : std::nullopt;
   }
-  TrackPhase phase() const noexcept { return tracker_.phase(); }
+  TrackPhase phase() const noexcept {
+    return doing_ == Doing::Row ? row_.phase() : tracker_.phase();
+  }
   /// @param here empty: the position is not known, and neither is a way that begins there.
   /// @param sigma_m of that position.
   Progress progress(std::optional<EnuPoint> here, double sigma_m = 0.0) const;
@@ -164,7 +178,7 @@ class Executor {
   std::vector<Notice>& notices() noexcept { return notices_; }
 
  private:
-  enum class Doing { Nothing, Path, Connector, Wait, Turn, Stay };
+  enum class Doing { Nothing, Path, Connector, Wait, Turn, Stay, Row };
   /// Way and time, jumps not counted.
   struct Left {
     double m = 0.0;
@@ -186,6 +200,8 @@ class Executor {
   bool enter_move(const RouteStep& step, const Vehicle& vehicle);
   bool enter_turn(const RouteStep& step);
   TrackOutput step_turn(const Vehicle& vehicle, double dt_s);
+  bool enter_row(const RouteStep& step);
+  TrackOutput step_row(const Vehicle& vehicle, double limit_mps, double dt_s);
   bool enter_stay(const RouteStep& step, const Vehicle& vehicle);
   void step_stay(const Vehicle& vehicle);
   bool cut_goal(const Vehicle& vehicle, double dt_s);
@@ -223,6 +239,9 @@ class Executor {
   Path connector_;
   Vertex connector_end_;
   RotateInPlace rotation_;
+  RowDrive row_;
+  std::optional<RowSight> row_sight_;
+  std::uint64_t rows_begun_ = 0;
   std::vector<int> jumps_left_;  ///< per jump; −1: not counted yet
   std::vector<Notice> notices_;
 

@@ -54,6 +54,43 @@ TrackOutput Executor::step_turn(const Vehicle& vehicle, double dt_s) {
   return out;
 }
 
+std::optional<RowWanted> Executor::row_wanted() const noexcept {
+  const RouteStep* step = step_now();
+  if (!running() || doing_ != Doing::Row || step == nullptr || !step->row) return std::nullopt;
+  return RowWanted{rows_begun_, step->row->order};
+}
+
+/// Along what is seen, from where the robot stands. After a restart so much of it is done.
+bool Executor::enter_row(const RouteStep& step) {
+  RowDrive::Order order;
+  order.speed_mps = step.row->speed_mps;
+  order.distance_m = step.row->distance_m;
+  order.driven_m = left_;
+  left_ = 0.0;
+  standing_.reset();
+  drove_ = true;
+  doing_ = Doing::Row;
+  ++rows_begun_;
+  row_.begin(order);
+  return true;
+}
+
+TrackOutput Executor::step_row(const Vehicle& vehicle, double limit_mps, double dt_s) {
+  if (!row_sight_) {
+    block("nothing on this robot sees rows");
+    return {};
+  }
+  const TrackOutput out = row_.step(*row_sight_, vehicle, limit_mps, dt_s);
+  if (row_.state() == RowDrive::State::Failed) {
+    std::string why = row_.reason();
+    block("item " + std::to_string(step_now()->item) + ": " + why);
+  } else if (row_.state() == RowDrive::State::Done) {
+    doing_ = Doing::Nothing;
+    reached(*step_now());
+  }
+  return out;
+}
+
 /// Begun anew, or with what is left after a restart.
 bool Executor::enter_stay(const RouteStep& step, const Vehicle& vehicle) {
   stays_ = step.place.value_or(vehicle.at);

@@ -45,7 +45,7 @@ class Layout {
         std::any_of(forth().steps.begin(), forth().steps.end(), [](const RouteStep& step) {
           return step.kind == StepKind::Go || step.kind == StepKind::Home ||
                  step.kind == StepKind::Move || step.kind == StepKind::Turn ||
-                 step.kind == StepKind::Stay;
+                 step.kind == StepKind::Stay || step.kind == StepKind::Row;
         });
     if (problems_.empty() && !drives) {
       problems_.push_back({"/items", "the mission has no waypoint"});
@@ -156,6 +156,21 @@ class Layout {
     if (t.turn_deg) step.by = -base::rad_from_deg(*t.turn_deg);
     forth().steps.push_back(std::move(step));
   }
+  void add(const mission::Row& r) {
+    if (params_.tool.pulled()) return refuse("with a trailer no row is driven by sight");
+    not_back_and_forth("a row");
+    RowToDrive row;
+    row.order.sides = r.side == mission::RowSide::Left    ? rows::Sides::Left
+                      : r.side == mission::RowSide::Right ? rows::Sides::Right
+                                                          : rows::Sides::Both;
+    row.order.seeing =
+        r.seeing == mission::RowSeeing::Rays ? rows::Seeing::Rays : rows::Seeing::Line;
+    if (r.gap_m) row.order.gap_m = *r.gap_m;
+    row.speed_mps = r.speed_mps;
+    row.distance_m = r.distance_m;
+    leave_circle();
+    forth().steps.push_back({.kind = StepKind::Row, .item = item_, .row = row});
+  }
   void add(const mission::Action& a) {
     forth().steps.push_back({.kind = StepKind::Act,
                              .item = item_,
@@ -209,6 +224,7 @@ class Layout {
     for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
       if (step->kind == StepKind::Go) return route_.forth.nodes[step->node].at;
       const bool elsewhere = step->kind == StepKind::Home || step->kind == StepKind::Move ||
+                             step->kind == StepKind::Row ||
                              (step->kind == StepKind::Stay && !step->place);
       if (elsewhere || step->kind == StepKind::Jump) return std::nullopt;
     }
@@ -420,6 +436,9 @@ class Layout {
       case StepKind::Face:
       case StepKind::Turn:
         return (step.yaw_rad ? base::kPi / 2.0 : std::abs(step.by)) / turn_radps;
+      case StepKind::Row:  // how long it is, shows on the way
+        if (!step.row->distance_m) break;
+        return *step.row->distance_m / std::max(0.1, step.row->speed_mps.value_or(speed_mps_));
       case StepKind::Home:
       case StepKind::Jump:
       case StepKind::Act:
@@ -444,7 +463,7 @@ class Layout {
         before = forth().nodes[step.node].at;
         if (at_home) route_.home_ends.push_back({*before, step.item});
         at_home = false;
-      } else if (step.kind == StepKind::Move) {
+      } else if (step.kind == StepKind::Move || step.kind == StepKind::Row) {
         before.reset();
         at_home = false;
       } else if (step.kind == StepKind::Home) {

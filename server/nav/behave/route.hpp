@@ -9,12 +9,20 @@
 #include "base/geo.hpp"
 #include "base/result.hpp"
 #include "mission/plan.hpp"
+#include "nav/rows/view.hpp"
 #include "nav/track/path.hpp"
 
 namespace roverd::nav {
 
 /// Face, Act and Stay belong to the waypoint before them.
-enum class StepKind { Go, Wait, Home, Jump, Face, Turn, Move, Act, Stay };
+enum class StepKind { Go, Wait, Home, Jump, Face, Turn, Move, Act, Stay, Row };
+
+/// A row to drive along by sight.
+struct RowToDrive {
+  rows::RowOrder order;
+  std::optional<double> speed_mps;   ///< empty: the default of rows
+  std::optional<double> distance_m;  ///< empty: to its end
+};
 
 /// One thing to do. `item` is the number people see (from 1).
 struct RouteStep {
@@ -32,6 +40,7 @@ struct RouteStep {
   bool endless = false;             ///< Stay: until somebody says to go on
   std::string action{};             ///< Act: its name
   std::string arguments{};          ///< Act: JSON
+  std::optional<RowToDrive> row{};  ///< Row
 };
 
 /// A waypoint of the route, in metres.

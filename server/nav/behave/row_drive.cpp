@@ -40,6 +40,8 @@ void RowDrive::reset() noexcept {
 }
 
 void RowDrive::interrupt() noexcept {
+  // Where somebody else left the robot, the row may have to be looked for.
+  if (state_ == State::Driving || state_ == State::Failed) state_ = State::Seeking;
   tracker_.reset();
   laid_.reset();
   last_.reset();

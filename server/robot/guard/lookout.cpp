@@ -60,6 +60,12 @@ void Lookout::moved(const nav::sense::Odometry& o) noexcept {
   (void)history_.push(o);
 }
 
+void Lookout::look_for(const RowQuestion& row) {
+  row_ = row;
+  finder_.reset();
+  if (row.order) finder_.emplace(row.params, *row.order);
+}
+
 void Lookout::see(std::shared_ptr<const base::Sight> sight, base::Time now) {
   if (waiting_.size() >= kMostWaiting) waiting_.pop_front();
   waiting_.push_back(std::move(sight));
@@ -88,6 +94,10 @@ void Lookout::take(const base::Sight& sight, base::Time now) {
   if (!number) return;
   last_[*number] = {sight.points.size(), end_of(sight)};
   scans_[*number].keep(chain_.last(), end_of(sight));
+  if (finder_) {
+    nav::rows::scan_of(chain_.last(), row_.params, row_scan_);
+    finder_->see(row_scan_);
+  }
   if (rays_.enabled) count(*number, end_of(sight), now);
   news_ = true;
 }
@@ -144,6 +154,7 @@ std::shared_ptr<const Surroundings> Lookout::picture(base::Time now) {
   chain_.grid().patch(history_.newest().pose, reach_m_, now, out->patch, free_for_s_);
   out->marks.mark(out->patch);
   out->sensors = std::move(sensors);
+  if (finder_ && finder_->view()) out->row = RowSeen{row_.id, *finder_->view()};
   float nearest_m = 0.0F;
   for (const auto& one : counted_) {
     if (!one || (out->rays && one->nearest_m >= nearest_m)) continue;

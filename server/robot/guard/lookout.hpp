@@ -25,9 +25,11 @@
 
 #include "base/sensing.hpp"
 #include "base/sight.hpp"
+#include "nav/rows/finder.hpp"
 #include "nav/sense/chain.hpp"
 #include "nav/sense/rays_rule.hpp"
 #include "robot/guard/outlook.hpp"
+#include "robot/guard/row_watch.hpp"
 #include "robot/guard/surroundings.hpp"
 
 namespace roverd::robot {
@@ -45,6 +47,8 @@ class Lookout {
   void moved(const nav::sense::Odometry& o) noexcept;
   /// @param sight one of the chain's sensors, or it is left out
   void see(std::shared_ptr<const base::Sight> sight, base::Time now);
+  /// The row that is to be found from now on; of one id once.
+  void look_for(const RowQuestion& row);
   /// Takes what waited; then what is known around the robot. Null: nothing was seen since the last
   /// one, and that is younger than 0.1 s.
   std::shared_ptr<const Surroundings> picture(base::Time now);
@@ -73,6 +77,9 @@ class Lookout {
     RaysStop stop;
   };
   std::vector<std::optional<Counted>> counted_;  ///< by sensor: it says stop
+  RowQuestion row_;
+  std::optional<nav::rows::RowFinder> finder_;
+  nav::rows::RowScan row_scan_;  ///< of the last piece
   double reach_m_;
   std::deque<std::shared_ptr<const base::Sight>> waiting_;
   bool news_ = false;

@@ -11,6 +11,7 @@
 #include "nav/sense/footprint.hpp"
 #include "nav/sense/grid.hpp"
 #include "nav/sense/marks.hpp"
+#include "robot/guard/row_watch.hpp"
 
 namespace roverd::robot {
 
@@ -32,6 +33,7 @@ struct Surroundings {
   /// Of the sensors whose rays say stop, the one with the nearest. Empty: none does, or the rule is
   /// off.
   std::optional<RaysStop> rays;
+  std::optional<RowSeen> row;  ///< empty: none is asked for, or none is seen
 };
 
 }  // namespace roverd::robot

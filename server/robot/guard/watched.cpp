@@ -41,6 +41,7 @@ void Robot::Impl::look_around() {
     if (one) (void)surroundings_done.try_offer(one);
   }
   surroundings_batch.clear();
+  ask_for_row();
   base::BodyTwist moved = world.motion ? world.motion->twist : base::BodyTwist{};
   if (pose && pose->speed_mps) moved.linear_mps = *pose->speed_mps;
   if (pose && pose->yaw_rate_radps) moved.angular_radps = *pose->yaw_rate_radps;
@@ -54,6 +55,30 @@ void Robot::Impl::look_around() {
   const bool silent = words.ends_with("is silent") || guard.too_old(clock.now());
   const bool long_enough = blind_since && clock.now() - *blind_since >= kBlindFor;
   blind = silent || long_enough ? std::move(words) : std::string();
+}
+
+/// Told once, and again where there was no room.
+void Robot::Impl::ask_for_row() {
+  const auto wanted = missions.executor.row_wanted();
+  const bool same = wanted ? row_asked.order && row_asked.id == wanted->id : !row_asked.order;
+  if (same) return;
+  RowQuestion asked;
+  if (wanted) asked = {wanted->id, wanted->order, config->rows};
+  RowQuestion offered = asked;
+  if (row_questions.try_offer(offered)) row_asked = asked;
+}
+
+std::optional<nav::RowSight> Robot::Impl::row_sight() const {
+  if (!guard.sees()) return std::nullopt;
+  nav::RowSight sight;
+  sight.body = guard.odometry().pose;
+  const auto& around = guard.around();
+  const bool seen = around && around->row && row_asked.order && around->row->id == row_asked.id;
+  if (seen) {
+    sight.view = &around->row->view;
+    sight.age_s = base::seconds(clock.now() - sight.view->stamp);
+  }
+  return sight;
 }
 
 /// What is in the way is not driven against, whoever drives.

@@ -110,6 +110,7 @@ base::DriveCommand Robot::Impl::drive_mission() {
   }
   if (!pose->heading_known) return seek_heading();
   missions.executor.go_on(pose->at);
+  missions.executor.see_row(row_sight());
   const nav::TrackOutput out =
       missions.executor.step(vehicle(), limit_mps(), home_point(), clock.dt_s());
   speed_reason = std::string(nav::to_string(out.reason));

@@ -165,6 +165,9 @@ class WorldDrive {
   void sense(base::Time t) {
     moved_.clear();
     stage_.robot().odometry().take(moved_);
+    rows_.clear();
+    stage_.robot().row_questions().take(rows_);
+    if (!rows_.empty()) lookout_.look_for(rows_.back());
     for (const auto& o : moved_) lookout_.moved(o);
     done_.clear();
     stage_.robot().surroundings_done().take(done_);
@@ -261,6 +264,7 @@ class WorldDrive {
   Referee referee_;
   robot::Lookout lookout_;
   std::vector<WorldEye> eyes_;
+  std::vector<robot::RowQuestion> rows_;
   std::vector<nav::sense::Odometry> moved_;
   std::vector<std::shared_ptr<const robot::Surroundings>> done_;
   std::vector<std::shared_ptr<const robot::AroundQuestion>> asked_;

@@ -58,6 +58,16 @@ const SIDE: ChoiceField = {
     ['right', 'Right'],
   ],
 };
+const ROW_SIDE: ChoiceField = { ...SIDE, choices: [['both', 'Both: the middle'], ...SIDE.choices] };
+const SEEING: ChoiceField = {
+  kind: 'choice',
+  key: 'seeing',
+  label: 'Seen by',
+  choices: [
+    ['line', 'Lines'],
+    ['rays', 'Outermost rays'],
+  ],
+};
 const TURN: ChoiceField = {
   kind: 'choice',
   key: 'turn',
@@ -93,7 +103,13 @@ export const fields_of: Record<ItemType, readonly Field[]> = {
   ],
   wait: [must('seconds', 'Wait', 's', [0, 86_400])],
   speed: [must('speed_mps', 'Speed', 'm/s', [0.01, 10])],
-  row: [SIDE, may('gap_m', 'Gap', 'm', [0, 20])],
+  row: [
+    ROW_SIDE,
+    may('gap_m', 'Gap, along one side', 'm', [0.01, 20]),
+    may('speed_mps', 'Speed', 'm/s', [0.01, 10]),
+    may('distance_m', 'Ends after', 'm', [0.01, 10_000]),
+    SEEING,
+  ],
   wall: [SIDE, must('distance_m', 'Distance', 'm', [0, 20])],
   landmarks: [
     { kind: 'text', key: 'name', label: 'Name' },
@@ -137,7 +153,7 @@ export const fresh_item = (type: Exclude<ItemType, 'waypoint'>, near: LatLon | n
     case 'speed':
       return { type, speed_mps: 0.5 };
     case 'row':
-      return { type, side: 'left' };
+      return { type, side: 'both' };
     case 'wall':
       return { type, side: 'left', distance_m: 0.9 };
     case 'landmarks':

@@ -9,6 +9,7 @@ export interface LatLon {
 
 export type TurnStyle = 'auto' | 'pivot' | 'arc' | 'through';
 export type Side = 'left' | 'right';
+export type RowSide = 'both' | Side;
 export type AtEnd = 'hold' | 'return' | 'repeat' | 'back_and_forth';
 
 export interface Waypoint extends LatLon {
@@ -48,8 +49,11 @@ export interface Speed {
 }
 export interface Row {
   readonly type: 'row';
-  readonly side: Side;
+  readonly side?: RowSide;
   readonly gap_m?: number | null;
+  readonly speed_mps?: number | null;
+  readonly distance_m?: number | null;
+  readonly seeing?: 'line' | 'rays';
 }
 export interface Wall {
   readonly type: 'wall';
@@ -179,7 +183,7 @@ export const item_title = (item: Item): string => {
     case 'speed':
       return `Speed ${item.speed_mps} m/s`;
     case 'row':
-      return `Row on the ${item.side}`;
+      return (item.side ?? 'both') === 'both' ? 'Row, in its middle' : `Row on the ${item.side}`;
     case 'wall':
       return `Wall on the ${item.side}, ${item.distance_m} m`;
     case 'landmarks':
