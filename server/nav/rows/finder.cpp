@@ -92,6 +92,7 @@ void RowFinder::lose() {
 void RowFinder::see(const RowScan& scan) {
   if (scan.blind) return;
   if (order_.seeing == Seeing::Rays) {
+    if (!scan.ahead) return;  // of a sensor that looks elsewhere
     const double seen_m = marks_.way_m();
     RowScan nothing;
     nothing.pose = scan.pose;

@@ -40,6 +40,12 @@ void scan_of(const sense::Reduced& in, const RowParams& params, RowScan& out) {
     float& reach = out.reach_m[bearing_at(std::atan2(dy, dx))];
     reach = std::max(reach, static_cast<float>(std::hypot(dx, dy)));
   }
+  const auto half = static_cast<long>(params.rays_fan_deg);
+  long looked = 0;
+  for (long deg = -half; deg <= half; ++deg) {
+    if (out.reach_m[bearing_at(base::rad_from_deg(double(deg) + 0.5))] > 0.0F) ++looked;
+  }
+  out.ahead = 2 * looked > 2 * half + 1;
   sense::RaysParams fan;
   fan.fan_deg = params.rays_fan_deg;
   fan.band_m = params.rays_band_m;

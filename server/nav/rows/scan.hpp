@@ -31,6 +31,7 @@ struct RowScan {
   /// is known.
   std::array<float, kBearings> reach_m{};
   std::vector<sense::Ray> rays;  ///< the planar fan, for seeing by rays
+  bool ahead = true;             ///< it looks into most of that fan at all
 
   /// How far one sees from the sensor towards a place of B.
   double reach_to(double x_m, double y_m) const noexcept;

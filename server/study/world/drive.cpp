@@ -112,7 +112,7 @@ Result<Made> make(const Setup& setup, const Scenario& s) {
   out.eyes = usual_eyes(out.plant.body, s.lidar);
   out.settings.sensors.clear();
   for (const EyeSetup& eye : out.eyes) out.settings.sensors[eye.seen.name] = eye.said;
-  out.plan = plan_of(s.course, base::LocalFrame(1, kWorldPlace), s.number);
+  out.plan = s.plan ? *s.plan : plan_of(s.course, base::LocalFrame(1, kWorldPlace), s.number);
   out.start.at = kWorldPlace;
   out.start.wall = kWorldWall;
   const base::EnuPoint first = s.course.points[1] - s.course.points[0];

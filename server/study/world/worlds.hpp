@@ -19,6 +19,7 @@
 
 #include "base/geo.hpp"
 #include "base/result.hpp"
+#include "mission/plan.hpp"
 #include "sim/world/faults.hpp"
 #include "sim/world/world.hpp"
 #include "study/study.hpp"
@@ -47,6 +48,8 @@ struct Scenario {
   std::string fault;  ///< none, rain, dust, dropouts, sun, dirt, noise or dead
   sim::world::World world;
   Course course;  ///< by sticks: only where it begins to look
+  /// Driven in place of the course, which then only says where it begins to look.
+  std::optional<mission::Plan> plan{};
   double speed_mps = 1.0;
   bool sticks = false;  ///< somebody drunk drives, with the dead-man held
   bool lidar = false;   ///< a VLP-16 above and a scanner ahead; else scanners ahead and behind
