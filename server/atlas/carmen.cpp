@@ -54,6 +54,20 @@ bool same_place(const Pose2& a, const Pose2& b) noexcept {
 
 }  // namespace
 
+nav::chart::Scan scan_of(const CarmenScan& scan, base::Time stamp) {
+  constexpr float kNothing_m = 79.0F;
+  constexpr float kNearest_m = 0.05F;
+  nav::chart::Scan out;
+  out.stamp = stamp;
+  for (std::size_t i = 0; i < scan.ranges_m.size(); ++i) {
+    const float range = scan.ranges_m[i];
+    if (!(range >= kNearest_m && range < kNothing_m)) continue;
+    const float angle = scan.first_rad + scan.step_rad * static_cast<float>(i);
+    out.beams.push_back({range * std::cos(angle), range * std::sin(angle), true});
+  }
+  return out;
+}
+
 void CarmenReader::feed(base::Bytes part) {
   for (const std::uint8_t b : part) {
     if (b == '\n') {

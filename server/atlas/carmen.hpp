@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "base/bytes.hpp"
+#include "nav/chart/scan.hpp"
 #include "nav/sense/odometry.hpp"
 
 namespace roverd::atlas {
@@ -37,6 +38,11 @@ struct CarmenScan {
   float step_rad = 0.0F;
   std::vector<float> ranges_m;  ///< as told; from about 80 m on nothing was seen
 };
+
+/// What was hit, by a scanner that stands on the origin of the body and looks ahead. Beams that saw
+/// nothing are left out: these scanners give the same value for "far" and for "dazzled".
+/// @param stamp the log's own are not to be trusted.
+nav::chart::Scan scan_of(const CarmenScan& scan, base::Time stamp);
 
 class CarmenReader {
  public:

@@ -1,0 +1,116 @@
+#include "nav/place/start.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/angle.hpp"
+
+namespace roverd::nav::place {
+
+namespace {
+
+constexpr std::size_t kFineHits = 180;
+
+void weigh(const Field& field, const chart::Scan& scan, double counts, Place& place) {
+  constexpr std::size_t kLooked = 90;
+  const Agreement a = agreement(field, scan, place.pose, kLooked);
+  place.evidence += counts * a.log_fit;
+  const double n = place.scans;
+  place.explained = (place.explained * n + a.explained) / (n + 1.0);
+  place.crossed = (place.crossed * n + a.crossed) / (n + 1.0);
+  ++place.scans;
+}
+
+}  // namespace
+
+void GlobalStart::clear() {
+  places_.clear();
+  scans_ = 0;
+  since_search_ = 0;
+  way_m_ = 0.0;
+}
+
+std::optional<Pose2> GlobalStart::feed(const Field& field, const chart::Scan& scan,
+                                       const Pose2& step) {
+  const std::vector<Point> few = spread_hits(scan, 0.10, p_.points);
+  const std::vector<Point> hits = hits_of(scan, kFineHits);
+  if (few.size() < 10) {
+    // Nothing to see: the places go along with the odometry.
+    for (Place& place : places_) place.pose = place.pose * step;
+    return std::nullopt;
+  }
+  if (scans_ > 0) way_m_ += std::hypot(step.x_m, step.y_m);
+  follow(field, scan, few, hits, step);
+  if (places_.empty() || ++since_search_ >= p_.again_after) {
+    since_search_ = 0;
+    begin(field, scan, few, hits);
+  }
+  ++scans_;
+  merge();
+  return decide();
+}
+
+void GlobalStart::follow(const Field& field, const chart::Scan& scan, std::span<const Point> few,
+                         std::span<const Point> hits, const Pose2& step) {
+  for (Place& place : places_) {
+    const Found found = search_window(field, few, place.pose * step, p_.window);
+    place.pose = refine(field, hits, found.pose, {}, p_.match).pose;
+    weigh(field, scan, p_.counts, place);
+  }
+}
+
+void GlobalStart::begin(const Field& field, const chart::Scan& scan, std::span<const Point> few,
+                        std::span<const Point> hits) {
+  const Whole whole = search_whole(field, few, p_.whole);
+  // A place found late is taken to have fitted until now as the best one did: it is in the race.
+  double best = 0.0;
+  double now = 0.0;
+  if (!places_.empty()) {
+    const auto top = std::max_element(places_.begin(), places_.end(),
+                                      [](auto& a, auto& b) { return a.evidence < b.evidence; });
+    best = top->evidence;
+    now = best / top->scans;
+  }
+  for (const Found& f : whole.found) {
+    Place place;
+    place.pose = refine(field, hits, f.pose, {}, p_.match).pose;
+    weigh(field, scan, p_.counts, place);
+    if (scans_ > 0) place.evidence += best - now;
+    places_.push_back(place);
+  }
+}
+
+void GlobalStart::merge() {
+  std::sort(places_.begin(), places_.end(),
+            [](const Place& a, const Place& b) { return a.evidence > b.evidence; });
+  std::vector<Place> kept;
+  for (const Place& place : places_) {
+    if (!kept.empty() && place.evidence < kept.front().evidence - p_.hopeless) break;
+    if (kept.size() >= p_.whole.most) break;
+    auto same = std::find_if(kept.begin(), kept.end(), [&](const Place& k) {
+      return std::hypot(k.pose.x_m - place.pose.x_m, k.pose.y_m - place.pose.y_m) < 0.4 &&
+             std::abs(base::angle_diff_rad(k.pose.yaw_rad, place.pose.yaw_rad)) < 0.2;
+    });
+    if (same == kept.end()) {
+      kept.push_back(place);
+    } else if (place.scans > same->scans) {
+      same->scans = place.scans;  // the same place, known for longer
+      same->explained = place.explained;
+      same->crossed = place.crossed;
+    }
+  }
+  places_ = std::move(kept);
+}
+
+std::optional<Pose2> GlobalStart::decide() const {
+  if (places_.empty() || way_m_ < p_.least_way_m) return std::nullopt;
+  const Place& best = places_.front();
+  if (best.scans < p_.least_scans || best.explained < p_.least_explained ||
+      best.crossed > p_.most_crossed) {
+    return std::nullopt;
+  }
+  if (places_.size() > 1 && best.evidence - places_[1].evidence < p_.lead) return std::nullopt;
+  return best.pose;
+}
+
+}  // namespace roverd::nav::place

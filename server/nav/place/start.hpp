@@ -1,0 +1,75 @@
+#pragma once
+// Where in the whole map the robot is when nobody told: every place where the first scan fits is
+// followed along the odometry, scan by scan, until one explains what was seen so much better than
+// every other that no doubt is left. Alike places (two rooms of one plan) stay undecided until
+// something tells them apart; a map of another building explains too little everywhere.
+//
+// Evidence of a place: the sum of ln p(hit) of each scan, the beams counted as fewer than they are
+// (neighbours see one wall). Decided when the best leads by `lead` over the next, and itself
+// explains enough, over enough scans and enough way. Frame G. One object, one thread.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "nav/chart/scan.hpp"
+#include "nav/place/field.hpp"
+#include "nav/place/match.hpp"
+#include "nav/place/search.hpp"
+
+namespace roverd::nav::place {
+
+struct StartParams {
+  WholeParams whole;
+  WindowParams window{0.45, 0.21, 0.02, 0.02};  ///< of a followed place, around the odometry
+  MatchParams match;
+  std::size_t points = 70;        ///< of a search
+  double counts = 25.0;           ///< independent beams of a scan
+  double lead = 8.0;              ///< of the best over the next, in evidence: 3000 to 1
+  double hopeless = 30.0;         ///< further behind is dropped
+  double least_explained = 0.75;  ///< mean share of the hits at walls
+  double most_crossed = 0.12;     ///< mean share of the hits behind walls
+  std::uint32_t least_scans = 3;
+  double least_way_m = 0.3;
+  std::uint32_t again_after = 4;  ///< scans, then the whole map is searched once more
+};
+
+struct Place {
+  Pose2 pose;  ///< X_GB
+  double evidence = 0.0;
+  double explained = 0.0;  ///< mean over its scans
+  double crossed = 0.0;
+  std::uint32_t scans = 0;
+};
+
+class GlobalStart {
+ public:
+  explicit GlobalStart(const StartParams& params) : p_(params) {}
+
+  void clear();
+  /// @param step X_BB' of the body since the last scan, by odometry.
+  /// @return the decided pose.
+  std::optional<Pose2> feed(const Field& field, const chart::Scan& scan, const Pose2& step);
+
+  /// Best first.
+  const std::vector<Place>& places() const noexcept { return places_; }
+
+ private:
+  void follow(const Field& field, const chart::Scan& scan, std::span<const Point> few,
+              std::span<const Point> hits, const Pose2& step);
+  void begin(const Field& field, const chart::Scan& scan, std::span<const Point> few,
+             std::span<const Point> hits);
+  void merge();
+  std::optional<Pose2> decide() const;
+
+  StartParams p_;
+  std::vector<Place> places_;
+  double best_total_ = 0.0;  ///< evidence that a new place is given for the scans it missed
+  std::uint32_t scans_ = 0;
+  std::uint32_t since_search_ = 0;
+  double way_m_ = 0.0;
+};
+
+}  // namespace roverd::nav::place

@@ -1,0 +1,188 @@
+#include "nav/place/tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/LU>
+
+#include "base/angle.hpp"
+
+namespace roverd::nav::place {
+
+namespace {
+
+using Eigen::Matrix3d;
+
+constexpr std::string_view kLostWords =
+    "lost: drive by hand to a known place, or tap where the robot is";
+
+bool finite(const Pose2& p) noexcept {
+  return std::isfinite(p.x_m) && std::isfinite(p.y_m) && std::isfinite(p.yaw_rad);
+}
+
+/// Turns the x and y of a covariance.
+Matrix3d turned_by(const Matrix3d& covariance, double yaw_rad) {
+  Matrix3d r = Matrix3d::Identity();
+  r(0, 0) = r(1, 1) = std::cos(yaw_rad);
+  r(1, 0) = std::sin(yaw_rad);
+  r(0, 1) = -r(1, 0);
+  return r * covariance * r.transpose();
+}
+
+}  // namespace
+
+std::string_view to_string(Phase p) noexcept {
+  switch (p) {
+    case Phase::Searching:
+      return "searching";
+    case Phase::Tracking:
+      return "tracking";
+    case Phase::Doubtful:
+      return "doubtful";
+    case Phase::Lost:
+      return "lost";
+  }
+  return "lost";
+}
+
+std::string_view misfit(const Agreement& a, const TrackerParams& p) noexcept {
+  if (a.hits < p.least_hits) return "too little to see";
+  if (a.crossed > p.most_crossed) return "the scanner sees through walls of the map";
+  if (a.explained < p.least_explained) return "what the scanner sees is not in the map";
+  return {};
+}
+
+Tracker::Tracker(std::shared_ptr<const Field> field, const TrackerParams& params)
+    : field_(std::move(field)), p_(params), start_(params.start) {}
+
+void Tracker::set_pose(const Pose2& in_map, double deviation_m, double deviation_rad) {
+  if (!finite(in_map)) return;
+  pose_ = inverse(field_->shape().origin) * in_map;
+  const double place = std::clamp(deviation_m, 0.05, 1.0);
+  const double turn = std::clamp(deviation_rad, 0.02, base::kPi / 3.0);
+  covariance_ = Matrix3d::Zero();
+  covariance_.diagonal() << place * place, place * place, turn * turn;
+  phase_ = Phase::Tracking;
+  told_ = true;
+  bad_m_ = 0.0;
+  bad_scans_ = 0;
+  last_stamp_.reset();
+  start_.clear();
+  ++resets_;
+}
+
+void Tracker::forget() {
+  phase_ = Phase::Searching;
+  told_ = false;
+  last_stamp_.reset();
+  start_.clear();
+}
+
+Told Tracker::feed(const chart::Scan& scan, const Pose2& odometry) {
+  Told told;
+  told.stamp = scan.stamp;
+  if (!finite(odometry) || (last_stamp_ && scan.stamp <= *last_stamp_)) {
+    told.reason = "not newer than the scan before, or without odometry";
+    return answer(std::move(told));
+  }
+  const Pose2 step = last_stamp_ ? inverse(last_odometry_) * odometry : Pose2{};
+  last_stamp_ = scan.stamp;
+  last_odometry_ = odometry;
+  if (phase_ == Phase::Tracking || phase_ == Phase::Doubtful) {
+    track(scan, step, told);
+  } else {
+    search(scan, step, told);
+  }
+  return answer(std::move(told));
+}
+
+Told Tracker::answer(Told told) const {
+  told.phase = phase_;
+  told.resets = resets_;
+  if (phase_ == Phase::Tracking || phase_ == Phase::Doubtful) {
+    told.pose = field_->shape().origin * pose_;
+  }
+  return told;
+}
+
+void Tracker::predict(const Pose2& step) {
+  const double way = std::hypot(step.x_m, step.y_m);
+  const double c = std::cos(pose_.yaw_rad);
+  const double s = std::sin(pose_.yaw_rad);
+  Matrix3d f = Matrix3d::Identity();
+  f(0, 2) = -s * step.x_m - c * step.y_m;
+  f(1, 2) = c * step.x_m - s * step.y_m;
+  const double slip = p_.slip_m + p_.slip_share * way;
+  const double turn =
+      p_.turn_rad + p_.turn_share * std::abs(step.yaw_rad) + p_.turn_per_m_rad * way;
+  covariance_ = f * covariance_ * f.transpose();
+  covariance_(0, 0) += slip * slip;
+  covariance_(1, 1) += slip * slip;
+  covariance_(2, 2) += turn * turn;
+  pose_ = pose_ * step;
+}
+
+void Tracker::track(const chart::Scan& scan, const Pose2& step, Told& told) {
+  predict(step);
+  WindowParams window = p_.window;
+  if (told_) {
+    window.half_m = std::clamp(3.0 * std::sqrt(covariance_(0, 0)), window.half_m, 3.0);
+    window.half_rad = std::clamp(3.0 * std::sqrt(covariance_(2, 2)), window.half_rad, base::kPi);
+  }
+  const std::vector<Point> few = spread_hits(scan, 0.10, p_.search_points);
+  const std::vector<Point> hits = hits_of(scan, p_.match_points);
+  if (hits.size() < p_.least_hits) {
+    told.reason = "too little to see";
+    bad(step);
+    return;
+  }
+  const Found found = search_window(*field_, few, pose_, window);
+  const Prior prior{pose_, covariance_.inverse()};
+  const Match match = refine(*field_, hits, found.pose, prior, p_.match);
+  told.agreement = agreement(*field_, scan, match.pose);
+  told.reason = misfit(told.agreement, p_);
+  if (!told.reason.empty()) {
+    bad(step);
+    if (phase_ == Phase::Lost) told.reason = kLostWords;
+    return;
+  }
+  const Matrix3d sum = prior.information + match.covariance.inverse();
+  covariance_ = sum.inverse();
+  pose_ = match.pose;
+  told_ = false;
+  bad_m_ = 0.0;
+  bad_scans_ = 0;
+  phase_ = Phase::Tracking;
+  const double yaw = field_->shape().origin.yaw_rad;
+  told.fix = Fix{scan.stamp, field_->shape().origin * pose_, turned_by(match.covariance, yaw)};
+}
+
+void Tracker::bad(const Pose2& step) {
+  bad_m_ += std::hypot(step.x_m, step.y_m);
+  ++bad_scans_;
+  phase_ = Phase::Doubtful;
+  if (bad_m_ >= p_.lost_after_m && bad_scans_ >= p_.lost_after) {
+    phase_ = Phase::Lost;
+    start_.clear();
+  }
+}
+
+void Tracker::search(const chart::Scan& scan, const Pose2& step, Told& told) {
+  const auto decided = start_.feed(*field_, scan, step);
+  told.candidates = start_.places().size();
+  told.reason = phase_ == Phase::Lost ? kLostWords : "looking for the place in the map";
+  if (!decided) return;
+  pose_ = *decided;
+  covariance_ = Matrix3d::Zero();
+  covariance_.diagonal() << 0.01, 0.01, 0.001;
+  phase_ = Phase::Tracking;
+  bad_m_ = 0.0;
+  bad_scans_ = 0;
+  told_ = false;
+  ++resets_;
+  start_.clear();
+  track(scan, Pose2{}, told);
+}
+
+}  // namespace roverd::nav::place
