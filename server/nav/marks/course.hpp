@@ -1,0 +1,49 @@
+#pragma once
+// Which landmarks are passed, in which order, and which are behind: the state between what is seen
+// (landmarks.hpp) and the way past it (ways.hpp).
+//
+//   begin ─▶ the nearest ahead ─passed─▶ the next ─passed─▶ … ─none ahead─▶ on_m further, the end
+//
+// A landmark is passed when the vehicle is abeam of it; whoever asks which one counts is told the
+// next one already when its passing point is nearer than next_m. Passed ones never count again, nor
+// what is seen anew where one was passed. Frame O. Not shared between threads.
+
+#include <deque>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "nav/marks/landmarks.hpp"
+#include "nav/marks/ways.hpp"
+
+namespace roverd::nav::marks {
+
+class Course {
+ public:
+  static constexpr std::size_t kAhead = 4;    ///< landmarks that the way is laid past
+  static constexpr std::size_t kPassed = 64;  ///< remembered
+
+  void begin(const Pose2& pose);
+  /// @param name only those of this name; empty: all. @param known believed or not
+  Way lay(std::span<const Landmark> known, const Pose2& pose, Side side, const std::string& name,
+          double speed_mps, const LandmarkParams& params);
+
+  int passed() const noexcept { return count_; }
+  /// The id of the one that counts; empty: none is ahead.
+  std::optional<std::uint32_t> target() const noexcept { return target_; }
+
+ private:
+  bool was_passed(const Landmark& l, double near_m) const noexcept;
+  std::vector<Landmark> chain_from(std::span<const Landmark> known, Vec2 here, Vec2 ahead,
+                                   const std::string& name, const LandmarkParams& params) const;
+  void pass(const Landmark& l, Vec2 at, Vec2 out);
+
+  std::deque<Landmark> passed_;
+  std::vector<Vec2> behind_;
+  int count_ = 0;
+  std::optional<std::uint32_t> target_;
+  std::optional<std::uint32_t> first_;  ///< of the chain
+};
+
+}  // namespace roverd::nav::marks

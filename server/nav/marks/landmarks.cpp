@@ -1,0 +1,163 @@
+#include "nav/marks/landmarks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "base/angle.hpp"
+#include "nav/sense/mount.hpp"
+
+namespace roverd::nav::marks {
+namespace {
+
+constexpr double kFadeWeight = 0.9;
+constexpr double kFadeName = 0.9;
+constexpr double kKeep_s = 60.0;  ///< out of view
+constexpr double kFarAway_m = 15.0;
+constexpr double kVisionSigma_m = 0.05;
+constexpr double kVisionSigmaOfRange = 0.02;
+constexpr double kLongestGap_s = 0.5;  ///< between two pieces, of the time unseen
+
+double since(base::Time& last, base::Time now) noexcept {
+  const double dt_s = base::seconds(now - last);
+  last = now;
+  return std::clamp(dt_s, 0.0, kLongestGap_s);
+}
+
+/// A glance that never came again is none.
+bool gone(const Landmark& mark, double unseen_s, base::Time now,
+          const LandmarkParams& params) noexcept {
+  const double age_s = base::seconds(now - mark.seen_at);
+  return unseen_s > params.forget_s || age_s > (mark.believed ? kKeep_s : 1.0);
+}
+
+/// The scan looked there, and saw something farther, or was free to.
+bool in_view(const PlanarScan& scan, Vec2 at_b, double by_m) noexcept {
+  const Vec2 to = at_b - scan.eye;
+  const double range_m = length(to);
+  if (range_m < 1e-6) return false;
+  int beyond = 0;
+  for (const Beam& beam : scan.beams) {
+    const Vec2 ray = beam.at - scan.eye;
+    const double ray_m = length(ray);
+    if (!beam.hit || ray_m < 1e-6 || sense::dot(ray, to) <= 0.0) continue;
+    const double miss_m = std::abs(sense::cross(ray, to)) / ray_m;
+    if (miss_m > by_m) continue;
+    if (ray_m < range_m - 0.2) return false;  // something stands before it
+    ++beyond;
+  }
+  return beyond > 0;
+}
+
+}  // namespace
+
+void Landmarks::join(Kept& kept, const Seen& seen, bool by_vision, base::Time stamp,
+                     const LandmarkParams& params) {
+  const double weight = 1.0 / (seen.sigma_m * seen.sigma_m);
+  kept.weight *= kFadeWeight;
+  const double gain = weight / (kept.weight + weight);
+  kept.mark.at = kept.mark.at + gain * (seen.at - kept.mark.at);
+  kept.weight += weight;
+  kept.mark.sigma_m = 1.0 / std::sqrt(kept.weight);
+  if (seen.radius_m > 0.0) kept.mark.radius_m = seen.radius_m;
+  (by_vision ? kept.mark.by_vision : kept.mark.by_scan) = true;
+  kept.mark.seen_at = std::max(kept.mark.seen_at, stamp);
+  kept.unseen_s = 0.0;
+  kept.mark.believed = kept.mark.believed || ++kept.hits >= static_cast<int>(params.confirm);
+  if (seen.name.empty()) return;
+  for (auto& [name, votes] : kept.names) votes *= kFadeName;
+  kept.names[seen.name] += 1.0;
+  const auto by_votes = [](const auto& a, const auto& b) { return a.second < b.second; };
+  if (kept.names.size() > kMostNames) {
+    kept.names.erase(std::min_element(kept.names.begin(), kept.names.end(), by_votes));
+  }
+  kept.mark.name = std::max_element(kept.names.begin(), kept.names.end(), by_votes)->first;
+}
+
+void Landmarks::put(const std::vector<Seen>& seen, bool by_vision, base::Time stamp,
+                    const LandmarkParams& params, std::vector<bool>& met) {
+  struct Pair {
+    double apart_m;
+    std::size_t kept, seen;
+  };
+  std::vector<Pair> pairs;
+  for (std::size_t k = 0; k < kept_.size(); ++k) {
+    for (std::size_t s = 0; s < seen.size(); ++s) {
+      const double apart_m = length(kept_[k].mark.at - seen[s].at);
+      if (apart_m <= params.near_m) pairs.push_back({apart_m, k, s});
+    }
+  }
+  std::ranges::sort(pairs, {}, &Pair::apart_m);
+  std::vector<bool> used(seen.size(), false);
+  met.assign(kept_.size(), false);
+  for (const Pair& p : pairs) {
+    if (met[p.kept] || used[p.seen]) continue;
+    met[p.kept] = used[p.seen] = true;
+    join(kept_[p.kept], seen[p.seen], by_vision, stamp, params);
+  }
+  for (std::size_t s = 0; s < seen.size() && kept_.size() < kMostLandmarks; ++s) {
+    if (used[s]) continue;
+    Kept fresh;
+    fresh.mark.id = next_++;
+    fresh.mark.at = seen[s].at;
+    join(fresh, seen[s], by_vision, stamp, params);
+    kept_.push_back(std::move(fresh));
+    met.push_back(true);
+  }
+}
+
+void Landmarks::take(const PlanarScan& scan, const LandmarkParams& params) {
+  std::vector<Seen> seen;
+  for (const Post& post : posts_of(scan, params)) {
+    seen.push_back({placed(scan.pose, post.at), std::max(0.01, post.sigma_m), post.radius_m, {}});
+  }
+  const double dt_s = since(scan_at_, scan.stamp);
+  std::vector<bool> met;
+  put(seen, false, scan.stamp, params, met);
+  const Pose2 bo = sense::inverse(scan.pose);
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    const Vec2 at = placed(bo, kept_[i].mark.at);
+    const bool ours = kept_[i].mark.by_scan && length(at) < 0.8 * params.max_range_m;
+    if (!met[i] && ours && in_view(scan, at, 0.05)) kept_[i].unseen_s += dt_s;
+  }
+  std::erase_if(kept_, [&](const Kept& k) {
+    return gone(k.mark, k.unseen_s, scan.stamp, params) ||
+           length(k.mark.at - Vec2{scan.pose.x_m, scan.pose.y_m}) > kFarAway_m;
+  });
+}
+
+void Landmarks::take(const base::Vision& vision, const base::Mount& mount, const Pose2& pose,
+                     double half_view_rad, const LandmarkParams& params) {
+  const Eigen::Matrix3d turn = sense::rotation(mount);
+  std::vector<Seen> seen;
+  for (const base::VisionLandmark& l : vision.landmarks) {
+    const Eigen::Vector3d b = turn * Eigen::Vector3d(l.at.x_m, l.at.y_m, l.at.z_m);
+    const double range_m = std::hypot(l.at.x_m, l.at.y_m);
+    if (l.at.x_m <= 0.0 || range_m > params.max_range_m) continue;  // behind the camera: false
+    seen.push_back({placed(pose, {mount.x_m + b.x(), mount.y_m + b.y()}),
+                    kVisionSigma_m + kVisionSigmaOfRange * range_m, 0.0, l.name});
+  }
+  const double dt_s = since(vision_at_, vision.stamp);
+  std::vector<bool> met;
+  put(seen, true, vision.stamp, params, met);
+  const Pose2 bo = sense::inverse(pose);
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    const Vec2 at = placed(bo, kept_[i].mark.at) - Vec2{mount.x_m, mount.y_m};
+    const double off_rad = base::wrap_rad(std::atan2(at.y, at.x) - mount.yaw_rad);
+    const bool looked = std::abs(off_rad) < 0.8 * half_view_rad &&
+                        length(at) < 0.8 * params.max_range_m && length(at) > 0.5;
+    const bool ours = kept_[i].mark.by_vision && !kept_[i].mark.by_scan;
+    if (!met[i] && ours && looked) kept_[i].unseen_s += dt_s;
+  }
+  std::erase_if(kept_,
+                [&](const Kept& k) { return gone(k.mark, k.unseen_s, vision.stamp, params); });
+}
+
+std::vector<Landmark> Landmarks::all() const {
+  std::vector<Landmark> out;
+  for (const Kept& k : kept_) out.push_back(k.mark);
+  return out;
+}
+
+}  // namespace roverd::nav::marks

@@ -1,0 +1,75 @@
+#pragma once
+// Landmarks that are known, kept over time in the odometry's frame O: names and cones do not
+// flicker.
+//
+//   seen ──confirm times──▶ believed ──in view, unseen for forget_s──▶ forgotten
+//
+// What is seen within near_m of a known one is that one: the nearest pairs first, each once. Places
+// are averaged with the weight of their certainty, the older ones fading; names are what was said
+// most often of late. A post of the scan has no name of its own.
+// Bounded: kMostLandmarks. Not shared between threads; time comes with what is seen.
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/vision.hpp"
+#include "nav/marks/params.hpp"
+#include "nav/marks/posts.hpp"
+#include "nav/marks/walls.hpp"
+
+namespace roverd::nav::marks {
+
+struct Landmark {
+  std::uint32_t id = 0;   ///< never given again
+  std::string name;       ///< empty: nobody named it
+  Vec2 at{};              ///< in O
+  double sigma_m = 0.0;   ///< 1σ each way
+  double radius_m = 0.0;  ///< 0: not known
+  bool by_scan = false;
+  bool by_vision = false;
+  bool believed = false;
+  base::Time seen_at;
+};
+
+class Landmarks {
+ public:
+  static constexpr std::size_t kMostLandmarks = 128;
+  static constexpr std::size_t kMostNames = 4;  ///< that one of them was called
+
+  void take(const PlanarScan& scan, const LandmarkParams& params);
+  /// @param pose X_OB when the image was taken. @param half_view_rad what the camera sees to either
+  /// side of its axis: what lies within and is not told is not seen
+  void take(const base::Vision& vision, const base::Mount& mount, const Pose2& pose,
+            double half_view_rad, const LandmarkParams& params);
+  void forget() noexcept { kept_.clear(); }
+
+  std::vector<Landmark> all() const;
+
+ private:
+  struct Seen {
+    Vec2 at{};  ///< in O
+    double sigma_m = 0.1;
+    double radius_m = 0.0;
+    std::string name;
+  };
+  struct Kept {
+    Landmark mark;
+    double weight = 0.0;  ///< 1/m²
+    int hits = 0;
+    double unseen_s = 0.0;  ///< in view
+    std::map<std::string, double> names;
+  };
+  void put(const std::vector<Seen>& seen, bool by_vision, base::Time stamp,
+           const LandmarkParams& params, std::vector<bool>& met);
+  static void join(Kept& kept, const Seen& seen, bool by_vision, base::Time stamp,
+                   const LandmarkParams& params);
+
+  std::vector<Kept> kept_;
+  base::Time scan_at_{};
+  base::Time vision_at_{};
+  std::uint32_t next_ = 1;
+};
+
+}  // namespace roverd::nav::marks

@@ -1,0 +1,196 @@
+// Past cones in a closed loop; names and cones that do not flicker; the simple rule by bearing;
+// which source steers.
+
+#include <gtest/gtest.h>
+
+#include "nav/marks/bearing.hpp"
+#include "nav/marks/choose.hpp"
+#include "nav/marks/course.hpp"
+#include "yard.hpp"
+
+namespace roverd::nav::marks {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct ConeRun {
+  Yard yard;
+  Rover rover;
+  Scanner scanner;
+  LandmarkParams params;
+  Landmarks marks;
+  PathParams path;
+  SightDrive drive{base::Setting<PathParams>(path)};
+  Course course;
+  Side side = Side::Left;
+  std::vector<double> nearest_m;  ///< the true least distance to each cone
+
+  void run(double seconds) {
+    nearest_m.assign(yard.poles.size(), 1e9);
+    rover.step({});
+    course.begin(rover.odometry);
+    for (int i = 0; i < seconds * 50.0; ++i) {
+      if (i % 2 == 0) {
+        marks.take(scan_of(scanner.look(yard, rover.truth, rover.now), rover), params);
+        const auto known = marks.all();
+        drive.take(course.lay(known, rover.odometry, side, "", 0.5, params));
+      }
+      rover.step(drive.step(rover.vehicle(), 10.0, 0.02).command);
+      for (std::size_t k = 0; k < yard.poles.size(); ++k) {
+        const Vec2 off = yard.poles[k].at - Vec2{rover.truth.x_m, rover.truth.y_m};
+        nearest_m[k] = std::min(nearest_m[k], length(off));
+      }
+    }
+  }
+};
+
+//        o        o         o         o      on its left, at 0.70 m
+//  ─────────────────────────────────────────▶
+TEST(LandmarkDrive, AStraightRowOfConesIsPassedAtTheOffset) {
+  for (const Side side : {Side::Left, Side::Right}) {
+    ConeRun r;
+    r.side = side;
+    const double sign = side == Side::Left ? 1.0 : -1.0;
+    for (int i = 0; i < 4; ++i) r.yard.poles.push_back({{2.5 + 3.0 * i, sign * 0.4}, 0.12});
+    r.run(50.0);
+    EXPECT_EQ(r.course.passed(), 4);
+    for (const double m : r.nearest_m) EXPECT_NEAR(m, 0.70, 0.05);
+    EXPECT_EQ(r.rover.speed_mps, 0.0) << "behind the last one it stands";
+    EXPECT_NEAR(r.rover.truth.x_m, 12.5, 0.6);
+  }
+}
+
+//              o            around the second one to the left,
+//         o        o        past the fourth one to the right
+//    o                 o
+TEST(LandmarkDrive, AChainThatBendsBothWaysIsPassedAtTheOffset) {
+  ConeRun r;
+  r.yard.poles = {{{2.5, 0.6}, 0.1},
+                  {{5.5, 0.6}, 0.1},
+                  {{7.6, 2.7}, 0.1},
+                  {{10.6, 2.7}, 0.1},
+                  {{12.9, 0.8}, 0.1}};
+  r.run(60.0);
+  EXPECT_EQ(r.course.passed(), 5);
+  for (const double m : r.nearest_m) EXPECT_NEAR(m, 0.70, 0.05);
+}
+
+TEST(LandmarkDrive, WithoutAnyItGoesAMetreAndStands) {
+  ConeRun r;
+  r.run(10.0);
+  EXPECT_EQ(r.course.passed(), 0);
+  EXPECT_NEAR(r.rover.truth.x_m, 1.0, 0.1);
+  EXPECT_EQ(r.rover.speed_mps, 0.0);
+}
+
+TEST(LandmarkDrive, ConesBehindAndAWallAreNotDrivenTo) {
+  ConeRun r;
+  r.yard.poles = {{{-2.0, 0.5}, 0.1}};
+  r.yard.slabs = {{{4.0, -3.0}, {4.0, 3.0}}};
+  r.run(10.0);
+  EXPECT_NEAR(r.rover.truth.x_m, 1.0, 0.1);
+}
+
+base::Vision image(std::vector<base::VisionLandmark> landmarks, base::Time stamp) {
+  base::Vision v;
+  v.stamp = stamp;
+  v.landmarks = std::move(landmarks);
+  return v;
+}
+
+TEST(Landmarks, ANameIsWhatIsSaidMostOftenOfLateAndTheOneStaysTheOne) {
+  Landmarks marks;
+  base::Time now{1h};
+  for (int i = 0; i < 30; ++i) {
+    now += 100ms;
+    const char* said = i % 5 == 4 ? "pole" : "cone";  // one in five is wrong
+    const double jitter_m = i % 2 == 0 ? 0.04 : -0.04;
+    marks.take(image({{said, {2.0 + jitter_m, 0.5, 0.0}}}, now), {}, {}, 0.5, {});
+    ASSERT_EQ(marks.all().size(), 1U);
+    EXPECT_EQ(marks.all()[0].name, "cone");
+    EXPECT_EQ(marks.all()[0].believed, i >= 2);
+  }
+  EXPECT_NEAR(marks.all()[0].at.x, 2.0, 0.02);
+  const std::uint32_t id = marks.all()[0].id;
+  for (int i = 0; i < 8; ++i) marks.take(image({}, now += 100ms), {}, {}, 0.5, {});
+  ASSERT_EQ(marks.all().size(), 1U) << "missed for 0.8 s it is still there";
+  EXPECT_EQ(marks.all()[0].id, id);
+  for (int i = 0; i < 4; ++i) marks.take(image({}, now += 100ms), {}, {}, 0.5, {});
+  EXPECT_TRUE(marks.all().empty()) << "in view and not seen for a second it is gone";
+}
+
+TEST(Landmarks, WhatIsBehindTheCameraIsFalseAndOutOfViewIsKept) {
+  Landmarks marks;
+  base::Time now{1h};
+  for (int i = 0; i < 5; ++i) {
+    marks.take(image({{"cone", {2.0, 0.0, 0.0}}, {"ghost", {-1.0, 0.0, 0.0}}}, now += 100ms), {},
+               {}, 0.5, {});
+  }
+  ASSERT_EQ(marks.all().size(), 1U);
+  const Pose2 turned{0.0, 0.0, base::kPi / 2.0};
+  for (int i = 0; i < 50; ++i) marks.take(image({}, now += 100ms), {}, turned, 0.5, {});
+  EXPECT_EQ(marks.all().size(), 1U) << "nobody looked there";
+}
+
+TEST(Landmarks, TwoBesideEachOtherStayTwo) {
+  Landmarks marks;
+  base::Time now{1h};
+  for (int i = 0; i < 10; ++i) {
+    const double j = i % 2 == 0 ? 0.1 : -0.1;
+    marks.take(image({{"a", {2.0, 0.3 + j, 0.0}}, {"b", {2.0, -0.3 + j, 0.0}}}, now += 100ms), {},
+               {}, 0.5, {});
+  }
+  const auto all = marks.all();
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[0].name, "a");
+  EXPECT_EQ(all[1].name, "b");
+}
+
+//   wall on the left at 1.2 m, parallel: the target is 1.40 m ahead and 0.30 m to the left
+TEST(Bearing, TheTargetsAreThoseOfTheField) {
+  const PlaneWall wall{{0.5, 1.2}, {0.0, -1.0}, 1.2, 5000.0};
+  const Vec2 target = wall_target(wall, {});
+  EXPECT_NEAR(target.x, 1.4, 1e-12);
+  EXPECT_NEAR(target.y, 0.3, 1e-12);
+  EXPECT_NEAR(turn_towards_radps(target, WallParams{}.gain, 1.0), std::atan2(0.3, 1.4), 1e-12);
+  const std::vector<Vec2> cones{{0.5, 0.0}, {2.0, 0.0}, {1.5, 4.0}, {-1.0, 0.0}};
+  const auto beside = landmark_target(cones, Side::Left, {});
+  ASSERT_TRUE(beside);
+  EXPECT_NEAR(beside->x, 2.0, 1e-12) << "the one at 0.5 m is nearer than 0.60 m: the next";
+  EXPECT_NEAR(beside->y, -0.7, 1e-12);
+  EXPECT_NEAR(turn_towards_radps({0.0, 1.0}, LandmarkParams{}.gain, 0.5), 0.5, 1e-12);
+  EXPECT_FALSE(landmark_target({}, Side::Left, {}));
+}
+
+TEST(Chooser, WhatIsSeenDecidesAndDoesNotFlicker) {
+  Chooser chooser;
+  base::Time now{1h};
+  const auto see = [&](InSight seen, int times) {
+    Guide last = Guide::None;
+    for (int i = 0; i < times; ++i) last = chooser.step(seen, {}, now += 100ms);
+    return last;
+  };
+  EXPECT_EQ(see({}, 1), Guide::None);
+  EXPECT_EQ(see({.wall_by_vision = true}, 1), Guide::WallByVision) << "at once where nobody steers";
+  EXPECT_EQ(see({.wall_by_scan = true, .wall_by_vision = true}, 3), Guide::WallByVision);
+  EXPECT_EQ(see({.wall_by_scan = true, .wall_by_vision = true}, 4), Guide::WallByScan);
+  EXPECT_EQ(see({.landmarks = true, .wall_by_scan = true}, 1), Guide::WallByScan) << "one glance";
+  EXPECT_EQ(see({.wall_by_scan = true}, 5), Guide::WallByScan);
+  EXPECT_EQ(see({.landmarks = true, .wall_by_scan = true}, 7), Guide::Landmarks);
+  EXPECT_EQ(see({.wall_by_scan = true}, 9), Guide::Landmarks) << "waited for a second";
+  EXPECT_EQ(see({.wall_by_scan = true}, 3), Guide::WallByScan);
+  EXPECT_EQ(see({}, 12), Guide::None);
+}
+
+TEST(Chooser, OneThatIsSetIsTheOnlyOne) {
+  Chooser chooser;
+  base::Time now{1h};
+  const InSight all{true, true, true};
+  EXPECT_EQ(chooser.step(all, guide_from("wall_by_scan"), now), Guide::WallByScan);
+  EXPECT_EQ(chooser.step({.landmarks = true}, Guide::WallByVision, now += 5s), Guide::None);
+  EXPECT_FALSE(guide_from("auto"));
+  EXPECT_EQ(to_string(Guide::Landmarks), "landmarks");
+}
+
+}  // namespace
+}  // namespace roverd::nav::marks
