@@ -59,7 +59,6 @@ api::Profile profile_of(const Settings& s, const Supervisor& supervisor) {
   if (std::ranges::any_of(s.sensors, [](const auto& one) {
         return one.second.said.enabled && one.second.said.ranging();
       })) {
-  if (std::ranges::any_of(s.sensors, [](const auto& one) { return one.second.said.enabled; })) {
     profile.item_types.emplace_back("row");
     const nav::VehicleParams& v = s.robot.vehicle;
     const double back_m = v.steered() ? 0.5 * (v.length_m - v.wheelbase_m) : 0.5 * v.length_m;
