@@ -181,11 +181,12 @@ TEST(DriverWords, WhatWasRefusedAndWhatIsDangerousIsNamed) {
   driver.name = "bunker";
   driver.phase = base::DriverPhase::Up;
   driver.link = "can:can0";
-  driver.detail = std::make_shared<const base::DriverDetail>(
-      base::DriverDetail{{{"0x221 too short", 3}},
-                         {{"0x221", 49.96}},
-                         {{"protocol", "V2"}},
-                         {"somebody else sends motion commands (0x111)"}});
+  base::DriverDetail detail;
+  detail.counts = {{"0x221 too short", 3}};
+  detail.rates_hz = {{"0x221", 49.96}};
+  detail.facts = {{"protocol", "V2"}};
+  detail.hazards = {"somebody else sends motion commands (0x111)"};
+  driver.detail = std::make_shared<const base::DriverDetail>(std::move(detail));
   const Json one = driver_json(driver, std::nullopt, at(10s));
   EXPECT_EQ(one["link"]["address"], "can:can0");
   EXPECT_EQ(one["counts"]["0x221 too short"], 3);
