@@ -16,6 +16,8 @@ constexpr unsigned kOptical = 2;
 constexpr unsigned kNotGood = 4;
 /// In 2096, where the clock is UTC: differences of stamps do not overflow.
 constexpr std::uint64_t kLastStamp_ns = 4'000'000'000'000'000'000;
+constexpr float kLeastHalf_rad = 1e-4F;
+constexpr float kMostHalf_rad = 0.2F;
 constexpr std::size_t kCloudHead = 8;
 constexpr std::size_t kDepthHead = 24;
 constexpr std::size_t kRangesHead = 12;
@@ -85,17 +87,15 @@ base::Result<Bytes> data_of(Bytes body, std::size_t head, std::uint64_t count, s
   return body.subspan(head);
 }
 
-bool all_finite(std::initializer_list<float> values) noexcept {
-  return std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
-}
-
 base::Result<Cloud> cloud_of(Bytes body, std::uint32_t max_points) {
   if (body.size() < kCloudHead) return malformed("a cloud without its 8 bytes of head");
   Cloud out;
   out.count = u32_at(body.data());
   out.half_step_rad = f32_at(body.data() + 4);
-  if (!(out.half_step_rad >= 0.0F && out.half_step_rad <= 0.5F)) {
-    return malformed("a cloud's half angle that lies not in 0 .. 0.5 rad");
+  // What lies between two rays counts as seen: none is as wide as a barn door, nor as a hair.
+  const float half_rad = out.half_step_rad;
+  if (half_rad != 0.0F && !(half_rad >= kLeastHalf_rad && half_rad <= kMostHalf_rad)) {
+    return malformed("half_step_rad of a cloud must be 0 or lie in 0.0001 .. 0.2");
   }
   const auto data = data_of(body, kCloudHead, out.count, 12, max_points);
   if (!data) return tl::unexpected(data.error());
@@ -108,12 +108,16 @@ base::Result<Depth> depth_of(Bytes body, std::uint32_t max_points) {
   const std::uint8_t* at = body.data();
   Depth out{u16_at(at),      u16_at(at + 2),  f32_at(at + 4),  f32_at(at + 8),
             f32_at(at + 12), f32_at(at + 16), f32_at(at + 20), {}};
-  if (!all_finite({out.fx, out.fy, out.cx, out.cy}) || out.fx < 1.0F || out.fy < 1.0F ||
-      std::abs(out.cx) > 65'536.0F || std::abs(out.cy) > 65'536.0F) {
-    return malformed("intrinsics that are none");
+  const auto focal = [](float v) { return std::isfinite(v) && v >= 1.0F; };
+  const auto middle = [](float v) { return std::abs(v) <= 65'536.0F; };
+  if (!focal(out.fx) || !focal(out.fy)) {
+    return malformed("fx and fy of a depth image must be 1 or more");
+  }
+  if (!middle(out.cx) || !middle(out.cy)) {
+    return malformed("cx and cy of a depth image must lie in -65536 .. 65536");
   }
   if (!(out.unit_m >= 1e-5F && out.unit_m <= 0.1F)) {
-    return malformed("a unit of depth that lies not in 0.00001 .. 0.1 m");
+    return malformed("unit_m of a depth image must lie in 0.00001 .. 0.1");
   }
   const std::uint64_t pixels = std::uint64_t{out.width} * out.height;
   const auto data = data_of(body, kDepthHead, pixels, 2, max_points);
@@ -128,14 +132,21 @@ base::Result<Ranges> ranges_of(Bytes body, std::uint32_t max_points) {
   out.count = u32_at(body.data());
   out.first_rad = f32_at(body.data() + 4);
   out.step_rad = f32_at(body.data() + 8);
-  if (!all_finite({out.first_rad, out.step_rad}) || std::abs(out.first_rad) > 7.0F ||
-      std::abs(out.step_rad) > 3.2F || out.step_rad == 0.0F) {
-    return malformed("ranges with angles that are none");
+  if (!(std::abs(out.first_rad) <= 7.0F)) {
+    return malformed("first_rad of ranges must lie in -7 .. 7");
+  }
+  if (!(std::abs(out.step_rad) <= 3.2F) || out.step_rad == 0.0F) {
+    return malformed("step_rad of ranges must lie in -3.2 .. 3.2 and not be 0");
   }
   const auto data = data_of(body, kRangesHead, out.count, 4, max_points);
   if (!data) return tl::unexpected(data.error());
   out.data = *data;
   return out;
+}
+
+/// A header of this version, whole, though one of its values is none: where its body ends is known.
+bool told_its_body(Bytes header) noexcept {
+  return u32_at(header.data() + 52) == crc_of(header.first(52)) && header[4] == kVersion;
 }
 
 }  // namespace
@@ -273,7 +284,7 @@ std::size_t Decoder::take_header(Bytes bytes) {
     std::copy(head_.begin() + static_cast<std::ptrdiff_t>(count),
               head_.begin() + static_cast<std::ptrdiff_t>(head_size_), head_.begin());
     head_size_ -= count;
-    refused_["bytes outside any frame"] += count;
+    refused_[kStray] += count;
   };
   const auto begins_at = [this](std::size_t at) {
     const std::size_t known = std::min(head_size_ - at, kMagic.size());
@@ -289,7 +300,12 @@ std::size_t Decoder::take_header(Bytes bytes) {
   auto header = decode_header(head_);
   if (!header) {
     ++refused_[header.error().detail];
-    drop(find_begin(1));
+    if (told_its_body(head_)) {
+      let_by_ = u32_at(head_.data() + 20);
+      head_size_ = 0;
+    } else {
+      drop(find_begin(1));
+    }
     return n;
   }
   head_size_ = 0;

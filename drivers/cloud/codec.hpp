@@ -58,8 +58,8 @@ struct Header {
 // The bodies; data as they came, `count` or width x height of them.
 struct Cloud {
   std::uint32_t count = 0;
-  float half_step_rad = 0.0F;
-  Bytes data;  ///< 12 bytes a point
+  float half_step_rad = 0.0F;  ///< 0: not known; else 0.0001 to 0.2
+  Bytes data;                  ///< 12 bytes a point
 };
 struct Depth {
   std::uint16_t width = 0;
@@ -116,7 +116,9 @@ class Decoder {
   /// The stream was cut: what comes next belongs to nothing before.
   void forget() noexcept;
 
-  /// Refusals by cause; "bytes outside any frame" counts bytes.
+  /// Among the refusals: it counts bytes.
+  static constexpr const char* kStray = "bytes outside any frame";
+  /// Refusals by cause; kStray counts bytes.
   const std::map<std::string, std::uint64_t>& refused() const noexcept { return refused_; }
 
  private:

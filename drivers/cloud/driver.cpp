@@ -14,6 +14,9 @@ constexpr double kOld_s = 1.0;
 /// A sequence that goes on by more began anew.
 constexpr std::uint32_t kMostLost = 1000;
 
+/// The lowest that a sensor may stand above the ground.
+constexpr float kLeastHeight_m = 0.02F;
+
 std::string shape_of(const Frame& frame) {
   if (const auto* depth = std::get_if<Depth>(&frame.body)) {
     return "depth image " + std::to_string(depth->width) + "x" + std::to_string(depth->height);
@@ -72,12 +75,12 @@ void Driver::on_bytes(Bytes bytes, Time stamp) {
 bool Driver::follows(const Header& header) {
   const std::uint32_t on = last_sequence_ ? header.sequence - *last_sequence_ : 1;
   if (on == 0 && last_ns_ == header.stamp_ns) {
-    port_.refused("a frame twice");
+    port_.twice("a frame twice");
     return false;
   }
   last_sequence_ = header.sequence;
   if (on > 1 && on <= kMostLost) {
-    port_.note("frames lost", on - 1);
+    port_.lost("frames lost", on - 1);
     count_ += on - 1;
   }
   return true;
@@ -97,7 +100,19 @@ Time Driver::measured_at(const Header& header, Time arrival) {
          base::from_seconds(params_.latency_s);
 }
 
+/// A pose that the sender tells, on the mount that the profile tells.
+bool Driver::in_ground(const Header& header) const noexcept {
+  if (!header.pose) return false;
+  const Stand mount = stand_of(params_.mount);
+  const Vec3 at = stand_of(header.pose).at;
+  const float height_m = mount.at[2] + mount.x[2] * at[0] + mount.y[2] * at[1] + mount.z[2] * at[2];
+  return height_m < kLeastHeight_m;
+}
+
 void Driver::on_frame(const Frame& frame, Time arrival) {
+  if (in_ground(frame.header)) {
+    return port_.refused("a pose that puts the camera into the ground");
+  }
   port_.received(arrival);
   if (!follows(frame.header)) return;
   auto sight = std::make_shared<base::Sight>();
@@ -124,7 +139,11 @@ void Driver::tell_health(const Frame& frame, const Eye::Seen& seen) {
 void Driver::count_refused() {
   for (const auto& [cause, n] : decoder_.refused()) {
     std::uint64_t& told = refused_[cause];
-    if (n > told) port_.count(cause, n - told);
+    if (cause == Decoder::kStray) {
+      port_.stray(cause, n - told);
+    } else if (n > told) {
+      port_.count(cause, n - told);
+    }
     told = n;
   }
 }

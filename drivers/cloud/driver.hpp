@@ -47,6 +47,7 @@ class Driver {
   Time measured_at(const Header& header, Time arrival);
   void tell_health(const Frame& frame, const Eye::Seen& seen);
   void count_refused();
+  bool in_ground(const Header& header) const noexcept;
 
   const Params params_;
   const base::OnSight on_sight_;

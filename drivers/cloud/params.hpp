@@ -2,6 +2,7 @@
 // Settings of the cloud driver.
 
 #include "base/params.hpp"
+#include "base/sight.hpp"
 
 namespace roverd::cloud {
 
@@ -18,6 +19,8 @@ struct Params {
   double retry_max_s = 5.0;
   /// No setting: the sender's clock is this computer's own steady one.
   bool same_clock = false;
+  /// No setting: how the camera's frame stands on the body, as the profile says.
+  base::Mount mount{.z_m = 0.5};
 };
 
 template <class V>

@@ -141,6 +141,7 @@ base::Mount SensorSettings::mount() const noexcept {
 
 cloud::Params as_heard(const Sensor& sensor) {
   cloud::Params out = sensor.cloud;
+  out.mount = sensor.said.mount();
   if (sensor.said.kind != "depth") return out;
   out.same_clock = !sensor.recorded;
   out.max_points = std::max(out.max_points, sensor.depth.width * sensor.depth.height);

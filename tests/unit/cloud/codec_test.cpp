@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include <gtest/gtest.h>
 
@@ -103,7 +104,10 @@ TEST(CloudCodec, SizesThatDoNotFitAreRefusedInWords) {
 TEST(CloudCodec, ValuesThatAreNoneAreRefusedInWords) {
   Heard heard;
   const Blob none;
-  heard.feed(encode(header_of(1), Cloud{0, kNan, none}));
+  // What is no half angle: a hair, half a turn, none at all.
+  for (const float half_rad : {kNan, -0.01F, 1e-9F, 9e-5F, 0.21F, 1.5F, kInfinity}) {
+    heard.feed(encode(header_of(1), Cloud{0, half_rad, none}));
+  }
   heard.feed(encode(header_of(1), Depth{0, 0, 0.0F, 100.0F, 0.0F, 0.0F, 0.001F, none}));
   heard.feed(encode(header_of(1), Depth{0, 0, 100.0F, kInfinity, 0.0F, 0.0F, 0.001F, none}));
   heard.feed(encode(header_of(1), Depth{0, 0, 100.0F, 100.0F, 0.0F, 0.0F, 0.0F, none}));
@@ -115,12 +119,28 @@ TEST(CloudCodec, ValuesThatAreNoneAreRefusedInWords) {
   heard.feed(cloud_frame(header_of(1, -5), {}));
   EXPECT_TRUE(heard.sequences.empty());
   const auto& refused = heard.decoder.refused();
-  EXPECT_EQ(refused.at("a cloud's half angle that lies not in 0 .. 0.5 rad"), 1U);
-  EXPECT_EQ(refused.at("intrinsics that are none"), 2U);
-  EXPECT_EQ(refused.at("a unit of depth that lies not in 0.00001 .. 0.1 m"), 1U);
-  EXPECT_EQ(refused.at("ranges with angles that are none"), 2U);
+  EXPECT_EQ(refused.at("half_step_rad of a cloud must be 0 or lie in 0.0001 .. 0.2"), 7U);
+  EXPECT_EQ(refused.at("fx and fy of a depth image must be 1 or more"), 2U);
+  EXPECT_EQ(refused.at("unit_m of a depth image must lie in 0.00001 .. 0.1"), 1U);
+  EXPECT_EQ(refused.at("step_rad of ranges must lie in -3.2 .. 3.2 and not be 0"), 1U);
+  EXPECT_EQ(refused.at("first_rad of ranges must lie in -7 .. 7"), 1U);
   EXPECT_EQ(refused.at("a pose that is none"), 1U);
+  heard.feed(encode(header_of(7), Cloud{0, 0.0F, none}));
+  heard.feed(encode(header_of(8), Cloud{0, 0.2F, none}));
+  EXPECT_EQ(heard.sequences, (std::vector<std::uint32_t>{7, 8})) << "not known, and a wide one";
   EXPECT_EQ(refused.at("a stamp that is none"), 1U);
+}
+
+TEST(CloudCodec, TheBodyOfAHeaderThatIsRefusedIsLetByWithIt) {
+  Heard heard;
+  // Given a stamp that is none, before a body in which the letters of a header stand,
+  const Blob letters = cloud_frame(header_of(9), {1.0F, 2.0F, 3.0F});
+  std::vector<float> inside(60, 0.0F);
+  std::memcpy(inside.data(), letters.data(), letters.size());
+  heard.feed(cloud_frame(header_of(1, -5), inside) + cloud_frame(header_of(2), {1.0F, 1.0F, 1.0F}));
+  // then it is refused once, and nothing of its body is taken for something else.
+  EXPECT_EQ(heard.decoder.refused(), (Counts{{"a stamp that is none", 1}}));
+  EXPECT_EQ(heard.sequences, (std::vector<std::uint32_t>{2}));
 }
 
 TEST(CloudCodec, ACloudOfTenMillionPointsIsLetByWithoutBeingKept) {

@@ -81,12 +81,34 @@ TEST_F(OnWire, WhatHadToWaitIsStampedAsItWasMeasured) {
   EXPECT_NEAR(base::seconds(sights[5]->stamp - first), 0.25, 1e-4);
 }
 
+TEST_F(OnWire, APoseThatPutsTheCameraIntoTheGroundIsRefused) {
+  // Given a mount 0.5 m above the ground,
+  Header low = header_of(1);
+  low.pose = base::Mount{.x_m = 0.2, .z_m = -0.6};
+  send(cloud_frame(low, {1.0F, 0.0F, 0.0F}));
+  EXPECT_TRUE(sights.empty());
+  EXPECT_EQ(counted("a pose that puts the camera into the ground"), 1U);
+  EXPECT_EQ(driver.status(now).detail->refused_last, "a pose that puts the camera into the ground");
+  // when it stands on it by 10 cm, or higher than its mount, then it is heard.
+  low.sequence = 2;
+  low.pose->z_m = -0.4;
+  send(cloud_frame(low, {1.0F, 0.0F, 0.0F}));
+  low.sequence = 3;
+  low.pose->z_m = 0.4;
+  send(cloud_frame(low, {1.0F, 0.0F, 0.0F}));
+  EXPECT_EQ(sights.size(), 2U);
+}
+
 TEST_F(OnWire, LostRepeatedAndRestartedSendersAreTold) {
   send(cloud_frame(header_of(10, 1'000), {}));
   send(cloud_frame(header_of(10, 1'000), {}));
   send(cloud_frame(header_of(14, 50'000'000), {}));
   EXPECT_EQ(counted("a frame twice"), 1U);
   EXPECT_EQ(counted("frames lost"), 3U);
+  EXPECT_EQ(driver.status(now).detail->lost, 3U);
+  EXPECT_EQ(driver.status(now).detail->twice, 1U);
+  EXPECT_EQ(driver.status(now).refused, 0U) << "nothing was wrong with it";
+  EXPECT_EQ(driver.status(now).detail->refused_last, "");
   ASSERT_EQ(sights.size(), 2U);
   EXPECT_EQ(sights[1]->count, 4U) << "the gap shows";
   send(cloud_frame(header_of(0, 0), {}));  // began anew
@@ -105,7 +127,7 @@ TEST_F(OnWire, RefusedFramesAreCountedByCauseAndNotHeard) {
   send({1, 2, 3, 4, 5});
   EXPECT_TRUE(sights.empty());
   EXPECT_EQ(driver.status(now).phase, DriverPhase::Opening);
-  EXPECT_EQ(counted("intrinsics that are none"), 1U);
+  EXPECT_EQ(counted("fx and fy of a depth image must be 1 or more"), 1U);
   EXPECT_EQ(counted("bytes outside any frame"), 5U);
 }
 
