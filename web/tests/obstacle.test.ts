@@ -43,11 +43,15 @@ describe('its words', () => {
     expect(obstacle_since({ ...wall, stopped_s: null }, 0)).toBe('');
   });
   it('say what comes of waiting where the robot tells it', () => {
-    const blocked = { ...wall, since_s: 12, blocked: true, then: 'around', decides_in_s: 8 };
-    expect(obstacle_since(blocked, 0)).toBe('For 12 s. Blocked. In 8 s it looks for a way around.');
-    expect(obstacle_since({ ...blocked, decides_in_s: null, then: 'back_off' }, 0)).toBe(
-      'For 12 s. Blocked. Then back off.',
+    const waits = { ...wall, since_s: 12, blocked: false, then: 'around', decides_in_s: 8 };
+    expect(obstacle_since(waits, 0)).toBe('For 12 s. In 8 s it looks for a way around.');
+    expect(obstacle_since(waits, 3)).toBe('For 15 s. In 5 s it looks for a way around.');
+    const blocked = { ...waits, blocked: true, decides_in_s: null };
+    expect(obstacle_since(blocked, 0)).toBe('For 12 s. Blocked: it looks for a way around.');
+    expect(obstacle_since({ ...blocked, then: 'back_off' }, 0)).toBe(
+      'For 12 s. Blocked: back off.',
     );
+    expect(obstacle_since({ ...blocked, then: null }, 0)).toBe('For 12 s. Blocked.');
   });
 });
 

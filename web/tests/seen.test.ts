@@ -5,10 +5,14 @@ import { describe, expect, it } from 'vitest';
 import {
   AT_FIRST,
   cells_of,
+  changes_guard,
+  guard_line,
   layers_from,
   rates_of,
+  sensor_details,
   sensor_line,
   sensor_tone,
+  signed_things,
   thing_line,
   type SeenGrid,
   type SeenThing,
@@ -75,6 +79,12 @@ const front: Sensor = {
   unknown_part: 0.123,
   points: 541,
   refused: 0,
+  lost: 0,
+  duplicates: 0,
+  malformed: 0,
+  foreign: 0,
+  malformed_last: null,
+  malformed_age_s: null,
   mount: { x_m: 0.5, y_m: 0, z_m: 0.3, roll_deg: 0, pitch_deg: 0, yaw_deg: 0 },
 };
 
@@ -88,6 +98,23 @@ describe('a sensor', () => {
     expect(sensor_tone({ ...front, health: 'blind' })).toBe('bad');
     expect(sensor_tone({ ...front, health: 'silent', required: false })).toBe('warn');
     expect(sensor_tone({ ...front, health: 'degraded' })).toBe('warn');
+  });
+  it('tells only the losses that there were, and why something was refused last', () => {
+    const told = (sensor: Sensor) =>
+      sensor_details(sensor).map(([name, value]) => `${name}: ${value}`);
+    expect(told(front)).toContain('Lost or refused: nothing');
+    const bad = {
+      ...front,
+      lost: 12,
+      malformed: 3,
+      malformed_last: 'wrong checksum',
+      malformed_age_s: 4.2,
+    };
+    const lines = told(bad);
+    expect(lines).toContain('Lost on the way: 12');
+    expect(lines).toContain('Refused, damaged: 3');
+    expect(lines).toContain('Refused last: Wrong checksum (4.2 s ago)');
+    expect(lines.some((line) => line.startsWith('Came twice'))).toBe(false);
   });
 });
 
@@ -105,12 +132,37 @@ describe('a thing', () => {
     on_way: false,
   };
   it('is told with its distance, direction, width and by whom', () => {
-    expect(thing_line(pole)).toBe('Obstacle 1.2 m 31° to the left, 0.4 m wide, seen by front');
+    expect(thing_line(pole)).toBe('Obstacle 1.2 m, 31° left · 0.4 m wide · front');
     expect(thing_line({ ...pole, bearing_deg: 4, sensor: null })).toBe(
-      'Obstacle 1.2 m ahead, 0.4 m wide',
+      'Obstacle 1.2 m, ahead · 0.4 m wide',
     );
     expect(thing_line({ ...pole, bearing_deg: 178, what: 'drop', age_s: 12 })).toBe(
-      'The ground ends 1.2 m behind, 0.4 m wide, seen by front 12 s ago',
+      'Ground ends 1.2 m, behind · 0.4 m wide · front, 12 s ago',
     );
+  });
+  it('gets no sign where a nearer one stands, unless it is on the way', () => {
+    const at = (distance_m: number, on_way = false): SeenThing => ({ ...pole, distance_m, on_way });
+    const things = [at(1), at(1.2), at(1.3, true), at(3), at(3.1)];
+    const apart = (one: SeenThing, other: SeenThing): boolean =>
+      Math.abs(one.distance_m - other.distance_m) > 0.5;
+    expect(signed_things(things, apart).map(({ distance_m }) => distance_m)).toEqual([1.3, 3]);
+  });
+});
+
+describe('the guard', () => {
+  it('tells by what it reckons, and what of it acts at once', () => {
+    const figures = {
+      back_m: 0.5,
+      side_m: 0.08,
+      gap_m: 0.3,
+      delay_s: 0.2,
+      decel_mps2: 0.6,
+      turn_decel_dps2: 24,
+    };
+    const line = guard_line(figures);
+    expect(line).toContain('0.30 m before and 0.08 m beside');
+    expect(line).toContain('act at once');
+    expect(changes_guard('safety_parameter')).toBe(true);
+    expect(changes_guard('obstacle')).toBe(false);
   });
 });

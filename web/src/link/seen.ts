@@ -15,4 +15,5 @@ export const bytes_of = (text: string): Uint8Array => {
 
 export const seen_calls: SeenCalls = {
   sensors: () => request<components['schemas']['SensorList']>('/sensors'),
+  capabilities: () => request<components['schemas']['Capabilities']>('/vehicle/capabilities'),
 };

@@ -7,6 +7,7 @@ import {
   DROP,
   FREE,
   OCCUPIED,
+  signed_things,
   type AheadOnMap,
   type SeenGrid,
   type SeenOnMap,
@@ -156,10 +157,8 @@ const paint_dots = (paint: Paint, dots: SensorDots, to: ToPixel, colors: Palette
 const THING_PX = 7;
 
 /** A triangle at the place that is nearest to the robot; full: it is on the way. */
-const paint_thing = (paint: Paint, thing: SeenThing, colors: Palette): void => {
-  if (thing.lat === null || thing.lon === null) return;
+const paint_thing = (paint: Paint, thing: SeenThing, [x, y]: Px, colors: Palette): void => {
   const { context } = paint;
-  const [x, y] = px(paint, { lat: thing.lat, lon: thing.lon });
   context.beginPath();
   context.moveTo(x, y - THING_PX);
   context.lineTo(x + THING_PX, y + THING_PX * 0.8);
@@ -176,7 +175,20 @@ export const paint_seen = (paint: Paint, seen: SeenOnMap, colors: Palette): void
     const to = body_to_pixel(paint, at, at.heading_deg);
     for (const dots of seen.scan?.sensors ?? []) paint_dots(paint, dots, to, colors);
   }
-  for (const thing of seen.things) paint_thing(paint, thing, colors);
+  const places = new Map<SeenThing, Px>();
+  for (const thing of seen.things) {
+    const { lat, lon } = thing;
+    if (lat !== null && lon !== null) places.set(thing, px(paint, { lat, lon }));
+  }
+  const apart = (one: SeenThing, other: SeenThing): boolean => {
+    const [x0, y0] = places.get(one) ?? [0, 0];
+    const [x1, y1] = places.get(other) ?? [0, 0];
+    return Math.hypot(x1 - x0, y1 - y0) > 2.5 * THING_PX;
+  };
+  for (const thing of signed_things([...places.keys()], apart)) {
+    const at_px = places.get(thing);
+    if (at_px) paint_thing(paint, thing, at_px, colors);
+  }
 };
 
 const trace_ring = (paint: Paint, ring: readonly LatLon[]): void => {

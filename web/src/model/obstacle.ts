@@ -37,20 +37,19 @@ const then_words: Readonly<Record<string, string>> = {
 const lasting = (seconds: number): string =>
   seconds < 90 ? `${Math.max(1, Math.round(seconds))} s` : `${Math.round(seconds / 60)} min`;
 
-/** Since when, and what comes next: "For 12 s. In 8 s it looks for a way around."
+/** Since when, and what comes next: "For 12 s. In 8 s it looks for a way around.", "For 20 s. Blocked:
+ * it looks for a way around."
  * @param older_s since the robot said so */
 export const obstacle_since = (obstacle: Obstacle, older_s: number): string => {
   const parts: string[] = [];
   const since_s = obstacle.stopped_s ?? obstacle.since_s ?? null;
   if (since_s !== null) parts.push(`For ${lasting(since_s + older_s)}.`);
-  if (obstacle.blocked === true) parts.push('Blocked.');
-  const then = obstacle.then ?? null;
-  if (then !== null && then !== '') {
-    const words = then_words[then] ?? then.replaceAll('_', ' ');
-    const left_s = obstacle.decides_in_s ?? null;
-    const soon = left_s === null ? 'Then' : `In ${lasting(Math.max(0, left_s - older_s))}`;
-    parts.push(`${soon} ${words}.`);
-  }
+  const then = obstacle.then ?? '';
+  const words = then_words[then] ?? then.replaceAll('_', ' ');
+  const left_s = obstacle.decides_in_s ?? null;
+  const soon = left_s === null ? 'Then' : `In ${lasting(Math.max(0, left_s - older_s))}`;
+  if (obstacle.blocked === true) parts.push(words === '' ? 'Blocked.' : `Blocked: ${words}.`);
+  else if (words !== '') parts.push(`${soon} ${words}.`);
   return parts.join(' ');
 };
 

@@ -1,9 +1,10 @@
 // What the robot's sensors see, as the interface tells it, and the words for it.
 
 import type { Answer } from './answer';
-import { age, number_text } from './format';
+import { age, number_text, sentence } from './format';
 import type { LatLon } from './plan';
-import type { Sweep } from './sweep';
+import type { GuardFigures, Sweep } from './sweep';
+import type { Capabilities } from './vehicle';
 
 /** A place on the map, and a direction there. */
 export interface Placed extends LatLon {
@@ -64,7 +65,15 @@ export interface Sensor {
   /** Of its directions. */
   readonly unknown_part: number;
   readonly points: number;
+  /** Whole pieces that the picture could not use. */
   readonly refused: number;
+  readonly lost: number;
+  readonly duplicates: number;
+  /** What came and was refused: cut, damaged, another device's. */
+  readonly malformed: number;
+  readonly foreign: number;
+  readonly malformed_last: string | null;
+  readonly malformed_age_s: number | null;
   readonly mount: {
     readonly x_m: number;
     readonly y_m: number;
@@ -102,6 +111,8 @@ export interface SeenEvents {
 }
 export interface SeenCalls {
   sensors(): Promise<Answer<{ readonly items: readonly Sensor[] }>>;
+  /** By what the guard reckons, as it is now. */
+  capabilities(): Promise<Answer<Capabilities>>;
 }
 export interface SeenMap {
   /** What the sensors see; null: it is not looked at. */
@@ -155,6 +166,14 @@ export const layers_from = (text: string | null): Layers => {
   }
 };
 
+/** For the list of sensors: what the guard keeps, and how it is changed. */
+export const guard_line = ({ gap_m, side_m, delay_s, decel_mps2 }: GuardFigures): string =>
+  `The guard keeps ${number_text(gap_m, 2, 'm')} before and ${number_text(side_m, 2, 'm')} beside what stands there, and counts on ${number_text(delay_s, 2, 's')} until it brakes with ${number_text(decel_mps2, 2, 'm/s²')}. Parameters sense.protect and sense.blocked act at once; how sensors stand and how their picture is made acts at the next start.`;
+
+/** After such an event the guard may reckon with other figures. */
+export const changes_guard = (kind: string): boolean =>
+  kind === 'parameter' || kind === 'safety_parameter';
+
 /** What the stream must tell for it, Hz. */
 export const rates_of = (layers: Layers): Partial<Record<SeenTopic, number>> => ({
   obstacles: 2,
@@ -190,6 +209,23 @@ const window_words: Record<Sensor['window'], string> = {
   blocked: 'covered',
 };
 
+/** What went wrong on the way, where anything did. */
+const losses = (sensor: Sensor): readonly (readonly [string, string])[] => {
+  const { malformed_last, malformed_age_s } = sensor;
+  const counted: readonly (readonly [string, number])[] = [
+    ['Lost on the way', sensor.lost],
+    ['Came twice', sensor.duplicates],
+    ['Refused, damaged', sensor.malformed],
+    ['Refused, of no use', sensor.refused],
+    ['From somebody else', sensor.foreign],
+  ];
+  const some = counted.filter(([, n]) => n > 0).map(([what, n]) => [what, String(n)] as const);
+  if (some.length === 0) return [['Lost or refused', 'nothing']];
+  if (malformed_last === null) return some;
+  const when = malformed_age_s === null ? '' : ` (${age(malformed_age_s)} ago)`;
+  return [...some, ['Refused last', `${sentence(malformed_last)}${when}`]];
+};
+
 export const sensor_details = (sensor: Sensor): readonly (readonly [string, string])[] => {
   const { mount } = sensor;
   const place = `${number_text(mount.x_m, 2, 'm')} ahead, ${number_text(mount.y_m, 2, 'm')} left, ${number_text(mount.z_m, 2, 'm')} up`;
@@ -198,25 +234,42 @@ export const sensor_details = (sensor: Sensor): readonly (readonly [string, stri
     ['Kind', sensor.kind],
     ['Window', window_words[sensor.window]],
     ['Points of the last piece', String(sensor.points)],
-    ['Refused', String(sensor.refused)],
+    ...losses(sensor),
     ['Needed to drive by itself', sensor.required ? 'yes' : 'no'],
     ['Mounted', place],
     ['Turned', turned],
   ];
 };
 
-/** "ahead", "30° to the left", "behind" */
+/** "ahead", "30° left", "behind" */
 const direction = (bearing_deg: number): string => {
   const size = Math.round(Math.abs(bearing_deg));
   if (size <= 10) return 'ahead';
   if (size >= 170) return 'behind';
-  return `${size}° to the ${bearing_deg < 0 ? 'left' : 'right'}`;
+  return `${size}° ${bearing_deg < 0 ? 'left' : 'right'}`;
 };
 
-/** "Obstacle 1.2 m ahead, 0.4 m wide, seen by front" */
+/** A line of the card, on a phone as well: "Obstacle 1.2 m, 30° left · 0.4 m wide · front" */
 export const thing_line = (thing: SeenThing): string => {
-  const what = thing.what === 'drop' ? 'The ground ends' : 'Obstacle';
-  const by = thing.sensor === null ? '' : `, seen by ${thing.sensor}`;
-  const old = thing.age_s >= 2 ? ` ${age(thing.age_s)} ago` : '';
-  return `${what} ${number_text(thing.distance_m, 1, 'm')} ${direction(thing.bearing_deg)}, ${number_text(thing.size_m, 1, 'm')} wide${by}${old}`;
+  const what = thing.what === 'drop' ? 'Ground ends' : 'Obstacle';
+  const old = thing.age_s >= 2 ? `${age(thing.age_s)} ago` : '';
+  const by = [thing.sensor ?? '', old].filter((word) => word !== '').join(', ');
+  return [
+    `${what} ${number_text(thing.distance_m, 1, 'm')}, ${direction(thing.bearing_deg)}`,
+    `${number_text(thing.size_m, 1, 'm')} wide`,
+    ...(by === '' ? [] : [by]),
+  ].join(' · ');
+};
+
+/** Which of them get a sign of their own: all that are on the way; of the others, nearest first, those
+ * that no sign before them stands on. @param apart whether two would not cover each other */
+export const signed_things = (
+  things: readonly SeenThing[],
+  apart: (one: SeenThing, other: SeenThing) => boolean,
+): readonly SeenThing[] => {
+  const signed = things.filter((thing) => thing.on_way);
+  for (const thing of things) {
+    if (!thing.on_way && signed.every((other) => apart(thing, other))) signed.push(thing);
+  }
+  return signed;
 };

@@ -4,6 +4,8 @@ import { refusal_text } from '../model/answer';
 import { obstacle_place, sound_of } from '../model/obstacle';
 import type { DraftStorage } from '../model/ports';
 import {
+  changes_guard,
+  guard_line,
   layers_from,
   rates_of,
   type AheadOnMap,
@@ -51,6 +53,11 @@ export class Seen {
 
   /** The robot has sensors that look around. */
   has = $derived.by<boolean>(() => (this.#live.capabilities?.guard ?? null) !== null);
+  /** How near the guard lets it come; null: it has no sensors. */
+  guard_line = $derived.by<string | null>(() => {
+    const guard = this.#live.capabilities?.guard ?? null;
+    return guard === null ? null : guard_line(guard);
+  });
   #fresh = $derived.by<boolean>(() => this.#live.now_ms - this.#came_ms < OLD_MS);
   things = $derived.by<readonly SeenThing[]>(() => (this.#fresh ? this.#things : []));
   on_map = $derived.by<SeenOnMap | null>(() => {
@@ -94,6 +101,12 @@ export class Seen {
   on_event(kind: string): void {
     const sound = sound_of(kind);
     if (sound && this.layers.sound) this.#speaker.play(sound);
+    if (this.has && changes_guard(kind)) void this.#reckon_anew();
+  }
+
+  async #reckon_anew(): Promise<void> {
+    const answer = await this.#calls.capabilities();
+    if (answer.ok) this.#live.capabilities = answer.value;
   }
 
   /** Asks for the sensors' health now and then. @return ends it */
