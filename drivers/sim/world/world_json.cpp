@@ -1,123 +1,24 @@
-// The file format of worlds, both ways. One table says which members a kind has, what they may be
+// The file of a world, read: one table (kinds.hpp) says which members a kind has, what they may be
 // and what they are when left out.
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <optional>
 
 #include <nlohmann/json.hpp>
 
-#include "sim/world/world.hpp"
+#include "sim/world/kinds.hpp"
 
 namespace roverd::sim::world {
 namespace {
 
 using base::Result;
 using nlohmann::json;
-using nlohmann::ordered_json;
 
 constexpr double kDegree = 0.017453292519943295;
 constexpr std::size_t kMostLayers = 8;
 constexpr std::size_t kMostBumps = 256;
 constexpr std::size_t kMostDrops = 64;
-
-/// A number of a thing: its name, where it is kept, its range.
-struct Number {
-  const char* name;
-  double Thing::*at;
-  double low;
-  double high;
-};
-constexpr Number kHeight{"height_m", &Thing::height_m, 0.01, 100.0};
-constexpr Number kBottom{"bottom_m", &Thing::bottom_m, 0.0, 100.0};
-constexpr Number kThickness{"thickness_m", &Thing::thickness_m, 0.005, 10.0};
-constexpr Number kRadius{"radius_m", &Thing::radius_m, 0.002, 50.0};
-constexpr Number kLength{"length_m", &Thing::length_m, 0.01, 1'000.0};
-constexpr Number kWidth{"width_m", &Thing::width_m, 0.01, 1'000.0};
-constexpr Number kDensity{"density_pm", &Thing::density_pm, 0.01, 1'000.0};
-constexpr Number kReflect{"reflect", &Thing::reflect, 0.0, 1.0};
-constexpr Number kSpacing{"spacing_m", &Thing::spacing_m, 0.02, 100.0};
-constexpr Number kGaps{"gaps", &Thing::gaps, 0.0, 1.0};
-constexpr Number kBend{"bend_m", &Thing::bend_m, -500.0, 500.0};
-constexpr Number kSpeed{"speed_mps", &Thing::speed_mps, 0.01, 30.0};
-constexpr Number kPause{"pause_s", &Thing::pause_s, 0.0, 86'400.0};
-constexpr Number kStart{"start_s", &Thing::start_s, 0.0, 86'400.0};
-
-enum class Places { One, Line, Path };
-
-struct KindRow {
-  Kind kind;
-  Places places;
-  std::vector<Number> numbers;
-  bool turned = false;  ///< has heading_deg
-  Thing defaults{};
-};
-
-Thing like(Kind kind, double height_m, double length_m, double width_m, double radius_m,
-           double thickness_m) {
-  Thing t;
-  t.kind = kind;
-  t.height_m = height_m;
-  t.length_m = length_m;
-  t.width_m = width_m;
-  t.radius_m = radius_m;
-  t.thickness_m = thickness_m;
-  return t;
-}
-
-const std::vector<KindRow>& kinds() {
-  static const std::vector<KindRow> rows = {
-      {Kind::Wall,
-       Places::Line,
-       {kHeight, kThickness, kReflect},
-       false,
-       like(Kind::Wall, 2.0, 1.0, 1.0, 0.1, 0.2)},
-      {Kind::Bar,
-       Places::Line,
-       {kHeight, kBottom, kThickness, kReflect},
-       false,
-       like(Kind::Bar, 0.1, 1.0, 1.0, 0.1, 0.1)},
-      {Kind::Pole,
-       Places::One,
-       {kHeight, kRadius, kReflect},
-       false,
-       like(Kind::Pole, 2.0, 1.0, 1.0, 0.05, 0.2)},
-      {Kind::Box,
-       Places::One,
-       {kHeight, kBottom, kLength, kWidth, kReflect},
-       true,
-       like(Kind::Box, 1.0, 1.0, 1.0, 0.1, 0.2)},
-      {Kind::Cone,
-       Places::One,
-       {kHeight, kRadius, kReflect},
-       false,
-       like(Kind::Cone, 0.5, 1.0, 1.0, 0.18, 0.2)},
-      {Kind::Bush,
-       Places::One,
-       {kHeight, kRadius, kDensity, kReflect},
-       false,
-       like(Kind::Bush, 1.0, 1.0, 1.0, 0.5, 0.2)},
-      {Kind::Row,
-       Places::Line,
-       {kHeight, kWidth, kSpacing, kGaps, kBend, kDensity, kReflect},
-       false,
-       like(Kind::Row, 1.5, 1.0, 0.8, 0.1, 0.2)},
-      {Kind::Person,
-       Places::Path,
-       {kHeight, kLength, kWidth, kSpeed, kPause, kStart, kReflect},
-       false,
-       like(Kind::Person, 1.75, 0.3, 0.46, 0.1, 0.2)},
-      {Kind::Animal,
-       Places::Path,
-       {kHeight, kLength, kWidth, kSpeed, kPause, kStart, kReflect},
-       false,
-       like(Kind::Animal, 0.6, 0.8, 0.25, 0.1, 0.2)}};
-  return rows;
-}
-
-std::string_view word_of(Motion motion) noexcept {
-  return motion == Motion::Once ? "once" : motion == Motion::Loop ? "loop" : "back";
-}
 
 /// The first problem stops the reading; it is kept with its place.
 class Reader {
@@ -335,89 +236,10 @@ class Reader {
   std::optional<base::Error> problem_;
 };
 
-double rounded(double value, double unit) {
-  return std::round(value / unit) * unit;
-}
-ordered_json place_json(Vec2 at) {
-  return ordered_json::array({at.x, at.y});
-}
-ordered_json line_json(const std::vector<Vec2>& points) {
-  ordered_json out = ordered_json::array();
-  for (const Vec2 p : points) out.push_back(place_json(p));
-  return out;
-}
-double heading_of(double yaw_rad) {
-  double heading = std::fmod(90.0 - yaw_rad / kDegree, 360.0);
-  if (heading < 0.0) heading += 360.0;
-  return rounded(heading, 1e-9);
-}
-
-ordered_json thing_json(const Thing& thing) {
-  const auto row =
-      std::ranges::find_if(kinds(), [&](const KindRow& r) { return r.kind == thing.kind; });
-  ordered_json out;
-  out["kind"] = to_string(thing.kind);
-  if (!thing.name.empty()) out["name"] = thing.name;
-  if (row->places == Places::One) {
-    out["at"] = place_json(thing.points.front());
-  } else {
-    out[row->places == Places::Line ? "points" : "path"] = line_json(thing.points);
-  }
-  if (row->turned && thing.yaw_rad != 0.0) out["heading_deg"] = heading_of(thing.yaw_rad);
-  if (row->places == Places::Path && thing.motion != row->defaults.motion) {
-    out["motion"] = word_of(thing.motion);
-  }
-  for (const Number& n : row->numbers) {
-    if (thing.*n.at != row->defaults.*n.at) out[n.name] = thing.*n.at;
-  }
-  return out;
-}
-
-ordered_json ground_json(const Ground& g) {
-  const Ground plain;
-  ordered_json out = ordered_json::object();
-  if (g.slope_rad != 0.0) {
-    out["slope_deg"] = rounded(g.slope_rad / kDegree, 1e-9);
-    out["uphill_deg"] = heading_of(g.uphill_rad);
-  }
-  if (g.grass_m != plain.grass_m) out["grass_m"] = g.grass_m;
-  if (g.reflect != plain.reflect) out["reflect"] = g.reflect;
-  for (const Uneven& u : g.uneven) {
-    out["uneven"].push_back({{"height_m", u.height_m}, {"patch_m", u.patch_m}});
-  }
-  for (const Bump& b : g.bumps) {
-    out["bumps"].push_back(
-        {{"at", place_json(b.at)}, {"radius_m", b.radius_m}, {"height_m", b.height_m}});
-  }
-  for (const Drop& d : g.drops) {
-    out["drops"].push_back({{"points", line_json(d.points)}, {"depth_m", d.depth_m}});
-  }
-  return out;
-}
-
 }  // namespace
 
 Result<World> read_world(std::string_view text) {
   return Reader().read(text);
-}
-
-std::string write_world(const World& world) {
-  ordered_json out;
-  out["name"] = world.name;
-  out["seed"] = world.seed;
-  if (ordered_json ground = ground_json(world.ground); !ground.empty()) {
-    out["ground"] = std::move(ground);
-  }
-  // One thing a line: people read and edit these files.
-  std::string text = out.dump(1, ' ', false, json::error_handler_t::replace);
-  text.pop_back();
-  while (!text.empty() && text.back() == '\n') text.pop_back();
-  text += ",\n \"things\": [";
-  for (std::size_t i = 0; i < world.things.size(); ++i) {
-    text += i == 0 ? "\n  " : ",\n  ";
-    text += thing_json(world.things[i]).dump(-1, ' ', false, json::error_handler_t::replace);
-  }
-  return text + (world.things.empty() ? "]\n}\n" : "\n ]\n}\n");
 }
 
 }  // namespace roverd::sim::world
