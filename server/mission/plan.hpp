@@ -60,9 +60,9 @@ struct Speed {
 /// Along plants to both sides, in the middle, or along those of one side.
 struct Row {
   RowSide side = RowSide::Both;
-  std::optional<double> gap_m;       ///< of one side: from its plants to the vehicle's middle
-  std::optional<double> speed_mps;   ///< empty: as the profile says for rows
-  std::optional<double> distance_m;  ///< done after so much way; empty: at the row's end
+  std::optional<double> gap_m{};       ///< of one side: from its plants to the vehicle's middle
+  std::optional<double> speed_mps{};   ///< empty: as the profile says for rows
+  std::optional<double> distance_m{};  ///< done after so much way; empty: at the row's end
   RowSeeing seeing = RowSeeing::Line;
   friend bool operator==(const Row&, const Row&) = default;
 };

@@ -77,7 +77,7 @@ TEST(Check, NamesTheItemsThatSpeakAgainstIt) {
 
 TEST(Check, TellsWhatMustBeConfiguredForAType) {
   const auto report = check(
-      course({spot(0, 0), Row{Side::Left, 0.8}, Wall{Side::Left, 1.0}, Landmarks{"cone", 0.7}}),
+      course({spot(0, 0), Row{RowSide::Left, 0.8}, Wall{Side::Left, 1.0}, Landmarks{"cone", 0.7}}),
       tracks(), {});
 
   EXPECT_EQ(report.errors, 3u);

@@ -26,26 +26,27 @@ inline Plan plan_with_every_item() {
   full.hold_s = 4.0;
   full.reverse = true;
   full.turn = Turn::Pivot;
-  plan.items = {full,
-                waypoint_at(90.0, -180.0),
-                Local{-12.25, 3.5, 359.5},
-                Local{1.0, 2.0, std::nullopt},
-                Move{-2.5},
-                TurnBy{-90.0, std::nullopt},
-                TurnBy{std::nullopt, 0.0},
-                Wait{0.0},
-                Speed{10.0},
-                Row{Side::Right, 0.8},
-                Row{Side::Left, std::nullopt},
-                Wall{Side::Right, 0.9},
-                Landmarks{"cone", 0.7},
-                Jump{2, 0},
-                Action{"spray", {{"nozzle", 3}, {"on", true}, {"note", {1, "a", nullptr}}}},
-                ReturnHome{},
-                Loiter{58.1, 26.5, 30.0, 2.5},
-                Loiter{},
-                Circle{{58.2, 26.6}, 12.5, 2.25, true, 0.6, 8, 3.0},
-                Circle{{58.2, 26.6}, 4.0, {}, false, {}, {}, {}}};
+  plan.items = {
+      full,
+      waypoint_at(90.0, -180.0),
+      Local{-12.25, 3.5, 359.5},
+      Local{1.0, 2.0, std::nullopt},
+      Move{-2.5},
+      TurnBy{-90.0, std::nullopt},
+      TurnBy{std::nullopt, 0.0},
+      Wait{0.0},
+      Speed{10.0},
+      Row{.side = RowSide::Right, .gap_m = 0.8, .distance_m = 12.5, .seeing = RowSeeing::Rays},
+      Row{.side = RowSide::Left},
+      Wall{Side::Right, 0.9},
+      Landmarks{"cone", 0.7},
+      Jump{2, 0},
+      Action{"spray", {{"nozzle", 3}, {"on", true}, {"note", {1, "a", nullptr}}}},
+      ReturnHome{},
+      Loiter{58.1, 26.5, 30.0, 2.5},
+      Loiter{},
+      Circle{{58.2, 26.6}, 12.5, 2.25, true, 0.6, 8, 3.0},
+      Circle{{58.2, 26.6}, 4.0, {}, false, {}, {}, {}}};
   return plan;
 }
 
@@ -112,7 +113,8 @@ class RandomPlans {
       case 4:
         return Speed{number(0.001, 10.0)};
       case 5:
-        return Row{side(), maybe(0.1, 20.0)};
+        return Row{static_cast<RowSide>(whole(0, 2)), maybe(0.1, 20.0), maybe(0.01, 10.0),
+                   maybe(0.1, 500.0), coin() ? RowSeeing::Line : RowSeeing::Rays};
       case 6:
         return Wall{side(), number(0.1, 20.0)};
       case 7:

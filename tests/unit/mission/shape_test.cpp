@@ -38,7 +38,7 @@ class Figures {
     plan.items.emplace_back(TurnBy{std::nullopt, number(0.0, 359.0)});
     plan.items.emplace_back(TurnBy{number(-180.0, 180.0), std::nullopt});
     plan.items.emplace_back(Move{number(-5.0, 5.0)});
-    plan.items.emplace_back(Row{Side::Left, std::nullopt});
+    plan.items.emplace_back(Row{.side = RowSide::Left});
     plan.items.emplace_back(Landmarks{"cone", 0.7});
     return plan;
   }
@@ -273,12 +273,12 @@ TEST(ShapeOperations, AMirrorAboutNorthChangesEastAndWest) {
   Plan plan;
   plan.name = "line";
   plan.items = {waypoint_at(58.0, 26.0), waypoint_at(58.0, 26.001), TurnBy{-30.0, std::nullopt},
-                Row{Side::Left, std::nullopt}};
+                Row{.side = RowSide::Left}};
   const Plan mirrored = done(plan, Mirror{0.0, LatLon{58.0, 26.0}});
   EXPECT_NEAR(at(mirrored, 1).lon, 25.999, 1e-9);
   EXPECT_NEAR(at(mirrored, 1).lat, 58.0, 1e-9);
   EXPECT_EQ(mirrored.items[2], Item(TurnBy{30.0, std::nullopt}));
-  EXPECT_EQ(mirrored.items[3], Item(Row{Side::Right, std::nullopt}));
+  EXPECT_EQ(mirrored.items[3], Item(Row{.side = RowSide::Right}));
 }
 
 TEST(ShapeOperations, TheMiddleIsThatOfTheExtremes) {
