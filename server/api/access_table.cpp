@@ -100,6 +100,7 @@ constexpr Row kTable[] = {
     {"POST /invitations", Need::Operator, NeedsControl::No},
     {"POST /missions", Need::Operator, NeedsControl::No},
     {"POST /missions/import", Need::Operator, NeedsControl::No},
+    {"POST /missions/rows", Need::Operator, NeedsControl::No},
     {"POST /missions/survey", Need::Operator, NeedsControl::No},
     {"DELETE /missions/{id}", Need::Operator, NeedsControl::No},
     {"PATCH /missions/{id}", Need::Operator, NeedsControl::No},

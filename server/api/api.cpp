@@ -26,6 +26,7 @@ Api::Api(Deps deps) : impl_(std::make_unique<Impl>(std::move(deps))) {
   add_execution_routes(c);
   add_mission_routes(c);
   add_operation_routes(c);
+  add_rows_routes(c);
   add_survey_routes(c);
   add_check_routes(c);
   add_fence_routes(c);

@@ -186,6 +186,7 @@ void add_calibration_routes(const ContextPtr& context);
 void add_execution_routes(const ContextPtr& context);
 void add_mission_routes(const ContextPtr& context);
 void add_operation_routes(const ContextPtr& context);
+void add_rows_routes(const ContextPtr& context);
 void add_survey_routes(const ContextPtr& context);
 void add_check_routes(const ContextPtr& context);
 void add_fence_routes(const ContextPtr& context);

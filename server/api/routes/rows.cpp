@@ -1,0 +1,104 @@
+// POST /missions/rows: a block of rows, as an answer or as a stored mission.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "api/body.hpp"
+#include "api/context.hpp"
+#include "api/mission_change.hpp"
+#include "base/angle.hpp"
+#include "mission/json/fields.hpp"
+#include "mission/json/json.hpp"
+#include "mission/rows/block.hpp"
+#include "mission/text.hpp"
+
+namespace roverd::api {
+
+namespace {
+
+using mission::RowBlock;
+
+struct RowsOrder {
+  RowBlock block;
+  std::optional<std::string> name;  ///< to be stored under
+};
+
+void read_entry(Members& members, RowBlock& block) {
+  const Json* value = members.any("entry");
+  if (value == nullptr) return;
+  if (!value->is_object()) return members.complain("entry", "must be {lat, lon}, degrees");
+  Members point(*value);
+  for (const char* name : {"lat", "lon"}) point.require(name);
+  const auto lat = point.number("lat", -90.0, 90.0);
+  const auto lon = point.number("lon", -180.0, 180.0);
+  if (auto fine = point.finish(); !fine) return members.complain_inside("entry", fine.error());
+  block.entry = base::LatLon{*lat, *lon};
+}
+
+base::Result<RowsOrder> read_rows(const Json& body) {
+  RowsOrder order;
+  RowBlock& b = order.block;
+  Members members(body);
+  members.require("rows");
+  members.require("spacing_m");
+  b.rows = static_cast<int>(members.whole("rows", 1, mission::kMostRows).value_or(1));
+  b.spacing_m = members.number("spacing_m", 0.3, 50.0).value_or(b.spacing_m);
+  members.word_or("turn", b.turn, mission::Side::Right);
+  b.skip = static_cast<int>(members.whole("skip", 0, 20).value_or(0));
+  b.out_m = members.number("out_m", 0.1, 20.0).value_or(b.out_m);
+  read_entry(members, b);
+  members.number("heading_deg", b.heading_deg, mission::kHeading_deg);
+  members.word_or("side", b.row.side, mission::RowSide::Both);
+  members.number("gap_m", b.row.gap_m, mission::kBeside_m);
+  members.number("speed_mps", b.row.speed_mps, mission::kSpeed_mps);
+  members.number("distance_m", b.row.distance_m, mission::kRow_m);
+  members.word_or("seeing", b.row.seeing, mission::RowSeeing::Line);
+  order.name = members.text("name");
+  if (order.name) {
+    if (auto problem = mission::name_problem(*order.name); !problem.empty()) {
+      members.complain("name", std::move(problem));
+    }
+  }
+  if (auto fine = members.finish(); !fine) return tl::unexpected<base::Error>(fine.error());
+  return order;
+}
+
+void answer_rows(const ContextPtr& context, const CallPtr& call) {
+  const auto body = json_body(call->request);
+  if (!body) return call->respond(problem(body.error()));
+  auto order = read_rows(*body);
+  if (!order) return call->respond(problem(order.error()));
+  auto items = mission::plan_rows(order->block);
+  if (!items) return call->respond(problem(items.error()));
+  mission::Plan plan;
+  plan.name = order->name.value_or("Rows");
+  plan.items = std::move(*items);
+  auto figures = std::make_shared<Json>(Json{{"order", mission::order_of(order->block)}});
+  if (!order->name) {
+    (*figures)["mission"] = mission::plan_to_json(plan);
+    return call->respond(json_response(http::status::ok, *figures));
+  }
+  context->deps.store.create_mission(
+      std::move(plan), {kAuthor, "planned as a block of rows"},
+      [context, call, figures](base::Result<store::StoredMission> stored) {
+        if (!stored) return call->respond(problem(stored.error()));
+        context->announce(stored->id, stored->revision);
+        Response response = mission_response(http::status::created, *stored);
+        (*figures)["mission"] = mission_json(*stored);
+        response.body() = json_response(http::status::created, *figures).body();
+        call->respond(std::move(response));
+      });
+}
+
+}  // namespace
+
+void add_rows_routes(const ContextPtr& c) {
+  c->router.add({http::verb::post,
+                 "/missions/rows",
+                 {200, 201, 400, 403, 409, 413, 415, 422, 429, 503},
+                 [c](const CallPtr& call) { answer_rows(c, call); }});
+}
+
+}  // namespace roverd::api
