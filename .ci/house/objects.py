@@ -24,7 +24,9 @@ def archives(table, build):
              if "tests" not in p.relative_to(build).parts and (planned is None or f"{p.relative_to(build)}:" in planned)}
     found, missing = [], []
     for room in table.rooms.values():
-        if not room.name.startswith(("server/", "drivers/")) or room.name.count("/") > 1:
+        around = table.rooms.get(room.name.rpartition("/")[0])
+        inside = around is not None and room.row.get("targets") == around.row.get("targets")  # in its archives
+        if not room.name.startswith(("server/", "drivers/")) or inside:
             continue
         for target in room.row.get("targets", [room.short]):
             if target in built:
