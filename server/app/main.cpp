@@ -32,6 +32,7 @@
 #include "store/store.hpp"
 #include "tools/decode.hpp"
 #include "tools/failsafes.hpp"
+#include "tools/maps.hpp"
 #include "tools/ntrip_table.hpp"
 #include "tools/report.hpp"
 
@@ -184,6 +185,8 @@ int main(int argc, char** argv) {
       }
       int operator()(const roverd::BackupCommand& c) const { return back_up(c); }
       int operator()(const roverd::FailsafesCommand& c) const { return roverd::failsafes(c.into); }
+      int operator()(const roverd::AlignCommand& c) const { return roverd::align_clouds(c); }
+      int operator()(const roverd::MapCommand& c) const { return roverd::make_map(c); }
     };
     return std::visit(Run{}, roverd::read_command(argc, argv));
   } catch (const std::exception& error) {

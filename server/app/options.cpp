@@ -150,6 +150,38 @@ Told add_failsafes(CLI::App& app, FailsafesCommand& c) {
   return {f, "usage: roverd failsafes [--into FILE]"};
 }
 
+Told add_align(CLI::App& app, AlignCommand& c) {
+  CLI::App* a = app.add_subcommand("align", "how one cloud lies in another");
+  a->footer(
+      "Reads two PCD files and prints, as JSON, where the source lies in the target, how sure "
+      "that\n"
+      "is, and whether to believe it: exit code 0 only where the verdict is good.");
+  a->add_option("SOURCE", c.source, "the cloud that is moved")->required();
+  a->add_option("TARGET", c.target, "the cloud or map of cells that stays")->required();
+  a->add_option("--cell", c.cell_m, "edge of a cell, metres")
+      ->check(number_in(0.01, 10.0))
+      ->capture_default_str();
+  a->add_option("--x", c.start_x_m, "where it seems to lie, metres")->capture_default_str();
+  a->add_option("--y", c.start_y_m)->capture_default_str();
+  a->add_option("--z", c.start_z_m)->capture_default_str();
+  a->add_option("--yaw", c.start_yaw_deg, "degrees, left positive")->capture_default_str();
+  a->add_option("--search", c.search_m, "metres by which that may be wrong")
+      ->check(number_in(0.0, 20.0))
+      ->capture_default_str();
+  return {a, "align wants SOURCE and TARGET"};
+}
+
+Told add_map(CLI::App& app, MapCommand& c) {
+  CLI::App* m = app.add_subcommand("map", "a map of a recorded drive");
+  m->footer("Reads a log of CARMEN, plain or packed by gzip; writes NAME.pgm and NAME.yaml.");
+  m->add_option("LOG", c.log, "the recording")->required();
+  m->add_option("--into", c.into, "NAME of the map's two files")->required();
+  m->add_option("--resolution", c.resolution_m, "edge of a cell, metres")
+      ->check(number_in(0.01, 1.0))
+      ->capture_default_str();
+  return {m, "map wants LOG and --into NAME"};
+}
+
 /// Why the arguments of a command are wrong.
 std::string cause_of(const CLI::ParseError& error, const CLI::App& app, const Told& command) {
   const std::string name = command.app->get_name();
@@ -177,12 +209,15 @@ Command read_command(int argc, char** argv) {
   TableCommand table;
   BackupCommand backup;
   FailsafesCommand failsafes;
+  AlignCommand align;
+  MapCommand map;
   CLI::App app("roverd: the ground station that lives on the robot", "roverd");
   app.footer("roverd study: courses in simulated time, measured (roverd study --help)");
   add_station(app, options);
   const Told commands[] = {add_decode(app, decode), add_replay(app, replay),
                            add_report(app, report), add_ntrip(app, table),
-                           add_backup(app, backup), add_failsafes(app, failsafes)};
+                           add_backup(app, backup), add_failsafes(app, failsafes),
+                           add_align(app, align),   add_map(app, map)};
   const auto chosen = [&commands]() -> const Told* {
     for (const Told& one : commands) {
       if (one.app->parsed()) return &one;
@@ -209,6 +244,8 @@ Command read_command(int argc, char** argv) {
   if (command->app == commands[2].app) return report;
   if (command->app == commands[3].app) return table;
   if (command->app == commands[4].app) return backup;
+  if (command->app == commands[6].app) return align;
+  if (command->app == commands[7].app) return map;
   return failsafes;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "replay/run.hpp"
+#include "tools/maps.hpp"
 
 namespace roverd {
 
@@ -47,7 +48,7 @@ struct FailsafesCommand {
   std::string into;  ///< a page; empty: the table is printed
 };
 using Command = std::variant<Options, DecodeCommand, ReplayCommand, ReportCommand, TableCommand,
-                             BackupCommand, FailsafesCommand>;
+                             BackupCommand, FailsafesCommand, AlignCommand, MapCommand>;
 
 /// Prints help, version or a one-line error and ends the program where the arguments say so
 /// (exit code 2 for wrong ones).
