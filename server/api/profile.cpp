@@ -31,6 +31,10 @@ void take_parameters(Profile& profile, const robot::Config& config) {
     const nav::sense::ProtectParams& p = config.protect;
     profile.guard = {profile.guard->back_m, p.side_m,           p.gap_m, p.delay_s,
                      p.decel_mps2,          p.turn_decel_radps2};
+    if (const nav::sense::RaysParams& r = config.rays; r.enabled) {
+      profile.guard->rays = {r.instead, r.stop_m, r.slow_m, base::rad_from_deg(r.stop_fan_deg),
+                             r.stop_rays};
+    }
   }
   profile.pivot_angle_rad = base::rad_from_deg(config.pivot.angle_deg);
   for (const base::ParamInfo& key : base::describe(config.radio)) {

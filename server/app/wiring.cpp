@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "api/profile.hpp"
+#include "base/angle.hpp"
 
 namespace roverd {
 namespace {

@@ -1,6 +1,7 @@
 // What the vehicle is and has: profile, drivers, lights.
 
 #include <algorithm>
+#include <utility>
 
 #include "api/json/measured.hpp"
 #include "api/json/words.hpp"
@@ -11,12 +12,21 @@ namespace {
 
 Json guard_json(const std::optional<GuardProfile>& g) {
   if (!g) return nullptr;
+  Json rays = nullptr;
+  if (g->rays) {
+    rays = {{"instead", g->rays->instead},
+            {"stop_m", rounded(g->rays->stop_m, kPlaces3)},
+            {"slow_m", rounded(g->rays->slow_m, kPlaces3)},
+            {"fan_deg", degrees(g->rays->fan_rad)},
+            {"rays", g->rays->rays}};
+  }
   return {{"back_m", rounded(g->back_m, kPlaces3)},
           {"side_m", rounded(g->side_m, kPlaces3)},
           {"gap_m", rounded(g->gap_m, kPlaces3)},
           {"delay_s", rounded(g->delay_s, kPlaces3)},
           {"decel_mps2", rounded(g->decel_mps2, kPlaces3)},
-          {"turn_decel_dps2", degrees(g->turn_decel_radps2)}};
+          {"turn_decel_dps2", degrees(g->turn_decel_radps2)},
+          {"rays", std::move(rays)}};
 }
 
 }  // namespace

@@ -40,6 +40,15 @@ struct GuardProfile {
   double delay_s = 0.0;
   double decel_mps2 = 0.0;
   double turn_decel_radps2 = 0.0;
+  /// The stop by counted rays, where it is enabled.
+  struct Rays {
+    bool instead = false;  ///< nothing is swept: the figures above say nothing
+    double stop_m = 0.0;
+    double slow_m = 0.0;
+    double fan_rad = 0.0;  ///< to either side
+    int rays = 0;
+  };
+  std::optional<Rays> rays{};
 };
 
 struct Profile {

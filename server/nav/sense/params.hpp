@@ -132,6 +132,7 @@ struct RaysParams {
   double stop_fan_deg = 15.94;
   double stop_m = 0.70;
   int stop_rays = 5;
+  double slow_m = 1.5;
 };
 
 template <class V>
@@ -139,8 +140,8 @@ void fields(V& v, RaysParams& p) {
   v("enabled", p.enabled,
     base::higher_is_stricter("what drives ahead is stopped by counted rays as well"));
   v("instead", p.instead,
-    base::lower_is_stricter("by them alone: nothing slows down before, and nothing that is swept "
-                            "beside, behind or in a turn stops it"));
+    base::lower_is_stricter("by them alone: nothing that is swept beside, behind or in a turn "
+                            "stops it"));
   v("fan_deg", p.fan_deg, 1.0, 180.0, "to either side of straight ahead");
   v("step_deg", p.step_deg, 0.1, 10.0, "between neighbouring rays");
   v("band_m", p.band_m, 0.02, 2.0, "points so far above and below the sensor's height count");
@@ -152,6 +153,9 @@ void fields(V& v, RaysParams& p) {
   v("stop_m", p.stop_m, 0.1, 10.0, base::higher_is_stricter("where they are shorter than this"));
   v("stop_rays", p.stop_rays, 1, 1000,
     base::lower_is_stricter("and so many of them stop the robot"));
+  v("slow_m", p.slow_m, 0.0, 10.0,
+    base::higher_is_stricter("where so many are shorter than this, it drives no faster than it "
+                             "stops from before stop_m; up to stop_m: it does not slow before"));
 }
 
 /// Nothing is touched.

@@ -70,6 +70,28 @@ Counted count_rays(const std::vector<Ray>& rays, const RaysParams& params) noexc
   return c;
 }
 
+Nearing nearing(const std::vector<Ray>& rays, const RaysParams& params,
+                std::vector<float>& ranges) {
+  Nearing n;
+  ranges.clear();
+  const double fan = base::rad_from_deg(params.stop_fan_deg);
+  for (const Ray& ray : rays) {
+    if (ray.endless || std::abs(static_cast<double>(ray.bearing_rad)) > fan) continue;
+    if (ray.range_m >= static_cast<float>(params.slow_m)) continue;
+    ranges.push_back(ray.range_m);
+    if (n.nearest_m > 0.0F && ray.range_m >= n.nearest_m) continue;
+    n.nearest_m = ray.range_m;
+    n.nearest_rad = ray.bearing_rad;
+  }
+  n.rays = static_cast<int>(ranges.size());
+  n.slows = n.rays >= params.stop_rays;
+  if (!n.slows) return n;
+  const auto last = ranges.begin() + (params.stop_rays - 1);
+  std::nth_element(ranges.begin(), last, ranges.end());
+  n.way_m = std::max(0.0F, *last - static_cast<float>(params.stop_m));
+  return n;
+}
+
 Sides sides_of(const std::vector<Ray>& rays, int n) noexcept {
   Sides s;
   const std::size_t count = std::min(rays.size(), static_cast<std::size_t>(std::max(n, 0)));

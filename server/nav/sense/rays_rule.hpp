@@ -35,6 +35,17 @@ struct Counted {
 /// @param rays of rays_of().
 Counted count_rays(const std::vector<Ray>& rays, const RaysParams& params) noexcept;
 
+/// How near the rule is to its stop.
+struct Nearing {
+  int rays = 0;              ///< within the stopping fan and shorter than slow_m
+  float nearest_m = 0.0F;    ///< of those; 0: none
+  float nearest_rad = 0.0F;  ///< its bearing in B, left positive
+  float way_m = 0.0F;        ///< so much nearer, and stop_rays of them are shorter than stop_m
+  bool slows = false;        ///< there are as many as stop_rays
+};
+/// @param rays of rays_of(). @param ranges its buffer is used again
+Nearing nearing(const std::vector<Ray>& rays, const RaysParams& params, std::vector<float>& ranges);
+
 /// Mean of the n leftmost and rightmost rays that are not endless, for centring between rows.
 struct Sides {
   float left_m = 0.0F;

@@ -81,6 +81,8 @@ void Guard::set(const nav::sense::ProtectParams& params, const nav::VehicleParam
   sees_ = true;
   demands_ = demands;
   body_ = footprint_of(vehicle, tool, outline);
+  trailer_ = trailer_of(tool, outline);
+  coupling_ = {};
   swings_m_.reset();
   if (!vehicle.steered()) {
     double front_m = 0.0;
@@ -126,6 +128,7 @@ const nav::sense::Odometry& Guard::move(const BodyTwist& measured, base::Time no
   const BodyTwist t = usable ? measured : BodyTwist{};
   if (dt_s > 0.0 && dt_s < 1.0) {
     odometry_.pose = odometry_.pose * nav::sense::along(t.linear_mps, t.angular_radps, dt_s);
+    if (trailer_) coupling_.drive(*trailer_, t, dt_s);
   }
   if (lean && std::isfinite(lean->roll_rad + lean->pitch_rad)) {
     odometry_.lie.roll_rad = lean->roll_rad;
@@ -160,10 +163,21 @@ Guard::Looked Guard::look(const BodyTwist& twist, bool by_itself, base::Time now
   const nav::sense::ProtectParams params = params_of(by_itself);
   if (!too_old(now)) {
     const bool counts = rays_.enabled && !spared_;
-    if (counts && around_->rays && twist.linear_mps > 0.0) return stop_by(*around_->rays);
-    if (counts && rays_.instead) return v;
-    return {protect(around_->patch, odometry_.pose, body_, twist, params,
-                    spared_ ? &*spared_ : nullptr, &around_->marks)};
+    const bool ahead = counts && twist.linear_mps > 0.0;
+    if (ahead && around_->rays && !around_->rays->lost) {
+      v = told_by(*around_->rays, rays_.stop_m);
+      v.part = 0.0;
+      return v;
+    }
+    if (counts && rays_.instead) {
+      if (ahead) look_along_rays(v, twist, params);
+      return v;
+    }
+    v = {protect(around_->patch, odometry_.pose, body_, twist, params,
+                 spared_ ? &*spared_ : nullptr, &around_->marks)};
+    look_behind(v, twist, params);
+    if (ahead) look_along_rays(v, twist, params);
+    return v;
   }
   // Nothing is known: as if the very next step were unseen.
   const bool ahead = twist.linear_mps > 0.0;
@@ -180,11 +194,46 @@ Guard::Looked Guard::look(const BodyTwist& twist, bool by_itself, base::Time now
   return v;
 }
 
-Guard::Looked Guard::stop_by(const RaysStop& stop) const noexcept {
+/// What is pulled cuts corners, and swings out.
+void Guard::look_behind(Looked& v, const BodyTwist& twist,
+                        const nav::sense::ProtectParams& params) const noexcept {
+  if (!trailer_) return;
+  const nav::sense::Verdict behind = protect_trailer(around_->patch, odometry_.pose, *trailer_,
+                                                     coupling_, twist, params, &around_->marks);
+  if (behind.part >= v.part) return;
+  v = {behind};
+  v.trailer = true;
+}
+
+/// In proportion, before the rays say stop; and slowly, where one said so that sees no more.
+void Guard::look_along_rays(Looked& v, const BodyTwist& twist,
+                            const nav::sense::ProtectParams& params) const noexcept {
+  if (around_->rays_ahead) {
+    const RaysStop& near = *around_->rays_ahead;
+    const nav::sense::Pose2& here = odometry_.pose;
+    const double driven_m = std::hypot(here.x_m - near.from.x, here.y_m - near.from.y);
+    const double way_m = std::max(0.0, near.way_m - driven_m);
+    const double part = nav::sense::part_for(way_m / twist.linear_mps, twist, params);
+    if (part < v.part) {
+      v = told_by(near, rays_.slow_m);
+      v.part = part;
+      v.distance_m = way_m;
+    }
+  }
+  if (!around_->rays || !around_->rays->lost) return;
+  const double part = std::min(1.0, params.creep_mps / twist.linear_mps);
+  if (part >= v.part) return;
+  v = told_by(*around_->rays, rays_.stop_m);
+  v.part = part;
+  v.limit = Limit::Unseen;
+  v.lost = true;
+}
+
+Guard::Looked Guard::told_by(const RaysStop& stop, double within_m) const noexcept {
   const nav::sense::Pose2 at =
       inverse(odometry_.pose) * nav::sense::Pose2{stop.at.x, stop.at.y, 0.0};
   Looked v;
-  v.part = 0.0;
+  v.within_m = within_m;
   v.limit = Limit::Obstacle;
   v.found = true;
   v.at = {at.x_m, at.y_m};
@@ -352,9 +401,13 @@ void Guard::tell(const Looked& v, base::GuardAction action, base::Time now) {
   obstacle_.age_s = v.age_s + (around_ ? base::seconds(now - around_->patch.stamp) : 0.0);
   obstacle_.stopped_since = stopped_since_;
   obstacle_.reason = sentence(obstacle_);
-  if (v.rays > 0) {
+  if (v.trailer) obstacle_.reason += ": the trailer would touch it";
+  if (v.lost && v.sensor < around_->sensors->size()) {
+    obstacle_.reason +=
+        ": " + (*around_->sensors)[v.sensor].name + " saw something, and sees no more";
+  } else if (v.rays > 0) {
     char text[64];
-    std::snprintf(text, sizeof text, ": %d rays shorter than %.2f m", v.rays, rays_.stop_m);
+    std::snprintf(text, sizeof text, ": %d rays shorter than %.2f m", v.rays, v.within_m);
     obstacle_.reason += text;
   }
 }

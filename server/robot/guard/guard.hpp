@@ -10,9 +10,10 @@
 // sensor in the profile it lets everything pass. A picture that is too old is none: what was seen
 // then is not believed any more, and the creep speeds of what no sensor sees hold.
 //
-// Where the stop by counted rays (nav/sense/rays_rule.hpp) is enabled, it stops whatever drives
-// ahead, too; or alone, and then the curve is not looked along. It knows no dock: while who docks
-// is within sense.protect.dock_m of it, the curve alone is looked along.
+// Where the stop by counted rays (nav/sense/rays_rule.hpp) is enabled, it slows and stops whatever
+// drives ahead, too; or alone, and then the curve is not looked along. What the rays of a sensor
+// said that is lost (RaysStop::lost) is driven into as ground that nobody has seen. It knows no
+// dock: while who docks is within sense.protect.dock_m of it, the curve alone is looked along.
 //
 // Control thread; allocates for the sentence of a stop only.
 
@@ -26,6 +27,7 @@
 #include "nav/sense/odometry.hpp"
 #include "nav/sense/params.hpp"
 #include "nav/sense/protect.hpp"
+#include "nav/sense/trailer.hpp"
 #include "nav/track/params.hpp"
 #include "robot/guard/blocked.hpp"
 #include "robot/guard/outline.hpp"
@@ -107,10 +109,17 @@ class Guard {
  private:
   nav::sense::ProtectParams params_of(bool by_itself) const noexcept;
   struct Looked : nav::sense::Verdict {
-    int rays = 0;  ///< not 0: it was they that said stop
+    int rays = 0;           ///< not 0: it is they that limit,
+    double within_m = 0.0;  ///< being shorter than this
+    bool lost = false;      ///< what a sensor said that does not see any more
+    bool trailer = false;   ///< it is what the trailer would touch
   };
   Looked look(const base::BodyTwist& twist, bool by_itself, base::Time now) const noexcept;
-  Looked stop_by(const RaysStop& stop) const noexcept;
+  Looked told_by(const RaysStop& said, double within_m) const noexcept;
+  void look_along_rays(Looked& v, const base::BodyTwist& twist,
+                       const nav::sense::ProtectParams& params) const noexcept;
+  void look_behind(Looked& v, const base::BodyTwist& twist,
+                   const nav::sense::ProtectParams& params) const noexcept;
   void tell(const Looked& v, base::GuardAction action, base::Time now);
 
   bool clear_long_enough(base::Time now);
@@ -123,6 +132,8 @@ class Guard {
   double decel_set_mps2_ = 0.6;
   std::optional<double> swings_m_;  ///< ahead of its front: turning on the spot; empty: it does not
   nav::sense::Footprint body_ = footprint_of({});
+  std::optional<nav::sense::Trailer> trailer_;
+  nav::sense::Coupling coupling_;
   std::optional<nav::sense::Spared> spared_;
   std::shared_ptr<const Surroundings> around_;
   nav::sense::Odometry odometry_;

@@ -45,6 +45,7 @@ Lookout::Lookout(nav::sense::Chain chain, std::vector<std::string> kinds, double
       scans_(chain_.sensors()),
       rays_(rays),
       counted_(chain_.sensors()),
+      nears_(chain_.sensors()),
       reach_m_(reach_m) {
   kinds_.resize(chain_.sensors());
 }
@@ -54,6 +55,7 @@ void Lookout::follow(const nav::sense::ProtectParams& protect, const nav::sense:
   rays_ = rays;
   if (rays_.enabled) return;
   for (auto& one : counted_) one.reset();
+  for (auto& one : nears_) one.reset();
 }
 
 void Lookout::moved(const nav::sense::Odometry& o) noexcept {
@@ -98,7 +100,10 @@ void Lookout::take(const base::Sight& sight, base::Time now) {
     nav::rows::scan_of(chain_.last(), row_.params, row_scan_);
     finder_->see(row_scan_);
   }
-  if (rays_.enabled) count(*number, end_of(sight), now);
+  if (rays_.enabled) {
+    count(*number, end_of(sight), now);
+    near(*number, end_of(sight), now);
+  }
   news_ = true;
 }
 
@@ -116,8 +121,72 @@ void Lookout::count(std::size_t number, base::Time seen, base::Time now) {
   const double x_m = double(in.origin_m[0] + c.nearest_m * std::cos(c.nearest_rad));
   const double y_m = double(in.origin_m[1] + c.nearest_m * std::sin(c.nearest_rad));
   const nav::sense::Pose2 met = in.pose * nav::sense::Pose2{x_m, y_m, 0.0};
-  counted_[number] = {c.nearest_m,
-                      {static_cast<std::uint8_t>(number), c.rays, {met.x_m, met.y_m}, seen}};
+  RaysStop stop;
+  stop.sensor = static_cast<std::uint8_t>(number);
+  stop.rays = c.rays;
+  stop.at = {met.x_m, met.y_m};
+  stop.seen = seen;
+  counted_[number] = {c.nearest_m, stop};
+}
+
+/// Before they say stop: of the same fan, so far. Here, too, who does not see clears nothing.
+void Lookout::near(std::size_t number, base::Time seen, base::Time now) {
+  const nav::sense::Reduced& in = chain_.last();
+  const nav::sense::Nearing n = nav::sense::nearing(fan_, rays_, ranges_);
+  if (!n.slows) {
+    if (chain_.health(number, now).eye != nav::sense::Eye::Blind) nears_[number].reset();
+    return;
+  }
+  const double x_m = double(in.origin_m[0] + n.nearest_m * std::cos(n.nearest_rad));
+  const double y_m = double(in.origin_m[1] + n.nearest_m * std::sin(n.nearest_rad));
+  const nav::sense::Pose2 met = in.pose * nav::sense::Pose2{x_m, y_m, 0.0};
+  RaysStop ahead;
+  ahead.sensor = static_cast<std::uint8_t>(number);
+  ahead.rays = n.rays;
+  ahead.at = {met.x_m, met.y_m};
+  ahead.seen = seen;
+  ahead.way_m = static_cast<double>(n.way_m);
+  ahead.from = {in.pose.x_m, in.pose.y_m};
+  nears_[number] = ahead;
+}
+
+/// One whose sensor sees goes before one that is lost, the nearest first.
+void Lookout::tell_rays(Surroundings& out, base::Time now) {
+  const auto sees = [&out](std::size_t i) {
+    const base::SensorHealth h = (*out.sensors)[i].health;
+    return h == base::SensorHealth::Good || h == base::SensorHealth::Degraded;
+  };
+  bool any_sees = false;
+  for (std::size_t i = 0; i < counted_.size(); ++i) any_sees = any_sees || sees(i);
+  const nav::sense::Pose2 body = inverse(history_.newest().pose);
+  const auto lost = [&](std::size_t i, const RaysStop& stop) {
+    return any_sees && !sees(i) && !chain_.sensor(i).needed &&
+           base::seconds(now - stop.seen) > free_for_s_[i];
+  };
+  const auto passed = [&](const RaysStop& stop) {
+    const nav::sense::Pose2 at = body * nav::sense::Pose2{stop.at.x, stop.at.y, 0.0};
+    return at.x_m < 0.0 || std::hypot(at.x_m, at.y_m) > rays_.far_as_m;
+  };
+  float nearest_m = 0.0F;
+  for (std::size_t i = 0; i < counted_.size(); ++i) {
+    auto& one = counted_[i];
+    if (!one) continue;
+    one->stop.lost = lost(i, one->stop);
+    if (one->stop.lost && passed(one->stop)) {
+      one.reset();
+      continue;
+    }
+    const bool nearer = !out.rays || (out.rays->lost && !one->stop.lost) ||
+                        (out.rays->lost == one->stop.lost && one->nearest_m < nearest_m);
+    if (!nearer) continue;
+    out.rays = one->stop;
+    nearest_m = one->nearest_m;
+  }
+  for (std::size_t i = 0; i < nears_.size(); ++i) {
+    auto& one = nears_[i];
+    if (one && lost(i, *one)) one.reset();
+    if (one && (!out.rays_ahead || one->way_m < out.rays_ahead->way_m)) out.rays_ahead = one;
+  }
 }
 
 std::shared_ptr<const Surroundings> Lookout::picture(base::Time now) {
@@ -155,12 +224,7 @@ std::shared_ptr<const Surroundings> Lookout::picture(base::Time now) {
   out->marks.mark(out->patch);
   out->sensors = std::move(sensors);
   if (finder_ && finder_->view()) out->row = RowSeen{row_.id, *finder_->view()};
-  float nearest_m = 0.0F;
-  for (const auto& one : counted_) {
-    if (!one || (out->rays && one->nearest_m >= nearest_m)) continue;
-    out->rays = one->stop;
-    nearest_m = one->nearest_m;
-  }
+  if (rays_.enabled) tell_rays(*out, now);
   news_ = false;
   told_ = now;
   return out;

@@ -68,4 +68,18 @@ std::optional<Footprint> pulled_of(const nav::ToolParams& tool, const OutlinePar
   return hull ? std::optional(*hull) : std::nullopt;
 }
 
+std::optional<nav::sense::Trailer> trailer_of(const nav::ToolParams& tool,
+                                              const OutlineParams& outline) {
+  if (!outline.any() || !tool.pulled()) return std::nullopt;
+  std::vector<Vec2> corners{{0.0, 0.0}};
+  for (const double x : {-0.5, 0.5}) {
+    for (const double y : {-0.5, 0.5}) {
+      corners.push_back({-tool.trailer_m + x * outline.length_m, y * outline.width_m});
+    }
+  }
+  const auto body = Footprint::of(corners);
+  if (!body) return std::nullopt;
+  return nav::sense::Trailer{*body, tool.hitch_m, tool.trailer_m};
+}
+
 }  // namespace roverd::robot

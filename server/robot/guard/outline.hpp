@@ -7,7 +7,8 @@
 //   │   B   │   │
 //   └────┬──┘   │            pulled: it may stand anywhere within 60 deg to either side behind
 //        └──────┘            its coupling, which nothing measures. What sensors see there is the
-//                            trailer; it is not swept, and what it would touch is not known.
+//                            trailer; it is swept by what is known of the coupling's angle
+//                            (nav/sense/trailer.hpp).
 //
 // Frame B (FLU, metres). Pure.
 
@@ -16,6 +17,7 @@
 #include "base/params.hpp"
 #include "base/result.hpp"
 #include "nav/sense/footprint.hpp"
+#include "nav/sense/trailer.hpp"
 #include "nav/track/params.hpp"
 
 namespace roverd::robot {
@@ -45,5 +47,8 @@ nav::sense::Footprint footprint_of(const nav::VehicleParams& vehicle, const nav:
 /// Where what is pulled may stand. Empty: nothing with an outline is pulled.
 std::optional<nav::sense::Footprint> pulled_of(const nav::ToolParams& tool,
                                                const OutlineParams& outline);
+/// The trailer itself, its drawbar from the coupling too. Empty: as above.
+std::optional<nav::sense::Trailer> trailer_of(const nav::ToolParams& tool,
+                                              const OutlineParams& outline);
 
 }  // namespace roverd::robot

@@ -21,6 +21,11 @@ struct RaysStop {
   int rays = 0;             ///< shorter than they may be
   nav::sense::Vec2 at{};    ///< the nearest that they met, in O
   base::Time seen;
+  double way_m = 0.0;       ///< ahead, from `from` on, until they say stop; 0: they do
+  nav::sense::Vec2 from{};  ///< where the body was then, in O
+  /// Its sensor need not see, and does not any more, while another one does: what it said is as
+  /// good as ground that nobody has seen.
+  bool lost = false;
 };
 
 struct Surroundings {
@@ -33,6 +38,8 @@ struct Surroundings {
   /// Of the sensors whose rays say stop, the one with the nearest. Empty: none does, or the rule is
   /// off.
   std::optional<RaysStop> rays;
+  /// Of those whose rays will say stop soon, the one with the least way. Empty: none.
+  std::optional<RaysStop> rays_ahead;
   std::optional<RowSeen> row;  ///< empty: none is asked for, or none is seen
 };
 

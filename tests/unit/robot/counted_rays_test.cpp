@@ -1,6 +1,8 @@
 // The stop by counted rays, beside the sweep and instead of it, in the guard and the whole robot.
 
 #include <cmath>
+#include <optional>
+#include <string>
 
 #include "seeing.hpp"
 
@@ -33,7 +35,8 @@ struct Counting {
     state.name = "camera";
     s->sensors = std::make_shared<const std::vector<base::SensorState>>(1, state);
     s->seen = at_s(t);
-    if (stop) s->rays = RaysStop{0, 6, {1.1, 0.2}, at_s(t - 0.05)};
+    if (stop) s->rays = RaysStop{0, 6, {1.1, 0.2}, at_s(t - 0.05), 0.0, {}, lost};
+    if (way_m) s->rays_ahead = RaysStop{0, 7, {1.6, 0.0}, at_s(t), *way_m, {}, false};
     (void)guard.take(std::move(s));
     (void)guard.move({}, at_s(t));
   }
@@ -42,6 +45,8 @@ struct Counting {
   }
   Guard guard;
   bool beside;
+  bool lost = false;
+  std::optional<double> way_m;  ///< until the rays say stop
 };
 
 TEST(CountedRaysGuard, StopWhatDrivesAheadAndSayWhy) {
@@ -111,6 +116,53 @@ TEST(CountedRaysGuard, InsteadOfTheSweepNothingElseStopsItAndBesideItTheSweepDoe
   // A picture that is too old is none, whatever it said: it creeps.
   EXPECT_NEAR(instead.drive({0.8, 0.0}, 2.0).linear_mps, 0.25, 1e-9);
   EXPECT_EQ(instead.guard.obstacle().what, "blind");
+}
+
+//   At 0.6 m/s² and with a delay of 0.2 s, as before anything else.
+TEST(CountedRaysGuard, BeforeTheyStopItTheySlowItInProportion) {
+  for (const bool instead : {false, true}) {
+    Counting r(instead);
+    const nav::sense::ProtectParams params;
+    double before_mps = 0.0;
+    for (const double way_m : {0.02, 0.1, 0.3, 0.6}) {
+      r.way_m = way_m;
+      r.look(way_m, false);
+      const double v_mps = r.drive({0.8, 0.0}, way_m).linear_mps;
+      EXPECT_NEAR(v_mps * params.delay_s + v_mps * v_mps / (2.0 * params.decel_mps2), way_m, 1e-6);
+      EXPECT_GT(v_mps, before_mps);
+      before_mps = v_mps;
+      EXPECT_EQ(r.guard.obstacle().action, base::GuardAction::Slow);
+      EXPECT_NE(r.guard.obstacle().reason.find("7 rays shorter than 1.50 m"), std::string::npos)
+          << r.guard.obstacle().reason;
+      EXPECT_EQ(r.drive({-0.8, 0.0}, way_m).linear_mps, -0.8) << "not who drives back";
+    }
+    r.way_m = 0.8;
+    r.look(1.0, false);
+    EXPECT_EQ(r.drive({0.8, 0.0}, 1.0).linear_mps, 0.8);
+  }
+}
+
+TEST(CountedRaysGuard, TheWayThatWasDrivenSinceIsTakenOff) {
+  Counting r(true);
+  r.way_m = 0.5;
+  r.look(0.0, false);
+  for (int i = 1; i <= 20; ++i) (void)r.guard.move({0.5, 0.0}, at_s(0.02 * i));
+  const double v_mps = r.drive({0.8, 0.0}, 0.4).linear_mps;
+  EXPECT_NEAR(v_mps * 0.2 + v_mps * v_mps / 1.2, 0.3, 1e-6);
+}
+
+TEST(CountedRaysGuard, WhatALostSensorSaidIsGroundThatNobodyHasSeen) {
+  for (const bool instead : {false, true}) {
+    Counting r(instead);
+    r.lost = true;
+    r.look(0.0, true);
+    EXPECT_NEAR(r.drive({0.8, 0.0}, 0.0).linear_mps, 0.25, 1e-9) << "the creep speed";
+    EXPECT_EQ(r.guard.obstacle().action, base::GuardAction::Creep);
+    EXPECT_EQ(r.guard.obstacle().what, "unseen");
+    EXPECT_NE(r.guard.obstacle().reason.find("camera saw something, and sees no more"),
+              std::string::npos)
+        << r.guard.obstacle().reason;
+  }
 }
 
 TEST_F(Seeing, AMissionStandsWhileTheRaysSayStopAndGoesOnWhenTheyDoNot) {

@@ -272,6 +272,69 @@ TEST(CountedRays, ASensorThatFallsBlindTakesNothingBack) {
   EXPECT_FALSE(l.picture(at(t))->rays);
 }
 
+/// Two scanners at the front, 50 pieces a second; the first one need not see.
+Lookout two_scanners() {
+  nav::sense::SensorSetup eye;
+  eye.name = "front";
+  eye.mount.x_m = 0.6;
+  eye.mount.z_m = 0.3;
+  eye.planar = true;
+  eye.health.rate_hz = 50.0;
+  eye.needed = false;
+  nav::sense::SensorSetup other = eye;
+  other.name = "other";
+  other.needed = true;
+  nav::sense::RaysParams rays;
+  rays.enabled = true;
+  return {*nav::sense::Chain::of({}, {eye, other}, footprint_of({}), at(0.0)),
+          {"sick", "sick"},
+          6.0,
+          rays};
+}
+
+TEST(CountedRays, ASensorThatNeedNotSeeAndDiesSaysStopForTheUnseenOnly) {
+  Lookout l = two_scanners();
+  stand(l, 0.0, 2.0);
+  const auto see = [&l](const char* who, double t, std::uint64_t n, int met) {
+    auto sight = std::make_shared<base::Sight>(*beams(t, n, met, 0.6, -15.0));
+    sight->sensor = who;
+    l.see(std::move(sight), at(t));
+  };
+  std::uint64_t n = 0;
+  double t = 0.0;
+  for (; t < 0.4; t += 0.02, ++n) {
+    see("front", t, n, 30);
+    see("other", t, n, 0);
+  }
+  ASSERT_TRUE(l.picture(at(t))->rays);
+  EXPECT_FALSE(l.picture(at(t))->rays->lost);
+  // Silent since, but for the other: at first its word holds,
+  for (; t < 0.6; t += 0.02, ++n) see("other", t, n, 0);
+  ASSERT_TRUE(l.picture(at(t))->rays);
+  EXPECT_FALSE(l.picture(at(t))->rays->lost);
+  // then it is as good as nothing seen,
+  for (; t < 1.2; t += 0.02, ++n) see("other", t, n, 0);
+  ASSERT_TRUE(l.picture(at(t))->rays);
+  EXPECT_TRUE(l.picture(at(t))->rays->lost);
+  // and behind the robot nothing at all.
+  l.moved({.stamp = at(2.1), .pose = {2.0, 0.0, 0.0}});
+  EXPECT_FALSE(l.picture(at(2.1))->rays);
+}
+
+TEST(CountedRays, BeforeTheyStopTheyTellTheWayThatIsLeft) {
+  Lookout l = two_scanners();
+  stand(l, 0.0, 1.0);
+  for (std::uint64_t n = 0; n < 5; ++n) {
+    const double t = 0.02 * static_cast<double>(n);
+    l.see(beams(t, n, 30, 1.2, -15.0), at(t));
+  }
+  const auto s = l.picture(at(0.1));
+  EXPECT_FALSE(s->rays);
+  ASSERT_TRUE(s->rays_ahead);
+  EXPECT_NEAR(s->rays_ahead->way_m, 0.5, 0.05) << "1.2 m less the 0.7";
+  EXPECT_GE(s->rays_ahead->rays, 5);
+}
+
 TEST_F(SlowAndFast, WhatABlindOneSawIsNotBelievedEither) {
   run(5.0, true);
   run(7.5, true, false);

@@ -59,7 +59,7 @@ TEST(Outline, OfATrailerLiesWithinItsSectorHoweverTheCouplingStands) {
   EXPECT_GT(sector->distance_m({0.6, 0.0}), 0.5) << "nothing ahead is hidden by it";
   EXPECT_GT(sector->distance_m({-2.6, 0.0}), 0.2);
   EXPECT_NEAR(footprint_of({}, trailer(), kTrailer).reach_m(), footprint_of({}).reach_m(), 1e-12)
-      << "it is not swept";
+      << "it is swept on its own";
 }
 
 TEST(Outline, ATurnOnTheSpotSweepsTheToolAsWell) {

@@ -2,6 +2,7 @@
 #include "nav/sense/rays_rule.hpp"
 
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -98,6 +99,34 @@ TEST(RaysRuleTest, TheSidesAreTheMeansOfTheOuterFive) {
   EXPECT_EQ(sides.left, 5);
   EXPECT_NEAR(sides.right_m, 2.0F, 1e-4F) << "rays beyond 3 m do not count";
   EXPECT_EQ(sides.right, 1);
+}
+
+TEST(RaysRule, TellsHowMuchNearerTheStopIs) {
+  const RaysParams p;
+  std::vector<float> buffer;
+  std::vector<Ray> rays;
+  const auto add = [&rays](double deg, float range_m) {
+    rays.push_back({static_cast<float>(base::rad_from_deg(deg)), range_m, false});
+  };
+  // Given four short ones, the fifth at 1.1 m, and what counts not: beside, and too far.
+  for (int i = 0; i < 4; ++i) add(i, 0.5F);
+  add(-3.0, 1.1F);
+  add(-5.0, 1.4F);
+  add(20.0, 0.3F);
+  add(5.0, 1.6F);
+  const Nearing n = nearing(rays, p, buffer);
+  EXPECT_TRUE(n.slows);
+  EXPECT_EQ(n.rays, 6);
+  EXPECT_NEAR(n.way_m, 0.4F, 1e-6F) << "1.1 m until 0.70";
+  EXPECT_EQ(n.nearest_m, 0.5F);
+  // With the fifth as short, nothing is left of it; with four there is no stop to come.
+  add(-1.0, 0.6F);
+  EXPECT_EQ(nearing(rays, p, buffer).way_m, 0.0F);
+  rays.resize(4);
+  EXPECT_FALSE(nearing(rays, p, buffer).slows);
+  RaysParams off;
+  off.slow_m = 0.0;
+  EXPECT_FALSE(nearing(rays, off, buffer).slows);
 }
 
 }  // namespace
