@@ -306,16 +306,19 @@ TEST(CountedRays, ASensorThatNeedNotSeeAndDiesSaysStopForTheUnseenOnly) {
     see("front", t, n, 30);
     see("other", t, n, 0);
   }
-  ASSERT_TRUE(l.picture(at(t))->rays);
-  EXPECT_FALSE(l.picture(at(t))->rays->lost);
+  auto s = l.picture(at(t));
+  ASSERT_TRUE(s->rays);
+  EXPECT_FALSE(s->rays->lost);
   // Silent since, but for the other: at first its word holds,
   for (; t < 0.6; t += 0.02, ++n) see("other", t, n, 0);
-  ASSERT_TRUE(l.picture(at(t))->rays);
-  EXPECT_FALSE(l.picture(at(t))->rays->lost);
+  s = l.picture(at(t));
+  ASSERT_TRUE(s->rays);
+  EXPECT_FALSE(s->rays->lost);
   // then it is as good as nothing seen,
   for (; t < 1.2; t += 0.02, ++n) see("other", t, n, 0);
-  ASSERT_TRUE(l.picture(at(t))->rays);
-  EXPECT_TRUE(l.picture(at(t))->rays->lost);
+  s = l.picture(at(t));
+  ASSERT_TRUE(s->rays);
+  EXPECT_TRUE(s->rays->lost);
   // and behind the robot nothing at all.
   l.moved({.stamp = at(2.1), .pose = {2.0, 0.0, 0.0}});
   EXPECT_FALSE(l.picture(at(2.1))->rays);
