@@ -20,7 +20,7 @@
 namespace roverd::nav::around::tests {
 
 /// 4 m of radius, the origin on its rear axle.
-inline Question car_along_x(double half_m) {
+inline Question car_along_x(double half_m = 5.0) {
   Question q = along_x(half_m);
   q.rejoin_within_m = 8.0;
   q.route.front() = {-8.0, 0.0};
