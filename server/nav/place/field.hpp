@@ -29,7 +29,7 @@ using sense::Pose2;
 struct FieldParams {
   double reach_m = 0.50;  ///< further from every wall nothing is said; at most 100 cells
   double sigma_m = 0.10;  ///< of the fit
-  double wall_m = 0.16;   ///< cells as far as this make a wall's line
+  double wall_m = 0.11;   ///< cells as far as this make a wall's line
 };
 
 /// The map's surface near an occupied cell.

@@ -45,11 +45,11 @@ struct Prior {
 
 struct MatchParams {
   double wide_m = 0.25;    ///< c of the robust weights at first
-  double narrow_m = 0.08;  ///< and at last
+  double narrow_m = 0.15;  ///< and at last
   double beam_m = 0.05;    ///< deviation of one hit from its wall: scanner and map together
   double shared = 8.0;     ///< so many neighbouring beams count as one
-  double floor_m = 0.012;  ///< no match is surer than that
-  double floor_rad = 0.003;
+  double floor_m = 0.015;  ///< no match is surer than that
+  double floor_rad = 0.009;
   double widest_m = 2.0;  ///< told where the map says nothing
   double widest_rad = 0.35;
   double empty = 0.03;  ///< share of the strongest information below which a direction has none

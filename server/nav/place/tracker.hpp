@@ -46,12 +46,12 @@ struct TrackerParams {
   std::size_t search_points = 90;
   std::size_t match_points = 720;
   double slip_share = 0.10;       ///< deviation of the odometry, of the way driven
-  double slip_m = 0.02;           ///< and at each step
+  double slip_m = 0.05;           ///< and at each step
   double turn_share = 0.12;       ///< of the angle turned
   double turn_per_m_rad = 0.04;   ///< of the way driven
-  double turn_rad = 0.012;        ///< and at each step
+  double turn_rad = 0.04;        ///< and at each step
   double least_explained = 0.60;  ///< share of the hits at walls below which a scan is bad
-  double most_crossed = 0.25;     ///< share of the hits behind walls above which it is
+  double most_crossed = 0.35;     ///< share of the hits behind walls above which it is
   std::size_t least_hits = 20;    ///< fewer say nothing
   double lost_after_m = 1.0;      ///< of bad scans
   std::uint32_t lost_after = 2;   ///< bad scans at least
