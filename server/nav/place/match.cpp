@@ -15,52 +15,47 @@ namespace {
 
 using Eigen::Matrix2d;
 using Eigen::Matrix3d;
+using Eigen::Matrix4d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using Eigen::Vector4d;
 
 constexpr int kMostSteps = 25;
+constexpr double kDeepest_m = 0.06;
 
+/// x, y, yaw, depth.
 struct Sums {
-  Matrix3d h = Matrix3d::Zero();
-  Vector3d g = Vector3d::Zero();
+  Matrix4d h = Matrix4d::Zero();
+  Vector4d g = Vector4d::Zero();
   std::size_t used = 0;
 };
 
 /// @param narrow_m c of the robust weights.
-Sums sums_at(const Field& field, std::span<const Point> points, const Pose2& pose,
+Sums sums_at(const Field& field, std::span<const Point> points, const Pose2& pose, double depth_m,
              double narrow_m) {
   Sums sums;
   const double c = std::cos(pose.yaw_rad);
   const double s = std::sin(pose.yaw_rad);
   const double scale = 1.0 / (2.0 * narrow_m * narrow_m);
   for (const Point& p : points) {
-    const double rx = c * p.x_m - s * p.y_m;
-    const double ry = s * p.x_m + c * p.y_m;
+    const double bx = p.x_m + depth_m * p.ahead;
+    const double by = p.y_m + depth_m * p.left;
+    const double rx = c * bx - s * by;
+    const double ry = s * bx + c * by;
     const Wall* wall = field.wall(pose.x_m + rx, pose.y_m + ry);
     if (wall == nullptr) continue;
-    const double ex = pose.x_m + rx - wall->x_m;
-    const double ey = pose.y_m + ry - wall->y_m;
-    const double ix = wall->xx * ex + wall->xy * ey;
-    const double iy = wall->xy * ex + wall->yy * ey;
-    const double e2 = ex * ix + ey * iy;
-    const double w = std::exp(-e2 * scale);
-    // The hit moves by (-ry, rx) for a radian of yaw.
-    const double jx = -wall->xx * ry + wall->xy * rx;
-    const double jy = -wall->xy * ry + wall->yy * rx;
-    sums.h(0, 0) += w * wall->xx;
-    sums.h(0, 1) += w * wall->xy;
-    sums.h(1, 1) += w * wall->yy;
-    sums.h(0, 2) += w * jx;
-    sums.h(1, 2) += w * jy;
-    sums.h(2, 2) += w * (-ry * jx + rx * jy);
-    sums.g(0) += w * ix;
-    sums.g(1) += w * iy;
-    sums.g(2) += w * (-ry * ix + rx * iy);
+    const Vector2d e(pose.x_m + rx - wall->x_m, pose.y_m + ry - wall->y_m);
+    Matrix2d counts;
+    counts << wall->xx, wall->xy, wall->xy, wall->yy;
+    // How the hit moves with x, y, a radian of yaw, a metre of depth.
+    Eigen::Matrix<double, 2, 4> j;
+    j << 1.0, 0.0, -ry, c * p.ahead - s * p.left, 0.0, 1.0, rx, s * p.ahead + c * p.left;
+    const Vector2d counted = counts * e;
+    const double w = std::exp(-e.dot(counted) * scale);
+    sums.h.noalias() += w * (j.transpose() * (counts * j));
+    sums.g.noalias() += w * (j.transpose() * counted);
     ++sums.used;
   }
-  sums.h(1, 0) = sums.h(0, 1);
-  sums.h(2, 0) = sums.h(0, 2);
-  sums.h(2, 1) = sums.h(1, 2);
   return sums;
 }
 
@@ -95,9 +90,22 @@ Matrix3d covariance_of(const Matrix3d& h, const MatchParams& p) {
   return 0.5 * (covariance + covariance.transpose());
 }
 
-Vector3d off_prior(const Pose2& pose, const Prior& prior) {
+Vector4d off_prior(const Pose2& pose, double depth_m, const Prior& prior) {
   return {pose.x_m - prior.pose.x_m, pose.y_m - prior.pose.y_m,
-          base::angle_diff_rad(prior.pose.yaw_rad, pose.yaw_rad)};
+          base::angle_diff_rad(prior.pose.yaw_rad, pose.yaw_rad), depth_m - prior.depth_m};
+}
+
+/// Of the place when the depth is not known better than `held` says: the Schur complement.
+Matrix3d without_depth(const Matrix4d& h, double held) {
+  const Vector3d with = h.topRightCorner<3, 1>();
+  return h.topLeftCorner<3, 3>() - with * with.transpose() / (h(3, 3) + held);
+}
+
+Point point_of(const chart::Scan& scan, const chart::Beam& b) {
+  const float x = b.x_m - scan.eye_x_m;
+  const float y = b.y_m - scan.eye_y_m;
+  const float range = std::max(std::hypot(x, y), 1e-3F);
+  return {b.x_m, b.y_m, x / range, y / range};
 }
 
 }  // namespace
@@ -110,7 +118,7 @@ std::vector<Point> hits_of(const chart::Scan& scan, std::size_t most) {
   out.reserve(std::min(all, most));
   std::size_t n = 0;
   for (const chart::Beam& b : scan.beams) {
-    if (b.hit && n++ % std::max<std::size_t>(step, 1) == 0) out.push_back({b.x_m, b.y_m});
+    if (b.hit && n++ % std::max<std::size_t>(step, 1) == 0) out.push_back(point_of(scan, b));
   }
   return out;
 }
@@ -123,7 +131,7 @@ std::vector<Point> spread_hits(const chart::Scan& scan, double apart_m, std::siz
     const double row = std::floor(b.y_m / apart_m);
     if (!b.hit || !(std::abs(column) < 1e6 && std::abs(row) < 1e6)) continue;
     const auto key = static_cast<std::int64_t>(column) * 4'000'000 + static_cast<std::int64_t>(row);
-    if (taken.insert(key).second) all.push_back({b.x_m, b.y_m});
+    if (taken.insert(key).second) all.push_back(point_of(scan, b));
   }
   if (all.size() <= most) return all;
   std::vector<Point> out;
@@ -136,32 +144,41 @@ Match refine(const Field& field, std::span<const Point> points, const Pose2& sta
              const Prior& prior, const MatchParams& p) {
   Match match;
   match.pose = start;
+  match.depth_m = prior.depth_m;
   // The prior weighs against hits that count as they do in the certainty.
   const double counts = p.shared * p.beam_m * p.beam_m;
-  const Matrix3d held = prior.information * counts;
+  Matrix4d held = Matrix4d::Zero();
+  held.topLeftCorner<3, 3>() = prior.information * counts;
+  held(3, 3) = counts / (prior.depth_deviation_m * prior.depth_deviation_m);
   double c = p.wide_m;
   for (int i = 0; i < kMostSteps; ++i) {
-    const Sums sums = sums_at(field, points, match.pose, c);
+    const Sums sums = sums_at(field, points, match.pose, match.depth_m, c);
     match.used = sums.used;
     if (sums.used == 0) break;
-    Matrix3d h = sums.h + held;
-    h.diagonal() += Vector3d::Constant(1e-6 * h.trace() + 1e-12);
-    Vector3d step = -h.ldlt().solve(sums.g + held * off_prior(match.pose, prior));
+    Matrix4d h = sums.h + held;
+    h.diagonal() += Vector4d::Constant(1e-9 * h.topLeftCorner<3, 3>().trace() + 1e-12);
+    const Vector4d pull = sums.g + held * off_prior(match.pose, match.depth_m, prior);
+    Vector4d step = -h.ldlt().solve(pull);
     const double size = std::hypot(step(0), step(1));
     constexpr double kLongest_m = 0.20;
     constexpr double kLargest_rad = 0.10;
-    const double by = std::max({size / kLongest_m, std::abs(step(2)) / kLargest_rad, 1.0});
-    step /= by;
+    step /= std::max({size / kLongest_m, std::abs(step(2)) / kLargest_rad, 1.0});
     match.pose = {match.pose.x_m + step(0), match.pose.y_m + step(1),
                   base::wrap_rad(match.pose.yaw_rad + step(2))};
-    const bool narrow = c <= p.narrow_m;
-    if (narrow && size < 2e-4 && std::abs(step(2)) < 1e-4) {
+    match.depth_m = std::clamp(match.depth_m + step(3), -kDeepest_m, kDeepest_m);
+    if (c <= p.narrow_m && size < 2e-4 && std::abs(step(2)) < 1e-4) {
       match.settled = true;
       break;
     }
     c = std::max(0.6 * c, p.narrow_m);
   }
-  match.covariance = covariance_of(sums_at(field, points, match.pose, p.narrow_m).h, p);
+  const Sums last = sums_at(field, points, match.pose, match.depth_m, p.narrow_m);
+  match.covariance = covariance_of(without_depth(last.h, held(3, 3)), p);
+  const Matrix3d place =
+      last.h.topLeftCorner<3, 3>() + held.topLeftCorner<3, 3>() + Matrix3d::Identity() * 1e-6;
+  const Vector3d with = last.h.topRightCorner<3, 1>();
+  const double kept = last.h(3, 3) + held(3, 3) - with.dot(place.ldlt().solve(with));
+  match.depth_deviation_m = std::sqrt(counts / std::max(kept, 1e-6));
   return match;
 }
 

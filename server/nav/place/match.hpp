@@ -5,6 +5,10 @@
 //   fine pose    least squares over the distances of the hits from their walls, across the wall,
 //                with robust weights exp(-e^2 / 2 c^2), c shrinking from wide to narrow: what is
 //                not in the map loses its say
+//   depth        the map's walls stand a little behind or before where this scanner sees them: the
+//                map's cells, the scanner's own error, the wall's material. A scanner that looks
+//                one way would be pushed by it, so it is found together with the pose, from walls
+//                on both sides of the robot, and kept from scan to scan
 //   certainty    C = sigma^2 H^-1 of those distances, the beams counted as fewer than they are
 //                because neighbours share one wall and one error of the map; directions in which
 //                H is nearly empty (along a corridor) get the greatest deviation that is told
@@ -25,10 +29,12 @@
 
 namespace roverd::nav::place {
 
-/// A hit, in B.
+/// A hit, in B, and the direction in which the beam went there.
 struct Point {
   float x_m = 0.0F;
   float y_m = 0.0F;
+  float ahead = 1.0F;  ///< of unit length
+  float left = 0.0F;
 };
 
 /// The hits of a scan in the order of the scan, every n-th if there are more than `most`.
@@ -41,6 +47,8 @@ std::vector<Point> spread_hits(const chart::Scan& scan, double apart_m, std::siz
 struct Prior {
   Pose2 pose;
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  double depth_m = 0.0;              ///< added to every range
+  double depth_deviation_m = 0.002;  ///< of it
 };
 
 struct MatchParams {
@@ -58,8 +66,10 @@ struct MatchParams {
 struct Match {
   Pose2 pose;                  ///< X_GB
   Eigen::Matrix3d covariance;  ///< of x, y (in G) and yaw, by the map alone, without the prior
-  std::size_t used = 0;        ///< hits with a wall within reach
-  bool settled = false;        ///< the steps came to an end
+  double depth_m = 0.0;
+  double depth_deviation_m = 0.0;
+  std::size_t used = 0;  ///< hits with a wall within reach
+  bool settled = false;  ///< the steps came to an end
 };
 
 /// @param points at least one.

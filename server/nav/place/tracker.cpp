@@ -17,6 +17,10 @@ using Eigen::Matrix3d;
 constexpr std::string_view kLostWords =
     "lost: drive by hand to a known place, or tap where the robot is";
 
+constexpr double kDepthAtFirst_m = 0.02;
+constexpr double kDepthDrift_m = 0.0005;  // a scan; other walls, other materials
+constexpr double kDepthSurest_m = 0.003;
+
 bool finite(const Pose2& p) noexcept {
   return std::isfinite(p.x_m) && std::isfinite(p.y_m) && std::isfinite(p.yaw_rad);
 }
@@ -54,7 +58,10 @@ std::string_view misfit(const Agreement& a, const TrackerParams& p) noexcept {
 }
 
 Tracker::Tracker(std::shared_ptr<const Field> field, const TrackerParams& params)
-    : field_(std::move(field)), p_(params), start_(params.start) {}
+    : field_(std::move(field)),
+      p_(params),
+      start_(params.start),
+      depth_deviation_m_(kDepthAtFirst_m) {}
 
 void Tracker::set_pose(const Pose2& in_map, double deviation_m, double deviation_rad) {
   if (!finite(in_map)) return;
@@ -138,7 +145,8 @@ void Tracker::track(const chart::Scan& scan, const Pose2& step, Told& told) {
     return;
   }
   const Found found = search_window(*field_, few, pose_, window);
-  const Prior prior{pose_, covariance_.inverse()};
+  const double depth_deviation_m = std::hypot(depth_deviation_m_, kDepthDrift_m);
+  const Prior prior{pose_, covariance_.inverse(), depth_m_, depth_deviation_m};
   const Match match = refine(*field_, hits, found.pose, prior, p_.match);
   told.agreement = agreement(*field_, scan, match.pose);
   told.reason = misfit(told.agreement, p_);
@@ -150,6 +158,8 @@ void Tracker::track(const chart::Scan& scan, const Pose2& step, Told& told) {
   const Matrix3d sum = prior.information + match.covariance.inverse();
   covariance_ = sum.inverse();
   pose_ = match.pose;
+  depth_m_ = match.depth_m;
+  depth_deviation_m_ = std::max(match.depth_deviation_m, kDepthSurest_m);
   told_ = false;
   bad_m_ = 0.0;
   bad_scans_ = 0;

@@ -49,7 +49,7 @@ struct TrackerParams {
   double slip_m = 0.05;           ///< and at each step
   double turn_share = 0.12;       ///< of the angle turned
   double turn_per_m_rad = 0.04;   ///< of the way driven
-  double turn_rad = 0.04;        ///< and at each step
+  double turn_rad = 0.04;         ///< and at each step
   double least_explained = 0.60;  ///< share of the hits at walls below which a scan is bad
   double most_crossed = 0.35;     ///< share of the hits behind walls above which it is
   std::size_t least_hits = 20;    ///< fewer say nothing
@@ -110,6 +110,8 @@ class Tracker {
   GlobalStart start_;
   std::optional<base::Time> last_stamp_;
   Pose2 last_odometry_;
+  double depth_m_ = 0.0;  ///< of the walls of this map for this scanner (match.hpp)
+  double depth_deviation_m_ = 0.0;
   bool told_ = false;  ///< set_pose since the last scan: the window is wide
   double bad_m_ = 0.0;
   std::uint32_t bad_scans_ = 0;
