@@ -33,6 +33,7 @@
 #include "tools/decode.hpp"
 #include "tools/failsafes.hpp"
 #include "tools/maps.hpp"
+#include "tools/locate.hpp"
 #include "tools/ntrip_table.hpp"
 #include "tools/report.hpp"
 
@@ -187,6 +188,7 @@ int main(int argc, char** argv) {
       int operator()(const roverd::FailsafesCommand& c) const { return roverd::failsafes(c.into); }
       int operator()(const roverd::AlignCommand& c) const { return roverd::align_clouds(c); }
       int operator()(const roverd::MapCommand& c) const { return roverd::make_map(c); }
+      int operator()(const roverd::LocateCommand& c) const { return roverd::locate(c); }
     };
     return std::visit(Run{}, roverd::read_command(argc, argv));
   } catch (const std::exception& error) {

@@ -180,6 +180,31 @@ Told add_map(CLI::App& app, MapCommand& c) {
       ->check(number_in(0.01, 1.0))
       ->capture_default_str();
   return {m, "map wants LOG and --into NAME"};
+Told add_locate(CLI::App& app, LocateCommand& c) {
+  CLI::App* l = app.add_subcommand("locate", "a recorded drive placed in a map, and how well");
+  l->footer(
+      "LOG is the text of CARMEN (FLASER and ODOM lines), plain or gzip; its poses are taken for\n"
+      "the truth. The map is that of ROS's map server.");
+  l->add_option("--map", c.map, "the map's yaml; its image lies beside it")->required();
+  l->add_option("LOG", c.log, "the recorded drive")->required();
+  l->add_flag(
+      "--no-start", [&c](std::int64_t) { c.options.with_start = false; },
+      "the log's first pose is not told: the place is looked for in the whole map");
+  const auto which = [](WhichScans& into) {
+    return [&into](const std::string& word) {
+      into = word == "all" ? WhichScans::All : word == "odd" ? WhichScans::Odd : WhichScans::Even;
+    };
+  };
+  const CLI::IsMember words({"all", "odd", "even"});
+  l->add_option_function<std::string>("--scans", which(c.options.use),
+                                      "which are given, counted from 0: all, odd or even")
+      ->check(words)
+      ->default_str("all");
+  l->add_option_function<std::string>("--score", which(c.options.score),
+                                      "which of them are compared: all, odd or even")
+      ->check(words)
+      ->default_str("all");
+  return {l, "locate wants --map MAP.yaml and LOG"};
 }
 
 /// Why the arguments of a command are wrong.
@@ -211,6 +236,7 @@ Command read_command(int argc, char** argv) {
   FailsafesCommand failsafes;
   AlignCommand align;
   MapCommand map;
+  LocateCommand place;
   CLI::App app("roverd: the ground station that lives on the robot", "roverd");
   app.footer("roverd study: courses in simulated time, measured (roverd study --help)");
   add_station(app, options);
@@ -218,6 +244,7 @@ Command read_command(int argc, char** argv) {
                            add_report(app, report), add_ntrip(app, table),
                            add_backup(app, backup), add_failsafes(app, failsafes),
                            add_align(app, align),   add_map(app, map)};
+                           add_locate(app, place)};
   const auto chosen = [&commands]() -> const Told* {
     for (const Told& one : commands) {
       if (one.app->parsed()) return &one;
@@ -247,6 +274,8 @@ Command read_command(int argc, char** argv) {
   if (command->app == commands[6].app) return align;
   if (command->app == commands[7].app) return map;
   return failsafes;
+  if (command->app == commands[5].app) return failsafes;
+  return place;
 }
 
 }  // namespace roverd

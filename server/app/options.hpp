@@ -9,6 +9,7 @@
 
 #include "replay/run.hpp"
 #include "tools/maps.hpp"
+#include "tools/locate.hpp"
 
 namespace roverd {
 
@@ -49,6 +50,7 @@ struct FailsafesCommand {
 };
 using Command = std::variant<Options, DecodeCommand, ReplayCommand, ReportCommand, TableCommand,
                              BackupCommand, FailsafesCommand, AlignCommand, MapCommand>;
+                             BackupCommand, FailsafesCommand, LocateCommand>;
 
 /// Prints help, version or a one-line error and ends the program where the arguments say so
 /// (exit code 2 for wrong ones).
