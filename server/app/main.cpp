@@ -32,8 +32,8 @@
 #include "store/store.hpp"
 #include "tools/decode.hpp"
 #include "tools/failsafes.hpp"
-#include "tools/maps.hpp"
 #include "tools/locate.hpp"
+#include "tools/maps.hpp"
 #include "tools/ntrip_table.hpp"
 #include "tools/report.hpp"
 

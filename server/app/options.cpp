@@ -180,6 +180,8 @@ Told add_map(CLI::App& app, MapCommand& c) {
       ->check(number_in(0.01, 1.0))
       ->capture_default_str();
   return {m, "map wants LOG and --into NAME"};
+}
+
 Told add_locate(CLI::App& app, LocateCommand& c) {
   CLI::App* l = app.add_subcommand("locate", "a recorded drive placed in a map, and how well");
   l->footer(
@@ -243,7 +245,7 @@ Command read_command(int argc, char** argv) {
   const Told commands[] = {add_decode(app, decode), add_replay(app, replay),
                            add_report(app, report), add_ntrip(app, table),
                            add_backup(app, backup), add_failsafes(app, failsafes),
-                           add_align(app, align),   add_map(app, map)};
+                           add_align(app, align),   add_map(app, map),
                            add_locate(app, place)};
   const auto chosen = [&commands]() -> const Told* {
     for (const Told& one : commands) {
@@ -271,10 +273,9 @@ Command read_command(int argc, char** argv) {
   if (command->app == commands[2].app) return report;
   if (command->app == commands[3].app) return table;
   if (command->app == commands[4].app) return backup;
+  if (command->app == commands[5].app) return failsafes;
   if (command->app == commands[6].app) return align;
   if (command->app == commands[7].app) return map;
-  return failsafes;
-  if (command->app == commands[5].app) return failsafes;
   return place;
 }
 

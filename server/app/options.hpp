@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "replay/run.hpp"
-#include "tools/maps.hpp"
 #include "tools/locate.hpp"
+#include "tools/maps.hpp"
 
 namespace roverd {
 
@@ -49,8 +49,8 @@ struct FailsafesCommand {
   std::string into;  ///< a page; empty: the table is printed
 };
 using Command = std::variant<Options, DecodeCommand, ReplayCommand, ReportCommand, TableCommand,
-                             BackupCommand, FailsafesCommand, AlignCommand, MapCommand>;
-                             BackupCommand, FailsafesCommand, LocateCommand>;
+                             BackupCommand, FailsafesCommand, AlignCommand, MapCommand,
+                             LocateCommand>;
 
 /// Prints help, version or a one-line error and ends the program where the arguments say so
 /// (exit code 2 for wrong ones).
