@@ -292,8 +292,8 @@ using NamedValue = std::pair<std::string, base::ParamValue>;
 /// @return why, one sentence for each that was left out, beginning with its name.
 std::vector<std::string> take_kept(Config& config, std::vector<NamedValue> kept);
 
-/// What the vehicle is, what is believed at first, and which rays are made of what a sensor saw, has
-/// been taken in when the program started. All else acts at the next tick.
+/// What the vehicle is, what is believed at first, and which rays are made of what a sensor saw,
+/// has been taken in when the program started. All else acts at the next tick.
 bool acts_at_next_start(std::string_view section, std::string_view name) noexcept;
 
 /// Does it go into the way that a mission is laid out by when it is loaded (its corners, and the

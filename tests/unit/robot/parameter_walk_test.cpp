@@ -156,7 +156,7 @@ TEST(ParameterWalk, WhatIsSaidToActAtTheNextStartDoesThenAndNotBefore) {
     const bool steered = p.section == "vehicle" &&
                          (p.info.name.starts_with("max_steering") || p.info.name == "wheelbase_m");
     // How the fan of rays is made: tests/unit/sense.
-    const bool fan = p.info.name == "band_m" || p.info.name.starts_with("far_");
+    const bool fan = p.section == "sense.rays";
     const bool map = p.info.name == "map_lon" || p.info.name == "map_lat";
     if (!steered && !fan && !map) {
       EXPECT_TRUE(stage.begins(p)) << p.section << "." << p.info.name;

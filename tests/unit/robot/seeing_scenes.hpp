@@ -82,8 +82,8 @@ inline std::shared_ptr<Around> see(Walk& w) {
   return around;
 }
 
-/// A scanner 0.6 m ahead of the body's middle that meets a post as wide as 24 degrees of it, 6 m
-/// ahead of where the robot began, and nothing else.
+/// A scanner 0.6 m ahead of the body's middle that meets two posts, 6 to 12 degrees to either side
+/// of straight ahead, the inner edge of each the nearest: 6 m ahead of where the robot began.
 inline void scan(Walk& w) {
   nav::sense::SensorSetup eye;
   eye.name = "front";
@@ -117,8 +117,8 @@ inline void scan(Walk& w) {
     const double post_m = 6.0 - x_m - 0.6;
     for (int i = -90; i <= 90; ++i) {
       const double bearing = base::rad_from_deg(i);
-      const double r = post_m / std::cos(bearing);
-      const bool hit = std::abs(i) <= 12 && r > 0.05 && r < 8.0;
+      const double r = post_m / std::cos(bearing) + 0.05 * (std::abs(i) - 6);
+      const bool hit = std::abs(i) >= 6 && std::abs(i) <= 12 && r > 0.05 && r < 8.0;
       const double at_m = hit ? r : 8.0;
       sight->points.push_back({static_cast<float>(at_m * std::cos(bearing)),
                                static_cast<float>(at_m * std::sin(bearing)), 0.0F, 0.0F, 0, 0,
@@ -237,8 +237,19 @@ inline const std::vector<Scene> kSeeingScenes = {
        w.run(1.0);
        around->sees = true;
        w.run(10.0);
+     }},
+    {"rays that are not counted yet",
+     [](Walk& w) {
+       scan(w);
+       w.run(8.0);
+       w.go(plan_of({{0, 1}, {0, 20}}));
+       w.run(2.0);
+       w.change();
+       w.run(12.0);
      },
-     [](Config& c) { c.blocked.resume_blind = true; }},
+     [](Config& c) {
+       c.protect.creep_mps = 1.0;  // beside it nothing is seen
+     }},
     {"counted rays beside the sweep",
      [](Walk& w) {
        scan(w);
@@ -246,9 +257,12 @@ inline const std::vector<Scene> kSeeingScenes = {
        w.go(plan_of({{0, 1}, {0, 20}}));
        w.run(2.0);
        w.change();
-       w.run(10.0);
+       w.run(12.0);
      },
-     [](Config& c) { c.rays.enabled = true; }},
+     [](Config& c) {
+       c.rays.enabled = true;
+       c.protect.creep_mps = 1.0;  // beside it nothing is seen
+     }},
     {"counted rays alone",
      [](Walk& w) {
        scan(w);
@@ -256,7 +270,7 @@ inline const std::vector<Scene> kSeeingScenes = {
        w.go(plan_of({{0, 1}, {0, 20}}));
        w.run(2.0);
        w.change();
-       w.run(10.0);
+       w.run(12.0);
      },
      [](Config& c) { c.rays.enabled = c.rays.instead = true; }},
 };
