@@ -54,7 +54,7 @@ void fields(V& v, GroundParams& p) {
 
 /// Rain, dust, insects: what is seen once and not again.
 struct PersistParams {
-  double cell_m = 0.10;
+  double cell_m = 0.05;
   int hits = 3;
   int of_scans = 5;
   int at_once = 3;
@@ -63,7 +63,7 @@ struct PersistParams {
 
 template <class V>
 void fields(V& v, PersistParams& p) {
-  v("cell_m", p.cell_m, 0.05, 0.5, "hits within three by three cells of this side are the same");
+  v("cell_m", p.cell_m, 0.03, 0.5, "hits within three by three cells of this side are the same");
   v("hits", p.hits, 1, 8, base::lower_is_stricter("a thing is there when that many scans"));
   v("of_scans", p.of_scans, 1, 8, base::higher_is_stricter("of the last so many saw it"));
   v("at_once", p.at_once, 1, 100,

@@ -12,13 +12,41 @@ constexpr float kLow_m = 0.08F;  // nothing lower is looked for
 constexpr float kMostAcross = 6.0F;
 constexpr float kMostUp = 16.0F;
 
+constexpr float kStep_m = 0.25F;
+constexpr float kView_rad = 4.7F;  // of a scanner; a lidar sees more, and has less rain before it
+constexpr float kSmooth = 0.1F;
+constexpr double kBelieved = 1e-9;  // at one place in one scan, of drops
+constexpr int kMostHits = 7;
+constexpr int kMostScans = 8;
+
+/// So many or more, of those that come singly. Its series from the first term on.
+double poisson_tail(double mean, int from) noexcept {
+  double term = std::exp(-mean);
+  for (int i = 1; i <= from; ++i) term *= mean / i;
+  double sum = term;
+  for (int i = from + 1; i < from + 24; ++i) sum += term *= mean / i;
+  return std::min(sum, 1.0);
+}
+
+/// So many or more of n.
+double binomial_tail(double p, int from, int n) noexcept {
+  double ways = 1.0;
+  double sum = 0.0;
+  for (int i = 0; i <= n; ++i) {
+    if (i >= from) sum += ways * std::pow(p, i) * std::pow(1.0 - p, n - i);
+    ways *= static_cast<double>(n - i) / (i + 1);
+  }
+  return sum;
+}
+
 /// How many beams meet it. @param steps_m the distance at which it is as wide as one step
 float beams(float steps_m, float away_m, float most) noexcept {
   return std::min(most, steps_m / away_m);
 }
 }  // namespace
 
-Persist::Persist(const PersistParams& params, double range_m) : p_(params) {
+Persist::Persist(const PersistParams& params, double range_m)
+    : p_(params), range_m_(static_cast<float>(range_m)) {
   const auto across = static_cast<std::uint32_t>(std::ceil(2.0 * range_m / p_.cell_m)) + 3;
   const auto side = std::bit_ceil(std::clamp(across, 8U, 2048U));
   mask_ = static_cast<std::int32_t>(side) - 1;
@@ -73,35 +101,68 @@ Persist::Around Persist::around(std::int32_t ix, std::int32_t iy) const noexcept
   return out;
 }
 
+float Persist::least_of(float away_m, const From& from) const noexcept {
+  const float wide = from.step_rad > 0.0F ? static_cast<float>(p_.least_m) / from.step_rad : 0.0F;
+  const float high = from.step_up_rad > 0.0F ? kLow_m / from.step_up_rad : 0.0F;
+  const float rows = std::max(1.0F, beams(high, away_m, kMostUp));
+  // Beams are whole: what is as wide as two and a half steps is sure of two.
+  return std::max(1.0F, std::floor(rows * beams(wide, away_m, kMostAcross)));
+}
+
+void Persist::ask(const From& from) {
+  const double side = 3.0 * p_.cell_m;
+  const double per_m2 = static_cast<double>(fresh_ / (kView_rad * range_m_));
+  for (std::size_t i = 0; i < asked_.size(); ++i) {
+    Asked& a = asked_[i];
+    const float away = std::max(0.05F, kStep_m * static_cast<float>(i));  // the nearer end
+    const float least = least_of(away + kStep_m, from);  // the fewest that count there
+    const double drops = per_m2 * side * side / static_cast<double>(away);
+    const double hit = poisson_tail(drops, static_cast<int>(least));
+    const auto scans = [this](int hits) { return hits <= p_.of_scans ? p_.of_scans : kMostScans; };
+    a.hits = p_.hits;
+    while (a.hits < kMostHits && binomial_tail(hit, a.hits, scans(a.hits)) > kBelieved) ++a.hits;
+    a.of_scans = scans(a.hits);
+    a.at_once = p_.at_once;
+    while (a.at_once < 3 * p_.at_once && poisson_tail(drops, a.at_once) > kBelieved) ++a.at_once;
+  }
+}
+
+const Persist::Asked& Persist::asked(float away_m) const noexcept {
+  const auto i = static_cast<std::size_t>(away_m / kStep_m);
+  return asked_[std::min(i, asked_.size() - 1)];
+}
+
 std::uint32_t Persist::judge(std::vector<Voxel>& voxels, const Pose2& pose, const From& from) {
   ++scan_;
   fill(voxels, pose);
-  const float wide = from.step_rad > 0.0F ? static_cast<float>(p_.least_m) / from.step_rad : 0.0F;
-  const float high = from.step_up_rad > 0.0F ? kLow_m / from.step_up_rad : 0.0F;
-  least_.clear();
+  away_.clear();
+  const std::uint32_t lately = ((1U << static_cast<std::uint32_t>(p_.of_scans)) - 1U) << 1U;
+  float fresh = 0.0F;
   std::size_t i = 0;
   for (const Voxel& v : voxels) {
     if (v.kind != Kind::Obstacle) continue;
-    const float away = std::max(0.05F, std::hypot(v.x_m - from.x_m, v.y_m - from.y_m));
-    const float rows = std::max(1.0F, beams(high, away, kMostUp));
-    // Beams are whole: what is as wide as two and a half steps is sure of two.
-    least_.push_back(std::max(1.0F, std::floor(rows * beams(wide, away, kMostAcross))));
+    away_.push_back(std::max(0.05F, std::hypot(v.x_m - from.x_m, v.y_m - from.y_m)));
     const Around here = around(where_[i], where_[i + 1]);
-    if (static_cast<float>(here.points) >= least_.back()) {
+    if (static_cast<float>(here.points) >= least_of(away_.back(), from)) {
       cells_[at(where_[i], where_[i + 1])].seen |= 1U;
     }
+    if ((here.seen & lately) == 0 && here.voxels < p_.at_once) fresh += 1.0F;
     i += 2;
   }
-  const std::uint32_t recent = (1U << static_cast<std::uint32_t>(p_.of_scans)) - 1U;
+  // All is new to the first scan.
+  if (scan_ > 1) fresh_ += kSmooth * (fresh - fresh_);
+  ask(from);
   std::uint32_t held = 0;
   i = 0;
   for (Voxel& v : voxels) {
     if (v.kind != Kind::Obstacle) continue;
     const Around here = around(where_[2 * i], where_[2 * i + 1]);
-    const float at_once = static_cast<float>(p_.at_once) * least_[i];
+    const Asked& a = asked(away_[i]);
+    const float points = static_cast<float>(a.at_once) * least_of(away_[i], from);
     ++i;
-    if (here.voxels >= p_.at_once && static_cast<float>(here.points) >= at_once) continue;
-    if (std::popcount(here.seen & recent) >= p_.hits) continue;
+    if (here.voxels >= a.at_once && static_cast<float>(here.points) >= points) continue;
+    const std::uint32_t recent = (1U << static_cast<std::uint32_t>(a.of_scans)) - 1U;
+    if (std::popcount(here.seen & recent) >= a.hits) continue;
     v.kind = Kind::Passing;
     ++held;
   }

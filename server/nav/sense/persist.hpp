@@ -12,6 +12,17 @@
 // a whole number, 6 across and 16 rows at most; at once, at_once times as many. A thinner thing
 // that was believed from afar is Passing then; the grid does not lose it (grid.hpp).
 
+//
+// The harder it rains, the surer must be what is seen. Echoes where nothing had been seen lately
+// are counted; as drops they lie evenly along the beams, so n of them in a scan put
+//
+//   λ = n A / (θ R r)
+//
+// into an area A at r (θ the view, R the reach), Poisson distributed. Hits and voxels at once are
+// asked for, up to 7 of 8 scans and three times at_once, until drops alone would pass at one place
+// once in 10⁹ scans. On a dry day nothing is asked for beyond the parameters.
+
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -54,6 +65,15 @@ class Persist {
     std::uint32_t points = 0;
     std::uint32_t seen = 0;
   };
+  /// What a thing must show, by its distance from the sensor.
+  struct Asked {
+    int hits = 3;
+    int of_scans = 5;
+    int at_once = 3;
+  };
+  float least_of(float away_m, const From& from) const noexcept;
+  void ask(const From& from);
+  const Asked& asked(float away_m) const noexcept;
   void fill(const std::vector<Voxel>& voxels, const Pose2& pose);
   Around around(std::int32_t ix, std::int32_t iy) const noexcept;
   std::size_t at(std::int32_t ix, std::int32_t iy) const noexcept;
@@ -63,7 +83,10 @@ class Persist {
   std::uint32_t scan_ = 0;
   std::vector<Cell> cells_;
   std::vector<std::int32_t> where_;  ///< cell indices of the obstacles of this scan, x and y
-  std::vector<float> least_;         ///< echoes that each of them needs
+  std::vector<float> away_;          ///< of each of them from the sensor
+  std::array<Asked, 64> asked_{};    ///< in steps of a quarter of a metre
+  float range_m_;
+  float fresh_ = 0.0F;  ///< echoes a scan where none had been lately, smoothed
 };
 
 }  // namespace roverd::nav::sense
