@@ -10,7 +10,9 @@ namespace roverd::nav::sense {
 
 namespace {
 
-constexpr float kFades_m = 0.005F;   // of a span, with each piece that meets its thing again
+constexpr float kFades_m = 0.005F;  // of a span, with each piece that meets its thing again
+constexpr std::uint8_t kSureHits = 4;
+constexpr float kUnsure_m = 0.40F;   // what few pieces met is gone when a ray passes so near
 constexpr float kGrazes_m = 0.003F;  // a ray along an edge: more would take its thing away
 // What is seen lower than this over the body's plane stands on the ground: its foot is there, too.
 constexpr float kStands_m = 0.15F;
@@ -96,6 +98,7 @@ void Grid::take(const Reduced& in, const Sectors& sectors, std::uint8_t sensor) 
   const std::uint32_t now = ms(in.stamp);
   move_to(in.pose);
   hit(in, sensor, now);
+  make_sure();
   see_through(in.pose, sectors, sensor, now);
 }
 
@@ -103,6 +106,7 @@ void Grid::hit(const Reduced& in, std::uint8_t sensor, std::uint32_t now_ms) {
   const double c = std::cos(in.pose.yaw_rad);
   const double s = std::sin(in.pose.yaw_rad);
   const auto up = up_in_body(in.lie);
+  met_.clear();
   for (const Voxel& v : in.voxels) {
     const bool again = v.kind == Kind::Passing || (v.kind == Kind::Ground && v.z_m > kNoGround_m);
     if (v.kind != Kind::Obstacle && v.kind != Kind::Drop && !again) continue;
@@ -132,9 +136,26 @@ void Grid::hit(const Reduced& in, std::uint8_t sensor, std::uint32_t now_ms) {
     span = {std::min(span.low_m, z - foot), std::max(span.top_m, z), static_cast<float>(u - ix),
             static_cast<float>(w - iy)};
     o.known = v.kind == Kind::Drop ? Known::Drop : Known::Occupied;
+    if (o.hits == 0 || o.ms != now_ms) {
+      o.hits = static_cast<std::uint8_t>(std::min<int>(o.hits, kSureHits) + 1);
+      met_.push_back({ix, iy});
+    }
     o.misses = 0;
     o.sensor = sensor;
     o.ms = now_ms;
+  }
+}
+
+void Grid::make_sure() {
+  for (const auto& [ix, iy] : met_) {
+    Cell& o = cell(ix, iy);
+    int sum = 0;
+    for (std::int32_t y = iy - 1; y <= iy + 1; ++y) {
+      for (std::int32_t x = ix - 1; x <= ix + 1; ++x) {
+        if (inside(x, y)) sum += cell(x, y).hits;
+      }
+    }
+    if (sum >= kSureHits) o.hits = std::max(o.hits, kSureHits);
   }
 }
 
@@ -229,7 +250,7 @@ void Grid::look_along(const Line& line, std::size_t sector, const Sectors& s, st
       const double w = iy + static_cast<double>(spans_[i].y) - line.y;
       const double d_m = (u * line.dx + w * line.dy) * p_.cell_m;
       if (!seen_through(i, d_m, std::uint64_t{1} << b, sector, s, now_ms)) continue;
-      c.known = Known::Unknown;  // gone; whether the ground is free is another ray's word
+      c = Cell{};  // gone; whether the ground is free is another ray's word
     }
     if (!looked) continue;
     c.known = Known::Free;
@@ -244,10 +265,10 @@ bool Grid::seen_through(std::size_t i, double d_m, std::uint64_t bit, std::size_
   Cell& c = cells_[i];
   if (c.ms == now_ms) return false;  // hit in this very piece, or seen through already
   const Span& span = spans_[i];
-  const bool through = c.known == Known::Drop
-                           ? (s.of[sector].low & bit) != 0
-                           : s.passes(sector, static_cast<float>(d_m), span.low_m - kGrazes_m,
-                                      span.top_m + kGrazes_m);
+  const float off = c.hits < kSureHits ? kUnsure_m : kGrazes_m;
+  const bool through = c.known == Known::Drop ? (s.of[sector].low & bit) != 0
+                                              : s.passes(sector, static_cast<float>(d_m),
+                                                         span.low_m - off, span.top_m + off);
   if (!through) return false;
   c.ms = now_ms;
   return ++c.misses >= p_.clear_scans;

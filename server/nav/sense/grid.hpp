@@ -10,12 +10,14 @@
 //
 // Blind is not free: a cell is free only where a ray passed low enough (sectors.hpp). Of what
 // stands in a cell the heights are kept between which it was seen lately, in O: only a ray that
-// passes between them and goes on says that it left. What a ray passes above or below stays, and so
+// passes between them and goes on says that it left (of what was met less than four times, a ray
+// nearby as well: it may have been rain). What a ray passes above or below stays, and so
 // does what sinks out of every sensor's view as the robot comes near, leans or climbs. (Where
 // nothing tells how the body leans, its plane is taken for O's.) What is too thin or too new to be
 // believed (Passing) makes no cell occupied; but where something was believed, an echo in its cell
 // or beside it says that it still stands there, however many rays pass it by.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -82,7 +84,8 @@ class Grid {
     Known known = Known::Unknown;
     std::uint8_t misses = 0;  ///< scans that saw through it since it was hit
     std::uint8_t sensor = 0;
-    std::uint32_t ms = 0;  ///< since the first piece
+    std::uint8_t hits = 0;  ///< pieces that met it
+    std::uint32_t ms = 0;   ///< since the first piece
   };
   /// Heights in O between which something was seen, and where in the cell it was met last: a ray
   /// falls by a centimetre within a cell, and one that grazes the far edge must not count.
@@ -107,6 +110,8 @@ class Grid {
   Known known(const Cell& c, std::uint32_t now_ms) const noexcept;
   void move_to(const Pose2& body);
   void hit(const Reduced& in, std::uint8_t sensor, std::uint32_t now_ms);
+  /// What this piece met together, or again and again, is no drop of rain.
+  void make_sure();
   /// Something returned from there: what is taken there or beside it is not seen through now.
   void stay(std::int32_t ix, std::int32_t iy, std::uint8_t sensor, std::uint32_t now_ms) noexcept;
   void see_through(const Pose2& body, const Sectors& s, std::uint8_t sensor, std::uint32_t now_ms);
@@ -134,7 +139,8 @@ class Grid {
   base::Time begin_;
   bool begun_ = false;
   std::vector<Cell> cells_;
-  std::vector<Span> spans_;  ///< of the cells that are Occupied
+  std::vector<std::array<std::int32_t, 2>> met_;  ///< cells of the piece that is taken
+  std::vector<Span> spans_;                       ///< of the cells that are Occupied
 };
 
 /// The patch as pairs of bytes for the stream: Known (two upper bits) and a run of 1 to 64 cells
