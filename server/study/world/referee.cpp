@@ -19,6 +19,8 @@ constexpr double kMap_m = 40.0;  // half side
 constexpr double kMapCell_m = 0.1;
 constexpr auto kMapSide = static_cast<std::size_t>(2.0 * kMap_m / kMapCell_m);
 constexpr double kSightEvery_s = 0.09;
+constexpr double kUnbroken_s = 1.0;
+constexpr double kAfterwards_s = 1.0;
 constexpr double kAnew_m = 0.05;
 constexpr double kMarch_m = 1.0;
 constexpr double kMarchStep_m = 0.01;
@@ -82,7 +84,6 @@ Referee::Met* Referee::met_at(double x_m, double y_m) {
 }
 
 void Referee::saw(const std::vector<world::Sweep>& sweeps, const world::Pose& mount, double now_s) {
-  const auto& things = around_.scene().world().things;
   for (const world::Sweep& sweep : sweeps) {
     const world::Frame sensor = world::Frame(around_.pose_at(sweep.at_s)) * world::Frame(mount);
     for (const world::Shot& s : sweep.shots) {
@@ -98,8 +99,7 @@ void Referee::saw(const std::vector<world::Sweep>& sweeps, const world::Pose& mo
       const auto thing = static_cast<std::size_t>(s.thing);
       std::vector<double>& seen = sights_[thing];
       ++beams_[thing];
-      const bool moving = world::moves(things[thing].kind);
-      if (seen.empty() || (moving && now_s - seen.back() > kSightEvery_s)) seen.push_back(now_s);
+      if (seen.empty() || now_s - seen.back() > kSightEvery_s) seen.push_back(now_s);
     }
   }
 }
@@ -183,6 +183,43 @@ bool Referee::beneath_plane(int thing, const world::Pose& pose, double at_s) con
   return std::ranges::find(there.touches, thing, &world::Touch::thing) == there.touches.end();
 }
 
+std::optional<double> Referee::in_sight_since_s(int thing) const {
+  if (thing < 0) return std::nullopt;
+  const auto& seen = sights_[static_cast<std::size_t>(thing)];
+  if (seen.empty()) return std::nullopt;
+  // What stands does not leave; and what was seen once is known.
+  if (!world::moves(around_.scene().world().things[static_cast<std::size_t>(thing)].kind)) {
+    return seen.front();
+  }
+  std::size_t i = seen.size() - 1;
+  while (i > 0 && seen[i] - seen[i - 1] <= kUnbroken_s) --i;
+  return seen[i];
+}
+
+bool Referee::brakes_avoid(int thing, double from_s, double touched_s) const {
+  constexpr double kStep_s = 0.02;
+  const double brakes_s = from_s + brakes_.delay_s;
+  if (brakes_s >= touched_s) return false;
+  const Was& begin = trail_[index_at(brakes_s)];
+  const double u = std::abs(begin.v_mps) + std::abs(begin.w_radps) * reach_m_;
+  const double lasts_s = std::max({std::abs(begin.v_mps) / brakes_.decel_mps2,
+                                   std::abs(begin.w_radps) / brakes_.turn_decel_radps2, 1e-3});
+  world::Moment moment;
+  for (double t = brakes_s; t <= touched_s + kAfterwards_s; t += kStep_s) {
+    const double for_s = std::min(t - brakes_s, lasts_s);
+    const double way_m = begin.way_m + u * (for_s - 0.5 * for_s * for_s / lasts_s);
+    const auto at = std::ranges::lower_bound(trail_, way_m, {}, &Was::way_m);
+    const world::Pose& pose = at == trail_.end() ? trail_.back().pose : at->pose;
+    around_.scene().move_to(moment, t);
+    const auto there =
+        world::contact(around_.scene(), moment, pose, around_.witness().body(), 0.01);
+    if (std::ranges::find(there.touches, thing, &world::Touch::thing) != there.touches.end()) {
+      return false;
+    }
+  }
+  return true;
+}
+
 void Referee::judge(const world::Witness::Seen& seen) {
   const Was& now = trail_[index_at(seen.at_s)];
   TouchSeen out;
@@ -191,34 +228,31 @@ void Referee::judge(const world::Witness::Seen& seen) {
   out.speed_mps = now.v_mps;
   out.yaw_rate_radps = now.w_radps;
   out.at = {seen.at.x, seen.at.y};
-  const double outline_mps = std::abs(now.v_mps) + std::abs(now.w_radps) * reach_m_;
-  double from_s = 1e9;
   if (seen.thing >= 0) {
     out.height_m = around_.scene().world().things[static_cast<std::size_t>(seen.thing)].height_m;
     out.beams = beams_[static_cast<std::size_t>(seen.thing)];
-    const double there_s = seen.moving ? there_since_s(seen.thing, now.pose, seen.at_s) : -1e9;
-    for (const double t : sights_[static_cast<std::size_t>(seen.thing)]) {
-      if (t < there_s && seen.moving) continue;
-      from_s = t;
-      break;
-    }
   }
+  const double outline_mps = std::abs(now.v_mps) + std::abs(now.w_radps) * reach_m_;
+  const auto since_s = in_sight_since_s(seen.thing);
+  if (since_s) out.seen_before_s = seen.at_s - *since_s;
   if (outline_mps < kMoves_mps) {
     out.blame = Blame::Standing;
-  } else if (from_s > seen.at_s) {
-    const bool ever = seen.thing >= 0 && !sights_[static_cast<std::size_t>(seen.thing)].empty();
-    out.blame = ever ? Blame::Late : Blame::Unseen;
+  } else if (!since_s) {
+    out.blame = Blame::Unseen;
+  } else if (!brakes_avoid(seen.thing, *since_s, seen.at_s)) {
+    out.blame = Blame::Late;
   } else {
-    const Was& then = trail_[index_at(from_s)];
+    out.blame = beneath_plane(seen.thing, now.pose, seen.at_s) ? Blame::Below : Blame::Ours;
+  }
+  if (since_s) {
+    const double there_s = seen.moving ? there_since_s(seen.thing, now.pose, seen.at_s) : -1e9;
+    const Was& then = trail_[index_at(std::max(*since_s, there_s))];
     const double u = std::abs(then.v_mps) + std::abs(then.w_radps) * reach_m_;
     const double brake_s = std::max(0.5 * std::abs(then.v_mps) / brakes_.decel_mps2,
                                     0.5 * std::abs(then.w_radps) / brakes_.turn_decel_radps2);
     out.needed_m = u * (brakes_.delay_s + brake_s);
     out.way_m = now.way_m - then.way_m;
-    out.seen_before_s = seen.at_s - from_s;
-    out.blame = out.way_m <= out.needed_m                        ? Blame::Late
-                : beneath_plane(seen.thing, now.pose, seen.at_s) ? Blame::Below
-                                                                 : Blame::Ours;
+    out.crossed = out.blame == Blame::Ours && out.way_m <= out.needed_m;
   }
   touches_.push_back(std::move(out));
 }

@@ -2,10 +2,16 @@
 // Who knows the truth: what was touched and whose it was, what the guard stopped for and whether
 // that stands there, and how far before it the robot stands.
 //
-// A contact is ours when the outline went farther than it takes to stop, since the first moment at
-// which the thing was both in sight and where it was touched:
+// A contact is ours when braking from the first sight would have avoided it. That is tried: from
+// the begin of the unbroken sight of the thing (a gap of a second breaks it) the body goes on as it
+// did for sense.protect.delay_s, then along the same way slower and slower, as decel_mps2 and
+// turn_decel_radps2 let it, and stands. What moves goes on as it does. If they meet until a
+// second after the true contact, no brakes would have avoided it. So whoever walks into the way of
+// a robot that saw him coming counts; that he was not in the way yet, in time for the brakes, is
+// said:
 //
-//   u·delay + u·max(v / 2a, ω / 2α),   u = |v| + |ω|·reach
+//   way since it was where it was touched  ≤  u·delay + u·max(v / 2a, ω / 2α),   u = |v| +
+//   |ω|·reach
 
 #include <deque>
 #include <optional>
@@ -61,6 +67,9 @@ class Referee {
 
   void judge(const sim::world::Witness::Seen& seen);
   bool beneath_plane(int thing, const sim::world::Pose& pose, double at_s) const;
+  /// Begin of the unbroken sight before the contact. Empty: never seen.
+  std::optional<double> in_sight_since_s(int thing) const;
+  bool brakes_avoid(int thing, double from_s, double touched_s) const;
   double there_since_s(int thing, const sim::world::Pose& pose, double at_s) const;
   std::size_t index_at(double at_s) const;
   StopSeen stop_of(const base::Obstacle& obstacle) const;
@@ -76,7 +85,7 @@ class Referee {
   const double plane_m_;
   double reach_m_ = 0.5;
   std::vector<Was> trail_;
-  std::vector<std::vector<double>> sights_;  ///< of each thing, when it came in sight; static: once
+  std::vector<std::vector<double>> sights_;  ///< of each thing, when beams met it
   std::vector<std::size_t> beams_;           ///< that met it
   std::vector<Met> met_;
   std::size_t hard_ = 0;

@@ -17,7 +17,7 @@ struct Sums {
   std::size_t worlds = 0;
   std::size_t failed = 0;
   double km = 0.0;
-  std::size_t ours = 0, late = 0, below = 0, unseen = 0, standing = 0, brushes = 0;
+  std::size_t ours = 0, crossed = 0, late = 0, below = 0, unseen = 0, standing = 0, brushes = 0;
   std::size_t stops = 0, needless = 0, blind = 0, slows = 0, detours = 0;
   std::vector<double> stands;
 
@@ -34,6 +34,7 @@ struct Sums {
          : t.blame == Blame::Below  ? below
          : t.blame == Blame::Unseen ? unseen
                                     : standing);
+      crossed += t.crossed ? 1 : 0;
     }
     for (const StopSeen& s : run.stops) {
       if (s.cause.empty()) {
@@ -59,11 +60,11 @@ std::string row_of(const std::string& name, const Sums& s) {
   char text[256];
   std::snprintf(
       text, sizeof text,
-      "%-24s %6zu %8.3f %5zu %5zu %6zu %7zu %9zu %8zu %6zu %9zu %7.2f %6zu  %.2f/%.2f/%.2f "
+      "%-24s %6zu %8.3f %5zu %7zu %5zu %6zu %7zu %9zu %8zu %6zu %9zu %7.2f %6zu  %.2f/%.2f/%.2f "
       "%6zu %8zu\n",
-      name.c_str(), s.worlds, s.km, s.ours, s.late, s.below, s.unseen, s.standing, s.brushes,
-      s.stops, s.needless, s.km > 0.0 ? static_cast<double>(s.needless) / s.km : 0.0, s.blind,
-      least, mean, most, s.slows, s.detours);
+      name.c_str(), s.worlds, s.km, s.ours, s.crossed, s.late, s.below, s.unseen, s.standing,
+      s.brushes, s.stops, s.needless, s.km > 0.0 ? static_cast<double>(s.needless) / s.km : 0.0,
+      s.blind, least, mean, most, s.slows, s.detours);
   return text;
 }
 
@@ -74,6 +75,7 @@ ordered_json touch_json(const TouchSeen& t) {
           {"speed_mps", t.speed_mps},
           {"yaw_rate_radps", t.yaw_rate_radps},
           {"seen_before_s", t.seen_before_s},
+          {"crossed", t.crossed},
           {"way_m", t.way_m},
           {"needed_m", t.needed_m},
           {"height_m", t.height_m},
@@ -117,7 +119,8 @@ std::string to_table(const std::vector<WorldRun>& runs) {
     all.add(run);
   }
   std::string out =
-      "                         worlds       km  ours  late  below  unseen  standing  brushes  "
+      "                         worlds       km  ours crossed  late  below  unseen  standing  "
+      "brushes  "
       "stops  "
       "needless  per km  blind  stands m       slows  detours\n";
   for (const auto& [name, sums] : rows) out += row_of(name.substr(2), sums);

@@ -66,7 +66,7 @@ base::Result<Scenario> scenario_of(const WorldOrder& order, std::uint64_t number
 /// Whose was it?
 enum class Blame {
   Ours,      ///< braking from the first sight would have avoided it
-  Late,      ///< it was there, or in sight, too late for any brakes
+  Late,      ///< it came in sight too late for any brakes, or would have come to it anyhow
   Below,     ///< its scanners look along one plane, and what was touched lies beneath it
   Unseen,    ///< no sensor ever saw it: too low, too high, too dark
   Standing,  ///< the robot stood: it came
@@ -80,7 +80,8 @@ struct TouchSeen {
   double speed_mps = 0.0;
   double yaw_rate_radps = 0.0;
   double seen_before_s = 0.0;  ///< the first sight that counts
-  double way_m = 0.0;          ///< of the outline since then
+  bool crossed = false;        ///< ours, but in the way it was too late for any brakes
+  double way_m = 0.0;          ///< of the outline since it was seen and where it was touched
   double needed_m = 0.0;       ///< to stop
   double height_m = 0.0;       ///< of the thing
   std::size_t beams = 0;       ///< that met it before, from the first one on

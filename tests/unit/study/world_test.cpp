@@ -190,6 +190,19 @@ TEST(WorldRunTest, WhatNoSensorSeesIsTouchedAndSaidSo) {
   EXPECT_NEAR(run->touches[0].speed_mps, 1.0, 0.2);
 }
 
+//   Who walks into the way was in sight for long: standing there by then, it would not be touched.
+TEST(WorldRunTest, WhoWalksIntoTheWayOfARobotThatSawHimIsItsOwnContactAndSaidToHaveCrossed) {
+  const auto run = run_world(setup_of(), ahead(R"({"kind": "person", "path": [[-4, 6], [4, 6]],
+      "speed_mps": 1.3, "motion": "once", "start_s": 10.25})"));
+  ASSERT_TRUE(run) << run.error().detail;
+  ASSERT_FALSE(run->touches.empty());
+  const TouchSeen& touch = run->touches[0];
+  EXPECT_EQ(touch.blame, Blame::Ours);
+  EXPECT_TRUE(touch.crossed);
+  EXPECT_GT(touch.seen_before_s, 3.0);
+  EXPECT_LE(touch.way_m, touch.needed_m);
+}
+
 TEST(WorldRunTest, TheSameNumberDrivesTheSame) {
   auto scenario = scenario_of(*parse_worlds("random:1"), 6, {}, {});
   ASSERT_TRUE(scenario);
