@@ -29,8 +29,8 @@ struct StartParams {
   double counts = 25.0;           ///< independent beams of a scan
   double lead = 8.0;              ///< of the best over the next, in evidence: 3000 to 1
   double hopeless = 30.0;         ///< further behind is dropped
-  double least_explained = 0.75;  ///< mean share of the hits at walls
-  double most_crossed = 0.12;     ///< mean share of the hits behind walls
+  double least_explained = 0.70;  ///< mean share of the hits at walls
+  double most_crossed = 0.25;     ///< mean share of the hits behind walls
   std::uint32_t least_scans = 3;
   double least_way_m = 0.3;
   std::uint32_t again_after = 4;  ///< scans, then the whole map is searched once more
