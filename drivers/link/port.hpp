@@ -3,6 +3,7 @@
 // again, counting and reporting. The driver owns one and gives it the meaning of what comes in.
 // Device thread only. Time is an argument.
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <memory>
@@ -166,7 +167,7 @@ class Port {
     refused_ += more;
     counts_[cause] += more;
     refused_last_ = cause;
-    refused_last_at_ = last_item_ ? *last_item_ : now_;
+    refused_last_at_ = last_item_ ? std::max(*last_item_, now_) : now_;
   }
   /// Bytes that belong to nothing: counted one by one, and once as a refusal.
   void stray(const std::string& cause, std::uint64_t bytes) {
@@ -213,6 +214,7 @@ class Port {
       for (const auto& [what, n] : troubles_of(*link_)) {
         detail->counts[what] += n;
         s.refused += n;
+        if (n > 0 && detail->refused_last.empty()) detail->refused_last = what;
       }
     }
     detail->facts = facts_;

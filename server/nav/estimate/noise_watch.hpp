@@ -1,11 +1,14 @@
 #pragma once
-// Do positions scatter as little as their receiver claims? From one epoch to the next odometry and
-// gyro are good to millimetres, so that what is left of three neighbouring differences to them,
+// Do positions scatter as little as their receiver claims? From one epoch to the next what is
+// believed follows odometry and gyro, good to millimetres, so that what is left of three
+// neighbouring differences to it,
 //
 //   d = e₀ − 2e₁ + e₂,   var d = 6 σ² for white errors of σ,
 //
 // is the receiver's own noise: a slow error, a slide and a wrong scale cancel. Reflections under
-// trees make it several times what is claimed.
+// trees make it several times what is claimed. Where the belief follows the positions themselves
+// by a gain of a half, honest noise looks 1.3 times as large, near one 1.8 times: kNoisy has room
+// for that, and finds noise of twice the claim then.
 //
 // Not thread-safe; no allocation; nothing here reads a clock.
 
@@ -25,7 +28,7 @@ class NoiseWatch {
   static constexpr double kShare = 0.2;  ///< of a new difference; about five count
   static constexpr base::Duration kApart = std::chrono::milliseconds(1500);
 
-  /// Once a position. @param off it, less where odometry had the antenna then, ENU, m
+  /// Once a position. @param off it, less where the antenna was believed to be then, ENU, m
   /// @param sigma_m claimed, per axis, > 0 @param stamp never goes back
   void take(base::EnuPoint off, double sigma_m, base::Time stamp) noexcept {
     if (last_ && stamp - *last_ > kApart) seen_ = 0;
@@ -42,9 +45,6 @@ class NoiseWatch {
     before_ = {before_[1], off};
     seen_ = std::min(seen_ + 1, 2);
   }
-  /// The positions were moved, or what they are compared with.
-  void forget() noexcept { seen_ = 0; }
-
   bool noisy() const noexcept { return noisy_; }
 
  private:
