@@ -242,11 +242,10 @@ Command read_command(int argc, char** argv) {
   CLI::App app("roverd: the ground station that lives on the robot", "roverd");
   app.footer("roverd study: courses in simulated time, measured (roverd study --help)");
   add_station(app, options);
-  const Told commands[] = {add_decode(app, decode), add_replay(app, replay),
-                           add_report(app, report), add_ntrip(app, table),
-                           add_backup(app, backup), add_failsafes(app, failsafes),
-                           add_align(app, align),   add_map(app, map),
-                           add_locate(app, place)};
+  const Told commands[] = {
+      add_decode(app, decode), add_replay(app, replay), add_report(app, report),
+      add_ntrip(app, table),   add_backup(app, backup), add_failsafes(app, failsafes),
+      add_align(app, align),   add_map(app, map),       add_locate(app, place)};
   const auto chosen = [&commands]() -> const Told* {
     for (const Told& one : commands) {
       if (one.app->parsed()) return &one;

@@ -48,9 +48,9 @@ struct BackupCommand {
 struct FailsafesCommand {
   std::string into;  ///< a page; empty: the table is printed
 };
-using Command = std::variant<Options, DecodeCommand, ReplayCommand, ReportCommand, TableCommand,
-                             BackupCommand, FailsafesCommand, AlignCommand, MapCommand,
-                             LocateCommand>;
+using Command =
+    std::variant<Options, DecodeCommand, ReplayCommand, ReportCommand, TableCommand, BackupCommand,
+                 FailsafesCommand, AlignCommand, MapCommand, LocateCommand>;
 
 /// Prints help, version or a one-line error and ends the program where the arguments say so
 /// (exit code 2 for wrong ones).
