@@ -39,11 +39,11 @@ TEST_F(RowsApi, AnswersWithAMissionThatCanBePosted) {
 
 TEST_F(RowsApi, WithANameItIsStored) {
   const auto made = call("POST", "/missions/rows",
-                         {{"rows", 2},
-                          {"spacing_m", 3},
-                          {"entry", {{"lat", kStart.lat}, {"lon", kStart.lon}}},
-                          {"heading_deg", 45},
-                          {"name", "berries"}});
+                         Json{{"rows", 2},
+                              {"spacing_m", 3},
+                              {"entry", {{"lat", kStart.lat}, {"lon", kStart.lon}}},
+                              {"heading_deg", 45},
+                              {"name", "berries"}});
   ASSERT_EQ(made.status, 201u) << made.body;
   const std::string id = made.body["mission"]["id"];
   EXPECT_EQ(made.raw.header("location"), "/api/v1/missions/" + id);
