@@ -137,6 +137,38 @@ TEST(TrailerTest, WhatMayBeTheTrailerItselfHoldsNobody) {
   EXPECT_EQ(protect_trailer(p, {}, cart(), {}, {0.5, 0.1}, {}).part, 1.0);
 }
 
+//   Before it was driven the coupling may be at up to 60 degrees, looked at in eight of them: what
+//   stands a hand's breadth behind all of its places is none of the trailer.
+TEST(TrailerTest, WhatStandsJustOutsideOfEveryPlaceOfItIsNotTakenForIt) {
+  Patch p = open_ground();
+  // The tail's corners are 1.75 m from the coupling.
+  const Vec2 pole = put_pole(p, -0.6 - 1.85, 0.0);
+  EXPECT_GT(std::hypot(pole.x + 0.6, pole.y), cart().body.reach_m() + 0.05);
+  const Verdict v = protect_trailer(p, {}, cart(), {}, {-0.5, 0.0}, {});
+  EXPECT_TRUE(v.found);
+  EXPECT_EQ(v.part, 0.0);
+  EXPECT_EQ(protect_trailer(p, {}, cart(), {}, {0.5, 0.0}, {}).part, 1.0) << "away from it";
+}
+
+//   Whatever the angle, its own points hold it nowhere, between the eight as well.
+TEST(TrailerTest, NoPartOfItIsInItsOwnWay) {
+  const Coupling c;
+  for (int i = 0; i <= 40; ++i) {
+    const double angle = c.low_rad() + (c.high_rad() - c.low_rad()) * i / 40.0;
+    for (const double back_m : {0.8, 1.2, 1.65}) {
+      for (const double side_m : {-0.35, 0.0, 0.35}) {
+        const Pose2 at = Pose2{-0.6, 0.0, angle} * Pose2{-back_m, side_m, 0.0};
+        Patch p = open_ground();
+        const Vec2 seen = put_pole(p, at.x_m, at.y_m);
+        const Pose2 in = inverse(Pose2{-0.6, 0.0, angle}) * Pose2{seen.x, seen.y, 0.0};
+        if (cart().body.distance_m({in.x_m, in.y_m}) > -0.01) continue;
+        EXPECT_EQ(protect_trailer(p, {}, cart(), c, {0.5, 0.2}, {}).part, 1.0) << angle;
+        EXPECT_EQ(protect_trailer(p, {}, cart(), c, {-0.5, 0.2}, {}).part, 1.0) << angle;
+      }
+    }
+  }
+}
+
 TEST(TrailerTest, TheMarksChangeNothing) {
   std::mt19937 random(9);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
