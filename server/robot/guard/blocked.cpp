@@ -33,7 +33,9 @@ base::Result<void> check(const BlockedParams& p) {
 
 void Blocked::set(const BlockedParams& params) {
   params_ = params;
-  then_ = then_from(params.then).value_or(Then::Wait);
+  const Then then = then_from(params.then).value_or(Then::Wait);
+  if (then != then_) decided_ = false;  // what stands blocked is told the other one, too
+  then_ = then;
 }
 
 std::optional<Then> Blocked::step(bool stops, bool solid, const nav::sense::Pose2& at,

@@ -9,6 +9,23 @@
 namespace roverd::robot {
 namespace {
 
+TEST(Blocked, WhatIsChosenWhileItIsBlockedIsToldAtOnce) {
+  const auto at = [](double s) { return base::Time{} + base::from_seconds(s); };
+  BlockedParams params;
+  Blocked b;
+  b.set(params);
+  EXPECT_FALSE(b.step(true, true, {}, at(0.0)));
+  EXPECT_EQ(b.step(true, true, {}, at(11.0)), Then::Wait);
+  EXPECT_FALSE(b.step(true, true, {}, at(12.0)));
+  params.clear_s = 2.0;
+  b.set(params);
+  EXPECT_FALSE(b.step(true, true, {}, at(13.0))) << "nothing that follows has changed";
+  params.then = "return";
+  b.set(params);
+  EXPECT_EQ(b.step(true, true, {}, at(14.0)), Then::Return);
+  EXPECT_FALSE(b.step(true, true, {}, at(15.0)));
+}
+
 TEST_F(Seeing, AMissionThatWaitsSaysWhyWhereItIsLookedFor) {
   field.drive_mission();
   wall_at(driven_m() + 5.0);
