@@ -193,9 +193,14 @@ void Planner::Impl::answer(const sense::Patch& patch, const Question& q, Answer&
   a.why = whole ? Why::None : Why::Unseen;
   const std::size_t seen = trace.seen(patch, q, field, a.path);
   a.unseen = seen < a.path.size();
-  if (a.unseen && !q.through_unknown) {
-    a.path.resize(seen);
-    a.unseen = false;
+  const bool back = q.through_unknown && q.back_through_unknown;
+  const bool ahead_too = !q.through_unknown;
+  const std::size_t good = !a.unseen || back ? a.path.size()
+                           : ahead_too       ? seen
+                                             : Trace::seen(patch, q, field, a.path, false);
+  if (good < a.path.size()) {
+    a.path.resize(good);
+    a.unseen = seen < good;
     a.found = Found::Part;
     a.why = Why::Unseen;
   }

@@ -70,11 +70,12 @@ struct Question {
   std::vector<Ring> keep_out;
   double fence_margin_m = 0.1;
 
-  double least_m = 0.12;         ///< between the body and what stands there; 0.02 to 1
-  double wanted_m = 0.30;        ///< nearer than that is driven only where it saves way
-  bool through_unknown = false;  ///< at creep speed: a metre counts as unknown_cost of them
-  double unknown_cost = 3.0;     ///< 1 to 10
-  double rejoin_within_m = 6.0;  ///< behind the blocked stretch
+  double least_m = 0.12;              ///< between the body and what stands there; 0.02 to 1
+  double wanted_m = 0.30;             ///< nearer than that is driven only where it saves way
+  bool through_unknown = false;       ///< at creep speed: a metre counts as unknown_cost of them
+  bool back_through_unknown = false;  ///< and backwards; counts with through_unknown only
+  double unknown_cost = 3.0;          ///< 1 to 10
+  double rejoin_within_m = 6.0;       ///< behind the blocked stretch
 
   /// What was answered last, if it is being driven: another way must be better by a sixth.
   std::vector<Place> before;

@@ -54,9 +54,12 @@ void Trace::lay(const Pose2& start, std::span<const Piece> pieces, double reach_
 }
 
 std::size_t Trace::seen(const sense::Patch& patch, const Question& q, const Field& field,
-                        std::span<const Place> path) {
+                        std::span<const Place> path, bool ahead_too) {
   std::size_t n = 0;
-  while (n < path.size() && !over_unseen(patch, q, field, path[n].pose)) ++n;
+  while (n < path.size() &&
+         ((!ahead_too && !path[n].reverse) || !over_unseen(patch, q, field, path[n].pose))) {
+    ++n;
+  }
   return n;
 }
 

@@ -100,6 +100,7 @@ class Guard {
   double side_m() const noexcept { return params_.side_m; }
   /// What nobody has seen is driven into by what drives by itself, slowly.
   bool creeps() const noexcept { return params_.creep_mps > 0.0; }
+  bool creeps_back() const noexcept { return params_.creep_back_mps > 0.0; }
 
   const base::Obstacle& obstacle() const noexcept { return obstacle_; }
   /// It stopped just now, or let go; empty: neither. Told once.

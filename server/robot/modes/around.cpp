@@ -81,6 +81,7 @@ bool Robot::Impl::ask_around() {
   q.least_m = guard.side_m() + kTracking_m;
   q.wanted_m = std::max(q.least_m, kComfort_m);
   q.through_unknown = guard.creeps();
+  q.back_through_unknown = guard.creeps_back();
   q.before = detour.rest(asked->local);
   asked->id = detour.asks(clock.now());
   std::shared_ptr<const AroundQuestion> question = std::move(asked);

@@ -189,6 +189,38 @@ TEST(AroundTest, WhatIsUnseenEndsAPartOrIsDriven) {
   EXPECT_TRUE(whole.unseen);
 }
 
+//   ░░▓▓▓▓▓
+//   ░░   ▭▓    it can only back out, over what nobody has seen
+//   ░░▓▓▓▓▓
+TEST(AroundTest, BackwardsIntoWhatIsUnseenOnlyWhereThatMayBeDriven) {
+  Scene s;
+  s.box(-10.0, -10.0, -1.3, 10.0, Known::Unknown);
+  s.box(-1.6, 0.6, 1.2, 0.8);
+  s.box(-1.6, -0.8, 1.2, -0.6);
+  s.box(1.0, -0.8, 1.2, 0.8);
+  Question q = along_x();
+  q.kinematics.may_reverse = true;
+  q.through_unknown = true;
+  q.back_through_unknown = true;
+  const auto back_m = [](const Answer& a) {
+    double least = 0.0;
+    for (const Place& p : a.path) {
+      if (p.reverse) least = std::min(least, p.pose.x_m - 0.5);
+    }
+    return least;
+  };
+  const Answer whole = ask(s, q);
+  ASSERT_EQ(whole.found, Found::Way) << sentence(whole.why);
+  EXPECT_TRUE(whole.unseen);
+  EXPECT_LT(back_m(whole), -1.5);
+  q.back_through_unknown = false;
+  const Answer cut = ask(s, q);
+  EXPECT_NE(cut.found, Found::Way);
+  EXPECT_EQ(cut.why, Why::Unseen);
+  EXPECT_FALSE(cut.unseen);
+  EXPECT_GT(back_m(cut), -1.35);
+}
+
 TEST(AroundTest, BlindFromTheStartIsNone) {
   Scene s(Known::Unknown);
   s.box(4.0, -0.5, 4.3, 0.5);
