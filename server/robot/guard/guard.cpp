@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <utility>
 
@@ -170,6 +171,7 @@ Guard::Looked Guard::look(const BodyTwist& twist, bool by_itself, base::Time now
       return v;
     }
     if (counts && rays_.instead) {
+      if (ahead && around_->rays) v = look_where_lost(twist, params);
       if (ahead) look_along_rays(v, twist, params);
       return v;
     }
@@ -191,6 +193,24 @@ Guard::Looked Guard::look(const BodyTwist& twist, bool by_itself, base::Time now
   v.part = std::clamp(std::min(by_way, by_turn), 0.0, 1.0);
   v.limit = Limit::Unseen;
   v.found = true;
+  return v;
+}
+
+/// Nothing else knows what a lost sensor stopped for, as long as no other one has seen that place
+/// free; and then the rest of it may stand there yet.
+Guard::Looked Guard::look_where_lost(const BodyTwist& twist,
+                                     const nav::sense::ProtectParams& params) const noexcept {
+  const nav::sense::Patch& patch = around_->patch;
+  const nav::sense::Vec2 at = around_->rays->at;
+  const auto cell = [&patch](double m) {
+    return static_cast<std::int32_t>(std::floor(m / patch.cell_m));
+  };
+  if (patch.at(cell(at.x), cell(at.y)).known == nav::sense::Known::Free) {
+    return {protect(patch, odometry_.pose, body_, twist, params, nullptr, &around_->marks)};
+  }
+  Looked v = told_by(*around_->rays, rays_.stop_m);
+  v.part = 0.0;
+  v.lost = true;
   return v;
 }
 

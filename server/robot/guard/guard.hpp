@@ -12,8 +12,10 @@
 //
 // Where the stop by counted rays (nav/sense/rays_rule.hpp) is enabled, it slows and stops whatever
 // drives ahead, too; or alone, and then the curve is not looked along. What the rays of a sensor
-// said that is lost (RaysStop::lost) is driven into as ground that nobody has seen. It knows no
-// dock: while who docks is within sense.protect.dock_m of it, the curve alone is looked along.
+// said that is lost (RaysStop::lost) is driven into as ground that nobody has seen, by what looks
+// along the curve; where that is not looked along, not before another sensor has seen it free. It
+// knows no dock: while who docks is within sense.protect.dock_m of it, the curve alone is looked
+// along.
 //
 // Control thread; allocates for the sentence of a stop only.
 
@@ -116,6 +118,8 @@ class Guard {
     bool trailer = false;   ///< it is what the trailer would touch
   };
   Looked look(const base::BodyTwist& twist, bool by_itself, base::Time now) const noexcept;
+  Looked look_where_lost(const base::BodyTwist& twist,
+                         const nav::sense::ProtectParams& params) const noexcept;
   Looked told_by(const RaysStop& said, double within_m) const noexcept;
   void look_along_rays(Looked& v, const base::BodyTwist& twist,
                        const nav::sense::ProtectParams& params) const noexcept;

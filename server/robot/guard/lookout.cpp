@@ -163,18 +163,20 @@ void Lookout::tell_rays(Surroundings& out, base::Time now) {
     return any_sees && !sees(i) && !chain_.sensor(i).needed &&
            base::seconds(now - stop.seen) > free_for_s_[i];
   };
-  const auto passed = [&](const RaysStop& stop) {
-    const nav::sense::Pose2 at = body * nav::sense::Pose2{stop.at.x, stop.at.y, 0.0};
-    return at.x_m < 0.0 || std::hypot(at.x_m, at.y_m) > rays_.far_as_m;
+  const auto in_body = [&](const RaysStop& stop) {
+    return body * nav::sense::Pose2{stop.at.x, stop.at.y, 0.0};
   };
   float nearest_m = 0.0F;
   for (std::size_t i = 0; i < counted_.size(); ++i) {
     auto& one = counted_[i];
     if (!one) continue;
     one->stop.lost = lost(i, one->stop);
-    if (one->stop.lost && passed(one->stop)) {
-      one.reset();
-      continue;
+    if (one->stop.lost) {
+      const nav::sense::Pose2 at = in_body(one->stop);
+      const bool left = std::hypot(at.x_m, at.y_m) > rays_.far_as_m;
+      if (left) one.reset();
+      // Behind it holds nobody who drives ahead; but who turns comes to face it again.
+      if (left || at.x_m < 0.0) continue;
     }
     const bool nearer = !out.rays || (out.rays->lost && !one->stop.lost) ||
                         (out.rays->lost == one->stop.lost && one->nearest_m < nearest_m);

@@ -11,7 +11,8 @@
 // Where the stop by counted rays is enabled, each piece of a sensor that sees is counted, and its
 // word holds until that sensor's next one: who falls silent or blind takes back nothing. But a
 // sensor that is not required, and is blind for as long as what it saw free is believed, says stop
-// for ground that nobody has seen, if another one sees; and no more when the robot is past it.
+// for ground that nobody has seen, if another one sees; not while that lies behind, and no more
+// when the robot is farther from it than the rays reach.
 //
 // A sight that is newer than the odometry by no more than a tick is placed along the last twist:
 // within 25 ms a change by 2 m/s2 and 2 rad/s2 is 0.6 mm and 0.6 mrad, and to wait for the next
@@ -83,8 +84,8 @@ class Lookout {
   std::vector<std::optional<Counted>> counted_;  ///< by sensor: it says stop
   RowQuestion row_;
   std::optional<nav::rows::RowFinder> finder_;
-  nav::rows::RowScan row_scan_;  ///< of the last piece
-  std::vector<std::optional<RaysStop>> nears_;   ///< and: it will soon
+  nav::rows::RowScan row_scan_;                 ///< of the last piece
+  std::vector<std::optional<RaysStop>> nears_;  ///< and: it will soon
   std::vector<float> ranges_;
   double reach_m_;
   std::deque<std::shared_ptr<const base::Sight>> waiting_;

@@ -28,6 +28,7 @@ struct Counting {
     s->patch.side = 280;
     s->patch.x0 = s->patch.y0 = -140;
     s->patch.cells.assign(280 * 280, {Known::Free, 0, 0});
+    s->patch.cells[144 * 280 + 162].known = met;
     if (beside) {  // 1.2 m ahead, 5 cm wide: no five rays
       s->patch.cells[140 * 280 + 164].known = Known::Occupied;
     }
@@ -46,6 +47,7 @@ struct Counting {
   Guard guard;
   bool beside;
   bool lost = false;
+  Known met = Known::Free;      ///< what the grid knows where the rays met something
   std::optional<double> way_m;  ///< until the rays say stop
 };
 
@@ -163,6 +165,30 @@ TEST(CountedRaysGuard, WhatALostSensorSaidIsGroundThatNobodyHasSeen) {
               std::string::npos)
         << r.guard.obstacle().reason;
   }
+}
+
+//   What was met 1.1 m ahead and 0.2 m to the left, by who sees no more.
+TEST(CountedRaysGuard, AloneTheyHoldWhatALostSensorMetUntilAnotherSeesThePlaceFree) {
+  Counting r(true);
+  r.lost = true;
+  for (const Known known : {Known::Unknown, Known::Occupied}) {
+    r.met = known;
+    r.look(0.0, true);
+    EXPECT_EQ(r.drive({0.8, 0.0}, 0.0).linear_mps, 0.0);
+    EXPECT_EQ(r.guard.obstacle().action, base::GuardAction::Stop);
+    EXPECT_EQ(r.guard.obstacle().what, "obstacle");
+    EXPECT_NE(r.guard.obstacle().reason.find("sees no more"), std::string::npos);
+    r.guard.forget();
+    EXPECT_EQ(r.drive({-0.8, 0.0}, 0.0).linear_mps, -0.8) << "away from it";
+  }
+  // Free there, but its legs stand a little farther on: the sweep stops before them.
+  r.met = Known::Free;
+  r.beside = true;
+  r.look(0.1, true);
+  const double v_mps = r.drive({0.8, 0.0}, 0.1).linear_mps;
+  EXPECT_LE(v_mps, 0.25);
+  for (int i = 0; i < 25; ++i) (void)r.guard.move({1.0, 0.0}, at_s(0.1 + 0.02 * (i + 1)));
+  EXPECT_EQ(r.drive({0.8, 0.0}, 0.6).linear_mps, 0.0) << "0.7 m before it";
 }
 
 TEST_F(Seeing, AMissionStandsWhileTheRaysSayStopAndGoesOnWhenTheyDoNot) {

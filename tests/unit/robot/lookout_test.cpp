@@ -319,6 +319,17 @@ TEST(CountedRays, ASensorThatNeedNotSeeAndDiesSaysStopForTheUnseenOnly) {
   s = l.picture(at(t));
   ASSERT_TRUE(s->rays);
   EXPECT_TRUE(s->rays->lost);
+  // While it lies behind a turn on the spot it holds nobody,
+  l.moved({.stamp = at(t + 0.02), .pose = {0.0, 0.0, base::kPi}});
+  EXPECT_FALSE(l.picture(at(t + 0.02))->rays);
+  // but it is there again when that is turned back;
+  for (t += 0.04; t < 1.4; t += 0.02, ++n) {
+    l.moved({.stamp = at(t)});
+    see("other", t, n, 0);
+  }
+  s = l.picture(at(t));
+  ASSERT_TRUE(s->rays);
+  EXPECT_TRUE(s->rays->lost);
   // and behind the robot nothing at all.
   for (; t < 2.08; t += 0.02, ++n) see("other", t, n, 0);
   l.moved({.stamp = at(2.1), .pose = {2.0, 0.0, 0.0}});
