@@ -186,6 +186,11 @@ void Detour::reset() noexcept {
   ++asked_;  // what is still being answered is not for now
 }
 
+void Detour::begin_anew() noexcept {
+  reset();
+  turned_at_.reset();
+}
+
 bool Detour::left_alone(base::Time now) const noexcept {
   return drives() && now - stepped_at_ > kLeft;
 }

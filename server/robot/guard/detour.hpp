@@ -64,6 +64,8 @@ class Detour {
   /// What it drives is a turn on the spot.
   bool turns() const noexcept { return drives() && turns_; }
   void reset() noexcept;
+  /// For another way: where it turned on this one says nothing about what stands there.
+  void begin_anew() noexcept;
   /// Nobody asked it to drive for a while: somebody else does something else.
   bool left_alone(base::Time now) const noexcept;
 

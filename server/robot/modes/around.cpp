@@ -142,7 +142,7 @@ void Robot::Impl::watch_detour() {
   const bool other = around_way_id != missions.executor.way_id();
   around_way_id = missions.executor.way_id();
   if (other || !pose->heading_known) {
-    detour.reset();
+    other ? detour.begin_anew() : detour.reset();
     around_again = around_hopeless = false;
     return;
   }
