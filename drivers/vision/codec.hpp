@@ -2,11 +2,14 @@
 // Datagrams of a vision program: text, one datagram an image, six fields between five colons.
 //
 //   cone#box#door: 0 2: 0.5 0.1 2 -0.3 0.1 3: 1 0.2 1.5: 0.9 0 2 -1 0 0: 5200
-//   │              │    │                    │          │              └ 5 plane sizes
-//   │              │    │                    │          └ 4 planes: centre and unit normal, six
-//   each │              │    │                    └ 3 obstacles: x y z each │              │    └ 2
-//   landmarks: x y z each, one for each index │              └ 1 names that were recognised: 0 is
-//   the first of field 0 └ 0 names, between #
+//   0              1    2                     3          4               5
+//
+//   0 names, between #
+//   1 those that were recognised: 0 is the first of field 0
+//   2 landmarks: x y z each, one for each of field 1
+//   3 obstacles: x y z each
+//   4 planes: centre and unit normal, six numbers each
+//   5 plane sizes
 //
 // Every number has exactly one blank before it and nothing else beside it; a field without numbers
 // is empty. Metres in the camera's axes: x right, y down, z ahead. Pure.
