@@ -406,11 +406,13 @@ void Executor::watch_stuck(const Vehicle& vehicle, double dt_s) {
   block(std::move(text));
 }
 
-/// The item in hand cannot be reached: what follows is the operator's choice.
+/// The item in hand cannot be reached: what follows is the operator's choice. Not inside a row: the
+/// turns and moves that follow it, or a straight way home, would lead through its plants.
 void Executor::block(std::string why) {
   const RouteStep* step = step_now();
-  if (params_->unreachable == "skip" && step != nullptr && at_ + 1 < course_->steps.size() &&
-      skipped_ < course_->steps.size()) {
+  const bool in_row = step != nullptr && step->kind == StepKind::Row;
+  if (!in_row && params_->unreachable == "skip" && step != nullptr &&
+      at_ + 1 < course_->steps.size() && skipped_ < course_->steps.size()) {
     const int item = step->item;
     std::size_t next = at_;
     while (next < course_->steps.size() && course_->steps[next].item == item) ++next;
@@ -421,7 +423,7 @@ void Executor::block(std::string why) {
       return;
     }
   }
-  if (params_->unreachable == "return" && fled_.empty() && home_) {
+  if (!in_row && params_->unreachable == "return" && fled_.empty() && home_) {
     notices_.push_back({Notice::Kind::ItemMissed, step != nullptr ? step->item : 0,
                         "given up, going home: " + why});
     begin_at(course_->steps.size());

@@ -8,9 +8,9 @@
 //                                   stop: any of these ─▶ Aborted ──start─▶ Running
 //
 // An item that cannot be reached is Blocked, or left for the next one, or the robot returns home:
-// BehaveParams::unreachable. interrupt() keeps Running but forgets what the tracker was doing:
-// somebody else drives; go_on() continues at the same place, driving back to it first if the robot
-// was moved. Control thread; allocates only when a new way begins.
+// BehaveParams::unreachable; a row is always Blocked. interrupt() keeps Running but forgets what
+// the tracker was doing: somebody else drives; go_on() continues at the same place, driving back to
+// it first if the robot was moved. Control thread; allocates only when a new way begins.
 
 #include <cstdint>
 #include <memory>

@@ -47,7 +47,7 @@ void fields(V& v, BehaveParams& p) {
   v("unreachable", p.unreachable,
     base::only_disarmed("what follows when an item cannot be reached: stop (blocked), skip (the "
                         "next item) or return "
-                        "(home)"));
+                        "(home); in a row always stop"));
 }
 
 }  // namespace roverd::nav

@@ -96,7 +96,8 @@ constexpr std::array kElsewhere{
         .after = "`nav.behave.stuck_s`",
         .response = Response::Hold,
         .acts = Acts::ByItself,
-        .ends = "an operator's word; or skip or return, by `nav.behave.unreachable`",
+        .ends = "an operator's word; or skip or return, by `nav.behave.unreachable`, but "
+                "not within a row",
         .over = kHands,
         .watched_by = "server/nav/behave/executor.hpp",
     },
