@@ -108,7 +108,8 @@ base::DriveCommand Robot::Impl::drive_mission() {
     missions.executor.interrupt();
     return {{}, true};
   }
-  if (!pose->heading_known) return seek_heading();
+  const bool by_sight = missions.executor.row_wanted().has_value();
+  if (!pose->heading_known && !by_sight) return seek_heading();
   missions.executor.go_on(pose->at);
   missions.executor.see_row(row_sight());
   const nav::TrackOutput out =
