@@ -21,6 +21,7 @@ constexpr double kGivenSigma_m = 1e-3;       // a gap that was ordered is not le
 constexpr double kLostAfter_m = 3.0;         // without enough plants
 constexpr double kLostSigma_m = 0.5;
 constexpr double kJump_m = 0.30;             // farther at once the line does not move
+constexpr double kJumpPart = 0.2;            // of its square is doubt, each time
 constexpr double kWidthPart = 0.25;          // nor changes its width by more
 constexpr double kShiftPerRootMetre = 0.02;  // what the odometry loses
 constexpr double kTurnPerRootMetre = 0.01;
@@ -76,7 +77,7 @@ void RowFinder::each_side(Do&& what) {
 void RowFinder::forget() {
   lose();
   marks_.clear();
-  gone_m_ = learned_at_m_ = 0.0;
+  gone_m_ = learned_at_m_ = met_m_ = 0.0;
   sides_ = {};
   cleared_to_ = 0;
   fitted_.reset();
@@ -98,8 +99,14 @@ void RowFinder::see(const RowScan& scan) {
     nothing.pose = scan.pose;
     marks_.take(nothing, 0.0);  // the way alone
     const double way_m = std::max(seen_m, marks_.way_m());
-    view_ = view_by_rays(scan, order_, p_);
-    view_->seen_m = view_->plants_m = way_m;
+    RowView view = view_by_rays(scan, order_, p_);
+    const bool met = view.left + view.right > 0;
+    if (met) met_m_ += way_m - seen_m;
+    if (met_m_ < p_.end_after_m) view.to_end_m.reset();
+    if (!met && !view.to_end_m) return;  // nothing leads: the last view grows old
+    view.seen_m = way_m;
+    view.plants_m = met_m_;
+    view_ = view;
     return;
   }
   marks_.take(scan, p_.ahead_m + 0.5 * p_.width_max_m);
@@ -179,6 +186,10 @@ void RowFinder::fit() {
   const bool jumps = std::abs(moved.y_m) > kJump_m ||
                      std::abs(now.width_m - learned_.width_m) > kWidthPart * learned_.width_m;
   if (jumps) {
+    // What contradicts the line is not followed, but the line is no longer sure either.
+    const double aside_m =
+        std::max(std::abs(moved.y_m), 0.5 * std::abs(now.width_m - learned_.width_m));
+    line_->covariance[0] += kJumpPart * aside_m * aside_m;
     last_ = {};
     return;
   }

@@ -67,6 +67,7 @@ class RowFinder {
   std::array<Side, 2> sides_;  ///< left, right
   double gone_m_ = 0.0;        ///< of L, along the row
   double unfitted_m_ = 0.0;
+  double met_m_ = 0.0;  ///< seeing by rays: way with a side in sight
   double learned_at_m_ = 0.0;
   double drift_ = 0.0;   ///< RowView::drift
   long cleared_to_ = 0;  ///< bins of the ring that are new ones

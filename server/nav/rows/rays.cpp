@@ -8,25 +8,41 @@
 namespace roverd::nav::rows {
 namespace {
 
-constexpr double kRaysSigma_m = 0.10;  // foliage, a few rays
+constexpr double kRaysSigma_m = 0.10;  // of one side: foliage, a few rays
 const double kRaysSigma_rad = base::rad_from_deg(5.0);
+constexpr double kMiddleSigma_m = 0.07;  // of the middle between two
+const double kMiddleSigma_rad = base::rad_from_deg(2.5);
+const double kLookedBeside_rad = base::rad_from_deg(0.25);
 
 /// How far to the side, and how far ahead, the outermost rays of one side end.
 struct Outermost {
   double ahead_m = 0.0;
   double aside_m = 0.0;  ///< without sign
   int rays = 0;
-  int looked = 0;
+  int counted = 0;  ///< endless ones, too
+  int looked = 0;   ///< of those: something is known of that bearing at all
+
+  /// Endless because nothing stands there, not because nobody looked.
+  bool open() const noexcept { return rays == 0 && 4 * looked >= 3 * counted; }
 };
+
+/// A bearing may lie between two pieces of reach_m.
+bool looked_at(const RowScan& scan, double rad) {
+  const auto reach = [&](double at_rad) {
+    return scan.reach_to(scan.eye_x_m + std::cos(at_rad), scan.eye_y_m + std::sin(at_rad));
+  };
+  return reach(rad - kLookedBeside_rad) > 0.0 || reach(rad + kLookedBeside_rad) > 0.0;
+}
 
 Outermost outermost(const RowScan& scan, int side, int n) {
   Outermost out;
   const auto size = scan.rays.size();
   for (std::size_t i = 0; i < std::min(size, static_cast<std::size_t>(n)); ++i) {
     const sense::Ray& ray = side > 0 ? scan.rays[size - 1 - i] : scan.rays[i];
-    ++out.looked;
-    if (ray.endless) continue;
     const auto rad = double(ray.bearing_rad);
+    ++out.counted;
+    if (looked_at(scan, rad)) ++out.looked;
+    if (ray.endless) continue;
     out.ahead_m += scan.eye_x_m + double(ray.range_m) * std::cos(rad);
     out.aside_m += std::abs(scan.eye_y_m + double(ray.range_m) * std::sin(rad));
     ++out.rays;
@@ -61,12 +77,14 @@ RowView view_by_rays(const RowScan& scan, const RowOrder& order, const RowParams
   view.stamp = scan.stamp;
   view.line = scan.pose * Pose2{0.0, 0.0, std::atan2(aside_m, std::max(0.3, ahead_m))};
   if (both && left.rays > 0 && right.rays > 0) view.width_m = left.aside_m + right.aside_m;
-  view.covariance[0] = kRaysSigma_m * kRaysSigma_m;
-  view.covariance[4] = kRaysSigma_rad * kRaysSigma_rad;
+  const bool middle = left.rays > 0 && right.rays > 0;
+  const double sigma_m = middle ? kMiddleSigma_m : kRaysSigma_m;
+  const double sigma_rad = middle ? kMiddleSigma_rad : kRaysSigma_rad;
+  view.covariance[0] = sigma_m * sigma_m;
+  view.covariance[4] = sigma_rad * sigma_rad;
   view.left = left.rays;
   view.right = right.rays;
-  const bool looked = left.looked + right.looked > 0;
-  if (looked && left.rays + right.rays == 0) view.to_end_m = 0.0;
+  if (left.counted + right.counted > 0 && left.open() && right.open()) view.to_end_m = 0.0;
   return view;
 }
 

@@ -12,7 +12,8 @@
 namespace roverd::nav::rows {
 
 /// The line leads from the body's origin to the middle (or to gap_m beside the one side) where the
-/// outermost rays end. Where a side that leads is not seen at all, it goes straight on.
+/// outermost rays end. Where a side that leads is not seen at all, it goes straight on. to_end_m: 0
+/// where all of them are endless and were looked at, whether a row was met before or not.
 RowView view_by_rays(const RowScan& scan, const RowOrder& order, const RowParams& params);
 
 }  // namespace roverd::nav::rows

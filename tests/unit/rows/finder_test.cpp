@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "base/angle.hpp"
+#include "nav/behave/row_drive.hpp"
 #include "nav/rows/rays.hpp"
 
 namespace roverd::nav::rows::tests {
@@ -147,6 +148,22 @@ TEST(RowFinder, TakesOnePlantForNoRow) {
   EXPECT_FALSE(drive(finder, lane, -1.0, 3.0));
 }
 
+// The lane is at once so much narrower that it cannot be the same one.
+TEST(RowFinder, IsNoLongerSureOfALineThatIsContradicted) {
+  RowFinder finder({}, {});
+  const auto before = drive(finder, {}, 0.0, 8.0);
+  ASSERT_TRUE(before);
+  Lane other;
+  other.half_m = 0.68;
+  double worst_m = 0.0;
+  double t = 8.1;
+  for (double x = 8.1; x < 12.0 && finder.view(); x += 0.1, t += 0.1) {
+    finder.see(other.scan(100.0 + t, {x, 0.0, 0.0}));
+    if (finder.view()) worst_m = std::max(worst_m, finder.view()->sigma_m(0.0));
+  }
+  EXPECT_GT(worst_m, 0.16);
+}
+
 TEST(RowFinder, StandsForeignPoints) {
   RowFinder finder({}, {});
   RowScan scan;
@@ -168,6 +185,7 @@ sense::Ray ray(double deg, double range_m) {
 
 RowScan fan(double left_m, double right_m) {
   RowScan scan;
+  scan.reach_m.fill(static_cast<float>(kSeen_m));
   for (int deg = -34; deg <= 34; ++deg) {
     const double range_m = deg < -20 ? right_m : deg > 20 ? left_m : 5.0;
     scan.rays.push_back(ray(deg, range_m));
@@ -192,6 +210,44 @@ TEST(Rays, DoNotCountBeyondThreeMetresAndEndWhereTenAreEndless) {
   const RowView none = view_by_rays(fan(3.5, 3.5), {}, {});
   ASSERT_TRUE(none.to_end_m);
   EXPECT_EQ(*none.to_end_m, 0.0);
+}
+
+TEST(Rays, NobodyLookedIsNoEnd) {
+  RowScan scan = fan(3.5, 3.5);
+  scan.reach_m.fill(0.0F);
+  EXPECT_FALSE(view_by_rays(scan, {}, {}).to_end_m);
+}
+
+TEST(Rays, TheMiddleOfTwoSidesIsSurerThanOne) {
+  const RowDriveParams drive;
+  EXPECT_LT(view_by_rays(fan(2.0, 2.0), {}, {}).sigma_m(1.5), 0.7 * drive.unsure_m);
+  EXPECT_GT(view_by_rays(fan(2.0, 3.5), {}, {}).sigma_m(1.5), drive.unsure_m);
+}
+
+// In the open no row is seen at all; an end comes only after 2 m of one.
+TEST(Rays, EndOnlyARowThatWasMet) {
+  RowOrder order;
+  order.seeing = Seeing::Rays;
+  RowFinder finder({}, order);
+  double x_m = 0.0;
+  const auto go = [&](double to_m, double side_m) {
+    for (; x_m < to_m; x_m += 0.1) {
+      RowScan scan = fan(side_m, side_m);
+      scan.stamp = base::Time{base::from_seconds(x_m)};
+      scan.pose.x_m = x_m;
+      finder.see(scan);
+    }
+  };
+  go(3.0, 3.5);
+  EXPECT_FALSE(finder.view());
+  go(4.0, 2.0);
+  go(5.0, 3.5);  // a bush by the way
+  ASSERT_TRUE(finder.view());
+  EXPECT_FALSE(finder.view()->to_end_m);
+  go(7.0, 2.0);
+  EXPECT_FALSE(finder.view()->to_end_m);
+  go(7.2, 3.5);
+  EXPECT_TRUE(finder.view()->to_end_m);
 }
 
 }  // namespace
