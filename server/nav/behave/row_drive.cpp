@@ -15,6 +15,7 @@ constexpr double kBehind_m = 0.5;  // the way begins so far behind the robot
 constexpr double kLook_m = 1.5;    // ahead the certainty counts
 constexpr double kLeast_m = 0.25;  // a shorter way is none
 constexpr double kThere_m = 0.08;  // nearer to the end there is nothing to drive
+constexpr double kOver_m = 0.15;   // a way that leads farther beyond it is cut short
 constexpr double kOnset_s = 0.2;   // until braking has begun
 constexpr double kYawSigma_rad = 0.02;
 
@@ -36,7 +37,7 @@ void RowDrive::reset() noexcept {
   left_m_.reset();
   laid_.reset();
   driven_m_ = waited_s_ = 0.0;
-  at_end_ = false;
+  at_end_ = goes_on_ = false;
 }
 
 void RowDrive::interrupt() noexcept {
@@ -46,6 +47,7 @@ void RowDrive::interrupt() noexcept {
   laid_.reset();
   last_.reset();
   began_.reset();
+  goes_on_ = false;
   waited_s_ = 0.0;
 }
 
@@ -96,6 +98,9 @@ void RowDrive::lay(const rows::Pose2& from, double curvature_1pm, double begin_m
   leg.align_rad = base::rad_from_deg(path_params_->pivot.angle_deg);
   path.legs.push_back(leg);
   slot_ = 1 - slot_;
+  line_ = from;
+  curvature_1pm_ = curvature_1pm;
+  goes_on_ = true;
   tracker_.move_to(path, 0, at_m - begin_m);
 }
 
@@ -107,7 +112,7 @@ void RowDrive::seek(const RowSight& sight) {
 }
 
 /// The way along the line as far as it is known, or to where the item ends.
-void RowDrive::follow(const RowSight& sight, const rows::Along& at) {
+void RowDrive::follow(const RowSight& sight, const rows::Along& at, const Vehicle& v) {
   const rows::RowView& view = *sight.view;
   double end_m = at.s_m + params_->horizon_m;
   for (double s = at.s_m; s < end_m; s += kPoint_m) {
@@ -122,28 +127,38 @@ void RowDrive::follow(const RowSight& sight, const rows::Along& at) {
   }
   left_m_.reset();
   if (last_m) left_m_ = std::max(0.0, *last_m - at.s_m);
-  at_end_ = last_m && *last_m <= end_m;
-  if (at_end_) end_m = *last_m;
+  const bool ends = last_m && *last_m <= end_m;
+  if (ends) end_m = *last_m;
   const TrackPhase phase = tracker_.phase();
-  const bool there = at_end_ && end_m - at.s_m < kThere_m;
-  // Braking to the end of the item, it is left alone: what is laid anew begins anew.
-  if (there && (phase == TrackPhase::Track || phase == TrackPhase::Stop)) return;
+  const bool there = ends && end_m - at.s_m < kThere_m;
+  if (there && (phase == TrackPhase::Track || phase == TrackPhase::Stop)) {
+    // Braking to the end of the item, it is left alone: what is laid anew begins anew.
+    const bool over = paths_[slot_].length_m() - tracker_.s_m() > kOver_m;
+    if (over) brake(sight, v);
+    at_end_ = true;
+    return;
+  }
   if (there) {
     state_ = State::Done;
     return;
   }
   if (laid_ == view.stamp && phase != TrackPhase::Done) return;
   laid_ = view.stamp;
-  if (!at_end_ && end_m - at.s_m < kLeast_m) return;
-  line_ = view.line;
-  curvature_1pm_ = view.curvature_1pm;
+  if (!ends && end_m - at.s_m < kLeast_m) {
+    // Seen from before it, it may become sure on the way that is driven to look for it.
+    if (!began_) brake(sight, v);
+    return;
+  }
+  began_.reset();
+  at_end_ = ends;
   lay(view.line, view.curvature_1pm, at.s_m - kBehind_m, std::max(end_m, at.s_m + 0.01),
       wanted_mps(view, at.s_m), at.s_m);
 }
 
-/// What was seen is too old: to a stop along it, at once.
+/// What was seen is too old or too vague, or the end is here: to a stop along the way in hand, at
+/// once. Told again while it brakes, it goes on braking: a way laid anew would end later.
 void RowDrive::brake(const RowSight& sight, const Vehicle& v) {
-  if (!std::exchange(laid_, std::nullopt)) return;
+  if (!goes_on_) return;
   at_end_ = false;
   const rows::Pose2 in_line = sense::inverse(line_) * sight.body;
   const double s_m = rows::beside_arc(in_line.x_m, in_line.y_m, curvature_1pm_).s_m;
@@ -152,6 +167,7 @@ void RowDrive::brake(const RowSight& sight, const Vehicle& v) {
                        speed_mps * speed_mps / (2.0 * path_params_->speed.decel_mps2);
   lay(line_, curvature_1pm_, s_m - kBehind_m, s_m + way_m + 0.02,
       std::max(speed_mps, params_->creep_mps), s_m);
+  goes_on_ = false;
 }
 
 TrackOutput RowDrive::step(const RowSight& sight, const Vehicle& vehicle, double limit_mps,
@@ -165,16 +181,13 @@ TrackOutput RowDrive::step(const RowSight& sight, const Vehicle& vehicle, double
   v.crab = sight.view != nullptr ? -sight.view->drift : 0.0;  // what O knows of it
   const bool sees = usable(sight);
   if (sees) {
-    if (state_ == State::Seeking) {
-      state_ = State::Driving;
-      began_.reset();
-    }
+    if (state_ == State::Seeking) state_ = State::Driving;
     const rows::Along at = rows::beside_line(*sight.view, sight.body);
     if (last_) {
       const rows::Pose2 before = sense::inverse(sight.view->line) * *last_;
       driven_m_ += at.s_m - rows::beside_arc(before.x_m, before.y_m, sight.view->curvature_1pm).s_m;
     }
-    follow(sight, at);
+    follow(sight, at, v);
   } else if (state_ == State::Seeking) {
     seek(sight);
   } else {

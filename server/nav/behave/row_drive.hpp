@@ -100,7 +100,7 @@ class RowDrive {
   void lay(const rows::Pose2& from, double curvature_1pm, double begin_m, double end_m,
            double speed_mps, double at_m);
   void seek(const RowSight& sight);
-  void follow(const RowSight& sight, const rows::Along& at);
+  void follow(const RowSight& sight, const rows::Along& at, const Vehicle& v);
   void brake(const RowSight& sight, const Vehicle& v);
   void fail(std::string why);
 
@@ -112,15 +112,16 @@ class RowDrive {
   State state_ = State::Idle;
   std::string reason_;
   Order order_;
-  std::optional<rows::Pose2> began_;  ///< X_OB where it seeks from
+  std::optional<rows::Pose2> began_;  ///< X_OB from where the way leads that looks for it
   std::optional<rows::Pose2> last_;   ///< X_OB of the last step
   std::optional<double> left_m_;
   std::optional<base::Time> laid_;  ///< by the view of this time
-  rows::Pose2 line_;                ///< that view's
+  rows::Pose2 line_;                ///< of the way in hand
   double curvature_1pm_ = 0.0;
   double driven_m_ = 0.0;
   double waited_s_ = 0.0;
-  bool at_end_ = false;  ///< the way that is laid ends where the item does
+  bool at_end_ = false;   ///< the way that is laid ends where the item does
+  bool goes_on_ = false;  ///< it is one to drive, none to brake along
 };
 
 }  // namespace roverd::nav
