@@ -47,7 +47,7 @@ base::Result<RowsOrder> read_rows(const Json& body) {
   b.spacing_m = members.number("spacing_m", 0.3, 50.0).value_or(b.spacing_m);
   members.word_or("turn", b.turn, mission::Side::Right);
   b.skip = static_cast<int>(members.whole("skip", 0, 20).value_or(0));
-  b.out_m = members.number("out_m", 0.1, 20.0).value_or(b.out_m);
+  b.out_m = members.number("out_m", 0.1, mission::kFarthestOut_m).value_or(b.out_m);
   read_entry(members, b);
   members.number("heading_deg", b.heading_deg, mission::kHeading_deg);
   members.word_or("side", b.row.side, mission::RowSide::Both);

@@ -16,7 +16,8 @@ base::Result<void> check_block(const RowBlock& b) {
   within("/rows", b.rows, 1, kMostRows, "must be from 1 to 1000");
   within("/spacing_m", b.spacing_m, 0.3, 50.0, "must be from 0.3 to 50");
   within("/skip", b.skip, 0, 20, "must be from 0 to 20");
-  within("/out_m", b.out_m, 0.1, 20.0, "must be from 0.1 to 20");
+  within("/out_m", b.out_m, 0.1, kFarthestOut_m,
+         "must be from 0.1 to 6: farther off the next row is not seen");
   if (b.entry && !base::is_valid(*b.entry)) wrong.push_back({"/entry", "is no place on earth"});
   if (b.entry && !b.heading_deg) wrong.push_back({"/heading_deg", "is needed with an entry"});
   if (b.heading_deg)

@@ -75,7 +75,7 @@ TEST(RowBlocks, NameWhatIsWrong) {
   block.rows = 0;
   block.spacing_m = std::nan("");
   block.skip = -1;
-  block.out_m = 100.0;
+  block.out_m = 6.5;  // the next row would not be seen from there
   block.entry = LatLon{91.0, 0.0};
   const auto refused = plan_rows(block);
   ASSERT_FALSE(refused);
