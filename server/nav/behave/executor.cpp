@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/angle.hpp"
 
@@ -144,6 +145,11 @@ void Executor::stop(std::string reason) {
 }
 
 void Executor::interrupt() noexcept {
+  wait();
+  row_left_ = true;
+}
+
+void Executor::wait() noexcept {
   if (doing_ == Doing::Path) {
     leg_ = tracker_.leg();
     s_m_ = tracker_.s_m();
@@ -213,7 +219,8 @@ void Executor::go_on(EnuPoint here) {
     left_ = rotation_.left_rad();
     doing_ = Doing::Nothing;  // the rest of it is begun anew
   }
-  if (doing_ == Doing::Row) ++rows_begun_;  // it is looked for anew
+  const bool left = std::exchange(row_left_, false);
+  if (doing_ == Doing::Row && left) ++rows_begun_;
   const auto place = place_to_go_on();
   if (!place) return;
   const double far_m = base::distance_m(here, *place);

@@ -136,7 +136,9 @@ class Executor {
   /// Likewise, but one item is gone. If it was the one in hand, the next one is.
   void drop(std::shared_ptr<const Route> route, int item);
   void interrupt() noexcept;
-  /// After interrupt(). Pauses when the place is too far away.
+  /// The same where nobody else drives: it stands, and what it sees of a row holds.
+  void wait() noexcept;
+  /// After interrupt() or wait(). Pauses when the place is too far away.
   void go_on(EnuPoint here);
 
   /// As far as reach_m, or to the next place that must be come to. Places of a smooth way need not,
@@ -242,6 +244,7 @@ class Executor {
   RowDrive row_;
   std::optional<RowSight> row_sight_;
   std::uint64_t rows_begun_ = 0;
+  bool row_left_ = false;        ///< somebody else drove: the row is looked for anew
   std::vector<int> jumps_left_;  ///< per jump; −1: not counted yet
   std::vector<Notice> notices_;
 

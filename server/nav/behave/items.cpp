@@ -71,6 +71,7 @@ bool Executor::enter_row(const RouteStep& step) {
   drove_ = true;
   doing_ = Doing::Row;
   ++rows_begun_;
+  row_left_ = false;
   row_.begin(order);
   return true;
 }

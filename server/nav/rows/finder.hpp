@@ -28,6 +28,8 @@ class RowFinder {
  public:
   RowFinder(const RowParams& params, const RowOrder& order) : p_(params), order_(order) {}
 
+  /// Other parameters hold from the next piece on; what is known of the row stays.
+  void tune(const RowParams& params) { p_ = params; }
   /// A piece of any sensor, in the order of their stamps. A blind one changes nothing.
   void see(const RowScan& scan);
   /// The odometry began anew, or another row begins.

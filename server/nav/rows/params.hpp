@@ -22,6 +22,7 @@ struct RowParams {
   double rays_fan_deg = 34.0;
   double rays_band_m = 0.30;
   int rays_side = 5;
+  friend bool operator==(const RowParams&, const RowParams&) = default;
 };
 
 template <class V>

@@ -63,7 +63,9 @@ void Lookout::moved(const nav::sense::Odometry& o) noexcept {
 }
 
 void Lookout::look_for(const RowQuestion& row) {
+  const bool same = finder_ && row.order && row.id == row_.id;
   row_ = row;
+  if (same) return finder_->tune(row.params);
   finder_.reset();
   if (row.order) finder_.emplace(row.params, *row.order);
 }

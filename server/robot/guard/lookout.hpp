@@ -50,7 +50,7 @@ class Lookout {
   void moved(const nav::sense::Odometry& o) noexcept;
   /// @param sight one of the chain's sensors, or it is left out
   void see(std::shared_ptr<const base::Sight> sight, base::Time now);
-  /// The row that is to be found from now on; of one id once.
+  /// The row that is to be found from now on. The same id again: the same row, by other parameters.
   void look_for(const RowQuestion& row);
   /// Takes what waited; then what is known around the robot. Null: nothing was seen since the last
   /// one, and that is younger than 0.1 s.

@@ -57,10 +57,12 @@ void Robot::Impl::look_around() {
   blind = silent || long_enough ? std::move(words) : std::string();
 }
 
-/// Told once, and again where there was no room.
+/// Told once, and again where there was no room, or other parameters hold.
 void Robot::Impl::ask_for_row() {
   const auto wanted = missions.executor.row_wanted();
-  const bool same = wanted ? row_asked.order && row_asked.id == wanted->id : !row_asked.order;
+  const bool same =
+      wanted ? row_asked.order && row_asked.id == wanted->id && row_asked.params == config->rows
+             : !row_asked.order;
   if (same) return;
   RowQuestion asked;
   if (wanted) asked = {wanted->id, wanted->order, config->rows};
@@ -73,7 +75,9 @@ std::optional<nav::RowSight> Robot::Impl::row_sight() const {
   nav::RowSight sight;
   sight.body = guard.odometry().pose;
   const auto& around = guard.around();
-  const bool seen = around && around->row && row_asked.order && around->row->id == row_asked.id;
+  // By the executor's word: of a row that it has just begun, nobody has been asked yet.
+  const auto wanted = missions.executor.row_wanted();
+  const bool seen = around && around->row && wanted && around->row->id == wanted->id;
   if (seen) {
     sight.view = &around->row->view;
     sight.age_s = base::seconds(clock.now() - sight.view->stamp);

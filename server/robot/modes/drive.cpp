@@ -105,7 +105,7 @@ base::DriveCommand Robot::Impl::drive_mission() {
     return {*twist, true};
   }
   if (waits_for_way()) {
-    missions.executor.interrupt();
+    missions.executor.wait();
     return {{}, true};
   }
   const bool by_sight = missions.executor.row_wanted().has_value();

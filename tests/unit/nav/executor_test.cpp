@@ -95,6 +95,30 @@ TEST(Executor, AMissionOnTheSpotFinishesAtOnceEvenIfItRepeats) {
   }
 }
 
+// Who only stood saw the row all the time.
+TEST(Executor, LooksForARowAnewAfterSomebodyElseDroveAndNotAfterAWait) {
+  Ride r;
+  r.load(plan({mission::Row{}}));
+  r.start();
+  r.executor.see_row(RowSight{});
+  r.tick();
+  ASSERT_TRUE(r.executor.row_wanted());
+  const std::uint64_t first = r.executor.row_wanted()->id;
+  r.executor.wait();
+  EXPECT_EQ(r.executor.row_wanted()->id, first);
+  r.executor.go_on(r.vehicle.at);
+  EXPECT_EQ(r.executor.row_wanted()->id, first);
+  r.executor.interrupt();
+  r.executor.wait();
+  r.executor.go_on(r.vehicle.at);
+  const std::uint64_t second = r.executor.row_wanted()->id;
+  EXPECT_NE(second, first);
+  r.executor.pause("a word");
+  EXPECT_FALSE(r.executor.row_wanted());
+  ASSERT_TRUE(r.executor.resume(r.vehicle.at));
+  EXPECT_NE(r.executor.row_wanted()->id, second);
+}
+
 TEST(Executor, TellsTheWayThatIsLeftOnlyWhereItIsKnown) {
   Ride r;
   EXPECT_FALSE(r.executor.progress(EnuPoint{}).current_item);
