@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "row_scenes.hpp"
 #include "scenes.hpp"
 #include "seeing_scenes.hpp"
 
@@ -54,8 +55,9 @@ std::vector<base::ParamValue> others(const Parameter& p) {
   return words;
 }
 
-/// The guard's parameters act where something stands.
+/// The guard's parameters act where something stands, those of rows along a row.
 const std::vector<Scene>& scenes_of(const Parameter& p) {
+  if (p.section == "nav.row" || p.section == "nav.rows") return kRowScenes;
   return p.section.starts_with("sense.") ? kSeeingScenes : kScenes;
 }
 
@@ -126,7 +128,7 @@ class Stage {
 };
 
 TEST(ParameterWalk, ASceneTwiceIsTheSame) {
-  for (const Scene& scene : joined(kScenes, kSeeingScenes)) {
+  for (const Scene& scene : joined(joined(kScenes, kSeeingScenes), kRowScenes)) {
     Config config;
     scene.prepare(config);
     const auto once = played(scene, config, kNone, {});
