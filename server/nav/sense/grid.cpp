@@ -127,14 +127,21 @@ void Grid::hit(const Reduced& in, std::uint8_t sensor, std::uint32_t now_ms) {
     Span& span = spans_[index(ix, iy)];
     if (o.known != Known::Occupied) {
       span.low_m = span.top_m = z;
+      span.top_body_m = v.z_m;
+      span.stands = false;
     } else if (o.ms != now_ms) {
       const float fades = std::min(kFades_m, 0.5F * (span.top_m - span.low_m));
       span.low_m += fades;
       span.top_m -= fades;
+      span.top_body_m -= fades;
     }
-    const float foot = v.z_m < kStands_m ? kFoot_m : 0.0F;
-    span = {std::min(span.low_m, z - foot), std::max(span.top_m, z), static_cast<float>(u - ix),
-            static_cast<float>(w - iy)};
+    const bool stands = v.z_m < kStands_m;
+    span = {std::min(span.low_m, z - (stands ? kFoot_m : 0.0F)),
+            std::max(span.top_m, z),
+            static_cast<float>(u - ix),
+            static_cast<float>(w - iy),
+            std::max(span.top_body_m, v.z_m),
+            span.stands || stands};
     o.known = v.kind == Kind::Drop ? Known::Drop : Known::Occupied;
     if (o.hits == 0 || o.ms != now_ms) {
       o.hits = static_cast<std::uint8_t>(std::min<int>(o.hits, kSureHits) + 1);
@@ -249,7 +256,7 @@ void Grid::look_along(const Line& line, std::size_t sector, const Sectors& s, st
       const double u = ix + static_cast<double>(spans_[i].x) - line.x;
       const double w = iy + static_cast<double>(spans_[i].y) - line.y;
       const double d_m = (u * line.dx + w * line.dy) * p_.cell_m;
-      if (!seen_through(i, d_m, std::uint64_t{1} << b, sector, s, now_ms)) continue;
+      if (!seen_through(i, d_m, std::uint64_t{1} << b, sector, s, sensor, now_ms)) continue;
       c = Cell{};  // gone; whether the ground is free is another ray's word
     }
     if (!looked) continue;
@@ -261,14 +268,21 @@ void Grid::look_along(const Line& line, std::size_t sector, const Sectors& s, st
 
 /// Often enough by now, that is.
 bool Grid::seen_through(std::size_t i, double d_m, std::uint64_t bit, std::size_t sector,
-                        const Sectors& s, std::uint32_t now_ms) noexcept {
+                        const Sectors& s, std::uint8_t sensor, std::uint32_t now_ms) noexcept {
   Cell& c = cells_[i];
   if (c.ms == now_ms) return false;  // hit in this very piece, or seen through already
   const Span& span = spans_[i];
-  const float off = c.hits < kSureHits ? kUnsure_m : kGrazes_m;
-  const bool through = c.known == Known::Drop ? (s.of[sector].low & bit) != 0
-                                              : s.passes(sector, static_cast<float>(d_m),
-                                                         span.low_m - off, span.top_m + off);
+  const bool sure = c.hits >= kSureHits;
+  const float off = sure ? kGrazes_m : kUnsure_m;
+  // What a plane met, that same plane always looks at in the same height over the body.
+  const bool same = s.planar && c.sensor == sensor;
+  const float top_body_m = sure && span.stands && !same
+                               ? std::max(s.meets_m, span.top_body_m + kGrazes_m)
+                               : std::numeric_limits<float>::infinity();
+  const bool through = c.known == Known::Drop
+                           ? (s.of[sector].low & bit) != 0
+                           : s.passes(sector, static_cast<float>(d_m), span.low_m - off,
+                                      span.top_m + off, top_body_m);
   if (!through) return false;
   c.ms = now_ms;
   return ++c.misses >= p_.clear_scans;

@@ -13,9 +13,11 @@
 // passes between them and goes on says that it left (of what was met less than four times, a ray
 // nearby as well: it may have been rain). What a ray passes above or below stays, and so
 // does what sinks out of every sensor's view as the robot comes near, leans or climbs. (Where
-// nothing tells how the body leans, its plane is taken for O's.) What is too thin or too new to be
-// believed (Passing) makes no cell occupied; but where something was believed, an echo in its cell
-// or beside it says that it still stands there, however many rays pass it by.
+// nothing tells how the body leans, its plane is taken for O's. What tells it may err by degrees
+// while the robot brakes: of what stands on the ground a ray must say so over the body's plane as
+// well, or a false lean would take away what is too low and near to be met.) What is too thin or
+// too new to be believed (Passing) makes no cell occupied; but where something was believed, an
+// echo in its cell or beside it says that it still stands there, however many rays pass it by.
 
 #include <array>
 #include <cstddef>
@@ -94,6 +96,8 @@ class Grid {
     float top_m = 0.0F;
     float x = 0.0F;  ///< in cells, from the cell's corner
     float y = 0.0F;
+    float top_body_m = 0.0F;  ///< as top_m, over the body's plane
+    bool stands = false;      ///< on the ground
   };
   std::size_t index(std::int32_t ix, std::int32_t iy) const noexcept {
     return static_cast<std::size_t>(iy & mask_) * stride_ + static_cast<std::size_t>(ix & mask_);
@@ -127,7 +131,7 @@ class Grid {
   void look_along(const Line& line, std::size_t sector, const Sectors& s, std::uint8_t sensor,
                   std::uint32_t now_ms) noexcept;
   bool seen_through(std::size_t i, double d_m, std::uint64_t bit, std::size_t sector,
-                    const Sectors& s, std::uint32_t now_ms) noexcept;
+                    const Sectors& s, std::uint8_t sensor, std::uint32_t now_ms) noexcept;
 
   GridParams p_;
   std::int32_t side_;  ///< a power of two

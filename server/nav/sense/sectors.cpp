@@ -75,14 +75,16 @@ void keep_rays(const Reduced& in, const std::vector<float>& at, Sectors& out) {
     const float dy = v.y_m - out.y_m;
     const float d = std::sqrt(dx * dx + dy * dy);
     const float back = ((out.x_m - from[0]) * dx + (out.y_m - from[1]) * dy) / d;
-    out.rays[next[sector_at(at[i])]++] = {at[i], d, back, heights.of(from[0], from[1], from[2]),
-                                          heights.of(v.x_m, v.y_m, v.z_m)};
+    out.rays[next[sector_at(at[i])]++] = {
+        at[i],   d,    back, heights.of(from[0], from[1], from[2]), heights.of(v.x_m, v.y_m, v.z_m),
+        from[2], v.z_m};
   }
 }
 
 }  // namespace
 
-bool Sectors::passes(std::size_t sector, float d_m, float low_m, float top_m) const noexcept {
+bool Sectors::passes(std::size_t sector, float d_m, float low_m, float top_m,
+                     float top_body_m) const noexcept {
   if (d_m < blind_m) return false;
   const auto middle = static_cast<float>(sector) + 0.5F;
   const auto round = static_cast<float>(kSectors);
@@ -96,7 +98,8 @@ bool Sectors::passes(std::size_t sector, float d_m, float low_m, float top_m) co
       if (std::min(off, round - off) > half_sectors + 0.5F) continue;
       const float part = (d_m + ray.back_m) / (ray.end_m + ray.back_m);
       const float z = ray.from_z_m + (ray.end_z_m - ray.from_z_m) * part;
-      if (z >= low_m && z <= top_m) return true;
+      const float body = ray.from_body_m + (ray.end_body_m - ray.from_body_m) * part;
+      if (z >= low_m && z <= top_m && body <= top_body_m) return true;
     }
   }
   return false;
@@ -116,6 +119,8 @@ void sight_sectors(const Reduced& in, float half_step_rad, const SightedParams& 
   const float half = std::min(half_step_rad * kPerRad, 30.0F) * 0.999F;
   out.half_sectors = half;
   out.blind_m = static_cast<float>(params.blind_m);
+  out.planar = params.planar;
+  out.meets_m = static_cast<float>(params.low_m);
   std::vector<float> directions(in.voxels.size(), -1.0F);
   const auto blind = static_cast<float>(params.blind_m);
   const auto vouch = static_cast<float>(params.vouch_m);

@@ -14,6 +14,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "nav/sense/reduce.hpp"
@@ -51,14 +52,20 @@ struct Sectors {
     float back_m = 0.0F;  ///< it came from so far behind that place, along its direction
     float from_z_m = 0.0F;
     float end_z_m = 0.0F;  ///< heights in O
+    float from_body_m = 0.0F;
+    float end_body_m = 0.0F;  ///< heights over the body's plane
   };
   std::vector<Ray> rays;  ///< by direction
   std::array<std::uint32_t, kSectors + 1> begin{};
   float half_sectors = 0.0F;  ///< a ray is that wide, to either side
   float blind_m = 0.0F;
+  bool planar = false;
+  float meets_m = 0.08F;  ///< a ray this low meets what stands there
 
-  /// Some ray of this direction went through at d_m from the sensor, between two heights in O.
-  bool passes(std::size_t sector, float d_m, float low_m, float top_m) const noexcept;
+  /// Some ray of this direction went through at d_m from the sensor, between two heights in O and
+  /// not higher than the third over the body's plane.
+  bool passes(std::size_t sector, float d_m, float low_m, float top_m,
+              float top_body_m = std::numeric_limits<float>::infinity()) const noexcept;
 };
 
 /// @param in judged voxels; the rays take one place each, whatever their width. @param
