@@ -62,6 +62,7 @@ void GlobalStart::follow(const Field& field, const chart::Scan& scan, std::span<
 void GlobalStart::begin(const Field& field, const chart::Scan& scan, std::span<const Point> few,
                         std::span<const Point> hits) {
   const Whole whole = search_whole(field, few, p_.whole);
+  cut_ = !whole.complete;
   // A place found late is taken to have fitted until now as the best one did: it is in the race.
   double best = 0.0;
   double now = 0.0;
@@ -103,7 +104,7 @@ void GlobalStart::merge() {
 }
 
 std::optional<Pose2> GlobalStart::decide() const {
-  if (places_.empty() || way_m_ < p_.least_way_m) return std::nullopt;
+  if (places_.empty() || cut_ || way_m_ < p_.least_way_m) return std::nullopt;
   const Place& best = places_.front();
   if (best.scans < p_.least_scans || best.explained < p_.least_explained ||
       best.crossed > p_.most_crossed) {

@@ -66,7 +66,7 @@ class GlobalStart {
 
   StartParams p_;
   std::vector<Place> places_;
-  double best_total_ = 0.0;  ///< evidence that a new place is given for the scans it missed
+  bool cut_ = false;  ///< the last search was cut short: the right place may not be among them
   std::uint32_t scans_ = 0;
   std::uint32_t since_search_ = 0;
   double way_m_ = 0.0;

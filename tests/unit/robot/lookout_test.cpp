@@ -320,11 +320,16 @@ TEST(CountedRays, ASensorThatNeedNotSeeAndDiesSaysStopForTheUnseenOnly) {
   ASSERT_TRUE(s->rays);
   EXPECT_TRUE(s->rays->lost);
   // While it lies behind a turn on the spot it holds nobody,
-  l.moved({.stamp = at(t + 0.02), .pose = {0.0, 0.0, base::kPi}});
+  nav::sense::Odometry turned;
+  turned.stamp = at(t + 0.02);
+  turned.pose = {0.0, 0.0, base::kPi};
+  l.moved(turned);
   EXPECT_FALSE(l.picture(at(t + 0.02))->rays);
   // but it is there again when that is turned back;
   for (t += 0.04; t < 1.4; t += 0.02, ++n) {
-    l.moved({.stamp = at(t)});
+    nav::sense::Odometry back;
+    back.stamp = at(t);
+    l.moved(back);
     see("other", t, n, 0);
   }
   s = l.picture(at(t));
