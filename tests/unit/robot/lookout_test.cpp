@@ -294,7 +294,7 @@ Lookout two_scanners() {
 
 TEST(CountedRays, ASensorThatNeedNotSeeAndDiesSaysStopForTheUnseenOnly) {
   Lookout l = two_scanners();
-  stand(l, 0.0, 2.0);
+  stand(l, 0.0, 1.2);
   const auto see = [&l](const char* who, double t, std::uint64_t n, int met) {
     auto sight = std::make_shared<base::Sight>(*beams(t, n, met, 0.6, -15.0));
     sight->sensor = who;
@@ -320,25 +320,33 @@ TEST(CountedRays, ASensorThatNeedNotSeeAndDiesSaysStopForTheUnseenOnly) {
   ASSERT_TRUE(s->rays);
   EXPECT_TRUE(s->rays->lost);
   // While it lies behind a turn on the spot it holds nobody,
-  nav::sense::Odometry turned;
-  turned.stamp = at(t + 0.02);
-  turned.pose = {0.0, 0.0, base::kPi};
-  l.moved(turned);
-  EXPECT_FALSE(l.picture(at(t + 0.02))->rays);
+  const auto moved = [&l](double t_s, nav::sense::Pose2 pose) {
+    nav::sense::Odometry o;
+    o.stamp = at(t_s);
+    o.pose = pose;
+    l.moved(o);
+  };
+  const auto drives_on = [&](double until_s, nav::sense::Pose2 pose) {
+    for (; t < until_s; t += 0.02, ++n) {
+      moved(t, pose);
+      see("other", t, n, 0);
+    }
+    return l.picture(at(t));
+  };
+  s = drives_on(1.3, {0.0, 0.0, base::kPi});
+  ASSERT_TRUE(s);
+  EXPECT_FALSE(s->rays);
   // but it is there again when that is turned back;
-  for (t += 0.04; t < 1.4; t += 0.02, ++n) {
-    nav::sense::Odometry back;
-    back.stamp = at(t);
-    l.moved(back);
-    see("other", t, n, 0);
-  }
-  s = l.picture(at(t));
-  ASSERT_TRUE(s->rays);
+  s = drives_on(1.5, {0.0, 0.0, 0.0});
+  ASSERT_TRUE(s && s->rays);
   EXPECT_TRUE(s->rays->lost);
-  // and behind the robot nothing at all.
-  for (; t < 2.08; t += 0.02, ++n) see("other", t, n, 0);
-  l.moved({.stamp = at(2.1), .pose = {2.0, 0.0, 0.0}});
-  EXPECT_FALSE(l.picture(at(2.1))->rays);
+  // and far behind the robot nothing at all, whichever way it turns then.
+  s = drives_on(1.7, {6.0, 0.0, 0.0});
+  ASSERT_TRUE(s);
+  EXPECT_FALSE(s->rays);
+  s = drives_on(1.9, {0.0, 0.0, 0.0});
+  ASSERT_TRUE(s);
+  EXPECT_FALSE(s->rays);
 }
 
 TEST(CountedRays, BeforeTheyStopTheyTellTheWayThatIsLeft) {
