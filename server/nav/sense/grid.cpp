@@ -125,6 +125,7 @@ void Grid::hit(const Reduced& in, std::uint8_t sensor, std::uint32_t now_ms) {
     const auto z =
         static_cast<float>(in.lie.z_m + up[0] * x + up[1] * y + up[2] * static_cast<double>(v.z_m));
     Span& span = spans_[index(ix, iy)];
+    const bool first = o.hits == 0 || o.ms != now_ms;  // in this piece
     if (o.known != Known::Occupied) {
       span.low_m = span.top_m = z;
       span.top_body_m = v.z_m;
@@ -136,14 +137,18 @@ void Grid::hit(const Reduced& in, std::uint8_t sensor, std::uint32_t now_ms) {
       span.top_body_m -= fades;
     }
     const bool stands = v.z_m < kStands_m;
-    span = {std::min(span.low_m, z - (stands ? kFoot_m : 0.0F)),
+    const float low = z - (stands ? kFoot_m : 0.0F);
+    span = {std::min(span.low_m, low),
             std::max(span.top_m, z),
             static_cast<float>(u - ix),
             static_cast<float>(w - iy),
             std::max(span.top_body_m, v.z_m),
-            span.stands || stands};
+            span.stands || stands,
+            first ? low : std::min(span.now_low_m, low),
+            first ? z : std::max(span.now_top_m, z),
+            first ? v.z_m : std::max(span.now_body_m, v.z_m)};
     o.known = v.kind == Kind::Drop ? Known::Drop : Known::Occupied;
-    if (o.hits == 0 || o.ms != now_ms) {
+    if (first) {
       o.hits = static_cast<std::uint8_t>(std::min<int>(o.hits, kSureHits) + 1);
       met_.push_back({ix, iy});
     }
@@ -156,10 +161,20 @@ void Grid::hit(const Reduced& in, std::uint8_t sensor, std::uint32_t now_ms) {
 void Grid::make_sure() {
   for (const auto& [ix, iy] : met_) {
     Cell& o = cell(ix, iy);
+    Span& span = spans_[index(ix, iy)];
     int sum = 0;
     for (std::int32_t y = iy - 1; y <= iy + 1; ++y) {
       for (std::int32_t x = ix - 1; x <= ix + 1; ++x) {
-        if (inside(x, y)) sum += cell(x, y).hits;
+        if (!inside(x, y)) continue;
+        const Cell& other = cell(x, y);
+        sum += other.hits;
+        // What noise throws into a cell of its own is of the thing beside it: seen through
+        // where that is. Of this very piece, else a bar would have its post's heights.
+        if (other.hits == 0 || other.ms != o.ms || other.known != o.known) continue;
+        const Span& of = spans_[index(x, y)];
+        span.low_m = std::min(span.low_m, of.now_low_m);
+        span.top_m = std::max(span.top_m, of.now_top_m);
+        span.top_body_m = std::max(span.top_body_m, of.now_body_m);
       }
     }
     if (sum >= kSureHits) o.hits = std::max(o.hits, kSureHits);

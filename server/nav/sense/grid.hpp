@@ -98,6 +98,9 @@ class Grid {
     float y = 0.0F;
     float top_body_m = 0.0F;  ///< as top_m, over the body's plane
     bool stands = false;      ///< on the ground
+    float now_low_m = 0.0F;   ///< of the last piece that met it
+    float now_top_m = 0.0F;
+    float now_body_m = 0.0F;
   };
   std::size_t index(std::int32_t ix, std::int32_t iy) const noexcept {
     return static_cast<std::size_t>(iy & mask_) * stride_ + static_cast<std::size_t>(ix & mask_);

@@ -91,7 +91,8 @@ inline std::shared_ptr<Hedges> look_along_rows(Walk& w, double from_m, double to
                                         begun->rays);
   guard_as_configured(w);
   auto hedges = std::make_shared<Hedges>(from_m, to_m);
-  w.more = [&w, eyes, hedges, body = nav::sense::Pose2{}, ticks = 0]() mutable {
+  w.more = [&w, eyes, hedges, body = nav::sense::Pose2{}, last = std::optional<RowSeen>{},
+            ticks = 0]() mutable {
     std::vector<RowQuestion> rows;
     w.robot.row_questions().take(rows);
     if (!rows.empty()) eyes->look_for(rows.back());
@@ -109,7 +110,11 @@ inline std::shared_ptr<Hedges> look_along_rows(Walk& w, double from_m, double to
     const auto picture = eyes->picture(w.now);
     if (!picture) return;
     auto told = std::make_shared<Surroundings>(*picture);
-    if (!hedges->told) told->row.reset();
+    if (hedges->told) {
+      last = told->row;
+    } else {
+      told->row = last;  // it grows old
+    }
     w.robot.surroundings().put(std::move(told));
   };
   return hedges;

@@ -272,7 +272,10 @@ inline const std::vector<Scene> kSeeingScenes = {
        w.change();
        w.run(12.0);
      },
-     [](Config& c) { c.rays.enabled = c.rays.instead = true; }},
+     [](Config& c) {
+       c.rays.enabled = c.rays.instead = true;
+       c.rays.slow_m = 0.0;  // else it slows before the sweep would
+     }},
 };
 
 }  // namespace roverd::robot
