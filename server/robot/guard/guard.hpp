@@ -24,6 +24,7 @@
 #include <string>
 #include <utility>
 
+#include "base/measurements.hpp"
 #include "base/sensing.hpp"
 #include "nav/sense/footprint.hpp"
 #include "nav/sense/odometry.hpp"

@@ -261,6 +261,7 @@ inline const std::vector<Scene> kSeeingScenes = {
      },
      [](Config& c) {
        c.rays.enabled = true;
+       c.rays.slow_m = 0.0;        // else it slows before the sweep would
        c.protect.creep_mps = 1.0;  // beside it nothing is seen
      }},
     {"counted rays alone",
@@ -272,10 +273,7 @@ inline const std::vector<Scene> kSeeingScenes = {
        w.change();
        w.run(12.0);
      },
-     [](Config& c) {
-       c.rays.enabled = c.rays.instead = true;
-       c.rays.slow_m = 0.0;  // else it slows before the sweep would
-     }},
+     [](Config& c) { c.rays.enabled = c.rays.instead = true; }},
 };
 
 }  // namespace roverd::robot
