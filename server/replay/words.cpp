@@ -92,7 +92,8 @@ std::string csv_line(const ReplayPose& p) {
   append_f(out, ",%.3f,%.9f,%.9f,%.4f,%.4f,%.2f,", p.t_s, p.pose.global.lat, p.pose.global.lon,
            p.pose.at.east_m, p.pose.at.north_m, heading_of(p.pose));
   if (p.pose.speed_mps) append_f(out, "%.3f", *p.pose.speed_mps);
-  append_f(out, ",%.4f,%.3f,", p.pose.horizontal_sigma_m, base::deg_from_rad(p.pose.heading_sigma_rad));
+  append_f(out, ",%.4f,%.3f,", p.pose.horizontal_sigma_m,
+           base::deg_from_rad(p.pose.heading_sigma_rad));
   out += p.pose.source;
   out += ',';
   out += base::to_string(p.fix);

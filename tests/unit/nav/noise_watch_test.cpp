@@ -2,9 +2,9 @@
 
 #include "nav/estimate/noise_watch.hpp"
 
-#include <gtest/gtest.h>
-
 #include <random>
+
+#include <gtest/gtest.h>
 
 namespace roverd::nav {
 namespace {
