@@ -110,9 +110,12 @@ TEST_F(TeachApiAfterACut, TheRecordingIsThereAndGoesOn) {
   EXPECT_EQ(post("pause"), 409u);
   until_ready();
   ASSERT_EQ(post("resume"), 200u);
+  // Where it stands now no way leads to from the last point. (The walk below is by steps, without
+  // wheels: what the estimator makes of those may be a gap of its own.)
+  until([this] { return teach()["points"].get<int>() >= 4; }, "the first point");
+  EXPECT_EQ(teach()["gaps"], 2);
   walk(1.0);
   until([this] { return teach()["points"].get<int>() >= 5; }, "more points");
-  EXPECT_EQ(teach()["gaps"], 2);
   const auto made = call("POST", "/teach/stop");
   ASSERT_EQ(made.status, 201u) << made.body;
   EXPECT_EQ(made.body["name"], "cut off");
