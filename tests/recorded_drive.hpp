@@ -2,6 +2,7 @@
 // The recordings of CARMEN as drives: scans with the odometry as it was, and the pose that somebody
 // found afterwards.
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <vector>
@@ -29,14 +30,7 @@ struct RecordedDrive {
         length_m += std::hypot(s.pose.x_m - truth.back().x_m, s.pose.y_m - truth.back().y_m);
       }
       time_s = s.time_s - began_s;
-      nav::chart::Scan scan;
-      for (std::size_t i = 0; i < s.ranges_m.size(); ++i) {
-        const float r = s.ranges_m[i];
-        if (!(r > 0.05F && r < 79.0F)) continue;
-        const float angle = s.first_rad + static_cast<float>(i) * s.step_rad;
-        scan.beams.push_back({r * std::cos(angle), r * std::sin(angle), true});
-      }
-      scans.push_back(std::move(scan));
+      scans.push_back(atlas::scan_of(s, {}));
       odometry.push_back(s.odometry);
       truth.push_back(s.pose);
     });

@@ -24,8 +24,6 @@ using Blob = std::vector<std::uint8_t>;
 
 constexpr std::uintmax_t kLargest_bytes = std::uintmax_t{1} << 30U;
 constexpr std::size_t kBlock_bytes = 65'536;
-constexpr float kNearest_m = 0.05F;
-constexpr float kNothing_m = 79.0F;  // CARMEN's scanners tell so much where nothing was seen
 
 base::Error named(const std::filesystem::path& file, base::Error error) {
   error.detail = file.string() + ": " + error.detail;
@@ -67,22 +65,11 @@ Json deviations(const nav::cells::Matrix6d& covariance, Eigen::Index from, doubl
   return out;
 }
 
-nav::chart::Scan hits_of(const atlas::CarmenScan& s) {
-  nav::chart::Scan scan;
-  for (std::size_t i = 0; i < s.ranges_m.size(); ++i) {
-    const float r = s.ranges_m[i];
-    if (!(r > kNearest_m && r < kNothing_m)) continue;
-    const float angle = s.first_rad + static_cast<float>(i) * s.step_rad;
-    scan.beams.push_back({r * std::cos(angle), r * std::sin(angle), true});
-  }
-  return scan;
-}
-
 /// The log through the mapper, block by block.
 base::Result<void> drive(const std::filesystem::path& log, nav::mapping::Mapper& mapper) {
   base::Result<void> taken;
   atlas::CarmenReader reader([&](const atlas::CarmenScan& s) {
-    if (taken) taken = mapper.add(hits_of(s), s.odometry);
+    if (taken) taken = mapper.add(atlas::scan_of(s, {}), s.odometry);
   });
   atlas::Unpacker unpacker([&](base::Bytes part) { reader.feed(part); });
   std::ifstream in(log, std::ios::binary);

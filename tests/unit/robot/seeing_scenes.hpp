@@ -129,6 +129,15 @@ inline void scan(Walk& w) {
   };
 }
 
+inline void drive_scanning(Walk& w) {
+  scan(w);
+  w.run(8.0);
+  w.go(plan_of({{0, 1}, {0, 20}}));
+  w.run(2.0);
+  w.change();
+  w.run(12.0);
+}
+
 inline const std::vector<Scene> kSeeingScenes = {
     {"towards a wall that goes away",
      [](Walk& w) {
@@ -238,41 +247,17 @@ inline const std::vector<Scene> kSeeingScenes = {
        around->sees = true;
        w.run(10.0);
      }},
-    {"rays that are not counted yet",
-     [](Walk& w) {
-       scan(w);
-       w.run(8.0);
-       w.go(plan_of({{0, 1}, {0, 20}}));
-       w.run(2.0);
-       w.change();
-       w.run(12.0);
-     },
+    {"rays that are not counted yet", drive_scanning,
      [](Config& c) {
        c.protect.creep_mps = 1.0;  // beside it nothing is seen
      }},
-    {"counted rays beside the sweep",
-     [](Walk& w) {
-       scan(w);
-       w.run(8.0);
-       w.go(plan_of({{0, 1}, {0, 20}}));
-       w.run(2.0);
-       w.change();
-       w.run(12.0);
-     },
+    {"counted rays beside the sweep", drive_scanning,
      [](Config& c) {
        c.rays.enabled = true;
        c.rays.slow_m = 0.0;        // else it slows before the sweep would
        c.protect.creep_mps = 1.0;  // beside it nothing is seen
      }},
-    {"counted rays alone",
-     [](Walk& w) {
-       scan(w);
-       w.run(8.0);
-       w.go(plan_of({{0, 1}, {0, 20}}));
-       w.run(2.0);
-       w.change();
-       w.run(12.0);
-     },
+    {"counted rays alone", drive_scanning,
      [](Config& c) { c.rays.enabled = c.rays.instead = true; }},
 };
 
