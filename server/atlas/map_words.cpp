@@ -31,6 +31,19 @@ std::optional<double> number_of(const YAML::Node& node) {
   return value;
 }
 
+/// A word that yaml reads as it stands (with a point in it, so that it is neither null nor true);
+/// everything else is quoted.
+std::string file_name_text(const std::string& name) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-";
+  const bool plain = name.find('.') != std::string::npos &&
+                     name.find_first_not_of(kPlain) == std::string::npos && name.front() != '-';
+  if (plain) return name;
+  YAML::Emitter quoted;
+  quoted << YAML::DoubleQuoted << name;
+  return quoted.c_str();
+}
+
 /// Reads field by field and remembers what was wrong with each.
 class FieldReader {
  public:
@@ -42,6 +55,10 @@ class FieldReader {
     if (!node.IsScalar() || node.Scalar().empty() ||
         node.Scalar().find('\0') != std::string::npos) {
       return wrong(name, "must be a file name");
+    }
+    // A yaml is UTF-8, though its reader lets other bytes pass: they could not be written again.
+    if (YAML::Load(file_name_text(node.Scalar())).Scalar() != node.Scalar()) {
+      return wrong(name, "must be a file name in UTF-8");
     }
     out = node.Scalar();
   }
@@ -151,18 +168,6 @@ std::string number_text(double value, bool with_point) {
   std::string written(text.data(), end);
   if (with_point && written.find('.') == std::string::npos) written += ".0";
   return written;
-}
-
-/// A word that yaml reads as it stands; everything else is quoted.
-std::string file_name_text(const std::string& name) {
-  constexpr std::string_view kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-";
-  const bool plain =
-      !name.empty() && name.find_first_not_of(kPlain) == std::string::npos && name.front() != '-';
-  if (plain) return name;
-  YAML::Emitter quoted;
-  quoted << YAML::DoubleQuoted << name;
-  return quoted.c_str();
 }
 
 }  // namespace

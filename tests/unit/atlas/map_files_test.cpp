@@ -61,11 +61,19 @@ TEST(MapWords, OfOlderMapsTakeTheirDefaults) {
   const auto again = atlas::read_words(atlas::write_words(*words));
   ASSERT_TRUE(again);
   EXPECT_EQ(again->image, "my shed.pgm");
+  for (const char* name : {"null", "true", "-a.pgm", "k\xC3\xB5mb.pgm", "a: b #c.pgm"}) {
+    MapWords odd = *words;
+    odd.image = name;
+    const auto read = atlas::read_words(atlas::write_words(odd));
+    ASSERT_TRUE(read) << name;
+    EXPECT_EQ(read->image, name);
+  }
 }
 
 TEST(MapWords, ThatCannotBeAreNamed) {
   EXPECT_EQ(problem_of(with_line("image", "")), "/image");
   EXPECT_EQ(problem_of(with_line("image", "image: [a, b]")), "/image");
+  EXPECT_EQ(problem_of(with_line("image", "image: \xAC\xAC.pgm")), "/image") << "no UTF-8";
   EXPECT_EQ(problem_of(with_line("resolution", "resolution: 0")), "/resolution");
   EXPECT_EQ(problem_of(with_line("resolution", "resolution: .nan")), "/resolution");
   EXPECT_EQ(problem_of(with_line("resolution", "resolution: nan")), "/resolution");
