@@ -10,7 +10,7 @@
 namespace roverd::nav::rows::tests {
 namespace {
 
-constexpr double kTick_s = 0.02;
+constexpr double kBrakeTick_s = 0.02;
 
 /// A robot on the x axis of O that does at once what it is told. Its row lies along y = row_y_m.
 struct Lookout {
@@ -33,7 +33,7 @@ struct Lookout {
   }
 
   void run(double for_s) {
-    for (const double until_s = now_s + for_s; now_s < until_s; now_s += kTick_s) {
+    for (const double until_s = now_s + for_s; now_s < until_s; now_s += kBrakeTick_s) {
       if (sees) look();
       RowSight sight;
       sight.view = &view;
@@ -42,8 +42,8 @@ struct Lookout {
       Vehicle vehicle;
       vehicle.speed_mps = twist.linear_mps;
       vehicle.yaw_rate_radps = twist.angular_radps;
-      twist = drive.step(sight, vehicle, 10.0, kTick_s).command;
-      body = body * sense::along(twist.linear_mps, twist.angular_radps, kTick_s);
+      twist = drive.step(sight, vehicle, 10.0, kBrakeTick_s).command;
+      body = body * sense::along(twist.linear_mps, twist.angular_radps, kBrakeTick_s);
     }
   }
 };
