@@ -5,6 +5,8 @@
 #include <cmath>
 #include <unordered_set>
 
+#include "nav/chart/cell.hpp"
+
 namespace roverd::nav::mapping {
 
 namespace {
@@ -63,8 +65,8 @@ Field::Field(std::span<const Eigen::Vector2f> points) {
   static const auto kernel = blurred();
   for (const auto& p : points) {
     const Eigen::Vector2d c = cell_of(p.cast<double>());
-    const auto column = static_cast<std::int32_t>(std::floor(c.x()));
-    const auto row = static_cast<std::int32_t>(std::floor(c.y()));
+    const std::int32_t column = chart::whole_cell(c.x());
+    const std::int32_t row = chart::whole_cell(c.y());
     if (column < kReach || row < kReach || column + kReach >= columns_ || row + kReach >= rows_) {
       continue;
     }

@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "nav/chart/cell.hpp"
 #include "nav/mapping/field.hpp"
 
 namespace roverd::nav::mapping {
@@ -42,8 +43,7 @@ Turned turned(const Field& field, std::span<const Eigen::Vector2f> points, const
     const Eigen::Vector2d p = points[i].cast<double>();
     const Eigen::Vector2d at = field.cell_of({guess.x_m - window_m + c * p.x() - s * p.y(),
                                               guess.y_m - window_m + s * p.x() + c * p.y()});
-    out.cells.push_back({static_cast<std::int32_t>(std::floor(at.x())),
-                         static_cast<std::int32_t>(std::floor(at.y()))});
+    out.cells.push_back({chart::whole_cell(at.x()), chart::whole_cell(at.y())});
   }
   return out;
 }

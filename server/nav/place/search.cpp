@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/angle.hpp"
+#include "nav/chart/cell.hpp"
 
 namespace roverd::nav::place {
 
@@ -24,8 +25,8 @@ std::vector<Square> turned(const Field& field, std::span<const Point> points, do
   const double s = std::sin(yaw_rad);
   const double per_m = 1.0 / field.square_m();
   for (const Point& p : points) {
-    out.push_back({static_cast<std::int32_t>(std::floor((x_m + c * p.x_m - s * p.y_m) * per_m)),
-                   static_cast<std::int32_t>(std::floor((y_m + s * p.x_m + c * p.y_m) * per_m))});
+    out.push_back({chart::whole_cell((x_m + c * p.x_m - s * p.y_m) * per_m),
+                   chart::whole_cell((y_m + s * p.x_m + c * p.y_m) * per_m)});
   }
   return out;
 }

@@ -89,6 +89,21 @@ TEST(Search, AlongAnEndlessCorridorOnlyTheGuessHolds) {
   EXPECT_LT(fit.covariance(1, 1), 0.02 * 0.02);
 }
 
+TEST(Search, OfAGuessTooFarForAnyCellIsTheGuess) {
+  const Points points = {{1.0F, 2.0F}, {-3.0F, 0.5F}};
+  for (const double far_m : {1e9, -1e9, 1e300}) {
+    EXPECT_EQ(search(Field(points), points, {far_m, 2.0, 0.1}, {}).pose.x_m, far_m);
+    EXPECT_EQ(search(Field(points), points, {far_m, 2.0, 0.1}, {}).score, 0.0);
+  }
+}
+
+TEST(Field, OfPointsAtBothEndsOfTheWorldHoldsNeither) {
+  const Field field(Points{{-1e12F, 0.0F}, {1e12F, 0.0F}});
+  Eigen::Vector2d slope;
+  EXPECT_EQ(field.sample({0.0, 0.0}, slope), 0.0);
+  EXPECT_EQ(field.sample({1e12, 0.0}, slope), 0.0);
+}
+
 TEST(Search, OfNothingIsTheGuess) {
   constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
   const Field empty(Points{});

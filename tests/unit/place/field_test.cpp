@@ -78,6 +78,14 @@ TEST(Field, AWallCountsAcrossItAndNotAlong) {
   EXPECT_NEAR(wall->y_m, 1.025F, 1e-3F) << "the middle of its cells";
 }
 
+TEST(Search, AroundAPlaceTooFarForAnyCellNothingFits) {
+  const auto field = tests::field_of(tests::shed(), 12.0, 8.0);
+  const std::vector<nav::place::Point> few(8);
+  for (const double far_m : {1e12, -1e12}) {
+    EXPECT_EQ(nav::place::search_window(*field, few, {far_m, 2.0, 0.1}).fit, 0.0);
+  }
+}
+
 TEST(Search, FindsWhatTryingEveryPlaceFinds) {
   const auto field = tests::field_of(tests::shed(), 12.0, 8.0);
   tests::Scanner scanner(3);
