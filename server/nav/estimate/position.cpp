@@ -25,6 +25,12 @@ constexpr double kSlips = 0.4;        // of the way since the last position, at 
 constexpr double kSlipsFrom = 9.0;    // of y'S⁻¹y, so that it was not foreseen
 constexpr double kDoubt_m2ps = 0.05;  // slow enough not to believe a jump of 3 m within 5 s
 
+// Positions that seem to run away from the velocity (Votes::apart): from where on they weigh less,
+// where they hardly weigh any more, and what they are worth then.
+constexpr double kSuspect = 0.4;
+constexpr double kSuspectAll = 0.7;
+constexpr double kSuspect_m = 0.3;
+
 constexpr double kFixed_m = 0.02;   // 1 sigma of what scatters in an honest fixed solution
 constexpr double kShaken_m = 0.35;  // of a fixed solution that comes and goes
 
@@ -199,6 +205,13 @@ void Estimator::reset_position(base::EnuPoint at, const GnssQuality& q) noexcept
   history_.shift(change);
 }
 
+/// What a fixed position lacks that seems to run away, before it is proved: odometry, gyro and
+/// velocity lead meanwhile.
+double Estimator::suspected_m(const GnssQuality& q) const noexcept {
+  if (q.drift.sigma_m > 0.0) return 0.0;
+  return kSuspect_m * std::clamp((votes_.apart() - kSuspect) / (kSuspectAll - kSuspect), 0.0, 1.0);
+}
+
 void Estimator::fuse_position(const base::GnssFix& fix, const GnssQuality& q) noexcept {
   Input& in = health_.position;
   const auto past = history_.at(taken_at(fix));
@@ -224,8 +237,9 @@ void Estimator::fuse_position(const base::GnssFix& fix, const GnssQuality& q) no
     o.H(0, kCrab) = -behind_n / scale;
     o.H(0, kSlideE) = o.H(1, kSlideN) = -std::hypot(behind_e, behind_n);
   }
-  o.R(0, 0) = q.sigma_east_m * q.sigma_east_m;
-  o.R(1, 1) = q.sigma_north_m * q.sigma_north_m;
+  const double weak_m = suspected_m(q);
+  o.R(0, 0) = q.sigma_east_m * q.sigma_east_m + weak_m * weak_m;
+  o.R(1, 1) = q.sigma_north_m * q.sigma_north_m + weak_m * weak_m;
   o.gate = kGate2;
   if (approaching_) approach(o);
   if (q.drift.sigma_m <= 0.0 && !approaching_) watch_slip(o, at(kYaw), fix.stamp);

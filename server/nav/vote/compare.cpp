@@ -15,6 +15,7 @@ using base::seconds;
 
 constexpr std::array kTurnWindows_s{1.5, 4.0, 8.0, 11.0, 16.0};
 constexpr std::array kWayWindows_s{1.0, 1.8, 2.5, 3.3, 5.0, 7.0, 10.0};
+constexpr std::array kApartWindows_s{1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0, 11.0, 16.0};
 constexpr double kTrackWindow_s = 5.6;  // longer, slip and bends add up
 constexpr double kChordReach_s = 1.2;   // half a chord of positions, and one of them
 constexpr double kMean_s = 1.0;         // directions are averaged at both ends of a window
@@ -22,6 +23,7 @@ const double kTurnFloor_rad = rad_from_deg(2.0);
 constexpr double kWayFloor_m = 0.10;
 constexpr double kWayFloorRtk_m = 0.05;
 constexpr double kTrackWayFloor_m = 0.15;
+constexpr double kApartFloor_m = 0.03;
 
 const double kGyro_rad = rad_from_deg(0.5);
 constexpr double kGyroShare = 0.005;
@@ -78,6 +80,7 @@ class Comparer {
     table_.spins = spins();
     for (const double w : kTurnWindows_s) turns(w);
     for (const double w : kWayWindows_s) ways(w);
+    if (f_.rtk && heard(Sense::Position) && heard(Sense::Velocity)) runs_apart();
     headings();
     return table_;
   }
@@ -249,6 +252,20 @@ class Comparer {
     }
     const bool both_stand = paces && stands(paces->m, begin, end) && stands(spots->m, begin, end);
     if (!both_stand) track_way(Sense::Position, *spots, begin, end);
+  }
+
+  /// Positions that run away from the velocity, slower than two of them could show.
+  void runs_apart() noexcept {
+    RunApart apart(
+        f_, std::max(f_.from[index_of(Sense::Position)], f_.from[index_of(Sense::Velocity)]));
+    for (const double w : kApartWindows_s) {
+      const auto rise = apart.over(w);
+      if (!rise) return;
+      const Difference off{Difference::Of::Way, norm(rise->m), apart.window_s()};
+      const double limit = sigmas_ * rise->sigma_m + kApartFloor_m;
+      table_.apart = std::max(table_.apart, off.size / limit);
+      put(Sense::Position, Sense::Velocity, off, limit, 0.0);
+    }
   }
 
   void velocity_way(Time begin, Time end) noexcept {

@@ -112,6 +112,8 @@ struct Table {
   bool for_velocity = false;
   /// Positions and velocity see it stand while the wheels turn.
   bool spins = false;
+  /// Of its limit: how far positions that are RTK fixed have run away from the velocity.
+  double apart = 0.0;
 
   const Finding& between(Sense a, Sense b) const noexcept { return of[index_of(a)][index_of(b)]; }
   bool judged(Sense a, Sense b) const noexcept { return between(a, b).judged; }

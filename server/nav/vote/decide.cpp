@@ -19,6 +19,11 @@ std::optional<Sense> of_two(const Table& table, Sense a, Sense b,
   return std::nullopt;
 }
 
+bool runs_apart(const Table& table, const Verdict& verdict) noexcept {
+  constexpr std::array kBoth{Sense::Position, Sense::Velocity};
+  return table.apart > 1.0 && verdict.undecided == kBoth;
+}
+
 }  // namespace
 
 Verdict judge(const Table& table, const std::array<bool, kSenses>& voice,
@@ -81,8 +86,11 @@ std::optional<Sense> Jury::step(const Table& table, const std::array<bool, kSens
   }
   undecided_ = verdict.undecided ? undecided_ + 1 : 0;
   if (verdict.undecided) undecided_last_ = now;
-  if (undecided_ == kUndecidedAfter) ++votes_.accusations;
-  if (undecided_ >= kUndecidedAfter) {
+  const bool enough = undecided_ >= (runs_apart(table, verdict) ? kNameAfter : kUndecidedAfter);
+  if (undecided_ == 0) undecided_told_ = false;
+  if (enough && !undecided_told_) ++votes_.accusations;
+  undecided_told_ = undecided_told_ || enough;
+  if (enough) {
     votes_.undecided = verdict.undecided;
     votes_.undecided_off = table.between((*verdict.undecided)[0], (*verdict.undecided)[1]).off;
   } else if (undecided_last_ && base::seconds(now - *undecided_last_) > kUndecidedStays_s) {

@@ -15,7 +15,8 @@
 // A look is taken with every new position, no more often than every 0.2 s. What those with a voice
 // contradict each other by is doubted from the second look on.
 // Undecided for 8 times in a row (1.6 s) is told, and stays until there was no contradiction for
-// 3 s. Those that are left out have no voice. Pure but for its memory; time is an argument.
+// 3 s; for 3 times where positions run apart from the velocity, which is made of many of both.
+// Those that are left out have no voice. Pure but for its memory; time is an argument.
 
 #include <array>
 #include <optional>
@@ -73,7 +74,8 @@ class Jury {
   std::array<double, kSenses> worst_{};  ///< ratio against any other, at the last look
   std::array<bool, kSenses> stuck_{};
   int undecided_ = 0;
-  double way_seen_m_ = 0.0;  ///< doubts of the look before
+  bool undecided_told_ = false;  ///< since it began
+  double way_seen_m_ = 0.0;      ///< doubts of the look before
   double turn_seen_rad_ = 0.0;
   std::optional<Time> undecided_last_;
   std::array<std::optional<Time>, kSenses> agrees_since_;

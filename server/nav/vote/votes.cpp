@@ -295,6 +295,7 @@ std::optional<Sense> Votes::step(const Belonging& b, double sigmas, double retur
   }
   const Table table = compare(facts_, sigmas);
   if (table.spins) facts_.spun = now;
+  apart_ = table.apart;
   return jury_.step(table, facts_.heard, frozen_now, return_s, now);
 }
 

@@ -51,6 +51,9 @@ class Votes {
   /// Once a tick. @return who was left out just now.
   std::optional<Sense> step(const Belonging& b, double sigmas, double return_s, Time now) noexcept;
 
+  /// How far positions that are RTK fixed have run away from the velocity at the last look, of what
+  /// proves it (1).
+  double apart() const noexcept { return apart_; }
   bool out(Sense s) const noexcept { return jury_.out(s); }
   /// When the one that was left out was first seen to contradict the others.
   Time seen(Sense s) const noexcept { return jury_.seen(s); }
@@ -100,6 +103,7 @@ class Votes {
   std::optional<Time> looked_;
   bool spot_is_new_ = false;
   double scatter_m2ps2_ = 0.0;  ///< of velocities about the line through their neighbours, per axis
+  double apart_ = 0.0;
   Jury jury_;
 };
 

@@ -21,6 +21,7 @@ class Slope {
   double slip = 0.1;
   double gyro_extra_radps = 0.0;
   bool tracks_speak = true;
+  base::EnuPoint drift_mps;  ///< of the positions, beside the truth
   Votes votes;
 
   void drive(double speed_mps, double rate_radps, double for_s) {
@@ -36,13 +37,16 @@ class Slope {
     const base::EnuPoint mps{over_ground * std::cos(yaw_rad_) + slide * std::abs(speed_mps),
                              over_ground * std::sin(yaw_rad_)};
     at_ = {at_.east_m + mps.east_m * kDt_s, at_.north_m + mps.north_m * kDt_s};
+    astray_ = {astray_.east_m + drift_mps.east_m * kDt_s,
+               astray_.north_m + drift_mps.north_m * kDt_s};
     if (tracks_speak) votes.tracks(speed_mps * kDt_s, rate_radps * kDt_s / 0.7, now_);
     const double gyro = rate_radps + gyro_extra_radps + 0.002 * normal_(random_);
     votes.gyro(gyro, gyro, now_);
     if (++count_ % 10 == 0) {
       Spot spot;
       spot.t = now_;
-      spot.at = {at_.east_m + 0.02 * normal_(random_), at_.north_m + 0.02 * normal_(random_)};
+      const base::EnuPoint shown = at_ + astray_;
+      spot.at = {shown.east_m + 0.02 * normal_(random_), shown.north_m + 0.02 * normal_(random_)};
       spot.sigma_m = 0.02;
       votes.position(spot, 4, now_);
       votes.velocity({mps.east_m + 0.03 * normal_(random_), mps.north_m + 0.03 * normal_(random_)},
@@ -60,6 +64,7 @@ class Slope {
   int count_ = 0;
   double yaw_rad_ = 0.0;
   base::EnuPoint at_;
+  base::EnuPoint astray_;
   std::mt19937_64 random_{7};
   std::normal_distribution<double> normal_;
 };
@@ -107,6 +112,24 @@ TEST(Votes, TracksThatWereSilentAreNotAccusedOfTheWayThatTheyDidNotTell) {
   slope.tracks_speak = true;
   slope.drive(0.8, 0.0, 12.0);
   EXPECT_EQ(slope.votes.told().accusations, 0u);
+}
+
+TEST(Votes, PositionsThatRunAwayAreFoundWithinSecondsRoundABendAndOnASlopeToo) {
+  for (const double rate_radps : {0.0, 0.2}) {
+    for (const double slide : {0.0, 0.1}) {
+      Slope slope;
+      slope.slide = slide;
+      slope.drive(0.8, rate_radps, 20.0);
+      EXPECT_LT(slope.votes.apart(), 1.0);
+      slope.drift_mps = {-0.08, 0.06};
+      slope.drive(0.8, rate_radps, 1.2);
+      EXPECT_EQ(slope.votes.told().accusations, 0u);  // 12 cm: it could be noise yet
+      slope.drive(0.8, rate_radps, 2.6);
+      EXPECT_GT(slope.votes.apart(), 1.0);
+      const auto& told = slope.votes.told();
+      EXPECT_TRUE(told.undecided || told[Sense::Position].left_out) << rate_radps << " " << slide;
+    }
+  }
 }
 
 }  // namespace
