@@ -40,6 +40,7 @@ struct Piece {
   Chain chain{};
   std::vector<CurvePoint> points{};
   std::vector<std::size_t> corners{};
+  double tolerance_m = 0.0;
   double apart_m = 0.0;
   double worst_u = 0.0;
 
@@ -88,7 +89,7 @@ class Smoother {
       if (!give_up_places()) break;
     }
     for (Piece& piece : pieces_) {
-      if (piece.apart_m > limits_.tolerance_m) piece.points.clear();
+      if (piece.apart_m > piece.tolerance_m) piece.points.clear();
     }
     return way();
   }
@@ -188,6 +189,8 @@ class Smoother {
     }
     FitLimits limits = limits_;
     limits.noise_m = std::max(noise_m(piece.chain), 0.001);
+    limits.tolerance_m = piece.tolerance_m =
+        tolerance_m(piece.chain, limits_.tolerance_m, limits.noise_m);
     const PieceFit curve(std::move(piece.chain), ends, limits);
     piece.chain = curve.chain();
     piece.points = curve.points();
@@ -300,7 +303,7 @@ class Smoother {
   bool give_up_places() {
     bool any = false;
     for (Piece& piece : pieces_) {
-      if (piece.apart_m <= limits_.tolerance_m) continue;
+      if (piece.apart_m <= piece.tolerance_m) continue;
       for (std::size_t k = piece.first; k <= piece.last; ++k) {
         const double u = piece.chain.u[k - piece.first + piece.offset()];
         if (std::abs(u - piece.worst_u) > kGiveUp_m || cut_[k] == Cut::Hard) continue;

@@ -26,7 +26,10 @@ constexpr double kNearTolerance = 0.97;
 constexpr double kStencil_m = 0.3;
 constexpr double kAlong_m = 0.4;
 constexpr double kSagitta_m = 0.001;
-constexpr double kLeast_m = 0.005;  // between two points of a path
+constexpr double kThrown = 4.0;      // sigmas, by which noise throws one of many points
+constexpr double kThrownMost = 1.4;  // times the tolerance
+constexpr double kMany_m = 0.15;     // apart, at most
+constexpr double kLeast_m = 0.005;   // between two points of a path
 
 double size(EnuPoint d) noexcept {
   return std::hypot(d.east_m, d.north_m);
@@ -343,6 +346,12 @@ std::vector<CurvePoint> PieceFit::points() const {
     out[i].curvature_1pm = base::angle_diff_rad(yaw[i], yaw[i + 1]) / way_m;
   }
   return out;
+}
+
+double tolerance_m(const Chain& chain, double most_m, double noise_m) noexcept {
+  const double apart_m = chain.u.back() / static_cast<double>(chain.u.size() - 1);
+  if (apart_m > kMany_m) return most_m;
+  return std::clamp(kThrown * noise_m, most_m, kThrownMost * most_m);
 }
 
 double apart_m(const Chain& chain, std::span<const CurvePoint> points, double* u) {

@@ -35,6 +35,11 @@ Chain chain_of(std::vector<EnuPoint> points);
 /// Standard deviation across the way, robust against corners and single outliers; 0: too few.
 double noise_m(const Chain& chain);
 
+/// How far beside a single point the curve may be: one of many that noise threw out is no reason
+/// for a bend. @param most_m where points lie farther apart than that. @param noise_m of the
+/// points.
+double tolerance_m(const Chain& chain, double most_m, double noise_m) noexcept;
+
 struct PieceEnds {
   std::optional<EnuPoint> begin;  ///< held there; empty: as the points have it
   std::optional<EnuPoint> end;
