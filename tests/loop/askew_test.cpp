@@ -59,6 +59,31 @@ TEST(Askew, ConfirmedTheyAreCorrectedAndUsedAgain) {
   EXPECT_FALSE(rig.ask(robot::CorrectAntennas{false}));
 }
 
+TEST(Askew, HeldBecauseOfThemAPersonCorrectsAcknowledgesAndResumesAndTheMissionFinishes) {
+  int held = 0;
+  for (const std::uint64_t seed : {2ULL, 4ULL, 9ULL, 19ULL}) {
+    RigOptions o = mounted(22.0);
+    o.seed = seed;
+    Rig rig(o);
+    rig.arm_and_start(rig.plan_of({{0, 12}, {8, 12}, {8, 4}}, 1.0));
+    const auto runs = [&] { return rig.execution() == ExecutionState::Running; };
+    rig.run_until([&] { return !runs(); }, 120.0);
+    if (rig.execution() != ExecutionState::Finished) {
+      ++held;
+      rig.run(3.0);
+      ASSERT_TRUE(rig.ask(robot::CorrectAntennas{true})) << seed;
+      ASSERT_TRUE(rig.ask(robot::Acknowledge{})) << seed;
+      ASSERT_TRUE(rig.ask(robot::ResumeMission{})) << seed;
+      rig.run_until([&] { return !runs(); }, 120.0);
+      EXPECT_NEAR(base::deg_from_rad(rig.state()->estimator.antennas_offset_rad), -22.0, 3.0);
+    }
+    EXPECT_EQ(rig.execution(), ExecutionState::Finished) << rig.state()->mission.reason;
+    EXPECT_LT(rig.farthest_from_path_m({{0, 0}, {0, 12}, {8, 12}, {8, 4}}), 0.5) << seed;
+    EXPECT_LT(std::abs(rig.yaw_error_deg()), 3.0) << seed;
+  }
+  EXPECT_GT(held, 0);
+}
+
 TEST(Askew, BeforeItHasDrivenTheirHeadingClaimsNoTenthOfADegree) {
   Rig rig(mounted(0.0));
   rig.run(5.0);
