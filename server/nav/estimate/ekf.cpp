@@ -18,7 +18,7 @@ using base::rad_from_deg;
 constexpr double kPositionNoise_m = 0.02;
 constexpr double kPositionNoiseGyro_m = 0.005;
 constexpr double kPositionNoisePerTurn_m = 0.05;
-constexpr double kPositionNoisePerTurnGyro_m = 0.015;
+constexpr double kPositionNoisePerTurnGyro_m = 0.03;
 constexpr double kStandingNoise_m = 0.001;
 const double kYawNoise_rad = rad_from_deg(0.3);
 const double kYawNoisePerSpeed_rad = rad_from_deg(0.8);
