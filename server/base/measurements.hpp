@@ -2,6 +2,7 @@
 // What drivers tell the robot. SI, radians, stamped with the monotonic time at which the bytes
 // arrived (device units die in the codecs). An unknown value is an empty optional, never zero.
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -265,10 +266,46 @@ struct HostStatus {
   std::vector<HostProblem> problems;
 };
 
+/// A place on the earth at which a map shows the body, when it was seen. The covariance is that of
+/// the place in the map: an error of the map's own anchor is not in it.
+struct PlaceFix {
+  LatLon at;             ///< of the body's origin
+  double yaw_rad = 0.0;  ///< from east, left positive
+  /// Of east, north (m) and yaw (rad): east², east·north, north², east·yaw, north·yaw, yaw².
+  std::array<double, 6> covariance{};
+  std::uint32_t map = 0;        ///< a number of its own for each map that was taken into use
+  std::uint32_t found = 0;      ///< how often the place was found anew
+  LatLon anchor;                ///< where the map's origin lies
+  double anchor_sigma_m = 0.0;  ///< how well that is known, 1 sigma
+};
+
+/// Off: no map is in use. Lost: what is seen fits nowhere.
+enum class PlacePhase { Off, Lost, Searching, Known };
+std::string_view to_string(PlacePhase p) noexcept;  // off lost searching known
+
+/// In a map's frame: metres, yaw left positive.
+struct MapPlace {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double yaw_rad = 0.0;
+};
+
+/// What the matcher of a map says of one moment.
+struct PlaceState {
+  Time stamp;  ///< when it was seen; of Off: when it was told
+  PlacePhase phase = PlacePhase::Off;
+  std::string map;                   ///< its name; empty: none
+  std::string reason;                ///< one phrase for people; empty: nothing is wrong
+  std::optional<MapPlace> in_map{};  ///< empty: not known
+  std::optional<double> sigma_m{};   ///< larger axis
+  std::optional<double> sigma_rad{};
+  std::optional<PlaceFix> fix{};  ///< only of a moment at which what is seen fits
+};
+
 using Measurement =
     std::variant<GnssFix, GnssVelocity, Heading, Inertial, Attitude, SatellitesInView, WheelTravel,
                  BaseMotion, SteeringState, BaseStatus, BatteryState, MotorState, LightState,
-                 RadioState, Bumper, OperatorLink, DriverStatus, HostStatus>;
+                 RadioState, Bumper, OperatorLink, DriverStatus, HostStatus, PlaceState>;
 
 inline Time stamp_of(const Measurement& m) noexcept {
   return std::visit([](const auto& value) { return value.stamp; }, m);

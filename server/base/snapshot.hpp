@@ -78,7 +78,7 @@ struct Pose {
                                    ///< only driving showed it, and driving may go a bit aside
   Ellipse ellipse;
   std::optional<double> alt_msl_m;
-  std::string source;  ///< "gnss", "gnss+odometry", "odometry"
+  std::string source;  ///< "gnss", "map", "gnss+odometry", "map+odometry", "odometry"
 };
 
 /// Where in its route a mission stands: enough to go on from there, also after a restart.
@@ -199,7 +199,7 @@ struct InputHealth {
 
 /// The estimate was set anew. What was driven by it keeps its place: `jump` is old minus new.
 struct EstimateReset {
-  std::string_view what;  ///< position, heading, pose, anchor
+  std::string_view what;  ///< position, heading, pose, anchor, map
   EnuPoint jump;
   double jump_rad = 0.0;   ///< of the yaw
   double claimed_m = 0.0;  ///< 1 sigma that was claimed before, doubts left aside
@@ -279,6 +279,11 @@ struct EstimatorHealth {
   double side_slip = 0.0;
   std::optional<EnuPoint> gnss_offset;  ///< slow error of the receiver, as estimated
   InputHealth position, velocity, compass, heading, odometry, inertial;
+  InputHealth place;    ///< what the map says
+  bool by_map = false;  ///< the position is the map's, not the satellites'
+  /// What is added to the places of the map: by so much the satellites showed that its anchor is
+  /// off. Zero where nothing did.
+  EnuPoint map_offset;
   std::uint64_t rejected = 0;
   std::array<std::uint64_t, kRefusals> refusals{};  ///< by cause
   bool receivers_disagree = false;
@@ -352,6 +357,7 @@ struct Snapshot {
   std::optional<LatLon> home;
   std::optional<GnssFix> gnss;
   std::optional<GnssVelocity> gnss_velocity;
+  std::optional<PlaceState> place;  ///< in the map that is in use; empty: nothing looks for it
   std::optional<Attitude> attitude;
   std::vector<SatellitesInView> satellites;  ///< one entry for each receiver that tells
   std::optional<BaseStatus> base;

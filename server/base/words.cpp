@@ -276,6 +276,20 @@ std::string_view to_string(Alignment a) noexcept {
   return "unknown";
 }
 
+std::string_view to_string(PlacePhase p) noexcept {
+  switch (p) {
+    case PlacePhase::Off:
+      return "off";
+    case PlacePhase::Lost:
+      return "lost";
+    case PlacePhase::Searching:
+      return "searching";
+    case PlacePhase::Known:
+      return "known";
+  }
+  return "off";
+}
+
 std::string_view to_string(Refusal r) noexcept {
   switch (r) {
     case Refusal::NotFinite:

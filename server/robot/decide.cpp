@@ -144,10 +144,27 @@ void Robot::Impl::watch_estimate() {
     }
     event(Severity::Warning, "estimate_latched", reset_latch.why());
   }
+  watch_place();
   if (estimate_watch.anchor_lost() && missions.executor.running()) {
     const std::string why = "the anchor was dropped: the fix class changed";
     hold(why);
     event(Severity::Warning, "mission_paused", why);
+  }
+}
+
+/// Where in its map it is: that it is found, and that it is lost.
+void Robot::Impl::watch_place() {
+  using Phase = base::PlacePhase;
+  if (!world.place) return;
+  const base::PlaceState& place = *world.place;
+  if (place.phase == place_told || place.phase == Phase::Off || place.phase == Phase::Searching) {
+    return;
+  }
+  place_told = place.phase;
+  if (place.phase == Phase::Known) {
+    event(Severity::Info, "place_known", "the map " + place.map + " shows where the robot is");
+  } else {
+    event(Severity::Warning, "place_lost", place.map + ": " + place.reason);
   }
 }
 

@@ -160,6 +160,7 @@ struct Robot::Impl {
   base::Driver driver = base::Driver::None;
   base::DriveCommand sent;
   std::string speed_reason;
+  base::PlacePhase place_told = base::PlacePhase::Off;
   bool latch_told = false;  ///< to Robot::on_latch
 
   static constexpr const char* kOperator = "by the operator";
@@ -297,6 +298,7 @@ struct Robot::Impl {
   void watch_frame();
   void watch_base();
   void watch_estimate();
+  void watch_place();
   void watch_radio(bool drives);
 
   // positioning.cpp

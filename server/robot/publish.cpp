@@ -44,6 +44,7 @@ bool Robot::Impl::publish() {
   s->home = home.at();
   s->gnss = world.gnss;
   s->gnss_velocity = world.gnss_velocity;
+  s->place = world.place;
   s->attitude = attitude();
   if (!s->attitude) s->attitude = world.attitude;
   s->satellites = world.satellites;

@@ -19,6 +19,7 @@ struct World {
   std::optional<base::GnssFix> gnss;
   std::optional<base::GnssVelocity> gnss_velocity;
   std::optional<base::Attitude> attitude;
+  std::optional<base::PlaceState> place;
   std::vector<base::SatellitesInView> satellites;  ///< one for each receiver
   std::optional<base::BaseStatus> base;
   std::optional<base::BaseMotion> motion;
@@ -89,6 +90,7 @@ struct World {
   }
   void put(base::Inertial&&) {}
   void put(base::Attitude&& m) { attitude = m; }
+  void put(base::PlaceState&& m) { place = std::move(m); }
   void put(base::SatellitesInView&& m) {
     for (base::SatellitesInView& known : satellites) {
       if (known.driver != m.driver) continue;

@@ -62,13 +62,15 @@ double Estimator::unknown_m() const noexcept {
                        now_ - *last_fix_ < kRefusedCounts &&
                        *last_fix_ - *position_off_since_ >= kRefusedLasts;
   const bool unsettled = refused || health_.base_shift;
-  return std::hypot(votes_.told().doubt_m, distrust_m_, unsettled ? refused_m_ : 0.0);
+  const double off_m = unsettled ? refused_m_ : 0.0;
+  return std::hypot(std::hypot(votes_.told().doubt_m, distrust_m_), off_m, map_floor_m());
 }
 
 double Estimator::unknown_rad() const noexcept {
   const bool antennas = last_antennas_ && now_ - *last_antennas_ < kGnssGone;
   const bool unproved = antennas && !health_.antennas_askew && !askew_watch_.proved();
-  return std::hypot(votes_.told().doubt_rad, distrust_rad_, unproved ? kUnproved_rad : 0.0);
+  return std::hypot(std::hypot(votes_.told().doubt_rad, distrust_rad_),
+                    unproved ? kUnproved_rad : 0.0, map_floor_rad());
 }
 
 /// How far it may point beside where it drives without anybody seeing it. A crab that stays is no
@@ -76,6 +78,7 @@ double Estimator::unknown_rad() const noexcept {
 double Estimator::aside_rad() const noexcept {
   const bool antennas = last_antennas_ && now_ - *last_antennas_ < kGnssGone;
   if (antennas && !health_.antennas_askew && askew_watch_.proved()) return 0.0;
+  if (health_.by_map && map_is_fresh()) return 0.0;  // a scanner sees where it points
   const auto lean = tilt_.at(now_);
   const double grade = lean ? std::hypot(std::tan(lean->roll_rad), std::tan(lean->pitch_rad)) : 0.0;
   return kAside_rad + kAsidePerGrade_rad * grade;
@@ -91,6 +94,7 @@ void Estimator::spoil(Sense liar) noexcept {
   double place_m = 0.0;
   switch (liar) {
     case Sense::Position:
+      if (health_.by_map) break;  // nothing is believed of it
       // A jump that was refused from its first word on has led nobody astray.
       if (position_off_since_ && *position_off_since_ <= votes_.seen(liar) &&
           votes_.agreed_before(liar)) {

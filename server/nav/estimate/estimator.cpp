@@ -168,6 +168,7 @@ std::optional<base::Pose> Estimator::pose(Time now) const {
   base::Pose p;
   const bool odometry = has_odometry(now);
   const bool gnss = last_fused_ && !placed_ && now - *last_fused_ < kGnssGone;
+  const bool map = gnss && health_.by_map;
   const bool velocity = velocity_ && now - velocity_->stamp < kGnssGone;
   // Carried on from something fresh it is of now; from nothing it grows old.
   const auto velocity_at = velocity_ ? std::optional(velocity_->stamp) : std::nullopt;
@@ -212,7 +213,11 @@ std::optional<base::Pose> Estimator::pose(Time now) const {
     p.heading_sigma_rad = std::min(base::kPi, std::hypot(p.yaw_sigma_rad, aside_rad()));
   }
   p.alt_msl_m = alt_msl_m_;
-  p.source = !odometry ? "gnss" : gnss ? "gnss+odometry" : "odometry";
+  if (odometry) {
+    p.source = map ? "map+odometry" : gnss ? "gnss+odometry" : "odometry";
+  } else {
+    p.source = map ? "map" : "gnss";
+  }
   return p;
 }
 

@@ -12,6 +12,13 @@
 // Fix class: better ──▶ the estimate moves to it at 0.25 m/s at most; worse ──▶ it stays, and the
 //            receiver's offset is open
 //
+// Map:       a place in a map (base::PlaceState) is a source like the satellites, and one of them
+//            leads. The map does where they are not fixed; satellites that are fixed, and mean the
+//            same place, where they are; each where the other is silent. Meanwhile what the other
+//            says beside it is learned: the receiver's drift, or by how much the map's anchor is
+//            off. When the lead changes, the estimate moves to the new one at 0.1 m/s at most.
+//            A map that is refused for 1 s while no satellites speak is believed (a counted reset)
+//
 // Standing (tracks still for 0.5 s, and the gyro too) the yaw is held, the gyro's bias learned, and
 // the position held unless the fix is RTK fixed: noise would make them wander. Refused and counted
 // by cause: values that are not finite, stamps that are doubled, out of order or in the future,
@@ -140,6 +147,9 @@ class Estimator {
   using Input = base::InputHealth;
   static constexpr base::Duration kOdometryGone = std::chrono::milliseconds(300);
   static constexpr base::Duration kGnssGone = std::chrono::milliseconds(2000);
+  static constexpr double kApproach_mps = 0.25;   ///< to a better fix class: slower than it steers
+  static constexpr double kArrived_m = 0.02;      ///< at another source: no limit any more
+  static constexpr double kTakeOver_m = 25.0;     ///< satellites after a map, farther off: a jump
   static constexpr double kSlideAtFirst = 0.015;  ///< 1 sigma, each way
   /// Of the crab. A robot that drives beside where it points shows it only against two antennas;
   /// else what it points to is found by where it drives.
@@ -161,6 +171,7 @@ class Estimator {
   void take(const base::WheelTravel& travel);
   void take(const base::BaseMotion& motion);
   void take(const base::MotorState& motor);
+  void take(const base::PlaceState& told);
 
   bool in_order(Input& input, std::optional<Time>& last, Time stamp) noexcept;
   void refuse(Input& input, base::Refusal why) noexcept;
@@ -205,6 +216,27 @@ class Estimator {
   Arm arm(double yaw_rad) const noexcept;
   template <class M>
   Time taken_at(const M& m) const noexcept;
+
+  // place.cpp
+  bool map_is_fresh() const noexcept;
+  bool satellites_lead() const noexcept;
+  double map_floor_m() const noexcept;
+  double map_floor_rad() const noexcept;
+  void first_place(const base::PlaceFix& fix, Time stamp) noexcept;
+  void follow_satellites(const base::PlaceFix& fix, Time stamp) noexcept;
+  void lead_by_map(Time stamp) noexcept;
+  void fuse_place(const base::PlaceFix& fix, Time stamp) noexcept;
+  void fuse_place_heading(const base::PlaceFix& fix, const StateVector& at,
+                          double since_s) noexcept;
+  bool believable(const Observation<2>& o, const base::PlaceFix& fix,
+                  double yaw_rad) const noexcept;
+  void share_with_anchor(Observation<2>& o) noexcept;
+  void weaken(Observation<2>& o, double since_s) noexcept;
+  static void only_the_place(Observation<2>& o) noexcept;
+  void place_refused(const base::PlaceFix& fix, Time stamp, double off_m) noexcept;
+  bool beside_the_map(const base::GnssFix& fix, const GnssQuality& q) noexcept;
+  bool learn_beside_the_map(base::EnuPoint off, const base::GnssFix& fix,
+                            const GnssQuality& q) noexcept;
 
   // velocity.cpp
   void fuse_velocity(const base::GnssVelocity& velocity, double sigma_mps) noexcept;
@@ -289,6 +321,18 @@ class Estimator {
   base::FixType fused_type_ = base::FixType::None;
   base::FixType anchor_type_ = base::FixType::None;
   Time approach_until_{};
+  double approach_mps_ = kApproach_mps;
+
+  std::optional<Time> last_place_;       ///< stamp of the map's last word
+  std::optional<Time> last_by_map_;      ///< when one was fused
+  std::optional<Time> last_satellites_;  ///< when a position of theirs was fused
+  std::optional<Time> lead_until_;       ///< the map leads since lately: slowly, at most until then
+  std::optional<Time> map_off_since_;
+  int map_refused_ = 0;
+  std::uint32_t map_ = 0;
+  std::uint32_t map_found_ = 0;
+  double map_offset_sigma_m_ = 0.0;
+  bool map_lost_ = false;
   std::optional<double> alt_msl_m_;
   Drift drift_{};
 

@@ -14,7 +14,6 @@ using base::seconds;
 
 constexpr base::Duration kAnchorClass = std::chrono::seconds(2);
 constexpr base::Duration kApproach = std::chrono::seconds(20);
-constexpr double kApproach_mps = 0.25;  // to a better fix class: slower than the robot steers
 constexpr double kFar_m = 25.0;
 constexpr double kSurprises = 6.0;  // sigmas, that a position is off
 constexpr double kDoubtAfter_s = 2.0;
@@ -98,7 +97,7 @@ void Estimator::take(const base::GnssFix& told) {
   const auto late_s = arrival_.late_s(fix.stamp, fix.utc);
   if (!late_s) return refuse(in, Refusal::Stamp);
   late_s_ = *late_s;
-  if (located_ && shifted(fix, *quality)) return refuse(in, Refusal::Jump);
+  if (located_ && !health_.by_map && shifted(fix, *quality)) return refuse(in, Refusal::Jump);
   if (located_ && outvoted(base::Sense::Position, in)) return;
   if (fix.alt_msl_m && std::isfinite(*fix.alt_msl_m)) alt_msl_m_ = fix.alt_msl_m;
   if (!located_) {
@@ -106,6 +105,7 @@ void Estimator::take(const base::GnssFix& told) {
     in.refused_since.reset();
     return;
   }
+  if (beside_the_map(fix, *quality)) return;
   change_class(fix, *quality);
   fuse_position(fix, *quality);
 }
@@ -165,6 +165,7 @@ void Estimator::change_class(const base::GnssFix& fix, const GnssQuality& q) noe
   if (fix.fix == fused_type_) return;
   if (fix.fix > fused_type_) {
     approaching_ = true;
+    approach_mps_ = kApproach_mps;
     approach_until_ = fix.stamp + kApproach;
   }
   fused_type_ = fix.fix;
@@ -182,6 +183,7 @@ void Estimator::first_fix(const base::GnssFix& fix, const GnssQuality& q) {
   located_ = true;
   located_since_ = fix.stamp;
   last_fused_ = fix.stamp;
+  last_satellites_ = now_;
   free_m_ = 0.0;
   placed_ = false;
 }
@@ -242,6 +244,7 @@ void Estimator::fuse_position(const base::GnssFix& fix, const GnssQuality& q) no
   o.R(1, 1) = q.sigma_north_m * q.sigma_north_m + weak_m * weak_m;
   o.gate = kGate2;
   if (approaching_) approach(o);
+  if (approaching_ && approach_mps_ < kApproach_mps) only_the_place(o);
   if (q.drift.sigma_m <= 0.0 && !approaching_) watch_slip(o, at(kYaw), fix.stamp);
   if (standing_) {
     const bool hold = settled_in(located_since_) && q.drift.sigma_m > 0.0 && !approaching_;
@@ -264,6 +267,7 @@ void Estimator::fuse_position(const base::GnssFix& fix, const GnssQuality& q) no
     }
     in.refused_since.reset();
     last_fused_ = fix.stamp;
+    last_satellites_ = now_;
     free_m_ = 0.0;
     placed_ = false;
     position_off_since_.reset();
@@ -304,12 +308,13 @@ void Estimator::watch_slip(const Observation<2>& o, double yaw_rad, Time stamp) 
 void Estimator::approach(Observation<2>& o) noexcept {
   const double off_m = o.innovation.norm();
   const double floor_m = std::sqrt(std::max(o.R(0, 0), o.R(1, 1)));
-  if (off_m < 2.0 * floor_m + 0.03 || now_ > approach_until_) {
+  const bool another = approach_mps_ < kApproach_mps;  // source, not a better class of this one
+  if (off_m < (another ? kArrived_m : 2.0 * floor_m + 0.03) || now_ > approach_until_) {
     approaching_ = false;
     return;
   }
   const double since_s = last_fused_ ? std::clamp(seconds(now_ - *last_fused_), 0.02, 0.5) : 0.2;
-  const double step_m = kApproach_mps * since_s;
+  const double step_m = approach_mps_ * since_s;
   const Eigen::Matrix2d p = o.H * belief_.P * o.H.transpose();
   const double variance = std::max(p(0, 0), p(1, 1));
   if (off_m <= step_m) return;
@@ -339,6 +344,7 @@ void Estimator::position_refused(const base::GnssFix& fix, const GnssQuality& q,
     doubted_m_ = 0.0;
     health_.position.refused_since.reset();
     last_fused_ = fix.stamp;
+    last_satellites_ = now_;
     free_m_ = 0.0;
     placed_ = false;
   } else if (off_s > doubt_after_s(q)) {

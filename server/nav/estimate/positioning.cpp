@@ -104,6 +104,7 @@ void Estimator::drop_anchor() noexcept {
   health_.anchor.reset();
   anchor_off_since_.reset();
   approaching_ = true;
+  approach_mps_ = kApproach_mps;
   approach_until_ = now_ + std::chrono::seconds(20);
 }
 

@@ -64,6 +64,9 @@ base::Check check_gnss(const Facts& f, const SafetyParams& safety, const ArmingP
         id, true, Severity::Error,
         "none; the operator said where the robot was " + number(f.estimate.free_m, "%.0f m ago"));
   }
+  if (f.estimate.by_map && f.last_position && !older(f.last_position, 2.0, now)) {
+    return check(id, true, Severity::Error, "none is needed: the map shows where the robot is");
+  }
   const bool silent = !w.gnss || older(w.gnss->stamp, 2.0, now);
   if (const std::string why = no_position(w); silent && !why.empty()) {
     return check(id, false, Severity::Error, why);

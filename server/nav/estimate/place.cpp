@@ -1,0 +1,338 @@
+// The place in a map: what the matcher says, who leads, satellites or map, and how the lead changes
+// without a jump.
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/angle.hpp"
+#include "nav/estimate/estimator.hpp"
+
+namespace roverd::nav {
+namespace {
+
+using base::Refusal;
+using base::seconds;
+
+constexpr base::Duration kPlaceTooOld = std::chrono::seconds(1);
+constexpr base::Duration kPlaceFresh = std::chrono::seconds(2);
+constexpr base::Duration kSatellitesFresh = std::chrono::milliseconds(1500);
+constexpr double kLead_mps = 0.06;    // so fast the estimate goes to another source: with the last
+                                      // step less than 0.1 m/s
+constexpr double kTogether_s = 1.0;   // matches within it are wrong in the same way
+constexpr double kAgree_m = 1.0;      // satellites and map mean one place
+constexpr double kLostDoubt_m = 5.0;  // whoever was carried may be anywhere
+constexpr double kTold_m = 0.2;
+constexpr double kShare = 0.1;  // of what is new of the map's offset
+constexpr double kOffset_m = 0.02;
+constexpr base::Duration kSetAnewAfter = std::chrono::seconds(1);
+constexpr int kSetAnewFixes = 5;
+// No map is surer than its cells and its scanner.
+constexpr double kMapFloor_m = 0.015;
+constexpr double kMapFloor_rad = 0.009;
+constexpr double kTap_m = 3.0;  // that a person may be off
+
+bool sound(const base::PlaceFix& fix) noexcept {
+  const auto& c = fix.covariance;
+  for (const double value : c) {
+    if (!std::isfinite(value)) return false;
+  }
+  return base::is_valid(fix.at) && base::is_valid(fix.anchor) && std::isfinite(fix.yaw_rad) &&
+         std::isfinite(fix.anchor_sigma_m) && fix.anchor_sigma_m >= 0.0 && c[0] > 0.0 &&
+         c[2] > 0.0 && c[5] > 0.0 && c[0] * c[2] > c[1] * c[1];
+}
+
+Eigen::Matrix2d place_covariance(const base::PlaceFix& fix) noexcept {
+  Eigen::Matrix2d r;
+  r << fix.covariance[0], fix.covariance[1], fix.covariance[1], fix.covariance[2];
+  constexpr double kLeast = kMapFloor_m * kMapFloor_m;
+  r(0, 0) = std::max(r(0, 0), kLeast);
+  r(1, 1) = std::max(r(1, 1), kLeast);
+  return r;
+}
+
+}  // namespace
+
+bool Estimator::map_is_fresh() const noexcept {
+  return last_by_map_ && now_ - *last_by_map_ < kPlaceFresh;
+}
+
+/// The map's own error, which no number of matches takes away.
+double Estimator::map_floor_m() const noexcept {
+  return health_.by_map ? kMapFloor_m : 0.0;
+}
+double Estimator::map_floor_rad() const noexcept {
+  return health_.by_map && map_is_fresh() ? kMapFloor_rad : 0.0;
+}
+
+/// Satellites that need no help: fixed, and heard of just now.
+bool Estimator::satellites_lead() const noexcept {
+  return !health_.by_map && drift_.sigma_m <= 0.0 && last_satellites_ &&
+         now_ - *last_satellites_ < kSatellitesFresh;
+}
+
+void Estimator::take(const base::PlaceState& told) {
+  const bool lost = told.phase == base::PlacePhase::Lost;
+  if (lost && !map_lost_ && health_.by_map && located_) doubt_position(kLostDoubt_m);
+  map_lost_ = lost;
+  if (!told.fix) return;
+  Input& in = health_.place;
+  const base::PlaceFix& fix = *told.fix;
+  if (!sound(fix)) return refuse(in, Refusal::NotFinite);
+  if (!in_order(in, last_place_, told.stamp)) return;
+  if (now_ - told.stamp > kPlaceTooOld || history_.forgotten(told.stamp)) {
+    return refuse(in, Refusal::Stamp);
+  }
+  if (!frame_) frame_.emplace(next_frame_id_, fix.anchor);
+  if (base::distance_bearing(frame_->origin(), fix.at).distance_m > base::LocalFrame::kReach_m) {
+    return refuse(in, Refusal::Impossible);
+  }
+  if (fix.map != map_) {
+    map_ = fix.map;
+    health_.map_offset = {};
+    map_offset_sigma_m_ = fix.anchor_sigma_m;
+    map_found_ = fix.found;
+  }
+  if (!located_ || !heading_known_) return first_place(fix, told.stamp);
+  if (satellites_lead()) return follow_satellites(fix, told.stamp);
+  fuse_place(fix, told.stamp);
+}
+
+void Estimator::first_place(const base::PlaceFix& fix, Time stamp) noexcept {
+  const Belief before = belief_;
+  const Eigen::Matrix2d r = place_covariance(fix);
+  const bool was_located = located_;
+  if (!heading_known_) {
+    const auto past = history_.at(stamp);
+    const double turned = past ? base::angle_diff_rad(past->x(kYaw), belief_.x(kYaw)) : 0.0;
+    set_heading(fix.yaw_rad + turned, std::sqrt(fix.covariance[5]));
+    note_reset("map", before);
+  }
+  if (was_located) return;  // its place is the next one's matter
+  move(frame_->to_local(fix.at), std::sqrt(std::max(r(0, 0), r(1, 1))));
+  located_since_ = now_;
+  located_ = true;
+  lead_by_map(stamp);
+  lead_until_.reset();
+}
+
+/// The map is not needed: what it says beside the satellites is what its anchor is off by, and will
+/// be taken from it when they are gone.
+void Estimator::follow_satellites(const base::PlaceFix& fix, Time stamp) noexcept {
+  const auto past = history_.at(stamp);
+  const StateVector& at = past ? past->x : belief_.x;
+  const base::EnuPoint z = frame_->to_local(fix.at);
+  const base::EnuPoint off{at(kEast) - z.east_m, at(kNorth) - z.north_m};
+  const double far_m = base::distance_m(off, health_.map_offset);
+  if (far_m > kAgree_m + 3.0 * map_offset_sigma_m_) {
+    return refuse(health_.place, Refusal::Jump);
+  }
+  const double share = map_offset_sigma_m_ > kOffset_m ? 1.0 : kShare;
+  base::EnuPoint& offset = health_.map_offset;
+  offset = {offset.east_m + share * (off.east_m - offset.east_m),
+            offset.north_m + share * (off.north_m - offset.north_m)};
+  map_offset_sigma_m_ = std::min(map_offset_sigma_m_, kOffset_m);
+  health_.place.refused_since.reset();
+}
+
+void Estimator::lead_by_map(Time stamp) noexcept {
+  health_.by_map = true;
+  last_by_map_ = now_;
+  last_fused_ = stamp;
+  free_m_ = 0.0;
+  placed_ = false;
+  approaching_ = false;
+  map_off_since_.reset();
+  map_refused_ = 0;
+  position_off_since_.reset();
+  far_off_since_.reset();
+  claimed_when_off_m_.reset();
+  doubted_m_ = 0.0;
+  health_.place.refused_since.reset();
+}
+
+void Estimator::fuse_place(const base::PlaceFix& fix, Time stamp) noexcept {
+  const auto past = history_.at(stamp);
+  const StateVector& at = past ? past->x : belief_.x;
+  const bool changes = !health_.by_map;
+  const double since_s = last_by_map_ ? std::clamp(seconds(now_ - *last_by_map_), 0.02, 1.0) : 1.0;
+  const base::EnuPoint z = frame_->to_local(fix.at) + health_.map_offset;
+  Observation<2> o;
+  o.innovation << z.east_m - at(kEast), z.north_m - at(kNorth);
+  o.H(0, kEast) = o.H(1, kNorth) = 1.0;
+  o.R = place_covariance(fix);
+  o.gate = kGate2;
+  const double off_m = o.innovation.norm();
+  if (placed_ && off_m < kTap_m) {  // a person's word is worth no more than that
+    doubt_position(off_m);
+    belief_.P(kYaw, kYaw) += std::pow(base::angle_diff_rad(at(kYaw), fix.yaw_rad), 2);
+  }
+  if (!believable(o, fix, at(kYaw))) return place_refused(fix, stamp, off_m);
+  if (changes) {
+    if (last_satellites_ && drift_.sigma_m <= 0.0 && !placed_) share_with_anchor(o);
+    lead_until_ = placed_ ? std::nullopt : std::optional(now_ + std::chrono::minutes(2));
+  }
+  o.R *= std::max(1.0, kTogether_s / since_s);
+  if (lead_until_) weaken(o, since_s);
+  if (lead_until_) only_the_place(o);
+  o.gate = 0.0;  // it was asked before it was weakened
+  std::optional<Belief> before;
+  if (map_found_ != fix.found || doubted_m_ > 0.0) before = belief_;
+  if (!apply(health_.place, o)) return refuse(health_.place, Refusal::Jump);
+  fuse_place_heading(fix, at, since_s);
+  if (before && !lead_until_) {
+    const double moved_m =
+        std::hypot(belief_.x(kEast) - before->x(kEast), belief_.x(kNorth) - before->x(kNorth));
+    if (moved_m > kTold_m && !placed_) note_reset("map", *before);
+  }
+  map_found_ = fix.found;
+  lead_by_map(stamp);
+}
+
+/// Does it lie where it can, by what both and the map's anchor honestly err?
+bool Estimator::believable(const Observation<2>& o, const base::PlaceFix& fix,
+                           double yaw_rad) const noexcept {
+  const double anchor_m = health_.by_map ? 0.0 : map_offset_sigma_m_;
+  Eigen::Matrix2d S = o.H * belief_.P * o.H.transpose() + o.R;
+  S += anchor_m * anchor_m * Eigen::Matrix2d::Identity();
+  const double turned = base::angle_diff_rad(yaw_rad, fix.yaw_rad);
+  const double yaw_variance = belief_.P(kYaw, kYaw) + fix.covariance[5];
+  return o.innovation.dot(S.inverse() * o.innovation) <= kGate2 &&
+         turned * turned <= 2.0 * kGate1 * yaw_variance;
+}
+
+/// Who leads until now may be surer than the anchor: then it is the anchor that is off, for as long
+/// as this map is in use.
+void Estimator::share_with_anchor(Observation<2>& o) noexcept {
+  const double anchor = map_offset_sigma_m_ * map_offset_sigma_m_;
+  const double believed = std::max(belief_.P(kEast, kEast), belief_.P(kNorth, kNorth));
+  const double share = anchor / (anchor + believed + std::max(o.R(0, 0), o.R(1, 1)));
+  base::EnuPoint& offset = health_.map_offset;
+  offset = {offset.east_m - share * o.innovation(0), offset.north_m - share * o.innovation(1)};
+  o.innovation *= 1.0 - share;
+  map_offset_sigma_m_ *= std::sqrt(1.0 - share);
+}
+
+/// Two sources differ: that says nothing of slip, heading or scale.
+void Estimator::only_the_place(Observation<2>& o) noexcept {
+  o.may_change.setZero();
+  for (const StateIndex i : {kEast, kNorth, kDriftE, kDriftN}) o.may_change(i) = 1.0;
+}
+
+/// As approach(): the gain that moves the estimate by what it may.
+void Estimator::weaken(Observation<2>& o, double since_s) noexcept {
+  const double off_m = o.innovation.norm();
+  if (off_m < kArrived_m || now_ > *lead_until_) {
+    lead_until_.reset();
+    return;
+  }
+  const double step_m = kLead_mps * std::min(since_s, 0.5);
+  if (off_m <= step_m) return;
+  const Eigen::Matrix2d p = o.H * belief_.P * o.H.transpose();
+  const double most = std::max(p(0, 0), p(1, 1)) + std::abs(p(0, 1));
+  const double least = most * (off_m / step_m - 1.0);
+  if (least > std::max(o.R(0, 0), o.R(1, 1))) o.R = least * Eigen::Matrix2d::Identity();
+}
+
+void Estimator::fuse_place_heading(const base::PlaceFix& fix, const StateVector& at,
+                                   double since_s) noexcept {
+  Observation<1> o;
+  o.innovation(0) = base::angle_diff_rad(at(kYaw), fix.yaw_rad);
+  o.H(0, kYaw) = 1.0;
+  const double least = std::max(fix.covariance[5], kMapFloor_rad * kMapFloor_rad);
+  o.R(0, 0) = least * std::max(1.0, kTogether_s / since_s);
+  o.gate = 2.0 * kGate1;
+  if (lead_until_) o.may_change(kEast) = o.may_change(kNorth) = 0.0;
+  (void)apply(health_.place, o);
+}
+
+/// Refused again and again while it fits what is seen: the robot was carried, or slipped, and the
+/// map is right. Not while satellites say that it is not.
+void Estimator::place_refused(const base::PlaceFix& fix, Time stamp, double off_m) noexcept {
+  refuse(health_.place, Refusal::Jump);
+  if (!map_off_since_) map_off_since_ = now_;
+  ++map_refused_;
+  refused_m_ = off_m;
+  const bool heard = last_satellites_ && now_ - *last_satellites_ < kPlaceFresh;
+  if (heard || map_refused_ < kSetAnewFixes || now_ - *map_off_since_ < kSetAnewAfter) return;
+  const Belief before = belief_;
+  const auto past = history_.at(stamp);
+  const StateVector at = past ? past->x : belief_.x;
+  const base::EnuPoint z = frame_->to_local(fix.at) + health_.map_offset;
+  const base::EnuPoint since{belief_.x(kEast) - at(kEast), belief_.x(kNorth) - at(kNorth)};
+  const double turned = base::angle_diff_rad(at(kYaw), belief_.x(kYaw));
+  const Eigen::Matrix2d r = place_covariance(fix);
+  move(z + since, std::sqrt(std::max(r(0, 0), r(1, 1))));
+  set_heading(fix.yaw_rad + turned, std::sqrt(fix.covariance[5]));
+  note_reset("map", before);
+  map_found_ = fix.found;
+  lead_by_map(stamp);
+  lead_until_.reset();
+}
+
+/// A position of satellites while the map leads. @return true: it is dealt with
+bool Estimator::beside_the_map(const base::GnssFix& fix, const GnssQuality& q) noexcept {
+  if (!health_.by_map) return false;
+  Input& in = health_.position;
+  const auto past = history_.at(taken_at(fix));
+  const StateVector& at = past ? past->x : belief_.x;
+  const Arm to_antenna = arm(at(kYaw));
+  const base::EnuPoint z = local(fix);
+  const base::EnuPoint off{z.east_m - at(kEast) - to_antenna.east_m,
+                           z.north_m - at(kNorth) - to_antenna.north_m};
+  const double off_m = std::hypot(off.east_m, off.north_m);
+  const bool fixed = q.drift.sigma_m <= 0.0 && fix_trust_.settled();
+  if (map_is_fresh()) {
+    const bool agree = off_m < kAgree_m + 3.0 * map_offset_sigma_m_;
+    if (!fixed || !agree) return learn_beside_the_map(off, fix, q);
+  }
+  // They lead from now on. Nothing jumps: what they differ by is driven out slowly.
+  in.refused_since.reset();
+  health_.by_map = false;
+  lead_until_.reset();
+  drift_ = q.drift;
+  if (fix.fix != fused_type_) {
+    for (const StateIndex i : {kDriftE, kDriftN}) reset_state(belief_, i, 0.0, q.drift.sigma_m);
+  }
+  fused_type_ = fix.fix;
+  if (off_m >= kTakeOver_m) return false;  // it is somewhere else: told as a reset
+  if (q.drift.sigma_m <= 0.0) {
+    belief_.P(kEast, kEast) += off_m * off_m;
+    belief_.P(kNorth, kNorth) += off_m * off_m;
+  }
+  approaching_ = true;
+  approach_mps_ = kLead_mps;
+  approach_until_ = fix.stamp + std::chrono::minutes(5);
+  return false;
+}
+
+/// The map says where it is; what they say beside it is their own error.
+bool Estimator::learn_beside_the_map(base::EnuPoint off, const base::GnssFix& fix,
+                                     const GnssQuality& q) noexcept {
+  Input& in = health_.position;
+  drift_ = q.drift;
+  if (fix.fix != fused_type_) {
+    fused_type_ = fix.fix;
+    for (const StateIndex i : {kDriftE, kDriftN}) reset_state(belief_, i, 0.0, q.drift.sigma_m);
+  }
+  if (q.drift.sigma_m <= 0.0) {
+    refuse(in, base::Refusal::Jump);
+    return true;
+  }
+  Observation<2> o;
+  o.innovation << off.east_m - belief_.x(kDriftE), off.north_m - belief_.x(kDriftN);
+  o.H(0, kEast) = o.H(1, kNorth) = 1.0;
+  o.H(0, kDriftE) = o.H(1, kDriftN) = 1.0;
+  o.R(0, 0) = q.sigma_east_m * q.sigma_east_m;
+  o.R(1, 1) = q.sigma_north_m * q.sigma_north_m;
+  o.gate = kGate2;
+  o.may_change.setZero();
+  o.may_change(kDriftE) = o.may_change(kDriftN) = 1.0;
+  if (apply(in, o)) {
+    in.refused_since.reset();
+  } else {
+    refuse(in, base::Refusal::Jump);
+  }
+  return true;
+}
+
+}  // namespace roverd::nav
