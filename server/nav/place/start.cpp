@@ -10,6 +10,9 @@ namespace roverd::nav::place {
 namespace {
 
 constexpr std::size_t kFineHits = 180;
+constexpr double kNearMore_m = 0.5;  // what the odometry errs by until it is decided
+constexpr double kNearMore_rad = 0.2;
+constexpr std::uint32_t kNearFor = 10;
 
 void weigh(const Field& field, const chart::Scan& scan, double counts, Place& place) {
   constexpr std::size_t kLooked = 90;
@@ -25,13 +28,27 @@ void weigh(const Field& field, const chart::Scan& scan, double counts, Place& pl
 
 void GlobalStart::clear() {
   places_.clear();
+  near_.reset();
   scans_ = 0;
   since_search_ = 0;
   way_m_ = 0.0;
 }
 
+void GlobalStart::stay_near(const Pose2& pose, double half_m, double half_rad) {
+  clear();
+  near_ = Near{pose, half_m, half_rad};
+}
+
+bool GlobalStart::counts(const Pose2& pose) const noexcept {
+  return !near_ || (std::hypot(pose.x_m - near_->middle.x_m, pose.y_m - near_->middle.y_m) <=
+                        near_->half_m + kNearMore_m &&
+                    std::abs(base::angle_diff_rad(near_->middle.yaw_rad, pose.yaw_rad)) <=
+                        near_->half_rad + kNearMore_rad);
+}
+
 std::optional<Pose2> GlobalStart::feed(const Field& field, const chart::Scan& scan,
                                        const Pose2& step) {
+  if (near_) near_->middle = near_->middle * step;
   const std::vector<Point> few = spread_hits(scan, 0.10, p_.points);
   const std::vector<Point> hits = hits_of(scan, kFineHits);
   if (few.size() < 10) {
@@ -47,6 +64,7 @@ std::optional<Pose2> GlobalStart::feed(const Field& field, const chart::Scan& sc
   }
   ++scans_;
   merge();
+  if (near_ && places_.empty() && scans_ >= kNearFor) near_.reset();  // it is not there at all
   return decide();
 }
 
@@ -73,6 +91,7 @@ void GlobalStart::begin(const Field& field, const chart::Scan& scan, std::span<c
     now = best / top->scans;
   }
   for (const Found& f : whole.found) {
+    if (!counts(f.pose)) continue;
     Place place;
     place.pose = refine(field, hits, f.pose, {}, p_.match).pose;
     weigh(field, scan, p_.counts, place);

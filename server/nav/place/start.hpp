@@ -49,6 +49,9 @@ class GlobalStart {
   explicit GlobalStart(const StartParams& params) : p_(params) {}
 
   void clear();
+  /// From the next scan on only places around this one count, X_GB before that scan's step: a
+  /// person told it, and more than one place there fits.
+  void stay_near(const Pose2& pose, double half_m, double half_rad);
   /// @param step X_BB' of the body since the last scan, by odometry.
   /// @return the decided pose.
   std::optional<Pose2> feed(const Field& field, const chart::Scan& scan, const Pose2& step);
@@ -62,10 +65,18 @@ class GlobalStart {
   void begin(const Field& field, const chart::Scan& scan, std::span<const Point> few,
              std::span<const Point> hits);
   void merge();
+  bool counts(const Pose2& pose) const noexcept;
   std::optional<Pose2> decide() const;
+
+  struct Near {
+    Pose2 middle;  ///< X_GB, along the odometry
+    double half_m = 0.0;
+    double half_rad = 0.0;
+  };
 
   StartParams p_;
   std::vector<Place> places_;
+  std::optional<Near> near_;
   bool cut_ = false;  ///< the last search was cut short: the right place may not be among them
   std::uint32_t scans_ = 0;
   std::uint32_t since_search_ = 0;

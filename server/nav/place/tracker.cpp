@@ -17,6 +17,8 @@ using Eigen::Matrix3d;
 constexpr std::string_view kLostWords =
     "lost: drive by hand to a known place, or tap where the robot is";
 
+constexpr double kSame_m = 0.4;  // nearer to each other are no rivals
+constexpr double kSame_rad = 0.2;
 constexpr double kDepthAtFirst_m = 0.02;
 constexpr double kDepthDrift_m = 0.0005;  // a scan; other walls, other materials
 constexpr double kDepthSurest_m = 0.003;
@@ -155,6 +157,15 @@ void Tracker::track(const chart::Scan& scan, const Pose2& step, Told& told) {
     if (phase_ == Phase::Lost) told.reason = kLostWords;
     return;
   }
+  if (told_ && has_rival(scan, few, hits, match, told.agreement.log_fit, window)) {
+    told_ = false;
+    phase_ = Phase::Searching;
+    start_.stay_near(pose_, window.half_m, window.half_rad);
+    (void)start_.feed(*field_, scan, Pose2{});
+    told.candidates = start_.places().size();
+    told.reason = "more than one place around the told one fits: drive on";
+    return;
+  }
   const Matrix3d sum = prior.information + match.covariance.inverse();
   covariance_ = sum.inverse();
   pose_ = match.pose;
@@ -166,6 +177,31 @@ void Tracker::track(const chart::Scan& scan, const Pose2& step, Told& told) {
   phase_ = Phase::Tracking;
   const double yaw = field_->shape().origin.yaw_rad;
   told.fix = Fix{scan.stamp, field_->shape().origin * pose_, turned_by(match.covariance, yaw)};
+}
+
+/// Does another place in the window fit about as well? Where the map is too large to look at all of
+/// it, nobody knows, and the told one counts.
+bool Tracker::has_rival(const chart::Scan& scan, const std::vector<Point>& few,
+                        const std::vector<Point>& hits, const Match& match, double log_fit,
+                        const WindowParams& window) const {
+  const Whole whole = search_whole(*field_, few, p_.start.whole);
+  if (!whole.complete) return false;
+  for (const Found& f : whole.found) {
+    const bool inside =
+        std::hypot(f.pose.x_m - pose_.x_m, f.pose.y_m - pose_.y_m) <= window.half_m &&
+        std::abs(base::angle_diff_rad(pose_.yaw_rad, f.pose.yaw_rad)) <= window.half_rad;
+    if (!inside) continue;
+    const Match other = refine(*field_, hits, f.pose, {}, p_.match);
+    const bool same =
+        std::hypot(other.pose.x_m - match.pose.x_m, other.pose.y_m - match.pose.y_m) < kSame_m &&
+        std::abs(base::angle_diff_rad(other.pose.yaw_rad, match.pose.yaw_rad)) < kSame_rad;
+    if (same) continue;
+    const Agreement a = agreement(*field_, scan, other.pose);
+    if (misfit(a, p_).empty() && p_.start.counts * (log_fit - a.log_fit) < p_.start.lead) {
+      return true;
+    }
+  }
+  return false;
 }
 
 void Tracker::bad(const Pose2& step) {

@@ -13,7 +13,8 @@
 //              "lost: drive by hand to a known place, or tap where the robot is"
 //
 // A tap on the map is a start with its own uncertainty, looked up around it, and not believed when
-// the scan does not fit there.
+// the scan does not fit there. Where it fits at another place around it as well (two bays of a
+// hall), it is Searching until the scans of some way have decided between them.
 //
 // What comes out for the estimator is a measurement by the map alone: the odometry only says where
 // to look and holds the directions that the map leaves open, which the covariance tells as open.
@@ -25,6 +26,7 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -99,6 +101,9 @@ class Tracker {
   void track(const chart::Scan& scan, const Pose2& step, Told& told);
   void search(const chart::Scan& scan, const Pose2& step, Told& told);
   void predict(const Pose2& step);
+  bool has_rival(const chart::Scan& scan, const std::vector<Point>& few,
+                 const std::vector<Point>& hits, const Match& match, double log_fit,
+                 const WindowParams& window) const;
   void bad(const Pose2& step);
   Told answer(Told told) const;
 

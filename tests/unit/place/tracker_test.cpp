@@ -57,6 +57,48 @@ TEST(Tracker, FollowsADriveWhoseOdometryDrifts) {
   }
 }
 
+/// Four bays of 2 m along a hall, all alike; beyond the last one the hall ends otherwise.
+std::vector<tests::Segment> bays() {
+  std::vector<tests::Segment> walls{{0, 0, 14, 0}, {14, 0, 14, 4}, {14, 4, 10, 4}, {0, 4, 0, 0}};
+  for (int i = 0; i < 4; ++i) {
+    const double x = 2.0 + 2.0 * i;
+    walls.push_back({x, 4, x, 2.6});
+  }
+  walls.push_back({0, 4, 10, 4});
+  walls.push_back({12, 1.5, 12.6, 1.5});
+  walls.push_back({12.6, 1.5, 12.6, 2.3});
+  return walls;
+}
+
+TEST(Tracker, DoesNotBelieveATapBetweenTwoBaysThatLookAlike) {
+  // Given: a scanner that sees 1.6 m far, and so nothing but the bay that it looks into.
+  const auto walls = bays();
+  const auto field = tests::field_of(walls, 14.0, 4.0);
+  Tracker tracker(field);
+  tests::Scanner scanner(17);
+  const auto near_by = [&](const Pose2& at, double time_s) {
+    nav::chart::Scan scan = scanner.look(walls, at, time_s);
+    std::erase_if(scan.beams, [](const nav::chart::Beam& b) {
+      return b.x_m * b.x_m + b.y_m * b.y_m > 1.6F * 1.6F;
+    });
+    return scan;
+  };
+  // When: it stands in the third bay, and the tap is nearer to the second.
+  Pose2 at{7.0, 3.0, 0.5 * base::kPi};
+  tracker.set_pose({5.9, 3.0, 0.5 * base::kPi}, 0.7, 0.1);
+  Told told = tracker.feed(near_by(at, 1.0), at);
+  // Then: it is not called known, and never called wrong.
+  EXPECT_FALSE(told.fix);
+  EXPECT_EQ(told.phase, Phase::Searching);
+  EXPECT_GE(told.candidates, 2u);
+  for (int i = 1; i < 40; ++i) {
+    at = at * Pose2{i < 8 ? -0.1 : 0.0, 0.0, i < 8 ? 0.0 : -0.02};
+    told = tracker.feed(near_by(at, 1.0 + 0.1 * i), at);
+    if (!told.fix) continue;
+    EXPECT_LT(off_m(told.fix->pose, at), 0.2) << i;
+  }
+}
+
 TEST(Tracker, NoticesThatItWasCarriedAway) {
   Tracker tracker(tests::field_of(tests::shed(), 12.0, 8.0));
   tests::Scanner scanner(12);
