@@ -1,0 +1,157 @@
+#include "nav/place/whereabouts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+
+#include "base/angle.hpp"
+
+namespace roverd::nav::place {
+
+namespace {
+
+constexpr double kOtherEyeAfter_s = 1.0;
+
+base::PlacePhase phase_for_people(Phase p) noexcept {
+  switch (p) {
+    case Phase::Searching:
+      return base::PlacePhase::Searching;
+    case Phase::Tracking:
+    case Phase::Doubtful:
+      return base::PlacePhase::Known;
+    case Phase::Lost:
+      return base::PlacePhase::Lost;
+  }
+  return base::PlacePhase::Lost;
+}
+
+base::Time end_of_scan(const base::Sight& sight) noexcept {
+  float last_s = 0.0F;
+  for (const base::SightPoint& p : sight.points) last_s = std::max(last_s, p.after_s);
+  return sight.stamp + base::from_seconds(double(last_s));
+}
+
+}  // namespace
+
+base::PlaceState Whereabouts::use(std::shared_ptr<const MapInUse> map, base::Time now) {
+  map_ = std::move(map);
+  tracker_.reset();
+  anchor_.reset();
+  started_.reset();
+  base::PlaceState state;
+  state.stamp = now;
+  if (!map_ || !map_->field) return state;
+  tracker_.emplace(map_->field, p_.tracker);
+  anchor_ = map_->anchor;
+  state.phase = base::PlacePhase::Searching;
+  state.map = map_->name;
+  state.reason = "waits for what the scanner sees";
+  return state;
+}
+
+/// E: ENU at the anchor. X_ME · X_EB.
+Pose2 Whereabouts::on_map(base::LatLon at, double yaw_rad) const {
+  const base::LocalFrame frame(1, anchor_->at);
+  const base::EnuPoint p = frame.to_local(at);
+  return inverse(Pose2{0.0, 0.0, anchor_->yaw_rad}) * Pose2{p.east_m, p.north_m, yaw_rad};
+}
+
+bool Whereabouts::told(const Word& word) {
+  if (!tracker_) return false;
+  if (!anchor_ && p_.local_origin) anchor_ = MapAnchor{*p_.local_origin, 0.0, 0.0};
+  if (!anchor_ || !base::is_valid(word.at)) return false;
+  const double yaw_rad = word.yaw_rad.value_or(0.0);
+  const double turn_rad = word.yaw_rad ? kTap_rad : base::kPi / 3.0;
+  tracker_->set_pose(on_map(word.at, yaw_rad), kTap_m, turn_rad);
+  return true;
+}
+
+void Whereabouts::start_by_satellites(const Believed& b, base::Time stamp) {
+  const bool searches = tracker_->phase() == Phase::Searching || tracker_->phase() == Phase::Lost;
+  const bool sure = b.by_satellites && b.sigma_m <= kSure_m && b.yaw_sigma_rad <= kSure_rad;
+  const bool again = !started_ || base::seconds(stamp - *started_) >= kAgain_s;
+  if (!searches || !sure || !again || !anchor_) return;
+  started_ = stamp;
+  const double sigma_m = std::hypot(b.sigma_m, anchor_->sigma_m);
+  tracker_->set_pose(on_map(b.at, b.yaw_rad), std::clamp(sigma_m, 0.1, 1.0),
+                     std::max(0.1, b.yaw_sigma_rad));
+}
+
+/// Such that what is believed now and the place in the map are one: X_EM = X_EB · X_BM.
+void Whereabouts::lay(const Pose2& in_map, base::Time stamp,
+                      const std::optional<Believed>& believed) {
+  if (anchor_) return;
+  const bool by_satellites = believed && believed->by_satellites;
+  if (!by_satellites) {
+    if (p_.local_origin) anchor_ = MapAnchor{*p_.local_origin, 0.0, 0.0};
+    return;
+  }
+  if (believed->sigma_m > kSure_m || believed->yaw_sigma_rad > kSure_rad) return;
+  const auto then = history_.at(stamp);
+  const auto now = history_.at(believed->stamp);
+  if (!then || !now) return;
+  const base::LocalFrame frame(1, believed->at);
+  const Pose2 at_stamp = Pose2{0.0, 0.0, believed->yaw_rad} * (inverse(*now) * *then);
+  const Pose2 origin = at_stamp * inverse(in_map);
+  anchor_ = MapAnchor{frame.to_global({origin.x_m, origin.y_m}), origin.yaw_rad, believed->sigma_m};
+}
+
+base::PlaceFix Whereabouts::fix_of(const Fix& fix, std::uint32_t found) const {
+  const base::LocalFrame frame(1, anchor_->at);
+  const Pose2 at = Pose2{0.0, 0.0, anchor_->yaw_rad} * fix.pose;
+  Eigen::Matrix3d r = Eigen::Matrix3d::Identity();
+  r(0, 0) = r(1, 1) = std::cos(anchor_->yaw_rad);
+  r(1, 0) = std::sin(anchor_->yaw_rad);
+  r(0, 1) = -r(1, 0);
+  const Eigen::Matrix3d c = r * fix.covariance * r.transpose();
+  base::PlaceFix out;
+  out.at = frame.to_global({at.x_m, at.y_m});
+  out.yaw_rad = at.yaw_rad;
+  out.covariance = {c(0, 0), c(0, 1), c(1, 1), c(0, 2), c(1, 2), c(2, 2)};
+  out.map = map_->number;
+  out.found = found;
+  out.anchor = anchor_->at;
+  out.anchor_sigma_m = anchor_->sigma_m;
+  return out;
+}
+
+std::optional<base::PlaceState> Whereabouts::see(const base::Sight& sight, const base::Mount& mount,
+                                                 const std::optional<Believed>& believed) {
+  if (!tracker_) return std::nullopt;
+  const base::Time end = end_of_scan(sight);
+  const bool other = sight.sensor != eye_;
+  if (other && eye_seen_ && base::seconds(end - *eye_seen_) < kOtherEyeAfter_s) return std::nullopt;
+  if (!other && taken_ && base::seconds(end - *taken_) < kEvery_s) return std::nullopt;
+  const auto scan = chart::scan_of(sight, mount, history_, p_.scan);
+  if (!scan) return std::nullopt;
+  const auto odometry = history_.at(scan->stamp);
+  if (!odometry) return std::nullopt;
+  eye_ = sight.sensor;
+  eye_seen_ = taken_ = end;
+  if (believed) start_by_satellites(*believed, scan->stamp);
+  const Told told = tracker_->feed(*scan, *odometry);
+
+  base::PlaceState state;
+  state.stamp = scan->stamp;
+  state.map = map_->name;
+  state.phase = phase_for_people(told.phase);
+  state.reason = told.reason;
+  if (told.pose) state.in_map = base::MapPlace{told.pose->x_m, told.pose->y_m, told.pose->yaw_rad};
+  if (!told.fix) return state;
+  const Eigen::Matrix3d& c = told.fix->covariance;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(c.topLeftCorner<2, 2>());
+  state.sigma_m = std::sqrt(std::max(0.0, axes.eigenvalues()(1)));
+  state.sigma_rad = std::sqrt(std::max(0.0, c(2, 2)));
+  lay(told.fix->pose, scan->stamp, believed);
+  if (anchor_) {
+    state.fix = fix_of(*told.fix, told.resets);
+  } else {
+    state.reason = "nobody knows where on the earth the map lies: it has no anchor";
+  }
+  return state;
+}
+
+}  // namespace roverd::nav::place

@@ -1,0 +1,109 @@
+#pragma once
+// The map in use, and where on the earth the robot is by it: what sensors saw and how the body
+// moved in, states and fixes for the estimator out.
+//
+//   Odometry ─▶ PoseHistory ┐
+//   Sight, 10 a second ─────┴▶ scan ─▶ Tracker ─▶ X_MB ─anchor─▶ base::PlaceState
+//
+// How M lies on the earth is its anchor: where its origin is, and which way its x axis looks. A map
+// without one is laid where the satellites see the robot when its place in the map is known, as
+// surely as they are; where none are heard, at the origin of the local map (nav.estimate.map_lat,
+// map_lon), x to the east. Where there is neither, the place in the map is told, and no fix.
+//
+// Satellites that are good enough save the search: the tracker begins where they see the robot, and
+// believes it only if the scan fits there. What a person tells is taken likewise.
+//
+// One object, one thread; time is an argument.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "base/geo.hpp"
+#include "base/measurements.hpp"
+#include "base/sight.hpp"
+#include "nav/place/tracker.hpp"
+#include "nav/sense/odometry.hpp"
+
+namespace roverd::nav::place {
+
+struct MapAnchor {
+  base::LatLon at;       ///< of the map's origin, x = y = 0
+  double yaw_rad = 0.0;  ///< of its x axis: from east, left positive
+  double sigma_m = 0.3;  ///< how well that is known, 1 sigma; at least 0
+};
+
+/// Immutable, shared between threads.
+struct MapInUse {
+  std::string name;
+  std::uint32_t number = 1;  ///< another one each time that a map is taken into use
+  std::shared_ptr<const Field> field;
+  std::optional<MapAnchor> anchor;
+};
+
+/// What the estimator believes of the body, at its stamp.
+struct Believed {
+  base::Time stamp;
+  base::LatLon at;
+  double yaw_rad = 0.0;
+  double sigma_m = 0.0;
+  double yaw_sigma_rad = 0.0;
+  bool by_satellites = false;  ///< by positions of now; else by anything
+};
+
+/// A person's word, of now. Deviations as Tracker::set_pose has them.
+struct Word {
+  base::LatLon at;
+  std::optional<double> yaw_rad;  ///< empty: any
+};
+
+struct WhereaboutsParams {
+  TrackerParams tracker;
+  chart::ScanParams scan;
+  std::optional<base::LatLon> local_origin;  ///< of the local map
+};
+
+class Whereabouts {
+ public:
+  static constexpr double kEvery_s = 0.09;
+  /// So sure satellites have to be for a start, and for laying a map.
+  static constexpr double kSure_m = 1.5;
+  static constexpr double kSure_rad = 0.2;
+  static constexpr double kAgain_s = 3.0;  ///< the next start by satellites
+  /// A tap is off by so much (1 sigma).
+  static constexpr double kTap_m = 0.5;
+  static constexpr double kTap_rad = 0.26;
+
+  explicit Whereabouts(const WhereaboutsParams& params = {}) : p_(params) {}
+
+  /// From now on this one; null: none. @return what is to be told of it
+  base::PlaceState use(std::shared_ptr<const MapInUse> map, base::Time now);
+  const std::shared_ptr<const MapInUse>& map() const noexcept { return map_; }
+
+  void moved(const sense::Odometry& o) noexcept { (void)history_.push(o); }
+  /// @return false: no map is in use, or nobody knows where it lies
+  bool told(const Word& word);
+  /// @return empty: no map is in use, it came too soon after the last one, another sensor is
+  /// looked through, or nothing can be made of it.
+  std::optional<base::PlaceState> see(const base::Sight& sight, const base::Mount& mount,
+                                      const std::optional<Believed>& believed);
+
+ private:
+  void start_by_satellites(const Believed& b, base::Time stamp);
+  void lay(const Pose2& in_map, base::Time stamp, const std::optional<Believed>& believed);
+  Pose2 on_map(base::LatLon at, double yaw_rad) const;
+  base::PlaceFix fix_of(const Fix& fix, std::uint32_t found) const;
+
+  WhereaboutsParams p_;
+  std::shared_ptr<const MapInUse> map_;
+  std::optional<Tracker> tracker_;
+  std::optional<MapAnchor> anchor_;
+  sense::PoseHistory history_;
+  std::string eye_;  ///< the sensor that is looked through
+  std::optional<base::Time> eye_seen_;
+  std::optional<base::Time> taken_;
+  std::optional<base::Time> started_;
+};
+
+}  // namespace roverd::nav::place

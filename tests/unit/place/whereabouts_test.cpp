@@ -1,0 +1,199 @@
+// From what a scanner saw to a place on the earth: anchors, starts, taps, and being carried away.
+
+#include "nav/place/whereabouts.hpp"
+
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "base/angle.hpp"
+#include "shed.hpp"
+
+namespace roverd::nav::place {
+namespace {
+
+using base::PlacePhase;
+
+constexpr base::LatLon kShedAt{58.378, 26.729};
+constexpr base::Mount kMount{.z_m = 0.3};
+const double kTurned_rad = base::rad_from_deg(30.0);
+
+/// A robot in the shed: its odometry has an origin of its own, and never jumps.
+class Walk {
+ public:
+  explicit Walk(Pose2 from) : at(from) {}
+
+  Pose2 at;  ///< X_MB, the truth
+  double time_s = 100.0;
+  std::vector<tests::Segment> walls = tests::shed();
+  Whereabouts where{};
+
+  static std::shared_ptr<const MapInUse> map(std::optional<MapAnchor> anchor) {
+    return std::make_shared<const MapInUse>(
+        MapInUse{"shed", 7, tests::field_of(tests::shed(), 12.0, 8.0), anchor});
+  }
+  base::Time now() const { return base::Time{} + base::from_seconds(time_s); }
+  /// Drives on by this step and looks. @return what was told
+  std::optional<base::PlaceState> step(double ahead_m, double turn_rad,
+                                       const std::optional<Believed>& believed = {},
+                                       const std::string& sensor = "front") {
+    time_s += 0.1;
+    const Pose2 moved = sense::along(ahead_m / 0.1, turn_rad / 0.1, 0.1);
+    at = at * moved;
+    odometry_ = odometry_ * moved;
+    where.moved({.stamp = now(), .pose = odometry_});
+    base::Sight sight;
+    sight.sensor = sensor;
+    sight.stamp = now();
+    for (int i = -135; i <= 135; ++i) {
+      const double angle = base::rad_from_deg(i);
+      const double range = tests::range_m(walls, at.x_m, at.y_m, at.yaw_rad + angle);
+      base::SightPoint p;
+      p.x_m = static_cast<float>(range * std::cos(angle));
+      p.y_m = static_cast<float>(range * std::sin(angle));
+      p.echo = range > 0.0 ? base::Echo::Hit : base::Echo::Unknown;
+      sight.points.push_back(p);
+    }
+    return where.see(sight, kMount, believed);
+  }
+  /// Where that is on the earth, by an anchor at kShedAt that is turned by kTurned_rad.
+  base::LatLon global() const {
+    const double c = std::cos(kTurned_rad);
+    const double s = std::sin(kTurned_rad);
+    return base::LocalFrame(1, kShedAt)
+        .to_global({c * at.x_m - s * at.y_m, s * at.x_m + c * at.y_m});
+  }
+  Believed by_satellites(double sigma_m) const {
+    return {now(), global(), base::wrap_rad(at.yaw_rad + kTurned_rad), sigma_m, 0.05, true};
+  }
+
+ private:
+  Pose2 odometry_{5.0, -3.0, 1.0};
+};
+
+double apart_m(base::LatLon a, base::LatLon b) {
+  return base::distance_bearing(a, b).distance_m;
+}
+
+TEST(Whereabouts, TellsThePlaceOnTheEarthOfATapByTheAnchor) {
+  Walk w({2.5, 3.0, 0.1});
+  EXPECT_FALSE(w.step(0.0, 0.0)) << "no map is in use";
+  const auto begun = w.where.use(Walk::map(MapAnchor{kShedAt, kTurned_rad, 0.2}), w.now());
+  EXPECT_EQ(begun.phase, PlacePhase::Searching);
+  EXPECT_EQ(begun.map, "shed");
+  // Given: a tap 0.4 m and 10 degrees off.
+  const base::LatLon tap = base::destination(w.global(), 70.0, 0.4);
+  ASSERT_TRUE(w.where.told({tap, w.at.yaw_rad + kTurned_rad + 0.17}));
+  const auto told = w.step(0.0, 0.0);
+  ASSERT_TRUE(told && told->fix);
+  EXPECT_EQ(told->phase, PlacePhase::Known);
+  EXPECT_LT(apart_m(told->fix->at, w.global()), 0.04);
+  EXPECT_NEAR(base::angle_diff_rad(told->fix->yaw_rad, w.at.yaw_rad + kTurned_rad), 0.0, 0.02);
+  EXPECT_NEAR(told->in_map->x_m, w.at.x_m, 0.04);
+  EXPECT_EQ(told->fix->map, 7u);
+  EXPECT_EQ(told->fix->anchor_sigma_m, 0.2);
+  EXPECT_EQ(told->stamp, w.now());
+  EXPECT_GT(*told->sigma_m, 0.01);
+  EXPECT_LT(*told->sigma_m, 0.1);
+}
+
+TEST(Whereabouts, BeginsWhereSatellitesSeeTheRobotWithoutASearch) {
+  Walk w({2.5, 3.0, 0.1});
+  w.where.use(Walk::map(MapAnchor{kShedAt, kTurned_rad, 0.1}), w.now());
+  const auto told = w.step(0.0, 0.0, w.by_satellites(0.4));
+  ASSERT_TRUE(told && told->fix);
+  EXPECT_LT(apart_m(told->fix->at, w.global()), 0.04);
+}
+
+TEST(Whereabouts, LaysAMapWithoutAnAnchorWhereTheSatellitesSeeTheRobot) {
+  Walk w({2.5, 3.0, 0.1});
+  w.where.use(Walk::map({}), w.now());
+  EXPECT_FALSE(w.where.told({kShedAt, 0.0})) << "nobody knows where the map lies";
+  // Found by driving; meanwhile the satellites say where that is.
+  std::optional<base::PlaceState> told;
+  for (int i = 0; i < 20 && !(told && told->fix); ++i)
+    told = w.step(0.15, 0.02, w.by_satellites(0.3));
+  ASSERT_TRUE(told && told->fix);
+  EXPECT_EQ(told->fix->anchor_sigma_m, 0.3);
+  // In the dark it goes on from there.
+  for (int i = 0; i < 10; ++i) {
+    told = w.step(0.1, 0.03);
+    ASSERT_TRUE(told && told->fix) << i;
+    EXPECT_LT(apart_m(told->fix->at, w.global()), 0.12) << i;
+  }
+}
+
+TEST(Whereabouts, SaysThatAMapLiesNowhereWithoutAnchorAndSatellites) {
+  Walk w({2.5, 3.0, 0.1});
+  w.where.use(Walk::map({}), w.now());
+  std::optional<base::PlaceState> told;
+  for (int i = 0; i < 20 && !(told && told->in_map); ++i) told = w.step(0.15, 0.02);
+  ASSERT_TRUE(told && told->in_map) << "but where in it the robot is";
+  EXPECT_NEAR(told->in_map->x_m, w.at.x_m, 0.06);
+  EXPECT_FALSE(told->fix);
+  EXPECT_NE(told->reason.find("no anchor"), std::string::npos);
+}
+
+TEST(Whereabouts, TakesTheLocalMapsOriginForTheMapsWhereNothingElseIsKnown) {
+  Walk w({2.5, 3.0, 0.1});
+  WhereaboutsParams params;
+  params.local_origin = kShedAt;
+  w.where = Whereabouts(params);
+  w.where.use(Walk::map({}), w.now());
+  const base::LocalFrame frame(1, kShedAt);
+  w.step(0.0, 0.0);
+  ASSERT_TRUE(w.where.told({frame.to_global({2.6, 3.1}), 0.1}));
+  const auto told = w.step(0.0, 0.0);
+  ASSERT_TRUE(told && told->fix);
+  EXPECT_LT(apart_m(told->fix->at, frame.to_global({w.at.x_m, w.at.y_m})), 0.04);
+}
+
+TEST(Whereabouts, IsLostWithinThreeMetresOfBeingCarriedAway) {
+  Walk w({2.0, 3.0, 0.0});
+  w.where.use(Walk::map(MapAnchor{kShedAt, kTurned_rad, 0.1}), w.now());
+  w.where.told({w.global(), w.at.yaw_rad + kTurned_rad});
+  for (int i = 0; i < 5; ++i) w.step(0.1, 0.0);
+  w.at = {9.4, 6.4, -0.5};
+  double driven_m = 0.0;
+  std::optional<base::PlaceState> told;
+  while (driven_m < 3.0) {
+    told = w.step(0.1, 0.05);
+    driven_m += 0.1;
+    ASSERT_TRUE(told);
+    EXPECT_FALSE(told->fix) << driven_m;
+    if (told->phase == PlacePhase::Lost) break;
+  }
+  EXPECT_EQ(told->phase, PlacePhase::Lost);
+  EXPECT_NE(told->reason.find("drive by hand"), std::string::npos);
+}
+
+TEST(Whereabouts, LooksThroughOneSensorAndTenTimesASecond) {
+  Walk w({2.5, 3.0, 0.1});
+  w.where.use(Walk::map(MapAnchor{kShedAt, kTurned_rad, 0.1}), w.now());
+  w.where.told({w.global(), w.at.yaw_rad + kTurned_rad});
+  ASSERT_TRUE(w.step(0.0, 0.0));
+  EXPECT_FALSE(w.step(0.0, 0.0, {}, "rear"));
+  ASSERT_TRUE(w.step(0.0, 0.0)) << "the first one again";
+  w.time_s -= 0.08;
+  EXPECT_FALSE(w.step(0.0, 0.0)) << "too soon";
+  // Where it falls silent, the other one takes its place.
+  bool taken = false;
+  for (int i = 0; i < 15; ++i) taken = w.step(0.0, 0.0, {}, "rear").has_value() || taken;
+  EXPECT_TRUE(taken);
+}
+
+TEST(Whereabouts, TellsOnceThatNoMapIsInUse) {
+  Walk w({2.5, 3.0, 0.1});
+  w.where.use(Walk::map(MapAnchor{kShedAt, 0.0, 0.1}), w.now());
+  const auto off = w.where.use(nullptr, w.now());
+  EXPECT_EQ(off.phase, PlacePhase::Off);
+  EXPECT_TRUE(off.map.empty());
+  EXPECT_FALSE(w.step(0.0, 0.0));
+}
+
+}  // namespace
+}  // namespace roverd::nav::place
