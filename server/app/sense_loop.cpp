@@ -5,6 +5,7 @@
 
 #include <pthread.h>
 
+#include "app/place_loop.hpp"
 #include "base/log.hpp"
 #include "robot/guard/guard.hpp"
 #include "robot/guard/outline.hpp"
@@ -20,8 +21,9 @@ constexpr long kWake_ns = 20'000'000;  // also without a sight: what waits, and 
 
 }  // namespace
 
-SenseLoop::SenseLoop(robot::Robot& robot, robot::Lookout lookout, robot::OutlookParams shown)
-    : robot_(robot), lookout_(std::move(lookout)), shown_(shown) {
+SenseLoop::SenseLoop(robot::Robot& robot, robot::Lookout lookout, robot::OutlookParams shown,
+                     PlaceLoop* place)
+    : robot_(robot), place_(place), lookout_(std::move(lookout)), shown_(shown) {
   sem_init(&news_, 0, 0);
   thread_ = std::thread([this] { run(); });
 }
@@ -77,6 +79,7 @@ void SenseLoop::run() noexcept {
       moved.clear();
       sights_.take(sights);
       robot_.odometry().take(moved);
+      if (place_ != nullptr) place_->take(sights, moved);
       done.clear();
       robot_.surroundings_done().take(done);
       const auto config = robot_.config();

@@ -24,10 +24,14 @@
 
 namespace roverd {
 
+class PlaceLoop;
+
 class SenseLoop {
  public:
-  /// Starts the thread. @param robot outlives it.
-  SenseLoop(robot::Robot& robot, robot::Lookout lookout, robot::OutlookParams shown);
+  /// Starts the thread. @param robot outlives it, and so does @param place, which is handed on
+  /// what comes in; null: nobody looks for the robot in a map
+  SenseLoop(robot::Robot& robot, robot::Lookout lookout, robot::OutlookParams shown,
+            PlaceLoop* place = nullptr);
   ~SenseLoop();
   SenseLoop(const SenseLoop&) = delete;
   SenseLoop& operator=(const SenseLoop&) = delete;
@@ -46,6 +50,7 @@ class SenseLoop {
   void look_out(base::Time now);
 
   robot::Robot& robot_;
+  PlaceLoop* place_;
   robot::Lookout lookout_;
   base::Inbox<std::shared_ptr<const base::Sight>> sights_{64};
   sem_t news_{};

@@ -52,6 +52,7 @@ void Station::Impl::halt() noexcept {
   loop.reset();
   if (supervisor) supervisor->stop();
   if (around) around->stop();
+  if (place) place->stop();
   if (sense) sense->stop();  // a driver that hangs may hold it for longer than the robot lives
 }
 

@@ -26,6 +26,7 @@
 #include "app/front.hpp"
 #include "app/host_watch.hpp"
 #include "app/memory_reserve.hpp"
+#include "app/place_loop.hpp"
 #include "app/presence.hpp"
 #include "app/recordings.hpp"
 #include "app/sense_loop.hpp"
@@ -65,6 +66,7 @@ struct Station::Impl {
   net::Files page{net::page_entries()};
   store::TileFolder tiles;
   std::unique_ptr<AroundLoop> around;  ///< null: nobody goes around anything
+  std::unique_ptr<PlaceLoop> place;    ///< null: no map
   std::shared_ptr<SenseLoop> sense;    ///< null: no sensors
   std::unique_ptr<Supervisor> supervisor;
   std::unique_ptr<store::Store> store;

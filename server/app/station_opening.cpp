@@ -61,7 +61,12 @@ Result<void> Station::Impl::open_senses(const Settings& settings, const Options&
   const bool any = std::ranges::any_of(settings.sensors, [](const auto& one) {
     return one.second.said.enabled && one.second.said.ranging();
   });
-  if (!any) return {};
+  if (!any) {
+    if (!settings.map.file.empty()) {
+      base::log(base::Level::Warning, "place", "a map is in use, and no sensor looks around");
+    }
+    return {};
+  }
   auto lookout = lookout_of(settings, base::steady_now());
   if (!lookout) return tl::unexpected(lookout.error());
   const bool required = std::ranges::any_of(settings.sensors, [](const auto& one) {
@@ -70,7 +75,13 @@ Result<void> Station::Impl::open_senses(const Settings& settings, const Options&
   const robot::Config& c = settings.robot;
   robot.guard_by(c.protect, required && options.replays.empty(), c.blocked, settings.sense.outline,
                  c.rays);
-  sense = std::make_shared<SenseLoop>(robot, std::move(*lookout), shown_of(settings));
+  auto map = map_of(settings);
+  if (!map) return tl::unexpected(map.error());
+  if (*map) {
+    place = std::make_unique<PlaceLoop>(robot, std::move(*map), whereabouts_of(settings),
+                                        mounts_of(settings));
+  }
+  sense = std::make_shared<SenseLoop>(robot, std::move(*lookout), shown_of(settings), place.get());
   around = std::make_unique<AroundLoop>(robot);  // `then` may become "around" at any time
   return {};
 }
@@ -197,6 +208,11 @@ void Station::Impl::make_api(const Settings& settings, const Options& options) {
                            .clients = stats.clients};
   };
   if (sense) deps.outlook = [this] { return sense->outlook(); };
+  if (place) {
+    deps.pose_told = [this](base::LatLon at, std::optional<double> yaw_rad) {
+      place->told({at, yaw_rad});
+    };
+  }
   deps.identity = [this] { return presence->identity(); };
   deps.host = [this] { return host; };
   deps.aside = [this](api::Aside a) {

@@ -170,6 +170,7 @@ Sections sections_of(Settings& s) {
       {"runs", section(s.runs)},
       {"events", section(s.events)},
       {"backups", section(s.backups)},
+      {"map", section(s.map)},
       {"tiles", [&s](std::string_view name, const ParamValue& v) { return set_tiles(s, name, v); }},
   };
   drivers(

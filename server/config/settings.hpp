@@ -202,6 +202,30 @@ void fields(V& v, BackupSettings& p) {
     "the first one so long after the start, unless the newest is younger than every_h");
 }
 
+/// The map of the plane in which the robot looks for itself, as map servers keep them.
+struct MapSettings {
+  std::string file;
+  double anchor_lat = 0.0;
+  double anchor_lon = 0.0;
+  double anchor_heading_deg = 90.0;
+  double anchor_accuracy_m = 0.3;
+};
+
+template <class V>
+void fields(V& v, MapSettings& p) {
+  v("file", p.file,
+    "the .yaml of a map, its .pgm beside it: the robot looks for itself in it by its scanner, "
+    "where satellites are not fixed; empty: no map");
+  v("anchor_lat", p.anchor_lat, -90.0, 90.0,
+    "latitude of the map's origin (x = y = 0); this and anchor_lon 0: not known. The map is laid "
+    "where the satellites see the robot then, or at nav.estimate.map_lat and map_lon");
+  v("anchor_lon", p.anchor_lon, -180.0, 180.0, "longitude of the map's origin");
+  v("anchor_heading_deg", p.anchor_heading_deg, 0.0, 360.0,
+    "compass heading of the map's x axis; 90: to the east");
+  v("anchor_accuracy_m", p.anchor_accuracy_m, 0.0, 10.0,
+    "how well the anchor is known, 1 sigma: satellites that are fixed correct it by that");
+}
+
 struct Settings {
   ServerSettings server;
   BadgeSettings badge;
@@ -211,6 +235,7 @@ struct Settings {
   RunSettings runs;
   EventSettings events;
   BackupSettings backups;
+  MapSettings map;
   Wired<bunker::Params> bunker;
   Wired<ackermann::Params> ackermann;
   Wired<ratio::Params> ratio;

@@ -55,6 +55,31 @@ Json position_json(const std::optional<base::Pose>& pose, base::Time now) {
   return out;
 }
 
+/// In the map that is in use.
+Json place_json(const std::optional<base::PlaceState>& place, base::Time now) {
+  Json out = {{"state", base::to_string(place ? place->phase : base::PlacePhase::Off)},
+              {"map", nullptr},
+              {"reason", nullptr},
+              {"x_m", nullptr},
+              {"y_m", nullptr},
+              {"yaw_deg", nullptr},
+              {"accuracy_m", nullptr},
+              {"heading_accuracy_deg", nullptr}};
+  const bool looks = place && place->phase != base::PlacePhase::Off;
+  set_age(out, looks ? stamp_of(place) : std::nullopt, now, StaleAfter::kPosition_s);
+  if (!looks) return out;
+  out["map"] = place->map;
+  if (!place->reason.empty()) out["reason"] = place->reason;
+  if (place->in_map) {
+    out["x_m"] = rounded(place->in_map->x_m, kPlaces3);
+    out["y_m"] = rounded(place->in_map->y_m, kPlaces3);
+    out["yaw_deg"] = degrees(place->in_map->yaw_rad);
+  }
+  out["accuracy_m"] = rounded(place->sigma_m, kPlaces3);
+  out["heading_accuracy_deg"] = degrees(place->sigma_rad);
+  return out;
+}
+
 Json attitude_json(const std::optional<base::Attitude>& a, base::Time now) {
   Json out = {{"roll_deg", nullptr}, {"pitch_deg", nullptr}};
   set_age(out, stamp_of(a), now, StaleAfter::kAttitude_s);
@@ -251,6 +276,7 @@ Json vehicle_json(const base::Snapshot& s, const std::string& name, base::Time n
            {{"speed_mps", rounded(s.command.twist.linear_mps, kPlaces3)},
             {"yaw_rate_dps", degrees(s.command.twist.angular_radps)}}},
           {"position", position_json(s.pose, now)},
+          {"place", place_json(s.place, now)},
           {"attitude", attitude_json(s.attitude, now)},
           {"gnss", gnss_json(s, now)},
           {"base", base_json(s, now)},

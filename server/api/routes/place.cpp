@@ -50,7 +50,15 @@ Handler set_pose(const ContextPtr& context) {
     if (nothing) members.require("heading_deg");
     const robot::Validity validity = validity_of(members, *call, Moves::No);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
-    run_command(context, call, command, validity, state_after(context));
+    run_command(context, call, command, validity,
+                [context, state = state_after(context)](const base::Snapshot& snapshot) {
+                  if (context->deps.pose_told && snapshot.pose) {
+                    const base::Pose& p = *snapshot.pose;
+                    context->deps.pose_told(
+                        p.global, p.heading_known ? std::optional(p.yaw_rad) : std::nullopt);
+                  }
+                  return state(snapshot);
+                });
   };
 }
 
