@@ -84,6 +84,7 @@ void SenseLoop::run() noexcept {
       robot_.surroundings_done().take(done);
       const auto config = robot_.config();
       lookout_.follow(config->protect, config->rays);
+      lookout_.follow(config->wall);
       rows.clear();
       robot_.row_questions().take(rows);
       if (!rows.empty()) lookout_.look_for(rows.back());

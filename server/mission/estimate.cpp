@@ -106,7 +106,9 @@ class Walk {
   void pass(const Row& row) {
     if (row.distance_m) add_way(*row.distance_m, row.speed_mps.value_or(speed_mps_));
   }
-  void pass(const Wall&) {}
+  void pass(const Wall& wall) {
+    if (wall.length_m) add_way(*wall.length_m, wall.speed_mps.value_or(speed_mps_));
+  }
   void pass(const Landmarks&) {}
   void pass(const Action&) {}
   void pass(const Loiter& loiter) {

@@ -66,9 +66,12 @@ struct Row {
   RowSeeing seeing = RowSeeing::Line;
   friend bool operator==(const Row&, const Row&) = default;
 };
+/// Along a wall, around its corners and past its doors.
 struct Wall {
-  Side side = Side::Left;
-  double distance_m = 0.0;
+  Side side = Side::Left;             ///< of the vehicle, where the wall is
+  double distance_m = 0.0;            ///< from the wall to the vehicle's middle
+  std::optional<double> speed_mps{};  ///< empty: as the profile says for walls
+  std::optional<double> length_m{};   ///< done after so much way; empty: at the wall's end
   friend bool operator==(const Wall&, const Wall&) = default;
 };
 struct Landmarks {

@@ -14,7 +14,9 @@
 #include "nav/behave/mode_params.hpp"
 #include "nav/behave/params.hpp"
 #include "nav/behave/row_drive.hpp"
+#include "nav/behave/wall_drive.hpp"
 #include "nav/estimate/params.hpp"
+#include "nav/marks/params.hpp"
 #include "nav/rows/params.hpp"
 #include "nav/sense/params.hpp"
 #include "nav/track/path.hpp"
@@ -218,6 +220,8 @@ struct Config {
   nav::ModeParams modes;
   nav::RowDriveParams row;
   nav::rows::RowParams rows;
+  nav::SightParams sight;
+  nav::marks::WallParams wall;
   RobotParams robot;
   ManualParams manual;
   SafetyParams safety;
@@ -263,6 +267,8 @@ void sections(V& v, Config& c) {
   v("nav.modes", c.modes);
   v("nav.row", c.row);
   v("nav.rows", c.rows);
+  v("nav.sight", c.sight);
+  v("nav.wall", c.wall);
   v("robot", c.robot);
   v("robot.manual", c.manual);
   v("robot.safety", c.safety);

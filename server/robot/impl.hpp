@@ -277,6 +277,7 @@ struct Robot::Impl {
   base::BodyTwist guarded(const base::BodyTwist& wanted);
   void ask_for_row();
   std::optional<nav::RowSight> row_sight() const;
+  std::optional<nav::MarkSight> mark_sight() const;
   nav::sense::Pose2 local_in_odometry() const noexcept;
   bool ask_around();
   void take_around();

@@ -63,7 +63,7 @@ MissionKeeper::Mission MissionKeeper::lay_anew(Mission mission) {
 
 base::Result<void> MissionKeeper::may_restore(const ResumeAt& left, const ParameterSet& set,
                                               base::EnuPoint here) const {
-  nav::Executor trial(set.path, set.behave, set.modes, set.row);
+  nav::Executor trial(set.path, set.behave, set.modes, set.row, set.marks);
   const std::shared_ptr<const nav::Route> way(left.mission, &left.mission->route);
   if (auto ok = trial.restore(way, left.place, kLeftBehind); !ok) return ok;
   return trial.may_resume(here);

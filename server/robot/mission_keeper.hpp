@@ -24,7 +24,7 @@ class MissionKeeper {
   using Mission = std::shared_ptr<const CompiledMission>;
 
   explicit MissionKeeper(const ParameterSet& set)
-      : executor(set.path, set.behave, set.modes, set.row) {}
+      : executor(set.path, set.behave, set.modes, set.row, set.marks) {}
 
   const Mission& get() const noexcept { return mission_; }
   explicit operator bool() const noexcept { return mission_ != nullptr; }

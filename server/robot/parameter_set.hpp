@@ -31,6 +31,8 @@ class ParameterSet {
     behave.adopt(section(all_->behave));
     modes.adopt(section(all_->modes));
     row.adopt(section(all_->row));
+    marks.sight.adopt(section(all_->sight));
+    marks.walls.adopt(section(all_->wall));
     manual.adopt(section(all_->manual));
     safety.adopt(section(all_->safety));
     radio.adopt(section(all_->radio));
@@ -46,6 +48,7 @@ class ParameterSet {
   base::Setting<nav::BehaveParams> behave;
   base::Setting<nav::ModeParams> modes;
   base::Setting<nav::RowDriveParams> row;
+  nav::MarkSettings marks;
   base::Setting<ManualParams> manual;
   base::Setting<SafetyParams> safety;
   base::Setting<RadioParams> radio;

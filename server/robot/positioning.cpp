@@ -179,7 +179,7 @@ base::DriveCommand Robot::Impl::seek_heading() {
   return {{speed_mps, (*turn - estimator.pull_1pm() * speed_mps) / estimator.yaw_scale()}, true};
 }
 
-/// While the heading is uncertain, along a leg: the mission's speed, but straight on. Not in a row.
+/// While the heading is uncertain, along a leg: the mission's speed, but straight on. Not by sight.
 base::BodyTwist Robot::Impl::straight_first(const base::BodyTwist& wanted) {
   constexpr double kEndNear_m = 1.0;
   constexpr double kAside_deg = 50.0;  // a target so far aside is not reached straight on
@@ -194,7 +194,7 @@ base::BodyTwist Robot::Impl::straight_first(const base::BodyTwist& wanted) {
     ahead = std::hypot(way.east_m, way.north_m) > kEndNear_m &&
             std::abs(base::angle_diff_rad(pose->yaw_rad, bearing)) < base::rad_from_deg(kAside_deg);
   }
-  const bool by_sight = missions.executor.row_wanted().has_value();  // it asks for no heading
+  const bool by_sight = missions.executor.by_sight();  // it asks for no heading
   state.driving = missions.executor.phase() == nav::TrackPhase::Track && wanted.linear_mps != 0.0 &&
                   ahead && !by_sight;
   const auto turn = straight.step(state);

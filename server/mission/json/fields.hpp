@@ -125,6 +125,8 @@ template <class V>
 void fields(V& v, Of<Wall> auto& p) {
   v.word("side", p.side);
   v.number("distance_m", p.distance_m, kBeside_m);
+  v.number("speed_mps", p.speed_mps, kSpeed_mps);
+  v.number("length_m", p.length_m, kRow_m);
 }
 template <class V>
 void fields(V& v, Of<Landmarks> auto& p) {

@@ -50,6 +50,7 @@ TrackOutput Executor::step(const Vehicle& vehicle, double limit_mps, std::option
   }
   if (doing_ == Doing::Turn) return step_turn(vehicle, dt_s);
   if (doing_ == Doing::Row) return step_row(vehicle, limit_mps, dt_s);
+  if (doing_ == Doing::Wall) return step_wall(vehicle, limit_mps, dt_s);
   if (doing_ == Doing::Wait || cut_goal(vehicle, dt_s)) return {};
   const TrackOutput out = tracker_.step(vehicle, limit_mps, dt_s);
   if (doing_ == Doing::Path) pass_nodes(vehicle);
@@ -96,6 +97,8 @@ bool Executor::enter_step(const RouteStep& step, const Vehicle& vehicle,
       return enter_move(step, vehicle);
     case StepKind::Row:
       return enter_row(step);
+    case StepKind::Wall:
+      return enter_wall(step);
     case StepKind::Face:
     case StepKind::Turn:
       return enter_turn(step);
@@ -406,11 +409,12 @@ void Executor::watch_stuck(const Vehicle& vehicle, double dt_s) {
   block(std::move(text));
 }
 
-/// The item in hand cannot be reached: what follows is the operator's choice. Not inside a row: the
-/// turns and moves that follow it, or a straight way home, would lead through its plants.
+/// The item in hand cannot be reached: what follows is the operator's choice. Not beside what
+/// is driven along by sight: the turns and moves that follow a row, or a straight way home, would
+/// lead through its plants.
 void Executor::block(std::string why) {
   const RouteStep* step = step_now();
-  const bool in_row = step != nullptr && step->kind == StepKind::Row;
+  const bool in_row = step != nullptr && step->by_sight();
   if (!in_row && params_->unreachable == "skip" && step != nullptr &&
       at_ + 1 < course_->steps.size() && skipped_ < course_->steps.size()) {
     const int item = step->item;

@@ -53,12 +53,14 @@ std::optional<EnuPoint> first_target(const Route& route, std::size_t step,
 }
 
 Executor::Executor(base::Setting<PathParams> path, base::Setting<BehaveParams> behave,
-                   base::Setting<ModeParams> modes, base::Setting<RowDriveParams> rows)
+                   base::Setting<ModeParams> modes, base::Setting<RowDriveParams> rows,
+                   MarkSettings marks)
     : path_params_(path),
       params_(std::move(behave)),
       modes_(std::move(modes)),
       tracker_(path),
-      row_(path, std::move(rows)) {
+      row_(path, std::move(rows)),
+      wall_(path, std::move(marks)) {
   notices_.reserve(16);
 }
 
@@ -90,6 +92,7 @@ void Executor::begin_at(std::size_t step) {
   tracker_.reset();
   rotation_.reset();
   row_.reset();
+  wall_.reset();
   doing_ = Doing::Nothing;
   left_ = looked_s_ = 0.0;
   at_ = step;
@@ -156,6 +159,7 @@ void Executor::wait() noexcept {
   }
   tracker_.reset();
   row_.interrupt();
+  wall_.interrupt();
   lost_s_ = stuck_s_ = 0.0;
   interrupted_ = true;
 }
@@ -171,6 +175,7 @@ std::optional<EnuPoint> Executor::place_to_go_on() const noexcept {
     case Doing::Turn:
     case Doing::Stay:
     case Doing::Row:
+    case Doing::Wall:
       return std::nullopt;
   }
   return std::nullopt;

@@ -8,9 +8,10 @@
 //                                   stop: any of these ─▶ Aborted ──start─▶ Running
 //
 // An item that cannot be reached is Blocked, or left for the next one, or the robot returns home:
-// BehaveParams::unreachable; a row is always Blocked. interrupt() keeps Running but forgets what
-// the tracker was doing: somebody else drives; go_on() continues at the same place, driving back to
-// it first if the robot was moved. Control thread; allocates only when a new way begins.
+// BehaveParams::unreachable; a row or a wall is always Blocked. interrupt() keeps Running but
+// forgets what the tracker was doing: somebody else drives; go_on() continues at the same place,
+// driving back to it first if the robot was moved. Control thread; allocates only when a new way
+// begins.
 
 #include <cstdint>
 #include <memory>
@@ -27,6 +28,7 @@
 #include "nav/behave/rotate_in_place.hpp"
 #include "nav/behave/route.hpp"
 #include "nav/behave/row_drive.hpp"
+#include "nav/behave/wall_drive.hpp"
 #include "nav/track/tracker.hpp"
 
 namespace roverd::nav {
@@ -102,7 +104,8 @@ struct RowWanted {
 class Executor {
  public:
   Executor(base::Setting<PathParams> path, base::Setting<BehaveParams> behave,
-           base::Setting<ModeParams> modes = {}, base::Setting<RowDriveParams> rows = {});
+           base::Setting<ModeParams> modes = {}, base::Setting<RowDriveParams> rows = {},
+           MarkSettings marks = {});
 
   /// Allowed unless Running. Null: nothing is loaded.
   void load(std::shared_ptr<const Route> route);
@@ -160,6 +163,13 @@ class Executor {
   /// Before step(): what is seen of it. Empty: nothing on this robot looks around.
   void see_row(const std::optional<RowSight>& sight) noexcept { row_sight_ = sight; }
 
+  /// Before step(): what is seen of walls. Empty: nothing on this robot looks around.
+  void see_marks(const std::optional<MarkSight>& sight) noexcept { mark_sight_ = sight; }
+  /// What is in hand is driven by sight, and asks for no heading.
+  bool by_sight() const noexcept {
+    return running() && (doing_ == Doing::Row || doing_ == Doing::Wall);
+  }
+
   base::ExecutionState state() const noexcept { return state_; }
   /// Another one: what was found out about the way ahead is of no use any more.
   std::uint64_t way_id() const noexcept { return way_id_; }
@@ -171,7 +181,9 @@ class Executor {
     return running() ? route_->corridor_m : std::nullopt;
   }
   TrackPhase phase() const noexcept {
-    return doing_ == Doing::Row ? row_.phase() : tracker_.phase();
+    return doing_ == Doing::Row    ? row_.phase()
+           : doing_ == Doing::Wall ? wall_.phase()
+                                   : tracker_.phase();
   }
   /// @param here empty: the position is not known, and neither is a way that begins there.
   /// @param sigma_m of that position.
@@ -180,7 +192,7 @@ class Executor {
   std::vector<Notice>& notices() noexcept { return notices_; }
 
  private:
-  enum class Doing { Nothing, Path, Connector, Wait, Turn, Stay, Row };
+  enum class Doing { Nothing, Path, Connector, Wait, Turn, Stay, Row, Wall };
   /// Way and time, jumps not counted.
   struct Left {
     double m = 0.0;
@@ -204,6 +216,8 @@ class Executor {
   TrackOutput step_turn(const Vehicle& vehicle, double dt_s);
   bool enter_row(const RouteStep& step);
   TrackOutput step_row(const Vehicle& vehicle, double limit_mps, double dt_s);
+  bool enter_wall(const RouteStep& step);
+  TrackOutput step_wall(const Vehicle& vehicle, double limit_mps, double dt_s);
   bool enter_stay(const RouteStep& step, const Vehicle& vehicle);
   void step_stay(const Vehicle& vehicle);
   bool cut_goal(const Vehicle& vehicle, double dt_s);
@@ -243,6 +257,8 @@ class Executor {
   RotateInPlace rotation_;
   RowDrive row_;
   std::optional<RowSight> row_sight_;
+  WallDrive wall_;
+  std::optional<MarkSight> mark_sight_;
   std::uint64_t rows_begun_ = 0;
   bool row_left_ = false;        ///< somebody else drove: the row is looked for anew
   std::vector<int> jumps_left_;  ///< per jump; −1: not counted yet

@@ -92,6 +92,33 @@ TrackOutput Executor::step_row(const Vehicle& vehicle, double limit_mps, double 
   return out;
 }
 
+/// Likewise along a wall.
+bool Executor::enter_wall(const RouteStep& step) {
+  const WallToDrive& wall = *step.wall;
+  wall_.begin({wall.side, wall.distance_m, wall.speed_mps, wall.length_m, left_});
+  left_ = 0.0;
+  standing_.reset();
+  drove_ = true;
+  doing_ = Doing::Wall;
+  return true;
+}
+
+TrackOutput Executor::step_wall(const Vehicle& vehicle, double limit_mps, double dt_s) {
+  if (!mark_sight_) {
+    block("nothing on this robot sees walls");
+    return {};
+  }
+  const TrackOutput out = wall_.step(*mark_sight_, vehicle, limit_mps, dt_s);
+  if (wall_.state() == WallDrive::State::Failed) {
+    std::string why = wall_.reason();
+    block("item " + std::to_string(step_now()->item) + ": " + why);
+  } else if (wall_.state() == WallDrive::State::Done) {
+    doing_ = Doing::Nothing;
+    reached(*step_now());
+  }
+  return out;
+}
+
 /// Begun anew, or with what is left after a restart.
 bool Executor::enter_stay(const RouteStep& step, const Vehicle& vehicle) {
   stays_ = step.place.value_or(vehicle.at);

@@ -45,7 +45,7 @@ class Layout {
         std::any_of(forth().steps.begin(), forth().steps.end(), [](const RouteStep& step) {
           return step.kind == StepKind::Go || step.kind == StepKind::Home ||
                  step.kind == StepKind::Move || step.kind == StepKind::Turn ||
-                 step.kind == StepKind::Stay || step.kind == StepKind::Row;
+                 step.kind == StepKind::Stay || step.by_sight();
         });
     if (problems_.empty() && !drives) {
       problems_.push_back({"/items", "the mission has no waypoint"});
@@ -171,6 +171,17 @@ class Layout {
     leave_circle();
     forth().steps.push_back({.kind = StepKind::Row, .item = item_, .row = row});
   }
+  void add(const mission::Wall& w) {
+    if (params_.tool.pulled()) return refuse("with a trailer no wall is driven along by sight");
+    not_back_and_forth("a wall");
+    WallToDrive wall;
+    wall.side = w.side == mission::Side::Left ? marks::Side::Left : marks::Side::Right;
+    wall.distance_m = w.distance_m;
+    wall.speed_mps = w.speed_mps;
+    wall.length_m = w.length_m;
+    leave_circle();
+    forth().steps.push_back({.kind = StepKind::Wall, .item = item_, .wall = wall});
+  }
   void add(const mission::Action& a) {
     forth().steps.push_back({.kind = StepKind::Act,
                              .item = item_,
@@ -224,8 +235,7 @@ class Layout {
     for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
       if (step->kind == StepKind::Go) return route_.forth.nodes[step->node].at;
       const bool elsewhere = step->kind == StepKind::Home || step->kind == StepKind::Move ||
-                             step->kind == StepKind::Row ||
-                             (step->kind == StepKind::Stay && !step->place);
+                             step->by_sight() || (step->kind == StepKind::Stay && !step->place);
       if (elsewhere || step->kind == StepKind::Jump) return std::nullopt;
     }
     return route_.home;
@@ -439,6 +449,9 @@ class Layout {
       case StepKind::Row:  // how long it is, shows on the way
         if (!step.row->distance_m) break;
         return *step.row->distance_m / std::max(0.1, step.row->speed_mps.value_or(speed_mps_));
+      case StepKind::Wall:
+        if (!step.wall->length_m) break;
+        return *step.wall->length_m / std::max(0.1, step.wall->speed_mps.value_or(speed_mps_));
       case StepKind::Home:
       case StepKind::Jump:
       case StepKind::Act:
@@ -463,7 +476,7 @@ class Layout {
         before = forth().nodes[step.node].at;
         if (at_home) route_.home_ends.push_back({*before, step.item});
         at_home = false;
-      } else if (step.kind == StepKind::Move || step.kind == StepKind::Row) {
+      } else if (step.kind == StepKind::Move || step.by_sight()) {
         before.reset();
         at_home = false;
       } else if (step.kind == StepKind::Home) {

@@ -9,19 +9,28 @@
 #include "base/geo.hpp"
 #include "base/result.hpp"
 #include "mission/plan.hpp"
+#include "nav/marks/params.hpp"
 #include "nav/rows/view.hpp"
 #include "nav/track/path.hpp"
 
 namespace roverd::nav {
 
 /// Face, Act and Stay belong to the waypoint before them.
-enum class StepKind { Go, Wait, Home, Jump, Face, Turn, Move, Act, Stay, Row };
+enum class StepKind { Go, Wait, Home, Jump, Face, Turn, Move, Act, Stay, Row, Wall };
 
 /// A row to drive along by sight.
 struct RowToDrive {
   rows::RowOrder order;
   std::optional<double> speed_mps;   ///< empty: the default of rows
   std::optional<double> distance_m;  ///< empty: to its end
+};
+
+/// A wall to drive along by sight.
+struct WallToDrive {
+  marks::Side side = marks::Side::Left;
+  double distance_m = 0.9;
+  std::optional<double> speed_mps;  ///< empty: the default of what is driven by sight
+  std::optional<double> length_m;   ///< empty: to its end
 };
 
 /// One thing to do. `item` is the number people see (from 1).
@@ -33,14 +42,18 @@ struct RouteStep {
   std::size_t target = 0;  ///< Jump: index of the step to go on with
   int times = 0;           ///< Jump: repetitions; 0 = for ever
   double by = 0.0;         ///< Move: m, negative backwards. Turn: rad, left positive
-  std::optional<double> yaw_rad{};  ///< Face: to this; Turn: to this instead of by an angle
-  bool silent = false;              ///< Go: a point on the way to the item's own
-  std::optional<EnuPoint> place{};  ///< Stay: here; empty: where the robot stands
-  double within_m = 0.0;            ///< Stay: farther from there it drives back
-  bool endless = false;             ///< Stay: until somebody says to go on
-  std::string action{};             ///< Act: its name
-  std::string arguments{};          ///< Act: JSON
-  std::optional<RowToDrive> row{};  ///< Row
+  std::optional<double> yaw_rad{};    ///< Face: to this; Turn: to this instead of by an angle
+  bool silent = false;                ///< Go: a point on the way to the item's own
+  std::optional<EnuPoint> place{};    ///< Stay: here; empty: where the robot stands
+  double within_m = 0.0;              ///< Stay: farther from there it drives back
+  bool endless = false;               ///< Stay: until somebody says to go on
+  std::string action{};               ///< Act: its name
+  std::string arguments{};            ///< Act: JSON
+  std::optional<RowToDrive> row{};    ///< Row
+  std::optional<WallToDrive> wall{};  ///< Wall
+
+  /// Along what is seen: where it leads shows on the way.
+  bool by_sight() const noexcept { return kind == StepKind::Row || kind == StepKind::Wall; }
 };
 
 /// A waypoint of the route, in metres.

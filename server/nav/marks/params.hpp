@@ -1,6 +1,6 @@
 #pragma once
 // What is taken for a wall, what for a post or cone, and how they are driven along. Sections
-// [nav.walls] and [nav.landmarks]; all of it may change while driving.
+// [nav.wall] and [nav.landmarks]; all of it may change while driving.
 
 #include <string>
 
@@ -37,11 +37,6 @@ void fields(V& v, WallParams& p) {
   v("min_points", p.min_points, 5.0, 200.0, "nor are pieces of fewer points");
   v("max_rms_m", p.max_rms_m, 0.005, 0.3, "nor what is less straight");
   v("door_m", p.door_m, 0.0, 5.0, "a gap up to this width is a door: the wall goes on behind it");
-  v("min_plane_size", p.min_plane_size, 0.0, 1e6,
-    "points that a vision program's plane must have to be a wall");
-  v("distance_m", p.distance_m, 0.3, 5.0, "from the vehicle's origin to the wall it drives along");
-  v("ahead_m", p.ahead_m, 0.3, 5.0, "by bearing: the point that is steered to lies so far ahead");
-  v("gain", p.gain, 0.1, 100.0, "by bearing: tenths of rad/s of turn for a bearing of 1 rad");
   v("way_m", p.way_m, 1.0, 10.0, "the way along the wall is laid so far ahead");
   v("corner_m", p.corner_m, 0.02, 1.0, "how far an inner corner may be cut");
   v("keep_s", p.keep_s, 1.0, 300.0, "a wall that is not seen any more is kept so long");

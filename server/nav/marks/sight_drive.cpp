@@ -26,7 +26,9 @@ bool SightDrive::take(const Way& way) {
   auto path = std::make_shared<const Path>(build_path(way.vertices, *params_));
   if (path->legs.empty()) return false;
   const double left_m = path->legs.front().end_m - way.here_m;
-  if (state_ != State::Driving && left_m < kWorthStarting_m) return false;
+  // Braking to the same end it is left alone: what is laid anew begins anew.
+  const bool halting = state_ != State::Driving || tracker_.phase() == TrackPhase::Stop;
+  if (halting && left_m < kWorthStarting_m) return false;
   tracker_.move_to(*path, 0, way.here_m);
   path_ = std::move(path);  // the old one lives until the tracker has left it
   corners_ = way.corners;

@@ -13,7 +13,9 @@ constexpr double kTellAnyway_s = 0.1;
 constexpr double kMissed = 2.5;  // pieces that may be missing
 constexpr std::size_t kMostWaiting = 64;
 constexpr double kBeyond_m = 1.0;  // the picture reaches on, for the body's own size
-constexpr double kAsKept_s = 1e6;  // as long as the grid keeps it
+constexpr double kBesideEvery_s = 0.08;
+constexpr double kBesideBand_m = 0.1;  // of the scanner's height, where it leans
+constexpr double kAsKept_s = 1e6;      // as long as the grid keeps it
 
 base::SensorHealth health_of(nav::sense::Eye eye, bool silent) noexcept {
   if (silent) return base::SensorHealth::Silent;
@@ -45,6 +47,7 @@ Lookout::Lookout(nav::sense::Chain chain, std::vector<std::string> kinds, double
       scans_(chain_.sensors()),
       rays_(rays),
       counted_(chain_.sensors()),
+      beside_at_(chain_.sensors()),
       nears_(chain_.sensors()),
       reach_m_(reach_m) {
   kinds_.resize(chain_.sensors());
@@ -102,11 +105,29 @@ void Lookout::take(const base::Sight& sight, base::Time now) {
     nav::rows::scan_of(chain_.last(), row_.params, row_scan_);
     finder_->see(row_scan_);
   }
+  look_beside(sight, *number);
   if (rays_.enabled) {
     count(*number, end_of(sight), now);
     near(*number, end_of(sight), now);
   }
   news_ = true;
+}
+
+/// A piece that is too short, blind or unplaced tells nothing of walls.
+void Lookout::look_beside(const base::Sight& sight, std::size_t number) {
+  auto& last = beside_at_[number];
+  if (!chain_.sensor(number).planar) return;
+  if (last && base::seconds(sight.stamp - *last) < kBesideEvery_s) return;
+  if (!nav::marks::planar_of(sight, chain_.sensor(number).mount, history_, wall_params_.max_range_m,
+                             kBesideBand_m, beside_scan_)) {
+    return;
+  }
+  last = sight.stamp;
+  walls_.take(beside_scan_, wall_params_);
+  auto view = std::make_shared<nav::marks::View>();
+  view->stamp = beside_scan_.stamp;
+  view->walls = walls_.all();
+  beside_ = std::move(view);
 }
 
 /// A piece of a sensor that does not see clears nothing. Nor does one in which any ray is still too
@@ -228,6 +249,7 @@ std::shared_ptr<const Surroundings> Lookout::picture(base::Time now) {
   out->marks.mark(out->patch);
   out->sensors = std::move(sensors);
   if (finder_ && finder_->view()) out->row = RowSeen{row_.id, *finder_->view()};
+  out->beside = beside_;
   if (rays_.enabled) tell_rays(*out, now);
   news_ = false;
   told_ = now;

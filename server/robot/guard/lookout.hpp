@@ -14,6 +14,9 @@
 // for ground that nobody has seen, if another one sees; not while that lies behind, and no more
 // when the robot is farther from it than the rays reach.
 //
+// Walls are looked for in the pieces of scanners that look along one plane, ten times a second of
+// each.
+//
 // A sight that is newer than the odometry by no more than a tick is placed along the last twist:
 // within 25 ms a change by 2 m/s2 and 2 rad/s2 is 0.6 mm and 0.6 mrad, and to wait for the next
 // tick would cost one. A newer one waits for the odometry, 0.2 s at most. Not shared
@@ -28,6 +31,8 @@
 
 #include "base/sensing.hpp"
 #include "base/sight.hpp"
+#include "nav/marks/scan.hpp"
+#include "nav/marks/view.hpp"
 #include "nav/rows/finder.hpp"
 #include "nav/sense/chain.hpp"
 #include "nav/sense/rays_rule.hpp"
@@ -47,6 +52,9 @@ class Lookout {
   /// What may change while it looks: how far the guard looks, and its counted rays (checked).
   void follow(const nav::sense::ProtectParams& protect, const nav::sense::RaysParams& rays);
 
+  /// What is taken for a wall from now on.
+  void follow(const nav::marks::WallParams& walls) { wall_params_ = walls; }
+
   void moved(const nav::sense::Odometry& o) noexcept;
   /// @param sight one of the chain's sensors, or it is left out
   void see(std::shared_ptr<const base::Sight> sight, base::Time now);
@@ -63,6 +71,7 @@ class Lookout {
   void take(const base::Sight& sight, base::Time now);
   void count(std::size_t number, base::Time seen, base::Time now);
   void near(std::size_t number, base::Time seen, base::Time now);
+  void look_beside(const base::Sight& sight, std::size_t number);
   void tell_rays(Surroundings& out, base::Time now);
 
   nav::sense::Chain chain_;
@@ -82,6 +91,11 @@ class Lookout {
     RaysStop stop;
   };
   std::vector<std::optional<Counted>> counted_;  ///< by sensor: it says stop
+  nav::marks::WallParams wall_params_;
+  nav::marks::Walls walls_;
+  nav::marks::PlanarScan beside_scan_;  ///< the last one
+  std::shared_ptr<const nav::marks::View> beside_;
+  std::vector<std::optional<base::Time>> beside_at_;  ///< by sensor: looked for walls last
   RowQuestion row_;
   std::optional<nav::rows::RowFinder> finder_;
   nav::rows::RowScan row_scan_;                 ///< of the last piece

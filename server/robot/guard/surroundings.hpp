@@ -8,6 +8,7 @@
 
 #include "base/sensing.hpp"
 #include "base/time.hpp"
+#include "nav/marks/view.hpp"
 #include "nav/sense/footprint.hpp"
 #include "nav/sense/grid.hpp"
 #include "nav/sense/marks.hpp"
@@ -40,7 +41,8 @@ struct Surroundings {
   std::optional<RaysStop> rays;
   /// Of those whose rays will say stop soon, the one with the least way. Empty: none.
   std::optional<RaysStop> rays_ahead;
-  std::optional<RowSeen> row;  ///< empty: none is asked for, or none is seen
+  std::shared_ptr<const nav::marks::View> beside;  ///< walls; null: no scanner looks along a plane
+  std::optional<RowSeen> row;                      ///< empty: none is asked for, or none is seen
 };
 
 }  // namespace roverd::robot

@@ -85,6 +85,16 @@ std::optional<nav::RowSight> Robot::Impl::row_sight() const {
   return sight;
 }
 
+std::optional<nav::MarkSight> Robot::Impl::mark_sight() const {
+  if (!guard.sees()) return std::nullopt;
+  nav::MarkSight sight;
+  sight.now = clock.now();
+  sight.body = guard.odometry().pose;
+  const auto& around = guard.around();
+  if (around) sight.view = around->beside.get();
+  return sight;
+}
+
 /// What is in the way is not driven against, whoever drives.
 base::DriveCommand Robot::Impl::keep_off(base::DriveCommand command) {
   if (!guard.sees()) return command;

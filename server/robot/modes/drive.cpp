@@ -108,10 +108,11 @@ base::DriveCommand Robot::Impl::drive_mission() {
     missions.executor.wait();
     return {{}, true};
   }
-  const bool by_sight = missions.executor.row_wanted().has_value();
+  const bool by_sight = missions.executor.by_sight();
   if (!pose->heading_known && !by_sight) return seek_heading();
   missions.executor.go_on(pose->at);
   missions.executor.see_row(row_sight());
+  missions.executor.see_marks(mark_sight());
   const nav::TrackOutput out =
       missions.executor.step(vehicle(), limit_mps(), home_point(), clock.dt_s());
   speed_reason = std::string(nav::to_string(out.reason));

@@ -286,6 +286,8 @@ TEST(PlanJson, RangesEndWhereTheyShould) {
            {R"({"type":"row","seeing":"camera"})", false},
            {R"({"type":"wall","side":"right","distance_m":20})", true},
            {R"({"type":"wall","side":"right","distance_m":0})", false},
+           {R"({"type":"wall","side":"left","distance_m":1,"speed_mps":0.4,"length_m":12})", true},
+           {R"({"type":"wall","side":"left","distance_m":1,"length_m":0})", false},
            {R"({"type":"landmarks","name":"cone","offset_m":-0.7})", true},
            {R"({"type":"landmarks","name":" ","offset_m":0})", false},
            {R"({"type":"jump","item":1,"times":0})", true},

@@ -15,7 +15,7 @@ using mission::Plan;
 
 TEST(Route, NamesEveryItemThatThisRobotCannotDoYet) {
   const auto r =
-      lay_route(plan({at(1, 1), mission::Landmarks{}, at(2, 2), mission::Wall{}}), kFrame, {});
+      lay_route(plan({at(1, 1), mission::Landmarks{}, at(2, 2), mission::Landmarks{}}), kFrame, {});
   ASSERT_FALSE(r);
   ASSERT_EQ(r.error().fields.size(), 2u);
   EXPECT_EQ(r.error().fields[0].pointer, "/items/1");

@@ -11,6 +11,7 @@
 #include "row_scenes.hpp"
 #include "scenes.hpp"
 #include "seeing_scenes.hpp"
+#include "wall_scenes.hpp"
 
 namespace roverd::robot {
 namespace {
@@ -55,9 +56,11 @@ std::vector<base::ParamValue> others(const Parameter& p) {
   return words;
 }
 
-/// The guard's parameters act where something stands, those of rows along a row.
+/// The guard's parameters act where something stands, those of rows along a row, those of
+/// walls along a wall.
 const std::vector<Scene>& scenes_of(const Parameter& p) {
   if (p.section == "nav.row" || p.section == "nav.rows") return kRowScenes;
+  if (p.section == "nav.sight" || p.section == "nav.wall") return kWallScenes;
   return p.section.starts_with("sense.") ? kSeeingScenes : kScenes;
 }
 
@@ -128,7 +131,8 @@ class Stage {
 };
 
 TEST(ParameterWalk, ASceneTwiceIsTheSame) {
-  for (const Scene& scene : joined(joined(kScenes, kSeeingScenes), kRowScenes)) {
+  for (const Scene& scene :
+       joined(joined(joined(kScenes, kSeeingScenes), kRowScenes), kWallScenes)) {
     Config config;
     scene.prepare(config);
     const auto once = played(scene, config, kNone, {});

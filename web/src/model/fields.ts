@@ -110,7 +110,12 @@ export const fields_of: Record<ItemType, readonly Field[]> = {
     may('distance_m', 'Ends after', 'm', [0.01, 10_000]),
     SEEING,
   ],
-  wall: [SIDE, must('distance_m', 'Distance', 'm', [0, 20])],
+  wall: [
+    SIDE,
+    must('distance_m', 'Distance', 'm', [0.01, 20]),
+    may('speed_mps', 'Speed', 'm/s', [0.01, 10]),
+    may('length_m', 'Ends after', 'm', [0.01, 10_000]),
+  ],
   landmarks: [
     { kind: 'text', key: 'name', label: 'Name' },
     must('offset_m', 'Offset', 'm', [-20, 20]),

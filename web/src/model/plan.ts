@@ -59,6 +59,8 @@ export interface Wall {
   readonly type: 'wall';
   readonly side: Side;
   readonly distance_m: number;
+  readonly speed_mps?: number | null;
+  readonly length_m?: number | null;
 }
 export interface Landmarks {
   readonly type: 'landmarks';

@@ -1,0 +1,140 @@
+// A mission's wall in a closed loop: when it is done, and when it stops and why.
+
+#include <gtest/gtest.h>
+
+#include "nav/behave/wall_drive.hpp"
+#include "yard.hpp"
+
+namespace roverd::nav {
+namespace {
+
+using marks::Rover;
+using marks::Scanner;
+using marks::Side;
+using marks::Yard;
+
+struct WallItem {
+  Yard yard;
+  Rover rover;
+  Scanner scanner;
+  PathParams path;
+  SightParams sight;
+  marks::WallParams params;
+  marks::Walls walls;
+  marks::View view;
+  bool looks = true;
+  WallDrive drive{base::Setting<PathParams>(path), {}};
+  double fastest_mps = 0.0;
+
+  void begin(const WallDrive::Order& order) {
+    drive = WallDrive(base::Setting<PathParams>(path), {base::Setting<SightParams>(sight),
+                                                        base::Setting<marks::WallParams>(params)});
+    drive.begin(order);
+  }
+  void run(double seconds) {
+    for (int i = 0; i < seconds * 50.0; ++i) {
+      if (i % 5 == 0 && looks) look();
+      const MarkSight seen{&view, rover.now, rover.odometry};
+      rover.step(drive.step(seen, rover.vehicle(), 10.0, 0.02).command);
+      fastest_mps = std::max(fastest_mps, rover.speed_mps);
+    }
+  }
+  void look() {
+    const auto scan = scan_of(scanner.look(yard, rover.truth, rover.now), rover);
+    if (scan.beams.empty()) return;
+    walls.take(scan, params);
+    view = {scan.stamp, walls.all()};
+  }
+};
+
+//   ═════════╡      of its back nothing is ever seen
+TEST(WallItem, IsDoneWhereTheWallEnds) {
+  WallItem w;
+  w.looks = false;
+  marks::Wall wall;
+  wall.anchor = {0.0, 0.9};
+  wall.normal = {0.0, -1.0};
+  wall.seen = {{-5.0, 6.0}};
+  wall.believed = true;
+  w.view.walls = {wall};
+  w.begin({.side = Side::Left, .distance_m = 0.9});
+  const auto run = [&](double seconds) {
+    for (int i = 0; i < seconds * 10.0; ++i) {
+      w.view.stamp = w.view.walls[0].seen_at = w.rover.now;
+      w.run(0.1);
+    }
+  };
+  run(3.0);
+  EXPECT_EQ(w.drive.state(), WallDrive::State::Driving);
+  EXPECT_NEAR(w.fastest_mps, SightParams{}.speed_mps, 0.05);
+  run(20.0);
+  EXPECT_EQ(w.drive.state(), WallDrive::State::Done) << w.drive.reason();
+  EXPECT_EQ(w.rover.speed_mps, 0.0);
+  EXPECT_NEAR(w.rover.truth.x_m, 6.9, 0.15) << "about its end";
+}
+
+TEST(WallItem, IsDoneAfterItsLengthAndCountsWhatWasDrivenBefore) {
+  for (const double before_m : {0.0, 2.0}) {
+    WallItem w;
+    w.yard.slabs = {{{-5.0, -0.9}, {30.0, -0.9}}};
+    w.begin({.side = Side::Right, .distance_m = 0.9, .length_m = 5.0, .driven_m = before_m});
+    w.run(25.0);
+    EXPECT_EQ(w.drive.state(), WallDrive::State::Done) << w.drive.reason();
+    EXPECT_NEAR(w.drive.driven_m(), 5.0, 0.1);
+    EXPECT_NEAR(w.rover.odometry.x_m, 5.0 - before_m, 0.1);
+    EXPECT_NEAR(w.rover.truth.y_m, 0.0, 0.05);
+  }
+}
+
+TEST(WallItem, CreepsToAWallThatIsNotSeenYetAndNoFarther) {
+  WallItem none;
+  none.begin({.side = Side::Left, .distance_m = 0.9});
+  none.run(20.0);
+  EXPECT_EQ(none.drive.state(), WallDrive::State::Failed);
+  EXPECT_EQ(none.drive.reason(), "no wall is seen on the left within 2.0 m");
+  EXPECT_NEAR(none.rover.truth.x_m, 2.0, 0.15);
+  EXPECT_LE(none.fastest_mps, 0.25);
+  WallItem other;
+  other.yard.slabs = {{{-5.0, -0.9}, {30.0, -0.9}}};
+  other.begin({.side = Side::Left, .distance_m = 0.9});
+  other.run(20.0);
+  EXPECT_EQ(other.drive.state(), WallDrive::State::Failed) << "one on the right is none";
+}
+
+TEST(WallItem, BrakesWhenNothingIsToldAndFailsAfterAWait) {
+  WallItem w;
+  w.yard.slabs = {{{-5.0, 0.9}, {30.0, 0.9}}};
+  w.begin({.side = Side::Left, .distance_m = 0.9});
+  w.run(6.0);
+  const double there_m = w.rover.truth.x_m;
+  w.looks = false;
+  w.run(4.0);
+  EXPECT_EQ(w.rover.speed_mps, 0.0);
+  EXPECT_LT(w.rover.truth.x_m - there_m, 1.2);
+  EXPECT_EQ(w.drive.state(), WallDrive::State::Driving) << "it may be seen again";
+  w.looks = true;
+  w.run(3.0);
+  EXPECT_GT(w.rover.speed_mps, 0.5) << "and is";
+  w.looks = false;
+  w.run(10.0);
+  EXPECT_EQ(w.drive.state(), WallDrive::State::Failed);
+  EXPECT_EQ(w.drive.reason(), "the wall on the left is not seen any more");
+}
+
+TEST(WallItem, GoesOnFromWhereSomebodyElseLeftTheRobot) {
+  WallItem w;
+  w.yard.slabs = {{{-5.0, 0.9}, {30.0, 0.9}}};
+  w.begin({.side = Side::Left, .distance_m = 0.9, .length_m = 8.0});
+  w.run(5.0);
+  const double driven_m = w.drive.driven_m();
+  w.drive.interrupt();
+  for (int i = 0; i < 100; ++i) w.rover.step({0.3, 0.0});
+  w.look();
+  w.run(20.0);
+  EXPECT_EQ(w.drive.state(), WallDrive::State::Done) << w.drive.reason();
+  EXPECT_NEAR(w.drive.driven_m(), 8.0, 0.1);
+  EXPECT_GT(w.rover.odometry.x_m, driven_m + 0.5) << "what another drove does not count";
+}
+
+}  // namespace
+}  // namespace roverd::nav
