@@ -54,6 +54,12 @@ TEST(Check, AGoodCourseHasNoFindings) {
   EXPECT_EQ(found(course({spot(0, 0), spot(20, 0), spot(20, 20)}), tracks()), Codes{});
 }
 
+TEST(Check, WhatIsDrivenFromAnywhereNeedsNoPlace) {
+  VehicleLimits v = tracks();
+  v.item_types.insert(v.item_types.end(), {"move", "turn", "row"});
+  EXPECT_EQ(found(course({Row{}, Move{1.5}, TurnBy{90.0, std::nullopt}, Row{}}), v), Codes{});
+}
+
 TEST(Check, NamesTheItemsThatSpeakAgainstIt) {
   Waypoint high = spot(10, 0);
   high.alt_m = 50.0;
@@ -64,6 +70,7 @@ TEST(Check, NamesTheItemsThatSpeakAgainstIt) {
   const VehicleLimits v = tracks();
 
   EXPECT_EQ(found(course({}), v), Codes{"no_target@0"});
+  EXPECT_EQ(found(course({Speed{0.5}, Wait{1.0}}), v), Codes{"no_target@0"});
   EXPECT_EQ(found(course({spot(0, 0), spot(0, 0)}), v), Codes{"duplicate_point@2"});
   EXPECT_EQ(found(course({spot(0, 0), spot(1500, 0)}), v), Codes{"leg_too_long@2"});
   EXPECT_EQ(found(course({low, high}), v), Codes{"too_steep@2"});
