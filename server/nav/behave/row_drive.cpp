@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kPoint_m = 0.25;
 constexpr double kBehind_m = 0.5;  // the way begins so far behind the robot
-constexpr double kLook_m = 1.5;    // ahead the certainty counts
 constexpr double kLeast_m = 0.25;  // a shorter way is none
 constexpr double kThere_m = 0.08;  // nearer to the end there is nothing to drive
 constexpr double kOver_m = 0.15;   // a way that leads farther beyond it is cut short
@@ -59,6 +58,11 @@ void RowDrive::fail(std::string why) {
 
 bool RowDrive::usable(const RowSight& sight) const noexcept {
   return sight.view != nullptr && sight.age_s <= params_->old_s;
+}
+
+/// Enough to lay a way along it.
+bool RowDrive::sure(const rows::RowView& view, const rows::Along& at) const noexcept {
+  return std::max(view.sigma_m(at.s_m), view.sigma_m(at.s_m + kLeast_m)) <= params_->unsure_m;
 }
 
 /// Full where the row is sure, creeping where it hardly is.
@@ -144,11 +148,7 @@ void RowDrive::follow(const RowSight& sight, const rows::Along& at, const Vehicl
   }
   if (laid_ == view.stamp && phase != TrackPhase::Done) return;
   laid_ = view.stamp;
-  if (!ends && end_m - at.s_m < kLeast_m) {
-    // Seen from before it, it may become sure on the way that is driven to look for it.
-    if (!began_) brake(sight, v);
-    return;
-  }
+  if (!ends && end_m - at.s_m < kLeast_m) return brake(sight, v);
   began_.reset();
   at_end_ = ends;
   lay(view.line, view.curvature_1pm, at.s_m - kBehind_m, std::max(end_m, at.s_m + 0.01),
@@ -180,16 +180,16 @@ TrackOutput RowDrive::step(const RowSight& sight, const Vehicle& vehicle, double
   v.slide = {};
   v.crab = sight.view != nullptr ? -sight.view->drift : 0.0;  // what O knows of it
   const bool sees = usable(sight);
-  if (sees) {
-    if (state_ == State::Seeking) state_ = State::Driving;
-    const rows::Along at = rows::beside_line(*sight.view, sight.body);
+  const rows::Along at = sees ? rows::beside_line(*sight.view, sight.body) : rows::Along{};
+  if (sees && state_ == State::Seeking && sure(*sight.view, at)) state_ = State::Driving;
+  if (state_ == State::Seeking) {
+    seek(sight);
+  } else if (sees) {
     if (last_) {
       const rows::Pose2 before = sense::inverse(sight.view->line) * *last_;
       driven_m_ += at.s_m - rows::beside_arc(before.x_m, before.y_m, sight.view->curvature_1pm).s_m;
     }
     follow(sight, at, v);
-  } else if (state_ == State::Seeking) {
-    seek(sight);
   } else {
     brake(sight, v);
   }
@@ -198,10 +198,13 @@ TrackOutput RowDrive::step(const RowSight& sight, const Vehicle& vehicle, double
   const TrackOutput out = tracker_.step(v, limit_mps, dt_s);
   if (tracker_.phase() == TrackPhase::Done) {
     if (at_end_) state_ = State::Done;
-    if (state_ == State::Seeking) fail("no row is seen within " + tenths_text(params_->entry_m));
+    if (state_ == State::Seeking && !sees) {
+      fail("no row is seen within " + tenths_text(params_->entry_m));
+    }
   }
-  const bool stands = !sees || tracker_.phase() == TrackPhase::Done;
-  waited_s_ = state_ == State::Driving && stands ? waited_s_ + dt_s : 0.0;
+  const bool done = tracker_.phase() == TrackPhase::Done;
+  const bool waits = state_ == State::Driving ? !sees || done : state_ == State::Seeking && done;
+  waited_s_ = waits ? waited_s_ + dt_s : 0.0;
   if (waited_s_ > params_->wait_s) {
     fail(sees ? "the row is not seen surely enough" : "the row is lost");
   }

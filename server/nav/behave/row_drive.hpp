@@ -2,15 +2,15 @@
 // Along a row by what is seen of it (nav/rows), in the frame O of the odometry: it needs no
 // satellites and does not notice when the position jumps.
 //
-//   Idle ──begin──▶ Seeking ──a row is seen──▶ Driving ──stands at its end, or as far as it was
+//   Idle ──begin──▶ Seeking ──a row is sure──▶ Driving ──stands at its end, or as far as it was
 //                     │  ▲                      │  │ ▲                         asked──▶ Done
 //                     │  └ row lost, not far ───┘  │ └─ seen again
 //                     └─ none within entry_m ─▶ Failed ◀─ stands without one for wait_s
 //
 // With every look the way is laid anew: an arc of the length over which the row is known. Its end
 // is a stop, so a view that grows old or vague brakes the robot in time. Seeking it creeps straight
-// on from where it began. Speed falls with the certainty. Control thread; no allocation after
-// construction.
+// on from where it began, also towards a row that is seen, but not surely yet. Speed falls with the
+// certainty. Control thread; no allocation after construction.
 
 #include <array>
 #include <optional>
@@ -59,6 +59,7 @@ struct RowSight {
 class RowDrive {
  public:
   enum class State { Idle, Seeking, Driving, Done, Failed };
+  static constexpr double kLook_m = 1.5;  ///< so far ahead the row's certainty counts
 
   RowDrive(base::Setting<PathParams> path, base::Setting<RowDriveParams> params)
       : path_params_(path), params_(std::move(params)), tracker_(std::move(path)) {
@@ -96,6 +97,7 @@ class RowDrive {
  private:
   static constexpr std::size_t kMostPoints = 64;
   bool usable(const RowSight& sight) const noexcept;
+  bool sure(const rows::RowView& view, const rows::Along& at) const noexcept;
   double wanted_mps(const rows::RowView& view, double s_m) const noexcept;
   void lay(const rows::Pose2& from, double curvature_1pm, double begin_m, double end_m,
            double speed_mps, double at_m);

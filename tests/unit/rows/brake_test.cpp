@@ -107,11 +107,54 @@ TEST(RowBraking, BrakesAlongTheRowInHandNotTheOneBefore) {
   robot.sees = true;
   robot.run(2.0);
   ASSERT_GT(robot.twist.linear_mps, 0.1);
+  robot.sigma_m = 0.03;
+  robot.run(0.02);
   robot.sees = false;
   robot.run(3.0);
   EXPECT_EQ(robot.twist.linear_mps, 0.0);
   EXPECT_NEAR(robot.body.y_m, -3.0, 0.02);
   EXPECT_NEAR(robot.body.yaw_rad, 0.0, 0.02);
+}
+
+TEST(RowBraking, StopsForAViewThatIsOlderThanItMayBe) {
+  const auto goes_on = [](double old_s) {
+    RowDriveParams params;
+    params.old_s = old_s;
+    Lookout robot{RowDrive{PathParams{}, params}, {}, {}, 1.0, 0.0, 0.03, {}, true, {}};
+    robot.drive.begin({});
+    robot.run(4.0);
+    robot.sees = false;
+    robot.run(1.5);
+    return robot.twist.linear_mps > 0.3;
+  };
+  EXPECT_FALSE(goes_on(0.5));
+  EXPECT_TRUE(goes_on(2.5));
+}
+
+// From before its first plants a row is seen vaguely: to stand there makes it no surer.
+TEST(RowBraking, CreepsTowardsARowThatIsSeenVaguelyAtFirst) {
+  Lookout robot;
+  robot.sigma_m = 0.3;
+  robot.drive.begin({});
+  robot.run(6.0);
+  EXPECT_EQ(robot.drive.state(), RowDrive::State::Seeking);
+  EXPECT_NEAR(robot.twist.linear_mps, RowDriveParams{}.creep_mps, 0.02);
+  robot.sigma_m = 0.03;
+  robot.run(3.0);
+  EXPECT_EQ(robot.drive.state(), RowDrive::State::Driving);
+  EXPECT_GT(robot.twist.linear_mps, 0.5);
+}
+
+TEST(RowBraking, GivesUpWhatStaysVagueAfterThreeMetres) {
+  Lookout robot;
+  robot.sigma_m = 0.3;
+  robot.drive.begin({});
+  robot.run(18.0);
+  EXPECT_EQ(robot.drive.state(), RowDrive::State::Seeking);  // it stands and looks on
+  robot.run(8.0);
+  EXPECT_EQ(robot.drive.state(), RowDrive::State::Failed);
+  EXPECT_EQ(robot.drive.reason(), "the row is not seen surely enough");
+  EXPECT_NEAR(robot.body.x_m, RowDriveParams{}.entry_m, 0.1);
 }
 
 }  // namespace
