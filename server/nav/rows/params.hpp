@@ -41,7 +41,8 @@ void fields(V& v, RowParams& p) {
     "the row ends where so much more of it is seen to be without plants; shorter is a gap");
   v("end_after_m", p.end_after_m, 0.0, 20.0, "so much of a row must have been seen before its end");
   v("blind_part", p.blind_part, 0.05, 1.0,
-    "a scan of which more than this share is unknown tells nothing of rows");
+    "a scan of which more than this share is unknown, and which sees no ground, tells nothing of "
+    "rows");
   v("rays_far_m", p.rays_far_m, 0.5, 30.0, "seeing by rays: farther ones are endless");
   v("rays_fan_deg", p.rays_fan_deg, 5.0, 120.0, "likewise: to either side of straight ahead");
   v("rays_band_m", p.rays_band_m, 0.02, 2.0, "likewise: so far above and below the sensor");

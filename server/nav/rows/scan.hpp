@@ -27,8 +27,9 @@ struct RowScan {
   double eye_y_m = 0.0;
   bool blind = false;         ///< dazzled, covered: it tells nothing
   std::vector<Point> points;  ///< in B: obstacles at the height of plants
-  /// About the sensor, degrees of B from −180: so far a ray went before it met something; 0: none
-  /// is known.
+  /// About the sensor, degrees of B from −180: so far a ray went at the height of plants before it
+  /// met something; 0: none is known. One that ends on the ground went there as long as it was high
+  /// enough, so where a missing echo tells nothing, the ground beyond does.
   std::array<float, kBearings> reach_m{};
   std::vector<sense::Ray> rays;  ///< the planar fan, for seeing by rays
   bool ahead = true;             ///< it looks into most of that fan at all

@@ -164,6 +164,18 @@ TEST(RowFinder, IsNoLongerSureOfALineThatIsContradicted) {
   EXPECT_GT(worst_m, 0.16);
 }
 
+TEST(RowFinder, TakesALaneThatIsTooNarrowForNoRow) {
+  const auto width_m = [](double least_m) {
+    RowParams params;
+    params.width_min_m = least_m;
+    RowFinder finder(params, {});
+    const auto view = drive(finder, Lane{.half_m = 0.5}, 0.0, 3.0);
+    return view ? view->width_m : 0.0;
+  };
+  EXPECT_NEAR(width_m(0.8), 1.0, 0.05);
+  EXPECT_EQ(width_m(1.3), 0.0);
+}
+
 TEST(RowFinder, StandsForeignPoints) {
   RowFinder finder({}, {});
   RowScan scan;
@@ -191,6 +203,46 @@ RowScan fan(double left_m, double right_m) {
     scan.rays.push_back(ray(deg, range_m));
   }
   return scan;
+}
+
+/// Of an eye 0.8 m above the ground, as the chain judges it.
+sense::Reduced cloud(std::initializer_list<sense::Voxel> voxels) {
+  sense::Reduced out;
+  out.origin_m = {0.0F, 0.0F, 0.8F};
+  out.voxels = voxels;
+  out.counts.points = 100;
+  return out;
+}
+sense::Voxel voxel(double x_m, double z_m, sense::Kind kind) {
+  return {float(x_m), 0.0F, float(z_m), 1, kind, 0};
+}
+
+// A lidar that vouches for nothing where no echo comes back: what it sees is the ground.
+TEST(RowScan, ARayToTheGroundWentThroughAtTheHeightOfPlants) {
+  RowScan scan;
+  // Down by 0.8 m over 4 m: at 3.5 m it is 0.1 m high, as low as plants are looked for.
+  scan_of(cloud({voxel(4.0, 0.0, sense::Kind::Ground)}), {}, scan);
+  EXPECT_NEAR(scan.reach_to(1.0, 0.0), 3.5, 1e-3);
+  EXPECT_EQ(scan.reach_to(-1.0, 0.0), 0.0);
+  EXPECT_TRUE(scan.points.empty());
+  // Into a crown 2.2 m high, 4 m off: it leaves the height of plants, 1.5 m, half way.
+  scan_of(cloud({voxel(4.0, 2.2, sense::Kind::Overhang)}), {}, scan);
+  EXPECT_NEAR(scan.reach_to(1.0, 0.0), 2.0, 1e-3);
+  scan_of(cloud({voxel(4.0, 0.5, sense::Kind::Obstacle)}), {}, scan);
+  EXPECT_NEAR(scan.reach_to(1.0, 0.0), 4.0, 1e-3);
+  EXPECT_EQ(scan.points.size(), 1u);
+}
+
+TEST(RowScan, WhoSeesGroundIsNotBlindHoweverMuchSkyThereIs) {
+  RowScan scan;
+  sense::Reduced open = cloud({});
+  open.counts.unknown = 60;
+  scan_of(open, {}, scan);
+  EXPECT_TRUE(scan.blind);
+  for (int i = 0; i < 20; ++i)
+    open.voxels.push_back(voxel(2.0 + 0.1 * i, 0.0, sense::Kind::Ground));
+  scan_of(open, {}, scan);
+  EXPECT_FALSE(scan.blind);
 }
 
 TEST(Rays, SteerToTheMiddleBetweenTheFiveOutermost) {
