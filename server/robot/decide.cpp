@@ -29,6 +29,13 @@ std::optional<double> Robot::Impl::corridor_m() const noexcept {
   return machine.mode() == Mode::Auto ? missions.executor.corridor_m() : std::nullopt;
 }
 
+/// What is driven now needs no position: the item in hand asks for none, no fence is to be kept,
+/// and no corridor.
+bool Robot::Impl::by_sight() const noexcept {
+  return machine.mode() == Mode::Auto && fence.get() == nullptr &&
+         !missions.executor.corridor_m() && missions.executor.asks_no_place();
+}
+
 Facts Robot::Impl::facts() const {
   const auto home_at = pose ? home_point() : std::nullopt;
   return {.world = world,
@@ -38,6 +45,7 @@ Facts Robot::Impl::facts() const {
           .estop = arm.latched(),
           .autonomous =
               machine.mode() == Mode::Auto ? missions.executor.running() : machine.by_itself(),
+          .by_sight = by_sight(),
           .homeward = leads_home(machine.mode()),
           .base_waited_since = base_watch.waited_since(),
           .base_left = base_watch.left(),

@@ -276,6 +276,7 @@ struct Robot::Impl {
   base::DriveCommand keep_off(base::DriveCommand command);
   base::BodyTwist guarded(const base::BodyTwist& wanted);
   void ask_for_row();
+  bool by_sight() const noexcept;
   std::optional<nav::RowSight> row_sight() const;
   std::optional<nav::MarkSight> mark_sight() const;
   nav::sense::Pose2 local_in_odometry() const noexcept;

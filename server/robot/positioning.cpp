@@ -180,6 +180,8 @@ base::DriveCommand Robot::Impl::seek_heading() {
 }
 
 /// While the heading is uncertain, along a leg: the mission's speed, but straight on. Not by sight.
+/// While the heading is uncertain, along a leg: the mission's speed, but straight on. Not where the
+/// item asks for none.
 base::BodyTwist Robot::Impl::straight_first(const base::BodyTwist& wanted) {
   constexpr double kEndNear_m = 1.0;
   constexpr double kAside_deg = 50.0;  // a target so far aside is not reached straight on
@@ -196,7 +198,7 @@ base::BodyTwist Robot::Impl::straight_first(const base::BodyTwist& wanted) {
   }
   const bool by_sight = missions.executor.by_sight();  // it asks for no heading
   state.driving = missions.executor.phase() == nav::TrackPhase::Track && wanted.linear_mps != 0.0 &&
-                  ahead && !by_sight;
+                  ahead && !missions.executor.asks_no_place();
   const auto turn = straight.step(state);
   if (!turn) return wanted;
   speed_reason = "heading_uncertain";

@@ -48,17 +48,18 @@ TrackOutput Executor::step(const Vehicle& vehicle, double limit_mps, std::option
     enter(vehicle, home);
     if (!running()) return {};
   }
-  if (doing_ == Doing::Turn) return step_turn(vehicle, dt_s);
+  const Vehicle moves = carried(vehicle).value_or(vehicle);
+  if (doing_ == Doing::Turn) return step_turn(moves, dt_s);
   if (doing_ == Doing::Row) return step_row(vehicle, limit_mps, dt_s);
   if (doing_ == Doing::Wall) return step_wall(vehicle, limit_mps, dt_s);
   if (doing_ == Doing::Wait || cut_goal(vehicle, dt_s)) return {};
-  const TrackOutput out = tracker_.step(vehicle, limit_mps, dt_s);
+  const TrackOutput out = tracker_.step(moves, limit_mps, dt_s);
   if (doing_ == Doing::Path) pass_nodes(vehicle);
   if (tracker_.phase() == TrackPhase::Done) {
-    leg_done(vehicle);
+    leg_done(moves);
     if (running() && doing_ == Doing::Nothing) enter(vehicle, home);
   }
-  watch(vehicle, dt_s);
+  watch(moves, dt_s);
   return out;
 }
 
@@ -101,7 +102,7 @@ bool Executor::enter_step(const RouteStep& step, const Vehicle& vehicle,
       return enter_wall(step);
     case StepKind::Face:
     case StepKind::Turn:
-      return enter_turn(step);
+      return enter_turn(step, vehicle);
     case StepKind::Act:
       notices_.push_back(
           {Notice::Kind::Action, step.item,

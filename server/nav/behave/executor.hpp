@@ -160,6 +160,17 @@ class Executor {
 
   /// A row is to be driven by sight: what should be looked for. Empty: none.
   std::optional<RowWanted> row_wanted() const noexcept;
+  /// The step in hand needs neither a place nor a heading of the map: a row, or what leads from one
+  /// row to the next by moves of kAcross_m together and turns. Such moves and turns are driven by
+  /// the odometry alone where something tells it (see_row): no correction of the position bends
+  /// them.
+  bool asks_no_place() const noexcept;
+  static constexpr double kAcross_m = 30.0;
+  /// Null: no row is driven now.
+  const RowDrive* row() const noexcept {
+    return running() && doing_ == Doing::Row ? &row_ : nullptr;
+  }
+  const RowToDrive* row_order() const noexcept;
   /// Before step(): what is seen of it. Empty: nothing on this robot looks around.
   void see_row(const std::optional<RowSight>& sight) noexcept { row_sight_ = sight; }
 
@@ -212,12 +223,15 @@ class Executor {
   bool connect(EnuPoint to, const RouteNode* node, const Vehicle& vehicle);
   bool lay_connector(Vertex end, const Vehicle& vehicle);
   bool enter_move(const RouteStep& step, const Vehicle& vehicle);
-  bool enter_turn(const RouteStep& step);
+  bool enter_turn(const RouteStep& step, const Vehicle& vehicle);
   TrackOutput step_turn(const Vehicle& vehicle, double dt_s);
   bool enter_row(const RouteStep& step);
   TrackOutput step_row(const Vehicle& vehicle, double limit_mps, double dt_s);
   bool enter_wall(const RouteStep& step);
   TrackOutput step_wall(const Vehicle& vehicle, double limit_mps, double dt_s);
+  bool leads_to_row(bool forward, double& across_m) const noexcept;
+  void carry(const Vehicle& vehicle) noexcept;
+  std::optional<Vehicle> carried(const Vehicle& vehicle) const noexcept;
   bool enter_stay(const RouteStep& step, const Vehicle& vehicle);
   void step_stay(const Vehicle& vehicle);
   bool cut_goal(const Vehicle& vehicle, double dt_s);
@@ -260,8 +274,9 @@ class Executor {
   WallDrive wall_;
   std::optional<MarkSight> mark_sight_;
   std::uint64_t rows_begun_ = 0;
-  bool row_left_ = false;        ///< somebody else drove: the row is looked for anew
-  std::vector<int> jumps_left_;  ///< per jump; −1: not counted yet
+  std::optional<rows::Pose2> carry_;  ///< X_EO: a move or turn is driven by odometry from here
+  bool row_left_ = false;             ///< somebody else drove: the row is looked for anew
+  std::vector<int> jumps_left_;       ///< per jump; −1: not counted yet
   std::vector<Notice> notices_;
 
   base::ExecutionState state_ = base::ExecutionState::Idle;

@@ -9,6 +9,13 @@
 #include "nav/track/corner.hpp"
 
 namespace roverd::nav {
+namespace {
+
+/// Over the few metres between two rows.
+constexpr double kCarriedSigma_m = 0.05;
+constexpr double kCarriedSigma_rad = 0.02;
+
+}  // namespace
 
 /// Straight on from where the robot is and points.
 bool Executor::enter_move(const RouteStep& step, const Vehicle& vehicle) {
@@ -20,12 +27,14 @@ bool Executor::enter_move(const RouteStep& step, const Vehicle& vehicle) {
             vehicle.at.north_m + way_m * std::sin(vehicle.yaw_rad)};
   end.reverse = way_m < 0.0;
   end.speed_mps = end.reverse ? modes_->move_back_mps : modes_->move_mps;
+  carry(vehicle);
   if (lay_connector(end, vehicle)) return true;
   reached(step);
   return false;
 }
 
-bool Executor::enter_turn(const RouteStep& step) {
+bool Executor::enter_turn(const RouteStep& step, const Vehicle& vehicle) {
+  carry(vehicle);
   const double rate_radps =
       step.kind == StepKind::Turn ? modes_->turn_radps : path_params_->pivot.max_rate_radps;
   if (step.yaw_rad) {
@@ -52,6 +61,62 @@ TrackOutput Executor::step_turn(const Vehicle& vehicle, double dt_s) {
     reached(*step_now());
   }
   return out;
+}
+
+/// Where the map's frame lies in that of the odometry now: from here on the latter counts.
+void Executor::carry(const Vehicle& vehicle) noexcept {
+  carry_.reset();
+  if (!row_sight_ || !asks_no_place()) return;
+  carry_ = rows::Pose2{vehicle.at.east_m, vehicle.at.north_m, vehicle.yaw_rad} *
+           sense::inverse(row_sight_->body);
+}
+
+/// The vehicle where the odometry has carried it; empty: where it is said to be.
+std::optional<Vehicle> Executor::carried(const Vehicle& vehicle) const noexcept {
+  const bool moves = doing_ == Doing::Connector || doing_ == Doing::Turn;
+  if (!carry_ || !row_sight_ || !moves || !asks_no_place()) return std::nullopt;
+  const rows::Pose2 at = *carry_ * row_sight_->body;
+  Vehicle out = vehicle;
+  out.at = {at.x_m, at.y_m};
+  out.yaw_rad = at.yaw_rad;
+  out.yaw_sigma_rad = std::min(vehicle.yaw_sigma_rad, kCarriedSigma_rad);
+  out.sigma_m = std::min(vehicle.sigma_m, kCarriedSigma_m);
+  out.slide = {};
+  return out;
+}
+
+const RowToDrive* Executor::row_order() const noexcept {
+  const RouteStep* step = step_now();
+  return step != nullptr && step->row ? &*step->row : nullptr;
+}
+
+/// Over moves and turns alone. @param across_m grows by the moves, that of the step in hand left
+/// out
+bool Executor::leads_to_row(bool forward, double& across_m) const noexcept {
+  const auto& steps = course_->steps;
+  for (std::size_t i = at_; forward ? i + 1 < steps.size() : i > 0;) {
+    i = forward ? i + 1 : i - 1;
+    const RouteStep& s = steps[i];
+    if (s.kind == StepKind::Row) return true;
+    const bool relative = s.kind == StepKind::Move || s.kind == StepKind::Wait ||
+                          s.kind == StepKind::Act || (s.kind == StepKind::Turn && !s.yaw_rad);
+    if (!relative) return false;
+    if (s.kind == StepKind::Move) across_m += std::abs(s.by);
+  }
+  return false;
+}
+
+bool Executor::asks_no_place() const noexcept {
+  const RouteStep* step = step_now();
+  if (!running() || step == nullptr) return false;
+  if (step->kind == StepKind::Row) return true;
+  const bool relative =
+      step->kind == StepKind::Move || (step->kind == StepKind::Turn && !step->yaw_rad);
+  if (!relative) return false;
+  double across_m = step->kind == StepKind::Move ? std::abs(step->by) : 0.0;
+  const bool from_row = leads_to_row(false, across_m);
+  const bool to_row = leads_to_row(true, across_m);
+  return (from_row || to_row) && across_m <= kAcross_m;
 }
 
 std::optional<RowWanted> Executor::row_wanted() const noexcept {

@@ -41,7 +41,7 @@ double Robot::Impl::limit_mps() const noexcept {
   double most = std::min(config->speed.max_mps, config->vehicle.max_speed_mps);
   most = std::min(most, std::max(guard.limit_mps(), 0.5 * config->speed.min_mps));
   if (assessment.slow) return std::min(most, config->speed.creep_mps);
-  if (!pose) return most;
+  if (!pose || by_sight()) return most;
   return certain_mps(pose->horizontal_sigma_m, corridor_m(), most, config->speed.creep_mps,
                      config->safety);
 }
@@ -110,6 +110,7 @@ base::DriveCommand Robot::Impl::drive_mission() {
   }
   const bool by_sight = missions.executor.by_sight();
   if (!pose->heading_known && !by_sight) return seek_heading();
+  if (!pose->heading_known && !missions.executor.asks_no_place()) return seek_heading();
   missions.executor.go_on(pose->at);
   missions.executor.see_row(row_sight());
   missions.executor.see_marks(mark_sight());

@@ -18,6 +18,8 @@ struct Facts {
   bool armed = false;
   bool estop = false;                       ///< latched
   bool autonomous = false;                  ///< mode AUTO, mission running
+  /// The mission's item in hand asks for no position (a row, a move, a turn), and no fence does.
+  bool by_sight = false;
   bool homeward = false;                    ///< RTL, SMART_RTL, DOCK: there a return leads, too
   std::optional<Time> base_waited_since{};  ///< armed, and the base takes no commands since
   bool base_left = false;                   ///< just now, and nobody told it to

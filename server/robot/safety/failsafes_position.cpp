@@ -39,6 +39,11 @@ std::string lean_words(const Facts& f) {
   return "the robot leans by " + number(lean_deg(*f.attitude), "%.0f deg");
 }
 
+/// Neither, where the item in hand is driven by what is seen and counted.
+bool needed(const Facts& f) noexcept {
+  return !f.by_sight;
+}
+
 bool uncertain(const Facts& f, const SafetyParams& p) noexcept {
   return f.pose && f.pose->horizontal_sigma_m > p.sigma_slow_m;
 }
@@ -139,10 +144,28 @@ constexpr std::array kPositionRows{
         .ends = kGoneAndGoOn,
         .over = kHands,
         .test = [](const Facts& f, const SafetyParams&, Time) -> Told {
-          if (!f.pose || !f.estimate.receivers_disagree) return {};
+          if (!f.pose || !f.estimate.receivers_disagree || !needed(f)) return {};
           return "two receivers say different places";
         },
         .provoke = [](MadeUp& m) { m.estimate.receivers_disagree = true; },
+    },
+    Failsafe{
+        .id = "gnss_disagree",
+        .seen = "the same while the mission's item asks for no position, and no fence holds",
+        .after = "at once",
+        .response = Response::Warn,
+        .acts = Acts::ByItself,
+        .ends = kEndsByItself,
+        .over = kNeedsNone,
+        .test = [](const Facts& f, const SafetyParams&, Time) -> Told {
+          if (!f.pose || !f.estimate.receivers_disagree) return {};
+          return "two receivers say different places; the item in hand needs none";
+        },
+        .provoke =
+            [](MadeUp& m) {
+              m.facts.by_sight = true;
+              m.estimate.receivers_disagree = true;
+            },
     },
     Failsafe{
         .id = "gnss_lost",
@@ -156,6 +179,7 @@ constexpr std::array kPositionRows{
         .over = kHands,
         .test = [](const Facts& f, const SafetyParams& p, Time now) -> Told {
           if (!carried_on(f, p, now) || f.estimate.free_m <= p.gnss_free_m) return {};
+          if (!needed(f)) return {};
           return carried_words(f, p);
         },
         .provoke =
@@ -175,6 +199,7 @@ constexpr std::array kPositionRows{
         .over = kHands,
         .test = [](const Facts& f, const SafetyParams& p, Time now) -> Told {
           if (!adrift(f, p, now) || position_age_s(f, now) <= p.gnss_hold_s) return {};
+          if (!needed(f)) return {};
           return adrift_words(f, now);
         },
         .provoke = [](MadeUp& m) { m.facts.last_position.reset(); },
@@ -188,13 +213,34 @@ constexpr std::array kPositionRows{
         .ends = kEndsByItself,
         .over = kHands,
         .test = [](const Facts& f, const SafetyParams& p, Time now) -> Told {
-          if (!adrift(f, p, now)) return {};
+          if (!adrift(f, p, now) || !needed(f)) return {};
           return adrift_words(f, now);
         },
         .provoke =
             [](MadeUp& m) {
               const double age_s = 0.5 * (m.params.gnss_slow_s + m.params.gnss_hold_s);
               m.facts.last_position = m.now - base::from_seconds(age_s);
+            },
+    },
+    Failsafe{
+        .id = "gnss_lost",
+        .seen = "the same, with or without a gyro and however long, while the mission's item asks "
+                "for no position (a row, a move, a turn), and no fence holds",
+        .after = "{gnss_slow_s}",
+        .response = Response::Warn,
+        .acts = Acts::ByItself,
+        .ends = kEndsByItself,
+        .over = kNeedsNone,
+        .test = [](const Facts& f, const SafetyParams& p, Time now) -> Told {
+          if (needed(f)) return {};
+          if (carried_on(f, p, now)) return carried_words(f, p);
+          if (!adrift(f, p, now)) return {};
+          return adrift_words(f, now) + "; the item in hand needs none";
+        },
+        .provoke =
+            [](MadeUp& m) {
+              m.facts.by_sight = true;
+              m.facts.last_position = m.now - seconds(90);
             },
     },
     Failsafe{
@@ -252,7 +298,7 @@ constexpr std::array kPositionRows{
         .ends = kGoneAndGoOn,
         .over = kHands,
         .test = [](const Facts& f, const SafetyParams& p, Time now) -> Told {
-          if (!uncertain(f, p) || !f.sigma_bad_since) return {};
+          if (!uncertain(f, p) || !f.sigma_bad_since || !needed(f)) return {};
           if (!older(f.sigma_bad_since, p.sigma_hold_s, now)) return {};
           return uncertain_words(f);
         },
@@ -272,10 +318,28 @@ constexpr std::array kPositionRows{
         .ends = kEndsByItself,
         .over = kHands,
         .test = [](const Facts& f, const SafetyParams& p, Time) -> Told {
-          if (!uncertain(f, p)) return {};
+          if (!uncertain(f, p) || !needed(f)) return {};
           return uncertain_words(f);
         },
         .provoke = [](MadeUp& m) { m.pose->horizontal_sigma_m = m.params.sigma_slow_m + 0.1; },
+    },
+    Failsafe{
+        .id = "pose_uncertain",
+        .seen = "the same while the mission's item asks for no position, and no fence holds",
+        .after = "at once",
+        .response = Response::Warn,
+        .acts = Acts::ByItself,
+        .ends = kEndsByItself,
+        .over = kNeedsNone,
+        .test = [](const Facts& f, const SafetyParams& p, Time) -> Told {
+          if (!uncertain(f, p)) return {};
+          return uncertain_words(f) + "; the item in hand needs none";
+        },
+        .provoke =
+            [](MadeUp& m) {
+              m.facts.by_sight = true;
+              m.pose->horizontal_sigma_m = m.params.sigma_slow_m + 0.1;
+            },
     },
     Failsafe{
         .id = "corridor",

@@ -120,6 +120,72 @@ TEST(Executor, LooksForARowAnewAfterSomebodyElseDroveAndNotAfterAWait) {
   EXPECT_NE(r.executor.row_wanted()->id, second);
 }
 
+// What follows leads through plants.
+TEST(Executor, StopsInARowThatIsNotFoundWhateverUnreachableSays) {
+  for (const char* rule : {"stop", "skip", "return"}) {
+    Ride r;
+    r.behave.unreachable = rule;
+    r.executor = Executor{r.path, r.behave};
+    r.load(plan({mission::Row{}, at(4, 0)}));
+    r.start();
+    r.executor.see_row(RowSight{});
+    r.tick();
+    RowSight sight;
+    for (int i = 0; i < 1500 && r.executor.running(); ++i) {
+      sight.body = sight.body * rows::Pose2{r.vehicle.speed_mps * 0.02, 0.0, 0.0};
+      r.executor.see_row(sight);
+      r.tick();
+    }
+    EXPECT_EQ(r.executor.state(), ExecutionState::Blocked) << rule;
+    EXPECT_EQ(r.executor.reason(), "item 1: no row is seen within 3.0 m");
+    EXPECT_TRUE(r.missed.empty());
+  }
+}
+
+// Between two rows neither place nor heading counts; a long move, a compass turn and places do.
+TEST(Executor, AsksForNoPlaceInARowAndOnTheFewMetresBetweenRows) {
+  const auto asks_none = [](const std::vector<mission::Item>& items, int item) {
+    Ride r;
+    r.load(plan(items));
+    r.start({StartAt::From::Item, item});
+    return r.executor.asks_no_place();
+  };
+  const mission::Row row;
+  const mission::TurnBy right{90.0, std::nullopt};
+  const mission::TurnBy north{std::nullopt, 0.0};
+  const std::vector<mission::Item> block{
+      row, mission::Move{1.5}, right, mission::Move{2.5}, right, row, mission::Move{1.5}, at(0, 0)};
+  for (int item = 1; item <= 7; ++item) EXPECT_TRUE(asks_none(block, item)) << item;
+  EXPECT_FALSE(asks_none(block, 8));
+  EXPECT_FALSE(asks_none({row, mission::Move{15.0}, right, mission::Move{15.1}, row}, 2));
+  EXPECT_FALSE(asks_none({row, mission::Move{1.5}, north, row}, 3));
+  EXPECT_FALSE(asks_none({at(0, 0), mission::Move{1.5}, right, at(5, 5)}, 2));
+}
+
+// The estimate jumps by a metre and 10 degrees while it turns and moves towards the next row.
+TEST(Executor, MovesBetweenRowsByOdometryAlone) {
+  Ride r;
+  r.load(plan({mission::Move{2.0}, mission::TurnBy{-90.0, std::nullopt}, mission::Move{2.0},
+               mission::Row{}}));
+  r.start();
+  rows::Pose2 body;  // the truth, and the odometry
+  for (int i = 0; i < 3000 && r.reached.size() < 3; ++i) {
+    RowSight sight;
+    sight.body = body;
+    r.executor.see_row(sight);
+    r.tick();
+    body = body * sense::along(r.vehicle.speed_mps * 0.02, r.vehicle.yaw_rate_radps * 0.02, 1.0);
+    if (i % 40 == 39) {
+      r.vehicle.at.north_m += i % 80 == 39 ? 1.0 : -1.0;
+      r.vehicle.yaw_rad += i % 80 == 39 ? 0.17 : -0.17;
+    }
+  }
+  ASSERT_EQ(r.reached.size(), 3u);
+  EXPECT_NEAR(body.x_m, 2.0, 0.1);
+  EXPECT_NEAR(body.y_m, 2.0, 0.1);
+  EXPECT_NEAR(body.yaw_rad, base::kPi / 2.0, 0.05);
+}
+
 TEST(Executor, TellsTheWayThatIsLeftOnlyWhereItIsKnown) {
   Ride r;
   EXPECT_FALSE(r.executor.progress(EnuPoint{}).current_item);
