@@ -15,6 +15,7 @@
 #include "base/geo.hpp"
 #include "base/measurements.hpp"
 #include "base/result.hpp"
+#include "base/row_state.hpp"
 #include "base/sensing.hpp"
 #include "base/time.hpp"
 
@@ -380,6 +381,7 @@ struct Snapshot {
   /// first. Null: none.
   std::shared_ptr<const std::vector<LatLon>> detour;
   std::optional<Obstacle> obstacle;  ///< that limits the speed, or stops
+  std::optional<RowState> row;       ///< while a mission drives along one
   std::shared_ptr<const std::vector<SensorState>>
       sensors;                 ///< of the profile; empty: it has none, or nothing came yet
   bool sensors_stale = false;  ///< what they said of themselves is too old to be true

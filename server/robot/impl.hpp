@@ -276,6 +276,7 @@ struct Robot::Impl {
   base::DriveCommand keep_off(base::DriveCommand command);
   base::BodyTwist guarded(const base::BodyTwist& wanted);
   void ask_for_row();
+  std::optional<base::RowState> row_state() const;
   bool by_sight() const noexcept;
   std::optional<nav::RowSight> row_sight() const;
   std::optional<nav::MarkSight> mark_sight() const;

@@ -69,6 +69,7 @@ bool Robot::Impl::publish() {
   s->command = sent;
   s->detour = detour_way();
   if (guard.obstacle().action != base::GuardAction::None) s->obstacle = guard.obstacle();
+  s->row = row_state();
   if (guard.sees()) {
     const nav::sense::Pose2& at = guard.odometry().pose;
     s->odometry = {at.x_m, at.y_m, at.yaw_rad};

@@ -22,6 +22,28 @@ Json detour_json(const base::Snapshot& s) {
   return out;
 }
 
+Json row_json(const std::optional<base::RowState>& row) {
+  if (!row) return nullptr;
+  Json out = {{"item", row->item},
+              {"side", row->side},
+              {"seeing", row->seeing},
+              {"state", row->state},
+              {"driven_m", rounded(row->driven_m, kPlaces2)},
+              {"left_m", rounded(row->left_m, kPlaces2)},
+              {"seen", nullptr}};
+  if (!row->seen) return out;
+  const base::RowState::Seen& seen = *row->seen;
+  out["seen"] = {{"offset_m", rounded(seen.offset_m, kPlaces3)},
+                 // Angles of the outside count clockwise.
+                 {"angle_deg", degrees(-seen.angle_rad)},
+                 {"sigma_m", rounded(seen.sigma_m, kPlaces3)},
+                 {"width_m", rounded(seen.width_m, kPlaces3)},
+                 {"width_sigma_m", rounded(seen.width_sigma_m, kPlaces3)},
+                 {"to_end_m", rounded(seen.to_end_m, kPlaces2)},
+                 {"age_s", rounded(seen.age_s, kPlaces2)}};
+  return out;
+}
+
 Json obstacle_json(const std::optional<base::Obstacle>& o, base::Time now) {
   if (!o) return nullptr;
   return {

@@ -287,6 +287,7 @@ Json vehicle_json(const base::Snapshot& s, const std::string& name, base::Time n
           {"fence", fence_json(s.fence)},
           {"detour", detour_json(s)},
           {"obstacle", obstacle_json(s.obstacle, now)},
+          {"row", row_json(s.row)},
           {"safety", std::move(safety)},
           {"home", point_json(s.home)},
           {"origin", point_json(s.frame ? std::optional(s.frame->origin()) : std::nullopt)},

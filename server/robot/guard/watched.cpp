@@ -93,6 +93,36 @@ std::optional<nav::MarkSight> Robot::Impl::mark_sight() const {
   const auto& around = guard.around();
   if (around) sight.view = around->beside.get();
   return sight;
+/// For people.
+std::optional<base::RowState> Robot::Impl::row_state() const {
+  const nav::RowDrive* drive = missions.executor.row();
+  const nav::RowToDrive* order = missions.executor.row_order();
+  const auto sight = row_sight();
+  if (drive == nullptr || order == nullptr || !sight) return std::nullopt;
+  base::RowState out;
+  out.item = missions.executor.progress(std::nullopt).current_item.value_or(0);
+  out.side = nav::rows::to_string(order->order.sides);
+  out.seeing = nav::rows::to_string(order->order.seeing);
+  out.state = drive->waits()                                    ? "waiting"
+              : drive->state() == nav::RowDrive::State::Seeking ? "seeking"
+                                                                : "driving";
+  out.driven_m = drive->driven_m();
+  out.left_m = drive->left_m();
+  if (sight->view == nullptr) return out;
+  const nav::rows::RowView& view = *sight->view;
+  const nav::rows::Along at = nav::rows::beside_line(view, sight->body);
+  base::RowState::Seen& seen = out.seen.emplace();
+  seen.offset_m = at.d_m;
+  seen.angle_rad =
+      base::wrap_rad(sight->body.yaw_rad - view.line.yaw_rad - view.curvature_1pm * at.s_m);
+  seen.sigma_m = view.sigma_m(at.s_m + nav::RowDrive::kLook_m);
+  if (view.width_m > 0.0) {
+    seen.width_m = view.width_m;
+    seen.width_sigma_m = view.width_sigma_m;
+  }
+  if (view.to_end_m) seen.to_end_m = *view.to_end_m - at.s_m;
+  seen.age_s = sight->age_s;
+  return out;
 }
 
 /// What is in the way is not driven against, whoever drives.

@@ -2,6 +2,7 @@
 // and is shown as "—", never as zero.
 
 import type { Obstacle } from './obstacle';
+import type { RowDriven } from './row';
 import type { LatLon } from './plan';
 import type { GuardFigures, Twist } from './sweep';
 
@@ -199,6 +200,7 @@ export interface Vehicle {
   readonly command?: Twist;
   /** What limits the drive, or stops it. */
   readonly obstacle?: Obstacle | null;
+  readonly row?: RowDriven | null;
   /** The way around it: latitudes and longitudes. */
   readonly detour?: readonly (readonly number[])[] | null;
   readonly home: LatLon | null;
