@@ -1,5 +1,8 @@
 // What the robot asks about a row, and when it asks for the row anew.
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,6 +61,74 @@ TEST_F(RowAsked, OtherParametersAreToldOfTheSameRow) {
   EXPECT_EQ(asked[1].id, asked[0].id);
   EXPECT_EQ(asked[1].order, asked[0].order);
   EXPECT_EQ(asked[1].params.plant_m, 0.1);
+}
+
+/// A row is seen, along x of the odometry, or turned to the left of it.
+class InARow : public Seeing {
+ protected:
+  InARow() {
+    field.more = [this] {
+      std::vector<RowQuestion> fresh;
+      field.robot.row_questions().take(fresh);
+      if (!fresh.empty()) question = fresh.back();
+      row.reset();
+      if (question.order) {
+        nav::rows::RowView view;
+        view.stamp = field.now;
+        view.line = {pose.x_m, pose.x_m * std::tan(turned_rad), turned_rad};
+        view.covariance[0] = 0.02 * 0.02;
+        view.to_end_m = to_end_m;
+        row = RowSeen{question.id, view};
+      }
+      look();
+    };
+    field.run(8.0);
+  }
+  void go() {
+    mission::Plan plan;
+    plan.name = "row";
+    plan.items.emplace_back(mission::Row{});
+    plan.items.emplace_back(mission::Move{1.0});
+    mission::Waypoint w;
+    w.at = kFrame.to_global({0.0, 60.0});
+    plan.items.emplace_back(w);
+    EXPECT_TRUE(field.load(plan));
+    EXPECT_TRUE(field.ask(Arm{}));
+    EXPECT_TRUE(field.ask(StartMission{"m", 1}));
+  }
+  RowQuestion question;
+  double turned_rad = 0.0;
+  std::optional<double> to_end_m;
+};
+
+// Nothing else tells the heading here, and no gyro: elsewhere it holds after 6 s.
+TEST_F(InARow, LostSatellitesAreShownAndStopNothingUntilAPlaceIsAskedFor) {
+  go();
+  field.run(3.0);
+  field.gnss_speaks = false;
+  field.run(15.0);
+  EXPECT_EQ(field.execution(), ExecutionState::Running);
+  EXPECT_GT(field.command.twist.linear_mps, 0.5);
+  EXPECT_TRUE(field.has_condition("gnss_lost"));
+  ASSERT_TRUE(field.state()->row);
+  EXPECT_EQ(field.state()->row->state, "driving");
+  to_end_m = 0.0;
+  field.run(15.0);
+  EXPECT_EQ(field.state()->mission.current_item, 3);
+  EXPECT_EQ(field.execution(), ExecutionState::Paused);
+  EXPECT_EQ(field.state()->mode, base::Mode::Hold);
+}
+
+TEST_F(InARow, IsSteeredThoughTheHeadingIsUncertain) {
+  turned_rad = 0.15;
+  go();
+  double most_radps = 0.0;
+  for (int i = 0; i < 60; ++i) {
+    field.tick();
+    if (field.state()->estimator.alignment == base::Alignment::Aligned) break;
+    most_radps = std::max(most_radps, field.command.twist.angular_radps);
+  }
+  EXPECT_GT(most_radps, 0.05);
 }
 
 }  // namespace

@@ -52,6 +52,7 @@ class Seeing : public ::testing::Test {
     if (!heard) state.health = base::SensorHealth::Silent;
     if (heard) state.seen = s->seen = field.now;
     s->rays = rays;
+    s->row = row;
     s->sensors = std::make_shared<const std::vector<base::SensorState>>(1, state);
     field.robot.surroundings().put(std::move(s));
   }
@@ -70,6 +71,7 @@ class Seeing : public ::testing::Test {
   double wall_wide_m = 1e3;
   Known wall_is = Known::Occupied;
   std::optional<RaysStop> rays;  ///< what the stop by counted rays says
+  std::optional<RowSeen> row;    ///< what is seen of the row that was asked for
   nav::sense::Pose2 pose;
 };
 
