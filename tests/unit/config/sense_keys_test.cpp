@@ -58,6 +58,8 @@ TEST(SenseKeys, AllStandInThePageAsTheyAreAndNoOthers) {
   rows("sense.rays", guard.rays);
   rows("sense.protect", guard.protect);
   rows("sense.blocked", guard.blocked);
+  rows("nav.row", guard.row);
+  rows("nav.rows", guard.rows);
   rows("", SensorSettings{});
   rows("", cloud::Params{});
   rows("", v4l2::Params{});
