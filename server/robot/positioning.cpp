@@ -179,7 +179,6 @@ base::DriveCommand Robot::Impl::seek_heading() {
   return {{speed_mps, (*turn - estimator.pull_1pm() * speed_mps) / estimator.yaw_scale()}, true};
 }
 
-/// While the heading is uncertain, along a leg: the mission's speed, but straight on. Not by sight.
 /// While the heading is uncertain, along a leg: the mission's speed, but straight on. Not where the
 /// item asks for none.
 base::BodyTwist Robot::Impl::straight_first(const base::BodyTwist& wanted) {
@@ -196,7 +195,6 @@ base::BodyTwist Robot::Impl::straight_first(const base::BodyTwist& wanted) {
     ahead = std::hypot(way.east_m, way.north_m) > kEndNear_m &&
             std::abs(base::angle_diff_rad(pose->yaw_rad, bearing)) < base::rad_from_deg(kAside_deg);
   }
-  const bool by_sight = missions.executor.by_sight();  // it asks for no heading
   state.driving = missions.executor.phase() == nav::TrackPhase::Track && wanted.linear_mps != 0.0 &&
                   ahead && !missions.executor.asks_no_place();
   const auto turn = straight.step(state);

@@ -160,7 +160,7 @@ class Executor {
 
   /// A row is to be driven by sight: what should be looked for. Empty: none.
   std::optional<RowWanted> row_wanted() const noexcept;
-  /// The step in hand needs neither a place nor a heading of the map: a row, or what leads from one
+  /// The step in hand needs neither a place nor a heading of the map: a row, a wall, or what leads from one
   /// row to the next by moves of kAcross_m together and turns. Such moves and turns are driven by
   /// the odometry alone where something tells it (see_row): no correction of the position bends
   /// them.
@@ -176,10 +176,6 @@ class Executor {
 
   /// Before step(): what is seen of walls. Empty: nothing on this robot looks around.
   void see_marks(const std::optional<MarkSight>& sight) noexcept { mark_sight_ = sight; }
-  /// What is in hand is driven by sight, and asks for no heading.
-  bool by_sight() const noexcept {
-    return running() && (doing_ == Doing::Row || doing_ == Doing::Wall);
-  }
 
   base::ExecutionState state() const noexcept { return state_; }
   /// Another one: what was found out about the way ahead is of no use any more.

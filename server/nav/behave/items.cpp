@@ -109,7 +109,7 @@ bool Executor::leads_to_row(bool forward, double& across_m) const noexcept {
 bool Executor::asks_no_place() const noexcept {
   const RouteStep* step = step_now();
   if (!running() || step == nullptr) return false;
-  if (step->kind == StepKind::Row) return true;
+  if (step->by_sight()) return true;
   const bool relative =
       step->kind == StepKind::Move || (step->kind == StepKind::Turn && !step->yaw_rad);
   if (!relative) return false;

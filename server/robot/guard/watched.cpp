@@ -93,6 +93,8 @@ std::optional<nav::MarkSight> Robot::Impl::mark_sight() const {
   const auto& around = guard.around();
   if (around) sight.view = around->beside.get();
   return sight;
+}
+
 /// For people.
 std::optional<base::RowState> Robot::Impl::row_state() const {
   const nav::RowDrive* drive = missions.executor.row();

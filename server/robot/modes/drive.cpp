@@ -108,8 +108,6 @@ base::DriveCommand Robot::Impl::drive_mission() {
     missions.executor.wait();
     return {{}, true};
   }
-  const bool by_sight = missions.executor.by_sight();
-  if (!pose->heading_known && !by_sight) return seek_heading();
   if (!pose->heading_known && !missions.executor.asks_no_place()) return seek_heading();
   missions.executor.go_on(pose->at);
   missions.executor.see_row(row_sight());
