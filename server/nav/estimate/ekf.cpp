@@ -18,7 +18,11 @@ using base::rad_from_deg;
 constexpr double kPositionNoise_m = 0.02;
 constexpr double kPositionNoiseGyro_m = 0.005;
 constexpr double kPositionNoisePerTurn_m = 0.05;
-constexpr double kPositionNoisePerTurnGyro_m = 0.03;
+constexpr double kPositionNoisePerTurnGyro_m = 0.015;
+// More from a gentle bend to a turn on the spot, at which the centre wanders where the ground
+// slips.
+constexpr double kPositionNoisePivot_m = 0.015;
+constexpr double kOnTheSpot_radps = 0.4;
 constexpr double kStandingNoise_m = 0.001;
 const double kYawNoise_rad = rad_from_deg(0.3);
 const double kYawNoisePerSpeed_rad = rad_from_deg(0.8);
@@ -98,7 +102,9 @@ void add_motion_noise(Belief& b, const Travel& t, const Slip& slip, double turne
   const double turn_rate = std::abs(turned_rad) / t.dt_s;
   const double speed = std::abs(t.ahead_m) / t.dt_s;
   // With a gyro, what the heading lacks is not asked of place and scale.
-  const double place = t.gyro_rad ? kPositionNoiseGyro_m + kPositionNoisePerTurnGyro_m * turn_rate
+  const double pivot_m = kPositionNoisePivot_m * std::min(1.0, turn_rate / kOnTheSpot_radps);
+  const double per_turn_m = kPositionNoisePerTurnGyro_m + pivot_m;
+  const double place = t.gyro_rad ? kPositionNoiseGyro_m + per_turn_m * turn_rate
                                   : kPositionNoise_m + kPositionNoisePerTurn_m * turn_rate;
   add_noise(b, kEast, place, t.dt_s);
   add_noise(b, kNorth, place, t.dt_s);

@@ -22,6 +22,8 @@ constexpr base::Duration kFuture = milliseconds(50);
 constexpr double kCoastSpeed_mps = 0.15;
 constexpr double kCoastAccel_mps2 = 0.5;
 constexpr double kBlindSpeed_mps = 1.0;
+// A fixed solution errs slowly too, by reflections: what does not average out.
+constexpr double kFixedWanders_m = 0.006;
 
 }  // namespace
 
@@ -196,7 +198,8 @@ std::optional<base::Pose> Estimator::pose(Time now) const {
   }
   p.global = frame_->to_global(p.at);
   // Axes of the covariance: mean of the variances ± half their spread.
-  const double doubt_m2 = unknown_m() * unknown_m();
+  const double wanders_m = drift_.sigma_m > 0.0 ? 0.0 : kFixedWanders_m;
+  const double doubt_m2 = unknown_m() * unknown_m() + wanders_m * wanders_m;
   const double a = belief_.P(kEast, kEast) + doubt_m2;
   const double b = belief_.P(kNorth, kNorth) + doubt_m2;
   const double c = belief_.P(kEast, kNorth);
