@@ -32,7 +32,7 @@ Json row_json(const std::optional<base::RowState>& row) {
               {"left_m", rounded(row->left_m, kPlaces2)},
               {"seen", nullptr}};
   if (!row->seen) return out;
-  const base::RowState::Seen& seen = *row->seen;
+  const base::RowInSight& seen = *row->seen;
   out["seen"] = {{"offset_m", rounded(seen.offset_m, kPlaces3)},
                  // Angles of the outside count clockwise.
                  {"angle_deg", degrees(-seen.angle_rad)},

@@ -113,7 +113,7 @@ std::optional<base::RowState> Robot::Impl::row_state() const {
   if (sight->view == nullptr) return out;
   const nav::rows::RowView& view = *sight->view;
   const nav::rows::Along at = nav::rows::beside_line(view, sight->body);
-  base::RowState::Seen& seen = out.seen.emplace();
+  base::RowInSight& seen = out.seen.emplace();
   seen.offset_m = at.d_m;
   seen.angle_rad =
       base::wrap_rad(sight->body.yaw_rad - view.line.yaw_rad - view.curvature_1pm * at.s_m);
