@@ -160,10 +160,10 @@ class Executor {
 
   /// A row is to be driven by sight: what should be looked for. Empty: none.
   std::optional<RowWanted> row_wanted() const noexcept;
-  /// The step in hand needs neither a place nor a heading of the map: a row, a wall, or what leads from one
-  /// row to the next by moves of kAcross_m together and turns. Such moves and turns are driven by
-  /// the odometry alone where something tells it (see_row): no correction of the position bends
-  /// them.
+  /// The step in hand needs neither a place nor a heading of the map: a row, a wall, or what leads
+  /// from one row to the next by moves of kAcross_m together and turns. Such moves and turns are
+  /// driven by the odometry alone where something tells it (see_row): no correction of the position
+  /// bends them.
   bool asks_no_place() const noexcept;
   static constexpr double kAcross_m = 30.0;
   /// Null: no row is driven now.
