@@ -68,8 +68,8 @@ void define(CLI::App& app, Options& o) {
   app.add_option("--disturbances", o.disturbances, "JSON file of disturbances")
       ->capture_default_str();
   app.add_option("--world", o.world,
-                 "drive in a simulated world and count what is touched: a file, random:N[:SEED] or "
-                 "open:N[:SEED]");
+                 "drive in a simulated world and count what is touched: a file, random:N[:SEED], "
+                 "open:N[:SEED] or crossing:N[:SEED]");
   app.add_option("--seeds", o.seeds, "runs of each course under each disturbance, seeds 1 to N")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();

@@ -229,7 +229,7 @@ class WorldDrive {
       out.problem = started.error().detail;
       return;
     }
-    const bool waits = s_.kind == "moving";
+    const bool waits = s_.kind == "moving" || s_.kind == "crossing";
     while (driven_s() < s_.time_s) {
       tick();
       const auto state = stage_.robot().snapshot()->mission.state;

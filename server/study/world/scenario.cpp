@@ -95,6 +95,52 @@ void choose_fault(Scenario& out, Draw& draw) {
   out.fault_after_s = draw.uniform(0.0, 12.0);
 }
 
+/// Somewhere on the course, and which way it goes there.
+struct OnCourse {
+  base::EnuPoint at;
+  double yaw_rad = 0.0;
+};
+OnCourse on_course(const Course& course, double s_m) {
+  for (std::size_t i = 1; i < course.points.size(); ++i) {
+    const base::EnuPoint leg = course.points[i] - course.points[i - 1];
+    const double long_m = std::hypot(leg.east_m, leg.north_m);
+    if (s_m > long_m && i + 1 < course.points.size()) {
+      s_m -= long_m;
+      continue;
+    }
+    const double part = long_m > 0.0 ? std::min(1.0, s_m / long_m) : 0.0;
+    return {{course.points[i - 1].east_m + part * leg.east_m,
+             course.points[i - 1].north_m + part * leg.north_m},
+            std::atan2(leg.north_m, leg.east_m)};
+  }
+  return {};
+}
+
+/// To and fro across it: who meets the robot is a matter of chance.
+void cross(sim::world::World& world, const Course& course, Draw& draw) {
+  std::erase_if(world.things, [](const auto& t) { return sim::world::moves(t.kind); });
+  if (world.things.size() > 8) world.things.resize(8);
+  for (int i = 2 + draw.below(3); i > 0; --i) {
+    const OnCourse there = on_course(course, draw.uniform(3.5, 17.0));
+    const double yaw = there.yaw_rad + draw.uniform(0.9, std::numbers::pi - 0.9);
+    const double half_m = draw.uniform(3.0, 6.0);
+    const double dx = half_m * std::cos(yaw);
+    const double dy = half_m * std::sin(yaw);
+    sim::world::Thing t;
+    t.kind = sim::world::Kind::Person;
+    t.height_m = draw.uniform(1.1, 1.95);
+    t.length_m = 0.3;
+    t.width_m = draw.uniform(0.35, 0.55);
+    t.speed_mps = draw.uniform(0.5, 2.0);
+    t.pause_s = draw.uniform(0.0, 4.0);
+    t.start_s = draw.uniform(0.0, 6.0);
+    t.motion = sim::world::Motion::Back;
+    t.points = {{there.at.east_m - dx, there.at.north_m - dy},
+                {there.at.east_m + dx, there.at.north_m + dy}};
+    world.things.push_back(std::move(t));
+  }
+}
+
 bool read_number(std::string_view& text, std::uint64_t& out) {
   const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), out);
   if (ec != std::errc{}) return false;
@@ -106,8 +152,10 @@ bool read_number(std::string_view& text, std::uint64_t& out) {
 
 Result<WorldOrder> parse_worlds(std::string_view text) {
   WorldOrder out;
-  for (const auto& [word, kind] : {std::pair{std::string_view("random:"), WorldOrder::Kind::Random},
-                                   std::pair{std::string_view("open:"), WorldOrder::Kind::Open}}) {
+  for (const auto& [word, kind] :
+       {std::pair{std::string_view("random:"), WorldOrder::Kind::Random},
+        std::pair{std::string_view("open:"), WorldOrder::Kind::Open},
+        std::pair{std::string_view("crossing:"), WorldOrder::Kind::Crossing}}) {
     if (!text.starts_with(word)) continue;
     out.kind = kind;
     std::string_view rest = text.substr(word.size());
@@ -171,9 +219,14 @@ Result<Scenario> scenario_of(const WorldOrder& order, std::uint64_t number,
       out.lidar = true;  // a plane meets every hill
       out.speed_mps = std::max(1.0, out.speed_mps);
       break;
+    case WorldOrder::Kind::Crossing:
+      out.kind = "crossing";
+      out.world = random_world(number, RandomKind::Moving);
+      break;
   }
   if (order.kind != WorldOrder::Kind::File)
     turn(out.course, 2.0 * std::numbers::pi * draw.uniform());
+  if (order.kind == WorldOrder::Kind::Crossing) cross(out.world, out.course, draw);
   if (order.kind == WorldOrder::Kind::Open) {
     // Longer: to and fro.
     const auto once = out.course.points;

@@ -26,12 +26,13 @@
 
 namespace roverd::study {
 
-/// What --world says: FILE, "random:N", "random:N:SEED", "open:N" or "open:N:SEED".
+/// What --world says: FILE, or "random:N", "open:N", "crossing:N", each with ":SEED" or without.
 struct WorldOrder {
   enum class Kind {
     File,
-    Random,  ///< N of all kinds, numbered from the seed on
-    Open,    ///< N fields of rough grass in the rain, where nothing stands
+    Random,    ///< N of all kinds, numbered from the seed on
+    Open,      ///< N fields of rough grass in the rain, where nothing stands
+    Crossing,  ///< N worlds with people who walk to and fro across the course, 0.5 to 2 m/s
   };
   Kind kind = Kind::File;
   std::filesystem::path file;
@@ -44,7 +45,7 @@ base::Result<WorldOrder> parse_worlds(std::string_view text);
 /// One drive. All of it follows from the order and its number.
 struct Scenario {
   std::uint64_t number = 1;
-  std::string kind;   ///< static, moving, open, or the file's world
+  std::string kind;   ///< static, moving, open, crossing, or the file's world
   std::string fault;  ///< none, rain, dust, dropouts, sun, dirt, noise or dead
   sim::world::World world;
   Course course;  ///< by sticks: only where it begins to look
@@ -92,7 +93,8 @@ struct TouchSeen {
 struct StopSeen {
   double at_s = 0.0;
   std::string what;       ///< obstacle, drop, unseen, blind
-  std::string cause;      ///< of obstacle and drop: thing, left (it was there), or what was met
+  std::string cause;      ///< of obstacle and drop: thing, left (it was there), or what was met;
+                          ///< of who was believed to move: comes, or still (he does not)
   bool needless = false;  ///< nothing true on the swept way
   base::EnuPoint at;      ///< what was said to stand there
   std::optional<double> stands_m;  ///< room before the static thing that it would touch

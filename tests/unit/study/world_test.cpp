@@ -31,6 +31,29 @@ TEST(WorldOrderTest, AFileANumberOfWorldsOrOpenFields) {
   EXPECT_EQ(open->kind, WorldOrder::Kind::Open);
   EXPECT_EQ(open->count, 20);
   EXPECT_EQ(open->seed, 7U);
+
+  const auto crossing = parse_worlds("crossing:5:9");
+  ASSERT_TRUE(crossing);
+  EXPECT_EQ(crossing->kind, WorldOrder::Kind::Crossing);
+  EXPECT_EQ(crossing->count, 5);
+}
+
+TEST(ScenarioTest, PeopleCrossTheCourse) {
+  for (std::uint64_t number = 1; number <= 20; ++number) {
+    const auto s = scenario_of(*parse_worlds("crossing:1"), number, {}, {});
+    ASSERT_TRUE(s);
+    EXPECT_EQ(s->kind, "crossing");
+    int people = 0;
+    for (const auto& thing : s->world.things) {
+      if (!sim::world::moves(thing.kind)) continue;
+      ++people;
+      EXPECT_EQ(thing.kind, sim::world::Kind::Person);
+      EXPECT_GE(thing.speed_mps, 0.5);
+      EXPECT_LE(thing.speed_mps, 2.0);
+    }
+    EXPECT_GE(people, 2);
+    EXPECT_LE(people, 4);
+  }
 }
 
 TEST(WorldOrderTest, NonsenseIsNamed) {
