@@ -47,6 +47,7 @@ std::string_view to_string(GuardAction a) noexcept;  // none slow creep stop ove
 struct Obstacle {
   GuardAction action = GuardAction::None;
   std::string_view what;     ///< obstacle, drop, unseen, blind
+  bool moves = false;        ///< an obstacle that is waited for
   double distance_m = 0.0;   ///< way of the origin until the margin is touched
   double bearing_rad = 0.0;  ///< of it, left positive
   double ahead_m = 0.0;      ///< of it, from the origin

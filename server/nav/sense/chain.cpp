@@ -89,8 +89,8 @@ base::Result<Chain> Chain::of(ChainParams params, std::vector<SensorSetup> senso
     sighted.vouch_m = params.vouch_m;
     sighted.low_m = params.ground.min_height_m;
     sighted.range_m = params.reduce.max_range_m;
-    chain.eyes_.push_back(
-        {s, sighted, Persist(s.persist, params.reduce.max_range_m), HealthWatch(s.health, now)});
+    chain.eyes_.push_back({s, sighted, Persist(s.persist, params.reduce.max_range_m),
+                           HealthWatch(s.health, now), Movers(params.reduce.max_range_m)});
   }
   return chain;
 }
@@ -122,7 +122,20 @@ base::Result<std::size_t> Chain::take(const base::Sight& sight, const PoseHistor
   }
   sight_sectors(reduced_, sight.half_step_rad, eye.sighted, *sectors_);
   grid_.take(reduced_, *sectors_, static_cast<std::uint8_t>(i));
+  eye.movers.see(reduced_, grid_);
   return i;
+}
+
+void Chain::movers(base::Time now, std::vector<Mover>& out) const {
+  out.clear();
+  for (std::size_t i = 0; i < eyes_.size(); ++i) {
+    eyes_[i].movers.tell(now, static_cast<std::uint8_t>(i), out);
+  }
+}
+
+void Chain::forget() noexcept {
+  grid_.forget();
+  for (EyeOf& eye : eyes_) eye.movers.forget();
 }
 
 std::optional<std::string> Chain::blind(base::Time now) const {

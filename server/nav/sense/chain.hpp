@@ -19,6 +19,7 @@
 #include "nav/sense/grid.hpp"
 #include "nav/sense/ground.hpp"
 #include "nav/sense/health.hpp"
+#include "nav/sense/movers.hpp"
 #include "nav/sense/params.hpp"
 #include "nav/sense/persist.hpp"
 #include "nav/sense/reduce.hpp"
@@ -67,8 +68,10 @@ class Chain {
   Fitness health(std::size_t i, base::Time now) const { return eyes_[i].health.at(now); }
   /// Name and reason of the first needed sensor that is blind; empty: all see.
   std::optional<std::string> blind(base::Time now) const;
+  /// Who moves, by all sensors: whom two of them see is told twice. @param out is cleared
+  void movers(base::Time now, std::vector<Mover>& out) const;
   /// The odometry began anew: the grid is unknown again.
-  void forget() noexcept { grid_.forget(); }
+  void forget() noexcept;
 
  private:
   struct EyeOf {
@@ -76,6 +79,7 @@ class Chain {
     SightedParams sighted;
     Persist persist;
     HealthWatch health;
+    Movers movers;
   };
   Chain(const ChainParams& params, const Footprint& body);
 

@@ -172,6 +172,8 @@ struct ProtectParams {
   double creep_turn_radps = 0.0;
   double override_mps = 0.15;
   double dock_m = 0.6;
+  double foresee_s = 3.0;
+  double foresee_gap_m = 0.30;
 };
 
 template <class V>
@@ -199,6 +201,11 @@ void fields(V& v, ProtectParams& p) {
   v("dock_m", p.dock_m, 0.0, 3.0,
     base::lower_is_stricter("this near to where DOCK ends, what stands within 0.3 m of the "
                             "vehicle's end there is the dock, and does not stop it; 0: it does"));
+  v("foresee_s", p.foresee_s, 0.0, 10.0,
+    base::higher_is_stricter("whoever moves is believed to go on so for this long; 0: he is not "
+                             "foreseen"));
+  v("foresee_gap_m", p.foresee_gap_m, 0.0, 3.0,
+    base::higher_is_stricter("room left to whoever moves, where it passes him before or behind"));
 }
 
 }  // namespace roverd::nav::sense

@@ -72,6 +72,24 @@ bool holds(const nav::sense::Patch& patch, const Question& q) {
   return true;
 }
 
+/// Who moves is waited for: ways are laid as if he were not there.
+nav::sense::Patch without_movers(const Surroundings& around) {
+  constexpr double kHis_m = 0.3;
+  nav::sense::Patch out = around.patch;
+  for (const nav::sense::Mover& m : around.movers) {
+    const nav::sense::Vec2 at = m.at + base::seconds(out.stamp - m.seen) * m.v_mps;
+    for (std::size_t i = 0; i < out.cells.size(); ++i) {
+      auto& cell = out.cells[i];
+      if (cell.known != nav::sense::Known::Occupied) continue;
+      const auto side = static_cast<std::size_t>(out.side);
+      const double x = (out.x0 + static_cast<double>(i % side) + 0.5) * out.cell_m - at.x;
+      const double y = (out.y0 + static_cast<double>(i / side) + 0.5) * out.cell_m - at.y;
+      if (std::hypot(x, y) < m.radius_m + kHis_m) cell.known = nav::sense::Known::Free;
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 nav::sense::Pose2 to_odometry(const nav::sense::Pose2& local, base::EnuPoint at,
@@ -89,10 +107,11 @@ std::shared_ptr<const AroundAnswer> answer_around(nav::around::Planner& planner,
       (in ? q.keep_in : q.keep_out).push_back(ring_of(*asked, area));
     }
   }
-  if (auto ok = planner.plan(asked->around->patch, q, out->found); !ok) {
-    out->refused = ok.error().detail;
-  }
-  out->before_holds = holds(asked->around->patch, q);
+  nav::sense::Patch alone;
+  if (!asked->around->movers.empty()) alone = without_movers(*asked->around);
+  const nav::sense::Patch& patch = asked->around->movers.empty() ? asked->around->patch : alone;
+  if (auto ok = planner.plan(patch, q, out->found); !ok) out->refused = ok.error().detail;
+  out->before_holds = holds(patch, q);
   // What is large goes here, and not where the answer is let go.
   auto kept = std::make_shared<AroundQuestion>(*asked);
   kept->around.reset();

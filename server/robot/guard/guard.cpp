@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/angle.hpp"
+#include "nav/sense/foresee.hpp"
 
 namespace roverd::robot {
 namespace {
@@ -26,6 +27,7 @@ constexpr double kWishless_s = 0.5;
 constexpr double kDockIs_m = 0.3;  // what stands within this beyond the vehicle's end, docked
 constexpr double kDockLeast_mps = 0.06;
 constexpr double kFollows_m = 0.02;
+constexpr double kHis_m = 0.3;          // what stands this near to somebody who moves is he
 constexpr double kTurnsRound_m = 0.12;  // so that a way around, too, may begin with a turn
 
 bool stands(const BodyTwist& t) noexcept {
@@ -63,6 +65,7 @@ std::string sentence(const base::Obstacle& o) {
   }
   const char* what = o.what == "drop"     ? "the ground ends"
                      : o.what == "unseen" ? "no sensor has seen the way"
+                     : o.moves            ? "somebody comes into the way"
                                           : "something stands in the way";
   std::snprintf(text, sizeof text, "%s, %.1f m %s%s%s", what, std::hypot(o.ahead_m, o.left_m),
                 where.c_str(), o.sensor.empty() ? "" : ", seen by ", o.sensor.c_str());
@@ -179,6 +182,7 @@ Guard::Looked Guard::look(const BodyTwist& twist, bool by_itself, base::Time now
                  spared_ ? &*spared_ : nullptr, &around_->marks)};
     look_behind(v, twist, params);
     if (ahead) look_along_rays(v, twist, params);
+    look_ahead_of_time(v, twist, params);
     return v;
   }
   // Nothing is known: as if the very next step were unseen.
@@ -212,6 +216,35 @@ Guard::Looked Guard::look_where_lost(const BodyTwist& twist,
   v.part = 0.0;
   v.lost = true;
   return v;
+}
+
+/// Who moves: before he is in the way; and who is in it, is known to go.
+void Guard::look_ahead_of_time(Looked& v, const BodyTwist& twist,
+                               const nav::sense::ProtectParams& params) const noexcept {
+  if (around_->movers.empty() || params.foresee_s <= 0.0) return;
+  const nav::sense::Foreseen f =
+      nav::sense::foresee(around_->movers, odometry_, body_, twist, params);
+  if (f.part < v.part) {
+    v = {};
+    v.part = f.part;
+    v.limit = Limit::Obstacle;
+    v.found = true;
+    v.touch_s = f.meets_s;
+    v.distance_m = std::abs(twist.linear_mps) * f.meets_s;
+    v.at = f.at;
+    v.bearing_rad = std::atan2(f.at.y, f.at.x);
+    v.sensor = f.sensor;
+    v.age_s = f.age_s;
+    v.moves = true;
+    return;
+  }
+  if (v.limit != Limit::Obstacle) return;
+  const nav::sense::Pose2 at = odometry_.pose * nav::sense::Pose2{v.at.x, v.at.y, 0.0};
+  for (const nav::sense::Mover& m : around_->movers) {
+    const double age_s = base::seconds(odometry_.stamp - m.seen);
+    const nav::sense::Vec2 his = m.at + age_s * m.v_mps;
+    if (std::hypot(his.x - at.x_m, his.y - at.y_m) < m.radius_m + kHis_m) v.moves = true;
+  }
 }
 
 /// What is pulled cuts corners, and swings out.
@@ -354,7 +387,8 @@ void Guard::spare_dock(const std::optional<nav::sense::Pose2>& docked, bool reve
 }
 
 std::optional<Then> Guard::decide(bool by_itself, base::Time now) noexcept {
-  const bool solid = obstacle_.what == "obstacle" || obstacle_.what == "drop";
+  // Who moves is waited for: no way is looked for around him.
+  const bool solid = (obstacle_.what == "obstacle" && !obstacle_.moves) || obstacle_.what == "drop";
   const auto what_then = blocked_.step(by_itself && stops(), solid, odometry_.pose, now);
   const bool stop = obstacle_.action == base::GuardAction::Stop;
   if (!stop) why_.clear();
@@ -410,6 +444,7 @@ void Guard::tell(const Looked& v, base::GuardAction action, base::Time now) {
   const bool old = too_old(now);
   obstacle_.action = action;
   obstacle_.what = old ? "blind" : nav::sense::to_string(v.limit);
+  obstacle_.moves = v.moves && !old;
   obstacle_.distance_m = v.distance_m;
   obstacle_.bearing_rad = v.bearing_rad;
   obstacle_.ahead_m = v.at.x;

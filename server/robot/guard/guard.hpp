@@ -117,6 +117,7 @@ class Guard {
     double within_m = 0.0;  ///< being shorter than this
     bool lost = false;      ///< what a sensor said that does not see any more
     bool trailer = false;   ///< it is what the trailer would touch
+    bool moves = false;     ///< it is somebody who moves
   };
   Looked look(const base::BodyTwist& twist, bool by_itself, base::Time now) const noexcept;
   Looked look_where_lost(const base::BodyTwist& twist,
@@ -124,6 +125,8 @@ class Guard {
   Looked told_by(const RaysStop& said, double within_m) const noexcept;
   void look_along_rays(Looked& v, const base::BodyTwist& twist,
                        const nav::sense::ProtectParams& params) const noexcept;
+  void look_ahead_of_time(Looked& v, const base::BodyTwist& twist,
+                          const nav::sense::ProtectParams& params) const noexcept;
   void look_behind(Looked& v, const base::BodyTwist& twist,
                    const nav::sense::ProtectParams& params) const noexcept;
   void tell(const Looked& v, base::GuardAction action, base::Time now);

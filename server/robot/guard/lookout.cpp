@@ -247,6 +247,7 @@ std::shared_ptr<const Surroundings> Lookout::picture(base::Time now) {
   }
   chain_.grid().patch(history_.newest().pose, reach_m_, now, out->patch, free_for_s_);
   out->marks.mark(out->patch);
+  chain_.movers(now, out->movers);
   out->sensors = std::move(sensors);
   if (finder_ && finder_->view()) out->row = RowSeen{row_.id, *finder_->view()};
   out->beside = beside_;

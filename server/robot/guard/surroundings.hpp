@@ -12,6 +12,7 @@
 #include "nav/sense/footprint.hpp"
 #include "nav/sense/grid.hpp"
 #include "nav/sense/marks.hpp"
+#include "nav/sense/movers.hpp"
 #include "robot/guard/row_watch.hpp"
 
 namespace roverd::robot {
@@ -43,6 +44,8 @@ struct Surroundings {
   std::optional<RaysStop> rays_ahead;
   std::shared_ptr<const nav::marks::View> beside;  ///< walls; null: no scanner looks along a plane
   std::optional<RowSeen> row;                      ///< empty: none is asked for, or none is seen
+  std::vector<nav::sense::Mover> movers;  ///< who moves, the nearest first by each sensor
+  std::optional<RowSeen> row;             ///< empty: none is asked for, or none is seen
 };
 
 }  // namespace roverd::robot

@@ -301,6 +301,14 @@ std::string Referee::cause_of(const base::Obstacle& o, const world::Pose& there,
   world::Moment moment;
   around_.scene().move_to(moment, around_.now_s());
   needless = false;
+  if (o.moves) {
+    const auto met = world::contact(around_.scene(), moment, there, grown(about, kBeside_m), 0.01);
+    const auto& things = around_.scene().world().things;
+    needless = std::ranges::none_of(met.touches, [&](const world::Touch& t) {
+      return t.thing >= 0 && world::moves(things[static_cast<std::size_t>(t.thing)].kind);
+    });
+    return needless ? "still" : "comes";
+  }
   if (touches_any(around_.scene(), moment, there, about)) return "thing";
   needless = true;
   const double met_s = around_.now_s() - o.age_s;

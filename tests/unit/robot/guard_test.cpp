@@ -52,6 +52,34 @@ TEST_F(Seeing, ItSlowsDownBeforeItStops) {
   EXPECT_LT(slowest, 0.2);
 }
 
+TEST_F(Seeing, WhoCrossesIsWaitedForAndTheMissionGoesOn) {
+  field.drive_mission();
+  field.run(3.0);
+  // He comes to its way, 4 m ahead, when it would be there.
+  nav::sense::Mover him;
+  him.at = {pose.x_m + 4.0, pose.y_m - 4.0};
+  him.v_mps = {0.0, 1.0};
+  him.seen = field.now;
+  walker = him;
+  bool slowed = false;
+  bool said = false;
+  for (double t = 0.0; t < 9.0; t += 0.02) {
+    field.run(0.02);
+    const double y_m = him.at.y + base::seconds(field.now - him.seen);
+    const bool in_way = std::abs(y_m - pose.y_m) < 0.4;
+    if (in_way) {
+      EXPECT_LT(pose.x_m + 0.5 * VehicleLength, him.at.x - him.radius_m) << "at " << t;
+    }
+    const auto& o = field.robot.snapshot()->obstacle;
+    slowed = slowed || (o && o->moves && o->action != base::GuardAction::None);
+    said = said || (o && o->reason.starts_with("somebody comes into the way"));
+  }
+  EXPECT_TRUE(slowed);
+  EXPECT_TRUE(said);
+  field.run(8.0);
+  EXPECT_GT(pose.x_m, him.at.x + 1.0) << "it went on";
+}
+
 TEST_F(Seeing, TheSticksAreStoppedTooAndMayDriveAway) {
   field.run(8.0);
   ASSERT_TRUE(field.ask(Arm{}));

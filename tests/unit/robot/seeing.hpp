@@ -44,6 +44,12 @@ class Seeing : public ::testing::Test {
         }
       }
     }
+    if (walker) {
+      nav::sense::Mover m = *walker;
+      m.at = m.at + base::seconds(field.now - m.seen) * m.v_mps;
+      m.seen = field.now;
+      s->movers.push_back(m);
+    }
     base::SensorState state;
     state.name = "front";
     state.kind = "velodyne";
@@ -72,6 +78,8 @@ class Seeing : public ::testing::Test {
   Known wall_is = Known::Occupied;
   std::optional<RaysStop> rays;  ///< what the stop by counted rays says
   std::optional<RowSeen> row;    ///< what is seen of the row that was asked for
+  std::optional<nav::sense::Mover> walker;  ///< as he was at `seen`, in the odometry's frame
+  std::optional<RaysStop> rays;             ///< what the stop by counted rays says
   nav::sense::Pose2 pose;
 };
 

@@ -21,6 +21,7 @@ struct Around {
     double x0_m, x1_m, y0_m, y1_m;
   };
   std::vector<Box> boxes;
+  std::vector<nav::sense::Mover> movers;  ///< where they were at `seen`
   nav::sense::Known ground = nav::sense::Known::Free;
   bool sees = true;
   nav::sense::Pose2 pose;
@@ -44,6 +45,11 @@ struct Around {
           patch.cells[static_cast<std::size_t>(y * kSide + x)].known = nav::sense::Known::Occupied;
         }
       }
+    }
+    for (nav::sense::Mover m : movers) {
+      m.at = m.at + base::seconds(now - m.seen) * m.v_mps;
+      m.seen = now;
+      s->movers.push_back(m);
     }
     base::SensorState state;
     state.name = "front";
@@ -163,6 +169,22 @@ inline const std::vector<Scene> kSeeingScenes = {
        w.change();
        w.go(plan_of({{0, 1}, {0, 20}}));
        w.run(15.0);
+     }},
+    {"people cross its way one after the other",
+     [](Walk& w) {
+       const auto around = see(w);
+       w.run(8.0);
+       w.go(plan_of({{0, 1}, {0, 20}}));
+       w.run(1.0);
+       w.change();
+       for (const double behind_m : {3.0, 6.0, 9.0, 13.0}) {
+         nav::sense::Mover m;
+         m.at = {0.5 + behind_m, -1.1 * behind_m};
+         m.v_mps = {0.0, 0.8};
+         m.seen = w.now;
+         around->movers.push_back(m);
+       }
+       w.run(20.0);
      }},
     {"a turn beside a wall",
      [](Walk& w) {

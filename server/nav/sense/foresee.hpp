@@ -1,0 +1,42 @@
+#pragma once
+// Who moves is foreseen: how much of a commanded twist may be driven, so that nobody is met who
+// goes on as he does.
+//
+// A part λ of the twist may be driven if, for the next foresee_s,
+//
+//   brake: after delay_s the body brakes along the curve and stands, and nobody comes nearer to it
+//          than side_m on the way nor where it stands; so it stands before his way, not in it; or
+//   keep:  it goes on at λ, and nobody comes nearer than foresee_gap_m.
+//
+// The largest of some λ that may be driven is. If there is none, he comes to the body wherever it
+// stands: then it stands. He may be anywhere within his radius, and within σ t of where he goes.
+// Who walks up from behind is his own business: to stand would help nobody.
+//
+// Pure; allocates nothing: for the control tick. Without movers nothing is reckoned; with one whom
+// the body may meet up to 12 · 40 looks, 20 us.
+
+#include <cstdint>
+#include <span>
+
+#include "base/geo.hpp"
+#include "nav/sense/footprint.hpp"
+#include "nav/sense/movers.hpp"
+#include "nav/sense/odometry.hpp"
+#include "nav/sense/params.hpp"
+
+namespace roverd::nav::sense {
+
+struct Foreseen {
+  double part = 1.0;     ///< of the commanded twist, 0..1
+  bool found = false;    ///< somebody would be met
+  double meets_s = 0.0;  ///< when, if all went on so
+  Vec2 at{};             ///< where he is now, in B
+  std::uint8_t sensor = 0;
+  double age_s = 0.0;
+};
+
+/// @param body X_OB now and how it moves. @param twist commanded, finite
+Foreseen foresee(std::span<const Mover> movers, const Odometry& now, const Footprint& body,
+                 const base::BodyTwist& twist, const ProtectParams& params) noexcept;
+
+}  // namespace roverd::nav::sense

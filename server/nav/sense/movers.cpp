@@ -1,0 +1,306 @@
+#include "nav/sense/movers.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+
+namespace roverd::nav::sense {
+
+namespace {
+
+constexpr double kPlace_m = 0.1;
+constexpr std::int32_t kHangs = 2;  // cells so far apart are of one thing
+constexpr double kEdge_m = 0.3;     // so near to the end of the range a thing is cut off
+constexpr double kWidest_m = 1.6;
+constexpr std::uint32_t kFewVoxels = 3;  // voxels of a thing
+constexpr std::size_t kThings = 64;
+constexpr std::size_t kSpread = 4;
+constexpr double kGap_s = 0.5;  // of a place: not taken for so long, it begins anew
+constexpr double kWindow_s = 0.7;
+constexpr double kEvery_s = 0.035;
+constexpr double kSpan_s = 0.25;
+constexpr std::size_t kSamples = 4;  // at least
+constexpr double kOut_m = 0.01;      // a line is not surer than a side that is so far out
+constexpr double kGate_m = 0.35;
+constexpr double kGate_mps = 1.5;
+constexpr double kLeft_m = 0.12;  // so far outside of its box a place was left
+constexpr double kNoMore_mps = 0.15;
+constexpr double kAgain_m = 0.05;  // of the body that no beam met
+
+/// A straight line through what was measured.
+struct SideLine {
+  double slope = 0.0;
+  double sigma = 0.0;
+};
+
+template <class Of>
+SideLine line_through(std::size_t n, const Of& of) {
+  double t = 0.0;
+  double y = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto [ti, yi] = of(i);
+    t += ti / static_cast<double>(n);
+    y += yi / static_cast<double>(n);
+  }
+  double tt = 0.0;
+  double ty = 0.0;
+  double yy = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto [ti, yi] = of(i);
+    tt += (ti - t) * (ti - t);
+    ty += (ti - t) * (yi - y);
+    yy += (yi - y) * (yi - y);
+  }
+  SideLine out;
+  if (tt <= 0.0) return {0.0, 1e3};
+  out.slope = ty / tt;
+  const double rest = std::max(0.0, yy - out.slope * ty) / static_cast<double>(n - 2);
+  out.sigma = std::sqrt((rest + kOut_m * kOut_m) / tt);
+  return out;
+}
+
+/// Along one axis, of two opposite sides.
+struct Going {
+  double mean = 0.0;
+  double sure = 0.0;  ///< the slower of the two; 0: they part, or meet
+  double sigma = 0.0;
+};
+
+Going going(const SideLine& low, const SideLine& high) noexcept {
+  Going out;
+  out.sigma = std::max({low.sigma, high.sigma, 0.5 * std::abs(low.slope - high.slope)});
+  if (low.slope * high.slope <= 0.0) return out;
+  out.mean = 0.5 * (low.slope + high.slope);
+  out.sure = std::abs(low.slope) < std::abs(high.slope) ? low.slope : high.slope;
+  return out;
+}
+
+}  // namespace
+
+Movers::Movers(double range_m) : range_m_(range_m) {
+  const auto wide = static_cast<std::uint32_t>(std::ceil(2.0 * range_m / kPlace_m)) + 8;
+  const std::uint32_t side = std::bit_ceil(std::clamp(wide, 16U, 1024U));
+  mask_ = side - 1;
+  places_.resize(static_cast<std::size_t>(side) * side);
+}
+
+void Movers::forget() noexcept {
+  std::fill(places_.begin(), places_.end(), Place{});
+  tracks_.clear();
+  piece_ = 0;
+  begun_ = false;
+}
+
+Movers::Place& Movers::place(std::int32_t x, std::int32_t y) noexcept {
+  const auto column = static_cast<std::uint32_t>(x) & mask_;
+  const auto row = static_cast<std::uint32_t>(y) & mask_;
+  return places_[static_cast<std::size_t>(row) * (mask_ + 1) + column];
+}
+
+/// There or beside it something has stood for long, and was met lately.
+bool Movers::still_about(std::int32_t x, std::int32_t y) noexcept {
+  for (std::int32_t v = y - 1; v <= y + 1; ++v) {
+    for (std::int32_t u = x - 1; u <= x + 1; ++u) {
+      const Place& p = place(u, v);
+      const auto last_s = static_cast<double>(p.last_s);
+      if (now_s_ - last_s < kGap_s && last_s - static_cast<double>(p.first_s) >= kStill_s) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+void Movers::gather(const Reduced& in) {
+  cells_.clear();
+  points_.clear();
+  of_.clear();
+  const double c = std::cos(in.pose.yaw_rad);
+  const double s = std::sin(in.pose.yaw_rad);
+  const double far_m = range_m_ - kEdge_m;
+  for (const Voxel& v : in.voxels) {
+    if (v.kind != Kind::Obstacle) continue;
+    const auto x = static_cast<double>(v.x_m);
+    const auto y = static_cast<double>(v.y_m);
+    if (x * x + y * y > far_m * far_m) continue;
+    const Vec2 at{in.pose.x_m + c * x - s * y, in.pose.y_m + s * x + c * y};
+    const Cell cell{static_cast<std::int32_t>(std::floor(at.x / kPlace_m)),
+                    static_cast<std::int32_t>(std::floor(at.y / kPlace_m))};
+    points_.push_back(at);
+    of_.push_back(cell);
+    Place& p = place(cell.x, cell.y);
+    if (p.piece == piece_) continue;
+    if (now_s_ - static_cast<double>(p.last_s) > kGap_s) p.first_s = static_cast<float>(now_s_);
+    p.last_s = static_cast<float>(now_s_);
+    p.piece = piece_;
+    p.thing = -1;
+    cells_.push_back(cell);
+  }
+  std::erase_if(cells_, [this](const Cell& cell) { return still_about(cell.x, cell.y); });
+  for (const Cell& cell : cells_) place(cell.x, cell.y).thing = 0;
+}
+
+/// Things are numbered from 1.
+void Movers::part() {
+  things_.clear();
+  for (const Cell& first : cells_) {
+    if (place(first.x, first.y).thing != 0 || things_.size() >= kThings) continue;
+    things_.emplace_back();
+    const auto number = static_cast<std::int32_t>(things_.size());
+    place(first.x, first.y).thing = number;
+    open_.assign(1, first);
+    while (!open_.empty()) {
+      const Cell at = open_.back();
+      open_.pop_back();
+      for (std::int32_t y = at.y - kHangs; y <= at.y + kHangs; ++y) {
+        for (std::int32_t x = at.x - kHangs; x <= at.x + kHangs; ++x) {
+          Place& p = place(x, y);
+          if (p.piece != piece_ || p.thing != 0) continue;
+          p.thing = number;
+          open_.push_back({x, y});
+        }
+      }
+    }
+  }
+  spread_.resize(std::max(spread_.size(), things_.size()));
+  for (auto& some : spread_) some.clear();
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const std::int32_t number = place(of_[i].x, of_[i].y).thing;
+    if (number <= 0) continue;
+    const auto thing = static_cast<std::size_t>(number - 1);
+    Box& b = things_[thing];
+    const Vec2 p = points_[i];
+    b = {std::min(b.x0, p.x), std::max(b.x1, p.x), std::min(b.y0, p.y), std::max(b.y1, p.y),
+         b.points + 1};
+    spread_[thing].push_back(p);
+  }
+}
+
+void Movers::see(const Reduced& in, const Grid& grid) {
+  if (!begun_) {
+    begun_ = true;
+    begin_ = in.stamp;
+  }
+  const double now_s = base::seconds(in.stamp - begin_);
+  if (piece_ > 0 && now_s <= now_s_) return;  // out of order
+  // A float of seconds is a millisecond's after three hours: begin anew before.
+  constexpr double kAnew_s = 8192.0;
+  if (now_s > kAnew_s) {
+    forget();
+    return see(in, grid);
+  }
+  now_s_ = now_s;
+  ++piece_;
+  body_ = {in.pose.x_m, in.pose.y_m};
+  gather(in);
+  part();
+  follow(grid, in.stamp);
+}
+
+/// Each thing goes to the nearest track that expects one there.
+void Movers::follow(const Grid& grid, base::Time stamp) {
+  std::erase_if(tracks_, [this](const Track& t) { return now_s_ - t.seen_s > kLost_s; });
+  const std::size_t known = tracks_.size();
+  for (std::size_t i = 0; i < things_.size(); ++i) {
+    const Box& box = things_[i];
+    if (box.points < kFewVoxels || box.x1 - box.x0 > kWidest_m || box.y1 - box.y0 > kWidest_m) {
+      continue;
+    }
+    const Vec2 mid = box.mid();
+    Track* best = nullptr;
+    double least = 1e9;
+    for (std::size_t k = 0; k < known; ++k) {
+      Track& t = tracks_[k];
+      if (t.seen_s == now_s_) continue;
+      const double dt_s = now_s_ - t.seen_s;
+      const Vec2 off = mid - (t.box.mid() + dt_s * t.v);
+      const double away = std::hypot(off.x, off.y);
+      if (away > kGate_m + kGate_mps * std::min(dt_s, 0.2) || away >= least) continue;
+      best = &t;
+      least = away;
+    }
+    if (best == nullptr) {
+      if (tracks_.size() >= kThings) continue;
+      best = &tracks_.emplace_back();
+    }
+    best->seen_s = now_s_;
+    best->box = box;
+    if (!best->samples.empty() && now_s_ - best->samples.back().at_s < kEvery_s) continue;
+    std::erase_if(best->samples, [this](const Sample& s) { return now_s_ - s.at_s > kWindow_s; });
+    Sample sample;
+    sample.at_s = now_s_;
+    sample.box = box;
+    const auto& some = spread_[i];
+    for (std::size_t k = 0; k < std::min(kSpread, some.size()); ++k) {
+      sample.points[sample.size++] = some[k * some.size() / std::min(kSpread, some.size())];
+    }
+    best->samples.push_back(sample);
+    estimate(*best, grid, stamp);
+  }
+}
+
+/// Where it was and is not any more, rays went through.
+bool Movers::left_free(const Track& track, const Grid& grid, base::Time stamp) {
+  int left = 0;
+  int free = 0;
+  const Box& b = track.box;
+  for (const Sample& s : track.samples) {
+    for (std::size_t k = 0; k < s.size; ++k) {
+      const Vec2 p = s.points[k];
+      const bool inside = p.x > b.x0 - kLeft_m && p.x < b.x1 + kLeft_m && p.y > b.y0 - kLeft_m &&
+                          p.y < b.y1 + kLeft_m;
+      if (inside) continue;
+      ++left;
+      if (grid.at(p.x, p.y, stamp) == Known::Free) ++free;
+    }
+  }
+  return left >= 2 && 2 * free > left;
+}
+
+void Movers::estimate(Track& track, const Grid& grid, base::Time stamp) const {
+  const auto& samples = track.samples;
+  const std::size_t n = samples.size();
+  if (n < kSamples || samples.back().at_s - samples.front().at_s < kSpan_s) return;
+  const auto side = [&](double Box::*of) {
+    return line_through(n, [&](std::size_t i) {
+      return std::array{samples[i].at_s, samples[i].box.*of};
+    });
+  };
+  const Going x = going(side(&Box::x0), side(&Box::x1));
+  const Going y = going(side(&Box::y0), side(&Box::y1));
+  track.v = {x.mean, y.mean};
+  track.sigma = std::hypot(x.sigma, y.sigma);
+  const double sure = std::hypot(x.sure, y.sure);
+  const double fast = std::hypot(x.mean, y.mean);
+  if (track.moves) {
+    track.moving = fast > kNoMore_mps ? 3 : track.moving - 1;
+    if (track.moving <= 0) track.moves = false;
+    return;
+  }
+  const bool goes =
+      sure > kLeast_mps + 2.0 * std::min(track.sigma, 0.5) && left_free(track, grid, stamp);
+  track.moving = goes ? track.moving + 1 : 0;
+  if (track.moving < 2) return;
+  track.moves = true;
+  track.moving = 3;
+}
+
+void Movers::tell(base::Time now, std::uint8_t sensor, std::vector<Mover>& out) const {
+  const double at_s = begun_ ? base::seconds(now - begin_) : 0.0;
+  const std::size_t before = out.size();
+  for (const Track& t : tracks_) {
+    if (!t.moves || at_s - t.seen_s > kLost_s) continue;
+    const double half_m = 0.5 * std::max(t.box.x1 - t.box.x0, t.box.y1 - t.box.y0);
+    out.push_back({t.box.mid(), t.v, half_m + kAgain_m, t.sigma, sensor,
+                   begin_ + base::from_seconds(t.seen_s)});
+  }
+  const auto away = [this](const Mover& m) {
+    return std::hypot(m.at.x - body_.x, m.at.y - body_.y);
+  };
+  const auto first = out.begin() + static_cast<std::ptrdiff_t>(before);
+  std::sort(first, out.end(), [&](const Mover& a, const Mover& b) { return away(a) < away(b); });
+  if (out.size() - before > kMost) out.resize(before + kMost);
+}
+
+}  // namespace roverd::nav::sense

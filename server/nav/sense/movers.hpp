@@ -1,0 +1,109 @@
+#pragma once
+// Who moves: what one sensor sees, followed from piece to piece.
+//
+//   obstacles, without what has stood for kStill_s ─▶ things up to 1.6 m wide ─▶ tracks ─▶ movers
+//
+// Of a track the four sides of its box (along x and y of O) are kept for 0.7 s, and a straight line
+// is laid through each. A side that is uncovered by and by, or hidden, moves while the thing
+// stands; so both opposite sides must go the same way, faster than kLeast_mps beyond twice what
+// their lines are unsure of, and most of the places that it left must have been seen free: what
+// slides along behind a gap, as the robot passes, left nothing free.
+//
+// Velocities are of O, which drifts by far less than anybody walks. Not shared between threads.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "base/time.hpp"
+#include "nav/sense/footprint.hpp"
+#include "nav/sense/grid.hpp"
+#include "nav/sense/reduce.hpp"
+
+namespace roverd::nav::sense {
+
+/// Somebody who moves, as he was seen last.
+struct Mover {
+  Vec2 at{};               ///< the middle of what was seen of him, in O
+  Vec2 v_mps{};            ///< in O
+  double radius_m = 0.3;   ///< all that was seen lies within it
+  double sigma_mps = 0.1;  ///< of the velocity, by the scatter of what was seen
+  std::uint8_t sensor = 0;
+  base::Time seen;
+};
+
+class Movers {
+ public:
+  static constexpr double kLeast_mps = 0.3;  ///< slower, it stands
+  static constexpr double kStill_s = 1.5;    ///< a place that is taken for so long
+  static constexpr double kLost_s = 0.5;     ///< not seen for so long, he is forgotten
+  static constexpr std::size_t kMost = 8;    ///< told at most, the nearest to the body
+
+  /// @param range_m what is farther from the body is not followed
+  explicit Movers(double range_m);
+
+  /// Once a piece, in order, judged. @param grid after that piece
+  void see(const Reduced& in, const Grid& grid);
+  /// Adds those that are seen to move. @param sensor its number
+  void tell(base::Time now, std::uint8_t sensor, std::vector<Mover>& out) const;
+  void forget() noexcept;
+
+ private:
+  struct Place {
+    std::uint32_t piece = 0;  ///< that met it last
+    std::int32_t thing = 0;   ///< of that piece; -1: still
+    float first_s = 0.0F;     ///< since when it is taken
+    float last_s = -1e9F;
+  };
+  struct Cell {
+    std::int32_t x = 0;
+    std::int32_t y = 0;
+  };
+  struct Box {
+    double x0 = 1e9, x1 = -1e9, y0 = 1e9, y1 = -1e9;
+    std::uint32_t points = 0;
+    Vec2 mid() const noexcept { return {0.5 * (x0 + x1), 0.5 * (y0 + y1)}; }
+  };
+  struct Sample {
+    double at_s = 0.0;
+    Box box;
+    std::array<Vec2, 4> points{};  ///< of what was seen
+    std::size_t size = 0;
+  };
+  struct Track {
+    std::vector<Sample> samples;  ///< the oldest first
+    Box box;
+    Vec2 v{};
+    double sigma = 0.0;
+    double seen_s = 0.0;
+    int moving = 0;  ///< estimates in a row that say so; of who moves: less 3 for each that denies
+    bool moves = false;
+  };
+
+  Place& place(std::int32_t x, std::int32_t y) noexcept;
+  bool still_about(std::int32_t x, std::int32_t y) noexcept;
+  void gather(const Reduced& in);
+  void part();
+  void follow(const Grid& grid, base::Time stamp);
+  void estimate(Track& track, const Grid& grid, base::Time stamp) const;
+  static bool left_free(const Track& track, const Grid& grid, base::Time stamp);
+
+  double range_m_;
+  std::uint32_t mask_;
+  std::vector<Place> places_;
+  std::uint32_t piece_ = 0;
+  bool begun_ = false;
+  base::Time begin_;
+  double now_s_ = 0.0;
+  std::vector<Cell> cells_;   ///< of this piece, that are not still
+  std::vector<Vec2> points_;  ///< voxels of this piece, in O
+  std::vector<Cell> of_;      ///< the cell of each
+  std::vector<Box> things_;
+  std::vector<std::vector<Vec2>> spread_;  ///< some points of each thing
+  std::vector<Cell> open_;
+  std::vector<Track> tracks_;
+  Vec2 body_{};
+};
+
+}  // namespace roverd::nav::sense

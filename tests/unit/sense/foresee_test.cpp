@@ -1,0 +1,95 @@
+// Whoever crosses is waited for before his way, or passed in time; nobody else costs anything.
+#include "nav/sense/foresee.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "nav/sense/sweep.hpp"
+#include "scene.hpp"
+
+namespace roverd::nav::sense {
+namespace {
+
+const Footprint kBody = Footprint::box(1.0, 0.8, 0.5);
+
+Mover walker(Vec2 from, Vec2 v) {
+  return {from, v, 0.25, 0.05, 3, at(0.0)};
+}
+
+/// It drives as it is let, every 20 ms, with the brakes that it has.
+struct Drove {
+  double nearest_m = 1e9;  ///< while it moved
+  double way_m = 0.0;
+  double slowest_mps = 1e9;
+};
+Drove drive(const Mover& who, double speed_mps, const ProtectParams& p, double lasts_s = 8.0) {
+  Drove out;
+  Odometry now;
+  now.v_mps = speed_mps;
+  for (double t = 0.0; t < lasts_s; t += 0.02) {
+    now.stamp = at(t);
+    Mover seen = who;
+    seen.seen = at(t);
+    seen.at = who.at + t * who.v_mps;
+    const Foreseen f = foresee(std::vector{seen}, now, kBody, {speed_mps, 0.0}, p);
+    const double to = f.part * speed_mps;
+    now.v_mps = to < now.v_mps ? std::max(to, now.v_mps - 0.02 * p.decel_mps2)
+                               : std::min(to, now.v_mps + 0.02);
+    now.pose.x_m += 0.02 * now.v_mps;
+    const Vec2 off{seen.at.x - now.pose.x_m, seen.at.y};
+    if (now.v_mps > 0.0) out.nearest_m = std::min(out.nearest_m, kBody.distance_m(off) - 0.25);
+    out.slowest_mps = std::min(out.slowest_mps, now.v_mps);
+  }
+  out.way_m = now.pose.x_m;
+  return out;
+}
+
+TEST(Foresee, WhoeverCrossesIsNotTouchedAtAnySpeedAndMoment) {
+  ProtectParams p;
+  for (const double speed : {0.5, 1.0, 1.3}) {
+    for (const double his : {0.5, 1.0, 2.0}) {
+      for (double meets_s = 2.5; meets_s < 5.0; meets_s += 0.25) {
+        const double x = 0.5 + speed * 3.5;
+        const Drove d = drive(walker({x, -his * meets_s}, {0.0, his}), speed, p);
+        EXPECT_GT(d.nearest_m, 0.0) << speed << " " << his << " " << meets_s;
+        EXPECT_GT(d.way_m, 2.0) << "it went on: " << speed << " " << his << " " << meets_s;
+      }
+    }
+  }
+}
+
+TEST(Foresee, WhoPassesFarOffOrWalksAwayCostsNothing) {
+  const ProtectParams p;
+  EXPECT_EQ(drive(walker({12.0, -3.0}, {0.0, 1.5}), 1.0, p, 3.0).slowest_mps, 1.0);
+  EXPECT_EQ(drive(walker({2.0, 1.5}, {1.0, 0.0}), 1.0, p).slowest_mps, 1.0);
+  EXPECT_EQ(drive(walker({2.0, 1.0}, {0.0, 1.0}), 1.0, p).slowest_mps, 1.0);
+  // From behind: to stand would help nobody.
+  EXPECT_EQ(drive(walker({-2.0, 0.0}, {1.5, 0.0}), 1.0, p, 2.0).slowest_mps, 1.0);
+}
+
+TEST(Foresee, WhoComesStraightAtItIsStoodBefore) {
+  const Foreseen f = foresee(std::vector{walker({2.5, 0.0}, {-1.0, 0.0})},
+                             Odometry{at(0.0), {}, 0.0, 0.0, {}}, kBody, {1.0, 0.0}, {});
+  EXPECT_EQ(f.part, 0.0);
+  EXPECT_TRUE(f.found);
+  EXPECT_EQ(f.sensor, 3);
+  EXPECT_NEAR(f.at.x, 2.5, 1e-9);
+}
+
+TEST(Foresee, ItIsToldHowFarAndHowNear) {
+  ProtectParams p;
+  const Mover late = walker({3.5, -2.5}, {0.0, 1.0});
+  Odometry now;
+  now.v_mps = 1.0;
+  p.foresee_s = 0.0;  // not at all
+  EXPECT_EQ(foresee(std::vector{late}, now, kBody, {1.0, 0.0}, p).part, 1.0);
+  // Passed 1 m away: within a larger gap he is let go first, where it could not stand before him.
+  const Mover beside = walker({1.5, 1.55}, {0.0, 0.4});
+  p.foresee_s = 3.0;
+  EXPECT_EQ(foresee(std::vector{beside}, now, kBody, {1.0, 0.0}, p).part, 1.0);
+}
+
+}  // namespace
+}  // namespace roverd::nav::sense

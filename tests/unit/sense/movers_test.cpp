@@ -1,0 +1,119 @@
+// Whoever walks is told with his velocity; what stands, however it comes to be seen, is not.
+#include "nav/sense/movers.hpp"
+
+#include <cmath>
+#include <functional>
+
+#include <gtest/gtest.h>
+
+#include "nav/sense/chain.hpp"
+#include "scene.hpp"
+
+namespace roverd::nav::sense {
+namespace {
+
+using Blocks = std::function<std::vector<Block>(double)>;
+using Body = std::function<Pose2(double)>;
+
+/// A scanner at 25 Hz before the body, for so long. @return who moves at the end of each piece
+std::vector<std::vector<Mover>> watch(double lasts_s, const Body& body, const Blocks& blocks) {
+  SensorSetup eye;
+  eye.name = "eye";
+  eye.mount = {.x_m = 0.45, .z_m = 0.3};
+  eye.planar = true;
+  eye.health.rate_hz = 25.0;
+  auto chain = Chain::of({}, {eye}, Footprint::box(1.0, 0.8, 0.5), at(0.0));
+  EXPECT_TRUE(chain.has_value());
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0.0, 0.01);
+  std::vector<std::vector<Mover>> out;
+  const Rays rays = planar();
+  for (double t = 1.0; t < 1.0 + lasts_s; t += 0.04) {
+    Scene scene;
+    scene.blocks = blocks(t - 1.0);
+    scene.ground = [](double, double) { return -5.0; };
+    base::Sight sight = look(
+        scene, rays, eye.mount, t, [&](double when) { return planar_pose(body(when - 1.0)); },
+        random, 20.0);
+    for (base::SightPoint& p : sight.points) {
+      const double r = std::hypot(double(p.x_m), double(p.y_m));
+      const double k = p.echo == base::Echo::Hit ? 1.0 + noise(random) / r : 6.0 / r;
+      if (p.echo != base::Echo::Hit) p.echo = base::Echo::Clear;
+      p.x_m = static_cast<float>(k * double(p.x_m));
+      p.y_m = static_cast<float>(k * double(p.y_m));
+    }
+    const auto history = driven(t + 0.05, [&](double when) { return body(when - 1.0); });
+    EXPECT_TRUE(chain->take(sight, history, at(t + 0.02)).has_value());
+    chain->movers(at(t + 0.02), out.emplace_back());
+  }
+  return out;
+}
+
+Block person(double x, double y) {
+  return {x - 0.15, x + 0.15, y - 0.22, y + 0.22, -0.2, 1.7};
+}
+Pose2 stands(double) {
+  return {};
+}
+Pose2 drives(double t) {
+  return {t, 0.0, 0.0};
+}
+std::size_t most_of(const std::vector<std::vector<Mover>>& seen) {
+  std::size_t most = 0;
+  for (const auto& one : seen) most = std::max(most, one.size());
+  return most;
+}
+
+TEST(Movers, WhoCrossesIsToldWithHisVelocityWithinASecond) {
+  for (const double speed : {0.5, 1.0, 2.0}) {
+    const auto seen =
+        watch(2.0, stands, [&](double t) { return std::vector{person(4.0, -2.5 + speed * t)}; });
+    const auto first =
+        std::find_if(seen.begin(), seen.end(), [](const auto& s) { return !s.empty(); });
+    ASSERT_NE(first, seen.end()) << speed;
+    EXPECT_LT(0.04 * double(first - seen.begin()), 1.2) << speed;
+    ASSERT_EQ(seen.back().size(), 1U);
+    const Mover& m = seen.back().front();
+    EXPECT_NEAR(m.v_mps.y, speed, 0.15) << speed;
+    EXPECT_NEAR(m.v_mps.x, 0.0, 0.15) << speed;
+    EXPECT_NEAR(m.at.y, -2.5 + speed * 1.98, 0.1) << speed;
+    EXPECT_NEAR(m.radius_m, 0.27, 0.1) << speed;
+    EXPECT_LT(m.sigma_mps, 0.25) << speed;
+  }
+}
+
+TEST(Movers, HeIsToldFromARobotThatDrives) {
+  const auto seen =
+      watch(2.0, drives, [](double t) { return std::vector{person(6.0, -2.5 + 1.2 * t)}; });
+  ASSERT_EQ(seen.back().size(), 1U);
+  EXPECT_NEAR(seen.back().front().v_mps.y, 1.2, 0.2);
+  EXPECT_NEAR(seen.back().front().v_mps.x, 0.0, 0.2);
+}
+
+TEST(Movers, WhoStopsMovesNoMore) {
+  const auto seen = watch(
+      3.0, stands, [](double t) { return std::vector{person(4.0, -2.0 + std::min(t, 1.5))}; });
+  EXPECT_GE(most_of(seen), 1U);
+  EXPECT_TRUE(seen.back().empty());
+}
+
+TEST(Movers, WhatStandsIsNobodyHoweverItComesIntoSight) {
+  // Past a wall, a box, a pole, through gaps before a far wall; and in a turn.
+  const Blocks yard = [](double) {
+    return std::vector<Block>{{0.0, 30.0, 2.0, 2.2, -1.0, 1.0},  {2.0, 2.6, -1.5, -1.0, -1.0, 1.0},
+                              {4.0, 4.1, 1.0, 1.1, -1.0, 1.0},   {3.0, 4.0, -2.0, -1.9, -1.0, 1.0},
+                              {5.0, 5.8, -2.0, -1.9, -1.0, 1.0}, {0.0, 30.0, -5.2, -5.0, -1.0, 1.0},
+                              {6.5, 6.6, -1.2, -1.1, -1.0, 1.0}, {8.0, 9.5, -1.6, -1.2, -1.0, 1.0}};
+  };
+  EXPECT_EQ(most_of(watch(5.0, drives, yard)), 0U);
+  EXPECT_EQ(most_of(watch(
+                3.0,
+                [](double t) {
+                  return Pose2{0.0, 0.0, 0.7 * t};
+                },
+                yard)),
+            0U);
+}
+
+}  // namespace
+}  // namespace roverd::nav::sense
