@@ -76,8 +76,7 @@ class Seeing : public ::testing::Test {
   std::optional<double> wall_m;
   double wall_wide_m = 1e3;
   Known wall_is = Known::Occupied;
-  std::optional<RaysStop> rays;  ///< what the stop by counted rays says
-  std::optional<RowSeen> row;    ///< what is seen of the row that was asked for
+  std::optional<RowSeen> row;               ///< what is seen of the row that was asked for
   std::optional<nav::sense::Mover> walker;  ///< as he was at `seen`, in the odometry's frame
   std::optional<RaysStop> rays;             ///< what the stop by counted rays says
   nav::sense::Pose2 pose;
