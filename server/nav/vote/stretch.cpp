@@ -12,7 +12,7 @@ using base::seconds;
 constexpr double kVelocityBiasRtk_mps = 0.01;
 constexpr double kVelocityBias_mps = 0.03;
 constexpr double kVelocityWanders_mps = 0.003;  // of RTK's, beside its noise, for many seconds
-constexpr double kFewest = 5.0;                 // positions, that make a line
+constexpr double kFewestSpots = 5.0;            // positions, that make a line
 
 EnuPoint times(double s, EnuPoint p) noexcept {
   return {s * p.east_m, s * p.north_m};
@@ -86,7 +86,7 @@ std::optional<Stretch> RunApart::over(double window_s) noexcept {
     sigma_m_ = std::max(sigma_m_, s.sigma_m);
     ++next_;
   }
-  if (n_ < kFewest) return std::nullopt;
+  if (n_ < kFewestSpots) return std::nullopt;
   const double w = -oldest_s_;
   const double sxx = tt_ - t_ * t_ / n_;
   const EnuPoint rise = times(w / sxx, te_ - times(t_ / n_, e_));
