@@ -89,7 +89,7 @@ struct MissionPlace {
   int standing = -1;    ///< index of the waypoint at which the robot stands; −1: at none
   double s_m = -1.0;    ///< arc length on the route's path; negative: not on it
   double wait_s = 0.0;  ///< left of a wait
-  double left = 0.0;    ///< left of a move, m, or of a turn, rad; 0: all of it. Of a row or wall: driven, m
+  double left = 0.0;    ///< of a move, m, or a turn, rad; 0: all. Of a row or wall: driven, m
   std::vector<int> jumps_left;  ///< of each jump; −1: not counted yet
   int laps = 0;                 ///< driven of a mission that repeats
   bool driving = false;         ///< it was under way: the robot may have gone on a little from here

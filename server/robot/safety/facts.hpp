@@ -16,8 +16,8 @@ struct Facts {
   const std::optional<base::Pose>& pose;
   std::optional<Time> last_position{};  ///< last one that was fused
   bool armed = false;
-  bool estop = false;                       ///< latched
-  bool autonomous = false;                  ///< mode AUTO, mission running
+  bool estop = false;       ///< latched
+  bool autonomous = false;  ///< mode AUTO, mission running
   /// The mission's item in hand asks for no position (a row, a move, a turn), and no fence does.
   bool by_sight = false;
   bool homeward = false;                    ///< RTL, SMART_RTL, DOCK: there a return leads, too
