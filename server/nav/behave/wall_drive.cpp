@@ -121,10 +121,9 @@ bool WallDrive::look(const MarkSight& sight) {
   if (order_.length_m) {
     to_length = cut(*way, way->here_m + std::max(0.0, *order_.length_m - driven_m_));
   }
-  if (drive_.take(*way)) {
-    to_length_ = to_length;
-    stood_s_ = 0.0;
-  }
+  const bool drives = drive_.take(*way);
+  if (drives) stood_s_ = 0.0;
+  if (drives || drive_.path() == nullptr) to_length_ = to_length;  // null: it ends where it stands
   state_ = State::Driving;
   return true;
 }

@@ -24,17 +24,25 @@ bool SightDrive::in_corner() const noexcept {
 bool SightDrive::take(const Way& way) {
   if (in_corner()) return false;
   auto path = std::make_shared<const Path>(build_path(way.vertices, *params_));
-  if (path->legs.empty()) return false;
-  const double left_m = path->legs.front().end_m - way.here_m;
+  const double left_m = path->legs.empty() ? 0.0 : path->legs.front().end_m - way.here_m;
   // Braking to the same end it is left alone: what is laid anew begins anew.
   const bool halting = state_ != State::Driving || tracker_.phase() == TrackPhase::Stop;
-  if (halting && left_m < kWorthStarting_m) return false;
+  if (path->legs.empty() || (halting && left_m < kWorthStarting_m)) {
+    if (!path_) stand(way.end);
+    return false;
+  }
   tracker_.move_to(*path, 0, way.here_m);
   path_ = std::move(path);  // the old one lives until the tracker has left it
   corners_ = way.corners;
   end_ = way.end;
   state_ = State::Driving;
   return true;
+}
+
+/// Nothing was driven yet, and there is nothing to drive: it is at the end as if it had come there.
+void SightDrive::stand(WayEnd end) noexcept {
+  end_ = end;
+  state_ = State::Ended;
 }
 
 TrackOutput SightDrive::step(const Vehicle& vehicle, double limit_mps, double dt_s) noexcept {
@@ -47,6 +55,7 @@ void SightDrive::reset() noexcept {
   tracker_.reset();
   path_.reset();
   corners_.clear();
+  end_ = WayEnd::Horizon;
   state_ = State::Idle;
 }
 

@@ -3,6 +3,7 @@
 // odometry's frame O, without any satellite.
 //
 //   Idle ──way──▶ Driving ──its end is reached, no newer way──▶ Ended ──way──▶ Driving
+//     └──a way that ends where it stands──▶ Ended
 //
 // A newer way replaces the one that is driven, without a stop. Within a rounded corner the old one
 // is kept until it is behind: both lie on the same ground, and half a corner cannot be laid anew.
@@ -24,7 +25,8 @@ class SightDrive {
   explicit SightDrive(base::Setting<PathParams> params)
       : params_(std::move(params)), tracker_(params_) {}
 
-  /// @return false: it keeps to the way that it drives, for a corner.
+  /// @return false: it keeps to the way that it drives, for a corner; or stands, for the way ends
+  /// here.
   bool take(const Way& way);
   /// @param vehicle in O
   TrackOutput step(const Vehicle& vehicle, double limit_mps, double dt_s) noexcept;
@@ -39,6 +41,7 @@ class SightDrive {
 
  private:
   bool in_corner() const noexcept;
+  void stand(WayEnd end) noexcept;
 
   base::Setting<PathParams> params_;
   Tracker tracker_;

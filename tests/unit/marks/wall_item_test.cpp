@@ -136,5 +136,76 @@ TEST(WallItem, GoesOnFromWhereSomebodyElseLeftTheRobot) {
   EXPECT_GT(w.rover.odometry.x_m, driven_m + 0.5) << "what another drove does not count";
 }
 
+// What is left is not worth starting for.
+TEST(WallItem, IsDoneWhereItIsHeldJustBeforeItsLength) {
+  WallItem w;
+  w.yard.slabs = {{{-5.0, 0.9}, {30.0, 0.9}}};
+  w.begin({.side = Side::Left, .distance_m = 0.9, .length_m = 5.0});
+  while (w.drive.driven_m() < 4.75 && w.rover.truth.x_m < 6.0) w.run(0.02);
+  ASSERT_EQ(w.drive.state(), WallDrive::State::Driving);
+  w.drive.interrupt();
+  for (int i = 0; i < 50; ++i) w.rover.step({});
+  w.look();
+  w.run(1.0);
+  EXPECT_EQ(w.drive.state(), WallDrive::State::Done);
+}
+
+TEST(WallItem, IsDoneWhereItIsHeldJustBeforeTheWallsEnd) {
+  double whole_m = 1e9;
+  for (const bool held : {false, true}) {
+    WallItem w;
+    w.looks = false;
+    marks::Wall wall;
+    wall.anchor = {0.0, 0.9};
+    wall.normal = {0.0, -1.0};
+    wall.seen = {{-5.0, 0.0}};
+    wall.believed = true;
+    w.view.walls = {wall};
+    const auto run = [&](double seconds) {
+      for (int i = 0; i < seconds * 10.0 && w.drive.driven_m() < whole_m - 0.2; ++i) {
+        w.view.stamp = w.view.walls[0].seen_at = w.rover.now;
+        w.run(0.1);
+      }
+    };
+    w.begin({.side = Side::Left, .distance_m = 0.9});
+    run(15.0);
+    if (held) {
+      ASSERT_EQ(w.drive.state(), WallDrive::State::Driving);
+      w.drive.interrupt();
+      for (int i = 0; i < 50; ++i) w.rover.step({});
+      whole_m = 1e9;
+      run(1.5);
+    }
+    EXPECT_EQ(w.drive.state(), WallDrive::State::Done) << held;
+    whole_m = w.drive.driven_m();
+  }
+}
+
+TEST(SightDrive, StandsWhereAWayEndsUntilALongerOneIsLaid) {
+  marks::SightDrive drive{base::Setting<PathParams>{}};
+  const auto way = [](double to_m, marks::WayEnd end) {
+    marks::Way out;
+    for (const double at_m : {-1.0, to_m}) {
+      Vertex v;
+      v.at = {at_m, 0.0};
+      v.speed_mps = 0.5;
+      out.vertices.push_back(v);
+    }
+    out.here_m = 1.0;
+    out.end = end;
+    return out;
+  };
+  EXPECT_FALSE(drive.take(way(0.2, marks::WayEnd::Horizon)));
+  EXPECT_EQ(drive.state(), marks::SightDrive::State::Ended);
+  EXPECT_FALSE(drive.take(way(0.2, marks::WayEnd::TooNarrow)));
+  EXPECT_EQ(drive.end(), marks::WayEnd::TooNarrow) << "the last word counts";
+  EXPECT_EQ(drive.step({}, 1.0, 0.02).command, base::BodyTwist{});
+  EXPECT_EQ(drive.state(), marks::SightDrive::State::Ended);
+  EXPECT_TRUE(drive.take(way(3.0, marks::WayEnd::WallEnds)));
+  EXPECT_EQ(drive.state(), marks::SightDrive::State::Driving);
+  drive.reset();
+  EXPECT_EQ(drive.end(), marks::WayEnd::Horizon);
+}
+
 }  // namespace
 }  // namespace roverd::nav
