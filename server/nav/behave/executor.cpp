@@ -48,7 +48,7 @@ std::optional<EnuPoint> first_target(const Route& route, std::size_t step,
   for (std::size_t i = step; i < course.steps.size(); ++i) {
     if (course.steps[i].kind == StepKind::Go) return course.nodes[course.steps[i].node].at;
     if (course.steps[i].kind == StepKind::Home) return home;
-    if (course.steps[i].kind == StepKind::Row) return std::nullopt;  // it leads who knows where
+    if (course.steps[i].by_sight()) return std::nullopt;  // it leads who knows where
   }
   return std::nullopt;
 }

@@ -186,6 +186,17 @@ TEST(Executor, MovesBetweenRowsByOdometryAlone) {
   EXPECT_NEAR(body.yaw_rad, base::kPi / 2.0, 0.05);
 }
 
+// What follows a wall lies who knows where, as what follows a row.
+TEST(Executor, StartsAlongAWallHoweverFarTheNextPlaceIs) {
+  mission::Wall wall;
+  wall.distance_m = 0.9;
+  for (const mission::Item& first : {mission::Item{wall}, mission::Item{mission::Row{}}}) {
+    Ride r;
+    r.load(plan({first, at(2000, 0)}));
+    EXPECT_TRUE(r.executor.start({}, r.vehicle.at, r.home));
+  }
+}
+
 TEST(Executor, TellsTheWayThatIsLeftOnlyWhereItIsKnown) {
   Ride r;
   EXPECT_FALSE(r.executor.progress(EnuPoint{}).current_item);
