@@ -160,6 +160,7 @@ base::Result<void> Robot::Impl::start(const nav::StartAt& at) {
 
 base::Result<void> Robot::Impl::resume() {
   if (auto ok = may_drive_mission(); !ok) return ok;
+  missions.executor.see_row(row_sight());
   if (auto ok = missions.executor.resume(pose->at); !ok) return ok;
   straight.reset();
   change_mode(ModeCause::MissionDrives, "mission resumed");

@@ -28,7 +28,7 @@ bool Executor::must_come_to(const RouteStep& step) const noexcept {
 }
 
 std::optional<WayAhead> Executor::ahead(EnuPoint here, double reach_m) const {
-  if (!running() || stays_) return std::nullopt;
+  if (!running() || stays_ || by_odometry()) return std::nullopt;
   WayAhead out;
   if (doing_ == Doing::Connector) {
     if (connector_end_.reverse || connector_.points.empty()) return std::nullopt;

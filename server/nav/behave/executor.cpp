@@ -236,6 +236,7 @@ void Executor::go_on(EnuPoint here) {
   }
   Vehicle vehicle;
   vehicle.at = here;
+  if (const auto by_odometry = carried(vehicle)) vehicle = *by_odometry;
   if (doing_ == Doing::Path && far_m <= path_params_->track.rejoin_m) {
     tracker_.begin(course_->path, leg_, s_m_);
     return;

@@ -146,7 +146,7 @@ class Executor {
 
   /// As far as reach_m, or to the next place that must be come to. Places of a smooth way need not,
   /// nor do items that may be left out (BehaveParams::unreachable). Empty: it does not run, stands,
-  /// turns or drives backwards.
+  /// turns, drives backwards or by the odometry alone.
   std::optional<WayAhead> ahead(EnuPoint here, double reach_m) const;
   /// The robot drove around what stood on the way and goes on with it at to_m; what lies between
   /// the two arc lengths was left out, and is told so.
@@ -171,7 +171,7 @@ class Executor {
     return running() && doing_ == Doing::Row ? &row_ : nullptr;
   }
   const RowToDrive* row_order() const noexcept;
-  /// Before step(): what is seen of it. Empty: nothing on this robot looks around.
+  /// Before go_on(), resume() and step(): what is seen of it. Empty: nothing on this robot looks around.
   void see_row(const std::optional<RowSight>& sight) noexcept { row_sight_ = sight; }
 
   /// Before step(): what is seen of walls. Empty: nothing on this robot looks around.
@@ -227,6 +227,7 @@ class Executor {
   TrackOutput step_wall(const Vehicle& vehicle, double limit_mps, double dt_s);
   bool leads_to_row(bool forward, double& across_m) const noexcept;
   void carry(const Vehicle& vehicle) noexcept;
+  bool by_odometry() const noexcept;
   std::optional<Vehicle> carried(const Vehicle& vehicle) const noexcept;
   bool enter_stay(const RouteStep& step, const Vehicle& vehicle);
   void step_stay(const Vehicle& vehicle);

@@ -71,10 +71,15 @@ void Executor::carry(const Vehicle& vehicle) noexcept {
            sense::inverse(row_sight_->body);
 }
 
+/// The way in hand lies in the frame that the odometry carries, not in the map's.
+bool Executor::by_odometry() const noexcept {
+  const bool moves = doing_ == Doing::Connector || doing_ == Doing::Turn;
+  return carry_ && row_sight_ && moves && asks_no_place();
+}
+
 /// The vehicle where the odometry has carried it; empty: where it is said to be.
 std::optional<Vehicle> Executor::carried(const Vehicle& vehicle) const noexcept {
-  const bool moves = doing_ == Doing::Connector || doing_ == Doing::Turn;
-  if (!carry_ || !row_sight_ || !moves || !asks_no_place()) return std::nullopt;
+  if (!by_odometry()) return std::nullopt;
   const rows::Pose2 at = *carry_ * row_sight_->body;
   Vehicle out = vehicle;
   out.at = {at.x_m, at.y_m};

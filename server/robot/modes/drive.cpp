@@ -109,8 +109,9 @@ base::DriveCommand Robot::Impl::drive_mission() {
     return {{}, true};
   }
   if (!pose->heading_known && !missions.executor.asks_no_place()) return seek_heading();
-  missions.executor.go_on(pose->at);
   missions.executor.see_row(row_sight());
+  missions.executor.go_on(pose->at);
+  missions.executor.see_row(row_sight());  // going on, it may have asked for another row
   missions.executor.see_marks(mark_sight());
   const nav::TrackOutput out =
       missions.executor.step(vehicle(), limit_mps(), home_point(), clock.dt_s());

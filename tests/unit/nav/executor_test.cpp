@@ -186,6 +186,36 @@ TEST(Executor, MovesBetweenRowsByOdometryAlone) {
   EXPECT_NEAR(body.yaw_rad, base::kPi / 2.0, 0.05);
 }
 
+// It stands before a passer-by, and the estimate shifts by a metre meanwhile.
+TEST(Executor, GoesOnWithAMoveBetweenRowsByOdometryToo) {
+  for (const bool said : {false, true}) {
+    Ride r;
+    r.load(plan({mission::Move{4.0}, mission::Row{}}));
+    r.start();
+    RowSight sight;
+    for (int i = 0; i < 3000 && r.reached.empty(); ++i) {
+      if (i == 150) {
+        EXPECT_GT(sight.body.x_m, 0.5);
+        EXPECT_FALSE(r.executor.ahead(r.vehicle.at, 5.0)) << "no way around is looked for";
+        r.vehicle.at.north_m += 1.0;
+        said ? r.executor.pause("a word") : r.executor.wait();
+        r.vehicle.speed_mps = 0.0;
+        if (said) {
+          ASSERT_TRUE(r.executor.resume(r.vehicle.at));
+        }
+        r.executor.go_on(r.vehicle.at);
+      }
+      r.executor.see_row(sight);
+      r.tick();
+      sight.body = sight.body *
+                   sense::along(r.vehicle.speed_mps * 0.02, r.vehicle.yaw_rate_radps * 0.02, 1.0);
+      EXPECT_NEAR(sight.body.y_m, 0.0, 0.02);
+    }
+    EXPECT_EQ(r.reached.size(), 1u);
+    EXPECT_NEAR(sight.body.x_m, 4.0, 0.1);
+  }
+}
+
 // What follows a wall lies who knows where, as what follows a row.
 TEST(Executor, StartsAlongAWallHoweverFarTheNextPlaceIs) {
   mission::Wall wall;
