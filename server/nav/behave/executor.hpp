@@ -95,6 +95,10 @@ Beginning beginning(const Route& route, const StartAt& at, const std::optional<S
 std::optional<EnuPoint> first_target(const Route& route, std::size_t step,
                                      std::optional<EnuPoint> home) noexcept;
 
+/// That step of a course needs neither a place nor a heading of the map: see
+/// Executor::asks_no_place(). @param step out of range: it does
+bool asks_no_place(const Course& course, std::size_t step) noexcept;
+
 /// What should be looked for.
 struct RowWanted {
   std::uint64_t id = 0;  ///< another one: another row, or the same anew
@@ -161,9 +165,9 @@ class Executor {
   /// A row is to be driven by sight: what should be looked for. Empty: none.
   std::optional<RowWanted> row_wanted() const noexcept;
   /// The step in hand needs neither a place nor a heading of the map: a row, a wall, or what leads
-  /// from one row to the next by moves of kAcross_m together and turns. Such moves and turns are
-  /// driven by the odometry alone where something tells it (see_row): no correction of the position
-  /// bends them.
+  /// from one row to the next by moves of kAcross_m together and turns, with waits and actions
+  /// between. Such moves and turns are driven by the odometry alone where something tells it
+  /// (see_row): no correction of the position bends them.
   bool asks_no_place() const noexcept;
   static constexpr double kAcross_m = 30.0;
   /// Null: no row is driven now.
@@ -171,7 +175,11 @@ class Executor {
     return running() && doing_ == Doing::Row ? &row_ : nullptr;
   }
   const RowToDrive* row_order() const noexcept;
-  /// Before go_on(), resume() and step(): what is seen of it. Empty: nothing on this robot looks around.
+  /// Nothing moves in the next step: it waits, or stays where it is, for longer than that.
+  bool stands(const Vehicle& vehicle, double dt_s) const noexcept;
+
+  /// Before go_on(), resume() and step(): what is seen of it. Empty: nothing on this robot looks
+  /// around.
   void see_row(const std::optional<RowSight>& sight) noexcept { row_sight_ = sight; }
 
   /// Before step(): what is seen of walls. Empty: nothing on this robot looks around.
@@ -225,10 +233,10 @@ class Executor {
   TrackOutput step_row(const Vehicle& vehicle, double limit_mps, double dt_s);
   bool enter_wall(const RouteStep& step);
   TrackOutput step_wall(const Vehicle& vehicle, double limit_mps, double dt_s);
-  bool leads_to_row(bool forward, double& across_m) const noexcept;
   void carry(const Vehicle& vehicle) noexcept;
   bool by_odometry() const noexcept;
   std::optional<Vehicle> carried(const Vehicle& vehicle) const noexcept;
+  bool pushed_away(const RouteStep& step, const Vehicle& vehicle) const noexcept;
   bool enter_stay(const RouteStep& step, const Vehicle& vehicle);
   void step_stay(const Vehicle& vehicle);
   bool cut_goal(const Vehicle& vehicle, double dt_s);

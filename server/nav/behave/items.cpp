@@ -15,7 +15,40 @@ namespace {
 constexpr double kCarriedSigma_m = 0.05;
 constexpr double kCarriedSigma_rad = 0.02;
 
+/// It counts from where the robot is and points.
+bool relative(const RouteStep& step) noexcept {
+  return step.kind == StepKind::Move || step.kind == StepKind::Wait || step.kind == StepKind::Act ||
+         (step.kind == StepKind::Turn && !step.yaw_rad);
+}
+
+double length_of_move_m(const RouteStep& step) noexcept {
+  return step.kind == StepKind::Move ? std::abs(step.by) : 0.0;
+}
+
+/// Over relative steps alone. @param across_m grows by the moves, that of the step `at` left out
+bool leads_to_row(const Course& course, std::size_t at, bool forward, double& across_m) noexcept {
+  for (std::size_t i = at; forward ? i + 1 < course.steps.size() : i > 0;) {
+    i = forward ? i + 1 : i - 1;
+    const RouteStep& s = course.steps[i];
+    if (s.kind == StepKind::Row) return true;
+    if (!relative(s)) return false;
+    across_m += length_of_move_m(s);
+  }
+  return false;
+}
+
 }  // namespace
+
+bool asks_no_place(const Course& course, std::size_t step) noexcept {
+  if (step >= course.steps.size()) return false;
+  const RouteStep& s = course.steps[step];
+  if (s.by_sight()) return true;
+  if (!relative(s)) return false;
+  double across_m = length_of_move_m(s);
+  const bool from_row = leads_to_row(course, step, false, across_m);
+  const bool to_row = leads_to_row(course, step, true, across_m);
+  return (from_row || to_row) && across_m <= Executor::kAcross_m;
+}
 
 /// Straight on from where the robot is and points.
 bool Executor::enter_move(const RouteStep& step, const Vehicle& vehicle) {
@@ -95,33 +128,8 @@ const RowToDrive* Executor::row_order() const noexcept {
   return step != nullptr && step->row ? &*step->row : nullptr;
 }
 
-/// Over moves and turns alone. @param across_m grows by the moves, that of the step in hand left
-/// out
-bool Executor::leads_to_row(bool forward, double& across_m) const noexcept {
-  const auto& steps = course_->steps;
-  for (std::size_t i = at_; forward ? i + 1 < steps.size() : i > 0;) {
-    i = forward ? i + 1 : i - 1;
-    const RouteStep& s = steps[i];
-    if (s.kind == StepKind::Row) return true;
-    const bool relative = s.kind == StepKind::Move || s.kind == StepKind::Wait ||
-                          s.kind == StepKind::Act || (s.kind == StepKind::Turn && !s.yaw_rad);
-    if (!relative) return false;
-    if (s.kind == StepKind::Move) across_m += std::abs(s.by);
-  }
-  return false;
-}
-
 bool Executor::asks_no_place() const noexcept {
-  const RouteStep* step = step_now();
-  if (!running() || step == nullptr) return false;
-  if (step->by_sight()) return true;
-  const bool relative =
-      step->kind == StepKind::Move || (step->kind == StepKind::Turn && !step->yaw_rad);
-  if (!relative) return false;
-  double across_m = step->kind == StepKind::Move ? std::abs(step->by) : 0.0;
-  const bool from_row = leads_to_row(false, across_m);
-  const bool to_row = leads_to_row(true, across_m);
-  return (from_row || to_row) && across_m <= kAcross_m;
+  return running() && nav::asks_no_place(*course_, at_);
 }
 
 std::optional<RowWanted> Executor::row_wanted() const noexcept {
@@ -197,13 +205,26 @@ bool Executor::enter_stay(const RouteStep& step, const Vehicle& vehicle) {
   return true;
 }
 
+bool Executor::pushed_away(const RouteStep& step, const Vehicle& vehicle) const noexcept {
+  const double off_m = base::distance_m(vehicle.at, *stays_);
+  return off_m > std::max(step.within_m, params_->arrive_sigmas * vehicle.sigma_m);
+}
+
+bool Executor::stands(const Vehicle& vehicle, double dt_s) const noexcept {
+  const RouteStep* step = step_now();
+  if (!running() || step == nullptr) return false;
+  if (doing_ == Doing::Wait) return wait_s_ > dt_s;
+  if (doing_ == Doing::Stay) {
+    return (step->endless || wait_s_ > dt_s) && !pushed_away(*step, vehicle);
+  }
+  return doing_ == Doing::Nothing && step->kind == StepKind::Wait && step->seconds > dt_s;
+}
+
 /// Its time goes on while it drives back. Pushed away, it drives to where it stood: backwards, if
 /// that is shorter than to turn round.
 void Executor::step_stay(const Vehicle& vehicle) {
   const RouteStep& step = *step_now();
-  const double off_m = base::distance_m(vehicle.at, *stays_);
-  const bool away = off_m > std::max(step.within_m, params_->arrive_sigmas * vehicle.sigma_m);
-  if (away) {
+  if (pushed_away(step, vehicle)) {
     const EnuPoint place = *stays_;
     const double bearing_rad =
         base::angle_diff_rad(vehicle.yaw_rad, direction_rad(vehicle.at, place));

@@ -157,6 +157,11 @@ TEST(Executor, AsksForNoPlaceInARowAndOnTheFewMetresBetweenRows) {
       row, mission::Move{1.5}, right, mission::Move{2.5}, right, row, mission::Move{1.5}, at(0, 0)};
   for (int item = 1; item <= 7; ++item) EXPECT_TRUE(asks_none(block, item)) << item;
   EXPECT_FALSE(asks_none(block, 8));
+  const std::vector<mission::Item> waits{mission::Wait{1.0}, row,     mission::Wait{10.0}, right,
+                                         mission::Move{2.5}, row,     mission::Wait{1.0},  at(0, 0),
+                                         mission::Wait{1.0}, at(1, 0)};
+  for (int item = 1; item <= 7; ++item) EXPECT_TRUE(asks_none(waits, item)) << item;
+  EXPECT_FALSE(asks_none(waits, 9));
   EXPECT_FALSE(asks_none({row, mission::Move{15.0}, right, mission::Move{15.1}, row}, 2));
   EXPECT_FALSE(asks_none({row, mission::Move{1.5}, north, row}, 3));
   EXPECT_FALSE(asks_none({at(0, 0), mission::Move{1.5}, right, at(5, 5)}, 2));
@@ -214,6 +219,22 @@ TEST(Executor, GoesOnWithAMoveBetweenRowsByOdometryToo) {
     EXPECT_EQ(r.reached.size(), 1u);
     EXPECT_NEAR(sight.body.x_m, 4.0, 0.1);
   }
+}
+
+TEST(Executor, StandsOnlyWhileItWaits) {
+  Ride r;
+  r.load(plan({mission::Wait{2.0}, at(5, 0)}));
+  EXPECT_FALSE(r.executor.stands(r.vehicle, 0.02));
+  r.start();
+  double stood_s = 0.0;
+  for (; r.executor.stands(r.vehicle, 0.02); stood_s += 0.02) {
+    r.tick();
+    EXPECT_EQ(r.vehicle.speed_mps, 0.0);
+  }
+  EXPECT_NEAR(stood_s, 2.0, 0.05);
+  r.tick();
+  r.tick();
+  EXPECT_FALSE(r.executor.stands(r.vehicle, 0.02));
 }
 
 // What follows a wall lies who knows where, as what follows a row.

@@ -76,6 +76,7 @@ class Field {
   base::EnuPoint receiver_off{};  ///< told minus true position
   std::optional<double> speed_sigma_mps;
   base::HeadingSource compass = base::HeadingSource::Compass;
+  bool compass_speaks = true;
   std::function<void()> more;  ///< says more at every tick, before the robot's
   base::EnuPoint at{};
   double yaw_rad = base::kPi / 2.0;
@@ -194,7 +195,7 @@ class Field {
     in.put(f);
     in.put(base::GnssVelocity{now, grip * v * std::cos(yaw_rad), grip * v * std::sin(yaw_rad),
                               speed_sigma_mps});
-    in.put(base::Heading{now, yaw_rad, compass});
+    if (compass_speaks) in.put(base::Heading{now, yaw_rad, compass});
   }
 
   int ticks_ = 0;

@@ -119,6 +119,23 @@ TEST_F(InARow, LostSatellitesAreShownAndStopNothingUntilAPlaceIsAskedFor) {
   EXPECT_EQ(field.state()->mode, base::Mode::Hold);
 }
 
+TEST_F(Seeing, WaitsBeforeItLooksForItsHeading) {
+  field.compass_speaks = false;
+  field.run(8.0);
+  ASSERT_FALSE(field.state()->pose->heading_known);
+  mission::Plan plan = plan_of({{0.0, 20.0}});
+  plan.items.insert(plan.items.begin(), mission::Wait{5.0});
+  ASSERT_TRUE(field.load(plan));
+  ASSERT_TRUE(field.ask(Arm{}));
+  ASSERT_TRUE(field.ask(StartMission{"m", 1}));
+  for (int i = 0; i < 4 * 50; ++i) {
+    field.tick();
+    ASSERT_FALSE(field.moves());
+  }
+  field.run(2.0);
+  EXPECT_TRUE(field.moves());
+}
+
 TEST_F(InARow, IsSteeredThoughTheHeadingIsUncertain) {
   turned_rad = 0.15;
   go();
