@@ -109,7 +109,7 @@ base::DriveCommand Robot::Impl::drive_mission() {
     return {{}, true};
   }
   const bool moves = !missions.executor.stands(vehicle(), clock.dt_s());
-  if (!pose->heading_known && !missions.executor.asks_no_place() && moves) return seek_heading();
+  if (!pose->heading_known && !by_sight() && moves) return seek_heading();
   missions.executor.see_row(row_sight());
   missions.executor.go_on(pose->at);
   missions.executor.see_row(row_sight());  // going on, it may have asked for another row

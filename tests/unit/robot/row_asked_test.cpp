@@ -136,6 +136,22 @@ TEST_F(Seeing, WaitsBeforeItLooksForItsHeading) {
   EXPECT_TRUE(field.moves());
 }
 
+// The fence is judged by it.
+TEST_F(Seeing, LooksForItsHeadingFirstInARowWithinAFence) {
+  field.compass_speaks = false;
+  field.run(8.0);
+  mission::Fence fence;
+  fence.name = "field";
+  ASSERT_TRUE(field.ask(SetFence{field.robot.lay_fence(std::make_shared<mission::Fence>(fence))}));
+  mission::Plan plan;
+  plan.items.emplace_back(mission::Row{});
+  ASSERT_TRUE(field.load(plan));
+  ASSERT_TRUE(field.ask(Arm{}));
+  ASSERT_TRUE(field.ask(StartMission{"m", 1}));
+  ASSERT_FALSE(field.state()->pose->heading_known);
+  EXPECT_EQ(field.state()->speed_reason, "heading_unknown");
+}
+
 TEST_F(InARow, IsSteeredThoughTheHeadingIsUncertain) {
   turned_rad = 0.15;
   go();
