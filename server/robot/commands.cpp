@@ -136,14 +136,27 @@ base::Result<void> Robot::Impl::handle(const ResetEstop&) {
   return {};
 }
 
-base::Result<void> Robot::Impl::may_drive_mission() const {
+base::Result<void> Robot::Impl::may_drive_mission(
+    const std::optional<base::MissionPlace>& from) const {
   if (arm.latched()) return base::fail(Code::Conflict, "the emergency stop is latched");
   if (!missions) return base::fail(Code::Conflict, "no mission is loaded");
-  return may_drive_by_itself();
+  return may_drive_by_itself(false, from && by_sight_from(missions->route, *from));
+}
+
+/// Whether by_sight() will hold once that is driven.
+bool Robot::Impl::by_sight_from(const nav::Route& route,
+                                const base::MissionPlace& from) const noexcept {
+  return fence.get() == nullptr && !route.corridor_m &&
+         nav::asks_no_place(from.back ? route.back : route.forth,
+                            static_cast<std::size_t>(from.step));
 }
 
 base::Result<void> Robot::Impl::start(const nav::StartAt& at) {
-  if (auto ok = may_drive_mission(); !ok) return ok;
+  base::MissionPlace from_step;
+  if (missions && pose) {
+    from_step.step = static_cast<int>(nav::first_step(missions->route, at, pose->at));
+  }
+  if (auto ok = may_drive_mission(from_step); !ok) return ok;
   const nav::PathParams path = config->path();
   const FenceKeep::Start from{.stand = stand_of(*pose),
                               .home = home_point(),
@@ -159,7 +172,7 @@ base::Result<void> Robot::Impl::start(const nav::StartAt& at) {
 }
 
 base::Result<void> Robot::Impl::resume() {
-  if (auto ok = may_drive_mission(); !ok) return ok;
+  if (auto ok = may_drive_mission(missions.executor.place()); !ok) return ok;
   missions.executor.see_row(row_sight());
   if (auto ok = missions.executor.resume(pose->at); !ok) return ok;
   straight.reset();
@@ -327,7 +340,8 @@ base::Result<void> Robot::Impl::handle(const ResumeAt& c) {
     return base::fail(Code::Conflict, "mission \"" + missions->copy.plan.name +
                                           "\" is loaded: resume or start that one");
   }
-  if (auto ok = may_drive_by_itself(); !ok) return ok;
+  const bool sight = by_sight_from(c.mission->route, c.place);
+  if (auto ok = may_drive_by_itself(false, sight); !ok) return ok;
   if (!estimator.frame() || estimator.frame()->id() != c.mission->frame.id()) {
     return base::fail(Code::Conflict, "the robot's map began meanwhile: try once more");
   }

@@ -217,9 +217,11 @@ struct Robot::Impl {
   base::Result<void> handle(const ResumeAt& c);
   base::Result<void> handle(const LayAnew& c);
   base::Result<void> may_change(const SetParameter& c, const Config& next) const;
-  base::Result<void> may_drive_mission() const;
-  /// @param homeward what leads to where a return leads, too
-  base::Result<void> may_drive_by_itself(bool homeward = false) const;
+  /// @param from empty: it does not begin or go on now
+  base::Result<void> may_drive_mission(const std::optional<base::MissionPlace>& from = {}) const;
+  bool by_sight_from(const nav::Route& route, const base::MissionPlace& from) const noexcept;
+  /// @param homeward what leads to where a return leads, too @param sight it asks for no place
+  base::Result<void> may_drive_by_itself(bool homeward = false, bool sight = false) const;
   void adopt(std::shared_ptr<const CompiledMission> mission);
   void retire(std::shared_ptr<const void> old);
   base::Result<void> start(const nav::StartAt& at);

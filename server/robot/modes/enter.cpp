@@ -64,7 +64,7 @@ bool Robot::Impl::change_mode(ModeCause cause, const std::string& why, Mode chos
   return true;
 }
 
-base::Result<void> Robot::Impl::may_drive_by_itself(bool homeward) const {
+base::Result<void> Robot::Impl::may_drive_by_itself(bool homeward, bool sight) const {
   if (arm.latched()) return base::fail(Code::Conflict, "the emergency stop is latched");
   if (!arm.armed()) return base::fail(Code::Conflict, "the robot is not armed");
   if (!pose) return base::fail(Code::Conflict, "the position is not known");
@@ -75,6 +75,7 @@ base::Result<void> Robot::Impl::may_drive_by_itself(bool homeward) const {
   Facts as_if = facts();
   as_if.autonomous = true;
   as_if.homeward = homeward;
+  as_if.by_sight = sight;
   const Assessment then = assess(as_if, config->safety, clock.now());
   if (then.response >= Response::Return) return base::fail(Code::Conflict, then.cause);
   return fence.may_begin(pose->at, estimator.frame());

@@ -119,6 +119,41 @@ TEST_F(InARow, LostSatellitesAreShownAndStopNothingUntilAPlaceIsAskedFor) {
   EXPECT_EQ(field.state()->mode, base::Mode::Hold);
 }
 
+TEST_F(InARow, WithoutSatellitesItIsPausedResumedAndStarted) {
+  go();
+  field.run(3.0);
+  field.gnss_speaks = false;
+  field.run(15.0);
+  ASSERT_TRUE(field.ask(PauseMission{}));
+  field.run(1.0);
+  GoTo place;
+  place.local = base::EnuPoint{0.0, 30.0};
+  EXPECT_FALSE(field.ask(place));
+  const auto resumed = field.ask(ResumeMission{});
+  ASSERT_TRUE(resumed) << resumed.error().detail;
+  field.run(3.0);
+  EXPECT_EQ(field.execution(), ExecutionState::Running);
+  EXPECT_GT(field.command.twist.linear_mps, 0.3);
+  ASSERT_TRUE(field.ask(StopMission{}));
+  field.run(1.0);
+  EXPECT_FALSE(field.ask(StartMission{"m", 1, StartMission::From::Item, 3})) << "a place";
+  ASSERT_TRUE(field.ask(StartMission{"m", 1}));
+  field.run(3.0);
+  EXPECT_EQ(field.execution(), ExecutionState::Running);
+}
+
+TEST_F(InARow, WithoutSatellitesAFenceLetsNobodyGoOn) {
+  go();
+  field.run(3.0);
+  field.gnss_speaks = false;
+  field.run(15.0);
+  ASSERT_TRUE(field.ask(PauseMission{}));
+  mission::Fence fence;
+  fence.name = "field";
+  ASSERT_TRUE(field.ask(SetFence{field.robot.lay_fence(std::make_shared<mission::Fence>(fence))}));
+  EXPECT_FALSE(field.ask(ResumeMission{}));
+}
+
 TEST_F(Seeing, WaitsBeforeItLooksForItsHeading) {
   field.compass_speaks = false;
   field.run(8.0);
