@@ -184,18 +184,30 @@ void Movers::see(const Reduced& in, const Grid& grid) {
   }
   const double now_s = base::seconds(in.stamp - begin_);
   if (piece_ > 0 && now_s <= now_s_) return;  // out of order
-  // A float of seconds is a millisecond's after three hours: begin anew before.
-  constexpr double kAnew_s = 8192.0;
-  if (now_s > kAnew_s) {
-    forget();
-    return see(in, grid);
-  }
   now_s_ = now_s;
+  // A float of seconds is a millisecond's after three hours: count from here on before.
+  constexpr double kFromHere_s = 8192.0;
+  if (now_s > kFromHere_s) count_from(in.stamp);
   ++piece_;
   body_ = {in.pose.x_m, in.pose.y_m};
   gather(in);
   part();
   follow(grid, in.stamp);
+}
+
+/// Nobody is forgotten by it. @param begin the piece that is taken now
+void Movers::count_from(base::Time begin) {
+  const double by_s = now_s_;
+  for (Place& p : places_) {
+    p.first_s = static_cast<float>(static_cast<double>(p.first_s) - by_s);
+    p.last_s = static_cast<float>(static_cast<double>(p.last_s) - by_s);
+  }
+  for (Track& t : tracks_) {
+    t.seen_s -= by_s;
+    for (Sample& s : t.samples) s.at_s -= by_s;
+  }
+  begin_ = begin;
+  now_s_ = 0.0;
 }
 
 /// Each thing goes to the nearest track that expects one there.

@@ -83,6 +83,7 @@ class Movers {
 
   Place& place(std::int32_t x, std::int32_t y) noexcept;
   bool still_about(std::int32_t x, std::int32_t y) noexcept;
+  void count_from(base::Time begin);
   void gather(const Reduced& in);
   void part();
   void follow(const Grid& grid, base::Time stamp);
