@@ -74,7 +74,7 @@ bool holds(const nav::sense::Patch& patch, const Question& q) {
 
 /// Who moves is waited for: ways are laid as if he were not there.
 nav::sense::Patch without_movers(const Surroundings& around) {
-  constexpr double kHis_m = 0.3;
+  // No more than that: a wall beside him stands when he is gone.
   nav::sense::Patch out = around.patch;
   for (const nav::sense::Mover& m : around.movers) {
     const nav::sense::Vec2 at = m.at + base::seconds(out.stamp - m.seen) * m.v_mps;
@@ -84,7 +84,7 @@ nav::sense::Patch without_movers(const Surroundings& around) {
       const auto side = static_cast<std::size_t>(out.side);
       const double x = (out.x0 + static_cast<double>(i % side) + 0.5) * out.cell_m - at.x;
       const double y = (out.y0 + static_cast<double>(i / side) + 0.5) * out.cell_m - at.y;
-      if (std::hypot(x, y) < m.radius_m + kHis_m) cell.known = nav::sense::Known::Free;
+      if (std::hypot(x, y) < m.radius_m + out.cell_m) cell.known = nav::sense::Known::Free;
     }
   }
   return out;
