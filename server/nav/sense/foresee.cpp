@@ -24,21 +24,22 @@ struct Foreseeable {
   Vec2 v;
   double radius_m;
   double sigma_mps;
-  double now_m;  ///< between him and the body
+  double now_m;  ///< between him and the body, with what it pulls
 };
 
 /// How much of the twist is driven, by time.
 struct Pace {
-  double part = 0.0;
-  double for_s = 0.0;    ///< before it brakes
-  double brake_s = 0.0;  ///< from the whole twist; 0: it never brakes
+  double from = 0.0;
+  double to = 0.0;
+  double for_s = 0.0;    ///< before it goes over
+  double brake_s = 0.0;  ///< from the whole twist to none
 
   /// Time of the whole twist that is driven by then.
   double driven_s(double t_s) const noexcept {
-    if (brake_s <= 0.0) return part * t_s;
-    const double keeps_s = std::min(t_s, for_s);
-    const double brakes_s = std::clamp(t_s - for_s, 0.0, part * brake_s);
-    return part * keeps_s + brakes_s * (part - 0.5 * brakes_s / brake_s);
+    const double over_s = std::abs(to - from) * brake_s;
+    const double t = std::clamp(t_s - for_s, 0.0, over_s);
+    const double bends = over_s > 0.0 ? 0.5 * (to - from) * t * t / over_s : 0.0;
+    return from * (std::min(t_s, for_s) + t) + bends + to * std::max(0.0, t_s - for_s - over_s);
   }
 };
 
@@ -46,7 +47,8 @@ struct Pace {
 std::optional<double> meets(const Foreseeable& who, const Footprint& body,
                             const base::BodyTwist& twist, const Pace& pace, double gap_m,
                             double horizon_s) noexcept {
-  const double allowed_m = std::min(gap_m, who.now_m - kComesNearer_m);
+  const double now_m = body.distance_m(who.at) - who.radius_m;
+  const double allowed_m = std::min(gap_m, now_m - kComesNearer_m);
   for (double t = kLookEvery_s; t <= horizon_s; t += kLookEvery_s) {
     const Vec2 seen = seen_after(who.at + t * who.v, twist, pace.driven_s(t));
     const double unsure_m = std::min(kMostUnsure_m, who.sigma_mps * t);
@@ -68,12 +70,24 @@ bool behind(Vec2 at, double radius_m, const Footprint& body,
 }  // namespace
 
 Foreseen foresee(std::span<const Mover> movers, const Odometry& now, const Footprint& body,
-                 const base::BodyTwist& twist, const ProtectParams& params) noexcept {
+                 const base::BodyTwist& twist, const ProtectParams& params,
+                 const Footprint* whole) noexcept {
   Foreseen out;
   const double v = std::abs(twist.linear_mps);
   const double w = std::abs(twist.angular_radps);
   if (movers.empty() || params.foresee_s <= 0.0 || (v < 1e-3 && w < 1e-3)) return out;
-  const double fastest_mps = v + w * body.reach_m();
+  const Footprint& all = whole != nullptr ? *whole : body;
+  const Footprint& leads = twist.linear_mps < 0.0 ? all : body;  // in reverse, what is pulled
+  // Slower than it is it cannot be at once. By what it does more of: the other may be none.
+  const double measured = v >= w * body.reach_m() ? now.v_mps / twist.linear_mps
+                                                  : now.yaw_rate_radps / twist.angular_radps;
+  const double goes_on = std::max(0.0, measured);
+  const double brake_s = std::max(v / params.decel_mps2, w / params.turn_decel_radps2);
+  const auto horizon_s = [&](double part) {
+    return std::max(params.foresee_s,
+                    params.delay_s + std::max(part, goes_on) * brake_s + kLookEvery_s);
+  };
+  const double fastest_mps = std::max(1.0, goes_on) * (v + w * all.reach_m());
   const double c = std::cos(now.pose.yaw_rad);
   const double s = std::sin(now.pose.yaw_rad);
   const auto in_body = [&](Vec2 p) { return Vec2{c * p.x + s * p.y, -s * p.x + c * p.y}; };
@@ -81,30 +95,39 @@ Foreseen foresee(std::span<const Mover> movers, const Odometry& now, const Footp
   std::array<const Mover*, kMostOf> of{};
   std::size_t n = 0;
   for (const Mover& m : movers) {
-    if (n == who.size()) break;
     const double age_s = std::max(0.0, base::seconds(now.stamp - m.seen));
     const Vec2 to = m.at + age_s * m.v_mps - Vec2{now.pose.x_m, now.pose.y_m};
     Foreseeable one{in_body(to), in_body(m.v_mps), m.radius_m, m.sigma_mps, 0.0};
-    if (behind(one.at, one.radius_m, body, twist)) continue;
-    one.now_m = body.distance_m(one.at) - one.radius_m;
-    const double most_m = (fastest_mps + std::hypot(one.v.x, one.v.y)) * params.foresee_s;
+    if (behind(one.at, one.radius_m, all, twist)) continue;
+    one.now_m = all.distance_m(one.at) - one.radius_m;
+    const double most_m = (fastest_mps + std::hypot(one.v.x, one.v.y)) * horizon_s(1.0);
     if (one.now_m > most_m + params.foresee_gap_m + kMostUnsure_m) continue;
-    of[n] = &m;
-    who[n++] = one;
+    std::size_t place = n;
+    if (n == who.size()) {
+      const auto farthest = std::max_element(
+          who.begin(), who.end(), [](const auto& a, const auto& b) { return a.now_m < b.now_m; });
+      if (farthest->now_m <= one.now_m) continue;
+      place = static_cast<std::size_t>(farthest - who.begin());
+    } else {
+      ++n;
+    }
+    of[place] = &m;
+    who[place] = one;
   }
-  // Slower than it is it cannot be at once.
-  const double goes_on =
-      v > 1e-3 ? now.v_mps / twist.linear_mps : now.yaw_rate_radps / twist.angular_radps;
-  const double brake_s = std::max(v / params.decel_mps2, w / params.turn_decel_radps2);
   const double gap_m = std::max(params.foresee_gap_m, params.side_m);
   const auto may = [&](double part) {
-    const Pace brake{std::max(part, std::clamp(goes_on, 0.0, 1.2)), params.delay_s, brake_s};
+    const Pace brake{std::max(part, goes_on), 0.0, params.delay_s, brake_s};
+    // What is slower than λ is taken to be at it at once.
+    const Pace keep{std::max(part, goes_on), part, params.delay_s, brake_s};
+    const auto met = [&](const Foreseeable& one) {
+      auto t = meets(one, body, twist, keep, gap_m, params.foresee_s);
+      if (!t && whole != nullptr) t = meets(one, *whole, twist, keep, gap_m, params.foresee_s);
+      return t;
+    };
     bool keeps = part > 0.0;
     bool brakes = true;
     for (std::size_t i = 0; i < n && (keeps || brakes); ++i) {
-      if (const auto t = keeps
-                             ? meets(who[i], body, twist, {part, 0.0, 0.0}, gap_m, params.foresee_s)
-                             : std::nullopt) {
+      if (const auto t = keeps ? met(who[i]) : std::nullopt) {
         keeps = false;
         if (!out.found) {
           out.found = true;
@@ -114,7 +137,7 @@ Foreseen foresee(std::span<const Mover> movers, const Odometry& now, const Footp
           out.age_s = base::seconds(now.stamp - of[i]->seen);
         }
       }
-      brakes = brakes && !meets(who[i], body, twist, brake, params.side_m, params.foresee_s);
+      brakes = brakes && !meets(who[i], leads, twist, brake, params.side_m, horizon_s(part));
     }
     return keeps || brakes;
   };

@@ -2,18 +2,20 @@
 // Who moves is foreseen: how much of a commanded twist may be driven, so that nobody is met who
 // goes on as he does.
 //
-// A part λ of the twist may be driven if, for the next foresee_s,
+// A part λ of the twist may be driven if, for the next foresee_s and as long as braking lasts,
 //
 //   brake: after delay_s the body brakes along the curve and stands, and nobody comes nearer to it
 //          than side_m on the way nor where it stands; so it stands before his way, not in it; or
-//   keep:  it goes on at λ, and nobody comes nearer than foresee_gap_m.
+//   keep:  it goes over to λ from the speed that was measured, and nobody comes nearer than
+//          foresee_gap_m: nor to what it pulls, taken as if it followed straight behind.
 //
 // The largest of some λ that may be driven is. If there is none, he comes to the body wherever it
 // stands: then it stands. He may be anywhere within his radius, and within σ t of where he goes.
 // Who walks up from behind is his own business: to stand would help nobody.
 //
-// Pure; allocates nothing: for the control tick. Without movers nothing is reckoned; with one whom
-// the body may meet up to 12 · 40 looks, 20 us.
+// Of more than 16 the nearest count. Pure; allocates nothing: for the control tick. Without movers
+// nothing is reckoned; with one whom the body may meet up to 12 · 40 looks, more where it brakes
+// for longer than foresee_s.
 
 #include <cstdint>
 #include <span>
@@ -35,8 +37,10 @@ struct Foreseen {
   double age_s = 0.0;
 };
 
-/// @param body X_OB now and how it moves. @param twist commanded, finite
+/// @param now X_OB and how it moves. @param twist commanded, finite
+/// @param whole the body with what it pulls straight behind it; null: it pulls nothing
 Foreseen foresee(std::span<const Mover> movers, const Odometry& now, const Footprint& body,
-                 const base::BodyTwist& twist, const ProtectParams& params) noexcept;
+                 const base::BodyTwist& twist, const ProtectParams& params,
+                 const Footprint* whole = nullptr) noexcept;
 
 }  // namespace roverd::nav::sense

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <utility>
+#include <vector>
 
 #include "base/angle.hpp"
 #include "nav/sense/foresee.hpp"
@@ -87,6 +88,14 @@ void Guard::set(const nav::sense::ProtectParams& params, const nav::VehicleParam
   body_ = footprint_of(vehicle, tool, outline);
   trailer_ = trailer_of(tool, outline);
   coupling_ = {};
+  whole_.reset();
+  if (trailer_) {
+    std::vector<nav::sense::Vec2> corners(body_.corners().begin(), body_.corners().end());
+    for (const nav::sense::Vec2 c : trailer_->body.corners()) {
+      corners.push_back({c.x - trailer_->hitch_m, c.y});
+    }
+    if (const auto hull = nav::sense::Footprint::of(corners)) whole_ = *hull;
+  }
   swings_m_.reset();
   if (!vehicle.steered()) {
     double front_m = 0.0;
@@ -222,8 +231,8 @@ Guard::Looked Guard::look_where_lost(const BodyTwist& twist,
 void Guard::look_ahead_of_time(Looked& v, const BodyTwist& twist,
                                const nav::sense::ProtectParams& params) const noexcept {
   if (around_->movers.empty() || params.foresee_s <= 0.0) return;
-  const nav::sense::Foreseen f =
-      nav::sense::foresee(around_->movers, odometry_, body_, twist, params);
+  const nav::sense::Foreseen f = nav::sense::foresee(around_->movers, odometry_, body_, twist,
+                                                     params, whole_ ? &*whole_ : nullptr);
   if (f.part < v.part) {
     v = {};
     v.part = f.part;

@@ -143,6 +143,7 @@ class Guard {
   nav::sense::Footprint body_ = footprint_of({});
   std::optional<nav::sense::Trailer> trailer_;
   nav::sense::Coupling coupling_;
+  std::optional<nav::sense::Footprint> whole_;  ///< with the trailer straight behind
   std::optional<nav::sense::Spared> spared_;
   std::shared_ptr<const Surroundings> around_;
   nav::sense::Odometry odometry_;

@@ -80,15 +80,56 @@ TEST(Foresee, WhoComesStraightAtItIsStoodBefore) {
 
 TEST(Foresee, ItIsToldHowFarAndHowNear) {
   ProtectParams p;
-  const Mover late = walker({3.5, -2.5}, {0.0, 1.0});
-  Odometry now;
-  now.v_mps = 1.0;
+  const Odometry now{at(0.0), {}, 1.0, 0.0, {}};
+  // He is in its way when it comes there.
+  const std::vector late{walker({1.2, -1.0}, {0.0, 0.7})};
+  EXPECT_LT(foresee(late, now, kBody, {1.0, 0.0}, p).part, 1.0);
   p.foresee_s = 0.0;  // not at all
-  EXPECT_EQ(foresee(std::vector{late}, now, kBody, {1.0, 0.0}, p).part, 1.0);
-  // Passed 1 m away: within a larger gap he is let go first, where it could not stand before him.
-  const Mover beside = walker({1.5, 1.55}, {0.0, 0.4});
-  p.foresee_s = 3.0;
-  EXPECT_EQ(foresee(std::vector{beside}, now, kBody, {1.0, 0.0}, p).part, 1.0);
+  EXPECT_EQ(foresee(late, now, kBody, {1.0, 0.0}, p).part, 1.0);
+}
+
+TEST(Foresee, WithWeakBrakesItLooksAsFarAsBrakingLasts) {
+  ProtectParams p;
+  p.decel_mps2 = 0.25;  // 1.4 m/s: 5.8 s, 4.2 m
+  const Odometry now{at(0.0), {}, 1.4, 0.0, {}};
+  // He comes slowly towards it: within 3 s it still brakes before him, before it stands he is met.
+  const std::vector him{walker({5.5, 0.0}, {-0.3, 0.0})};
+  EXPECT_LT(foresee(him, now, kBody, {1.4, 0.0}, p).part, 1.0);
+}
+
+TEST(Foresee, AStickThatIsDrawnBackLeavesTheSpeedThatIsThere) {
+  const ProtectParams p;
+  // From 1.4 m/s to 0.3 m/s it takes 2 s, and comes 1.5 m farther than at 0.3 m/s at once.
+  const std::vector him{walker({1.9, -2.0}, {0.0, 1.2})};
+  const Odometry fast{at(0.0), {}, 1.4, 0.0, {}};
+  const Odometry slow{at(0.0), {}, 0.3, 0.0, {}};
+  EXPECT_FALSE(foresee(him, slow, kBody, {0.3, 0.0}, p).found);
+  EXPECT_TRUE(foresee(him, fast, kBody, {0.3, 0.0}, p).found);
+}
+
+TEST(Foresee, WhatItPullsDoesNotPassBeforeHimEither) {
+  ProtectParams p;
+  const Footprint whole = Footprint::box(3.5, 0.8, 3.0);
+  const Odometry now{at(0.0), {}, 1.0, 0.0, {}};
+  // Two metres behind the body's end is where he comes to its way: onto the trailer.
+  const std::vector him{walker({0.0, -2.2}, {0.0, 1.0})};
+  EXPECT_FALSE(foresee(him, now, kBody, {1.0, 0.0}, p).found);
+  EXPECT_TRUE(foresee(him, now, kBody, {1.0, 0.0}, p, &whole).found);
+  // Beside the trailer he is behind the body, and not behind the trailer.
+  const std::vector beside{walker({-1.5, -1.2}, {0.8, 0.8})};
+  EXPECT_FALSE(foresee(beside, now, kBody, {1.0, 0.0}, p).found);
+  EXPECT_TRUE(foresee(beside, now, kBody, {1.0, 0.0}, p, &whole).found);
+}
+
+TEST(Foresee, ACrowdFarOffHidesNobodyWhoIsNear) {
+  const ProtectParams p;
+  const Odometry now{at(0.0), {}, 1.0, 0.0, {}};
+  std::vector<Mover> all(16, walker({6.0, 2.0}, {0.0, 0.5}));
+  const Mover near = walker({1.2, -1.0}, {0.0, 0.7});
+  const double alone = foresee(std::vector{near}, now, kBody, {1.0, 0.0}, p).part;
+  ASSERT_LT(alone, 1.0);
+  all.push_back(near);
+  EXPECT_EQ(foresee(all, now, kBody, {1.0, 0.0}, p).part, alone);
 }
 
 }  // namespace
