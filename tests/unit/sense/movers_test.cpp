@@ -15,8 +15,10 @@ namespace {
 using Blocks = std::function<std::vector<Block>(double)>;
 using Body = std::function<Pose2(double)>;
 
-/// A scanner at 25 Hz before the body, for so long. @return who moves at the end of each piece
-std::vector<std::vector<Mover>> watch(double lasts_s, const Body& body, const Blocks& blocks) {
+/// A scanner at 25 Hz before the body, for so long. @param late_s between its first piece and the
+/// others @return who moves at the end of each piece
+std::vector<std::vector<Mover>> watch(double lasts_s, const Body& body, const Blocks& blocks,
+                                      double late_s = 0.0) {
   SensorSetup eye;
   eye.name = "eye";
   eye.mount = {.x_m = 0.45, .z_m = 0.3};
@@ -28,12 +30,14 @@ std::vector<std::vector<Mover>> watch(double lasts_s, const Body& body, const Bl
   std::normal_distribution<double> noise(0.0, 0.01);
   std::vector<std::vector<Mover>> out;
   const Rays rays = planar();
-  for (double t = 1.0; t < 1.0 + lasts_s; t += 0.04) {
+  for (double since = 0.0; since < lasts_s; since += 0.04) {
+    const double by_s = since > 0.0 ? 1.0 + late_s : 1.0;
+    const double t = since + by_s;
     Scene scene;
-    scene.blocks = blocks(t - 1.0);
+    scene.blocks = blocks(since);
     scene.ground = [](double, double) { return -5.0; };
     base::Sight sight = look(
-        scene, rays, eye.mount, t, [&](double when) { return planar_pose(body(when - 1.0)); },
+        scene, rays, eye.mount, t, [&](double when) { return planar_pose(body(when - by_s)); },
         random, 20.0);
     for (base::SightPoint& p : sight.points) {
       const double r = std::hypot(double(p.x_m), double(p.y_m));
@@ -42,7 +46,7 @@ std::vector<std::vector<Mover>> watch(double lasts_s, const Body& body, const Bl
       p.x_m = static_cast<float>(k * double(p.x_m));
       p.y_m = static_cast<float>(k * double(p.y_m));
     }
-    const auto history = driven(t + 0.05, [&](double when) { return body(when - 1.0); });
+    const auto history = driven(t + 0.05, [&](double when) { return body(when - by_s); });
     EXPECT_TRUE(chain->take(sight, history, at(t + 0.02)).has_value());
     chain->movers(at(t + 0.02), out.emplace_back());
   }
@@ -88,6 +92,13 @@ TEST(Movers, HeIsToldFromARobotThatDrives) {
   ASSERT_EQ(seen.back().size(), 1U);
   EXPECT_NEAR(seen.back().front().v_mps.y, 1.2, 0.2);
   EXPECT_NEAR(seen.back().front().v_mps.x, 0.0, 0.2);
+}
+
+TEST(Movers, HeIsToldOnAndOnAfterHours) {
+  // The times are counted anew 8192 s after the first piece: 1.2 s after this begins.
+  const auto seen = watch(
+      2.0, stands, [](double t) { return std::vector{person(4.0, -2.5 + t)}; }, 8190.8);
+  for (std::size_t i = 25; i < seen.size(); ++i) EXPECT_EQ(seen[i].size(), 1U) << i;
 }
 
 TEST(Movers, WhoStopsMovesNoMore) {
