@@ -185,6 +185,13 @@ inline const std::vector<Scene> kSeeingScenes = {
          around->movers.push_back(m);
        }
        w.run(20.0);
+       // From the side, too near to be stood before: it passes, with room or without.
+       nav::sense::Mover beside;
+       beside.at = {around->pose.x_m - 0.2, around->pose.y_m - 1.5};
+       beside.v_mps = {0.0, 0.5};
+       beside.seen = w.now;
+       around->movers = {beside};
+       w.run(4.0);
      }},
     {"a turn beside a wall",
      [](Walk& w) {
