@@ -80,7 +80,8 @@ base::Result<PlaceLoop::Map> map_of(const Settings& settings) {
   if (said.anchor_lat != 0.0 || said.anchor_lon != 0.0) {
     made.anchor = nav::place::MapAnchor{{said.anchor_lat, said.anchor_lon},
                                         base::yaw_from_heading(said.anchor_heading_deg),
-                                        said.anchor_accuracy_m};
+                                        said.anchor_accuracy_m,
+                                        base::rad_from_deg(said.anchor_heading_accuracy_deg)};
   }
   return std::make_shared<const nav::place::MapInUse>(std::move(made));
 }

@@ -273,10 +273,11 @@ struct PlaceFix {
   double yaw_rad = 0.0;  ///< from east, left positive
   /// Of east, north (m) and yaw (rad): east², east·north, north², east·yaw, north·yaw, yaw².
   std::array<double, 6> covariance{};
-  std::uint32_t map = 0;        ///< a number of its own for each map that was taken into use
-  std::uint32_t found = 0;      ///< how often the place was found anew
-  LatLon anchor;                ///< where the map's origin lies
-  double anchor_sigma_m = 0.0;  ///< how well that is known, 1 sigma
+  std::uint32_t map = 0;              ///< a number of its own for each map that was taken into use
+  std::uint32_t found = 0;            ///< how often the place was found anew
+  LatLon anchor;                      ///< where the map's origin lies
+  double anchor_sigma_m = 0.0;        ///< how well that is known, 1 sigma
+  double anchor_yaw_sigma_rad = 0.0;  ///< how well it is known which way the map looks, 1 sigma
 };
 
 /// Off: no map is in use. Lost: what is seen fits nowhere.

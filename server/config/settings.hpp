@@ -209,6 +209,7 @@ struct MapSettings {
   double anchor_lon = 0.0;
   double anchor_heading_deg = 90.0;
   double anchor_accuracy_m = 0.3;
+  double anchor_heading_accuracy_deg = 1.0;
 };
 
 template <class V>
@@ -224,6 +225,8 @@ void fields(V& v, MapSettings& p) {
     "compass heading of the map's x axis; 90: to the east");
   v("anchor_accuracy_m", p.anchor_accuracy_m, 0.0, 10.0,
     "how well the anchor is known, 1 sigma: satellites that are fixed correct it by that");
+  v("anchor_heading_accuracy_deg", p.anchor_heading_accuracy_deg, 0.0, 45.0,
+    "how well anchor_heading_deg is known, 1 sigma: no heading by the map is surer");
 }
 
 struct Settings {

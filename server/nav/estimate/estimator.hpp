@@ -332,6 +332,7 @@ class Estimator {
   std::uint32_t map_ = 0;
   std::uint32_t map_found_ = 0;
   double map_offset_sigma_m_ = 0.0;
+  double map_yaw_sigma_rad_ = 0.0;  ///< of the map's own heading on the earth
   bool map_lost_ = false;
   std::optional<double> alt_msl_m_;
   Drift drift_{};

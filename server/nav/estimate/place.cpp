@@ -37,7 +37,8 @@ bool sound(const base::PlaceFix& fix) noexcept {
     if (!std::isfinite(value)) return false;
   }
   return base::is_valid(fix.at) && base::is_valid(fix.anchor) && std::isfinite(fix.yaw_rad) &&
-         std::isfinite(fix.anchor_sigma_m) && fix.anchor_sigma_m >= 0.0 && c[0] > 0.0 &&
+         std::isfinite(fix.anchor_sigma_m) && fix.anchor_sigma_m >= 0.0 &&
+         std::isfinite(fix.anchor_yaw_sigma_rad) && fix.anchor_yaw_sigma_rad >= 0.0 && c[0] > 0.0 &&
          c[2] > 0.0 && c[5] > 0.0 && c[0] * c[2] > c[1] * c[1];
 }
 
@@ -48,6 +49,12 @@ Eigen::Matrix2d place_covariance(const base::PlaceFix& fix) noexcept {
   r(0, 0) = std::max(r(0, 0), kLeast);
   r(1, 1) = std::max(r(1, 1), kLeast);
   return r;
+}
+
+/// Of its heading on the earth: what the match errs by, and what the map lies askew by.
+double yaw_variance(const base::PlaceFix& fix) noexcept {
+  const double askew = fix.anchor_yaw_sigma_rad * fix.anchor_yaw_sigma_rad;
+  return std::max(fix.covariance[5], kMapFloor_rad * kMapFloor_rad) + askew;
 }
 
 }  // namespace
@@ -61,7 +68,7 @@ double Estimator::map_floor_m() const noexcept {
   return health_.by_map ? kMapFloor_m : 0.0;
 }
 double Estimator::map_floor_rad() const noexcept {
-  return health_.by_map && map_is_fresh() ? kMapFloor_rad : 0.0;
+  return health_.by_map && map_is_fresh() ? std::hypot(kMapFloor_rad, map_yaw_sigma_rad_) : 0.0;
 }
 
 /// Satellites that need no help: fixed, and heard of just now.
@@ -86,6 +93,7 @@ void Estimator::take(const base::PlaceState& told) {
   if (base::distance_bearing(frame_->origin(), fix.at).distance_m > base::LocalFrame::kReach_m) {
     return refuse(in, Refusal::Impossible);
   }
+  map_yaw_sigma_rad_ = fix.anchor_yaw_sigma_rad;
   if (fix.map != map_) {
     map_ = fix.map;
     health_.map_offset = {};
@@ -104,7 +112,7 @@ void Estimator::first_place(const base::PlaceFix& fix, Time stamp) noexcept {
   if (!heading_known_) {
     const auto past = history_.at(stamp);
     const double turned = past ? base::angle_diff_rad(past->x(kYaw), belief_.x(kYaw)) : 0.0;
-    set_heading(fix.yaw_rad + turned, std::sqrt(fix.covariance[5]));
+    set_heading(fix.yaw_rad + turned, std::sqrt(yaw_variance(fix)));
     note_reset("map", before);
   }
   if (was_located) return;  // its place is the next one's matter
@@ -195,9 +203,8 @@ bool Estimator::believable(const Observation<2>& o, const base::PlaceFix& fix,
   Eigen::Matrix2d S = o.H * belief_.P * o.H.transpose() + o.R;
   S += anchor_m * anchor_m * Eigen::Matrix2d::Identity();
   const double turned = base::angle_diff_rad(yaw_rad, fix.yaw_rad);
-  const double yaw_variance = belief_.P(kYaw, kYaw) + fix.covariance[5];
   return o.innovation.dot(S.inverse() * o.innovation) <= kGate2 &&
-         turned * turned <= 2.0 * kGate1 * yaw_variance;
+         turned * turned <= 2.0 * kGate1 * (belief_.P(kYaw, kYaw) + yaw_variance(fix));
 }
 
 /// Who leads until now may be surer than the anchor: then it is the anchor that is off, for as long
@@ -238,8 +245,7 @@ void Estimator::fuse_place_heading(const base::PlaceFix& fix, const StateVector&
   Observation<1> o;
   o.innovation(0) = base::angle_diff_rad(at(kYaw), fix.yaw_rad);
   o.H(0, kYaw) = 1.0;
-  const double least = std::max(fix.covariance[5], kMapFloor_rad * kMapFloor_rad);
-  o.R(0, 0) = least * std::max(1.0, kTogether_s / since_s);
+  o.R(0, 0) = yaw_variance(fix) * std::max(1.0, kTogether_s / since_s);
   o.gate = 2.0 * kGate1;
   if (lead_until_) o.may_change(kEast) = o.may_change(kNorth) = 0.0;
   (void)apply(health_.place, o);
@@ -262,7 +268,7 @@ void Estimator::place_refused(const base::PlaceFix& fix, Time stamp, double off_
   const double turned = base::angle_diff_rad(at(kYaw), belief_.x(kYaw));
   const Eigen::Matrix2d r = place_covariance(fix);
   move(z + since, std::sqrt(std::max(r(0, 0), r(1, 1))));
-  set_heading(fix.yaw_rad + turned, std::sqrt(fix.covariance[5]));
+  set_heading(fix.yaw_rad + turned, std::sqrt(yaw_variance(fix)));
   note_reset("map", before);
   map_found_ = fix.found;
   lead_by_map(stamp);

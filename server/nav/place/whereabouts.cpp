@@ -61,7 +61,7 @@ Pose2 Whereabouts::on_map(base::LatLon at, double yaw_rad) const {
 
 bool Whereabouts::told(const Word& word) {
   if (!tracker_) return false;
-  if (!anchor_ && p_.local_origin) anchor_ = MapAnchor{*p_.local_origin, 0.0, 0.0};
+  if (!anchor_ && p_.local_origin) anchor_ = MapAnchor{*p_.local_origin, 0.0, 0.0, 0.0};
   if (!anchor_ || !base::is_valid(word.at)) return false;
   const double yaw_rad = word.yaw_rad.value_or(0.0);
   const double turn_rad = word.yaw_rad ? kTap_rad : base::kPi / 3.0;
@@ -77,7 +77,7 @@ void Whereabouts::start_by_satellites(const Believed& b, base::Time stamp) {
   started_ = stamp;
   const double sigma_m = std::hypot(b.sigma_m, anchor_->sigma_m);
   tracker_->set_pose(on_map(b.at, b.yaw_rad), std::clamp(sigma_m, 0.1, 1.0),
-                     std::max(0.1, b.yaw_sigma_rad));
+                     std::max(0.1, std::hypot(b.yaw_sigma_rad, anchor_->yaw_sigma_rad)));
 }
 
 /// Such that what is believed now and the place in the map are one: X_EM = X_EB · X_BM.
@@ -86,17 +86,18 @@ void Whereabouts::lay(const Pose2& in_map, base::Time stamp,
   if (anchor_) return;
   const bool by_satellites = believed && believed->by_satellites;
   if (!by_satellites) {
-    if (p_.local_origin) anchor_ = MapAnchor{*p_.local_origin, 0.0, 0.0};
+    if (p_.local_origin) anchor_ = MapAnchor{*p_.local_origin, 0.0, 0.0, 0.0};
     return;
   }
-  if (believed->sigma_m > kSure_m || believed->yaw_sigma_rad > kSure_rad) return;
+  if (believed->sigma_m > kSure_m || believed->yaw_sigma_rad > kLay_rad) return;
   const auto then = history_.at(stamp);
   const auto now = history_.at(believed->stamp);
   if (!then || !now) return;
   const base::LocalFrame frame(1, believed->at);
   const Pose2 at_stamp = Pose2{0.0, 0.0, believed->yaw_rad} * (inverse(*now) * *then);
   const Pose2 origin = at_stamp * inverse(in_map);
-  anchor_ = MapAnchor{frame.to_global({origin.x_m, origin.y_m}), origin.yaw_rad, believed->sigma_m};
+  anchor_ = MapAnchor{frame.to_global({origin.x_m, origin.y_m}), origin.yaw_rad, believed->sigma_m,
+                      believed->yaw_sigma_rad};
 }
 
 base::PlaceFix Whereabouts::fix_of(const Fix& fix, std::uint32_t found) const {
@@ -115,6 +116,7 @@ base::PlaceFix Whereabouts::fix_of(const Fix& fix, std::uint32_t found) const {
   out.found = found;
   out.anchor = anchor_->at;
   out.anchor_sigma_m = anchor_->sigma_m;
+  out.anchor_yaw_sigma_rad = anchor_->yaw_sigma_rad;
   return out;
 }
 

@@ -29,9 +29,10 @@
 namespace roverd::nav::place {
 
 struct MapAnchor {
-  base::LatLon at;       ///< of the map's origin, x = y = 0
-  double yaw_rad = 0.0;  ///< of its x axis: from east, left positive
-  double sigma_m = 0.3;  ///< how well that is known, 1 sigma; at least 0
+  base::LatLon at;             ///< of the map's origin, x = y = 0
+  double yaw_rad = 0.0;        ///< of its x axis: from east, left positive
+  double sigma_m = 0.3;        ///< how well that is known, 1 sigma; at least 0
+  double yaw_sigma_rad = 0.0;  ///< likewise of yaw_rad
 };
 
 /// Immutable, shared between threads.
@@ -70,6 +71,8 @@ class Whereabouts {
   /// So sure satellites have to be for a start, and for laying a map.
   static constexpr double kSure_m = 1.5;
   static constexpr double kSure_rad = 0.2;
+  /// A map that is laid askew turns every course in it: surer of the heading than for a start.
+  static constexpr double kLay_rad = 0.03;
   static constexpr double kAgain_s = 3.0;  ///< the next start by satellites
   /// A tap is off by so much (1 sigma).
   static constexpr double kTap_m = 0.5;

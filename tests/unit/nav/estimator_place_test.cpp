@@ -30,6 +30,8 @@ class Mapped {
   double sigma_m = 0.02;
   double along_m = 0.0;  ///< > 0: a corridor to the north, so uncertain along it
   double anchor_sigma_m = 0.5;
+  double askew_rad = 0.0;  ///< the map lies turned by so much
+  double anchor_yaw_sigma_rad = 0.0;
   std::uint32_t found = 0;
   double fastest_mps = 0.0;  ///< the estimate beside the odometry, since forget()
 
@@ -69,13 +71,14 @@ class Mapped {
     if (map && phase == PlacePhase::Known) {
       base::PlaceFix f;
       f.at = frame_.to_global({was.east_m + off_east_m, was.north_m});
-      f.yaw_rad = was.yaw_rad;
+      f.yaw_rad = was.yaw_rad + askew_rad;
       const double north_m = along_m > 0.0 ? along_m : sigma_m;
       f.covariance = {sigma_m * sigma_m, 0.0, north_m * north_m, 0.0, 0.0, 1e-4};
       f.map = 1;
       f.found = found;
       f.anchor = kOrigin;
       f.anchor_sigma_m = anchor_sigma_m;
+      f.anchor_yaw_sigma_rad = anchor_yaw_sigma_rad;
       s.fix = f;
     }
     if (map) d.estimator.take(s, d.now());
@@ -184,6 +187,28 @@ TEST(EstimatorPlace, GoesToTheMapFromCoarseSatellitesSlowly) {
   EXPECT_LT(m.d.position_error_m(), 0.4);
 }
 
+TEST(EstimatorPlace, IsNoSurerOfTheHeadingThanTheMapOfItsOwn) {
+  Mapped m;
+  m.d.gnss = m.d.compass = false;
+  m.askew_rad = 0.06;
+  m.anchor_yaw_sigma_rad = 0.05;
+  m.run(30.0);
+  ASSERT_TRUE(m.d.pose());
+  EXPECT_GE(m.d.pose()->yaw_sigma_rad, 0.05) << "however often it was matched";
+}
+
+TEST(EstimatorPlace, AMapThatLiesAskewDoesNotReplaceTheTrueHeading) {
+  Mapped m;
+  m.d.antennas = true;
+  m.d.speed_mps = 1.0;
+  m.run(20.0);
+  m.d.fix = base::FixType::RtkFloat;  // and two antennas, that are honest
+  m.askew_rad = 0.15;
+  m.anchor_yaw_sigma_rad = 0.1;
+  m.run(20.0);
+  EXPECT_LT(std::abs(m.d.yaw_error_deg()), 1.5);
+}
+
 TEST(EstimatorPlace, WrongSatellitesInTheHallAreNotBelieved) {
   Mapped m;
   m.d.gnss = m.d.compass = false;
@@ -249,6 +274,7 @@ TEST(EstimatorPlace, RefusesWhatIsNotFiniteTooOldOrTwice) {
   EXPECT_EQ(told([&](auto&, auto& f) { f.covariance[1] = 1.0; }), 1u);
   EXPECT_EQ(told([&](auto&, auto& f) { f.covariance[5] = 0.0; }), 1u);
   EXPECT_EQ(told([&](auto&, auto& f) { f.anchor_sigma_m = -1.0; }), 1u);
+  EXPECT_EQ(told([&](auto&, auto& f) { f.anchor_yaw_sigma_rad = nan; }), 1u);
   EXPECT_EQ(told([&](auto& s, auto&) { s.stamp += std::chrono::seconds(1); }), 1u);
   EXPECT_EQ(told([&](auto& s, auto&) { s.stamp -= std::chrono::seconds(2); }), 1u);
   EXPECT_EQ(told([&](auto&, auto& f) { f.at.lat += 1.0; }), 1u);

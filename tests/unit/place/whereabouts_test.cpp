@@ -67,8 +67,9 @@ class Walk {
     return base::LocalFrame(1, kShedAt)
         .to_global({c * at.x_m - s * at.y_m, s * at.x_m + c * at.y_m});
   }
-  Believed by_satellites(double sigma_m) const {
-    return {now(), global(), base::wrap_rad(at.yaw_rad + kTurned_rad), sigma_m, 0.05, true};
+  Believed by_satellites(double sigma_m, double yaw_sigma_rad = 0.02) const {
+    return {now(),   global(),      base::wrap_rad(at.yaw_rad + kTurned_rad),
+            sigma_m, yaw_sigma_rad, true};
   }
 
  private:
@@ -119,12 +120,24 @@ TEST(Whereabouts, LaysAMapWithoutAnAnchorWhereTheSatellitesSeeTheRobot) {
     told = w.step(0.15, 0.02, w.by_satellites(0.3));
   ASSERT_TRUE(told && told->fix);
   EXPECT_EQ(told->fix->anchor_sigma_m, 0.3);
+  EXPECT_EQ(told->fix->anchor_yaw_sigma_rad, 0.02);
   // In the dark it goes on from there.
   for (int i = 0; i < 10; ++i) {
     told = w.step(0.1, 0.03);
     ASSERT_TRUE(told && told->fix) << i;
     EXPECT_LT(apart_m(told->fix->at, w.global()), 0.12) << i;
   }
+}
+
+TEST(Whereabouts, LaysNoMapByAHeadingThatIsNotSure) {
+  Walk w({2.5, 3.0, 0.1});
+  w.where.use(Walk::map({}), w.now());
+  std::optional<base::PlaceState> told;
+  for (int i = 0; i < 20; ++i) told = w.step(0.15, 0.02, w.by_satellites(0.3, 0.1));
+  ASSERT_TRUE(told && told->in_map);
+  EXPECT_FALSE(told->fix);
+  told = w.step(0.15, 0.02, w.by_satellites(0.3, 0.02));
+  ASSERT_TRUE(told && told->fix) << "as soon as it is";
 }
 
 TEST(Whereabouts, SaysThatAMapLiesNowhereWithoutAnchorAndSatellites) {
