@@ -233,7 +233,9 @@ class Estimator {
   void share_with_anchor(Observation<2>& o) noexcept;
   void weaken(Observation<2>& o, double since_s) noexcept;
   static void only_the_place(Observation<2>& o) noexcept;
-  void place_refused(const base::PlaceFix& fix, Time stamp, double off_m) noexcept;
+  void place_refused(const base::PlaceFix& fix, Time stamp, base::EnuPoint off) noexcept;
+  void forget_refused() noexcept;
+  bool satellites_object(base::EnuPoint off) const noexcept;
   bool beside_the_map(const base::GnssFix& fix, const GnssQuality& q) noexcept;
   bool learn_beside_the_map(base::EnuPoint off, const base::GnssFix& fix,
                             const GnssQuality& q) noexcept;
@@ -327,7 +329,15 @@ class Estimator {
   std::optional<Time> last_by_map_;      ///< when one was fused
   std::optional<Time> last_satellites_;  ///< when a position of theirs was fused
   std::optional<Time> lead_until_;       ///< the map leads since lately: slowly, at most until then
+  /// The last position of satellites while the map leads, taken or not.
+  struct Beside {
+    Time at;
+    base::EnuPoint off;  ///< from the estimate
+    double sigma_m = 0.0;
+  };
+  std::optional<Beside> beside_;
   std::optional<Time> map_off_since_;
+  std::optional<Time> map_refused_at_;
   int map_refused_ = 0;
   std::uint32_t map_ = 0;
   std::uint32_t map_found_ = 0;

@@ -26,6 +26,7 @@ constexpr double kShare = 0.1;  // of what is new of the map's offset
 constexpr double kOffset_m = 0.02;
 constexpr base::Duration kSetAnewAfter = std::chrono::seconds(1);
 constexpr int kSetAnewFixes = 5;
+constexpr base::Duration kAgainAndAgain = std::chrono::seconds(1);  // from refusal to refusal
 // No map is surer than its cells and its scanner.
 constexpr double kMapFloor_m = 0.015;
 constexpr double kMapFloor_rad = 0.009;
@@ -149,8 +150,7 @@ void Estimator::lead_by_map(Time stamp) noexcept {
   free_m_ = 0.0;
   placed_ = false;
   approaching_ = false;
-  map_off_since_.reset();
-  map_refused_ = 0;
+  forget_refused();
   position_off_since_.reset();
   far_off_since_.reset();
   claimed_when_off_m_.reset();
@@ -174,7 +174,12 @@ void Estimator::fuse_place(const base::PlaceFix& fix, Time stamp) noexcept {
     doubt_position(off_m);
     belief_.P(kYaw, kYaw) += std::pow(base::angle_diff_rad(at(kYaw), fix.yaw_rad), 2);
   }
-  if (!believable(o, fix, at(kYaw))) return place_refused(fix, stamp, off_m);
+  const base::EnuPoint off{o.innovation(0), o.innovation(1)};
+  const bool anew = map_found_ != fix.found || doubted_m_ > 0.0;
+  const bool asked = anew && health_.by_map && !placed_;
+  if (!believable(o, fix, at(kYaw)) || (asked && satellites_object(off))) {
+    return place_refused(fix, stamp, off);
+  }
   if (changes) {
     if (last_satellites_ && drift_.sigma_m <= 0.0 && !placed_) share_with_anchor(o);
     lead_until_ = placed_ ? std::nullopt : std::optional(now_ + std::chrono::minutes(2));
@@ -184,7 +189,7 @@ void Estimator::fuse_place(const base::PlaceFix& fix, Time stamp) noexcept {
   if (lead_until_) only_the_place(o);
   o.gate = 0.0;  // it was asked before it was weakened
   std::optional<Belief> before;
-  if (map_found_ != fix.found || doubted_m_ > 0.0) before = belief_;
+  if (anew) before = belief_;
   if (!apply(health_.place, o)) return refuse(health_.place, Refusal::Jump);
   fuse_place_heading(fix, at, since_s);
   if (before && !lead_until_) {
@@ -251,15 +256,36 @@ void Estimator::fuse_place_heading(const base::PlaceFix& fix, const StateVector&
   (void)apply(health_.place, o);
 }
 
+void Estimator::forget_refused() noexcept {
+  map_off_since_.reset();
+  map_refused_at_.reset();
+  map_refused_ = 0;
+}
+
+/// Do satellites that are heard say that it is not so far from the estimate? Those that lead do;
+/// beside a map those that tell the two places apart, and do not mean the map's.
+bool Estimator::satellites_object(base::EnuPoint off) const noexcept {
+  const bool fused = last_satellites_ && now_ - *last_satellites_ < kPlaceFresh;
+  if (!health_.by_map) return fused;
+  const double off_m = std::hypot(off.east_m, off.north_m);
+  if (!beside_ || now_ - beside_->at >= kPlaceFresh) return fused && off_m > kAgree_m;
+  const double tells_m = kAgree_m + 3.0 * beside_->sigma_m;
+  if (off_m <= tells_m) return false;
+  return base::distance_m(beside_->off, {}) <= tells_m ||
+         base::distance_m(beside_->off, off) > tells_m;
+}
+
 /// Refused again and again while it fits what is seen: the robot was carried, or slipped, and the
 /// map is right. Not while satellites say that it is not.
-void Estimator::place_refused(const base::PlaceFix& fix, Time stamp, double off_m) noexcept {
+void Estimator::place_refused(const base::PlaceFix& fix, Time stamp, base::EnuPoint off) noexcept {
   refuse(health_.place, Refusal::Jump);
+  refused_m_ = std::hypot(off.east_m, off.north_m);
+  if (satellites_object(off)) return forget_refused();
+  if (map_refused_at_ && now_ - *map_refused_at_ > kAgainAndAgain) forget_refused();
   if (!map_off_since_) map_off_since_ = now_;
+  map_refused_at_ = now_;
   ++map_refused_;
-  refused_m_ = off_m;
-  const bool heard = last_satellites_ && now_ - *last_satellites_ < kPlaceFresh;
-  if (heard || map_refused_ < kSetAnewFixes || now_ - *map_off_since_ < kSetAnewAfter) return;
+  if (map_refused_ < kSetAnewFixes || now_ - *map_off_since_ < kSetAnewAfter) return;
   const Belief before = belief_;
   const auto past = history_.at(stamp);
   const StateVector at = past ? past->x : belief_.x;
@@ -286,6 +312,8 @@ bool Estimator::beside_the_map(const base::GnssFix& fix, const GnssQuality& q) n
   const base::EnuPoint off{z.east_m - at(kEast) - to_antenna.east_m,
                            z.north_m - at(kNorth) - to_antenna.north_m};
   const double off_m = std::hypot(off.east_m, off.north_m);
+  const double sigma_m = std::hypot(std::max(q.sigma_east_m, q.sigma_north_m), q.drift.sigma_m);
+  beside_ = Beside{now_, off, sigma_m};
   const bool fixed = q.drift.sigma_m <= 0.0 && fix_trust_.settled();
   if (map_is_fresh()) {
     const bool agree = off_m < kAgree_m + 3.0 * map_offset_sigma_m_;

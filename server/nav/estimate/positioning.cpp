@@ -32,6 +32,7 @@ void Estimator::note_reset(std::string_view what, const Belief& before) noexcept
   reset.claimed_rad = std::sqrt(before.P(kYaw, kYaw));
   reset.stamp = now_;
   health_.last_reset = reset;
+  beside_.reset();  // it was told of the place until now
 }
 
 void Estimator::move(base::EnuPoint to, double sigma_m) noexcept {

@@ -209,6 +209,60 @@ TEST(EstimatorPlace, AMapThatLiesAskewDoesNotReplaceTheTrueHeading) {
   EXPECT_LT(std::abs(m.d.yaw_error_deg()), 1.5);
 }
 
+/// Driven by the map, with satellites beside it that are right but not fixed.
+void drive_by_both(Mapped& m) {
+  m.d.fix = base::FixType::RtkFloat;
+  m.d.speed_mps = 0.5;
+  m.run(30.0);
+  ASSERT_EQ(m.d.pose()->source, "map+odometry");
+}
+
+TEST(EstimatorPlace, AWrongPlaceFoundAnewIsRefusedWhileSatellitesSayThatItIsNot) {
+  Mapped m;
+  drive_by_both(m);
+  m.off_east_m = 8.0;  // a hall that looks alike
+  ++m.found;
+  m.run(10.0);
+  EXPECT_LT(m.d.position_error_m(), 1.0);
+  EXPECT_EQ(m.d.estimator.health().resets, 1u) << "that of the first heading";
+}
+
+TEST(EstimatorPlace, NorAfterItWasLost) {
+  Mapped m;
+  drive_by_both(m);
+  m.phase = PlacePhase::Lost;
+  m.run(0.5);
+  m.phase = PlacePhase::Known;
+  m.off_east_m = 8.0;
+  ++m.found;
+  m.run(10.0);
+  EXPECT_LT(m.d.position_error_m(), 1.0);
+}
+
+TEST(EstimatorPlace, SatellitesThatMeanTheNewPlaceAsWellDoNotObject) {
+  Mapped m;
+  drive_by_both(m);
+  m.d.east_m += 8.0;  // carried
+  ++m.found;
+  m.run(3.0);
+  EXPECT_LT(m.d.position_error_m(), 0.1);
+  EXPECT_EQ(m.d.estimator.health().last_reset->what, "map");
+}
+
+TEST(EstimatorPlace, RefusalsLongAgoDoNotCount) {
+  Mapped m;
+  m.d.gnss = m.d.compass = false;
+  m.run(5.0);
+  for (int i = 0; i < 8; ++i) {  // now and then one scan that fits elsewhere
+    m.map = false;
+    m.run(1.3);
+    m.map = true;
+    m.off_east_m = 5.0;
+    m.run(0.1);
+  }
+  EXPECT_LT(m.d.position_error_m(), 0.1);
+}
+
 TEST(EstimatorPlace, WrongSatellitesInTheHallAreNotBelieved) {
   Mapped m;
   m.d.gnss = m.d.compass = false;
