@@ -74,6 +74,7 @@ void Tracker::set_pose(const Pose2& in_map, double deviation_m, double deviation
   covariance_.diagonal() << place * place, place * place, turn * turn;
   phase_ = Phase::Tracking;
   told_ = true;
+  fitted_ = false;
   bad_m_ = 0.0;
   bad_scans_ = 0;
   last_stamp_.reset();
@@ -83,7 +84,7 @@ void Tracker::set_pose(const Pose2& in_map, double deviation_m, double deviation
 
 void Tracker::forget() {
   phase_ = Phase::Searching;
-  told_ = false;
+  told_ = fitted_ = false;
   last_stamp_.reset();
   start_.clear();
 }
@@ -109,6 +110,7 @@ Told Tracker::feed(const chart::Scan& scan, const Pose2& odometry) {
 Told Tracker::answer(Told told) const {
   told.phase = phase_;
   told.resets = resets_;
+  told.fitted = fitted_;
   if (phase_ == Phase::Tracking || phase_ == Phase::Doubtful) {
     told.pose = field_->shape().origin * pose_;
   }
@@ -172,6 +174,7 @@ void Tracker::track(const chart::Scan& scan, const Pose2& step, Told& told) {
   depth_m_ = match.depth_m;
   depth_deviation_m_ = std::max(match.depth_deviation_m, kDepthSurest_m);
   told_ = false;
+  fitted_ = true;
   bad_m_ = 0.0;
   bad_scans_ = 0;
   phase_ = Phase::Tracking;
@@ -225,7 +228,7 @@ void Tracker::search(const chart::Scan& scan, const Pose2& step, Told& told) {
   phase_ = Phase::Tracking;
   bad_m_ = 0.0;
   bad_scans_ = 0;
-  told_ = false;
+  told_ = fitted_ = false;
   ++resets_;
   start_.clear();
   track(scan, Pose2{}, told);

@@ -74,6 +74,7 @@ struct Told {
   std::optional<Fix> fix;      ///< only while Tracking, of a scan that fits
   Agreement agreement;         ///< of this scan at the pose
   std::size_t candidates = 0;  ///< places still followed while searching
+  bool fitted = false;         ///< a scan fitted since the pose was told; else it is a guess
   std::uint32_t resets = 0;    ///< how often the pose was taken anew: it may have jumped then
   std::string_view reason;     ///< one phrase for people
 };
@@ -117,7 +118,8 @@ class Tracker {
   Pose2 last_odometry_;
   double depth_m_ = 0.0;  ///< of the walls of this map for this scanner (match.hpp)
   double depth_deviation_m_ = 0.0;
-  bool told_ = false;  ///< set_pose since the last scan: the window is wide
+  bool told_ = false;    ///< set_pose since the last scan: the window is wide
+  bool fitted_ = false;  ///< a scan since the pose was told or found
   double bad_m_ = 0.0;
   std::uint32_t bad_scans_ = 0;
   std::uint32_t resets_ = 0;

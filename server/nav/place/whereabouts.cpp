@@ -15,13 +15,14 @@ namespace {
 
 constexpr double kOtherEyeAfter_s = 1.0;
 
-base::PlacePhase phase_for_people(Phase p) noexcept {
+/// @param fitted a scan did since the pose was told: else it is looked for, whatever was told.
+base::PlacePhase phase_for_people(Phase p, bool fitted) noexcept {
   switch (p) {
     case Phase::Searching:
       return base::PlacePhase::Searching;
     case Phase::Tracking:
     case Phase::Doubtful:
-      return base::PlacePhase::Known;
+      return fitted ? base::PlacePhase::Known : base::PlacePhase::Searching;
     case Phase::Lost:
       return base::PlacePhase::Lost;
   }
@@ -139,9 +140,10 @@ std::optional<base::PlaceState> Whereabouts::see(const base::Sight& sight, const
   base::PlaceState state;
   state.stamp = scan->stamp;
   state.map = map_->name;
-  state.phase = phase_for_people(told.phase);
+  state.phase = phase_for_people(told.phase, told.fitted);
   state.reason = told.reason;
-  if (told.pose) state.in_map = base::MapPlace{told.pose->x_m, told.pose->y_m, told.pose->yaw_rad};
+  if (told.pose && told.fitted)
+    state.in_map = base::MapPlace{told.pose->x_m, told.pose->y_m, told.pose->yaw_rad};
   if (!told.fix) return state;
   const Eigen::Matrix3d& c = told.fix->covariance;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(c.topLeftCorner<2, 2>());

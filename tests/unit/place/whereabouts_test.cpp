@@ -184,6 +184,19 @@ TEST(Whereabouts, IsLostWithinThreeMetresOfBeingCarriedAway) {
   EXPECT_NE(told->reason.find("drive by hand"), std::string::npos);
 }
 
+TEST(Whereabouts, CallsNoPlaceKnownThatNothingFits) {
+  Walk w({2.5, 3.0, 0.1});
+  w.walls = tests::other_building();
+  w.where.use(Walk::map(MapAnchor{kShedAt, kTurned_rad, 0.1}), w.now());
+  ASSERT_TRUE(w.where.told({w.global(), w.at.yaw_rad + kTurned_rad}));
+  for (int i = 0; i < 20; ++i) {
+    const auto told = w.step(0.02, 0.0);
+    ASSERT_TRUE(told);
+    EXPECT_NE(told->phase, PlacePhase::Known) << i;
+    EXPECT_FALSE(told->in_map) << i;
+  }
+}
+
 TEST(Whereabouts, LooksThroughOneSensorAndTenTimesASecond) {
   Walk w({2.5, 3.0, 0.1});
   w.where.use(Walk::map(MapAnchor{kShedAt, kTurned_rad, 0.1}), w.now());
