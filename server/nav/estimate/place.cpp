@@ -185,11 +185,12 @@ void Estimator::fuse_place(const base::PlaceFix& fix, Time stamp) noexcept {
     lead_until_ = placed_ ? std::nullopt : std::optional(now_ + std::chrono::minutes(2));
   }
   o.R *= std::max(1.0, kTogether_s / since_s);
-  if (lead_until_) weaken(o, since_s);
+  const bool slowly = lead_until_.has_value();
+  if (slowly) weaken(o, since_s);
   if (lead_until_) only_the_place(o);
   o.gate = 0.0;  // it was asked before it was weakened
   std::optional<Belief> before;
-  if (anew) before = belief_;
+  if (anew || (slowly && !lead_until_)) before = belief_;  // it took too long: the rest is a jump
   if (!apply(health_.place, o)) return refuse(health_.place, Refusal::Jump);
   fuse_place_heading(fix, at, since_s);
   if (before && !lead_until_) {

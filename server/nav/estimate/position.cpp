@@ -243,7 +243,9 @@ void Estimator::fuse_position(const base::GnssFix& fix, const GnssQuality& q) no
   o.R(0, 0) = q.sigma_east_m * q.sigma_east_m + weak_m * weak_m;
   o.R(1, 1) = q.sigma_north_m * q.sigma_north_m + weak_m * weak_m;
   o.gate = kGate2;
-  if (approaching_) approach(o);
+  const bool slowly = approaching_;
+  if (slowly) approach(o);
+  const bool late = slowly && !approaching_ && approach_mps_ < kApproach_mps;
   if (approaching_ && approach_mps_ < kApproach_mps) only_the_place(o);
   if (q.drift.sigma_m <= 0.0 && !approaching_) watch_slip(o, at(kYaw), fix.stamp);
   if (standing_) {
@@ -252,10 +254,11 @@ void Estimator::fuse_position(const base::GnssFix& fix, const GnssQuality& q) no
     o.may_change(kDriftE) = o.may_change(kDriftN) = 1.0;
     if (!hold) o.may_change(kEast) = o.may_change(kNorth) = 1.0;
   }
-  // Doubt has opened the gate: what comes through it moves the position at once, and is told.
+  // Doubt has opened the gate, or the slow way took too long: what comes through moves the position
+  // at once, and is told.
   std::optional<Belief> before;
   const bool doubted = doubted_m_ > 0.0;
-  if (doubted ||
+  if (doubted || late ||
       (position_off_since_ && seconds(fix.stamp - *position_off_since_) > doubt_after_s(q))) {
     before = belief_;
   }
