@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
 #include "base/angle.hpp"
 #include "nav/estimate/estimator.hpp"
 
@@ -109,15 +112,29 @@ void Estimator::take(const base::PlaceState& told) {
 void Estimator::first_place(const base::PlaceFix& fix, Time stamp) noexcept {
   const Belief before = belief_;
   const Eigen::Matrix2d r = place_covariance(fix);
-  const bool was_located = located_;
+  const auto past = history_.at(stamp);
+  const StateVector at = past ? past->x : belief_.x;
+  const base::EnuPoint seen = frame_->to_local(fix.at);
+  if (located_) {  // so its heading is not known: not by a place that is not its own
+    const Eigen::Vector2d off{seen.east_m + health_.map_offset.east_m - at(kEast),
+                              seen.north_m + health_.map_offset.north_m - at(kNorth)};
+    const Eigen::Matrix2d anchor =
+        map_offset_sigma_m_ * map_offset_sigma_m_ * Eigen::Matrix2d::Identity();
+    const Eigen::Matrix2d S = belief_.P.block<2, 2>(kEast, kEast) + anchor + r;
+    const bool near = off.dot(S.inverse() * off) <= kGate2 || (placed_ && off.norm() < kTap_m);
+    if (!near) return place_refused(fix, stamp, {off(0), off(1)});
+  }
+  const double turned = base::angle_diff_rad(at(kYaw), belief_.x(kYaw));
+  // Its way since then went by the heading of then.
+  const double askew = heading_known_ ? 0.0 : base::angle_diff_rad(at(kYaw), fix.yaw_rad);
+  const Eigen::Vector2d way{belief_.x(kEast) - at(kEast), belief_.x(kNorth) - at(kNorth)};
+  const Eigen::Vector2d since = Eigen::Rotation2Dd(askew) * way;
   if (!heading_known_) {
-    const auto past = history_.at(stamp);
-    const double turned = past ? base::angle_diff_rad(past->x(kYaw), belief_.x(kYaw)) : 0.0;
     set_heading(fix.yaw_rad + turned, std::sqrt(yaw_variance(fix)));
     note_reset("map", before);
   }
-  if (was_located) return;  // its place is the next one's matter
-  move(frame_->to_local(fix.at), std::sqrt(std::max(r(0, 0), r(1, 1))));
+  if (located_) return;  // its place is the next one's matter
+  move({seen.east_m + since(0), seen.north_m + since(1)}, std::sqrt(std::max(r(0, 0), r(1, 1))));
   located_since_ = now_;
   located_ = true;
   lead_by_map(stamp);

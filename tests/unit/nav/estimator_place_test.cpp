@@ -146,6 +146,33 @@ TEST(EstimatorPlace, FixedSatellitesLeadAndShowByHowMuchTheAnchorIsOff) {
   EXPECT_EQ(m.d.estimator.health().resets, 0u);
 }
 
+TEST(EstimatorPlace, TakesNoHeadingFromAPlaceThatIsNotItsOwn) {
+  Mapped m;
+  m.d.compass = false;
+  m.map = false;
+  m.run(5.0);
+  ASSERT_TRUE(m.d.pose());
+  ASSERT_FALSE(m.d.estimator.heading_known());
+  m.map = true;
+  m.off_east_m = 20.0;
+  m.askew_rad = 2.0;
+  m.run(5.0);
+  EXPECT_FALSE(m.d.estimator.heading_known());
+  m.off_east_m = m.askew_rad = 0.0;
+  m.run(1.0);
+  EXPECT_TRUE(m.d.estimator.heading_known());
+  EXPECT_LT(std::abs(m.d.yaw_error_deg()), 1.0);
+}
+
+TEST(EstimatorPlace, BringsTheFirstPlaceForwardToNow) {
+  Mapped m;
+  m.d.gnss = m.d.compass = false;
+  m.d.yaw_rad = 0.7;
+  m.d.speed_mps = 2.0;
+  while (!m.d.pose()) m.run(0.02);
+  EXPECT_LT(m.d.position_error_m(), 0.05) << "60 ms late: 0.12 m";
+}
+
 TEST(EstimatorPlace, GoesToSatellitesThatComeBackSlowly) {
   Mapped m;
   m.d.gnss = m.d.compass = false;
