@@ -46,6 +46,7 @@
 #include "nav/estimate/gyro.hpp"
 #include "nav/estimate/history.hpp"
 #include "nav/estimate/learned.hpp"
+#include "nav/estimate/map_offset.hpp"
 #include "nav/estimate/noise_watch.hpp"
 #include "nav/estimate/params.hpp"
 #include "nav/estimate/receivers.hpp"
@@ -336,12 +337,13 @@ class Estimator {
     double sigma_m = 0.0;
   };
   std::optional<Beside> beside_;
+  std::optional<Time> offset_learned_at_;
   std::optional<Time> map_off_since_;
   std::optional<Time> map_refused_at_;
   int map_refused_ = 0;
   std::uint32_t map_ = 0;
   std::uint32_t map_found_ = 0;
-  double map_offset_sigma_m_ = 0.0;
+  MapOffset map_offset_;            ///< of health().map_offset
   double map_yaw_sigma_rad_ = 0.0;  ///< of the map's own heading on the earth
   bool map_lost_ = false;
   std::optional<double> alt_msl_m_;

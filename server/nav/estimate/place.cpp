@@ -25,8 +25,6 @@ constexpr double kTogether_s = 1.0;   // matches within it are wrong in the same
 constexpr double kAgree_m = 1.0;      // satellites and map mean one place
 constexpr double kLostDoubt_m = 5.0;  // whoever was carried may be anywhere
 constexpr double kTold_m = 0.2;
-constexpr double kShare = 0.1;  // of what is new of the map's offset
-constexpr double kOffset_m = 0.02;
 constexpr base::Duration kSetAnewAfter = std::chrono::seconds(1);
 constexpr int kSetAnewFixes = 5;
 constexpr base::Duration kAgainAndAgain = std::chrono::seconds(1);  // from refusal to refusal
@@ -101,7 +99,7 @@ void Estimator::take(const base::PlaceState& told) {
   if (fix.map != map_) {
     map_ = fix.map;
     health_.map_offset = {};
-    map_offset_sigma_m_ = fix.anchor_sigma_m;
+    map_offset_.begin(fix.anchor_sigma_m);
     map_found_ = fix.found;
   }
   if (!located_ || !heading_known_) return first_place(fix, told.stamp);
@@ -118,9 +116,7 @@ void Estimator::first_place(const base::PlaceFix& fix, Time stamp) noexcept {
   if (located_) {  // so its heading is not known: not by a place that is not its own
     const Eigen::Vector2d off{seen.east_m + health_.map_offset.east_m - at(kEast),
                               seen.north_m + health_.map_offset.north_m - at(kNorth)};
-    const Eigen::Matrix2d anchor =
-        map_offset_sigma_m_ * map_offset_sigma_m_ * Eigen::Matrix2d::Identity();
-    const Eigen::Matrix2d S = belief_.P.block<2, 2>(kEast, kEast) + anchor + r;
+    const Eigen::Matrix2d S = belief_.P.block<2, 2>(kEast, kEast) + map_offset_.covariance() + r;
     const bool near = off.dot(S.inverse() * off) <= kGate2 || (placed_ && off.norm() < kTap_m);
     if (!near) return place_refused(fix, stamp, {off(0), off(1)});
   }
@@ -149,14 +145,22 @@ void Estimator::follow_satellites(const base::PlaceFix& fix, Time stamp) noexcep
   const base::EnuPoint z = frame_->to_local(fix.at);
   const base::EnuPoint off{at(kEast) - z.east_m, at(kNorth) - z.north_m};
   const double far_m = base::distance_m(off, health_.map_offset);
-  if (far_m > kAgree_m + 3.0 * map_offset_sigma_m_) {
+  if (far_m > kAgree_m + 3.0 * map_offset_.sigma_m()) {
+    forget_refused();
     return refuse(health_.place, Refusal::Jump);
   }
-  const double share = map_offset_sigma_m_ > kOffset_m ? 1.0 : kShare;
+  // Along what the map shows only: a bare corridor says nothing of the way along it.
+  const Eigen::Matrix2d r = place_covariance(fix) + belief_.P.block<2, 2>(kEast, kEast);
+  const double since_s = offset_learned_at_
+                             ? std::clamp(seconds(now_ - *offset_learned_at_), 0.02, kTogether_s)
+                             : kTogether_s;
+  offset_learned_at_ = now_;
+  const Eigen::Matrix2d gain = map_offset_.learn(r * (kTogether_s / since_s));
   base::EnuPoint& offset = health_.map_offset;
-  offset = {offset.east_m + share * (off.east_m - offset.east_m),
-            offset.north_m + share * (off.north_m - offset.north_m)};
-  map_offset_sigma_m_ = std::min(map_offset_sigma_m_, kOffset_m);
+  const Eigen::Vector2d by =
+      gain * Eigen::Vector2d{off.east_m - offset.east_m, off.north_m - offset.north_m};
+  offset = {offset.east_m + by(0), offset.north_m + by(1)};
+  forget_refused();
   health_.place.refused_since.reset();
 }
 
@@ -222,9 +226,8 @@ void Estimator::fuse_place(const base::PlaceFix& fix, Time stamp) noexcept {
 /// Does it lie where it can, by what both and the map's anchor honestly err?
 bool Estimator::believable(const Observation<2>& o, const base::PlaceFix& fix,
                            double yaw_rad) const noexcept {
-  const double anchor_m = health_.by_map ? 0.0 : map_offset_sigma_m_;
   Eigen::Matrix2d S = o.H * belief_.P * o.H.transpose() + o.R;
-  S += anchor_m * anchor_m * Eigen::Matrix2d::Identity();
+  if (!health_.by_map) S += map_offset_.covariance();
   const double turned = base::angle_diff_rad(yaw_rad, fix.yaw_rad);
   return o.innovation.dot(S.inverse() * o.innovation) <= kGate2 &&
          turned * turned <= 2.0 * kGate1 * (belief_.P(kYaw, kYaw) + yaw_variance(fix));
@@ -233,13 +236,11 @@ bool Estimator::believable(const Observation<2>& o, const base::PlaceFix& fix,
 /// Who leads until now may be surer than the anchor: then it is the anchor that is off, for as long
 /// as this map is in use.
 void Estimator::share_with_anchor(Observation<2>& o) noexcept {
-  const double anchor = map_offset_sigma_m_ * map_offset_sigma_m_;
-  const double believed = std::max(belief_.P(kEast, kEast), belief_.P(kNorth, kNorth));
-  const double share = anchor / (anchor + believed + std::max(o.R(0, 0), o.R(1, 1)));
+  const Eigen::Matrix2d believed = belief_.P.block<2, 2>(kEast, kEast);
+  const Eigen::Vector2d by = map_offset_.learn(believed + o.R) * o.innovation;
   base::EnuPoint& offset = health_.map_offset;
-  offset = {offset.east_m - share * o.innovation(0), offset.north_m - share * o.innovation(1)};
-  o.innovation *= 1.0 - share;
-  map_offset_sigma_m_ *= std::sqrt(1.0 - share);
+  offset = {offset.east_m - by(0), offset.north_m - by(1)};
+  o.innovation -= by;
 }
 
 /// Two sources differ: that says nothing of slip, heading or scale.
@@ -334,7 +335,7 @@ bool Estimator::beside_the_map(const base::GnssFix& fix, const GnssQuality& q) n
   beside_ = Beside{now_, off, sigma_m};
   const bool fixed = q.drift.sigma_m <= 0.0 && fix_trust_.settled();
   if (map_is_fresh()) {
-    const bool agree = off_m < kAgree_m + 3.0 * map_offset_sigma_m_;
+    const bool agree = off_m < kAgree_m + 3.0 * map_offset_.sigma_m();
     if (!fixed || !agree) return learn_beside_the_map(off, fix, q);
   }
   // They lead from now on. Nothing jumps: what they differ by is driven out slowly.

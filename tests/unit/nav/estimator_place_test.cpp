@@ -26,6 +26,7 @@ class Mapped {
   Drive d;
   bool map = true;
   PlacePhase phase = PlacePhase::Known;
+  double off_north_m = 0.0;
   double off_east_m = 0.0;  ///< of the map's anchor, or of a wrong place in it
   double sigma_m = 0.02;
   double along_m = 0.0;  ///< > 0: a corridor to the north, so uncertain along it
@@ -70,7 +71,7 @@ class Mapped {
     s.map = "shed";
     if (map && phase == PlacePhase::Known) {
       base::PlaceFix f;
-      f.at = frame_.to_global({was.east_m + off_east_m, was.north_m});
+      f.at = frame_.to_global({was.east_m + off_east_m, was.north_m + off_north_m});
       f.yaw_rad = was.yaw_rad + askew_rad;
       const double north_m = along_m > 0.0 ? along_m : sigma_m;
       f.covariance = {sigma_m * sigma_m, 0.0, north_m * north_m, 0.0, 0.0, 1e-4};
@@ -144,6 +145,20 @@ TEST(EstimatorPlace, FixedSatellitesLeadAndShowByHowMuchTheAnchorIsOff) {
   EXPECT_EQ(m.d.pose()->source, "gnss+odometry");
   EXPECT_LT(m.fastest_mps, 0.1);
   EXPECT_EQ(m.d.estimator.health().resets, 0u);
+}
+
+TEST(EstimatorPlace, LearnsNothingOfTheAnchorAlongABareCorridor) {
+  Mapped m;
+  m.d.speed_mps = 1.0;
+  m.map = false;
+  m.run(20.0);
+  m.map = true;
+  m.off_east_m = 0.4;
+  m.off_north_m = 0.7;  // the matcher slides along the corridor
+  m.along_m = 5.0;
+  m.run(10.0);
+  EXPECT_NEAR(m.d.estimator.health().map_offset.east_m, -0.4, 0.03);
+  EXPECT_NEAR(m.d.estimator.health().map_offset.north_m, 0.0, 0.1);
 }
 
 TEST(EstimatorPlace, TakesNoHeadingFromAPlaceThatIsNotItsOwn) {
