@@ -67,6 +67,19 @@ Tracker::Tracker(std::shared_ptr<const Field> field, const TrackerParams& params
 
 void Tracker::set_pose(const Pose2& in_map, double deviation_m, double deviation_rad) {
   if (!finite(in_map)) return;
+  begin_at(in_map, deviation_m, deviation_rad);
+  suggested_.reset();
+  last_stamp_.reset();
+  start_.clear();
+  ++resets_;
+}
+
+void Tracker::suggest(const Pose2& in_map, double deviation_m, double deviation_rad) {
+  if (!finite(in_map) || !searches()) return;
+  suggested_ = Suggested{in_map, deviation_m, deviation_rad};
+}
+
+void Tracker::begin_at(const Pose2& in_map, double deviation_m, double deviation_rad) {
   pose_ = inverse(field_->shape().origin) * in_map;
   const double place = std::clamp(deviation_m, 0.05, 1.0);
   const double turn = std::clamp(deviation_rad, 0.02, base::kPi / 3.0);
@@ -77,12 +90,10 @@ void Tracker::set_pose(const Pose2& in_map, double deviation_m, double deviation
   fitted_ = false;
   bad_m_ = 0.0;
   bad_scans_ = 0;
-  last_stamp_.reset();
-  start_.clear();
-  ++resets_;
 }
 
 void Tracker::forget() {
+  suggested_.reset();
   phase_ = Phase::Searching;
   told_ = fitted_ = false;
   last_stamp_.reset();
@@ -101,7 +112,7 @@ Told Tracker::feed(const chart::Scan& scan, const Pose2& odometry) {
   last_odometry_ = odometry;
   if (phase_ == Phase::Tracking || phase_ == Phase::Doubtful) {
     track(scan, step, told);
-  } else {
+  } else if (!suggested_ || !tries(scan, told)) {
     search(scan, step, told);
   }
   return answer(std::move(told));
@@ -215,6 +226,25 @@ void Tracker::bad(const Pose2& step) {
     phase_ = Phase::Lost;
     start_.clear();
   }
+}
+
+/// @return false: nothing fits at the suggested place, the search goes on
+bool Tracker::tries(const chart::Scan& scan, Told& told) {
+  const Phase before = phase_;
+  const Suggested there = *std::exchange(suggested_, std::nullopt);
+  begin_at(there.in_map, there.deviation_m, there.deviation_rad);
+  track(scan, Pose2{}, told);
+  if (phase_ == Phase::Doubtful || phase_ == Phase::Lost) {
+    phase_ = before;
+    told_ = false;
+    told.agreement = {};
+    return false;
+  }
+  if (phase_ == Phase::Tracking) {
+    ++resets_;
+    start_.clear();
+  }
+  return true;  // known; or more than one place around it fits, and some way decides
 }
 
 void Tracker::search(const chart::Scan& scan, const Pose2& step, Told& told) {

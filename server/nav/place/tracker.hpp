@@ -87,6 +87,9 @@ class Tracker {
   /// @param deviation_m, deviation_rad how sure that is; the search reaches three times as far, at
   /// least as far as it always does, at most 3 m and half a turn.
   void set_pose(const Pose2& in_map, double deviation_m, double deviation_rad);
+  /// While it is searched: looks there with the next scan, X_MB at its time. Where that does not
+  /// fit, the search goes on as if nothing had been said. Else ignored.
+  void suggest(const Pose2& in_map, double deviation_m, double deviation_rad);
   /// Starts without any pose.
   void forget();
 
@@ -101,6 +104,9 @@ class Tracker {
  private:
   void track(const chart::Scan& scan, const Pose2& step, Told& told);
   void search(const chart::Scan& scan, const Pose2& step, Told& told);
+  bool tries(const chart::Scan& scan, Told& told);
+  void begin_at(const Pose2& in_map, double deviation_m, double deviation_rad);
+  bool searches() const noexcept { return phase_ == Phase::Searching || phase_ == Phase::Lost; }
   void predict(const Pose2& step);
   bool has_rival(const chart::Scan& scan, const std::vector<Point>& few,
                  const std::vector<Point>& hits, const Match& match, double log_fit,
@@ -110,7 +116,13 @@ class Tracker {
 
   std::shared_ptr<const Field> field_;
   TrackerParams p_;
+  struct Suggested {
+    Pose2 in_map;
+    double deviation_m, deviation_rad;
+  };
+
   Phase phase_ = Phase::Searching;
+  std::optional<Suggested> suggested_;
   Pose2 pose_;                                            ///< X_GB
   Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();  ///< of pose_
   GlobalStart start_;

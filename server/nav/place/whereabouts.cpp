@@ -42,6 +42,7 @@ base::PlaceState Whereabouts::use(std::shared_ptr<const MapInUse> map, base::Tim
   tracker_.reset();
   anchor_.reset();
   started_.reset();
+  again_s_ = kAgain_s;
   base::PlaceState state;
   state.stamp = now;
   if (!map_ || !map_->field) return state;
@@ -73,12 +74,14 @@ bool Whereabouts::told(const Word& word) {
 void Whereabouts::start_by_satellites(const Believed& b, base::Time stamp) {
   const bool searches = tracker_->phase() == Phase::Searching || tracker_->phase() == Phase::Lost;
   const bool sure = b.by_satellites && b.sigma_m <= kSure_m && b.yaw_sigma_rad <= kSure_rad;
-  const bool again = !started_ || base::seconds(stamp - *started_) >= kAgain_s;
+  const bool again = !started_ || base::seconds(stamp - *started_) >= again_s_;
   if (!searches || !sure || !again || !anchor_) return;
+  // Where two places there are alike, a start begins anew what some way has to decide.
+  again_s_ = started_ ? std::min(2.0 * again_s_, kAgainAtMost_s) : kAgain_s;
   started_ = stamp;
   const double sigma_m = std::hypot(b.sigma_m, anchor_->sigma_m);
-  tracker_->set_pose(on_map(b.at, b.yaw_rad), std::clamp(sigma_m, 0.1, 1.0),
-                     std::max(0.1, std::hypot(b.yaw_sigma_rad, anchor_->yaw_sigma_rad)));
+  tracker_->suggest(on_map(b.at, b.yaw_rad), std::clamp(sigma_m, 0.1, 1.0),
+                    std::max(0.1, std::hypot(b.yaw_sigma_rad, anchor_->yaw_sigma_rad)));
 }
 
 /// Such that what is believed now and the place in the map are one: X_EM = X_EB · X_BM.
@@ -145,6 +148,8 @@ std::optional<base::PlaceState> Whereabouts::see(const base::Sight& sight, const
   if (told.pose && told.fitted)
     state.in_map = base::MapPlace{told.pose->x_m, told.pose->y_m, told.pose->yaw_rad};
   if (!told.fix) return state;
+  started_.reset();
+  again_s_ = kAgain_s;
   const Eigen::Matrix3d& c = told.fix->covariance;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(c.topLeftCorner<2, 2>());
   state.sigma_m = std::sqrt(std::max(0.0, axes.eigenvalues()(1)));

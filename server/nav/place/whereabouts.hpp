@@ -73,7 +73,8 @@ class Whereabouts {
   static constexpr double kSure_rad = 0.2;
   /// A map that is laid askew turns every course in it: surer of the heading than for a start.
   static constexpr double kLay_rad = 0.03;
-  static constexpr double kAgain_s = 3.0;  ///< the next start by satellites
+  static constexpr double kAgain_s = 3.0;  ///< the next start by satellites, doubled each time
+  static constexpr double kAgainAtMost_s = 60.0;
   /// A tap is off by so much (1 sigma).
   static constexpr double kTap_m = 0.5;
   static constexpr double kTap_rad = 0.26;
@@ -106,7 +107,8 @@ class Whereabouts {
   std::string eye_;  ///< the sensor that is looked through
   std::optional<base::Time> eye_seen_;
   std::optional<base::Time> taken_;
-  std::optional<base::Time> started_;
+  std::optional<base::Time> started_;  ///< by satellites, since it was known
+  double again_s_ = kAgain_s;
 };
 
 }  // namespace roverd::nav::place

@@ -110,6 +110,19 @@ TEST(Whereabouts, BeginsWhereSatellitesSeeTheRobotWithoutASearch) {
   EXPECT_LT(apart_m(told->fix->at, w.global()), 0.04);
 }
 
+TEST(Whereabouts, SearchesOnWhereSatellitesSeeItAtAPlaceThatDoesNotFit) {
+  Walk w({2.5, 3.0, 0.1});
+  w.where.use(Walk::map(MapAnchor{kShedAt, kTurned_rad, 0.1}), w.now());
+  std::optional<base::PlaceState> told;
+  for (int i = 0; i < 40 && !(told && told->fix); ++i) {
+    Believed wrong = w.by_satellites(0.4);
+    wrong.at = base::destination(wrong.at, 90.0, 30.0);  // beside a wall of glass
+    told = w.step(0.03, 0.03, wrong);
+  }
+  ASSERT_TRUE(told && told->fix) << "within 1.2 m";
+  EXPECT_LT(apart_m(told->fix->at, w.global()), 0.1);
+}
+
 TEST(Whereabouts, LaysAMapWithoutAnAnchorWhereTheSatellitesSeeTheRobot) {
   Walk w({2.5, 3.0, 0.1});
   w.where.use(Walk::map({}), w.now());
