@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::array kParts{1.0, 0.8, 0.6, 0.4, 0.2, 0.0};
 constexpr double kLookEvery_s = 0.075;
+constexpr double kFarthest_s = 10.0;   // nobody goes straight on for longer; bounds the tick
 constexpr double kMostUnsure_m = 0.4;  // what is known of him, is known better than this
 constexpr double kComesNearer_m = 0.01;
 constexpr std::size_t kMostOf = 16;
@@ -84,8 +85,8 @@ Foreseen foresee(std::span<const Mover> movers, const Odometry& now, const Footp
   const double goes_on = std::max(0.0, measured);
   const double brake_s = std::max(v / params.decel_mps2, w / params.turn_decel_radps2);
   const auto horizon_s = [&](double part) {
-    return std::max(params.foresee_s,
-                    params.delay_s + std::max(part, goes_on) * brake_s + kLookEvery_s);
+    const double brakes_s = params.delay_s + std::max(part, goes_on) * brake_s + kLookEvery_s;
+    return std::max(params.foresee_s, std::min(brakes_s, kFarthest_s));
   };
   const double fastest_mps = std::max(1.0, goes_on) * (v + w * all.reach_m());
   const double c = std::cos(now.pose.yaw_rad);

@@ -15,7 +15,7 @@
 //
 // Of more than 16 the nearest count. Pure; allocates nothing: for the control tick. Without movers
 // nothing is reckoned; with one whom the body may meet up to 12 · 40 looks, more where it brakes
-// for longer than foresee_s.
+// for longer than foresee_s: 10 s ahead at most.
 
 #include <cstdint>
 #include <span>
