@@ -205,6 +205,7 @@ struct GnssParams {
   bool antennas = false;
   double antennas_noise_deg = 0.3;
   double antennas_offset_deg = 0.0;
+  double velocity_lag_s = 0.0;
 };
 
 template <class V>
@@ -213,6 +214,8 @@ void fields(V& v, GnssParams& p) {
     "rtk, float, consumer or plain: the receiver's fix class and its errors; plain is a consumer's "
     "with errors of several time constants, Doppler's too");
   v("rate_hz", p.rate_hz, 1.0, 10.0, "epochs a second, on whole fractions of the UTC second");
+  v("velocity_lag_s", p.velocity_lag_s, 0.0, 1.0,
+    "by which the velocity follows the motion, as of a receiver that filters it");
   v("latency_s", p.latency_s, 0.0, 2.0, "from the epoch to the last byte of its sentences");
   v("noise_scale", p.noise_scale, 0.0, 20.0, "times the profile's position and velocity noise");
   v("antenna_forward_m", p.antenna_forward_m, -3.0, 3.0, "antenna ahead of the body's origin");

@@ -111,6 +111,7 @@ std::string Receiver::step(const Params& p, const Faults& faults, const BodyStat
   const double dt_s = last_step_ ? base::seconds(now.time - *last_step_) : 0.0;
   last_step_ = now.time;
   kick_.step(p.compass, motor_difference_a, dt_s);
+  feel(now, p.gnss.velocity_lag_s, dt_s);
 
   if (now.own_gnss) {
     if (!now.fix) return {};
@@ -123,7 +124,12 @@ std::string Receiver::step(const Params& p, const Faults& faults, const BodyStat
   const bool is_new = last_epoch_ ? epoch > *last_epoch_ : age == base::Duration::zero();
   if (!last_epoch_) last_epoch_ = epoch;
   if (is_new) {
-    Epoch seen = measure(p, faults, earlier(now, age));
+    BodyState then = earlier(now, age);
+    if (p.gnss.velocity_lag_s > 0.0) {
+      then.east_mps = felt_mps_->east_m;
+      then.north_mps = felt_mps_->north_m;
+    }
+    Epoch seen = measure(p, faults, then);
     corrupt(seen, faults);
     last_epoch_ = epoch;
     if (!faults.gnss_repeats || !last_text_) last_text_ = sentences(seen);
@@ -135,6 +141,15 @@ std::string Receiver::step(const Params& p, const Faults& faults, const BodyStat
     pending_.pop_front();
   }
   return out;
+}
+
+/// A filter of the first order: behind an even acceleration by just its lag.
+void Receiver::feel(const BodyState& now, double lag_s, double dt_s) {
+  const base::EnuPoint mps{now.east_mps, now.north_mps};
+  if (!felt_mps_ || lag_s <= 0.0) felt_mps_ = mps;
+  const double part = -std::expm1(-dt_s / std::max(1e-3, lag_s));
+  felt_mps_->east_m += part * (mps.east_m - felt_mps_->east_m);
+  felt_mps_->north_m += part * (mps.north_m - felt_mps_->north_m);
 }
 
 Epoch Receiver::measure(const Params& p, const Faults& faults, BodyState truth) {

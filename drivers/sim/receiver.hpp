@@ -107,6 +107,7 @@ class Receiver {
   };
   Epoch measure(const Params& p, const Faults& faults, BodyState truth);
   Added noise(const FixErrors& e, double dt_s);
+  void feel(const BodyState& now, double lag_s, double dt_s);
   /// Whatever the receiver tells although it is not so.
   void lie(Added& added, const Faults& faults, base::FixType fix, double dt_s);
   void look(Epoch& epoch, const Params& p, const BodyState& truth, const Added& added) const;
@@ -130,9 +131,10 @@ class Receiver {
   std::optional<Time> last_epoch_;
   std::optional<Time> last_step_;
   std::deque<Pending> pending_;
-  base::EnuPoint run_away_;               ///< by gnss_drift_*
-  std::optional<Epoch> last_told_;        ///< what a frozen receiver repeats of it
-  std::optional<std::string> last_text_;  ///< what one repeats that hangs
+  base::EnuPoint run_away_;                 ///< by gnss_drift_*
+  std::optional<base::EnuPoint> felt_mps_;  ///< the velocity, by velocity_lag_s behind
+  std::optional<Epoch> last_told_;          ///< what a frozen receiver repeats of it
+  std::optional<std::string> last_text_;    ///< what one repeats that hangs
 };
 
 }  // namespace roverd::sim
