@@ -74,8 +74,11 @@ struct DriftSeen {
 /// One drive of a serpentine of 45 m at 1 m/s.
 class DriftDrive {
  public:
-  DriftDrive(std::uint64_t seed, std::uint64_t ground, const DriftLie& lie) : lie_(lie) {
+  /// @param lag_s of the receiver's velocity
+  DriftDrive(std::uint64_t seed, std::uint64_t ground, const DriftLie& lie, double lag_s = 0.0)
+      : lie_(lie) {
     RigOptions o;
+    o.plant.gnss.velocity_lag_s = lag_s;
     o.seed = seed;
     o.plant.gnss.noise_scale = 1.44;
     lay_ground(o, ground);

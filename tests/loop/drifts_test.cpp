@@ -34,5 +34,18 @@ TEST(Drifts, HonestPositionsOnGroundThatSlidesAreNeverAccused) {
   }
 }
 
+TEST(Drifts, AVelocityThatLagsHidesNoDriftAndAccusesNobody) {
+  for (std::uint64_t i = 0; i < 6; ++i) {
+    DriftDrive honest(400 + i, i, {}, 0.15);
+    EXPECT_TRUE(honest.run().arrived) << ground_name(i);
+    EXPECT_EQ(honest.accusations, 0u) << ground_name(i);
+    const DriftLie lie = drift_lie(i, 0.1, 0.8);
+    const DriftSeen seen = DriftDrive(450 + i, i, lie, 0.15).run();
+    EXPECT_GE(seen.found_s, 0.0) << i << ": " << lie.mps << " m/s, " << ground_name(i);
+    EXPECT_LE(seen.found_s, 3.0 + lie.hidden_s()) << i << ": " << lie.mps << " m/s";
+    EXPECT_LT(seen.astray_m, 0.5) << i << ": " << lie.mps << " m/s, " << ground_name(i);
+  }
+}
+
 }  // namespace
 }  // namespace roverd::loop

@@ -48,6 +48,8 @@ const Plant kPlants[] = {
        o.plant.gnss.antenna_forward_m = o.robot.estimate.antenna_forward_m = 0.6;
      }},
     {"late_receiver", [](RigOptions& o) { o.plant.gnss.latency_s = 0.3; }},
+    {"velocity_lags", [](RigOptions& o) { o.plant.gnss.velocity_lag_s = 0.15; }},
+    {"velocity_lags_more", [](RigOptions& o) { o.plant.gnss.velocity_lag_s = 0.2; }},
     {"slow_receiver", [](RigOptions& o) { o.plant.gnss.rate_hz = 1; }},
     {"float", [](RigOptions& o) { o.plant.gnss.profile = "float"; }},
     {"consumer", consumer},

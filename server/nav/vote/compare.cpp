@@ -244,7 +244,7 @@ class Comparer {
                            ? by_velocity(f_, begin, end)
                            : std::nullopt;
     if (paces) {
-      const double off = norm(spots->m - paces->m);
+      const double off = norm(without_lag(spots->m - paces->m, paces->faster_mps));
       const double limit = sigmas_ * std::hypot(spots->sigma_m, paces->sigma_m) +
                            (f_.rtk ? kWayFloorRtk_m : kWayFloor_m);
       put(Sense::Position, Sense::Velocity, {Difference::Of::Way, off, w}, limit, 0.0);
@@ -256,14 +256,14 @@ class Comparer {
 
   /// Positions that run away from the velocity, slower than two of them could show.
   void runs_apart() noexcept {
-    RunApart apart(
-        f_, std::max(f_.from[index_of(Sense::Position)], f_.from[index_of(Sense::Velocity)]));
+    RunApart apart(f_);
     for (const double w : kApartWindows_s) {
       const auto rise = apart.over(w);
-      if (!rise) return;
+      if (!rise) continue;
       const Difference off{Difference::Of::Way, norm(rise->m), apart.window_s()};
       const double limit = sigmas_ * rise->sigma_m + kApartFloor_m;
-      table_.apart = std::max(table_.apart, off.size / limit);
+      table_.apart = std::max(table_.apart.value_or(0.0), off.size / limit);
+      table_.runs_apart = table_.runs_apart || (off.size > limit && !apart.a_step());
       put(Sense::Position, Sense::Velocity, off, limit, 0.0);
     }
   }

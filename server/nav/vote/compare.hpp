@@ -113,8 +113,11 @@ struct Table {
   bool for_velocity = false;
   /// Positions and velocity see it stand while the wheels turn.
   bool spins = false;
-  /// Of its limit: how far positions that are RTK fixed have run away from the velocity.
-  double apart = 0.0;
+  /// Of its limit: how far positions that are RTK fixed have run away from the velocity. None: it
+  /// could not be judged.
+  std::optional<double> apart;
+  /// Beyond the limit, and they go on doing so: it is no single step.
+  bool runs_apart = false;
 
   const Finding& between(Sense a, Sense b) const noexcept { return of[index_of(a)][index_of(b)]; }
   bool judged(Sense a, Sense b) const noexcept { return between(a, b).judged; }

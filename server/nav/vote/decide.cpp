@@ -21,7 +21,7 @@ std::optional<Sense> of_two(const Table& table, Sense a, Sense b,
 
 bool runs_apart(const Table& table, const Verdict& verdict) noexcept {
   constexpr std::array kBoth{Sense::Position, Sense::Velocity};
-  return table.apart > 1.0 && verdict.undecided == kBoth;
+  return table.runs_apart && verdict.undecided == kBoth;
 }
 
 }  // namespace
@@ -86,7 +86,8 @@ std::optional<Sense> Jury::step(const Table& table, const std::array<bool, kSens
   }
   undecided_ = verdict.undecided ? undecided_ + 1 : 0;
   if (verdict.undecided) undecided_last_ = now;
-  const bool enough = undecided_ >= (runs_apart(table, verdict) ? kNameAfter : kUndecidedAfter);
+  runs_apart_ = runs_apart(table, verdict) ? runs_apart_ + 1 : 0;
+  const bool enough = undecided_ >= kUndecidedAfter || runs_apart_ >= kNameAfter;
   if (undecided_ == 0) undecided_told_ = false;
   if (enough && !undecided_told_) ++votes_.accusations;
   undecided_told_ = undecided_told_ || enough;
@@ -192,6 +193,8 @@ void Jury::acquit_all(Time now) noexcept {
   }
   votes_.undecided.reset();
   undecided_ = 0;
+  runs_apart_ = 0;
+  undecided_told_ = false;
 }
 
 }  // namespace roverd::nav

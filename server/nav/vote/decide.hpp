@@ -15,7 +15,8 @@
 // A look is taken with every new position, no more often than every 0.2 s. What those with a voice
 // contradict each other by is doubted from the second look on.
 // Undecided for 8 times in a row (1.6 s) is told, and stays until there was no contradiction for
-// 3 s; for 3 times where positions run apart from the velocity, which is made of many of both.
+// 3 s; for 3 times in a row where positions go on running apart from the velocity, which is made of
+// many of both: a single step of theirs is not.
 // Those that are left out have no voice. Pure but for its memory; time is an argument.
 
 #include <array>
@@ -74,6 +75,7 @@ class Jury {
   std::array<double, kSenses> worst_{};  ///< ratio against any other, at the last look
   std::array<bool, kSenses> stuck_{};
   int undecided_ = 0;
+  int runs_apart_ = 0;           ///< looks in a row, of these alone
   bool undecided_told_ = false;  ///< since it began
   double way_seen_m_ = 0.0;      ///< doubts of the look before
   double turn_seen_rad_ = 0.0;

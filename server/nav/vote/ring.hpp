@@ -12,6 +12,8 @@ namespace roverd::nav {
 template <class T, std::size_t N>
 class Ring {
  public:
+  static constexpr std::size_t kMost = N;
+
   void clear() noexcept { size_ = 0; }
   std::size_t size() const noexcept { return size_; }
   bool empty() const noexcept { return size_ == 0; }

@@ -18,7 +18,19 @@ EnuPoint times(double s, EnuPoint p) noexcept {
   return {s * p.east_m, s * p.north_m};
 }
 
+double dot(EnuPoint a, EnuPoint b) noexcept {
+  return a.east_m * b.east_m + a.north_m * b.north_m;
+}
+
 /// @param i the newest pace that is not later than `t`.
+EnuPoint mps_from(const Facts& f, std::size_t i, Time t) noexcept {
+  const Pace& a = f.paces[i];
+  if (i == 0) return a.mps;
+  const Pace& b = f.paces[i - 1];
+  return a.mps + times(seconds(t - a.t) / std::max(1e-3, seconds(b.t - a.t)), b.mps - a.mps);
+}
+
+/// @param i likewise.
 std::optional<EnuPoint> sum_from(const Facts& f, std::size_t i, Time t, int run) noexcept {
   if (i >= f.paces.size() || f.paces[i].run != run) return std::nullopt;
   const Pace& a = f.paces[i];
@@ -38,6 +50,15 @@ std::optional<EnuPoint> sum_at(const Facts& f, Time t, int run) noexcept {
 
 }  // namespace
 
+double lag_s(EnuPoint off_m, EnuPoint faster_mps) noexcept {
+  const double square = std::max(1e-6, dot(faster_mps, faster_mps));
+  return std::clamp(dot(off_m, faster_mps) / square, 0.0, kLagMost_s);
+}
+
+EnuPoint without_lag(EnuPoint off_m, EnuPoint faster_mps) noexcept {
+  return off_m - times(lag_s(off_m, faster_mps), faster_mps);
+}
+
 std::optional<Stretch> by_position(const Facts& f, Time begin, Time end) noexcept {
   const std::size_t to = f.spots.not_after(end);
   const std::size_t from = f.spots.not_after(begin);
@@ -47,7 +68,7 @@ std::optional<Stretch> by_position(const Facts& f, Time begin, Time end) noexcep
   if (a.run != b.run || a.t != begin || b.t != end) return std::nullopt;
   const double lately = -std::expm1(-seconds(end - begin) / std::max(1.0, b.drift_s));
   const double sigma = std::hypot(a.sigma_m, b.sigma_m, b.drift_m * std::sqrt(2.0 * lately));
-  return Stretch{b.at - a.at, sigma};
+  return Stretch{b.at - a.at, sigma, {}};
 }
 
 std::optional<Stretch> by_velocity(const Facts& f, Time begin, Time end) noexcept {
@@ -58,41 +79,78 @@ std::optional<Stretch> by_velocity(const Facts& f, Time begin, Time end) noexcep
   if (!a || !b) return std::nullopt;
   const double w = seconds(end - begin);
   const double bias = (f.rtk ? kVelocityBiasRtk_mps : kVelocityBias_mps) * w;
-  return Stretch{*b - *a, std::hypot(newest.sigma_mps * std::sqrt(newest.every_s * w), bias)};
+  const EnuPoint faster =
+      mps_from(f, f.paces.not_after(end), end) - mps_from(f, f.paces.not_after(begin), begin);
+  return Stretch{*b - *a, std::hypot(newest.sigma_mps * std::sqrt(newest.every_s * w), bias),
+                 faster};
 }
 
-RunApart::RunApart(const Facts& facts, std::optional<Time> from) noexcept
-    : f_(facts), from_(from) {}
+RunApart::RunApart(const Facts& facts) noexcept
+    : f_(facts),
+      from_(
+          std::max(facts.from[index_of(Sense::Position)], facts.from[index_of(Sense::Velocity)])) {}
+
+bool RunApart::take_next() noexcept {
+  const Spot& newest = f_.spots.newest();
+  if (next_ >= f_.spots.size()) return false;
+  const Spot& s = f_.spots[next_];
+  if (s.run != newest.run || (from_ && s.t < *from_)) return false;
+  while (pace_ < f_.paces.size() && f_.paces[pace_].t > s.t) ++pace_;
+  const auto sum = sum_from(f_, pace_, s.t, f_.paces.newest().run);
+  if (!sum) return false;
+  if (next_ == 0) first_ = s.at - *sum;  // about this one, for the figures' sake
+  oldest_s_ = seconds(s.t - newest.t);
+  const Apart a{oldest_s_, s.at - *sum - first_, mps_from(f_, pace_, s.t)};
+  n_ += 1.0;
+  t_ += a.t_s;
+  tt_ += a.t_s * a.t_s;
+  e_ = e_ + a.m;
+  te_ = te_ + times(a.t_s, a.m);
+  v_ = v_ + a.mps;
+  tv_ = tv_ + times(a.t_s, a.mps);
+  sigma_m_ = std::max(sigma_m_, s.sigma_m);
+  all_[next_++] = a;
+  return true;
+}
+
+EnuPoint RunApart::slope(EnuPoint sum, EnuPoint by_t) const noexcept {
+  return times(1.0 / (tt_ - t_ * t_ / n_), by_t - times(t_ / n_, sum));
+}
 
 std::optional<Stretch> RunApart::over(double window_s) noexcept {
-  if (f_.spots.empty() || f_.paces.empty()) return std::nullopt;
-  const Spot& newest = f_.spots.newest();
-  const Pace& pace = f_.paces.newest();
-  while (-oldest_s_ < window_s - 0.01) {
-    if (next_ >= f_.spots.size()) return std::nullopt;
-    const Spot& s = f_.spots[next_];
-    if (s.run != newest.run || (from_ && s.t < *from_)) return std::nullopt;
-    while (pace_ < f_.paces.size() && f_.paces[pace_].t > s.t) ++pace_;
-    const auto sum = sum_from(f_, pace_, s.t, pace.run);
-    if (!sum) return std::nullopt;
-    if (next_ == 0) first_ = s.at - *sum;  // about this one, for the figures' sake
-    const EnuPoint e = s.at - *sum - first_;
-    oldest_s_ = seconds(s.t - newest.t);
-    n_ += 1.0;
-    t_ += oldest_s_;
-    tt_ += oldest_s_ * oldest_s_;
-    e_ = e_ + e;
-    te_ = te_ + times(oldest_s_, e);
-    sigma_m_ = std::max(sigma_m_, s.sigma_m);
-    ++next_;
-  }
-  if (n_ < kFewestSpots) return std::nullopt;
+  ended_ = ended_ || f_.spots.empty() || f_.paces.empty();
+  while (!ended_ && -oldest_s_ < window_s - 0.01) ended_ = !take_next();
+  if (ended_ || n_ < kFewestSpots) return std::nullopt;
   const double w = -oldest_s_;
-  const double sxx = tt_ - t_ * t_ / n_;
-  const EnuPoint rise = times(w / sxx, te_ - times(t_ / n_, e_));
-  const double noise_m = w * sigma_m_ / std::sqrt(sxx);
+  const EnuPoint rise = times(w, slope(e_, te_));
+  const EnuPoint faster = times(w, slope(v_, tv_));
+  lag_s_ = lag_s(rise, faster);
+  const Pace& pace = f_.paces.newest();
+  const double noise_m = w * sigma_m_ / std::sqrt(tt_ - t_ * t_ / n_);
   const double added_m = pace.sigma_mps * std::sqrt(1.2 * pace.every_s * w);
-  return Stretch{rise, std::hypot(noise_m, added_m, kVelocityWanders_mps * w)};
+  return Stretch{rise - times(lag_s_, faster),
+                 std::hypot(noise_m, added_m, kVelocityWanders_mps * w), faster};
+}
+
+EnuPoint RunApart::freed(const Apart& a) const noexcept {
+  return a.m - times(lag_s_, a.mps);
+}
+
+/// By the squares that each takes away from those about the mean of all: a line its own part, a
+/// step between k and the rest the part between their means.
+bool RunApart::a_step() const noexcept {
+  const EnuPoint sum = e_ - times(lag_s_, v_);
+  const EnuPoint line = slope(sum, te_ - times(lag_s_, tv_));
+  const double by_line = dot(line, line) * (tt_ - t_ * t_ / n_);
+  double by_step = 0.0;
+  EnuPoint newer;
+  for (std::size_t k = 1; k < next_; ++k) {
+    newer = newer + freed(all_[k - 1]);
+    const auto many = static_cast<double>(k);
+    const EnuPoint off = times(1.0 / many, newer) - times(1.0 / (n_ - many), sum - newer);
+    by_step = std::max(by_step, dot(off, off) * many * (n_ - many) / n_);
+  }
+  return by_step >= by_line;
 }
 
 std::optional<Time> spot_before(const Facts& f, Time t) noexcept {

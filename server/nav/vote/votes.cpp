@@ -34,7 +34,8 @@ constexpr double kPivotRate_radps = 0.25;
 constexpr double kPivotSpeed_mps = 0.15;
 constexpr double kPivotCentre_m = 0.15;  // by which a skid steer's wanders
 constexpr double kSwing = 0.5;           // of the speed, at most: more, and a course tells nothing
-constexpr double kScatterShare = 0.05;   // of one more velocity
+constexpr double kApartForgotten_s = 1.0;
+constexpr double kScatterShare = 0.05;  // of one more velocity
 
 double bearing_of(EnuPoint way) noexcept {
   return std::atan2(way.north_m, way.east_m);
@@ -295,7 +296,7 @@ std::optional<Sense> Votes::step(const Belonging& b, double sigmas, double retur
   }
   const Table table = compare(facts_, sigmas);
   if (table.spins) facts_.spun = now;
-  apart_ = table.apart;
+  apart_ = table.apart.value_or(apart_ * std::exp(-since_s / kApartForgotten_s));
   return jury_.step(table, facts_.heard, frozen_now, return_s, now);
 }
 

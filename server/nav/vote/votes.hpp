@@ -52,7 +52,7 @@ class Votes {
   std::optional<Sense> step(const Belonging& b, double sigmas, double return_s, Time now) noexcept;
 
   /// How far positions that are RTK fixed have run away from the velocity at the last look, of what
-  /// proves it (1).
+  /// proves it (1). Where it cannot be judged it is forgotten within about a second.
   double apart() const noexcept { return apart_; }
   bool out(Sense s) const noexcept { return jury_.out(s); }
   /// When the one that was left out was first seen to contradict the others.
@@ -61,7 +61,10 @@ class Votes {
   bool agreed_before(Sense s) const noexcept { return jury_.agreed_before(s); }
   const base::Votes& told() const noexcept { return jury_.votes(); }
   /// A person says that all is well: everybody is heard again, from now on.
-  void acquit_all(Time now) noexcept { jury_.acquit_all(now); }
+  void acquit_all(Time now) noexcept {
+    jury_.acquit_all(now);
+    apart_ = 0.0;
+  }
 
  private:
   /// Does it say anything new?

@@ -126,6 +126,31 @@ TEST_F(JuryTest, ALieIsToldThreeTimesInARowBeforeItsTellerIsLeftOut) {
   EXPECT_EQ(vote.off.size, 2.0);
 }
 
+TEST_F(JuryTest, PositionsThatRunApartAreToldAfterThreeLooksOfTheirOwnAndAStepAfterEight) {
+  Table tracks;
+  differ(tracks, Sense::Tracks, Sense::Velocity, 1.5);
+  Table step;
+  differ(step, Sense::Position, Sense::Velocity, 1.5);
+  step.apart = 1.5;
+  Table away = step;
+  away.runs_apart = true;
+  look(tracks);
+  look(tracks);
+  look(away);
+  look(away);
+  EXPECT_FALSE(jury.votes().undecided);
+  look(away);
+  EXPECT_TRUE(jury.votes().undecided);
+  EXPECT_EQ(jury.votes().accusations, 1u);
+
+  jury.acquit_all({});  // and if it is so again, it is told again
+  for (int i = 0; i < 7; ++i) look(step);
+  EXPECT_FALSE(jury.votes().undecided);
+  look(step);
+  EXPECT_TRUE(jury.votes().undecided);
+  EXPECT_EQ(jury.votes().accusations, 2u);
+}
+
 TEST_F(JuryTest, WhatStandsBetweenThoseWithAVoiceIsDoubtedFromTheSecondLookOn) {
   look(lie(Sense::Position, 2.5));
   EXPECT_EQ(jury.votes().doubt_m, 0.0);

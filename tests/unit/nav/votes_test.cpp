@@ -2,6 +2,7 @@
 
 #include "nav/vote/votes.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -22,35 +23,47 @@ class Slope {
   double gyro_extra_radps = 0.0;
   bool tracks_speak = true;
   base::EnuPoint drift_mps;  ///< of the positions, beside the truth
+  double most_mps2 = 1e3;
+  double lag_s = 0.0;  ///< of the velocity, behind it
+  int every = 10;      ///< of the steps of 20 ms the receiver speaks
   Votes votes;
+
+  void step_aside(base::EnuPoint by) { astray_ = astray_ + by; }
 
   void drive(double speed_mps, double rate_radps, double for_s) {
     for (int i = 0; i < for_s * 50.0; ++i) step(speed_mps, rate_radps);
   }
 
  private:
-  void step(double speed_mps, double rate_radps) {
+  void step(double asked_mps, double rate_radps) {
     constexpr double kDt_s = 0.02;
     now_ += base::from_seconds(kDt_s);
     yaw_rad_ += rate_radps * kDt_s;
+    const double most_mps = most_mps2 * kDt_s;
+    speed_mps_ += std::clamp(asked_mps - speed_mps_, -most_mps, most_mps);
+    const double speed_mps = speed_mps_;
     const double over_ground = (1.0 - slip) * speed_mps;
     const base::EnuPoint mps{over_ground * std::cos(yaw_rad_) + slide * std::abs(speed_mps),
                              over_ground * std::sin(yaw_rad_)};
     at_ = {at_.east_m + mps.east_m * kDt_s, at_.north_m + mps.north_m * kDt_s};
     astray_ = {astray_.east_m + drift_mps.east_m * kDt_s,
                astray_.north_m + drift_mps.north_m * kDt_s};
+    const double part = lag_s > 0.0 ? -std::expm1(-kDt_s / lag_s) : 1.0;
+    told_mps_ = {told_mps_.east_m + part * (mps.east_m - told_mps_.east_m),
+                 told_mps_.north_m + part * (mps.north_m - told_mps_.north_m)};
     if (tracks_speak) votes.tracks(speed_mps * kDt_s, rate_radps * kDt_s / 0.7, now_);
     const double gyro = rate_radps + gyro_extra_radps + 0.002 * normal_(random_);
     votes.gyro(gyro, gyro, now_);
-    if (++count_ % 10 == 0) {
+    if (++count_ % every == 0) {
       Spot spot;
       spot.t = now_;
       const base::EnuPoint shown = at_ + astray_;
       spot.at = {shown.east_m + 0.02 * normal_(random_), shown.north_m + 0.02 * normal_(random_)};
       spot.sigma_m = 0.02;
       votes.position(spot, 4, now_);
-      votes.velocity({mps.east_m + 0.03 * normal_(random_), mps.north_m + 0.03 * normal_(random_)},
-                     0.05, now_, now_);
+      votes.velocity(
+          {told_mps_.east_m + 0.03 * normal_(random_), told_mps_.north_m + 0.03 * normal_(random_)},
+          0.05, now_, now_);
     }
     Belonging b;
     b.yaw_rad = yaw_rad_;
@@ -63,8 +76,10 @@ class Slope {
   Time now_{};
   int count_ = 0;
   double yaw_rad_ = 0.0;
+  double speed_mps_ = 0.0;
   base::EnuPoint at_;
   base::EnuPoint astray_;
+  base::EnuPoint told_mps_;
   std::mt19937_64 random_{7};
   std::normal_distribution<double> normal_;
 };
@@ -130,6 +145,49 @@ TEST(Votes, PositionsThatRunAwayAreFoundWithinSecondsRoundABendAndOnASlopeToo) {
       EXPECT_TRUE(told.undecided || told[Sense::Position].left_out) << rate_radps << " " << slide;
     }
   }
+}
+
+TEST(Votes, AVelocityThatLagsIsNoDriftAtStartsStopsAndCorners) {
+  for (const double lag_s : {0.1, 0.15, 0.2}) {
+    Slope slope;
+    slope.lag_s = lag_s;
+    slope.most_mps2 = 1.5;
+    all_ways(slope, 1.0);
+    EXPECT_EQ(slope.votes.told().accusations, 0u) << lag_s;
+  }
+}
+
+TEST(Votes, AFixThatStepsOnceByTwelveCentimetresProvesNothing) {
+  for (const double north_m : {-0.12, 0.12}) {
+    Slope slope;
+    slope.drive(0.8, 0.0, 20.0);
+    slope.step_aside({0.0, north_m});
+    slope.drive(0.8, 0.0, 20.0);
+    EXPECT_EQ(slope.votes.told().accusations, 0u) << north_m;
+  }
+}
+
+TEST(Votes, PositionsThatRunAwayAreFoundOfAReceiverThatSpeaksOnceOrThriceASecondToo) {
+  for (const int every : {50, 17}) {
+    Slope slope;
+    slope.every = every;
+    slope.drive(0.8, 0.0, 20.0);
+    EXPECT_EQ(slope.votes.told().accusations, 0u);
+    slope.drift_mps = {0.0, 0.12};
+    slope.drive(0.8, 0.0, every == 50 ? 14.0 : 6.0);
+    const auto& told = slope.votes.told();
+    EXPECT_TRUE(told.undecided || told[Sense::Position].left_out) << every;
+  }
+}
+
+TEST(Votes, APersonsWordAlsoForgetsWhatRanApart) {
+  Slope slope;
+  slope.drive(0.8, 0.0, 20.0);
+  slope.drift_mps = {0.0, 0.1};
+  slope.drive(0.8, 0.0, 4.0);
+  ASSERT_GT(slope.votes.apart(), 0.5);
+  slope.votes.acquit_all({});
+  EXPECT_EQ(slope.votes.apart(), 0.0);
 }
 
 }  // namespace
