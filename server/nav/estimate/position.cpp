@@ -26,8 +26,8 @@ constexpr double kDoubt_m2ps = 0.05;  // slow enough not to believe a jump of 3 
 
 // Positions that seem to run away from the velocity (Votes::apart): from where on they weigh less,
 // where they hardly weigh any more, and what they are worth then.
-constexpr double kSuspect = 0.4;
-constexpr double kSuspectAll = 0.7;
+constexpr double kSuspect = 0.65;
+constexpr double kSuspectAll = 0.8;
 constexpr double kSuspect_m = 0.3;
 
 constexpr double kFixed_m = 0.02;   // 1 sigma of what scatters in an honest fixed solution
@@ -210,7 +210,7 @@ void Estimator::reset_position(base::EnuPoint at, const GnssQuality& q) noexcept
 /// What a fixed position lacks that seems to run away, before it is proved: odometry, gyro and
 /// velocity lead meanwhile.
 double Estimator::suspected_m(const GnssQuality& q) const noexcept {
-  if (q.drift.sigma_m > 0.0) return 0.0;
+  if (q.drift.sigma_m > 0.0 || votes_.out(base::Sense::Velocity)) return 0.0;
   return kSuspect_m * std::clamp((votes_.apart() - kSuspect) / (kSuspectAll - kSuspect), 0.0, 1.0);
 }
 
@@ -247,7 +247,8 @@ void Estimator::fuse_position(const base::GnssFix& fix, const GnssQuality& q) no
   if (slowly) approach(o);
   const bool late = slowly && !approaching_ && approach_mps_ < kApproach_mps;
   if (approaching_ && approach_mps_ < kApproach_mps) only_the_place(o);
-  if (q.drift.sigma_m <= 0.0 && !approaching_) watch_slip(o, at(kYaw), fix.stamp);
+  // What is weakened for another reason tells nothing of the ground.
+  if (q.drift.sigma_m <= 0.0 && weak_m == 0.0 && !approaching_) watch_slip(o, at(kYaw), fix.stamp);
   if (standing_) {
     const bool hold = settled_in(located_since_) && q.drift.sigma_m > 0.0 && !approaching_;
     o.may_change.setZero();
