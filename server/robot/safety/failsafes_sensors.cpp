@@ -127,7 +127,7 @@ constexpr std::array kSensorRows{
     Failsafe{
         .id = "sensors_contradict",
         .seen = "two sensors contradict each other, and it cannot be told which one is wrong",
-        .after = "1.6 s",
+        .after = "1.6 s; 0.6 s where fixed positions run away from the velocity",
         .response = Response::Hold,
         .acts = Acts::ByItself,
         .ends = kGoneAndGoOn,
