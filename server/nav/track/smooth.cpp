@@ -169,7 +169,6 @@ class Smoother {
     const std::size_t a = piece.first;
     const std::size_t b = piece.last;
     piece.held = held || (cut_[a] != Cut::Corner && cut_[b] != Cut::Corner);
-    at.reserve(b - a + 3);
     if (piece.lead_in_m > 0.0) at.push_back(towards(v_[a].at, v_[a - 1].at, piece.lead_in_m));
     for (std::size_t k = a; k <= b; ++k) at.push_back(v_[k].at);
     if (piece.lead_out_m > 0.0) at.push_back(towards(v_[b].at, v_[b + 1].at, piece.lead_out_m));
@@ -196,7 +195,6 @@ class Smoother {
     piece.points = curve.points();
     piece.corners = held ? std::vector<std::size_t>{} : curve.corners();
     make_room(piece);
-    piece.worst_u = 0.0;
     piece.apart_m = nav::apart_m(piece.chain, piece.points, &piece.worst_u);
     if (!drivable(piece)) piece.apart_m = 1e9;
   }
