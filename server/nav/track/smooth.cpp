@@ -40,9 +40,7 @@ struct Piece {
   Chain chain{};
   std::vector<CurvePoint> points{};
   std::vector<std::size_t> corners{};
-  double tolerance_m = 0.0;
-  double apart_m = 0.0;
-  double worst_u = 0.0;
+  Apart apart{};
 
   bool fitted() const noexcept { return !points.empty(); }
   /// Index in the chain of its first vertex.
@@ -89,7 +87,7 @@ class Smoother {
       if (!give_up_places()) break;
     }
     for (Piece& piece : pieces_) {
-      if (piece.apart_m > piece.tolerance_m) piece.points.clear();
+      if (piece.apart.beyond_m > 0.0) piece.points.clear();
     }
     return way();
   }
@@ -188,15 +186,13 @@ class Smoother {
     }
     FitLimits limits = limits_;
     limits.noise_m = std::max(noise_m(piece.chain), 0.001);
-    limits.tolerance_m = piece.tolerance_m =
-        tolerance_m(piece.chain, limits_.tolerance_m, limits.noise_m);
     const PieceFit curve(std::move(piece.chain), ends, limits);
     piece.chain = curve.chain();
     piece.points = curve.points();
     piece.corners = held ? std::vector<std::size_t>{} : curve.corners();
     make_room(piece);
-    piece.apart_m = nav::apart_m(piece.chain, piece.points, &piece.worst_u);
-    if (!drivable(piece)) piece.apart_m = 1e9;
+    piece.apart = apart(piece.chain, piece.points, limits);
+    if (!drivable(piece)) piece.apart.beyond_m = 1e9;
   }
 
   /// A curve that turns back on itself is none.
@@ -206,7 +202,7 @@ class Smoother {
       const double turn = base::angle_diff_rad(direction_rad(p[i - 1].at, p[i].at),
                                                direction_rad(p[i].at, p[i + 1].at));
       if (std::abs(turn) < rad_from_deg(30.0)) continue;
-      piece.worst_u = p[i].u;
+      piece.apart.u = p[i].u;
       return false;
     }
     return true;
@@ -301,10 +297,10 @@ class Smoother {
   bool give_up_places() {
     bool any = false;
     for (Piece& piece : pieces_) {
-      if (piece.apart_m <= piece.tolerance_m) continue;
+      if (piece.apart.beyond_m <= 0.0) continue;
       for (std::size_t k = piece.first; k <= piece.last; ++k) {
         const double u = piece.chain.u[k - piece.first + piece.offset()];
-        if (std::abs(u - piece.worst_u) > kGiveUp_m || cut_[k] == Cut::Hard) continue;
+        if (std::abs(u - piece.apart.u) > kGiveUp_m || cut_[k] == Cut::Hard) continue;
         cut_[k] = Cut::Hard;
         moved_[k] = v_[k].at;
         any = true;
@@ -365,7 +361,7 @@ class Smoother {
       point.vertex.at = p[i].at;
       out.points.push_back(point);
     }
-    out.stretches.push_back({piece.first, piece.last, piece.apart_m});
+    out.stretches.push_back({piece.first, piece.last, piece.apart.m});
   }
 
   std::span<const Vertex> v_;

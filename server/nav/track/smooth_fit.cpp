@@ -28,7 +28,7 @@ constexpr double kAlong_m = 0.4;
 constexpr double kSagitta_m = 0.001;
 constexpr double kThrown = 4.0;      // sigmas, by which noise throws one of many points
 constexpr double kThrownMost = 1.4;  // times the tolerance
-constexpr double kMany_m = 0.15;     // apart, at most
+constexpr double kMany_m = 0.15;     // apart, at most: the mean of four
 constexpr double kLeast_m = 0.005;   // between two points of a path
 
 double size(EnuPoint d) noexcept {
@@ -37,6 +37,19 @@ double size(EnuPoint d) noexcept {
 
 EnuPoint between(EnuPoint a, EnuPoint b, double part) noexcept {
   return {a.east_m + part * (b.east_m - a.east_m), a.north_m + part * (b.north_m - a.north_m)};
+}
+
+/// How far beside a point the curve may be. @param off_m of all points, as it is.
+double room_m(std::span<const double> u, std::span<const double> off_m, std::size_t k,
+              const FitLimits& limits) noexcept {
+  const std::size_t last = u.size() - 1;
+  if (k == 0 || k >= last) return limits.tolerance_m;
+  const std::size_t from = k - std::min<std::size_t>(k, 2);
+  const std::size_t to = std::min(k + 2, last);
+  const bool many = u[to] - u[from] <= kMany_m * static_cast<double>(to - from);
+  const bool alone = off_m[k - 1] <= limits.tolerance_m && off_m[k + 1] <= limits.tolerance_m;
+  if (!many || !alone) return limits.tolerance_m;
+  return std::clamp(kThrown * limits.noise_m, limits.tolerance_m, kThrownMost * limits.tolerance_m);
 }
 
 }  // namespace
@@ -246,12 +259,17 @@ bool PieceFit::soften() {
 }
 
 void PieceFit::keep_tolerance() {
-  const double most_m = kNearTolerance * limits_.tolerance_m;
+  const auto& u = chain_.u;
+  std::vector<double> off_m(u.size());
   for (int round = 0; round < kPulls; ++round) {
     std::vector<char> softer(wave_m_.size(), 0);
     bool pulled = false;
+    for (std::size_t k = 0; k < u.size(); ++k) off_m[k] = size(curve_.at(u[k]) - chain_.at[k]);
+    std::size_t k = 0;
     for (SplineDatum& d : data_) {
-      if (d.weight >= kHeld || size(curve_.at(d.u) - d.at) <= most_m) continue;
+      while (k + 1 < u.size() && u[k] < d.u) ++k;
+      const double room = d.u == u[k] ? room_m(u, off_m, k, limits_) : limits_.tolerance_m;
+      if (d.weight >= kHeld || size(curve_.at(d.u) - d.at) <= kNearTolerance * room) continue;
       d.weight = std::min(kHeld, d.weight * (d.weight < 1.0 ? kPullChord : kPullPoint));
       if (round >= kPulls - kPullsHard) soften_about(d.u, 0.5, softer);
       pulled = true;
@@ -348,32 +366,33 @@ std::vector<CurvePoint> PieceFit::points() const {
   return out;
 }
 
-double tolerance_m(const Chain& chain, double most_m, double noise_m) noexcept {
-  const double apart_m = chain.u.back() / static_cast<double>(chain.u.size() - 1);
-  if (apart_m > kMany_m) return most_m;
-  return std::clamp(kThrown * noise_m, most_m, kThrownMost * most_m);
-}
-
-double apart_m(const Chain& chain, std::span<const CurvePoint> points, double* u) {
-  double worst_m = 0.0;
-  const auto note = [&](double at, double off_m) {
-    if (off_m <= worst_m) return;
-    worst_m = off_m;
-    if (u != nullptr) *u = at;
-  };
-  std::size_t k = 0;  // of the chain
+Apart apart(const Chain& chain, std::span<const CurvePoint> points, const FitLimits& limits) {
+  const auto& u = chain.u;
+  std::vector<double> off_m(u.size());
+  std::size_t k = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    for (; k < chain.u.size() && chain.u[k] <= points[i].u; ++k) {
-      const double from = i == 0 ? points[0].u : points[i - 1].u;
-      const double way = points[i].u - from;
-      const EnuPoint on = i == 0 || way <= 0.0
-                              ? points[i].at
-                              : between(points[i - 1].at, points[i].at, (chain.u[k] - from) / way);
-      note(chain.u[k], base::distance_m(on, chain.at[k]));
+    for (; k < u.size() && u[k] <= points[i].u; ++k) {
+      const CurvePoint& from = points[i == 0 ? 0 : i - 1];
+      const double way = points[i].u - from.u;
+      const double part = way > 0.0 ? (u[k] - from.u) / way : 0.0;
+      off_m[k] = base::distance_m(between(from.at, points[i].at, part), chain.at[k]);
     }
-    note(points[i].u, base::distance_m(points[i].at, chain.place(points[i].u)));
   }
-  return worst_m;
+  Apart worst;
+  const auto note = [&](double at, double m, double most_m) {
+    worst.m = std::max(worst.m, m);
+    if (m - most_m <= worst.beyond_m) return;
+    worst.beyond_m = m - most_m;
+    worst.u = at;
+  };
+  for (k = 0; k < u.size(); ++k) note(u[k], off_m[k], room_m(u, off_m, k, limits));
+  k = 0;
+  for (const CurvePoint& p : points) {
+    while (k + 1 < u.size() && u[k + 1] <= p.u) ++k;
+    const double most_m = std::max(room_m(u, off_m, k, limits), room_m(u, off_m, k + 1, limits));
+    note(p.u, base::distance_m(p.at, chain.place(p.u)), most_m);
+  }
+  return worst;
 }
 
 }  // namespace roverd::nav

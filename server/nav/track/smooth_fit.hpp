@@ -35,11 +35,6 @@ Chain chain_of(std::vector<EnuPoint> points);
 /// Standard deviation across the way, robust against corners and single outliers; 0: too few.
 double noise_m(const Chain& chain);
 
-/// How far beside a single point the curve may be: one of many that noise threw out is no reason
-/// for a bend. @param most_m where points lie farther apart than that. @param noise_m of the
-/// points.
-double tolerance_m(const Chain& chain, double most_m, double noise_m) noexcept;
-
 struct PieceEnds {
   std::optional<EnuPoint> begin;  ///< held there; empty: as the points have it
   std::optional<EnuPoint> end;
@@ -48,6 +43,8 @@ struct PieceEnds {
 };
 
 struct FitLimits {
+  /// Beside a point. A single one that noise threw out, up to four sigmas of it, is no reason for a
+  /// bend: where points lie 0.15 m apart or less, and both its neighbours keep to this, 1.4 times.
   double tolerance_m = 0.1;
   double noise_m = 0.0;
   double shortest_m = 0.6;    ///< waves shorter than this are never followed
@@ -93,8 +90,12 @@ class PieceFit {
 };
 
 /// How far a polyline of points of a curve and the chain are apart where both have come equally far
-/// along, which is at least as much as either is from the other anywhere. @param u where; empty: no
-/// matter.
-double apart_m(const Chain& chain, std::span<const CurvePoint> points, double* u = nullptr);
+/// along, which is at least as much as either is from the other anywhere.
+struct Apart {
+  double m = 0.0;
+  double beyond_m = -1e9;  ///< what may be; > 0: too far
+  double u = 0.0;          ///< where most beyond
+};
+Apart apart(const Chain& chain, std::span<const CurvePoint> points, const FitLimits& limits);
 
 }  // namespace roverd::nav
