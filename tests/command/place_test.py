@@ -2,17 +2,14 @@
 """A robot in a building, without satellites: roverd-sim casts the rays and speaks the scanner's bytes, roverd
 finds itself in the map of the building and drives a mission by it. Judged by where the simulator says it was."""
 
-import json
 import math
 import pathlib
-import shutil
 import sys
-import tempfile
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "harness"))
-from station import BIN, ROOT, Control, Program, Rest, check, run_cases, until  # noqa: E402
-from see_test import EYES, SENSORS, free_port  # noqa: E402
+from seeing import HEARS_TOP_AND_FRONT, SeeingRobot  # noqa: E402
+from station import check, run_cases, until  # noqa: E402
 
 START = (58.37802, 26.7289)  # of config/sim/bunker.toml: the world's origin
 METRE_LAT = 1 / 111_384.0
@@ -23,11 +20,11 @@ HALF = 0.1
 WALLS = [[-3, -4, 12, -4], [12, -4, 12, 8], [12, 8, -3, 8], [-3, 8, -3, -4],
          [6, -4, 6, 0.6], [6, 3.4, 6, 8], [-3, 5, -1.2, 5], [9, 8, 9, 6.2]]
 THINGS = [{"kind": "wall", "points": [w[:2], w[2:]], "height_m": 2.5, "thickness_m": 2 * HALF} for w in WALLS]
-MAP = """
+MAP = f"""
 [map]
-file = "{folder}/hall.yaml"
-anchor_lat = {lat}
-anchor_lon = {lon}
+file = "{{folder}}/hall.yaml"
+anchor_lat = {START[0]}
+anchor_lon = {START[1]}
 anchor_heading_deg = 90
 anchor_accuracy_m = 0.2
 """
@@ -54,56 +51,14 @@ def draw_map(folder):
                                       "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n")
 
 
-class Hall:
+class Hall(SeeingRobot):
     def __init__(self):
-        self.scratch = pathlib.Path(tempfile.mkdtemp(prefix="roverd-place."))
-        self.sim = self.roverd = self.control = None
-        try:
-            self.begin()
-        except BaseException:
-            self.close()
-            raise
+        super().__init__({"name": "hall", "ground": {"grass_m": 0.0}, "things": THINGS},
+                         hears=HEARS_TOP_AND_FRONT + MAP)
 
-    def begin(self):
-        port = free_port()
+    def prepare(self):
         draw_map(self.scratch)
-        (self.scratch / "world.json").write_text(json.dumps(
-            {"name": "hall", "ground": {"grass_m": 0.0}, "things": THINGS}))
-        (self.scratch / "sim.toml").write_text((ROOT / "config/sim/bunker.toml").read_text()
-                                               + EYES.format(port=port))
-        self.sim = Program(BIN / "roverd-sim", "--cansock", self.scratch / "can", "--gnss", "tcp:0",
-                           "--control", "0", "--seed", "1", "--config", self.scratch / "sim.toml",
-                           "--world", self.scratch / "world.json")
-        at = dict(word.split("=", 1) for word in self.sim.wait_line(r"^ready (.*)$")[1].split())
-        self.control = Control(at["control"])
         self.control.ask({"fault": {"gnss_outage": True}})
-        shutil.copytree(ROOT / "config/vehicles", self.scratch / "vehicles")
-        config = self.scratch / "robot.toml"
-        config.write_text((ROOT / "config/robot.toml").read_text()
-                          + SENSORS.format(port=port, front=at["front"])
-                          + MAP.format(folder=self.scratch, lat=START[0], lon=START[1]))
-        self.roverd = Program(BIN / "roverd", "--config", config, "--data", self.scratch / "data",
-                              "--port", "0", "--set", f"drivers.bunker.link={at['can']}",
-                              "--set", f"drivers.gnss.link={at['gnss']}",
-                              "--set", f"drivers.mti.link={at['mti']}")
-        self.rest = Rest(self.roverd.wait_line(r"^listening on (https?://\S+)")[1])
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.close()
-
-    def close(self):
-        if self.control:
-            self.control.close()
-        for program in (self.roverd, self.sim):
-            if program:
-                program.stop()
-        shutil.rmtree(self.scratch, ignore_errors=True)
-
-    def truth(self):
-        return self.control.ask({"get": "truth"})
 
     def place(self):
         return self.rest.get("/vehicle")["place"]
@@ -121,11 +76,7 @@ class Hall:
         """@param points east and north of the world's origin"""
         items = [{"type": "waypoint", "lat": START[0] + n * METRE_LAT, "lon": START[1] + e * METRE_LON}
                  for e, n in points]
-        made = self.rest.do("POST", "/missions", {"name": "round", "items": items})
-        self.rest.do("POST", "/execution/load", {"mission_id": made["id"]})
-        until("it is ready", 30, lambda: self.rest.get("/vehicle")["ready_to_arm"])
-        self.rest.do("POST", "/vehicle/arm", {})
-        self.rest.do("POST", "/execution/start", {"mission_id": made["id"], "revision": made["revision"]})
+        self.start(self.rest.do("POST", "/missions", {"name": "round", "items": items}))
 
     def off(self):
         """The estimate less the truth, metres east and north, and the source."""

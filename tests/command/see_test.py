@@ -2,135 +2,38 @@
 """A robot that sees, in a world that it does not know: roverd-sim casts the rays and speaks the scanner's
 and the lidar's bytes, roverd hears them and keeps off. Judged by what the simulator says was touched."""
 
-import json
 import math
-import os
 import pathlib
-import shutil
 import sys
-import tempfile
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "harness"))
-from station import BIN, ROOT, Control, Failed, Program, Rest, check, run_cases, until  # noqa: E402
+from seeing import HEARS_TOP_AND_FRONT, SeeingRobot  # noqa: E402
+from station import Failed, check, run_cases, until  # noqa: E402
 
 METRE_LAT = 1 / 111_360.0
 WORLD = {"name": "wall", "ground": {"grass_m": 0.03},
          "things": [{"kind": "wall", "points": [[-6, 9], [6, 9]], "height_m": 2}]}
-EYES = """
-[[sensor]]
-kind = "vlp16"
-name = "top"
-z_m = 0.7
-port = "udp:{port}"
-
-[[sensor]]
-kind = "lms"
-name = "front"
-x_m = 0.55
-z_m = 0.3
-rate_hz = 50
-"""
-# Beside it no sensor sees the ground: it may turn there slowly.
-SENSORS = """
-[sense.protect]
-creep_turn_radps = 0.3
-
-[sensors.top]
-kind = "velodyne"
-link = "udp:{port}"
-z_m = 0.7
-
-[sensors.front]
-kind = "sick"
-link = "{front}"
-x_m = 0.55
-z_m = 0.3
-rate_hz = 50
-"""
 
 
-def free_port():
-    import socket
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
-
-class Field:
+class Field(SeeingRobot):
     def __init__(self, things=None, more=""):
         """@param things of the world; without them the wall. @param more of the configuration"""
-        self.world = dict(WORLD, things=things) if things is not None else WORLD
-        self.more = more
-        self.scratch = pathlib.Path(tempfile.mkdtemp(prefix="roverd-see."))
-        self.sim = self.roverd = self.control = None
-        try:
-            self.begin()
-        except BaseException:
-            self.close()
-            raise
-
-    def begin(self):
-        port = free_port()
-        (self.scratch / "world.json").write_text(json.dumps(self.world))
-        (self.scratch / "sim.toml").write_text((ROOT / "config/sim/bunker.toml").read_text()
-                                               + EYES.format(port=port))
-        self.sim = Program(BIN / "roverd-sim", "--cansock", self.scratch / "can", "--gnss", "tcp:0",
-                           "--control", "0", "--seed", "1", "--config", self.scratch / "sim.toml",
-                           "--world", self.scratch / "world.json")
-        try:  # devices are computers of their own: a busy machine must not make them silent
-            os.setpriority(os.PRIO_PROCESS, self.sim.process.pid, -15)
-        except PermissionError:
-            pass
-        line = self.sim.wait_line(r"^ready (.*)$")[1]
-        at = dict(word.split("=", 1) for word in line.split())
-        shutil.copytree(ROOT / "config/vehicles", self.scratch / "vehicles")
-        config = self.scratch / "robot.toml"
-        config.write_text((ROOT / "config/robot.toml").read_text()
-                          + SENSORS.format(port=port, front=at["front"]) + self.more)
-        self.control = Control(at["control"])
-        self.roverd = Program(BIN / "roverd", "--config", config, "--data", self.scratch / "data",
-                              "--port", "0", "--set", f"drivers.bunker.link={at['can']}",
-                              "--set", f"drivers.gnss.link={at['gnss']}",
-                              "--set", f"drivers.mti.link={at['mti']}")
-        self.rest = Rest(self.roverd.wait_line(r"^listening on (https?://\S+)")[1])
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.close()
-
-    def close(self):
-        if self.control:
-            self.control.close()
-        for program in (self.roverd, self.sim):
-            if program:
-                program.stop()
-        shutil.rmtree(self.scratch, ignore_errors=True)
-
-    def truth(self):
-        return self.control.ask({"get": "truth"})
+        super().__init__(dict(WORLD, things=things) if things is not None else WORLD,
+                         hears=HEARS_TOP_AND_FRONT + more)
 
     def drive_north(self, metres):
         """A mission straight to the north of where it stands."""
         truth = self.truth()
         lat, lon = truth["lat"], truth["lon"]
         items = [{"type": "waypoint", "lat": lat + n * METRE_LAT, "lon": lon} for n in (1, metres)]
-        made = self.rest.do("POST", "/missions", {"name": "north", "items": items})
-        self.rest.do("POST", "/execution/load", {"mission_id": made["id"]})
-        until("it is ready", 30, lambda: self.rest.get("/vehicle")["ready_to_arm"])
-        self.rest.do("POST", "/vehicle/arm", {})
-        self.rest.do("POST", "/execution/start",
-                     {"mission_id": made["id"], "revision": made["revision"]})
+        self.start(self.rest.do("POST", "/missions", {"name": "north", "items": items}))
 
 
 def sees_and_stops():
     """what stands in the way is seen by scanner and lidar, and not touched"""
     with Field() as field:
-        until("both sensors see", 20, lambda: sorted(
-            (s["name"], s["health"]) for s in field.rest.get("/sensors")["items"])
-            == [("front", "good"), ("top", "good")], 0.2)
+        field.sees("front", "top")
         field.drive_north(14)
         until("it stands before the wall", 60, lambda: (
             (field.rest.get("/vehicle")["obstacle"] or {}).get("action") == "stop"), 0.2)
@@ -157,9 +60,7 @@ def sees_and_stops():
 def a_silent_sensor_stops_it():
     """a required sensor that falls silent stops the mission"""
     with Field() as field:
-        until("both sensors see", 20, lambda: all(
-            s["health"] == "good" for s in field.rest.get("/sensors")["items"])
-            and len(field.rest.get("/sensors")["items"]) == 2, 0.2)
+        field.sees("front", "top")
         field.drive_north(7)
         until("it drives", 40, lambda: abs(field.truth()["speed_mps"]) > 0.3)
         field.control.ask({"fault": {"sensor": "front", "sensor_silent": True}})
@@ -185,9 +86,7 @@ def goes_around():
     """what stays is driven around, within the corridor, and the mission ends where it should"""
     box = {"kind": "box", "at": [0.1, 6.0], "length_m": 0.9, "width_m": 0.6, "height_m": 1.0}
     with Field([box], AROUND) as field:
-        until("both sensors see", 20, lambda: all(
-            s["health"] == "good" for s in field.rest.get("/sensors")["items"])
-            and len(field.rest.get("/sensors")["items"]) == 2, 0.2)
+        field.sees("front", "top")
         begin = field.truth()
         field.drive_north(13)
         detour = until("a way around is shown", 60, lambda: field.rest.get("/vehicle")["detour"], 0.1)
@@ -221,9 +120,7 @@ def goes_around():
 def says_that_there_is_no_way_around():
     """a wall across the whole corridor is not gone around, and that is said"""
     with Field(None, AROUND) as field:
-        until("both sensors see", 20, lambda: all(
-            s["health"] == "good" for s in field.rest.get("/sensors")["items"])
-            and len(field.rest.get("/sensors")["items"]) == 2, 0.2)
+        field.sees("front", "top")
         field.drive_north(14)
         until("it is said that there is no way", 60, lambda: "no_way_around" in kinds(field), 0.3)
         time.sleep(3.0)
