@@ -136,6 +136,7 @@ class KmlReader {
     }
     builder_.end_whole(name_);
     shapes_.clear();
+    in_polygon_ = false;  // a Placemark inside a Polygon, which no schema allows, ends both
     name_.clear();
     words_ = nlohmann::json::object();
   }

@@ -196,6 +196,19 @@ TEST(GeoJsonCrs, OnlyWgs84IsTaken) {
             "/features/0/geometry/crs: must be WGS84 (CRS84, EPSG:4326), as RFC 7946 has it");
 }
 
+// KML 2.3, 10.3: a kml:Polygon holds kml:outerBoundaryIs and kml:innerBoundaryIs, no kml:Placemark.
+TEST(Kml, APlacemarkInsideAPolygonEndsIt) {
+  const std::string ring =
+      "<LinearRing><coordinates>26.7,58.3 26.71,58.3 26.71,58.31 26.7,58.3</coordinates>"
+      "</LinearRing>";
+  const auto file = import_file(
+      "<kml><Placemark><Polygon><Placemark/>" + ring + "</Polygon></Placemark></kml>", Format::Kml);
+  // Nothing that the ring could belong to is left: it is a line.
+  ASSERT_TRUE(file) << file.error().detail;
+  EXPECT_TRUE(file->areas.empty());
+  EXPECT_EQ(file->plan.items.size(), 4u);
+}
+
 // GPX 1.1: "version: You must include the version number in your GPX document." KML 2.3: "the
 // namespace http://www.opengis.net/kml/2.3".
 TEST(Versions, OfOtherXmlAreRefused) {
