@@ -260,7 +260,9 @@ std::shared_ptr<const Config> Robot::config() const {
 }
 
 void Robot::Impl::take_estop(Time now) {
-  if (!estop_asked.exchange(false)) return;
+  // Latched already: its command is in the queue, or was the one that latched. Counted again a tick
+  // later, it would refuse the reset of whoever was answered in between.
+  if (!estop_asked.exchange(false) || arm.latched()) return;
   last_stop.take(now);
   latch_estop("the operator");
 }

@@ -2,6 +2,11 @@
 
 #include "robot/safety/last_stop.hpp"
 
+#include <atomic>
+#include <future>
+#include <thread>
+#include <utility>
+
 #include "field.hpp"
 
 namespace roverd::robot {
@@ -126,6 +131,30 @@ TEST_F(Overtaken, AResetThatWasClickedBeforeTheStopDoesNotUndoIt) {
   EXPECT_TRUE(f.state()->estop);
   EXPECT_TRUE(late(ResetEstop{}, f.now));
   EXPECT_FALSE(f.state()->estop);
+}
+
+/// Where in a tick the stop comes is chance: it may be carried out before it was seen to be asked.
+TEST_F(Overtaken, WhoWasAnsweredThatItIsStoppedMayResetAtOnce) {
+  constexpr int kTimes = 10000;
+  std::atomic<int> refused{0};
+  std::atomic<bool> done{false};
+  std::thread web([&] {
+    const auto asked = [this](Command command, Validity validity) {
+      std::promise<std::pair<bool, Time>> answered;
+      f.robot.request(std::move(command), validity, [&](base::Result<void> r) {
+        answered.set_value({r.has_value(), f.now});  // on the thread of the ticks
+      });
+      return answered.get_future().get();
+    };
+    for (int i = 0; i < kTimes; ++i) {
+      const Time seen = asked(Estop{"a script"}, Time::max()).second;
+      if (!asked(ResetEstop{}, Validity{Time::max(), seen}).first) ++refused;
+    }
+    done = true;
+  });
+  while (!done) f.tick();
+  web.join();
+  EXPECT_EQ(refused, 0);
 }
 
 TEST_F(Overtaken, TheStopBetweenTwoTicksCounts) {
