@@ -1,0 +1,46 @@
+// What holds on every screen: a glove hits everything that is pressed, and the stop button is whole.
+
+import { expect, type Page } from '@playwright/test';
+
+/** A finger in a glove. */
+const LEAST_PX = 48;
+
+interface Box {
+  readonly what: string;
+  readonly x: number;
+  readonly y: number;
+  readonly width: number;
+  readonly height: number;
+}
+
+/** Everything in sight that can be pressed. */
+const targets = (page: Page): Promise<Box[]> =>
+  page.evaluate(() => {
+    const found: Box[] = [];
+    for (const element of document.querySelectorAll<HTMLElement>('button, a.button, select')) {
+      const box = element.getBoundingClientRect();
+      const top = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
+      const in_sight = top !== null && (element.contains(top) || top.contains(element));
+      if (box.width === 0 || !in_sight) continue;
+      const { x, y, width, height } = box;
+      const what = element.getAttribute('aria-label') ?? element.innerText;
+      found.push({ what, x, y, width, height });
+    }
+    return found;
+  });
+
+export const check_layout = async (page: Page): Promise<void> => {
+  const { width, height } = page.viewportSize() ?? { width: 0, height: 0 };
+  const boxes = await targets(page);
+  for (const box of boxes) {
+    expect
+      .soft(Math.min(box.width, box.height), `size of “${box.what}”`)
+      .toBeGreaterThanOrEqual(LEAST_PX);
+    expect.soft(box.x + box.width, `right edge of “${box.what}”`).toBeLessThanOrEqual(width);
+  }
+  const stop = boxes.find(({ what }) => what === 'Emergency stop');
+  expect(stop, 'the stop button is in sight').toBeDefined();
+  if (stop) expect(stop.y + stop.height).toBeLessThanOrEqual(height);
+  const overflow = await page.evaluate(() => document.documentElement.scrollWidth);
+  expect(overflow).toBeLessThanOrEqual(width);
+};
