@@ -41,8 +41,8 @@ export const map_middle = async (page: Page): Promise<readonly [number, number]>
   const { width, height } = page.viewportSize() ?? { width: 0, height: 0 };
   const top = await box('header');
   const panel = await box('main');
-  const left = width >= 900 ? panel.x + panel.width : 0;
-  const bottom = width >= 900 ? height : panel.y;
+  const left = width >= 640 ? panel.x + panel.width : 0;
+  const bottom = width >= 640 ? height : panel.y;
   return [(left + width) / 2, (top.y + top.height + bottom) / 2];
 };
 
