@@ -5,6 +5,7 @@ import type { FenceDraft } from '../model/fence';
 import { EMPTY_PLAN, type LatLon, type Plan } from '../model/plan';
 import type { MapEvents, Mark, RobotOnMap } from '../model/ports';
 import type { AheadOnMap, SeenOnMap } from '../model/seen';
+import { paint_away } from './away_painter';
 import { ring_behind } from './band';
 import type { Paint, Painter } from './canvas';
 import { paint_drill, type DrawnDrill } from './drill_painter';
@@ -151,6 +152,9 @@ export class Scene {
       },
       (paint) => {
         if (this.ahead) this.seen_painter?.paint_block(paint, this.ahead, palette());
+      },
+      (paint) => {
+        if (this.robot) paint_away(paint, this.robot, this.cover, palette());
       },
     ];
   }
