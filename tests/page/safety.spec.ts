@@ -77,16 +77,38 @@ test('drivers are listed with what they say, and one is restarted after a questi
   await expect(bunker).toContainText('Up');
 });
 
-test('Esc stops the robot even while a dialog is open and a field has the focus', async ({
+test('Esc closes a dialog and never stops the robot; Space does, and F8 also while one types', async ({
   page,
   station,
 }) => {
   await open_page(page, station.url);
+  const stop = page.getByRole('button', { name: 'Emergency stop' });
+  const latched = async (): Promise<boolean> =>
+    (await station.rest<{ estop: boolean }>('GET', '/vehicle')).estop;
   await tab(page, 'Log');
   await press(page, 'Keys');
   await expect(page.getByRole('dialog')).toContainText('Emergency stop');
   await page.keyboard.press('Escape');
-  await expect(page.getByRole('button', { name: 'Emergency stop' })).toHaveText('STOPPED');
+  await expect(page.getByRole('dialog')).toBeHidden();
+  await page.keyboard.press('Escape'); // once more, as people do
+  await page.waitForTimeout(500);
+  expect(await latched()).toBe(false);
+
+  await press(page, 'Keys');
+  await page.keyboard.press('Space');
+  await expect(stop).toHaveText('STOPPED');
+  await page.keyboard.press('Escape');
+  await press(page, 'Reset stop');
+  await page.getByRole('dialog').getByRole('button', { name: 'Reset', exact: true }).click();
+  await expect(stop).toHaveText('STOP');
+
+  await tab(page, 'Plan');
+  await page.getByLabel('Mission name').fill('Row ');
+  await page.keyboard.press('Space');
+  await page.waitForTimeout(500);
+  expect(await latched()).toBe(false);
+  await page.keyboard.press('F8');
+  await expect(stop).toHaveText('STOPPED');
 });
 
 test('a lost GNSS receiver shows: the value is marked stale with its age, and comes back', async ({

@@ -1,10 +1,12 @@
-// Keys of the whole page. Esc and Space stop the robot, whatever is on the screen; only while a
-// person types into a field is Space a blank. Buttons are pressed with Enter.
+// Keys of the whole page. F8 stops the robot, whatever is on the screen, and so does Space; only while
+// a person types into a field is Space a blank. Buttons are pressed with Enter. Esc closes what is
+// open, as everywhere: whoever wants to be rid of a question must not latch the stop.
 
 import type { Station } from './station.svelte';
 
 export const key_words: readonly (readonly [keys: string, meaning: string])[] = [
-  ['Esc or Space', 'Emergency stop, at once'],
+  ['Space or F8', 'Emergency stop, at once; while you type, F8'],
+  ['Esc', 'Close the dialog, forget the chosen place, end adding points'],
   ['Enter', 'Press the button that has the focus'],
   ['Ctrl + Z', 'Undo the last edit'],
   ['Ctrl + Y, Ctrl + Shift + Z', 'Redo'],
@@ -36,6 +38,15 @@ const edit_key = (station: Station, event: KeyboardEvent): boolean => {
   return true;
 };
 
+/** What lies uppermost goes. @return false: nothing was open */
+const close_one = ({ dialogs, target, editor, tab }: Station): boolean => {
+  if (dialogs.open) dialogs.close();
+  else if (tab === 'drive' && target.at) target.clear();
+  else if (tab === 'plan' && editor.adding) editor.adding = false;
+  else return false;
+  return true;
+};
+
 const plain_key = (station: Station, event: KeyboardEvent): boolean => {
   const { editor } = station;
   if (is_typing(event.target) || event.ctrlKey || event.metaKey || event.altKey) return false;
@@ -61,11 +72,13 @@ const plain_key = (station: Station, event: KeyboardEvent): boolean => {
 /** @return stops listening */
 export const listen_for_keys = (station: Station): (() => void) => {
   const on_key = (event: KeyboardEvent): void => {
-    const stop = event.key === 'Escape' || (event.key === ' ' && !is_typing(event.target));
+    const stop = event.key === 'F8' || (event.key === ' ' && !is_typing(event.target));
     if (stop) {
       event.preventDefault();
       event.stopPropagation();
       if (!event.repeat) station.pilot.estop();
+    } else if (event.key === 'Escape') {
+      if (close_one(station)) event.preventDefault();
     } else if (edit_key(station, event) || plain_key(station, event)) {
       event.preventDefault();
     }
