@@ -40,10 +40,12 @@ export const map_middle = async (page: Page): Promise<readonly [number, number]>
   };
   const { width, height } = page.viewportSize() ?? { width: 0, height: 0 };
   const top = await box('header');
+  const alerts = await box('.alerts');
   const panel = await box('main');
   const left = width >= 640 ? panel.x + panel.width : 0;
   const bottom = width >= 640 ? height : panel.y;
-  return [(left + width) / 2, (top.y + top.height + bottom) / 2];
+  const head = Math.max(top.y + top.height, alerts.y + alerts.height);
+  return [(left + width) / 2, (head + bottom) / 2];
 };
 
 /** Pixels of one metre on the ground, by the scale bar. */

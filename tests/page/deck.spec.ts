@@ -1,0 +1,71 @@
+// The driving deck: four large figures, HOLD and the modes, which never move: whoever looks at the
+// robot finds them without a look at the screen.
+
+import type { Page } from '@playwright/test';
+
+import { draw, drive_it, mark, open_page, press, save, tab } from './page';
+import { expect, test } from './station';
+
+const SIZES = [
+  ['phone', 390, 844],
+  ['phone on its side', 844, 390],
+  ['laptop', 1440, 900],
+] as const;
+
+const place_of_hold = async (page: Page): Promise<readonly [number, number]> => {
+  const hold = page.getByRole('button', { name: 'HOLD', exact: true });
+  await expect(hold).toBeInViewport({ ratio: 1 });
+  const box = await hold.boundingBox();
+  if (!box) throw new Error('HOLD has no place');
+  return [box.x, box.y];
+};
+
+for (const [name, width, height] of SIZES) {
+  test(`HOLD stays where it is on a ${name}`, async ({ page, station }) => {
+    test.setTimeout(150_000);
+    await page.setViewportSize({ width, height });
+    await open_page(page, station.url);
+    const [x, y] = await place_of_hold(page);
+    const stays = async (what: string): Promise<void> => {
+      const now = await place_of_hold(page);
+      expect.soft(Math.hypot(now[0] - x, now[1] - y), `HOLD moved by ${what}`).toBeLessThan(1);
+    };
+
+    await mark(page, 2, 1);
+    await stays('the card of a chosen place');
+    await page.locator('main').evaluate((panel) => panel.scrollTo(0, panel.scrollHeight));
+    await stays('scrolling');
+    station.sim.tell({ set: { gnss_silent: true } });
+    const position = page.getByRole('group', { name: 'Position' });
+    await expect(position).toHaveAttribute('data-stale', 'true');
+    await press(page, 'Arm');
+    await expect(page.getByRole('alert', { name: 'Refused' })).toBeAttached();
+    await stays('a refusal');
+    await press(page, 'Emergency stop');
+    await expect(page.getByText('Emergency stop is latched.')).toBeVisible();
+    await stays('an alert');
+  });
+}
+
+test('the figures tell how it drives, and are large', async ({ page, station }) => {
+  await open_page(page, station.url);
+  const deck = page.getByRole('region', { name: 'Deck' });
+  await expect(deck).toContainText(/Off path\s*—/);
+  await tab(page, 'Plan');
+  await draw(page, [
+    [0, -60],
+    [0, -260],
+  ]);
+  await page.getByLabel('Mission name').fill('Ahead');
+  await page.getByLabel('Mission name').press('Enter');
+  await save(page);
+  await drive_it(page);
+  await expect(deck).toContainText(/Speed\s*0\.[1-9]\dm\/s/, { timeout: 30_000 });
+  await expect(deck).toContainText(/Off path\s*\d+\.\d(c?m)( left| right)?/);
+  await expect(deck).toContainText(/To drive\s*\d+(\.\d+)?m/);
+  await expect(deck).toContainText(/Time left\s*(\d+s|\d+:\d\dmin)/);
+  const sizes = await deck
+    .getByRole('definition')
+    .evaluateAll((all) => all.map((each) => parseFloat(getComputedStyle(each).fontSize)));
+  expect(Math.min(...sizes)).toBeGreaterThanOrEqual(26);
+});

@@ -1,0 +1,63 @@
+// The four figures that one reads while it drives, at arm's length: a large number, and beside it
+// what it is a number of.
+
+import { duration, metres, number_text, UNKNOWN } from './format';
+import type { MissionProgress, Vehicle } from './vehicle';
+
+export interface DeckFigure {
+  readonly label: string;
+  /** The number alone. */
+  readonly value: string;
+  /** And the side, of a distance from the path. */
+  readonly unit: string;
+  readonly tone: 'plain' | 'warn' | 'bad';
+}
+
+/** Of the limit at which the mission pauses. */
+const NEAR_LIMIT = 0.5;
+
+/** "12.3 m" → number and unit; what is not known has none. */
+const split = (text: string): readonly [value: string, unit: string] => {
+  const [value = UNKNOWN, ...unit] = text.split(' ');
+  return [value, unit.join(' ')];
+};
+
+const side_of = (left_m: number | null): string =>
+  left_m === null || left_m === 0 ? '' : left_m > 0 ? ' left' : ' right';
+
+const path_tone = ({ cross_track_m, cross_track_limit_m }: MissionProgress): DeckFigure['tone'] => {
+  if (cross_track_m === null || cross_track_limit_m === null) return 'plain';
+  const share = Math.abs(cross_track_m) / cross_track_limit_m;
+  return share >= 1 ? 'bad' : share >= NEAR_LIMIT ? 'warn' : 'plain';
+};
+
+/** A clock reads faster than words: "45" s, "3:05" min, "1:12" h. */
+const clock_of = (seconds: number | null): readonly [value: string, unit: string] => {
+  if (seconds === null || Number.isNaN(seconds)) return [UNKNOWN, ''];
+  const whole = Math.round(seconds);
+  if (whole < 60) return split(duration(whole));
+  const pair = (value: number): string => String(value).padStart(2, '0');
+  if (whole < 3600) return [`${Math.floor(whole / 60)}:${pair(whole % 60)}`, 'min'];
+  return [`${Math.floor(whole / 3600)}:${pair(Math.floor((whole % 3600) / 60))}`, 'h'];
+};
+
+/** Always four, in the same order: what is not known is "—", and nothing moves. */
+export const deck_figures = (vehicle: Vehicle | null): readonly DeckFigure[] => {
+  const mission = vehicle?.mission ?? null;
+  const [speed, speed_unit] = split(number_text(vehicle?.position.speed_mps, 2, 'm/s'));
+  const off_m = mission?.cross_track_m ?? null;
+  const [off, off_unit] = split(metres(off_m === null ? null : Math.abs(off_m)));
+  const [left, left_unit] = split(metres(mission?.distance_left_m));
+  const [time, time_unit] = clock_of(mission?.eta_s ?? null);
+  return [
+    { label: 'Speed', value: speed, unit: speed_unit, tone: 'plain' },
+    {
+      label: 'Off path',
+      value: off,
+      unit: `${off_unit}${side_of(off_m)}`,
+      tone: mission ? path_tone(mission) : 'plain',
+    },
+    { label: 'To drive', value: left, unit: left_unit, tone: 'plain' },
+    { label: 'Time left', value: time, unit: time_unit, tone: 'plain' },
+  ];
+};
