@@ -12,13 +12,14 @@ import { mission_calls, tile_sets, vehicle_calls } from './link/rest';
 import { run_calls } from './link/runs';
 import { seen_calls } from './link/seen';
 import { slip_calls } from './link/slips';
-import { draft_storage, layer_storage } from './link/storage';
+import { draft_storage, layer_storage, settings_storage } from './link/storage';
 import { Stream } from './link/stream';
 import { teach_calls } from './link/teach';
 import { FieldMap } from './map/map';
 import { invitation_in, type Account } from './model/access';
 import App from './ui/App.svelte';
 import { ControlDesk } from './ui/control.svelte';
+import { device } from './ui/device.svelte';
 import { Identity } from './ui/identity.svelte';
 import LogIn from './ui/LogIn.svelte';
 import { Station } from './ui/station.svelte';
@@ -103,6 +104,7 @@ const watch_log_in = (): void => {
   }, LOOK_MS);
 };
 
+device.open(settings_storage);
 void learn_who();
 void access_calls.state().then((answer) => {
   if (!answer.ok || !answer.value.access) {

@@ -40,6 +40,10 @@ describe('the figures of the deck', () => {
     expect(said(vehicle({ cross_track_m: 0 }))[1]).toBe('Off path: 0.0 cm');
   });
 
+  test('tell the speed in the unit that was chosen', () => {
+    expect(deck_figures(vehicle(), 'km/h')[0]).toMatchObject({ value: '2.9', unit: 'km/h' });
+  });
+
   test('stay four, each a dash, while nothing is known', () => {
     const nothing = ['Speed: —', 'Off path: —', 'To drive: —', 'Time left: —'];
     expect(said(null)).toEqual(nothing);

@@ -1,4 +1,4 @@
-// What the page keeps on the device: the draft, and which layers are shown. Private windows and full
+// What the page keeps on the device: the draft, which layers are shown, and how it shows things. Private windows and full
 // disks refuse: that is no error of the page.
 
 import type { DraftStorage } from '../model/ports';
@@ -23,3 +23,4 @@ const storage_of = (key: string): DraftStorage => ({
 
 export const draft_storage = storage_of('roverd.draft');
 export const layer_storage = storage_of('roverd.layers');
+export const settings_storage = storage_of('roverd.settings');

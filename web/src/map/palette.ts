@@ -86,12 +86,44 @@ const dark: Palette = {
   run_plan: 'rgba(214, 222, 235, 0.45)',
 };
 
+/** The colours of the day, deeper, and a grid that the sun does not wash away. */
+const sunlight: Palette = {
+  ...light,
+  ground: '#ffffff',
+  casing: '#ffffff',
+  grid_major: 'rgba(0, 0, 0, 0.55)',
+  grid_minor: 'rgba(0, 0, 0, 0.2)',
+  grid_label: '#000000',
+  plan: '#00309c',
+  selected: '#8a3600',
+  refused: '#900000',
+  route: '#004a18',
+  route_done: 'rgba(0, 74, 24, 0.5)',
+  way: '#000000',
+  current: '#d05000',
+  trail: '#a00066',
+  fixes: '#5a4600',
+  robot: '#000000',
+  robot_stale: '#5c5c5c',
+  home: '#3a16a0',
+  stay_in: '#503c00',
+  keep_out: 'rgba(144, 0, 0, 0.3)',
+  run_a: '#8a3600',
+  run_b: '#00309c',
+  run_plan: 'rgba(0, 0, 0, 0.6)',
+};
+
 const dark_wanted = matchMedia('(prefers-color-scheme: dark)');
 
-export const is_dark = (): boolean => dark_wanted.matches;
+const in_sunlight = (): boolean => document.documentElement.dataset['look'] === 'sunlight';
 
-export const palette = (): Palette => (dark_wanted.matches ? dark : light);
+export const is_dark = (): boolean => dark_wanted.matches && !in_sunlight();
+
+export const palette = (): Palette => (in_sunlight() ? sunlight : is_dark() ? dark : light);
 
 export const on_palette_change = (redraw: () => void): void => {
   dark_wanted.addEventListener('change', redraw);
+  new MutationObserver(redraw).observe(document.documentElement, {
+    attributeFilter: ['data-look'],
+  });
 };

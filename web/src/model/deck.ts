@@ -1,7 +1,8 @@
 // The four figures that one reads while it drives, at arm's length: a large number, and beside it
 // what it is a number of.
 
-import { duration, metres, number_text, UNKNOWN } from './format';
+import { duration, metres, UNKNOWN } from './format';
+import { speed_text, type SpeedUnit } from './settings';
 import type { MissionProgress, Vehicle } from './vehicle';
 
 export interface DeckFigure {
@@ -42,9 +43,12 @@ const clock_of = (seconds: number | null): readonly [value: string, unit: string
 };
 
 /** Always four, in the same order: what is not known is "—", and nothing moves. */
-export const deck_figures = (vehicle: Vehicle | null): readonly DeckFigure[] => {
+export const deck_figures = (
+  vehicle: Vehicle | null,
+  speed_in: SpeedUnit = 'm/s',
+): readonly DeckFigure[] => {
   const mission = vehicle?.mission ?? null;
-  const [speed, speed_unit] = split(number_text(vehicle?.position.speed_mps, 2, 'm/s'));
+  const [speed, speed_unit] = split(speed_text(vehicle?.position.speed_mps, speed_in));
   const off_m = mission?.cross_track_m ?? null;
   const [off, off_unit] = split(metres(off_m === null ? null : Math.abs(off_m)));
   const [left, left_unit] = split(metres(mission?.distance_left_m));

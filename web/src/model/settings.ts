@@ -1,0 +1,54 @@
+// How this device shows things: chosen by whoever holds it, kept on it, and nothing of the robot's.
+
+import { number_text } from './format';
+
+/** Sunlight: black on white, whatever the device prefers. */
+export type Look = 'device' | 'sunlight';
+export type SpeedUnit = 'm/s' | 'km/h';
+
+export interface Settings {
+  readonly look: Look;
+  readonly speed: SpeedUnit;
+}
+
+export const DEFAULTS: Settings = { look: 'device', speed: 'm/s' };
+
+export const LOOKS: readonly Look[] = ['device', 'sunlight'];
+export const SPEED_UNITS: readonly SpeedUnit[] = ['m/s', 'km/h'];
+
+const one_of = <T>(all: readonly T[], value: unknown, otherwise: T): T =>
+  all.find((each) => each === value) ?? otherwise;
+
+/** What was kept. Whatever it does not know, or nobody wrote like that, is as at first. */
+export const settings_of = (text: string | null): Settings => {
+  let kept: unknown = null;
+  try {
+    kept = JSON.parse(text ?? 'null');
+  } catch {
+    return DEFAULTS;
+  }
+  const { look, speed } = (typeof kept === 'object' ? kept : null) ?? ({} as object) as {
+    look?: unknown;
+    speed?: unknown;
+  };
+  return {
+    look: one_of(LOOKS, look, DEFAULTS.look),
+    speed: one_of(SPEED_UNITS, speed, DEFAULTS.speed),
+  };
+};
+
+const KMH_PER_MPS = 3.6;
+
+/** "0.80 m/s", or "2.9 km/h": there a digit less is as fine. @param digits of m/s */
+export const speed_text = (
+  speed_mps: number | null | undefined,
+  unit: SpeedUnit,
+  digits = 2,
+): string =>
+  unit === 'm/s'
+    ? number_text(speed_mps, digits, unit)
+    : number_text(
+        typeof speed_mps === 'number' ? speed_mps * KMH_PER_MPS : speed_mps,
+        Math.max(0, digits - 1),
+        unit,
+      );
