@@ -3,7 +3,8 @@
 // written as the map_server of Nav2 does; the yaml by the library that it uses, too.
 //
 //   words       image, resolution, origin [x, y, yaw] of the lower left corner, negate,
-//               occupied_thresh, free_thresh, mode (without one: trinary). Others are passed over.
+//               occupied_thresh, free_thresh, mode (without one: trinary). Others are passed over,
+//               and named.
 //   picture     P5, or P2 (text); row 0 at the top; shade = value / greatest value
 //   occupancy   p = 1 - shade, or the shade itself where negated
 //   trinary     occupied where p > occupied_thresh, free where p < free_thresh, else unknown. One
@@ -16,6 +17,7 @@
 // Source: the package nav2_map_server, map_io. Pure; foreign bytes are refused with the field, the
 // line or the byte. Nothing is allocated before the number of cells is known to be allowed.
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -38,7 +40,10 @@ struct MapWords {
   bool negate = false;
   double occupied_thresh = 0.65;
   double free_thresh = 0.196;  ///< 205 lies above it
+  /// Lines of other names, which were passed over: kMostOthers at most, each cut to 40 bytes.
+  std::vector<std::string> others{};
 };
+inline constexpr std::size_t kMostOthers = 20;
 
 inline constexpr std::size_t kLargestWords = 64 * 1024;  ///< bytes of a yaml
 

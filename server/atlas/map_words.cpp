@@ -1,10 +1,14 @@
 // The words about a map. yaml-cpp throws; nothing of that passes this file.
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include <yaml-cpp/yaml.h>
 
@@ -135,6 +139,20 @@ class FieldReader {
   std::vector<FieldError> problems_;
 };
 
+std::vector<std::string> others_of(const YAML::Node& table) {
+  constexpr std::array<std::string_view, 7> kOurs = {
+      "image", "mode", "resolution", "origin", "negate", "occupied_thresh", "free_thresh"};
+  constexpr std::size_t kLongest = 40;
+  std::vector<std::string> out;
+  for (const auto& line : table) {
+    const std::string name = line.first.IsScalar() ? line.first.Scalar() : std::string("?");
+    if (std::find(kOurs.begin(), kOurs.end(), name) != kOurs.end()) continue;
+    if (out.size() == kMostOthers) break;
+    out.push_back(name.substr(0, kLongest));
+  }
+  return out;
+}
+
 Result<MapWords> words_of(const YAML::Node& table) {
   if (!table.IsMap()) {
     return base::fail(Code::Malformed, "the words of a map are lines of name: value",
@@ -149,6 +167,7 @@ Result<MapWords> words_of(const YAML::Node& table) {
   reader.negate(words.negate);
   reader.number("occupied_thresh", 0.0, 1.0, words.occupied_thresh);
   reader.number("free_thresh", 0.0, 1.0, words.free_thresh);
+  words.others = others_of(table);
   if (reader.problems().empty() && words.free_thresh > words.occupied_thresh) {
     reader.wrong("free_thresh", "must not be above occupied_thresh");
   }

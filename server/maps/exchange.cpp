@@ -1,0 +1,63 @@
+#include "maps/exchange.hpp"
+
+#include <cstdint>
+#include <utility>
+
+#include "atlas/map_files.hpp"
+#include "maps/edit.hpp"
+
+namespace roverd::maps {
+
+namespace {
+
+using base::Error;
+using base::Result;
+using nav::chart::OccupancyMap;
+
+/// Of a form's part: "/yaml/origin" for its "/origin", "/image/byte 3" for its "byte 3".
+tl::unexpected<Error> of_part(const std::string& part, Error error) {
+  error.code = base::Code::Invalid;
+  error.detail = part + ": " + error.detail;
+  for (base::FieldError& field : error.fields) {
+    field.pointer = (field.pointer.starts_with('/') ? part : part + "/") + field.pointer;
+  }
+  if (error.fields.empty()) error.fields.push_back({part, error.detail});
+  return tl::unexpected<Error>(std::move(error));
+}
+
+std::string text_of(const std::vector<std::uint8_t>& bytes) {
+  return {bytes.begin(), bytes.end()};
+}
+
+}  // namespace
+
+Result<Upload> read_upload(std::string_view yaml, std::string_view picture) {
+  auto words = atlas::read_words(yaml);
+  if (!words) return of_part("/yaml", words.error());
+  const auto read =
+      atlas::read_pgm({reinterpret_cast<const std::uint8_t*>(picture.data()), picture.size()});
+  if (!read) return of_part("/image", read.error());
+  auto map = atlas::map_of(*words, *read);
+  if (!map) return of_part("/yaml", map.error());
+  return Upload{std::move(*map), std::move(words->others)};
+}
+
+std::string exported_yaml(const OccupancyMap& map, const std::string& image) {
+  atlas::MapWords words = words_for(map);
+  words.image = image;
+  return atlas::write_words(words);
+}
+
+Result<std::string> exported_pgm(OccupancyMap map, const std::vector<Area>& forbidden) {
+  const atlas::MapWords words = words_for(map);
+  const auto picture = atlas::picture_of(with_forbidden(std::move(map), forbidden), words);
+  if (!picture) return tl::unexpected<Error>(picture.error());
+  return text_of(atlas::write_pgm(*picture));
+}
+
+Shown shown(const OccupancyMap& map, const std::vector<Area>& forbidden, std::size_t most) {
+  const Thinned thin = thinned(map, forbidden, most);
+  return {text_of(atlas::write_pgm(thin.picture)), thin.factor};
+}
+
+}  // namespace roverd::maps

@@ -1,0 +1,39 @@
+#pragma once
+// Maps as they come from other programs and go to them, and as people are shown them. Pure; what is
+// large takes its time: beside the web thread.
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.hpp"
+#include "maps/words.hpp"
+#include "nav/chart/map.hpp"
+
+namespace roverd::maps {
+
+struct Upload {
+  nav::chart::OccupancyMap map;
+  std::vector<std::string> passed_over;  ///< what the yaml says besides, by name
+};
+
+/// Both files of a map server's map. Which picture the yaml names does not matter. Invalid, naming
+/// the file and its field, line or byte: "/yaml/origin", "/image/size", "/image/byte 17".
+base::Result<Upload> read_upload(std::string_view yaml, std::string_view picture);
+
+/// The words of an exported map, for a picture of that file name.
+std::string exported_yaml(const nav::chart::OccupancyMap& map, const std::string& image);
+/// Its picture: what is doubtful stays as it is, what is forbidden is drawn as occupied.
+base::Result<std::string> exported_pgm(nav::chart::OccupancyMap map,
+                                       const std::vector<Area>& forbidden);
+
+struct Shown {
+  std::string pgm;
+  int factor = 1;  ///< so many cells to a side are one
+};
+/// See thinned().
+Shown shown(const nav::chart::OccupancyMap& map, const std::vector<Area>& forbidden,
+            std::size_t most);
+
+}  // namespace roverd::maps

@@ -1,0 +1,96 @@
+#pragma once
+// The maps that this robot keeps, and which of them is in use.
+//
+//   FOLDER/3/about.json      name, anchor, what is forbidden, and which picture holds
+//   FOLDER/3/map.2.pgm       the cells, of revision 2
+//   FOLDER/in_use.json       what a person chose; no such file: the map of the configuration
+//
+// A change writes a new picture beside the old one, then about.json in one step: after a power cut
+// one of both holds. A map is made in a folder of another name (new-3), which is then renamed; one
+// that goes is renamed first (gone-3). What such folders were left behind goes with the next start.
+//
+// Any thread. Whoever reads or writes cells waits for the disk, and for others who do: not on the
+// web thread, nor on control's. list(), find() and the choice touch no disk, but keep_choice().
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.hpp"
+#include "maps/about_file.hpp"
+#include "maps/words.hpp"
+#include "nav/chart/map.hpp"
+
+namespace roverd::maps {
+
+/// What configuration says: not to be changed here.
+struct Configured {
+  std::filesystem::path yaml;
+  std::optional<Anchor> anchor;
+};
+
+class Shelf {
+ public:
+  /// Makes the folder where it is missing, and looks through it. A map that cannot be read is left
+  /// where it is, and told in troubles(). Errors: Unavailable (the system's reason); what is wrong
+  /// with the files of the configuration, with their name.
+  static base::Result<std::unique_ptr<Shelf>> open(const std::filesystem::path& folder,
+                                                   const std::optional<Configured>& configured);
+
+  /// What was wrong when it was opened, one sentence each.
+  const std::vector<std::string>& troubles() const noexcept { return troubles_; }
+
+  /// By their numbers, the configured one first.
+  std::vector<About> list() const;
+  /// NotFound.
+  base::Result<About> find(std::int64_t id) const;
+  /// The same, and looks whether its files are still there: `problem` of each.
+  std::vector<About> look() const;
+
+  /// The cells as a scanner would see them. NotFound: no such map, or its files are gone.
+  base::Result<nav::chart::OccupancyMap> read(std::int64_t id) const;
+
+  /// @param name one that people may give
+  /// @return Conflict: kMostMaps are kept; Unavailable: the disk refuses, nothing was kept
+  base::Result<About> add(std::string name, const nav::chart::OccupancyMap& map,
+                          const std::optional<Anchor>& anchor, base::WallTime now);
+  /// All of it or nothing. NotFound; Conflict: of the configuration; Invalid: too many areas;
+  /// Unavailable.
+  base::Result<About> change(std::int64_t id, const Change& change);
+  /// NotFound; Conflict: in use, or of the configuration; Unavailable.
+  base::Result<void> remove(std::int64_t id);
+
+  /// The one in use; empty: none.
+  std::optional<std::int64_t> in_use() const;
+  /// Remembers it; kept over a restart with keep_choice(). NotFound, and nothing changes.
+  base::Result<void> choose(std::optional<std::int64_t> id);
+  /// What is chosen then goes to the disk. Unavailable.
+  base::Result<void> keep_choice() const;
+
+ private:
+  explicit Shelf(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  void look_through();
+  void recall_choice();
+  void take_in(std::int64_t id);
+  std::filesystem::path folder_of(std::int64_t id) const;
+  base::Result<Kept> kept(std::int64_t id) const;
+  base::Result<nav::chart::OccupancyMap> cells_of(std::int64_t id, const Kept& kept) const;
+  base::Result<void> write_change(std::int64_t id, const Kept& before, Kept& after,
+                                  const Change& change) const;
+
+  const std::filesystem::path folder_;
+  std::filesystem::path configured_;  ///< yaml; empty: none
+  std::vector<std::string> troubles_;
+  mutable std::mutex disk_;   ///< before index_
+  mutable std::mutex index_;  ///< leaf
+  std::map<std::int64_t, Kept> maps_;
+  std::optional<std::int64_t> in_use_;
+  std::int64_t next_ = 1;
+};
+
+}  // namespace roverd::maps
