@@ -37,9 +37,12 @@ base::Time end_of_scan(const base::Sight& sight) noexcept {
 
 }  // namespace
 
-base::PlaceState Whereabouts::use(std::shared_ptr<const MapInUse> map, base::Time now) {
+base::PlaceState Whereabouts::use(std::shared_ptr<const MapInUse> map, base::Time now,
+                                  bool same_place) {
+  const auto fitted = same_place ? fitted_ : std::nullopt;
   map_ = std::move(map);
   tracker_.reset();
+  fitted_.reset();
   anchor_.reset();
   started_.reset();
   again_s_ = kAgain_s;
@@ -48,10 +51,18 @@ base::PlaceState Whereabouts::use(std::shared_ptr<const MapInUse> map, base::Tim
   if (!map_ || !map_->field) return state;
   tracker_.emplace(map_->field, p_.tracker);
   anchor_ = map_->anchor;
+  if (fitted) stay_at(fitted->in_map, fitted->odometry);
   state.phase = base::PlacePhase::Searching;
   state.map = map_->name;
   state.reason = "waits for what the scanner sees";
   return state;
+}
+
+/// The new map's frame is that of the old one.
+void Whereabouts::stay_at(const Pose2& in_map, const Pose2& odometry) {
+  if (history_.empty()) return;
+  const Pose2 now = in_map * (inverse(odometry) * history_.newest().pose);
+  tracker_->suggest(now, kTap_m, kTap_rad);
 }
 
 /// E: ENU at the anchor. X_ME · X_EB.
@@ -150,6 +161,7 @@ std::optional<base::PlaceState> Whereabouts::see(const base::Sight& sight, const
   if (!told.fix) return state;
   started_.reset();
   again_s_ = kAgain_s;
+  fitted_ = Seen{told.fix->pose, *odometry};
   const Eigen::Matrix3d& c = told.fix->covariance;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(c.topLeftCorner<2, 2>());
   state.sigma_m = std::sqrt(std::max(0.0, axes.eigenvalues()(1)));

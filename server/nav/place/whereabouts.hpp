@@ -82,8 +82,13 @@ class Whereabouts {
   explicit Whereabouts(const WhereaboutsParams& params = {}) : p_(params) {}
 
   /// From now on this one; null: none. @return what is to be told of it
-  base::PlaceState use(std::shared_ptr<const MapInUse> map, base::Time now);
+  /// @param same_place the one in use was changed a little: the robot is looked for first where it
+  /// was in it, by the odometry since
+  base::PlaceState use(std::shared_ptr<const MapInUse> map, base::Time now,
+                       bool same_place = false);
   const std::shared_ptr<const MapInUse>& map() const noexcept { return map_; }
+  /// How the map in use lies on the earth: its own anchor, or what was found. Empty: not known.
+  const std::optional<MapAnchor>& anchor() const noexcept { return anchor_; }
 
   void moved(const sense::Odometry& o) noexcept { (void)history_.push(o); }
   /// @return false: no map is in use, or nobody knows where it lies
@@ -97,6 +102,7 @@ class Whereabouts {
   void start_by_satellites(const Believed& b, base::Time stamp);
   void lay(const Pose2& in_map, base::Time stamp, const std::optional<Believed>& believed);
   Pose2 on_map(base::LatLon at, double yaw_rad) const;
+  void stay_at(const Pose2& in_map, const Pose2& odometry);
   base::PlaceFix fix_of(const Fix& fix, std::uint32_t found) const;
 
   WhereaboutsParams p_;
@@ -107,6 +113,11 @@ class Whereabouts {
   std::string eye_;  ///< the sensor that is looked through
   std::optional<base::Time> eye_seen_;
   std::optional<base::Time> taken_;
+  struct Seen {
+    Pose2 in_map;
+    Pose2 odometry;
+  };
+  std::optional<Seen> fitted_;         ///< when a scan did last
   std::optional<base::Time> started_;  ///< by satellites, since it was known
   double again_s_ = kAgain_s;
 };
