@@ -23,7 +23,7 @@ enum class NeedsControl {
   No,
   Yes,
   UnlessHold,  ///< a mode: HOLD stops
-  IfActive,    ///< a fence: only the active one acts on the robot
+  IfActive,    ///< a fence, a map: only the one in force acts on the robot
 };
 std::string_view to_string(NeedsControl needs) noexcept;
 /// Yes for what is not in the table.

@@ -21,6 +21,7 @@ Api::Api(Deps deps) : impl_(std::make_unique<Impl>(std::move(deps))) {
     if (impl_->stream) impl_->stream->publish_mission(id, revision);
   };
   add_vehicle_routes(c);
+  add_map_routes(c);
   add_place_routes(c);
   add_calibration_routes(c);
   add_execution_routes(c);

@@ -17,6 +17,7 @@
 #include "api/guard.hpp"
 #include "api/json/words.hpp"
 #include "api/message.hpp"
+#include "maps/shelf.hpp"
 #include "people/book.hpp"
 #include "robot/guard/outlook.hpp"
 #include "robot/robot.hpp"
@@ -79,6 +80,21 @@ struct DrillDoor {
   std::function<void()> stop{};
 };
 
+/// The maps of the plane, and what a choice of one does.
+struct MapDoor {
+  using Take = std::function<void()>;
+  maps::Shelf* shelf = nullptr;  ///< null: none are kept
+  /// Any thread but the web's: reads a map, and makes of it what a search in it needs. @return what
+  /// takes it into use, for the web thread. Empty: nobody looks for the robot in a map.
+  /// @param same_place the map in use was changed: the robot stands where it stood in it
+  std::function<base::Result<Take>(std::int64_t id, bool same_place)> prepare{};
+  /// From now on none is in use.
+  std::function<void()> drop{};
+  /// Any thread: where the map in use lies on the earth, by its anchor or by what was found. Empty:
+  /// nobody knows yet.
+  std::function<std::optional<maps::Anchor>()> placed{};
+};
+
 /// Figures of net for /metrics.
 struct NetFigures {
   std::uint64_t accepted = 0;
@@ -114,6 +130,7 @@ struct Deps {
   Tiles tiles{};
   DriverDoor drivers{};
   DrillDoor drill{};
+  MapDoor maps{};
   /// The ground-control page; empty answers: no such file.
   std::function<std::optional<Response>(const Request&)> page{};
   std::function<NetFigures()> figures{};

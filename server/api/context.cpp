@@ -3,6 +3,7 @@
 #include <exception>
 #include <utility>
 
+#include "api/json/map_words.hpp"
 #include "api/json/teach_words.hpp"
 #include "api/profile.hpp"
 #include "base/log.hpp"
@@ -31,6 +32,11 @@ std::optional<Response> Context::without_control(const Call& call) const {
 
 Json Context::vehicle(const base::Snapshot& snapshot, base::Time now) const {
   Json out = vehicle_json(snapshot, deps.profile.name, now);
+  const maps::Shelf* shelf = deps.maps.shelf;
+  const auto in_use = shelf != nullptr ? shelf->in_use() : std::nullopt;
+  const auto placed = in_use && deps.maps.placed ? deps.maps.placed() : std::nullopt;
+  out["place"]["map_id"] = in_use ? Json(*in_use) : Json(nullptr);
+  out["place"]["placed"] = anchor_json(placed);
   out["teach"] = teach_brief_json(deps.services.view()->teach);
   out["holder"] = control.holder();
   return out;

@@ -181,6 +181,7 @@ void Context::aside(const CallPtr& call, Effort effort, Work work, Then then) co
 }
 
 void add_vehicle_routes(const ContextPtr& context);
+void add_map_routes(const ContextPtr& context);
 void add_place_routes(const ContextPtr& context);
 void add_calibration_routes(const ContextPtr& context);
 void add_execution_routes(const ContextPtr& context);

@@ -130,6 +130,11 @@ bool acts(const Context& context, const Route& route, const Call& call) {
     }
     case NeedsControl::IfActive: {
       const auto id = call.params.find("id");
+      if (route.pattern.starts_with("/maps/")) {
+        const maps::Shelf* shelf = context.deps.maps.shelf;
+        const auto in_use = shelf != nullptr ? shelf->in_use() : std::nullopt;
+        return in_use && id != call.params.end() && std::to_string(*in_use) == id->second;
+      }
       return context.fence && id != call.params.end() && context.fence->id == id->second;
     }
   }

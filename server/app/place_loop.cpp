@@ -2,15 +2,11 @@
 
 #include <cstdint>
 #include <ctime>
-#include <filesystem>
-#include <fstream>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 #include <pthread.h>
 
-#include "atlas/map_files.hpp"
 #include "base/angle.hpp"
 #include "base/log.hpp"
 #include "base/time.hpp"
@@ -19,41 +15,6 @@ namespace roverd {
 namespace {
 
 constexpr long kWakeAnyway_ns = 100'000'000;
-constexpr std::uintmax_t kLargestPicture = 200'000'000;  // 40 million cells of two bytes, as text
-
-base::Result<std::vector<std::uint8_t>> file_bytes(const std::filesystem::path& file,
-                                                   std::uintmax_t most) {
-  std::error_code error;
-  const auto size = std::filesystem::file_size(file, error);
-  if (error) return base::fail(base::Code::NotFound, file.string() + ": " + error.message());
-  if (size > most) return base::fail(base::Code::TooLarge, file.string() + ": too large");
-  std::vector<std::uint8_t> out(size);
-  std::ifstream in(file, std::ios::binary);
-  in.read(reinterpret_cast<char*>(out.data()), static_cast<std::streamsize>(size));
-  if (!in) return base::fail(base::Code::NotFound, file.string() + ": cannot be read");
-  return out;
-}
-
-base::Error of_file(const std::filesystem::path& file, base::Error error) {
-  error.detail = file.string() + ": " + error.detail;
-  return error;
-}
-
-base::Result<nav::chart::OccupancyMap> read_map_files(const std::filesystem::path& yaml) {
-  const auto text = file_bytes(yaml, atlas::kLargestWords);
-  if (!text) return tl::unexpected(text.error());
-  const auto words = atlas::read_words(std::string(text->begin(), text->end()));
-  if (!words) return tl::unexpected(of_file(yaml, words.error()));
-  const auto image = yaml.parent_path() / words->image;
-  const auto bytes = file_bytes(image, kLargestPicture);
-  if (!bytes) return tl::unexpected(bytes.error());
-  const auto picture = atlas::read_pgm(*bytes);
-  if (!picture) return tl::unexpected(of_file(image, picture.error()));
-  auto map = atlas::map_of(*words, *picture);
-  if (!map) return tl::unexpected(of_file(yaml, map.error()));
-  return map;
-}
-
 std::optional<nav::place::Believed> believed_of(const base::Snapshot* state) {
   if (state == nullptr || !state->pose || !state->pose->heading_known) return std::nullopt;
   const base::Pose& p = *state->pose;
@@ -64,26 +25,40 @@ std::optional<nav::place::Believed> believed_of(const base::Snapshot* state) {
 
 }  // namespace
 
-base::Result<PlaceLoop::Map> map_of(const Settings& settings) {
+std::optional<maps::Configured> configured_map(const Settings& settings) {
   const MapSettings& said = settings.map;
-  if (said.file.empty()) return PlaceLoop::Map();
-  const std::filesystem::path yaml(said.file);
-  auto map = read_map_files(yaml);
-  if (!map) {
-    base::Error error = map.error();
-    error.detail = settings.where("map.file") + ": " + error.detail;
-    return tl::unexpected(std::move(error));
-  }
-  nav::place::MapInUse made;
-  made.name = yaml.stem().string();
-  made.field = std::make_shared<const nav::place::Field>(*map);
+  if (said.file.empty()) return std::nullopt;
+  maps::Configured out{said.file, std::nullopt};
   if (said.anchor_lat != 0.0 || said.anchor_lon != 0.0) {
-    made.anchor = nav::place::MapAnchor{{said.anchor_lat, said.anchor_lon},
-                                        base::yaw_from_heading(said.anchor_heading_deg),
-                                        said.anchor_accuracy_m,
-                                        base::rad_from_deg(said.anchor_heading_accuracy_deg)};
+    out.anchor = maps::Anchor{{said.anchor_lat, said.anchor_lon},
+                              said.anchor_heading_deg,
+                              said.anchor_accuracy_m,
+                              said.anchor_heading_accuracy_deg};
+  }
+  return out;
+}
+
+base::Result<PlaceLoop::Map> map_of(const maps::Shelf& shelf, std::int64_t id) {
+  static std::atomic<std::uint32_t> taken{0};
+  const auto about = shelf.find(id);
+  if (!about) return tl::unexpected(about.error());
+  const auto cells = shelf.read(id);
+  if (!cells) return tl::unexpected(cells.error());
+  nav::place::MapInUse made;
+  made.name = about->name;
+  made.number = ++taken;
+  made.field = std::make_shared<const nav::place::Field>(*cells);
+  if (const auto& anchor = about->anchor) {
+    made.anchor =
+        nav::place::MapAnchor{anchor->at, base::yaw_from_heading(anchor->heading_deg),
+                              anchor->accuracy_m, base::rad_from_deg(anchor->heading_accuracy_deg)};
   }
   return std::make_shared<const nav::place::MapInUse>(std::move(made));
+}
+
+maps::Anchor told_anchor(const nav::place::MapAnchor& anchor) noexcept {
+  return {anchor.at, base::heading_from_yaw(anchor.yaw_rad), anchor.sigma_m,
+          base::deg_from_rad(anchor.yaw_sigma_rad)};
 }
 
 nav::place::WhereaboutsParams whereabouts_of(const Settings& settings) {
@@ -131,6 +106,12 @@ void PlaceLoop::told(const nav::place::Word& word) {
   words_.put(word);
 }
 
+void PlaceLoop::use(Map map, bool same_place) {
+  ++asked_;
+  choices_.put({std::move(map), same_place});
+  sem_post(&news_);
+}
+
 void PlaceLoop::run() noexcept {
   pthread_setname_np(pthread_self(), "place");
   while (!stop_) {
@@ -148,7 +129,42 @@ void PlaceLoop::run() noexcept {
   }
 }
 
+/// The newest choice; where one before it moved the place, that is gone.
+void PlaceLoop::take_maps() {
+  choice_batch_.clear();
+  const std::uint64_t asked = asked_;
+  choices_.take(choice_batch_);
+  if (choice_batch_.empty()) return;
+  bool same_place = true;
+  for (const Choice& c : choice_batch_) same_place = same_place && c.same_place;
+  Map map = std::move(choice_batch_.back().map);
+  choice_batch_.clear();
+  robot_.measurements().put(where_.use(std::move(map), base::steady_now(), same_place));
+  tell_placed();
+  done_ = asked;
+}
+
+std::shared_ptr<const nav::place::MapAnchor> PlaceLoop::placed() const {
+  if (done_ != asked_) return nullptr;  // what is told is of the map before
+  return placed_.get();
+}
+
+void PlaceLoop::tell_placed() {
+  const auto& now = where_.anchor();
+  const auto told = placed_.get();
+  if (!now && !told) return;
+  if (!now) {
+    placed_.publish(nullptr);
+    return;
+  }
+  const bool same = told && told->at.lat == now->at.lat && told->at.lon == now->at.lon &&
+                    told->yaw_rad == now->yaw_rad && told->sigma_m == now->sigma_m &&
+                    told->yaw_sigma_rad == now->yaw_sigma_rad;
+  if (!same) placed_.publish(std::make_shared<const nav::place::MapAnchor>(*now));
+}
+
 void PlaceLoop::work() {
+  take_maps();
   sight_batch_.clear();
   moved_batch_.clear();
   word_batch_.clear();
@@ -157,6 +173,7 @@ void PlaceLoop::work() {
   words_.take(word_batch_);
   for (const auto& o : moved_batch_) where_.moved(o);
   if (!word_batch_.empty()) (void)where_.told(word_batch_.back());
+  tell_placed();
   if (sight_batch_.empty()) return;
   const auto snapshot = robot_.snapshot();
   const auto believed = believed_of(snapshot.get());

@@ -6,8 +6,10 @@
 //                    robot.snapshot() ─what is believed──────────────┘
 
 #include <atomic>
+#include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -15,9 +17,11 @@
 #include <semaphore.h>
 
 #include "base/inbox.hpp"
+#include "base/latest.hpp"
 #include "base/result.hpp"
 #include "base/sight.hpp"
 #include "config/settings.hpp"
+#include "maps/shelf.hpp"
 #include "nav/place/whereabouts.hpp"
 #include "robot/robot.hpp"
 
@@ -27,7 +31,8 @@ class PlaceLoop {
  public:
   using Map = std::shared_ptr<const nav::place::MapInUse>;
 
-  /// Starts the thread. @param robot outlives it. @param mounts of the sensors, by name
+  /// Starts the thread. @param robot outlives it. @param map null: none is in use yet
+  /// @param mounts of the sensors, by name
   PlaceLoop(robot::Robot& robot, Map map, const nav::place::WhereaboutsParams& params,
             std::map<std::string, base::Mount> mounts);
   ~PlaceLoop();
@@ -41,10 +46,16 @@ class PlaceLoop {
             const std::vector<nav::sense::Odometry>& moved);
   /// Any thread: a person said where the robot stands.
   void told(const nav::place::Word& word);
+  /// Any thread: another map from now on; null: none. @param same_place see Whereabouts::use
+  void use(Map map, bool same_place);
+  /// Any thread: how the map in use lies on the earth; null: nobody knows.
+  std::shared_ptr<const nav::place::MapAnchor> placed() const;
 
  private:
   void run() noexcept;
   void work();
+  void take_maps();
+  void tell_placed();
 
   robot::Robot& robot_;
   nav::place::Whereabouts where_;
@@ -52,16 +63,29 @@ class PlaceLoop {
   base::Inbox<std::shared_ptr<const base::Sight>> sights_{16};
   base::Inbox<nav::sense::Odometry> moved_{256};
   base::Inbox<nav::place::Word> words_{4};
+  struct Choice {
+    Map map;
+    bool same_place = false;
+  };
+  base::Inbox<Choice> choices_{4};
+  base::Latest<nav::place::MapAnchor> placed_;
+  std::atomic<std::uint64_t> asked_{0};  ///< for another map, so often
+  std::atomic<std::uint64_t> done_{0};
   std::vector<std::shared_ptr<const base::Sight>> sight_batch_;
   std::vector<nav::sense::Odometry> moved_batch_;
   std::vector<nav::place::Word> word_batch_;
+  std::vector<Choice> choice_batch_;
   sem_t news_{};
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };
 
-/// The map of [map]; null: none is said. NotFound, Malformed and the rest with key and file.
-base::Result<PlaceLoop::Map> map_of(const Settings& settings);
+/// The files and the anchor of [map]; empty: none is said.
+std::optional<maps::Configured> configured_map(const Settings& settings);
+/// A kept map, as it is searched. May take a second: not on the web thread. As Shelf::read.
+base::Result<PlaceLoop::Map> map_of(const maps::Shelf& shelf, std::int64_t id);
+/// As people and the shelf say it.
+maps::Anchor told_anchor(const nav::place::MapAnchor& anchor) noexcept;
 nav::place::WhereaboutsParams whereabouts_of(const Settings& settings);
 std::map<std::string, base::Mount> mounts_of(const Settings& settings);
 

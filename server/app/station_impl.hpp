@@ -39,6 +39,7 @@
 #include "base/params.hpp"
 #include "config/learned.hpp"
 #include "config/reach.hpp"
+#include "maps/shelf.hpp"
 #include "net/assets.hpp"
 #include "net/doorbell.hpp"
 #include "net/hub.hpp"
@@ -66,8 +67,9 @@ struct Station::Impl {
   net::Files page{net::page_entries()};
   store::TileFolder tiles;
   std::unique_ptr<AroundLoop> around;  ///< null: nobody goes around anything
-  std::unique_ptr<PlaceLoop> place;    ///< null: no map
-  std::shared_ptr<SenseLoop> sense;    ///< null: no sensors
+  std::unique_ptr<maps::Shelf> shelf;
+  std::unique_ptr<PlaceLoop> place;  ///< null: no sensors
+  std::shared_ptr<SenseLoop> sense;  ///< null: no sensors
   std::unique_ptr<Supervisor> supervisor;
   std::unique_ptr<store::Store> store;
   std::unique_ptr<BackupKeeper> backups;
@@ -99,6 +101,9 @@ struct Station::Impl {
   std::string address;
 
   Result<void> open(const Settings& settings, const Options& options);
+  Result<void> open_maps(const Settings& settings, const Options& options);
+  void tell_map_trouble(const std::string& what);
+  api::MapDoor map_door();
   Result<void> open_senses(const Settings& settings, const Options& options);
   Result<void> open_tiles(const Settings& settings);
   Result<void> open_store(const Settings& settings, const Options& options);

@@ -9,6 +9,7 @@ constexpr base::Duration kKeepEstop = std::chrono::milliseconds(200);
 }  // namespace
 
 Result<void> Station::Impl::open(const Settings& settings, const Options& options) {
+  if (auto done = open_maps(settings, options); !done) return done;
   if (auto done = open_senses(settings, options); !done) return done;
   // A driver that hangs may come back when all else is gone.
   const auto see = [to = std::weak_ptr(sense)](std::shared_ptr<const base::Sight> sight) {
@@ -55,6 +56,43 @@ Result<void> Station::Impl::open(const Settings& settings, const Options& option
   return {};
 }
 
+Result<void> Station::Impl::open_maps(const Settings& settings, const Options& options) {
+  auto opened =
+      maps::Shelf::open(std::filesystem::path(options.data) / "maps", configured_map(settings));
+  if (!opened) {
+    base::Error error = opened.error();
+    error.detail = settings.where("map.file") + ": " + error.detail;
+    return tl::unexpected(std::move(error));
+  }
+  shelf = std::move(*opened);
+  for (const std::string& trouble : shelf->troubles()) tell_map_trouble(trouble);
+  return {};
+}
+
+/// Nobody reads a log: it is told where the robot's events are, too.
+void Station::Impl::tell_map_trouble(const std::string& what) {
+  base::log(base::Level::Warning, "place", what);
+  robot.tell({base::wall_now(), base::Severity::Warning, "map_trouble", what});
+}
+
+/// What the web asks of maps.
+api::MapDoor Station::Impl::map_door() {
+  api::MapDoor door;
+  door.shelf = shelf.get();
+  if (!place) return door;
+  door.prepare = [this](std::int64_t id, bool same_place) -> Result<api::MapDoor::Take> {
+    auto made = map_of(*shelf, id);
+    if (!made) return tl::unexpected(made.error());
+    return [this, map = std::move(*made), same_place] { place->use(map, same_place); };
+  };
+  door.drop = [this] { place->use(nullptr, false); };
+  door.placed = [this]() -> std::optional<maps::Anchor> {
+    const auto placed = place->placed();
+    return placed ? std::optional(told_anchor(*placed)) : std::nullopt;
+  };
+  return door;
+}
+
 /// What recorded sensors saw is looked at, too; nothing moves by a recording, so none of them is
 /// demanded.
 Result<void> Station::Impl::open_senses(const Settings& settings, const Options& options) {
@@ -75,12 +113,18 @@ Result<void> Station::Impl::open_senses(const Settings& settings, const Options&
   const robot::Config& c = settings.robot;
   robot.guard_by(c.protect, required && options.replays.empty(), c.blocked, settings.sense.outline,
                  c.rays);
-  auto map = map_of(settings);
-  if (!map) return tl::unexpected(map.error());
-  if (*map) {
-    place = std::make_unique<PlaceLoop>(robot, std::move(*map), whereabouts_of(settings),
-                                        mounts_of(settings));
+  PlaceLoop::Map map;
+  if (const auto id = shelf->in_use()) {
+    auto made = map_of(*shelf, *id);
+    if (made) {
+      map = std::move(*made);
+    } else {  // a kept one went: another map would be another place
+      (void)shelf->choose(std::nullopt);
+      tell_map_trouble("no map is in use: " + made.error().detail);
+    }
   }
+  place = std::make_unique<PlaceLoop>(robot, std::move(map), whereabouts_of(settings),
+                                      mounts_of(settings));
   sense = std::make_shared<SenseLoop>(robot, std::move(*lookout), shown_of(settings), place.get());
   around = std::make_unique<AroundLoop>(robot);  // `then` may become "around" at any time
   return {};
@@ -187,6 +231,7 @@ void Station::Impl::make_api(const Settings& settings, const Options& options) {
                   return tiles.read(set, zoom, x, y);
                 }};
   deps.drivers = driver_door();
+  deps.maps = map_door();
   deps.drill = drill_door(drill, robot, settings, options);
   deps.page = [this](const net::Request& request) {
     auto answer = front ? front->answer(request) : presence->answer(request);

@@ -59,6 +59,8 @@ Json position_json(const std::optional<base::Pose>& pose, base::Time now) {
 Json place_json(const std::optional<base::PlaceState>& place, base::Time now) {
   Json out = {{"state", base::to_string(place ? place->phase : base::PlacePhase::Off)},
               {"map", nullptr},
+              {"map_id", nullptr},  // whoever keeps the maps says it
+              {"placed", nullptr},
               {"reason", nullptr},
               {"x_m", nullptr},
               {"y_m", nullptr},

@@ -32,8 +32,7 @@ void begin(const ContextPtr& context, const CallPtr& call, robot::Command comman
         const auto snapshot = context->snapshot_or_refuse(call);
         if (!snapshot) return;
         Response response =
-            json_response(http::status::accepted,
-                          vehicle_json(*snapshot, context->deps.profile.name, base::steady_now()));
+            json_response(http::status::accepted, context->vehicle(*snapshot, base::steady_now()));
         response.set(http::field::location, "/api/v1/vehicle");
         call->respond(std::move(response));
       });
@@ -151,7 +150,7 @@ Handler set_target(const ContextPtr& context) {
     const robot::Validity validity = validity_of(members, *call, Moves::Yes);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
     run_command(context, call, target, validity, [context](const base::Snapshot& snapshot) {
-      return vehicle_json(snapshot, context->deps.profile.name, base::steady_now());
+      return context->vehicle(snapshot, base::steady_now());
     });
   };
 }

@@ -10,7 +10,7 @@ const std::vector<unsigned> kPlaced = {200, 400, 403, 409, 413, 415, 422, 429, 5
 
 std::function<Json(const base::Snapshot&)> state_after(const ContextPtr& context) {
   return [context](const base::Snapshot& snapshot) {
-    return vehicle_json(snapshot, context->deps.profile.name, base::steady_now());
+    return context->vehicle(snapshot, base::steady_now());
   };
 }
 

@@ -1,0 +1,28 @@
+#pragma once
+// What is asked of maps: the form with a map's files, and the changes of one. Pure.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "api/message.hpp"
+#include "base/result.hpp"
+#include "maps/exchange.hpp"
+#include "maps/words.hpp"
+
+namespace roverd::api {
+
+struct MapForm {
+  std::string name;
+  maps::Upload upload;
+};
+
+/// multipart/form-data with `yaml`, `image` and perhaps `name`; without one the map is called as
+/// the yaml's file. Unsupported: another type; Malformed: its frame is broken; Invalid: a file is
+/// missing, comes twice or cannot be, or a field is not known, with its name.
+base::Result<MapForm> read_map_form(std::string_view body, std::string_view content_type);
+
+/// {name?, anchor?|null, forbidden?, edits?}. Invalid, with the name of what is wrong.
+base::Result<maps::Change> read_map_change(const Json& body);
+
+}  // namespace roverd::api

@@ -1,0 +1,351 @@
+// Maps of the plane: kept, changed a little, chosen. What touches their files is done beside the
+// web thread.
+
+#include <utility>
+
+#include "api/context.hpp"
+#include "api/json/map_words.hpp"
+#include "api/map_request.hpp"
+#include "maps/exchange.hpp"
+#include "robot/modes/machine.hpp"
+
+namespace roverd::api {
+
+namespace {
+
+using base::Code;
+using base::Error;
+using base::Result;
+
+constexpr std::int64_t kUsualCells = 1'000'000;
+constexpr std::int64_t kMostCells = 40'000'000;
+const Effort kLook{Effort::kAtOnce + 1};  // a disk may pause
+const Effort kCells{Effort::kSmall + 1};  // all cells of a map
+const Effort kKeep{Effort::kSmall + 1, true};
+
+Response no_shelf() {
+  return problem({Code::Unavailable, "no maps are kept here"});
+}
+
+MapsNow now_of(const Context& context) {
+  const MapDoor& door = context.deps.maps;
+  MapsNow out{door.shelf->in_use(), std::nullopt};
+  if (out.in_use && door.placed) out.placed = door.placed();
+  return out;
+}
+
+/// The map that the path means; empty: no number.
+std::optional<std::int64_t> id_of(const Call& call) {
+  return whole_number(call.params.at("id"));
+}
+
+/// Calls then(shelf, id), or answers what is in the way of that.
+template <class Then>
+Handler with_map(const ContextPtr& context, Then then) {
+  return [context, then](const CallPtr& call) {
+    maps::Shelf* const shelf = context->deps.maps.shelf;
+    if (shelf == nullptr) return call->respond(no_shelf());
+    const auto id = id_of(*call);
+    if (!id) {
+      return call->respond(problem({Code::NotFound, "there is no such map: its id is a number"}));
+    }
+    then(call, *shelf, *id);
+  };
+}
+
+Response map_response(const Context& context, http::status status, const maps::About& about) {
+  return json_response(status, map_json(about, now_of(context), true));
+}
+
+Response map_or_problem(const Context& context, const Result<maps::About>& about) {
+  return about ? map_response(context, http::status::ok, *about) : problem(about.error());
+}
+
+/// Why no other map may be taken now: what is driven would be another way.
+std::optional<Error> drives_by_itself(const Context& context) {
+  const auto snapshot = context.deps.robot.snapshot();
+  if (!snapshot || !snapshot->armed || !robot::drives_by_itself(snapshot->mode)) {
+    return std::nullopt;
+  }
+  return Error{Code::Conflict,
+               "the robot drives by itself (" + std::string(base::to_string(snapshot->mode)) +
+                   "): the map stays as it is until it is in HOLD or MANUAL",
+               {}};
+}
+
+void tell(const Context& context, const std::string& detail) {
+  context.deps.robot.tell({base::wall_now(), base::Severity::Info, "map_in_use", detail});
+}
+
+/// On the web thread: what was made beside it is taken into use, if nothing came between.
+std::optional<Error> take(const ContextPtr& context, const CallPtr& call,
+                          const MapDoor::Take& into_use) {
+  if (context->without_control(*call)) {
+    return Error{Code::Conflict, "control went to another meanwhile", {}};
+  }
+  if (auto why = drives_by_itself(*context)) return why;
+  into_use();
+  return std::nullopt;
+}
+
+/// The choice is in force; it is written down, and the answer tells it.
+void keep_choice(const ContextPtr& context, const CallPtr& call, std::function<Response()> answer) {
+  context->answer_aside(
+      call, kKeep, [shelf = context->deps.maps.shelf, answer = std::move(answer)]() -> Response {
+        if (const auto kept = shelf->keep_choice(); !kept) {
+          return problem({Code::Unavailable,
+                          "it is so now, but not after a restart: " + kept.error().detail,
+                          {}});
+        }
+        return answer();
+      });
+}
+
+void use(const ContextPtr& context, const CallPtr& call, maps::Shelf& shelf, std::int64_t id) {
+  const auto& prepare = context->deps.maps.prepare;
+  if (const auto found = shelf.find(id); !found) return call->respond(problem(found.error()));
+  if (!prepare) {
+    return call->respond(
+        problem({Code::Conflict, "no sensor looks around: nobody would look for the robot in it"}));
+  }
+  if (const auto why = drives_by_itself(*context)) return call->respond(problem(*why));
+  context->aside(
+      call, kCells, [prepare, id] { return prepare(id, false); },
+      [context, call, &shelf, id](Result<MapDoor::Take> made) {
+        if (!made) return call->respond(problem(made.error()));
+        const auto why = take(context, call, [&] {
+          if (shelf.choose(id)) (*made)();
+        });
+        if (why) return call->respond(problem(*why));
+        const auto about = shelf.find(id);  // somebody may have deleted it meanwhile
+        if (!about) return call->respond(problem(about.error()));
+        tell(*context, "the map " + about->name + " is in use now");
+        keep_choice(context, call, [context, about = *about] {
+          return map_response(*context, http::status::ok, about);
+        });
+      });
+}
+
+Handler unuse(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    maps::Shelf* const shelf = context->deps.maps.shelf;
+    if (shelf == nullptr) return call->respond(no_shelf());
+    if (const auto why = drives_by_itself(*context)) return call->respond(problem(*why));
+    (void)shelf->choose(std::nullopt);
+    if (context->deps.maps.drop) context->deps.maps.drop();
+    tell(*context, "no map is in use now");
+    keep_choice(context, call, [context, shelf] {
+      return json_response(http::status::ok, map_list_json(shelf->look(), now_of(*context)));
+    });
+  };
+}
+
+Handler add(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    maps::Shelf* const shelf = context->deps.maps.shelf;
+    if (shelf == nullptr) return call->respond(no_shelf());
+    std::string body = std::move(call->request.body());
+    context->answer_aside(
+        call, kCells,
+        [context, shelf, now = base::wall_now(), body = std::move(body),
+         type = std::string(header(call->request, http::field::content_type))]() -> Response {
+          const auto form = read_map_form(body, type);
+          if (!form) return problem(form.error());
+          const auto about = shelf->add(form->name, form->upload.map, std::nullopt, now);
+          if (!about) return problem(about.error());
+          Json json = map_json(*about, now_of(*context), true);
+          json["passed_over"] = form->upload.passed_over;
+          Response response = json_response(http::status::created, json);
+          response.set(http::field::location, "/api/v1/maps/" + std::to_string(about->id));
+          return response;
+        });
+  };
+}
+
+/// What a change gave, and what takes it into use where it is of the map in use.
+struct Changed {
+  maps::About about;
+  MapDoor::Take into_use;  ///< empty: nobody needs it
+};
+
+Result<Changed> change(const MapDoor& door, std::int64_t id, const maps::Change& what) {
+  auto about = door.shelf->change(id, what);
+  if (!about) return tl::unexpected<Error>(about.error());
+  Changed out{std::move(*about), {}};
+  if (!what.moves() || door.shelf->in_use() != id || !door.prepare) return out;
+  auto made = door.prepare(id, true);
+  if (!made) return tl::unexpected<Error>(made.error());
+  out.into_use = std::move(*made);
+  return out;
+}
+
+void patch(const ContextPtr& context, const CallPtr& call, maps::Shelf& shelf, std::int64_t id) {
+  const auto body = json_body(call->request);
+  if (!body) return call->respond(problem(body.error()));
+  auto what = read_map_change(*body);
+  if (!what) return call->respond(problem(what.error()));
+  if (what->moves() && shelf.in_use() == id) {
+    if (const auto why = drives_by_itself(*context)) return call->respond(problem(*why));
+  }
+  context->aside(
+      call, kCells,
+      [door = context->deps.maps, id, what = std::move(*what)] { return change(door, id, what); },
+      [context, call](const Result<Changed>& changed) {
+        if (!changed) return call->respond(problem(changed.error()));
+        if (changed->into_use) {
+          if (auto why = take(context, call, changed->into_use)) {
+            return call->respond(problem({Code::Conflict,
+                                          "the map is changed and kept, but the robot does not "
+                                          "look through it yet: use it again (" +
+                                              why->detail + ")",
+                                          {}}));
+          }
+        }
+        call->respond(map_response(*context, http::status::ok, changed->about));
+      });
+}
+
+Response cells_response(const maps::Shelf& shelf, std::int64_t id, std::size_t most,
+                        const std::string& tag) {
+  const auto about = shelf.find(id);
+  if (!about) return problem(about.error());
+  const auto map = shelf.read(id);
+  if (!map) return problem(map.error());
+  maps::Shown shown = maps::shown(*map, about->forbidden, most);
+  Response response =
+      text_response(http::status::ok, "image/x-portable-graymap", std::move(shown.pgm));
+  response.set("Roverd-Thinned", std::to_string(shown.factor));
+  response.set(http::field::etag, tag);
+  response.set(http::field::cache_control, "no-cache");
+  return response;
+}
+
+/// A map of this number may be another one after a restart: its time tells them apart.
+std::string tag_of(const maps::About& about, std::int64_t most) {
+  return "\"map-" + std::to_string(about.id) + "-" + std::to_string(about.revision) + "-" +
+         std::to_string(about.created.time_since_epoch().count()) + "-" + std::to_string(most) +
+         "\"";
+}
+
+void cells(const ContextPtr& context, const CallPtr& call, const maps::Shelf& shelf,
+           std::int64_t id) {
+  std::int64_t most = kUsualCells;
+  if (const std::string said = query_text(*call, "most"); !said.empty()) {
+    const auto number = whole_number(said);
+    if (!number || *number < 1 || *number > kMostCells) {
+      const std::string detail = "must be a whole number in 1 .. " + std::to_string(kMostCells);
+      return call->respond(problem({Code::Invalid, "most " + detail, {{"most", detail}}}));
+    }
+    most = *number;
+  }
+  const auto about = shelf.find(id);
+  if (!about) return call->respond(problem(about.error()));
+  const std::string tag = tag_of(*about, most);
+  const bool known =
+      header(call->request, http::field::if_none_match).find(tag) != std::string_view::npos;
+  if (known && id != maps::kConfigured) {  // that one's file may be another by now
+    Response response{http::status::not_modified, 11};
+    response.set(http::field::etag, tag);
+    return call->respond(std::move(response));
+  }
+  context->answer_aside(call, kCells, [&shelf, id, most, tag] {
+    return cells_response(shelf, id, static_cast<std::size_t>(most), tag);
+  });
+}
+
+Response export_response(const maps::Shelf& shelf, std::int64_t id, bool yaml,
+                         bool with_forbidden) {
+  const auto about = shelf.find(id);
+  if (!about) return problem(about.error());
+  auto map = shelf.read(id);
+  if (!map) return problem(map.error());
+  const std::string name = "map-" + std::to_string(id);
+  const auto file = [&name](const char* type, const char* ending, std::string content) {
+    Response response = text_response(http::status::ok, type, std::move(content));
+    response.set(http::field::content_disposition,
+                 "attachment; filename=\"" + name + ending + "\"");
+    return response;
+  };
+  if (yaml) return file("application/yaml", ".yaml", maps::exported_yaml(*map, name + ".pgm"));
+  auto pgm = maps::exported_pgm(std::move(*map),
+                                with_forbidden ? about->forbidden : std::vector<maps::Area>());
+  if (!pgm) return problem(pgm.error());
+  return file("image/x-portable-graymap", ".pgm", std::move(*pgm));
+}
+
+void export_map(const ContextPtr& context, const CallPtr& call, const maps::Shelf& shelf,
+                std::int64_t id) {
+  const std::string format = query_text(*call, "format");
+  const std::string forbidden = query_text(*call, "forbidden");
+  const auto invalid = [&call](const char* name, const std::string& detail) {
+    call->respond(problem({Code::Invalid, name + (" " + detail), {{name, detail}}}));
+  };
+  if (format != "yaml" && format != "pgm") return invalid("format", "must be yaml or pgm");
+  if (!forbidden.empty() && forbidden != "drawn" && forbidden != "left_out") {
+    return invalid("forbidden", "must be drawn or left_out");
+  }
+  context->answer_aside(call, kCells,
+                        [&shelf, id, yaml = format == "yaml", drawn = forbidden != "left_out"] {
+                          return export_response(shelf, id, yaml, drawn);
+                        });
+}
+
+}  // namespace
+
+void add_map_routes(const ContextPtr& c) {
+  const auto get = http::verb::get;
+  const auto post = http::verb::post;
+  using Shelf = maps::Shelf;
+  c->router.add({get, "/maps", {200, 503}, [c](const CallPtr& call) {
+                   Shelf* const shelf = c->deps.maps.shelf;
+                   if (shelf == nullptr) return call->respond(no_shelf());
+                   c->answer_aside(call, kLook, [c, shelf] {
+                     return json_response(http::status::ok,
+                                          map_list_json(shelf->look(), now_of(*c)));
+                   });
+                 }});
+  c->router.add({post, "/maps", {201, 400, 403, 409, 413, 415, 422, 429, 503}, add(c), kFileBytes});
+  c->router.add({post, "/maps/unuse", {200, 403, 409, 429, 503}, unuse(c)});
+  c->router.add({get,
+                 "/maps/{id}",
+                 {200, 404, 503},
+                 with_map(c, [c](const CallPtr& call, Shelf& shelf, std::int64_t id) {
+                   c->answer_aside(call, kLook,
+                                   [c, &shelf, id] { return map_or_problem(*c, shelf.find(id)); });
+                 })});
+  c->router.add({http::verb::patch,
+                 "/maps/{id}",
+                 {200, 400, 403, 404, 409, 413, 415, 422, 429, 503},
+                 with_map(c, [c](const CallPtr& call, Shelf& shelf, std::int64_t id) {
+                   patch(c, call, shelf, id);
+                 })});
+  c->router.add({http::verb::delete_,
+                 "/maps/{id}",
+                 {204, 400, 403, 404, 409, 429, 503},
+                 with_map(c, [c](const CallPtr& call, Shelf& shelf, std::int64_t id) {
+                   c->answer_aside(call, kCells, [&shelf, id] {
+                     const auto done = shelf.remove(id);
+                     return done ? Response{http::status::no_content, 11} : problem(done.error());
+                   });
+                 })});
+  c->router.add({get,
+                 "/maps/{id}/cells",
+                 {200, 304, 404, 422, 503},
+                 with_map(c, [c](const CallPtr& call, Shelf& shelf, std::int64_t id) {
+                   cells(c, call, shelf, id);
+                 })});
+  c->router.add({get,
+                 "/maps/{id}/export",
+                 {200, 404, 422, 503},
+                 with_map(c, [c](const CallPtr& call, Shelf& shelf, std::int64_t id) {
+                   export_map(c, call, shelf, id);
+                 })});
+  c->router.add({post,
+                 "/maps/{id}/use",
+                 {200, 403, 404, 409, 429, 503},
+                 with_map(c, [c](const CallPtr& call, Shelf& shelf, std::int64_t id) {
+                   use(c, call, shelf, id);
+                 })});
+}
+
+}  // namespace roverd::api
