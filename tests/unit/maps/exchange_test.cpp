@@ -1,0 +1,96 @@
+// Maps from map servers and back, and what is no such map.
+
+#include "maps/exchange.hpp"
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace {
+
+using namespace roverd;
+
+std::string yaml(const std::string& more = "", const std::string& origin = "[-1.5, 2, 0.5]") {
+  return "image: elsewhere.pgm\nresolution: 0.5\norigin: " + origin +
+         "\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n" + more;
+}
+
+/// 2 x 2: on top free and unknown, below occupied and free.
+const std::string kPicture =
+    std::string("P5\n2 2\n255\n") + "\xFE\xCD" + std::string(1, '\0') + "\xFE";
+
+std::string problem_of(std::string_view words, std::string_view picture) {
+  const auto read = maps::read_upload(words, picture);
+  if (read) return "none";
+  EXPECT_EQ(read.error().code, base::Code::Invalid);
+  return read.error().fields.empty() ? "" : read.error().fields[0].pointer;
+}
+
+std::vector<int> cells_of(std::string_view words, std::string_view picture) {
+  const auto read = maps::read_upload(words, picture);
+  if (!read) return {};
+  return {read->map.cells().begin(), read->map.cells().end()};
+}
+
+TEST(MapUpload, IsReadWithWhatItsYamlSaysBesides) {
+  const auto read = maps::read_upload(yaml("mode: trinary\nwritten_by: somebody\n"), kPicture);
+  ASSERT_TRUE(read) << read.error().detail;
+  EXPECT_EQ(read->passed_over, std::vector<std::string>{"written_by"});
+  EXPECT_DOUBLE_EQ(read->map.shape().origin.yaw_rad, 0.5);
+  EXPECT_EQ(cells_of(yaml(), kPicture), (std::vector<int>{100, 0, 0, -1}));
+}
+
+TEST(MapUpload, OfEveryKindOfPictureIsTheSame) {
+  const std::vector<int> cells{100, 0, 0, -1};
+  EXPECT_EQ(cells_of(yaml(), "P2 # by hand\n2 2 # and so on\n255\n254 205\n0 254\n"), cells);
+  EXPECT_EQ(cells_of(yaml(), std::string("P5 2 2 510\n\x01\xFC\x01\x36", 15) +
+                                 std::string("\0\0\x01\xFC", 4)),
+            cells);  // 508, 310 (p 0.39: unknown), 0, 508 of 510
+  std::string negated = yaml();
+  negated.replace(negated.find("negate: 0"), 9, "negate: 1");
+  EXPECT_EQ(cells_of(negated, "P2 2 2 255 1 50 255 1"), cells);
+  EXPECT_EQ(cells_of(yaml("mode: raw\n"), "P2 2 2 255 0 101 100 37"),
+            (std::vector<int>{100, 37, 0, -1}));
+  EXPECT_EQ(cells_of(yaml("mode: scale\n"), "P2 1 1 255 147"), std::vector<int>{50});
+}
+
+TEST(MapUpload, ThatCannotBeIsNamedByFileAndPlace) {
+  EXPECT_EQ(problem_of("image: a.pgm\n", kPicture), "/yaml/resolution");
+  EXPECT_EQ(problem_of(yaml("", "[0, 0]"), kPicture), "/yaml/origin");
+  EXPECT_EQ(problem_of(yaml("", "[0, .nan, 0]"), kPicture), "/yaml/origin");
+  EXPECT_EQ(problem_of("resolution: 0.05\n", kPicture), "/yaml/image");
+  EXPECT_EQ(problem_of("{", kPicture).substr(0, 6), "/yaml/");
+  EXPECT_EQ(problem_of("", kPicture), "/yaml/line 1");
+  EXPECT_EQ(problem_of(yaml("mode: colours\n"), kPicture), "/yaml/mode");
+  EXPECT_EQ(problem_of(yaml(), "GIF89a").substr(0, 11), "/image/byte");
+  EXPECT_EQ(problem_of(yaml(), kPicture.substr(0, 12)), "/image/byte 12");
+  EXPECT_EQ(problem_of(yaml(), kPicture + "x"), "/image/byte 15");
+  EXPECT_EQ(problem_of(yaml(), "P5 10000 10000 255 "), "/image/size");  // not a byte is set aside
+  EXPECT_EQ(problem_of(yaml(), "P5 999999999 999999999 255 "), "/image/size");
+}
+
+TEST(MapExport, ReadsAsTheMapThatItIsOf) {
+  for (const char* words : {"", "mode: raw\n", "mode: scale\n"}) {
+    const auto read = maps::read_upload(yaml(words), "P2 3 2 255 0 60 100 204 206 255");
+    ASSERT_TRUE(read) << read.error().detail;
+    const auto picture = maps::exported_pgm(read->map, {});
+    ASSERT_TRUE(picture);
+    const std::string text = maps::exported_yaml(read->map, "map-1.pgm");
+    const auto again = maps::read_upload(text, *picture);
+    ASSERT_TRUE(again) << again.error().detail;
+    EXPECT_TRUE(std::ranges::equal(again->map.cells(), read->map.cells())) << words;
+    EXPECT_EQ(again->map.shape().origin.x_m, -1.5);
+    EXPECT_NE(text.find("image: map-1.pgm\n"), std::string::npos);
+  }
+}
+
+TEST(MapExport, DrawsWhatIsForbidden) {
+  const auto read = maps::read_upload(yaml("", "[0, 0, 0]"), kPicture);
+  const auto picture = maps::exported_pgm(read->map, {{{0.5, 0}, {1, 0}, {1, 1}, {0.5, 1}}});
+  EXPECT_EQ(cells_of(yaml(), *picture), (std::vector<int>{100, 100, 0, 100}));
+}
+
+}  // namespace
