@@ -84,6 +84,7 @@ House::House(net::Limits limits, Vehicle vehicle, const Before& before)
                  .profile = profile()};
   deps.drivers = door(vehicle);
   deps.drill = drill_door();
+  deps.maps = map_door(before);
   deps.page = [](const net::Request& request) -> std::optional<net::Response> {
     if (request.target() != "/docs.html") return std::nullopt;
     net::Response file{boost::beast::http::status::ok, 11};
@@ -140,6 +141,28 @@ api::DrillDoor House::drill_door() {
     return {};
   };
   out.stop = [this] { ++drills_stopped; };
+  return out;
+}
+
+api::MapDoor House::map_door(const Before& before) {
+  auto opened = maps::Shelf::open(maps_folder(), before.map);
+  if (!opened) throw std::runtime_error(opened.error().detail);
+  shelf_ = std::move(*opened);
+  api::MapDoor out;
+  out.shelf = shelf_.get();
+  if (!before.sees) return out;
+  out.prepare = [this](std::int64_t id, bool same_place) -> base::Result<api::MapDoor::Take> {
+    if (const auto map = shelf_->read(id); !map) return tl::unexpected(map.error());
+    return [this, id, same_place] {
+      map_taken = id;
+      map_same_place = same_place;
+    };
+  };
+  out.drop = [this] { map_taken = -1; };
+  out.placed = [this] {
+    const std::int64_t id = map_taken;
+    return id < 0 ? std::nullopt : std::optional(maps::Anchor{kStart, 90.0, 0.4, 2.0});
+  };
   return out;
 }
 

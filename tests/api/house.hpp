@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include "api/api.hpp"
 #include "base/latest.hpp"
 #include "client.hpp"
+#include "maps/shelf.hpp"
 #include "net/doorbell.hpp"
 #include "net/server.hpp"
 #include "net/workers.hpp"
@@ -39,6 +41,7 @@ struct Before {
   bool sees = false;     ///< it has sensors that look around: see()
   bool demands = false;  ///< and drives by itself with them only
   base::Duration control_grace = std::chrono::seconds(10);
+  std::optional<maps::Configured> map{};  ///< of the configuration
 };
 
 class House {
@@ -82,6 +85,10 @@ class House {
   void drill_says(const std::string& line);
   void drill_ends(const std::string& problem);
   std::atomic<int> drills_stopped{0};
+  /// The map in which it is looked for, as it was taken last; -1: none, -2: nobody said a word.
+  std::atomic<std::int64_t> map_taken{-2};
+  std::atomic<bool> map_same_place{false};
+  std::filesystem::path maps_folder() const { return folder_ / "maps"; }
   /// What its sensors see from now on, if it has any.
   void sees(std::shared_ptr<const robot::Outlook> outlook) { seen_.publish(std::move(outlook)); }
   /// The one-time code of the first admin, as it was told last; empty: none.
@@ -103,10 +110,12 @@ class House {
   void start_services();
   api::DriverDoor door(Vehicle vehicle);
   api::DrillDoor drill_door();
+  api::MapDoor map_door(const Before& before);
 
   std::filesystem::path folder_;
   boost::asio::io_context io_{net::kWebConcurrency};
   robot::Robot robot_;
+  std::unique_ptr<maps::Shelf> shelf_;
   std::unique_ptr<store::Store> store_;
   std::unique_ptr<services::Services> services_;
   std::unique_ptr<api::Api> api_;
