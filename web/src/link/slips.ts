@@ -1,8 +1,7 @@
 // The calls for places where the robot slipped.
 
 import type { Answer } from '../model/answer';
-import type { SlipCalls } from '../model/ports';
-import type { Slip } from '../model/slips';
+import type { Slip, SlipCalls } from '../model/slips';
 import { request } from './request';
 import type { components } from './schema';
 

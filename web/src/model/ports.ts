@@ -222,11 +222,6 @@ export interface RunCalls {
   plan(id: number): Promise<Answer<Plan>>;
   track_address(id: number, format: 'csv' | 'gpx' | 'geojson'): string;
 }
-export interface SlipCalls {
-  /** Newest first. */
-  all(): Promise<Answer<readonly Slip[]>>;
-  clear(): Promise<Answer<unknown>>;
-}
 /** Failures in simulated time. */
 export interface DrillCalls {
   /** The one that runs, or the last one. */

@@ -1,5 +1,6 @@
 // Where the robot slipped, and the words for it.
 
+import type { Answer } from './answer';
 import type { LatLon } from './plan';
 
 export type SlipKind = 'slip' | 'side' | 'dug';
@@ -9,6 +10,12 @@ export interface Slip extends LatLon {
   readonly kind: SlipKind;
   readonly percent: number;
   readonly times: number;
+}
+
+export interface SlipCalls {
+  /** Newest first. */
+  all(): Promise<Answer<readonly Slip[]>>;
+  clear(): Promise<Answer<unknown>>;
 }
 
 /** What happened at a place: "slipped by 40 %, 3 times". */

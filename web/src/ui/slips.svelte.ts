@@ -1,8 +1,7 @@
 // The places where the robot slipped: read while they are shown on the map.
 
 import { refusal_text } from '../model/answer';
-import type { SlipCalls } from '../model/ports';
-import type { Slip } from '../model/slips';
+import type { Slip, SlipCalls } from '../model/slips';
 import type { Dialogs } from './dialogs.svelte';
 
 const NONE: readonly Slip[] = [];

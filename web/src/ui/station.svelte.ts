@@ -15,13 +15,13 @@ import type {
   MapEvents,
   MissionCalls,
   RunCalls,
-  SlipCalls,
   StreamEvents,
   SurveyCalls,
   TeachCalls,
   VehicleCalls,
 } from '../model/ports';
 import type { SeenCalls } from '../model/seen';
+import type { SlipCalls } from '../model/slips';
 import { field_places } from '../model/survey';
 import { robot_place, type Check } from '../model/vehicle';
 import { Calibrator } from './calibrator.svelte';
@@ -36,6 +36,7 @@ import { Homeward, type HomeMode } from './homeward.svelte';
 import { Library } from './library.svelte';
 import { Live } from './live.svelte';
 import { Notices } from './notices.svelte';
+import { PastWay } from './past_way';
 import { Pilot } from './pilot.svelte';
 import { LoadedRoute } from './route.svelte';
 import { Resumption } from './resumption.svelte';
@@ -46,12 +47,6 @@ import { Sky } from './sky.svelte';
 import { Surveyor } from './survey.svelte';
 import { Target } from './target.svelte';
 import { Teacher } from './teach.svelte';
-
-/** Between calls for the trail. After failures the wait doubles: a weak link has better things to
- * carry. */
-const TRAIL_RENEWED_MS = 60_000;
-const TRAIL_AGAIN_MS = 3000;
-const TRAIL_AT_LAST_MS = 300_000;
 
 const NOTHING: ReadonlySet<number> = new Set();
 
@@ -137,12 +132,7 @@ export class Station {
   readonly findings: Findings;
   readonly map: MapCalls;
   readonly #doors: Doors;
-  /** The way before this connection is not drawn yet. */
-  #trail_missing = false;
-  /** When it may be asked for. */
-  #trail_due_ms = 0;
-  #trail_again_ms = TRAIL_AGAIN_MS;
-  #trail_call = 0;
+  readonly #past_way: PastWay;
 
   constructor(doors: Doors) {
     this.#doors = doors;
@@ -170,6 +160,7 @@ export class Station {
     this.resumption = new Resumption(doors.vehicle, this.pilot, this.notices, this.dialogs);
     this.findings = new Findings(doors.missions);
     this.teacher = new Teacher(doors.teach, this.editor, this.notices, this.dialogs);
+    this.#past_way = new PastWay(doors.vehicle, this.live, doors.map);
     doors.map.listen(this.#map_events());
     if (this.editor.restore_draft()) this.map.fit(spots(this.editor.plan));
     void this.#fetch_past_events();
@@ -184,9 +175,7 @@ export class Station {
       if (link.socket !== 'open' || was_open) return;
       void this.#fetch_past_events();
       void this.resumption.refresh();
-      this.#trail_missing = true;
-      this.#trail_due_ms = 0;
-      this.#trail_again_ms = TRAIL_AGAIN_MS;
+      this.#past_way.connected();
     },
     on_hello: (capabilities) => {
       this.live.capabilities = capabilities;
@@ -196,7 +185,7 @@ export class Station {
       this.live.take(vehicle);
       this.pilot.halts.on_vehicle(vehicle, mono_s);
       this.findings.take(vehicle);
-      void this.#complete_trail();
+      void this.#past_way.complete();
       if (this.route.take(vehicle)) void this.resumption.refresh();
     },
     on_refused: (refusal) => this.live.refuse_stick(refusal_text(refusal)),
@@ -296,27 +285,6 @@ export class Station {
   async #fetch_past_events(): Promise<void> {
     const answer = await this.#doors.vehicle.recent_events();
     if (answer.ok) this.notices.past_events(answer.value.items);
-  }
-
-  /** Fetches what was driven while this page did not look. Begun by live messages, so that it can be
-   * had, and they go on from it. */
-  async #complete_trail(): Promise<void> {
-    const { tracks } = this.live;
-    const wanted = this.#trail_missing || tracks.full;
-    if (!wanted || performance.now() < this.#trail_due_ms) return;
-    this.#trail_due_ms = Infinity;
-    const call = (this.#trail_call += 1);
-    const answer = await this.#doors.vehicle.trail();
-    if (call !== this.#trail_call) return; // of the connection before: it knows less
-    this.#trail_missing = !answer.ok;
-    if (!answer.ok) {
-      this.#trail_due_ms = performance.now() + this.#trail_again_ms;
-      this.#trail_again_ms = Math.min(2 * this.#trail_again_ms, TRAIL_AT_LAST_MS);
-      return;
-    }
-    this.#trail_due_ms = performance.now() + TRAIL_RENEWED_MS;
-    tracks.restore(answer.value);
-    this.map.show_robot(this.live.robot, tracks);
   }
 
   #map_events(): MapEvents {
