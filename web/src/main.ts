@@ -11,6 +11,7 @@ import { read_identity } from './link/identity';
 import { mission_calls, tile_sets, vehicle_calls } from './link/rest';
 import { run_calls } from './link/runs';
 import { seen_calls } from './link/seen';
+import { site_map_calls } from './link/site_maps';
 import { slip_calls } from './link/slips';
 import { draft_storage, layer_storage, settings_storage } from './link/storage';
 import { Stream } from './link/stream';
@@ -59,6 +60,7 @@ const begin = (account: Account | null, session: string | null): void => {
     runs: run_calls,
     slips: slip_calls,
     seen: seen_calls,
+    sites: site_map_calls,
     drill: drill_calls,
     survey: survey_calls,
     fences: fence_calls,

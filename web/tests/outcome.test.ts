@@ -56,6 +56,14 @@ describe('what became of a command without an answer', () => {
     expect(told(load, {}, mission({}))).toEqual([true, '“Field” revision 2 is loaded']);
     expect(told(load, {}, mission({ revision: 1 }))[0]).toBe(false);
     expect(told(load, {}, {})).toEqual([false, 'no mission is loaded']);
+    const there = { lat: 58, lon: 26 };
+    const stand: Wish = { to: 'stand', at: there };
+    expect(told(stand, {}, { position: there })).toEqual([
+      true,
+      'it takes itself to stand 0.0 cm from there',
+    ]);
+    expect(told(stand, {}, { position: { lat: 58.001, lon: 26 } })[0]).toBeNull();
+    expect(told(stand, {}, { position: { lat: null, lon: null } })[0]).toBe(false);
     const run: Wish = { to: 'run' };
     const stays = mission({ state: 'running', waits_for_word: true });
     expect(told(run, stays, mission({ state: 'running', waits_for_word: false }))[0]).toBe(true);

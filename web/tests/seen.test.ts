@@ -48,9 +48,10 @@ describe('the cells of a grid', () => {
 
 describe('the layers', () => {
   it('are remembered, and as at first where nothing or nonsense was kept', () => {
-    expect(layers_from('{"scan":true,"grid":false,"sound":false}')).toEqual({
+    expect(layers_from('{"scan":true,"grid":false,"map":false,"sound":false}')).toEqual({
       scan: true,
       grid: false,
+      map: false,
       sound: false,
     });
     for (const text of [null, '', 'nonsense', 'null', '[]', '{"scan":"yes"}']) {
@@ -58,8 +59,10 @@ describe('the layers', () => {
     }
   });
   it('ask the stream for what is shown, and for no more', () => {
-    expect(rates_of({ scan: false, grid: false, sound: true })).toEqual({ obstacles: 2 });
-    expect(rates_of({ scan: true, grid: true, sound: true })).toEqual({
+    expect(rates_of({ scan: false, grid: false, map: true, sound: true })).toEqual({
+      obstacles: 2,
+    });
+    expect(rates_of({ scan: true, grid: true, map: true, sound: true })).toEqual({
       obstacles: 2,
       grid: 2,
       scan: 5,

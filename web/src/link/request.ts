@@ -23,14 +23,14 @@ export interface Call {
 /** A link with two seconds each way is slow, not dead: connecting, asking and answering take 8 s. */
 const LIMIT_MS = 15_000;
 
-const no_answer = (detail: string): Refusal => ({
+export const no_answer = (detail: string): Refusal => ({
   status: 0,
   title: 'No answer',
   detail,
   errors: [],
 });
 
-const read_problem = async (response: Response): Promise<Refusal> => {
+export const read_problem = async (response: Response): Promise<Refusal> => {
   const fallback = `The server answered ${response.status} ${response.statusText}.`;
   let problem: Partial<Problem>;
   try {
@@ -62,6 +62,12 @@ const fetch_options = (call: Call): RequestInit => {
   };
 };
 
+/** What a request that was not answered ended in. */
+export const failed = (cause: unknown): Refusal => {
+  const late = cause instanceof DOMException && cause.name === 'TimeoutError';
+  return no_answer(late ? 'The robot did not answer in time.' : 'The robot cannot be reached.');
+};
+
 const sent = async <T>(path: string, call: Call): Promise<Answer<T>> => {
   try {
     const response = await fetch(`/api/v1${path}`, fetch_options(call));
@@ -69,9 +75,7 @@ const sent = async <T>(path: string, call: Call): Promise<Answer<T>> => {
     const value = response.status === 204 ? null : await response.json();
     return { ok: true, value: value as T };
   } catch (cause) {
-    const late = cause instanceof DOMException && cause.name === 'TimeoutError';
-    const detail = late ? 'The robot did not answer in time.' : 'The robot cannot be reached.';
-    return { ok: false, refusal: no_answer(detail) };
+    return { ok: false, refusal: failed(cause) };
   }
 };
 

@@ -199,6 +199,7 @@ export const vehicle_calls = (seen: Seen): VehicleCalls => {
     move: (forward_m) => command('POST', '/vehicle/move', { forward_m }),
     turn: (turn_deg) => command('POST', '/vehicle/move', { turn_deg }),
     set_home: ({ lat, lon }) => command('PUT', '/vehicle/home', { lat, lon }),
+    stand_at: (pose) => command('PUT', '/vehicle/pose', pose),
     reset_estop: () => command('POST', '/vehicle/estop/reset'),
     acknowledge: () => command('POST', '/vehicle/acknowledge'),
     calibrate: (kind) => command<Schemas['Calibration']>('POST', '/vehicle/calibration', { kind }),

@@ -3,12 +3,14 @@
 //   watch  a tap on a point selects it; one on free ground marks the place
 //   edit   also: dragging a point moves it; dragging or tapping a "+" inserts one
 //   draw   also: a tap on free ground adds a waypoint at the end
+//   point  a press shows a place, and where it is dragged to a direction
 //
 // Nothing is changed here: a drag shows where the point would go, and its end is reported once.
 
 import type MapBrowserEvent from 'ol/MapBrowserEvent';
 import PointerInteraction from 'ol/interaction/Pointer';
 
+import type { LatLon } from '../model/plan';
 import type { MapEvents, MapMode } from '../model/ports';
 import { leg } from './band';
 import { HANDLE_FROM_PX, type DrawnPlan } from './plan_painter';
@@ -17,6 +19,8 @@ import { from_plane, type PlanePoint } from './projection';
 /** A gloved finger needs more room than a mouse. */
 const REACH_PX = { mouse: 18, touch: 28 } as const;
 const HANDLE_REACH_PX = { mouse: 12, touch: 22 } as const;
+/** Nearer to where the press began no direction is meant. */
+const TURN_FROM_PX = 16;
 const DRAG_FROM_PX = { mouse: 3, touch: 9 } as const;
 
 type Pixel = readonly [x: number, y: number];
@@ -74,6 +78,8 @@ export class EditInteraction extends PointerInteraction {
   #hit: Hit | null = null;
   #pressed: Pixel = [0, 0];
   #drag: Drag | null = null;
+  /** Where the press began that shows a direction. */
+  #from: LatLon | null = null;
 
   constructor(port: EditPort) {
     super();
@@ -89,6 +95,7 @@ export class EditInteraction extends PointerInteraction {
   tap(event: MapBrowserEvent): void {
     const hit = this.#find(pixel_of_event(event), device_of(event));
     const events = this.#port.events();
+    if (this.#mode === 'point') return; // its end was the last word
     if (hit?.what === 'spot') events.on_select(this.#index_of(hit.k));
     else if (hit) this.#insert(hit.k, this.#middle_before(hit.k));
     else if (this.#mode === 'draw') events.on_add(from_plane(event.coordinate));
@@ -106,11 +113,17 @@ export class EditInteraction extends PointerInteraction {
   override handleDownEvent(event: MapBrowserEvent): boolean {
     if (this.#mode === 'watch' || this.targetPointers.length > 1) return false;
     this.#pressed = pixel_of_event(event);
+    if (this.#mode === 'point') {
+      this.#from = from_plane(event.coordinate);
+      this.#port.events().on_point(this.#from, null);
+      return true;
+    }
     this.#hit = this.#find(this.#pressed, device_of(event));
     return this.#hit !== null;
   }
 
   override handleDragEvent(event: MapBrowserEvent): void {
+    if (this.#from) this.#turn(this.#from, event);
     if (!this.#hit) return;
     if (this.targetPointers.length > 1) {
       this.#end();
@@ -125,6 +138,7 @@ export class EditInteraction extends PointerInteraction {
   }
 
   override handleUpEvent(): boolean {
+    this.#from = null;
     const drag = this.#drag;
     this.#end();
     if (drag?.what === 'spot') {
@@ -133,6 +147,13 @@ export class EditInteraction extends PointerInteraction {
       this.#insert(drag.k, drag.to);
     }
     return false;
+  }
+
+  #turn(from: LatLon, event: MapBrowserEvent): void {
+    const [x, y] = pixel_of_event(event);
+    const moved = Math.hypot(x - this.#pressed[0], y - this.#pressed[1]);
+    const toward = moved < TURN_FROM_PX ? null : from_plane(event.coordinate);
+    this.#port.events().on_point(from, toward);
   }
 
   #end(): void {

@@ -23,19 +23,20 @@ import type {
   TileSet,
 } from '../model/ports';
 import type { AheadOnMap, SeenOnMap } from '../model/seen';
+import type { SiteEdit, SiteOnMap } from '../model/site_map';
 import type { Tracks } from '../model/tracks';
 import { canvas_layer } from './canvas';
 import type { Slip } from '../model/slips';
 import { prepare_drill } from './drill_painter';
 import { prepare_slips } from './slip_painter';
 import { EditInteraction } from './edit';
-import type { Cover } from './grid';
 import { on_palette_change } from './palette';
 import { from_plane, to_plane, to_plane_line } from './projection';
 import { Scene } from './scene';
 import { prepare_run } from './run_painter';
 import { prepare_space } from './space_painter';
 import { make_scale_bar } from './scale_bar';
+import { clamp, extent_of, free_part, type FreePart } from './sight';
 
 /** Until something is known: the whole world, in degrees. */
 const WORLD_ZOOM = 2;
@@ -66,36 +67,6 @@ const make_ol_map = (target: HTMLElement, view: View): OlMap =>
 const plain_text = (html: string): string =>
   new DOMParser().parseFromString(html, 'text/html').body.textContent;
 
-const extent_of = (points: readonly LatLon[]): [number, number, number, number] => {
-  const extent: [number, number, number, number] = [Infinity, Infinity, -Infinity, -Infinity];
-  for (const point of points) {
-    const [x, y] = to_plane(point);
-    extent[0] = Math.min(extent[0], x);
-    extent[1] = Math.min(extent[1], y);
-    extent[2] = Math.max(extent[2], x);
-    extent[3] = Math.max(extent[3], y);
-  }
-  return extent;
-};
-
-/** The part of the map that no panel covers, in pixels. */
-interface FreePart {
-  readonly left: number;
-  readonly top: number;
-  readonly width: number;
-  readonly height: number;
-}
-
-const free_part = ([width = 0, height = 0]: readonly number[], cover: Cover): FreePart => ({
-  left: cover.left,
-  top: cover.top,
-  width: Math.max(0, width - cover.left - cover.right),
-  height: Math.max(0, height - cover.top - cover.bottom),
-});
-
-const clamp = (value: number, least: number, most: number): number =>
-  Math.min(Math.max(value, least), most);
-
 export class FieldMap implements MapCalls {
   readonly #target: HTMLElement;
   readonly #scene = new Scene();
@@ -116,6 +87,7 @@ export class FieldMap implements MapCalls {
   /** The view shows something that matters; before, the robot's first position sets it. */
   #placed = false;
   #seen_asked = false;
+  #site_asked = false;
 
   /** @param target fills the window; gets the scale bar and the tiles' credit too */
   constructor(target: HTMLElement) {
@@ -134,7 +106,7 @@ export class FieldMap implements MapCalls {
     this.#listen_for_long_press();
     this.#map.on('pointermove', (event) => this.#point(event));
     this.#map.on('pointerdrag', () => {
-      if (this.#scene.drag === null) this.#scene.events.on_pan();
+      if (this.#scene.drag === null && this.#mode !== 'point') this.#scene.events.on_pan();
     });
     on_palette_change(() => this.#map.render());
   }
@@ -234,6 +206,17 @@ export class FieldMap implements MapCalls {
     this.#map.render();
   }
 
+  show_site(site: SiteOnMap | null): void {
+    this.#scene.site = site;
+    if (site) this.#load_site_painter();
+    this.#map.render();
+  }
+
+  show_site_edits(edits: readonly SiteEdit[]): void {
+    this.#scene.site_edits = edits;
+    this.#map.render();
+  }
+
   set_size(length_m: number, width_m: number): void {
     this.#scene.size = { length_m, width_m };
   }
@@ -294,12 +277,25 @@ export class FieldMap implements MapCalls {
     );
   }
 
+  /** Likewise. */
+  #load_site_painter(): void {
+    if (this.#site_asked) return;
+    this.#site_asked = true;
+    import('./site_painter').then(
+      (painter) => {
+        this.#scene.site_painter = painter;
+        this.#map.render();
+      },
+      () => (this.#site_asked = false),
+    );
+  }
+
   /** A finger that rests, or the right mouse button: marks a place, also where a tap would select. */
   #listen_for_long_press(): void {
     this.#target.addEventListener('pointerdown', () => (this.#pressed_long = false));
     this.#target.addEventListener('contextmenu', (event) => {
       event.preventDefault();
-      if (this.#scene.drag !== null) return;
+      if (this.#scene.drag !== null || this.#mode === 'point') return;
       this.#pressed_long = true;
       this.#scene.events.on_place(from_plane(this.#map.getEventCoordinate(event)));
     });
@@ -322,7 +318,7 @@ export class FieldMap implements MapCalls {
 
   #point(event: MapBrowserEvent): void {
     if (event.dragging) return;
-    const free = this.#mode === 'draw' ? 'crosshair' : '';
+    const free = this.#mode === 'draw' || this.#mode === 'point' ? 'crosshair' : '';
     this.#target.style.cursor = this.#edit.over(event) ? 'pointer' : free;
   }
 

@@ -6,6 +6,7 @@ import { EMPTY_PLAN, type LatLon, type Plan } from '../model/plan';
 import type { MapEvents, Mark, RobotOnMap } from '../model/ports';
 import type { AheadOnMap, SeenOnMap } from '../model/seen';
 import { paint_away } from './away_painter';
+import type { SiteEdit, SiteOnMap } from '../model/site_map';
 import { ring_behind } from './band';
 import type { Paint, Painter } from './canvas';
 import { paint_drill, type DrawnDrill } from './drill_painter';
@@ -29,6 +30,7 @@ import { paint_accuracy, paint_home, paint_robot, TrailLine, type Size } from '.
 import { paint_runs, type DrawnRun } from './run_painter';
 import type { ScaleBar } from './scale_bar';
 import type * as SeenPainter from './seen_painter';
+import type * as SitePainter from './site_painter';
 import { paint_space, type DrawnSpace } from './space_painter';
 import { paint_slips, type DrawnSlip } from './slip_painter';
 
@@ -41,6 +43,7 @@ const NO_EVENTS: MapEvents = {
   on_move: () => undefined,
   on_select: () => undefined,
   on_place: () => undefined,
+  on_point: () => undefined,
   on_pan: () => undefined,
 };
 
@@ -79,6 +82,10 @@ export class Scene {
   space: DrawnSpace | null = null;
   slips: readonly DrawnSlip[] = [];
   fence: FenceDraft | null = null;
+  site: SiteOnMap | null = null;
+  site_edits: readonly SiteEdit[] = [];
+  /** Loaded when a map of a place is looked at. */
+  site_painter: typeof SitePainter | null = null;
   seen: SeenOnMap | null = null;
   ahead: AheadOnMap | null = null;
   /** Loaded when a robot with sensors is looked at. */
@@ -109,6 +116,10 @@ export class Scene {
         paint_grid(paint, palette(), this.grid_origin(here), this.cover);
         bar.show(paint.resolution / units_per_m(here.lat).east);
       },
+      (paint) => {
+        if (this.site) this.site_painter?.paint_site(paint, this.site);
+      },
+      (paint) => this.site_painter?.paint_site_edits(paint, this.site_edits, palette()),
       (paint) => {
         if (this.robot) paint_accuracy(paint, this.robot, palette());
       },

@@ -1,12 +1,14 @@
 // A command had no answer. Whether it was obeyed is not known until the robot is asked: this compares
 // its state before and after.
 
+import { metres } from './format';
 import { distance_m } from './geo';
 import { activity_line } from './modes';
 import type { LatLon } from './plan';
 import {
   antennas_wait,
   estimate_waits,
+  robot_place,
   shift_waits,
   type Activity,
   type Mode,
@@ -26,7 +28,8 @@ export type Wish =
   | { readonly to: 'run' }
   | { readonly to: 'go_on' }
   | { readonly to: 'skip' }
-  | { readonly to: 'home'; readonly at: LatLon };
+  | { readonly to: 'home'; readonly at: LatLon }
+  | { readonly to: 'stand'; readonly at: LatLon };
 
 /** How long a click can be obeyed after it was made. */
 export const CLICK_LIFE_S = 1;
@@ -38,11 +41,22 @@ export interface Outcome {
 }
 
 const SAME_PLACE_M = 0.01;
+/** A person shows a place no better. */
+const TOLD_PLACE_M = 1;
 
 const settled = (obeyed: boolean, still: string, done: string): Outcome => ({
   obeyed,
   detail: obeyed ? done : still,
 });
+
+const stands = (told: LatLon, after: Vehicle): Outcome => {
+  const here = robot_place(after);
+  if (!here) return { obeyed: false, detail: 'it does not know where it stands' };
+  const off_m = distance_m(here, told);
+  // What it saw there may have moved it already.
+  const obeyed = off_m < TOLD_PLACE_M ? true : null;
+  return { obeyed, detail: `it takes itself to stand ${metres(off_m)} from there` };
+};
 
 /** @param before the state that the person acted upon; null: none was seen */
 export const outcome = (wish: Wish, before: Vehicle | null, after: Vehicle): Outcome => {
@@ -99,6 +113,8 @@ export const outcome = (wish: Wish, before: Vehicle | null, after: Vehicle): Out
       const obeyed = after.home !== null && distance_m(after.home, wish.at) < SAME_PLACE_M;
       return { obeyed, detail: obeyed ? 'home is there' : 'home is elsewhere' };
     }
+    case 'stand':
+      return stands(wish.at, after);
   }
 };
 

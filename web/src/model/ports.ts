@@ -13,6 +13,7 @@ import type { WayHome } from './homeward';
 import type { Home, LatLon, Plan, Settings, Item } from './plan';
 import type { RunHead, RunReport } from './runs';
 import type { SeenEvents, SeenLink, SeenMap } from './seen';
+import type { SiteMapView, StandingPose } from './site_map';
 import type { Slip } from './slips';
 import type { ReceiverSky } from './sky';
 import type { Survey, SurveyWish } from './survey';
@@ -176,6 +177,8 @@ export interface VehicleCalls {
   /** @param turn_deg clockwise positive */
   turn(turn_deg: number): Promise<Answer<unknown>>;
   set_home(at: LatLon): Promise<Answer<unknown>>;
+  /** Where the robot stands, as a person says it. */
+  stand_at(pose: StandingPose): Promise<Answer<unknown>>;
   reset_estop(): Promise<Answer<unknown>>;
   /** A person has looked where the robot stands. */
   acknowledge(): Promise<Answer<unknown>>;
@@ -299,8 +302,8 @@ export interface DraftStorage {
   write(text: string): boolean;
 }
 
-/** Exactly one is active: look only; move and select; or also add a waypoint with every tap. */
-export type MapMode = 'watch' | 'edit' | 'draw';
+/** Exactly one is active: look; move and select; also add with every tap; show how it stands. */
+export type MapMode = 'watch' | 'edit' | 'draw' | 'point';
 
 /** How what is edited hangs together. */
 export type PlanShape = 'line' | 'ring' | 'points';
@@ -312,6 +315,8 @@ export interface MapEvents {
   on_select(index: number | null): void;
   /** Free ground was tapped while nothing is edited; or any place was pressed for long. */
   on_place(at: LatLon): void;
+  /** @param toward where the finger is that was put down there; null: it has not moved */
+  on_point(at: LatLon, toward: LatLon | null): void;
   /** The person moved the map: following ends. */
   on_pan(): void;
 }
@@ -353,7 +358,7 @@ export interface Mark extends LatLon {
   /** Around it; clockwise null: no way, but the area in which the robot stays. */
   readonly ring?: { readonly radius_m: number; readonly clockwise: boolean | null };
 }
-export interface MapCalls extends SeenMap {
+export interface MapCalls extends SeenMap, SiteMapView {
   listen(events: MapEvents): void;
   set_mode(mode: MapMode): void;
   /** What is edited: a mission, a ring, or places that nothing joins. */

@@ -147,10 +147,12 @@ export const cells_of = ({ runs, columns, rows }: SeenGrid): Uint8Array | null =
 export interface Layers {
   readonly scan: boolean;
   readonly grid: boolean;
+  /** Of the place, where one is in use. */
+  readonly map: boolean;
   /** Stops and the end of waiting are heard. */
   readonly sound: boolean;
 }
-export const AT_FIRST: Layers = { scan: false, grid: true, sound: true };
+export const AT_FIRST: Layers = { scan: false, grid: true, map: true, sound: true };
 
 /** As it was kept on the device; what is none is as at first. */
 export const layers_from = (text: string | null): Layers => {
@@ -160,7 +162,12 @@ export const layers_from = (text: string | null): Layers => {
       const value = kept?.[name];
       return typeof value === 'boolean' ? value : AT_FIRST[name];
     };
-    return { scan: flag('scan'), grid: flag('grid'), sound: flag('sound') };
+    return {
+      scan: flag('scan'),
+      grid: flag('grid'),
+      map: flag('map'),
+      sound: flag('sound'),
+    };
   } catch {
     return AT_FIRST;
   }

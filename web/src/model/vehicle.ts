@@ -4,6 +4,7 @@
 import type { Obstacle } from './obstacle';
 import type { RowDriven } from './row';
 import type { LatLon } from './plan';
+import type { MapPlace } from './site_map';
 import type { GuardFigures, Twist } from './sweep';
 
 export type Mode =
@@ -185,6 +186,8 @@ export interface Vehicle {
   };
   readonly speed_reason: string;
   readonly position: Position;
+  /** In the map in use. */
+  readonly place?: MapPlace;
   readonly estimator: Estimator;
   readonly learned: Learned;
   readonly gnss: Gnss;

@@ -10,7 +10,7 @@ export const key_words: readonly (readonly [keys: string, meaning: string])[] = 
   ['Enter', 'Press the button that has the focus'],
   ['Ctrl + Z', 'Undo the last edit'],
   ['Ctrl + Y, Ctrl + Shift + Z', 'Redo'],
-  ['Ctrl + S', 'Save the mission, or the fence'],
+  ['Ctrl + S', 'Save the mission, the fence or the map'],
   ['Delete', 'Delete the selected item or corner'],
   ['F', 'Follow the robot'],
   ['+ and −', 'Zoom'],
@@ -29,6 +29,7 @@ const edit_key = (station: Station, event: KeyboardEvent): boolean => {
   const { drawing } = station;
   if (key === 's' && drawing === null) void editor.save();
   else if (key === 's' && drawing === station.fences) void station.fences.save();
+  else if (key === 's' && drawing === station.sites.editor) void station.sites.editor.save();
   else if (is_typing(event.target)) return false;
   else if (key === 'z' && drawing !== null) drawing.undo();
   else if (key === 'z' && event.shiftKey) editor.redo();

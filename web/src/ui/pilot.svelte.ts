@@ -8,6 +8,7 @@ import type { Halt } from '../model/halt';
 import { CLICK_LIFE_S, outcome, type Outcome, type Wish } from '../model/outcome';
 import type { LatLon } from '../model/plan';
 import type { Goal, LiveLink, SendDrive, StartFrom, VehicleCalls } from '../model/ports';
+import type { StandingPose } from '../model/site_map';
 import type { Mode, StationEvent, Vehicle } from '../model/vehicle';
 import type { Dialogs } from './dialogs.svelte';
 import { Halts } from './halts.svelte';
@@ -78,6 +79,8 @@ export class Pilot {
     this.#do('Turn', { to: 'do', kinds: ['turn'] }, () => this.#calls.turn(turn_deg));
   set_home = (at: LatLon): Promise<boolean> =>
     this.#do('Home here', { to: 'home', at }, () => this.#calls.set_home(at));
+  stand_at = (pose: StandingPose): Promise<boolean> =>
+    this.#do('I am here', { to: 'stand', at: pose }, () => this.#calls.stand_at(pose));
   load = (id: string, revision: number): Promise<boolean> =>
     this.#do('Load', { to: 'load', id, revision }, () => this.#calls.load(id, revision));
 

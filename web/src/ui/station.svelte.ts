@@ -21,6 +21,7 @@ import type {
   VehicleCalls,
 } from '../model/ports';
 import type { SeenCalls } from '../model/seen';
+import type { SiteMapCalls } from '../model/site_map';
 import type { SlipCalls } from '../model/slips';
 import { field_places } from '../model/survey';
 import { robot_place, type Check } from '../model/vehicle';
@@ -42,8 +43,10 @@ import { LoadedRoute } from './route.svelte';
 import { Resumption } from './resumption.svelte';
 import { Runs } from './runs.svelte';
 import { Seen } from './seen.svelte';
+import { SiteMaps } from './site_maps.svelte';
 import { Slips } from './slips.svelte';
 import { Sky } from './sky.svelte';
+import { Standing } from './standing.svelte';
 import { Surveyor } from './survey.svelte';
 import { Target } from './target.svelte';
 import { Teacher } from './teach.svelte';
@@ -52,7 +55,7 @@ const NOTHING: ReadonlySet<number> = new Set();
 
 export type Tab = 'drive' | 'plan' | 'missions' | 'log';
 /** What is shown under Missions. */
-export type Shelf = 'missions' | 'runs' | 'fences';
+export type Shelf = 'missions' | 'runs' | 'fences' | 'maps';
 /** What is pulled out in the Drive panel. */
 export type Drawer = 'move' | 'teach' | 'calibrate' | null;
 
@@ -64,6 +67,7 @@ export interface Doors {
   readonly runs: RunCalls;
   readonly slips: SlipCalls;
   readonly seen: SeenCalls;
+  readonly sites: SiteMapCalls;
   readonly drill: DrillCalls;
   readonly survey: SurveyCalls;
   readonly fences: FenceCalls;
@@ -87,8 +91,9 @@ export class Station {
   /** What a hand on the map changes instead of the mission. */
   drawing = $derived.by<Drawing | null>(() => {
     if (this.tab === 'plan' && this.surveyor.open) return this.surveyor.outline;
-    const fencing = this.tab === 'missions' && this.shelf === 'fences';
-    return fencing && this.fences.draft ? this.fences : null;
+    if (this.tab !== 'missions') return null;
+    if (this.shelf === 'fences') return this.fences.draft ? this.fences : null;
+    return this.shelf === 'maps' && this.sites.editor.map ? this.sites.editor : null;
   });
 
   /** On what a drill would be played: the loaded mission, else the one in the editor as it is
@@ -103,6 +108,9 @@ export class Station {
     if (!stored || unsaved) return null;
     return { id: stored.id, revision: stored.revision, name: plan.name, plan, loaded: false };
   });
+
+  /** A press on the map shows where the robot stands. */
+  pointing = $derived.by<boolean>(() => this.tab === 'drive' && this.standing.open);
 
   /** Once the robot drives, what it is driven with goes before. */
   drilling = $derived.by<boolean>(
@@ -122,6 +130,8 @@ export class Station {
   readonly runs: Runs;
   readonly slips: Slips;
   readonly seen: Seen;
+  readonly sites: SiteMaps;
+  readonly standing: Standing;
   readonly drills: Drills;
   readonly surveyor: Surveyor;
   readonly fences: Fences;
@@ -151,6 +161,8 @@ export class Station {
     this.runs = new Runs(doors.runs);
     this.slips = new Slips(doors.slips, this.dialogs);
     this.seen = new Seen(doors.seen, doors.link, this.live, doors.layers);
+    this.sites = new SiteMaps(doors.sites, this.live, this.notices, this.dialogs);
+    this.standing = new Standing(this.live, this.pilot);
     this.drills = new Drills(doors.drill);
     this.surveyor = new Surveyor(doors.survey, this.editor, this.notices);
     this.fences = new Fences(doors.fences, this.notices, this.dialogs);
@@ -302,6 +314,7 @@ export class Station {
         this.target.choose(at);
         this.sheet_open = true;
       },
+      on_point: (at, toward) => this.standing.point(at, toward),
       on_pan: () => {
         if (this.follow) this.set_follow(false);
       },
@@ -311,10 +324,13 @@ export class Station {
   #keep_map_in_step(): void {
     const { editor, live, map } = this;
     // A map that moves under the finger cannot be drawn on.
-    $effect(() => map.set_follow(this.follow && this.tab !== 'plan' && this.drawing === null));
+    $effect(() => {
+      const drawn_on = this.tab === 'plan' || this.drawing !== null || this.pointing;
+      map.set_follow(this.follow && !drawn_on);
+    });
     $effect(() => {
       const edits = this.tab === 'plan' ? editor.map_mode : 'watch';
-      map.set_mode(this.drawing?.map_mode ?? edits);
+      map.set_mode(this.pointing ? 'point' : (this.drawing?.map_mode ?? edits));
     });
     // A run is looked at, and a field drawn, without what is planned otherwise.
     const looks_back = $derived(this.tab === 'missions' && this.shelf === 'runs');
@@ -349,6 +365,7 @@ export class Station {
     // As long as somebody sees them: in the log, or on the map.
     const slips_seen = $derived(this.slips.shown || this.tab === 'log');
     $effect(() => (slips_seen ? untrack(() => this.slips.watch()) : undefined));
+    this.#keep_site_in_step();
     $effect(() => this.seen.follow_layers());
     $effect(() => map.show_seen(this.seen.on_map));
     $effect(() => map.show_ahead(this.seen.ahead));
@@ -356,9 +373,24 @@ export class Station {
     $effect(() => map.show_robot(live.robot, live.tracks));
     $effect(() => map.show_home(live.vehicle?.home ?? null));
     $effect(() => {
-      const pin = this.tab === 'drive' ? this.target.mark : null;
+      const pin = this.tab === 'drive' ? (this.standing.mark ?? this.target.mark) : null;
       const home = this.tab === 'drive' ? this.homeward.mark : null;
       map.show_marks(pin, home ?? activity_mark(live.vehicle));
     });
+  }
+
+  #keep_site_in_step(): void {
+    const { live, map } = this;
+    // Where there is a map in use; and in the list of maps, which one may be.
+    const maps_seen = $derived(this.tab === 'missions' && this.shelf === 'maps');
+    const located = $derived((live.vehicle?.place?.state ?? 'off') !== 'off');
+    const map_in_use = $derived(live.vehicle?.place?.map_id ?? null);
+    const site_wanted = $derived(maps_seen || (located && this.seen.layers.map));
+    $effect(() => {
+      void map_in_use; // another one: whoever changed it
+      return site_wanted ? untrack(() => this.sites.watch()) : undefined;
+    });
+    $effect(() => map.show_site(site_wanted ? this.sites.on_map : null));
+    $effect(() => map.show_site_edits(maps_seen ? this.sites.editor.edits : []));
   }
 }

@@ -1,0 +1,93 @@
+// The calls for maps of a place in the plane.
+
+import type { Answer } from '../model/answer';
+import {
+  MOST_CELLS,
+  read_cells,
+  type MapFiles,
+  type SiteMap,
+  type SiteMapCalls,
+  type SiteMapList,
+  type TaggedCells,
+} from '../model/site_map';
+import { in_lane } from './lanes';
+import { failed, no_answer, read_problem, request } from './request';
+
+/** A map of 10,000 by 10,000 cells over a weak radio link. */
+const SEND_LIMIT_MS = 600_000;
+const CELLS_LIMIT_MS = 60_000;
+
+const path = (id: number): string => `/maps/${id}`;
+
+/** As fetch cannot: it tells how much of it is sent. */
+const post = (
+  form: FormData,
+  sent: (share: number) => void,
+): Promise<{ readonly status: number; readonly text: string }> =>
+  new Promise((resolve, reject) => {
+    const call = new XMLHttpRequest();
+    call.open('POST', '/api/v1/maps');
+    call.timeout = SEND_LIMIT_MS;
+    call.upload.addEventListener('progress', ({ lengthComputable, loaded, total }) => {
+      if (lengthComputable && total > 0) sent(loaded / total);
+    });
+    call.addEventListener('load', () => resolve({ status: call.status, text: call.responseText }));
+    call.addEventListener('error', () => reject(new Error('not reached')));
+    call.addEventListener('timeout', () => reject(new DOMException('late', 'TimeoutError')));
+    call.send(form);
+  });
+
+const add = async (
+  { yaml, image }: MapFiles,
+  name: string,
+  sent: (share: number) => void,
+): Promise<Answer<SiteMap>> => {
+  const form = new FormData();
+  if (name !== '') form.set('name', name);
+  form.set('yaml', yaml);
+  form.set('image', image);
+  try {
+    const { status, text } = await in_lane('other', () => post(form, sent));
+    const answer = new Response(text === '' ? null : text, { status });
+    if (!answer.ok) return { ok: false, refusal: await read_problem(answer) };
+    return { ok: true, value: JSON.parse(text) as SiteMap };
+  } catch (cause) {
+    return { ok: false, refusal: failed(cause) };
+  }
+};
+
+/** Bytes, and only those that are not known yet. */
+const fetch_cells = async (id: number, tag: string | null): Promise<Answer<TaggedCells | null>> => {
+  try {
+    const answer = await fetch(`/api/v1${path(id)}/cells?most=${MOST_CELLS}`, {
+      cache: 'no-store',
+      signal: AbortSignal.timeout(CELLS_LIMIT_MS),
+      headers: tag === null ? {} : { 'If-None-Match': tag },
+    });
+    if (answer.status === 304) return { ok: true, value: null };
+    if (!answer.ok) return { ok: false, refusal: await read_problem(answer) };
+    const thinned = Number(answer.headers.get('Roverd-Thinned') ?? '1');
+    const cells = read_cells(new Uint8Array(await answer.arrayBuffer()), thinned);
+    if (!cells) return { ok: false, refusal: no_answer('What came is no picture of a map.') };
+    return { ok: true, value: { ...cells, tag: answer.headers.get('ETag') } };
+  } catch (cause) {
+    return { ok: false, refusal: failed(cause) };
+  }
+};
+
+export const site_map_calls: SiteMapCalls = {
+  list: () => request<SiteMapList>('/maps'),
+  read: (id) => request<SiteMap>(path(id)),
+  add,
+  change: (id, change) =>
+    request<SiteMap>(path(id), { method: 'PATCH', body: change, limit_ms: CELLS_LIMIT_MS }),
+  remove: (id) => request<null>(path(id), { method: 'DELETE' }),
+  use: (id) =>
+    request<unknown>(id === null ? '/maps/unuse' : `${path(id)}/use`, {
+      method: 'POST',
+      lane: 'command',
+      limit_ms: CELLS_LIMIT_MS,
+    }),
+  cells: (id, tag) => in_lane('other', () => fetch_cells(id, tag)),
+  file_address: (id, format) => `/api/v1${path(id)}/export?format=${format}`,
+};

@@ -1,0 +1,347 @@
+// Maps of a place in the plane: where their cells lie on the earth, what a hand changes in them, and
+// the words for whether the robot knows its place in the one that is in use.
+
+import type { Answer } from './answer';
+import { accuracy, sentence } from './format';
+import { offset_between, offset_from } from './geo';
+import type { Places } from './outline';
+import type { LatLon } from './plan';
+import type { Placed } from './seen';
+
+/** In the map's own frame. */
+export interface MapPoint {
+  readonly x_m: number;
+  readonly y_m: number;
+}
+export interface SiteMap {
+  /** 0: the one that the configuration names, which stays as it is. */
+  readonly id: number;
+  readonly name: string;
+  /** Another one with every change. */
+  readonly revision: number;
+  /** Null: not known. */
+  readonly created_at: string | null;
+  /** Cells. */
+  readonly width: number;
+  readonly height: number;
+  readonly resolution_m: number;
+  /** The lower left corner of the picture, and how the picture is turned about it. */
+  readonly origin: MapPoint & { readonly yaw_deg: number };
+  /** Where x = y = 0 lies and which way the x axis looks, as it was told. */
+  readonly anchor: (Placed & { readonly accuracy_m: number }) | null;
+  /** Likewise, as the robot drives by it now; null: not in use, or not known. */
+  readonly placed?: Placed | null;
+  readonly in_use: boolean;
+  readonly size_bytes: number;
+  /** Why it cannot be used; null: it can. */
+  readonly problem: string | null;
+  /** Areas where nobody shall drive; only where one map is asked for. */
+  readonly forbidden?: readonly (readonly MapPoint[])[];
+}
+export interface SiteMapList {
+  readonly items: readonly SiteMap[];
+  readonly in_use: number | null;
+}
+
+export type EditKind = 'erase' | 'forbid' | 'wall';
+/** What is drawn: all cells within become free, forbidden or occupied. */
+export interface SiteEdit {
+  readonly kind: EditKind;
+  readonly ring: Places;
+}
+export interface SiteChange {
+  readonly name?: string;
+  /** Instead of those before. */
+  readonly forbidden?: readonly (readonly MapPoint[])[];
+  readonly edits?: readonly {
+    readonly kind: EditKind;
+    readonly polygon: readonly MapPoint[];
+  }[];
+}
+
+/** The cells of a map, thinned where there are too many to draw. */
+export interface SiteCells {
+  readonly columns: number;
+  readonly rows: number;
+  /** So many of the map's cells are one of these, each way; counted from the lower left. */
+  readonly thinned: number;
+  /** From the upper left, row by row, as UNKNOWN_CELL and the others. */
+  readonly cells: Uint8Array;
+}
+export interface SiteOnMap {
+  readonly map: SiteMap;
+  readonly cells: SiteCells;
+  readonly at: Placed;
+}
+
+export interface SiteMapCalls {
+  list(): Promise<Answer<SiteMapList>>;
+  read(id: number): Promise<Answer<SiteMap>>;
+  /** @param name empty: as the files say; @param sent told a share from 0 to 1 now and then */
+  add(pair: MapFiles, name: string, sent: (share: number) => void): Promise<Answer<SiteMap>>;
+  change(id: number, change: SiteChange): Promise<Answer<SiteMap>>;
+  remove(id: number): Promise<Answer<unknown>>;
+  /** @param id null: none */
+  use(id: number | null): Promise<Answer<unknown>>;
+  /** @param tag of what is known already. @return null: that is still so */
+  cells(id: number, tag: string | null): Promise<Answer<TaggedCells | null>>;
+  file_address(id: number, format: 'yaml' | 'pgm'): string;
+}
+export interface TaggedCells extends SiteCells {
+  readonly tag: string | null;
+}
+export interface SiteMapView {
+  /** The cells of a map below everything else; null: none. */
+  show_site(site: SiteOnMap | null): void;
+  /** What is drawn of changes that are not saved. */
+  show_site_edits(edits: readonly SiteEdit[]): void;
+}
+
+export const UNKNOWN_CELL = 0;
+export const FREE_CELL = 1;
+export const OCCUPIED_CELL = 2;
+export const FORBIDDEN_CELL = 3;
+/** What a page asks for at most. */
+export const MOST_CELLS = 1_000_000;
+
+/** As map servers keep them: black is a wall, almost white is free, the grey between is not known;
+ * but for one grey of the robot's own. */
+const OCCUPIED_TO = 89;
+const FORBIDDEN = 100;
+const FREE_FROM = 206;
+
+const kind_of = (byte: number): number =>
+  byte <= OCCUPIED_TO
+    ? OCCUPIED_CELL
+    : byte >= FREE_FROM
+      ? FREE_CELL
+      : byte === FORBIDDEN
+        ? FORBIDDEN_CELL
+        : UNKNOWN_CELL;
+
+/** The numbers of a picture's head, after "P5": three of them, between blanks and comments. */
+const head_of = (bytes: Uint8Array): readonly [figures: number[], end: number] | null => {
+  const figures: number[] = [];
+  let at = 2;
+  while (figures.length < 3) {
+    const from = at;
+    while (at < bytes.length && /\s/.test(String.fromCharCode(bytes[at] ?? 0))) at += 1;
+    if (bytes[at] === 0x23) {
+      while (at < bytes.length && bytes[at] !== 0x0a) at += 1;
+      continue;
+    }
+    let value = 0;
+    const first = at;
+    for (; at - first < 6; at += 1) {
+      const digit = (bytes[at] ?? 0) - 0x30;
+      if (digit < 0 || digit > 9) break;
+      value = 10 * value + digit;
+    }
+    if (at === first || first === from) return null;
+    figures.push(value);
+  }
+  return [figures, at + 1];
+};
+
+/** A grey picture (PGM, P5) as cells. @return null: it is none, or has more than MOST_CELLS */
+export const read_cells = (bytes: Uint8Array, thinned: number): SiteCells | null => {
+  if (bytes[0] !== 0x50 || bytes[1] !== 0x35) return null;
+  const [figures, end] = head_of(bytes) ?? [[], 0];
+  const [columns = 0, rows = 0, most = 0] = figures;
+  const count = columns * rows;
+  if (count === 0 || count > MOST_CELLS || most !== 255 || bytes.length - end < count) return null;
+  return { columns, rows, thinned, cells: bytes.subarray(end, end + count).map(kind_of) };
+};
+
+const RAD = Math.PI / 180;
+
+/** Where a point of the map lies. @param at of x = y = 0, and of the x axis */
+export const on_earth = (at: Placed, { x_m, y_m }: MapPoint): LatLon => {
+  const [sin, cos] = [Math.sin(at.heading_deg * RAD), Math.cos(at.heading_deg * RAD)];
+  return offset_from(at, { east_m: x_m * sin - y_m * cos, north_m: x_m * cos + y_m * sin });
+};
+
+/** The other way: millimetres are more than any cell. */
+export const in_map = (at: Placed, place: LatLon): MapPoint => {
+  const [sin, cos] = [Math.sin(at.heading_deg * RAD), Math.cos(at.heading_deg * RAD)];
+  const { east_m, north_m } = offset_between(at, place);
+  const rounded = (metres: number): number => Math.round(metres * 1000) / 1000 + 0; // no -0
+  return {
+    x_m: rounded(east_m * sin + north_m * cos),
+    y_m: rounded(north_m * sin - east_m * cos),
+  };
+};
+
+/** The corners of its picture, from the lower left one, to its right first. */
+export const corners = (map: SiteMap, at: Placed): readonly LatLon[] => {
+  const { x_m, y_m, yaw_deg } = map.origin;
+  const [sin, cos] = [Math.sin(yaw_deg * RAD), Math.cos(yaw_deg * RAD)];
+  const [wide, high] = [map.width * map.resolution_m, map.height * map.resolution_m];
+  const corner = (u: number, v: number): LatLon =>
+    on_earth(at, { x_m: x_m + u * cos - v * sin, y_m: y_m + u * sin + v * cos });
+  return [corner(0, 0), corner(wide, 0), corner(wide, high), corner(0, high)];
+};
+
+/** Where a map is drawn: as the robot drives by it, else where it was told to lie, else here. */
+export const place_of_map = (map: SiteMap, here: LatLon | null): Placed | null =>
+  map.placed ?? map.anchor ?? (here && { lat: here.lat, lon: here.lon, heading_deg: 90 });
+
+/** Nobody knows where it lies: where it is drawn means nothing. */
+export const lies_anywhere = (map: SiteMap): boolean => !map.placed && !map.anchor;
+
+export interface MapFiles {
+  readonly yaml: File;
+  readonly image: File;
+}
+
+/** The two files of a map, of those that were picked. @return what is wrong with them, in words */
+export const pair_of = (files: readonly File[]): MapFiles | string => {
+  const [yamls, images] = [/\.ya?ml$/i, /\.pgm$/i].map((ending) =>
+    files.filter(({ name }) => ending.test(name)),
+  );
+  const [yaml, image] = [yamls?.[0], images?.[0]];
+  const other = files.find(({ name }) => !/\.(ya?ml|pgm)$/i.test(name));
+  if (other) return `“${other.name}” is no part of a map: pick its .yaml and its .pgm.`;
+  if (!yaml && !image) return 'Pick the .yaml and the .pgm of a map.';
+  if (!yaml) return 'The .yaml is missing: pick both files together.';
+  if (!image) return 'The .pgm is missing: pick both files together.';
+  if (files.length > 2) return 'One map at a time: pick one .yaml and its .pgm.';
+  return { yaml, image };
+};
+
+export const edit_words: Record<EditKind, string> = {
+  erase: 'Erase',
+  forbid: 'Forbid',
+  wall: 'Wall',
+};
+export const edit_meaning: Record<EditKind, string> = {
+  erase: 'What is drawn there goes: people and cars that stood there.',
+  forbid: 'Nobody shall drive there, although nothing stands there.',
+  wall: 'Something stands there that the map does not show.',
+};
+
+/** What will be saved together. */
+export interface SiteDraft {
+  readonly edits: readonly SiteEdit[];
+  /** Of the areas that are forbidden already, those that stay so. */
+  readonly forbidden: readonly (readonly MapPoint[])[];
+}
+type Act = (draft: SiteDraft) => SiteDraft;
+
+export const add_edit =
+  (kind: EditKind): Act =>
+  (draft) => ({ ...draft, edits: [...draft.edits, { kind, ring: [] }] });
+
+export const remove_edit =
+  (index: number): Act =>
+  (draft) =>
+    draft.edits[index] ? { ...draft, edits: draft.edits.filter((_, k) => k !== index) } : draft;
+
+export const change_ring =
+  (index: number, action: (ring: Places) => Places): Act =>
+  (draft) => ({
+    ...draft,
+    edits: draft.edits.map((edit, k) =>
+      k === index ? { ...edit, ring: action(edit.ring) } : edit,
+    ),
+  });
+
+/** What was forbidden is so no more. */
+export const allow =
+  (index: number): Act =>
+  (draft) => ({ ...draft, forbidden: draft.forbidden.filter((_, k) => k !== index) });
+
+const allows = ({ forbidden }: SiteDraft, before: SiteMap): boolean =>
+  forbidden.length !== (before.forbidden?.length ?? 0);
+
+export const changes_map = (draft: SiteDraft, before: SiteMap): boolean =>
+  draft.edits.length > 0 || allows(draft, before);
+
+/** Why it cannot be saved yet. */
+export const why_not_save = (draft: SiteDraft, before: SiteMap): string | null => {
+  if (!changes_map(draft, before)) return 'Nothing is drawn.';
+  const poor = draft.edits.findIndex(({ ring }) => ring.length < 3);
+  return poor < 0 ? null : `Area ${poor + 1} needs three corners.`;
+};
+
+/** @param at where the map was drawn while one drew on it */
+export const change_of = (draft: SiteDraft, before: SiteMap, at: Placed): SiteChange => ({
+  ...(allows(draft, before) ? { forbidden: draft.forbidden } : {}),
+  edits: draft.edits.map(({ kind, ring }) => ({ kind, polygon: ring.map((p) => in_map(at, p)) })),
+});
+
+/** Whether the robot knows where it is in the map, as the interface tells it. */
+export interface MapPlace {
+  readonly state: 'off' | 'lost' | 'searching' | 'known';
+  /** Its name; null: none is in use. */
+  readonly map: string | null;
+  readonly map_id?: number | null;
+  readonly reason: string | null;
+  readonly accuracy_m: number | null;
+  readonly heading_accuracy_deg: number | null;
+  readonly stale: boolean;
+}
+
+export interface PlaceWords {
+  readonly tone: 'good' | 'warn' | 'bad';
+  readonly head: string;
+  /** How well, or what helps. */
+  readonly detail: string;
+}
+
+const FINE_M = 0.3;
+
+/** "Knows its place in “hall”" · "±3 cm, ±0.4°" */
+export const place_words = (place: MapPlace): PlaceWords | null => {
+  const map = `“${place.map ?? ''}”`;
+  const why = place.reason === null ? '' : `${sentence(place.reason)}. `;
+  switch (place.state) {
+    case 'off':
+      return null;
+    case 'known': {
+      const head = `Knows its place in ${map}`;
+      if (place.accuracy_m === null || place.stale) {
+        const now = 'What it sees does not fit just now.';
+        return { tone: 'warn', head, detail: why === '' ? now : why.trim() };
+      }
+      const turned = place.heading_accuracy_deg;
+      const angle = turned === null ? '' : `, ±${turned.toFixed(1)}°`;
+      const fine = place.accuracy_m <= FINE_M;
+      const alike = fine ? '' : ' Along what it sees every place looks alike.';
+      const detail = `${accuracy(place.accuracy_m)}${angle}.${alike} ${why}`.trim();
+      return { tone: fine ? 'good' : 'warn', head, detail };
+    }
+    case 'searching':
+      return {
+        tone: 'warn',
+        head: `Looks for its place in ${map}`,
+        detail: `${why}Drive some metres by hand, or say “I am here”.`,
+      };
+    case 'lost':
+      return {
+        tone: 'bad',
+        head: `Lost in ${map}`,
+        detail: `${why}Drive by hand to a place that it knows, or say “I am here”.`,
+      };
+  }
+};
+
+/** A scan that fits is seen within a second or two. */
+const LONG_S = 5;
+
+/** Where the robot stands, as a person says it. */
+export interface StandingPose extends LatLon {
+  /** Left out: it looks all ways. */
+  readonly heading_deg?: number;
+}
+
+/** What became of “I am here”, so long after it was taken. Null: wait and see. */
+export const seen_since = (place: MapPlace, after_s: number): PlaceWords | null => {
+  if (place.state === 'known' && place.accuracy_m !== null) {
+    const detail = `What it sees fits there, to ${accuracy(place.accuracy_m)}.`;
+    return { tone: 'good', head: 'It is there', detail };
+  }
+  if (after_s < LONG_S) return null;
+  const detail = 'Drive a metre or two by hand, or show it again.';
+  return { tone: 'warn', head: 'What it sees does not fit there yet', detail };
+};

@@ -1,0 +1,187 @@
+// A map that is changed a little by hand: areas are drawn, may be taken back, and are saved together.
+
+import { failure_text, refusal_text } from '../model/answer';
+import { begin_history, perform, undo, type History } from '../model/history';
+import {
+  add_place,
+  insert_place,
+  move_place,
+  plan_of_places,
+  remove_place,
+  type Places,
+} from '../model/outline';
+import type { LatLon, Plan } from '../model/plan';
+import type { MapMode } from '../model/ports';
+import type { Placed } from '../model/seen';
+import {
+  add_edit,
+  allow,
+  change_of,
+  change_ring,
+  changes_map,
+  place_of_map,
+  remove_edit,
+  why_not_save,
+  type EditKind,
+  type SiteDraft,
+  type SiteEdit,
+  type SiteMap,
+  type SiteMapCalls,
+} from '../model/site_map';
+import type { Dialogs } from './dialogs.svelte';
+import type { Drawing } from './drawing.svelte';
+import type { Notices } from './notices.svelte';
+
+/** What the editor asks of the list. */
+interface Shelf {
+  readonly here: LatLon | null;
+  fetch_cells(): Promise<void>;
+  refresh(): Promise<void>;
+}
+const NOTHING: SiteDraft = { edits: [], forbidden: [] };
+
+export class SiteEditor implements Drawing {
+  /** Null: none is open. */
+  map = $state.raw<SiteMap | null>(null);
+  /** Where it is drawn, and stays as long as one draws on it. */
+  at = $state.raw<Placed | null>(null);
+  busy = $state(false);
+  #history = $state.raw<History<SiteDraft>>(begin_history(NOTHING));
+  draft = $derived<SiteDraft>(this.#history.present);
+  edits = $derived<readonly SiteEdit[]>(this.draft.edits);
+  can_undo = $derived(this.#history.past.length > 0);
+  why_not = $derived<string | null>(this.map && why_not_save(this.draft, this.map));
+  /** The area that a hand on the map changes. */
+  part = $state<number | null>(null);
+  selected = $state<number | null>(null);
+
+  places = $derived<Places>(this.part === null ? [] : (this.edits[this.part]?.ring ?? []));
+  plan = $derived<Plan>(plan_of_places(this.places));
+  readonly shape = 'ring';
+  map_mode = $derived<MapMode>(this.part === null ? 'edit' : 'draw');
+
+  readonly #shelf: Shelf;
+  readonly #calls: SiteMapCalls;
+  readonly #notices: Notices;
+  readonly #dialogs: Dialogs;
+
+  constructor(shelf: Shelf, calls: SiteMapCalls, notices: Notices, dialogs: Dialogs) {
+    this.#shelf = shelf;
+    this.#calls = calls;
+    this.#notices = notices;
+    this.#dialogs = dialogs;
+  }
+
+  open(map: SiteMap): void {
+    const at = place_of_map(map, this.#shelf.here);
+    if (!at) {
+      this.#notices.show('warning', 'Neither the map nor the robot has a place on the earth yet.');
+      return;
+    }
+    this.at = at;
+    this.#begin(map);
+    void this.#shelf.fetch_cells();
+    void this.#read_forbidden(map.id);
+  }
+
+  async close(): Promise<void> {
+    if (this.map && changes_map(this.draft, this.map)) {
+      const sure = await this.#dialogs.ask({
+        title: 'Discard what was drawn?',
+        text: `The changes of “${this.map?.name ?? ''}” are not saved.`,
+        yes: 'Discard',
+        danger: true,
+      });
+      if (!sure) return;
+    }
+    this.at = null;
+    this.#begin(null);
+    void this.#shelf.fetch_cells();
+  }
+
+  add_area(kind: EditKind): void {
+    this.#do(add_edit(kind));
+    this.choose(this.edits.length - 1);
+  }
+
+  remove_area(index: number): void {
+    this.#do(remove_edit(index));
+    this.choose(null);
+  }
+
+  allow_area(index: number): void {
+    this.#do(allow(index));
+  }
+
+  choose(part: number | null): void {
+    this.part = part;
+    this.selected = null;
+  }
+
+  add(at: LatLon): void {
+    this.#change(add_place(at));
+    this.selected = null;
+  }
+
+  insert(index: number, at: LatLon): void {
+    this.#change(insert_place(index, at));
+    this.selected = index;
+  }
+
+  move(index: number, to: LatLon): void {
+    this.#change(move_place(index, to));
+    this.selected = index;
+  }
+
+  select(index: number | null): void {
+    this.selected = index;
+  }
+
+  remove_selected(): void {
+    if (this.selected !== null) this.#change(remove_place(this.selected));
+    this.selected = null;
+  }
+
+  undo(): void {
+    this.#history = undo(this.#history);
+    // The area may have been added by what is undone.
+    const gone = this.part !== null && !this.edits[this.part];
+    this.choose(gone ? null : this.part);
+  }
+
+  async save(): Promise<void> {
+    const { map, at } = this;
+    if (!map || !at || this.busy || this.why_not !== null) return;
+    this.busy = true;
+    const answer = await this.#calls.change(map.id, change_of(this.draft, map, at));
+    this.busy = false;
+    if (!answer.ok) {
+      this.#notices.show('error', `The map: ${failure_text('saved', answer.refusal)}`);
+      return;
+    }
+    this.#begin(answer.value);
+    this.#notices.show('good', `Saved the map “${answer.value.name}”.`);
+    await this.#shelf.refresh();
+  }
+
+  #begin(map: SiteMap | null): void {
+    this.map = map;
+    this.#history = begin_history({ edits: [], forbidden: map?.forbidden ?? [] });
+    this.choose(null);
+  }
+
+  /** The list does not tell it. */
+  async #read_forbidden(id: number): Promise<void> {
+    const answer = await this.#calls.read(id);
+    if (answer.ok && this.map?.id === id && !this.can_undo) this.#begin(answer.value);
+    else if (!answer.ok) this.#notices.show('error', refusal_text(answer.refusal));
+  }
+
+  #change(action: (ring: Places) => Places): void {
+    if (this.part !== null) this.#do(change_ring(this.part, action));
+  }
+
+  #do(action: (draft: SiteDraft) => SiteDraft): void {
+    this.#history = perform(this.#history, action);
+  }
+}
