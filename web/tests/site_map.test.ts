@@ -124,9 +124,10 @@ describe('where a map lies', () => {
     ]);
   });
   it('is drawn as the robot drives by it, else by its anchor, else here', () => {
-    const placed = { ...HERE, heading_deg: 91 };
-    const anchor = { ...offset_from(HERE, { east_m: 1, north_m: 0 }), heading_deg: 90 };
-    const told = { ...anchor, accuracy_m: 0.3 };
+    const sure = { accuracy_m: 0.3, heading_accuracy_deg: 1 };
+    const placed = { ...HERE, heading_deg: 91, ...sure };
+    const east = offset_from(HERE, { east_m: 1, north_m: 0 });
+    const told = { ...east, heading_deg: 90, ...sure };
     expect(place_of_map({ ...map, placed, anchor: told }, HERE)).toBe(placed);
     expect(place_of_map({ ...map, anchor: told }, HERE)).toBe(told);
     expect(place_of_map(map, HERE)).toEqual({ ...HERE, heading_deg: 90 });

@@ -7,11 +7,13 @@ import {
   type MapFiles,
   type SiteMap,
   type SiteMapCalls,
-  type SiteMapList,
   type TaggedCells,
 } from '../model/site_map';
 import { in_lane } from './lanes';
 import { failed, no_answer, read_problem, request } from './request';
+import type { components } from './schema';
+
+type Schemas = components['schemas'];
 
 /** A map of 10,000 by 10,000 cells over a weak radio link. */
 const SEND_LIMIT_MS = 600_000;
@@ -50,7 +52,7 @@ const add = async (
     const { status, text } = await in_lane('other', () => post(form, sent));
     const answer = new Response(text === '' ? null : text, { status });
     if (!answer.ok) return { ok: false, refusal: await read_problem(answer) };
-    return { ok: true, value: JSON.parse(text) as SiteMap };
+    return { ok: true, value: JSON.parse(text) as Schemas['Map'] };
   } catch (cause) {
     return { ok: false, refusal: failed(cause) };
   }
@@ -76,11 +78,11 @@ const fetch_cells = async (id: number, tag: string | null): Promise<Answer<Tagge
 };
 
 export const site_map_calls: SiteMapCalls = {
-  list: () => request<SiteMapList>('/maps'),
-  read: (id) => request<SiteMap>(path(id)),
+  list: () => request<Schemas['MapList']>('/maps'),
+  read: (id) => request<Schemas['Map']>(path(id)),
   add,
   change: (id, change) =>
-    request<SiteMap>(path(id), { method: 'PATCH', body: change, limit_ms: CELLS_LIMIT_MS }),
+    request<Schemas['Map']>(path(id), { method: 'PATCH', body: change, limit_ms: CELLS_LIMIT_MS }),
   remove: (id) => request<null>(path(id), { method: 'DELETE' }),
   use: (id) =>
     request<unknown>(id === null ? '/maps/unuse' : `${path(id)}/use`, {

@@ -23,7 +23,7 @@ import type {
   TileSet,
 } from '../model/ports';
 import type { AheadOnMap, SeenOnMap } from '../model/seen';
-import type { SiteEdit, SiteOnMap } from '../model/site_map';
+import { corners, type SiteEdit, type SiteOnMap } from '../model/site_map';
 import type { Tracks } from '../model/tracks';
 import { canvas_layer } from './canvas';
 import type { Slip } from '../model/slips';
@@ -209,6 +209,8 @@ export class FieldMap implements MapCalls {
   show_site(site: SiteOnMap | null): void {
     this.#scene.site = site;
     if (site) this.#load_site_painter();
+    // Where satellites tell nothing the robot may be found by hand.
+    if (site && !this.#placed) this.fit(corners(site.map, site.at), true);
     this.#map.render();
   }
 

@@ -13,6 +13,11 @@ export interface MapPoint {
   readonly x_m: number;
   readonly y_m: number;
 }
+/** Where x = y = 0 lies and which way the x axis looks; and how well that is known, 1 sigma. */
+export interface MapAnchor extends Placed {
+  readonly accuracy_m: number;
+  readonly heading_accuracy_deg: number;
+}
 export interface SiteMap {
   /** 0: the one that the configuration names, which stays as it is. */
   readonly id: number;
@@ -27,10 +32,10 @@ export interface SiteMap {
   readonly resolution_m: number;
   /** The lower left corner of the picture, and how the picture is turned about it. */
   readonly origin: MapPoint & { readonly yaw_deg: number };
-  /** Where x = y = 0 lies and which way the x axis looks, as it was told. */
-  readonly anchor: (Placed & { readonly accuracy_m: number }) | null;
+  /** As it was told; null: nobody knows. */
+  readonly anchor: MapAnchor | null;
   /** Likewise, as the robot drives by it now; null: not in use, or not known. */
-  readonly placed?: Placed | null;
+  readonly placed?: MapAnchor | null;
   readonly in_use: boolean;
   readonly size_bytes: number;
   /** Why it cannot be used; null: it can. */
@@ -51,6 +56,7 @@ export interface SiteEdit {
 }
 export interface SiteChange {
   readonly name?: string;
+  readonly anchor?: MapAnchor | null;
   /** Instead of those before. */
   readonly forbidden?: readonly (readonly MapPoint[])[];
   readonly edits?: readonly {

@@ -5,6 +5,7 @@ import type { LatLon } from '../model/plan';
 import {
   pair_of,
   place_of_map,
+  type MapAnchor,
   type MapFiles,
   type SiteMap,
   type SiteMapCalls,
@@ -136,6 +137,11 @@ export class SiteMaps {
     const wanted = name.trim();
     if (wanted === '' || wanted === map.name) return;
     await this.#do('renamed', () => this.#calls.change(map.id, { name: wanted }));
+  }
+
+  /** @param anchor null: nobody knows where it lies */
+  async lay(map: SiteMap, anchor: MapAnchor | null): Promise<void> {
+    await this.#do('laid there', () => this.#calls.change(map.id, { anchor }));
   }
 
   async remove(map: SiteMap): Promise<void> {

@@ -1,0 +1,237 @@
+// The map of a place: sent, taken into use, seen, and told where in it the robot stands.
+
+import type { Page } from '@playwright/test';
+
+import {
+  draw,
+  extent_px,
+  map_pixels,
+  map_middle,
+  open_page,
+  press,
+  tab,
+  type Color,
+  type Pixel,
+} from './page';
+import { expect, test, type Station } from './station';
+
+/** What stands there, in daylight. */
+const WALL: Color = [38, 36, 44];
+/** The world's origin, where the robot begins: x = y = 0 of the map. */
+const START = { lat: 58.37802, lon: 26.7289 };
+const CELL_M = 0.05;
+const HALF_M = 0.1;
+const [LEFT_M, LOW_M, COLUMNS, ROWS] = [-5, -6, 380, 320];
+
+//  8  ┌────────────┬─────┬────┐
+//     │            │     │    │    15 m × 12 m, a partition with a door,
+//  5  │──          │          │    no two corners alike
+//     │
+//  0  │   R        │          │
+// -4  └────────────┴──────────┘
+//    -3            6         12
+type Wall = readonly [number, number, number, number];
+const WALLS: readonly Wall[] = [
+  [-3, -4, 12, -4],
+  [12, -4, 12, 8],
+  [12, 8, -3, 8],
+  [-3, 8, -3, -4],
+  [6, -4, 6, 0.6],
+  [6, 3.4, 6, 8],
+  [-3, 5, -1.2, 5],
+  [9, 8, 9, 6.2],
+];
+const world = {
+  name: 'hall',
+  ground: { grass_m: 0 },
+  things: WALLS.map(([ax, ay, bx, by]) => ({
+    kind: 'wall',
+    points: [
+      [ax, ay],
+      [bx, by],
+    ],
+    height_m: 2.5,
+    thickness_m: 2 * HALF_M,
+  })),
+};
+test.use({ world });
+
+/** Both files, as a map server keeps them. */
+const files = () => {
+  const picture = Buffer.alloc(COLUMNS * ROWS, 254);
+  const column = (x_m: number): number => Math.round((x_m - LEFT_M) / CELL_M);
+  const row = (y_m: number): number => ROWS - Math.round((y_m - LOW_M) / CELL_M);
+  for (const [ax, ay, bx, by] of WALLS) {
+    const thick = (a: number, b: number): number => (a === b ? HALF_M : 0);
+    const [x0, x1] = [Math.min(ax, bx) - thick(ax, bx), Math.max(ax, bx) + thick(ax, bx)];
+    const [y0, y1] = [Math.min(ay, by) - thick(ay, by), Math.max(ay, by) + thick(ay, by)];
+    for (let r = row(y1); r < row(y0); r += 1) {
+      picture.fill(0, r * COLUMNS + column(x0), r * COLUMNS + column(x1));
+    }
+  }
+  const yaml = [
+    'image: hall.pgm',
+    `resolution: ${CELL_M}`,
+    `origin: [${LEFT_M}, ${LOW_M}, 0.0]`,
+    'negate: 0',
+    'occupied_thresh: 0.65',
+    'free_thresh: 0.196',
+  ].join('\n');
+  const head = Buffer.from(`P5\n${COLUMNS} ${ROWS}\n255\n`);
+  return [
+    { name: 'hall.yaml', mimeType: 'application/yaml', buffer: Buffer.from(`${yaml}\n`) },
+    {
+      name: 'hall.pgm',
+      mimeType: 'application/octet-stream',
+      buffer: Buffer.concat([head, picture]),
+    },
+  ];
+};
+
+interface Stored {
+  readonly id: number;
+  readonly name: string;
+  readonly in_use: boolean;
+  readonly forbidden?: readonly (readonly { readonly x_m: number; readonly y_m: number }[])[];
+}
+interface Place {
+  readonly state: string;
+  readonly map_id: number | null;
+  readonly x_m: number | null;
+  readonly y_m: number | null;
+}
+
+const place = async (station: Station): Promise<Place> =>
+  (await station.rest<{ place: Place }>('GET', '/vehicle')).place;
+
+const stored = async (station: Station): Promise<Stored> => {
+  const { items } = await station.rest<{ items: Stored[] }>('GET', '/maps');
+  return station.rest<Stored>('GET', `/maps/${items[0]?.id ?? 0}`);
+};
+
+const item = (page: Page) => page.getByRole('list', { name: 'Maps' }).getByRole('listitem');
+const walls = (page: Page): Promise<Pixel[]> => map_pixels(page, [WALL]);
+
+/** Sends both files, and says where the map lies. */
+const send_map = async (page: Page): Promise<void> => {
+  await tab(page, 'Missions');
+  await press(page, 'Maps');
+  await page.getByLabel('Map files').setInputFiles(files());
+  await expect(page.getByText('The map “hall” is stored.')).toBeVisible();
+  await item(page).getByRole('button', { name: /^hall/ }).click();
+  await page.getByText('Where it lies').click();
+  for (const [label, value] of [
+    ['Latitude, °', START.lat],
+    ['Longitude, °', START.lon],
+    ['Its x axis looks to, °', 90],
+  ] as const) {
+    await page.getByLabel(label).fill(String(value));
+    await page.getByLabel(label).press('Tab');
+  }
+  await press(page, 'It lies there');
+};
+
+/** Where a point of the map is on the page, by the outermost walls. */
+const pixel_of = (found: readonly Pixel[], x_m: number, y_m: number): Pixel => {
+  const [wide, high] = extent_px(found);
+  const left = Math.min(...found.map(([x]) => x));
+  const top = Math.min(...found.map(([, y]) => y));
+  return [
+    left + ((x_m + 3 + HALF_M) / (15 + 2 * HALF_M)) * wide,
+    top + ((8 + HALF_M - y_m) / (12 + 2 * HALF_M)) * high,
+  ];
+};
+
+for (const [name, viewport] of [
+  ['phone', { width: 390, height: 844 }],
+  ['laptop', { width: 1440, height: 900 }],
+] as const) {
+  test(`on a ${name} a map is sent, used, seen, and the robot is shown its place in it`, async ({
+    page,
+    station,
+  }) => {
+    test.setTimeout(150_000);
+    await page.setViewportSize(viewport);
+    await open_page(page, station.url);
+    station.sim.tell({ fault: { gnss_outage: true } });
+    await send_map(page);
+    await press(page, 'Use it');
+    await expect(item(page)).toContainText('in use');
+    await expect.poll(async () => (await walls(page)).length).toBeGreaterThan(200);
+
+    // A layer as the others are.
+    await tab(page, 'Drive');
+    const layers = page.getByRole('group', { name: 'Layers on the map' });
+    await layers.getByRole('button', { name: 'Map' }).click();
+    await expect.poll(async () => (await walls(page)).length).toBeLessThan(20);
+    await layers.getByRole('button', { name: 'Map' }).click();
+
+    // "I am here": a press where it stands, and a drag to where it looks.
+    const card = page.getByRole('region', { name: 'Place in the map' });
+    await card.getByRole('button', { name: 'I am here…' }).click();
+    await expect.poll(async () => (await walls(page)).length).toBeGreaterThan(200);
+    await page.waitForTimeout(500);
+    const [x, y] = pixel_of(await walls(page), 0, 0);
+    const heading = (station.sim.now.heading_deg * Math.PI) / 180;
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    for (const px of [20, 40, 60]) {
+      await page.mouse.move(x + px * Math.sin(heading), y - px * Math.cos(heading));
+    }
+    await page.mouse.up();
+    await expect(card).toContainText('It stands there and looks to');
+    await card.getByRole('button', { name: 'It is there' }).click();
+    await expect(card).toContainText('Knows its place in “hall”', { timeout: 40_000 });
+    await expect(card.getByRole('status', { name: 'What came of it' })).toContainText(
+      /It is there\. What it sees fits there, to ±\d+ cm\./,
+    );
+    const told = await place(station);
+    expect(told).toMatchObject({ state: 'known', map_id: (await stored(station)).id });
+    expect(Math.hypot(told.x_m ?? 9, told.y_m ?? 9)).toBeLessThan(0.3);
+  });
+}
+
+test('a map is forbidden a corner by hand, taken back before it is saved, renamed and deleted', async ({
+  page,
+  station,
+}) => {
+  await page.setViewportSize({ width: 390, height: 844 });
+  await open_page(page, station.url);
+  await tab(page, 'Missions');
+  await press(page, 'Maps');
+  await page.getByLabel('Map files').setInputFiles(files().slice(0, 1));
+  await expect(page.getByText('The .pgm is missing: pick both files together.')).toBeVisible();
+  await send_map(page);
+  await press(page, 'Change…');
+  await expect.poll(async () => (await walls(page)).length).toBeGreaterThan(200);
+  await press(page, '+ Forbid');
+  await draw(page, [
+    [-40, -30],
+    [0, -30],
+    [0, 30],
+    [60, 60],
+  ]);
+  await press(page, 'Undo');
+  await expect(page.getByRole('list', { name: 'What was drawn' })).toContainText('3 corners');
+  expect((await stored(station)).forbidden).toEqual([]);
+  await press(page, 'Save');
+  await expect(page.getByText('Saved the map “hall”.')).toBeVisible();
+  const [ring = []] = (await stored(station)).forbidden ?? [];
+  expect(ring).toHaveLength(3);
+  // The middle of what is in sight is the middle of the map.
+  await map_middle(page);
+  expect(ring[0]?.x_m).toBeLessThan(LEFT_M + (COLUMNS * CELL_M) / 2);
+  expect(ring[0]?.y_m).toBeGreaterThan(LOW_M + (ROWS * CELL_M) / 2);
+
+  // It is allowed again.
+  await press(page, 'Allow forbidden area 1');
+  await press(page, 'Save');
+  await expect.poll(async () => (await stored(station)).forbidden).toEqual([]);
+  await press(page, 'All maps');
+  await page.getByLabel('Name of the map').fill('Shed');
+  await page.getByLabel('Name of the map').press('Enter');
+  await expect(item(page)).toContainText('Shed');
+  await press(page, 'Delete');
+  await page.getByRole('dialog').getByRole('button', { name: 'Delete' }).click();
+  await expect(item(page)).toContainText('No maps');
+});
