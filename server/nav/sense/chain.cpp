@@ -121,8 +121,9 @@ base::Result<std::size_t> Chain::take(const base::Sight& sight, const PoseHistor
     std::erase_if(reduced_.voxels, [](const Voxel& v) { return v.kind != Kind::Obstacle; });
   }
   sight_sectors(reduced_, sight.half_step_rad, eye.sighted, *sectors_);
+  eye.movers.meet(reduced_, grid_);
   grid_.take(reduced_, *sectors_, static_cast<std::uint8_t>(i));
-  eye.movers.see(reduced_, grid_);
+  eye.movers.see(grid_);
   return i;
 }
 

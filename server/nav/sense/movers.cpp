@@ -112,7 +112,7 @@ bool Movers::still_about(std::int32_t x, std::int32_t y) noexcept {
   return false;
 }
 
-void Movers::gather(const Reduced& in) {
+void Movers::gather(const Reduced& in, const Grid& before) {
   cells_.clear();
   points_.clear();
   of_.clear();
@@ -131,7 +131,10 @@ void Movers::gather(const Reduced& in) {
     of_.push_back(cell);
     Place& p = place(cell.x, cell.y);
     if (p.piece == piece_) continue;
-    if (now_s_ - static_cast<double>(p.last_s) > kGap_s) p.first_s = static_cast<float>(now_s_);
+    if (now_s_ - static_cast<double>(p.last_s) > kGap_s) {
+      p.first_s = static_cast<float>(now_s_);
+      p.was_free = before.at(at.x, at.y, in.stamp) == Known::Free;
+    }
     p.last_s = static_cast<float>(now_s_);
     p.piece = piece_;
     p.thing = -1;
@@ -177,7 +180,8 @@ void Movers::part() {
   }
 }
 
-void Movers::see(const Reduced& in, const Grid& grid) {
+void Movers::meet(const Reduced& in, const Grid& before) {
+  met_ = false;
   if (!begun_) {
     begun_ = true;
     begin_ = in.stamp;
@@ -189,10 +193,18 @@ void Movers::see(const Reduced& in, const Grid& grid) {
   constexpr double kFromHere_s = 8192.0;
   if (now_s > kFromHere_s) count_from(in.stamp);
   ++piece_;
+  met_ = true;
+  stamp_ = in.stamp;
   body_ = {in.pose.x_m, in.pose.y_m};
-  gather(in);
+  const Pose2 eye = in.pose * Pose2{static_cast<double>(in.origin_m[0]),
+                                    static_cast<double>(in.origin_m[1]), 0.0};
+  eye_ = {eye.x_m, eye.y_m};
+  gather(in, before);
   part();
-  follow(grid, in.stamp);
+}
+
+void Movers::see(const Grid& grid) {
+  if (met_) follow(grid);
 }
 
 /// Nobody is forgotten by it. @param begin the piece that is taken now
@@ -211,7 +223,7 @@ void Movers::count_from(base::Time begin) {
 }
 
 /// Each thing goes to the nearest track that expects one there.
-void Movers::follow(const Grid& grid, base::Time stamp) {
+void Movers::follow(const Grid& grid) {
   std::erase_if(tracks_, [this](const Track& t) { return now_s_ - t.seen_s > kLost_s; });
   const std::size_t known = tracks_.size();
   for (std::size_t i = 0; i < things_.size(); ++i) {
@@ -245,32 +257,63 @@ void Movers::follow(const Grid& grid, base::Time stamp) {
     sample.box = box;
     const auto& some = spread_[i];
     for (std::size_t k = 0; k < std::min(kSpread, some.size()); ++k) {
-      sample.points[sample.size++] = some[k * some.size() / std::min(kSpread, some.size())];
+      const Vec2 p = some[k * some.size() / std::min(kSpread, some.size())];
+      sample.points[sample.size] = p;
+      sample.was_free[sample.size++] = place(static_cast<std::int32_t>(std::floor(p.x / kPlace_m)),
+                                             static_cast<std::int32_t>(std::floor(p.y / kPlace_m)))
+                                           .was_free;
     }
     best->samples.push_back(sample);
-    estimate(*best, grid, stamp);
+    estimate(*best, grid);
   }
 }
 
-/// Where it was and is not any more, rays went through.
-bool Movers::left_free(const Track& track, const Grid& grid, base::Time stamp) {
+/// Not in the box, nor near its sides.
+bool Movers::Box::leaves_out(Vec2 p) const noexcept {
+  return p.x <= x0 - kLeft_m || p.x >= x1 + kLeft_m || p.y <= y0 - kLeft_m || p.y >= y1 + kLeft_m;
+}
+
+/// Where it was and is not any more, rays went through; or all of it lies behind him as the sensor
+/// sees him, and he came onto free places.
+bool Movers::left_free(const Track& track, const Grid& grid) const {
+  const Box& b = track.box;
+  const Vec2 to = b.mid() - eye_;
+  const double away = std::max(0.01, std::hypot(to.x, to.y));
+  const double half = 0.5 * std::hypot(b.x1 - b.x0, b.y1 - b.y0) + kLeft_m;
   int left = 0;
   int free = 0;
-  const Box& b = track.box;
+  int hidden = 0;
   for (const Sample& s : track.samples) {
     for (std::size_t k = 0; k < s.size; ++k) {
       const Vec2 p = s.points[k];
-      const bool inside = p.x > b.x0 - kLeft_m && p.x < b.x1 + kLeft_m && p.y > b.y0 - kLeft_m &&
-                          p.y < b.y1 + kLeft_m;
-      if (inside) continue;
+      if (!b.leaves_out(p)) continue;
+      const Vec2 off = p - eye_;
+      const double beyond = dot(off, to) / away;
+      if (beyond > away && std::abs(cross(to, off)) / away < half * beyond / away) {
+        ++hidden;
+        continue;
+      }
       ++left;
-      if (grid.at(p.x, p.y, stamp) == Known::Free) ++free;
+      if (grid.at(p.x, p.y, stamp_) == Known::Free) ++free;
     }
   }
-  return left >= 2 && 2 * free > left;
+  return left >= 2 ? 2 * free > left : hidden >= 2 && came_onto_free(track);
 }
 
-void Movers::estimate(Track& track, const Grid& grid, base::Time stamp) const {
+/// Most of where he is and was not before. What comes into sight was hidden, not free.
+bool Movers::came_onto_free(const Track& track) noexcept {
+  int came = 0;
+  int free = 0;
+  const Sample& now = track.samples.back();
+  for (std::size_t k = 0; k < now.size; ++k) {
+    if (!track.samples.front().box.leaves_out(now.points[k])) continue;
+    ++came;
+    if (now.was_free[k]) ++free;
+  }
+  return came >= 2 && 2 * free > came;
+}
+
+void Movers::estimate(Track& track, const Grid& grid) const {
   const auto& samples = track.samples;
   const std::size_t n = samples.size();
   if (n < kSamples || samples.back().at_s - samples.front().at_s < kSpan_s) return;
@@ -290,8 +333,7 @@ void Movers::estimate(Track& track, const Grid& grid, base::Time stamp) const {
     if (track.moving <= 0) track.moves = false;
     return;
   }
-  const bool goes =
-      sure > kLeast_mps + 2.0 * std::min(track.sigma, 0.5) && left_free(track, grid, stamp);
+  const bool goes = sure > kLeast_mps + 2.0 * std::min(track.sigma, 0.5) && left_free(track, grid);
   track.moving = goes ? track.moving + 1 : 0;
   if (track.moving < 2) return;
   track.moves = true;

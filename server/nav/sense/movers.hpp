@@ -7,7 +7,9 @@
 // is laid through each. A side that is uncovered by and by, or hidden, moves while the thing
 // stands; so both opposite sides must go the same way, faster than kLeast_mps beyond twice what
 // their lines are unsure of, and most of the places that it left must have been seen free: what
-// slides along behind a gap, as the robot passes, left nothing free.
+// slides along behind a gap, as the robot passes, left nothing free. Who comes towards the sensor
+// hides the places that he leaves: of him most of those that he came to must have been seen free
+// before, which nothing does that only comes into sight.
 //
 // Velocities are of O, which drifts by far less than anybody walks. Not shared between threads.
 
@@ -43,8 +45,10 @@ class Movers {
   /// @param range_m what is farther from the body is not followed
   explicit Movers(double range_m);
 
-  /// Once a piece, in order, judged. @param grid after that piece
-  void see(const Reduced& in, const Grid& grid);
+  /// Once a piece, in order, judged. @param before the grid without that piece
+  void meet(const Reduced& in, const Grid& before);
+  /// And then. @param grid after that piece
+  void see(const Grid& grid);
   /// Adds those that are seen to move. @param sensor its number
   void tell(base::Time now, std::uint8_t sensor, std::vector<Mover>& out) const;
   void forget() noexcept;
@@ -55,6 +59,7 @@ class Movers {
     std::int32_t thing = 0;   ///< of that piece; -1: still
     float first_s = 0.0F;     ///< since when it is taken
     float last_s = -1e9F;
+    bool was_free = false;  ///< before it was taken
   };
   struct Cell {
     std::int32_t x = 0;
@@ -63,12 +68,14 @@ class Movers {
   struct Box {
     double x0 = 1e9, x1 = -1e9, y0 = 1e9, y1 = -1e9;
     std::uint32_t points = 0;
+    bool leaves_out(Vec2 p) const noexcept;
     Vec2 mid() const noexcept { return {0.5 * (x0 + x1), 0.5 * (y0 + y1)}; }
   };
   struct Sample {
     double at_s = 0.0;
     Box box;
-    std::array<Vec2, 4> points{};  ///< of what was seen
+    std::array<Vec2, 4> points{};    ///< of what was seen
+    std::array<bool, 4> was_free{};  ///< the place of each, before it was taken
     std::size_t size = 0;
   };
   struct Track {
@@ -84,11 +91,12 @@ class Movers {
   Place& place(std::int32_t x, std::int32_t y) noexcept;
   bool still_about(std::int32_t x, std::int32_t y) noexcept;
   void count_from(base::Time begin);
-  void gather(const Reduced& in);
+  void gather(const Reduced& in, const Grid& before);
   void part();
-  void follow(const Grid& grid, base::Time stamp);
-  void estimate(Track& track, const Grid& grid, base::Time stamp) const;
-  static bool left_free(const Track& track, const Grid& grid, base::Time stamp);
+  void follow(const Grid& grid);
+  void estimate(Track& track, const Grid& grid) const;
+  bool left_free(const Track& track, const Grid& grid) const;
+  static bool came_onto_free(const Track& track) noexcept;
 
   double range_m_;
   std::uint32_t mask_;
@@ -97,6 +105,8 @@ class Movers {
   bool begun_ = false;
   base::Time begin_;
   double now_s_ = 0.0;
+  base::Time stamp_;          ///< of this piece
+  bool met_ = false;          ///< it is in order
   std::vector<Cell> cells_;   ///< of this piece, that are not still
   std::vector<Vec2> points_;  ///< voxels of this piece, in O
   std::vector<Cell> of_;      ///< the cell of each
@@ -105,6 +115,7 @@ class Movers {
   std::vector<Cell> open_;
   std::vector<Track> tracks_;
   Vec2 body_{};
+  Vec2 eye_{};  ///< the sensor
 };
 
 }  // namespace roverd::nav::sense

@@ -86,6 +86,14 @@ TEST(Movers, WhoCrossesIsToldWithHisVelocityWithinASecond) {
   }
 }
 
+TEST(Movers, WhoComesStraightAtTheSensorIsToldThoughHeHidesWhereHeWas) {
+  const auto seen =
+      watch(2.0, stands, [](double t) { return std::vector{person(5.5 - 1.2 * t, 0.3)}; });
+  ASSERT_EQ(seen.back().size(), 1U);
+  EXPECT_NEAR(seen.back().front().v_mps.x, -1.2, 0.2);
+  EXPECT_NEAR(seen.back().front().v_mps.y, 0.0, 0.2);
+}
+
 TEST(Movers, HeIsToldFromARobotThatDrives) {
   const auto seen =
       watch(2.0, drives, [](double t) { return std::vector{person(6.0, -2.5 + 1.2 * t)}; });
@@ -123,6 +131,20 @@ TEST(Movers, WhatStandsIsNobodyHoweverItComesIntoSight) {
                   return Pose2{0.0, 0.0, 0.7 * t};
                 },
                 yard)),
+            0U);
+  // Straight towards them, swinging as it goes, faster than anybody would be told.
+  const Blocks ahead = [](double) {
+    return std::vector<Block>{{5.5, 5.6, 0.2, 0.3, -1.0, 1.0},
+                              {6.0, 6.4, -0.6, -0.2, -1.0, 1.0},
+                              {6.8, 7.0, 0.5, 1.2, -1.0, 1.0},
+                              {9.0, 9.2, -4.0, 4.0, -1.0, 1.0}};
+  };
+  EXPECT_EQ(most_of(watch(
+                3.5,
+                [](double t) {
+                  return Pose2{1.3 * t, 0.05 * std::sin(3.0 * t), 0.3 * std::sin(2.0 * t)};
+                },
+                ahead)),
             0U);
 }
 
