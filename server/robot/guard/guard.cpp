@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -51,6 +53,19 @@ bool too_slow(const BodyTwist& t) noexcept {
   return std::abs(t.linear_mps) < kLeast_mps && std::abs(t.angular_radps) < kLeast_radps;
 }
 
+/// What one would set otherwise where it stops for this; empty: there is no such thing.
+std::string_view key_of(const base::Obstacle& o, const BodyTwist& wanted, double reach_m) noexcept {
+  if (o.action != base::GuardAction::Stop) return {};
+  if (o.what == "drop") return "sense.ground.drop_m";
+  if (o.moves) return "sense.protect.foresee_s";
+  if (o.what != "unseen") return {};
+  const double v = wanted.linear_mps;
+  if (std::abs(v) < 0.2 * std::abs(wanted.angular_radps) * reach_m) {
+    return "sense.protect.creep_turn_radps";
+  }
+  return v < 0.0 ? "sense.protect.creep_back_mps" : "sense.protect.creep_mps";
+}
+
 std::string sentence(const base::Obstacle& o) {
   char text[160];
   const double deg = base::deg_from_rad(o.bearing_rad);
@@ -70,12 +85,7 @@ std::string sentence(const base::Obstacle& o) {
                                           : "something stands in the way";
   std::snprintf(text, sizeof text, "%s, %.1f m %s%s%s", what, std::hypot(o.ahead_m, o.left_m),
                 where.c_str(), o.sensor.empty() ? "" : ", seen by ", o.sensor.c_str());
-  std::string told = text;
-  // Who may help: a person who sees it, or whoever sets how the robot goes there.
-  if (o.what == "unseen" && o.action == base::GuardAction::Stop) {
-    told += ": drive it by hand, or let it creep there (sense.protect.creep_...)";
-  }
-  return told;
+  return text;
 }
 
 }  // namespace
@@ -465,13 +475,21 @@ void Guard::tell(const Looked& v, base::GuardAction action, base::Time now) {
   obstacle_.age_s = v.age_s + (around_ ? base::seconds(now - around_->patch.stamp) : 0.0);
   obstacle_.stopped_since = stopped_since_;
   obstacle_.reason = sentence(obstacle_);
+  // Who may help: a person who sees it, or whoever sets how the robot goes there.
+  if (const auto key = key_of(obstacle_, wanted_, body_.reach_m()); !key.empty()) {
+    const bool unseen = obstacle_.what == "unseen";
+    obstacle_.reason += unseen ? ": drive it by hand, or let it creep there (" : " (";
+    obstacle_.reason += std::string(key) + ")";
+  }
   if (v.trailer) obstacle_.reason += ": the trailer would touch it";
   if (v.lost && v.sensor < around_->sensors->size()) {
     obstacle_.reason +=
         ": " + (*around_->sensors)[v.sensor].name + " saw something, and sees no more";
   } else if (v.rays > 0) {
     char text[64];
-    std::snprintf(text, sizeof text, ": %d rays shorter than %.2f m", v.rays, v.within_m);
+    const bool stops = action == base::GuardAction::Stop;
+    std::snprintf(text, sizeof text, ": %d rays shorter than %.2f m (sense.rays.%s)", v.rays,
+                  v.within_m, stops ? "stop_m" : "slow_m");
     obstacle_.reason += text;
   }
 }

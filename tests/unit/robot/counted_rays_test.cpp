@@ -68,7 +68,8 @@ TEST(CountedRaysGuard, StopWhatDrivesAheadAndSayWhy) {
     EXPECT_NEAR(o.age_s, 0.05, 1e-9);
     EXPECT_EQ(
         o.reason,
-        "something stands in the way, 1.1 m ahead, seen by camera: 6 rays shorter than 0.70 m");
+        "something stands in the way, 1.1 m ahead, seen by camera: 6 rays shorter than 0.70 m "
+        "(sense.rays.stop_m)");
   }
 }
 
@@ -134,7 +135,8 @@ TEST(CountedRaysGuard, BeforeTheyStopItTheySlowItInProportion) {
       EXPECT_GT(v_mps, before_mps);
       before_mps = v_mps;
       EXPECT_EQ(r.guard.obstacle().action, base::GuardAction::Slow);
-      EXPECT_NE(r.guard.obstacle().reason.find("7 rays shorter than 1.50 m"), std::string::npos)
+      EXPECT_NE(r.guard.obstacle().reason.find("7 rays shorter than 1.50 m (sense.rays.slow_m)"),
+                std::string::npos)
           << r.guard.obstacle().reason;
       EXPECT_EQ(r.drive({-0.8, 0.0}, way_m).linear_mps, -0.8) << "not who drives back";
     }

@@ -164,6 +164,8 @@ TEST_F(Seeing, ByItselfItDoesNotReverseIntoWhatNoSensorSaw) {
   EXPECT_FALSE(field.moves());
   ASSERT_TRUE(field.state()->obstacle);
   EXPECT_NE(field.state()->obstacle->reason.find("by hand"), std::string::npos);
+  EXPECT_NE(field.state()->obstacle->reason.find("(sense.protect.creep_back_mps)"),
+            std::string::npos);
 }
 
 TEST_F(Seeing, ARequiredSensorThatFallsSilentStopsTheMission) {
