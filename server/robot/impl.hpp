@@ -126,6 +126,7 @@ struct Robot::Impl {
   bool around_again = false;  ///< it was held on its way around: one from here is looked for
   base::Time around_again_at{};
   bool around_hopeless = false;  ///< there is no way around, and that was told
+  std::string around_in_doubt;   ///< why there may be none, while one is driven
   std::vector<std::shared_ptr<const AroundAnswer>> around_batch;
   Mode guarded_mode = Mode::Hold;
   bool overridden = false;    ///< a hand holds the guard off, and was told so
@@ -286,6 +287,7 @@ struct Robot::Impl {
   bool ask_around();
   void take_around();
   void no_way_around(const AroundAnswer& answer);
+  void tell_hopeless();
   void watch_detour();
   std::optional<base::BodyTwist> drive_around();
   base::BodyTwist step_detour();

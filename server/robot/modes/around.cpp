@@ -106,6 +106,7 @@ void Robot::Impl::take_around() {
     const Detour::Taken taken = detour.take(answer, vehicle(), speed_mps);
     const double left_m = answer->asked->from_m + answer->found.leave_m;
     around_again = false;
+    if (way) around_in_doubt.clear();
     if (taken == Detour::Taken::Adopted) around_left_m = std::min(around_left_m, left_m);
     if (taken == Detour::Taken::Begun) {
       around_hopeless = false;
@@ -122,19 +123,26 @@ void Robot::Impl::take_around() {
   around_batch.clear();
 }
 
-/// Honest, and once.
+/// Honest, and once; not while it drives on around it, which may lead through all the same.
 void Robot::Impl::no_way_around(const AroundAnswer& answer) {
   if (answer.found.found == Found::Clear) return;
-  const bool newly = !std::exchange(around_hopeless, true);
   std::string why = answer.refused.empty() ? std::string(nav::around::sentence(answer.found.why))
                                            : answer.refused;
   if (answer.found.why == Why::Target && answer.asked->item > 0) {
     why = "item " + std::to_string(answer.asked->item) + " lies in what stands there";
     if (config->behave.unreachable != "stop" && !detour.drives()) {
+      around_hopeless = true;
       return missions.executor.give_up_item(std::move(why));
     }
   }
-  if (newly) event(Severity::Warning, "no_way_around", "no way around it: " + why);
+  around_in_doubt = std::move(why);
+  if (!detour.drives() || guard.stops()) tell_hopeless();
+}
+
+void Robot::Impl::tell_hopeless() {
+  const std::string why = std::exchange(around_in_doubt, {});
+  if (std::exchange(around_hopeless, true)) return;
+  event(Severity::Warning, "no_way_around", "no way around it: " + why);
 }
 
 /// What was found is of no use any more: another way, another map, another mission.
@@ -144,6 +152,7 @@ void Robot::Impl::watch_detour() {
   if (other || !pose->heading_known) {
     other ? detour.begin_anew() : detour.reset();
     around_again = around_hopeless = false;
+    around_in_doubt.clear();
     return;
   }
   if (!detour.left_alone(clock.now())) return;
@@ -198,13 +207,15 @@ void Robot::Impl::end_detour() {
   const AroundAnswer& by = detour.answer();
   if (by.found.found == Found::Way) return go_on_behind(by.asked->from_m + by.found.rejoin_m);
   // It stands where more is seen: the next answer leads on, or there is none.
+  if (!around_in_doubt.empty()) tell_hopeless();
   if (around_hopeless) detour.reset();
 }
 
 /// For people to see: told anew twice a second, as the robot comes on.
 std::shared_ptr<const std::vector<base::LatLon>> Robot::Impl::detour_way() {
   const bool runs = machine.mode() == Mode::Auto && missions.executor.running();
-  if (!detour.drives() || !estimator.frame() || !runs) {
+  const bool hopeless = around_hopeless && guard.stops();  // it was told that there is none
+  if (!detour.drives() || !estimator.frame() || !runs || hopeless) {
     detour_told.reset();
   } else if (!detour_told || clock.now() - detour_told_at > kTellEvery) {
     const nav::Path& path = detour.path();

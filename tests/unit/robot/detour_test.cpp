@@ -27,6 +27,7 @@ class Detours : public Seeing {
         ++questions;
         answer = answer_around(planner, asked.back());
         if (only_turns) answer = turned(*answer);
+        if (finds_none) answer = none(*answer);
       }
       if (answers && answer) field.robot.around_answers().put(std::exchange(answer, nullptr));
     };
@@ -77,8 +78,17 @@ class Detours : public Seeing {
     return out;
   }
 
+  static std::shared_ptr<const AroundAnswer> none(const AroundAnswer& by) {
+    auto out = std::make_shared<AroundAnswer>(by);
+    out->found = {};
+    out->found.found = nav::around::Found::None;
+    out->found.why = nav::around::Why::Gap;
+    return out;
+  }
+
   nav::around::Planner planner;
   bool only_turns = false;
+  bool finds_none = false;
   std::shared_ptr<const AroundAnswer> answer;
   bool answers = true;
   int questions = 0;
@@ -133,6 +143,25 @@ TEST_F(Detours, WhoHoldsItOnItsWayAroundAndLetsItGoOnSeesItGoOnFromThere) {
   // then it does so from there, and not from before the box.
   EXPECT_EQ(told("around_done"), 1);
   EXPECT_GT(least_m, paused_m - 0.5);
+}
+
+TEST_F(Detours, WhileItDrivesAroundNobodyIsToldThatThereIsNoWay) {
+  drive_path();
+  box_ahead(4.0);
+  until_beside();
+  // Given a way around that is driven, when a look finds none for some seconds,
+  finds_none = true;
+  for (int i = 0; i < 50 * 3 && told("around_done") == 0; ++i) {
+    field.tick();
+    // then it is not told beside the way that is shown.
+    if (field.state()->detour) {
+      EXPECT_EQ(told("no_way_around"), 0);
+    }
+  }
+  finds_none = false;
+  for (int i = 0; i < 50 * 60 && told("around_done") == 0; ++i) field.tick();
+  EXPECT_EQ(told("around_done"), 1);
+  EXPECT_EQ(told("no_way_around"), 0);
 }
 
 TEST_F(Detours, AnAnswerThatComesTooLateIsNotDriven) {
