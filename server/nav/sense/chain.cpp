@@ -63,7 +63,6 @@ Chain::Chain(const ChainParams& params, const Footprint& body)
     : p_(params),
       reducer_(params.reduce, body, params.pulled),
       ground_(params.ground, params.reduce.max_range_m, body),
-      hills_(params.reduce.max_range_m, params.ground.min_height_m),
       grid_(params.grid) {}
 
 base::Result<Chain> Chain::of(ChainParams params, std::vector<SensorSetup> sensors,
@@ -113,12 +112,7 @@ base::Result<std::size_t> Chain::take(const base::Sight& sight, const PoseHistor
     return tl::unexpected<base::Error>(done.error());
   }
   eye.health.took(sight, reduced_.counts, now);
-  if (eye.setup.planar) {
-    hills_.judge(reduced_);
-  } else {
-    ground_.judge(reduced_.voxels);
-    hills_.learn(reduced_);
-  }
+  if (!eye.setup.planar) ground_.judge(reduced_.voxels);
   const float up = step_up_rad(sight);
   eye.persist.judge(reduced_.voxels, reduced_.pose,
                     {reduced_.origin_m[0], reduced_.origin_m[1], step_across_rad(sight, up), up});
@@ -142,7 +136,6 @@ void Chain::movers(base::Time now, std::vector<Mover>& out) const {
 
 void Chain::forget() noexcept {
   grid_.forget();
-  hills_.forget();
   for (EyeOf& eye : eyes_) eye.movers.forget();
 }
 

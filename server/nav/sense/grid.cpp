@@ -20,8 +20,6 @@ constexpr float kFoot_m = 0.05F;
 // Higher than this over the body's plane an echo that was taken for ground, where something is
 // known to stand, is that: so near that it hides the ground, a wall may be a slope as well.
 constexpr float kNoGround_m = 0.25F;
-// What a plane met so far above or below ground that was seen there was the ground.
-constexpr float kGroundIs_m = 0.08F;
 
 std::int32_t floored(double v) noexcept {
   return static_cast<std::int32_t>(std::floor(v));
@@ -99,20 +97,19 @@ void Grid::take(const Reduced& in, const Sectors& sectors, std::uint8_t sensor) 
   }
   const std::uint32_t now = ms(in.stamp);
   move_to(in.pose);
-  hit(in, sectors.planar, sensor, now);
+  hit(in, sensor, now);
   make_sure();
   see_through(in.pose, sectors, sensor, now);
 }
 
-void Grid::hit(const Reduced& in, bool planar, std::uint8_t sensor, std::uint32_t now_ms) {
+void Grid::hit(const Reduced& in, std::uint8_t sensor, std::uint32_t now_ms) {
   const double c = std::cos(in.pose.yaw_rad);
   const double s = std::sin(in.pose.yaw_rad);
   const auto up = up_in_body(in.lie);
   met_.clear();
   for (const Voxel& v : in.voxels) {
-    const bool ground = v.kind == Kind::Ground && !planar;
-    const bool again = v.kind == Kind::Passing || (ground && v.z_m > kNoGround_m);
-    if (v.kind != Kind::Obstacle && v.kind != Kind::Drop && !again && !ground) continue;
+    const bool again = v.kind == Kind::Passing || (v.kind == Kind::Ground && v.z_m > kNoGround_m);
+    if (v.kind != Kind::Obstacle && v.kind != Kind::Drop && !again) continue;
     const auto x = static_cast<double>(v.x_m);
     const auto y = static_cast<double>(v.y_m);
     const double u = (in.pose.x_m + c * x - s * y) / p_.cell_m;
@@ -120,19 +117,19 @@ void Grid::hit(const Reduced& in, bool planar, std::uint8_t sensor, std::uint32_
     const std::int32_t ix = floored(u);
     const std::int32_t iy = floored(w);
     if (!inside(ix, iy)) continue;
+    if (again) {
+      stay(ix, iy, sensor, now_ms);
+      continue;
+    }
+    Cell& o = cell(ix, iy);
     const auto z =
         static_cast<float>(in.lie.z_m + up[0] * x + up[1] * y + up[2] * static_cast<double>(v.z_m));
-    if (ground) uncover(ix, iy, z);
-    if (again) stay(ix, iy, sensor, now_ms);
-    if (again || ground) continue;
-    Cell& o = cell(ix, iy);
     Span& span = spans_[index(ix, iy)];
     const bool first = o.hits == 0 || o.ms != now_ms;  // in this piece
     if (o.known != Known::Occupied) {
       span.low_m = span.top_m = z;
       span.top_body_m = v.z_m;
       span.stands = false;
-      span.by_planes = planar;
     } else if (o.ms != now_ms) {
       const float fades = std::min(kFades_m, 0.5F * (span.top_m - span.low_m));
       span.low_m += fades;
@@ -147,7 +144,6 @@ void Grid::hit(const Reduced& in, bool planar, std::uint8_t sensor, std::uint32_
             static_cast<float>(w - iy),
             std::max(span.top_body_m, v.z_m),
             span.stands || stands,
-            span.by_planes && planar,
             first ? low : std::min(span.now_low_m, low),
             first ? z : std::max(span.now_top_m, z),
             first ? v.z_m : std::max(span.now_body_m, v.z_m)};
@@ -159,18 +155,6 @@ void Grid::hit(const Reduced& in, bool planar, std::uint8_t sensor, std::uint32_
     o.misses = 0;
     o.sensor = sensor;
     o.ms = now_ms;
-  }
-}
-
-void Grid::uncover(std::int32_t ix, std::int32_t iy, float z_m) noexcept {
-  for (std::int32_t y = iy - 1; y <= iy + 1; ++y) {
-    for (std::int32_t x = ix - 1; x <= ix + 1; ++x) {
-      if (!inside(x, y)) continue;
-      Cell& o = cell(x, y);
-      const Span& span = spans_[index(x, y)];
-      if (o.known != Known::Occupied || !span.by_planes) continue;
-      if (span.top_m < z_m + kGroundIs_m && span.top_m > z_m - 2.0F * kGroundIs_m) o = {};
-    }
   }
 }
 

@@ -18,8 +18,6 @@
 // well, or a false lean would take away what is too low and near to be met.) What is too thin or
 // too new to be believed (Passing) makes no cell occupied; but where something was believed, an
 // echo in its cell or beside it says that it still stands there, however many rays pass it by.
-//
-// What a plane met on a hill before the ground was seen there is ground once it is (hills.hpp).
 
 #include <array>
 #include <cstddef>
@@ -100,7 +98,6 @@ class Grid {
     float y = 0.0F;
     float top_body_m = 0.0F;  ///< as top_m, over the body's plane
     bool stands = false;      ///< on the ground
-    bool by_planes = false;   ///< nothing else met it
     float now_low_m = 0.0F;   ///< of the last piece that met it
     float now_top_m = 0.0F;
     float now_body_m = 0.0F;
@@ -119,9 +116,7 @@ class Grid {
   std::uint32_t ms(base::Time t) const noexcept;
   Known known(const Cell& c, std::uint32_t now_ms) const noexcept;
   void move_to(const Pose2& body);
-  void hit(const Reduced& in, bool planar, std::uint8_t sensor, std::uint32_t now_ms);
-  /// The ground is seen at that height in O: what planes alone met there, as high as it, was that.
-  void uncover(std::int32_t ix, std::int32_t iy, float z_m) noexcept;
+  void hit(const Reduced& in, std::uint8_t sensor, std::uint32_t now_ms);
   /// What this piece met together, or again and again, is no drop of rain.
   void make_sure();
   /// Something returned from there: what is taken there or beside it is not seen through now.
