@@ -40,6 +40,11 @@ base::Time end_of_scan(const base::Sight& sight) noexcept {
 base::PlaceState Whereabouts::use(std::shared_ptr<const MapInUse> map, base::Time now,
                                   bool same_place) {
   const auto fitted = same_place ? fitted_ : std::nullopt;
+  // Where satellites laid it, or nobody did, it stays; so does what was learned of how far off.
+  const bool same_lie = same_place && map_ && map && map_->anchor == map->anchor;
+  const auto lie = same_lie ? anchor_ : std::nullopt;
+  number_ = same_lie ? number_ : map ? map->number : 0;
+  found_before_ = same_lie ? found_ + 1 : 0;
   map_ = std::move(map);
   tracker_.reset();
   fitted_.reset();
@@ -50,7 +55,7 @@ base::PlaceState Whereabouts::use(std::shared_ptr<const MapInUse> map, base::Tim
   state.stamp = now;
   if (!map_ || !map_->field) return state;
   tracker_.emplace(map_->field, p_.tracker);
-  anchor_ = map_->anchor;
+  anchor_ = same_lie ? lie : map_->anchor;
   if (fitted) stay_at(fitted->in_map, fitted->odometry);
   state.phase = base::PlacePhase::Searching;
   state.map = map_->name;
@@ -127,7 +132,7 @@ base::PlaceFix Whereabouts::fix_of(const Fix& fix, std::uint32_t found) const {
   out.at = frame.to_global({at.x_m, at.y_m});
   out.yaw_rad = at.yaw_rad;
   out.covariance = {c(0, 0), c(0, 1), c(1, 1), c(0, 2), c(1, 2), c(2, 2)};
-  out.map = map_->number;
+  out.map = number_;
   out.found = found;
   out.anchor = anchor_->at;
   out.anchor_sigma_m = anchor_->sigma_m;
@@ -168,7 +173,8 @@ std::optional<base::PlaceState> Whereabouts::see(const base::Sight& sight, const
   state.sigma_rad = std::sqrt(std::max(0.0, c(2, 2)));
   lay(told.fix->pose, scan->stamp, believed);
   if (anchor_) {
-    state.fix = fix_of(*told.fix, told.resets);
+    found_ = found_before_ + told.resets;
+    state.fix = fix_of(*told.fix, found_);
   } else {
     state.reason = "nobody knows where on the earth the map lies: it has no anchor";
   }

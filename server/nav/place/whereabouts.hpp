@@ -33,6 +33,8 @@ struct MapAnchor {
   double yaw_rad = 0.0;        ///< of its x axis: from east, left positive
   double sigma_m = 0.3;        ///< how well that is known, 1 sigma; at least 0
   double yaw_sigma_rad = 0.0;  ///< likewise of yaw_rad
+
+  bool operator==(const MapAnchor&) const = default;
 };
 
 /// Immutable, shared between threads.
@@ -118,6 +120,9 @@ class Whereabouts {
     Pose2 odometry;
   };
   std::optional<Seen> fitted_;         ///< when a scan did last
+  std::uint32_t number_ = 0;           ///< of what lies as it lay: an edit keeps it
+  std::uint32_t found_before_ = 0;     ///< by the trackers of the same number before this one
+  std::uint32_t found_ = 0;            ///< with this one's
   std::optional<base::Time> started_;  ///< by satellites, since it was known
   double again_s_ = kAgain_s;
 };

@@ -32,9 +32,10 @@ class Walk {
   std::vector<tests::Segment> walls = tests::shed();
   Whereabouts where{};
 
-  static std::shared_ptr<const MapInUse> map(std::optional<MapAnchor> anchor) {
+  static std::shared_ptr<const MapInUse> map(std::optional<MapAnchor> anchor,
+                                             std::uint32_t number = 7) {
     return std::make_shared<const MapInUse>(
-        MapInUse{"shed", 7, tests::field_of(tests::shed(), 12.0, 8.0), anchor});
+        MapInUse{"shed", number, tests::field_of(tests::shed(), 12.0, 8.0), anchor});
   }
   base::Time now() const { return base::Time{} + base::from_seconds(time_s); }
   /// Drives on by this step and looks. @return what was told
@@ -140,6 +141,21 @@ TEST(Whereabouts, LaysAMapWithoutAnAnchorWhereTheSatellitesSeeTheRobot) {
     ASSERT_TRUE(told && told->fix) << i;
     EXPECT_LT(apart_m(told->fix->at, w.global()), 0.12) << i;
   }
+  // A little of it is changed there: it lies where it lay, and what was learned of that holds.
+  const base::PlaceFix before = *told->fix;
+  w.where.use(Walk::map({}, 8), w.now(), true);
+  told = w.step(0.1, 0.03);
+  ASSERT_TRUE(told && told->fix);
+  EXPECT_LT(apart_m(told->fix->at, w.global()), 0.12);
+  EXPECT_EQ(told->fix->anchor, before.anchor);
+  EXPECT_EQ(told->fix->map, before.map);
+  EXPECT_NE(told->fix->found, before.found) << "by another look";
+  // Somebody says where it lies: all is new.
+  w.where.use(Walk::map(MapAnchor{kShedAt, kTurned_rad, 0.1}, 9), w.now(), true);
+  told = w.step(0.1, 0.03);
+  ASSERT_TRUE(told && told->fix);
+  EXPECT_EQ(told->fix->anchor, kShedAt);
+  EXPECT_EQ(told->fix->map, 9u);
 }
 
 TEST(Whereabouts, LaysNoMapByAHeadingThatIsNotSure) {
