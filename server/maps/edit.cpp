@@ -107,12 +107,12 @@ Thinned thinned(const OccupancyMap& map, const std::vector<Area>& forbidden, std
   const std::int32_t columns = parts(map.columns(), out.factor);
   const std::int32_t rows = parts(map.rows(), out.factor);
   std::vector<Look> squares(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows),
-                             Look::Free);
+                            Look::Free);
   const auto mark = [&](std::int32_t row, std::int32_t column, Look what) {
     const std::int32_t at_row = row / out.factor;
     const std::int32_t at_column = column / out.factor;
     Look& square = squares[static_cast<std::size_t>(at_row) * static_cast<std::size_t>(columns) +
-                            static_cast<std::size_t>(at_column)];
+                           static_cast<std::size_t>(at_column)];
     square = std::max(square, what);
   };
   const auto cells = map.cells();

@@ -1,10 +1,13 @@
 #include "maps/exchange.hpp"
 
+#include <algorithm>
 #include <cstdint>
+#include <string>
 #include <utility>
 
 #include "atlas/map_files.hpp"
 #include "maps/edit.hpp"
+#include "maps/words.hpp"
 
 namespace roverd::maps {
 
@@ -39,6 +42,12 @@ Result<Upload> read_upload(std::string_view yaml, std::string_view picture) {
   if (!read) return of_part("/image", read.error());
   auto map = atlas::map_of(*words, *read);
   if (!map) return of_part("/yaml", map.error());
+  if (std::max(map->columns(), map->rows()) > kLongestSide) {
+    return of_part("/image", {base::Code::Invalid,
+                              "has " + std::to_string(std::max(map->columns(), map->rows())) +
+                                  " cells along a side; at most " + std::to_string(kLongestSide),
+                              {}});
+  }
   return Upload{std::move(*map), std::move(words->others)};
 }
 

@@ -25,6 +25,7 @@ using nav::chart::OccupancyMap;
 constexpr const char* kAbout = "about.json";
 constexpr const char* kChoice = "in_use.json";
 constexpr std::uintmax_t kLargestChoice = 4096;
+constexpr std::int64_t kHighest = 1'000'000'000;  ///< number of a map
 
 auto no_such_map(std::int64_t id) {
   return base::fail(Code::NotFound, "there is no map " + std::to_string(id));
@@ -39,7 +40,7 @@ std::optional<std::int64_t> number_of(const std::string& name) {
   std::int64_t id = 0;
   const char* const end = name.data() + name.size();
   const auto [stop, ec] = std::from_chars(name.data(), end, id);
-  if (ec != std::errc{} || stop != end || id < 1 || id > 1'000'000'000) return std::nullopt;
+  if (ec != std::errc{} || stop != end || id < 1 || id > kHighest) return std::nullopt;
   return std::to_string(id) == name ? std::optional(id) : std::nullopt;
 }
 
@@ -120,8 +121,10 @@ void Shelf::take_in(std::int64_t id) {
   kept->about.id = id;
   kept->about.size_bytes = error ? 0 : size;
   maps_.emplace(id, std::move(*kept));
+  if (error) return;  // another picture may be all that is left
+  // Of a change that was cut off.
   for (fs::directory_iterator at(folder_of(id), error), end; !error && at != end;
-       at.increment(error)) {  // of a change that was cut off
+       at.increment(error)) {
     const std::string name = at->path().filename().string();
     const bool ours = name.starts_with("map.") || name.ends_with(".new");
     if (ours && name != maps_.at(id).image) remove_quietly(at->path());
@@ -148,6 +151,8 @@ void Shelf::recall_choice() {
   if (maps_.contains(id)) {
     in_use_ = id;
   } else {
+    if (id > 0 && id < kHighest)
+      next_ = std::max(next_, id + 1);  // no other one is what was chosen
     troubles_.push_back("map " + std::to_string(id) +
                         ", which was in use, is gone: no map is in use");
   }

@@ -19,6 +19,8 @@ namespace roverd::maps {
 inline constexpr std::int64_t kConfigured = 0;
 
 inline constexpr std::size_t kMostMaps = 200;
+/// Rows, and columns: 2 km at 5 cm. An area is drawn row by row.
+inline constexpr std::int32_t kLongestSide = 40'000;
 inline constexpr std::size_t kMostEdits = 50;       ///< of one change
 inline constexpr std::size_t kMostForbidden = 100;  ///< areas of a map
 inline constexpr std::size_t kMostCorners = 500;    ///< of an area

@@ -70,6 +70,7 @@ TEST(MapUpload, ThatCannotBeIsNamedByFileAndPlace) {
   EXPECT_EQ(problem_of(yaml(), kPicture + "x"), "/image/byte 15");
   EXPECT_EQ(problem_of(yaml(), "P5 10000 10000 255 "), "/image/size");  // not a byte is set aside
   EXPECT_EQ(problem_of(yaml(), "P5 999999999 999999999 255 "), "/image/size");
+  EXPECT_EQ(problem_of(yaml(), "P5 1 40001 255 " + std::string(40001, ' ')), "/image");
 }
 
 TEST(MapExport, ReadsAsTheMapThatItIsOf) {

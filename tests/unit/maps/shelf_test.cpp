@@ -169,6 +169,12 @@ TEST_F(ShelfTest, AChoiceThatCannotHoldIsToldAndNoOtherMapTakesItsPlace) {
   EXPECT_EQ(shelf->in_use(), std::nullopt);
   ASSERT_EQ(shelf->troubles().size(), 1u);
   EXPECT_NE(shelf->troubles()[0].find("map 1, which was in use, is gone"), std::string::npos);
+  // Nor does one that is added later.
+  const auto later = shelf->add("barn", floor(), {}, kNow);
+  ASSERT_TRUE(later);
+  EXPECT_EQ(later->id, 2);
+  EXPECT_EQ(open(configured())->in_use(), std::nullopt);
+  fs::remove_all(file("2"));
   for (const char* text : {"", "[1]", "{\"map\": \"1\"}", "{\"map\": 1.5}", "{}"}) {
     std::ofstream(file("in_use.json"), std::ios::trunc) << text;
     shelf = open(configured());
