@@ -37,6 +37,7 @@ class Walk {
     return std::make_shared<const MapInUse>(
         MapInUse{"shed", number, tests::field_of(tests::shed(), 12.0, 8.0), anchor});
   }
+  const Pose2& odometry() const { return odometry_; }
   base::Time now() const { return base::Time{} + base::from_seconds(time_s); }
   /// Drives on by this step and looks. @return what was told
   std::optional<base::PlaceState> step(double ahead_m, double turn_rad,
@@ -101,6 +102,36 @@ TEST(Whereabouts, TellsThePlaceOnTheEarthOfATapByTheAnchor) {
   EXPECT_EQ(told->stamp, w.now());
   EXPECT_GT(*told->sigma_m, 0.01);
   EXPECT_LT(*told->sigma_m, 0.1);
+}
+
+TEST(Whereabouts, FindsItselfAtOnceInAMapThatWasChangedALittle) {
+  for (const bool same_place : {true, false}) {
+    Walk w({2.5, 3.0, 0.1});
+    w.where.use(Walk::map(MapAnchor{kShedAt, kTurned_rad, 0.2}), w.now());
+    ASSERT_TRUE(w.where.told({w.global(), w.at.yaw_rad + kTurned_rad}));
+    ASSERT_TRUE(w.step(0.0, 0.0)->fix);
+    (void)w.step(0.05, 0.05);
+    // When the map is taken anew, as after an edit, and the robot drives on meanwhile.
+    w.where.moved({.stamp = w.now() + base::from_seconds(0.05), .pose = w.odometry()});
+    const auto begun =
+        w.where.use(Walk::map(MapAnchor{kShedAt, kTurned_rad, 0.2}), w.now(), same_place);
+    EXPECT_EQ(begun.phase, PlacePhase::Searching);
+    const auto told = w.step(0.05, 0.0);
+    ASSERT_TRUE(told);
+    EXPECT_EQ(told->fix.has_value(), same_place);
+    if (told->fix) {
+      EXPECT_LT(apart_m(told->fix->at, w.global()), 0.04);
+    }
+  }
+}
+
+TEST(Whereabouts, TellsHowTheMapLies) {
+  Walk w({2.5, 3.0, 0.1});
+  w.where.use(Walk::map(MapAnchor{kShedAt, kTurned_rad, 0.2}), w.now());
+  ASSERT_TRUE(w.where.anchor());
+  EXPECT_EQ(w.where.anchor()->yaw_rad, kTurned_rad);
+  w.where.use(Walk::map({}), w.now());
+  EXPECT_FALSE(w.where.anchor());
 }
 
 TEST(Whereabouts, BeginsWhereSatellitesSeeTheRobotWithoutASearch) {
