@@ -183,15 +183,20 @@ Result<About> Shelf::find(std::int64_t id) const {
   return std::move(found->about);
 }
 
+Result<About> Shelf::look(std::int64_t id) const {
+  auto now = kept(id);
+  if (!now) return tl::unexpected<Error>(now.error());
+  const fs::path file = id == kConfigured ? configured_ : folder_of(id) / now->image;
+  std::error_code error;
+  (void)fs::file_size(file, error);
+  if (error) now->about.problem = file.string() + ": " + error.message();
+  return std::move(now->about);
+}
+
 std::vector<About> Shelf::look() const {
   std::vector<About> out = list();
   for (About& about : out) {
-    const auto now = kept(about.id);
-    if (!now) continue;  // it went meanwhile
-    const fs::path file = about.id == kConfigured ? configured_ : folder_of(about.id) / now->image;
-    std::error_code error;
-    (void)fs::file_size(file, error);
-    if (error) about.problem = file.string() + ": " + error.message();
+    if (auto now = look(about.id)) about = std::move(*now);  // else it went meanwhile
   }
   return out;
 }

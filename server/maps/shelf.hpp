@@ -49,7 +49,8 @@ class Shelf {
   std::vector<About> list() const;
   /// NotFound.
   base::Result<About> find(std::int64_t id) const;
-  /// The same, and looks whether its files are still there: `problem` of each.
+  /// The same, and look whether the files are still there: `problem` of each.
+  base::Result<About> look(std::int64_t id) const;
   std::vector<About> look() const;
 
   /// The cells as a scanner would see them. NotFound: no such map, or its files are gone.

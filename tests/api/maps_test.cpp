@@ -223,6 +223,7 @@ TEST_F(MapsApi, AFileThatVanishedIsTold) {
   fs::remove(house.maps_folder() / "1/map.1.pgm");
   const std::string problem = call("GET", "/maps").body["items"][0]["problem"];
   EXPECT_NE(problem.find("map.1.pgm"), std::string::npos);
+  EXPECT_EQ(call("GET", "/maps/1").body["problem"], problem);
   EXPECT_EQ(call("GET", "/maps/1/cells").status, 404u);
   EXPECT_EQ(call("POST", "/maps/1/use").status, 404u);
   EXPECT_EQ(call("GET", "/maps").body["in_use"], nullptr);
@@ -284,6 +285,7 @@ TEST_F(ConfiguredMap, IsListedFirstAndChangedElsewhere) {
   EXPECT_EQ(list["from_configuration"], true);
   EXPECT_EQ(call("DELETE", "/maps/0").status, 409u);
   EXPECT_EQ(call("PATCH", "/maps/0", Json{{"name", "x"}}).status, 409u);
+  EXPECT_EQ(call("PATCH", "/maps/00", Json{{"name", "x"}}).status, 404u);  // each has one name
   EXPECT_EQ(call("GET", "/maps/0/cells").status, 200u);
   ASSERT_EQ(add().status, 201u);
   ASSERT_EQ(call("POST", "/maps/1/use").status, 200u);

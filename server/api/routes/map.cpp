@@ -1,6 +1,11 @@
 // Maps of the plane: kept, changed a little, chosen. What touches their files is done beside the
 // web thread.
 
+#include <cstdint>
+#include <functional>
+#include <new>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "api/context.hpp"
@@ -34,9 +39,12 @@ MapsNow now_of(const Context& context) {
   return out;
 }
 
-/// The map that the path means; empty: no number.
+/// The map that the path means; empty: no number as the list writes them. By "03" a map would have
+/// two names, and who may change it is asked of one.
 std::optional<std::int64_t> id_of(const Call& call) {
-  return whole_number(call.params.at("id"));
+  const std::string& said = call.params.at("id");
+  const auto id = whole_number(said);
+  return id && std::to_string(*id) == said ? id : std::nullopt;
 }
 
 /// Calls then(shelf, id), or answers what is in the way of that.
@@ -103,7 +111,8 @@ void keep_choice(const ContextPtr& context, const CallPtr& call, std::function<R
 
 void use(const ContextPtr& context, const CallPtr& call, maps::Shelf& shelf, std::int64_t id) {
   const auto& prepare = context->deps.maps.prepare;
-  if (const auto found = shelf.find(id); !found) return call->respond(problem(found.error()));
+  const auto found = shelf.find(id);
+  if (!found) return call->respond(problem(found.error()));
   if (!prepare) {
     return call->respond(
         problem({Code::Conflict, "no sensor looks around: nobody would look for the robot in it"}));
@@ -111,8 +120,12 @@ void use(const ContextPtr& context, const CallPtr& call, maps::Shelf& shelf, std
   if (const auto why = drives_by_itself(*context)) return call->respond(problem(*why));
   context->aside(
       call, kCells, [prepare, id] { return prepare(id, false); },
-      [context, call, &shelf, id](Result<MapDoor::Take> made) {
+      [context, call, &shelf, id, revision = found->revision](Result<MapDoor::Take> made) {
         if (!made) return call->respond(problem(made.error()));
+        if (const auto now = shelf.find(id); now && now->revision != revision) {
+          return call->respond(
+              problem({Code::Conflict, "the map was changed meanwhile: once more", {}}));
+        }
         const auto why = take(context, call, [&] {
           if (shelf.choose(id)) (*made)();
         });
@@ -163,20 +176,43 @@ Handler add(const ContextPtr& context) {
 }
 
 /// What a change gave, and what takes it into use where it is of the map in use.
-struct Changed {
+struct ChangedMap {
   maps::About about;
   MapDoor::Take into_use;  ///< empty: nobody needs it
+  std::string not_used;    ///< why it could not be made; empty: it could
 };
 
-Result<Changed> change(const MapDoor& door, std::int64_t id, const maps::Change& what) {
+Result<ChangedMap> change(const MapDoor& door, std::int64_t id, const maps::Change& what) {
   auto about = door.shelf->change(id, what);
   if (!about) return tl::unexpected<Error>(about.error());
-  Changed out{std::move(*about), {}};
+  ChangedMap out{std::move(*about), {}, {}};
   if (!what.moves() || door.shelf->in_use() != id || !door.prepare) return out;
-  auto made = door.prepare(id, true);
-  if (!made) return tl::unexpected<Error>(made.error());
-  out.into_use = std::move(*made);
+  try {  // it is kept by now: an answer that it failed would have it done once more
+    auto made = door.prepare(id, true);
+    if (made) {
+      out.into_use = std::move(*made);
+    } else {
+      out.not_used = made.error().detail;
+    }
+  } catch (const std::bad_alloc&) {
+    out.not_used = "there is no memory for it";
+  }
   return out;
+}
+
+/// On the web thread: the robot looks through what was changed, unless another change or choice
+/// came between. @return why it does not though it should
+std::optional<std::string> look_through(const ContextPtr& context, const CallPtr& call,
+                                        const maps::Shelf& shelf, const ChangedMap& changed) {
+  const auto now = shelf.find(changed.about.id);
+  if (!now || now->revision != changed.about.revision || shelf.in_use() != changed.about.id) {
+    return std::nullopt;
+  }
+  if (!changed.not_used.empty()) return changed.not_used;
+  if (!changed.into_use) return std::nullopt;
+  call->acts = true;  // it may have come into use since the call was let in
+  const auto why = take(context, call, changed.into_use);
+  return why ? std::optional(why->detail) : std::nullopt;
 }
 
 void patch(const ContextPtr& context, const CallPtr& call, maps::Shelf& shelf, std::int64_t id) {
@@ -190,16 +226,14 @@ void patch(const ContextPtr& context, const CallPtr& call, maps::Shelf& shelf, s
   context->aside(
       call, kCells,
       [door = context->deps.maps, id, what = std::move(*what)] { return change(door, id, what); },
-      [context, call](const Result<Changed>& changed) {
+      [context, call, &shelf](const Result<ChangedMap>& changed) {
         if (!changed) return call->respond(problem(changed.error()));
-        if (changed->into_use) {
-          if (auto why = take(context, call, changed->into_use)) {
-            return call->respond(problem({Code::Conflict,
-                                          "the map is changed and kept, but the robot does not "
-                                          "look through it yet: use it again (" +
-                                              why->detail + ")",
-                                          {}}));
-          }
+        if (const auto why = look_through(context, call, shelf, *changed)) {
+          return call->respond(problem({Code::Conflict,
+                                        "the map is changed and kept, but the robot does not look "
+                                        "through it yet: use it again (" +
+                                            *why + ")",
+                                        {}}));
         }
         call->respond(map_response(*context, http::status::ok, changed->about));
       });
@@ -311,7 +345,7 @@ void add_map_routes(const ContextPtr& c) {
                  {200, 404, 503},
                  with_map(c, [c](const CallPtr& call, Shelf& shelf, std::int64_t id) {
                    c->answer_aside(call, kLook,
-                                   [c, &shelf, id] { return map_or_problem(*c, shelf.find(id)); });
+                                   [c, &shelf, id] { return map_or_problem(*c, shelf.look(id)); });
                  })});
   c->router.add({http::verb::patch,
                  "/maps/{id}",
