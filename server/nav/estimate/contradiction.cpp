@@ -16,6 +16,10 @@ constexpr double kLeastSpeed_mps = 0.3;  // slower, a velocity's error says noth
 constexpr double kMostDoubt_rad = 1.0;
 const double kUnproved_rad = base::rad_from_deg(3.0);  // of antennas whose mounting nobody saw
 constexpr double kScaleDoubt = 0.05;
+/// That sensors agree again says little of what they differed by a moment ago: one that comes with
+/// another fix class is not compared with what it said before.
+constexpr double kFades_s = 10.0;
+constexpr base::Duration kProved = std::chrono::seconds(10);
 constexpr base::Duration kRefusedLasts = std::chrono::milliseconds(350);  // more than one outlier
 constexpr base::Duration kRefusedCounts = std::chrono::seconds(1);
 
@@ -34,6 +38,9 @@ void Estimator::vote(Time now) noexcept {
   b.yaw_scale = belief_.x(kYawScale);
   const auto liar =
       votes_.step(b, params_->contradiction_sigma, params_->contradiction_return_s, now);
+  const double since_s = voted_ ? base::seconds(now - *voted_) : 0.0;
+  voted_ = now;
+  differed_m_ = std::max(votes_.told().doubt_m, differed_m_ * std::exp(-since_s / kFades_s));
   if (liar) spoil(*liar);
 }
 
@@ -42,6 +49,11 @@ bool Estimator::outvoted(Sense s, Input& input) noexcept {
   if (!votes_.out(s)) return false;
   refuse(input, base::Refusal::Outvoted);
   return true;
+}
+
+/// Had positions come for so long that a wrong one would have contradicted itself?
+bool Estimator::proved_by(Time when) const noexcept {
+  return located_since_ && when - *located_since_ >= kProved;
 }
 
 /// The way that a difference may have led astray.
@@ -63,7 +75,7 @@ double Estimator::unknown_m() const noexcept {
                        *last_fix_ - *position_off_since_ >= kRefusedLasts;
   const bool unsettled = refused || health_.base_shift;
   const double off_m = unsettled ? refused_m_ : 0.0;
-  return std::hypot(std::hypot(votes_.told().doubt_m, distrust_m_), off_m, map_floor_m());
+  return std::hypot(std::hypot(differed_m_, distrust_m_), off_m, map_floor_m());
 }
 
 double Estimator::unknown_rad() const noexcept {
@@ -89,15 +101,17 @@ double Estimator::aside_rad() const noexcept {
 void Estimator::spoil(Sense liar) noexcept {
   const Difference& off = votes_.told()[liar].off;
   const double way_m = spoiled_way_m(off);
+  differed_m_ = 0.0;  // it is known who lied, and below what that may have spoiled
   const bool turn = off.of != Difference::Of::Way;
   double angle_rad = turn ? std::min(std::abs(off.size), kMostDoubt_rad) : 0.0;
   double place_m = 0.0;
   switch (liar) {
     case Sense::Position:
       if (health_.by_map) break;  // nothing is believed of it
-      // A jump that was refused from its first word on has led nobody astray.
-      if (position_off_since_ && *position_off_since_ <= votes_.seen(liar) &&
-          votes_.agreed_before(liar)) {
+      // A jump that was refused from its first word on has led nobody astray: if what it jumped
+      // from was the truth.
+      if (proved_by(votes_.seen(liar)) && position_off_since_ &&
+          *position_off_since_ <= votes_.seen(liar) && votes_.agreed_before(liar)) {
         break;
       }
       place_m = way_m;

@@ -110,14 +110,17 @@ class Estimator {
   /// the next usable fix decides, even while standing. No reset by itself.
   void doubt_position(double sigma_m) noexcept;
   /// A person has looked: sensors that were left out are heard again.
-  void acquit_all() noexcept { votes_.acquit_all(now_); }
+  void acquit_all() noexcept {
+    votes_.acquit_all(now_);
+    differed_m_ = 0.0;
+  }
   /// The estimate was set anew by so much, and nobody knows whether that was right: no claim is
   /// better, until trust().
   void distrust(double moved_m, double turned_rad) noexcept {
     distrust_m_ = std::max(distrust_m_, moved_m);
     distrust_rad_ = std::max(distrust_rad_, turned_rad);
   }
-  void trust() noexcept { distrust_m_ = distrust_rad_ = 0.0; }
+  void trust() noexcept { distrust_m_ = distrust_rad_ = differed_m_ = 0.0; }
 
   /// Empty until the first usable fix. Without a known heading the yaw sigma is π.
   std::optional<base::Pose> pose(Time now) const;
@@ -254,6 +257,7 @@ class Estimator {
   void vote(Time now) noexcept;
   void spoil(base::Sense liar) noexcept;
   bool outvoted(base::Sense s, Input& input) noexcept;
+  bool proved_by(Time when) const noexcept;
   double spoiled_way_m(const base::Difference& off) const noexcept;
   double claimed_m(const Belief& b) const noexcept;
   double unknown_m() const noexcept;
@@ -281,6 +285,8 @@ class Estimator {
   double doubted_m_ = 0.0;  ///< what of the position's sigma is doubt since its source was left out
   double distrust_m_ = 0.0;
   double distrust_rad_ = 0.0;
+  double differed_m_ = 0.0;                   ///< by what sensors contradicted each other, fading
+  std::optional<Time> voted_;                 ///< when it was looked at last
   double refused_m_ = 0.0;                    ///< how far off the position is that is refused now
   std::optional<double> claimed_when_off_m_;  ///< when positions began to be refused
   std::optional<base::LocalFrame> frame_;

@@ -42,6 +42,7 @@ void Estimator::move(base::EnuPoint to, double sigma_m) noexcept {
   reset_state(belief_, kEast, to.east_m, sigma_m);
   reset_state(belief_, kNorth, to.north_m, sigma_m);
   history_.shift(change);
+  differed_m_ = 0.0;
 }
 
 void Estimator::place(std::optional<base::EnuPoint> at, std::optional<double> yaw_rad) noexcept {
