@@ -83,6 +83,7 @@ struct SafetyParams {
   double gnss_hold_s = 6.0;
   double gnss_free_m = 35.0;
   double contradiction_free_m = 8.0;
+  double contradiction_sigma_m = 0.5;
   double reset_repeat_s = 60.0;
   double sigma_free_m = 1.0;
   double sigma_slow_m = 2.0;
@@ -129,6 +130,9 @@ void fields(V& v, SafetyParams& p) {
     base::lower_is_stricter(
         "the robot creeps on for so many metres while the satellites' position is left out because "
         "it contradicts the other sensors: then hold"));
+  v("contradiction_sigma_m", p.contradiction_sigma_m, 0.02, 50.0,
+    base::lower_is_stricter("where it is left out and the position is less certain than this (1 "
+                            "sigma), the robot does not creep on: hold"));
   v("reset_repeat_s", p.reset_repeat_s, 0.0, 3600.0,
     base::higher_is_stricter("an estimate set anew by over 0.5 m or 10 deg twice within so long "
                              "holds until a person acknowledged it"));

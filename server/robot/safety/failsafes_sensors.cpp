@@ -44,6 +44,12 @@ std::string askew_words(const base::Askew& off) {
          ": they are not used. Correct them by that, if they are mounted so";
 }
 
+/// To creep on by the others is sound where the place was known before: what lied may have spoiled
+/// it, or it was never known well.
+bool unsure(const Facts& f, const SafetyParams& p) noexcept {
+  return f.pose && f.pose->horizontal_sigma_m > p.contradiction_sigma_m;
+}
+
 /// Too little is left to drive by.
 bool too_few(const Facts& f, const SafetyParams& p) noexcept {
   const base::Votes& votes = f.estimate.votes;
@@ -51,8 +57,9 @@ bool too_few(const Facts& f, const SafetyParams& p) noexcept {
   for (const Sense s : {Sense::Tracks, Sense::Gyro, Sense::Position, Sense::Velocity}) {
     carrying += votes[s].left_out ? 1 : 0;
   }
-  const bool far = f.estimate.free_m > p.contradiction_free_m;
-  return votes[Sense::Tracks].left_out || carrying > 1 || (votes[Sense::Position].left_out && far);
+  const bool position = votes[Sense::Position].left_out &&
+                        (f.estimate.free_m > p.contradiction_free_m || unsure(f, p));
+  return votes[Sense::Tracks].left_out || carrying > 1 || position;
 }
 
 void leave_out(MadeUp& m, Sense s) {
@@ -144,7 +151,8 @@ constexpr std::array kSensorRows{
     Failsafe{
         .id = "sensor_left_out",
         .seen = "odometry, or two that carry the estimate, contradict the others; or the position "
-                "does, and it was left out for so far",
+                "does, and it was left out for so far, or where the robot is is uncertain by more "
+                "than {contradiction_sigma_m}, 1 sigma",
         .after = "0.6 s; {contradiction_free_m} driven",
         .response = Response::Hold,
         .acts = Acts::ByItself,

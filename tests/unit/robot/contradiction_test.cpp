@@ -1,7 +1,9 @@
 // What follows from sensors that contradict each other, in words and deeds.
 
 #include "field.hpp"
+#include "robot/safety/made_up.hpp"
 #include "robot/safety/reset_latch.hpp"
+#include "robot/safety/safety.hpp"
 #include "robot/safety/votes_watch.hpp"
 
 namespace roverd::robot {
@@ -97,6 +99,18 @@ TEST_F(Latch, WhatHappensWhileDisarmedIsToldToWhoeverArmsAndNoMore) {
   EXPECT_NE(latch.disarmed_why().find("30.0 m away"), std::string::npos) << latch.disarmed_why();
   latch.armed();
   EXPECT_TRUE(latch.disarmed_why().empty());
+}
+
+TEST(Contradiction, WhereItIsUnsureOfItsPlaceItDoesNotCreepOnWithoutPositions) {
+  MadeUp m;
+  m.estimate.votes = lying(Sense::Position, {}, {Sense::Tracks, Sense::Velocity});
+  m.pose->horizontal_sigma_m = m.params.contradiction_sigma_m - 0.01;
+  EXPECT_EQ(assess(m.facts, m.params, m.now).response, Response::Slow);
+  m.pose->horizontal_sigma_m = m.params.contradiction_sigma_m + 0.01;
+  EXPECT_EQ(assess(m.facts, m.params, m.now).response, Response::Hold);
+  // A consumer's receiver that agrees with the others is never surer, and drives.
+  m.estimate.votes = {};
+  EXPECT_EQ(assess(m.facts, m.params, m.now).response, Response::None);
 }
 
 TEST(Contradiction, AReceiverThatJumpsIsLeftOutHoldsAndItsReturnWantsAPerson) {
