@@ -81,7 +81,15 @@ const begin = (account: Account | null, session: string | null): void => {
     : station.stream_events;
   late.stream = new Stream(events, again);
   const audit = account?.role === 'admin' ? audit_calls : null;
-  const props = { station, identity, account, desk, audit, left: again };
+  const props = {
+    station,
+    identity,
+    account,
+    desk,
+    audit,
+    left: again,
+    watch_pointer: map.watch_pointer.bind(map),
+  };
   mount(App, { target: element('app'), props });
 
   void tile_sets().then((sets) => map.use_tiles(sets[0] ?? null));

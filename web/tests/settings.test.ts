@@ -4,14 +4,14 @@ import { DEFAULTS, settings_of, speed_text } from '../src/model/settings';
 
 describe('what is kept on the device', () => {
   test('comes back', () => {
-    const chosen = { look: 'sunlight', speed: 'km/h' } as const;
+    const chosen = { look: 'sunlight', speed: 'km/h', places: 'utm' } as const;
     expect(settings_of(JSON.stringify(chosen))).toEqual(chosen);
   });
   test('is as at first where nothing is kept, or something else', () => {
     for (const text of [null, '', '{', '[]', '7', '"x"', 'null', '{"look":"neon","speed":3.6}']) {
       expect(settings_of(text)).toEqual(DEFAULTS);
     }
-    expect(settings_of('{"speed":"km/h","more":1}')).toEqual({ look: 'device', speed: 'km/h' });
+    expect(settings_of('{"speed":"km/h","more":1}')).toEqual({ ...DEFAULTS, speed: 'km/h' });
   });
 });
 

@@ -31,6 +31,7 @@ import { prepare_drill } from './drill_painter';
 import { prepare_slips } from './slip_painter';
 import { EditInteraction } from './edit';
 import { on_palette_change } from './palette';
+import { watch_pointer } from './pointer';
 import { from_plane, to_plane, to_plane_line } from './projection';
 import { Scene } from './scene';
 import { prepare_run } from './run_painter';
@@ -247,6 +248,11 @@ export class FieldMap implements MapCalls {
 
   center_robot(): void {
     if (this.#scene.robot) this.#center_on(this.#scene.robot.at);
+  }
+
+  /** @param moved hears which place lies under the mouse; null: none */
+  watch_pointer(moved: (at: LatLon | null) => void): void {
+    watch_pointer(this.#map, this.#target, moved);
   }
 
   zoom_by(levels: number): void {

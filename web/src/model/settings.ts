@@ -1,6 +1,7 @@
 // How this device shows things: chosen by whoever holds it, kept on it, and nothing of the robot's.
 
 import { number_text } from './format';
+import type { PlaceForm } from './place_text';
 
 /** Sunlight: black on white, whatever the device prefers. */
 export type Look = 'device' | 'sunlight';
@@ -9,12 +10,14 @@ export type SpeedUnit = 'm/s' | 'km/h';
 export interface Settings {
   readonly look: Look;
   readonly speed: SpeedUnit;
+  readonly places: PlaceForm;
 }
 
-export const DEFAULTS: Settings = { look: 'device', speed: 'm/s' };
+export const DEFAULTS: Settings = { look: 'device', speed: 'm/s', places: 'degrees' };
 
 export const LOOKS: readonly Look[] = ['device', 'sunlight'];
 export const SPEED_UNITS: readonly SpeedUnit[] = ['m/s', 'km/h'];
+export const PLACE_FORMS: readonly PlaceForm[] = ['degrees', 'dms', 'utm'];
 
 const one_of = <T>(all: readonly T[], value: unknown, otherwise: T): T =>
   all.find((each) => each === value) ?? otherwise;
@@ -31,9 +34,11 @@ export const settings_of = (text: string | null): Settings => {
     look?: unknown;
     speed?: unknown;
   };
+  const { look, speed, places } = kept_in(text);
   return {
     look: one_of(LOOKS, look, DEFAULTS.look),
     speed: one_of(SPEED_UNITS, speed, DEFAULTS.speed),
+    places: one_of(PLACE_FORMS, places, DEFAULTS.places),
   };
 };
 

@@ -25,6 +25,7 @@ export type Dialog =
   | { readonly kind: 'check'; readonly name: string; readonly report: CheckReport }
   | { readonly kind: 'arm'; readonly name: string; readonly report: CheckReport }
   | { readonly kind: 'modes' }
+  | { readonly kind: 'place' }
   | { readonly kind: 'keys' };
 
 export class Dialogs {
