@@ -18,6 +18,10 @@ constexpr float kSmooth = 0.1F;
 constexpr double kBelieved = 1e-9;  // at one place in one scan, of drops
 constexpr int kMostHits = 7;
 constexpr int kMostScans = 8;
+constexpr float kMostMore = 4.0F;
+// Three by three cells saw something when one of them did, each with those about it.
+constexpr double kAnyOf = 3.0;
+constexpr float kFastest_m = 0.5F;  // in a scan: more is a jump
 
 /// So many or more, of those that come singly. Its series from the first term on.
 double poisson_tail(double mean, int from) noexcept {
@@ -109,20 +113,47 @@ float Persist::least_of(float away_m, const From& from) const noexcept {
   return std::max(1.0F, std::floor(rows * beams(wide, away_m, kMostAcross)));
 }
 
+/// Of drops, by those that were counted as far away.
+double Persist::per_m2(float away_m) const noexcept {
+  const auto metre = std::min(static_cast<std::size_t>(away_m), fresh_by_.size() - 1);
+  const float area_m2 = kView_rad * (static_cast<float>(metre) + 0.5F);
+  return static_cast<double>(fresh_by_[metre] / area_m2);
+}
+
+/// @param drops that lie about a place, in the mean @param least echoes that count there
+bool Persist::drops_pass(const Asked& a, double drops, float least) const noexcept {
+  if (drops < 1e-4) return false;  // a dry day
+  const auto hit = [&](double mean) {
+    return std::min(0.9, kAnyOf * poisson_tail(mean, static_cast<int>(least + a.more)));
+  };
+  // Of many drops some fall where one was lately: these were not counted.
+  double all = drops;
+  for (int i = 0; i < 3; ++i) {
+    all = std::min(4.0 * drops, drops / std::pow(1.0 - hit(all), p_.of_scans));
+  }
+  return binomial_tail(hit(all), a.hits, a.of_scans) > kBelieved;
+}
+
 void Persist::ask(const From& from) {
   const double side = 3.0 * p_.cell_m;
-  const double per_m2 = static_cast<double>(fresh_ / (kView_rad * range_m_));
+  const auto scans = [this](int hits) { return hits <= p_.of_scans ? p_.of_scans : kMostScans; };
   for (std::size_t i = 0; i < asked_.size(); ++i) {
     Asked& a = asked_[i];
     const float away = std::max(0.05F, kStep_m * static_cast<float>(i));  // the nearer end
-    const float least = least_of(away + kStep_m, from);  // the fewest that count there
-    const double drops = per_m2 * side * side / static_cast<double>(away);
-    const double hit = poisson_tail(drops, static_cast<int>(least));
-    const auto scans = [this](int hits) { return hits <= p_.of_scans ? p_.of_scans : kMostScans; };
-    a.hits = p_.hits;
-    while (a.hits < kMostHits && binomial_tail(hit, a.hits, scans(a.hits)) > kBelieved) ++a.hits;
-    a.of_scans = scans(a.hits);
-    a.at_once = p_.at_once;
+    a = {p_.hits, p_.of_scans, p_.at_once, 0.0F};
+    double drops = side * side * static_cast<double>(fresh_ / (kView_rad * range_m_ * away));
+    if (from.step_up_rad > 0.0F) {
+      drops = std::max(drops, side * side * per_m2(away));
+      // The fewest that counted there, since the first of the scans.
+      const float least = least_of(away + kStep_m + kMostScans * step_m_, from);
+      while (drops_pass(a, drops, least) && a.hits < kMostHits) a.of_scans = scans(++a.hits);
+      while (a.more < kMostMore && drops_pass(a, drops, least)) a.more += 1.0F;
+    } else {
+      const double hit = poisson_tail(drops, static_cast<int>(least_of(away + kStep_m, from)));
+      while (a.hits < kMostHits && binomial_tail(hit, a.hits, a.of_scans) > kBelieved) {
+        a.of_scans = scans(++a.hits);
+      }
+    }
     while (a.at_once < 3 * p_.at_once && poisson_tail(drops, a.at_once) > kBelieved) ++a.at_once;
   }
 }
@@ -134,23 +165,37 @@ const Persist::Asked& Persist::asked(float away_m) const noexcept {
 
 std::uint32_t Persist::judge(std::vector<Voxel>& voxels, const Pose2& pose, const From& from) {
   ++scan_;
+  step_m_ = static_cast<float>(std::hypot(pose.x_m - before_.x_m, pose.y_m - before_.y_m));
+  if (!(step_m_ < kFastest_m)) step_m_ = 0.0F;
+  before_ = pose;
   fill(voxels, pose);
   away_.clear();
   const std::uint32_t lately = ((1U << static_cast<std::uint32_t>(p_.of_scans)) - 1U) << 1U;
   float fresh = 0.0F;
+  std::array<float, 16> fresh_by{};
   std::size_t i = 0;
   for (const Voxel& v : voxels) {
     if (v.kind != Kind::Obstacle) continue;
     away_.push_back(std::max(0.05F, std::hypot(v.x_m - from.x_m, v.y_m - from.y_m)));
     const Around here = around(where_[i], where_[i + 1]);
-    if (static_cast<float>(here.points) >= least_of(away_.back(), from)) {
+    const float least = least_of(away_.back(), from) + asked(away_.back()).more;
+    if (static_cast<float>(here.points) >= least) {
       cells_[at(where_[i], where_[i + 1])].seen |= 1U;
     }
-    if ((here.seen & lately) == 0 && here.voxels < p_.at_once) fresh += 1.0F;
+    if ((here.seen & lately) == 0 && here.voxels < p_.at_once) {
+      fresh += 1.0F;
+      const auto metre = static_cast<std::size_t>(away_.back());
+      if (metre < fresh_by.size()) fresh_by[metre] += 1.0F;
+    }
     i += 2;
   }
   // All is new to the first scan.
-  if (scan_ > 1) fresh_ += kSmooth * (fresh - fresh_);
+  if (scan_ > 1) {
+    fresh_ += kSmooth * (fresh - fresh_);
+    for (std::size_t k = 0; k < fresh_by.size(); ++k) {
+      fresh_by_[k] += kSmooth * (fresh_by[k] - fresh_by_[k]);
+    }
+  }
   ask(from);
   std::uint32_t held = 0;
   i = 0;

@@ -21,6 +21,10 @@
 // into an area A at r (θ the view, R the reach), Poisson distributed. Hits and voxels at once are
 // asked for, up to 7 of 8 scans and three times at_once, until drops alone would pass at one place
 // once in 10⁹ scans. On a dry day nothing is asked for beyond the parameters.
+//
+// Of several rows few look low enough far away, and many nearby: there n is counted by metres as
+// well. What counted a few scans ago counted farther away, where fewer echoes were enough; and
+// where 7 of 8 scans are not enough, up to 4 echoes a scan more than the least are asked for.
 
 #include <array>
 #include <cstdint>
@@ -70,9 +74,12 @@ class Persist {
     int hits = 3;
     int of_scans = 5;
     int at_once = 3;
+    float more = 0.0F;  ///< echoes a scan beyond the least
   };
   float least_of(float away_m, const From& from) const noexcept;
   void ask(const From& from);
+  bool drops_pass(const Asked& asked, double drops, float least) const noexcept;
+  double per_m2(float away_m) const noexcept;
   const Asked& asked(float away_m) const noexcept;
   void fill(const std::vector<Voxel>& voxels, const Pose2& pose);
   Around around(std::int32_t ix, std::int32_t iy) const noexcept;
@@ -86,7 +93,10 @@ class Persist {
   std::vector<float> away_;          ///< of each of them from the sensor
   std::array<Asked, 64> asked_{};    ///< in steps of a quarter of a metre
   float range_m_;
-  float fresh_ = 0.0F;  ///< echoes a scan where none had been lately, smoothed
+  float fresh_ = 0.0F;                ///< echoes a scan where none had been lately, smoothed
+  std::array<float, 16> fresh_by_{};  ///< of these, by whole metres away
+  Pose2 before_{};
+  float step_m_ = 0.0F;  ///< driven since the scan before
 };
 
 }  // namespace roverd::nav::sense

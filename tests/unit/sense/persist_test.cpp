@@ -157,6 +157,40 @@ TEST(PersistTest, OfSeveralRowsMoreEchoesAreWanted) {
   EXPECT_EQ(held(14), 0U);
 }
 
+//   A lidar of 1800 steps and sixteen rows in rain of a hundred metres between drops: at 3.3 m some
+//   place has an echo in seven scans of eight by chance, once in half a minute. A post there gives
+//   one in every row.
+TEST(PersistTest, InHardRainOneEchoOfSeveralRowsIsNoThingHoweverOftenItIsThereAndAPostIs) {
+  constexpr double kAcross = 6.2831853 / 1800.0;
+  constexpr double kUp = 0.0349;
+  const auto believed_with = [](std::uint32_t echoes) {
+    Persist persist({}, 8.0);
+    std::mt19937 random(4);
+    std::exponential_distribution<double> way(0.01);
+    int count = 0;
+    for (int scan = 0; scan < 40; ++scan) {
+      std::vector<Voxel> voxels;
+      for (int i = 0; i < 1800 * 16; ++i) {
+        const double r = 0.4 + way(random);
+        const double b = kAcross * (i / 16);
+        const double z = 0.8 + r * std::sin(kUp * (i % 16 - 7.5));
+        if (r > 8.0 || z < 0.08 || z > 0.8) continue;
+        const bool near = std::hypot(r * std::cos(b) - 3.3, r * std::sin(b)) < 0.25;
+        if (!near) voxels.push_back(obstacle(r * std::cos(b), r * std::sin(b)));
+      }
+      if (scan >= 30 && scan != 34) {
+        voxels.push_back(obstacle(3.3, 0.0));
+        voxels.back().points = echoes;
+      }
+      persist.judge(voxels, {}, {0.0F, 0.0F, static_cast<float>(kAcross), static_cast<float>(kUp)});
+      count += scan >= 30 && scan != 34 && voxels.back().kind == Kind::Obstacle ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_EQ(believed_with(1), 0);
+  EXPECT_GE(believed_with(6), 1) << "within ten scans";
+}
+
 //   A step that a strange program told: a hundred-thousandth of a radian would ask a thing a metre
 //   away for two thousand echoes.
 TEST(PersistTest, HoweverFineTheStepIsSixEchoesOfARowAreEnough) {
