@@ -22,18 +22,17 @@ export const PLACE_FORMS: readonly PlaceForm[] = ['degrees', 'dms', 'utm'];
 const one_of = <T>(all: readonly T[], value: unknown, otherwise: T): T =>
   all.find((each) => each === value) ?? otherwise;
 
+const kept_in = (text: string | null): Readonly<Record<string, unknown>> => {
+  try {
+    const kept: unknown = JSON.parse(text ?? 'null');
+    return typeof kept === 'object' && kept !== null ? { ...kept } : {};
+  } catch {
+    return {};
+  }
+};
+
 /** What was kept. Whatever it does not know, or nobody wrote like that, is as at first. */
 export const settings_of = (text: string | null): Settings => {
-  let kept: unknown = null;
-  try {
-    kept = JSON.parse(text ?? 'null');
-  } catch {
-    return DEFAULTS;
-  }
-  const { look, speed } = (typeof kept === 'object' ? kept : null) ?? ({} as object) as {
-    look?: unknown;
-    speed?: unknown;
-  };
   const { look, speed, places } = kept_in(text);
   return {
     look: one_of(LOOKS, look, DEFAULTS.look),
