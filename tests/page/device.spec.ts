@@ -1,8 +1,8 @@
-// How this device shows things: chosen once, kept on it, and seen at once by panels and map.
+// How this device shows things: chosen once, kept on it, and seen at once.
 
 import type { Page } from '@playwright/test';
 
-import { map_pixels, open_page, press, tab } from './page';
+import { open_page, press, tab } from './page';
 import { expect, test } from './station';
 
 const ground = (page: Page): Promise<string> =>
@@ -15,13 +15,9 @@ test('in sunlight all is black on white, also at night, and after a reload', asy
   await page.emulateMedia({ colorScheme: 'dark' });
   await open_page(page, station.url);
   expect(await ground(page)).toBe('rgb(20, 23, 28)');
-  const robot = (): Promise<number> => map_pixels(page, [[0, 0, 0]]).then((found) => found.length);
-  expect(await robot()).toBeLessThan(200); // softened edges
-
   await tab(page, 'Log');
   await press(page, 'Sunlight');
   await expect.poll(() => ground(page)).toBe('rgb(255, 255, 255)');
-  await expect.poll(robot).toBeGreaterThan(400);
   const ink = await page
     .getByRole('region', { name: 'This device' })
     .evaluate((card) => getComputedStyle(card).color);

@@ -68,7 +68,6 @@ export const map_pixels = (page: Page, colors: readonly Color[]): Promise<Pixel[
     if (!canvas || !context) return found;
     const { data, width } = context.getImageData(0, 0, canvas.width, canvas.height);
     for (let k = 0; k < data.length; k += 4) {
-      if (data[k + 3] === 0) continue; // nothing is drawn there: it would count as black
       const fits = wanted.some((color) =>
         color.every((value, n) => Math.abs((data[k + n] ?? 0) - value) <= 1),
       );
