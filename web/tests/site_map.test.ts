@@ -209,7 +209,10 @@ describe('the place in the map', () => {
     expect(corridor?.detail).toContain('every place looks alike');
   });
   it('is not told surer than it is', () => {
-    expect(place_words({ ...place, accuracy_m: null })?.tone).toBe('warn');
+    expect(place_words({ ...place, accuracy_m: null })).toMatchObject({
+      tone: 'warn',
+      head: 'Not sure of its place in “hall”',
+    });
     expect(place_words({ ...place, stale: true })?.detail).toContain('does not fit just now');
     expect(place_words({ ...place, state: 'off' })).toBeNull();
   });

@@ -305,11 +305,12 @@ export const place_words = (place: MapPlace): PlaceWords | null => {
     case 'off':
       return null;
     case 'known': {
-      const head = `Knows its place in ${map}`;
       if (place.accuracy_m === null || place.stale) {
         const now = 'What it sees does not fit just now.';
+        const head = `Not sure of its place in ${map}`;
         return { tone: 'warn', head, detail: why === '' ? now : why.trim() };
       }
+      const head = `Knows its place in ${map}`;
       const turned = place.heading_accuracy_deg;
       const angle = turned === null ? '' : `, ±${turned.toFixed(1)}°`;
       const fine = place.accuracy_m <= FINE_M;
