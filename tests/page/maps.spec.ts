@@ -2,7 +2,7 @@
 
 import type { Page } from '@playwright/test';
 
-import { draw, extent_px, map_pixels, open_page, press, tab, type Color, type Pixel } from './page';
+import { draw, map_pixels, open_page, pixels_per_m, press, tab, type Color, type Pixel } from './page';
 import { expect, test, type Station } from './station';
 
 /** What stands there, in daylight. */
@@ -124,15 +124,13 @@ const send_map = async (page: Page): Promise<void> => {
   await press(page, 'It lies there');
 };
 
-/** Where a point of the map is on the page, by the outermost walls. */
-const pixel_of = (found: readonly Pixel[], x_m: number, y_m: number): Pixel => {
-  const [wide, high] = extent_px(found);
-  const left = Math.min(...found.map(([x]) => x));
+/** Where a point of the map is on the page, by its upper right corner: what is seen tints others. */
+const pixel_of = async (page: Page, x_m: number, y_m: number): Promise<Pixel> => {
+  const found = await walls(page);
+  const scale = await pixels_per_m(page);
+  const right = Math.max(...found.map(([x]) => x));
   const top = Math.min(...found.map(([, y]) => y));
-  return [
-    left + ((x_m + 3 + HALF_M) / (15 + 2 * HALF_M)) * wide,
-    top + ((8 + HALF_M - y_m) / (12 + 2 * HALF_M)) * high,
-  ];
+  return [right - (12 + HALF_M - x_m) * scale, top + (8 + HALF_M - y_m) * scale];
 };
 
 /** The same, once the view stands still: an alert that comes or goes moves it. */
@@ -140,7 +138,7 @@ const still_pixel = async (page: Page, x_m: number, y_m: number): Promise<Pixel>
   let [x, y] = [NaN, NaN];
   await expect(async () => {
     const before = [x, y];
-    [x, y] = pixel_of(await walls(page), x_m, y_m);
+    [x, y] = await pixel_of(page, x_m, y_m);
     expect([x, y]).toEqual(before);
   }).toPass({ intervals: [700] });
   return [x, y];
@@ -212,7 +210,7 @@ test('a map is forbidden a corner by hand, taken back before it is saved, rename
     [-40, -30],
     [0, -30],
     [0, 30],
-    [60, 60],
+    [60, -60],
   ]);
   await press(page, 'Undo');
   await expect(page.getByRole('list', { name: 'What was drawn' })).toContainText('3 corners');
