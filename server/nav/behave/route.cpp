@@ -182,23 +182,6 @@ class Layout {
     leave_circle();
     forth().steps.push_back({.kind = StepKind::Wall, .item = item_, .wall = wall});
   }
-  void add(const mission::Landmarks& l) {
-    if (params_.tool.pulled()) return refuse("with a trailer no landmarks are passed by sight");
-    const double half_m = 0.5 * params_.vehicle.width_m;
-    if (std::abs(l.offset_m) <= half_m) {
-      return refuse("passes landmarks at " + tenths_text(std::abs(l.offset_m)) +
-                    ": this vehicle would drive over them");
-    }
-    not_back_and_forth("a way past landmarks");
-    LandmarksToPass pass;
-    pass.side = l.offset_m > 0.0 ? marks::Side::Right : marks::Side::Left;
-    pass.offset_m = std::abs(l.offset_m);
-    pass.name = l.name == mission::kAnyLandmark ? "" : l.name;
-    pass.speed_mps = l.speed_mps;
-    if (l.count.value_or(0) > 0) pass.count = l.count;
-    leave_circle();
-    forth().steps.push_back({.kind = StepKind::Landmarks, .item = item_, .landmarks = pass});
-  }
   void add(const mission::Action& a) {
     forth().steps.push_back({.kind = StepKind::Act,
                              .item = item_,
@@ -469,7 +452,6 @@ class Layout {
       case StepKind::Wall:
         if (!step.wall->length_m) break;
         return *step.wall->length_m / std::max(0.1, step.wall->speed_mps.value_or(speed_mps_));
-      case StepKind::Landmarks:
       case StepKind::Home:
       case StepKind::Jump:
       case StepKind::Act:

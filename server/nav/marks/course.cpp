@@ -19,10 +19,6 @@ Vec2 towards(Vec2 from, Vec2 to) noexcept {
 void Course::begin(const Pose2& pose) {
   passed_.clear();
   count_ = 0;
-  go_on(pose);
-}
-
-void Course::go_on(const Pose2& pose) {
   target_.reset();
   first_.reset();
   behind_ = {placed(pose, {-kBegan_m, 0.0}), placed(pose, {0.0, 0.0})};

@@ -25,8 +25,6 @@ class Course {
   static constexpr std::size_t kPassed = 64;  ///< remembered
 
   void begin(const Pose2& pose);
-  /// From wherever the vehicle is now; what was passed stays passed.
-  void go_on(const Pose2& pose);
   /// @param name only those of this name; empty: all. @param known believed or not
   Way lay(std::span<const Landmark> known, const Pose2& pose, Side side, const std::string& name,
           double speed_mps, const LandmarkParams& params);
