@@ -101,7 +101,10 @@ double Estimator::aside_rad() const noexcept {
 void Estimator::spoil(Sense liar) noexcept {
   const Difference& off = votes_.told()[liar].off;
   const double way_m = spoiled_way_m(off);
-  differed_m_ = 0.0;  // it is known who lied, and below what that may have spoiled
+  // Whose lie leads the place astray is known now, and below how far: no more need be feared.
+  const bool of_place = liar != Sense::Velocity && liar != Sense::Compass &&
+                        !(liar == Sense::Position && health_.by_map);
+  if (of_place) differed_m_ = 0.0;
   const bool turn = off.of != Difference::Of::Way;
   double angle_rad = turn ? std::min(std::abs(off.size), kMostDoubt_rad) : 0.0;
   double place_m = 0.0;
