@@ -123,7 +123,11 @@ base::Result<std::size_t> Chain::take(const base::Sight& sight, const PoseHistor
   sight_sectors(reduced_, sight.half_step_rad, eye.sighted, *sectors_);
   eye.movers.meet(reduced_, grid_);
   grid_.take(reduced_, *sectors_, static_cast<std::uint8_t>(i));
-  eye.movers.see(grid_);
+  others_.clear();
+  for (std::size_t k = 0; k < eyes_.size(); ++k) {
+    if (k != i) eyes_[k].movers.tell(reduced_.stamp, static_cast<std::uint8_t>(k), others_);
+  }
+  eye.movers.see(grid_, others_);
   return i;
 }
 

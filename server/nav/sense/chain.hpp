@@ -90,6 +90,7 @@ class Chain {
   Reduced reduced_;
   std::unique_ptr<Sectors> sectors_ = std::make_unique<Sectors>();
   std::vector<EyeOf> eyes_;
+  std::vector<Mover> others_;  ///< told by the other sensors
 };
 
 }  // namespace roverd::nav::sense

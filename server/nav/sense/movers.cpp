@@ -26,6 +26,11 @@ constexpr double kGate_m = 0.35;
 constexpr double kGate_mps = 1.5;
 constexpr double kLeft_m = 0.12;  // so far outside of its box a place was left
 constexpr double kNoMore_mps = 0.15;
+constexpr double kAgree_mps = 0.3;  // else one side is hidden, or comes into sight
+constexpr double kTakenOver_mps = 0.15;
+constexpr double kGlance_s = 0.1;
+constexpr double kHisWay = 0.3;  // of his velocity: half of it where one side is cut off
+constexpr double kBeside_m = 0.15;
 constexpr double kAgain_m = 0.05;  // of the body that no beam met
 
 /// A straight line through what was measured.
@@ -203,8 +208,8 @@ void Movers::meet(const Reduced& in, const Grid& before) {
   part();
 }
 
-void Movers::see(const Grid& grid) {
-  if (met_) follow(grid);
+void Movers::see(const Grid& grid, std::span<const Mover> others) {
+  if (met_) follow(grid, others);
 }
 
 /// Nobody is forgotten by it. @param begin the piece that is taken now
@@ -216,6 +221,7 @@ void Movers::count_from(base::Time begin) {
   }
   for (Track& t : tracks_) {
     t.seen_s -= by_s;
+    t.agreed_s -= by_s;
     for (Sample& s : t.samples) s.at_s -= by_s;
   }
   begin_ = begin;
@@ -223,7 +229,7 @@ void Movers::count_from(base::Time begin) {
 }
 
 /// Each thing goes to the nearest track that expects one there.
-void Movers::follow(const Grid& grid) {
+void Movers::follow(const Grid& grid, std::span<const Mover> others) {
   std::erase_if(tracks_, [this](const Track& t) { return now_s_ - t.seen_s > kLost_s; });
   const std::size_t known = tracks_.size();
   for (std::size_t i = 0; i < things_.size(); ++i) {
@@ -265,6 +271,14 @@ void Movers::follow(const Grid& grid) {
     }
     best->samples.push_back(sample);
     estimate(*best, grid);
+    if (best->moves) continue;
+    if (const Mover* other = seen_elsewhere(*best, others)) {
+      best->v = other->v_mps;
+      best->sigma = std::max(other->sigma_mps, kTakenOver_mps);
+      best->agreed_s = now_s_;
+      best->moves = true;
+      best->moving = 3;
+    }
   }
 }
 
@@ -313,6 +327,27 @@ bool Movers::came_onto_free(const Track& track) noexcept {
   return came >= 2 && 2 * free > came;
 }
 
+/// Somebody another sensor tells is there, and what is seen of him here goes his way. What stands
+/// beside him does not.
+const Mover* Movers::seen_elsewhere(const Track& track,
+                                    std::span<const Mover> others) const noexcept {
+  const auto& samples = track.samples;
+  const double span_s = samples.back().at_s - samples.front().at_s;
+  if (span_s < kGlance_s) return nullptr;
+  const Vec2 off = samples.back().box.mid() - samples.front().box.mid();
+  const Box& b = track.box;
+  for (const Mover& m : others) {
+    const double fast = std::hypot(m.v_mps.x, m.v_mps.y);
+    if (fast < kLeast_mps || dot(off, m.v_mps) < kHisWay * fast * fast * span_s) continue;
+    const double age_s = base::seconds(stamp_ - m.seen);
+    const Vec2 at = m.at + age_s * m.v_mps;
+    const double near = m.radius_m + kBeside_m;
+    const bool x = at.x > b.x0 - near && at.x < b.x1 + near;
+    if (x && at.y > b.y0 - near && at.y < b.y1 + near) return &m;
+  }
+  return nullptr;
+}
+
 void Movers::estimate(Track& track, const Grid& grid) const {
   const auto& samples = track.samples;
   const std::size_t n = samples.size();
@@ -324,10 +359,15 @@ void Movers::estimate(Track& track, const Grid& grid) const {
   };
   const Going x = going(side(&Box::x0), side(&Box::x1));
   const Going y = going(side(&Box::y0), side(&Box::y1));
-  track.v = {x.mean, y.mean};
-  track.sigma = std::hypot(x.sigma, y.sigma);
+  const double sigma = std::hypot(x.sigma, y.sigma);
+  const bool agree = sigma < kAgree_mps;
+  if (agree || !track.moves || now_s_ - track.agreed_s > kWindow_s) {
+    track.v = {x.mean, y.mean};
+    track.sigma = sigma;
+  }
+  if (agree) track.agreed_s = now_s_;
   const double sure = std::hypot(x.sure, y.sure);
-  const double fast = std::hypot(x.mean, y.mean);
+  const double fast = std::hypot(track.v.x, track.v.y);
   if (track.moves) {
     track.moving = fast > kNoMore_mps ? 3 : track.moving - 1;
     if (track.moving <= 0) track.moves = false;

@@ -11,11 +11,15 @@
 // hides the places that he leaves: of him most of those that he came to must have been seen free
 // before, which nothing does that only comes into sight.
 //
+// Who leaves a sensor's view, or enters it, shows one side only: his velocity is kept meanwhile,
+// and taken over from another sensor that sees him there.
+//
 // Velocities are of O, which drifts by far less than anybody walks. Not shared between threads.
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/time.hpp"
@@ -47,8 +51,8 @@ class Movers {
 
   /// Once a piece, in order, judged. @param before the grid without that piece
   void meet(const Reduced& in, const Grid& before);
-  /// And then. @param grid after that piece
-  void see(const Grid& grid);
+  /// And then. @param grid after that piece @param others told by other sensors
+  void see(const Grid& grid, std::span<const Mover> others = {});
   /// Adds those that are seen to move. @param sensor its number
   void tell(base::Time now, std::uint8_t sensor, std::vector<Mover>& out) const;
   void forget() noexcept;
@@ -86,6 +90,7 @@ class Movers {
     double seen_s = 0.0;
     int moving = 0;  ///< estimates in a row that say so; of who moves: less 3 for each that denies
     bool moves = false;
+    double agreed_s = 0.0;  ///< when its sides last went the same way
   };
 
   Place& place(std::int32_t x, std::int32_t y) noexcept;
@@ -93,7 +98,8 @@ class Movers {
   void count_from(base::Time begin);
   void gather(const Reduced& in, const Grid& before);
   void part();
-  void follow(const Grid& grid);
+  void follow(const Grid& grid, std::span<const Mover> others);
+  const Mover* seen_elsewhere(const Track& track, std::span<const Mover> others) const noexcept;
   void estimate(Track& track, const Grid& grid) const;
   bool left_free(const Track& track, const Grid& grid) const;
   static bool came_onto_free(const Track& track) noexcept;

@@ -109,6 +109,48 @@ TEST(Movers, HeIsToldOnAndOnAfterHours) {
   for (std::size_t i = 25; i < seen.size(); ++i) EXPECT_EQ(seen[i].size(), 1U) << i;
 }
 
+//   Past the robot, out of the view of the scanner ahead and into that of the one behind: it sees
+//   his near edge first.
+TEST(Movers, WhoGoesFromOneSensorsViewIntoAnothersIsToldAllTheWay) {
+  std::vector<SensorSetup> eyes(2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    eyes[i].name = i == 0 ? "front" : "back";
+    eyes[i].mount = {.x_m = i == 0 ? 0.45 : -0.45, .z_m = 0.3, .yaw_rad = i == 0 ? 0.0 : base::kPi};
+    eyes[i].planar = true;
+    eyes[i].health.rate_hz = 25.0;
+  }
+  auto chain = Chain::of({}, eyes, Footprint::box(1.0, 0.8, 0.5), at(0.0));
+  ASSERT_TRUE(chain.has_value());
+  std::mt19937 random(3);
+  std::vector<Mover> seen;
+  for (double since = 0.0; since < 3.6; since += 0.04) {
+    for (const SensorSetup& eye : eyes) {
+      const double t = 1.0 + since;
+      Scene scene;
+      scene.blocks = {person(3.0 - 1.5 * since, 0.9)};
+      scene.ground = [](double, double) { return -5.0; };
+      base::Sight sight = look(
+          scene, planar(), eye.mount, t, [](double) { return planar_pose({}); }, random, 6.0);
+      sight.sensor = eye.name;
+      for (base::SightPoint& p : sight.points) {
+        if (p.echo == base::Echo::Hit) continue;
+        p.echo = base::Echo::Clear;
+        const double k = 6.0 / std::hypot(double(p.x_m), double(p.y_m));
+        p.x_m = static_cast<float>(k * double(p.x_m));
+        p.y_m = static_cast<float>(k * double(p.y_m));
+      }
+      ASSERT_TRUE(chain->take(sight, driven(t + 0.05, stands), at(t + 0.02)).has_value());
+    }
+    if (since < 1.0) continue;
+    chain->movers(at(1.02 + since), seen);
+    ASSERT_FALSE(seen.empty()) << since << " s";
+    for (const Mover& m : seen) {
+      EXPECT_NEAR(m.v_mps.x, -1.5, 0.45) << since << " s, sensor " << int(m.sensor);
+      EXPECT_NEAR(m.v_mps.y, 0.0, 0.45) << since << " s, sensor " << int(m.sensor);
+    }
+  }
+}
+
 TEST(Movers, WhoStopsMovesNoMore) {
   const auto seen = watch(
       3.0, stands, [](double t) { return std::vector{person(4.0, -2.0 + std::min(t, 1.5))}; });
