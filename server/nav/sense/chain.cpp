@@ -90,7 +90,8 @@ base::Result<Chain> Chain::of(ChainParams params, std::vector<SensorSetup> senso
     sighted.low_m = params.ground.min_height_m;
     sighted.range_m = params.reduce.max_range_m;
     chain.eyes_.push_back({s, sighted, Persist(s.persist, params.reduce.max_range_m),
-                           HealthWatch(s.health, now), Movers(params.reduce.max_range_m)});
+                           HealthWatch(s.health, now),
+                           Movers(params.reduce.max_range_m, s.planar)});
   }
   return chain;
 }

@@ -83,7 +83,7 @@ Going going(const SideLine& low, const SideLine& high) noexcept {
 
 }  // namespace
 
-Movers::Movers(double range_m) : range_m_(range_m) {
+Movers::Movers(double range_m, bool planar) : range_m_(range_m), planar_(planar) {
   const auto wide = static_cast<std::uint32_t>(std::ceil(2.0 * range_m / kPlace_m)) + 8;
   const std::uint32_t side = std::bit_ceil(std::clamp(wide, 16U, 1024U));
   mask_ = side - 1;
@@ -303,7 +303,7 @@ bool Movers::left_free(const Track& track, const Grid& grid) const {
       if (!b.leaves_out(p)) continue;
       const Vec2 off = p - eye_;
       const double beyond = dot(off, to) / away;
-      if (beyond > away && std::abs(cross(to, off)) / away < half * beyond / away) {
+      if (planar_ && beyond > away && std::abs(cross(to, off)) / away < half * beyond / away) {
         ++hidden;
         continue;
       }

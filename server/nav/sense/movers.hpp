@@ -9,7 +9,8 @@
 // their lines are unsure of, and most of the places that it left must have been seen free: what
 // slides along behind a gap, as the robot passes, left nothing free. Who comes towards the sensor
 // hides the places that he leaves: of him most of those that he came to must have been seen free
-// before, which nothing does that only comes into sight.
+// before, which nothing does that only comes into sight. That is believed of scanners of one plane
+// alone: what a cloud's rows meet of a standing thing changes too much.
 //
 // Who leaves a sensor's view, or enters it, shows one side only: his velocity is kept meanwhile,
 // and taken over from another sensor that sees him there.
@@ -47,7 +48,8 @@ class Movers {
   static constexpr std::size_t kMost = 8;    ///< told at most, the nearest to the body
 
   /// @param range_m what is farther from the body is not followed
-  explicit Movers(double range_m);
+  /// @param planar one plane looks: who comes towards it is told, too
+  explicit Movers(double range_m, bool planar = true);
 
   /// Once a piece, in order, judged. @param before the grid without that piece
   void meet(const Reduced& in, const Grid& before);
@@ -105,6 +107,7 @@ class Movers {
   static bool came_onto_free(const Track& track) noexcept;
 
   double range_m_;
+  bool planar_;
   std::uint32_t mask_;
   std::vector<Place> places_;
   std::uint32_t piece_ = 0;
