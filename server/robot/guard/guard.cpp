@@ -54,10 +54,11 @@ bool too_slow(const BodyTwist& t) noexcept {
 }
 
 /// What one would set otherwise where it stops for this; empty: there is no such thing.
-std::string_view key_of(const base::Obstacle& o, const BodyTwist& wanted, double reach_m) noexcept {
+std::string_view key_of(const base::Obstacle& o, bool foreseen, const BodyTwist& wanted,
+                        double reach_m) noexcept {
   if (o.action != base::GuardAction::Stop) return {};
   if (o.what == "drop") return "sense.ground.drop_m";
-  if (o.moves) return "sense.protect.foresee_s";
+  if (o.moves && foreseen) return "sense.protect.foresee_s";
   if (o.what != "unseen") return {};
   const double v = wanted.linear_mps;
   if (std::abs(v) < 0.2 * std::abs(wanted.angular_radps) * reach_m) {
@@ -255,6 +256,7 @@ void Guard::look_ahead_of_time(Looked& v, const BodyTwist& twist,
     v.sensor = f.sensor;
     v.age_s = f.age_s;
     v.moves = true;
+    v.foreseen = true;
     return;
   }
   if (v.limit != Limit::Obstacle) return;
@@ -476,7 +478,7 @@ void Guard::tell(const Looked& v, base::GuardAction action, base::Time now) {
   obstacle_.stopped_since = stopped_since_;
   obstacle_.reason = sentence(obstacle_);
   // Who may help: a person who sees it, or whoever sets how the robot goes there.
-  if (const auto key = key_of(obstacle_, wanted_, body_.reach_m()); !key.empty()) {
+  if (const auto key = key_of(obstacle_, v.foreseen, wanted_, body_.reach_m()); !key.empty()) {
     const bool unseen = obstacle_.what == "unseen";
     obstacle_.reason += unseen ? ": drive it by hand, or let it creep there (" : " (";
     obstacle_.reason += std::string(key) + ")";

@@ -118,6 +118,7 @@ class Guard {
     bool lost = false;      ///< what a sensor said that does not see any more
     bool trailer = false;   ///< it is what the trailer would touch
     bool moves = false;     ///< it is somebody who moves
+    bool foreseen = false;  ///< before he is in the way
   };
   Looked look(const base::BodyTwist& twist, bool by_itself, base::Time now) const noexcept;
   Looked look_where_lost(const base::BodyTwist& twist,
