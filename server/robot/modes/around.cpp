@@ -107,7 +107,10 @@ void Robot::Impl::take_around() {
     const double left_m = answer->asked->from_m + answer->found.leave_m;
     around_again = false;
     if (way) around_in_doubt.clear();
-    if (taken == Detour::Taken::Adopted) around_left_m = std::min(around_left_m, left_m);
+    if (taken == Detour::Taken::Adopted) {
+      around_hopeless = false;
+      around_left_m = std::min(around_left_m, left_m);
+    }
     if (taken == Detour::Taken::Begun) {
       around_hopeless = false;
       around_left_m = left_m;
@@ -234,6 +237,8 @@ std::shared_ptr<const std::vector<base::LatLon>> Robot::Impl::detour_way() {
 
 void Robot::Impl::go_on_behind(double at_m) {
   detour.reset();
+  around_hopeless = false;
+  around_in_doubt.clear();
   guard.forget();
   missions.executor.bypass(around_left_m, at_m, pose->at);
   event(Severity::Info, "around_done", "back on the way");
