@@ -1,11 +1,12 @@
-// Keys of the whole page. F8 stops the robot, whatever is on the screen, and so does Space; only while
-// a person types into a field is Space a blank. Buttons are pressed with Enter. Esc closes what is
+// Keys of the whole page. Space stops the robot, whatever is on the screen; only while a person types
+// into a field is it a blank. F8 and Ctrl + Enter always stop; two of them, as on many laptops F8 does
+// something else unless Fn is held. Buttons are pressed with Enter. Esc closes what is
 // open, as everywhere: whoever wants to be rid of a question must not latch the stop.
 
 import type { Station } from './station.svelte';
 
 export const key_words: readonly (readonly [keys: string, meaning: string])[] = [
-  ['Space or F8', 'Emergency stop, at once; while you type, F8'],
+  ['Space, F8, Ctrl + Enter', 'Emergency stop, at once; while you type, the last two'],
   ['Esc', 'Close the dialog, forget the chosen place, end adding points'],
   ['Enter', 'Press the button that has the focus'],
   ['Ctrl + Z', 'Undo the last edit'],
@@ -70,16 +71,24 @@ const plain_key = (station: Station, event: KeyboardEvent): boolean => {
   }
 };
 
+const stops = (event: KeyboardEvent): boolean => {
+  if (event.key === 'F8') return true;
+  if (event.key === 'Enter') return event.ctrlKey || event.metaKey;
+  return event.key === ' ' && !is_typing(event.target);
+};
+
 /** @return stops listening */
 export const listen_for_keys = (station: Station): (() => void) => {
   const on_key = (event: KeyboardEvent): void => {
-    const stop = event.key === 'F8' || (event.key === ' ' && !is_typing(event.target));
-    if (stop) {
+    if (stops(event)) {
       event.preventDefault();
       event.stopPropagation();
       if (!event.repeat) station.pilot.estop();
     } else if (event.key === 'Escape') {
       if (close_one(station)) event.preventDefault();
+      else if (station.live.vehicle?.armed && !event.repeat) {
+        station.notices.show('warning', 'Esc does not stop: Space, F8 or Ctrl + Enter does.');
+      }
     } else if (edit_key(station, event) || plain_key(station, event)) {
       event.preventDefault();
     }
