@@ -227,9 +227,12 @@ describe('the place in the map', () => {
   });
   it('that a person told is seen to fit, or not', () => {
     const searching: MapPlace = { ...place, state: 'searching', accuracy_m: null };
-    expect(seen_since(searching, 1)).toBeNull();
-    expect(seen_since(searching, 6)?.head).toContain('does not fit there yet');
-    expect(seen_since(place, 1)?.detail).toBe('What it sees fits there, to ±3 cm.');
-    expect(seen_since({ ...place, accuracy_m: null }, 1)).toBeNull();
+    expect(seen_since(searching, 1, null)).toBeNull();
+    expect(seen_since(searching, 6, null)?.head).toContain('does not fit there yet');
+    expect(seen_since(place, 2, 0.4)?.detail).toBe('What it sees fits there, to ±3 cm.');
+    expect(seen_since({ ...place, accuracy_m: null }, 1, 0)).toBeNull();
+    expect(seen_since({ ...place, stale: true }, 2, 0)).toBeNull();
+    expect(seen_since(place, 2, 40)).toBeNull();
+    expect(seen_since(place, 6, 40)?.detail).toMatch(/40(\.0)? m from there/);
   });
 });

@@ -123,6 +123,11 @@ export class EditInteraction extends PointerInteraction {
   }
 
   override handleDragEvent(event: MapBrowserEvent): void {
+    if (this.#from && this.targetPointers.length > 1) {
+      // Two fingers zoom: the first one showed nothing.
+      this.#from = null;
+      this.#port.events().on_point(null, null);
+    }
     if (this.#from) this.#turn(this.#from, event);
     if (!this.#hit) return;
     if (this.targetPointers.length > 1) {
@@ -157,6 +162,7 @@ export class EditInteraction extends PointerInteraction {
   }
 
   #end(): void {
+    this.#from = null;
     this.#hit = null;
     if (this.#drag) this.#port.show(null);
     this.#drag = null;

@@ -316,7 +316,7 @@ export interface MapEvents {
   /** Free ground was tapped while nothing is edited; or any place was pressed for long. */
   on_place(at: LatLon): void;
   /** @param toward where the finger is that was put down there; null: it has not moved */
-  on_point(at: LatLon, toward: LatLon | null): void;
+  on_point(at: LatLon | null, toward: LatLon | null): void;
   /** The person moved the map: following ends. */
   on_pan(): void;
 }

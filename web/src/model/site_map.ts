@@ -2,7 +2,7 @@
 // the words for whether the robot knows its place in the one that is in use.
 
 import type { Answer } from './answer';
-import { accuracy, sentence } from './format';
+import { accuracy, metres, sentence } from './format';
 import { offset_between, offset_from } from './geo';
 import type { Places } from './outline';
 import type { LatLon } from './plan';
@@ -342,9 +342,23 @@ export interface StandingPose extends LatLon {
   readonly heading_deg?: number;
 }
 
-/** What became of “I am here”, so long after it was taken. Null: wait and see. */
-export const seen_since = (place: MapPlace, after_s: number): PlaceWords | null => {
-  if (place.state === 'known' && place.accuracy_m !== null) {
+/** A person shows a place no better. */
+const THERE_M = 2;
+
+/** What became of “I am here”, so long after it was taken.
+ * @param off_m where it takes itself to stand, from what was told; null: it does not know
+ * @return null: wait and see */
+export const seen_since = (
+  place: MapPlace,
+  after_s: number,
+  off_m: number | null,
+): PlaceWords | null => {
+  if (place.state === 'known' && place.accuracy_m !== null && !place.stale && off_m !== null) {
+    if (off_m > THERE_M) {
+      if (after_s < LONG_S) return null;
+      const detail = `By what it sees it stands ${metres(off_m)} from there.`;
+      return { tone: 'warn', head: 'It knows its place elsewhere', detail };
+    }
     const detail = `What it sees fits there, to ${accuracy(place.accuracy_m)}.`;
     return { tone: 'good', head: 'It is there', detail };
   }

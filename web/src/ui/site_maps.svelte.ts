@@ -1,5 +1,7 @@
 // The maps of places: the list, the one that is in use, and the cells that are drawn of one.
 
+import { untrack } from 'svelte';
+
 import { failure_text, refusal_text, type Answer } from '../model/answer';
 import type { LatLon } from '../model/plan';
 import {
@@ -32,6 +34,7 @@ export class SiteMaps {
   items = $state.raw<readonly SiteMap[]>([]);
   failure = $state<string | null>(null);
   busy = $state(false);
+  #listed = $state(false);
   /** What is sent, and how much of it, from 0 to 1; null: nothing is. */
   sending = $state.raw<{ readonly name: string; readonly share: number } | null>(null);
   /** Of the map in use and of the one that is edited. */
@@ -39,9 +42,10 @@ export class SiteMaps {
 
   readonly editor: SiteEditor;
   in_use = $derived<SiteMap | null>(this.items.find((map) => map.in_use) ?? null);
+  #edited = $derived.by<SiteMap | null>(() => (this.#listed ? this.editor.map : null));
   /** What is drawn: the map that is edited, else the one in use. */
   drawn = $derived.by<SiteMap | null>(() => {
-    const { map } = this.editor;
+    const map = this.#edited;
     if (map) return this.items.find(({ id }) => id === map.id) ?? map;
     return this.in_use;
   });
@@ -49,7 +53,7 @@ export class SiteMaps {
     const { drawn } = this;
     const known = drawn && this.#known_of(drawn);
     if (!drawn || !known) return null;
-    const at = this.editor.map ? this.editor.at : place_of_map(drawn, null);
+    const at = this.#edited ? this.editor.at : place_of_map(drawn, null);
     return at && { map: drawn, cells: known.cells, at };
   });
 
@@ -66,6 +70,12 @@ export class SiteMaps {
     this.#notices = notices;
     this.#dialogs = dialogs;
     this.editor = new SiteEditor(this, calls, notices, dialogs);
+  }
+
+  /** What is changed in the list is drawn only while one looks at it: the robot does not drive by it. */
+  look(listed: boolean): void {
+    this.#listed = listed;
+    untrack(() => void this.fetch_cells());
   }
 
   /** Asks now and then, as long as it is looked at. @return ends it */

@@ -195,6 +195,7 @@ export class Station {
     },
     on_vehicle: (vehicle, mono_s) => {
       this.live.take(vehicle);
+      this.standing.take(vehicle);
       this.pilot.halts.on_vehicle(vehicle, mono_s);
       this.findings.take(vehicle);
       void this.#past_way.complete();
@@ -390,6 +391,7 @@ export class Station {
       void map_in_use; // another one: whoever changed it
       return site_wanted ? untrack(() => this.sites.watch()) : undefined;
     });
+    $effect(() => this.sites.look(maps_seen));
     $effect(() => map.show_site(site_wanted ? this.sites.on_map : null));
     $effect(() => map.show_site_edits(maps_seen ? this.sites.editor.edits : []));
   }
