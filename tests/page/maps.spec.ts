@@ -2,7 +2,16 @@
 
 import type { Page } from '@playwright/test';
 
-import { draw, map_pixels, open_page, pixels_per_m, press, tab, type Color, type Pixel } from './page';
+import {
+  draw,
+  map_pixels,
+  open_page,
+  pixels_per_m,
+  press,
+  tab,
+  type Color,
+  type Pixel,
+} from './page';
 import { expect, test, type Station } from './station';
 
 /** What stands there, in daylight. */
@@ -117,6 +126,8 @@ const send_map = async (page: Page): Promise<void> => {
     ['Latitude, °', START.lat],
     ['Longitude, °', START.lon],
     ['Its x axis looks to, °', 90],
+    ['Known to, m', 0.3],
+    ['Heading known to, °', 1],
   ] as const) {
     await page.getByLabel(label).fill(String(value));
     await page.getByLabel(label).press('Tab');
