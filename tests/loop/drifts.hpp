@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -50,7 +51,8 @@ inline void lay_ground(RigOptions& o, std::uint64_t ground) {
 struct DriftLie {
   double mps = 0.0;  ///< 0: an honest receiver
   double towards_deg = 0.0;
-  double from_m = 12.0;  ///< of the way, where it begins
+  double from_m = 12.0;       ///< of the way, where it begins
+  bool velocity_too = false;  ///< it tells of a velocity that goes with it
 
   /// So long it stays within what an honest fix errs by: three times the claimed 1.5 cm.
   double hidden_s() const { return mps > 0.0 ? 0.045 / mps : 0.0; }
@@ -68,7 +70,10 @@ struct DriftSeen {
   double before_m = 0.0;   ///< farthest from its way before it
   double found_s = -1.0;   ///< since the lie began: it is named, or the two that differ; -1: never
   double stands_s = -1.0;  ///< likewise, until it stands
+  double dishonest_m = 0.0;  ///< by which the error passes three sigmas and 0.15 m
   bool arrived = false;
+  bool held = false;
+  std::string why;  ///< it held
 };
 
 /// One drive of a serpentine of 45 m at 1 m/s.
@@ -98,6 +103,9 @@ class DriftDrive {
     rig_->fault([this](sim::Faults& f) {
       f.gnss_drift_east_mps = lie_.mps * std::cos(base::rad_from_deg(lie_.towards_deg));
       f.gnss_drift_north_mps = lie_.mps * std::sin(base::rad_from_deg(lie_.towards_deg));
+      if (!lie_.velocity_too) return;
+      f.gnss_velocity_east_mps = f.gnss_drift_east_mps;
+      f.gnss_velocity_north_mps = f.gnss_drift_north_mps;
     });
     for (int i = 0; i < 40 * 50; ++i) {
       rig_->tick();
@@ -110,6 +118,12 @@ class DriftDrive {
       }
       const auto& votes = s->estimator.votes;
       const bool found = votes.undecided || votes[base::Sense::Position].left_out;
+      const double claim_m = 3.0 * s->pose->horizontal_sigma_m + 0.15;
+      seen.dishonest_m = std::max(seen.dishonest_m, rig_->position_error_m() - claim_m);
+      if (!seen.held && rig_->execution() == ExecutionState::Paused) {
+        seen.held = true;
+        seen.why = s->mission.reason;
+      }
       if (seen.found_s < 0.0 && found) seen.found_s = lasted_s;
       if (seen.stands_s < 0.0 && seen.found_s >= 0.0 && rig_->stands()) seen.stands_s = lasted_s;
       if (seen.stands_s >= 0.0 && lasted_s > seen.stands_s + 1.0) break;
