@@ -8,6 +8,7 @@
 #include <string>
 
 #include "api/access.hpp"
+#include "base/snapshot.hpp"
 #include "people/lease.hpp"
 
 namespace roverd::api {
