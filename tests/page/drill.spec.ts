@@ -89,7 +89,7 @@ for (const { name, viewport } of [
     expect(width).toBeLessThanOrEqual(viewport.width);
 
     expect(metres_between(before, station.sim.now)).toBe(0);
-    await expect(page.getByRole('group', { name: 'Mode' })).toContainText('HOLD');
+    await expect(page.getByRole('group', { name: 'Mode', exact: true })).toContainText('HOLD');
     await press(page, 'Close');
     await expect(page.getByRole('button', { name: 'Drill…' })).toBeVisible();
   });
