@@ -25,28 +25,22 @@ export interface Drawing {
   undo(): void;
 }
 
-/** Places with their undo. */
-export class Outline implements Drawing {
-  history = $state.raw<History<Places>>(begin_history<Places>([]));
+/** What a hand on the map does to the places of one ring. */
+export abstract class RingDrawing {
   selected = $state<number | null>(null);
-  places = $derived(this.history.present);
-  plan = $derived(plan_of_places(this.places));
-  can_undo = $derived(this.history.past.length > 0);
-  readonly shape = 'ring';
-  readonly map_mode = 'draw';
 
   add(at: LatLon): void {
-    this.#do(add_place(at));
+    this.change(add_place(at));
     this.selected = null;
   }
 
   insert(index: number, at: LatLon): void {
-    this.#do(insert_place(index, at));
+    this.change(insert_place(index, at));
     this.selected = index;
   }
 
   move(index: number, to: LatLon): void {
-    this.#do(move_place(index, to));
+    this.change(move_place(index, to));
     this.selected = index;
   }
 
@@ -55,9 +49,21 @@ export class Outline implements Drawing {
   }
 
   remove_selected(): void {
-    if (this.selected !== null) this.#do(remove_place(this.selected));
+    if (this.selected !== null) this.change(remove_place(this.selected));
     this.selected = null;
   }
+
+  protected abstract change(action: (ring: Places) => Places): void;
+}
+
+/** Places with their undo. */
+export class Outline extends RingDrawing implements Drawing {
+  history = $state.raw<History<Places>>(begin_history<Places>([]));
+  places = $derived(this.history.present);
+  plan = $derived(plan_of_places(this.places));
+  can_undo = $derived(this.history.past.length > 0);
+  readonly shape = 'ring';
+  readonly map_mode = 'draw';
 
   undo(): void {
     this.history = undo(this.history);
@@ -74,7 +80,7 @@ export class Outline implements Drawing {
     this.selected = null;
   }
 
-  #do(action: (places: Places) => Places): void {
+  protected change(action: (ring: Places) => Places): void {
     this.history = perform(this.history, action);
   }
 }

@@ -12,24 +12,17 @@ import {
   type FenceSummary,
 } from '../model/fence';
 import { begin_history, perform, undo, type History } from '../model/history';
-import {
-  add_place,
-  insert_place,
-  move_place,
-  plan_of_places,
-  remove_place,
-  type Places,
-} from '../model/outline';
+import { plan_of_places, type Places } from '../model/outline';
 import type { LatLon, Plan } from '../model/plan';
 import type { FenceCalls, MapMode, PlanShape } from '../model/ports';
 import type { Dialogs } from './dialogs.svelte';
-import type { Drawing } from './drawing.svelte';
+import { RingDrawing, type Drawing } from './drawing.svelte';
 import type { Notices } from './notices.svelte';
 
 /** The area that a hand on the map changes, or the rally points. */
 export type Part = number | 'rally' | null;
 
-export class Fences implements Drawing {
+export class Fences extends RingDrawing implements Drawing {
   items = $state.raw<readonly FenceSummary[]>([]);
   failure = $state<string | null>(null);
   /** What the robot keeps to. */
@@ -39,7 +32,6 @@ export class Fences implements Drawing {
   draft = $derived<FenceDraft | null>(this.#history.present);
   can_undo = $derived(this.#history.past.length > 0);
   part = $state<Part>(null);
-  selected = $state<number | null>(null);
   busy = $state(false);
   #stored = $state.raw<Fence | null>(null);
   unsaved = $derived(this.draft !== null && this.draft !== this.#stored);
@@ -54,6 +46,7 @@ export class Fences implements Drawing {
   readonly #dialogs: Dialogs;
 
   constructor(calls: FenceCalls, notices: Notices, dialogs: Dialogs) {
+    super();
     this.#calls = calls;
     this.#notices = notices;
     this.#dialogs = dialogs;
@@ -132,27 +125,15 @@ export class Fences implements Drawing {
     this.selected = null;
   }
 
-  add(at: LatLon): void {
-    this.#change(this.#circle ? () => [at] : add_place(at));
+  /** The middle of a circle is its only place. */
+  override add(at: LatLon): void {
+    if (!this.#circle) return super.add(at);
+    this.change(() => [at]);
     this.selected = null;
   }
 
-  insert(index: number, at: LatLon): void {
-    this.#change(insert_place(index, at));
-    this.selected = index;
-  }
-
-  move(index: number, to: LatLon): void {
-    this.#change(move_place(index, to));
-    this.selected = index;
-  }
-
-  select(index: number | null): void {
-    this.selected = index;
-  }
-
-  remove_selected(): void {
-    if (this.selected !== null && !this.#circle) this.#change(remove_place(this.selected));
+  override remove_selected(): void {
+    if (!this.#circle) return super.remove_selected();
     this.selected = null;
   }
 
@@ -215,7 +196,7 @@ export class Fences implements Drawing {
     return area ? area_places(area) : [];
   }
 
-  #change(action: (places: Places) => Places): void {
+  protected change(action: (places: Places) => Places): void {
     const { draft, part } = this;
     if (!draft || part === null) return;
     const places = action(this.places);

@@ -2,14 +2,7 @@
 
 import { failure_text, refusal_text } from '../model/answer';
 import { begin_history, perform, undo, type History } from '../model/history';
-import {
-  add_place,
-  insert_place,
-  move_place,
-  plan_of_places,
-  remove_place,
-  type Places,
-} from '../model/outline';
+import { plan_of_places, type Places } from '../model/outline';
 import type { LatLon, Plan } from '../model/plan';
 import type { MapMode } from '../model/ports';
 import type { Placed } from '../model/seen';
@@ -29,7 +22,7 @@ import {
   type SiteMapCalls,
 } from '../model/site_map';
 import type { Dialogs } from './dialogs.svelte';
-import type { Drawing } from './drawing.svelte';
+import { RingDrawing, type Drawing } from './drawing.svelte';
 import type { Notices } from './notices.svelte';
 
 /** What the editor asks of the list. */
@@ -40,7 +33,7 @@ interface Shelf {
 }
 const NOTHING: SiteDraft = { edits: [], forbidden: [] };
 
-export class SiteEditor implements Drawing {
+export class SiteEditor extends RingDrawing implements Drawing {
   /** Null: none is open. */
   map = $state.raw<SiteMap | null>(null);
   /** Where it is drawn, and stays as long as one draws on it. */
@@ -53,7 +46,6 @@ export class SiteEditor implements Drawing {
   why_not = $derived<string | null>(this.map && why_not_save(this.draft, this.map));
   /** The area that a hand on the map changes. */
   part = $state<number | null>(null);
-  selected = $state<number | null>(null);
 
   places = $derived<Places>(this.part === null ? [] : (this.edits[this.part]?.ring ?? []));
   plan = $derived<Plan>(plan_of_places(this.places));
@@ -66,6 +58,7 @@ export class SiteEditor implements Drawing {
   readonly #dialogs: Dialogs;
 
   constructor(shelf: Shelf, calls: SiteMapCalls, notices: Notices, dialogs: Dialogs) {
+    super();
     this.#shelf = shelf;
     this.#calls = calls;
     this.#notices = notices;
@@ -118,30 +111,6 @@ export class SiteEditor implements Drawing {
     this.selected = null;
   }
 
-  add(at: LatLon): void {
-    this.#change(add_place(at));
-    this.selected = null;
-  }
-
-  insert(index: number, at: LatLon): void {
-    this.#change(insert_place(index, at));
-    this.selected = index;
-  }
-
-  move(index: number, to: LatLon): void {
-    this.#change(move_place(index, to));
-    this.selected = index;
-  }
-
-  select(index: number | null): void {
-    this.selected = index;
-  }
-
-  remove_selected(): void {
-    if (this.selected !== null) this.#change(remove_place(this.selected));
-    this.selected = null;
-  }
-
   undo(): void {
     this.#history = undo(this.#history);
     // The area may have been added by what is undone.
@@ -177,7 +146,7 @@ export class SiteEditor implements Drawing {
     else if (!answer.ok) this.#notices.show('error', refusal_text(answer.refusal));
   }
 
-  #change(action: (ring: Places) => Places): void {
+  protected change(action: (ring: Places) => Places): void {
     if (this.part !== null) this.#do(change_ring(this.part, action));
   }
 
