@@ -1,9 +1,13 @@
+#include <thread>
+
 #include "app/station_impl.hpp"
 
 namespace roverd {
 
 namespace {
 constexpr base::Duration kGoodbye = std::chrono::milliseconds(500);
+constexpr base::Duration kFirstTick = std::chrono::seconds(10);
+constexpr base::Duration kLook = std::chrono::milliseconds(1);
 }  // namespace
 
 void Station::Impl::start() {
@@ -27,12 +31,20 @@ void Station::Impl::start() {
         robot.tick(now, wall, lateness);
       },
       [this](base::Time now) { robot.heed_stop(now); });
+  await_first_tick();
   watch_host_soon();
   watch_names_soon();
   manager.ready(address);
   tell_alive();
   base::log(base::Level::Info, "main", "serving",
             {{"robot", presence->badge().name}, {"address", address}, {"version", kVersion}});
+}
+
+/// Who asks the moment that "listening" is told hears of the robot, on a slow computer too.
+void Station::Impl::await_first_tick() const {
+  for (auto waited = base::Duration{}; waited < kFirstTick && !robot.snapshot(); waited += kLook) {
+    std::this_thread::sleep_for(kLook);
+  }
 }
 
 void Station::Impl::start_services() {

@@ -115,6 +115,7 @@ struct Station::Impl {
   api::DriverDoor driver_door();
   void start();
   void start_services();
+  void await_first_tick() const;
   void recall(const Settings& settings, const Options& options);
   void tell_left_out(const Settings& settings);
   void keep_learned();

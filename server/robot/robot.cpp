@@ -88,7 +88,9 @@ void Robot::reviewed(const Config& config) {
   impl_->reviewed = std::make_shared<const Config>(config);
 }
 void Robot::tell(base::Event event) {
-  impl_->outbox.event(event.wall, event.level, event.kind.c_str(), std::move(event.detail));
+  // Past the outbox, which is the control thread's alone.
+  impl_->outbox.events.put(std::move(event));
+  if (wake) wake();
 }
 void Robot::begin_latched(const std::string& why, base::WallTime wall) {
   (void)impl_->arm.latch();

@@ -344,7 +344,8 @@ class Robot {
   /// Before the first tick: what the vehicle's profile and the configuration's file say, before
   /// anybody changed it. Without it: what the robot was made with.
   void reviewed(const Config& config);
-  /// Before the first tick: what was found out while the program started.
+  /// Any thread: what others found out (the host, the maps, the certificate), for events(). Rings
+  /// `wake`, which must not be set any more while this may be called.
   void tell(base::Event event);
   /// Any thread. What is worth keeping, a second old at most; null: nothing yet.
   std::shared_ptr<const nav::Learned> learned() const;
