@@ -30,6 +30,8 @@ export default defineConfig({
       ],
     },
     viewport: { width: 1440, height: 900 },
+    // What a test takes from the robot must come from the robot.
+    serviceWorkers: 'block',
     locale: 'en-GB',
     timezoneId: 'UTC',
     trace: 'retain-on-failure',

@@ -13,7 +13,7 @@ import { run_calls } from './link/runs';
 import { seen_calls } from './link/seen';
 import { site_map_calls } from './link/site_maps';
 import { slip_calls } from './link/slips';
-import { draft_storage, layer_storage, settings_storage } from './link/storage';
+import { draft_storage, layer_storage, settings_storage, view_storage } from './link/storage';
 import { Stream } from './link/stream';
 import { teach_calls } from './link/teach';
 import { FieldMap } from './map/map';
@@ -28,6 +28,7 @@ import './ui/style.css';
 
 const LOOK_MS = 10_000;
 const WHO_MS = 30_000;
+const KEEP_AFTER_MS = 5_000;
 
 const identity = new Identity();
 
@@ -50,7 +51,7 @@ const again = (): void => {
 };
 
 const begin = (account: Account | null, session: string | null): void => {
-  const map = new FieldMap(element('map'));
+  const map = new FieldMap(element('map'), view_storage);
   /** The station needs a way to send before there is a stream, and the stream needs the station. */
   const late: { stream: Stream | null } = { stream: null };
   const station = new Station({
@@ -104,6 +105,12 @@ const begin = (account: Account | null, session: string | null): void => {
   });
 };
 
+/** Kept for where the robot is not; only on a page that can be trusted (HTTPS, or this computer). */
+const keep_page = (): void => {
+  const kept = import.meta.env.PROD ? navigator.serviceWorker?.register('/offline.js') : undefined;
+  kept?.catch(() => undefined); // without it the page works as well, where the robot is
+};
+
 /** A robot that was started anew may not know us any more. */
 const watch_log_in = (): void => {
   setInterval(() => {
@@ -115,6 +122,8 @@ const watch_log_in = (): void => {
 };
 
 device.open(settings_storage);
+// What it fetches must not stand before what is live.
+setTimeout(keep_page, KEEP_AFTER_MS);
 void learn_who();
 void access_calls.state().then((answer) => {
   if (!answer.ok || !answer.value.access) {

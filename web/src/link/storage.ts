@@ -24,3 +24,4 @@ const storage_of = (key: string): DraftStorage => ({
 export const draft_storage = storage_of('roverd.draft');
 export const layer_storage = storage_of('roverd.layers');
 export const settings_storage = storage_of('roverd.settings');
+export const view_storage = storage_of('roverd.view');

@@ -12,6 +12,7 @@ import type { SpaceOnMap } from '../model/calibration';
 import type { FenceDraft } from '../model/fence';
 import { EMPTY_PLAN, type LatLon, type Plan } from '../model/plan';
 import type {
+  DraftStorage,
   DrillOnMap,
   MapCalls,
   MapEvents,
@@ -30,6 +31,7 @@ import type { Slip } from '../model/slips';
 import { prepare_drill } from './drill_painter';
 import { prepare_slips } from './slip_painter';
 import { EditInteraction } from './edit';
+import { keep_view } from './last_view';
 import { on_palette_change } from './palette';
 import { watch_pointer } from './pointer';
 import { from_plane, to_plane, to_plane_line } from './projection';
@@ -90,11 +92,13 @@ export class FieldMap implements MapCalls {
   #seen_asked = false;
   #site_asked = false;
 
-  /** @param target fills the window; gets the scale bar and the tiles' credit too */
-  constructor(target: HTMLElement) {
+  /** @param target fills the window; gets the scale bar and the tiles' credit too
+   * @param view_storage where one looks when nothing tells where the robot is */
+  constructor(target: HTMLElement, view_storage: DraftStorage) {
     this.#target = target;
     const bar = make_scale_bar();
     this.#map = make_ol_map(target, this.#view);
+    keep_view(this.#map, view_storage);
     this.#map.addLayer(this.#tiles);
     this.#map.addLayer(canvas_layer(this.#scene.painters(bar)));
     this.#credit.className = 'map-credit';

@@ -1,0 +1,84 @@
+// The page where the robot is not: it opens from what this device kept, says that nobody answers, keeps
+// what is planned, and stores it when the robot is there again.
+
+import type { Page } from '@playwright/test';
+
+import { draw, items, open_page, press, tab } from './page';
+import { expect, test } from './station';
+
+test.use({ serviceWorkers: 'allow' });
+
+const LINE = [
+  [-120, -60],
+  [0, -60],
+  [120, -60],
+] as const;
+
+/** The worker has everything, and answers for this page. */
+const kept = (page: Page): Promise<void> =>
+  page.evaluate(async () => {
+    await navigator.serviceWorker.ready;
+    while (navigator.serviceWorker.controller === null) {
+      await new Promise((resolve) => setTimeout(resolve, 50));
+    }
+  });
+
+test('a plan is made without the robot, and saved when it is back', async ({ page, station }) => {
+  test.setTimeout(120_000);
+  await open_page(page, station.url);
+  await kept(page);
+  await station.kill();
+
+  // At home: opened anew, it never heard of the robot.
+  await page.reload();
+  const link = page.getByRole('group', { name: 'Link' });
+  await expect(link).toHaveAttribute('data-stale', 'true');
+  await expect(link).not.toContainText('Live');
+  await expect(page.getByRole('group', { name: 'Position' })).not.toContainText(/RTK|GPS/);
+  await tab(page, 'Plan');
+  await draw(page, LINE);
+  await expect(items(page)).toHaveCount(3);
+  // Near where the robot was, though nothing tells where that is.
+  await expect(page.getByText(/3 items · \d+(\.\d+)? m /)).toBeVisible();
+  await press(page, 'Save');
+  await expect(page.getByText(/no answer came/)).toBeVisible();
+
+  // Closed and opened: it is still there. The lists that are asked for later are no old ones.
+  await page.reload();
+  await tab(page, 'Plan');
+  await expect(items(page)).toHaveCount(3);
+  await tab(page, 'Missions');
+  await expect(page.getByText(/cannot be reached/).first()).toBeVisible();
+
+  await station.begin_again();
+  await expect(link).toContainText('Live', { timeout: 30_000 });
+  await tab(page, 'Plan');
+  await press(page, 'Save');
+  await expect
+    .poll(async () => {
+      const { items: stored } = await station.rest<{ items: { items: unknown[] }[] }>(
+        'GET',
+        '/missions',
+      );
+      return stored.length;
+    })
+    .toBe(1);
+});
+
+test('of all that the robot says nothing is kept', async ({ page, station }) => {
+  await open_page(page, station.url);
+  await kept(page);
+  const paths = await page.evaluate(async () => {
+    const found: string[] = [];
+    for (const name of await caches.keys()) {
+      const requests = await (await caches.open(name)).keys();
+      found.push(...requests.map((request) => new URL(request.url).pathname));
+    }
+    return found;
+  });
+  expect(paths).toContain('/');
+  expect(paths.filter((path) => path.startsWith('/assets/')).length).toBeGreaterThan(5);
+  expect(paths.filter((path) => path.startsWith('/api/'))).toEqual(
+    paths.filter((path) => path.startsWith('/api/v1/tiles')),
+  );
+});
