@@ -19,6 +19,7 @@ constexpr double kScaleDoubt = 0.05;
 /// That sensors agree again says little of what they differed by a moment ago: one that comes with
 /// another fix class is not compared with what it said before.
 constexpr double kFades_s = 10.0;
+constexpr double kAnyGrade = 0.2;  // tangent, where nothing tells how the ground leans
 constexpr base::Duration kProved = std::chrono::seconds(10);
 constexpr base::Duration kRefusedLasts = std::chrono::milliseconds(350);  // more than one outlier
 constexpr base::Duration kRefusedCounts = std::chrono::seconds(1);
@@ -35,6 +36,11 @@ void Estimator::vote(Time now) noexcept {
   b.pull_sigma_1pm = std::sqrt(std::max(0.0, belief_.P(kPull, kPull)));
   b.gyro_bias_sigma_radps = std::sqrt(std::max(0.0, belief_.P(kGyroBias, kGyroBias)));
   b.arm_m = std::hypot(params_->antenna_forward_m, params_->antenna_left_m);
+  const Arm leaning = arm(0.0);
+  b.arm = {leaning.east_m, leaning.north_m};
+  const auto lean = tilt_.at(now);
+  if (lean) b.downhill = {-std::tan(lean->pitch_rad), -std::tan(lean->roll_rad)};
+  b.downhill_sigma = lean ? 0.0 : kAnyGrade;
   b.yaw_scale = belief_.x(kYawScale);
   const auto liar =
       votes_.step(b, params_->contradiction_sigma, params_->contradiction_return_s, now);

@@ -212,6 +212,7 @@ class Estimator {
   base::GnssFix worth(const base::GnssFix& told) noexcept;
   bool shifted(const base::GnssFix& fix, const GnssQuality& q) noexcept;
   double suspected_m(const GnssQuality& q) const noexcept;
+  double suspected_course() const noexcept;
   double doubt_after_s(const GnssQuality& q) const noexcept;
   void watch_slip(const Observation<2>& o, double yaw_rad, Time stamp) noexcept;
   void position_refused(const base::GnssFix& fix, const GnssQuality& q, double off_m) noexcept;

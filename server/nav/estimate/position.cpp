@@ -29,6 +29,9 @@ constexpr double kDoubt_m2ps = 0.05;  // slow enough not to believe a jump of 3 
 constexpr double kSuspect = 0.65;
 constexpr double kSuspectAll = 0.8;
 constexpr double kSuspect_m = 0.3;
+// Likewise where they run off from tracks and gyro (Votes::off_course).
+constexpr double kSuspectOff = 0.3;
+constexpr double kSuspectOffAll = 0.5;
 
 constexpr double kFixed_m = 0.02;   // 1 sigma of what scatters in an honest fixed solution
 constexpr double kShaken_m = 0.35;  // of a fixed solution that comes and goes
@@ -210,8 +213,15 @@ void Estimator::reset_position(base::EnuPoint at, const GnssQuality& q) noexcept
 /// What a fixed position lacks that seems to run away, before it is proved: odometry, gyro and
 /// velocity lead meanwhile.
 double Estimator::suspected_m(const GnssQuality& q) const noexcept {
-  if (q.drift.sigma_m > 0.0 || votes_.out(base::Sense::Velocity)) return 0.0;
-  return kSuspect_m * std::clamp((votes_.apart() - kSuspect) / (kSuspectAll - kSuspect), 0.0, 1.0);
+  if (q.drift.sigma_m > 0.0) return 0.0;
+  const double apart = votes_.out(base::Sense::Velocity) ? 0.0 : votes_.apart();
+  const double part = std::clamp((apart - kSuspect) / (kSuspectAll - kSuspect), 0.0, 1.0);
+  return kSuspect_m * std::max(part, suspected_course());
+}
+
+/// Of a receiver that seems to run off from tracks and gyro: 1 is all.
+double Estimator::suspected_course() const noexcept {
+  return std::clamp((votes_.off_course() - kSuspectOff) / (kSuspectOffAll - kSuspectOff), 0.0, 1.0);
 }
 
 void Estimator::fuse_position(const base::GnssFix& fix, const GnssQuality& q) noexcept {

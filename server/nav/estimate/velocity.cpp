@@ -16,6 +16,7 @@ using std::chrono::milliseconds;
 
 constexpr double kSlowest_mps = 0.15;  // below, a velocity says nothing of the direction
 constexpr double kReceiverMost_mps = 60.0;
+constexpr double kSuspect_mps = 0.6;  // of a receiver that seems to run off from tracks and gyro
 const double kCoarse_rad = rad_from_deg(10.0);  // less certain, an angle is fused, not a vector
 const double kCourse_rad = rad_from_deg(0.5);   // of a course, beside the velocity's noise
 const double kCarried_rad = rad_from_deg(5.0);  // the same of one that tells nothing of itself
@@ -33,11 +34,12 @@ void Estimator::take(const base::GnssVelocity& velocity) {
   }
   if (receivers_.disagree()) return refuse(in, Refusal::Receivers);
   if (history_.forgotten(taken_at(velocity))) return refuse(in, Refusal::Stamp);
-  const double sigma_mps = velocity_sigma_mps(fix_trust_.fix(), velocity.sigma_mps);
+  double sigma_mps = velocity_sigma_mps(fix_trust_.fix(), velocity.sigma_mps);
   votes_.velocity({velocity.east_mps, velocity.north_mps}, sigma_mps, taken_at(velocity),
                   velocity.stamp);
   if (outvoted(base::Sense::Velocity, in)) return;
   velocity_ = velocity;
+  sigma_mps = std::hypot(sigma_mps, kSuspect_mps * suspected_course());
   if (!located_) return;
   if (has_odometry(velocity.stamp)) {
     fuse_velocity(velocity, sigma_mps);

@@ -118,6 +118,8 @@ struct Table {
   std::optional<double> apart;
   /// Beyond the limit, and they go on doing so: it is no single step.
   bool runs_apart = false;
+  /// The receiver runs off from tracks and gyro as no ground slides (RunOff).
+  bool runs_off = false;
 
   const Finding& between(Sense a, Sense b) const noexcept { return of[index_of(a)][index_of(b)]; }
   bool judged(Sense a, Sense b) const noexcept { return between(a, b).judged; }

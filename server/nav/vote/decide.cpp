@@ -42,6 +42,12 @@ Verdict judge(const Table& table, const std::array<bool, kSenses>& voice,
     }
   }
   if (!pair) return {};
+  // Position and velocity are one receiver's, and no two witnesses against the gyro.
+  if (table.runs_off && table.contradict(Sense::Tracks, Sense::Position) &&
+      voice[index_of(Sense::Tracks)] && voice[index_of(Sense::Position)] &&
+      !frozen[index_of(Sense::Position)]) {
+    return {std::nullopt, std::array{Sense::Tracks, Sense::Position}};
+  }
   const int most = *std::max_element(against.begin(), against.end());
   const auto first = std::find(against.begin(), against.end(), most);
   const bool alone = std::find(first + 1, against.end(), most) == against.end();
@@ -87,7 +93,8 @@ std::optional<Sense> Jury::step(const Table& table, const std::array<bool, kSens
   undecided_ = verdict.undecided ? undecided_ + 1 : 0;
   if (verdict.undecided) undecided_last_ = now;
   runs_apart_ = runs_apart(table, verdict) ? runs_apart_ + 1 : 0;
-  const bool enough = undecided_ >= kUndecidedAfter || runs_apart_ >= kNameAfter;
+  const bool off = table.runs_off && verdict.undecided;
+  const bool enough = undecided_ >= kUndecidedAfter || runs_apart_ >= kNameAfter || off;
   if (undecided_ == 0) undecided_told_ = false;
   if (enough && !undecided_told_) ++votes_.accusations;
   undecided_told_ = undecided_told_ || enough;

@@ -41,6 +41,16 @@ double bearing_of(EnuPoint way) noexcept {
   return std::atan2(way.north_m, way.east_m);
 }
 
+/// What is known by other means than a limit. @param ratio > 1: it is beyond it.
+Finding proved(const Difference& off, double ratio) noexcept {
+  Finding x;
+  x.judged = true;
+  x.off = off;
+  x.way_off_m = off.size;
+  x.limit = off.size / std::max(1.001, ratio);
+  return x;
+}
+
 }  // namespace
 
 void Votes::say(Sense s, double a, double b, Time stamp) noexcept {
@@ -266,6 +276,28 @@ bool Votes::spots_come(Time now) const noexcept {
   return heard && seconds(now - *heard) < kLookAnyway_s;
 }
 
+void Votes::look_for_run_off(const Table& table, Time now) noexcept {
+  const Spot& spot = facts_.spots.newest();
+  const auto at = facts_.curve.at(spot.t);
+  const bool told = facts_.tracks_at && seconds(spot.t - *facts_.tracks_at) <= kTracksLate_s;
+  const auto trusted = [&](Sense s) { return facts_.heard[index_of(s)] && !jury_.out(s); };
+  const bool judgeable =
+      facts_.rtk && at && told && !table.spins && gyro_leads(now) && trusted(Sense::Tracks);
+  run_off_.look({.spot = spot,
+                 .at = at.value_or(Moment{}),
+                 .arm = belief_.arm,
+                 .downhill = belief_.downhill,
+                 .doubt = belief_.downhill_sigma,
+                 .judgeable = judgeable});
+}
+
+void Votes::tell_run_off(Table& table) const noexcept {
+  if (run_off_.proved() < 1.0) return;
+  table.runs_off = true;
+  const Difference off = run_off_.off();
+  table.put(Sense::Tracks, Sense::Position, proved(off, run_off_.proved()));
+}
+
 std::optional<Sense> Votes::step(const Belonging& b, double sigmas, double return_s,
                                  Time now) noexcept {
   belief_ = b;
@@ -287,15 +319,17 @@ std::optional<Sense> Votes::step(const Belonging& b, double sigmas, double retur
   }
   looked_ = now;
   facts_.tracks_at = heard_[index_of(Sense::Tracks)];
-  spot_is_new_ = false;
   std::array<bool, kSenses> frozen_now{};
   for (std::size_t i = 0; i < kSenses; ++i) {
     facts_.heard[i] = heard_[i] && seconds(now - *heard_[i]) < kSilent_s;
     facts_.from[i] = jury_.from(static_cast<Sense>(i));
     frozen_now[i] = frozen(static_cast<Sense>(i), now);
   }
-  const Table table = compare(facts_, sigmas);
+  Table table = compare(facts_, sigmas);
   if (table.spins) facts_.spun = now;
+  if (spot_is_new_) look_for_run_off(table, now);
+  spot_is_new_ = false;
+  tell_run_off(table);
   apart_ = table.apart.value_or(apart_ * std::exp(-since_s / kApartForgotten_s));
   return jury_.step(table, facts_.heard, frozen_now, return_s, now);
 }

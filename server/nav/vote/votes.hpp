@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "nav/vote/decide.hpp"
+#include "nav/vote/run_off.hpp"
 
 namespace roverd::nav {
 
@@ -26,7 +27,10 @@ struct Belonging {
   double pull_sigma_1pm = 0.0;
   double gyro_bias_sigma_radps = 0.0;
   double arm_m = 0.0;
-  double yaw_scale = 0.8;  ///< true turn over that of the tracks, where there is no gyro
+  base::EnuPoint arm;       ///< to the antenna, as it leans: ahead and to the left of the centre, m
+  base::EnuPoint downhill;  ///< ahead and to the left, tangents, as it is told to lean
+  double downhill_sigma = 0.2;  ///< 0.2: nothing tells it
+  double yaw_scale = 0.8;       ///< true turn over that of the tracks, where there is no gyro
 };
 
 class Votes {
@@ -54,6 +58,9 @@ class Votes {
   /// How far positions that are RTK fixed have run away from the velocity at the last look, of what
   /// proves it (1). Where it cannot be judged it is forgotten within about a second.
   double apart() const noexcept { return apart_; }
+  /// How far positions have run off from tracks and gyro, of what proves it (1): see RunOff. The
+  /// velocity tells of it as well, or it would be seen by that.
+  double off_course() const noexcept { return run_off_.proved(); }
   bool out(Sense s) const noexcept { return jury_.out(s); }
   /// When the one that was left out was first seen to contradict the others.
   Time seen(Sense s) const noexcept { return jury_.seen(s); }
@@ -64,6 +71,7 @@ class Votes {
   void acquit_all(Time now) noexcept {
     jury_.acquit_all(now);
     apart_ = 0.0;
+    run_off_.forget();
   }
 
  private:
@@ -90,6 +98,8 @@ class Votes {
   void follow_reference(Time now) noexcept;
   bool gyro_leads(Time now) const noexcept;
   bool spots_come(Time now) const noexcept;
+  void look_for_run_off(const Table& table, Time now) noexcept;
+  void tell_run_off(Table& table) const noexcept;
 
   Facts facts_;
   Moment sums_;
@@ -107,6 +117,7 @@ class Votes {
   bool spot_is_new_ = false;
   double scatter_m2ps2_ = 0.0;  ///< of velocities about the line through their neighbours, per axis
   double apart_ = 0.0;
+  RunOff run_off_;
   Jury jury_;
 };
 
