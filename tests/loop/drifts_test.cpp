@@ -34,6 +34,17 @@ TEST(Drifts, HonestPositionsOnGroundThatSlidesAreNeverAccused) {
   }
 }
 
+TEST(Drifts, AReceiverWhoseVelocityGoesAlongIsFoundByTracksAndGyro) {
+  for (std::uint64_t i = 0; i < 8; ++i) {
+    DriftLie lie = drift_lie(i, 0.3, 0.8);
+    lie.velocity_too = true;
+    const DriftSeen seen = DriftDrive(500 + i, i, lie).run();
+    EXPECT_GE(seen.found_s, 0.0) << i << ": " << lie.mps << " m/s, " << ground_name(i);
+    EXPECT_TRUE(seen.held) << i << ": " << lie.mps << " m/s, " << ground_name(i);
+    EXPECT_LT(seen.astray_m, 0.5) << i << ": " << lie.mps << " m/s, " << ground_name(i);
+  }
+}
+
 TEST(Drifts, AVelocityThatLagsHidesNoDriftAndAccusesNobody) {
   for (std::uint64_t i = 0; i < 6; ++i) {
     DriftDrive honest(400 + i, i, {}, 0.15);

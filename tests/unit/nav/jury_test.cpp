@@ -55,6 +55,22 @@ TEST(Judge, WithoutAVoiceNobodyTestifies) {
   EXPECT_EQ((*verdict.undecided)[1], Sense::Velocity);
 }
 
+TEST(Judge, AReceiversPositionAndVelocityAreOneWitnessAgainstTheGyro) {
+  Table t;
+  differ(t, Sense::Gyro, Sense::Position, 2.0);
+  differ(t, Sense::Gyro, Sense::Velocity, 2.0);
+  EXPECT_EQ(judge(t, kAll, kNobody).liar, Sense::Gyro);
+  differ(t, Sense::Tracks, Sense::Position, 1.5);
+  t.runs_off = true;
+  const auto verdict = judge(t, kAll, kNobody);
+  EXPECT_FALSE(verdict.liar);
+  ASSERT_TRUE(verdict.undecided);
+  EXPECT_EQ((*verdict.undecided)[0], Sense::Tracks);
+  EXPECT_EQ((*verdict.undecided)[1], Sense::Position);
+  // A position that says the same again and again is known to be the one.
+  EXPECT_NE(judge(t, kAll, all({Sense::Position})).undecided, verdict.undecided);
+}
+
 TEST(Judge, ThreeThatAllContradictEachOtherAreUndecided) {
   Table t;
   differ(t, Sense::Gyro, Sense::Velocity, 3.0);
