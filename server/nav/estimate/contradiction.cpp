@@ -20,7 +20,7 @@ constexpr double kScaleDoubt = 0.05;
 /// another fix class is not compared with what it said before.
 constexpr double kFades_s = 10.0;
 constexpr double kAnyGrade = 0.2;  // tangent, where nothing tells how the ground leans
-constexpr base::Duration kProved = std::chrono::seconds(10);
+constexpr double kProved_s = 10.0;
 constexpr base::Duration kRefusedLasts = std::chrono::milliseconds(350);  // more than one outlier
 constexpr base::Duration kRefusedCounts = std::chrono::seconds(1);
 
@@ -57,9 +57,20 @@ bool Estimator::outvoted(Sense s, Input& input) noexcept {
   return true;
 }
 
-/// Had positions come for so long that a wrong one would have contradicted itself?
-bool Estimator::proved_by(Time when) const noexcept {
-  return located_since_ && when - *located_since_ >= kProved;
+/// Had positions come for so long while it drove that a wrong one would have contradicted itself?
+bool Estimator::proved() const noexcept {
+  return proving_s_ >= kProved_s;
+}
+
+/// A fix was believed. Standing, a wrong one contradicts nobody; and after a gap it may be as wrong
+/// as the first one ever.
+void Estimator::count_as_proof(Time stamp) noexcept {
+  if (!proving_at_ || stamp - *proving_at_ > kGnssGone) {
+    proving_s_ = 0.0;
+  } else if (!standing_) {
+    proving_s_ += base::seconds(stamp - *proving_at_);
+  }
+  proving_at_ = stamp;
 }
 
 /// The way that a difference may have led astray.
@@ -119,8 +130,8 @@ void Estimator::spoil(Sense liar) noexcept {
       if (health_.by_map) break;  // nothing is believed of it
       // A jump that was refused from its first word on has led nobody astray: if what it jumped
       // from was the truth.
-      if (proved_by(votes_.seen(liar)) && position_off_since_ &&
-          *position_off_since_ <= votes_.seen(liar) && votes_.agreed_before(liar)) {
+      if (proved() && position_off_since_ && *position_off_since_ <= votes_.seen(liar) &&
+          votes_.agreed_before(liar)) {
         break;
       }
       place_m = way_m;

@@ -258,7 +258,8 @@ class Estimator {
   void vote(Time now) noexcept;
   void spoil(base::Sense liar) noexcept;
   bool outvoted(base::Sense s, Input& input) noexcept;
-  bool proved_by(Time when) const noexcept;
+  bool proved() const noexcept;
+  void count_as_proof(Time stamp) noexcept;
   double spoiled_way_m(const base::Difference& off) const noexcept;
   double claimed_m(const Belief& b) const noexcept;
   double unknown_m() const noexcept;
@@ -286,9 +287,11 @@ class Estimator {
   double doubted_m_ = 0.0;  ///< what of the position's sigma is doubt since its source was left out
   double distrust_m_ = 0.0;
   double distrust_rad_ = 0.0;
-  double differed_m_ = 0.0;                   ///< by what sensors contradicted each other, fading
-  std::optional<Time> voted_;                 ///< when it was looked at last
-  double refused_m_ = 0.0;                    ///< how far off the position is that is refused now
+  double differed_m_ = 0.0;         ///< by what sensors contradicted each other, fading
+  double proving_s_ = 0.0;          ///< for so long it drove with positions, without a gap
+  std::optional<Time> proving_at_;  ///< by the last one of them
+  std::optional<Time> voted_;       ///< when it was looked at last
+  double refused_m_ = 0.0;          ///< how far off the position is that is refused now
   std::optional<double> claimed_when_off_m_;  ///< when positions began to be refused
   std::optional<base::LocalFrame> frame_;
   std::uint32_t next_frame_id_ = 1;

@@ -185,6 +185,8 @@ void Estimator::first_fix(const base::GnssFix& fix, const GnssQuality& q) {
   reset_position(local(fix), q);
   located_ = true;
   located_since_ = fix.stamp;
+  proving_at_.reset();
+  proving_s_ = 0.0;
   last_fused_ = fix.stamp;
   last_satellites_ = now_;
   free_m_ = 0.0;
@@ -280,6 +282,7 @@ void Estimator::fuse_position(const base::GnssFix& fix, const GnssQuality& q) no
       if (moved_m > kToldFrom_m) note_reset("position", *before);
     }
     in.refused_since.reset();
+    count_as_proof(fix.stamp);
     last_fused_ = fix.stamp;
     last_satellites_ = now_;
     free_m_ = 0.0;

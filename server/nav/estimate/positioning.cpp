@@ -42,7 +42,6 @@ void Estimator::move(base::EnuPoint to, double sigma_m) noexcept {
   reset_state(belief_, kEast, to.east_m, sigma_m);
   reset_state(belief_, kNorth, to.north_m, sigma_m);
   history_.shift(change);
-  differed_m_ = 0.0;
 }
 
 void Estimator::place(std::optional<base::EnuPoint> at, std::optional<double> yaw_rad) noexcept {
@@ -54,6 +53,7 @@ void Estimator::place(std::optional<base::EnuPoint> at, std::optional<double> ya
     if (!located_) located_since_ = now_;
     located_ = true;
     placed_ = true;
+    differed_m_ = 0.0;
     last_fused_ = now_;
     free_m_ = 0.0;
     approaching_ = false;
@@ -78,6 +78,8 @@ void Estimator::doubt_position(double sigma_m) noexcept {
     reset_state(belief_, i, belief_.x(i), std::hypot(known_m, sigma_m));
   }
   located_since_ = now_;
+  proving_at_.reset();
+  proving_s_ = 0.0;
   claimed_when_off_m_.reset();  // from now on it claims no more than that
 }
 
@@ -94,6 +96,7 @@ void Estimator::anchor(base::EnuPoint at, std::optional<int> item) noexcept {
   anchor_type_ = fused_type_;
   anchor_off_since_.reset();
   move(at, kAnchored_m);
+  differed_m_ = 0.0;
   note_reset("anchor", before);
 }
 
@@ -126,6 +129,7 @@ void Estimator::settle_shift(bool keep) noexcept {
     anchor_off_since_.reset();
   }
   move(keep ? here : here + by, std::hypot(claimed_m(before), kShifted_m));
+  differed_m_ = 0.0;
   health_.base_shift.reset();
   shift_watch_.forget();
   position_off_since_.reset();
