@@ -76,6 +76,8 @@ void runs_away_velocity_too(benchmark::State& state) {
     state.counters["found"] = static_cast<double>(found_s.size());
     state.counters["found_median_s"] = found_s.empty() ? 0.0 : quantile(found_s, 0.5);
     state.counters["found_worst_s"] = found_s.empty() ? 0.0 : largest(found_s);
+    state.counters["found_after_3_s"] = static_cast<double>(
+        std::count_if(found_s.begin(), found_s.end(), [](double s) { return s > 3.0; }));
     state.counters["held"] = held;
     state.counters["arrived"] = arrived;
     state.counters["dishonest"] = dishonest;

@@ -36,6 +36,7 @@ constexpr double kPivotCentre_m = 0.15;  // by which a skid steer's wanders
 constexpr double kSwing = 0.5;           // of the speed, at most: more, and a course tells nothing
 constexpr double kApartForgotten_s = 1.0;
 constexpr double kScatterShare = 0.05;  // of one more velocity
+constexpr double kGoesAlong = 0.6;      // of the limit by which position and velocity may differ
 
 double bearing_of(EnuPoint way) noexcept {
   return std::atan2(way.north_m, way.east_m);
@@ -293,6 +294,10 @@ void Votes::look_for_run_off(const Table& table, Time now) noexcept {
 
 void Votes::tell_run_off(Table& table) const noexcept {
   if (run_off_.proved() < 1.0) return;
+  // One that repeats itself is known to be the one; and a velocity that stays behind tells who is
+  // wrong, by other rules.
+  if (repeats_[index_of(Sense::Position)].times > 1) return;
+  if (table.between(Sense::Position, Sense::Velocity).ratio() > kGoesAlong) return;
   table.runs_off = true;
   const Difference off = run_off_.off();
   table.put(Sense::Tracks, Sense::Position, proved(off, run_off_.proved()));

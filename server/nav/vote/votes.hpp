@@ -58,8 +58,8 @@ class Votes {
   /// How far positions that are RTK fixed have run away from the velocity at the last look, of what
   /// proves it (1). Where it cannot be judged it is forgotten within about a second.
   double apart() const noexcept { return apart_; }
-  /// How far positions have run off from tracks and gyro, of what proves it (1): see RunOff. The
-  /// velocity tells of it as well, or it would be seen by that.
+  /// How far positions have run off from tracks and gyro, of what proves it (1): see RunOff.
+  /// It contradicts the tracks then, unless the velocity already contradicts the position.
   double off_course() const noexcept { return run_off_.proved(); }
   bool out(Sense s) const noexcept { return jury_.out(s); }
   /// When the one that was left out was first seen to contradict the others.
