@@ -54,7 +54,7 @@ double slide_sigma(EnuPoint downhill, double doubt) noexcept {
 
 /// For each metre, where the ground leans as it is told: over ground.
 EnuPoint RunOff::slides_to(const Filter& f, const Look& look) noexcept {
-  const double yaw = f.x(kYaw) + look.at.ref_rad;
+  const double yaw = f.x(kHeading) + look.at.ref_rad;
   const double ahead = kSlidePerGrade * look.downhill.east_m;
   const double left = kSlidePerGrade * look.downhill.north_m;
   return {std::cos(yaw) * ahead - std::sin(yaw) * left,
@@ -78,13 +78,13 @@ void RunOff::begin(const Look& look) noexcept {
   const double c = std::cos(yaw);
   const double s = std::sin(yaw);
   ground_ = {};
-  ground_.x(kEast) = look.spot.at.east_m - c * look.arm.east_m + s * look.arm.north_m;
-  ground_.x(kNorth) = look.spot.at.north_m - s * look.arm.east_m - c * look.arm.north_m;
-  ground_.x(kYaw) = yaw - look.at.ref_rad;
-  ground_.x(kScale) = kScaleMean;
+  ground_.x(kAtEast) = look.spot.at.east_m - c * look.arm.east_m + s * look.arm.north_m;
+  ground_.x(kAtNorth) = look.spot.at.north_m - s * look.arm.east_m - c * look.arm.north_m;
+  ground_.x(kHeading) = yaw - look.at.ref_rad;
+  ground_.x(kWayShare) = kScaleMean;
   const EnuPoint downhill = slides_to(ground_, look);
-  ground_.x(kSlideE) = downhill.east_m;
-  ground_.x(kSlideN) = downhill.north_m;
+  ground_.x(kFallE) = downhill.east_m;
+  ground_.x(kFallN) = downhill.north_m;
   const double slide = slide_sigma(look.downhill, look.doubt);
   const double yaw_sigma = std::hypot(look.at.yaw_sigma_rad, kYawAtFirst_rad);
   const double place = std::hypot(look.spot.sigma_m, kFixed_m);
@@ -114,70 +114,69 @@ void RunOff::predict(Filter& f, const Look& to) const noexcept {
   const double dt_s = seconds(to.spot.t - last_.spot.t);
   const double path_m = b.path_m - a.path_m;
   const double turned = std::abs(b.ref_rad - a.ref_rad);
-  const double c = std::cos(f.x(kYaw));
-  const double s = std::sin(f.x(kYaw));
+  const double c = std::cos(f.x(kHeading));
+  const double s = std::sin(f.x(kHeading));
   const EnuPoint way{c * (b.x_m - a.x_m) - s * (b.y_m - a.y_m),
                      s * (b.x_m - a.x_m) + c * (b.y_m - a.y_m)};
-  const EnuPoint own{f.x(kScale) * way.east_m - f.x(kCrab) * way.north_m,
-                     f.x(kScale) * way.north_m + f.x(kCrab) * way.east_m};
+  const EnuPoint own{f.x(kWayShare) * way.east_m - f.x(kAside) * way.north_m,
+                     f.x(kWayShare) * way.north_m + f.x(kAside) * way.east_m};
   Matrix F = Matrix::Identity();
-  F(kEast, kYaw) = -own.north_m;
-  F(kNorth, kYaw) = own.east_m;
-  F(kEast, kScale) = F(kNorth, kCrab) = way.east_m;
-  F(kNorth, kScale) = way.north_m;
-  F(kEast, kCrab) = -way.north_m;
-  F(kEast, kSlideE) = F(kNorth, kSlideN) = path_m;
-  f.mps = {(own.east_m + path_m * f.x(kSlideE)) / dt_s,
-           (own.north_m + path_m * f.x(kSlideN)) / dt_s};
-  f.x(kEast) += own.east_m + path_m * f.x(kSlideE);
-  f.x(kNorth) += own.north_m + path_m * f.x(kSlideN);
+  F(kAtEast, kHeading) = -own.north_m;
+  F(kAtNorth, kHeading) = own.east_m;
+  F(kAtEast, kWayShare) = F(kAtNorth, kAside) = way.east_m;
+  F(kAtNorth, kWayShare) = way.north_m;
+  F(kAtEast, kAside) = -way.north_m;
+  F(kAtEast, kFallE) = F(kAtNorth, kFallN) = path_m;
+  f.mps = {(own.east_m + path_m * f.x(kFallE)) / dt_s, (own.north_m + path_m * f.x(kFallN)) / dt_s};
+  f.x(kAtEast) += own.east_m + path_m * f.x(kFallE);
+  f.x(kAtNorth) += own.north_m + path_m * f.x(kFallN);
   if (f.lies == Lies::Receiver) {
-    F(kEast, kLieE) = F(kNorth, kLieN) = dt_s;
-    f.x(kEast) += dt_s * f.x(kLieE);
-    f.x(kNorth) += dt_s * f.x(kLieN);
+    F(kAtEast, kLieE) = F(kAtNorth, kLieN) = dt_s;
+    f.x(kAtEast) += dt_s * f.x(kLieE);
+    f.x(kAtNorth) += dt_s * f.x(kLieN);
   } else if (f.lies == Lies::Gyro) {
-    F(kYaw, kLieE) = dt_s;
-    F(kEast, kLieE) = -0.5 * dt_s * own.north_m;
-    F(kNorth, kLieE) = 0.5 * dt_s * own.east_m;
-    f.x(kYaw) += dt_s * f.x(kLieE);
+    F(kHeading, kLieE) = dt_s;
+    F(kAtEast, kLieE) = -0.5 * dt_s * own.north_m;
+    F(kAtNorth, kLieE) = 0.5 * dt_s * own.east_m;
+    f.x(kHeading) += dt_s * f.x(kLieE);
   }
   const double patch = std::exp(-path_m / kPatch_m);
   const double slope = std::exp(-path_m / kSlope_m);
-  f.x(kScale) = kScaleMean + patch * (f.x(kScale) - kScaleMean);
-  f.x(kCrab) *= patch;
+  f.x(kWayShare) = kScaleMean + patch * (f.x(kWayShare) - kScaleMean);
+  f.x(kAside) *= patch;
   const EnuPoint downhill = slides_to(f, to);
-  f.x(kSlideE) = downhill.east_m + slope * (f.x(kSlideE) - downhill.east_m);
-  f.x(kSlideN) = downhill.north_m + slope * (f.x(kSlideN) - downhill.north_m);
-  F(kScale, kScale) = F(kCrab, kCrab) = patch;
-  F(kSlideE, kSlideE) = F(kSlideN, kSlideN) = slope;
+  f.x(kFallE) = downhill.east_m + slope * (f.x(kFallE) - downhill.east_m);
+  f.x(kFallN) = downhill.north_m + slope * (f.x(kFallN) - downhill.north_m);
+  F(kWayShare, kWayShare) = F(kAside, kAside) = patch;
+  F(kFallE, kFallE) = F(kFallN, kFallN) = slope;
   f.P = (F * f.P * F.transpose()).eval();
   const auto noise = [&f](int i, double sigma) { f.P(i, i) += sigma * sigma; };
   const double fresh_patch = std::sqrt(1.0 - patch * patch);
   const double fresh_slope = std::sqrt(1.0 - slope * slope);
   const double slide = slide_sigma(to.downhill, to.doubt);
-  noise(kScale, kScaleSigma * fresh_patch);
-  noise(kCrab, kCrabSigma * fresh_patch);
-  noise(kSlideE, slide * fresh_slope);
-  noise(kSlideN, slide * fresh_slope);
-  noise(kYaw, std::hypot(kYawNoise_rad * std::sqrt(dt_s), kYawPerTurn * turned));
+  noise(kWayShare, kScaleSigma * fresh_patch);
+  noise(kAside, kCrabSigma * fresh_patch);
+  noise(kFallE, slide * fresh_slope);
+  noise(kFallN, slide * fresh_slope);
+  noise(kHeading, std::hypot(kYawNoise_rad * std::sqrt(dt_s), kYawPerTurn * turned));
   const double place = std::hypot(kPlaceNoise_m * std::sqrt(dt_s), kCentreWanders_m * turned);
-  noise(kEast, place);
-  noise(kNorth, place);
+  noise(kAtEast, place);
+  noise(kAtNorth, place);
 }
 
 void RunOff::update(Filter& f, const Look& to) const noexcept {
-  const double yaw = f.x(kYaw) + to.at.ref_rad;
+  const double yaw = f.x(kHeading) + to.at.ref_rad;
   const double c = std::cos(yaw);
   const double s = std::sin(yaw);
   const double ahead_m = to.arm.east_m + f.x(kCentre);
   const EnuPoint arm{c * ahead_m - s * to.arm.north_m, s * ahead_m + c * to.arm.north_m};
   const Eigen::Vector2d y{
-      to.spot.at.east_m - arm.east_m - f.x(kEast) + f.x(kLate) * f.mps.east_m,
-      to.spot.at.north_m - arm.north_m - f.x(kNorth) + f.x(kLate) * f.mps.north_m};
-  Eigen::Matrix<double, 2, kStates> H = Eigen::Matrix<double, 2, kStates>::Zero();
-  H(0, kEast) = H(1, kNorth) = 1.0;
-  H(0, kYaw) = -arm.north_m;
-  H(1, kYaw) = arm.east_m;
+      to.spot.at.east_m - arm.east_m - f.x(kAtEast) + f.x(kLate) * f.mps.east_m,
+      to.spot.at.north_m - arm.north_m - f.x(kAtNorth) + f.x(kLate) * f.mps.north_m};
+  Eigen::Matrix<double, 2, kSize> H = Eigen::Matrix<double, 2, kSize>::Zero();
+  H(0, kAtEast) = H(1, kAtNorth) = 1.0;
+  H(0, kHeading) = -arm.north_m;
+  H(1, kHeading) = arm.east_m;
   H(0, kCentre) = c;
   H(1, kCentre) = s;
   H(0, kLate) = -f.mps.east_m;
@@ -185,12 +184,12 @@ void RunOff::update(Filter& f, const Look& to) const noexcept {
   const double dt_s = seconds(to.spot.t - last_.spot.t);
   const double speed_mps = (to.at.path_m - last_.at.path_m) / dt_s;
   const double sigma = std::hypot(std::max(to.spot.sigma_m, kFixed_m), kJitter_s * speed_mps);
-  const Eigen::Matrix<double, kStates, 2> PHt = f.P * H.transpose();
+  const Eigen::Matrix<double, kSize, 2> PHt = f.P * H.transpose();
   const Eigen::Matrix2d S = H * PHt + sigma * sigma * Eigen::Matrix2d::Identity();
   const Eigen::Matrix2d S_inverse = S.inverse();
   f.nis = y.dot(S_inverse * y);
   f.log_likelihood = -0.5 * (f.nis + std::log(std::max(1e-12, S.determinant())));
-  const Eigen::Matrix<double, kStates, 2> K = PHt * S_inverse;
+  const Eigen::Matrix<double, kSize, 2> K = PHt * S_inverse;
   f.x += K * y;
   f.P = (f.P - K * PHt.transpose()).eval();
   f.P = (0.5 * (f.P + f.P.transpose())).eval();
@@ -211,7 +210,8 @@ void RunOff::look(const Look& look) noexcept {
   for (Filter* f : {&ground_, &lie_, &gyro_}) predict(*f, look);
   const auto beyond_m = [&](const Filter& f) {
     const double arm_m = std::hypot(look.arm.east_m, look.arm.north_m);
-    return std::hypot(look.spot.at.east_m - f.x(kEast), look.spot.at.north_m - f.x(kNorth)) - arm_m;
+    return std::hypot(look.spot.at.east_m - f.x(kAtEast), look.spot.at.north_m - f.x(kAtNorth)) -
+           arm_m;
   };
   if (std::min(beyond_m(ground_), beyond_m(lie_)) > kJump_m) return begin(look);
   for (Filter* f : {&ground_, &lie_, &gyro_}) update(*f, look);

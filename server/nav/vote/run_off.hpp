@@ -50,23 +50,23 @@ class RunOff {
 
  private:
   enum Index : int {
-    kEast,
-    kNorth,
-    kYaw,
-    kScale,
-    kCrab,
-    kSlideE,
-    kSlideN,
+    kAtEast,
+    kAtNorth,
+    kHeading,
+    kWayShare,
+    kAside,
+    kFallE,
+    kFallN,
     kCentre,
     kLate,
     kLieE,
     kLieN,
-    kStates
+    kSize
   };
   /// The last two states: nothing, the receiver's drift (m/s), or the gyro's error (rad/s; first).
   enum class Lies { Nobody, Receiver, Gyro };
-  using Vector = Eigen::Matrix<double, kStates, 1>;
-  using Matrix = Eigen::Matrix<double, kStates, kStates>;
+  using Vector = Eigen::Matrix<double, kSize, 1>;
+  using Matrix = Eigen::Matrix<double, kSize, kSize>;
 
   struct Filter {
     Vector x = Vector::Zero();
