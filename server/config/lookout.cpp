@@ -25,6 +25,7 @@ base::Result<robot::Lookout> lookout_of(const Settings& s, base::Time now) {
     one.name = name;
     one.mount = sensor.said.mount();
     one.planar = sensor.said.planar();
+    one.thin = sensor.said.thin();
     one.needed = sensor.said.required;
     one.persist = s.sense.persist;
     one.health = s.sense.health;

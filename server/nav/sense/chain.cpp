@@ -63,6 +63,7 @@ Chain::Chain(const ChainParams& params, const Footprint& body)
     : p_(params),
       reducer_(params.reduce, body, params.pulled),
       ground_(params.ground, params.reduce.max_range_m, body),
+      hills_(params.reduce.max_range_m, params.ground.min_height_m),
       grid_(params.grid) {}
 
 base::Result<Chain> Chain::of(ChainParams params, std::vector<SensorSetup> sensors,
@@ -85,6 +86,7 @@ base::Result<Chain> Chain::of(ChainParams params, std::vector<SensorSetup> senso
     }
     SightedParams sighted;
     sighted.planar = s.planar;
+    sighted.thin = s.planar && s.thin;
     sighted.blind_m = s.blind_m;
     sighted.vouch_m = params.vouch_m;
     sighted.low_m = params.ground.min_height_m;
@@ -113,7 +115,15 @@ base::Result<std::size_t> Chain::take(const base::Sight& sight, const PoseHistor
     return tl::unexpected<base::Error>(done.error());
   }
   eye.health.took(sight, reduced_.counts, now);
-  if (!eye.setup.planar) ground_.judge(reduced_.voxels);
+  if (!reduced_.lie.told) hills_.forget();
+  if (!eye.setup.planar) {
+    ground_.judge(reduced_.voxels);
+    // Who is not believed to see the way free does not tell of the ground either.
+    const bool sees = sight.window != base::Window::Blocked && eye.health.at(now).eye != Eye::Blind;
+    if (sees) hills_.learn(reduced_);
+  } else if (eye.sighted.thin) {
+    hills_.judge(reduced_);
+  }
   const float up = step_up_rad(sight);
   eye.persist.judge(reduced_.voxels, reduced_.pose,
                     {reduced_.origin_m[0], reduced_.origin_m[1], step_across_rad(sight, up), up});
@@ -123,7 +133,7 @@ base::Result<std::size_t> Chain::take(const base::Sight& sight, const PoseHistor
   }
   sight_sectors(reduced_, sight.half_step_rad, eye.sighted, *sectors_);
   eye.movers.meet(reduced_, grid_);
-  grid_.take(reduced_, *sectors_, static_cast<std::uint8_t>(i));
+  grid_.take(reduced_, *sectors_, static_cast<std::uint8_t>(i), &hills_);
   others_.clear();
   for (std::size_t k = 0; k < eyes_.size(); ++k) {
     if (k != i) eyes_[k].movers.tell(reduced_.stamp, static_cast<std::uint8_t>(k), others_);
@@ -141,6 +151,7 @@ void Chain::movers(base::Time now, std::vector<Mover>& out) const {
 
 void Chain::forget() noexcept {
   grid_.forget();
+  hills_.forget();
   for (EyeOf& eye : eyes_) eye.movers.forget();
 }
 

@@ -19,6 +19,7 @@
 #include "nav/sense/grid.hpp"
 #include "nav/sense/ground.hpp"
 #include "nav/sense/health.hpp"
+#include "nav/sense/hills.hpp"
 #include "nav/sense/movers.hpp"
 #include "nav/sense/params.hpp"
 #include "nav/sense/persist.hpp"
@@ -31,7 +32,8 @@ namespace roverd::nav::sense {
 struct SensorSetup {
   std::string name;  ///< Sight::sensor
   base::Mount mount;
-  bool planar = false;   ///< one plane: a scanner; its points are all obstacles
+  bool planar = false;   ///< one plane: its points are obstacles
+  bool thin = false;     ///< planar, by thin beams: but what lies on known ground (hills.hpp)
   bool needed = true;    ///< blind, it stops what drives by itself
   double blind_m = 0.0;  ///< nearer than this it sees nothing
   PersistParams persist{};
@@ -86,6 +88,7 @@ class Chain {
   ChainParams p_;
   Reducer reducer_;
   Ground ground_;
+  Hills hills_;
   Grid grid_;
   Reduced reduced_;
   std::unique_ptr<Sectors> sectors_ = std::make_unique<Sectors>();

@@ -90,19 +90,21 @@ void Grid::move_to(const Pose2& body) {
   y0_ = y0;
 }
 
-void Grid::take(const Reduced& in, const Sectors& sectors, std::uint8_t sensor) {
+void Grid::take(const Reduced& in, const Sectors& sectors, std::uint8_t sensor,
+                const Hills* hills) {
   if (!begun_) {
     begun_ = true;
     begin_ = in.stamp;
   }
   const std::uint32_t now = ms(in.stamp);
   move_to(in.pose);
-  hit(in, sensor, now);
+  if (hills != nullptr) uncover(in, *hills);
+  hit(in, sectors.thin, sensor, now);
   make_sure();
   see_through(in.pose, sectors, sensor, now);
 }
 
-void Grid::hit(const Reduced& in, std::uint8_t sensor, std::uint32_t now_ms) {
+void Grid::hit(const Reduced& in, bool thin, std::uint8_t sensor, std::uint32_t now_ms) {
   const double c = std::cos(in.pose.yaw_rad);
   const double s = std::sin(in.pose.yaw_rad);
   const auto up = up_in_body(in.lie);
@@ -130,6 +132,7 @@ void Grid::hit(const Reduced& in, std::uint8_t sensor, std::uint32_t now_ms) {
       span.low_m = span.top_m = z;
       span.top_body_m = v.z_m;
       span.stands = false;
+      span.by_planes = thin;
     } else if (o.ms != now_ms) {
       const float fades = std::min(kFades_m, 0.5F * (span.top_m - span.low_m));
       span.low_m += fades;
@@ -144,6 +147,7 @@ void Grid::hit(const Reduced& in, std::uint8_t sensor, std::uint32_t now_ms) {
             static_cast<float>(w - iy),
             std::max(span.top_body_m, v.z_m),
             span.stands || stands,
+            span.by_planes && thin,
             first ? low : std::min(span.now_low_m, low),
             first ? z : std::max(span.now_top_m, z),
             first ? v.z_m : std::max(span.now_body_m, v.z_m)};
@@ -155,6 +159,29 @@ void Grid::hit(const Reduced& in, std::uint8_t sensor, std::uint32_t now_ms) {
     o.misses = 0;
     o.sensor = sensor;
     o.ms = now_ms;
+  }
+}
+
+void Grid::uncover(const Reduced& in, const Hills& hills) noexcept {
+  const double c = std::cos(in.pose.yaw_rad);
+  const double s = std::sin(in.pose.yaw_rad);
+  for (const Voxel& v : in.voxels) {
+    if (v.kind != Kind::Ground) continue;
+    const auto vx = static_cast<double>(v.x_m);
+    const auto vy = static_cast<double>(v.y_m);
+    const std::int32_t ix = floored((in.pose.x_m + c * vx - s * vy) / p_.cell_m);
+    const std::int32_t iy = floored((in.pose.y_m + s * vx + c * vy) / p_.cell_m);
+    for (std::int32_t y = iy - 1; y <= iy + 1; ++y) {
+      for (std::int32_t x = ix - 1; x <= ix + 1; ++x) {
+        if (!inside(x, y)) continue;
+        Cell& o = cell(x, y);
+        const Span& span = spans_[index(x, y)];
+        if (o.known != Known::Occupied || !span.by_planes) continue;
+        const double at_x = (x + static_cast<double>(span.x)) * p_.cell_m;
+        const double at_y = (y + static_cast<double>(span.y)) * p_.cell_m;
+        if (hills.is_ground(at_x, at_y, span.top_m, in.stamp)) o = {};
+      }
+    }
   }
 }
 

@@ -18,6 +18,8 @@
 // well, or a false lean would take away what is too low and near to be met.) What is too thin or
 // too new to be believed (Passing) makes no cell occupied; but where something was believed, an
 // echo in its cell or beside it says that it still stands there, however many rays pass it by.
+//
+// What a plane met on a hill before the ground was seen there is ground once it is (hills.hpp).
 
 #include <array>
 #include <cstddef>
@@ -27,6 +29,7 @@
 #include <vector>
 
 #include "base/time.hpp"
+#include "nav/sense/hills.hpp"
 #include "nav/sense/params.hpp"
 #include "nav/sense/reduce.hpp"
 #include "nav/sense/sectors.hpp"
@@ -66,8 +69,10 @@ class Grid {
   explicit Grid(const GridParams& params);
 
   /// Takes one judged piece. @param pose X_OB of both. @param stamp not older than the last by more
-  /// than a second. @param sensor its number, for Patch::Cell.
-  void take(const Reduced& in, const Sectors& sectors, std::uint8_t sensor);
+  /// than a second. @param sensor its number, for Patch::Cell. @param hills what is known of the
+  /// ground by now; null: nothing
+  void take(const Reduced& in, const Sectors& sectors, std::uint8_t sensor,
+            const Hills* hills = nullptr);
   /// Everything is unknown again: the odometry began anew.
   void forget() noexcept;
 
@@ -98,6 +103,7 @@ class Grid {
     float y = 0.0F;
     float top_body_m = 0.0F;  ///< as top_m, over the body's plane
     bool stands = false;      ///< on the ground
+    bool by_planes = false;   ///< nothing but thin planes met it
     float now_low_m = 0.0F;   ///< of the last piece that met it
     float now_top_m = 0.0F;
     float now_body_m = 0.0F;
@@ -116,7 +122,9 @@ class Grid {
   std::uint32_t ms(base::Time t) const noexcept;
   Known known(const Cell& c, std::uint32_t now_ms) const noexcept;
   void move_to(const Pose2& body);
-  void hit(const Reduced& in, std::uint8_t sensor, std::uint32_t now_ms);
+  void hit(const Reduced& in, bool thin, std::uint8_t sensor, std::uint32_t now_ms);
+  /// Where ground is seen now: what planes alone met there, as high as it, was that.
+  void uncover(const Reduced& in, const Hills& hills) noexcept;
   /// What this piece met together, or again and again, is no drop of rain.
   void make_sure();
   /// Something returned from there: what is taken there or beside it is not seen through now.

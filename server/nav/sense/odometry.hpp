@@ -42,6 +42,7 @@ struct Lie3 {
   double z_m = 0.0;        ///< of the body's origin
   double roll_rad = 0.0;   ///< right side down positive
   double pitch_rad = 0.0;  ///< nose up positive
+  bool told = false;       ///< something tells how it leans; else it is taken for level
 };
 
 /// What to multiply a place in B with for its height in O, less z_m: the vertical, seen from B.
@@ -112,7 +113,7 @@ class PoseHistory {
     const Odometry& b = back(newer);
     const double part = base::seconds(t - a.stamp) / base::seconds(b.stamp - a.stamp);
     return {std::lerp(a.lie.z_m, b.lie.z_m, part), std::lerp(a.lie.roll_rad, b.lie.roll_rad, part),
-            std::lerp(a.lie.pitch_rad, b.lie.pitch_rad, part)};
+            std::lerp(a.lie.pitch_rad, b.lie.pitch_rad, part), a.lie.told && b.lie.told};
   }
 
  private:

@@ -120,6 +120,7 @@ void sight_sectors(const Reduced& in, float half_step_rad, const SightedParams& 
   out.half_sectors = half;
   out.blind_m = static_cast<float>(params.blind_m);
   out.planar = params.planar;
+  out.thin = params.thin;
   out.meets_m = static_cast<float>(params.low_m);
   std::vector<float> directions(in.voxels.size(), -1.0F);
   const auto blind = static_cast<float>(params.blind_m);

@@ -23,6 +23,7 @@ namespace roverd::nav::sense {
 
 struct SightedParams {
   bool planar = false;    ///< one plane only: vouches for what reaches into that plane
+  bool thin = false;      ///< and by thin beams
   double blind_m = 0.0;   ///< nearer than this to the sensor nothing is seen
   double vouch_m = 0.25;  ///< a thing of this height or more would have been seen
   double low_m = 0.08;    ///< and of this height
@@ -60,6 +61,7 @@ struct Sectors {
   float half_sectors = 0.0F;  ///< a ray is that wide, to either side
   float blind_m = 0.0F;
   bool planar = false;
+  bool thin = false;
   float meets_m = 0.08F;  ///< a ray this low meets what stands there
 
   /// Some ray of this direction went through at d_m from the sensor, between two heights in O and

@@ -157,11 +157,13 @@ const nav::sense::Odometry& Guard::move(const BodyTwist& measured, base::Time no
   if (lean && std::isfinite(lean->roll_rad + lean->pitch_rad)) {
     odometry_.lie.roll_rad = lean->roll_rad;
     odometry_.lie.pitch_rad = lean->pitch_rad;
+    odometry_.lie.told = true;
     if (dt_s > 0.0 && dt_s < 1.0) {
       odometry_.lie.z_m += std::sin(lean->pitch_rad) * t.linear_mps * dt_s;
     }
   } else {
     odometry_.lie.roll_rad = odometry_.lie.pitch_rad = 0.0;
+    odometry_.lie.told = false;
   }
   began_ = true;
   odometry_.stamp = now;

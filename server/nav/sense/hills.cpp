@@ -1,0 +1,129 @@
+#include "nav/sense/hills.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+namespace roverd::nav::sense {
+
+namespace {
+
+constexpr float kNoGroundBefore = std::numeric_limits<float>::infinity();
+
+std::int32_t hill_cell(double m) noexcept {
+  return static_cast<std::int32_t>(std::floor(m / Hills::kCell_m));
+}
+
+/// Where a voxel lies in O.
+class Lies {
+ public:
+  explicit Lies(const Reduced& in)
+      : in_(in),
+        c_(std::cos(in.pose.yaw_rad)),
+        s_(std::sin(in.pose.yaw_rad)),
+        up_(up_in_body(in.lie)) {}
+
+  double x_m(const Voxel& v) const noexcept {
+    return in_.pose.x_m + c_ * static_cast<double>(v.x_m) - s_ * static_cast<double>(v.y_m);
+  }
+  double y_m(const Voxel& v) const noexcept {
+    return in_.pose.y_m + s_ * static_cast<double>(v.x_m) + c_ * static_cast<double>(v.y_m);
+  }
+  float height_m(const Voxel& v) const noexcept {
+    return static_cast<float>(in_.lie.z_m + up_[0] * static_cast<double>(v.x_m) +
+                              up_[1] * static_cast<double>(v.y_m) +
+                              up_[2] * static_cast<double>(v.z_m));
+  }
+
+ private:
+  const Reduced& in_;
+  double c_;
+  double s_;
+  std::array<double, 3> up_;
+};
+
+}  // namespace
+
+Hills::Hills(double range_m, double low_m)
+    : low_m_(static_cast<float>(std::min(low_m, kMostLow_m))) {
+  const auto wide = static_cast<std::uint32_t>(std::ceil(2.0 * range_m / kCell_m)) + 8;
+  mask_ = static_cast<std::int32_t>(std::bit_ceil(std::clamp(wide, 16U, 1024U))) - 1;
+  const auto side = static_cast<std::size_t>(mask_) + 1;
+  places_.resize(side * side);
+}
+
+std::size_t Hills::index(std::int32_t x, std::int32_t y) const noexcept {
+  return static_cast<std::size_t>(y & mask_) * (static_cast<std::size_t>(mask_) + 1) +
+         static_cast<std::size_t>(x & mask_);
+}
+
+std::int32_t Hills::half_of(base::Time t) const noexcept {
+  return static_cast<std::int32_t>(std::floor(base::seconds(t - begin_) / (0.5 * kKnown_s)));
+}
+
+void Hills::forget() noexcept {
+  if (begun_) std::fill(places_.begin(), places_.end(), Place{});
+  begun_ = false;
+}
+
+void Hills::learn(const Reduced& in) {
+  if (!in.lie.told) return forget();
+  if (!begun_) {
+    begun_ = true;
+    begin_ = in.stamp;
+  }
+  const std::int32_t half = half_of(in.stamp);
+  const Lies lies(in);
+  for (const Voxel& v : in.voxels) {
+    if (v.kind != Kind::Ground || v.z_m > kSteepest * std::hypot(v.x_m, v.y_m)) continue;
+    const std::int32_t x = hill_cell(lies.x_m(v));
+    const std::int32_t y = hill_cell(lies.y_m(v));
+    const float z = lies.height_m(v);
+    Place& p = places_[index(x, y)];
+    if (p.x != x || p.y != y || p.half < half - 1) {
+      p = {x, y, half, z, kNoGroundBefore};
+    } else if (p.half < half) {
+      p = {x, y, half, z, p.z_m};
+    } else {
+      p.z_m = std::min(p.z_m, z);
+    }
+  }
+}
+
+std::optional<float> Hills::lowest_m(std::int32_t x, std::int32_t y,
+                                     std::int32_t half) const noexcept {
+  const Place& p = places_[index(x, y)];
+  if (p.x != x || p.y != y || p.half < half - 1) return std::nullopt;
+  return p.half < half ? p.z_m : std::min(p.z_m, p.before_m);
+}
+
+bool Hills::is_ground(double x_m, double y_m, float z_m, base::Time now) const noexcept {
+  if (!begun_) return false;
+  const std::int32_t half = half_of(now);
+  const std::int32_t x = hill_cell(x_m);
+  const std::int32_t y = hill_cell(y_m);
+  float ground = kNoGroundBefore;
+  for (std::int32_t dy = -1; dy <= 1; ++dy) {
+    for (std::int32_t dx = -1; dx <= 1; ++dx) {
+      ground = std::min(ground, lowest_m(x + dx, y + dy, half).value_or(kNoGroundBefore));
+    }
+  }
+  // Nothing known is infinitely high: below it.
+  return z_m <= ground + low_m_ && z_m >= ground - kInside_m;
+}
+
+std::size_t Hills::judge(Reduced& in) const {
+  if (!begun_ || !in.lie.told) return 0;
+  const Lies lies(in);
+  std::size_t count = 0;
+  for (Voxel& v : in.voxels) {
+    if (v.kind != Kind::Obstacle) continue;
+    if (!is_ground(lies.x_m(v), lies.y_m(v), lies.height_m(v), in.stamp)) continue;
+    v.kind = Kind::Ground;
+    ++count;
+  }
+  return count;
+}
+
+}  // namespace roverd::nav::sense

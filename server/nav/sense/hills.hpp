@@ -1,0 +1,72 @@
+#pragma once
+// Where the ground lies that somebody has seen: what a scanner of one plane meets on a hill is told
+// from what stands there.
+//
+//   a cloud's ground ─▶ the lowest of it in cells of kCell_m, for kKnown_s, in O ─▶ a plane's echo
+//   from kInside_m below to low_m above the lowest of three by three cells is ground
+//
+// Only a sensor that lays the ground tells it (ground.hpp): a bank that is too steep is none, and
+// where nobody saw the ground a plane's echo stays an obstacle. Near the body a cloud does not see
+// the foot of a thing, and a slope may be laid through its face: what rises from the body more
+// steeply than kSteepest is not learned. What came to stand on ground that was known is higher than
+// the lowest there. An echo farther below the ground shows that the heights do not agree; it stays
+// an obstacle, too.
+//
+// Heights in O are compared within seconds, and only while something tells how the body leans
+// (Lie3::told): when nothing does, all of it is forgotten. Not shared between threads.
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "base/time.hpp"
+#include "nav/sense/reduce.hpp"
+
+namespace roverd::nav::sense {
+
+class Hills {
+ public:
+  static constexpr double kCell_m = 0.1;
+  /// At least half of it, and less than all of it: in two halves each cell keeps its lowest.
+  static constexpr double kKnown_s = 8.0;
+  static constexpr float kInside_m = 0.15F;
+  static constexpr float kSteepest = 0.1F;  ///< rise over way, from the body's origin: 6 deg
+  static constexpr double kMostLow_m = 0.08;
+
+  /// @param range_m what lies farther from the body is not asked. @param low_m what is lower over
+  /// the ground is no obstacle; kMostLow_m at most: what is hidden in tall grass a plane still
+  /// tells
+  Hills(double range_m, double low_m);
+
+  /// Of a piece whose ground was judged.
+  void learn(const Reduced& in);
+  /// Of one plane: sets what is an Obstacle and lies on known ground to Ground. @return how many
+  std::size_t judge(Reduced& in) const;
+  /// Something that is so high in O is the ground there, as far as that is known. @param x_m, y_m
+  /// in O
+  bool is_ground(double x_m, double y_m, float z_m, base::Time now) const noexcept;
+  void forget() noexcept;
+
+ private:
+  static constexpr std::int32_t kNever = std::numeric_limits<std::int32_t>::min();
+  struct Place {
+    std::int32_t x = 0;  ///< places share memory with those a window farther on
+    std::int32_t y = 0;
+    std::int32_t half = kNever;  ///< in which it was seen last
+    float z_m = 0.0F;            ///< the lowest then
+    float before_m = 0.0F;       ///< and in the half before
+  };
+  std::size_t index(std::int32_t x, std::int32_t y) const noexcept;
+  std::int32_t half_of(base::Time t) const noexcept;
+  std::optional<float> lowest_m(std::int32_t x, std::int32_t y, std::int32_t half) const noexcept;
+
+  float low_m_;
+  std::int32_t mask_;
+  std::vector<Place> places_;
+  bool begun_ = false;
+  base::Time begin_;
+};
+
+}  // namespace roverd::nav::sense
