@@ -109,37 +109,69 @@ TEST(Movers, HeIsToldOnAndOnAfterHours) {
   for (std::size_t i = 25; i < seen.size(); ++i) EXPECT_EQ(seen[i].size(), 1U) << i;
 }
 
+/// One of two or more scanners that see 6 m far.
+SensorSetup one_of(const char* name, base::Mount mount) {
+  SensorSetup eye;
+  eye.name = name;
+  eye.mount = mount;
+  eye.planar = true;
+  eye.health.rate_hz = 25.0;
+  return eye;
+}
+
+void looks(Chain& chain, const SensorSetup& eye, const Block& there, double t,
+           std::mt19937& random) {
+  Scene scene;
+  scene.blocks = {there};
+  scene.ground = [](double, double) { return -5.0; };
+  base::Sight sight = look(
+      scene, planar(), eye.mount, t, [](double) { return planar_pose({}); }, random, 6.0);
+  sight.sensor = eye.name;
+  for (base::SightPoint& p : sight.points) {
+    if (p.echo == base::Echo::Hit) continue;
+    p.echo = base::Echo::Clear;
+    const double k = 6.0 / std::hypot(double(p.x_m), double(p.y_m));
+    p.x_m = static_cast<float>(k * double(p.x_m));
+    p.y_m = static_cast<float>(k * double(p.y_m));
+  }
+  ASSERT_TRUE(chain.take(sight, driven(t + 0.05, stands), at(t + 0.02)).has_value());
+}
+
+//   Whoever of them meets him first in a place takes it from the others: one is told, all follow.
+TEST(Movers, WhoComesStraightIsToldByEachOfSeveralSensorsThatTakeTurns) {
+  const std::vector<SensorSetup> eyes{one_of("left", {.x_m = 0.45, .y_m = 0.2, .z_m = 0.3}),
+                                      one_of("middle", {.x_m = 0.45, .z_m = 0.3}),
+                                      one_of("right", {.x_m = 0.45, .y_m = -0.2, .z_m = 0.3})};
+  auto chain = Chain::of({}, eyes, Footprint::box(1.0, 0.8, 0.5), at(0.0));
+  ASSERT_TRUE(chain.has_value());
+  std::mt19937 random(3);
+  for (int piece = 0; piece < 3 * 50; ++piece) {
+    const double since = 0.04 / 3.0 * piece;
+    looks(*chain, eyes[static_cast<std::size_t>(piece % 3)], person(5.5 - 1.2 * since, 0.0),
+          1.0 + since, random);
+  }
+  std::vector<Mover> seen;
+  chain->movers(at(3.0), seen);
+  EXPECT_EQ(seen.size(), 3U);
+  for (const Mover& m : seen) {
+    EXPECT_NEAR(m.v_mps.x, -1.2, 0.25) << int(m.sensor);
+    EXPECT_NEAR(m.v_mps.y, 0.0, 0.25) << int(m.sensor);
+  }
+}
+
 //   Past the robot, out of the view of the scanner ahead and into that of the one behind: it sees
 //   his near edge first.
 TEST(Movers, WhoGoesFromOneSensorsViewIntoAnothersIsToldAllTheWay) {
-  std::vector<SensorSetup> eyes(2);
-  for (std::size_t i = 0; i < 2; ++i) {
-    eyes[i].name = i == 0 ? "front" : "back";
-    eyes[i].mount = {.x_m = i == 0 ? 0.45 : -0.45, .z_m = 0.3, .yaw_rad = i == 0 ? 0.0 : base::kPi};
-    eyes[i].planar = true;
-    eyes[i].health.rate_hz = 25.0;
-  }
+  const std::vector<SensorSetup> eyes{
+      one_of("front", {.x_m = 0.45, .z_m = 0.3}),
+      one_of("back", {.x_m = -0.45, .z_m = 0.3, .yaw_rad = base::kPi})};
   auto chain = Chain::of({}, eyes, Footprint::box(1.0, 0.8, 0.5), at(0.0));
   ASSERT_TRUE(chain.has_value());
   std::mt19937 random(3);
   std::vector<Mover> seen;
   for (double since = 0.0; since < 3.6; since += 0.04) {
     for (const SensorSetup& eye : eyes) {
-      const double t = 1.0 + since;
-      Scene scene;
-      scene.blocks = {person(3.0 - 1.5 * since, 0.9)};
-      scene.ground = [](double, double) { return -5.0; };
-      base::Sight sight = look(
-          scene, planar(), eye.mount, t, [](double) { return planar_pose({}); }, random, 6.0);
-      sight.sensor = eye.name;
-      for (base::SightPoint& p : sight.points) {
-        if (p.echo == base::Echo::Hit) continue;
-        p.echo = base::Echo::Clear;
-        const double k = 6.0 / std::hypot(double(p.x_m), double(p.y_m));
-        p.x_m = static_cast<float>(k * double(p.x_m));
-        p.y_m = static_cast<float>(k * double(p.y_m));
-      }
-      ASSERT_TRUE(chain->take(sight, driven(t + 0.05, stands), at(t + 0.02)).has_value());
+      looks(*chain, eye, person(3.0 - 1.5 * since, 0.9), 1.0 + since, random);
     }
     if (since < 1.0) continue;
     chain->movers(at(1.02 + since), seen);
