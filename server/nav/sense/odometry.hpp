@@ -42,7 +42,7 @@ struct Lie3 {
   double z_m = 0.0;        ///< of the body's origin
   double roll_rad = 0.0;   ///< right side down positive
   double pitch_rad = 0.0;  ///< nose up positive
-  bool told = false;       ///< something tells how it leans; else it is taken for level
+  bool told = false;       ///< something tells so now; else as it did last, or level
 };
 
 /// What to multiply a place in B with for its height in O, less z_m: the vertical, seen from B.

@@ -19,6 +19,7 @@ using base::BodyTwist;
 using nav::sense::Limit;
 
 constexpr double kPicture_s = 0.5;   // older, and whoever makes them stands still
+constexpr double kLean_s = 0.15;     // older, and the body may lie otherwise by now
 constexpr double kLeast_mps = 0.05;  // slower, and it stands
 constexpr double kLeast_radps = 0.05;
 constexpr double kProbe_mps = 0.15;  // what a stopped drive tries
@@ -157,7 +158,7 @@ const nav::sense::Odometry& Guard::move(const BodyTwist& measured, base::Time no
   if (lean && std::isfinite(lean->roll_rad + lean->pitch_rad)) {
     odometry_.lie.roll_rad = lean->roll_rad;
     odometry_.lie.pitch_rad = lean->pitch_rad;
-    odometry_.lie.told = true;
+    odometry_.lie.told = base::seconds(now - lean->stamp) <= kLean_s;
     if (dt_s > 0.0 && dt_s < 1.0) {
       odometry_.lie.z_m += std::sin(lean->pitch_rad) * t.linear_mps * dt_s;
     }

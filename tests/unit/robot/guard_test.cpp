@@ -282,5 +282,19 @@ TEST(Guard, ItsOdometryClimbsAsTheBodyLeans) {
   EXPECT_EQ(o.lie.pitch_rad, 0.0);
 }
 
+//   The last word of an attitude that fell silent is kept for a moment; heights reckoned by it are
+//   no longer compared.
+TEST(Guard, ALeanOfLongAgoIsNotToldAnyMore) {
+  Guard guard;
+  base::Time now{};
+  EXPECT_FALSE(guard.move({}, now).lie.told);
+  const base::Attitude last{now, 0.0, 0.1};
+  now += std::chrono::milliseconds(140);
+  EXPECT_TRUE(guard.move({}, now, last).lie.told);
+  now += std::chrono::milliseconds(20);
+  EXPECT_FALSE(guard.move({}, now, last).lie.told);
+  EXPECT_EQ(guard.odometry().lie.pitch_rad, 0.1);
+}
+
 }  // namespace
 }  // namespace roverd::robot
