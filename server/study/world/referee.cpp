@@ -12,7 +12,6 @@ namespace {
 namespace world = sim::world;
 
 constexpr double kMoves_mps = 0.02;  // of the outline
-constexpr double kCurve_mps = 0.10;  // so fast it shows which way it goes
 constexpr double kBeside_m = 0.25;   // a thing so near to what the guard blames is what it means
 constexpr double kThere_m = 0.05;
 constexpr double kMap_m = 40.0;  // half side
@@ -129,10 +128,6 @@ void Referee::look() {
   trail_.push_back(was);
   const double moves_mps = std::abs(was.v_mps) + std::abs(was.w_radps) * reach_m_;
   if (moves_mps > kMoves_mps) still_since_s_ = now_s;
-  if (moves_mps > kCurve_mps) {
-    curve_v_ = was.v_mps;
-    curve_w_ = was.w_radps;
-  }
   const auto& witness = around_.witness();
   soft_ = witness.soft();
   if (witness.hard() == hard_) return;
@@ -274,10 +269,13 @@ void Referee::heed(const std::optional<base::Obstacle>& obstacle) {
   if (!stop || measured_ || stops_.empty() || stands_s() < kStandsFor_s) return;
   measured_ = true;
   StopSeen& last = stops_.back();
-  if (last.cause == "thing") last.stands_m = left_m();
+  if (last.cause != "thing") return;
+  // Of what it stopped for; of several so near to one another, the nearest.
+  for (const int thing : blamed_)
+    last.stands_m = std::min(last.stands_m.value_or(kMarch_m), room_m(thing));
 }
 
-StopSeen Referee::stop_of(const base::Obstacle& o) const {
+StopSeen Referee::stop_of(const base::Obstacle& o) {
   const world::Pose pose = around_.pose_at(around_.now_s());
   const double c = std::cos(pose.yaw_rad);
   const double s = std::sin(pose.yaw_rad);
@@ -294,13 +292,13 @@ StopSeen Referee::stop_of(const base::Obstacle& o) const {
   return out;
 }
 
-std::string Referee::cause_of(const base::Obstacle& o, const world::Pose& there,
-                              bool& needless) const {
+std::string Referee::cause_of(const base::Obstacle& o, const world::Pose& there, bool& needless) {
   const world::Body about =
       world::Body::rectangle(kBeside_m, kBeside_m, 2.0 * kBeside_m, pass_below_m_ + 0.1, 0.02);
   world::Moment moment;
   around_.scene().move_to(moment, around_.now_s());
   needless = false;
+  blamed_.clear();
   if (o.moves) {
     const auto met = world::contact(around_.scene(), moment, there, grown(about, kBeside_m), 0.01);
     const auto& things = around_.scene().world().things;
@@ -309,7 +307,11 @@ std::string Referee::cause_of(const base::Obstacle& o, const world::Pose& there,
     });
     return needless ? "still" : "comes";
   }
-  if (touches_any(around_.scene(), moment, there, about)) return "thing";
+  const auto stands = world::contact(around_.scene(), moment, there, about, 0.01).touches;
+  for (const world::Touch& t : stands) {
+    if (t.thing >= 0 && !t.moving) blamed_.push_back(t.thing);
+  }
+  if (!stands.empty()) return "thing";
   needless = true;
   const double met_s = around_.now_s() - o.age_s;
   for (const double before_s : {0.0, 0.1, 0.2, 0.4, 0.8}) {
@@ -320,8 +322,7 @@ std::string Referee::cause_of(const base::Obstacle& o, const world::Pose& there,
   Met last;
   for (int dy = -1; dy <= 1; ++dy) {
     for (int dx = -1; dx <= 1; ++dx) {
-      const Met* met = const_cast<Referee*>(this)->met_at(there.x_m + dx * kMapCell_m,
-                                                          there.y_m + dy * kMapCell_m);
+      const Met* met = met_at(there.x_m + dx * kMapCell_m, there.y_m + dy * kMapCell_m);
       if (met != nullptr && met->at_s > last.at_s) last = *met;
     }
   }
@@ -341,29 +342,6 @@ double Referee::room_m(int thing) const {
     if (it != met.touches.end()) break;
   }
   return room_m;
-}
-
-/// The room before what does not move, and what the curve that it drove last would touch.
-std::optional<double> Referee::left_m() const {
-  const double v = curve_v_;
-  const double w = curve_w_;
-  if (std::abs(v) < std::abs(w) * reach_m_) return std::nullopt;  // a turn on the spot
-  world::Moment moment;
-  around_.scene().move_to(moment, around_.now_s());
-  world::Pose pose = around_.pose_at(around_.now_s());
-  const double step_s = kMarchStep_m / std::abs(v);
-  const auto& things = around_.scene().world().things;
-  for (double way_m = 0.0; way_m <= kMarch_m; way_m += kMarchStep_m) {
-    const auto met = world::contact(around_.scene(), moment, pose, around_.witness().body(), 0.01);
-    for (const world::Touch& t : met.touches) {
-      if (t.thing < 0 || world::moves(things[static_cast<std::size_t>(t.thing)].kind)) continue;
-      return room_m(t.thing);
-    }
-    pose.x_m += v * step_s * std::cos(pose.yaw_rad);
-    pose.y_m += v * step_s * std::sin(pose.yaw_rad);
-    pose.yaw_rad += w * step_s;
-  }
-  return std::nullopt;
 }
 
 std::optional<double> Referee::nearest_rad() const {

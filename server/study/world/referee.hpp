@@ -72,10 +72,9 @@ class Referee {
   bool brakes_avoid(int thing, double from_s, double touched_s) const;
   double there_since_s(int thing, const sim::world::Pose& pose, double at_s) const;
   std::size_t index_at(double at_s) const;
-  StopSeen stop_of(const base::Obstacle& obstacle) const;
+  StopSeen stop_of(const base::Obstacle& obstacle);
   std::string cause_of(const base::Obstacle& obstacle, const sim::world::Pose& there,
-                       bool& needless) const;
-  std::optional<double> left_m() const;
+                       bool& needless);
   double room_m(int thing) const;
   Met* met_at(double x_m, double y_m);
 
@@ -102,8 +101,7 @@ class Referee {
   bool slowing_ = false;
   bool measured_ = false;  ///< where it stands at this stop
   double still_since_s_ = 0.0;
-  double curve_v_ = 1.0;  ///< driven last
-  double curve_w_ = 0.0;
+  std::vector<int> blamed_;  ///< things that do not move, where the guard said that one stands
 };
 
 }  // namespace roverd::study

@@ -97,7 +97,7 @@ struct StopSeen {
                           ///< of who was believed to move: comes, or still (he does not)
   bool needless = false;  ///< nothing true on the swept way
   base::EnuPoint at;      ///< what was said to stand there
-  std::optional<double> stands_m;  ///< room before the static thing that it would touch
+  std::optional<double> stands_m;  ///< room before the static thing that it stopped for
 };
 
 struct WorldRun {
