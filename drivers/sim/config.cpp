@@ -44,8 +44,8 @@ Result<void> check_port(const world::SensorParams& sensor) {
   const auto spec = read_port(sensor.port);
   if (!spec) return refuse("port " + spec.error().detail);
   const bool datagrams = spec->kind == PortSpec::Kind::Udp;
-  if (datagrams != (sensor.kind == "vlp16")) {
-    return refuse(datagrams ? "port must be tcp or pty, udp is a vlp16's"
+  if (datagrams != (sensor.kind == "vlp16" || sensor.kind == "vision")) {
+    return refuse(datagrams ? "port must be tcp or pty, udp is a vlp16's and a vision program's"
                             : "port must be udp:PORT");
   }
   return {};

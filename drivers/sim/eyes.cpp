@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <numbers>
 
+#include "sim/vision_voice.hpp"
+
 namespace roverd::sim {
 namespace {
 
@@ -332,12 +334,15 @@ void Eye::speak_vlp16(double late_s) {
   }
 }
 
-void Eye::speak(const world::SensorFaults& faults) {
+void Eye::speak(const world::World& world, const world::SensorFaults& faults) {
   const double late_s = params().latency_s + faults.sensor_latency_s;
   if (params().kind == "vlp16") return speak_vlp16(late_s);
   const double due_s = sweep_.until_s + late_s;
   if (lms_) return wait(due_s, lms_->say(sweep_, faults));
   if (params().kind == "range") return wait(due_s, range_line(sweep_));
+  if (params().kind == "vision") {
+    return wait(due_s, vision_datagram(sweep_, world, faults.sensor_malformed));
+  }
   wait(due_s, depth_frame(params(), sweep_, sweep_.at_s, !faults.sensor_heating));
 }
 
@@ -366,7 +371,7 @@ void Eye::advance(const Surroundings& around, const world::SensorFaults& all,
       sensor_.sweep(
           around.scene(), [&](double at_s) { return around.pose_at(at_s); }, faults, sweep_);
     }
-    speak(faults);
+    speak(around.scene().world(), faults);
   }
   while (!waiting_.empty() && waiting_.front().due_s <= now_s) {
     say(waiting_.front().bytes);

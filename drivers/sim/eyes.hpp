@@ -6,6 +6,7 @@
 //   vlp16   data packets of 24 firings, strongest or last return; of 12 firings with both
 //   range   lines of metres, "1.234"; nothing within reach: "oor"
 //   depth   depth images of docs/cloud-format.md, millimetres along the optical axis
+//   vision  what a camera's program recognises in an image (vision_voice.hpp), a datagram each
 
 #include <cstdint>
 #include <deque>
@@ -92,7 +93,7 @@ class Eye {
     double due_s;
     std::vector<std::uint8_t> bytes;
   };
-  void speak(const world::SensorFaults& faults);
+  void speak(const world::World& world, const world::SensorFaults& faults);
   void speak_vlp16(double late_s);
   void wait(double due_s, std::vector<std::uint8_t> bytes);
   void take_wanted();

@@ -148,21 +148,22 @@ std::unique_ptr<Side> make_side(asio::io_context& io, const Options& o, base::Ti
   return std::make_unique<CartSide>(io, o, start);
 }
 
-/// A sensor with its socket: an lms or depth camera listens on TCP, a vlp16 sends to a port of this
-/// computer, a range sensor has a pseudo-terminal.
+/// A sensor with its socket: an lms or depth camera listens on TCP, a vlp16 and a vision program
+/// send to a port of this computer, a range sensor has a pseudo-terminal.
 class EyeSide {
  public:
   EyeSide(asio::io_context& io, const world::SensorParams& p, std::uint64_t seed)
       : eye_(p, seed, 0.0) {
-    if (p.kind != "vlp16") {
+    if (p.kind != "vlp16" && p.kind != "vision") {
       const std::string usual = p.kind == "range" ? "pty" : "tcp:0";
       port_ = std::make_unique<Port>(io, read_port(p.port.empty() ? usual : p.port).value());
       return;
     }
-    const PortSpec spec = read_port(p.port.empty() ? "udp:2368" : p.port).value();
-    datagrams_ = std::make_unique<link::UdpLink>(
-        io, 0, link::UdpLink::Peer{"127.0.0.1", spec.port == 0 ? std::uint16_t{2368} : spec.port});
-    to_ = "udp:127.0.0.1:" + std::to_string(spec.port == 0 ? 2368 : spec.port);
+    const std::uint16_t usual = p.kind == "vlp16" ? 2368 : 5005;
+    const PortSpec spec = read_port(p.port.empty() ? "udp:0" : p.port).value();
+    const std::uint16_t port = spec.port == 0 ? usual : spec.port;
+    datagrams_ = std::make_unique<link::UdpLink>(io, 0, link::UdpLink::Peer{"127.0.0.1", port});
+    to_ = "udp:127.0.0.1:" + std::to_string(port);
   }
 
   base::Result<void> open(std::function<void()> catch_up) {

@@ -53,8 +53,9 @@ base::Result<void> check(const SensorParams& p) {
   const auto refuse = [](std::string detail) {
     return base::fail(base::Code::Invalid, std::move(detail));
   };
-  if (p.kind != "lms" && p.kind != "vlp16" && p.kind != "depth" && p.kind != "range") {
-    return refuse("kind must be lms, vlp16, depth or range");
+  if (p.kind != "lms" && p.kind != "vlp16" && p.kind != "depth" && p.kind != "range" &&
+      p.kind != "vision") {
+    return refuse("kind must be lms, vlp16, depth, range or vision");
   }
   if (p.returns != "strongest" && p.returns != "last" && p.returns != "dual") {
     return refuse("returns must be strongest, last or dual");
@@ -94,6 +95,17 @@ SensorParams usual(std::string_view kind) {
     p.beam_mrad = 2.0;
     p.merge_m = 5.0;
     p.latency_s = 0.03;
+  } else if (kind == "vision") {
+    p.rate_hz = 10.0;
+    p.near_m = 0.3;
+    p.far_m = 8.0;
+    p.dark_m = 8.0;
+    p.sigma_m = 0.01;
+    p.sigma_share = 0.002;
+    p.beam_mrad = 0.0;
+    p.columns = 120;
+    p.rows = 12;
+    p.latency_s = 0.1;
   } else if (kind == "range") {
     p.rate_hz = 20.0;
     p.fov_h_deg = 20.0;
@@ -118,7 +130,7 @@ Sensor::Sensor(SensorParams p, std::uint64_t seed, double begin_s, int thin)
   period_s_ = 1.0 / params_.rate_hz;
   if (params_.kind == "vlp16") {
     prepare_vlp16();
-  } else if (params_.kind == "depth") {
+  } else if (params_.kind == "depth" || params_.kind == "vision") {
     prepare_depth();
   } else if (params_.kind == "range") {
     prepare_range();

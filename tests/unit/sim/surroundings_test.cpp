@@ -118,7 +118,7 @@ TEST(SensorTables, AreReadStrictly) {
             "--set sensor.rear.x_m=0.4: unknown key sensor.rear.x_m");
 
   EXPECT_EQ(error("[[sensor]]\nkind = \"sonar\"\n"),
-            "sim.toml:1: sensor.kind must be lms, vlp16, depth or range");
+            "sim.toml:1: sensor.kind must be lms, vlp16, depth, range or vision");
   EXPECT_EQ(error("[[sensor]]\nkind = \"vlp16\"\nreturns = \"both\"\n"),
             "sim.toml:1: sensor.returns must be strongest, last or dual");
   EXPECT_EQ(error("[[sensor]]\nkind = \"lms\"\nreturns = \"dual\"\n"),
@@ -132,7 +132,7 @@ TEST(SensorTables, AreReadStrictly) {
           "[[sensor]]\nname=\"a\"\nport=\"tcp:2111\"\n[[sensor]]\nname=\"b\"\nport=\"tcp:2111\"\n"),
       "sim.toml:4: sensor.port tcp:2111 is a's");
   EXPECT_EQ(error("[[sensor]]\nport=\"udp:5000\"\n"),
-            "sim.toml:1: sensor.port must be tcp or pty, udp is a vlp16's");
+            "sim.toml:1: sensor.port must be tcp or pty, udp is a vlp16's and a vision program's");
   EXPECT_EQ(error("[world]\nfile = 3\n"), "sim.toml:2: world.file must be text");
   EXPECT_EQ(c.sensors.size(), 2u) << "refused texts change nothing";
   EXPECT_TRUE(load_world("random:3:moving"));
