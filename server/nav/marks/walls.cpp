@@ -18,7 +18,7 @@ constexpr double kSameAngle_rad = 0.14;  // 8°
 constexpr double kSameOffset_m = 0.15;
 constexpr double kThrough_m = 0.3;
 constexpr double kForgotten_m = 15.0;
-constexpr int kPlanePoints = 21;
+constexpr int kPlanePlaces = 11;  // of two points each
 /// How far a plane reaches is not told: so far to either side of its centre it is believed.
 constexpr double kPlaneHalf_m = 1.0;
 constexpr double kPlaneSigma_m = 0.03;
@@ -152,10 +152,12 @@ void Walls::take(const PlaneWall& plane, const Pose2& pose, base::Time stamp,
   line.to = plane.centre + kPlaneHalf_m * ahead;
   line.normal = plane.normal;
   line.moments.origin = plane.centre;
-  for (int i = 0; i < kPlanePoints; ++i) {
-    const double part = 2.0 * i / (kPlanePoints - 1) - 1.0;
-    const double beside_m = (i % 2 == 0 ? 1.0 : -1.0) * kPlaneSigma_m;
-    line.moments.add(plane.centre + part * kPlaneHalf_m * ahead + beside_m * plane.normal);
+  for (int i = 0; i < kPlanePlaces; ++i) {
+    const double part = 2.0 * i / (kPlanePlaces - 1) - 1.0;
+    const Vec2 at = plane.centre + part * kPlaneHalf_m * ahead;
+    for (const double beside_m : {-kPlaneSigma_m, kPlaneSigma_m}) {
+      line.moments.add(at + beside_m * plane.normal);
+    }
   }
   put(in_o(line, pose), Source::Vision, stamp, params);
   merge(params);

@@ -149,5 +149,19 @@ TEST(MarksPlanes, TheLargestUprightPlaneAheadIsTheWall) {
   EXPECT_FALSE(wall_of(v, mount, {}));
 }
 
+TEST(MarksPlanes, AWallStandsWhereTheCamerasPlanesSayIt) {
+  Walls walls;
+  base::Time now{std::chrono::hours(1)};
+  for (int i = 0; i < 5; ++i) {
+    now += std::chrono::milliseconds(100);
+    walls.take(PlaneWall{{1.4, 0.9}, {0.0, -1.0}, 0.9, 5000.0}, {}, now, {});
+  }
+  const auto all = walls.all();
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_TRUE(all[0].believed);
+  EXPECT_NEAR(std::abs(all[0].distance_m({0.0, 0.0})), 0.9, 1e-9);
+  EXPECT_NEAR(std::abs(all[0].normal.y), 1.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace roverd::nav::marks
