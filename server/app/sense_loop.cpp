@@ -44,6 +44,11 @@ void SenseLoop::see(std::shared_ptr<const base::Sight> sight) {
   sem_post(&news_);
 }
 
+void SenseLoop::recognise(std::shared_ptr<const base::Vision> vision) {
+  visions_.put(std::move(vision));
+  sem_post(&news_);
+}
+
 std::shared_ptr<const robot::Outlook> SenseLoop::outlook() {
   asked_.store(base::steady_now(), std::memory_order_relaxed);
   return outlook_.get();
@@ -64,6 +69,7 @@ void SenseLoop::run() noexcept {
   pthread_setname_np(pthread_self(), "sense");
   make_prompt();
   std::vector<std::shared_ptr<const base::Sight>> sights;
+  std::vector<std::shared_ptr<const base::Vision>> visions;
   std::vector<nav::sense::Odometry> moved;
   std::vector<robot::RowQuestion> rows;
   std::vector<std::shared_ptr<const robot::Surroundings>> done;
@@ -76,6 +82,8 @@ void SenseLoop::run() noexcept {
     (void)sem_timedwait(&news_, &until);
     try {
       sights.clear();
+      visions.clear();
+      visions_.take(visions);
       moved.clear();
       sights_.take(sights);
       robot_.odometry().take(moved);
@@ -84,13 +92,14 @@ void SenseLoop::run() noexcept {
       robot_.surroundings_done().take(done);
       const auto config = robot_.config();
       lookout_.follow(config->protect, config->rays);
-      lookout_.follow(config->wall);
+      lookout_.follow(config->wall, config->landmarks);
       rows.clear();
       robot_.row_questions().take(rows);
       if (!rows.empty()) lookout_.look_for(rows.back());
       for (const auto& o : moved) lookout_.moved(o);
       const base::Time now = base::steady_now();
       for (auto& s : sights) lookout_.see(std::move(s), now);
+      for (auto& v : visions) lookout_.recognise(std::move(v));
       if (auto picture = lookout_.picture(now)) robot_.surroundings().put(std::move(picture));
       look_out(now);
     } catch (const std::exception& e) {

@@ -18,6 +18,7 @@
 #include "base/latest.hpp"
 #include "base/result.hpp"
 #include "base/sight.hpp"
+#include "base/vision.hpp"
 #include "config/settings.hpp"
 #include "robot/guard/lookout.hpp"
 #include "robot/robot.hpp"
@@ -40,6 +41,7 @@ class SenseLoop {
   void stop();
   /// Any thread; never waits for the work.
   void see(std::shared_ptr<const base::Sight> sight);
+  void recognise(std::shared_ptr<const base::Vision> vision);
 
   /// Any thread but control's: what people are shown. Whoever asks gets it anew five times a
   /// second; for nobody it is made once a second. Null: nothing is known yet.
@@ -53,6 +55,7 @@ class SenseLoop {
   PlaceLoop* place_;
   robot::Lookout lookout_;
   base::Inbox<std::shared_ptr<const base::Sight>> sights_{64};
+  base::Inbox<std::shared_ptr<const base::Vision>> visions_{32};
   sem_t news_{};
   std::atomic<bool> stop_{false};
   const robot::OutlookParams shown_;

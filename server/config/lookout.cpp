@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/angle.hpp"
 #include "robot/guard/guard.hpp"
 #include "robot/guard/outline.hpp"
 
@@ -46,6 +47,12 @@ base::Result<robot::Lookout> lookout_of(const Settings& s, base::Time now) {
   robot::Lookout lookout(std::move(*chain), std::move(kinds), s.robot.protect.reach_m,
                          s.robot.rays);
   lookout.follow(s.robot.protect, s.robot.rays);
+  std::vector<robot::Camera> cameras;
+  for (const auto& [name, sensor] : s.sensors) {
+    if (!sensor.said.enabled || sensor.said.ranging()) continue;
+    cameras.push_back({name, sensor.said.mount(), base::rad_from_deg(sensor.vision.half_view_deg)});
+  }
+  lookout.watch_by(std::move(cameras));
   return lookout;
 }
 

@@ -357,8 +357,8 @@ std::string why_not_done(std::string_view action, const std::vector<std::string>
 std::string why_not_drivable(std::string_view type) {
   const std::string item = "cannot be driven: ";
   if (type == "row") return item + "no scanner that sees rows is configured";
-  if (type == "wall") return item + "no scanner that sees walls is configured";
-  if (type == "landmarks") return item + "no vision that sees landmarks is configured";
+  if (type == "wall") return item + "no scanner or camera that sees walls is configured";
+  if (type == "landmarks") return item + "no scanner or camera that sees landmarks is configured";
   return item + "items of type " + std::string(type) + " are not available yet";
 }
 

@@ -74,11 +74,15 @@ struct Wall {
   std::optional<double> length_m{};   ///< done after so much way; empty: at the wall's end
   friend bool operator==(const Wall&, const Wall&) = default;
 };
+/// Past landmarks, one after the other, all on the same side.
 struct Landmarks {
-  std::string name;
-  double offset_m = 0.0;
+  std::string name;       ///< only those that are called so; kAnyLandmark: whatever stands like one
+  double offset_m = 0.0;  ///< the vehicle's middle passes them so far to their left; < 0: right
+  std::optional<double> speed_mps{};  ///< empty: as the profile says
+  std::optional<int> count{};         ///< done behind so many; empty or 0: behind the last one
   friend bool operator==(const Landmarks&, const Landmarks&) = default;
 };
+inline constexpr std::string_view kAnyLandmark = "any";
 struct Jump {
   int item = 0;   ///< number, from 1
   int times = 0;  ///< repetitions; 0 = for ever

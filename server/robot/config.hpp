@@ -226,6 +226,7 @@ struct Config {
   nav::rows::RowParams rows;
   nav::SightParams sight;
   nav::marks::WallParams wall;
+  nav::marks::LandmarkParams landmarks;
   RobotParams robot;
   ManualParams manual;
   SafetyParams safety;
@@ -273,6 +274,7 @@ void sections(V& v, Config& c) {
   v("nav.rows", c.rows);
   v("nav.sight", c.sight);
   v("nav.wall", c.wall);
+  v("nav.landmarks", c.landmarks);
   v("robot", c.robot);
   v("robot.manual", c.manual);
   v("robot.safety", c.safety);

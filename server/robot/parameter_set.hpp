@@ -33,6 +33,7 @@ class ParameterSet {
     row.adopt(section(all_->row));
     marks.sight.adopt(section(all_->sight));
     marks.walls.adopt(section(all_->wall));
+    marks.landmarks.adopt(section(all_->landmarks));
     manual.adopt(section(all_->manual));
     safety.adopt(section(all_->safety));
     radio.adopt(section(all_->radio));

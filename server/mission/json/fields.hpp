@@ -57,6 +57,7 @@ inline constexpr Range kOffset_m{-20.0, 20.0};
 inline constexpr Range kDrift_m{0.1, 100.0};
 inline constexpr Range kCircle_m{0.5, 1000.0};
 inline constexpr Range kCircleTurns{0.05, 1000.0};
+inline constexpr int kMaxLandmarks = 10'000;
 inline constexpr int kMaxStations = 36;  ///< a turn
 inline constexpr int kMaxTimes = 10'000;
 
@@ -132,6 +133,8 @@ template <class V>
 void fields(V& v, Of<Landmarks> auto& p) {
   v.name("name", p.name);
   v.number("offset_m", p.offset_m, kOffset_m);
+  v.number("speed_mps", p.speed_mps, kSpeed_mps);
+  v.count("count", p.count, kMaxLandmarks);
 }
 template <class V>
 void fields(V& v, Of<Jump> auto& p) {

@@ -52,6 +52,7 @@ TrackOutput Executor::step(const Vehicle& vehicle, double limit_mps, std::option
   if (doing_ == Doing::Turn) return step_turn(moves, dt_s);
   if (doing_ == Doing::Row) return step_row(vehicle, limit_mps, dt_s);
   if (doing_ == Doing::Wall) return step_wall(vehicle, limit_mps, dt_s);
+  if (doing_ == Doing::Landmarks) return step_landmarks(vehicle, limit_mps, dt_s);
   if (doing_ == Doing::Wait || cut_goal(vehicle, dt_s)) return {};
   const TrackOutput out = tracker_.step(moves, limit_mps, dt_s);
   if (doing_ == Doing::Path) pass_nodes(vehicle);
@@ -100,6 +101,8 @@ bool Executor::enter_step(const RouteStep& step, const Vehicle& vehicle,
       return enter_row(step);
     case StepKind::Wall:
       return enter_wall(step);
+    case StepKind::Landmarks:
+      return enter_landmarks(step);
     case StepKind::Face:
     case StepKind::Turn:
       return enter_turn(step, vehicle);

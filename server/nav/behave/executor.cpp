@@ -61,7 +61,8 @@ Executor::Executor(base::Setting<PathParams> path, base::Setting<BehaveParams> b
       modes_(std::move(modes)),
       tracker_(path),
       row_(path, std::move(rows)),
-      wall_(path, std::move(marks)) {
+      wall_(path, marks),
+      landmarks_(path, std::move(marks)) {
   notices_.reserve(16);
 }
 
@@ -94,6 +95,7 @@ void Executor::begin_at(std::size_t step) {
   rotation_.reset();
   row_.reset();
   wall_.reset();
+  landmarks_.reset();
   doing_ = Doing::Nothing;
   left_ = looked_s_ = 0.0;
   at_ = step;
@@ -161,6 +163,7 @@ void Executor::wait() noexcept {
   tracker_.reset();
   row_.interrupt();
   wall_.interrupt();
+  landmarks_.interrupt();
   lost_s_ = stuck_s_ = 0.0;
   interrupted_ = true;
 }
@@ -177,6 +180,7 @@ std::optional<EnuPoint> Executor::place_to_go_on() const noexcept {
     case Doing::Stay:
     case Doing::Row:
     case Doing::Wall:
+    case Doing::Landmarks:
       return std::nullopt;
   }
   return std::nullopt;

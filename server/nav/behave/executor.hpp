@@ -8,10 +8,10 @@
 //                                   stop: any of these ─▶ Aborted ──start─▶ Running
 //
 // An item that cannot be reached is Blocked, or left for the next one, or the robot returns home:
-// BehaveParams::unreachable; a row or a wall is always Blocked. interrupt() keeps Running but
-// forgets what the tracker was doing: somebody else drives; go_on() continues at the same place,
-// driving back to it first if the robot was moved. Control thread; allocates only when a new way
-// begins.
+// BehaveParams::unreachable; a row, a wall or landmarks are always Blocked. interrupt() keeps
+// Running but forgets what the tracker was doing: somebody else drives; go_on() continues at the
+// same place, driving back to it first if the robot was moved. Control thread; allocates only when
+// a new way begins.
 
 #include <cstdint>
 #include <memory>
@@ -23,6 +23,7 @@
 #include "base/setting.hpp"
 #include "base/snapshot.hpp"
 #include "nav/behave/join.hpp"
+#include "nav/behave/landmark_drive.hpp"
 #include "nav/behave/mode_params.hpp"
 #include "nav/behave/params.hpp"
 #include "nav/behave/rotate_in_place.hpp"
@@ -164,10 +165,10 @@ class Executor {
 
   /// A row is to be driven by sight: what should be looked for. Empty: none.
   std::optional<RowWanted> row_wanted() const noexcept;
-  /// The step in hand needs neither a place nor a heading of the map: a row, a wall, or what leads
-  /// from one row to the next by moves of kAcross_m together and turns, with waits and actions
-  /// between. Such moves and turns are driven by the odometry alone where something tells it
-  /// (see_row): no correction of the position bends them.
+  /// The step in hand needs neither a place nor a heading of the map: a row, a wall, landmarks, or
+  /// what leads from one row to the next by moves of kAcross_m together and turns, with waits and
+  /// actions between. Such moves and turns are driven by the odometry alone where something tells
+  /// it (see_row): no correction of the position bends them.
   bool asks_no_place() const noexcept;
   static constexpr double kAcross_m = 30.0;
   /// Null: no row is driven now.
@@ -182,7 +183,7 @@ class Executor {
   /// around.
   void see_row(const std::optional<RowSight>& sight) noexcept { row_sight_ = sight; }
 
-  /// Before step(): what is seen of walls. Empty: nothing on this robot looks around.
+  /// Before step(): what is seen of walls and landmarks. Empty: nothing on this robot looks around.
   void see_marks(const std::optional<MarkSight>& sight) noexcept { mark_sight_ = sight; }
 
   base::ExecutionState state() const noexcept { return state_; }
@@ -196,9 +197,10 @@ class Executor {
     return running() ? route_->corridor_m : std::nullopt;
   }
   TrackPhase phase() const noexcept {
-    return doing_ == Doing::Row    ? row_.phase()
-           : doing_ == Doing::Wall ? wall_.phase()
-                                   : tracker_.phase();
+    return doing_ == Doing::Row         ? row_.phase()
+           : doing_ == Doing::Wall      ? wall_.phase()
+           : doing_ == Doing::Landmarks ? landmarks_.phase()
+                                        : tracker_.phase();
   }
   /// @param here empty: the position is not known, and neither is a way that begins there.
   /// @param sigma_m of that position.
@@ -207,7 +209,7 @@ class Executor {
   std::vector<Notice>& notices() noexcept { return notices_; }
 
  private:
-  enum class Doing { Nothing, Path, Connector, Wait, Turn, Stay, Row, Wall };
+  enum class Doing { Nothing, Path, Connector, Wait, Turn, Stay, Row, Wall, Landmarks };
   /// Way and time, jumps not counted.
   struct Left {
     double m = 0.0;
@@ -233,6 +235,8 @@ class Executor {
   TrackOutput step_row(const Vehicle& vehicle, double limit_mps, double dt_s);
   bool enter_wall(const RouteStep& step);
   TrackOutput step_wall(const Vehicle& vehicle, double limit_mps, double dt_s);
+  bool enter_landmarks(const RouteStep& step);
+  TrackOutput step_landmarks(const Vehicle& vehicle, double limit_mps, double dt_s);
   void carry(const Vehicle& vehicle) noexcept;
   bool by_odometry() const noexcept;
   std::optional<Vehicle> carried(const Vehicle& vehicle) const noexcept;
@@ -277,6 +281,7 @@ class Executor {
   RowDrive row_;
   std::optional<RowSight> row_sight_;
   WallDrive wall_;
+  LandmarkDrive landmarks_;
   std::optional<MarkSight> mark_sight_;
   std::uint64_t rows_begun_ = 0;
   std::optional<rows::Pose2> carry_;  ///< X_EO: a move or turn is driven by odometry from here

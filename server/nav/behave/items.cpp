@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/angle.hpp"
 #include "nav/behave/executor.hpp"
@@ -14,6 +15,7 @@ namespace {
 /// Over the few metres between two rows.
 constexpr double kCarriedSigma_m = 0.05;
 constexpr double kCarriedSigma_rad = 0.02;
+constexpr double kMostPassed = 1e6;  // of what a kept place says
 
 /// It counts from where the robot is and points.
 bool relative(const RouteStep& step) noexcept {
@@ -191,6 +193,40 @@ TrackOutput Executor::step_wall(const Vehicle& vehicle, double limit_mps, double
     std::string why = wall_.reason();
     block("item " + std::to_string(step_now()->item) + ": " + why);
   } else if (wall_.state() == WallDrive::State::Done) {
+    doing_ = Doing::Nothing;
+    reached(*step_now());
+  }
+  return out;
+}
+
+/// Likewise past landmarks; after a restart so many are behind.
+bool Executor::enter_landmarks(const RouteStep& step) {
+  const LandmarksToPass& pass = *step.landmarks;
+  LandmarkDrive::Order order;
+  order.side = pass.side;
+  order.offset_m = pass.offset_m;
+  order.name = pass.name;
+  order.speed_mps = pass.speed_mps;
+  order.count = pass.count;
+  order.passed = static_cast<int>(std::clamp(left_, 0.0, kMostPassed));
+  left_ = 0.0;
+  standing_.reset();
+  drove_ = true;
+  doing_ = Doing::Landmarks;
+  landmarks_.begin(std::move(order));
+  return true;
+}
+
+TrackOutput Executor::step_landmarks(const Vehicle& vehicle, double limit_mps, double dt_s) {
+  if (!mark_sight_) {
+    block("nothing on this robot sees landmarks");
+    return {};
+  }
+  const TrackOutput out = landmarks_.step(*mark_sight_, vehicle, limit_mps, dt_s);
+  if (landmarks_.state() == LandmarkDrive::State::Failed) {
+    std::string why = landmarks_.reason();
+    block("item " + std::to_string(step_now()->item) + ": " + why);
+  } else if (landmarks_.state() == LandmarkDrive::State::Done) {
     doing_ = Doing::Nothing;
     reached(*step_now());
   }

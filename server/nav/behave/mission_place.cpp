@@ -53,6 +53,9 @@ std::optional<base::MissionPlace> Executor::place() const {
   if (counts && step->kind == StepKind::Wall) {
     p.left = doing_ == Doing::Wall ? wall_.driven_m() : left_;
   }
+  if (counts && step->kind == StepKind::Landmarks) {
+    p.left = doing_ == Doing::Landmarks ? landmarks_.passed() : left_;
+  }
   if (counts && step->kind == StepKind::Move && doing_ == Doing::Connector) {
     const double driven_m = tracker_.path() == &connector_ ? tracker_.s_m() : 0.0;
     const double left_m = std::max(0.01, connector_.length_m() - driven_m);

@@ -141,6 +141,7 @@ Progress Executor::progress(std::optional<EnuPoint> here, double sigma_m) const 
   if (running() && tracking) p.cross_track_m = tracker_.cross_track_m();
   if (running() && doing_ == Doing::Row) p.cross_track_m = row_.cross_track_m();
   if (running() && doing_ == Doing::Wall) p.cross_track_m = wall_.cross_track_m();
+  if (running() && doing_ == Doing::Landmarks) p.cross_track_m = landmarks_.cross_track_m();
   if (const auto lap = left(*step, here)) {
     const Left more = laps_left();
     const bool waits = doing_ == Doing::Wait || (stays_ && !step->endless);

@@ -16,6 +16,8 @@ namespace {
 using base::FieldError;
 using mission::AtEnd;
 
+/// What counts as a landmark is no thicker: the default of nav.landmarks.max_radius_m.
+constexpr double kLandmarkRadius_m = 0.25;
 constexpr double kNodeEvery_rad = base::kPi / 12.0;  // of a circle
 constexpr double kMostCircled_m = 50'000.0;
 constexpr double kMostPlaces = 200'000.0;  // as many as a mission may have items
@@ -181,6 +183,24 @@ class Layout {
     wall.length_m = w.length_m;
     leave_circle();
     forth().steps.push_back({.kind = StepKind::Wall, .item = item_, .wall = wall});
+  }
+  void add(const mission::Landmarks& l) {
+    if (params_.tool.pulled()) return refuse("with a trailer no landmarks are passed by sight");
+    // The offset is to a landmark's middle.
+    const double clear_m = 0.5 * params_.vehicle.width_m + kLandmarkRadius_m;
+    if (std::abs(l.offset_m) <= clear_m) {
+      return refuse("passes landmarks at " + tenths_text(std::abs(l.offset_m)) +
+                    ": this vehicle would drive over them");
+    }
+    not_back_and_forth("a way past landmarks");
+    LandmarksToPass pass;
+    pass.side = l.offset_m > 0.0 ? marks::Side::Right : marks::Side::Left;
+    pass.offset_m = std::abs(l.offset_m);
+    pass.name = l.name == mission::kAnyLandmark ? "" : l.name;
+    pass.speed_mps = l.speed_mps;
+    if (l.count.value_or(0) > 0) pass.count = l.count;
+    leave_circle();
+    forth().steps.push_back({.kind = StepKind::Landmarks, .item = item_, .landmarks = pass});
   }
   void add(const mission::Action& a) {
     forth().steps.push_back({.kind = StepKind::Act,
@@ -452,6 +472,7 @@ class Layout {
       case StepKind::Wall:
         if (!step.wall->length_m) break;
         return *step.wall->length_m / std::max(0.1, step.wall->speed_mps.value_or(speed_mps_));
+      case StepKind::Landmarks:
       case StepKind::Home:
       case StepKind::Jump:
       case StepKind::Act:

@@ -16,7 +16,7 @@
 namespace roverd::nav {
 
 /// Face, Act and Stay belong to the waypoint before them.
-enum class StepKind { Go, Wait, Home, Jump, Face, Turn, Move, Act, Stay, Row, Wall };
+enum class StepKind { Go, Wait, Home, Jump, Face, Turn, Move, Act, Stay, Row, Wall, Landmarks };
 
 /// A row to drive along by sight.
 struct RowToDrive {
@@ -31,6 +31,15 @@ struct WallToDrive {
   double distance_m = 0.9;
   std::optional<double> speed_mps;  ///< empty: the default of what is driven by sight
   std::optional<double> length_m;   ///< empty: to its end
+};
+
+/// Landmarks to drive past by sight.
+struct LandmarksToPass {
+  marks::Side side = marks::Side::Left;  ///< of the vehicle, where they are
+  double offset_m = 0.7;
+  std::string name;                 ///< empty: all
+  std::optional<double> speed_mps;  ///< empty: the default of what is driven by sight
+  std::optional<int> count;         ///< empty: to the last one that is seen
 };
 
 /// One thing to do. `item` is the number people see (from 1).
@@ -51,9 +60,12 @@ struct RouteStep {
   std::string arguments{};            ///< Act: JSON
   std::optional<RowToDrive> row{};    ///< Row
   std::optional<WallToDrive> wall{};  ///< Wall
+  std::optional<LandmarksToPass> landmarks{};  ///< Landmarks
 
   /// Along what is seen: where it leads shows on the way.
-  bool by_sight() const noexcept { return kind == StepKind::Row || kind == StepKind::Wall; }
+  bool by_sight() const noexcept {
+    return kind == StepKind::Row || kind == StepKind::Wall || kind == StepKind::Landmarks;
+  }
 };
 
 /// A waypoint of the route, in metres.

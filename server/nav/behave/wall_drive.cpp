@@ -10,9 +10,7 @@
 namespace roverd::nav {
 namespace {
 
-constexpr double kStraightBehind_m = 0.5;  // the way to look along begins so far behind the robot
-constexpr double kSureOfEnd_s = 0.6;       // standing there, it looks on for so long
-constexpr double kWallYawSigma_rad = 0.02;
+constexpr double kSureOfEnd_s = 0.6;  // standing there, it looks on for so long
 constexpr double kDone_m = 0.05;
 constexpr double kStops_mps = 0.05;  // above the slowest speed: braked
 
@@ -104,9 +102,7 @@ void WallDrive::count(const marks::Pose2& body) noexcept {
 
 /// Lays the way along what is known. @return false: nobody looks, or there is no wall.
 bool WallDrive::look(const MarkSight& sight) {
-  const bool fresh =
-      sight.view != nullptr && base::seconds(sight.now - sight.view->stamp) <= params_.sight->old_s;
-  if (!fresh) {
+  if (!sight.fresh(*params_.sight)) {
     laid_.reset();
     return false;
   }
@@ -131,15 +127,8 @@ bool WallDrive::look(const MarkSight& sight) {
 /// Straight on from here.
 void WallDrive::seek(const marks::Pose2& body) {
   if (drive_.state() != marks::SightDrive::State::Idle) return;
-  marks::Way way;
-  for (const double at_m : {-kStraightBehind_m, params_.sight->entry_m}) {
-    const marks::Vec2 at = marks::placed(body, {at_m, 0.0});
-    Vertex v;
-    v.at = {at.x, at.y};
-    v.speed_mps = path_params_->speed.max_mps;  // step() cuts it
-    way.vertices.push_back(v);
-  }
-  way.here_m = kStraightBehind_m;
+  // step() cuts its speed.
+  const auto way = straight_on(body, params_.sight->entry_m, path_params_->speed.max_mps);
   const std::string side = order_.side == marks::Side::Left ? "left" : "right";
   if (!drive_.take(way)) fail("no wall is seen on the " + side);
 }
@@ -174,12 +163,7 @@ void WallDrive::judge(double dt_s) {
 TrackOutput WallDrive::step(const MarkSight& sight, const Vehicle& vehicle, double limit_mps,
                             double dt_s) {
   if (state_ != State::Seeking && state_ != State::Driving) return {};
-  Vehicle v = vehicle;
-  v.at = {sight.body.x_m, sight.body.y_m};
-  v.yaw_rad = sight.body.yaw_rad;
-  v.yaw_sigma_rad = std::min(v.yaw_sigma_rad, kWallYawSigma_rad);
-  v.slide = {};
-  v.crab = 0.0;
+  const Vehicle v = by_odometry(sight, vehicle);
   count(sight.body);
   unseen_s_ = look(sight) ? 0.0 : unseen_s_ + dt_s;
   if (state_ == State::Seeking) seek(sight.body);

@@ -14,43 +14,11 @@
 #include <optional>
 #include <string>
 
-#include "base/params.hpp"
 #include "base/setting.hpp"
+#include "nav/behave/mark_sight.hpp"
 #include "nav/marks/sight_drive.hpp"
-#include "nav/marks/view.hpp"
 
 namespace roverd::nav {
-
-/// Section [nav.sight]: along walls.
-struct SightParams {
-  double speed_mps = 0.6;
-  double creep_mps = 0.2;
-  double entry_m = 2.0;
-  double old_s = 0.6;
-  double wait_s = 5.0;
-};
-
-template <class V>
-void fields(V& v, SightParams& p) {
-  v("speed_mps", p.speed_mps, 0.05, 3.0, "along a wall whose item says no speed");
-  v("creep_mps", p.creep_mps, 0.05, 1.0, "towards a wall that is not seen yet");
-  v("entry_m", p.entry_m, 0.0, 20.0, "so far it creeps straight on until it sees the wall");
-  v("old_s", p.old_s, 0.2, 3.0,
-    base::lower_is_stricter("an older view stops it; so does a side without a wall for so long"));
-  v("wait_s", p.wait_s, 0.0, 600.0, "standing without a wall for so long, the item has failed");
-}
-
-struct MarkSettings {
-  base::Setting<SightParams> sight{};
-  base::Setting<marks::WallParams> walls{};
-};
-
-/// What is known of walls at one tick.
-struct MarkSight {
-  const marks::View* view = nullptr;  ///< null: nothing was looked at yet
-  base::Time now;
-  marks::Pose2 body;  ///< X_OB now
-};
 
 class WallDrive {
  public:

@@ -9,9 +9,19 @@ namespace {
 
 constexpr double kBackwards = -0.17;  ///< cos 100°: a chain turns no sharper
 constexpr double kBegan_m = 1.0;
+constexpr double kTooNear = 0.9;  ///< of the offset
+constexpr double kAbeam = 0.17;   ///< cos 80°
 
 Vec2 towards(Vec2 from, Vec2 to) noexcept {
   return (1.0 / std::max(1e-9, length(to - from))) * (to - from);
+}
+
+/// Along the straight from there that passes it at the offset, as landmark_way() lays it.
+Vec2 past(Vec2 from, Vec2 at, double sign, double offset_m) noexcept {
+  const Vec2 to = at - from;
+  const double off_rad = std::asin(std::min(1.0, offset_m / std::max(1e-9, length(to))));
+  const double yaw_rad = std::atan2(to.y, to.x) - sign * off_rad;
+  return {std::cos(yaw_rad), std::sin(yaw_rad)};
 }
 
 }  // namespace
@@ -19,8 +29,13 @@ Vec2 towards(Vec2 from, Vec2 to) noexcept {
 void Course::begin(const Pose2& pose) {
   passed_.clear();
   count_ = 0;
+  go_on(pose);
+}
+
+void Course::go_on(const Pose2& pose) {
   target_.reset();
   first_.reset();
+  began_here_ = true;
   behind_ = {placed(pose, {-kBegan_m, 0.0}), placed(pose, {0.0, 0.0})};
 }
 
@@ -63,6 +78,7 @@ void Course::pass(const Landmark& l, Vec2 at, Vec2 out) {
   passed_.push_back(l);
   if (passed_.size() > kPassed) passed_.pop_front();
   ++count_;
+  began_here_ = false;
   behind_ = {at - kBegan_m * out, at};
 }
 
@@ -72,9 +88,24 @@ Way Course::lay(std::span<const Landmark> known, const Pose2& pose, Side side,
   const Vec2 heading{std::cos(pose.yaw_rad), std::sin(pose.yaw_rad)};
   const double sign = side == Side::Left ? 1.0 : -1.0;
   auto chain = chain_from(known, here, heading, name, params);
+  too_near_m_.reset();
+  if (!chain.empty() && began_here_ && chain[0].id != first_) {
+    // No way leads from here to its passing point but backwards.
+    const Vec2 to = chain[0].at - here;
+    if (length(to) < kTooNear * params.offset_m) {
+      const bool abeam = std::abs(sense::dot(towards(here, chain[0].at), heading)) < kAbeam &&
+                         sign * sense::cross(heading, to) > 0.0;
+      if (abeam) {
+        pass(chain[0], here, heading);
+        chain.erase(chain.begin());
+      } else {
+        too_near_m_ = length(to);
+      }
+    }
+  }
   if (!chain.empty()) {
-    const Vec2 out =
-        chain.size() > 1 ? towards(chain[0].at, chain[1].at) : towards(behind_.back(), chain[0].at);
+    const Vec2 out = chain.size() > 1 ? towards(chain[0].at, chain[1].at)
+                                      : past(behind_.back(), chain[0].at, sign, params.offset_m);
     // Abeam, and about where it should be passed: one that is far aside is still to be driven to.
     const Vec2 off = here - chain[0].at;
     if (sense::dot(off, out) > 0.0 && length(off) < 2.0 * params.offset_m) {

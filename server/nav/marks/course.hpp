@@ -25,6 +25,8 @@ class Course {
   static constexpr std::size_t kPassed = 64;  ///< remembered
 
   void begin(const Pose2& pose);
+  /// From wherever the vehicle is now; what was passed stays passed.
+  void go_on(const Pose2& pose);
   /// @param name only those of this name; empty: all. @param known believed or not
   Way lay(std::span<const Landmark> known, const Pose2& pose, Side side, const std::string& name,
           double speed_mps, const LandmarkParams& params);
@@ -32,6 +34,9 @@ class Course {
   int passed() const noexcept { return count_; }
   /// The id of the one that counts; empty: none is ahead.
   std::optional<std::uint32_t> target() const noexcept { return target_; }
+  /// The vehicle began so near to the first one that it cannot be passed at the offset: the way
+  /// that was laid must not be driven. Abeam of it, it is passed straight on.
+  std::optional<double> too_near_m() const noexcept { return too_near_m_; }
 
  private:
   bool was_passed(const Landmark& l, double near_m) const noexcept;
@@ -42,6 +47,8 @@ class Course {
   std::deque<Landmark> passed_;
   std::vector<Vec2> behind_;
   int count_ = 0;
+  bool began_here_ = false;  ///< none was passed since it goes on
+  std::optional<double> too_near_m_;
   std::optional<std::uint32_t> target_;
   std::optional<std::uint32_t> first_;  ///< of the chain
 };

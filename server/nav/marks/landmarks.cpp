@@ -17,6 +17,7 @@ constexpr double kKeep_s = 60.0;  ///< out of view
 constexpr double kFarAway_m = 15.0;
 constexpr double kVisionSigma_m = 0.05;
 constexpr double kVisionSigmaOfRange = 0.02;
+constexpr double kNothingBack = 0.5;   ///< where no echo comes back it may be dark, or gone
 constexpr double kLongestGap_s = 0.5;  ///< between two pieces, of the time unseen
 
 double since(base::Time& last, base::Time now) noexcept {
@@ -32,22 +33,22 @@ bool gone(const Landmark& mark, double unseen_s, base::Time now,
   return unseen_s > params.forget_s || age_s > (mark.believed ? kKeep_s : 1.0);
 }
 
-/// The scan looked there, and saw something farther, or was free to.
-bool in_view(const PlanarScan& scan, Vec2 at_b, double by_m) noexcept {
+/// How much it counts that the scan did not see what stood there: 1 where it saw something farther,
+/// less where nothing came back; 0: it did not look, or something stands before it.
+double missed(const PlanarScan& scan, Vec2 at_b, double by_m) noexcept {
   const Vec2 to = at_b - scan.eye;
   const double range_m = length(to);
-  if (range_m < 1e-6) return false;
-  int beyond = 0;
+  if (range_m < 1e-6) return 0.0;
+  double out = 0.0;
   for (const Beam& beam : scan.beams) {
     const Vec2 ray = beam.at - scan.eye;
     const double ray_m = length(ray);
-    if (!beam.hit || ray_m < 1e-6 || sense::dot(ray, to) <= 0.0) continue;
-    const double miss_m = std::abs(sense::cross(ray, to)) / ray_m;
-    if (miss_m > by_m) continue;
-    if (ray_m < range_m - 0.2) return false;  // something stands before it
-    ++beyond;
+    if (ray_m < 1e-6 || sense::dot(ray, to) <= 0.0) continue;
+    if (std::abs(sense::cross(ray, to)) / ray_m > by_m) continue;
+    if (beam.hit && ray_m < range_m - 0.2) return 0.0;  // something stands before it
+    out = std::max(out, beam.hit ? 1.0 : kNothingBack);
   }
-  return beyond > 0;
+  return out;
 }
 
 }  // namespace
@@ -119,7 +120,7 @@ void Landmarks::take(const PlanarScan& scan, const LandmarkParams& params) {
   for (std::size_t i = 0; i < kept_.size(); ++i) {
     const Vec2 at = placed(bo, kept_[i].mark.at);
     const bool ours = kept_[i].mark.by_scan && length(at) < 0.8 * params.max_range_m;
-    if (!met[i] && ours && in_view(scan, at, 0.05)) kept_[i].unseen_s += dt_s;
+    if (!met[i] && ours) kept_[i].unseen_s += dt_s * missed(scan, at, 0.05);
   }
   std::erase_if(kept_, [&](const Kept& k) {
     return gone(k.mark, k.unseen_s, scan.stamp, params) ||

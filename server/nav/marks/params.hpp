@@ -37,6 +37,7 @@ void fields(V& v, WallParams& p) {
   v("min_points", p.min_points, 5.0, 200.0, "nor are pieces of fewer points");
   v("max_rms_m", p.max_rms_m, 0.005, 0.3, "nor what is less straight");
   v("door_m", p.door_m, 0.0, 5.0, "a gap up to this width is a door: the wall goes on behind it");
+  v("min_plane_size", p.min_plane_size, 0.0, 1e6, "a camera's smaller planes are no wall");
   v("way_m", p.way_m, 1.0, 10.0, "the way along the wall is laid so far ahead");
   v("corner_m", p.corner_m, 0.02, 1.0, "how far an inner corner may be cut");
   v("keep_s", p.keep_s, 1.0, 300.0, "a wall that is not seen any more is kept so long");
@@ -50,8 +51,8 @@ struct LandmarkParams {
   double near_m = 0.5;
   double confirm = 3.0;
   double forget_s = 1.0;
-  double offset_m = 0.7;
-  double next_m = 0.6;
+  double offset_m = 0.7;  ///< they are passed at this distance: each item says its own
+  double next_m = 0.6;  ///< nearer to its passing point than this the next one counts
   double gain = 18.0;
   double on_m = 1.0;
 };
@@ -65,9 +66,6 @@ void fields(V& v, LandmarkParams& p) {
   v("near_m", p.near_m, 0.1, 2.0, "what is seen this close to a known landmark is that landmark");
   v("confirm", p.confirm, 1.0, 50.0, "seen so often it is believed");
   v("forget_s", p.forget_s, 0.2, 60.0, "in view and not seen for so long it is gone");
-  v("offset_m", p.offset_m, 0.2, 5.0, "it is passed at this distance");
-  v("next_m", p.next_m, 0.1, 5.0, "nearer to its passing point than this the next one counts");
-  v("gain", p.gain, 0.1, 100.0, "by bearing: tenths of rad/s of turn for a bearing of 1 rad");
   v("on_m", p.on_m, 0.2, 5.0, "behind the last one it drives on so far, and stops");
 }
 

@@ -113,7 +113,7 @@ void Lookout::take(const base::Sight& sight, base::Time now) {
   news_ = true;
 }
 
-/// A piece that is too short, blind or unplaced tells nothing of walls.
+/// A piece that is too short, blind or unplaced tells nothing of walls and landmarks.
 void Lookout::look_beside(const base::Sight& sight, std::size_t number) {
   auto& last = beside_at_[number];
   if (!chain_.sensor(number).planar) return;
@@ -124,9 +124,29 @@ void Lookout::look_beside(const base::Sight& sight, std::size_t number) {
   }
   last = sight.stamp;
   walls_.take(beside_scan_, wall_params_);
+  landmarks_.take(beside_scan_, landmark_params_);
+  tell_beside(beside_scan_.stamp);
+}
+
+void Lookout::recognise(std::shared_ptr<const base::Vision> vision) {
+  const auto camera = std::ranges::find(cameras_, vision->sensor, &Camera::name);
+  const auto pose = history_.at(vision->stamp);
+  if (camera == cameras_.end() || !pose) return;
+  const auto wall = nav::marks::wall_of(*vision, camera->mount, wall_params_);
+  if (wall) walls_.take(*wall, *pose, vision->stamp, wall_params_);
+  landmarks_.take(*vision, camera->mount, *pose, camera->half_view_rad, landmark_params_);
+  tell_beside(vision->stamp);
+  std::erase_if(images_, [&](const Image& old) { return old.seen->sensor == vision->sensor; });
+  images_.push_back({std::move(vision), camera->mount});
+  news_ = true;
+}
+
+/// A view is as new as the newest that told of it.
+void Lookout::tell_beside(base::Time seen) {
   auto view = std::make_shared<nav::marks::View>();
-  view->stamp = beside_scan_.stamp;
+  view->stamp = beside_ ? std::max(beside_->stamp, seen) : seen;
   view->walls = walls_.all();
+  view->landmarks = landmarks_.all();
   beside_ = std::move(view);
 }
 
@@ -259,7 +279,9 @@ std::shared_ptr<const Surroundings> Lookout::picture(base::Time now) {
 
 std::shared_ptr<const Outlook> Lookout::outlook(const OutlookParams& params, base::Time now) const {
   if (history_.empty()) return nullptr;
-  return std::make_shared<Outlook>(outlook_of(chain_, scans_, history_.newest(), params, now));
+  auto out = std::make_shared<Outlook>(outlook_of(chain_, scans_, history_.newest(), params, now));
+  tell_marks(*out, beside_.get(), images_);
+  return out;
 }
 
 }  // namespace roverd::robot

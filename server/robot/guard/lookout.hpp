@@ -14,8 +14,8 @@
 // for ground that nobody has seen, if another one sees; not while that lies behind, and no more
 // when the robot is farther from it than the rays reach.
 //
-// Walls are looked for in the pieces of scanners that look along one plane, ten times a second of
-// each.
+// Walls and landmarks are looked for in the pieces of scanners that look along one plane, ten times
+// a second of each.
 //
 // A sight that is newer than the odometry by no more than a tick is placed along the last twist:
 // within 25 ms a change by 2 m/s2 and 2 rad/s2 is 0.6 mm and 0.6 mrad, and to wait for the next
@@ -27,10 +27,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/sensing.hpp"
 #include "base/sight.hpp"
+#include "base/vision.hpp"
 #include "nav/marks/scan.hpp"
 #include "nav/marks/view.hpp"
 #include "nav/rows/finder.hpp"
@@ -42,6 +44,13 @@
 
 namespace roverd::robot {
 
+/// A camera whose program tells what it recognised.
+struct Camera {
+  std::string name;
+  base::Mount mount;
+  double half_view_rad = 0.5;  ///< it sees so far to either side of its axis
+};
+
 class Lookout {
  public:
   /// @param kinds of the chain's sensors, as their profile says
@@ -52,12 +61,21 @@ class Lookout {
   /// What may change while it looks: how far the guard looks, and its counted rays (checked).
   void follow(const nav::sense::ProtectParams& protect, const nav::sense::RaysParams& rays);
 
-  /// What is taken for a wall from now on.
-  void follow(const nav::marks::WallParams& walls) { wall_params_ = walls; }
+  /// What is taken for a wall, and for a landmark, from now on.
+  void follow(const nav::marks::WallParams& walls, const nav::marks::LandmarkParams& landmarks) {
+    wall_params_ = walls;
+    landmark_params_ = landmarks;
+  }
+
+  /// What these see is taken from now on.
+  void watch_by(std::vector<Camera> cameras) { cameras_ = std::move(cameras); }
 
   void moved(const nav::sense::Odometry& o) noexcept;
   /// @param sight one of the chain's sensors, or it is left out
   void see(std::shared_ptr<const base::Sight> sight, base::Time now);
+  /// @param vision of one of the cameras, or it is left out; so is one of a time of which the
+  /// odometry knows nothing
+  void recognise(std::shared_ptr<const base::Vision> vision);
   /// The row that is to be found from now on. The same id again: the same row, by other parameters.
   void look_for(const RowQuestion& row);
   /// Takes what waited; then what is known around the robot. Null: nothing was seen since the last
@@ -72,6 +90,7 @@ class Lookout {
   void count(std::size_t number, base::Time seen, base::Time now);
   void near(std::size_t number, base::Time seen, base::Time now);
   void look_beside(const base::Sight& sight, std::size_t number);
+  void tell_beside(base::Time seen);
   void tell_rays(Surroundings& out, base::Time now);
 
   nav::sense::Chain chain_;
@@ -93,8 +112,12 @@ class Lookout {
   std::vector<std::optional<Counted>> counted_;  ///< by sensor: it says stop
   nav::marks::WallParams wall_params_;
   nav::marks::Walls walls_;
+  nav::marks::LandmarkParams landmark_params_;
+  nav::marks::Landmarks landmarks_;
   nav::marks::PlanarScan beside_scan_;  ///< the last one
   std::shared_ptr<const nav::marks::View> beside_;
+  std::vector<Camera> cameras_;
+  std::vector<Image> images_;                         ///< the last one of each
   std::vector<std::optional<base::Time>> beside_at_;  ///< by sensor: looked for walls last
   RowQuestion row_;
   std::optional<nav::rows::RowFinder> finder_;

@@ -7,12 +7,16 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/sensing.hpp"
+#include "base/sight.hpp"
 #include "base/time.hpp"
+#include "base/vision.hpp"
+#include "nav/marks/view.hpp"
 #include "nav/sense/chain.hpp"
 #include "nav/sense/footprint.hpp"
 #include "nav/sense/odometry.hpp"
@@ -71,6 +75,59 @@ struct Outlook {
     std::vector<Spot> spots;
   };
   std::vector<Scan> scans;  ///< those that saw anything yet
+
+  /// Landmarks and walls that are known (nav/marks), in B at the stamp.
+  struct Mark {
+    std::uint32_t id = 0;
+    std::string name;  ///< empty: nobody named it
+    double ahead_m = 0.0;
+    double left_m = 0.0;
+    double sigma_m = 0.0;
+    double radius_m = 0.0;  ///< 0: not known
+    bool by_scan = false;
+    bool by_vision = false;
+    bool believed = false;
+    double age_s = 0.0;  ///< at the stamp, as all ages here
+  };
+  struct Wall {
+    std::uint32_t id = 0;
+    bool by_vision = false;  ///< told last so
+    bool believed = false;
+    double distance_m = 0.0;  ///< from the body's origin to its line
+    double from_ahead_m = 0.0;
+    double from_left_m = 0.0;
+    double to_ahead_m = 0.0;
+    double to_left_m = 0.0;
+    double sigma_m = 0.0;
+    double age_s = 0.0;
+  };
+  /// What a camera's program told in its last image, in B when it was taken.
+  struct CameraSpot {
+    std::string sensor;
+    double ahead_m = 0.0;
+    double left_m = 0.0;
+    double up_m = 0.0;
+    double age_s = 0.0;
+  };
+  struct CameraPlane {
+    CameraSpot centre;
+    double normal_ahead = 0.0;
+    double normal_left = 0.0;
+    double normal_up = 0.0;
+    double size = 0.0;
+  };
+  static constexpr std::size_t kMostSpots = 256;  ///< of all cameras together
+  static constexpr std::size_t kMostPlanes = 64;
+  std::vector<Mark> landmarks;  ///< the nearest first
+  std::vector<Wall> walls;
+  std::vector<CameraSpot> spots;
+  std::vector<CameraPlane> planes;
+};
+
+/// What a camera's program recognised last.
+struct Image {
+  std::shared_ptr<const base::Vision> seen;
+  base::Mount mount;
 };
 
 struct OutlookParams {
@@ -93,5 +150,8 @@ struct KeptScan {
 /// @param body of the newest odometry
 Outlook outlook_of(const nav::sense::Chain& chain, const std::vector<KeptScan>& scans,
                    const nav::sense::Odometry& body, const OutlookParams& params, base::Time now);
+
+/// Fills in what is known of landmarks and walls, and what cameras told. @param marks may be null
+void tell_marks(Outlook& out, const nav::marks::View* marks, const std::vector<Image>& images);
 
 }  // namespace roverd::robot

@@ -168,7 +168,7 @@ class WorldDrive {
     rows_.clear();
     stage_.robot().row_questions().take(rows_);
     if (!rows_.empty()) lookout_.look_for(rows_.back());
-    lookout_.follow(stage_.robot().config()->wall);
+    lookout_.follow(stage_.robot().config()->wall, stage_.robot().config()->landmarks);
     for (const auto& o : moved_) lookout_.moved(o);
     done_.clear();
     stage_.robot().surroundings_done().take(done_);

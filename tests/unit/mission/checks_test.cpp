@@ -90,7 +90,8 @@ TEST(Check, TellsWhatMustBeConfiguredForAType) {
   EXPECT_EQ(report.errors, 3u);
   EXPECT_EQ(report.findings.at(0).pointer, "/items/1");
   EXPECT_NE(report.findings.at(0).detail.find("no scanner"), std::string::npos);
-  EXPECT_NE(report.findings.at(2).detail.find("no vision"), std::string::npos);
+  EXPECT_NE(report.findings.at(1).detail.find("no scanner or camera"), std::string::npos);
+  EXPECT_NE(report.findings.at(2).detail.find("no scanner or camera"), std::string::npos);
 }
 
 TEST(Check, ACarNeedsRoomToTurn) {

@@ -39,7 +39,7 @@ inline Plan plan_with_every_item() {
       Row{.side = RowSide::Right, .gap_m = 0.8, .distance_m = 12.5, .seeing = RowSeeing::Rays},
       Row{.side = RowSide::Left},
       Wall{Side::Right, 0.9},
-      Landmarks{"cone", 0.7},
+      Landmarks{"cone", 0.7, 0.4, 5},
       Jump{2, 0},
       Action{"spray", {{"nozzle", 3}, {"on", true}, {"note", {1, "a", nullptr}}}},
       ReturnHome{},
@@ -118,7 +118,7 @@ class RandomPlans {
       case 6:
         return Wall{side(), number(0.1, 20.0)};
       case 7:
-        return Landmarks{"cone", number(-20.0, 20.0)};
+        return Landmarks{"cone", number(-20.0, 20.0), maybe(0.01, 10.0)};
       case 8: {
         const int to = whole(1, items);
         if (to != index + 1) return Jump{to, whole(0, 100)};

@@ -19,8 +19,20 @@ TEST(Route, NamesEveryItemThatThisRobotCannotDoYet) {
   ASSERT_FALSE(r);
   ASSERT_EQ(r.error().fields.size(), 2u);
   EXPECT_EQ(r.error().fields[0].pointer, "/items/1");
-  EXPECT_EQ(r.error().fields[0].detail, "items of type landmarks are not available yet");
+  EXPECT_EQ(r.error().fields[0].detail, "passes landmarks at 0.0 m: this vehicle would drive over them");
   EXPECT_EQ(r.error().fields[1].pointer, "/items/3");
+}
+
+TEST(Route, TheOffsetFromALandmarkLeavesRoomForItsThickness) {
+  PathParams wide;
+  wide.vehicle.width_m = 0.78;
+  mission::Landmarks l;
+  for (const double offset_m : {0.45, -0.45, 0.63}) {
+    l.offset_m = offset_m;
+    EXPECT_FALSE(lay_route(plan({l}), kFrame, wide)) << offset_m;
+  }
+  l.offset_m = -0.7;
+  EXPECT_TRUE(lay_route(plan({l}), kFrame, wide));
 }
 
 TEST(Route, RefusesPlacesOutOfReachAndJumpsToNowhere) {

@@ -484,5 +484,47 @@ TEST(KeptScan, IsBoundedHoweverMuchWasSeen) {
   EXPECT_GT(kept.voxels.size(), Outlook::kMostDots / 2);
 }
 
+//   camera ─▶  a cone by name, a wall beside it; no ranging sensor at all
+TEST(Lookout, WhatACameraRecognisesIsKnownWithoutAnySensorThatLooksAround) {
+  auto chain = nav::sense::Chain::of({}, {}, footprint_of({}), at(0.0));
+  ASSERT_TRUE(chain);
+  Lookout l(std::move(*chain), {}, 6.0);
+  l.watch_by({Camera{"camera", {.x_m = 0.4}, 0.5}});
+  stand(l, 0.0, 1.0);
+  const auto image = [](const std::string& sensor, double s) {
+    auto v = std::make_shared<base::Vision>();
+    v->sensor = sensor;
+    v->stamp = at(s);
+    v->landmarks = {{"cone", {2.0, 0.5, 0.0}}};
+    v->obstacles = {{3.0, 0.0, 0.0}};
+    v->planes = {{{1.0, 0.9, 0.0}, {0.0, -1.0, 0.0}, 5000.0},
+                 {{-1.0, 0.3, 0.0}, {0.0, -1.0, 0.0}, 9000.0}};
+    return v;
+  };
+  for (int i = 0; i < 5; ++i) l.recognise(image("camera", 0.1 + 0.1 * i));
+  l.recognise(image("camera", 50.0));   // of a time of which the odometry knows nothing
+  l.recognise(image("stranger", 0.9));  // nobody's
+  const auto s = l.picture(at(1.0));
+  ASSERT_NE(s, nullptr);
+  EXPECT_TRUE(s->sensors->empty());
+  ASSERT_NE(s->beside, nullptr);
+  EXPECT_EQ(s->beside->stamp, at(0.5));
+  ASSERT_EQ(s->beside->landmarks.size(), 1u);
+  EXPECT_EQ(s->beside->landmarks[0].name, "cone");
+  EXPECT_TRUE(s->beside->landmarks[0].believed);
+  EXPECT_NEAR(s->beside->landmarks[0].at.x, 2.4, 1e-6);
+  ASSERT_EQ(s->beside->walls.size(), 1u) << "the one behind the camera is a false one";
+  EXPECT_NEAR(std::abs(s->beside->walls[0].distance_m({0.0, 0.0})), 0.9, 1e-6);
+  const auto shown = l.outlook({.body = footprint_of({})}, at(1.0));
+  ASSERT_NE(shown, nullptr);
+  ASSERT_EQ(shown->landmarks.size(), 1u);
+  EXPECT_NEAR(shown->landmarks[0].ahead_m, 2.4, 1e-6);
+  EXPECT_TRUE(shown->landmarks[0].by_vision);
+  EXPECT_EQ(shown->walls.size(), 1u);
+  ASSERT_EQ(shown->spots.size(), 1u);
+  EXPECT_NEAR(shown->spots[0].ahead_m, 3.4, 1e-6);
+  EXPECT_EQ(shown->planes.size(), 2u) << "the table shows what was told";
+}
+
 }  // namespace
 }  // namespace roverd::robot

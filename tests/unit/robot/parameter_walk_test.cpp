@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "landmark_scenes.hpp"
 #include "row_scenes.hpp"
 #include "scenes.hpp"
 #include "seeing_scenes.hpp"
@@ -60,6 +61,7 @@ std::vector<base::ParamValue> others(const Parameter& p) {
 /// walls along a wall.
 const std::vector<Scene>& scenes_of(const Parameter& p) {
   if (p.section == "nav.row" || p.section == "nav.rows") return kRowScenes;
+  if (p.section == "nav.landmarks") return kLandmarkScenes;
   if (p.section == "nav.sight" || p.section == "nav.wall") return kWallScenes;
   return p.section.starts_with("sense.") ? kSeeingScenes : kScenes;
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/angle.hpp"
+#include "base/vision.hpp"
 #include "seeing_scenes.hpp"
 
 namespace roverd::robot {
@@ -20,10 +21,15 @@ struct Walled {
   struct Slab {
     double x0_m, y0_m, x1_m, y1_m;
   };
+  struct Post {
+    double x_m, y_m, radius_m;
+  };
   static constexpr double kClear_m = 12.0;
   std::vector<Slab> slabs;
-  bool dark = false;  ///< to the left nothing comes back
-  bool told = true;   ///< what is seen of walls reaches the robot
+  std::vector<Post> posts{};
+  std::optional<base::VisionPlane> plane{};  ///< a camera at the body's origin tells it
+  bool dark = false;                         ///< to the left nothing comes back
+  bool told = true;                          ///< what is seen of walls reaches the robot
 
   std::optional<double> met_m(const nav::sense::Pose2& eye, double bearing_rad) const {
     const double c = std::cos(eye.yaw_rad + bearing_rad);
@@ -39,6 +45,15 @@ struct Walled {
       const double r = (x * uy - y * ux) / det;
       const double part = (x * s - y * c) / det;
       if (r < 0.05 || r > kClear_m || part < 0.0 || part > 1.0) continue;
+      if (r < out.value_or(kClear_m)) out = r;
+    }
+    for (const Post& p : posts) {
+      const double x = p.x_m - eye.x_m;
+      const double y = p.y_m - eye.y_m;
+      const double off = c * y - s * x;
+      const double to = c * x + s * y;
+      if (to < 0.05 || std::abs(off) >= p.radius_m) continue;
+      const double r = to - std::sqrt(p.radius_m * p.radius_m - off * off);
       if (r < out.value_or(kClear_m)) out = r;
     }
     return out;
@@ -79,12 +94,13 @@ inline std::shared_ptr<Walled> look_along_walls(Walk& w, std::vector<Walled::Sla
   auto eyes = std::make_shared<Lookout>(*nav::sense::Chain::of({}, {eye}, footprint_of({}), w.now),
                                         std::vector<std::string>{"sick"}, begun->protect.reach_m,
                                         begun->rays);
+  eyes->watch_by({Camera{"camera", {}, 1.0}});
   guard_as_configured(w);
   auto walled = std::make_shared<Walled>();
   walled->slabs = std::move(slabs);
   w.more = [&w, eyes, walled, body = nav::sense::Pose2{},
             last = std::shared_ptr<const nav::marks::View>{}, ticks = 0]() mutable {
-    eyes->follow(w.robot.config()->wall);
+    eyes->follow(w.robot.config()->wall, w.robot.config()->landmarks);
     std::vector<nav::sense::Odometry> moved;
     w.robot.odometry().take(moved);
     for (const auto& o : moved) {
@@ -92,6 +108,13 @@ inline std::shared_ptr<Walled> look_along_walls(Walk& w, std::vector<Walled::Sla
       body = o.pose;
     }
     if (ticks++ % 5 != 0 || moved.empty()) return;
+    if (walled->plane) {
+      auto image = std::make_shared<base::Vision>();
+      image->sensor = "camera";
+      image->stamp = moved.back().stamp;
+      image->planes = {*walled->plane};
+      eyes->recognise(std::move(image));
+    }
     auto sight = walled->seen_from(body * nav::sense::Pose2{0.6, 0.0, 0.0});
     sight->stamp = moved.back().stamp;
     sight->count = static_cast<std::uint64_t>(ticks);
@@ -155,6 +178,17 @@ inline const std::vector<Scene> kWallScenes = {
        w.change();
        walled->told = false;
        w.run(10.0);
+     },
+     creep_beside_walls},
+    {"along a wall that a camera tells",
+     [](Walk& w) {
+       const auto walled = look_along_walls(w, {});
+       walled->plane = base::VisionPlane{{1.2, 0.9, 0.0}, {0.0, -1.0, 0.0}, 5000.0};
+       w.run(8.0);
+       w.go(a_wall());
+       w.run(3.0);
+       w.change();
+       w.run(8.0);
      },
      creep_beside_walls},
     {"where there is no wall",

@@ -1,0 +1,36 @@
+#include "nav/behave/mark_sight.hpp"
+
+#include <algorithm>
+
+namespace roverd::nav {
+namespace {
+
+constexpr double kStraightBehind_m = 0.5;  // the way to look along begins so far behind the robot
+constexpr double kSeenSigma_rad = 0.02;
+
+}  // namespace
+
+Vehicle by_odometry(const MarkSight& sight, const Vehicle& vehicle) noexcept {
+  Vehicle v = vehicle;
+  v.at = {sight.body.x_m, sight.body.y_m};
+  v.yaw_rad = sight.body.yaw_rad;
+  v.yaw_sigma_rad = std::min(v.yaw_sigma_rad, kSeenSigma_rad);
+  v.slide = {};
+  v.crab = 0.0;
+  return v;
+}
+
+marks::Way straight_on(const marks::Pose2& body, double ahead_m, double speed_mps) {
+  marks::Way way;
+  for (const double at_m : {-kStraightBehind_m, ahead_m}) {
+    const marks::Vec2 at = marks::placed(body, {at_m, 0.0});
+    Vertex v;
+    v.at = {at.x, at.y};
+    v.speed_mps = speed_mps;
+    way.vertices.push_back(v);
+  }
+  way.here_m = kStraightBehind_m;
+  return way;
+}
+
+}  // namespace roverd::nav

@@ -1,0 +1,58 @@
+#pragma once
+// What is common to the items that are driven by what is seen of walls and landmarks (nav/marks),
+// in the frame O of the odometry: their parameters, what they are told, how they begin. Pure.
+
+#include "base/params.hpp"
+#include "base/setting.hpp"
+#include "nav/marks/params.hpp"
+#include "nav/marks/view.hpp"
+#include "nav/marks/ways.hpp"
+#include "nav/track/tracker.hpp"
+
+namespace roverd::nav {
+
+/// Section [nav.sight]: along walls and past landmarks.
+struct SightParams {
+  double speed_mps = 0.6;
+  double creep_mps = 0.2;
+  double entry_m = 2.0;
+  double old_s = 0.6;
+  double wait_s = 5.0;
+};
+
+template <class V>
+void fields(V& v, SightParams& p) {
+  v("speed_mps", p.speed_mps, 0.05, 3.0, "along a wall or past landmarks whose item says no speed");
+  v("creep_mps", p.creep_mps, 0.05, 1.0, "towards a wall or landmark that is not seen yet");
+  v("entry_m", p.entry_m, 0.0, 20.0,
+    "so far it creeps straight on until it sees the wall or a landmark");
+  v("old_s", p.old_s, 0.2, 3.0,
+    base::lower_is_stricter(
+        "an older view stops it; so does a side without a wall, or no landmark, for so long"));
+  v("wait_s", p.wait_s, 0.0, 600.0,
+    "standing without a wall or landmark for so long, the item has failed");
+}
+
+struct MarkSettings {
+  base::Setting<SightParams> sight{};
+  base::Setting<marks::WallParams> walls{};
+  base::Setting<marks::LandmarkParams> landmarks{};
+};
+
+/// What is known of walls and landmarks at one tick.
+struct MarkSight {
+  const marks::View* view = nullptr;  ///< null: nothing was looked at yet
+  base::Time now;
+  marks::Pose2 body;  ///< X_OB now
+
+  bool fresh(const SightParams& params) const noexcept {
+    return view != nullptr && base::seconds(now - view->stamp) <= params.old_s;
+  }
+};
+
+/// The vehicle in O: its place and direction by the odometry, which is sure of what is seen by it.
+Vehicle by_odometry(const MarkSight& sight, const Vehicle& vehicle) noexcept;
+/// Straight on from here, until something is seen.
+marks::Way straight_on(const marks::Pose2& body, double ahead_m, double speed_mps);
+
+}  // namespace roverd::nav
