@@ -133,6 +133,8 @@ void Lookout::recognise(std::shared_ptr<const base::Vision> vision) {
   const auto pose = history_.at(vision->stamp);
   if (camera == cameras_.end() || !pose) return;
   const auto wall = nav::marks::wall_of(*vision, camera->mount, wall_params_);
+  // Before the take: a glance must not call back a wall that is too old.
+  walls_.expire(vision->stamp, {pose->x_m, pose->y_m}, wall_params_);
   if (wall) walls_.take(*wall, *pose, vision->stamp, wall_params_);
   landmarks_.take(*vision, camera->mount, *pose, camera->half_view_rad, landmark_params_);
   tell_beside(vision->stamp);
