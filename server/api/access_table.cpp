@@ -46,6 +46,7 @@ constexpr Row kTable[] = {
     {"GET /maps/{id}", Need::Viewer},
     {"GET /maps/{id}/cells", Need::Viewer},
     {"GET /maps/{id}/export", Need::Viewer},
+    {"GET /landmarks", Need::Viewer},
     {"GET /metrics", Need::Viewer},
     {"GET /missions", Need::Viewer},
     {"GET /missions/{id}", Need::Viewer},

@@ -15,8 +15,9 @@ Result<void> Station::Impl::open(const Settings& settings, const Options& option
   const auto see = [to = std::weak_ptr(sense)](std::shared_ptr<const base::Sight> sight) {
     if (const auto eyes = to.lock()) eyes->see(std::move(sight));
   };
-  // Nothing steers by it yet: its health stands in the drivers' list.
-  const auto recognise = [](const std::shared_ptr<const base::Vision>&) {};
+  const auto recognise = [to = std::weak_ptr(sense)](std::shared_ptr<const base::Vision> vision) {
+    if (const auto eyes = to.lock()) eyes->recognise(std::move(vision));
+  };
   auto plans = plan_devices(settings, options, see, recognise);
   if (!plans) return tl::unexpected(plans.error());
   auto made = Supervisor::make(std::move(*plans),
@@ -99,14 +100,19 @@ Result<void> Station::Impl::open_senses(const Settings& settings, const Options&
   const bool any = std::ranges::any_of(settings.sensors, [](const auto& one) {
     return one.second.said.enabled && one.second.said.ranging();
   });
-  if (!any) {
-    if (!settings.map.file.empty()) {
-      base::log(base::Level::Warning, "place", "a map is in use, and no sensor looks around");
-    }
-    return {};
+  const bool recognises = std::ranges::any_of(
+      settings.sensors, [](const auto& one) { return one.second.said.enabled; });
+  if (!any && !settings.map.file.empty()) {
+    base::log(base::Level::Warning, "place", "a map is in use, and no sensor looks around");
   }
+  if (!recognises) return {};
   auto lookout = lookout_of(settings, base::steady_now());
   if (!lookout) return tl::unexpected(lookout.error());
+  if (!any) {  // nothing is free by what cameras recognised: there is no guard
+    robot.recognise();
+    sense = std::make_shared<SenseLoop>(robot, std::move(*lookout), shown_of(settings));
+    return {};
+  }
   const bool required = std::ranges::any_of(settings.sensors, [](const auto& one) {
     return one.second.said.enabled && one.second.said.ranging() && one.second.said.required;
   });

@@ -61,14 +61,15 @@ api::Profile profile_of(const Settings& s, const Supervisor& supervisor) {
         return one.second.said.enabled && one.second.said.ranging();
       })) {
     profile.item_types.emplace_back("row");
-    if (std::ranges::any_of(s.sensors, [](const auto& one) {
-          return one.second.said.enabled && one.second.said.planar();
-        })) {
-      profile.item_types.emplace_back("wall");
-    }
     const nav::VehicleParams& v = s.robot.vehicle;
     const double back_m = v.steered() ? 0.5 * (v.length_m - v.wheelbase_m) : 0.5 * v.length_m;
     profile.guard = {.back_m = back_m};  // the rest: take_parameters
+  }
+  if (std::ranges::any_of(s.sensors, [](const auto& one) {
+        return one.second.said.enabled && (one.second.said.planar() || !one.second.said.ranging());
+      })) {
+    profile.item_types.emplace_back("wall");
+    profile.item_types.emplace_back("landmarks");
   }
   profile.limits = limits_of(s);
   profile.limits.item_types = profile.item_types;

@@ -136,6 +136,7 @@ struct Robot::Impl {
   std::string blind;         ///< why nothing may drive by itself: a sensor; empty: nothing is wrong
   bool blind_pause = false;  ///< the mission waits because of it, and nobody has said a word since
   std::optional<base::Time> sees_since;
+  bool recognises = false;  ///< cameras tell of walls and landmarks, and nothing looks around
   RowQuestion row_asked;
   std::vector<std::shared_ptr<const Surroundings>> surroundings_batch;
   RadioKeys keys;

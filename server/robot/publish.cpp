@@ -74,7 +74,7 @@ bool Robot::Impl::publish() {
     const nav::sense::Pose2& at = guard.odometry().pose;
     s->odometry = {at.x_m, at.y_m, at.yaw_rad};
   }
-  if (const auto& around = guard.around()) {
+  if (const auto& around = guard.around(); around && guard.sees()) {
     s->sensors = around->sensors;
     s->sensors_stale = guard.too_old(clock.now());
   }

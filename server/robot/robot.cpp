@@ -49,6 +49,9 @@ void Robot::guard_by(const nav::sense::ProtectParams& params, bool demands,
   impl_->config.adopt(std::make_shared<const Config>(std::move(said)));
   impl_->shared_config.publish(impl_->config.whole());
 }
+void Robot::recognise() {
+  impl_->recognises = true;
+}
 base::Inbox<std::shared_ptr<const Surroundings>>& Robot::surroundings() noexcept {
   return impl_->surroundings;
 }

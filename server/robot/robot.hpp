@@ -361,6 +361,9 @@ class Robot {
   void guard_by(const nav::sense::ProtectParams& params, bool demands = true,
                 const BlockedParams& blocked = {}, const OutlineParams& outline = {},
                 const nav::sense::RaysParams& rays = {});
+  /// Before the first tick: no sensor looks around, but cameras' programs tell of walls and
+  /// landmarks. There is no guard; what is driven by sight is driven by them.
+  void recognise();
   /// Any thread: what stands around it; the newest counts.
   base::Inbox<std::shared_ptr<const Surroundings>>& surroundings() noexcept;
   /// The same thread: those that are not needed any more, to be let go.

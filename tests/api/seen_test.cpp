@@ -28,6 +28,7 @@ TEST_F(BlindApi, ARobotWithoutSensorsHasAnEmptyListAndSaysNothingOnTheStream) {
   EXPECT_TRUE(none.body["items"].empty());
   EXPECT_TRUE(none.body["age_s"].is_null());
   EXPECT_EQ(call("POST", "/obstacles").status, 405u);
+  EXPECT_TRUE(call("GET", "/landmarks").body["landmarks"].empty());
 }
 
 class SeenApi : public HouseTest {
@@ -75,6 +76,37 @@ TEST_F(SeenApi, WhatStandsAheadIsListedWhereItIs) {
       base::destination({position["lat"], position["lon"]}, position["heading_deg"], 2.0);
   EXPECT_NEAR(one["lat"], there.lat, 1e-6);
   EXPECT_NEAR(one["lon"], there.lon, 2e-6);
+}
+
+TEST_F(SeenApi, LandmarksAndWhatCamerasToldAreListedWithTheirSource) {
+  until_ready();
+  auto out = a_thing_ahead();
+  robot::Outlook seen = *out;
+  seen.landmarks.push_back({.id = 7,
+                            .name = "cone",
+                            .ahead_m = 2.0,
+                            .left_m = -0.5,
+                            .sigma_m = 0.03,
+                            .by_scan = true,
+                            .by_vision = true,
+                            .believed = true});
+  seen.walls.push_back({.id = 3, .by_vision = true, .distance_m = 0.9});
+  seen.spots.push_back({"camera", 1.0, 0.2, 0.3, 0.1});
+  seen.planes.push_back({{"camera", 2.0, 0.9, 0.4, 0.1}, 0.0, -1.0, 0.0, 5200.0});
+  house.sees(std::make_shared<robot::Outlook>(std::move(seen)));
+  const auto list = call("GET", "/landmarks");
+  ASSERT_EQ(list.status, 200u);
+  EXPECT_EQ(fault("KnownMarks", list.body), "");
+  const Json& one = list.body["landmarks"].at(0);
+  EXPECT_EQ(one["name"], "cone");
+  EXPECT_EQ(one["source"], "both");
+  EXPECT_EQ(one["ahead_m"], 2.0);
+  EXPECT_EQ(one["left_m"], -0.5);
+  EXPECT_TRUE(one["radius_m"].is_null());
+  EXPECT_EQ(list.body["walls"].at(0)["source"], "vision");
+  EXPECT_EQ(list.body["obstacles"].at(0)["sensor"], "camera");
+  EXPECT_EQ(list.body["planes"].at(0)["size"], 5200.0);
+  EXPECT_EQ(list.body["planes"].at(0)["normal"]["left"], -1.0);
 }
 
 TEST_F(SeenApi, TheTopicsAreAsTheDocumentSaysAndNoFasterThanTheyAreMade) {

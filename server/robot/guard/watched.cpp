@@ -31,7 +31,7 @@ std::string blind_words(const Guard& guard, base::Time now) {
 }  // namespace
 
 void Robot::Impl::look_around() {
-  if (!guard.sees()) return;
+  if (!guard.sees() && !recognises) return;
   surroundings_batch.clear();
   if (surroundings.try_take(surroundings_batch) && !surroundings_batch.empty()) {
     for (auto& one : surroundings_batch) one = guard.take(std::move(one));
@@ -86,7 +86,7 @@ std::optional<nav::RowSight> Robot::Impl::row_sight() const {
 }
 
 std::optional<nav::MarkSight> Robot::Impl::mark_sight() const {
-  if (!guard.sees()) return std::nullopt;
+  if (!guard.sees() && !recognises) return std::nullopt;
   nav::MarkSight sight;
   sight.now = clock.now();
   sight.body = guard.odometry().pose;
