@@ -119,6 +119,8 @@ export const fields_of: Record<ItemType, readonly Field[]> = {
   landmarks: [
     { kind: 'text', key: 'name', label: 'Name' },
     must('offset_m', 'Offset', 'm', [-20, 20]),
+    may('speed_mps', 'Speed', 'm/s', [0.01, 10]),
+    whole(may('count', 'Ends after', '', [0, 10_000])),
   ],
   jump: [
     whole(must('item', 'To item', '', [1, 1_000_000])),

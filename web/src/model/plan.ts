@@ -65,7 +65,11 @@ export interface Wall {
 export interface Landmarks {
   readonly type: 'landmarks';
   readonly name: string;
+  /** The vehicle passes them so far to their left; negative: to their right. */
   readonly offset_m: number;
+  readonly speed_mps?: number | null;
+  /** Done behind so many; absent: behind the last. */
+  readonly count?: number | null;
 }
 export interface Jump {
   readonly type: 'jump';
