@@ -77,10 +77,17 @@ TrackPhase LandmarkDrive::phase() const noexcept {
 
 /// Lays the way past what is known. @return false: nobody looks, or there is nothing to drive to.
 bool LandmarkDrive::look(const MarkSight& sight) {
-  if (!sight.fresh(*params_.sight)) {
+  const auto told = [&] {
+    if (sight.view == nullptr) return false;
+    // Behind so many nobody has to say that no more follow.
+    const marks::Eyes eyes = enough() ? 0 : course_.eyes(sight.view->landmarks);
+    return sight.fresh(*params_.sight, eyes);
+  };
+  const auto nobody_looks = [&] {
     laid_.reset();
     return false;
-  }
+  };
+  if (!told()) return nobody_looks();
   if (laid_ == sight.view->stamp) return unseen_s_ == 0.0;
   laid_ = sight.view->stamp;
   marks::LandmarkParams params = *params_.landmarks;
@@ -97,6 +104,7 @@ bool LandmarkDrive::look(const MarkSight& sight) {
     return false;
   }
   ahead_ = course_.target().has_value();
+  if (!told()) return nobody_looks();
   if (!ahead_ && course_.passed() == 0) return false;
   // Where one that was driven to is gone, the way may end behind the robot already.
   const bool leads_on = length_m(way) - way.here_m > kWorthDriving_m;
@@ -144,7 +152,7 @@ void LandmarkDrive::judge(double dt_s) {
     end_or_fail("no " + what() + " is seen any more");
   } else if (unseen_s_ > params_.sight->old_s + params_.sight->wait_s) {
     const std::string why = "no " + what() + " is seen any more";
-    looked ? end_or_fail(why) : fail(why);
+    looked || enough() ? end_or_fail(why) : fail(why);
   }
 }
 

@@ -8,9 +8,9 @@
 //                     └─ none within entry_m ─▶ Failed          before any was passed ─▶ Failed
 //
 // Each is passed at the same distance on the same side (marks/course.hpp); which one counts, and
-// the way past the next ones, is laid anew with every look. A view older than old_s, and one in
-// which none is ahead where one was, brake the robot along the way in hand. Control thread;
-// allocates when it lays a way.
+// the way past the next ones, is laid anew with every look. Where none of the sensors that told the
+// one ahead has looked for old_s, or none is ahead where one was, the robot brakes along the way in
+// hand. Control thread; allocates when it lays a way.
 
 #include <optional>
 #include <string>

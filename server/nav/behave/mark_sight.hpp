@@ -45,8 +45,9 @@ struct MarkSight {
   base::Time now;
   marks::Pose2 body;  ///< X_OB now
 
-  bool fresh(const SightParams& params) const noexcept {
-    return view != nullptr && base::seconds(now - view->stamp) <= params.old_s;
+  /// @param eyes one of these has looked lately; 0: anyone
+  bool fresh(const SightParams& params, marks::Eyes eyes = 0) const noexcept {
+    return view != nullptr && view->looked_since(now - base::from_seconds(params.old_s), eyes);
   }
 };
 

@@ -28,6 +28,7 @@ Vec2 past(Vec2 from, Vec2 at, double sign, double offset_m) noexcept {
 
 void Course::begin(const Pose2& pose) {
   passed_.clear();
+  eyes_ = 0;
   count_ = 0;
   go_on(pose);
 }
@@ -35,8 +36,14 @@ void Course::begin(const Pose2& pose) {
 void Course::go_on(const Pose2& pose) {
   target_.reset();
   first_.reset();
+  if (!passed_.empty()) eyes_ = passed_.back().eyes;
   began_here_ = true;
   behind_ = {placed(pose, {-kBegan_m, 0.0}), placed(pose, {0.0, 0.0})};
+}
+
+Eyes Course::eyes(std::span<const Landmark> known) const noexcept {
+  const auto first = std::ranges::find_if(known, [&](const Landmark& l) { return l.id == first_; });
+  return first == known.end() ? eyes_ : first->eyes;
 }
 
 bool Course::was_passed(const Landmark& l, double near_m) const noexcept {
@@ -76,6 +83,7 @@ std::vector<Landmark> Course::chain_from(std::span<const Landmark> known, Vec2 h
 
 void Course::pass(const Landmark& l, Vec2 at, Vec2 out) {
   passed_.push_back(l);
+  eyes_ = l.eyes;
   if (passed_.size() > kPassed) passed_.pop_front();
   ++count_;
   began_here_ = false;
@@ -117,6 +125,7 @@ Way Course::lay(std::span<const Landmark> known, const Pose2& pose, Side side,
   first_.reset();
   if (!chain.empty()) {
     first_ = chain[0].id;
+    eyes_ = chain[0].eyes;
     const Vec2 along = towards(here, chain[0].at);
     const Vec2 beside = chain[0].at - (sign * params.offset_m) * Vec2{-along.y, along.x};
     const bool next = chain.size() > 1 && length(beside - here) < params.next_m;

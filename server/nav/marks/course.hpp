@@ -8,6 +8,7 @@
 // next one already when its passing point is nearer than next_m. Passed ones never count again, nor
 // what is seen anew where one was passed. Frame O. Not shared between threads.
 
+#include <cstdint>
 #include <deque>
 #include <optional>
 #include <span>
@@ -34,6 +35,9 @@ class Course {
   int passed() const noexcept { return count_; }
   /// The id of the one that counts; empty: none is ahead.
   std::optional<std::uint32_t> target() const noexcept { return target_; }
+  /// Those that told the landmark that is ahead; behind the last one, those that told that one:
+  /// only they can say that it is still there, or that no other one follows. 0: none counted yet.
+  Eyes eyes(std::span<const Landmark> known) const noexcept;
   /// The vehicle began so near to the first one that it cannot be passed at the offset: the way
   /// that was laid must not be driven. Abeam of it, it is passed straight on.
   std::optional<double> too_near_m() const noexcept { return too_near_m_; }
@@ -51,6 +55,7 @@ class Course {
   std::optional<double> too_near_m_;
   std::optional<std::uint32_t> target_;
   std::optional<std::uint32_t> first_;  ///< of the chain
+  Eyes eyes_ = 0;                       ///< of that, or of the last one passed
 };
 
 }  // namespace roverd::nav::marks

@@ -53,8 +53,7 @@ double missed(const PlanarScan& scan, Vec2 at_b, double by_m) noexcept {
 
 }  // namespace
 
-void Landmarks::join(Kept& kept, const Seen& seen, bool by_vision, base::Time stamp,
-                     const LandmarkParams& params) {
+void Landmarks::join(Kept& kept, const Seen& seen, const Look& look, const LandmarkParams& params) {
   const double weight = 1.0 / (seen.sigma_m * seen.sigma_m);
   kept.weight *= kFadeWeight;
   const double gain = weight / (kept.weight + weight);
@@ -62,8 +61,10 @@ void Landmarks::join(Kept& kept, const Seen& seen, bool by_vision, base::Time st
   kept.weight += weight;
   kept.mark.sigma_m = 1.0 / std::sqrt(kept.weight);
   if (seen.radius_m > 0.0) kept.mark.radius_m = seen.radius_m;
-  (by_vision ? kept.mark.by_vision : kept.mark.by_scan) = true;
-  kept.mark.seen_at = std::max(kept.mark.seen_at, stamp);
+  (look.by_vision ? kept.mark.by_vision : kept.mark.by_scan) = true;
+  if (!look.by_vision) kept.scanned_at = look.stamp;
+  kept.mark.eyes |= look.eye;
+  kept.mark.seen_at = std::max(kept.mark.seen_at, look.stamp);
   kept.unseen_s = 0.0;
   kept.mark.believed = kept.mark.believed || ++kept.hits >= static_cast<int>(params.confirm);
   if (seen.name.empty()) return;
@@ -76,8 +77,8 @@ void Landmarks::join(Kept& kept, const Seen& seen, bool by_vision, base::Time st
   kept.mark.name = std::max_element(kept.names.begin(), kept.names.end(), by_votes)->first;
 }
 
-void Landmarks::put(const std::vector<Seen>& seen, bool by_vision, base::Time stamp,
-                    const LandmarkParams& params, std::vector<bool>& met) {
+void Landmarks::put(const std::vector<Seen>& seen, const Look& look, const LandmarkParams& params,
+                    std::vector<bool>& met) {
   struct Pair {
     double apart_m;
     std::size_t kept, seen;
@@ -95,27 +96,27 @@ void Landmarks::put(const std::vector<Seen>& seen, bool by_vision, base::Time st
   for (const Pair& p : pairs) {
     if (met[p.kept] || used[p.seen]) continue;
     met[p.kept] = used[p.seen] = true;
-    join(kept_[p.kept], seen[p.seen], by_vision, stamp, params);
+    join(kept_[p.kept], seen[p.seen], look, params);
   }
   for (std::size_t s = 0; s < seen.size() && kept_.size() < kMostLandmarks; ++s) {
     if (used[s]) continue;
     Kept fresh;
     fresh.mark.id = next_++;
     fresh.mark.at = seen[s].at;
-    join(fresh, seen[s], by_vision, stamp, params);
+    join(fresh, seen[s], look, params);
     kept_.push_back(std::move(fresh));
     met.push_back(true);
   }
 }
 
-void Landmarks::take(const PlanarScan& scan, const LandmarkParams& params) {
+void Landmarks::take(const PlanarScan& scan, const LandmarkParams& params, std::size_t eye) {
   std::vector<Seen> seen;
   for (const Post& post : posts_of(scan, params)) {
     seen.push_back({placed(scan.pose, post.at), std::max(0.01, post.sigma_m), post.radius_m, {}});
   }
   const double dt_s = since(scan_at_, scan.stamp);
   std::vector<bool> met;
-  put(seen, false, scan.stamp, params, met);
+  put(seen, {false, eye_of(eye), scan.stamp}, params, met);
   const Pose2 bo = sense::inverse(scan.pose);
   for (std::size_t i = 0; i < kept_.size(); ++i) {
     const Vec2 at = placed(bo, kept_[i].mark.at);
@@ -129,7 +130,7 @@ void Landmarks::take(const PlanarScan& scan, const LandmarkParams& params) {
 }
 
 void Landmarks::take(const base::Vision& vision, const base::Mount& mount, const Pose2& pose,
-                     double half_view_rad, const LandmarkParams& params) {
+                     double half_view_rad, const LandmarkParams& params, std::size_t eye) {
   const Eigen::Matrix3d turn = sense::rotation(mount);
   std::vector<Seen> seen;
   for (const base::VisionLandmark& l : vision.landmarks) {
@@ -141,14 +142,17 @@ void Landmarks::take(const base::Vision& vision, const base::Mount& mount, const
   }
   const double dt_s = since(vision_at_, vision.stamp);
   std::vector<bool> met;
-  put(seen, true, vision.stamp, params, met);
+  put(seen, {true, eye_of(eye), vision.stamp}, params, met);
   const Pose2 bo = sense::inverse(pose);
   for (std::size_t i = 0; i < kept_.size(); ++i) {
     const Vec2 at = placed(bo, kept_[i].mark.at) - Vec2{mount.x_m, mount.y_m};
     const double off_rad = base::wrap_rad(std::atan2(at.y, at.x) - mount.yaw_rad);
     const bool looked = std::abs(off_rad) < 0.8 * half_view_rad &&
                         length(at) < 0.8 * params.max_range_m && length(at) > 0.5;
-    const bool ours = kept_[i].mark.by_vision && !kept_[i].mark.by_scan;
+    // Where a scan tells it, too, its place is the scan's to deny.
+    const bool scanned = kept_[i].mark.by_scan &&
+                         base::seconds(vision.stamp - kept_[i].scanned_at) < params.forget_s;
+    const bool ours = kept_[i].mark.by_vision && !scanned;
     if (!met[i] && ours && looked) kept_[i].unseen_s += dt_s;
   }
   std::erase_if(kept_,

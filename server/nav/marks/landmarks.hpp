@@ -9,6 +9,7 @@
 // most often of late. A post of the scan has no name of its own.
 // Bounded: kMostLandmarks. Not shared between threads; time comes with what is seen.
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -21,6 +22,12 @@
 
 namespace roverd::nav::marks {
 
+/// A bit for each sensor, by the number that whoever hands on what they see gives them: below 64.
+using Eyes = std::uint64_t;
+constexpr Eyes eye_of(std::size_t number) noexcept {
+  return Eyes{1} << (number % 64);
+}
+
 struct Landmark {
   std::uint32_t id = 0;   ///< never given again
   std::string name;       ///< empty: nobody named it
@@ -31,6 +38,7 @@ struct Landmark {
   bool by_vision = false;
   bool believed = false;
   base::Time seen_at;
+  Eyes eyes = 0;  ///< those that told it
 };
 
 class Landmarks {
@@ -38,11 +46,12 @@ class Landmarks {
   static constexpr std::size_t kMostLandmarks = 128;
   static constexpr std::size_t kMostNames = 4;  ///< that one of them was called
 
-  void take(const PlanarScan& scan, const LandmarkParams& params);
+  /// @param eye which sensor's it is
+  void take(const PlanarScan& scan, const LandmarkParams& params, std::size_t eye = 0);
   /// @param pose X_OB when the image was taken. @param half_view_rad what the camera sees to either
   /// side of its axis: what lies within and is not told is not seen
   void take(const base::Vision& vision, const base::Mount& mount, const Pose2& pose,
-            double half_view_rad, const LandmarkParams& params);
+            double half_view_rad, const LandmarkParams& params, std::size_t eye = 0);
   void forget() noexcept { kept_.clear(); }
 
   std::vector<Landmark> all() const;
@@ -54,17 +63,23 @@ class Landmarks {
     double radius_m = 0.0;
     std::string name;
   };
+  /// Who saw it, and when.
+  struct Look {
+    bool by_vision = false;
+    Eyes eye = 0;
+    base::Time stamp;
+  };
   struct Kept {
     Landmark mark;
     double weight = 0.0;  ///< 1/m²
     int hits = 0;
-    double unseen_s = 0.0;  ///< in view
+    double unseen_s = 0.0;    ///< in view
+    base::Time scanned_at{};  ///< a scan told it last
     std::map<std::string, double> names;
   };
-  void put(const std::vector<Seen>& seen, bool by_vision, base::Time stamp,
-           const LandmarkParams& params, std::vector<bool>& met);
-  static void join(Kept& kept, const Seen& seen, bool by_vision, base::Time stamp,
-                   const LandmarkParams& params);
+  void put(const std::vector<Seen>& seen, const Look& look, const LandmarkParams& params,
+           std::vector<bool>& met);
+  static void join(Kept& kept, const Seen& seen, const Look& look, const LandmarkParams& params);
 
   std::vector<Kept> kept_;
   base::Time scan_at_{};

@@ -124,8 +124,8 @@ void Lookout::look_beside(const base::Sight& sight, std::size_t number) {
   }
   last = sight.stamp;
   walls_.take(beside_scan_, wall_params_);
-  landmarks_.take(beside_scan_, landmark_params_);
-  tell_beside(beside_scan_.stamp);
+  landmarks_.take(beside_scan_, landmark_params_, number);
+  tell_beside(beside_scan_.stamp, number);
 }
 
 void Lookout::recognise(std::shared_ptr<const base::Vision> vision) {
@@ -136,17 +136,22 @@ void Lookout::recognise(std::shared_ptr<const base::Vision> vision) {
   // Before the take: a glance must not call back a wall that is too old.
   walls_.expire(vision->stamp, {pose->x_m, pose->y_m}, wall_params_);
   if (wall) walls_.take(*wall, *pose, vision->stamp, wall_params_);
-  landmarks_.take(*vision, camera->mount, *pose, camera->half_view_rad, landmark_params_);
-  tell_beside(vision->stamp);
+  // Numbered on from the sensors that look around.
+  const auto eye = chain_.sensors() + static_cast<std::size_t>(camera - cameras_.begin());
+  landmarks_.take(*vision, camera->mount, *pose, camera->half_view_rad, landmark_params_, eye);
+  tell_beside(vision->stamp, eye);
   std::erase_if(images_, [&](const Image& old) { return old.seen->sensor == vision->sensor; });
   images_.push_back({std::move(vision), camera->mount});
   news_ = true;
 }
 
-/// A view is as new as the newest that told of it.
-void Lookout::tell_beside(base::Time seen) {
+/// A view is as new as the newest that told of it; how old each one's word is stands beside that.
+void Lookout::tell_beside(base::Time seen, std::size_t eye) {
   auto view = std::make_shared<nav::marks::View>();
   view->stamp = beside_ ? std::max(beside_->stamp, seen) : seen;
+  if (beside_) view->looked_at = beside_->looked_at;
+  if (view->looked_at.size() <= eye) view->looked_at.resize(eye + 1);
+  view->looked_at[eye] = std::max(view->looked_at[eye], seen);
   view->walls = walls_.all();
   view->landmarks = landmarks_.all();
   beside_ = std::move(view);

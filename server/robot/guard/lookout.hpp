@@ -90,7 +90,7 @@ class Lookout {
   void count(std::size_t number, base::Time seen, base::Time now);
   void near(std::size_t number, base::Time seen, base::Time now);
   void look_beside(const base::Sight& sight, std::size_t number);
-  void tell_beside(base::Time seen);
+  void tell_beside(base::Time seen, std::size_t eye);
   void tell_rays(Surroundings& out, base::Time now);
 
   nav::sense::Chain chain_;

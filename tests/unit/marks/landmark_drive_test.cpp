@@ -132,6 +132,28 @@ TEST(Landmarks, WhatIsBehindTheCameraIsFalseAndOutOfViewIsKept) {
   EXPECT_EQ(marks.all().size(), 1U) << "nobody looked there";
 }
 
+TEST(Landmarks, WhereNoScanTellsItAnyMoreACamerasWordCounts) {
+  Yard yard;
+  yard.poles = {{{2.0, 0.0}, 0.1}};
+  Rover rover;
+  Scanner scanner;
+  Landmarks marks;
+  for (int i = 0; i < 5; ++i) {
+    rover.step({});
+    marks.take(scan_of(scanner.look(yard, rover.truth, rover.now), rover), {}, 0);
+    marks.take(image({{"pole", {2.0, 0.0, 0.0}}}, rover.now), {}, {}, 0.5, {}, 1);
+  }
+  ASSERT_EQ(marks.all().size(), 1U);
+  EXPECT_TRUE(marks.all()[0].believed);
+  EXPECT_EQ(marks.all()[0].eyes, eye_of(0) | eye_of(1));
+  // The scanner falls silent; for forget_s its word stands, then it is the camera's to deny.
+  base::Time now = rover.now;
+  for (int i = 0; i < 9; ++i) marks.take(image({}, now += 100ms), {}, {}, 0.5, {}, 1);
+  EXPECT_EQ(marks.all().size(), 1U);
+  for (int i = 0; i < 15; ++i) marks.take(image({}, now += 100ms), {}, {}, 0.5, {}, 1);
+  EXPECT_TRUE(marks.all().empty());
+}
+
 TEST(Landmarks, TwoBesideEachOtherStayTwo) {
   Landmarks marks;
   base::Time now{1h};

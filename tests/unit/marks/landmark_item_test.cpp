@@ -29,6 +29,7 @@ struct LandmarksItem {
   marks::Landmarks marks;
   marks::View view;
   bool looks = true;
+  bool other_looks = false;  ///< another sensor, which sees none
   LandmarkDrive drive{base::Setting<PathParams>(path), {}};
   double fastest_mps = 0.0;
   std::vector<double> nearest_m;  ///< the true least distance to each pole
@@ -43,6 +44,7 @@ struct LandmarksItem {
     nearest_m.resize(yard.poles.size(), 1e9);
     for (int i = 0; i < seconds * 50.0; ++i) {
       if (i % 5 == 0 && looks) look();
+      if (i % 5 == 2 && other_looks) look_elsewhere();
       const MarkSight seen{&view, rover.now, rover.odometry};
       rover.step(drive.step(seen, rover.vehicle(), 10.0, 0.02).command);
       fastest_mps = std::max(fastest_mps, rover.speed_mps);
@@ -57,7 +59,14 @@ struct LandmarksItem {
     if (scan.beams.empty()) return;
     marks.take(scan, params);
     view.stamp = scan.stamp;
+    view.looked_at.resize(2);
+    view.looked_at[0] = scan.stamp;
     view.landmarks = marks.all();
+  }
+  void look_elsewhere() {
+    view.stamp = rover.now;
+    view.looked_at.resize(2);
+    view.looked_at[1] = rover.now;
   }
   void stand_poles(int many, double from_m = 2.5, double y_m = 0.4) {
     for (int i = 0; i < many; ++i) yard.poles.push_back({{from_m + 3.0 * i, y_m}, 0.12});
@@ -153,6 +162,48 @@ TEST(LandmarksItem, BrakesWhenNothingIsToldAndFailsAfterAWait) {
   l.run(10.0);
   EXPECT_EQ(l.drive.state(), State::Failed) << "nobody looks: nobody says that there are no more";
   EXPECT_EQ(l.drive.reason(), "no landmark is seen any more");
+}
+
+//  scanner ─▶ poles; a camera that looks back lives on
+TEST(LandmarksItem, AnotherSensorsWordKeepsNoOnesAheadFresh) {
+  LandmarksItem l;
+  l.other_looks = true;
+  l.stand_poles(4);
+  l.begin({.side = Side::Left});
+  l.run(6.0);
+  const double there_m = l.rover.truth.x_m;
+  ASSERT_EQ(l.drive.state(), State::Driving);
+  l.looks = false;
+  l.run(4.0);
+  EXPECT_EQ(l.rover.speed_mps, 0.0) << "who told the next one looks no more";
+  EXPECT_LT(l.rover.truth.x_m - there_m, 1.2);
+  l.looks = true;
+  l.run(3.0);
+  EXPECT_GT(l.rover.speed_mps, 0.5);
+  l.looks = false;
+  l.run(10.0);
+  EXPECT_EQ(l.drive.state(), State::Failed);
+  EXPECT_EQ(l.drive.reason(), "no landmark is seen any more");
+}
+
+TEST(LandmarksItem, NobodyElseSaysThatNoMoreFollowBehindTheLast) {
+  LandmarksItem l;
+  l.other_looks = true;
+  l.stand_poles(2);
+  l.begin({.side = Side::Left});
+  while (l.drive.passed() < 2 && l.rover.truth.x_m < 8.0) l.run(0.02);
+  l.looks = false;
+  l.run(12.0);
+  EXPECT_EQ(l.rover.speed_mps, 0.0);
+  EXPECT_EQ(l.drive.state(), State::Failed) << "there may be a third one";
+  LandmarksItem two;
+  two.other_looks = true;
+  two.stand_poles(2);
+  two.begin({.side = Side::Left, .count = 2});
+  while (two.drive.passed() < 2 && two.rover.truth.x_m < 8.0) two.run(0.02);
+  two.looks = false;
+  two.run(12.0);
+  EXPECT_EQ(two.drive.state(), State::Done) << "nobody asked for a third one";
 }
 
 TEST(LandmarksItem, GoesOnFromWhereSomebodyElseLeftTheRobotAndPassesNoneTwice) {

@@ -43,7 +43,7 @@ struct WallItem {
     const auto scan = scan_of(scanner.look(yard, rover.truth, rover.now), rover);
     if (scan.beams.empty()) return;
     walls.take(scan, params);
-    view = {scan.stamp, walls.all()};
+    view = {.stamp = scan.stamp, .walls = walls.all()};
   }
 };
 

@@ -526,5 +526,35 @@ TEST(Lookout, WhatACameraRecognisesIsKnownWithoutAnySensorThatLooksAround) {
   EXPECT_EQ(shown->planes.size(), 2u) << "the table shows what was told";
 }
 
+TEST(Lookout, OneCamerasImagesSayNothingOfHowOldAnothersWordIs) {
+  auto chain = nav::sense::Chain::of({}, {}, footprint_of({}), at(0.0));
+  ASSERT_TRUE(chain);
+  Lookout l(std::move(*chain), {}, 6.0);
+  l.watch_by({Camera{"ahead", {.x_m = 0.4}, 0.5},
+              Camera{"behind", {.x_m = -0.4, .yaw_rad = base::kPi}, 0.5}});
+  stand(l, 0.0, 2.0);
+  const auto image = [](const std::string& sensor, double s, bool cone) {
+    auto v = std::make_shared<base::Vision>();
+    v->sensor = sensor;
+    v->stamp = at(s);
+    if (cone) v->landmarks = {{"cone", {2.0, 0.5, 0.0}}};
+    return v;
+  };
+  // Given a cone that the camera ahead told until it died at 0.5 s,
+  for (int i = 1; i <= 5; ++i) {
+    l.recognise(image("ahead", 0.1 * i, true));
+    l.recognise(image("behind", 0.1 * i, false));
+  }
+  // when the one behind goes on,
+  for (int i = 6; i <= 15; ++i) l.recognise(image("behind", 0.1 * i, false));
+  // then the view is as new as that, and nobody who told the cone has looked since.
+  const auto beside = l.picture(at(1.5))->beside;
+  ASSERT_EQ(beside->landmarks.size(), 1u);
+  const nav::marks::Eyes eyes = beside->landmarks[0].eyes;
+  EXPECT_TRUE(beside->looked_since(at(1.5), 0));
+  EXPECT_TRUE(beside->looked_since(at(0.5), eyes));
+  EXPECT_FALSE(beside->looked_since(at(0.6), eyes));
+}
+
 }  // namespace
 }  // namespace roverd::robot
