@@ -33,6 +33,13 @@ bool gone(const Landmark& mark, double unseen_s, base::Time now,
   return unseen_s > params.forget_s || age_s > (mark.believed ? kKeep_s : 1.0);
 }
 
+/// The image's edge may go through it: what is seen of it lies nearer to the image's middle.
+bool may_be_cut(const base::VisionPoint& at, double half_view_rad, double radius_m) noexcept {
+  const double range_m = std::max(1e-6, std::hypot(at.x_m, at.y_m));
+  const double half_rad = std::asin(std::min(1.0, radius_m / range_m));
+  return std::abs(std::atan2(at.y_m, at.x_m)) + half_rad > half_view_rad;
+}
+
 /// How much it counts that the scan did not see what stood there: 1 where it saw something farther,
 /// less where nothing came back; 0: it did not look, or something stands before it.
 double missed(const PlanarScan& scan, Vec2 at_b, double by_m) noexcept {
@@ -137,8 +144,9 @@ void Landmarks::take(const base::Vision& vision, const base::Mount& mount, const
     const Eigen::Vector3d b = turn * Eigen::Vector3d(l.at.x_m, l.at.y_m, l.at.z_m);
     const double range_m = std::hypot(l.at.x_m, l.at.y_m);
     if (l.at.x_m <= 0.0 || range_m > params.max_range_m) continue;  // behind the camera: false
-    seen.push_back({placed(pose, {mount.x_m + b.x(), mount.y_m + b.y()}),
-                    kVisionSigma_m + kVisionSigmaOfRange * range_m, 0.0, l.name});
+    double sigma_m = kVisionSigma_m + kVisionSigmaOfRange * range_m;
+    if (may_be_cut(l.at, half_view_rad, params.max_radius_m)) sigma_m += params.max_radius_m;
+    seen.push_back({placed(pose, {mount.x_m + b.x(), mount.y_m + b.y()}), sigma_m, 0.0, l.name});
   }
   const double dt_s = since(vision_at_, vision.stamp);
   std::vector<bool> met;

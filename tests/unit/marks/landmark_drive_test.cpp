@@ -132,6 +132,24 @@ TEST(Landmarks, WhatIsBehindTheCameraIsFalseAndOutOfViewIsKept) {
   EXPECT_EQ(marks.all().size(), 1U) << "nobody looked there";
 }
 
+//   camera ─▶   )   of a cone that leaves the image the inner part is seen last
+TEST(Landmarks, OneThatTheImagesEdgeMayCutTellsLittleOfWhereItStands) {
+  Landmarks marks;
+  base::Time now{1h};
+  // Given a cone that was seen whole,
+  for (int i = 0; i < 20; ++i) {
+    marks.take(image({{"cone", {2.0, 0.5, 0.0}}}, now += 100ms), {}, {}, 0.5, {});
+  }
+  // when its inner part is told for 0.8 s at the edge, 1.2 m farther on,
+  for (int i = 0; i < 8; ++i) {
+    marks.take(image({{"cone", {0.8, 0.4, 0.0}}}, now += 100ms), {}, {1.2, 0.0, 0.0}, 0.5, {});
+  }
+  // then it has moved by a centimetre, not by six, and was seen all the time.
+  ASSERT_EQ(marks.all().size(), 1U);
+  EXPECT_NEAR(marks.all()[0].at.y, 0.5, 0.015);
+  EXPECT_EQ(marks.all()[0].seen_at, now);
+}
+
 TEST(Landmarks, WhereNoScanTellsItAnyMoreACamerasWordCounts) {
   Yard yard;
   yard.poles = {{{2.0, 0.0}, 0.1}};
