@@ -17,6 +17,7 @@ constexpr double kKeep_s = 60.0;  ///< out of view
 constexpr double kFarAway_m = 15.0;
 constexpr double kVisionSigma_m = 0.05;
 constexpr double kVisionSigmaOfRange = 0.02;
+constexpr double kOnePart = 0.5;       ///< of near_m: two so near to each other are one
 constexpr double kNothingBack = 0.5;   ///< where no echo comes back it may be dark, or gone
 constexpr double kLongestGap_s = 0.5;  ///< between two pieces, of the time unseen
 
@@ -56,6 +57,28 @@ double missed(const PlanarScan& scan, Vec2 at_b, double by_m) noexcept {
     out = std::max(out, beam.hit ? 1.0 : kNothingBack);
   }
   return out;
+}
+
+/// The older one stays, where the surer one of both stands.
+template <class Kept>
+Kept one_of(Kept older, const Kept& newer) {
+  if (newer.weight > older.weight) {
+    older.mark.at = newer.mark.at;
+    older.mark.sigma_m = newer.mark.sigma_m;
+    older.weight = newer.weight;
+    older.mark.name = newer.mark.name;
+    older.names = newer.names;
+  }
+  if (older.mark.radius_m <= 0.0) older.mark.radius_m = newer.mark.radius_m;
+  older.mark.by_scan |= newer.mark.by_scan;
+  older.mark.by_vision |= newer.mark.by_vision;
+  older.mark.believed |= newer.mark.believed;
+  older.mark.seen_at = std::max(older.mark.seen_at, newer.mark.seen_at);
+  older.mark.eyes |= newer.mark.eyes;
+  older.hits = std::max(older.hits, newer.hits);
+  older.unseen_s = std::min(older.unseen_s, newer.unseen_s);
+  older.scanned_at = std::max(older.scanned_at, newer.scanned_at);
+  return older;
 }
 
 }  // namespace
@@ -114,6 +137,16 @@ void Landmarks::put(const std::vector<Seen>& seen, const Look& look, const Landm
     kept_.push_back(std::move(fresh));
     met.push_back(true);
   }
+  // Something false beside one would draw its sights to itself, and be that one a second time.
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    for (std::size_t k = kept_.size(); k-- > i + 1;) {
+      if (length(kept_[i].mark.at - kept_[k].mark.at) > kOnePart * params.near_m) continue;
+      kept_[i] = one_of(kept_[i], kept_[k]);
+      met[i] = met[i] || met[k];
+      kept_.erase(kept_.begin() + static_cast<std::ptrdiff_t>(k));
+      met.erase(met.begin() + static_cast<std::ptrdiff_t>(k));
+    }
+  }
 }
 
 void Landmarks::take(const PlanarScan& scan, const LandmarkParams& params, std::size_t eye) {
@@ -161,7 +194,10 @@ void Landmarks::take(const base::Vision& vision, const base::Mount& mount, const
     const bool scanned = kept_[i].mark.by_scan &&
                          base::seconds(vision.stamp - kept_[i].scanned_at) < params.forget_s;
     const bool ours = kept_[i].mark.by_vision && !scanned;
-    if (!met[i] && ours && looked) kept_[i].unseen_s += dt_s;
+    if (met[i] || !ours || !looked) continue;
+    kept_[i].unseen_s += dt_s;
+    // Programs see what is not there, and twice at one place by chance.
+    if (!kept_[i].mark.believed) kept_[i].hits = std::max(0, kept_[i].hits - 1);
   }
   std::erase_if(kept_,
                 [&](const Kept& k) { return gone(k.mark, k.unseen_s, vision.stamp, params); });

@@ -3,11 +3,12 @@
 // flicker.
 //
 //   seen ──confirm times──▶ believed ──in view, unseen for forget_s──▶ forgotten
-//
+//        ▲ an image that looks there in vain takes one back
 // What is seen within near_m of a known one is that one: the nearest pairs first, each once. Places
 // are averaged with the weight of their certainty, the older ones fading; names are what was said
 // most often of late. A post of the scan has no name of its own. What a camera sees at the edge of
-// its image may be cut there, and tells little of where the thing stands.
+// its image may be cut there, and tells little of where the thing stands. Known ones within half of
+// near_m of each other are one.
 // Bounded: kMostLandmarks. Not shared between threads; time comes with what is seen.
 
 #include <cstddef>

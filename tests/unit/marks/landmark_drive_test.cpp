@@ -172,6 +172,37 @@ TEST(Landmarks, WhereNoScanTellsItAnyMoreACamerasWordCounts) {
   EXPECT_TRUE(marks.all().empty());
 }
 
+TEST(Landmarks, WhatACameraTellsNowAndThenIsNotBelieved) {
+  Landmarks marks;
+  base::Time now{1h};
+  for (int i = 0; i < 60; ++i) {  // every third image
+    marks.take(image({}, now += 100ms), {}, {}, 0.5, {});
+    marks.take(image({}, now += 100ms), {}, {}, 0.5, {});
+    marks.take(image({{"cone", {2.0, 0.2, 0.0}}}, now += 100ms), {}, {}, 0.5, {});
+    for (const Landmark& l : marks.all()) EXPECT_FALSE(l.believed);
+  }
+  for (int i = 0; i < 20; ++i) {  // three of four
+    const bool told = i % 4 != 3;
+    marks.take(told ? image({{"cone", {2.0, 0.2, 0.0}}}, now += 100ms) : image({}, now += 100ms),
+               {}, {}, 0.5, {});
+  }
+  ASSERT_EQ(marks.all().size(), 1U);
+  EXPECT_TRUE(marks.all()[0].believed);
+}
+
+TEST(Landmarks, SomethingFalseCloseBesideOneDoesNotMakeTwoOfIt) {
+  Landmarks marks;
+  base::Time now{1h};
+  for (int i = 0; i < 40; ++i) {
+    const double j = i % 2 == 0 ? 0.05 : -0.05;
+    std::vector<base::VisionLandmark> told{{"cone", {2.0, 0.3 + j, 0.0}}};
+    if (i % 10 == 5) told.push_back({"cone", {2.1, 0.45, 0.0}});
+    marks.take(image(told, now += 100ms), {}, {}, 0.5, {});
+    EXPECT_EQ(marks.all().size(), 1U) << i;
+  }
+  EXPECT_NEAR(marks.all()[0].at.y, 0.3, 0.03);
+}
+
 TEST(Landmarks, TwoBesideEachOtherStayTwo) {
   Landmarks marks;
   base::Time now{1h};
