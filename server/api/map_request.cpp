@@ -1,5 +1,6 @@
 #include "api/map_request.hpp"
 
+#include <cstdint>
 #include <optional>
 #include <utility>
 
@@ -161,6 +162,7 @@ Result<MapForm> read_map_form(std::string_view body, std::string_view content_ty
 Result<maps::Change> read_map_change(const Json& body) {
   Members members(body);
   maps::Change out;
+  out.of_revision = members.whole("revision", 1, std::int64_t{1} << 53);
   out.name = members.text("name");
   if (const auto problem = problem_with(out.name)) members.complain("name", *problem);
   const Json* const anchor = members.known("anchor");

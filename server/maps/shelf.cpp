@@ -279,6 +279,9 @@ Result<About> Shelf::change(std::int64_t id, const Change& change) {
   const std::lock_guard disk(disk_);
   const auto before = kept(id);
   if (!before) return tl::unexpected<Error>(before.error());
+  if (change.of_revision && *change.of_revision != before->about.revision) {
+    return base::fail(Code::Conflict, "the map was changed meanwhile");
+  }
   Kept after = *before;
   ++after.about.revision;
   if (change.name) after.about.name = *change.name;

@@ -60,8 +60,8 @@ class Shelf {
   /// @return Conflict: kMostMaps are kept; Unavailable: the disk refuses, nothing was kept
   base::Result<About> add(std::string name, const nav::chart::OccupancyMap& map,
                           const std::optional<Anchor>& anchor, base::WallTime now);
-  /// All of it or nothing. NotFound; Conflict: of the configuration; Invalid: too many areas;
-  /// Unavailable.
+  /// All of it or nothing. NotFound; Conflict: of the configuration, or of another revision;
+  /// Invalid: too many areas; Unavailable.
   base::Result<About> change(std::int64_t id, const Change& change);
   /// NotFound; Conflict: in use, or of the configuration; Unavailable.
   base::Result<void> remove(std::int64_t id);

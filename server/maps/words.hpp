@@ -63,6 +63,7 @@ struct Edit {
 
 /// What is empty stays.
 struct Change {
+  std::optional<std::int64_t> of_revision;  ///< refused if the map is another one by now
   std::optional<std::string> name;
   bool changes_anchor = false;
   std::optional<Anchor> anchor;                ///< where it changes; empty: not known any more

@@ -218,6 +218,22 @@ TEST_F(MapsApi, TheChoiceActsAtOnceAndIsWrittenDown) {
   EXPECT_EQ(call("POST", "/maps/2/use").status, 404u);
 }
 
+TEST_F(MapsApi, WhatAnotherOneForbadeMeanwhileIsNotAllowedUnseen) {
+  ASSERT_EQ(add().status, 201u);
+  const auto revision = call("GET", "/maps/1").body["revision"].get<int>();
+  const Json forbid = {{"edits", {{{"kind", "forbid"}, {"polygon", square(0, 0, 1)}}}}};
+  ASSERT_EQ(call("PATCH", "/maps/1", forbid).status, 200u);
+  Json none = {{"revision", revision}, {"forbidden", Json::array()}};
+  const auto late = call("PATCH", "/maps/1", none);
+  EXPECT_EQ(late.status, 409u);
+  EXPECT_EQ(late.body["detail"], "the map was changed meanwhile");
+  const auto now = call("GET", "/maps/1").body;
+  EXPECT_EQ(now["forbidden"].size(), 1u);
+  none["revision"] = now["revision"];
+  EXPECT_EQ(call("PATCH", "/maps/1", none).body["forbidden"], Json::array());
+  EXPECT_EQ(refused_change({{"revision", "two"}}), "/revision");
+}
+
 TEST_F(MapsApi, AFileThatVanishedIsTold) {
   ASSERT_EQ(add().status, 201u);
   fs::remove(house.maps_folder() / "1/map.1.pgm");
