@@ -17,7 +17,10 @@ type Schemas = components['schemas'];
 
 /** A map of 10,000 by 10,000 cells over a weak radio link. */
 const SEND_LIMIT_MS = 600_000;
-const CELLS_LIMIT_MS = 60_000;
+/** All cells of a map are read and written. */
+const WORK_LIMIT_MS = 60_000;
+/** The cells of a map come over the slowest link, as long as some of them come. */
+const SILENCE_LIMIT_MS = 20_000;
 
 const path = (id: number): string => `/maps/${id}`;
 
@@ -49,7 +52,7 @@ const add = async (
   form.set('yaml', yaml);
   form.set('image', image);
   try {
-    const { status, text } = await in_lane('other', () => post(form, sent));
+    const { status, text } = await in_lane('bulk', () => post(form, sent));
     const answer = new Response(text === '' ? null : text, { status });
     if (!answer.ok) return { ok: false, refusal: await read_problem(answer) };
     return { ok: true, value: JSON.parse(text) as Schemas['Map'] };
@@ -58,22 +61,48 @@ const add = async (
   }
 };
 
-/** Bytes, and only those that are not known yet. */
-const fetch_cells = async (id: number, tag: string | null): Promise<Answer<TaggedCells | null>> => {
+/** All that comes, as long as something does. */
+const bytes_of = async (answer: Response, heard: () => void): Promise<Uint8Array> => {
+  const parts: BlobPart[] = [];
+  const reader = answer.body?.getReader();
+  for (;;) {
+    const part = await reader?.read();
+    if (!part || part.done) return new Uint8Array(await new Blob(parts).arrayBuffer());
+    heard();
+    parts.push(part.value);
+  }
+};
+
+/** Only those that are not known yet. */
+const fetch_cells = async (
+  id: number,
+  tag: string | null,
+  given_up: AbortSignal,
+): Promise<Answer<TaggedCells | null>> => {
+  const silent = new AbortController();
+  let limit: ReturnType<typeof setTimeout> | undefined;
+  const heard = (): void => {
+    clearTimeout(limit);
+    const late = new DOMException('late', 'TimeoutError');
+    limit = setTimeout(() => silent.abort(late), SILENCE_LIMIT_MS);
+  };
+  heard();
   try {
     const answer = await fetch(`/api/v1${path(id)}/cells?most=${MOST_CELLS}`, {
       cache: 'no-store',
-      signal: AbortSignal.timeout(CELLS_LIMIT_MS),
+      signal: AbortSignal.any([given_up, silent.signal]),
       headers: tag === null ? {} : { 'If-None-Match': tag },
     });
     if (answer.status === 304) return { ok: true, value: null };
     if (!answer.ok) return { ok: false, refusal: await read_problem(answer) };
     const thinned = Number(answer.headers.get('Roverd-Thinned') ?? '1');
-    const cells = read_cells(new Uint8Array(await answer.arrayBuffer()), thinned);
+    const cells = read_cells(await bytes_of(answer, heard), thinned);
     if (!cells) return { ok: false, refusal: no_answer('What came is no picture of a map.') };
     return { ok: true, value: { ...cells, tag: answer.headers.get('ETag') } };
   } catch (cause) {
     return { ok: false, refusal: failed(cause) };
+  } finally {
+    clearTimeout(limit);
   }
 };
 
@@ -82,14 +111,13 @@ export const site_map_calls: SiteMapCalls = {
   read: (id) => request<Schemas['Map']>(path(id)),
   add,
   change: (id, change) =>
-    request<Schemas['Map']>(path(id), { method: 'PATCH', body: change, limit_ms: CELLS_LIMIT_MS }),
+    request<Schemas['Map']>(path(id), { method: 'PATCH', body: change, limit_ms: WORK_LIMIT_MS }),
   remove: (id) => request<null>(path(id), { method: 'DELETE' }),
   use: (id) =>
     request<unknown>(id === null ? '/maps/unuse' : `${path(id)}/use`, {
       method: 'POST',
-      lane: 'command',
-      limit_ms: CELLS_LIMIT_MS,
+      limit_ms: WORK_LIMIT_MS,
     }),
-  cells: (id, tag) => in_lane('other', () => fetch_cells(id, tag)),
+  cells: (id, tag, signal) => in_lane('bulk', () => fetch_cells(id, tag, signal)),
   file_address: (id, format) => `/api/v1${path(id)}/export?format=${format}`,
 };

@@ -89,8 +89,8 @@ export interface SiteMapCalls {
   remove(id: number): Promise<Answer<unknown>>;
   /** @param id null: none */
   use(id: number | null): Promise<Answer<unknown>>;
-  /** @param tag of what is known already. @return null: that is still so */
-  cells(id: number, tag: string | null): Promise<Answer<TaggedCells | null>>;
+  /** @param tag of what is known already; @param signal gives up. @return null: that is still so */
+  cells(id: number, tag: string | null, signal: AbortSignal): Promise<Answer<TaggedCells | null>>;
   file_address(id: number, format: 'yaml' | 'pgm'): string;
 }
 export interface TaggedCells extends SiteCells {

@@ -12,33 +12,26 @@ import {
   type SiteMap,
   type SiteMapCalls,
   type SiteOnMap,
-  type TaggedCells,
 } from '../model/site_map';
 import { robot_place } from '../model/vehicle';
 import type { Dialogs } from './dialogs.svelte';
 import type { Live } from './live.svelte';
 import type { Notices } from './notices.svelte';
+import { SiteCells } from './site_cells.svelte';
 import { SiteEditor } from './site_editor.svelte';
 
 /** Where the map lies may be found out any time, and others change maps too. */
 const RENEWED_MS = 10_000;
-const KEPT = 2;
-
-interface KnownCells {
-  readonly id: number;
-  readonly revision: number;
-  readonly cells: TaggedCells;
-}
 
 export class SiteMaps {
   items = $state.raw<readonly SiteMap[]>([]);
-  failure = $state<string | null>(null);
-  busy = $state(false);
+  #list_failure = $state<string | null>(null);
+  failure = $derived.by<string | null>(() => this.#list_failure ?? this.#cells.failure);
+  /** What is being done to a map; null: nothing. */
+  busy = $state<string | null>(null);
   #listed = $state(false);
   /** What is sent, and how much of it, from 0 to 1; null: nothing is. */
   sending = $state.raw<{ readonly name: string; readonly share: number } | null>(null);
-  /** Of the map in use and of the one that is edited. */
-  #known = $state.raw<readonly KnownCells[]>([]);
 
   readonly editor: SiteEditor;
   in_use = $derived<SiteMap | null>(this.items.find((map) => map.in_use) ?? null);
@@ -51,21 +44,25 @@ export class SiteMaps {
   });
   on_map = $derived.by<SiteOnMap | null>(() => {
     const { drawn } = this;
-    const known = drawn && this.#known_of(drawn);
-    if (!drawn || !known) return null;
+    const cells = drawn && this.#cells.of(drawn);
+    if (!drawn || !cells) return null;
     const at = this.#edited ? this.editor.at : place_of_map(drawn, null);
-    return at && { map: drawn, cells: known.cells, at };
+    return at && { map: drawn, cells, at };
   });
 
   readonly #calls: SiteMapCalls;
+  readonly #cells: SiteCells;
   readonly #live: Live;
   readonly #notices: Notices;
   readonly #dialogs: Dialogs;
+  #watched = false;
   /** Of two answers the later question's counts. */
   #question = 0;
+  #waits = 0;
 
   constructor(calls: SiteMapCalls, live: Live, notices: Notices, dialogs: Dialogs) {
     this.#calls = calls;
+    this.#cells = new SiteCells(calls);
     this.#live = live;
     this.#notices = notices;
     this.#dialogs = dialogs;
@@ -80,38 +77,31 @@ export class SiteMaps {
 
   /** Asks now and then, as long as it is looked at. @return ends it */
   watch(): () => void {
-    const again = setInterval(() => void this.refresh(), RENEWED_MS);
+    const again = setInterval(() => {
+      if (this.#waits === 0) void this.refresh(); // a slow answer is not overtaken by the next question
+    }, RENEWED_MS);
+    this.#watched = true;
     void this.refresh();
-    return () => clearInterval(again);
+    return () => {
+      clearInterval(again);
+      this.#watched = false;
+      void this.fetch_cells();
+    };
   }
 
   async refresh(): Promise<void> {
-    const answer = await this.#calls.list();
-    this.failure = answer.ok ? null : refusal_text(answer.refusal);
-    if (answer.ok) this.items = answer.value.items;
-    await this.fetch_cells();
-  }
-
-  /** Only what is not known yet comes over the link. */
-  async fetch_cells(): Promise<void> {
-    const { drawn } = this;
-    const known = drawn && this.#known_of(drawn);
-    if (!drawn || known?.revision === drawn.revision) return;
-    const { id, revision } = drawn;
     const question = (this.#question += 1);
-    const answer = await this.#calls.cells(id, known?.cells.tag ?? null);
+    this.#waits += 1;
+    const answer = await this.#calls.list();
+    this.#waits -= 1;
     if (question !== this.#question) return;
-    if (!answer.ok) {
-      this.failure = `The map is not drawn: ${refusal_text(answer.refusal)}`;
-      return;
-    }
-    const cells = answer.value ?? known?.cells;
-    const others = this.#known.filter((other) => other.id !== id);
-    if (cells) this.#known = [{ id, revision, cells }, ...others].slice(0, KEPT);
+    this.#list_failure = answer.ok ? null : refusal_text(answer.refusal);
+    if (answer.ok) this.items = answer.value.items;
+    void this.fetch_cells();
   }
 
-  #known_of(map: SiteMap): KnownCells | null {
-    return this.#known.find(({ id }) => id === map.id) ?? null;
+  async fetch_cells(): Promise<void> {
+    await this.#cells.want(this.#watched ? this.drawn : null);
   }
 
   /** Where a map is drawn that lies nowhere yet. */
@@ -143,10 +133,12 @@ export class SiteMaps {
     await this.refresh();
   }
 
-  async rename(map: SiteMap, name: string): Promise<void> {
+  /** @return false: it has its old name */
+  async rename(map: SiteMap, name: string): Promise<boolean> {
     const wanted = name.trim();
-    if (wanted === '' || wanted === map.name) return;
-    await this.#do('renamed', () => this.#calls.change(map.id, { name: wanted }));
+    if (wanted === map.name) return true;
+    if (wanted === '') return false;
+    return this.#do('renamed', () => this.#calls.change(map.id, { name: wanted }));
   }
 
   /** @param anchor null: nobody knows where it lies */
@@ -178,12 +170,17 @@ export class SiteMaps {
     await this.#do(map ? 'taken into use' : 'put away', () => this.#calls.use(map?.id ?? null));
   }
 
-  async #do(failed: string, call: () => Promise<Answer<unknown>>): Promise<void> {
-    if (this.busy) return;
-    this.busy = true;
+  /** One at a time; another one is not done, and not in silence. */
+  async #do(done: string, call: () => Promise<Answer<unknown>>): Promise<boolean> {
+    if (this.busy !== null) {
+      this.#notices.show('warning', `The map was not ${done}: one is still being ${this.busy}.`);
+      return false;
+    }
+    this.busy = done;
     const answer = await call();
-    this.busy = false;
-    if (!answer.ok) this.#notices.show('error', `The map: ${failure_text(failed, answer.refusal)}`);
+    this.busy = null;
+    if (!answer.ok) this.#notices.show('error', `The map: ${failure_text(done, answer.refusal)}`);
     await this.refresh();
+    return answer.ok;
   }
 }
