@@ -249,3 +249,68 @@ test('a map is forbidden a corner by hand, taken back before it is saved, rename
   await page.getByRole('dialog').getByRole('button', { name: 'Delete' }).click();
   await expect(item(page)).toContainText('No maps');
 });
+
+test('a map whose cells are long under way is asked for once, and drawn', async ({
+  page,
+  station,
+}) => {
+  test.setTimeout(150_000);
+  await open_page(page, station.url);
+  let asked = 0;
+  await page.route('**/api/v1/maps/*/cells*', async (route) => {
+    asked += 1;
+    await new Promise((resolve) => setTimeout(resolve, 15_000));
+    await route.continue().catch(() => undefined);
+  });
+  await open_maps(page);
+  await send_map(page);
+  await press(page, 'Use it');
+  await expect(item(page)).toContainText('in use');
+  await expect
+    .poll(async () => (await walls(page)).length, { timeout: 30_000 })
+    .toBeGreaterThan(200);
+  expect(asked).toBe(1);
+
+  // A file that misses the place where it may be dropped does not take the page away.
+  const kept = await page.evaluate(() => {
+    const dataTransfer = new DataTransfer();
+    dataTransfer.items.add(new File(['x'], 'hall.yaml'));
+    const drop = new DragEvent('drop', { dataTransfer, bubbles: true, cancelable: true });
+    return !document.querySelector('header')?.dispatchEvent(drop);
+  });
+  expect(kept).toBe(true);
+});
+
+test('what another one forbade meanwhile is not allowed unseen', async ({ page, station }) => {
+  test.setTimeout(120_000);
+  await open_page(page, station.url);
+  await open_maps(page);
+  await send_map(page);
+  const { id } = await stored(station);
+  const forbid = (x_m: number): Promise<unknown> =>
+    station.rest('PATCH', `/maps/${id}`, {
+      edits: [
+        {
+          kind: 'forbid',
+          polygon: [
+            { x_m, y_m: 0 },
+            { x_m: x_m + 1, y_m: 0 },
+            { x_m, y_m: 1 },
+          ],
+        },
+      ],
+    });
+  await forbid(0);
+  await press(page, 'Change…');
+  const forbidden = page.getByRole('list', { name: 'Forbidden' }).getByRole('listitem');
+  await expect(forbidden).toHaveCount(1);
+  await forbid(3);
+  await press(page, 'Allow forbidden area 1');
+  await press(page, 'Save');
+  await expect(page.getByText('Not saved: the map was changed meanwhile')).toBeVisible();
+  await expect(forbidden).toHaveCount(2);
+  expect((await stored(station)).forbidden).toHaveLength(2);
+  await press(page, 'Allow forbidden area 1');
+  await press(page, 'Save');
+  await expect.poll(async () => (await stored(station)).forbidden?.length).toBe(1);
+});

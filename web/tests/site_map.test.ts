@@ -185,7 +185,7 @@ describe('changes by hand', () => {
     expect(why_not_save({ edits: [], forbidden }, before)).toBe('Nothing is drawn.');
     const left = allow(0)({ edits: [], forbidden });
     expect(why_not_save(left, before)).toBeNull();
-    expect(change_of(left, before, at)).toEqual({ forbidden: [other], edits: [] });
+    expect(change_of(left, before, at)).toEqual({ revision: 1, forbidden: [other], edits: [] });
   });
 });
 

@@ -55,6 +55,8 @@ export interface SiteEdit {
   readonly ring: Places;
 }
 export interface SiteChange {
+  /** Refused if the map is another one by now. */
+  readonly revision?: number;
   readonly name?: string;
   readonly anchor?: MapAnchor | null;
   /** Instead of those before. */
@@ -270,9 +272,10 @@ export const why_not_save = (draft: SiteDraft, before: SiteMap): string | null =
   return poor < 0 ? null : `Area ${poor + 1} needs three corners.`;
 };
 
-/** @param at where the map was drawn while one drew on it */
+/** What another one forbade meanwhile must not be allowed unseen: the revision says what was seen.
+ * @param at where the map was drawn while one drew on it */
 export const change_of = (draft: SiteDraft, before: SiteMap, at: Placed): SiteChange => ({
-  ...(allows(draft, before) ? { forbidden: draft.forbidden } : {}),
+  ...(allows(draft, before) ? { revision: before.revision, forbidden: draft.forbidden } : {}),
   edits: draft.edits.map(({ kind, ring }) => ({ kind, polygon: ring.map((p) => in_map(at, p)) })),
 });
 

@@ -121,15 +121,40 @@ export class SiteEditor extends RingDrawing implements Drawing {
   async save(): Promise<void> {
     const { map, at } = this;
     if (!map || !at || this.busy || this.why_not !== null) return;
+    const sent = this.draft;
+    const change = change_of(sent, map, at);
     this.busy = true;
-    const answer = await this.#calls.change(map.id, change_of(this.draft, map, at));
+    const answer = await this.#calls.change(map.id, change);
     this.busy = false;
     if (!answer.ok) {
       this.#notices.show('error', `The map: ${failure_text('saved', answer.refusal)}`);
+      if (answer.refusal.status === 409 && change.revision) await this.#see_anew(map.id);
       return;
     }
-    this.#begin(answer.value);
     this.#notices.show('good', `Saved the map “${answer.value.name}”.`);
+    // Meanwhile the editor may have been closed, or more been drawn.
+    if (this.map?.id === map.id && this.at) this.#go_on(answer.value, sent);
+    await this.#shelf.refresh();
+  }
+
+  /** What was drawn after it was sent stays, and waits to be saved. */
+  #go_on(map: SiteMap, sent: SiteDraft): void {
+    const more = this.draft;
+    const in_hand = this.part === null ? undefined : more.edits[this.part];
+    this.#begin(map);
+    if (more === sent) return;
+    const drawn_since = more.edits.filter((edit) => !sent.edits.includes(edit));
+    this.#do((draft) => ({ ...draft, edits: drawn_since }));
+    if (in_hand && drawn_since.includes(in_hand)) this.choose(drawn_since.indexOf(in_hand));
+  }
+
+  /** Another one changed what is forbidden: that is shown, and what was drawn stays. */
+  async #see_anew(id: number): Promise<void> {
+    const answer = await this.#calls.read(id);
+    if (!answer.ok || this.map?.id !== id) return;
+    const { edits } = this.draft;
+    this.#begin(answer.value);
+    if (edits.length > 0) this.#do((draft) => ({ ...draft, edits }));
     await this.#shelf.refresh();
   }
 
