@@ -63,6 +63,10 @@ describe('what became of a command without an answer', () => {
       'it takes itself to stand 0.0 cm from there',
     ]);
     expect(told(stand, {}, { position: { lat: 58.001, lon: 26 } })[0]).toBeNull();
+    // It was there before, and only its heading was told: nobody knows.
+    expect(told(stand, { position: there }, { position: there })[0]).toBeNull();
+    const far = { lat: 58.001, lon: 26 };
+    expect(told(stand, { position: far }, { position: there })[0]).toBe(true);
     expect(told(stand, {}, { position: { lat: null, lon: null } })[0]).toBe(false);
     const run: Wish = { to: 'run' };
     const stays = mission({ state: 'running', waits_for_word: true });

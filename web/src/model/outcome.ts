@@ -49,12 +49,14 @@ const settled = (obeyed: boolean, still: string, done: string): Outcome => ({
   detail: obeyed ? done : still,
 });
 
-const stands = (told: LatLon, after: Vehicle): Outcome => {
+const stands = (told: LatLon, before: Vehicle | null, after: Vehicle): Outcome => {
   const here = robot_place(after);
   if (!here) return { obeyed: false, detail: 'it does not know where it stands' };
   const off_m = distance_m(here, told);
-  // What it saw there may have moved it already.
-  const obeyed = off_m < TOLD_PLACE_M ? true : null;
+  const there = robot_place(before);
+  // It may have been there before; and what it saw there may have moved it already.
+  const came = there === null || distance_m(there, told) >= TOLD_PLACE_M;
+  const obeyed = off_m < TOLD_PLACE_M && came ? true : null;
   return { obeyed, detail: `it takes itself to stand ${metres(off_m)} from there` };
 };
 
@@ -114,7 +116,7 @@ export const outcome = (wish: Wish, before: Vehicle | null, after: Vehicle): Out
       return { obeyed, detail: obeyed ? 'home is there' : 'home is elsewhere' };
     }
     case 'stand':
-      return stands(wish.at, after);
+      return stands(wish.at, before, after);
   }
 };
 

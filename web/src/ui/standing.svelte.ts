@@ -72,9 +72,10 @@ export class Standing {
     this.heading_deg = toward && Math.round(bearing_deg(at, toward)) % 360;
   }
 
-  /** Clockwise. */
+  /** Clockwise; at first from where the robot takes itself to look. */
   turn(by_deg: number): void {
-    this.heading_deg = ((((this.heading_deg ?? 0) + by_deg) % 360) + 360) % 360;
+    const from_deg = this.heading_deg ?? this.#live.robot?.heading_deg ?? 0;
+    this.heading_deg = Math.round((((from_deg + by_deg) % 360) + 360) % 360) % 360;
   }
 
   /** Only what is told after it was taken says what came of it. */
