@@ -7,7 +7,7 @@ import type { Station } from './station.svelte';
 
 export const key_words: readonly (readonly [keys: string, meaning: string])[] = [
   ['Space, F8, Ctrl + Enter', 'Emergency stop, at once; while you type, the last two'],
-  ['Esc', 'Close the dialog, forget the chosen place, end adding points'],
+  ['Esc', 'Close the dialog, forget the chosen place, end showing or adding points'],
   ['Enter', 'Press the button that has the focus'],
   ['Ctrl + Z', 'Undo the last edit'],
   ['Ctrl + Y, Ctrl + Shift + Z', 'Redo'],
@@ -41,8 +41,18 @@ const edit_key = (station: Station, event: KeyboardEvent): boolean => {
 };
 
 /** What lies uppermost goes. @return false: nothing was open */
-const close_one = ({ dialogs, target, editor, tab }: Station): boolean => {
+const close_one = ({
+  dialogs,
+  target,
+  editor,
+  tab,
+  standing,
+  sites,
+  drawing,
+}: Station): boolean => {
   if (dialogs.open) dialogs.close();
+  else if (tab === 'drive' && standing.open) standing.clear();
+  else if (drawing === sites.editor && sites.editor.part !== null) sites.editor.choose(null);
   else if (tab === 'drive' && target.at) target.clear();
   else if (tab === 'plan' && editor.adding) editor.adding = false;
   else return false;
