@@ -4,7 +4,8 @@ import { DEFAULTS, settings_of, speed_text } from '../src/model/settings';
 
 describe('what is kept on the device', () => {
   test('comes back', () => {
-    const chosen = { look: 'sunlight', speed: 'km/h', places: 'utm' } as const;
+    const gamepad = { uses: {}, expo: 0.2, bumpers: true };
+    const chosen = { look: 'sunlight', speed: 'km/h', places: 'utm', gamepad } as const;
     expect(settings_of(JSON.stringify(chosen))).toEqual(chosen);
   });
   test('is as at first where nothing is kept, or something else', () => {

@@ -39,17 +39,19 @@ export const LET_GO_PERIOD_MS = 250;
 
 /**
  * What is pressed, whether it drives or not. Only a fresh grip begins to drive: a finger or a key that
- * is down already, or a key that the keyboard repeats, begins nothing.
+ * is down already, or a key that the keyboard repeats, begins nothing. A gamepad tells itself what is
+ * fresh (gamepad.ts).
  */
 export class Grip {
   #finger = false;
+  #gamepad = false;
   readonly #keys = new Set<string>();
 
   get keys(): ReadonlySet<string> {
     return this.#keys;
   }
   get free(): boolean {
-    return !this.#finger && this.#keys.size === 0;
+    return !this.#finger && !this.#gamepad && this.#keys.size === 0;
   }
 
   /** @return true: a fresh grip */
@@ -60,6 +62,15 @@ export class Grip {
   }
   finger_up(): void {
     this.#finger = false;
+  }
+  /** @return true: nothing else is pressed */
+  gamepad_down(): boolean {
+    const fresh = this.free;
+    this.#gamepad = true;
+    return fresh;
+  }
+  gamepad_up(): void {
+    this.#gamepad = false;
   }
   /** @return true: a fresh grip */
   key_down(key: string, repeated: boolean): boolean {
@@ -73,6 +84,7 @@ export class Grip {
   /** The page does not hear any more when something is let go. */
   lose_sight(): void {
     this.#finger = false;
+    this.#gamepad = false;
     this.#keys.clear();
   }
 }

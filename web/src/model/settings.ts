@@ -1,6 +1,7 @@
 // How this device shows things: chosen by whoever holds it, kept on it, and nothing of the robot's.
 
 import { number_text } from './format';
+import { PAD_DEFAULTS, pad_settings_of, type PadSettings } from './gamepad';
 import type { PlaceForm } from './place_text';
 
 /** Sunlight: black on white, whatever the device prefers. */
@@ -11,9 +12,15 @@ export interface Settings {
   readonly look: Look;
   readonly speed: SpeedUnit;
   readonly places: PlaceForm;
+  readonly gamepad: PadSettings;
 }
 
-export const DEFAULTS: Settings = { look: 'device', speed: 'm/s', places: 'degrees' };
+export const DEFAULTS: Settings = {
+  look: 'device',
+  speed: 'm/s',
+  places: 'degrees',
+  gamepad: PAD_DEFAULTS,
+};
 
 export const LOOKS: readonly Look[] = ['device', 'sunlight'];
 export const SPEED_UNITS: readonly SpeedUnit[] = ['m/s', 'km/h'];
@@ -33,11 +40,12 @@ const kept_in = (text: string | null): Readonly<Record<string, unknown>> => {
 
 /** What was kept. Whatever it does not know, or nobody wrote like that, is as at first. */
 export const settings_of = (text: string | null): Settings => {
-  const { look, speed, places } = kept_in(text);
+  const { look, speed, places, gamepad } = kept_in(text);
   return {
     look: one_of(LOOKS, look, DEFAULTS.look),
     speed: one_of(SPEED_UNITS, speed, DEFAULTS.speed),
     places: one_of(PLACE_FORMS, places, DEFAULTS.places),
+    gamepad: pad_settings_of(gamepad),
   };
 };
 

@@ -1,0 +1,208 @@
+// A gamepad as the browser reports it, and what its sticks and buttons mean. It drives only while its
+// dead-man button is held; pulled out, or silent, it is let go.
+
+import { DEAD_ZONE, type DriveLimits, type DriveWish } from './drive';
+
+/** Of what the browser tells about a gamepad. */
+export interface PadReading {
+  readonly id: string;
+  readonly mapping: string;
+  /** Each in [-1, 1]; sticks: right and down positive. */
+  readonly axes: readonly number[];
+  readonly buttons: readonly { readonly pressed: boolean }[];
+}
+
+/** Whose buttons stand where: as the browser orders them itself; the F710 with its switch at D; the
+ * Xbox's, and the F710's at X, as Linux numbers them; one that nobody knows. */
+export type PadKind = 'standard' | 'f710_d' | 'xpad' | 'other';
+export const PAD_KINDS: readonly PadKind[] = ['standard', 'f710_d', 'xpad', 'other'];
+
+export const pad_kind = ({ id, mapping }: Pick<PadReading, 'id' | 'mapping'>): PadKind => {
+  if (mapping === 'standard') return 'standard';
+  if (/c219|rumblepad 2/i.test(id)) return 'f710_d';
+  return /c21f|045e|x-?box|f710/i.test(id) ? 'xpad' : 'other';
+};
+
+/** Numbers of axes and buttons; null: nobody has said. */
+export interface PadUse {
+  /** Pushed away from the driver: forwards. */
+  readonly speed: number | null;
+  readonly turn: number | null;
+  /** The dead-man button. */
+  readonly hold: number | null;
+  /** Held together with that one: by hand from now on. */
+  readonly other: number | null;
+}
+export type PadPart = keyof PadUse;
+export const PAD_PARTS: readonly PadPart[] = ['speed', 'turn', 'hold', 'other'];
+export const is_axis = (part: PadPart): boolean => part === 'speed' || part === 'turn';
+
+/** Left stick: speed; right one: steering; the bumpers are the safety buttons. */
+const USUAL: Readonly<Record<PadKind, PadUse>> = {
+  standard: { speed: 1, turn: 2, hold: 4, other: 5 },
+  f710_d: { speed: 1, turn: 2, hold: 4, other: 5 },
+  xpad: { speed: 1, turn: 3, hold: 4, other: 5 },
+  other: { speed: null, turn: null, hold: null, other: null },
+};
+
+export interface PadSettings {
+  readonly uses: Readonly<Partial<Record<PadKind, PadUse>>>;
+  /** 0: straight; 1: fine about the middle, steep at the end. */
+  readonly expo: number;
+  /** Both bumpers together choose the mode MANUAL. */
+  readonly bumpers: boolean;
+}
+export const PAD_DEFAULTS: PadSettings = { uses: {}, expo: 0.4, bumpers: false };
+
+export const use_of = (settings: PadSettings, kind: PadKind): PadUse =>
+  settings.uses[kind] ?? USUAL[kind];
+
+export const assigned = (
+  settings: PadSettings,
+  kind: PadKind,
+  part: PadPart,
+  number: number,
+): PadSettings => ({
+  ...settings,
+  uses: { ...settings.uses, [kind]: { ...use_of(settings, kind), [part]: number } },
+});
+
+const AT_MOST = 64;
+const record_of = (value: unknown): Readonly<Record<string, unknown>> =>
+  typeof value === 'object' && value !== null ? { ...value } : {};
+const number_in = (value: unknown): number | null =>
+  typeof value === 'number' && Number.isInteger(value) && value >= 0 && value < AT_MOST
+    ? value
+    : null;
+
+/** What was kept on the device; what nobody wrote like that is as at first. */
+export const pad_settings_of = (kept: unknown): PadSettings => {
+  const { uses, expo, bumpers } = record_of(kept);
+  const read: Partial<Record<PadKind, PadUse>> = {};
+  for (const kind of PAD_KINDS) {
+    const use = record_of(uses)[kind];
+    if (use === undefined) continue;
+    const { speed, turn, hold, other } = record_of(use);
+    read[kind] = {
+      speed: number_in(speed),
+      turn: number_in(turn),
+      hold: number_in(hold),
+      other: number_in(other),
+    };
+  }
+  const fits = typeof expo === 'number' && expo >= 0 && expo <= 1;
+  return { uses: read, expo: fits ? expo : PAD_DEFAULTS.expo, bumpers: bumpers === true };
+};
+
+const NAMES: Readonly<Record<PadKind, readonly string[]>> = {
+  standard: ['A', 'B', 'X', 'Y', 'LB', 'RB', 'LT', 'RT', 'Back', 'Start', 'LS', 'RS'],
+  f710_d: ['X', 'A', 'B', 'Y', 'LB', 'RB', 'LT', 'RT', 'Back', 'Start', 'LS', 'RS'],
+  xpad: ['A', 'B', 'X', 'Y', 'LB', 'RB', 'Back', 'Start', 'Logo', 'LS', 'RS'],
+  other: [],
+};
+/** As it is printed on it. */
+export const button_name = (kind: PadKind, button: number): string =>
+  NAMES[kind][button] ?? `Button ${button + 1}`;
+
+const STICKS = ['Left stick, across', 'Left stick, along'];
+const MORE: Readonly<Record<PadKind, readonly string[]>> = {
+  standard: ['Right stick, across', 'Right stick, along'],
+  f710_d: ['Right stick, across', 'Right stick, along'],
+  xpad: ['LT', 'Right stick, across', 'Right stick, along', 'RT'],
+  other: [],
+};
+export const axis_name = (kind: PadKind, axis: number): string =>
+  (kind === 'other' ? [] : [...STICKS, ...MORE[kind]])[axis] ?? `Axis ${axis + 1}`;
+
+export const pressed = (reading: PadReading, button: number | null): boolean =>
+  button !== null && reading.buttons[button]?.pressed === true;
+
+/** Where a stick stands, in [-1, 1]; 0: it has none, or nothing sensible. */
+export const axis_value = (reading: PadReading, axis: number | null): number => {
+  const value = axis === null ? 0 : (reading.axes[axis] ?? 0);
+  return Number.isFinite(value) ? Math.max(-1, Math.min(1, value)) : 0;
+};
+
+const shaped = (value: number, expo: number): number => {
+  const size = Math.abs(value);
+  if (size <= DEAD_ZONE) return 0;
+  const over = (size - DEAD_ZONE) / (1 - DEAD_ZONE);
+  return Math.sign(value) * ((1 - expo) * over + expo * over ** 3);
+};
+
+/** @param share 0..1 of the vehicle's limits, from the speed setting */
+export const pad_wish = (
+  reading: PadReading,
+  use: PadUse,
+  expo: number,
+  limits: DriveLimits,
+  share: number,
+): DriveWish => {
+  const of = (axis: number | null): number => shaped(axis_value(reading, axis), expo) * share;
+  return {
+    speed_mps: 0 - of(use.speed) * limits.max_speed_mps,
+    yaw_rate_dps: 0 - of(use.turn) * limits.max_yaw_rate_dps,
+  };
+};
+
+/** Why it cannot drive; null: it can. */
+export const why_not_pad = (use: PadUse): string | null =>
+  use.speed === null || use.turn === null || use.hold === null
+    ? 'Nobody knows its buttons: assign two sticks and the dead-man first.'
+    : null;
+
+/** What was moved or pressed since `before`, to be assigned. */
+export const moved_part = (before: PadReading, now: PadReading, part: PadPart): number | null => {
+  const found = is_axis(part)
+    ? now.axes.findIndex((_, k) => Math.abs(axis_value(now, k) - axis_value(before, k)) > 0.6)
+    : now.buttons.findIndex(({ pressed: on }, k) => on && !pressed(before, k));
+  return found < 0 ? null : found;
+};
+
+/** So long both bumpers are held: nobody does that by chance. */
+export const BUMPERS_MS = 500;
+
+export type PadDeed = 'grab' | 'let_go' | 'by_hand';
+
+/**
+ * What the hands do with the buttons, told once each. Only a fresh grip begins: a button that is down
+ * when it is seen first, or was out of sight, begins nothing.
+ *
+ *   Down --up--> Up --down--> Held --up, gone--> Up
+ */
+export class PadHand {
+  #phase: 'down' | 'up' | 'held' = 'down';
+  #both_since_ms: number | null = null;
+  #asked = false;
+
+  /** @param reading null: it is gone; @param now_ms of any clock that only goes on */
+  take(reading: PadReading | null, use: PadUse, bumpers: boolean, now_ms: number): PadDeed | null {
+    if (reading === null) return this.lose_sight();
+    const holds = why_not_pad(use) === null && pressed(reading, use.hold);
+    const both = holds && bumpers && use.other !== use.hold && pressed(reading, use.other);
+    if (!both) this.#asked = false;
+    this.#both_since_ms = both ? (this.#both_since_ms ?? now_ms) : null;
+    if (!holds) {
+      const held = this.#phase === 'held';
+      this.#phase = 'up';
+      return held ? 'let_go' : null;
+    }
+    if (this.#phase === 'up') {
+      this.#phase = 'held';
+      return 'grab';
+    }
+    const since_ms = this.#both_since_ms;
+    if (since_ms === null || this.#asked || now_ms - since_ms < BUMPERS_MS) return null;
+    this.#asked = true;
+    return 'by_hand';
+  }
+
+  /** It was pulled out, or the page is not looked at. */
+  lose_sight(): PadDeed | null {
+    const held = this.#phase === 'held';
+    this.#phase = 'down';
+    this.#both_since_ms = null;
+    this.#asked = true;
+    return held ? 'let_go' : null;
+  }
+}

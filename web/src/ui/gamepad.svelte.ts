@@ -1,0 +1,79 @@
+// The gamepad of this device: looked at often while the page is seen, and told what became of it.
+
+import {
+  PadHand,
+  pad_kind,
+  use_of,
+  why_not_pad,
+  type PadDeed,
+  type PadKind,
+  type PadReading,
+  type PadUse,
+} from '../model/gamepad';
+import { device } from './device.svelte';
+
+/** Browsers tell of buttons only when they are asked. */
+const LOOK_MS = 20;
+
+/** The one that is used: the first that is there. */
+const read = (): PadReading | null => {
+  if (document.visibilityState !== 'visible' || !('getGamepads' in navigator)) return null;
+  return navigator.getGamepads().find((each) => each?.connected) ?? null;
+};
+
+/** What moves is copied: some browsers change what they gave out before. */
+const copy = ({ id, mapping, axes, buttons }: PadReading): PadReading => ({
+  id,
+  mapping,
+  axes: [...axes],
+  buttons: buttons.map(({ pressed }) => ({ pressed })),
+});
+
+export class Gamepads {
+  /** Null: none is there, or nobody has pressed a button of it yet. */
+  reading = $state.raw<PadReading | null>(null);
+  kind = $derived<PadKind>(this.reading ? pad_kind(this.reading) : 'other');
+  use = $derived<PadUse>(use_of(device.settings.gamepad, this.kind));
+  why_not = $derived<string | null>(why_not_pad(this.use));
+  /** While its buttons are assigned it does not drive. */
+  assigns = $state(false);
+
+  readonly #hand = new PadHand();
+  readonly #deed: (deed: PadDeed) => void;
+
+  /** @param deed told what the hands do, at once */
+  constructor(deed: (deed: PadDeed) => void) {
+    this.#deed = deed;
+  }
+
+  /** @return ends it */
+  watch(): () => void {
+    const look = (): void => this.#look();
+    const timer = setInterval(look, LOOK_MS);
+    window.addEventListener('gamepadconnected', look);
+    window.addEventListener('gamepaddisconnected', look);
+    return () => {
+      clearInterval(timer);
+      window.removeEventListener('gamepadconnected', look);
+      window.removeEventListener('gamepaddisconnected', look);
+      this.lose_sight();
+    };
+  }
+
+  lose_sight(): void {
+    this.#tell(this.#hand.lose_sight());
+  }
+
+  #look(): void {
+    const found = read();
+    if (found === null && this.reading === null) return;
+    this.reading = found && copy(found);
+    const given = this.assigns ? null : this.reading;
+    const { bumpers } = device.settings.gamepad;
+    this.#tell(this.#hand.take(given, this.use, bumpers, performance.now()));
+  }
+
+  #tell(deed: PadDeed | null): void {
+    if (deed !== null) this.#deed(deed);
+  }
+}

@@ -1,0 +1,145 @@
+import { describe, expect, test } from 'vitest';
+
+import {
+  PAD_DEFAULTS,
+  PadHand,
+  assigned,
+  axis_name,
+  button_name,
+  moved_part,
+  pad_kind,
+  pad_settings_of,
+  pad_wish,
+  use_of,
+  why_not_pad,
+  type PadReading,
+} from '../src/model/gamepad';
+
+const limits = { max_speed_mps: 2, max_yaw_rate_dps: 90 };
+const pad = (axes: readonly number[], down: readonly number[] = []): PadReading => ({
+  id: 'Xbox 360 Controller (STANDARD GAMEPAD Vendor: 045e Product: 028e)',
+  mapping: 'standard',
+  axes,
+  buttons: Array.from({ length: 17 }, (_, k) => ({ pressed: down.includes(k) })),
+});
+const STILL = [0, 0, 0, 0];
+const usual = use_of(PAD_DEFAULTS, 'standard');
+
+describe('which gamepad it is', () => {
+  test('by what the browser ordered, else by its name', () => {
+    const kind = (id: string, mapping = '') => pad_kind({ id, mapping });
+    expect(kind('Anything', 'standard')).toBe('standard');
+    expect(kind('046d-c219-Logitech Logitech Cordless RumblePad 2')).toBe('f710_d');
+    expect(kind('046d-c21f-Logitech Gamepad F710')).toBe('xpad');
+    expect(kind('045e-028e-Microsoft X-Box 360 pad')).toBe('xpad');
+    expect(kind('1234-5678-Joystick')).toBe('other');
+  });
+
+  test('its buttons are called as printed; the D mode counts from X', () => {
+    expect(button_name('standard', 0)).toBe('A');
+    expect(button_name('f710_d', 0)).toBe('X');
+    expect(button_name('xpad', 6)).toBe('Back');
+    expect(button_name('other', 6)).toBe('Button 7');
+    expect(axis_name('xpad', 3)).toBe('Right stick, across');
+    expect(axis_name('standard', 2)).toBe('Right stick, across');
+    expect(axis_name('other', 0)).toBe('Axis 1');
+  });
+});
+
+describe('what its sticks mean', () => {
+  test('up is forwards, right is clockwise, and the share limits both', () => {
+    expect(pad_wish(pad([0, -1, 0, 0]), usual, 0, limits, 0.5).speed_mps).toBeCloseTo(1);
+    expect(pad_wish(pad([0, 0, 1, 0]), usual, 0, limits, 0.5).yaw_rate_dps).toBeCloseTo(-45);
+  });
+
+  test('a thumb that rests moves nothing, and neither does nonsense', () => {
+    const still = { speed_mps: 0, yaw_rate_dps: 0 };
+    expect(pad_wish(pad([0, 0.1, -0.1, 0]), usual, 0.4, limits, 1)).toEqual(still);
+    expect(pad_wish(pad([0, NaN]), usual, 0.4, limits, 1)).toEqual(still);
+    expect(pad_wish(pad([0, -7, 0, 0]), usual, 0.4, limits, 1).speed_mps).toBeCloseTo(2);
+  });
+
+  test('expo is fine about the middle and leaves the end as it is', () => {
+    const half = -(0.12 + 0.88 / 2);
+    const speed = (expo: number, up: number) =>
+      pad_wish(pad([0, up, 0, 0]), usual, expo, limits, 1).speed_mps;
+    expect(speed(0, half)).toBeCloseTo(1);
+    expect(speed(1, half)).toBeCloseTo(0.25); // 2 · 0.5³
+    expect(speed(1, -1)).toBeCloseTo(2);
+  });
+});
+
+describe('the dead-man', () => {
+  const take = (hand: PadHand, down: readonly number[] | null, bumpers = false, at_ms = 0) =>
+    hand.take(down && pad(STILL, down), usual, bumpers, at_ms);
+
+  test('begins with a fresh press only, and ends when it is let go', () => {
+    const hand = new PadHand();
+    expect(take(hand, [4])).toBeNull(); // down when it is seen first
+    expect(take(hand, [])).toBeNull();
+    expect(take(hand, [4])).toBe('grab');
+    expect(take(hand, [4])).toBeNull();
+    expect(take(hand, [])).toBe('let_go');
+    expect(take(hand, [])).toBeNull();
+  });
+
+  test('pulled out it is let go at once, and begins nothing when it is back', () => {
+    const hand = new PadHand();
+    take(hand, []);
+    expect(take(hand, [4])).toBe('grab');
+    expect(take(hand, null)).toBe('let_go');
+    expect(take(hand, [4])).toBeNull();
+    take(hand, []);
+    expect(take(hand, [4])).toBe('grab');
+    expect(hand.lose_sight()).toBe('let_go');
+    expect(hand.lose_sight()).toBeNull();
+  });
+
+  test('both bumpers, held together, ask once for driving by hand, if that is chosen', () => {
+    const hand = new PadHand();
+    take(hand, [], true);
+    expect(take(hand, [4, 5], true, 0)).toBe('grab');
+    expect(take(hand, [4, 5], true, 400)).toBeNull();
+    expect(take(hand, [4, 5], true, 500)).toBe('by_hand');
+    expect(take(hand, [4, 5], true, 2000)).toBeNull();
+    expect(take(hand, [4], true, 2100)).toBeNull();
+    expect(take(hand, [4, 5], true, 2200)).toBeNull();
+    expect(take(hand, [4, 5], true, 2700)).toBe('by_hand');
+    const without = new PadHand();
+    take(without, []);
+    take(without, [4, 5], false, 0);
+    expect(take(without, [4, 5], false, 900)).toBeNull();
+  });
+});
+
+describe('what is chosen', () => {
+  test('buttons are assigned by pressing them, sticks by pushing them', () => {
+    expect(moved_part(pad(STILL, [1]), pad(STILL, [1, 6]), 'hold')).toBe(6);
+    expect(moved_part(pad(STILL), pad([0, 0, 0, -0.9]), 'speed')).toBe(3);
+    expect(moved_part(pad(STILL), pad([0.3, 0, 0, 0]), 'speed')).toBeNull();
+    const settings = assigned(PAD_DEFAULTS, 'standard', 'hold', 6);
+    expect(use_of(settings, 'standard')).toEqual({ speed: 1, turn: 2, hold: 6, other: 5 });
+    expect(use_of(settings, 'xpad').hold).toBe(4);
+  });
+
+  test('one that nobody knows drives only once it is assigned', () => {
+    const none = use_of(PAD_DEFAULTS, 'other');
+    expect(why_not_pad(none)).toContain('assign');
+    const hand = new PadHand();
+    hand.take(pad(STILL), none, false, 0);
+    expect(hand.take(pad(STILL, [0, 1, 2, 3, 4, 5]), none, false, 1)).toBeNull();
+  });
+
+  test('what is kept comes back; what nobody wrote like that is as at first', () => {
+    const settings = { ...assigned(PAD_DEFAULTS, 'f710_d', 'turn', 0), expo: 0.7, bumpers: true };
+    expect(pad_settings_of(JSON.parse(JSON.stringify(settings)))).toEqual(settings);
+    expect(pad_settings_of(undefined)).toEqual(PAD_DEFAULTS);
+    expect(pad_settings_of({ uses: 3, expo: 9, bumpers: 'yes' })).toEqual(PAD_DEFAULTS);
+    expect(pad_settings_of({ uses: { xpad: { hold: -1, speed: 1.5 } } }).uses.xpad).toEqual({
+      speed: null,
+      turn: null,
+      hold: null,
+      other: null,
+    });
+  });
+});
