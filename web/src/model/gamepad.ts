@@ -95,7 +95,10 @@ export const pad_settings_of = (kept: unknown): PadSettings => {
 };
 
 const NAMES: Readonly<Record<PadKind, readonly string[]>> = {
-  standard: ['A', 'B', 'X', 'Y', 'LB', 'RB', 'LT', 'RT', 'Back', 'Start', 'LS', 'RS'],
+  standard: [
+    ...['A', 'B', 'X', 'Y', 'LB', 'RB', 'LT', 'RT', 'Back', 'Start', 'LS', 'RS'],
+    ...['↑', '↓', '←', '→', 'Logo'],
+  ],
   f710_d: ['X', 'A', 'B', 'Y', 'LB', 'RB', 'LT', 'RT', 'Back', 'Start', 'LS', 'RS'],
   xpad: ['A', 'B', 'X', 'Y', 'LB', 'RB', 'Back', 'Start', 'Logo', 'LS', 'RS'],
   other: [],
