@@ -8,6 +8,7 @@ import { control_calls } from './link/control';
 import { drill_calls } from './link/drill';
 import { fence_calls, survey_calls } from './link/fields';
 import { read_identity } from './link/identity';
+import { parameter_calls } from './link/parameters';
 import { mission_calls, tile_sets, vehicle_calls } from './link/rest';
 import { run_calls } from './link/runs';
 import { seen_calls } from './link/seen';
@@ -88,6 +89,7 @@ const begin = (account: Account | null, session: string | null): void => {
     account,
     desk,
     audit,
+    parameters: parameter_calls,
     left: again,
     watch_pointer: map.watch_pointer.bind(map),
   };
