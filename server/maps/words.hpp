@@ -4,6 +4,7 @@
 // Frame M: the map's own, metres, yaw left positive. Angles on the earth are compass headings in
 // degrees, as people say them. Values.
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -59,6 +60,17 @@ struct Edit {
   enum class Kind : std::uint8_t { Erase, Wall, Forbid };
   Kind kind = Kind::Erase;
   Area area;
+};
+
+/// A map that is being driven.
+struct Making {
+  std::size_t scans = 0;
+  double way_m = 0.0;
+  std::string trouble;  ///< why nothing more is taken; empty: it goes on
+};
+struct Made {
+  nav::chart::OccupancyMap map;
+  std::optional<Anchor> anchor;  ///< where the satellites were good on the way
 };
 
 /// What is empty stays.
