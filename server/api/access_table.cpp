@@ -104,6 +104,8 @@ constexpr Row kTable[] = {
     {"POST /fences/{id}/revert", Need::Operator, NeedsControl::IfActive},
     {"POST /invitations", Need::Operator, NeedsControl::No},
     {"POST /maps", Need::Operator, NeedsControl::No},
+    {"POST /maps/start", Need::Operator, NeedsControl::No},
+    {"POST /maps/stop", Need::Operator, NeedsControl::No},
     {"POST /maps/unuse", Need::Operator, NeedsControl::Yes},
     {"DELETE /maps/{id}", Need::Operator, NeedsControl::No},
     {"PATCH /maps/{id}", Need::Operator, NeedsControl::IfActive},

@@ -93,6 +93,13 @@ struct MapDoor {
   /// Any thread: where the map in use lies on the earth, by its anchor or by what was found. Empty:
   /// nobody knows yet.
   std::function<std::optional<maps::Anchor>()> placed{};
+  /// A map is made of what is seen from now on. Conflict: one is. Empty: nothing looks around.
+  std::function<base::Result<void>()> start_making{};
+  /// Beside the web: ends it, which takes seconds. Conflict: none is being made, nothing was seen.
+  std::function<base::Result<maps::Made>()> finish_making{};
+  /// Beside the web: ends it, and nothing is made.
+  std::function<void()> drop_making{};
+  std::function<std::optional<maps::Making>()> making{};  ///< empty answers: none is being made
 };
 
 /// Figures of net for /metrics.

@@ -159,6 +159,15 @@ Result<MapForm> read_map_form(std::string_view body, std::string_view content_ty
   return MapForm{std::move(*name), std::move(*upload)};
 }
 
+Result<StopMaking> read_stop_making(const Json& body) {
+  Members members(body);
+  const auto name = members.text("name");
+  if (const auto problem = problem_with(name)) members.complain("name", *problem);
+  const bool discard = members.flag("discard").value_or(false);
+  if (auto read = members.finish(); !read) return tl::unexpected<Error>(read.error());
+  return StopMaking{name.value_or("Map"), discard};
+}
+
 Result<maps::Change> read_map_change(const Json& body) {
   Members members(body);
   maps::Change out;

@@ -22,6 +22,13 @@ struct MapForm {
 /// missing, comes twice or cannot be, or a field is not known, with its name.
 base::Result<MapForm> read_map_form(std::string_view body, std::string_view content_type);
 
+struct StopMaking {
+  std::string name;  ///< one that people may give
+  bool discard = false;
+};
+/// {name?, discard?}. Invalid, with the name of what is wrong.
+base::Result<StopMaking> read_stop_making(const Json& body);
+
 /// {name?, anchor?|null, forbidden?, edits?}. Invalid, with the name of what is wrong.
 base::Result<maps::Change> read_map_change(const Json& body);
 

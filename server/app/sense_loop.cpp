@@ -5,6 +5,7 @@
 
 #include <pthread.h>
 
+#include "app/map_maker.hpp"
 #include "app/place_loop.hpp"
 #include "base/log.hpp"
 #include "robot/guard/guard.hpp"
@@ -22,8 +23,8 @@ constexpr long kWake_ns = 20'000'000;  // also without a sight: what waits, and 
 }  // namespace
 
 SenseLoop::SenseLoop(robot::Robot& robot, robot::Lookout lookout, robot::OutlookParams shown,
-                     PlaceLoop* place)
-    : robot_(robot), place_(place), lookout_(std::move(lookout)), shown_(shown) {
+                     PlaceLoop* place, MapMaker* maker)
+    : robot_(robot), place_(place), maker_(maker), lookout_(std::move(lookout)), shown_(shown) {
   sem_init(&news_, 0, 0);
   thread_ = std::thread([this] { run(); });
 }
@@ -88,6 +89,7 @@ void SenseLoop::run() noexcept {
       sights_.take(sights);
       robot_.odometry().take(moved);
       if (place_ != nullptr) place_->take(sights, moved);
+      if (maker_ != nullptr) maker_->take(sights, moved);
       done.clear();
       robot_.surroundings_done().take(done);
       const auto config = robot_.config();

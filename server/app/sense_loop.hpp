@@ -25,14 +25,16 @@
 
 namespace roverd {
 
+class MapMaker;
 class PlaceLoop;
 
 class SenseLoop {
  public:
   /// Starts the thread. @param robot outlives it, and so does @param place, which is handed on
   /// what comes in; null: nobody looks for the robot in a map
+  /// @param maker likewise; null: nobody makes maps
   SenseLoop(robot::Robot& robot, robot::Lookout lookout, robot::OutlookParams shown,
-            PlaceLoop* place = nullptr);
+            PlaceLoop* place = nullptr, MapMaker* maker = nullptr);
   ~SenseLoop();
   SenseLoop(const SenseLoop&) = delete;
   SenseLoop& operator=(const SenseLoop&) = delete;
@@ -53,6 +55,7 @@ class SenseLoop {
 
   robot::Robot& robot_;
   PlaceLoop* place_;
+  MapMaker* maker_;
   robot::Lookout lookout_;
   base::Inbox<std::shared_ptr<const base::Sight>> sights_{64};
   base::Inbox<std::shared_ptr<const base::Vision>> visions_{32};

@@ -25,6 +25,7 @@
 #include "app/estop_keeper.hpp"
 #include "app/front.hpp"
 #include "app/host_watch.hpp"
+#include "app/map_maker.hpp"
 #include "app/memory_reserve.hpp"
 #include "app/place_loop.hpp"
 #include "app/presence.hpp"
@@ -68,6 +69,7 @@ struct Station::Impl {
   store::TileFolder tiles;
   std::unique_ptr<AroundLoop> around;  ///< null: nobody goes around anything
   std::unique_ptr<maps::Shelf> shelf;
+  std::unique_ptr<MapMaker> maker;   ///< null: no sensors
   std::unique_ptr<PlaceLoop> place;  ///< null: no sensors
   std::shared_ptr<SenseLoop> sense;  ///< null: no sensors
   std::unique_ptr<Supervisor> supervisor;

@@ -80,7 +80,11 @@ void Station::Impl::tell_map_trouble(const std::string& what) {
 api::MapDoor Station::Impl::map_door() {
   api::MapDoor door;
   door.shelf = shelf.get();
-  if (!place) return door;
+  if (!place || !maker) return door;
+  door.start_making = [this] { return maker->start(); };
+  door.finish_making = [this] { return maker->finish(); };
+  door.drop_making = [this] { maker->cancel(); };
+  door.making = [this] { return maker->progress(); };
   door.prepare = [this](std::int64_t id, bool same_place) -> Result<api::MapDoor::Take> {
     auto made = map_of(*shelf, id);
     if (!made) return tl::unexpected(made.error());
@@ -131,7 +135,9 @@ Result<void> Station::Impl::open_senses(const Settings& settings, const Options&
   }
   place = std::make_unique<PlaceLoop>(robot, std::move(map), whereabouts_of(settings),
                                       mounts_of(settings));
-  sense = std::make_shared<SenseLoop>(robot, std::move(*lookout), shown_of(settings), place.get());
+  maker = std::make_unique<MapMaker>(robot, mounts_of(settings));
+  sense = std::make_shared<SenseLoop>(robot, std::move(*lookout), shown_of(settings), place.get(),
+                                      maker.get());
   around = std::make_unique<AroundLoop>(robot);  // `then` may become "around" at any time
   return {};
 }

@@ -159,6 +159,17 @@ api::MapDoor House::map_door(const Before& before) {
     };
   };
   out.drop = [this] { map_taken = -1; };
+  out.start_making = [this]() -> base::Result<void> {
+    if (making.exchange(true)) return base::fail(base::Code::Conflict, "one is being made");
+    return {};
+  };
+  out.finish_making = [this]() -> base::Result<maps::Made> {
+    if (!making.exchange(false)) return base::fail(base::Code::Conflict, "none is being made");
+    return maps::Made{*nav::chart::OccupancyMap::make({3, 2, 0.05, {}}),
+                      maps::Anchor{kStart, 12.0, 0.1, 0.5}};
+  };
+  out.drop_making = [this] { making = false; };
+  out.making = [this] { return making ? std::optional(maps::Making{12, 3.44, ""}) : std::nullopt; };
   out.placed = [this] {
     const std::int64_t id = map_taken;
     return id < 0 ? std::nullopt : std::optional(maps::Anchor{kStart, 90.0, 0.4, 2.0});

@@ -88,6 +88,7 @@ class House {
   /// The map in which it is looked for, as it was taken last; -1: none, -2: nobody said a word.
   std::atomic<std::int64_t> map_taken{-2};
   std::atomic<bool> map_same_place{false};
+  std::atomic<bool> making{false};  ///< a map
   std::filesystem::path maps_folder() const { return folder_ / "maps"; }
   /// What its sensors see from now on, if it has any.
   void sees(std::shared_ptr<const robot::Outlook> outlook) { seen_.publish(std::move(outlook)); }

@@ -272,6 +272,25 @@ TEST_F(MapsApi, NobodyChangesTheMapUnderARobotThatDrivesByItself) {
   EXPECT_EQ(call("POST", "/maps/2/use").status, 200u);
 }
 
+TEST_F(MapsApi, AMapIsDrivenAndKept) {
+  EXPECT_EQ(call("POST", "/maps/stop").status, 409u);
+  EXPECT_EQ(call("GET", "/maps").body["making"], nullptr);
+  ASSERT_EQ(call("POST", "/maps/start").status, 200u);
+  EXPECT_EQ(call("POST", "/maps/start").status, 409u);
+  EXPECT_EQ(call("GET", "/maps").body["making"]["way_m"], 3.4);
+  EXPECT_EQ(call("POST", "/maps/stop", Json{{"name", ""}}).status, 422u);
+  EXPECT_EQ(call("POST", "/maps/stop", Json{{"discard", 1}}).status, 422u);
+  const auto made = call("POST", "/maps/stop", Json{{"name", "barn"}});
+  ASSERT_EQ(made.status, 201u) << made.body;
+  EXPECT_EQ(made.raw.header("location"), "/api/v1/maps/1");
+  EXPECT_EQ(made.body["name"], "barn");
+  EXPECT_EQ(made.body["anchor"]["heading_deg"], 12.0);
+  EXPECT_EQ(made.body["in_use"], false);
+  ASSERT_EQ(call("POST", "/maps/start").status, 200u);
+  EXPECT_EQ(call("POST", "/maps/stop", Json{{"discard", true}}).status, 204u);
+  EXPECT_EQ(call("GET", "/maps").body["items"].size(), 1u);
+}
+
 class ConfiguredMap : public MapsApi {
  protected:
   ConfiguredMap() : MapsApi(with_a_map()) {}

@@ -1,5 +1,6 @@
 #include "api/json/map_words.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include "base/angle.hpp"
@@ -45,12 +46,20 @@ Json map_json(const maps::About& a, const MapsNow& now, bool whole) {
   return out;
 }
 
+Json making_json(const std::optional<maps::Making>& making) {
+  if (!making) return nullptr;
+  return {{"scans", making->scans},
+          {"way_m", std::round(making->way_m * 10.0) / 10.0},
+          {"trouble", making->trouble.empty() ? Json(nullptr) : Json(making->trouble)}};
+}
+
 Json map_list_json(const std::vector<maps::About>& list, const MapsNow& now) {
   Json items = Json::array();
   for (const maps::About& about : list) items.push_back(map_json(about, now, false));
   return {{"items", std::move(items)},
           {"in_use", now.in_use ? Json(*now.in_use) : Json(nullptr)},
-          {"from_configuration", now.in_use == maps::kConfigured}};
+          {"from_configuration", now.in_use == maps::kConfigured},
+          {"making", making_json(now.making)}};
 }
 
 }  // namespace roverd::api

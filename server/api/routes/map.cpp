@@ -34,7 +34,8 @@ Response no_shelf() {
 
 MapsNow now_of(const Context& context) {
   const MapDoor& door = context.deps.maps;
-  MapsNow out{door.shelf->in_use(), std::nullopt};
+  MapsNow out{door.shelf->in_use(), std::nullopt, std::nullopt};
+  if (door.making) out.making = door.making();
   if (out.in_use && door.placed) out.placed = door.placed();
   return out;
 }
@@ -169,6 +170,50 @@ Handler add(const ContextPtr& context) {
           Json json = map_json(*about, now_of(*context), true);
           json["passed_over"] = form->upload.passed_over;
           Response response = json_response(http::status::created, json);
+          response.set(http::field::location, "/api/v1/maps/" + std::to_string(about->id));
+          return response;
+        });
+  };
+}
+
+Handler start_making(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    const MapDoor& door = context->deps.maps;
+    if (door.shelf == nullptr) return call->respond(no_shelf());
+    if (!door.start_making) {
+      return call->respond(problem({Code::Conflict, "no sensor looks around: there is no map"}));
+    }
+    if (const auto begun = door.start_making(); !begun) {
+      return call->respond(problem(begun.error()));
+    }
+    call->respond(json_response(http::status::ok, making_json(now_of(*context).making)));
+  };
+}
+
+/// What was seen becomes a map that is kept, or nothing.
+Handler stop_making(const ContextPtr& context) {
+  return [context](const CallPtr& call) {
+    const MapDoor& door = context->deps.maps;
+    if (door.shelf == nullptr) return call->respond(no_shelf());
+    const auto body = json_body(call->request, true);
+    if (!body) return call->respond(problem(body.error()));
+    auto what = read_stop_making(*body);
+    if (!what) return call->respond(problem(what.error()));
+    if (!door.finish_making || !door.making || !door.making()) {
+      return call->respond(problem({Code::Conflict, "no map is being made"}));
+    }
+    context->answer_aside(
+        call, kCells,
+        [context, door, what = std::move(*what), now = base::wall_now()]() -> Response {
+          if (what.discard) {
+            door.drop_making();
+            return Response{http::status::no_content, 11};
+          }
+          const auto made = door.finish_making();
+          if (!made) return problem(made.error());
+          const auto about = door.shelf->add(what.name, made->map, made->anchor, now);
+          if (!about) return problem(about.error());
+          Response response = map_response(*context, http::status::created, *about);
           response.set(http::field::location, "/api/v1/maps/" + std::to_string(about->id));
           return response;
         });
@@ -339,6 +384,9 @@ void add_map_routes(const ContextPtr& c) {
                    });
                  }});
   c->router.add({post, "/maps", {201, 400, 403, 409, 413, 415, 422, 429, 503}, add(c), kFileBytes});
+  c->router.add({post, "/maps/start", {200, 403, 409, 429, 503}, start_making(c)});
+  c->router.add(
+      {post, "/maps/stop", {201, 204, 400, 403, 409, 413, 415, 422, 429, 503}, stop_making(c)});
   c->router.add({post, "/maps/unuse", {200, 403, 409, 429, 503}, unuse(c)});
   c->router.add({get,
                  "/maps/{id}",

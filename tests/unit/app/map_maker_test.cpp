@@ -1,0 +1,123 @@
+// A drive by hand becomes a map, beside everything else.
+
+#include "app/map_maker.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "base/angle.hpp"
+#include "base/time.hpp"
+#include "unit/place/shed.hpp"
+
+namespace roverd {
+namespace {
+
+using namespace std::chrono_literals;
+using nav::chart::Pose2;
+
+constexpr base::Mount kMount{.z_m = 0.3};
+
+class MapMakerTest : public ::testing::Test {
+ protected:
+  /// One step of a tenth of a second, and what the scanner sees then.
+  void step(double ahead_m, double turn_rad) {
+    time_s_ += 0.1;
+    const Pose2 moved = nav::sense::along(ahead_m / 0.1, turn_rad / 0.1, 0.1);
+    at_ = at_ * moved;
+    odometry_ = odometry_ * moved;
+    const base::Time now = base::Time{} + base::from_seconds(time_s_);
+    auto sight = std::make_shared<base::Sight>();
+    sight->sensor = "front";
+    sight->stamp = now;
+    for (int i = -135; i <= 135; ++i) {
+      const double angle = base::rad_from_deg(i);
+      const double range = tests::range_m(walls_, at_.x_m, at_.y_m, at_.yaw_rad + angle);
+      base::SightPoint p;
+      p.x_m = static_cast<float>(range * std::cos(angle));
+      p.y_m = static_cast<float>(range * std::sin(angle));
+      p.echo = range > 0.0 ? base::Echo::Hit : base::Echo::Unknown;
+      sight->points.push_back(p);
+    }
+    nav::sense::Odometry o;
+    o.stamp = now;
+    o.pose = odometry_;
+    maker_.take({sight}, {o});
+  }
+  /// So many scans have been laid together; 20 s.
+  bool laid(std::size_t scans) {
+    for (int i = 0; i < 2000; ++i) {
+      const auto now = maker_.progress();
+      if (!now || now->scans >= scans) return now.has_value();
+      std::this_thread::sleep_for(10ms);
+    }
+    return false;
+  }
+
+  const std::vector<tests::Segment> walls_ = tests::shed();
+  Pose2 at_{2.5, 3.0, 0.1};
+  Pose2 odometry_{5.0, -3.0, 1.0};
+  double time_s_ = 100.0;
+  robot::Robot robot_{robot::Config{}};
+  MapMaker maker_{robot_, {{"front", kMount}}};
+};
+
+TEST_F(MapMakerTest, DrawsWhatWasSeenOnTheWay) {
+  EXPECT_FALSE(maker_.progress());
+  EXPECT_EQ(maker_.finish().error().code, base::Code::Conflict);
+  ASSERT_TRUE(maker_.start());
+  EXPECT_EQ(maker_.start().error().code, base::Code::Conflict);
+  for (std::size_t i = 1; i <= 30; ++i) {
+    step(0.1, 0.02);
+    ASSERT_TRUE(laid(i));
+  }
+  for (int i = 0; i < 5; ++i) step(0.0, 0.0);  // who stands adds nothing
+  EXPECT_NEAR(maker_.progress()->way_m, 2.9, 1e-3);
+  const auto made = maker_.finish();
+  ASSERT_TRUE(made) << made.error().detail;
+  EXPECT_FALSE(maker_.progress());
+  EXPECT_FALSE(made->anchor) << "no satellites were heard";
+  // Each wall that the last scan saw is occupied in the map, and where the robot drove it is free.
+  const Pose2 x_ow = odometry_ * inverse(at_);  // the map's frame is that of the first odometry
+  const auto seen_as = [&](double x_m, double y_m) {
+    const Pose2 p = x_ow * Pose2{x_m, y_m, 0.0};
+    const auto cell = made->map.cell_of(p.x_m, p.y_m);
+    return cell ? made->map.at(*cell) : nav::chart::kUnknown;
+  };
+  EXPECT_LE(seen_as(at_.x_m, at_.y_m), nav::chart::kSurelyFree);
+  int hits = 0;
+  for (int i = -130; i <= 130; i += 10) {
+    const double angle = at_.yaw_rad + base::rad_from_deg(i);
+    const double range = tests::range_m(walls_, at_.x_m, at_.y_m, angle);
+    if (range <= 0.0) continue;
+    bool hit = false;  // within a cell or two
+    for (double r = range - 0.08; r <= range + 0.08; r += 0.02) {
+      hit = hit || seen_as(at_.x_m + r * std::cos(angle), at_.y_m + r * std::sin(angle)) >=
+                       nav::chart::kSurelyOccupied;
+    }
+    hits += hit ? 1 : 0;
+  }
+  EXPECT_GE(hits, 22);  // of 27
+}
+
+TEST_F(MapMakerTest, WithoutASightThereIsNoMapAndTheNextOneBeginsAnew) {
+  step(0.1, 0.0);  // before it was begun: not a part of it
+  ASSERT_TRUE(maker_.start());
+  EXPECT_EQ(maker_.finish().error().code, base::Code::Conflict);
+  ASSERT_TRUE(maker_.start());
+  step(0.1, 0.0);
+  ASSERT_TRUE(laid(1));
+  maker_.cancel();
+  EXPECT_FALSE(maker_.progress());
+  ASSERT_TRUE(maker_.start());
+  EXPECT_EQ(maker_.progress()->scans, 0u);
+}
+
+}  // namespace
+}  // namespace roverd
