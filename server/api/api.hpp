@@ -95,8 +95,10 @@ struct MapDoor {
   std::function<std::optional<maps::Anchor>()> placed{};
   /// A map is made of what is seen from now on. Conflict: one is. Empty: nothing looks around.
   std::function<base::Result<void>()> start_making{};
-  /// Beside the web: ends it, which takes seconds. Conflict: none is being made, nothing was seen.
-  std::function<base::Result<maps::Made>()> finish_making{};
+  using Keep = std::function<base::Result<maps::About>(const maps::Made&)>;
+  /// Beside the web: ends it, which takes seconds, and has it kept; where that fails, another call
+  /// tries again. Conflict: none is being made, it is being drawn already, nothing was seen.
+  std::function<base::Result<maps::About>(const Keep&)> finish_making{};
   /// Beside the web: ends it, and nothing is made.
   std::function<void()> drop_making{};
   std::function<std::optional<maps::Making>()> making{};  ///< empty answers: none is being made

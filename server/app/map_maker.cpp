@@ -4,21 +4,25 @@
 #include <cstddef>
 #include <ctime>
 #include <exception>
+#include <new>
+#include <system_error>
 #include <utility>
 
 #include <pthread.h>
 
 #include "base/angle.hpp"
 #include "base/log.hpp"
+#include "base/time.hpp"
 #include "maps/lay.hpp"
 #include "nav/chart/scan.hpp"
 #include "nav/mapping/mapper.hpp"
+#include "supervise/urgency.hpp"
 
 namespace roverd {
 
 namespace {
 
-constexpr long kWakeAnyway_ns = 200'000'000;
+constexpr long kWakeMaker_ns = 200'000'000;
 constexpr double kEvery_s = 0.09;
 constexpr double kStep_m = 0.05;  ///< nearer scans say the same
 constexpr double kStep_rad = 0.03;
@@ -26,6 +30,9 @@ constexpr double kStep_rad = 0.03;
 constexpr double kSure_m = 0.5;
 constexpr double kSeenEvery_m = 0.5;
 constexpr std::size_t kMostSeen = 4000;
+constexpr double kUnheard_s = 3.0;
+/// Of what a lidar sees in all heights so much says where it is, and 20,000 such scans are 0.4 GB.
+constexpr nav::chart::ScanParams kScan{.most = 720};
 
 double apart_m(const nav::chart::Pose2& a, const nav::chart::Pose2& b) noexcept {
   return std::hypot(a.x_m - b.x_m, a.y_m - b.y_m);
@@ -45,6 +52,8 @@ struct MapMaker::Drive {
   nav::sense::PoseHistory history;
   std::string eye;  ///< the sensor that is looked through
   std::optional<base::Time> taken;
+  base::Time heard = base::steady_now();  ///< when the last scan came that could be laid
+  bool silent = false;                    ///< that was told
   std::optional<nav::chart::Pose2> last;  ///< odometry of the last scan
   std::size_t scans = 0;
   double way_m = 0.0;
@@ -73,74 +82,112 @@ MapMaker::~MapMaker() {
 
 void MapMaker::take(const std::vector<std::shared_ptr<const base::Sight>>& sights,
                     const std::vector<nav::sense::Odometry>& moved) {
-  if (!making_) return;
+  if (!taking_) return;
   for (const auto& o : moved) moved_.put(o);
   for (const auto& s : sights) sights_.put(s);
   if (!sights.empty()) sem_post(&news_);
 }
 
 base::Result<void> MapMaker::start() {
-  const std::lock_guard lock(mutex_);
-  if (drive_) return base::fail(base::Code::Conflict, "a map is being made already");
+  const std::unique_lock turn(turn_, std::try_to_lock);
+  if (!turn || drive_) return base::fail(base::Code::Conflict, "a map is being made already");
   drive_ = std::make_unique<Drive>();
   sights_.take(drive_->sights);  // of a drive before
   moved_.take(drive_->moved);
   drive_->sights.clear();
   drive_->moved.clear();
   {
-    const std::lock_guard told(told_mutex_);
-    told_ = {};
+    const std::lock_guard lock(told_mutex_);
+    told_.emplace();
   }
   stop_ = false;
-  making_ = true;
-  thread_ = std::thread([this, drive = drive_.get()] { run(*drive); });
+  try {
+    thread_ = std::thread([this, drive = drive_.get()] { run(*drive); });
+  } catch (const std::system_error& e) {
+    forget();
+    return base::fail(base::Code::Unavailable, std::string("no thread for it: ") + e.what());
+  }
+  taking_ = true;
   return {};
 }
 
-std::unique_ptr<MapMaker::Drive> MapMaker::end() {
-  const std::lock_guard lock(mutex_);
-  making_ = false;
+/// With the turn held.
+void MapMaker::stop_taking() {
+  taking_ = false;
   stop_ = true;
   sem_post(&news_);
   if (thread_.joinable()) thread_.join();
-  return std::move(drive_);
+}
+
+/// With the turn held.
+void MapMaker::forget() {
+  drive_.reset();
+  const std::lock_guard lock(told_mutex_);
+  told_.reset();
 }
 
 void MapMaker::cancel() {
-  (void)end();
+  const std::lock_guard turn(turn_);
+  stop_taking();
+  forget();
 }
 
-base::Result<maps::Made> MapMaker::finish() {
-  const auto drive = end();
-  if (!drive) return base::fail(base::Code::Conflict, "no map is being made");
-  if (drive->scans == 0) {
+base::Result<maps::About> MapMaker::finish(const Keep& keep) {
+  const std::unique_lock turn(turn_, std::try_to_lock);
+  if (!turn) return base::fail(base::Code::Conflict, "the map is being drawn already");
+  if (!drive_) return base::fail(base::Code::Conflict, "no map is being made");
+  stop_taking();
+  if (drive_->scans == 0) {
+    forget();
     return base::fail(base::Code::Conflict, "no scanner saw anything: there is no map to keep");
   }
-  drive->mapper.finish();
-  auto map = drive->mapper.draw();
-  if (!map) return tl::unexpected(map.error());
-  const auto path = drive->mapper.path();
+  auto kept = [&]() -> base::Result<maps::About> {
+    try {
+      return draw(keep);
+    } catch (const std::bad_alloc&) {
+      return base::fail(base::Code::Unavailable, "there is no memory to draw the map");
+    }
+  }();
+  if (kept) {
+    forget();
+  } else {
+    tell_trouble("the map is not kept yet: " + kept.error().detail);
+  }
+  return kept;
+}
+
+base::Result<maps::About> MapMaker::draw(const Keep& keep) {
+  Drive& drive = *drive_;
+  drive.mapper.finish();
+  auto map = drive.mapper.draw();
+  if (!map) return tl::unexpected<base::Error>(map.error());
+  const auto path = drive.mapper.path();
   std::vector<maps::SeenAt> seen;
-  for (const Drive::Seen& s : drive->seen) {
+  for (const Drive::Seen& s : drive.seen) {
     if (s.scan >= path.size()) continue;
     const auto at = path[s.scan] * s.since;
     seen.push_back({{at.x_m, at.y_m}, s.at, s.sigma_m});
   }
-  return maps::Made{std::move(*map), maps::laid(seen)};
+  return keep(maps::Made{std::move(*map), maps::laid(seen)});
 }
 
 std::optional<maps::Making> MapMaker::progress() const {
-  if (!making_) return std::nullopt;
   const std::lock_guard lock(told_mutex_);
   return told_;
 }
 
+void MapMaker::tell_trouble(const std::string& why) {
+  const std::lock_guard lock(told_mutex_);
+  if (told_) told_->trouble = why;
+}
+
 void MapMaker::run(Drive& drive) noexcept {
   pthread_setname_np(pthread_self(), "mapping");
+  make_patient();
   while (!stop_) {
     timespec until{};
     clock_gettime(CLOCK_REALTIME, &until);
-    until.tv_nsec += kWakeAnyway_ns;
+    until.tv_nsec += kWakeMaker_ns;
     until.tv_sec += until.tv_nsec / 1'000'000'000;
     until.tv_nsec %= 1'000'000'000;
     (void)sem_timedwait(&news_, &until);
@@ -149,8 +196,7 @@ void MapMaker::run(Drive& drive) noexcept {
     } catch (const std::exception& e) {
       base::log(base::Level::Error, "mapping", e.what());
       drive.full = true;
-      const std::lock_guard lock(told_mutex_);
-      told_.trouble = e.what();
+      tell_trouble(std::string("no more is taken: ") + e.what());
     }
   }
 }
@@ -164,17 +210,29 @@ void MapMaker::work(Drive& drive) {
   for (const auto& sight : drive.sights) {
     if (!drive.full && !stop_) look(drive, *sight);
   }
+  if (!drive.full) tell_silence(drive);
+}
+
+/// Who drives on without a scan makes no map, and would hear it at the end only.
+void MapMaker::tell_silence(Drive& drive) {
+  const bool silent = base::seconds(base::steady_now() - drive.heard) > kUnheard_s;
+  if (silent == drive.silent) return;
+  drive.silent = silent;
+  if (!silent) return tell_trouble("");
+  tell_trouble(drive.eye.empty() ? "no sensor sees anything of which a map could be made"
+                                 : "nothing has come from " + drive.eye + " for three seconds");
 }
 
 void MapMaker::look(Drive& drive, const base::Sight& sight) {
   const auto mount = mounts_.find(sight.sensor);
   if (mount == mounts_.end() || (!drive.eye.empty() && drive.eye != sight.sensor)) return;
   if (drive.taken && base::seconds(sight.stamp - *drive.taken) < kEvery_s) return;
-  const auto scan = nav::chart::scan_of(sight, mount->second, drive.history);
+  const auto scan = nav::chart::scan_of(sight, mount->second, drive.history, kScan);
   const auto odometry = scan ? drive.history.at(scan->stamp) : std::nullopt;
   if (!odometry) return;
   drive.eye = sight.sensor;
   drive.taken = sight.stamp;
+  drive.heard = base::steady_now();
   const double step_m = drive.last ? apart_m(*odometry, *drive.last) : 0.0;
   const double turn = drive.last ? base::angle_diff_rad(drive.last->yaw_rad, odometry->yaw_rad) : 0;
   if (drive.last && step_m < kStep_m && std::abs(turn) < kStep_rad) return;
@@ -197,9 +255,10 @@ void MapMaker::look(Drive& drive, const base::Sight& sight) {
     }
   }
   const std::lock_guard lock(told_mutex_);
-  told_.scans = drive.scans;
-  told_.way_m = drive.way_m;
-  if (!added) told_.trouble = added.error().detail;
+  if (!told_) return;
+  told_->scans = drive.scans;
+  told_->way_m = drive.way_m;
+  if (!added) told_->trouble = added.error().detail;
 }
 
 }  // namespace roverd

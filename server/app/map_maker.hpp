@@ -7,8 +7,13 @@
 //
 // A scan that moved by less than a hand from the one before says nothing new and is left out: who
 // stands fills no memory. What a drive may hold is the mapper's bound.
+//
+//   None --start--> Driven --finish--> Drawn --kept--> None
+//                     ^                  `--not kept: what was driven stays, finish() tries again
+//   any --cancel--> None
 
 #include <atomic>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -39,12 +44,15 @@ class MapMaker {
   /// Any thread; never waits for the work. Nothing is taken while none is made.
   void take(const std::vector<std::shared_ptr<const base::Sight>>& sights,
             const std::vector<nav::sense::Odometry>& moved);
-  /// Any thread. Conflict: one is being made.
+  /// Any thread; never waits. Conflict: one is being made. Unavailable: no thread for it.
   base::Result<void> start();
-  /// Any thread but the web's: closes the last loops and draws, which takes seconds. Conflict: none
-  /// is being made, or nothing was seen: then it has ended, too.
-  base::Result<maps::Made> finish();
-  /// Drops what was seen. May wait for a scan. Idempotent.
+  using Keep = std::function<base::Result<maps::About>(const maps::Made&)>;
+  /// Any thread but the web's: closes the last loops, draws, which takes seconds, and has it kept.
+  /// Where that fails, the reason is told in progress() too, nothing more is taken, and another
+  /// call tries again. Conflict: none is being made, it is being drawn by another call, or nothing
+  /// was seen: then it has ended. Unavailable: there is no memory for it.
+  base::Result<maps::About> finish(const Keep& keep);
+  /// Drops what was seen. May wait for a scan or for finish(). Idempotent.
   void cancel();
   /// Any thread. Empty: none is being made.
   std::optional<maps::Making> progress() const;
@@ -54,20 +62,24 @@ class MapMaker {
   void run(Drive& drive) noexcept;
   void work(Drive& drive);
   void look(Drive& drive, const base::Sight& sight);
-  std::unique_ptr<Drive> end();
+  void tell_silence(Drive& drive);
+  void tell_trouble(const std::string& why);
+  void stop_taking();
+  void forget();
+  base::Result<maps::About> draw(const Keep& keep);
 
   robot::Robot& robot_;
   const std::map<std::string, base::Mount> mounts_;
   base::Inbox<std::shared_ptr<const base::Sight>> sights_{64};
   base::Inbox<nav::sense::Odometry> moved_{512};
   sem_t news_{};
-  std::atomic<bool> making_{false};
+  std::atomic<bool> taking_{false};
   std::atomic<bool> stop_{false};
-  mutable std::mutex mutex_;  ///< of what follows; held while a thread is begun or ended
+  std::mutex turn_;  ///< of whoever begins or ends a drive, and of what follows
   std::unique_ptr<Drive> drive_;
   std::thread thread_;
   mutable std::mutex told_mutex_;  ///< leaf
-  maps::Making told_;
+  std::optional<maps::Making> told_;
 };
 
 }  // namespace roverd

@@ -82,7 +82,7 @@ api::MapDoor Station::Impl::map_door() {
   door.shelf = shelf.get();
   if (!place || !maker) return door;
   door.start_making = [this] { return maker->start(); };
-  door.finish_making = [this] { return maker->finish(); };
+  door.finish_making = [this](const auto& keep) { return maker->finish(keep); };
   door.drop_making = [this] { maker->cancel(); };
   door.making = [this] { return maker->progress(); };
   door.prepare = [this](std::int64_t id, bool same_place) -> Result<api::MapDoor::Take> {

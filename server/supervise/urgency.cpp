@@ -55,4 +55,8 @@ void make_prompt() noexcept {
   ask_for_short_slices();
 }
 
+void make_patient() noexcept {
+  ::setpriority(PRIO_PROCESS, 0, 10);
+}
+
 }  // namespace roverd

@@ -18,4 +18,7 @@ bool make_urgent(Urgency urgency) noexcept;
 /// are ordinary ones.
 void make_prompt() noexcept;
 
+/// For threads whose work may wait: the calling thread is run after all others.
+void make_patient() noexcept;
+
 }  // namespace roverd

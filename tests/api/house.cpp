@@ -163,10 +163,12 @@ api::MapDoor House::map_door(const Before& before) {
     if (making.exchange(true)) return base::fail(base::Code::Conflict, "one is being made");
     return {};
   };
-  out.finish_making = [this]() -> base::Result<maps::Made> {
-    if (!making.exchange(false)) return base::fail(base::Code::Conflict, "none is being made");
-    return maps::Made{*nav::chart::OccupancyMap::make({3, 2, 0.05, {}}),
-                      maps::Anchor{kStart, 12.0, 0.1, 0.5}};
+  out.finish_making = [this](const api::MapDoor::Keep& keep) -> base::Result<maps::About> {
+    if (!making) return base::fail(base::Code::Conflict, "none is being made");
+    auto kept = keep(
+        {*nav::chart::OccupancyMap::make({3, 2, 0.05, {}}), maps::Anchor{kStart, 12.0, 0.1, 0.5}});
+    if (kept) making = false;
+    return kept;
   };
   out.drop_making = [this] { making = false; };
   out.making = [this] { return making ? std::optional(maps::Making{12, 3.44, ""}) : std::nullopt; };

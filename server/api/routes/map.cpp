@@ -209,9 +209,9 @@ Handler stop_making(const ContextPtr& context) {
             door.drop_making();
             return Response{http::status::no_content, 11};
           }
-          const auto made = door.finish_making();
-          if (!made) return problem(made.error());
-          const auto about = door.shelf->add(what.name, made->map, made->anchor, now);
+          const auto about = door.finish_making([&](const maps::Made& made) {
+            return door.shelf->add(what.name, made.map, made.anchor, now);
+          });
           if (!about) return problem(about.error());
           Response response = map_response(*context, http::status::created, *about);
           response.set(http::field::location, "/api/v1/maps/" + std::to_string(about->id));

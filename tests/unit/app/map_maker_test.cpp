@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -60,6 +61,16 @@ class MapMakerTest : public ::testing::Test {
     return false;
   }
 
+  base::Result<maps::About> finish() {
+    return maker_.finish([this](const maps::Made& made) -> base::Result<maps::About> {
+      if (full_) return base::fail(base::Code::Conflict, "200 maps are kept already");
+      made_ = made;
+      return maps::About{};
+    });
+  }
+
+  bool full_ = false;  ///< the shelf
+  std::optional<maps::Made> made_;
   const std::vector<tests::Segment> walls_ = tests::shed();
   Pose2 at_{2.5, 3.0, 0.1};
   Pose2 odometry_{5.0, -3.0, 1.0};
@@ -70,7 +81,7 @@ class MapMakerTest : public ::testing::Test {
 
 TEST_F(MapMakerTest, DrawsWhatWasSeenOnTheWay) {
   EXPECT_FALSE(maker_.progress());
-  EXPECT_EQ(maker_.finish().error().code, base::Code::Conflict);
+  EXPECT_EQ(finish().error().code, base::Code::Conflict);
   ASSERT_TRUE(maker_.start());
   EXPECT_EQ(maker_.start().error().code, base::Code::Conflict);
   for (std::size_t i = 1; i <= 30; ++i) {
@@ -79,16 +90,16 @@ TEST_F(MapMakerTest, DrawsWhatWasSeenOnTheWay) {
   }
   for (int i = 0; i < 5; ++i) step(0.0, 0.0);  // who stands adds nothing
   EXPECT_NEAR(maker_.progress()->way_m, 2.9, 1e-3);
-  const auto made = maker_.finish();
-  ASSERT_TRUE(made) << made.error().detail;
+  const auto kept = finish();
+  ASSERT_TRUE(kept) << kept.error().detail;
   EXPECT_FALSE(maker_.progress());
-  EXPECT_FALSE(made->anchor) << "no satellites were heard";
+  EXPECT_FALSE(made_->anchor) << "no satellites were heard";
   // Each wall that the last scan saw is occupied in the map, and where the robot drove it is free.
   const Pose2 x_ow = odometry_ * inverse(at_);  // the map's frame is that of the first odometry
   const auto seen_as = [&](double x_m, double y_m) {
     const Pose2 p = x_ow * Pose2{x_m, y_m, 0.0};
-    const auto cell = made->map.cell_of(p.x_m, p.y_m);
-    return cell ? made->map.at(*cell) : nav::chart::kUnknown;
+    const auto cell = made_->map.cell_of(p.x_m, p.y_m);
+    return cell ? made_->map.at(*cell) : nav::chart::kUnknown;
   };
   EXPECT_LE(seen_as(at_.x_m, at_.y_m), nav::chart::kSurelyFree);
   int hits = 0;
@@ -109,7 +120,8 @@ TEST_F(MapMakerTest, DrawsWhatWasSeenOnTheWay) {
 TEST_F(MapMakerTest, WithoutASightThereIsNoMapAndTheNextOneBeginsAnew) {
   step(0.1, 0.0);  // before it was begun: not a part of it
   ASSERT_TRUE(maker_.start());
-  EXPECT_EQ(maker_.finish().error().code, base::Code::Conflict);
+  EXPECT_EQ(finish().error().code, base::Code::Conflict);
+  EXPECT_FALSE(maker_.progress());
   ASSERT_TRUE(maker_.start());
   step(0.1, 0.0);
   ASSERT_TRUE(laid(1));
@@ -117,6 +129,60 @@ TEST_F(MapMakerTest, WithoutASightThereIsNoMapAndTheNextOneBeginsAnew) {
   EXPECT_FALSE(maker_.progress());
   ASSERT_TRUE(maker_.start());
   EXPECT_EQ(maker_.progress()->scans, 0u);
+}
+
+TEST_F(MapMakerTest, WhatCouldNotBeKeptIsNotLost) {
+  ASSERT_TRUE(maker_.start());
+  for (std::size_t i = 1; i <= 5; ++i) {
+    step(0.1, 0.0);
+    ASSERT_TRUE(laid(i));
+  }
+  full_ = true;
+  EXPECT_EQ(finish().error().code, base::Code::Conflict);
+  ASSERT_TRUE(maker_.progress());
+  EXPECT_EQ(maker_.progress()->trouble, "the map is not kept yet: 200 maps are kept already");
+  EXPECT_EQ(maker_.progress()->scans, 5u);
+  EXPECT_EQ(maker_.start().error().code, base::Code::Conflict) << "it would be lost by that";
+  step(0.1, 0.0);  // not a part of it any more
+  full_ = false;   // a person made room
+  ASSERT_TRUE(finish());
+  EXPECT_TRUE(made_);
+  EXPECT_FALSE(maker_.progress());
+  EXPECT_TRUE(maker_.start());
+}
+
+TEST_F(MapMakerTest, WhileOneIsDrawnAllOthersAreRefusedAtOnce) {
+  ASSERT_TRUE(maker_.start());
+  step(0.1, 0.0);
+  ASSERT_TRUE(laid(1));
+  const auto kept = maker_.finish([this](const maps::Made&) -> base::Result<maps::About> {
+    std::thread other([this] {
+      EXPECT_EQ(maker_.start().error().code, base::Code::Conflict);
+      EXPECT_EQ(finish().error().code, base::Code::Conflict);
+      EXPECT_TRUE(maker_.progress());
+    });
+    other.join();
+    return maps::About{};
+  });
+  EXPECT_TRUE(kept);
+}
+
+TEST_F(MapMakerTest, AScannerThatFallsSilentIsTold) {
+  ASSERT_TRUE(maker_.start());
+  const auto told = [this] {
+    for (int i = 0; i < 1000 && maker_.progress()->trouble.empty(); ++i) {
+      std::this_thread::sleep_for(10ms);
+    }
+    return maker_.progress()->trouble;
+  };
+  EXPECT_EQ(told(), "no sensor sees anything of which a map could be made");
+  step(0.1, 0.0);
+  ASSERT_TRUE(laid(1));
+  for (int i = 0; i < 500 && !maker_.progress()->trouble.empty(); ++i) {
+    std::this_thread::sleep_for(10ms);
+  }
+  EXPECT_EQ(maker_.progress()->trouble, "");
+  EXPECT_EQ(told(), "nothing has come from front for three seconds");
 }
 
 }  // namespace
