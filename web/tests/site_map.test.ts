@@ -11,6 +11,7 @@ import {
   FREE_CELL,
   in_map,
   lies_anywhere,
+  made_so_far,
   OCCUPIED_CELL,
   on_earth,
   pair_of,
@@ -186,6 +187,16 @@ describe('changes by hand', () => {
     const left = allow(0)({ edits: [], forbidden });
     expect(why_not_save(left, before)).toBeNull();
     expect(change_of(left, before, at)).toEqual({ revision: 1, forbidden: [other], edits: [] });
+  });
+});
+
+describe('a map that is being driven', () => {
+  it('tells how far it is', () => {
+    const making = { scans: 1, way_m: 0, trouble: null };
+    expect(made_so_far(making)).toBe('A map is being made: 0.0 cm driven, 1 scan.');
+    expect(made_so_far({ ...making, scans: 212, way_m: 41.26 })).toBe(
+      'A map is being made: 41.3 m driven, 212 scans.',
+    );
   });
 });
 

@@ -21,6 +21,8 @@ const SEND_LIMIT_MS = 600_000;
 const WORK_LIMIT_MS = 60_000;
 /** The cells of a map come over the slowest link, as long as some of them come. */
 const SILENCE_LIMIT_MS = 20_000;
+/** Of a long drive the last loops are closed before it is drawn. */
+const DRAW_LIMIT_MS = 180_000;
 
 const path = (id: number): string => `/maps/${id}`;
 
@@ -119,5 +121,13 @@ export const site_map_calls: SiteMapCalls = {
       limit_ms: WORK_LIMIT_MS,
     }),
   cells: (id, tag, signal) => in_lane('bulk', () => fetch_cells(id, tag, signal)),
+  start_making: () => request<Schemas['MapMaking']>('/maps/start', { method: 'POST' }),
+  finish_making: (name) =>
+    request<Schemas['Map']>('/maps/stop', {
+      method: 'POST',
+      body: name === '' ? {} : { name },
+      limit_ms: DRAW_LIMIT_MS,
+    }),
+  drop_making: () => request<null>('/maps/stop', { method: 'POST', body: { discard: true } }),
   file_address: (id, format) => `/api/v1${path(id)}/export?format=${format}`,
 };

@@ -2,7 +2,7 @@
 // the words for whether the robot knows its place in the one that is in use.
 
 import type { Answer } from './answer';
-import { accuracy, metres, sentence } from './format';
+import { accuracy, count, metres, sentence } from './format';
 import { offset_between, offset_from } from './geo';
 import type { Places } from './outline';
 import type { LatLon } from './plan';
@@ -43,9 +43,18 @@ export interface SiteMap {
   /** Areas where nobody shall drive; only where one map is asked for. */
   readonly forbidden?: readonly (readonly MapPoint[])[];
 }
+/** A map that is being driven. */
+export interface SiteMaking {
+  /** Taken so far; who stands adds none. */
+  readonly scans: number;
+  readonly way_m: number;
+  /** What is wrong; null: it goes on. */
+  readonly trouble: string | null;
+}
 export interface SiteMapList {
   readonly items: readonly SiteMap[];
   readonly in_use: number | null;
+  readonly making: SiteMaking | null;
 }
 
 export type EditKind = 'erase' | 'forbid' | 'wall';
@@ -93,6 +102,10 @@ export interface SiteMapCalls {
   use(id: number | null): Promise<Answer<unknown>>;
   /** @param tag of what is known already; @param signal gives up. @return null: that is still so */
   cells(id: number, tag: string | null, signal: AbortSignal): Promise<Answer<TaggedCells | null>>;
+  start_making(): Promise<Answer<SiteMaking>>;
+  /** @param name empty: any */
+  finish_making(name: string): Promise<Answer<SiteMap>>;
+  drop_making(): Promise<Answer<unknown>>;
   file_address(id: number, format: 'yaml' | 'pgm'): string;
 }
 export interface TaggedCells extends SiteCells {
@@ -278,6 +291,10 @@ export const change_of = (draft: SiteDraft, before: SiteMap, at: Placed): SiteCh
   ...(allows(draft, before) ? { revision: before.revision, forbidden: draft.forbidden } : {}),
   edits: draft.edits.map(({ kind, ring }) => ({ kind, polygon: ring.map((p) => in_map(at, p)) })),
 });
+
+/** "A map is being made: 12 m driven, 87 scans" */
+export const made_so_far = ({ scans, way_m }: SiteMaking): string =>
+  `A map is being made: ${metres(way_m)} driven, ${count(scans, 'scan')}.`;
 
 /** Whether the robot knows where it is in the map, as the interface tells it. */
 export interface MapPlace {

@@ -9,6 +9,7 @@ import {
   place_of_map,
   type MapAnchor,
   type MapFiles,
+  type SiteMaking,
   type SiteMap,
   type SiteMapCalls,
   type SiteOnMap,
@@ -22,6 +23,8 @@ import { SiteEditor } from './site_editor.svelte';
 
 /** Where the map lies may be found out any time, and others change maps too. */
 const RENEWED_MS = 10_000;
+/** While one is being driven. */
+const MAKING_RENEWED_MS = 2_000;
 
 export class SiteMaps {
   items = $state.raw<readonly SiteMap[]>([]);
@@ -30,6 +33,8 @@ export class SiteMaps {
   /** What is being done to a map; null: nothing. */
   busy = $state<string | null>(null);
   #listed = $state(false);
+  /** What is being driven; null: nothing is. */
+  making = $state.raw<SiteMaking | null>(null);
   /** What is sent, and how much of it, from 0 to 1; null: nothing is. */
   sending = $state.raw<{ readonly name: string; readonly share: number } | null>(null);
 
@@ -80,10 +85,14 @@ export class SiteMaps {
     const again = setInterval(() => {
       if (this.#waits === 0) void this.refresh(); // a slow answer is not overtaken by the next question
     }, RENEWED_MS);
+    const sooner = setInterval(() => {
+      if (this.#listed && this.making && this.busy === null && this.#waits === 0) void this.refresh();
+    }, MAKING_RENEWED_MS);
     this.#watched = true;
     void this.refresh();
     return () => {
       clearInterval(again);
+      clearInterval(sooner);
       this.#watched = false;
       void this.fetch_cells();
     };
@@ -96,7 +105,7 @@ export class SiteMaps {
     this.#waits -= 1;
     if (question !== this.#question) return;
     this.#list_failure = answer.ok ? null : refusal_text(answer.refusal);
-    if (answer.ok) this.items = answer.value.items;
+    if (answer.ok) ({ items: this.items, making: this.making } = answer.value);
     void this.fetch_cells();
   }
 
@@ -168,6 +177,32 @@ export class SiteMaps {
       if (!sure) return;
     }
     await this.#do(map ? 'taken into use' : 'put away', () => this.#calls.use(map?.id ?? null));
+  }
+
+  async start_making(): Promise<void> {
+    await this.#do('begun', () => this.#calls.start_making());
+  }
+
+  /** @return whether it is kept */
+  async finish_making(name: string): Promise<boolean> {
+    let kept: SiteMap | null = null;
+    await this.#do('kept', async () => {
+      const answer = await this.#calls.finish_making(name);
+      if (answer.ok) kept = answer.value;
+      return answer;
+    });
+    if (kept) this.#notices.show('good', `The map “${(kept as SiteMap).name}” is stored.`);
+    return kept !== null;
+  }
+
+  async drop_making(): Promise<void> {
+    const sure = await this.#dialogs.ask({
+      title: 'Drop what was driven?',
+      text: 'What the scanner saw on this drive becomes no map.',
+      yes: 'Drop it',
+      danger: true,
+    });
+    if (sure) await this.#do('dropped', () => this.#calls.drop_making());
   }
 
   /** One at a time; another one is not done, and not in silence. */
