@@ -165,6 +165,10 @@ void Robot::Impl::watch_place() {
   using Phase = base::PlacePhase;
   if (!world.place) return;
   const base::PlaceState& place = *world.place;
+  if (place.map != place_told_in) {  // in another map it is found, or lost, anew
+    place_told = Phase::Off;
+    place_told_in = place.map;
+  }
   if (place.phase == place_told || place.phase == Phase::Off || place.phase == Phase::Searching) {
     return;
   }

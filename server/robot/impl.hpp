@@ -163,6 +163,7 @@ struct Robot::Impl {
   base::DriveCommand sent;
   std::string speed_reason;
   base::PlacePhase place_told = base::PlacePhase::Off;
+  std::string place_told_in;  ///< the map of that
   bool latch_told = false;  ///< to Robot::on_latch
 
   static constexpr const char* kOperator = "by the operator";

@@ -57,6 +57,33 @@ TEST(Decide, AMissionsCorridorCountsWhileItRunsAndOnlyThen) {
   EXPECT_FALSE(f.has_condition("corridor"));
 }
 
+TEST(Decide, InAnotherMapItIsToldAnewThatThePlaceIsFound) {
+  Field f;
+  const auto see = [&f](const std::string& map, base::PlacePhase phase) {
+    base::PlaceState place;
+    place.stamp = f.now;
+    place.phase = phase;
+    place.map = map;
+    f.robot.measurements().put(place);
+    f.tick();
+  };
+  const auto found = [&f] {
+    return std::count_if(f.events.begin(), f.events.end(),
+                         [](const base::Event& e) { return e.kind == "place_known"; });
+  };
+  see("hall", base::PlacePhase::Searching);
+  EXPECT_EQ(found(), 0);
+  see("hall", base::PlacePhase::Known);
+  see("hall", base::PlacePhase::Known);
+  EXPECT_EQ(found(), 1);
+  see("shed", base::PlacePhase::Searching);
+  see("shed", base::PlacePhase::Known);
+  EXPECT_EQ(found(), 2);
+  see("", base::PlacePhase::Off);
+  see("shed", base::PlacePhase::Known);
+  EXPECT_EQ(found(), 3);
+}
+
 TEST(Decide, AnAnchorThatIsDroppedHoldsTheMission) {
   // Given a mission driven by a position that an operator anchored,
   Field f;
