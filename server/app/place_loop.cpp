@@ -107,8 +107,16 @@ void PlaceLoop::told(const nav::place::Word& word) {
 }
 
 void PlaceLoop::use(Map map, bool same_place) {
-  ++asked_;
-  choices_.put({std::move(map), same_place});
+  {
+    const std::lock_guard lock(choice_mutex_);
+    Choice next{map, same_place};
+    if (choice_) {  // the place that it would have left is gone with it
+      next.same_place = next.same_place && choice_->same_place;
+      map = std::move(choice_->map);
+    }
+    choice_ = std::move(next);
+    ++asked_;
+  }  // what is dropped is freed without the lock
   sem_post(&news_);
 }
 
@@ -129,17 +137,17 @@ void PlaceLoop::run() noexcept {
   }
 }
 
-/// The newest choice; where one before it moved the place, that is gone.
 void PlaceLoop::take_maps() {
-  choice_batch_.clear();
-  const std::uint64_t asked = asked_;
-  choices_.take(choice_batch_);
-  if (choice_batch_.empty()) return;
-  bool same_place = true;
-  for (const Choice& c : choice_batch_) same_place = same_place && c.same_place;
-  Map map = std::move(choice_batch_.back().map);
-  choice_batch_.clear();
-  robot_.measurements().put(where_.use(std::move(map), base::steady_now(), same_place));
+  std::optional<Choice> next;
+  std::uint64_t asked = 0;
+  {
+    const std::lock_guard lock(choice_mutex_);
+    next = std::exchange(choice_, std::nullopt);
+    asked = asked_;
+  }
+  if (!next) return;
+  const bool same_place = next->same_place;
+  robot_.measurements().put(where_.use(std::move(next->map), base::steady_now(), same_place));
   tell_placed();
   done_ = asked;
 }

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -46,7 +47,8 @@ class PlaceLoop {
             const std::vector<nav::sense::Odometry>& moved);
   /// Any thread: a person said where the robot stands.
   void told(const nav::place::Word& word);
-  /// Any thread: another map from now on; null: none. @param same_place see Whereabouts::use
+  /// Any thread: another map from now on; null: none. One that waits for that still is dropped, so
+  /// no more than two are held. @param same_place see Whereabouts::use
   void use(Map map, bool same_place);
   /// Any thread: how the map in use lies on the earth; null: nobody knows.
   std::shared_ptr<const nav::place::MapAnchor> placed() const;
@@ -67,14 +69,14 @@ class PlaceLoop {
     Map map;
     bool same_place = false;
   };
-  base::Inbox<Choice> choices_{4};
+  std::mutex choice_mutex_;
+  std::optional<Choice> choice_;  ///< that waits
   base::Latest<nav::place::MapAnchor> placed_;
-  std::atomic<std::uint64_t> asked_{0};  ///< for another map, so often
+  std::atomic<std::uint64_t> asked_{0};  ///< for another map, so often; with choice_mutex_ held
   std::atomic<std::uint64_t> done_{0};
   std::vector<std::shared_ptr<const base::Sight>> sight_batch_;
   std::vector<nav::sense::Odometry> moved_batch_;
   std::vector<nav::place::Word> word_batch_;
-  std::vector<Choice> choice_batch_;
   sem_t news_{};
   std::atomic<bool> stop_{false};
   std::thread thread_;
