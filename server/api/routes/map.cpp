@@ -27,6 +27,7 @@ constexpr std::int64_t kMostCells = 40'000'000;
 const Effort kLook{Effort::kAtOnce + 1};  // a disk may pause
 const Effort kCells{Effort::kSmall + 1};  // all cells of a map
 const Effort kKeep{Effort::kSmall + 1, true};
+const Effort kTell{Effort::kAtOnce + 1, true};  // what was done is told, however many ask
 
 Response no_shelf() {
   return problem({Code::Unavailable, "no maps are kept here"});
@@ -97,6 +98,19 @@ std::optional<Error> take(const ContextPtr& context, const CallPtr& call,
   return std::nullopt;
 }
 
+/// Frees a map of some hundred megabytes beside the web thread.
+template <class T>
+struct Beside {
+  const Context& context;
+  T& what;
+  ~Beside() {
+    try {
+      context.discard(std::move(what));
+    } catch (const std::bad_alloc&) {  // then it is freed here
+    }
+  }
+};
+
 /// The choice is in force; it is written down, and the answer tells it.
 void keep_choice(const ContextPtr& context, const CallPtr& call, std::function<Response()> answer) {
   context->answer_aside(
@@ -123,6 +137,8 @@ void use(const ContextPtr& context, const CallPtr& call, maps::Shelf& shelf, std
       call, kCells, [prepare, id] { return prepare(id, false); },
       [context, call, &shelf, id, revision = found->revision](Result<MapDoor::Take> made) {
         if (!made) return call->respond(problem(made.error()));
+        // On every way out; what was taken into use is held where it is used.
+        const Beside<Result<MapDoor::Take>> freed{*context, made};
         if (const auto now = shelf.find(id); now && now->revision != revision) {
           return call->respond(
               problem({Code::Conflict, "the map was changed meanwhile: once more", {}}));
@@ -260,19 +276,17 @@ std::optional<std::string> look_through(const ContextPtr& context, const CallPtr
   return why ? std::optional(why->detail) : std::nullopt;
 }
 
-void patch(const ContextPtr& context, const CallPtr& call, maps::Shelf& shelf, std::int64_t id) {
-  const auto body = json_body(call->request);
-  if (!body) return call->respond(problem(body.error()));
-  auto what = read_map_change(*body);
-  if (!what) return call->respond(problem(what.error()));
-  if (what->moves() && shelf.in_use() == id) {
+void apply(const ContextPtr& context, const CallPtr& call, maps::Shelf& shelf, std::int64_t id,
+           maps::Change what) {
+  if (what.moves() && shelf.in_use() == id) {
     if (const auto why = drives_by_itself(*context)) return call->respond(problem(*why));
   }
   context->aside(
       call, kCells,
-      [door = context->deps.maps, id, what = std::move(*what)] { return change(door, id, what); },
-      [context, call, &shelf](const Result<ChangedMap>& changed) {
+      [door = context->deps.maps, id, what = std::move(what)] { return change(door, id, what); },
+      [context, call, &shelf](Result<ChangedMap> changed) {
         if (!changed) return call->respond(problem(changed.error()));
+        const Beside<MapDoor::Take> freed{*context, changed->into_use};
         if (const auto why = look_through(context, call, shelf, *changed)) {
           return call->respond(problem({Code::Conflict,
                                         "the map is changed and kept, but the robot does not look "
@@ -280,7 +294,25 @@ void patch(const ContextPtr& context, const CallPtr& call, maps::Shelf& shelf, s
                                             *why + ")",
                                         {}}));
         }
-        call->respond(map_response(*context, http::status::ok, changed->about));
+        context->answer_aside(call, kTell, [context, about = std::move(changed->about)] {
+          return map_response(*context, http::status::ok, about);
+        });
+      });
+}
+
+/// What it asks for is read beside the web, too: it may name thousands of corners.
+void patch(const ContextPtr& context, const CallPtr& call, maps::Shelf& shelf, std::int64_t id) {
+  const Effort effort{call->request.body().size() * 4};
+  context->aside(
+      call, effort,
+      [call]() -> Result<maps::Change> {
+        const auto body = json_body(call->request);
+        if (!body) return tl::unexpected<Error>(body.error());
+        return read_map_change(*body);
+      },
+      [context, call, &shelf, id](Result<maps::Change> what) {
+        if (!what) return call->respond(problem(what.error()));
+        apply(context, call, shelf, id, std::move(*what));
       });
 }
 
@@ -398,9 +430,9 @@ void add_map_routes(const ContextPtr& c) {
   c->router.add({http::verb::patch,
                  "/maps/{id}",
                  {200, 400, 403, 404, 409, 413, 415, 422, 429, 503},
-                 with_map(c, [c](const CallPtr& call, Shelf& shelf, std::int64_t id) {
-                   patch(c, call, shelf, id);
-                 })});
+                 with_map(c, [c](const CallPtr& call, Shelf& shelf,
+                                 std::int64_t id) { patch(c, call, shelf, id); }),
+                 kDocumentBytes});
   c->router.add({http::verb::delete_,
                  "/maps/{id}",
                  {204, 400, 403, 404, 409, 429, 503},
