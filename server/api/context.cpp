@@ -35,6 +35,9 @@ Json Context::vehicle(const base::Snapshot& snapshot, base::Time now) const {
   const maps::Shelf* shelf = deps.maps.shelf;
   const auto in_use = shelf != nullptr ? shelf->in_use() : std::nullopt;
   const auto placed = in_use && deps.maps.placed ? deps.maps.placed() : std::nullopt;
+  // It may have been given another name since it was taken into use.
+  const auto label = in_use ? shelf->label_of(*in_use) : std::nullopt;
+  if (label && !out["place"]["map"].is_null()) out["place"]["map"] = label->name;
   out["place"]["map_id"] = in_use ? Json(*in_use) : Json(nullptr);
   out["place"]["placed"] = anchor_json(placed);
   out["teach"] = teach_brief_json(deps.services.view()->teach);

@@ -6,6 +6,13 @@ namespace roverd {
 namespace {
 /// A stop that was obeyed is confirmed then, whether the disk has taken it or hangs.
 constexpr base::Duration kKeepEstop = std::chrono::milliseconds(200);
+
+bool looks_around(const Settings& settings) {
+  return std::ranges::any_of(settings.sensors, [](const auto& one) {
+    return one.second.said.enabled && one.second.said.ranging();
+  });
+}
+
 }  // namespace
 
 Result<void> Station::Impl::open(const Settings& settings, const Options& options) {
@@ -58,11 +65,14 @@ Result<void> Station::Impl::open(const Settings& settings, const Options& option
 }
 
 Result<void> Station::Impl::open_maps(const Settings& settings, const Options& options) {
-  auto opened =
-      maps::Shelf::open(std::filesystem::path(options.data) / "maps", configured_map(settings));
+  auto configured = configured_map(settings);
+  if (configured) configured->needed = looks_around(settings);
+  auto opened = maps::Shelf::open(std::filesystem::path(options.data) / "maps", configured);
   if (!opened) {
     base::Error error = opened.error();
-    error.detail = settings.where("map.file") + ": " + error.detail;
+    if (error.code != base::Code::Unavailable) {  // of the files that it names
+      error.detail = settings.where("map.file") + ": " + error.detail;
+    }
     return tl::unexpected(std::move(error));
   }
   shelf = std::move(*opened);
@@ -101,9 +111,7 @@ api::MapDoor Station::Impl::map_door() {
 /// What recorded sensors saw is looked at, too; nothing moves by a recording, so none of them is
 /// demanded.
 Result<void> Station::Impl::open_senses(const Settings& settings, const Options& options) {
-  const bool any = std::ranges::any_of(settings.sensors, [](const auto& one) {
-    return one.second.said.enabled && one.second.said.ranging();
-  });
+  const bool any = looks_around(settings);
   const bool recognises = std::ranges::any_of(
       settings.sensors, [](const auto& one) { return one.second.said.enabled; });
   if (!any && !settings.map.file.empty()) {

@@ -64,6 +64,11 @@ Result<void> write_picture(const fs::path& folder, Kept& kept, const OccupancyMa
   return {};
 }
 
+/// Without what is forbidden, which may be long.
+About brief(const About& a) {
+  return {a.id, a.name, a.created, a.revision, a.shape, a.anchor, {}, a.size_bytes, a.problem};
+}
+
 void remove_quietly(const fs::path& path) {
   std::error_code ignored;
   fs::remove_all(path, ignored);
@@ -72,24 +77,38 @@ void remove_quietly(const fs::path& path) {
 }  // namespace
 
 Result<std::unique_ptr<Shelf>> Shelf::open(const fs::path& folder,
-                                           const std::optional<Configured>& configured) {
+                                           const std::optional<Configured>& configured,
+                                           std::uintmax_t leave_free) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) return base::fail(Code::Unavailable, folder.string() + ": " + error.message());
-  std::unique_ptr<Shelf> shelf(new Shelf(folder));
-  if (configured) {
-    const auto map = read_map_files(configured->yaml);
-    if (!map) return tl::unexpected<Error>(map.error());
-    shelf->configured_ = configured->yaml;
-    Kept& kept = shelf->maps_[kConfigured];
-    kept.about.name = configured->yaml.stem().string();
-    kept.about.shape = map->shape();
-    kept.about.anchor = configured->anchor;
-    kept.about.size_bytes = map->cells().size();
-  }
+  std::unique_ptr<Shelf> shelf(new Shelf(folder, leave_free));
+  Result<void> read;
+  if (configured) read = shelf->take_configured(*configured);
   shelf->look_through();
   shelf->recall_choice();
+  if (read) return shelf;
+  if (configured->needed && shelf->in_use_ == kConfigured) {
+    return tl::unexpected<Error>(read.error());
+  }
+  if (shelf->in_use_ == kConfigured) shelf->in_use_.reset();
+  shelf->troubles_.push_back("the map of the configuration cannot be read: " + read.error().detail);
   return shelf;
+}
+
+Result<void> Shelf::take_configured(const Configured& said) {
+  configured_ = said.yaml;
+  Kept& kept = maps_[kConfigured];
+  kept.about.name = said.yaml.stem().string();
+  kept.about.anchor = said.anchor;
+  const auto map = read_map_files(said.yaml);
+  if (!map) {
+    kept.about.problem = map.error().detail;
+    return tl::unexpected<Error>(map.error());
+  }
+  kept.about.shape = map->shape();
+  kept.about.size_bytes = map->cells().size();
+  return {};
 }
 
 void Shelf::look_through() {
@@ -166,8 +185,15 @@ std::vector<About> Shelf::list() const {
   const std::lock_guard lock(index_);
   std::vector<About> out;
   out.reserve(maps_.size());
-  for (const auto& [id, kept] : maps_) out.push_back(kept.about);
+  for (const auto& [id, kept] : maps_) out.push_back(brief(kept.about));
   return out;
+}
+
+std::optional<Shelf::Label> Shelf::label_of(std::int64_t id) const {
+  const std::lock_guard lock(index_);
+  const auto at = maps_.find(id);
+  if (at == maps_.end()) return std::nullopt;
+  return Label{at->second.about.name, at->second.about.revision};
 }
 
 Result<Kept> Shelf::kept(std::int64_t id) const {
@@ -184,35 +210,61 @@ Result<About> Shelf::find(std::int64_t id) const {
 }
 
 Result<About> Shelf::look(std::int64_t id) const {
-  auto now = kept(id);
-  if (!now) return tl::unexpected<Error>(now.error());
-  const fs::path file = id == kConfigured ? configured_ : folder_of(id) / now->image;
-  std::error_code error;
-  (void)fs::file_size(file, error);
-  if (error) now->about.problem = file.string() + ": " + error.message();
-  return std::move(now->about);
+  auto found = find(id);
+  if (found) found->problem = problem_of(id);
+  return found;
 }
 
 std::vector<About> Shelf::look() const {
   std::vector<About> out = list();
-  for (About& about : out) {
-    if (auto now = look(about.id)) about = std::move(*now);  // else it went meanwhile
-  }
+  for (About& about : out) about.problem = problem_of(about.id);
   return out;
+}
+
+/// Whether its files are there; of the configured one also what was wrong with them at the start.
+std::string Shelf::problem_of(std::int64_t id) const {
+  fs::path file = configured_;
+  std::string known;
+  {
+    const std::lock_guard lock(index_);
+    const auto at = maps_.find(id);
+    if (at == maps_.end()) return {};  // it went meanwhile
+    known = at->second.about.problem;
+    if (id != kConfigured) file = folder_of(id) / at->second.image;
+  }
+  std::error_code error;
+  (void)fs::file_size(file, error);
+  return error ? file.string() + ": " + error.message() : known;
 }
 
 /// With the disk held.
 Result<OccupancyMap> Shelf::cells_of(std::int64_t id, const Kept& kept) const {
-  if (id == kConfigured) return read_map_files(configured_);
+  // Whoever asks has sent nothing wrong, and asks for a map that there is.
+  const auto refuse = [](const std::string& why) { return base::fail(Code::Unavailable, why); };
+  if (id == kConfigured) {
+    auto map = read_map_files(configured_);
+    if (map) return map;
+    return refuse(map.error().detail);
+  }
   const fs::path file = folder_of(id) / kept.image;
   const auto bytes = file_bytes(file, kLargestPicture);
-  if (!bytes) return tl::unexpected<Error>(bytes.error());
+  if (!bytes) return refuse(bytes.error().detail);
   const auto picture = atlas::read_pgm(*bytes);
   auto map = picture ? atlas::map_of(kept.words(), *picture)
                      : Result<OccupancyMap>(tl::unexpected<Error>(picture.error()));
   if (map) return map;
-  // Whoever asks has sent nothing wrong.
-  return base::fail(Code::Unavailable, file.string() + ": " + map.error().detail);
+  return refuse(file.string() + ": " + map.error().detail);
+}
+
+/// A cell becomes a byte. A disk that cannot be asked refuses by itself.
+Result<void> Shelf::has_room(std::size_t cells) const {
+  std::error_code error;
+  const fs::space_info disk = fs::space(folder_, error);
+  if (error || disk.available >= leave_free_ + cells) return {};
+  return base::fail(Code::Unavailable,
+                    "the disk is almost full: " + std::to_string(disk.available / 1'000'000) +
+                        " MB are free, and a map leaves " +
+                        std::to_string(leave_free_ / 1'000'000) + " of them");
 }
 
 Result<OccupancyMap> Shelf::read(std::int64_t id) const {
@@ -225,6 +277,7 @@ Result<OccupancyMap> Shelf::read(std::int64_t id) const {
 Result<About> Shelf::add(std::string name, const OccupancyMap& map,
                          const std::optional<Anchor>& anchor, base::WallTime now) {
   const std::lock_guard disk(disk_);
+  if (auto room = has_room(map.cells().size()); !room) return tl::unexpected<Error>(room.error());
   Kept made;
   {
     const std::lock_guard lock(index_);

@@ -32,32 +32,47 @@ namespace roverd::maps {
 struct Configured {
   std::filesystem::path yaml;
   std::optional<Anchor> anchor;
+  bool needed = true;  ///< false: where it cannot be read that is told, and no error
 };
+
+/// What a new map leaves free on the disk, which recordings and the robot's records share.
+inline constexpr std::uintmax_t kLeaveFree = 300'000'000;
 
 class Shelf {
  public:
   /// Makes the folder where it is missing, and looks through it. A map that cannot be read is left
-  /// where it is, and told in troubles(). Errors: Unavailable (the system's reason); what is wrong
-  /// with the files of the configuration, with their name.
+  /// where it is, and told in troubles(); so is the one of the configuration while another one, or
+  /// none, was chosen. Errors: Unavailable (the system's reason, of the folder); any other code:
+  /// what is wrong with the files of the configuration, with their name.
+  /// @param leave_free bytes that a new map leaves on the disk
   static base::Result<std::unique_ptr<Shelf>> open(const std::filesystem::path& folder,
-                                                   const std::optional<Configured>& configured);
+                                                   const std::optional<Configured>& configured,
+                                                   std::uintmax_t leave_free = kLeaveFree);
 
   /// What was wrong when it was opened, one sentence each.
   const std::vector<std::string>& troubles() const noexcept { return troubles_; }
 
-  /// By their numbers, the configured one first.
+  /// By their numbers, the configured one first; without what is forbidden.
   std::vector<About> list() const;
+  /// What is cheap to ask for often. Empty: there is no such map.
+  struct Label {
+    std::string name;
+    std::int64_t revision = 0;
+  };
+  std::optional<Label> label_of(std::int64_t id) const;
   /// NotFound.
   base::Result<About> find(std::int64_t id) const;
   /// The same, and look whether the files are still there: `problem` of each.
   base::Result<About> look(std::int64_t id) const;
   std::vector<About> look() const;
 
-  /// The cells as a scanner would see them. NotFound: no such map, or its files are gone.
+  /// The cells as a scanner would see them. NotFound: no such map. Unavailable: its files are gone,
+  /// or cannot be read any more.
   base::Result<nav::chart::OccupancyMap> read(std::int64_t id) const;
 
   /// @param name one that people may give
-  /// @return Conflict: kMostMaps are kept; Unavailable: the disk refuses, nothing was kept
+  /// @return Conflict: kMostMaps are kept; Unavailable: the disk refuses, or is almost full, and
+  /// nothing was kept
   base::Result<About> add(std::string name, const nav::chart::OccupancyMap& map,
                           const std::optional<Anchor>& anchor, base::WallTime now);
   /// All of it or nothing. NotFound; Conflict: of the configuration, or of another revision;
@@ -74,9 +89,13 @@ class Shelf {
   base::Result<void> keep_choice() const;
 
  private:
-  explicit Shelf(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  Shelf(std::filesystem::path folder, std::uintmax_t leave_free)
+      : folder_(std::move(folder)), leave_free_(leave_free) {}
+  base::Result<void> take_configured(const Configured& said);
   void look_through();
   void recall_choice();
+  std::string problem_of(std::int64_t id) const;
+  base::Result<void> has_room(std::size_t cells) const;
   void take_in(std::int64_t id);
   std::filesystem::path folder_of(std::int64_t id) const;
   base::Result<Kept> kept(std::int64_t id) const;
@@ -85,6 +104,7 @@ class Shelf {
                                   const Change& change) const;
 
   const std::filesystem::path folder_;
+  const std::uintmax_t leave_free_;
   std::filesystem::path configured_;  ///< yaml; empty: none
   std::vector<std::string> troubles_;
   mutable std::mutex disk_;   ///< before index_

@@ -1,5 +1,6 @@
 // Kept maps over HTTP: uploads, small edits, the choice, and what is refused.
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -240,10 +241,27 @@ TEST_F(MapsApi, AFileThatVanishedIsTold) {
   const std::string problem = call("GET", "/maps").body["items"][0]["problem"];
   EXPECT_NE(problem.find("map.1.pgm"), std::string::npos);
   EXPECT_EQ(call("GET", "/maps/1").body["problem"], problem);
-  EXPECT_EQ(call("GET", "/maps/1/cells").status, 404u);
-  EXPECT_EQ(call("POST", "/maps/1/use").status, 404u);
+  EXPECT_EQ(call("GET", "/maps/1/cells").status, 503u);
+  EXPECT_EQ(call("POST", "/maps/1/use").status, 503u);
   EXPECT_EQ(call("GET", "/maps").body["in_use"], nullptr);
   EXPECT_EQ(call("DELETE", "/maps/1").status, 204u);
+}
+
+TEST_F(MapsApi, WhatWasReadMayBeSentBackHoweverLong) {
+  ASSERT_EQ(add().status, 201u);
+  Json ring = Json::array();
+  for (int i = 0; i < 400; ++i) {
+    ring.push_back({{"x_m", std::cos(i * 0.0157) * 1.23456}, {"y_m", std::sin(i * 0.0157)}});
+  }
+  Json areas = Json::array();
+  for (int i = 0; i < 50; ++i) areas.push_back(ring);
+  const auto kept = call("PATCH", "/maps/1", Json{{"forbidden", areas}});
+  ASSERT_EQ(kept.status, 200u) << kept.body;
+  EXPECT_EQ(kept.body["forbidden"].size(), 50u);
+  areas.erase(areas.size() - 1);
+  const auto less = call("PATCH", "/maps/1", Json{{"forbidden", areas}});
+  EXPECT_EQ(less.body["forbidden"].size(), 49u);
+  EXPECT_EQ(less.body["revision"], 3);
 }
 
 TEST_F(MapsApi, NobodyChangesTheMapUnderARobotThatDrivesByItself) {

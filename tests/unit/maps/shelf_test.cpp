@@ -2,6 +2,7 @@
 
 #include "maps/shelf.hpp"
 
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -189,7 +190,8 @@ TEST_F(ShelfTest, FilesThatVanishOrBreakAreTold) {
   fs::remove(file("2/map.1.pgm"));
   EXPECT_TRUE(shelf->look()[0].problem.empty());
   EXPECT_NE(shelf->look()[1].problem.find("map.1.pgm"), std::string::npos);
-  EXPECT_EQ(shelf->read(2).error().code, Code::NotFound);
+  EXPECT_EQ(shelf->read(2).error().code, Code::Unavailable);
+  EXPECT_EQ(shelf->read(9).error().code, Code::NotFound);
   EXPECT_FALSE(shelf->change(2, wall()));
   EXPECT_EQ(shelf->find(2)->revision, 1);
   std::ofstream(file("1/map.1.pgm"), std::ios::trunc) << "P5 100000 100000 255 ";
@@ -218,6 +220,60 @@ TEST_F(ShelfTest, ADiskThatRefusesKeepsNothing) {
   EXPECT_EQ(shelf->keep_choice().error().code, Code::Unavailable);
   EXPECT_EQ(shelf->list().size(), 1u);
   EXPECT_EQ(Shelf::open(folder_ / "maps", {}).error().code, Code::Unavailable);
+}
+
+TEST_F(ShelfTest, ABrokenMapOfTheConfigurationIsAnErrorOnlyWhereItIsUsed) {
+  auto said = configured();
+  auto shelf = open(said);
+  std::ofstream(folder_ / "hall.pgm", std::ios::trunc) << "P9";
+  EXPECT_EQ(shelf->read(0).error().code, Code::Unavailable) << "who asks has sent nothing wrong";
+  const auto refused = Shelf::open(folder_ / "maps", said);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().code, Code::Unavailable);
+  EXPECT_NE(refused.error().detail.find("hall.pgm"), std::string::npos);
+  // A robot that looks through no map starts without it,
+  said.needed = false;
+  shelf = open(said);
+  EXPECT_EQ(shelf->in_use(), std::nullopt);
+  ASSERT_EQ(shelf->troubles().size(), 1u);
+  EXPECT_NE(shelf->look()[0].problem.find("hall.pgm"), std::string::npos);
+  // and so does one for which somebody chose another.
+  said.needed = true;
+  (void)shelf->add("shed", floor(), {}, kNow);
+  ASSERT_TRUE(shelf->choose(1));
+  ASSERT_TRUE(shelf->keep_choice());
+  shelf = open(said);
+  EXPECT_EQ(shelf->in_use(), 1);
+  EXPECT_EQ(shelf->troubles().size(), 1u);
+  EXPECT_EQ(shelf->look(0)->problem, shelf->look()[0].problem);
+}
+
+TEST_F(ShelfTest, ANewMapLeavesRoomForOthersOnTheDisk) {
+  const auto shelf = *Shelf::open(folder_ / "maps", {}, std::uintmax_t{1} << 62);
+  const auto refused = shelf->add("a", floor(), {}, kNow);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, Code::Unavailable);
+  EXPECT_NE(refused.error().detail.find("almost full"), std::string::npos);
+  EXPECT_TRUE(shelf->list().empty());
+}
+
+TEST_F(ShelfTest, AListIsBrief) {
+  auto shelf = open();
+  (void)shelf->add("a", floor(), maps::Anchor{{58.0, 26.0}, 45.0, 0.1, 0.5}, kNow);
+  Change forbid;
+  forbid.edits = {{Edit::Kind::Forbid, {{0, 0}, {1, 0}, {1, 1}}}};
+  ASSERT_TRUE(shelf->change(1, forbid));
+  const maps::About about = shelf->list().at(0);
+  EXPECT_TRUE(about.forbidden.empty());
+  EXPECT_EQ(about.name, "a");
+  EXPECT_EQ(about.revision, 2);
+  EXPECT_EQ(about.created, kNow);
+  EXPECT_EQ(about.anchor->heading_deg, 45.0);
+  EXPECT_GT(about.size_bytes, 0u);
+  EXPECT_EQ(shelf->find(1)->forbidden.size(), 1u);
+  EXPECT_EQ(shelf->label_of(1)->name, "a");
+  EXPECT_EQ(shelf->label_of(1)->revision, 2);
+  EXPECT_FALSE(shelf->label_of(2));
 }
 
 TEST_F(ShelfTest, AMapHasNotMoreAreasThanItMay) {
