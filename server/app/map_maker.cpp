@@ -84,7 +84,12 @@ void MapMaker::take(const std::vector<std::shared_ptr<const base::Sight>>& sight
                     const std::vector<nav::sense::Odometry>& moved) {
   if (!taking_) return;
   for (const auto& o : moved) moved_.put(o);
-  for (const auto& s : sights) sights_.put(s);
+  for (const auto& s : sights) {  // no more than are laid: seconds of them may wait
+    base::Time& last = put_[s->sensor];
+    if (s->stamp >= last && base::seconds(s->stamp - last) < kEvery_s) continue;
+    last = s->stamp;
+    sights_.put(s);
+  }
   if (!sights.empty()) sem_post(&news_);
 }
 

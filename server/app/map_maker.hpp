@@ -41,7 +41,7 @@ class MapMaker {
   MapMaker(const MapMaker&) = delete;
   MapMaker& operator=(const MapMaker&) = delete;
 
-  /// Any thread; never waits for the work. Nothing is taken while none is made.
+  /// The sense thread; never waits for the work. Nothing is taken while none is made.
   void take(const std::vector<std::shared_ptr<const base::Sight>>& sights,
             const std::vector<nav::sense::Odometry>& moved);
   /// Any thread; never waits. Conflict: one is being made. Unavailable: no thread for it.
@@ -72,6 +72,7 @@ class MapMaker {
   const std::map<std::string, base::Mount> mounts_;
   base::Inbox<std::shared_ptr<const base::Sight>> sights_{64};
   base::Inbox<nav::sense::Odometry> moved_{512};
+  std::map<std::string, base::Time> put_;  ///< the newest of each sensor; the sense thread's
   sem_t news_{};
   std::atomic<bool> taking_{false};
   std::atomic<bool> stop_{false};

@@ -56,7 +56,7 @@ void make_prompt() noexcept {
 }
 
 void make_patient() noexcept {
-  ::setpriority(PRIO_PROCESS, 0, 10);
+  ::setpriority(PRIO_PROCESS, 0, 5);
 }
 
 }  // namespace roverd

@@ -18,7 +18,7 @@ bool make_urgent(Urgency urgency) noexcept;
 /// are ordinary ones.
 void make_prompt() noexcept;
 
-/// For threads whose work may wait: the calling thread is run after all others.
+/// For threads whose work may wait: the calling thread gives way to all others.
 void make_patient() noexcept;
 
 }  // namespace roverd
