@@ -91,6 +91,13 @@ struct Station::Impl {
   std::shared_ptr<RecordingTidier> tidier;  ///< null: a recording is played, none is removed
   asio::steady_timer names_timer{web};
   LatenessWatch lateness_watch;
+  struct ForbiddenOf {  ///< whose areas are kept out of
+    std::int64_t id = -1;
+    std::int64_t revision = 0;
+    std::shared_ptr<const nav::place::MapAnchor> placed{};
+    friend bool operator==(const ForbiddenOf&, const ForbiddenOf&) = default;
+  };
+  ForbiddenOf forbidden;
   std::vector<base::HostProblem> host;  ///< what is wrong with this computer
   const bool memory_locked = lock_memory();
   ServiceManager manager = ServiceManager::of_this_process();
@@ -126,6 +133,7 @@ struct Station::Impl {
   Result<void> claim_robot(const Settings& settings, const Options& options);
   void watch_host();
   void watch_host_soon();
+  void watch_forbidden();
   void tell_certificate();
   void tell_address();
   void watch_names_soon();

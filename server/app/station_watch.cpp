@@ -1,3 +1,4 @@
+#include "app/keep_out.hpp"
 #include "app/station_impl.hpp"
 
 namespace roverd {
@@ -101,11 +102,35 @@ void Station::Impl::tell_alive() {
   });
 }
 
+/// Web thread, every second: the forbidden areas of the map in use are kept out of as a fence is,
+/// where it is known where the map lies.
+void Station::Impl::watch_forbidden() {
+  const auto id = shelf->in_use();
+  const auto label = id ? shelf->label_of(*id) : std::nullopt;
+  ForbiddenOf now;
+  if (label) now = {*id, label->revision, place ? place->placed() : nullptr};
+  if (now == forbidden) return;
+  // It is being looked through anew: what was laid stays until it is laid again.
+  if (!now.placed && forbidden.placed && now.id == forbidden.id) return;
+  forbidden = now;
+  const auto about = label ? shelf->find(*id) : Result<maps::About>(maps::About{});
+  if (!about) return;  // it went meanwhile; in a second it is not in use any more
+  const std::string name = "forbidden in " + about->name;
+  if (now.placed)
+    return services->keep_out(keep_out_of(about->forbidden, told_anchor(*now.placed)), name);
+  services->keep_out({}, name);
+  if (!about->forbidden.empty() && place) {
+    robot.tell({base::wall_now(), base::Severity::Warning, "map_trouble",
+                "the areas " + name + " hold when it is known where the map lies"});
+  }
+}
+
 void Station::Impl::watch_host_soon() {
   host_timer.expires_after(kLookAtHost);
   host_timer.async_wait([this](const boost::system::error_code& ec) {
     if (ec || !loop) return;
     watch_host();
+    watch_forbidden();
     watch_host_soon();
   });
 }

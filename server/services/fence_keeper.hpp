@@ -1,13 +1,17 @@
 #pragma once
 // Which fence holds, as the robot is to know it: laid out in its map, and again when that begins or
-// another fence is chosen. The services' thread.
+// another fence is chosen. What else is to be kept out of (the forbidden areas of a map) counts as
+// a part of the fence, and is one where none is chosen. The services' thread.
 
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "base/snapshot.hpp"
+#include "mission/fence/fence.hpp"
 #include "robot/robot.hpp"
 
 namespace roverd::services {
@@ -19,9 +23,20 @@ class FenceKeeper {
   /// From now on. @param fence null: none. @param held called once it holds, on the thread that
   /// hands out the robot's answers; what was chosen before it and does not hold yet never will
   void use(std::shared_ptr<const mission::Fence> fence, robot::Reply held) {
-    fence_ = std::move(fence);
+    chosen_ = std::move(fence);
+    join();
     if (held_) held_(base::fail(base::Code::Conflict, "another fence was chosen meanwhile"));
     held_ = std::move(held);
+    due_ = true;
+    lay();
+  }
+  /// From now on, beside the fence. @param areas exclusions, each as check_fence wants them; empty:
+  /// nothing. @param name of the fence that they are where none is chosen
+  void keep_out(std::vector<mission::FenceArea> areas, std::string name) {
+    if (areas == keep_out_ && (areas.empty() || name == name_)) return;
+    keep_out_ = std::move(areas);
+    name_ = std::move(name);
+    join();
     due_ = true;
     lay();
   }
@@ -33,17 +48,30 @@ class FenceKeeper {
     frame_ = frame;
     if (due_) lay();
   }
+  /// All that holds; null: nothing does.
   const std::shared_ptr<const mission::Fence>& fence() const noexcept { return fence_; }
 
  private:
+  void join() {
+    fence_ = chosen_;
+    if (keep_out_.empty()) return;
+    auto all = std::make_shared<mission::Fence>();
+    if (chosen_) *all = *chosen_;
+    if (!chosen_) all->name = name_;
+    all->areas.insert(all->areas.end(), keep_out_.begin(), keep_out_.end());
+    fence_ = std::move(all);
+  }
   void lay() {
     due_ = !robot_.request(robot::SetFence{robot_.lay_fence(fence_)}, base::Time::max(), held_);
     if (!due_) held_ = nullptr;
   }
 
   robot::Robot& robot_;
-  std::shared_ptr<const mission::Fence> fence_;
-  robot::Reply held_;  ///< waits for room
+  std::shared_ptr<const mission::Fence> chosen_;
+  std::vector<mission::FenceArea> keep_out_;
+  std::string name_;
+  std::shared_ptr<const mission::Fence> fence_;  ///< both
+  robot::Reply held_;                            ///< waits for room
   std::uint32_t frame_ = 0;
   bool due_ = false;
 };

@@ -134,6 +134,12 @@ void Services::use_fence(std::shared_ptr<const mission::Fence> fence, Done done)
   });
 }
 
+void Services::keep_out(std::vector<mission::FenceArea> areas, std::string name) {
+  desk_.post([this, areas = std::move(areas), name = std::move(name)]() mutable {
+    fence_.keep_out(std::move(areas), std::move(name));
+  });
+}
+
 void Services::lay_way_anew(Done done) {
   desk_.post([this, done = std::move(done)] { way_.lay(later(done)); });
 }

@@ -74,6 +74,8 @@ class Services {
   void forget_left_behind(Done done);
   /// From now on. @param fence null: none. @param done empty, or called when the robot holds it
   void use_fence(std::shared_ptr<const mission::Fence> fence, Done done = {});
+  /// Any thread. What is to be kept out of beside the fence; see FenceKeeper.
+  void keep_out(std::vector<mission::FenceArea> areas, std::string name);
   /// The way of the loaded mission, by the parameters as they are now. Conflict while it is in
   /// hand: it is done by itself when it is not any more.
   void lay_way_anew(Done done);

@@ -1,0 +1,60 @@
+// What is forbidden in a map, as areas that the robot keeps out of.
+
+#include "app/keep_out.hpp"
+
+#include <variant>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "base/geo.hpp"
+
+namespace roverd {
+namespace {
+
+constexpr base::LatLon kAt{58.378, 26.729};
+
+/// Laid out around the map's origin.
+mission::CompiledFence laid(const std::vector<maps::Area>& forbidden, double heading_deg) {
+  const maps::Anchor anchor{kAt, heading_deg, 0.1, 0.5};
+  return {{"forbidden", keep_out_of(forbidden, anchor), {}}, base::LocalFrame(7, kAt)};
+}
+
+//    y ▲   ┌──┐          x axis to the north (heading 0): y is west
+//      │   │  └──┐
+//      │   └─────┘
+//      └──────────▶ x
+const maps::Area kCorner{{2, 1}, {6, 1}, {6, 2}, {4, 2}, {4, 4}, {2, 4}};
+
+TEST(KeepOut, LiesWhereTheMapLies) {
+  const auto east = laid({kCorner}, 90.0);
+  EXPECT_FALSE(east.contains({3.0, 3.0}));
+  EXPECT_FALSE(east.contains({5.5, 1.5}));
+  EXPECT_TRUE(east.contains({5.5, 3.5})) << "the notch of the L is free";
+  EXPECT_NEAR(east.clearance_m({0.0, 2.0}), 2.0, 0.01);
+  const auto north = laid({kCorner}, 0.0);
+  EXPECT_FALSE(north.contains({-3.0, 3.0}));
+  EXPECT_TRUE(north.contains({3.0, 3.0}));
+  EXPECT_NEAR(north.clearance_m({-2.0, 0.0}), 2.0, 0.01);
+}
+
+TEST(KeepOut, OfSidesThatCrossNeverLessThanWasDrawn) {
+  const maps::Area bow{{0, 0}, {4, 4}, {4, 0}, {0, 4}};
+  const auto fence = laid({bow, kCorner}, 90.0);
+  for (const base::EnuPoint p : {base::EnuPoint{3.5, 2.0}, {0.5, 2.0}, {2.0, 3.5}, {5.5, 1.5}}) {
+    EXPECT_FALSE(fence.contains(p)) << p.east_m << " " << p.north_m;
+  }
+  EXPECT_TRUE(fence.contains({5.5, 3.5}));
+}
+
+TEST(KeepOut, WhatCoversNothingForbidsNothing) {
+  EXPECT_TRUE(keep_out_of({}, {kAt, 90.0, 0.1, 0.5}).empty());
+  EXPECT_TRUE(
+      keep_out_of({{{1, 1}, {1, 1}, {1, 1}}, {{0, 0}, {1, 1}, {2, 2}}, {}}, {kAt, 90.0, 0.1, 0.5})
+          .empty());
+  // A corner that was set twice does no harm.
+  EXPECT_EQ(keep_out_of({{{0, 0}, {2, 0}, {2, 0}, {2, 2}}}, {kAt, 90.0, 0.1, 0.5}).size(), 1u);
+}
+
+}  // namespace
+}  // namespace roverd
