@@ -141,7 +141,7 @@ step_api() { run_ctest "$build" api "$logs/api"; }
 step_command() {
   local code=0 name
   "$root/tests/command/packages_test" || code=$?
-  for name in decode arguments run control ntrip power_cut stop storage study drill resume learned gpsd memory tls abuse secrets peers lan see rows marks place bad_sight; do
+  for name in decode arguments run control ntrip power_cut stop storage study drill resume learned gpsd memory tls abuse secrets peers lan see rows marks place map bad_sight; do
     ordinary python3 "$root/tests/command/${name}_test.py" || code=$?
   done
   ordinary python3 "$root/tests/soak/kills" --count 25 || code=$?
