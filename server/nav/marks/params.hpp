@@ -52,7 +52,7 @@ struct LandmarkParams {
   double confirm = 3.0;
   double forget_s = 1.0;
   double offset_m = 0.7;  ///< they are passed at this distance: each item says its own
-  double next_m = 0.6;  ///< nearer to its passing point than this the next one counts
+  double next_m = 0.6;    ///< nearer to its passing point than this the next one counts
   double gain = 18.0;
   double on_m = 1.0;
 };

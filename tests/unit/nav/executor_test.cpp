@@ -19,7 +19,8 @@ TEST(Route, NamesEveryItemThatThisRobotCannotDoYet) {
   ASSERT_FALSE(r);
   ASSERT_EQ(r.error().fields.size(), 2u);
   EXPECT_EQ(r.error().fields[0].pointer, "/items/1");
-  EXPECT_EQ(r.error().fields[0].detail, "passes landmarks at 0.0 m: this vehicle would drive over them");
+  EXPECT_EQ(r.error().fields[0].detail,
+            "passes landmarks at 0.0 m: this vehicle would drive over them");
   EXPECT_EQ(r.error().fields[1].pointer, "/items/3");
 }
 
