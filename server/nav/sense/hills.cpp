@@ -5,14 +5,24 @@
 #include <bit>
 #include <cmath>
 
+#include "base/angle.hpp"
+
 namespace roverd::nav::sense {
 
 namespace {
 
 constexpr float kNoGroundBefore = std::numeric_limits<float>::infinity();
+constexpr std::size_t kNowhereOut = std::numeric_limits<std::size_t>::max();
+// A face and what its noise throws behind it are nearer to each other.
+constexpr std::size_t kBehind = 3;
 
 std::int32_t hill_cell(double m) noexcept {
   return static_cast<std::int32_t>(std::floor(m / Hills::kCell_m));
+}
+
+/// Places that have a cell; what is not a number has none.
+bool has_cell(double x_m, double y_m) noexcept {
+  return std::abs(x_m) < Hills::kFarthest_m && std::abs(y_m) < Hills::kFarthest_m;
 }
 
 /// Where a voxel lies in O.
@@ -46,7 +56,10 @@ class Lies {
 }  // namespace
 
 Hills::Hills(double range_m, double low_m)
-    : low_m_(static_cast<float>(std::min(low_m, kMostLow_m))) {
+    : low_m_(static_cast<float>(std::min(low_m, kMostLow_m))),
+      steps_(static_cast<std::size_t>(std::ceil(range_m / static_cast<double>(kStep_m))) + 1),
+      lowest_(kDirections * steps_),
+      highest_(kDirections * steps_) {
   const auto wide = static_cast<std::uint32_t>(std::ceil(2.0 * range_m / kCell_m)) + 8;
   mask_ = static_cast<std::int32_t>(std::bit_ceil(std::clamp(wide, 16U, 1024U))) - 1;
   const auto side = static_cast<std::size_t>(mask_) + 1;
@@ -67,6 +80,62 @@ void Hills::forget() noexcept {
   begun_ = false;
 }
 
+std::size_t Hills::step_of(const Voxel& v) const noexcept {
+  const float out = std::hypot(v.x_m, v.y_m) / kStep_m;
+  if (!(out < static_cast<float>(steps_))) return kNowhereOut;
+  const double turn = (std::atan2(v.y_m, v.x_m) / base::kPi + 1.0) * 0.5;
+  const auto direction =
+      static_cast<std::size_t>(turn * static_cast<double>(kDirections)) % kDirections;
+  return direction * steps_ + static_cast<std::size_t>(out);
+}
+
+void Hills::look_out(const std::vector<Voxel>& voxels) noexcept {
+  std::fill(lowest_.begin(), lowest_.end(), kNoGroundBefore);
+  std::fill(highest_.begin(), highest_.end(), -kNoGroundBefore);
+  for (const Voxel& v : voxels) {
+    if (v.kind != Kind::Ground) continue;
+    const std::size_t i = step_of(v);
+    if (i != kNowhereOut) lowest_[i] = std::min(lowest_[i], v.z_m);
+  }
+  for (std::size_t direction = 0; direction < kDirections; ++direction) look_out(direction);
+}
+
+void Hills::look_out(std::size_t direction) noexcept {
+  float* const low = lowest_.data() + direction * steps_;
+  float* const high = highest_.data() + direction * steps_;
+  // What the ground can be at most, seen from the body.
+  float most = 0.0F;
+  bool begun = false;
+  for (std::size_t i = 0; i < steps_; ++i) {
+    if (begun) most += kSteepest * kStep_m;
+    const float upto = most + (begun ? kRough_m : static_cast<float>(kMostLow_m));
+    if (low[i] > upto) {
+      low[i] = kNoGroundBefore;
+      continue;
+    }
+    begun = true;
+    most = std::min(most, low[i]);
+    high[i] = upto;
+  }
+  // And between what lies before and behind it.
+  std::size_t before = 0;
+  float before_m = 0.0F;
+  for (std::size_t i = 0; i < steps_; ++i) {
+    if (low[i] == kNoGroundBefore) continue;
+    std::size_t behind = i + kBehind;
+    while (behind < steps_ && low[behind] == kNoGroundBefore) ++behind;
+    if (behind >= steps_) {
+      high[i] = -kNoGroundBefore;
+      continue;
+    }
+    const float part = static_cast<float>(i - before) / static_cast<float>(behind - before);
+    high[i] = std::min(high[i], before_m + part * (low[behind] - before_m) + kRough_m);
+    if (low[i] > high[i]) continue;
+    before = i;
+    before_m = low[i];
+  }
+}
+
 void Hills::learn(const Reduced& in) {
   if (!in.lie.told) return forget();
   if (!begun_) {
@@ -75,8 +144,11 @@ void Hills::learn(const Reduced& in) {
   }
   const std::int32_t half = half_of(in.stamp);
   const Lies lies(in);
+  look_out(in.voxels);
   for (const Voxel& v : in.voxels) {
-    if (v.kind != Kind::Ground || v.z_m > kSteepest * std::hypot(v.x_m, v.y_m)) continue;
+    if (v.kind != Kind::Ground || !has_cell(lies.x_m(v), lies.y_m(v))) continue;
+    const std::size_t step = step_of(v);
+    if (step == kNowhereOut || v.z_m > highest_[step]) continue;
     const std::int32_t x = hill_cell(lies.x_m(v));
     const std::int32_t y = hill_cell(lies.y_m(v));
     const float z = lies.height_m(v);
@@ -99,7 +171,7 @@ std::optional<float> Hills::lowest_m(std::int32_t x, std::int32_t y,
 }
 
 bool Hills::is_ground(double x_m, double y_m, float z_m, base::Time now) const noexcept {
-  if (!begun_) return false;
+  if (!begun_ || !has_cell(x_m, y_m)) return false;
   const std::int32_t half = half_of(now);
   const std::int32_t x = hill_cell(x_m);
   const std::int32_t y = hill_cell(y_m);

@@ -6,11 +6,17 @@
 //   from kInside_m below to low_m above the lowest of three by three cells is ground
 //
 // Only a sensor that lays the ground tells it (ground.hpp): a bank that is too steep is none, and
-// where nobody saw the ground a plane's echo stays an obstacle. Near the body a cloud does not see
-// the foot of a thing, and a slope may be laid through its face: what rises from the body more
-// steeply than kSteepest is not learned. What came to stand on ground that was known is higher than
-// the lowest there. An echo farther below the ground shows that the heights do not agree; it stays
-// an obstacle, too.
+// where nobody saw the ground a plane's echo stays an obstacle. A ring on the face of a low thing
+// whose foot is hidden, or between two rings, is laid as ground as well. So it is learned outwards
+// in every direction, from the body's plane on:
+//
+//   ●     the first kMostLow_m over that plane at most; each next kRough_m at most over a surface
+//   ▭     that starts in the plane and rises by kSteepest from the lowest seen before it, and over
+//   ══1═══2══▏ ═══3═   the line from the ground before it to ground behind it: on a face there is
+//                      none, or it is too low
+//
+// What came to stand on ground that was known is higher than the lowest there. An echo farther
+// below the ground shows that the heights do not agree; it stays an obstacle, too.
 //
 // Heights in O are compared within seconds, and only while something tells how the body leans
 // (Lie3::told): when nothing does, all of it is forgotten. Not shared between threads.
@@ -32,8 +38,11 @@ class Hills {
   /// At least half of it, and less than all of it: in two halves each cell keeps its lowest.
   static constexpr double kKnown_s = 8.0;
   static constexpr float kInside_m = 0.15F;
-  static constexpr float kSteepest = 0.1F;  ///< rise over way, from the body's origin: 6 deg
+  static constexpr float kSteepest = 0.15F;  ///< rise over way
+  static constexpr float kRough_m = 0.05F;
   static constexpr double kMostLow_m = 0.08;
+  /// Farther from where the odometry began nothing is ground.
+  static constexpr double kFarthest_m = 1e7;
 
   /// @param range_m what lies farther from the body is not asked. @param low_m what is lower over
   /// the ground is no obstacle; kMostLow_m at most: what is hidden in tall grass a plane still
@@ -58,12 +67,22 @@ class Hills {
     float z_m = 0.0F;            ///< the lowest then
     float before_m = 0.0F;       ///< and in the half before
   };
+  static constexpr std::size_t kDirections = 180;
+  static constexpr float kStep_m = 0.1F;
+  /// kStep_m of a direction, from the body's origin outwards.
+  std::size_t step_of(const Voxel& v) const noexcept;
+  /// Sets highest_ of each step: what lies no higher is ground.
+  void look_out(const std::vector<Voxel>& voxels) noexcept;
+  void look_out(std::size_t direction) noexcept;
   std::size_t index(std::int32_t x, std::int32_t y) const noexcept;
   std::int32_t half_of(base::Time t) const noexcept;
   std::optional<float> lowest_m(std::int32_t x, std::int32_t y, std::int32_t half) const noexcept;
 
   float low_m_;
   std::int32_t mask_;
+  std::size_t steps_;           ///< of each direction
+  std::vector<float> lowest_;   ///< ground of the piece, over the body's plane; infinity: none
+  std::vector<float> highest_;  ///< minus infinity: nothing is ground there
   std::vector<Place> places_;
   bool begun_ = false;
   base::Time begin_;

@@ -2,6 +2,7 @@
 // stands there.
 #include "nav/sense/hills.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <string>
@@ -30,10 +31,10 @@ Scene hill() {
   return s;
 }
 
-SensorSetup plane_ahead() {
+SensorSetup plane_ahead(double z_m = 0.3) {
   SensorSetup s;
   s.name = "front";
-  s.mount = {.x_m = 0.45, .z_m = 0.3};
+  s.mount = {.x_m = 0.45, .z_m = z_m};
   s.planar = true;
   s.thin = true;
   s.health.rate_hz = 50.0;
@@ -111,6 +112,27 @@ TEST(HillsTest, WhoComesFromTheSideAndHidesTheGroundFromTheLidarIsAnObstacle) {
   }
 }
 
+//   It lies there when the robot starts; the lowest ring never saw its foot, or two rings have it
+//   between them, and the robot drives on.
+TEST(HillsTest, WhatLiesAheadLowAndFarOffStaysAnObstacleOnTheWayThere) {
+  struct Case {
+    double lidar_m, scanner_m, high_m, x;
+  };
+  for (const Case& c :
+       {Case{0.7, 0.2, 0.3, 2.0}, Case{0.7, 0.15, 0.25, 2.0}, Case{0.8, 0.25, 0.3, 2.3},
+        Case{1.2, 0.3, 0.35, 3.5}, Case{1.5, 0.3, 0.36, 4.4}, Case{0.7, 0.2, 0.3, 6.3}}) {
+    Climb drives({plane_ahead(c.scanner_m), rings_above(c.lidar_m)});
+    Scene scene;
+    scene.blocks = {{c.x, c.x + 0.4, -0.2, 0.2, 0.0, c.high_m}};
+    drives.drive(scene, 1.0, 1.25);
+    for (double t = 1.3; 0.5 * (t - 1.0) < std::min(c.x - 0.9, 2.5); t += 0.3) {
+      drives.drive(scene, t, t + 0.05);
+      ASSERT_FALSE(drives.taken(c.x - 0.06, c.x + 0.1).empty())
+          << c.high_m << " m high at " << c.x << ", lidar " << c.lidar_m << ", after " << t << " s";
+    }
+  }
+}
+
 TEST(HillsTest, AHillThatTheLidarSeesIsGroundToTheScannerAsWell) {
   Climb both({plane_ahead(), rings_above()});
   both.drive(hill(), 1.0, 5.0);
@@ -161,6 +183,17 @@ Reduced piece(double t, std::vector<Voxel> voxels) {
   return out;
 }
 
+/// Ground that rises straight from the body, through this place and on.
+Reduced ground_through(double t, const std::vector<Voxel>& places) {
+  Reduced out = piece(t, {});
+  for (const Voxel& v : places) {
+    for (const float part : {0.25F, 0.5F, 0.75F, 1.0F, 1.2F}) {
+      out.voxels.push_back({part * v.x_m, part * v.y_m, part * v.z_m, 1, Kind::Ground});
+    }
+  }
+  return out;
+}
+
 TEST(HillsTest, WhatThePlaneMetBeforeIsGroundOnceTheGroundIsSeen) {
   Hills hills(8.0, 0.08);
   Sectors sectors;
@@ -168,8 +201,7 @@ TEST(HillsTest, WhatThePlaneMetBeforeIsGroundOnceTheGroundIsSeen) {
   Grid grid({});
   grid.take(piece(1.0, {{5.9F, 0.0F, 0.3F, 1}, {5.9F, 0.4F, 0.6F, 1}}), sectors, 0, &hills);
   ASSERT_EQ(grid.at(5.9, 0.0, at(1.0)), Known::Occupied);
-  const Reduced cloud =
-      piece(1.5, {{5.88F, 0.02F, 0.27F, 2, Kind::Ground}, {5.9F, 0.4F, 0.27F, 2, Kind::Ground}});
+  const Reduced cloud = ground_through(1.5, {{5.88F, 0.02F, 0.27F}, {5.9F, 0.4F, 0.27F}});
   hills.learn(cloud);
   sectors.planar = sectors.thin = false;
   grid.take(cloud, sectors, 1, &hills);
@@ -183,7 +215,7 @@ TEST(HillsTest, WhatTheCloudMetBeforeStays) {
   Sectors sectors;
   Grid grid({});
   grid.take(piece(1.0, {{5.9F, 0.0F, 0.3F, 1}}), sectors, 1, &hills);
-  hills.learn(piece(1.1, {{5.88F, 0.02F, 0.27F, 2, Kind::Ground}}));
+  hills.learn(ground_through(1.1, {{5.88F, 0.02F, 0.27F}}));
   Reduced plane = piece(1.2, {{5.9F, 0.0F, 0.3F, 1}});
   ASSERT_EQ(hills.judge(plane), 1U);
   sectors.planar = sectors.thin = true;
@@ -194,7 +226,7 @@ TEST(HillsTest, WhatTheCloudMetBeforeStays) {
 /// A plane's echo 0.3 m high at 4 m, where the ground was seen before.
 std::size_t judged(float ground_m, double later_s) {
   Hills hills(8.0, 0.3);
-  Reduced cloud = piece(1.0, {{4.0F, 0.0F, ground_m - 0.5F, 1, Kind::Ground}});
+  Reduced cloud = ground_through(1.0, {{4.0F, 0.0F, ground_m - 0.5F}});
   cloud.lie.z_m = 0.5;
   hills.learn(cloud);
   Reduced plane = piece(1.0 + later_s, {{2.05F, 0.05F, 0.3F, 1}});
@@ -216,30 +248,73 @@ TEST(HillsTest, GroundOfLongAgoAndGroundFarAboveSayNothing) {
 
 TEST(HillsTest, TheLowestGroundOfTheseSecondsCounts) {
   Hills hills(8.0, 0.08);
-  hills.learn(piece(1.0, {{4.0F, 0.0F, 0.0F, 1, Kind::Ground}}));
-  hills.learn(piece(1.2, {{4.0F, 0.0F, 0.3F, 1, Kind::Ground}}));
+  hills.learn(ground_through(1.0, {{4.0F, 0.0F, 0.0F}}));
+  hills.learn(ground_through(1.2, {{4.0F, 0.0F, 0.3F}}));
   EXPECT_FALSE(hills.is_ground(4.0, 0.0, 0.3F, at(1.3))) << "something came to stand there";
   EXPECT_TRUE(hills.is_ground(4.0, 0.0, 0.05F, at(1.3)));
   //   Seen so for long, it is the ground: the lean was wrong before.
   for (double t = 1.5; t < 10.0; t += 0.5) {
-    hills.learn(piece(t, {{4.0F, 0.0F, 0.3F, 1, Kind::Ground}}));
+    hills.learn(ground_through(t, {{4.0F, 0.0F, 0.3F}}));
   }
   EXPECT_TRUE(hills.is_ground(4.0, 0.0, 0.3F, at(10.0)));
 }
 
-//   Steeper than one in ten from the body it may be a face: 0.35 m high, 1.8 m away.
-TEST(HillsTest, WhatRisesSteeplyIsNotLearned) {
+Voxel ground_at(float x_m, float z_m) {
+  return {x_m, 0.0F, z_m, 1, Kind::Ground};
+}
+
+TEST(HillsTest, GroundIsLearnedFromTheBodyOutwards) {
+  const auto learned = [](std::vector<Voxel> voxels, double x, float z) {
+    Hills hills(8.0, 0.08);
+    hills.learn(piece(1.0, std::move(voxels)));
+    return hills.is_ground(x, 0.0, z, at(1.1));
+  };
+  EXPECT_TRUE(learned({ground_at(2.0F, 0.07F), ground_at(3.0F, 0.06F)}, 2.0, 0.1F));
+  EXPECT_FALSE(learned({ground_at(2.0F, 0.09F), ground_at(3.0F, 0.1F)}, 2.0, 0.1F))
+      << "the first: it may be a face whose foot is hidden";
+  EXPECT_FALSE(
+      learned({ground_at(2.0F, 0.0F), ground_at(3.0F, 0.22F), ground_at(4.0F, 0.3F)}, 3.0, 0.25F))
+      << "0.22 m in a metre";
+  EXPECT_TRUE(
+      learned({ground_at(2.0F, 0.0F), ground_at(3.0F, 0.12F), ground_at(4.0F, 0.24F)}, 3.0, 0.15F));
+  EXPECT_FALSE(
+      learned({ground_at(2.0F, 0.0F), ground_at(3.0F, 0.12F), ground_at(4.0F, 0.0F)}, 3.0, 0.15F))
+      << "behind it the ground lies as low as before";
+  EXPECT_FALSE(
+      learned({ground_at(2.0F, 0.0F), ground_at(3.0F, 0.12F), ground_at(3.1F, 0.13F)}, 3.0, 0.15F))
+      << "nothing behind it";
+}
+
+//   Rings close to one another climb a bank by a few centimetres each: that is no leave to go on.
+TEST(HillsTest, ASteepBankIsNotClimbedFromRingToRing) {
   Hills hills(8.0, 0.08);
-  hills.learn(
-      piece(1.0, {{1.8F, 0.0F, 0.2F, 1, Kind::Ground}, {3.0F, 0.0F, 0.2F, 1, Kind::Ground}}));
-  EXPECT_FALSE(hills.is_ground(1.8, 0.0, 0.2F, at(1.1)));
-  EXPECT_TRUE(hills.is_ground(3.0, 0.0, 0.2F, at(1.1)));
+  std::vector<Voxel> bank;
+  for (int i = 0; i < 60; ++i) {
+    const float x = 0.05F + 0.1F * static_cast<float>(i);
+    bank.push_back(ground_at(x, std::clamp(0.4F * (x - 3.0F), 0.0F, 0.36F)));
+  }
+  hills.learn(piece(1.0, bank));
+  EXPECT_TRUE(hills.is_ground(2.9, 0.0, 0.05F, at(1.1)));
+  EXPECT_FALSE(hills.is_ground(3.6, 0.0, 0.24F, at(1.1)));
+}
+
+TEST(HillsTest, BeyondWhereCellsAreCountedNothingIsGround) {
+  for (const double x : {1e9, -1e300, std::nan("")}) {
+    Hills hills(8.0, 0.08);
+    Reduced cloud = ground_through(1.0, {{4.0F, 0.0F, 0.0F}});
+    cloud.pose.x_m = x;
+    hills.learn(cloud);
+    EXPECT_FALSE(hills.is_ground(x + 4.0, 0.0, 0.0F, at(1.1)));
+    Grid grid({});
+    grid.take(cloud, Sectors{}, 0, &hills);
+    EXPECT_EQ(grid.at(0.0, 0.0, at(1.1)), Known::Unknown);
+  }
 }
 
 //   Behind it lay a hill: 256 cells of 0.1 m farther on nobody has seen the ground.
 TEST(HillsTest, PlacesAWindowApartAreTwo) {
   Hills hills(8.0, 0.08);
-  hills.learn(piece(1.0, {{4.0F, 0.0F, 0.3F, 1, Kind::Ground}}));
+  hills.learn(ground_through(1.0, {{4.0F, 0.0F, 0.3F}}));
   ASSERT_TRUE(hills.is_ground(4.0, 0.0, 0.3F, at(1.1)));
   EXPECT_FALSE(hills.is_ground(29.6, 0.0, 0.3F, at(1.1)));
   EXPECT_FALSE(hills.is_ground(4.0, -25.6, 0.3F, at(1.1)));
@@ -247,8 +322,8 @@ TEST(HillsTest, PlacesAWindowApartAreTwo) {
 
 TEST(HillsTest, AllOfItIsForgottenWhereNothingTellsTheLeanAnyMore) {
   Hills hills(8.0, 0.08);
-  hills.learn(piece(1.0, {{4.0F, 0.0F, 0.3F, 1, Kind::Ground}}));
-  Reduced untold = piece(1.1, {{5.0F, 0.0F, 0.3F, 1, Kind::Ground}});
+  hills.learn(ground_through(1.0, {{4.0F, 0.0F, 0.3F}}));
+  Reduced untold = ground_through(1.1, {{5.0F, 0.0F, 0.3F}});
   untold.lie.told = false;
   hills.learn(untold);
   EXPECT_FALSE(hills.is_ground(4.0, 0.0, 0.3F, at(1.2)));
