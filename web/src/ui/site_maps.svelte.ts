@@ -86,7 +86,8 @@ export class SiteMaps {
       if (this.#waits === 0) void this.refresh(); // a slow answer is not overtaken by the next question
     }, RENEWED_MS);
     const sooner = setInterval(() => {
-      if (this.#listed && this.making && this.busy === null && this.#waits === 0) void this.refresh();
+      if (this.#listed && this.making && this.busy === null && this.#waits === 0)
+        void this.refresh();
     }, MAKING_RENEWED_MS);
     this.#watched = true;
     void this.refresh();
