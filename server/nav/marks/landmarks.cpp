@@ -13,7 +13,11 @@ namespace {
 
 constexpr double kFadeWeight = 0.9;
 constexpr double kFadeName = 0.9;
-constexpr double kKeep_s = 60.0;  ///< out of view
+constexpr double kKeep_s = 60.0;     ///< out of view, under way
+constexpr double kTogether_s = 1.0;  ///< who told it so lately tells it
+constexpr double kStands_m = 0.1;
+constexpr double kStands_rad = 0.1;
+constexpr double kLongestMove_s = 2.0;  ///< by that much
 constexpr double kFarAway_m = 15.0;
 constexpr double kVisionSigma_m = 0.05;
 constexpr double kVisionSigmaOfRange = 0.02;
@@ -28,10 +32,11 @@ double since(base::Time& last, base::Time now) noexcept {
 }
 
 /// A glance that never came again is none.
-bool gone(const Landmark& mark, double unseen_s, base::Time now,
-          const LandmarkParams& params) noexcept {
-  const double age_s = base::seconds(now - mark.seen_at);
-  return unseen_s > params.forget_s || age_s > (mark.believed ? kKeep_s : 1.0);
+template <class Kept>
+bool gone(const Kept& kept, double moved_s, base::Time now, const LandmarkParams& params) noexcept {
+  if (kept.unseen_s() > params.forget_s) return true;
+  if (kept.mark.believed) return moved_s - kept.moved_s > kKeep_s;
+  return base::seconds(now - kept.mark.seen_at) > 1.0;
 }
 
 /// The image's edge may go through it: what is seen of it lies nearer to the image's middle.
@@ -74,14 +79,58 @@ Kept one_of(Kept older, const Kept& newer) {
   older.mark.by_vision |= newer.mark.by_vision;
   older.mark.believed |= newer.mark.believed;
   older.mark.seen_at = std::max(older.mark.seen_at, newer.mark.seen_at);
-  older.mark.eyes |= newer.mark.eyes;
   older.hits = std::max(older.hits, newer.hits);
-  older.unseen_s = std::min(older.unseen_s, newer.unseen_s);
+  older.add(newer);
+  older.moved_s = std::max(older.moved_s, newer.moved_s);
   older.scanned_at = std::max(older.scanned_at, newer.scanned_at);
   return older;
 }
 
 }  // namespace
+
+Landmarks::Told* Landmarks::Kept::by(Eyes eye) noexcept {
+  const auto one = std::ranges::find(told, eye, &Told::eye);
+  return one == told.end() ? nullptr : &*one;
+}
+
+double Landmarks::Kept::unseen_s() const noexcept {
+  double out = 0.0;
+  for (const Told& one : told) out = std::max(out, one.unseen_s);
+  return out;
+}
+
+/// Those that told it about when it was seen last; who told it before may look elsewhere now.
+Eyes Landmarks::Kept::eyes() const noexcept {
+  Eyes out = 0;
+  for (const Told& one : told) {
+    if (base::seconds(mark.seen_at - one.at) < kTogether_s) out |= one.eye;
+  }
+  return out;
+}
+
+/// Those that told another one, which turned out to be this one.
+void Landmarks::Kept::add(const Kept& other) {
+  const double least_s = std::min(unseen_s(), other.unseen_s());
+  for (const Told& one : other.told) {
+    if (Told* same = by(one.eye)) {
+      same->at = std::max(same->at, one.at);
+    } else {
+      told.push_back(one);
+    }
+  }
+  for (Told& one : told) one.unseen_s = std::min(one.unseen_s, least_s);
+  mark.eyes = eyes();
+}
+
+/// While the body stands its odometry does not drift: nothing that is known grows old.
+void Landmarks::move(const Pose2& pose, base::Time now) noexcept {
+  const bool stands = length(Vec2{pose.x_m - stood_.x_m, pose.y_m - stood_.y_m}) < kStands_m &&
+                      std::abs(base::wrap_rad(pose.yaw_rad - stood_.yaw_rad)) < kStands_rad;
+  if (stands) return;
+  moved_s_ += std::clamp(base::seconds(now - stood_at_), 0.0, kLongestMove_s);
+  stood_ = pose;
+  stood_at_ = now;
+}
 
 void Landmarks::join(Kept& kept, const Seen& seen, const Look& look, const LandmarkParams& params) {
   const double weight = 1.0 / (seen.sigma_m * seen.sigma_m);
@@ -93,9 +142,12 @@ void Landmarks::join(Kept& kept, const Seen& seen, const Look& look, const Landm
   if (seen.radius_m > 0.0) kept.mark.radius_m = seen.radius_m;
   (look.by_vision ? kept.mark.by_vision : kept.mark.by_scan) = true;
   if (!look.by_vision) kept.scanned_at = look.stamp;
-  kept.mark.eyes |= look.eye;
   kept.mark.seen_at = std::max(kept.mark.seen_at, look.stamp);
-  kept.unseen_s = 0.0;
+  kept.moved_s = look.moved_s;
+  if (kept.by(look.eye) == nullptr) kept.told.push_back({look.eye, look.stamp, 0.0});
+  kept.by(look.eye)->at = look.stamp;
+  for (Told& one : kept.told) one.unseen_s = 0.0;
+  kept.mark.eyes = kept.eyes();
   kept.mark.believed = kept.mark.believed || ++kept.hits >= static_cast<int>(params.confirm);
   if (seen.name.empty()) return;
   for (auto& [name, votes] : kept.names) votes *= kFadeName;
@@ -154,17 +206,19 @@ void Landmarks::take(const PlanarScan& scan, const LandmarkParams& params, std::
   for (const Post& post : posts_of(scan, params)) {
     seen.push_back({placed(scan.pose, post.at), std::max(0.01, post.sigma_m), post.radius_m, {}});
   }
-  const double dt_s = since(scan_at_, scan.stamp);
+  move(scan.pose, scan.stamp);
+  const double dt_s = since(looked_at_[eye % looked_at_.size()], scan.stamp);
   std::vector<bool> met;
-  put(seen, {false, eye_of(eye), scan.stamp}, params, met);
+  put(seen, {false, eye_of(eye), scan.stamp, moved_s_}, params, met);
   const Pose2 bo = sense::inverse(scan.pose);
   for (std::size_t i = 0; i < kept_.size(); ++i) {
     const Vec2 at = placed(bo, kept_[i].mark.at);
-    const bool ours = kept_[i].mark.by_scan && length(at) < 0.8 * params.max_range_m;
-    if (!met[i] && ours) kept_[i].unseen_s += dt_s * missed(scan, at, 0.05);
+    if (met[i] || length(at) >= 0.8 * params.max_range_m) continue;
+    // Who never told it may see over it, or not know what it is.
+    if (Told* told = kept_[i].by(eye_of(eye))) told->unseen_s += dt_s * missed(scan, at, 0.05);
   }
   std::erase_if(kept_, [&](const Kept& k) {
-    return gone(k.mark, k.unseen_s, scan.stamp, params) ||
+    return gone(k, moved_s_, scan.stamp, params) ||
            length(k.mark.at - Vec2{scan.pose.x_m, scan.pose.y_m}) > kFarAway_m;
   });
 }
@@ -181,9 +235,10 @@ void Landmarks::take(const base::Vision& vision, const base::Mount& mount, const
     if (may_be_cut(l.at, half_view_rad, params.max_radius_m)) sigma_m += params.max_radius_m;
     seen.push_back({placed(pose, {mount.x_m + b.x(), mount.y_m + b.y()}), sigma_m, 0.0, l.name});
   }
-  const double dt_s = since(vision_at_, vision.stamp);
+  move(pose, vision.stamp);
+  const double dt_s = since(looked_at_[eye % looked_at_.size()], vision.stamp);
   std::vector<bool> met;
-  put(seen, {true, eye_of(eye), vision.stamp}, params, met);
+  put(seen, {true, eye_of(eye), vision.stamp, moved_s_}, params, met);
   const Pose2 bo = sense::inverse(pose);
   for (std::size_t i = 0; i < kept_.size(); ++i) {
     const Vec2 at = placed(bo, kept_[i].mark.at) - Vec2{mount.x_m, mount.y_m};
@@ -193,14 +248,13 @@ void Landmarks::take(const base::Vision& vision, const base::Mount& mount, const
     // Where a scan tells it, too, its place is the scan's to deny.
     const bool scanned = kept_[i].mark.by_scan &&
                          base::seconds(vision.stamp - kept_[i].scanned_at) < params.forget_s;
-    const bool ours = kept_[i].mark.by_vision && !scanned;
-    if (met[i] || !ours || !looked) continue;
-    kept_[i].unseen_s += dt_s;
+    Told* told = kept_[i].by(eye_of(eye));
+    if (met[i] || told == nullptr || scanned || !looked) continue;
+    told->unseen_s += dt_s;
     // Programs see what is not there, and twice at one place by chance.
     if (!kept_[i].mark.believed) kept_[i].hits = std::max(0, kept_[i].hits - 1);
   }
-  std::erase_if(kept_,
-                [&](const Kept& k) { return gone(k.mark, k.unseen_s, vision.stamp, params); });
+  std::erase_if(kept_, [&](const Kept& k) { return gone(k, moved_s_, vision.stamp, params); });
 }
 
 std::vector<Landmark> Landmarks::all() const {

@@ -8,9 +8,11 @@
 // are averaged with the weight of their certainty, the older ones fading; names are what was said
 // most often of late. A post of the scan has no name of its own. What a camera sees at the edge of
 // its image may be cut there, and tells little of where the thing stands. Known ones within half of
-// near_m of each other are one.
+// near_m of each other are one. Only who told one denies it, each by its own time; what is out of
+// view is kept for a minute of driving, not of standing.
 // Bounded: kMostLandmarks. Not shared between threads; time comes with what is seen.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -40,7 +42,7 @@ struct Landmark {
   bool by_vision = false;
   bool believed = false;
   base::Time seen_at;
-  Eyes eyes = 0;  ///< those that told it
+  Eyes eyes = 0;  ///< those that told it, within a second of the last time
 };
 
 class Landmarks {
@@ -70,22 +72,38 @@ class Landmarks {
     bool by_vision = false;
     Eyes eye = 0;
     base::Time stamp;
+    double moved_s = 0.0;
+  };
+  /// By whom it was ever told.
+  struct Told {
+    Eyes eye = 0;
+    base::Time at;
+    double unseen_s = 0.0;  ///< in its view
   };
   struct Kept {
     Landmark mark;
     double weight = 0.0;  ///< 1/m²
     int hits = 0;
-    double unseen_s = 0.0;    ///< in view
+    std::vector<Told> told{};
+    double moved_s = 0.0;     ///< when it was seen last
     base::Time scanned_at{};  ///< a scan told it last
     std::map<std::string, double> names;
+
+    Told* by(Eyes eye) noexcept;
+    double unseen_s() const noexcept;
+    Eyes eyes() const noexcept;
+    void add(const Kept& other);
   };
   void put(const std::vector<Seen>& seen, const Look& look, const LandmarkParams& params,
            std::vector<bool>& met);
+  void move(const Pose2& pose, base::Time now) noexcept;
   static void join(Kept& kept, const Seen& seen, const Look& look, const LandmarkParams& params);
 
   std::vector<Kept> kept_;
-  base::Time scan_at_{};
-  base::Time vision_at_{};
+  std::array<base::Time, 64> looked_at_{};  ///< by each sensor's number
+  Pose2 stood_{};
+  base::Time stood_at_{};
+  double moved_s_ = 0.0;  ///< the body was under way so long
   std::uint32_t next_ = 1;
 };
 

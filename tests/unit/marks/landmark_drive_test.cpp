@@ -217,6 +217,62 @@ TEST(Landmarks, TwoBesideEachOtherStayTwo) {
   EXPECT_EQ(all[1].name, "b");
 }
 
+//  two programs on one camera, one of which knows no cones
+TEST(Landmarks, WhoNeverToldOneDoesNotDenyIt) {
+  Landmarks marks;
+  base::Time now{1h};
+  for (int i = 0; i < 3; ++i) {
+    marks.take(image({{"cone", {2.0, 0.2, 0.0}}}, now += 50ms), {}, {}, 0.5, {}, 1);
+    marks.take(image({}, now += 50ms), {}, {}, 0.5, {}, 2);
+  }
+  ASSERT_EQ(marks.all().size(), 1U);
+  EXPECT_TRUE(marks.all()[0].believed);
+}
+
+TEST(Landmarks, TwoCamerasThatLookAtOnceForgetWhatIsGoneAfterForget) {
+  Landmarks marks;
+  base::Time now{1h};
+  const auto both_tell = [&](const std::vector<base::VisionLandmark>& told) {
+    marks.take(image(told, now += 99ms), {}, {}, 0.5, {}, 1);
+    marks.take(image(told, now += 1ms), {}, {}, 0.5, {}, 2);
+  };
+  for (int i = 0; i < 5; ++i) both_tell({{"cone", {2.0, 0.2, 0.0}}});
+  for (int i = 0; i < 9; ++i) both_tell({});
+  EXPECT_EQ(marks.all().size(), 1U) << "0.9 s of each is no 1.8 s";
+  for (int i = 0; i < 3; ++i) both_tell({});
+  EXPECT_TRUE(marks.all().empty());
+}
+
+TEST(Landmarks, ThoseThatTellOneAreThoseThatToldItLast) {
+  Landmarks marks;
+  base::Time now{1h};
+  const auto tell = [&](std::size_t eye, int times) {
+    for (int i = 0; i < times; ++i) {
+      marks.take(image({{"cone", {2.0, 0.2, 0.0}}}, now += 100ms), {}, {}, 0.5, {}, eye);
+    }
+    return marks.all().at(0).eyes;
+  };
+  EXPECT_EQ(tell(1, 5), eye_of(1));
+  EXPECT_EQ(tell(0, 3), eye_of(0) | eye_of(1));
+  EXPECT_EQ(tell(0, 17), eye_of(0)) << "it left the other one's view";
+}
+
+TEST(Landmarks, OutOfViewTheyAreKeptForAMinuteOfDrivingNotOfStanding) {
+  Landmarks marks;
+  base::Time now{1h};
+  for (int i = 0; i < 5; ++i) {
+    marks.take(image({{"cone", {2.0, 0.0, 0.0}}}, now += 100ms), {}, {}, 0.5, {});
+  }
+  Pose2 turned{0.0, 0.0, base::kPi};
+  for (int i = 0; i < 1200; ++i) marks.take(image({}, now += 500ms), {}, turned, 0.5, {});
+  EXPECT_EQ(marks.all().size(), 1U) << "ten minutes of standing";
+  for (int i = 0; i < 140; ++i) {
+    turned.x_m -= 0.2;
+    marks.take(image({}, now += 500ms), {}, turned, 0.5, {});
+  }
+  EXPECT_TRUE(marks.all().empty()) << "70 s of driving";
+}
+
 //   wall on the left at 1.2 m, parallel: the target is 1.40 m ahead and 0.30 m to the left
 TEST(Bearing, TheTargetsAreThoseOfTheField) {
   const PlaneWall wall{{0.5, 1.2}, {0.0, -1.0}, 1.2, 5000.0};
