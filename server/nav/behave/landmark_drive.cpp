@@ -140,6 +140,13 @@ void LandmarkDrive::end_or_fail(std::string why) {
 void LandmarkDrive::judge(double dt_s) {
   const bool ended = drive_.state() == marks::SightDrive::State::Ended;
   if (state_ == State::Seeking) {
+    if (!laid_) {
+      stood_s_ += dt_s;
+      if (stood_s_ <= params_.sight->old_s + params_.sight->wait_s) return;
+      const std::string why = "nothing looks for landmarks";
+      return enough() ? end_or_fail(why) : fail(why);
+    }
+    stood_s_ = 0.0;
     if (!ended) return;
     return end_or_fail("no " + what() + " is seen within " + tenths_text(params_.sight->entry_m));
   }
@@ -173,11 +180,13 @@ TrackOutput LandmarkDrive::step(const MarkSight& sight, const Vehicle& vehicle, 
   if (state_ == State::Seeking) seek(sight.body);
   if (state_ == State::Failed || state_ == State::Done) return {};
   const bool lost = state_ == State::Driving && unseen_s_ > params_.sight->old_s;
-  const double most_mps = lost                       ? 0.0
+  const bool blind = state_ == State::Seeking && !laid_;
+  const bool brakes = lost || blind;
+  const double most_mps = brakes                     ? 0.0
                           : state_ == State::Seeking ? params_.sight->creep_mps
                                                      : limit_mps;
   TrackOutput out = drive_.step(v, std::min(limit_mps, most_mps), dt_s);
-  if (lost && std::abs(v.speed_mps) < kBraked_mps + path_params_->speed.min_mps) out.command = {};
+  if (brakes && std::abs(v.speed_mps) < kBraked_mps + path_params_->speed.min_mps) out.command = {};
   judge(dt_s);
   return state_ == State::Seeking || state_ == State::Driving ? out : TrackOutput{};
 }

@@ -5,7 +5,8 @@
 //   Idle ──begin──▶ Seeking ──one is seen ahead──▶ Driving ──stands on_m behind the last──▶ Done
 //                     │  ▲                          │   │      (short of `count`: Failed)
 //                     │  └───── interrupt() ────────┘   └─ none is seen any more, for wait_s
-//                     └─ none within entry_m ─▶ Failed          before any was passed ─▶ Failed
+//                     ├─ none within entry_m ─▶ Failed          before any was passed ─▶ Failed
+//                     └─ nobody looks: stands, and for wait_s ─▶ Failed
 //
 // Each is passed at the same distance on the same side (marks/course.hpp); which one counts, and
 // the way past the next ones, is laid anew with every look. Where none of the sensors that told the
