@@ -11,6 +11,7 @@ constexpr double kBackwards = -0.17;  ///< cos 100°: a chain turns no sharper
 constexpr double kBegan_m = 1.0;
 constexpr double kTooNear = 0.9;  ///< of the offset
 constexpr double kAbeam = 0.17;   ///< cos 80°
+constexpr double kMoved_m = 0.05;
 
 Vec2 towards(Vec2 from, Vec2 to) noexcept {
   return (1.0 / std::max(1e-9, length(to - from))) * (to - from);
@@ -111,7 +112,12 @@ Way Course::lay(std::span<const Landmark> known, const Pose2& pose, Side side,
       }
     }
   }
-  if (!chain.empty()) {
+  // From within the offset the way begins abeam of it by its own line, wherever the vehicle stands:
+  // whoever has only begun there has passed nothing.
+  const bool stands_within = chain.size() == 1 && began_here_ &&
+                             length(chain[0].at - behind_.back()) <= params.offset_m &&
+                             length(here - behind_.back()) < kMoved_m;
+  if (!chain.empty() && !too_near_m_ && !stands_within) {
     const Vec2 out = chain.size() > 1 ? towards(chain[0].at, chain[1].at)
                                       : past(behind_.back(), chain[0].at, sign, params.offset_m);
     // Abeam, and about where it should be passed: one that is far aside is still to be driven to.

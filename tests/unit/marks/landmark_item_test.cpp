@@ -2,6 +2,7 @@
 // and when it stops and why.
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -255,6 +256,47 @@ TEST(LandmarksItem, StandsWhereItBeginsTooNearToOne) {
   EXPECT_EQ(l.drive.state(), State::Failed);
   EXPECT_EQ(l.drive.reason().substr(0, 31), "stands too near to a landmark (");
   EXPECT_NEAR(l.rover.truth.x_m, 0.0, 0.15);
+}
+
+TEST(LandmarksItem, OneThatItStandsTooNearToIsNotPassedHoweverOftenItGoesOn) {
+  for (int at = 0; at < 60; ++at) {
+    LandmarksItem l;
+    const double bearing_rad = 0.02 * (at - 30);
+    const double range_m = 0.45 + 0.003 * at;
+    l.yard.poles.push_back(
+        {{range_m * std::cos(bearing_rad), range_m * std::sin(bearing_rad)}, 0.1});
+    l.begin({.side = Side::Left, .offset_m = 0.7});
+    for (int again = 0; again < 2; ++again) {
+      l.run(1.5);
+      EXPECT_EQ(l.drive.state(), State::Failed) << bearing_rad << " " << range_m;
+      EXPECT_EQ(l.drive.passed(), 0) << bearing_rad << " " << range_m;
+      l.drive.interrupt();
+    }
+    EXPECT_NEAR(l.rover.truth.x_m, 0.0, 0.15);
+  }
+}
+
+TEST(LandmarksItem, StandsWhereNobodyLooksWhenItGoesOn) {
+  LandmarksItem l;
+  l.stand_poles(4);
+  l.begin({.side = Side::Left});
+  l.run(6.0);
+  l.looks = false;
+  l.run(12.0);
+  ASSERT_EQ(l.drive.state(), State::Failed);
+  const double there_m = l.rover.truth.x_m;
+  l.drive.interrupt();
+  l.run(4.0);
+  EXPECT_EQ(l.drive.state(), State::Seeking);
+  l.run(4.0);
+  EXPECT_EQ(l.drive.state(), State::Failed);
+  EXPECT_EQ(l.drive.reason(), "nothing looks for landmarks");
+  EXPECT_EQ(l.rover.truth.x_m, there_m);
+  l.drive.interrupt();
+  l.looks = true;
+  l.run(40.0);
+  EXPECT_EQ(l.drive.state(), State::Done) << l.drive.reason();
+  EXPECT_EQ(l.drive.passed(), 4);
 }
 
 TEST(LandmarksItem, IsDoneAtOnceWhereAllWerePassedBefore) {
