@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "sim/vision_voice.hpp"
+#include "sim/world/draw.hpp"
 
 namespace roverd::sim {
 namespace {
@@ -341,7 +342,8 @@ void Eye::speak(const world::World& world, const world::SensorFaults& faults) {
   if (lms_) return wait(due_s, lms_->say(sweep_, faults));
   if (params().kind == "range") return wait(due_s, range_line(sweep_));
   if (params().kind == "vision") {
-    return wait(due_s, vision_datagram(sweep_, world, faults.sensor_malformed));
+    const std::uint64_t own = world::spread(seed_) ^ world::key_of(params().name);
+    return wait(due_s, vision_datagram(sweep_, world, faults.sensor_malformed, own));
   }
   wait(due_s, depth_frame(params(), sweep_, sweep_.at_s, !faults.sensor_heating));
 }

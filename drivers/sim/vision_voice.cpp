@@ -13,6 +13,7 @@ namespace roverd::sim {
 namespace {
 
 constexpr std::size_t kFewest = 12;   // shots of a plane
+constexpr int kMostSplits = 16;       // one in another
 constexpr double kSplit_m = 0.1;      // shots farther beside a straight piece make a corner of it
 constexpr double kImage = 307'200.0;  // points of the camera's own image, 640 by 480
 constexpr double kMissed = 0.05;
@@ -62,8 +63,8 @@ std::size_t corner_of(std::span<const Seen> s) noexcept {
 
 class Program {
  public:
-  Program(const world::Sweep& sweep, const world::World& world)
-      : sweep_(sweep), world_(world), draw_(sweep.count * 0x9e3779b97f4a7c15ULL + 1) {
+  Program(const world::Sweep& sweep, const world::World& world, std::uint64_t seed)
+      : sweep_(sweep), world_(world), draw_((seed ^ (sweep.count * 0x9e3779b97f4a7c15ULL)) + 1) {
     out_.names = {"cone", "pole", "box"};
   }
 
@@ -112,11 +113,12 @@ class Program {
                          grow * mean.left_m + kPlaceSigma_m * normal(), mean.up_m)});
   }
 
-  void planes(std::span<const Seen> seen) {
+  void planes(std::span<const Seen> seen, int splits = 0) {
     if (seen.size() < kFewest || out_.planes.size() >= kMost) return;
-    if (const std::size_t at = corner_of(seen); at < seen.size()) {
-      planes(seen.first(at));
-      return planes(seen.subspan(at));
+    const std::size_t at = splits < kMostSplits ? corner_of(seen) : seen.size();
+    if (at < seen.size()) {
+      planes(seen.first(at), splits + 1);
+      return planes(seen.subspan(at), splits + 1);
     }
     double x = 0.0, y = 0.0, z = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
     const double n = double(seen.size());
@@ -168,8 +170,8 @@ void spoil(std::string& text, double how) {
 }  // namespace
 
 std::vector<std::uint8_t> vision_datagram(const world::Sweep& sweep, const world::World& world,
-                                          double malformed) {
-  Program program(sweep, world);
+                                          double malformed, std::uint64_t seed) {
+  Program program(sweep, world, seed);
   std::string text = vision::encode(program.look());
   if (program.uniform() < malformed) spoil(text, program.uniform());
   return {text.begin(), text.end()};
