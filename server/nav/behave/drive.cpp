@@ -388,9 +388,8 @@ void Executor::watch(const Vehicle& vehicle, double dt_s) {
 }
 
 void Executor::watch_stuck(const Vehicle& vehicle, double dt_s) {
-  const TrackPhase phase = tracker_.phase();
-  const bool driving =
-      phase == TrackPhase::Track || phase == TrackPhase::Pivot || phase == TrackPhase::Turn;
+  const TrackPhase at = phase();
+  const bool driving = at == TrackPhase::Track || at == TrackPhase::Pivot || at == TrackPhase::Turn;
   const bool moved = base::distance_m(vehicle.at, stuck_at_.at) > params_->stuck_m ||
                      std::abs(base::angle_diff_rad(stuck_at_.yaw_rad, vehicle.yaw_rad)) >
                          base::rad_from_deg(params_->stuck_deg);

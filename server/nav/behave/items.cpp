@@ -211,6 +211,7 @@ bool Executor::enter_landmarks(const RouteStep& step) {
   order.passed = static_cast<int>(std::clamp(left_, 0.0, kMostPassed));
   left_ = 0.0;
   standing_.reset();
+  tracker_.reset();  // a turn before it says nothing of getting on here
   drove_ = true;
   doing_ = Doing::Landmarks;
   landmarks_.begin(std::move(order));
@@ -226,9 +227,18 @@ TrackOutput Executor::step_landmarks(const Vehicle& vehicle, double limit_mps, d
   if (landmarks_.state() == LandmarkDrive::State::Failed) {
     std::string why = landmarks_.reason();
     block("item " + std::to_string(step_now()->item) + ": " + why);
-  } else if (landmarks_.state() == LandmarkDrive::State::Done) {
+    return out;
+  }
+  if (landmarks_.state() == LandmarkDrive::State::Done) {
     doing_ = Doing::Nothing;
     reached(*step_now());
+    return out;
+  }
+  // Wedged at one its tracks would pull for ever; while it stands and waits it is not to move.
+  if (out.command == base::BodyTwist{}) {
+    stuck_s_ = 0.0;
+  } else {
+    watch_stuck(nav::by_odometry(*mark_sight_, vehicle), dt_s);
   }
   return out;
 }
