@@ -6,7 +6,7 @@
 //   seen ──3 times──▶ believed ──unseen for keep_s, or looked through──▶ forgotten
 //
 // A wall's line is the fit over all of its points, older ones fading by kFade a scan; its
-// certainty is that of the fit. One vision plane counts as kPlanePoints points.
+// certainty is that of the fit. One vision plane counts as 2 kPlanePlaces points.
 // Bounded: kMostWalls, kMostStretches each. Not shared between threads; time comes with the scans.
 
 #include <cstdint>

@@ -42,9 +42,9 @@ struct Surroundings {
   std::optional<RaysStop> rays;
   /// Of those whose rays will say stop soon, the one with the least way. Empty: none.
   std::optional<RaysStop> rays_ahead;
-  std::shared_ptr<const nav::marks::View>
-      beside;                  ///< walls, landmarks; null: no scanner looks along a plane
-  std::optional<RowSeen> row;  ///< empty: none is asked for, or none is seen
+  /// Walls, landmarks; null: nobody has looked for them yet.
+  std::shared_ptr<const nav::marks::View> beside;
+  std::optional<RowSeen> row;             ///< empty: none is asked for, or none is seen
   std::vector<nav::sense::Mover> movers;  ///< who moves, the nearest first by each sensor
 };
 
