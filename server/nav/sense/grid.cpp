@@ -21,8 +21,12 @@ constexpr float kFoot_m = 0.05F;
 // known to stand, is that: so near that it hides the ground, a wall may be a slope as well.
 constexpr float kNoGround_m = 0.25F;
 
+/// What lies farther away than any robot drives, or is not a number, is where the count ends: a
+/// quarter of it, so that sums of cells stay within.
 std::int32_t floored(double v) noexcept {
-  return static_cast<std::int32_t>(std::floor(v));
+  constexpr double kEnd = 536'870'912.0;
+  if (!(v > -kEnd)) return static_cast<std::int32_t>(-kEnd);
+  return v < kEnd ? static_cast<std::int32_t>(std::floor(v)) : static_cast<std::int32_t>(kEnd);
 }
 
 /// Pieces may come a little out of order.

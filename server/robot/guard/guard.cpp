@@ -18,9 +18,11 @@ namespace {
 using base::BodyTwist;
 using nav::sense::Limit;
 
-constexpr double kPicture_s = 0.5;   // older, and whoever makes them stands still
-constexpr double kLean_s = 0.15;     // older, and the body may lie otherwise by now
-constexpr double kLeast_mps = 0.05;  // slower, and it stands
+constexpr double kPicture_s = 0.5;    // older, and whoever makes them stands still
+constexpr double kLean_s = 0.15;      // older, and the body may lie otherwise by now
+constexpr double kMost_mps = 50.0;    // what is measured to be faster is none of ours: the pose
+constexpr double kMost_radps = 50.0;  // must stay where cells can be counted
+constexpr double kLeast_mps = 0.05;   // slower, and it stands
 constexpr double kLeast_radps = 0.05;
 constexpr double kProbe_mps = 0.15;  // what a stopped drive tries
 constexpr double kProbe_radps = 0.15;
@@ -150,7 +152,10 @@ const nav::sense::Odometry& Guard::move(const BodyTwist& measured, base::Time no
                                         const std::optional<base::Attitude>& lean) noexcept {
   const double dt_s = began_ ? base::seconds(now - odometry_.stamp) : 0.0;
   const bool usable = std::isfinite(measured.linear_mps) && std::isfinite(measured.angular_radps);
-  const BodyTwist t = usable ? measured : BodyTwist{};
+  const BodyTwist t = usable
+                          ? BodyTwist{std::clamp(measured.linear_mps, -kMost_mps, kMost_mps),
+                                      std::clamp(measured.angular_radps, -kMost_radps, kMost_radps)}
+                          : BodyTwist{};
   if (dt_s > 0.0 && dt_s < 1.0) {
     odometry_.pose = odometry_.pose * nav::sense::along(t.linear_mps, t.angular_radps, dt_s);
     if (trailer_) coupling_.drive(*trailer_, t, dt_s);

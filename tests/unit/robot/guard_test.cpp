@@ -263,6 +263,18 @@ TEST(Guard, ItsOdometryFollowsAnArcExactly) {
   EXPECT_NEAR(o.pose.y_m, 2.0 * (1.0 - std::cos(5.0)), 1e-6);
 }
 
+TEST(Guard, ItsOdometryStaysWhereCellsCanBeCountedWhateverIsMeasured) {
+  Guard guard;
+  base::Time now{};
+  const base::Attitude lean{now, 0.0, -0.5};
+  (void)guard.move({}, now, lean);
+  now += std::chrono::milliseconds(20);
+  const auto& o = guard.move({1e300, -1e300}, now, lean);
+  EXPECT_LE(std::hypot(o.pose.x_m, o.pose.y_m), 1.0);
+  EXPECT_LE(std::abs(o.pose.yaw_rad), 1.0);
+  EXPECT_LE(std::abs(o.lie.z_m), 1.0);
+}
+
 //   Ten metres up a slope of 6 degrees; then nothing tells how it leans any more: the height stays.
 TEST(Guard, ItsOdometryClimbsAsTheBodyLeans) {
   Guard guard;
