@@ -113,10 +113,27 @@ TEST(Contradiction, WhereItIsUnsureOfItsPlaceItDoesNotCreepOnWithoutPositions) {
   EXPECT_EQ(assess(m.facts, m.params, m.now).response, Response::None);
 }
 
-TEST(Contradiction, AReceiverThatJumpsIsLeftOutHoldsAndItsReturnWantsAPerson) {
-  // Given a robot on its way
+TEST(Contradiction, AReceiverThatJumpsBeforeItIsProvedHoldsAtOnce) {
+  // Given a robot that has just begun to drive: what positions told while it stood proves nothing
   Field f;
   f.drive_mission();
+  // When its receiver jumps
+  f.receiver_off = {2.5, 0.0};
+  f.run(2.0);
+  // Then either place may be the wrong one
+  EXPECT_TRUE(f.has_condition("sensor_left_out"));
+  EXPECT_EQ(f.execution(), ExecutionState::Paused);
+  EXPECT_GT(f.state()->pose->horizontal_sigma_m, 2.0);
+}
+
+TEST(Contradiction, AReceiverThatJumpsIsLeftOutHoldsAndItsReturnWantsAPerson) {
+  // Given a robot on its way, for so long that a wrong receiver would have contradicted itself
+  Field f;
+  f.run(8.0);
+  ASSERT_TRUE(f.load(plan_of({{0, 20}, {0, 60}})));
+  ASSERT_TRUE(f.ask(Arm{}));
+  ASSERT_TRUE(f.ask(StartMission{"m", 1}));
+  f.run(14.0);
   // When its receiver jumps, then it claims no more than it knows until the liar is found
   f.receiver_off = {2.5, 0.0};
   f.run(0.5);
