@@ -3,11 +3,14 @@
 // another fence is chosen. What else is to be kept out of (the forbidden areas of a map) counts as
 // a part of the fence, and is one where none is chosen. The services' thread.
 
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "base/snapshot.hpp"
@@ -50,16 +53,36 @@ class FenceKeeper {
   }
   /// All that holds; null: nothing does.
   const std::shared_ptr<const mission::Fence>& fence() const noexcept { return fence_; }
+  /// Any thread. Of what is to be kept out of: areas that do not hold, for with those of the chosen
+  /// fence they are more than a fence may have.
+  std::size_t left_out() const noexcept { return left_out_; }
 
  private:
   void join() {
     fence_ = chosen_;
+    left_out_ = 0;
     if (keep_out_.empty()) return;
     auto all = std::make_shared<mission::Fence>();
     if (chosen_) *all = *chosen_;
     if (!chosen_) all->name = name_;
-    all->areas.insert(all->areas.end(), keep_out_.begin(), keep_out_.end());
+    std::size_t corners = 0;
+    for (const mission::FenceArea& area : all->areas) corners += corners_of(area);
+    std::size_t left_out = 0;
+    for (const mission::FenceArea& area : keep_out_) {
+      const std::size_t more = corners_of(area);
+      if (all->areas.size() == mission::kMaxAreas || corners + more > mission::kMaxFencePoints) {
+        ++left_out;
+        continue;
+      }
+      corners += more;
+      all->areas.push_back(area);
+    }
+    left_out_ = left_out;
     fence_ = std::move(all);
+  }
+  static std::size_t corners_of(const mission::FenceArea& area) {
+    const auto* polygon = std::get_if<mission::FencePolygon>(&area.shape);
+    return polygon != nullptr ? polygon->points.size() : 0;
   }
   void lay() {
     due_ = !robot_.request(robot::SetFence{robot_.lay_fence(fence_)}, base::Time::max(), held_);
@@ -72,6 +95,7 @@ class FenceKeeper {
   std::string name_;
   std::shared_ptr<const mission::Fence> fence_;  ///< both
   robot::Reply held_;                            ///< waits for room
+  std::atomic<std::size_t> left_out_{0};
   std::uint32_t frame_ = 0;
   bool due_ = false;
 };

@@ -76,6 +76,8 @@ class Services {
   void use_fence(std::shared_ptr<const mission::Fence> fence, Done done = {});
   /// Any thread. What is to be kept out of beside the fence; see FenceKeeper.
   void keep_out(std::vector<mission::FenceArea> areas, std::string name);
+  /// Any thread. So many of them do not hold: with the chosen fence's they are too many.
+  std::size_t not_kept_out() const noexcept { return fence_.left_out(); }
   /// The way of the loaded mission, by the parameters as they are now. Conflict while it is in
   /// hand: it is done by itself when it is not any more.
   void lay_way_anew(Done done);

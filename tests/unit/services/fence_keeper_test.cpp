@@ -57,5 +57,17 @@ TEST_F(FenceKeeperTest, AChosenFenceKeepsItsNameAndGetsTheAreas) {
   EXPECT_EQ(*keeper_.fence(), yard_);
 }
 
+TEST_F(FenceKeeperTest, NoMoreHoldsThanAFenceMayHaveAndWhatDoesNotIsCounted) {
+  mission::Fence many = yard_;
+  many.areas.resize(98, yard_.areas[0]);
+  keeper_.keep_out({rack_, rack_, rack_}, "forbidden in hall");
+  EXPECT_EQ(keeper_.left_out(), 0u);
+  keeper_.use(std::make_shared<const mission::Fence>(many), {});
+  EXPECT_EQ(keeper_.fence()->areas.size(), mission::kMaxAreas);
+  EXPECT_EQ(keeper_.left_out(), 1u);
+  keeper_.use(nullptr, {});
+  EXPECT_EQ(keeper_.left_out(), 0u);
+}
+
 }  // namespace
 }  // namespace roverd::services
