@@ -50,6 +50,8 @@ class PlaceLoop {
   /// Any thread: another map from now on; null: none. One that waits for that still is dropped, so
   /// no more than two are held. @param same_place see Whereabouts::use
   void use(Map map, bool same_place);
+  /// Any thread: another map was asked for and is not looked in yet.
+  bool changes() const noexcept { return done_ != asked_; }
   /// Any thread: how the map in use lies on the earth; null: nobody knows.
   std::shared_ptr<const nav::place::MapAnchor> placed() const;
 

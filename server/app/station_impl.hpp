@@ -98,6 +98,7 @@ struct Station::Impl {
     friend bool operator==(const ForbiddenOf&, const ForbiddenOf&) = default;
   };
   ForbiddenOf forbidden;
+  std::size_t forbidden_left_out = 0;   ///< of its areas, that nothing keeps out of
   std::vector<base::HostProblem> host;  ///< what is wrong with this computer
   const bool memory_locked = lock_memory();
   ServiceManager manager = ServiceManager::of_this_process();
@@ -134,6 +135,7 @@ struct Station::Impl {
   void watch_host();
   void watch_host_soon();
   void watch_forbidden();
+  void keep_out(std::vector<maps::Area> areas, const maps::Anchor& anchor, const std::string& name);
   void tell_certificate();
   void tell_address();
   void watch_names_soon();

@@ -82,6 +82,12 @@ void Station::Impl::watch_host() {
                               .memory_locked = memory_locked,
                               .lateness_s = lateness_watch.p999_s(),
                               .unannounced = presence->unannounced()});
+  if (const std::size_t n = forbidden_left_out + services->not_kept_out(); n > 0) {
+    found.push_back({"forbidden_left_out",
+                     "the robot does not keep out of " + std::to_string(n) +
+                         " forbidden areas of the map in use: they are wider than 20 km, or have, "
+                         "with the fence, more corners than can be kept out of"});
+  }
   for (const base::HostProblem& problem : found) {
     const auto same = [&](const base::HostProblem& known) { return known.id == problem.id; };
     if (!problem.alarming || std::any_of(host.begin(), host.end(), same)) continue;
@@ -112,17 +118,37 @@ void Station::Impl::watch_forbidden() {
   if (now == forbidden) return;
   // It is being looked through anew: what was laid stays until it is laid again.
   if (!now.placed && forbidden.placed && now.id == forbidden.id) return;
-  forbidden = now;
+  // It has come into use this moment: where it lies is known in the next.
+  if (now.id != forbidden.id && place && place->changes()) return;
   const auto about = label ? shelf->find(*id) : Result<maps::About>(maps::About{});
   if (!about) return;  // it went meanwhile; in a second it is not in use any more
+  forbidden = now;
   const std::string name = "forbidden in " + about->name;
-  if (now.placed)
-    return services->keep_out(keep_out_of(about->forbidden, told_anchor(*now.placed)), name);
+  if (now.placed) return keep_out(about->forbidden, told_anchor(*now.placed), name);
+  forbidden_left_out = 0;
   services->keep_out({}, name);
   if (!about->forbidden.empty() && place) {
     robot.tell({base::wall_now(), base::Severity::Warning, "map_trouble",
                 "the areas " + name + " hold when it is known where the map lies"});
   }
+}
+
+/// Areas of many corners are looked through beside the web.
+void Station::Impl::keep_out(std::vector<maps::Area> areas, const maps::Anchor& anchor,
+                             const std::string& name) {
+  const auto out = std::make_shared<std::optional<KeepOut>>();
+  workers.must_run(
+      net::Lane::Small,
+      [out, areas = std::move(areas), anchor] { *out = keep_out_of(areas, anchor); },
+      [this, out, name, of = forbidden] {
+        if (!(of == forbidden)) return;  // another has come meanwhile
+        if (!*out) {                     // no memory for it: in a second once more
+          forbidden = {};
+          return;
+        }
+        forbidden_left_out = (*out)->left_out;
+        services->keep_out(std::move((*out)->areas), name);
+      });
 }
 
 void Station::Impl::watch_host_soon() {

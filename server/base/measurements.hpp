@@ -255,7 +255,7 @@ struct OperatorLink {
 /// What is wrong with the robot's own computer. Nothing of it stops the robot.
 struct HostProblem {
   std::string id;        ///< storage_failed storage_low storage_silent clock_unset loop_late
-                         ///< realtime_refused memory_unlocked not_announced
+                         ///< realtime_refused memory_unlocked not_announced forbidden_left_out
   std::string detail;    ///< in words
   bool alarming = true;  ///< also where safety is told; else in the checks and GET /health alone
   friend bool operator==(const HostProblem&, const HostProblem&) = default;
