@@ -99,8 +99,8 @@ struct MapDoor {
   /// Beside the web: ends it, which takes seconds, and has it kept; where that fails, another call
   /// tries again. Conflict: none is being made, it is being drawn already, nothing was seen.
   std::function<base::Result<maps::About>(const Keep&)> finish_making{};
-  /// Beside the web: ends it, and nothing is made.
-  std::function<void()> drop_making{};
+  /// Beside the web: ends it, and nothing is made. Conflict: it was kept meanwhile, or is drawn.
+  std::function<base::Result<void>()> drop_making{};
   std::function<std::optional<maps::Making>()> making{};  ///< empty answers: none is being made
 };
 

@@ -1,5 +1,6 @@
 #include "app/map_maker.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <ctime>
@@ -14,6 +15,7 @@
 #include "base/log.hpp"
 #include "base/time.hpp"
 #include "maps/lay.hpp"
+#include "nav/chart/map.hpp"
 #include "nav/chart/scan.hpp"
 #include "nav/mapping/mapper.hpp"
 #include "supervise/urgency.hpp"
@@ -34,6 +36,13 @@ constexpr double kUnheard_s = 3.0;
 /// Of what a lidar sees in all heights so much says where it is, and 20,000 such scans are 0.4 GB.
 constexpr nav::chart::ScanParams kScan{.most = 720};
 
+/// How large the cells of a map are; larger ones where it would have too many.
+constexpr double kCells_m[] = {0.05, 0.1, 0.2};
+/// A map as wide as that can be drawn: with 26 m around where the body was, for the beams, and some
+/// room for what closing loops moves.
+constexpr double kAround_m = 26.0;
+constexpr double kWidest_m2 = 0.9 * kCells_m[2] * kCells_m[2] * double{nav::chart::kMostCells};
+
 double apart_m(const nav::chart::Pose2& a, const nav::chart::Pose2& b) noexcept {
   return std::hypot(a.x_m - b.x_m, a.y_m - b.y_m);
 }
@@ -41,6 +50,7 @@ double apart_m(const nav::chart::Pose2& a, const nav::chart::Pose2& b) noexcept 
 /// Where the satellites see the body now; empty: they are not good enough, or not what is believed.
 std::optional<base::Pose> by_satellites(const base::Snapshot* state) {
   if (state == nullptr || !state->pose || !state->pose->source.starts_with("gnss")) return {};
+  if (!state->pose->heading_known) return {};  // the antenna is not above the body's middle
   if (!(state->pose->horizontal_sigma_m <= kSure_m)) return {};
   return state->pose;
 }
@@ -55,9 +65,11 @@ struct MapMaker::Drive {
   base::Time heard = base::steady_now();  ///< when the last scan came that could be laid
   bool silent = false;                    ///< that was told
   std::optional<nav::chart::Pose2> last;  ///< odometry of the last scan
+  nav::chart::Pose2 least, most;          ///< where the body was, in the map
   std::size_t scans = 0;
   double way_m = 0.0;
   bool full = false;
+  bool broken = false;  ///< taking one in ended midway: what is laid is drawn as it is
   struct Seen {
     std::size_t scan = 0;
     nav::chart::Pose2 since;  ///< from the scan's body to where it was seen
@@ -68,6 +80,15 @@ struct MapMaker::Drive {
   double seen_way_m = -1.0;
   std::vector<std::shared_ptr<const base::Sight>> sights;
   std::vector<nav::sense::Odometry> moved;
+
+  bool stays_drawable() {
+    const auto at = mapper.pose();
+    if (scans == 1) least = most = at;
+    least = {std::min(least.x_m, at.x_m), std::min(least.y_m, at.y_m), 0.0};
+    most = {std::max(most.x_m, at.x_m), std::max(most.y_m, at.y_m), 0.0};
+    return (most.x_m - least.x_m + 2.0 * kAround_m) * (most.y_m - least.y_m + 2.0 * kAround_m) <
+           kWidest_m2;
+  }
 };
 
 MapMaker::MapMaker(robot::Robot& robot, std::map<std::string, base::Mount> mounts)
@@ -137,6 +158,17 @@ void MapMaker::cancel() {
   forget();
 }
 
+base::Result<void> MapMaker::drop() {
+  const std::unique_lock turn(turn_, std::try_to_lock);
+  if (!turn) return base::fail(base::Code::Conflict, "the map is being drawn already");
+  if (!drive_) {
+    return base::fail(base::Code::Conflict, "no map is being made: it was kept or dropped already");
+  }
+  stop_taking();
+  forget();
+  return {};
+}
+
 base::Result<maps::About> MapMaker::finish(const Keep& keep) {
   const std::unique_lock turn(turn_, std::try_to_lock);
   if (!turn) return base::fail(base::Code::Conflict, "the map is being drawn already");
@@ -151,6 +183,8 @@ base::Result<maps::About> MapMaker::finish(const Keep& keep) {
       return draw(keep);
     } catch (const std::bad_alloc&) {
       return base::fail(base::Code::Unavailable, "there is no memory to draw the map");
+    } catch (const std::exception& e) {
+      return base::fail(base::Code::Unavailable, e.what());
     }
   }();
   if (kept) {
@@ -163,8 +197,12 @@ base::Result<maps::About> MapMaker::finish(const Keep& keep) {
 
 base::Result<maps::About> MapMaker::draw(const Keep& keep) {
   Drive& drive = *drive_;
-  drive.mapper.finish();
-  auto map = drive.mapper.draw();
+  if (!drive.broken) drive.mapper.finish();
+  auto map = drive.mapper.draw(kCells_m[0]);
+  for (const double coarser_m : {kCells_m[1], kCells_m[2]}) {
+    if (map || map.error().code != base::Code::TooLarge) break;
+    map = drive.mapper.draw(coarser_m);
+  }
   if (!map) return tl::unexpected<base::Error>(map.error());
   const auto path = drive.mapper.path();
   std::vector<maps::SeenAt> seen;
@@ -200,7 +238,7 @@ void MapMaker::run(Drive& drive) noexcept {
       work(drive);
     } catch (const std::exception& e) {
       base::log(base::Level::Error, "mapping", e.what());
-      drive.full = true;
+      drive.full = drive.broken = true;
       tell_trouble(std::string("no more is taken: ") + e.what());
     }
   }
@@ -241,11 +279,16 @@ void MapMaker::look(Drive& drive, const base::Sight& sight) {
   const double step_m = drive.last ? apart_m(*odometry, *drive.last) : 0.0;
   const double turn = drive.last ? base::angle_diff_rad(drive.last->yaw_rad, odometry->yaw_rad) : 0;
   if (drive.last && step_m < kStep_m && std::abs(turn) < kStep_rad) return;
-  const auto added = drive.mapper.add(*scan, *odometry);
+  auto added = drive.mapper.add(*scan, *odometry);
   if (added) {
     ++drive.scans;
     drive.way_m += step_m;
     drive.last = *odometry;
+    if (!drive.stays_drawable()) {  // what was taken can be kept still
+      added = base::fail(base::Code::TooLarge,
+                         "no more is taken: the map is as large as it may be. Stop to keep it");
+      drive.full = true;
+    }
   } else {
     drive.full = true;
   }

@@ -10,7 +10,7 @@
 //
 //   None --start--> Driven --finish--> Drawn --kept--> None
 //                     ^                  `--not kept: what was driven stays, finish() tries again
-//   any --cancel--> None
+//   any --drop, cancel--> None
 
 #include <atomic>
 #include <functional>
@@ -52,7 +52,10 @@ class MapMaker {
   /// call tries again. Conflict: none is being made, it is being drawn by another call, or nothing
   /// was seen: then it has ended. Unavailable: there is no memory for it.
   base::Result<maps::About> finish(const Keep& keep);
-  /// Drops what was seen. May wait for a scan or for finish(). Idempotent.
+  /// Drops what was seen. May wait for a scan. Conflict: none is being made (any more), or it is
+  /// being drawn by finish().
+  base::Result<void> drop();
+  /// The same at the program's end. May wait for a scan or for finish(). Idempotent.
   void cancel();
   /// Any thread. Empty: none is being made.
   std::optional<maps::Making> progress() const;

@@ -93,7 +93,7 @@ api::MapDoor Station::Impl::map_door() {
   if (!place || !maker) return door;
   door.start_making = [this] { return maker->start(); };
   door.finish_making = [this](const auto& keep) { return maker->finish(keep); };
-  door.drop_making = [this] { maker->cancel(); };
+  door.drop_making = [this] { return maker->drop(); };
   door.making = [this] { return maker->progress(); };
   door.prepare = [this](std::int64_t id, bool same_place) -> Result<api::MapDoor::Take> {
     auto made = map_of(*shelf, id);

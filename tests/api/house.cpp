@@ -170,7 +170,10 @@ api::MapDoor House::map_door(const Before& before) {
     if (kept) making = false;
     return kept;
   };
-  out.drop_making = [this] { making = false; };
+  out.drop_making = [this]() -> base::Result<void> {
+    making = false;
+    return {};
+  };
   out.making = [this] { return making ? std::optional(maps::Making{12, 3.44, ""}) : std::nullopt; };
   out.placed = [this] {
     const std::int64_t id = map_taken;

@@ -222,7 +222,7 @@ Handler stop_making(const ContextPtr& context) {
         call, kCells,
         [context, door, what = std::move(*what), now = base::wall_now()]() -> Response {
           if (what.discard) {
-            door.drop_making();
+            if (const auto done = door.drop_making(); !done) return problem(done.error());
             return Response{http::status::no_content, 11};
           }
           const auto about = door.finish_making([&](const maps::Made& made) {

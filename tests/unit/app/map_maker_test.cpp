@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <utility>
@@ -149,6 +150,66 @@ TEST_F(MapMakerTest, WhatCouldNotBeKeptIsNotLost) {
   EXPECT_TRUE(made_);
   EXPECT_FALSE(maker_.progress());
   EXPECT_TRUE(maker_.start());
+}
+
+TEST_F(MapMakerTest, AWideDriveIsDrawnInLargerCells) {
+  ASSERT_TRUE(maker_.start());
+  step(0.1, 0.0);
+  ASSERT_TRUE(laid(1));
+  odometry_.x_m += 400.0;  // more than 40 million cells of 5 cm
+  odometry_.y_m += 400.0;
+  time_s_ += 400.0;
+  step(0.1, 0.0);
+  ASSERT_TRUE(laid(2));
+  EXPECT_EQ(maker_.progress()->trouble, "");
+  const auto kept = finish();
+  ASSERT_TRUE(kept) << kept.error().detail;
+  EXPECT_EQ(made_->map.shape().resolution_m, 0.1);
+}
+
+TEST_F(MapMakerTest, WhatWouldBeTooLargeToKeepIsToldOnTheWay) {
+  ASSERT_TRUE(maker_.start());
+  step(0.1, 0.0);
+  ASSERT_TRUE(laid(1));
+  odometry_.x_m += 1200.0;
+  odometry_.y_m += 1200.0;
+  time_s_ += 1200.0;
+  step(0.1, 0.0);
+  ASSERT_TRUE(laid(2));
+  EXPECT_EQ(maker_.progress()->trouble,
+            "no more is taken: the map is as large as it may be. Stop to keep it");
+  const auto kept = finish();
+  ASSERT_TRUE(kept) << kept.error().detail;
+  EXPECT_EQ(made_->map.shape().resolution_m, 0.2);
+}
+
+TEST_F(MapMakerTest, WhatWasKeptMeanwhileIsNotDropped) {
+  EXPECT_EQ(maker_.drop().error().code, base::Code::Conflict);
+  ASSERT_TRUE(maker_.start());
+  step(0.1, 0.0);
+  ASSERT_TRUE(laid(1));
+  const auto kept = maker_.finish([this](const maps::Made&) -> base::Result<maps::About> {
+    std::thread other([this] { EXPECT_EQ(maker_.drop().error().code, base::Code::Conflict); });
+    other.join();
+    return maps::About{};
+  });
+  EXPECT_TRUE(kept);
+  EXPECT_EQ(maker_.drop().error().code, base::Code::Conflict);
+  ASSERT_TRUE(maker_.start());
+  EXPECT_TRUE(maker_.drop());
+  EXPECT_FALSE(maker_.progress());
+}
+
+TEST_F(MapMakerTest, WhatCannotBeKeptForAnyReasonStays) {
+  ASSERT_TRUE(maker_.start());
+  step(0.1, 0.0);
+  ASSERT_TRUE(laid(1));
+  const auto kept = maker_.finish([](const maps::Made&) -> base::Result<maps::About> {
+    throw std::runtime_error("the disk is gone");
+  });
+  ASSERT_FALSE(kept);
+  EXPECT_EQ(maker_.progress()->trouble, "the map is not kept yet: the disk is gone");
+  EXPECT_TRUE(finish());
 }
 
 TEST_F(MapMakerTest, WhileOneIsDrawnAllOthersAreRefusedAtOnce) {
