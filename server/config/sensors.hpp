@@ -46,7 +46,8 @@ struct SensorSettings {
   base::Mount mount() const noexcept;
   /// It sees one plane only.
   bool planar() const noexcept { return kind == "sick" || kind == "ranges"; }
-  /// And in it thin beams: what it met lies where it says. A cone's echo may lie anywhere across it.
+  /// And in it thin beams: what it met lies where it says. A cone's echo may lie anywhere across
+  /// it.
   bool thin() const noexcept { return kind == "sick"; }
   /// It is part of the picture of what is free and what is not. What a vision program recognised
   /// tells of neither.

@@ -164,7 +164,7 @@ struct Robot::Impl {
   std::string speed_reason;
   base::PlacePhase place_told = base::PlacePhase::Off;
   std::string place_told_in;  ///< the map of that
-  bool latch_told = false;  ///< to Robot::on_latch
+  bool latch_told = false;    ///< to Robot::on_latch
 
   static constexpr const char* kOperator = "by the operator";
   const char* asker = kOperator;  ///< whose command is carried out, for the events
