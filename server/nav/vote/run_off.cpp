@@ -42,6 +42,12 @@ constexpr double kKept = 20.0;      // at most: what ends is forgotten again
 constexpr double kMoreThanGyro = 2.0;
 constexpr double kFits = 12.0;  // y'S⁻¹y of the lie, so that it is one
 constexpr int kFewestLooks = 3;
+// Tracks that spin leave the robot behind, too: what looks like that is theirs. Slower, and it is
+// not told from what positions scatter by; more aside than this part of it, and no track does it.
+constexpr double kSpins_mps = 0.2;
+constexpr double kSpinsLeast = 0.45;  // of the tracks' way; from there on spinning is looked for
+constexpr double kSpinsAside = 0.3;
+constexpr double kSpinsFrom = 2.0;  // of the ratio: before, the drift is not known well
 constexpr double kGap_s = 1.3;
 constexpr double kJump_m = 0.35;  // beyond what any of them foretells: another rule's matter
 
@@ -195,6 +201,23 @@ void RunOff::update(Filter& f, const Look& to) const noexcept {
   f.P = (0.5 * (f.P + f.P.transpose())).eval();
 }
 
+/// Does it drift against the tracks' way, by much of it and by no more than that? So does a robot
+/// that stands in mud. A receiver that drifts so is found where the robot turns or stops.
+bool RunOff::like_spinning(const Look& to) const noexcept {
+  const double dt_s = seconds(to.spot.t - last_.spot.t);
+  const double dx = (to.at.x_m - last_.at.x_m) / dt_s;
+  const double dy = (to.at.y_m - last_.at.y_m) / dt_s;
+  const double speed_mps = std::hypot(dx, dy);
+  if (speed_mps < kSpins_mps) return false;
+  const double c = std::cos(lie_.x(kHeading));
+  const double s = std::sin(lie_.x(kHeading));
+  const EnuPoint ahead{(c * dx - s * dy) / speed_mps, (s * dx + c * dy) / speed_mps};
+  const double along = lie_.x(kLieE) * ahead.east_m + lie_.x(kLieN) * ahead.north_m;
+  const double aside = lie_.x(kLieN) * ahead.east_m - lie_.x(kLieE) * ahead.north_m;
+  return -along >= kSpinsLeast * speed_mps && -along <= speed_mps &&
+         std::abs(aside) <= kSpinsAside * -along;
+}
+
 /// A suspicion that came to nothing begins anew at the next position.
 void RunOff::weigh(Filter& f, double& ratio) noexcept {
   const double more = f.log_likelihood - ground_.log_likelihood;
@@ -215,10 +238,15 @@ void RunOff::look(const Look& look) noexcept {
   };
   if (std::min(beyond_m(ground_), beyond_m(lie_)) > kJump_m) return begin(look);
   for (Filter* f : {&ground_, &lie_, &gyro_}) update(*f, look);
+  const bool spins = like_spinning(look);
   last_ = look;
   if (!ground_.x.allFinite() || !lie_.x.allFinite() || !gyro_.x.allFinite()) return forget();
   weigh(lie_, lie_ratio_);
   weigh(gyro_, gyro_ratio_);
+  if (spins && lie_ratio_ >= kSpinsFrom) {
+    lie_ratio_ = 0.0;
+    lie_ = suspect(Lies::Receiver);
+  }
   ++lie_looks_;
   if (lie_ratio_ <= 0.0) {
     lie_since_ = look.spot.t;

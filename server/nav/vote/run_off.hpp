@@ -78,6 +78,7 @@ class RunOff {
   };
 
   void begin(const Look& look) noexcept;
+  bool like_spinning(const Look& to) const noexcept;
   bool follows(const Look& look) const noexcept;
   void predict(Filter& f, const Look& to) const noexcept;
   void update(Filter& f, const Look& to) const noexcept;
