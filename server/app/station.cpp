@@ -32,6 +32,7 @@ void Station::Impl::start() {
       },
       [this](base::Time now) { robot.heed_stop(now); });
   await_first_tick();
+  bell->ring();  // for what was found out before there was a bell
   watch_host_soon();
   watch_names_soon();
   manager.ready(address);
