@@ -88,11 +88,13 @@ inline const std::vector<Scene> kGroundScenes = {
        w.fix = base::FixType::RtkFloat;
        w.fix_sigma_m = 0.1;
        w.run(8.0);
-       w.go(plan_of({{0, 60}}));
-       w.run(3.0);
+       w.go(plan_of({{0, 20}, {0, 60}}));
+       w.run(14.0);  // or its positions are not proved
        w.change();
        w.receiver_off = {0.8, 0.0};
        w.run(16.0);
+       (void)w.ask(ResumeMission{});
+       w.run(17.0);
        w.receiver_off = {1.6, 0.0};
        w.run(18.0);
      }},
