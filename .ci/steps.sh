@@ -138,12 +138,26 @@ step_unit() {
 
 step_api() { run_ctest "$build" api "$logs/api"; }
 
+# in_pairs NAME…: command tests that mostly watch a robot drive, two at a time; each output in one piece.
+in_pairs() {
+  local code=0 name
+  export -f ordinary say
+  export root build logs
+  # shellcheck disable=SC2016
+  printf '%s\0' "$@" | xargs -0 -n 1 -P 2 bash -euo pipefail -c \
+    'ordinary python3 "$root/tests/command/$1_test.py" >"$logs/command-$1.log" 2>&1' pair || code=$?
+  for name in "$@"; do cat "$logs/command-$name.log"; done
+  return "$code"
+}
+
 step_command() {
   local code=0 name
   "$root/tests/command/packages_test" || code=$?
-  for name in decode arguments run control ntrip power_cut stop storage study drill resume learned gpsd memory tls abuse secrets peers lan see rows marks place map bad_sight; do
+  for name in decode arguments run control ntrip power_cut stop storage study drill gpsd memory tls abuse secrets peers lan place; do
     ordinary python3 "$root/tests/command/${name}_test.py" || code=$?
   done
+  # The longest first.
+  in_pairs rows see marks known_places tag_dock resume learned bad_sight map || code=$?
   ordinary python3 "$root/tests/soak/kills" --count 25 || code=$?
   return "$code"
 }
@@ -163,9 +177,14 @@ step_page() {
   local code=0 results=$logs/playwright.json
   need_web_packages
   cd "$root/web"
-  rm -f "$results"
-  PLAYWRIGHT_JSON_OUTPUT_NAME=$results npm run test:page -- --reporter=list,json || code=$?
+  rm -f "$results" "$results.alone"
+  PLAYWRIGHT_JSON_OUTPUT_NAME=$results npm run test:page -- --reporter=list,json \
+    --grep-invert @alone || code=$?
+  # What needs the processor itself.
+  PLAYWRIGHT_JSON_OUTPUT_NAME=$results.alone npm run test:page -- --reporter=list,json \
+    --grep @alone --workers 1 || code=$?
   "$root/.ci/results" playwright "$results"
+  "$root/.ci/results" playwright "$results.alone"
   return "$code"
 }
 
@@ -224,13 +243,39 @@ asan_tree() {
   ninja_build "$build/clang"
 }
 
-step_asan() {
-  asan_tree
+# What drives for minutes to measure a figure runs no line that the others do not.
+only_measures='Figures.*:*StandsForTenMinutesWithoutWandering*:*ThePairIsAlignedFromFiftyRandomOffsets*'
+
+# The long ones of those that know no real time: what starves a while is none the worse.
+simulated='^(around|cells|cloud|lanes|loop|mapping|marks|mission|nav|place|smooth|study)_test$'
+
+# asan_cases LABELS RESULTS CTEST OPTION…
+asan_cases() {
   ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1 \
-    UBSAN_OPTIONS=print_stacktrace=1 \
-    run_ctest "$build/clang" 'unit|loop|api' "$logs/asan" -j "$jobs" >"$logs/asan-cases.log" 2>&1 ||
-    { cat "$logs/asan-cases.log" && return 1; }
-  "$root/.ci/results" ctest "$logs/asan.xml"
+    UBSAN_OPTIONS=print_stacktrace=1 GTEST_FILTER="-$only_measures" \
+    run_ctest "$build/clang" "$1" "$2" -j "$jobs" "${@:3}"
+}
+
+# asan_told LABELS RESULTS CTEST OPTION…: the same, and its output only where something went wrong.
+asan_told() {
+  local code=0
+  asan_cases "$@" >"$2-cases.log" 2>&1 || code=$?
+  [ "$code" = 0 ] || cat "$2-cases.log"
+  "$root/.ci/results" ctest "$2.xml"
+  return "$code"
+}
+
+step_asan() {
+  local code=0 before=$logs/asan-ahead.log
+  asan_tree
+  if [ -n "${ahead:-}" ] && [ -e "$before" ]; then
+    cat "$before"
+    code=$(cat "$logs/asan-ahead.code")
+  else
+    asan_told 'unit|loop' "$logs/asan-simulated" -R "$simulated" || code=$?
+  fi
+  asan_told 'unit|loop|api' "$logs/asan" -E "$simulated" || code=$?
+  return "$code"
 }
 
 threaded='^(base|services|supervise|net|store|link|robot|net_socket|api_socket)_test$'
@@ -257,10 +302,12 @@ step_tsan() {
 
 # The trees of the sanitizers, built while the steps before them mostly wait: for sockets, browsers,
 # simulated robots. Of the idle class, so that a robot that wants the processor has it at once. What
-# goes wrong here is told by the step that builds the same once more.
+# goes wrong here is told by the step that builds the same once more. Then the long simulated
+# tests; the step tells how they ended.
 waiting_steps=' api command vehicles real can page '
 trees_ahead() {
-  local step
+  local step code=0
+  rm -f "$logs/asan-ahead.log"
   chrt --idle --pid 0 $BASHPID || true
   for step in "$@"; do
     case $step in
@@ -268,6 +315,12 @@ trees_ahead() {
       tsan) tsan_tree ;;
     esac || true
   done
+  if [[ " $* " == *" asan "* ]]; then
+    asan_told 'unit|loop' "$logs/asan-simulated" -R "$simulated" >"$logs/asan-ahead.new" 2>&1 ||
+      code=$?
+    echo "$code" >"$logs/asan-ahead.code"
+    mv "$logs/asan-ahead.new" "$logs/asan-ahead.log"
+  fi
 }
 
 fuzz_one() {

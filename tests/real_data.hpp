@@ -17,6 +17,8 @@
 
 #include <gtest/gtest.h>
 
+#include "source_folder.hpp"
+
 namespace roverd::tests {
 
 /// Where the file should be. Whether it is there is another question.
@@ -24,10 +26,7 @@ inline std::filesystem::path real_data_path(std::string_view name) {
   if (const char* folder = std::getenv("ROVERD_REAL_DATA"); folder != nullptr && *folder != '\0') {
     return std::filesystem::path(folder) / name;
   }
-  // This file is <source>/tests/real_data.hpp.
-  const auto here = std::filesystem::absolute(__FILE__).lexically_normal();
-  const auto source = here.parent_path().parent_path();
-  return source.parent_path() / "shared" / "data" / name;
+  return source_folder().parent_path() / "shared" / "data" / name;
 }
 
 inline bool must_have_real_data() {

@@ -1,6 +1,8 @@
 import { svelte } from '@sveltejs/vite-plugin-svelte';
 import { defineConfig } from 'vite';
 
+import { about } from './about.ts';
+import { early } from './early.ts';
 import { offline } from './offline.ts';
 import { precompress } from './precompress.ts';
 
@@ -8,7 +10,13 @@ import { precompress } from './precompress.ts';
 const server = process.env['ROVERD_URL'] ?? 'http://127.0.0.1:8080';
 
 export default defineConfig({
-  plugins: [svelte(), offline('offline.js', 'index.html', 'docs.html'), precompress('dist')],
+  plugins: [
+    svelte(),
+    about('../README.md', 'licences.txt'),
+    early('index.html', ['src/main.ts'], ['src/map/map.ts', 'src/ui/rest.ts']),
+    offline('offline.js', 'index.html', 'docs.html'),
+    precompress('dist'),
+  ],
   build: {
     target: 'es2022',
     modulePreload: { polyfill: false },

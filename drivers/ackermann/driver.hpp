@@ -73,7 +73,7 @@ class Driver {
   bool transmit(const Message& message, Time now);
   void tell(Time now);
   base::BodyTwist assumed_now();
-  double zero_rad() const noexcept { return params_.zero_rad + zero_.zero_rad(); }
+  double zero_rad() const noexcept { return params_.zero_rad + zero_.at_rad(wheel_rad_); }
 
   const Params params_;
   const OnMeasurement on_measurement_;

@@ -29,7 +29,9 @@ std::optional<base::GnssVelocity> velocity(Time stamp, std::optional<double> spe
   const double v = *speed_kn * kMpsPerKnot;
   if (!course_deg) {
     if (v > kStandstill_mps) return std::nullopt;
-    return base::GnssVelocity{stamp, 0.0, 0.0, std::nullopt};
+    // Receivers leave the course out of what is slow: not that it stands is known, but how fast it
+    // is at most.
+    return base::GnssVelocity{stamp, 0.0, 0.0, v > 0.0 ? std::optional(v) : std::nullopt};
   }
   const double yaw = base::yaw_from_heading(*course_deg);
   return base::GnssVelocity{stamp, v * std::cos(yaw), v * std::sin(yaw), std::nullopt};

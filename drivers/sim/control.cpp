@@ -80,6 +80,7 @@ struct Wish {
   bool power_cycle = false;
   std::optional<bool> world;
   bool forget = false;
+  std::string walks;       ///< empty: nobody
   bool has_world = false;  ///< to be told or switched
   std::string get;
 };
@@ -233,6 +234,12 @@ Result<void> read_member(Wish& wish, const std::string& name, const json& value,
     if (name == "forget") wish.forget = value.get<bool>();
     return {};
   }
+  if (name == "walk") {
+    if (!wish.has_world) return refuse_line("there is no world: walk");
+    if (!value.is_string()) return refuse_line("walk must be the name of a person or an animal");
+    wish.walks = value.get<std::string>();
+    return {};
+  }
   if (name == "get") {
     wish.get = value.is_string() ? value.get<std::string>() : "";
     for (const char* word : {"truth", "faults", "radio", "params"}) {
@@ -319,7 +326,11 @@ ControlAnswer carry_out(std::string_view line, Vehicle& vehicle, Time start, Sur
       return failed(done.error().detail);
     }
   }
+  if (!wish.walks.empty() && !around->has_mover(wish.walks)) {
+    return failed("nobody of that name walks: " + wish.walks);
+  }
   if (auto done = grant(wish, vehicle); !done) return failed(done.error().detail);
+  if (!wish.walks.empty()) around->let_walk(wish.walks);
   if (wish.world) around->set_on(*wish.world);
   if (wish.forget) around->forget_contacts();
   json answer = got(wish.get, vehicle, start, around);

@@ -14,6 +14,7 @@
 //   {"power_cycle":true}
 //   {"world":false}                               nothing stands around it; true: as before
 //   {"forget":true}                               contacts are counted from 0
+//   {"walk":"Ann"}                                that person or animal begins its path now
 //   {"get":"truth"}                               or "faults", "radio", "params", "world" (what it
 //        touched, and when): after the rest
 //   {"id":7, …}                                   comes back in the answer

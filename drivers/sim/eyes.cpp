@@ -300,9 +300,11 @@ std::vector<std::uint8_t> range_line(const world::Sweep& sweep) {
 Eye::Eye(const world::SensorParams& p, std::uint64_t seed, double begin_s)
     : seed_(seed), sensor_(p, seed, begin_s) {
   if (p.kind == "lms") lms_.emplace(p, begin_s);
+  if (p.kind == "picture") picture_.emplace(p);
 }
 
 std::vector<std::uint8_t> Eye::receive(base::Bytes bytes) {
+  if (picture_ && !cut_) return picture_->receive(bytes);
   if (!lms_ || cut_) return {};
   auto out = lms_->receive(bytes);
   take_wanted();
@@ -335,15 +337,17 @@ void Eye::speak_vlp16(double late_s) {
   }
 }
 
-void Eye::speak(const world::World& world, const world::SensorFaults& faults) {
+void Eye::speak(const Surroundings& around, const world::SensorFaults& faults) {
   const double late_s = params().latency_s + faults.sensor_latency_s;
   if (params().kind == "vlp16") return speak_vlp16(late_s);
   const double due_s = sweep_.until_s + late_s;
   if (lms_) return wait(due_s, lms_->say(sweep_, faults));
+  if (picture_) return wait(due_s, picture_->say(around, sweep_, faults));
   if (params().kind == "range") return wait(due_s, range_line(sweep_));
   if (params().kind == "vision") {
     const std::uint64_t own = world::spread(seed_) ^ world::key_of(params().name);
-    return wait(due_s, vision_datagram(sweep_, world, faults.sensor_malformed, own));
+    return wait(due_s,
+                vision_datagram(sweep_, around.scene().world(), faults.sensor_malformed, own));
   }
   wait(due_s, depth_frame(params(), sweep_, sweep_.at_s, !faults.sensor_heating));
 }
@@ -373,7 +377,7 @@ void Eye::advance(const Surroundings& around, const world::SensorFaults& all,
       sensor_.sweep(
           around.scene(), [&](double at_s) { return around.pose_at(at_s); }, faults, sweep_);
     }
-    speak(around.scene().world(), faults);
+    speak(around, faults);
   }
   while (!waiting_.empty() && waiting_.front().due_s <= now_s) {
     say(waiting_.front().bytes);

@@ -6,6 +6,7 @@
 //   vlp16   data packets of 24 firings, strongest or last return; of 12 firings with both
 //   range   lines of metres, "1.234"; nothing within reach: "oor"
 //   depth   depth images of docs/cloud-format.md, millimetres along the optical axis
+//   picture a stream of JPEG pictures over HTTP, as an IP camera's (picture_voice.hpp)
 //   vision  what a camera's program recognises in an image (vision_voice.hpp), a datagram each
 
 #include <cstdint>
@@ -20,6 +21,7 @@
 #include "cloud/codec.hpp"
 #include "sick/commands.hpp"
 #include "sick/scan.hpp"
+#include "sim/picture_voice.hpp"
 #include "sim/surroundings.hpp"
 #include "sim/world/sensor.hpp"
 #include "velodyne/codec.hpp"
@@ -93,7 +95,7 @@ class Eye {
     double due_s;
     std::vector<std::uint8_t> bytes;
   };
-  void speak(const world::World& world, const world::SensorFaults& faults);
+  void speak(const Surroundings& around, const world::SensorFaults& faults);
   void speak_vlp16(double late_s);
   void wait(double due_s, std::vector<std::uint8_t> bytes);
   void take_wanted();
@@ -101,6 +103,7 @@ class Eye {
   const std::uint64_t seed_;
   world::Sensor sensor_;
   std::optional<LmsVoice> lms_;
+  std::optional<PictureVoice> picture_;
   world::Sweep sweep_;
   std::deque<Waiting> waiting_;
   bool cut_ = false;

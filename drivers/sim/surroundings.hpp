@@ -4,6 +4,7 @@
 
 #include <deque>
 #include <string>
+#include <string_view>
 
 #include "sim/vehicle.hpp"
 #include "sim/world/contact.hpp"
@@ -25,6 +26,10 @@ class Surroundings {
   /// footing, so that it does not fall.
   void set_on(bool on);
   bool on() const noexcept { return on_; }
+  /// A person or an animal of that name.
+  bool has_mover(std::string_view name) const { return scene_.mover(name).has_value(); }
+  /// Whoever is called so begins the path now, from its first point.
+  void let_walk(std::string_view name) { scene_.begin_walk(name, now_s_); }
 
   const world::Scene& scene() const noexcept { return on_ ? scene_ : nothing_; }
   const world::Witness& witness() const noexcept { return witness_; }

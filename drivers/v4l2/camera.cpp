@@ -19,7 +19,6 @@ constexpr std::uint32_t kBuffers = 4;
 constexpr std::uint32_t kCapture = V4L2_BUF_TYPE_VIDEO_CAPTURE;
 /// More formats than any camera has.
 constexpr std::uint32_t kMostFormats = 64;
-constexpr std::size_t kPixel = 2;
 
 std::string letters(std::uint32_t fourcc) {
   std::string out;
@@ -52,6 +51,34 @@ Time time_of(const v4l2_buffer& buffer, Time now) noexcept {
   return told <= now && now - told < std::chrono::seconds(1) ? told : now;
 }
 
+/// Without what fills up its rows.
+Packed depth_frame(const Params& params, const Image& image) {
+  const std::size_t row = image.width * 2;
+  std::vector<std::uint8_t> pixels;
+  pixels.reserve(row * image.height);
+  for (std::size_t v = 0; v < image.height; ++v) {
+    const std::uint8_t* from = image.bytes.data() + v * image.stride;
+    pixels.insert(pixels.end(), from, from + row);
+  }
+  cloud::Header header;
+  header.kind = cloud::Kind::Depth;
+  header.stamp_ns = std::chrono::nanoseconds(image.stamp.time_since_epoch()).count();
+  header.sequence = image.sequence;
+  const auto middle = [](double told, std::size_t size) {
+    return static_cast<float>(told < 0.0 ? static_cast<double>(size - 1) / 2.0 : told);
+  };
+  const auto fx = static_cast<float>(params.fx);
+  const cloud::Depth depth{.width = static_cast<std::uint16_t>(image.width),
+                           .height = static_cast<std::uint16_t>(image.height),
+                           .fx = fx,
+                           .fy = params.fy > 0.0 ? static_cast<float>(params.fy) : fx,
+                           .cx = middle(params.cx, image.width),
+                           .cy = middle(params.cy, image.height),
+                           .unit_m = static_cast<float>(params.depth_unit_m),
+                           .data = pixels};
+  return {cloud::encode(header, depth), false};
+}
+
 }  // namespace
 
 std::string path_of(const std::string& address) {
@@ -60,7 +87,23 @@ std::string path_of(const std::string& address) {
 }
 
 Camera::Camera(boost::asio::io_context& io, std::string path, const Params& params, Device& device)
-    : path_(std::move(path)), params_(params), device_(device), descriptor_(io) {}
+    : Camera(
+          io, std::move(path),
+          Wanted{params.width,
+                 params.height,
+                 params.images_hz,
+                 true,
+                 {{V4L2_PIX_FMT_Z16, 2}},
+                 "depth (Z16)"},
+          [params](const Image& image) { return depth_frame(params, image); }, device) {}
+
+Camera::Camera(boost::asio::io_context& io, std::string path, Wanted wanted, Pack pack,
+               Device& device)
+    : path_(std::move(path)),
+      wanted_(std::move(wanted)),
+      pack_(std::move(pack)),
+      device_(device),
+      descriptor_(io) {}
 
 Camera::~Camera() {
   close();
@@ -130,42 +173,56 @@ Result<void> Camera::check_kind(int fd) {
 
 Result<void> Camera::check_formats(int fd) {
   std::string others;
+  std::size_t best = wanted_.formats.size();
   for (std::uint32_t i = 0; i < kMostFormats; ++i) {
     v4l2_fmtdesc format{};
     format.index = i;
     format.type = kCapture;
     if (device_.ask(fd, VIDIOC_ENUM_FMT, &format) != 0) break;
-    if (format.pixelformat == V4L2_PIX_FMT_Z16) return {};
+    const auto found =
+        std::ranges::find(wanted_.formats, format.pixelformat, &Wanted::Format::fourcc);
+    best = std::min(best, static_cast<std::size_t>(found - wanted_.formats.begin()));
     others += (others.empty() ? "" : ", ") + letters(format.pixelformat);
   }
-  return tl::unexpected(broken("gives no depth (Z16)" + (others.empty() ? "" : ", only " + others) +
+  if (best < wanted_.formats.size()) {
+    format_ = wanted_.formats[best];
+    return {};
+  }
+  return tl::unexpected(broken("gives no " + wanted_.what +
+                                   (others.empty() ? "" : ", only " + others) +
                                    ": another node of the device may",
                                0));
 }
 
 Result<void> Camera::set_format(int fd) {
+  const auto width = static_cast<std::uint32_t>(wanted_.width);
+  const auto height = static_cast<std::uint32_t>(wanted_.height);
   v4l2_format wanted{};
   wanted.type = kCapture;
-  wanted.fmt.pix.width = static_cast<std::uint32_t>(params_.width);
-  wanted.fmt.pix.height = static_cast<std::uint32_t>(params_.height);
-  wanted.fmt.pix.pixelformat = V4L2_PIX_FMT_Z16;
+  wanted.fmt.pix.width = width;
+  wanted.fmt.pix.height = height;
+  wanted.fmt.pix.pixelformat = format_.fourcc;
   wanted.fmt.pix.field = V4L2_FIELD_NONE;
   if (const int error = device_.ask(fd, VIDIOC_S_FMT, &wanted); error != 0) {
-    return tl::unexpected(broken("cannot be set to depth (Z16)", error));
+    return tl::unexpected(broken("cannot be set to " + wanted_.what, error));
   }
-  // The driver takes what is nearest to it: with another size the focal length would be wrong.
+  // The driver takes what is nearest to it: with another size a focal length in pixels would be
+  // wrong.
   const v4l2_pix_format& given = wanted.fmt.pix;
-  const auto row = static_cast<std::uint32_t>(params_.width) * kPixel;
-  if (given.pixelformat != V4L2_PIX_FMT_Z16 ||
-      given.width != static_cast<std::uint32_t>(params_.width) ||
-      given.height != static_cast<std::uint32_t>(params_.height)) {
+  const bool other_size = given.width != width || given.height != height;
+  constexpr std::uint32_t kLargest_px = 4096;
+  const bool can_be = given.width >= 1 && given.height >= 1 && given.width <= kLargest_px &&
+                      given.height <= kLargest_px;
+  if (given.pixelformat != format_.fourcc || (wanted_.exact && other_size) || !can_be) {
     return tl::unexpected(broken("gives " + letters(given.pixelformat) + " " +
-                                     size_text(given.width, given.height) + " instead of Z16 " +
-                                     std::to_string(params_.width) + "x" +
-                                     std::to_string(params_.height),
+                                     size_text(given.width, given.height) + " instead of " +
+                                     letters(format_.fourcc) + " " + size_text(width, height),
                                  0));
   }
-  stride_ = std::max<std::size_t>(given.bytesperline, row);
+  width_ = given.width;
+  height_ = given.height;
+  stride_ =
+      format_.pixel == 0 ? 0 : std::max<std::size_t>(given.bytesperline, width_ * format_.pixel);
   return {};
 }
 
@@ -174,7 +231,7 @@ void Camera::set_rate(int fd) {
   v4l2_streamparm rate{};
   rate.type = kCapture;
   rate.parm.capture.timeperframe.numerator = 1;
-  rate.parm.capture.timeperframe.denominator = static_cast<std::uint32_t>(params_.images_hz);
+  rate.parm.capture.timeperframe.denominator = static_cast<std::uint32_t>(wanted_.images_hz);
   device_.ask(fd, VIDIOC_S_PARM, &rate);
 }
 
@@ -229,35 +286,25 @@ void Camera::read() {
 
 void Camera::hand_over(const Buffer& buffer, std::size_t used, std::uint32_t sequence, Time stamp,
                        Time now) {
-  const auto width = static_cast<std::size_t>(params_.width);
-  const auto height = static_cast<std::size_t>(params_.height);
-  const std::size_t row = width * kPixel;
-  if (std::min(used, buffer.size) < stride_ * (height - 1) + row) {
+  const std::size_t size = std::min(used, buffer.size);
+  const std::size_t least =
+      format_.pixel == 0 ? 1 : stride_ * (height_ - 1) + width_ * format_.pixel;
+  if (size < least) {
     ++troubles_["image that is too short"];
     return;
   }
-  packed_.clear();
-  packed_.reserve(row * height);
-  for (std::size_t v = 0; v < height; ++v) {
-    packed_.insert(packed_.end(), buffer.at + v * stride_, buffer.at + v * stride_ + row);
+  const Packed packed = pack_({.format = format_.fourcc,
+                               .width = width_,
+                               .height = height_,
+                               .stride = stride_,
+                               .bytes = {buffer.at, size},
+                               .sequence = sequence,
+                               .stamp = stamp});
+  if (packed.bytes.empty()) {
+    ++troubles_[packed.trouble];
+  } else if (on_bytes) {
+    on_bytes(packed.bytes, packed.at_image ? stamp : now);
   }
-  cloud::Header header;
-  header.kind = cloud::Kind::Depth;
-  header.stamp_ns = std::chrono::nanoseconds(stamp.time_since_epoch()).count();
-  header.sequence = sequence;
-  const auto middle = [](double told, std::size_t size) {
-    return static_cast<float>(told < 0.0 ? static_cast<double>(size - 1) / 2.0 : told);
-  };
-  const auto fx = static_cast<float>(params_.fx);
-  const cloud::Depth image{.width = static_cast<std::uint16_t>(width),
-                           .height = static_cast<std::uint16_t>(height),
-                           .fx = fx,
-                           .fy = params_.fy > 0.0 ? static_cast<float>(params_.fy) : fx,
-                           .cx = middle(params_.cx, width),
-                           .cy = middle(params_.cy, height),
-                           .unit_m = static_cast<float>(params_.depth_unit_m),
-                           .data = packed_};
-  if (on_bytes) on_bytes(cloud::encode(header, image), now);
 }
 
 void Camera::lost(const std::string& reason) {

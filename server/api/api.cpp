@@ -33,7 +33,9 @@ Api::Api(Deps deps) : impl_(std::make_unique<Impl>(std::move(deps))) {
   add_fence_routes(c);
   add_file_routes(c);
   add_event_routes(c);
+  add_camera_routes(c);
   add_sensor_routes(c);
+  add_known_place_routes(c);
   add_slip_routes(c);
   add_server_routes(c);
   add_driver_routes(c);
@@ -57,6 +59,9 @@ Api::Api(Deps deps) : impl_(std::make_unique<Impl>(std::move(deps))) {
   c->control.linked = [this](const people::Driver& who) {
     return impl_->stream && impl_->stream->is_linked(who);
   };
+  c->control.present = [this] {
+    return impl_->stream ? impl_->stream->present() : std::vector<Present>{};
+  };
   c->control.on_notice = [this](const Control::Notice& notice) {
     if (impl_->stream) impl_->stream->control_changed(notice);
     if (auto event = event_of(notice)) on_event(std::move(*event));
@@ -73,6 +78,7 @@ Api::~Api() {
   impl_->context->on_mission_change = nullptr;
   impl_->context->on_access_change = nullptr;
   impl_->context->control.linked = nullptr;
+  impl_->context->control.present = nullptr;
   impl_->context->control.on_notice = nullptr;
   impl_->context->commands.abandon();
 }

@@ -17,13 +17,14 @@
 #include "api/guard.hpp"
 #include "api/json/words.hpp"
 #include "api/message.hpp"
+#include "base/picture.hpp"
 #include "maps/shelf.hpp"
 #include "people/book.hpp"
 #include "robot/guard/outlook.hpp"
 #include "robot/robot.hpp"
 #include "services/services.hpp"
 #include "store/store.hpp"
-#include "store/tiles.hpp"
+#include "store/tile_shelf.hpp"
 
 namespace roverd::api {
 
@@ -36,11 +37,31 @@ struct Identity {
   std::string picture;  ///< path: "/robot.svg"
 };
 
-/// Offline map tiles; both may be empty.
+/// Map tiles of somebody in the network, for as long as there is one. The page fetches them.
+struct OnlineTiles {
+  std::string name;
+  std::string url;  ///< with {z}, {x} and {y} or {-y}
+  std::string attribution;
+  int max_zoom = 19;
+};
 struct Tiles {
-  std::vector<store::TileSet> sets;
-  /// XYZ numbering. Empty: there is no such tile. Quick: one look into a file.
-  std::function<std::optional<store::Tile>(const std::string& set, int zoom, int x, int y)> read;
+  store::TileShelf* shelf = nullptr;  ///< null: there is none
+  std::vector<OnlineTiles> online;
+};
+
+/// Cameras of pictures. Any thread.
+struct CameraDoor {
+  struct Camera {
+    std::string name;
+    std::string kind;  ///< "ip" or "v4l2"
+    /// Null: none came yet.
+    std::function<base::PicturePtr()> newest;
+  };
+  std::vector<Camera> cameras{};
+  /// The same with 1/divisor (2, 4, 8) of its sides, as a JPEG; takes some ms. Empty: pictures go
+  /// as they are.
+  std::function<base::Result<std::vector<std::uint8_t>>(const base::Picture&, int divisor)>
+      smaller{};
 };
 
 /// The stream, as the api sees it: net's Hub.
@@ -104,6 +125,14 @@ struct MapDoor {
   std::function<std::optional<maps::Making>()> making{};  ///< empty answers: none is being made
 };
 
+/// Things whose place is known.
+struct KnownPlaceDoor {
+  std::vector<base::KnownPlace> begin{};  ///< of the configuration, and those that were kept
+  /// Beside the web: those that are not the configuration's are there after a restart. Empty:
+  /// nothing is kept.
+  std::function<base::Result<void>(const std::vector<base::KnownPlace>&)> keep{};
+};
+
 /// Figures of net for /metrics.
 struct NetFigures {
   std::uint64_t accepted = 0;
@@ -140,6 +169,8 @@ struct Deps {
   DriverDoor drivers{};
   DrillDoor drill{};
   MapDoor maps{};
+  KnownPlaceDoor known_places{};
+  CameraDoor cameras{};
   /// The ground-control page; empty answers: no such file.
   std::function<std::optional<Response>(const Request&)> page{};
   std::function<NetFigures()> figures{};

@@ -107,6 +107,9 @@ struct Context {
   };
   Warnings warnings{};
 
+  /// As the robot was told last.
+  std::vector<base::KnownPlace> known_places{};
+
   /// Parameters that were changed for the next start, since this one.
   std::map<std::string, base::ParamValue> kept{};
 
@@ -195,7 +198,9 @@ void add_fence_routes(const ContextPtr& context);
 void load_active_fence(const ContextPtr& context);
 void add_file_routes(const ContextPtr& context);
 void add_event_routes(const ContextPtr& context);
+void add_camera_routes(const ContextPtr& context);
 void add_sensor_routes(const ContextPtr& context);
+void add_known_place_routes(const ContextPtr& context);
 void add_slip_routes(const ContextPtr& context);
 void add_server_routes(const ContextPtr& context);
 void add_driver_routes(const ContextPtr& context);

@@ -166,17 +166,19 @@ void Control::step() {
   tell();
 }
 
-base::Result<Lease::Outcome> Control::take(Driver who, Lease::How how, const std::string& reason) {
-  const auto find_name = [&who](const auto& rows, auto member) {
-    for (const auto& row : rows) {
-      if (row.id == who.id) who.name = row.*member;
-    }
+std::string Control::name_of(const Driver& who) const {
+  const auto find = [&who](const auto& rows, auto member) {
+    const auto found = std::find_if(rows.begin(), rows.end(),
+                                    [&who](const auto& row) { return row.id == who.id; });
+    return found == rows.end() ? std::string() : (*found).*member;
   };
-  if (who.by == people::Who::By::Session) {
-    find_name(access_.book().sessions_of(who.user), &people::Session::device);
-  } else {
-    find_name(access_.book().tokens_of(who.user), &people::Token::name);
-  }
+  return who.by == people::Who::By::Session
+             ? find(access_.book().sessions_of(who.user), &people::Session::device)
+             : find(access_.book().tokens_of(who.user), &people::Token::name);
+}
+
+base::Result<Lease::Outcome> Control::take(Driver who, Lease::How how, const std::string& reason) {
+  if (const std::string name = name_of(who); !name.empty()) who.name = name;
   step();
   auto done = lease_.take(who, how, reason, base::steady_now());
   step();
@@ -222,6 +224,19 @@ Json Control::state() const {
     one["request"] = r.id;
     one["expires_in_s"] = std::max(0.0, base::seconds(r.until - now.mono));
     out["requests"].push_back(std::move(one));
+  }
+  return out;
+}
+
+Json Control::here() const {
+  Json out = Json::array();
+  if (!on() || !present) return out;
+  for (Present& each : present()) {
+    each.who.name = name_of(each.who);
+    Json one = driver_json(each.who);
+    one["role"] = to_string(each.role);
+    one["streams"] = each.streams;
+    out.push_back(std::move(one));
   }
   return out;
 }

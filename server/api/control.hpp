@@ -6,12 +6,20 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "api/access.hpp"
 #include "base/snapshot.hpp"
 #include "people/lease.hpp"
 
 namespace roverd::api {
+
+/// One whose page or script is connected.
+struct Present {
+  people::Driver who;
+  people::Role role = people::Role::Viewer;
+  int streams = 0;
+};
 
 class Control {
  public:
@@ -42,6 +50,8 @@ class Control {
 
   /// {"on", "holder", "requests", "grace_s", "ask_s"}
   Json state() const;
+  /// Who has a stream open, by name: [{"id", "user", "name", "kind", "role", "streams"}].
+  Json here() const;
   Json state_with(const Notice& notice) const;
   /// Of the vehicle's state: {"id", "user", "name", "kind"} or null.
   Json holder() const;
@@ -50,11 +60,14 @@ class Control {
 
   /// A stream of that one is open.
   std::function<bool(const people::Driver&)> linked{};
+  /// All of them.
+  std::function<std::vector<Present>()> present{};
   /// Something changed.
   std::function<void(const Notice&)> on_notice{};
 
  private:
   void tell();
+  std::string name_of(const people::Driver& who) const;
 
   Access& access_;
   people::Lease lease_;

@@ -20,6 +20,9 @@ using Handler = std::function<void(CallPtr)>;
 inline constexpr std::size_t kCommandBytes = 64 * 1024;
 inline constexpr std::size_t kDocumentBytes = 8 * 1024 * 1024;
 inline constexpr std::size_t kFileBytes = 64 * 1024 * 1024;
+/// Of a picture, and of a piece of a file that may be larger than the memory.
+inline constexpr std::size_t kPictureBytes = 1'000'000;
+inline constexpr std::size_t kPieceBytes = 4 * 1024 * 1024;
 
 struct Route {
   http::verb method = http::verb::get;

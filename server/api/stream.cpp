@@ -1,6 +1,7 @@
 #include "api/stream.hpp"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "api/json/plain_json.hpp"
@@ -176,18 +177,20 @@ base::Result<void> StreamTexts::read(ClientId id, Client& client, const Json& me
   if (word && !halting) members.complain("halt", "must be hold, pause, disarm or stop");
   const Json* topics = members.any("subscribe");
   const Json* driving = members.any("drive");
+  const Json* hand = members.any("throttle");
   constexpr double kLargest = 9'007'199'254'740'992.0;  // whole numbers are exact up to here
   const auto ping = members.number("ping", -kLargest, kLargest);
   (void)members.any("seen_s");
   if (stop == false)
     members.complain("estop", "can only be true: POST /vehicle/estop/reset ends it");
   if (auto whole = members.finish(); !whole) return whole;
-  const int said =
-      (stop ? 1 : 0) + (halting ? 1 : 0) + (topics ? 1 : 0) + (driving ? 1 : 0) + (ping ? 1 : 0);
+  const int said = (stop ? 1 : 0) + (halting ? 1 : 0) + (topics ? 1 : 0) + (driving ? 1 : 0) +
+                   (hand ? 1 : 0) + (ping ? 1 : 0);
   if (said != 1) {
     return base::fail(
         base::Code::Invalid,
-        "a message has exactly one of the members estop, halt, subscribe, drive and ping");
+        "a message has exactly one of the members estop, halt, subscribe, drive, throttle and "
+        "ping");
   }
   if (halting) {
     auto done = halt(*halting);
@@ -197,6 +200,7 @@ base::Result<void> StreamTexts::read(ClientId id, Client& client, const Json& me
   if (topics != nullptr) return subscribe(id, client, *topics);
   tell_robot(client);
   if (driving != nullptr) return drive(id, client, members, begun);
+  if (hand != nullptr) return throttle(id, client, members, begun);
   if (ping) answer_ping(id, *ping);
   return {};
 }
@@ -305,6 +309,39 @@ base::Result<void> StreamTexts::drive(ClientId id, Client& client, Members& mess
   return *deadman ? take_wheel(id, command, validity) : base::Result<void>{};
 }
 
+base::Result<void> StreamTexts::throttle(ClientId id, Client& client, Members& message,
+                                         base::Time begun) {
+  Members members(*message.any("throttle"));
+  for (const char* name : {"share", "held"}) members.require(name);
+  const auto share = members.number("share", 0.0, 1.0);
+  const auto held = members.flag("held");
+  const robot::Validity validity = stick_validity_of({begun, message, members});
+  auto outer = message.finish();
+  if (auto read = members.finish(); !read || !outer) {
+    // Whoever slows the robot must be understood.
+    drop_speed(id, client);
+    if (read) return outer;
+    for (auto& field : read.error().fields) field.pointer = "/throttle" + field.pointer;
+    return read;
+  }
+  if (!context_->control.may(client.driver)) {
+    drop_speed(id, client);
+    if (*held) without_control(id, client);
+    return {};
+  }
+  client.at_speed = true;
+  const robot::Throttle command{*share, *held, id};
+  if (*held) return take_wheel(id, command, validity);
+  context_->deps.robot.request(command, base::Time::max(), {});
+  return {};
+}
+
+/// Its hand is not there any more: what drives by itself under it stops.
+void StreamTexts::drop_speed(ClientId id, Client& client) {
+  if (!std::exchange(client.at_speed, false)) return;
+  context_->deps.robot.request(robot::Throttle{0.0, false, id, true}, base::Time::max(), {});
+}
+
 /// Whoever does not drive says so again and again, to be ready: the robot hears it when it counts.
 void StreamTexts::let_go(const Client& client, const robot::Drive& command) {
   if (!client.drives) {
@@ -319,7 +356,7 @@ void StreamTexts::let_go(const Client& client, const robot::Drive& command) {
   context_->deps.robot.request(command, base::Time::max(), {});
 }
 
-base::Result<void> StreamTexts::take_wheel(ClientId id, const robot::Drive& command,
+base::Result<void> StreamTexts::take_wheel(ClientId id, const robot::Command& command,
                                            const robot::Validity& validity) {
   const base::Time now = base::steady_now();
   if (now > validity.not_after) {
@@ -345,11 +382,13 @@ void StreamTexts::drive_refused(ClientId id, const base::Error& error) {
 }
 
 void StreamTexts::stop_driving(ClientId id, Client& client) {
+  drop_speed(id, client);
   if (!std::exchange(client.drives, false)) return;
   context_->deps.robot.request(robot::Drive{{}, false, id, {}, true}, base::Time::max(), {});
 }
 
 void StreamTexts::drop_stick(ClientId id, Client& client) {
+  drop_speed(id, client);
   client.drives = false;
   if (!std::exchange(client.at_stick, false)) return;
   context_->deps.robot.request(robot::Drive{{}, false, id, {}, true}, base::Time::max(), {});
@@ -369,6 +408,26 @@ bool StreamTexts::is_linked(const people::Driver& who) const {
   return std::any_of(clients_.begin(), clients_.end(), [&](const auto& c) {
     return c.second.driver && people::same(*c.second.driver, who);
   });
+}
+
+std::vector<Present> StreamTexts::present() const {
+  std::vector<Present> out;
+  for (const auto& [id, client] : clients_) {
+    if (!client.driver || !client.who) continue;
+    const auto known = std::find_if(out.begin(), out.end(), [&client = client](const Present& one) {
+      return people::same(one.who, *client.driver);
+    });
+    if (known != out.end()) {
+      ++known->streams;
+    } else {
+      out.push_back({*client.driver, client.who->role, 1});
+    }
+  }
+  std::sort(out.begin(), out.end(), [](const Present& a, const Present& b) {
+    return std::tie(a.who.user, a.who.id, a.who.address) <
+           std::tie(b.who.user, b.who.id, b.who.address);
+  });
+  return out;
 }
 
 void StreamTexts::control_changed(const Control::Notice& notice) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <vector>
 
 #include "api/context.hpp"
 
@@ -32,6 +33,8 @@ class StreamTexts {
   int streams_of(const std::string& user) const;
   /// That one has a stream open.
   bool is_linked(const people::Driver& who) const;
+  /// Everybody who has one open, by name; a person with several pages once.
+  std::vector<Present> present() const;
   /// Tells everyone; sticks of those who do not hold control any more are dropped.
   void control_changed(const Control::Notice& notice);
 
@@ -50,6 +53,7 @@ class StreamTexts {
     bool watches = false;   ///< the vehicle
     bool drives = false;    ///< it held the dead-man's switch in its last drive message
     bool at_stick = false;  ///< the robot heard of its stick
+    bool at_speed = false;  ///< and of its hand on the speed of what drives by itself
     std::optional<people::Driver> driver{};
     base::Time refused_at;    ///< told so, last
     std::string refused_why;  ///< with that
@@ -59,9 +63,11 @@ class StreamTexts {
   base::Result<void> read(ClientId id, Client& client, const Json& message, base::Time begun);
   base::Result<void> subscribe(ClientId id, Client& client, const Json& topics);
   base::Result<void> drive(ClientId id, Client& client, Members& message, base::Time begun);
-  base::Result<void> take_wheel(ClientId id, const robot::Drive& command,
+  base::Result<void> take_wheel(ClientId id, const robot::Command& command,
                                 const robot::Validity& validity);
   void let_go(const Client& client, const robot::Drive& command);
+  base::Result<void> throttle(ClientId id, Client& client, Members& message, base::Time begun);
+  void drop_speed(ClientId id, Client& client);
   void drive_refused(ClientId id, const base::Error& error);
   void estop(ClientId id);
   void confirm_estop(ClientId id);

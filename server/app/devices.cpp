@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include <net/if.h>
 
 #include "ackermann/driver.hpp"
+#include "app/picture_camera.hpp"
 #include "app/tape.hpp"
 #include "app/workshop.hpp"
 #include "base/inbox.hpp"
@@ -17,6 +19,7 @@
 #include "base/log.hpp"
 #include "bumper/driver.hpp"
 #include "bunker/driver.hpp"
+#include "camera/driver.hpp"
 #include "cloud/driver.hpp"
 #include "config/receiver_params.hpp"
 #include "gnss/driver.hpp"
@@ -240,6 +243,33 @@ class Planner {
     return {};
   }
 
+  /// Cameras of pictures are not recorded: they would fill the disk.
+  Result<void> add_camera(const std::string& name, const CameraSetup& camera,
+                          const base::OnPicture& on_picture) {
+    if (!replays_.file_of.empty() || !camera.said.enabled) return {};
+    std::optional<camera::Source> source;
+    if (v4l2::path_of(camera.said.link).empty()) {
+      auto parsed = camera::parse_source(camera.said.link);
+      if (!parsed) return tl::unexpected(parsed.error());  // it was checked with the settings
+      source = std::move(*parsed);
+    }
+    DevicePlan plan;
+    plan.name = name;
+    plan.make = [name, camera, source, on_picture](asio::io_context& io, const DeviceEars& ears) {
+      camera::Driver::Doors doors;
+      doors.make_link = [camera, source, &io]() -> Result<std::unique_ptr<link::ByteLink>> {
+        if (source) return link::make_byte_link(io, source->address());
+        return open_picture_camera(io, camera);
+      };
+      doors.on_measurement = ears.on_measurement;
+      doors.on_picture = on_picture;
+      return device_of(
+          std::make_shared<camera::Driver>(name, camera.params, source, std::move(doors)));
+    };
+    plans_.push_back(std::move(plan));
+    return {};
+  }
+
   /// Its casters, with their logins, stand where others have their link.
   Result<void> add_ntrip(const Wired<ntrip::Params>& said) {
     if (!replays_.file_of.empty() || !said.wiring.enabled) return {};
@@ -317,8 +347,7 @@ class Planner {
 }  // namespace
 
 Result<std::vector<DevicePlan>> plan_devices(const Settings& s, const Options& options,
-                                             const base::OnSight& on_sight,
-                                             const base::OnVision& on_vision) {
+                                             const DeviceEyes& eyes) {
   auto replays = read_replays(options.replays, options.replay_speed, s.sensors);
   if (!replays) return tl::unexpected(replays.error());
   for (const std::string& remark : replays->remarks) base::log(base::Level::Info, "replay", remark);
@@ -338,7 +367,10 @@ Result<std::vector<DevicePlan>> plan_devices(const Settings& s, const Options& o
   if (done) done = planner.add<ByteStream, mti::Driver>("mti", s.mti);
   if (done) done = planner.add_ntrip(s.ntrip);
   for (const auto& [name, sensor] : s.sensors) {
-    if (done) done = planner.add_sensor(name, sensor, on_sight, on_vision);
+    if (done) done = planner.add_sensor(name, sensor, eyes.on_sight, eyes.on_vision);
+  }
+  for (const auto& [name, camera] : s.cameras) {
+    if (done) done = planner.add_camera(name, camera, eyes.on_picture);
   }
   if (!done) return tl::unexpected(done.error());
   return planner.take();

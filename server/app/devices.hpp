@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "app/options.hpp"
+#include "base/picture.hpp"
 #include "base/result.hpp"
 #include "base/sight.hpp"
 #include "base/vision.hpp"
@@ -12,11 +13,16 @@
 
 namespace roverd {
 
+/// Who hears of what they see, on their drivers' threads.
+struct DeviceEyes {
+  base::OnSight on_sight;      ///< sensors
+  base::OnVision on_vision;    ///< vision programs
+  base::OnPicture on_picture;  ///< cameras
+};
+
 /// Every driver that is enabled, or that the recordings to play are for. Errors name file, line and
-/// key, or the recording. @param on_sight, on_vision what sensors see and vision programs
-/// recognise, on their drivers' threads.
+/// key, or the recording.
 base::Result<std::vector<DevicePlan>> plan_devices(const Settings& settings, const Options& options,
-                                                   const base::OnSight& on_sight,
-                                                   const base::OnVision& on_vision);
+                                                   const DeviceEyes& eyes);
 
 }  // namespace roverd

@@ -33,6 +33,7 @@ constexpr double kSure_m = 0.5;
 constexpr double kSeenEvery_m = 0.5;
 constexpr std::size_t kMostSeen = 4000;
 constexpr double kUnheard_s = 3.0;
+constexpr double kBetter_s = 1.0;  ///< so long a better sensor is waited for
 /// Of what a lidar sees in all heights so much says where it is, and 20,000 such scans are 0.4 GB.
 constexpr nav::chart::ScanParams kScan{.most = 720};
 
@@ -62,6 +63,7 @@ struct MapMaker::Drive {
   nav::sense::PoseHistory history;
   std::string eye;  ///< the sensor that is looked through
   std::optional<base::Time> taken;
+  const base::Time begun = base::steady_now();
   base::Time heard = base::steady_now();  ///< when the last scan came that could be laid
   bool silent = false;                    ///< that was told
   std::optional<nav::chart::Pose2> last;  ///< odometry of the last scan
@@ -91,8 +93,9 @@ struct MapMaker::Drive {
   }
 };
 
-MapMaker::MapMaker(robot::Robot& robot, std::map<std::string, base::Mount> mounts)
-    : robot_(robot), mounts_(std::move(mounts)) {
+MapMaker::MapMaker(robot::Robot& robot, std::map<std::string, base::Mount> mounts,
+                   std::vector<std::string> eyes)
+    : robot_(robot), mounts_(std::move(mounts)), eyes_(std::move(eyes)) {
   sem_init(&news_, 0, 0);
 }
 
@@ -117,6 +120,7 @@ void MapMaker::take(const std::vector<std::shared_ptr<const base::Sight>>& sight
 base::Result<void> MapMaker::start() {
   const std::unique_lock turn(turn_, std::try_to_lock);
   if (!turn || drive_) return base::fail(base::Code::Conflict, "a map is being made already");
+  ends_ = false;
   drive_ = std::make_unique<Drive>();
   sights_.take(drive_->sights);  // of a drive before
   moved_.take(drive_->moved);
@@ -153,6 +157,7 @@ void MapMaker::forget() {
 }
 
 void MapMaker::cancel() {
+  ends_ = true;
   const std::lock_guard turn(turn_);
   stop_taking();
   forget();
@@ -197,11 +202,12 @@ base::Result<maps::About> MapMaker::finish(const Keep& keep) {
 
 base::Result<maps::About> MapMaker::draw(const Keep& keep) {
   Drive& drive = *drive_;
-  if (!drive.broken) drive.mapper.finish();
-  auto map = drive.mapper.draw(kCells_m[0]);
+  const auto ends = [this] { return ends_.load(); };
+  if (!drive.broken) drive.mapper.finish(ends);
+  auto map = drive.mapper.draw({.resolution_m = kCells_m[0], .give_up = ends});
   for (const double coarser_m : {kCells_m[1], kCells_m[2]}) {
     if (map || map.error().code != base::Code::TooLarge) break;
-    map = drive.mapper.draw(coarser_m);
+    map = drive.mapper.draw({.resolution_m = coarser_m, .give_up = ends});
   }
   if (!map) return tl::unexpected<base::Error>(map.error());
   const auto path = drive.mapper.path();
@@ -269,6 +275,9 @@ void MapMaker::tell_silence(Drive& drive) {
 void MapMaker::look(Drive& drive, const base::Sight& sight) {
   const auto mount = mounts_.find(sight.sensor);
   if (mount == mounts_.end() || (!drive.eye.empty() && drive.eye != sight.sensor)) return;
+  const bool best = eyes_.empty() || eyes_.front() == sight.sensor;
+  const bool may_come = base::seconds(base::steady_now() - drive.begun) < kBetter_s;
+  if (drive.eye.empty() && !best && may_come) return;  // the best one, in a moment
   if (drive.taken && base::seconds(sight.stamp - *drive.taken) < kEvery_s) return;
   const auto scan = nav::chart::scan_of(sight, mount->second, drive.history, kScan);
   const auto odometry = scan ? drive.history.at(scan->stamp) : std::nullopt;

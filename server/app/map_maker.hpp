@@ -36,7 +36,10 @@ namespace roverd {
 class MapMaker {
  public:
   /// @param robot outlives it. @param mounts of the sensors, by name
-  MapMaker(robot::Robot& robot, std::map<std::string, base::Mount> mounts);
+  /// @param eyes their names, the best to look through first. A drive is made of one: the best that
+  /// is heard in its first second
+  MapMaker(robot::Robot& robot, std::map<std::string, base::Mount> mounts,
+           std::vector<std::string> eyes = {});
   ~MapMaker();
   MapMaker(const MapMaker&) = delete;
   MapMaker& operator=(const MapMaker&) = delete;
@@ -55,7 +58,8 @@ class MapMaker {
   /// Drops what was seen. May wait for a scan. Conflict: none is being made (any more), or it is
   /// being drawn by finish().
   base::Result<void> drop();
-  /// The same at the program's end. May wait for a scan or for finish(). Idempotent.
+  /// The same at the program's end. A finish() that draws meanwhile gives up at its next scan or
+  /// loop; what is being kept already is waited for. Idempotent.
   void cancel();
   /// Any thread. Empty: none is being made.
   std::optional<maps::Making> progress() const;
@@ -73,13 +77,15 @@ class MapMaker {
 
   robot::Robot& robot_;
   const std::map<std::string, base::Mount> mounts_;
+  const std::vector<std::string> eyes_;
   base::Inbox<std::shared_ptr<const base::Sight>> sights_{64};
   base::Inbox<nav::sense::Odometry> moved_{512};
   std::map<std::string, base::Time> put_;  ///< the newest of each sensor; the sense thread's
   sem_t news_{};
   std::atomic<bool> taking_{false};
   std::atomic<bool> stop_{false};
-  std::mutex turn_;  ///< of whoever begins or ends a drive, and of what follows
+  std::atomic<bool> ends_{false};  ///< the program does
+  std::mutex turn_;                ///< of whoever begins or ends a drive, and of what follows
   std::unique_ptr<Drive> drive_;
   std::thread thread_;
   mutable std::mutex told_mutex_;  ///< leaf

@@ -192,6 +192,11 @@ Told add_locate(CLI::App& app, LocateCommand& c) {
   l->add_flag(
       "--no-start", [&c](std::int64_t) { c.options.with_start = false; },
       "the log's first pose is not told: the place is looked for in the whole map");
+  l->add_option(
+       "--starts", c.starts,
+       "in place of the whole drive: so many starts without a pose, from places of it that "
+       "are drawn by chance")
+      ->check(number_in(1, 10'000));
   const auto which = [](WhichScans& into) {
     return [&into](const std::string& word) {
       into = word == "all" ? WhichScans::All : word == "odd" ? WhichScans::Odd : WhichScans::Even;

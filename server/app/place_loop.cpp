@@ -1,5 +1,7 @@
 #include "app/place_loop.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <ctime>
 #include <optional>
@@ -65,14 +67,31 @@ nav::place::WhereaboutsParams whereabouts_of(const Settings& settings) {
   nav::place::WhereaboutsParams out;
   const nav::EstimateParams& e = settings.robot.estimate;
   if (e.has_map()) out.local_origin = base::LatLon{e.map_lat, e.map_lon};
+  out.eyes = eyes_of(settings);
   return out;
 }
 
 std::map<std::string, base::Mount> mounts_of(const Settings& settings) {
   std::map<std::string, base::Mount> out;
   for (const auto& [name, sensor] : settings.sensors) {
-    if (sensor.said.enabled && sensor.said.ranging()) out.emplace(name, sensor.said.mount());
+    const bool asked = settings.map.sensor.empty() || settings.map.sensor == name;
+    if (asked && sensor.said.enabled && sensor.said.ranging()) {
+      out.emplace(name, sensor.said.mount());
+    }
   }
+  return out;
+}
+
+std::vector<std::string> eyes_of(const Settings& settings) {
+  const auto rank = [&settings](const std::string& name) {
+    constexpr std::array kBest{"sick", "velodyne", "cloud", "depth"};
+    const auto& kind = settings.sensors.at(name).said.kind;
+    return std::find(kBest.begin(), kBest.end(), kind) - kBest.begin();
+  };
+  std::vector<std::string> out;
+  for (const auto& [name, mount] : mounts_of(settings)) out.push_back(name);
+  std::stable_sort(out.begin(), out.end(),
+                   [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
   return out;
 }
 

@@ -91,6 +91,10 @@ base::Result<PlaceLoop::Map> map_of(const maps::Shelf& shelf, std::int64_t id);
 /// As people and the shelf say it.
 maps::Anchor told_anchor(const nav::place::MapAnchor& anchor) noexcept;
 nav::place::WhereaboutsParams whereabouts_of(const Settings& settings);
+/// Of the sensors in which a map is looked for and made: [map] sensor, or all that look around.
 std::map<std::string, base::Mount> mounts_of(const Settings& settings);
+/// Their names, the best for a map of the plane first: scanners of one plane, as such maps are
+/// drawn by, then lidars, depth cameras with their narrow view, single rangers.
+std::vector<std::string> eyes_of(const Settings& settings);
 
 }  // namespace roverd

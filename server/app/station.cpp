@@ -66,6 +66,7 @@ void Station::Impl::halt() noexcept {
   if (supervisor) supervisor->stop();
   if (around) around->stop();
   if (place) place->stop();
+  if (tags) tags->stop();
   if (maker) maker->cancel();
   if (sense) sense->stop();  // a driver that hangs may hold it for longer than the robot lives
 }

@@ -18,6 +18,7 @@
 #include "api/api.hpp"
 #include "app/around_loop.hpp"
 #include "app/backup_keeper.hpp"
+#include "app/camera_rack.hpp"
 #include "app/child_process.hpp"
 #include "app/control_loop.hpp"
 #include "app/devices.hpp"
@@ -32,10 +33,12 @@
 #include "app/recordings.hpp"
 #include "app/sense_loop.hpp"
 #include "app/station.hpp"
+#include "app/tag_loop.hpp"
 #include "app/version.hpp"
 #include "app/wiring.hpp"
 #include "app/workshop.hpp"
 #include "base/angle.hpp"
+#include "base/known_place.hpp"
 #include "base/log.hpp"
 #include "base/params.hpp"
 #include "config/learned.hpp"
@@ -50,7 +53,7 @@
 #include "pair/code.hpp"
 #include "robot/robot.hpp"
 #include "store/store.hpp"
-#include "store/tiles.hpp"
+#include "store/tile_shelf.hpp"
 #include "supervise/claim.hpp"
 #include "supervise/service_manager.hpp"
 #include "supervise/supervisor.hpp"
@@ -66,12 +69,14 @@ struct Station::Impl {
   asio::io_context web{net::kWebConcurrency};
   robot::Robot robot;
   net::Files page{net::page_entries()};
-  store::TileFolder tiles;
+  std::unique_ptr<store::TileShelf> tiles;
   std::unique_ptr<AroundLoop> around;  ///< null: nobody goes around anything
   std::unique_ptr<maps::Shelf> shelf;
   std::unique_ptr<MapMaker> maker;   ///< null: no sensors
   std::unique_ptr<PlaceLoop> place;  ///< null: no sensors
   std::shared_ptr<SenseLoop> sense;  ///< null: no sensors
+  std::shared_ptr<CameraRack> cameras;
+  std::unique_ptr<TagLoop> tags;  ///< null: no camera reads them
   std::unique_ptr<Supervisor> supervisor;
   std::unique_ptr<store::Store> store;
   std::unique_ptr<BackupKeeper> backups;
@@ -114,8 +119,9 @@ struct Station::Impl {
   Result<void> open_maps(const Settings& settings, const Options& options);
   void tell_map_trouble(const std::string& what);
   api::MapDoor map_door();
+  api::KnownPlaceDoor known_places_door(const Settings& settings, const Options& options);
   Result<void> open_senses(const Settings& settings, const Options& options);
-  Result<void> open_tiles(const Settings& settings);
+  Result<void> open_tiles(const Settings& settings, const Options& options);
   Result<void> open_store(const Settings& settings, const Options& options);
   void open_estop(const Options& options, bool first);
   void when_estop_kept(std::function<void()> then);

@@ -1,4 +1,5 @@
 #include "app/station_impl.hpp"
+#include "config/known_places.hpp"
 #include "config/lookout.hpp"
 
 namespace roverd {
@@ -6,6 +7,19 @@ namespace roverd {
 namespace {
 /// A stop that was obeyed is confirmed then, whether the disk has taken it or hangs.
 constexpr base::Duration kKeepEstop = std::chrono::milliseconds(200);
+
+/// Of cameras that stay as long as the station.
+api::CameraDoor camera_door(const CameraRack& rack) {
+  constexpr int kSmallQuality = 70;
+  api::CameraDoor door;
+  for (const CameraRack::Camera& camera : rack.cameras()) {
+    door.cameras.push_back({camera.name, camera.kind, [&camera] { return camera.newest(); }});
+  }
+  door.smaller = [](const base::Picture& picture, int divisor) {
+    return camera::smaller(picture.jpeg, divisor, kSmallQuality);
+  };
+  return door;
+}
 
 bool looks_around(const Settings& settings) {
   return std::ranges::any_of(settings.sensors, [](const auto& one) {
@@ -25,13 +39,21 @@ Result<void> Station::Impl::open(const Settings& settings, const Options& option
   const auto recognise = [to = std::weak_ptr(sense)](std::shared_ptr<const base::Vision> vision) {
     if (const auto eyes = to.lock()) eyes->recognise(std::move(vision));
   };
-  auto plans = plan_devices(settings, options, see, recognise);
+  cameras = std::make_shared<CameraRack>(settings.cameras);
+  if (read_tags(settings.cameras)) {
+    robot.read_tags();
+    tags = std::make_unique<TagLoop>(robot, cameras, settings.sense.tags);
+  }
+  const auto take = [to = std::weak_ptr(cameras)](base::PicturePtr picture) {
+    if (const auto rack = to.lock()) rack->put(std::move(picture));
+  };
+  auto plans = plan_devices(settings, options, {see, recognise, take});
   if (!plans) return tl::unexpected(plans.error());
   auto made = Supervisor::make(std::move(*plans),
                                [this](const base::Measurement& m) { robot.measurements().put(m); });
   if (!made) return tl::unexpected(made.error());
   supervisor = std::move(*made);
-  if (auto done = open_tiles(settings); !done) return done;
+  if (auto done = open_tiles(settings, options); !done) return done;
   const bool first = !std::filesystem::exists(std::filesystem::path(options.data) / "roverd.db");
   if (auto done = open_store(settings, options); !done) return done;
   if (auto done = claim_robot(settings, options); !done) return done;
@@ -108,6 +130,42 @@ api::MapDoor Station::Impl::map_door() {
   return door;
 }
 
+/// Those of the configuration before those that were kept; a file that cannot be read is put aside.
+api::KnownPlaceDoor Station::Impl::known_places_door(const Settings& settings,
+                                                     const Options& options) {
+  const auto file = std::filesystem::path(options.data) / "known_places.json";
+  api::KnownPlaceDoor door;
+  door.begin = known_places_of(settings.known_places, settings.robot.estimate);
+  auto kept = read_known_places(file);
+  if (!kept) {
+    auto aside = file;
+    aside += ".damaged";
+    std::error_code ignored;
+    std::filesystem::rename(file, aside, ignored);
+    tell_map_trouble("no place that was entered is known any more: " + file.string() + ": " +
+                     kept.error().detail + "; it is " + aside.string() + " now");
+    kept = std::vector<base::KnownPlace>{};
+  }
+  for (base::KnownPlace& entered : *kept) {
+    const bool twice = std::ranges::any_of(door.begin, [&entered](const base::KnownPlace& k) {
+      return k.name == entered.name || (k.tag && k.tag == entered.tag);
+    });
+    if (twice) {
+      tell_map_trouble("the known place " + entered.name +
+                       " is left out: the configuration has its name or its tag");
+    } else {
+      door.begin.push_back(std::move(entered));
+    }
+  }
+  door.keep = [file](const std::vector<base::KnownPlace>& places) {
+    std::vector<base::KnownPlace> own;
+    std::ranges::copy_if(places, std::back_inserter(own),
+                         [](const base::KnownPlace& p) { return !p.configured; });
+    return write_known_places(file, own);
+  };
+  return door;
+}
+
 /// What recorded sensors saw is looked at, too; nothing moves by a recording, so none of them is
 /// demanded.
 Result<void> Station::Impl::open_senses(const Settings& settings, const Options& options) {
@@ -143,21 +201,27 @@ Result<void> Station::Impl::open_senses(const Settings& settings, const Options&
   }
   place = std::make_unique<PlaceLoop>(robot, std::move(map), whereabouts_of(settings),
                                       mounts_of(settings));
-  maker = std::make_unique<MapMaker>(robot, mounts_of(settings));
+  maker = std::make_unique<MapMaker>(robot, mounts_of(settings), eyes_of(settings));
   sense = std::make_shared<SenseLoop>(robot, std::move(*lookout), shown_of(settings), place.get(),
                                       maker.get());
   around = std::make_unique<AroundLoop>(robot);  // `then` may become "around" at any time
   return {};
 }
 
-Result<void> Station::Impl::open_tiles(const Settings& settings) {
-  for (const auto& set : settings.tiles) {  // one by one first, to name the line of the wrong one
-    if (auto done = store::TileFolder().open({set}); !done) {
-      return base::fail(done.error().code,
-                        settings.where("tiles." + set.first) + ": " + done.error().detail);
+Result<void> Station::Impl::open_tiles(const Settings& settings, const Options& options) {
+  for (const auto& [set, path] : settings.tiles) {  // first, to name the line of the wrong one
+    if (auto file = store::TileFile::open(set, path); !file) {
+      return base::fail(file.error().code, settings.where("tiles." + set) + ": tile set " + set +
+                                               ", file " + path.string() + ": " +
+                                               file.error().detail);
     }
   }
-  return tiles.open(settings.tiles);
+  auto opened =
+      store::TileShelf::open(std::filesystem::path(options.data) / "tiles", settings.tiles);
+  if (!opened) return tl::unexpected(opened.error());
+  tiles = std::move(*opened);
+  for (const std::string& trouble : tiles->troubles()) tell_map_trouble(trouble);
+  return {};
 }
 
 Result<void> Station::Impl::open_store(const Settings& settings, const Options& options) {
@@ -247,15 +311,20 @@ void Station::Impl::make_api(const Settings& settings, const Options& options) {
                  .services = *services,
                  .version = kVersion,
                  .profile = profile_of(settings, *supervisor)};
-  deps.tiles = {tiles.sets(), [this](const std::string& set, int zoom, int x, int y) {
-                  return tiles.read(set, zoom, x, y);
-                }};
+  deps.tiles.shelf = tiles.get();
+  for (const auto& [name, layer] : settings.layers) {
+    deps.tiles.online.push_back({name, layer.url, layer.attribution, layer.max_zoom});
+  }
   deps.drivers = driver_door();
   deps.maps = map_door();
+  deps.known_places = known_places_door(settings, options);
+  robot.know(std::make_shared<const std::vector<base::KnownPlace>>(deps.known_places.begin));
+  deps.cameras = camera_door(*cameras);
   deps.drill = drill_door(drill, robot, settings, options);
-  deps.page = [this](const net::Request& request) {
+  deps.page = [this, elsewhere = origins_of(settings.layers)](const net::Request& request) {
     auto answer = front ? front->answer(request) : presence->answer(request);
-    return answer ? std::move(answer) : page.answer(request);
+    if (!answer && (answer = page.answer(request))) net::set_security_headers(*answer, elsewhere);
+    return answer;
   };
   deps.tls = front != nullptr;
   if (front && reaches_out(settings.server)) {

@@ -71,6 +71,7 @@ api::Profile profile_of(const Settings& s, const Supervisor& supervisor) {
     profile.item_types.emplace_back("wall");
     profile.item_types.emplace_back("landmarks");
   }
+  if (read_tags(s.cameras) && !s.robot.vehicle.steered()) profile.item_types.emplace_back("dock");
   profile.limits = limits_of(s);
   profile.limits.item_types = profile.item_types;
   profile.limits.actions = robot::kActions;

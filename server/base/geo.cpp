@@ -11,6 +11,22 @@ namespace roverd::base {
 namespace {
 
 using GeographicLib::Geodesic;
+
+/// The plane of the last frame that this thread asked about: to prepare one costs ten times a
+/// point, and a thread hardly ever has two frames in hand.
+const TangentPlane& plane_of(LatLon origin, double height_m) noexcept {
+  struct Last {
+    LatLon origin;
+    double height_m;
+    TangentPlane plane;
+  };
+  thread_local Last last{{}, 0.0, TangentPlane({}, 0.0)};
+  const bool same =
+      last.origin.lat == origin.lat && last.origin.lon == origin.lon && last.height_m == height_m;
+  if (!same) last = {origin, height_m, TangentPlane(origin, height_m)};
+  return last.plane;
+}
+
 }  // namespace
 
 bool is_valid(LatLon p) noexcept {
@@ -22,11 +38,11 @@ LocalFrame::LocalFrame(std::uint32_t id, LatLon origin, double height_m) noexcep
     : id_(id), origin_(origin), height_m_(height_m) {}
 
 EnuPoint LocalFrame::to_local(LatLon p) const noexcept {
-  return TangentPlane(origin_, height_m_).to_local(p);
+  return plane_of(origin_, height_m_).to_local(p);
 }
 
 LatLon LocalFrame::to_global(EnuPoint p) const noexcept {
-  return TangentPlane(origin_, height_m_).to_global(p);
+  return plane_of(origin_, height_m_).to_global(p);
 }
 
 TangentPlane::TangentPlane(LatLon origin, double height_m) noexcept

@@ -13,10 +13,12 @@
 #include "base/calibration.hpp"
 #include "base/drive_command.hpp"
 #include "base/geo.hpp"
+#include "base/known_place.hpp"
 #include "base/measurements.hpp"
 #include "base/result.hpp"
 #include "base/row_state.hpp"
 #include "base/sensing.hpp"
+#include "base/tag_state.hpp"
 #include "base/time.hpp"
 
 namespace roverd::base {
@@ -79,7 +81,8 @@ struct Pose {
                                    ///< only driving showed it, and driving may go a bit aside
   Ellipse ellipse;
   std::optional<double> alt_msl_m;
-  std::string source;  ///< "gnss", "map", "gnss+odometry", "map+odometry", "odometry"
+  std::string
+      source;  ///< "gnss", "map", "gnss+odometry", "map+odometry", "landmark+odometry", "odometry"
 };
 
 /// Where in its route a mission stands: enough to go on from there, also after a restart.
@@ -93,6 +96,7 @@ struct MissionPlace {
   std::vector<int> jumps_left;  ///< of each jump; −1: not counted yet
   int laps = 0;                 ///< driven of a mission that repeats
   bool driving = false;         ///< it was under way: the robot may have gone on a little from here
+  std::optional<LatLon> at{};   ///< where the robot was then, while it drove and knew it to 0.5 m
   friend bool operator==(const MissionPlace&, const MissionPlace&) = default;
 };
 
@@ -131,6 +135,7 @@ struct Activity {
   std::string reason;          ///< why failed, held or waiting
   std::optional<LatLon> goal;  ///< of CIRCLE: its centre
   std::optional<double> goal_yaw_rad;
+  std::optional<int> tag;            ///< of DOCK, where it is a tag
   std::optional<double> distance_m;  ///< left to the goal, along the way; of FOLLOW: to the target
   std::optional<double> turn_rad;    ///< left to turn, left positive
   std::optional<double> radius_m;    ///< of CIRCLE; of LOITER: farther away it drives back
@@ -262,6 +267,8 @@ struct Votes {
   double doubt_m = 0.0;
   double doubt_rad = 0.0;
   std::uint64_t accusations = 0;  ///< since the start
+  /// When fixed positions that driving has not proved yet contradicted another sensor last.
+  std::optional<Time> unproved_differed;
 
   const SenseVote& operator[](Sense s) const noexcept { return of[static_cast<std::size_t>(s)]; }
 };
@@ -280,8 +287,10 @@ struct EstimatorHealth {
   double side_slip = 0.0;
   std::optional<EnuPoint> gnss_offset;  ///< slow error of the receiver, as estimated
   InputHealth position, velocity, compass, heading, odometry, inertial;
-  InputHealth place;    ///< what the map says
-  bool by_map = false;  ///< the position is the map's, not the satellites'
+  InputHealth place;         ///< what the map says
+  InputHealth landmark;      ///< what known places say
+  bool by_map = false;       ///< the position is the map's, not the satellites'
+  bool by_landmark = false;  ///< known places led, since fixed satellites or a map did last
   /// What is added to the places of the map: by so much the satellites showed that its anchor is
   /// off. Zero where nothing did.
   EnuPoint map_offset;
@@ -340,6 +349,8 @@ struct TeleopState {
   std::string reason;                   ///< why it is off, or what helps; else empty
   std::vector<std::uint64_t> released;  ///< the sources of which one may drive
   std::optional<double> delay_s;        ///< of whoever drives: no command is later
+  /// Of its speed, what drives by itself is allowed by a hand; empty: nobody uses that.
+  std::optional<double> auto_share{};
 };
 
 struct Snapshot {
@@ -381,7 +392,11 @@ struct Snapshot {
   /// first. Null: none.
   std::shared_ptr<const std::vector<LatLon>> detour;
   std::optional<Obstacle> obstacle;  ///< that limits the speed, or stops
-  std::optional<RowState> row;       ///< while a mission drives along one
+  /// By its cameras; null: none of them reads tags.
+  std::shared_ptr<const std::vector<TagState>> tags;
+  /// Those that were entered, by name; null: none.
+  std::shared_ptr<const std::vector<KnownPlaceState>> known_places;
+  std::optional<RowState> row;  ///< while a mission drives along one
   std::shared_ptr<const std::vector<SensorState>>
       sensors;                 ///< of the profile; empty: it has none, or nothing came yet
   bool sensors_stale = false;  ///< what they said of themselves is too old to be true

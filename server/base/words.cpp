@@ -359,6 +359,24 @@ std::optional<CalibrationKind> calibration_from(std::string_view text) noexcept 
   return std::nullopt;
 }
 
+std::string_view to_string(PlaceVerdict verdict) noexcept {
+  switch (verdict) {
+    case PlaceVerdict::Unseen:
+      return "unseen";
+    case PlaceVerdict::Used:
+      return "used";
+    case PlaceVerdict::Agrees:
+      return "agrees";
+    case PlaceVerdict::Contradicts:
+      return "contradicts";
+    case PlaceVerdict::Disputed:
+      return "disputed";
+    case PlaceVerdict::Ambiguous:
+      return "ambiguous";
+  }
+  return "unseen";
+}
+
 std::string_view to_string(CalibrationPhase phase) noexcept {
   switch (phase) {
     case CalibrationPhase::None:

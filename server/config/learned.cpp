@@ -123,6 +123,8 @@ Json merged(Json json, const nav::Learned& learned, const std::string& vehicle,
   return json;
 }
 
+}  // namespace
+
 Result<void> replace_file(const std::filesystem::path& file, const std::string& text) {
   std::filesystem::path next = file;
   next += ".new";
@@ -137,8 +139,6 @@ Result<void> replace_file(const std::filesystem::path& file, const std::string& 
   if (folder.fd >= 0) ::fsync(folder.fd);
   return {};
 }
-
-}  // namespace
 
 std::string learned_text(const nav::Learned& learned, const std::string& vehicle,
                          base::WallTime now) {

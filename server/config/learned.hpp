@@ -31,4 +31,8 @@ nav::Learned read_learned(const std::filesystem::path& file, const std::string& 
 base::Result<void> write_learned(const std::filesystem::path& file, const nav::Learned& learned,
                                  const std::string& vehicle, base::WallTime now);
 
+/// The file holds this text or what it held before, also after a power cut. Durable when it
+/// returns. Unavailable, with the system's reason.
+base::Result<void> replace_file(const std::filesystem::path& file, const std::string& text);
+
 }  // namespace roverd

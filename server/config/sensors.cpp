@@ -17,13 +17,6 @@ base::Result<void> refuse(const std::string& name, const std::string& member, st
   return base::fail(base::Code::Invalid, std::move(whole), {{key, std::move(detail)}});
 }
 
-/// They stand in one list with the drivers.
-bool is_driver(const std::string& name) noexcept {
-  constexpr std::array<std::string_view, 9> kDrivers{
-      "bunker", "ackermann", "ratio", "twist", "bumper", "gnss", "mti", "ntrip", "gpsd"};
-  return std::ranges::find(kDrivers, name) != kDrivers.end();
-}
-
 /// By what a kind is heard.
 struct Way {
   std::string_view kind;
@@ -98,7 +91,7 @@ bool same_peer(std::string_view a, std::string_view b) noexcept {
 }
 
 base::Result<void> check_one(const std::string& name, const Sensor& sensor) {
-  if (is_driver(name)) return refuse(name, "kind", "is of a name that a driver has");
+  if (is_driver_name(name)) return refuse(name, "kind", "is of a name that a driver has");
   bool known = false;
   base::Result<void> good;
   with_kind(sensor, [&](const auto& params) {
@@ -158,11 +151,16 @@ int SensorSettings::listens() const noexcept {
   return bad == std::errc{} && last == end && port > 0 && port < 65536 ? port : 0;
 }
 
-std::string_view sensor_of(std::string_view key) noexcept {
-  constexpr std::string_view kBefore = "sensors.";
-  if (!key.starts_with(kBefore)) return {};
-  key.remove_prefix(kBefore.size());
+std::string_view part_of(std::string_view key, std::string_view group) noexcept {
+  if (!key.starts_with(group) || key.size() <= group.size() || key[group.size()] != '.') return {};
+  key.remove_prefix(group.size() + 1);
   return key.substr(0, key.find('.'));
+}
+
+bool is_driver_name(std::string_view name) noexcept {
+  constexpr std::array<std::string_view, 9> kDrivers{
+      "bunker", "ackermann", "ratio", "twist", "bumper", "gnss", "mti", "ntrip", "gpsd"};
+  return std::ranges::find(kDrivers, name) != kDrivers.end();
 }
 
 bool is_sensor_name(std::string_view name) noexcept {

@@ -21,6 +21,7 @@
 #include "base/sight.hpp"
 #include "cloud/params.hpp"
 #include "nav/sense/params.hpp"
+#include "nav/tags/params.hpp"
 #include "ranges/params.hpp"
 #include "robot/guard/outline.hpp"
 #include "sick/params.hpp"
@@ -102,6 +103,7 @@ struct SenseSettings {
   nav::sense::PersistParams persist;
   nav::sense::GridParams grid;
   nav::sense::HealthParams health;
+  nav::tags::TagParams tags;
   robot::OutlineParams outline;  ///< further keys of [nav.tool]
 };
 
@@ -112,6 +114,7 @@ void sections(V& v, SenseSettings& s) {
   v("sense.persist", s.persist);
   v("sense.grid", s.grid);
   v("sense.health", s.health);
+  v("nav.tags", s.tags);
 }
 
 using Sensors = std::map<std::string, Sensor>;
@@ -130,8 +133,10 @@ void with_kind(S& s, V&& v) {
   if (s.said.kind == "vision") v(s.vision);
 }
 
-/// "sensors.front.link" is of "front"; empty: it is no key of a sensor.
-std::string_view sensor_of(std::string_view key) noexcept;
+/// "sensors.front.link" is of "front" in the group "sensors"; empty: it is no key of that group.
+std::string_view part_of(std::string_view key, std::string_view group) noexcept;
+/// Drivers, sensors and cameras stand in one list.
+bool is_driver_name(std::string_view name) noexcept;
 /// A name that a section may have: a to z, 0 to 9 and _, 24 signs at most.
 bool is_sensor_name(std::string_view name) noexcept;
 

@@ -190,6 +190,11 @@ Sections sections_of(Settings& s) {
       return done;
     });
   }
+  for (auto& [name, camera] : s.cameras) {
+    out.emplace("cameras." + name, section(camera.said, camera.params));
+  }
+  for (auto& [name, layer] : s.layers) out.emplace("layers." + name, section(layer));
+  for (auto& [name, place] : s.known_places) out.emplace("known_places." + name, section(place));
   Collect collect{out};
   robot::sections(collect, s.robot);
   sections(collect, s.sense);
@@ -197,23 +202,37 @@ Sections sections_of(Settings& s) {
   return out;
 }
 
-/// A sensor's section makes it; its kind is read first, for it says which other keys there are.
-Result<void> make_sensors(Settings& s, const std::vector<Entry>& entries) {
+/// A section of a group makes what is named in it. @param most of them.
+template <class T>
+Result<T*> named_part(std::map<std::string, T>& all, const Entry& entry, std::string_view group,
+                      std::size_t most) {
+  const std::string name(part_of(entry.key, group));
+  if (name.empty()) return nullptr;
+  const std::string one(group.substr(0, group.size() - 1));  // "sensors", "cameras"
+  if (!is_sensor_name(name)) {
+    return base::fail(
+        base::Code::Invalid,
+        entry.place + ": a " + one + "'s name has a to z, 0 to 9 and _, 24 signs at most");
+  }
+  T& part = all[name];
+  if (all.size() <= most) return &part;
+  return base::fail(base::Code::Invalid,
+                    entry.place + ": more than " + std::to_string(most) + " " + std::string(group));
+}
+
+/// A sensor's kind is read first, for it says which other keys there are.
+Result<void> make_parts(Settings& s, const std::vector<Entry>& entries) {
   for (const auto& entry : entries) {
-    const std::string name(sensor_of(entry.key));
-    if (name.empty()) continue;
-    if (!is_sensor_name(name)) {
-      return base::fail(base::Code::Invalid, entry.place +
-                                                 ": a sensor's name has a to z, 0 to 9 "
-                                                 "and _, 24 signs at most");
-    }
-    Sensor& sensor = s.sensors[name];
-    if (s.sensors.size() > kMostSensors) {
-      return base::fail(base::Code::Invalid,
-                        entry.place + ": more than " + std::to_string(kMostSensors) + " sensors");
-    }
-    if (entry.key != "sensors." + name + ".kind" || !entry.value) continue;
-    if (const auto* kind = std::get_if<std::string>(&*entry.value)) sensor.said.kind = *kind;
+    const auto camera = named_part(s.cameras, entry, "cameras", kMostCameras);
+    if (!camera) return tl::unexpected(camera.error());
+    const auto layer = named_part(s.layers, entry, "layers", kMostLayers);
+    if (!layer) return tl::unexpected(layer.error());
+    const auto place = named_part(s.known_places, entry, "known_places", base::kMostKnownPlaces);
+    if (!place) return tl::unexpected(place.error());
+    const auto sensor = named_part(s.sensors, entry, "sensors", kMostSensors);
+    if (!sensor) return tl::unexpected(sensor.error());
+    if (*sensor == nullptr || !entry.key.ends_with(".kind") || !entry.value) continue;
+    if (const auto* kind = std::get_if<std::string>(&*entry.value)) (*sensor)->said.kind = *kind;
   }
   return {};
 }
@@ -240,7 +259,7 @@ bool leads_to_section(const Sections& sections, const std::string& key) {
 }
 
 Result<void> set_all(Settings& settings, const std::vector<Entry>& entries) {
-  if (auto made = make_sensors(settings, entries); !made) return made;
+  if (auto made = make_parts(settings, entries); !made) return made;
   const auto sections = sections_of(settings);
   for (const auto& entry : entries) {
     if (!entry.value) {
@@ -295,11 +314,28 @@ Result<void> check_badge(const Settings& s) {
   return {};
 }
 
+Result<void> check_map(const Settings& s) {
+  const std::string& eye = s.map.sensor;
+  if (eye.empty()) return {};
+  const auto sensor = s.sensors.find(eye);
+  const char* why =
+      sensor == s.sensors.end()        ? " names no sensor: there is no [sensors."
+      : !sensor->second.said.enabled   ? " names a sensor that is not enabled: [sensors."
+      : !sensor->second.said.ranging() ? " names a sensor that sees no walls: [sensors."
+                                       : nullptr;
+  if (why == nullptr) return {};
+  return base::fail(base::Code::Invalid, s.where("map.sensor") + why + eye + "]");
+}
+
 /// What only the whole tells.
 Result<void> check_all(const Settings& s) {
   if (auto good = at_its_place(s, robot::check(s.robot)); !good) return good;
   if (auto good = at_its_place(s, check(s.sense)); !good) return good;
   if (auto good = at_its_place(s, check(s.sensors, ears_of(s))); !good) return good;
+  if (auto good = check_map(s); !good) return good;
+  if (auto good = at_its_place(s, check(s.cameras, s.sensors)); !good) return good;
+  if (auto good = at_its_place(s, check(s.layers)); !good) return good;
+  if (auto good = at_its_place(s, check(s.known_places, s.robot.estimate)); !good) return good;
   if (auto good = check_server(s); !good) return good;
   if (auto good = check_badge(s); !good) return good;
   const std::string& level = s.server.log_level;

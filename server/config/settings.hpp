@@ -12,6 +12,9 @@
 #include "base/result.hpp"
 #include "bumper/params.hpp"
 #include "bunker/driver.hpp"
+#include "config/cameras.hpp"
+#include "config/known_places.hpp"
+#include "config/layers.hpp"
 #include "config/sensors.hpp"
 #include "gnss/driver.hpp"
 #include "mti/params.hpp"
@@ -205,6 +208,7 @@ void fields(V& v, BackupSettings& p) {
 /// The map of the plane in which the robot looks for itself, as map servers keep them.
 struct MapSettings {
   std::string file;
+  std::string sensor;
   double anchor_lat = 0.0;
   double anchor_lon = 0.0;
   double anchor_heading_deg = 90.0;
@@ -217,6 +221,9 @@ void fields(V& v, MapSettings& p) {
   v("file", p.file,
     "the .yaml of a map, its .pgm beside it: the robot looks for itself in it by its scanner, "
     "where satellites are not fixed; empty: no map");
+  v("sensor", p.sensor,
+    "the sensor in whose scans the place is looked for and of which maps are made; empty: the best "
+    "that is heard, scanners of one plane before lidars, depth cameras and single rangers");
   v("anchor_lat", p.anchor_lat, -90.0, 90.0,
     "latitude of the map's origin (x = y = 0); this and anchor_lon 0: not known. The map is laid "
     "where the satellites see the robot then, or at nav.estimate.map_lat and map_lon");
@@ -248,6 +255,9 @@ struct Settings {
   Wired<mti::Params> mti;
   Wired<ntrip::Params> ntrip;
   Sensors sensors;  ///< by name
+  Cameras cameras;  ///< by name
+  Layers layers;    ///< by name
+  KnownPlaceSections known_places;
   SenseSettings sense;
   robot::Config robot;
   robot::Config reviewed;  ///< as profile and file say, without --set and what was changed and kept

@@ -194,7 +194,7 @@ class PlanCheck {
   static bool drives_from_anywhere(const Item& item) {
     return std::holds_alternative<Move>(item) || std::holds_alternative<TurnBy>(item) ||
            std::holds_alternative<Row>(item) || std::holds_alternative<Wall>(item) ||
-           std::holds_alternative<Landmarks>(item);
+           std::holds_alternative<Landmarks>(item) || std::holds_alternative<Dock>(item);
   }
 
   void distances() {
@@ -359,6 +359,7 @@ std::string why_not_drivable(std::string_view type) {
   if (type == "row") return item + "no scanner that sees rows is configured";
   if (type == "wall") return item + "no scanner or camera that sees walls is configured";
   if (type == "landmarks") return item + "no scanner or camera that sees landmarks is configured";
+  if (type == "dock") return item + "no camera that reads tags is configured";
   return item + "items of type " + std::string(type) + " are not available yet";
 }
 

@@ -110,6 +110,7 @@ class Walk {
     if (wall.length_m) add_way(*wall.length_m, wall.speed_mps.value_or(speed_mps_));
   }
   void pass(const Landmarks&) {}
+  void pass(const Dock&) {}
   void pass(const Action&) {}
   void pass(const Loiter& loiter) {
     if (const auto at = loiter.at()) go(*at, speed_mps_);

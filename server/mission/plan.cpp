@@ -10,8 +10,8 @@ namespace roverd::mission {
 std::string_view type_name(const Item& item) noexcept {
   // In the order of the variant.
   static constexpr std::array<std::string_view, std::variant_size_v<Item>> kNames{
-      "waypoint", "local",     "move", "turn",        "wait",   "speed",  "row",
-      "wall",     "landmarks", "jump", "return_home", "action", "loiter", "circle"};
+      "waypoint",  "local", "move", "turn",        "wait",   "speed",  "row",   "wall",
+      "landmarks", "dock",  "jump", "return_home", "action", "loiter", "circle"};
   return item.valueless_by_exception() ? std::string_view{} : kNames[item.index()];
 }
 

@@ -57,6 +57,14 @@ struct Speed {
   double speed_mps = 0.0;  ///< for the items that follow
   friend bool operator==(const Speed&, const Speed&) = default;
 };
+/// Where what is driven by sight ends at the latest: where a place is passed beside it. Neither:
+/// nowhere. Not both.
+struct Until {
+  std::optional<double> lat{};
+  std::optional<double> lon{};
+  std::optional<std::string> place{};  ///< the name of a known place (base/known_place.hpp)
+  friend bool operator==(const Until&, const Until&) = default;
+};
 /// Along plants to both sides, in the middle, or along those of one side.
 struct Row {
   RowSide side = RowSide::Both;
@@ -64,6 +72,7 @@ struct Row {
   std::optional<double> speed_mps{};   ///< empty: as the profile says for rows
   std::optional<double> distance_m{};  ///< done after so much way; empty: at the row's end
   RowSeeing seeing = RowSeeing::Line;
+  Until until{};
   friend bool operator==(const Row&, const Row&) = default;
 };
 /// Along a wall, around its corners and past its doors.
@@ -72,6 +81,7 @@ struct Wall {
   double distance_m = 0.0;            ///< from the wall to the vehicle's middle
   std::optional<double> speed_mps{};  ///< empty: as the profile says for walls
   std::optional<double> length_m{};   ///< done after so much way; empty: at the wall's end
+  Until until{};
   friend bool operator==(const Wall&, const Wall&) = default;
 };
 /// Past landmarks, one after the other, all on the same side.
@@ -83,6 +93,14 @@ struct Landmarks {
   friend bool operator==(const Landmarks&, const Landmarks&) = default;
 };
 inline constexpr std::string_view kAnyLandmark = "any";
+/// Before a tag, by sight.
+struct Dock {
+  int tag = 0;                          ///< its number
+  std::optional<double> stand_off_m{};  ///< from the tag to the vehicle's origin; empty: as the
+                                        ///< profile says
+  friend bool operator==(const Dock&, const Dock&) = default;
+};
+inline constexpr int kMostTag = 586;  ///< of the family tag36h11
 struct Jump {
   int item = 0;   ///< number, from 1
   int times = 0;  ///< repetitions; 0 = for ever
@@ -126,8 +144,8 @@ struct Circle {
   friend bool operator==(const Circle&, const Circle&) = default;
 };
 
-using Item = std::variant<Waypoint, Local, Move, TurnBy, Wait, Speed, Row, Wall, Landmarks, Jump,
-                          ReturnHome, Action, Loiter, Circle>;
+using Item = std::variant<Waypoint, Local, Move, TurnBy, Wait, Speed, Row, Wall, Landmarks, Dock,
+                          Jump, ReturnHome, Action, Loiter, Circle>;
 
 /// Where an item with a position of its own lies: a waypoint, a loiter at a place, a circle's
 /// centre.
@@ -159,6 +177,9 @@ struct Plan {
   std::optional<Home> home;
   Settings settings;
   std::vector<Item> items;
+  /// What the items were drawn as (a field, a block of rows): kept for whoever draws, and read by
+  /// nothing here. An object of at most kMaxDrawing bytes as text with a word `kind`; null: none.
+  nlohmann::json drawing{};
   friend bool operator==(const Plan&, const Plan&) = default;
 };
 

@@ -51,11 +51,15 @@ bool forbidden(std::string_view parameters) {
 
 }  // namespace
 
-void set_security_headers(Response& response) {
+void set_security_headers(Response& response, std::span<const std::string> elsewhere) {
+  std::string more;
+  for (const std::string& origin : elsewhere) more += ' ' + origin;
   response.set("Content-Security-Policy",
                "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: "
-               "blob:; font-src 'self'; connect-src 'self'; worker-src 'self'; manifest-src "
-               "'self'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'");
+               "blob:" +
+                   more + "; font-src 'self'; connect-src 'self'" + more +
+                   "; worker-src 'self'; manifest-src 'self'; base-uri 'none'; form-action "
+                   "'self'; frame-ancestors 'none'");
   response.set("X-Content-Type-Options", "nosniff");
   response.set("Referrer-Policy", "no-referrer");
 }

@@ -22,7 +22,8 @@ struct FileEntry {
 };
 
 /// Headers for everything a browser shows: own scripts and styles only, no frames, no guessing.
-void set_security_headers(Response& response);
+/// @param elsewhere origins from which pictures may come as well ("https://tiles.example.org")
+void set_security_headers(Response& response, std::span<const std::string> elsewhere = {});
 
 /// Does If-None-Match name this ETag? (RFC 9110, section 13.1.2: weak comparison, lists, "*".)
 bool none_match_hits(std::string_view header, std::string_view etag);

@@ -15,7 +15,15 @@ using base::Severity;
 /// Somebody wants the robot to stand. To let go of the stick says less: another way of driving may
 /// have been chosen before.
 bool halts(const Command& c) noexcept {
-  return is_stop(c) && !std::holds_alternative<Drive>(c);
+  return is_stop(c) && !std::holds_alternative<Drive>(c) && !std::holds_alternative<Throttle>(c);
+}
+
+/// A person sends the robot off by itself.
+bool begins(const Command& c) noexcept {
+  return std::holds_alternative<StartMission>(c) || std::holds_alternative<ResumeMission>(c) ||
+         std::holds_alternative<ResumeActivity>(c) || std::holds_alternative<ResumeAt>(c) ||
+         std::holds_alternative<SetMode>(c) || std::holds_alternative<GoTo>(c) ||
+         std::holds_alternative<MoveBy>(c) || std::holds_alternative<Calibrate>(c);
 }
 
 bool carries_much(const Command& c) noexcept {
@@ -35,6 +43,7 @@ struct Left {
 bool is_stop(const Command& c) noexcept {
   if (const auto* mode = std::get_if<SetMode>(&c)) return mode->mode == Mode::Hold;
   if (const auto* drive = std::get_if<Drive>(&c)) return !drive->deadman;
+  if (const auto* hand = std::get_if<Throttle>(&c)) return !hand->held;
   return std::holds_alternative<Estop>(c) || std::holds_alternative<Disarm>(c) ||
          std::holds_alternative<PauseMission>(c) || std::holds_alternative<StopMission>(c);
 }
@@ -75,7 +84,10 @@ base::Result<void> Robot::Impl::carry_out(const PendingCommand& pending) {
     }
     if (auto ok = last_stop.permits(pending.validity.seen); !ok) return ok;
   }
-  return std::visit([this](const auto& c) { return handle(c); }, pending.command);
+  const bool stood = !machine.by_itself();
+  auto done = std::visit([this](const auto& c) { return handle(c); }, pending.command);
+  if (done && stood && begins(pending.command)) auto_hand.begin();
+  return done;
 }
 
 base::Result<void> Robot::Impl::handle(const Arm&) {
@@ -275,8 +287,17 @@ base::Result<void> Robot::Impl::handle(const Drive& c) {
   return {};
 }
 
+base::Result<void> Robot::Impl::handle(const Throttle& c) {
+  if (!std::isfinite(c.share) || c.share < 0.0 || c.share > 1.0) {
+    return base::fail(Code::Invalid, "the share of the speed must be from 0 to 1");
+  }
+  if (auto_hand.say({c.share, c.held, c.source, c.gone}, clock.now())) return {};
+  return base::fail(Code::Conflict, auto_hand.why_not());
+}
+
 base::TeleopState Robot::Impl::teleop() const {
   base::TeleopState s;
+  if (auto_hand.used()) s.auto_share = auto_hand.share();
   if (machine.kind() != ModeKind::ByHand) {
     s.reason = "the mode is " + std::string(base::to_string(machine.mode()));
     return s;
@@ -347,7 +368,7 @@ base::Result<void> Robot::Impl::handle(const ResumeAt& c) {
   }
   if (auto ok = missions.may_restore(c, config, pose->at); !ok) return ok;
   adopt(c.mission);
-  missions.restore(c.place);
+  missions.restore(rolled_on(c.mission->route, c.place, *pose));
   return resume();
 }
 

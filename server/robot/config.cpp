@@ -109,6 +109,7 @@ base::Result<void> check(const Config& c) {
   if (auto good = in_section("radio", check(c.radio)); !good) return good;
   if (auto good = in_section("nav.tool", check(c.tool)); !good) return good;
   if (auto good = in_section("nav.landmarks", check(c.landmarks)); !good) return good;
+  if (auto good = in_section("nav.tag_dock", nav::tags::check(c.tag_dock)); !good) return good;
   if (auto good = in_section("sense.rays", nav::sense::check(c.rays)); !good) return good;
   if (auto good = in_section("sense.blocked", check(c.blocked)); !good) return good;
   return in_section("battery", check(c.battery));

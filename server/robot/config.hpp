@@ -19,6 +19,7 @@
 #include "nav/marks/params.hpp"
 #include "nav/rows/params.hpp"
 #include "nav/sense/params.hpp"
+#include "nav/tags/params.hpp"
 #include "nav/track/path.hpp"
 #include "nav/track/tool.hpp"
 #include "robot/guard/blocked.hpp"
@@ -49,6 +50,7 @@ struct ManualParams {
   double timeout_s = 0.5;
   double delay_free_s = 0.25;
   double delay_stop_s = 0.5;
+  double auto_timeout_s = 0.5;
 };
 
 template <class V>
@@ -67,6 +69,9 @@ void fields(V& v, ManualParams& p) {
     base::lower_is_stricter("commands by hand that are later than this are obeyed more slowly"));
   v("delay_stop_s", p.delay_stop_s, 0.1, 2.0,
     base::lower_is_stricter("and from here on not at all; in between the speed falls evenly"));
+  v("auto_timeout_s", p.auto_timeout_s, 0.1, 2.0,
+    base::lower_is_stricter("a hand on the speed of what drives by itself that is silent for so "
+                            "long is lost: the robot slows to a stop"));
 }
 
 /// What must hold while moving. Section [robot.safety].
@@ -227,6 +232,7 @@ struct Config {
   nav::SightParams sight;
   nav::marks::WallParams wall;
   nav::marks::LandmarkParams landmarks;
+  nav::tags::TagDockParams tag_dock;
   RobotParams robot;
   ManualParams manual;
   SafetyParams safety;
@@ -275,6 +281,7 @@ void sections(V& v, Config& c) {
   v("nav.sight", c.sight);
   v("nav.wall", c.wall);
   v("nav.landmarks", c.landmarks);
+  v("nav.tag_dock", c.tag_dock);
   v("robot", c.robot);
   v("robot.manual", c.manual);
   v("robot.safety", c.safety);

@@ -32,6 +32,9 @@ std::optional<double> Robot::Impl::corridor_m() const noexcept {
 /// What is driven now needs no position: the item in hand asks for none, no fence is to be kept,
 /// and no corridor.
 bool Robot::Impl::by_sight() const noexcept {
+  if (machine.mode() == Mode::Dock) {
+    return fence.get() == nullptr && self_driving.docks_at_tag() != nullptr;
+  }
   return machine.mode() == Mode::Auto && fence.get() == nullptr &&
          !missions.executor.corridor_m() && missions.executor.asks_no_place();
 }
@@ -68,7 +71,8 @@ Facts Robot::Impl::facts() const {
           .latched = reset_latch.why(),
           .moved_disarmed = reset_latch.disarmed_why(),
           .blind = blind,
-          .looks = guard.sees()};
+          .looks = guard.sees(),
+          .wander_unknown_s = estimator.wander_unknown_s()};
 }
 
 void Robot::Impl::judge() {
@@ -98,6 +102,10 @@ void Robot::Impl::judge() {
   watch_blind_pause();
   // In its CAN mode the base obeys whoever speaks; out of it, nobody.
   if (!assessment.disarms.empty() && arm.armed()) disarm("because " + assessment.disarms);
+  // Armed, they are only shown: ten times a second will do.
+  constexpr int kArmedEvery = 5;
+  if (arm.armed() && ++ticks_unchecked < kArmedEvery) return;
+  ticks_unchecked = 0;
   checks = arming_checks(facts(), p, config->arming, missions.get() != nullptr, clock.now());
 }
 
@@ -199,6 +207,7 @@ void Robot::Impl::watch_radio(bool drives) {
 base::DriveCommand Robot::Impl::decide() {
   driver = Driver::None;
   speed_reason = "standing";
+  watch_hand();
   const bool radio = radio_drives(world, config->safety, clock.now());
   watch_radio(radio);
   const bool listens = base_listens(world);
@@ -229,9 +238,9 @@ base::DriveCommand Robot::Impl::choose() {
     case ModeKind::ByHand:
       return drive_by_hand();
     case ModeKind::Mission:
-      return drive_mission();
+      return under_hand(drive_mission());
     case ModeKind::ByItself:
-      return drive_by_itself();
+      return under_hand(drive_by_itself());
   }
   return {{}, true};
 }
@@ -285,8 +294,13 @@ std::optional<base::EnuPoint> Robot::Impl::home_point() const {
 }
 
 bool Robot::Impl::within_reach(base::LatLon at) const {
-  const double far_m = base::distance_bearing(estimator.frame()->origin(), at).distance_m;
-  return far_m <= base::LocalFrame::kReach_m;
+  const base::LatLon origin = estimator.frame()->origin();
+  // Asked in each tick, and a geodesic is dear: what is near by the longest degrees there are, of
+  // both, is near.
+  constexpr double kLongestDegree_m = 111'700.0;
+  const double degrees = std::abs(at.lat - origin.lat) + std::abs(at.lon - origin.lon);
+  if (degrees * kLongestDegree_m <= base::LocalFrame::kReach_m) return true;
+  return base::distance_bearing(origin, at).distance_m <= base::LocalFrame::kReach_m;
 }
 
 /// The first fix may lie out of reach of the frame that a mission brought: a new frame began then.

@@ -26,8 +26,10 @@
 #include "robot/guard/guard.hpp"
 #include "robot/guard/row_watch.hpp"
 #include "robot/handling.hpp"
+#include "robot/known_places.hpp"
 #include "robot/loop_clock.hpp"
 #include "robot/mission_keeper.hpp"
+#include "robot/modes/auto_hand.hpp"
 #include "robot/modes/by_hand.hpp"
 #include "robot/modes/driven_way.hpp"
 #include "robot/modes/home.hpp"
@@ -81,6 +83,8 @@ struct Robot::Impl {
   base::Inbox<std::shared_ptr<const Surroundings>> surroundings{4};
   base::Inbox<std::shared_ptr<const Surroundings>> surroundings_done{16};
   base::Inbox<RowQuestion> row_questions{8};
+  base::Inbox<std::shared_ptr<const nav::tags::TagsSeen>> tags{32};
+  base::Inbox<KnownPlaces::List> known_lists{8};
   base::Inbox<nav::sense::Odometry> odometry{256};
   base::Inbox<std::shared_ptr<const AroundQuestion>> around_questions{2};
   base::Inbox<std::shared_ptr<const AroundAnswer>> around_answers{4};
@@ -89,6 +93,7 @@ struct Robot::Impl {
   base::Latest<base::Snapshot> snapshot;
   base::Latest<nav::Learned> learned;
   base::Latest<DrivenWay> shared_way;
+  base::Latest<std::vector<base::KnownPlace>> shared_places;
   Delivered<CompiledMission> loaded;
   Delivered<LaidFence> shared_fence;
   std::atomic<bool> estop_asked{false};
@@ -112,6 +117,7 @@ struct Robot::Impl {
   MissionKeeper missions;
   SelfDriving self_driving;
   ByHand by_hand;
+  AutoHand auto_hand;
   StraightStart straight;
   HomePlace home;
   DrivenWayKeeper driven;
@@ -137,6 +143,12 @@ struct Robot::Impl {
   bool blind_pause = false;  ///< the mission waits because of it, and nobody has said a word since
   std::optional<base::Time> sees_since;
   bool recognises = false;  ///< cameras tell of walls and landmarks, and nothing looks around
+  bool reads_tags = false;  ///< cameras do
+  nav::tags::TagBook tag_book;
+  KnownPlaces known_places;
+  std::vector<KnownPlaces::List> known_batch;
+  std::shared_ptr<const nav::marks::View> looked_beside;  ///< for known places
+  std::vector<std::shared_ptr<const nav::tags::TagsSeen>> tags_batch;
   RowQuestion row_asked;
   std::vector<std::shared_ptr<const Surroundings>> surroundings_batch;
   RadioKeys keys;
@@ -158,6 +170,7 @@ struct Robot::Impl {
   std::string self_test;  ///< of the failsafes, at the start; empty: nothing is wrong with them
   Assessment assessment;
   std::vector<base::Check> checks;
+  int ticks_unchecked = 0;
 
   base::Driver driver = base::Driver::None;
   base::DriveCommand sent;
@@ -210,6 +223,7 @@ struct Robot::Impl {
   base::Result<void> handle(const SettleCalibration& c);
   base::Result<void> handle(const ForgetCalibration&);
   base::Result<void> handle(const Drive& c);
+  base::Result<void> handle(const Throttle& c);
   base::Result<void> handle(const LoadMission& c);
   base::Result<void> handle(const ReviseMission& c);
   base::Result<void> handle(const GoTo& c);
@@ -253,6 +267,7 @@ struct Robot::Impl {
   void go_back(const std::string& why);
   base::Result<void> enter_follow();
   base::Result<void> enter_dock(const SetMode& c);
+  base::Result<void> enter_dock_at_tag(const SetMode& c);
   base::Result<void> enter_loiter(const SetMode& c);
   base::Result<void> enter_circle(const SetMode& c);
   base::Result<void> circle_inside(const nav::OrbitGoal& goal) const;
@@ -267,6 +282,12 @@ struct Robot::Impl {
   base::DriveCommand drive_by_itself();
   nav::Vehicle vehicle() const;
   double limit_mps() const noexcept;
+  double free_limit_mps() const noexcept;
+  double hand_mps() const noexcept;
+  bool hand_holds() const noexcept;
+  std::string_view reason_under_hand(std::string_view reason) const noexcept;
+  base::DriveCommand under_hand(base::DriveCommand command);
+  void watch_hand();
   /// Of the mission that runs.
   std::optional<double> corridor_m() const noexcept;
   void tell_notices();
@@ -286,6 +307,12 @@ struct Robot::Impl {
   std::optional<nav::RowSight> row_sight() const;
   std::optional<nav::MarkSight> mark_sight() const;
   nav::sense::Pose2 local_in_odometry() const noexcept;
+  void take_known_places();
+  void see_known_poles();
+  void read_the_tags(const nav::sense::Odometry& now);
+  nav::tags::TagSight tag_sight() const noexcept;
+  std::shared_ptr<const std::vector<base::TagState>> tag_states() const;
+  const nav::tags::TagDock* docks_at_tag() const noexcept;
   bool ask_around();
   void take_around();
   void no_way_around(const AroundAnswer& answer);

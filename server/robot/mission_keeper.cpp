@@ -6,6 +6,8 @@ namespace {
 using base::Code;
 
 constexpr const char* kLeftBehind = "left by a restart";
+constexpr double kKnown_m = 0.5;  // a vaguer place says nothing of how far it rolled
+constexpr double kRolls_m = 3.0;  // farther it was carried, or driven by hand
 
 }  // namespace
 
@@ -73,6 +75,18 @@ void MissionKeeper::restore(const base::MissionPlace& place) {
   (void)executor.restore(route(), place, kLeftBehind);
 }
 
+base::MissionPlace rolled_on(const nav::Route& route, base::MissionPlace place,
+                             const base::Pose& pose) noexcept {
+  const auto& steps = place.back ? route.back.steps : route.forth.steps;
+  const bool fits = place.step >= 0 && static_cast<std::size_t>(place.step) < steps.size();
+  if (!fits || !place.driving || !place.at || pose.horizontal_sigma_m > kKnown_m) return place;
+  const nav::StepKind kind = steps[static_cast<std::size_t>(place.step)].kind;
+  if (kind != nav::StepKind::Row && kind != nav::StepKind::Wall) return place;
+  const double way_m = base::distance_bearing(*place.at, pose.global).distance_m;
+  if (way_m <= kRolls_m) place.left += way_m;
+  return place;
+}
+
 base::MissionProgress MissionKeeper::progress(const std::optional<base::Pose>& pose,
                                               const std::optional<base::LocalFrame>& frame,
                                               bool radio) const {
@@ -98,6 +112,8 @@ base::MissionProgress MissionKeeper::progress(const std::optional<base::Pose>& p
   p.distance_left_m = at.distance_left_m;
   p.eta_s = at.eta_s;
   p.place = executor.place();
+  const bool known = pose && pose->horizontal_sigma_m <= kKnown_m;
+  if (p.place && p.place->driving && known) p.place->at = pose->global;
   if (pose && at.item_end && frame) {
     const auto to = base::distance_bearing(pose->global, frame->to_global(*at.item_end));
     p.distance_to_item_m = at.way_to_item_end_m.value_or(to.distance_m);

@@ -76,4 +76,9 @@ class MissionKeeper {
   Mission mission_;
 };
 
+/// What is kept is up to a second old, and the robot rolled on: of a row or a wall so much more is
+/// done. @param place of that route. @param pose where the robot stands now
+base::MissionPlace rolled_on(const nav::Route& route, base::MissionPlace place,
+                             const base::Pose& pose) noexcept;
+
 }  // namespace roverd::robot

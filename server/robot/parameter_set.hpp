@@ -34,6 +34,7 @@ class ParameterSet {
     marks.sight.adopt(section(all_->sight));
     marks.walls.adopt(section(all_->wall));
     marks.landmarks.adopt(section(all_->landmarks));
+    marks.tag_dock.adopt(section(all_->tag_dock));
     manual.adopt(section(all_->manual));
     safety.adopt(section(all_->safety));
     radio.adopt(section(all_->radio));

@@ -30,6 +30,7 @@ base::Result<void> Robot::Impl::may_be_placed() const {
 void Robot::Impl::told_where() {
   estimator.acquit_all();
   estimator.trust();
+  known_places.trust();
   estimate_watch.moved_on_purpose(estimator.health());
   reset_latch.moved_on_purpose(estimator.health());
 }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "nav/behave/stops.hpp"
 #include "nav/track/outline.hpp"
+#include "nav/track/pace.hpp"
 #include "robot/impl.hpp"
 
 namespace roverd::robot {
@@ -13,6 +15,32 @@ namespace {
 
 /// Nobody sees less on a map.
 constexpr double kOutline_m = 0.01;
+
+WayStop told_stop(const nav::CourseStop& stop, const base::LocalFrame& frame) {
+  WayStop out{frame.to_global(stop.at), stop.s_m, stop.item};
+  for (const nav::TurnOnTheSpot& t : stop.turns) {
+    out.turns.push_back({t.from_yaw_rad, t.to_yaw_rad, t.by_rad, t.above_rad});
+  }
+  return out;
+}
+
+/// @param speed of now: they lay the way anew when they change, unless it is in hand
+void tell_pace(const CompiledMission& mission, const nav::SpeedParams& speed, MissionWay& out) {
+  const nav::Course& course = mission.route.forth;
+  std::vector<int> items;
+  items.reserve(course.nodes.size());
+  for (const nav::RouteNode& node : course.nodes) items.push_back(node.item);
+  for (const nav::PacePoint& p :
+       nav::pace_of(course.path, items, speed, {kOutline_m, 2.0 * kOutline_m, kWayPoints})) {
+    out.pace.push_back(
+        {mission.frame.to_global(p.at), p.s_m, p.planned_mps, p.set_mps, p.item, p.reverse});
+  }
+  const nav::CourseStops found = nav::stops_of(course, kWayPoints);
+  for (const nav::CourseStop& stop : found.stops) {
+    out.stops.push_back(told_stop(stop, mission.frame));
+  }
+  out.stops_left_out = found.left_out;
+}
 
 }  // namespace
 
@@ -84,6 +112,7 @@ std::optional<MissionWay> Robot::mission_way() const {
   MissionWay out{mission->copy.id, mission->copy.revision, path.length_m(), drawn.within_m};
   out.line.reserve(drawn.points.size());
   for (const base::EnuPoint at : drawn.points) out.line.push_back(mission->frame.to_global(at));
+  tell_pace(*mission, impl_->shared_config.get()->path().speed, out);
   return out;
 }
 

@@ -70,6 +70,8 @@ bool Robot::Impl::publish() {
   s->detour = detour_way();
   if (guard.obstacle().action != base::GuardAction::None) s->obstacle = guard.obstacle();
   s->row = row_state();
+  s->tags = tag_states();
+  s->known_places = known_places.states();
   if (guard.sees()) {
     const nav::sense::Pose2& at = guard.odometry().pose;
     s->odometry = {at.x_m, at.y_m, at.yaw_rad};

@@ -52,6 +52,17 @@ void Robot::guard_by(const nav::sense::ProtectParams& params, bool demands,
 void Robot::recognise() {
   impl_->recognises = true;
 }
+void Robot::read_tags() {
+  impl_->reads_tags = true;
+}
+base::Inbox<std::shared_ptr<const nav::tags::TagsSeen>>& Robot::tags() noexcept {
+  return impl_->tags;
+}
+void Robot::know(std::shared_ptr<const std::vector<base::KnownPlace>> places) {
+  if (!places) return;
+  while (!impl_->shared_places.publish(places)) continue;  // somebody reads it for a moment
+  impl_->known_lists.put(std::move(places));
+}
 base::Inbox<std::shared_ptr<const Surroundings>>& Robot::surroundings() noexcept {
   return impl_->surroundings;
 }
@@ -153,6 +164,50 @@ base::Result<void> actions_known(const mission::Plan& plan) {
   return base::fail(Code::Invalid, std::move(detail), std::move(wrong));
 }
 
+const mission::Until* until_of(const mission::Item& item) noexcept {
+  if (const auto* row = std::get_if<mission::Row>(&item)) return &row->until;
+  if (const auto* wall = std::get_if<mission::Wall>(&item)) return &wall->until;
+  return nullptr;
+}
+
+/// What ends beside a known place gets that one's position, in a plan of its own; empty: nothing
+/// does. Invalid, naming the item. @param places null: none
+base::Result<std::optional<mission::Plan>> with_places(
+    const mission::Plan& said, const std::vector<base::KnownPlace>* places) {
+  const bool any = std::ranges::any_of(said.items, [](const mission::Item& item) {
+    const mission::Until* until = until_of(item);
+    return until != nullptr && until->place;
+  });
+  if (!any) return std::optional<mission::Plan>{};
+  mission::Plan plan = said;
+  std::vector<base::FieldError> wrong;
+  const auto resolve = [&](mission::Until& until, std::size_t item) {
+    if (!until.place) return;
+    const std::string at = "/items/" + std::to_string(item);
+    if (until.lat) {
+      wrong.push_back({at, "until_place and until_lat exclude each other: give one of them"});
+      return;
+    }
+    if (places != nullptr) {
+      const auto known = std::ranges::find(*places, *until.place, &base::KnownPlace::name);
+      if (known != places->end()) {
+        until.lat = known->at.lat;
+        until.lon = known->at.lon;
+        return;
+      }
+    }
+    wrong.push_back({at, "no place \"" + *until.place + "\" is known"});
+  };
+  for (std::size_t i = 0; i < plan.items.size(); ++i) {
+    if (auto* row = std::get_if<mission::Row>(&plan.items[i])) resolve(row->until, i);
+    if (auto* wall = std::get_if<mission::Wall>(&plan.items[i])) resolve(wall->until, i);
+  }
+  if (wrong.empty()) return plan;
+  std::string detail = "item " + std::to_string(std::stoi(wrong.front().pointer.substr(7)) + 1) +
+                       ": " + wrong.front().detail;
+  return base::fail(Code::Invalid, std::move(detail), std::move(wrong));
+}
+
 }  // namespace
 
 base::Result<std::shared_ptr<const CompiledMission>> Robot::compile(MissionCopy copy) const {
@@ -176,9 +231,12 @@ base::Result<std::shared_ptr<const CompiledMission>> Robot::compile(MissionCopy 
     return base::fail(Code::Invalid, "the mission has no waypoint",
                       {{"/items", "the mission has no waypoint"}});
   }
+  const auto known = impl_->shared_places.get();
+  auto named = with_places(copy.plan, known.get());
+  if (!named) return tl::unexpected(std::move(named.error()));
   if (auto done = actions_known(copy.plan); !done) return tl::unexpected(std::move(done.error()));
   const auto config = impl_->shared_config.get();
-  auto route = nav::lay_route(copy.plan, *frame, config->path());
+  auto route = nav::lay_route(*named ? **named : copy.plan, *frame, config->path());
   if (!route) return tl::unexpected(std::move(route.error()));
   CompiledMission made{impl_->made.fetch_add(1), std::move(copy), *frame, std::move(*route),
                        config->way};

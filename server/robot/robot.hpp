@@ -22,6 +22,7 @@
 
 #include "base/drive_command.hpp"
 #include "base/inbox.hpp"
+#include "base/known_place.hpp"
 #include "base/latest.hpp"
 #include "base/measurements.hpp"
 #include "base/params.hpp"
@@ -33,6 +34,7 @@
 #include "nav/estimate/learned.hpp"
 #include "nav/sense/odometry.hpp"
 #include "nav/sense/params.hpp"
+#include "nav/tags/tag_place.hpp"
 #include "robot/config.hpp"
 #include "robot/guard/blocked.hpp"
 #include "robot/guard/outline.hpp"
@@ -85,9 +87,13 @@ struct SetTarget {
 };
 struct SetMode {
   base::Mode mode = base::Mode::Hold;
-  /// Of DOCK: the pose, needed; reverse: with the tail. Of CIRCLE: its centre, needed; of LOITER:
+  /// Of DOCK: the pose, or a tag; reverse: with the tail. Of CIRCLE: its centre, needed; of LOITER:
   /// the place, empty: here; with a speed.
   std::optional<GoTo> goal{};
+  /// DOCK, in the place of the goal: the tag of this number; stand_off_m before it, empty: as
+  /// nav.tag_dock says.
+  std::optional<int> tag{};
+  std::optional<double> stand_off_m{};
   std::optional<double> radius_m{};  ///< CIRCLE, LOITER
   std::optional<double> turns{};     ///< CIRCLE; empty: without end
   bool clockwise = false;            ///< CIRCLE
@@ -175,6 +181,13 @@ struct Drive {
   bool override_guard = false;
   std::string who{};  ///< with override_guard, for the events; empty: not known
 };
+/// A hand on the speed of what drives by itself (modes/auto_hand.hpp). Not held, it is never late.
+struct Throttle {
+  double share = 0.0;  ///< of the speed, 0 to 1
+  bool held = false;
+  std::uint64_t source = 1;  ///< who says it; never used for two
+  bool gone = false;         ///< the source has left, or is not understood; not held
+};
 /// Sticks in the middle; see modes/manual.hpp.
 bool neutral(const base::BodyTwist& twist) noexcept;
 struct CompiledMission;  // route of one MissionCopy in one LocalFrame; see robot/compile.hpp
@@ -221,7 +234,7 @@ using Command =
                  ResumeMission, ResumeActivity, StopMission, SkipItem, SetHome, SetPose, SetAnchor,
                  DropAnchor, SettleShift, CorrectAntennas, Drive, LoadMission, ReviseMission, GoTo,
                  MoveBy, SetTarget, SetParameter, SetFence, ResumeAt, LayAnew, Calibrate,
-                 SettleCalibration, ForgetCalibration>;
+                 SettleCalibration, ForgetCalibration, Throttle>;
 
 /// Whoever says it wants the robot to stand, or lets go of it. Stops are never too late: they are
 /// carried out whenever they arrive.
@@ -275,6 +288,31 @@ struct Preview {
 };
 inline constexpr std::size_t kSmoothedShown = 50;
 
+/// A place of the way, and how it is driven from there on.
+struct WayPace {
+  base::LatLon at;
+  double distance_m = 0.0;  ///< along the way
+  double speed_mps = 0.0;   ///< planned here; its square is a straight line to the next one
+  double set_mps = 0.0;     ///< the most that item, bend and vehicle allow from here on
+  int item = 0;             ///< that is driven to from here on
+  bool reverse = false;
+};
+
+/// A turn on the spot.
+struct WayTurn {
+  std::optional<double> from_yaw_rad;  ///< empty: as the robot comes
+  double to_yaw_rad = 0.0;
+  double by_rad = 0.0;     ///< left positive; 0 where nobody knows from where
+  double above_rad = 0.0;  ///< from nobody knows where: only if it points away by more than this
+};
+
+struct WayStop {
+  base::LatLon at;
+  double distance_m = 0.0;
+  int item = 0;  ///< that is there
+  std::vector<WayTurn> turns{};
+};
+
 /// The way through the loaded mission as it is laid out: corners rounded, dense points smoothed.
 struct MissionWay {
   std::string mission_id;
@@ -282,6 +320,9 @@ struct MissionWay {
   double length_m = 0.0;
   double within_m = 0.0;             ///< the way is nowhere farther from the line
   std::vector<base::LatLon> line{};  ///< at most kWayPoints; none where it drives nowhere by itself
+  std::vector<WayPace> pace{};       ///< at most kWayPoints
+  std::vector<WayStop> stops{};      ///< with their turns at most kWayPoints
+  std::size_t stops_left_out = 0;    ///< stops and turns behind those
 };
 inline constexpr std::size_t kWayPoints = 5'000;
 
@@ -364,6 +405,12 @@ class Robot {
   /// Before the first tick: no sensor looks around, but cameras' programs tell of walls and
   /// landmarks. There is no guard; what is driven by sight is driven by them.
   void recognise();
+  /// Before the first tick: cameras of this robot read tags.
+  void read_tags();
+  /// Any thread: what they read, image by image.
+  base::Inbox<std::shared_ptr<const nav::tags::TagsSeen>>& tags() noexcept;
+  /// Any thread: from the next tick on these are the things whose place is known. Null: ignored.
+  void know(std::shared_ptr<const std::vector<base::KnownPlace>> places);
   /// Any thread: what stands around it; the newest counts.
   base::Inbox<std::shared_ptr<const Surroundings>>& surroundings() noexcept;
   /// The same thread: those that are not needed any more, to be let go.

@@ -1,8 +1,10 @@
 #include "robot/run_report.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
+#include <variant>
 
 #include "nav/behave/route.hpp"
 
@@ -131,6 +133,66 @@ class Selection {
   bool over_ = false;
 };
 
+std::string_view type_by_sight(const mission::Item& item) noexcept {
+  if (std::holds_alternative<mission::Row>(item)) return "row";
+  if (std::holds_alternative<mission::Wall>(item)) return "wall";
+  if (std::holds_alternative<mission::Landmarks>(item)) return "landmarks";
+  return {};
+}
+
+/// Of |e|, weighed by way as everywhere.
+nav::CrossTrack spread_of(std::vector<std::pair<double, double>>& off_weight) {
+  nav::CrossTrack out;
+  double way_m = 0.0;
+  for (const auto& [off_m, weight_m] : off_weight) {
+    out.rms_m += off_m * off_m * weight_m;
+    out.mean_m += off_m * weight_m;
+    out.max_m = std::max(out.max_m, off_m);
+    way_m += weight_m;
+  }
+  if (!(way_m > 0.0)) return {};
+  out.rms_m = std::sqrt(out.rms_m / way_m);
+  out.mean_m /= way_m;
+  std::sort(off_weight.begin(), off_weight.end());
+  double behind_m = 0.0;
+  for (const auto& [off_m, weight_m] : off_weight) {
+    out.p95_m = off_m;
+    behind_m += weight_m;
+    if (behind_m >= 0.95 * way_m) break;
+  }
+  return out;
+}
+
+/// Items that are driven along what is seen: their line is no part of the route, but how far off it
+/// was is in the run's points.
+std::vector<SightMeasure> measure_sight(const mission::Plan& plan,
+                                        std::span<const ReportPoint> points) {
+  std::vector<SightMeasure> out;
+  std::vector<std::pair<double, double>> off_weight;
+  for (std::size_t k = 0; k < plan.items.size(); ++k) {
+    SightMeasure m{static_cast<int>(k) + 1, type_by_sight(plan.items[k]), 0.0, 0.0, {}};
+    if (m.type.empty()) continue;
+    off_weight.clear();
+    bool begun = false;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const ReportPoint& p = points[i];
+      if (p.item != m.item || !p.by_itself) continue;
+      begun = true;
+      const bool follows = i > 0 && points[i - 1].item == m.item && points[i - 1].by_itself &&
+                           p.t_s - points[i - 1].t_s <= kPause_s;
+      if (!follows) continue;
+      const double way_m = base::distance_bearing(points[i - 1].at, p.at).distance_m;
+      m.driven_m += way_m;
+      if (!p.cross_m) continue;
+      m.judged_m += way_m;
+      off_weight.emplace_back(std::abs(*p.cross_m), way_m);
+    }
+    m.cross = spread_of(off_weight);
+    if (begun) out.push_back(m);
+  }
+  return out;
+}
+
 }  // namespace
 
 base::Result<RunReport> report_run(
@@ -147,6 +209,7 @@ base::Result<RunReport> report_run(
   }
   RunReport r;
   sum_up(r, points);
+  r.by_sight = measure_sight(plan, points);
   const nav::Course& course = route->forth;
   if (course.path.legs.empty()) return r;
   const Begin begin = begin_of(course, first_item, frame.to_local(points.front().at));

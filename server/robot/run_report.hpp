@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -25,13 +26,26 @@ struct ReportPoint {
   int lap = 1;
   bool by_itself = true;
   std::optional<double> power_w;
-  std::optional<int> item{};  ///< in hand; empty: none, or nobody kept it
+  std::optional<int> item{};        ///< in hand; empty: none, or nobody kept it
+  std::optional<double> cross_m{};  ///< beside the way in hand as it was told then, left positive
 };
 
 /// The way to the first item: no part of what the mission asks for.
 struct Approach {
   double time_s = 0.0;
   double driven_m = 0.0;
+};
+
+/// An item that is driven by what is seen: along a row, a wall, past landmarks. Its line is that
+/// which was seen while it was driven; where none was, nothing of the way is judged.
+struct SightMeasure {
+  int item = 0;
+  std::string_view type;  ///< row wall landmarks
+  double driven_m = 0.0;  ///< by the program while the item was in hand, in all laps
+  double judged_m = 0.0;  ///< of it with a line in sight
+  nav::CrossTrack cross;  ///< of that; 0 without
+  bool tells() const noexcept { return judged_m >= kTelling_m; }
+  static constexpr double kTelling_m = 1.0;
 };
 
 struct RunReport {
@@ -44,8 +58,9 @@ struct RunReport {
   /// Of the first lap from the first item on, where the program drove to waypoints; not of ways
   /// home, moves, and items that a jump repeats.
   nav::RunMeasure measure;
-  std::vector<int> corner_items;    ///< of measure.corners: the item at that vertex
-  std::vector<int> straight_items;  ///< of measure.straights: the item it leads to
+  std::vector<int> corner_items;       ///< of measure.corners: the item at that vertex
+  std::vector<int> straight_items;     ///< of measure.straights: the item it leads to
+  std::vector<SightMeasure> by_sight;  ///< in the order of the mission; of those that were begun
 
   /// Less way than this tells nothing of how well it was driven.
   static constexpr double kTelling_m = 1.0;

@@ -119,9 +119,14 @@ void add_run_events(SQLite::Database& db, std::int64_t id, const std::vector<bas
 }
 
 Json place_json(const base::MissionPlace& p) {
-  return {{"back", p.back},      {"step", p.step}, {"standing", p.standing},     {"s_m", p.s_m},
-          {"wait_s", p.wait_s},  {"left", p.left}, {"jumps_left", p.jumps_left}, {"laps", p.laps},
-          {"driving", p.driving}};
+  Json out{{"back", p.back},      {"step", p.step}, {"standing", p.standing},     {"s_m", p.s_m},
+           {"wait_s", p.wait_s},  {"left", p.left}, {"jumps_left", p.jumps_left}, {"laps", p.laps},
+           {"driving", p.driving}};
+  if (p.at) {
+    out["lat"] = p.at->lat;
+    out["lon"] = p.at->lon;
+  }
+  return out;
 }
 
 base::MissionPlace place_of(const Json& j) {
@@ -135,6 +140,8 @@ base::MissionPlace place_of(const Json& j) {
   p.jumps_left = j.value("jumps_left", std::vector<int>{});
   p.laps = j.value("laps", 0);
   p.driving = j.value("driving", false);
+  if (j.contains("lat") && j.contains("lon"))
+    p.at = base::LatLon{j.value("lat", 0.0), j.value("lon", 0.0)};
   return p;
 }
 

@@ -1,20 +1,24 @@
 #pragma once
-// Offline map tiles out of MBTiles files (MBTiles specification 1.3): SQLite files with the tables
-// tiles (zoom_level, tile_column, tile_row, tile_data) and metadata (name, value). Rows are counted
-// from the south there (TMS); the addresses of the interface count from the north (XYZ).
-// Opened read-only. One thread at a time may use a TileFolder.
+// One file of map tiles: MBTiles (specification 1.3), an SQLite file with the tables tiles
+// (zoom_level, tile_column, tile_row, tile_data) and metadata (name, value). Rows are counted from
+// the south there (TMS); the addresses of the interface count from the north (XYZ).
+//
+// Not thread-safe. A file of somebody else is opened to be read only; what it asks of SQLite is
+// bounded, so that a view without end is an error and no hang.
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
+#include <string_view>
 
 #include "base/result.hpp"
 
 namespace roverd::store {
+
+inline constexpr int kMostZoom = 30;
 
 struct TileSet {
   std::string set;     ///< short name, as in the configuration and in addresses
@@ -24,6 +28,10 @@ struct TileSet {
   int max_zoom = 0;
   std::optional<std::array<double, 4>> bounds_deg;  ///< west, south, east, north
   std::string attribution;
+  bool kept = false;   ///< brought by people: it may be deleted; false: of the configuration
+  bool grows = false;  ///< tile by tile
+  std::array<double, 2> shift_m{};  ///< east, north: so much its pictures are to be moved
+  std::uintmax_t bytes = 0;         ///< of its file
 };
 
 struct Tile {
@@ -32,26 +40,53 @@ struct Tile {
   std::string content_encoding;  ///< "gzip" for most vector tiles, otherwise empty
 };
 
-class TileFolder {
+/// XYZ numbering.
+struct TileAddress {
+  int zoom = 0;
+  int x = 0;
+  int y = 0;
+
+  bool possible() const noexcept {
+    const std::int64_t side = std::int64_t{1} << (zoom >= 0 && zoom <= kMostZoom ? zoom : 0);
+    return zoom >= 0 && zoom <= kMostZoom && x >= 0 && y >= 0 && x < side && y < side;
+  }
+};
+
+/// West, south, east, north of a tile; degrees (Web Mercator).
+std::array<double, 4> bounds_of(const TileAddress& at) noexcept;
+/// "png", "jpg", "webp", "pbf" by the first bytes; empty: none of them.
+std::string_view format_of(std::string_view bytes) noexcept;
+
+class TileFile {
  public:
-  TileFolder();
-  ~TileFolder();
-  TileFolder(const TileFolder&) = delete;
-  TileFolder& operator=(const TileFolder&) = delete;
+  /// To be read. NotFound: no such file; Malformed: no MBTiles file; Unsupported: its tiles have an
+  /// unknown format.
+  static base::Result<std::unique_ptr<TileFile>> open(const std::string& set,
+                                                      const std::filesystem::path& path);
+  /// A new one, or one that was made so, to be filled tile by tile. What is put into it is there
+  /// after a power cut, but for the last seconds of it. Unavailable: the disk refuses.
+  static base::Result<std::unique_ptr<TileFile>> grow(const TileSet& about,
+                                                      const std::filesystem::path& path);
+  ~TileFile();
 
-  /// Opens all of them or none. Errors name the set and the file: missing, not an MBTiles file, an
-  /// unknown tile format.
-  base::Result<void> open(const std::map<std::string, std::filesystem::path>& sets);
-
-  /// In alphabetical order.
-  std::vector<TileSet> sets() const;
-
-  /// XYZ numbering. Empty: no such set or tile, or the file cannot be read any more.
-  std::optional<Tile> read(const std::string& set, int zoom, int x, int y);
+  const TileSet& about() const noexcept { return about_; }
+  /// No tile is in it.
+  bool empty();
+  /// Empty: no such tile, or the file cannot be read any more.
+  std::optional<Tile> read(const TileAddress& at);
+  /// Replaces one that is there. Unavailable: the disk refuses, or the file is gone. Only of one
+  /// that grows.
+  base::Result<void> put(const TileAddress& at, std::string_view bytes);
 
  private:
-  struct File;
-  std::map<std::string, std::unique_ptr<File>> files_;
+  struct Db;
+  TileFile();
+  std::string describe();
+  void widen(const TileAddress& at);
+
+  std::unique_ptr<Db> db_;
+  TileSet about_;
+  std::string content_type_;
 };
 
 }  // namespace roverd::store

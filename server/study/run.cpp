@@ -26,7 +26,9 @@ using base::Result;
 constexpr base::LatLon kPlace{58.378020, 26.728900};
 constexpr double kReady_s = 40.0;
 constexpr double kEllipse95 = 5.991;  // chi-square with two degrees of freedom
-constexpr double kOnWay_m = 0.3;      // so near, as far as it knows, it has joined its way
+// So near, and pointing so, as far as it knows, it has joined its way: not where it crosses it.
+constexpr double kOnWay_m = 0.3;
+const double kAlongWay_rad = base::rad_from_deg(30.0);
 constexpr auto kStartStream = static_cast<sim::Stream>(9001);  // the study's own
 constexpr std::size_t kThin = 5;  // kept for plots: every so many ticks
 const base::WallTime kWall{std::chrono::seconds(1'780'000'000)};
@@ -164,8 +166,9 @@ class Recorder {
     const auto& pose = now->pose;
     const auto& place = now->mission.place;
     if (pose && !joined && place && place->s_m >= 0.0) {
-      const double off_m = base::distance_m(pose->at, way_.at(place->s_m));
-      if (off_m < kOnWay_m) joined = Joined{truth.size() - 1, believed.size(), place->s_m};
+      if (on_way(*pose, place->s_m)) {
+        joined = Joined{truth.size() - 1, believed.size(), place->s_m};
+      }
     }
     if (!pose) return;
     judge_claims(*pose, at, t.yaw_rad);
@@ -199,6 +202,12 @@ class Recorder {
   std::optional<Joined> joined;
 
  private:
+  bool on_way(const base::Pose& pose, double s_m) const {
+    const nav::Leg& leg = way_.legs[std::min(way_.leg_from(s_m), way_.legs.size() - 1)];
+    const double way_rad = way_.yaw_rad(leg, s_m, leg.first) + (leg.reverse ? base::kPi : 0.0);
+    return base::distance_m(pose.at, way_.at(s_m)) < kOnWay_m &&
+           std::abs(base::angle_diff_rad(way_rad, pose.yaw_rad)) < kAlongWay_rad;
+  }
   void judge_claims(const base::Pose& pose, base::EnuPoint at, double yaw_rad) {
     const base::EnuPoint off = pose.at - at;
     const double c = std::cos(pose.ellipse.major_yaw_rad);

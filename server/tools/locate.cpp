@@ -46,7 +46,10 @@ int locate(const LocateCommand& command) {
   const auto scans = scans_of_log(*log);
   if (!scans) return say_wrong(command.log, scans.error());
   const auto field = std::make_shared<const nav::place::Field>(*map);
-  const std::string figures = figures_text(locate_log(field, *scans, command.options));
+  const std::string figures =
+      command.starts > 0
+          ? figures_text(start_in_log(field, *scans, command.options, command.starts))
+          : figures_text(locate_log(field, *scans, command.options));
   std::fputs(figures.c_str(), stdout);
   return 0;
 }

@@ -12,6 +12,7 @@ struct LocateCommand {
   std::filesystem::path map;  ///< the yaml; its image is looked for from the same folder
   std::filesystem::path log;
   LocateOptions options;
+  std::size_t starts = 0;  ///< so many starts without a pose in place of the whole drive
 };
 
 /// Prints the figures. @return exit code: 0; 1 a file cannot be read, or is no map or no log.

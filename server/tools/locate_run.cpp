@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <random>
 #include <utility>
 
 #include <Eigen/LU>
@@ -128,6 +129,56 @@ LocateFigures locate_log(std::shared_ptr<const nav::place::Field> field,
   }
   summarise(errors, ms, f);
   return f;
+}
+
+StartFigures start_in_log(std::shared_ptr<const nav::place::Field> field,
+                          const std::vector<atlas::CarmenScan>& scans, const LocateOptions& options,
+                          std::size_t starts) {
+  StartFigures f;
+  const std::size_t stride = options.use == WhichScans::All ? 1 : 2;
+  const std::size_t needs = stride * StartFigures::kMostScans;
+  if (scans.size() <= needs) return f;
+  std::mt19937 random(1);
+  std::uniform_int_distribution<std::size_t> draw(0, scans.size() - needs - 1);
+  std::vector<double> took_scans;
+  std::vector<double> ms;
+  for (; f.starts < starts; ++f.starts) {
+    nav::place::Tracker tracker(field, options.tracker);
+    const std::size_t from = draw(random);
+    std::size_t used = 0;
+    bool told_any = false;
+    const double begin_s = thread_s();
+    for (std::size_t i = from; i < from + needs && !told_any; ++i) {
+      if (!takes(options.use, i)) continue;
+      const auto stamp = base::Time{} + std::chrono::milliseconds(static_cast<std::int64_t>(i + 1));
+      const nav::place::Told told =
+          tracker.feed(atlas::scan_of(scans[i], stamp), scans[i].odometry);
+      ++used;
+      if (!told.fix) continue;
+      told_any = true;
+      Errors error;
+      error.add(*told.fix, scans[i].pose);
+      const bool wrong = error.m[0] > 1.0 || error.deg[0] > 20.0;
+      ++(wrong ? f.wrong : used <= StartFigures::kScans ? f.right : f.later);
+      took_scans.push_back(static_cast<double>(used));
+    }
+    if (!told_any) ++f.untold;
+    ms.push_back(1000.0 * (thread_s() - begin_s));
+  }
+  f.median_scans = share_of(took_scans, 0.5);
+  f.median_ms = share_of(ms, 0.5);
+  return f;
+}
+
+std::string figures_text(const StartFigures& f) {
+  char text[400];
+  std::snprintf(text, sizeof text,
+                "starts     %zu without a pose: right within %zu scans %zu, within %zu %zu more, "
+                "not told %zu, a wrong place called right %zu\n"
+                "one start  median %.0f scans, %.0f ms\n",
+                f.starts, StartFigures::kScans, f.right, StartFigures::kMostScans, f.later,
+                f.untold, f.wrong, f.median_scans, f.median_ms);
+  return text;
 }
 
 std::string figures_text(const LocateFigures& f) {

@@ -52,7 +52,27 @@ base::Result<std::vector<atlas::CarmenScan>> scans_of_log(base::Bytes file);
 LocateFigures locate_log(std::shared_ptr<const nav::place::Field> field,
                          const std::vector<atlas::CarmenScan>& scans, const LocateOptions& options);
 
+/// Starts without a pose from places of a log that are drawn by chance.
+struct StartFigures {
+  std::size_t starts = 0;
+  std::size_t right = 0;    ///< the first pose that was told is right, and came within kScans
+  std::size_t later = 0;    ///< right, and came within kMostScans
+  std::size_t wrong = 0;    ///< off by more than 1 m or 20 deg: a wrong place called right
+  std::size_t untold = 0;   ///< none within kMostScans
+  double median_scans = 0;  ///< until it was told
+  double median_ms = 0.0;   ///< of one start, all its scans
+  static constexpr std::size_t kScans = 10;
+  static constexpr std::size_t kMostScans = 60;
+};
+
+/// @param starts each with a tracker of its own, at a scan with kMostScans more behind it. Of the
+/// scans those of options.use are given. The same seed draws the same places.
+StartFigures start_in_log(std::shared_ptr<const nav::place::Field> field,
+                          const std::vector<atlas::CarmenScan>& scans, const LocateOptions& options,
+                          std::size_t starts);
+
 /// A line a figure.
 std::string figures_text(const LocateFigures& f);
+std::string figures_text(const StartFigures& f);
 
 }  // namespace roverd

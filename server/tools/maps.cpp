@@ -162,7 +162,7 @@ base::Result<Json> mapped(const MapCommand& c) {
   if (auto driven = drive(c.log, mapper); !driven) {
     return tl::unexpected<base::Error>(named(c.log, driven.error()));
   }
-  const auto map = mapper.draw(c.resolution_m);
+  const auto map = mapper.draw({.resolution_m = c.resolution_m});
   if (!map) return tl::unexpected<base::Error>(named(c.log, map.error()));
   if (auto written = write_map_files(*map, c.into); !written) {
     return tl::unexpected<base::Error>(written.error());

@@ -88,7 +88,7 @@ base::Result<Column> column_of(const std::filesystem::path& database, std::int64
   track.reserve(read->points.size());
   for (const store::RunPoint& p : read->points) {
     track.push_back({p.t_s, p.at, p.yaw_rad, p.speed_mps, p.yaw_rate_radps, p.lap, p.by_itself,
-                     p.power_w, p.item});
+                     p.power_w, p.item, p.cross_m});
   }
   std::vector<std::pair<std::string, base::ParamValue>> parameters;
   for (const auto& p : read->run.parameters) parameters.emplace_back(p.name, p.value);

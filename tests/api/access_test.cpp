@@ -307,6 +307,7 @@ TEST_F(AccessApi, OnTheStreamTheRoleCountsForEachMessage) {
   const std::string low = "the role viewer is too low: this needs operator";
   EXPECT_EQ(answer(viewer, R"({"halt":"hold"})"), low);
   EXPECT_EQ(answer(viewer, R"({"drive":{"speed_mps":1,"yaw_rate_dps":0,"deadman":true}})"), low);
+  EXPECT_EQ(answer(viewer, R"({"throttle":{"share":1,"held":true}})"), low);
   Client driver(house.port());
   ASSERT_EQ(driver.upgrade("/api/v1/stream", as("token of operator")), 101u);
   EXPECT_EQ(answer(driver, R"({"halt":"hold"})"), "");

@@ -69,6 +69,46 @@ class ControlApi : public AccessApi {
   }
 };
 
+TEST_F(ControlApi, WhoIsConnectedIsToldWithRoleAndKindAndGoesWithTheConnection) {
+  const auto here = [this] {
+    const auto answer = as("viewer", "GET", "/control");
+    EXPECT_EQ(schema_fault(document(), document()["components"]["schemas"]["Control"], answer.body),
+              "");
+    std::vector<std::string> out;
+    for (const Json& one : answer.body["here"]) {
+      out.push_back(one["user"].get<std::string>() + " " + one["role"].get<std::string>() + " " +
+                    one["kind"].get<std::string>() + " " + one["streams"].dump());
+    }
+    return out;
+  };
+  // given: nobody but callers
+  EXPECT_TRUE(here().empty());
+  // when: one watches on two tabs, and another one comes
+  auto first = listener("viewer");
+  auto second = listener("viewer");
+  auto other = listener("operator");
+  // then: each person once
+  const auto both = here();
+  ASSERT_EQ(both.size(), 2u);
+  EXPECT_NE(both[0].find(" operator "), std::string::npos) << both[0];
+  EXPECT_NE(both[1].find(" viewer "), std::string::npos) << both[1];
+  EXPECT_EQ(both[1].back(), '2');
+  // and: gone with the connection, not before
+  second.reset();
+  const auto counts = [&](const std::string& end) {
+    for (int tries = 0; tries < 200; ++tries) {
+      if (here().back().ends_with(end)) return true;
+      std::this_thread::sleep_for(20ms);
+    }
+    return false;
+  };
+  EXPECT_TRUE(counts(" 1"));
+  first.reset();
+  other.reset();
+  for (int tries = 0; tries < 200 && !here().empty(); ++tries) std::this_thread::sleep_for(20ms);
+  EXPECT_TRUE(here().empty());
+}
+
 TEST_F(ControlApi, TheDocumentAndTheTableSayTheSame) {
   // given: what the document says of each call that changes something
   std::map<std::string, std::string> written;
@@ -358,6 +398,25 @@ TEST_F(ControlSticks, OnlyTheHoldersStickIsHeardAndForceDropsItAtOnce) {
       *ben, drive(0, false), [this] { return ready(); }, "ben let go");
   keep_saying(
       *ben, drive(0.4, true), [this] { return moves(); }, "ben drives");
+}
+
+TEST_F(ControlSticks, OnlyTheHoldersHandSlowsTheRobotAndItIsLostWithControl) {
+  const auto anna = connect("operator");
+  const auto ben = connect("token of operator");
+  take("operator");
+  const Json held = {{"throttle", {{"share", 0.5}, {"held", true}}}};
+  const auto share = [this] { return house.snapshot()->teleop.auto_share; };
+  // Who does not hold control is told so, and nothing is slower.
+  say(*ben, held);
+  EXPECT_EQ(next(*ben, "error")["data"]["type"], "/docs#problem-control");
+  EXPECT_FALSE(share());
+  keep_saying(
+      *anna, held, [&] { return share() == 0.5; }, "anna's hand is there");
+  ASSERT_EQ(as("token of operator", "POST", "/control/take",
+               R"({"force":true,"reason":"the dog is out"})")
+                .status,
+            200u);
+  until([&] { return share() == 0.0; }, "her hand is lost");
 }
 
 TEST_F(ControlSticks, GivingUpControlEndsTheStickAndAStickHeldMeanwhileDoesNotActWithControl) {

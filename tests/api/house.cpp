@@ -19,6 +19,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
+constexpr auto kOnBefore = 5200ms;
+
 api::Profile profile() {
   api::Profile p;
   p.name = "bunker";
@@ -92,17 +94,9 @@ House::House(net::Limits limits, Vehicle vehicle, const Before& before)
     file.prepare_payload();
     return file;
   };
-  store::TileSet farm;
-  farm.set = "farm";
-  farm.name = "Farm";
-  farm.format = "png";
-  farm.max_zoom = 3;
-  deps.tiles.sets = {farm};
-  deps.tiles.read = [](const std::string& set, int zoom, int x,
-                       int y) -> std::optional<store::Tile> {
-    if (set != "farm" || zoom != 3) return std::nullopt;
-    return store::Tile{std::to_string(x) + "," + std::to_string(y), "image/png", ""};
-  };
+  tiles_ = std::move(*store::TileShelf::open(folder_ / "tiles", {}, 0));
+  deps.tiles = {tiles_.get(), {{"aerial", "https://tiles.example.org/{z}/{x}/{y}", "Board", 20}}};
+  deps.cameras.cameras = {{"front", "ip", [this] { return picture_.get(); }}};
   deps.aside = [this](api::Aside a) {
     const net::Lane lane = a.large ? net::Lane::Large : net::Lane::Small;
     if (!a.must) return workers_.run(lane, std::move(a.work), std::move(a.then));
@@ -307,8 +301,17 @@ void House::play() {
   // Devices and loop run on computers and threads that nobody delays; where that is refused, a busy
   // machine may still make them late.
   (void)make_urgent(Urgency::Control);
+  // It was on for some seconds when a test begins: the receiver was watched, what asks for it is
+  // content.
+  int count = 0;
+  const base::Time begun = base::steady_now();
+  const base::WallTime begun_wall = base::wall_now();
+  for (auto ago = kOnBefore; ago > 0ms && healthy && ticking && !stop_; ago -= 20ms, ++count) {
+    tell(begun - ago, count);
+    robot_.tick(begun - ago, begun_wall - ago);
+  }
   auto next = std::chrono::steady_clock::now();
-  for (int count = 0; !stop_; ++count) {
+  for (; !stop_; ++count) {
     const base::Time now = base::steady_now();
     if (healthy) tell(now, count);
     if (ticking) robot_.tick(now, base::wall_now());

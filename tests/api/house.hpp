@@ -92,6 +92,8 @@ class House {
   std::filesystem::path maps_folder() const { return folder_ / "maps"; }
   /// What its sensors see from now on, if it has any.
   void sees(std::shared_ptr<const robot::Outlook> outlook) { seen_.publish(std::move(outlook)); }
+  /// What the camera "front" gives from now on.
+  void shows(base::PicturePtr picture) { picture_.publish(std::move(picture)); }
   /// The one-time code of the first admin, as it was told last; empty: none.
   std::string code();
   /// Nothing large is begun until what this gives is let go.
@@ -117,6 +119,7 @@ class House {
   boost::asio::io_context io_{net::kWebConcurrency};
   robot::Robot robot_;
   std::unique_ptr<maps::Shelf> shelf_;
+  std::unique_ptr<store::TileShelf> tiles_;
   std::unique_ptr<store::Store> store_;
   std::unique_ptr<services::Services> services_;
   std::unique_ptr<api::Api> api_;
@@ -127,6 +130,7 @@ class House {
   people::Book people_;      ///< web thread
   base::DriveCommand sent_;  ///< guarded by mutex_
   base::Latest<robot::Outlook> seen_;
+  base::Latest<base::Picture> picture_;
   std::string code_;                 ///< guarded by mutex_
   std::string drill_order_;          ///< guarded by mutex_
   api::DrillDoor::Line drill_line_;  ///< web thread

@@ -209,6 +209,10 @@ TEST_F(LateStream, AStickThatAnswersToWhatIsTooOldDoesNotMoveTheRobot) {
     EXPECT_TRUE(error["data"]["type"].get<std::string>().ends_with("late")) << error;
     EXPECT_EQ(house.sent().twist, base::BodyTwist{});
   }
+  // A hand on the speed likewise: it is as if it had said nothing.
+  say({{"throttle", {{"share", 0.2}, {"held", true}}}, {"seen_s", stream_mono_s() - 0.3}});
+  EXPECT_TRUE(next("error")["data"]["type"].get<std::string>().ends_with("late"));
+  EXPECT_FALSE(house.snapshot()->teleop.auto_share);
   // The same with a life time of its own is in time, once the stick was let go.
   const Json free = {{"drive", {{"speed_mps", 0}, {"yaw_rate_dps", 0}, {"deadman", false}}}};
   until(

@@ -51,6 +51,49 @@ TEST_F(MissionsApi, AMissionIsCreatedReadReplacedAndDeleted) {
   EXPECT_EQ(call("GET", "/missions/" + id).status, 404u);
 }
 
+TEST_F(MissionsApi, WhatItWasDrawnAsIsKeptWithEachRevisionUntilItemsComeWithoutIt) {
+  Json field = two_waypoints("field");
+  field["drawing"] = {{"kind", "survey"}, {"wish", {{"spacing_m", 1.5}}}};
+  const auto made = call("POST", "/missions", field);
+  ASSERT_EQ(made.status, 201u) << made.body.dump();
+  const std::string path = "/missions/" + made.body["id"].get<std::string>();
+  EXPECT_EQ(made.body["drawing"], field["drawing"]);
+  EXPECT_EQ(call("GET", path).body["drawing"], field["drawing"]);
+  // Described otherwise, it is still what was drawn; a copy is it, too.
+  ASSERT_EQ(call("PATCH", path, Json{{"name", "north"}}, if_match("\"rev-1\"")).status, 200u);
+  EXPECT_EQ(call("GET", path).body["drawing"], field["drawing"]);
+  const auto copy = call("POST", path + "/copy", Json::object());
+  EXPECT_EQ(copy.body["drawing"], field["drawing"]) << copy.body.dump();
+  // Other points without a drawing drop it, and so does an operation on them.
+  const std::string rev = call("GET", path).raw.header("etag");
+  const auto other = call("PUT", path, two_waypoints("by hand"), if_match(rev));
+  ASSERT_EQ(other.status, 200u);
+  EXPECT_FALSE(other.body.contains("drawing"));
+  const auto back =
+      call("POST", path + "/revert", Json{{"revision", 1}}, if_match(other.raw.header("etag")));
+  EXPECT_EQ(back.body["drawing"], field["drawing"]);
+  const auto turned = call("POST", path + "/operations", Json{{"op", "reverse"}},
+                           if_match(back.raw.header("etag")));
+  ASSERT_EQ(turned.status, 200u) << turned.body.dump();
+  EXPECT_FALSE(turned.body.contains("drawing"));
+  EXPECT_EQ(call("GET", path + "/revisions/1").body["drawing"], field["drawing"]);
+  // No file knows it.
+  const std::string files = call("GET", path + "/export?format=geojson").raw.body;
+  EXPECT_EQ(files.find("spacing_m"), std::string::npos);
+}
+
+TEST_F(MissionsApi, ADrawingThatIsTooLargeOrNoneIsRefusedByName) {
+  for (const Json& bad : {Json(5), Json::array(), Json::object(), Json{{"kind", "a field"}},
+                          Json{{"kind", "survey"}, {"x", std::string(70'000, 'x')}}}) {
+    Json plan = two_waypoints("field");
+    plan["drawing"] = bad;
+    const auto refused = call("POST", "/missions", plan);
+    EXPECT_EQ(refused.status, 422u);
+    EXPECT_EQ(refused.body["errors"][0]["pointer"], "/drawing");
+  }
+  EXPECT_TRUE(call("GET", "/missions").body["items"].empty());
+}
+
 TEST_F(MissionsApi, AChangeBasedOnAnOldRevisionIsRefusedWithThePresentOne) {
   // Given two people who read revision 1, of whom one saves first,
   const std::string id = make_mission();

@@ -57,6 +57,11 @@ TEST_F(ModesApi, BadGoalsNameTheirFields) {
   refused("/vehicle/move", "POST", {{"forward_m", 1}, {"turn_deg", 10}});
   EXPECT_EQ(refused("/vehicle/move", "POST", {{"heading_deg", 400}}), "/heading_deg");
   EXPECT_EQ(refused("/vehicle/mode", "PUT", {{"mode", "DOCK"}}), "/heading_deg");
+  EXPECT_EQ(refused("/vehicle/mode", "PUT", {{"mode", "DOCK"}, {"tag", 587}}), "/tag");
+  EXPECT_EQ(refused("/vehicle/mode", "PUT", {{"mode", "DOCK"}, {"tag", nullptr}}), "/tag");
+  EXPECT_EQ(refused("/vehicle/mode", "PUT", {{"mode", "DOCK"}, {"tag", 5}, {"lat", 58}}), "/lat");
+  EXPECT_EQ(refused("/vehicle/mode", "PUT", {{"mode", "DOCK"}, {"tag", 5}, {"stand_off_m", 9}}),
+            "/stand_off_m");
   EXPECT_EQ(refused("/vehicle/mode", "PUT", {{"mode", "RTL"}, {"lat", 1}}), "/lat");
   EXPECT_EQ(refused("/vehicle/target", "PUT", {{"lat", 58}, {"lon", 26}, {"speed_mps", 1}}),
             "/heading_deg");

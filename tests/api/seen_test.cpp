@@ -107,6 +107,7 @@ TEST_F(SeenApi, LandmarksAndWhatCamerasToldAreListedWithTheirSource) {
   EXPECT_EQ(list.body["obstacles"].at(0)["sensor"], "camera");
   EXPECT_EQ(list.body["planes"].at(0)["size"], 5200.0);
   EXPECT_EQ(list.body["planes"].at(0)["normal"]["left"], -1.0);
+  EXPECT_TRUE(list.body["tags"].empty()) << "no camera here reads them";
 }
 
 TEST_F(SeenApi, TheTopicsAreAsTheDocumentSaysAndNoFasterThanTheyAreMade) {

@@ -93,24 +93,6 @@ TEST_F(ServerApi, ForeignHostsAndPagesAreKeptOut) {
   EXPECT_EQ(post("http://127.0.0.1:8080"), 200u);
 }
 
-TEST_F(ServerApi, TilesAreListedAndServed) {
-  EXPECT_EQ(call("GET", "/tiles").body["items"][0]["set"], "farm");
-  const auto tile = call("GET", "/tiles/farm/3/5/6.png");
-  EXPECT_EQ(tile.status, 200u);
-  EXPECT_EQ(tile.raw.body, "5,6");
-  EXPECT_EQ(tile.raw.header("content-type"), "image/png");
-  EXPECT_EQ(
-      call("GET", "/tiles/farm/3/5/6", "", "If-None-Match: " + tile.raw.header("etag") + "\r\n")
-          .status,
-      304u);
-  EXPECT_EQ(call("GET", "/tiles/farm/2/1/1").status, 404u);
-  EXPECT_EQ(call("GET", "/tiles/sea/3/5/6").status, 404u);
-  for (const char* wrong :
-       {"/tiles/farm/3/8/0", "/tiles/farm/31/0/0", "/tiles/farm/3/-1/0", "/tiles/farm/x/0/0"}) {
-    EXPECT_EQ(call("GET", wrong).status, 422u) << wrong;
-  }
-}
-
 TEST_F(ServerApi, TooMuchIsRefusedAsAProblem) {
   const auto big =
       raw("POST /api/v1/missions HTTP/1.1\r\nHost: localhost\r\nContent-Type: "

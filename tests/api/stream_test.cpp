@@ -35,6 +35,14 @@ class StreamApi : public HouseTest {
     return {{"drive",
              {{"speed_mps", speed_mps}, {"yaw_rate_dps", yaw_rate_dps}, {"deadman", deadman}}}};
   }
+  void start_a_mission() {
+    until_ready();
+    const std::string id = make_mission();
+    ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 5}}).status, 200u);
+    ASSERT_EQ(call("POST", "/execution/load", Json{{"mission_id", id}}).status, 200u);
+    const Json begin = {{"mission_id", id}, {"revision", 1}};
+    ASSERT_EQ(call("POST", "/execution/start", begin).status, 200u);
+  }
   /// Sticks in the middle, dead-man off, until the robot has seen it.
   void let_go(Client& client) {
     until(
@@ -207,18 +215,69 @@ TEST_F(StreamApi, WhatHaltsIsCarriedOutOverTheOpenSocketAndAnUnknownWordIsNot) {
 }
 
 TEST_F(StreamApi, ARunningMissionIsPausedAndStoppedOverTheOpenSocket) {
-  until_ready();
-  const std::string id = make_mission();
-  ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 5}}).status, 200u);
-  ASSERT_EQ(call("POST", "/execution/load", Json{{"mission_id", id}}).status, 200u);
-  const Json begin = {{"mission_id", id}, {"revision", 1}};
-  ASSERT_EQ(call("POST", "/execution/start", begin).status, 200u);
+  ASSERT_NO_FATAL_FAILURE(start_a_mission());
   const auto client = connect();
   const auto is = [this](base::ExecutionState s) { return house.snapshot()->mission.state == s; };
   say(*client, {{"halt", "pause"}});
   until([&] { return is(base::ExecutionState::Paused); }, "it is paused");
   say(*client, {{"halt", "stop"}});
   until([&] { return is(base::ExecutionState::Aborted); }, "it is stopped");
+}
+
+TEST_F(StreamApi, AHandOnTheSpeedSlowsAMissionAndStopsItWhenItsConnectionBreaks) {
+  // Given a mission that runs,
+  ASSERT_NO_FATAL_FAILURE(start_a_mission());
+  EXPECT_EQ(call("GET", "/vehicle").body["teleop"]["auto_share"], nullptr);
+  auto client = connect();
+  const auto hand = [](const Json& share, bool held) {
+    return Json{{"throttle", {{"share", share}, {"held", held}}}};
+  };
+  const auto keep = [&](double share, const std::function<bool()>& claim, const char* what) {
+    until(
+        [&] {
+          say(*client, hand(share, true));
+          std::this_thread::sleep_for(20ms);
+          return claim();
+        },
+        what);
+  };
+  const auto speed = [this] { return std::abs(house.sent().twist.linear_mps); };
+  // when a hand asks for less, then it is told so and it is slower;
+  keep(
+      1.0, [&] { return speed() > 0.25; }, "it drives");
+  keep(
+      0.2, [&] { return speed() < 0.2 && speed() > 0.05; }, "it is slower");
+  const Json told = call("GET", "/vehicle").body;
+  EXPECT_EQ(fault("Vehicle", told), "");
+  EXPECT_EQ(told["teleop"]["auto_share"], 0.2);
+  // let go it stands, held again it drives;
+  say(*client, hand(0.0, false));
+  until([&] { return speed() == 0.0; }, "it stands");
+  keep(
+      1.0, [&] { return speed() > 0.1; }, "it drives again");
+  // what is not understood is told, and stops it;
+  say(*client, hand(1.5, true));
+  EXPECT_EQ(next(*client, "error")["data"]["errors"][0]["pointer"], "/throttle/share");
+  until([&] { return speed() == 0.0; }, "it stands after a word that is none");
+  for (const char* text :
+       {R"({"throttle":{"share":"all","held":true}})", R"({"throttle":{"share":NaN,"held":true}})",
+        R"({"throttle":{"share":-0.1,"held":true}})", R"({"throttle":{"held":true}})",
+        R"({"throttle":{"share":0.5,"held":true},"ping":1})"}) {
+    client->send_frame(1, text);
+    EXPECT_EQ(fault("StreamError", next(*client, "error")), "") << text;
+    say(*client, hand(0.0, false));
+  }
+  keep(
+      1.0, [&] { return speed() > 0.1; }, "it drives after a fresh grip");
+  // and when the connection breaks it stops, and says why.
+  client.reset();
+  until([&] { return speed() == 0.0; }, "it stands after the connection broke");
+  const Json after = call("GET", "/vehicle").body;
+  EXPECT_EQ(after["teleop"]["auto_share"], 0.0);
+  bool said = false;
+  for (const Json& c : after["safety"]) said = said || c["id"] == "auto_hand";
+  EXPECT_TRUE(said) << after["safety"].dump();
+  EXPECT_EQ(after["mission"]["state"], "running");
 }
 
 TEST_F(StreamApi, OneDrivesAtATimeAndWhoeverTakesOverMustLetGoFirst) {

@@ -32,7 +32,7 @@ class TeachApi : public HouseTest {
 
 TEST_F(TeachApi, ADrivenWayBecomesAMission) {
   until_ready();
-  EXPECT_EQ(teach()["state"], "idle");
+  until([this] { return teach()["state"] == "idle"; }, "it is known that nothing was left behind");
   EXPECT_EQ(post("pause"), 409u);
   EXPECT_EQ(post("stop"), 409u);
   ASSERT_EQ(post("start", {{"name", "to the gate"}, {"step_m", 0.2}}), 200u);

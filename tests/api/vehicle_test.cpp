@@ -289,6 +289,82 @@ TEST_F(VehicleApi, TheWayIsToldAsItWillBeDrivenNotAsItsPointsLie) {
   }
 }
 
+/// What is told of the way from `item` - 1 to it.
+double told_set_mps(const Json& pace, int item) {
+  double most = 0.0;
+  for (std::size_t i = 0; i + 1 < pace.size(); ++i) {
+    if (pace[i]["item"] == item) most = std::max(most, pace[i]["set_mps"].get<double>());
+  }
+  return most;
+}
+
+//   2 ──▶ 3        from 1 to the north, at 2 on the spot to the east, from 3 back to 4, and south
+//   ▲     │
+//   1     5
+TEST_F(VehicleApi, TheWayTellsHowFastItIsDrivenAndWhereItStopsAndTurns) {
+  until_ready();
+  const double north = 9e-5;  // 10 m
+  const double east = 1.7e-4;
+  const auto to = [&](double n, double e, double speed_mps) {
+    return Json{{"type", "waypoint"},
+                {"lat", kStart.lat + n * north},
+                {"lon", kStart.lon + e * east},
+                {"speed_mps", speed_mps}};
+  };
+  Json corner = to(2, 0, 0.8);
+  corner["turn"] = "pivot";
+  Json back = to(2, 0.2, 0.3);
+  back["reverse"] = true;
+  const auto made =
+      call("POST", "/missions",
+           Json{{"name", "told"},
+                {"items", {to(1, 0, 0.8), corner, to(2, 1, 0.4), back, to(0, 0.2, 0.8)}}});
+  ASSERT_EQ(made.status, 201u) << made.body.dump();
+  const std::string id = made.body["id"];
+  ASSERT_EQ(call("POST", "/execution/load", Json{{"mission_id", id}}).status, 200u);
+  const auto way = call("GET", "/execution/way");
+  ASSERT_EQ(way.status, 200u);
+  const Json& pace = way.body["pace"];
+  ASSERT_GT(pace.size(), 8u);
+  EXPECT_NEAR(told_set_mps(pace, 2), 0.8, 1e-9);
+  EXPECT_NEAR(told_set_mps(pace, 3), 0.4, 1e-9);
+  EXPECT_NEAR(told_set_mps(pace, 4), 0.3, 1e-9);
+  double before_m = -1.0;
+  for (std::size_t i = 0; i < pace.size(); ++i) {
+    const Json& p = pace[i];
+    EXPECT_GT(p["distance_m"], before_m) << i;
+    before_m = p["distance_m"];
+    EXPECT_LE(p["speed_mps"].get<double>(), 0.8 + 1e-9) << i;
+    const bool last_of_back = p["item"] == 4;
+    if (i + 1 == pace.size()) continue;
+    EXPECT_EQ(p["reverse"], last_of_back) << i;
+  }
+  EXPECT_EQ(pace.front()["speed_mps"], 0.0);
+  EXPECT_EQ(pace.back()["speed_mps"], 0.0);
+  EXPECT_NEAR(pace.back()["distance_m"], way.body["length_m"], 0.002);
+
+  const Json& stops = way.body["stops"];
+  EXPECT_EQ(way.body["stops_left_out"], 0);
+  ASSERT_EQ(stops.size(), 5u);
+  EXPECT_EQ(stops[0]["item"], 1);
+  EXPECT_EQ(stops[0]["distance_m"], 0.0);
+  EXPECT_TRUE(stops[0]["turns"][0]["from_heading_deg"].is_null());
+  EXPECT_NEAR(stops[0]["turns"][0]["to_heading_deg"], 0.0, 0.5);
+  EXPECT_EQ(stops[1]["item"], 2);
+  EXPECT_NEAR(stops[1]["lat"], kStart.lat + 2 * north, 2e-8);
+  ASSERT_EQ(stops[1]["turns"].size(), 1u);
+  EXPECT_NEAR(stops[1]["turns"][0]["turn_deg"], 90.0, 0.5);
+  EXPECT_NEAR(stops[1]["turns"][0]["to_heading_deg"], 90.0, 0.5);
+  EXPECT_EQ(stops[2]["item"], 3);
+  EXPECT_TRUE(stops[2]["turns"].empty());  // it backs up as it stands
+  // Facing east still, it turns to the south.
+  EXPECT_EQ(stops[3]["item"], 4);
+  ASSERT_EQ(stops[3]["turns"].size(), 1u);
+  EXPECT_NEAR(stops[3]["turns"][0]["turn_deg"], 90.0, 0.5);
+  EXPECT_EQ(stops[4]["item"], 5);
+  EXPECT_TRUE(stops[4]["turns"].empty());
+}
+
 TEST_F(VehicleApi, AMissionIsLoadedPreviewedStartedPausedAndStopped) {
   until_ready();
   const std::string id = make_mission();

@@ -50,7 +50,7 @@ def free_port():
 
 class SeeingRobot:
     """@param world of config/worlds' form. @param eyes of roverd-sim's configuration, with {port} for a free
-    one. @param hears of roverd's, with {port}, {front} (the scanner's address) and {folder} (`scratch`)"""
+    one. @param hears of roverd's, with {port}, {front} (the scanner's address; {at_front}, {at_eye}: without "tcp:") and {folder} (`scratch`)"""
 
     def __init__(self, world, eyes=TOP_AND_FRONT, hears=HEARS_TOP_AND_FRONT, sim=()):
         self.scratch = pathlib.Path(tempfile.mkdtemp(prefix="roverd-seeing."))
@@ -79,7 +79,9 @@ class SeeingRobot:
         shutil.copytree(ROOT / "config/vehicles", self.scratch / "vehicles")
         config = self.scratch / "robot.toml"
         config.write_text((ROOT / "config/robot.toml").read_text()
-                          + hears.format(port=port, front=at.get("front", ""), folder=self.scratch))
+                          + hears.format(port=port, front=at.get("front", ""), folder=self.scratch,
+                                         at_front=at.get("front", "").removeprefix("tcp:"),
+                                         at_eye=at.get("eye", "").removeprefix("tcp:")))
         self.roverd = Program(BIN / "roverd", "--config", config, "--data", self.scratch / "data",
                               "--port", "0", "--set", f"drivers.bunker.link={at['can']}",
                               "--set", f"drivers.gnss.link={at['gnss']}",

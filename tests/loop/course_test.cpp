@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "base/angle.hpp"
+#include "source_folder.hpp"
 #include "study/study.hpp"
 
 namespace roverd::study {
@@ -33,7 +34,7 @@ Disturbance hard(double delay_s = 0.15, double lag_s = 0.09) {
 study::Run drive(const Course& course, const Disturbance& disturbance, std::uint64_t seed = 1,
                  const std::string& vehicle = "bunker") {
   study::Setup setup;
-  setup.config = CONFIG_FOLDER "/robot.toml";
+  setup.config = tests::in_source("config/robot.toml");
   setup.vehicle = vehicle;
   auto run = run_one(setup, {&course, &disturbance, seed});
   if (!run) {
@@ -209,7 +210,7 @@ TEST(Course, TheSameSeedDrivesTheSameWay) {
 
 TEST(Course, WhatIsSetWronglyIsToldByName) {
   study::Setup setup;
-  setup.config = CONFIG_FOLDER "/robot.toml";
+  setup.config = tests::in_source("config/robot.toml");
   setup.vehicle = "bunker";
   const Course c = course_of({{0, 0}, {0, 8}});
   Disturbance d = hard();

@@ -15,14 +15,15 @@
 #include "rig.hpp"
 #include "sim/cart.hpp"
 #include "sim/config.hpp"
+#include "source_folder.hpp"
 #include "twist/driver.hpp"
 
 namespace roverd::loop {
 
 /// The settings of roverd with --vehicle NAME.
 inline Settings settings_of(const std::string& vehicle) {
-  auto settings =
-      load_settings({.config = CONFIG_FOLDER "/robot.toml", .vehicle = vehicle, .overrides = {}});
+  auto settings = load_settings(
+      {.config = tests::in_source("config/robot.toml"), .vehicle = vehicle, .overrides = {}});
   if (settings) return *settings;
   ADD_FAILURE() << settings.error().detail;
   return {};
@@ -30,7 +31,8 @@ inline Settings settings_of(const std::string& vehicle) {
 
 inline sim::Params plant_of(const std::string& vehicle) {
   sim::Config config;
-  const auto read = sim::read_config_file(config, CONFIG_FOLDER "/sim/" + vehicle + ".toml");
+  const auto read =
+      sim::read_config_file(config, tests::in_source("config/sim/" + vehicle + ".toml"));
   if (!read) ADD_FAILURE() << read.error().detail;
   return config.params;
 }

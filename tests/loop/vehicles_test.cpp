@@ -1,5 +1,6 @@
 // Every vehicle that is shipped does the main job with its own kinematics, judged by the true pose.
 
+#include "source_folder.hpp"
 #include "vehicle_rig.hpp"
 
 namespace roverd::loop {
@@ -211,7 +212,7 @@ TEST(Vehicles, AnEmergencyStopAtTheDonkeyIsTold) {
 }
 
 TEST(Vehicles, AnUnknownWordForTheKinematicsIsRefused) {
-  const auto refused = load_settings({.config = CONFIG_FOLDER "/robot.toml",
+  const auto refused = load_settings({.config = tests::in_source("config/robot.toml"),
                                       .vehicle = "uku",
                                       .overrides = {"vehicle.kinematics=ackerman"}});
   ASSERT_FALSE(refused);

@@ -3,7 +3,7 @@
 
 import type { Page } from '@playwright/test';
 
-import { arm, open_page, press } from './page';
+import { arm, open_page, press, press_it } from './page';
 import { expect, test, type MortalStation, type Station } from './station';
 
 interface Execution {
@@ -113,7 +113,7 @@ test('what the check has found is seen before arming, and arming is asked once m
   expect(await station.rest('GET', '/vehicle')).toMatchObject({ armed: false });
   await expect(async () => {
     if (await dialog.isHidden()) await press(page, 'Arm');
-    await dialog.getByRole('button', { name: 'Arm anyway' }).click();
+    await press_it(dialog.getByRole('button', { name: 'Arm anyway' }));
     await expect(page.getByRole('button', { name: 'Disarm' })).toBeVisible({ timeout: 1500 });
   }).toPass({ timeout: 20_000 });
 });

@@ -32,7 +32,14 @@ test('a calibration is begun from the page, and HOLD ends it without a change', 
 
   await press(page, 'Calibrate the vehicle');
   const card = page.getByRole('region', { name: 'Calibrate' });
+  // A newcomer reads what it is for, what it needs, and that all of it is there.
+  const stage = card.locator('[aria-current=step]');
+  await expect(stage).toHaveText('Prepare');
+  await expect(card).toContainText('it stops where it shall and cuts no corners');
   await expect(card).toContainText(/It needs \d+ m ahead, \d+ m behind and \d+ m to either side/);
+  const ready = card.getByRole('list', { name: 'Before you begin' }).getByRole('listitem');
+  await expect(ready).toHaveCount(4);
+  await expect(card.getByRole('img', { name: 'not well' })).toHaveCount(0);
   await card.getByLabel('What').selectOption('steering');
   await expect(card).toContainText('This vehicle has no steered wheels');
   await card.getByLabel('What').selectOption('drive');
@@ -48,6 +55,8 @@ test('a calibration is begun from the page, and HOLD ends it without a change', 
   await press(page, 'Begin');
   await expect(page.getByLabel('Now')).toContainText('GUIDED');
   await expect(card.getByRole('status')).toContainText(/step \d+ of \d+/);
+  await expect(stage).toHaveText('Drive');
+  await expect(card).toContainText('nobody steps onto the outlined ground');
   await expect(card).toContainText('Braking');
   await expect
     .poll(() => Math.abs(station.sim.now.speed_mps), { timeout: 20_000 })
@@ -59,6 +68,8 @@ test('a calibration is begun from the page, and HOLD ends it without a change', 
   await expect(card.getByRole('alert')).toContainText(
     /It did not finish.*HOLD.*Nothing is changed/,
   );
+  await expect(stage).toHaveText('Judge');
+  await expect(card).toContainText('What to do: ');
   const after = await station.rest<Vehicle>('GET', '/vehicle');
   expect(after.learned.calibrated).toBe(false);
   await expect.poll(() => map_pixels(page, [SPACE])).toEqual([]);
@@ -76,7 +87,13 @@ test('a whole calibration is kept, which is said, and acts', async ({ page, stat
   const card = page.getByRole('region', { name: 'Calibrate' });
   await card.getByRole('button', { name: 'Begin' }).click();
   await expect(card.getByRole('status')).toContainText(/step \d+ of \d+/);
-  await card.getByRole('button', { name: 'Keep' }).click({ timeout: 220_000 });
+  await expect(card.getByRole('button', { name: 'Keep' })).toBeVisible({ timeout: 220_000 });
+  await card.getByText('What the figures mean').click();
+  await expect(card).toContainText('more is shorter stops');
+  await expect(card).toContainText('Discard: it drives as before.');
+  await card.scrollIntoViewIfNeeded();
+  await page.screenshot({ path: '../tests/page/results/calibrate-judge.png' });
+  await card.getByRole('button', { name: 'Keep' }).click();
   await expect(card.getByText(/^Kept, and used from now on: .*Braking/)).toBeVisible();
   const after = await station.rest<Vehicle>('GET', '/vehicle');
   expect(after.learned.calibrated).toBe(true);

@@ -65,7 +65,14 @@ test('control is taken, asked for, handed over, and taken by force', async ({
   const cleo = await another(browser, station.url, 'cleo');
   await expect(control(cleo)).toContainText('has control');
   await expect(control(cleo)).toContainText('You watch, and may stop.');
-  await expect(control(cleo).getByRole('button')).toHaveCount(0);
+  // … but who else is connected.
+  await expect(control(cleo).getByRole('button')).toHaveCount(1);
+  await press(cleo, 'Who is here');
+  const here = control(cleo).getByRole('list', { name: 'Who is here' }).getByRole('listitem');
+  await expect(here).toHaveCount(3);
+  await expect(here.first()).toContainText('anna');
+  await expect(here.first()).toContainText('has control');
+  await expect(here.filter({ hasText: 'cleo' })).toContainText('that is you');
 
   // when: ben asks, and anna keeps it
   await press(ben, 'Ask');

@@ -1,6 +1,8 @@
 // The driving deck: four large figures, HOLD and the modes, which never move: whoever looks at the
 // robot finds them without a look at the screen.
 
+import { readFileSync } from 'node:fs';
+
 import type { Page } from '@playwright/test';
 
 import { draw, drive_it, mark, open_page, press, save, tab } from './page';
@@ -68,4 +70,31 @@ test('the figures tell how it drives, and are large', async ({ page, station }) 
     .getByRole('definition')
     .evaluateAll((all) => all.map((each) => parseFloat(getComputedStyle(each).fontSize)));
   expect(Math.min(...sizes)).toBeGreaterThanOrEqual(26);
+});
+
+test('instruments are chosen and kept, and what is plotted can be stopped and saved', async ({
+  page,
+  station,
+}) => {
+  await open_page(page, station.url);
+  const tiles = page.getByRole('region', { name: 'Instruments' });
+  await expect(tiles.getByRole('figure', { name: 'Compass' })).toContainText(/\d{3}° [NESW]/);
+  await press(page, 'Instruments…');
+  await press(page, 'Attitude');
+  await press(page, 'Compass');
+  await page.reload();
+  await expect(tiles.getByRole('figure', { name: 'Attitude' })).toContainText(/\d° (left|right)/);
+  await expect(tiles.getByRole('figure', { name: 'Compass' })).toHaveCount(0);
+
+  await press(page, 'Plots of the last five minutes…');
+  const plots = page.getByRole('region', { name: 'Plots' });
+  await plots.getByRole('button', { name: 'Battery' }).click();
+  await expect(plots.getByRole('figure', { name: 'Battery' })).toContainText(/5\d\.\d+ V/);
+  await expect(plots.locator('canvas')).toHaveCount(3);
+  await plots.getByRole('button', { name: 'Pause plots' }).click();
+  const saved = page.waitForEvent('download');
+  await plots.getByRole('button', { name: 'Save CSV' }).click();
+  const text = readFileSync(await (await saved).path(), 'utf8').split('\r\n');
+  expect(text[0]).toBe('time,speed_mps,deviation_m,heading_deg,battery_V,link_ms,gnss_m');
+  expect(text[5]).toMatch(/^20\d\d-.*Z,-?[\d.]+,,,5\d/);
 });

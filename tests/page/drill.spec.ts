@@ -80,7 +80,7 @@ for (const { name, viewport } of [
     await page.screenshot({ path: picture(`${name}-drill.png`) });
 
     await row('Drive link dead').getByRole('button').click();
-    await expect(row('Drive link dead')).toContainText('base_lost');
+    await expect(row('Drive link dead')).toContainText('Vehicle not heard');
     await expect(row('Drive link dead')).toContainText(/Command zero after\s*0\.4 s/);
     await expect(row('Drive link dead')).toContainText('HOLD, armed');
     await page.waitForTimeout(500);

@@ -89,6 +89,49 @@ test('a draft survives a reload of the page, saved missions come from the server
   await expect(page.getByLabel('Summary')).toContainText('saved, revision 1');
 });
 
+test('steps are undone in a mission that was left and opened again, and after a reload', async ({
+  page,
+  station,
+}) => {
+  const name = page.getByLabel('Mission name');
+  const open = async (wanted: string) => {
+    await tab(page, 'Missions');
+    await page.getByRole('list', { name: 'Stored missions' }).getByText(wanted).click();
+  };
+  await station.rest('POST', '/missions', { name: 'Other', items: [] });
+  await open_page(page, station.url);
+  await tab(page, 'Plan');
+  await name.fill('Mine');
+  await name.press('Enter');
+  await draw(page, LINE);
+  await press(page, 'New');
+  await press(page, 'Discard');
+  await expect(items(page)).toHaveCount(0);
+  await press(page, 'Undo'); // it was never saved, and is back
+  await expect(items(page)).toHaveCount(3);
+  await save(page);
+  await draw(page, [[0, -60]]); // not saved
+  await expect(items(page)).toHaveCount(4);
+
+  await open('Other');
+  await press(page, 'Discard');
+  await expect(name).toHaveValue('Other');
+  await page.reload();
+  await open('Mine');
+
+  // It is as it is stored; what was not saved is one step back, and all before it.
+  await expect(items(page)).toHaveCount(3);
+  await expect(page.getByLabel('Summary')).toContainText('saved, revision 1');
+  await press(page, 'Undo');
+  await expect(items(page)).toHaveCount(4);
+  await press(page, 'Undo');
+  await expect(items(page)).toHaveCount(3);
+  await press(page, 'Undo');
+  await expect(items(page)).toHaveCount(2);
+  await press(page, 'Redo');
+  await expect(items(page)).toHaveCount(3);
+});
+
 test('when somebody else saved first, nothing is lost and the person chooses', async ({
   page,
   station,

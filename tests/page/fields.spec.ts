@@ -1,6 +1,19 @@
 // A field that is drawn becomes a mission; a fence that is drawn holds the robot.
 
-import { arm, draw, items, map_middle, open_page, press, tab, type Point } from './page';
+import {
+  arm,
+  draw,
+  extent_px,
+  items,
+  map_middle,
+  map_pixels,
+  open_page,
+  pixels_per_m,
+  press,
+  tab,
+  type Color,
+  type Point,
+} from './page';
 import { expect, test } from './station';
 
 interface Fence {
@@ -50,6 +63,23 @@ test('a field is drawn, its tracks are shown with figures, and it is kept as a m
   expect(await items(page).count()).toBeGreaterThan(4);
   const list = await station.rest<{ items: { name: string }[] }>('GET', '/missions');
   expect(list.items.map(({ name }) => name)).toEqual(['Meadow']);
+
+  // It stays one object: changed later, also after a reload, its points follow, as one step.
+  await page.reload();
+  await tab(page, 'Plan');
+  const all = await items(page).count();
+  await press(page, 'Change the field…');
+  await expect(page.getByLabel('Working width, m')).toHaveValue('2');
+  await page.getByLabel('Working width, m').fill('4');
+  await page.getByLabel('Working width, m').press('Enter');
+  await expect(page.getByText('The points of “Meadow” follow')).toBeVisible();
+  await press(page, 'Change the mission');
+  await expect(page.getByLabel('Summary')).toContainText('saved, revision 2');
+  expect(await items(page).count()).toBeLessThan(all);
+  await press(page, 'Undo');
+  await expect(items(page)).toHaveCount(all);
+  await press(page, 'Change the field…');
+  await expect(page.getByLabel('Working width, m')).toHaveValue('2');
 });
 
 test('a fence is drawn with a hole and a rally point, and then refuses what leaves it', async ({
@@ -100,4 +130,63 @@ test('a fence is drawn with a hole and a rally point, and then refuses what leav
   await expect(page.getByRole('alert', { name: 'Refused' })).toContainText(
     'the way there leaves the fence',
   );
+});
+
+interface Rows {
+  readonly name: string;
+  readonly items: readonly {
+    readonly type: string;
+    readonly lat?: number;
+    readonly lon?: number;
+    readonly heading_deg?: number;
+    readonly turn_deg?: number;
+  }[];
+}
+
+test('a block of rows is begun with two taps, seen with its turns, and kept as a mission', async ({
+  page,
+  station,
+}) => {
+  await open_page(page, station.url);
+  await tab(page, 'Plan');
+  await press(page, 'Block of rows…');
+  await expect(page.getByText('Tap the map where row 1 begins.')).toBeVisible();
+  await draw(page, [[-100, 50]]);
+  await expect(page.getByText('Tap where row 1 ends.')).toBeVisible();
+  await draw(page, [[-100, -150]]); // to the north
+  const figures = page.getByLabel('Block of rows', { exact: true });
+  await expect(figures).toContainText('1 2 3 4 5 6');
+  await page.getByLabel('Rows to drive').fill('5');
+  await page.getByLabel('Rows left out each time').fill('1');
+  await page.getByLabel('Row 2 lies').selectOption('Right');
+  await page.getByLabel('Row 2 lies').press('Enter');
+  await expect(figures).toContainText('1 3 5 2 4');
+
+  // Five rows side by side to the right of the first, on which the drawn line lies: 10 m, and as
+  // long as that one.
+  const scale = await pixels_per_m(page);
+  const ROW: Color = [184, 80, 10];
+  const drawn = async () => extent_px(await map_pixels(page, [ROW], 2));
+  await expect.poll(async () => (await drawn())[0] / scale).toBeGreaterThan(7);
+  const [wide, high] = await drawn();
+  expect(wide / scale).toBeLessThan(10.5);
+  expect(high).toBeGreaterThan(190);
+  expect(high).toBeLessThan(210);
+
+  // A further tap turns it; the exact direction is typed.
+  await draw(page, [[50, 50]]);
+  await expect(figures).toContainText('90°');
+  await page.getByLabel('Direction of row 1, deg').fill('45');
+  await page.getByLabel('Direction of row 1, deg').press('Enter');
+  await expect(figures).toContainText('45°');
+  await page.getByLabel('Name of the mission').fill('East block');
+  await press(page, 'Keep as a mission');
+  await expect(page.getByLabel('Mission name')).toHaveValue('East block');
+  const list = await station.rest<{ items: { id: string }[] }>('GET', '/missions');
+  const made = await station.rest<Rows>('GET', `/missions/${list.items[0]?.id ?? ''}`);
+  expect(made.items.filter(({ type }) => type === 'row')).toHaveLength(5);
+  expect(made.items[0]).toMatchObject({ type: 'waypoint' });
+  expect(made.items[1]?.heading_deg).toBeCloseTo(45, 1);
+  // Out of row 1 it turns to where row 3 lies.
+  expect(made.items[4]).toMatchObject({ type: 'turn', turn_deg: 90 });
 });

@@ -10,6 +10,7 @@ import {
   map_middle,
   map_pixels,
   metres_between,
+  open_page,
   pixels_per_m,
   press,
   tab,
@@ -244,4 +245,87 @@ test('a recorded RTK receiver is replayed, and its track is drawn for whoever co
       expect(undrawn.length).toBeLessThan(0.05 * way_px.length);
     }).toPass({ timeout: 15_000 });
   }
+});
+
+test('files dropped anywhere are imported one after the other, and a fence is used only when asked', async ({
+  page,
+  station,
+}) => {
+  await open_page(page, station.url);
+  const { lat, lon } = station.sim.now;
+  const north = (m: number): number => lat + m / 111_250;
+  const simple = (k: number, m: number) => ({
+    type: 'SimpleItem',
+    autoContinue: true,
+    command: 16,
+    doJumpId: k,
+    frame: 3,
+    params: [0, 0, 0, null, north(m), lon, 0],
+  });
+  const corner = (east: number, m: number): number[] => [north(m), lon + east];
+  const plan = {
+    fileType: 'Plan',
+    version: 1,
+    groundStation: 'hand',
+    geoFence: {
+      version: 2,
+      circles: [],
+      polygons: [
+        {
+          version: 1,
+          inclusion: true,
+          polygon: [corner(-0.001, -60), corner(0.001, -60), corner(0.001, 60), corner(-0.001, 60)],
+        },
+      ],
+    },
+    mission: {
+      version: 2,
+      firmwareType: 3,
+      vehicleType: 10,
+      cruiseSpeed: 1,
+      hoverSpeed: 1,
+      plannedHomePosition: [lat, lon, 0],
+      items: [simple(1, 5), simple(2, 10)],
+    },
+    rallyPoints: { version: 2, points: [] },
+  };
+  const table = `lat,lon\n${north(3)},${lon}\n${north(6)},${lon}\n${north(9)},${lon}\n`;
+  const files = [
+    { name: 'with_fence.plan', text: JSON.stringify(plan) },
+    { name: 'three.csv', text: table },
+  ];
+  const drag = (what: string): Promise<boolean> =>
+    page.evaluate(
+      ({ kind, held }) => {
+        const data = new DataTransfer();
+        for (const { name, text } of held) data.items.add(new File([text], name));
+        const event = new DragEvent(kind, {
+          dataTransfer: data,
+          bubbles: true,
+          cancelable: true,
+        });
+        return !document.querySelector('#map')?.dispatchEvent(event);
+      },
+      { kind: what, held: files },
+    );
+  expect(await drag('dragover')).toBe(true);
+  await expect(page.getByText('Drop it: missions and maps are imported')).toBeVisible();
+  expect(await drag('drop')).toBe(true);
+  await expect(page.getByText('Drop it: missions and maps are imported')).toBeHidden();
+
+  const dialog = page.getByRole('dialog');
+  await expect(dialog).toContainText('with_fence.plan');
+  const fence = () => station.rest<{ fence: { name: string } | null }>('GET', '/vehicle');
+  expect((await fence()).fence).toBeNull();
+  await dialog.getByRole('button', { name: 'Use it' }).click();
+  await expect(dialog).toContainText('In force');
+  expect((await fence()).fence).not.toBeNull();
+  await dialog.getByRole('button', { name: 'Continue' }).click();
+
+  await expect(dialog).toContainText('three.csv');
+  await dialog.getByRole('button', { name: 'Continue' }).click();
+  await expect(dialog).toBeHidden();
+  await expect(items(page)).toHaveCount(3);
+  const { items: kept } = await station.rest<{ items: unknown[] }>('GET', '/missions');
+  expect(kept).toHaveLength(2);
 });

@@ -9,20 +9,25 @@ import { expect, test } from './station';
 interface FakePad {
   axes: number[];
   down: number[];
+  /** How far the right trigger is drawn. */
+  trigger: number;
   there: boolean;
 }
 
 /** Before the page is opened: a gamepad that is not there yet. */
 const with_gamepad = async (page: Page): Promise<void> => {
   await page.addInitScript(() => {
-    const fake: FakePad = { axes: [0, 0, 0, 0], down: [], there: false };
+    const fake: FakePad = { axes: [0, 0, 0, 0], down: [], trigger: 0, there: false };
     Object.assign(window, { fake });
     const now = (): object => ({
       id: 'Wireless Controller (STANDARD GAMEPAD Vendor: 046d Product: c21f)',
       mapping: 'standard',
       connected: true,
       axes: fake.axes,
-      buttons: Array.from({ length: 17 }, (_, k) => ({ pressed: fake.down.includes(k) })),
+      buttons: Array.from({ length: 17 }, (_, k) => ({
+        pressed: fake.down.includes(k),
+        ...(k === 7 ? { value: fake.trigger } : {}),
+      })),
     });
     navigator.getGamepads = () => (fake.there ? [null, now()] : [null]) as (Gamepad | null)[];
   });
@@ -104,4 +109,50 @@ test('its buttons are seen and assigned, kept on the device, and both bumpers ch
   await expect(page.getByLabel(/^Drive pad/)).toHaveCount(0);
   await hands(page, { down: [RT, RB] });
   await expect(page.getByLabel(/^Drive pad/)).toBeVisible();
+});
+
+test('in AUTO it is a dead-man: as fast as the trigger is drawn, and it stops when the pad is lost', async ({
+  page,
+  station,
+}) => {
+  await with_gamepad(page);
+  await open_page(page, station.url);
+  const here = station.sim.now;
+  const items = [4, 40].map((north_m) => ({
+    type: 'waypoint',
+    lat: here.lat + north_m / 111_250,
+    lon: here.lon,
+    speed_mps: 0.8,
+  }));
+  const { id } = await station.rest<{ id: string }>('POST', '/missions', { name: 'Lane', items });
+  await station.rest('POST', '/execution/load', { mission_id: id });
+  await arm(page);
+  await hands(page, { there: true });
+  await press(page, 'Buttons…');
+  await page
+    .getByRole('region', { name: 'Gamepad' })
+    .getByLabel('AUTO drives only while a bumper is held')
+    .check();
+  await hands(page, { down: [RB], trigger: 1 });
+  await station.rest('POST', '/execution/start', {
+    mission_id: id,
+    revision: 1,
+    valid_for_s: 5,
+  });
+  const speed = (): number => station.sim.now.speed_mps;
+  await expect.poll(speed, { timeout: 20_000 }).toBeGreaterThan(0.65);
+  await hands(page, { trigger: 0.5 });
+  await expect.poll(speed).toBeLessThan(0.45);
+  await expect(page.getByText('As fast as the trigger is drawn').first()).toBeVisible();
+  // Let go it stands, and held again it goes on.
+  await hands(page, { down: [], trigger: 0 });
+  await expect.poll(speed).toBeLessThan(0.02);
+  await expect(page.getByText(/hand on the speed was let go/).first()).toBeVisible();
+  await hands(page, { down: [RB], trigger: 1 });
+  await expect.poll(speed, { timeout: 15_000 }).toBeGreaterThan(0.3);
+  // Pulled out it stands, although nothing was let go, and does not drive on by itself.
+  await hands(page, { there: false });
+  await expect.poll(speed).toBeLessThan(0.02);
+  await page.waitForTimeout(1000);
+  expect(Math.abs(speed())).toBeLessThan(0.02);
 });

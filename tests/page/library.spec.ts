@@ -2,7 +2,16 @@
 
 import type { Page } from '@playwright/test';
 
-import { metres_between, open_page, press, tab, type Point } from './page';
+import {
+  extent_px,
+  map_pixels,
+  metres_between,
+  open_page,
+  press,
+  tab,
+  type Color,
+  type Point,
+} from './page';
 import { expect, test, type Station } from './station';
 
 interface Mission {
@@ -63,7 +72,7 @@ test('a file of every format that is written is read again at the same places', 
   }
 });
 
-test('a command that the robot cannot do is shown with its line and the reason', async ({
+test('an import tells by line and on the map what the robot cannot do, and where that lies', async ({
   page,
   station,
 }) => {
@@ -75,6 +84,9 @@ test('a command that the robot cannot do is shown with its line and the reason',
     '0\t1\t0\t16\t0\t0\t0\t0\t58.38\t26.72\t0\t1',
     '1\t0\t3\t16\t0\t0\t0\t0\t58.3801\t26.7201\t0\t1',
     '2\t0\t3\t183\t9\t1500\t0\t0\t0\t0\t0\t1',
+    '3\t0\t3\t82\t0\t0\t0\t0\t58.3803\t26.7203\t0\t1',
+    '4\t0\t3\t201\t0\t0\t0\t0\t58.3802\t26.7206\t0\t1',
+    '5\t0\t3\t16\t0\t0\t0\t0\t58.3801\t26.7208\t0\t1',
   ];
   await page.getByLabel('Mission file').setInputFiles({
     name: 'servo.waypoints',
@@ -84,6 +96,29 @@ test('a command that the robot cannot do is shown with its line and the reason',
   const report = page.getByRole('dialog').getByRole('list', { name: 'Report' });
   await expect(report).toContainText('left out');
   await expect(report).toContainText(/line 4.*183/s);
+  await expect(report.getByRole('listitem')).toHaveCount(3);
+
+  // Two are crossed out: one at its own place, one around the item that it would have come after.
+  const LEFT_OUT: Color = [179, 38, 30];
+  const CHANGED: Color = [184, 80, 10];
+  const top = (await page.getByRole('dialog').boundingBox())?.y ?? 0;
+  const marks = async (color: Color) =>
+    (await map_pixels(page, [color], 8)).filter(([, y]) => y < top);
+  await report.getByRole('button', { name: /line 6.*201/s }).click();
+  await expect.poll(async () => (await marks(LEFT_OUT)).length).toBeGreaterThan(100);
+  expect((await marks(CHANGED)).length).toBeGreaterThan(100);
+  await expect(report.getByRole('button', { name: /line 4/ })).toContainText('place of its own');
+  const [width] = extent_px(await marks(LEFT_OUT));
+  await report.getByRole('button', { name: /line 4/ }).click();
+  await expect.poll(async () => extent_px(await marks(LEFT_OUT))[0]).not.toBe(width);
+
+  // Rows that were taken as they are, too; and a changed one is edited from here.
+  await page.getByRole('dialog').getByRole('button', { name: /taken/ }).click();
+  await expect(report.getByRole('listitem')).toHaveCount(6);
+  const changed = report.getByRole('listitem').filter({ hasText: /line 5/ });
+  await changed.getByRole('button', { name: 'Edit' }).click();
+  await expect(page.getByRole('dialog')).toBeHidden();
+  await expect(page.getByRole('heading', { name: /^2 · / })).toBeVisible();
 });
 
 test('a table in metres without an origin is placed at home after a question', async ({

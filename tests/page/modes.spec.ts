@@ -29,7 +29,7 @@ test('“Go here” drives to the place that was tapped, and “Come home” bac
   await expect(page.getByLabel('Chosen place')).toBeHidden();
   await expect(page.getByRole('group', { name: 'Mode' }).first()).toContainText('GUIDED');
   await expect(page.getByLabel('Activity')).toContainText(/Going to the place.*left/s);
-  await expect(page.getByLabel('Now')).toContainText('autopilot drives');
+  await expect(page.getByRole('group', { name: 'Control' })).toContainText('Autopilot drives');
   await expect(page.getByLabel('Activity')).toContainText('Done.', { timeout: 60_000 });
   await stands_still(station);
   expect(Math.abs(metres_between(start, station.sim.now) - Math.hypot(6, 4))).toBeLessThan(0.8);

@@ -1,6 +1,6 @@
 // The page as a person uses it: by what is written on it and by where the map is tapped.
 
-import { expect, type Page } from '@playwright/test';
+import { expect, type Locator, type Page } from '@playwright/test';
 
 export interface Point {
   readonly lat: number;
@@ -14,8 +14,14 @@ export const metres_between = (a: Point, b: Point): number => {
   return Math.hypot(north, east);
 };
 
+/** As long as it wants to be held. */
+export const press_it = async (button: Locator): Promise<void> => {
+  const hold_ms = Number((await button.getAttribute('data-hold')) ?? 0);
+  await button.click(hold_ms > 0 ? { delay: hold_ms + 200 } : {});
+};
+
 export const press = (page: Page, name: string): Promise<void> =>
-  page.getByRole('button', { name, exact: true }).click();
+  press_it(page.getByRole('button', { name, exact: true }));
 
 export const tab = (page: Page, name: 'Drive' | 'Plan' | 'Missions' | 'Log'): Promise<void> =>
   page.getByRole('navigation', { name: 'Panels' }).getByRole('button', { name }).click();
@@ -29,6 +35,9 @@ export const open_page = async (page: Page, url: string): Promise<void> => {
     'false',
     { timeout: 30_000 },
   );
+  // The map and the panels come after the robot's state.
+  await expect(page.locator('.scale-bar')).toHaveText(/m$/);
+  await expect(page.locator('#panel > *').first()).toBeAttached();
 };
 
 /** Where the map is free of panels: its middle, in pixels of the window. */
@@ -59,22 +68,63 @@ export const pixels_per_m = async (page: Page): Promise<number> => {
 export type Pixel = readonly [x: number, y: number];
 export type Color = readonly [red: number, green: number, blue: number];
 
-/** Where the map's canvas shows one of these colours. */
-export const map_pixels = (page: Page, colors: readonly Color[]): Promise<Pixel[]> =>
-  page.evaluate((wanted) => {
-    const canvas = document.querySelector<HTMLCanvasElement>('#map canvas');
-    const context = canvas?.getContext('2d');
-    const found: [number, number][] = [];
-    if (!canvas || !context) return found;
-    const { data, width } = context.getImageData(0, 0, canvas.width, canvas.height);
-    for (let k = 0; k < data.length; k += 4) {
-      const fits = wanted.some((color) =>
-        color.every((value, n) => Math.abs((data[k + n] ?? 0) - value) <= 1),
-      );
-      if (fits) found.push([((k / 4) % width) + 0.5, Math.floor(k / 4 / width) + 0.5]);
-    }
-    return found;
-  }, colors);
+/**
+ * Where the map's canvases, one above the other, show one of these colours: pixels of the window.
+ * @param off by how much each part of the colour may differ
+ */
+export const map_pixels = (page: Page, colors: readonly Color[], off = 1): Promise<Pixel[]> =>
+  page.evaluate(
+    ({ wanted, most }) => {
+      const canvas = document.createElement('canvas');
+      const context = canvas.getContext('2d', { willReadFrequently: true });
+      const found: [number, number][] = [];
+      if (!context) return found;
+      [canvas.width, canvas.height] = [innerWidth, innerHeight];
+      for (const part of document.querySelectorAll<HTMLCanvasElement>('#map canvas')) {
+        const { x, y, width, height } = part.getBoundingClientRect();
+        if (width > 0) context.drawImage(part, x, y, width, height);
+      }
+      const { data, width } = context.getImageData(0, 0, canvas.width, canvas.height);
+      for (let k = 0; k < data.length; k += 4) {
+        const fits = wanted.some((color) =>
+          color.every((value, n) => Math.abs((data[k + n] ?? 0) - value) <= most),
+        );
+        if (fits) found.push([((k / 4) % width) + 0.5, Math.floor(k / 4 / width) + 0.5]);
+      }
+      return found;
+    },
+    { wanted: colors, most: off },
+  );
+
+/** Where a picture of the whole window shows one of these colours, also where the map is turned. */
+export const seen_pixels = async (
+  page: Page,
+  colors: readonly Color[],
+  off = 1,
+): Promise<Pixel[]> => {
+  const picture = (await page.screenshot({ scale: 'css' })).toString('base64');
+  return page.evaluate(
+    async ({ wanted, most, base64 }) => {
+      const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+      const bitmap = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
+      const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
+      const context = canvas.getContext('2d');
+      context?.drawImage(bitmap, 0, 0);
+      const data = context?.getImageData(0, 0, bitmap.width, bitmap.height).data ?? [];
+      const found: [number, number][] = [];
+      for (let k = 0; k < data.length; k += 4) {
+        const fits = wanted.some((color) =>
+          color.every((value, n) => Math.abs((data[k + n] ?? 0) - value) <= most),
+        );
+        const pixel = k / 4;
+        if (fits)
+          found.push([(pixel % bitmap.width) + 0.5, Math.floor(pixel / bitmap.width) + 0.5]);
+      }
+      return found;
+    },
+    { wanted: colors, most: off, base64: picture },
+  );
+};
 
 /** How wide and how high those are altogether, pixels. */
 export const extent_px = (found: readonly Pixel[]): Pixel => {

@@ -34,10 +34,10 @@ test('a phone is paired, opens by its PIN, invites another one and sends it away
   await press(page, 'Pair this device');
   await page.getByLabel('Name of this device').fill('glove phone');
   await digits(page, '1234');
-  await press(page, 'Pair');
+  await press(page, 'OK: Pair');
   await expect(card.getByRole('alert')).toContainText('easy to guess');
   await digits(page, '2580');
-  await press(page, 'Pair');
+  await press(page, 'OK: Pair');
   const pairings = card.getByRole('list', { name: 'Paired devices' });
   await expect(pairings).toContainText('glove phone (this device), admin');
   await press(page, 'Log out');
@@ -48,10 +48,10 @@ test('a phone is paired, opens by its PIN, invites another one and sends it away
   expect(key?.height).toBeGreaterThanOrEqual(56);
   expect(key?.width).toBeGreaterThanOrEqual(56);
   await digits(page, '8520');
-  await press(page, 'Log in by PIN');
+  await press(page, 'OK: Log in by PIN');
   await expect(page.getByRole('alert')).toContainText('it may be tried 4 more times');
   await digits(page, '2580');
-  await press(page, 'Log in by PIN');
+  await press(page, 'OK: Log in by PIN');
   await expect(live).toContainText('Live');
 
   // and another phone is invited, for less,
@@ -72,7 +72,7 @@ test('a phone is paired, opens by its PIN, invites another one and sends it away
   expect(other.url()).not.toContain(code);
   await other.getByLabel('Name of this phone').fill('second phone');
   await digits(other, '1379');
-  await press(other, 'Pair this phone');
+  await press(other, 'OK: Pair this phone');
 
   // then it is in, as what was chosen, and its address was never sent;
   await expect(other.getByRole('group', { name: 'Link' })).toContainText('Live');

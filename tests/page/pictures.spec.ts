@@ -1,5 +1,5 @@
 // How it looks while a mission runs, on a phone and on a laptop: nothing may overlap, everything that
-// is touched is large enough. UPDATE_SHOTS=1 renews the README's picture.
+// is touched is large enough. UPDATE_SHOTS=1 renews the pictures of README and docs.
 
 import { mkdirSync } from 'node:fs';
 import { join } from 'node:path';
@@ -32,10 +32,11 @@ const SIZES = [
   },
 ] as const;
 
-/** Where a picture goes: the README's own beside this file, all others among the results. */
+/** Where a picture goes: renewed, the README's own beside this file and the others into the docs. */
 const picture = (name: string): string => {
-  const kept = name === 'page.png' && process.env['UPDATE_SHOTS'] === '1';
-  const folder = join(__dirname, kept ? 'shots' : 'results/shots');
+  const kept = process.env['UPDATE_SHOTS'] === '1';
+  const where = name === 'page.png' ? 'shots' : '../../docs/pictures';
+  const folder = join(__dirname, kept ? where : 'results/shots');
   mkdirSync(folder, { recursive: true });
   return join(folder, name);
 };

@@ -1,6 +1,15 @@
 // Places in the words of others: read under the mouse, typed and pasted.
 
-import { map_middle, metres_between, open_page, press, tab } from './page';
+import {
+  draw,
+  items,
+  map_middle,
+  metres_between,
+  open_page,
+  pixels_per_m,
+  press,
+  tab,
+} from './page';
 import { expect, test } from './station';
 
 test('the place under the mouse is told in degrees, in minutes and seconds, and in UTM', async ({
@@ -42,4 +51,38 @@ test('a pasted pair is shown on the map, ready to be driven to', async ({ page, 
   const card = page.getByLabel('Chosen place');
   await expect(card).toContainText(/11[012] m away/);
   await expect(card).toContainText(`${(lat + 0.001).toFixed(6)}`);
+});
+
+test('a line is measured leg by leg, and the mission stays as it is', async ({ page, station }) => {
+  await open_page(page, station.url);
+  await tab(page, 'Plan');
+  await press(page, 'Measure');
+  const scale = await pixels_per_m(page);
+  await draw(page, [
+    [-100, 60],
+    [-100, -60],
+    [60, -60],
+  ]);
+  const legs = page.getByRole('list', { name: 'Legs' }).getByRole('listitem');
+  await expect(legs).toHaveCount(2);
+  const figures = async (): Promise<number[]> =>
+    (await legs.allInnerTexts()).map((text) => Number.parseFloat(text));
+  const [north = NaN, east = NaN] = await figures();
+  expect(Math.abs(north - 120 / scale)).toBeLessThan(0.1);
+  expect(Math.abs(east - 160 / scale)).toBeLessThan(0.1);
+  await expect(legs.first()).toContainText('000° N');
+  await expect(legs.last()).toContainText('090° E');
+  const measured = page.getByLabel('Measured', { exact: true });
+  await expect(measured).toContainText(`${(0.5 * north * east).toFixed(0)} m²`);
+  // A point is moved like that of a mission.
+  const [x, y] = await map_middle(page);
+  await page.mouse.move(x + 60, y - 60);
+  await page.mouse.down();
+  await page.mouse.move(x + 160, y - 60, { steps: 5 });
+  await page.mouse.up();
+  await expect.poll(async () => (await figures())[1]).toBeCloseTo(260 / scale, 0);
+  await press(page, 'Undo');
+  await expect.poll(async () => (await figures())[1]).toBeCloseTo(160 / scale, 0);
+  await page.locator('main').getByRole('button', { name: 'Plan' }).click();
+  await expect(items(page)).toHaveCount(0);
 });

@@ -51,6 +51,17 @@ test('a run has a report and a track, and is compared with another one', async (
   await page.getByText('Each corner').click();
   await expect(page.getByRole('table', { name: 'Corners' })).toContainText('90°');
 
+  // The moment that is looked at stands on the map and in words, and events lead to theirs.
+  const moment = page.getByRole('slider', { name: 'Moment of the run' });
+  await moment.press('End');
+  await expect(page.getByText(/^\d+ s · 1\d\.\d m · /)).toBeVisible();
+  await page.getByText(/^What happened/).click();
+  const events = page.getByRole('list', { name: 'Events of the run' });
+  await events.getByRole('button').first().click();
+  await expect(moment).toHaveAttribute('aria-valuetext', /^[01] s$/);
+  await expect(page.getByRole('img', { name: /^Plots of Off the path.*Speed/ })).toBeVisible();
+  await expect(page.locator('.u-wrap')).not.toHaveCount(0);
+
   await page.getByLabel('Compare with').selectOption({ index: 1 });
   await expect(report).toContainText('Other');
   const time = report.getByRole('row', { name: /^Time/ });
@@ -59,4 +70,11 @@ test('a run has a report and a track, and is compared with another one', async (
 
   await press(page, 'All runs');
   await expect(list.getByRole('button')).toHaveCount(2);
+
+  // Both in one picture, though of two missions.
+  await press(page, 'Several in one picture…');
+  await expect(page.getByRole('checkbox')).toHaveCount(2);
+  await page.getByRole('checkbox').nth(1).check();
+  await press(page, 'Show 2 runs');
+  await expect(page.getByText(/^Squares of 25 cm|^Squares of 0\.25 m/)).toBeVisible();
 });

@@ -1,6 +1,6 @@
 // What must hold when things go wrong: stop, stale data, refusals in the robot's words.
 
-import { draw, drive_it, metres_between, open_page, press, save, tab } from './page';
+import { draw, drive_it, metres_between, open_page, press, press_it, save, tab } from './page';
 import { expect, test } from './station';
 
 const FAR = [
@@ -49,10 +49,45 @@ test('the stop button stops the moving robot, latches, and is reset after a ques
   await page.waitForTimeout(1000);
   expect(metres_between(resting, station.sim.now)).toBeLessThan(0.05);
 
-  await press(page, 'Reset stop');
+  // The checks have such a button, too.
+  await press_it(page.getByRole('alert').getByRole('button', { name: 'Reset stop' }));
   await page.getByRole('dialog').getByRole('button', { name: 'Reset', exact: true }).click();
   await expect(page.getByText('Emergency stop is latched.')).toBeHidden();
   await expect(page.getByRole('button', { name: 'Emergency stop' })).toHaveText('STOP');
+});
+
+test('the stop button stops before the page is there, and goes on until it is confirmed', async ({
+  page,
+  station,
+}) => {
+  let let_page_come = (): void => undefined;
+  const may_come = new Promise<void>((done) => (let_page_come = done));
+  await page.route(/\/assets\/main-.*\.js$/, async (route) => {
+    await may_come;
+    await route.continue();
+  });
+  // The first tries are lost.
+  let lost = 0;
+  await page.route('**/api/v1/vehicle/estop', (route) => {
+    lost += 1;
+    return lost <= 2 ? route.abort() : route.continue();
+  });
+  await page.goto(station.url, { waitUntil: 'commit' });
+  const stop = page.getByRole('button', { name: 'Emergency stop' });
+
+  await stop.click();
+  await expect(stop).toHaveText('STOP ✓');
+  const at_first = await stop.boundingBox();
+  expect(lost).toBe(3);
+  expect(await station.rest<{ estop: boolean }>('GET', '/vehicle')).toMatchObject({ estop: true });
+  // Nothing is said of the robot meanwhile.
+  await expect(page.getByRole('group', { name: 'Link' })).toHaveCount(0);
+
+  let_page_come();
+  await expect(page.getByRole('group', { name: 'Link' })).toContainText('Live');
+  await expect(stop).toHaveText('STOPPED');
+  // It has not moved under the finger.
+  expect(await stop.boundingBox()).toEqual(at_first);
 });
 
 test('drivers are listed with what they say, and one is restarted after a question', async ({

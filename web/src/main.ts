@@ -4,32 +4,46 @@ import { mount } from 'svelte';
 
 import { access_calls } from './link/access';
 import { audit_calls } from './link/audit';
+import { camera_calls } from './link/cameras';
 import { control_calls } from './link/control';
 import { drill_calls } from './link/drill';
-import { fence_calls, survey_calls } from './link/fields';
+import { first_stop } from './link/first_stop';
+import { field_calls } from './link/fields';
 import { read_identity } from './link/identity';
 import { parameter_calls } from './link/parameters';
-import { mission_calls, tile_sets, vehicle_calls } from './link/rest';
+import { people_calls } from './link/people';
+import { mission_calls, vehicle_calls } from './link/rest';
 import { run_calls } from './link/runs';
 import { seen_calls } from './link/seen';
 import { site_map_calls } from './link/site_maps';
 import { slip_calls } from './link/slips';
-import { draft_storage, layer_storage, settings_storage, view_storage } from './link/storage';
+import {
+  camera_storage,
+  kept_storage,
+  ground_storage,
+  layer_storage,
+  settings_storage,
+  view_storage,
+} from './link/storage';
 import { Stream } from './link/stream';
 import { teach_calls } from './link/teach';
-import { FieldMap } from './map/map';
+import { tile_calls } from './link/tiles';
+import type { FieldMap } from './map/map';
 import { invitation_in, type Account } from './model/access';
+import { map_to_come, type MapToCome } from './model/map_to_come';
+import type { MapCalls, StreamEvents } from './model/ports';
 import App from './ui/App.svelte';
+import { CameraWatch } from './ui/camera.svelte';
 import { ControlDesk } from './ui/control.svelte';
 import { device } from './ui/device.svelte';
+import type { Doors } from './ui/doors';
 import { Identity } from './ui/identity.svelte';
-import LogIn from './ui/LogIn.svelte';
 import { Station } from './ui/station.svelte';
-import './ui/style.css';
 
 const LOOK_MS = 10_000;
 const WHO_MS = 30_000;
 const KEEP_AFTER_MS = 5_000;
+const FETCH_AGAIN_MS = 2_000;
 
 const identity = new Identity();
 
@@ -51,51 +65,85 @@ const again = (): void => {
   location.reload();
 };
 
-const begin = (account: Account | null, session: string | null): void => {
-  const map = new FieldMap(element('map'), view_storage);
-  /** The station needs a way to send before there is a stream, and the stream needs the station. */
-  const late: { stream: Stream | null } = { stream: null };
-  const station = new Station({
-    missions: mission_calls,
-    vehicle: vehicle_calls(() => late.stream?.seen_s() ?? null),
-    teach: teach_calls,
-    runs: run_calls,
-    slips: slip_calls,
-    seen: seen_calls,
-    sites: site_map_calls,
-    drill: drill_calls,
-    survey: survey_calls,
-    fences: fence_calls,
-    map,
-    storage: draft_storage,
-    layers: layer_storage,
-    link: {
-      send_drive: (...wish) => late.stream?.send_drive(...wish) ?? false,
-      send_halt: (halt) => late.stream?.send_halt(halt) ?? false,
-      seen_s: () => late.stream?.seen_s() ?? null,
-      robot_s: () => late.stream?.robot_s() ?? null,
-      watch: (rates) => late.stream?.watch(rates),
-    },
-  });
-  const desk = account && session ? new ControlDesk(control_calls, session, account.role) : null;
-  const events = desk
-    ? { ...station.stream_events, on_control: desk.take_message }
-    : station.stream_events;
-  late.stream = new Stream(events, again);
-  const audit = account?.role === 'admin' ? audit_calls : null;
-  const props = {
-    station,
-    identity,
-    account,
-    desk,
-    audit,
-    parameters: parameter_calls,
-    left: again,
-    watch_pointer: map.watch_pointer.bind(map),
-  };
-  mount(App, { target: element('app'), props });
+/** A robot that does not say anything: what the page can do without it comes all the same. */
+const STATE_LIMIT_MS = 1500;
 
-  void tile_sets().then((sets) => map.use_tiles(sets[0] ?? null));
+/** Settled once the first state of the robot is on the screen. */
+const first_state = (): { readonly seen: Promise<void>; readonly take: () => void } => {
+  let came = false;
+  let settle = (): void => undefined;
+  const seen = new Promise<void>((done) => {
+    settle = done;
+    setTimeout(done, STATE_LIMIT_MS);
+  });
+  const take = (): void => {
+    if (!came) requestAnimationFrame(() => setTimeout(settle, 0));
+    came = true;
+  };
+  return { seen, take };
+};
+
+/** Until it is there: a page that stays open longer than its network does gets it all the same. */
+const fetched = async <T>(load: () => Promise<T>): Promise<T> => {
+  for (;;) {
+    try {
+      return await load();
+    } catch {
+      await new Promise((done) => setTimeout(done, FETCH_AGAIN_MS));
+    }
+  }
+};
+
+/** In the place of what the document had there. @return where the page goes */
+const cleared = (): HTMLElement => {
+  const target = element('app');
+  target.replaceChildren();
+  return target;
+};
+
+/** The station needs a way to send before there is a stream, and the stream needs the station. */
+interface Late {
+  stream: Stream | null;
+}
+
+const doors = (map: MapCalls, late: Late): Doors => ({
+  missions: mission_calls,
+  vehicle: vehicle_calls(() => late.stream?.seen_s() ?? null),
+  teach: teach_calls,
+  runs: run_calls,
+  slips: slip_calls,
+  seen: seen_calls,
+  sites: site_map_calls,
+  tiles: tile_calls,
+  ground: ground_storage,
+  drill: drill_calls,
+  ...field_calls,
+  map,
+  kept: kept_storage,
+  layers: layer_storage,
+  link: {
+    send_drive: (...wish) => late.stream?.send_drive(...wish) ?? false,
+    send_throttle: (...hand) => late.stream?.send_throttle(...hand) ?? false,
+    send_halt: (halt) => late.stream?.send_halt(halt) ?? false,
+    seen_s: () => late.stream?.seen_s() ?? null,
+    robot_s: () => late.stream?.robot_s() ?? null,
+    watch: (rates) => late.stream?.watch(rates),
+  },
+});
+
+/** The map, then the rest, each in a task of its own. */
+const what_can_wait = (seen: Promise<void>, map: MapToCome) => {
+  const field_map = seen
+    .then(() => fetched(() => import('./map/map')))
+    .then(({ FieldMap }) => {
+      const come = new FieldMap(element('map'), view_storage);
+      map.come(come);
+      return come;
+    });
+  return { field_map, rest: field_map.then(() => fetched(() => import('./ui/rest'))) };
+};
+
+const watch_window = (station: Station, late: Late): void => {
   window.addEventListener('online', () => late.stream?.hurry());
   document.addEventListener('visibilitychange', () => {
     if (document.visibilityState === 'visible') late.stream?.hurry();
@@ -105,6 +153,45 @@ const begin = (account: Account | null, session: string | null): void => {
     station.editor.write_draft();
     if (station.editor.unsaved) event.preventDefault();
   });
+};
+
+const begin = (account: Account | null, session: string | null): void => {
+  const map = map_to_come();
+  const late: Late = { stream: null };
+  const station = new Station(doors(map.map, late));
+  const desk = account && session ? new ControlDesk(control_calls, session, account.role) : null;
+  const state = first_state();
+  const events: StreamEvents = {
+    ...station.stream_events,
+    on_vehicle: (...told) => {
+      station.stream_events.on_vehicle(...told);
+      state.take();
+    },
+    ...(desk ? { on_control: desk.take_message } : {}),
+  };
+  late.stream = new Stream(events, again);
+  const { field_map, rest } = what_can_wait(state.seen, map);
+  const is_admin = account?.role === 'admin';
+  const props = {
+    station,
+    identity,
+    account,
+    desk,
+    audit: is_admin ? audit_calls : null,
+    people: is_admin ? people_calls : null,
+    parameters: parameter_calls,
+    camera: new CameraWatch(camera_calls, camera_storage),
+    left: again,
+    watch_pointer: (moved: Parameters<FieldMap['watch_pointer']>[0]) => {
+      void field_map.then((come) => come.watch_pointer(moved));
+    },
+    rest,
+  };
+  mount(App, { target: cleared(), props });
+  first_stop.hand_over(() => station.pilot.estop());
+
+  void field_map.then(() => station.grounds.refresh());
+  watch_window(station, late);
 };
 
 /** Kept for where the robot is not; only on a page that can be trusted (HTTPS, or this computer). */
@@ -138,9 +225,11 @@ void access_calls.state().then((answer) => {
   // It is good once: neither the address bar nor the history keeps it.
   if (invitation !== null) history.replaceState(null, '', location.pathname);
   if (user === null || role === null) {
-    mount(LogIn, {
-      target: element('app'),
-      props: { calls: access_calls, identity, at_first: answer.value, invitation, entered: again },
+    const at_first = answer.value;
+    const props = { calls: access_calls, identity, at_first, invitation, entered: again };
+    void fetched(() => import('./ui/LogIn.svelte')).then(({ default: LogIn }) => {
+      mount(LogIn, { target: cleared(), props });
+      first_stop.hand_over(null);
     });
     return;
   }

@@ -40,6 +40,7 @@ describe('a calibration', () => {
   it('tells before and after with how sure it is', () => {
     expect(calibration_rows(calibration({}))).toEqual([
       {
+        quantity: 'braking',
         title: 'Braking',
         before: '0.60 m/s²',
         after: '1.20 m/s² ±0.02',

@@ -36,6 +36,17 @@ describe('the robot’s clock', () => {
     expect(4010 - (clock.page_ms(AHEAD_S + 1.01) ?? 0)).toBeCloseTo(3000, 0);
   });
 
+  test('a slow round trip is no better than half of it: a quick message does not contradict it', () => {
+    const clock = new RobotClock();
+    // Up takes 10 ms, down 390 ms; the next message is there after 5 ms.
+    clock.take_round_trip(0, 400, AHEAD_S + 0.01);
+    clock.take_message(AHEAD_S + 1, 1005);
+    expect(clock.robot_s(1005)).not.toBeNull();
+    // One that is earlier than the whole round trip allows does.
+    clock.take_message(AHEAD_S + 2, 1900);
+    expect(clock.robot_s(1900)).toBeNull();
+  });
+
   test('a page that slept finds out: what contradicts the old guess replaces it', () => {
     const clock = new RobotClock();
     clock.take_round_trip(1000, 1010, AHEAD_S + 1.005);

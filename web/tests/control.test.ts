@@ -3,6 +3,7 @@ import { expect, test } from 'vitest';
 import {
   device_name,
   driver_name,
+  present_lines,
   seat_of,
   seat_words,
   told_of,
@@ -54,4 +55,22 @@ test('who loses control, or hears no yes, is told why', () => {
   expect(told_of(change('refused', anna, ben), 's1')).toBe('');
   expect(told_of(change('taken', null, anna), 's1')).toBe('');
   expect(told_of(held(anna), 's1')).toBe('');
+});
+
+test('who is connected is told with the role, the one who has control first', () => {
+  const state: ControlState = {
+    ...held(ben),
+    here: [
+      { ...anna, role: 'viewer', streams: 2 },
+      { ...script, role: 'admin', streams: 1 },
+      { ...ben, role: 'operator', streams: 1 },
+    ],
+  };
+  const lines = present_lines(state, 's1').map(({ words }) => words);
+  expect(lines[0]).toMatch(/^ben \(phone\), .*, has control$/);
+  expect(lines[1]).toMatch(/^anna \(tablet\), .*, that is you$/);
+  // Its id is that of a token: no session has it.
+  expect(lines[2]).toMatch(/^anna \(.*rows.*\), /);
+  expect(lines[2]).not.toContain('that is you');
+  expect(present_lines(held(null), 's1')).toEqual([]);
 });

@@ -26,22 +26,24 @@ const number_field = (type: ItemType, key: string): NumberField => {
 describe('fields', () => {
   test('read what people type: commas, blanks and the typographic minus', () => {
     const lat = number_field('waypoint', 'lat');
-    expect(read_number(lat, ' 58,37802 ')).toEqual({ ok: true, value: 58.37802 });
-    expect(read_number(lat, '−12.5')).toEqual({ ok: true, value: -12.5 });
+    expect(read_number(lat, ' 58,37802 ', 'Latitude')).toEqual({ ok: true, value: 58.37802 });
+    expect(read_number(lat, '−12.5', 'Latitude')).toEqual({ ok: true, value: -12.5 });
   });
 
   test('refuse what is out of range, no number, or missing, and name the field', () => {
     const lat = number_field('waypoint', 'lat');
     for (const text of ['91', '-90.1', 'north', '', 'Infinity', '1e999']) {
-      const read = read_number(lat, text);
+      const read = read_number(lat, text, 'Latitude');
       expect(read.ok).toBe(false);
       if (!read.ok) expect(read.error).toContain('Latitude');
     }
-    expect(read_number(number_field('jump', 'item'), '1.5').ok).toBe(false);
+    expect(read_number(number_field('dock', 'tag'), '587', 'Latitude').ok).toBe(false);
+    expect(read_number(number_field('dock', 'tag'), '1.5', 'Latitude').ok).toBe(false);
+    expect(read_number(number_field('jump', 'item'), '1.5', 'Latitude').ok).toBe(false);
   });
 
   test('an empty optional field takes the value out', () => {
-    expect(read_number(number_field('waypoint', 'speed_mps'), ' ')).toEqual({
+    expect(read_number(number_field('waypoint', 'speed_mps'), ' ', 'Latitude')).toEqual({
       ok: true,
       value: null,
     });

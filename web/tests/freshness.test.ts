@@ -11,7 +11,10 @@ import {
   NO_LINK,
   OLD_AFTER_MS,
   REOPEN_AFTER_MS,
+  PROBE_AFTER_MS,
+  PROBE_LIMIT_MS,
   round_trip_s,
+  should_probe,
   should_reopen,
   type LinkHealth,
 } from '../src/model/freshness';
@@ -38,7 +41,8 @@ describe('freshness', () => {
     expect(link_stale({ ...open, socket: 'closed' }, 10_000)).toBe(true);
     expect(link_stale({ ...open, true_at_ms: null }, 10_000)).toBe(true);
     expect(link_stale(NO_LINK, 10_000)).toBe(true);
-    expect(OLD_AFTER_MS).toBe(1000);
+    // A tenth old when the link goes, and drawn a moment later: grey within a second.
+    expect(OLD_AFTER_MS + 100).toBeLessThan(1000);
   });
 
   test('the age of a value is its age when it was sent, its way, and the silence since', () => {
@@ -75,6 +79,8 @@ describe('freshness', () => {
     expect(link_view(deaf, 10_000)).toEqual({ word: 'Unheard', tone: 'bad' });
     expect(round_trip_s(deaf, 10_000)).toBeCloseTo(2.1);
     expect(link_view({ ...deaf, unanswered_since_ms: 9_000 }, 10_000).tone).not.toBe('good');
+    // Also where nothing tells how old the data is: nobody measures any more.
+    expect(link_view({ ...deaf, true_at_ms: null }, 10_000).word).toBe('Unheard');
   });
 
   test('before a round trip the age is not known, and that is not live', () => {
@@ -98,10 +104,21 @@ describe('freshness', () => {
     expect(should_reopen(0, deaf, 10_000)).toBe(true);
   });
 
-  test('waits double up to five seconds and are spread', () => {
+  test('a socket that says nothing for a second is doubted, one that is closed or speaks is not', () => {
+    expect(should_probe(0, open, 10_000 + PROBE_AFTER_MS)).toBe(false);
+    expect(should_probe(0, open, 10_001 + PROBE_AFTER_MS)).toBe(true);
+    expect(should_probe(0, slow, 10_000)).toBe(false);
+    expect(should_probe(19_500, open, 20_000)).toBe(false);
+    // Connecting: what came over the one before says nothing.
+    expect(should_probe(9_000, { ...open, socket: 'connecting' }, 10_001)).toBe(true);
+    expect(should_probe(0, { ...open, socket: 'closed' }, 20_000)).toBe(false);
+    expect(PROBE_AFTER_MS + PROBE_LIMIT_MS).toBeLessThan(REOPEN_AFTER_MS);
+  });
+
+  test('waits double up to seven tenths of a second and are spread', () => {
     expect(backoff_ms(0, 1)).toBe(250);
-    expect(backoff_ms(3, 1)).toBe(2000);
-    expect(backoff_ms(99, 1)).toBe(5000);
+    expect(backoff_ms(1, 1)).toBe(500);
+    expect(backoff_ms(99, 1)).toBe(700);
     expect(backoff_ms(0, 0)).toBeLessThan(backoff_ms(0, 0.9));
   });
 });

@@ -10,7 +10,9 @@ import {
   pad_kind,
   pad_settings_of,
   pad_wish,
+  speed_hand,
   use_of,
+  why_no_hand,
   why_not_pad,
   type PadReading,
 } from '../src/model/gamepad';
@@ -114,11 +116,11 @@ describe('the dead-man', () => {
 
 describe('what is chosen', () => {
   test('buttons are assigned by pressing them, sticks by pushing them', () => {
-    expect(moved_part(pad(STILL, [1]), pad(STILL, [1, 6]), 'hold')).toBe(6);
-    expect(moved_part(pad(STILL), pad([0, 0, 0, -0.9]), 'speed')).toBe(3);
-    expect(moved_part(pad(STILL), pad([0.3, 0, 0, 0]), 'speed')).toBeNull();
+    expect(moved_part(pad(STILL, [1]), pad(STILL, [1, 6]), 'hold', 'standard')).toBe(6);
+    expect(moved_part(pad(STILL), pad([0, 0, 0, -0.9]), 'speed', 'standard')).toBe(3);
+    expect(moved_part(pad(STILL), pad([0.3, 0, 0, 0]), 'speed', 'standard')).toBeNull();
     const settings = assigned(PAD_DEFAULTS, 'standard', 'hold', 6);
-    expect(use_of(settings, 'standard')).toEqual({ speed: 1, turn: 2, hold: 6, other: 5 });
+    expect(use_of(settings, 'standard')).toMatchObject({ speed: 1, turn: 2, hold: 6, other: 5 });
     expect(use_of(settings, 'xpad').hold).toBe(4);
   });
 
@@ -140,6 +142,43 @@ describe('what is chosen', () => {
       turn: null,
       hold: null,
       other: null,
+      trigger: 5, // kept before there was one
     });
+  });
+});
+
+describe('a hand on the speed of AUTO', () => {
+  const drawn = (value: number, down: readonly number[]): PadReading => ({
+    ...pad(STILL, down),
+    buttons: pad(STILL, down).buttons.map((button, k) => (k === 7 ? { ...button, value } : button)),
+  });
+  const hand = (reading: PadReading | null) => speed_hand(reading, usual, 'standard');
+
+  test('is either bumper, with the trigger as its share', () => {
+    expect(hand(drawn(0.6, [4]))).toEqual({ held: true, share: 0.6 });
+    expect(hand(drawn(0.25, [5]))).toEqual({ held: true, share: 0.25 });
+    expect(hand(drawn(0.9, []))).toEqual({ held: false, share: 0 });
+    expect(hand(drawn(NaN, [4]))).toEqual({ held: true, share: 0 });
+    expect(hand(null)).toEqual({ held: false, share: 0 });
+  });
+
+  test('with a trigger that is a mere button is all or nothing', () => {
+    const digital = use_of(PAD_DEFAULTS, 'f710_d');
+    expect(speed_hand(pad(STILL, [4]), digital, 'f710_d').share).toBe(0);
+    expect(speed_hand(pad(STILL, [4, 7]), digital, 'f710_d').share).toBe(1);
+  });
+
+  test('with a trigger that is an axis is nothing until it was touched', () => {
+    const use = use_of(PAD_DEFAULTS, 'xpad');
+    const share = (at: number) => speed_hand(pad([0, 0, 0, 0, 0, at], [4]), use, 'xpad').share;
+    expect([0, -1, 1, 0.5].map(share)).toEqual([0, 0, 1, 0.75]);
+  });
+
+  test('is asked for only where that was chosen', () => {
+    const free = { held: false, share: 0 };
+    expect(why_no_hand(false, false, free)).toBeNull();
+    expect(why_no_hand(true, true, free)).toMatch(/^Hold a bumper/);
+    expect(why_no_hand(true, false, free)).toMatch(/none is there/);
+    expect(why_no_hand(true, true, { held: true, share: 0 })).toBeNull();
   });
 });

@@ -56,13 +56,16 @@ describe('outline', () => {
 });
 
 describe('survey', () => {
-  const wish = (corners: number) => ({ polygon: RING.slice(0, corners) }) as unknown as SurveyWish;
+  const wish = (corners: number) =>
+    ({ polygon: RING.slice(0, corners), holes: [] }) as unknown as SurveyWish;
 
   test('needs three corners, and says how many are missing', () => {
     expect(why_not_survey(wish(0))).toContain('Tap the corners');
     expect(why_not_survey(wish(1))).toBe('2 more corners needed.');
     expect(why_not_survey(wish(2))).toBe('1 more corner needed.');
     expect(why_not_survey(wish(3))).toBeNull();
+    const holes = [RING.slice(0, 3), RING.slice(0, 2)];
+    expect(why_not_survey({ ...wish(3), holes })).toBe('Obstacle 2 needs three corners.');
   });
 
   test('never says that all is covered when it is not', () => {

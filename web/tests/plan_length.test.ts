@@ -19,3 +19,17 @@ test('a plan is as long as its legs, and its circles all the way round', () => {
   expect(length(point(4), circle)).toBeCloseTo(2 + 12 * Math.PI, 2);
   expect(length({ type: 'circle', ...at(5, 0), radius_m: 3 })).toBeCloseTo(6 * Math.PI, 2);
 });
+
+test('of a plan that was changed in one place all the rest is as it was', () => {
+  const items = [point(0), point(10), point(20), point(30)];
+  expect(length(...items)).toBeCloseTo(30, 2);
+  // One moved away to the side and back: both legs at it are others.
+  expect(
+    length(point(0), point(10), { ...point(20), ...at(20, 10) } as Item, point(30)),
+  ).toBeCloseTo(10 + 2 * Math.hypot(10, 10), 2);
+  // One taken out: the next one is come to from another.
+  expect(length(...items.filter((_, k) => k !== 1))).toBeCloseTo(30, 2);
+  const [first, , third] = items;
+  expect(length(...(first && third ? [third, first, third] : []))).toBeCloseTo(40, 2);
+  expect(length(...items)).toBeCloseTo(30, 2);
+});

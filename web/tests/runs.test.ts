@@ -24,6 +24,7 @@ const report: RunReport = {
   end_m: 0.02,
   corners: [],
   straights: [],
+  by_sight: [],
 };
 const row = (label: string, second: RunReport | null) =>
   report_rows(report, second).find((each) => each.label === label);

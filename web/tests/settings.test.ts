@@ -1,15 +1,39 @@
 import { describe, expect, test } from 'vitest';
 
-import { DEFAULTS, settings_of, speed_text } from '../src/model/settings';
+import { DEFAULTS, language_in, settings_of, speed_text } from '../src/model/settings';
 
 describe('what is kept on the device', () => {
   test('comes back', () => {
-    const gamepad = { uses: {}, expo: 0.2, bumpers: true };
-    const chosen = { look: 'sunlight', speed: 'km/h', places: 'utm', gamepad } as const;
+    const gamepad = { uses: {}, expo: 0.2, bumpers: true, auto: true };
+    const instruments = ['attitude', 'rc'] as const;
+    const cues = { sound: false, vibration: true, speech: true };
+    const rest = { gamepad, instruments, cues };
+    const chosen = {
+      language: 'fi',
+      look: 'sunlight',
+      speed: 'km/h',
+      places: 'utm',
+      trail: 'speed',
+      map_up: 'heading',
+      ...rest,
+    } as const;
     expect(settings_of(JSON.stringify(chosen))).toEqual(chosen);
   });
+  test('speaks what the device asks for, until somebody has chosen', () => {
+    expect(language_in(DEFAULTS, ['nb-NO', 'en'])).toBe('nb');
+    expect(language_in({ ...DEFAULTS, language: 'et' }, ['nb-NO'])).toBe('et');
+  });
   test('is as at first where nothing is kept, or something else', () => {
-    for (const text of [null, '', '{', '[]', '7', '"x"', 'null', '{"look":"neon","speed":3.6}']) {
+    for (const text of [
+      null,
+      '',
+      '{',
+      '[]',
+      '7',
+      '"x"',
+      'null',
+      '{"look":"neon","speed":3.6,"trail":1}',
+    ]) {
       expect(settings_of(text)).toEqual(DEFAULTS);
     }
     expect(settings_of('{"speed":"km/h","more":1}')).toEqual({ ...DEFAULTS, speed: 'km/h' });

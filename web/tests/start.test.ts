@@ -1,6 +1,14 @@
-import { expect, test } from 'vitest';
+import { describe, expect, test } from 'vitest';
 
-import { beginning_words, smoothed_words, tolerance_words } from '../src/model/start';
+import type { WayHome } from '../src/model/homeward';
+import type { CheckReport } from '../src/model/ports';
+import {
+  beginning_words,
+  smoothed_words,
+  start_lights,
+  tolerance_words,
+  type StartFacts,
+} from '../src/model/start';
 import type { Preview, Vehicle } from '../src/model/vehicle';
 
 const preview = (joins_after_m: number | null, left_out: number): Preview =>
@@ -34,4 +42,52 @@ test('how near is near enough is said while a mission drives', () => {
   expect(tolerance_words(mission(3.6))).toBe(
     'Counts as reached within 3.60 m; pauses 3.00 m off its way.',
   );
+});
+
+describe('the lights before a start', () => {
+  const vehicle = (given: object = {}): Vehicle =>
+    ({
+      position: { horizontal_accuracy_m: 0.02, stale: false },
+      gnss: { fix: 'rtk_fixed' },
+      fence: { name: 'yard', inside: true, distance_m: 4 },
+      ...given,
+    }) as unknown as Vehicle;
+  const first = { distance_m: 3.2, bearing_deg: 45, joins_after_m: null } as Preview;
+  const home = { target_is: 'home', possible: true, distance_m: 12 } as WayHome;
+  const report = { findings: [] } as unknown as CheckReport;
+  const said = (given: Partial<StartFacts>): string[] =>
+    start_lights({ vehicle: vehicle(), preview: first, home, report, failure: null, ...given }).map(
+      ({ light, subject, words }) => `${light}: ${subject}: ${words}`,
+    );
+
+  test('are green where nothing is to be looked at', () => {
+    expect(said({})).toEqual([
+      'good: To its first item: 3.20 m, 045° NE',
+      'good: Check: nothing speaks against it',
+      'good: Fence: inside “yard”, 4.00 m from its limit',
+      'good: Way home: Home, 12.0 m',
+      'good: Position: RTK fixed, ±2 cm',
+    ]);
+  });
+
+  test('say what is to be looked at, and keep their order', () => {
+    const findings = [{ severity: 'warning' }, { severity: 'error' }];
+    expect(
+      said({
+        vehicle: vehicle({ fence: null, position: { horizontal_accuracy_m: 1.4, stale: false } }),
+        preview: { ...first, distance_m: 48 },
+        home: { ...home, possible: false, reason: 'it has no home' },
+        report: { findings } as unknown as CheckReport,
+      }),
+    ).toEqual([
+      'warn: To its first item: 48.0 m, 045° NE',
+      'bad: Check: 1 error',
+      'warn: Fence: none holds',
+      'warn: Way home: it has no home',
+      'warn: Position: RTK fixed, ±1.4 m',
+    ]);
+    expect(said({ report: null, failure: 'no answer' })[1]).toBe('warn: Check: no answer');
+    const outside = vehicle({ fence: { name: 'yard', inside: false, distance_m: -0.5 } });
+    expect(said({ vehicle: outside })[2]).toBe('bad: Fence: outside of “yard”, by 0.50 m');
+  });
 });

@@ -1,6 +1,15 @@
 import { describe, expect, test } from 'vitest';
 
-import { add_sample, empty_columns } from '../src/model/columns';
+import {
+  csv_of,
+  heading_error_deg,
+  KEPT,
+  pair_of,
+  sample_of,
+  shown_pair_of,
+  SIGNALS,
+  Telemetry,
+} from '../src/model/telemetry';
 import {
   radio_lines,
   receiver_place,
@@ -10,22 +19,87 @@ import {
   type Vehicle,
 } from '../src/model/vehicle';
 
-describe('columns', () => {
-  test('hold one column per signal, bounded, with gaps for unknown values', () => {
-    const columns = empty_columns(2);
-    for (let t = 1; t <= 4; t += 1) add_sample(columns, 3, t, [t * 10, t === 3 ? null : t]);
-    expect(columns).toEqual([
-      [2, 3, 4],
-      [20, 30, 40],
-      [2, null, 4],
+/** Driving north to its item in the north-east. */
+const driving = (given: object = {}): Vehicle =>
+  ({
+    position: { speed_mps: 0.8, heading_deg: 0, stale: false, ...given },
+    mission: {
+      state: 'running',
+      cross_track_m: -0.1,
+      bearing_to_item_deg: 45,
+      distance_to_item_m: 10,
+    },
+    battery: { battery_v: 52.5, stale: false },
+    gnss: { horizontal_accuracy_m: 0.02, stale: false },
+  }) as unknown as Vehicle;
+
+describe('telemetry', () => {
+  test('is one column per signal, with gaps for what is not known or old', () => {
+    const telemetry = new Telemetry();
+    telemetry.take(1, sample_of(driving(), 0.05));
+    telemetry.take(2, sample_of(driving({ stale: true }), null));
+    expect(telemetry.columns).toEqual([
+      [1, 2],
+      [0.8, null],
+      [-0.1, null],
+      [45, null],
+      [52.5, 52.5],
+      [50, null],
+      [0.02, 0.02],
     ]);
   });
 
-  test('refuse a sample that is not later than the last', () => {
-    const columns = empty_columns(1);
-    expect(add_sample(columns, 3, 5, [1])).toBe(true);
-    expect(add_sample(columns, 3, 5, [2])).toBe(false);
-    expect(columns[0]).toEqual([5]);
+  test('keeps five minutes at ten a second, and takes nothing that is not later', () => {
+    const telemetry = new Telemetry();
+    for (let k = 0; k < 10_000; k += 1) telemetry.take(k / 10, [k]);
+    expect(telemetry.take(999.9, [0])).toBe(false);
+    const [times] = telemetry.columns;
+    expect(times.at(-1)).toBe(999.9);
+    expect(times.length).toBeGreaterThanOrEqual(KEPT);
+    expect(times.length).toBeLessThanOrEqual(KEPT + 200);
+    expect(telemetry.columns.every((column) => column.length === times.length)).toBe(true);
+  });
+
+  test('is plotted in the unit of the device, and kept and saved as it was measured', () => {
+    const telemetry = new Telemetry();
+    telemetry.take(1, [0.5, 2]);
+    telemetry.take(2, [null, 3]);
+    const [speed, deviation] = SIGNALS;
+    expect(shown_pair_of(telemetry.columns, speed, 'km/h')).toEqual([
+      [1, 2],
+      [1.8, null],
+    ]);
+    expect(shown_pair_of(telemetry.columns, deviation, 'km/h')[1]).toEqual([2, 3]);
+    expect(shown_pair_of(telemetry.columns, speed, 'm/s')[1]).toEqual([0.5, null]);
+    expect(csv_of(telemetry.columns)).toContain('speed_mps');
+  });
+
+  test('stands still while it is looked at', () => {
+    const telemetry = new Telemetry();
+    telemetry.take(1, [5]);
+    const frozen = telemetry.frozen();
+    telemetry.take(2, [6]);
+    expect(pair_of(frozen, 'speed')).toEqual([[1], [5]]);
+    expect(pair_of(telemetry.columns, 'speed')).toEqual([
+      [1, 2],
+      [5, 6],
+    ]);
+  });
+
+  test('is saved with units, UTC and nothing where nothing is known', () => {
+    const telemetry = new Telemetry();
+    telemetry.take(0.5, [0.81234567, null, -12, 52, 4, 0.02]);
+    expect(csv_of(telemetry.columns)).toBe(
+      'time,speed_mps,deviation_m,heading_deg,battery_V,link_ms,gnss_m\r\n' +
+        '1970-01-01T00:00:00.500Z,0.8123,,-12,52,4,0.02\r\n',
+    );
+  });
+
+  test('tells the heading error the short way round, of the tail where it backs', () => {
+    expect(heading_error_deg(driving({ heading_deg: 350 }))).toBe(55);
+    expect(heading_error_deg(driving({ heading_deg: 225, speed_mps: -0.5 }))).toBe(0);
+    expect(heading_error_deg(driving({ heading_deg: 225 }))).toBe(-180);
+    expect(heading_error_deg(driving({ heading_deg: null }))).toBeNull();
   });
 });
 

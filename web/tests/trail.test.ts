@@ -76,11 +76,12 @@ describe('tracks', () => {
     t_s: number,
     at: number,
     received: number,
-    { stale = false, speed_mps = 1 } = {},
+    { stale = false, speed_mps = 1, state = 'idle', cross_track_m = null as number | null } = {},
   ) =>
     ({
       time: new Date(t_s * 1000).toISOString(),
       position: { ...north(at), stale, speed_mps },
+      mission: { state, cross_track_m },
       gnss: { ...north(received), fix: 'gps', stale: false },
     }) as unknown as Vehicle;
 
@@ -129,5 +130,28 @@ describe('tracks', () => {
       received: [],
     });
     expect(metres(tracks.driven)).toEqual([1, 3, 5, 7, 8]);
+  });
+
+  test('know what was measured while this page listened, also after the server has told the way', () => {
+    const tracks = new Tracks();
+    const at_5 = { state: 'running', cross_track_m: -0.07, speed_mps: -0.8 };
+    tracks.take(vehicle(5, 5, 5, at_5));
+    tracks.take(vehicle(6, 6, 6, { ...at_5, state: 'paused' }));
+    tracks.restore({
+      until_s: 6.2,
+      estimated: [piece([1, 1], [3, 3.9], [5, 4.8], [6, 6.2])],
+      received: [],
+    });
+    const told = (k: number): readonly number[] => {
+      const { speed_mps, off_m } = tracks.driven.driven(k);
+      return [speed_mps, off_m].map((value) => Math.round(value * 100) / 100);
+    };
+    expect([0, 1, 2, 3].map(told)).toEqual([
+      [NaN, NaN],
+      [NaN, NaN],
+      [0.8, 0.07],
+      [0.8, NaN],
+    ]);
+    expect(tracks.driven.driven(4)).toEqual({ speed_mps: NaN, off_m: NaN });
   });
 });

@@ -151,6 +151,8 @@ std::string_view to_string(Kind kind) noexcept {
       return "person";
     case Kind::Animal:
       return "animal";
+    case Kind::Tag:
+      return "tag";
   }
   return "thing";
 }
@@ -189,6 +191,19 @@ void build_thing(const World& world, const Terrain& terrain, std::uint32_t numbe
       s.b = thing.width_m / 2.0;
       s.c = std::cos(thing.yaw_rad);
       s.s = std::sin(thing.yaw_rad);
+      return;
+    }
+    case Kind::Tag: {  // its white edge, too: a tenth on each side
+      constexpr double kPlate_m = 0.008;
+      const double half_m = thing.length_m * 0.625;
+      const Vec2 look{std::cos(thing.yaw_rad), std::sin(thing.yaw_rad)};
+      const double middle_m = ground + thing.height_m;
+      Shape& s = one(Form::Box, middle_m - half_m, middle_m + half_m, half_m);
+      s.b = kPlate_m / 2.0;
+      s.x -= kPlate_m / 2.0 * look.x;  // its face is where it is said to be
+      s.y -= kPlate_m / 2.0 * look.y;
+      s.c = -look.y;
+      s.s = look.x;
       return;
     }
     case Kind::Bush:

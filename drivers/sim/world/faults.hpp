@@ -38,7 +38,8 @@ void fields(V& v, SensorFaults& f) {
   v("sensor_heating", f.sensor_heating, "it says that its data are not good yet, where it can");
   v("sensor_latency_s", f.sensor_latency_s, 0.0, 10.0, "its bytes come so much later");
   v("sensor_malformed", f.sensor_malformed, 0.0, 1.0,
-    "vision: share of its datagrams that are cut or hold what is no number");
+    "vision: share of its datagrams that are cut or hold what is no number; picture: that are "
+    "none");
   v("sensor_dropout", f.sensor_dropout, 0.0, 1.0, "further share of beams that return nothing");
   v("sensor_noise_m", f.sensor_noise_m, 0.0, 5.0, "further sigma of every range");
   v("dirt_from_deg", f.dirt_from_deg, -180.0, 180.0,

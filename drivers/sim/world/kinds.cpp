@@ -16,6 +16,8 @@ constexpr Number kGaps{"gaps", &Thing::gaps, 0.0, 1.0};
 constexpr Number kBend{"bend_m", &Thing::bend_m, -500.0, 500.0};
 constexpr Number kSpeed{"speed_mps", &Thing::speed_mps, 0.01, 30.0};
 constexpr Number kPause{"pause_s", &Thing::pause_s, 0.0, 86'400.0};
+constexpr Number kSize{"size_m", &Thing::length_m, 0.02, 5.0};
+constexpr Number kId{"id", &Thing::id, 0.0, 586.0};
 constexpr Number kStart{"start_s", &Thing::start_s, 0.0, 86'400.0};
 
 Thing like(Kind kind, double height_m, double length_m, double width_m, double radius_m,
@@ -78,7 +80,12 @@ const std::vector<KindRow>& kinds() {
        Places::Path,
        {kHeight, kLength, kWidth, kSpeed, kPause, kStart, kReflect},
        false,
-       like(Kind::Animal, 0.6, 0.8, 0.25, 0.1, 0.2)}};
+       like(Kind::Animal, 0.6, 0.8, 0.25, 0.1, 0.2)},
+      {Kind::Tag,
+       Places::One,
+       {kId, kSize, kHeight, kReflect},
+       true,
+       like(Kind::Tag, 0.5, 0.16, 1.0, 0.1, 0.2)}};
   return rows;
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <optional>
+#include <string_view>
 #include <utility>
 
 namespace roverd::sim::world {
@@ -85,6 +87,19 @@ std::string Scene::name_of(int thing) const {
   const Thing& one = world_.things[static_cast<std::size_t>(thing)];
   if (!one.name.empty()) return one.name;
   return std::string(to_string(one.kind)) + " " + std::to_string(thing);
+}
+
+std::optional<std::size_t> Scene::mover(std::string_view name) const {
+  for (std::size_t i = 0; i < world_.things.size(); ++i) {
+    const Thing& one = world_.things[i];
+    const bool moves = one.kind == Kind::Person || one.kind == Kind::Animal;
+    if (moves && one.name == name) return i;
+  }
+  return std::nullopt;
+}
+
+void Scene::begin_walk(std::string_view name, double at_s) {
+  if (const auto i = mover(name)) world_.things[*i].start_s = at_s;
 }
 
 Moment Scene::at(double at_s) const {

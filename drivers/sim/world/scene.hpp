@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim/world/draw.hpp"
@@ -49,6 +50,10 @@ class Scene {
   std::size_t pieces() const noexcept { return shapes_.size(); }
   /// "wall", "the gate", "ground"; of Hit::thing.
   std::string name_of(int thing) const;
+  /// The number of the person or animal that is called so.
+  std::optional<std::size_t> mover(std::string_view name) const;
+  /// It begins its path at that time, from its first point. Nothing where nobody is called so.
+  void begin_walk(std::string_view name, double at_s);
 
   /// @param at_s since the start of the world.
   Moment at(double at_s) const;

@@ -54,8 +54,8 @@ base::Result<void> check(const SensorParams& p) {
     return base::fail(base::Code::Invalid, std::move(detail));
   };
   if (p.kind != "lms" && p.kind != "vlp16" && p.kind != "depth" && p.kind != "range" &&
-      p.kind != "vision") {
-    return refuse("kind must be lms, vlp16, depth, range or vision");
+      p.kind != "vision" && p.kind != "picture") {
+    return refuse("kind must be lms, vlp16, depth, range, vision or picture");
   }
   if (p.returns != "strongest" && p.returns != "last" && p.returns != "dual") {
     return refuse("returns must be strongest, last or dual");
@@ -106,6 +106,12 @@ SensorParams usual(std::string_view kind) {
     p.columns = 120;
     p.rows = 12;
     p.latency_s = 0.1;
+  } else if (kind == "picture") {
+    p.rate_hz = 10.0;
+    p.columns = 640;
+    p.rows = 480;
+    p.fov_h_deg = 70.0;
+    p.latency_s = 0.03;
   } else if (kind == "range") {
     p.rate_hz = 20.0;
     p.fov_h_deg = 20.0;
@@ -134,7 +140,7 @@ Sensor::Sensor(SensorParams p, std::uint64_t seed, double begin_s, int thin)
     prepare_depth();
   } else if (params_.kind == "range") {
     prepare_range();
-  } else {
+  } else if (params_.kind != "picture") {
     prepare_lms();
   }
 }

@@ -22,7 +22,8 @@ namespace roverd::sim::world {
 
 /// Fields by kind: lms: fov_from_deg … fov_to_deg by step_deg, one scan a turn at rate_hz.
 /// vlp16: 16 rings, rate_hz turns a second. depth: columns x rows over fov_h_deg x fov_v_deg, all
-/// at once; vision likewise, of which its program sees things. range: one distance, the nearest in
+/// at once; vision likewise, of which its program sees things; picture likewise, and what it shows
+/// is drawn elsewhere (painter.hpp): its sweeps have no shots. range: one distance, the nearest in
 /// a cone fov_h_deg wide.
 struct SensorParams {
   std::string name;
@@ -57,7 +58,7 @@ struct SensorParams {
 template <class V>
 void fields(V& v, SensorParams& p) {
   v("name", p.name, "by which faults and the link's list call it; none: its kind");
-  v("kind", p.kind, "lms, vlp16, depth, range or vision");
+  v("kind", p.kind, "lms, vlp16, depth, range, vision or picture");
   v("port", p.port, "where its bytes go: udp:PORT, tcp:PORT or pty:PATH; empty: by the kind");
   v("x_m", p.x_m, -20.0, 20.0, "where it is on the body, ahead of the origin on the ground");
   v("y_m", p.y_m, -20.0, 20.0, "likewise, to the left");
@@ -69,10 +70,11 @@ void fields(V& v, SensorParams& p) {
   v("fov_from_deg", p.fov_from_deg, -180.0, 180.0, "lms: bearing of the first beam");
   v("fov_to_deg", p.fov_to_deg, -180.0, 180.0, "lms: bearing of the last beam");
   v("step_deg", p.step_deg, 0.05, 10.0, "lms: from beam to beam");
-  v("fov_h_deg", p.fov_h_deg, 0.5, 150.0, "depth, vision: width of the image; range: of the cone");
+  v("fov_h_deg", p.fov_h_deg, 0.5, 150.0,
+    "depth, vision, picture: width of the image; range: of the cone");
   v("fov_v_deg", p.fov_v_deg, 0.5, 150.0, "depth, vision: height of the image");
-  v("columns", p.columns, 1, 1280, "depth, vision: of the image");
-  v("rows", p.rows, 1, 1024, "depth, vision: of the image");
+  v("columns", p.columns, 1, 1280, "depth, vision, picture: of the image");
+  v("rows", p.rows, 1, 1024, "depth, vision, picture: of the image");
   v("near_m", p.near_m, 0.0, 10.0, "nothing nearer is measured");
   v("far_m", p.far_m, 0.1, 300.0, "nothing farther is measured");
   v("dark_m", p.dark_m, 0.1, 300.0,

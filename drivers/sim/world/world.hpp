@@ -19,7 +19,7 @@ inline constexpr std::size_t kMaxPoints = 1'000;    ///< of one thing
 inline constexpr std::size_t kMaxPlants = 200'000;  ///< of all rows
 inline constexpr std::size_t kMaxText = 32 * 1024 * 1024;
 
-enum class Kind : std::uint8_t { Wall, Pole, Box, Cone, Bush, Row, Bar, Person, Animal };
+enum class Kind : std::uint8_t { Wall, Pole, Box, Cone, Bush, Row, Bar, Person, Animal, Tag };
 std::string_view to_string(Kind kind) noexcept;
 
 /// What one does at the end of its path.
@@ -33,6 +33,8 @@ enum class Motion : std::uint8_t { Once, Loop, Back };
 ///   cone    points[0], radius (at the ground), height
 ///   bush    points[0], radius, height, density
 ///   row     points, spacing, width, height, gaps, bend, density
+///   tag     points[0] (its middle), height of its middle, length (side of its black border), id,
+///           yaw (where it looks): an AprilTag of tag36h11 on a thin plate
 ///   person, animal: points (path), speed, motion, pause, start; length, width, height
 struct Thing {
   Kind kind = Kind::Box;
@@ -54,6 +56,7 @@ struct Thing {
   double start_s = 0.0;  ///< stands at its first point until then
   Motion motion = Motion::Back;
   double reflect = 0.5;  ///< share of light that comes back, 0 black, 1 white
+  double id = 0.0;       ///< of a tag: 0 .. 586
   friend bool operator==(const Thing&, const Thing&) = default;
 };
 

@@ -176,7 +176,7 @@ class Reader {
         std::ranges::find_if(kinds(), [&](const KindRow& r) { return to_string(r.kind) == kind; });
     if (row == kinds().end()) {
       return refuse(at + "/kind",
-                    "must be wall, bar, pole, box, cone, bush, row, person or animal");
+                    "must be wall, bar, pole, box, cone, bush, row, person, animal or tag");
     }
     std::vector<std::string_view> known = {"kind", "name"};
     known.push_back(row->places == Places::One    ? "at"

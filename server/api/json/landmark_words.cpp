@@ -67,9 +67,26 @@ Json plane_json(const Outlook::CameraPlane& p, double more_s) {
   return out;
 }
 
+/// Clockwise positive, as all turns here.
+Json tag_json(const base::TagState& t, base::Time now) {
+  return {{"id", t.id},
+          {"ahead_m", millimetres(t.ahead_m)},
+          {"left_m", millimetres(t.left_m)},
+          {"sigma_m", millimetres(t.sigma_m)},
+          {"turn_deg", t.yaw_rad ? degrees(-*t.yaw_rad) : Json(nullptr)},
+          {"turn_sigma_deg", t.yaw_sigma_rad ? degrees(*t.yaw_sigma_rad) : Json(nullptr)},
+          {"camera", t.camera},
+          {"sights", t.sights},
+          {"age_s", aged(base::seconds(now - t.seen_at), 0.0)}};
+}
+
 }  // namespace
 
-Json landmarks_json(const Outlook* seen, base::Time now) {
+Json landmarks_json(const Outlook* seen, const base::Snapshot& s, base::Time now) {
+  Json tags = Json::array();
+  if (s.tags) {
+    for (const base::TagState& t : *s.tags) tags.push_back(tag_json(t, now));
+  }
   Json landmarks = Json::array();
   Json walls = Json::array();
   Json obstacles = Json::array();
@@ -84,7 +101,8 @@ Json landmarks_json(const Outlook* seen, base::Time now) {
   return {{"landmarks", std::move(landmarks)},
           {"walls", std::move(walls)},
           {"obstacles", std::move(obstacles)},
-          {"planes", std::move(planes)}};
+          {"planes", std::move(planes)},
+          {"tags", std::move(tags)}};
 }
 
 }  // namespace roverd::api

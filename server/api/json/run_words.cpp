@@ -89,7 +89,7 @@ base::Result<robot::RunReport> report_of(const store::StoredRun& run,
   track.reserve(points.size());
   for (const store::RunPoint& p : points) {
     track.push_back({p.t_s, p.at, p.yaw_rad, p.speed_mps, p.yaw_rate_radps, p.lap, p.by_itself,
-                     p.power_w, p.item});
+                     p.power_w, p.item, p.cross_m});
   }
   std::vector<std::pair<std::string, base::ParamValue>> parameters;
   for (const store::RunParameter& p : run.parameters) parameters.emplace_back(p.name, p.value);
@@ -129,6 +129,18 @@ Json report_json(const store::RunHead& run, const robot::RunReport& r) {
                          {"length_m", places(s.to_m - s.from_m, 2)},
                          {"slalom_m", places(s.slalom_m, 3)}});
   }
+  Json by_sight = Json::array();
+  for (const robot::SightMeasure& s : r.by_sight) {
+    const auto seen = [&s](double v) { return s.tells() ? places(v, 4) : Json(nullptr); };
+    by_sight.push_back({{"item", s.item},
+                        {"type", s.type},
+                        {"driven_m", places(s.driven_m, 2)},
+                        {"judged_m", places(s.judged_m, 2)},
+                        {"rms_m", seen(s.cross.rms_m)},
+                        {"mean_m", seen(s.cross.mean_m)},
+                        {"p95_m", seen(s.cross.p95_m)},
+                        {"max_m", seen(s.cross.max_m)}});
+  }
   return {{"id", run.id},
           {"name", run.name},
           {"outcome", store::to_string(run.outcome)},
@@ -155,7 +167,8 @@ Json report_json(const store::RunHead& run, const robot::RunReport& r) {
           {"jerk_rms_mps3", of_way(m.jerk_rms_mps3, 3)},
           {"end_m", of_way(m.end_m, 3)},
           {"corners", std::move(corners)},
-          {"straights", std::move(straights)}};
+          {"straights", std::move(straights)},
+          {"by_sight", std::move(by_sight)}};
 }
 
 std::string track_geojson(const store::RunHead& run, const std::vector<store::RunPoint>& points) {

@@ -223,6 +223,7 @@ Json activity_json(const base::Activity& a) {
           {"goal", point_json(a.goal)},
           {"goal_heading_deg", a.goal_yaw_rad ? heading_json(*a.goal_yaw_rad) : Json(nullptr)},
           {"distance_m", rounded(a.distance_m, kPlaces3)},
+          {"tag", a.tag ? Json(*a.tag) : Json(nullptr)},
           // Compass turns count clockwise.
           {"turn_deg", a.turn_rad ? degrees(-*a.turn_rad) : Json(nullptr)},
           {"radius_m", rounded(a.radius_m, kPlaces3)},
@@ -272,7 +273,8 @@ Json vehicle_json(const base::Snapshot& s, const std::string& name, base::Time n
           {"teleop",
            {{"state", base::to_string(s.teleop.phase)},
             {"reason", s.teleop.reason},
-            {"delay_s", rounded(s.teleop.delay_s, kPlaces3)}}},
+            {"delay_s", rounded(s.teleop.delay_s, kPlaces3)},
+            {"auto_share", rounded(s.teleop.auto_share, kPlaces3)}}},
           {"speed_reason", s.speed_reason},
           {"command",
            {{"speed_mps", rounded(s.command.twist.linear_mps, kPlaces3)},
@@ -354,14 +356,52 @@ Json smoothed_json(const std::vector<robot::SmoothedItems>& stretches) {
   return out;
 }
 
+namespace {
+
+Json pace_json(const robot::WayPace& pace) {
+  Json out = point_json(pace.at);
+  out["distance_m"] = rounded(pace.distance_m, kPlaces3);
+  out["speed_mps"] = rounded(pace.speed_mps, kPlaces3);
+  out["set_mps"] = rounded(pace.set_mps, kPlaces3);
+  out["item"] = pace.item;
+  out["reverse"] = pace.reverse;
+  return out;
+}
+
+Json way_stop_json(const robot::WayStop& stop) {
+  Json out = point_json(stop.at);
+  out["distance_m"] = rounded(stop.distance_m, kPlaces3);
+  out["item"] = stop.item;
+  Json turns = Json::array();
+  for (const robot::WayTurn& turn : stop.turns) {
+    const auto& from = turn.from_yaw_rad;
+    const double turn_deg = -base::deg_from_rad(turn.by_rad);
+    turns.push_back({{"from_heading_deg", from ? heading_json(*from) : Json(nullptr)},
+                     {"to_heading_deg", heading_json(turn.to_yaw_rad)},
+                     {"turn_deg", from ? rounded(turn_deg, kPlaces2) : Json(nullptr)},
+                     {"above_deg", rounded(base::deg_from_rad(turn.above_rad), kPlaces2)}});
+  }
+  out["turns"] = std::move(turns);
+  return out;
+}
+
+}  // namespace
+
 Json mission_way_json(const robot::MissionWay& way) {
   Json line = Json::array();
   for (const base::LatLon& at : way.line) line.push_back(point_json(at));
+  Json pace = Json::array();
+  for (const robot::WayPace& each : way.pace) pace.push_back(pace_json(each));
+  Json stops = Json::array();
+  for (const robot::WayStop& each : way.stops) stops.push_back(way_stop_json(each));
   return {{"mission_id", way.mission_id},
           {"revision", way.revision},
           {"length_m", rounded(way.length_m, kPlaces3)},
           {"within_m", way.within_m},
-          {"line", std::move(line)}};
+          {"line", std::move(line)},
+          {"pace", std::move(pace)},
+          {"stops", std::move(stops)},
+          {"stops_left_out", way.stops_left_out}};
 }
 
 Json preview_json(const robot::Preview& p, base::ExecutionState state) {

@@ -88,7 +88,7 @@ Json obstacle_json(const std::optional<base::Obstacle>& obstacle, base::Time now
 /// All of the profile, as they were seen last.
 Json sensors_json(const base::Snapshot& snapshot, base::Time now);
 /// Landmarks and walls that are known, and what cameras told. @param seen may be null
-Json landmarks_json(const robot::Outlook* seen, base::Time now);
+Json landmarks_json(const robot::Outlook* seen, const base::Snapshot& s, base::Time now);
 /// What stands around the robot, of topic and call `obstacles`. @param seen null: nothing yet
 Json obstacles_json(const robot::Outlook* seen, const base::Snapshot& snapshot, base::Time now);
 /// What the sensors saw last, about the robot.

@@ -21,6 +21,7 @@ std::optional<people::Driver> caller(const ContextPtr& c, const CallPtr& call) {
 Json state_for(const ContextPtr& c, const std::optional<people::Driver>& who) {
   Json out = c->control.state();
   out["mine"] = c->control.may(who);
+  out["here"] = c->control.here();
   out["you"] = who ? Json(who->id) : Json(nullptr);
   return out;
 }

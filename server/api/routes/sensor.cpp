@@ -13,10 +13,10 @@ void add_sensor_routes(const ContextPtr& c) {
                    }
                  }});
   c->router.add({http::verb::get, "/landmarks", {200, 503}, [c](const CallPtr& call) {
-                   if (c->snapshot_or_refuse(call)) {
+                   if (const auto s = c->snapshot_or_refuse(call)) {
                      const auto seen = c->outlook();
-                     call->respond(json_response(http::status::ok,
-                                                 landmarks_json(seen.get(), base::steady_now())));
+                     call->respond(json_response(
+                         http::status::ok, landmarks_json(seen.get(), *s, base::steady_now())));
                    }
                  }});
   c->router.add({http::verb::get, "/obstacles", {200, 503}, [c](const CallPtr& call) {

@@ -140,6 +140,15 @@ void read_round(Members& members, robot::SetMode& command) {
   }
 }
 
+/// The tag to dock at, in the place of a pose.
+void read_tag(Members& members, robot::SetMode& command) {
+  members.require("tag");
+  if (const auto tag = members.whole("tag", 0, mission::kMostTag)) {
+    command.tag = static_cast<int>(*tag);
+  }
+  command.stand_off_m = members.number("stand_off_m", 0.1, 5.0);
+}
+
 Handler set_mode(const ContextPtr& context) {
   return [context](const CallPtr& call) {
     const auto body = json_body(call->request);
@@ -157,7 +166,9 @@ Handler set_mode(const ContextPtr& context) {
     const Moves moves = mode == base::Mode::Hold ? Moves::No : Moves::Yes;
     const robot::Validity validity = validity_of(members, *call, moves);
     robot::SetMode command{mode};
-    if (mode == base::Mode::Dock) {
+    const bool at_tag = mode == base::Mode::Dock && body->contains("tag");
+    if (at_tag) read_tag(members, command);
+    if (mode == base::Mode::Dock && !at_tag) {
       command.goal = read_goal(members);
       members.require("heading_deg");
       if (!command.goal->at && !command.goal->local) {

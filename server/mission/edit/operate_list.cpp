@@ -162,6 +162,7 @@ Result<Parts> split(Plan plan, int after, bool shared) {
   }
   plan.items.resize(static_cast<std::size_t>(after));
   parts.first = std::move(plan);
+  parts.first.drawing = nullptr;
   return parts;
 }
 

@@ -111,9 +111,10 @@ void thin(const Plan& plan, std::size_t first, std::size_t last, double toleranc
 bool moves_otherwise(const Item& item) {
   return std::holds_alternative<Local>(item) || std::holds_alternative<Move>(item) ||
          std::holds_alternative<Row>(item) || std::holds_alternative<Wall>(item) ||
-         std::holds_alternative<Landmarks>(item) || std::holds_alternative<Jump>(item) ||
-         std::holds_alternative<ReturnHome>(item) || std::holds_alternative<Action>(item) ||
-         std::holds_alternative<Loiter>(item) || std::holds_alternative<Circle>(item);
+         std::holds_alternative<Landmarks>(item) || std::holds_alternative<Dock>(item) ||
+         std::holds_alternative<Jump>(item) || std::holds_alternative<ReturnHome>(item) ||
+         std::holds_alternative<Action>(item) || std::holds_alternative<Loiter>(item) ||
+         std::holds_alternative<Circle>(item);
 }
 
 /// How many pieces of at most `at_most_m` a leg has; a micrometre too long is no reason for one

@@ -23,6 +23,18 @@ struct Spot {
   LatLon at;
 };
 
+/// Of a row or a wall that ends beside a place.
+Until* until_of(Item& item) noexcept {
+  if (auto* row = std::get_if<Row>(&item)) return &row->until;
+  if (auto* wall = std::get_if<Wall>(&item)) return &wall->until;
+  return nullptr;
+}
+const Until* until_of(const Item& item) noexcept {
+  if (const auto* row = std::get_if<Row>(&item)) return &row->until;
+  if (const auto* wall = std::get_if<Wall>(&item)) return &wall->until;
+  return nullptr;
+}
+
 /// The short way round the date line.
 double lon_difference(double from, double to) noexcept {
   const double way = to - from;
@@ -45,6 +57,9 @@ Result<std::vector<Spot>> places_in(const Plan& plan, const Numbers& which) {
     const auto i = static_cast<std::size_t>(number) - 1;
     if (const auto at = place_of(plan.items[i])) {
       out.push_back({i, *at});
+    } else if (const Until* until = until_of(plan.items[i]);
+               until != nullptr && until->lat && until->lon) {
+      out.push_back({i, {*until->lat, *until->lon}});
     } else if (const auto* local = std::get_if<Local>(&plan.items[i])) {
       if (!home) {
         return tl::unexpected<Error>(
@@ -68,6 +83,9 @@ void put(Plan& plan, const std::vector<Spot>& places) {
       loiter->lon = place.at.lon;
     } else if (auto* circle = std::get_if<Circle>(&plan.items[place.item])) {
       circle->at = place.at;
+    } else if (Until* until = until_of(plan.items[place.item]); until != nullptr) {
+      until->lat = place.at.lat;
+      until->lon = place.at.lon;
     } else if (auto* local = std::get_if<Local>(&plan.items[place.item]); local && home) {
       const EnuPoint p = home->to_local(place.at);
       local->east_m = p.east_m;

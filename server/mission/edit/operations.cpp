@@ -15,8 +15,11 @@ using base::Error;
 using base::Result;
 
 Result<Done> perform(Plan plan, const Operation& operation) {
+  const auto items = plan.drawing.is_null() ? std::vector<Item>() : plan.items;
   auto done = std::visit([&](const auto& step) { return apply(std::move(plan), step); }, operation);
   if (!done) return done;
+  // Other points are not what was drawn.
+  if (!done->plan.drawing.is_null() && done->plan.items != items) done->plan.drawing = nullptr;
   if (done->plan.items.size() > kMaxItems) {
     return base::fail(Code::Invalid,
                       "the mission would have " + std::to_string(done->plan.items.size()) +

@@ -60,8 +60,9 @@ bool drives(const Plan& plan) {
     return std::holds_alternative<Waypoint>(item) || std::holds_alternative<Local>(item) ||
            std::holds_alternative<Move>(item) || std::holds_alternative<TurnBy>(item) ||
            std::holds_alternative<Row>(item) || std::holds_alternative<Wall>(item) ||
-           std::holds_alternative<Landmarks>(item) || std::holds_alternative<ReturnHome>(item) ||
-           std::holds_alternative<Circle>(item) || place_of(item).has_value();
+           std::holds_alternative<Landmarks>(item) || std::holds_alternative<Dock>(item) ||
+           std::holds_alternative<ReturnHome>(item) || std::holds_alternative<Circle>(item) ||
+           place_of(item).has_value();
   });
 }
 

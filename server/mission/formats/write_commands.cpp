@@ -150,6 +150,7 @@ class Writer {
   void add(const Row&) { leave_out(kNoCommand); }
   void add(const Wall&) { leave_out(kNoCommand); }
   void add(const Landmarks&) { leave_out(kNoCommand); }
+  void add(const Dock&) { leave_out(kNoCommand); }
   void add(const Action&) { leave_out(kNoCommand); }
 
   void at_end() {

@@ -44,6 +44,9 @@ class Checker {
   void name(std::string_view name, const std::string& value) {
     if (std::string problem = name_problem(value); !problem.empty()) add(name, problem);
   }
+  void name(std::string_view at, const std::optional<std::string>& value) {
+    if (value) name(at, *value);
+  }
   void rest(const nlohmann::json& value) {
     if (!value.is_object() || value.contains("type") || value.contains("name")) {
       problems_.add(where_.text(), "arguments must be an object without type and name");

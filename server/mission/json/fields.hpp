@@ -11,6 +11,7 @@
 //   v.word(name, enumeration&)                required
 //   v.word_or(name, enumeration&, usual)      absent means `usual`
 //   v.name(name, string&)                     required
+//   v.name(name, optional<string>&)           may be absent
 //   v.rest(json&)                             all members that no other line names
 //   v.exactly_one(a, has_a, b, has_b)
 //   v.together(a, has_a, b, has_b)            both or none
@@ -53,6 +54,7 @@ inline constexpr Range kTurn_deg{-360.0, 360.0};
 inline constexpr Range kLocal_m{-10'000.0, 10'000.0};
 inline constexpr Range kBeside_m{0.0, 20.0, true};
 inline constexpr Range kRow_m{0.0, 10'000.0, true};
+inline constexpr Range kStandOff_m{0.1, 5.0};
 inline constexpr Range kOffset_m{-20.0, 20.0};
 inline constexpr Range kDrift_m{0.1, 100.0};
 inline constexpr Range kCircle_m{0.5, 1000.0};
@@ -115,12 +117,20 @@ void fields(V& v, Of<Speed> auto& p) {
   v.number("speed_mps", p.speed_mps, kSpeed_mps);
 }
 template <class V>
+void until_fields(V& v, auto& p) {
+  v.number("until_lat", p.lat, kLat);
+  v.number("until_lon", p.lon, kLon);
+  v.together("until_lat", p.lat.has_value(), "until_lon", p.lon.has_value());
+  v.name("until_place", p.place);
+}
+template <class V>
 void fields(V& v, Of<Row> auto& p) {
   v.word_or("side", p.side, RowSide::Both);
   v.number("gap_m", p.gap_m, kBeside_m);
   v.number("speed_mps", p.speed_mps, kSpeed_mps);
   v.number("distance_m", p.distance_m, kRow_m);
   v.word_or("seeing", p.seeing, RowSeeing::Line);
+  until_fields(v, p.until);
 }
 template <class V>
 void fields(V& v, Of<Wall> auto& p) {
@@ -128,6 +138,7 @@ void fields(V& v, Of<Wall> auto& p) {
   v.number("distance_m", p.distance_m, kBeside_m);
   v.number("speed_mps", p.speed_mps, kSpeed_mps);
   v.number("length_m", p.length_m, kRow_m);
+  until_fields(v, p.until);
 }
 template <class V>
 void fields(V& v, Of<Landmarks> auto& p) {
@@ -135,6 +146,11 @@ void fields(V& v, Of<Landmarks> auto& p) {
   v.number("offset_m", p.offset_m, kOffset_m);
   v.number("speed_mps", p.speed_mps, kSpeed_mps);
   v.count("count", p.count, kMaxLandmarks);
+}
+template <class V>
+void fields(V& v, Of<Dock> auto& p) {
+  v.whole("tag", p.tag, 0, kMostTag);
+  v.number("stand_off_m", p.stand_off_m, kStandOff_m);
 }
 template <class V>
 void fields(V& v, Of<Jump> auto& p) {

@@ -1,5 +1,6 @@
 #pragma once
-// A plan in the words of the public interface: {name, items, home?, settings?}, items {type, …}.
+// A plan in the words of the public interface: {name, items, home?, settings?, drawing?}, items
+// {type, …}.
 //
 // Reading is strict: an unknown member, a wrong type or a value out of range is refused, and every
 // offending field is named by JSON pointer (at most kMaxFieldErrors of them). `null` stands for an
@@ -26,6 +27,8 @@ namespace roverd::mission {
 inline constexpr std::size_t kMaxItems = 200'000;
 inline constexpr std::size_t kMaxNameLength = 200;  ///< Unicode characters
 inline constexpr std::size_t kMaxFieldErrors = 100;
+inline constexpr std::size_t kMaxDrawing = 64u << 10u;  ///< bytes as compact text
+inline constexpr std::size_t kMaxDrawingKind = 40;
 inline constexpr std::size_t kMaxJsonDepth = 32;
 /// Of a document's values in memory; a .plan of 200,000 items takes 300 MB.
 inline constexpr std::size_t kMaxJsonMemory = 400u << 20u;

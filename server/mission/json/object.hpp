@@ -106,6 +106,9 @@ class Members {
     if (const nlohmann::json* value = any(name)) read_word(name, *value, out);
   }
   void name(std::string_view name, std::string& out);
+  void name(std::string_view at, std::optional<std::string>& out) {
+    if (any(at) != nullptr) name(at, out.emplace());
+  }
   void rest(nlohmann::json& out);
   void exactly_one(std::string_view a, bool has_a, std::string_view b, bool has_b) {
     if (has_a && has_b) complain(b, std::string(kTwoOfOne));

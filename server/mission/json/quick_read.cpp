@@ -160,6 +160,9 @@ class QuickMembers {
   void name(std::string_view name, std::string& out) {
     if (const Simple* m = required(name, Simple::Kind::Text)) out = m->text;
   }
+  void name(std::string_view name, std::optional<std::string>& out) {
+    if (const Simple* m = optional(name, Simple::Kind::Text)) out = m->text;
+  }
   void rest(const nlohmann::json&) { fine = false; }
   void exactly_one(std::string_view, bool has_a, std::string_view, bool has_b) {
     if (has_a == has_b) fine = false;

@@ -93,6 +93,27 @@ void check_jumps(const Plan& plan, Problems& problems) {
   }
 }
 
+/// What is wrong with a drawing that is one; empty: nothing.
+std::string drawing_problem(const json& drawing) {
+  if (!drawing.is_object()) return "must be an object";
+  const auto kind = drawing.find("kind");
+  const auto word = kind != drawing.end() && kind->is_string()
+                        ? std::string_view(kind->get_ref<const std::string&>())
+                        : std::string_view();
+  const bool fits = !word.empty() && word.size() <= kMaxDrawingKind &&
+                    std::all_of(word.begin(), word.end(), [](char c) {
+                      return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+                    });
+  if (!fits) {
+    return "must have a kind: a word of at most " + std::to_string(kMaxDrawingKind) +
+           " of a-z, 0-9 and _";
+  }
+  const std::size_t bytes = drawing.dump(-1, ' ', false, json::error_handler_t::replace).size();
+  if (bytes <= kMaxDrawing) return {};
+  return "takes " + std::to_string(bytes) + " bytes as text, at most " +
+         std::to_string(kMaxDrawing) + " are possible";
+}
+
 Error too_many(std::size_t count) {
   std::string detail =
       "has " + std::to_string(count) + ", at most " + std::to_string(kMaxItems) + " are possible";
@@ -116,6 +137,11 @@ Result<Plan> plan_from_json(const json& value) {
   if (const json* settings = reader.known("settings");
       settings != nullptr && !settings->is_null()) {
     read_object(*settings, "/settings", plan.settings, problems);
+  }
+  if (const json* drawing = reader.known("drawing"); drawing != nullptr && !drawing->is_null()) {
+    const std::string wrong = drawing_problem(*drawing);
+    if (!wrong.empty()) problems.add("/drawing", wrong);
+    plan.drawing = *drawing;
   }
   const json* items = reader.known("items");
   if (items == nullptr) {
@@ -160,6 +186,11 @@ Result<void> check_plan(const Plan& plan) {
   };
   if (plan.home) check({"/home"}, *plan.home);
   check({"/settings"}, plan.settings);
+  if (!plan.drawing.is_null()) {
+    if (const std::string wrong = drawing_problem(plan.drawing); !wrong.empty()) {
+      problems.add("/drawing", wrong);
+    }
+  }
   for (std::size_t i = 0; i < plan.items.size(); ++i) {
     std::visit([&](const auto& members) { check({"/items", i}, members); }, plan.items[i]);
   }

@@ -36,6 +36,9 @@ class ValueWriter {
     if (value != usual) word(name, value);
   }
   void name(const char* name, const std::string& value) { out_[name] = value; }
+  void name(const char* at, const std::optional<std::string>& value) {
+    if (value) name(at, *value);
+  }
   void rest(const json& value) {
     for (const auto& [key, member] : value.items()) out_.emplace(key, member);
   }
@@ -90,6 +93,9 @@ class TextWriter {
   void name(const char* name, const std::string& value) {
     key(name);
     out_ += json_quoted(value);
+  }
+  void name(const char* at, const std::optional<std::string>& value) {
+    if (value) name(at, *value);
   }
   void rest(const json& value) {
     for (const auto& [name, member] : value.items()) {
@@ -150,6 +156,7 @@ json plan_to_json(const Plan& plan) {
   items.reserve(plan.items.size());
   for (const Item& item : plan.items) items.push_back(item_to_json(item));
   out["items"] = std::move(items);
+  if (!plan.drawing.is_null()) out["drawing"] = plan.drawing;
   return out;
 }
 
@@ -171,7 +178,9 @@ std::string plan_to_text(const Plan& plan) {
     std::visit([&](const auto& members) { fields(writer, members); }, plan.items[i]);
     out += '}';
   }
-  out += "]}";
+  out += ']';
+  if (!plan.drawing.is_null()) out += ",\"drawing\":" + plan.drawing.dump();
+  out += '}';
   return out;
 }
 

@@ -13,6 +13,7 @@ namespace {
 
 using base::ExecutionState;
 
+constexpr double kSeeks = 3.0;     // times as long without progress, until the heading is known
 constexpr double kThere_m = 0.05;  // nearer than this there is nothing to drive
 constexpr double kThereVaguely_m = 0.3;
 constexpr double kVague_m = 0.1;  // of the position's sigma
@@ -53,6 +54,7 @@ TrackOutput Executor::step(const Vehicle& vehicle, double limit_mps, std::option
   if (doing_ == Doing::Row) return step_row(vehicle, limit_mps, dt_s);
   if (doing_ == Doing::Wall) return step_wall(vehicle, limit_mps, dt_s);
   if (doing_ == Doing::Landmarks) return step_landmarks(vehicle, limit_mps, dt_s);
+  if (doing_ == Doing::Dock) return step_dock(vehicle, limit_mps, dt_s);
   if (doing_ == Doing::Wait || cut_goal(vehicle, dt_s)) return {};
   const TrackOutput out = tracker_.step(moves, limit_mps, dt_s);
   if (doing_ == Doing::Path) pass_nodes(vehicle);
@@ -103,6 +105,8 @@ bool Executor::enter_step(const RouteStep& step, const Vehicle& vehicle,
       return enter_wall(step);
     case StepKind::Landmarks:
       return enter_landmarks(step);
+    case StepKind::Dock:
+      return enter_dock(step);
     case StepKind::Face:
     case StepKind::Turn:
       return enter_turn(step, vehicle);
@@ -397,7 +401,9 @@ void Executor::watch_stuck(const Vehicle& vehicle, double dt_s) {
     stuck_s_ = 0.0;
     stuck_at_ = vehicle;
   } else {
-    stuck_s_ += dt_s;
+    // Who looks for his heading creeps, and believes to stand while he believes in the wrong one.
+    const double known_rad = base::rad_from_deg(path_params_->speed.heading_sigma_deg);
+    stuck_s_ += vehicle.yaw_sigma_rad > known_rad ? dt_s / kSeeks : dt_s;
   }
   std::string text;
   if (stuck_s_ > params_->stuck_s) {

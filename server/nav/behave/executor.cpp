@@ -62,7 +62,8 @@ Executor::Executor(base::Setting<PathParams> path, base::Setting<BehaveParams> b
       tracker_(path),
       row_(path, std::move(rows)),
       wall_(path, marks),
-      landmarks_(path, std::move(marks)) {
+      landmarks_(path, marks),
+      dock_(path, params_, marks.tag_dock) {
   notices_.reserve(16);
 }
 
@@ -96,6 +97,7 @@ void Executor::begin_at(std::size_t step) {
   row_.reset();
   wall_.reset();
   landmarks_.reset();
+  dock_.reset();
   doing_ = Doing::Nothing;
   left_ = looked_s_ = 0.0;
   at_ = step;
@@ -164,6 +166,7 @@ void Executor::wait() noexcept {
   row_.interrupt();
   wall_.interrupt();
   landmarks_.interrupt();
+  dock_.interrupt();
   lost_s_ = stuck_s_ = 0.0;
   interrupted_ = true;
 }
@@ -181,6 +184,7 @@ std::optional<EnuPoint> Executor::place_to_go_on() const noexcept {
     case Doing::Row:
     case Doing::Wall:
     case Doing::Landmarks:
+    case Doing::Dock:
       return std::nullopt;
   }
   return std::nullopt;

@@ -8,10 +8,10 @@
 //                                   stop: any of these ─▶ Aborted ──start─▶ Running
 //
 // An item that cannot be reached is Blocked, or left for the next one, or the robot returns home:
-// BehaveParams::unreachable; a row, a wall or landmarks are always Blocked. interrupt() keeps
-// Running but forgets what the tracker was doing: somebody else drives; go_on() continues at the
-// same place, driving back to it first if the robot was moved. Control thread; allocates only when
-// a new way begins.
+// BehaveParams::unreachable; a row, a wall, landmarks or a dock are always Blocked. interrupt()
+// keeps Running but forgets what the tracker was doing: somebody else drives; go_on() continues at
+// the same place, driving back to it first if the robot was moved. Control thread; allocates only
+// when a new way begins.
 
 #include <cstdint>
 #include <memory>
@@ -29,6 +29,7 @@
 #include "nav/behave/rotate_in_place.hpp"
 #include "nav/behave/route.hpp"
 #include "nav/behave/row_drive.hpp"
+#include "nav/behave/tag_dock.hpp"
 #include "nav/behave/wall_drive.hpp"
 #include "nav/track/tracker.hpp"
 
@@ -171,6 +172,10 @@ class Executor {
   /// it (see_row): no correction of the position bends them.
   bool asks_no_place() const noexcept;
   static constexpr double kAcross_m = 30.0;
+  /// Null: no tag is docked at now.
+  const tags::TagDock* docks() const noexcept {
+    return running() && doing_ == Doing::Dock ? &dock_ : nullptr;
+  }
   /// Null: no row is driven now.
   const RowDrive* row() const noexcept {
     return running() && doing_ == Doing::Row ? &row_ : nullptr;
@@ -196,10 +201,16 @@ class Executor {
   std::optional<double> corridor_m() const noexcept {
     return running() ? route_->corridor_m : std::nullopt;
   }
+  /// What item, bend and vehicle allow where it is on its way; empty: it drives along none.
+  std::optional<double> set_mps() const noexcept {
+    const bool on_way = doing_ == Doing::Path || doing_ == Doing::Connector;
+    return running() && on_way ? tracker_.set_mps() : std::nullopt;
+  }
   TrackPhase phase() const noexcept {
     return doing_ == Doing::Row         ? row_.phase()
            : doing_ == Doing::Wall      ? wall_.phase()
            : doing_ == Doing::Landmarks ? landmarks_.phase()
+           : doing_ == Doing::Dock      ? dock_.phase()
                                         : tracker_.phase();
   }
   /// @param here empty: the position is not known, and neither is a way that begins there.
@@ -209,7 +220,7 @@ class Executor {
   std::vector<Notice>& notices() noexcept { return notices_; }
 
  private:
-  enum class Doing { Nothing, Path, Connector, Wait, Turn, Stay, Row, Wall, Landmarks };
+  enum class Doing { Nothing, Path, Connector, Wait, Turn, Stay, Row, Wall, Landmarks, Dock };
   /// Way and time, jumps not counted.
   struct Left {
     double m = 0.0;
@@ -231,12 +242,16 @@ class Executor {
   bool enter_move(const RouteStep& step, const Vehicle& vehicle);
   bool enter_turn(const RouteStep& step, const Vehicle& vehicle);
   TrackOutput step_turn(const Vehicle& vehicle, double dt_s);
+  std::optional<rows::Pose2> until_in_odometry(EnuPoint place, const Vehicle& vehicle,
+                                               const rows::Pose2& body) const noexcept;
   bool enter_row(const RouteStep& step);
   TrackOutput step_row(const Vehicle& vehicle, double limit_mps, double dt_s);
   bool enter_wall(const RouteStep& step);
   TrackOutput step_wall(const Vehicle& vehicle, double limit_mps, double dt_s);
   bool enter_landmarks(const RouteStep& step);
   TrackOutput step_landmarks(const Vehicle& vehicle, double limit_mps, double dt_s);
+  bool enter_dock(const RouteStep& step);
+  TrackOutput step_dock(const Vehicle& vehicle, double limit_mps, double dt_s);
   void carry(const Vehicle& vehicle) noexcept;
   bool by_odometry() const noexcept;
   std::optional<Vehicle> carried(const Vehicle& vehicle) const noexcept;
@@ -282,6 +297,7 @@ class Executor {
   std::optional<RowSight> row_sight_;
   WallDrive wall_;
   LandmarkDrive landmarks_;
+  tags::TagDock dock_;
   std::optional<MarkSight> mark_sight_;
   std::uint64_t rows_begun_ = 0;
   std::optional<rows::Pose2> carry_;  ///< X_EO: a move or turn is driven by odometry from here

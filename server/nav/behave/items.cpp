@@ -15,7 +15,9 @@ namespace {
 /// Over the few metres between two rows.
 constexpr double kCarriedSigma_m = 0.05;
 constexpr double kCarriedSigma_rad = 0.02;
-constexpr double kMostPassed = 1e6;  // of what a kept place says
+constexpr double kUntilSigma_m = 1.0;     // a vaguer place is not ended beside
+constexpr double kUntilSigma_rad = 0.35;  // likewise
+constexpr double kMostPassed = 1e6;       // of what a kept place says
 
 /// It counts from where the robot is and points.
 bool relative(const RouteStep& step) noexcept {
@@ -140,6 +142,17 @@ std::optional<RowWanted> Executor::row_wanted() const noexcept {
   return RowWanted{rows_begun_, step->row->order};
 }
 
+/// Where a place of the map lies in O now. Empty: the position is too vague to say so; what was
+/// told before is carried on by the odometry.
+std::optional<rows::Pose2> Executor::until_in_odometry(EnuPoint place, const Vehicle& vehicle,
+                                                       const rows::Pose2& body) const noexcept {
+  if (!(vehicle.sigma_m <= kUntilSigma_m) || !(vehicle.yaw_sigma_rad <= kUntilSigma_rad)) {
+    return std::nullopt;
+  }
+  const rows::Pose2 at{vehicle.at.east_m, vehicle.at.north_m, vehicle.yaw_rad};
+  return body * (sense::inverse(at) * rows::Pose2{place.east_m, place.north_m, 0.0});
+}
+
 /// Along what is seen, from where the robot stands. After a restart so much of it is done.
 bool Executor::enter_row(const RouteStep& step) {
   RowDrive::Order order;
@@ -160,6 +173,10 @@ TrackOutput Executor::step_row(const Vehicle& vehicle, double limit_mps, double 
   if (!row_sight_) {
     block("nothing on this robot sees rows");
     return {};
+  }
+  if (const auto& until = step_now()->row->until) {
+    const auto beside = until_in_odometry(*until, vehicle, row_sight_->body);
+    if (beside) row_.end_beside(*beside);
   }
   const TrackOutput out = row_.step(*row_sight_, vehicle, limit_mps, dt_s);
   if (row_.state() == RowDrive::State::Failed) {
@@ -187,6 +204,10 @@ TrackOutput Executor::step_wall(const Vehicle& vehicle, double limit_mps, double
   if (!mark_sight_) {
     block("nothing on this robot sees walls");
     return {};
+  }
+  if (const auto& until = step_now()->wall->until) {
+    const auto beside = until_in_odometry(*until, vehicle, mark_sight_->body);
+    if (beside) wall_.end_beside({beside->x_m, beside->y_m});
   }
   const TrackOutput out = wall_.step(*mark_sight_, vehicle, limit_mps, dt_s);
   if (wall_.state() == WallDrive::State::Failed) {
@@ -239,6 +260,34 @@ TrackOutput Executor::step_landmarks(const Vehicle& vehicle, double limit_mps, d
     stuck_s_ = 0.0;
   } else {
     watch_stuck(nav::by_odometry(*mark_sight_, vehicle), dt_s);
+  }
+  return out;
+}
+
+/// Likewise to a tag; after a restart from where it stands.
+bool Executor::enter_dock(const RouteStep& step) {
+  standing_.reset();
+  tracker_.reset();
+  drove_ = true;
+  doing_ = Doing::Dock;
+  dock_.begin({step.dock->tag, step.dock->stand_off_m},
+              mark_sight_ ? mark_sight_->now : base::Time{});
+  return true;
+}
+
+TrackOutput Executor::step_dock(const Vehicle& vehicle, double limit_mps, double dt_s) {
+  if (!mark_sight_ || mark_sight_->tags == nullptr) {
+    block("no camera on this robot reads tags");
+    return {};
+  }
+  const TrackOutput out = dock_.step({mark_sight_->tags, mark_sight_->now, mark_sight_->body},
+                                     vehicle, limit_mps, dt_s);
+  if (dock_.state() == tags::TagDock::State::Failed) {
+    block("item " + std::to_string(step_now()->item) + ": not docked at tag " +
+          std::to_string(dock_.tag()) + ": " + dock_.reason());
+  } else if (dock_.state() == tags::TagDock::State::Docked) {
+    doing_ = Doing::Nothing;
+    reached(*step_now());
   }
   return out;
 }

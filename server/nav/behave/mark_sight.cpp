@@ -10,10 +10,10 @@ constexpr double kSeenSigma_rad = 0.02;
 
 }  // namespace
 
-Vehicle by_odometry(const MarkSight& sight, const Vehicle& vehicle) noexcept {
+Vehicle by_odometry(const marks::Pose2& body, const Vehicle& vehicle) noexcept {
   Vehicle v = vehicle;
-  v.at = {sight.body.x_m, sight.body.y_m};
-  v.yaw_rad = sight.body.yaw_rad;
+  v.at = {body.x_m, body.y_m};
+  v.yaw_rad = body.yaw_rad;
   v.yaw_sigma_rad = std::min(v.yaw_sigma_rad, kSeenSigma_rad);
   v.slide = {};
   v.crab = 0.0;

@@ -7,6 +7,8 @@
 #include "nav/marks/params.hpp"
 #include "nav/marks/view.hpp"
 #include "nav/marks/ways.hpp"
+#include "nav/tags/params.hpp"
+#include "nav/tags/tag_book.hpp"
 #include "nav/track/tracker.hpp"
 
 namespace roverd::nav {
@@ -37,13 +39,15 @@ struct MarkSettings {
   base::Setting<SightParams> sight{};
   base::Setting<marks::WallParams> walls{};
   base::Setting<marks::LandmarkParams> landmarks{};
+  base::Setting<tags::TagDockParams> tag_dock{};
 };
 
 /// What is known of walls and landmarks at one tick.
 struct MarkSight {
   const marks::View* view = nullptr;  ///< null: nothing was looked at yet
   base::Time now;
-  marks::Pose2 body;  ///< X_OB now
+  marks::Pose2 body;                    ///< X_OB now
+  const tags::TagBook* tags = nullptr;  ///< null: no camera of this robot reads tags
 
   /// @param eyes one of these has looked lately; 0: anyone
   bool fresh(const SightParams& params, marks::Eyes eyes = 0) const noexcept {
@@ -52,7 +56,11 @@ struct MarkSight {
 };
 
 /// The vehicle in O: its place and direction by the odometry, which is sure of what is seen by it.
-Vehicle by_odometry(const MarkSight& sight, const Vehicle& vehicle) noexcept;
+/// @param body X_OB
+Vehicle by_odometry(const marks::Pose2& body, const Vehicle& vehicle) noexcept;
+inline Vehicle by_odometry(const MarkSight& sight, const Vehicle& vehicle) noexcept {
+  return by_odometry(sight.body, vehicle);
+}
 /// Straight on from here, until something is seen.
 marks::Way straight_on(const marks::Pose2& body, double ahead_m, double speed_mps);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "base/angle.hpp"
 #include "nav/behave/executor.hpp"
@@ -139,9 +140,15 @@ Progress Executor::progress(std::optional<EnuPoint> here, double sigma_m) const 
   const bool tracking = (doing_ == Doing::Path && tracker_.path() == &course_->path) ||
                         (doing_ == Doing::Connector && tracker_.path() == &connector_);
   if (running() && tracking) p.cross_track_m = tracker_.cross_track_m();
-  if (running() && doing_ == Doing::Row) p.cross_track_m = row_.cross_track_m();
-  if (running() && doing_ == Doing::Wall) p.cross_track_m = wall_.cross_track_m();
-  if (running() && doing_ == Doing::Landmarks) p.cross_track_m = landmarks_.cross_track_m();
+  // Where it only looks for one, there is no line to be beside of.
+  const auto beside = [&](Doing doing, const auto& drive) {
+    using State = std::decay_t<decltype(drive.state())>;
+    if (running() && doing_ == doing && drive.state() == State::Driving)
+      p.cross_track_m = drive.cross_track_m();
+  };
+  beside(Doing::Row, row_);
+  beside(Doing::Wall, wall_);
+  beside(Doing::Landmarks, landmarks_);
   if (const auto lap = left(*step, here)) {
     const Left more = laps_left();
     const bool waits = doing_ == Doing::Wait || (stays_ && !step->endless);

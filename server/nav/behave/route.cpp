@@ -89,6 +89,12 @@ class Layout {
     return frame_.to_local(at);
   }
 
+  bool until(const mission::Until& said, std::optional<EnuPoint>& out) {
+    if (!said.lat || !said.lon) return true;
+    out = place({*said.lat, *said.lon}, pointer_);
+    return out.has_value();
+  }
+
   void add(const mission::Waypoint& w) {
     const auto at = place(w.at, pointer_);
     if (!at) return;
@@ -170,6 +176,7 @@ class Layout {
     if (r.gap_m) row.order.gap_m = *r.gap_m;
     row.speed_mps = r.speed_mps;
     row.distance_m = r.distance_m;
+    if (!until(r.until, row.until)) return;
     leave_circle();
     forth().steps.push_back({.kind = StepKind::Row, .item = item_, .row = row});
   }
@@ -181,6 +188,7 @@ class Layout {
     wall.distance_m = w.distance_m;
     wall.speed_mps = w.speed_mps;
     wall.length_m = w.length_m;
+    if (!until(w.until, wall.until)) return;
     leave_circle();
     forth().steps.push_back({.kind = StepKind::Wall, .item = item_, .wall = wall});
   }
@@ -201,6 +209,16 @@ class Layout {
     if (l.count.value_or(0) > 0) pass.count = l.count;
     leave_circle();
     forth().steps.push_back({.kind = StepKind::Landmarks, .item = item_, .landmarks = pass});
+  }
+  void add(const mission::Dock& d) {
+    if (params_.tool.pulled()) return refuse("with a trailer no tag is docked at");
+    if (params_.vehicle.steered()) {
+      return refuse("docks at a tag: this vehicle cannot turn on the spot");
+    }
+    not_back_and_forth("a dock");
+    leave_circle();
+    forth().steps.push_back(
+        {.kind = StepKind::Dock, .item = item_, .dock = DockToCome{d.tag, d.stand_off_m}});
   }
   void add(const mission::Action& a) {
     forth().steps.push_back({.kind = StepKind::Act,
@@ -473,6 +491,7 @@ class Layout {
         if (!step.wall->length_m) break;
         return *step.wall->length_m / std::max(0.1, step.wall->speed_mps.value_or(speed_mps_));
       case StepKind::Landmarks:
+      case StepKind::Dock:
       case StepKind::Home:
       case StepKind::Jump:
       case StepKind::Act:

@@ -16,13 +16,28 @@
 namespace roverd::nav {
 
 /// Face, Act and Stay belong to the waypoint before them.
-enum class StepKind { Go, Wait, Home, Jump, Face, Turn, Move, Act, Stay, Row, Wall, Landmarks };
+enum class StepKind {
+  Go,
+  Wait,
+  Home,
+  Jump,
+  Face,
+  Turn,
+  Move,
+  Act,
+  Stay,
+  Row,
+  Wall,
+  Landmarks,
+  Dock
+};
 
 /// A row to drive along by sight.
 struct RowToDrive {
   rows::RowOrder order;
   std::optional<double> speed_mps;   ///< empty: the default of rows
   std::optional<double> distance_m;  ///< empty: to its end
+  std::optional<EnuPoint> until{};   ///< at the latest beside this place
 };
 
 /// A wall to drive along by sight.
@@ -31,6 +46,7 @@ struct WallToDrive {
   double distance_m = 0.9;
   std::optional<double> speed_mps;  ///< empty: the default of what is driven by sight
   std::optional<double> length_m;   ///< empty: to its end
+  std::optional<EnuPoint> until{};  ///< at the latest beside this place
 };
 
 /// Landmarks to drive past by sight.
@@ -40,6 +56,12 @@ struct LandmarksToPass {
   std::string name;                 ///< empty: all
   std::optional<double> speed_mps;  ///< empty: the default of what is driven by sight
   std::optional<int> count;         ///< empty: to the last one that is seen
+};
+
+/// A tag to stand before.
+struct DockToCome {
+  int tag = 0;
+  std::optional<double> stand_off_m;  ///< empty: the default of tag_dock
 };
 
 /// One thing to do. `item` is the number people see (from 1).
@@ -61,10 +83,12 @@ struct RouteStep {
   std::optional<RowToDrive> row{};    ///< Row
   std::optional<WallToDrive> wall{};  ///< Wall
   std::optional<LandmarksToPass> landmarks{};  ///< Landmarks
+  std::optional<DockToCome> dock{};            ///< Dock
 
   /// Along what is seen: where it leads shows on the way.
   bool by_sight() const noexcept {
-    return kind == StepKind::Row || kind == StepKind::Wall || kind == StepKind::Landmarks;
+    return kind == StepKind::Row || kind == StepKind::Wall || kind == StepKind::Landmarks ||
+           kind == StepKind::Dock;
   }
 };
 
@@ -113,13 +137,14 @@ struct Route {
   int items = 0;
 };
 
-/// Checks and lays out a plan. Items of types that this robot cannot do yet, positions farther than
-/// 10 km from the frame's origin, jumps to nowhere, a plan without anything to drive: Invalid,
-/// every such item named in `fields` ("/items/3", from 0 as a JSON pointer counts). `local` items
-/// count from the mission's home, or, if it has none, from the frame's origin. A steered vehicle
-/// comes to a heading on a straight before it, and does not turn on the spot. A circle is a row of
-/// waypoints on it (mission/circle.hpp), of which the last one counts. Pure; linear in the number
-/// of items and the length of circles.
+/// Checks and lays out a plan. What ends beside a known place has its position already
+/// (mission::Until::lat); by its name alone it ends without it. Items of types that this robot
+/// cannot do yet, positions farther than 10 km from the frame's origin, jumps to nowhere, a plan
+/// without anything to drive: Invalid, every such item named in `fields` ("/items/3", from 0 as a
+/// JSON pointer counts). `local` items count from the mission's home, or, if it has none, from the
+/// frame's origin. A steered vehicle comes to a heading on a straight before it, and does not turn
+/// on the spot. A circle is a row of waypoints on it (mission/circle.hpp), of which the last one
+/// counts. Pure; linear in the number of items and the length of circles.
 base::Result<Route> lay_route(const mission::Plan& plan, const base::LocalFrame& frame,
                               const PathParams& params);
 

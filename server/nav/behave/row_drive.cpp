@@ -17,6 +17,7 @@ constexpr double kThere_m = 0.08;  // nearer to the end there is nothing to driv
 constexpr double kOver_m = 0.15;   // a way that leads farther beyond it is cut short
 constexpr double kOnset_s = 0.2;   // until braking has begun
 constexpr double kYawSigma_rad = 0.02;
+constexpr double kBeside_m = 10.0;  // a place that lies farther aside is not passed
 
 }  // namespace
 
@@ -127,7 +128,8 @@ void RowDrive::follow(const RowSight& sight, const rows::Along& at, const Vehicl
   if (order_.distance_m) nearer(at.s_m + std::max(0.0, *order_.distance_m - driven_m_));
   if (order_.place) {
     const rows::Pose2 in_line = sense::inverse(view.line) * *order_.place;
-    nearer(rows::beside_arc(in_line.x_m, in_line.y_m, view.curvature_1pm).s_m);
+    const rows::Along beside = rows::beside_arc(in_line.x_m, in_line.y_m, view.curvature_1pm);
+    if (std::abs(beside.d_m) <= kBeside_m) nearer(beside.s_m);
   }
   left_m_.reset();
   if (last_m) left_m_ = std::max(0.0, *last_m - at.s_m);

@@ -80,6 +80,8 @@ class RowDrive {
   void reset() noexcept;
   /// Somebody else drives; the next step goes on from wherever the robot is then.
   void interrupt() noexcept;
+  /// It ends at the latest beside this place of O, as it is known by now.
+  void end_beside(const rows::Pose2& place) noexcept { order_.place = place; }
 
   /// @param vehicle as everywhere; its place and direction are taken from the sight.
   TrackOutput step(const RowSight& sight, const Vehicle& vehicle, double limit_mps, double dt_s);

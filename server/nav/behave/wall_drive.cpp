@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kSureOfEnd_s = 0.6;  // standing there, it looks on for so long
 constexpr double kDone_m = 0.05;
+constexpr double kPasses_m = 10.0;   // a place that lies farther aside is not passed
 constexpr double kStops_mps = 0.05;  // above the slowest speed: braked
 
 double between_m(EnuPoint a, EnuPoint b) noexcept {
@@ -39,6 +40,31 @@ bool cut(marks::Way& way, double end_m) {
   return false;
 }
 
+/// How far along a way it passes a place. Empty: not within kPasses_m, or not before its end.
+std::optional<double> beside(const marks::Way& way, EnuPoint place) noexcept {
+  double gone_m = 0.0;
+  double least_m = kPasses_m;
+  std::optional<double> out;
+  for (std::size_t i = 1; i < way.vertices.size(); ++i) {
+    const EnuPoint from = way.vertices[i - 1].at;
+    const EnuPoint to = way.vertices[i].at;
+    const double piece_m = between_m(from, to);
+    const double along_m = ((place.east_m - from.east_m) * (to.east_m - from.east_m) +
+                            (place.north_m - from.north_m) * (to.north_m - from.north_m)) /
+                           std::max(1e-9, piece_m);
+    const bool beyond = along_m > piece_m && i + 1 == way.vertices.size();
+    const double part = std::clamp(along_m / std::max(1e-9, piece_m), 0.0, 1.0);
+    const double off_m = between_m(place, {from.east_m + part * (to.east_m - from.east_m),
+                                           from.north_m + part * (to.north_m - from.north_m)});
+    if (off_m <= least_m) {
+      least_m = off_m;
+      out = beyond ? std::nullopt : std::optional(gone_m + part * piece_m);
+    }
+    gone_m += piece_m;
+  }
+  return out;
+}
+
 }  // namespace
 
 WallDrive::WallDrive(base::Setting<PathParams> path, MarkSettings params)
@@ -55,6 +81,7 @@ void WallDrive::reset() noexcept {
   drive_.reset();
   state_ = State::Idle;
   reason_.clear();
+  until_.reset();
   last_.reset();
   laid_.reset();
   driven_m_ = unseen_s_ = stood_s_ = 0.0;
@@ -116,6 +143,11 @@ bool WallDrive::look(const MarkSight& sight) {
   bool to_length = false;
   if (order_.length_m) {
     to_length = cut(*way, way->here_m + std::max(0.0, *order_.length_m - driven_m_));
+  }
+  if (until_) {
+    if (const auto at_m = beside(*way, *until_)) {
+      to_length = cut(*way, std::max(way->here_m, *at_m)) || to_length;
+    }
   }
   const bool drives = drive_.take(*way);
   if (drives) stood_s_ = 0.0;

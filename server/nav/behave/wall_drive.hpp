@@ -37,6 +37,8 @@ class WallDrive {
   void reset() noexcept;
   /// Somebody else drives; the next step goes on from wherever the robot is then.
   void interrupt() noexcept;
+  /// It ends at the latest beside this place of O, as it is known by now.
+  void end_beside(EnuPoint place) noexcept { until_ = place; }
 
   /// @param vehicle as everywhere; its place and direction are taken from the sight.
   TrackOutput step(const MarkSight& sight, const Vehicle& vehicle, double limit_mps, double dt_s);
@@ -62,6 +64,7 @@ class WallDrive {
   State state_ = State::Idle;
   std::string reason_;
   Order order_;
+  std::optional<EnuPoint> until_;     ///< in O
   std::optional<marks::Pose2> last_;  ///< X_OB of the last step
   std::optional<base::Time> laid_;    ///< by the view of this time
   double driven_m_ = 0.0;

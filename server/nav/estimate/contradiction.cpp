@@ -42,11 +42,16 @@ void Estimator::vote(Time now) noexcept {
   if (lean) b.downhill = {-std::tan(lean->pitch_rad), -std::tan(lean->roll_rad)};
   b.downhill_sigma = lean ? 0.0 : kAnyGrade;
   b.yaw_scale = belief_.x(kYawScale);
+  b.positions_proved = proved();
   const auto liar =
       votes_.step(b, params_->contradiction_sigma, params_->contradiction_return_s, now);
   const double since_s = voted_ ? base::seconds(now - *voted_) : 0.0;
   voted_ = now;
-  differed_m_ = std::max(votes_.told().doubt_m, differed_m_ * std::exp(-since_s / kFades_s));
+  // What nothing has proved yet errs as it erred: quiet alone makes no lie a truth.
+  const double stays =
+      proved() || fused_type_ != base::FixType::RtkFixed ? std::exp(-since_s / kFades_s) : 1.0;
+  differed_m_ = std::max(votes_.told().doubt_m, differed_m_ * stays);
+  if (votes_.told().unproved_differed == now) proving_s_ = 0.0;  // it was no proof
   if (liar) spoil(*liar);
 }
 

@@ -171,6 +171,7 @@ std::optional<base::Pose> Estimator::pose(Time now) const {
   const bool odometry = has_odometry(now);
   const bool gnss = last_fused_ && !placed_ && now - *last_fused_ < kGnssGone;
   const bool map = gnss && health_.by_map;
+  const bool landmark = gnss && !map && last_by_landmark_ && now - *last_by_landmark_ < kGnssGone;
   const bool velocity = velocity_ && now - velocity_->stamp < kGnssGone;
   // Carried on from something fresh it is of now; from nothing it grows old.
   const auto velocity_at = velocity_ ? std::optional(velocity_->stamp) : std::nullopt;
@@ -217,7 +218,10 @@ std::optional<base::Pose> Estimator::pose(Time now) const {
   }
   p.alt_msl_m = alt_msl_m_;
   if (odometry) {
-    p.source = map ? "map+odometry" : gnss ? "gnss+odometry" : "odometry";
+    p.source = map        ? "map+odometry"
+               : landmark ? "landmark+odometry"
+               : gnss     ? "gnss+odometry"
+                          : "odometry";
   } else {
     p.source = map ? "map" : "gnss";
   }

@@ -19,6 +19,10 @@
 //            off. When the lead changes, the estimate moves to the new one at 0.1 m/s at most.
 //            A map that is refused for 1 s while no satellites speak is believed (a counted reset)
 //
+// Landmark:  things whose place is known (nav/estimate/landmark.hpp) correct the estimate while
+//            neither fixed satellites nor a map lead, by 0.1 m/s at most; no number of looks makes
+//            it surer than the place of one is known
+//
 // Standing (tracks still for 0.5 s, and the gyro too) the yaw is held, the gyro's bias learned, and
 // the position held unless the fix is RTK fixed: noise would make them wander. Refused and counted
 // by cause: values that are not finite, stamps that are doubled, out of order or in the future,
@@ -45,6 +49,7 @@
 #include "nav/estimate/gnss_quality.hpp"
 #include "nav/estimate/gyro.hpp"
 #include "nav/estimate/history.hpp"
+#include "nav/estimate/landmark.hpp"
 #include "nav/estimate/learned.hpp"
 #include "nav/estimate/map_offset.hpp"
 #include "nav/estimate/noise_watch.hpp"
@@ -53,6 +58,7 @@
 #include "nav/estimate/shift_watch.hpp"
 #include "nav/estimate/slip_watch.hpp"
 #include "nav/estimate/tilt.hpp"
+#include "nav/estimate/wander_watch.hpp"
 #include "nav/vote/votes.hpp"
 
 namespace roverd::nav {
@@ -93,6 +99,14 @@ class Estimator {
   /// accordingly until the fix class changes (for 2 s). Needs a pose. Counted as a reset.
   void anchor(base::EnuPoint at, std::optional<int> item) noexcept;
   void drop_anchor() noexcept;
+  /// How what was seen of a known place compares with what is believed. Empty: nothing is believed
+  /// yet, or it was seen too long ago (1 s), or is not finite.
+  std::optional<LandmarkLook> compare(const LandmarkSight& sight, Time now) const noexcept;
+  /// Corrects the estimate by it. @return false: it does not fit (kLandmarkGate2), cannot be
+  /// compared, or nobody needs it; nothing changed.
+  bool correct(const LandmarkSight& sight, Time now) noexcept;
+  /// Fixed satellites or a map lead: known places are compared only.
+  bool needs_no_landmark() const noexcept;
   /// Are positions that moved for good a question to a person (health().base_shift), or simply the
   /// new ones? A robot that nobody drives may be carried.
   void ask_about_shifts(bool ask) noexcept { asks_about_shifts_ = ask; }
@@ -133,6 +147,8 @@ class Estimator {
   bool standing() const noexcept { return standing_; }
   /// The yaw rate comes from a gyro.
   bool gyro() const noexcept { return gyro_used_; }
+  /// So long, at most, until it is known whether the receiver's positions wander.
+  double wander_unknown_s() const noexcept { return wander_watch_.unknown_s(); }
   /// Stamp of the last position that was fused, or told by the operator.
   std::optional<Time> last_position() const noexcept { return last_fused_; }
   double yaw_scale() const noexcept { return belief_.x(kYawScale); }
@@ -210,6 +226,7 @@ class Estimator {
   void fuse_position(const base::GnssFix& fix, const GnssQuality& q) noexcept;
   void approach(Observation<2>& o) noexcept;
   base::GnssFix worth(const base::GnssFix& told) noexcept;
+  void widen(GnssQuality& q) noexcept;
   bool shifted(const base::GnssFix& fix, const GnssQuality& q) noexcept;
   double suspected_m(const GnssQuality& q) const noexcept;
   double suspected_course() const noexcept;
@@ -244,6 +261,11 @@ class Estimator {
   bool beside_the_map(const base::GnssFix& fix, const GnssQuality& q) noexcept;
   bool learn_beside_the_map(base::EnuPoint off, const base::GnssFix& fix,
                             const GnssQuality& q) noexcept;
+
+  // landmark.cpp
+  Observation<2> place_of(const LandmarkSight& s, const StateVector& at) const noexcept;
+  void turn_by(const LandmarkSight& s, const StateVector& at, double together) noexcept;
+  void lead_after_landmarks(const base::GnssFix& fix, const GnssQuality& q) noexcept;
 
   // velocity.cpp
   void fuse_velocity(const base::GnssVelocity& velocity, double sigma_mps) noexcept;
@@ -284,6 +306,7 @@ class Estimator {
   AskewWatch askew_watch_;
   double askew_way_m_ = 0.0;  ///< counted_m_ when it was last asked
   bool asks_about_shifts_ = false;
+  bool vague_ = true;       ///< the place was, when the fixed solution began
   double doubted_m_ = 0.0;  ///< what of the position's sigma is doubt since its source was left out
   double distrust_m_ = 0.0;
   double distrust_rad_ = 0.0;
@@ -331,6 +354,8 @@ class Estimator {
   std::optional<Time> antennas_off_since_, far_off_since_, anchor_off_since_;
   FixTrust fix_trust_;
   NoiseWatch noise_watch_;
+  WanderWatch wander_watch_;
+  bool wandered_ = false;  ///< positions do, and the belief knows it
   base::FixType fused_type_ = base::FixType::None;
   base::FixType anchor_type_ = base::FixType::None;
   Time approach_until_{};
@@ -356,6 +381,10 @@ class Estimator {
   MapOffset map_offset_;            ///< of health().map_offset
   double map_yaw_sigma_rad_ = 0.0;  ///< of the map's own heading on the earth
   bool map_lost_ = false;
+  std::optional<Time> last_by_landmark_;  ///< when one was fused
+  std::optional<Time> by_landmark_at_;    ///< when one was to be
+  bool landmarks_led_ = false;            ///< since a fixed position was fused
+  double landmark_room_s_ = 0.0;          ///< of the speed at which they may move the estimate
   std::optional<double> alt_msl_m_;
   Drift drift_{};
 

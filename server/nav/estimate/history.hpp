@@ -20,9 +20,14 @@ struct Past {
 };
 
 /// A ring of 192 states, about 3.8 s at 50 Hz. Oldest goes first. No allocation.
+/// What is kept lies below the sum of all corrections, so that one costs the same however long the
+/// past is: three of them in a tick that hears a receiver were half of its time.
 class History {
  public:
-  void clear() noexcept { size_ = 0; }
+  void clear() noexcept {
+    size_ = 0;
+    shifted_.setZero();
+  }
   bool empty() const noexcept { return size_ == 0; }
   /// It was kept once and is not any more.
   bool forgotten(base::Time t) const noexcept {
@@ -32,6 +37,7 @@ class History {
   void push(const Past& past) noexcept {
     head_ = (head_ + 1) % ring_.size();
     ring_[head_] = past;
+    ring_[head_].x -= shifted_;
     if (size_ < ring_.size()) ++size_;
   }
 
@@ -39,27 +45,28 @@ class History {
   std::optional<Past> at(base::Time t) const noexcept {
     if (size_ == 0) return std::nullopt;
     const Past* later = &entry(0);
-    if (t >= later->stamp) return *later;
+    if (t >= later->stamp) return corrected(*later);
     for (std::size_t i = 1; i < size_; ++i) {
       const Past& earlier = entry(i);
-      if (earlier.stamp <= t) return between(earlier, *later, t);
+      if (earlier.stamp <= t) return between(corrected(earlier), corrected(*later), t);
       later = &earlier;
     }
-    return *later;
+    return corrected(*later);
   }
 
   /// A correction of the present is one of the recent past as well.
-  void shift(const StateVector& change) noexcept {
-    for (std::size_t i = 0; i < size_; ++i) {
-      Past& past = ring_[(head_ + ring_.size() - i) % ring_.size()];
-      past.x += change;
-      past.x(kYaw) = base::wrap_rad(past.x(kYaw));
-    }
-  }
+  void shift(const StateVector& change) noexcept { shifted_ += change; }
 
  private:
   const Past& entry(std::size_t back) const noexcept {
     return ring_[(head_ + ring_.size() - back) % ring_.size()];
+  }
+
+  Past corrected(const Past& kept) const noexcept {
+    Past p = kept;
+    p.x += shifted_;
+    p.x(kYaw) = base::wrap_rad(p.x(kYaw));
+    return p;
   }
 
   static Past between(const Past& a, const Past& b, base::Time t) noexcept {
@@ -77,6 +84,7 @@ class History {
   std::array<Past, 192> ring_{};
   std::size_t head_ = 0;
   std::size_t size_ = 0;
+  StateVector shifted_ = StateVector::Zero();  ///< sum of all corrections
 };
 
 }  // namespace roverd::nav

@@ -33,8 +33,13 @@ constexpr double kSuspect_m = 0.3;
 constexpr double kSuspectOff = 0.3;
 constexpr double kSuspectOffAll = 0.5;
 
+constexpr double kVague_m = 0.2;    // so uncertain, nothing shows a new fixed solution to be wrong
 constexpr double kFixed_m = 0.02;   // 1 sigma of what scatters in an honest fixed solution
 constexpr double kShaken_m = 0.35;  // of a fixed solution that comes and goes
+// Positions that wander (WanderWatch): the time constant of reflections, and for so long, at most,
+// nobody saw it.
+constexpr double kWandersFor_s = 20.0;
+constexpr double kUnseen_s = 5.0;
 
 /// A fixed solution that comes and goes, or scatters, as what it is worth: a float one.
 base::GnssFix as_float(base::GnssFix fix) noexcept {
@@ -76,9 +81,12 @@ Estimator::Arm Estimator::arm(double yaw_rad) const noexcept {
 void Estimator::take(const base::GnssFix& told) {
   Input& in = health_.position;
   if (!in_order(in, last_fix_, told.stamp)) return;
+  if (told.fix == base::FixType::RtkFixed && fix_trust_.fix() != told.fix) {
+    vague_ = !located_ || claimed_m(belief_) > kVague_m;
+  }
   fix_trust_.take(told.fix, told.stamp);
   const base::GnssFix fix = worth(told);
-  const auto quality = gnss_quality(
+  auto quality = gnss_quality(
       fix, fix_trust_.settled(),
       {params_->satellites_min, params_->hdop_max, params_->accuracy_max_m, params_->drift_scale});
   if (!quality) {
@@ -90,6 +98,7 @@ void Estimator::take(const base::GnssFix& told) {
   if (receivers_.disagree()) return refuse(in, Refusal::Receivers);
   if (history_.forgotten(taken_at(fix))) return refuse(in, Refusal::Stamp);
   if (frame_) {
+    wander_watch_.position(frame_->to_local(*fix.position), taken_at(fix));
     votes_.position({.t = taken_at(fix),
                      .at = frame_->to_local(*fix.position),
                      .sigma_m = std::max(quality->sigma_east_m, quality->sigma_north_m),
@@ -97,6 +106,8 @@ void Estimator::take(const base::GnssFix& told) {
                      .drift_s = quality->drift.tau_s},
                     static_cast<int>(fix.fix), fix.stamp);
   }
+  // Only now: by what it claims it is judged, by what it is worth it is believed.
+  if (fix.fix != base::FixType::RtkFixed && fix.fix != base::FixType::Single) widen(*quality);
   const auto late_s = arrival_.late_s(fix.stamp, fix.utc);
   if (!late_s) return refuse(in, Refusal::Stamp);
   late_s_ = *late_s;
@@ -110,6 +121,7 @@ void Estimator::take(const base::GnssFix& told) {
   }
   if (beside_the_map(fix, *quality)) return;
   change_class(fix, *quality);
+  lead_after_landmarks(fix, *quality);
   fuse_position(fix, *quality);
 }
 
@@ -124,8 +136,31 @@ base::GnssFix Estimator::worth(const base::GnssFix& told) noexcept {
     noise_watch_.take(local(told) - at, std::max(kFixed_m, told.sigma_east_m.value_or(kFixed_m)),
                       told.stamp);
   }
-  const bool less = fix_trust_.shaken() || noise_watch_.noisy();
+  const bool fresh = vague_ && !fix_trust_.settled();
+  const bool less = fresh || fix_trust_.shaken() || noise_watch_.noisy() || wander_watch_.wanders();
   return less ? as_float(told) : told;
+}
+
+/// What wanders faster than its claim allows is worth what it wanders; and so is a place that was
+/// made of it before that was seen.
+void Estimator::widen(GnssQuality& q) noexcept {
+  const double rate_m2ps = wander_watch_.wanders() ? wander_watch_.rate_m2ps() : 0.0;
+  const double sigma_m = std::sqrt(0.5 * kWandersFor_s * rate_m2ps);
+  if (sigma_m <= q.drift.sigma_m) {
+    if (rate_m2ps == 0.0) wandered_ = false;
+    return;
+  }
+  q.drift = {sigma_m, kWandersFor_s};
+  if (wandered_ || !located_) return;
+  wandered_ = true;
+  // The error that came into the place is the drift's own, and no second word against it.
+  const double whole_m2 = sigma_m * sigma_m;
+  const double in_it_m2 = proved() ? std::min(whole_m2, kUnseen_s * rate_m2ps) : whole_m2;
+  for (const auto& [place, drift] : {std::pair{kEast, kDriftE}, std::pair{kNorth, kDriftN}}) {
+    reset_state(belief_, drift, belief_.x(drift), sigma_m);
+    belief_.P(place, place) += in_it_m2;
+    belief_.P(place, drift) = belief_.P(drift, place) = -in_it_m2;
+  }
 }
 
 /// @return true: the positions moved for good, and a person is asked which ones count.
@@ -172,6 +207,8 @@ void Estimator::change_class(const base::GnssFix& fix, const GnssQuality& q) noe
     approach_until_ = fix.stamp + kApproach;
   }
   fused_type_ = fix.fix;
+  // Reflections move every class alike: another word for them is no second one.
+  if (wandered_ && fix.fix != base::FixType::RtkFixed) return;
   for (const StateIndex i : {kDriftE, kDriftN}) reset_state(belief_, i, 0.0, q.drift.sigma_m);
 }
 

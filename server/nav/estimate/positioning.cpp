@@ -179,6 +179,7 @@ base::EstimatorHealth Estimator::health() const noexcept {
   h.receivers_disagree = receivers_.disagree();
   h.free_m = free_m_;
   h.placed = placed_;
+  h.by_landmark = landmarks_led_ && !health_.by_map;
   h.votes = votes_.told();
   return h;
 }

@@ -35,8 +35,10 @@ void Estimator::take(const base::GnssVelocity& velocity) {
   if (receivers_.disagree()) return refuse(in, Refusal::Receivers);
   if (history_.forgotten(taken_at(velocity))) return refuse(in, Refusal::Stamp);
   double sigma_mps = velocity_sigma_mps(fix_trust_.fix(), velocity.sigma_mps);
+  const double slower_than_mps = speed > 0.0 ? 0.0 : velocity.sigma_mps.value_or(0.0);
   votes_.velocity({velocity.east_mps, velocity.north_mps}, sigma_mps, taken_at(velocity),
-                  velocity.stamp);
+                  velocity.stamp, slower_than_mps);
+  wander_watch_.velocity({velocity.east_mps, velocity.north_mps}, taken_at(velocity));
   if (outvoted(base::Sense::Velocity, in)) return;
   velocity_ = velocity;
   sigma_mps = std::hypot(sigma_mps, kSuspect_mps * suspected_course());

@@ -87,13 +87,14 @@ class Canvas {
 }  // namespace
 
 base::Result<chart::OccupancyMap> drawn(std::span<const chart::Scan* const> scans,
-                                        std::span<const Pose2> poses, double resolution_m,
-                                        double farthest_m) {
+                                        std::span<const Pose2> poses, const DrawParams& how) {
+  const bool watched = static_cast<bool>(how.give_up);
   Eigen::AlignedBox2d box;
   const auto each = [&](auto&& use) {
     for (std::size_t i = 0; i < std::min(scans.size(), poses.size()); ++i) {
+      if (watched && how.give_up()) return;
       for (const chart::Beam& beam : scans[i]->beams) {
-        use(ray_of(*scans[i], beam, poses[i], farthest_m));
+        use(ray_of(*scans[i], beam, poses[i], how.farthest_m));
       }
     }
   };
@@ -101,11 +102,17 @@ base::Result<chart::OccupancyMap> drawn(std::span<const chart::Scan* const> scan
     box.extend(ray.from);
     box.extend(ray.to);
   });
+  const auto given_up = [] {
+    return base::fail(base::Code::Unavailable, "the map was given up while it was drawn");
+  };
+  if (watched && how.give_up()) return given_up();
   if (box.isEmpty() || !box.min().allFinite() || !box.max().allFinite()) {
     return base::fail(base::Code::Invalid, "nothing was seen of which a map could be drawn");
   }
   const Eigen::Vector2d size =
-      ((box.sizes() + Eigen::Vector2d::Constant(2.0 * kMargin_m)) / resolution_m).array().ceil();
+      ((box.sizes() + Eigen::Vector2d::Constant(2.0 * kMargin_m)) / how.resolution_m)
+          .array()
+          .ceil();
   constexpr double kMostSide = 1e6;
   if (!(size.maxCoeff() < kMostSide)) {
     return base::fail(base::Code::TooLarge, "what was seen is larger than a map may be");
@@ -113,12 +120,13 @@ base::Result<chart::OccupancyMap> drawn(std::span<const chart::Scan* const> scan
   chart::MapShape shape;
   shape.columns = static_cast<std::int32_t>(size.x());
   shape.rows = static_cast<std::int32_t>(size.y());
-  shape.resolution_m = resolution_m;
+  shape.resolution_m = how.resolution_m;
   shape.origin = {box.min().x() - kMargin_m, box.min().y() - kMargin_m, 0.0};
   auto map = chart::OccupancyMap::make(shape);
   if (!map) return map;
   Canvas canvas(*map);
   each([&](const Ray& ray) { canvas.add(ray); });
+  if (watched && how.give_up()) return given_up();
   canvas.finish();
   return map;
 }

@@ -93,7 +93,7 @@ base::Result<void> Mapper::add(const chart::Scan& scan, const Pose2& odometry) {
     return {};
   }
   add_node(scan, fit.pose, fit);
-  if (p_.loops && nodes_.size() >= looked_ + kTogether) close_loops();
+  if (p_.loops && nodes_.size() >= looked_ + kTogether) close_loops(nullptr);
   return {};
 }
 
@@ -126,9 +126,10 @@ Field Mapper::field_around(std::size_t node) const {
   return Field(thinned(all, 0.5 * Field::kCell_m));
 }
 
-void Mapper::close_loops() {
+void Mapper::close_loops(const GiveUp& give_up) {
   const std::size_t until = nodes_.size();
   for (std::size_t node = looked_ + kTogether / 2; node < until; node += kTogether / 2) {
+    if (give_up && give_up()) return;
     std::vector<std::pair<double, std::size_t>> near;
     for (std::size_t i = 0; i < node; ++i) {
       if (nodes_[node].way_m - nodes_[i].way_m < p_.loop_way_m) break;
@@ -185,8 +186,8 @@ void Mapper::settle() {
   refresh_local();
 }
 
-void Mapper::finish() {
-  if (p_.loops && !nodes_.empty()) close_loops();
+void Mapper::finish(const GiveUp& give_up) {
+  if (p_.loops && !nodes_.empty()) close_loops(give_up);
 }
 
 Pose2 Mapper::pose() const {
@@ -207,10 +208,10 @@ Mapper::Counts Mapper::counts() const {
   return {path_.size(), nodes_.size(), unfit_, static_cast<std::size_t>(loops), dropped_};
 }
 
-base::Result<chart::OccupancyMap> Mapper::draw(double resolution_m, double farthest_m) const {
+base::Result<chart::OccupancyMap> Mapper::draw(const DrawParams& how) const {
   std::vector<const chart::Scan*> scans;
   for (const Node& node : nodes_) scans.push_back(&node.scan);
-  return drawn(scans, poses_, resolution_m, farthest_m);
+  return drawn(scans, poses_, how);
 }
 
 }  // namespace roverd::nav::mapping

@@ -10,6 +10,7 @@
 // takes a millisecond or two, one that closes loops up to some hundred: not for the control thread.
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -42,6 +43,15 @@ struct MapperParams {
   double loop_strain = 6.0;  ///< deviations from all others beyond which a loop is dropped
 };
 
+/// Asked now and then by what takes seconds: true, and it ends soon, unfinished. Empty: never.
+using GiveUp = std::function<bool()>;
+
+struct DrawParams {
+  double resolution_m = 0.05;
+  double farthest_m = 25.0;  ///< beams are cut there
+  GiveUp give_up{};
+};
+
 class Mapper {
  public:
   /// More are refused: half a gigabyte, some 6 km.
@@ -53,8 +63,8 @@ class Mapper {
   /// @param odometry X_OB when the scan was taken; drifts, and never jumps.
   /// @return TooLarge: full, what is there stays; Invalid: a number is not finite
   base::Result<void> add(const chart::Scan& scan, const Pose2& odometry);
-  /// No more will come: the last loops.
-  void finish();
+  /// No more will come: the last loops. @param give_up becomes true: no further one is looked for
+  void finish(const GiveUp& give_up = {});
 
   /// X_MB of the last scan; of every scan, in order. Those before change when a loop is closed.
   Pose2 pose() const;
@@ -69,9 +79,8 @@ class Mapper {
   };
   Counts counts() const;
 
-  /// What was seen, drawn from the nodes' scans. @param farthest_m beams are cut there
-  base::Result<chart::OccupancyMap> draw(double resolution_m = 0.05,
-                                         double farthest_m = 25.0) const;
+  /// What was seen, drawn from the nodes' scans. Errors as drawn().
+  base::Result<chart::OccupancyMap> draw(const DrawParams& how = {}) const;
 
  private:
   struct Node {
@@ -87,7 +96,7 @@ class Mapper {
   void add_node(const chart::Scan& scan, const Pose2& pose, const Fit& fit);
   void refresh_local();
   Field field_around(std::size_t node) const;
-  void close_loops();
+  void close_loops(const GiveUp& give_up);
   void try_loop(std::size_t node, std::size_t place);
   void settle();
 
@@ -106,9 +115,8 @@ class Mapper {
 };
 
 /// Scans at known poses as a map: occupied where most beams that reach a cell end in it.
-/// @return Invalid: no beam; TooLarge: the place is larger than a map may be
+/// @return Invalid: no beam; TooLarge: the place is larger than a map may be; Unavailable: given up
 base::Result<chart::OccupancyMap> drawn(std::span<const chart::Scan* const> scans,
-                                        std::span<const Pose2> poses, double resolution_m,
-                                        double farthest_m);
+                                        std::span<const Pose2> poses, const DrawParams& how);
 
 }  // namespace roverd::nav::mapping

@@ -140,13 +140,22 @@ base::PlaceFix Whereabouts::fix_of(const Fix& fix, std::uint32_t found) const {
   return out;
 }
 
+std::size_t Whereabouts::rank_of(const std::string& sensor) const noexcept {
+  const auto at = std::find(p_.eyes.begin(), p_.eyes.end(), sensor);
+  return static_cast<std::size_t>(at - p_.eyes.begin());
+}
+
+bool Whereabouts::looks_through(const std::string& sensor, base::Time end) const noexcept {
+  if (sensor == eye_) return !taken_ || base::seconds(end - *taken_) >= kEvery_s;
+  return !eye_seen_ || rank_of(sensor) < rank_of(eye_) ||
+         base::seconds(end - *eye_seen_) >= kOtherEyeAfter_s;
+}
+
 std::optional<base::PlaceState> Whereabouts::see(const base::Sight& sight, const base::Mount& mount,
                                                  const std::optional<Believed>& believed) {
   if (!tracker_) return std::nullopt;
   const base::Time end = end_of_scan(sight);
-  const bool other = sight.sensor != eye_;
-  if (other && eye_seen_ && base::seconds(end - *eye_seen_) < kOtherEyeAfter_s) return std::nullopt;
-  if (!other && taken_ && base::seconds(end - *taken_) < kEvery_s) return std::nullopt;
+  if (!looks_through(sight.sensor, end)) return std::nullopt;
   const auto scan = chart::scan_of(sight, mount, history_, p_.scan);
   if (!scan) return std::nullopt;
   const auto odometry = history_.at(scan->stamp);

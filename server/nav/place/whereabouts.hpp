@@ -19,6 +19,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/geo.hpp"
 #include "base/measurements.hpp"
@@ -65,6 +66,8 @@ struct WhereaboutsParams {
   TrackerParams tracker;
   chart::ScanParams scan;
   std::optional<base::LatLon> local_origin;  ///< of the local map
+  /// Names of sensors, the best to look through first; others come behind them.
+  std::vector<std::string> eyes;
 };
 
 class Whereabouts {
@@ -95,6 +98,8 @@ class Whereabouts {
   void moved(const sense::Odometry& o) noexcept { (void)history_.push(o); }
   /// @return false: no map is in use, or nobody knows where it lies
   bool told(const Word& word);
+  /// One sensor is looked through: the best of WhereaboutsParams::eyes that is heard. Where it has
+  /// told nothing for a second, the next one.
   /// @return empty: no map is in use, it came too soon after the last one, another sensor is
   /// looked through, or nothing can be made of it.
   std::optional<base::PlaceState> see(const base::Sight& sight, const base::Mount& mount,
@@ -104,6 +109,8 @@ class Whereabouts {
   void start_by_satellites(const Believed& b, base::Time stamp);
   void lay(const Pose2& in_map, base::Time stamp, const std::optional<Believed>& believed);
   Pose2 on_map(base::LatLon at, double yaw_rad) const;
+  std::size_t rank_of(const std::string& sensor) const noexcept;
+  bool looks_through(const std::string& sensor, base::Time end) const noexcept;
   void stay_at(const Pose2& in_map, const Pose2& odometry);
   base::PlaceFix fix_of(const Fix& fix, std::uint32_t found) const;
 

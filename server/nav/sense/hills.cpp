@@ -15,6 +15,8 @@ constexpr float kNoGroundBefore = std::numeric_limits<float>::infinity();
 constexpr std::size_t kNowhereOut = std::numeric_limits<std::size_t>::max();
 // A face and what its noise throws behind it are nearer to each other.
 constexpr std::size_t kBehind = 3;
+// Whatever the settings say of the grass.
+constexpr double kMostOver_m = 0.15;
 
 std::int32_t hill_cell(double m) noexcept {
   return static_cast<std::int32_t>(std::floor(m / Hills::kCell_m));
@@ -56,7 +58,7 @@ class Lies {
 }  // namespace
 
 Hills::Hills(double range_m, double low_m)
-    : low_m_(static_cast<float>(std::min(low_m, kMostLow_m))),
+    : low_m_(static_cast<float>(std::min(low_m, kMostOver_m))),
       steps_(static_cast<std::size_t>(std::ceil(range_m / static_cast<double>(kStep_m))) + 1),
       lowest_(kDirections * steps_),
       highest_(kDirections * steps_) {

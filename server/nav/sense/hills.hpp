@@ -44,9 +44,9 @@ class Hills {
   /// Farther from where the odometry began nothing is ground.
   static constexpr double kFarthest_m = 1e7;
 
-  /// @param range_m what lies farther from the body is not asked. @param low_m what is lower over
-  /// the ground is no obstacle; kMostLow_m at most: what is hidden in tall grass a plane still
-  /// tells
+  /// @param range_m what lies farther from the body is not asked. @param low_m what a plane meets
+  /// so high over the lowest ground is grass; 0.15 m at most: what is hidden in taller grass a
+  /// plane still tells
   Hills(double range_m, double low_m);
 
   /// Of a piece whose ground was judged.

@@ -23,8 +23,8 @@
 
 #include "base/result.hpp"
 #include "base/sight.hpp"
-#include "nav/sense/odometry.hpp"
 #include "nav/tags/params.hpp"
+#include "nav/tags/tag_place.hpp"
 
 namespace roverd::nav::tags {
 
@@ -74,16 +74,6 @@ class Finder {
   std::unique_ptr<Impl> impl_;
 };
 
-/// A tag on the ground plan: X_BT, its yaw the direction in which somebody looks who faces it. 1σ
-/// along the line of sight and across it.
-struct TagPlace {
-  int id = 0;
-  sense::Pose2 pose;
-  double sigma_range_m = 0.0;
-  double sigma_across_m = 0.0;
-  double sigma_yaw_rad = 0.0;
-  bool yaw_known = false;  ///< its doubt is small enough
-};
 /// @param mount of the camera on the body.
 TagPlace on_body(const Tag& tag, const base::Mount& mount, const TagParams& params) noexcept;
 

@@ -2,6 +2,7 @@
 // What is taken for a tag, and how a vehicle docks at one. Sections [nav.tags] and [nav.tag_dock].
 
 #include "base/params.hpp"
+#include "base/result.hpp"
 
 namespace roverd::nav::tags {
 
@@ -30,7 +31,7 @@ void fields(V& v, TagParams& p) {
 }
 
 struct TagDockParams {
-  double stand_off_m = 0.5;
+  double stand_off_m = 0.8;
   double gate_m = 1.2;
   double straight_m = 0.3;
   double way_mps = 0.4;
@@ -54,6 +55,13 @@ void fields(V& v, TagDockParams& p) {
   v("within_deg", p.within_deg, 0.2, 20.0, "and points there this well");
   v("look_s", p.look_s, 0.1, 10.0, "standing on the line it looks so long before it goes on");
   v("lost_s", p.lost_s, 0.5, 60.0, "without the tag for so long, farther than straight_m: failed");
+}
+
+/// Invalid; the field is the parameter's name.
+inline base::Result<void> check(const TagDockParams& p) {
+  if (p.gate_m > p.straight_m) return {};
+  return base::fail(base::Code::Invalid, "gate_m must be more than straight_m",
+                    {{"gate_m", "must be more than straight_m"}});
 }
 
 }  // namespace roverd::nav::tags

@@ -133,7 +133,7 @@ void fields(V& v, TrackParams& p) {
     "the same for waypoints with turn \"through\" that give no radius");
   v("smooth_m", p.smooth_m, 0.0, 2.0,
     "dense points (up to 2 m apart) are driven as one smooth way, so far beside them at most; 1.4 "
-    "times beside one of many that noise threw out; 0: each of them is met");
+    "times beside one or two of many that noise threw out; 0: each of them is met");
   v("arrive_m", p.arrive_m, 0.01, 1.0, "a stop counts as reached this close, along the path");
   v("rejoin_m", p.rejoin_m, 0.1, 10.0,
     "farther than this from the place where a mission goes on, the robot first drives there");

@@ -23,6 +23,7 @@ constexpr double kComfortable_1pm = 1.0 / 0.6;
 constexpr double kGiveUp_m = 0.7;  // about a place that cannot be kept within the tolerance
 constexpr double kMoveCorner = 0.8;
 constexpr double kRoomBeside_m = 0.015;
+constexpr double kNoiseTurns_rad = 0.25;  // 1 sigma: a turn seen by so short legs is none
 
 EnuPoint towards(EnuPoint from, EnuPoint to, double by_m) noexcept {
   const double part = by_m / base::distance_m(from, to);
@@ -125,17 +126,25 @@ class Smoother {
     }
   }
 
-  /// Turns that are sharp whatever the noise: seen from a little way before and behind.
+  /// Turns that are sharp whatever the noise: seen from a little way before and behind. Where an
+  /// end leaves so little way that noise alone turns it, it says nothing.
   void find_corners(const Piece& piece) {
     std::vector<EnuPoint> at;
     for (std::size_t k = piece.first; k <= piece.last; ++k) at.push_back(v_[k].at);
     const Chain chain = chain_of(std::move(at));
+    const double noise = noise_m(chain);
     const auto turn_at = [&](std::size_t i) {
       const EnuPoint a = chain.place(chain.u[i] - corner_reach_m_);
       const EnuPoint b = chain.place(chain.u[i] + corner_reach_m_);
-      if (base::distance_m(a, chain.at[i]) < 0.01 || base::distance_m(b, chain.at[i]) < 0.01) {
-        return 0.0;
-      }
+      const double before_m = base::distance_m(a, chain.at[i]);
+      const double behind_m = base::distance_m(b, chain.at[i]);
+      if (before_m < 0.01 || behind_m < 0.01) return 0.0;
+      // All three points have it, the middle one turns both legs.
+      const double turned_rad =
+          noise * std::hypot(1.0 / before_m, 1.0 / behind_m, 1.0 / before_m + 1.0 / behind_m);
+      const bool cut =
+          chain.u[i] < corner_reach_m_ || chain.u[i] + corner_reach_m_ > chain.u.back();
+      if (cut && turned_rad > kNoiseTurns_rad) return 0.0;
       return std::abs(
           base::angle_diff_rad(direction_rad(a, chain.at[i]), direction_rad(chain.at[i], b)));
     };

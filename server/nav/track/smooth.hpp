@@ -6,7 +6,7 @@
 // A piece ends at a stop, an item that asks for its turn, a change of direction, a long leg (into
 // which it leads tangentially) and a corner: a turn that no bend within the tolerance and drivable
 // with some speed makes. What could not be kept within the tolerance stays as it was given.
-// Beside a single one of many points (0.15 m apart or less) that noise threw out, while both its
+// Beside one or two of many points (0.15 m apart or less) that noise threw out, while their
 // neighbours keep to it, the tolerance is 1.4 times as large (FitLimits).
 // Pure. A second for 100,000 vertices.
 

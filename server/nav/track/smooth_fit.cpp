@@ -47,8 +47,13 @@ double room_m(std::span<const double> u, std::span<const double> off_m, std::siz
   const std::size_t from = k - std::min<std::size_t>(k, 2);
   const std::size_t to = std::min(k + 2, last);
   const bool many = u[to] - u[from] <= kMany_m * static_cast<double>(to - from);
-  const bool alone = off_m[k - 1] <= limits.tolerance_m && off_m[k + 1] <= limits.tolerance_m;
-  if (!many || !alone) return limits.tolerance_m;
+  // One, or two side by side: of hundreds of points, noise throws a pair as well.
+  const auto off = [&](std::size_t i) { return off_m[i] > limits.tolerance_m; };
+  std::size_t first = k;
+  while (first > from && off(first - 1)) --first;
+  std::size_t end = k + 1;
+  while (end <= to && off(end)) ++end;
+  if (!many || end - first > 2) return limits.tolerance_m;
   return std::clamp(kThrown * limits.noise_m, limits.tolerance_m, kThrownMost * limits.tolerance_m);
 }
 

@@ -43,8 +43,9 @@ struct PieceEnds {
 };
 
 struct FitLimits {
-  /// Beside a point. A single one that noise threw out, up to four sigmas of it, is no reason for a
-  /// bend: where points lie 0.15 m apart or less, and both its neighbours keep to this, 1.4 times.
+  /// Beside a point. One that noise threw out, or two side by side, up to four sigmas of it, are no
+  /// reason for a bend: where points lie 0.15 m apart or less, and their neighbours keep to this,
+  /// 1.4 times.
   double tolerance_m = 0.1;
   double noise_m = 0.0;
   double shortest_m = 0.6;    ///< waves shorter than this are never followed

@@ -87,6 +87,11 @@ class Tracker {
   const Path* path() const noexcept { return path_; }
   std::size_t leg() const noexcept { return leg_; }
   double s_m() const noexcept { return s_m_; }
+  /// The way's own limit here, braking for what follows left out; empty: it follows none.
+  std::optional<double> set_mps() const noexcept {
+    if (path_ == nullptr || leg_ >= path_->legs.size()) return std::nullopt;
+    return path_->points[path_->segment_at(leg_now(), s_m_, segment_)].segment_mps;
+  }
   /// Positive: the vehicle is left of the way it drives.
   double cross_track_m() const noexcept { return cross_track_m_; }
   /// The turn on the spot takes longer than nav.pivot.timeout_s, or may not begin.

@@ -65,8 +65,10 @@ struct Pace {
   base::EnuPoint mps;
   double sigma_mps = 0.0;
   base::EnuPoint sum_m;
-  int run = 0;           ///< another one: a gap
-  double every_s = 0.2;  ///< since the one before
+  int run = 0;                   ///< another one: a gap
+  double every_s = 0.2;          ///< since the one before
+  double slower_than_mps = 0.0;  ///< all that was told, where no direction was; else 0
+  double vague_m = 0.0;          ///< of sum_m: so long a way was told without a direction, at most
 };
 
 /// A direction against the curve's reference.
@@ -120,6 +122,8 @@ struct Table {
   bool runs_apart = false;
   /// The receiver runs off from tracks and gyro as no ground slides (RunOff).
   bool runs_off = false;
+  /// Positions have not been driven with for long enough to believe them against anybody.
+  bool unproved = false;
 
   const Finding& between(Sense a, Sense b) const noexcept { return of[index_of(a)][index_of(b)]; }
   bool judged(Sense a, Sense b) const noexcept { return between(a, b).judged; }

@@ -24,6 +24,20 @@ bool runs_apart(const Table& table, const Verdict& verdict) noexcept {
   return table.runs_apart && verdict.undecided == kBoth;
 }
 
+/// Positions that nothing has proved, and whom they contradict most; a compass is no witness.
+std::optional<std::array<Sense, 2>> unproved(const Table& table,
+                                             const std::array<bool, kSenses>& voice) noexcept {
+  if (!table.unproved || !voice[index_of(Sense::Position)]) return std::nullopt;
+  std::optional<Sense> worst;
+  for (const Sense s : {Sense::Tracks, Sense::Gyro, Sense::Velocity}) {
+    if (!voice[index_of(s)] || !table.contradict(Sense::Position, s)) continue;
+    const auto ratio = [&](Sense x) { return table.between(Sense::Position, x).ratio(); };
+    if (!worst || ratio(s) > ratio(*worst)) worst = s;
+  }
+  if (!worst) return std::nullopt;
+  return std::array{std::min(*worst, Sense::Position), std::max(*worst, Sense::Position)};
+}
+
 }  // namespace
 
 Verdict judge(const Table& table, const std::array<bool, kSenses>& voice,
@@ -93,14 +107,20 @@ std::optional<Sense> Jury::step(const Table& table, const std::array<bool, kSens
   undecided_ = verdict.undecided ? undecided_ + 1 : 0;
   if (verdict.undecided) undecided_last_ = now;
   runs_apart_ = runs_apart(table, verdict) ? runs_apart_ + 1 : 0;
+  const auto no_proof = unproved(table, voice());
+  unproved_ = no_proof ? unproved_ + 1 : 0;
+  if (no_proof) votes_.unproved_differed = now;
   const bool off = table.runs_off && verdict.undecided;
-  const bool enough = undecided_ >= kUndecidedAfter || runs_apart_ >= kNameAfter || off;
-  if (undecided_ == 0) undecided_told_ = false;
+  const bool enough =
+      undecided_ >= kUndecidedAfter || runs_apart_ >= kNameAfter || off || unproved_ >= kNameAfter;
+  if (undecided_ == 0 && unproved_ == 0) undecided_told_ = false;
   if (enough && !undecided_told_) ++votes_.accusations;
   undecided_told_ = undecided_told_ || enough;
   if (enough) {
-    votes_.undecided = verdict.undecided;
-    votes_.undecided_off = table.between((*verdict.undecided)[0], (*verdict.undecided)[1]).off;
+    const auto both = verdict.undecided ? *verdict.undecided : *no_proof;
+    votes_.undecided = both;
+    votes_.undecided_off = table.between(both[0], both[1]).off;
+    undecided_last_ = now;
   } else if (undecided_last_ && base::seconds(now - *undecided_last_) > kUndecidedStays_s) {
     votes_.undecided.reset();
   }
@@ -201,6 +221,8 @@ void Jury::acquit_all(Time now) noexcept {
   votes_.undecided.reset();
   undecided_ = 0;
   runs_apart_ = 0;
+  unproved_ = 0;
+  votes_.unproved_differed.reset();
   undecided_told_ = false;
 }
 

@@ -16,7 +16,8 @@
 // contradict each other by is doubted from the second look on.
 // Undecided for 8 times in a row (1.6 s) is told, and stays until there was no contradiction for
 // 3 s; for 3 times in a row where positions go on running apart from the velocity, which is made of
-// many of both: a single step of theirs is not.
+// many of both: a single step of theirs is not. Positions that nothing has proved yet, and that
+// contradict somebody three times in a row, whoever is named, are told with whom likewise.
 // Those that are left out have no voice. Pure but for its memory; time is an argument.
 
 #include <array>
@@ -76,6 +77,7 @@ class Jury {
   std::array<bool, kSenses> stuck_{};
   int undecided_ = 0;
   int runs_apart_ = 0;           ///< looks in a row, of these alone
+  int unproved_ = 0;             ///< looks in a row at which unproved positions contradict somebody
   bool undecided_told_ = false;  ///< since it began
   double way_seen_m_ = 0.0;      ///< doubts of the look before
   double turn_seen_rad_ = 0.0;

@@ -13,6 +13,7 @@ constexpr double kVelocityBiasRtk_mps = 0.01;
 constexpr double kVelocityBias_mps = 0.03;
 constexpr double kVelocityWanders_mps = 0.003;  // of RTK's, beside its noise, for many seconds
 constexpr double kFewestSpots = 5.0;            // positions, that make a line
+constexpr double kVagueSigma = 0.5;             // of what cannot be more: as one sigma
 
 EnuPoint times(double s, EnuPoint p) noexcept {
   return {s * p.east_m, s * p.north_m};
@@ -48,6 +49,14 @@ std::optional<EnuPoint> sum_at(const Facts& f, Time t, int run) noexcept {
   return sum_from(f, f.paces.not_after(t), t, run);
 }
 
+/// The way that was told without a direction, at most, m.
+double vague_between(const Facts& f, Time begin, Time end) noexcept {
+  const std::size_t to = f.paces.not_after(end);
+  const std::size_t from = f.paces.not_after(begin);
+  if (from >= f.paces.size() || to >= f.paces.size()) return 0.0;
+  return f.paces[to].vague_m - f.paces[from].vague_m;
+}
+
 }  // namespace
 
 double lag_s(EnuPoint off_m, EnuPoint faster_mps) noexcept {
@@ -81,8 +90,9 @@ std::optional<Stretch> by_velocity(const Facts& f, Time begin, Time end) noexcep
   const double bias = (f.rtk ? kVelocityBiasRtk_mps : kVelocityBias_mps) * w;
   const EnuPoint faster =
       mps_from(f, f.paces.not_after(end), end) - mps_from(f, f.paces.not_after(begin), begin);
-  return Stretch{*b - *a, std::hypot(newest.sigma_mps * std::sqrt(newest.every_s * w), bias),
-                 faster};
+  const double vague_m = kVagueSigma * vague_between(f, begin, end);
+  const double noise_m = newest.sigma_mps * std::sqrt(newest.every_s * w);
+  return Stretch{*b - *a, std::hypot(noise_m, bias, vague_m), faster};
 }
 
 RunApart::RunApart(const Facts& facts) noexcept
@@ -128,8 +138,9 @@ std::optional<Stretch> RunApart::over(double window_s) noexcept {
   const Pace& pace = f_.paces.newest();
   const double noise_m = w * sigma_m_ / std::sqrt(tt_ - t_ * t_ / n_);
   const double added_m = pace.sigma_mps * std::sqrt(1.2 * pace.every_s * w);
-  return Stretch{rise - times(lag_s_, faster),
-                 std::hypot(noise_m, added_m, kVelocityWanders_mps * w), faster};
+  const double vague_m = kVagueSigma * vague_between(f_, pace.t - base::from_seconds(w), pace.t);
+  const double wanders_m = std::hypot(kVelocityWanders_mps * w, vague_m);
+  return Stretch{rise - times(lag_s_, faster), std::hypot(noise_m, added_m, wanders_m), faster};
 }
 
 EnuPoint RunApart::freed(const Apart& a) const noexcept {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/angle.hpp"
 
@@ -123,8 +124,9 @@ void Votes::position(const Spot& spot, int fix_class, Time stamp) noexcept {
   course_of_spots();
 }
 
-void Votes::velocity(EnuPoint mps, double sigma_mps, Time taken, Time stamp) noexcept {
-  Pace p{taken, mps, std::max(sigma_mps, scatter_mps(mps)), {}, 0, 0.2};
+void Votes::velocity(EnuPoint mps, double sigma_mps, Time taken, Time stamp,
+                     double slower_than_mps) noexcept {
+  Pace p{taken, mps, std::max(sigma_mps, scatter_mps(mps)), {}, 0, 0.2, slower_than_mps, 0.0};
   auto& all = facts_.paces;
   if (!all.empty()) {
     const Pace& last = all.newest();
@@ -135,6 +137,7 @@ void Votes::velocity(EnuPoint mps, double sigma_mps, Time taken, Time stamp) noe
     const EnuPoint sum = last.mps + mps;
     p.sum_m = {last.sum_m.east_m + 0.5 * dt_s * sum.east_m,
                last.sum_m.north_m + 0.5 * dt_s * sum.north_m};
+    p.vague_m = last.vague_m + 0.5 * dt_s * (last.slower_than_mps + slower_than_mps);
   }
   all.push(p);
   say(Sense::Velocity, mps.east_m, mps.north_m, stamp);
@@ -317,11 +320,14 @@ std::optional<Sense> Votes::step(const Belonging& b, double sigmas, double retur
   facts_.gyro_bias_sigma_radps = b.gyro_bias_sigma_radps;
   facts_.arm_m = b.arm_m + kPivotCentre_m;
   facts_.curve.push(sums_);
+  // In the step after the one that took it: both are dear, and a tick has one of them.
+  const bool just_came = spot_is_new_ && !std::exchange(spot_waited_, true);
   // One bad position is one look, however seldom they come.
   const double since_s = looked_ ? seconds(now - *looked_) : 1e9;
   if (since_s < Jury::kEvery_s || (!spot_is_new_ && since_s < kLookAnyway_s && spots_come(now))) {
     return std::nullopt;
   }
+  if (just_came) return std::nullopt;
   looked_ = now;
   facts_.tracks_at = heard_[index_of(Sense::Tracks)];
   std::array<bool, kSenses> frozen_now{};
@@ -331,9 +337,10 @@ std::optional<Sense> Votes::step(const Belonging& b, double sigmas, double retur
     frozen_now[i] = frozen(static_cast<Sense>(i), now);
   }
   Table table = compare(facts_, sigmas);
+  table.unproved = facts_.rtk && !b.positions_proved;
   if (table.spins) facts_.spun = now;
   if (spot_is_new_) look_for_run_off(table, now);
-  spot_is_new_ = false;
+  spot_is_new_ = spot_waited_ = false;
   tell_run_off(table);
   apart_ = table.apart.value_or(apart_ * std::exp(-since_s / kApartForgotten_s));
   return jury_.step(table, facts_.heard, frozen_now, return_s, now);

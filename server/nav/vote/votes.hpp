@@ -29,8 +29,9 @@ struct Belonging {
   double arm_m = 0.0;
   base::EnuPoint arm;       ///< to the antenna, as it leans: ahead and to the left of the centre, m
   base::EnuPoint downhill;  ///< ahead and to the left, tangents, as it is told to lean
-  double downhill_sigma = 0.2;  ///< 0.2: nothing tells it
-  double yaw_scale = 0.8;       ///< true turn over that of the tracks, where there is no gyro
+  double downhill_sigma = 0.2;   ///< 0.2: nothing tells it
+  double yaw_scale = 0.8;        ///< true turn over that of the tracks, where there is no gyro
+  bool positions_proved = true;  ///< they were driven with for long enough
 };
 
 class Votes {
@@ -48,7 +49,9 @@ class Votes {
   void gyro(double rate_radps, double raw, Time stamp) noexcept;
   /// @param taken when the receiver was there.
   void position(const Spot& spot, int fix_class, Time stamp) noexcept;
-  void velocity(base::EnuPoint mps, double sigma_mps, Time taken, Time stamp) noexcept;
+  /// @param slower_than_mps 0, or all that was told of it: no direction.
+  void velocity(base::EnuPoint mps, double sigma_mps, Time taken, Time stamp,
+                double slower_than_mps = 0.0) noexcept;
   /// Compass or antennas.
   void heading(Sense s, double yaw_rad, double sigma_rad, Time taken, Time stamp) noexcept;
 
@@ -115,6 +118,7 @@ class Votes {
   double dead_gyro_rad_ = 0.0;
   std::optional<Time> looked_;
   bool spot_is_new_ = false;
+  bool spot_waited_ = false;
   double scatter_m2ps2_ = 0.0;  ///< of velocities about the line through their neighbours, per axis
   double apart_ = 0.0;
   RunOff run_off_;

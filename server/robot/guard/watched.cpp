@@ -31,7 +31,8 @@ std::string blind_words(const Guard& guard, base::Time now) {
 }  // namespace
 
 void Robot::Impl::look_around() {
-  if (!guard.sees() && !recognises) return;
+  take_known_places();
+  if (!guard.sees() && !recognises && !reads_tags) return;
   surroundings_batch.clear();
   if (surroundings.try_take(surroundings_batch) && !surroundings_batch.empty()) {
     for (auto& one : surroundings_batch) one = guard.take(std::move(one));
@@ -47,6 +48,12 @@ void Robot::Impl::look_around() {
   if (pose && pose->yaw_rate_radps) moved.angular_radps = *pose->yaw_rate_radps;
   nav::sense::Odometry state = guard.move(moved, clock.now(), attitude());
   (void)odometry.try_offer(state);  // one that is missed is a gap of 20 ms
+  known_places.moved(state);
+  read_the_tags(state);
+  see_known_poles();
+  for (const KnownPlaces::News& news : known_places.news()) {
+    event(news.bad ? base::Severity::Warning : base::Severity::Info, "known_place", news.words);
+  }
   guard.brake_by(handling.braking_mps2(config->fence.decel_mps2));
   std::string words = guard.demands() ? blind_words(guard, clock.now()) : std::string();
   if (words.empty()) blind_since.reset();
@@ -86,12 +93,13 @@ std::optional<nav::RowSight> Robot::Impl::row_sight() const {
 }
 
 std::optional<nav::MarkSight> Robot::Impl::mark_sight() const {
-  if (!guard.sees() && !recognises) return std::nullopt;
+  if (!guard.sees() && !recognises && !reads_tags) return std::nullopt;
   nav::MarkSight sight;
   sight.now = clock.now();
   sight.body = guard.odometry().pose;
   const auto& around = guard.around();
   if (around) sight.view = around->beside.get();
+  if (reads_tags) sight.tags = &tag_book;
   return sight;
 }
 
@@ -153,6 +161,11 @@ base::DriveCommand Robot::Impl::keep_off(base::DriveCommand command) {
 
 /// Who docks comes near to the dock.
 void Robot::Impl::spare_dock() {
+  if (const nav::tags::TagDock* at_tag = docks_at_tag(); at_tag != nullptr) {
+    const auto& docked = at_tag->goal();
+    if (!docked || !at_tag->on_line()) return guard.spare_dock(std::nullopt, false);
+    return guard.spare_dock(nav::sense::inverse(guard.odometry().pose) * *docked, false);
+  }
   const auto goal = machine.mode() == Mode::Dock ? self_driving.docks_at() : std::nullopt;
   if (!goal || !pose) return guard.spare_dock(std::nullopt, false);
   const base::EnuPoint to = goal->at - pose->at;

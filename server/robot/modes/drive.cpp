@@ -36,8 +36,58 @@ nav::Vehicle Robot::Impl::vehicle() const {
           estimator.slide()};
 }
 
+/// What a hand on the speed leaves of it: its share of what the way sets here, and where nothing is
+/// set, of the most.
+double Robot::Impl::hand_mps() const noexcept {
+  const double most = std::min(config->speed.max_mps, config->vehicle.max_speed_mps);
+  const double share = auto_hand.share();
+  if (share >= 1.0 || !machine.by_itself()) return most;
+  const auto set = machine.mode() == Mode::Auto ? missions.executor.set_mps() : std::nullopt;
+  return share * std::min(most, set.value_or(most));
+}
+
+/// A limit from outside has one word for the way; whose it is, is known here.
+std::string_view Robot::Impl::reason_under_hand(std::string_view reason) const noexcept {
+  const bool slows = reason == nav::to_string(nav::SpeedReason::Slow);
+  return slows && hand_mps() < free_limit_mps() ? std::string_view("hand") : reason;
+}
+
+/// It wants the robot to stand, and as slow as it can be driven along a way it is already.
+bool Robot::Impl::hand_holds() const noexcept {
+  return auto_hand.stands() && std::abs(sent.twist.linear_mps) <= 1.05 * config->speed.min_mps;
+}
+
+void Robot::Impl::watch_hand() {
+  if (auto_hand.step(clock.now(), config->manual.auto_timeout_s) && machine.by_itself()) {
+    event(Severity::Warning, "hand_lost", auto_hand.why());
+  }
+}
+
+/// The last word of the hand on the speed, also where something else than a way is driven. A limit
+/// that came suddenly brakes; it is gentler than what follows a way does by itself.
+base::DriveCommand Robot::Impl::under_hand(base::DriveCommand command) {
+  if (!auto_hand.used()) return command;
+  if (!auto_hand.held()) assessment.conditions.push_back({"auto_hand", auto_hand.why()});
+  if (auto_hand.share() >= 1.0) return command;
+  if (auto_hand.stands() && command.twist.linear_mps == 0.0) command.twist.angular_radps = 0.0;
+  const double floor_mps = auto_hand.stands() ? 0.0 : config->speed.min_mps;
+  const double braked_mps =
+      std::abs(sent.twist.linear_mps) - 0.5 * config->speed.hold_decel_mps2 * clock.dt_s();
+  const double most = std::max({hand_mps(), floor_mps, braked_mps});
+  const double wanted = std::abs(command.twist.linear_mps);
+  if (wanted <= most) return command;
+  speed_reason = "hand";
+  command.twist.linear_mps *= most / wanted;
+  command.twist.angular_radps *= most / wanted;
+  return command;
+}
+
 /// What is allowed now, whatever a path was laid for.
 double Robot::Impl::limit_mps() const noexcept {
+  return std::min(free_limit_mps(), hand_mps());
+}
+
+double Robot::Impl::free_limit_mps() const noexcept {
   double most = std::min(config->speed.max_mps, config->vehicle.max_speed_mps);
   most = std::min(most, std::max(guard.limit_mps(), 0.5 * config->speed.min_mps));
   if (assessment.slow) return std::min(most, config->speed.creep_mps);
@@ -81,13 +131,21 @@ base::DriveCommand Robot::Impl::drive_by_itself() {
   if (self_driving.calibrates() && guard.obstacle().action != base::GuardAction::None) {
     // A figure that was slowed, or stood in between, measures nothing: it does not wait.
     self_driving.calibration().end(guard.obstacle().reason);
+  } else if (self_driving.calibrates() && auto_hand.share() < 1.0) {
+    self_driving.calibration().end(auto_hand.why());
+  } else if (hand_holds()) {
+    self_driving.interrupt();
+    speed_reason = "hand";
+    driver = Driver::Autonomy;
+    return {{}, true};
   } else if (waits_for_way()) {
     self_driving.interrupt();
     return {{}, true};
   }
-  const SelfDriving::Step step = self_driving.step(
-      {machine.mode(), vehicle(), *estimator.frame(), limit_mps(), clock.now(), clock.dt_s()});
-  speed_reason = std::string(step.reason);
+  const SelfDriving::Step step =
+      self_driving.step({machine.mode(), vehicle(), *estimator.frame(), limit_mps(), clock.now(),
+                         clock.dt_s(), tag_sight()});
+  speed_reason = std::string(reason_under_hand(step.reason));
   if (step.drives) driver = Driver::Autonomy;
   if (!step.ending) return {step.twist, true};
   const SelfDriving::Ending& end = *step.ending;
@@ -100,6 +158,11 @@ base::DriveCommand Robot::Impl::drive_by_itself() {
 base::DriveCommand Robot::Impl::drive_mission() {
   if (!missions.executor.running() || !pose) return {{}, true};
   driver = Driver::Autonomy;
+  if (hand_holds()) {
+    missions.executor.wait();
+    speed_reason = "hand";
+    return {{}, true};
+  }
   if (const auto twist = drive_around()) {
     tell_notices();
     return {*twist, true};
@@ -116,7 +179,7 @@ base::DriveCommand Robot::Impl::drive_mission() {
   missions.executor.see_marks(mark_sight());
   const nav::TrackOutput out =
       missions.executor.step(vehicle(), limit_mps(), home_point(), clock.dt_s());
-  speed_reason = std::string(nav::to_string(out.reason));
+  speed_reason = std::string(reason_under_hand(nav::to_string(out.reason)));
   tell_notices();
   if (!missions.executor.running()) {
     driver = Driver::None;

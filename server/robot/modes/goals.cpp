@@ -154,7 +154,34 @@ base::Result<void> Robot::Impl::enter_follow() {
 
 // ---- DOCK ----
 
+/// By sight alone: what stands before the tag is judged by the guard, where it is by nobody.
+base::Result<void> Robot::Impl::enter_dock_at_tag(const SetMode& c) {
+  if (!reads_tags) return base::fail(Code::Conflict, "no camera that reads tags is configured");
+  if (config->vehicle.steered()) {
+    return base::fail(Code::Conflict, "this vehicle cannot turn on the spot: it docks at no tag");
+  }
+  if (config->tool.pulled()) {
+    return base::fail(Code::Conflict, "with a trailer no tag is docked at");
+  }
+  if (*c.tag < 0 || *c.tag > mission::kMostTag) {
+    return base::fail(Code::Invalid, "there is no such tag", {{"/tag", "must be 0 to 586"}});
+  }
+  const double ahead_m = 0.5 * config->vehicle.length_m;
+  const double stand_off_m = c.stand_off_m.value_or(config->tag_dock.stand_off_m);
+  if (!(stand_off_m > ahead_m) || !(stand_off_m <= 5.0)) {
+    return base::fail(Code::Invalid,
+                      "the vehicle would not stand before the tag: its front is " +
+                          std::to_string(std::lround(ahead_m * 100.0)) + " cm before its middle",
+                      {{"/stand_off_m", "must be more than that, and 5 at most"}});
+  }
+  if (auto ok = may_drive_by_itself(true, fence.get() == nullptr); !ok) return ok;
+  change_mode(ModeCause::Chosen, asker, Mode::Dock);
+  self_driving.dock_at({*c.tag, c.stand_off_m}, clock.now());
+  return {};
+}
+
 base::Result<void> Robot::Impl::enter_dock(const SetMode& c) {
+  if (c.tag) return enter_dock_at_tag(c);
   const bool whole = c.goal && (c.goal->at || c.goal->local) && c.goal->yaw_rad;
   if (!whole) {
     return base::fail(Code::Invalid, "DOCK needs the pose to dock at",

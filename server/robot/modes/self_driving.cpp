@@ -18,6 +18,7 @@ bool under_way(ActivityState s) noexcept {
 SelfDriving::SelfDriving(const ParameterSet& set)
     : guided_(set.path, set.behave, set.modes),
       dock_(set.path, set.behave, set.modes),
+      tag_dock_(set.path, set.behave, set.marks.tag_dock),
       rtl_(set.path, set.behave),
       follow_(set.path, set.modes),
       calibrate_(set.path),
@@ -63,6 +64,12 @@ void SelfDriving::dock(const nav::DockGoal& goal, const nav::Vehicle& vehicle) {
   begin("dock");
 }
 
+void SelfDriving::dock_at(const nav::tags::TagDock::Order& order, base::Time now) {
+  tag_dock_.begin(order, now);
+  begin("dock");
+  activity_.tag = order.tag;
+}
+
 void SelfDriving::begin_calibration(base::CalibrationKind kind, const nav::Vehicle& vehicle,
                                     const nav::CalibrationBefore& before,
                                     const nav::PathParams& set) {
@@ -100,6 +107,7 @@ void SelfDriving::lay_anew() noexcept {
   orbit_.interrupt();
   guided_.interrupt();
   dock_.interrupt();
+  tag_dock_.interrupt();
   rtl_.interrupt();
 }
 
@@ -125,6 +133,7 @@ void SelfDriving::leave(Mode to, const std::string& why, bool stands_first) {
   calibrate_.end("ended by mode " + std::string(base::to_string(to)) + ": " + why);
   guided_.reset();
   dock_.reset();
+  tag_dock_.reset();
   rtl_.reset();
   follow_.reset();
   stay_.reset();
@@ -169,6 +178,7 @@ nav::TrackOutput SelfDriving::step_mode(const Facts& f) {
     case Mode::Follow:
       return follow_.step(f.vehicle, f.limit_mps, f.now, f.dt_s);
     case Mode::Dock:
+      if (activity_.tag) return tag_dock_.step(f.tags, f.vehicle, f.limit_mps, f.dt_s);
       return dock_.step(f.vehicle, f.limit_mps, f.dt_s);
     case Mode::Loiter:
       return stay_.step(f.vehicle, f.limit_mps, f.dt_s);
@@ -200,6 +210,23 @@ std::optional<SelfDriving::Ending> SelfDriving::calibrated() const {
       break;
   }
   return std::nullopt;
+}
+
+std::optional<SelfDriving::Ending> SelfDriving::docked() const {
+  if (activity_.tag) {
+    const std::string at = " at tag " + std::to_string(*activity_.tag);
+    if (tag_dock_.state() == nav::tags::TagDock::State::Docked) {
+      return Ending{ActivityState::Reached, "docked", "docked" + at};
+    }
+    if (tag_dock_.state() != nav::tags::TagDock::State::Failed) return std::nullopt;
+    return Ending{ActivityState::Failed, "dock_failed",
+                  "not docked" + at + ": " + tag_dock_.reason()};
+  }
+  if (dock_.state() == nav::Dock::State::Docked) {
+    return Ending{ActivityState::Reached, "docked", "docked"};
+  }
+  if (dock_.state() != nav::Dock::State::Failed) return std::nullopt;
+  return Ending{ActivityState::Failed, "dock_failed", "not docked: " + dock_.reason()};
 }
 
 /// What the machine of this mode came to.
@@ -236,11 +263,7 @@ std::optional<SelfDriving::Ending> SelfDriving::ending(Mode mode) const {
       }
       break;
     case Mode::Dock:
-      if (dock_.state() == nav::Dock::State::Docked) return reached("docked", "docked");
-      if (dock_.state() == nav::Dock::State::Failed) {
-        return failed("dock_failed", "not docked: " + dock_.reason());
-      }
-      break;
+      return docked();
     case Mode::Loiter:
       if (stay_.state() == nav::Stay::State::Failed) {
         return failed("goal_failed", "back to the place: " + stay_.reason());
@@ -291,6 +314,18 @@ void SelfDriving::tell_place(const Facts& f) {
   a.reason = "stays here";
 }
 
+void SelfDriving::tell_tag() {
+  using State = nav::tags::TagDock::State;
+  const State s = tag_dock_.state();
+  activity_.distance_m = tag_dock_.distance_left_m();
+  activity_.reason = s == State::Search   ? "looks for the tag"
+                     : s == State::ToGate ? "drives before the tag"
+                     : s == State::Look   ? "looks at the tag"
+                     : s == State::Line   ? "drives to the tag"
+                     : s == State::Back   ? "backs up for another try"
+                                          : "";
+}
+
 /// Where the mode stands, in the words of the snapshot.
 void SelfDriving::tell(const Facts& f) {
   base::Activity& a = activity_;
@@ -306,6 +341,8 @@ void SelfDriving::tell(const Facts& f) {
     a.distance_m = rtl_.trip().distance_left_m();
   } else if (f.mode == Mode::Loiter || f.mode == Mode::Circle) {
     tell_place(f);
+  } else if (f.mode == Mode::Dock && a.tag) {
+    tell_tag();
   } else if (f.mode == Mode::Dock) {
     a.goal = f.frame.to_global(dock_.goal().at);
     a.goal_yaw_rad = dock_.goal().yaw_rad;

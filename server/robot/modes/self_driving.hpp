@@ -24,6 +24,7 @@
 #include "nav/behave/orbit.hpp"
 #include "nav/behave/rtl.hpp"
 #include "nav/behave/stay.hpp"
+#include "nav/behave/tag_dock.hpp"
 #include "nav/calibrate/calibrate.hpp"
 #include "robot/modes/changeover.hpp"
 #include "robot/modes/held_by_radio.hpp"
@@ -40,6 +41,7 @@ class SelfDriving {
     double limit_mps = 0.0;
     base::Time now;
     double dt_s = 0.0;
+    nav::tags::TagSight tags{};
   };
 
   /// What it came to, once.
@@ -66,6 +68,11 @@ class SelfDriving {
                base::LatLon to, double length_m);
   void follow();
   void dock(const nav::DockGoal& goal, const nav::Vehicle& vehicle);
+  void dock_at(const nav::tags::TagDock::Order& order, base::Time now);
+  /// Null: it does not.
+  const nav::tags::TagDock* docks_at_tag() const noexcept {
+    return activity_.tag ? &tag_dock_ : nullptr;
+  }
   /// GUIDED, by a figure in the place of a goal. @param set as the parameters say
   void begin_calibration(base::CalibrationKind kind, const nav::Vehicle& vehicle,
                          const nav::CalibrationBefore& before, const nav::PathParams& set);
@@ -119,9 +126,12 @@ class SelfDriving {
   void tell(const Facts& f);
   void tell_guided(const Facts& f);
   void tell_place(const Facts& f);
+  void tell_tag();
+  std::optional<Ending> docked() const;
 
   nav::Guided guided_;
   nav::Dock dock_;
+  nav::tags::TagDock tag_dock_;  ///< in its place where the activity names a tag
   nav::Rtl rtl_;
   nav::Follow follow_;
   nav::Calibrate calibrate_;

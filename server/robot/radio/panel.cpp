@@ -65,7 +65,9 @@ void Robot::Impl::act_on_radio() {
     const std::string text = std::string(key.cause) + ": " + std::string(action.meaning);
     event(Severity::Info, "radio_action", text);
     asker = "by the radio";
+    const bool stood = !machine.by_itself();
     const auto done = carry_out(action);
+    if (done && stood && machine.by_itself()) auto_hand.begin();
     asker = kOperator;
     // Arming tells its refusal itself.
     if (done || action.deed == RadioDeed::Arm) continue;

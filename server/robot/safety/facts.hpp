@@ -43,6 +43,7 @@ struct Facts {
   std::string_view moved_disarmed{};  ///< likewise
   std::string_view blind{};           ///< which required sensor does not see, and why; empty: none
   bool looks = false;                 ///< there are sensors that look around
+  double wander_unknown_s = 0.0;      ///< see nav/estimate/wander_watch.hpp
 };
 
 }  // namespace roverd::robot

@@ -50,6 +50,17 @@ constexpr std::array kElsewhere{
         .watched_by = "server/robot/modes/manual.hpp",
     },
     Failsafe{
+        .id = "auto_hand",
+        .seen = "the hand on the speed of what drives by itself is let go, silent or gone, after "
+                "one was there",
+        .after = "at once; silence: `robot.manual.auto_timeout_s`",
+        .response = Response::Slow,
+        .acts = Acts::ByItself,
+        .ends = "a hand holds it again, after silence let go first; or HOLD, and a person's start",
+        .over = kHands,
+        .watched_by = "server/robot/modes/auto_hand.hpp",
+    },
+    Failsafe{
         .id = "heading_unknown",
         .seen = "the heading is not known: it creeps straight ahead to find it, and "
                 "holds where 3 m do not show it",

@@ -134,7 +134,9 @@ constexpr std::array kSensorRows{
     Failsafe{
         .id = "sensors_contradict",
         .seen = "two sensors contradict each other, and it cannot be told which one is wrong",
-        .after = "1.6 s; 0.6 s where fixed positions run away from the velocity",
+        .after = "1.6 s; 0.6 s where fixed positions run away from the velocity, or contradict "
+                 "another sensor before driving has proved them; at once where they run off from "
+                 "odometry and gyro",
         .response = Response::Hold,
         .acts = Acts::ByItself,
         .ends = kGoneAndGoOn,

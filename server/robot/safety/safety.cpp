@@ -67,6 +67,11 @@ base::Check check_gnss(const Facts& f, const SafetyParams& safety, const ArmingP
   if (f.estimate.by_map && f.last_position && !older(f.last_position, 2.0, now)) {
     return check(id, true, Severity::Error, "none is needed: the map shows where the robot is");
   }
+  if (f.estimate.by_landmark && f.estimate.free_m < safety.gnss_free_m) {
+    return check(
+        id, true, Severity::Error,
+        "none is needed: a known place was seen " + number(f.estimate.free_m, "%.0f m ago"));
+  }
   const bool silent = !w.gnss || older(w.gnss->stamp, 2.0, now);
   if (const std::string why = no_position(w); silent && !why.empty()) {
     return check(id, false, Severity::Error, why);
@@ -85,10 +90,25 @@ base::Check check_gnss(const Facts& f, const SafetyParams& safety, const ArmingP
   if (const std::string wrong = time_trouble(f, p, now); !wrong.empty()) {
     return check(id, false, Severity::Error, "fix " + fix + ", but " + wrong);
   }
+  if (const auto& off = f.estimate.votes.unproved_differed) {
+    const double ago_s = base::seconds(now - *off);
+    if (ago_s < p.healthy_s) {
+      return check(id, false, Severity::Error,
+                   "fix " + fix + ", but its positions contradicted other sensors" +
+                       number(ago_s, ", %.0f s ago") + ": waiting " +
+                       number(std::ceil(p.healthy_s - ago_s), "%.0f s") + " more to trust it");
+    }
+  }
   const double good_s = base::seconds(now - *w.gnss_good_since);
   if (good_s < p.healthy_s) {
     return check(id, false, Severity::Error,
                  "fix " + fix + ", " + still_to_wait(w, good_s, p.healthy_s, now));
+  }
+  // What claims centimetres is believed: not before it was watched.
+  if (w.gnss->fix >= base::FixType::RtkFloat && f.wander_unknown_s > 0.0) {
+    return check(id, false, Severity::Error,
+                 "fix " + fix + ", waiting " + number(std::ceil(f.wander_unknown_s), "%.0f s") +
+                     " more, at most, to see whether its positions wander");
   }
   return check(id, true, Severity::Error, "fix " + fix);
 }

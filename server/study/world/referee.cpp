@@ -288,6 +288,11 @@ StopSeen Referee::stop_of(const base::Obstacle& o) {
   out.at_s = around_.now_s() - began_s_;
   out.what = std::string(o.what);
   out.at = {there.x_m, there.y_m};
+  out.sensor = o.sensor;
+  out.age_s = o.age_s;
+  const world::Frame body(pose);
+  out.rise_m = body.r[0][2] * (there.x_m - pose.x_m) + body.r[1][2] * (there.y_m - pose.y_m) +
+               body.r[2][2] * (there.z_m - pose.z_m);
   if (out.what == "obstacle" || out.what == "drop") out.cause = cause_of(o, there, out.needless);
   return out;
 }

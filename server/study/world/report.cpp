@@ -89,6 +89,11 @@ ordered_json stop_json(const StopSeen& s) {
     out["cause"] = s.cause;
     out["needless"] = s.needless;
   }
+  if (s.what != "blind") {
+    out["sensor"] = s.sensor;
+    out["age_s"] = s.age_s;
+    out["rise_m"] = s.rise_m;
+  }
   if (s.stands_m) out["stands_m"] = *s.stands_m;
   return out;
 }

@@ -97,6 +97,9 @@ struct StopSeen {
                           ///< of who was believed to move: comes, or still (he does not)
   bool needless = false;  ///< nothing true on the swept way
   base::EnuPoint at;      ///< what was said to stand there
+  std::string sensor;     ///< that told it
+  double age_s = 0.0;     ///< of its last echo
+  double rise_m = 0.0;    ///< of the ground there over the plane on which the robot stood
   std::optional<double> stands_m;  ///< room before the static thing that it stopped for
 };
 

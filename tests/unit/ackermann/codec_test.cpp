@@ -62,6 +62,43 @@ TEST(SteeringZero, IsLearnedWhileDrivingStraightAndOnlyThen) {
   EXPECT_NEAR(zero.zero_rad(), 0.03, 1e-3);
 }
 
+/// A motor that stands 0.02 rad right of what it is told, and 0.01 more in a left bend.
+double stands_rad(double sent_rad) {
+  return sent_rad - 0.02 - (sent_rad > 0.2 ? 0.01 : 0.0);
+}
+
+void drives(SteeringZero& zero, double wheel_rad, double seconds) {
+  for (double t = 0.0; t < seconds; t += 0.02) {
+    zero.add(1.0, wheel_rad, stands_rad(wheel_rad + zero.at_rad(wheel_rad)), 0.02);
+  }
+}
+
+TEST(SteeringZero, InABendTheWheelIsBroughtToWhereItShallStandAndTheStraightIsLeftAlone) {
+  SteeringZero zero(0.1);
+  drives(zero, 0.4, 10.0);
+  EXPECT_NEAR(stands_rad(0.4 + zero.at_rad(0.4)), 0.4, 1e-3);
+  EXPECT_EQ(zero.at_rad(0.0), 0.0);
+  EXPECT_EQ(zero.at_rad(-0.4), 0.0);  // the other side may be another
+  drives(zero, -0.3, 10.0);
+  drives(zero, 0.0, 20.0);
+  EXPECT_NEAR(zero.zero_rad(), 0.02, 1e-3);
+  drives(zero, 0.4, 10.0);
+  drives(zero, -0.3, 10.0);
+  EXPECT_NEAR(stands_rad(0.4 + zero.at_rad(0.4)), 0.4, 1e-3);
+  EXPECT_NEAR(stands_rad(-0.3 + zero.at_rad(-0.3)), -0.3, 1e-3);
+  EXPECT_NEAR(zero.at_rad(0.0), 0.02, 1e-3);
+  EXPECT_LE(std::abs(zero.at_rad(0.4)), 0.1);
+}
+
+TEST(SteeringZero, OfABendAndOfTheStraightTogetherAreNoMoreThanAllowed) {
+  SteeringZero zero(0.05);
+  for (int i = 0; i < 2000; ++i) zero.add(1.0, 0.4, 0.0, 0.02);  // a left bend, far behind
+  EXPECT_DOUBLE_EQ(zero.at_rad(0.4), 0.05);
+  for (int i = 0; i < 5000; ++i) zero.add(1.0, 0.0, -0.5, 0.02);
+  EXPECT_DOUBLE_EQ(zero.zero_rad(), 0.05);
+  EXPECT_DOUBLE_EQ(zero.at_rad(0.4), 0.05);
+}
+
 TEST(SteeringZero, IsLearnedThoughTheCommandTremblesWithEveryPosition) {
   SteeringZero zero(0.1);
   double wheel_rad = 0.0;

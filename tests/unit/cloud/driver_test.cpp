@@ -15,6 +15,7 @@
 #include "frames.hpp"
 #include "link/memory.hpp"
 #include "link/tcp.hpp"
+#include "source_folder.hpp"
 #include "unit/link/pump.hpp"
 
 namespace roverd::cloud {
@@ -173,7 +174,7 @@ TEST(CloudExample, TheSenderOfTheDocumentationIsUnderstood) {
       [&](std::shared_ptr<const base::Sight> s) { sights.push_back(std::move(s)); });
   driver.start(base::steady_now());
   ASSERT_NE(port, nullptr);
-  const Sender sender(CLOUD_SENDER, port->port(), "3");
+  const Sender sender(tests::in_source("docs/examples/cloud_sender.py"), port->port(), "3");
   link::Pump<Driver> pump(io, driver);
   ASSERT_TRUE(pump.until([&] { return sights.size() == 3; }));
   EXPECT_EQ(pump.status().refused, 0U);

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "config/settings.hpp"
+#include "source_folder.hpp"
 
 namespace roverd {
 namespace {
@@ -32,7 +33,7 @@ std::string row(const std::string& key, const base::ParamInfo& info) {
 
 std::multiset<std::string> rows_of_the_page() {
   std::multiset<std::string> out;
-  std::ifstream in(SENSE_KEYS);
+  std::ifstream in(tests::in_source("docs/sense-keys.md"));
   for (std::string line; std::getline(in, line);) {
     if (line.starts_with("| `")) out.insert(line);
   }
@@ -60,6 +61,7 @@ TEST(SenseKeys, AllStandInThePageAsTheyAreAndNoOthers) {
   rows("sense.blocked", guard.blocked);
   rows("nav.row", guard.row);
   rows("nav.rows", guard.rows);
+  rows("nav.tag_dock", guard.tag_dock);
   rows("", SensorSettings{});
   rows("", cloud::Params{});
   rows("", v4l2::Params{});
@@ -79,7 +81,7 @@ TEST(SenseKeys, AllStandInThePageAsTheyAreAndNoOthers) {
 }
 
 TEST(SenseKeys, TheHuskyHasTheRulesOfTheBerryRows) {
-  const auto s = load_settings({std::filesystem::path(CONFIG_FOLDER) / "robot.toml", "husky", {}});
+  const auto s = load_settings({tests::in_source("config/robot.toml"), "husky", {}});
   ASSERT_TRUE(s) << s.error().detail;
   EXPECT_EQ(s->sense.reduce.max_range_m, 8.0);
   EXPECT_EQ(s->sense.reduce.voxel_m, 0.05);
@@ -96,7 +98,7 @@ TEST(SenseKeys, TheHuskyHasTheRulesOfTheBerryRows) {
 }
 
 TEST(SenseKeys, TheExampleOfTheHuskysCameraIsTaken) {
-  const auto s = load_settings({std::filesystem::path(CONFIG_FOLDER) / "robot.toml",
+  const auto s = load_settings({tests::in_source("config/robot.toml"),
                                 "husky",
                                 {"sensors.camera.kind=depth", "sensors.camera.fx=385",
                                  "sensors.camera.link=v4l2:/dev/video2", "sensors.camera.x_m=0.45",

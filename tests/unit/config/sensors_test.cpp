@@ -78,6 +78,20 @@ TEST(Sensors, WhatIsWrongIsRefusedWithItsPlace) {
             std::string::npos);
 }
 
+/// The sensor that maps are looked for with must be there, on, and see walls.
+TEST(Sensors, TheOneForMapsMustBeOneThatLooksAround) {
+  const std::string sees = "[sensors.front]\nkind = \"sick\"\nlink = \"tcp:a:1\"\n";
+  const std::string map = "[map]\nsensor = \"front\"\n";
+  const auto s = with(map + sees);
+  ASSERT_TRUE(s) << s.error().detail;
+  EXPECT_EQ(s->map.sensor, "front");
+  EXPECT_NE(refused(map).find("map.sensor names no sensor"), std::string::npos) << refused(map);
+  EXPECT_NE(refused(map + sees + "enabled = false\n").find("not enabled"), std::string::npos);
+  EXPECT_NE(refused(map + "[sensors.front]\nkind = \"vision\"\nlink = \"udp:5005\"\n")
+                .find("sees no walls"),
+            std::string::npos);
+}
+
 TEST(Sensors, WhatFollowsWhenTheyBlockADriveIsOneOfFourWords) {
   const auto s = with("[sense.blocked]\nafter_s = 25\nthen = \"return\"\nresume_blind = true\n");
   ASSERT_TRUE(s) << s.error().detail;

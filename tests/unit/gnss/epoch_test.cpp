@@ -240,13 +240,23 @@ TEST_F(EpochTest, ASigmaOfZeroIsNone) {
   EXPECT_EQ(fixes().at(0).sigma_east_m, 0.010);
 }
 
-TEST_F(EpochTest, NoCourseAndNoSpeedIsStandingStill) {
+TEST_F(EpochTest, NoCourseAndHardlyASpeedIsNoFasterThanThat) {
   gga("100000");
   rmc("100000", "0.1,");
   gga("100001");
   ASSERT_EQ(velocities().size(), 1u);
   EXPECT_EQ(velocities()[0].east_mps, 0.0);
   EXPECT_EQ(velocities()[0].north_mps, 0.0);
+  EXPECT_NEAR(velocities()[0].sigma_mps.value(), 0.1 * 1852.0 / 3600.0, 1e-12);
+}
+
+TEST_F(EpochTest, NoCourseAndNoSpeedIsStandingStill) {
+  gga("100000");
+  rmc("100000", "0.0,");
+  gga("100001");
+  ASSERT_EQ(velocities().size(), 1u);
+  EXPECT_EQ(velocities()[0].east_mps, 0.0);
+  EXPECT_FALSE(velocities()[0].sigma_mps);
 }
 
 TEST_F(EpochTest, NoCourseAtSpeedIsNoVelocity) {

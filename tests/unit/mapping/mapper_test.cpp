@@ -112,6 +112,18 @@ TEST(Mapper, ScansThatShowNothingFollowTheOdometry) {
   EXPECT_EQ(map->at(*map->cell_of(5.0, 0.0)), chart::kFree);
 }
 
+/// The program ends while it is drawn: no loops are looked for, and there is no half map.
+TEST(Mapper, GivesUpWhenTold) {
+  Mapper mapper;
+  chart::Scan scan;
+  scan.beams.push_back({3.0F, 0.0F, true});
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(mapper.add(scan, {0.5 * i, 0.0, 0.0}));
+  const auto ends = [] { return true; };
+  mapper.finish(ends);
+  EXPECT_EQ(mapper.draw({.give_up = ends}).error().code, base::Code::Unavailable);
+  EXPECT_TRUE(mapper.draw()) << "what was laid together is there still";
+}
+
 TEST(Mapper, RefusesWhatIsNoNumberAndAMapOfNothing) {
   Mapper mapper;
   EXPECT_EQ(mapper.draw().error().detail, "nothing was seen of which a map could be drawn");

@@ -86,6 +86,37 @@ TEST(WallItem, IsDoneAfterItsLengthAndCountsWhatWasDrivenBefore) {
   }
 }
 
+//   ─▶──────|        it ends beside the place
+//           ×        wherever the wall goes on
+//   ════════════════
+TEST(WallItem, IsDoneWhereAPlaceIsPassed) {
+  struct Case {
+    EnuPoint place;
+    double ends_m;
+  };
+  // Beside it, on the wall's other side, and behind: at once.
+  for (const Case& c : {Case{{4.0, -2.0}, 4.0}, Case{{6.5, 3.0}, 6.5}, Case{{-1.0, 0.0}, 0.0}}) {
+    WallItem w;
+    w.yard.slabs = {{{-5.0, -0.9}, {30.0, -0.9}}};
+    w.begin({.side = Side::Right, .distance_m = 0.9, .length_m = 9.0});
+    w.drive.end_beside(c.place);
+    w.run(30.0);
+    EXPECT_EQ(w.drive.state(), WallDrive::State::Done) << w.drive.reason();
+    EXPECT_NEAR(w.rover.odometry.x_m, c.ends_m, 0.15);
+  }
+}
+
+// Farther aside than 10 m, it is the wall's own length that counts.
+TEST(WallItem, APlaceFarAsideEndsNothing) {
+  WallItem w;
+  w.yard.slabs = {{{-5.0, -0.9}, {30.0, -0.9}}};
+  w.begin({.side = Side::Right, .distance_m = 0.9, .length_m = 5.0});
+  w.drive.end_beside({3.0, 11.0});
+  w.run(25.0);
+  EXPECT_EQ(w.drive.state(), WallDrive::State::Done) << w.drive.reason();
+  EXPECT_NEAR(w.rover.odometry.x_m, 5.0, 0.15);
+}
+
 TEST(WallItem, CreepsToAWallThatIsNotSeenYetAndNoFarther) {
   WallItem none;
   none.begin({.side = Side::Left, .distance_m = 0.9});

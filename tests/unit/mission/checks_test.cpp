@@ -83,15 +83,16 @@ TEST(Check, NamesTheItemsThatSpeakAgainstIt) {
 }
 
 TEST(Check, TellsWhatMustBeConfiguredForAType) {
-  const auto report = check(
-      course({spot(0, 0), Row{RowSide::Left, 0.8}, Wall{Side::Left, 1.0}, Landmarks{"cone", 0.7}}),
-      tracks(), {});
+  const auto report = check(course({spot(0, 0), Row{RowSide::Left, 0.8}, Wall{Side::Left, 1.0},
+                                    Landmarks{"cone", 0.7}, Dock{5}}),
+                            tracks(), {});
 
-  EXPECT_EQ(report.errors, 3u);
+  EXPECT_EQ(report.errors, 4u);
   EXPECT_EQ(report.findings.at(0).pointer, "/items/1");
   EXPECT_NE(report.findings.at(0).detail.find("no scanner"), std::string::npos);
   EXPECT_NE(report.findings.at(1).detail.find("no scanner or camera"), std::string::npos);
   EXPECT_NE(report.findings.at(2).detail.find("no scanner or camera"), std::string::npos);
+  EXPECT_NE(report.findings.at(3).detail.find("no camera that reads tags"), std::string::npos);
 }
 
 TEST(Check, ACarNeedsRoomToTurn) {

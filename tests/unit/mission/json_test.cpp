@@ -40,6 +40,37 @@ TEST(PlanJson, EveryItemSurvivesARoundTripThroughBothForms) {
   EXPECT_EQ(plan_from_text(plan_to_json(plan).dump(2)).value(), plan);
 }
 
+TEST(PlanJson, ADrawingIsKeptAsItCameAndAPlanWithoutOneHasNone) {
+  Plan plan = plan_with_every_item();
+  EXPECT_FALSE(plan_to_json(plan).contains("drawing"));
+  EXPECT_EQ(plan_to_text(plan).find("drawing"), std::string::npos);
+  plan.drawing = {{"kind", "survey"}, {"wish", {{"spacing_m", 0.1}, {"holes", json::array()}}}};
+  ASSERT_TRUE(check_plan(plan));
+  EXPECT_EQ(plan_from_text(plan_to_text(plan)).value(), plan);
+  EXPECT_EQ(plan_from_json(plan_to_json(plan)).value(), plan);
+  EXPECT_TRUE(plan_from_text(R"({"name":"x","items":[],"drawing":null})")->drawing.is_null());
+}
+
+TEST(PlanJson, ADrawingThatIsNoneIsRefused) {
+  const auto with = [](const std::string& drawing) {
+    return R"({"name":"x","items":[],"drawing":)" + drawing + "}";
+  };
+  for (const char* bad :
+       {"5", "[]", "\"survey\"", "{}", R"({"kind":5})", R"({"kind":""})", R"({"kind":"A field"})",
+        R"({"kind":"aaaaaaaaaabbbbbbbbbbccccccccccddddddddddx"})"}) {
+    EXPECT_EQ(wrong_in(with(bad)), Names{"/drawing"}) << bad;
+  }
+  // To the byte: {"kind":"a","x":"…"} has 19 besides.
+  const auto of_bytes = [&](std::size_t bytes) {
+    return with(R"({"kind":"a","x":")" + std::string(bytes - 19, 'x') + "\"}");
+  };
+  EXPECT_TRUE(plan_from_text(of_bytes(kMaxDrawing)));
+  EXPECT_EQ(wrong_in(of_bytes(kMaxDrawing + 1)), Names{"/drawing"});
+  Plan plan = plan_with_every_item();
+  plan.drawing = json::array();
+  EXPECT_FALSE(check_plan(plan));
+}
+
 TEST(PlanJson, RandomPlansSurviveARoundTripToTheLastBit) {
   RandomPlans plans(20'240'601);
   for (int i = 0; i < 300; ++i) {
@@ -283,6 +314,11 @@ TEST(PlanJson, RangesEndWhereTheyShould) {
            {R"({"type":"row","side":"both","speed_mps":0.4,"distance_m":80,"seeing":"rays"})",
             true},
            {R"({"type":"row","distance_m":0})", false},
+           {R"({"type":"row","until_lat":58.3,"until_lon":26.7})", true},
+           {R"({"type":"row","until_lat":58.3})", false},
+           {R"({"type":"row","until_lat":91,"until_lon":26.7})", false},
+           {R"({"type":"wall","side":"left","distance_m":1,"until_place":"gate"})", true},
+           {R"({"type":"wall","side":"left","distance_m":1,"until_place":7})", false},
            {R"({"type":"row","seeing":"camera"})", false},
            {R"({"type":"wall","side":"right","distance_m":20})", true},
            {R"({"type":"wall","side":"right","distance_m":0})", false},
@@ -293,6 +329,10 @@ TEST(PlanJson, RangesEndWhereTheyShould) {
            {R"({"type":"landmarks","name":"any","offset_m":0.7,"speed_mps":0.4,"count":5})", true},
            {R"({"type":"landmarks","name":"any","offset_m":0.7,"count":-1})", false},
            {R"({"type":"landmarks","name":"any","offset_m":0.7,"speed_mps":0})", false},
+           {R"({"type":"dock","tag":0,"stand_off_m":0.9})", true},
+           {R"({"type":"dock","tag":587})", false},
+           {R"({"type":"dock","tag":1.5})", false},
+           {R"({"type":"dock","stand_off_m":0.9})", false},
            {R"({"type":"jump","item":1,"times":0})", true},
            {R"({"type":"jump","item":2,"times":1})", false},
            {R"({"type":"jump","item":3,"times":1})", false},
@@ -353,6 +393,8 @@ TEST(PlanJson, EveryNumberOfEveryItemHasItsRange) {
       {R"({"type":"row","side":"left"})", "gap_m", 0.0, 20.1},
       {R"({"type":"wall","side":"left","distance_m":1})", "distance_m", 0.0, 20.1},
       {R"({"type":"landmarks","name":"x","offset_m":1})", "offset_m", -20.1, 20.1},
+      {R"({"type":"dock","tag":1})", "tag", -1.0, 587.0},
+      {R"({"type":"dock","tag":1})", "stand_off_m", 0.09, 5.1},
       {R"({"type":"jump","item":1,"times":1})", "item", 0.0, 200'001.0},
       {R"({"type":"jump","item":1,"times":1})", "times", -1.0, 10'001.0}};
   for (const Edge& edge : edges) {
@@ -421,14 +463,14 @@ TEST(PlanJson, APlanMadeInMemoryIsCheckedByTheSameRules) {
   std::get<Waypoint>(plan.items[0]).at.lat = std::nan("");
   std::get<Waypoint>(plan.items[0]).speed_mps = std::numeric_limits<double>::infinity();
   std::get<TurnBy>(plan.items[5]).heading_deg = 3.0;
-  std::get<Jump>(plan.items[13]).item = 99;
+  std::get<Jump>(plan.items[14]).item = 99;
   plan.settings.at_end = static_cast<AtEnd>(9);
   const auto ok = check_plan(plan);
   ASSERT_FALSE(ok);
   Names pointers;
   for (const auto& field : ok.error().fields) pointers.push_back(field.pointer);
   EXPECT_EQ(pointers, (Names{"/settings/at_end", "/items/0/lat", "/items/0/speed_mps",
-                             "/items/5/heading_deg", "/items/13/item"}));
+                             "/items/5/heading_deg", "/items/14/item"}));
   EXPECT_NO_THROW(plan_to_json(plan).dump());
   EXPECT_NO_THROW(plan_to_text(plan));
 }

@@ -44,6 +44,18 @@ Plan with_jump(int items, int place, int to) {
   return plan;
 }
 
+TEST(ListOperations, OtherItemsAreNotWhatWasDrawnAndTheSameOnesAre) {
+  Plan plan = numbered(3);
+  plan.drawing = {{"kind", "survey"}};
+  EXPECT_EQ(perform(plan, SetHome{{{59.0, 26.0}, std::nullopt}})->plan.drawing, plan.drawing);
+  EXPECT_TRUE(perform(plan, Reverse{})->plan.drawing.is_null());
+  EXPECT_TRUE(perform(plan, AddWaypoint{waypoint_at(9, 0), std::nullopt})->plan.drawing.is_null());
+  const auto parts = split(plan, 1);
+  ASSERT_TRUE(parts);
+  EXPECT_TRUE(parts->first.drawing.is_null());
+  EXPECT_TRUE(parts->rest.drawing.is_null());
+}
+
 TEST(ListOperations, AWaypointIsAddedAtTheEndOrAfterAnItem) {
   EXPECT_EQ(after(numbered(2), AddWaypoint{waypoint_at(9, 0), std::nullopt}), "1 2 9");
   EXPECT_EQ(after(numbered(2), AddWaypoint{waypoint_at(9, 0), 0}), "9 1 2");

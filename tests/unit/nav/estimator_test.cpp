@@ -191,6 +191,26 @@ TEST(Estimator, AWorseFixOpensTheOffsetInsteadOfMovingTheRobot) {
   EXPECT_LT(d.position_error_m(), 0.05);
 }
 
+TEST(Estimator, AFixedSolutionThatDoesNotLastMakesNoVaguePlaceACertainOne) {
+  Drive d;
+  d.fix = base::FixType::RtkFloat;
+  d.offset_east_m = 0.6;
+  d.run(6.0);
+  d.fix = base::FixType::RtkFixed;
+  d.run(2.0);
+  d.fix = base::FixType::RtkFloat;
+  d.run(1.0);
+  EXPECT_GT(d.pose()->horizontal_sigma_m, 0.25);
+}
+
+TEST(Estimator, AFixedSolutionThatLastsIsBelievedAfterThreeSeconds) {
+  Drive d;
+  d.run(2.0);
+  EXPECT_GT(d.pose()->horizontal_sigma_m, 0.25);
+  d.run(2.5);
+  EXPECT_LT(d.pose()->horizontal_sigma_m, 0.05);
+}
+
 TEST(Estimator, WorksWithAReceiverAloneAndSaysSo) {
   Drive d;
   d.tracks = false;

@@ -77,6 +77,25 @@ TEST(Executor, StartsAtTheNearestOrAtAGivenItem) {
   EXPECT_FALSE(none.executor.start({StartAt::From::Item, 0}, {}, {}));
 }
 
+// It stands, as far as it knows. @return how long until that blocks the mission
+double gives_up_after_s(double yaw_sigma_rad) {
+  Ride r;
+  r.vehicle.yaw_sigma_rad = yaw_sigma_rad;
+  r.load(plan({at(4, 0), at(8, 0)}));
+  r.start();
+  int ticks = 0;
+  while (r.executor.state() == ExecutionState::Running && ticks < 5000) {
+    (void)r.executor.step(r.vehicle, 10.0, r.home, 0.02);
+    ++ticks;
+  }
+  return 0.02 * ticks;
+}
+
+TEST(Executor, WithoutProgressItIsBlockedAndLaterWhileItLooksForItsHeading) {
+  EXPECT_NEAR(gives_up_after_s(0.02), 10.0, 1.0);
+  EXPECT_NEAR(gives_up_after_s(1.5), 30.0, 2.0);
+}
+
 TEST(Executor, RefusesAFirstPointThatIsTooFarAway) {
   Ride r;
   r.vehicle.at = {0, -60};

@@ -167,6 +167,41 @@ TEST_F(JuryTest, PositionsThatRunApartAreToldAfterThreeLooksOfTheirOwnAndAStepAf
   EXPECT_EQ(jury.votes().accusations, 2u);
 }
 
+TEST_F(JuryTest, PositionsThatNothingHasProvedAreToldAfterThreeLooksWhoeverIsNamedMeanwhile) {
+  Table bend;
+  differ(bend, Sense::Position, Sense::Gyro, 1.5);
+  Table way = lie(Sense::Position);
+  bend.unproved = way.unproved = true;
+  look(bend);
+  look(way);
+  EXPECT_FALSE(jury.votes().undecided);
+  look(bend);
+  ASSERT_TRUE(jury.votes().undecided);
+  EXPECT_EQ((*jury.votes().undecided)[0], Sense::Gyro);
+  EXPECT_EQ((*jury.votes().undecided)[1], Sense::Position);
+  EXPECT_EQ(jury.votes().undecided_off.size, 1.5);
+  EXPECT_EQ(jury.votes().accusations, 1u);
+  EXPECT_TRUE(jury.votes().unproved_differed);
+
+  jury.acquit_all({});
+  EXPECT_FALSE(jury.votes().unproved_differed);
+  bend.unproved = way.unproved = false;  // they were driven with for long: their word counts
+  look(bend);
+  look(way);
+  look(bend);
+  EXPECT_FALSE(jury.votes().undecided);
+  EXPECT_FALSE(jury.votes().unproved_differed);
+}
+
+TEST_F(JuryTest, ACompassIsNoWitnessAgainstPositionsThatNothingHasProved) {
+  Table t;
+  differ(t, Sense::Position, Sense::Compass, 1.5);
+  t.unproved = true;
+  for (int i = 0; i < 5; ++i) look(t);
+  EXPECT_FALSE(jury.votes().undecided);
+  EXPECT_FALSE(jury.votes().unproved_differed);
+}
+
 TEST_F(JuryTest, WhatStandsBetweenThoseWithAVoiceIsDoubtedFromTheSecondLookOn) {
   look(lie(Sense::Position, 2.5));
   EXPECT_EQ(jury.votes().doubt_m, 0.0);

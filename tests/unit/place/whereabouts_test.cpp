@@ -281,5 +281,21 @@ TEST(Whereabouts, TellsOnceThatNoMapIsInUse) {
   EXPECT_FALSE(w.step(0.0, 0.0));
 }
 
+/// Two sensors, the worse one is heard first: it is looked through until the better one comes, and
+/// again a second after that one fell silent.
+TEST(Whereabouts, TheBestSensorThatIsHeardIsLookedThrough) {
+  Walk walk({2.5, 3.0, 0.1});
+  WhereaboutsParams params;
+  params.eyes = {"front", "top"};
+  walk.where = Whereabouts(params);
+  (void)walk.where.use(Walk::map(MapAnchor{kShedAt, kTurned_rad, 0.05}), walk.now());
+  EXPECT_TRUE(walk.step(0.05, 0.0, {}, "top"));
+  EXPECT_TRUE(walk.step(0.05, 0.0, {}, "front")) << "at once: it is the better one";
+  EXPECT_FALSE(walk.step(0.05, 0.0, {}, "top"));
+  for (int i = 0; i < 8; ++i) EXPECT_FALSE(walk.step(0.05, 0.0, {}, "top")) << i;
+  EXPECT_TRUE(walk.step(0.05, 0.0, {}, "top")) << "a second later";
+  EXPECT_TRUE(walk.step(0.05, 0.0, {}, "front"));
+}
+
 }  // namespace
 }  // namespace roverd::nav::place

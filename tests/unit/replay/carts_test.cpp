@@ -14,6 +14,7 @@
 #include "replay/run.hpp"
 #include "sim/cart.hpp"
 #include "sim/config.hpp"
+#include "source_folder.hpp"
 #include "twist/text.hpp"
 
 namespace roverd {
@@ -61,8 +62,8 @@ struct CartDrive {
 /// 2 s standing, then half a minute in a wide curve, as --record writes it down.
 CartDrive record_cart(const CartKind& kind) {
   sim::Config config;
-  EXPECT_TRUE(
-      sim::read_config_file(config, std::string(CONFIG_FOLDER "/sim/") + kind.vehicle + ".toml"));
+  EXPECT_TRUE(sim::read_config_file(
+      config, tests::in_source(std::string("config/sim/") + kind.vehicle + ".toml")));
   sim::Start start;
   start.wall = base::WallTime{tests::kWall};
   sim::Cart cart(config.params, 1, start);
@@ -128,7 +129,7 @@ TEST_P(CartReplay, GivesTheDrivenTrackTwiceTheSame) {
   const CartDrive drive = record_cart(kind);
   ASSERT_GT(drive.end.driven_m, 8.0);
   const auto settings = load_settings(
-      {.config = CONFIG_FOLDER "/robot.toml", .vehicle = kind.vehicle, .overrides = {}});
+      {.config = tests::in_source("config/robot.toml"), .vehicle = kind.vehicle, .overrides = {}});
   ASSERT_TRUE(settings);
   const std::vector<std::string> files{file("drive.raw", drive.drive),
                                        file("gnss.raw", drive.receiver)};
@@ -169,8 +170,8 @@ TEST_P(CartReplay, CorrectionsAndABumperAreCountedAndSilentDevicesLeftOut) {
   for (int i = 0; i < 30; ++i) {
     link::append_record(corrections, tests::kWall + i * 1s, false, kFrame1005);
   }
-  const auto settings =
-      load_settings({.config = CONFIG_FOLDER "/robot.toml", .vehicle = "husky", .overrides = {}});
+  const auto settings = load_settings(
+      {.config = tests::in_source("config/robot.toml"), .vehicle = "husky", .overrides = {}});
   ASSERT_TRUE(settings);
   const std::string only = text_of({file("gnss.raw", drive.receiver)}, *settings);
   text_of({file("gnss.raw", drive.receiver), file("ntrip.raw", corrections),

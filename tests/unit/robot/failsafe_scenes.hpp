@@ -70,6 +70,18 @@ inline const std::vector<Scene> kFailsafeScenes = {
        w.charge_pct = 8.0;
        w.run(6.0);
      }},
+    {"a hand on the speed falls silent",
+     [](Walk& w) {
+       w.run(8.0);
+       w.go(plan_of({{0, 30}}));
+       w.run(1.0);
+       for (int i = 0; i < 20; ++i) {
+         if (i == 10) w.change();
+         w.robot.request(Throttle{1.0, true}, w.now + std::chrono::milliseconds(250), {});
+         w.run(0.1);
+       }
+       w.run(3.0);
+     }},
 };
 
 }  // namespace roverd::robot

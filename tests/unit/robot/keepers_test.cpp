@@ -105,6 +105,35 @@ TEST(MissionKeeper, TriesAPlaceBeforeItTakesIt) {
   EXPECT_EQ(keeper.progress({}, {}, false).current_item, 2);
 }
 
+//   ●──────────────○~~~~~○      kept here, and 0.8 m later it stands
+TEST(MissionKeeper, CountsHowFarItRolledOnAlongARowOrAWall) {
+  mission::Plan plan;
+  plan.items = {mission::Wall{mission::Side::Left, 0.9}, mission::Move{2.0}};
+  const auto route = nav::lay_route(plan, kFrame, Config{}.path());
+  ASSERT_TRUE(route) << route.error().detail;
+  base::MissionPlace kept;
+  kept.left = 3.0;
+  kept.driving = true;
+  kept.at = kFrame.to_global({1.0, 1.0});
+  base::Pose pose;
+  pose.global = kFrame.to_global({1.0, 1.8});
+  pose.horizontal_sigma_m = 0.02;
+  EXPECT_NEAR(rolled_on(*route, kept, pose).left, 3.8, 0.01);
+  pose.horizontal_sigma_m = 0.6;
+  EXPECT_EQ(rolled_on(*route, kept, pose).left, 3.0) << "nobody knows how far";
+  pose.horizontal_sigma_m = 0.02;
+  pose.global = kFrame.to_global({1.0, 5.0});
+  EXPECT_EQ(rolled_on(*route, kept, pose).left, 3.0) << "it was carried";
+  pose.global = kFrame.to_global({1.0, 1.8});
+  kept.step = 1;
+  EXPECT_EQ(rolled_on(*route, kept, pose).left, 3.0) << "a move counts what is left";
+  kept.step = 0;
+  kept.driving = false;
+  EXPECT_EQ(rolled_on(*route, kept, pose).left, 3.0);
+  kept.step = 99;
+  EXPECT_EQ(rolled_on(*route, kept, pose).left, 3.0);
+}
+
 // ---- the fence ----
 
 //  10 ┌────────┐

@@ -12,6 +12,7 @@
 #include "row_scenes.hpp"
 #include "scenes.hpp"
 #include "seeing_scenes.hpp"
+#include "tag_scenes.hpp"
 #include "wall_scenes.hpp"
 
 namespace roverd::robot {
@@ -62,6 +63,7 @@ std::vector<base::ParamValue> others(const Parameter& p) {
 const std::vector<Scene>& scenes_of(const Parameter& p) {
   if (p.section == "nav.row" || p.section == "nav.rows") return kRowScenes;
   if (p.section == "nav.landmarks") return kLandmarkScenes;
+  if (p.section == "nav.tag_dock") return kTagScenes;
   if (p.section == "nav.sight" || p.section == "nav.wall") return kWallScenes;
   return p.section.starts_with("sense.") ? kSeeingScenes : kScenes;
 }
@@ -70,37 +72,12 @@ class Stage {
  public:
   /// Does one value of it, set on the way, change what is seen in one scene?
   bool acts(const Parameter& p) {
-    const std::string name = p.section + "." + p.info.name;
-    for (const Scene& scene : scenes_of(p)) {
-      const Config config = of(scene);
-      for (const base::ParamValue& value : others(p)) {
-        Config trial = config;
-        if (!set_parameter(trial, name, value)) continue;
-        const Played one = play(scene, config, name, value);
-        if (one.refusal.empty() && one.seen != quiet(scene)) return true;
-        if (one.refusal.empty()) continue;
-        // What makes an armed robot less safe is not taken: before it is armed, then.
-        EXPECT_TRUE(one.refusal.ends_with("disarm first")) << one.refusal;
-        EXPECT_EQ(one.seen, quiet(scene)) << name;
-        const Played early = play(scene, config, name, value, When::Disarmed);
-        EXPECT_TRUE(early.refusal.empty()) << early.refusal;
-        if (early.seen != quiet(scene, When::Disarmed)) return true;
-      }
-    }
-    return false;
+    return any_scene(p, [&](const Scene& scene) { return acts_in(scene, p); });
   }
 
   /// The same of a robot that begins with it.
   bool begins(const Parameter& p) {
-    const std::string name = p.section + "." + p.info.name;
-    for (const Scene& scene : scenes_of(p)) {
-      for (const base::ParamValue& value : others(p)) {
-        Config config = of(scene);
-        if (!set_parameter(config, name, value)) continue;
-        if (played(scene, config, kNone, {}) != quiet(scene)) return true;
-      }
-    }
-    return false;
+    return any_scene(p, [&](const Scene& scene) { return begins_in(scene, p); });
   }
 
   /// Asked for on the way, it is refused, and nothing changes.
@@ -118,6 +95,50 @@ class Stage {
   }
 
  private:
+  /// One after the other, but first the one in which the parameter before it of its section was
+  /// seen: mostly that is the one.
+  template <class Sees>
+  bool any_scene(const Parameter& p, Sees sees) {
+    const std::vector<Scene>& scenes = scenes_of(p);
+    std::size_t& first = seen_in_[p.section];
+    for (std::size_t k = 0; k < scenes.size(); ++k) {
+      const std::size_t i = (first + k) % scenes.size();
+      if (!sees(scenes[i])) continue;
+      first = i;
+      return true;
+    }
+    return false;
+  }
+
+  bool acts_in(const Scene& scene, const Parameter& p) {
+    const std::string name = p.section + "." + p.info.name;
+    const Config config = of(scene);
+    for (const base::ParamValue& value : others(p)) {
+      Config trial = config;
+      if (!set_parameter(trial, name, value)) continue;
+      const Played one = play(scene, config, name, value);
+      if (one.refusal.empty() && one.seen != quiet(scene)) return true;
+      if (one.refusal.empty()) continue;
+      // What makes an armed robot less safe is not taken: before it is armed, then.
+      EXPECT_TRUE(one.refusal.ends_with("disarm first")) << one.refusal;
+      EXPECT_EQ(one.seen, quiet(scene)) << name;
+      const Played early = play(scene, config, name, value, When::Disarmed);
+      EXPECT_TRUE(early.refusal.empty()) << early.refusal;
+      if (early.seen != quiet(scene, When::Disarmed)) return true;
+    }
+    return false;
+  }
+
+  bool begins_in(const Scene& scene, const Parameter& p) {
+    const std::string name = p.section + "." + p.info.name;
+    for (const base::ParamValue& value : others(p)) {
+      Config config = of(scene);
+      if (!set_parameter(config, name, value)) continue;
+      if (played(scene, config, kNone, {}) != quiet(scene)) return true;
+    }
+    return false;
+  }
+
   static Config of(const Scene& scene) {
     Config config;
     scene.prepare(config);
@@ -130,6 +151,7 @@ class Stage {
   }
 
   std::map<std::pair<std::string, When>, std::vector<std::uint64_t>> quiet_;
+  std::map<std::string, std::size_t> seen_in_;  ///< of a section
 };
 
 TEST(ParameterWalk, ASceneTwiceIsTheSame) {

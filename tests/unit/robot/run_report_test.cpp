@@ -133,5 +133,53 @@ TEST(RunReports, TwoCentimetresTellNothing) {
   EXPECT_FALSE(report->tells_straights());
 }
 
+/// Three items by sight: a row driven 1 m without one in sight, 4 m 0.1 m left and 2 m 0.2 m right
+/// of it; a person's metre and a pause do not count; a wall that was seen for too short; landmarks
+/// that were never begun.
+TEST(RunReports, WhatIsDrivenBySightIsJudgedByWhatWasSeen) {
+  mission::Plan plan = plan_of({{0, 0}, {0, 8}});
+  plan.items = {mission::Row{}, mission::Move{1.0}, mission::Wall{},
+                mission::Landmarks{"any", 1.0}};
+  std::vector<ReportPoint> track;
+  double t_s = 0.0;
+  double north_m = 0.0;
+  const auto drive = [&](int item, double way_m, std::optional<double> cross_m, bool by_itself) {
+    for (double s_m = 0.0; s_m < way_m - 1e-9; s_m += 0.1) {
+      ReportPoint p;
+      p.t_s = t_s += 0.2;
+      p.at = kFrame.to_global({0.0, north_m += 0.1});
+      p.item = item;
+      p.cross_m = cross_m;
+      p.by_itself = by_itself;
+      track.push_back(p);
+    }
+  };
+  drive(1, 1.1, std::nullopt, true);
+  drive(1, 4.0, 0.1, true);
+  drive(1, 1.0, 3.0, false);
+  t_s += 60.0;
+  north_m += 5.0;
+  drive(1, 2.1, -0.2, true);
+  drive(2, 1.0, std::nullopt, true);
+  drive(3, 0.9, 0.05, true);
+
+  const auto report = report_run(plan, track, 1, {});
+  ASSERT_TRUE(report) << report.error().detail;
+  ASSERT_EQ(report->by_sight.size(), 2U);
+  const SightMeasure& row = report->by_sight[0];
+  EXPECT_EQ(row.item, 1);
+  EXPECT_EQ(row.type, "row");
+  EXPECT_NEAR(row.driven_m, 7.0, 0.01);
+  EXPECT_NEAR(row.judged_m, 6.0, 0.01);
+  EXPECT_TRUE(row.tells());
+  EXPECT_NEAR(row.cross.rms_m, std::sqrt((4.0 * 0.01 + 2.0 * 0.04) / 6.0), 1e-3);
+  EXPECT_NEAR(row.cross.mean_m, 0.8 / 6.0, 1e-3);
+  EXPECT_NEAR(row.cross.p95_m, 0.2, 1e-9);
+  EXPECT_NEAR(row.cross.max_m, 0.2, 1e-9);
+  const SightMeasure& wall = report->by_sight[1];
+  EXPECT_EQ(wall.type, "wall");
+  EXPECT_FALSE(wall.tells());
+}
+
 }  // namespace
 }  // namespace roverd::robot

@@ -102,7 +102,7 @@ class Walker : public Field {
     move.forward_m = chance_.between(-3, 3);
     MoveBy turn;
     turn.turn_rad = chance_.between(-3, 3);
-    static constexpr Mode kModes[] = {Mode::Manual,   Mode::Manual, Mode::Hold,     Mode::Auto,
+    static constexpr Mode kAsked[] = {Mode::Manual,   Mode::Manual, Mode::Hold,     Mode::Auto,
                                       Mode::Guided,   Mode::Rtl,    Mode::SmartRtl, Mode::Acro,
                                       Mode::Steering, Mode::Simple};
     switch (chance_.below(20)) {
@@ -122,7 +122,7 @@ class Walker : public Field {
       case 9:
       case 10:
       case 11:
-        return request(SetMode{kModes[chance_.below(std::size(kModes))]}, true);
+        return request(SetMode{kAsked[chance_.below(std::size(kAsked))]}, true);
       case 12:
       case 13:
         return request(StartMission{"m", 1}, true);

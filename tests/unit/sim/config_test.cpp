@@ -5,9 +5,14 @@
 #include <gtest/gtest.h>
 
 #include "sim/options.hpp"
+#include "source_folder.hpp"
 
 namespace roverd::sim {
 namespace {
+
+std::string sim_config() {
+  return tests::in_source("config/sim/bunker.toml");
+}
 
 std::string problem(const base::Result<void>& result) {
   return result ? "none" : result.error().detail;
@@ -20,7 +25,7 @@ Parsed parse(std::vector<const char*> arguments) {
 
 TEST(SimConfig, TheFileThatIsShippedHoldsTheDefaults) {
   Config config;
-  ASSERT_EQ(problem(read_config_file(config, SIM_CONFIG_FILE)), "none");
+  ASSERT_EQ(problem(read_config_file(config, sim_config())), "none");
   EXPECT_EQ(parameter_list(config), parameter_list(Config{}));
 }
 
@@ -72,9 +77,10 @@ TEST(SimOptions, OneOfTheTwoBusesIsNeeded) {
 }
 
 TEST(SimOptions, EverythingIsTakenAndTheCommandLineWinsOverTheFile) {
+  const std::string file = sim_config();
   const Parsed p =
       parse({"--cansock", "/run/x", "--gnss", "pty:/run/tty", "--control", "7001", "--seed", "42",
-             "--config", SIM_CONFIG_FILE, "--set", "drive.slip=0.2", "--set", "gnss.rate_hz=10",
+             "--config", file.c_str(), "--set", "drive.slip=0.2", "--set", "gnss.rate_hz=10",
              "--start", "-33.5,151.25,270.5", "--die-with-parent"});
   ASSERT_TRUE(p.options) << p.text;
   const Options& o = *p.options;

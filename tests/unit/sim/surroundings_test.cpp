@@ -67,6 +67,28 @@ TEST(Surroundings, SwitchedOffNothingIsThereToTouch) {
   EXPECT_EQ(told.at("contacts"), 0);
 }
 
+/// Ann would walk after a day; told to, she walks at once, into the robot that stands.
+TEST(Surroundings, SomebodyWalksWhenTold) {
+  world::World yard;
+  world::Thing ann;
+  ann.kind = world::Kind::Person;
+  ann.name = "Ann";
+  ann.points = {{3.0, 0.0}, {-3.0, 0.0}};
+  ann.motion = world::Motion::Once;
+  ann.start_s = 86'400.0;
+  yard.things = {ann};
+  Scenery s(yard);
+  s.wait(3s);
+  EXPECT_EQ(s.ask(R"({"get":"world"})").at("contacts"), 0);
+  EXPECT_EQ(s.ask(R"({"walk":"Bob"})").at("error"), "nobody of that name walks: Bob");
+  EXPECT_EQ(s.ask(R"({"walk":1})").at("error"), "walk must be the name of a person or an animal");
+  EXPECT_TRUE(s.ask(R"({"walk":"Ann"})").at("ok").get<bool>());
+  s.wait(1s);
+  EXPECT_EQ(s.ask(R"({"get":"world"})").at("contacts"), 0) << "1.2 m of 2.3";
+  s.wait(2s);
+  EXPECT_EQ(s.ask(R"({"get":"world"})").at("contacts"), 1);
+}
+
 TEST(Surroundings, WithoutAWorldTheSideChannelSaysSo) {
   Plant plant(ideal());
   const auto say = [&](const char* line) { return carry_out(line, plant.bunker, Time{}).line; };
@@ -118,7 +140,7 @@ TEST(SensorTables, AreReadStrictly) {
             "--set sensor.rear.x_m=0.4: unknown key sensor.rear.x_m");
 
   EXPECT_EQ(error("[[sensor]]\nkind = \"sonar\"\n"),
-            "sim.toml:1: sensor.kind must be lms, vlp16, depth, range or vision");
+            "sim.toml:1: sensor.kind must be lms, vlp16, depth, range, vision or picture");
   EXPECT_EQ(error("[[sensor]]\nkind = \"vlp16\"\nreturns = \"both\"\n"),
             "sim.toml:1: sensor.returns must be strongest, last or dual");
   EXPECT_EQ(error("[[sensor]]\nkind = \"lms\"\nreturns = \"dual\"\n"),

@@ -9,6 +9,7 @@
 #include "sim/world/contact.hpp"
 #include "sim/world/random.hpp"
 #include "sim/world/scene.hpp"
+#include "source_folder.hpp"
 
 namespace roverd::sim::world {
 namespace {
@@ -57,7 +58,7 @@ TEST(WorldFile, RefusesWithTheMembersName) {
   EXPECT_EQ(refused(R"({"ground":{"drops":[{"points":[[0,0],[1,0]],"depth_m":1}]}})"),
             "/ground/drops/0/points must have at least 3");
   EXPECT_EQ(refused_thing(R"("kind":"tree")"),
-            "/things/0/kind must be wall, bar, pole, box, cone, bush, row, person or animal");
+            "/things/0/kind must be wall, bar, pole, box, cone, bush, row, person, animal or tag");
   EXPECT_EQ(refused_thing(R"("kind":"pole")"), "/things/0/at is missing");
   EXPECT_EQ(refused_thing(R"("kind":"pole","at":[1,2,3])"),
             "/things/0/at must be [east_m, north_m]");
@@ -112,7 +113,7 @@ TEST(RandomWorlds, HaveNames) {
 
 TEST(WorldFile, EveryExampleIsTakenAndLeavesRoomAtItsStart) {
   int found = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(WORLDS)) {
+  for (const auto& entry : std::filesystem::directory_iterator(tests::in_source("config/worlds"))) {
     ++found;
     std::ifstream in(entry.path(), std::ios::binary);
     std::ostringstream text;

@@ -309,7 +309,7 @@ TEST(SensorParams, AreCheckedByName) {
   SensorParams p = usual("lms");
   EXPECT_TRUE(check(p));
   p.kind = "sonar";
-  EXPECT_EQ(check(p).error().detail, "kind must be lms, vlp16, depth, range or vision");
+  EXPECT_EQ(check(p).error().detail, "kind must be lms, vlp16, depth, range, vision or picture");
   p = usual("lms");
   p.fov_to_deg = p.fov_from_deg;
   EXPECT_EQ(check(p).error().detail,

@@ -146,7 +146,11 @@ TEST(Opening, EveryOlderSchemaIsUpgradedWithItsData) {
     EXPECT_EQ(found->revision, 2);
     EXPECT_EQ(found->plan.items.size(), 1u);
     EXPECT_EQ(read_at(*store, "0123456789ab", 1)->plan.name, "one");
-    EXPECT_TRUE(replace(*store, "0123456789ab", 2, plan_named("three")));
+    auto drawn = plan_named("three");
+    drawn.drawing = {{"kind", "survey"}};
+    EXPECT_TRUE(replace(*store, "0123456789ab", 2, drawn));
+    EXPECT_EQ(read(*store, "0123456789ab")->plan.drawing, drawn.drawing);
+    EXPECT_TRUE(read_at(*store, "0123456789ab", 2)->plan.drawing.is_null());
     store->add_event({base::WallTime{}, base::Severity::Info, "armed", "x"});
     EXPECT_EQ(events(*store, 0, base::Severity::Info, 10)->items.size(), 1u);
     const people::User anna{"anna", people::Role::Admin, "hash", {}};

@@ -1,13 +1,19 @@
-#include "store/tiles.hpp"
-
 #include <fstream>
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "store/tile_shelf.hpp"
+
 namespace roverd::store {
 namespace {
+
+using base::Code;
+using namespace std::string_literals;
+
+const std::string kPng = "\x89PNG\r\n\x1a\n and a picture";
+constexpr TileAddress kThere{2, 1, 0};
 
 class TilesTest : public ::testing::Test {
  protected:
@@ -38,25 +44,38 @@ class TilesTest : public ::testing::Test {
     return file;
   }
 
+  std::unique_ptr<TileShelf> shelf(const TileShelf::Configured& configured = {},
+                                   std::uintmax_t leave_free = 0) {
+    auto opened = TileShelf::open(folder_ / "kept", configured, leave_free);
+    EXPECT_TRUE(opened) << opened.error().detail;
+    return opened ? std::move(*opened) : nullptr;
+  }
+  std::string bytes_of(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  std::size_t files_kept() {
+    const std::filesystem::directory_iterator all(folder_ / "kept");
+    return static_cast<std::size_t>(std::distance(begin(all), end(all)));
+  }
+
   std::filesystem::path folder_;
 };
 
 TEST_F(TilesTest, RowsAreCountedFromTheNorthOutside) {
   // Given a tile in the file's uppermost row (3 of 0..3 from the south),
-  TileFolder tiles;
-  ASSERT_TRUE(tiles.open({{"farm", make("png", "PNG")}}));
+  const auto tiles = shelf({{"farm", make("png", "PNG")}});
   // then it is row 0 of the address.
-  const auto tile = tiles.read("farm", 2, 1, 0);
+  const auto tile = tiles->read("farm", kThere);
   ASSERT_TRUE(tile);
   EXPECT_EQ(tile->bytes, "PNG");
   EXPECT_EQ(tile->content_type, "image/png");
-  EXPECT_FALSE(tiles.read("farm", 2, 1, 3));
+  EXPECT_FALSE(tiles->read("farm", {2, 1, 3}));
 }
 
 TEST_F(TilesTest, TheSetIsDescribedAlsoWhereItsMetadataAreSilent) {
-  TileFolder tiles;
-  ASSERT_TRUE(tiles.open({{"farm", make("jpg", "JPG")}}));
-  const auto sets = tiles.sets();
+  const auto tiles = shelf({{"farm", make("jpg", "JPG")}});
+  const auto sets = tiles->sets();
   ASSERT_EQ(sets.size(), 1u);
   EXPECT_EQ(sets[0].set, "farm");
   EXPECT_EQ(sets[0].name, "farm");
@@ -64,28 +83,40 @@ TEST_F(TilesTest, TheSetIsDescribedAlsoWhereItsMetadataAreSilent) {
   EXPECT_EQ(sets[0].max_zoom, 2);
   EXPECT_EQ(sets[0].attribution, "Land Board");
   EXPECT_EQ(sets[0].bounds_deg, (std::array{24.5, 58.2, 24.9, 58.5}));
+  EXPECT_FALSE(sets[0].kept);
+}
+
+TEST_F(TilesTest, WithoutBoundsTheTilesTellThem) {
+  const auto file = make("png", kPng);
+  SQLite::Database(file.string(), SQLite::OPEN_READWRITE)
+      .exec("DELETE FROM metadata WHERE name = 'bounds'");
+  const auto bounds = shelf({{"farm", file}})->sets().at(0).bounds_deg;
+  // The second of four columns, the northernmost of four rows.
+  ASSERT_TRUE(bounds);
+  EXPECT_DOUBLE_EQ((*bounds)[0], -90.0);
+  EXPECT_NEAR((*bounds)[1], 66.51326, 1e-5);
+  EXPECT_DOUBLE_EQ((*bounds)[2], 0.0);
+  EXPECT_NEAR((*bounds)[3], 85.05113, 1e-5);
 }
 
 TEST_F(TilesTest, PackedVectorTilesSaySo) {
-  TileFolder tiles;
-  ASSERT_TRUE(tiles.open({{"roads", make("pbf", std::string("\x1f\x8b\x08\x00", 4))}}));
-  const auto tile = tiles.read("roads", 2, 1, 0);
+  const auto tiles = shelf({{"roads", make("pbf", "\x1f\x8b\x08\x00"s)}});
+  const auto tile = tiles->read("roads", kThere);
   ASSERT_TRUE(tile);
   EXPECT_EQ(tile->content_encoding, "gzip");
   EXPECT_EQ(tile->content_type, "application/vnd.mapbox-vector-tile");
 }
 
 TEST_F(TilesTest, WhatIsOutsideTheWorldIsNotThere) {
-  TileFolder tiles;
-  ASSERT_TRUE(tiles.open({{"farm", make("png", "PNG")}}));
-  EXPECT_FALSE(tiles.read("sea", 2, 1, 0));
-  EXPECT_FALSE(tiles.read("farm", 2, 4, 0));
-  EXPECT_FALSE(tiles.read("farm", 2, 1, -1));
-  EXPECT_FALSE(tiles.read("farm", 31, 0, 0));
-  EXPECT_FALSE(tiles.read("farm", -1, 0, 0));
+  const auto tiles = shelf({{"farm", make("png", "PNG")}});
+  EXPECT_FALSE(tiles->read("sea", kThere));
+  EXPECT_FALSE(tiles->read("farm", {2, 4, 0}));
+  EXPECT_FALSE(tiles->read("farm", {2, 1, -1}));
+  EXPECT_FALSE(tiles->read("farm", {31, 0, 0}));
+  EXPECT_FALSE(tiles->read("farm", {-1, 0, 0}));
 }
 
-TEST_F(TilesTest, AWrongFileIsNamedAndNothingIsOpened) {
+TEST_F(TilesTest, AWrongFileOfTheConfigurationIsNamedAndNothingIsOpened) {
   const auto text = folder_ / "text.mbtiles";
   std::ofstream(text) << "these are no tiles, although the text is longer than a header of SQLite "
                          "which has one hundred bytes";
@@ -93,13 +124,223 @@ TEST_F(TilesTest, AWrongFileIsNamedAndNothingIsOpened) {
   std::ofstream(empty) << "";
   const auto odd = make("tiff", "TIFF");
   for (const auto& file : {text, empty, odd, folder_ / "missing.mbtiles"}) {
-    TileFolder tiles;
-    const auto opened = tiles.open({{"good", make("png", "PNG")}, {"bad", file}});
+    const auto opened =
+        TileShelf::open(folder_ / "kept", {{"good", make("png", "PNG")}, {"bad", file}}, 0);
     std::filesystem::remove(folder_ / "png.mbtiles");
     ASSERT_FALSE(opened) << file;
     EXPECT_NE(opened.error().detail.find("tile set bad, file " + file.string()), std::string::npos);
-    EXPECT_TRUE(tiles.sets().empty());
   }
+}
+
+TEST_F(TilesTest, AFileComesInPiecesAndGoesOnAfterARestart) {
+  const std::string whole = bytes_of(make("png", kPng));
+  const std::size_t half = whole.size() / 2;
+  // Given the first half of a file,
+  const auto first =
+      shelf()->take("farm", {0, whole.size(), std::string_view(whole).substr(0, half)});
+  ASSERT_TRUE(first) << first.error().detail;
+  EXPECT_FALSE(*first);
+  // when the robot starts anew, it knows how far it came,
+  const auto tiles = shelf();
+  EXPECT_TRUE(tiles->sets().empty());
+  ASSERT_EQ(tiles->unfinished().size(), 1u);
+  EXPECT_EQ(tiles->unfinished()[0].received_bytes, half);
+  // takes no piece that leaves a gap or comes twice,
+  for (const std::size_t wrong : {half - 1, half + 1}) {
+    const auto gap = tiles->take("farm", {wrong, whole.size(), "x"});
+    ASSERT_FALSE(gap);
+    EXPECT_EQ(gap.error().code, Code::Conflict);
+    EXPECT_NE(gap.error().detail.find("the next byte of farm is " + std::to_string(half)),
+              std::string::npos);
+  }
+  // and with the rest it has the set,
+  const auto rest = tiles->take("farm", {half, whole.size(), std::string_view(whole).substr(half)});
+  ASSERT_TRUE(rest) << rest.error().detail;
+  ASSERT_TRUE(*rest);
+  EXPECT_TRUE((*rest)->kept);
+  EXPECT_FALSE((*rest)->grows);
+  EXPECT_TRUE(tiles->unfinished().empty());
+  EXPECT_EQ(tiles->read("farm", kThere)->bytes, kPng);
+  // also after the next start.
+  const auto later = shelf();
+  ASSERT_EQ(later->sets().size(), 1u);
+  EXPECT_TRUE(later->sets()[0].kept);
+  EXPECT_EQ(later->read("farm", kThere)->bytes, kPng);
+}
+
+TEST_F(TilesTest, WhatIsSentAgainTakesThePlaceOfWhatWasThere) {
+  const auto tiles = shelf();
+  const std::string before = bytes_of(make("png", kPng));
+  ASSERT_TRUE(tiles->take("farm", {0, before.size(), before}));
+  const std::string after = bytes_of(make("jpg", "\xff\xd8\xff another"));
+  ASSERT_TRUE(tiles->take("farm", {0, after.size(), after}));
+  ASSERT_EQ(tiles->sets().size(), 1u);
+  EXPECT_EQ(tiles->sets()[0].format, "jpg");
+  EXPECT_EQ(tiles->read("farm", kThere)->bytes, "\xff\xd8\xff another");
+}
+
+TEST_F(TilesTest, WhatIsNoFileOfTilesIsRefusedAndDeleted) {
+  const auto tiles = shelf();
+  const std::string good = bytes_of(make("png", kPng));
+  ASSERT_TRUE(tiles->take("farm", {0, good.size(), good}));
+  const auto refused = [&](const std::string& bytes) {
+    const auto taken = tiles->take("farm", {0, bytes.size(), bytes});
+    EXPECT_TRUE(tiles->unfinished().empty());
+    return taken ? std::string("taken") : taken.error().detail;
+  };
+  EXPECT_NE(refused("GIF89a and so on, no database").find("not a readable MBTiles file"),
+            std::string::npos);
+  EXPECT_EQ(refused(bytes_of(make("tiff", "TIFF"))), "its tiles have the unknown format \"tiff\"");
+  const auto none = make("webp", "RIFF");
+  SQLite::Database(none.string(), SQLite::OPEN_READWRITE).exec("DELETE FROM tiles");
+  EXPECT_EQ(refused(bytes_of(none)), "there is no tile in it");
+  // A file that was cut off: its pages are not there.
+  EXPECT_NE(refused(good.substr(0, 4096)), "taken");
+  // The one before is there as it was.
+  EXPECT_EQ(tiles->read("farm", kThere)->bytes, kPng);
+  EXPECT_EQ(files_kept(), 1u);
+}
+
+TEST_F(TilesTest, AViewWithoutEndIsAnErrorAndNoHang) {
+  const auto file = make("png", kPng);
+  {
+    SQLite::Database db(file.string(), SQLite::OPEN_READWRITE);
+    db.exec("DROP TABLE tiles");
+    db.exec(
+        "CREATE VIEW tiles AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) "
+        "SELECT i AS zoom_level, i AS tile_column, i AS tile_row, 'x' AS tile_data FROM n");
+  }
+  const std::string bytes = bytes_of(file);
+  const auto taken = shelf()->take("farm", {0, bytes.size(), bytes});
+  ASSERT_FALSE(taken);
+  EXPECT_EQ(taken.error().code, Code::Malformed);
+}
+
+TEST_F(TilesTest, APieceThatCannotBeIsRefused) {
+  const auto tiles = shelf({{"fixed", make("png", kPng)}});
+  EXPECT_EQ(tiles->take("farm", {0, 3, "four"}).error().code, Code::Invalid);
+  EXPECT_EQ(tiles->take("farm", {5, 3, "x"}).error().code, Code::Invalid);
+  EXPECT_EQ(tiles->take("farm", {0, 3, ""}).error().code, Code::Invalid);
+  EXPECT_EQ(tiles->take("farm", {0, kMostTileFile + 1, "x"}).error().code, Code::Invalid);
+  EXPECT_EQ(tiles->take("fixed", {0, 3, "x"}).error().code, Code::Conflict);
+  EXPECT_EQ(files_kept(), 0u);
+}
+
+TEST_F(TilesTest, ASetGrowsTileByTileAndIsThereAfterARestart) {
+  TileSet about;
+  about.set = "aerial";
+  about.name = "From the air";
+  about.format = "png";
+  about.attribution = "Land Board";
+  {
+    const auto tiles = shelf();
+    const auto made = tiles->create(about);
+    ASSERT_TRUE(made) << made.error().detail;
+    EXPECT_TRUE(made->grows && made->kept);
+    EXPECT_FALSE(made->bounds_deg);
+    EXPECT_EQ(tiles->create(about).error().code, Code::Conflict);
+    ASSERT_TRUE(tiles->put("aerial", {18, 147'000, 76'000}, kPng));
+    ASSERT_TRUE(tiles->put("aerial", {17, 73'500, 38'000}, kPng));
+    ASSERT_TRUE(tiles->put("aerial", {18, 147'001, 76'000}, kPng + "2"));
+    ASSERT_TRUE(tiles->put("aerial", {18, 147'001, 76'000}, kPng + "3"));
+  }
+  const auto tiles = shelf();
+  ASSERT_EQ(tiles->sets().size(), 1u);
+  const TileSet set = tiles->sets()[0];
+  EXPECT_EQ(set.name, "From the air");
+  EXPECT_EQ(set.attribution, "Land Board");
+  EXPECT_EQ(set.min_zoom, 17);
+  EXPECT_EQ(set.max_zoom, 18);
+  ASSERT_TRUE(set.bounds_deg);
+  EXPECT_EQ((*set.bounds_deg)[0], bounds_of({18, 147'000, 76'000})[0]);
+  EXPECT_EQ((*set.bounds_deg)[2], bounds_of({18, 147'001, 76'000})[2]);
+  EXPECT_EQ(tiles->read("aerial", {18, 147'001, 76'000})->bytes, kPng + "3");
+  // And it grows on.
+  EXPECT_TRUE(tiles->put("aerial", {18, 147'002, 76'000}, kPng));
+  EXPECT_EQ((*tiles->sets()[0].bounds_deg)[2], bounds_of({18, 147'002, 76'000})[2]);
+}
+
+TEST_F(TilesTest, OnlyWhatFitsTheSetIsPutIntoIt) {
+  const auto tiles = shelf({{"fixed", make("png", kPng)}});
+  TileSet about;
+  about.set = about.name = "aerial";
+  about.format = "jpg";
+  ASSERT_TRUE(tiles->create(about));
+  EXPECT_EQ(tiles->put("aerial", kThere, kPng).error().code, Code::Unsupported);
+  EXPECT_EQ(tiles->put("aerial", {2, 4, 0}, "\xff\xd8\xff").error().code, Code::Invalid);
+  EXPECT_EQ(tiles->put("nowhere", kThere, kPng).error().code, Code::NotFound);
+  EXPECT_EQ(tiles->put("fixed", kThere, kPng).error().code, Code::Conflict);
+  EXPECT_FALSE(tiles->read("aerial", kThere));
+}
+
+TEST_F(TilesTest, AFileThatVanishedAndAFullDiskAreTold) {
+  const auto tiles = shelf();
+  TileSet about;
+  about.set = about.name = "aerial";
+  about.format = "png";
+  ASSERT_TRUE(tiles->create(about));
+  std::filesystem::remove_all(folder_ / "kept");
+  EXPECT_EQ(tiles->put("aerial", kThere, kPng).error().code, Code::Unavailable);
+  EXPECT_EQ(tiles->take("farm", {0, 10, "x"}).error().code, Code::Unavailable);
+  const auto full = shelf({}, std::uintmax_t{1} << 60);
+  EXPECT_NE(full->create(about).error().detail.find("MB free"), std::string::npos);
+  EXPECT_EQ(full->take("farm", {0, 10, "x"}).error().code, Code::Unavailable);
+}
+
+TEST_F(TilesTest, NameAndShiftAreKeptAlsoOfTheConfigurationsSets) {
+  const TileShelf::Configured configured{{"farm", make("png", kPng)}};
+  {
+    const auto tiles = shelf(configured);
+    ASSERT_TRUE(tiles->change("farm", {"The farm", std::array{1.5, -0.25}}));
+    EXPECT_EQ(tiles->change("farm", {"", std::nullopt}).error().code, Code::Invalid);
+    EXPECT_EQ(tiles->change("farm", {std::nullopt, std::array{1001.0, 0.0}}).error().code,
+              Code::Invalid);
+    EXPECT_EQ(tiles->change("sea", {}).error().code, Code::NotFound);
+  }
+  const TileSet set = shelf(configured)->sets().at(0);
+  EXPECT_EQ(set.name, "The farm");
+  EXPECT_EQ(set.shift_m, (std::array{1.5, -0.25}));
+}
+
+TEST_F(TilesTest, ASetWhoseNameIsAPathIsNotWrittenAbout) {
+  const auto tiles = shelf({{"../farm", make("png", kPng)}});
+  EXPECT_EQ(tiles->change("../farm", {"Farm", std::nullopt}).error().code, Code::Conflict);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "farm.json"));
+}
+
+TEST_F(TilesTest, WhatWasBroughtMayGoAndTheConfigurationsMayNot) {
+  const auto file = make("png", kPng);
+  const auto tiles = shelf({{"fixed", file}});
+  const std::string bytes = bytes_of(file);
+  ASSERT_TRUE(tiles->take("farm", {0, bytes.size(), bytes}));
+  ASSERT_TRUE(tiles->take("half", {0, bytes.size(), bytes.substr(0, 100)}));
+  ASSERT_TRUE(tiles->change("farm", {"Farm", std::nullopt}));
+  EXPECT_TRUE(tiles->remove("farm"));
+  EXPECT_TRUE(tiles->remove("half"));
+  EXPECT_EQ(tiles->remove("farm").error().code, Code::NotFound);
+  EXPECT_EQ(tiles->remove("fixed").error().code, Code::Conflict);
+  EXPECT_FALSE(tiles->read("farm", kThere));
+  EXPECT_TRUE(tiles->unfinished().empty());
+  EXPECT_EQ(files_kept(), 0u);
+}
+
+TEST_F(TilesTest, AnUnreadableFileInTheFolderIsLeftAndTold) {
+  std::filesystem::create_directories(folder_ / "kept");
+  std::ofstream(folder_ / "kept" / "odd.up.mbtiles") << "no database, although it is long enough "
+                                                        "to be looked into as if it were one";
+  const auto tiles = shelf();
+  EXPECT_TRUE(tiles->sets().empty());
+  ASSERT_EQ(tiles->troubles().size(), 1u);
+  EXPECT_NE(tiles->troubles()[0].find("odd.up.mbtiles"), std::string::npos);
+  EXPECT_EQ(files_kept(), 1u);
+}
+
+TEST(TileSetName, GoesIntoAnAddressAndAFile) {
+  EXPECT_TRUE(is_tile_set_name("farm-2_b"));
+  for (const char* no : {"", "Farm", "a/b", "..", "a.b", "ä", "a b"}) {
+    EXPECT_FALSE(is_tile_set_name(no)) << no;
+  }
+  EXPECT_FALSE(is_tile_set_name(std::string(41, 'a')));
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "source_folder.hpp"
+
 namespace roverd::study {
 namespace {
 
@@ -27,7 +29,7 @@ json corner(double east_m, double north_m) {
 }
 
 json told_settings(const std::string& vehicle = "bunker") {
-  const auto settings = load_settings({std::string(CONFIG_FOLDER) + "/robot.toml", vehicle, {}});
+  const auto settings = load_settings({tests::in_source("config/robot.toml"), vehicle, {}});
   EXPECT_TRUE(settings);
   json out = json::object();
   for (const auto& [key, value] : told(*settings)) {
@@ -39,7 +41,7 @@ json told_settings(const std::string& vehicle = "bunker") {
 /// 60 m north, then 20 m east.
 json order(const std::string& vehicle = "bunker") {
   return {{"settings", told_settings(vehicle)},
-          {"sim", std::string(CONFIG_FOLDER) + "/sim/" + vehicle + ".toml"},
+          {"sim", tests::in_source("config/sim/" + vehicle + ".toml")},
           {"mission",
            {{"id", "m1"},
             {"revision", 3},

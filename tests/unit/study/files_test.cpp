@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "source_folder.hpp"
 #include "study/study.hpp"
 
 namespace roverd::study {
@@ -172,7 +173,7 @@ TEST(StudyFiles, ThoseThatAreShippedCanBeRead) {
     std::ifstream in(path);
     return std::string(std::istreambuf_iterator<char>(in), {});
   };
-  const std::filesystem::path folder = CONFIG_FOLDER;
+  const std::filesystem::path folder = tests::in_source("config");
   for (const auto& file : std::filesystem::directory_iterator(folder / "courses")) {
     const auto read = read_courses(text(file.path()), no_file);
     EXPECT_TRUE(read) << file.path() << ": " << read.error().detail;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "source_folder.hpp"
 #include "study/world/worlds.hpp"
 
 namespace roverd::study {
@@ -38,7 +39,7 @@ Scenario between_rows() {
 
 Setup row_setup() {
   Setup out;
-  out.config = std::string(CONFIG_FOLDER) + "/robot.toml";
+  out.config = tests::in_source("config/robot.toml");
   out.vehicle = "bunker";
   return out;
 }

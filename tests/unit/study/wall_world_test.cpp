@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "source_folder.hpp"
 #include "study/world/worlds.hpp"
 
 namespace roverd::study {
@@ -67,7 +68,7 @@ struct Hall {
 
 Setup wall_setup() {
   Setup out;
-  out.config = std::string(CONFIG_FOLDER) + "/robot.toml";
+  out.config = tests::in_source("config/robot.toml");
   out.vehicle = "bunker";
   return out;
 }

@@ -8,6 +8,7 @@
 #include "sick/sight.hpp"
 #include "sim/eyes.hpp"
 #include "sim/world/random.hpp"
+#include "source_folder.hpp"
 #include "study/world/eyes.hpp"
 #include "study/world/worlds.hpp"
 
@@ -165,7 +166,7 @@ TEST(WorldEyeTest, AScanIsWhatItsBytesWouldTell) {
 
 Setup setup_of() {
   Setup setup;
-  setup.config = std::filesystem::path(CONFIG_FOLDER) / "robot.toml";
+  setup.config = tests::in_source("config/robot.toml");
   setup.vehicle = "bunker";
   return setup;
 }

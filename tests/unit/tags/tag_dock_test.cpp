@@ -1,10 +1,11 @@
 // Docking at a tag in a closed loop: images ten times a second with the errors that pictures
 // showed, an odometry that is a little wrong, a robot that obeys late; judged by the truth.
 
-#include "nav/tags/tag_dock.hpp"
+#include "nav/behave/tag_dock.hpp"
 
 #include <cmath>
 #include <deque>
+#include <memory>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -15,6 +16,8 @@ namespace roverd::nav::tags {
 namespace {
 
 using sense::Pose2;
+
+constexpr int kTag = 5;
 
 struct Docking {
   explicit Docking(std::uint64_t seed) : random(seed) {}
@@ -27,9 +30,12 @@ struct Docking {
   double turn_scale = 1.02;
   double half_view_rad = base::rad_from_deg(35.0);
   bool covered = false;
+  bool in_doubt = false;  ///< which way it faces
+  bool another = false;   ///< of the same number beside it
   TagDockParams params;
-  TagTrack track;
-  TagDock dock{PathParams{}, BehaveParams{}};
+  base::Setting<TagDockParams> set;
+  TagBook book;
+  TagDock dock{PathParams{}, BehaveParams{}, set};
   base::Time now{std::chrono::hours(1)};
   std::deque<base::BodyTwist> pipe = std::deque<base::BodyTwist>(7);
   double speed_mps = 0.0;
@@ -62,19 +68,31 @@ struct Docking {
     if (std::uniform_real_distribution<double>(0, 1)(random) < 0.05) {
       place.pose.yaw_rad = base::wrap_rad(2.0 * ray - place.pose.yaw_rad);
     }
-    if (track.take(place, odometry, now)) dock.see(track);
+    place.id = kTag;
+    place.yaw_known = place.yaw_known && !in_doubt;
+    TagsSeen image{"front", now, {place}};
+    if (another) image.tags.push_back(place);
+    (void)book.take(image);
   }
 
   bool run(double seconds) {
-    dock.begin(now);
+    set.adopt(std::make_shared<const TagDockParams>(params));
+    dock.begin({kTag}, now);
+    return go_on(seconds);
+  }
+
+  bool go_on(double seconds) {
     for (int i = 0; i < seconds * 50.0; ++i) {
+      sense::Odometry state;
+      state.stamp = now;
+      state.pose = odometry;
+      book.moved(state);
       if (i % 5 == 0) look();
       Vehicle v;
-      v.at = {odometry.x_m, odometry.y_m};
-      v.yaw_rad = odometry.yaw_rad;
+      v.at = {-400.0, 7.0};  // the position is of no use to it
       v.speed_mps = speed_mps * slip;
       v.yaw_rate_radps = rate_radps * turn_scale;
-      pipe.push_back(dock.step(v, params, now, 0.02).command);
+      pipe.push_back(dock.step({&book, now, odometry}, v, 1.0, 0.02).command);
       speed_mps = pipe.front().linear_mps;
       rate_radps = pipe.front().angular_radps;
       pipe.pop_front();
@@ -125,15 +143,128 @@ TEST(TagDock, WithoutTheTagItDoesNotMoveAndSaysSo) {
 
 TEST(TagDock, ATagThatIsCoveredOnTheLineFailsBeforeTheLastStretch) {
   Docking d(2);
-  d.truth = d.tag * Pose2{-2.5, 0.0, 0.0};
-  d.dock.begin(d.now);
-  EXPECT_FALSE(d.run(6.0));
+  d.truth = d.tag * Pose2{-3.5, 0.0, 0.0};
+  d.params.gate_m = 2.5;
   d.params.lost_s = 1.0;
+  EXPECT_FALSE(d.run(6.0));
+  for (int i = 0; i < 300 && d.dock.state() != TagDock::State::Line; ++i) (void)d.go_on(0.1);
+  ASSERT_EQ(d.dock.state(), TagDock::State::Line);
   d.covered = true;
-  d.params.gate_m = 3.0;
-  d.dock.begin(d.now);
-  EXPECT_FALSE(d.run(20.0));
+  EXPECT_FALSE(d.go_on(20.0));
   EXPECT_EQ(d.dock.state(), TagDock::State::Failed);
+  EXPECT_EQ(d.dock.reason(), "the tag is not seen any more");
+  EXPECT_LT(d.off().x_m, -1.0) << "it stands well before the tag";
+}
+
+TEST(TagDock, OfTwoTagsOfOneNumberNeitherIsDockedAt) {
+  Docking d(3);
+  d.truth = d.tag * Pose2{-2.0, 0.0, 0.0};
+  d.another = true;
+  const Pose2 before = d.truth;
+  EXPECT_FALSE(d.run(10.0));
+  EXPECT_EQ(d.dock.reason(), "the tag is not seen");
+  EXPECT_EQ(d.truth.x_m, before.x_m);
+  EXPECT_GT(d.book.twice(), 10U);
+}
+
+TEST(TagDock, ATagWhoseDirectionStaysInDoubtIsNeverCalledDocked) {
+  Docking d(4);
+  d.truth = d.tag * Pose2{-2.0, 0.1, 0.0};
+  d.in_doubt = true;
+  EXPECT_FALSE(d.run(180.0));
+  EXPECT_EQ(d.dock.state(), TagDock::State::Failed);
+  EXPECT_EQ(d.dock.reason(), "which way the tag faces stays in doubt");
+}
+
+TEST(TagDock, WhoIsPushedAsideMeanwhileComesOntoTheLineAgain) {
+  Docking d(5);
+  d.truth = d.tag * Pose2{-2.5, 0.3, 0.0};
+  EXPECT_FALSE(d.run(2.0));
+  for (int i = 0; i < 300 && d.dock.state() != TagDock::State::Line; ++i) (void)d.go_on(0.1);
+  ASSERT_EQ(d.dock.state(), TagDock::State::Line);
+  // A hand drives 0.3 m aside, seen by the odometry, and lets go.
+  d.dock.interrupt();
+  const Pose2 aside{0.0, 0.3, 0.1};
+  d.truth = d.truth * aside;
+  d.odometry = d.odometry * aside;
+  d.speed_mps = d.rate_radps = 0.0;
+  EXPECT_TRUE(d.go_on(120.0)) << d.dock.reason();
+  EXPECT_LT(std::hypot(d.off().x_m, d.off().y_m), 0.02);
+}
+
+TEST(TagBook, AnImageFromBeforeWhatIsRememberedIsCountedAndLeftOut) {
+  TagBook book;
+  const base::Time now{std::chrono::hours(1)};
+  sense::Odometry state;
+  state.stamp = now;
+  ASSERT_TRUE(book.moved(state));
+  TagPlace place;
+  place.id = 7;
+  place.pose = {1.0, 0.0, 0.0};
+  place.sigma_range_m = place.sigma_across_m = place.sigma_yaw_rad = 0.01;
+  EXPECT_EQ(book.take({"front", now - std::chrono::seconds(9), {place}}), 0U);
+  EXPECT_EQ(book.refused(), 1U);
+  EXPECT_EQ(book.find(7), nullptr);
+  EXPECT_EQ(book.take({"front", now, {place}}), 1U);
+  ASSERT_NE(book.find(7), nullptr);
+  EXPECT_EQ(book.find(7)->camera, "front");
+}
+
+TEST(TagBook, MoreTagsThanItKeepsTakeThePlaceOfTheOldest) {
+  TagBook book;
+  base::Time now{std::chrono::hours(1)};
+  for (int id = 0; id < 40; ++id) {
+    sense::Odometry state;
+    state.stamp = now;
+    ASSERT_TRUE(book.moved(state));
+    TagPlace place;
+    place.id = id;
+    place.pose = {1.0, 0.0, 0.0};
+    place.sigma_range_m = place.sigma_across_m = place.sigma_yaw_rad = 0.01;
+    ASSERT_EQ(book.take({"front", now, {place}}), 1U);
+    now += std::chrono::milliseconds(20);
+  }
+  EXPECT_EQ(book.all().size(), TagBook::kMost);
+  EXPECT_EQ(book.find(7), nullptr);
+  EXPECT_NE(book.find(8), nullptr);
+}
+
+TEST(TagTrack, OneImageOfTheOtherPoseAtTheBeginIsMendedByTheNextAndMeanwhileItIsNotSteady) {
+  TagTrack track;
+  base::Time now{std::chrono::hours(1)};
+  TagPlace place;
+  place.sigma_range_m = 0.02;
+  place.sigma_across_m = 0.005;
+  place.sigma_yaw_rad = 0.05;
+  place.yaw_known = true;
+  place.pose = {2.0, 0.0, 0.5};
+  TagPlace other = place;
+  other.pose.yaw_rad = -0.5;
+  EXPECT_TRUE(track.take(other, {}, now));
+  // Right, right, right, the other again: those that fit each other count, not any five.
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(track.take(place, {}, now));
+  EXPECT_TRUE(track.take(other, {}, now));
+  EXPECT_FALSE(track.steady());
+  for (int i = 0; i < 5; ++i) track.take(place, {}, now);
+  EXPECT_NEAR(track.pose()->yaw_rad, 0.5, 1e-6);
+  EXPECT_FALSE(track.steady()) << "it has just begun anew";
+  for (int i = 0; i < 4; ++i) track.take(place, {}, now);
+  EXPECT_TRUE(track.steady());
+}
+
+//   T ◀──── 0.8 m ──── B     5 degrees of the tag's direction are 70 mm sidewards at B
+TEST(TagTrack, TheTagsDirectionIsAPartOfHowWellThePlaceBeforeItIsKnown) {
+  TagTrack track;
+  TagPlace place;
+  place.sigma_range_m = place.sigma_across_m = 0.002;
+  place.sigma_yaw_rad = base::rad_from_deg(5.0);
+  place.yaw_known = true;
+  place.pose = {0.8, 0.0, 0.0};
+  ASSERT_TRUE(track.take(place, {}, base::Time{std::chrono::hours(1)}));
+  const auto [near_m, near_rad] = track.sigma_before({});
+  EXPECT_GT(near_m, 0.8 * base::rad_from_deg(5.0));
+  EXPECT_NEAR(near_m / 0.8, near_rad, 0.02 * near_rad);
+  EXPECT_LT(track.sigma_from({}).first, 0.005) << "how far it is, is known well";
 }
 
 TEST(TagTrack, ManyImagesMakeItSurerAndOneWrongOneIsLeftOut) {

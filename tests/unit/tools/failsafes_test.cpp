@@ -12,13 +12,15 @@
 #include <gtest/gtest.h>
 
 #include "robot/safety/failsafes.hpp"
+#include "source_folder.hpp"
 
 namespace roverd {
 namespace {
 
 std::string safety_page() {
-  std::ifstream in(SAFETY_PAGE, std::ios::binary);
-  EXPECT_TRUE(in) << SAFETY_PAGE;
+  const auto page = tests::in_source("docs/safety.md");
+  std::ifstream in(page, std::ios::binary);
+  EXPECT_TRUE(in) << page;
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
@@ -58,7 +60,7 @@ TEST(Failsafes, APageWithoutAPlaceForItIsRefused) {
 std::string all_tests() {
   std::string all;
   for (const auto& entry :
-       std::filesystem::recursive_directory_iterator(std::filesystem::path(SOURCES) / "tests")) {
+       std::filesystem::recursive_directory_iterator(tests::in_source("tests"))) {
     if (entry.path().extension() != ".cpp") continue;
     std::ifstream in(entry.path(), std::ios::binary);
     for (char c = 0; in.get(c);) {
@@ -83,7 +85,7 @@ TEST(Failsafes, TheTestsThatThePageNamesExist) {
 
 TEST(Failsafes, WhatIsWatchedElsewhereIsWatchedInAFileThatExists) {
   for (const robot::Failsafe& row : robot::failsafes_elsewhere()) {
-    const auto file = std::filesystem::path(SOURCES) / row.watched_by;
+    const auto file = tests::in_source(row.watched_by);
     EXPECT_TRUE(std::filesystem::exists(file)) << row.id << ": " << file;
   }
 }

@@ -63,6 +63,22 @@ TEST(RealDrive, ThroughTheCorridorIsFollowed) {
   RecordProperty("figures", figures_text(f));
 }
 
+/// Ten of the hundred that `roverd locate --starts 100` tries.
+TEST(RealDrive, AStartWithoutAPoseIsRightOrNotTold) {
+  ROVERD_REAL_DATA(words, "sensors/carmen/intel-map.yaml");
+  ROVERD_REAL_DATA(picture, "sensors/carmen/intel-map.pgm");
+  ROVERD_REAL_DATA(log, "sensors/carmen/intel-corrected.log.gz");
+  const auto scans = scans_of_log(tests::read_file(log));
+  ASSERT_TRUE(scans) << scans.error().detail;
+  const StartFigures f =
+      start_in_log(field_of(words, picture), *scans, {WhichScans::Odd, WhichScans::Odd}, 10);
+  SCOPED_TRACE(figures_text(f));
+  EXPECT_EQ(f.starts, 10U);
+  EXPECT_EQ(f.wrong, 0U);
+  EXPECT_GE(f.right, 9U);
+  RecordProperty("figures", figures_text(f));
+}
+
 TEST(Log, WithoutAScanIsRefused) {
   const std::string text = "# nothing\nODOM 0 0 0\nFLASER 3 1\n";
   const auto scans =

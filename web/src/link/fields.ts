@@ -2,7 +2,8 @@
 
 import type { Answer } from '../model/answer';
 import type { Fence, FenceDraft } from '../model/fence';
-import type { FenceCalls, SurveyCalls } from '../model/ports';
+import type { FenceCalls, RowsCalls, SurveyCalls } from '../model/ports';
+import type { RowBlock, RowsWish } from '../model/row_block';
 import type { Survey, SurveyWish } from '../model/survey';
 import { request } from './request';
 import type { components } from './schema';
@@ -13,10 +14,10 @@ type Schemas = components['schemas'];
 const LARGE_LIMIT_MS = 30_000;
 
 const request_of = (wish: SurveyWish, name: string | null): Schemas['SurveyRequest'] => ({
-  polygon: [[...wish.polygon]],
+  polygon: [[...wish.polygon], ...wish.holes.map((hole) => [...hole])],
   spacing_m: wish.spacing_m,
   direction_deg: wish.direction_deg ?? 'best',
-  pattern: 'tracks',
+  pattern: wish.pattern,
   turn: wish.turn,
   ...(wish.turn === 'arc' ? { radius_m: wish.radius_m } : {}),
   start: 'vehicle',
@@ -34,7 +35,7 @@ const survey = (wish: SurveyWish, name: string | null): Promise<Answer<Schemas['
     limit_ms: LARGE_LIMIT_MS,
   });
 
-export const survey_calls: SurveyCalls = {
+const survey_calls: SurveyCalls = {
   preview: async (wish): Promise<Answer<Survey>> => {
     const answer = await survey(wish, null);
     if (!answer.ok) return answer;
@@ -43,6 +44,30 @@ export const survey_calls: SurveyCalls = {
   },
   keep: async (wish, name) => {
     const answer = await survey(wish, name);
+    // With a name the answer holds the stored mission.
+    return answer.ok ? { ok: true, value: answer.value.mission as Schemas['Mission'] } : answer;
+  },
+};
+
+const rows = (wish: RowsWish, name: string | null): Promise<Answer<Schemas['RowsPlan']>> => {
+  const { entry, ...others } = wish;
+  const body: Schemas['RowsRequest'] = {
+    ...others,
+    ...(entry ? { entry: entry.at, heading_deg: entry.heading_deg % 360 } : {}),
+    ...(name === null ? {} : { name }),
+  };
+  return request<Schemas['RowsPlan']>('/missions/rows', { method: 'POST', body });
+};
+
+const rows_calls: RowsCalls = {
+  preview: async (wish): Promise<Answer<RowBlock>> => {
+    const answer = await rows(wish, null);
+    return answer.ok
+      ? { ok: true, value: { order: answer.value.order, plan: answer.value.mission } }
+      : answer;
+  },
+  keep: async (wish, name) => {
+    const answer = await rows(wish, name);
     // With a name the answer holds the stored mission.
     return answer.ok ? { ok: true, value: answer.value.mission as Schemas['Mission'] } : answer;
   },
@@ -62,7 +87,7 @@ const with_fence = async (
   call: Parameters<typeof request>[1],
 ): Promise<Answer<Fence>> => request<Schemas['Fence']>(path, call);
 
-export const fence_calls: FenceCalls = {
+const fence_calls: FenceCalls = {
   list: () => request<Schemas['FenceList']>('/fences?limit=100'),
   read: (id) => with_fence(fence_path(id), {}),
   create: (draft) => with_fence('/fences', { method: 'POST', body: draft_of(draft) }),
@@ -80,3 +105,6 @@ export const fence_calls: FenceCalls = {
   },
   activate: (id) => request<unknown>('/fence', { method: 'PUT', body: { fence_id: id } }),
 };
+
+/** What is drawn on the ground and kept. */
+export const field_calls = { survey: survey_calls, rows: rows_calls, fences: fence_calls };

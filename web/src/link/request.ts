@@ -2,6 +2,7 @@
 
 import type { Answer, FieldError, Refusal } from '../model/answer';
 import type { Mission } from '../model/ports';
+import { say } from '../model/say';
 import { in_lane, type Lane } from './lanes';
 import type { components } from './schema';
 
@@ -18,6 +19,8 @@ export interface Call {
   readonly lane?: Lane;
   /** Gives up earlier. */
   readonly signal?: AbortSignal;
+  /** What the answer is read as; a problem is always JSON. */
+  readonly as?: 'json' | 'text' | 'bytes';
 }
 
 /** A link with two seconds each way is slow, not dead: connecting, asking and answering take 8 s. */
@@ -25,13 +28,16 @@ const LIMIT_MS = 15_000;
 
 export const no_answer = (detail: string): Refusal => ({
   status: 0,
-  title: 'No answer',
+  title: say('no_answer_2'),
   detail,
   errors: [],
 });
 
 export const read_problem = async (response: Response): Promise<Refusal> => {
-  const fallback = `The server answered ${response.status} ${response.statusText}.`;
+  const fallback = say('the_server_answered_status_statustext', {
+    status: response.status,
+    statustext: response.statusText,
+  });
   let problem: Partial<Problem>;
   try {
     problem = (await response.json()) as Partial<Problem>;
@@ -65,14 +71,21 @@ const fetch_options = (call: Call): RequestInit => {
 /** What a request that was not answered ended in. */
 export const failed = (cause: unknown): Refusal => {
   const late = cause instanceof DOMException && cause.name === 'TimeoutError';
-  return no_answer(late ? 'The robot did not answer in time.' : 'The robot cannot be reached.');
+  return no_answer(
+    late ? say('the_robot_did_not_answer_in_time') : say('the_robot_cannot_be_reached'),
+  );
+};
+
+const read_body = (response: Response, as: Call['as']): Promise<unknown> => {
+  if (as === 'text') return response.text();
+  return as === 'bytes' ? response.arrayBuffer() : response.json();
 };
 
 const sent = async <T>(path: string, call: Call): Promise<Answer<T>> => {
   try {
     const response = await fetch(`/api/v1${path}`, fetch_options(call));
     if (!response.ok) return { ok: false, refusal: await read_problem(response) };
-    const value = response.status === 204 ? null : await response.json();
+    const value = response.status === 204 ? null : await read_body(response, call.as);
     return { ok: true, value: value as T };
   } catch (cause) {
     return { ok: false, refusal: failed(cause) };

@@ -4,7 +4,8 @@
 import type { Answer } from '../model/answer';
 import type { Halt } from '../model/halt';
 import type { Plan } from '../model/plan';
-import type { MissionCalls, TileSet, VehicleCalls } from '../model/ports';
+import type { MissionCalls, VehicleCalls } from '../model/ports';
+import type { SpeedsSet } from '../model/route_drive';
 import type { Remembered } from '../model/tracks';
 import type { TrailPiece } from '../model/trail';
 import { request, type Call } from './request';
@@ -26,6 +27,7 @@ const draft_of = (plan: Plan): Schemas['MissionDraft'] => ({
   items: [...plan.items],
   home: plan.home ?? null,
   settings: plan.settings ?? {},
+  ...(plan.drawing ? { drawing: plan.drawing } : {}),
 });
 
 const mission_path = (id: string): string => `/missions/${encodeURIComponent(id)}`;
@@ -46,6 +48,17 @@ export const mission_calls: MissionCalls = {
   read: (id) => with_mission<Schemas['Mission']>(mission_path(id), {}),
   read_revision: (id, revision) =>
     with_mission<Schemas['Mission']>(`${mission_path(id)}/revisions/${revision}`, {}),
+  revisions: (id, cursor) => {
+    const query = new URLSearchParams({ limit: '50' });
+    if (cursor !== null) query.set('cursor', cursor);
+    return request<Schemas['RevisionList']>(`${mission_path(id)}/revisions?${query}`);
+  },
+  revert: (id, revision, to) =>
+    with_mission<Schemas['Mission']>(`${mission_path(id)}/revert`, {
+      method: 'POST',
+      body: { revision: to },
+      headers: { 'If-Match': etag(revision) },
+    }),
   create: (plan) =>
     with_mission<Schemas['Mission']>('/missions', { method: 'POST', body: draft_of(plan) }),
   replace: (id, revision, plan) =>
@@ -147,6 +160,7 @@ type Question =
   | 'checks'
   | 'preview'
   | 'mission_way'
+  | 'speeds_set'
   | 'way_home'
   | 'calibration'
   | 'left_behind'
@@ -166,6 +180,22 @@ const trail = async (): Promise<Answer<Remembered>> => {
   return { ok: true, value: { until_s, estimated, received } };
 };
 
+const figure = async (name: string): Promise<number | null> => {
+  const answer = await request<Schemas['Parameter']>(`/parameters/nav.speed.${name}`);
+  return answer.ok && typeof answer.value.value === 'number' ? answer.value.value : null;
+};
+
+const speeds_set = async (): Promise<SpeedsSet> => {
+  const names = ['default_mps', 'min_mps', 'max_mps', 'reverse_max_mps'];
+  const [default_mps, min_mps, max_mps, reverse_max_mps] = await Promise.all(names.map(figure));
+  return {
+    default_mps: default_mps ?? null,
+    min_mps: min_mps ?? null,
+    max_mps: max_mps ?? null,
+    reverse_max_mps: reverse_max_mps ?? null,
+  };
+};
+
 const questions: Pick<VehicleCalls, Question> = {
   vehicle: () => request<Schemas['Vehicle']>('/vehicle'),
   trail,
@@ -175,6 +205,7 @@ const questions: Pick<VehicleCalls, Question> = {
   checks: () => request<Schemas['Checks']>('/vehicle/checks'),
   preview: (from) => request<Schemas['Preview']>(`/execution/preview?from=${from}`),
   mission_way: () => request<Schemas['MissionWay']>('/execution/way', { limit_ms: LARGE_LIMIT_MS }),
+  speeds_set,
   way_home: (mode) => request<Schemas['WayHome']>(`/vehicle/way_home?mode=${mode}`),
   left_behind: async () => {
     const answer = await request<Schemas['Execution']>('/execution');
@@ -232,9 +263,4 @@ export const vehicle_calls = (seen: Seen): VehicleCalls => {
     forget_left_behind: () =>
       request<null>('/execution/left_behind', { method: 'DELETE', lane: 'command' }),
   };
-};
-
-export const tile_sets = async (): Promise<readonly TileSet[]> => {
-  const answer = await request<Schemas['TileSetList']>('/tiles');
-  return answer.ok ? answer.value.items : [];
 };

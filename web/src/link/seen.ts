@@ -14,6 +14,7 @@ export const bytes_of = (text: string): Uint8Array => {
 };
 
 export const seen_calls: SeenCalls = {
+  landmarks: () => request<components['schemas']['KnownMarks']>('/landmarks'),
   sensors: () => request<components['schemas']['SensorList']>('/sensors'),
   capabilities: () => request<components['schemas']['Capabilities']>('/vehicle/capabilities'),
 };

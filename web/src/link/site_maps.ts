@@ -1,6 +1,7 @@
 // The calls for maps of a place in the plane.
 
 import type { Answer } from '../model/answer';
+import { say } from '../model/say';
 import {
   MOST_CELLS,
   read_cells,
@@ -99,7 +100,7 @@ const fetch_cells = async (
     if (!answer.ok) return { ok: false, refusal: await read_problem(answer) };
     const thinned = Number(answer.headers.get('Roverd-Thinned') ?? '1');
     const cells = read_cells(await bytes_of(answer, heard), thinned);
-    if (!cells) return { ok: false, refusal: no_answer('What came is no picture of a map.') };
+    if (!cells) return { ok: false, refusal: no_answer(say('what_came_is_no_picture_of_a_map')) };
     return { ok: true, value: { ...cells, tag: answer.headers.get('ETag') } };
   } catch (cause) {
     return { ok: false, refusal: failed(cause) };

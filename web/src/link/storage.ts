@@ -21,7 +21,14 @@ const storage_of = (key: string): DraftStorage => ({
   },
 });
 
-export const draft_storage = storage_of('roverd.draft');
+/** Of what is edited. */
+export const kept_storage = {
+  draft: storage_of('roverd.draft'),
+  past: storage_of('roverd.past'),
+  makings: storage_of('roverd.makings'),
+};
+export const ground_storage = storage_of('roverd.ground');
 export const layer_storage = storage_of('roverd.layers');
+export const camera_storage = storage_of('roverd.camera');
 export const settings_storage = storage_of('roverd.settings');
 export const view_storage = storage_of('roverd.view');

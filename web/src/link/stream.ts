@@ -2,11 +2,19 @@
 //
 //   connecting --open--> open --closed | silent 4 s--> closed --(backoff)--> connecting
 //
-// An open socket that says nothing is worth no more than a closed one: the watchdog closes it. A ping
-// every second measures the way there and back, behind all data that waits on the same socket.
+// An open socket that says nothing is worth no more than a closed one: the watchdog closes it, and at
+// once where the robot answers otherwise. A ping every second measures the way there and back, behind
+// all data that waits on the same socket.
 
 import { Pings, RobotClock } from '../model/clock';
-import { backoff_ms, should_reopen, type LinkHealth, type SocketState } from '../model/freshness';
+import {
+  backoff_ms,
+  PROBE_LIMIT_MS,
+  should_probe,
+  should_reopen,
+  type LinkHealth,
+  type SocketState,
+} from '../model/freshness';
 import type { Halt } from '../model/halt';
 import type { LiveLink, StreamEvents } from '../model/ports';
 import type { SeenTopic } from '../model/seen';
@@ -29,11 +37,13 @@ type Message =
 
 /** The server's close code for it. */
 const LOG_IN_AGAIN = 4401;
-const WATCH_MS = 500;
+const WATCH_MS = 250;
 const PING_MS = 1000;
 const TOPICS = { vehicle: 10, events: 0, missions: 0, control: 0 };
 /** Bytes not yet taken by the network: a drive command behind them would come too late. */
 const DRIVE_BACKLOG = 512;
+
+const HEALTH = '/api/v1/health';
 
 const address = (): string =>
   `${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/api/v1/stream`;
@@ -56,6 +66,7 @@ export class Stream implements LiveLink {
   /** The shown state: the robot's clock when it was sent, and when it came. */
   #shown: { readonly mono_s: number; readonly came_ms: number } | null = null;
   #attempt = 0;
+  #probing = false;
   #retry: ReturnType<typeof setTimeout> | undefined;
   #drive_seq = 0;
   /** What is looked at besides. */
@@ -89,6 +100,14 @@ export class Stream implements LiveLink {
     const sent = this.#send({ drive });
     if (sent) this.#drive_seq = seq;
     return sent;
+  };
+
+  /** A hand on the speed of AUTO. @return as send_drive */
+  send_throttle = (share: number, held: boolean): boolean => {
+    if (held && (this.#socket?.bufferedAmount ?? 0) > DRIVE_BACKLOG) return false;
+    const seen_s = this.seen_s();
+    const seen = seen_s === null ? {} : { seen_s };
+    return this.#send({ throttle: { share, held, ...seen } });
   };
 
   /** Needs no free connection and waits behind nothing: the socket is open already. */
@@ -232,6 +251,24 @@ export class Stream implements LiveLink {
     if (!this.#socket) return;
     if (should_reopen(this.#opened_ms, this.#health, performance.now())) this.#drop();
     else this.#report(this.#state);
+    if (this.#probe_is_due()) void this.#probe();
+  }
+
+  #probe_is_due(): boolean {
+    return should_probe(this.#opened_ms, this.#health, performance.now());
+  }
+
+  /** The robot answers otherwise, and the socket stays silent: a new one is opened at once. */
+  async #probe(): Promise<void> {
+    if (this.#probing) return;
+    this.#probing = true;
+    const socket = this.#socket;
+    const signal = AbortSignal.timeout(PROBE_LIMIT_MS);
+    const answer = await fetch(HEALTH, { signal, cache: 'no-store' }).catch(() => null);
+    this.#probing = false;
+    if (!answer?.ok || this.#socket !== socket || !this.#probe_is_due()) return;
+    this.#drop();
+    this.hurry();
   }
 
   #drop(): void {

@@ -1,11 +1,11 @@
 // Points to the robot when it is out of sight: an arrow at the border of the free part of the map, and
 // how far it is from the middle of it.
 
-import { edge_spot } from '../model/edge';
+import { edge_spot, type EdgeSpot } from '../model/edge';
 import { metres } from '../model/format';
 import { distance_m } from '../model/geo';
 import type { RobotOnMap } from '../model/ports';
-import type { Paint } from './canvas';
+import { on_screen_px, type Paint, type View } from './canvas';
 import type { Cover } from './grid';
 import type { Palette } from './palette';
 import { from_plane, to_plane } from './projection';
@@ -16,23 +16,17 @@ const BUTTONS_PX = 96;
 const BACK_PX = 26;
 const SIZE_PX = 15;
 
-export const paint_away = (
-  paint: Paint,
-  robot: RobotOnMap,
-  cover: Cover,
-  colors: Palette,
-): void => {
-  const { context } = paint;
-  const [x, y] = to_plane(robot.at);
-  const [x_px, y_px] = [paint.x_px(x), paint.y_px(y)];
+/** Where the arrow stands; null: the robot is in sight. */
+export const away_spot = (view: View, robot: RobotOnMap, cover: Cover): EdgeSpot | null => {
+  const [x_px, y_px] = on_screen_px(view, to_plane(robot.at));
   const seen = {
     left: cover.left,
     top: cover.top,
-    right: paint.width_px - cover.right,
-    bottom: paint.height_px - cover.bottom,
+    right: view.screen.width_px - cover.right,
+    bottom: view.screen.height_px - cover.bottom,
   };
-  if (edge_spot(seen, x_px, y_px) === null) return;
-  const spot = edge_spot(
+  if (edge_spot(seen, x_px, y_px) === null) return null;
+  return edge_spot(
     {
       left: seen.left + MARGIN_PX,
       top: seen.top + MARGIN_PX,
@@ -42,7 +36,15 @@ export const paint_away = (
     x_px,
     y_px,
   );
-  if (!spot) return;
+};
+
+export const paint_away = (
+  paint: Paint,
+  robot: RobotOnMap,
+  spot: EdgeSpot,
+  colors: Palette,
+): void => {
+  const { context } = paint;
   const color = robot.stale ? colors.robot_stale : colors.robot;
   context.translate(spot.x, spot.y);
   context.rotate(spot.angle_rad);

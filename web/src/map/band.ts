@@ -44,7 +44,8 @@ const before_of = (plan: Plan, index: number, last: Spot | undefined): Ring['bef
 export const rings_of = (plan: Plan, found: readonly Spot[]): Ring[] =>
   found.flatMap((spot, k): Ring[] => {
     const item = plan.items[spot.index];
-    if (!item || place_of(item) === null) return [];
+    if (item?.type !== 'circle' && item?.type !== 'loiter') return [];
+    if (place_of(item) === null) return [];
     const ring = { k, units_per_m: units_per_m(spot.lat).east };
     if (item.type === 'circle') {
       const { radius_m } = item;
@@ -52,7 +53,6 @@ export const rings_of = (plan: Plan, found: readonly Spot[]): Ring[] =>
       const turned = { clockwise: item.clockwise === true, turns: item.turns ?? 1 };
       return [{ ...ring, ...turned, radius_m, way: true, before }];
     }
-    if (item.type !== 'loiter') return [];
     const stays = { way: false, clockwise: false, turns: 1, before: null };
     return [{ ...ring, ...stays, radius_m: item.radius_m ?? 1 }];
   });

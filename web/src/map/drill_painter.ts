@@ -3,7 +3,7 @@
 
 import type { LatLon } from '../model/plan';
 import type { DrilledPlace, DrillOnMap } from '../model/ports';
-import { stroke_cased, trace, type Paint } from './canvas';
+import { stand_at, stroke_cased, trace, type Paint } from './canvas';
 import type { Palette } from './palette';
 import { to_plane, to_plane_line, units_per_m, type PlaneLine } from './projection';
 import type { Size } from './robot_painter';
@@ -97,16 +97,18 @@ const paint_label = (paint: Paint, place: DrilledPlace, size: Size, colors: Pale
   const { context } = paint;
   const [x, y] = to_plane(place);
   const above_px = Math.hypot(...body_px(paint, place, size)) / 2 + LABEL_PX;
-  const [x_px, y_px] = [paint.x_px(x), paint.y_px(y) - above_px];
+  context.save();
+  stand_at(paint, paint.x_px(x), paint.y_px(y));
   context.font = '700 14px system-ui, sans-serif';
   context.textAlign = 'center';
   context.textBaseline = 'middle';
   context.lineJoin = 'round';
   context.strokeStyle = colors.casing;
   context.lineWidth = 5;
-  context.strokeText(place.label, x_px, y_px);
+  context.strokeText(place.label, 0, -above_px);
   context.fillStyle = color_of(place, colors);
-  context.fillText(place.label, x_px, y_px);
+  context.fillText(place.label, 0, -above_px);
+  context.restore();
 };
 
 /** A cross: there it fails. */

@@ -1,45 +1,54 @@
 // The map: tiles if there are any, and above them one canvas with grid, route, trail, mission and
 // robot. It keeps what it was told to show and draws it in the next animation frame.
 
-import OlMap from 'ol/Map';
+import type OlMap from 'ol/Map';
 import type MapBrowserEvent from 'ol/MapBrowserEvent';
 import View from 'ol/View';
-import { defaults as default_interactions } from 'ol/interaction/defaults';
-import TileLayer from 'ol/layer/Tile';
-import XYZ from 'ol/source/XYZ';
 
 import type { SpaceOnMap } from '../model/calibration';
 import type { FenceDraft } from '../model/fence';
+import type { Ground } from '../model/ground';
+import type { Heat } from '../model/heat';
+import { turn_deg, type MapUp } from '../model/map_up';
 import { EMPTY_PLAN, type LatLon, type Plan } from '../model/plan';
 import type {
   DraftStorage,
   DrillOnMap,
+  LineOnMap,
   MapCalls,
   MapEvents,
   MapMode,
   Mark,
   PlanShape,
   RobotOnMap,
-  RunOnMap,
-  TileSet,
+  RouteOnMap,
 } from '../model/ports';
+import type { DriveOnMap } from '../model/route_drive';
+import type { RunOnMap } from '../model/run_ports';
 import type { AheadOnMap, SeenOnMap } from '../model/seen';
 import { corners, type SiteEdit, type SiteOnMap } from '../model/site_map';
+import type { Bounds } from '../model/tiling';
 import type { Tracks } from '../model/tracks';
-import { canvas_layer } from './canvas';
+import type { TrailShades } from '../model/trail_shades';
+import { layer_of } from './drawing';
 import type { Slip } from '../model/slips';
 import { prepare_drill } from './drill_painter';
 import { prepare_slips } from './slip_painter';
-import { EditInteraction } from './edit';
+import type { EditInteraction } from './edit';
+import { GroundBelow } from './ground_layer';
+import { make_hand } from './hand';
 import { keep_view } from './last_view';
-import { on_palette_change } from './palette';
+import { lazily } from './lazily';
+import { make_ol_map } from './ol_map';
+import { on_palette_change, style_legend } from './palette';
+import { prepare_beside } from './pick_painter';
 import { watch_pointer } from './pointer';
-import { from_plane, to_plane, to_plane_line } from './projection';
-import { Scene } from './scene';
-import { prepare_run } from './run_painter';
+import { from_plane, to_plane } from './projection';
+import { kept, Scene } from './scene';
+import { prepare_heat, prepare_run } from './run_painter';
 import { prepare_space } from './space_painter';
 import { make_scale_bar } from './scale_bar';
-import { clamp, extent_of, free_part, type FreePart } from './sight';
+import { clamp, extent_of, free_part, in_part, pixel_of, push_view } from './sight';
 
 /** Until something is known: the whole world, in degrees. */
 const WORLD_ZOOM = 2;
@@ -50,26 +59,6 @@ const CLOSE_ZOOM = 23;
 const MAX_ZOOM = 25;
 const FIT_MARGIN_PX = 48;
 
-const make_ol_map = (target: HTMLElement, view: View): OlMap =>
-  new OlMap({
-    target,
-    view,
-    controls: [],
-    // The others of the browser's connections are for commands, and two for a stop.
-    maxTilesLoading: 1,
-    interactions: default_interactions({
-      altShiftDragRotate: false,
-      pinchRotate: false,
-      doubleClickZoom: false,
-      keyboard: false,
-    }),
-    moveTolerance: 4,
-  });
-
-/** The words of an attribution, which may be written in HTML. */
-const plain_text = (html: string): string =>
-  new DOMParser().parseFromString(html, 'text/html').body.textContent;
-
 export class FieldMap implements MapCalls {
   readonly #target: HTMLElement;
   readonly #scene = new Scene();
@@ -77,20 +66,29 @@ export class FieldMap implements MapCalls {
     center: [0, 0],
     zoom: WORLD_ZOOM,
     maxZoom: MAX_ZOOM,
-    enableRotation: false,
+    constrainRotation: false,
   });
   readonly #map: OlMap;
-  readonly #tiles = new TileLayer<XYZ>({ visible: false });
-  readonly #credit = document.createElement('div');
+  readonly #ground: GroundBelow;
   readonly #edit: EditInteraction;
   #mode: MapMode = 'watch';
   #follow = true;
+  #up: MapUp = 'north';
+  #turn_deg = 0;
+  #turned: (turn_deg: number) => void = () => undefined;
   /** The press under way has marked a place already: its end is no tap. */
   #pressed_long = false;
   /** The view shows something that matters; before, the robot's first position sets it. */
   #placed = false;
-  #seen_asked = false;
-  #site_asked = false;
+  /** Most robots see nothing, and most pages need not draw it. */
+  readonly #load_seen = lazily(
+    () => import('./seen_painter'),
+    (painter) => this.#with({ seen_painter: painter }),
+  );
+  readonly #load_site = lazily(
+    () => import('./site_painter'),
+    (painter) => this.#with({ site_painter: painter }),
+  );
 
   /** @param target fills the window; gets the scale bar and the tiles' credit too
    * @param view_storage where one looks when nothing tells where the robot is */
@@ -99,11 +97,10 @@ export class FieldMap implements MapCalls {
     const bar = make_scale_bar();
     this.#map = make_ol_map(target, this.#view);
     keep_view(this.#map, view_storage);
-    this.#map.addLayer(this.#tiles);
-    this.#map.addLayer(canvas_layer(this.#scene.painters(bar)));
-    this.#credit.className = 'map-credit';
-    target.append(bar.element, this.#credit);
-    this.#edit = this.#make_edit();
+    this.#map.addLayer(layer_of(this.#scene, bar));
+    this.#ground = new GroundBelow(this.#map);
+    target.append(bar.element, this.#ground.credit);
+    this.#edit = make_hand(this.#scene, this.#map, target);
     this.#map.addInteraction(this.#edit);
     this.#map.on('click', (event) => {
       if (!this.#pressed_long) this.#edit.tap(event);
@@ -111,9 +108,14 @@ export class FieldMap implements MapCalls {
     this.#listen_for_long_press();
     this.#map.on('pointermove', (event) => this.#point(event));
     this.#map.on('pointerdrag', () => {
-      if (this.#scene.drag === null && this.#mode !== 'point') this.#scene.events.on_pan();
+      const { drag, box } = this.#scene;
+      if (!drag && !box && this.#mode !== 'point') this.#scene.events.on_pan();
     });
-    on_palette_change(() => this.#map.render());
+    style_legend();
+    on_palette_change(() => {
+      style_legend();
+      this.#map.render();
+    });
   }
 
   listen(events: MapEvents): void {
@@ -123,6 +125,7 @@ export class FieldMap implements MapCalls {
   set_mode(mode: MapMode): void {
     this.#mode = mode;
     this.#edit.set_mode(mode);
+    this.#turn();
     this.#scene.look = { ...this.#scene.look, handles: mode !== 'watch' };
     this.#map.render();
   }
@@ -132,20 +135,39 @@ export class FieldMap implements MapCalls {
     selected: number | null,
     refused: ReadonlySet<number>,
     shape: PlanShape,
+    faint: boolean,
   ): void {
     const scene = this.#scene;
     const newly_chosen = selected !== null && selected !== scene.look.selected;
     scene.plan.take(plan);
-    scene.look = { ...scene.look, selected, refused, shape };
+    scene.look = { ...scene.look, selected, refused, shape, faint };
     if (newly_chosen) this.#reveal(selected);
     this.#map.render();
   }
 
-  /** @param way the route as it is laid out; empty: not known */
-  show_route(route: Plan | null, way: readonly LatLon[], current_item: number): void {
-    this.#scene.route.take(route ?? EMPTY_PLAN);
-    this.#scene.way = to_plane_line(way);
-    this.#scene.current_item = current_item;
+  show_picked(picked: ReadonlySet<number>): void {
+    this.#scene.picked = picked;
+    this.#map.render();
+  }
+
+  show_beside(beside: readonly LineOnMap[]): void {
+    this.#scene.beside = beside.map(prepare_beside);
+    this.#map.render();
+  }
+
+  set_snap(snaps: boolean): void {
+    this.#scene.snaps = snaps;
+  }
+
+  show_route({ plan, way, current_item, corridor_m }: RouteOnMap): void {
+    [this.#scene.corridor_m, this.#scene.current_item] = [corridor_m, current_item];
+    this.#scene.route.take(plan ?? EMPTY_PLAN);
+    this.#scene.take_way(way);
+    this.#map.render();
+  }
+
+  show_drive(drive: DriveOnMap | null): void {
+    this.#scene.take_drive(drive);
     this.#map.render();
   }
 
@@ -153,6 +175,7 @@ export class FieldMap implements MapCalls {
     this.#scene.driven.follow(tracks.driven);
     this.#scene.fixes.follow(tracks.fixes);
     this.#scene.robot = robot;
+    this.#turn();
     if (robot && !this.#placed) {
       this.#placed = true;
       this.#view.setZoom(WORK_ZOOM);
@@ -163,13 +186,23 @@ export class FieldMap implements MapCalls {
     this.#map.render();
   }
 
+  show_trail(shades: TrailShades | null): void {
+    this.#scene.trail_shades = shades;
+    this.#map.render();
+  }
+
   show_home(home: LatLon | null): void {
-    this.#scene.home = home;
+    this.#scene.home = kept(this.#scene.home, home);
     this.#map.render();
   }
 
   show_runs(runs: readonly RunOnMap[]): void {
     this.#scene.runs = runs.map(prepare_run);
+    this.#map.render();
+  }
+
+  show_heat(heat: Heat | null): void {
+    this.#scene.heat = heat && prepare_heat(heat);
     this.#map.render();
   }
 
@@ -194,26 +227,26 @@ export class FieldMap implements MapCalls {
   }
 
   show_marks(pin: Mark | null, goal: Mark | null): void {
-    this.#scene.pin = pin;
+    this.#scene.pin = kept(this.#scene.pin, pin);
     this.#scene.goal = goal;
     this.#map.render();
   }
 
   show_seen(seen: SeenOnMap | null): void {
     this.#scene.seen = seen;
-    if (seen) this.#load_seen_painter();
+    if (seen) this.#load_seen();
     this.#map.render();
   }
 
   show_ahead(ahead: AheadOnMap | null): void {
     this.#scene.ahead = ahead;
-    if (ahead) this.#load_seen_painter();
+    if (ahead) this.#load_seen();
     this.#map.render();
   }
 
   show_site(site: SiteOnMap | null): void {
     this.#scene.site = site;
-    if (site) this.#load_site_painter();
+    if (site) this.#load_site();
     // Where satellites tell nothing the robot may be found by hand.
     if (site && !this.#placed) this.fit(corners(site.map, site.at), true);
     this.#map.render();
@@ -238,8 +271,16 @@ export class FieldMap implements MapCalls {
     this.#map.render();
   }
 
+  keep_up(up: MapUp, turned: (turn_deg: number) => void): void {
+    this.#up = up;
+    this.#turned = turned;
+    this.#turn();
+    turned(this.#turn_deg);
+  }
+
   set_follow(follow: boolean): void {
     this.#follow = follow;
+    this.#turn();
     if (follow && this.#scene.robot) this.#center_on(this.#scene.robot.at);
   }
 
@@ -263,43 +304,24 @@ export class FieldMap implements MapCalls {
     this.#view.animate({ zoom: (this.#view.getZoom() ?? WORLD_ZOOM) + levels, duration: 150 });
   }
 
-  use_tiles(set: TileSet | null): void {
-    const usable = set !== null && set.format !== 'pbf';
-    this.#tiles.setVisible(usable);
-    this.#credit.textContent = usable ? plain_text(set.attribution) : '';
-    if (!usable) return;
-    const source = new XYZ({
-      url: `/api/v1/tiles/${encodeURIComponent(set.set)}/{z}/{x}/{y}`,
-      minZoom: set.min_zoom,
-      maxZoom: set.max_zoom,
-    });
-    this.#tiles.setSource(source);
+  use_ground = (ground: Ground | null): void => this.#ground.use(ground);
+
+  view_bounds(): Bounds | null {
+    const size = this.#map.getSize();
+    if (!size) return null;
+    const [west = 0, south = 0, east = 0, north = 0] = this.#view.calculateExtent(size);
+    const a = from_plane([west, south]);
+    const b = from_plane([east, north]);
+    return { west: a.lon, south: a.lat, east: b.lon, north: b.lat };
   }
 
-  /** Most robots see nothing, and most pages need not draw it. */
-  #load_seen_painter(): void {
-    if (this.#seen_asked) return;
-    this.#seen_asked = true;
-    import('./seen_painter').then(
-      (painter) => {
-        this.#scene.seen_painter = painter;
-        this.#map.render();
-      },
-      () => (this.#seen_asked = false), // again with the next picture
-    );
+  zoom_level(): number {
+    return Math.round(this.#view.getZoom() ?? WORLD_ZOOM);
   }
 
-  /** Likewise. */
-  #load_site_painter(): void {
-    if (this.#site_asked) return;
-    this.#site_asked = true;
-    import('./site_painter').then(
-      (painter) => {
-        this.#scene.site_painter = painter;
-        this.#map.render();
-      },
-      () => (this.#site_asked = false),
-    );
+  #with(painters: Partial<Pick<Scene, 'seen_painter' | 'site_painter'>>): void {
+    Object.assign(this.#scene, painters);
+    this.#map.render();
   }
 
   /** A finger that rests, or the right mouse button: marks a place, also where a tap would select. */
@@ -313,25 +335,24 @@ export class FieldMap implements MapCalls {
     });
   }
 
-  #make_edit(): EditInteraction {
-    return new EditInteraction({
-      drawn: () => this.#scene.plan.drawn,
-      events: () => this.#scene.events,
-      pixel_of: ([x, y]) => {
-        const pixel = this.#map.getPixelFromCoordinate([x, y]);
-        return [pixel?.[0] ?? -1e9, pixel?.[1] ?? -1e9];
-      },
-      show: (drag) => {
-        this.#scene.drag = drag;
-        this.#map.render();
-      },
-    });
-  }
-
   #point(event: MapBrowserEvent): void {
     if (event.dragging) return;
-    const free = this.#mode === 'draw' || this.#mode === 'point' ? 'crosshair' : '';
+    const free = this.#mode === 'watch' || this.#mode === 'edit' ? '' : 'crosshair';
     this.#target.style.cursor = this.#edit.over(event) ? 'pointer' : free;
+  }
+
+  #turn(): void {
+    const { robot } = this.#scene;
+    const next_deg = turn_deg(this.#turn_deg, {
+      up: this.#up,
+      drawn_on: this.#mode !== 'watch',
+      follows: this.#follow,
+      heading_deg: robot?.stale ? null : (robot?.heading_deg ?? null),
+    });
+    if (next_deg === this.#turn_deg) return;
+    this.#turn_deg = next_deg;
+    this.#view.setRotation((next_deg * Math.PI) / 180);
+    this.#turned(next_deg);
   }
 
   #center_on(at: LatLon): void {
@@ -365,30 +386,15 @@ export class FieldMap implements MapCalls {
   /** Moves the map just as far as needed. */
   #uncover(at: LatLon): void {
     const free = free_part(this.#map.getSize() ?? [0, 0], this.#scene.cover);
-    const [x, y] = this.#pixel_of(at, free);
+    const [x, y] = pixel_of(this.#view, at, free);
     const margin = Math.min(FIT_MARGIN_PX, free.width / 2, free.height / 2);
     const right = clamp(x, free.left + margin, free.left + free.width - margin) - x;
     const down = clamp(y, free.top + margin, free.top + free.height - margin) - y;
-    const [center_x = 0, center_y = 0] = this.#view.getCenter() ?? [];
-    const resolution = this.#view.getResolution() ?? 1;
-    this.#view.setCenter([center_x - right * resolution, center_y + down * resolution]);
+    push_view(this.#view, right, down);
   }
 
   #in_sight(at: LatLon, margin = 0): boolean {
     const free = free_part(this.#map.getSize() ?? [0, 0], this.#scene.cover);
-    const [x, y] = this.#pixel_of(at, free);
-    const across = x > free.left + margin && x < free.left + free.width - margin;
-    return across && y > free.top + margin && y < free.top + free.height - margin;
-  }
-
-  /** Where it will be drawn; the map itself knows only where it was in the last frame. */
-  #pixel_of(at: LatLon, free: FreePart): readonly [x: number, y: number] {
-    const [x, y] = to_plane(at);
-    const [center_x = 0, center_y = 0] = this.#view.getCenter() ?? [];
-    const resolution = this.#view.getResolution() ?? 1;
-    return [
-      free.left + free.width / 2 + (x - center_x) / resolution,
-      free.top + free.height / 2 - (y - center_y) / resolution,
-    ];
+    return in_part(pixel_of(this.#view, at, free), free, margin);
   }
 }

@@ -3,7 +3,7 @@
 import { circle_way } from '../model/circle';
 import type { LatLon } from '../model/plan';
 import type { Mark } from '../model/ports';
-import { stroke_cased, type Paint } from './canvas';
+import { stand_at, stroke_cased, type Paint } from './canvas';
 import type { Palette } from './palette';
 import { to_plane, units_per_m, type PlanePoint } from './projection';
 import { paint_ring_arrows, paint_ring_line } from './ring_painter';
@@ -48,7 +48,7 @@ const paint_round = (paint: Paint, at: Mark, color: string, casing: string): voi
 };
 
 /** Where the way to a mark leads, from the robot. */
-const line_to = (goal: Mark, from: LatLon | null): readonly PlanePoint[] => {
+export const line_to = (goal: Mark, from: LatLon | null): readonly PlanePoint[] => {
   if (goal.line) return goal.line.map(to_plane);
   if (!from) return [];
   const start = to_plane(from);
@@ -68,18 +68,37 @@ const line_to = (goal: Mark, from: LatLon | null): readonly PlanePoint[] => {
   ];
 };
 
-/** A drop that stands with its tip on the place. */
+const paint_line = (
+  paint: Paint,
+  line: readonly PlanePoint[],
+  color: string,
+  casing: string,
+): void => {
+  if (line.length < 2) return;
+  const { context } = paint;
+  context.beginPath();
+  line.forEach(([x, y], k) => {
+    if (k === 0) context.moveTo(paint.x_px(x), paint.y_px(y));
+    else context.lineTo(paint.x_px(x), paint.y_px(y));
+  });
+  context.setLineDash([10, 8]);
+  stroke_cased(context, casing, color, 3);
+  context.setLineDash([]);
+};
+
+/** A drop that stands with its tip on the place; with a line there, if it has one. */
 export const paint_pin = (paint: Paint, pin: Mark, colors: Palette): void => {
   const { context } = paint;
+  if (pin.line) paint_line(paint, pin.line.map(to_plane), colors.selected, colors.casing);
   paint_round(paint, pin, colors.selected, colors.casing);
   paint_facing(paint, pin, colors.selected, colors.casing);
-  const [x, y] = place(paint, pin);
-  const top = y - 2.2 * PIN_PX;
+  stand_at(paint, ...place(paint, pin));
+  const top = -2.2 * PIN_PX;
   context.beginPath();
-  context.moveTo(x, y);
-  context.quadraticCurveTo(x - PIN_PX, top + PIN_PX, x - PIN_PX, top);
-  context.arc(x, top, PIN_PX, Math.PI, 0);
-  context.quadraticCurveTo(x + PIN_PX, top + PIN_PX, x, y);
+  context.moveTo(0, 0);
+  context.quadraticCurveTo(-PIN_PX, top + PIN_PX, -PIN_PX, top);
+  context.arc(0, top, PIN_PX, Math.PI, 0);
+  context.quadraticCurveTo(PIN_PX, top + PIN_PX, 0, 0);
   context.closePath();
   context.strokeStyle = colors.casing;
   context.lineWidth = 5;
@@ -88,7 +107,7 @@ export const paint_pin = (paint: Paint, pin: Mark, colors: Palette): void => {
   context.fillStyle = colors.selected;
   context.fill();
   context.beginPath();
-  context.arc(x, top, 5.5, 0, 2 * Math.PI);
+  context.arc(0, top, 5.5, 0, 2 * Math.PI);
   context.fillStyle = colors.on_point;
   context.fill();
 };
@@ -102,18 +121,8 @@ export const paint_goal = (
 ): void => {
   const { context } = paint;
   const [x, y] = place(paint, goal);
-  const line = line_to(goal, from);
   paint_round(paint, goal, colors.route, colors.casing);
-  if (line.length > 1) {
-    context.beginPath();
-    line.forEach(([x_at, y_at], k) => {
-      if (k === 0) context.moveTo(paint.x_px(x_at), paint.y_px(y_at));
-      else context.lineTo(paint.x_px(x_at), paint.y_px(y_at));
-    });
-    context.setLineDash([10, 8]);
-    stroke_cased(context, colors.casing, colors.route, 3);
-    context.setLineDash([]);
-  }
+  paint_line(paint, line_to(goal, from), colors.route, colors.casing);
   paint_facing(paint, goal, colors.route, colors.casing);
   context.beginPath();
   context.arc(x, y, 13, 0, 2 * Math.PI);

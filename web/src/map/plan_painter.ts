@@ -1,13 +1,12 @@
-// Draws missions: the one being edited, with numbered points and handles, and the one the robot has
-// loaded, as a quieter line. Numbers that would overlap become dots, so any size stays readable and
-// cheap.
+// Draws the mission that is edited, with numbered points and handles. Numbers that would overlap become
+// dots, so any size stays readable and cheap.
 
 import { spots, type Plan, type Spot } from '../model/plan';
 import type { PlanShape } from '../model/ports';
 import { band_of, leg, rings_of, type Band, type Ring } from './band';
-import { stroke_cased, trace, type Paint } from './canvas';
+import { stand_at, stroke_cased, trace, trace_open, type Paint } from './canvas';
 import { palette, type Palette } from './palette';
-import { to_plane, to_plane_line, type PlaneLine, type PlanePoint } from './projection';
+import { to_plane_line, type PlaneLine, type PlanePoint } from './projection';
 import { paint_ring_arrows, paint_ring_line } from './ring_painter';
 
 /** A plan ready to draw: projected once, when it changes. */
@@ -17,12 +16,13 @@ export interface DrawnPlan {
   /** Items without a place that follow each spot. */
   readonly chips: readonly number[];
   readonly rings: readonly Ring[];
+  /** Spots that are come to backwards. */
+  readonly backwards: readonly number[];
   /** As the line is driven. */
   readonly band: Band;
 }
 
-const POINT_PX = 14;
-const WAY_PX = 2;
+export const POINT_PX = 14;
 const NUMBERS_APART_PX = 33;
 /** With more points in sight than this, only some numbers are drawn. */
 const CROWD = 150;
@@ -37,7 +37,11 @@ export const prepare_plan = (plan: Plan): DrawnPlan => {
   const chips = found.map((spot, k) => (found[k + 1]?.index ?? plan.items.length) - spot.index - 1);
   const line = to_plane_line(found);
   const rings = rings_of(plan, found);
-  return { spots: found, line, chips, rings, band: band_of(line, rings) };
+  const backwards = found.flatMap(({ index }, k) => {
+    const item = plan.items[index];
+    return item?.type === 'waypoint' && item.reverse === true ? [k] : [];
+  });
+  return { spots: found, line, chips, rings, backwards, band: band_of(line, rings) };
 };
 
 /** The line with one point elsewhere: what a drag will give. */
@@ -46,6 +50,22 @@ export const with_point = (line: PlaneLine, k: number, to: PlanePoint): PlaneLin
   const ys = line.ys.slice();
   xs[k] = to[0];
   ys[k] = to[1];
+  return { xs, ys };
+};
+
+/** The line with some points moved as one of them is. */
+export const with_moved = (
+  line: PlaneLine,
+  ks: readonly number[],
+  { k: taken, to }: { readonly k: number; readonly to: PlanePoint },
+): PlaneLine => {
+  const xs = line.xs.slice();
+  const ys = line.ys.slice();
+  const [dx, dy] = [to[0] - (line.xs[taken] ?? 0), to[1] - (line.ys[taken] ?? 0)];
+  for (const k of ks) {
+    xs[k] = (xs[k] ?? 0) + dx;
+    ys[k] = (ys[k] ?? 0) + dy;
+  }
   return { xs, ys };
 };
 
@@ -61,7 +81,30 @@ export const with_inserted = (line: PlaneLine, k: number, at: PlanePoint): Plane
   return { xs: column(line.xs, at[0]), ys: column(line.ys, at[1]) };
 };
 
-const disc = (context: CanvasRenderingContext2D, x: number, y: number, r: number): void => {
+/** The plan without what is before one spot, or from another one on. */
+export const part_of = (drawn: DrawnPlan, first: number, end: number): DrawnPlan => {
+  const { line } = drawn;
+  const part = { xs: line.xs.slice(first, end), ys: line.ys.slice(first, end) };
+  const rings = drawn.rings
+    .filter(({ k }) => k >= first && k < end)
+    .map((ring) => ({
+      ...ring,
+      k: ring.k - first,
+      // The spot before it is in another part.
+      before: ring.before === 'spot' && ring.k === first ? null : ring.before,
+    }));
+  const band = band_of(part, rings);
+  return {
+    spots: drawn.spots.slice(first, end),
+    chips: drawn.chips.slice(first, end),
+    line: part,
+    rings,
+    backwards: drawn.backwards.filter((k) => k >= first && k < end).map((k) => k - first),
+    band,
+  };
+};
+
+export const disc = (context: CanvasRenderingContext2D, x: number, y: number, r: number): void => {
   context.beginPath();
   context.arc(x, y, r, 0, 2 * Math.PI);
 };
@@ -87,7 +130,7 @@ const long_legs = (paint: Paint, band: Band, from_px: number, visit: Visit): voi
 };
 
 /** A small open arrow beside the middle of long segments: which way it goes. */
-const paint_arrows = (paint: Paint, band: Band, color: string, share: number): void => {
+export const paint_arrows = (paint: Paint, band: Band, color: string, share: number): void => {
   const { context } = paint;
   context.strokeStyle = color;
   context.lineWidth = 2.5;
@@ -108,6 +151,29 @@ const paint_arrows = (paint: Paint, band: Band, color: string, share: number): v
     }
   });
   context.stroke();
+};
+
+/** What is driven backwards is dashed, inside of its line. */
+export const paint_backwards = (
+  paint: Paint,
+  { band, backwards }: DrawnPlan,
+  color: string,
+): void => {
+  if (backwards.length === 0) return;
+  const { context } = paint;
+  context.save();
+  context.beginPath();
+  for (const k of backwards) {
+    if (k === 0) continue; // from wherever the robot stands
+    const [from, to] = leg(band, k);
+    context.moveTo(paint.x_px(from[0]), paint.y_px(from[1]));
+    context.lineTo(paint.x_px(to[0]), paint.y_px(to[1]));
+  }
+  context.setLineDash([6, 8]);
+  context.strokeStyle = color;
+  context.lineWidth = 2.5;
+  context.stroke();
+  context.restore();
 };
 
 const paint_handles = (paint: Paint, band: Band, colors: Palette): void => {
@@ -147,7 +213,10 @@ const paint_point = (paint: Paint, x: number, y: number, text: string, style: Po
   context.font = `700 ${text.length > 3 ? 9 : text.length > 2 ? 11 : 13}px system-ui, sans-serif`;
   context.textAlign = 'center';
   context.textBaseline = 'middle';
-  context.fillText(text, x, y + 0.5);
+  context.save();
+  stand_at(paint, x, y);
+  context.fillText(text, 0, 0.5);
+  context.restore();
 };
 
 /** Places on the screen that are taken, each with free room around it. */
@@ -178,6 +247,8 @@ export interface PlanLook {
   readonly selected: number | null;
   readonly refused: ReadonlySet<number>;
   readonly handles: boolean;
+  /** It is not what the robot drives, or will drive. */
+  readonly faint: boolean;
   readonly shape: PlanShape;
 }
 
@@ -240,12 +311,12 @@ const paint_points = (paint: Paint, drawn: DrawnPlan, line: PlaneLine, look: Pla
 const paint_line = (paint: Paint, band: Band, look: PlanLook, colors: Palette): void => {
   const { context } = paint;
   context.beginPath();
-  trace(paint, band.line.xs, band.line.ys);
   if (look.shape === 'ring') {
+    trace(paint, band.line.xs, band.line.ys);
     context.closePath();
     context.fillStyle = colors.ring;
     context.fill();
-  }
+  } else trace_open(paint, band.line.xs, band.line.ys);
   stroke_cased(context, colors.casing, colors.plan, 3.5);
   if (look.shape === 'line') paint_arrows(paint, band, colors.plan, 0.36);
 };
@@ -286,40 +357,9 @@ export const paint_plan = (
   if (look.shape !== 'points') {
     const band = still ? drawn.band : band_of(line, rings);
     paint_line(paint, band, look, colors);
+    if (look.shape === 'line') paint_backwards(paint, { ...drawn, band }, colors.casing);
     if (look.handles) paint_handles(paint, band, colors);
   }
   each_ring(paint, rings, line, paint_ring_arrows);
   if (line.xs.length === drawn.spots.length) paint_points(paint, drawn, line, look);
-};
-
-/** The loaded mission: what is done is faint, the item being driven to is marked. */
-export const paint_route = (paint: Paint, drawn: DrawnPlan, current_item: number): void => {
-  const colors = palette();
-  const { context } = paint;
-  const { line, end } = drawn.band;
-  const next = drawn.spots.findIndex((spot) => spot.index + 1 >= current_item);
-  const done = next < 0 ? drawn.spots.length : next;
-  const left_from = done > 0 ? (end[done - 1] ?? 0) : 0;
-  context.beginPath();
-  if (done > 0) trace(paint, line.xs, line.ys, 0, left_from + 1);
-  stroke_cased(context, colors.casing, colors.route_done, 9);
-  context.beginPath();
-  trace(paint, line.xs, line.ys, left_from);
-  stroke_cased(context, colors.casing, colors.route, 9);
-  const target = current_item > 0 ? drawn.spots[done] : undefined;
-  if (!target) return;
-  const [tx, ty] = to_plane(target);
-  disc(context, paint.x_px(tx), paint.y_px(ty), POINT_PX + 9);
-  stroke_cased(context, colors.casing, colors.current, 4.5);
-};
-
-/** How the loaded mission will be driven: corners rounded, dense points smoothed. */
-export const paint_way = (paint: Paint, { xs, ys }: PlaneLine): void => {
-  if (xs.length < 2) return;
-  const { context } = paint;
-  context.beginPath();
-  trace(paint, xs, ys);
-  context.strokeStyle = palette().way;
-  context.lineWidth = WAY_PX;
-  context.stroke();
 };

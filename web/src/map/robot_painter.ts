@@ -1,71 +1,15 @@
-// Draws the robot, how sure it is of place and heading, the driven trail and home.
+// Draws the robot, how sure it is of place and heading, and home.
 
 import type { LatLon } from '../model/plan';
 import type { RobotOnMap } from '../model/ports';
-import type { Trail } from '../model/trail';
-import { stroke_cased, trace, type Paint } from './canvas';
+import { around_px } from './boxes';
+import { stand_at, stroke_cased, type Box, type Paint, type Pixels } from './canvas';
 import type { Palette } from './palette';
 import { to_plane, units_per_m } from './projection';
 
-const DOTS_APART_PX = 7;
-
-/** A trail in the plane, kept in step with the model's ring: a line in pieces, or dots. */
-export class TrailLine {
-  readonly #xs: number[] = [];
-  readonly #ys: number[] = [];
-  readonly #begins: boolean[] = [];
-  #seen = 0;
-
-  follow(trail: Trail): void {
-    const fresh = Math.min(trail.added - this.#seen, trail.length);
-    this.#seen = trail.added;
-    for (let k = trail.length - fresh; k < trail.length; k += 1) {
-      const at = trail.at(k);
-      if (!at) continue;
-      const [x, y] = to_plane(at);
-      this.#xs.push(x);
-      this.#ys.push(y);
-      this.#begins.push(trail.begins(k));
-    }
-    const surplus = this.#xs.length - trail.length;
-    if (surplus > 0) {
-      this.#xs.splice(0, surplus);
-      this.#ys.splice(0, surplus);
-      this.#begins.splice(0, surplus);
-    }
-  }
-
-  /** A dot for every point that is not too near to the dot before. */
-  paint_dots(paint: Paint, color: string): void {
-    const { context } = paint;
-    let [last_x, last_y] = [Number.NaN, Number.NaN];
-    context.beginPath();
-    for (let k = 0; k < this.#xs.length; k += 1) {
-      const x = paint.x_px(this.#xs[k] ?? 0);
-      const y = paint.y_px(this.#ys[k] ?? 0);
-      if (Math.hypot(x - last_x, y - last_y) < DOTS_APART_PX) continue;
-      context.rect(x - 2.5, y - 2.5, 5, 5);
-      [last_x, last_y] = [x, y];
-    }
-    context.fillStyle = color;
-    context.fill();
-  }
-
-  paint_line(paint: Paint, colors: Palette): void {
-    const count = this.#xs.length;
-    if (count < 2) return;
-    paint.context.beginPath();
-    let first = 0;
-    for (let k = 1; k <= count; k += 1) {
-      if (k < count && !this.#begins[k]) continue;
-      trace(paint, this.#xs, this.#ys, first, k);
-      first = k;
-    }
-    stroke_cased(paint.context, colors.casing, colors.trail, 3);
-  }
-}
-
 const ARROW_PX = 19;
+/** Half the room of the words under it. */
+const WORDS_PX = 64;
 
 /** An arrow head around the origin that points up, to be turned by the heading. */
 const arrow_path = (context: CanvasRenderingContext2D, size: number): void => {
@@ -82,17 +26,33 @@ export interface Size {
   readonly width_m: number;
 }
 
+/** Its half axes. */
+const ellipse_of = (robot: RobotOnMap): NonNullable<RobotOnMap['ellipse']> => {
+  const round_m = robot.accuracy_m ?? 0;
+  return robot.ellipse ?? { major_m: round_m, minor_m: round_m, orientation_deg: 0 };
+};
+
+export const accuracy_box = (pixels: Pixels, robot: RobotOnMap): Box | null => {
+  const long_px = (ellipse_of(robot).major_m * units_per_m(robot.at.lat).east) / pixels.resolution;
+  const [x, y] = to_plane(robot.at);
+  return long_px <= 4 ? null : around_px(pixels.x_px(x), pixels.y_px(y), long_px + 2);
+};
+
+/** With the words under it. */
+export const robot_box = (pixels: Pixels, robot: RobotOnMap, size: Size): Box => {
+  const metre_px = units_per_m(robot.at.lat).east / pixels.resolution;
+  const body_px = (Math.hypot(size.length_m, size.width_m) / 2) * metre_px;
+  const [x, y] = to_plane(robot.at);
+  const least_px = robot.old === null && robot.fence === null ? ARROW_PX + 4 : WORDS_PX;
+  return around_px(pixels.x_px(x), pixels.y_px(y), Math.max(least_px, body_px) + 6);
+};
+
 /** How far off the robot may be. Under everything else, which it must not tint: it can be wide. */
 export const paint_accuracy = (paint: Paint, robot: RobotOnMap, colors: Palette): void => {
   const { context, resolution } = paint;
   const [x, y] = to_plane(robot.at);
   const metre_px = units_per_m(robot.at.lat).east / resolution;
-  const round_m = robot.accuracy_m ?? 0;
-  const { major_m, minor_m, orientation_deg } = robot.ellipse ?? {
-    major_m: round_m,
-    minor_m: round_m,
-    orientation_deg: 0,
-  };
+  const { major_m, minor_m, orientation_deg } = ellipse_of(robot);
   if (major_m * metre_px <= 4) return;
   context.beginPath();
   // On the canvas angles go clockwise from the right.
@@ -110,10 +70,24 @@ const WEDGE_PX = 64;
 /** A narrower wedge hides behind the arrow. */
 const WEDGE_FROM_DEG = 3;
 
-/** How far off the heading may be, to both sides of it, two sigma. The origin is the robot. */
-const paint_wedge = (context: CanvasRenderingContext2D, sigma_deg: number, color: string): void => {
-  if (sigma_deg < WEDGE_FROM_DEG) return;
-  const half = (Math.min(2 * sigma_deg, 180) * Math.PI) / 180;
+/** 1σ, where it is worth a wedge; else null. */
+const wedge_deg = ({ stale, heading_deg, heading_accuracy_deg }: RobotOnMap): number | null => {
+  const sigma_deg = stale || heading_deg === null ? 0 : (heading_accuracy_deg ?? 0);
+  return sigma_deg < WEDGE_FROM_DEG ? null : sigma_deg;
+};
+
+export const wedge_box = (pixels: Pixels, robot: RobotOnMap): Box | null => {
+  const [x, y] = to_plane(robot.at);
+  return wedge_deg(robot) === null ? null : around_px(pixels.x_px(x), pixels.y_px(y), WEDGE_PX + 2);
+};
+
+/** How far off the heading may be, to both sides of it, two sigma. Under everything else, too. */
+export const paint_wedge = (paint: Paint, robot: RobotOnMap, color: string): void => {
+  const { context } = paint;
+  const [x, y] = to_plane(robot.at);
+  const half = (Math.min(2 * (wedge_deg(robot) ?? 0), 180) * Math.PI) / 180;
+  context.translate(paint.x_px(x), paint.y_px(y));
+  context.rotate(((robot.heading_deg ?? 0) * Math.PI) / 180);
   context.beginPath();
   context.moveTo(0, 0);
   context.arc(0, 0, WEDGE_PX, -Math.PI / 2 - half, -Math.PI / 2 + half);
@@ -122,17 +96,22 @@ const paint_wedge = (context: CanvasRenderingContext2D, sigma_deg: number, color
   context.fill();
 };
 
-/** Under the robot: how long ago that was. */
-const paint_age = (context: CanvasRenderingContext2D, words: string, colors: Palette): void => {
+/** Under the robot: how long ago that was, and how near the fence is. */
+const paint_words = (
+  context: CanvasRenderingContext2D,
+  words: string,
+  y: number,
+  colors: Palette,
+): void => {
   context.font = '700 13px system-ui, sans-serif';
   context.textAlign = 'center';
   context.textBaseline = 'top';
   context.lineJoin = 'round';
   context.strokeStyle = colors.casing;
   context.lineWidth = 4;
-  context.strokeText(words, 0, 26);
+  context.strokeText(words, 0, y);
   context.fillStyle = colors.refused;
-  context.fillText(words, 0, 26);
+  context.fillText(words, 0, y);
 };
 
 export const paint_robot = (paint: Paint, robot: RobotOnMap, size: Size, colors: Palette): void => {
@@ -140,9 +119,13 @@ export const paint_robot = (paint: Paint, robot: RobotOnMap, size: Size, colors:
   const [x, y] = to_plane(robot.at);
   const metre_px = units_per_m(robot.at.lat).east / resolution;
   const color = robot.stale ? colors.robot_stale : colors.robot;
-  context.translate(paint.x_px(x), paint.y_px(y));
-  if (robot.old !== null) paint_age(context, robot.old, colors);
+  context.save();
+  stand_at(paint, paint.x_px(x), paint.y_px(y));
+  if (robot.old !== null) paint_words(context, robot.old, 26, colors);
+  if (robot.fence !== null) paint_words(context, robot.fence, robot.old === null ? 26 : 42, colors);
+  context.restore();
 
+  context.translate(paint.x_px(x), paint.y_px(y));
   if (robot.heading_deg === null) {
     context.beginPath();
     context.arc(0, 0, 11, 0, 2 * Math.PI);
@@ -150,7 +133,6 @@ export const paint_robot = (paint: Paint, robot: RobotOnMap, size: Size, colors:
     return;
   }
   context.rotate((robot.heading_deg * Math.PI) / 180);
-  if (!robot.stale) paint_wedge(context, robot.heading_accuracy_deg ?? 0, colors.wedge);
   const [long_px, wide_px] = [size.length_m * metre_px, size.width_m * metre_px];
   if (long_px > ARROW_PX) {
     context.beginPath();
@@ -172,7 +154,7 @@ export const paint_robot = (paint: Paint, robot: RobotOnMap, size: Size, colors:
 export const paint_home = (paint: Paint, home: LatLon, colors: Palette): void => {
   const { context } = paint;
   const [x, y] = to_plane(home);
-  context.translate(paint.x_px(x), paint.y_px(y));
+  stand_at(paint, paint.x_px(x), paint.y_px(y));
   context.beginPath();
   context.moveTo(0, -11);
   context.lineTo(11, -1);

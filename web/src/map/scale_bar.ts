@@ -2,6 +2,7 @@
 // it can be read out and styled.
 
 import { round_step_below } from '../model/geo';
+import { language_now, say } from '../model/say';
 
 const LONGEST_PX = 110;
 
@@ -27,11 +28,12 @@ export const make_scale_bar = (): ScaleBar => {
             ? `${length_m} m`
             : `${Math.round(length_m * 100)} cm`;
       const width = `${(length_m / pixel_m).toFixed(1)}px`;
-      if (shown === text + width) return;
-      shown = text + width;
+      const now = `${text} ${width} ${language_now()}`;
+      if (shown === now) return;
+      shown = now;
       element.textContent = text;
       element.style.width = width;
-      element.setAttribute('aria-label', `Scale: this bar is ${text}`);
+      element.setAttribute('aria-label', say('scale_this_bar_is', { length: text }));
     },
   };
 };

@@ -4,44 +4,73 @@ import { distance_m } from '../model/geo';
 import type { FenceDraft } from '../model/fence';
 import { EMPTY_PLAN, type LatLon, type Plan } from '../model/plan';
 import type { MapEvents, Mark, RobotOnMap } from '../model/ports';
+import { language_now } from '../model/say';
+import { DrawnUpTo } from '../model/drawn_up_to';
+import type { DriveOnMap } from '../model/route_drive';
+import type { TrailShades } from '../model/trail_shades';
 import type { AheadOnMap, SeenOnMap } from '../model/seen';
-import { paint_away } from './away_painter';
+import { away_spot, paint_away } from './away_painter';
 import type { SiteEdit, SiteOnMap } from '../model/site_map';
-import { ring_behind } from './band';
-import type { Paint, Painter } from './canvas';
+import {
+  pixels_of,
+  type Mover,
+  type Paint,
+  type Painter,
+  type Pixels,
+  type Stays,
+  type View,
+} from './canvas';
+import { around_px, box_of, goal_box, whole } from './boxes';
+import { paint_drive, prepare_drive, type DrawnDrive } from './drive_painter';
 import { paint_drill, type DrawnDrill } from './drill_painter';
-import type { Drag } from './edit';
+import { edited_movers, paint_edited } from './edited_painter';
+import type { Box, Drag } from './edit';
 import { paint_fence } from './fence_painter';
 import { paint_grid, type Cover } from './grid';
 import { paint_goal, paint_pin } from './mark_painter';
 import { palette } from './palette';
+import type { DrawnBeside } from './pick_painter';
+import { prepare_plan, type DrawnPlan, type PlanLook } from './plan_painter';
+import { from_plane, type PlaneLine, to_plane_line } from './projection';
 import {
-  paint_plan,
+  accuracy_box,
+  paint_accuracy,
+  paint_home,
+  paint_robot,
+  paint_wedge,
+  robot_box,
+  wedge_box,
+  type Size,
+} from './robot_painter';
+import {
+  paint_corridor,
   paint_route,
+  paint_target,
   paint_way,
-  prepare_plan,
-  with_inserted,
-  with_point,
-  type DrawnPlan,
-  type PlanLook,
-} from './plan_painter';
-import { from_plane, type PlaneLine, to_plane_line, units_per_m } from './projection';
-import { paint_accuracy, paint_home, paint_robot, TrailLine, type Size } from './robot_painter';
-import { paint_runs, type DrawnRun } from './run_painter';
-import type { ScaleBar } from './scale_bar';
+  target_box,
+  target_of,
+} from './route_painter';
+import { paint_heat, paint_runs, type DrawnHeat, type DrawnRun } from './run_painter';
 import type * as SeenPainter from './seen_painter';
 import type * as SitePainter from './site_painter';
 import { paint_space, type DrawnSpace } from './space_painter';
 import { paint_slips, type DrawnSlip } from './slip_painter';
+import { TrailLine } from './trail_line';
 
 /** Beyond this from its origin the grid gets a new one. */
 const GRID_REACH_M = 10_000;
+
+/** The same values, one by one. */
+const alike = (old: readonly unknown[], now: readonly unknown[]): boolean =>
+  old.length === now.length && now.every((value, k) => value === old[k]);
 
 const NO_EVENTS: MapEvents = {
   on_add: () => undefined,
   on_insert: () => undefined,
   on_move: () => undefined,
   on_select: () => undefined,
+  on_pick: () => undefined,
+  on_pick_box: () => undefined,
   on_place: () => undefined,
   on_point: () => undefined,
   on_pan: () => undefined,
@@ -64,6 +93,27 @@ class Projected {
   }
 }
 
+/** The old one if the new one says the same: what is drawn of it need not be drawn again. */
+export const kept = <T extends object>(old: T | null, next: T | null): T | null =>
+  JSON.stringify(old) === JSON.stringify(next) ? old : next;
+
+/** Fields of what moves, or is not drawn. */
+const MOVES: ReadonlySet<string> = new Set([
+  'events',
+  'drag',
+  'box',
+  'snaps',
+  'robot',
+  'seen',
+  'ahead',
+  'goal',
+  'current_item',
+  'cover',
+]);
+
+/** Fields of which nothing is drawn under the edited mission. */
+const EDITED: ReadonlySet<string> = new Set(['plan', 'look', 'picked', 'beside', 'drill', 'pin']);
+
 export class Scene {
   events = NO_EVENTS;
   readonly plan = new Projected(EMPTY_PLAN);
@@ -72,12 +122,32 @@ export class Scene {
   way: PlaneLine = to_plane_line([]);
   readonly driven = new TrailLine();
   readonly fixes = new TrailLine();
-  look: PlanLook = { selected: null, refused: new Set(), handles: false, shape: 'line' };
+  /** Null: in one colour. */
+  trail_shades: TrailShades | null = null;
+  look: PlanLook = {
+    selected: null,
+    refused: new Set(),
+    handles: false,
+    faint: false,
+    shape: 'line',
+  };
   drag: Drag | null = null;
+  /** The box that chooses points. */
+  box: Box | null = null;
+  picked: ReadonlySet<number> = new Set();
+  /** A dragged point is caught by what lies near. */
+  snaps = false;
+  /** Shown to compare. */
+  beside: readonly DrawnBeside[] = [];
   current_item = 0;
+  /** How the route is to be driven; null: not shown. */
+  drive: DrawnDrive | null = null;
+  /** To both sides of the route; null: not known. */
+  corridor_m: number | null = null;
   robot: RobotOnMap | null = null;
   home: LatLon | null = null;
   runs: readonly DrawnRun[] = [];
+  heat: DrawnHeat | null = null;
   drill: DrawnDrill | null = null;
   space: DrawnSpace | null = null;
   slips: readonly DrawnSlip[] = [];
@@ -97,6 +167,22 @@ export class Scene {
   size: Size = { length_m: 1, width_m: 0.8 };
   cover: Cover = { top: 0, right: 0, bottom: 0, left: 0 };
   #origin: LatLon | null = null;
+  #way_from: readonly LatLon[] = [];
+  /** Up to where the route is drawn as done. */
+  readonly #route_at = new DrawnUpTo();
+  /** All of what stays, as it was drawn last. */
+  #below_of: readonly unknown[] = [];
+  #edited_of: readonly unknown[] = [];
+
+  take_drive(drive: DriveOnMap | null): void {
+    this.drive = drive && prepare_drive(drive, this.drive);
+  }
+
+  /** Projected once. */
+  take_way(way: readonly LatLon[]): void {
+    if (way !== this.#way_from) this.way = to_plane_line(way);
+    this.#way_from = way;
+  }
 
   /** The grid keeps its origin while one works near it. */
   grid_origin(here: LatLon): LatLon {
@@ -109,23 +195,21 @@ export class Scene {
     return wanted;
   }
 
-  painters(bar: ScaleBar): Painter[] {
+  /** What is drawn once, in order: what lies under the edited mission, and what does not. */
+  still(): Stays[] {
     return [
-      (paint) => {
-        const here = from_plane(paint.center);
-        paint_grid(paint, palette(), this.grid_origin(here), this.cover);
-        bar.show(paint.resolution / units_per_m(here.lat).east);
-      },
+      { painters: this.#below(), changed: () => this.#below_changed() },
+      { painters: this.#edited(), changed: () => this.#edited_changed() },
+    ];
+  }
+
+  #below(): Painter[] {
+    return [
+      (paint) => paint_grid(paint, palette(), this.grid_origin(from_plane(paint.center))),
       (paint) => {
         if (this.site) this.site_painter?.paint_site(paint, this.site);
       },
       (paint) => this.site_painter?.paint_site_edits(paint, this.site_edits, palette()),
-      (paint) => {
-        if (this.robot) paint_accuracy(paint, this.robot, palette());
-      },
-      (paint) => {
-        if (this.seen) this.seen_painter?.paint_ground(paint, this.seen.grid);
-      },
       (paint) => {
         if (this.fence) paint_fence(paint, this.fence, palette());
       },
@@ -133,15 +217,28 @@ export class Scene {
         if (this.space) paint_space(paint, this.space, palette());
       },
       (paint) => {
-        if (this.runs.length > 0) return;
-        paint_route(paint, this.route.drawn, this.current_item);
+        this.#route_at.keep(this.current_item, performance.now());
+        if (this.runs.length > 0 || this.heat) return;
+        if (this.corridor_m !== null) {
+          paint_corridor(paint, this.route.drawn, this.current_item, this.corridor_m);
+        }
+        paint_route(paint, this.route.drawn, this.current_item, this.drive);
         paint_way(paint, this.way);
       },
       (paint) => this.#paint_driven(paint),
       (paint) => {
         if (this.slips.length > 0) paint_slips(paint, this.slips, palette());
       },
-      (paint) => this.#paint_edited(paint),
+    ];
+  }
+
+  #edited(): Painter[] {
+    return [
+      (paint) => paint_edited(paint, this),
+      (paint) => {
+        if (!this.drive || this.runs.length > 0 || this.heat) return;
+        paint_drive(paint, this.route.drawn, this.drive, this.current_item);
+      },
       (paint) => {
         if (this.drill) paint_drill(paint, this.drill, this.size, palette());
       },
@@ -149,48 +246,143 @@ export class Scene {
         if (this.home) paint_home(paint, this.home, palette());
       },
       (paint) => {
-        if (this.goal) paint_goal(paint, this.goal, this.robot?.at ?? null, palette());
-      },
-      (paint) => {
         if (this.pin) paint_pin(paint, this.pin, palette());
-      },
-      (paint) => {
-        if (this.ahead) this.seen_painter?.paint_ahead(paint, this.ahead, palette());
-        if (this.seen) this.seen_painter?.paint_seen(paint, this.seen, palette());
-      },
-      (paint) => {
-        if (this.robot) paint_robot(paint, this.robot, this.size, palette());
-      },
-      (paint) => {
-        if (this.ahead) this.seen_painter?.paint_block(paint, this.ahead, palette());
-      },
-      (paint) => {
-        if (this.robot) paint_away(paint, this.robot, this.cover, palette());
       },
     ];
   }
 
-  #paint_driven(paint: Paint): void {
-    if (this.runs.length > 0) {
-      paint_runs(paint, this.runs, palette());
-      return;
-    }
-    this.fixes.paint_dots(paint, palette().fixes);
-    this.driven.paint_line(paint, palette());
+  /** What moves, under all that. */
+  ground(view: View): Mover[] {
+    const pixels = pixels_of(view, 0);
+    const { robot, seen } = this;
+    return [
+      {
+        box: robot && accuracy_box(pixels, robot),
+        paint: (paint) => robot && paint_accuracy(paint, robot, palette()),
+      },
+      {
+        box: robot && wedge_box(pixels, robot),
+        paint: (paint) => robot && paint_wedge(paint, robot, palette().wedge),
+      },
+      {
+        box: seen?.grid ? whole(view) : null,
+        paint: (paint) => this.seen_painter?.paint_ground(paint, seen?.grid ?? null),
+      },
+    ];
   }
 
-  /** In the middle of a drag the line already goes where it will go. */
-  #paint_edited(paint: Paint): void {
-    const { drawn } = this.plan;
-    const { drag } = this;
-    const line =
-      drag === null
-        ? drawn.line
-        : drag.what === 'spot'
-          ? with_point(drawn.line, drag.k, drag.to)
-          : with_inserted(drawn.line, drag.k, drag.to);
-    const rings =
-      drag?.what === 'handle' ? drawn.rings.map((ring) => ring_behind(ring, drag.k)) : drawn.rings;
-    paint_plan(paint, drawn, line, rings, this.look);
+  /** A ring around the item that is driven to. */
+  target(view: View): Mover[] {
+    if (this.runs.length > 0 || this.heat) return [];
+    const at = target_of(this.route.drawn, this.current_item);
+    if (!at) return [];
+    return [{ box: target_box(pixels_of(view, 0), at), paint: (paint) => paint_target(paint, at) }];
+  }
+
+  /** What moves, above it. */
+  moving(view: View): Mover[] {
+    const pixels = pixels_of(view, 0);
+    const { robot, goal, seen, ahead } = this;
+    return [
+      ...this.#tips(pixels),
+      ...edited_movers(view, this),
+      {
+        box: goal && goal_box(pixels, goal, robot?.at ?? null),
+        paint: (paint) => goal && paint_goal(paint, goal, robot?.at ?? null, palette()),
+      },
+      {
+        box: seen || ahead ? whole(view) : null,
+        paint: (paint) => {
+          if (ahead) this.seen_painter?.paint_ahead(paint, ahead, palette());
+          if (seen) this.seen_painter?.paint_seen(paint, seen, palette());
+        },
+      },
+      {
+        box: robot && robot_box(pixels, robot, this.size),
+        paint: (paint) => robot && paint_robot(paint, robot, this.size, palette()),
+      },
+      {
+        box: ahead ? whole(view) : null,
+        paint: (paint) => ahead && this.seen_painter?.paint_block(paint, ahead, palette()),
+      },
+    ];
+  }
+
+  /** Where a robot out of sight is. */
+  above(view: View): Mover[] {
+    const { robot } = this;
+    const spot = robot && away_spot(view, robot, this.cover);
+    if (!robot || !spot) return [];
+    return [
+      {
+        box: around_px(spot.x, spot.y, 110),
+        paint: (paint) => paint_away(paint, robot, spot, palette()),
+      },
+    ];
+  }
+
+  /**
+   * Whether anything of what is drawn once is another one than when this was asked last. Every field
+   * counts but those that are known to move, or to lie above: a field that is forgotten costs time, and
+   * is never wrong.
+   */
+  #below_changed(): boolean {
+    const first = this.home || this.robot ? null : this.plan.drawn.spots[0]; // of the grid
+    const now = this.#fields((name) => !EDITED.has(name));
+    now.push(this.route.drawn, first?.lat, first?.lon);
+    const same = alike(this.#below_of, now);
+    this.#below_of = now;
+    const behind = this.#route_at.is_behind(this.current_item, performance.now());
+    return !same || behind || this.driven.tip() === null || this.fixes.tip() === null;
+  }
+
+  #edited_changed(): boolean {
+    const now = this.#fields(() => true);
+    now.push(this.plan.drawn, this.route.drawn, this.#drag_key(), this.#route_at.item);
+    const same = alike(this.#edited_of, now);
+    this.#edited_of = now;
+    return !same;
+  }
+
+  #fields(counts: (name: string) => boolean): unknown[] {
+    const all = Object.entries(this).filter(([name]) => !MOVES.has(name) && counts(name));
+    return [palette(), language_now(), ...all.map(([, value]): unknown => value)];
+  }
+
+  /** Which point is dragged, wherever it is. */
+  #drag_key(): string {
+    return this.drag ? `${this.drag.what} ${this.drag.k}` : '';
+  }
+
+  #paint_driven(paint: Paint): void {
+    this.driven.keep();
+    this.fixes.keep();
+    if (this.heat) paint_heat(paint, this.heat, palette());
+    if (this.runs.length > 0) paint_runs(paint, this.runs, this.size, palette());
+    if (this.heat || this.runs.length > 0) return;
+    this.fixes.paint_dots(paint, palette().fixes);
+    this.#paint_trail(paint);
+  }
+
+  #paint_trail(paint: Paint, begin = 0): void {
+    const shades = this.trail_shades;
+    if (shades) this.driven.paint_shaded(paint, palette(), shades, begin);
+    else this.driven.paint_line(paint, palette(), begin);
+  }
+
+  /** What was driven since. */
+  #tips(pixels: Pixels): Mover[] {
+    if (this.heat || this.runs.length > 0) return [];
+    const [fixes, driven] = [this.fixes.tip() ?? 0, this.driven.tip() ?? 0];
+    return [
+      {
+        box: box_of(pixels, this.fixes.places(fixes), 5),
+        paint: (paint) => this.fixes.paint_dots(paint, palette().fixes, fixes),
+      },
+      {
+        box: box_of(pixels, this.driven.places(driven), 7),
+        paint: (paint) => this.#paint_trail(paint, driven),
+      },
+    ];
   }
 }

@@ -1,5 +1,8 @@
 // What of the plane is in sight, and which part of the window is free for it.
 
+import type View from 'ol/View';
+
+import { turned } from '../model/map_up';
 import type { LatLon } from '../model/plan';
 import type { Cover } from './grid';
 import { to_plane } from './projection';
@@ -30,6 +33,37 @@ export const free_part = ([width = 0, height = 0]: readonly number[], cover: Cov
   width: Math.max(0, width - cover.left - cover.right),
   height: Math.max(0, height - cover.top - cover.bottom),
 });
+
+/** Where it will be drawn; the map itself knows only where it was in the last frame. */
+export const pixel_of = (
+  view: View,
+  at: LatLon,
+  free: FreePart,
+): readonly [x: number, y: number] => {
+  const [x, y] = to_plane(at);
+  const [center_x = 0, center_y = 0] = view.getCenter() ?? [];
+  const resolution = view.getResolution() ?? 1;
+  const [right, down] = turned(
+    [(x - center_x) / resolution, (center_y - y) / resolution],
+    view.getRotation(),
+  );
+  return [free.left + free.width / 2 + right, free.top + free.height / 2 + down];
+};
+
+export const in_part = (
+  [x, y]: readonly [x: number, y: number],
+  { left, top, width, height }: FreePart,
+  margin: number,
+): boolean =>
+  x > left + margin && x < left + width - margin && y > top + margin && y < top + height - margin;
+
+/** Moves what is seen to the right and down, pixels. */
+export const push_view = (view: View, right_px: number, down_px: number): void => {
+  const [right, down] = turned([right_px, down_px], -view.getRotation());
+  const [center_x = 0, center_y = 0] = view.getCenter() ?? [];
+  const resolution = view.getResolution() ?? 1;
+  view.setCenter([center_x - right * resolution, center_y + down * resolution]);
+};
 
 export const clamp = (value: number, least: number, most: number): number =>
   Math.min(Math.max(value, least), most);

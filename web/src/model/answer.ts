@@ -2,6 +2,7 @@
 // robot's own words.
 
 import type { Mission } from './ports';
+import { say } from './say';
 
 export interface FieldError {
   /** JSON pointer, a line of a file, or the id of a failing check. */
@@ -31,8 +32,8 @@ export const refusal_text = (refusal: Refusal): string => {
 /** A change that did not come about; without an answer nobody knows. @param done "saved" */
 export const failure_text = (done: string, refusal: Refusal): string =>
   refusal.status === 0
-    ? `It is not known whether it was ${done}: no answer came.`
-    : `Not ${done}: ${refusal_text(refusal)}`;
+    ? say('it_is_not_known_whether_it_was_done', { done })
+    : say('not_done_refusal', { done, refusal: refusal_text(refusal) });
 
 /** Indices of the items that a refusal names ("/items/3/lat" → 3). */
 export const refused_items = (refusal: Refusal): ReadonlySet<number> => {

@@ -3,6 +3,7 @@
 
 import type { Answer } from './answer';
 import type { Page } from './ports';
+import { say } from './say';
 
 export interface Deed {
   readonly id: number;
@@ -71,15 +72,15 @@ export const deed_query = (filter: DeedFilter): Readonly<Record<string, string>>
 
 /** A status in words. */
 export const result_words = (status: number): string => {
-  if (status < 400) return 'done';
-  if (status === 401) return 'not logged in';
-  if (status === 403) return 'not allowed';
-  if (status === 429) return 'too often';
-  return status < 500 ? 'refused' : 'failed';
+  if (status < 400) return say('result_done');
+  if (status === 401) return say('not_logged_in');
+  if (status === 403) return say('not_allowed');
+  if (status === 429) return say('too_often');
+  return status < 500 ? say('result_refused') : say('result_failed');
 };
 
 /** Who it was: their name, else where they were. */
-export const doer = ({ user, address }: Deed): string => user ?? address ?? 'nobody known';
+export const doer = ({ user, address }: Deed): string => user ?? address ?? say('nobody_known');
 
 /** "DELETE /missions/kssmx3", or the call's name where it was asked for by no path. */
 export const deed_words = ({ call, target }: Deed): string => {
@@ -88,10 +89,9 @@ export const deed_words = ({ call, target }: Deed): string => {
 };
 
 export const check_words = ({ whole, rows, first, last, broken_at }: DeedCheck): string => {
-  if (!whole)
-    return `Not as it was written: row ${broken_at ?? '?'} was changed, or one before it is gone.`;
-  if (rows === 0) return 'Nothing has been written down yet.';
-  return `Whole: rows ${first ?? '?'} to ${last ?? '?'} are as they were written.`;
+  if (!whole) return say('not_as_it_was_written_row_broken_at', { broken_at: broken_at ?? '?' });
+  if (rows === 0) return say('nothing_has_been_written_down_yet');
+  return say('whole_rows_first_to_last_are_as_they', { first: first ?? '?', last: last ?? '?' });
 };
 
 /** The files that together hold all rows. */
@@ -103,7 +103,7 @@ export const export_parts = ({
   const out = [];
   for (let after = first - 1; after < last; after += EXPORTED) {
     const end = Math.min(after + EXPORTED, last);
-    out.push({ after, label: `Export rows ${after + 1} to ${end}` });
+    out.push({ after, label: say('export_rows_after_to_end', { after: after + 1, end }) });
   }
   return out;
 };

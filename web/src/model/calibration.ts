@@ -2,6 +2,7 @@
 
 import { number_text, UNKNOWN } from './format';
 import type { LatLon } from './plan';
+import { say, told } from './say';
 
 export type CalibrationKind = 'drive' | 'steering' | 'compass' | 'antennas';
 export interface CalibrationValue {
@@ -48,36 +49,37 @@ export interface Calibration {
   readonly kinds: readonly CalibrationNeed[];
 }
 
-export const kind_words: Readonly<Record<CalibrationKind, string>> = {
-  drive: 'How it drives',
-  steering: 'Its steering',
-  compass: 'Its compass',
-  antennas: 'Its two antennas',
-};
+export const kind_words: Readonly<Record<CalibrationKind, string>> = told({
+  drive: 'how_it_drives',
+  steering: 'its_steering',
+  compass: 'its_compass',
+  antennas: 'its_two_antennas',
+});
 
-export const step_words: Readonly<Record<NonNullable<Calibration['step']>, string>> = {
+export const step_words: Readonly<Record<NonNullable<Calibration['step']>, string>> = told({
   stands: 'stands',
-  straight: 'drives straight',
-  turn: 'turns on the spot',
-  circle: 'drives a bend',
-};
+  straight: 'drives_straight',
+  turn: 'turns_on_the_spot',
+  circle: 'drives_a_bend',
+});
 
-const titles: Readonly<Record<string, string>> = {
-  steering_delay: 'Delay of turning',
-  drive_delay: 'Delay of driving',
-  braking: 'Braking',
-  acceleration: 'Speeding up',
-  speed_scale: 'Way over ground',
-  turn_scale: 'Turn over ground',
-  side_bias: 'Bends when told straight',
-  steering_zero: 'Wheels when told straight',
-  compass_offset: 'Compass is off by',
-  compass_spread: 'What is left by heading',
-  antennas_offset: 'Antennas are off by',
-};
+const titles: Readonly<Record<string, string>> = told({
+  steering_delay: 'delay_of_turning',
+  drive_delay: 'delay_of_driving',
+  braking: 'braking',
+  acceleration: 'speeding_up',
+  speed_scale: 'way_over_ground',
+  turn_scale: 'turn_over_ground',
+  side_bias: 'bends_when_told_straight',
+  steering_zero: 'wheels_when_told_straight',
+  compass_offset: 'compass_is_off_by',
+  compass_spread: 'what_is_left_by_heading',
+  antennas_offset: 'antennas_are_off_by',
+});
 const digits: Readonly<Record<string, number>> = { s: 2, 'm/s²': 2, '1/m': 3, deg: 1, '': 3 };
 
 export interface CalibrationRow {
+  readonly quantity: string;
   readonly title: string;
   readonly before: string;
   readonly after: string;
@@ -86,13 +88,13 @@ export interface CalibrationRow {
 }
 
 const note = ({ quantity, before, after, inside, at_least, keeps }: CalibrationValue): string => {
-  if (after === null) return 'not measured';
-  if (!inside) return 'no vehicle is so: not kept';
-  if (at_least) return 'as it was told: more was not asked';
-  if (!keeps) return 'told only';
+  if (after === null) return say('not_measured');
+  if (!inside) return say('no_vehicle_is_so_not_kept');
+  if (at_least) return say('as_it_was_told_more_was_not_asked');
+  if (!keeps) return say('told_only');
   const harder = before !== null && after > before;
   const bounded = quantity === 'braking' || quantity === 'acceleration';
-  return harder && bounded ? 'used up to what is set' : '';
+  return harder && bounded ? say('used_up_to_what_is_set') : '';
 };
 
 export const calibration_rows = ({ values }: Calibration): readonly CalibrationRow[] =>
@@ -101,6 +103,7 @@ export const calibration_rows = ({ values }: Calibration): readonly CalibrationR
     const text = (x: number | null): string => number_text(x, places, value.unit);
     const sigma = value.sigma === null ? '' : ` ±${number_text(value.sigma, places)}`;
     return {
+      quantity: value.quantity,
       title: titles[value.quantity] ?? value.quantity,
       before: text(value.before),
       after: value.after === null ? UNKNOWN : `${text(value.after)}${sigma}`,
@@ -116,7 +119,7 @@ export const worth_keeping = ({ state, values }: Calibration): boolean =>
 export const kept_words = ({ values }: Calibration): string => {
   const used = values.filter(({ inside, keeps }) => inside && keeps);
   const names = used.map(({ quantity }) => titles[quantity] ?? quantity);
-  return `Kept, and used from now on: ${names.join(', ')}.`;
+  return say('kept_and_used_from_now_on_names', { names: names.join(', ') });
 };
 
 /** "It needs 9 m ahead, 3 m behind and 2 m to either side, and about 2 minutes." */
@@ -125,5 +128,5 @@ export const need_words = ({ space, seconds }: CalibrationNeed): string => {
   const [ahead, behind, aside] = [space.ahead_m, space.behind_m, side].map((m) => Math.ceil(m));
   const time =
     seconds < 60 ? `${Math.round(seconds)} s` : `${Math.max(1, Math.round(seconds / 60))} min`;
-  return `It needs ${ahead} m ahead, ${behind} m behind and ${aside} m to either side, and about ${time}.`;
+  return say('it_needs_ahead_m_ahead_behind_m', { ahead, behind, aside, time });
 };

@@ -19,6 +19,10 @@ const KEPT_MS = 60_000;
 /** Beyond this a contradiction is a clock that stood still: the device slept, the robot restarted. */
 const DRIFT_S = 0.05;
 
+/** What the offset may be by a guess: half its round trip to both sides. */
+const lowest_s = ({ offset_s, round_trip_s }: Guess): number => offset_s - round_trip_s / 2;
+const highest_s = ({ offset_s, round_trip_s }: Guess): number => offset_s + round_trip_s / 2;
+
 export class RobotClock {
   #guesses: Guess[] = [];
 
@@ -27,7 +31,8 @@ export class RobotClock {
     const least_s = mono_s - back_ms / 1000;
     const most_s = mono_s - sent_ms / 1000;
     const now = this.#best();
-    if (now && (now.offset_s < least_s - DRIFT_S || now.offset_s > most_s + DRIFT_S)) this.forget();
+    if (now && (highest_s(now) < least_s - DRIFT_S || lowest_s(now) > most_s + DRIFT_S))
+      this.forget();
     const guess = {
       offset_s: (least_s + most_s) / 2,
       round_trip_s: (back_ms - sent_ms) / 1000,
@@ -39,7 +44,7 @@ export class RobotClock {
   /** Any message: it cannot come from the future. */
   take_message(mono_s: number, at_ms: number): void {
     const now = this.#best();
-    if (now && mono_s - at_ms / 1000 > now.offset_s + DRIFT_S) this.forget();
+    if (now && mono_s - at_ms / 1000 > highest_s(now) + DRIFT_S) this.forget();
   }
 
   /** When on the page's clock the robot's said this; null while no round trip tells. */

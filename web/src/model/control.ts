@@ -1,6 +1,8 @@
 // Who has control: one drives, everyone may watch, anyone may stop.
 
 import type { Answer } from './answer';
+import { role_words, type Role } from './people';
+import { say } from './say';
 
 export interface Driver {
   readonly id: string;
@@ -19,10 +21,18 @@ export interface ControlRequest extends Driver {
   readonly expires_in_s: number;
 }
 
+export interface Present extends Driver {
+  readonly role: Role;
+  /** Tabs of a browser, connections of a script. */
+  readonly streams: number;
+}
+
 export interface ControlState {
   readonly on: boolean;
   readonly holder: ControlHolder | null;
   readonly requests: readonly ControlRequest[];
+  /** Who is connected; left out where only a change is told. */
+  readonly here?: readonly Present[];
   readonly change?: {
     readonly what: string;
     readonly detail: string;
@@ -56,7 +66,7 @@ export const seat_of = (state: ControlState, me: string): Seat => {
 };
 
 export const driver_name = ({ user, name, kind }: Driver): string =>
-  `${user} (${kind === 'script' ? `script ${name}` : device_name(name)})`;
+  `${user} (${kind === 'script' ? say('script_name', { name }) : device_name(name)})`;
 
 const MACHINES = ['iPhone', 'iPad', 'Android', 'Windows', 'Macintosh', 'CrOS', 'Linux'];
 
@@ -66,16 +76,36 @@ export const device_name = (device: string): string => {
   return machine !== undefined && device.startsWith('Mozilla/') ? machine : device;
 };
 
+/** "anna (Android), drives": the one who has control first, then by name. @param me as above */
+export const present_lines = (
+  state: ControlState,
+  me: string,
+): { key: string; words: string }[] => {
+  const has = ({ id, kind }: Present): boolean =>
+    state.holder?.id === id && state.holder.kind === kind;
+  return [...(state.here ?? [])]
+    .sort((a, b) => Number(has(b)) - Number(has(a)) || a.user.localeCompare(b.user))
+    .map((one, k) => {
+      const parts = [
+        driver_name(one),
+        role_words[one.role],
+        ...(has(one) ? [say('has_control')] : []),
+        ...(is(one, me) ? [say('that_is_you')] : []),
+      ];
+      return { key: `${k} ${one.id}`, words: parts.join(', ') };
+    });
+};
+
 /** One line for the header. */
 export const seat_words = (state: ControlState, me: string): string => {
   switch (seat_of(state, me)) {
     case 'free':
-      return 'Nobody has control';
+      return say('nobody_has_control');
     case 'mine':
-      return 'You have control';
+      return say('you_have_control');
     case 'asked':
     case 'others':
-      return state.holder ? `${driver_name(state.holder)} has control` : '';
+      return state.holder ? say('holder_has_control', { holder: driver_name(state.holder) }) : '';
   }
 };
 

@@ -1,7 +1,8 @@
 // The four figures that one reads while it drives, at arm's length: a large number, and beside it
 // what it is a number of.
 
-import { duration, metres, UNKNOWN } from './format';
+import { duration, metres, side_word, UNKNOWN } from './format';
+import { say } from './say';
 import { speed_text, type SpeedUnit } from './settings';
 import type { MissionProgress, Vehicle } from './vehicle';
 
@@ -24,7 +25,7 @@ const split = (text: string): readonly [value: string, unit: string] => {
 };
 
 const side_of = (left_m: number | null): string =>
-  left_m === null || left_m === 0 ? '' : left_m > 0 ? ' left' : ' right';
+  left_m === null || left_m === 0 ? '' : ` ${side_word(left_m)}`;
 
 const path_tone = ({ cross_track_m, cross_track_limit_m }: MissionProgress): DeckFigure['tone'] => {
   if (cross_track_m === null || cross_track_limit_m === null) return 'plain';
@@ -54,14 +55,14 @@ export const deck_figures = (
   const [left, left_unit] = split(metres(mission?.distance_left_m));
   const [time, time_unit] = clock_of(mission?.eta_s ?? null);
   return [
-    { label: 'Speed', value: speed, unit: speed_unit, tone: 'plain' },
+    { label: say('speed'), value: speed, unit: speed_unit, tone: 'plain' },
     {
-      label: 'Off path',
+      label: say('off_path'),
       value: off,
       unit: `${off_unit}${side_of(off_m)}`,
       tone: mission ? path_tone(mission) : 'plain',
     },
-    { label: 'To drive', value: left, unit: left_unit, tone: 'plain' },
-    { label: 'Time left', value: time, unit: time_unit, tone: 'plain' },
+    { label: say('to_drive'), value: left, unit: left_unit, tone: 'plain' },
+    { label: say('time_left'), value: time, unit: time_unit, tone: 'plain' },
   ];
 };

@@ -1,8 +1,11 @@
 // The draft kept on the device: what is being edited, and which stored revision it came from. What
 // is read back may be of another version or damaged, so every part is checked.
 
+import { is_record, json_of } from './checked';
 import { fields_of } from './fields';
+import type { PlanShape } from './on_map';
 import type { Item, Plan } from './plan';
+import type { Step, Steps } from './steps';
 
 export interface Stored {
   readonly id: string;
@@ -13,14 +16,36 @@ export interface Draft {
   /** What it is based on; null: never saved. */
   readonly stored: Stored | null;
   readonly unsaved: boolean;
+  /** What can be undone and done again. */
+  readonly steps?: Steps;
 }
+
+/** The robot has loaded what is edited, as it is. */
+export const is_loaded = (
+  stored: Stored | null,
+  unsaved: boolean,
+  mission: { readonly id: string | null; readonly revision: number | null } | null,
+): boolean =>
+  stored !== null && !unsaved && mission?.id === stored.id && mission.revision === stored.revision;
+
+/**
+ * How the edited plan is shown. While one drives, what the robot has loaded is the route itself, with what
+ * is done of it and what is left: of the plan only the numbers stand on it. Any other plan is faint.
+ * @param has_route the route is there to be seen
+ */
+export const look_of = (
+  shape: PlanShape,
+  drives: boolean,
+  loaded: boolean,
+  has_route: boolean,
+): { readonly shape: PlanShape; readonly faint: boolean } => ({
+  shape: drives && loaded && has_route ? 'points' : shape,
+  faint: drives && !loaded,
+});
 
 const VERSION = 1;
 
 export const draft_text = (draft: Draft): string => JSON.stringify({ version: VERSION, ...draft });
-
-const is_record = (value: unknown): value is Record<string, unknown> =>
-  typeof value === 'object' && value !== null && !Array.isArray(value);
 
 /** Every field that the kind of item needs is there and of the right type. */
 const is_item = (value: unknown): value is Item => {
@@ -54,19 +79,32 @@ const is_plan = (value: unknown): value is Plan =>
 const is_stored = (value: unknown): value is Stored =>
   is_record(value) && typeof value['id'] === 'string' && typeof value['revision'] === 'number';
 
+const is_step = (value: unknown): value is Step =>
+  is_record(value) &&
+  Number.isInteger(value['at']) &&
+  Number.isInteger(value['gone']) &&
+  Array.isArray(value['items']) &&
+  value['items'].every(is_item) &&
+  ['undefined', 'string'].includes(typeof value['name']) &&
+  ['undefined', 'object'].includes(typeof value['home']) &&
+  (value['settings'] === undefined || is_record(value['settings'])) &&
+  ['undefined', 'object'].includes(typeof value['drawing']);
+
+const is_steps = (value: unknown): value is Steps =>
+  is_record(value) &&
+  [value['past'], value['future']].every(
+    (steps) => Array.isArray(steps) && steps.every((step) => is_step(step)),
+  ) &&
+  (value['saved'] === null || Number.isInteger(value['saved']));
+
 /** @return null when there is none, or it is not one of ours */
 export const parse_draft = (text: string | null): Draft | null => {
-  if (text === null) return null;
-  let value: unknown;
-  try {
-    value = JSON.parse(text);
-  } catch {
-    return null;
-  }
+  const value = json_of(text);
   if (!is_record(value) || value['version'] !== VERSION || !is_plan(value['plan'])) return null;
   return {
     plan: value['plan'],
     stored: is_stored(value['stored']) ? value['stored'] : null,
     unsaved: value['unsaved'] === true,
+    ...(is_steps(value['steps']) ? { steps: value['steps'] } : {}),
   };
 };

@@ -4,6 +4,8 @@
 import { metres, number_text } from './format';
 import type { LatLon } from './plan';
 import type { DrillOnMap } from './ports';
+import { say } from './say';
+import { speed_text, type SpeedUnit } from './settings';
 
 export interface DrillFailure {
   readonly id: string;
@@ -77,18 +79,22 @@ const seconds = (value: number | null | undefined): string => number_text(value,
 
 /** "stands after 1.4 s, 1.01 m" */
 export const drill_outcome = (result: DrillResult): string => {
-  const outside = result.inside_fence === false ? ', outside the fence' : '';
+  const outside = result.inside_fence === false ? say('outside_the_fence') : '';
   switch (result.end) {
     case 'stands':
-      return `stands after ${seconds(result.stands_s)}, ${metres(result.way_m)}${outside}`;
+      return say('stands_after_stands_way_outside', {
+        stands: seconds(result.stands_s),
+        way: metres(result.way_m),
+        outside,
+      });
     case 'home':
-      return `returns home: ${metres(result.way_m)}${outside}`;
+      return say('returns_home_way_outside', { way: metres(result.way_m), outside });
     case 'finished':
-      return `drives on to the mission's end${outside}`;
+      return say('drives_on_to_the_mission_s_end_outside', { outside });
     case 'goes_on':
-      return `still drives after ${metres(result.way_m)}${outside}`;
+      return say('still_drives_after_way_outside', { way: metres(result.way_m), outside });
     case 'not_played':
-      return 'not played';
+      return say('not_played');
   }
 };
 
@@ -98,25 +104,25 @@ export interface DrillRow {
 }
 
 const afterwards = ({ mode, armed, estop }: DrillResult): string => {
-  if (mode === null || mode === undefined) return 'no program';
-  return `${mode}, ${armed === true ? 'armed' : 'disarmed'}${estop === true ? ', stop latched' : ''}`;
+  if (mode === null || mode === undefined) return say('no_program');
+  return `${mode}, ${armed === true ? say('word_armed') : say('word_disarmed')}${estop === true ? say('stop_latched') : ''}`;
 };
 
 /** What else is known of one failure. */
-export const drill_rows = (result: DrillResult): DrillRow[] => {
+export const drill_rows = (result: DrillResult, speed: SpeedUnit = 'm/s'): DrillRow[] => {
   if (result.end === 'not_played') return [];
   const rows: DrillRow[] = [
-    { label: 'Speed before', value: number_text(result.speed_mps, 2, 'm/s') },
-    { label: 'Command zero after', value: seconds(result.zero_s) },
-    { label: 'Stands after', value: seconds(result.stands_s) },
-    { label: 'Driven', value: metres(result.way_m) },
-    { label: 'Off the way', value: metres(result.off_way_m) },
-    { label: 'Afterwards', value: afterwards(result) },
+    { label: say('speed_before'), value: speed_text(result.speed_mps, speed) },
+    { label: say('command_zero_after'), value: seconds(result.zero_s) },
+    { label: say('stands_after'), value: seconds(result.stands_s) },
+    { label: say('driven'), value: metres(result.way_m) },
+    { label: say('off_the_way'), value: metres(result.off_way_m) },
+    { label: say('afterwards'), value: afterwards(result) },
   ];
   const fence_m = result.fence_distance_m;
   if (typeof fence_m === 'number') {
-    const value = fence_m > 0 ? metres(fence_m) : `${metres(-fence_m)} outside`;
-    rows.splice(5, 0, { label: 'Nearest to the fence', value });
+    const value = fence_m > 0 ? metres(fence_m) : say('fence_outside', { fence: metres(-fence_m) });
+    rows.splice(5, 0, { label: say('nearest_to_the_fence'), value });
   }
   return rows;
 };
@@ -127,10 +133,14 @@ export const drill_summary = (drill: Drill): string => {
   const standing = played.filter(({ end }) => end === 'stands');
   const outside = played.filter(({ inside_fence }) => inside_fence === false).length;
   const worst = Math.max(...standing.map(({ way_m }) => way_m ?? 0));
-  const parts = [`${standing.length} of ${played.length} stand`];
-  if (standing.length > 0) parts.push(`after ${metres(worst)} at most`);
+  const parts = [
+    say('standing_of_played_stand', { standing: standing.length, played: played.length }),
+  ];
+  if (standing.length > 0) parts.push(say('after_worst_at_most', { worst: metres(worst) }));
   if (drill.fence_id !== null) {
-    parts.push(outside === 0 ? 'all inside the fence' : `${outside} outside the fence`);
+    parts.push(
+      outside === 0 ? say('all_inside_the_fence') : say('outside_outside_the_fence', { outside }),
+    );
   }
   return `${parts.join(', ')}.`;
 };

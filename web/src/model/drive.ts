@@ -10,28 +10,45 @@ export interface DriveWish {
   readonly yaw_rate_dps: number;
 }
 
+/** Teleoperation over the live stream. @param past the hand also holds the guard off, to creep past
+ * what stands there. @return false: not connected, nothing was sent */
+export type SendDrive = (
+  speed_mps: number,
+  yaw_rate_dps: number,
+  deadman: boolean,
+  past?: boolean,
+) => boolean;
+
+/** A hand on the speed of AUTO. @return as SendDrive */
+export type SendThrottle = (share: number, held: boolean) => boolean;
+
 /** Commands go out every 80 ms while held: above 10 Hz even when the browser is late. */
 export const DRIVE_PERIOD_MS = 80;
 /** Share of the pad around its middle that means zero: a thumb is never quite still. */
 export const DEAD_ZONE = 0.12;
 
-const shaped = (value: number): number => {
+/** @param expo 0: straight; 1: fine about the middle, steep at the end */
+export const shaped = (value: number, expo = 0): number => {
   const size = Math.min(Math.abs(value), 1);
-  return size <= DEAD_ZONE ? 0 : (Math.sign(value) * (size - DEAD_ZONE)) / (1 - DEAD_ZONE);
+  if (size <= DEAD_ZONE) return 0;
+  const over = (size - DEAD_ZONE) / (1 - DEAD_ZONE);
+  return Math.sign(value) * ((1 - expo) * over + expo * over ** 3);
 };
 
 /**
  * @param right, up place of the finger from the middle of the pad, each in [-1, 1]
  * @param share 0..1 of the vehicle's limits, from the speed setting
+ * @param expo as shaped()
  */
 export const drive_wish = (
   right: number,
   up: number,
   limits: DriveLimits,
   share: number,
+  expo = 0,
 ): DriveWish => ({
-  speed_mps: shaped(up) * limits.max_speed_mps * share,
-  yaw_rate_dps: 0 - shaped(right) * limits.max_yaw_rate_dps * share,
+  speed_mps: shaped(up, expo) * limits.max_speed_mps * share,
+  yaw_rate_dps: 0 - shaped(right, expo) * limits.max_yaw_rate_dps * share,
 });
 
 /** While nobody pushes the pad says so: the robot obeys only who was seen to let go before. */

@@ -1,7 +1,9 @@
 // Where the robot must stay, where it must not go, and where it may wait in need.
 
+import { fixed } from './figures';
 import { area_m2, type Places } from './outline';
 import type { LatLon } from './plan';
+import { say, told } from './say';
 
 export type AreaKind = 'inclusion' | 'exclusion';
 export interface Circle extends LatLon {
@@ -34,12 +36,32 @@ export interface FenceSummary {
   readonly updated: string;
 }
 
-export const area_words: Record<AreaKind, string> = {
-  inclusion: 'Stay inside',
-  exclusion: 'Keep out',
+export const area_words: Record<AreaKind, string> = told({
+  inclusion: 'stay_inside',
+  exclusion: 'keep_out',
+});
+
+const NEAR_M = 10;
+
+/** How near its limit is, as soon as that matters; null: it does not. @param distance_m negative outside */
+export const fence_near = (
+  fence: { readonly inside: boolean; readonly distance_m: number | null } | null,
+): string | null => {
+  if (!fence) return null;
+  const { inside, distance_m } = fence;
+  if (!inside || (distance_m ?? 0) < 0) return say('is_outside_the_fence');
+  return distance_m === null || distance_m >= NEAR_M
+    ? null
+    : say('fence_in', { distance: fixed(distance_m, 1) });
 };
 
-export const NEW_FENCE: FenceDraft = { name: 'New fence', areas: [], rally: [] };
+export const NEW_FENCE: FenceDraft = {
+  get name() {
+    return say('new_fence');
+  },
+  areas: [],
+  rally: [],
+};
 const FRESH_RADIUS_M = 5;
 
 export const area_size_m2 = ({ polygon, circle }: FenceArea): number =>
@@ -63,9 +85,9 @@ export const fresh_circle = (kind: AreaKind, at: LatLon): FenceArea => ({
 
 /** Why it cannot be kept yet. */
 export const why_not_keep = (fence: FenceDraft): string | null => {
-  if (fence.name.trim() === '') return 'Give the fence a name.';
+  if (fence.name.trim() === '') return say('give_the_fence_a_name');
   const poor = fence.areas.findIndex(({ polygon }) => polygon && polygon.length < 3);
-  if (poor >= 0) return `Area ${poor + 1} needs three corners.`;
-  if (fence.areas.length + fence.rally.length === 0) return 'Draw an area or a rally point.';
+  if (poor >= 0) return say('area_poor_needs_three_corners', { poor: poor + 1 });
+  if (fence.areas.length + fence.rally.length === 0) return say('draw_an_area_or_a_rally_point');
   return null;
 };

@@ -2,11 +2,12 @@
 // typed and names what is wrong. The server checks again.
 
 import type { Item, ItemType, LatLon } from './plan';
+import { type PlainKey, say, told } from './say';
 
 export interface NumberField {
   readonly kind: 'number';
   readonly key: string;
-  readonly label: string;
+  readonly label: PlainKey;
   readonly unit: string;
   readonly min: number;
   readonly max: number;
@@ -17,24 +18,24 @@ export interface NumberField {
 export interface ChoiceField {
   readonly kind: 'choice';
   readonly key: string;
-  readonly label: string;
-  readonly choices: readonly (readonly [value: string, label: string])[];
+  readonly label: PlainKey;
+  readonly choices: readonly (readonly [value: string, label: PlainKey])[];
 }
 export interface TextField {
   readonly kind: 'text';
   readonly key: string;
-  readonly label: string;
+  readonly label: PlainKey;
 }
 export interface FlagField {
   readonly kind: 'flag';
   readonly key: string;
-  readonly label: string;
+  readonly label: PlainKey;
 }
 export type Field = NumberField | ChoiceField | TextField | FlagField;
 
 type Range = readonly [min: number, max: number];
 
-const must = (key: string, label: string, unit: string, [min, max]: Range): NumberField => ({
+const must = (key: string, label: PlainKey, unit: string, [min, max]: Range): NumberField => ({
   kind: 'number',
   key,
   label,
@@ -43,7 +44,7 @@ const must = (key: string, label: string, unit: string, [min, max]: Range): Numb
   max,
   optional: false,
 });
-const may = (key: string, label: string, unit: string, range: Range): NumberField => ({
+const may = (key: string, label: PlainKey, unit: string, range: Range): NumberField => ({
   ...must(key, label, unit, range),
   optional: true,
 });
@@ -52,97 +53,101 @@ const whole = (field: NumberField): NumberField => ({ ...field, whole: true });
 const SIDE: ChoiceField = {
   kind: 'choice',
   key: 'side',
-  label: 'Side',
+  label: 'side',
   choices: [
-    ['left', 'Left'],
-    ['right', 'Right'],
+    ['left', 'left'],
+    ['right', 'right'],
   ],
 };
-const ROW_SIDE: ChoiceField = { ...SIDE, choices: [['both', 'Both: the middle'], ...SIDE.choices] };
+const ROW_SIDE: ChoiceField = { ...SIDE, choices: [['both', 'both_the_middle'], ...SIDE.choices] };
 const SEEING: ChoiceField = {
   kind: 'choice',
   key: 'seeing',
-  label: 'Seen by',
+  label: 'seen_by',
   choices: [
-    ['line', 'Lines'],
-    ['rays', 'Outermost rays'],
+    ['line', 'lines'],
+    ['rays', 'outermost_rays'],
   ],
 };
 const TURN: ChoiceField = {
   kind: 'choice',
   key: 'turn',
-  label: 'Turn style',
+  label: 'turn_style',
   choices: [
-    ['auto', 'Automatic'],
-    ['pivot', 'On the spot'],
-    ['arc', 'Arc'],
-    ['through', 'Drive through'],
+    ['auto', 'automatic'],
+    ['pivot', 'on_the_spot'],
+    ['arc', 'arc'],
+    ['through', 'drive_through'],
   ],
 };
 const FAR: Range = [-10_000, 10_000];
 
 export const fields_of: Record<ItemType, readonly Field[]> = {
   waypoint: [
-    must('lat', 'Latitude', '°', [-90, 90]),
-    must('lon', 'Longitude', '°', [-180, 180]),
-    may('speed_mps', 'Speed', 'm/s', [0.01, 10]),
-    may('hold_s', 'Hold', 's', [0, 86_400]),
-    may('radius_m', 'Radius', 'm', [0.01, 100]),
+    must('lat', 'latitude', '°', [-90, 90]),
+    must('lon', 'longitude', '°', [-180, 180]),
+    may('speed_mps', 'speed', 'm/s', [0.01, 10]),
+    may('hold_s', 'hold_2', 's', [0, 86_400]),
+    may('radius_m', 'radius', 'm', [0.01, 100]),
     TURN,
-    { kind: 'flag', key: 'reverse', label: 'Drive backwards' },
+    { kind: 'flag', key: 'reverse', label: 'drive_backwards' },
   ],
   local: [
-    must('east_m', 'East', 'm', FAR),
-    must('north_m', 'North', 'm', FAR),
-    may('heading_deg', 'Heading', '°', [0, 360]),
+    must('east_m', 'east', 'm', FAR),
+    must('north_m', 'north', 'm', FAR),
+    may('heading_deg', 'heading', '°', [0, 360]),
   ],
-  move: [must('forward_m', 'Forward', 'm', FAR)],
+  move: [must('forward_m', 'forward', 'm', FAR)],
   turn: [
-    may('turn_deg', 'Turn by', '°', [-3600, 3600]),
-    may('heading_deg', 'Turn to heading', '°', [0, 360]),
+    may('turn_deg', 'turn_by', '°', [-3600, 3600]),
+    may('heading_deg', 'turn_to_heading', '°', [0, 360]),
   ],
-  wait: [must('seconds', 'Wait', 's', [0, 86_400])],
-  speed: [must('speed_mps', 'Speed', 'm/s', [0.01, 10])],
+  wait: [must('seconds', 'wait', 's', [0, 86_400])],
+  speed: [must('speed_mps', 'speed', 'm/s', [0.01, 10])],
   row: [
     ROW_SIDE,
-    may('gap_m', 'Gap, along one side', 'm', [0.01, 20]),
-    may('speed_mps', 'Speed', 'm/s', [0.01, 10]),
-    may('distance_m', 'Ends after', 'm', [0.01, 10_000]),
+    may('gap_m', 'gap_along_one_side', 'm', [0.01, 20]),
+    may('speed_mps', 'speed', 'm/s', [0.01, 10]),
+    may('distance_m', 'ends_after', 'm', [0.01, 10_000]),
     SEEING,
   ],
   wall: [
     SIDE,
-    must('distance_m', 'Distance', 'm', [0.01, 20]),
-    may('speed_mps', 'Speed', 'm/s', [0.01, 10]),
-    may('length_m', 'Ends after', 'm', [0.01, 10_000]),
+    must('distance_m', 'distance', 'm', [0.01, 20]),
+    may('speed_mps', 'speed', 'm/s', [0.01, 10]),
+    may('length_m', 'ends_after', 'm', [0.01, 10_000]),
   ],
   landmarks: [
-    { kind: 'text', key: 'name', label: 'Name' },
-    must('offset_m', 'Offset', 'm', [-20, 20]),
-    may('speed_mps', 'Speed', 'm/s', [0.01, 10]),
-    whole(may('count', 'Ends after', '', [0, 10_000])),
+    { kind: 'text', key: 'name', label: 'name' },
+    must('offset_m', 'offset', 'm', [-20, 20]),
+    may('speed_mps', 'speed', 'm/s', [0.01, 10]),
+    whole(may('count', 'ends_after', '', [0, 10_000])),
+  ],
+  dock: [
+    whole(must('tag', 'tag', '', [0, 586])),
+    may('stand_off_m', 'stands_before_it', 'm', [0.1, 5]),
   ],
   jump: [
-    whole(must('item', 'To item', '', [1, 1_000_000])),
-    whole(must('times', 'Times (0: for ever)', '', [0, 1_000_000])),
+    whole(must('item', 'to_item', '', [1, 1_000_000])),
+    whole(must('times', 'times_0_for_ever', '', [0, 1_000_000])),
   ],
   return_home: [],
-  action: [{ kind: 'text', key: 'name', label: 'Name' }],
+  action: [{ kind: 'text', key: 'name', label: 'name' }],
   loiter: [
-    may('lat', 'Latitude', '°', [-90, 90]),
-    may('lon', 'Longitude', '°', [-180, 180]),
-    may('seconds', 'Stay', 's', [0, 86_400]),
-    may('radius_m', 'Back beyond', 'm', [0.1, 100]),
+    may('lat', 'latitude', '°', [-90, 90]),
+    may('lon', 'longitude', '°', [-180, 180]),
+    may('seconds', 'stay', 's', [0, 86_400]),
+    may('radius_m', 'back_beyond', 'm', [0.1, 100]),
   ],
   circle: [
-    must('lat', 'Latitude', '°', [-90, 90]),
-    must('lon', 'Longitude', '°', [-180, 180]),
-    must('radius_m', 'Radius', 'm', [0.5, 1000]),
-    may('turns', 'Turns', '', [0.05, 1000]),
-    may('speed_mps', 'Speed', 'm/s', [0.01, 10]),
-    whole(may('stations', 'Looks in, a turn', '', [0, 36])),
-    may('hold_s', 'Hold there', 's', [0, 86_400]),
-    { kind: 'flag', key: 'clockwise', label: 'Clockwise' },
+    must('lat', 'latitude', '°', [-90, 90]),
+    must('lon', 'longitude', '°', [-180, 180]),
+    must('radius_m', 'radius', 'm', [0.5, 1000]),
+    may('turns', 'turns', '', [0.05, 1000]),
+    may('speed_mps', 'speed', 'm/s', [0.01, 10]),
+    whole(may('stations', 'looks_in_a_turn', '', [0, 36])),
+    may('hold_s', 'hold_there', 's', [0, 86_400]),
+    { kind: 'flag', key: 'clockwise', label: 'clockwise' },
   ],
 };
 
@@ -165,6 +170,8 @@ export const fresh_item = (type: Exclude<ItemType, 'waypoint'>, near: LatLon | n
       return { type, side: 'left', distance_m: 0.9 };
     case 'landmarks':
       return { type, name: 'cone', offset_m: 0.7 };
+    case 'dock':
+      return { type, tag: 0 };
     case 'jump':
       return { type, item: 1, times: 1 };
     case 'return_home':
@@ -178,44 +185,62 @@ export const fresh_item = (type: Exclude<ItemType, 'waypoint'>, near: LatLon | n
   }
 };
 
-export const type_words: Record<ItemType, string> = {
-  waypoint: 'Waypoint',
-  local: 'Local point',
-  move: 'Move straight',
-  turn: 'Turn',
-  wait: 'Wait',
-  speed: 'Change speed',
-  row: 'Follow row',
-  wall: 'Follow wall',
-  landmarks: 'Follow landmarks',
-  jump: 'Jump',
-  return_home: 'Return home',
-  action: 'Action',
-  loiter: 'Stay at a place',
-  circle: 'Circle',
-};
+export const type_words: Record<ItemType, string> = told({
+  waypoint: 'waypoint',
+  local: 'local_point',
+  move: 'move_straight',
+  turn: 'turn',
+  wait: 'wait',
+  speed: 'change_speed',
+  row: 'follow_row',
+  wall: 'follow_wall',
+  landmarks: 'follow_landmarks',
+  dock: 'dock_at_a_tag',
+  jump: 'jump',
+  return_home: 'return_home',
+  action: 'action',
+  loiter: 'stay_at_a_place',
+  circle: 'circle',
+});
 
 export type Read =
   | { readonly ok: true; readonly value: number | null }
   | { readonly ok: false; readonly error: string };
 
-/** Reads what a person typed; a comma counts as a decimal point. */
-export const read_number = (field: NumberField, text: string): Read => {
+/** Reads what a person typed; a comma counts as a decimal point. @param label what the field is
+ * called @param per how many of what is typed one of the field's unit is: 3.6 for km/h */
+export const read_number = (
+  field: Omit<NumberField, 'label'>,
+  text: string,
+  label: string,
+  per = 1,
+): Read => {
   const typed = text.trim().replace(',', '.').replace('−', '-');
   if (typed === '') {
     return field.optional
       ? { ok: true, value: null }
-      : { ok: false, error: `${field.label} is needed.` };
+      : { ok: false, error: say('label_is_needed', { label }) };
   }
-  const value = Number(typed);
-  if (!Number.isFinite(value)) return { ok: false, error: `${field.label} must be a number.` };
+  const value = Number(typed) / per;
+  if (!Number.isFinite(value))
+    return { ok: false, error: say('label_must_be_a_number', { label }) };
   if (field.whole === true && !Number.isInteger(value)) {
-    return { ok: false, error: `${field.label} must be a whole number.` };
+    return {
+      ok: false,
+      error: say('label_must_be_a_whole_number', { label }),
+    };
   }
   if (value < field.min || value > field.max) {
-    return { ok: false, error: `${field.label} must be from ${field.min} to ${field.max}.` };
+    return {
+      ok: false,
+      error: say('label_must_be_from_min_to_max', {
+        label,
+        min: field.min * per,
+        max: field.max * per,
+      }),
+    };
   }
-  return { ok: true, value };
+  return { ok: true, value: per === 1 ? value : Number(value.toFixed(4)) };
 };
 
 /**

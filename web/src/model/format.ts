@@ -1,18 +1,14 @@
 // Numbers as people read them. Null, undefined and NaN are "—".
 
+import { fixed } from './figures';
 import type { LatLon } from './plan';
+import { language_now, say, told, type Language } from './say';
 
 type Value = number | null | undefined;
 
 export const UNKNOWN = '—';
 
 const known = (value: Value): value is number => typeof value === 'number' && !Number.isNaN(value);
-
-/** A minus of typographic width, and no "-0.0". */
-const fixed = (value: number, digits: number): string => {
-  const text = value.toFixed(digits);
-  return Number(text) === 0 ? text.replace('-', '') : text.replace('-', '−');
-};
 
 export const number_text = (value: Value, digits: number, unit = ''): string =>
   known(value) ? `${fixed(value, digits)}${unit === '' ? '' : ` ${unit}`}` : UNKNOWN;
@@ -31,11 +27,22 @@ export const metres = (value: Value): string => {
   return `${fixed(value / 1000, 2)} km`;
 };
 
+/** @param left positive: left */
+export const side_word = (left: number): string =>
+  left > 0 ? say('side_left') : say('side_right');
+
 /** Where the robot is beside its path: "3.4 cm left". @param left_m positive: left of it */
 export const beside = (left_m: Value): string => {
   if (!known(left_m)) return UNKNOWN;
-  const side = left_m > 0 ? ' left' : left_m < 0 ? ' right' : '';
-  return `${metres(Math.abs(left_m))}${side}`;
+  const size = metres(Math.abs(left_m));
+  return left_m === 0 ? size : `${size} ${side_word(left_m)}`;
+};
+
+/** Of a file: "1.2 GB", "340 MB", "12 kB". */
+export const file_size = (bytes: number): string => {
+  if (bytes >= 1e9) return `${fixed(bytes / 1e9, 1)} GB`;
+  if (bytes >= 1e6) return `${fixed(bytes / 1e6, bytes < 1e7 ? 1 : 0)} MB`;
+  return `${Math.ceil(bytes / 1000)} kB`;
 };
 
 /** Accuracy as a radius: "±2 cm". */
@@ -47,7 +54,7 @@ export const accuracy = (value: Value): string => {
 
 export const age = (seconds: Value): string => {
   if (!known(seconds)) return UNKNOWN;
-  if (seconds < 10) return `${seconds.toFixed(1)} s`;
+  if (seconds < 10) return `${fixed(seconds, 1)} s`;
   if (seconds < 120) return `${Math.round(seconds)} s`;
   if (seconds < 7200) return `${Math.round(seconds / 60)} min`;
   return `${Math.round(seconds / 3600)} h`;
@@ -63,17 +70,28 @@ export const duration = (seconds: Value): string => {
   const whole = Math.round(seconds);
   const pair = (value: number): string => String(value).padStart(2, '0');
   if (whole < 60) return `${whole} s`;
-  if (whole < 3600) return `${Math.floor(whole / 60)} min ${pair(whole % 60)} s`;
-  return `${Math.floor(whole / 3600)} h ${pair(Math.floor((whole % 3600) / 60))} min`;
+  if (whole < 3600)
+    return say('whole_min_whole_2_s', { whole: Math.floor(whole / 60), whole_2: pair(whole % 60) });
+  return say('whole_h_whole_2_min', {
+    whole: Math.floor(whole / 3600),
+    whole_2: pair(Math.floor((whole % 3600) / 60)),
+  });
 };
 
-const WINDS = ['N', 'NE', 'E', 'SE', 'S', 'SW', 'W', 'NW'];
+/** The letter that a language has for a wind. */
+export const wind = (which: 'north' | 'east' | 'south' | 'west'): string => say(`wind_${which}`);
+
+/** Clockwise from north. */
+const winds = (): readonly string[] => {
+  const [n, e, s, w] = [wind('north'), wind('east'), wind('south'), wind('west')];
+  return [n, n + e, e, s + e, s, s + w, w, n + w];
+};
 
 /** Compass direction with its wind: "048° NE". */
 export const direction = (bearing_deg: Value): string => {
   if (!known(bearing_deg)) return UNKNOWN;
   const whole = Math.round(((bearing_deg % 360) + 360) % 360) % 360;
-  return `${String(whole).padStart(3, '0')}° ${WINDS[Math.round(whole / 45) % 8] ?? ''}`;
+  return `${String(whole).padStart(3, '0')}° ${winds()[Math.round(whole / 45) % 8] ?? ''}`;
 };
 
 /** 7 decimals are a centimetre: what a person can compare. */
@@ -86,12 +104,21 @@ export const clock_time = (stamp: string): string => {
   return Number.isNaN(time.getTime()) ? UNKNOWN : time.toTimeString().slice(0, 8);
 };
 
+const days = new Map<Language, Intl.DateTimeFormat>();
+const day_format = (): Intl.DateTimeFormat => {
+  const language = language_now();
+  const locale = language === 'en' ? 'en-GB' : language;
+  const known = days.get(language) ?? new Intl.DateTimeFormat(locale, { dateStyle: 'medium' });
+  days.set(language, known);
+  return known;
+};
+
+/** In the zone of who reads it: "1 May 2026, 09:05"; the month in words or in the language's order, so that
+ * nobody takes it for the day. */
 export const day_and_time = (stamp: string): string => {
   const time = new Date(stamp);
   if (Number.isNaN(time.getTime())) return UNKNOWN;
-  const pair = (value: number): string => String(value).padStart(2, '0');
-  const day = `${time.getFullYear()}-${pair(time.getMonth() + 1)}-${pair(time.getDate())}`;
-  return `${day} ${pair(time.getHours())}:${pair(time.getMinutes())}`;
+  return `${day_format().format(time)}, ${clock_time(stamp).slice(0, 5)}`;
 };
 
 /** A sentence of the server's begins with a small letter; one on the page does not. */
@@ -106,8 +133,22 @@ export const said_in = (text: string, said: readonly string[]): boolean => {
   });
 };
 
-export const count = (value: number, one: string, many = `${one}s`): string =>
-  `${value} ${value === 1 ? one : many}`;
+/** What is counted on the page. */
+export type Noun =
+  | 'item'
+  | 'scan'
+  | 'corner'
+  | 'point'
+  | 'area'
+  | 'rally_point'
+  | 'run'
+  | 'place'
+  | 'warning'
+  | 'error'
+  | 'difference'
+  | 'time'
+  | 'turn';
+export const count = (value: number, noun: Noun): string => say(`n_${noun}`, { n: value });
 
 /** "rows, Field 3 ,rows" → its words, each once. */
 export const tags_of = (text: string): string[] => [
@@ -120,13 +161,13 @@ export const tags_of = (text: string): string[] => [
 ];
 
 /** What people call the formats of mission files. */
-export const format_words: Readonly<Record<string, string>> = {
-  plan: 'QGroundControl',
-  waypoints: 'QGC WPL, Mission Planner',
-  gpx: 'GPX',
-  kml: 'Google Earth',
-  kmz: 'Google Earth, packed',
-  geojson: 'GeoJSON',
-  csv: 'table of latitude and longitude',
-  follower: 'table of metres',
-};
+export const format_words: Readonly<Record<string, string>> = told({
+  plan: 'qgroundcontrol',
+  waypoints: 'qgc_wpl_mission_planner',
+  gpx: 'gpx_caps',
+  kml: 'google_earth',
+  kmz: 'google_earth_packed',
+  geojson: 'geojson',
+  csv: 'table_of_latitude_and_longitude',
+  follower: 'table_of_metres',
+});

@@ -1,7 +1,8 @@
 // A gamepad as the browser reports it, and what its sticks and buttons mean. It drives only while its
 // dead-man button is held; pulled out, or silent, it is let go.
 
-import { DEAD_ZONE, type DriveLimits, type DriveWish } from './drive';
+import { shaped, type DriveLimits, type DriveWish } from './drive';
+import { say } from './say';
 
 /** Of what the browser tells about a gamepad. */
 export interface PadReading {
@@ -9,7 +10,8 @@ export interface PadReading {
   readonly mapping: string;
   /** Each in [-1, 1]; sticks: right and down positive. */
   readonly axes: readonly number[];
-  readonly buttons: readonly { readonly pressed: boolean }[];
+  /** With how far each is pressed, 0 to 1, where it tells. */
+  readonly buttons: readonly { readonly pressed: boolean; readonly value?: number }[];
 }
 
 /** Whose buttons stand where: as the browser orders them itself; the F710 with its switch at D; the
@@ -32,17 +34,22 @@ export interface PadUse {
   readonly hold: number | null;
   /** Held together with that one: by hand from now on. */
   readonly other: number | null;
+  /** How fast AUTO may drive; a button, or an axis (trigger_is_axis). */
+  readonly trigger: number | null;
 }
 export type PadPart = keyof PadUse;
-export const PAD_PARTS: readonly PadPart[] = ['speed', 'turn', 'hold', 'other'];
-export const is_axis = (part: PadPart): boolean => part === 'speed' || part === 'turn';
+export const PAD_PARTS: readonly PadPart[] = ['speed', 'turn', 'hold', 'other', 'trigger'];
+/** Linux counts the Xbox's triggers among the axes. */
+const trigger_is_axis = (kind: PadKind): boolean => kind === 'xpad';
+export const is_axis = (part: PadPart, kind: PadKind): boolean =>
+  part === 'speed' || part === 'turn' || (part === 'trigger' && trigger_is_axis(kind));
 
 /** Left stick: speed; right one: steering; the bumpers are the safety buttons. */
 const USUAL: Readonly<Record<PadKind, PadUse>> = {
-  standard: { speed: 1, turn: 2, hold: 4, other: 5 },
-  f710_d: { speed: 1, turn: 2, hold: 4, other: 5 },
-  xpad: { speed: 1, turn: 3, hold: 4, other: 5 },
-  other: { speed: null, turn: null, hold: null, other: null },
+  standard: { speed: 1, turn: 2, hold: 4, other: 5, trigger: 7 },
+  f710_d: { speed: 1, turn: 2, hold: 4, other: 5, trigger: 7 },
+  xpad: { speed: 1, turn: 3, hold: 4, other: 5, trigger: 5 },
+  other: { speed: null, turn: null, hold: null, other: null, trigger: null },
 };
 
 export interface PadSettings {
@@ -51,8 +58,10 @@ export interface PadSettings {
   readonly expo: number;
   /** Both bumpers together choose the mode MANUAL. */
   readonly bumpers: boolean;
+  /** AUTO drives only while a bumper is held, as fast as the trigger is drawn. */
+  readonly auto: boolean;
 }
-export const PAD_DEFAULTS: PadSettings = { uses: {}, expo: 0.4, bumpers: false };
+export const PAD_DEFAULTS: PadSettings = { uses: {}, expo: 0.4, bumpers: false, auto: false };
 
 export const use_of = (settings: PadSettings, kind: PadKind): PadUse =>
   settings.uses[kind] ?? USUAL[kind];
@@ -77,21 +86,28 @@ const number_in = (value: unknown): number | null =>
 
 /** What was kept on the device; what nobody wrote like that is as at first. */
 export const pad_settings_of = (kept: unknown): PadSettings => {
-  const { uses, expo, bumpers } = record_of(kept);
+  const { uses, expo, bumpers, auto } = record_of(kept);
   const read: Partial<Record<PadKind, PadUse>> = {};
   for (const kind of PAD_KINDS) {
     const use = record_of(uses)[kind];
     if (use === undefined) continue;
-    const { speed, turn, hold, other } = record_of(use);
+    const { speed, turn, hold, other, trigger } = record_of(use);
     read[kind] = {
       speed: number_in(speed),
       turn: number_in(turn),
       hold: number_in(hold),
       other: number_in(other),
+      // What was kept before there was one has the usual.
+      trigger: trigger === undefined ? USUAL[kind].trigger : number_in(trigger),
     };
   }
   const fits = typeof expo === 'number' && expo >= 0 && expo <= 1;
-  return { uses: read, expo: fits ? expo : PAD_DEFAULTS.expo, bumpers: bumpers === true };
+  return {
+    uses: read,
+    expo: fits ? expo : PAD_DEFAULTS.expo,
+    bumpers: bumpers === true,
+    auto: auto === true,
+  };
 };
 
 const NAMES: Readonly<Record<PadKind, readonly string[]>> = {
@@ -105,17 +121,18 @@ const NAMES: Readonly<Record<PadKind, readonly string[]>> = {
 };
 /** As it is printed on it. */
 export const button_name = (kind: PadKind, button: number): string =>
-  NAMES[kind][button] ?? `Button ${button + 1}`;
+  NAMES[kind][button] ?? say('button_button', { button: button + 1 });
 
-const STICKS = ['Left stick, across', 'Left stick, along'];
-const MORE: Readonly<Record<PadKind, readonly string[]>> = {
-  standard: ['Right stick, across', 'Right stick, along'],
-  f710_d: ['Right stick, across', 'Right stick, along'],
-  xpad: ['LT', 'Right stick, across', 'Right stick, along', 'RT'],
+const sticks = (): readonly string[] => [say('left_stick_across'), say('left_stick_along')];
+const more = (): Readonly<Record<PadKind, readonly string[]>> => ({
+  standard: [say('right_stick_across'), say('right_stick_along')],
+  f710_d: [say('right_stick_across'), say('right_stick_along')],
+  xpad: ['LT', say('right_stick_across'), say('right_stick_along'), 'RT'],
   other: [],
-};
+});
 export const axis_name = (kind: PadKind, axis: number): string =>
-  (kind === 'other' ? [] : [...STICKS, ...MORE[kind]])[axis] ?? `Axis ${axis + 1}`;
+  (kind === 'other' ? [] : [...sticks(), ...more()[kind]])[axis] ??
+  say('axis_axis', { axis: axis + 1 });
 
 export const pressed = (reading: PadReading, button: number | null): boolean =>
   button !== null && reading.buttons[button]?.pressed === true;
@@ -124,13 +141,6 @@ export const pressed = (reading: PadReading, button: number | null): boolean =>
 export const axis_value = (reading: PadReading, axis: number | null): number => {
   const value = axis === null ? 0 : (reading.axes[axis] ?? 0);
   return Number.isFinite(value) ? Math.max(-1, Math.min(1, value)) : 0;
-};
-
-const shaped = (value: number, expo: number): number => {
-  const size = Math.abs(value);
-  if (size <= DEAD_ZONE) return 0;
-  const over = (size - DEAD_ZONE) / (1 - DEAD_ZONE);
-  return Math.sign(value) * ((1 - expo) * over + expo * over ** 3);
 };
 
 /** @param share 0..1 of the vehicle's limits, from the speed setting */
@@ -151,15 +161,54 @@ export const pad_wish = (
 /** Why it cannot drive; null: it can. */
 export const why_not_pad = (use: PadUse): string | null =>
   use.speed === null || use.turn === null || use.hold === null
-    ? 'Nobody knows its buttons: assign two sticks and the dead-man first.'
+    ? say('nobody_knows_its_buttons_assign_two')
     : null;
 
 /** What was moved or pressed since `before`, to be assigned. */
-export const moved_part = (before: PadReading, now: PadReading, part: PadPart): number | null => {
-  const found = is_axis(part)
+export const moved_part = (
+  before: PadReading,
+  now: PadReading,
+  part: PadPart,
+  kind: PadKind,
+): number | null => {
+  const found = is_axis(part, kind)
     ? now.axes.findIndex((_, k) => Math.abs(axis_value(now, k) - axis_value(before, k)) > 0.6)
     : now.buttons.findIndex(({ pressed: on }, k) => on && !pressed(before, k));
   return found < 0 ? null : found;
+};
+
+/** A hand on the speed of AUTO. */
+export interface SpeedHand {
+  readonly held: boolean;
+  /** 0..1 of the mission's speed. */
+  readonly share: number;
+}
+export const NO_HAND: SpeedHand = { held: false, share: 0 };
+
+const drawn = (reading: PadReading, trigger: number | null, kind: PadKind): number => {
+  if (trigger === null) return 0;
+  if (trigger_is_axis(kind)) {
+    const value = axis_value(reading, trigger);
+    // Until it is touched it tells nothing, which would be half.
+    return value === 0 ? 0 : (value + 1) / 2;
+  }
+  const { pressed: down, value } = reading.buttons[trigger] ?? { pressed: false };
+  const share = value ?? (down ? 1 : 0);
+  return Number.isFinite(share) ? Math.max(0, Math.min(1, share)) : 0;
+};
+
+/** Either bumper is its dead-man. @param reading null: it is gone, or out of sight */
+export const speed_hand = (reading: PadReading | null, use: PadUse, kind: PadKind): SpeedHand => {
+  const held = reading !== null && (pressed(reading, use.hold) || pressed(reading, use.other));
+  return held ? { held, share: drawn(reading, use.trigger, kind) } : NO_HAND;
+};
+
+/** Why AUTO may not begin now; null: it may. @param wanted it wants a hand @param there a gamepad is */
+export const why_no_hand = (wanted: boolean, there: boolean, hand: SpeedHand): string | null => {
+  if (!wanted || hand.held) return null;
+  return there
+    ? say('hold_a_bumper_of_the_gamepad_it_is')
+    : say('auto_wants_a_hand_on_the_gamepad_and');
 };
 
 /** So long both bumpers are held: nobody does that by chance. */

@@ -5,17 +5,19 @@
 //   trying  --answer | state that is young enough--> confirmed
 //   trying  --the robot says that there is nothing to halt--> refused
 
+import { fixed } from './figures';
+import { language_now, say, told } from './say';
 import type { Vehicle } from './vehicle';
 
 export type Halt = 'estop' | 'hold' | 'pause' | 'disarm' | 'stop';
 
-export const halt_words: Record<Halt, string> = {
-  estop: 'STOP',
-  hold: 'HOLD',
-  pause: 'Pause',
-  disarm: 'Disarm',
-  stop: 'Stop mission',
-};
+export const halt_words: Record<Halt, string> = told({
+  estop: 'stop_caps',
+  hold: 'hold_caps',
+  pause: 'pause',
+  disarm: 'disarm',
+  stop: 'stop_mission',
+});
 
 export interface HaltTry {
   readonly halt: Halt;
@@ -122,6 +124,7 @@ const WORDS_AFTER_MS = 300;
 const SHOWN_MS = 4000;
 
 const ordinal = (n: number): string => {
+  if (language_now() !== 'en') return `${n}.`;
   const tens = n % 100;
   const ending = tens > 10 && tens < 14 ? 'th' : (['th', 'st', 'nd', 'rd'][n % 10] ?? 'th');
   return `${n}${ending}`;
@@ -136,18 +139,22 @@ export interface HaltLine {
 /** What is said about it; null: nothing (any more). */
 export const halt_line = (at: HaltTry, now_ms: number): HaltLine | null => {
   const name = halt_words[at.halt];
-  const took = (((at.ended_ms ?? now_ms) - at.pressed_ms) / 1000).toFixed(1);
+  const took = fixed(((at.ended_ms ?? now_ms) - at.pressed_ms) / 1000, 1);
   const slow = (at.ended_ms ?? now_ms) - at.pressed_ms >= WORDS_AFTER_MS;
   if (at.state === 'trying') {
     const help =
-      now_ms - at.pressed_ms < HELP_AFTER_MS ? '' : ' Use the button on the robot or the radio.';
-    const detail = `not confirmed yet, ${ordinal(at.tries)} try, ${took} s.${help}`;
-    return slow ? { tone: 'bad', head: `${name}: stopping…`, detail } : null;
+      now_ms - at.pressed_ms < HELP_AFTER_MS ? '' : say('use_the_button_on_the_robot_or_the');
+    const detail = say('try_ordinal', {
+      tries: ordinal(at.tries),
+      took,
+      help,
+    });
+    return slow ? { tone: 'bad', head: say('name_stopping', { name }), detail } : null;
   }
   if (over(at, now_ms)) return null;
   if (at.state === 'refused') return { tone: 'warn', head: `${name}:`, detail: at.detail };
-  const detail = `by the robot, ${took} s after the press.`;
-  return slow ? { tone: 'good', head: `${name} confirmed`, detail } : null;
+  const detail = say('by_the_robot_took_s_after_the_press', { took });
+  return slow ? { tone: 'good', head: say('name_confirmed', { name }), detail } : null;
 };
 
 /** Nothing of it is left to say. */

@@ -7,7 +7,7 @@ export interface History<T> {
 }
 
 /** Steps kept; the oldest is forgotten first. */
-export const HISTORY_LIMIT = 200;
+export const HISTORY_LIMIT = 500;
 
 export const begin_history = <T>(present: T): History<T> => ({ past: [], present, future: [] });
 

@@ -2,6 +2,7 @@
 // nothing.
 
 import type { LatLon } from './plan';
+import { say, told } from './say';
 
 export interface WayHome {
   readonly target: LatLon | null;
@@ -15,21 +16,21 @@ export interface WayHome {
   readonly reason: string;
 }
 
-const words: Record<NonNullable<WayHome['target_is']>, string> = {
-  home: 'Home',
-  rally_point: 'Rally point',
-  begin_of_way: 'Where its way began',
-};
+const words: Record<NonNullable<WayHome['target_is']>, string> = told({
+  home: 'home',
+  rally_point: 'rally_point',
+  begin_of_way: 'where_its_way_began',
+});
 /** Nearer than this it has nothing to drive. */
 export const AT_HOME_M = 0.3;
 
 export const target_words = ({ target_is }: WayHome): string =>
-  target_is === null ? 'Come home' : words[target_is];
+  target_is === null ? say('come_home') : words[target_is];
 
 /** @return null: it would drive */
 export const why_not_home = (way: WayHome): string | null => {
   if (!way.possible) return way.reason;
   return way.distance_m !== null && way.distance_m < AT_HOME_M
-    ? `it stands there already (${target_words(way).toLowerCase()})`
+    ? say('it_stands_there_already_way', { way: target_words(way).toLowerCase() })
     : null;
 };

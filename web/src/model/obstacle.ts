@@ -4,6 +4,7 @@
 import { sentence } from './format';
 import { offset_from } from './geo';
 import type { LatLon } from './plan';
+import { say, told } from './say';
 
 export interface Obstacle {
   readonly action: 'slow' | 'creep' | 'stop' | 'overridden';
@@ -26,12 +27,12 @@ export interface Obstacle {
   readonly decides_in_s?: number | null;
 }
 
-const then_words: Readonly<Record<string, string>> = {
-  wait: 'it waits on',
-  around: 'it looks for a way around',
-  return: 'it drives back',
-  abort: 'the mission ends',
-};
+const then_words: Readonly<Record<string, string>> = told({
+  wait: 'it_waits_on',
+  around: 'it_looks_for_a_way_around',
+  return: 'it_drives_back',
+  abort: 'the_mission_ends',
+});
 
 /** "12 s", "3 min" */
 const lasting = (seconds: number): string =>
@@ -43,12 +44,16 @@ const lasting = (seconds: number): string =>
 export const obstacle_since = (obstacle: Obstacle, older_s: number): string => {
   const parts: string[] = [];
   const since_s = obstacle.stopped_s ?? obstacle.since_s ?? null;
-  if (since_s !== null) parts.push(`For ${lasting(since_s + older_s)}.`);
+  if (since_s !== null) parts.push(say('for_since', { since: lasting(since_s + older_s) }));
   const then = obstacle.then ?? '';
   const words = then_words[then] ?? then.replaceAll('_', ' ');
   const left_s = obstacle.decides_in_s ?? null;
-  const soon = left_s === null ? 'Then' : `In ${lasting(Math.max(0, left_s - older_s))}`;
-  if (obstacle.blocked === true) parts.push(words === '' ? 'Blocked.' : `Blocked: ${words}.`);
+  const soon =
+    left_s === null
+      ? say('then')
+      : say('in_left', { left: lasting(Math.max(0, left_s - older_s)) });
+  if (obstacle.blocked === true)
+    parts.push(words === '' ? say('blocked') : say('blocked_words', { words }));
   else if (words !== '') parts.push(`${soon} ${words}.`);
   return parts.join(' ');
 };
@@ -56,8 +61,8 @@ export const obstacle_since = (obstacle: Obstacle, older_s: number): string => {
 /** "It slows: something stands in the way, 1.2 m ahead, seen by front." */
 export const obstacle_line = ({ action, reason }: Obstacle): string => {
   if (action === 'stop') return `${sentence(reason)}.`;
-  if (action === 'overridden') return `The guard is overridden by hand: ${reason}.`;
-  return `${action === 'creep' ? 'It creeps' : 'It slows'}: ${reason}.`;
+  if (action === 'overridden') return say('the_guard_is_overridden_by_hand_reason', { reason });
+  return `${action === 'creep' ? say('it_creeps') : say('it_slows')}: ${reason}.`;
 };
 
 /** A place on the body, on the map. @param heading_deg of the body */

@@ -2,6 +2,7 @@
 // what it can know for certain; the last word is the robot's answer. Whatever makes the robot stop
 // is never refused here.
 
+import { say } from './say';
 import { antennas_wait, estimate_waits, shift_waits, type Mode, type Vehicle } from './vehicle';
 
 export interface Facts {
@@ -21,29 +22,29 @@ export const by_hand = (mode: Mode | undefined): boolean => mode !== undefined &
 export const no_link = ({ link_stale, link_late, vehicle }: Facts): Reason => {
   if (!link_stale && vehicle !== null) return null;
   return link_late === true && vehicle !== null
-    ? 'What you see is too old to act upon: the link is slow.'
-    : 'No live connection to the robot.';
+    ? say('what_you_see_is_too_old_to_act_upon')
+    : say('no_live_connection_to_the_robot');
 };
 
 const no_stop = ({ vehicle }: Facts): Reason =>
-  vehicle?.estop === true ? 'The emergency stop is latched: reset it first.' : null;
+  vehicle?.estop === true ? say('the_emergency_stop_is_latched_reset') : null;
 
 export const why_not_arm = (facts: Facts): Reason => no_link(facts) ?? no_stop(facts);
 
 export const why_not_reset_stop = (facts: Facts): Reason =>
-  no_link(facts) ?? (facts.vehicle?.estop === true ? null : 'The emergency stop is not set.');
+  no_link(facts) ?? (facts.vehicle?.estop === true ? null : say('the_emergency_stop_is_not_set'));
 
 export const why_not_acknowledge = (facts: Facts): Reason =>
   no_link(facts) ??
-  (facts.vehicle && estimate_waits(facts.vehicle) ? null : 'There is nothing to look at.');
+  (facts.vehicle && estimate_waits(facts.vehicle) ? null : say('there_is_nothing_to_look_at'));
 
 export const why_not_settle_shift = (facts: Facts): Reason =>
   no_link(facts) ??
-  (facts.vehicle && shift_waits(facts.vehicle) ? null : 'The positions have not moved.');
+  (facts.vehicle && shift_waits(facts.vehicle) ? null : say('the_positions_have_not_moved'));
 
 export const why_not_correct_antennas = (facts: Facts): Reason =>
   no_link(facts) ??
-  (facts.vehicle && antennas_wait(facts.vehicle) ? null : 'The antennas are not askew.');
+  (facts.vehicle && antennas_wait(facts.vehicle) ? null : say('the_antennas_are_not_askew'));
 
 export const why_not_mode = (facts: Facts, mode: string): Reason => {
   if (mode === 'HOLD') return null;
@@ -52,26 +53,26 @@ export const why_not_mode = (facts: Facts, mode: string): Reason => {
 
 /** @param saved what the editor holds is stored, unchanged */
 export const why_not_load = (facts: Facts, saved: boolean, items: number): Reason => {
-  if (items === 0) return 'The mission has no items yet.';
+  if (items === 0) return say('the_mission_has_no_items_yet');
   const link = no_link(facts);
   if (link !== null) return link;
-  if (!saved) return 'Save the mission first: the robot takes the stored revision.';
+  if (!saved) return say('save_the_mission_first_the_robot');
   const state = facts.vehicle?.mission.state;
-  return state === 'running' ? 'A mission is running: stop it first.' : null;
+  return state === 'running' ? say('a_mission_is_running_stop_it_first') : null;
 };
 
 export const why_not_start = (facts: Facts): Reason => {
   const before = no_link(facts) ?? no_stop(facts);
   if (before !== null) return before;
   const state = facts.vehicle?.mission.state;
-  if (state === 'idle') return 'Load a mission first.';
-  if (state === 'running') return 'The mission is running already.';
-  return facts.vehicle?.armed === true ? null : 'Arm the robot first.';
+  if (state === 'idle') return say('load_a_mission_first');
+  if (state === 'running') return say('the_mission_is_running_already');
+  return facts.vehicle?.armed === true ? null : say('arm_the_robot_first');
 };
 
 export const why_not_pause = (facts: Facts): Reason => {
   const state = facts.vehicle?.mission.state;
-  return state === 'running' ? null : 'No mission is running.';
+  return state === 'running' ? null : say('no_mission_is_running');
 };
 
 /** It stands in the middle of its mission: paused, or blocked by what it could not do. */
@@ -85,14 +86,14 @@ export const waits_for_word = ({ vehicle }: Facts): boolean =>
 export const why_not_resume = (facts: Facts): Reason => {
   const before = no_link(facts) ?? no_stop(facts);
   if (before !== null) return before;
-  return waits(facts) || waits_for_word(facts) ? null : 'The mission is not paused.';
+  return waits(facts) || waits_for_word(facts) ? null : say('the_mission_is_not_paused');
 };
 
 export const why_not_stop_mission = (facts: Facts): Reason => {
   const state = facts.vehicle?.mission.state;
   return state === 'running' || state === 'paused' || state === 'blocked'
     ? null
-    : 'No mission is running or paused.';
+    : say('no_mission_is_running_or_paused');
 };
 
 export const why_not_skip = (facts: Facts): Reason => no_link(facts) ?? why_not_stop_mission(facts);
@@ -100,6 +101,6 @@ export const why_not_skip = (facts: Facts): Reason => no_link(facts) ?? why_not_
 export const why_not_drive = (facts: Facts): Reason => {
   const before = no_link(facts) ?? no_stop(facts);
   if (before !== null) return before;
-  if (facts.vehicle?.armed !== true) return 'Arm the robot first.';
-  return by_hand(facts.vehicle.mode) ? null : 'Choose the mode MANUAL first.';
+  if (facts.vehicle?.armed !== true) return say('arm_the_robot_first');
+  return by_hand(facts.vehicle.mode) ? null : say('choose_the_mode_manual_first');
 };

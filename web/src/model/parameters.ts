@@ -2,6 +2,7 @@
 // and compared with one.
 
 import type { Answer } from './answer';
+import { say, told } from './say';
 
 export type ParameterValue = number | boolean | string;
 
@@ -74,21 +75,27 @@ export const grouped = (
 };
 
 export const value_text = (value: ParameterValue): string =>
-  typeof value === 'boolean' ? (value ? 'on' : 'off') : value === '' ? '(empty)' : String(value);
+  typeof value === 'boolean'
+    ? value
+      ? say('word_on')
+      : say('word_off')
+    : value === ''
+      ? say('word_empty')
+      : String(value);
 
 /** "0 … 5 m/s", or the side on which there is a limit. */
 export const range_text = ({ min, max, unit }: Parameter): string => {
   const of_unit = unit ? ` ${unit}` : '';
   if (min !== null && max !== null) return `${min} … ${max}${of_unit}`;
-  if (min !== null) return `from ${min}${of_unit}`;
-  return max !== null ? `to ${max}${of_unit}` : (unit ?? '');
+  if (min !== null) return say('from_min_of_unit', { min, of_unit });
+  return max !== null ? say('to_max_of_unit', { max, of_unit }) : (unit ?? '');
 };
 
-export const acts_words: Record<Parameter['acts'], string> = {
-  at_once: 'Acts at once',
-  at_next_load: 'Acts with the next mission that is loaded',
-  at_next_start: 'Acts at the next start of the program',
-};
+export const acts_words: Record<Parameter['acts'], string> = told({
+  at_once: 'acts_at_once',
+  at_next_load: 'acts_with_the_next_mission_that_is',
+  at_next_start: 'acts_at_the_next_start_of_the_program',
+});
 
 /** What was typed, or why it cannot be that. */
 export type Typed =
@@ -99,16 +106,16 @@ export type Typed =
 const fitting = (one: Parameter, value: unknown): Typed => {
   const no = (why: string): Typed => ({ ok: false, why });
   if (one.type === 'boolean') {
-    return typeof value === 'boolean' ? { ok: true, value } : no('must be on or off');
+    return typeof value === 'boolean' ? { ok: true, value } : no(say('must_be_on_or_off'));
   }
   if (one.type === 'text') {
-    return typeof value === 'string' ? { ok: true, value } : no('must be a text');
+    return typeof value === 'string' ? { ok: true, value } : no(say('must_be_a_text'));
   }
-  if (typeof value !== 'number' || !Number.isFinite(value)) return no('must be a number');
-  if (one.type === 'integer' && !Number.isInteger(value)) return no('must be a whole number');
+  if (typeof value !== 'number' || !Number.isFinite(value)) return no(say('must_be_a_number'));
+  if (one.type === 'integer' && !Number.isInteger(value)) return no(say('must_be_a_whole_number'));
   const low = one.min !== null && value < one.min;
   const high = one.max !== null && value > one.max;
-  return low || high ? no(`must be in ${range_text(one)}`) : { ok: true, value };
+  return low || high ? no(say('must_be_in_one', { one: range_text(one) })) : { ok: true, value };
 };
 
 /** @param text of a field; a comma is a decimal point, too */
@@ -143,13 +150,13 @@ export const compared = (text: string, all: readonly Parameter[]): Compared | st
   let said: unknown;
   try {
     const file = JSON.parse(text) as { format?: unknown; parameters?: unknown } | null;
-    if (file?.format !== FORMAT) return 'This is no file of parameters.';
+    if (file?.format !== FORMAT) return say('this_is_no_file_of_parameters');
     said = file.parameters;
   } catch {
-    return 'This is no file of parameters.';
+    return say('this_is_no_file_of_parameters');
   }
   if (typeof said !== 'object' || said === null || Array.isArray(said)) {
-    return 'There are no parameters in the file.';
+    return say('there_are_no_parameters_in_the_file');
   }
   const known = new Map(all.map((one) => [one.name, one]));
   const differ: Difference[] = [];
@@ -158,7 +165,7 @@ export const compared = (text: string, all: readonly Parameter[]): Compared | st
     const parameter = known.get(name);
     const found: Typed = parameter
       ? fitting(parameter, value)
-      : { ok: false, why: 'is not known here' };
+      : { ok: false, why: say('is_not_known_here') };
     if (!found.ok) left_out.push({ name, why: found.why });
     else if (parameter && found.value !== chosen_value(parameter)) {
       differ.push({ parameter, value: found.value });

@@ -1,6 +1,10 @@
 // The mission as the page edits it: plain immutable values in the words of the public interface.
 // Item numbers shown to people start at 1; indices here start at 0.
 
+import { count } from './format';
+import { say, told } from './say';
+import { speed_text, type SpeedUnit } from './settings';
+
 /** WGS84 degrees. */
 export interface LatLon {
   readonly lat: number;
@@ -71,6 +75,14 @@ export interface Landmarks {
   /** Done behind so many; absent: behind the last. */
   readonly count?: number | null;
 }
+/** Before a tag, by sight. */
+export interface Dock {
+  readonly type: 'dock';
+  /** Its number. */
+  readonly tag: number;
+  /** From the tag to the vehicle's middle; absent: as the profile says. */
+  readonly stand_off_m?: number | null;
+}
 export interface Jump {
   readonly type: 'jump';
   /** Item number, from 1. */
@@ -119,6 +131,7 @@ export type Item =
   | Row
   | Wall
   | Landmarks
+  | Dock
   | Jump
   | ReturnHome
   | Action
@@ -143,9 +156,20 @@ export interface Plan {
   readonly home?: Home | null;
   readonly settings?: Settings;
   readonly items: readonly Item[];
+  /** What the items were drawn as, kept by the robot with each revision; what is in it, makings.ts knows. */
+  readonly drawing?: KeptDrawing | null;
+}
+export interface KeptDrawing {
+  readonly kind: string;
+  readonly [member: string]: unknown;
 }
 
-export const EMPTY_PLAN: Plan = { name: 'New mission', items: [] };
+export const EMPTY_PLAN: Plan = {
+  get name() {
+    return say('new_mission');
+  },
+  items: [],
+};
 
 /** A positional item: where it is, and which item it is. */
 export interface Spot extends LatLon {
@@ -172,51 +196,66 @@ export const spots = (plan: Plan): Spot[] => {
 };
 
 /** A sentence for an item that has no place on the map (also used in the item list). */
-export const item_title = (item: Item): string => {
+export const item_title = (item: Item, speed_in: SpeedUnit = 'm/s'): string => {
   switch (item.type) {
     case 'waypoint':
-      return item.reverse === true ? 'Waypoint, backwards' : 'Waypoint';
+      return item.reverse === true ? say('waypoint_backwards') : say('waypoint');
     case 'local':
-      return `Local ${item.east_m} m east, ${item.north_m} m north`;
+      return say('local_east_m_east_north_m_north', { east: item.east_m, north: item.north_m });
     case 'move':
-      return item.forward_m < 0 ? `Back ${-item.forward_m} m` : `Forward ${item.forward_m} m`;
+      return item.forward_m < 0
+        ? say('back_forward_m', { forward: -item.forward_m })
+        : say('forward_forward_m', { forward: item.forward_m });
     case 'turn':
       return typeof item.turn_deg === 'number'
-        ? `Turn ${item.turn_deg}°`
-        : `Turn to heading ${item.heading_deg ?? 0}°`;
+        ? say('turn_turn_deg', { turn: item.turn_deg })
+        : say('turn_to_heading_heading_deg', { heading: item.heading_deg ?? 0 });
     case 'wait':
-      return `Wait ${item.seconds} s`;
+      return say('wait_seconds_s', { seconds: item.seconds });
     case 'speed':
-      return `Speed ${item.speed_mps} m/s`;
+      return say('speed_speed_m_s', { speed: speed_text(item.speed_mps, speed_in) });
     case 'row':
-      return (item.side ?? 'both') === 'both' ? 'Row, in its middle' : `Row on the ${item.side}`;
+      return (item.side ?? 'both') === 'both'
+        ? say('row_in_its_middle')
+        : item.side === 'left'
+          ? say('row_on_left')
+          : say('row_on_right');
     case 'wall':
-      return `Wall on the ${item.side}, ${item.distance_m} m`;
+      return say(item.side === 'left' ? 'wall_on_left' : 'wall_on_right', {
+        distance: item.distance_m,
+      });
     case 'landmarks':
-      return `Landmarks “${item.name}”, ${item.offset_m} m`;
+      return say('landmarks_name_offset_m', { name: item.name, offset: item.offset_m });
+    case 'dock':
+      return say('dock_at_tag_tag', { tag: item.tag });
     case 'jump':
-      return `Jump to ${item.item}, ${item.times === 0 ? 'for ever' : `${item.times}×`}`;
+      return say('jump_to_item_times', {
+        item: item.item,
+        times: item.times === 0 ? say('for_ever') : `${item.times}×`,
+      });
     case 'return_home':
-      return 'Return home';
+      return say('return_home');
     case 'action':
-      return `Action “${item.name}”`;
+      return say('action_name', { name: item.name });
     case 'loiter': {
-      const where = place_of(item) === null ? 'Stay here' : 'Stay';
+      const where = place_of(item) === null ? say('stay_here') : say('stay');
       return typeof item.seconds === 'number'
         ? `${where} ${item.seconds} s`
-        : `${where} until resumed`;
+        : say('where_until_resumed', { where });
     }
     case 'circle': {
       const turns = item.turns ?? 1;
-      const way = item.clockwise === true ? 'right' : 'left';
-      return `Circle of ${item.radius_m} m, ${turns} ${turns === 1 ? 'turn' : 'turns'} to the ${way}`;
+      return say(item.clockwise === true ? 'circle_to_right' : 'circle_to_left', {
+        radius: item.radius_m,
+        turns: count(turns, 'turn'),
+      });
     }
   }
 };
 
-export const at_end_words: Record<AtEnd, string> = {
-  hold: 'stops and holds',
-  return: 'returns home',
-  repeat: 'starts again from the first item',
-  back_and_forth: 'drives the route back again',
-};
+export const at_end_words: Record<AtEnd, string> = told({
+  hold: 'stops_and_holds',
+  return: 'returns_home',
+  repeat: 'starts_again_from_the_first_item',
+  back_and_forth: 'drives_the_route_back_again',
+});

@@ -4,30 +4,42 @@ import type { Answer, Refusal } from './answer';
 import type { Calibration, CalibrationKind, SpaceOnMap } from './calibration';
 import type { CircleGoal, StayGoal } from './circle';
 import type { ControlState } from './control';
+import type { SendDrive, SendThrottle } from './drive';
+import type { MissionWay } from './laid_way';
 import type { Drill, DrillTone, DrillWish } from './drill';
 import type { Driver } from './drivers';
 import type { Fence, FenceDraft, FenceSummary } from './fence';
 import type { LinkHealth } from './freshness';
+import type { Ground } from './ground';
 import type { Halt } from './halt';
+import type { Heat } from './heat';
 import type { WayHome } from './homeward';
-import type { Home, LatLon, Plan, Settings, Item } from './plan';
-import type { RunHead, RunReport } from './runs';
+import type { MapUp } from './map_up';
+import type { EditView, MapEvents, MapMode, PlanShape } from './on_map';
+import type { Home, KeptDrawing, LatLon, Plan, Settings, Item } from './plan';
+import type { Revision } from './revision';
+import type { DriveOnMap, SpeedsSet } from './route_drive';
+import type { RowBlock, RowsWish } from './row_block';
+import type { RunOnMap } from './run_ports';
 import type { SeenEvents, SeenLink, SeenMap } from './seen';
 import type { SiteMapView, StandingPose } from './site_map';
 import type { Slip } from './slips';
 import type { ReceiverSky } from './sky';
 import type { Survey, SurveyWish } from './survey';
 import type { Remembered, Tracks } from './tracks';
+import type { Bounds } from './tiling';
+import type { TrailShades } from './trail_shades';
 import type {
   Capabilities,
   Check,
-  MissionWay,
   Position,
   Preview,
   SmoothedItems,
   StationEvent,
   Vehicle,
 } from './vehicle';
+
+export type { BesideTone, LineOnMap, MapEvents, MapMode, PlanShape } from './on_map';
 
 /** One stored revision. */
 export interface Mission {
@@ -37,6 +49,7 @@ export interface Mission {
   readonly items: readonly Item[];
   readonly home: Home | null;
   readonly settings: Settings;
+  readonly drawing?: KeptDrawing;
   readonly updated: string;
 }
 export interface MissionSummary {
@@ -114,15 +127,6 @@ export interface ImportResult {
   readonly left_out: number;
   readonly report: readonly ImportEntry[];
 }
-export interface TileSet {
-  readonly set: string;
-  readonly name: string;
-  readonly format: 'png' | 'jpg' | 'webp' | 'pbf';
-  readonly min_zoom: number;
-  readonly max_zoom: number;
-  readonly attribution: string;
-}
-
 /** Where a mission begins: its first item, the nearest one, or an item's number. */
 export type StartFrom = 'first' | 'nearest' | number;
 
@@ -130,6 +134,10 @@ export interface MissionCalls {
   list(filter: MissionFilter, cursor: string | null): Promise<Answer<Page<MissionSummary>>>;
   read(id: string): Promise<Answer<Mission>>;
   read_revision(id: string, revision: number): Promise<Answer<Mission>>;
+  /** Newest first. */
+  revisions(id: string, cursor: string | null): Promise<Answer<Page<Revision>>>;
+  /** Makes an old state the newest one. @param revision the present one; @param to the old one */
+  revert(id: string, revision: number, to: number): Promise<Answer<Mission>>;
   create(plan: Plan): Promise<Answer<Mission>>;
   replace(id: string, revision: number, plan: Plan): Promise<Answer<Mission>>;
   remove(id: string, revision: number): Promise<Answer<null>>;
@@ -206,6 +214,8 @@ export interface VehicleCalls {
   preview(from: StartFrom): Promise<Answer<Preview>>;
   /** The way through the loaded mission, as it will be driven. */
   mission_way(): Promise<Answer<MissionWay>>;
+  /** What bounds the speed of a mission, and what holds where it says nothing. */
+  speeds_set(): Promise<SpeedsSet>;
   start(mission_id: string, revision: number, from: StartFrom): Promise<Answer<Preview>>;
   resume(): Promise<Answer<unknown>>;
   skip(): Promise<Answer<unknown>>;
@@ -216,15 +226,6 @@ export interface VehicleCalls {
   /** @param time RFC 3339, of the robot */
   events_since(time: string): Promise<Answer<Page<StationEvent>>>;
 }
-export interface RunCalls {
-  list(cursor: string | null): Promise<Answer<Page<RunHead>>>;
-  report(id: number): Promise<Answer<RunReport>>;
-  /** Where it drove, lap by lap. */
-  track(id: number): Promise<Answer<readonly (readonly LatLon[])[]>>;
-  /** The mission as it was driven. */
-  plan(id: number): Promise<Answer<Plan>>;
-  track_address(id: number, format: 'csv' | 'gpx' | 'geojson'): string;
-}
 /** Failures in simulated time. */
 export interface DrillCalls {
   /** The one that runs, or the last one. */
@@ -232,11 +233,14 @@ export interface DrillCalls {
   begin(wish: DrillWish): Promise<Answer<Drill>>;
   cancel(): Promise<Answer<Drill>>;
 }
-export interface SurveyCalls {
+/** Of what is drawn and becomes a mission: a field, a block of rows. */
+export interface PlanningCalls<Wish, Result> {
   /** Works it out; nothing is stored. */
-  preview(wish: SurveyWish): Promise<Answer<Survey>>;
-  keep(wish: SurveyWish, name: string): Promise<Answer<Mission>>;
+  preview(wish: Wish): Promise<Answer<Result>>;
+  keep(wish: Wish, name: string): Promise<Answer<Mission>>;
 }
+export type SurveyCalls = PlanningCalls<SurveyWish, Survey>;
+export type RowsCalls = PlanningCalls<RowsWish, RowBlock>;
 export interface FenceCalls {
   list(): Promise<Answer<Page<FenceSummary>>>;
   read(id: string): Promise<Answer<Fence>>;
@@ -259,18 +263,10 @@ export interface TeachCalls {
   discard(): Promise<Answer<unknown>>;
   stop(): Promise<Answer<Mission>>;
 }
-/** Teleoperation over the live stream. @param past the hand also holds the guard off, to creep past
- * what stands there. @return false: not connected, nothing was sent */
-export type SendDrive = (
-  speed_mps: number,
-  yaw_rate_dps: number,
-  deadman: boolean,
-  past?: boolean,
-) => boolean;
-
 /** What the open socket can do besides. */
 export interface LiveLink extends SeenLink {
   readonly send_drive: SendDrive;
+  readonly send_throttle: SendThrottle;
   /** @return false: not connected, nothing was sent */
   send_halt(halt: Halt): boolean;
   /** The robot's time at which the person saw what is shown now; null: nothing is. */
@@ -302,24 +298,6 @@ export interface DraftStorage {
   write(text: string): boolean;
 }
 
-/** Exactly one is active: look; move and select; also add with every tap; show how it stands. */
-export type MapMode = 'watch' | 'edit' | 'draw' | 'point';
-
-/** How what is edited hangs together. */
-export type PlanShape = 'line' | 'ring' | 'points';
-
-export interface MapEvents {
-  on_add(at: LatLon): void;
-  on_insert(index: number, at: LatLon): void;
-  on_move(index: number, to: LatLon): void;
-  on_select(index: number | null): void;
-  /** Free ground was tapped while nothing is edited; or any place was pressed for long. */
-  on_place(at: LatLon): void;
-  /** @param toward where the finger is that was put down there; null: it has not moved */
-  on_point(at: LatLon | null, toward: LatLon | null): void;
-  /** The person moved the map: following ends. */
-  on_pan(): void;
-}
 export interface RobotOnMap {
   readonly at: LatLon;
   readonly heading_deg: number | null;
@@ -330,11 +308,19 @@ export interface RobotOnMap {
   readonly stale: boolean;
   /** How old that is, in words, once it matters. */
   readonly old: string | null;
+  /** How near to the fence it is, once it matters. */
+  readonly fence: string | null;
 }
-export interface RunOnMap {
-  /** What it drove, lap by lap. */
-  readonly lines: readonly (readonly LatLon[])[];
-  readonly planned: readonly LatLon[];
+/** The mission the robot has loaded. */
+export interface RouteOnMap {
+  /** Null hides it. */
+  readonly plan: Plan | null;
+  /** As it is laid out; empty: not known. */
+  readonly way: readonly LatLon[];
+  /** From 1; 0: none. */
+  readonly current_item: number;
+  /** So far to both sides the robot may come off it; null: not known. */
+  readonly corridor_m: number | null;
 }
 /** Where the robot would stand after a failure, or be at the end of the simulated time. */
 export interface DrilledPlace extends LatLon {
@@ -358,27 +344,33 @@ export interface Mark extends LatLon {
   /** Around it; clockwise null: no way, but the area in which the robot stays. */
   readonly ring?: { readonly radius_m: number; readonly clockwise: boolean | null };
 }
-export interface MapCalls extends SeenMap, SiteMapView {
+export interface MapCalls extends SeenMap, SiteMapView, EditView {
   listen(events: MapEvents): void;
   set_mode(mode: MapMode): void;
-  /** What is edited: a mission, a ring, or places that nothing joins. */
+  /** What is edited: a mission, a ring, or places that nothing joins. @param faint it is not what the
+   * robot drives */
   show_plan(
     plan: Plan,
     selected: number | null,
     refused: ReadonlySet<number>,
     shape: PlanShape,
+    faint: boolean,
   ): void;
   /** Where to stay and where not to go; null: nothing of the kind. */
   show_fence(fence: FenceDraft | null): void;
-  /** The mission the robot has loaded; null hides it. @param way as it is laid out; empty: not known.
-   * @param current_item from 1; 0: none */
-  show_route(route: Plan | null, way: readonly LatLon[], current_item: number): void;
+  show_route(route: RouteOnMap): void;
   show_robot(robot: RobotOnMap | null, tracks: Tracks): void;
+  /** How it is to be driven; null: not shown. */
+  show_drive(drive: DriveOnMap | null): void;
+  /** The colours of the way so far; null: one. */
+  show_trail(shades: TrailShades | null): void;
   show_home(home: LatLon | null): void;
   /** @param pin the place that the person chose; @param goal where the robot drives to */
   show_marks(pin: Mark | null, goal: Mark | null): void;
   /** Runs, or a survey that is being planned, instead of the way so far; none: that one again. */
   show_runs(runs: readonly RunOnMap[]): void;
+  /** Several runs as one picture; null: none. */
+  show_heat(heat: Heat | null): void;
   /** Where the ground gave way. */
   show_slips(slips: readonly Slip[]): void;
   /** What a calibration drive needs; null: none is looked at. */
@@ -391,10 +383,17 @@ export interface MapCalls extends SeenMap, SiteMapView {
    * part. */
   set_cover(top: number, right: number, bottom: number, left: number): void;
   set_follow(follow: boolean): void;
+  /** With the heading up the map turns while it follows the robot and is not drawn on.
+   * @param turned hears by how much it is turned, clockwise */
+  keep_up(up: MapUp, turned: (turn_deg: number) => void): void;
   /** Once, also where the map does not follow. */
   center_robot(): void;
   /** @param closely also where that is a metre across */
   fit(points: readonly LatLon[], closely?: boolean): void;
   zoom_by(levels: number): void;
-  use_tiles(set: TileSet | null): void;
+  use_ground(ground: Ground | null): void;
+  /** What it shows now; null: nothing yet. */
+  view_bounds(): Bounds | null;
+  /** Of the web's tiles. */
+  zoom_level(): number;
 }

@@ -1,6 +1,8 @@
 // What was driven and how well, in rows that a person can compare.
 
 import { degrees_text, duration, metres, number_text } from './format';
+import type { Plan } from './plan';
+import { type PlainKey, say_plain, told } from './say';
 
 export type Outcome = 'running' | 'finished' | 'aborted' | 'interrupted';
 
@@ -14,6 +16,16 @@ export interface RunHead {
   readonly name: string;
   readonly vehicle: string;
   readonly first_item: number;
+}
+export interface RunEvent {
+  readonly time: string;
+  readonly level: string;
+  readonly kind: string;
+  readonly detail: string;
+}
+export interface RunDetail {
+  readonly plan: Plan;
+  readonly events: readonly RunEvent[];
 }
 export interface RunReport {
   readonly time_s: number;
@@ -51,17 +63,26 @@ export interface RunReport {
     readonly length_m: number;
     readonly slalom_m: number;
   }[];
+  /** Items driven along what was seen: distance from the line that was seen then. */
+  readonly by_sight: readonly {
+    readonly item: number;
+    readonly type: 'row' | 'wall' | 'landmarks';
+    readonly driven_m: number;
+    readonly judged_m: number;
+    readonly rms_m: number | null;
+    readonly max_m: number | null;
+  }[];
 }
 
-export const outcome_words: Record<Outcome, string> = {
-  running: 'Running',
-  finished: 'Finished',
-  aborted: 'Aborted',
-  interrupted: 'Interrupted',
-};
+export const outcome_words: Record<Outcome, string> = told({
+  running: 'running',
+  finished: 'finished',
+  aborted: 'aborted',
+  interrupted: 'interrupted',
+});
 
 interface Measure {
-  readonly label: string;
+  readonly label: PlainKey;
   readonly value: (report: RunReport) => number | null;
   readonly text: (value: number | null) => string;
   /** Less is better; else it only describes. */
@@ -69,35 +90,35 @@ interface Measure {
 }
 
 const measure = (
-  label: string,
+  label: PlainKey,
   value: Measure['value'],
   text: Measure['text'] = metres,
   judged = true,
 ): Measure => ({ label, value, text, judged });
 
 const MEASURES: readonly Measure[] = [
-  measure('Off the path, rms', (r) => r.cross_track.rms_m),
-  measure('95 % of the time under', (r) => r.cross_track.p95_m),
-  measure('At most', (r) => r.cross_track.max_m),
-  measure('From corners, mean', (r) => r.corner_mean_m),
-  measure('From corners, at most', (r) => r.corner_max_m),
-  measure('Corner cut, at most', (r) => r.cut_max_m),
-  measure('Overshoot, at most', (r) => r.overshoot_max_m),
-  measure('Slalom on straights, mean', (r) => r.slalom_mean_m),
-  measure('Slalom, at most', (r) => r.slalom_max_m),
-  measure('Heading, rms', (r) => r.heading_rms_deg, degrees_text),
+  measure('off_the_path_rms', (r) => r.cross_track.rms_m),
+  measure('n_95_percent_of_the_time_under', (r) => r.cross_track.p95_m),
+  measure('at_most', (r) => r.cross_track.max_m),
+  measure('from_corners_mean', (r) => r.corner_mean_m),
+  measure('from_corners_at_most', (r) => r.corner_max_m),
+  measure('corner_cut_at_most', (r) => r.cut_max_m),
+  measure('overshoot_at_most', (r) => r.overshoot_max_m),
+  measure('slalom_on_straights_mean', (r) => r.slalom_mean_m),
+  measure('slalom_at_most', (r) => r.slalom_max_m),
+  measure('heading_rms', (r) => r.heading_rms_deg, degrees_text),
   measure(
-    'Jerk, rms',
+    'jerk_rms',
     (r) => r.jerk_rms_mps3,
     (v) => number_text(v, 2, 'm/s³'),
   ),
-  measure('From the end point', (r) => r.end_m),
-  measure('Time', (r) => r.time_s, duration),
-  measure('Of it driving', (r) => r.driving_s, duration, false),
-  measure('Driven', (r) => r.driven_m, metres, false),
-  measure('Of it to the first item', (r) => r.approach?.driven_m ?? null, metres, false),
+  measure('from_the_end_point', (r) => r.end_m),
+  measure('time', (r) => r.time_s, duration),
+  measure('of_it_driving', (r) => r.driving_s, duration, false),
+  measure('driven', (r) => r.driven_m, metres, false),
+  measure('of_it_to_the_first_item', (r) => r.approach?.driven_m ?? null, metres, false),
   measure(
-    'Energy',
+    'energy',
     (r) => r.energy_wh,
     (v) => number_text(v, 1, 'Wh'),
   ),
@@ -127,7 +148,7 @@ export const report_rows = (first: RunReport, second: RunReport | null): ReportR
     const one = value(first);
     const other = second && value(second);
     return {
-      label,
+      label: say_plain(label),
       first: text(one),
       second: second && text(other),
       better: judged && second ? better_of(one, other) : null,

@@ -1,8 +1,10 @@
 // What the robot's sensors see, as the interface tells it, and the words for it.
 
 import type { Answer } from './answer';
-import { age, number_text, sentence } from './format';
+import { age, number_text, sentence, side_word } from './format';
+import type { KnownMarks } from './marks';
 import type { LatLon } from './plan';
+import { say, told } from './say';
 import type { GuardFigures, Sweep } from './sweep';
 import type { Capabilities } from './vehicle';
 
@@ -111,6 +113,7 @@ export interface SeenEvents {
 }
 export interface SeenCalls {
   sensors(): Promise<Answer<{ readonly items: readonly Sensor[] }>>;
+  landmarks(): Promise<Answer<KnownMarks>>;
   /** By what the guard reckons, as it is now. */
   capabilities(): Promise<Answer<Capabilities>>;
 }
@@ -175,7 +178,12 @@ export const layers_from = (text: string | null): Layers => {
 
 /** For the list of sensors: what the guard keeps, and how it is changed. */
 export const guard_line = ({ gap_m, side_m, delay_s, decel_mps2 }: GuardFigures): string =>
-  `The guard keeps ${number_text(gap_m, 2, 'm')} before and ${number_text(side_m, 2, 'm')} beside what stands there, and counts on ${number_text(delay_s, 2, 's')} until it brakes with ${number_text(decel_mps2, 2, 'm/s²')}. Parameters sense.protect and sense.blocked act at once; how sensors stand and how their picture is made acts at the next start.`;
+  say('the_guard_keeps_gap_before_and_side', {
+    gap: number_text(gap_m, 2, 'm'),
+    side: number_text(side_m, 2, 'm'),
+    delay: number_text(delay_s, 2, 's'),
+    decel: number_text(decel_mps2, 2, 'm/s²'),
+  });
 
 /** After such an event the guard may reckon with other figures. */
 export const changes_guard = (kind: string): boolean =>
@@ -188,12 +196,12 @@ export const rates_of = (layers: Layers): Partial<Record<SeenTopic, number>> => 
   ...(layers.scan ? { scan: 5 } : {}),
 });
 
-export const health_words: Record<Sensor['health'], string> = {
-  good: 'Sees',
-  degraded: 'Sees badly',
-  blind: 'Blind',
-  silent: 'Silent',
-};
+export const health_words: Record<Sensor['health'], string> = told({
+  good: 'sees',
+  degraded: 'sees_badly',
+  blind: 'blind',
+  silent: 'silent',
+});
 
 /** One that is not needed stops nothing. */
 export const sensor_tone = ({ health, required }: Sensor): 'good' | 'warn' | 'bad' => {
@@ -205,65 +213,76 @@ export const sensor_tone = ({ health, required }: Sensor): 'good' | 'warn' | 'ba
 export const sensor_line = (sensor: Sensor): string =>
   [
     number_text(sensor.rate_hz, 1, 'Hz'),
-    sensor.age_s === null ? 'nothing seen yet' : `${age(sensor.age_s)} ago`,
-    `${Math.round(sensor.unknown_part * 100)} % missing`,
+    sensor.age_s === null ? say('nothing_seen_yet') : say('age_ago', { age: age(sensor.age_s) }),
+    say('unknown_part_percent_missing', { unknown_part: Math.round(sensor.unknown_part * 100) }),
   ].join(' · ');
 
-const window_words: Record<Sensor['window'], string> = {
-  unknown: 'not told',
+const window_words: Record<Sensor['window'], string> = told({
+  unknown: 'not_told',
   clean: 'clean',
   dirty: 'dirty',
   blocked: 'covered',
-};
+});
 
 /** What went wrong on the way, where anything did. */
 const losses = (sensor: Sensor): readonly (readonly [string, string])[] => {
   const { malformed_last, malformed_age_s } = sensor;
   const counted: readonly (readonly [string, number])[] = [
-    ['Lost on the way', sensor.lost],
-    ['Came twice', sensor.duplicates],
-    ['Refused, damaged', sensor.malformed],
-    ['Refused, of no use', sensor.refused],
-    ['From somebody else', sensor.foreign],
+    [say('lost_on_the_way'), sensor.lost],
+    [say('came_twice'), sensor.duplicates],
+    [say('refused_damaged'), sensor.malformed],
+    [say('refused_of_no_use'), sensor.refused],
+    [say('from_somebody_else'), sensor.foreign],
   ];
   const some = counted.filter(([, n]) => n > 0).map(([what, n]) => [what, String(n)] as const);
-  if (some.length === 0) return [['Lost or refused', 'nothing']];
+  if (some.length === 0) return [[say('lost_or_refused'), say('word_nothing')]];
   if (malformed_last === null) return some;
-  const when = malformed_age_s === null ? '' : ` (${age(malformed_age_s)} ago)`;
-  return [...some, ['Refused last', `${sentence(malformed_last)}${when}`]];
+  const when =
+    malformed_age_s === null
+      ? ''
+      : say('malformed_age_ago', { malformed_age: age(malformed_age_s) });
+  return [...some, [say('refused_last'), `${sentence(malformed_last)}${when}`]];
 };
 
 export const sensor_details = (sensor: Sensor): readonly (readonly [string, string])[] => {
   const { mount } = sensor;
-  const place = `${number_text(mount.x_m, 2, 'm')} ahead, ${number_text(mount.y_m, 2, 'm')} left, ${number_text(mount.z_m, 2, 'm')} up`;
-  const turned = `yaw ${number_text(mount.yaw_deg, 1, '°')}, pitch ${number_text(mount.pitch_deg, 1, '°')}, roll ${number_text(mount.roll_deg, 1, '°')}`;
+  const place = say('x_ahead_y_left_z_up', {
+    x: number_text(mount.x_m, 2, 'm'),
+    y: number_text(mount.y_m, 2, 'm'),
+    z: number_text(mount.z_m, 2, 'm'),
+  });
+  const turned = say('yaw_yaw_pitch_pitch_roll_roll', {
+    yaw: number_text(mount.yaw_deg, 1, '°'),
+    pitch: number_text(mount.pitch_deg, 1, '°'),
+    roll: number_text(mount.roll_deg, 1, '°'),
+  });
   return [
-    ['Kind', sensor.kind],
-    ['Window', window_words[sensor.window]],
-    ['Points of the last piece', String(sensor.points)],
+    [say('kind'), sensor.kind],
+    [say('window'), window_words[sensor.window]],
+    [say('points_of_the_last_piece'), String(sensor.points)],
     ...losses(sensor),
-    ['Needed to drive by itself', sensor.required ? 'yes' : 'no'],
-    ['Mounted', place],
-    ['Turned', turned],
+    [say('needed_to_drive_by_itself'), sensor.required ? say('word_yes') : say('word_no')],
+    [say('mounted'), place],
+    [say('turned'), turned],
   ];
 };
 
 /** "ahead", "30° left", "behind" */
 const direction = (bearing_deg: number): string => {
   const size = Math.round(Math.abs(bearing_deg));
-  if (size <= 10) return 'ahead';
-  if (size >= 170) return 'behind';
-  return `${size}° ${bearing_deg < 0 ? 'left' : 'right'}`;
+  if (size <= 10) return say('ahead');
+  if (size >= 170) return say('behind');
+  return `${size}° ${side_word(-bearing_deg)}`;
 };
 
 /** A line of the card, on a phone as well: "Obstacle 1.2 m, 30° left · 0.4 m wide · front" */
 export const thing_line = (thing: SeenThing): string => {
-  const what = thing.what === 'drop' ? 'Ground ends' : 'Obstacle';
-  const old = thing.age_s >= 2 ? `${age(thing.age_s)} ago` : '';
+  const what = thing.what === 'drop' ? say('ground_ends') : say('obstacle');
+  const old = thing.age_s >= 2 ? say('age_ago', { age: age(thing.age_s) }) : '';
   const by = [thing.sensor ?? '', old].filter((word) => word !== '').join(', ');
   return [
     `${what} ${number_text(thing.distance_m, 1, 'm')}, ${direction(thing.bearing_deg)}`,
-    `${number_text(thing.size_m, 1, 'm')} wide`,
+    say('size_wide', { size: number_text(thing.size_m, 1, 'm') }),
     ...(by === '' ? [] : [by]),
   ].join(' · ');
 };

@@ -2,10 +2,11 @@
 // the words for whether the robot knows its place in the one that is in use.
 
 import type { Answer } from './answer';
-import { accuracy, count, metres, sentence } from './format';
+import { accuracy, count, degrees_text, metres, sentence } from './format';
 import { offset_between, offset_from } from './geo';
 import type { Places } from './outline';
 import type { LatLon } from './plan';
+import { say, told } from './say';
 import type { Placed } from './seen';
 
 /** In the map's own frame. */
@@ -222,24 +223,24 @@ export const pair_of = (files: readonly File[]): MapFiles | string => {
   );
   const [yaml, image] = [yamls?.[0], images?.[0]];
   const other = files.find(({ name }) => !/\.(ya?ml|pgm)$/i.test(name));
-  if (other) return `“${other.name}” is no part of a map: pick its .yaml and its .pgm.`;
-  if (!yaml && !image) return 'Pick the .yaml and the .pgm of a map.';
-  if (!yaml) return 'The .yaml is missing: pick both files together.';
-  if (!image) return 'The .pgm is missing: pick both files together.';
-  if (files.length > 2) return 'One map at a time: pick one .yaml and its .pgm.';
+  if (other) return say('name_is_no_part_of_a_map_pick_its', { name: other.name });
+  if (!yaml && !image) return say('pick_the_yaml_and_the_pgm_of_a_map');
+  if (!yaml) return say('the_yaml_is_missing_pick_both_files');
+  if (!image) return say('the_pgm_is_missing_pick_both_files');
+  if (files.length > 2) return say('one_map_at_a_time_pick_one_yaml_and');
   return { yaml, image };
 };
 
-export const edit_words: Record<EditKind, string> = {
-  erase: 'Erase',
-  forbid: 'Forbid',
-  wall: 'Wall',
-};
-export const edit_meaning: Record<EditKind, string> = {
-  erase: 'What is drawn there goes: people and cars that stood there.',
-  forbid: 'Nobody shall drive there, although nothing stands there.',
-  wall: 'Something stands there that the map does not show.',
-};
+export const edit_words: Record<EditKind, string> = told({
+  erase: 'erase',
+  forbid: 'forbid',
+  wall: 'wall',
+});
+export const edit_meaning: Record<EditKind, string> = told({
+  erase: 'what_is_drawn_there_goes_people_and',
+  forbid: 'nobody_shall_drive_there_although',
+  wall: 'something_stands_there_that_the_map',
+});
 
 /** What will be saved together. */
 export interface SiteDraft {
@@ -280,9 +281,9 @@ export const changes_map = (draft: SiteDraft, before: SiteMap): boolean =>
 
 /** Why it cannot be saved yet. */
 export const why_not_save = (draft: SiteDraft, before: SiteMap): string | null => {
-  if (!changes_map(draft, before)) return 'Nothing is drawn.';
+  if (!changes_map(draft, before)) return say('nothing_is_drawn');
   const poor = draft.edits.findIndex(({ ring }) => ring.length < 3);
-  return poor < 0 ? null : `Area ${poor + 1} needs three corners.`;
+  return poor < 0 ? null : say('area_poor_needs_three_corners', { poor: poor + 1 });
 };
 
 /** What another one forbade meanwhile must not be allowed unseen: the revision says what was seen.
@@ -294,7 +295,7 @@ export const change_of = (draft: SiteDraft, before: SiteMap, at: Placed): SiteCh
 
 /** "A map is being made: 12 m driven, 87 scans" */
 export const made_so_far = ({ scans, way_m }: SiteMaking): string =>
-  `A map is being made: ${metres(way_m)} driven, ${count(scans, 'scan')}.`;
+  say('a_map_is_being_made_way_driven_scans', { way: metres(way_m), scans: count(scans, 'scan') });
 
 /** Whether the robot knows where it is in the map, as the interface tells it. */
 export interface MapPlace {
@@ -326,29 +327,29 @@ export const place_words = (place: MapPlace): PlaceWords | null => {
       return null;
     case 'known': {
       if (place.accuracy_m === null || place.stale) {
-        const now = 'What it sees does not fit just now.';
-        const head = `Not sure of its place in ${map}`;
+        const now = say('what_it_sees_does_not_fit_just_now');
+        const head = say('not_sure_of_its_place_in_map', { map });
         return { tone: 'warn', head, detail: why === '' ? now : why.trim() };
       }
-      const head = `Knows its place in ${map}`;
+      const head = say('knows_its_place_in_map', { map });
       const turned = place.heading_accuracy_deg;
-      const angle = turned === null ? '' : `, ±${turned.toFixed(1)}°`;
+      const angle = turned === null ? '' : `, ±${degrees_text(turned)}`;
       const fine = place.accuracy_m <= FINE_M;
-      const alike = fine ? '' : ' Along what it sees every place looks alike.';
+      const alike = fine ? '' : say('along_what_it_sees_every_place_looks');
       const detail = `${accuracy(place.accuracy_m)}${angle}.${alike} ${why}`.trim();
       return { tone: fine ? 'good' : 'warn', head, detail };
     }
     case 'searching':
       return {
         tone: 'warn',
-        head: `Looks for its place in ${map}`,
-        detail: `${why}Drive some metres by hand, or say “I am here”.`,
+        head: say('looks_for_its_place_in_map', { map }),
+        detail: say('why_drive_some_metres_by_hand_or_say', { why }),
       };
     case 'lost':
       return {
         tone: 'bad',
-        head: `Lost in ${map}`,
-        detail: `${why}Drive by hand to a place that it knows, or say “I am here”.`,
+        head: say('lost_in_map', { map }),
+        detail: say('why_drive_by_hand_to_a_place_that_it', { why }),
       };
   }
 };
@@ -376,13 +377,15 @@ export const seen_since = (
   if (place.state === 'known' && place.accuracy_m !== null && !place.stale && off_m !== null) {
     if (off_m > THERE_M) {
       if (after_s < LONG_S) return null;
-      const detail = `By what it sees it stands ${metres(off_m)} from there.`;
-      return { tone: 'warn', head: 'It knows its place elsewhere', detail };
+      const detail = say('by_what_it_sees_it_stands_off_from', { off: metres(off_m) });
+      return { tone: 'warn', head: say('it_knows_its_place_elsewhere'), detail };
     }
-    const detail = `What it sees fits there, to ${accuracy(place.accuracy_m)}.`;
-    return { tone: 'good', head: 'It is there', detail };
+    const detail = say('what_it_sees_fits_there_to_accuracy', {
+      accuracy: accuracy(place.accuracy_m),
+    });
+    return { tone: 'good', head: say('it_is_there'), detail };
   }
   if (after_s < LONG_S) return null;
-  const detail = 'Drive a metre or two by hand, or show it again.';
-  return { tone: 'warn', head: 'What it sees does not fit there yet', detail };
+  const detail = say('drive_a_metre_or_two_by_hand_or_show');
+  return { tone: 'warn', head: say('what_it_sees_does_not_fit_there_yet'), detail };
 };

@@ -1,6 +1,8 @@
 // The sky as the receivers see it, and how sure the robot is of where it is.
 
+import { fixed } from './figures';
 import { count, degrees_text, metres, number_text } from './format';
+import { say } from './say';
 import type { Estimator, Learned, Position } from './vehicle';
 
 export interface Satellite {
@@ -82,15 +84,19 @@ export const by_signal = (satellites: readonly Satellite[]): readonly Satellite[
 export const sky_summary = (satellites: readonly Satellite[]): string => {
   const tracked = satellites.filter(({ cn0_dbhz }) => cn0_dbhz !== null);
   const used = satellites.filter((each) => each.used === true);
-  if (satellites.length === 0) return 'No satellite in view';
-  return `${used.length} used, ${tracked.length} heard, ${satellites.length} in view`;
+  if (satellites.length === 0) return say('no_satellite_in_view');
+  return say('used_used_tracked_heard_satellites', {
+    used: used.length,
+    tracked: tracked.length,
+    satellites: satellites.length,
+  });
 };
 
 /** In centimetres for a metre of way: it is steered against. */
 const side_slip_text = (share: number | null): string => {
   if (share === null) return '—';
   const cm = Math.round(Math.abs(share) * 100);
-  return cm === 0 ? 'nothing' : `${cm} cm a metre, to the ${share > 0 ? 'left' : 'right'}`;
+  return cm === 0 ? say('word_nothing') : say(share > 0 ? 'slip_to_left' : 'slip_to_right', { cm });
 };
 
 /** How the vehicle answers: what is used, and what was set where that is something else. */
@@ -98,16 +104,21 @@ export const handling_lines = (
   learned: Learned | undefined,
 ): readonly (readonly [string, string])[] => {
   if (!learned) return [];
-  const delay = `${learned.delay_used_s.toFixed(2)} s`;
+  const delay = number_text(learned.delay_used_s, 2, 's');
   const delay_why =
-    learned.delay_s === null ? 'as set' : `learned; set ${learned.delay_set_s.toFixed(2)} s`;
-  const braking = `${learned.braking_used_mps2.toFixed(2)} m/s²`;
+    learned.delay_s === null
+      ? say('as_set')
+      : say('learned_set_delay_set_s', { delay_set: fixed(learned.delay_set_s, 2) });
+  const braking = number_text(learned.braking_used_mps2, 2, 'm/s²');
   const as_set = learned.braking_used_mps2 >= learned.braking_set_mps2 - 0.005;
-  const set = `learned; set ${learned.braking_set_mps2.toFixed(2)} m/s²`;
-  const braking_why = (as_set ? 'as set' : set) + (learned.braking_proved ? '' : ', not seen yet');
+  const set = say('learned_set_braking_set_m_s', {
+    braking_set: fixed(learned.braking_set_mps2, 2),
+  });
+  const braking_why =
+    (as_set ? say('as_set') : set) + (learned.braking_proved ? '' : say('not_seen_yet'));
   return [
-    ['Answers after', `${delay} (${delay_why})`],
-    ['Brakes with', `${braking} (${braking_why})`],
+    [say('answers_after'), `${delay} (${delay_why})`],
+    [say('brakes_with'), `${braking} (${braking_why})`],
   ];
 };
 
@@ -119,26 +130,28 @@ export const position_lines = (
   const { ellipse } = position;
   const out: [string, string][] = [
     [
-      'Position, 1σ',
+      say('position_1'),
       ellipse
-        ? `${metres(ellipse.major_m)} along ${Math.round(ellipse.orientation_deg)}°, ` +
-          `${metres(ellipse.minor_m)} across`
+        ? say('major_along_orientation_deg', {
+            major: metres(ellipse.major_m),
+            orientation: Math.round(ellipse.orientation_deg),
+          }) + say('minor_across', { minor: metres(ellipse.minor_m) })
         : metres(position.horizontal_accuracy_m),
     ],
-    ['Heading, 1σ', degrees_text(position.heading_accuracy_deg)],
-    ['From', position.source ?? '—'],
+    [say('heading_1'), degrees_text(position.heading_accuracy_deg)],
+    [say('from'), position.source ?? '—'],
   ];
   if (!estimator) return out;
-  out.push(['Compass is off by', degrees_text(estimator.compass_bias_deg)]);
+  out.push([say('compass_is_off_by'), degrees_text(estimator.compass_bias_deg)]);
   if (estimator.gyro_bias_dps !== null) {
-    out.push(['Gyro is off by', number_text(estimator.gyro_bias_dps, 3, '°/s')]);
+    out.push([say('gyro_is_off_by'), number_text(estimator.gyro_bias_dps, 3, '°/s')]);
   }
-  out.push(['Odometry, true over told', number_text(estimator.odometry_scale, 3)]);
-  out.push(['Drives aside by', side_slip_text(estimator.side_slip)]);
+  out.push([say('odometry_true_over_told'), number_text(estimator.odometry_scale, 3)]);
+  out.push([say('drives_aside_by'), side_slip_text(estimator.side_slip)]);
   const refused = Object.entries(estimator.rejected)
     .filter(([, times]) => times > 0)
     .map(([what, times]) => `${what} ${times}`);
-  out.push(['Refused', refused.length === 0 ? 'nothing' : refused.join(', ')]);
-  out.push(['Set anew', count(estimator.resets, 'time')]);
+  out.push([say('refused'), refused.length === 0 ? 'nothing' : refused.join(', ')]);
+  out.push([say('set_anew'), count(estimator.resets, 'time')]);
   return out;
 };

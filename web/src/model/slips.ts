@@ -2,6 +2,7 @@
 
 import type { Answer } from './answer';
 import type { LatLon } from './plan';
+import { say } from './say';
 
 export type SlipKind = 'slip' | 'side' | 'dug';
 export interface Slip extends LatLon {
@@ -23,9 +24,9 @@ export const slip_words = ({ kind, percent, times }: Slip): string => {
   const figure = `${percent.toFixed(0)} %`;
   const what =
     kind === 'dug'
-      ? 'the wheels turned and it stood'
+      ? say('the_wheels_turned_and_it_stood')
       : kind === 'slip'
-        ? `slipped by ${figure}`
-        : `slid aside by ${figure}`;
-  return times === 1 ? what : `${what}, ${times} times`;
+        ? say('slipped_by_figure', { figure })
+        : say('slid_aside_by_figure', { figure });
+  return times === 1 ? what : say('what_times_times', { what, times });
 };

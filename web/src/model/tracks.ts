@@ -5,7 +5,7 @@
 //   live points              ·  ·  · │ ·  ·  ·  ·▶     those behind that time are added again
 
 import type { LatLon } from './plan';
-import { Trail, type TrailPiece } from './trail';
+import { Trail, type Driven, type TrailPiece } from './trail';
 import { receiver_place, robot_place, type Vehicle } from './vehicle';
 
 /** The way so far, as the server remembers it. */
@@ -21,7 +21,14 @@ interface Sample {
   readonly reach_m: number;
   readonly at: LatLon | null;
   readonly received: LatLon | null;
+  readonly driven: Driven;
 }
+
+/** Only a running mission has a way to be off: a robot that is driven by hand beside it is not. */
+const driven_of = ({ position, mission }: Vehicle): Driven => ({
+  speed_mps: Math.abs(position.speed_mps ?? Number.NaN),
+  off_m: mission.state === 'running' ? Math.abs(mission.cross_track_m ?? Number.NaN) : Number.NaN,
+});
 
 /** The server's rule for a jump: a way that the robot's own speed does not explain. */
 const reach_of = (speed_mps: number | null): number => 2 + 2 * Math.abs(speed_mps ?? 0);
@@ -47,6 +54,7 @@ export class Tracks {
       reach_m: reach_of(vehicle.position.speed_mps),
       at: vehicle.position.stale ? null : robot_place(vehicle),
       received: receiver_place(vehicle),
+      driven: driven_of(vehicle),
     };
     this.#samples.push(sample);
     if (this.#samples.length > SAMPLES) this.#samples.shift();
@@ -63,8 +71,8 @@ export class Tracks {
     return [...this.driven.points(), ...this.fixes.points()];
   }
 
-  #add({ t_s, reach_m, at, received }: Sample): void {
-    if (at) this.driven.add(at, t_s, reach_m);
+  #add({ t_s, reach_m, at, received, driven }: Sample): void {
+    if (at) this.driven.add(at, t_s, reach_m, driven);
     if (received) this.fixes.add(received, t_s, RECEIVER_REACH_M);
   }
 }

@@ -12,11 +12,23 @@ export interface TrailPoint extends LatLon {
 /** What a line may join, oldest first. */
 export type TrailPiece = readonly TrailPoint[];
 
+/** What was measured where a point is; NaN: not known. */
+export interface Driven {
+  readonly speed_mps: number;
+  /** To either side of the way of a running mission. */
+  readonly off_m: number;
+}
+export const NOT_MEASURED: Driven = { speed_mps: Number.NaN, off_m: Number.NaN };
+/** A point of the server's memory and one of our own, so near in time, are of the same place. */
+const SAME_S = 1;
+
 export class Trail {
   readonly #lat: Float64Array;
   readonly #lon: Float64Array;
   readonly #t_s: Float64Array;
   readonly #begins: Uint8Array;
+  readonly #speed_mps: Float32Array;
+  readonly #off_m: Float32Array;
   readonly #step_m: number;
   #first = 0;
   #count = 0;
@@ -28,6 +40,8 @@ export class Trail {
     this.#lon = new Float64Array(capacity);
     this.#t_s = new Float64Array(capacity);
     this.#begins = new Uint8Array(capacity);
+    this.#speed_mps = new Float32Array(capacity);
+    this.#off_m = new Float32Array(capacity);
     this.#step_m = step_m;
   }
 
@@ -57,30 +71,55 @@ export class Trail {
     return index === 0 || this.#begins[this.#slot(index)] === 1;
   }
 
+  /** What was measured at this point. */
+  driven(index: number): Driven {
+    if (index < 0 || index >= this.#count) return NOT_MEASURED;
+    const slot = this.#slot(index);
+    return {
+      speed_mps: this.#speed_mps[slot] ?? Number.NaN,
+      off_m: this.#off_m[slot] ?? Number.NaN,
+    };
+  }
+
   points(): TrailPoint[] {
     const all = Array.from({ length: this.#count }, (_, k) => this.at(k));
     return all.filter((at) => at !== undefined);
   }
 
   /** @param reach_m farther than this from the last point is a jump @return whether it was kept */
-  add(at: LatLon, t_s: number, reach_m: number): boolean {
+  add(at: LatLon, t_s: number, reach_m: number, driven = NOT_MEASURED): boolean {
     const last = this.at(this.#count - 1);
     const moved_m = last ? distance_m(last, at) : Infinity;
     if (moved_m < this.#step_m) return false;
-    this.#push(at, t_s, moved_m > reach_m);
+    this.#push({ ...at, t_s }, moved_m > reach_m, driven);
     return true;
   }
 
   /**
    * Takes over what the server remembers. Points of our own that are older than its memory stay (it
-   * may have been started anew); all others are in it, and go. @param until_s when it was told
+   * may have been started anew); all others are in it, and go. It knows places alone: what was measured
+   * there is taken from those that go. @param until_s when it was told
    */
   restore(pieces: readonly TrailPiece[], until_s: number): void {
     const since_s = pieces[0]?.[0]?.t_s ?? until_s;
-    const own = this.points().map((at, k) => ({ ...at, begins: this.begins(k) }));
+    const own = this.points().map((at, k) => ({
+      at,
+      begins: this.begins(k),
+      driven: this.driven(k),
+    }));
     this.clear();
-    for (const at of own) if (at.t_s < since_s) this.#push(at, at.t_s, at.begins);
-    for (const piece of pieces) piece.forEach((at, k) => this.#push(at, at.t_s, k === 0));
+    for (const { at, begins, driven } of own) {
+      if (at.t_s < since_s) this.#push(at, begins, driven);
+    }
+    let next = 0;
+    const off_s = (k: number, t_s: number): number => Math.abs((own[k]?.at.t_s ?? Infinity) - t_s);
+    for (const piece of pieces) {
+      piece.forEach((at, k) => {
+        while (off_s(next + 1, at.t_s) <= off_s(next, at.t_s) && next + 1 < own.length) next += 1;
+        const known = off_s(next, at.t_s) <= SAME_S ? own[next]?.driven : undefined;
+        this.#push(at, k === 0, known ?? NOT_MEASURED);
+      });
+    }
   }
 
   clear(): void {
@@ -93,12 +132,14 @@ export class Trail {
     return (this.#first + index) % this.#lat.length;
   }
 
-  #push(at: LatLon, t_s: number, begins: boolean): void {
+  #push(at: TrailPoint, begins: boolean, { speed_mps, off_m }: Driven): void {
     const slot = this.#slot(this.#count);
     this.#lat[slot] = at.lat;
     this.#lon[slot] = at.lon;
-    this.#t_s[slot] = t_s;
+    this.#t_s[slot] = at.t_s;
     this.#begins[slot] = begins ? 1 : 0;
+    this.#speed_mps[slot] = speed_mps;
+    this.#off_m[slot] = off_m;
     if (this.#count < this.#lat.length) this.#count += 1;
     else this.#first = (this.#first + 1) % this.#lat.length;
     this.#added += 1;

@@ -4,8 +4,9 @@
 import type { Obstacle } from './obstacle';
 import type { RowDriven } from './row';
 import type { LatLon } from './plan';
+import { say, told } from './say';
 import type { MapPlace } from './site_map';
-import type { GuardFigures, Twist } from './sweep';
+import type { Twist } from './sweep';
 
 export type Mode =
   | 'MANUAL'
@@ -54,6 +55,12 @@ export interface Gnss extends Measured {
   readonly hdop: number | null;
   readonly horizontal_accuracy_m: number | null;
   readonly correction_age_s: number | null;
+}
+export interface Attitude extends Measured {
+  /** Right side down positive. */
+  readonly roll_deg: number | null;
+  /** Nose up positive. */
+  readonly pitch_deg: number | null;
 }
 export interface Battery extends Measured {
   readonly battery_v: number | null;
@@ -183,6 +190,8 @@ export interface Vehicle {
     readonly state: 'off' | 'release' | 'ready' | 'held';
     readonly reason: string;
     readonly delay_s: number | null;
+    /** Of its speed, what drives by itself is allowed by a hand; 0: it was let go; null: nobody uses one. */
+    readonly auto_share?: number | null;
   };
   readonly speed_reason: string;
   readonly position: Position;
@@ -190,6 +199,7 @@ export interface Vehicle {
   readonly place?: MapPlace;
   readonly estimator: Estimator;
   readonly learned: Learned;
+  readonly attitude: Attitude;
   readonly gnss: Gnss;
   readonly base: Base;
   readonly battery: Battery;
@@ -215,24 +225,7 @@ export interface Check {
   readonly severity: 'info' | 'warning' | 'error';
   readonly detail: string;
 }
-/** What a check is about: "gnss_fix" → "GNSS fix:". */
-export const check_subject = (id: string): string => {
-  const words = id.replaceAll('_', ' ').replace('gnss', 'GNSS').replace('rtk', 'RTK');
-  return `${words.charAt(0).toUpperCase()}${words.slice(1)}:`;
-};
-export interface Capabilities {
-  readonly vehicle: string;
-  /** Name for people. */
-  readonly title: string;
-  readonly size: { readonly length_m: number; readonly width_m: number };
-  readonly limits: { readonly max_speed_mps: number; readonly max_yaw_rate_dps: number };
-  /** Null: it has no sensors that look around. */
-  readonly guard: GuardFigures | null;
-  readonly modes: readonly Mode[];
-  readonly item_types: readonly string[];
-  readonly import_formats: readonly string[];
-  readonly export_formats: readonly string[];
-}
+export type { Capabilities } from './capabilities';
 /** Dense points that are driven as one smooth way. */
 export interface SmoothedItems {
   readonly first_item: number;
@@ -255,12 +248,6 @@ export interface Preview {
   readonly speed_mps: number;
   readonly at_end: 'hold' | 'return' | 'repeat' | 'back_and_forth';
 }
-/** The loaded mission as it is laid out: corners rounded, dense points smoothed. */
-export interface MissionWay {
-  readonly mission_id: string;
-  readonly revision: number;
-  readonly line: readonly LatLon[];
-}
 export interface StationEvent {
   readonly time: string;
   readonly level: 'info' | 'warning' | 'error';
@@ -281,15 +268,15 @@ const SHOWN_ELSEWHERE = new Set(['arm_refused', 'estop', 'disarmed']);
 export const worth_a_word = ({ level, kind }: StationEvent): boolean =>
   level === 'info' ? TOLD.has(kind) : !SHOWN_ELSEWHERE.has(kind);
 
-export const fix_words: Record<Fix, string> = {
-  none: 'No fix',
-  unknown: 'Fix unknown',
-  estimated: 'Dead reckoning',
-  gps: 'GNSS',
-  dgps: 'DGNSS',
-  rtk_float: 'RTK float',
-  rtk_fixed: 'RTK fixed',
-};
+export const fix_words: Record<Fix, string> = told({
+  none: 'no_fix',
+  unknown: 'fix_unknown',
+  estimated: 'dead_reckoning',
+  gps: 'gnss_caps',
+  dgps: 'dgnss_caps',
+  rtk_float: 'rtk_float',
+  rtk_fixed: 'rtk_fixed',
+});
 
 /** How good a fix is for driving along rows. */
 export const fix_tone = (fix: Fix | undefined): 'plain' | 'good' | 'bad' => {
@@ -308,30 +295,30 @@ export const fix_tone = (fix: Fix | undefined): 'plain' | 'good' | 'bad' => {
   }
 };
 
-export const control_words: Record<Control, string> = {
-  none: 'Nobody drives',
-  auto: 'Autopilot drives',
-  teleop: 'Page drives',
-  rc: 'Radio drives',
-};
+export const control_words: Record<Control, string> = told({
+  none: 'nobody_drives',
+  auto: 'autopilot_drives',
+  teleop: 'page_drives',
+  rc: 'radio_drives',
+});
 
 /** The same in one word, for narrow places. */
-export const driver_words: Record<Control, string> = {
-  none: 'Nobody',
-  auto: 'Autopilot',
-  teleop: 'Page',
-  rc: 'Radio',
-};
+export const driver_words: Record<Control, string> = told({
+  none: 'nobody',
+  auto: 'autopilot',
+  teleop: 'page',
+  rc: 'radio',
+});
 
-export const state_words: Record<ExecutionState, string> = {
-  idle: 'No mission loaded',
-  loaded: 'Loaded',
-  running: 'Running',
-  paused: 'Paused',
-  blocked: 'Blocked',
-  finished: 'Finished',
-  aborted: 'Aborted',
-};
+export const state_words: Record<ExecutionState, string> = told({
+  idle: 'no_mission_loaded',
+  loaded: 'loaded',
+  running: 'running',
+  paused: 'paused',
+  blocked: 'blocked_2',
+  finished: 'finished',
+  aborted: 'aborted',
+});
 
 export interface RadioLine {
   readonly name: string;
@@ -346,7 +333,8 @@ export const radio_lines = (rc: Rc | undefined): readonly RadioLine[] => {
     const meaning = rc?.meaning[name] ?? null;
     const at = rc?.[name] ?? null;
     if (meaning === null || at === null) continue;
-    const position = typeof at === 'number' ? `at ${Math.round(at * 100)} %` : at;
+    const position =
+      typeof at === 'number' ? say('at_at_percent', { at: Math.round(at * 100) }) : at;
     lines.push({ name: name.toUpperCase(), position, meaning });
   }
   return lines;
@@ -364,13 +352,13 @@ export const robot_place = (vehicle: Vehicle | null): LatLon | null => {
   return lat === null || lon === null ? null : { lat, lon };
 };
 
-export const teach_words: Record<TeachBrief['state'], string> = {
-  loading: 'One moment',
-  idle: 'Off',
-  recording: 'Recording',
-  paused: 'Paused',
-  interrupted: 'Interrupted',
-};
+export const teach_words: Record<TeachBrief['state'], string> = told({
+  loading: 'one_moment',
+  idle: 'off',
+  recording: 'recording',
+  paused: 'paused',
+  interrupted: 'interrupted',
+});
 
 /** The position was set anew so far that the robot holds until a person has looked. */
 /** The receiver's positions moved for good: a person says which place counts. */

@@ -8,6 +8,8 @@ import {
   type SpaceOnMap,
 } from '../model/calibration';
 import type { VehicleCalls } from '../model/ports';
+import { say } from '../model/say';
+import { again_and_again } from './again_and_again';
 import type { Dialogs } from './dialogs.svelte';
 
 const ASK_AGAIN_MS = 1000;
@@ -40,21 +42,17 @@ export class Calibrator {
 
   /** As long as somebody looks. @return ends it */
   watch(): () => void {
-    let timer: ReturnType<typeof setTimeout> | undefined;
-    let over = false;
     this.#looked = true;
     this.said = null;
-    const ask = async (): Promise<void> => {
+    const end = again_and_again(async () => {
       const answer = await this.#calls.calibration();
-      if (over) return;
-      if (answer.ok) this.last = answer.value;
-      timer = setTimeout(() => void ask(), ASK_AGAIN_MS);
-    };
-    void ask();
+      return () => {
+        if (answer.ok) this.last = answer.value;
+      };
+    }, ASK_AGAIN_MS);
     return () => {
-      over = true;
       this.#looked = false;
-      clearTimeout(timer);
+      end();
     };
   }
 
@@ -63,18 +61,18 @@ export class Calibrator {
     this.#do(this.last && kept_words(this.last), () => this.#calls.settle_calibration(true));
   discard = (): Promise<void> => {
     const measured = this.last?.state === 'done';
-    const said = measured ? 'Discarded: it drives as before.' : null;
+    const said = measured ? say('discarded_it_drives_as_before') : null;
     return this.#do(said, () => this.#calls.settle_calibration(false));
   };
 
   async forget(): Promise<void> {
     const sure = await this.#dialogs.ask({
-      title: 'Forget how the vehicle drives?',
-      text: 'What calibrations measured and what was learned while driving is gone. It drives by its settings, and learns anew.',
-      yes: 'Forget it',
+      title: say('forget_how_the_vehicle_drives'),
+      text: say('what_calibrations_measured_and_what'),
+      yes: say('forget_it'),
       danger: true,
     });
-    const said = 'Forgotten: it drives by its settings, and learns anew.';
+    const said = say('forgotten_it_drives_by_its_settings');
     if (sure) await this.#do(said, () => this.#calls.forget_calibration());
   }
 

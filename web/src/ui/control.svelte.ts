@@ -2,6 +2,7 @@
 
 import { failure_text, type Answer } from '../model/answer';
 import {
+  present_lines,
   seat_of,
   seat_words,
   told_of,
@@ -9,18 +10,26 @@ import {
   type ControlState,
   type TakeWish,
 } from '../model/control';
+import { say } from '../model/say';
+import { again_and_again } from './again_and_again';
+
+/** Between two looks. */
+const HERE_MS = 3000;
 
 const NOBODY: ControlState = { on: true, holder: null, requests: [] };
 
 export class ControlDesk {
   state = $state.raw<ControlState>(NOBODY);
+  here = $state.raw<readonly { key: string; words: string }[]>([]);
   /** Not known yet. */
   known = $state(false);
   busy = $state(false);
   /** What went wrong, or what others did. */
   told = $state('');
   seat = $derived.by(() => seat_of(this.state, this.#me));
-  words = $derived.by(() => (this.known ? seat_words(this.state, this.#me) : 'Control: not known'));
+  words = $derived.by(() =>
+    this.known ? seat_words(this.state, this.#me) : say('control_not_known'),
+  );
 
   readonly #calls: ControlCalls;
   readonly #me: string;
@@ -42,10 +51,21 @@ export class ControlDesk {
     if (told !== '') this.told = told;
   };
 
-  take = (wish: TakeWish = {}): Promise<boolean> => this.#do('taken', () => this.#calls.take(wish));
-  release = (): Promise<boolean> => this.#do('given up', () => this.#calls.release());
+  /** Who is connected, asked now and then while somebody looks. @return ends it */
+  watch_here(): () => void {
+    return again_and_again(async () => {
+      const answer = await this.#calls.state();
+      return () => {
+        if (answer.ok) this.here = present_lines(answer.value, this.#me);
+      };
+    }, HERE_MS);
+  }
+
+  take = (wish: TakeWish = {}): Promise<boolean> =>
+    this.#do(say('done_taken'), () => this.#calls.take(wish));
+  release = (): Promise<boolean> => this.#do(say('given_up'), () => this.#calls.release());
   answer = (request: number, accept: boolean): Promise<boolean> =>
-    this.#do('answered', () => this.#calls.hand_over(request, accept));
+    this.#do(say('done_answered'), () => this.#calls.hand_over(request, accept));
 
   async #do(what: string, call: () => Promise<Answer<ControlState>>): Promise<boolean> {
     if (this.busy) return false;

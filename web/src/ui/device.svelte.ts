@@ -2,7 +2,9 @@
 // styles read the look from the page's root.
 
 import type { DraftStorage } from '../model/ports';
-import { DEFAULTS, settings_of, type Settings } from '../model/settings';
+import type { Language } from '../model/say';
+import { DEFAULTS, language_in, settings_of, type Settings } from '../model/settings';
+import { tongue } from './language.svelte';
 
 class Device {
   settings = $state.raw<Settings>(DEFAULTS);
@@ -19,9 +21,14 @@ class Device {
     this.#storage?.write(JSON.stringify(this.settings));
   }
 
+  get language(): Language {
+    return language_in(this.settings, navigator.languages);
+  }
+
   #use(settings: Settings): void {
     this.settings = settings;
     document.documentElement.dataset['look'] = settings.look;
+    void tongue.use(this.language);
   }
 }
 

@@ -1,8 +1,9 @@
 // The one dialog that is open: a question, a conflict, an import's report, the start of a mission,
 // what was found before arming, the menu of modes.
 
-import type { CheckReport, ImportResult, Mission, StartFrom } from '../model/ports';
+import type { CheckReport, Mission, StartFrom } from '../model/ports';
 import type { Preview } from '../model/vehicle';
+import type { ImportReport } from './import_report.svelte';
 
 export interface Question {
   readonly title: string;
@@ -20,7 +21,7 @@ export type Dialog =
       readonly theirs: Mission;
       answer(choice: ConflictChoice): void;
     }
-  | { readonly kind: 'report'; readonly file: string; readonly result: ImportResult }
+  | { readonly kind: 'report'; readonly report: ImportReport }
   | { readonly kind: 'start'; readonly preview: Preview; readonly from: StartFrom }
   | { readonly kind: 'check'; readonly name: string; readonly report: CheckReport }
   | { readonly kind: 'arm'; readonly name: string; readonly report: CheckReport }
@@ -30,16 +31,26 @@ export type Dialog =
 
 export class Dialogs {
   open = $state.raw<Dialog | null>(null);
+  #waiting: readonly (() => void)[] = [];
 
   show(dialog: Dialog): void {
     this.close();
     this.open = dialog;
   }
 
+  /** When nothing is open any more. */
+  async gone(): Promise<void> {
+    while (this.open !== null) {
+      await new Promise<void>((resolve) => {
+        this.#waiting = [...this.#waiting, resolve];
+      });
+    }
+  }
+
   /** Closing without a choice is the harmless choice. */
   close(): void {
     const dialog = this.open;
-    this.open = null;
+    this.#end();
     if (dialog?.kind === 'question') dialog.answer(false);
     if (dialog?.kind === 'conflict') dialog.answer('cancel');
   }
@@ -58,7 +69,14 @@ export class Dialogs {
 
   /** Ends a question or conflict with a choice. */
   choose<T>(answer: (choice: T) => void, choice: T): void {
-    this.open = null;
+    this.#end();
     answer(choice);
+  }
+
+  #end(): void {
+    this.open = null;
+    const waiting = this.#waiting;
+    this.#waiting = [];
+    for (const each of waiting) each();
   }
 }

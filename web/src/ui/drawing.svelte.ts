@@ -62,8 +62,13 @@ export class Outline extends RingDrawing implements Drawing {
   places = $derived(this.history.present);
   plan = $derived(plan_of_places(this.places));
   can_undo = $derived(this.history.past.length > 0);
-  readonly shape = 'ring';
+  readonly shape: PlanShape;
   readonly map_mode = 'draw';
+
+  constructor(shape: PlanShape = 'ring') {
+    super();
+    this.shape = shape;
+  }
 
   undo(): void {
     this.history = undo(this.history);

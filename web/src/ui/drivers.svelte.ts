@@ -3,6 +3,8 @@
 import { failure_text, refusal_text } from '../model/answer';
 import type { Driver } from '../model/drivers';
 import type { VehicleCalls } from '../model/ports';
+import { say } from '../model/say';
+import { again_and_again } from './again_and_again';
 import type { Dialogs } from './dialogs.svelte';
 import type { Notices } from './notices.svelte';
 
@@ -25,38 +27,30 @@ export class Drivers {
 
   /** Asks now and then. @return ends it */
   watch(): () => void {
-    let waiting: ReturnType<typeof setTimeout> | undefined;
-    let over = false;
-    const again = async (): Promise<void> => {
-      await this.#fetch();
-      if (!over) waiting = setTimeout(() => void again(), RENEWED_MS);
-    };
-    void again();
-    return () => {
-      over = true;
-      clearTimeout(waiting);
-    };
+    return again_and_again(() => this.#ask(), RENEWED_MS);
   }
 
   async restart(name: string): Promise<void> {
     const sure = await this.#dialogs.ask({
-      title: `Restart the driver “${name}”?`,
-      text: 'Its device is closed and opened anew. Until it is heard again the robot does without it.',
-      yes: 'Restart',
+      title: say('restart_the_driver_name', { name }),
+      text: say('its_device_is_closed_and_opened_anew'),
+      yes: say('restart'),
       danger: false,
     });
     if (!sure || this.restarting !== null) return;
     this.restarting = name;
     const answer = await this.#calls.restart_driver(name);
     this.restarting = null;
-    if (answer.ok) this.#notices.show('good', `The driver “${name}” is being restarted.`);
-    else this.#notices.show('error', failure_text('restarted', answer.refusal));
-    await this.#fetch();
+    if (answer.ok) this.#notices.show('good', say('the_driver_name_is_being_restarted', { name }));
+    else this.#notices.show('error', failure_text(say('done_restarted'), answer.refusal));
+    (await this.#ask())();
   }
 
-  async #fetch(): Promise<void> {
+  async #ask(): Promise<() => void> {
     const answer = await this.#calls.drivers();
-    this.failure = answer.ok ? null : refusal_text(answer.refusal);
-    if (answer.ok) this.items = answer.value.items;
+    return () => {
+      this.failure = answer.ok ? null : refusal_text(answer.refusal);
+      if (answer.ok) this.items = answer.value.items;
+    };
   }
 }

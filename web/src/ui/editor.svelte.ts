@@ -5,7 +5,13 @@ import { append_waypoint, insert_waypoint, move_waypoint, remove_item } from '..
 import type { PlanAction } from '../model/actions';
 import { draft_text, parse_draft, type Stored } from '../model/draft';
 import { begin_history, perform, redo, undo, type History } from '../model/history';
-import { EMPTY_PLAN, type LatLon, type Plan } from '../model/plan';
+import { edits_left, edits_resumed, parse_past, with_past } from '../model/past_edits';
+import { EMPTY_PLAN, type KeptDrawing, type LatLon, type Plan } from '../model/plan';
+import { say } from '../model/say';
+import { joined, NOTHING_PICKED, toggled, within, type Picked } from '../model/selection';
+import { drag_items } from '../model/shapes';
+import { revived, steps_of } from '../model/steps';
+import { remove_items } from '../model/stretch';
 import type { DraftStorage, MapMode, Mission, MissionCalls } from '../model/ports';
 import type { Drawing } from './drawing.svelte';
 import type { Dialogs } from './dialogs.svelte';
@@ -13,21 +19,39 @@ import type { Notices } from './notices.svelte';
 
 const DRAFT_AFTER_MS = 300;
 
+/** Add with every tap; move and select; choose several. */
+export type Tool = 'draw' | 'edit' | 'pick';
+
 export const plan_of = (mission: Mission): Plan => ({
   name: mission.name,
   items: mission.items,
   home: mission.home,
   settings: mission.settings,
+  ...(mission.drawing ? { drawing: mission.drawing } : {}),
 });
+
+/** On the device: what is edited, what can be undone in missions edited before, and of what they were
+ * made. */
+export interface Kept {
+  readonly draft: DraftStorage;
+  readonly past: DraftStorage;
+  readonly makings: DraftStorage;
+}
 
 export class Editor implements Drawing {
   history = $state.raw<History<Plan>>(begin_history(EMPTY_PLAN));
   /** Which revision the plan is based on; null: never saved. */
   stored = $state.raw<Stored | null>(null);
   selected = $state<number | null>(null);
-  /** Every tap on the map adds a waypoint. */
-  adding = $state(true);
+  /** What a tap on the map does; exactly one. */
+  tool = $state<Tool>('draw');
+  /** Several items, chosen together; then none is selected alone. */
+  picked = $state.raw<Picked>(NOTHING_PICKED);
+  /** A dragged point is caught by what lies near. */
+  snaps = $state(true);
   saving = $state(false);
+  /** What somebody else stored meanwhile, while the person chooses. */
+  theirs = $state.raw<Plan | null>(null);
   refused = $state.raw<ReadonlySet<number>>(new Set());
   #saved_plan = $state.raw<Plan | null>(EMPTY_PLAN);
 
@@ -36,19 +60,38 @@ export class Editor implements Drawing {
   can_undo = $derived(this.history.past.length > 0);
   can_redo = $derived(this.history.future.length > 0);
   readonly shape = 'line';
-  map_mode = $derived<MapMode>(this.adding ? 'draw' : 'edit');
+  map_mode = $derived<MapMode>(this.tool);
 
   readonly #calls: MissionCalls;
   readonly #storage: DraftStorage;
+  /** Of missions that are not here now. */
+  readonly #past: DraftStorage;
   readonly #notices: Notices;
   readonly #dialogs: Dialogs;
   #draft_timer: ReturnType<typeof setTimeout> | undefined;
 
-  constructor(calls: MissionCalls, storage: DraftStorage, notices: Notices, dialogs: Dialogs) {
+  constructor(calls: MissionCalls, kept: Kept, notices: Notices, dialogs: Dialogs) {
     this.#calls = calls;
-    this.#storage = storage;
+    this.#storage = kept.draft;
+    this.#past = kept.past;
     this.#notices = notices;
     this.#dialogs = dialogs;
+  }
+
+  /** Every tap on the map adds a waypoint. */
+  get adding(): boolean {
+    return this.tool === 'draw';
+  }
+
+  set adding(adds: boolean) {
+    this.choose_tool(adds ? 'draw' : 'edit');
+  }
+
+  /** Whoever stops choosing has nothing chosen any more. */
+  choose_tool(tool: Tool): void {
+    this.tool = tool;
+    if (tool === 'pick') this.selected = null;
+    else this.picked = NOTHING_PICKED;
   }
 
   do(action: PlanAction): void {
@@ -70,6 +113,24 @@ export class Editor implements Drawing {
 
   select(index: number | null): void {
     this.selected = index;
+    this.picked = NOTHING_PICKED;
+  }
+
+  /** One more of several, or one less; what was selected alone is one of them. */
+  pick(index: number): void {
+    const before = this.selected === null ? this.picked : joined(this.picked, [this.selected]);
+    this.pick_only(toggled(before, index));
+  }
+
+  pick_more(indices: readonly number[]): void {
+    const before = this.selected === null ? [] : [this.selected];
+    this.pick_only(joined(joined(this.picked, before), indices));
+  }
+
+  pick_only(picked: Picked): void {
+    this.picked = picked;
+    this.selected = null;
+    if (picked.size > 0) this.tool = 'pick';
   }
 
   insert(index: number, at: LatLon): void {
@@ -78,12 +139,20 @@ export class Editor implements Drawing {
   }
 
   move(index: number, to: LatLon): void {
+    if (this.picked.has(index)) {
+      this.do(drag_items(this.picked, index, to));
+      return;
+    }
     this.do(move_waypoint(index, to));
     this.selected = index;
   }
 
   remove_selected(): void {
     if (this.selected !== null) this.remove(this.selected);
+    else if (this.picked.size > 0) {
+      this.do(remove_items(this.picked));
+      this.picked = NOTHING_PICKED;
+    }
   }
 
   remove(index: number): void {
@@ -91,14 +160,37 @@ export class Editor implements Drawing {
     this.selected = null;
   }
 
-  /** An empty plan. What was unsaved is gone, so whoever calls has asked. */
+  /** The first part stays here, to be saved; the second one is stored as a mission of its own. */
+  async split([first, second]: readonly [Plan, Plan]): Promise<void> {
+    this.saving = true;
+    // Neither part is what was drawn.
+    const answer = await this.#calls.create({ ...second, drawing: null });
+    this.saving = false;
+    if (!answer.ok) {
+      this.#notices.show('error', failure_text(say('done_kept'), answer.refusal));
+      return;
+    }
+    this.do(() => ({ ...first, drawing: null }));
+    this.choose_tool('edit');
+    this.#notices.show('good', say('name_is_stored_this_one_ends_where', { name: second.name }));
+  }
+
+  /** An empty plan; undo brings back what was never saved. Whoever calls has asked. */
   begin_new(): void {
-    this.#begin(EMPTY_PLAN, null);
+    this.#keep_edits();
+    const unkept = this.stored === null ? this.history : begin_history(EMPTY_PLAN);
+    this.#begin(
+      perform(unkept, () => EMPTY_PLAN),
+      null,
+    );
     this.adding = true;
   }
 
+  /** As it is stored. What was done to it before, on this device, can be undone. */
   show_mission(mission: Mission): void {
-    this.#begin(plan_of(mission), { id: mission.id, revision: mission.revision });
+    this.#keep_edits();
+    const stored = { id: mission.id, revision: mission.revision };
+    this.#begin(edits_resumed(parse_past(this.#past.read()), stored, plan_of(mission)), stored);
     this.adding = mission.items.length === 0;
   }
 
@@ -106,9 +198,14 @@ export class Editor implements Drawing {
   async may_discard(): Promise<boolean> {
     if (!this.unsaved) return true;
     return this.#dialogs.ask({
-      title: 'Discard unsaved changes?',
-      text: `“${this.plan.name}” has changes that are not saved.`,
-      yes: 'Discard',
+      title: say('discard_unsaved_changes'),
+      text: say(
+        this.stored === null
+          ? 'name_has_changes_that_are_not_saved'
+          : 'name_has_changes_undo_brings_them_back',
+        { name: this.plan.name },
+      ),
+      yes: say('discard'),
       danger: true,
     });
   }
@@ -128,27 +225,42 @@ export class Editor implements Drawing {
     }
   }
 
+  /** With the mission as it is stored: no step of its own. Where that fails, the device still has it. */
+  async keep_drawing(drawing: KeptDrawing): Promise<void> {
+    const { stored } = this;
+    if (stored === null || this.unsaved || this.saving) return;
+    this.saving = true;
+    const plan = { ...this.plan, drawing };
+    const answer = await this.#calls.replace(stored.id, stored.revision, plan);
+    this.saving = false;
+    if (!answer.ok || this.unsaved || this.stored !== stored) return;
+    this.#begin(begin_history(plan), { id: stored.id, revision: answer.value.revision });
+  }
+
   async #after_save(plan: Plan, answer: Answer<Mission>): Promise<boolean> {
     if (answer.ok) {
       this.stored = { id: answer.value.id, revision: answer.value.revision };
       this.#saved_plan = plan;
       this.refused = new Set();
       this.write_draft();
-      this.#notices.show('good', `Saved “${plan.name}”, revision ${answer.value.revision}.`);
+      this.#notices.show(
+        'good',
+        say('saved_name_revision_revision', { name: plan.name, revision: answer.value.revision }),
+      );
       return true;
     }
     const { refusal } = answer;
     if (refusal.status === 412) return this.#settle_conflict(plan, refusal.current ?? null);
     if (refusal.status === 404 && this.stored !== null) return this.#save_as_new(plan);
     this.refused = refused_items(refusal);
-    this.#notices.show('error', failure_text('saved', refusal));
+    this.#notices.show('error', failure_text(say('done_saved'), refusal));
     return false;
   }
 
   /** Somebody deleted it meanwhile: what is on the screen must not be lost. */
   async #save_as_new(plan: Plan): Promise<boolean> {
     this.stored = null;
-    this.#notices.show('warning', 'The stored mission was deleted; saving it as a new one.');
+    this.#notices.show('warning', say('the_stored_mission_was_deleted'));
     return this.#after_save(plan, await this.#calls.create(plan));
   }
 
@@ -157,15 +269,17 @@ export class Editor implements Drawing {
     if (stored === null) return false;
     const theirs = current ?? (await this.#read(stored.id));
     if (theirs === null) return false;
+    this.theirs = plan_of(theirs);
     const choice = await this.#dialogs.conflict(stored.revision, theirs);
+    this.theirs = null;
     switch (choice) {
       case 'theirs':
-        this.#adopt(theirs);
+        this.adopt(theirs);
         return false;
       case 'copy':
         return this.#after_save(
           plan,
-          await this.#calls.create({ ...plan, name: `${plan.name} (copy)` }),
+          await this.#calls.create({ ...plan, name: say('name_copy', { name: plan.name }) }),
         );
       case 'overwrite':
         this.stored = { id: theirs.id, revision: theirs.revision };
@@ -176,7 +290,11 @@ export class Editor implements Drawing {
   }
 
   /** Takes the stored state as one more step, so that undo brings one's own work back. */
-  #adopt(mission: Mission): void {
+  adopt(mission: Mission): void {
+    const { stored } = this;
+    // The stream may have told of it already: one change is one step.
+    const known = stored?.id === mission.id && stored.revision === mission.revision;
+    if (known && !this.unsaved) return;
     const plan = plan_of(mission);
     this.stored = { id: mission.id, revision: mission.revision };
     this.#saved_plan = plan;
@@ -197,12 +315,12 @@ export class Editor implements Drawing {
     if (revision === null) {
       this.stored = null;
       this.#saved_plan = null;
-      this.#notices.show('warning', 'The stored mission was deleted; this page still holds it.');
+      this.#notices.show('warning', say('the_stored_mission_was_deleted_this'));
     } else if (this.unsaved) {
-      this.#notices.show('warning', `Somebody saved revision ${revision} of this mission.`);
+      this.#notices.show('warning', say('somebody_saved_revision_revision_of', { revision }));
     } else {
       const mission = await this.#read(id);
-      if (mission && !this.unsaved) this.#adopt(mission);
+      if (mission && !this.unsaved) this.adopt(mission);
     }
   }
 
@@ -210,27 +328,50 @@ export class Editor implements Drawing {
   restore_draft(): boolean {
     const draft = parse_draft(this.#storage.read());
     if (draft === null || (draft.stored === null && draft.plan.items.length === 0)) return false;
-    this.#begin(draft.plan, draft.stored);
+    const { history, saved } = draft.steps
+      ? revived(draft.plan, draft.steps)
+      : { history: begin_history(draft.plan), saved: null };
+    this.history = history;
+    this.#saved_plan = draft.unsaved ? saved : draft.plan;
+    this.stored = draft.stored;
     this.adding = draft.plan.items.length === 0;
     if (draft.unsaved) {
-      this.#saved_plan = null;
-      this.#notices.show('info', `Restored your unsaved draft “${draft.plan.name}”.`);
+      this.#notices.show(
+        'info',
+        say('restored_your_unsaved_draft_name', { name: draft.plan.name }),
+      );
     }
     return true;
   }
 
   write_draft(): void {
     clearTimeout(this.#draft_timer);
-    this.#storage.write(
-      draft_text({ plan: this.plan, stored: this.stored, unsaved: this.unsaved }),
-    );
+    const draft = { plan: this.plan, stored: this.stored, unsaved: this.unsaved };
+    const steps = steps_of(this.history, this.#saved_plan);
+    // Where there is no room for what can be undone, the plan itself goes before.
+    if (!this.#storage.write(draft_text({ ...draft, steps }))) {
+      this.#storage.write(draft_text(draft));
+    }
   }
 
-  #begin(plan: Plan, stored: Stored | null): void {
-    this.history = begin_history(plan);
-    this.#saved_plan = plan;
+  /** Before another mission comes. */
+  #keep_edits(): void {
+    if (this.stored === null) return;
+    const left = edits_left(this.history, this.#saved_plan, this.stored);
+    if (left === null) return;
+    let past = with_past(parse_past(this.#past.read()), left);
+    // Where there is no room for all of them, the newest go before.
+    while (!this.#past.write(JSON.stringify(past)) && past.length > 0) {
+      past = past.slice(0, Math.floor(past.length / 2));
+    }
+  }
+
+  #begin(history: History<Plan>, stored: Stored | null): void {
+    this.history = history;
+    this.#saved_plan = history.present;
     this.stored = stored;
     this.selected = null;
+    this.picked = NOTHING_PICKED;
     this.refused = new Set();
     this.write_draft();
   }
@@ -242,6 +383,7 @@ export class Editor implements Drawing {
     if (this.selected !== null && this.selected >= history.present.items.length) {
       this.selected = null;
     }
+    this.picked = within(this.picked, history.present);
     clearTimeout(this.#draft_timer);
     this.#draft_timer = setTimeout(() => this.write_draft(), DRAFT_AFTER_MS);
   }

@@ -15,6 +15,7 @@ import { begin_history, perform, undo, type History } from '../model/history';
 import { plan_of_places, type Places } from '../model/outline';
 import type { LatLon, Plan } from '../model/plan';
 import type { FenceCalls, MapMode, PlanShape } from '../model/ports';
+import { say } from '../model/say';
 import type { Dialogs } from './dialogs.svelte';
 import { RingDrawing, type Drawing } from './drawing.svelte';
 import type { Notices } from './notices.svelte';
@@ -72,7 +73,7 @@ export class Fences extends RingDrawing implements Drawing {
   async open(id: string): Promise<readonly LatLon[]> {
     const answer = await this.#calls.read(id);
     if (!answer.ok) {
-      this.#complain('opened', answer.refusal);
+      this.#complain(say('done_opened'), answer.refusal);
       return [];
     }
     this.#show(answer.value, answer.value);
@@ -82,9 +83,9 @@ export class Fences extends RingDrawing implements Drawing {
   async close(): Promise<void> {
     if (this.unsaved) {
       const sure = await this.#dialogs.ask({
-        title: 'Discard unsaved changes?',
-        text: `“${this.draft?.name ?? ''}” has changes that are not saved.`,
-        yes: 'Discard',
+        title: say('discard_unsaved_changes'),
+        text: say('value_has_changes_that_are_not_saved', { value: this.draft?.name ?? '' }),
+        yes: say('discard'),
         danger: true,
       });
       if (!sure) return;
@@ -150,13 +151,13 @@ export class Fences extends RingDrawing implements Drawing {
     const { draft } = this;
     const stored = this.#stored;
     if (!draft) return;
-    await this.#do('saved', async () => {
+    await this.#do(say('done_saved'), async () => {
       const answer = stored
         ? await this.#calls.replace(stored.id, stored.revision, draft)
         : await this.#calls.create(draft);
       if (answer.ok) {
         this.#show(answer.value, answer.value);
-        this.#notices.show('good', `Saved the fence “${answer.value.name}”.`);
+        this.#notices.show('good', say('saved_the_fence_name', { name: answer.value.name }));
       }
       return answer;
     });
@@ -166,24 +167,31 @@ export class Fences extends RingDrawing implements Drawing {
   async use(fence: FenceSummary | null): Promise<void> {
     if (fence === null) {
       const sure = await this.#dialogs.ask({
-        title: 'Without a fence?',
-        text: 'Nothing keeps the robot inside any more.',
-        yes: 'Without a fence',
+        title: say('without_a_fence'),
+        text: say('nothing_keeps_the_robot_inside_any'),
+        yes: say('without_a_fence_2'),
         danger: true,
       });
       if (!sure) return;
     }
-    await this.#do('changed', () => this.#calls.activate(fence?.id ?? null));
+    await this.#do(say('done_changed'), () => this.#calls.activate(fence?.id ?? null));
+  }
+
+  /** One that came with a mission. @return whether the robot keeps to it now */
+  async use_imported(id: string): Promise<boolean> {
+    await this.#do(say('done_changed'), () => this.#calls.activate(id));
+    return this.active?.id === id;
   }
 
   async remove(fence: FenceSummary): Promise<void> {
     const sure = await this.#dialogs.ask({
-      title: 'Delete fence?',
-      text: `“${fence.name}” will be deleted.`,
-      yes: 'Delete',
+      title: say('delete_fence'),
+      text: say('name_will_be_deleted', { name: fence.name }),
+      yes: say('delete_it'),
       danger: true,
     });
-    if (sure) await this.#do('deleted', () => this.#calls.remove(fence.id, fence.revision));
+    if (sure)
+      await this.#do(say('done_deleted'), () => this.#calls.remove(fence.id, fence.revision));
   }
 
   get #circle(): boolean {

@@ -1,14 +1,17 @@
 // The gamepad of this device: looked at often while the page is seen, and told what became of it.
 
 import {
+  NO_HAND,
   PadHand,
   pad_kind,
+  speed_hand,
   use_of,
   why_not_pad,
   type PadDeed,
   type PadKind,
   type PadReading,
   type PadUse,
+  type SpeedHand,
 } from '../model/gamepad';
 import { device } from './device.svelte';
 
@@ -26,7 +29,10 @@ const copy = ({ id, mapping, axes, buttons }: PadReading): PadReading => ({
   id,
   mapping,
   axes: [...axes],
-  buttons: buttons.map(({ pressed }) => ({ pressed })),
+  buttons: buttons.map(({ pressed, value }) => ({
+    pressed,
+    ...(value === undefined ? {} : { value }),
+  })),
 });
 
 export class Gamepads {
@@ -35,6 +41,8 @@ export class Gamepads {
   kind = $derived<PadKind>(this.reading ? pad_kind(this.reading) : 'other');
   use = $derived<PadUse>(use_of(device.settings.gamepad, this.kind));
   why_not = $derived<string | null>(why_not_pad(this.use));
+  /** On the speed of AUTO. */
+  hand = $state.raw<SpeedHand>(NO_HAND);
   /** While its buttons are assigned it does not drive. */
   assigns = $state(false);
 
@@ -61,6 +69,7 @@ export class Gamepads {
   }
 
   lose_sight(): void {
+    this.#take_hand(NO_HAND);
     this.#tell(this.#hand.lose_sight());
   }
 
@@ -70,7 +79,13 @@ export class Gamepads {
     this.reading = found && copy(found);
     const given = this.assigns ? null : this.reading;
     const { bumpers } = device.settings.gamepad;
+    this.#take_hand(speed_hand(given, this.use, this.kind));
     this.#tell(this.#hand.take(given, this.use, bumpers, performance.now()));
+  }
+
+  #take_hand(hand: SpeedHand): void {
+    const same = hand.held === this.hand.held && hand.share === this.hand.share;
+    if (!same) this.hand = hand;
   }
 
   #tell(deed: PadDeed | null): void {

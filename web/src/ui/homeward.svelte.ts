@@ -6,6 +6,7 @@ import { bearing_deg } from '../model/geo';
 import { why_not_home, type WayHome } from '../model/homeward';
 import { why_not_choose } from '../model/modes';
 import type { Mark, VehicleCalls } from '../model/ports';
+import { say } from '../model/say';
 import { robot_place } from '../model/vehicle';
 import type { Live } from './live.svelte';
 
@@ -28,7 +29,7 @@ export class Homeward {
       : null,
   );
   why_not = $derived.by<string | null>(() => {
-    if (this.way === null) return this.failure ?? 'The robot has not said yet.';
+    if (this.way === null) return this.failure ?? say('the_robot_has_not_said_yet');
     const before = why_not_choose(this.#live.facts, this.mode ?? 'RTL');
     return before ?? why_not_home(this.way);
   });

@@ -3,19 +3,25 @@
 // something else unless Fn is held. Buttons are pressed with Enter. Esc closes what is
 // open, as everywhere: whoever wants to be rid of a question must not latch the stop.
 
+import { say } from '../model/say';
+import { all_of } from '../model/selection';
+import { toggle_map_up } from './map_up';
 import type { Station } from './station.svelte';
 
-export const key_words: readonly (readonly [keys: string, meaning: string])[] = [
-  ['Space, F8, Ctrl + Enter', 'Emergency stop, at once; while you type, the last two'],
-  ['Esc', 'Close the dialog, forget the chosen place, end showing or adding points'],
-  ['Enter', 'Press the button that has the focus'],
-  ['Ctrl + Z', 'Undo the last edit'],
-  ['Ctrl + Y, Ctrl + Shift + Z', 'Redo'],
-  ['Ctrl + S', 'Save the mission, the fence or the map'],
-  ['Delete', 'Delete the selected item or corner'],
-  ['F', 'Follow the robot'],
-  ['+ and −', 'Zoom'],
-  ['Arrows or W A S D', 'Drive, while the drive pad has the focus and a key is held'],
+export const key_words = (): readonly (readonly [keys: string, meaning: string])[] => [
+  [say('space_f8_ctrl_plus_enter'), say('emergency_stop_at_once_while_you')],
+  ['Esc', say('close_the_dialog_forget_the_chosen')],
+  ['Enter', say('press_the_button_that_has_the_focus')],
+  [say('ctrl_plus_z'), say('undo_the_last_edit')],
+  [say('ctrl_plus_y_ctrl_plus_shift_plus_z'), say('redo')],
+  [say('ctrl_plus_s'), say('save_the_mission_the_fence_or_the_map')],
+  [say('ctrl_plus_a'), say('select_all_items_esc_ends_selecting')],
+  ['Shift', say('while_held_taps_and_boxes_on_the_map')],
+  ['Delete', say('delete_what_is_selected')],
+  ['F', say('follow_the_robot')],
+  ['H', say('turn_the_map')],
+  ['+ and −', say('zoom')],
+  [say('arrows_or_w_a_s_d'), say('drive_while_the_drive_pad_has_the')],
 ];
 
 const TYPING = 'input:not([type=checkbox], [type=range], [type=file]), textarea, select';
@@ -32,7 +38,9 @@ const edit_key = (station: Station, event: KeyboardEvent): boolean => {
   else if (key === 's' && drawing === station.fences) void station.fences.save();
   else if (key === 's' && drawing === station.sites.editor) void station.sites.editor.save();
   else if (is_typing(event.target)) return false;
-  else if (key === 'z' && drawing !== null) drawing.undo();
+  else if (key === 'a' && drawing === null && station.tab === 'plan') {
+    editor.pick_only(all_of(editor.plan));
+  } else if (key === 'z' && drawing !== null) drawing.undo();
   else if (key === 'z' && event.shiftKey) editor.redo();
   else if (key === 'z') editor.undo();
   else if (key === 'y' && drawing === null) editor.redo();
@@ -47,6 +55,7 @@ const close_one = ({
   editor,
   tab,
   standing,
+  shaping,
   sites,
   drawing,
 }: Station): boolean => {
@@ -54,7 +63,8 @@ const close_one = ({
   else if (tab === 'drive' && standing.open) standing.clear();
   else if (drawing === sites.editor && sites.editor.part !== null) sites.editor.choose(null);
   else if (tab === 'drive' && target.at) target.clear();
-  else if (tab === 'plan' && editor.adding) editor.adding = false;
+  else if (tab === 'plan' && shaping.transform) shaping.cancel();
+  else if (tab === 'plan' && editor.tool !== 'edit') editor.choose_tool('edit');
   else return false;
   return true;
 };
@@ -69,6 +79,9 @@ const plain_key = (station: Station, event: KeyboardEvent): boolean => {
       return true;
     case 'f':
       station.set_follow(!station.follow);
+      return true;
+    case 'h':
+      toggle_map_up(station);
       return true;
     case '+':
       station.map.zoom_by(1);
@@ -97,7 +110,7 @@ export const listen_for_keys = (station: Station): (() => void) => {
     } else if (event.key === 'Escape') {
       if (close_one(station)) event.preventDefault();
       else if (station.live.vehicle?.armed && !event.repeat) {
-        station.notices.show('warning', 'Esc does not stop: Space, F8 or Ctrl + Enter does.');
+        station.notices.show('warning', say('esc_does_not_stop_space_f8_or_ctrl'));
       }
     } else if (edit_key(station, event) || plain_key(station, event)) {
       event.preventDefault();

@@ -3,11 +3,17 @@
 import { type Answer, failure_text, refusal_text, wants_origin } from '../model/answer';
 import type { LatLon } from '../model/plan';
 import type { CheckReport, Mission, MissionCalls, MissionSummary, Place } from '../model/ports';
+import { say } from '../model/say';
 import type { Dialogs } from './dialogs.svelte';
 import type { Editor } from './editor.svelte';
+import { ImportReport } from './import_report.svelte';
 import type { Notices } from './notices.svelte';
 
 const SEARCH_AFTER_MS = 250;
+/** Of a file, to see where that lies which was left out. */
+const READ_AGAIN_BYTES = 8_000_000;
+/** Of a file's missions, on the map beside its report. */
+const MISSIONS_SHOWN = 30;
 
 export class Library {
   items = $state.raw<readonly MissionSummary[]>([]);
@@ -101,33 +107,36 @@ export class Library {
 
   async remove(mission: MissionSummary): Promise<void> {
     const sure = await this.#dialogs.ask({
-      title: 'Delete mission?',
-      text: `“${mission.name}” with ${mission.items} items will be deleted.`,
-      yes: 'Delete',
+      title: say('delete_mission'),
+      text: say('name_with_items_items_will_be_deleted', {
+        name: mission.name,
+        items: mission.items,
+      }),
+      yes: say('delete_it'),
       danger: true,
     });
     if (!sure) return;
     const answer = await this.#calls.remove(mission.id, mission.revision);
-    if (answer.ok) this.#notices.show('good', `Deleted “${mission.name}”.`);
-    else this.#notices.show('error', failure_text('deleted', answer.refusal));
+    if (answer.ok) this.#notices.show('good', say('deleted_name', { name: mission.name }));
+    else this.#notices.show('error', failure_text(say('done_deleted'), answer.refusal));
     await this.refresh();
   }
 
   set_tags = (mission: MissionSummary, tags: readonly string[]): Promise<void> =>
-    this.#change('Tags not changed', () =>
+    this.#change(say('tags_not_changed'), () =>
       this.#calls.describe(mission.id, mission.revision, { tags }),
     );
 
   set_archived = (mission: MissionSummary, archived: boolean): Promise<void> =>
-    this.#change(archived ? 'Not archived' : 'Not brought back', () =>
+    this.#change(archived ? say('not_archived') : say('not_brought_back'), () =>
       this.#calls.describe(mission.id, mission.revision, { archived }),
     );
 
   restore = (mission: MissionSummary): Promise<void> =>
-    this.#change('Not brought back', () => this.#calls.restore(mission.id, mission.revision));
+    this.#change(say('not_brought_back'), () => this.#calls.restore(mission.id, mission.revision));
 
   copy = (mission: MissionSummary): Promise<void> =>
-    this.#change('Not copied', () => this.#calls.copy(mission.id));
+    this.#change(say('not_copied'), () => this.#calls.copy(mission.id));
 
   async #change(failed: string, call: () => Promise<Answer<Mission>>): Promise<void> {
     const answer = await call();
@@ -139,12 +148,25 @@ export class Library {
   async check(id: string, revision: number, name: string): Promise<void> {
     const answer = await this.#calls.check(id, revision);
     if (answer.ok) this.#dialogs.show({ kind: 'check', name, report: answer.value });
-    else this.#notices.show('error', `Not checked: ${refusal_text(answer.refusal)}`);
+    else
+      this.#notices.show(
+        'error',
+        say('not_checked_refusal', { refusal: refusal_text(answer.refusal) }),
+      );
   }
 
   /** The same, for whoever shows it himself. */
   check_report(id: string, revision: number): Promise<Answer<CheckReport>> {
     return this.#calls.check(id, revision);
+  }
+
+  /** One after the other: each report is read before the next file comes.
+   * @param shown hears that one of them is in the editor */
+  async import_files(files: readonly File[], shown: () => void): Promise<void> {
+    for (const file of files) {
+      if (await this.import_file(file)) shown();
+      await this.#dialogs.gone();
+    }
   }
 
   /** @return whether the imported mission is now in the editor */
@@ -154,9 +176,9 @@ export class Library {
     const origin = this.#origin();
     if (!answer.ok && origin && wants_origin(answer.refusal)) {
       const here = await this.#dialogs.ask({
-        title: 'Where does it begin?',
-        text: `“${file.name}” counts metres from an origin that it does not tell. Take the robot’s home for it?`,
-        yes: 'Take home',
+        title: say('where_does_it_begin'),
+        text: say('name_counts_metres_from_an_origin', { name: file.name }),
+        yes: say('take_home'),
         danger: false,
       });
       if (!here) return false;
@@ -164,13 +186,25 @@ export class Library {
     }
     if (!answer.ok) {
       const text = refusal_text(answer.refusal);
-      this.#notices.show('error', `“${file.name}” was not imported: ${text}`);
+      this.#notices.show('error', say('name_was_not_imported_text', { name: file.name, text }));
       return false;
     }
     const { mission } = answer.value;
     if (mission) this.#editor.show_mission(mission);
-    this.#dialogs.show({ kind: 'report', file: file.name, result: answer.value });
+    const text = file.size <= READ_AGAIN_BYTES ? await file.text() : null;
+    const report = new ImportReport(file.name, answer.value, text);
+    this.#dialogs.show({ kind: 'report', report });
+    void this.#fetch_others(report);
     await this.refresh();
     return mission !== null;
+  }
+
+  /** The first mission of the file came with the report. */
+  async #fetch_others(report: ImportReport): Promise<void> {
+    for (const [k, { id }] of report.result.missions.slice(0, MISSIONS_SHOWN).entries()) {
+      if (k === 0) continue;
+      const answer = await this.#calls.read(id);
+      if (answer.ok) report.take_plan(k + 1, answer.value);
+    }
   }
 }

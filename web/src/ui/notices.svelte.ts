@@ -1,5 +1,6 @@
 // Short messages to the person, and the log of what happened.
 
+import { title_before } from '../model/news';
 import { event_key, worth_a_word, type StationEvent } from '../model/vehicle';
 
 export type Level = 'info' | 'good' | 'warning' | 'error';
@@ -33,10 +34,15 @@ export class Notices {
     this.shown = this.shown.filter((notice) => notice.id !== id);
   }
 
-  /** An event just happened: into the log, and on the screen. */
-  event(event: StationEvent): void {
-    if (this.#enter([event]) === 0 || !worth_a_word(event)) return;
-    this.show(event.level === 'error' ? 'warning' : event.level, event.detail);
+  /** An event just happened: into the log, and on the screen. @return false: it was known */
+  event(event: StationEvent): boolean {
+    if (this.#enter([event]) === 0) return false;
+    if (worth_a_word(event)) {
+      const title = title_before(event.kind);
+      const text = title === null ? event.detail : `${title}: ${event.detail}`;
+      this.show(event.level === 'error' ? 'warning' : event.level, text);
+    }
+    return true;
   }
 
   /** Events from before this page looked. */

@@ -11,6 +11,7 @@ import {
   type ParameterCalls,
   type ParameterValue,
 } from '../model/parameters';
+import { say } from '../model/say';
 
 export class Parameters {
   all = $state.raw<readonly Parameter[]>([]);
@@ -40,7 +41,7 @@ export class Parameters {
   async change(one: Parameter, text: string): Promise<boolean> {
     const value = typed(one, text);
     if (value.ok) return this.#set(one.name, value.value);
-    this.#say(one.name, `Not changed: it ${value.why}.`);
+    this.#say(one.name, say('not_changed_it_why', { why: value.why }));
     return false;
   }
 
@@ -74,12 +75,15 @@ export class Parameters {
   async #set(name: string, value: ParameterValue): Promise<boolean> {
     const answer = await this.#calls.set(name, value);
     if (!answer.ok) {
-      this.#say(name, failure_text('changed', answer.refusal));
+      this.#say(name, failure_text(say('done_changed'), answer.refusal));
       return false;
     }
     const { acted, waits_for, ...now } = answer.value;
     this.all = this.all.map((one) => (one.name === name ? { ...one, ...now } : one));
-    this.#say(name, acted ? 'It acts now.' : (waits_for ?? 'Kept: it acts at the next start.'));
+    this.#say(
+      name,
+      acted ? say('it_acts_now') : (waits_for ?? say('kept_it_acts_at_the_next_start')),
+    );
     return true;
   }
 

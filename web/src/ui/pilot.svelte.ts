@@ -4,10 +4,12 @@
 
 import type { Answer, Refusal } from '../model/answer';
 import type { CircleGoal, StayGoal } from '../model/circle';
+import type { SendDrive, SendThrottle } from '../model/drive';
 import type { Halt } from '../model/halt';
 import { CLICK_LIFE_S, outcome, type Outcome, type Wish } from '../model/outcome';
 import type { LatLon } from '../model/plan';
-import type { Goal, LiveLink, SendDrive, StartFrom, VehicleCalls } from '../model/ports';
+import type { Goal, LiveLink, StartFrom, VehicleCalls } from '../model/ports';
+import { say } from '../model/say';
 import type { StandingPose } from '../model/site_map';
 import type { Mode, StationEvent, Vehicle } from '../model/vehicle';
 import type { Dialogs } from './dialogs.svelte';
@@ -36,7 +38,11 @@ export class Pilot {
   doubt = $state.raw<Doubt | null>(null);
 
   readonly halts: Halts;
+  /** AUTO wants a hand on the gamepad, and has none: why. */
+  no_hand = $state<string | null>(null);
+
   readonly send_drive: SendDrive;
+  readonly send_throttle: SendThrottle;
   readonly #calls: VehicleCalls;
   readonly #link: LiveLink;
   readonly #live: Live;
@@ -47,6 +53,7 @@ export class Pilot {
     this.#calls = calls;
     this.#link = link;
     this.send_drive = link.send_drive;
+    this.send_throttle = link.send_throttle;
     this.#live = live;
     this.#notices = notices;
     this.#dialogs = dialogs;
@@ -61,70 +68,74 @@ export class Pilot {
   /** At once and without a question. */
   estop = (): void => this.halt('estop');
 
-  arm = (): Promise<boolean> => this.#do('Arm', { to: 'arm' }, () => this.#calls.arm());
-  go_on = (): Promise<boolean> => this.#do('Go on', { to: 'go_on' }, () => this.#calls.go_on());
-  resume = (): Promise<boolean> => this.#do('Resume', { to: 'run' }, () => this.#calls.resume());
-  skip = (): Promise<boolean> => this.#do('Skip', { to: 'skip' }, () => this.#calls.skip());
+  arm = (): Promise<boolean> => this.#do(say('arm'), { to: 'arm' }, () => this.#calls.arm());
+  go_on = (): Promise<boolean> =>
+    this.#do(say('go_on'), { to: 'go_on' }, () => this.#calls.go_on());
+  resume = (): Promise<boolean> =>
+    this.#do(say('resume'), { to: 'run' }, () => this.#calls.resume());
+  skip = (): Promise<boolean> => this.#do(say('skip'), { to: 'skip' }, () => this.#calls.skip());
   go_to = (goal: Goal): Promise<boolean> =>
-    this.#do('Go here', { to: 'do', kinds: ['goto'] }, () => this.#calls.go_to(goal));
+    this.#do(say('go_here'), { to: 'do', kinds: ['goto'] }, () => this.#calls.go_to(goal));
   dock = (goal: Goal & { readonly heading_deg: number }): Promise<boolean> =>
-    this.#do('Dock here', { to: 'mode', mode: 'DOCK' }, () => this.#calls.dock(goal));
+    this.#do(say('dock_here'), { to: 'mode', mode: 'DOCK' }, () => this.#calls.dock(goal));
   loiter = (goal: StayGoal): Promise<boolean> =>
-    this.#do('Stay here', { to: 'mode', mode: 'LOITER' }, () => this.#calls.loiter(goal));
+    this.#do(say('stay_here'), { to: 'mode', mode: 'LOITER' }, () => this.#calls.loiter(goal));
   circle = (goal: CircleGoal): Promise<boolean> =>
-    this.#do('Circle here', { to: 'mode', mode: 'CIRCLE' }, () => this.#calls.circle(goal));
+    this.#do(say('circle_here'), { to: 'mode', mode: 'CIRCLE' }, () => this.#calls.circle(goal));
   move = (forward_m: number): Promise<boolean> =>
-    this.#do('Move', { to: 'do', kinds: ['move'] }, () => this.#calls.move(forward_m));
+    this.#do(say('move'), { to: 'do', kinds: ['move'] }, () => this.#calls.move(forward_m));
   turn = (turn_deg: number): Promise<boolean> =>
-    this.#do('Turn', { to: 'do', kinds: ['turn'] }, () => this.#calls.turn(turn_deg));
+    this.#do(say('turn'), { to: 'do', kinds: ['turn'] }, () => this.#calls.turn(turn_deg));
   set_home = (at: LatLon): Promise<boolean> =>
-    this.#do('Home here', { to: 'home', at }, () => this.#calls.set_home(at));
+    this.#do(say('home_here'), { to: 'home', at }, () => this.#calls.set_home(at));
   stand_at = (pose: StandingPose): Promise<boolean> =>
-    this.#do('I am here', { to: 'stand', at: pose }, () => this.#calls.stand_at(pose));
+    this.#do(say('i_am_here'), { to: 'stand', at: pose }, () => this.#calls.stand_at(pose));
   load = (id: string, revision: number): Promise<boolean> =>
-    this.#do('Load', { to: 'load', id, revision }, () => this.#calls.load(id, revision));
+    this.#do(say('load'), { to: 'load', id, revision }, () => this.#calls.load(id, revision));
 
   async set_mode(mode: Mode): Promise<boolean> {
     if (mode === 'HOLD') {
       this.hold();
       return true;
     }
-    return this.#do(`Mode ${mode}`, { to: 'mode', mode }, () => this.#calls.set_mode(mode));
+    return this.#do(say('mode_mode', { mode }), { to: 'mode', mode }, () =>
+      this.#calls.set_mode(mode),
+    );
   }
 
   async reset_estop(): Promise<void> {
     const sure = await this.#dialogs.ask({
-      title: 'Reset the emergency stop?',
-      text: 'The robot can be armed and driven again. Is the area around it clear?',
-      yes: 'Reset',
+      title: say('reset_the_emergency_stop'),
+      text: say('the_robot_can_be_armed_and_driven'),
+      yes: say('reset'),
       danger: true,
     });
-    if (sure) await this.#do('Reset', { to: 'reset' }, () => this.#calls.reset_estop());
+    if (sure) await this.#do(say('reset'), { to: 'reset' }, () => this.#calls.reset_estop());
   }
 
   async acknowledge(): Promise<void> {
     const sure = await this.#dialogs.ask({
-      title: 'Does the robot stand where the map shows it?',
-      text: 'It set its position anew, far from where it claimed to be. Look at the robot and at the map: after this it may drive by itself again.',
-      yes: 'I have looked',
+      title: say('does_the_robot_stand_where_the_map'),
+      text: say('it_set_its_position_anew_far_from'),
+      yes: say('i_have_looked'),
       danger: true,
     });
     if (sure)
-      await this.#do('I have looked', { to: 'acknowledge' }, () => this.#calls.acknowledge());
+      await this.#do(say('i_have_looked'), { to: 'acknowledge' }, () => this.#calls.acknowledge());
   }
 
   async settle_shift(keep: boolean): Promise<void> {
     const sure = await this.#dialogs.ask({
-      title: keep ? 'Keep the old place?' : 'Take the new place?',
+      title: keep ? say('keep_the_old_place') : say('take_the_new_place'),
       text: keep
-        ? 'The robot stands where the map shows it, and the receiver is corrected by as much as it moved: for a base that was set up anew. Look at the robot and at the map.'
-        : 'The robot is moved on the map to where the receiver says: for a robot that was carried, or a base that stood wrong before. Routes and fence stay where they are.',
-      yes: keep ? 'Keep' : 'Take',
+        ? say('the_robot_stands_where_the_map_shows')
+        : say('the_robot_is_moved_on_the_map_to'),
+      yes: keep ? say('keep') : say('take'),
       danger: true,
     });
     if (sure)
       await this.#do(
-        keep ? 'Keep the old place' : 'Take the new place',
+        keep ? say('keep_the_old_place_2') : say('take_the_new_place_2'),
         { to: 'settle_shift' },
         () => this.#calls.settle_shift(keep),
       );
@@ -132,36 +143,39 @@ export class Pilot {
 
   async correct_antennas(): Promise<void> {
     const sure = await this.#dialogs.ask({
-      title: 'Are the two antennas mounted askew?',
-      text: 'What was measured is taken from their heading until the program starts anew. The setting drivers.gnss.heading_offset_deg keeps it for good.',
-      yes: 'Correct them',
+      title: say('are_the_two_antennas_mounted_askew'),
+      text: say('what_was_measured_is_taken_from'),
+      yes: say('correct_them'),
       danger: true,
     });
     if (sure)
-      await this.#do('Correct antennas', { to: 'correct_antennas' }, () =>
+      await this.#do(say('correct_antennas'), { to: 'correct_antennas' }, () =>
         this.#calls.correct_antennas(),
       );
   }
 
   /** Asks the robot what a start would do, and shows it. Nothing moves. */
   async preview(from: StartFrom): Promise<void> {
-    await this.#one('Start', async () => {
+    await this.#one(say('start'), async () => {
       const answer = await this.#calls.preview(from);
       if (answer.ok) this.#dialogs.show({ kind: 'start', preview: answer.value, from });
-      else this.refused = { what: 'Start', refusal: answer.refusal };
+      else this.refused = { what: say('start'), refusal: answer.refusal };
       return answer.ok;
     });
   }
 
   async start(id: string, revision: number, from: StartFrom): Promise<void> {
     this.#dialogs.close();
-    await this.#do('Start', { to: 'run' }, () => this.#calls.start(id, revision, from));
+    await this.#do(say('start'), { to: 'run' }, () => this.#calls.start(id, revision, from));
   }
 
   /** One command at a time; another one is not sent, and not in silence. */
   async #one(what: string, run: () => Promise<boolean>): Promise<boolean> {
     if (this.busy !== null) {
-      this.#notices.show('warning', `${what} was not sent: “${this.busy}” still waits.`);
+      this.#notices.show(
+        'warning',
+        say('what_was_not_sent_busy_still_waits', { what, busy: this.busy }),
+      );
       return false;
     }
     this.busy = what;

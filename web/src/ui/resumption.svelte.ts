@@ -3,6 +3,7 @@
 import { failure_text } from '../model/answer';
 import { count } from '../model/format';
 import type { LeftBehind, VehicleCalls } from '../model/ports';
+import { say } from '../model/say';
 import type { Dialogs } from './dialogs.svelte';
 import type { Notices } from './notices.svelte';
 import type { Pilot } from './pilot.svelte';
@@ -37,16 +38,21 @@ export class Resumption {
     const left = this.left_behind;
     if (!left || this.busy) return;
     const sure = await this.#dialogs.ask({
-      title: 'Forget where it was?',
-      text: `“${left.name}” stays stored, with ${count(left.items, 'item')}. The robot forgets that it stood at item ${left.item ?? '—'}.`,
-      yes: 'Forget it',
+      title: say('forget_where_it_was'),
+      text: say('name_stays_stored_with_items_the', {
+        name: left.name,
+        items: count(left.items, 'item'),
+        item: left.item ?? '—',
+      }),
+      yes: say('forget_it'),
       danger: false,
     });
     if (!sure) return;
     this.busy = true;
     const answer = await this.#calls.forget_left_behind();
     this.busy = false;
-    if (!answer.ok) this.#notices.show('error', failure_text('forgotten', answer.refusal));
+    if (!answer.ok)
+      this.#notices.show('error', failure_text(say('done_forgotten'), answer.refusal));
     await this.refresh();
   }
 }

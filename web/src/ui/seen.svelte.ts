@@ -1,5 +1,7 @@
 // What the robot sees: which layers are shown, the newest of each, and the sensors' health.
 
+import { untrack } from 'svelte';
+
 import { refusal_text } from '../model/answer';
 import { obstacle_place, sound_of } from '../model/obstacle';
 import type { DraftStorage } from '../model/ports';
@@ -21,8 +23,9 @@ import {
 } from '../model/seen';
 import { sweep_of, type Sweep } from '../model/sweep';
 import { robot_place } from '../model/vehicle';
+import { again_and_again } from './again_and_again';
 import type { Live } from './live.svelte';
-import { Speaker } from './sound';
+import { speaker } from './sound';
 
 const RENEWED_MS = 2000;
 /** Older than this it is not shown: what was there may be gone. */
@@ -36,15 +39,17 @@ export class Seen {
   #scan = $state.raw<SeenScan | null>(null);
   #things = $state.raw<readonly SeenThing[]>([]);
   #came_ms = $state(-Infinity);
+  /** How many cards show what each sensor sees. */
+  #lookers = $state(0);
 
-  readonly #calls: SeenCalls;
+  /** For what a card asks itself, while it is open. */
+  readonly calls: SeenCalls;
   readonly #link: SeenLink;
   readonly #live: Live;
   readonly #storage: DraftStorage;
-  readonly #speaker = new Speaker();
 
   constructor(calls: SeenCalls, link: SeenLink, live: Live, storage: DraftStorage) {
-    this.#calls = calls;
+    this.calls = calls;
     this.#link = link;
     this.#live = live;
     this.#storage = storage;
@@ -93,38 +98,41 @@ export class Seen {
 
   /** Asks the stream for what is shown, and for no more. */
   follow_layers(): void {
-    this.#link.watch(this.has ? rates_of(this.layers) : {});
+    const scan = this.layers.scan || this.#lookers > 0;
+    this.#link.watch(this.has ? rates_of({ ...this.layers, scan }) : {});
     if (!this.layers.grid) this.#grid = null;
-    if (!this.layers.scan) this.#scan = null;
+    if (!scan) this.#scan = null;
+  }
+
+  /** What each sensor sees now, also where it is not drawn on the map; null: nothing that is new. */
+  scan = $derived.by<SeenScan | null>(() => (this.#fresh ? this.#scan : null));
+
+  /** As long as a card shows it. @return ends it */
+  look_at_sensors(): () => void {
+    untrack(() => (this.#lookers += 1));
+    return () => (this.#lookers -= 1);
   }
 
   on_event(kind: string): void {
     const sound = sound_of(kind);
-    if (sound && this.layers.sound) this.#speaker.play(sound);
+    if (sound && this.layers.sound) speaker.play(sound);
     if (this.has && changes_guard(kind)) void this.#reckon_anew();
   }
 
   async #reckon_anew(): Promise<void> {
-    const answer = await this.#calls.capabilities();
+    const answer = await this.calls.capabilities();
     if (answer.ok) this.#live.capabilities = answer.value;
   }
 
   /** Asks for the sensors' health now and then. @return ends it */
   watch(): () => void {
-    let waiting: ReturnType<typeof setTimeout> | undefined;
-    let over = false;
-    const again = async (): Promise<void> => {
-      const answer = await this.#calls.sensors();
-      if (over) return;
-      this.failure = answer.ok ? null : refusal_text(answer.refusal);
-      if (answer.ok) this.sensors = answer.value.items;
-      waiting = setTimeout(() => void again(), RENEWED_MS);
-    };
-    void again();
-    return () => {
-      over = true;
-      clearTimeout(waiting);
-    };
+    return again_and_again(async () => {
+      const answer = await this.calls.sensors();
+      return () => {
+        this.failure = answer.ok ? null : refusal_text(answer.refusal);
+        if (answer.ok) this.sensors = answer.value.items;
+      };
+    }, RENEWED_MS);
   }
 
   #sweep(): Sweep | null {

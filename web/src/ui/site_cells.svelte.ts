@@ -2,6 +2,7 @@
 // and after a failure not at once again.
 
 import { refusal_text } from '../model/answer';
+import { say } from '../model/say';
 import type { SiteMap, SiteMapCalls, TaggedCells } from '../model/site_map';
 
 /** Of the map in use and of the one that is edited. */
@@ -68,7 +69,7 @@ export class SiteCells {
     if (this.#call !== call) return; // another one is looked at by now
     this.#call = null;
     if (!answer.ok) {
-      this.failure = `The map is not drawn: ${refusal_text(answer.refusal)}`;
+      this.failure = say('the_map_is_not_drawn_refusal', { refusal: refusal_text(answer.refusal) });
       this.#failed = { id, revision, due_ms: this.#now_ms() + this.#again_ms };
       this.#again_ms = Math.min(2 * this.#again_ms, AT_LAST_MS);
       return;

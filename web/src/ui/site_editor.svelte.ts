@@ -5,6 +5,7 @@ import { begin_history, perform, undo, type History } from '../model/history';
 import { plan_of_places, type Places } from '../model/outline';
 import type { LatLon, Plan } from '../model/plan';
 import type { MapMode } from '../model/ports';
+import { say } from '../model/say';
 import type { Placed } from '../model/seen';
 import {
   add_edit,
@@ -68,7 +69,7 @@ export class SiteEditor extends RingDrawing implements Drawing {
   open(map: SiteMap): void {
     const at = place_of_map(map, this.#shelf.here);
     if (!at) {
-      this.#notices.show('warning', 'Neither the map nor the robot has a place on the earth yet.');
+      this.#notices.show('warning', say('neither_the_map_nor_the_robot_has_a'));
       return;
     }
     this.at = at;
@@ -80,9 +81,9 @@ export class SiteEditor extends RingDrawing implements Drawing {
   async close(): Promise<void> {
     if (this.map && changes_map(this.draft, this.map)) {
       const sure = await this.#dialogs.ask({
-        title: 'Discard what was drawn?',
-        text: `The changes of “${this.map?.name ?? ''}” are not saved.`,
-        yes: 'Discard',
+        title: say('discard_what_was_drawn'),
+        text: say('the_changes_of_value_are_not_saved', { value: this.map?.name ?? '' }),
+        yes: say('discard'),
         danger: true,
       });
       if (!sure) return;
@@ -127,11 +128,14 @@ export class SiteEditor extends RingDrawing implements Drawing {
     const answer = await this.#calls.change(map.id, change);
     this.busy = false;
     if (!answer.ok) {
-      this.#notices.show('error', `The map: ${failure_text('saved', answer.refusal)}`);
+      this.#notices.show(
+        'error',
+        say('the_map_refusal', { refusal: failure_text(say('done_saved'), answer.refusal) }),
+      );
       if (answer.refusal.status === 409 && change.revision) await this.#see_anew(map.id);
       return;
     }
-    this.#notices.show('good', `Saved the map “${answer.value.name}”.`);
+    this.#notices.show('good', say('saved_the_map_name', { name: answer.value.name }));
     // Meanwhile the editor may have been closed, or more been drawn.
     if (this.map?.id === map.id && this.at) this.#go_on(answer.value, sent);
     await this.#shelf.refresh();

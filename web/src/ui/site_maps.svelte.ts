@@ -4,6 +4,7 @@ import { untrack } from 'svelte';
 
 import { failure_text, refusal_text, type Answer } from '../model/answer';
 import type { LatLon } from '../model/plan';
+import { say } from '../model/say';
 import {
   pair_of,
   place_of_map,
@@ -131,15 +132,17 @@ export class SiteMaps {
 
   async #send(pair: MapFiles): Promise<void> {
     if (this.sending) {
-      this.#notices.show('warning', `“${this.sending.name}” is still being sent.`);
+      this.#notices.show('warning', say('name_is_still_being_sent', { name: this.sending.name }));
       return;
     }
     const name = pair.yaml.name.replace(/\.ya?ml$/i, '');
     this.sending = { name, share: 0 };
     const answer = await this.#calls.add(pair, name, (share) => (this.sending = { name, share }));
     this.sending = null;
-    if (answer.ok) this.#notices.show('good', `The map “${answer.value.name}” is stored.`);
-    else this.#notices.show('error', `“${name}”: ${failure_text('stored', answer.refusal)}`);
+    if (answer.ok)
+      this.#notices.show('good', say('the_map_name_is_stored', { name: answer.value.name }));
+    else
+      this.#notices.show('error', `“${name}”: ${failure_text(say('done_stored'), answer.refusal)}`);
     await this.refresh();
   }
 
@@ -148,74 +151,84 @@ export class SiteMaps {
     const wanted = name.trim();
     if (wanted === map.name) return true;
     if (wanted === '') return false;
-    return this.#do('renamed', () => this.#calls.change(map.id, { name: wanted }));
+    return this.#do(say('done_renamed'), () => this.#calls.change(map.id, { name: wanted }));
   }
 
   /** @param anchor null: nobody knows where it lies */
   async lay(map: SiteMap, anchor: MapAnchor | null): Promise<void> {
-    await this.#do('laid there', () => this.#calls.change(map.id, { anchor }));
+    await this.#do(say('laid_there'), () => this.#calls.change(map.id, { anchor }));
   }
 
   async remove(map: SiteMap): Promise<void> {
     const sure = await this.#dialogs.ask({
-      title: 'Delete the map?',
-      text: `“${map.name}” goes for good, with what was changed in it by hand.`,
-      yes: 'Delete',
+      title: say('delete_the_map'),
+      text: say('name_goes_for_good_with_what_was', { name: map.name }),
+      yes: say('delete_it'),
       danger: true,
     });
-    if (sure) await this.#do('deleted', () => this.#calls.remove(map.id));
+    if (sure) await this.#do(say('done_deleted'), () => this.#calls.remove(map.id));
   }
 
   /** @param map null: none */
   async use(map: SiteMap | null): Promise<void> {
     if (map === null) {
       const sure = await this.#dialogs.ask({
-        title: 'Without a map?',
-        text: 'The robot no longer finds its place by what it sees: without satellites it soon does not know where it is.',
-        yes: 'Without a map',
+        title: say('without_a_map'),
+        text: say('the_robot_no_longer_finds_its_place'),
+        yes: say('without_a_map_2'),
         danger: true,
       });
       if (!sure) return;
     }
-    await this.#do(map ? 'taken into use' : 'put away', () => this.#calls.use(map?.id ?? null));
+    await this.#do(map ? say('taken_into_use') : say('put_away'), () =>
+      this.#calls.use(map?.id ?? null),
+    );
   }
 
   async start_making(): Promise<void> {
-    await this.#do('begun', () => this.#calls.start_making());
+    await this.#do(say('done_begun'), () => this.#calls.start_making());
   }
 
   /** @return whether it is kept */
   async finish_making(name: string): Promise<boolean> {
     let kept: SiteMap | null = null;
-    await this.#do('kept', async () => {
+    await this.#do(say('done_kept'), async () => {
       const answer = await this.#calls.finish_making(name);
       if (answer.ok) kept = answer.value;
       return answer;
     });
-    if (kept) this.#notices.show('good', `The map “${(kept as SiteMap).name}” is stored.`);
+    if (kept)
+      this.#notices.show('good', say('the_map_name_is_stored', { name: (kept as SiteMap).name }));
     return kept !== null;
   }
 
   async drop_making(): Promise<void> {
     const sure = await this.#dialogs.ask({
-      title: 'Drop what was driven?',
-      text: 'What the scanner saw on this drive becomes no map.',
-      yes: 'Drop it',
+      title: say('drop_what_was_driven'),
+      text: say('what_the_scanner_saw_on_this_drive'),
+      yes: say('drop_it'),
       danger: true,
     });
-    if (sure) await this.#do('dropped', () => this.#calls.drop_making());
+    if (sure) await this.#do(say('done_dropped'), () => this.#calls.drop_making());
   }
 
   /** One at a time; another one is not done, and not in silence. */
   async #do(done: string, call: () => Promise<Answer<unknown>>): Promise<boolean> {
     if (this.busy !== null) {
-      this.#notices.show('warning', `The map was not ${done}: one is still being ${this.busy}.`);
+      this.#notices.show(
+        'warning',
+        say('the_map_was_not_done_one_is_still', { done, busy: this.busy }),
+      );
       return false;
     }
     this.busy = done;
     const answer = await call();
     this.busy = null;
-    if (!answer.ok) this.#notices.show('error', `The map: ${failure_text(done, answer.refusal)}`);
+    if (!answer.ok)
+      this.#notices.show(
+        'error',
+        say('the_map_done', { done: failure_text(done, answer.refusal) }),
+      );
     await this.refresh();
     return answer.ok;
   }

@@ -3,6 +3,7 @@
 import { refusal_text } from '../model/answer';
 import type { VehicleCalls } from '../model/ports';
 import type { ReceiverSky } from '../model/sky';
+import { again_and_again } from './again_and_again';
 
 const RENEWED_MS = 2000;
 
@@ -18,18 +19,12 @@ export class Sky {
 
   /** Asks now and then. @return ends it */
   watch(): () => void {
-    let waiting: ReturnType<typeof setTimeout> | undefined;
-    let over = false;
-    const again = async (): Promise<void> => {
+    return again_and_again(async () => {
       const answer = await this.#calls.satellites();
-      this.failure = answer.ok ? null : refusal_text(answer.refusal);
-      if (answer.ok) this.receivers = answer.value.receivers;
-      if (!over) waiting = setTimeout(() => void again(), RENEWED_MS);
-    };
-    void again();
-    return () => {
-      over = true;
-      clearTimeout(waiting);
-    };
+      return () => {
+        this.failure = answer.ok ? null : refusal_text(answer.refusal);
+        if (answer.ok) this.receivers = answer.value.receivers;
+      };
+    }, RENEWED_MS);
   }
 }

@@ -1,6 +1,7 @@
 // The places where the robot slipped: read while they are shown on the map.
 
 import { refusal_text } from '../model/answer';
+import { say } from '../model/say';
 import type { Slip, SlipCalls } from '../model/slips';
 import type { Dialogs } from './dialogs.svelte';
 
@@ -41,9 +42,9 @@ export class Slips {
 
   async forget(): Promise<void> {
     const sure = await this.#dialogs.ask({
-      title: 'Forget where it slipped?',
-      text: `${this.items.length} places go for good, for everybody.`,
-      yes: 'Forget them',
+      title: say('forget_where_it_slipped'),
+      text: say('items_places_go_for_good_for_everybody', { items: this.items.length }),
+      yes: say('forget_them'),
       danger: true,
     });
     if (!sure) return;

@@ -1,10 +1,14 @@
-// Sounds of the page's own: a stop before something, the way free again, and blocked for good. Browsers
-// let a page sound only after somebody touched it: then and not before.
+// Sounds of the page's own: a stop before something, the way free again, blocked for good, and what
+// happens to the mission. Browsers let a page sound only after somebody touched it: then and not before.
 
+import { cue_of, notes_of, vibration_of, type Cue, type CueSettings } from '../model/cues';
+import { sentence } from '../model/format';
 import type { Sound } from '../model/obstacle';
+import type { StationEvent } from '../model/vehicle';
 
 /** Hz and seconds, one note after the other. */
-const notes: Readonly<Record<Sound, readonly (readonly [hz: number, s: number])[]>> = {
+const notes: Readonly<Record<Sound | Cue, readonly (readonly [hz: number, s: number])[]>> = {
+  ...notes_of,
   stopped: [
     [660, 0.12],
     [440, 0.22],
@@ -37,7 +41,7 @@ export class Speaker {
     window.addEventListener('keydown', wake);
   }
 
-  play(sound: Sound): void {
+  play(sound: Sound | Cue): void {
     const context = this.#context;
     if (!context) return;
     void context.resume();
@@ -55,4 +59,21 @@ export class Speaker {
       at += seconds + GAP_S;
     }
   }
+
+  /** What happened is heard, felt and read aloud, as this device is set. */
+  tell(event: StationEvent, { sound, vibration, speech }: CueSettings): void {
+    const cue = cue_of(event);
+    if (cue === null) return;
+    if (sound) this.play(cue);
+    // A device without a motor, or a page that nobody has touched yet, says no.
+    if (vibration && 'vibrate' in navigator) navigator.vibrate([...vibration_of[cue]]);
+    if (speech && 'speechSynthesis' in window) {
+      const words = new SpeechSynthesisUtterance(sentence(event.detail));
+      words.lang = 'en';
+      window.speechSynthesis.speak(words);
+    }
+  }
 }
+
+/** One for the whole page. */
+export const speaker = new Speaker();

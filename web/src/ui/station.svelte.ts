@@ -1,81 +1,60 @@
 // The whole station in one value: what the panels share, and the effects that keep the map in step.
 
-import { tick, untrack } from 'svelte';
+import { untrack } from 'svelte';
 
 import { refusal_text } from '../model/answer';
+import type { Found } from '../model/makings';
 import { activity_mark } from '../model/modes';
-import { EMPTY_PLAN, spots } from '../model/plan';
-import type {
-  DraftStorage,
-  DrillCalls,
-  FenceCalls,
-  ImportedArea,
-  LiveLink,
-  MapCalls,
-  MapEvents,
-  MissionCalls,
-  RunCalls,
-  StreamEvents,
-  SurveyCalls,
-  TeachCalls,
-  VehicleCalls,
-} from '../model/ports';
-import type { SeenCalls } from '../model/seen';
-import type { SiteMapCalls } from '../model/site_map';
-import type { SlipCalls } from '../model/slips';
-import { field_places } from '../model/survey';
+import { EMPTY_PLAN, spots, type LatLon } from '../model/plan';
+import type { ImportedArea, MapCalls, MapEvents, StreamEvents } from '../model/ports';
+import { field_rings } from '../model/survey';
 import { robot_place, type Check } from '../model/vehicle';
+import { Beneath } from './beneath.svelte';
 import { Calibrator } from './calibrator.svelte';
+import { device } from './device.svelte';
 import { Dialogs } from './dialogs.svelte';
+import type { Doors } from './doors';
+import { drawn_in } from './drawn';
 import { Drills, type DrillSubject } from './drill.svelte';
 import type { Drawing } from './drawing.svelte';
 import { Drivers } from './drivers.svelte';
+import { keep_edits_in_step } from './edits_on_map.svelte';
 import { Editor } from './editor.svelte';
 import { Fences } from './fences.svelte';
 import { Findings } from './findings.svelte';
 import { Homeward, type HomeMode } from './homeward.svelte';
 import { Library } from './library.svelte';
 import { Live } from './live.svelte';
+import { anew_question, Makings } from './makings.svelte';
+import { Measurer } from './measure.svelte';
 import { Notices } from './notices.svelte';
 import { PastWay } from './past_way';
 import { Pilot } from './pilot.svelte';
 import { LoadedRoute } from './route.svelte';
 import { Resumption } from './resumption.svelte';
+import { Revisions } from './revisions.svelte';
+import { RowPlanner } from './rows.svelte';
 import { Runs } from './runs.svelte';
 import { Seen } from './seen.svelte';
+import { settled } from './settled';
+import { keep_site_in_step } from './site_on_map.svelte';
+import { Grounds } from './grounds.svelte';
 import { SiteMaps } from './site_maps.svelte';
 import { Slips } from './slips.svelte';
+import { Shaping } from './shaping.svelte';
+import { speaker } from './sound';
 import { Sky } from './sky.svelte';
 import { Standing } from './standing.svelte';
+import { Starting } from './starting.svelte';
 import { Surveyor } from './survey.svelte';
 import { Target } from './target.svelte';
 import { Teacher } from './teach.svelte';
-
-const NOTHING: ReadonlySet<number> = new Set();
 
 export type Tab = 'drive' | 'plan' | 'missions' | 'log';
 /** What is shown under Missions. */
 export type Shelf = 'missions' | 'runs' | 'fences' | 'maps';
 /** What is pulled out in the Drive panel. */
 export type Drawer = 'move' | 'teach' | 'calibrate' | null;
-
-/** What main.ts hands in: the doors to the server, the map and the device. */
-export interface Doors {
-  readonly missions: MissionCalls;
-  readonly vehicle: VehicleCalls;
-  readonly teach: TeachCalls;
-  readonly runs: RunCalls;
-  readonly slips: SlipCalls;
-  readonly seen: SeenCalls;
-  readonly sites: SiteMapCalls;
-  readonly drill: DrillCalls;
-  readonly survey: SurveyCalls;
-  readonly fences: FenceCalls;
-  readonly map: MapCalls;
-  readonly storage: DraftStorage;
-  readonly layers: DraftStorage;
-  readonly link: LiveLink;
-}
 
 export class Station {
   tab = $state<Tab>('drive');
@@ -89,12 +68,7 @@ export class Station {
   wide = $state(false);
 
   /** What a hand on the map changes instead of the mission. */
-  drawing = $derived.by<Drawing | null>(() => {
-    if (this.tab === 'plan' && this.surveyor.open) return this.surveyor.outline;
-    if (this.tab !== 'missions') return null;
-    if (this.shelf === 'fences') return this.fences.draft ? this.fences : null;
-    return this.shelf === 'maps' && this.sites.editor.map ? this.sites.editor : null;
-  });
+  drawing = $derived.by<Drawing | null>(() => drawn_in(this));
 
   /** On what a drill would be played: the loaded mission, else the one in the editor as it is
    * stored. */
@@ -122,6 +96,9 @@ export class Station {
   readonly notices = new Notices();
   readonly dialogs = new Dialogs();
   readonly editor: Editor;
+  readonly shaping: Shaping;
+  readonly beneath: Beneath;
+  readonly revisions: Revisions;
   readonly library: Library;
   readonly pilot: Pilot;
   readonly drivers: Drivers;
@@ -131,11 +108,16 @@ export class Station {
   readonly slips: Slips;
   readonly seen: Seen;
   readonly sites: SiteMaps;
+  readonly grounds: Grounds;
   readonly standing: Standing;
   readonly drills: Drills;
+  readonly makings: Makings;
   readonly surveyor: Surveyor;
+  readonly rower: RowPlanner;
+  readonly measurer = new Measurer();
   readonly fences: Fences;
   readonly homeward: Homeward;
+  readonly starting: Starting;
   readonly route: LoadedRoute;
   readonly calibrator: Calibrator;
   readonly resumption: Resumption;
@@ -147,7 +129,10 @@ export class Station {
   constructor(doors: Doors) {
     this.#doors = doors;
     this.map = doors.map;
-    this.editor = new Editor(doors.missions, doors.storage, this.notices, this.dialogs);
+    this.editor = new Editor(doors.missions, doors.kept, this.notices, this.dialogs);
+    this.shaping = new Shaping(this.editor);
+    this.beneath = new Beneath(doors.missions, this.notices);
+    this.revisions = new Revisions(doors.missions, this.editor, this.notices);
     this.library = new Library(
       doors.missions,
       this.editor,
@@ -161,12 +146,16 @@ export class Station {
     this.runs = new Runs(doors.runs);
     this.slips = new Slips(doors.slips, this.dialogs);
     this.seen = new Seen(doors.seen, doors.link, this.live, doors.layers);
+    this.grounds = new Grounds(doors.tiles, doors.ground, this.notices, this.dialogs);
     this.sites = new SiteMaps(doors.sites, this.live, this.notices, this.dialogs);
     this.standing = new Standing(this.live, this.pilot);
     this.drills = new Drills(doors.drill);
-    this.surveyor = new Surveyor(doors.survey, this.editor, this.notices);
+    this.makings = new Makings(doors.kept.makings, this.editor);
+    this.surveyor = new Surveyor(doors.survey, this.editor, this.notices, this.makings);
+    this.rower = new RowPlanner(doors.rows, this.editor, this.notices, this.makings, this.live);
     this.fences = new Fences(doors.fences, this.notices, this.dialogs);
     this.homeward = new Homeward(doors.vehicle, this.live);
+    this.starting = new Starting(doors.vehicle, this.live, this.dialogs);
     this.route = new LoadedRoute(doors.missions, doors.vehicle, this.notices);
     this.calibrator = new Calibrator(doors.vehicle, this.dialogs);
     this.resumption = new Resumption(doors.vehicle, this.pilot, this.notices, this.dialogs);
@@ -182,8 +171,7 @@ export class Station {
   readonly stream_events: StreamEvents = {
     on_link: (link) => {
       const was_open = this.live.link.socket === 'open';
-      this.live.link = link;
-      this.live.now_ms = performance.now(); // an age is never told too small
+      this.live.take_link(link);
       if (link.socket !== 'open' || was_open) return;
       void this.#fetch_past_events();
       void this.resumption.refresh();
@@ -194,7 +182,8 @@ export class Station {
       this.map.set_size(capabilities.size.length_m, capabilities.size.width_m);
     },
     on_vehicle: (vehicle, mono_s) => {
-      this.live.take(vehicle);
+      const robot = this.live.take(vehicle);
+      if (robot) this.map.show_robot(robot, this.live.tracks);
       this.standing.take(vehicle);
       this.pilot.halts.on_vehicle(vehicle, mono_s);
       this.findings.take(vehicle);
@@ -204,8 +193,9 @@ export class Station {
     on_refused: (refusal) => this.live.refuse_stick(refusal_text(refusal)),
     on_stopped: () => this.pilot.halts.on_stopped(),
     on_event: (event) => {
-      this.notices.event(event);
+      if (this.notices.event(event)) speaker.tell(event, device.settings.cues);
       this.seen.on_event(event.kind);
+      if (event.kind.endsWith('parameter')) void this.route.read_speeds();
     },
     on_grid: (grid) => this.seen.stream_events.on_grid?.(grid),
     on_scan: (scan) => this.seen.stream_events.on_scan?.(scan),
@@ -235,31 +225,37 @@ export class Station {
 
   /** A field of a file, as if it had been drawn. */
   cover(area: ImportedArea): void {
-    const places = field_places(area);
+    const rings = field_rings(area);
     this.surveyor.name = area.name;
-    this.surveyor.outline.begin(places);
+    this.surveyor.begin(rings);
     this.surveyor.open = true;
     this.tab = 'plan';
     this.set_follow(false);
-    this.map.fit(places);
+    this.map.fit(rings[0] ?? []);
   }
 
-  /** Shows the edited mission, or the loaded one, or the way so far. */
+  /** What the mission in the editor was made of is drawn again, to be changed. */
+  async change_drawn({ drawn, by_hand }: Found): Promise<void> {
+    const id = this.editor.stored?.id;
+    if (id === undefined) return;
+    if (by_hand && !(await this.dialogs.ask(anew_question()))) return;
+    if (drawn.kind === 'survey') this.surveyor.change(id, drawn.wish);
+    else this.rower.change(id, drawn);
+    const places = drawn.kind === 'survey' ? drawn.wish.polygon : drawn.places;
+    this.set_follow(false);
+    if (places.length > 1) this.map.fit(places);
+  }
+
+  /** Shows what a report tells of, or the edited mission, or the loaded one, or the way so far. */
   fit(): void {
     const edited = spots(this.editor.plan);
     const points = edited.length > 0 ? edited : this.route.plan ? spots(this.route.plan) : [];
-    const all = points.length > 0 ? points : this.live.places;
+    const { open } = this.dialogs;
+    const told = open?.kind === 'report' ? open.report.places : [];
+    const all = told.length > 0 ? told : points.length > 0 ? points : this.live.places;
     if (all.length === 0) return;
     this.set_follow(false);
     this.map.fit(all);
-  }
-
-  /** The panel has its new height, and the map knows it. */
-  async settled(): Promise<void> {
-    await tick();
-    const frame = (): Promise<number> => new Promise(requestAnimationFrame);
-    await frame();
-    await frame();
   }
 
   /** Opens an item of the edited mission. @param item from 1 */
@@ -269,17 +265,26 @@ export class Station {
     this.tab = 'plan';
   }
 
+  /** Places that an open dialog tells of. */
+  see_told(places: readonly LatLon[]): void {
+    this.set_follow(false);
+    this.map.fit(places);
+  }
+
   /** Straight to where it can be seen what it would do. */
   async show_way_home(mode: HomeMode): Promise<void> {
     this.dialogs.close();
     this.tab = 'drive';
     this.sheet_open = true;
     await this.homeward.show(mode);
-    await this.settled();
-    const line = this.homeward.way?.line ?? [];
-    if (line.length < 2) return;
+    await this.#see(this.homeward.way?.line ?? []);
+  }
+
+  async #see(places: readonly LatLon[]): Promise<void> {
+    await settled();
+    if (places.length < 2) return;
     this.set_follow(false);
-    this.map.fit(line);
+    this.map.fit(places);
   }
 
   /** Arms; what the check has found about the loaded mission is seen before. */
@@ -307,8 +312,16 @@ export class Station {
       on_insert: (index, at) => drawn().insert(index, at),
       on_move: (index, to) => drawn().move(index, to),
       on_select: (index) => {
+        if (this.shaping.transform && this.drawing === null) return;
         drawn().select(index);
         if (index !== null && this.drawing === null) this.tab = 'plan';
+      },
+      on_pick: (index) => {
+        if (this.drawing) this.drawing.select(index);
+        else this.editor.pick(index);
+      },
+      on_pick_box: (indices) => {
+        if (!this.drawing) this.editor.pick_more(indices);
       },
       on_place: (at) => {
         if (this.tab !== 'drive') return;
@@ -330,22 +343,22 @@ export class Station {
       map.set_follow(this.follow && !drawn_on);
     });
     $effect(() => {
-      const edits = this.tab === 'plan' ? editor.map_mode : 'watch';
+      // What is only seen before it is done cannot be taken yet.
+      const edits = this.tab === 'plan' && !this.shaping.transform ? editor.map_mode : 'watch';
       map.set_mode(this.pointing ? 'point' : (this.drawing?.map_mode ?? edits));
     });
     // A run is looked at, and a field drawn, without what is planned otherwise.
     const looks_back = $derived(this.tab === 'missions' && this.shelf === 'runs');
     $effect(() => {
-      const surveys = this.drawing === this.surveyor.outline;
-      map.show_runs(looks_back ? this.runs.on_map : surveys ? this.surveyor.on_map : []);
-    });
-    $effect(() => {
       const { drawing } = this;
-      const hidden = looks_back && this.runs.first;
-      const { plan, selected, shape } = drawing ?? editor;
-      const refused = drawing ? NOTHING : editor.refused;
-      map.show_plan(hidden ? EMPTY_PLAN : plan, selected, refused, shape);
+      const planned = [this.surveyor, this.rower].find(({ outline }) => outline === drawing);
+      map.show_runs(looks_back ? this.runs.on_map : (planned?.on_map ?? []));
     });
+    $effect(() => map.show_heat(looks_back ? this.runs.heat : null));
+    keep_edits_in_step(
+      this,
+      () => looks_back && (this.runs.first !== null || this.runs.heat !== null),
+    );
     $effect(() => {
       const drawn = this.drawing === this.fences ? this.fences.draft : null;
       map.show_fence(drawn ?? this.fences.active);
@@ -359,14 +372,14 @@ export class Station {
     $effect(() =>
       map.show_drill(this.tab === 'drive' && this.drilling ? this.drills.on_map : null),
     );
-    $effect(() =>
-      map.show_route(this.route.plan, this.route.way, live.vehicle?.mission.current_item ?? 0),
-    );
+    const current_item = $derived(live.vehicle?.mission.current_item ?? 0);
+    $effect(() => map.show_route({ ...this.route.laid, current_item }));
     $effect(() => map.show_slips(this.slips.on_map));
     // As long as somebody sees them: in the log, or on the map.
     const slips_seen = $derived(this.slips.shown || this.tab === 'log');
     $effect(() => (slips_seen ? untrack(() => this.slips.watch()) : undefined));
-    this.#keep_site_in_step();
+    keep_site_in_step(this);
+    this.starting.keep_in_sight((places) => this.#see([...places, ...this.route.way]));
     $effect(() => this.seen.follow_layers());
     $effect(() => map.show_seen(this.seen.on_map));
     $effect(() => map.show_ahead(this.seen.ahead));
@@ -374,25 +387,10 @@ export class Station {
     $effect(() => map.show_robot(live.robot, live.tracks));
     $effect(() => map.show_home(live.vehicle?.home ?? null));
     $effect(() => {
-      const pin = this.tab === 'drive' ? (this.standing.mark ?? this.target.mark) : null;
-      const home = this.tab === 'drive' ? this.homeward.mark : null;
+      const drives = this.tab === 'drive';
+      const pin = drives ? (this.standing.mark ?? this.starting.mark ?? this.target.mark) : null;
+      const home = drives ? (this.starting.home_mark ?? this.homeward.mark) : null;
       map.show_marks(pin, home ?? activity_mark(live.vehicle));
     });
-  }
-
-  #keep_site_in_step(): void {
-    const { live, map } = this;
-    // Where there is a map in use; and in the list of maps, which one may be.
-    const maps_seen = $derived(this.tab === 'missions' && this.shelf === 'maps');
-    const located = $derived((live.vehicle?.place?.state ?? 'off') !== 'off');
-    const map_in_use = $derived(live.vehicle?.place?.map_id ?? null);
-    const site_wanted = $derived(maps_seen || (located && this.seen.layers.map));
-    $effect(() => {
-      void map_in_use; // another one: whoever changed it
-      return site_wanted ? untrack(() => this.sites.watch()) : undefined;
-    });
-    $effect(() => this.sites.look(maps_seen));
-    $effect(() => map.show_site(site_wanted ? this.sites.on_map : null));
-    $effect(() => map.show_site_edits(maps_seen ? this.sites.editor.edits : []));
   }
 }

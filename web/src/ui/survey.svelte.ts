@@ -1,32 +1,37 @@
 // A field that is drawn, the tracks that would cover it, and the mission that they become.
 
-import { failure_text, refusal_text } from '../model/answer';
+import type { Drawn } from '../model/makings';
 import { spots } from '../model/plan';
-import type { RunOnMap, SurveyCalls } from '../model/ports';
-import { why_not_survey, type Survey, type SurveyWish } from '../model/survey';
+import type { LineOnMap } from '../model/on_map';
+import type { Places } from '../model/outline';
+import type { PlanningCalls } from '../model/ports';
+import type { RunOnMap } from '../model/run_ports';
+import { say } from '../model/say';
+import { why_not_survey, type Pattern, type Survey, type SurveyWish } from '../model/survey';
 import { Outline } from './drawing.svelte';
 import type { Editor } from './editor.svelte';
+import type { Makings } from './makings.svelte';
 import type { Notices } from './notices.svelte';
+import { Planner } from './planner.svelte';
 
-const ASK_AFTER_MS = 350;
-
-export class Surveyor {
-  /** The person draws a field instead of a mission. */
-  open = $state(false);
-  name = $state('Field');
+export class Surveyor extends Planner<SurveyWish, Survey> {
   spacing_m = $state(1);
   direction_deg = $state<number | null>(null);
   turn = $state<'pivot' | 'arc'>('pivot');
   radius_m = $state(2);
   headland_passes = $state(1);
   speed_mps = $state<number | null>(null);
-  result = $state.raw<Survey | null>(null);
-  failure = $state<string | null>(null);
-  busy = $state(false);
-  readonly outline = new Outline();
+  pattern = $state<Pattern>('tracks');
+  /** The field, and the obstacles inside of it. */
+  rings = $state.raw<readonly Outline[]>([new Outline()]);
+  /** Which of them the hand on the map changes. */
+  ring = $state(0);
+  readonly outline = $derived<Outline>(this.rings[this.ring] ?? this.#field());
 
   wish = $derived<SurveyWish>({
-    polygon: this.outline.places,
+    polygon: this.#field().places,
+    holes: this.rings.slice(1).map(({ places }) => places),
+    pattern: this.pattern,
     spacing_m: this.spacing_m,
     direction_deg: this.direction_deg,
     turn: this.turn,
@@ -39,55 +44,65 @@ export class Surveyor {
     this.result ? [{ lines: [spots(this.result.plan)], planned: [] }] : [],
   );
 
-  readonly #calls: SurveyCalls;
-  readonly #editor: Editor;
-  readonly #notices: Notices;
-  #timer: ReturnType<typeof setTimeout> | undefined;
-  #question = 0;
+  /** The rings that are not being drawn. */
+  others = $derived<readonly LineOnMap[]>(
+    this.rings
+      .filter((each, k) => k !== this.ring && each.places.length > 1)
+      .map(({ places }) => ({ places: [...places, ...places.slice(0, 1)], tone: 'other' })),
+  );
 
-  constructor(calls: SurveyCalls, editor: Editor, notices: Notices) {
-    this.#calls = calls;
-    this.#editor = editor;
-    this.#notices = notices;
+  constructor(
+    calls: PlanningCalls<SurveyWish, Survey>,
+    editor: Editor,
+    notices: Notices,
+    makings: Makings,
+  ) {
+    super(calls, editor, notices, makings);
+    this.name = say('field');
   }
 
-  /** Asks anew a moment after the last change. Called by an effect that reads `wish`. */
-  keep_up(wish: SurveyWish): void {
-    clearTimeout(this.#timer);
-    this.#question += 1;
-    if (why_not_survey(wish) !== null) {
-      this.result = null;
-      this.failure = null;
-      this.busy = false;
-      return;
-    }
-    this.busy = true;
-    const question = this.#question;
-    this.#timer = setTimeout(() => void this.#ask(wish, question), ASK_AFTER_MS);
+  #field(): Outline {
+    return this.rings[0] ?? new Outline();
   }
 
-  /** Stores it and puts it into the editor. @return whether that was done */
-  async keep(): Promise<boolean> {
-    if (!(await this.#editor.may_discard())) return false;
-    this.busy = true;
-    const answer = await this.#calls.keep(this.wish, this.name.trim());
-    this.busy = false;
-    if (!answer.ok) {
-      this.#notices.show('error', failure_text('kept', answer.refusal));
-      return false;
-    }
-    this.#editor.show_mission(answer.value);
-    this.#notices.show('good', `Kept “${answer.value.name}” as a mission.`);
-    this.open = false;
-    this.outline.clear();
-    return true;
+  /** @param rings the field and its holes */
+  begin(rings: readonly Places[]): void {
+    this.rings = (rings.length > 0 ? rings : [[]]).map((places) => {
+      const outline = new Outline();
+      outline.begin(places);
+      return outline;
+    });
+    this.ring = 0;
   }
 
-  async #ask(wish: SurveyWish, question: number): Promise<void> {
-    const answer = await this.#calls.preview(wish);
-    if (question !== this.#question) return;
-    this.busy = false;
-    this.result = answer.ok ? answer.value : null;
-    this.failure = answer.ok ? null : refusal_text(answer.refusal);
+  add_obstacle(): void {
+    this.rings = [...this.rings, new Outline()];
+    this.ring = this.rings.length - 1;
+  }
+
+  remove_obstacle(): void {
+    this.rings = this.rings.filter((_, k) => k !== this.ring);
+    this.ring = 0;
+  }
+
+  /** A field that is a mission already. @param id of the mission */
+  change(id: string, wish: SurveyWish): void {
+    this.begin([wish.polygon, ...wish.holes]);
+    this.pattern = wish.pattern;
+    this.spacing_m = wish.spacing_m;
+    this.direction_deg = wish.direction_deg;
+    this.turn = wish.turn;
+    this.radius_m = wish.radius_m;
+    this.headland_passes = wish.headland_passes;
+    this.speed_mps = wish.speed_mps;
+    this.take_up(id);
+  }
+
+  protected drawn_now(): Drawn {
+    return { kind: 'survey', wish: this.wish };
+  }
+
+  protected clear(): void {
+    this.begin([]);
   }
 }

@@ -3,6 +3,7 @@
 import { type Answer, failure_text } from '../model/answer';
 import { count } from '../model/format';
 import type { TeachCalls } from '../model/ports';
+import { say } from '../model/say';
 import type { Dialogs } from './dialogs.svelte';
 import type { Editor } from './editor.svelte';
 import type { Notices } from './notices.svelte';
@@ -27,18 +28,19 @@ export class Teacher {
     this.#dialogs = dialogs;
   }
 
-  start = (): Promise<boolean> => this.#do('recorded', () => this.#calls.start(this.name.trim()));
-  pause = (): Promise<boolean> => this.#do('paused', () => this.#calls.pause());
-  resume = (): Promise<boolean> => this.#do('resumed', () => this.#calls.resume());
+  start = (): Promise<boolean> =>
+    this.#do(say('done_recorded'), () => this.#calls.start(this.name.trim()));
+  pause = (): Promise<boolean> => this.#do(say('done_paused'), () => this.#calls.pause());
+  resume = (): Promise<boolean> => this.#do(say('done_resumed'), () => this.#calls.resume());
 
   /** Makes a mission of it and, where nothing is lost by it, puts it into the editor. */
   async stop(): Promise<void> {
-    await this.#do('kept', async () => {
+    await this.#do(say('done_kept'), async () => {
       const answer = await this.#calls.stop();
       if (!answer.ok) return answer;
       const mission = answer.value;
       const items = count(mission.items.length, 'item');
-      this.#notices.show('good', `Kept the way as “${mission.name}”, ${items}.`);
+      this.#notices.show('good', say('kept_the_way_as_name_items', { name: mission.name, items }));
       this.name = '';
       if (!this.#editor.unsaved) this.#editor.show_mission(mission);
       return answer;
@@ -47,12 +49,12 @@ export class Teacher {
 
   async discard(points: number): Promise<void> {
     const sure = await this.#dialogs.ask({
-      title: 'Forget the recorded way?',
-      text: `${count(points, 'point')} will be gone for good.`,
-      yes: 'Forget it',
+      title: say('forget_the_recorded_way'),
+      text: say('points_will_be_gone_for_good', { points: count(points, 'point') }),
+      yes: say('forget_it'),
       danger: true,
     });
-    if (sure) await this.#do('forgotten', () => this.#calls.discard());
+    if (sure) await this.#do(say('done_forgotten'), () => this.#calls.discard());
   }
 
   /** Asks why nothing is recorded, as long as somebody looks. @return ends it */

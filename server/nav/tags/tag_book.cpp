@@ -1,0 +1,46 @@
+#include "nav/tags/tag_book.hpp"
+
+#include <algorithm>
+
+namespace roverd::nav::tags {
+
+std::size_t TagBook::take(const TagsSeen& seen) {
+  ++images_;
+  const auto pose = history_.at(seen.stamp);
+  if (!pose) {
+    ++refused_;
+    return 0;
+  }
+  looked_at_ = std::max(looked_at_, seen.stamp);
+  std::size_t taken = 0;
+  for (const TagPlace& tag : seen.tags) {
+    if (std::ranges::count(seen.tags, tag.id, &TagPlace::id) > 1) {
+      ++twice_;
+      continue;
+    }
+    auto known = std::ranges::find(known_, tag.id, &KnownTag::id);
+    if (known == known_.end()) {
+      KnownTag fresh;
+      fresh.id = tag.id;
+      if (!fresh.track.take(tag, *pose, seen.stamp)) continue;
+      if (known_.size() >= kMost) {
+        known_.erase(std::ranges::min_element(known_, {},
+                                              [](const KnownTag& k) { return k.track.seen_at(); }));
+      }
+      known = known_.insert(known_.end(), std::move(fresh));
+    } else if (!known->track.take(tag, *pose, seen.stamp)) {
+      continue;
+    }
+    ++known->sights;
+    if (known->camera != seen.camera) known->camera = seen.camera;
+    ++taken;
+  }
+  return taken;
+}
+
+const KnownTag* TagBook::find(int id) const noexcept {
+  const auto known = std::ranges::find(known_, id, &KnownTag::id);
+  return known == known_.end() ? nullptr : &*known;
+}
+
+}  // namespace roverd::nav::tags

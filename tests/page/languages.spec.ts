@@ -1,0 +1,87 @@
+// The page in the language of whoever holds the device: chosen once, seen at once, kept on it.
+
+import type { Page } from '@playwright/test';
+
+import { open_page, tab } from './page';
+import { expect, test } from './station';
+
+test.use({ viewport: { width: 390, height: 844 } });
+
+const choose = (page: Page, name: string): Promise<unknown> =>
+  page.getByLabel('Language').selectOption({ label: name });
+const language_of = (page: Page): Promise<string> =>
+  page.evaluate(() => document.documentElement.lang);
+/** Words of the status and of the deck that the narrowest phone would cut off. */
+const cut_off = async (page: Page): Promise<string[]> => {
+  await page.setViewportSize({ width: 360, height: 740 });
+  const found = await page
+    .locator('header .cell > span:visible, .deck dt, .deck dd, .deck button')
+    .evaluateAll((all) =>
+      all
+        .filter((each) => each.scrollWidth > each.clientWidth + 1)
+        .map((each) => each.textContent.trim()),
+    );
+  await page.setViewportSize({ width: 390, height: 844 });
+  return found;
+};
+const panel = (page: Page, at: number): Promise<void> =>
+  page.getByRole('navigation').getByRole('button').nth(at).click();
+
+test('Finnish is chosen, said at once, and still spoken after a reload', async ({
+  page,
+  station,
+}) => {
+  await open_page(page, station.url);
+  expect(await language_of(page)).toBe('en');
+  await tab(page, 'Log');
+
+  await choose(page, 'Suomi');
+
+  await expect(page.getByRole('heading', { name: 'Tapahtumat' })).toBeVisible();
+  await expect(page.getByRole('group', { name: 'Yhteys' })).toContainText('Live');
+  const up = page.getByRole('listitem').filter({ hasText: 'Laiteajuri toimii.' }).first();
+  await expect(up.locator('[lang=en]')).toHaveText(/ is up$/);
+  expect(await language_of(page)).toBe('fi');
+  await panel(page, 0);
+  await expect(page.getByRole('button', { name: 'Aktivoi' })).toBeVisible();
+  // So are figures, the map's own words and the titles of events; the robot's sentences stay English.
+  await expect(page.locator('#map')).toHaveAttribute('aria-label', 'Kartta');
+  await expect(page.locator('.scale-bar')).toHaveAttribute('aria-label', /^Mittakaava/);
+  await expect(page.getByRole('group', { name: 'Nopeus, m/s' })).toContainText('0,00');
+  // The word on the stop button is the same for everybody, and it is part of its name.
+  await expect(page.getByRole('button', { name: /^STOP/ })).toHaveText('STOP');
+
+  await page.reload();
+  await expect(page.getByRole('button', { name: 'Aktivoi' })).toBeVisible();
+  await panel(page, 1);
+  await expect(page.getByRole('heading', { name: 'Reitit' })).toBeAttached();
+  expect(await language_of(page)).toBe('fi');
+});
+
+test('in every language the panels fit a phone, and no text is missing', async ({
+  page,
+  station,
+}) => {
+  test.setTimeout(90_000);
+  await open_page(page, station.url);
+  for (const [language, name] of [
+    ['fi', 'Suomi'],
+    ['et', 'Eesti'],
+    ['it', 'Italiano'],
+    ['nb', 'Norsk'],
+    ['en', 'English'],
+  ] as const) {
+    await panel(page, 3);
+    await choose(page, name);
+    await expect.poll(() => language_of(page)).toBe(language);
+    expect(await cut_off(page), `cut off in ${name}`).toEqual([]);
+    for (const at of [3, 2, 1, 0]) {
+      if (at !== 3) await panel(page, at);
+      const seen = await page.evaluate(() => ({
+        wide: document.documentElement.scrollWidth,
+        keys: /\{\w+\}|\b[a-z]+(_[a-z]+){2,}\b/.exec(document.body.innerText)?.[0] ?? '',
+      }));
+      expect(seen, `panel ${at} in ${name}`).toEqual({ wide: 390, keys: '' });
+    }
+  }
+});

@@ -1,0 +1,136 @@
+// Several items at once, by mouse and by finger: chosen, transformed with a preview, undone even after
+// a reload; and what a mission was before.
+
+import {
+  draw,
+  items,
+  map_middle,
+  map_pixels,
+  open_page,
+  press,
+  save,
+  tab,
+  type Color,
+} from './page';
+import { expect, test } from './station';
+
+const SQUARE = [
+  [-100, -100],
+  [100, -100],
+  [100, 20],
+  [-100, 20],
+] as const;
+/** The dashed line of what was before, and of another state. */
+const BEFORE: Color = [91, 86, 70];
+const THEIRS: Color = [184, 80, 10];
+
+test('points in a box are turned, undone after a reload, and an old revision comes back', async ({
+  page,
+  station,
+}) => {
+  await open_page(page, station.url);
+  await tab(page, 'Plan');
+  await draw(page, SQUARE);
+  await save(page);
+  const places = (): Promise<string[]> => items(page).allInnerTexts();
+  const drawn = await places();
+  const [x, y] = await map_middle(page);
+
+  // A box around the upper two; with Shift one more is taken by its list entry.
+  await press(page, 'Select several');
+  await page.mouse.move(x - 140, y - 140);
+  await page.mouse.down();
+  await page.mouse.move(x + 140, y - 60, { steps: 4 });
+  await page.mouse.up();
+  await expect(page.getByLabel('Selection')).toContainText('Items 1 to 2');
+  await items(page).nth(2).getByRole('button').click();
+  await expect(page.getByLabel('Selection')).toContainText('Items 1 to 3');
+
+  await press(page, 'Rotate');
+  await page.getByRole('textbox', { name: 'Clockwise, °' }).fill('30');
+  await page.getByRole('textbox', { name: 'Clockwise, °' }).press('Enter');
+  await expect.poll(async () => (await map_pixels(page, [BEFORE])).length).toBeGreaterThan(50);
+  expect(await places()).toEqual(drawn);
+  await press(page, 'Apply');
+  const turned = await places();
+  expect(turned[0]).not.toBe(drawn[0]);
+  expect(turned[3]).toBe(drawn[3]);
+
+  // One that is dragged takes the others along.
+  await press(page, 'None');
+  await press(page, 'All');
+  await press(page, 'Densify');
+  await press(page, 'Apply');
+  const dense = await items(page).count();
+  expect(dense).toBeGreaterThan(4);
+  await press(page, 'Done selecting');
+
+  page.once('dialog', (dialog) => void dialog.accept());
+  await page.reload();
+  await tab(page, 'Plan');
+  await expect(items(page)).toHaveCount(dense);
+  await press(page, 'Undo');
+  expect(await places()).toEqual(turned);
+  await press(page, 'Undo');
+  expect(await places()).toEqual(drawn);
+  await expect(page.getByLabel('Summary')).toContainText('saved, revision 1');
+  await press(page, 'Redo');
+  await save(page);
+
+  await press(page, 'Revisions…');
+  await page
+    .getByLabel('Stored revisions')
+    .getByRole('button', { name: /^1 · created/ })
+    .click();
+  await expect(page.getByLabel('What differs')).toContainText('3 items more or other');
+  await expect.poll(async () => (await map_pixels(page, [THEIRS])).length).toBeGreaterThan(50);
+  await press(page, 'Back to revision 1');
+  await expect(page.getByLabel('Summary')).toContainText('saved, revision 3');
+  expect(await places()).toEqual(drawn);
+  await press(page, 'Undo');
+  expect(await places()).toEqual(turned);
+});
+
+test.describe('with a finger, on a phone', () => {
+  test.use({ viewport: { width: 390, height: 844 }, hasTouch: true, deviceScaleFactor: 2 });
+
+  test('the way is taken anywhere, a glass shows what the finger hides, chosen points move together', async ({
+    page,
+    station,
+  }) => {
+    await open_page(page, station.url);
+    await tab(page, 'Plan');
+    const [x, y] = await map_middle(page);
+    for (const right of [-120, 60]) await page.touchscreen.tap(x + right, y - 60);
+    await expect(items(page)).toHaveCount(2);
+    const session = await page.context().newCDPSession(page);
+    const touch = (type: 'touchStart' | 'touchMove' | 'touchEnd', at?: readonly [number, number]) =>
+      session.send('Input.dispatchTouchEvent', {
+        type,
+        touchPoints: at ? [{ x: at[0], y: at[1] }] : [],
+      });
+    const drag = async (from: readonly [number, number], down: number): Promise<void> => {
+      await touch('touchStart', from);
+      for (let k = 1; k <= 4; k += 1) await touch('touchMove', [from[0], from[1] + (k * down) / 4]);
+    };
+
+    // A third of the way along, far from its "+".
+    await drag([x - 70, y - 60], 60);
+    await expect(page.locator('.map-loupe')).toBeVisible();
+    await touch('touchEnd');
+    await expect(page.locator('.map-loupe')).toBeHidden();
+    await expect(items(page)).toHaveCount(3);
+    const before = await items(page).allInnerTexts();
+
+    await press(page, 'Select several');
+    await page.getByLabel('Selection').getByRole('button', { name: 'All', exact: true }).click();
+    await drag([x - 120, y - 60], 40);
+    await touch('touchEnd');
+    const latitude = (text: string): number => Number(/(-?\d+\.\d+),/.exec(text)?.[1]);
+    await expect.poll(async () => (await items(page).allInnerTexts())[0]).not.toBe(before[0]);
+    const after = await items(page).allInnerTexts();
+    const moved = after.map((text, k) => latitude(text) - latitude(before[k] ?? ''));
+    expect(moved[0]).toBeLessThan(0);
+    for (const by of moved) expect(by).toBeCloseTo(moved[0] ?? 0, 6);
+  });
+});

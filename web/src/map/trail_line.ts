@@ -1,0 +1,132 @@
+// Draws the driven trail: a line in pieces, in one colour or in classes, or dots.
+
+import type { Driven, Trail } from '../model/trail';
+import { class_of, CLASSES, PLAIN_CLASS, type TrailShades } from '../model/trail_shades';
+import { stroke_cased, trace_open, type Paint } from './canvas';
+import type { Palette } from './palette';
+import { to_plane, type PlanePoint } from './projection';
+import { TRAIL_WIDTHS_PX } from '../model/trail_colors';
+
+const DOTS_APART_PX = 7;
+/** So many new points are drawn anew each time; then all is drawn once more. */
+const TIP = 120;
+
+/** A trail in the plane, kept in step with the model's ring: a line in pieces, or dots. */
+export class TrailLine {
+  readonly #xs: number[] = [];
+  readonly #ys: number[] = [];
+  readonly #begins: boolean[] = [];
+  readonly #driven: Driven[] = [];
+  #seen = 0;
+  /** Up to where it is drawn with what stays. */
+  #kept = 0;
+
+  follow(trail: Trail): void {
+    const fresh = Math.min(trail.added - this.#seen, trail.length);
+    this.#seen = trail.added;
+    for (let k = trail.length - fresh; k < trail.length; k += 1) {
+      const at = trail.at(k);
+      if (!at) continue;
+      const [x, y] = to_plane(at);
+      this.#xs.push(x);
+      this.#ys.push(y);
+      this.#begins.push(trail.begins(k));
+      this.#driven.push(trail.driven(k));
+    }
+    const surplus = this.#xs.length - trail.length;
+    if (surplus > 0) {
+      this.#xs.splice(0, surplus);
+      this.#ys.splice(0, surplus);
+      this.#begins.splice(0, surplus);
+      this.#driven.splice(0, surplus);
+    }
+  }
+
+  /** All of it is drawn now. */
+  keep(): void {
+    this.#kept = this.#seen;
+  }
+
+  /** Index from which on it was added since; null: all of it is another one, or much is new. */
+  tip(): number | null {
+    const fresh = this.#seen - this.#kept;
+    return fresh > TIP || fresh > this.#xs.length ? null : Math.max(0, this.#xs.length - fresh - 1);
+  }
+
+  /** Points of the plane, from an index on. */
+  *places(first: number): Generator<PlanePoint> {
+    for (let k = first; k < this.#xs.length; k += 1) yield [this.#xs[k] ?? 0, this.#ys[k] ?? 0];
+  }
+
+  /** A dot for every point that is not too near to the dot before. */
+  paint_dots(paint: Paint, color: string, begin = 0): void {
+    const { context } = paint;
+    let [last_x, last_y] = [Number.NaN, Number.NaN];
+    context.beginPath();
+    for (let k = begin; k < this.#xs.length; k += 1) {
+      const x = paint.x_px(this.#xs[k] ?? 0);
+      const y = paint.y_px(this.#ys[k] ?? 0);
+      if (Math.hypot(x - last_x, y - last_y) < DOTS_APART_PX) continue;
+      context.rect(x - 2.5, y - 2.5, 5, 5);
+      [last_x, last_y] = [x, y];
+    }
+    context.fillStyle = color;
+    context.fill();
+  }
+
+  paint_line(paint: Paint, colors: Palette, begin = 0): void {
+    const count = this.#xs.length;
+    if (count < begin + 2) return;
+    paint.context.beginPath();
+    let first = begin;
+    for (let k = begin + 1; k <= count; k += 1) {
+      if (k < count && !this.#begins[k]) continue;
+      trace_open(paint, this.#xs, this.#ys, first, k);
+      first = k;
+    }
+    stroke_cased(paint.context, colors.casing, colors.trail, 3);
+  }
+
+  /** Each leg in the class of the point that it leads to: few paths, whatever was driven. */
+  paint_shaded(paint: Paint, colors: Palette, shades: TrailShades, begin = 0): void {
+    const legs = this.#legs_by_class(shades, begin);
+    const { context } = paint;
+    context.lineJoin = 'round';
+    context.lineCap = 'round';
+    // All casings first: none of them cuts through the line of another class.
+    for (const casing of [true, false]) {
+      for (let k = PLAIN_CLASS; k >= 0; k -= 1) {
+        const found = legs[k] ?? [];
+        if (found.length === 0) continue;
+        context.beginPath();
+        for (const [first, end] of found) trace_open(paint, this.#xs, this.#ys, first, end);
+        const width_px = TRAIL_WIDTHS_PX[k] ?? 3;
+        context.lineWidth = casing ? width_px + 3 : width_px;
+        context.strokeStyle = casing ? colors.casing : (colors.trail_classes[k] ?? colors.trail);
+        context.stroke();
+      }
+    }
+  }
+
+  /** First point and end of what is drawn in one go, for each class. */
+  #legs_by_class(shades: TrailShades, begin: number): [first: number, end: number][][] {
+    const legs = Array.from({ length: CLASSES + 1 }, (): [number, number][] => []);
+    let [open, last] = [-1, null as [number, number] | null];
+    for (let k = begin + 1; k < this.#xs.length; k += 1) {
+      const driven = this.#driven[k];
+      if (this.#begins[k] || !driven) {
+        last = null;
+        continue;
+      }
+      const at = class_of(shades, driven);
+      if (last && at === open) {
+        last[1] = k + 1;
+        continue;
+      }
+      last = [k - 1, k + 1];
+      open = at;
+      legs[at]?.push(last);
+    }
+    return legs;
+  }
+}

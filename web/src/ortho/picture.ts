@@ -1,0 +1,170 @@
+// A GeoTIFF: where it lies, and its pixels.
+
+import { fromBlob, type GeoTIFFImage } from 'geotiff';
+import { toProj4 } from 'geotiff-geokeys-to-proj4';
+import proj4 from 'proj4';
+
+import { tiles_across, count_of, zoom_for, type Bounds } from '../model/tiling';
+import type { Looked, OrthoTrouble } from './messages';
+import { to_pixels, type Affine, type PictureWindow, type Pixels, type ToPicture } from './warp';
+
+export class Trouble extends Error {
+  constructor(
+    readonly why: OrthoTrouble,
+    detail = '',
+  ) {
+    super(detail);
+  }
+}
+
+const MOST_ZOOM = 24;
+const MOST_TILES = 200_000;
+/** The coarsest zoom: all of it on so few tiles. */
+const FEW_TILES = 4;
+
+export interface Picture {
+  readonly width: number;
+  readonly height: number;
+  readonly to_picture: ToPicture;
+  readonly is: Omit<Looked, 'format'>;
+  read(window: PictureWindow): Promise<Pixels>;
+}
+
+const affine_of = (image: GeoTIFFImage): Affine => {
+  const m: unknown = image.fileDirectory.getValue('ModelTransformation');
+  if (Array.isArray(m) || ArrayBuffer.isView(m)) {
+    const [a = 0, b = 0, , c = 0, d = 0, e = 0, , f = 0] = m as unknown as number[];
+    return { a, b, c, d, e, f };
+  }
+  try {
+    const [ox = 0, oy = 0] = image.getOrigin();
+    const [sx = 0, sy = 0] = image.getResolution();
+    const [i = 0, j = 0] = Array.from(
+      (image.fileDirectory.getValue('ModelTiepoint') ?? []) as ArrayLike<number>,
+    );
+    return { a: sx, b: 0, c: ox - sx * i, d: 0, e: sy, f: oy - sy * j };
+  } catch {
+    throw new Trouble('no_place');
+  }
+};
+
+/** Degrees to the picture's plane, and back. */
+const plane_of = (
+  image: GeoTIFFImage,
+): proj4.Converter & { readonly scale: readonly [number, number] } => {
+  const keys = image.getGeoKeys() as unknown;
+  if (keys === null || typeof keys !== 'object') throw new Trouble('no_place');
+  const said = toProj4(keys as Parameters<typeof toProj4>[0]);
+  if (Object.keys(said.errors).length > 0 || said.proj4 === '') {
+    throw new Trouble('no_projection', Object.entries(said.errors).map(String).join(' '));
+  }
+  const { forward, inverse } = proj4('WGS84', said.proj4);
+  const { x, y } = said.coordinatesConversionParameters;
+  return { forward, inverse, scale: [x, y] };
+};
+
+/** Around its edges: a picture may be turned. */
+const bounds_of = (
+  image: GeoTIFFImage,
+  place: (px: number, py: number) => [number, number],
+): Bounds => {
+  const width = image.getWidth();
+  const height = image.getHeight();
+  const lons: number[] = [];
+  const lats: number[] = [];
+  for (let k = 0; k <= 8; k++) {
+    const share = k / 8;
+    const edges = [
+      [share * width, 0],
+      [share * width, height],
+      [0, share * height],
+      [width, share * height],
+    ] as const;
+    for (const [px, py] of edges) {
+      const [lon, lat] = place(px, py);
+      lons.push(lon);
+      lats.push(lat);
+    }
+  }
+  const bounds = {
+    west: Math.min(...lons),
+    south: Math.min(...lats),
+    east: Math.max(...lons),
+    north: Math.max(...lats),
+  };
+  const { west, south, east, north } = bounds;
+  if (!(west >= -180 && east <= 180 && south >= -85 && north <= 85 && west < east)) {
+    throw new Trouble('no_place');
+  }
+  return bounds;
+};
+
+const zooms_of = (
+  bounds: Bounds,
+  m_per_px: number,
+): Pick<Looked, 'min_zoom' | 'max_zoom' | 'tiles'> => {
+  const max_zoom = zoom_for(m_per_px, (bounds.south + bounds.north) / 2, MOST_ZOOM);
+  const tiles = count_of(tiles_across(bounds, max_zoom));
+  if (tiles > MOST_TILES) throw new Trouble('too_large', String(tiles));
+  let min_zoom = max_zoom;
+  while (min_zoom > 0 && count_of(tiles_across(bounds, min_zoom)) > FEW_TILES) min_zoom -= 1;
+  return { min_zoom, max_zoom, tiles };
+};
+
+/** With the alpha that it has, and clear where it says that there is nothing. */
+const read_pixels = async (image: GeoTIFFImage, window: PictureWindow): Promise<Pixels> => {
+  const { left, top, right, bottom } = window;
+  const raw = (await image.readRGB({
+    window: [left, top, right, bottom],
+    interleave: true,
+    enableAlpha: true,
+  })) as unknown as ArrayLike<number>;
+  const count = (right - left) * (bottom - top);
+  const samples = Math.round(raw.length / count);
+  const nothing = image.getGDALNoData();
+  const rgba = new Uint8ClampedArray(4 * count);
+  for (let k = 0; k < count; k++) {
+    const from = k * samples;
+    const [r = 0, g = 0, b = 0] = [raw[from], raw[from + 1], raw[from + 2]];
+    rgba.set([r, g, b], 4 * k);
+    const empty = nothing !== null && r === nothing && g === nothing && b === nothing;
+    rgba[4 * k + 3] = empty ? 0 : samples > 3 ? (raw[from + 3] ?? 255) : 255;
+  }
+  return { window, rgba };
+};
+
+/** @throws Trouble */
+export const open_picture = async (file: Blob): Promise<Picture> => {
+  let image: GeoTIFFImage;
+  try {
+    image = await (await fromBlob(file)).getImage();
+  } catch (cause) {
+    throw new Trouble('unreadable', cause instanceof Error ? cause.message : '');
+  }
+  const bits = image.getBitsPerSample(0);
+  if (bits !== 8 && bits !== 1) throw new Trouble('not_8_bit', String(bits));
+  const affine = affine_of(image);
+  const pixels = to_pixels(affine);
+  if (!pixels) throw new Trouble('no_place');
+  const { forward, inverse, scale } = plane_of(image);
+  const place = (px: number, py: number): [number, number] => {
+    const x = (affine.a * px + affine.b * py + affine.c) * scale[0];
+    const y = (affine.d * px + affine.e * py + affine.f) * scale[1];
+    const [lon = Number.NaN, lat = Number.NaN] = inverse([x, y]);
+    return [lon, lat];
+  };
+  const to_picture: ToPicture = (lon, lat) => {
+    const [x = Number.NaN, y = Number.NaN] = forward([lon, lat]);
+    return pixels(x / scale[0], y / scale[1]);
+  };
+  const bounds = bounds_of(image, place);
+  const width = image.getWidth();
+  const height = image.getHeight();
+  // Of its diagonal: pixels may be no squares.
+  const across_m = Math.hypot(
+    (bounds.east - bounds.west) * 111_320 * Math.cos((bounds.south * Math.PI) / 180),
+    (bounds.north - bounds.south) * 111_320,
+  );
+  const is = { bounds, ...zooms_of(bounds, across_m / Math.hypot(width, height)) };
+  return { width, height, to_picture, is, read: (window) => read_pixels(image, window) };
+};

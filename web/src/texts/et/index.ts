@@ -1,0 +1,29 @@
+// Estonian.
+
+import { checks } from './checks';
+import { drive } from './drive';
+import { fences } from './fences';
+import { guide } from './guide';
+import { house } from './house';
+import { items } from './items';
+import { maps } from './maps';
+import { news } from './news';
+import { plan } from './plan';
+import { runs } from './runs';
+import { state } from './state';
+import { words } from './words';
+
+export const estonian = {
+  ...words,
+  ...state,
+  ...drive,
+  ...checks,
+  ...items,
+  ...plan,
+  ...fences,
+  ...runs,
+  ...maps,
+  ...house,
+  ...guide,
+  ...news,
+} as const;

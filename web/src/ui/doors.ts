@@ -1,0 +1,40 @@
+// What main.ts hands the station: the doors to the server, the map and the device.
+
+import type {
+  DraftStorage,
+  DrillCalls,
+  FenceCalls,
+  LiveLink,
+  MapCalls,
+  MissionCalls,
+  RowsCalls,
+  SurveyCalls,
+  TeachCalls,
+  VehicleCalls,
+} from '../model/ports';
+import type { TileCalls } from '../model/ground';
+import type { RunCalls } from '../model/run_ports';
+import type { SeenCalls } from '../model/seen';
+import type { SiteMapCalls } from '../model/site_map';
+import type { SlipCalls } from '../model/slips';
+import type { Kept } from './editor.svelte';
+
+export interface Doors {
+  readonly missions: MissionCalls;
+  readonly vehicle: VehicleCalls;
+  readonly teach: TeachCalls;
+  readonly runs: RunCalls;
+  readonly slips: SlipCalls;
+  readonly seen: SeenCalls;
+  readonly sites: SiteMapCalls;
+  readonly tiles: TileCalls;
+  readonly ground: DraftStorage;
+  readonly drill: DrillCalls;
+  readonly survey: SurveyCalls;
+  readonly rows: RowsCalls;
+  readonly fences: FenceCalls;
+  readonly map: MapCalls;
+  readonly kept: Kept;
+  readonly layers: DraftStorage;
+  readonly link: LiveLink;
+}

@@ -1,0 +1,27 @@
+// Keeps the map in step with the ground's pictures, and with the maps of places: the one in use, or
+// the one that is looked at.
+
+import { untrack } from 'svelte';
+
+import type { Station } from './station.svelte';
+
+/** Called where effects may begin. */
+export const keep_site_in_step = (station: Station): void => {
+  const { live, map } = station;
+  // Where there is a map in use; and in the list of maps, which one may be.
+  const maps_seen = $derived(station.tab === 'missions' && station.shelf === 'maps');
+  const located = $derived((live.vehicle?.place?.state ?? 'off') !== 'off');
+  const map_in_use = $derived(live.vehicle?.place?.map_id ?? null);
+  const site_wanted = $derived(maps_seen || (located && station.seen.layers.map));
+  $effect(() => {
+    void map_in_use; // another one: whoever changed it
+    return site_wanted ? untrack(() => station.sites.watch()) : undefined;
+  });
+  $effect(() => map.use_ground(station.grounds.shown));
+  $effect(() => {
+    if (maps_seen) void untrack(() => station.grounds.refresh());
+  });
+  $effect(() => station.sites.look(maps_seen));
+  $effect(() => map.show_site(site_wanted ? station.sites.on_map : null));
+  $effect(() => map.show_site_edits(maps_seen ? station.sites.editor.edits : []));
+};
