@@ -2,7 +2,7 @@
 
 import type Layer from 'ol/layer/Layer';
 
-import { canvas_layer } from './canvas';
+import { canvas_layer } from './layers';
 import { GridLabels } from './grid_labels';
 import { palette } from './palette';
 import { from_plane, units_per_m } from './projection';

@@ -44,6 +44,23 @@ export const prepare_plan = (plan: Plan): DrawnPlan => {
   return { spots: found, line, chips, rings, backwards, band: band_of(line, rings) };
 };
 
+/** A plan, projected once: when it changes. */
+export class ProjectedPlan {
+  #source: Plan;
+  drawn: DrawnPlan;
+
+  constructor(plan: Plan) {
+    this.#source = plan;
+    this.drawn = prepare_plan(plan);
+  }
+
+  take(plan: Plan): void {
+    if (this.#source === plan) return;
+    this.#source = plan;
+    this.drawn = prepare_plan(plan);
+  }
+}
+
 /** The line with one point elsewhere: what a drag will give. */
 export const with_point = (line: PlaneLine, k: number, to: PlanePoint): PlaneLine => {
   const xs = line.xs.slice();

@@ -2,7 +2,7 @@
 
 import { distance_m } from '../model/geo';
 import type { FenceDraft } from '../model/fence';
-import { EMPTY_PLAN, type LatLon, type Plan } from '../model/plan';
+import { EMPTY_PLAN, type LatLon } from '../model/plan';
 import type { MapEvents, Mark, RobotOnMap } from '../model/ports';
 import { language_now } from '../model/say';
 import { DrawnUpTo } from '../model/drawn_up_to';
@@ -11,26 +11,18 @@ import type { TrailShades } from '../model/trail_shades';
 import type { AheadOnMap, SeenOnMap } from '../model/seen';
 import { away_spot, paint_away } from './away_painter';
 import type { SiteEdit, SiteOnMap } from '../model/site_map';
-import {
-  pixels_of,
-  type Mover,
-  type Paint,
-  type Painter,
-  type Pixels,
-  type Stays,
-  type View,
-} from './canvas';
+import { pixels_of, type Mover, type Paint, type Painter, type Pixels, type View } from './canvas';
 import { around_px, box_of, goal_box, whole } from './boxes';
 import { paint_drive, prepare_drive, type DrawnDrive } from './drive_painter';
 import { paint_drill, type DrawnDrill } from './drill_painter';
-import { edited_movers, paint_edited } from './edited_painter';
+import { edited_movers, paint_edited, type Edited } from './edited_painter';
 import type { Box, Drag } from './edit';
 import { paint_fence } from './fence_painter';
 import { paint_grid, type Cover } from './grid';
 import { paint_goal, paint_pin } from './mark_painter';
 import { palette } from './palette';
 import type { DrawnBeside } from './pick_painter';
-import { prepare_plan, type DrawnPlan, type PlanLook } from './plan_painter';
+import { ProjectedPlan, type PlanLook } from './plan_painter';
 import { from_plane, type PlaneLine, to_plane_line } from './projection';
 import {
   accuracy_box,
@@ -55,6 +47,7 @@ import type * as SeenPainter from './seen_painter';
 import type * as SitePainter from './site_painter';
 import { paint_space, type DrawnSpace } from './space_painter';
 import { paint_slips, type DrawnSlip } from './slip_painter';
+import type { Stays } from './still';
 import { TrailLine } from './trail_line';
 
 /** Beyond this from its origin the grid gets a new one. */
@@ -75,23 +68,6 @@ const NO_EVENTS: MapEvents = {
   on_point: () => undefined,
   on_pan: () => undefined,
 };
-
-/** A plan, projected once: when it changes. */
-class Projected {
-  #source: Plan;
-  drawn: DrawnPlan;
-
-  constructor(plan: Plan) {
-    this.#source = plan;
-    this.drawn = prepare_plan(plan);
-  }
-
-  take(plan: Plan): void {
-    if (this.#source === plan) return;
-    this.#source = plan;
-    this.drawn = prepare_plan(plan);
-  }
-}
 
 /** The old one if the new one says the same: what is drawn of it need not be drawn again. */
 export const kept = <T extends object>(old: T | null, next: T | null): T | null =>
@@ -116,8 +92,8 @@ const EDITED: ReadonlySet<string> = new Set(['plan', 'look', 'picked', 'beside',
 
 export class Scene {
   events = NO_EVENTS;
-  readonly plan = new Projected(EMPTY_PLAN);
-  readonly route = new Projected(EMPTY_PLAN);
+  readonly plan = new ProjectedPlan(EMPTY_PLAN);
+  readonly route = new ProjectedPlan(EMPTY_PLAN);
   /** The route as it is laid out. */
   way: PlaneLine = to_plane_line([]);
   readonly driven = new TrailLine();
@@ -173,6 +149,9 @@ export class Scene {
   /** All of what stays, as it was drawn last. */
   #below_of: readonly unknown[] = [];
   #edited_of: readonly unknown[] = [];
+  /** It is being drawn, and what is seen of it is what it was before. */
+  #edited_waits = false;
+  #last_drag: Drag | null = null;
 
   take_drive(drive: DriveOnMap | null): void {
     this.drive = drive && prepare_drive(drive, this.drive);
@@ -198,8 +177,26 @@ export class Scene {
   /** What is drawn once, in order: what lies under the edited mission, and what does not. */
   still(): Stays[] {
     return [
-      { painters: this.#below(), changed: () => this.#below_changed() },
-      { painters: this.#edited(), changed: () => this.#edited_changed() },
+      {
+        painters: this.#below(),
+        changed: () => this.#below_changed(),
+        begin: () => {
+          this.#route_at.begin(this.current_item);
+          this.driven.begin();
+          this.fixes.begin();
+        },
+        shown: () => {
+          this.#route_at.keep(performance.now());
+          this.driven.keep();
+          this.fixes.keep();
+        },
+      },
+      {
+        painters: this.#edited(),
+        changed: () => this.#edited_changed(),
+        begin: () => (this.#edited_waits = true),
+        shown: () => (this.#edited_waits = false),
+      },
     ];
   }
 
@@ -217,12 +214,12 @@ export class Scene {
         if (this.space) paint_space(paint, this.space, palette());
       },
       (paint) => {
-        this.#route_at.keep(this.current_item, performance.now());
         if (this.runs.length > 0 || this.heat) return;
+        const { begun } = this.#route_at;
         if (this.corridor_m !== null) {
-          paint_corridor(paint, this.route.drawn, this.current_item, this.corridor_m);
+          paint_corridor(paint, this.route.drawn, begun, this.corridor_m);
         }
-        paint_route(paint, this.route.drawn, this.current_item, this.drive);
+        paint_route(paint, this.route.drawn, begun, this.drive);
         paint_way(paint, this.way);
       },
       (paint) => this.#paint_driven(paint),
@@ -285,7 +282,7 @@ export class Scene {
     const { robot, goal, seen, ahead } = this;
     return [
       ...this.#tips(pixels),
-      ...edited_movers(view, this),
+      ...edited_movers(view, this.#edited_as_seen()),
       {
         box: goal && goal_box(pixels, goal, robot?.at ?? null),
         paint: (paint) => goal && paint_goal(paint, goal, robot?.at ?? null, palette()),
@@ -306,6 +303,13 @@ export class Scene {
         paint: (paint) => ahead && this.seen_painter?.paint_block(paint, ahead, palette()),
       },
     ];
+  }
+
+  /** What was dragged stays where it was dropped until the rest has caught up. */
+  #edited_as_seen(): Edited {
+    if (this.drag || !this.#edited_waits) this.#last_drag = this.drag;
+    const { plan, look, box, picked, beside } = this;
+    return { plan, look, box, picked, beside, drag: this.#last_drag };
   }
 
   /** Where a robot out of sight is. */
@@ -355,8 +359,6 @@ export class Scene {
   }
 
   #paint_driven(paint: Paint): void {
-    this.driven.keep();
-    this.fixes.keep();
     if (this.heat) paint_heat(paint, this.heat, palette());
     if (this.runs.length > 0) paint_runs(paint, this.runs, this.size, palette());
     if (this.heat || this.runs.length > 0) return;

@@ -18,7 +18,9 @@ export class TrailLine {
   readonly #begins: boolean[] = [];
   readonly #driven: Driven[] = [];
   #seen = 0;
-  /** Up to where it is drawn with what stays. */
+  /** Up to where it is being drawn with what stays. */
+  #begun = 0;
+  /** Up to where it is seen with what stays. */
   #kept = 0;
 
   follow(trail: Trail): void {
@@ -42,9 +44,14 @@ export class TrailLine {
     }
   }
 
-  /** All of it is drawn now. */
+  /** All of it is drawn from now on. */
+  begin(): void {
+    this.#begun = this.#seen;
+  }
+
+  /** What was there at the begin is seen now. */
   keep(): void {
-    this.#kept = this.#seen;
+    this.#kept = this.#begun;
   }
 
   /** Index from which on it was added since; null: all of it is another one, or much is new. */

@@ -4,17 +4,28 @@
 const AT_MOST_EVERY_MS = 10_000;
 
 export class DrawnUpTo {
+  #begun = 0;
   #item = 0;
   #at_ms = -Infinity;
 
-  /** As far as it is drawn. */
+  /** As far as it is being drawn. */
+  get begun(): number {
+    return this.#begun;
+  }
+
+  /** As far as it is seen. */
   get item(): number {
     return this.#item;
   }
 
-  /** Drawn now. @param item from 1; 0: none is driven to */
-  keep(item: number, now_ms: number): void {
-    this.#item = item;
+  /** From now on it is drawn so far. @param item from 1; 0: none is driven to */
+  begin(item: number): void {
+    this.#begun = item;
+  }
+
+  /** What was begun is seen. */
+  keep(now_ms: number): void {
+    this.#item = this.#begun;
     this.#at_ms = now_ms;
   }
 
