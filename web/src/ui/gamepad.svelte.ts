@@ -15,8 +15,9 @@ import {
 } from '../model/gamepad';
 import { device } from './device.svelte';
 
-/** Browsers tell of buttons only when they are asked. */
+/** Browsers tell of buttons only when they are asked; of a gamepad that comes they tell themselves. */
 const LOOK_MS = 20;
+const SEEK_MS = 500;
 
 /** The one that is used: the first that is there. */
 const read = (): PadReading | null => {
@@ -56,12 +57,17 @@ export class Gamepads {
 
   /** @return ends it */
   watch(): () => void {
-    const look = (): void => this.#look();
-    const timer = setInterval(look, LOOK_MS);
+    let timer: ReturnType<typeof setTimeout>;
+    const look = (): void => {
+      clearTimeout(timer);
+      this.#look();
+      timer = setTimeout(look, this.reading === null ? SEEK_MS : LOOK_MS);
+    };
+    timer = setTimeout(look, LOOK_MS); // not at once: who calls this does not wait for what is read
     window.addEventListener('gamepadconnected', look);
     window.addEventListener('gamepaddisconnected', look);
     return () => {
-      clearInterval(timer);
+      clearTimeout(timer);
       window.removeEventListener('gamepadconnected', look);
       window.removeEventListener('gamepaddisconnected', look);
       this.lose_sight();
