@@ -13,7 +13,7 @@ type Schemas = components['schemas'];
 /** Large fields take the robot's computer a while. */
 const LARGE_LIMIT_MS = 30_000;
 
-const request_of = (wish: SurveyWish, name: string | null): Schemas['SurveyRequest'] => ({
+const request_of = (wish: SurveyWish): Schemas['SurveyRequest'] => ({
   polygon: [[...wish.polygon], ...wish.holes.map((hole) => [...hole])],
   spacing_m: wish.spacing_m,
   direction_deg: wish.direction_deg ?? 'best',
@@ -25,51 +25,39 @@ const request_of = (wish: SurveyWish, name: string | null): Schemas['SurveyReque
   overshoot_m: 0,
   order: wish.turn === 'arc' ? 'skip' : 'back_and_forth',
   ...(wish.speed_mps === null ? {} : { speed_mps: wish.speed_mps }),
-  ...(name === null ? {} : { name }),
 });
 
-const survey = (wish: SurveyWish, name: string | null): Promise<Answer<Schemas['Survey']>> =>
+const survey = (wish: SurveyWish): Promise<Answer<Schemas['Survey']>> =>
   request<Schemas['Survey']>('/missions/survey', {
     method: 'POST',
-    body: request_of(wish, name),
+    body: request_of(wish),
     limit_ms: LARGE_LIMIT_MS,
   });
 
 const survey_calls: SurveyCalls = {
   preview: async (wish): Promise<Answer<Survey>> => {
-    const answer = await survey(wish, null);
+    const answer = await survey(wish);
     if (!answer.ok) return answer;
     const { mission, ...figures } = answer.value;
     return { ok: true, value: { ...figures, plan: mission } };
   },
-  keep: async (wish, name) => {
-    const answer = await survey(wish, name);
-    // With a name the answer holds the stored mission.
-    return answer.ok ? { ok: true, value: answer.value.mission as Schemas['Mission'] } : answer;
-  },
 };
 
-const rows = (wish: RowsWish, name: string | null): Promise<Answer<Schemas['RowsPlan']>> => {
+const rows = (wish: RowsWish): Promise<Answer<Schemas['RowsPlan']>> => {
   const { entry, ...others } = wish;
   const body: Schemas['RowsRequest'] = {
     ...others,
     ...(entry ? { entry: entry.at, heading_deg: entry.heading_deg % 360 } : {}),
-    ...(name === null ? {} : { name }),
   };
   return request<Schemas['RowsPlan']>('/missions/rows', { method: 'POST', body });
 };
 
 const rows_calls: RowsCalls = {
   preview: async (wish): Promise<Answer<RowBlock>> => {
-    const answer = await rows(wish, null);
+    const answer = await rows(wish);
     return answer.ok
       ? { ok: true, value: { order: answer.value.order, plan: answer.value.mission } }
       : answer;
-  },
-  keep: async (wish, name) => {
-    const answer = await rows(wish, name);
-    // With a name the answer holds the stored mission.
-    return answer.ok ? { ok: true, value: answer.value.mission as Schemas['Mission'] } : answer;
   },
 };
 

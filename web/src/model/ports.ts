@@ -237,7 +237,6 @@ export interface DrillCalls {
 export interface PlanningCalls<Wish, Result> {
   /** Works it out; nothing is stored. */
   preview(wish: Wish): Promise<Answer<Result>>;
-  keep(wish: Wish, name: string): Promise<Answer<Mission>>;
 }
 export type SurveyCalls = PlanningCalls<SurveyWish, Survey>;
 export type RowsCalls = PlanningCalls<RowsWish, RowBlock>;

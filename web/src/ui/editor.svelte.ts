@@ -6,7 +6,7 @@ import type { PlanAction } from '../model/actions';
 import { draft_text, parse_draft, type Stored } from '../model/draft';
 import { begin_history, perform, redo, undo, type History } from '../model/history';
 import { edits_left, edits_resumed, parse_past, with_past } from '../model/past_edits';
-import { EMPTY_PLAN, type KeptDrawing, type LatLon, type Plan } from '../model/plan';
+import { EMPTY_PLAN, type LatLon, type Plan } from '../model/plan';
 import { say } from '../model/say';
 import { joined, NOTHING_PICKED, toggled, within, type Picked } from '../model/selection';
 import { drag_items } from '../model/shapes';
@@ -194,6 +194,17 @@ export class Editor implements Drawing {
     this.adding = mission.items.length === 0;
   }
 
+  /** A plan made elsewhere, in place of the one here: whoever calls has asked. @return null: it could not be */
+  async keep_as_new(plan: Plan): Promise<Mission | null> {
+    const answer = await this.#calls.create(plan);
+    if (!answer.ok) {
+      this.#notices.show('error', failure_text(say('done_kept'), answer.refusal));
+      return null;
+    }
+    this.show_mission(answer.value);
+    return answer.value;
+  }
+
   /** True when it is safe to replace the plan: nothing unsaved, or the person said so. */
   async may_discard(): Promise<boolean> {
     if (!this.unsaved) return true;
@@ -223,18 +234,6 @@ export class Editor implements Drawing {
     } finally {
       this.saving = false;
     }
-  }
-
-  /** With the mission as it is stored: no step of its own. Where that fails, the device still has it. */
-  async keep_drawing(drawing: KeptDrawing): Promise<void> {
-    const { stored } = this;
-    if (stored === null || this.unsaved || this.saving) return;
-    this.saving = true;
-    const plan = { ...this.plan, drawing };
-    const answer = await this.#calls.replace(stored.id, stored.revision, plan);
-    this.saving = false;
-    if (!answer.ok || this.unsaved || this.stored !== stored) return;
-    this.#begin(begin_history(plan), { id: stored.id, revision: answer.value.revision });
   }
 
   async #after_save(plan: Plan, answer: Answer<Mission>): Promise<boolean> {

@@ -1,10 +1,10 @@
 // What becomes a mission when it is kept: asked for as it is changed, shown as it would be. It stays one
 // object: taken up again later, the mission's points follow.
 
-import { type Answer, failure_text, refusal_text } from '../model/answer';
+import { refusal_text } from '../model/answer';
 import { drawing_of, type Drawn } from '../model/makings';
 import type { Plan } from '../model/plan';
-import type { Mission, PlanningCalls } from '../model/ports';
+import type { PlanningCalls } from '../model/ports';
 import { say } from '../model/say';
 import type { Editor } from './editor.svelte';
 import type { Makings } from './makings.svelte';
@@ -87,20 +87,20 @@ export abstract class Planner<Wish, Result extends { readonly plan: Plan }> {
    * @return whether it is in the editor */
   async keep(): Promise<boolean> {
     if (this.remakes) return this.#remake();
-    if (!(await this.#editor.may_discard())) return false;
-    this.busy = true;
-    const answer: Answer<Mission> = await this.#calls.keep(this.wish, this.name.trim());
-    this.busy = false;
-    if (!answer.ok) {
-      this.#notices.show('error', failure_text(say('done_kept'), answer.refusal));
-      return false;
-    }
-    const { id, name, items } = answer.value;
+    const { result } = this;
+    if (result === null || !(await this.#editor.may_discard())) return false;
     const drawn = this.drawn_now();
-    this.#makings.keep(id, items, drawn);
-    this.#editor.show_mission(answer.value);
-    const drawing = drawing_of(drawn, items);
-    if (drawing) await this.#editor.keep_drawing(drawing);
+    const { items } = result.plan;
+    const name = this.name.trim();
+    this.busy = true;
+    const mission = await this.#editor.keep_as_new({
+      ...result.plan,
+      name,
+      drawing: drawing_of(drawn, items),
+    });
+    this.busy = false;
+    if (mission === null) return false;
+    this.#makings.keep(mission.id, mission.items, drawn);
     this.#notices.show('good', say('kept_name_as_a_mission', { name }));
     this.close();
     this.clear();
