@@ -116,8 +116,9 @@ class SeeingRobot:
 
     def start(self, mission):
         """Loads, arms and starts it. @param mission as the API gave it back"""
-        self.rest.do("POST", "/execution/load", {"mission_id": mission["id"]})
+        # Its map begins with the first position, and what was loaded for another one is refused.
         until("it is ready", 30, lambda: self.rest.get("/vehicle")["ready_to_arm"], 0.2)
+        self.rest.do("POST", "/execution/load", {"mission_id": mission["id"]})
         self.rest.do("POST", "/vehicle/arm", {})
         self.rest.do("POST", "/execution/start",
                      {"mission_id": mission["id"], "revision": mission["revision"]})

@@ -217,7 +217,7 @@ test('a map is forbidden a corner by hand, taken back before it is saved, rename
   await press(page, 'Change…');
   await expect.poll(async () => (await walls(page)).length).toBeGreaterThan(200);
   await press(page, '+ Forbid');
-  await expect(page.getByLabel('Dismiss')).toHaveCount(0); // on a phone they lie over the map
+  // Messages may lie over the map: a finger reaches it all the same.
   await draw(page, [
     [-40, -30],
     [0, -30],

@@ -152,6 +152,8 @@ export const draw = async (
   page: Page,
   places: readonly (readonly [right: number, down: number])[],
 ): Promise<void> => {
+  // A page that was just opened has none yet.
+  await page.locator('#map canvas').first().waitFor({ state: 'attached' });
   const [x, y] = await map_middle(page);
   for (const [right, down] of places) await page.mouse.click(x + right, y + down);
 };
