@@ -49,6 +49,12 @@ bool inside_fence(const base::CalibrationSpace& space, const CalibrationFacts& f
   return true;
 }
 
+bool leans_too_much(const std::optional<base::Attitude>& a, const nav::SlopeParams& p) noexcept {
+  nav::Vehicle v;
+  if (a) v.roll_rad = a->roll_rad, v.pitch_rad = a->pitch_rad;
+  return nav::too_steep_to_turn(v, p);
+}
+
 std::string metres(double m) {
   return std::to_string(std::lround(std::ceil(m))) + " m";
 }
@@ -73,6 +79,7 @@ std::string calibration_refusal(const CalibrationFacts& f) {
   if (!f.pose->heading_known || f.pose->yaw_sigma_rad > kCertain_rad) {
     return "the heading is not known well enough: drive some metres";
   }
+  if (f.steep) return "the ground leans too much to measure on it";
   const base::CalibrationSpace space = nav::calibration_space(f.kind, f.path);
   if (f.fence != nullptr && !inside_fence(space, f)) {
     return "the figure would leave the fence: it needs " + metres(space.ahead_m) + " ahead, " +
@@ -167,13 +174,15 @@ base::Result<void> Robot::Impl::handle(const Calibrate& c) {
   if (auto ok = may_drive_by_itself(); !ok) return ok;
   if (auto ok = may_be_placed(); !ok) return ok;
   const nav::PathParams set = config->path();
-  const std::string no = calibration_refusal({.kind = c.kind,
-                                              .pose = pose,
-                                              .fence = fence.get(),
-                                              .margin_m = way_margin_m(),
-                                              .path = set,
-                                              .compass = world.compass.has_value(),
-                                              .antennas = world.antennas.has_value()});
+  const std::string no =
+      calibration_refusal({.kind = c.kind,
+                           .pose = pose,
+                           .fence = fence.get(),
+                           .margin_m = way_margin_m(),
+                           .path = set,
+                           .compass = world.compass.has_value(),
+                           .antennas = world.antennas.has_value(),
+                           .steep = nav::too_steep_to_turn(vehicle(), set.slope)});
   if (!no.empty()) return base::fail(Code::Conflict, no);
   const auto heard = estimator.last_position();
   if (!heard || clock.now() - *heard > kSilent) {
@@ -323,7 +332,8 @@ base::Result<CalibrationPreview> Robot::calibration(base::CalibrationKind kind) 
                                     .margin_m = config->way_margin_m(),
                                     .path = path,
                                     .compass = state->estimator.compass_heard,
-                                    .antennas = state->antennas_heard});
+                                    .antennas = state->antennas_heard,
+                                    .steep = leans_too_much(state->attitude, path.slope)});
   if (state->mission.state == base::ExecutionState::Running) {
     out.reason = "a mission runs: pause or stop it first";
   }

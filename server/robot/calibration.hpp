@@ -26,6 +26,7 @@ struct CalibrationFacts {
   const nav::PathParams& path;
   bool compass = false;   ///< heard
   bool antennas = false;  ///< likewise
+  bool steep = false;     ///< it may not turn on the spot where it stands
 };
 
 /// Why the figure cannot be driven from here, whatever else holds the robot; empty: it can.

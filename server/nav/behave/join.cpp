@@ -13,6 +13,7 @@ constexpr double kJoinLook_m = 0.05;
 constexpr double kOtherLane_m = 0.3;  // farther again by so much: what comes then is another lane
 constexpr double kToStop_m = 0.3;     // nearer to a place to stop at it would not come to it
 constexpr double kRoomToBend = 1.3;   // of the least radius, for the wheels' slowness
+constexpr double kToSettle = 2.0;     // metres ahead that take it one metre nearer to its way
 const double kAlong_rad = base::rad_from_deg(25.0);
 const double kAhead_rad = base::rad_from_deg(90.0);
 
@@ -118,6 +119,10 @@ std::optional<Joining> join_way(const Route& route, std::size_t step, const Stan
         base::distance_m(stand.at, left.at) <= arrival_radius_m(&left, stand.sigma_m, p);
     if (!counts && !behind.silent) ++join.left_out;
   }
+  const RouteNode& ahead = course.nodes[course.steps[join.step].node];
+  const double beyond_m = at.off_m - arrival_radius_m(&ahead, stand.sigma_m, p);
+  const double left_m = path.vertex_m[course.steps[join.step].node] - at.s_m;
+  if (!steered && left_m < kToSettle * beyond_m) return std::nullopt;  // it would miss that one
   return join;
 }
 

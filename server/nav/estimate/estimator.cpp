@@ -201,8 +201,9 @@ std::optional<base::Pose> Estimator::pose(Time now) const {
   // Axes of the covariance: mean of the variances ± half their spread.
   const double wanders_m = drift_.sigma_m > 0.0 ? 0.0 : kFixedWanders_m;
   const double doubt_m2 = unknown_m() * unknown_m() + wanders_m * wanders_m;
-  const double a = belief_.P(kEast, kEast) + doubt_m2;
-  const double b = belief_.P(kNorth, kNorth) + doubt_m2;
+  const double least_m2 = coarse_walk_.least_m2();
+  const double a = std::max(least_m2, belief_.P(kEast, kEast)) + doubt_m2;
+  const double b = std::max(least_m2, belief_.P(kNorth, kNorth)) + doubt_m2;
   const double c = belief_.P(kEast, kNorth);
   const double half = std::hypot(0.5 * (a - b), c);
   p.ellipse.major_m = std::sqrt(std::max(0.0, 0.5 * (a + b) + half));

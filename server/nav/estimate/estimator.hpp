@@ -44,6 +44,7 @@
 #include "base/snapshot.hpp"
 #include "nav/estimate/arrival.hpp"
 #include "nav/estimate/askew_watch.hpp"
+#include "nav/estimate/coarse_walk.hpp"
 #include "nav/estimate/ekf.hpp"
 #include "nav/estimate/fix_trust.hpp"
 #include "nav/estimate/gnss_quality.hpp"
@@ -357,6 +358,7 @@ class Estimator {
   WanderWatch wander_watch_;
   bool wandered_ = false;  ///< positions do, and the belief knows it
   base::FixType fused_type_ = base::FixType::None;
+  CoarseWalk coarse_walk_;
   base::FixType anchor_type_ = base::FixType::None;
   Time approach_until_{};
   double approach_mps_ = kApproach_mps;

@@ -125,6 +125,7 @@ bool Estimator::correct(const LandmarkSight& s, Time now) noexcept {
   if (s.yaw_rad) turn_by(s, at, together);
   last_by_landmark_ = now;
   landmarks_led_ = true;
+  coarse_walk_.found();
   last_fused_ = s.stamp;
   free_m_ = 0.0;
   placed_ = false;

@@ -167,6 +167,7 @@ void Estimator::follow_satellites(const base::PlaceFix& fix, Time stamp) noexcep
 void Estimator::lead_by_map(Time stamp) noexcept {
   health_.by_map = true;
   last_by_map_ = now_;
+  coarse_walk_.found();
   last_fused_ = stamp;
   free_m_ = 0.0;
   placed_ = false;

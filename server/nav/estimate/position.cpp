@@ -320,6 +320,12 @@ void Estimator::fuse_position(const base::GnssFix& fix, const GnssQuality& q) no
     }
     in.refused_since.reset();
     count_as_proof(fix.stamp);
+    if (fix.fix != base::FixType::Single) {
+      coarse_walk_.found();
+    } else if (last_fused_) {
+      coarse_walk_.led(!standing_, std::min(1.0, seconds(fix.stamp - *last_fused_)),
+                       q.drift.sigma_m);
+    }
     last_fused_ = fix.stamp;
     last_satellites_ = now_;
     free_m_ = 0.0;

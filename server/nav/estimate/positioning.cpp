@@ -54,6 +54,7 @@ void Estimator::place(std::optional<base::EnuPoint> at, std::optional<double> ya
     located_ = true;
     placed_ = true;
     differed_m_ = 0.0;
+    coarse_walk_.found();
     last_fused_ = now_;
     free_m_ = 0.0;
     approaching_ = false;

@@ -135,13 +135,30 @@ class Comparer {
     return b.empty() ? Time{} : b.newest().t;
   }
 
+  /// Where a window begins and ends, and the middles of what is averaged there.
+  struct Ends {
+    Time end{};
+    double window_s = 0.0;
+    std::array<std::optional<Moment>, 4> moments{};
+  };
+
+  /// Most pairs ask for the same one.
+  const Ends& ends(Time end, double w) noexcept {
+    if (ends_.window_s != w || ends_.end != end) {
+      const auto& curve = f_.curve;
+      ends_ = {end,
+               w,
+               {curve.at(end - span(w + kMean_s)), curve.at(end - span(w + 0.5 * kMean_s)),
+                curve.at(end - span(0.5 * kMean_s)), curve.at(end)}};
+    }
+    return ends_;
+  }
+
   void turn_pair(Sense a, Sense b, Time end, double w) noexcept {
     const Time begin = end - span(w + kMean_s);
     if (!covers(a, begin - reach(a)) || !covers(b, begin - reach(b))) return;
-    const auto from = f_.curve.at(end - span(w + 0.5 * kMean_s));
-    const auto to = f_.curve.at(end - span(0.5 * kMean_s));
-    const auto first = f_.curve.at(begin);
-    const auto newest = f_.curve.at(end);
+    const Ends& at = ends(end, w);
+    const auto& [first, from, to, newest] = at.moments;
     if (!from || !to || !first || !newest || first->ref_run != newest->ref_run) return;
     auto one = turned(a, *from, *to, end, w);
     const auto two = turned(b, *from, *to, end, w);
@@ -375,6 +392,7 @@ class Comparer {
   const Facts& f_;
   double sigmas_;
   Table table_;
+  Ends ends_;
 };
 
 }  // namespace

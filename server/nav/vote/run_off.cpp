@@ -44,8 +44,11 @@ constexpr double kFits = 12.0;  // y'S⁻¹y of the lie, so that it is one
 constexpr int kFewestLooks = 3;
 // Tracks that spin leave the robot behind, too: what looks like that is theirs. Slower, and it is
 // not told from what positions scatter by; more aside than this part of it, and no track does it.
+// Ground that gives way all at once (from 8 to 40 % slip) does it straight back.
 constexpr double kSpins_mps = 0.2;
-constexpr double kSpinsLeast = 0.45;  // of the tracks' way; from there on spinning is looked for
+constexpr double kSlipsLeast = 0.15;  // of the tracks' way; less, and the ground's filter follows
+constexpr double kSlipsAside = 0.12;
+constexpr double kSpinsLeast = 0.45;  // from there on spinning is looked for
 constexpr double kSpinsAside = 0.3;
 constexpr double kSpinsFrom = 2.0;  // of the ratio: before, the drift is not known well
 constexpr double kGap_s = 1.3;
@@ -214,8 +217,9 @@ bool RunOff::like_spinning(const Look& to) const noexcept {
   const EnuPoint ahead{(c * dx - s * dy) / speed_mps, (s * dx + c * dy) / speed_mps};
   const double along = lie_.x(kLieE) * ahead.east_m + lie_.x(kLieN) * ahead.north_m;
   const double aside = lie_.x(kLieN) * ahead.east_m - lie_.x(kLieE) * ahead.north_m;
-  return -along >= kSpinsLeast * speed_mps && -along <= speed_mps &&
-         std::abs(aside) <= kSpinsAside * -along;
+  const double back = -along / speed_mps;
+  if (back < kSlipsLeast || back > 1.0) return false;
+  return std::abs(aside) <= (back < kSpinsLeast ? kSlipsAside : kSpinsAside) * -along;
 }
 
 /// A suspicion that came to nothing begins anew at the next position.

@@ -67,6 +67,18 @@ TEST(Join, FarFromTheBeginningItIsDrivenTo) {
   EXPECT_FALSE(join_way(r, 0, {{2.0, 0.0}, 0.0, 0.02}, {}, never));
 }
 
+TEST(Join, WhatItWouldMissFromBesideTheWayIsDrivenFromItemOne) {
+  const Stand beside{{2.0, 1.2}, 0.0, 0.02};
+  EXPECT_FALSE(join_way(route(plan({at(0, 0), at(3, 0), at(3, 10)})), 0, beside, {}, {}));
+  EXPECT_TRUE(join_way(route(plan({at(0, 0), at(6, 0), at(6, 10)})), 0, beside, {}, {}));
+  // Near enough that item 2 is reached from there, or item 2 counts from afar.
+  const Stand nearer{{2.0, 0.4}, 0.0, 0.02};
+  EXPECT_TRUE(join_way(route(plan({at(0, 0), at(3, 0), at(3, 10)})), 0, nearer, {}, {}));
+  mission::Waypoint wide = at(3, 0);
+  wide.radius_m = 1.2;
+  EXPECT_TRUE(join_way(route(plan({at(0, 0), wide, at(3, 10)})), 0, beside, {}, {}));
+}
+
 TEST(Join, TheWayIsDrivenWithoutTurningBack) {
   Ride r;
   r.vehicle.at = {2.0, 0.8};

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -120,6 +121,24 @@ TEST(RunOff, GroundThatSlipsOrCrabsProvesNothing) {
       EXPECT_LT(drive.go(-0.6, 0.1, 5.0), 1.0) << scale << " " << crab;
     }
   }
+}
+
+TEST(RunOff, GroundThatGivesWayAllAtOnceProvesNothing) {
+  for (const auto& [before, after] : {std::pair{1.0, 0.7}, {0.92, 0.6}, {1.0, 0.6}, {0.8, 0.6}}) {
+    StraightTold drive;
+    drive.scale = before;
+    EXPECT_LT(drive.go(1.0, 0.0, 15.0), 1.0) << before;
+    drive.scale = after;
+    EXPECT_LT(drive.go(1.0, 0.0, 30.0), 1.0) << before << " to " << after;
+    EXPECT_LT(drive.go(1.0, 0.3, 5.0), 1.0) << before << " to " << after;
+  }
+}
+
+TEST(RunOff, ALieThatDrawsAsideAsWellIsNoGroundThatGivesWay) {
+  StraightTold drive;
+  drive.go(1.0, 0.0, 10.0);
+  drive.drift_mps = {-0.3, 0.1};
+  EXPECT_GE(drive.go(1.0, 0.0, 8.0), 1.0);
 }
 
 TEST(RunOff, ASlideIsGroundsWhereTheSlopeIsThatSteepAndALieOnTheLevel) {
