@@ -80,6 +80,8 @@ def a_plant_of_somebody_else():
         for run in answer["runs"]:
             check(0 < run["truth"]["cross_track"]["rms_m"] < 0.1, f"rms {run['truth']['cross_track']}")
             check(abs(run["track"][-1][2] - 5) < 0.3, f"ends at {run['track'][-1]}")
+            # A plant whose receiver is later than roverd assumes, or tells its heading as its course, fails here.
+            check(run["honesty"]["inside_pct"] > 85, f"the claims fit: {run['honesty']}")
 
 
 def plants_that_fail():

@@ -79,6 +79,7 @@ export const readiness = (need: CalibrationNeed, vehicle: Vehicle): readonly Rea
 const CURES: readonly (readonly [RegExp, PlainKey])[] = [
   [/\bfence\b/, 'fail_fence'],
   [/\bheading is not known\b/, 'fail_heading'],
+  [/\bdiffer\b|\bcontradict|\bcannot be told\b/, 'fail_contradict'],
   [/\bposition\b|\bGNSS\b|\breceiver\b/, 'fail_position'],
   [/\bslow/, 'fail_slowed'],
   [/\bleft the space\b/, 'fail_space'],

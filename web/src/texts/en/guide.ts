@@ -39,6 +39,8 @@ export const guide = {
   ready_at_most: '{now}, at most {most}',
   fail_position:
     'Wait for RTK fixed, or go to where the antenna sees the open sky, and begin again.',
+  fail_contradict:
+    'Some sensors contradict each other: drive some metres by hand until the checks are well, and begin again.',
   fail_heading: 'Drive some metres straight ahead by hand, and begin again.',
   fail_fence: 'Drive or turn the robot so that the outlined ground lies inside the fence.',
   fail_slowed:

@@ -37,6 +37,8 @@ export const guide = {
   ready_does_not_fit: 'ei mahu siia',
   ready_at_most: '{now}, kõige rohkem {most}',
   fail_position: 'Oota RTK-lahendit või mine lageda taeva alla ja alusta uuesti.',
+  fail_contradict:
+    'Andurid räägivad üksteisele vastu: sõida käsitsi mõni meeter, kuni kontrollid on korras, ja alusta uuesti.',
   fail_heading: 'Sõida käsitsi mõni meeter otse ja alusta uuesti.',
   fail_fence: 'Sõida või pööra robotit nii, et piiritletud ala jääb tara sisse.',
   fail_slowed:

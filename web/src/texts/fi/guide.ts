@@ -38,6 +38,8 @@ export const guide = {
   ready_does_not_fit: 'ei mahdu tähän',
   ready_at_most: '{now}, enintään {most}',
   fail_position: 'Odota RTK-ratkaisua tai siirry avoimen taivaan alle ja aloita uudelleen.',
+  fail_contradict:
+    'Anturit ovat ristiriidassa keskenään: aja käsin muutama metri, kunnes tarkistukset ovat kunnossa, ja aloita uudelleen.',
   fail_heading: 'Aja käsin muutama metri suoraan ja aloita uudelleen.',
   fail_fence: 'Aja tai käännä robotti niin, että rajattu alue on aidan sisällä.',
   fail_slowed:

@@ -38,6 +38,8 @@ export const guide = {
   ready_does_not_fit: 'qui non ci sta',
   ready_at_most: '{now}, al massimo {most}',
   fail_position: 'Attendi RTK fisso, o vai dove l’antenna vede il cielo, e ricomincia.',
+  fail_contradict:
+    'Alcuni sensori si contraddicono: guida a mano qualche metro finché i controlli sono a posto e ricomincia.',
   fail_heading: 'Guida a mano qualche metro dritto e ricomincia.',
   fail_fence: 'Sposta o gira il robot così che l’area tracciata stia nel recinto.',
   fail_slowed:

@@ -37,6 +37,8 @@ export const guide = {
   ready_does_not_fit: 'passer ikke her',
   ready_at_most: '{now}, høyst {most}',
   fail_position: 'Vent på RTK fast, eller gå dit antennen ser åpen himmel, og begynn igjen.',
+  fail_contradict:
+    'Noen sensorer motsier hverandre: kjør noen meter for hånd til kontrollene er i orden, og begynn igjen.',
   fail_heading: 'Kjør noen meter rett fram for hånd, og begynn igjen.',
   fail_fence: 'Kjør eller snu roboten slik at området ligger innenfor gjerdet.',
   fail_slowed: 'Noe begrenset farten: rydd området, se hva som står over kartet, og begynn igjen.',
