@@ -55,8 +55,8 @@ export class Frame {
     return this.canvas.getContext('2d');
   }
 
-  place(transform: string): void {
-    if (this.canvas.style.transform !== transform) this.canvas.style.transform = transform;
+  place(left_px: number, top_px: number): void {
+    Object.assign(this.canvas.style, { left: `${left_px}px`, top: `${top_px}px` });
   }
 
   #size(width_px: number, height_px: number): void {

@@ -1,8 +1,8 @@
 // A canvas and its place on the screen.
 
 /** Lies at the paper's corner, moved by its transform alone. */
-export const laid = (canvas: HTMLCanvasElement): HTMLCanvasElement => {
-  Object.assign(canvas.style, {
+export const laid = <T extends HTMLElement>(element: T): T => {
+  Object.assign(element.style, {
     position: 'absolute',
     left: '0',
     top: '0',
@@ -10,7 +10,7 @@ export const laid = (canvas: HTMLCanvasElement): HTMLCanvasElement => {
     willChange: 'transform',
     pointerEvents: 'none',
   });
-  return canvas;
+  return element;
 };
 
 /** A canvas that is drawn on often, and its size on the screen. */

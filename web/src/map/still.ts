@@ -12,6 +12,7 @@ import { angle_between } from '../model/map_up';
 import { pieces_of, type Piece } from '../model/pieces';
 import { pixels_of, run, type Painter, type View } from './canvas';
 import { Easel, Frame } from './easel';
+import { laid } from './sheet';
 
 /** What stays, on one sheet. */
 export interface Stays {
@@ -73,14 +74,16 @@ interface Begun {
 }
 
 export class Still {
-  /** Holds its frames. */
-  readonly box = document.createElement('div');
+  /** Holds its frames, and is moved. */
+  readonly box = laid(document.createElement('div'));
   readonly #stays: Stays;
   readonly #easel = Easel.set_up();
   #frames: readonly Frame[] = [];
-  #pieces: readonly Piece[] = [];
+  #transform = '';
   #drawn: View | null = null;
   #begun: Begun | null = null;
+  /** What had changed when it was begun was not shown. */
+  #dropped = false;
 
   constructor(stays: Stays) {
     this.#stays = stays;
@@ -98,7 +101,7 @@ export class Still {
   step(view: View, budget: { pieces: number }): boolean {
     if (this.#begun && !lie_of(this.#begun.view, view)) this.#drop();
     if (!this.#begun) {
-      const changed = this.#stays.changed();
+      const changed = this.#stays.changed() || this.#dropped;
       if (changed || !this.#drawn || !lie_of(this.#drawn, view)) this.#begin(view);
     }
     const again = this.#begun !== null && this.#go_on(this.#begun, budget);
@@ -107,6 +110,7 @@ export class Still {
   }
 
   #begin(view: View): void {
+    this.#dropped = false;
     this.#stays.begin();
     const margin = margin_of(view);
     const pieces = pieces_of(view.width_px + 2 * margin, view.height_px + 2 * margin, view.ratio);
@@ -116,6 +120,7 @@ export class Still {
   #drop(): void {
     for (const picture of this.#begun?.pictures ?? []) picture.close();
     this.#begun = null;
+    this.#dropped = true;
   }
 
   /** @return all of it is there */
@@ -154,23 +159,24 @@ export class Still {
       this.#frames = pieces.map(() => new Frame());
       this.box.replaceChildren(...this.#frames.map(({ canvas }) => canvas));
     }
-    this.#pieces = pieces;
+    this.#frames.forEach((frame, k) => {
+      const { left = 0, top = 0 } = pieces[k] ?? {};
+      frame.place(left, top);
+    });
     this.#drawn = view;
     this.#begun = null;
     this.#stays.shown();
   }
 
-  /** Whole pixels: between them lines would blur. */
+  /** Whole pixels: between them lines would blur. All frames as one: they keep their places in the box. */
   #lie({ scale, x, y }: Lie, ratio: number): void {
     const whole = (value: number): number => Math.round(value * ratio) / ratio;
-    const same = Math.abs(scale - 1) < 1e-9;
-    this.#frames.forEach((frame, k) => {
-      const { left = 0, top = 0 } = this.#pieces[k] ?? {};
-      frame.place(
-        same
-          ? `translate(${whole(x) + left}px, ${whole(y) + top}px)`
-          : `translate(${x + scale * left}px, ${y + scale * top}px) scale(${scale})`,
-      );
-    });
+    const transform =
+      Math.abs(scale - 1) < 1e-9
+        ? `translate(${whole(x)}px, ${whole(y)}px)`
+        : `translate(${x}px, ${y}px) scale(${scale})`;
+    if (transform === this.#transform) return;
+    this.#transform = transform;
+    this.box.style.transform = transform;
   }
 }
