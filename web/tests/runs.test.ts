@@ -56,6 +56,14 @@ describe('report', () => {
     expect(row('Time', null)?.first).toBe('1 min 40 s');
   });
 
+  test('a run that was broken off was not quicker than one that came to its end', () => {
+    const broken: RunReport = { ...report, time_s: 5 };
+    const time = (ended: boolean) =>
+      report_rows(report, broken, ended).find(({ label }) => label === 'Time');
+    expect(time(true)?.better).toBe('second');
+    expect(time(false)).toMatchObject({ second: '5 s', better: null });
+  });
+
   test('marks the better one of two, where they differ enough', () => {
     const other = {
       ...report,

@@ -9,6 +9,7 @@ import {
   shown_pair_of,
   SIGNALS,
   Telemetry,
+  value_range,
 } from '../src/model/telemetry';
 import {
   radio_lines,
@@ -146,4 +147,17 @@ describe('vehicle', () => {
     expect(event('error', 'blocked')).toBe(true);
     expect(event('warning', 'arm_refused')).toBe(false);
   });
+});
+
+test('an axis shows a battery that sags, and does not make a robot that stands move', () => {
+  const [low, high] = value_range(52.6, 52.7);
+  expect(low).toBeGreaterThan(52);
+  expect(high).toBeLessThan(53.3);
+  expect(high - low).toBeGreaterThan(1);
+  const [least, most] = value_range(0, 0.003);
+  expect(most - least).toBeCloseTo(0.22, 2);
+  expect(value_range(null, null)).toEqual([0, 1]);
+  const [from, to] = value_range(-1, 3);
+  expect(from).toBeLessThan(-1);
+  expect(to).toBeGreaterThan(3);
 });

@@ -85,15 +85,15 @@ interface Measure {
   readonly label: PlainKey;
   readonly value: (report: RunReport) => number | null;
   readonly text: (value: number | null) => string;
-  /** Less is better; else it only describes. */
-  readonly judged: boolean;
+  /** Less is better; of what adds up only between runs that came to their end; else it only describes. */
+  readonly judged: boolean | 'at_the_end';
 }
 
 const measure = (
   label: PlainKey,
   value: Measure['value'],
   text: Measure['text'] = metres,
-  judged = true,
+  judged: Measure['judged'] = true,
 ): Measure => ({ label, value, text, judged });
 
 const MEASURES: readonly Measure[] = [
@@ -113,7 +113,7 @@ const MEASURES: readonly Measure[] = [
     (v) => number_text(v, 2, 'm/s³'),
   ),
   measure('from_the_end_point', (r) => r.end_m),
-  measure('time', (r) => r.time_s, duration),
+  measure('time', (r) => r.time_s, duration, 'at_the_end'),
   measure('of_it_driving', (r) => r.driving_s, duration, false),
   measure('driven', (r) => r.driven_m, metres, false),
   measure('of_it_to_the_first_item', (r) => r.approach?.driven_m ?? null, metres, false),
@@ -121,6 +121,7 @@ const MEASURES: readonly Measure[] = [
     'energy',
     (r) => r.energy_wh,
     (v) => number_text(v, 1, 'Wh'),
+    'at_the_end',
   ),
 ];
 
@@ -143,14 +144,20 @@ const better_of = (first: number | null, second: number | null): ReportRow['bett
   return first < second ? 'first' : 'second';
 };
 
-export const report_rows = (first: RunReport, second: RunReport | null): ReportRow[] =>
+/** @param ended both of them came to their end */
+export const report_rows = (
+  first: RunReport,
+  second: RunReport | null,
+  ended = true,
+): ReportRow[] =>
   MEASURES.map(({ label, value, text, judged }) => {
+    const counts = judged === 'at_the_end' ? ended : judged;
     const one = value(first);
     const other = second && value(second);
     return {
       label: say_plain(label),
       first: text(one),
       second: second && text(other),
-      better: judged && second ? better_of(one, other) : null,
+      better: counts && second ? better_of(one, other) : null,
     };
   });

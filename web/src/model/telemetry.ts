@@ -101,6 +101,18 @@ export const pair_of = (columns: Columns, id: SignalId): [number[], (number | nu
   columns[1 + SIGNALS.findIndex((signal) => signal.id === id)] as (number | null)[],
 ];
 
+/** What an axis shows of values between two: never less than a fiftieth of them, so that a battery that sags
+ * by a tenth of a volt is seen, and noise does not fill it. */
+export const value_range = (
+  least: number | null,
+  most: number | null,
+): readonly [number, number] => {
+  if (least === null || most === null) return [0, 1];
+  const span = Math.max(most - least, 0.02 * Math.max(Math.abs(least), Math.abs(most)), 0.2);
+  const middle = (least + most) / 2;
+  return [middle - 0.55 * span, middle + 0.55 * span];
+};
+
 /** As other programs read it. Times: UTC, RFC 3339; what is unknown is empty. */
 export const csv_of = ([times, ...signals]: Columns): string => {
   const head = ['time', ...SIGNALS.map(({ id, unit }) => `${id}_${unit.replace('/', 'p')}`)];

@@ -42,6 +42,7 @@ export const fences = {
     '“{file}” holds ways that are not connected. It became {missions} missions, the first is',
   file_became_the_mission: '“{file}” became the mission',
   file_has_nothing_to_drive: '“{file}” has nothing to drive:',
+  its_fence_is_kept_and_in_force: 'Its fence is kept among the fences, and is in force.',
   its_fence_is_kept_among_the_fences: 'Its fence is kept among the fences, not active.',
   it_has_fields_one_that_is_covered:
     'It has fields. One that is covered with tracks becomes a mission:',

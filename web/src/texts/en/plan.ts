@@ -172,6 +172,5 @@ export const plan = {
   from_the_plants_m: 'From the plants, m',
   only_so_far_m_empty_to_its_end: 'Only so far, m (empty: to its end)',
   drop_to_import: 'Drop it: missions and maps are imported',
-  in_force: 'In force',
   use_this_fence: 'Use it',
 } as const;

@@ -171,6 +171,5 @@ export const plan = {
   from_the_plants_m: 'Taimedest, m',
   only_so_far_m_empty_to_its_end: 'Ainult nii kaugele, m (tühi: lõpuni)',
   drop_to_import: 'Lase lahti: missioonid ja kaardid imporditakse',
-  in_force: 'Kehtib',
   use_this_fence: 'Kasuta seda',
 } as const;

@@ -42,6 +42,7 @@ export const fences = {
     '”{file}” sisältää erillisiä reittejä. Siitä tuli {missions} tehtävää, ensimmäinen on',
   file_became_the_mission: '”{file}” on nyt tehtävä',
   file_has_nothing_to_drive: '”{file}” ei sisällä ajettavaa:',
+  its_fence_is_kept_and_in_force: 'Sen aita säilyy aidoissa ja on käytössä.',
   its_fence_is_kept_among_the_fences: 'Sen aita säilyy aidoissa, ei käytössä.',
   it_has_fields_one_that_is_covered:
     'Siinä on peltoja. Ajolinjoilla katettu pelto muuttuu tehtäväksi:',

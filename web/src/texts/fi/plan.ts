@@ -174,6 +174,5 @@ export const plan = {
   from_the_plants_m: 'Kasveista, m',
   only_so_far_m_empty_to_its_end: 'Vain näin pitkälle, m (tyhjä: loppuun)',
   drop_to_import: 'Pudota: tehtävät ja kartat tuodaan',
-  in_force: 'Voimassa',
   use_this_fence: 'Käytä sitä',
 } as const;

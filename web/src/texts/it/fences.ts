@@ -42,6 +42,7 @@ export const fences = {
     '«{file}» contiene vie non collegate. Sono diventate {missions} missioni, la prima è',
   file_became_the_mission: '«{file}» è diventato la missione',
   file_has_nothing_to_drive: '«{file}» non ha nulla da percorrere:',
+  its_fence_is_kept_and_in_force: 'Il suo recinto è tra i recinti ed è attivo.',
   its_fence_is_kept_among_the_fences: 'Il suo recinto è tra i recinti, non attivo.',
   it_has_fields_one_that_is_covered: 'Ha dei campi. Uno coperto di passate diventa una missione:',
   fields: 'Campi',

@@ -173,6 +173,5 @@ export const plan = {
   from_the_plants_m: 'Dalle piante, m',
   only_so_far_m_empty_to_its_end: 'Solo fin qui, m (vuoto: fino in fondo)',
   drop_to_import: 'Rilascia: missioni e mappe vengono importate',
-  in_force: 'In vigore',
   use_this_fence: 'Usalo',
 } as const;

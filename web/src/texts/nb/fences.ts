@@ -42,6 +42,7 @@ export const fences = {
     '«{file}» har veier som ikke henger sammen. Det ble {missions} oppdrag, det første er',
   file_became_the_mission: '«{file}» ble oppdraget',
   file_has_nothing_to_drive: '«{file}» har ingenting å kjøre:',
+  its_fence_is_kept_and_in_force: 'Gjerdet er lagt blant gjerdene og er aktivt.',
   its_fence_is_kept_among_the_fences: 'Gjerdet er lagt blant gjerdene, ikke aktivt.',
   it_has_fields_one_that_is_covered: 'Den har jorder. Et jorde dekket med spor blir et oppdrag:',
   fields: 'Jorder',

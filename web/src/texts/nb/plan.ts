@@ -173,6 +173,5 @@ export const plan = {
   from_the_plants_m: 'Fra plantene, m',
   only_so_far_m_empty_to_its_end: 'Bare så langt, m (tomt: til enden)',
   drop_to_import: 'Slipp: oppdrag og kart importeres',
-  in_force: 'Gjelder',
   use_this_fence: 'Bruk det',
 } as const;
