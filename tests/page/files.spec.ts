@@ -318,7 +318,7 @@ test('files dropped anywhere are imported one after the other, and a fence is us
   const fence = () => station.rest<{ fence: { name: string } | null }>('GET', '/vehicle');
   expect((await fence()).fence).toBeNull();
   await dialog.getByRole('button', { name: 'Use it' }).click();
-  await expect(dialog).toContainText('In force');
+  await expect(dialog).toContainText('and is in force');
   expect((await fence()).fence).not.toBeNull();
   await dialog.getByRole('button', { name: 'Continue' }).click();
 

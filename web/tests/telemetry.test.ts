@@ -15,6 +15,7 @@ import {
   radio_lines,
   receiver_place,
   robot_place,
+  event_about,
   worth_a_word,
   type Rc,
   type Vehicle,
@@ -160,4 +161,14 @@ test('an axis shows a battery that sags, and does not make a robot that stands m
   const [from, to] = value_range(-1, 3);
   expect(from).toBeLessThan(-1);
   expect(to).toBeGreaterThan(3);
+});
+
+test('what a driver that comes and goes says is one message, the newest', () => {
+  const about = (kind: string, detail: string) =>
+    event_about({ time: '', level: 'warning', kind, detail });
+  expect(about('driver_down', 'top: no packet of the sensor')).toBe('driver top');
+  expect(about('driver_failed', 'top: it hangs')).toBe('driver top');
+  expect(about('driver_up', 'top is up')).toBe('driver top');
+  expect(about('driver_down', 'front: silent')).not.toBe('driver top');
+  expect(about('known_place', 'gate contradicts')).toBeNull();
 });

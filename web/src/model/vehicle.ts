@@ -268,6 +268,10 @@ const SHOWN_ELSEWHERE = new Set(['arm_refused', 'estop', 'disarmed']);
 export const worth_a_word = ({ level, kind }: StationEvent): boolean =>
   level === 'info' ? TOLD.has(kind) : !SHOWN_ELSEWHERE.has(kind);
 
+/** What one message is kept of, the newest: a driver that comes and goes. @return null: each has its own */
+export const event_about = ({ kind, detail }: StationEvent): string | null =>
+  kind.startsWith('driver_') ? `driver ${/^[^\s:]*/.exec(detail)?.[0] ?? ''}` : null;
+
 export const fix_words: Record<Fix, string> = told({
   none: 'no_fix',
   unknown: 'fix_unknown',

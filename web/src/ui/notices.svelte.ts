@@ -1,7 +1,7 @@
 // Short messages to the person, and the log of what happened.
 
 import { title_before } from '../model/news';
-import { event_key, worth_a_word, type StationEvent } from '../model/vehicle';
+import { event_about, event_key, worth_a_word, type StationEvent } from '../model/vehicle';
 
 export type Level = 'info' | 'good' | 'warning' | 'error';
 
@@ -9,6 +9,8 @@ export interface Notice {
   readonly id: number;
   readonly level: Level;
   readonly text: string;
+  /** Two about the same are one: the newer. */
+  readonly about: string | null;
 }
 
 /** Errors stay until they are dismissed. */
@@ -22,9 +24,11 @@ export class Notices {
   log = $state.raw<readonly StationEvent[]>([]);
   #next = 1;
 
-  show(level: Level, text: string): void {
-    const rest = this.shown.filter((notice) => notice.text !== text);
-    const notice = { id: this.#next, level, text };
+  show(level: Level, text: string, about: string | null = null): void {
+    const rest = this.shown.filter(
+      (notice) => notice.text !== text && (about === null || notice.about !== about),
+    );
+    const notice = { id: this.#next, level, text, about };
     this.#next += 1;
     this.shown = [...rest, notice].slice(-AT_MOST);
     if (level !== 'error') setTimeout(() => this.dismiss(notice.id), SHOWN_MS[level]);
@@ -40,7 +44,7 @@ export class Notices {
     if (worth_a_word(event)) {
       const title = title_before(event.kind);
       const text = title === null ? event.detail : `${title}: ${event.detail}`;
-      this.show(event.level === 'error' ? 'warning' : event.level, text);
+      this.show(event.level === 'error' ? 'warning' : event.level, text, event_about(event));
     }
     return true;
   }
