@@ -22,7 +22,8 @@ export class Easel {
     }
     const paper = new OffscreenCanvas(1, 1);
     const context = paper.getContext('2d');
-    return context && new Easel(paper, context);
+    // Some browsers have the one and not yet the other.
+    return context && 'reset' in context ? new Easel(paper, context) : null;
   }
 
   /** @param width and @param height in the device's own pixels */
