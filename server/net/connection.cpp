@@ -165,7 +165,7 @@ void Connection::read_header() {
   http::async_read_header(wire_, buffer_, *parser_,
                           [self = shared_from_this()](error_code ec, std::size_t) {
                             if (self->on_read_error(ec)) return;
-                            self->on_header();
+                            self->or_refuse(&Connection::on_header);
                           });
 }
 
@@ -191,6 +191,16 @@ void Connection::look_at_ends() {
   error_code ignored;
   peer_ = address_text(wire_.socket().remote_endpoint(ignored).address());
   here_ = address_text(wire_.socket().local_endpoint(ignored).address());
+}
+
+/// Where it finds no memory the client is told so; what was set aside for that moment is free now.
+void Connection::or_refuse(void (Connection::*step)()) {
+  try {
+    (this->*step)();
+  } catch (const std::bad_alloc&) {
+    if (phase_ == Phase::Writing || !wire_.is_open()) return force();
+    refuse(503, "there is no memory for this request now; try again");
+  }
 }
 
 void Connection::on_header() {
@@ -296,7 +306,7 @@ void Connection::read_body() {
   http::async_read(wire_, buffer_, *parser_,
                    [self = shared_from_this()](error_code ec, std::size_t) {
                      if (self->on_read_error(ec)) return;
-                     self->on_request();
+                     self->or_refuse(&Connection::on_request);
                    });
 }
 

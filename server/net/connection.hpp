@@ -62,6 +62,7 @@ class Connection : public Peer, public std::enable_shared_from_this<Connection> 
   void wait();
   void read_header();
   void look_at_ends();
+  void or_refuse(void (Connection::*step)());
   void on_header();
   bool admit_body();
   void release_body();

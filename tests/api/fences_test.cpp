@@ -175,10 +175,16 @@ TEST_F(FencesApi, WhatAStartRefusesIsFoundByEveryQuestionBeforeIt) {
   EXPECT_EQ(preview.body["ready"], false);
   EXPECT_EQ(preview.body["findings"], Json::array({finding}));
   ASSERT_EQ(call("POST", "/vehicle/arm", Json{{"valid_for_s", 5}}).status, 200u);
-  const auto start =
-      call("POST", "/execution/start",
-           Json{{"mission_id", beyond}, {"revision", 1}, {"from", "first"}, {"valid_for_s", 5}});
-  EXPECT_EQ(start.status, 409u);
+  Reply start;
+  until(
+      [&] {
+        start = call(
+            "POST", "/execution/start",
+            Json{{"mission_id", beyond}, {"revision", 1}, {"from", "first"}, {"valid_for_s", 5}});
+        return start.body["detail"] != "fence and mission are being compared: try again";
+      },
+      "fence and mission are compared");
+  ASSERT_EQ(start.status, 409u) << start.raw.body;
   EXPECT_EQ(start.body["detail"], "item 1 " + finding["detail"].get<std::string>());
   EXPECT_EQ(start.body["errors"][0]["pointer"], "/items/0");
 }

@@ -122,6 +122,7 @@ House::House(net::Limits limits, Vehicle vehicle, const Before& before)
   start_services();
   web_ = std::thread([this] { io_.run(); });
   control_ = std::thread([this] { play(); });
+  was_on_.get_future().wait();  // until then the robot's time is not the test's
 }
 
 api::DrillDoor House::drill_door() {
@@ -310,6 +311,7 @@ void House::play() {
     tell(begun - ago, count);
     robot_.tick(begun - ago, begun_wall - ago);
   }
+  was_on_.set_value();
   auto next = std::chrono::steady_clock::now();
   for (; !stop_; ++count) {
     const base::Time now = base::steady_now();

@@ -7,6 +7,7 @@
 #include <concepts>
 #include <filesystem>
 #include <functional>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -140,6 +141,7 @@ class House {
   double fix_m_ = 0.0;
   base::Time told_slow_{};  ///< battery, receiver and driver
   std::atomic<bool> stop_{false};
+  std::promise<void> was_on_;  ///< control thread: now is now, see play()
   std::thread web_;
   std::thread control_;
 };

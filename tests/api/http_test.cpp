@@ -2,6 +2,7 @@
 
 #include <initializer_list>
 #include <memory>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -175,6 +176,27 @@ TEST(Http, AllBodiesTogetherAreBounded) {
   third.send(request);
   while (house.ask([&kept] { return kept.size() < 3; })) std::this_thread::sleep_for(5ms);
   house.run([&kept] { kept.clear(); });
+}
+
+TEST(Http, ARequestForWhichThereIsNoMemoryIsToldSoAndTheNextOneIsServed) {
+  // Given a handler that finds no memory for what is large,
+  net::Handlers h = echo();
+  h.on_request = [serve = h.on_request](net::Request request, base::Time begun,
+                                        net::Respond respond) {
+    if (request.body().size() > 10) throw std::bad_alloc();
+    serve(std::move(request), begun, std::move(respond));
+  };
+  NetHouse house(small(), h);
+  Client client(house.port());
+  client.send("POST /large HTTP/1.1\r\nHost: x\r\nContent-Length: 11\r\n\r\nhello world");
+  const auto refused = client.answer();
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(refused->status, 503u);
+  EXPECT_NE(refused->body.find("no memory for this request"), std::string::npos) << refused->body;
+  // then the next one is served.
+  Client second(house.port());
+  second.send("POST /small HTTP/1.1\r\nHost: x\r\nContent-Length: 5\r\n\r\nhello");
+  EXPECT_EQ(second.answer()->body, "/small+5");
 }
 
 /// Judged by the thread sanitizer: what all connections share belongs to the web thread.

@@ -125,8 +125,9 @@ TEST_F(VehicleApi, SilentDevicesGoStale) {
 }
 
 TEST_F(VehicleApi, ArmingSaysWhichChecksFail) {
-  // Given a robot without any device,
+  // Given a robot whose devices are silent,
   house.healthy = false;
+  until([this] { return call("GET", "/vehicle").body["base"]["stale"] == true; }, "base stale");
   const auto refused = call("POST", "/vehicle/arm");
   EXPECT_EQ(refused.status, 409u);
   ASSERT_FALSE(refused.body["errors"].empty());

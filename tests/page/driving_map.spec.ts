@@ -148,10 +148,11 @@ test('the map turns with the robot, and a tap still marks what lies under it', a
     [120, -150],
   ]);
   await page.keyboard.press('Escape');
-  const across = await map_pixels(page, [PLAN]);
-  const [wide, high] = extent_px(across);
-  expect(wide).toBeGreaterThan(100);
-  expect(high).toBeLessThan(60);
+  await expect(async () => {
+    const [wide, high] = extent_px(await map_pixels(page, [PLAN]));
+    expect(wide).toBeGreaterThan(100);
+    expect(high).toBeLessThan(60);
+  }).toPass({ timeout: 10_000 });
 });
 
 test('the map shows how fast the way is to be driven and where it turns, and then how it was driven', async ({
