@@ -12,6 +12,7 @@ import {
   pixels_per_m,
   press,
   save,
+  seen_frame,
   seen_pixels,
   tab,
   type Color,
@@ -96,12 +97,18 @@ test('the map turns with the robot, and a tap still marks what lies under it', a
 }) => {
   await open_page(page, station.url);
   const pin_at = async (right: number, down: number) => {
+    await seen_frame(page);
     const [x, y] = await map_middle(page);
-    await page.mouse.click(x + right, y + down);
     const card = page.getByLabel('Chosen place');
-    await expect(card).toBeVisible();
-    const [, lat = '', lon = ''] =
-      /(-?\d+\.\d{5,}), (-?\d+\.\d{5,})/.exec(await card.innerText()) ?? [];
+    const told = async (): Promise<string> => {
+      const words = (await card.isVisible()) ? await card.innerText() : '';
+      return /-?\d+\.\d{5,}, -?\d+\.\d{5,}/.exec(words)?.[0] ?? before;
+    };
+    let before = '';
+    before = await told();
+    await page.mouse.click(x + right, y + down);
+    await expect.poll(told).not.toBe(before);
+    const [lat = '', lon = ''] = (await told()).split(', ');
     return { lat: Number(lat), lon: Number(lon) };
   };
   const bearing_deg = (to: { lat: number; lon: number }): number => {

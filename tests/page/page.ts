@@ -147,6 +147,19 @@ export const mark = async (page: Page, right_m: number, up_m: number): Promise<v
   await expect(page.getByLabel('Chosen place')).toBeVisible();
 };
 
+/** Until the map has been drawn as it is now: a tap means what was seen where it fell. */
+export const seen_frame = (page: Page): Promise<void> =>
+  page.evaluate(
+    () =>
+      new Promise((done) => {
+        requestAnimationFrame(() => {
+          requestAnimationFrame(() => {
+            done();
+          });
+        });
+      }),
+  );
+
 /** Taps the map at places given from the middle of its free part, pixels right and down. */
 export const draw = async (
   page: Page,
@@ -154,6 +167,7 @@ export const draw = async (
 ): Promise<void> => {
   // A page that was just opened has none yet.
   await page.locator('#map canvas').first().waitFor({ state: 'attached' });
+  await seen_frame(page);
   const [x, y] = await map_middle(page);
   for (const [right, down] of places) await page.mouse.click(x + right, y + down);
 };
