@@ -204,8 +204,9 @@ void RunOff::update(Filter& f, const Look& to) const noexcept {
   f.P = (0.5 * (f.P + f.P.transpose())).eval();
 }
 
-/// Does it drift against the tracks' way, by much of it and by no more than that? So does a robot
-/// that stands in mud. A receiver that drifts so is found where the robot turns or stops.
+/// Does it drift against the tracks' way, by much of it and by no more than that, as far as it is
+/// known (1 sigma) what it does aside? So does a robot that stands in mud. A receiver that drifts
+/// so is found where the robot turns or stops.
 bool RunOff::like_spinning(const Look& to) const noexcept {
   const double dt_s = seconds(to.spot.t - last_.spot.t);
   const double dx = (to.at.x_m - last_.at.x_m) / dt_s;
@@ -219,7 +220,12 @@ bool RunOff::like_spinning(const Look& to) const noexcept {
   const double aside = lie_.x(kLieN) * ahead.east_m - lie_.x(kLieE) * ahead.north_m;
   const double back = -along / speed_mps;
   if (back < kSlipsLeast || back > 1.0) return false;
-  return std::abs(aside) <= (back < kSpinsLeast ? kSlipsAside : kSpinsAside) * -along;
+  const double part = (back < kSpinsLeast ? kSlipsAside : kSpinsAside) * -along;
+  const EnuPoint left{-ahead.north_m, ahead.east_m};
+  const double variance = left.east_m * left.east_m * lie_.P(kLieE, kLieE) +
+                          2.0 * left.east_m * left.north_m * lie_.P(kLieE, kLieN) +
+                          left.north_m * left.north_m * lie_.P(kLieN, kLieN);
+  return aside * aside <= part * part + variance;
 }
 
 /// A suspicion that came to nothing begins anew at the next position.

@@ -27,7 +27,7 @@ class StraightTold {
   RunOff::Look look;
   RunOff run_off;
 
-  StraightTold() {
+  explicit StraightTold(unsigned seed = 5) : random_(seed) {
     look.judgeable = true;
     look.at.yaw_sigma_rad = rad_from_deg(2.0);
   }
@@ -86,7 +86,7 @@ class StraightTold {
   int count_ = 0;
   double yaw_rad_ = 0.0;
   EnuPoint at_;
-  std::mt19937_64 random_{5};
+  std::mt19937_64 random_;
   std::normal_distribution<double> normal_;
 };
 
@@ -132,6 +132,25 @@ TEST(RunOff, GroundThatGivesWayAllAtOnceProvesNothing) {
     EXPECT_LT(drive.go(1.0, 0.0, 30.0), 1.0) << before << " to " << after;
     EXPECT_LT(drive.go(1.0, 0.3, 5.0), 1.0) << before << " to " << after;
   }
+}
+
+TEST(RunOff, GroundThatSlipsFromNoneToMuchByPlaceProvesNothingWhereTheHeadingIsNotSure) {
+  std::mt19937_64 ground(17);
+  std::uniform_real_distribution<double> slip(0.02, 0.45);
+  std::uniform_real_distribution<double> askew(-1.0, 1.0);
+  int accused = 0;
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    StraightTold drive(seed);
+    drive.look.at.yaw_sigma_rad = rad_from_deg(4.6);
+    drive.look.at.yaw_rad = rad_from_deg(6.0) * askew(ground);
+    double most = 0.0;
+    for (int place = 0; place < 5; ++place) {
+      drive.scale = 1.0 - slip(ground);
+      most = std::max(most, drive.go(1.0, 0.0, 4.0));
+    }
+    accused += most >= 1.0 ? 1 : 0;
+  }
+  EXPECT_EQ(accused, 0);
 }
 
 TEST(RunOff, ALieThatDrawsAsideAsWellIsNoGroundThatGivesWay) {
