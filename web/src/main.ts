@@ -16,6 +16,7 @@ import { mission_calls, vehicle_calls } from './link/rest';
 import { run_calls } from './link/runs';
 import { seen_calls } from './link/seen';
 import { site_map_calls } from './link/site_maps';
+import { known_place_calls } from './link/known_places';
 import { slip_calls } from './link/slips';
 import {
   camera_storage,
@@ -112,6 +113,7 @@ const doors = (map: MapCalls, late: Late): Doors => ({
   teach: teach_calls,
   runs: run_calls,
   slips: slip_calls,
+  known: known_place_calls,
   seen: seen_calls,
   sites: site_map_calls,
   tiles: tile_calls,

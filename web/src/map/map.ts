@@ -10,6 +10,7 @@ import type { FenceDraft } from '../model/fence';
 import type { Ground } from '../model/ground';
 import type { Heat } from '../model/heat';
 import { turn_deg, type MapUp } from '../model/map_up';
+import type { KeptPlaces } from '../model/known_places';
 import { EMPTY_PLAN, type LatLon, type Plan } from '../model/plan';
 import type {
   DraftStorage,
@@ -31,9 +32,7 @@ import type { Bounds } from '../model/tiling';
 import type { Tracks } from '../model/tracks';
 import type { TrailShades } from '../model/trail_shades';
 import { layer_of } from './drawing';
-import type { Slip } from '../model/slips';
 import { prepare_drill } from './drill_painter';
-import { prepare_slips } from './slip_painter';
 import type { EditInteraction } from './edit';
 import { GroundBelow } from './ground_layer';
 import { make_hand } from './hand';
@@ -206,8 +205,8 @@ export class FieldMap implements MapCalls {
     this.#map.render();
   }
 
-  show_slips(slips: readonly Slip[]): void {
-    this.#scene.slips = prepare_slips(slips);
+  show_places(kept: KeptPlaces): void {
+    this.#scene.keep(kept);
     this.#map.render();
   }
 

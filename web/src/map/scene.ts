@@ -2,6 +2,7 @@
 
 import { distance_m } from '../model/geo';
 import type { FenceDraft } from '../model/fence';
+import type { KeptPlaces } from '../model/known_places';
 import { EMPTY_PLAN, type LatLon } from '../model/plan';
 import type { MapEvents, Mark, RobotOnMap } from '../model/ports';
 import { language_now } from '../model/say';
@@ -46,7 +47,8 @@ import { paint_heat, paint_runs, type DrawnHeat, type DrawnRun } from './run_pai
 import type * as SeenPainter from './seen_painter';
 import type * as SitePainter from './site_painter';
 import { paint_space, type DrawnSpace } from './space_painter';
-import { paint_slips, type DrawnSlip } from './slip_painter';
+import { paint_known, prepare_known, type DrawnKnown } from './known_painter';
+import { paint_slips, prepare_slips, type DrawnSlip } from './slip_painter';
 import type { Stays } from './still';
 import { TrailLine } from './trail_line';
 
@@ -127,6 +129,7 @@ export class Scene {
   drill: DrawnDrill | null = null;
   space: DrawnSpace | null = null;
   slips: readonly DrawnSlip[] = [];
+  known: readonly DrawnKnown[] = [];
   fence: FenceDraft | null = null;
   site: SiteOnMap | null = null;
   site_edits: readonly SiteEdit[] = [];
@@ -152,6 +155,11 @@ export class Scene {
   /** It is being drawn, and what is seen of it is what it was before. */
   #edited_waits = false;
   #last_drag: Drag | null = null;
+
+  keep({ slips, known }: KeptPlaces): void {
+    this.slips = prepare_slips(slips);
+    this.known = prepare_known(known);
+  }
 
   take_drive(drive: DriveOnMap | null): void {
     this.drive = drive && prepare_drive(drive, this.drive);
@@ -225,6 +233,7 @@ export class Scene {
       (paint) => this.#paint_driven(paint),
       (paint) => {
         if (this.slips.length > 0) paint_slips(paint, this.slips, palette());
+        if (this.known.length > 0) paint_known(paint, this.known, palette());
       },
     ];
   }

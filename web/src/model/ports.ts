@@ -23,7 +23,7 @@ import type { RowBlock, RowsWish } from './row_block';
 import type { RunOnMap } from './run_ports';
 import type { SeenEvents, SeenLink, SeenMap } from './seen';
 import type { SiteMapView, StandingPose } from './site_map';
-import type { Slip } from './slips';
+import type { KeptPlaces } from './known_places';
 import type { ReceiverSky } from './sky';
 import type { Survey, SurveyWish } from './survey';
 import type { Remembered, Tracks } from './tracks';
@@ -370,8 +370,8 @@ export interface MapCalls extends SeenMap, SiteMapView, EditView {
   show_runs(runs: readonly RunOnMap[]): void;
   /** Several runs as one picture; null: none. */
   show_heat(heat: Heat | null): void;
-  /** Where the ground gave way. */
-  show_slips(slips: readonly Slip[]): void;
+  /** Where the ground gave way, and what the robot knows itself by. */
+  show_places(kept: KeptPlaces): void;
   /** What a calibration drive needs; null: none is looked at. */
   show_space(space: SpaceOnMap | null): void;
   /** What a drill found; null: none is looked at. */

@@ -16,6 +16,7 @@ import type { TileCalls } from '../model/ground';
 import type { RunCalls } from '../model/run_ports';
 import type { SeenCalls } from '../model/seen';
 import type { SiteMapCalls } from '../model/site_map';
+import type { KnownPlaceCalls } from '../model/known_places';
 import type { SlipCalls } from '../model/slips';
 import type { Kept } from './editor.svelte';
 
@@ -25,6 +26,7 @@ export interface Doors {
   readonly teach: TeachCalls;
   readonly runs: RunCalls;
   readonly slips: SlipCalls;
+  readonly known: KnownPlaceCalls;
   readonly seen: SeenCalls;
   readonly sites: SiteMapCalls;
   readonly tiles: TileCalls;

@@ -40,6 +40,8 @@ import { settled } from './settled';
 import { keep_site_in_step } from './site_on_map.svelte';
 import { Grounds } from './grounds.svelte';
 import { SiteMaps } from './site_maps.svelte';
+import { KnownPlaces } from './known_places.svelte';
+import { keep_places_in_step } from './places_on_map.svelte';
 import { Slips } from './slips.svelte';
 import { Shaping } from './shaping.svelte';
 import { speaker } from './sound';
@@ -106,6 +108,7 @@ export class Station {
   readonly teacher: Teacher;
   readonly runs: Runs;
   readonly slips: Slips;
+  readonly known: KnownPlaces;
   readonly seen: Seen;
   readonly sites: SiteMaps;
   readonly grounds: Grounds;
@@ -145,6 +148,7 @@ export class Station {
     this.sky = new Sky(doors.vehicle);
     this.runs = new Runs(doors.runs);
     this.slips = new Slips(doors.slips, this.dialogs);
+    this.known = new KnownPlaces(doors.known, this.dialogs);
     this.seen = new Seen(doors.seen, doors.link, this.live, doors.layers);
     this.grounds = new Grounds(doors.tiles, doors.ground, this.notices, this.dialogs);
     this.sites = new SiteMaps(doors.sites, this.live, this.notices, this.dialogs);
@@ -374,10 +378,7 @@ export class Station {
     );
     const current_item = $derived(live.vehicle?.mission.current_item ?? 0);
     $effect(() => map.show_route({ ...this.route.laid, current_item }));
-    $effect(() => map.show_slips(this.slips.on_map));
-    // As long as somebody sees them: in the log, or on the map.
-    const slips_seen = $derived(this.slips.shown || this.tab === 'log');
-    $effect(() => (slips_seen ? untrack(() => this.slips.watch()) : undefined));
+    keep_places_in_step(this);
     keep_site_in_step(this);
     this.starting.keep_in_sight((places) => this.#see([...places, ...this.route.way]));
     $effect(() => this.seen.follow_layers());
