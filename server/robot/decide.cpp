@@ -13,12 +13,25 @@ using base::Severity;
 
 /// What tracks may have counted in vain until they are caught at it.
 constexpr double kSpun_m = 5.0;
+constexpr double kStands_mps = 0.05;
 
 }  // namespace
 
 /// Empty: nothing tells, or not any more.
 std::optional<base::Attitude> Robot::Impl::attitude() const {
   return estimator.attitude(clock.now());
+}
+
+double Robot::Impl::braking_here_mps2(double level_mps2) const {
+  const double braking_mps2 = handling.braking_mps2(level_mps2);
+  const auto lean = attitude();
+  if (!lean || !std::isfinite(lean->pitch_rad)) return braking_mps2;
+  const double speed_mps = pose && pose->speed_mps ? *pose->speed_mps : 0.0;
+  // Standing it may begin to either side.
+  const double down_rad = speed_mps > kStands_mps    ? -lean->pitch_rad
+                          : speed_mps < -kStands_mps ? lean->pitch_rad
+                                                     : std::abs(lean->pitch_rad);
+  return nav::slope_decel_mps2(braking_mps2, down_rad, config->slope);
 }
 
 double Robot::Impl::most_roll_deg() const noexcept {
@@ -260,7 +273,7 @@ base::DriveCommand Robot::Impl::keep_inside(base::DriveCommand command) {
   if (!pose) return command;
   const bool hands = !machine.by_itself();
   FenceParams kept = config->kept_fence();
-  kept.decel_mps2 = handling.braking_mps2(kept.decel_mps2);
+  kept.decel_mps2 = braking_here_mps2(kept.decel_mps2);
   const FenceKeep::Verdict verdict =
       fence.judge(command.twist, *pose, estimator.frame(), hands, kept);
   if (!verdict.stops) return command;

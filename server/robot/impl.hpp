@@ -255,6 +255,8 @@ struct Robot::Impl {
   bool within_reach(base::LatLon at) const;
   Facts facts() const;
   std::optional<base::Attitude> attitude() const;
+  /// What is there of `level_mps2` where it is and where it drives to.
+  double braking_here_mps2(double level_mps2) const;
   double most_roll_deg() const noexcept;
 
   // modes/enter.cpp, goals.cpp, returns.cpp: entering

@@ -54,7 +54,7 @@ void Robot::Impl::look_around() {
   for (const KnownPlaces::News& news : known_places.news()) {
     event(news.bad ? base::Severity::Warning : base::Severity::Info, "known_place", news.words);
   }
-  guard.brake_by(handling.braking_mps2(config->fence.decel_mps2));
+  guard.brake_by(braking_here_mps2(config->fence.decel_mps2));
   std::string words = guard.demands() ? blind_words(guard, clock.now()) : std::string();
   if (words.empty()) blind_since.reset();
   if (!words.empty() && !blind_since) blind_since = clock.now();

@@ -101,6 +101,36 @@ TEST_F(Seeing, TheSticksAreStoppedTooAndMayDriveAway) {
   EXPECT_LT(driven_m(), stood_m - 0.3);
 }
 
+TEST_F(Seeing, DownhillItBrakesEarlierAndUphillItDoesNot) {
+  // Room before the wall when the guard begins to slow a stick that asks for 0.8 m/s ahead.
+  const auto slowed_at_m = [&](double pitch_rad) {
+    field.let_go();
+    wall_m = driven_m() + 4.0;
+    field.more = [this, pitch_rad] {
+      field.robot.measurements().put(base::Attitude{field.now, 0.0, pitch_rad});
+      look();
+    };
+    field.run(1.0);
+    for (int i = 0; i < 400; ++i) {
+      field.robot.request(Drive{{0.8, 0.0}, true}, field.now + std::chrono::seconds(1), {});
+      field.tick();
+      const double sent_mps = field.robot.snapshot()->command.twist.linear_mps;
+      const bool slower = i > 100 && sent_mps < 0.77;
+      if (slower) return gap_m();
+    }
+    return 0.0;
+  };
+  field.run(8.0);
+  ASSERT_TRUE(field.ask(Arm{}));
+  ASSERT_TRUE(field.ask(SetMode{Mode::Manual}));
+  const double level_m = slowed_at_m(0.0);
+  EXPECT_GT(level_m, 0.5);
+  // 0.5 m/s2 less 0.3 g sin 5 deg are 0.24 m/s2.
+  const double down_m = slowed_at_m(base::rad_from_deg(-5.0));
+  EXPECT_NEAR(down_m - level_m, 0.8 * 0.8 / 2.0 * (1.0 / 0.2435 - 1.0 / 0.5), 0.15);
+  EXPECT_NEAR(slowed_at_m(base::rad_from_deg(5.0)), level_m, 0.06);
+}
+
 TEST_F(Seeing, AStickThatWasStoppedKeepsNoMissionFromGoingTheOtherWay) {
   // Given a robot that was driven by hand against a wall in the south, and stopped,
   field.run(8.0);
