@@ -61,6 +61,12 @@ test('control is taken, asked for, handed over, and taken by force', async ({
   await expect(control(ben)).toContainText('anna');
   await expect(control(ben)).toContainText('has control');
 
+  // and: what he may not do says so before it is pressed
+  await expect(ben.getByRole('button', { name: 'Arm', exact: true })).toHaveAttribute(
+    'title',
+    /has control: ask for it first/,
+  );
+
   // and: a viewer sees it, and is offered nothing
   const cleo = await another(browser, station.url, 'cleo');
   await expect(control(cleo)).toContainText('has control');

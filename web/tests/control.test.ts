@@ -2,6 +2,8 @@ import { expect, test } from 'vitest';
 
 import {
   device_name,
+  plain_devices,
+  why_no_control,
   driver_name,
   present_lines,
   seat_of,
@@ -35,6 +37,19 @@ test('the header says who has control', () => {
   expect(seat_words(held(anna), 's1')).toBe('You have control');
   expect(seat_words(held(ben), 's1')).toBe('ben (phone) has control');
   expect(driver_name(script)).toBe('anna (script rows)');
+});
+
+test('a browser in a sentence of the robot is told by its machine', () => {
+  const ben =
+    'ben (Mozilla/5.0 (Linux; Android 14; Pixel 8) AppleWebKit/537.36 (KHTML, like Gecko))';
+  expect(plain_devices(`${ben} took control by force from anna (laptop): the dog is out`)).toBe(
+    'ben (Android) took control by force from anna (laptop): the dog is out',
+  );
+  expect(plain_devices(`${ben} handed control over to ${ben}`)).toBe(
+    'ben (Android) handed control over to ben (Android)',
+  );
+  expect(plain_devices('nobody has control')).toBe('nobody has control');
+  expect(plain_devices('ben (Mozilla/5.0 (Linux; cut')).toBe('ben (Linux)');
 });
 
 test('of a browser that calls itself a long name the machine is shown', () => {
@@ -73,4 +88,15 @@ test('who is connected is told with the role, the one who has control first', ()
   expect(lines[2]).toMatch(/^anna \(.*rows.*\), /);
   expect(lines[2]).not.toContain('that is you');
   expect(present_lines(held(null), 's1')).toEqual([]);
+});
+
+test('who has no control is told why, and what to do', () => {
+  const ben = { id: 'b', user: 'ben', name: 'laptop', kind: 'browser' } as const;
+  const free = { on: true, holder: null, requests: [] };
+  expect(why_no_control('mine', true, { ...free, holder: ben })).toBeNull();
+  expect(why_no_control('free', true, free)).toBe('Nobody has control: take it first.');
+  expect(why_no_control('others', true, { ...free, holder: ben })).toBe(
+    'ben (laptop) has control: ask for it first.',
+  );
+  expect(why_no_control('free', false, free)).toBe('You watch, and may stop.');
 });

@@ -111,6 +111,12 @@ describe('refusals', () => {
     expect(refusal_text({ ...refusal, detail: '', errors: [] })).toBe('Invalid');
   });
 
+  test('say nothing twice', () => {
+    const errors = [{ pointer: '', detail: 'line 3: no number' }];
+    const said = { ...refusal, detail: 'rows.csv, line 3: no number', errors };
+    expect(refusal_text(said)).toBe('rows.csv, line 3: no number');
+  });
+
   test('point at the items they are about', () => {
     expect([...refused_items(refusal)]).toEqual([3, 12]);
   });

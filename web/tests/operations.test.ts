@@ -37,6 +37,21 @@ const facts = ({ stale, armed, estop, mode, state, waits_for_word }: Given): Fac
 });
 
 describe('operations', () => {
+  test('without control nothing is offered but what stops or holds', () => {
+    const ready = facts({ armed: true, mode: 'MANUAL', state: 'paused' });
+    const other = { ...ready, no_control: 'anna has control' };
+    for (const why of [why_not_arm, why_not_start, why_not_resume, why_not_skip, why_not_drive]) {
+      expect(why(ready)).toBeNull();
+      expect(why(other)).toBe('anna has control');
+    }
+    const latched = { ...facts({ estop: true }), no_control: 'anna has control' };
+    expect(why_not_reset_stop(latched)).toBe('anna has control');
+    expect(why_not_mode(other, 'AUTO')).toBe('anna has control');
+    expect(why_not_mode(other, 'HOLD')).toBeNull();
+    expect(why_not_pause({ ...facts({ state: 'running' }), no_control: 'anna' })).toBeNull();
+    expect(why_not_stop_mission(other)).toBeNull();
+  });
+
   test('nothing that moves the robot is offered without a live link', () => {
     const silent = facts({ stale: true, armed: true, mode: 'MANUAL', state: 'paused' });
     for (const reason of [

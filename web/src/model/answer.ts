@@ -21,9 +21,13 @@ export interface Refusal {
 export type Answer<T> =
   { readonly ok: true; readonly value: T } | { readonly ok: false; readonly refusal: Refusal };
 
+/** What the sentence before them does not say already. */
+export const new_causes = ({ detail, errors }: Refusal): readonly FieldError[] =>
+  errors.filter((error) => !detail.includes(error.detail));
+
 /** One line for a person: the cause, then what is wrong in each place. */
 export const refusal_text = (refusal: Refusal): string => {
-  const causes = refusal.errors.map((error) =>
+  const causes = new_causes(refusal).map((error) =>
     error.pointer === '' ? error.detail : `${error.pointer}: ${error.detail}`,
   );
   return [refusal.detail === '' ? refusal.title : refusal.detail, ...causes].join(' · ');

@@ -76,6 +76,24 @@ export const device_name = (device: string): string => {
   return machine !== undefined && device.startsWith('Mozilla/') ? machine : device;
 };
 
+const LONG_NAME = '(Mozilla/';
+
+/** Where the robot names a browser in a sentence, as that calls itself: "anna (Android)". */
+export const plain_devices = (text: string): string => {
+  const begin = text.indexOf(LONG_NAME);
+  if (begin < 0) return text;
+  let depth = 0;
+  let end = begin;
+  do {
+    const letter = text[end];
+    if (letter === '(') depth += 1;
+    if (letter === ')') depth -= 1;
+    end += 1;
+  } while (depth > 0 && end < text.length);
+  const device = device_name(text.slice(begin + 1, depth > 0 ? end : end - 1));
+  return `${text.slice(0, begin)}(${device})${plain_devices(text.slice(end))}`;
+};
+
 /** "anna (Android), drives": the one who has control first, then by name. @param me as above */
 export const present_lines = (
   state: ControlState,
@@ -109,6 +127,14 @@ export const seat_words = (state: ControlState, me: string): string => {
   }
 };
 
+/** Why what acts on the robot is refused. @param drives is allowed to have control at all */
+export const why_no_control = (seat: Seat, drives: boolean, state: ControlState): string | null => {
+  if (seat === 'mine') return null;
+  if (!drives) return say('you_watch_and_may_stop');
+  if (state.holder === null) return say('take_control_first');
+  return say('holder_has_control_ask', { holder: driver_name(state.holder) });
+};
+
 /** What this person must hear of a change; empty: nothing. */
 export const told_of = (state: ControlState, me: string): string => {
   const { change } = state;
@@ -117,5 +143,5 @@ export const told_of = (state: ControlState, me: string): string => {
   const for_holder = is(from, me) && ['forced', 'lost', 'ended'].includes(what);
   const for_asker =
     is(to, me) && ['refused', 'expired', 'handed_over'].includes(what) && !is(from, me);
-  return for_holder || for_asker ? detail : '';
+  return for_holder || for_asker ? plain_devices(detail) : '';
 };

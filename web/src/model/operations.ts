@@ -11,6 +11,8 @@ export interface Facts {
   /** It is old although messages come. */
   readonly link_late?: boolean;
   readonly vehicle: Vehicle | null;
+  /** Why what acts on the robot would be refused: somebody else has control, or nobody. */
+  readonly no_control?: string | null;
 }
 
 type Reason = string | null;
@@ -26,35 +28,39 @@ export const no_link = ({ link_stale, link_late, vehicle }: Facts): Reason => {
     : say('no_live_connection_to_the_robot');
 };
 
+/** For what needs control: nothing that stops or holds does. */
+export const out_of_reach = (facts: Facts): Reason => no_link(facts) ?? facts.no_control ?? null;
+
 const no_stop = ({ vehicle }: Facts): Reason =>
   vehicle?.estop === true ? say('the_emergency_stop_is_latched_reset') : null;
 
-export const why_not_arm = (facts: Facts): Reason => no_link(facts) ?? no_stop(facts);
+export const why_not_arm = (facts: Facts): Reason => out_of_reach(facts) ?? no_stop(facts);
 
 export const why_not_reset_stop = (facts: Facts): Reason =>
-  no_link(facts) ?? (facts.vehicle?.estop === true ? null : say('the_emergency_stop_is_not_set'));
+  out_of_reach(facts) ??
+  (facts.vehicle?.estop === true ? null : say('the_emergency_stop_is_not_set'));
 
 export const why_not_acknowledge = (facts: Facts): Reason =>
-  no_link(facts) ??
+  out_of_reach(facts) ??
   (facts.vehicle && estimate_waits(facts.vehicle) ? null : say('there_is_nothing_to_look_at'));
 
 export const why_not_settle_shift = (facts: Facts): Reason =>
-  no_link(facts) ??
+  out_of_reach(facts) ??
   (facts.vehicle && shift_waits(facts.vehicle) ? null : say('the_positions_have_not_moved'));
 
 export const why_not_correct_antennas = (facts: Facts): Reason =>
-  no_link(facts) ??
+  out_of_reach(facts) ??
   (facts.vehicle && antennas_wait(facts.vehicle) ? null : say('the_antennas_are_not_askew'));
 
 export const why_not_mode = (facts: Facts, mode: string): Reason => {
   if (mode === 'HOLD') return null;
-  return no_link(facts) ?? no_stop(facts);
+  return out_of_reach(facts) ?? no_stop(facts);
 };
 
 /** @param saved what the editor holds is stored, unchanged */
 export const why_not_load = (facts: Facts, saved: boolean, items: number): Reason => {
   if (items === 0) return say('the_mission_has_no_items_yet');
-  const link = no_link(facts);
+  const link = out_of_reach(facts);
   if (link !== null) return link;
   if (!saved) return say('save_the_mission_first_the_robot');
   const state = facts.vehicle?.mission.state;
@@ -62,7 +68,7 @@ export const why_not_load = (facts: Facts, saved: boolean, items: number): Reaso
 };
 
 export const why_not_start = (facts: Facts): Reason => {
-  const before = no_link(facts) ?? no_stop(facts);
+  const before = out_of_reach(facts) ?? no_stop(facts);
   if (before !== null) return before;
   const state = facts.vehicle?.mission.state;
   if (state === 'idle') return say('load_a_mission_first');
@@ -84,7 +90,7 @@ export const waits_for_word = ({ vehicle }: Facts): boolean =>
   vehicle?.mission.state === 'running' && vehicle.mission.waits_for_word;
 
 export const why_not_resume = (facts: Facts): Reason => {
-  const before = no_link(facts) ?? no_stop(facts);
+  const before = out_of_reach(facts) ?? no_stop(facts);
   if (before !== null) return before;
   return waits(facts) || waits_for_word(facts) ? null : say('the_mission_is_not_paused');
 };
@@ -96,10 +102,11 @@ export const why_not_stop_mission = (facts: Facts): Reason => {
     : say('no_mission_is_running_or_paused');
 };
 
-export const why_not_skip = (facts: Facts): Reason => no_link(facts) ?? why_not_stop_mission(facts);
+export const why_not_skip = (facts: Facts): Reason =>
+  out_of_reach(facts) ?? why_not_stop_mission(facts);
 
 export const why_not_drive = (facts: Facts): Reason => {
-  const before = no_link(facts) ?? no_stop(facts);
+  const before = out_of_reach(facts) ?? no_stop(facts);
   if (before !== null) return before;
   if (facts.vehicle?.armed !== true) return say('arm_the_robot_first');
   return by_hand(facts.vehicle.mode) ? null : say('choose_the_mode_manual_first');

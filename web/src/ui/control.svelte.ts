@@ -6,6 +6,7 @@ import {
   seat_of,
   seat_words,
   told_of,
+  why_no_control,
   type ControlCalls,
   type ControlState,
   type TakeWish,
@@ -27,6 +28,10 @@ export class ControlDesk {
   /** What went wrong, or what others did. */
   told = $state('');
   seat = $derived.by(() => seat_of(this.state, this.#me));
+  /** Why commands of this page are refused now; null: they are not, or it is not known. */
+  no_control = $derived.by<string | null>(() =>
+    this.known ? why_no_control(this.seat, this.drives, this.state) : null,
+  );
   words = $derived.by(() =>
     this.known ? seat_words(this.state, this.#me) : say('control_not_known'),
   );

@@ -48,10 +48,13 @@ export class Live {
   #late = $derived(
     this.link.socket === 'open' && this.now_ms - (this.link.last_message_ms ?? 0) <= OLD_AFTER_MS,
   );
+  /** Why others' commands would be obeyed and this page's not; null: they are, or it is not known. */
+  no_control = $state<string | null>(null);
   facts = $derived<Facts>({
     link_stale: this.stale,
     link_late: this.#late,
     vehicle: this.vehicle,
+    no_control: this.no_control,
   });
   /** Why the stick that is held is not obeyed. */
   stick_refused = $state<string | null>(null);

@@ -1,5 +1,6 @@
 // Short messages to the person, and the log of what happened.
 
+import { plain_devices } from '../model/control';
 import { title_before } from '../model/news';
 import { event_about, event_key, worth_a_word, type StationEvent } from '../model/vehicle';
 
@@ -43,7 +44,8 @@ export class Notices {
     if (this.#enter([event]) === 0) return false;
     if (worth_a_word(event)) {
       const title = title_before(event.kind);
-      const text = title === null ? event.detail : `${title}: ${event.detail}`;
+      const detail = plain_devices(event.detail);
+      const text = title === null ? detail : `${title}: ${detail}`;
       this.show(event.level === 'error' ? 'warning' : event.level, text, event_about(event));
     }
     return true;

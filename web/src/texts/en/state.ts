@@ -7,6 +7,8 @@ export const state = {
   nobody_has_control: 'Nobody has control',
   you_have_control: 'You have control',
   holder_has_control: '{holder} has control',
+  take_control_first: 'Nobody has control: take it first.',
+  holder_has_control_ask: '{holder} has control: ask for it first.',
   speed: 'Speed',
   off_path: 'Off path',
   to_drive: 'To drive',

@@ -7,6 +7,8 @@ export const state = {
   nobody_has_control: 'Keegi ei juhi',
   you_have_control: 'Sina juhid',
   holder_has_control: 'Juhib: {holder}',
+  take_control_first: 'Keegi ei juhi: võta juhtimine enne üle.',
+  holder_has_control_ask: 'Juhib {holder}: küsi enne juhtimist.',
   speed: 'Kiirus',
   off_path: 'Teelt kõrval',
   to_drive: 'Sõita veel',

@@ -7,6 +7,8 @@ export const state = {
   nobody_has_control: 'Ohjaus on vapaa',
   you_have_control: 'Sinulla on ohjaus',
   holder_has_control: 'Ohjaus: {holder}',
+  take_control_first: 'Ohjaus on vapaa: ota se ensin.',
+  holder_has_control_ask: 'Ohjaus on käyttäjällä {holder}: pyydä sitä ensin.',
   speed: 'Nopeus',
   off_path: 'Sivussa',
   to_drive: 'Jäljellä',

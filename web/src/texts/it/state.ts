@@ -7,6 +7,8 @@ export const state = {
   nobody_has_control: 'Nessuno ha il controllo',
   you_have_control: 'Hai il controllo',
   holder_has_control: 'Ha il controllo: {holder}',
+  take_control_first: 'Nessuno ha il controllo: prendilo prima.',
+  holder_has_control_ask: '{holder} ha il controllo: chiedilo prima.',
   speed: 'Velocità',
   off_path: 'Fuori rotta',
   to_drive: 'Da fare',

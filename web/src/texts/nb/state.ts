@@ -7,6 +7,8 @@ export const state = {
   nobody_has_control: 'Ingen har kontroll',
   you_have_control: 'Du har kontroll',
   holder_has_control: '{holder} har kontroll',
+  take_control_first: 'Ingen har kontroll: ta den først.',
+  holder_has_control_ask: '{holder} har kontroll: be om den først.',
   speed: 'Fart',
   off_path: 'Av sporet',
   to_drive: 'Igjen',
