@@ -22,7 +22,7 @@ export type Answer<T> =
   { readonly ok: true; readonly value: T } | { readonly ok: false; readonly refusal: Refusal };
 
 /** What the sentence before them does not say already. */
-export const new_causes = ({ detail, errors }: Refusal): readonly FieldError[] =>
+const new_causes = ({ detail, errors }: Refusal): readonly FieldError[] =>
   errors.filter((error) => !detail.includes(error.detail));
 
 /** One line for a person: the cause, then what is wrong in each place. */
