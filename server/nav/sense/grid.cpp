@@ -14,6 +14,10 @@ constexpr float kFades_m = 0.005F;  // of a span, with each piece that meets its
 constexpr std::uint8_t kSureHits = 4;
 constexpr float kUnsure_m = 0.40F;   // what few pieces met is gone when a ray passes so near
 constexpr float kGrazes_m = 0.003F;  // a ray along an edge: more would take its thing away
+constexpr float kRim_m = 0.02F;      // heights in O err by as much: the odometry's drift
+constexpr std::uint32_t kAlong_ms = 150;
+constexpr std::uint32_t kBeside_ms = 1000;
+constexpr std::uint32_t kApart_ms = 400;  // what rays say is not one and the same any more
 // What is seen lower than this over the body's plane stands on the ground: its foot is there, too.
 constexpr float kStands_m = 0.15F;
 constexpr float kFoot_m = 0.05F;
@@ -154,7 +158,8 @@ void Grid::hit(const Reduced& in, bool thin, std::uint8_t sensor, std::uint32_t 
             span.by_planes && thin,
             first ? low : std::min(span.now_low_m, low),
             first ? z : std::max(span.now_top_m, z),
-            first ? v.z_m : std::max(span.now_body_m, v.z_m)};
+            first ? v.z_m : std::max(span.now_body_m, v.z_m),
+            now_ms};
     o.known = v.kind == Kind::Drop ? Known::Drop : Known::Occupied;
     if (first) {
       o.hits = static_cast<std::uint8_t>(std::min<int>(o.hits, kSureHits) + 1);
@@ -319,19 +324,44 @@ bool Grid::seen_through(std::size_t i, double d_m, std::uint64_t bit, std::size_
   if (c.ms == now_ms) return false;  // hit in this very piece, or seen through already
   const Span& span = spans_[i];
   const bool sure = c.hits >= kSureHits;
-  const float off = sure ? kGrazes_m : kUnsure_m;
   // What a plane met, that same plane always looks at in the same height over the body.
   const bool same = s.planar && c.sensor == sensor;
   const float top_body_m = sure && span.stands && !same
                                ? std::max(s.meets_m, span.top_body_m + kGrazes_m)
                                : std::numeric_limits<float>::infinity();
-  const bool through = c.known == Known::Drop
-                           ? (s.of[sector].low & bit) != 0
-                           : s.passes(sector, static_cast<float>(d_m), span.low_m - off,
-                                      span.top_m + off, top_body_m);
-  if (!through) return false;
+  using Pass = Sectors::Pass;
+  Pass pass = Pass::None;
+  if (c.known == Known::Drop) {
+    if ((s.of[sector].low & bit) != 0) pass = Pass::Through;
+  } else if (sure) {
+    pass = s.passes(sector, static_cast<float>(d_m),
+                    {span.low_m, span.top_m, kGrazes_m, kRim_m, top_body_m});
+  } else {
+    pass =
+        s.passes(sector, static_cast<float>(d_m), {span.low_m - kUnsure_m, span.top_m + kUnsure_m});
+  }
+  return pass != Pass::None && long_enough(i, pass, now_ms);
+}
+
+/// Rays say that it left, and have done so for so long that it did.
+bool Grid::long_enough(std::size_t i, Sectors::Pass pass, std::uint32_t now_ms) noexcept {
+  Cell& c = cells_[i];
+  Span& span = spans_[i];
+  if (c.misses == 0 || age_ms(now_ms, c.ms) > kApart_ms) {
+    c.misses = span.along = 0;
+    span.beside_ms = now_ms;
+  }
   c.ms = now_ms;
-  return ++c.misses >= p_.clear_scans;
+  const auto count = [](std::uint8_t& n) { n = static_cast<std::uint8_t>(std::min(n + 1, 255)); };
+  count(c.misses);
+  if (pass >= Sectors::Pass::Along) {
+    if (span.along == 0) span.along_ms = now_ms;
+    count(span.along);
+  }
+  if (c.misses < p_.clear_scans) return false;
+  if (pass == Sectors::Pass::Through || age_ms(now_ms, span.beside_ms) >= kBeside_ms) return true;
+  const bool lately = age_ms(span.along_ms, span.met_ms) < kBeside_ms;
+  return lately && span.along >= p_.clear_scans && age_ms(now_ms, span.along_ms) >= kAlong_ms;
 }
 
 Known Grid::at(double x_m, double y_m, base::Time now) const noexcept {

@@ -11,13 +11,17 @@
 // Blind is not free: a cell is free only where a ray passed low enough (sectors.hpp). Of what
 // stands in a cell the heights are kept between which it was seen lately, in O: only a ray that
 // passes between them and goes on says that it left (of what was met less than four times, a ray
-// nearby as well: it may have been rain). What a ray passes above or below stays, and so
-// does what sinks out of every sensor's view as the robot comes near, leans or climbs. (Where
-// nothing tells how the body leans, its plane is taken for O's. What tells it may err by degrees
-// while the robot brakes: of what stands on the ground a ray must say so over the body's plane as
-// well, or a false lean would take away what is too low and near to be met.) What is too thin or
-// too new to be believed (Passing) makes no cell occupied; but where something was believed, an
-// echo in its cell or beside it says that it still stands there, however many rays pass it by.
+// nearby as well: it may have been rain). Along the edges of what was met no height is known well
+// enough for a moment to say so: a plane that rises over a box passes just above it. There rays
+// must say it for kAlong_s; and for kBeside_s where they pass just beside the edges, or where
+// nothing was met for so long that the heights may have drifted. What a ray passes above or below
+// stays, and so does what sinks out of every sensor's view as the robot comes near, leans or
+// climbs. (Where nothing tells how the body leans, its plane is taken for O's. What tells it may
+// err by degrees while the robot brakes: of what stands on the ground a ray must say so over the
+// body's plane as well, or a false lean would take away what is too low and near to be met.) What
+// is too thin or too new to be believed (Passing) makes no cell occupied; but where something was
+// believed, an echo in its cell or beside it says that it still stands there, however many rays
+// pass it by.
 //
 // What a plane met on a hill before the ground was seen there is ground once it is (hills.hpp).
 
@@ -107,6 +111,10 @@ class Grid {
     float now_low_m = 0.0F;   ///< of the last piece that met it
     float now_top_m = 0.0F;
     float now_body_m = 0.0F;
+    std::uint32_t met_ms = 0;     ///< last
+    std::uint32_t beside_ms = 0;  ///< since then rays say that it left
+    std::uint32_t along_ms = 0;   ///< and those that pass no higher or lower than it was met
+    std::uint8_t along = 0;       ///< pieces that say so
   };
   std::size_t index(std::int32_t ix, std::int32_t iy) const noexcept {
     return static_cast<std::size_t>(iy & mask_) * stride_ + static_cast<std::size_t>(ix & mask_);
@@ -141,6 +149,7 @@ class Grid {
   };
   void look_along(const Line& line, std::size_t sector, const Sectors& s, std::uint8_t sensor,
                   std::uint32_t now_ms) noexcept;
+  bool long_enough(std::size_t i, Sectors::Pass pass, std::uint32_t now_ms) noexcept;
   bool seen_through(std::size_t i, double d_m, std::uint64_t bit, std::size_t sector,
                     const Sectors& s, std::uint8_t sensor, std::uint32_t now_ms) noexcept;
 

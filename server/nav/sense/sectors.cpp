@@ -34,6 +34,8 @@ float below_from(float from_m, float to_m, float d, float height) noexcept {
 
 constexpr float kBeyond_m = 0.10F;  // less may be the same thing's other side, or noise
 
+constexpr float kSame_m = 0.0005F;  // the same height: what two looks from one place differ by
+
 /// Where voxels stand, in O.
 class Heights {
  public:
@@ -83,9 +85,9 @@ void keep_rays(const Reduced& in, const std::vector<float>& at, Sectors& out) {
 
 }  // namespace
 
-bool Sectors::passes(std::size_t sector, float d_m, float low_m, float top_m,
-                     float top_body_m) const noexcept {
-  if (d_m < blind_m) return false;
+Sectors::Pass Sectors::passes(std::size_t sector, float d_m, const Band& band) const noexcept {
+  if (d_m < blind_m) return Pass::None;
+  Pass out = Pass::None;
   const auto middle = static_cast<float>(sector) + 0.5F;
   const auto round = static_cast<float>(kSectors);
   const auto beside = static_cast<std::size_t>(std::ceil(half_sectors));
@@ -99,10 +101,17 @@ bool Sectors::passes(std::size_t sector, float d_m, float low_m, float top_m,
       const float part = (d_m + ray.back_m) / (ray.end_m + ray.back_m);
       const float z = ray.from_z_m + (ray.end_z_m - ray.from_z_m) * part;
       const float body = ray.from_body_m + (ray.end_body_m - ray.from_body_m) * part;
-      if (z >= low_m && z <= top_m && body <= top_body_m) return true;
+      if (body > band.top_body_m) continue;
+      const float in = std::min(z - band.low_m, band.top_m - z);
+      if (in >= band.along_m) return Pass::Through;
+      if (in >= -kSame_m) {
+        out = Pass::Along;
+      } else if (in >= -band.beside_m) {
+        out = std::max(out, Pass::Beside);
+      }
     }
   }
-  return false;
+  return out;
 }
 
 double bearing_rad(std::size_t sector) noexcept {

@@ -64,10 +64,22 @@ struct Sectors {
   bool thin = false;
   float meets_m = 0.08F;  ///< a ray this low meets what stands there
 
-  /// Some ray of this direction went through at d_m from the sensor, between two heights in O and
-  /// not higher than the third over the body's plane.
-  bool passes(std::size_t sector, float d_m, float low_m, float top_m,
-              float top_body_m = std::numeric_limits<float>::infinity()) const noexcept;
+  enum class Pass : std::uint8_t {
+    None,
+    Beside,  ///< just outside of the heights
+    Along,   ///< within them, and near one of them
+    Through  ///< well between them
+  };
+  /// Heights in O between which something is, and how near to them counts.
+  struct Band {
+    float low_m = 0.0F;
+    float top_m = 0.0F;
+    float beside_m = 0.0F;                                      ///< outside of them
+    float along_m = 0.0F;                                       ///< within
+    float top_body_m = std::numeric_limits<float>::infinity();  ///< no ray higher over the body
+  };
+  /// How a ray of this direction went through at d_m from the sensor: the one that says most.
+  Pass passes(std::size_t sector, float d_m, const Band& band) const noexcept;
 };
 
 /// @param in judged voxels; the rays take one place each, whatever their width. @param

@@ -216,6 +216,53 @@ TEST(GridTest, WhatALeaningBodyLooksOverStays) {
   EXPECT_NE(r.at(3.02, 0.3, 3.3), Known::Occupied) << "it is gone, and the body level again";
 }
 
+/// Columns of 5 cm across what stands at x 2.0 to 2.3, y −0.5 to 0.5, that have it.
+int columns_of_box(const Robot& r, double t) {
+  int out = 0;
+  for (double y = -0.475; y < 0.5; y += 0.05) {
+    bool there = false;
+    for (double x = 1.975; x < 2.35; x += 0.05) there |= r.at(x, y, t) == Known::Occupied;
+    out += there ? 1 : 0;
+  }
+  return out;
+}
+
+Scene box(double top_m) {
+  Scene s;
+  s.blocks.push_back({6.0, 6.2, -4.0, 4.0, 0.0, 2.0});
+  s.blocks.push_back({2.0, 2.3, -0.5, 0.5, 0.0, top_m});
+  return s;
+}
+
+//   ●────  ▭   The plane rises slowly over a box that is a little lower than it: for a moment it
+//       ‾‾‾‾   passes just above, in heights that are all but those of the box. It stays.
+TEST(GridTest, APlaneThatRisesOverABoxDoesNotTakeItAway) {
+  for (const double deg_per_s : {0.3, 0.7, 3.0}) {
+    Robot r;
+    const Scene s = box(0.29);
+    double t = 1.0;
+    for (double deg = -0.6; deg < 1.0; deg += 0.02 * deg_per_s, t += 0.02) {
+      r.scan(s, t, {}, 30.0, {0.0, 0.0, base::rad_from_deg(deg)});
+    }
+    EXPECT_GE(columns_of_box(r, t), 17) << deg_per_s << " deg/s";
+  }
+}
+
+//   Nobody looked while it was taken away. Its heights are remembered by an odometry that drifts:
+//   that it left is believed after a second, not at once, and then it is.
+TEST(GridTest, WhatLeftUnseenIsSeenThroughForASecond) {
+  Robot r;
+  double t = 1.0;
+  for (; t < 1.5; t += 0.02) r.scan(box(0.29 + 0.1), t);
+  ASSERT_GE(columns_of_box(r, t), 19);
+  Scene behind;
+  behind.blocks.push_back({6.0, 6.2, -4.0, 4.0, 0.0, 2.0});
+  for (t = 10.0; t < 10.9; t += 0.02) r.scan(behind, t);
+  EXPECT_GE(columns_of_box(r, t), 19);
+  for (; t < 11.1; t += 0.02) r.scan(behind, t);
+  EXPECT_EQ(columns_of_box(r, t), 0);
+}
+
 //   Up a slope: what was met from below is no longer in the plane's height above. It stays.
 TEST(GridTest, HeightsAreThoseOfTheGroundThatWasDrivenNotOfTheBody) {
   Scene low;

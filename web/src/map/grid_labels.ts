@@ -29,12 +29,12 @@ class Edge {
       span.textContent = text;
       Object.assign(span.style, {
         position: 'absolute',
-        font: '600 11px/13px system-ui, sans-serif',
+        font: '600 12px/14px system-ui, sans-serif',
         whiteSpace: 'nowrap',
         color,
         textShadow: halo,
         left: vertical ? `${at_px + 4}px` : '8px',
-        top: vertical ? '4px' : `${at_px - 15}px`,
+        top: vertical ? '4px' : `${at_px - 16}px`,
       });
       return span;
     });

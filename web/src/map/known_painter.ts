@@ -42,7 +42,7 @@ export const paint_known = (paint: Paint, drawn: readonly DrawnKnown[], colors: 
   const { context, width_px, height_px } = paint;
   const off_screen = LOOKS_PX + 10;
   context.save();
-  context.font = '600 11px system-ui, sans-serif';
+  context.font = '600 12px system-ui, sans-serif';
   context.textAlign = 'center';
   context.textBaseline = 'middle';
   for (const { at, place, seen } of drawn) {
