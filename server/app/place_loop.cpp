@@ -50,6 +50,9 @@ base::Result<PlaceLoop::Map> map_of(const maps::Shelf& shelf, std::int64_t id) {
   made.name = about->name;
   made.number = ++taken;
   made.field = std::make_shared<const nav::place::Field>(*cells);
+  const auto solid = shelf.read_solid(id);
+  if (!solid) return tl::unexpected(solid.error());
+  if (*solid) made.relief = std::make_shared<const nav::cells::Relief>(**solid);
   if (const auto& anchor = about->anchor) {
     made.anchor =
         nav::place::MapAnchor{anchor->at, base::yaw_from_heading(anchor->heading_deg),

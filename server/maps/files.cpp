@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "atlas/map_files.hpp"
+#include "maps/solid.hpp"
 
 namespace roverd::maps {
 
@@ -63,6 +64,13 @@ base::Result<std::vector<std::uint8_t>> file_bytes(const fs::path& file, std::ui
 }
 
 base::Result<nav::chart::OccupancyMap> read_map_files(const fs::path& yaml) {
+  if (is_solid(yaml)) {
+    const auto solid = read_solid(yaml);
+    if (!solid) return tl::unexpected<base::Error>(solid.error());
+    auto plane = plane_of(*solid);
+    if (!plane) return tl::unexpected<base::Error>(of_file(yaml, plane.error()));
+    return plane;
+  }
   const auto text = file_bytes(yaml, atlas::kLargestWords);
   if (!text) return tl::unexpected<base::Error>(text.error());
   const auto words = atlas::read_words(std::string(text->begin(), text->end()));

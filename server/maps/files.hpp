@@ -1,5 +1,6 @@
 #pragma once
-// A map on the disk as map servers keep it: a .yaml and the picture that it names.
+// A map on the disk as map servers keep it: a .yaml and the picture that it names; or a .pcd in
+// three dimensions, of which this is the plane (solid.hpp).
 
 #include <cstdint>
 #include <filesystem>

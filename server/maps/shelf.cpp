@@ -10,6 +10,7 @@
 
 #include "maps/edit.hpp"
 #include "maps/files.hpp"
+#include "maps/solid.hpp"
 
 namespace roverd::maps {
 
@@ -272,6 +273,15 @@ Result<OccupancyMap> Shelf::read(std::int64_t id) const {
   const auto found = kept(id);
   if (!found) return tl::unexpected<Error>(found.error());
   return cells_of(id, *found);
+}
+
+Result<std::shared_ptr<const nav::cells::CellMap>> Shelf::read_solid(std::int64_t id) const {
+  const std::lock_guard disk(disk_);
+  if (const auto found = kept(id); !found) return tl::unexpected<Error>(found.error());
+  if (id != kConfigured || !is_solid(configured_)) return nullptr;
+  auto solid = maps::read_solid(configured_);
+  if (!solid) return base::fail(Code::Unavailable, solid.error().detail);
+  return std::make_shared<const nav::cells::CellMap>(std::move(*solid));
 }
 
 Result<About> Shelf::add(std::string name, const OccupancyMap& map,

@@ -24,6 +24,7 @@
 #include "base/result.hpp"
 #include "maps/about_file.hpp"
 #include "maps/words.hpp"
+#include "nav/cells/cell_map.hpp"
 #include "nav/chart/map.hpp"
 
 namespace roverd::maps {
@@ -69,6 +70,9 @@ class Shelf {
   /// The cells as a scanner would see them. NotFound: no such map. Unavailable: its files are gone,
   /// or cannot be read any more.
   base::Result<nav::chart::OccupancyMap> read(std::int64_t id) const;
+
+  /// Its third dimension; null: it has none. The same errors.
+  base::Result<std::shared_ptr<const nav::cells::CellMap>> read_solid(std::int64_t id) const;
 
   /// @param name one that people may give
   /// @return Conflict: kMostMaps are kept; Unavailable: the disk refuses, or is almost full, and

@@ -52,6 +52,8 @@ def draw_map(folder):
 
 
 class Hall(SeeingRobot):
+    THINGS = THINGS
+
     def __init__(self):
         super().__init__({"name": "hall", "ground": {"grass_m": 0.0}, "things": THINGS},
                          hears=HEARS_TOP_AND_FRONT + MAP)

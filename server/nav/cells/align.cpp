@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -150,12 +151,13 @@ struct Held {
   double arms_m2 = 0.0;
   double pairs = 0.0;
 
-  void add(const Eigen::Vector3d& normal, const Eigen::Vector3d& arm) {
+  void add(const Surfel& surface, const Eigen::Vector3d& arm) {
+    const double tilt_rad2 = kTilt_rad * kTilt_rad + surface.tilt_rad2;
     Eigen::Matrix<double, 3, 6> j;
     j << Eigen::Matrix3d::Identity(), -hat(arm);
-    const Vector6d across = j.transpose() * normal;
-    information.noalias() += (1.0 + kTilt_rad * kTilt_rad) * (across * across.transpose());
-    information.noalias() -= kTilt_rad * kTilt_rad * (j.transpose() * j);
+    const Vector6d across = j.transpose() * surface.across;
+    information.noalias() += (1.0 + tilt_rad2) * (across * across.transpose());
+    information.noalias() -= tilt_rad2 * (j.transpose() * j);
     arms_m2 += arm.squaredNorm();
     pairs += 1.0;
   }
@@ -189,14 +191,14 @@ void look_again(const Relief& source, const Relief& target, const AlignParams& p
     if (across_m > near_m) continue;
     ++found[kind];
     squares += across_m * across_m;
-    held.add(t->across, at - out.x_ts.translation());
+    held.add(*t, at - out.x_ts.translation());
   }
   const auto share = [](std::size_t part, std::size_t whole) {
     return whole == 0 ? 0.0 : double(part) / double(whole);
   };
   out.overlap = share(found[0] + found[1], all[0] + all[1]);
   out.upright = share(found[1], all[1]);
-  out.fit_m = std::sqrt(squares / std::max(held.pairs, 1.0));
+  out.fit_m = std::sqrt(squares / std::max(double(found[0] + found[1]), 1.0));
   const double deviation_m = std::max(out.fit_m, kFinest_cells * target.cell_m());
   out.covariance = held.covariance(kAlike * deviation_m * deviation_m);
   const double floor_m = p.floor_cells * target.cell_m();
@@ -245,15 +247,12 @@ std::string_view to_string(Verdict v) noexcept {
   return "";
 }
 
-Alignment align(const Relief& source, const Relief& target, const Eigen::Isometry3d& start,
-                const AlignParams& params) {
-  Alignment out;
-  out.x_ts = start;
-  if (source.surfels().empty() || target.surfels().empty() || !start.matrix().allFinite()) {
-    return out;
-  }
+namespace {
+
+/// Where the start is wrong by search_m: the best by coarse cells, and what came near it.
+void search(const Relief& source, const Relief& target, const AlignParams& params, Alignment& out) {
   std::vector<Place> places;
-  for (const Eigen::Isometry3d& from : starts_around(start, params)) {
+  for (const Eigen::Isometry3d& from : starts_around(out.x_ts, params)) {
     places.push_back(coarse_place(source, target, from));
   }
   const auto best = std::max_element(places.begin(), places.end(),
@@ -263,6 +262,10 @@ Alignment align(const Relief& source, const Relief& target, const Eigen::Isometr
     out.rival = std::max(out.rival, other.fit / best->fit);
   }
   out.x_ts = best->x;
+}
+
+void settle_finely(const Relief& source, const Relief& target, const AlignParams& params,
+                   Alignment& out) {
   const double reach_m = kReach_cells * target.cell_m();
   const auto look = [&](const Eigen::Vector3d& p) { return target.nearest(p, reach_m); };
   const Settled fine =
@@ -270,6 +273,36 @@ Alignment align(const Relief& source, const Relief& target, const Eigen::Isometr
   out.steps = fine.steps;
   look_again(source, target, params, out);
   judge(target, params, fine.still, out);
+}
+
+/// More of it is found; of what is found as much, it lies nearer.
+bool fits_better(const Alignment& a, const Alignment& b) noexcept {
+  constexpr double kAlikeShare = 0.02;
+  const double more = (a.overlap + a.upright) - (b.overlap + b.upright);
+  return more > kAlikeShare || (more > -kAlikeShare && a.fit_m < b.fit_m);
+}
+
+}  // namespace
+
+Alignment align(const Relief& source, const Relief& target, const Eigen::Isometry3d& start,
+                const AlignParams& params) {
+  Alignment out;
+  out.x_ts = start;
+  if (source.surfels().empty() || target.surfels().empty() || !start.matrix().allFinite()) {
+    return out;
+  }
+  if (params.coarse) search(source, target, params, out);
+  const Alignment found = out;
+  settle_finely(source, target, params, out);
+  if (!(params.beside_m > 0.0)) return out;
+  for (const auto& [x, y] : {std::pair{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}}) {
+    Alignment other = found;
+    other.x_ts.translation() =
+        out.x_ts.translation() + params.beside_m * Eigen::Vector3d(x, y, 0.0);
+    other.x_ts.linear() = out.x_ts.linear();
+    settle_finely(source, target, params, other);
+    if (fits_better(other, out)) out = other;
+  }
   return out;
 }
 

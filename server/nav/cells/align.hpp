@@ -26,6 +26,12 @@ struct AlignParams {
   /// How far the start may be wrong: other starts lie that far to its sides.
   double search_m = 1.0;
   double search_rad = 0.17;
+  /// False: it is right within half a cell or so, as from one cloud to the next. Nothing is
+  /// searched but the fine place, and Ambiguous is never found.
+  bool coarse = true;
+  /// Of the place that was found also its four sides so far away are settled, and the best is
+  /// taken: the other face of a thin wall is found from there. 0: none.
+  double beside_m = 0.0;
   /// Least share of the source's surfels that must be found in the target. Less: LittleOverlap.
   double least_overlap = 0.5;
   /// A surfel is found where it lies within so many cells' lengths of a target's surface.

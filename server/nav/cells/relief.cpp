@@ -11,11 +11,32 @@ namespace roverd::nav::cells {
 
 namespace {
 
-constexpr double kAcross = 0.16;     // cells: deviation across a surface
-constexpr double kAlong = 5.0;       // cells
-constexpr double kFewPoints = 5.0;   // fewer say nothing of a coarse cell's shape
-constexpr double kThinnest = 0.01;   // share of the largest variance
+constexpr double kAcross = 0.16;    // cells: deviation across a surface
+constexpr double kAlong = 5.0;      // cells
+constexpr double kFewPoints = 5.0;  // fewer say nothing of a coarse cell's shape
+constexpr double kThinnest = 0.01;  // share of the largest variance
+constexpr double kManyPoints = 8.0;
+constexpr double kThin = 0.1;        // of the middle variance
+constexpr double kWide = 0.15;       // cells: deviation of points all over it is twice that
 constexpr std::size_t kInLeaf = 10;  // of the tree
+
+/// Of the direction of least variance among so many neighbours. Source: first-order perturbation of
+/// a sample covariance's eigenvectors (Anderson, An Introduction to Multivariate Statistical
+/// Analysis, 13.5).
+double tilt_rad2(const Eigen::Vector3d& v) noexcept {
+  const double apart = std::max(v(1) - v(0), 1e-12);
+  return std::min(1.0, std::max(v(0), 0.0) * v(1) / (double(Relief::kNeighbours) * apart * apart));
+}
+
+/// The points of a cell tell its direction by themselves: of a thin wall's two faces, which are
+/// each other's neighbours, each one its own.
+bool is_a_surface(const Cell& cell, double cell_m) {
+  if (cell.points < kManyPoints) return false;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes;
+  axes.computeDirect(covariance_m2(cell), Eigen::EigenvaluesOnly);
+  const Eigen::Vector3d& v = axes.eigenvalues();
+  return v(0) < kThin * v(1) && v(1) > kWide * kWide * cell_m * cell_m;
+}
 
 /// A surfel with the axes of what was measured and other variances, which the rule gives from the
 /// measured ones (ascending).
@@ -25,7 +46,7 @@ Surfel shaped(const Eigen::Vector3d& mean_m, const Eigen::Matrix3d& measured, Ru
   axes.computeDirect(measured);
   const Eigen::Vector3d wanted = rule(Eigen::Vector3d(axes.eigenvalues()));
   return {mean_m, axes.eigenvectors() * wanted.asDiagonal() * axes.eigenvectors().transpose(),
-          axes.eigenvectors().col(0)};
+          axes.eigenvectors().col(0), tilt_rad2(axes.eigenvalues())};
 }
 
 Relief::Level level_of(const CellMap& coarse) {
@@ -73,7 +94,7 @@ Relief::Relief(const CellMap& map) : cell_m_(map.cell_m()), tree_(std::make_uniq
   }
   if (!surfels_.empty()) {
     tree_->index.buildIndex();
-    fit_surfels();
+    fit_surfels(map);
   }
   for (std::size_t i = 0; i < kCoarser.size(); ++i) levels_[i] = level_of(map.coarser(kCoarser[i]));
 }
@@ -82,12 +103,17 @@ Relief::Relief(Relief&&) noexcept = default;
 Relief& Relief::operator=(Relief&&) noexcept = default;
 Relief::~Relief() = default;
 
-void Relief::fit_surfels() {
+void Relief::fit_surfels(const CellMap& map) {
   std::array<std::uint32_t, kNeighbours> near{};
   std::array<float, kNeighbours> apart{};
   const Eigen::Vector3d flat =
       Eigen::Vector3d(kAcross * kAcross, kAlong * kAlong, kAlong * kAlong) * cell_m_ * cell_m_;
+  const auto flattened = [&](const Eigen::Vector3d&) { return flat; };
   for (std::size_t i = 0; i < surfels_.size(); ++i) {
+    if (const Cell& cell = map.cells()[i]; is_a_surface(cell, cell_m_)) {
+      surfels_[i] = shaped(surfels_[i].mean_m, covariance_m2(cell), flattened);
+      continue;
+    }
     const std::size_t found =
         tree_->index.knnSearch(tree_->means.at[i].data(), kNeighbours, near.data(), apart.data());
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -99,8 +125,7 @@ void Relief::fit_surfels() {
     }
     const double part = 1.0 / static_cast<double>(found);
     mean *= part;
-    surfels_[i] = shaped(surfels_[i].mean_m, square * part - mean * mean.transpose(),
-                         [&](const Eigen::Vector3d&) { return flat; });
+    surfels_[i] = shaped(surfels_[i].mean_m, square * part - mean * mean.transpose(), flattened);
   }
 }
 

@@ -18,6 +18,9 @@ struct Surfel {
   Eigen::Vector3d mean_m = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();
   Eigen::Vector3d across = Eigen::Vector3d::UnitZ();  ///< the axis of least deviation, of length 1
+  /// Variance of its direction, rad², by how much thicker than wide it was measured: much at
+  /// corners, and where the two faces of a thin wall are its neighbours. [0, 1]
+  double tilt_rad2 = 0.0;
 };
 
 /// Immutable once made; may be read by any number of threads.
@@ -25,7 +28,8 @@ class Relief {
  public:
   /// Edges of the coarse cells, in cells of the map, the coarsest first.
   static constexpr std::array<int, 3> kCoarser = {16, 8, 4};
-  /// A piece of surface is fitted to so many cells.
+  /// A piece of surface is fitted to the points of its cell where they are many and lie in a plane,
+  /// else to so many cells.
   static constexpr std::size_t kNeighbours = 10;
 
   /// A map of no cells is a Relief of none: nothing is ever laid on it.
@@ -57,7 +61,7 @@ class Relief {
 
  private:
   struct Tree;
-  void fit_surfels();
+  void fit_surfels(const CellMap& map);
   double cell_m_;
   std::vector<Surfel> surfels_;
   std::array<Level, 3> levels_;

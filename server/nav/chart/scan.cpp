@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "nav/chart/carrier.hpp"
 #include "nav/sense/mount.hpp"
 
 namespace roverd::nav::chart {
@@ -13,44 +14,6 @@ namespace {
 
 using base::Echo;
 using sense::Pose2;
-
-constexpr double kKnot_s = 0.002;  // the body hardly moves within it
-
-/// Brings points of one sight to the body's pose at the scan's stamp, one pose a knot.
-class Carrier {
- public:
-  Carrier(const sense::PoseHistory& odometry, base::Time begin, const Pose2& reference)
-      : odometry_(odometry), begin_(begin), back_(inverse(reference)) {}
-
-  /// X_RB of B at begin + after_s, R being B at the stamp. Empty: the odometry does not reach it.
-  std::optional<Pose2> at(double after_s) {
-    const double knot = std::floor(after_s / kKnot_s);
-    if (!known_ || knot != knot_) {
-      knot_ = knot;
-      const auto pose = odometry_.at(begin_ + base::from_seconds((knot + 0.5) * kKnot_s));
-      known_ = pose.has_value();
-      if (pose) carried_ = back_ * *pose;
-    }
-    if (!known_) return std::nullopt;
-    return carried_;
-  }
-
- private:
-  const sense::PoseHistory& odometry_;
-  base::Time begin_;
-  Pose2 back_;
-  Pose2 carried_;
-  double knot_ = 0.0;
-  bool known_ = false;
-};
-
-double last_s(const base::Sight& sight) noexcept {
-  double last = 0.0;
-  for (const base::SightPoint& p : sight.points) {
-    if (p.after_s > last && p.after_s < 2.0F) last = p.after_s;
-  }
-  return last;
-}
 
 }  // namespace
 

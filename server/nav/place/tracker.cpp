@@ -14,9 +14,6 @@ namespace {
 
 using Eigen::Matrix3d;
 
-constexpr std::string_view kLostWords =
-    "lost: drive by hand to a known place, or tap where the robot is";
-
 constexpr double kSame_m = 0.4;  // nearer to each other are no rivals
 constexpr double kSame_rad = 0.2;
 constexpr double kDepthAtFirst_m = 0.02;
@@ -79,17 +76,43 @@ void Tracker::suggest(const Pose2& in_map, double deviation_m, double deviation_
   suggested_ = Suggested{in_map, deviation_m, deviation_rad};
 }
 
-void Tracker::begin_at(const Pose2& in_map, double deviation_m, double deviation_rad) {
-  pose_ = inverse(field_->shape().origin) * in_map;
+void Reckoned::begin(const Pose2& at, double deviation_m, double deviation_rad) noexcept {
   const double place = std::clamp(deviation_m, 0.05, 1.0);
   const double turn = std::clamp(deviation_rad, 0.02, base::kPi / 3.0);
-  covariance_ = Matrix3d::Zero();
-  covariance_.diagonal() << place * place, place * place, turn * turn;
+  pose = at;
+  covariance = Matrix3d::Zero();
+  covariance.diagonal() << place * place, place * place, turn * turn;
+  good();
+}
+
+void Reckoned::go(const Pose2& step, const TrackerParams& p) {
+  const double way = std::hypot(step.x_m, step.y_m);
+  const double c = std::cos(pose.yaw_rad);
+  const double s = std::sin(pose.yaw_rad);
+  Matrix3d f = Matrix3d::Identity();
+  f(0, 2) = -s * step.x_m - c * step.y_m;
+  f(1, 2) = c * step.x_m - s * step.y_m;
+  const double slip = p.slip_m + p.slip_share * way;
+  const double turn = p.turn_rad + p.turn_share * std::abs(step.yaw_rad) + p.turn_per_m_rad * way;
+  covariance = f * covariance * f.transpose();
+  covariance(0, 0) += slip * slip;
+  covariance(1, 1) += slip * slip;
+  covariance(2, 2) += turn * turn;
+  pose = pose * step;
+}
+
+Phase Reckoned::bad(const Pose2& step, const TrackerParams& p) noexcept {
+  bad_m += std::hypot(step.x_m, step.y_m);
+  ++bad_scans;
+  const bool lost = bad_m >= p.lost_after_m && bad_scans >= p.lost_after;
+  return lost ? Phase::Lost : Phase::Doubtful;
+}
+
+void Tracker::begin_at(const Pose2& in_map, double deviation_m, double deviation_rad) {
+  now_.begin(inverse(field_->shape().origin) * in_map, deviation_m, deviation_rad);
   phase_ = Phase::Tracking;
   told_ = true;
   fitted_ = false;
-  bad_m_ = 0.0;
-  bad_scans_ = 0;
 }
 
 void Tracker::forget() {
@@ -123,34 +146,18 @@ Told Tracker::answer(Told told) const {
   told.resets = resets_;
   told.fitted = fitted_;
   if (phase_ == Phase::Tracking || phase_ == Phase::Doubtful) {
-    told.pose = field_->shape().origin * pose_;
+    told.pose = field_->shape().origin * now_.pose;
   }
   return told;
 }
 
-void Tracker::predict(const Pose2& step) {
-  const double way = std::hypot(step.x_m, step.y_m);
-  const double c = std::cos(pose_.yaw_rad);
-  const double s = std::sin(pose_.yaw_rad);
-  Matrix3d f = Matrix3d::Identity();
-  f(0, 2) = -s * step.x_m - c * step.y_m;
-  f(1, 2) = c * step.x_m - s * step.y_m;
-  const double slip = p_.slip_m + p_.slip_share * way;
-  const double turn =
-      p_.turn_rad + p_.turn_share * std::abs(step.yaw_rad) + p_.turn_per_m_rad * way;
-  covariance_ = f * covariance_ * f.transpose();
-  covariance_(0, 0) += slip * slip;
-  covariance_(1, 1) += slip * slip;
-  covariance_(2, 2) += turn * turn;
-  pose_ = pose_ * step;
-}
-
 void Tracker::track(const chart::Scan& scan, const Pose2& step, Told& told) {
-  predict(step);
+  now_.go(step, p_);
   WindowParams window = p_.window;
   if (told_) {
-    window.half_m = std::clamp(3.0 * std::sqrt(covariance_(0, 0)), window.half_m, 3.0);
-    window.half_rad = std::clamp(3.0 * std::sqrt(covariance_(2, 2)), window.half_rad, base::kPi);
+    window.half_m = std::clamp(3.0 * std::sqrt(now_.covariance(0, 0)), window.half_m, 3.0);
+    window.half_rad =
+        std::clamp(3.0 * std::sqrt(now_.covariance(2, 2)), window.half_rad, base::kPi);
   }
   const std::vector<Point> few = spread_hits(scan, 0.10, p_.search_points);
   const std::vector<Point> hits = hits_of(scan, p_.match_points);
@@ -159,9 +166,9 @@ void Tracker::track(const chart::Scan& scan, const Pose2& step, Told& told) {
     bad(step);
     return;
   }
-  const Found found = search_window(*field_, few, pose_, window);
+  const Found found = search_window(*field_, few, now_.pose, window);
   const double depth_deviation_m = std::hypot(depth_deviation_m_, kDepthDrift_m);
-  const Prior prior{pose_, covariance_.inverse(), depth_m_, depth_deviation_m};
+  const Prior prior{now_.pose, now_.covariance.inverse(), depth_m_, depth_deviation_m};
   const Match match = refine(*field_, hits, found.pose, prior, p_.match);
   told.agreement = agreement(*field_, scan, match.pose);
   told.reason = misfit(told.agreement, p_);
@@ -173,24 +180,23 @@ void Tracker::track(const chart::Scan& scan, const Pose2& step, Told& told) {
   if (told_ && has_rival(scan, few, hits, match, told.agreement.log_fit, window)) {
     told_ = false;
     phase_ = Phase::Searching;
-    start_.stay_near(pose_, window.half_m, window.half_rad);
+    start_.stay_near(now_.pose, window.half_m, window.half_rad);
     (void)start_.feed(*field_, scan, Pose2{});
     told.candidates = start_.places().size();
     told.reason = "more than one place around the told one fits: drive on";
     return;
   }
   const Matrix3d sum = prior.information + match.covariance.inverse();
-  covariance_ = sum.inverse();
-  pose_ = match.pose;
+  now_.covariance = sum.inverse();
+  now_.pose = match.pose;
   depth_m_ = match.depth_m;
   depth_deviation_m_ = std::max(match.depth_deviation_m, kDepthSurest_m);
   told_ = false;
   fitted_ = true;
-  bad_m_ = 0.0;
-  bad_scans_ = 0;
+  now_.good();
   phase_ = Phase::Tracking;
   const double yaw = field_->shape().origin.yaw_rad;
-  told.fix = Fix{scan.stamp, field_->shape().origin * pose_, turned_by(match.covariance, yaw)};
+  told.fix = Fix{scan.stamp, field_->shape().origin * now_.pose, turned_by(match.covariance, yaw)};
 }
 
 /// Does another place in the window fit about as well? Where the map is too large to look at all of
@@ -202,8 +208,8 @@ bool Tracker::has_rival(const chart::Scan& scan, const std::vector<Point>& few,
   if (!whole.complete) return false;
   for (const Found& f : whole.found) {
     const bool inside =
-        std::hypot(f.pose.x_m - pose_.x_m, f.pose.y_m - pose_.y_m) <= window.half_m &&
-        std::abs(base::angle_diff_rad(pose_.yaw_rad, f.pose.yaw_rad)) <= window.half_rad;
+        std::hypot(f.pose.x_m - now_.pose.x_m, f.pose.y_m - now_.pose.y_m) <= window.half_m &&
+        std::abs(base::angle_diff_rad(now_.pose.yaw_rad, f.pose.yaw_rad)) <= window.half_rad;
     if (!inside) continue;
     const Match other = refine(*field_, hits, f.pose, {}, p_.match);
     const bool same =
@@ -219,13 +225,8 @@ bool Tracker::has_rival(const chart::Scan& scan, const std::vector<Point>& few,
 }
 
 void Tracker::bad(const Pose2& step) {
-  bad_m_ += std::hypot(step.x_m, step.y_m);
-  ++bad_scans_;
-  phase_ = Phase::Doubtful;
-  if (bad_m_ >= p_.lost_after_m && bad_scans_ >= p_.lost_after) {
-    phase_ = Phase::Lost;
-    start_.clear();
-  }
+  phase_ = now_.bad(step, p_);
+  if (phase_ == Phase::Lost) start_.clear();
 }
 
 /// @return false: nothing fits at the suggested place, the search goes on
@@ -252,12 +253,11 @@ void Tracker::search(const chart::Scan& scan, const Pose2& step, Told& told) {
   told.candidates = start_.places().size();
   told.reason = phase_ == Phase::Lost ? kLostWords : "looking for the place in the map";
   if (!decided) return;
-  pose_ = *decided;
-  covariance_ = Matrix3d::Zero();
-  covariance_.diagonal() << 0.01, 0.01, 0.001;
+  now_.pose = *decided;
+  now_.covariance = Matrix3d::Zero();
+  now_.covariance.diagonal() << 0.01, 0.01, 0.001;
   phase_ = Phase::Tracking;
-  bad_m_ = 0.0;
-  bad_scans_ = 0;
+  now_.good();
   told_ = fitted_ = false;
   ++resets_;
   start_.clear();

@@ -79,6 +79,26 @@ struct Told {
   std::string_view reason;     ///< one phrase for people
 };
 
+/// A pose, how sure it is, and the bad scans since it was.
+struct Reckoned {
+  Pose2 pose;                                            ///< of B, in the frame of the map's poses
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of x, y, yaw in that frame
+  double bad_m = 0.0;
+  std::uint32_t bad_scans = 0;
+
+  /// As a person says it. The place counts as unsure by 0.05 to 1 m, the turn by 0.02 rad to a
+  /// sixth of a turn, whatever is said.
+  void begin(const Pose2& at, double deviation_m, double deviation_rad) noexcept;
+  /// Along the odometry since the scan before, with its slip.
+  void go(const Pose2& step, const TrackerParams& p);
+  /// @return Doubtful, or Lost
+  Phase bad(const Pose2& step, const TrackerParams& p) noexcept;
+  void good() noexcept {
+    bad_m = 0.0;
+    bad_scans = 0;
+  }
+};
+
 class Tracker {
  public:
   explicit Tracker(std::shared_ptr<const Field> field, const TrackerParams& params = {});
@@ -107,7 +127,6 @@ class Tracker {
   bool tries(const chart::Scan& scan, Told& told);
   void begin_at(const Pose2& in_map, double deviation_m, double deviation_rad);
   bool searches() const noexcept { return phase_ == Phase::Searching || phase_ == Phase::Lost; }
-  void predict(const Pose2& step);
   bool has_rival(const chart::Scan& scan, const std::vector<Point>& few,
                  const std::vector<Point>& hits, const Match& match, double log_fit,
                  const WindowParams& window) const;
@@ -123,8 +142,7 @@ class Tracker {
 
   Phase phase_ = Phase::Searching;
   std::optional<Suggested> suggested_;
-  Pose2 pose_;                                            ///< X_GB
-  Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();  ///< of pose_
+  Reckoned now_;  ///< X_GB
   GlobalStart start_;
   std::optional<base::Time> last_stamp_;
   Pose2 last_odometry_;
@@ -132,10 +150,12 @@ class Tracker {
   double depth_deviation_m_ = 0.0;
   bool told_ = false;    ///< set_pose since the last scan: the window is wide
   bool fitted_ = false;  ///< a scan since the pose was told or found
-  double bad_m_ = 0.0;
-  std::uint32_t bad_scans_ = 0;
   std::uint32_t resets_ = 0;
 };
+
+/// What people are told to do where the place is lost.
+inline constexpr std::string_view kLostWords =
+    "lost: drive by hand to a known place, or tap where the robot is";
 
 /// The words about what is odd with a scan; empty: it fits.
 std::string_view misfit(const Agreement& a, const TrackerParams& p) noexcept;

@@ -14,6 +14,9 @@ namespace roverd::nav::place {
 namespace {
 
 constexpr double kOtherEyeAfter_s = 1.0;
+// Of what was found in the plane of a map in three dimensions, 1 sigma.
+constexpr double kFoundInPlane_m = 0.4;
+constexpr double kFoundInPlane_rad = 0.1;
 
 /// @param fitted a scan did since the pose was told: else it is looked for, whatever was told.
 base::PlacePhase phase_for_people(Phase p, bool fitted) noexcept {
@@ -27,6 +30,16 @@ base::PlacePhase phase_for_people(Phase p, bool fitted) noexcept {
       return base::PlacePhase::Lost;
   }
   return base::PlacePhase::Lost;
+}
+
+/// It looks along several rows.
+bool has_rows(const base::Sight& sight) noexcept {
+  constexpr std::size_t kLooks = 64;
+  const std::size_t n = std::min(kLooks, sight.points.size());
+  for (std::size_t i = 1; i < n; ++i) {
+    if (sight.points[i].ring != sight.points[0].ring) return true;
+  }
+  return false;
 }
 
 base::Time end_of_scan(const base::Sight& sight) noexcept {
@@ -47,6 +60,7 @@ base::PlaceState Whereabouts::use(std::shared_ptr<const MapInUse> map, base::Tim
   found_before_ = same_lie ? found_ + 1 : 0;
   map_ = std::move(map);
   tracker_.reset();
+  cells_.reset();
   fitted_.reset();
   anchor_.reset();
   started_.reset();
@@ -55,6 +69,13 @@ base::PlaceState Whereabouts::use(std::shared_ptr<const MapInUse> map, base::Tim
   state.stamp = now;
   if (!map_ || !map_->field) return state;
   tracker_.emplace(map_->field, p_.tracker);
+  if (map_->relief) {
+    cells_.emplace(map_->relief, p_.tracker);
+    // Whoever looks along one plane waits for a second whether there is somebody who sees more.
+    eye_.clear();
+    eye_rows_ = true;
+    eye_seen_ = now;
+  }
   anchor_ = same_lie ? lie : map_->anchor;
   if (fitted) stay_at(fitted->in_map, fitted->odometry);
   state.phase = base::PlacePhase::Searching;
@@ -67,7 +88,25 @@ base::PlaceState Whereabouts::use(std::shared_ptr<const MapInUse> map, base::Tim
 void Whereabouts::stay_at(const Pose2& in_map, const Pose2& odometry) {
   if (history_.empty()) return;
   const Pose2 now = in_map * (inverse(odometry) * history_.newest().pose);
-  tracker_->suggest(now, kTap_m, kTap_rad);
+  start_near(now, kTap_m, kTap_rad, false);
+}
+
+/// @param asked by a person: whatever is believed now. Else only while it is searched.
+void Whereabouts::start_near(const Pose2& in_map, double deviation_m, double deviation_rad,
+                             bool asked) {
+  if (cells_ && (asked || cells_->searches())) {
+    cells_->set_pose(in_map, deviation_m, deviation_rad);
+  }
+  if (asked) {
+    tracker_->set_pose(in_map, deviation_m, deviation_rad);
+  } else {
+    tracker_->suggest(in_map, deviation_m, deviation_rad);
+  }
+}
+
+bool Whereabouts::searches() const noexcept {
+  if (eye_rows_ && cells_) return cells_->searches();
+  return tracker_->phase() == Phase::Searching || tracker_->phase() == Phase::Lost;
 }
 
 /// E: ENU at the anchor. X_ME · X_EB.
@@ -83,21 +122,20 @@ bool Whereabouts::told(const Word& word) {
   if (!anchor_ || !base::is_valid(word.at)) return false;
   const double yaw_rad = word.yaw_rad.value_or(0.0);
   const double turn_rad = word.yaw_rad ? kTap_rad : base::kPi / 3.0;
-  tracker_->set_pose(on_map(word.at, yaw_rad), kTap_m, turn_rad);
+  start_near(on_map(word.at, yaw_rad), kTap_m, turn_rad, true);
   return true;
 }
 
 void Whereabouts::start_by_satellites(const Believed& b, base::Time stamp) {
-  const bool searches = tracker_->phase() == Phase::Searching || tracker_->phase() == Phase::Lost;
   const bool sure = b.by_satellites && b.sigma_m <= kSure_m && b.yaw_sigma_rad <= kSure_rad;
   const bool again = !started_ || base::seconds(stamp - *started_) >= again_s_;
-  if (!searches || !sure || !again || !anchor_) return;
+  if (!searches() || !sure || !again || !anchor_) return;
   // Where two places there are alike, a start begins anew what some way has to decide.
   again_s_ = started_ ? std::min(2.0 * again_s_, kAgainAtMost_s) : kAgain_s;
   started_ = stamp;
   const double sigma_m = std::hypot(b.sigma_m, anchor_->sigma_m);
-  tracker_->suggest(on_map(b.at, b.yaw_rad), std::clamp(sigma_m, 0.1, 1.0),
-                    std::max(0.1, std::hypot(b.yaw_sigma_rad, anchor_->yaw_sigma_rad)));
+  start_near(on_map(b.at, b.yaw_rad), std::clamp(sigma_m, 0.1, 1.0),
+             std::max(0.1, std::hypot(b.yaw_sigma_rad, anchor_->yaw_sigma_rad)), false);
 }
 
 /// Such that what is believed now and the place in the map are one: X_EM = X_EB · X_BM.
@@ -140,33 +178,76 @@ base::PlaceFix Whereabouts::fix_of(const Fix& fix, std::uint32_t found) const {
   return out;
 }
 
-std::size_t Whereabouts::rank_of(const std::string& sensor) const noexcept {
+/// In a map of three dimensions a sensor of several rows sees more than any other.
+std::size_t Whereabouts::rank_of(const std::string& sensor, bool rows) const noexcept {
   const auto at = std::find(p_.eyes.begin(), p_.eyes.end(), sensor);
-  return static_cast<std::size_t>(at - p_.eyes.begin());
+  const auto place = static_cast<std::size_t>(at - p_.eyes.begin());
+  return cells_ && !rows ? place + p_.eyes.size() + 1 : place;
 }
 
-bool Whereabouts::looks_through(const std::string& sensor, base::Time end) const noexcept {
-  if (sensor == eye_) return !taken_ || base::seconds(end - *taken_) >= kEvery_s;
-  return !eye_seen_ || rank_of(sensor) < rank_of(eye_) ||
+bool Whereabouts::looks_through(const base::Sight& sight, base::Time end) const noexcept {
+  const bool rows = has_rows(sight);
+  if (sight.sensor == eye_) {
+    const double every_s = rows && cells_ ? kCloudEvery_s : kEvery_s;
+    return !taken_ || base::seconds(end - *taken_) >= every_s;
+  }
+  return !eye_seen_ || rank_of(sight.sensor, rows) < rank_of(eye_, eye_rows_) ||
          base::seconds(end - *eye_seen_) >= kOtherEyeAfter_s;
+}
+
+std::optional<Whereabouts::Look> Whereabouts::look(const base::Sight& sight,
+                                                   const base::Mount& mount,
+                                                   const std::optional<Believed>& believed) {
+  const auto scan = chart::scan_of(sight, mount, history_, p_.scan);
+  if (!scan) return std::nullopt;
+  const auto odometry = history_.at(scan->stamp);
+  if (!odometry) return std::nullopt;
+  if (eye_rows_ && fitted_) stay_at(fitted_->in_map, fitted_->odometry);
+  if (believed) start_by_satellites(*believed, scan->stamp);
+  return Look{tracker_->feed(*scan, *odometry), *odometry};
+}
+
+/// As a cloud. Where the place is not known, the plane of it is looked for in the plane of the map.
+std::optional<Whereabouts::Look> Whereabouts::look_at_rows(
+    const base::Sight& sight, const base::Mount& mount, const std::optional<Believed>& believed) {
+  const auto cloud = cloud_of(sight, mount, history_, p_.cloud);
+  if (!cloud) return std::nullopt;
+  const auto odometry = history_.at(cloud->stamp);
+  if (!odometry) return std::nullopt;
+  if (believed) start_by_satellites(*believed, cloud->stamp);
+  const bool knew = !cells_->searches();
+  Look out{cells_->feed(*cloud, *odometry), *odometry};
+  if (!cells_->searches()) return out;
+  if (knew) tracker_->forget();
+  const auto scan = chart::scan_of(sight, mount, history_, p_.scan);
+  if (!scan) return out;
+  const Told in_plane = tracker_->feed(*scan, *odometry);
+  out.told.candidates = in_plane.candidates;
+  if (!in_plane.fix) return out;
+  cells_->set_pose(in_plane.fix->pose, kFoundInPlane_m, kFoundInPlane_rad);
+  tracker_->forget();
+  out.told = cells_->feed(*cloud, *odometry);
+  return out;
 }
 
 std::optional<base::PlaceState> Whereabouts::see(const base::Sight& sight, const base::Mount& mount,
                                                  const std::optional<Believed>& believed) {
   if (!tracker_) return std::nullopt;
   const base::Time end = end_of_scan(sight);
-  if (!looks_through(sight.sensor, end)) return std::nullopt;
-  const auto scan = chart::scan_of(sight, mount, history_, p_.scan);
-  if (!scan) return std::nullopt;
-  const auto odometry = history_.at(scan->stamp);
-  if (!odometry) return std::nullopt;
+  if (!looks_through(sight, end)) return std::nullopt;
+  const bool rows = cells_ && has_rows(sight);
+  const auto seen = rows ? look_at_rows(sight, mount, believed) : look(sight, mount, believed);
+  if (!seen) return std::nullopt;
   eye_ = sight.sensor;
+  eye_rows_ = rows;
   eye_seen_ = taken_ = end;
-  if (believed) start_by_satellites(*believed, scan->stamp);
-  const Told told = tracker_->feed(*scan, *odometry);
+  return tell(*seen, believed);
+}
 
+base::PlaceState Whereabouts::tell(const Look& look, const std::optional<Believed>& believed) {
+  const Told& told = look.told;
   base::PlaceState state;
-  state.stamp = scan->stamp;
+  state.stamp = told.stamp;
   state.map = map_->name;
   state.phase = phase_for_people(told.phase, told.fitted);
   state.reason = told.reason;
@@ -175,12 +256,12 @@ std::optional<base::PlaceState> Whereabouts::see(const base::Sight& sight, const
   if (!told.fix) return state;
   started_.reset();
   again_s_ = kAgain_s;
-  fitted_ = Seen{told.fix->pose, *odometry};
+  fitted_ = Seen{told.fix->pose, look.odometry};
   const Eigen::Matrix3d& c = told.fix->covariance;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(c.topLeftCorner<2, 2>());
   state.sigma_m = std::sqrt(std::max(0.0, axes.eigenvalues()(1)));
   state.sigma_rad = std::sqrt(std::max(0.0, c(2, 2)));
-  lay(told.fix->pose, scan->stamp, believed);
+  lay(told.fix->pose, told.stamp, believed);
   if (anchor_) {
     found_ = found_before_ + told.resets;
     state.fix = fix_of(*told.fix, found_);

@@ -5,6 +5,10 @@
 //   Odometry ─▶ PoseHistory ┐
 //   Sight, 10 a second ─────┴▶ scan ─▶ Tracker ─▶ X_MB ─anchor─▶ base::PlaceState
 //
+// Of a map in three dimensions a sensor of several rows is looked at as a cloud, 4 a second
+// (CellTracker); the whole map is searched in its plane, and what was found there is where the
+// cloud is looked for.
+//
 // How M lies on the earth is its anchor: where its origin is, and which way its x axis looks. A map
 // without one is laid where the satellites see the robot when its place in the map is known, as
 // surely as they are; where none are heard, at the origin of the local map (nav.estimate.map_lat,
@@ -24,6 +28,7 @@
 #include "base/geo.hpp"
 #include "base/measurements.hpp"
 #include "base/sight.hpp"
+#include "nav/place/cell_tracker.hpp"
 #include "nav/place/tracker.hpp"
 #include "nav/sense/odometry.hpp"
 
@@ -41,8 +46,9 @@ struct MapAnchor {
 /// Immutable, shared between threads.
 struct MapInUse {
   std::string name;
-  std::uint32_t number = 1;  ///< another one each time that a map is taken into use
-  std::shared_ptr<const Field> field;
+  std::uint32_t number = 1;            ///< another one each time that a map is taken into use
+  std::shared_ptr<const Field> field;  ///< of its plane
+  std::shared_ptr<const cells::Relief> relief;  ///< null: it has no third dimension
   std::optional<MapAnchor> anchor;
 };
 
@@ -65,6 +71,7 @@ struct Word {
 struct WhereaboutsParams {
   TrackerParams tracker;
   chart::ScanParams scan;
+  CloudParams cloud;
   std::optional<base::LatLon> local_origin;  ///< of the local map
   /// Names of sensors, the best to look through first; others come behind them.
   std::vector<std::string> eyes;
@@ -73,6 +80,7 @@ struct WhereaboutsParams {
 class Whereabouts {
  public:
   static constexpr double kEvery_s = 0.09;
+  static constexpr double kCloudEvery_s = 0.24;
   /// So sure satellites have to be for a start, and for laying a map.
   static constexpr double kSure_m = 1.5;
   static constexpr double kSure_rad = 0.2;
@@ -109,17 +117,30 @@ class Whereabouts {
   void start_by_satellites(const Believed& b, base::Time stamp);
   void lay(const Pose2& in_map, base::Time stamp, const std::optional<Believed>& believed);
   Pose2 on_map(base::LatLon at, double yaw_rad) const;
-  std::size_t rank_of(const std::string& sensor) const noexcept;
-  bool looks_through(const std::string& sensor, base::Time end) const noexcept;
+  std::size_t rank_of(const std::string& sensor, bool rows) const noexcept;
+  bool looks_through(const base::Sight& sight, base::Time end) const noexcept;
+  void start_near(const Pose2& in_map, double deviation_m, double deviation_rad, bool asked);
+  bool searches() const noexcept;
+  struct Look {
+    Told told;
+    Pose2 odometry;
+  };
+  std::optional<Look> look(const base::Sight& sight, const base::Mount& mount,
+                           const std::optional<Believed>& believed);
+  std::optional<Look> look_at_rows(const base::Sight& sight, const base::Mount& mount,
+                                   const std::optional<Believed>& believed);
+  base::PlaceState tell(const Look& look, const std::optional<Believed>& believed);
   void stay_at(const Pose2& in_map, const Pose2& odometry);
   base::PlaceFix fix_of(const Fix& fix, std::uint32_t found) const;
 
   WhereaboutsParams p_;
   std::shared_ptr<const MapInUse> map_;
   std::optional<Tracker> tracker_;
+  std::optional<CellTracker> cells_;  ///< of a map in three dimensions
   std::optional<MapAnchor> anchor_;
   sense::PoseHistory history_;
-  std::string eye_;  ///< the sensor that is looked through
+  std::string eye_;        ///< the sensor that is looked through
+  bool eye_rows_ = false;  ///< and as a cloud
   std::optional<base::Time> eye_seen_;
   std::optional<base::Time> taken_;
   struct Seen {

@@ -35,7 +35,7 @@ class Walk {
   static std::shared_ptr<const MapInUse> map(std::optional<MapAnchor> anchor,
                                              std::uint32_t number = 7) {
     return std::make_shared<const MapInUse>(
-        MapInUse{"shed", number, tests::field_of(tests::shed(), 12.0, 8.0), anchor});
+        MapInUse{"shed", number, tests::field_of(tests::shed(), 12.0, 8.0), nullptr, anchor});
   }
   const Pose2& odometry() const { return odometry_; }
   base::Time now() const { return base::Time{} + base::from_seconds(time_s); }
