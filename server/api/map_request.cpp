@@ -33,8 +33,9 @@ std::string bare_name(std::string name) {
 struct Parts {
   std::optional<std::string_view> yaml;
   std::optional<std::string_view> image;
+  std::optional<std::string_view> cloud;
   std::optional<std::string_view> name;
-  std::string yaml_file;
+  std::string file;  ///< of the yaml, or of the cloud
 };
 
 Result<Parts> parts_of(std::string_view body, std::string_view boundary) {
@@ -44,13 +45,19 @@ Result<Parts> parts_of(std::string_view body, std::string_view boundary) {
   for (const FormPart& part : *parts) {
     auto* const place = part.name == "yaml"    ? &out.yaml
                         : part.name == "image" ? &out.image
+                        : part.name == "cloud" ? &out.cloud
                         : part.name == "name"  ? &out.name
                                                : nullptr;
     const std::string field = "/" + mission::clean_name(part.name, "without a name");
     if (place == nullptr) return refuse(field, "is no field of this form");
     if (*place) return refuse(field, "comes twice");
     *place = part.content;
-    if (place == &out.yaml) out.yaml_file = part.file_name.value_or("");
+    if (place == &out.yaml || place == &out.cloud) out.file = part.file_name.value_or("");
+  }
+  if (out.cloud) {
+    if (out.yaml) return refuse("/yaml", "comes beside a cloud: one of both is the map");
+    if (out.image) return refuse("/image", "comes beside a cloud: one of both is the map");
+    return out;
   }
   if (!out.yaml) return refuse("/yaml", "is missing: the map's .yaml");
   if (!out.image) return refuse("/image", "is missing: the map's .pgm");
@@ -146,16 +153,17 @@ Result<MapForm> read_map_form(std::string_view body, std::string_view content_ty
   if (!*boundary) {
     return base::fail(Code::Unsupported,
                       "a map comes as multipart/form-data: curl -F yaml=@shed.yaml "
-                      "-F image=@shed.pgm");
+                      "-F image=@shed.pgm, or -F cloud=@yard.pcd");
   }
   const auto parts = parts_of(body, **boundary);
   if (!parts) return tl::unexpected<Error>(parts.error());
   std::optional<std::string> name;
   if (parts->name) name = std::string(*parts->name);
   if (const auto problem = problem_with(name)) return refuse("/name", *problem);
-  auto upload = maps::read_upload(*parts->yaml, *parts->image);
+  auto upload = parts->cloud ? maps::read_solid_upload(*parts->cloud)
+                             : maps::read_upload(*parts->yaml, *parts->image);
   if (!upload) return tl::unexpected<Error>(upload.error());
-  if (!name) name = mission::clean_name(bare_name(parts->yaml_file), "Map");
+  if (!name) name = mission::clean_name(bare_name(parts->file), "Map");
   return MapForm{std::move(*name), std::move(*upload)};
 }
 

@@ -17,9 +17,10 @@ struct MapForm {
   maps::Upload upload;
 };
 
-/// multipart/form-data with `yaml`, `image` and perhaps `name`; without one the map is called as
-/// the yaml's file. Unsupported: another type; Malformed: its frame is broken; Invalid: a file is
-/// missing, comes twice or cannot be, or a field is not known, with its name.
+/// multipart/form-data with `yaml` and `image`, or `cloud`, and perhaps `name`; without one the map
+/// is called as the yaml's file, or the cloud's. Unsupported: another type; Malformed: its frame is
+/// broken; Invalid: a file is missing, comes twice or cannot be, or a field is not known, with its
+/// name.
 base::Result<MapForm> read_map_form(std::string_view body, std::string_view content_type);
 
 struct StopMaking {

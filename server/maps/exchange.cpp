@@ -7,7 +7,9 @@
 
 #include "atlas/map_files.hpp"
 #include "maps/edit.hpp"
+#include "maps/solid.hpp"
 #include "maps/words.hpp"
+#include "nav/cells/map_file.hpp"
 
 namespace roverd::maps {
 
@@ -48,7 +50,18 @@ Result<Upload> read_upload(std::string_view yaml, std::string_view picture) {
                                   " cells along a side; at most " + std::to_string(kLongestSide),
                               {}});
   }
-  return Upload{std::move(*map), std::move(words->others)};
+  return Upload{std::move(*map), std::move(words->others), {}};
+}
+
+Result<Upload> read_solid_upload(std::string_view pcd) {
+  const auto solid = nav::cells::read_map(
+      {reinterpret_cast<const std::uint8_t*>(pcd.data()), pcd.size()}, kSolidCell_m);
+  if (!solid) return of_part("/cloud", solid.error());
+  auto plane = plane_of(*solid);
+  if (!plane) return of_part("/cloud", plane.error());
+  auto file = nav::cells::write_map(*solid);
+  if (!file) return of_part("/cloud", file.error());
+  return Upload{std::move(*plane), {}, std::move(*file)};
 }
 
 std::string exported_yaml(const OccupancyMap& map, const std::string& image) {

@@ -3,6 +3,7 @@
 // large takes its time: beside the web thread.
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,11 +17,16 @@ namespace roverd::maps {
 struct Upload {
   nav::chart::OccupancyMap map;
   std::vector<std::string> passed_over;  ///< what the yaml says besides, by name
+  std::vector<std::uint8_t> solid;       ///< its third dimension as a PCD file; empty: it has none
 };
 
 /// Both files of a map server's map. Which picture the yaml names does not matter. Invalid, naming
 /// the file and its field, line or byte: "/yaml/origin", "/image/size", "/image/byte 17".
 base::Result<Upload> read_upload(std::string_view yaml, std::string_view picture);
+
+/// A map in three dimensions: a PCD file, which is kept as cells, and the plane of it. Invalid,
+/// naming the byte or line: "/cloud/byte 17".
+base::Result<Upload> read_solid_upload(std::string_view pcd);
 
 /// The words of an exported map, for a picture of that file name.
 std::string exported_yaml(const nav::chart::OccupancyMap& map, const std::string& image);

@@ -24,6 +24,7 @@ using base::Result;
 using nav::chart::OccupancyMap;
 
 constexpr const char* kAbout = "about.json";
+constexpr const char* kSolid = "cells.pcd";
 constexpr const char* kChoice = "in_use.json";
 constexpr std::uintmax_t kLargestChoice = 4096;
 constexpr std::int64_t kHighest = 1'000'000'000;  ///< number of a map
@@ -67,7 +68,8 @@ Result<void> write_picture(const fs::path& folder, Kept& kept, const OccupancyMa
 
 /// Without what is forbidden, which may be long.
 About brief(const About& a) {
-  return {a.id, a.name, a.created, a.revision, a.shape, a.anchor, {}, a.size_bytes, a.problem};
+  return {a.id,     a.name, a.created,    a.revision, a.shape,
+          a.anchor, {},     a.size_bytes, a.solid,    a.problem};
 }
 
 void remove_quietly(const fs::path& path) {
@@ -107,6 +109,7 @@ Result<void> Shelf::take_configured(const Configured& said) {
     kept.about.problem = map.error().detail;
     return tl::unexpected<Error>(map.error());
   }
+  kept.about.solid = is_solid(said.yaml);
   kept.about.shape = map->shape();
   kept.about.size_bytes = map->cells().size();
   return {};
@@ -140,6 +143,11 @@ void Shelf::take_in(std::int64_t id) {
   if (error) told((folder_of(id) / kept->image).string() + ": " + error.message());
   kept->about.id = id;
   kept->about.size_bytes = error ? 0 : size;
+  std::error_code none;
+  if (const auto solid = fs::file_size(solid_of(id), none); !none) {
+    kept->about.solid = true;
+    kept->about.size_bytes += solid;
+  }
   maps_.emplace(id, std::move(*kept));
   if (error) return;  // another picture may be all that is left
   // Of a change that was cut off.
@@ -275,19 +283,39 @@ Result<OccupancyMap> Shelf::read(std::int64_t id) const {
   return cells_of(id, *found);
 }
 
+/// Its file, whether it is there or not.
+fs::path Shelf::solid_of(std::int64_t id) const {
+  return id == kConfigured ? configured_ : folder_of(id) / kSolid;
+}
+
 Result<std::shared_ptr<const nav::cells::CellMap>> Shelf::read_solid(std::int64_t id) const {
   const std::lock_guard disk(disk_);
-  if (const auto found = kept(id); !found) return tl::unexpected<Error>(found.error());
-  if (id != kConfigured || !is_solid(configured_)) return nullptr;
-  auto solid = maps::read_solid(configured_);
+  const auto found = kept(id);
+  if (!found) return tl::unexpected<Error>(found.error());
+  if (!found->about.solid) return nullptr;
+  auto solid = maps::read_solid(solid_of(id));
   if (!solid) return base::fail(Code::Unavailable, solid.error().detail);
   return std::make_shared<const nav::cells::CellMap>(std::move(*solid));
 }
 
-Result<About> Shelf::add(std::string name, const OccupancyMap& map,
-                         const std::optional<Anchor>& anchor, base::WallTime now) {
+Result<std::vector<std::uint8_t>> Shelf::solid_file(std::int64_t id) const {
   const std::lock_guard disk(disk_);
-  if (auto room = has_room(map.cells().size()); !room) return tl::unexpected<Error>(room.error());
+  const auto found = kept(id);
+  if (!found) return tl::unexpected<Error>(found.error());
+  if (!found->about.solid) {
+    return base::fail(Code::Conflict, "the map is one of the plane: it has no third dimension");
+  }
+  auto bytes = file_bytes(solid_of(id), kLargestSolid);
+  if (!bytes) return base::fail(Code::Unavailable, bytes.error().detail);
+  return bytes;
+}
+
+Result<About> Shelf::add(std::string name, const OccupancyMap& map,
+                         const std::optional<Anchor>& anchor, base::WallTime now,
+                         base::Bytes solid) {
+  const std::lock_guard disk(disk_);
+  if (auto room = has_room(map.cells().size() + solid.size()); !room)
+    return tl::unexpected<Error>(room.error());
   Kept made;
   {
     const std::lock_guard lock(index_);
@@ -310,6 +338,11 @@ Result<About> Shelf::add(std::string name, const OccupancyMap& map,
   fs::create_directory(begun, error);
   if (error) return give_up({Code::Unavailable, begun.string() + ": " + error.message(), {}});
   if (auto done = write_picture(begun, made, map); !done) return give_up(done.error());
+  if (!solid.empty()) {
+    if (auto done = replace_file(begun / kSolid, solid); !done) return give_up(done.error());
+    made.about.solid = true;
+    made.about.size_bytes += solid.size();
+  }
   if (auto done = replace_file(begun / kAbout, bytes_of(about_text(made))); !done) {
     return give_up(done.error());
   }
@@ -331,6 +364,9 @@ Result<void> Shelf::write_change(std::int64_t id, const Kept& before, Kept& afte
     if (!map) return tl::unexpected<Error>(map.error());
     for (const Edit& e : change.edits) edit(*map, e);
     if (auto done = write_picture(folder_of(id), after, *map); !done) return done;
+    std::error_code none;
+    const auto solid = fs::file_size(solid_of(id), none);
+    if (before.about.solid && !none) after.about.size_bytes += solid;
   }
   auto done = replace_file(folder_of(id) / kAbout, bytes_of(about_text(after)));
   if (cells) remove_quietly(folder_of(id) / (done ? before : after).image);

@@ -3,6 +3,7 @@
 //
 //   FOLDER/3/about.json      name, anchor, what is forbidden, and which picture holds
 //   FOLDER/3/map.2.pgm       the cells, of revision 2
+//   FOLDER/3/cells.pcd       its third dimension, where it has one; no edit changes it
 //   FOLDER/in_use.json       what a person chose; no such file: the map of the configuration
 //
 // A change writes a new picture beside the old one, then about.json in one step: after a power cut
@@ -21,6 +22,7 @@
 #include <string>
 #include <vector>
 
+#include "base/bytes.hpp"
 #include "base/result.hpp"
 #include "maps/about_file.hpp"
 #include "maps/words.hpp"
@@ -73,12 +75,16 @@ class Shelf {
 
   /// Its third dimension; null: it has none. The same errors.
   base::Result<std::shared_ptr<const nav::cells::CellMap>> read_solid(std::int64_t id) const;
+  /// The same as the file that is kept. Conflict: it has none.
+  base::Result<std::vector<std::uint8_t>> solid_file(std::int64_t id) const;
 
   /// @param name one that people may give
+  /// @param solid its third dimension as a PCD file; empty: it has none
   /// @return Conflict: kMostMaps are kept; Unavailable: the disk refuses, or is almost full, and
   /// nothing was kept
   base::Result<About> add(std::string name, const nav::chart::OccupancyMap& map,
-                          const std::optional<Anchor>& anchor, base::WallTime now);
+                          const std::optional<Anchor>& anchor, base::WallTime now,
+                          base::Bytes solid = {});
   /// All of it or nothing. NotFound; Conflict: of the configuration, or of another revision;
   /// Invalid: too many areas; Unavailable.
   base::Result<About> change(std::int64_t id, const Change& change);
@@ -102,6 +108,7 @@ class Shelf {
   base::Result<void> has_room(std::size_t cells) const;
   void take_in(std::int64_t id);
   std::filesystem::path folder_of(std::int64_t id) const;
+  std::filesystem::path solid_of(std::int64_t id) const;
   base::Result<Kept> kept(std::int64_t id) const;
   base::Result<nav::chart::OccupancyMap> cells_of(std::int64_t id, const Kept& kept) const;
   base::Result<void> write_change(std::int64_t id, const Kept& before, Kept& after,

@@ -51,6 +51,7 @@ struct About {
   /// What a person forbade. Not in the cells: nothing stands there that a scanner could see.
   std::vector<Area> forbidden;
   std::uint64_t size_bytes = 0;  ///< on the disk
+  bool solid = false;            ///< it has a third dimension
   std::string problem;           ///< why it cannot be used now: "its picture is gone"; else empty
 };
 

@@ -114,6 +114,41 @@ TEST_F(MapsApi, WhatIsExportedIsTheMap) {
   EXPECT_EQ(call("GET", "/maps/1/export").status, 422u);
 }
 
+//   A wall on a piece of ground, as some other program wrote it.
+TEST_F(MapsApi, AMapInThreeDimensionsIsKeptWithItsPlaneAndGivenBack) {
+  std::string points;
+  int n = 0;
+  for (double x = 0.05; x < 2.0; x += 0.1, ++n) points += std::to_string(x) + " 0.5 0\n";
+  for (double z = 0.05; z < 2.0; z += 0.1, ++n) points += "1.05 0.5 " + std::to_string(z) + "\n";
+  const std::string pcd = "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " +
+                          std::to_string(n) + "\nHEIGHT 1\nPOINTS " + std::to_string(n) +
+                          "\nDATA ascii\n" + points;
+  const auto cloud = [](const std::string& file, const std::string& more = "") {
+    return part("cloud", file, "yard.pcd") + more + "--x--\r\n";
+  };
+  // when
+  const auto made = add(cloud(pcd));
+  // then
+  ASSERT_EQ(made.status, 201u) << made.body;
+  EXPECT_EQ(made.body["name"], "yard");
+  EXPECT_EQ(made.body["solid"], true);
+  EXPECT_EQ(made.body["resolution_m"], 0.05);
+  const std::string cells = call("GET", "/maps/1/cells").raw.body;
+  EXPECT_NE(cells.find('\0'), std::string::npos) << "the wall is occupied";
+  const auto given = call("GET", "/maps/1/export?format=pcd");
+  EXPECT_EQ(given.raw.header("content-disposition"), "attachment; filename=\"map-1.pcd\"");
+  ASSERT_EQ(add(cloud(given.raw.body)).status, 201u);
+  EXPECT_EQ(call("GET", "/maps/2/cells").raw.body, cells) << "what is given is what is taken";
+  EXPECT_EQ(call("POST", "/maps/1/use").status, 200u);
+  // and a map of the plane has none, and a form holds one of both
+  ASSERT_EQ(add().body["solid"], false);
+  EXPECT_EQ(call("GET", "/maps/3/export?format=pcd").status, 409u);
+  EXPECT_EQ(refused(cloud(pcd, part("yaml", kYaml, "a.yaml"))), "/yaml");
+  EXPECT_EQ(refused(cloud(pcd.substr(0, pcd.size() - 20))), "/cloud/line 48");
+  EXPECT_EQ(refused(cloud("no cloud")), "/cloud/line 1");
+  EXPECT_EQ(call("GET", "/maps").body["items"].size(), 3u);
+}
+
 TEST_F(MapsApi, UglyUploadsAreNamedAndNothingIsKept) {
   EXPECT_EQ(refused(form("resolution: 0.5\n", kPicture)), "/yaml/image");
   EXPECT_EQ(refused(form(kYaml, "P5 10000 10000 255 ")), "/image/size");

@@ -14,6 +14,7 @@ import {
   made_so_far,
   OCCUPIED_CELL,
   on_earth,
+  name_of_files,
   pair_of,
   place_of_map,
   place_words,
@@ -40,6 +41,7 @@ const map: SiteMap = {
   anchor: null,
   placed: null,
   in_use: false,
+  solid: false,
   size_bytes: 80_000,
   problem: null,
 };
@@ -142,6 +144,10 @@ describe('files of a map', () => {
   const file = (name: string): File => new File(['.'], name);
   it('come in pairs', () => {
     const [yaml, image] = [file('Hall.YAML'), file('hall.pgm')];
+    const cloud = new File([], 'yard.PCD');
+    expect(pair_of([cloud])).toEqual({ cloud });
+    expect(name_of_files({ cloud })).toBe('yard');
+    expect(pair_of([cloud, image, yaml])).toContain('One map at a time');
     expect(pair_of([image, yaml])).toEqual({ yaml, image });
     expect(pair_of([])).toContain('Pick the .yaml and the .pgm');
     expect(pair_of([yaml])).toContain('.pgm is missing');

@@ -35,6 +35,7 @@ Json map_json(const maps::About& a, const MapsNow& now, bool whole) {
               {"placed", in_use ? anchor_json(now.placed) : Json(nullptr)},
               {"in_use", in_use},
               {"size_bytes", a.size_bytes},
+              {"solid", a.solid},
               {"problem", a.problem.empty() ? Json(nullptr) : Json(a.problem)}};
   if (!whole) return out;
   Json& areas = out["forbidden"] = Json::array();

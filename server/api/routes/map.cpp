@@ -1,5 +1,5 @@
-// Maps of the plane: kept, changed a little, chosen. What touches their files is done beside the
-// web thread.
+// Maps of the plane, and of three dimensions: kept, changed a little, chosen. What touches their
+// files is done beside the web thread.
 
 #include <cstdint>
 #include <functional>
@@ -181,7 +181,8 @@ Handler add(const ContextPtr& context) {
          type = std::string(header(call->request, http::field::content_type))]() -> Response {
           const auto form = read_map_form(body, type);
           if (!form) return problem(form.error());
-          const auto about = shelf->add(form->name, form->upload.map, std::nullopt, now);
+          const auto about =
+              shelf->add(form->name, form->upload.map, std::nullopt, now, form->upload.solid);
           if (!about) return problem(about.error());
           Json json = map_json(*about, now_of(*context), true);
           json["passed_over"] = form->upload.passed_over;
@@ -364,12 +365,10 @@ void cells(const ContextPtr& context, const CallPtr& call, const maps::Shelf& sh
   });
 }
 
-Response export_response(const maps::Shelf& shelf, std::int64_t id, bool yaml,
+Response export_response(const maps::Shelf& shelf, std::int64_t id, const std::string& format,
                          bool with_forbidden) {
   const auto about = shelf.find(id);
   if (!about) return problem(about.error());
-  auto map = shelf.read(id);
-  if (!map) return problem(map.error());
   const std::string name = "map-" + std::to_string(id);
   const auto file = [&name](const char* type, const char* ending, std::string content) {
     Response response = text_response(http::status::ok, type, std::move(content));
@@ -377,7 +376,15 @@ Response export_response(const maps::Shelf& shelf, std::int64_t id, bool yaml,
                  "attachment; filename=\"" + name + ending + "\"");
     return response;
   };
-  if (yaml) return file("application/yaml", ".yaml", maps::exported_yaml(*map, name + ".pgm"));
+  if (format == "pcd") {
+    const auto solid = shelf.solid_file(id);
+    if (!solid) return problem(solid.error());
+    return file("application/octet-stream", ".pcd", {solid->begin(), solid->end()});
+  }
+  auto map = shelf.read(id);
+  if (!map) return problem(map.error());
+  if (format == "yaml")
+    return file("application/yaml", ".yaml", maps::exported_yaml(*map, name + ".pgm"));
   auto pgm = maps::exported_pgm(std::move(*map),
                                 with_forbidden ? about->forbidden : std::vector<maps::Area>());
   if (!pgm) return problem(pgm.error());
@@ -391,14 +398,15 @@ void export_map(const ContextPtr& context, const CallPtr& call, const maps::Shel
   const auto invalid = [&call](const char* name, const std::string& detail) {
     call->respond(problem({Code::Invalid, name + (" " + detail), {{name, detail}}}));
   };
-  if (format != "yaml" && format != "pgm") return invalid("format", "must be yaml or pgm");
+  if (format != "yaml" && format != "pgm" && format != "pcd") {
+    return invalid("format", "must be yaml, pgm or pcd");
+  }
   if (!forbidden.empty() && forbidden != "drawn" && forbidden != "left_out") {
     return invalid("forbidden", "must be drawn or left_out");
   }
-  context->answer_aside(call, kCells,
-                        [&shelf, id, yaml = format == "yaml", drawn = forbidden != "left_out"] {
-                          return export_response(shelf, id, yaml, drawn);
-                        });
+  context->answer_aside(call, kCells, [&shelf, id, format, drawn = forbidden != "left_out"] {
+    return export_response(shelf, id, format, drawn);
+  });
 }
 
 }  // namespace
@@ -450,7 +458,7 @@ void add_map_routes(const ContextPtr& c) {
                  })});
   c->router.add({get,
                  "/maps/{id}/export",
-                 {200, 404, 422, 503},
+                 {200, 404, 409, 422, 503},
                  with_map(c, [c](const CallPtr& call, Shelf& shelf, std::int64_t id) {
                    export_map(c, call, shelf, id);
                  })});

@@ -46,14 +46,13 @@ const post = (
   });
 
 const add = async (
-  { yaml, image }: MapFiles,
+  files: MapFiles,
   name: string,
   sent: (share: number) => void,
 ): Promise<Answer<SiteMap>> => {
   const form = new FormData();
   if (name !== '') form.set('name', name);
-  form.set('yaml', yaml);
-  form.set('image', image);
+  for (const [field, file] of Object.entries(files)) form.set(field, file as File);
   try {
     const { status, text } = await in_lane('bulk', () => post(form, sent));
     const answer = new Response(text === '' ? null : text, { status });

@@ -39,6 +39,8 @@ export interface SiteMap {
   readonly placed?: MapAnchor | null;
   readonly in_use: boolean;
   readonly size_bytes: number;
+  /** It has a third dimension: a .pcd. */
+  readonly solid: boolean;
   /** Why it cannot be used; null: it can. */
   readonly problem: string | null;
   /** Areas where nobody shall drive; only where one map is asked for. */
@@ -107,7 +109,7 @@ export interface SiteMapCalls {
   /** @param name empty: any */
   finish_making(name: string): Promise<Answer<SiteMap>>;
   drop_making(): Promise<Answer<unknown>>;
-  file_address(id: number, format: 'yaml' | 'pgm'): string;
+  file_address(id: number, format: 'yaml' | 'pgm' | 'pcd'): string;
 }
 export interface TaggedCells extends SiteCells {
   readonly tag: string | null;
@@ -211,19 +213,26 @@ export const place_of_map = (map: SiteMap, here: LatLon | null): Placed | null =
 /** Nobody knows where it lies: where it is drawn means nothing. */
 export const lies_anywhere = (map: SiteMap): boolean => !map.placed && !map.anchor;
 
-export interface MapFiles {
-  readonly yaml: File;
-  readonly image: File;
-}
+/** By the fields of the form in which they are sent. */
+export type MapFiles = { readonly yaml: File; readonly image: File } | { readonly cloud: File };
 
-/** The two files of a map, of those that were picked. @return what is wrong with them, in words */
+const endings = /\.(ya?ml|pgm|pcd)$/i;
+
+/** As the map is called. */
+export const name_of_files = (files: MapFiles): string =>
+  ('cloud' in files ? files.cloud : files.yaml).name.replace(endings, '');
+
+/** The files of one map, of those that were picked. @return what is wrong with them, in words */
 export const pair_of = (files: readonly File[]): MapFiles | string => {
+  const cloud = files.find(({ name }) => /\.pcd$/i.test(name));
+  if (cloud && files.length === 1) return { cloud };
   const [yamls, images] = [/\.ya?ml$/i, /\.pgm$/i].map((ending) =>
     files.filter(({ name }) => ending.test(name)),
   );
   const [yaml, image] = [yamls?.[0], images?.[0]];
-  const other = files.find(({ name }) => !/\.(ya?ml|pgm)$/i.test(name));
+  const other = files.find(({ name }) => !endings.test(name));
   if (other) return say('name_is_no_part_of_a_map_pick_its', { name: other.name });
+  if (cloud) return say('one_map_at_a_time_pick_one_yaml_and');
   if (!yaml && !image) return say('pick_the_yaml_and_the_pgm_of_a_map');
   if (!yaml) return say('the_yaml_is_missing_pick_both_files');
   if (!image) return say('the_pgm_is_missing_pick_both_files');

@@ -6,6 +6,7 @@ import { failure_text, refusal_text, type Answer } from '../model/answer';
 import type { LatLon } from '../model/plan';
 import { say } from '../model/say';
 import {
+  name_of_files,
   pair_of,
   place_of_map,
   type MapAnchor,
@@ -120,7 +121,7 @@ export class SiteMaps {
     return robot_place(this.#live.vehicle) ?? this.#live.vehicle?.home ?? null;
   }
 
-  file_address(id: number, format: 'yaml' | 'pgm'): string {
+  file_address(id: number, format: 'yaml' | 'pgm' | 'pcd'): string {
     return this.#calls.file_address(id, format);
   }
 
@@ -135,7 +136,7 @@ export class SiteMaps {
       this.#notices.show('warning', say('name_is_still_being_sent', { name: this.sending.name }));
       return;
     }
-    const name = pair.yaml.name.replace(/\.ya?ml$/i, '');
+    const name = name_of_files(pair);
     this.sending = { name, share: 0 };
     const answer = await this.#calls.add(pair, name, (share) => (this.sending = { name, share }));
     this.sending = null;

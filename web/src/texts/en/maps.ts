@@ -1,11 +1,13 @@
 // Maps of sites.
 
 export const maps = {
-  name_is_no_part_of_a_map_pick_its: '“{name}” is no part of a map: pick its .yaml and its .pgm.',
-  pick_the_yaml_and_the_pgm_of_a_map: 'Pick the .yaml and the .pgm of a map.',
+  name_is_no_part_of_a_map_pick_its:
+    '“{name}” is no part of a map: pick its .yaml and its .pgm, or one .pcd.',
+  pick_the_yaml_and_the_pgm_of_a_map: 'Pick the .yaml and the .pgm of a map, or one .pcd.',
   the_yaml_is_missing_pick_both_files: 'The .yaml is missing: pick both files together.',
   the_pgm_is_missing_pick_both_files: 'The .pgm is missing: pick both files together.',
-  one_map_at_a_time_pick_one_yaml_and: 'One map at a time: pick one .yaml and its .pgm.',
+  one_map_at_a_time_pick_one_yaml_and:
+    'One map at a time: pick one .yaml and its .pgm, or one .pcd.',
   erase: 'Erase',
   forbid: 'Forbid',
   wall: 'Wall',
@@ -61,8 +63,9 @@ export const maps = {
   drop_it: 'Drop it',
   make_a_map_by_driving: 'Make a map by driving',
   new_map: 'New map',
-  add_a_map_yaml_and_pgm: 'Add a map: .yaml and .pgm',
-  pick_both_files_together_or_drop: 'Pick both files together, or drop them here.',
+  add_a_map_yaml_and_pgm: 'Add a map: .yaml and .pgm, or .pcd',
+  pick_both_files_together_or_drop:
+    'Pick both files together, or drop them here. A .pcd is a map in three dimensions.',
   map_files: 'Map files',
   sending_name_share_percent: 'Sending “{name}”, {share} %',
   show_it_while_driving: 'Show it while driving',

@@ -1,11 +1,13 @@
 // Maps of sites.
 
 export const maps = {
-  name_is_no_part_of_a_map_pick_its: '„{name}“ pole kaardi osa: vali selle .yaml ja .pgm.',
-  pick_the_yaml_and_the_pgm_of_a_map: 'Vali kaardi .yaml ja .pgm.',
+  name_is_no_part_of_a_map_pick_its:
+    '„{name}“ pole kaardi osa: vali selle .yaml ja .pgm või üks .pcd.',
+  pick_the_yaml_and_the_pgm_of_a_map: 'Vali kaardi .yaml ja .pgm või üks .pcd.',
   the_yaml_is_missing_pick_both_files: '.yaml puudub: vali mõlemad failid koos.',
   the_pgm_is_missing_pick_both_files: '.pgm puudub: vali mõlemad failid koos.',
-  one_map_at_a_time_pick_one_yaml_and: 'Üks kaart korraga: vali üks .yaml ja selle .pgm.',
+  one_map_at_a_time_pick_one_yaml_and:
+    'Üks kaart korraga: vali üks .yaml ja selle .pgm või üks .pcd.',
   erase: 'Kustuta',
   forbid: 'Keela',
   wall: 'Sein',
@@ -59,8 +61,9 @@ export const maps = {
   drop_it: 'Viska ära',
   make_a_map_by_driving: 'Tee kaart sõites',
   new_map: 'Uus kaart',
-  add_a_map_yaml_and_pgm: 'Lisa kaart: .yaml ja .pgm',
-  pick_both_files_together_or_drop: 'Vali mõlemad failid koos või lohista siia.',
+  add_a_map_yaml_and_pgm: 'Lisa kaart: .yaml ja .pgm või .pcd',
+  pick_both_files_together_or_drop:
+    'Vali mõlemad failid koos või lohista siia. .pcd on ruumiline kaart.',
   map_files: 'Kaardifailid',
   sending_name_share_percent: 'Saadab „{name}“, {share} %',
   show_it_while_driving: 'Näita sõidu ajal',

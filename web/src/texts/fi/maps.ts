@@ -1,11 +1,13 @@
 // Maps of sites.
 
 export const maps = {
-  name_is_no_part_of_a_map_pick_its: '”{name}” ei ole kartan osa: valitse sen .yaml ja .pgm.',
-  pick_the_yaml_and_the_pgm_of_a_map: 'Valitse kartan .yaml ja .pgm.',
+  name_is_no_part_of_a_map_pick_its:
+    '”{name}” ei ole kartan osa: valitse sen .yaml ja .pgm tai yksi .pcd.',
+  pick_the_yaml_and_the_pgm_of_a_map: 'Valitse kartan .yaml ja .pgm tai yksi .pcd.',
   the_yaml_is_missing_pick_both_files: '.yaml puuttuu: valitse molemmat tiedostot.',
   the_pgm_is_missing_pick_both_files: '.pgm puuttuu: valitse molemmat tiedostot.',
-  one_map_at_a_time_pick_one_yaml_and: 'Yksi kartta kerrallaan: valitse yksi .yaml ja sen .pgm.',
+  one_map_at_a_time_pick_one_yaml_and:
+    'Yksi kartta kerrallaan: valitse yksi .yaml ja sen .pgm tai yksi .pcd.',
   erase: 'Pyyhi',
   forbid: 'Kiellä',
   wall: 'Seinä',
@@ -59,8 +61,9 @@ export const maps = {
   drop_it: 'Hylkää',
   make_a_map_by_driving: 'Tee kartta ajamalla',
   new_map: 'Uusi kartta',
-  add_a_map_yaml_and_pgm: 'Lisää kartta: .yaml ja .pgm',
-  pick_both_files_together_or_drop: 'Valitse molemmat tiedostot, tai pudota ne tähän.',
+  add_a_map_yaml_and_pgm: 'Lisää kartta: .yaml ja .pgm tai .pcd',
+  pick_both_files_together_or_drop:
+    'Valitse molemmat tiedostot, tai pudota ne tähän. .pcd on kolmiulotteinen kartta.',
   map_files: 'Karttatiedostot',
   sending_name_share_percent: 'Lähetetään ”{name}”, {share} %',
   show_it_while_driving: 'Näytä ajettaessa',

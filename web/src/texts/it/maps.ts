@@ -2,11 +2,12 @@
 
 export const maps = {
   name_is_no_part_of_a_map_pick_its:
-    '«{name}» non è parte di una mappa: scegli il suo .yaml e il suo .pgm.',
-  pick_the_yaml_and_the_pgm_of_a_map: 'Scegli il .yaml e il .pgm di una mappa.',
+    '“{name}” non fa parte di una mappa: scegli il suo .yaml e il suo .pgm, o un .pcd.',
+  pick_the_yaml_and_the_pgm_of_a_map: 'Scegli il .yaml e il .pgm di una mappa, o un .pcd.',
   the_yaml_is_missing_pick_both_files: 'Manca il .yaml: scegli i due file insieme.',
   the_pgm_is_missing_pick_both_files: 'Manca il .pgm: scegli i due file insieme.',
-  one_map_at_a_time_pick_one_yaml_and: 'Una mappa alla volta: scegli un .yaml e il suo .pgm.',
+  one_map_at_a_time_pick_one_yaml_and:
+    'Una mappa alla volta: scegli un .yaml e il suo .pgm, o un .pcd.',
   erase: 'Cancella',
   forbid: 'Vieta',
   wall: 'Muro',
@@ -62,8 +63,9 @@ export const maps = {
   drop_it: 'Scartala',
   make_a_map_by_driving: 'Fai una mappa guidando',
   new_map: 'Nuova mappa',
-  add_a_map_yaml_and_pgm: 'Aggiungi una mappa: .yaml e .pgm',
-  pick_both_files_together_or_drop: 'Scegli i due file insieme, o trascinali qui.',
+  add_a_map_yaml_and_pgm: 'Aggiungi una mappa: .yaml e .pgm, o .pcd',
+  pick_both_files_together_or_drop:
+    'Scegli i due file insieme, o trascinali qui. Un .pcd è una mappa in tre dimensioni.',
   map_files: 'File della mappa',
   sending_name_share_percent: 'Invio di «{name}», {share} %',
   show_it_while_driving: 'Mostrala guidando',

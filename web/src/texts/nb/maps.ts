@@ -1,11 +1,13 @@
 // Maps of sites.
 
 export const maps = {
-  name_is_no_part_of_a_map_pick_its: '«{name}» er ingen del av et kart: velg dets .yaml og .pgm.',
-  pick_the_yaml_and_the_pgm_of_a_map: 'Velg .yaml og .pgm for et kart.',
+  name_is_no_part_of_a_map_pick_its:
+    '«{name}» er ingen del av et kart: velg dets .yaml og .pgm, eller én .pcd.',
+  pick_the_yaml_and_the_pgm_of_a_map: 'Velg .yaml og .pgm for et kart, eller én .pcd.',
   the_yaml_is_missing_pick_both_files: '.yaml mangler: velg begge filene sammen.',
   the_pgm_is_missing_pick_both_files: '.pgm mangler: velg begge filene sammen.',
-  one_map_at_a_time_pick_one_yaml_and: 'Ett kart om gangen: velg én .yaml og dens .pgm.',
+  one_map_at_a_time_pick_one_yaml_and:
+    'Ett kart om gangen: velg én .yaml og dens .pgm, eller én .pcd.',
   erase: 'Visk ut',
   forbid: 'Forby',
   wall: 'Vegg',
@@ -61,8 +63,9 @@ export const maps = {
   drop_it: 'Forkast',
   make_a_map_by_driving: 'Lag et kart ved å kjøre',
   new_map: 'Nytt kart',
-  add_a_map_yaml_and_pgm: 'Legg til et kart: .yaml og .pgm',
-  pick_both_files_together_or_drop: 'Velg begge filene, eller slipp dem her.',
+  add_a_map_yaml_and_pgm: 'Legg til et kart: .yaml og .pgm, eller .pcd',
+  pick_both_files_together_or_drop:
+    'Velg begge filene, eller slipp dem her. En .pcd er et kart i tre dimensjoner.',
   map_files: 'Kartfiler',
   sending_name_share_percent: 'Sender «{name}», {share} %',
   show_it_while_driving: 'Vis under kjøring',
