@@ -149,12 +149,15 @@ void Hills::learn(const Reduced& in) {
   look_out(in.voxels);
   for (const Voxel& v : in.voxels) {
     if (v.kind != Kind::Ground || !has_cell(lies.x_m(v), lies.y_m(v))) continue;
-    const std::size_t step = step_of(v);
-    if (step == kNowhereOut || v.z_m > highest_[step]) continue;
     const std::int32_t x = hill_cell(lies.x_m(v));
     const std::int32_t y = hill_cell(lies.y_m(v));
     const float z = lies.height_m(v);
     Place& p = places_[index(x, y)];
+    const std::size_t step = step_of(v);
+    if (step == kNowhereOut || v.z_m > highest_[step]) {
+      renew(p, x, y, half, z);
+      continue;
+    }
     if (p.x != x || p.y != y || p.half < half - 1) {
       p = {x, y, half, z, kNoGroundBefore};
     } else if (p.half < half) {
@@ -163,6 +166,13 @@ void Hills::learn(const Reduced& in) {
       p.z_m = std::min(p.z_m, z);
     }
   }
+}
+
+void Hills::renew(Place& p, std::int32_t x, std::int32_t y, std::int32_t half, float z_m) noexcept {
+  if (p.x != x || p.y != y || p.half < half - 1) return;
+  const float lowest = p.half < half ? p.z_m : std::min(p.z_m, p.before_m);
+  if (std::abs(z_m - lowest) > kRough_m) return;
+  p = {x, y, half, std::min(lowest, z_m), kNoGroundBefore};
 }
 
 std::optional<float> Hills::lowest_m(std::int32_t x, std::int32_t y,

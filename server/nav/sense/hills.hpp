@@ -15,6 +15,10 @@
 //   ══1═══2══▏ ═══3═   the line from the ground before it to ground behind it: on a face there is
 //                      none, or it is too low
 //
+// Ground that is known and seen again within kRough_m of its height is known anew, wherever the
+// body stands and leans by then: a robot that turned towards a hill, or pitches before it, has the
+// hill well above its plane. That never raises the height.
+//
 // What came to stand on ground that was known is higher than the lowest there. An echo farther
 // below the ground shows that the heights do not agree; it stays an obstacle, too.
 //
@@ -74,6 +78,9 @@ class Hills {
   /// Sets highest_ of each step: what lies no higher is ground.
   void look_out(const std::vector<Voxel>& voxels) noexcept;
   void look_out(std::size_t direction) noexcept;
+  /// Known ground that is seen again, as high as it was, is known anew; its height does not rise.
+  static void renew(Place& p, std::int32_t x, std::int32_t y, std::int32_t half,
+                    float z_m) noexcept;
   std::size_t index(std::int32_t x, std::int32_t y) const noexcept;
   std::int32_t half_of(base::Time t) const noexcept;
   std::optional<float> lowest_m(std::int32_t x, std::int32_t y, std::int32_t half) const noexcept;
