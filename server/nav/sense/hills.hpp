@@ -3,7 +3,8 @@
 // from what stands there.
 //
 //   a cloud's ground ─▶ the lowest of it in cells of kCell_m, for kKnown_s, in O ─▶ a plane's echo
-//   from kInside_m below to low_m above the lowest of three by three cells is ground
+//   from kInside_m below to low_m above the lowest of three by three cells is ground; from those
+//   beside it the ground may rise to it by kSteepest
 //
 // Only a sensor that lays the ground tells it (ground.hpp): a bank that is too steep is none, and
 // where nobody saw the ground a plane's echo stays an obstacle. A ring on the face of a low thing

@@ -339,6 +339,17 @@ TEST(HillsTest, WhatIsSeenTooLateToBeKnownAnewIsNot) {
   EXPECT_FALSE(hills.is_ground(4.0, 0.0, 0.3F, at(9.2)));
 }
 
+//   Lower ground 10 cm down the slope does not make a thing of a blade; below a face it does.
+TEST(HillsTest, GroundRisesFromOnePlaceToTheNextNoMoreSteeplyThanGroundDoes) {
+  const auto is_ground = [](float below_m) {
+    Hills hills(8.0, 0.08);
+    hills.learn(ground_through(1.0, {{3.95F, 0.05F, below_m}, {4.05F, 0.05F, 0.3F}}));
+    return hills.is_ground(4.05, 0.05, 0.375F, at(1.1));
+  };
+  EXPECT_TRUE(is_ground(0.285F));
+  EXPECT_FALSE(is_ground(0.27F));
+}
+
 //   Rings close to one another climb a bank by a few centimetres each: that is no leave to go on.
 TEST(HillsTest, ASteepBankIsNotClimbedFromRingToRing) {
   Hills hills(8.0, 0.08);
