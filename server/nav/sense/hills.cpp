@@ -18,6 +18,10 @@ constexpr std::size_t kBehind = 3;
 // Whatever the settings say of the grass.
 constexpr double kMostOver_m = 0.15;
 
+// From a place to itself, to one beside it and to one across: so much the ground may rise.
+constexpr float kRiseBeside_m = Hills::kSteepest * static_cast<float>(Hills::kCell_m);
+constexpr std::array<float, 3> kRise_m{0.0F, kRiseBeside_m, 1.4142F * kRiseBeside_m};
+
 std::int32_t hill_cell(double m) noexcept {
   return static_cast<std::int32_t>(std::floor(m / Hills::kCell_m));
 }
@@ -149,12 +153,15 @@ void Hills::learn(const Reduced& in) {
   look_out(in.voxels);
   for (const Voxel& v : in.voxels) {
     if (v.kind != Kind::Ground || !has_cell(lies.x_m(v), lies.y_m(v))) continue;
-    const std::size_t step = step_of(v);
-    if (step == kNowhereOut || v.z_m > highest_[step]) continue;
     const std::int32_t x = hill_cell(lies.x_m(v));
     const std::int32_t y = hill_cell(lies.y_m(v));
     const float z = lies.height_m(v);
     Place& p = places_[index(x, y)];
+    const std::size_t step = step_of(v);
+    if (step == kNowhereOut || v.z_m > highest_[step]) {
+      renew(p, x, y, half, z);
+      continue;
+    }
     if (p.x != x || p.y != y || p.half < half - 1) {
       p = {x, y, half, z, kNoGroundBefore};
     } else if (p.half < half) {
@@ -163,6 +170,13 @@ void Hills::learn(const Reduced& in) {
       p.z_m = std::min(p.z_m, z);
     }
   }
+}
+
+void Hills::renew(Place& p, std::int32_t x, std::int32_t y, std::int32_t half, float z_m) noexcept {
+  if (p.x != x || p.y != y || p.half < half - 1) return;
+  const float lowest = p.half < half ? p.z_m : std::min(p.z_m, p.before_m);
+  if (std::abs(z_m - lowest) > kRough_m) return;
+  p = {x, y, half, std::min(lowest, z_m), kNoGroundBefore};
 }
 
 std::optional<float> Hills::lowest_m(std::int32_t x, std::int32_t y,
@@ -177,10 +191,13 @@ bool Hills::is_ground(double x_m, double y_m, float z_m, base::Time now) const n
   const std::int32_t half = half_of(now);
   const std::int32_t x = hill_cell(x_m);
   const std::int32_t y = hill_cell(y_m);
+  // Lower ground beside it may be down the slope.
   float ground = kNoGroundBefore;
   for (std::int32_t dy = -1; dy <= 1; ++dy) {
     for (std::int32_t dx = -1; dx <= 1; ++dx) {
-      ground = std::min(ground, lowest_m(x + dx, y + dy, half).value_or(kNoGroundBefore));
+      const auto lowest = lowest_m(x + dx, y + dy, half);
+      if (lowest)
+        ground = std::min(ground, *lowest + kRise_m[static_cast<std::size_t>(dx * dx + dy * dy)]);
     }
   }
   // Nothing known is infinitely high: below it.

@@ -3,7 +3,8 @@
 // from what stands there.
 //
 //   a cloud's ground ─▶ the lowest of it in cells of kCell_m, for kKnown_s, in O ─▶ a plane's echo
-//   from kInside_m below to low_m above the lowest of three by three cells is ground
+//   from kInside_m below to low_m above the lowest of three by three cells is ground; from those
+//   beside it the ground may rise to it by kSteepest
 //
 // Only a sensor that lays the ground tells it (ground.hpp): a bank that is too steep is none, and
 // where nobody saw the ground a plane's echo stays an obstacle. A ring on the face of a low thing
@@ -14,6 +15,10 @@
 //   ▭     that starts in the plane and rises by kSteepest from the lowest seen before it, and over
 //   ══1═══2══▏ ═══3═   the line from the ground before it to ground behind it: on a face there is
 //                      none, or it is too low
+//
+// Ground that is known and seen again within kRough_m of its height is known anew, wherever the
+// body stands and leans by then: a robot that turned towards a hill, or pitches before it, has the
+// hill well above its plane. That never raises the height.
 //
 // What came to stand on ground that was known is higher than the lowest there. An echo farther
 // below the ground shows that the heights do not agree; it stays an obstacle, too.
@@ -74,6 +79,9 @@ class Hills {
   /// Sets highest_ of each step: what lies no higher is ground.
   void look_out(const std::vector<Voxel>& voxels) noexcept;
   void look_out(std::size_t direction) noexcept;
+  /// Known ground that is seen again, as high as it was, is known anew; its height does not rise.
+  static void renew(Place& p, std::int32_t x, std::int32_t y, std::int32_t half,
+                    float z_m) noexcept;
   std::size_t index(std::int32_t x, std::int32_t y) const noexcept;
   std::int32_t half_of(base::Time t) const noexcept;
   std::optional<float> lowest_m(std::int32_t x, std::int32_t y, std::int32_t half) const noexcept;

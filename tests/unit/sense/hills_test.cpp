@@ -315,6 +315,41 @@ TEST(HillsTest, GroundIsLearnedFromTheBodyOutwards) {
       << "nothing behind it";
 }
 
+//   ●turns ↺     ___▒▒   Once it was seen over ground that begins at the robot; from then on the
+//   ▭════  ══───▔        first ring ahead meets it well above the robot's plane.
+TEST(HillsTest, GroundThatIsSeenAgainAsHighAsItWasStaysKnown) {
+  const auto known_after = [](float again_m, double until_s, float echo_m) {
+    Hills hills(8.0, 0.08);
+    hills.learn(ground_through(1.0, {{4.0F, 0.0F, 0.3F}}));
+    for (double t = 1.1; t < until_s; t += 0.1) hills.learn(piece(t, {ground_at(4.0F, again_m)}));
+    return hills.is_ground(4.0, 0.0, echo_m, at(until_s));
+  };
+  EXPECT_TRUE(known_after(0.3F, 30.0, 0.35F));
+  EXPECT_TRUE(known_after(0.27F, 30.0, 0.33F)) << "a little lower: that height counts";
+  EXPECT_FALSE(known_after(0.27F, 30.0, 0.37F));
+  EXPECT_FALSE(known_after(0.34F, 30.0, 0.4F)) << "its height does not rise";
+  EXPECT_FALSE(known_after(0.36F, 30.0, 0.35F)) << "that is something else, or the lean was wrong";
+  EXPECT_FALSE(known_after(0.24F, 30.0, 0.25F)) << "likewise";
+}
+
+TEST(HillsTest, WhatIsSeenTooLateToBeKnownAnewIsNot) {
+  Hills hills(8.0, 0.08);
+  hills.learn(ground_through(1.0, {{4.0F, 0.0F, 0.3F}}));
+  hills.learn(piece(9.1, {ground_at(4.0F, 0.3F)}));
+  EXPECT_FALSE(hills.is_ground(4.0, 0.0, 0.3F, at(9.2)));
+}
+
+//   Lower ground 10 cm down the slope does not make a thing of a blade; below a face it does.
+TEST(HillsTest, GroundRisesFromOnePlaceToTheNextNoMoreSteeplyThanGroundDoes) {
+  const auto is_ground = [](float below_m) {
+    Hills hills(8.0, 0.08);
+    hills.learn(ground_through(1.0, {{3.95F, 0.05F, below_m}, {4.05F, 0.05F, 0.3F}}));
+    return hills.is_ground(4.05, 0.05, 0.375F, at(1.1));
+  };
+  EXPECT_TRUE(is_ground(0.285F));
+  EXPECT_FALSE(is_ground(0.27F));
+}
+
 //   Rings close to one another climb a bank by a few centimetres each: that is no leave to go on.
 TEST(HillsTest, ASteepBankIsNotClimbedFromRingToRing) {
   Hills hills(8.0, 0.08);
