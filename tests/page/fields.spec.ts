@@ -50,6 +50,13 @@ test('a field is drawn, its tracks are shown with figures, and it is kept as a m
   await page.getByLabel('Working width, m').press('Enter');
   await expect.poll(() => figures.innerText()).not.toBe(before);
 
+  // Rounds along the border have no tracks, and lead nowhere in particular.
+  await page.getByLabel('Pattern').selectOption('Along the border');
+  await expect(figures).not.toContainText(/Tracks|Direction/);
+  await expect(page.getByLabel(/^Direction/)).toHaveCount(0);
+  await page.getByLabel('Pattern').selectOption('Tracks');
+  await expect(figures).toContainText(/Tracks/);
+
   // The bad corner comes off again, a bad number is said.
   await draw(page, [[0, 0]]);
   await press(page, 'Undo');
@@ -189,4 +196,9 @@ test('a block of rows is begun with two taps, seen with its turns, and kept as a
   expect(made.items[1]?.heading_deg).toBeCloseTo(45, 1);
   // Out of row 1 it turns to where row 3 lies.
   expect(made.items[4]).toMatchObject({ type: 'turn', turn_deg: 90 });
+  // As long as it is seen to be: the list tells no length of it.
+  await tab(page, 'Missions');
+  await expect(page.getByRole('list', { name: 'Stored missions' })).toContainText(
+    /East block\s*\d+ items · revision 1/,
+  );
 });

@@ -100,6 +100,8 @@ test('an orthophoto is cut, kept, shown under the robot, moved and deleted', asy
   await expect
     .poll(async () => (await sets_of(station))[0]?.['shift_m'])
     .toEqual([expect.closeTo(-2, 0), expect.closeTo(0, 0)]);
+  // The mark is elsewhere now: pressed once more, the picture would move as far again.
+  await expect(page.getByLabel('Chosen place')).toBeHidden();
   await open_maps(page);
   await page.getByRole('button', { name: 'More about Home field' }).click();
   await page.getByRole('button', { name: 'Delete', exact: true }).click();
@@ -131,6 +133,14 @@ test.describe('with pictures in the network', () => {
   });
 
   test('they are shown, and what is shown is kept for the field', async ({ page, station }) => {
+    const nothing_comes = page.getByText('The network gives no picture of this area just now.');
+    await page.route('https://tiles.example.org/**', (route) => route.abort());
+    await open_page(page, station.url);
+    await open_maps(page);
+    await page.getByRole('radio', { name: /aerial/ }).check();
+    await expect(nothing_comes).toBeVisible();
+    await page.getByRole('radio', { name: 'None' }).check();
+    await page.unroute('https://tiles.example.org/**');
     const asked: string[] = [];
     await page.route('https://tiles.example.org/**', async (route) => {
       const { pathname } = new URL(route.request().url());
@@ -139,13 +149,12 @@ test.describe('with pictures in the network', () => {
       if (asked.length % 5 === 0) return route.fulfill({ status: 404, headers });
       return route.fulfill({ body: PNG, contentType: 'image/png', headers });
     });
-    await open_page(page, station.url);
-    await open_maps(page);
     await page.getByRole('radio', { name: /aerial/ }).check();
     await expect(page.locator('.map-credit')).toHaveText('Land Board');
     await expect
       .poll(() => seen_in_the_middle(page, BLUE), { timeout: 20_000 })
       .toBeGreaterThan(3000);
+    await expect(nothing_comes).toBeHidden();
     await page.getByLabel(/How much finer/).fill('1');
     asked.length = 0;
     await press(page, 'Keep this area');

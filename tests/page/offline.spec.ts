@@ -3,11 +3,12 @@
 
 import type { Page } from '@playwright/test';
 
-import { draw, items, open_page, press, tab } from './page';
+import { draw, items, map_pixels, open_page, press, tab, type Color } from './page';
 import { expect, test } from './station';
 
 test.use({ serviceWorkers: 'allow' });
 
+const PLAN: Color = [11, 87, 208];
 const LINE = [
   [-120, -60],
   [0, -60],
@@ -44,11 +45,22 @@ test('a plan is made without the robot, and saved when it is back', async ({ pag
   await expect(page.getByText(/no answer came/)).toBeVisible();
 
   // Closed and opened: it is still there. The lists that are asked for later are no old ones.
+  await page.setViewportSize({ width: 390, height: 844 });
   await page.reload();
+  await expect(page.locator('.scale-bar')).toHaveText(/m$/);
+  await expect(page.locator('#panel > *').first()).toBeAttached();
   await tab(page, 'Plan');
   await expect(items(page)).toHaveCount(3);
+  // All of it above the panel, also on a phone.
+  await expect(async () => {
+    const lowest = Math.max(...(await map_pixels(page, [PLAN])).map(([, y]) => y));
+    expect(lowest).toBeGreaterThan(100);
+    expect(lowest).toBeLessThan((await page.locator('main').boundingBox())?.y ?? 0);
+  }).toPass({ timeout: 5000 });
   await tab(page, 'Missions');
   await expect(page.getByText(/cannot be reached/).first()).toBeVisible();
+  // Who was not reached has not said that there is nothing.
+  await expect(page.getByText('No missions stored yet.')).toBeHidden();
 
   await station.begin_again();
   await expect(link).toContainText('Live', { timeout: 30_000 });

@@ -49,6 +49,7 @@ describe('format', () => {
     expect(metres(21.44)).toBe('21.4 m');
     expect(metres(640.2)).toBe('640 m');
     expect(metres(1234)).toBe('1.23 km');
+    expect(metres(16_909_920)).toBe('16910 km');
   });
 
   test('a place beside the path has a side, not a sign', () => {

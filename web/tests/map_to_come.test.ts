@@ -29,9 +29,9 @@ test('a map that comes late hears the last of each kind, in the order in which t
   early.come(map);
 
   expect(heard).toEqual([
+    ['set_cover', 2, 0, 0, 0], // first: what is fitted is fitted beside the panels
     ['set_follow', true],
     ['fit', FIELD],
-    ['set_cover', 2, 0, 0, 0],
   ]);
 });
 

@@ -8,12 +8,17 @@ import type { Palette } from './palette';
 
 /** Written beyond the edges, too, so that they come into sight. */
 const BEYOND_PX = 200;
+/** Where a word leaves the map it fades: cut through it reads as another figure. */
+const FADE_PX = 15;
 
 class Edge {
   readonly clip = document.createElement('div');
   readonly #strip = document.createElement('div');
 
-  constructor() {
+  /** @param toward where its line of words leads */
+  constructor(toward: 'right' | 'bottom') {
+    const ends = `transparent, #000 ${FADE_PX}px, #000 calc(100% - ${FADE_PX}px), transparent`;
+    this.clip.style.maskImage = `linear-gradient(to ${toward}, ${ends})`;
     this.clip.setAttribute('aria-hidden', 'true');
     Object.assign(this.clip.style, { position: 'absolute', overflow: 'hidden' });
     Object.assign(this.#strip.style, { position: 'absolute', inset: '0', willChange: 'transform' });
@@ -47,7 +52,7 @@ class Edge {
 }
 
 export class GridLabels {
-  readonly #along = { top: new Edge(), left: new Edge() };
+  readonly #along = { top: new Edge('right'), left: new Edge('bottom') };
   #drawn: View | null = null;
   #cover: Cover | null = null;
   #seen = true;

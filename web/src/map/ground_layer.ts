@@ -43,22 +43,33 @@ export const grid_of = (ground: Ground): TileGrid => {
   });
 };
 
-const of_pictures = (ground: Ground): Layer => {
+/** So many in a row that do not come: a single one may be missing where the others are. */
+const SILENT_AFTER = 4;
+
+/** @param told hears whether no picture comes */
+const of_pictures = (ground: Ground, told: (silent: boolean) => void): Layer => {
   const { extent } = placed(ground);
-  return new TileLayer({
-    source: new XYZ({
-      url: ground.url,
-      tileGrid: grid_of(ground),
-      wrapX: false,
-      ...(ground.url.startsWith('/') ? {} : { crossOrigin: 'anonymous' }),
-    }),
-    ...(extent ? { extent } : {}),
+  const source = new XYZ({
+    url: ground.url,
+    tileGrid: grid_of(ground),
+    wrapX: false,
+    ...(ground.url.startsWith('/') ? {} : { crossOrigin: 'anonymous' }),
   });
+  let failed = 0;
+  source.on('tileloaderror', () => {
+    failed += 1;
+    if (failed === SILENT_AFTER) told(true);
+  });
+  source.on('tileloadend', () => {
+    if (failed >= SILENT_AFTER) told(false);
+    failed = 0;
+  });
+  return new TileLayer({ source, ...(extent ? { extent } : {}) });
 };
 
 /** Few robots have vector tiles: their part of the library comes when it is needed. */
-const ground_layer = async (ground: Ground): Promise<Layer> => {
-  if (!ground.vector) return of_pictures(ground);
+const ground_layer = async (ground: Ground, told: (silent: boolean) => void): Promise<Layer> => {
+  if (!ground.vector) return of_pictures(ground, told);
   const { vector_layer } = await import('./vector_ground');
   return vector_layer(ground.url, grid_of(ground));
 };
@@ -76,10 +87,14 @@ export class GroundBelow {
     this.credit.className = 'map-credit';
   }
 
-  use(ground: Ground | null): void {
+  use(ground: Ground | null, told: (silent: boolean) => void): void {
     const asked = ++this.#asked;
+    const told_of_this = (silent: boolean): void => {
+      if (asked === this.#asked) told(silent);
+    };
+    told(false);
     this.credit.textContent = ground ? plain_text(ground.attribution) : '';
-    void (ground ? ground_layer(ground) : Promise.resolve(null)).then((layer) => {
+    void (ground ? ground_layer(ground, told_of_this) : Promise.resolve(null)).then((layer) => {
       if (asked !== this.#asked) return;
       if (this.#shown) this.#map.removeLayer(this.#shown);
       this.#shown = layer;

@@ -7,7 +7,6 @@ import View from 'ol/View';
 
 import type { SpaceOnMap } from '../model/calibration';
 import type { FenceDraft } from '../model/fence';
-import type { Ground } from '../model/ground';
 import type { Heat } from '../model/heat';
 import { turn_deg, type MapUp } from '../model/map_up';
 import type { KeptPlaces } from '../model/known_places';
@@ -47,7 +46,7 @@ import { kept, Scene } from './scene';
 import { prepare_heat, prepare_run } from './run_painter';
 import { prepare_space } from './space_painter';
 import { make_scale_bar } from './scale_bar';
-import { clamp, extent_of, free_part, in_part, pixel_of, push_view } from './sight';
+import { clamp, fit_in, FIT_MARGIN_PX, free_part, in_part, pixel_of, push_view } from './sight';
 
 /** Until something is known: the whole world, in degrees. */
 const WORLD_ZOOM = 2;
@@ -56,7 +55,6 @@ const WORK_ZOOM = 20;
 /** A vehicle fills a tenth of it. */
 const CLOSE_ZOOM = 23;
 const MAX_ZOOM = 25;
-const FIT_MARGIN_PX = 48;
 
 export class FieldMap implements MapCalls {
   readonly #target: HTMLElement;
@@ -286,8 +284,8 @@ export class FieldMap implements MapCalls {
   fit(points: readonly LatLon[], closely = false): void {
     if (points.length === 0) return;
     this.#placed = true;
-    const padding = Array<number>(4).fill(FIT_MARGIN_PX);
-    this.#view.fit(extent_of(points), { padding, maxZoom: closely ? CLOSE_ZOOM : WORK_ZOOM + 1 });
+    const free = free_part(this.#map.getSize() ?? [0, 0], this.#scene.cover);
+    fit_in(this.#view, points, free, closely ? CLOSE_ZOOM : WORK_ZOOM + 1);
   }
 
   center_robot(): void {
@@ -303,7 +301,7 @@ export class FieldMap implements MapCalls {
     this.#view.animate({ zoom: (this.#view.getZoom() ?? WORLD_ZOOM) + levels, duration: 150 });
   }
 
-  use_ground = (ground: Ground | null): void => this.#ground.use(ground);
+  use_ground: MapCalls['use_ground'] = (ground, told) => this.#ground.use(ground, told);
 
   view_bounds(): Bounds | null {
     const size = this.#map.getSize();

@@ -7,7 +7,11 @@ import type { LatLon } from '../model/plan';
 import type { Cover } from './grid';
 import { to_plane } from './projection';
 
-export const extent_of = (points: readonly LatLon[]): [number, number, number, number] => {
+export const FIT_MARGIN_PX = 48;
+/** The map's buttons stand there. */
+const FIT_RIGHT_PX = 88;
+
+const extent_of = (points: readonly LatLon[]): [number, number, number, number] => {
   const extent: [number, number, number, number] = [Infinity, Infinity, -Infinity, -Infinity];
   for (const point of points) {
     const [x, y] = to_plane(point);
@@ -63,6 +67,20 @@ export const push_view = (view: View, right_px: number, down_px: number): void =
   const [center_x = 0, center_y = 0] = view.getCenter() ?? [];
   const resolution = view.getResolution() ?? 1;
   view.setCenter([center_x - right * resolution, center_y + down * resolution]);
+};
+
+/** All of them are seen, none of them beneath the buttons; in the middle where there is room for that. */
+export const fit_in = (
+  view: View,
+  points: readonly LatLon[],
+  free: FreePart,
+  max_zoom: number,
+): void => {
+  const padding = [FIT_MARGIN_PX, FIT_RIGHT_PX, FIT_MARGIN_PX, FIT_MARGIN_PX];
+  view.fit(extent_of(points), { padding, maxZoom: max_zoom });
+  const rightmost = Math.max(...points.map((at) => pixel_of(view, at, free)[0]));
+  const room = free.left + free.width - FIT_RIGHT_PX - rightmost;
+  push_view(view, clamp(room, 0, (FIT_RIGHT_PX - FIT_MARGIN_PX) / 2), 0);
 };
 
 export const clamp = (value: number, least: number, most: number): number =>

@@ -24,7 +24,7 @@ export const metres = (value: Value): string => {
   if (size < 0.1) return `${fixed(value * 100, 1)} cm`;
   if (size < 10) return `${fixed(value, 2)} m`;
   if (size < 1000) return `${fixed(value, size < 100 ? 1 : 0)} m`;
-  return `${fixed(value / 1000, 2)} km`;
+  return `${fixed(value / 1000, size < 100_000 ? 2 : 0)} km`;
 };
 
 /** @param left positive: left */

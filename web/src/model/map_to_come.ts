@@ -1,5 +1,5 @@
 // Stands for the map until it is here: the page tells it what to show as if it were, and the map hears
-// the last of each kind, in the order in which they were said.
+// the last of each kind, in the order in which they were said; what covers it before all others.
 
 import type { MapCalls } from './ports';
 
@@ -37,6 +37,10 @@ export const map_to_come = (): MapToCome => {
     map,
     come: (come) => {
       here = come;
+      // What it shall fit, it fits into what the panels leave now.
+      const cover = waiting.get('set_cover');
+      if (cover) tell(come, 'set_cover', cover);
+      waiting.delete('set_cover');
       for (const [name, told] of waiting) tell(come, name, told);
       waiting.clear();
     },

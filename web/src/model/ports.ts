@@ -390,7 +390,8 @@ export interface MapCalls extends SeenMap, SiteMapView, EditView {
   /** @param closely also where that is a metre across */
   fit(points: readonly LatLon[], closely?: boolean): void;
   zoom_by(levels: number): void;
-  use_ground(ground: Ground | null): void;
+  /** @param told hears whether no picture of it comes */
+  use_ground(ground: Ground | null, told: (silent: boolean) => void): void;
   /** What it shows now; null: nothing yet. */
   view_bounds(): Bounds | null;
   /** Of the web's tiles. */

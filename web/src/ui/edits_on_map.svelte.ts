@@ -9,6 +9,7 @@ import { drawn_on_map } from '../model/makings';
 import type { LineOnMap } from '../model/on_map';
 import { EMPTY_PLAN, spots } from '../model/plan';
 import { NOTHING_PICKED } from '../model/selection';
+import { settled } from './settled';
 import type { Station } from './station.svelte';
 
 const NOTHING: ReadonlySet<number> = new Set();
@@ -20,6 +21,20 @@ const beside = ({ drawing, surveyor, measurer, editor }: Station): readonly Line
     : drawing === measurer
       ? [{ places: spots(editor.plan), tone: 'other' }] // to measure from
       : [];
+
+/**
+ * What was drawn before the page was opened anew: until its panel is open, nobody knows what that will
+ * cover. Where the robot is known the map stays with it.
+ */
+const see_draft = ({ editor, live, map }: Station, planning: () => boolean): void => {
+  let opened = false;
+  $effect(() => {
+    if (opened || !planning()) return;
+    opened = true;
+    const places = untrack(() => (live.robot === null ? spots(editor.plan) : []));
+    if (places.length > 0) void settled().then(() => map.fit(places));
+  });
+};
 
 /** Called where effects may begin. @param hidden something else is looked at instead */
 export const keep_edits_in_step = (station: Station, hidden: () => boolean): void => {
@@ -69,5 +84,6 @@ export const keep_edits_in_step = (station: Station, hidden: () => boolean): voi
       map.fit([...spots(editor.plan), ...spots(other)]);
     });
   });
+  see_draft(station, () => station.tab === 'plan');
   $effect(() => map.set_snap(editor.snaps));
 };

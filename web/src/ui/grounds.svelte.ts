@@ -47,6 +47,8 @@ export class Grounds {
   failure = $state<string | null>(null);
   choice = $state<GroundChoice>('');
   bringing = $state.raw<Bringing | null>(null);
+  /** Whence the shown one comes, no picture does. */
+  silent = $state(false);
   shown = $derived.by<Ground | null>(() => ground_of(this.shelf, this.choice));
   set = $derived.by<TileSet | null>(() => chosen_set(this.shelf, this.choice));
   online = $derived.by<OnlineTiles | null>(() => chosen_online(this.shelf, this.choice));
@@ -118,10 +120,10 @@ export class Grounds {
     );
   }
 
-  /** The robot stands on what the picture shows at `shown`. */
-  async align(shown: LatLon, robot: LatLon): Promise<void> {
+  /** The robot stands on what the picture shows at `shown`. @return it was moved */
+  async align(shown: LatLon, robot: LatLon): Promise<boolean> {
     const { set } = this;
-    if (!set) return;
+    if (!set) return false;
     const shift_m = moved_shift(set.shift_m, shown, robot);
     const [east, north] = moved_shift([0, 0], shown, robot);
     const sure = await this.#dialogs.ask({
@@ -133,7 +135,7 @@ export class Grounds {
       yes: say('ground_move_it'),
       danger: false,
     });
-    if (sure) await this.move(set, shift_m);
+    return sure && this.move(set, shift_m);
   }
 
   move = (set: TileSet, shift_m: readonly number[]): Promise<boolean> =>
@@ -295,7 +297,9 @@ export class Grounds {
       if (!answer?.ok) return answer && this.#refused(online.name, answer.refusal);
       kept += 1;
     }
-    if (kept > 0) this.#notices.show('good', say('ground_area_kept', { kept, missing }));
+    if (kept > 0 && missing > 0) {
+      this.#notices.show('good', say('ground_area_kept', { kept, missing }));
+    } else if (kept > 0) this.#notices.show('good', say('ground_area_whole', { kept }));
     else if (!this.#given_up) return say('ground_network_no_picture', { name: online.name });
     return null;
   }

@@ -17,7 +17,10 @@ export const keep_site_in_step = (station: Station): void => {
     void map_in_use; // another one: whoever changed it
     return site_wanted ? untrack(() => station.sites.watch()) : undefined;
   });
-  $effect(() => map.use_ground(station.grounds.shown));
+  $effect(() => {
+    const { grounds } = station;
+    map.use_ground(grounds.shown, (silent) => (grounds.silent = silent));
+  });
   $effect(() => {
     if (maps_seen) void untrack(() => station.grounds.refresh());
   });

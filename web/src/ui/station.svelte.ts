@@ -51,6 +51,7 @@ import { Starting } from './starting.svelte';
 import { Surveyor } from './survey.svelte';
 import { Target } from './target.svelte';
 import { Teacher } from './teach.svelte';
+import { whole_of } from './whole';
 
 export type Tab = 'drive' | 'plan' | 'missions' | 'log';
 /** What is shown under Missions. */
@@ -252,11 +253,7 @@ export class Station {
 
   /** Shows what a report tells of, or the edited mission, or the loaded one, or the way so far. */
   fit(): void {
-    const edited = spots(this.editor.plan);
-    const points = edited.length > 0 ? edited : this.route.plan ? spots(this.route.plan) : [];
-    const { open } = this.dialogs;
-    const told = open?.kind === 'report' ? open.report.places : [];
-    const all = told.length > 0 ? told : points.length > 0 ? points : this.live.places;
+    const all = whole_of(this);
     if (all.length === 0) return;
     this.set_follow(false);
     this.map.fit(all);

@@ -38,7 +38,7 @@ export const plan = {
   all_tags: 'All tags',
   stored_missions: 'Stored missions',
   bring_back: 'Bring back',
-  items_length_revision_revision_updated: '{items} · {length} · revision {revision} · {updated}',
+  items_length_revision_revision_updated: '{items} · revision {revision} · {updated}',
   more_about_name: 'More about {name}',
   nothing_found: 'Nothing found.',
   no_missions_stored_yet: 'No missions stored yet.',

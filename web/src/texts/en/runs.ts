@@ -135,6 +135,7 @@ export const runs = {
   drivers: 'Drivers',
   driver: 'Driver',
   restart: 'Restart',
+  stick_that_turns: 'Steering',
   dead_man: 'Dead-man',
   second_bumper: 'Second bumper',
   trigger_of_auto: 'Trigger of AUTO',
@@ -145,7 +146,7 @@ export const runs = {
   assign: 'Assign',
   push_a_stick: 'Push a stick…',
   press_a_button: 'Press a button…',
-  fine_about_the_middle_expo_percent: 'Fine about the middle: {expo} %',
+  fine_about_the_middle_expo_percent: 'Gentle near the middle: {expo} %',
   both_bumpers_held_together_choose: 'Both bumpers, held together, choose MANUAL',
   auto_drives_only_while_a_bumper_is:
     'AUTO drives only while a bumper is held, as fast as the trigger is drawn',

@@ -38,7 +38,7 @@ export const plan = {
   all_tags: 'Kõik sildid',
   stored_missions: 'Salvestatud ülesanded',
   bring_back: 'Too tagasi',
-  items_length_revision_revision_updated: '{items} · {length} · versioon {revision} · {updated}',
+  items_length_revision_revision_updated: '{items} · versioon {revision} · {updated}',
   more_about_name: 'Veel: {name}',
   nothing_found: 'Midagi ei leitud.',
   no_missions_stored_yet: 'Salvestatud ülesandeid veel pole.',

@@ -10,7 +10,7 @@ export const state = {
   take_control_first: 'Keegi ei juhi: võta juhtimine enne üle.',
   holder_has_control_ask: 'Juhib {holder}: küsi enne juhtimist.',
   speed: 'Kiirus',
-  off_path: 'Teelt kõrval',
+  off_path: 'Kõrval',
   to_drive: 'Sõita veel',
   time_left: 'Aega veel',
   whole_min_whole_2_s: '{whole} min {whole_2} s',

@@ -38,7 +38,7 @@ export const plan = {
   all_tags: 'Kaikki tunnisteet',
   stored_missions: 'Tallennetut tehtävät',
   bring_back: 'Tuo takaisin',
-  items_length_revision_revision_updated: '{items} · {length} · versio {revision} · {updated}',
+  items_length_revision_revision_updated: '{items} · versio {revision} · {updated}',
   more_about_name: 'Lisää: {name}',
   nothing_found: 'Ei löytynyt mitään.',
   no_missions_stored_yet: 'Ei vielä tallennettuja tehtäviä.',

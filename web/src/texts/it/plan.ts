@@ -38,7 +38,7 @@ export const plan = {
   all_tags: 'Tutte le etichette',
   stored_missions: 'Missioni salvate',
   bring_back: 'Recupera',
-  items_length_revision_revision_updated: '{items} · {length} · revisione {revision} · {updated}',
+  items_length_revision_revision_updated: '{items} · revisione {revision} · {updated}',
   more_about_name: 'Altro su {name}',
   nothing_found: 'Nessun risultato.',
   no_missions_stored_yet: 'Ancora nessuna missione salvata.',

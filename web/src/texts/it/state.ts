@@ -10,7 +10,7 @@ export const state = {
   take_control_first: 'Nessuno ha il controllo: prendilo prima.',
   holder_has_control_ask: '{holder} ha il controllo: chiedilo prima.',
   speed: 'Velocità',
-  off_path: 'Fuori rotta',
+  off_path: 'Scarto',
   to_drive: 'Da fare',
   time_left: 'Tempo rim.',
   whole_min_whole_2_s: '{whole} min {whole_2} s',

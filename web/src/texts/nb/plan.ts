@@ -38,7 +38,7 @@ export const plan = {
   all_tags: 'Alle merkelapper',
   stored_missions: 'Lagrede oppdrag',
   bring_back: 'Hent tilbake',
-  items_length_revision_revision_updated: '{items} · {length} · revisjon {revision} · {updated}',
+  items_length_revision_revision_updated: '{items} · revisjon {revision} · {updated}',
   more_about_name: 'Mer om {name}',
   nothing_found: 'Ingenting funnet.',
   no_missions_stored_yet: 'Ingen oppdrag lagret ennå.',

@@ -135,6 +135,7 @@ export const runs = {
   drivers: 'Drivere',
   driver: 'Driver',
   restart: 'Start på nytt',
+  stick_that_turns: 'Styring',
   dead_man: 'Dødmannsknapp',
   second_bumper: 'Andre skulderknapp',
   trigger_of_auto: 'Avtrekker for AUTO',
@@ -145,7 +146,7 @@ export const runs = {
   assign: 'Tilordne',
   push_a_stick: 'Skyv en spak…',
   press_a_button: 'Trykk en knapp…',
-  fine_about_the_middle_expo_percent: 'Fint om midten: {expo} %',
+  fine_about_the_middle_expo_percent: 'Mykhet nær midten: {expo} %',
   both_bumpers_held_together_choose: 'Begge skulderknapper, holdt sammen, velger MANUAL',
   auto_drives_only_while_a_bumper_is:
     'AUTO kjører bare mens en skulderknapp holdes, så fort som avtrekkeren',
