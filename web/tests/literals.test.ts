@@ -17,6 +17,7 @@ const ANYWHERE = new Set([
   'STOP',
   'Authorization: Bearer …',
   '.yaml',
+  '.pcd',
   '.pgm',
   'UTM',
   'OK',
