@@ -52,13 +52,7 @@ def drives_by_the_cloud():
         check(until("a map is in use", 10, hall.place)["map"] == "hall", "the map is named")
         hall.tap()
         until("what is believed is there", 10, lambda: math.hypot(*hall.off()[:2]) < 0.1, 0.2)
-        hall.mission([(2, 2), (8, 2), (9, 4.5), (9.5, 0)])
-        told = hall.watch(150, lambda: hall.rest.get("/execution")["state"] == "finished")
-        worst = max(math.hypot(e, n) for _, e, n, _ in told)
-        print(f"# off the truth by {worst:.3f} m at most, "
-              f"{math.sqrt(sum(e * e + n * n for _, e, n, _ in told) / len(told)):.3f} m rms of {len(told)}")
-        check(worst < 0.12, f"the estimate was {worst:.3f} m off the truth")
-        check(all(p["source"] == "map+odometry" for *_, p in told), "by the map")
+        hall.drives_rightly()
         check(hall.truth()["contacts"] == 0, "it touched nothing")
 
 

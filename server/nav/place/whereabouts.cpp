@@ -8,6 +8,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "base/angle.hpp"
+#include "nav/chart/carrier.hpp"
 
 namespace roverd::nav::place {
 
@@ -40,12 +41,6 @@ bool has_rows(const base::Sight& sight) noexcept {
     if (sight.points[i].ring != sight.points[0].ring) return true;
   }
   return false;
-}
-
-base::Time end_of_scan(const base::Sight& sight) noexcept {
-  float last_s = 0.0F;
-  for (const base::SightPoint& p : sight.points) last_s = std::max(last_s, p.after_s);
-  return sight.stamp + base::from_seconds(double(last_s));
 }
 
 }  // namespace
@@ -233,7 +228,7 @@ std::optional<Whereabouts::Look> Whereabouts::look_at_rows(
 std::optional<base::PlaceState> Whereabouts::see(const base::Sight& sight, const base::Mount& mount,
                                                  const std::optional<Believed>& believed) {
   if (!tracker_) return std::nullopt;
-  const base::Time end = end_of_scan(sight);
+  const base::Time end = sight.stamp + base::from_seconds(chart::last_s(sight));
   if (!looks_through(sight, end)) return std::nullopt;
   const bool rows = cells_ && has_rows(sight);
   const auto seen = rows ? look_at_rows(sight, mount, believed) : look(sight, mount, believed);

@@ -359,9 +359,10 @@ bool Grid::long_enough(std::size_t i, Sectors::Pass pass, std::uint32_t now_ms) 
     count(span.along);
   }
   if (c.misses < p_.clear_scans) return false;
-  if (pass == Sectors::Pass::Through || age_ms(now_ms, span.beside_ms) >= kBeside_ms) return true;
+  if (age_ms(now_ms, span.beside_ms) >= kBeside_ms) return true;
+  if (span.along < p_.clear_scans) return false;  // one ray's word, whatever passed beside
   const bool lately = age_ms(span.along_ms, span.met_ms) < kBeside_ms;
-  return lately && span.along >= p_.clear_scans && age_ms(now_ms, span.along_ms) >= kAlong_ms;
+  return pass == Sectors::Pass::Through || (lately && age_ms(now_ms, span.along_ms) >= kAlong_ms);
 }
 
 Known Grid::at(double x_m, double y_m, base::Time now) const noexcept {

@@ -144,15 +144,23 @@ TEST(GridTest, ALowBoxIsNotClearedByRaysThatPassAboveIt) {
   EXPECT_EQ(r.at(4.15, 1.0, t), Known::Free) << "beside it the ground was seen";
 }
 
-/// Columns of 5 cm across a bar at x 5.00 to 5.10 that have it.
-int columns_of_bar(const Robot& r, double t) {
+/// Columns of 5 cm between two x and y of ± half_m that have something.
+int columns_of(const Robot& r, double t, double x0, double x1, double half_m) {
   int out = 0;
-  for (double y = -0.975; y < 1.0; y += 0.05) {
+  for (double y = 0.025 - half_m; y < half_m; y += 0.05) {
     bool there = false;
-    for (double x = 4.975; x < 5.15; x += 0.05) there |= r.at(x, y, t) == Known::Occupied;
+    for (double x = x0; x < x1; x += 0.05) there |= r.at(x, y, t) == Known::Occupied;
     out += there ? 1 : 0;
   }
   return out;
+}
+/// Of a bar at x 5.00 to 5.10.
+int columns_of_bar(const Robot& r, double t) {
+  return columns_of(r, t, 4.975, 5.15, 1.0);
+}
+/// Of what stands at x 2.0 to 2.3.
+int columns_of_box(const Robot& r, double t) {
+  return columns_of(r, t, 1.975, 2.35, 0.5);
 }
 
 Scene bar(double bottom_m, double top_m) {
@@ -216,17 +224,6 @@ TEST(GridTest, WhatALeaningBodyLooksOverStays) {
   EXPECT_NE(r.at(3.02, 0.3, 3.3), Known::Occupied) << "it is gone, and the body level again";
 }
 
-/// Columns of 5 cm across what stands at x 2.0 to 2.3, y −0.5 to 0.5, that have it.
-int columns_of_box(const Robot& r, double t) {
-  int out = 0;
-  for (double y = -0.475; y < 0.5; y += 0.05) {
-    bool there = false;
-    for (double x = 1.975; x < 2.35; x += 0.05) there |= r.at(x, y, t) == Known::Occupied;
-    out += there ? 1 : 0;
-  }
-  return out;
-}
-
 Scene box(double top_m) {
   Scene s;
   s.blocks.push_back({6.0, 6.2, -4.0, 4.0, 0.0, 2.0});
@@ -253,7 +250,7 @@ TEST(GridTest, APlaneThatRisesOverABoxDoesNotTakeItAway) {
 TEST(GridTest, WhatLeftUnseenIsSeenThroughForASecond) {
   Robot r;
   double t = 1.0;
-  for (; t < 1.5; t += 0.02) r.scan(box(0.29 + 0.1), t);
+  for (; t < 1.5; t += 0.02) r.scan(box(0.39), t);
   ASSERT_GE(columns_of_box(r, t), 19);
   Scene behind;
   behind.blocks.push_back({6.0, 6.2, -4.0, 4.0, 0.0, 2.0});
