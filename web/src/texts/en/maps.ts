@@ -63,9 +63,9 @@ export const maps = {
   drop_it: 'Drop it',
   make_a_map_by_driving: 'Make a map by driving',
   new_map: 'New map',
-  add_a_map_yaml_and_pgm: 'Add a map: .yaml and .pgm, or .pcd',
-  pick_both_files_together_or_drop:
-    'Pick both files together, or drop them here. A .pcd is a map in three dimensions.',
+  add_a_map: 'Add a map',
+  pick_its_files_together_or_drop:
+    'Pick the .yaml and the .pgm together, or drop them here. A .pcd is a map in three dimensions.',
   map_files: 'Map files',
   sending_name_share_percent: 'Sending “{name}”, {share} %',
   show_it_while_driving: 'Show it while driving',

@@ -61,9 +61,9 @@ export const maps = {
   drop_it: 'Viska ära',
   make_a_map_by_driving: 'Tee kaart sõites',
   new_map: 'Uus kaart',
-  add_a_map_yaml_and_pgm: 'Lisa kaart: .yaml ja .pgm või .pcd',
-  pick_both_files_together_or_drop:
-    'Vali mõlemad failid koos või lohista siia. .pcd on ruumiline kaart.',
+  add_a_map: 'Lisa kaart',
+  pick_its_files_together_or_drop:
+    'Vali .yaml ja .pgm koos või lohista siia. .pcd on ruumiline kaart.',
   map_files: 'Kaardifailid',
   sending_name_share_percent: 'Saadab „{name}“, {share} %',
   show_it_while_driving: 'Näita sõidu ajal',

@@ -61,9 +61,9 @@ export const maps = {
   drop_it: 'Hylkää',
   make_a_map_by_driving: 'Tee kartta ajamalla',
   new_map: 'Uusi kartta',
-  add_a_map_yaml_and_pgm: 'Lisää kartta: .yaml ja .pgm tai .pcd',
-  pick_both_files_together_or_drop:
-    'Valitse molemmat tiedostot, tai pudota ne tähän. .pcd on kolmiulotteinen kartta.',
+  add_a_map: 'Lisää kartta',
+  pick_its_files_together_or_drop:
+    'Valitse .yaml ja .pgm yhdessä, tai pudota ne tähän. .pcd on kolmiulotteinen kartta.',
   map_files: 'Karttatiedostot',
   sending_name_share_percent: 'Lähetetään ”{name}”, {share} %',
   show_it_while_driving: 'Näytä ajettaessa',

@@ -63,9 +63,9 @@ export const maps = {
   drop_it: 'Scartala',
   make_a_map_by_driving: 'Fai una mappa guidando',
   new_map: 'Nuova mappa',
-  add_a_map_yaml_and_pgm: 'Aggiungi una mappa: .yaml e .pgm, o .pcd',
-  pick_both_files_together_or_drop:
-    'Scegli i due file insieme, o trascinali qui. Un .pcd è una mappa in tre dimensioni.',
+  add_a_map: 'Aggiungi una mappa',
+  pick_its_files_together_or_drop:
+    'Scegli il .yaml e il .pgm insieme, o trascinali qui. Un .pcd è una mappa in tre dimensioni.',
   map_files: 'File della mappa',
   sending_name_share_percent: 'Invio di «{name}», {share} %',
   show_it_while_driving: 'Mostrala guidando',

@@ -63,9 +63,9 @@ export const maps = {
   drop_it: 'Forkast',
   make_a_map_by_driving: 'Lag et kart ved å kjøre',
   new_map: 'Nytt kart',
-  add_a_map_yaml_and_pgm: 'Legg til et kart: .yaml og .pgm, eller .pcd',
-  pick_both_files_together_or_drop:
-    'Velg begge filene, eller slipp dem her. En .pcd er et kart i tre dimensjoner.',
+  add_a_map: 'Legg til et kart',
+  pick_its_files_together_or_drop:
+    'Velg .yaml og .pgm sammen, eller slipp dem her. En .pcd er et kart i tre dimensjoner.',
   map_files: 'Kartfiler',
   sending_name_share_percent: 'Sender «{name}», {share} %',
   show_it_while_driving: 'Vis under kjøring',
