@@ -23,8 +23,8 @@
 //            neither fixed satellites nor a map lead, by 0.1 m/s at most; no number of looks makes
 //            it surer than the place of one is known
 //
-// Standing (tracks still for 0.5 s, and the gyro too) the yaw is held, the gyro's bias learned, and
-// the position held unless the fix is RTK fixed: noise would make them wander. Refused and counted
+// Standing (tracks still for 0.5 s, and the gyro too) the yaw is held, the gyro's bias learned (not
+// while single counts of the tracks say that it may creep), and the position held unless the fix is RTK fixed: noise would make them wander. Refused and counted
 // by cause: values that are not finite, stamps that are doubled, out of order or in the future,
 // fixes beyond the limits of GnssLimits, receivers that disagree.
 //
@@ -335,6 +335,11 @@ class Estimator {
   double untold_turned_rad_ = 0.0;
   double free_m_ = 0.0;
   double counted_m_ = 0.0;    ///< all way, either direction
+  struct Crept {
+    double ahead_m = 0.0;
+    double half_m = 0.0;  ///< of the difference between the tracks
+  };
+  Crept crept_;               ///< since the tracks moved last; fades
   Time moved_at_{};           ///< last time the tracks moved, or the gyro turned
   Time bias_learned_at_{};    ///< likewise for the gyro's bias
   base::BodyTwist tracks_{};  ///< present speed by the tracks, unscaled

@@ -16,6 +16,8 @@ using std::chrono::milliseconds;
 
 constexpr base::Duration kStandsAfter = milliseconds(500);
 constexpr double kStill_m = 0.0015;    // two counts of a millimetre odometer
+constexpr double kCrept_m = 0.0004;    // less than one of them, by one track
+constexpr double kCreep_s = 2.0;
 constexpr double kFastest_mps = 15.0;  // more is a damaged count, not a motion
 constexpr double kMaxGap_s = 2.0;      // of odometry that may still be carried over
 // A gyro that stands: within this of its bias, or at least as even and as slow as the second pair.
@@ -76,8 +78,9 @@ bool Estimator::gyro_stands(Time stamp) const noexcept {
          std::abs(long_time->mean_radps) < kGyroBiasMost_radps;
 }
 
-/// At rest a gyro shows its bias.
+/// At rest a gyro shows its bias. While a track's count says that it may have moved, it may not.
 void Estimator::learn_gyro_bias(Time stamp) noexcept {
+  if (std::abs(crept_.ahead_m) + std::abs(crept_.half_m) > kCrept_m) return;
   const bool out = votes_.out(base::Sense::Gyro);
   if ((!gyro_used_ && !out) || stamp - bias_learned_at_ < kStandsAfter) return;
   bias_learned_at_ = stamp;
@@ -245,7 +248,12 @@ void Estimator::remember(Time stamp) noexcept {
 
 void Estimator::watch_standing(const Travel& t, Time stamp) noexcept {
   const double half_m = 0.5 * t.turn_rad * params_->track_width_m;
-  const bool tracks = std::abs(t.ahead_m) + std::abs(half_m) > kStill_m;
+  // A creep is a fraction of a count in each step: it adds up, and what jitters does not.
+  const double fades = std::max(0.0, 1.0 - t.dt_s / kCreep_s);
+  crept_.ahead_m = crept_.ahead_m * fades + t.ahead_m;
+  crept_.half_m = crept_.half_m * fades + half_m;
+  const bool tracks = std::abs(crept_.ahead_m) + std::abs(crept_.half_m) > kStill_m;
+  if (tracks) crept_ = {};
   const bool out = votes_.out(base::Sense::Gyro);
   const bool turned = !tracks && !out && !gyro_stands(stamp);  // by hand
   if (tracks || turned) moved_at_ = stamp;

@@ -35,6 +35,43 @@ TEST(EstimatorGyro, LearnsTheGyrosBiasAtRestAndHoldsTheHeading) {
   }
 }
 
+//   Millimetres that are counted, at 50 Hz: most steps tell none.
+TEST(EstimatorGyro, ACreepingTurnIsTurningAndNoBias) {
+  for (const double turn_dps : {-0.8, 1.4, 4.0}) {
+    Drive d = with_gyro(0.3);
+    d.yaw_scale = 1.0;
+    d.run(10.0);
+    d.compass = d.gnss = d.tracks = false;
+    d.rate_radps = rad_from_deg(turn_dps);
+    const double before = d.yaw_rad;
+    double told_m = 0.0;
+    double gone_m = 0.0;
+    for (int i = 0; i < 1000; ++i) {
+      d.tick();
+      gone_m += 0.5 * EstimateParams{}.track_width_m * d.rate_radps * 0.02;
+      const double counted_m = 0.001 * std::trunc((gone_m - told_m) / 0.001);
+      told_m += counted_m;
+      d.estimator.take(base::WheelTravel{d.now(), -counted_m, counted_m}, d.now());
+    }
+    EXPECT_NEAR(base::deg_from_rad(base::angle_diff_rad(before, d.yaw_rad)), 20.0 * turn_dps, 0.1);
+    EXPECT_LT(std::abs(d.yaw_error_deg()), 2.0) << turn_dps;
+    EXPECT_NEAR(base::deg_from_rad(d.estimator.health().gyro_bias_radps.value()), 0.3, 0.05);
+  }
+}
+
+//   One count to and fro, as an encoder on an edge tells it.
+TEST(EstimatorGyro, ACountThatJittersAtRestLeavesTheBiasToBeLearned) {
+  Drive d = with_gyro(1.0);
+  d.tracks = false;
+  for (int i = 0; i < 1000; ++i) {
+    d.tick();
+    const double one_m = i % 14 == 0 ? 0.001 : i % 14 == 7 ? -0.001 : 0.0;
+    d.estimator.take(base::WheelTravel{d.now(), one_m, 0.0}, d.now());
+  }
+  EXPECT_TRUE(d.estimator.standing());
+  EXPECT_NEAR(base::deg_from_rad(d.estimator.health().gyro_bias_radps.value()), 1.0, 0.05);
+}
+
 TEST(EstimatorGyro, TracksThatTurnLessThanTheySayDoNotMislead) {
   // Given tracks of which half of the turn is lost, which nobody told the estimator,
   Drive d = with_gyro();
