@@ -178,17 +178,33 @@ bool Referee::beneath_plane(int thing, const world::Pose& pose, double at_s) con
   return std::ranges::find(there.touches, thing, &world::Touch::thing) == there.touches.end();
 }
 
-std::optional<double> Referee::in_sight_since_s(int thing) const {
-  if (thing < 0) return std::nullopt;
-  const auto& seen = sights_[static_cast<std::size_t>(thing)];
+std::optional<double> Referee::in_sight_since_s(int number, double touched_s) const {
+  if (number < 0) return std::nullopt;
+  const auto& seen = sights_[static_cast<std::size_t>(number)];
   if (seen.empty()) return std::nullopt;
+  const world::Thing& thing = around_.scene().world().things[static_cast<std::size_t>(number)];
   // What stands does not leave; and what was seen once is known.
-  if (!world::moves(around_.scene().world().things[static_cast<std::size_t>(thing)].kind)) {
-    return seen.front();
-  }
+  if (!world::moves(thing.kind)) return seen.front();
+  if (touched_s - seen.back() > kUnbroken_s) return std::nullopt;
   std::size_t i = seen.size() - 1;
   while (i > 0 && seen[i] - seen[i - 1] <= kUnbroken_s) --i;
-  return seen[i];
+  return std::max(seen[i], set_out_s(thing, touched_s));
+}
+
+/// When he began to walk to where he is: until then he stood, or went another way, and nobody sees
+/// that coming. At the world's begin where he always stood there.
+double Referee::set_out_s(const world::Thing& who, double now_s) {
+  constexpr double kStep_s = 0.02;
+  double since_s = now_s;
+  while (since_s > 0.0 && world::on_path(who, since_s).speed_mps == 0.0) since_s -= kStep_s;
+  const double yaw_rad = world::on_path(who, since_s).yaw_rad;
+  while (since_s > 0.0) {
+    const world::OnPath before = world::on_path(who, since_s - kStep_s);
+    const double turned_rad = base::angle_diff_rad(before.yaw_rad, yaw_rad);
+    if (before.speed_mps == 0.0 || std::abs(turned_rad) > base::kPi / 2.0) break;
+    since_s -= kStep_s;
+  }
+  return std::max(0.0, since_s);
 }
 
 bool Referee::brakes_avoid(int thing, double from_s, double touched_s) const {
@@ -228,7 +244,7 @@ void Referee::judge(const world::Witness::Seen& seen) {
     out.beams = beams_[static_cast<std::size_t>(seen.thing)];
   }
   const double outline_mps = std::abs(now.v_mps) + std::abs(now.w_radps) * reach_m_;
-  const auto since_s = in_sight_since_s(seen.thing);
+  const auto since_s = in_sight_since_s(seen.thing, seen.at_s);
   if (since_s) out.seen_before_s = seen.at_s - *since_s;
   if (outline_mps < kMoves_mps) {
     out.blame = Blame::Standing;

@@ -3,12 +3,12 @@
 // that stands there, and how far before it the robot stands.
 //
 // A contact is ours when braking from the first sight would have avoided it. That is tried: from
-// the begin of the unbroken sight of the thing (a gap of a second breaks it) the body goes on as it
-// did for sense.protect.delay_s, then along the same way slower and slower, as decel_mps2 and
-// turn_decel_radps2 let it, and stands. What moves goes on as it does. If they meet until a
-// second after the true contact, no brakes would have avoided it. So whoever walks into the way of
-// a robot that saw him coming counts; that he was not in the way yet, in time for the brakes, is
-// said:
+// the begin of the unbroken sight of the thing (a gap of a second breaks it; of who moves, not
+// before he set out for there) the body goes on as it did for sense.protect.delay_s, then along the
+// same way slower and slower, as decel_mps2 and turn_decel_radps2 let it, and stands. What moves
+// goes on as it does. If they meet until a second after the true contact, no brakes would have
+// avoided it. So whoever walks into the way of a robot that saw him coming counts; that he was not
+// in the way yet, in time for the brakes, is said:
 //
 //   way since it was where it was touched  ≤  u·delay + u·max(v / 2a, ω / 2α),   u = |v| +
 //   |ω|·reach
@@ -67,8 +67,10 @@ class Referee {
 
   void judge(const sim::world::Witness::Seen& seen);
   bool beneath_plane(int thing, const sim::world::Pose& pose, double at_s) const;
-  /// Begin of the unbroken sight before the contact. Empty: never seen.
-  std::optional<double> in_sight_since_s(int thing) const;
+  /// Begin of the unbroken sight before the contact; of who moves, not before he set out. Empty:
+  /// never seen, or he was not any more.
+  std::optional<double> in_sight_since_s(int number, double touched_s) const;
+  static double set_out_s(const sim::world::Thing& who, double now_s);
   bool brakes_avoid(int thing, double from_s, double touched_s) const;
   double there_since_s(int thing, const sim::world::Pose& pose, double at_s) const;
   std::size_t index_at(double at_s) const;

@@ -229,8 +229,21 @@ TEST(WorldRunTest, WhoWalksIntoTheWayOfARobotThatSawHimIsItsOwnContactAndSaidToH
   const TouchSeen& touch = run->touches[0];
   EXPECT_EQ(touch.blame, Blame::Ours);
   EXPECT_TRUE(touch.crossed);
-  EXPECT_GT(touch.seen_before_s, 3.0);
+  EXPECT_NEAR(touch.seen_before_s, 2.5, 0.3);  // since he set out
   EXPECT_LE(touch.way_m, touch.needed_m);
+}
+
+//   He stands beside the way, in sight all the while, and then walks into the robot's side.
+TEST(WorldRunTest, WhoSetsOutTooLateForAnyBrakesIsNotTheRobotsOwnContact) {
+  study::Setup blunt = setup_of();
+  blunt.overrides = {"sense.protect.foresee_s=0"};
+  const auto run = run_world(blunt, ahead(R"({"kind": "person", "path": [[-1.2, 4], [2, 4]],
+      "speed_mps": 1.6, "motion": "once", "start_s": 10.6})"));
+  ASSERT_TRUE(run) << run.error().detail;
+  ASSERT_FALSE(run->touches.empty());
+  EXPECT_EQ(run->touches[0].blame, Blame::Late);
+  EXPECT_LT(run->touches[0].seen_before_s, 0.7);
+  EXPECT_GT(run->touches[0].beams, 1000U);
 }
 
 TEST(WorldRunTest, WhoIsForeseenToWalkIntoTheWayIsNotTouched) {
