@@ -24,9 +24,10 @@
 //            it surer than the place of one is known
 //
 // Standing (tracks still for 0.5 s, and the gyro too) the yaw is held, the gyro's bias learned (not
-// while single counts of the tracks say that it may creep), and the position held unless the fix is RTK fixed: noise would make them wander. Refused and counted
-// by cause: values that are not finite, stamps that are doubled, out of order or in the future,
-// fixes beyond the limits of GnssLimits, receivers that disagree.
+// while single counts of the tracks say that it may creep), and the position held unless the fix is
+// RTK fixed: noise would make them wander. Refused and counted by cause: values that are not
+// finite, stamps that are doubled, out of order or in the future, fixes beyond the limits of
+// GnssLimits, receivers that disagree.
 //
 // Everything is also put to the vote (nav/vote): a sensor that contradicts the others is left out
 // until it agrees again, and what it may have spoiled is uncertain by as much as they differed.
@@ -334,7 +335,7 @@ class Estimator {
   Travel untold_;                  ///< travel of which gyro and tracks were not compared yet
   double untold_turned_rad_ = 0.0;
   double free_m_ = 0.0;
-  double counted_m_ = 0.0;    ///< all way, either direction
+  double counted_m_ = 0.0;  ///< all way, either direction
   struct Crept {
     double ahead_m = 0.0;
     double half_m = 0.0;  ///< of the difference between the tracks

@@ -5,6 +5,7 @@
 
 #include "base/angle.hpp"
 #include "sim/world/contact.hpp"
+#include "study/world/comers.hpp"
 
 namespace roverd::study {
 namespace {
@@ -191,22 +192,6 @@ std::optional<double> Referee::in_sight_since_s(int number, double touched_s) co
   return std::max(seen[i], set_out_s(thing, touched_s));
 }
 
-/// When he began to walk to where he is: until then he stood, or went another way, and nobody sees
-/// that coming. At the world's begin where he always stood there.
-double Referee::set_out_s(const world::Thing& who, double now_s) {
-  constexpr double kStep_s = 0.02;
-  double since_s = now_s;
-  while (since_s > 0.0 && world::on_path(who, since_s).speed_mps == 0.0) since_s -= kStep_s;
-  const double yaw_rad = world::on_path(who, since_s).yaw_rad;
-  while (since_s > 0.0) {
-    const world::OnPath before = world::on_path(who, since_s - kStep_s);
-    const double turned_rad = base::angle_diff_rad(before.yaw_rad, yaw_rad);
-    if (before.speed_mps == 0.0 || std::abs(turned_rad) > base::kPi / 2.0) break;
-    since_s -= kStep_s;
-  }
-  return std::max(0.0, since_s);
-}
-
 bool Referee::brakes_avoid(int thing, double from_s, double touched_s) const {
   constexpr double kStep_s = 0.02;
   const double brakes_s = from_s + brakes_.delay_s;
@@ -231,6 +216,20 @@ bool Referee::brakes_avoid(int thing, double from_s, double touched_s) const {
   return true;
 }
 
+/// It stands; or drives away from who touches it.
+bool Referee::comes_to_it(int number, const Was& now) const {
+  if (std::abs(now.v_mps) + std::abs(now.w_radps) * reach_m_ < kMoves_mps) return true;
+  if (number < 0) return false;
+  const world::Thing& thing = around_.scene().world().things[static_cast<std::size_t>(number)];
+  if (!world::moves(thing.kind)) return false;
+  const world::Vec2 off =
+      world::on_path(thing, now.at_s).at - world::Vec2{now.pose.x_m, now.pose.y_m};
+  const double c = std::cos(now.pose.yaw_rad);
+  const double s = std::sin(now.pose.yaw_rad);
+  return nears_mps(around_.witness().body().outline, {c * off.x + s * off.y, c * off.y - s * off.x},
+                   {now.v_mps, now.w_radps}) < -kMoves_mps;
+}
+
 void Referee::judge(const world::Witness::Seen& seen) {
   const Was& now = trail_[index_at(seen.at_s)];
   TouchSeen out;
@@ -243,10 +242,9 @@ void Referee::judge(const world::Witness::Seen& seen) {
     out.height_m = around_.scene().world().things[static_cast<std::size_t>(seen.thing)].height_m;
     out.beams = beams_[static_cast<std::size_t>(seen.thing)];
   }
-  const double outline_mps = std::abs(now.v_mps) + std::abs(now.w_radps) * reach_m_;
   const auto since_s = in_sight_since_s(seen.thing, seen.at_s);
   if (since_s) out.seen_before_s = seen.at_s - *since_s;
-  if (outline_mps < kMoves_mps) {
+  if (comes_to_it(seen.thing, now)) {
     out.blame = Blame::Standing;
   } else if (!since_s) {
     out.blame = Blame::Unseen;

@@ -70,7 +70,7 @@ class Referee {
   /// Begin of the unbroken sight before the contact; of who moves, not before he set out. Empty:
   /// never seen, or he was not any more.
   std::optional<double> in_sight_since_s(int number, double touched_s) const;
-  static double set_out_s(const sim::world::Thing& who, double now_s);
+  bool comes_to_it(int number, const Was& now) const;
   bool brakes_avoid(int thing, double from_s, double touched_s) const;
   double there_since_s(int thing, const sim::world::Pose& pose, double at_s) const;
   std::size_t index_at(double at_s) const;

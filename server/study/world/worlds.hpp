@@ -70,7 +70,7 @@ enum class Blame {
   Late,      ///< it came in sight too late for any brakes, or would have come to it anyhow
   Below,     ///< its scanners look along one plane, and what was touched lies beneath it
   Unseen,    ///< no sensor ever saw it: too low, too high, too dark
-  Standing,  ///< the robot stood: it came
+  Standing,  ///< the robot stood, or drove away from it: it came
 };
 std::string_view to_string(Blame blame) noexcept;  // ours late below unseen standing
 

@@ -9,6 +9,7 @@
 #include "sim/eyes.hpp"
 #include "sim/world/random.hpp"
 #include "source_folder.hpp"
+#include "study/world/comers.hpp"
 #include "study/world/eyes.hpp"
 #include "study/world/worlds.hpp"
 
@@ -231,6 +232,34 @@ TEST(WorldRunTest, WhoWalksIntoTheWayOfARobotThatSawHimIsItsOwnContactAndSaidToH
   EXPECT_TRUE(touch.crossed);
   EXPECT_NEAR(touch.seen_before_s, 2.5, 0.3);  // since he set out
   EXPECT_LE(touch.way_m, touch.needed_m);
+}
+
+TEST(ComersTest, AnEdgeThatGoesAwayDoesNotComeNearer) {
+  const std::vector<sim::world::Vec2> body{{0.5, -0.4}, {0.5, 0.4}, {-0.5, 0.4}, {-0.5, -0.4}};
+  const auto nears = [&](sim::world::Vec2 place, double v_mps, double w_radps) {
+    return nears_mps(body, place, {v_mps, w_radps});
+  };
+  EXPECT_NEAR(nears({0.8, 0.1}, 0.5, 0.0), 0.5, 1e-9);
+  EXPECT_NEAR(nears({0.8, 0.1}, -0.5, 0.0), -0.5, 1e-9);
+  EXPECT_NEAR(nears({0.1, 0.7}, 1.0, 0.0), 0.0, 1e-9);  // along his side
+  // Turning to the left, the left side's front half comes to him, and its rear half leaves.
+  EXPECT_NEAR(nears({0.4, 0.7}, 0.0, 0.5), 0.2, 1e-9);
+  EXPECT_NEAR(nears({-0.4, 0.7}, 0.0, 0.5), -0.2, 1e-9);
+}
+
+TEST(ComersTest, HeSetsOutWhereHeStoodOrTurnedBack) {
+  sim::world::Thing who;
+  who.kind = sim::world::Kind::Person;
+  who.points = {{0, 0}, {4, 0}};
+  who.speed_mps = 1.0;
+  who.start_s = 3.0;
+  who.pause_s = 2.0;  // there at 7, back from 9 to 13, and again from 15
+  EXPECT_EQ(set_out_s(who, 2.0), 0.0);
+  EXPECT_NEAR(set_out_s(who, 5.0), 3.0, 0.05);
+  EXPECT_NEAR(set_out_s(who, 8.5), 3.0, 0.05);  // he stands where that led
+  EXPECT_NEAR(set_out_s(who, 11.0), 9.0, 0.05);
+  who.pause_s = 0.0;
+  EXPECT_NEAR(set_out_s(who, 9.0), 7.0, 0.05);
 }
 
 //   He stands beside the way, in sight all the while, and then walks into the robot's side.
