@@ -10,6 +10,7 @@ import { drill_calls } from './link/drill';
 import { first_stop } from './link/first_stop';
 import { field_calls } from './link/fields';
 import { read_identity } from './link/identity';
+import { me_calls } from './link/me';
 import { parameter_calls } from './link/parameters';
 import { people_calls } from './link/people';
 import { mission_calls, vehicle_calls } from './link/rest';
@@ -110,6 +111,7 @@ interface Late {
 const doors = (map: MapCalls, late: Late): Doors => ({
   missions: mission_calls,
   vehicle: vehicle_calls(() => late.stream?.seen_s() ?? null),
+  me: me_calls(() => late.stream?.seen_s() ?? null),
   teach: teach_calls,
   runs: run_calls,
   slips: slip_calls,

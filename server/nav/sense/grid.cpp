@@ -16,7 +16,7 @@ constexpr float kUnsure_m = 0.40F;   // what few pieces met is gone when a ray p
 constexpr float kGrazes_m = 0.003F;  // a ray along an edge: more would take its thing away
 constexpr float kRim_m = 0.02F;      // heights in O err by as much: the odometry's drift
 constexpr std::uint32_t kAlong_ms = 150;
-constexpr std::uint32_t kBeside_ms = 1000;
+constexpr std::uint32_t kBeside_ms = 500;
 constexpr std::uint32_t kApart_ms = 400;  // what rays say is not one and the same any more
 // What is seen lower than this over the body's plane stands on the ground: its foot is there, too.
 constexpr float kStands_m = 0.15F;

@@ -17,12 +17,14 @@ import type { RunCalls } from '../model/run_ports';
 import type { SeenCalls } from '../model/seen';
 import type { SiteMapCalls } from '../model/site_map';
 import type { KnownPlaceCalls } from '../model/known_places';
+import type { MeCalls } from '../model/me';
 import type { SlipCalls } from '../model/slips';
 import type { Kept } from './editor.svelte';
 
 export interface Doors {
   readonly missions: MissionCalls;
   readonly vehicle: VehicleCalls;
+  readonly me: MeCalls;
   readonly teach: TeachCalls;
   readonly runs: RunCalls;
   readonly slips: SlipCalls;

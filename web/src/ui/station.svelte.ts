@@ -26,6 +26,7 @@ import { Homeward, type HomeMode } from './homeward.svelte';
 import { Library } from './library.svelte';
 import { Live } from './live.svelte';
 import { anew_question, Makings } from './makings.svelte';
+import { MyPlace } from './me.svelte';
 import { Measurer } from './measure.svelte';
 import { Notices } from './notices.svelte';
 import { PastWay } from './past_way';
@@ -114,6 +115,7 @@ export class Station {
   readonly sites: SiteMaps;
   readonly grounds: Grounds;
   readonly standing: Standing;
+  readonly me: MyPlace;
   readonly drills: Drills;
   readonly makings: Makings;
   readonly surveyor: Surveyor;
@@ -145,6 +147,7 @@ export class Station {
       () => this.live.vehicle?.home ?? robot_place(this.live.vehicle),
     );
     this.pilot = new Pilot(doors.vehicle, doors.link, this.live, this.notices, this.dialogs);
+    this.me = new MyPlace(doors.me, this.live, this.pilot);
     this.drivers = new Drivers(doors.vehicle, this.notices, this.dialogs);
     this.sky = new Sky(doors.vehicle);
     this.runs = new Runs(doors.runs);
@@ -386,7 +389,8 @@ export class Station {
     $effect(() => map.show_home(live.vehicle?.home ?? null));
     $effect(() => {
       const drives = this.tab === 'drive';
-      const pin = drives ? (this.standing.mark ?? this.starting.mark ?? this.target.mark) : null;
+      const chosen = this.standing.mark ?? this.starting.mark ?? this.target.mark;
+      const pin = (drives ? chosen : null) ?? this.me.mark;
       const home = drives ? (this.starting.home_mark ?? this.homeward.mark) : null;
       map.show_marks(pin, home ?? activity_mark(live.vehicle));
     });

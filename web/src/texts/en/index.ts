@@ -7,6 +7,7 @@ import { guide } from './guide';
 import { house } from './house';
 import { items } from './items';
 import { maps } from './maps';
+import { me } from './me';
 import { news } from './news';
 import { plan } from './plan';
 import { runs } from './runs';
@@ -25,5 +26,6 @@ export const english = {
   ...maps,
   ...house,
   ...guide,
+  ...me,
   ...news,
 } as const;

@@ -1,0 +1,167 @@
+// "Come to me": the phone's place, looked at as long as the card is open, and told to the robot as long as
+// it shall come. What ends the telling ends the drive: the robot is told to stand, and brakes by itself
+// after a second without a word.
+
+import { refusal_text } from '../model/answer';
+import { distance_m } from '../model/geo';
+import {
+  my_target,
+  newest,
+  TELL_EVERY_MS,
+  why_not_here,
+  with_fix,
+  type Fix,
+  type Me,
+  type MeCalls,
+  type NoPlace,
+} from '../model/me';
+import { why_not_go } from '../model/modes';
+import { out_of_reach } from '../model/operations';
+import type { Mark } from '../model/ports';
+import { say } from '../model/say';
+import { robot_place } from '../model/vehicle';
+import type { Live } from './live.svelte';
+import type { Pilot } from './pilot.svelte';
+
+const FIRST_FIX_MS = 15_000;
+const LOOK_EVERY_MS = 200;
+
+export class MyPlace {
+  open = $state(false);
+  /** It was seen to follow this phone, and is told where that is. */
+  coming = $state(false);
+  /** Why it does not come any more. */
+  ended = $state<string | null>(null);
+  gap_m = $state<number | null>(null);
+  now_ms = $state(0);
+
+  why_not = $derived.by<string | null>(() => why_not_here(this.#me, this.now_ms, this.#none));
+  why_not_come = $derived.by<string | null>(() => why_not_go(this.#live.facts) ?? this.why_not);
+  fix = $derived.by<Fix | null>(() => newest(this.#me));
+  away_m = $derived.by<number | null>(() => {
+    const robot = robot_place(this.#live.vehicle);
+    return this.fix && robot ? distance_m(this.fix, robot) : null;
+  });
+  mark = $derived.by<Mark | null>(() => {
+    if (!this.open || !this.fix) return null;
+    const { lat, lon, accuracy_m } = this.fix;
+    return { lat, lon, heading_deg: null, ring: { radius_m: accuracy_m, clockwise: null } };
+  });
+
+  readonly #calls: MeCalls;
+  readonly #live: Live;
+  readonly #pilot: Pilot;
+  #me = $state.raw<Me>([]);
+  #none = $state<NoPlace | null>(null);
+  #telling = false;
+  #asking = false;
+  #ends: (() => void)[] = [];
+
+  constructor(calls: MeCalls, live: Live, pilot: Pilot) {
+    this.#calls = calls;
+    this.#live = live;
+    this.#pilot = pilot;
+  }
+
+  toggle(): void {
+    if (this.open) this.close();
+    else this.#look();
+  }
+
+  close(): void {
+    if (this.coming) this.stand(say('me_closed'));
+    for (const end of this.#ends.splice(0)) end();
+    this.open = false;
+    this.ended = null;
+  }
+
+  async come(): Promise<void> {
+    this.ended = null;
+    this.#asking = true;
+    try {
+      if (!(await this.#tell())) return;
+      if (!(await this.#pilot.set_mode('FOLLOW'))) return;
+      this.coming = true;
+    } finally {
+      this.#asking = false;
+    }
+  }
+
+  /** Told to the robot at once; @param why is shown until it is asked to come again */
+  stand(why: string | null): void {
+    this.coming = false;
+    this.ended = why;
+    this.#pilot.hold();
+  }
+
+  /** The first good place; or why there is none. */
+  async first(): Promise<Fix | string> {
+    const was_open = this.open;
+    if (!was_open) this.#look();
+    const until_ms = this.#calls.now_ms() + FIRST_FIX_MS;
+    try {
+      for (;;) {
+        this.now_ms = this.#calls.now_ms();
+        if (this.why_not === null && this.fix) return this.fix;
+        const for_good = this.#none !== null && this.#none !== 'unavailable';
+        if (for_good || this.now_ms > until_ms) return this.why_not ?? say('me_waiting');
+        await new Promise((done) => setTimeout(done, LOOK_EVERY_MS));
+      }
+    } finally {
+      if (!was_open) this.close();
+    }
+  }
+
+  #look(): void {
+    this.open = true;
+    this.#me = [];
+    this.#none = this.#calls.impossible;
+    this.now_ms = this.#calls.now_ms();
+    const timer = setInterval(() => this.#tick(), TELL_EVERY_MS);
+    this.#ends = [
+      () => clearInterval(timer),
+      this.#calls.watch(
+        (fix) => {
+          this.#none = null;
+          this.#me = with_fix(this.#me, fix);
+        },
+        (why) => (this.#none = why),
+      ),
+      this.#calls.on_hidden(() => {
+        if (this.coming) this.stand(say('me_hidden'));
+      }),
+    ];
+    void this.#calls.gap_m().then((gap_m) => (this.gap_m = gap_m));
+  }
+
+  #tick(): void {
+    this.now_ms = this.#calls.now_ms();
+    if (!this.coming) return;
+    const { facts, vehicle } = this.#live;
+    const lost = out_of_reach(facts) ?? this.why_not;
+    if (lost !== null) {
+      this.stand(lost);
+    } else if (vehicle && vehicle.mode !== 'FOLLOW') {
+      // Somebody, or the robot itself, chose otherwise: nothing is to be stopped.
+      this.coming = false;
+      this.ended = vehicle.activity.reason === '' ? null : vehicle.activity.reason;
+    } else void this.#tell();
+  }
+
+  /** @return it was taken */
+  async #tell(): Promise<boolean> {
+    if (this.#telling) return false;
+    const target = my_target(this.#me, robot_place(this.#live.vehicle), this.#calls.now_ms());
+    if (!target) return false;
+    this.#telling = true;
+    const answer = await this.#calls.tell(target);
+    this.#telling = false;
+    // No answer: the next one may come through, and else the robot stands by itself.
+    if (!answer.ok && answer.refusal.status !== 0 && (this.coming || this.#asking)) {
+      const why = refusal_text(answer.refusal);
+      if (this.coming) this.stand(why);
+      else this.ended = why;
+    }
+    return answer.ok;
+  }
+}
