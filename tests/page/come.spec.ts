@@ -2,6 +2,7 @@
 
 import type { BrowserContext, Page } from '@playwright/test';
 
+import { faults } from './axe';
 import { arm, items, metres_between, open_page, press, tab, type Point } from './page';
 import { expect, test, type Station } from './station';
 
@@ -57,6 +58,7 @@ test('the robot comes to the phone, keeps its distance, and stands when the phon
   await press(page, 'Come here');
   await expect(card).toContainText('Comes to you');
   await expect(page.getByLabel('Activity')).toContainText('Following');
+  expect(await faults(page, 'come to me')).toEqual([]);
   await page.screenshot({ path: '../tests/page/results/come-phone.png' });
 
   // It stands at the distance that was told: four metres of the phone's, two of its own.
@@ -101,6 +103,25 @@ test('a phone that walks away is followed, and “Stop here” ends it', async (
   await expect.poll(() => mode_of(station)).toBe('HOLD');
   await expect.poll(() => Math.abs(station.sim.now.speed_mps)).toBeLessThan(0.02);
   await expect(card.getByRole('alert')).toHaveCount(0);
+});
+
+test('a page that is put away makes the robot stand, and says so', async ({
+  page,
+  context,
+  station,
+}) => {
+  await begin(page, station);
+  const silent = await phone(context, north_of(station.sim.now, 16), 3);
+  await press(page, 'Come to me');
+  await press(page, 'Come here');
+  await expect(card_of(page)).toContainText('Comes to you');
+  await page.evaluate(() => {
+    Object.defineProperty(document, 'visibilityState', { value: 'hidden' });
+    document.dispatchEvent(new Event('visibilitychange'));
+  });
+  await expect.poll(() => mode_of(station)).toBe('HOLD');
+  await expect(card_of(page).getByRole('alert')).toContainText('The page was put away');
+  silent();
 });
 
 test('a place that is too vague, or not allowed, moves nothing and says why', async ({
