@@ -55,10 +55,10 @@ test('the robot comes to the phone, keeps its distance, and stands when the phon
   const card = card_of(page);
   await expect(card).toContainText('within 4.0 m');
   await expect(card).toContainText('It stops 6.0 m before');
+  expect(await faults(page, 'come to me')).toEqual([]);
   await press(page, 'Come here');
   await expect(card).toContainText('Comes to you');
   await expect(page.getByLabel('Activity')).toContainText('Following');
-  expect(await faults(page, 'come to me')).toEqual([]);
   await page.screenshot({ path: '../tests/page/results/come-phone.png' });
 
   // It stands at the distance that was told: four metres of the phone's, two of its own.

@@ -1,8 +1,8 @@
 // Draws a drill: where the failures begin, the ways from there, and the places where the robot would
 // stand, to scale. Broken lines and hollow bodies: nothing of it is real.
 
+import type { DrilledPlace, DrillOnMap } from '../model/drill';
 import type { LatLon } from '../model/plan';
-import type { DrilledPlace, DrillOnMap } from '../model/ports';
 import { stand_at, stroke_cased, trace, type Paint } from './canvas';
 import type { Palette } from './palette';
 import { to_plane, to_plane_line, units_per_m, type PlaneLine } from './projection';

@@ -6,14 +6,15 @@ import type MapBrowserEvent from 'ol/MapBrowserEvent';
 import View from 'ol/View';
 
 import type { SpaceOnMap } from '../model/calibration';
+import type { DrillOnMap } from '../model/drill';
 import type { FenceDraft } from '../model/fence';
 import type { Heat } from '../model/heat';
 import { turn_deg, type MapUp } from '../model/map_up';
 import type { KeptPlaces } from '../model/known_places';
+import type { MeOnMap } from '../model/me';
 import { EMPTY_PLAN, type LatLon, type Plan } from '../model/plan';
 import type {
   DraftStorage,
-  DrillOnMap,
   LineOnMap,
   MapCalls,
   MapEvents,
@@ -223,9 +224,9 @@ export class FieldMap implements MapCalls {
     this.#map.render();
   }
 
-  show_marks(pin: Mark | null, goal: Mark | null): void {
+  show_marks(pin: Mark | null, goal: Mark | null, me: MeOnMap | null): void {
     this.#scene.pin = kept(this.#scene.pin, pin);
-    this.#scene.goal = goal;
+    [this.#scene.goal, this.#scene.me] = [goal, me];
     this.#map.render();
   }
 

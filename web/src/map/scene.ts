@@ -3,8 +3,10 @@
 import { distance_m } from '../model/geo';
 import type { FenceDraft } from '../model/fence';
 import type { KeptPlaces } from '../model/known_places';
+import type { MeOnMap } from '../model/me';
 import { EMPTY_PLAN, type LatLon } from '../model/plan';
-import type { MapEvents, Mark, RobotOnMap } from '../model/ports';
+import { NO_EVENTS, type MapEvents } from '../model/on_map';
+import type { Mark, RobotOnMap } from '../model/ports';
 import { language_now } from '../model/say';
 import { DrawnUpTo } from '../model/drawn_up_to';
 import type { DriveOnMap } from '../model/route_drive';
@@ -21,6 +23,7 @@ import type { Box, Drag } from './edit';
 import { paint_fence } from './fence_painter';
 import { paint_grid, type Cover } from './grid';
 import { paint_goal, paint_pin } from './mark_painter';
+import { me_box, paint_me } from './me_painter';
 import { palette } from './palette';
 import type { DrawnBeside } from './pick_painter';
 import { ProjectedPlan, type PlanLook } from './plan_painter';
@@ -59,18 +62,6 @@ const GRID_REACH_M = 10_000;
 const alike = (old: readonly unknown[], now: readonly unknown[]): boolean =>
   old.length === now.length && now.every((value, k) => value === old[k]);
 
-const NO_EVENTS: MapEvents = {
-  on_add: () => undefined,
-  on_insert: () => undefined,
-  on_move: () => undefined,
-  on_select: () => undefined,
-  on_pick: () => undefined,
-  on_pick_box: () => undefined,
-  on_place: () => undefined,
-  on_point: () => undefined,
-  on_pan: () => undefined,
-};
-
 /** The old one if the new one says the same: what is drawn of it need not be drawn again. */
 export const kept = <T extends object>(old: T | null, next: T | null): T | null =>
   JSON.stringify(old) === JSON.stringify(next) ? old : next;
@@ -85,6 +76,7 @@ const MOVES: ReadonlySet<string> = new Set([
   'seen',
   'ahead',
   'goal',
+  'me',
   'current_item',
   'cover',
 ]);
@@ -93,7 +85,7 @@ const MOVES: ReadonlySet<string> = new Set([
 const EDITED: ReadonlySet<string> = new Set(['plan', 'look', 'picked', 'beside', 'drill', 'pin']);
 
 export class Scene {
-  events = NO_EVENTS;
+  events: MapEvents = NO_EVENTS;
   readonly plan = new ProjectedPlan(EMPTY_PLAN);
   readonly route = new ProjectedPlan(EMPTY_PLAN);
   /** The route as it is laid out. */
@@ -143,6 +135,8 @@ export class Scene {
   pin: Mark | null = null;
   /** Where the robot drives to outside of a mission. */
   goal: Mark | null = null;
+  /** Where this device is. */
+  me: MeOnMap | null = null;
   size: Size = { length_m: 1, width_m: 0.8 };
   cover: Cover = { top: 0, right: 0, bottom: 0, left: 0 };
   #origin: LatLon | null = null;
@@ -288,13 +282,17 @@ export class Scene {
   /** What moves, above it. */
   moving(view: View): Mover[] {
     const pixels = pixels_of(view, 0);
-    const { robot, goal, seen, ahead } = this;
+    const { robot, goal, me, seen, ahead } = this;
     return [
       ...this.#tips(pixels),
       ...edited_movers(view, this.#edited_as_seen()),
       {
         box: goal && goal_box(pixels, goal, robot?.at ?? null),
         paint: (paint) => goal && paint_goal(paint, goal, robot?.at ?? null, palette()),
+      },
+      {
+        box: me && me_box(pixels, me),
+        paint: (paint) => me && paint_me(paint, me, palette()),
       },
       {
         box: seen || ahead ? whole(view) : null,

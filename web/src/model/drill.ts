@@ -3,7 +3,6 @@
 
 import { metres, number_text } from './format';
 import type { LatLon } from './plan';
-import type { DrillOnMap } from './ports';
 import { say } from './say';
 import { speed_text, type SpeedUnit } from './settings';
 
@@ -144,6 +143,21 @@ export const drill_summary = (drill: Drill): string => {
   }
   return `${parts.join(', ')}.`;
 };
+
+/** Where the robot would stand after a failure, or be at the end of the simulated time. */
+export interface DrilledPlace extends LatLon {
+  readonly heading_deg: number;
+  /** The way there from the failure. */
+  readonly line: readonly LatLon[];
+  readonly tone: DrillTone;
+  readonly label: string;
+  /** It is looked at. */
+  readonly chosen: boolean;
+}
+export interface DrillOnMap {
+  readonly begins: LatLon | null;
+  readonly places: readonly DrilledPlace[];
+}
 
 /** @param chosen the failure that is looked at; null: all alike */
 export const drill_on_map = (drill: Drill, chosen: string | null): DrillOnMap => ({

@@ -112,6 +112,19 @@ export const why_not_here = (me: Me, now_ms: number, none: NoPlace | null): stri
   return null;
 };
 
+/** What the map shows of it. */
+export interface MeOnMap extends LatLon {
+  readonly accuracy_m: number;
+  readonly old: boolean;
+}
+
+export const me_on_map = (me: Me, now_ms: number): MeOnMap | null => {
+  const last = newest(me);
+  if (!last) return null;
+  const { lat, lon, accuracy_m } = last;
+  return { lat, lon, accuracy_m, old: (age_s(me, now_ms) ?? 0) > OLDEST_S };
+};
+
 /** What the robot is told; null: nothing is known of the one or the other. */
 export const my_target = (me: Me, robot: LatLon | null, now_ms: number): MyTarget | null => {
   const last = newest(me);

@@ -48,6 +48,19 @@ export interface MapEvents {
   on_pan(): void;
 }
 
+/** Nobody listens. */
+export const NO_EVENTS: MapEvents = {
+  on_add: () => undefined,
+  on_insert: () => undefined,
+  on_move: () => undefined,
+  on_select: () => undefined,
+  on_pick: () => undefined,
+  on_pick_box: () => undefined,
+  on_place: () => undefined,
+  on_point: () => undefined,
+  on_pan: () => undefined,
+};
+
 /** What the map shows of an edit, besides the plan itself. */
 export interface EditView {
   /** Items of it that are chosen together. */

@@ -6,7 +6,7 @@ import type { CircleGoal, StayGoal } from './circle';
 import type { ControlState } from './control';
 import type { SendDrive, SendThrottle } from './drive';
 import type { MissionWay } from './laid_way';
-import type { Drill, DrillTone, DrillWish } from './drill';
+import type { Drill, DrillOnMap, DrillWish } from './drill';
 import type { Driver } from './drivers';
 import type { Fence, FenceDraft, FenceSummary } from './fence';
 import type { LinkHealth } from './freshness';
@@ -15,6 +15,7 @@ import type { Halt } from './halt';
 import type { Heat } from './heat';
 import type { WayHome } from './homeward';
 import type { MapUp } from './map_up';
+import type { MeOnMap } from './me';
 import type { EditView, MapEvents, MapMode, PlanShape } from './on_map';
 import type { Home, KeptDrawing, LatLon, Plan, Settings, Item } from './plan';
 import type { Revision } from './revision';
@@ -321,20 +322,6 @@ export interface RouteOnMap {
   /** So far to both sides the robot may come off it; null: not known. */
   readonly corridor_m: number | null;
 }
-/** Where the robot would stand after a failure, or be at the end of the simulated time. */
-export interface DrilledPlace extends LatLon {
-  readonly heading_deg: number;
-  /** The way there from the failure. */
-  readonly line: readonly LatLon[];
-  readonly tone: DrillTone;
-  readonly label: string;
-  /** It is looked at. */
-  readonly chosen: boolean;
-}
-export interface DrillOnMap {
-  readonly begins: LatLon | null;
-  readonly places: readonly DrilledPlace[];
-}
 /** A place on the map that means something, and how the robot faces there. */
 export interface Mark extends LatLon {
   readonly heading_deg: number | null;
@@ -364,8 +351,9 @@ export interface MapCalls extends SeenMap, SiteMapView, EditView {
   /** The colours of the way so far; null: one. */
   show_trail(shades: TrailShades | null): void;
   show_home(home: LatLon | null): void;
-  /** @param pin the place that the person chose; @param goal where the robot drives to */
-  show_marks(pin: Mark | null, goal: Mark | null): void;
+  /** @param pin the place that the person chose; @param goal where the robot drives to; @param me where
+   * this device is */
+  show_marks(pin: Mark | null, goal: Mark | null, me: MeOnMap | null): void;
   /** Runs, or a survey that is being planned, instead of the way so far; none: that one again. */
   show_runs(runs: readonly RunOnMap[]): void;
   /** Several runs as one picture; null: none. */

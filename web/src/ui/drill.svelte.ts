@@ -2,10 +2,10 @@
 // has no part in it.
 
 import { refusal_text } from '../model/answer';
-import { drill_on_map, type Drill } from '../model/drill';
+import { drill_on_map, type Drill, type DrillOnMap } from '../model/drill';
 import { distance_m } from '../model/geo';
 import { spots, type Plan } from '../model/plan';
-import type { DrillCalls, DrillOnMap } from '../model/ports';
+import type { DrillCalls } from '../model/ports';
 
 const ASK_AGAIN_MS = 700;
 const MIDDLE = 50;

@@ -5,19 +5,21 @@
 import { refusal_text } from '../model/answer';
 import { distance_m } from '../model/geo';
 import {
+  me_on_map,
   my_target,
   newest,
+  OLDEST_S,
   TELL_EVERY_MS,
   why_not_here,
   with_fix,
   type Fix,
   type Me,
   type MeCalls,
+  type MeOnMap,
   type NoPlace,
 } from '../model/me';
 import { why_not_go } from '../model/modes';
-import { out_of_reach } from '../model/operations';
-import type { Mark } from '../model/ports';
+import { no_link } from '../model/operations';
 import { say } from '../model/say';
 import { robot_place } from '../model/vehicle';
 import type { Live } from './live.svelte';
@@ -42,11 +44,7 @@ export class MyPlace {
     const robot = robot_place(this.#live.vehicle);
     return this.fix && robot ? distance_m(this.fix, robot) : null;
   });
-  mark = $derived.by<Mark | null>(() => {
-    if (!this.open || !this.fix) return null;
-    const { lat, lon, accuracy_m } = this.fix;
-    return { lat, lon, heading_deg: null, ring: { radius_m: accuracy_m, clockwise: null } };
-  });
+  on_map = $derived.by<MeOnMap | null>(() => (this.open ? me_on_map(this.#me, this.now_ms) : null));
 
   readonly #calls: MeCalls;
   readonly #live: Live;
@@ -54,6 +52,7 @@ export class MyPlace {
   #me = $state.raw<Me>([]);
   #none = $state<NoPlace | null>(null);
   #telling = false;
+  #linked_ms = 0;
   #asking = false;
   #ends: (() => void)[] = [];
 
@@ -81,6 +80,7 @@ export class MyPlace {
     try {
       if (!(await this.#tell())) return;
       if (!(await this.#pilot.set_mode('FOLLOW'))) return;
+      this.#linked_ms = this.#calls.now_ms();
       this.coming = true;
     } finally {
       this.#asking = false;
@@ -138,10 +138,14 @@ export class MyPlace {
     this.now_ms = this.#calls.now_ms();
     if (!this.coming) return;
     const { facts, vehicle } = this.#live;
-    const lost = out_of_reach(facts) ?? this.why_not;
+    const unlinked = no_link(facts);
+    if (unlinked === null) this.#linked_ms = this.now_ms;
+    // The robot brakes by itself meanwhile, and goes on: a gap of a weak network ends nothing.
+    const gone = this.now_ms - this.#linked_ms > OLDEST_S * 1000 ? unlinked : null;
+    const lost = gone ?? facts.no_control ?? this.why_not;
     if (lost !== null) {
       this.stand(lost);
-    } else if (vehicle && vehicle.mode !== 'FOLLOW') {
+    } else if (unlinked === null && vehicle && vehicle.mode !== 'FOLLOW') {
       // Somebody, or the robot itself, chose otherwise: nothing is to be stopped.
       this.coming = false;
       this.ended = vehicle.activity.reason === '' ? null : vehicle.activity.reason;

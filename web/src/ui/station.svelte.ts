@@ -389,10 +389,9 @@ export class Station {
     $effect(() => map.show_home(live.vehicle?.home ?? null));
     $effect(() => {
       const drives = this.tab === 'drive';
-      const chosen = this.standing.mark ?? this.starting.mark ?? this.target.mark;
-      const pin = (drives ? chosen : null) ?? this.me.mark;
+      const pin = drives ? (this.standing.mark ?? this.starting.mark ?? this.target.mark) : null;
       const home = drives ? (this.starting.home_mark ?? this.homeward.mark) : null;
-      map.show_marks(pin, home ?? activity_mark(live.vehicle));
+      map.show_marks(pin, home ?? activity_mark(live.vehicle), this.me.on_map);
     });
   }
 }
