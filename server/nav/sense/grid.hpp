@@ -13,8 +13,8 @@
 // passes between them and goes on says that it left (of what was met less than four times, a ray
 // nearby as well: it may have been rain). Along the edges of what was met no height is known well
 // enough for a moment to say so: a plane that rises over a box passes just above it. There rays
-// must say it for 0.15 s; and for a second where they pass just beside the edges, or where nothing
-// was met for so long that the heights may have drifted. What a ray passes above or below
+// must say it for 0.15 s; and for 0.5 s where they pass just beside the edges, or where nothing was
+// met for so long that the heights may have drifted. What a ray passes above or below
 // stays, and so does what sinks out of every sensor's view as the robot comes near, leans or
 // climbs. (Where nothing tells how the body leans, its plane is taken for O's. What tells it may
 // err by degrees while the robot brakes: of what stands on the ground a ray must say so over the

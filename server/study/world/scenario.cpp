@@ -6,6 +6,7 @@
 
 #include "sim/world/draw.hpp"
 #include "sim/world/random.hpp"
+#include "sim/world/scene.hpp"
 #include "study/world/worlds.hpp"
 
 namespace roverd::study {
