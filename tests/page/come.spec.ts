@@ -150,7 +150,7 @@ test('a place that is too vague, or not allowed, moves nothing and says why', as
   expect(await mode_of(station)).not.toBe('FOLLOW');
 });
 
-test('a page that is not secure says that it cannot know, and where it can', async ({
+test('a page that is not secure says that it cannot know, and what helps', async ({
   page,
   station,
 }) => {
@@ -160,7 +160,45 @@ test('a page that is not secure says that it cannot know, and where it can', asy
   await begin(page, station);
   await press(page, 'Come to me');
   await expect(card_of(page)).toContainText('only to a page over HTTPS');
-  await expect(card_of(page).getByRole('link')).toHaveAttribute('href', /^https:\/\/127\.0\.0\.1/);
+});
+
+test('“Come here” that is closed before the robot answered does not drive', async ({
+  page,
+  context,
+  station,
+}) => {
+  await begin(page, station);
+  const silent = await phone(context, north_of(station.sim.now, 16), 3);
+  await page.route('**/vehicle/mode', async (route) => {
+    await new Promise((done) => setTimeout(done, 600));
+    await route.continue();
+  });
+  await press(page, 'Come to me');
+  await press(page, 'Come here');
+  await page.waitForTimeout(150);
+  await card_of(page).getByRole('button', { name: 'Do not come to me' }).click();
+  await page.waitForTimeout(3000);
+  expect(await mode_of(station)).toBe('HOLD');
+  await press(page, 'Come to me');
+  await expect(card_of(page)).not.toContainText('Comes to you');
+  silent();
+});
+
+test('a phone that becomes less sure does not end it', async ({ page, context, station }) => {
+  await begin(page, station);
+  const me = north_of(station.sim.now, 16);
+  let silent = await phone(context, me, 3);
+  await press(page, 'Come to me');
+  await press(page, 'Come here');
+  const card = card_of(page);
+  await expect(card).toContainText('Comes to you');
+  silent();
+  silent = await phone(context, me, 9);
+  await page.waitForTimeout(5000);
+  await expect(card).toContainText('within 9.0 m');
+  await expect(card).toContainText('Comes to you');
+  expect(await mode_of(station)).toBe('FOLLOW');
+  silent();
 });
 
 test('my place becomes a point of the mission, and is undone', async ({

@@ -3,7 +3,7 @@
 import { describe, expect, it } from 'vitest';
 
 import { bearing_deg, distance_m, offset_from } from '../src/model/geo';
-import { my_target, why_not_here, with_fix, type Fix, type Me } from '../src/model/me';
+import { kept_m, my_target, why_not_here, with_fix, type Fix, type Me } from '../src/model/me';
 
 const ORIGIN = { lat: 58.378, lon: 26.729 };
 
@@ -59,6 +59,15 @@ describe('what the robot is told', () => {
     const told = my_target(me_of(fix(10)), near, 10_000);
     expect(told && distance_m(near, told)).toBeCloseTo(0, 2);
   });
+  it('moves by a metre at most when the phone becomes less sure', () => {
+    const less_sure = me_of(fix(10, 0, 0, 3), fix(11, 0, 0, 8));
+    expect(kept_m(less_sure, null)).toBe(8);
+    expect(kept_m(less_sure, 3)).toBe(4);
+    expect(kept_m(less_sure, 7.5)).toBe(8);
+    expect(kept_m(me_of(fix(10, 0, 0, 3)), 8)).toBe(7);
+    const told = my_target(less_sure, robot, 11_000, 4);
+    expect(told && distance_m(ORIGIN, told)).toBeCloseTo(4, 2);
+  });
   it('goes on for a second as the person walks, and no longer', () => {
     const me = me_of(fix(10, 0, 0, 0), fix(11, 1.4, 0, 0), fix(12, 2.8, 0, 0));
     const at = (ms: number): number => {
@@ -67,7 +76,8 @@ describe('what the robot is told', () => {
     };
     expect(at(12_000)).toBeCloseTo(2.8, 2);
     expect(at(12_500)).toBeCloseTo(3.5, 2);
-    expect(at(14_900)).toBeCloseTo(4.2, 2);
+    expect(at(13_500)).toBeCloseTo(4.2, 2);
+    expect(at(13_700)).toBeNaN(); // the robot brakes a second later
     const told = my_target(me, robot, 12_000);
     expect(told?.speed_mps).toBeCloseTo(1.4, 2);
     expect(told?.heading_deg).toBeCloseTo(90, 0);

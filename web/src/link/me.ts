@@ -21,7 +21,8 @@ const fix_of = ({ coords, timestamp }: GeolocationPosition): Fix => ({
   lat: coords.latitude,
   lon: coords.longitude,
   accuracy_m: coords.accuracy,
-  at_ms: Math.min(timestamp, Date.now()),
+  // Stamped by a clock that may be set meanwhile.
+  at_ms: performance.now() - Math.max(0, Date.now() - timestamp),
 });
 
 export const me_calls = (seen: Seen): MeCalls => ({
@@ -60,5 +61,5 @@ export const me_calls = (seen: Seen): MeCalls => ({
     document.addEventListener('visibilitychange', look);
     return () => document.removeEventListener('visibilitychange', look);
   },
-  now_ms: () => Date.now(),
+  now_ms: () => performance.now(),
 });

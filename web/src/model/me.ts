@@ -1,5 +1,5 @@
 // Where the person is, as the phone in the hand tells: how good that is, and what the robot is told of it
-// when it shall come. Time is an argument: milliseconds of the clock that the fixes are stamped with.
+// when it shall come. Time is an argument: milliseconds of the page's clock that never goes back.
 //
 //   robot ──────▶ ○ told          ● phone      The robot is told a place on the circle within which the
 //                 └─ accuracy_m ──┘            phone may be, on its own side: it keeps its distance to all
@@ -43,8 +43,12 @@ export interface MeCalls {
 export const MOST_ACCURACY_M = 10;
 /** Older, and the person may be elsewhere: four metres at a walk. */
 export const OLDEST_S = 3;
-/** The robot brakes after a second without a word. */
+/** Phones find their place once a second; the robot brakes after a second without a word. */
 export const TELL_EVERY_MS = 500;
+const TELL_UP_TO_S = 1.6;
+/** The told place goes no faster than this because the phone becomes surer or less sure: it would be
+ * taken for a jump. */
+const SURER_M = 1;
 const WALK_S = 2.5;
 const WALKS_MPS = 0.4;
 const FASTEST_MPS = 3;
@@ -125,15 +129,28 @@ export const me_on_map = (me: Me, now_ms: number): MeOnMap | null => {
   return { lat, lon, accuracy_m, old: (age_s(me, now_ms) ?? 0) > OLDEST_S };
 };
 
-/** What the robot is told; null: nothing is known of the one or the other. */
-export const my_target = (me: Me, robot: LatLon | null, now_ms: number): MyTarget | null => {
+/** How far before the phone's place the next told one is. @param before that of the last; null: none */
+export const kept_m = (me: Me, before_m: number | null): number => {
+  const wanted_m = newest(me)?.accuracy_m ?? 0;
+  if (before_m === null) return wanted_m;
+  return Math.max(before_m - SURER_M, Math.min(before_m + SURER_M, wanted_m));
+};
+
+/** What the robot is told; null: nothing is known of the one or the other, or not of late.
+ * @param before_m so far before the phone's place it is */
+export const my_target = (
+  me: Me,
+  robot: LatLon | null,
+  now_ms: number,
+  before_m: number = kept_m(me, null),
+): MyTarget | null => {
   const last = newest(me);
-  if (!last || !robot) return null;
+  if (!last || !robot || (age_s(me, now_ms) ?? 0) > TELL_UP_TO_S) return null;
   const { east_mps, north_mps } = walk_of(me);
   const ahead_s = Math.min(FORETOLD_S, age_s(me, now_ms) ?? 0);
   const here = offset_from(last, { east_m: east_mps * ahead_s, north_m: north_mps * ahead_s });
   const away_m = distance_m(here, robot);
-  const part = away_m > 0 ? Math.min(1, last.accuracy_m / away_m) : 0;
+  const part = away_m > 0 ? Math.min(1, before_m / away_m) : 0;
   const to_robot = offset_between(here, robot);
   const told = offset_from(here, {
     east_m: to_robot.east_m * part,

@@ -5,6 +5,7 @@
 import { refusal_text } from '../model/answer';
 import { distance_m } from '../model/geo';
 import {
+  kept_m,
   me_on_map,
   my_target,
   newest,
@@ -30,8 +31,10 @@ const LOOK_EVERY_MS = 200;
 
 export class MyPlace {
   open = $state(false);
-  /** It was seen to follow this phone, and is told where that is. */
+  /** It is told where this phone is. */
   coming = $state(false);
+  /** And was seen to follow. */
+  seen_coming = $state(false);
   /** Why it does not come any more. */
   ended = $state<string | null>(null);
   gap_m = $state<number | null>(null);
@@ -52,6 +55,8 @@ export class MyPlace {
   #me = $state.raw<Me>([]);
   #none = $state<NoPlace | null>(null);
   #telling = false;
+  #before_m: number | null = null;
+  #refused: string | null = null;
   #linked_ms = 0;
   #asking = false;
   #ends: (() => void)[] = [];
@@ -68,7 +73,7 @@ export class MyPlace {
   }
 
   close(): void {
-    if (this.coming) this.stand(say('me_closed'));
+    if (this.coming || this.#asking) this.stand(say('me_closed'));
     for (const end of this.#ends.splice(0)) end();
     this.open = false;
     this.ended = null;
@@ -78,8 +83,13 @@ export class MyPlace {
     this.ended = null;
     this.#asking = true;
     try {
-      if (!(await this.#tell())) return;
-      if (!(await this.#pilot.set_mode('FOLLOW'))) return;
+      this.#before_m = null;
+      if (!(await this.#tell())) {
+        if (this.#asking) this.ended ??= this.why_not ?? say('me_waiting');
+        return;
+      }
+      if (!this.#asking) return;
+      if (!(await this.#pilot.set_mode('FOLLOW')) || !this.#asking) return;
       this.#linked_ms = this.#calls.now_ms();
       this.coming = true;
     } finally {
@@ -89,7 +99,8 @@ export class MyPlace {
 
   /** Told to the robot at once; @param why is shown until it is asked to come again */
   stand(why: string | null): void {
-    this.coming = false;
+    this.#asking = false;
+    this.coming = this.seen_coming = false;
     this.ended = why;
     this.#pilot.hold();
   }
@@ -128,7 +139,7 @@ export class MyPlace {
         (why) => (this.#none = why),
       ),
       this.#calls.on_hidden(() => {
-        if (this.coming) this.stand(say('me_hidden'));
+        if (this.coming || this.#asking) this.stand(say('me_hidden'));
       }),
     ];
     void this.#calls.gap_m().then((gap_m) => (this.gap_m = gap_m));
@@ -145,27 +156,34 @@ export class MyPlace {
     const lost = gone ?? facts.no_control ?? this.why_not;
     if (lost !== null) {
       this.stand(lost);
-    } else if (unlinked === null && vehicle && vehicle.mode !== 'FOLLOW') {
+      return;
+    }
+    const follows = vehicle?.mode === 'FOLLOW';
+    if (unlinked === null && this.seen_coming && !follows) {
       // Somebody, or the robot itself, chose otherwise: nothing is to be stopped.
-      this.coming = false;
-      this.ended = vehicle.activity.reason === '' ? null : vehicle.activity.reason;
-    } else void this.#tell();
+      const reason = vehicle?.activity.reason ?? '';
+      this.coming = this.seen_coming = false;
+      this.ended = this.#refused ?? (reason === '' ? null : reason);
+      return;
+    }
+    this.seen_coming = this.seen_coming || follows;
+    void this.#tell();
   }
 
   /** @return it was taken */
   async #tell(): Promise<boolean> {
     if (this.#telling) return false;
-    const target = my_target(this.#me, robot_place(this.#live.vehicle), this.#calls.now_ms());
+    const before_m = kept_m(this.#me, this.#before_m);
+    const robot = robot_place(this.#live.vehicle);
+    const target = my_target(this.#me, robot, this.#calls.now_ms(), before_m);
     if (!target) return false;
     this.#telling = true;
     const answer = await this.#calls.tell(target);
     this.#telling = false;
-    // No answer: the next one may come through, and else the robot stands by itself.
-    if (!answer.ok && answer.refusal.status !== 0 && (this.coming || this.#asking)) {
-      const why = refusal_text(answer.refusal);
-      if (this.coming) this.stand(why);
-      else this.ended = why;
-    }
+    this.#before_m = before_m;
+    // Not taken, or not heard: the next one may be, and else the robot stands by itself.
+    this.#refused = answer.ok ? null : refusal_text(answer.refusal);
+    if (this.#asking) this.ended = this.#refused;
     return answer.ok;
   }
 }

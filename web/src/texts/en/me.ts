@@ -10,7 +10,8 @@ export const me = {
   me_keeps:
     'It stops {distance} before that place: as far as your phone may be off, and the distance that it keeps.',
   me_ended: 'It does not come any more: {why}',
-  me_insecure: 'a phone tells its place only to a page over HTTPS: open the robot’s https address',
+  me_insecure:
+    'a phone tells its place only to a page over HTTPS: start roverd with --lan or --tls',
   me_missing: 'this browser does not tell where it is',
   me_denied: 'this page may not know where the phone is: allow it in the browser’s settings',
   me_unavailable: 'the phone does not find its place now',

@@ -9,7 +9,7 @@ export const me = {
   me_fix: 'Sinu telefon teab oma kohta {accuracy} täpsusega, {age} s tagasi.',
   me_keeps: 'Ta peatub {distance} enne seda kohta: telefoni võimalik viga ja vahe, mida ta hoiab.',
   me_ended: 'Ta ei tule enam: {why}',
-  me_insecure: 'telefon ütleb oma koha ainult HTTPS-lehele: ava roboti https-aadress',
+  me_insecure: 'telefon ütleb oma koha ainult HTTPS-lehele: käivita roverd võtmega --lan või --tls',
   me_missing: 'see brauser ei ütle, kus ta on',
   me_denied: 'see leht ei tohi teada, kus telefon on: luba see brauseri seadetes',
   me_unavailable: 'telefon ei leia praegu oma kohta',

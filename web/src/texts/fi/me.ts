@@ -10,7 +10,8 @@ export const me = {
   me_keeps:
     'Se pysähtyy {distance} ennen sitä paikkaa: puhelimen mahdollinen virhe ja väli, jonka se pitää.',
   me_ended: 'Se ei tule enää: {why}',
-  me_insecure: 'puhelin kertoo paikkansa vain HTTPS-sivulle: avaa robotin https-osoite',
+  me_insecure:
+    'puhelin kertoo paikkansa vain HTTPS-sivulle: käynnistä roverd valitsimella --lan tai --tls',
   me_missing: 'tämä selain ei kerro, missä se on',
   me_denied: 'tämä sivu ei saa tietää, missä puhelin on: salli se selaimen asetuksissa',
   me_unavailable: 'puhelin ei löydä paikkaansa nyt',

@@ -11,7 +11,7 @@ export const me = {
     'Si ferma {distance} prima di quel punto: l’errore possibile del telefono e la distanza che mantiene.',
   me_ended: 'Non viene più: {why}',
   me_insecure:
-    'un telefono dice la sua posizione solo a una pagina HTTPS: apri l’indirizzo https del robot',
+    'un telefono dice la sua posizione solo a una pagina HTTPS: avvia roverd con --lan o --tls',
   me_missing: 'questo browser non dice dove si trova',
   me_denied:
     'questa pagina non può sapere dove è il telefono: consentilo nelle impostazioni del browser',

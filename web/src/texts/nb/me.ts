@@ -11,7 +11,7 @@ export const me = {
     'Den stopper {distance} før det stedet: så mye telefonen kan ta feil, og avstanden den holder.',
   me_ended: 'Den kommer ikke lenger: {why}',
   me_insecure:
-    'en telefon sier hvor den er bare til en side over HTTPS: åpne robotens https-adresse',
+    'en telefon sier hvor den er bare til en side over HTTPS: start roverd med --lan eller --tls',
   me_missing: 'denne nettleseren sier ikke hvor den er',
   me_denied: 'denne siden får ikke vite hvor telefonen er: tillat det i nettleserens innstillinger',
   me_unavailable: 'telefonen finner ikke stedet sitt nå',
