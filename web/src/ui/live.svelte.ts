@@ -21,9 +21,9 @@ import { same_words } from '../model/words';
 
 /** Figures that change faster cannot be read, and cost a phone half of its time: what is written is
  * renewed so often, and at once where more changes than a number. */
-const SHOW_MS = 150;
+const SHOW_MS = 230;
 /** Without messages. Later than with them, ten in a second, so that both make one picture. */
-const CLOCK_MS = 260;
+const CLOCK_MS = 360;
 const STICK_REFUSED_MS = 1500;
 
 export class Live {
