@@ -155,7 +155,7 @@ test.describe('with pictures in the network', () => {
       .poll(() => seen_in_the_middle(page, BLUE), { timeout: 20_000 })
       .toBeGreaterThan(3000);
     await expect(nothing_comes).toBeHidden();
-    await page.getByLabel(/How much finer/).fill('1');
+    await page.getByLabel(/The finest picture/).fill('1');
     asked.length = 0;
     await press(page, 'Keep this area');
     const dialog = page.getByRole('dialog');

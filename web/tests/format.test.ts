@@ -108,7 +108,7 @@ describe('refusals', () => {
 
   test('name every cause', () => {
     expect(refusal_text(refusal)).toContain('Two values are not valid.');
-    expect(refusal_text(refusal)).toContain('/items/3/lat: must be from -90 to 90');
+    expect(refusal_text(refusal)).toContain('item 4, lat: must be from -90 to 90');
     expect(refusal_text({ ...refusal, detail: '', errors: [] })).toBe('Invalid');
   });
 

@@ -4,6 +4,7 @@ import { describe, expect, it } from 'vitest';
 
 import {
   count_tiles,
+  pixel_m,
   place_at,
   tile_point,
   tile_url,
@@ -24,6 +25,11 @@ describe('tiles of the web', () => {
     expect(back.lon).toBeCloseTo(TARTU.lon, 9);
     expect(tile_point({ lat: 0, lon: 0 }, 0)).toEqual({ x: 0.5, y: 0.5 });
     expect(place_at(0, 0, 3).lat).toBeCloseTo(85.0511287798, 6);
+  });
+
+  it('show 31 cm of the ground with a pixel of zoom 18 at 58.4° N', () => {
+    expect(256 * pixel_m(58.4, 18)).toBeCloseTo(80, 0);
+    expect(pixel_m(0, 0)).toBeCloseTo(156_543, 0);
   });
 
   it('cover an area, its edges too, and no more', () => {

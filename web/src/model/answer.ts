@@ -1,6 +1,7 @@
 // What a request to the server ended in. A refusal is a value, not an exception: the page shows the
 // robot's own words.
 
+import { row_words } from './import_rows';
 import type { Mission } from './ports';
 import { say } from './say';
 
@@ -28,7 +29,7 @@ const new_causes = ({ detail, errors }: Refusal): readonly FieldError[] =>
 /** One line for a person: the cause, then what is wrong in each place. */
 export const refusal_text = (refusal: Refusal): string => {
   const causes = new_causes(refusal).map((error) =>
-    error.pointer === '' ? error.detail : `${error.pointer}: ${error.detail}`,
+    error.pointer === '' ? error.detail : `${row_words(error.pointer)}: ${error.detail}`,
   );
   return [refusal.detail === '' ? refusal.title : refusal.detail, ...causes].join(' · ');
 };
@@ -55,4 +56,4 @@ export const wants_origin = (refusal: Refusal): boolean =>
 
 /** What is wrong with what was typed, field by field. */
 export const complaint = ({ detail, errors }: Refusal): string =>
-  [detail, ...errors.map((e) => `${e.pointer.slice(1)} ${e.detail}`)].join('; ');
+  [detail, ...errors.map((e) => `${row_words(e.pointer)} ${e.detail}`)].join('; ');

@@ -80,10 +80,13 @@ export function* tiles_of(bounds: Bounds, from: number, to: number): Generator<T
   }
 }
 
+/** Metres on the ground that a pixel of a tile shows. */
+export const pixel_m = (lat: number, z: number): number =>
+  (WORLD_M_PER_PX * Math.cos((lat * Math.PI) / 180)) / 2 ** z;
+
 /** The zoom at which no detail of a picture is lost. @param m_per_px on the ground */
 export const zoom_for = (m_per_px: number, lat: number, most: number): number => {
-  const world = WORLD_M_PER_PX * Math.cos((lat * Math.PI) / 180);
-  return clamp(Math.ceil(Math.log2(world / m_per_px) - 0.25), 0, most);
+  return clamp(Math.ceil(Math.log2(pixel_m(lat, 0) / m_per_px) - 0.25), 0, most);
 };
 
 /** The address of a tile. @param template with {z}, {x} and {y}, or {-y}: rows from the south */

@@ -160,7 +160,7 @@ export const maps = {
   ground_robot_is_here: 'The robot is here',
   ground_waits: 'The link is lost: it goes on by itself.',
   ground_give_up: 'Give up',
-  ground_how_fine: 'How much finer than now: {n} zooms',
+  ground_how_fine: 'The finest picture that is kept: {size} a pixel',
   ground_keep_area: 'Keep this area',
   ground_keep: 'Keep',
   ground_add: 'Add MBTiles or GeoTIFF',

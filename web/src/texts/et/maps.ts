@@ -156,7 +156,7 @@ export const maps = {
   ground_robot_is_here: 'Robot on siin',
   ground_waits: 'Side katkes: jätkub ise.',
   ground_give_up: 'Katkesta',
-  ground_how_fine: 'Kui palju täpsemalt: {n} astet',
+  ground_how_fine: 'Täpseim pilt, mis jääb alles: {size} piksli kohta',
   ground_keep_area: 'Salvesta see ala',
   ground_keep: 'Salvesta',
   ground_add: 'Lisa MBTiles või GeoTIFF',

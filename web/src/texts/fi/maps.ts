@@ -158,7 +158,7 @@ export const maps = {
   ground_robot_is_here: 'Robotti on tässä',
   ground_waits: 'Yhteys katkesi: jatkuu itsestään.',
   ground_give_up: 'Keskeytä',
-  ground_how_fine: 'Kuinka paljon tarkemmin: {n} tasoa',
+  ground_how_fine: 'Tarkin tallennettava kuva: {size} pikseliä kohti',
   ground_keep_area: 'Tallenna tämä alue',
   ground_keep: 'Tallenna',
   ground_add: 'Lisää MBTiles tai GeoTIFF',

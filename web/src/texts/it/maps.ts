@@ -160,7 +160,7 @@ export const maps = {
   ground_robot_is_here: 'Il robot è qui',
   ground_waits: 'Collegamento perso: riprende da solo.',
   ground_give_up: 'Interrompi',
-  ground_how_fine: 'Quanto più fine di ora: {n} livelli',
+  ground_how_fine: 'L’immagine più fine che si tiene: {size} per pixel',
   ground_keep_area: "Salva quest'area",
   ground_keep: 'Salva',
   ground_add: 'Aggiungi MBTiles o GeoTIFF',

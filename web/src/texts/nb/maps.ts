@@ -160,7 +160,7 @@ export const maps = {
   ground_robot_is_here: 'Roboten er her',
   ground_waits: 'Forbindelsen er borte: det fortsetter av seg selv.',
   ground_give_up: 'Avbryt',
-  ground_how_fine: 'Hvor mye finere enn nå: {n} nivåer',
+  ground_how_fine: 'Det fineste bildet som beholdes: {size} per piksel',
   ground_keep_area: 'Ta vare på området',
   ground_keep: 'Ta vare på',
   ground_add: 'Legg til MBTiles eller GeoTIFF',
