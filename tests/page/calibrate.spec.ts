@@ -78,16 +78,27 @@ test('a calibration is begun from the page, and HOLD ends it without a change', 
 });
 
 test('a whole calibration is kept, which is said, and acts', async ({ page, station }) => {
-  test.setTimeout(300_000);
+  test.setTimeout(540_000);
   await open_page(page, station.url);
   await arm(page);
   await station.rest('POST', '/vehicle/move', { forward_m: 4, speed_mps: 0.6 });
   await expect(page.getByLabel('Activity')).toContainText('Done.', { timeout: 40_000 });
   await press(page, 'Calibrate the vehicle');
   const card = page.getByRole('region', { name: 'Calibrate' });
+  const keep = card.getByRole('button', { name: 'Keep' });
+  const ended = card.getByRole('alert');
   await card.getByRole('button', { name: 'Begin' }).click();
   await expect(card.getByRole('status')).toContainText(/step \d+ of \d+/);
-  await expect(card.getByRole('button', { name: 'Keep' })).toBeVisible({ timeout: 220_000 });
+  await expect(keep.or(ended).first()).toBeVisible({ timeout: 220_000 });
+  // On a busy machine the simulated base may be silent for longer than it may be: as in the field,
+  // it stands then, says so, and is begun again.
+  if (await ended.isVisible()) {
+    await expect(ended).toContainText('no word from the base');
+    await press(page, 'Close');
+    await arm(page);
+    await card.getByRole('button', { name: 'Begin' }).click();
+  }
+  await expect(keep).toBeVisible({ timeout: 220_000 });
   await card.getByText('What the figures mean').click();
   await expect(card).toContainText('more is shorter stops');
   await expect(card).toContainText('Discard: it drives as before.');
