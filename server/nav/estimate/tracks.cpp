@@ -15,8 +15,8 @@ using base::seconds;
 using std::chrono::milliseconds;
 
 constexpr base::Duration kStandsAfter = milliseconds(500);
-constexpr double kStill_m = 0.0015;    // two counts of a millimetre odometer
-constexpr double kCrept_m = 0.0004;    // less than one of them, by one track
+constexpr double kStill_m = 0.0015;  // two counts of a millimetre odometer
+constexpr double kCrept_m = 0.0004;  // less than one of them, by one track
 constexpr double kCreep_s = 2.0;
 constexpr double kFastest_mps = 15.0;  // more is a damaged count, not a motion
 constexpr double kMaxGap_s = 2.0;      // of odometry that may still be carried over
