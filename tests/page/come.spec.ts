@@ -39,6 +39,13 @@ const begin = async (page: Page, station: Station): Promise<void> => {
 };
 
 const card_of = (page: Page) => page.getByRole('region', { name: 'Come to me' });
+/** @return the card */
+const call_it = async (page: Page) => {
+  await press(page, 'Come to me');
+  await press(page, 'Come here');
+  await expect(card_of(page)).toContainText('Comes to you');
+  return card_of(page);
+};
 const mode_of = async (station: Station): Promise<string> =>
   (await station.rest<{ mode: string }>('GET', '/vehicle')).mode;
 
@@ -88,10 +95,7 @@ test('a phone that walks away is followed, and “Stop here” ends it', async (
   await begin(page, station);
   const start = { ...station.sim.now };
   const silent = await phone(context, north_of(start, 9), 3);
-  await press(page, 'Come to me');
-  await press(page, 'Come here');
-  const card = card_of(page);
-  await expect(card).toContainText('Comes to you');
+  const card = await call_it(page);
   silent();
   for (let k = 1; k <= 10; k += 1) {
     const at = north_of(start, 9 + 0.5 * k);
@@ -112,9 +116,7 @@ test('a page that is put away makes the robot stand, and says so', async ({
 }) => {
   await begin(page, station);
   const silent = await phone(context, north_of(station.sim.now, 16), 3);
-  await press(page, 'Come to me');
-  await press(page, 'Come here');
-  await expect(card_of(page)).toContainText('Comes to you');
+  await call_it(page);
   await page.evaluate(() => {
     Object.defineProperty(document, 'visibilityState', { value: 'hidden' });
     document.dispatchEvent(new Event('visibilitychange'));
@@ -188,10 +190,7 @@ test('a phone that becomes less sure does not end it', async ({ page, context, s
   await begin(page, station);
   const me = north_of(station.sim.now, 16);
   let silent = await phone(context, me, 3);
-  await press(page, 'Come to me');
-  await press(page, 'Come here');
-  const card = card_of(page);
-  await expect(card).toContainText('Comes to you');
+  const card = await call_it(page);
   silent();
   silent = await phone(context, me, 9);
   await page.waitForTimeout(5000);
@@ -215,5 +214,12 @@ test('my place becomes a point of the mission, and is undone', async ({
   await expect(page.getByText('Added where your phone is, within 2.5 m.')).toBeVisible();
   await press(page, 'Undo');
   await expect(items(page)).toHaveCount(0);
+
+  // And is taken for coordinates, with no card and no other map for it.
+  await tab(page, 'Drive');
+  await press(page, 'Go to coordinates…');
+  await press(page, 'My place');
+  await expect(page.getByRole('dialog').getByRole('textbox')).toHaveValue(/^58\.\d{7}, 26\.\d{7}$/);
+  await expect(card_of(page)).toHaveCount(0);
   silent();
 });

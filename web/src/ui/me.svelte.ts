@@ -30,6 +30,7 @@ const FIRST_FIX_MS = 15_000;
 const LOOK_EVERY_MS = 200;
 
 export class MyPlace {
+  /** Its card is. */
   open = $state(false);
   /** It is told where this phone is. */
   coming = $state(false);
@@ -68,13 +69,17 @@ export class MyPlace {
   }
 
   toggle(): void {
-    if (this.open) this.close();
-    else this.#look();
+    if (this.open) {
+      this.close();
+      return;
+    }
+    this.open = true;
+    this.#look();
   }
 
   close(): void {
     if (this.coming || this.#asking) this.stand(say('me_closed'));
-    for (const end of this.#ends.splice(0)) end();
+    this.#look_away();
     this.open = false;
     this.ended = null;
   }
@@ -107,8 +112,7 @@ export class MyPlace {
 
   /** The first good place; or why there is none. */
   async first(): Promise<Fix | string> {
-    const was_open = this.open;
-    if (!was_open) this.#look();
+    this.#look();
     const until_ms = this.#calls.now_ms() + FIRST_FIX_MS;
     try {
       for (;;) {
@@ -119,12 +123,16 @@ export class MyPlace {
         await new Promise((done) => setTimeout(done, LOOK_EVERY_MS));
       }
     } finally {
-      if (!was_open) this.close();
+      if (!this.open) this.#look_away();
     }
   }
 
+  #look_away(): void {
+    for (const end of this.#ends.splice(0)) end();
+  }
+
   #look(): void {
-    this.open = true;
+    if (this.#ends.length > 0) return;
     this.#me = [];
     this.#none = this.#calls.impossible;
     this.now_ms = this.#calls.now_ms();
