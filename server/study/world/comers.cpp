@@ -38,7 +38,7 @@ double nears_mps(const std::vector<world::Vec2>& outline, world::Vec2 place,
     nearest_m = length(place - at);
     nearest = at;
   }
-  if (nearest_m <= 0.0) return std::hypot(moves.linear_mps, moves.angular_radps);
+  if (nearest_m <= 0.0) return 0.0;
   const world::Vec2 at_mps{moves.linear_mps - moves.angular_radps * nearest.y,
                            moves.angular_radps * nearest.x};
   return dot(at_mps, place - nearest) / nearest_m;

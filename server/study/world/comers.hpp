@@ -13,7 +13,7 @@ namespace roverd::study {
 double set_out_s(const sim::world::Thing& who, double now_s);
 
 /// How fast the nearest place of a body's edge comes nearer to a place outside of it; negative: it
-/// goes away. @param outline corners in B, in turn. @param place in B
+/// goes away; 0 on the edge itself. @param outline corners in B, in turn. @param place in B
 double nears_mps(const std::vector<sim::world::Vec2>& outline, sim::world::Vec2 place,
                  const base::BodyTwist& moves) noexcept;
 
