@@ -6,6 +6,8 @@
 namespace roverd::cloud {
 namespace {
 
+constexpr float kLeastRange_m = 1e-4F;
+
 Vec3 plus(const Vec3& a, const Vec3& b) noexcept {
   return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
 }
@@ -113,8 +115,8 @@ Eye::Seen Eye::look_at(const Cloud& cloud, bool optical, const Stand& stand,
     Vec3 p{f32_at(at), f32_at(at + 4), f32_at(at + 8)};
     if (optical) p = {p[2], -p[0], -p[1]};
     const float range_m = norm(p);
-    // NaN, infinity, and the camera itself.
-    if (!(range_m > 0.0F && range_m < 1e6F)) {
+    // NaN, infinity, and the camera itself: nearer than this a point has no direction.
+    if (!(range_m > kLeastRange_m && range_m < 1e6F)) {
       ++seen.missing;
       continue;
     }

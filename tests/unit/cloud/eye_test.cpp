@@ -64,6 +64,16 @@ TEST(CloudEye, ACloudIsTakenAsItIsOrTurnedOutOfOpticalAxes) {
   EXPECT_FALSE(turned.sight.good);
 }
 
+//   A length so small that, turned, it is 0: what would be divided by it has no direction.
+TEST(CloudEye, APointWithoutDirectionIsMissingAndMakesNoPoint) {
+  Header posed = header_of(1);
+  posed.pose = base::Mount{0.1, 0.2, 0.3, 0.4, 0.5, 0.6};
+  const Look seen(cloud_frame(posed, {2.7e-23F, 2.7e-23F, 2e-24F, 3.0F, 0.0F, 0.0F}));
+  EXPECT_EQ(seen.seen.missing, 1U);
+  ASSERT_EQ(seen.sight.points.size(), 1U);
+  EXPECT_TRUE(std::isfinite(seen[0].x_m));
+}
+
 TEST(CloudEye, ADepthImageIsSeenThroughItsLens) {
   //  u  0     1     2          f = 100, c = (1, 0.5)
   const std::vector<std::uint16_t> pixels{1000, 2000, 0,  //
