@@ -73,9 +73,9 @@ double Estimator::map_floor_rad() const noexcept {
   return health_.by_map && map_is_fresh() ? std::hypot(kMapFloor_rad, map_yaw_sigma_rad_) : 0.0;
 }
 
-/// Satellites that need no help: fixed, and heard of just now.
+/// Satellites that need no help: fixed, heard of just now, and since a person said where it stands.
 bool Estimator::satellites_lead() const noexcept {
-  return !health_.by_map && drift_.sigma_m <= 0.0 && last_satellites_ &&
+  return !health_.by_map && !placed_ && drift_.sigma_m <= 0.0 && last_satellites_ &&
          now_ - *last_satellites_ < kSatellitesFresh;
 }
 

@@ -320,6 +320,27 @@ TEST(EstimatorPlace, WrongSatellitesInTheHallAreNotBelieved) {
   EXPECT_LT(m.fastest_mps, 0.1);
 }
 
+//   The satellites were there a second ago; then a person says where it stands, 0.3 m off. What
+//   the map says beside that is no word of theirs about its anchor.
+TEST(EstimatorPlace, ATapAfterTheLastSatelliteTeachesNothingOfTheAnchor) {
+  Mapped m;
+  m.d.speed_mps = 1.0;
+  m.map = false;
+  m.run(20.0);
+  m.d.speed_mps = 0.0;
+  m.run(2.0);
+  m.d.gnss = false;
+  m.run(0.5);
+  const auto& frame = *m.d.estimator.frame();
+  const base::EnuPoint at = frame.to_local(m.d.pose()->global);
+  m.d.estimator.place(base::EnuPoint{at.east_m - 0.22, at.north_m + 0.2}, std::nullopt);
+  m.map = true;
+  m.run(5.0);
+  EXPECT_LT(m.d.position_error_m(), 0.03);
+  EXPECT_EQ(m.d.pose()->source, "map+odometry");
+  EXPECT_EQ(m.d.estimator.health().map_offset.east_m, 0.0);
+}
+
 TEST(EstimatorPlace, AWrongPlaceInTheMapIsRefusedWhileSatellitesLead) {
   Mapped m;
   m.d.speed_mps = 1.0;
