@@ -15,9 +15,13 @@
 #include "base/log.hpp"
 #include "base/time.hpp"
 #include "maps/lay.hpp"
+#include "maps/solid.hpp"
+#include "nav/cells/map_file.hpp"
 #include "nav/chart/map.hpp"
 #include "nav/chart/scan.hpp"
+#include "nav/mapping/clouds.hpp"
 #include "nav/mapping/mapper.hpp"
+#include "nav/place/cell_tracker.hpp"
 #include "supervise/urgency.hpp"
 
 namespace roverd {
@@ -32,6 +36,8 @@ constexpr double kStep_rad = 0.03;
 constexpr double kSure_m = 0.5;
 constexpr double kSeenEvery_m = 0.5;
 constexpr std::size_t kMostSeen = 4000;
+/// Of a shorter drive the third dimension is too thin to find the way in.
+constexpr std::size_t kFewClouds = 5;
 constexpr double kUnheard_s = 3.0;
 constexpr double kBetter_s = 1.0;  ///< so long a better sensor is waited for
 /// Of what a lidar sees in all heights so much says where it is, and 20,000 such scans are 0.4 GB.
@@ -56,12 +62,26 @@ std::optional<base::Pose> by_satellites(const base::Snapshot* state) {
   return state->pose;
 }
 
+/// As a file. Empty: no lidar of several rows saw enough. Unavailable: given up.
+base::Result<std::vector<std::uint8_t>> solid_of(const nav::mapping::Clouds& clouds,
+                                                 const std::vector<nav::chart::Pose2>& path,
+                                                 const nav::mapping::GiveUp& give_up) {
+  if (clouds.size() < kFewClouds) return {};
+  const auto cells = clouds.laid(path, maps::kSolidCell_m, give_up);
+  if (cells) return nav::cells::write_map(*cells);
+  if (cells.error().code == base::Code::Invalid) return {};
+  return tl::unexpected<base::Error>(cells.error());
+}
+
 }  // namespace
 
 struct MapMaker::Drive {
   nav::mapping::Mapper mapper;
+  nav::mapping::Clouds clouds;
   nav::sense::PoseHistory history;
-  std::string eye;  ///< the sensor that is looked through
+  std::string eye;    ///< the sensor that is looked through
+  std::string lidar;  ///< the one whose clouds are kept
+  bool clouds_full = false;
   std::optional<base::Time> taken;
   const base::Time begun = base::steady_now();
   base::Time heard = base::steady_now();  ///< when the last scan came that could be laid
@@ -217,7 +237,9 @@ base::Result<maps::About> MapMaker::draw(const Keep& keep) {
     const auto at = path[s.scan] * s.since;
     seen.push_back({{at.x_m, at.y_m}, s.at, s.sigma_m});
   }
-  return keep(maps::Made{std::move(*map), maps::laid(seen)});
+  auto solid = solid_of(drive.clouds, path, ends);
+  if (!solid) return tl::unexpected<base::Error>(solid.error());
+  return keep(maps::Made{std::move(*map), maps::laid(seen), std::move(*solid)});
 }
 
 std::optional<maps::Making> MapMaker::progress() const {
@@ -257,7 +279,9 @@ void MapMaker::work(Drive& drive) {
   moved_.take(drive.moved);
   for (const auto& o : drive.moved) drive.history.push(o);
   for (const auto& sight : drive.sights) {
-    if (!drive.full && !stop_) look(drive, *sight);
+    if (drive.full || stop_) continue;
+    look(drive, *sight);
+    if (!drive.full) look_at_rows(drive, *sight);
   }
   if (!drive.full) tell_silence(drive);
 }
@@ -316,6 +340,33 @@ void MapMaker::look(Drive& drive, const base::Sight& sight) {
   told_->scans = drive.scans;
   told_->way_m = drive.way_m;
   if (!added) told_->trouble = added.error().detail;
+}
+
+/// The third dimension: a cloud now and then, hung on the last scan.
+void MapMaker::look_at_rows(Drive& drive, const base::Sight& sight) {
+  if (drive.scans == 0 || drive.clouds_full || !drive.clouds.wants(drive.way_m)) return;
+  if (!drive.lidar.empty() && drive.lidar != sight.sensor) return;
+  const auto mount = mounts_.find(sight.sensor);
+  if (mount == mounts_.end() || !nav::place::has_rows(sight)) return;
+  const auto cloud = nav::place::cloud_of(sight, mount->second, drive.history);
+  const auto odometry = cloud ? drive.history.at(cloud->stamp) : std::nullopt;
+  if (!odometry) return;
+  drive.lidar = sight.sensor;
+  const base::Mount& m = mount->second;
+  const auto added = drive.clouds.add(
+      cloud->points,
+      {drive.scans - 1,
+       inverse(*drive.last) * *odometry,
+       cloud->lie,
+       {static_cast<float>(m.x_m), static_cast<float>(m.y_m), static_cast<float>(m.z_m)},
+       drive.way_m});
+  if (!added) {
+    drive.clouds_full = true;
+    return tell_trouble("the plane goes on, no more is taken of the heights: " +
+                        added.error().detail);
+  }
+  const std::lock_guard lock(told_mutex_);
+  if (told_) told_->clouds = drive.clouds.size();
 }
 
 }  // namespace roverd

@@ -2,7 +2,7 @@
 // Drive by hand, get a map: what the scanner sees and how the body moves is laid together on a
 // thread of its own, and neither control nor the search for the place waits for it.
 //
-//   SenseLoop ─sights, odometry─▶ inbox (bounded, the oldest goes) ─▶ Mapper
+//   SenseLoop ─sights, odometry─▶ inbox (bounded, the oldest goes) ─▶ Mapper ◀─hang on it─ Clouds
 //                    robot.snapshot() ─where the satellites see it─────┘
 //
 // A scan that moved by less than a hand from the one before says nothing new and is left out: who
@@ -69,6 +69,7 @@ class MapMaker {
   void run(Drive& drive) noexcept;
   void work(Drive& drive);
   void look(Drive& drive, const base::Sight& sight);
+  void look_at_rows(Drive& drive, const base::Sight& sight);
   void tell_silence(Drive& drive);
   void tell_trouble(const std::string& why);
   void stop_taking();

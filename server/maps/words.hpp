@@ -66,12 +66,15 @@ struct Edit {
 /// A map that is being driven.
 struct Making {
   std::size_t scans = 0;
+  std::size_t clouds =
+      0;  ///< of a lidar of several rows: from five on the map has three dimensions
   double way_m = 0.0;
   std::string trouble;  ///< why nothing more is taken; empty: it goes on
 };
 struct Made {
   nav::chart::OccupancyMap map;
-  std::optional<Anchor> anchor;  ///< where the satellites were good on the way
+  std::optional<Anchor> anchor;       ///< where the satellites were good on the way
+  std::vector<std::uint8_t> solid{};  ///< its third dimension as a PCD file; empty: it has none
 };
 
 /// What is empty stays.

@@ -331,6 +331,7 @@ TEST_F(MapsApi, AMapIsDrivenAndKept) {
   ASSERT_EQ(call("POST", "/maps/start").status, 200u);
   EXPECT_EQ(call("POST", "/maps/start").status, 409u);
   EXPECT_EQ(call("GET", "/maps").body["making"]["way_m"], 3.4);
+  EXPECT_EQ(call("GET", "/maps").body["making"]["clouds"], 3);
   EXPECT_EQ(call("POST", "/maps/stop", Json{{"name", ""}}).status, 422u);
   EXPECT_EQ(call("POST", "/maps/stop", Json{{"discard", 1}}).status, 422u);
   const auto made = call("POST", "/maps/stop", Json{{"name", "barn"}});

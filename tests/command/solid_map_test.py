@@ -3,9 +3,10 @@
 itself in it by a lidar of sixteen rows; judged by where the simulator says it was."""
 
 import math
+import struct
 import sys
 
-from place_test import HALF, MAP, WALLS, Hall
+from place_test import HALF, MAP, METRE_LAT, METRE_LON, START, WALLS, Hall
 from seeing import HEARS_TOP_AND_FRONT, TOP_AND_FRONT, SeeingRobot
 from station import check, run_cases, until
 
@@ -30,6 +31,20 @@ def draw_cloud(folder):
     head = f"VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH {len(points)}\nHEIGHT 1\n" \
            f"VIEWPOINT 0 0 0 1 0 0 0\nPOINTS {len(points)}\nDATA ascii\n"
     (folder / "hall.pcd").write_text(head + "".join("%.3f %.3f %.3f\n" % p for p in points))
+
+
+class Barn(Hall):
+    """Of which nobody has a map yet, and satellites are heard."""
+
+    def __init__(self):
+        SeeingRobot.__init__(self, {"name": "barn", "ground": {"grass_m": 0.0}, "things": Hall.THINGS})
+
+    def prepare(self):
+        pass
+
+    def position_by(self, source):
+        position = self.rest.get("/vehicle")["position"]
+        return position is not None and (position["source"] or "").startswith(source)
 
 
 class SolidHall(Hall):
@@ -86,5 +101,79 @@ def is_told_when_it_was_carried():
         until("what is believed is there", 15, lambda: math.hypot(*hall.off()[:2]) < 0.1, 0.2)
 
 
+def heights_of(pcd):
+    """x, y and z of a file as roverd writes it: compressed, a column after the other."""
+    head, data = pcd.split(b"DATA binary_compressed\n", 1)
+    words = dict(line.split(" ", 1) for line in head.decode().splitlines() if " " in line)
+    names, count = words["FIELDS"].split(), int(words["POINTS"])
+    packed, size = struct.unpack("<II", data[:8])
+    plain = unpacked(data[8:8 + packed], size)
+    return [struct.unpack_from(f"<{count}f", plain, 4 * count * names.index(n)) for n in "xyz"]
+
+
+def unpacked(data, size):
+    """LZF."""
+    out, at = bytearray(), 0
+    while at < len(data):
+        control = data[at]
+        at += 1
+        if control < 32:
+            out += data[at:at + control + 1]
+            at += control + 1
+            continue
+        length = control >> 5
+        if length == 7:
+            length += data[at]
+            at += 1
+        back = ((control & 31) << 8) + data[at] + 1
+        at += 1
+        for _ in range(length + 2):
+            out.append(out[-back])
+    check(len(out) == size, f"{len(out)} of {size} bytes")
+    return bytes(out)
+
+
+def off_the_walls(anchor, xs, ys, zs):
+    """How far the cells that stand are from the faces of the walls; metres."""
+    yaw = math.radians(90 - anchor["heading_deg"])
+    east, north = (anchor["lon"] - START[1]) / METRE_LON, (anchor["lat"] - START[0]) / METRE_LAT
+    for x, y, z in zip(xs, ys, zs):
+        if z > 0.4:
+            e, n = east + math.cos(yaw) * x - math.sin(yaw) * y, north + math.sin(yaw) * x + math.cos(yaw) * y
+            yield min(abs(to_segment(e, n, *wall) - HALF) for wall in WALLS)
+
+
+def to_segment(x, y, ax, ay, bx, by):
+    along = ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / ((bx - ax) ** 2 + (by - ay) ** 2)
+    along = min(1.0, max(0.0, along))
+    return math.hypot(x - ax - along * (bx - ax), y - ay - along * (by - ay))
+
+
+def is_made_by_a_drive():
+    """a drive by satellites gives a map in three dimensions; without them the robot drives by it"""
+    with Barn() as barn:
+        barn.sees("front", "top")
+        until("the satellites are there", 30, lambda: barn.position_by("gnss"), 0.2)
+        barn.rest.do("POST", "/maps/start")
+        barn.mission([(2, 2), (8, 2), (9, 4.5), (9.5, 2)])
+        barn.watch(200, lambda: barn.rest.get("/execution")["state"] == "finished")
+        making = barn.rest.get("/maps")["making"]
+        check(making["clouds"] >= 12, f"a cloud each metre: {making}")
+        made = barn.rest.do("POST", "/maps/stop", {"name": "barn"})
+        check(made["solid"] and made["anchor"] is not None, f"it was made: {made}")
+        x, y, z = heights_of(barn.rest.call("GET", f"/maps/{made['id']}/export?format=pcd")[2])
+        low = sum(1 for h in z if abs(h) < 0.1)
+        up = sorted(off_the_walls(made["anchor"], x, y, z))
+        print(f"# {len(z)} cells, {low} on the ground, {len(up)} upright: {up[len(up) // 2]:.3f} m off the walls "
+              f"by half, {up[len(up) * 95 // 100]:.3f} m by 95 in 100; up to {max(z):.2f} m")
+        check(low > 500 and len(up) > 1000 and 2.0 < max(z) < 2.7, "ground, and walls of 2.5 m")
+        check(up[len(up) // 2] < 0.08 and up[len(up) * 95 // 100] < 0.2, "they stand where the walls do")
+        barn.control.ask({"fault": {"gnss_outage": True}})
+        barn.rest.do("POST", f"/maps/{made['id']}/use")
+        until("the map leads", 20, lambda: barn.position_by("map"), 0.2)
+        barn.drives_rightly()
+        check(barn.truth()["contacts"] == 0, "it touched nothing")
+
+
 if __name__ == "__main__":
-    sys.exit(run_cases([drives_by_the_cloud, is_found_without_a_word, is_told_when_it_was_carried]))
+    sys.exit(run_cases([is_made_by_a_drive, drives_by_the_cloud, is_found_without_a_word, is_told_when_it_was_carried]))

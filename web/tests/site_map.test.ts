@@ -2,26 +2,28 @@ import { describe, expect, it } from 'vitest';
 
 import { distance_m, offset_between, offset_from } from '../src/model/geo';
 import {
+  FORBIDDEN_CELL,
+  FREE_CELL,
+  OCCUPIED_CELL,
+  read_cells,
+  UNKNOWN_CELL,
+} from '../src/model/site_cells';
+import {
   add_edit,
   allow,
   change_of,
   change_ring,
   corners,
-  FORBIDDEN_CELL,
-  FREE_CELL,
   in_map,
   lies_anywhere,
   made_so_far,
-  OCCUPIED_CELL,
   on_earth,
   name_of_files,
   pair_of,
   place_of_map,
   place_words,
-  read_cells,
   remove_edit,
   seen_since,
-  UNKNOWN_CELL,
   why_not_save,
   type MapPlace,
   type SiteDraft,
@@ -198,10 +200,13 @@ describe('changes by hand', () => {
 
 describe('a map that is being driven', () => {
   it('tells how far it is', () => {
-    const making = { scans: 1, way_m: 0, trouble: null };
+    const making = { scans: 1, clouds: 0, way_m: 0, trouble: null };
     expect(made_so_far(making)).toBe('A map is being made: 0.0 cm driven, 1 scan.');
     expect(made_so_far({ ...making, scans: 212, way_m: 41.26 })).toBe(
       'A map is being made: 41.3 m driven, 212 scans.',
+    );
+    expect(made_so_far({ ...making, scans: 212, clouds: 41, way_m: 41.26 })).toBe(
+      'A map is being made: 41.3 m driven, 212 scans, 41 clouds for its heights.',
     );
   });
 });

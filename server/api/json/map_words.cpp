@@ -50,6 +50,7 @@ Json map_json(const maps::About& a, const MapsNow& now, bool whole) {
 Json making_json(const std::optional<maps::Making>& making) {
   if (!making) return nullptr;
   return {{"scans", making->scans},
+          {"clouds", making->clouds},
           {"way_m", std::round(making->way_m * 10.0) / 10.0},
           {"trouble", making->trouble.empty() ? Json(nullptr) : Json(making->trouble)}};
 }

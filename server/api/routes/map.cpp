@@ -227,7 +227,7 @@ Handler stop_making(const ContextPtr& context) {
             return Response{http::status::no_content, 11};
           }
           const auto about = door.finish_making([&](const maps::Made& made) {
-            return door.shelf->add(what.name, made.map, made.anchor, now);
+            return door.shelf->add(what.name, made.map, made.anchor, now, made.solid);
           });
           if (!about) return problem(about.error());
           Response response = map_response(*context, http::status::created, *about);

@@ -9,6 +9,7 @@
 #include "base/angle.hpp"
 #include "nav/cells/cell_map.hpp"
 #include "nav/chart/carrier.hpp"
+#include "nav/chart/stood.hpp"
 #include "nav/sense/mount.hpp"
 
 namespace roverd::nav::place {
@@ -24,17 +25,6 @@ constexpr double kSearch_rad = 0.1;
 constexpr double kMostSearch_m = 1.0;  // around what is told (align.hpp is tried so far)
 constexpr double kMostSearch_rad = 0.26;
 constexpr double kGate = 16.3;  // 99.9 % of three
-
-/// X_MB with the body as it lies.
-Eigen::Isometry3d stood(const Pose2& pose, double z_m, const sense::Lie3& lie) {
-  Eigen::Isometry3d x = Eigen::Isometry3d::Identity();
-  x.translation() = Vector3d(pose.x_m, pose.y_m, z_m);
-  x.linear() = (Eigen::AngleAxisd(pose.yaw_rad, Vector3d::UnitZ()) *
-                Eigen::AngleAxisd(-lie.pitch_rad, Vector3d::UnitY()) *
-                Eigen::AngleAxisd(lie.roll_rad, Vector3d::UnitX()))
-                   .toRotationMatrix();
-  return x;
-}
 
 Pose2 in_plane(const Eigen::Isometry3d& x) {
   const Vector3d ahead = x.linear().col(0);
@@ -58,6 +48,15 @@ Vector3d between(const Pose2& from, const Pose2& to) {
 }
 
 }  // namespace
+
+bool has_rows(const base::Sight& sight) noexcept {
+  constexpr std::size_t kLooks = 64;
+  const std::size_t n = std::min(kLooks, sight.points.size());
+  for (std::size_t i = 1; i < n; ++i) {
+    if (sight.points[i].ring != sight.points[0].ring) return true;
+  }
+  return false;
+}
 
 std::optional<Cloud> cloud_of(const base::Sight& sight, const base::Mount& mount,
                               const sense::PoseHistory& odometry, const CloudParams& p) {
@@ -181,7 +180,7 @@ void CellTracker::track(const Cloud& cloud, const Pose2& step, Told& told) {
   seen.add(cloud.points);
   cells::Alignment a;
   if (cloud.points.size() >= kFewPoints) {
-    a = lay(cells::Relief(seen), stood(now_.pose, z_m_, cloud.lie));
+    a = lay(cells::Relief(seen), chart::stood(now_.pose, z_m_, cloud.lie));
   }
   const Pose2 at = in_plane(a.x_ts);
   told.agreement.explained = a.overlap;

@@ -39,6 +39,9 @@ struct CloudParams {
   double farthest_m = 40.0;  ///< rings lie too far apart there
 };
 
+/// It looks along several rows: a lidar whose clouds say where the robot is.
+bool has_rows(const base::Sight& sight) noexcept;
+
 /// Hits only, each carried along the odometry to the stamp. Empty: the odometry does not reach it,
 /// the device says that its data are not good, or there is no hit. Pure.
 std::optional<Cloud> cloud_of(const base::Sight& sight, const base::Mount& mount,

@@ -33,16 +33,6 @@ base::PlacePhase phase_for_people(Phase p, bool fitted) noexcept {
   return base::PlacePhase::Lost;
 }
 
-/// It looks along several rows.
-bool has_rows(const base::Sight& sight) noexcept {
-  constexpr std::size_t kLooks = 64;
-  const std::size_t n = std::min(kLooks, sight.points.size());
-  for (std::size_t i = 1; i < n; ++i) {
-    if (sight.points[i].ring != sight.points[0].ring) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 base::PlaceState Whereabouts::use(std::shared_ptr<const MapInUse> map, base::Time now,

@@ -16,6 +16,7 @@
 
 #include "base/angle.hpp"
 #include "base/time.hpp"
+#include "nav/cells/map_file.hpp"
 #include "unit/place/shed.hpp"
 
 namespace roverd {
@@ -50,7 +51,31 @@ class MapMakerTest : public ::testing::Test {
     nav::sense::Odometry o;
     o.stamp = now;
     o.pose = odometry_;
-    maker_.take({sight}, {o});
+    std::vector<std::shared_ptr<const base::Sight>> sights{sight};
+    if (lidar_) sights.push_back(seen_by_lidar(now));
+    maker_.take(sights, {o});
+  }
+  /// Five rows a metre above the ground: four on the walls, one on the ground two metres around.
+  std::shared_ptr<const base::Sight> seen_by_lidar(base::Time now) const {
+    auto sight = std::make_shared<base::Sight>();
+    sight->sensor = "top";
+    sight->stamp = now;
+    for (int i = 0; i < 360; ++i) {
+      const double angle = base::rad_from_deg(i);
+      const double range = tests::range_m(walls_, at_.x_m, at_.y_m, at_.yaw_rad + angle);
+      for (std::uint8_t ring = 0; ring < 5; ++ring) {
+        const double flat_m = ring == 0 ? 1.5 + 0.1 * (i % 10) : range;
+        if (range <= 0.0 || flat_m > range) continue;
+        base::SightPoint p;
+        p.x_m = static_cast<float>(flat_m * std::cos(angle));
+        p.y_m = static_cast<float>(flat_m * std::sin(angle));
+        p.z_m = ring == 0 ? -1.0F : 0.4F * static_cast<float>(ring) - 1.0F;
+        p.ring = ring;
+        p.echo = base::Echo::Hit;
+        sight->points.push_back(p);
+      }
+    }
+    return sight;
   }
   /// So many scans have been laid together; 20 s.
   bool laid(std::size_t scans) {
@@ -71,13 +96,14 @@ class MapMakerTest : public ::testing::Test {
   }
 
   bool full_ = false;  ///< the shelf
+  bool lidar_ = false;
   std::optional<maps::Made> made_;
   const std::vector<tests::Segment> walls_ = tests::shed();
   Pose2 at_{2.5, 3.0, 0.1};
   Pose2 odometry_{5.0, -3.0, 1.0};
   double time_s_ = 100.0;
   robot::Robot robot_{robot::Config{}};
-  MapMaker maker_{robot_, {{"front", kMount}}};
+  MapMaker maker_{robot_, {{"front", kMount}, {"top", {.z_m = 1.0}}}, {"front", "top"}};
 };
 
 TEST_F(MapMakerTest, DrawsWhatWasSeenOnTheWay) {
@@ -116,6 +142,51 @@ TEST_F(MapMakerTest, DrawsWhatWasSeenOnTheWay) {
     hits += hit ? 1 : 0;
   }
   EXPECT_GE(hits, 22);  // of 27
+}
+
+TEST_F(MapMakerTest, ALidarOfSeveralRowsGivesItAThirdDimension) {
+  lidar_ = true;
+  ASSERT_TRUE(maker_.start());
+  for (std::size_t i = 1; i <= 30; ++i) {
+    step(0.2, 0.02);
+    ASSERT_TRUE(laid(i));
+  }
+  const auto kept = finish();
+  ASSERT_TRUE(kept) << kept.error().detail;
+  const auto cells = nav::cells::read_map(made_->solid, 0.2);
+  ASSERT_TRUE(cells) << cells.error().detail;
+  // What stands lies on the walls of the plane, at the heights of the rows.
+  const Pose2 x_wo = at_ * inverse(odometry_);
+  std::size_t stands = 0;
+  std::size_t on_wall = 0;
+  for (const nav::cells::Cell& c : cells->cells()) {
+    if (c.mean_m.z() < 0.3) continue;
+    const Pose2 p = x_wo * Pose2{c.mean_m.x(), c.mean_m.y(), 0.0};
+    ++stands;
+    for (const tests::Segment& w : walls_) {
+      const double ex = w.bx_m - w.ax_m;
+      const double ey = w.by_m - w.ay_m;
+      const double off = ((p.x_m - w.ax_m) * ey - (p.y_m - w.ay_m) * ex) / std::hypot(ex, ey);
+      if (std::abs(off) < 0.06) {
+        ++on_wall;
+        break;
+      }
+    }
+    EXPECT_LT(c.mean_m.z(), 1.7);
+  }
+  EXPECT_GT(stands, 300U);
+  EXPECT_GT(static_cast<double>(on_wall), 0.95 * static_cast<double>(stands));
+}
+
+TEST_F(MapMakerTest, OfAFewStepsThereIsThePlaneOnly) {
+  lidar_ = true;
+  ASSERT_TRUE(maker_.start());
+  for (std::size_t i = 1; i <= 5; ++i) {
+    step(0.2, 0.0);
+    ASSERT_TRUE(laid(i));
+  }
+  ASSERT_TRUE(finish());
+  EXPECT_TRUE(made_->solid.empty());
 }
 
 TEST_F(MapMakerTest, WithoutASightThereIsNoMapAndTheNextOneBeginsAnew) {

@@ -1,6 +1,7 @@
 #pragma once
 // A plan of straight walls, and a scanner that looks at them.
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -48,6 +49,18 @@ inline double range_m(const Plan& plan, double x, double y, double angle_rad) {
     const double along = (ex * (w.ay_m - y) - ey * (w.ax_m - x)) / det;
     const double part = (dx * (w.ay_m - y) - dy * (w.ax_m - x)) / det;
     if (along > 0.0 && part >= 0.0 && part <= 1.0) least = std::min(least, along);
+  }
+  return least;
+}
+
+inline double to_wall_m(const Plan& plan, double x, double y) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Wall& w : plan) {
+    const double ex = w.bx_m - w.ax_m;
+    const double ey = w.by_m - w.ay_m;
+    const double part = ((x - w.ax_m) * ex + (y - w.ay_m) * ey) / (ex * ex + ey * ey);
+    const double at = std::clamp(part, 0.0, 1.0);
+    least = std::min(least, std::hypot(x - w.ax_m - at * ex, y - w.ay_m - at * ey));
   }
   return least;
 }

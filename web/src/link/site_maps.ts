@@ -2,9 +2,8 @@
 
 import type { Answer } from '../model/answer';
 import { say } from '../model/say';
+import { MOST_CELLS, read_cells } from '../model/site_cells';
 import {
-  MOST_CELLS,
-  read_cells,
   type MapFiles,
   type SiteMap,
   type SiteMapCalls,

@@ -1,15 +1,8 @@
 // Draws the map of a place below everything else: what stands there is dark, free ground light, and
 // what nobody has seen a faint shade; and what a hand changes in it, each kind by its own pattern.
 
-import {
-  FORBIDDEN_CELL,
-  FREE_CELL,
-  OCCUPIED_CELL,
-  type EditKind,
-  type SiteCells,
-  type SiteEdit,
-  type SiteOnMap,
-} from '../model/site_map';
+import { FORBIDDEN_CELL, FREE_CELL, OCCUPIED_CELL, type SiteCells } from '../model/site_cells';
+import { type EditKind, type SiteEdit, type SiteOnMap } from '../model/site_map';
 import type { LatLon } from '../model/plan';
 import { stroke_cased, type Paint } from './canvas';
 import { is_dark, type Palette } from './palette';

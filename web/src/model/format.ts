@@ -136,6 +136,7 @@ export const said_in = (text: string, said: readonly string[]): boolean => {
 /** What is counted on the page. */
 export type Noun =
   | 'item'
+  | 'cloud'
   | 'scan'
   | 'corner'
   | 'point'

@@ -1,6 +1,7 @@
 // Maps of a place in the plane: where their cells lie on the earth, what a hand changes in them, and
 // the words for whether the robot knows its place in the one that is in use.
 
+import type { SiteCells } from './site_cells';
 import type { Answer } from './answer';
 import { accuracy, count, degrees_text, metres, sentence } from './format';
 import { offset_between, offset_from } from './geo';
@@ -50,6 +51,8 @@ export interface SiteMap {
 export interface SiteMaking {
   /** Taken so far; who stands adds none. */
   readonly scans: number;
+  /** Of a lidar of several rows: from five on it will have a third dimension. */
+  readonly clouds: number;
   readonly way_m: number;
   /** What is wrong; null: it goes on. */
   readonly trouble: string | null;
@@ -79,15 +82,6 @@ export interface SiteChange {
   }[];
 }
 
-/** The cells of a map, thinned where there are too many to draw. */
-export interface SiteCells {
-  readonly columns: number;
-  readonly rows: number;
-  /** So many of the map's cells are one of these, each way; counted from the lower left. */
-  readonly thinned: number;
-  /** From the upper left, row by row, as UNKNOWN_CELL and the others. */
-  readonly cells: Uint8Array;
-}
 export interface SiteOnMap {
   readonly map: SiteMap;
   readonly cells: SiteCells;
@@ -120,62 +114,6 @@ export interface SiteMapView {
   /** What is drawn of changes that are not saved. */
   show_site_edits(edits: readonly SiteEdit[]): void;
 }
-
-export const UNKNOWN_CELL = 0;
-export const FREE_CELL = 1;
-export const OCCUPIED_CELL = 2;
-export const FORBIDDEN_CELL = 3;
-/** What a page asks for at most. */
-export const MOST_CELLS = 1_000_000;
-
-/** As map servers keep them: black is a wall, almost white is free, the grey between is not known;
- * but for one grey of the robot's own. */
-const OCCUPIED_TO = 89;
-const FORBIDDEN = 100;
-const FREE_FROM = 206;
-
-const kind_of = (byte: number): number =>
-  byte <= OCCUPIED_TO
-    ? OCCUPIED_CELL
-    : byte >= FREE_FROM
-      ? FREE_CELL
-      : byte === FORBIDDEN
-        ? FORBIDDEN_CELL
-        : UNKNOWN_CELL;
-
-/** The numbers of a picture's head, after "P5": three of them, between blanks and comments. */
-const head_of = (bytes: Uint8Array): readonly [figures: number[], end: number] | null => {
-  const figures: number[] = [];
-  let at = 2;
-  while (figures.length < 3) {
-    const from = at;
-    while (at < bytes.length && /\s/.test(String.fromCharCode(bytes[at] ?? 0))) at += 1;
-    if (bytes[at] === 0x23) {
-      while (at < bytes.length && bytes[at] !== 0x0a) at += 1;
-      continue;
-    }
-    let value = 0;
-    const first = at;
-    for (; at - first < 6; at += 1) {
-      const digit = (bytes[at] ?? 0) - 0x30;
-      if (digit < 0 || digit > 9) break;
-      value = 10 * value + digit;
-    }
-    if (at === first || first === from) return null;
-    figures.push(value);
-  }
-  return [figures, at + 1];
-};
-
-/** A grey picture (PGM, P5) as cells. @return null: it is none, or has more than MOST_CELLS */
-export const read_cells = (bytes: Uint8Array, thinned: number): SiteCells | null => {
-  if (bytes[0] !== 0x50 || bytes[1] !== 0x35) return null;
-  const [figures, end] = head_of(bytes) ?? [[], 0];
-  const [columns = 0, rows = 0, most = 0] = figures;
-  const count = columns * rows;
-  if (count === 0 || count > MOST_CELLS || most !== 255 || bytes.length - end < count) return null;
-  return { columns, rows, thinned, cells: bytes.subarray(end, end + count).map(kind_of) };
-};
 
 const RAD = Math.PI / 180;
 
@@ -302,9 +240,13 @@ export const change_of = (draft: SiteDraft, before: SiteMap, at: Placed): SiteCh
   edits: draft.edits.map(({ kind, ring }) => ({ kind, polygon: ring.map((p) => in_map(at, p)) })),
 });
 
-/** "A map is being made: 12 m driven, 87 scans" */
-export const made_so_far = ({ scans, way_m }: SiteMaking): string =>
-  say('a_map_is_being_made_way_driven_scans', { way: metres(way_m), scans: count(scans, 'scan') });
+/** "A map is being made: 12 m driven, 87 scans, 11 clouds for its heights." */
+export const made_so_far = ({ scans, clouds, way_m }: SiteMaking): string => {
+  const plane = { way: metres(way_m), scans: count(scans, 'scan') };
+  return clouds === 0
+    ? say('a_map_is_being_made_way_driven_scans', plane)
+    : say('a_map_is_being_made_with_clouds', { ...plane, clouds: count(clouds, 'cloud') });
+};
 
 /** Whether the robot knows where it is in the map, as the interface tells it. */
 export interface MapPlace {

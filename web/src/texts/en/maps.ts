@@ -17,6 +17,9 @@ export const maps = {
   something_stands_there_that_the_map: 'Something stands there that the map does not show.',
   nothing_is_drawn: 'Nothing is drawn.',
   a_map_is_being_made_way_driven_scans: 'A map is being made: {way} driven, {scans}.',
+  a_map_is_being_made_with_clouds:
+    'A map is being made: {way} driven, {scans}, {clouds} for its heights.',
+  three_dimensions: '3D',
   what_it_sees_does_not_fit_just_now: 'What it sees does not fit just now.',
   not_sure_of_its_place_in_map: 'Not sure of its place in {map}',
   knows_its_place_in_map: 'Knows its place in {map}',

@@ -2,6 +2,7 @@
 
 export const words = {
   n_item: { one: '{n} item', other: '{n} items' },
+  n_cloud: { one: '{n} cloud', other: '{n} clouds' },
   n_scan: { one: '{n} scan', other: '{n} scans' },
   n_corner: { one: '{n} corner', other: '{n} corners' },
   n_point: { one: '{n} point', other: '{n} points' },

@@ -16,6 +16,9 @@ export const maps = {
   something_stands_there_that_the_map: 'Seal on midagi, mida kaart ei näita.',
   nothing_is_drawn: 'Midagi pole joonistatud.',
   a_map_is_being_made_way_driven_scans: 'Kaarti tehakse: sõidetud {way}, {scans}.',
+  a_map_is_being_made_with_clouds:
+    'Kaarti tehakse: sõidetud {way}, {scans}, kõrguste jaoks {clouds}.',
+  three_dimensions: '3D',
   what_it_sees_does_not_fit_just_now: 'Nähtu ei sobi praegu.',
   not_sure_of_its_place_in_map: 'Pole kindel oma kohas kaardil {map}',
   knows_its_place_in_map: 'Teab oma kohta kaardil {map}',

@@ -2,6 +2,7 @@
 
 export const words = {
   n_item: { one: '{n} punkt', other: '{n} punkti' },
+  n_cloud: { one: '{n} punktipilv', other: '{n} punktipilve' },
   n_scan: { one: '{n} skann', other: '{n} skanni' },
   n_corner: { one: '{n} nurk', other: '{n} nurka' },
   n_point: { one: '{n} punkt', other: '{n} punkti' },

@@ -16,6 +16,9 @@ export const maps = {
   something_stands_there_that_the_map: 'Siinä on jotain, mitä kartta ei näytä.',
   nothing_is_drawn: 'Mitään ei ole piirretty.',
   a_map_is_being_made_way_driven_scans: 'Karttaa tehdään: ajettu {way}, {scans}.',
+  a_map_is_being_made_with_clouds:
+    'Karttaa tehdään: ajettu {way}, {scans}, {clouds} korkeuksia varten.',
+  three_dimensions: '3D',
   what_it_sees_does_not_fit_just_now: 'Näkymä ei juuri nyt sovi.',
   not_sure_of_its_place_in_map: 'Ei ole varma paikastaan kartalla {map}',
   knows_its_place_in_map: 'Tietää paikkansa kartalla {map}',

@@ -2,6 +2,7 @@
 
 export const words = {
   n_item: { one: '{n} kohta', other: '{n} kohtaa' },
+  n_cloud: { one: '{n} pistepilvi', other: '{n} pistepilveä' },
   n_scan: { one: '{n} mittaus', other: '{n} mittausta' },
   n_corner: { one: '{n} kulma', other: '{n} kulmaa' },
   n_point: { one: '{n} piste', other: '{n} pistettä' },

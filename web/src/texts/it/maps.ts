@@ -17,6 +17,9 @@ export const maps = {
   something_stands_there_that_the_map: 'Lì c’è qualcosa che la mappa non mostra.',
   nothing_is_drawn: 'Nulla è disegnato.',
   a_map_is_being_made_way_driven_scans: 'Si sta facendo una mappa: percorsi {way}, {scans}.',
+  a_map_is_being_made_with_clouds:
+    'Si sta facendo una mappa: percorsi {way}, {scans}, {clouds} per le altezze.',
+  three_dimensions: '3D',
   what_it_sees_does_not_fit_just_now: 'Ciò che vede ora non combacia.',
   not_sure_of_its_place_in_map: 'Non sicuro del suo posto in {map}',
   knows_its_place_in_map: 'Sa il suo posto in {map}',

@@ -2,6 +2,7 @@
 
 export const words = {
   n_item: { one: '{n} elemento', other: '{n} elementi' },
+  n_cloud: { one: '{n} nuvola di punti', other: '{n} nuvole di punti' },
   n_scan: { one: '{n} scansione', other: '{n} scansioni' },
   n_corner: { one: '{n} vertice', other: '{n} vertici' },
   n_point: { one: '{n} punto', other: '{n} punti' },

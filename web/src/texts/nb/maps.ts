@@ -17,6 +17,8 @@ export const maps = {
   something_stands_there_that_the_map: 'Noe står der som kartet ikke viser.',
   nothing_is_drawn: 'Ingenting er tegnet.',
   a_map_is_being_made_way_driven_scans: 'Et kart lages: {way} kjørt, {scans}.',
+  a_map_is_being_made_with_clouds: 'Et kart lages: {way} kjørt, {scans}, {clouds} for høydene.',
+  three_dimensions: '3D',
   what_it_sees_does_not_fit_just_now: 'Det den ser passer ikke akkurat nå.',
   not_sure_of_its_place_in_map: 'Ikke sikker på stedet sitt i {map}',
   knows_its_place_in_map: 'Kjenner stedet sitt i {map}',

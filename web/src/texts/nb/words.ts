@@ -2,6 +2,7 @@
 
 export const words = {
   n_item: { one: '{n} punkt', other: '{n} punkter' },
+  n_cloud: { one: '{n} punktsky', other: '{n} punktskyer' },
   n_scan: { one: '{n} skann', other: '{n} skann' },
   n_corner: { one: '{n} hjørne', other: '{n} hjørner' },
   n_point: { one: '{n} punkt', other: '{n} punkter' },

@@ -1,0 +1,129 @@
+#include "nav/mapping/standing.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace roverd::nav::mapping {
+
+namespace {
+
+using cells::CellIndex;
+using cells::KeyTable;
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+constexpr double kSquare_m = 1.0;  // of the ground, whose lowest cell is asked
+constexpr double kStands_m = 0.3;  // over it
+constexpr double kBefore_m = 0.6;  // so long before its end a ray says nothing: it grazes walls
+constexpr double kThrough = 0.5;   // of a cell's edge: so near to its middle a ray goes through it
+constexpr int kEveryRay = 2;       // neighbours say the same
+constexpr std::uint16_t kFewPassed = 2;
+constexpr std::uint32_t kFewClouds = 3;
+
+void count(std::uint32_t cloud, std::uint32_t& last, std::uint16_t& times) noexcept {
+  if (last == cloud) return;
+  last = cloud;
+  if (times < UINT16_MAX) ++times;
+}
+
+/// The lowest that was met in squares.
+class Lowest {
+ public:
+  void put(const Vector3d& m) {
+    const auto fresh = static_cast<std::int32_t>(low_m_.size());
+    const std::int32_t at = table_.find_or_add(key(m, 0, 0), fresh);
+    if (at == fresh) low_m_.push_back(m.z());
+    double& low = low_m_[static_cast<std::size_t>(at)];
+    low = std::min(low, m.z());
+  }
+  /// In its square and those beside it.
+  double about(const Vector3d& m) const noexcept {
+    double low = m.z();
+    for (int dx = -1; dx <= 1; ++dx) {
+      for (int dy = -1; dy <= 1; ++dy) {
+        const std::int32_t at = table_.find(key(m, dx, dy));
+        if (at >= 0) low = std::min(low, low_m_[static_cast<std::size_t>(at)]);
+      }
+    }
+    return low;
+  }
+
+ private:
+  static std::uint64_t key(const Vector3d& m, int dx, int dy) noexcept {
+    CellIndex index;
+    (void)cells::index_of({m.x(), m.y(), 0.0}, kSquare_m, index);  // it is in a finer cell
+    return cells::key_of({index.x + dx, index.y + dy, 0});
+  }
+  KeyTable table_;
+  std::vector<double> low_m_;
+};
+
+}  // namespace
+
+void Standing::meet(std::uint32_t cloud, const cells::Cloud& points, const Isometry3d& x_mb) {
+  clouds_ = std::max(clouds_, cloud + 1);
+  cells::Cell one;
+  one.points = 1.0;
+  for (const Eigen::Vector3f& p : points) {
+    one.mean_m = x_mb * p.cast<double>();
+    CellIndex index;
+    if (!cells::index_of(one.mean_m, cell_m_, index)) continue;
+    const auto fresh = static_cast<std::int32_t>(met_.size());
+    const std::uint64_t key = cells::key_of(index);
+    const bool full = met_.size() >= cells::CellMap::kMaxCells;
+    const std::int32_t at = full ? table_.find(key) : table_.find_or_add(key, fresh);
+    if (at < 0) continue;
+    if (at == fresh) met_.emplace_back();
+    Met& met = met_[static_cast<std::size_t>(at)];
+    cells::merge(met.cell, one);
+    count(cloud, met.last, met.times);
+  }
+}
+
+Standing::Met* Standing::met_at(const Vector3d& m) noexcept {
+  CellIndex index;
+  if (!cells::index_of(m, cell_m_, index)) return nullptr;
+  const std::int32_t at = table_.find(cells::key_of(index));
+  return at < 0 ? nullptr : &met_[static_cast<std::size_t>(at)];
+}
+
+void Standing::pass(std::uint32_t cloud, const Vector3d& eye, const Vector3d& end) {
+  const double length_m = (end - eye).norm();
+  const Vector3d way = (end - eye) / length_m;
+  for (double r = cell_m_; r < length_m - kBefore_m; r += 0.5 * cell_m_) {
+    Met* met = met_at(eye + r * way);
+    // `last` says which cloud met it last of all; one that met it does not see through it either,
+    // but what it met is in `times`, which is weighed against this.
+    if (met == nullptr || met->through == cloud) continue;
+    const Vector3d to = met->cell.mean_m - eye;
+    if ((to - to.dot(way) * way).norm() < kThrough * cell_m_) {
+      count(cloud, met->through, met->passed);
+    }
+  }
+}
+
+void Standing::look_through(std::uint32_t cloud, const cells::Cloud& points, const Isometry3d& x_mb,
+                            const Vector3d& eye_m) {
+  const Vector3d eye = x_mb * eye_m;
+  for (std::size_t i = 0; i < points.size(); i += kEveryRay) {
+    pass(cloud, eye, x_mb * points[i].cast<double>());
+  }
+}
+
+cells::CellMap Standing::map() const {
+  Lowest lowest;
+  for (const Met& m : met_) lowest.put(m.cell.mean_m);
+  cells::CellMap out(cell_m_);
+  for (const Met& m : met_) {
+    if (clouds_ >= kFewClouds) {
+      if (m.times < 2) continue;
+      const bool seen_through = m.passed >= kFewPassed && m.passed > m.times;
+      const bool over_ground = m.cell.mean_m.z() - lowest.about(m.cell.mean_m) >= kStands_m;
+      if (seen_through && over_ground) continue;
+    }
+    out.add(m.cell);
+  }
+  return out;
+}
+
+}  // namespace roverd::nav::mapping
