@@ -169,7 +169,9 @@ api::MapDoor House::map_door(const Before& before) {
     making = false;
     return {};
   };
-  out.making = [this] { return making ? std::optional(maps::Making{12, 3, 3.44, ""}) : std::nullopt; };
+  out.making = [this] {
+    return making ? std::optional(maps::Making{12, 3, 3.44, ""}) : std::nullopt;
+  };
   out.placed = [this] {
     const std::int64_t id = map_taken;
     return id < 0 ? std::nullopt : std::optional(maps::Anchor{kStart, 90.0, 0.4, 2.0});
