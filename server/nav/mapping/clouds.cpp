@@ -154,60 +154,71 @@ base::Result<void> Clouds::add(std::span<const Eigen::Vector3f> points, const Cl
   return {};
 }
 
-base::Result<std::vector<Isometry3d>> Clouds::settled(std::span<const sense::Pose2> path,
-                                                      double cell_m, const GiveUp& give_up) const {
-  std::vector<Isometry3d> poses;
+/// By the odometry, and by the ground where it was seen from both.
+std::vector<Rise> Clouds::rises(std::span<const Isometry3d> poses) const {
   std::vector<Ground> grounds;
-  for (const Kept& c : clouds_) {
-    if (give_up && give_up()) return tl::unexpected(given_up());
-    const sense::Pose2 at = path[std::min(c.at.scan, path.size() - 1)] * c.at.since;
-    poses.push_back(chart::stood(at, 0.0, c.at.lie));
-    grounds.push_back(ground_of(c.points, poses.back()));
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    grounds.push_back(ground_of(clouds_[i].points, poses[i]));
   }
-  std::vector<Rise> rises;
+  std::vector<Rise> out;
   for (std::size_t i = 1; i < poses.size(); ++i) {
-    const double way_m = clouds_[i].at.way_m - clouds_[i - 1].at.way_m;
-    rises.push_back(
-        {i - 1, i, clouds_[i].at.lie.z_m - clouds_[i - 1].at.lie.z_m, kDrift_m + kDrift * way_m});
+    const CloudAt& at = clouds_[i].at;
+    const CloudAt& before = clouds_[i - 1].at;
+    out.push_back(
+        {i - 1, i, at.lie.z_m - before.lie.z_m, kDrift_m + kDrift * (at.way_m - before.way_m)});
     if (const auto rise = rise_between(grounds[i - 1], grounds[i])) {
-      rises.push_back({i - 1, i, *rise, kRise_m});
+      out.push_back({i - 1, i, *rise, kRise_m});
     }
     std::size_t again = 0;
     for (const std::size_t k : near_before(poses, i, kAgain_m)) {
       if (again == kMostAgain) break;
-      if (clouds_[i].at.way_m - clouds_[k].at.way_m < kAgainWay_m) continue;
+      if (at.way_m - clouds_[k].at.way_m < kAgainWay_m) continue;
       if (const auto rise = rise_between(grounds[k], grounds[i])) {
-        rises.push_back({k, i, *rise, kRise_m});
+        out.push_back({k, i, *rise, kRise_m});
         ++again;
       }
     }
   }
-  const std::vector<double> heights = levelled(poses.size(), rises);
-  for (std::size_t i = 0; i < poses.size(); ++i) poses[i].translation().z() = heights[i];
+  return out;
+}
 
+/// Where it lies on those before it that are near; where it does not fit them, it stays.
+Isometry3d Clouds::on_those_before(std::span<const Isometry3d> poses, std::size_t i,
+                                   double cell_m) const {
+  CellMap behind(cell_m);
+  auto near = near_before(poses, i, kBeside_m);
+  near.resize(std::min(near.size(), kMostBeside));
+  for (const std::size_t k : near) add_placed(behind, clouds_[k].points, poses[k]);
+  CellMap seen(cell_m);
+  seen.add(clouds_[i].points);
   cells::AlignParams params;
   params.coarse = false;
-  for (std::size_t i = 1; i < poses.size(); ++i) {
+  const auto laid = cells::align(cells::Relief(seen), cells::Relief(behind), poses[i], params);
+  const bool fits = laid.verdict == cells::Verdict::Good || laid.verdict == cells::Verdict::Loose;
+  return fits ? between(poses[i], laid) : poses[i];
+}
+
+base::Result<std::vector<Isometry3d>> Clouds::settled(std::span<const sense::Pose2> path,
+                                                      double cell_m, const GiveUp& give_up) const {
+  if (clouds_.empty() || path.empty()) {
+    return base::fail(base::Code::Invalid, "there is no cloud");
+  }
+  std::vector<Isometry3d> poses;
+  for (const Kept& c : clouds_) {
+    const sense::Pose2 at = path[std::min(c.at.scan, path.size() - 1)] * c.at.since;
+    poses.push_back(chart::stood(at, 0.0, c.at.lie));
+  }
+  const std::vector<double> heights = levelled(poses.size(), rises(poses));
+  for (std::size_t i = 0; i < poses.size(); ++i) poses[i].translation().z() = heights[i];
+  for (std::size_t i = 0; i < poses.size(); ++i) {
     if (give_up && give_up()) return tl::unexpected(given_up());
-    CellMap behind(cell_m);
-    auto near = near_before(poses, i, kBeside_m);
-    near.resize(std::min(near.size(), kMostBeside));
-    for (const std::size_t k : near) add_placed(behind, clouds_[k].points, poses[k]);
-    CellMap seen(cell_m);
-    seen.add(clouds_[i].points);
-    const auto laid = cells::align(cells::Relief(seen), cells::Relief(behind), poses[i], params);
-    if (laid.verdict == cells::Verdict::Good || laid.verdict == cells::Verdict::Loose) {
-      poses[i] = between(poses[i], laid);
-    }
+    if (i > 0) poses[i] = on_those_before(poses, i, cell_m);
   }
   return poses;
 }
 
 base::Result<CellMap> Clouds::laid(std::span<const sense::Pose2> path, double cell_m,
                                    const GiveUp& give_up) const {
-  if (clouds_.empty() || path.empty()) {
-    return base::fail(base::Code::Invalid, "there is no cloud");
-  }
   const auto poses = settled(path, cell_m, give_up);
   if (!poses) return tl::unexpected<base::Error>(poses.error());
   Standing standing(cell_m);

@@ -39,6 +39,14 @@ struct CloudAt {
   double way_m = 0.0;                               ///< driven until there
 };
 
+/// Two clouds that saw the same ground: how much higher b's body stands than a's.
+struct Rise {
+  std::size_t a = 0;
+  std::size_t b = 0;
+  double m = 0.0;
+  double sigma_m = 1.0;
+};
+
 class Clouds {
  public:
   /// More are refused: 240 MB, some two kilometres.
@@ -57,7 +65,7 @@ class Clouds {
   /// @return Invalid: there is no cloud, or nothing was seen twice; Unavailable: given up
   base::Result<cells::CellMap> laid(std::span<const sense::Pose2> path, double cell_m,
                                     const GiveUp& give_up = {}) const;
-  /// Where laid() puts the bodies, X_MB; of each cloud, in order. Unavailable: given up.
+  /// Where laid() puts the bodies, X_MB; of each cloud, in order. Errors as laid().
   base::Result<std::vector<Eigen::Isometry3d>> settled(std::span<const sense::Pose2> path,
                                                        double cell_m,
                                                        const GiveUp& give_up = {}) const;
@@ -67,17 +75,12 @@ class Clouds {
     cells::Cloud points;
     CloudAt at;
   };
+  std::vector<Rise> rises(std::span<const Eigen::Isometry3d> poses) const;
+  Eigen::Isometry3d on_those_before(std::span<const Eigen::Isometry3d> poses, std::size_t i,
+                                    double cell_m) const;
   CloudsParams p_;
   std::vector<Kept> clouds_;
   std::size_t points_ = 0;
-};
-
-/// Two clouds that saw the same ground: how much higher b's body stands than a's.
-struct Rise {
-  std::size_t a = 0;
-  std::size_t b = 0;
-  double m = 0.0;
-  double sigma_m = 1.0;
 };
 
 /// Heights that agree best with all; the first is 0. A rise that contradicts the others loses its

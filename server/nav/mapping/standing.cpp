@@ -92,8 +92,7 @@ void Standing::pass(std::uint32_t cloud, const Vector3d& eye, const Vector3d& en
   const Vector3d way = (end - eye) / length_m;
   for (double r = cell_m_; r < length_m - kBefore_m; r += 0.5 * cell_m_) {
     Met* met = met_at(eye + r * way);
-    // `last` says which cloud met it last of all; one that met it does not see through it either,
-    // but what it met is in `times`, which is weighed against this.
+    // A cloud that met it may have seen past it as well: map() weighs one against the other.
     if (met == nullptr || met->through == cloud) continue;
     const Vector3d to = met->cell.mean_m - eye;
     if ((to - to.dot(way) * way).norm() < kThrough * cell_m_) {
