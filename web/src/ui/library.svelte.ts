@@ -65,9 +65,17 @@ export class Library {
   }
 
   filter(change: { readonly place?: Place; readonly tag?: string }): void {
-    this.place = change.place ?? this.place;
+    if (change.place !== undefined && change.place !== this.place) this.#look_in(change.place);
     this.tag = change.tag ?? this.tag;
     void this.refresh();
+  }
+
+  /** What can be done with a row depends on where it lies: those of the place before must not
+   * stand under this one's buttons while the answer is on its way. */
+  #look_in(place: Place): void {
+    this.place = place;
+    this.items = [];
+    this.next_cursor = null;
   }
 
   async more(): Promise<void> {
