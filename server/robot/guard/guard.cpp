@@ -34,7 +34,7 @@ constexpr double kDockIs_m = 0.3;  // what stands within this beyond the vehicle
 constexpr double kDockLeast_mps = 0.06;
 constexpr double kFollows_m = 0.02;
 constexpr double kHis_m = 0.3;          // what stands this near to somebody who moves is he
-constexpr double kTurnsRound_m = 0.12;  // so that a way around, too, may begin with a turn
+constexpr double kTurnsRound_m = 0.09;  // so that a way around, too, may begin with a turn
 
 bool stands(const BodyTwist& t) noexcept {
   return std::abs(t.linear_mps) < 1e-6 && std::abs(t.angular_radps) < 1e-6;

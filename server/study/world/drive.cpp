@@ -285,8 +285,8 @@ std::string_view to_string(Blame blame) noexcept {
       return "ours";
     case Blame::Late:
       return "late";
-    case Blame::Below:
-      return "below";
+    case Blame::Beside:
+      return "beside";
     case Blame::Unseen:
       return "unseen";
     case Blame::Standing:

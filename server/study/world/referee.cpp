@@ -166,16 +166,17 @@ double Referee::there_since_s(int thing, const world::Pose& pose, double at_s) c
   return since_s;
 }
 
-/// Of what was touched nothing reaches into the scanners' plane there.
-bool Referee::beneath_plane(int thing, const world::Pose& pose, double at_s) const {
+/// Of what was touched nothing reaches into the scanners' plane there: it lies beneath, or hangs
+/// above.
+bool Referee::beside_plane(int thing, const world::Pose& pose, double at_s) const {
   constexpr double kUneven_m = 0.03;
   if (plane_m_ <= 0.0) return false;
-  world::Body above = grown(around_.witness().body(), 0.02);
-  above.clearance_m = plane_m_ - kUneven_m;
-  above.height_m = std::max(above.height_m, plane_m_ + kUneven_m);
+  world::Body slab = grown(around_.witness().body(), 0.02);
+  slab.clearance_m = plane_m_ - kUneven_m;
+  slab.height_m = plane_m_ + kUneven_m;
   world::Moment moment;
   around_.scene().move_to(moment, at_s);
-  const auto there = world::contact(around_.scene(), moment, pose, above, 0.01);
+  const auto there = world::contact(around_.scene(), moment, pose, slab, 0.01);
   return std::ranges::find(there.touches, thing, &world::Touch::thing) == there.touches.end();
 }
 
@@ -251,7 +252,7 @@ void Referee::judge(const world::Witness::Seen& seen) {
   } else if (!brakes_avoid(seen.thing, *since_s, seen.at_s)) {
     out.blame = Blame::Late;
   } else {
-    out.blame = beneath_plane(seen.thing, now.pose, seen.at_s) ? Blame::Below : Blame::Ours;
+    out.blame = beside_plane(seen.thing, now.pose, seen.at_s) ? Blame::Beside : Blame::Ours;
   }
   if (since_s) {
     const double there_s = seen.moving ? there_since_s(seen.thing, now.pose, seen.at_s) : -1e9;

@@ -66,7 +66,7 @@ class Referee {
   };
 
   void judge(const sim::world::Witness::Seen& seen);
-  bool beneath_plane(int thing, const sim::world::Pose& pose, double at_s) const;
+  bool beside_plane(int thing, const sim::world::Pose& pose, double at_s) const;
   /// Begin of the unbroken sight before the contact; of who moves, not before he set out. Empty:
   /// never seen, or he was not any more.
   std::optional<double> in_sight_since_s(int number, double touched_s) const;

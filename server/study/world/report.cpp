@@ -17,7 +17,7 @@ struct Sums {
   std::size_t worlds = 0;
   std::size_t failed = 0;
   double km = 0.0;
-  std::size_t ours = 0, crossed = 0, late = 0, below = 0, unseen = 0, standing = 0, brushes = 0;
+  std::size_t ours = 0, crossed = 0, late = 0, beside = 0, unseen = 0, standing = 0, brushes = 0;
   std::size_t stops = 0, needless = 0, blind = 0, slows = 0, detours = 0;
   std::vector<double> stands;
 
@@ -31,7 +31,7 @@ struct Sums {
     for (const TouchSeen& t : run.touches) {
       ++(t.blame == Blame::Ours     ? ours
          : t.blame == Blame::Late   ? late
-         : t.blame == Blame::Below  ? below
+         : t.blame == Blame::Beside ? beside
          : t.blame == Blame::Unseen ? unseen
                                     : standing);
       crossed += t.crossed ? 1 : 0;
@@ -62,7 +62,7 @@ std::string row_of(const std::string& name, const Sums& s) {
       text, sizeof text,
       "%-24s %6zu %8.3f %5zu %7zu %5zu %6zu %7zu %9zu %8zu %6zu %9zu %7.2f %6zu  %.2f/%.2f/%.2f "
       "%6zu %8zu\n",
-      name.c_str(), s.worlds, s.km, s.ours, s.crossed, s.late, s.below, s.unseen, s.standing,
+      name.c_str(), s.worlds, s.km, s.ours, s.crossed, s.late, s.beside, s.unseen, s.standing,
       s.brushes, s.stops, s.needless, s.km > 0.0 ? static_cast<double>(s.needless) / s.km : 0.0,
       s.blind, least, mean, most, s.slows, s.detours);
   return text;
@@ -124,7 +124,7 @@ std::string to_table(const std::vector<WorldRun>& runs) {
     all.add(run);
   }
   std::string out =
-      "                         worlds       km  ours crossed  late  below  unseen  standing  "
+      "                         worlds       km  ours crossed  late beside  unseen  standing  "
       "brushes  "
       "stops  "
       "needless  per km  blind  stands m       slows  detours\n";

@@ -68,11 +68,11 @@ base::Result<Scenario> scenario_of(const WorldOrder& order, std::uint64_t number
 enum class Blame {
   Ours,      ///< braking from the first sight would have avoided it
   Late,      ///< it came in sight too late for any brakes, or would have come to it anyhow
-  Below,     ///< its scanners look along one plane, and what was touched lies beneath it
+  Beside,    ///< its scanners look along one plane: what was touched lies beneath it, or hangs above
   Unseen,    ///< no sensor ever saw it: too low, too high, too dark
   Standing,  ///< the robot stood, or drove away from it: it came
 };
-std::string_view to_string(Blame blame) noexcept;  // ours late below unseen standing
+std::string_view to_string(Blame blame) noexcept;  // ours late beside unseen standing
 
 struct TouchSeen {
   double at_s = 0.0;

@@ -215,6 +215,20 @@ TEST(WorldRunTest, WhatNoSensorSeesIsTouchedAndSaidSo) {
   EXPECT_NEAR(run->touches[0].speed_mps, 1.0, 0.2);
 }
 
+//   Over a bump the scanners' plane tips up and meets the far part of a bar for a moment; level
+//   again it passes beneath, and the near part is touched.
+TEST(WorldRunTest, WhatHangsAboveThePlaneOfItsScannersIsNoContactThatBrakesWouldHaveSpared) {
+  Scenario s = ahead(
+      R"({"kind": "bar", "points": [[0.2, 6.8], [-1.5, 9.8]], "height_m": 0.1, "bottom_m": 0.36})");
+  s.world.ground.bumps = {{{0.0, 1.2}, 0.5, 0.015}};
+  const auto run = run_world(setup_of(), s);
+  ASSERT_TRUE(run) << run.error().detail;
+  ASSERT_FALSE(run->touches.empty());
+  EXPECT_EQ(run->touches[0].blame, Blame::Beside);
+  EXPECT_GT(run->touches[0].beams, 0U);
+  EXPECT_GT(run->touches[0].seen_before_s, 2.0);
+}
+
 Scenario crossed() {
   return ahead(R"({"kind": "person", "path": [[-4, 6], [4, 6]],
       "speed_mps": 1.3, "motion": "once", "start_s": 10.25})");
