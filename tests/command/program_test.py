@@ -105,7 +105,7 @@ class Farm(SeeingRobot):
         begin = self.truth()
         to = place(begin["east_m"] - 0.2, begin["north_m"] + 3.0)  # between the wall and the last plants
         self.rest.do("PUT", "/vehicle/mode", {"mode": "DOCK", **to, "heading_deg": 0})
-        until("it has docked", 60, lambda: self.rest.get("/vehicle")["activity"]["state"] == "done", 0.2)
+        until("it has docked", 60, lambda: self.rest.get("/vehicle")["activity"]["state"] == "reached", 0.2)
         truth = self.look()
         return math.hypot((truth["lat"] - to["lat"]) / METRE_LAT, (truth["lon"] - to["lon"]) / METRE_LON)
 
