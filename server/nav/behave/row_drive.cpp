@@ -37,7 +37,7 @@ void RowDrive::reset() noexcept {
   left_m_.reset();
   laid_.reset();
   driven_m_ = waited_s_ = 0.0;
-  at_end_ = goes_on_ = false;
+  at_end_ = goes_on_ = beside_ = false;
 }
 
 void RowDrive::interrupt() noexcept {
@@ -184,6 +184,7 @@ TrackOutput RowDrive::step(const RowSight& sight, const Vehicle& vehicle, double
   const bool sees = usable(sight);
   const rows::Along at = sees ? rows::beside_line(*sight.view, sight.body) : rows::Along{};
   if (sees && state_ == State::Seeking && sure(*sight.view, at)) state_ = State::Driving;
+  beside_ = sees && sight.view->sigma_m(at.s_m) <= params_->sure_m;
   if (state_ == State::Seeking) {
     seek(sight);
   } else if (sees) {

@@ -89,8 +89,11 @@ class RowDrive {
   State state() const noexcept { return state_; }
   const std::string& reason() const noexcept { return reason_; }  ///< why Failed
   double driven_m() const noexcept { return driven_m_; }          ///< along the row, as it was seen
-  /// Positive: the vehicle is left of the line.
-  double cross_track_m() const noexcept { return tracker_.cross_track_m(); }
+  /// Positive: the vehicle is left of the line. Empty where the line is not known well enough
+  /// beside it: before the first plants it is what was made of those that stand ahead.
+  std::optional<double> cross_track_m() const noexcept {
+    return beside_ ? std::optional(tracker_.cross_track_m()) : std::nullopt;
+  }
   TrackPhase phase() const noexcept { return tracker_.phase(); }
   /// It stands because nothing certain is seen.
   bool waits() const noexcept { return waited_s_ > 0.0; }
@@ -124,6 +127,7 @@ class RowDrive {
   double curvature_1pm_ = 0.0;
   double driven_m_ = 0.0;
   double waited_s_ = 0.0;
+  bool beside_ = false;   ///< the line is known where the vehicle is
   bool at_end_ = false;   ///< the way that is laid ends where the item does
   bool goes_on_ = false;  ///< it is one to drive, none to brake along
 };

@@ -29,6 +29,21 @@ TEST(RowDriving, StaysInTheMiddleToTheEndAndKnowsHowWell) {
   EXPECT_GT(t.nees, 0.2);
 }
 
+// From before the first plants on: of a line that is made of those ahead it tells no offset.
+TEST(RowDriving, TellsAnOffsetOnlyWhereItKnowsOne) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const Block block({.bends = {{10.0, 0.0}}, .seed = seed});
+    DriveSetup setup;
+    setup.start_s_m = -2.0;
+    setup.start_turned_rad = seed % 2 == 0 ? 0.05 : -0.05;
+    setup.seed = seed;
+    const DriveTold t = drive_row(block, setup);
+    EXPECT_TRUE(t.done) << t.reason;
+    EXPECT_LT(t.told_wrong_m, 0.12) << seed << " at " << t.told_wrong_at_m;
+    EXPECT_GT(t.told_part, 0.9) << seed;
+  }
+}
+
 TEST(RowDriving, FollowsBendsOf15Metres) {
   const Block block({.bends = {{8.0, 0.0}, {12.0, 1.0 / 15.0}, {12.0, -1.0 / 15.0}}, .seed = 2});
   const DriveTold t = drive_row(block, {});

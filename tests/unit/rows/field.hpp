@@ -205,6 +205,10 @@ struct DriveTold {
   double view_rms_m = 0.0;
   std::size_t looks = 0;
   double sigma_m = 0.0;  ///< mean
+  /// What the drive tells of its offset against the truth, from its first word on.
+  double told_wrong_m = 0.0;
+  double told_wrong_at_m = 0.0;
+  double told_part = 0.0;  ///< of the looks inside the row: it tells one at all
 };
 
 inline DriveTold drive_row(const Block& block, const DriveSetup& setup) {
@@ -254,6 +258,7 @@ inline DriveTold drive_row(const Block& block, const DriveSetup& setup) {
   double sum = 0.0;
   double nees = 0.0;
   double view_sum = 0.0;
+  double told_n = 0.0;
   std::size_t n = 0;
   RowScan scan;
   world::Sweep sweep;
@@ -342,6 +347,14 @@ inline DriveTold drive_row(const Block& block, const DriveSetup& setup) {
 
     const Along where = block.beside(truth.x_m, truth.y_m, s_m);
     s_m = where.s_m;
+    if (const auto off_m = drive.cross_track_m()) {
+      const double wrong_m = std::abs(*off_m - where.d_m);
+      if (wrong_m > told.told_wrong_m) {
+        told.told_wrong_m = wrong_m;
+        told.told_wrong_at_m = s_m;
+      }
+      told_n += s_m > 1.0 && s_m < block.end_m() ? 1.0 : 0.0;
+    }
     if (s_m > 1.0 && s_m < block.end_m()) {
       sum += where.d_m * where.d_m;
       ++n;
@@ -358,6 +371,7 @@ inline DriveTold drive_row(const Block& block, const DriveSetup& setup) {
   told.done = drive.state() == RowDrive::State::Done;
   told.reason = drive.reason();
   told.rms_m = n > 0 ? std::sqrt(sum / double(n)) : 0.0;
+  told.told_part = n > 0 ? told_n / double(n) : 0.0;
   told.stopped_m = s_m;
   told.time_s = now_s;
   told.touched = witness.hard() + witness.soft();
