@@ -157,7 +157,7 @@ step_command() {
     ordinary python3 "$root/tests/command/${name}_test.py" || code=$?
   done
   # The longest first.
-  in_pairs rows see marks known_places tag_dock resume learned bad_sight solid_map map || code=$?
+  in_pairs program rows see marks known_places tag_dock resume learned bad_sight solid_map map || code=$?
   ordinary python3 "$root/tests/soak/kills" --count 25 || code=$?
   return "$code"
 }

@@ -12,6 +12,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "maps/files.hpp"
+#include "nav/cells/lowest.hpp"
 #include "nav/cells/map_file.hpp"
 
 namespace roverd::maps {
@@ -23,8 +24,6 @@ using nav::cells::CellMap;
 
 constexpr std::array kPlaneCells_m{0.05, 0.1, 0.2};  // the finest that has room
 constexpr double kMargin_m = 1.0;                    // around what was seen
-constexpr double kGround_m = 1.0;  // edge of the squares in which the ground is looked for
-constexpr double kStands_m = 0.3;
 constexpr double kPassedBelow_m = 2.0;
 
 struct Extent {
@@ -42,45 +41,6 @@ Extent extent_of(const CellMap& solid) {
   }
   return {e.x0 - kMargin_m, e.y0 - kMargin_m, e.x1 + kMargin_m, e.y1 + kMargin_m};
 }
-
-/// The lowest that was seen in squares.
-class Lowest {
- public:
-  Lowest(const CellMap& solid, const Extent& e)
-      : x0_(e.x0),
-        y0_(e.y0),
-        columns_(static_cast<std::size_t>((e.x1 - e.x0) / kGround_m) + 1),
-        rows_(static_cast<std::size_t>((e.y1 - e.y0) / kGround_m) + 1),
-        low_m_(columns_ * rows_, std::numeric_limits<double>::infinity()) {
-    for (const SolidCell& c : solid.cells()) {
-      double& low = low_m_[row(c) * columns_ + column(c)];
-      low = std::min(low, c.mean_m.z());
-    }
-  }
-  /// In the cell's square and those beside it.
-  double about(const SolidCell& c) const {
-    double low = std::numeric_limits<double>::infinity();
-    const std::size_t x = column(c);
-    const std::size_t y = row(c);
-    for (std::size_t v = y > 0 ? y - 1 : 0; v <= std::min(y + 1, rows_ - 1); ++v) {
-      for (std::size_t u = x > 0 ? x - 1 : 0; u <= std::min(x + 1, columns_ - 1); ++u) {
-        low = std::min(low, low_m_[v * columns_ + u]);
-      }
-    }
-    return low;
-  }
-
- private:
-  std::size_t column(const SolidCell& c) const {
-    return static_cast<std::size_t>((c.mean_m.x() - x0_) / kGround_m);
-  }
-  std::size_t row(const SolidCell& c) const {
-    return static_cast<std::size_t>((c.mean_m.y() - y0_) / kGround_m);
-  }
-  double x0_, y0_;
-  std::size_t columns_, rows_;
-  std::vector<double> low_m_;
-};
 
 std::optional<nav::chart::MapShape> shape_for(const Extent& e) {
   for (const double cell_m : kPlaneCells_m) {
@@ -150,11 +110,12 @@ base::Result<nav::chart::OccupancyMap> plane_of(const CellMap& solid) {
   }
   auto map = nav::chart::OccupancyMap::make(*shape);
   if (!map) return map;
-  const Lowest lowest(solid, e);
+  nav::cells::Lowest lowest;
+  for (const SolidCell& c : solid.cells()) lowest.put(c.mean_m);
   for (const SolidCell& c : solid.cells()) {
-    const double over_m = c.mean_m.z() - lowest.about(c);
+    const double over_m = lowest.over_m(c.mean_m);
     if (over_m > kPassedBelow_m) continue;
-    if (over_m >= kStands_m) {
+    if (over_m >= nav::cells::Lowest::kStands_m) {
       draw_wall(c, *map);
     } else {
       draw_ground(c, solid.cell_m(), *map);

@@ -1,6 +1,7 @@
 #include "services/run_recorder.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/log.hpp"
@@ -65,10 +66,23 @@ void RunRecorder::look(const base::Snapshot& s) {
   if (!open_ && m.state == ExecutionState::Running) begin(s);
   state_ = m.state;
   if (!open_) return;
-  if (m.state == ExecutionState::Running && s.now - sampled_ >= kEvery) sample(s);
+  if (drives(s) && (stands_ || s.now - sampled_ >= kEvery)) sample(s);
   if (s.now - flushed_ < kFlush) return;
   flushed_ = s.now;
   flush(s.wall, std::nullopt);
+}
+
+/// While the mission runs, and after a pause or a stop until the robot stands: how it stopped is part
+/// of the run. What is driven by hand after that is not.
+bool RunRecorder::drives(const base::Snapshot& s) {
+  if (s.mission.state == ExecutionState::Running) {
+    ran_ = s.now;
+    stands_ = false;
+    return true;
+  }
+  if (stands_ || s.now - ran_ > kStops) return false;
+  stands_ = s.pose && std::abs(s.pose->speed_mps.value_or(0.0)) < kStanding_mps;
+  return true;
 }
 
 void RunRecorder::begin(const base::Snapshot& s) {

@@ -27,6 +27,8 @@ class RunRecorder {
   static constexpr base::Duration kEvery = std::chrono::milliseconds(200);
   static constexpr base::Duration kFlush = std::chrono::seconds(1);
   static constexpr std::size_t kMost = 3000;
+  static constexpr base::Duration kStops = std::chrono::seconds(10);
+  static constexpr double kStanding_mps = 0.02;
 
   RunRecorder(robot::Robot& robot, store::Store& store, std::string vehicle)
       : robot_(robot), store_(store), vehicle_(std::move(vehicle)) {}
@@ -50,6 +52,7 @@ class RunRecorder {
   void begin(const base::Snapshot& s);
   void end(store::RunOutcome outcome, const base::Snapshot& s);
   void sample(const base::Snapshot& s);
+  bool drives(const base::Snapshot& s);
   void flush(base::WallTime wall, std::optional<store::RunOutcome> outcome);
   void send();
   void keep_place(const base::Snapshot& s);
@@ -71,6 +74,8 @@ class RunRecorder {
   base::ExecutionState state_ = base::ExecutionState::Idle;
   base::Time begun_;
   base::Time sampled_;
+  base::Time ran_;      ///< the mission, last
+  bool stands_ = true;  ///< it stopped since then, or had no time to
   base::Time flushed_;
   int lap_ = 1;
   store::RunBatch batch_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nav/cells/lowest.hpp"
+
 namespace roverd::nav::mapping {
 
 namespace {
@@ -12,8 +14,6 @@ using cells::KeyTable;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-constexpr double kSquare_m = 1.0;  // of the ground, whose lowest cell is asked
-constexpr double kStands_m = 0.3;  // over it
 constexpr double kBefore_m = 0.6;  // so long before its end a ray says nothing: it grazes walls
 constexpr double kThrough = 0.5;   // of a cell's edge: so near to its middle a ray goes through it
 constexpr int kEveryRay = 2;       // neighbours say the same
@@ -25,38 +25,6 @@ void count(std::uint32_t cloud, std::uint32_t& last, std::uint16_t& times) noexc
   last = cloud;
   if (times < UINT16_MAX) ++times;
 }
-
-/// The lowest that was met in squares.
-class Lowest {
- public:
-  void put(const Vector3d& m) {
-    const auto fresh = static_cast<std::int32_t>(low_m_.size());
-    const std::int32_t at = table_.find_or_add(key(m, 0, 0), fresh);
-    if (at == fresh) low_m_.push_back(m.z());
-    double& low = low_m_[static_cast<std::size_t>(at)];
-    low = std::min(low, m.z());
-  }
-  /// In its square and those beside it.
-  double about(const Vector3d& m) const noexcept {
-    double low = m.z();
-    for (int dx = -1; dx <= 1; ++dx) {
-      for (int dy = -1; dy <= 1; ++dy) {
-        const std::int32_t at = table_.find(key(m, dx, dy));
-        if (at >= 0) low = std::min(low, low_m_[static_cast<std::size_t>(at)]);
-      }
-    }
-    return low;
-  }
-
- private:
-  static std::uint64_t key(const Vector3d& m, int dx, int dy) noexcept {
-    CellIndex index;
-    (void)cells::index_of({m.x(), m.y(), 0.0}, kSquare_m, index);  // it is in a finer cell
-    return cells::key_of({index.x + dx, index.y + dy, 0});
-  }
-  KeyTable table_;
-  std::vector<double> low_m_;
-};
 
 }  // namespace
 
@@ -110,14 +78,14 @@ void Standing::look_through(std::uint32_t cloud, const cells::Cloud& points, con
 }
 
 cells::CellMap Standing::map() const {
-  Lowest lowest;
+  cells::Lowest lowest;
   for (const Met& m : met_) lowest.put(m.cell.mean_m);
   cells::CellMap out(cell_m_);
   for (const Met& m : met_) {
     if (clouds_ >= kFewClouds) {
       if (m.times < 2) continue;
       const bool seen_through = m.passed >= kFewPassed && m.passed > m.times;
-      const bool over_ground = m.cell.mean_m.z() - lowest.about(m.cell.mean_m) >= kStands_m;
+      const bool over_ground = lowest.over_m(m.cell.mean_m) >= cells::Lowest::kStands_m;
       if (seen_through && over_ground) continue;
     }
     out.add(m.cell);
