@@ -35,6 +35,7 @@ test('a plan is made without the robot, and saved when it is back', async ({ pag
   const link = page.getByRole('group', { name: 'Link' });
   await expect(link).toHaveAttribute('data-stale', 'true');
   await expect(link).not.toContainText('Live');
+  await expect(page.getByText('The robot cannot be reached. STOP is still sent.')).toBeVisible();
   await expect(page.getByRole('group', { name: 'Position' })).not.toContainText(/RTK|GPS/);
   await tab(page, 'Plan');
   await draw(page, LINE);
@@ -75,6 +76,34 @@ test('a plan is made without the robot, and saved when it is back', async ({ pag
       return stored.length;
     })
     .toBe(1);
+});
+
+test('what was stored although nobody answered is not stored twice', async ({ page, station }) => {
+  await open_page(page, station.url);
+  await tab(page, 'Plan');
+  await draw(page, LINE);
+  await page.route(
+    /api\/v1\/missions$/,
+    async (route) => {
+      if (route.request().method() !== 'POST') return route.continue();
+      await route.fetch();
+      return route.abort();
+    },
+    { times: 1 },
+  );
+  await press(page, 'Save');
+  const unknown = page.getByText(/no answer came/);
+  await expect(unknown).toBeVisible();
+  await page.reload();
+  await tab(page, 'Plan');
+  await expect(items(page)).toHaveCount(3);
+  await page.getByLabel('Mission name').fill('Once');
+  await page.getByLabel('Mission name').press('Enter');
+  await press(page, 'Save');
+  await expect(page.getByLabel('Summary')).toContainText('saved, revision 2');
+  await expect(unknown).toBeHidden();
+  const { items: stored } = await station.rest<{ items: { name: string }[] }>('GET', '/missions');
+  expect(stored.map(({ name }) => name)).toEqual(['Once']);
 });
 
 test('of all that the robot says nothing is kept', async ({ page, station }) => {

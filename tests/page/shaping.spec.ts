@@ -82,13 +82,87 @@ test('points in a box are turned, undone after a reload, and an old revision com
     .getByLabel('Stored revisions')
     .getByRole('button', { name: /^1 · created/ })
     .click();
-  await expect(page.getByLabel('What differs')).toContainText('3 items more or other');
+  await expect(page.getByLabel('What differs')).toContainText('3 items other');
   await expect.poll(async () => (await map_pixels(page, [THEIRS])).length).toBeGreaterThan(50);
   await press(page, 'Back to revision 1');
   await expect(page.getByLabel('Summary')).toContainText('saved, revision 3');
   expect(await places()).toEqual(drawn);
   await press(page, 'Undo');
   expect(await places()).toEqual(turned);
+});
+
+test('what is chosen stays chosen through undo, and nothing is stored that is not seen', async ({
+  page,
+  station,
+}) => {
+  await open_page(page, station.url);
+  await tab(page, 'Plan');
+  await draw(page, SQUARE);
+  const [x, y] = await map_middle(page);
+  const places = (): Promise<string[]> => items(page).allInnerTexts();
+
+  // A fifth one between the upper two; then the last two are chosen.
+  await press(page, 'Add points');
+  await page.mouse.move(x, y - 100);
+  await page.mouse.down();
+  await page.mouse.move(x, y - 140, { steps: 4 });
+  await page.mouse.up();
+  await expect(items(page)).toHaveCount(5);
+  const five = await places();
+  await press(page, 'Select several');
+  for (const k of [3, 4]) await items(page).nth(k).getByRole('button').click();
+  await expect(page.getByLabel('Selection')).toContainText('Items 4 to 5');
+  await press(page, 'Rotate');
+  await page.getByRole('textbox', { name: 'Clockwise, °' }).fill('30');
+  await page.getByRole('textbox', { name: 'Clockwise, °' }).press('Enter');
+
+  // Not while something else is seen than would be stored.
+  const button = page.getByRole('button', { name: 'Save', exact: true });
+  await expect(button).toHaveAttribute('title', 'Apply or cancel the change first.');
+  await page.keyboard.press('Control+s');
+  await expect(page.getByText('Apply or cancel the change first.')).toBeVisible();
+  expect(await station.rest('GET', '/missions')).toMatchObject({ items: [] });
+
+  // Back to four: the same two, which are number 3 and 4 by now.
+  await press(page, 'Undo');
+  await expect(items(page)).toHaveCount(4);
+  await expect(page.getByLabel('Selection')).toContainText('Items 3 to 4');
+  await press(page, 'Redo');
+  await expect(page.getByLabel('Selection')).toContainText('Items 4 to 5');
+  await press(page, 'Rotate');
+  await page.getByRole('textbox', { name: 'Clockwise, °' }).fill('30');
+  await page.getByRole('textbox', { name: 'Clockwise, °' }).press('Enter');
+  await press(page, 'Apply');
+  const turned = await places();
+  expect(turned.map((text, k) => text === five[k])).toEqual([true, true, true, false, false]);
+});
+
+test('the revisions of one mission are not those of the next', async ({ page, station }) => {
+  const { lat, lon } = station.sim.now;
+  const make = (name: string, north: number) =>
+    station.rest<{ id: string }>('POST', '/missions', {
+      name,
+      items: [{ type: 'waypoint', lat: lat + north, lon }],
+    });
+  const field = await make('Field', 0.0001);
+  await make('Orchard', 0.0002);
+  await open_page(page, station.url);
+  const open = async (name: RegExp): Promise<void> => {
+    await tab(page, 'Missions');
+    await page.getByRole('button', { name }).first().click();
+    await expect(page.getByRole('button', { name: 'Select several' })).toBeVisible();
+  };
+  await open(/^Field/);
+  await press(page, 'Revisions…');
+  const list = page.getByLabel('Stored revisions');
+  await list.getByRole('button', { name: /^1 · created/ }).click();
+  await open(/^Orchard/);
+  await expect(list).toBeHidden();
+  await expect(page.getByRole('button', { name: /^Back to revision/ })).toBeHidden();
+  await press(page, 'Revisions…');
+  await expect(list.getByRole('button')).toHaveCount(1);
+  await expect(list).toBeInViewport();
+  expect(await station.rest('GET', `/missions/${field.id}`)).toMatchObject({ revision: 1 });
 });
 
 test.describe('with a finger, on a phone', () => {

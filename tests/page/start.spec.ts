@@ -23,6 +23,33 @@ test('a tap does not arm, a held Enter does', async ({ page, station }) => {
   expect(await station.rest('GET', '/vehicle')).toMatchObject({ armed: true });
 });
 
+test.describe('with a finger', () => {
+  test.use({ viewport: { width: 390, height: 844 }, hasTouch: true });
+
+  //   Where Arm was held, Disarm stands when the finger is lifted.
+  test('a held Arm stays armed when it is let go', async ({ page, station }) => {
+    await open_page(page, station.url);
+    const ready = page.getByRole('region', { name: 'Before arming' });
+    await expect(ready).toContainText('Ready to arm', { timeout: 30_000 });
+    const session = await page.context().newCDPSession(page);
+    const touch = (type: 'touchStart' | 'touchEnd', at?: { x: number; y: number }) =>
+      session.send('Input.dispatchTouchEvent', { type, touchPoints: at ? [at] : [] });
+    await expect(async () => {
+      const box = await page.getByRole('button', { name: 'Arm', exact: true }).boundingBox();
+      if (!box) throw new Error('no button to hold');
+      await touch('touchStart', { x: box.x + box.width / 2, y: box.y + box.height / 2 });
+      await expect(page.getByRole('button', { name: 'Disarm' })).toBeVisible({ timeout: 3000 });
+      await page.waitForTimeout(200);
+      await touch('touchEnd');
+    }).toPass({ timeout: 30_000 });
+    await page.waitForTimeout(1000);
+    expect(await station.rest('GET', '/vehicle')).toMatchObject({ armed: true });
+    // The next tap is one.
+    await page.getByRole('button', { name: 'Disarm' }).tap();
+    await expect(page.getByRole('button', { name: 'Arm', exact: true })).toBeVisible();
+  });
+});
+
 test('what keeps it from arming is a light with its cure', async ({ page, station }) => {
   await page.setViewportSize({ width: 390, height: 844 });
   await open_page(page, station.url);

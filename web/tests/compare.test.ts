@@ -27,7 +27,7 @@ test('fields in another order, and fields that say nothing, are no difference', 
 
 test('it is said in a sentence', () => {
   const words = (a: Plan, b: Plan): string => differences_words(differences(a, b));
-  expect(words(plan(at(1), at(1)), plan(at(1)))).toBe('1 item fewer or other');
+  expect(words(plan(at(1), at(1)), plan(at(1)))).toBe('1 item fewer');
   expect(words(plan(at(1), at(2)), plan(at(2), at(1)))).toBe('another order');
   expect(words(plan(), { ...plan(), name: 'Q', settings: { speed_mps: 1 } })).toBe(
     'another name, other settings',

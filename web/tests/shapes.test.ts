@@ -3,7 +3,7 @@ import { describe, expect, test } from 'vitest';
 import { bearing_deg, distance_m, offset_between, offset_from } from '../src/model/geo';
 import { plane_at } from '../src/model/plane';
 import type { Item, LatLon, Plan } from '../src/model/plan';
-import { picked_words, run_between, toggled, within } from '../src/model/selection';
+import { followed, picked_words, run_between, toggled } from '../src/model/selection';
 import {
   align_items,
   drag_items,
@@ -172,10 +172,19 @@ describe('a figure', () => {
 });
 
 describe('a selection', () => {
-  test('grows and shrinks by taps, and forgets what is gone', () => {
+  test('grows and shrinks by taps', () => {
     expect([...toggled(new Set([1, 4]), 4)]).toEqual([1]);
     expect([...run_between(5, 3)]).toEqual([3, 4, 5]);
-    expect([...within(new Set([0, 1, 9]), plan(point(0, 0), point(1, 0)))]).toEqual([0, 1]);
+  });
+
+  test('follows its items, whatever their numbers are, and forgets what is gone', () => {
+    const [a, b, c] = [point(0, 0), point(1, 0), point(2, 0)];
+    const inserted = plan(a, point(0.5, 0), b, c);
+    expect([...followed(new Set([0, 2, 3]), inserted, plan(a, b, c))]).toEqual([0, 1, 2]);
+    expect([...followed(new Set([1, 2]), inserted, plan(a, b, c))]).toEqual([1]);
+    // Turned round it is the same point; moved it stands where it stood.
+    expect([...followed(new Set([0]), plan(a, b, c), plan(c, b, a))]).toEqual([2]);
+    expect([...followed(new Set([1]), plan(a, b, c), plan(a, point(1, 5), c))]).toEqual([1]);
   });
 
   test('says what it is', () => {

@@ -59,8 +59,12 @@ export const mission_calls: MissionCalls = {
       body: { revision: to },
       headers: { 'If-Match': etag(revision) },
     }),
-  create: (plan) =>
-    with_mission<Schemas['Mission']>('/missions', { method: 'POST', body: draft_of(plan) }),
+  create: (plan, key) =>
+    with_mission<Schemas['Mission']>('/missions', {
+      method: 'POST',
+      body: draft_of(plan),
+      ...(key === undefined ? {} : { headers: { 'Idempotency-Key': key } }),
+    }),
   replace: (id, revision, plan) =>
     with_mission<Schemas['Mission']>(mission_path(id), {
       method: 'PUT',

@@ -59,11 +59,13 @@ export const differences = (from: Plan, to: Plan): Differences => {
 };
 
 export const differences_words = (of: Differences): string => {
+  // A point that was moved is gone as it was, and there as it is.
+  const other = Math.min(of.added.length, of.gone.length);
+  const [more, fewer] = [of.added.length - other, of.gone.length - other];
   const parts = [
-    of.added.length > 0
-      ? say('added_more_or_other', { added: count(of.added.length, 'item') })
-      : '',
-    of.gone.length > 0 ? say('gone_fewer_or_other', { gone: count(of.gone.length, 'item') }) : '',
+    other > 0 ? say('other_otherwise', { other: count(other, 'item') }) : '',
+    more > 0 ? say('more_more', { more: count(more, 'item') }) : '',
+    fewer > 0 ? say('fewer_fewer', { fewer: count(fewer, 'item') }) : '',
     of.reordered ? say('another_order') : '',
     of.renamed ? say('another_name') : '',
     of.otherwise_set ? say('other_settings') : '',

@@ -11,6 +11,12 @@ export interface Stored {
   readonly id: string;
   readonly revision: number;
 }
+/** A mission that was sent to be stored, and nobody answered: asked again with its key, the robot
+ * gives the same one. */
+export interface Tried {
+  readonly key: string;
+  readonly plan: Plan;
+}
 export interface Draft {
   readonly plan: Plan;
   /** What it is based on; null: never saved. */
@@ -18,6 +24,7 @@ export interface Draft {
   readonly unsaved: boolean;
   /** What can be undone and done again. */
   readonly steps?: Steps;
+  readonly tried?: Tried;
 }
 
 /** The robot has loaded what is edited, as it is. */
@@ -97,6 +104,9 @@ const is_steps = (value: unknown): value is Steps =>
   ) &&
   (value['saved'] === null || Number.isInteger(value['saved']));
 
+const is_tried = (value: unknown): value is Tried =>
+  is_record(value) && typeof value['key'] === 'string' && is_plan(value['plan']);
+
 /** @return null when there is none, or it is not one of ours */
 export const parse_draft = (text: string | null): Draft | null => {
   const value = json_of(text);
@@ -106,5 +116,6 @@ export const parse_draft = (text: string | null): Draft | null => {
     stored: is_stored(value['stored']) ? value['stored'] : null,
     unsaved: value['unsaved'] === true,
     ...(is_steps(value['steps']) ? { steps: value['steps'] } : {}),
+    ...(is_tried(value['tried']) ? { tried: value['tried'] } : {}),
   };
 };

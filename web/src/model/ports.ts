@@ -139,7 +139,8 @@ export interface MissionCalls {
   revisions(id: string, cursor: string | null): Promise<Answer<Page<Revision>>>;
   /** Makes an old state the newest one. @param revision the present one; @param to the old one */
   revert(id: string, revision: number, to: number): Promise<Answer<Mission>>;
-  create(plan: Plan): Promise<Answer<Mission>>;
+  /** @param key asked again with it and the same plan, the first answer comes again */
+  create(plan: Plan, key?: string): Promise<Answer<Mission>>;
   replace(id: string, revision: number, plan: Plan): Promise<Answer<Mission>>;
   remove(id: string, revision: number): Promise<Answer<null>>;
   /** Other tags, into the archive or out of it; what is left out stays. */

@@ -25,10 +25,18 @@ export const joined = (a: Picked, b: Iterable<number>): Picked => new Set([...a,
 
 export const all_of = (plan: Plan): Picked => new Set(plan.items.keys());
 
-/** What is still there of them. */
-export const within = (picked: Picked, plan: Plan): Picked => {
-  const left = [...picked].filter((index) => index < plan.items.length);
-  return left.length === picked.size ? picked : new Set(left);
+/** The same items after a change, whatever their numbers are then. Of as many as before, one that is
+ * another was changed where it stood. */
+export const followed = (picked: Picked, before: Plan, after: Plan): Picked => {
+  if (picked.size === 0 || before.items === after.items) return picked;
+  const places = new Map(after.items.map((item, index) => [item, index]));
+  const as_many = before.items.length === after.items.length;
+  const left = [...picked].flatMap((index) => {
+    const item = before.items[index];
+    const place = item && places.get(item);
+    return place ?? (as_many ? index : []);
+  });
+  return new Set(left);
 };
 
 export const in_order = (picked: Picked): readonly number[] => [...picked].sort((a, b) => a - b);

@@ -19,7 +19,7 @@ import type { SiteMapCalls } from '../model/site_map';
 import type { KnownPlaceCalls } from '../model/known_places';
 import type { MeCalls } from '../model/me';
 import type { SlipCalls } from '../model/slips';
-import type { Kept } from './editor.svelte';
+import type { Kept } from './edited';
 
 export interface Doors {
   readonly missions: MissionCalls;

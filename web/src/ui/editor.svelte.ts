@@ -8,35 +8,21 @@ import { begin_history, perform, redo, undo, type History } from '../model/histo
 import { edits_left, edits_resumed, parse_past, with_past } from '../model/past_edits';
 import { EMPTY_PLAN, type LatLon, type Plan } from '../model/plan';
 import { say } from '../model/say';
-import { joined, NOTHING_PICKED, toggled, within, type Picked } from '../model/selection';
+import { followed, joined, NOTHING_PICKED, toggled, type Picked } from '../model/selection';
 import { drag_items } from '../model/shapes';
 import { revived, steps_of } from '../model/steps';
 import { remove_items } from '../model/stretch';
 import type { DraftStorage, MapMode, Mission, MissionCalls } from '../model/ports';
 import type { Drawing } from './drawing.svelte';
 import type { Dialogs } from './dialogs.svelte';
+import { plan_of, type Kept, type Preview } from './edited';
+import { FirstSave } from './first_save';
 import type { Notices } from './notices.svelte';
 
 const DRAFT_AFTER_MS = 300;
 
 /** Add with every tap; move and select; choose several. */
 export type Tool = 'draw' | 'edit' | 'pick';
-
-export const plan_of = (mission: Mission): Plan => ({
-  name: mission.name,
-  items: mission.items,
-  home: mission.home,
-  settings: mission.settings,
-  ...(mission.drawing ? { drawing: mission.drawing } : {}),
-});
-
-/** On the device: what is edited, what can be undone in missions edited before, and of what they were
- * made. */
-export interface Kept {
-  readonly draft: DraftStorage;
-  readonly past: DraftStorage;
-  readonly makings: DraftStorage;
-}
 
 export class Editor implements Drawing {
   history = $state.raw<History<Plan>>(begin_history(EMPTY_PLAN));
@@ -54,6 +40,7 @@ export class Editor implements Drawing {
   theirs = $state.raw<Plan | null>(null);
   refused = $state.raw<ReadonlySet<number>>(new Set());
   #saved_plan = $state.raw<Plan | null>(EMPTY_PLAN);
+  #preview: Preview | null = null;
 
   plan = $derived(this.history.present);
   unsaved = $derived(this.plan !== this.#saved_plan);
@@ -63,6 +50,7 @@ export class Editor implements Drawing {
   map_mode = $derived<MapMode>(this.tool);
 
   readonly #calls: MissionCalls;
+  readonly #first: FirstSave;
   readonly #storage: DraftStorage;
   /** Of missions that are not here now. */
   readonly #past: DraftStorage;
@@ -72,6 +60,7 @@ export class Editor implements Drawing {
 
   constructor(calls: MissionCalls, kept: Kept, notices: Notices, dialogs: Dialogs) {
     this.#calls = calls;
+    this.#first = new FirstSave(calls);
     this.#storage = kept.draft;
     this.#past = kept.past;
     this.#notices = notices;
@@ -98,11 +87,22 @@ export class Editor implements Drawing {
     this.#set_history(perform(this.history, action));
   }
 
+  /** @param preview is ended by a step back, and must be before anything is stored */
+  previewed_by(preview: Preview): void {
+    this.#preview = preview;
+  }
+
+  get why_not_save(): string | null {
+    return this.#preview?.open ? say('apply_or_cancel_the_change_first') : null;
+  }
+
   undo(): void {
+    this.#preview?.cancel();
     this.#set_history(undo(this.history));
   }
 
   redo(): void {
+    this.#preview?.cancel();
     this.#set_history(redo(this.history));
   }
 
@@ -223,12 +223,16 @@ export class Editor implements Drawing {
 
   async save(): Promise<boolean> {
     if (this.saving) return false;
+    if (this.why_not_save !== null) {
+      this.#notices.show('warning', this.why_not_save, 'save');
+      return false;
+    }
     this.saving = true;
     try {
       const plan = this.plan;
       const answer =
         this.stored === null
-          ? await this.#calls.create(plan)
+          ? await this.#first.create(plan, () => this.write_draft())
           : await this.#calls.replace(this.stored.id, this.stored.revision, plan);
       return await this.#after_save(plan, answer);
     } finally {
@@ -245,6 +249,7 @@ export class Editor implements Drawing {
       this.#notices.show(
         'good',
         say('saved_name_revision_revision', { name: plan.name, revision: answer.value.revision }),
+        'save',
       );
       return true;
     }
@@ -252,7 +257,7 @@ export class Editor implements Drawing {
     if (refusal.status === 412) return this.#settle_conflict(plan, refusal.current ?? null);
     if (refusal.status === 404 && this.stored !== null) return this.#save_as_new(plan);
     this.refused = refused_items(refusal);
-    this.#notices.show('error', failure_text(say('done_saved'), refusal));
+    this.#notices.show('error', failure_text(say('done_saved'), refusal), 'save');
     return false;
   }
 
@@ -333,6 +338,7 @@ export class Editor implements Drawing {
     this.history = history;
     this.#saved_plan = draft.unsaved ? saved : draft.plan;
     this.stored = draft.stored;
+    this.#first.tried = draft.tried ?? null;
     this.adding = draft.plan.items.length === 0;
     if (draft.unsaved) {
       this.#notices.show(
@@ -348,7 +354,8 @@ export class Editor implements Drawing {
     const draft = { plan: this.plan, stored: this.stored, unsaved: this.unsaved };
     const steps = steps_of(this.history, this.#saved_plan);
     // Where there is no room for what can be undone, the plan itself goes before.
-    if (!this.#storage.write(draft_text({ ...draft, steps }))) {
+    const { tried } = this.#first;
+    if (!this.#storage.write(draft_text({ ...draft, ...(tried ? { tried } : {}), steps }))) {
       this.#storage.write(draft_text(draft));
     }
   }
@@ -369,6 +376,7 @@ export class Editor implements Drawing {
     this.history = history;
     this.#saved_plan = history.present;
     this.stored = stored;
+    this.#first.tried = null;
     this.selected = null;
     this.picked = NOTHING_PICKED;
     this.refused = new Set();
@@ -377,12 +385,14 @@ export class Editor implements Drawing {
 
   #set_history(history: History<Plan>): void {
     if (history === this.history) return;
+    const { plan } = this;
     this.history = history;
     this.refused = new Set();
-    if (this.selected !== null && this.selected >= history.present.items.length) {
-      this.selected = null;
+    if (this.selected !== null) {
+      const [selected = null] = followed(new Set([this.selected]), plan, history.present);
+      this.selected = selected;
     }
-    this.picked = within(this.picked, history.present);
+    this.picked = followed(this.picked, plan, history.present);
     clearTimeout(this.#draft_timer);
     this.#draft_timer = setTimeout(() => this.write_draft(), DRAFT_AFTER_MS);
   }

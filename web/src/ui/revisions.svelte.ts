@@ -8,11 +8,13 @@ import type { Plan } from '../model/plan';
 import type { MissionCalls } from '../model/ports';
 import type { Revision } from '../model/revision';
 import { say } from '../model/say';
-import { plan_of, type Editor } from './editor.svelte';
+import { plan_of } from './edited';
+import type { Editor } from './editor.svelte';
 import type { Notices } from './notices.svelte';
 
 export class Revisions {
-  open = $state(false);
+  /** Whose they are; null: the card is closed. */
+  #of = $state<string | null>(null);
   items = $state.raw<readonly Revision[]>([]);
   next_cursor = $state.raw<string | null>(null);
   failure = $state<string | null>(null);
@@ -23,8 +25,12 @@ export class Revisions {
   readonly #editor: Editor;
   readonly #notices: Notices;
 
+  /** Those of the mission that is edited, of no other. */
+  readonly open = $derived.by<boolean>(
+    () => this.#of !== null && this.#of === this.#editor.stored?.id,
+  );
   readonly on_map = $derived.by<readonly LineOnMap[]>(() =>
-    this.chosen ? other_on_map(this.#editor.plan, this.chosen.plan, 'theirs') : [],
+    this.open && this.chosen ? other_on_map(this.#editor.plan, this.chosen.plan, 'theirs') : [],
   );
   /** From what is edited to the one that is looked at. */
   readonly words = $derived.by<string>(() =>
@@ -38,13 +44,14 @@ export class Revisions {
   }
 
   show(): void {
-    this.open = true;
+    this.#of = this.#editor.stored?.id ?? null;
     this.items = [];
+    this.next_cursor = this.chosen = null;
     void this.more(null);
   }
 
   close(): void {
-    this.open = false;
+    this.#of = null;
     this.chosen = null;
   }
 
@@ -52,6 +59,7 @@ export class Revisions {
     const { stored } = this.#editor;
     if (!stored) return;
     const answer = await this.#calls.revisions(stored.id, cursor);
+    if (this.#of !== stored.id) return;
     this.failure = answer.ok ? null : refusal_text(answer.refusal);
     if (!answer.ok) return;
     this.items = cursor === null ? answer.value.items : [...this.items, ...answer.value.items];
@@ -63,6 +71,7 @@ export class Revisions {
     if (this.chosen?.revision === revision) this.chosen = null;
     else if (stored) {
       const answer = await this.#calls.read_revision(stored.id, revision);
+      if (this.#of !== stored.id) return;
       if (answer.ok) this.chosen = { revision, plan: plan_of(answer.value) };
       else this.#notices.show('error', refusal_text(answer.refusal));
     }
@@ -72,7 +81,7 @@ export class Revisions {
   async revert(): Promise<void> {
     const { stored } = this.#editor;
     const { chosen } = this;
-    if (!stored || !chosen) return;
+    if (!stored || !chosen || !this.open) return;
     this.busy = true;
     const answer = await this.#calls.revert(stored.id, stored.revision, chosen.revision);
     this.busy = false;

@@ -7,7 +7,7 @@ import type { MissionCalls, VehicleCalls } from '../model/ports';
 import { begin_heading, NO_SPEEDS, type SpeedsSet } from '../model/route_drive';
 import { say } from '../model/say';
 import type { Vehicle } from '../model/vehicle';
-import { plan_of } from './editor.svelte';
+import { plan_of } from './edited';
 import type { Notices } from './notices.svelte';
 
 interface LaidWay {

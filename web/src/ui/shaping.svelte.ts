@@ -28,6 +28,11 @@ export class Shaping {
 
   constructor(editor: Editor) {
     this.#editor = editor;
+    editor.previewed_by(this);
+  }
+
+  get open(): boolean {
+    return this.transform !== null;
   }
 
   begin(transform: Transform): void {

@@ -95,6 +95,7 @@ export const fences = {
   label_slider: '{label}, slider',
   what_comes_of_it: 'What comes of it',
   apply: 'Apply',
+  apply_or_cancel_the_change_first: 'Apply or cancel the change first.',
   discard_unsaved_changes: 'Discard unsaved changes?',
   discard: 'Discard',
   value_has_changes_that_are_not_saved: '“{value}” has changes that are not saved.',

@@ -1,8 +1,9 @@
 // The items of a mission, their fields, and what is done to several at once.
 
 export const items = {
-  added_more_or_other: '{added} more or other',
-  gone_fewer_or_other: '{gone} fewer or other',
+  other_otherwise: '{other} other',
+  more_more: '{more} more',
+  fewer_fewer: '{fewer} fewer',
   another_order: 'another order',
   another_name: 'another name',
   other_settings: 'other settings',

@@ -94,6 +94,7 @@ export const fences = {
   label_slider: '{label}, liugur',
   what_comes_of_it: 'Mis sellest saab',
   apply: 'Rakenda',
+  apply_or_cancel_the_change_first: 'Rakenda või tühista kõigepealt muudatus.',
   discard_unsaved_changes: 'Kas jätta salvestamata muudatused kõrvale?',
   discard: 'Viska ära',
   value_has_changes_that_are_not_saved: '„{value}“: muudatused on salvestamata.',

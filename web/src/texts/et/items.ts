@@ -1,8 +1,9 @@
 // The items of a mission, their fields, and what is done to several at once.
 
 export const items = {
-  added_more_or_other: '{added} rohkem või teisiti',
-  gone_fewer_or_other: '{gone} vähem või teisiti',
+  other_otherwise: '{other} teisiti',
+  more_more: '{more} rohkem',
+  fewer_fewer: '{fewer} vähem',
   another_order: 'teine järjekord',
   another_name: 'teine nimi',
   other_settings: 'teised sätted',

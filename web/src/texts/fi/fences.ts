@@ -94,6 +94,7 @@ export const fences = {
   label_slider: '{label}, liukusäädin',
   what_comes_of_it: 'Mitä siitä tulee',
   apply: 'Käytä',
+  apply_or_cancel_the_change_first: 'Ota muutos käyttöön tai peru se ensin.',
   discard_unsaved_changes: 'Hylätäänkö tallentamattomat muutokset?',
   discard: 'Hylkää',
   value_has_changes_that_are_not_saved: '”{value}”: muutoksia ei ole tallennettu.',

@@ -1,8 +1,9 @@
 // The items of a mission, their fields, and what is done to several at once.
 
 export const items = {
-  added_more_or_other: '{added} lisää tai toisin',
-  gone_fewer_or_other: '{gone} vähemmän tai toisin',
+  other_otherwise: '{other} toisin',
+  more_more: '{more} enemmän',
+  fewer_fewer: '{fewer} vähemmän',
   another_order: 'eri järjestys',
   another_name: 'eri nimi',
   other_settings: 'eri asetukset',

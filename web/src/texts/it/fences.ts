@@ -96,6 +96,7 @@ export const fences = {
   label_slider: '{label}, cursore',
   what_comes_of_it: 'Cosa ne viene',
   apply: 'Applica',
+  apply_or_cancel_the_change_first: 'Applica o annulla prima la modifica.',
   discard_unsaved_changes: 'Scartare le modifiche non salvate?',
   discard: 'Scarta',
   value_has_changes_that_are_not_saved: '«{value}» ha modifiche non salvate.',

@@ -1,8 +1,9 @@
 // The items of a mission, their fields, and what is done to several at once.
 
 export const items = {
-  added_more_or_other: '{added} in più o diversi',
-  gone_fewer_or_other: '{gone} in meno o diversi',
+  other_otherwise: '{other} diversi',
+  more_more: '{more} in più',
+  fewer_fewer: '{fewer} in meno',
   another_order: 'altro ordine',
   another_name: 'altro nome',
   other_settings: 'altre impostazioni',

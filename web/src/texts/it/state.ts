@@ -34,7 +34,7 @@ export const state = {
   stop_caps: 'STOP',
   hold_caps: 'HOLD',
   pause: 'Pausa',
-  disarm: 'Disarma',
+  disarm: 'Disar\u00adma',
   stop_mission: 'Termina missione',
   use_the_button_on_the_robot_or_the: ' Usa il pulsante sul robot o il radiocomando.',
   name_stopping: '{name}: si ferma…',

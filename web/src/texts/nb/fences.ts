@@ -94,6 +94,7 @@ export const fences = {
   label_slider: '{label}, skyver',
   what_comes_of_it: 'Hva det blir til',
   apply: 'Bruk',
+  apply_or_cancel_the_change_first: 'Bruk eller avbryt endringen først.',
   discard_unsaved_changes: 'Forkaste ulagrede endringer?',
   discard: 'Forkast',
   value_has_changes_that_are_not_saved: '«{value}» har endringer som ikke er lagret.',

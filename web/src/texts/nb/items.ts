@@ -1,8 +1,9 @@
 // The items of a mission, their fields, and what is done to several at once.
 
 export const items = {
-  added_more_or_other: '{added} flere eller annerledes',
-  gone_fewer_or_other: '{gone} færre eller annerledes',
+  other_otherwise: '{other} annerledes',
+  more_more: '{more} flere',
+  fewer_fewer: '{fewer} færre',
   another_order: 'annen rekkefølge',
   another_name: 'annet navn',
   other_settings: 'andre innstillinger',

@@ -34,7 +34,7 @@ export const state = {
   stop_caps: 'STOP',
   hold_caps: 'HOLD',
   pause: 'Pause',
-  disarm: 'Deaktiver',
+  disarm: 'Deakti\u00adver',
   stop_mission: 'Avslutt oppdrag',
   use_the_button_on_the_robot_or_the: ' Bruk knappen på roboten eller radioen.',
   name_stopping: '{name}: stopper…',
