@@ -1,6 +1,8 @@
 // Goals, moves, targets, parameters and runs over HTTP. The base of this house does as told in the
 // air: it never gets anywhere, so what is asked stays under way.
 
+#include <regex>
+
 #include "house.hpp"
 
 namespace roverd::test {
@@ -183,6 +185,10 @@ TEST_F(ModesApi, ADrivenMissionBecomesARun) {
   const auto geojson = call("GET", "/runs/1/track");
   EXPECT_EQ(geojson.body["features"][0]["geometry"]["type"], "LineString");
   EXPECT_NE(call("GET", "/runs/1/track?format=gpx").raw.body.find("<trkpt"), std::string::npos);
+  const std::string offered = geojson.raw.header("content-disposition");
+  EXPECT_TRUE(std::regex_match(
+      offered, std::regex(R"(attachment; filename="run-1-\d{4}-\d\d-\d\d-short\.geojson")")))
+      << offered;
   EXPECT_EQ(call("GET", "/runs/1/track?format=pdf").status, 422u);
   EXPECT_EQ(call("GET", "/runs/7").status, 404u);
   EXPECT_EQ(call("DELETE", "/runs/7").status, 404u);

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Who has control, with the real programs: two scripts, one token from two addresses, a script that dies."""
 
+import csv
 import http.client
+import io
 import json
 import pathlib
 import sys
@@ -31,7 +33,8 @@ class Caller:
             connection.request(method, "/api/v1" + path, None if body is None else json.dumps(body), headers)
             answer = connection.getresponse()
             text = answer.read()
-            return answer.status, json.loads(text) if text else None
+            is_json = "json" in (answer.getheader("Content-Type") or "")
+            return answer.status, json.loads(text) if text and is_json else text.decode()
         finally:
             connection.close()
 
@@ -115,10 +118,20 @@ def a_mission_goes_on():
         until("control is free", GRACE_S + 5, lambda: holder_of(watch) is None)
         check(watch.do("GET", "/execution")["state"] == "running", "the mission did not go on")
         check("control_lost" in events_of(watch), "that is no event")
+        until("it drives", 20, lambda: watch.do("GET", "/vehicle")["position"]["speed_mps"] > 0.4, 0.1)
         patrol.do("POST", "/execution/pause", {})  # anyone may stop
+        # How it came to rest is in the record of the run.
+        until("the run tells of its standing", 10, lambda: abs(run_speeds(watch)[-1]) < 0.02)
+        slowing = [v for v in run_speeds(watch)[-8:] if 0.05 < v < 0.35]
+        check(slowing, f"nothing is kept of its braking: {run_speeds(watch)[-8:]}")
         patrol.do("POST", "/execution/resume", {"valid_for_s": 5}, 403)
         patrol.do("POST", "/control/take", {})
         patrol.do("POST", "/execution/resume", {"valid_for_s": 5})
+
+
+def run_speeds(watch):
+    rows = csv.DictReader(io.StringIO(watch.do("GET", "/runs/1/track?format=csv")))
+    return [float(row["speed_mps"]) for row in rows]
 
 
 def ready(watch):

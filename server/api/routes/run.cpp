@@ -3,6 +3,7 @@
 #include "api/context.hpp"
 #include "api/json/plain_json.hpp"
 #include "api/json/run_words.hpp"
+#include "mission/formats/formats.hpp"
 
 namespace roverd::api {
 
@@ -84,6 +85,12 @@ Handler delete_run(const ContextPtr& context) {
   };
 }
 
+/// Among the files of many runs, and of many robots, on one laptop.
+std::string track_name(const store::RunHead& run) {
+  const std::string day = base::to_rfc3339(run.begun).substr(0, 10);
+  return "run-" + std::to_string(run.id) + "-" + day + "-" + mission::file_stem(run.name);
+}
+
 Response track_response(const Call& call, const store::StoredRun& run,
                         const std::vector<store::RunPoint>& points) {
   const std::string word = query_text(call, "format");
@@ -105,7 +112,7 @@ Response track_response(const Call& call, const store::StoredRun& run,
   }
   Response response = text_response(http::status::ok, type, std::move(text));
   response.set(http::field::content_disposition,
-               "attachment; filename=\"run-" + std::to_string(run.head.id) + "." + format + "\"");
+               "attachment; filename=\"" + track_name(run.head) + "." + format + "\"");
   return response;
 }
 

@@ -36,24 +36,6 @@ std::string_view without_ending(std::string_view name) {
   return dot == std::string_view::npos || dot == 0 ? name : name.substr(0, dot);
 }
 
-/// ASCII letters, digits, '-' and '_'; runs of anything else become one '_'.
-std::string file_stem(std::string_view name) {
-  constexpr std::size_t kMax = 80;
-  std::string out;
-  for (const char c : name) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                       c == '-' || c == '_';
-    if (plain) {
-      out += c;
-    } else if (!out.empty() && out.back() != '_') {
-      out += '_';
-    }
-    if (out.size() == kMax) break;
-  }
-  while (!out.empty() && out.back() == '_') out.pop_back();
-  return out.empty() ? "mission" : out;
-}
-
 /// Is anything of it a way?
 bool drives(const Plan& plan) {
   return std::any_of(plan.items.begin(), plan.items.end(), [](const Item& item) {
@@ -267,6 +249,23 @@ Result<ImportedFile> import_file(std::string_view content, std::optional<Format>
     if (auto ok = check_fence(*file->fence); !ok) return tl::unexpected<Error>(ok.error());
   }
   return file;
+}
+
+std::string file_stem(std::string_view name) {
+  constexpr std::size_t kMax = 80;
+  std::string out;
+  for (const char c : name) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '-' || c == '_';
+    if (plain) {
+      out += c;
+    } else if (!out.empty() && out.back() != '_') {
+      out += '_';
+    }
+    if (out.size() == kMax) break;
+  }
+  while (!out.empty() && out.back() == '_') out.pop_back();
+  return out.empty() ? "mission" : out;
 }
 
 ExportedFile export_file(const Plan& plan, Format format, const Fence* fence) {

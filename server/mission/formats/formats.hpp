@@ -135,6 +135,10 @@ struct ExportedFile {
   std::vector<FileRow> rows;
 };
 
+/// Of a file that is given: ASCII letters, digits, '-' and '_'; runs of anything else become one '_'.
+/// 80 characters at most; "mission" where none is left.
+std::string file_stem(std::string_view name);
+
 /// Positions come back equal when the file is imported again. @param format is_written @param fence
 /// written into .plan, GeoJSON, KML and KMZ; the other formats have no place for it, and `rows`
 /// says so. Null: none
