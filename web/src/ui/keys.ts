@@ -78,7 +78,7 @@ const plain_key = (station: Station, event: KeyboardEvent): boolean => {
       (station.drawing ?? editor).remove_selected();
       return true;
     case 'f':
-      station.set_follow(!station.follow);
+      station.set_follow(!station.follows);
       return true;
     case 'h':
       toggle_map_up(station);

@@ -89,6 +89,10 @@ export class Station {
 
   /** A press on the map shows where the robot stands. */
   pointing = $derived.by<boolean>(() => this.tab === 'drive' && this.standing.open);
+  /** The map goes with the robot now. One that moves under the finger cannot be drawn on. */
+  follows = $derived.by<boolean>(
+    () => this.follow && this.tab !== 'plan' && this.drawing === null && !this.pointing,
+  );
 
   /** Once the robot drives, what it is driven with goes before. */
   drilling = $derived.by<boolean>(
@@ -341,11 +345,7 @@ export class Station {
 
   #keep_map_in_step(): void {
     const { editor, live, map } = this;
-    // A map that moves under the finger cannot be drawn on.
-    $effect(() => {
-      const drawn_on = this.tab === 'plan' || this.drawing !== null || this.pointing;
-      map.set_follow(this.follow && !drawn_on);
-    });
+    $effect(() => map.set_follow(this.follows));
     $effect(() => {
       // What is only seen before it is done cannot be taken yet.
       const edits = this.tab === 'plan' && !this.shaping.transform ? editor.map_mode : 'watch';

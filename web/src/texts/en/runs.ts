@@ -75,7 +75,7 @@ export const runs = {
   jerk_rms: 'Jerk, rms',
   from_the_end_point: 'From the end point',
   of_it_driving: 'Of it driving',
-  of_it_to_the_first_item: 'Of it to the first item',
+  of_it_to_the_first_item: 'Of it to the first item, not judged',
   energy: 'Energy',
   no_satellite_in_view: 'No satellite in view',
   used_used_tracked_heard_satellites: '{used} used, {tracked} heard, {satellites} in view',

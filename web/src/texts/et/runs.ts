@@ -74,7 +74,7 @@ export const runs = {
   jerk_rms: 'Jõnks, rms',
   from_the_end_point: 'Lõpp-punktist',
   of_it_driving: 'Sellest sõitu',
-  of_it_to_the_first_item: 'Sellest esimese punktini',
+  of_it_to_the_first_item: 'Sellest esimese punktini, hindamata',
   energy: 'Energia',
   no_satellite_in_view: 'Ühtki satelliiti pole näha',
   used_used_tracked_heard_satellites: '{used} kasutusel, {tracked} kuulda, {satellites} näha',

@@ -75,7 +75,7 @@ export const runs = {
   jerk_rms: 'Nykäys, rms',
   from_the_end_point: 'Päätepisteestä',
   of_it_driving: 'Siitä ajoa',
-  of_it_to_the_first_item: 'Siitä ensimmäiseen kohtaan',
+  of_it_to_the_first_item: 'Siitä ensimmäiseen kohtaan, ei arvioitu',
   energy: 'Energia',
   no_satellite_in_view: 'Satelliitteja ei näy',
   used_used_tracked_heard_satellites: '{used} käytössä, {tracked} kuuluu, {satellites} näkyvissä',

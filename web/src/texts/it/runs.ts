@@ -75,7 +75,7 @@ export const runs = {
   jerk_rms: 'Strappo, rms',
   from_the_end_point: 'Dal punto finale',
   of_it_driving: 'Di cui in marcia',
-  of_it_to_the_first_item: 'Di cui al primo elemento',
+  of_it_to_the_first_item: 'Di cui al primo elemento, non giudicato',
   energy: 'Energia',
   no_satellite_in_view: 'Nessun satellite in vista',
   used_used_tracked_heard_satellites: '{used} usati, {tracked} sentiti, {satellites} in vista',

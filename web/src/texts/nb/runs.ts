@@ -75,7 +75,7 @@ export const runs = {
   jerk_rms: 'Rykk, rms',
   from_the_end_point: 'Fra sluttpunktet',
   of_it_driving: 'Herav kjøring',
-  of_it_to_the_first_item: 'Herav til første punkt',
+  of_it_to_the_first_item: 'Herav til første punkt, ikke bedømt',
   energy: 'Energi',
   no_satellite_in_view: 'Ingen satellitter i sikte',
   used_used_tracked_heard_satellites: '{used} brukt, {tracked} hørt, {satellites} i sikte',
