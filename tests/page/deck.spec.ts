@@ -70,6 +70,9 @@ test('the figures tell how it drives, and are large', async ({ page, station }) 
     .getByRole('definition')
     .evaluateAll((all) => all.map((each) => parseFloat(getComputedStyle(each).fontSize)));
   expect(Math.min(...sizes)).toBeGreaterThanOrEqual(26);
+  // On a phone, too, nothing is looked for while it drives.
+  await page.setViewportSize({ width: 390, height: 844 });
+  await expect(page.getByRole('button', { name: 'Pause', exact: true })).toBeInViewport();
 });
 
 test('instruments are chosen and kept, and what is plotted can be stopped and saved', async ({
