@@ -42,7 +42,10 @@ describe('report', () => {
     const of = (label: string) => rows.find((each) => each.label === label);
     expect(of('Off the path, rms')).toMatchObject({ first: '—', better: null });
     expect(of('Heading, rms')?.first).toBe('—');
-    expect(of('Of it to the first item, not judged')).toMatchObject({ first: '2.50 m', second: '—' });
+    expect(of('Of it to the first item, not judged')).toMatchObject({
+      first: '2.50 m',
+      second: '—',
+    });
   });
 
   test('shows one run alone, an unknown energy as unknown', () => {

@@ -27,8 +27,16 @@ export class FirstSave {
     this.tried = tried;
     keep();
     const answer = await this.#calls.create(tried.plan, tried.key);
-    if (answer.ok || answer.refusal.status !== 0) this.tried = null;
-    if (!answer.ok || JSON.stringify(tried.plan) === JSON.stringify(plan)) return answer;
-    return this.#calls.replace(answer.value.id, answer.value.revision, plan);
+    const is_known = answer.ok || answer.refusal.status !== 0;
+    if (!answer.ok || JSON.stringify(tried.plan) === JSON.stringify(plan)) {
+      if (is_known) this.tried = null;
+      return answer;
+    }
+    const replaced = await this.#calls.replace(answer.value.id, answer.value.revision, plan);
+    if (replaced.ok) this.tried = null;
+    if (replaced.ok || ![404, 412].includes(replaced.refusal.status)) return replaced;
+    // Somebody has made another one of it meanwhile, or deleted it: this is a mission of its own.
+    this.tried = null;
+    return this.create(plan, keep);
   }
 }
