@@ -8,9 +8,14 @@ import type { Dialogs } from './dialogs.svelte';
 import type { Notices } from './notices.svelte';
 import type { Pilot } from './pilot.svelte';
 
+/** A program that has just begun listens before it has read what the one before it left; and an answer
+ * may be lost. */
+const AGAIN_AFTER_MS: readonly number[] = [1000, 4000, 10_000];
+
 export class Resumption {
   left_behind = $state.raw<LeftBehind | null>(null);
   busy = $state(false);
+  #later: readonly ReturnType<typeof setTimeout>[] = [];
 
   readonly #calls: VehicleCalls;
   readonly #pilot: Pilot;
@@ -24,7 +29,18 @@ export class Resumption {
     this.#dialogs = dialogs;
   }
 
-  /** On every new connection, and when another mission is in hand. */
+  /** On every new connection. */
+  connected(): void {
+    void this.refresh();
+    for (const each of this.#later) clearTimeout(each);
+    this.#later = AGAIN_AFTER_MS.map((after_ms) =>
+      setTimeout(() => {
+        if (this.left_behind === null) void this.refresh();
+      }, after_ms),
+    );
+  }
+
+  /** When another mission is in hand. */
   async refresh(): Promise<void> {
     const answer = await this.#calls.left_behind();
     if (answer.ok) this.left_behind = answer.value;

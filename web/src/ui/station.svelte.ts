@@ -186,7 +186,7 @@ export class Station {
       this.live.take_link(link);
       if (link.socket !== 'open' || was_open) return;
       void this.#fetch_past_events();
-      void this.resumption.refresh();
+      this.resumption.connected();
       this.#past_way.connected();
     },
     on_hello: (capabilities) => {

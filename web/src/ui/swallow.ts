@@ -5,23 +5,25 @@
 const CLICK_AFTER_MS = 500;
 
 /** Takes the click out that ends the press in hand, if it falls there: elsewhere, as on STOP, each one
- * counts. */
+ * counts, and so does whatever begins with a press of its own. */
 export const swallow_click = ({ left, right, top, bottom }: DOMRect): void => {
-  const here = ({ clientX, clientY }: MouseEvent): boolean =>
-    clientX >= left && clientX <= right && clientY >= top && clientY <= bottom;
   const eat = (event: MouseEvent): void => {
-    if (!here(event)) return;
+    const { clientX: x, clientY: y } = event;
+    if (x < left || x > right || y < top || y > bottom) return;
     event.preventDefault();
     event.stopPropagation();
   };
-  const lifted = (event: PointerEvent): void => {
-    if (event.type === 'pointerup' && !here(event)) return;
-    for (const type of ['pointerup', 'pointercancel'] as const) {
-      window.removeEventListener(type, lifted, true);
-    }
-    setTimeout(() => window.removeEventListener('click', eat, true), CLICK_AFTER_MS);
+  const done = (): void => {
+    window.removeEventListener('click', eat, true);
+    window.removeEventListener('pointerdown', done, true);
+    window.removeEventListener('pointerup', lifted, true);
+    window.removeEventListener('pointercancel', done, true);
+  };
+  const lifted = (): void => {
+    setTimeout(done, CLICK_AFTER_MS);
   };
   window.addEventListener('click', eat, true);
+  window.addEventListener('pointerdown', done, true);
   window.addEventListener('pointerup', lifted, true);
-  window.addEventListener('pointercancel', lifted, true);
+  window.addEventListener('pointercancel', done, true);
 };
