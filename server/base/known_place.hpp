@@ -19,7 +19,7 @@ struct KnownPlace {
   std::optional<int> tag;         ///< its number in tag36h11, each once; empty: a pole or a cone
   std::optional<double> yaw_rad;  ///< in which the tag looks: out of the wall; empty: not known
   double yaw_sigma_rad = 0.0349065850;  ///< how well that is known, 1 sigma: 2 deg
-  bool configured = false;        ///< by the configuration: not to be changed while it runs
+  bool configured = false;              ///< by the configuration: not to be changed while it runs
   friend bool operator==(const KnownPlace&, const KnownPlace&) = default;
 };
 

@@ -135,7 +135,7 @@ struct ExportedFile {
   std::vector<FileRow> rows;
 };
 
-/// Of a file that is given: ASCII letters, digits, '-' and '_'; runs of anything else become one '_'.
+/// Of a file that is given: ASCII letters, digits, '-' and '_'; runs of all else become one '_'.
 /// 80 characters at most; "mission" where none is left.
 std::string file_stem(std::string_view name);
 
