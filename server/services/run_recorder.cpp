@@ -72,8 +72,8 @@ void RunRecorder::look(const base::Snapshot& s) {
   flush(s.wall, std::nullopt);
 }
 
-/// While the mission runs, and after a pause or a stop until the robot stands: how it came to rest is
-/// part of the run. What is driven by hand after that is not.
+/// While the mission runs, and after a pause or a stop until the robot stands: how it came to rest
+/// is part of the run. What is driven by hand after that is not.
 bool RunRecorder::drives(const base::Snapshot& s) {
   if (s.mission.state == ExecutionState::Running) {
     ran_ = s.now;
