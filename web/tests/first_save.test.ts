@@ -5,7 +5,7 @@ import { describe, expect, test } from 'vitest';
 import { EMPTY_PLAN, type Plan } from '../src/model/plan';
 import type { Answer, Refusal } from '../src/model/answer';
 import type { Mission, MissionCalls } from '../src/model/ports';
-import { FirstSave } from '../src/ui/first_save';
+import { FirstSave } from '../src/model/first_save';
 
 const named = (name: string): Plan => ({ ...EMPTY_PLAN, name });
 const refused = (status: number): Answer<Mission> => ({
@@ -34,7 +34,8 @@ const robot = (answers: readonly (Answer<Mission> | null)[] = []) => {
     },
   } as unknown as MissionCalls;
   const names = (): string[] => [...stored.values()].map(({ name }) => name);
-  return { first: new FirstSave(calls), names };
+  let keys = 0;
+  return { first: new FirstSave(calls, () => `key ${keys++}`), names };
 };
 const keep = (): void => undefined;
 

@@ -4,6 +4,7 @@ import { type Answer, failure_text, refusal_text, refused_items } from '../model
 import { append_waypoint, insert_waypoint, move_waypoint, remove_item } from '../model/actions';
 import type { PlanAction } from '../model/actions';
 import { draft_text, parse_draft, type Stored } from '../model/draft';
+import { FirstSave } from '../model/first_save';
 import { begin_history, perform, redo, undo, type History } from '../model/history';
 import { edits_left, edits_resumed, parse_past, with_past } from '../model/past_edits';
 import { EMPTY_PLAN, type LatLon, type Plan } from '../model/plan';
@@ -16,7 +17,7 @@ import type { DraftStorage, MapMode, Mission, MissionCalls } from '../model/port
 import type { Drawing } from './drawing.svelte';
 import type { Dialogs } from './dialogs.svelte';
 import { plan_of, type Kept, type Preview } from './edited';
-import { FirstSave } from './first_save';
+import { fresh_key } from './fresh_key';
 import type { Notices } from './notices.svelte';
 
 const DRAFT_AFTER_MS = 300;
@@ -60,7 +61,7 @@ export class Editor implements Drawing {
 
   constructor(calls: MissionCalls, kept: Kept, notices: Notices, dialogs: Dialogs) {
     this.#calls = calls;
-    this.#first = new FirstSave(calls);
+    this.#first = new FirstSave(calls, fresh_key);
     this.#storage = kept.draft;
     this.#past = kept.past;
     this.#notices = notices;

@@ -1,29 +1,26 @@
 // A mission that is stored for the first time, over a link that may lose the answer.
 
-import type { Answer } from '../model/answer';
-import type { Tried } from '../model/draft';
-import type { Plan } from '../model/plan';
-import type { Mission, MissionCalls } from '../model/ports';
-
-/** Also where a page has no secure context. */
-const fresh_key = (): string =>
-  [...crypto.getRandomValues(new Uint8Array(16))]
-    .map((byte) => byte.toString(16).padStart(2, '0'))
-    .join('');
+import type { Answer } from './answer';
+import type { Tried } from './draft';
+import type { Plan } from './plan';
+import type { Mission, MissionCalls } from './ports';
 
 export class FirstSave {
   /** Kept with the draft; null: nothing is open. */
   tried: Tried | null = null;
   readonly #calls: MissionCalls;
+  readonly #fresh_key: () => string;
 
-  constructor(calls: MissionCalls) {
+  /** @param fresh_key another one each time */
+  constructor(calls: MissionCalls, fresh_key: () => string) {
     this.#calls = calls;
+    this.#fresh_key = fresh_key;
   }
 
   /** What was sent before, and may have arrived, becomes this one: else there were two.
    * @param keep before it is sent, on the device */
   async create(plan: Plan, keep: () => void): Promise<Answer<Mission>> {
-    const tried = this.tried ?? { key: fresh_key(), plan };
+    const tried = this.tried ?? { key: this.#fresh_key(), plan };
     this.tried = tried;
     keep();
     const answer = await this.#calls.create(tried.plan, tried.key);
