@@ -15,12 +15,15 @@ constexpr float kNoGroundBefore = std::numeric_limits<float>::infinity();
 constexpr std::size_t kNowhereOut = std::numeric_limits<std::size_t>::max();
 // A face and what its noise throws behind it are nearer to each other.
 constexpr std::size_t kBehind = 3;
+// What a ring does that meets an edge: it jumps by more than a ray falls over this much of height.
+constexpr float kRingEdge_m = 0.06F;
+// Of the directions about one that must have met ground.
+constexpr float kRingPart = 0.8F;
 // Whatever the settings say of the grass.
 constexpr double kMostOver_m = 0.15;
 
-// From a place to itself, to one beside it and to one across: so much the ground may rise.
-constexpr float kRiseBeside_m = Hills::kSteepest * static_cast<float>(Hills::kCell_m);
-constexpr std::array<float, 3> kRise_m{0.0F, kRiseBeside_m, 1.4142F * kRiseBeside_m};
+// Where no place about it is known: cells to what is.
+constexpr std::int32_t kNear = 3;
 
 std::int32_t hill_cell(double m) noexcept {
   return static_cast<std::int32_t>(std::floor(m / Hills::kCell_m));
@@ -65,7 +68,8 @@ Hills::Hills(double range_m, double low_m)
     : low_m_(static_cast<float>(std::min(low_m, kMostOver_m))),
       steps_(static_cast<std::size_t>(std::ceil(range_m / static_cast<double>(kStep_m))) + 1),
       lowest_(kDirections * steps_),
-      highest_(kDirections * steps_) {
+      highest_(kDirections * steps_),
+      first_(kDirections) {
   const auto wide = static_cast<std::uint32_t>(std::ceil(2.0 * range_m / kCell_m)) + 8;
   mask_ = static_cast<std::int32_t>(std::bit_ceil(std::clamp(wide, 16U, 1024U))) - 1;
   const auto side = static_cast<std::size_t>(mask_) + 1;
@@ -95,14 +99,58 @@ std::size_t Hills::step_of(const Voxel& v) const noexcept {
   return direction * steps_ + static_cast<std::size_t>(out);
 }
 
-void Hills::look_out(const std::vector<Voxel>& voxels) noexcept {
+void Hills::meet_first(const Reduced& in) noexcept {
+  std::fill(first_.begin(), first_.end(), First{});
+  for (const Voxel& v : in.voxels) {
+    if (v.kind != Kind::Ground) continue;
+    const std::size_t i = step_of(v);
+    if (i == kNowhereOut) continue;
+    First& first = first_[i / steps_];
+    const float out = std::hypot(v.x_m, v.y_m);
+    if (first.out_m > 0.0F && first.out_m <= out) continue;
+    const float ray = std::hypot(v.x_m - in.origin_m[0], v.y_m - in.origin_m[1]);
+    first = {out, v.z_m, (in.origin_m[2] - v.z_m) / std::max(ray, kStep_m)};
+  }
+}
+
+bool Hills::on_wide_ground(std::size_t direction) const noexcept {
+  const First& at = first_[direction];
+  if (!(at.falls > 0.0F) || at.z_m > kSteepest * (at.out_m - kBeside_m)) return false;
+  constexpr auto kTurn_rad = static_cast<float>(2.0 * base::kPi / kDirections);
+  const auto aside = static_cast<int>(std::ceil(kWide_m / (at.out_m * kTurn_rad)));
+  if (aside > static_cast<int>(kDirections) / 6) return false;
+  // How far ahead it lies over how far aside: a parabola by least squares, even part only.
+  float n = 0.0F, xs = 0.0F, y2s = 0.0F, y4s = 0.0F, xy2s = 0.0F;
+  const First* before = nullptr;
+  for (int k = -aside; k <= aside; ++k) {
+    const First& f = first_[(direction + kDirections + static_cast<std::size_t>(k)) % kDirections];
+    if (f.out_m <= 0.0F) continue;
+    if (before != nullptr && std::abs(f.out_m - before->out_m) > kRingEdge_m / at.falls)
+      return false;
+    before = &f;
+    const float turn = static_cast<float>(k) * kTurn_rad;
+    const float x = f.out_m * std::cos(turn);
+    const float y2 = f.out_m * f.out_m * std::sin(turn) * std::sin(turn);
+    n += 1.0F;
+    xs += x;
+    y2s += y2;
+    y4s += y2 * y2;
+    xy2s += x * y2;
+  }
+  if (n < kRingPart * static_cast<float>(2 * aside + 1)) return false;
+  const float bend = (n * xy2s - xs * y2s) / std::max(n * y4s - y2s * y2s, 1e-6F);
+  return bend < -0.25F / at.out_m;
+}
+
+void Hills::look_out(const Reduced& in) noexcept {
   std::fill(lowest_.begin(), lowest_.end(), kNoGroundBefore);
   std::fill(highest_.begin(), highest_.end(), -kNoGroundBefore);
-  for (const Voxel& v : voxels) {
+  for (const Voxel& v : in.voxels) {
     if (v.kind != Kind::Ground) continue;
     const std::size_t i = step_of(v);
     if (i != kNowhereOut) lowest_[i] = std::min(lowest_[i], v.z_m);
   }
+  meet_first(in);
   for (std::size_t direction = 0; direction < kDirections; ++direction) look_out(direction);
 }
 
@@ -112,15 +160,20 @@ void Hills::look_out(std::size_t direction) noexcept {
   // What the ground can be at most, seen from the body.
   float most = 0.0F;
   bool begun = false;
+  const bool wide = on_wide_ground(direction);
   for (std::size_t i = 0; i < steps_; ++i) {
     if (begun) most += kSteepest * kStep_m;
-    const float upto = most + (begun ? kRough_m : static_cast<float>(kMostLow_m));
+    const float first_m =
+        wide ? kSteepest * (static_cast<float>(i + 1) * kStep_m - kBeside_m) : 0.0F;
+    const float upto = begun ? most + kRough_m : std::max(static_cast<float>(kMostLow_m), first_m);
     if (low[i] > upto) {
       low[i] = kNoGroundBefore;
       continue;
     }
+    // From a hill around the robot it goes on from there.
+    const bool from_hill = !begun && low[i] > static_cast<float>(kMostLow_m);
+    most = from_hill ? low[i] : std::min(most, low[i]);
     begun = true;
-    most = std::min(most, low[i]);
     high[i] = upto;
   }
   // And between what lies before and behind it.
@@ -150,7 +203,7 @@ void Hills::learn(const Reduced& in) {
   }
   const std::int32_t half = half_of(in.stamp);
   const Lies lies(in);
-  look_out(in.voxels);
+  look_out(in);
   for (const Voxel& v : in.voxels) {
     if (v.kind != Kind::Ground || !has_cell(lies.x_m(v), lies.y_m(v))) continue;
     const std::int32_t x = hill_cell(lies.x_m(v));
@@ -186,20 +239,29 @@ std::optional<float> Hills::lowest_m(std::int32_t x, std::int32_t y,
   return p.half < half ? p.z_m : std::min(p.z_m, p.before_m);
 }
 
+float Hills::lowest_about(std::int32_t x, std::int32_t y, std::int32_t half,
+                          std::int32_t cells) const noexcept {
+  float ground = kNoGroundBefore;
+  for (std::int32_t dy = -cells; dy <= cells; ++dy) {
+    for (std::int32_t dx = -cells; dx <= cells; ++dx) {
+      const auto lowest = lowest_m(x + dx, y + dy, half);
+      if (!lowest) continue;
+      const float off_m =
+          static_cast<float>(kCell_m) * std::hypot(static_cast<float>(dx), static_cast<float>(dy));
+      ground = std::min(ground, *lowest + kSteepest * off_m);
+    }
+  }
+  return ground;
+}
+
 bool Hills::is_ground(double x_m, double y_m, float z_m, base::Time now) const noexcept {
   if (!begun_ || !has_cell(x_m, y_m)) return false;
   const std::int32_t half = half_of(now);
   const std::int32_t x = hill_cell(x_m);
   const std::int32_t y = hill_cell(y_m);
   // Lower ground beside it may be down the slope.
-  float ground = kNoGroundBefore;
-  for (std::int32_t dy = -1; dy <= 1; ++dy) {
-    for (std::int32_t dx = -1; dx <= 1; ++dx) {
-      const auto lowest = lowest_m(x + dx, y + dy, half);
-      if (lowest)
-        ground = std::min(ground, *lowest + kRise_m[static_cast<std::size_t>(dx * dx + dy * dy)]);
-    }
-  }
+  float ground = lowest_about(x, y, half, 1);
+  if (ground == kNoGroundBefore) ground = lowest_about(x, y, half, kNear);
   // Nothing known is infinitely high: below it.
   return z_m <= ground + low_m_ && z_m >= ground - kInside_m;
 }

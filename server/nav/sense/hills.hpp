@@ -3,8 +3,8 @@
 // from what stands there.
 //
 //   a cloud's ground ─▶ the lowest of it in cells of kCell_m, for kKnown_s, in O ─▶ a plane's echo
-//   from kInside_m below to low_m above the lowest of three by three cells is ground; from those
-//   beside it the ground may rise to it by kSteepest
+//   from kInside_m below to low_m above the lowest of three by three cells is ground (of seven by
+//   seven, where these are not known); from those about it the ground may rise to it by kSteepest
 //
 // Only a sensor that lays the ground tells it (ground.hpp): a bank that is too steep is none, and
 // where nobody saw the ground a plane's echo stays an obstacle. A ring on the face of a low thing
@@ -46,6 +46,8 @@ class Hills {
   static constexpr float kSteepest = 0.15F;  ///< rise over way
   static constexpr float kRough_m = 0.05F;
   static constexpr double kMostLow_m = 0.08;
+  static constexpr float kBeside_m = 0.8F;
+  static constexpr float kWide_m = 1.0F;
   /// Farther from where the odometry began nothing is ground.
   static constexpr double kFarthest_m = 1e7;
 
@@ -77,13 +79,20 @@ class Hills {
   /// kStep_m of a direction, from the body's origin outwards.
   std::size_t step_of(const Voxel& v) const noexcept;
   /// Sets highest_ of each step: what lies no higher is ground.
-  void look_out(const std::vector<Voxel>& voxels) noexcept;
+  void look_out(const Reduced& in) noexcept;
   void look_out(std::size_t direction) noexcept;
+  /// The first ground of a direction is of a hill, whatever is hidden before it.
+  bool on_wide_ground(std::size_t direction) const noexcept;
+  /// Sets first_ of each direction.
+  void meet_first(const Reduced& in) noexcept;
   /// Known ground that is seen again, as high as it was, is known anew; its height does not rise.
   static void renew(Place& p, std::int32_t x, std::int32_t y, std::int32_t half,
                     float z_m) noexcept;
   std::size_t index(std::int32_t x, std::int32_t y) const noexcept;
   std::int32_t half_of(base::Time t) const noexcept;
+  /// Of the cells so far about it, each with the rise from there; infinity: none is known.
+  float lowest_about(std::int32_t x, std::int32_t y, std::int32_t half,
+                     std::int32_t cells) const noexcept;
   std::optional<float> lowest_m(std::int32_t x, std::int32_t y, std::int32_t half) const noexcept;
 
   float low_m_;
@@ -91,6 +100,12 @@ class Hills {
   std::size_t steps_;           ///< of each direction
   std::vector<float> lowest_;   ///< ground of the piece, over the body's plane; infinity: none
   std::vector<float> highest_;  ///< minus infinity: nothing is ground there
+  struct First {
+    float out_m = 0.0F;  ///< nearest of the ground, from the body's origin; 0: none
+    float z_m = 0.0F;
+    float falls = 0.0F;  ///< the ray that met it, per metre; not positive: it is not known
+  };
+  std::vector<First> first_;  ///< of each direction
   std::vector<Place> places_;
   bool begun_ = false;
   base::Time begin_;
