@@ -129,7 +129,7 @@ class WorldDrive {
         made_(made),
         stage_(made.settings, made.plant, s.number, made.start),
         around_(s.world, made.plant.body, base::Time{}),
-        referee_(around_, made.settings.robot.protect, made.settings.sense.ground.pass_below_m,
+        referee_(around_, made.settings.robot.protect, made.settings.sense.ground,
                  s.lidar ? 0.0 : made.eyes.front().seen.z_m),
         lookout_(std::move(lookout)) {
     around_.attend(stage_.plant());

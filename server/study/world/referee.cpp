@@ -61,10 +61,11 @@ world::Body grown(world::Body body, double by_m) {
 }  // namespace
 
 Referee::Referee(const sim::Surroundings& around, const nav::sense::ProtectParams& brakes,
-                 double pass_below_m, double plane_m)
+                 const nav::sense::GroundParams& ground, double plane_m)
     : around_(around),
       brakes_(brakes),
-      pass_below_m_(pass_below_m),
+      pass_below_m_(ground.pass_below_m),
+      grass_m_(ground.min_height_m + ground.rough_m),
       plane_m_(plane_m),
       met_(kMapSide * kMapSide) {
   reach_m_ = 0.0;
@@ -166,18 +167,46 @@ double Referee::there_since_s(int thing, const world::Pose& pose, double at_s) c
   return since_s;
 }
 
+bool Referee::reaches(int thing, const world::Pose& pose, double at_s, double from_m,
+                      double to_m) const {
+  world::Body slab = grown(around_.witness().body(), 0.02);
+  slab.clearance_m = from_m;
+  slab.height_m = to_m;
+  world::Moment moment;
+  around_.scene().move_to(moment, at_s);
+  const auto there = world::contact(around_.scene(), moment, pose, slab, 0.01);
+  return std::ranges::find(there.touches, thing, &world::Touch::thing) != there.touches.end();
+}
+
 /// Of what was touched nothing reaches into the scanners' plane there: it lies beneath, or hangs
 /// above.
 bool Referee::beside_plane(int thing, const world::Pose& pose, double at_s) const {
   constexpr double kUneven_m = 0.03;
-  if (plane_m_ <= 0.0) return false;
-  world::Body slab = grown(around_.witness().body(), 0.02);
-  slab.clearance_m = plane_m_ - kUneven_m;
-  slab.height_m = plane_m_ + kUneven_m;
+  return plane_m_ > 0.0 && !reaches(thing, pose, at_s, plane_m_ - kUneven_m, plane_m_ + kUneven_m);
+}
+
+/// The uphill corner of a low box, say: looked for everywhere below the body, over its own plane
+/// there. The ground is laid through the middle of the grass.
+bool Referee::low_as_grass(int thing, const world::Pose& pose, double at_s) const {
+  if (thing < 0) return false;
+  constexpr double kStep_m = 0.05;
+  const world::Body whole = grown(around_.witness().body(), 0.02);
+  world::Body little =
+      world::Body::rectangle(0.5 * kStep_m, 0.5 * kStep_m, kStep_m, whole.height_m, grass_m_);
+  const auto [rear, front] = std::ranges::minmax(whole.outline, {}, &world::Vec2::x);
+  const auto [right, left] = std::ranges::minmax(whole.outline, {}, &world::Vec2::y);
+  const world::Frame body(pose);
   world::Moment moment;
   around_.scene().move_to(moment, at_s);
-  const auto there = world::contact(around_.scene(), moment, pose, slab, 0.01);
-  return std::ranges::find(there.touches, thing, &world::Touch::thing) == there.touches.end();
+  for (double x = rear.x; x <= front.x; x += kStep_m) {
+    for (double y = right.y; y <= left.y; y += kStep_m) {
+      const world::Vec3 at = body * world::Vec3{x, y, 0.0};
+      const world::Pose there{at.x, at.y, at.z, 0.0, 0.0, pose.yaw_rad};
+      const auto met = world::contact(around_.scene(), moment, there, little, 0.01).touches;
+      if (std::ranges::find(met, thing, &world::Touch::thing) != met.end()) return false;
+    }
+  }
+  return true;
 }
 
 std::optional<double> Referee::in_sight_since_s(int number, double touched_s) const {
@@ -252,7 +281,9 @@ void Referee::judge(const world::Witness::Seen& seen) {
   } else if (!brakes_avoid(seen.thing, *since_s, seen.at_s)) {
     out.blame = Blame::Late;
   } else {
-    out.blame = beside_plane(seen.thing, now.pose, seen.at_s) ? Blame::Beside : Blame::Ours;
+    const bool beside = beside_plane(seen.thing, now.pose, seen.at_s) ||
+                        low_as_grass(seen.thing, now.pose, seen.at_s);
+    out.blame = beside ? Blame::Beside : Blame::Ours;
   }
   if (since_s) {
     const double there_s = seen.moving ? there_since_s(seen.thing, now.pose, seen.at_s) : -1e9;

@@ -29,9 +29,10 @@ namespace roverd::study {
 class Referee {
  public:
   /// @param pass_below_m what hangs higher is no obstacle.
+  /// @param ground what hangs higher, or rises no higher than grass, is no obstacle.
   /// @param plane_m over the ground: all its sensors look along it; 0: not so.
   Referee(const sim::Surroundings& around, const nav::sense::ProtectParams& brakes,
-          double pass_below_m, double plane_m);
+          const nav::sense::GroundParams& ground, double plane_m);
 
   /// A sensor's piece came. @param mount of the sensor
   void saw(const std::vector<sim::world::Sweep>& sweeps, const sim::world::Pose& mount,
@@ -67,6 +68,10 @@ class Referee {
 
   void judge(const sim::world::Witness::Seen& seen);
   bool beside_plane(int thing, const sim::world::Pose& pose, double at_s) const;
+  bool low_as_grass(int thing, const sim::world::Pose& pose, double at_s) const;
+  /// What of it was touched reaches between these heights over the body's plane.
+  bool reaches(int thing, const sim::world::Pose& pose, double at_s, double from_m,
+               double to_m) const;
   /// Begin of the unbroken sight before the contact; of who moves, not before he set out. Empty:
   /// never seen, or he was not any more.
   std::optional<double> in_sight_since_s(int number, double touched_s) const;
@@ -83,6 +88,7 @@ class Referee {
   const sim::Surroundings& around_;
   const nav::sense::ProtectParams brakes_;
   const double pass_below_m_;
+  const double grass_m_;  ///< what rises no higher is told from the ground by nobody
   const double plane_m_;
   double reach_m_ = 0.5;
   std::vector<Was> trail_;

@@ -66,10 +66,11 @@ base::Result<Scenario> scenario_of(const WorldOrder& order, std::uint64_t number
 
 /// Whose was it?
 enum class Blame {
-  Ours,    ///< braking from the first sight would have avoided it
-  Late,    ///< it came in sight too late for any brakes, or would have come to it anyhow
-  Beside,  ///< its scanners look along one plane: what was touched lies beneath it, or hangs above
-  Unseen,  ///< no sensor ever saw it: too low, too high, too dark
+  Ours,      ///< braking from the first sight would have avoided it
+  Late,      ///< it came in sight too late for any brakes, or would have come to it anyhow
+  Beside,    ///< what was touched lies beneath the one plane of its scanners or hangs above it, or
+             ///< rises no higher over the ground than grass
+  Unseen,    ///< no sensor ever saw it: too low, too high, too dark
   Standing,  ///< the robot stood, or drove away from it: it came
 };
 std::string_view to_string(Blame blame) noexcept;  // ours late beside unseen standing

@@ -229,6 +229,20 @@ TEST(WorldRunTest, WhatHangsAboveThePlaneOfItsScannersIsNoContactThatBrakesWould
   EXPECT_GT(run->touches[0].seen_before_s, 2.0);
 }
 
+//   A lidar meets a flat thing for seconds; by the settings it rises no higher than grass may.
+TEST(WorldRunTest, WhatRisesNoHigherThanGrassIsNoContactThatBrakesWouldHaveSpared) {
+  Scenario s =
+      ahead(R"({"kind": "box", "at": [0, 5], "length_m": 2, "width_m": 1.5, "height_m": 0.22})");
+  s.lidar = true;
+  study::Setup in_grass = setup_of();
+  in_grass.overrides = {"sense.ground.min_height_m=0.2", "sense.ground.rough_m=0.1"};
+  const auto run = run_world(in_grass, s);
+  ASSERT_TRUE(run) << run.error().detail;
+  ASSERT_FALSE(run->touches.empty());
+  EXPECT_GT(run->touches[0].beams, 100U);
+  EXPECT_EQ(run->touches[0].blame, Blame::Beside);
+}
+
 Scenario crossed() {
   return ahead(R"({"kind": "person", "path": [[-4, 6], [4, 6]],
       "speed_mps": 1.3, "motion": "once", "start_s": 10.25})");
