@@ -7,6 +7,7 @@ namespace roverd {
 namespace {
 constexpr base::Duration kGoodbye = std::chrono::milliseconds(500);
 constexpr base::Duration kFirstTick = std::chrono::seconds(10);
+constexpr base::Duration kRecall = std::chrono::seconds(2);
 constexpr base::Duration kLook = std::chrono::milliseconds(1);
 }  // namespace
 
@@ -41,9 +42,13 @@ void Station::Impl::start() {
             {{"robot", presence->badge().name}, {"address", address}, {"version", kVersion}});
 }
 
-/// Who asks the moment that "listening" is told hears of the robot, on a slow computer too.
+/// Who asks the moment that "listening" is told hears of the robot, and of the mission that was
+/// left behind, on a slow computer too.
 void Station::Impl::await_first_tick() const {
-  for (auto waited = base::Duration{}; waited < kFirstTick && !robot.snapshot(); waited += kLook) {
+  const auto known = [this](base::Duration waited) {
+    return robot.snapshot() && (services->view()->recalled || waited > kRecall);
+  };
+  for (auto waited = base::Duration{}; waited < kFirstTick && !known(waited); waited += kLook) {
     std::this_thread::sleep_for(kLook);
   }
 }

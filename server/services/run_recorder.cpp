@@ -29,12 +29,13 @@ std::vector<store::RunParameter> changed_parameters(const robot::Robot& robot) {
 }  // namespace
 
 void RunRecorder::recall() {
-  if (std::exchange(recalled_, true)) return;
+  if (std::exchange(recalling_, true)) return;
   store_.read_place([self = std::weak_ptr<RunRecorder*>(self_)](auto place) {
     const auto alive = self.lock();
-    if (!alive || !place || !*place) return;
+    if (!alive) return;
     RunRecorder& r = **alive;
-    if (!r.place_kept_) r.offer_ = std::move(**place);
+    r.recalled_ = true;
+    if (place && *place && !r.place_kept_) r.offer_ = std::move(**place);
   });
 }
 
@@ -55,7 +56,10 @@ void RunRecorder::look(const base::Snapshot& s) {
   const base::MissionProgress& m = s.mission;
   const bool hand = in_hand(m.state);
   loaded_id_ = m.mission_id;
-  if (hand) offer_.reset();
+  if (hand) {
+    offer_.reset();
+    recalled_ = true;
+  }
   keep_place(s);
   const bool other = open_ && m.mission_id != mission_id_;
   if (open_ && (other || !hand)) {

@@ -44,6 +44,8 @@ class RunRecorder {
   void forget(std::function<void(base::Result<void>)> done);
   /// Reads it; once, before the first sample counts.
   void recall();
+  /// It was read, or could not be, or a mission is in hand since: offer() is right.
+  bool recalled() const noexcept { return recalled_; }
 
   std::optional<std::int64_t> running() const noexcept { return id_; }
   std::uint64_t lost_points() const noexcept { return lost_; }
@@ -62,6 +64,7 @@ class RunRecorder {
   std::string vehicle_;
   std::optional<store::StoredPlace> offer_;
   std::string loaded_id_;  ///< of the last sample; empty: no mission is loaded
+  bool recalling_ = false;
   bool recalled_ = false;
   bool place_kept_ = false;
   std::string place_seen_;

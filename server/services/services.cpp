@@ -66,7 +66,8 @@ void Services::beat() {
 
 void Services::publish() {
   // A reader holds the lock for a pointer's swap: the next try has it.
-  const auto view = std::make_shared<const View>(View{teach_->view(), runs_.offer()});
+  const auto view =
+      std::make_shared<const View>(View{teach_->view(), runs_.offer(), runs_.recalled()});
   while (!view_.publish(view)) {
   }
 }

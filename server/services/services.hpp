@@ -29,6 +29,8 @@ struct View {
   TeachView teach{};
   /// The mission that another life of the program left behind; empty: none, or it is in hand.
   std::optional<store::StoredPlace> offer{};
+  /// The store has said whether there is one.
+  bool recalled = false;
 };
 
 class Services {

@@ -41,6 +41,7 @@ struct Before {
   bool access = false;   ///< access control is on
   bool sees = false;     ///< it has sensors that look around: see()
   bool demands = false;  ///< and drives by itself with them only
+  bool hasty = false;    ///< the test begins before the store said what an earlier run left
   base::Duration control_grace = std::chrono::seconds(10);
   std::optional<maps::Configured> map{};  ///< of the configuration
 };

@@ -13,6 +13,15 @@ const std::vector<unsigned> kCommand = {200, 400, 403, 409, 413, 415, 422, 429, 
 
 constexpr std::int64_t kMostRevisions = 1'000'000'000;
 
+/// Nothing is said of what an earlier life left behind before that was read: a script that asks in
+/// the first moment would take silence for "nothing".
+bool unread(const ContextPtr& context, const CallPtr& call) {
+  if (context->deps.services.view()->recalled) return false;
+  call->respond(problem({base::Code::Unavailable,
+                         "what was left behind before the program started is not read yet"}));
+  return true;
+}
+
 std::function<Json(const base::Snapshot&)> progress_of(const ContextPtr& context) {
   return [context](const base::Snapshot& snapshot) {
     return execution_json(snapshot.mission, context->offer(snapshot));
@@ -231,6 +240,7 @@ Handler resume(const ContextPtr& context) {
     const robot::Validity validity = validity_of(members, *call, Moves::Yes);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
     if (refused_as_late(call, validity)) return;
+    if (unread(context, call)) return;
     const auto now = context->deps.robot.snapshot();
     const auto offer = now ? context->offer(*now) : std::nullopt;
     const auto loaded = context->deps.robot.loaded();
@@ -278,7 +288,8 @@ void add_execution_routes(const ContextPtr& c) {
   auto with_404 = kCommand;
   with_404.push_back(404);
   c->router.add({get, "/execution", {200, 503}, [c](const CallPtr& call) {
-                   if (const auto s = c->snapshot_or_refuse(call)) {
+                   const auto s = c->snapshot_or_refuse(call);
+                   if (s && !unread(c, call)) {
                      call->respond(json_response(http::status::ok, progress_of(c)(*s)));
                    }
                  }});

@@ -79,6 +79,21 @@ TEST_F(ServicesTest, TeachInIsStartedPausedAndDiscardedWhileTheWebIsStuck) {
   EXPECT_EQ(on_web, 0);
 }
 
+//   With the word that it was read comes what was read: nobody takes silence for "nothing".
+TEST_F(ServicesTest, WhatWasLeftBehindIsOfferedFromTheMomentThatItIsKnown) {
+  store::StoredPlace place;
+  place.mission_id = "left";
+  place.items = 3;
+  store_->keep_place(place, [](auto&&) {});
+  EXPECT_FALSE(services->view()->recalled);
+  services->start({});
+  auto view = services->view();
+  while (!view->recalled) view = services->view();
+  ASSERT_TRUE(view->offer);
+  EXPECT_EQ(view->offer->mission_id, "left");
+  services->stop();
+}
+
 TEST_F(ServicesTest, TheTrailIsReadUpToTheNewestSnapshot) {
   services->start({});
   const auto count = [&] {

@@ -8,8 +8,8 @@ import type { Dialogs } from './dialogs.svelte';
 import type { Notices } from './notices.svelte';
 import type { Pilot } from './pilot.svelte';
 
-/** A program that has just begun listens before it has read what the one before it left; and an answer
- * may be lost. */
+/** An answer may be lost, or be a refusal: a program that has just begun may not have read yet what the
+ * one before it left. */
 const AGAIN_AFTER_MS: readonly number[] = [1000, 4000, 10_000];
 
 export class Resumption {
