@@ -99,18 +99,15 @@ std::size_t Hills::step_of(const Voxel& v) const noexcept {
   return direction * steps_ + static_cast<std::size_t>(out);
 }
 
-void Hills::meet_first(const Reduced& in) noexcept {
-  std::fill(first_.begin(), first_.end(), First{});
-  for (const Voxel& v : in.voxels) {
-    if (v.kind != Kind::Ground) continue;
-    const std::size_t i = step_of(v);
-    if (i == kNowhereOut) continue;
-    First& first = first_[i / steps_];
-    const float out = std::hypot(v.x_m, v.y_m);
-    if (first.out_m > 0.0F && first.out_m <= out) continue;
-    const float ray = std::hypot(v.x_m - in.origin_m[0], v.y_m - in.origin_m[1]);
-    first = {out, v.z_m, (in.origin_m[2] - v.z_m) / std::max(ray, kStep_m)};
-  }
+void Hills::meet(const Voxel& v, const Reduced& in) noexcept {
+  const std::size_t i = step_of(v);
+  if (i == kNowhereOut) return;
+  lowest_[i] = std::min(lowest_[i], v.z_m);
+  First& first = first_[i / steps_];
+  const float out = std::hypot(v.x_m, v.y_m);
+  if (first.out_m > 0.0F && first.out_m <= out) return;
+  const float ray = std::hypot(v.x_m - in.origin_m[0], v.y_m - in.origin_m[1]);
+  first = {out, v.z_m, (in.origin_m[2] - v.z_m) / std::max(ray, kStep_m)};
 }
 
 bool Hills::on_wide_ground(std::size_t direction) const noexcept {
@@ -145,12 +142,10 @@ bool Hills::on_wide_ground(std::size_t direction) const noexcept {
 void Hills::look_out(const Reduced& in) noexcept {
   std::fill(lowest_.begin(), lowest_.end(), kNoGroundBefore);
   std::fill(highest_.begin(), highest_.end(), -kNoGroundBefore);
+  std::fill(first_.begin(), first_.end(), First{});
   for (const Voxel& v : in.voxels) {
-    if (v.kind != Kind::Ground) continue;
-    const std::size_t i = step_of(v);
-    if (i != kNowhereOut) lowest_[i] = std::min(lowest_[i], v.z_m);
+    if (v.kind == Kind::Ground) meet(v, in);
   }
-  meet_first(in);
   for (std::size_t direction = 0; direction < kDirections; ++direction) look_out(direction);
 }
 

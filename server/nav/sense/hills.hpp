@@ -83,8 +83,8 @@ class Hills {
   void look_out(std::size_t direction) noexcept;
   /// The first ground of a direction is of a hill, whatever is hidden before it.
   bool on_wide_ground(std::size_t direction) const noexcept;
-  /// Sets first_ of each direction.
-  void meet_first(const Reduced& in) noexcept;
+  /// Into lowest_ and first_.
+  void meet(const Voxel& v, const Reduced& in) noexcept;
   /// Known ground that is seen again, as high as it was, is known anew; its height does not rise.
   static void renew(Place& p, std::int32_t x, std::int32_t y, std::int32_t half,
                     float z_m) noexcept;
