@@ -218,6 +218,27 @@ test('STOP gets through when every open connection is dead and nobody was told',
   });
 });
 
+test('what ended the driving while the page was away is said when it is back', async ({
+  page,
+  station,
+  link,
+}) => {
+  await open_page(page, link.url);
+  await arm(page);
+  await press(page, 'MANUAL');
+  await expect.poll(() => mode(station)).toBe('MANUAL');
+  link.lose_open_connections();
+  await station.rest('PUT', '/vehicle/mode', { mode: 'HOLD' });
+  const said = page.getByText(/^Meanwhile: .*mode HOLD/);
+  await expect(said).toBeVisible({ timeout: 20_000 });
+  // It stays until somebody has read it; what the page saw itself is not said again.
+  await page.waitForTimeout(9000);
+  await expect(said).toHaveCount(1);
+  await page.reload();
+  await expect(link_cell(page)).toContainText('Live');
+  await expect(page.getByText(/^Meanwhile/)).toHaveCount(0);
+});
+
 test('a stop on a link that stands still is repeated, shown so, and confirmed when it goes on', async ({
   page,
   station,

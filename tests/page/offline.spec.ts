@@ -35,7 +35,11 @@ test('a plan is made without the robot, and saved when it is back', async ({ pag
   const link = page.getByRole('group', { name: 'Link' });
   await expect(link).toHaveAttribute('data-stale', 'true');
   await expect(link).not.toContainText('Live');
-  await expect(page.getByText('The robot cannot be reached. STOP is still sent.')).toBeVisible();
+  await expect(
+    page.getByText(
+      'The robot cannot be reached. STOP is sent again and again, but may not arrive: use the button on the robot or the radio.',
+    ),
+  ).toBeVisible();
   await expect(page.getByRole('group', { name: 'Position' })).not.toContainText(/RTK|GPS/);
   await tab(page, 'Plan');
   await draw(page, LINE);

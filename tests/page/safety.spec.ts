@@ -251,6 +251,66 @@ test('driving by hand moves the robot while held, and letting go stops it', asyn
     .toBeLessThan(0.01);
 });
 
+test('a pad that is pushed away under a still thumb commands what it did', async ({
+  page,
+  station,
+}) => {
+  await page.setViewportSize({ width: 820, height: 1180 });
+  await open_page(page, station.url);
+  await arm(page);
+  await press(page, 'MANUAL');
+  const pad = page.getByLabel(/^Drive pad/);
+  const wish = page.getByLabel('Drive by hand').locator('p.number');
+  await page.waitForTimeout(1000);
+  await pad.scrollIntoViewIfNeeded();
+  const box = await pad.boundingBox();
+  if (!box) throw new Error('no drive pad');
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x, y - 50, { steps: 5 });
+  const before = await wish.innerText();
+  expect(before).not.toMatch(/^0\.00/);
+
+  // As a line does that appears above it.
+  await pad.evaluate((node) => {
+    node
+      .closest('section')
+      ?.insertAdjacentHTML('beforebegin', '<p style="height: 60px">a line</p>');
+  });
+  const moved = await pad.boundingBox();
+  expect(Math.abs((moved?.y ?? 0) - box.y)).toBeGreaterThan(20);
+  await page.mouse.move(x + 0.6, y - 50);
+  await page.mouse.move(x, y - 50);
+  expect(await wish.innerText()).toBe(before);
+  await page.mouse.up();
+  await expect(wish).toHaveText(/^0\.00/);
+});
+
+test('the space key stops in a list and in a number, and is a blank where words are typed', async ({
+  page,
+  station,
+}) => {
+  await open_page(page, station.url);
+  await tab(page, 'Plan');
+  await draw(page, FAR);
+  const stop = page.getByRole('button', { name: 'Emergency stop' });
+  const name = page.getByRole('textbox', { name: 'Mission name' });
+  await name.fill('Two');
+  await name.press('Space');
+  await expect(name).toHaveValue('Two ');
+  for (const field of [
+    page.locator('main select'),
+    page.locator('main input[inputmode=decimal]'),
+  ]) {
+    await expect(stop).toHaveText('STOP');
+    await field.first().focus();
+    await page.keyboard.press('Space');
+    await expect(stop).toHaveText('STOPPED');
+    await station.rest('POST', '/vehicle/estop/reset', {});
+  }
+});
+
 test('a key that is held while the mode changes moves nothing until it is pressed anew', async ({
   page,
   station,

@@ -51,6 +51,13 @@ test('points in a box are turned, undone after a reload, and an old revision com
   await page.getByRole('textbox', { name: 'Clockwise, °' }).press('Enter');
   await expect.poll(async () => (await map_pixels(page, [BEFORE])).length).toBeGreaterThan(50);
   expect(await places()).toEqual(drawn);
+  // Not by what no field shows.
+  await page.getByRole('textbox', { name: 'Clockwise, °' }).fill('x9');
+  await press(page, 'Apply');
+  await expect(page.getByText('A field is wrong')).toBeVisible();
+  expect(await places()).toEqual(drawn);
+  await page.getByRole('textbox', { name: 'Clockwise, °' }).fill('30');
+  await page.getByRole('textbox', { name: 'Clockwise, °' }).press('Enter');
   await press(page, 'Apply');
   const turned = await places();
   expect(turned[0]).not.toBe(drawn[0]);

@@ -1,6 +1,6 @@
 import { describe, expect, test } from 'vitest';
 
-import { refusal_text, refused_items, type Refusal } from '../src/model/answer';
+import { complaint, refusal_text, refused_items, type Refusal } from '../src/model/answer';
 import {
   accuracy,
   age,
@@ -116,6 +116,25 @@ describe('refusals', () => {
     const errors = [{ pointer: '', detail: 'line 3: no number' }];
     const said = { ...refusal, detail: 'rows.csv, line 3: no number', errors };
     expect(refusal_text(said)).toBe('rows.csv, line 3: no number');
+  });
+
+  test('names fields in words, and leaves the paths of the interface', () => {
+    const crosses: Refusal = {
+      status: 422,
+      title: 'Invalid',
+      detail: '/areas/0/polygon crosses or touches itself: POST /vehicle/estop still stops',
+      errors: [{ pointer: '/areas/0/polygon', detail: 'crosses or touches itself' }],
+    };
+    expect(refusal_text(crosses)).toBe(
+      'area 1 crosses or touches itself: POST /vehicle/estop still stops',
+    );
+    const short = 'must have at least 12 characters';
+    const password: Refusal = {
+      ...crosses,
+      detail: `/password ${short}`,
+      errors: [{ pointer: '/password', detail: short }],
+    };
+    expect(complaint(password)).toBe(`password ${short}`);
   });
 
   test('point at the items they are about', () => {

@@ -1,6 +1,6 @@
-import { describe, expect, it } from 'vitest';
+import { describe, expect, it, test } from 'vitest';
 
-import { Grip } from '../src/model/drive';
+import { Grip, thumb_at } from '../src/model/drive';
 
 describe('a grip on the drive pad', () => {
   it('is fresh when a finger or a key comes down on nothing', () => {
@@ -41,4 +41,12 @@ describe('a grip on the drive pad', () => {
     grip.key_up('a');
     expect(grip.free).toBe(true);
   });
+});
+
+test('a thumb is told from the middle of the pad as it lay when the thumb came, and not beyond its edge', () => {
+  const pad = { left: 100, top: 400, width: 200, height: 100 };
+  expect(thumb_at(200, 450, pad)).toEqual({ right: 0, up: 0 });
+  expect(thumb_at(250, 425, pad)).toEqual({ right: 0.5, up: 0.5 });
+  expect(thumb_at(999, 0, pad)).toEqual({ right: 1, up: 1 });
+  expect(thumb_at(0, 999, pad)).toEqual({ right: -1, up: -1 });
 });

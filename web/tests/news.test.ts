@@ -4,6 +4,7 @@ import { afterEach, expect, test } from 'vitest';
 
 import { advice_words, news_title, title_before } from '../src/model/news';
 import { IN_ENGLISH, speak } from '../src/model/say';
+import { ended_driving, type StationEvent } from '../src/model/vehicle';
 import { finnish } from '../src/texts/fi';
 
 afterEach(() => speak(() => IN_ENGLISH));
@@ -33,4 +34,17 @@ test('advice that the page knows is in its language, other advice as it came', (
   speak(() => ({ language: 'fi', texts: finnish }));
   expect(advice_words('drive 3 m straight to find the heading')).toMatch(/^Aja 3 m suoraan/);
   expect(advice_words('dance')).toBe('Dance');
+});
+
+test('what ends the driving is told from what does not', () => {
+  const event = (kind: string, detail = ''): StationEvent => ({
+    time: '2026-05-04T10:00:00Z',
+    level: 'info',
+    kind,
+    detail,
+  });
+  expect(ended_driving(event('mode', 'mode HOLD: no word from the base for 7.1 s'))).toBe(true);
+  expect(ended_driving(event('mode', 'mode MANUAL: chosen'))).toBe(false);
+  expect(ended_driving(event('mission_paused'))).toBe(true);
+  expect(ended_driving(event('driver_up'))).toBe(false);
 });

@@ -151,10 +151,23 @@ const halt: VehicleCalls['halt'] = (which, signal) => {
   });
 };
 
+const MOST_EVENT_PAGES = 20;
 const an_hour_ago = (): string => new Date(Date.now() - 3_600_000).toISOString();
 
-const events_since = (time: string): Promise<Answer<Schemas['EventList']>> =>
-  request<Schemas['EventList']>(`/events?limit=200&since=${encodeURIComponent(time)}`);
+/** All of them, up to a few thousand: the oldest come first, and the newest matter most. */
+const events_since = async (time: string): Promise<Answer<Schemas['EventList']>> => {
+  const items: Schemas['EventList']['items'] = [];
+  let next = `since=${encodeURIComponent(time)}`;
+  for (let pages = 0; pages < MOST_EVENT_PAGES; pages += 1) {
+    const answer = await request<Schemas['EventList']>(`/events?limit=200&${next}`);
+    if (!answer.ok) return answer;
+    items.push(...answer.value.items);
+    const { next_cursor } = answer.value;
+    if (next_cursor === null) break;
+    next = `since=${encodeURIComponent(time)}&cursor=${encodeURIComponent(next_cursor)}`;
+  }
+  return { ok: true, value: { items, next_cursor: null } };
+};
 
 type Question =
   | 'vehicle'

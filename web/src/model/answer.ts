@@ -26,12 +26,21 @@ export type Answer<T> =
 const new_causes = ({ detail, errors }: Refusal): readonly FieldError[] =>
   errors.filter((error) => !detail.includes(error.detail));
 
+/** The robot's sentence, with the fields that it names in words: "/areas/0/polygon crosses itself". Paths
+ * of its interface stay. */
+const sentence_of = ({ detail, errors }: Refusal): string => {
+  const named = new Set(errors.map(({ pointer }) => pointer));
+  return detail.replace(/(?<=^|[\s(])\/[\w/]*\w/g, (path) =>
+    named.has(path) || /\/\d/.test(path) ? row_words(path) : path,
+  );
+};
+
 /** One line for a person: the cause, then what is wrong in each place. */
 export const refusal_text = (refusal: Refusal): string => {
   const causes = new_causes(refusal).map((error) =>
     error.pointer === '' ? error.detail : `${row_words(error.pointer)}: ${error.detail}`,
   );
-  return [refusal.detail === '' ? refusal.title : refusal.detail, ...causes].join(' · ');
+  return [refusal.detail === '' ? refusal.title : sentence_of(refusal), ...causes].join(' · ');
 };
 
 /** A change that did not come about; without an answer nobody knows. @param done "saved" */
@@ -55,5 +64,8 @@ export const wants_origin = (refusal: Refusal): boolean =>
   refusal.errors.some(({ detail }) => detail.includes('needs an origin'));
 
 /** What is wrong with what was typed, field by field. */
-export const complaint = ({ detail, errors }: Refusal): string =>
-  [detail, ...errors.map((e) => `${row_words(e.pointer)} ${e.detail}`)].join('; ');
+export const complaint = (refusal: Refusal): string =>
+  [
+    sentence_of(refusal),
+    ...new_causes(refusal).map((e) => `${row_words(e.pointer)} ${e.detail}`),
+  ].join('; ');

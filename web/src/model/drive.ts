@@ -35,6 +35,19 @@ export const shaped = (value: number, expo = 0): number => {
   return Math.sign(value) * ((1 - expo) * over + expo * over ** 3);
 };
 
+/** Where a thumb is on the pad, from its middle: 1 is its edge. */
+export const thumb_at = (
+  x_px: number,
+  y_px: number,
+  box: Readonly<Record<'left' | 'top' | 'width' | 'height', number>>,
+): { right: number; up: number } => {
+  const within = (value: number): number => Math.max(-1, Math.min(1, value));
+  return {
+    right: within(((x_px - box.left) / box.width) * 2 - 1),
+    up: within(1 - ((y_px - box.top) / box.height) * 2),
+  };
+};
+
 /**
  * @param right, up place of the finger from the middle of the pad, each in [-1, 1]
  * @param share 0..1 of the vehicle's limits, from the speed setting

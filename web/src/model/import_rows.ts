@@ -5,6 +5,7 @@ import { say, type PlainKey } from './say';
 
 const MEMBERS: Readonly<Record<string, PlainKey>> = {
   items: 'file_item',
+  areas: 'file_area',
   features: 'file_feature',
   polygons: 'file_polygon',
   circles: 'file_circle',

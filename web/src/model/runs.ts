@@ -75,7 +75,7 @@ export interface RunReport {
 }
 
 export const outcome_words: Record<Outcome, string> = told({
-  running: 'running',
+  running: 'under_way',
   finished: 'finished',
   aborted: 'aborted',
   interrupted: 'interrupted',

@@ -268,6 +268,20 @@ const SHOWN_ELSEWHERE = new Set(['arm_refused', 'estop', 'disarmed']);
 export const worth_a_word = ({ level, kind }: StationEvent): boolean =>
   level === 'info' ? TOLD.has(kind) : !SHOWN_ELSEWHERE.has(kind);
 
+const ENDS_DRIVING = new Set([
+  'estop',
+  'disarmed',
+  'stopped',
+  'mission_paused',
+  'mission_blocked',
+  'activity_held',
+  'base_left_control',
+]);
+
+/** After it the robot does not do any more what it was told before. */
+export const ended_driving = ({ kind, detail }: StationEvent): boolean =>
+  kind === 'mode' ? detail.startsWith('mode HOLD') : ENDS_DRIVING.has(kind);
+
 /** What one message is kept of, the newest: a driver that comes and goes. @return null: each has its own */
 export const event_about = ({ kind, detail }: StationEvent): string | null =>
   kind.startsWith('driver_') ? `driver ${/^[^\s:]*/.exec(detail)?.[0] ?? ''}` : null;

@@ -157,7 +157,9 @@ export class Fences extends RingDrawing implements Drawing {
         : await this.#calls.create(draft);
       if (answer.ok) {
         this.#show(answer.value, answer.value);
-        this.#notices.show('good', say('saved_the_fence_name', { name: answer.value.name }));
+        const saved = say('saved_the_fence_name', { name: answer.value.name });
+        if (this.active?.id === answer.value.id) this.#notices.show('good', saved, 'fence');
+        else this.#notices.show('warning', `${saved} ${say('it_is_not_kept_to')}`, 'fence');
       }
       return answer;
     });
@@ -228,7 +230,7 @@ export class Fences extends RingDrawing implements Drawing {
   }
 
   #complain(done: string, refusal: Refusal): void {
-    this.#notices.show('error', failure_text(done, refusal));
+    this.#notices.show('error', failure_text(done, refusal), 'fence');
   }
 
   async #do(failed: string, call: () => Promise<Answer<unknown>>): Promise<void> {

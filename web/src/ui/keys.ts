@@ -1,5 +1,5 @@
 // Keys of the whole page. Space stops the robot, whatever is on the screen; only while a person types
-// into a field is it a blank. F8 and Ctrl + Enter always stop; two of them, as on many laptops F8 does
+// words or a place is it a blank. F8 and Ctrl + Enter always stop; two of them, as on many laptops F8 does
 // something else unless Fn is held. Buttons are pressed with Enter. Esc closes what is
 // open, as everywhere: whoever wants to be rid of a question must not latch the stop.
 
@@ -28,6 +28,12 @@ const TYPING = 'input:not([type=checkbox], [type=range], [type=file]), textarea,
 
 const is_typing = (target: EventTarget | null): boolean =>
   target instanceof Element && target.matches(TYPING);
+
+/** A blank means nothing in a list, nor in a number; in a place it does. */
+const takes_blanks = (target: EventTarget | null): boolean =>
+  is_typing(target) &&
+  target instanceof Element &&
+  !target.matches('select, input[inputmode=decimal]:not([data-blanks])');
 
 const edit_key = (station: Station, event: KeyboardEvent): boolean => {
   const { editor } = station;
@@ -97,7 +103,7 @@ const plain_key = (station: Station, event: KeyboardEvent): boolean => {
 const stops = (event: KeyboardEvent): boolean => {
   if (event.key === 'F8') return true;
   if (event.key === 'Enter') return event.ctrlKey || event.metaKey;
-  return event.key === ' ' && !is_typing(event.target);
+  return event.key === ' ' && !takes_blanks(event.target);
 };
 
 /** @return stops listening */

@@ -2,7 +2,14 @@
 
 import { plain_devices } from '../model/control';
 import { title_before } from '../model/news';
-import { event_about, event_key, worth_a_word, type StationEvent } from '../model/vehicle';
+import { say } from '../model/say';
+import {
+  ended_driving,
+  event_about,
+  event_key,
+  worth_a_word,
+  type StationEvent,
+} from '../model/vehicle';
 
 export type Level = 'info' | 'good' | 'warning' | 'error';
 
@@ -19,11 +26,24 @@ const SHOWN_MS: Record<Exclude<Level, 'error'>, number> = { info: 4000, good: 40
 const AT_MOST = 4;
 const LOG_LINES = 500;
 
+const MISSED_AT_MOST = 2;
+
+const words_of = (event: StationEvent): string => {
+  const title = title_before(event.kind);
+  const detail = plain_devices(event.detail);
+  return title === null ? detail : `${title}: ${detail}`;
+};
+
 export class Notices {
   shown = $state.raw<readonly Notice[]>([]);
   /** Newest first. */
   log = $state.raw<readonly StationEvent[]>([]);
   #next = 1;
+
+  /** When what it knows of last happened. */
+  get looked(): string {
+    return this.log[0]?.time ?? '';
+  }
 
   show(level: Level, text: string, about: string | null = null): void {
     const rest = this.shown.filter(
@@ -41,23 +61,26 @@ export class Notices {
 
   /** An event just happened: into the log, and on the screen. @return false: it was known */
   event(event: StationEvent): boolean {
-    if (this.#enter([event]) === 0) return false;
+    if (this.#enter([event]).length === 0) return false;
     if (worth_a_word(event)) {
-      const title = title_before(event.kind);
-      const detail = plain_devices(event.detail);
-      const text = title === null ? detail : `${title}: ${detail}`;
-      this.show(event.level === 'error' ? 'warning' : event.level, text, event_about(event));
+      const level = event.level === 'error' ? 'warning' : event.level;
+      this.show(level, words_of(event), event_about(event));
     }
     return true;
   }
 
-  /** Events from before this page looked. */
-  past_events(events: readonly StationEvent[]): void {
-    this.#enter(events);
+  /** Events from before this page looked. @param missed_since the page had looked until then: what ended
+   * the driving after it stays on the screen until it was read; null: it had not */
+  past_events(events: readonly StationEvent[], missed_since: string | null): void {
+    const fresh = this.#enter(events);
+    if (missed_since === null) return;
+    const away = fresh.filter((event) => event.time > missed_since && ended_driving(event));
+    for (const event of away.slice(-MISSED_AT_MOST))
+      this.show('error', say('meanwhile_text', { text: words_of(event) }));
   }
 
-  /** @return how many were new */
-  #enter(events: readonly StationEvent[]): number {
+  /** @return those that were new */
+  #enter(events: readonly StationEvent[]): readonly StationEvent[] {
     const known = new Set(this.log.map(event_key));
     const fresh = events.filter((event) => !known.has(event_key(event)));
     if (fresh.length > 0) {
@@ -65,6 +88,6 @@ export class Notices {
         a.time < b.time ? 1 : a.time > b.time ? -1 : 0;
       this.log = [...fresh.toReversed(), ...this.log].sort(newest_first).slice(0, LOG_LINES);
     }
-    return fresh.length;
+    return fresh;
   }
 }

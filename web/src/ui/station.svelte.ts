@@ -176,7 +176,7 @@ export class Station {
     this.#past_way = new PastWay(doors.vehicle, this.live, doors.map);
     doors.map.listen(this.#map_events());
     if (this.editor.restore_draft()) this.map.fit(spots(this.editor.plan));
-    void this.#fetch_past_events();
+    void this.#fetch_past_events(null);
     $effect.root(() => this.#keep_map_in_step());
   }
 
@@ -185,7 +185,7 @@ export class Station {
       const was_open = this.live.link.socket === 'open';
       this.live.take_link(link);
       if (link.socket !== 'open' || was_open) return;
-      void this.#fetch_past_events();
+      void this.#fetch_past_events(this.live.vehicle ? this.notices.looked : null);
       this.resumption.connected();
       this.#past_way.connected();
     },
@@ -308,9 +308,12 @@ export class Station {
     this.checks = answer.ok ? answer.value.checks : [];
   }
 
-  async #fetch_past_events(): Promise<void> {
-    const answer = await this.#doors.vehicle.recent_events();
-    if (answer.ok) this.notices.past_events(answer.value.items);
+  /** More than once: the browser may ask over a connection that has died with the stream's. */
+  async #fetch_past_events(missed_since: string | null): Promise<void> {
+    for (let tries = 0; tries < 3; tries += 1) {
+      const answer = await this.#doors.vehicle.recent_events();
+      if (answer.ok) return this.notices.past_events(answer.value.items, missed_since);
+    }
   }
 
   #map_events(): MapEvents {

@@ -6,6 +6,9 @@ export const drive = {
   the_link_is_slow_what_you_see_is_old: 'The link is slow: what you see is old.',
   no_live_data_from_the_robot_what_you: 'No live data from the robot: what you see is old.',
   link_late_stop_is_still_sent: '{link_late} STOP is still sent.',
+  link_lost_stop_may_not_arrive:
+    '{lost} STOP is sent again and again, but may not arrive: use the button on the robot or the radio.',
+  meanwhile_text: 'Meanwhile: {text}',
   the_robot_is_seen_but_does_not:
     'The robot is seen but does not answer: what you send may not arrive. STOP is still sent.',
   emergency_stop_is_latched: 'Emergency stop is latched.',

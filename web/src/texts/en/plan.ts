@@ -1,6 +1,7 @@
 // Planning: the list, the editor, stored missions.
 
 export const plan = {
+  a_field_is_wrong: 'A field is wrong: what it shows is not what would be taken.',
   length_long: '{length} long',
   has_no_end: 'has no end',
   about_time: 'about {time}',
@@ -125,6 +126,7 @@ export const plan = {
   measured_legs: 'Legs',
   measure_from_the_robot: 'From the robot',
   file_item: 'item',
+  file_area: 'area',
   file_feature: 'feature',
   file_polygon: 'polygon',
   file_circle: 'circle',

@@ -195,6 +195,7 @@ export const state = {
   no_mission_loaded: 'No mission loaded',
   loaded: 'Loaded',
   running: 'Running',
+  under_way: 'Under way',
   paused: 'Paused',
   blocked_2: 'Blocked',
   finished: 'Finished',

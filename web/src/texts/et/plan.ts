@@ -1,6 +1,7 @@
 // Planning: the list, the editor, stored missions.
 
 export const plan = {
+  a_field_is_wrong: 'Üks väli on vale: kehtiks midagi muud kui see, mida see näitab.',
   length_long: 'pikkus {length}',
   has_no_end: 'lõputa',
   about_time: 'umbes {time}',
@@ -125,6 +126,7 @@ export const plan = {
   measured_legs: 'Lõigud',
   measure_from_the_robot: 'Robotist',
   file_item: 'element',
+  file_area: 'ala',
   file_feature: 'objekt',
   file_polygon: 'hulknurk',
   file_circle: 'ring',

@@ -196,6 +196,7 @@ export const state = {
   no_mission_loaded: 'Ülesannet pole laaditud',
   loaded: 'Laaditud',
   running: 'Käib',
+  under_way: 'Pooleli',
   paused: 'Pausil',
   blocked_2: 'Blokeeritud',
   finished: 'Lõpetatud',

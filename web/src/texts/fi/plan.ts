@@ -1,6 +1,7 @@
 // Planning: the list, the editor, stored missions.
 
 export const plan = {
+  a_field_is_wrong: 'Kenttä on virheellinen: käyttöön tulisi muu kuin mitä se näyttää.',
   length_long: 'pituus {length}',
   has_no_end: 'ei loppua',
   about_time: 'noin {time}',
@@ -126,6 +127,7 @@ export const plan = {
   measured_legs: 'Osuudet',
   measure_from_the_robot: 'Robotista',
   file_item: 'kohta',
+  file_area: 'alue',
   file_feature: 'kohde',
   file_polygon: 'monikulmio',
   file_circle: 'ympyrä',

@@ -195,6 +195,7 @@ export const state = {
   no_mission_loaded: 'Ei ladattua tehtävää',
   loaded: 'Ladattu',
   running: 'Käynnissä',
+  under_way: 'Kesken',
   paused: 'Tauolla',
   blocked_2: 'Tukossa',
   finished: 'Valmis',

@@ -1,6 +1,7 @@
 // Planning: the list, the editor, stored missions.
 
 export const plan = {
+  a_field_is_wrong: 'Un campo è errato: varrebbe un valore diverso da quello mostrato.',
   length_long: 'lunga {length}',
   has_no_end: 'senza fine',
   about_time: 'circa {time}',
@@ -127,6 +128,7 @@ export const plan = {
   measured_legs: 'Tratti',
   measure_from_the_robot: 'Dal robot',
   file_item: 'elemento',
+  file_area: 'area',
   file_feature: 'oggetto',
   file_polygon: 'poligono',
   file_circle: 'cerchio',

@@ -197,6 +197,7 @@ export const state = {
   no_mission_loaded: 'Nessuna missione caricata',
   loaded: 'Caricata',
   running: 'In corso',
+  under_way: 'In corso',
   paused: 'In pausa',
   blocked_2: 'Bloccata',
   finished: 'Finita',

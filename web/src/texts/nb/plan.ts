@@ -1,6 +1,7 @@
 // Planning: the list, the editor, stored missions.
 
 export const plan = {
+  a_field_is_wrong: 'Et felt er feil: det som vises, er ikke det som ville gjelde.',
   length_long: '{length} lang',
   has_no_end: 'har ingen ende',
   about_time: 'ca. {time}',
@@ -126,6 +127,7 @@ export const plan = {
   measured_legs: 'Stykker',
   measure_from_the_robot: 'Fra roboten',
   file_item: 'punkt i listen',
+  file_area: 'område',
   file_feature: 'objekt',
   file_polygon: 'polygon',
   file_circle: 'sirkel',

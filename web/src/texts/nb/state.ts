@@ -195,6 +195,7 @@ export const state = {
   no_mission_loaded: 'Intet oppdrag lastet',
   loaded: 'Lastet',
   running: 'Pågår',
+  under_way: 'Underveis',
   paused: 'På pause',
   blocked_2: 'Blokkert',
   finished: 'Ferdig',
