@@ -64,7 +64,13 @@ test('a field is drawn, its tracks are shown with figures, and it is kept as a m
   await page.getByLabel('Rounds along the border').press('Enter');
   await expect(page.getByText('Rounds along the border must be a whole number.')).toBeVisible();
 
+  // Nothing is kept by a number that no field shows.
   await page.getByLabel('Name of the mission').fill('Meadow');
+  await press(page, 'Keep as a mission');
+  await expect(page.getByText('A field is wrong')).toBeVisible();
+  await expect(page.getByLabel('Rounds along the border')).toBeFocused();
+  await page.getByLabel('Rounds along the border').fill('0');
+  await page.getByLabel('Rounds along the border').press('Enter');
   await press(page, 'Keep as a mission');
   await expect(page.getByLabel('Mission name')).toHaveValue('Meadow');
   expect(await items(page).count()).toBeGreaterThan(4);

@@ -152,6 +152,8 @@ const halt: VehicleCalls['halt'] = (which, signal) => {
 };
 
 const MOST_EVENT_PAGES = 20;
+/** Whoever asks over a dead connection asks again. */
+const EVENTS_LIMIT_MS = 6000;
 const an_hour_ago = (): string => new Date(Date.now() - 3_600_000).toISOString();
 
 /** All of them, up to a few thousand: the oldest come first, and the newest matter most. */
@@ -159,7 +161,9 @@ const events_since = async (time: string): Promise<Answer<Schemas['EventList']>>
   const items: Schemas['EventList']['items'] = [];
   let next = `since=${encodeURIComponent(time)}`;
   for (let pages = 0; pages < MOST_EVENT_PAGES; pages += 1) {
-    const answer = await request<Schemas['EventList']>(`/events?limit=200&${next}`);
+    const answer = await request<Schemas['EventList']>(`/events?limit=200&${next}`, {
+      limit_ms: EVENTS_LIMIT_MS,
+    });
     if (!answer.ok) return answer;
     items.push(...answer.value.items);
     const { next_cursor } = answer.value;

@@ -310,7 +310,7 @@ export class Station {
 
   /** More than once: the browser may ask over a connection that has died with the stream's. */
   async #fetch_past_events(missed_since: string | null): Promise<void> {
-    for (let tries = 0; tries < 3; tries += 1) {
+    for (let tries = 0; tries < 6; tries += 1) {
       const answer = await this.#doors.vehicle.recent_events();
       if (answer.ok) return this.notices.past_events(answer.value.items, missed_since);
     }
