@@ -112,7 +112,8 @@ void Hills::meet(const Voxel& v, const Reduced& in) noexcept {
 
 bool Hills::on_wide_ground(std::size_t direction) const noexcept {
   const First& at = first_[direction];
-  if (!(at.falls > 0.0F) || at.z_m > kSteepest * (at.out_m - kBeside_m)) return false;
+  if (!(at.falls > 0.0F) || !(at.out_m > kBeside_m)) return false;
+  if (at.z_m > kSteepest * (at.out_m - kBeside_m)) return false;
   constexpr auto kTurn_rad = static_cast<float>(2.0 * base::kPi / kDirections);
   const auto aside = static_cast<int>(std::ceil(kWide_m / (at.out_m * kTurn_rad)));
   if (aside > static_cast<int>(kDirections) / 6) return false;
