@@ -45,6 +45,8 @@ test('what ends the driving is told from what does not', () => {
   });
   expect(ended_driving(event('mode', 'mode HOLD: no word from the base for 7.1 s'))).toBe(true);
   expect(ended_driving(event('mode', 'mode MANUAL: chosen'))).toBe(false);
-  expect(ended_driving(event('mission_paused'))).toBe(true);
+  for (const kind of ['mission_paused', 'mission_aborted', 'blocked', 'stopped', 'estop'])
+    expect(ended_driving(event(kind))).toBe(true);
+  expect(ended_driving(event('mission_finished'))).toBe(false);
   expect(ended_driving(event('driver_up'))).toBe(false);
 });

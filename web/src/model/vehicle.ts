@@ -273,7 +273,8 @@ const ENDS_DRIVING = new Set([
   'disarmed',
   'stopped',
   'mission_paused',
-  'mission_blocked',
+  'mission_aborted',
+  'blocked',
   'activity_held',
   'base_left_control',
 ]);

@@ -159,7 +159,12 @@ export class Fences extends RingDrawing implements Drawing {
         this.#show(answer.value, answer.value);
         const saved = say('saved_the_fence_name', { name: answer.value.name });
         if (this.active?.id === answer.value.id) this.#notices.show('good', saved, 'fence');
-        else this.#notices.show('warning', `${saved} ${say('it_is_not_kept_to')}`, 'fence');
+        else
+          this.#notices.show(
+            'warning',
+            `${saved} ${say('it_is_not_kept_to', { use: say('use_it') })}`,
+            'fence',
+          );
       }
       return answer;
     });

@@ -26,14 +26,12 @@ export const key_words = (): readonly (readonly [keys: string, meaning: string])
 
 const TYPING = 'input:not([type=checkbox], [type=range], [type=file]), textarea, select';
 
-const is_typing = (target: EventTarget | null): boolean =>
+const is_typing = (target: EventTarget | null): target is Element =>
   target instanceof Element && target.matches(TYPING);
 
 /** A blank means nothing in a list, nor in a number; in a place it does. */
 const takes_blanks = (target: EventTarget | null): boolean =>
-  is_typing(target) &&
-  target instanceof Element &&
-  !target.matches('select, input[inputmode=decimal]:not([data-blanks])');
+  is_typing(target) && !target.matches('select, input[inputmode=decimal]:not([data-blanks])');
 
 const edit_key = (station: Station, event: KeyboardEvent): boolean => {
   const { editor } = station;

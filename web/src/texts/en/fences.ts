@@ -101,7 +101,7 @@ export const fences = {
   value_has_changes_that_are_not_saved: '“{value}” has changes that are not saved.',
   saved_the_fence_name: 'Saved the fence “{name}”.',
   it_is_not_kept_to:
-    'The robot does not keep to it: “Use it”, in the list of fences, puts it in force.',
+    'The robot does not keep to it: “{use}”, in the list of fences, puts it in force.',
   without_a_fence: 'Without a fence?',
   nothing_keeps_the_robot_inside_any: 'Nothing keeps the robot inside any more.',
   without_a_fence_2: 'Without a fence',

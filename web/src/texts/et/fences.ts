@@ -99,7 +99,7 @@ export const fences = {
   discard: 'Viska ära',
   value_has_changes_that_are_not_saved: '„{value}“: muudatused on salvestamata.',
   saved_the_fence_name: 'Tara „{name}“ salvestatud.',
-  it_is_not_kept_to: 'Robot sellest kinni ei pea: „Kasuta“ tarade loendis jõustab selle.',
+  it_is_not_kept_to: 'Robot sellest kinni ei pea: „{use}“ tarade loendis jõustab selle.',
   without_a_fence: 'Ilma tarata?',
   nothing_keeps_the_robot_inside_any: 'Miski ei hoia enam robotit sees.',
   without_a_fence_2: 'Ilma tarata',

@@ -99,7 +99,7 @@ export const fences = {
   discard: 'Hylkää',
   value_has_changes_that_are_not_saved: '”{value}”: muutoksia ei ole tallennettu.',
   saved_the_fence_name: 'Aita ”{name}” tallennettu.',
-  it_is_not_kept_to: 'Robotti ei noudata sitä: ”Käytä” aitojen luettelossa ottaa sen käyttöön.',
+  it_is_not_kept_to: 'Robotti ei noudata sitä: ”{use}” aitojen luettelossa ottaa sen käyttöön.',
   without_a_fence: 'Ilman aitaa?',
   nothing_keeps_the_robot_inside_any: 'Mikään ei enää pidä robottia sisällä.',
   without_a_fence_2: 'Ilman aitaa',

@@ -102,7 +102,7 @@ export const fences = {
   value_has_changes_that_are_not_saved: '«{value}» ha modifiche non salvate.',
   saved_the_fence_name: 'Recinto «{name}» salvato.',
   it_is_not_kept_to:
-    'Il robot non lo rispetta: «Usalo», nell’elenco dei recinti, lo mette in vigore.',
+    'Il robot non lo rispetta: «{use}», nell’elenco dei recinti, lo mette in vigore.',
   without_a_fence: 'Senza recinto?',
   nothing_keeps_the_robot_inside_any: 'Niente tiene più dentro il robot.',
   without_a_fence_2: 'Senza recinto',

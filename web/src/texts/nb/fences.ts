@@ -100,7 +100,7 @@ export const fences = {
   value_has_changes_that_are_not_saved: '«{value}» har endringer som ikke er lagret.',
   saved_the_fence_name: 'Gjerdet «{name}» er lagret.',
   it_is_not_kept_to:
-    'Roboten holder seg ikke til det: «Bruk», i listen over gjerder, setter det i kraft.',
+    'Roboten holder seg ikke til det: «{use}», i listen over gjerder, setter det i kraft.',
   without_a_fence: 'Uten gjerde?',
   nothing_keeps_the_robot_inside_any: 'Ingenting holder roboten inne lenger.',
   without_a_fence_2: 'Uten gjerde',
