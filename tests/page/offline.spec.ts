@@ -37,7 +37,7 @@ test('a plan is made without the robot, and saved when it is back', async ({ pag
   await expect(link).not.toContainText('Live');
   await expect(
     page.getByText(
-      'The robot cannot be reached. STOP is sent again and again, but may not arrive: use the button on the robot or the radio.',
+      'The robot cannot be reached. STOP, once pressed, is repeated, but may not arrive: use the button on the robot or the radio.',
     ),
   ).toBeVisible();
   await expect(page.getByRole('group', { name: 'Position' })).not.toContainText(/RTK|GPS/);

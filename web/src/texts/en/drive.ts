@@ -7,7 +7,7 @@ export const drive = {
   no_live_data_from_the_robot_what_you: 'No live data from the robot: what you see is old.',
   link_late_stop_is_still_sent: '{link_late} STOP is still sent.',
   link_lost_stop_may_not_arrive:
-    '{lost} STOP is sent again and again, but may not arrive: use the button on the robot or the radio.',
+    '{lost} STOP, once pressed, is repeated, but may not arrive: use the button on the robot or the radio.',
   meanwhile_text: 'Meanwhile: {text}',
   the_robot_is_seen_but_does_not:
     'The robot is seen but does not answer: what you send may not arrive. STOP is still sent.',

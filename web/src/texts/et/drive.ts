@@ -7,7 +7,7 @@ export const drive = {
   no_live_data_from_the_robot_what_you: 'Robotilt ei tule andmeid: näed vanu.',
   link_late_stop_is_still_sent: '{link_late} STOP saadetakse ikka.',
   link_lost_stop_may_not_arrive:
-    '{lost} STOP saadetakse ikka uuesti, kuid see ei pruugi kohale jõuda: kasuta nuppu robotil või raadiopulti.',
+    '{lost} Vajutatud STOP saadetakse ikka uuesti, kuid see ei pruugi kohale jõuda: kasuta nuppu robotil või raadiopulti.',
   meanwhile_text: 'Vahepeal: {text}',
   the_robot_is_seen_but_does_not:
     'Robot on näha, aga ei vasta: käsud ei pruugi kohale jõuda. STOP saadetakse ikka.',

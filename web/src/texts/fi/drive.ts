@@ -7,7 +7,7 @@ export const drive = {
   no_live_data_from_the_robot_what_you: 'Robotilta ei tule tietoa: näet vanhaa.',
   link_late_stop_is_still_sent: '{link_late} STOP lähetetään silti.',
   link_lost_stop_may_not_arrive:
-    '{lost} STOP lähetetään yhä uudelleen, mutta se ei ehkä mene perille: käytä robotin nappia tai radiota.',
+    '{lost} Painettu STOP lähetetään yhä uudelleen, mutta se ei ehkä mene perille: käytä robotin nappia tai radiota.',
   meanwhile_text: 'Sillä välin: {text}',
   the_robot_is_seen_but_does_not:
     'Robotti näkyy mutta ei vastaa: komentosi eivät ehkä mene perille. STOP lähetetään silti.',

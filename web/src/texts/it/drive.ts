@@ -7,7 +7,7 @@ export const drive = {
   no_live_data_from_the_robot_what_you: 'Nessun dato dal robot: vedi dati vecchi.',
   link_late_stop_is_still_sent: '{link_late} STOP viene comunque inviato.',
   link_lost_stop_may_not_arrive:
-    '{lost} STOP viene inviato di continuo, ma può non arrivare: usa il pulsante sul robot o il radiocomando.',
+    '{lost} STOP, se premuto, viene inviato di continuo, ma può non arrivare: usa il pulsante sul robot o il radiocomando.',
   meanwhile_text: 'Nel frattempo: {text}',
   the_robot_is_seen_but_does_not:
     'Il robot si vede ma non risponde: i comandi potrebbero non arrivare. STOP viene comunque inviato.',

@@ -7,7 +7,7 @@ export const drive = {
   no_live_data_from_the_robot_what_you: 'Ingen data fra roboten: du ser gamle data.',
   link_late_stop_is_still_sent: '{link_late} STOP sendes likevel.',
   link_lost_stop_may_not_arrive:
-    '{lost} STOP sendes igjen og igjen, men kommer kanskje ikke fram: bruk knappen på roboten eller radioen.',
+    '{lost} STOP som trykkes, sendes igjen og igjen, men kommer kanskje ikke fram: bruk knappen på roboten eller radioen.',
   meanwhile_text: 'I mellomtiden: {text}',
   the_robot_is_seen_but_does_not:
     'Roboten ses, men svarer ikke: det du sender kan utebli. STOP sendes likevel.',
