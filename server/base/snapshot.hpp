@@ -40,6 +40,8 @@ enum class Mode {
 };
 std::string_view to_string(Mode mode) noexcept;  // MANUAL HOLD AUTO GUIDED RTL SMART_RTL …
 std::optional<Mode> mode_from(std::string_view text) noexcept;
+/// All of them, for whoever asked for another: "MANUAL HOLD AUTO …"
+std::string mode_words();
 
 /// Who moves the robot now. Priority: e-stop > radio > teleoperation > autonomy.
 enum class Driver { None, Autonomy, Teleop, Radio };

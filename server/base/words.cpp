@@ -184,6 +184,15 @@ std::optional<Mode> mode_from(std::string_view text) noexcept {
   return std::nullopt;
 }
 
+std::string mode_words() {
+  std::string words;
+  for (int i = 0; i <= static_cast<int>(Mode::Circle); ++i) {
+    if (i > 0) words += ' ';
+    words += to_string(static_cast<Mode>(i));
+  }
+  return words;
+}
+
 std::string_view to_string(TeleopPhase phase) noexcept {
   switch (phase) {
     case TeleopPhase::Off:

@@ -105,6 +105,13 @@ struct TileFile::Db {
     const int said = text.empty() ? number(fallback_sql) : std::atoi(text.c_str());
     return std::clamp(said, 0, kMostZoom);
   }
+  /// What the first tile is, for whoever wrote no format (the specification wants it, many files have
+  /// none). Empty: there is no tile, or it is nothing known.
+  std::string first_format() {
+    strides = 0;
+    SQLite::Statement row(db, "SELECT tile_data FROM tiles LIMIT 1");
+    return row.executeStep() ? std::string(format_of(row.getColumn(0).getString())) : std::string{};
+  }
   /// Around all tiles of the deepest zoom; empty: there are none.
   std::optional<std::array<double, 4>> extent(int zoom) {
     strides = 0;
@@ -145,8 +152,10 @@ std::string TileFile::describe() {
   about_.name = db.meta("name");
   if (about_.name.empty()) about_.name = about_.set;
   about_.format = db.meta("format");
+  if (about_.format.empty()) about_.format = db.first_format();
   content_type_ = content_type_of(about_.format);
   if (content_type_.empty()) {
+    if (about_.format.empty()) return "it does not say the format of its tiles, and they do not show it";
     return "its tiles have the unknown format \"" + about_.format + "\"";
   }
   about_.min_zoom = db.zoom("minzoom", "SELECT ifnull(min(zoom_level), 0) FROM tiles");

@@ -5,8 +5,8 @@ import {
   draw,
   extent_px,
   items,
-  map_middle,
   map_pixels,
+  mark,
   open_page,
   pixels_per_m,
   press,
@@ -120,7 +120,8 @@ test('a fence is drawn with a hole and a rally point, and then refuses what leav
   await page.getByRole('button', { name: /^Rally points/ }).click();
   await draw(page, [[-60, 0]]);
   await press(page, 'Save');
-  await expect(page.getByLabel('Messages')).toContainText('Saved the fence “Yard”.');
+  const told = page.getByLabel('Messages');
+  await expect(told).toContainText('Saved the fence “Yard”. The robot does not keep to it');
 
   const { items: stored } = await station.rest<{ items: { id: string }[] }>('GET', '/fences');
   const fence = await station.rest<Fence>('GET', `/fences/${stored[0]?.id ?? ''}`);
@@ -132,13 +133,13 @@ test('a fence is drawn with a hole and a rally point, and then refuses what leav
   await press(page, 'All fences');
   await press(page, 'Use it');
   await expect(page.getByLabel('Fences')).toContainText('the robot keeps to it');
+  await expect(told).not.toContainText('does not keep to it');
   await tab(page, 'Drive');
   await expect(page.getByLabel('Fence', { exact: true })).toContainText('Yard');
   await arm(page);
   await page.getByRole('button', { name: 'Zoom out' }).click();
   await page.waitForTimeout(400); // the zoom is animated
-  const [x, y] = await map_middle(page);
-  await page.mouse.click(x + 120, y);
+  await mark(page, 120 / (await pixels_per_m(page)), 0);
   await press(page, 'Go here');
   await expect(page.getByRole('alert', { name: 'Refused' })).toContainText(
     'the way there leaves the fence',

@@ -160,7 +160,7 @@ Handler set_mode(const ContextPtr& context) {
     if (word) {
       const auto known = base::mode_from(*word);
       if (known) mode = *known;
-      if (!known) members.complain("mode", "\"" + *word + "\" is not a mode");
+      if (!known) members.complain("mode", "must be one of " + base::mode_words());
     }
     // HOLD stops: that is never too late.
     const Moves moves = mode == base::Mode::Hold ? Moves::No : Moves::Yes;

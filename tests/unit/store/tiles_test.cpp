@@ -86,6 +86,25 @@ TEST_F(TilesTest, TheSetIsDescribedAlsoWhereItsMetadataAreSilent) {
   EXPECT_FALSE(sets[0].kept);
 }
 
+TEST_F(TilesTest, WithoutAFormatTheFirstTileTellsIt) {
+  const auto silent = [this](const std::string& bytes) {
+    const auto file = make("png", bytes);
+    SQLite::Database(file.string(), SQLite::OPEN_READWRITE)
+        .exec("DELETE FROM metadata WHERE name = 'format'");
+    return file;
+  };
+  const auto tiles = shelf({{"farm", silent("\xff\xd8\xff\xe0 and so on")}});
+  EXPECT_EQ(tiles->sets().at(0).format, "jpg");
+  EXPECT_EQ(tiles->read("farm", kThere)->content_type, "image/jpeg");
+
+  std::filesystem::remove(folder_ / "png.mbtiles");
+  const std::string unknown = bytes_of(silent("<svg/>"));
+  const auto taken = tiles->take("other", {0, unknown.size(), unknown});
+  ASSERT_FALSE(taken);
+  EXPECT_EQ(taken.error().detail,
+            "it does not say the format of its tiles, and they do not show it");
+}
+
 TEST_F(TilesTest, WithoutBoundsTheTilesTellThem) {
   const auto file = make("png", kPng);
   SQLite::Database(file.string(), SQLite::OPEN_READWRITE)

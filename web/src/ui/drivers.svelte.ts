@@ -41,8 +41,11 @@ export class Drivers {
     this.restarting = name;
     const answer = await this.#calls.restart_driver(name);
     this.restarting = null;
+    this.#notices.outcome(
+      `driver ${name}`,
+      answer.ok ? null : failure_text(say('done_restarted'), answer.refusal),
+    );
     if (answer.ok) this.#notices.show('good', say('the_driver_name_is_being_restarted', { name }));
-    else this.#notices.show('error', failure_text(say('done_restarted'), answer.refusal));
     (await this.#ask())();
   }
 

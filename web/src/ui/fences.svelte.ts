@@ -1,6 +1,6 @@
 // Fences: the list, the one that the robot keeps to, and the one that is drawn.
 
-import { failure_text, refusal_text, type Answer, type Refusal } from '../model/answer';
+import { failure_text, refusal_text, type Answer } from '../model/answer';
 import {
   area_places,
   fresh_circle,
@@ -72,10 +72,8 @@ export class Fences extends RingDrawing implements Drawing {
   /** @return its places, to be shown on the map */
   async open(id: string): Promise<readonly LatLon[]> {
     const answer = await this.#calls.read(id);
-    if (!answer.ok) {
-      this.#complain(say('done_opened'), answer.refusal);
-      return [];
-    }
+    this.#tell(say('done_opened'), answer);
+    if (!answer.ok) return [];
     this.#show(answer.value, answer.value);
     return [...answer.value.areas.flatMap(area_places), ...answer.value.rally];
   }
@@ -151,23 +149,24 @@ export class Fences extends RingDrawing implements Drawing {
     const { draft } = this;
     const stored = this.#stored;
     if (!draft) return;
+    let kept: Fence | null = null;
     await this.#do(say('done_saved'), async () => {
       const answer = stored
         ? await this.#calls.replace(stored.id, stored.revision, draft)
         : await this.#calls.create(draft);
-      if (answer.ok) {
-        this.#show(answer.value, answer.value);
-        const saved = say('saved_the_fence_name', { name: answer.value.name });
-        if (this.active?.id === answer.value.id) this.#notices.show('good', saved, 'fence');
-        else
-          this.#notices.show(
-            'warning',
-            `${saved} ${say('it_is_not_kept_to', { use: say('use_it') })}`,
-            'fence',
-          );
-      }
+      if (answer.ok) this.#show(answer.value, (kept = answer.value));
       return answer;
     });
+    if (kept) this.#tell_saved(kept);
+  }
+
+  #tell_saved({ id, name }: Fence): void {
+    const saved = say('saved_the_fence_name', { name });
+    if (this.active?.id === id) this.#notices.show('good', saved, 'fence');
+    else {
+      const not_in_force = say('it_is_not_kept_to', { use: say('use_it') });
+      this.#notices.show('warning', `${saved} ${not_in_force}`, 'fence');
+    }
   }
 
   /** @param fence null: the robot keeps to none */
@@ -234,16 +233,16 @@ export class Fences extends RingDrawing implements Drawing {
     this.#history = perform(this.#history, () => draft);
   }
 
-  #complain(done: string, refusal: Refusal): void {
-    this.#notices.show('error', failure_text(done, refusal), 'fence');
-  }
-
   async #do(failed: string, call: () => Promise<Answer<unknown>>): Promise<void> {
     if (this.busy) return;
     this.busy = true;
     const answer = await call();
     this.busy = false;
-    if (!answer.ok) this.#complain(failed, answer.refusal);
+    this.#tell(failed, answer);
     await this.refresh();
+  }
+
+  #tell(failed: string, answer: Answer<unknown>): void {
+    this.#notices.outcome('fence', answer.ok ? null : failure_text(failed, answer.refusal));
   }
 }

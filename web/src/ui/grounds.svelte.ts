@@ -156,7 +156,7 @@ export class Grounds {
 
   async #changed(done: string, call: Promise<Answer<unknown>>): Promise<boolean> {
     const answer = await call;
-    if (!answer.ok) this.#notices.show('error', failure_text(done, answer.refusal));
+    this.#notices.outcome('ground', answer.ok ? null : failure_text(done, answer.refusal));
     await this.refresh();
     return answer.ok;
   }
@@ -166,7 +166,7 @@ export class Grounds {
     this.bringing = { name, share: 0, waits: false };
     const trouble = await work();
     this.bringing = null;
-    if (trouble !== null) this.#notices.show('error', trouble);
+    this.#notices.outcome(`ground ${name}`, trouble);
     await this.refresh();
   }
 

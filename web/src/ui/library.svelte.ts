@@ -105,10 +105,8 @@ export class Library {
   async open(id: string): Promise<boolean> {
     if (!(await this.#editor.may_discard())) return false;
     const answer = await this.#calls.read(id);
-    if (!answer.ok) {
-      this.#notices.show('error', refusal_text(answer.refusal));
-      return false;
-    }
+    this.#notices.outcome('missions', answer.ok ? null : refusal_text(answer.refusal));
+    if (!answer.ok) return false;
     this.#editor.show_mission(answer.value);
     return true;
   }
@@ -125,8 +123,11 @@ export class Library {
     });
     if (!sure) return;
     const answer = await this.#calls.remove(mission.id, mission.revision);
+    this.#notices.outcome(
+      'missions',
+      answer.ok ? null : failure_text(say('done_deleted'), answer.refusal),
+    );
     if (answer.ok) this.#notices.show('good', say('deleted_name', { name: mission.name }));
-    else this.#notices.show('error', failure_text(say('done_deleted'), answer.refusal));
     await this.refresh();
   }
 
@@ -148,19 +149,21 @@ export class Library {
 
   async #change(failed: string, call: () => Promise<Answer<Mission>>): Promise<void> {
     const answer = await call();
-    if (!answer.ok) this.#notices.show('error', `${failed}: ${refusal_text(answer.refusal)}`);
+    this.#notices.outcome(
+      'missions',
+      answer.ok ? null : `${failed}: ${refusal_text(answer.refusal)}`,
+    );
     await this.refresh();
   }
 
   /** What speaks against driving the stored mission, in a dialog. */
   async check(id: string, revision: number, name: string): Promise<void> {
     const answer = await this.#calls.check(id, revision);
+    this.#notices.outcome(
+      'missions',
+      answer.ok ? null : say('not_checked_refusal', { refusal: refusal_text(answer.refusal) }),
+    );
     if (answer.ok) this.#dialogs.show({ kind: 'check', name, report: answer.value });
-    else
-      this.#notices.show(
-        'error',
-        say('not_checked_refusal', { refusal: refusal_text(answer.refusal) }),
-      );
   }
 
   /** The same, for whoever shows it himself. */
@@ -192,11 +195,14 @@ export class Library {
       if (!here) return false;
       answer = await this.#calls.import_file(file, origin);
     }
-    if (!answer.ok) {
-      const text = refusal_text(answer.refusal);
-      this.#notices.show('error', say('name_was_not_imported_text', { name: file.name, text }));
-      return false;
-    }
+    const failure = answer.ok
+      ? null
+      : say('name_was_not_imported_text', {
+          name: file.name,
+          text: refusal_text(answer.refusal),
+        });
+    this.#notices.outcome(`file ${file.name}`, failure);
+    if (!answer.ok) return false;
     const { mission } = answer.value;
     if (mission) this.#editor.show_mission(mission);
     const text = file.size <= READ_AGAIN_BYTES ? await file.text() : null;

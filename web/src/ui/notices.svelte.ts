@@ -55,6 +55,12 @@ export class Notices {
     if (level !== 'error') setTimeout(() => this.dismiss(notice.id), SHOWN_MS[level]);
   }
 
+  /** What came of an attempt: its failure, or none, and then those before it are over. */
+  outcome(about: string, failure: string | null): void {
+    if (failure === null) this.shown = this.shown.filter((notice) => notice.about !== about);
+    else this.show('error', failure, about);
+  }
+
   dismiss(id: number): void {
     this.shown = this.shown.filter((notice) => notice.id !== id);
   }

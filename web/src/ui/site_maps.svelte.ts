@@ -140,10 +140,12 @@ export class SiteMaps {
     this.sending = { name, share: 0 };
     const answer = await this.#calls.add(pair, name, (share) => (this.sending = { name, share }));
     this.sending = null;
+    this.#notices.outcome(
+      `map ${name}`,
+      answer.ok ? null : `“${name}”: ${failure_text(say('done_stored'), answer.refusal)}`,
+    );
     if (answer.ok)
       this.#notices.show('good', say('the_map_name_is_stored', { name: answer.value.name }));
-    else
-      this.#notices.show('error', `“${name}”: ${failure_text(say('done_stored'), answer.refusal)}`);
     await this.refresh();
   }
 
@@ -225,11 +227,10 @@ export class SiteMaps {
     this.busy = done;
     const answer = await call();
     this.busy = null;
-    if (!answer.ok)
-      this.#notices.show(
-        'error',
-        say('the_map_done', { done: failure_text(done, answer.refusal) }),
-      );
+    this.#notices.outcome(
+      'map',
+      answer.ok ? null : say('the_map_done', { done: failure_text(done, answer.refusal) }),
+    );
     await this.refresh();
     return answer.ok;
   }

@@ -73,7 +73,7 @@ export class Teacher {
     this.busy = true;
     const answer = await call();
     this.busy = false;
-    if (!answer.ok) this.#notices.show('error', failure_text(what, answer.refusal));
+    this.#notices.outcome('teach', answer.ok ? null : failure_text(what, answer.refusal));
     return answer.ok;
   }
 }
