@@ -42,6 +42,9 @@ export const fences = {
     '“{file}” holds ways that are not connected. It became {missions} missions, the first is',
   file_became_the_mission: '“{file}” became the mission',
   file_has_nothing_to_drive: '“{file}” has nothing to drive:',
+  import_far_away: 'Its first place lies {far} from the robot.',
+  import_exchanged:
+    'With latitude and longitude exchanged it would be {near}: look whether they are.',
   its_fence_is_kept_and_in_force: 'Its fence is kept among the fences, and is in force.',
   its_fence_is_kept_among_the_fences: 'Its fence is kept among the fences, not active.',
   it_has_fields_one_that_is_covered:

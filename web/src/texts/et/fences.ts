@@ -42,6 +42,8 @@ export const fences = {
     '„{file}“ sisaldab ühendamata teid. Sellest sai {missions} ülesannet, esimene on',
   file_became_the_mission: '„{file}“ on nüüd ülesanne',
   file_has_nothing_to_drive: '„{file}“ ei sisalda midagi sõita:',
+  import_far_away: 'Selle esimene koht on robotist {far} kaugusel.',
+  import_exchanged: 'Kui laius ja pikkus vahetada, oleks see {near}: vaata, kas need on vahetuses.',
   its_fence_is_kept_and_in_force: 'Selle tara on tarade seas ja kasutusel.',
   its_fence_is_kept_among_the_fences: 'Selle tara on tarade seas, mitte kasutusel.',
   it_has_fields_one_that_is_covered:

@@ -42,6 +42,9 @@ export const fences = {
     '”{file}” sisältää erillisiä reittejä. Siitä tuli {missions} tehtävää, ensimmäinen on',
   file_became_the_mission: '”{file}” on nyt tehtävä',
   file_has_nothing_to_drive: '”{file}” ei sisällä ajettavaa:',
+  import_far_away: 'Sen ensimmäinen paikka on {far} päässä robotista.',
+  import_exchanged:
+    'Jos leveys ja pituus vaihdetaan, se olisi {near}: katso, ovatko ne vaihtuneet.',
   its_fence_is_kept_and_in_force: 'Sen aita säilyy aidoissa ja on käytössä.',
   its_fence_is_kept_among_the_fences: 'Sen aita säilyy aidoissa, ei käytössä.',
   it_has_fields_one_that_is_covered:

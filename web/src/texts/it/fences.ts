@@ -42,6 +42,9 @@ export const fences = {
     '«{file}» contiene vie non collegate. Sono diventate {missions} missioni, la prima è',
   file_became_the_mission: '«{file}» è diventato la missione',
   file_has_nothing_to_drive: '«{file}» non ha nulla da percorrere:',
+  import_far_away: 'Il suo primo punto è a {far} dal robot.',
+  import_exchanged:
+    'Scambiando latitudine e longitudine sarebbe a {near}: controlla se sono scambiate.',
   its_fence_is_kept_and_in_force: 'Il suo recinto è tra i recinti ed è attivo.',
   its_fence_is_kept_among_the_fences: 'Il suo recinto è tra i recinti, non attivo.',
   it_has_fields_one_that_is_covered: 'Ha dei campi. Uno coperto di passate diventa una missione:',

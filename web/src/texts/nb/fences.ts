@@ -42,6 +42,9 @@ export const fences = {
     '«{file}» har veier som ikke henger sammen. Det ble {missions} oppdrag, det første er',
   file_became_the_mission: '«{file}» ble oppdraget',
   file_has_nothing_to_drive: '«{file}» har ingenting å kjøre:',
+  import_far_away: 'Det første stedet ligger {far} fra roboten.',
+  import_exchanged:
+    'Med bredde og lengde byttet om ville det være {near}: se etter om de er byttet om.',
   its_fence_is_kept_and_in_force: 'Gjerdet er lagt blant gjerdene og er aktivt.',
   its_fence_is_kept_among_the_fences: 'Gjerdet er lagt blant gjerdene, ikke aktivt.',
   it_has_fields_one_that_is_covered: 'Den har jorder. Et jorde dekket med spor blir et oppdrag:',
