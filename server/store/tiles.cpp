@@ -105,8 +105,8 @@ struct TileFile::Db {
     const int said = text.empty() ? number(fallback_sql) : std::atoi(text.c_str());
     return std::clamp(said, 0, kMostZoom);
   }
-  /// What the first tile is, for whoever wrote no format (the specification wants it, many files have
-  /// none). Empty: there is no tile, or it is nothing known.
+  /// What the first tile is, for whoever wrote no format (the specification wants it, many files
+  /// have none). Empty: there is no tile, or it is nothing known.
   std::string first_format() {
     strides = 0;
     SQLite::Statement row(db, "SELECT tile_data FROM tiles LIMIT 1");
@@ -155,7 +155,8 @@ std::string TileFile::describe() {
   if (about_.format.empty()) about_.format = db.first_format();
   content_type_ = content_type_of(about_.format);
   if (content_type_.empty()) {
-    if (about_.format.empty()) return "it does not say the format of its tiles, and they do not show it";
+    if (about_.format.empty())
+      return "it does not say the format of its tiles, and they do not show it";
     return "its tiles have the unknown format \"" + about_.format + "\"";
   }
   about_.min_zoom = db.zoom("minzoom", "SELECT ifnull(min(zoom_level), 0) FROM tiles");

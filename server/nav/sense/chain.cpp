@@ -59,12 +59,12 @@ float step_across_rad(const base::Sight& sight, float step_up) {
 
 /// So high over the lowest ground that was seen a plane meets grass: over the ground as it is laid,
 /// which is half of the grass higher, nothing lower is an obstacle, and blades reach as high again.
-/// On level ground a plane meets what is as high as it is mounted: less than half of that, so that
-/// a height that is wrong by as much does not take it away.
+/// On level ground a plane meets what is as high as it is mounted: less than 0.6 of that, so that a
+/// height that is wrong by the rest (two thirds of what is allowed here) does not take it away.
 double over_ground_m(const GroundParams& ground, const std::vector<SensorSetup>& sensors) {
   double over_m = ground.min_height_m + 2.0 * ground.rough_m;
   for (const SensorSetup& s : sensors) {
-    if (s.planar && s.thin) over_m = std::min(over_m, 0.5 * s.mount.z_m);
+    if (s.planar && s.thin) over_m = std::min(over_m, 0.6 * s.mount.z_m);
   }
   return std::max(over_m, std::min(ground.min_height_m, Hills::kMostLow_m));
 }

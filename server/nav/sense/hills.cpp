@@ -20,7 +20,7 @@ constexpr float kRingEdge_m = 0.06F;
 // Of the directions about one that must have met ground.
 constexpr float kRingPart = 0.8F;
 // Whatever the settings say of the grass.
-constexpr double kMostOver_m = 0.15;
+constexpr double kMostOver_m = 0.18;
 
 // Where no place about it is known: cells to what is.
 constexpr std::int32_t kNear = 3;
@@ -82,7 +82,8 @@ std::size_t Hills::index(std::int32_t x, std::int32_t y) const noexcept {
 }
 
 std::int32_t Hills::half_of(base::Time t) const noexcept {
-  return static_cast<std::int32_t>(std::floor(base::seconds(t - begin_) / (0.5 * kKnown_s)));
+  return static_cast<std::int32_t>(
+      std::floor(2.0 * (base::seconds(t - begin_) / kKnown_s + way_m_ / kKnown_m)));
 }
 
 void Hills::forget() noexcept {
@@ -196,7 +197,11 @@ void Hills::learn(const Reduced& in) {
   if (!begun_) {
     begun_ = true;
     begin_ = in.stamp;
+    last_ = in.pose;
+    way_m_ = 0.0;
   }
+  way_m_ += std::hypot(in.pose.x_m - last_.x_m, in.pose.y_m - last_.y_m);
+  last_ = in.pose;
   const std::int32_t half = half_of(in.stamp);
   const Lies lies(in);
   look_out(in);

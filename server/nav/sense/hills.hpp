@@ -2,7 +2,7 @@
 // Where the ground lies that somebody has seen: what a scanner of one plane meets on a hill is told
 // from what stands there.
 //
-//   a cloud's ground ─▶ the lowest of it in cells of kCell_m, for kKnown_s, in O ─▶ a plane's echo
+//   a cloud's ground ─▶ the lowest of it in cells of kCell_m, for a while, in O ─▶ a plane's echo
 //   from kInside_m below to low_m above the lowest of three by three cells is ground (of seven by
 //   seven, where these are not known); from those about it the ground may rise to it by kSteepest
 //
@@ -23,8 +23,10 @@
 // What came to stand on ground that was known is higher than the lowest there. An echo farther
 // below the ground shows that the heights do not agree; it stays an obstacle, too.
 //
-// Heights in O are compared within seconds, and only while something tells how the body leans
-// (Lie3::told): when nothing does, all of it is forgotten. Not shared between threads.
+// Heights in O drift as the robot drives, hardly while it stands or turns on the spot: ground is
+// known for kKnown_m of way or kKnown_s, and the less of the one the more of the other has passed.
+// And only while something tells how the body leans (Lie3::told): when nothing does, all of it is
+// forgotten. Not shared between threads.
 
 #include <cstddef>
 #include <cstdint>
@@ -41,7 +43,8 @@ class Hills {
  public:
   static constexpr double kCell_m = 0.1;
   /// At least half of it, and less than all of it: in two halves each cell keeps its lowest.
-  static constexpr double kKnown_s = 8.0;
+  static constexpr double kKnown_s = 30.0;
+  static constexpr double kKnown_m = 10.0;
   static constexpr float kInside_m = 0.15F;
   static constexpr float kSteepest = 0.15F;  ///< rise over way
   static constexpr float kRough_m = 0.05F;
@@ -52,7 +55,7 @@ class Hills {
   static constexpr double kFarthest_m = 1e7;
 
   /// @param range_m what lies farther from the body is not asked. @param low_m what a plane meets
-  /// so high over the lowest ground is grass; 0.15 m at most: what is hidden in taller grass a
+  /// so high over the lowest ground is grass; 0.18 m at most: what is hidden in taller grass a
   /// plane still tells
   Hills(double range_m, double low_m);
 
@@ -89,6 +92,7 @@ class Hills {
   static void renew(Place& p, std::int32_t x, std::int32_t y, std::int32_t half,
                     float z_m) noexcept;
   std::size_t index(std::int32_t x, std::int32_t y) const noexcept;
+  /// Which half of what is known for a while this is, by time and way.
   std::int32_t half_of(base::Time t) const noexcept;
   /// Of the cells so far about it, each with the rise from there; infinity: none is known.
   float lowest_about(std::int32_t x, std::int32_t y, std::int32_t half,
@@ -109,6 +113,8 @@ class Hills {
   std::vector<Place> places_;
   bool begun_ = false;
   base::Time begin_;
+  Pose2 last_;          ///< X_OB of the last piece that told ground
+  double way_m_ = 0.0;  ///< since it began
 };
 
 }  // namespace roverd::nav::sense

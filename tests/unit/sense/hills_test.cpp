@@ -268,12 +268,32 @@ std::size_t judged(float ground_m, double later_s) {
 //   Heights must agree, and be of these seconds, however tall the grass may be by the settings.
 TEST(HillsTest, GroundOfLongAgoAndGroundFarAboveSayNothing) {
   EXPECT_EQ(judged(0.5F, 2.0), 1U);
-  EXPECT_EQ(judged(0.36F, 2.0), 1U);
-  EXPECT_EQ(judged(0.34F, 2.0), 0U) << "0.16 m over the ground";
+  EXPECT_EQ(judged(0.33F, 2.0), 1U);
+  EXPECT_EQ(judged(0.31F, 2.0), 0U) << "0.19 m over the ground";
   EXPECT_EQ(judged(0.64F, 2.0), 1U);
   EXPECT_EQ(judged(0.66F, 2.0), 0U) << "0.16 m within it";
-  EXPECT_EQ(judged(0.5F, 3.9), 1U);
-  EXPECT_EQ(judged(0.5F, 8.1), 0U);
+  EXPECT_EQ(judged(0.5F, 14.9), 1U);
+  EXPECT_EQ(judged(0.5F, 30.1), 0U);
+}
+
+//   Ground at 4 m; then the robot drives on and comes back, or stands as long.
+TEST(HillsTest, TheFartherTheRobotDrivesTheSoonerGroundIsForgotten) {
+  const auto known_after = [](double way_m, double time_s) {
+    Hills hills(8.0, 0.08);
+    hills.learn(ground_through(0.0, {{4.0F, 0.0F, 0.3F}}));
+    for (int i = 1; i <= 100; ++i) {
+      Reduced away = ground_through(0.01 * i * time_s, {{4.0F, 7.0F, 0.0F}});
+      away.pose.x_m = 0.5 * way_m * (1.0 - std::abs(0.02 * i - 1.0));
+      hills.learn(away);
+    }
+    return hills.is_ground(4.0, 0.0, 0.3F, at(time_s));
+  };
+  EXPECT_TRUE(known_after(0.0, 14.9)) << "as long as it stands: 15 s at least, 30 s at most";
+  EXPECT_FALSE(known_after(0.0, 30.1));
+  EXPECT_TRUE(known_after(4.9, 0.1)) << "on the way: 5 m at least, 10 m at most";
+  EXPECT_FALSE(known_after(10.1, 0.1));
+  EXPECT_TRUE(known_after(2.4, 7.5)) << "half of each";
+  EXPECT_FALSE(known_after(6.0, 15.0));
 }
 
 TEST(HillsTest, TheLowestGroundOfTheseSecondsCounts) {
@@ -283,10 +303,10 @@ TEST(HillsTest, TheLowestGroundOfTheseSecondsCounts) {
   EXPECT_FALSE(hills.is_ground(4.0, 0.0, 0.3F, at(1.3))) << "something came to stand there";
   EXPECT_TRUE(hills.is_ground(4.0, 0.0, 0.05F, at(1.3)));
   //   Seen so for long, it is the ground: the lean was wrong before.
-  for (double t = 1.5; t < 10.0; t += 0.5) {
+  for (double t = 1.5; t < 32.0; t += 0.5) {
     hills.learn(ground_through(t, {{4.0F, 0.0F, 0.3F}}));
   }
-  EXPECT_TRUE(hills.is_ground(4.0, 0.0, 0.3F, at(10.0)));
+  EXPECT_TRUE(hills.is_ground(4.0, 0.0, 0.3F, at(32.0)));
 }
 
 Voxel ground_at(float x_m, float z_m) {
@@ -324,19 +344,19 @@ TEST(HillsTest, GroundThatIsSeenAgainAsHighAsItWasStaysKnown) {
     for (double t = 1.1; t < until_s; t += 0.1) hills.learn(piece(t, {ground_at(4.0F, again_m)}));
     return hills.is_ground(4.0, 0.0, echo_m, at(until_s));
   };
-  EXPECT_TRUE(known_after(0.3F, 30.0, 0.35F));
-  EXPECT_TRUE(known_after(0.27F, 30.0, 0.33F)) << "a little lower: that height counts";
-  EXPECT_FALSE(known_after(0.27F, 30.0, 0.37F));
-  EXPECT_FALSE(known_after(0.34F, 30.0, 0.4F)) << "its height does not rise";
-  EXPECT_FALSE(known_after(0.36F, 30.0, 0.35F)) << "that is something else, or the lean was wrong";
-  EXPECT_FALSE(known_after(0.24F, 30.0, 0.25F)) << "likewise";
+  EXPECT_TRUE(known_after(0.3F, 100.0, 0.35F));
+  EXPECT_TRUE(known_after(0.27F, 100.0, 0.33F)) << "a little lower: that height counts";
+  EXPECT_FALSE(known_after(0.27F, 100.0, 0.37F));
+  EXPECT_FALSE(known_after(0.34F, 100.0, 0.4F)) << "its height does not rise";
+  EXPECT_FALSE(known_after(0.36F, 100.0, 0.35F)) << "that is something else, or the lean was wrong";
+  EXPECT_FALSE(known_after(0.24F, 100.0, 0.25F)) << "likewise";
 }
 
 TEST(HillsTest, WhatIsSeenTooLateToBeKnownAnewIsNot) {
   Hills hills(8.0, 0.08);
   hills.learn(ground_through(1.0, {{4.0F, 0.0F, 0.3F}}));
-  hills.learn(piece(9.1, {ground_at(4.0F, 0.3F)}));
-  EXPECT_FALSE(hills.is_ground(4.0, 0.0, 0.3F, at(9.2)));
+  hills.learn(piece(31.1, {ground_at(4.0F, 0.3F)}));
+  EXPECT_FALSE(hills.is_ground(4.0, 0.0, 0.3F, at(31.2)));
 }
 
 //   Lower ground 10 cm down the slope does not make a thing of a blade; below a face it does.
