@@ -104,6 +104,7 @@ struct Station::Impl {
   };
   ForbiddenOf forbidden;
   std::size_t forbidden_left_out = 0;   ///< of its areas, that nothing keeps out of
+  std::size_t forbidden_unplaced = 0;   ///< all of them, while nobody knows where the map lies
   std::vector<base::HostProblem> host;  ///< what is wrong with this computer
   const bool memory_locked = lock_memory();
   ServiceManager manager = ServiceManager::of_this_process();

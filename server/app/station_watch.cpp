@@ -88,6 +88,11 @@ void Station::Impl::watch_host() {
                          " forbidden areas of the map in use: they are wider than 20 km, or have, "
                          "with the fence, more corners than can be kept out of"});
   }
+  if (forbidden_unplaced > 0) {
+    found.push_back({"forbidden_not_placed",
+                     "the robot does not keep out of the " + std::to_string(forbidden_unplaced) +
+                         " forbidden areas of the map in use: it is not known where the map lies"});
+  }
   for (const base::HostProblem& problem : found) {
     const auto same = [&](const base::HostProblem& known) { return known.id == problem.id; };
     if (!problem.alarming || std::any_of(host.begin(), host.end(), same)) continue;
@@ -124,13 +129,10 @@ void Station::Impl::watch_forbidden() {
   if (!about) return;  // it went meanwhile; in a second it is not in use any more
   forbidden = now;
   const std::string name = "forbidden in " + about->name;
+  forbidden_unplaced = now.placed ? 0 : about->forbidden.size();
   if (now.placed) return keep_out(about->forbidden, told_anchor(*now.placed), name);
   forbidden_left_out = 0;
   services->keep_out({}, name);
-  if (!about->forbidden.empty() && place) {
-    robot.tell({base::wall_now(), base::Severity::Warning, "map_trouble",
-                "the areas " + name + " hold when it is known where the map lies"});
-  }
 }
 
 /// Areas of many corners are looked through beside the web.

@@ -256,6 +256,7 @@ struct OperatorLink {
 struct HostProblem {
   std::string id;        ///< storage_failed storage_low storage_silent clock_unset loop_late
                          ///< realtime_refused memory_unlocked not_announced forbidden_left_out
+                         ///< forbidden_not_placed
   std::string detail;    ///< in words
   bool alarming = true;  ///< also where safety is told; else in the checks and GET /health alone
   friend bool operator==(const HostProblem&, const HostProblem&) = default;

@@ -59,6 +59,7 @@ struct Obstacle {
   bool blocked = false;            ///< a drive by itself, for longer than it may last
   std::string_view then;           ///< what follows when it is blocked; empty: a hand drives
   std::optional<Time> decides_at;  ///< when that will be; empty: it is, or never will
+  std::string no_way;              ///< why there is no way around it; empty: nobody has found so
   std::string reason;              ///< one sentence for people
 };
 

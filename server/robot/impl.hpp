@@ -132,6 +132,7 @@ struct Robot::Impl {
   bool around_again = false;  ///< it was held on its way around: one from here is looked for
   base::Time around_again_at{};
   bool around_hopeless = false;  ///< there is no way around, and that was told
+  std::string around_none;       ///< why, as it was told
   std::string around_in_doubt;   ///< why there may be none, while one is driven
   std::vector<std::shared_ptr<const AroundAnswer>> around_batch;
   Mode guarded_mode = Mode::Hold;

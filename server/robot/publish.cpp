@@ -68,7 +68,10 @@ bool Robot::Impl::publish() {
   }
   s->command = sent;
   s->detour = detour_way();
-  if (guard.obstacle().action != base::GuardAction::None) s->obstacle = guard.obstacle();
+  if (guard.obstacle().action != base::GuardAction::None) {
+    s->obstacle = guard.obstacle();
+    if (around_hopeless) s->obstacle->no_way = around_none;
+  }
   s->row = row_state();
   s->tags = tag_states();
   s->known_places = known_places.states();

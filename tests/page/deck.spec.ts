@@ -98,6 +98,6 @@ test('instruments are chosen and kept, and what is plotted can be stopped and sa
   const saved = page.waitForEvent('download');
   await plots.getByRole('button', { name: 'Save CSV' }).click();
   const text = readFileSync(await (await saved).path(), 'utf8').split('\r\n');
-  expect(text[0]).toBe('time,speed_mps,deviation_m,heading_deg,battery_V,link_ms,gnss_m');
+  expect(text[0]).toBe('time,speed_mps,deviation_m,heading_error_deg,battery_V,link_ms,gnss_m');
   expect(text[5]).toMatch(/^20\d\d-.*Z,-?[\d.]+,,,5\d/);
 });

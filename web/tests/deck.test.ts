@@ -40,6 +40,13 @@ describe('the figures of the deck', () => {
     expect(said(vehicle({ cross_track_m: 0 }))[1]).toBe('Off path: 0.0 cm');
   });
 
+  test('tell nothing that is left of a mission that has ended, and no time of one that is blocked', () => {
+    for (const state of ['aborted', 'finished'])
+      expect(said(vehicle({ state })).slice(2)).toEqual(['To drive: —', 'Time left: —']);
+    const blocked = { ...vehicle({ state: 'running' }), obstacle: { blocked: true } } as Vehicle;
+    expect(said(blocked).slice(2)).toEqual(['To drive: 51.3 m', 'Time left: —']);
+  });
+
   test('tell the speed in the unit that was chosen', () => {
     expect(deck_figures(vehicle(), 'km/h')[0]).toMatchObject({ value: '2.9', unit: 'km/h' });
   });

@@ -3,12 +3,14 @@ import { describe, expect, test } from 'vitest';
 import {
   PAD_DEFAULTS,
   PadHand,
+  as_at_first,
   assigned,
   axis_name,
   button_name,
   moved_part,
   pad_kind,
   pad_settings_of,
+  pad_words,
   pad_wish,
   speed_hand,
   use_of,
@@ -124,6 +126,17 @@ describe('what is chosen', () => {
     expect(use_of(settings, 'xpad').hold).toBe(4);
   });
 
+  test('what a button was before goes to what had the new one: none means two things', () => {
+    const settings = assigned(PAD_DEFAULTS, 'standard', 'hold', 5);
+    expect(use_of(settings, 'standard')).toMatchObject({ hold: 5, other: 4 });
+    const turned = assigned(settings, 'standard', 'turn', 1);
+    expect(use_of(turned, 'standard')).toMatchObject({ speed: 2, turn: 1, hold: 5, other: 4 });
+    // Axis 5 and button 5 of this one are two things.
+    const trigger = assigned(PAD_DEFAULTS, 'xpad', 'trigger', 3);
+    expect(use_of(trigger, 'xpad')).toEqual({ speed: 1, turn: 5, hold: 4, other: 5, trigger: 3 });
+    expect(use_of(as_at_first(turned, 'standard'), 'standard')).toEqual(usual);
+  });
+
   test('one that nobody knows drives only once it is assigned', () => {
     const none = use_of(PAD_DEFAULTS, 'other');
     expect(why_not_pad(none)).toContain('assign');
@@ -144,6 +157,50 @@ describe('what is chosen', () => {
       other: null,
       trigger: 5, // kept before there was one
     });
+  });
+});
+
+describe('what is said of it', () => {
+  const facts = {
+    there: true,
+    why_not: null,
+    hold_name: 'LB',
+    by_hand: false,
+    not_yet: null,
+    auto_share: null,
+    wants_hand: false,
+    auto_drives: false,
+    bumpers: false,
+    no_manual: null,
+  };
+
+  test('is nothing without one, unless AUTO wants a hand on one', () => {
+    expect(pad_words({ ...facts, there: false })).toBeNull();
+    expect(pad_words({ ...facts, there: false, wants_hand: true })).toContain('none is there');
+  });
+
+  test('by hand it is what to hold, or why the robot does not take the stick yet', () => {
+    const by_hand = { ...facts, by_hand: true };
+    expect(pad_words(by_hand)).toBe('Gamepad: hold LB to drive.');
+    expect(pad_words({ ...by_hand, not_yet: 'let the stick go once' })).toBe(
+      'Gamepad: let the stick go once',
+    );
+  });
+
+  test('in AUTO it does not claim a hand that is not there', () => {
+    const auto = { ...facts, wants_hand: true };
+    expect(pad_words(auto)).toContain('draw the trigger for AUTO');
+    expect(pad_words({ ...auto, auto_drives: true })).toContain('drives without your hand');
+    expect(pad_words({ ...auto, auto_drives: true, auto_share: 0.5 })).toBe(
+      'Gamepad: AUTO at 50 %; let go to hold.',
+    );
+  });
+
+  test('bumpers are offered where they choose MANUAL, else why they do not', () => {
+    expect(pad_words({ ...facts, bumpers: true })).toContain('hold both bumpers');
+    expect(pad_words({ ...facts, bumpers: true, no_manual: 'Arm the robot first.' })).toBe(
+      'Gamepad: Arm the robot first.',
+    );
   });
 });
 

@@ -52,6 +52,11 @@ describe('its words', () => {
       'For 12 s. Blocked: back off.',
     );
     expect(obstacle_since({ ...blocked, then: null }, 0)).toBe('For 12 s. Blocked.');
+    expect(obstacle_since({ ...waits, then: 'wait' }, 0)).toBe(
+      'For 12 s. In 8 s it counts as blocked.',
+    );
+    const none = { ...blocked, no_way: 'the corridor leaves no way' };
+    expect(obstacle_since(none, 0)).toBe('For 12 s. No way around it: the corridor leaves no way.');
   });
 });
 

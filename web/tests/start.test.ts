@@ -47,7 +47,7 @@ test('how near is near enough is said while a mission drives', () => {
 describe('the lights before a start', () => {
   const vehicle = (given: object = {}): Vehicle =>
     ({
-      position: { horizontal_accuracy_m: 0.02, stale: false },
+      position: { horizontal_accuracy_m: 0.02, heading_accuracy_deg: 0.5, stale: false },
       gnss: { fix: 'rtk_fixed' },
       fence: { name: 'yard', inside: true, distance_m: 4 },
       ...given,
@@ -67,27 +67,34 @@ describe('the lights before a start', () => {
       'good: Fence: inside “yard”, 4.00 m from its limit',
       'good: Way home: Home, 12.0 m',
       'good: Position: RTK fixed, ±2 cm',
+      'good: Heading: ±0.5°',
     ]);
   });
 
-  test('say what is to be looked at, and keep their order', () => {
+  test('say what is to be looked at, the worst first, and else keep their order', () => {
     const findings = [{ severity: 'warning' }, { severity: 'error' }];
     expect(
       said({
-        vehicle: vehicle({ fence: null, position: { horizontal_accuracy_m: 1.4, stale: false } }),
+        vehicle: vehicle({
+          fence: null,
+          position: { horizontal_accuracy_m: 1.4, heading_accuracy_deg: 30, stale: false },
+        }),
         preview: { ...first, distance_m: 48 },
         home: { ...home, possible: false, reason: 'it has no home' },
         report: { findings } as unknown as CheckReport,
       }),
     ).toEqual([
-      'warn: To its first item: 48.0 m, 045° NE',
       'bad: Check: 1 error',
+      'warn: To its first item: 48.0 m, 045° NE',
       'warn: Fence: none holds',
       'warn: Way home: it has no home',
       'warn: Position: RTK fixed, ±1.4 m',
+      'warn: Heading: ±30.0°',
     ]);
-    expect(said({ report: null, failure: 'no answer' })[1]).toBe('warn: Check: no answer');
+    const lost = { horizontal_accuracy_m: 0.02, heading_accuracy_deg: null, stale: false };
+    expect(said({ vehicle: vehicle({ position: lost }) })[0]).toBe('bad: Heading: not known');
+    expect(said({ report: null, failure: 'no answer' })[0]).toBe('warn: Check: no answer');
     const outside = vehicle({ fence: { name: 'yard', inside: false, distance_m: -0.5 } });
-    expect(said({ vehicle: outside })[2]).toBe('bad: Fence: outside of “yard”, by 0.50 m');
+    expect(said({ vehicle: outside })[0]).toBe('bad: Fence: outside of “yard”, by 0.50 m');
   });
 });

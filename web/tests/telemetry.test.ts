@@ -92,7 +92,7 @@ describe('telemetry', () => {
     const telemetry = new Telemetry();
     telemetry.take(0.5, [0.81234567, null, -12, 52, 4, 0.02]);
     expect(csv_of(telemetry.columns)).toBe(
-      'time,speed_mps,deviation_m,heading_deg,battery_V,link_ms,gnss_m\r\n' +
+      'time,speed_mps,deviation_m,heading_error_deg,battery_V,link_ms,gnss_m\r\n' +
         '1970-01-01T00:00:00.500Z,0.8123,,-12,52,4,0.02\r\n',
     );
   });

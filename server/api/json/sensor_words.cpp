@@ -67,6 +67,7 @@ Json obstacle_json(const std::optional<base::Obstacle>& o, base::Time now) {
       {"decides_in_s",
        o->decides_at ? Json(rounded(std::max(0.0, base::seconds(*o->decides_at - now)), kPlaces2))
                      : Json(nullptr)},
+      {"no_way", o->no_way.empty() ? Json(nullptr) : Json(o->no_way)},
       {"reason", o->reason}};
 }
 

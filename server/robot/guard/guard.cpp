@@ -70,7 +70,8 @@ std::string_view key_of(const base::Obstacle& o, bool foreseen, const BodyTwist&
   return v < 0.0 ? "sense.protect.creep_back_mps" : "sense.protect.creep_mps";
 }
 
-std::string sentence(const base::Obstacle& o) {
+/// @param room_m between the body and it
+std::string sentence(const base::Obstacle& o, double room_m) {
   char text[160];
   const double deg = base::deg_from_rad(o.bearing_rad);
   if (o.what == "blind") {
@@ -87,8 +88,8 @@ std::string sentence(const base::Obstacle& o) {
                      : o.what == "unseen" ? "no sensor has seen the way"
                      : o.moves            ? "somebody comes into the way"
                                           : "something stands in the way";
-  std::snprintf(text, sizeof text, "%s, %.1f m %s%s%s", what, std::hypot(o.ahead_m, o.left_m),
-                where.c_str(), o.sensor.empty() ? "" : ", seen by ", o.sensor.c_str());
+  std::snprintf(text, sizeof text, "%s, %.1f m %s%s%s", what, room_m, where.c_str(),
+                o.sensor.empty() ? "" : ", seen by ", o.sensor.c_str());
   return text;
 }
 
@@ -484,7 +485,8 @@ void Guard::tell(const Looked& v, base::GuardAction action, base::Time now) {
   }
   obstacle_.age_s = v.age_s + (around_ ? base::seconds(now - around_->patch.stamp) : 0.0);
   obstacle_.stopped_since = stopped_since_;
-  obstacle_.reason = sentence(obstacle_);
+  obstacle_.reason =
+      sentence(obstacle_, std::max(0.0, body_.distance_m({obstacle_.ahead_m, obstacle_.left_m})));
   // Who may help: a person who sees it, or whoever sets how the robot goes there.
   if (const auto key = key_of(obstacle_, v.foreseen, wanted_, body_.reach_m()); !key.empty()) {
     const bool unseen = obstacle_.what == "unseen";

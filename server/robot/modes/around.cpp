@@ -135,6 +135,7 @@ void Robot::Impl::no_way_around(const AroundAnswer& answer) {
     why = "item " + std::to_string(answer.asked->item) + " lies in what stands there";
     if (config->behave.unreachable != "stop" && !detour.drives()) {
       around_hopeless = true;
+      around_none.clear();
       return missions.executor.give_up_item(std::move(why));
     }
   }
@@ -143,9 +144,9 @@ void Robot::Impl::no_way_around(const AroundAnswer& answer) {
 }
 
 void Robot::Impl::tell_hopeless() {
-  const std::string why = std::exchange(around_in_doubt, {});
+  around_none = std::exchange(around_in_doubt, {});
   if (std::exchange(around_hopeless, true)) return;
-  event(Severity::Warning, "no_way_around", "no way around it: " + why);
+  event(Severity::Warning, "no_way_around", "no way around it: " + around_none);
 }
 
 /// What was found is of no use any more: another way, another map, another mission.

@@ -52,8 +52,11 @@ export const deck_figures = (
   const [speed, speed_unit] = split(speed_text(vehicle?.position.speed_mps, speed_in));
   const off_m = mission?.cross_track_m ?? null;
   const [off, off_unit] = split(metres(off_m === null ? null : Math.abs(off_m)));
-  const [left, left_unit] = split(metres(mission?.distance_left_m));
-  const [time, time_unit] = clock_of(mission?.eta_s ?? null);
+  // Of one that has ended there is nothing left; how long one stands that is blocked nobody knows.
+  const ended = mission?.state === 'finished' || mission?.state === 'aborted';
+  const waits = vehicle?.obstacle?.blocked === true;
+  const [left, left_unit] = split(metres(ended ? null : mission?.distance_left_m));
+  const [time, time_unit] = clock_of(ended || waits ? null : (mission?.eta_s ?? null));
   return [
     { label: say('speed'), value: speed, unit: speed_unit, tone: 'plain' },
     {

@@ -66,14 +66,24 @@ export const PAD_DEFAULTS: PadSettings = { uses: {}, expo: 0.4, bumpers: false, 
 export const use_of = (settings: PadSettings, kind: PadKind): PadUse =>
   settings.uses[kind] ?? USUAL[kind];
 
+/** What had that number gets the one that was before: one button never means two things. */
 export const assigned = (
   settings: PadSettings,
   kind: PadKind,
   part: PadPart,
   number: number,
-): PadSettings => ({
+): PadSettings => {
+  const use = use_of(settings, kind);
+  const had = PAD_PARTS.find(
+    (each) => use[each] === number && is_axis(each, kind) === is_axis(part, kind),
+  );
+  const changed = { ...use, ...(had ? { [had]: use[part] } : {}), [part]: number };
+  return { ...settings, uses: { ...settings.uses, [kind]: changed } };
+};
+
+export const as_at_first = (settings: PadSettings, kind: PadKind): PadSettings => ({
   ...settings,
-  uses: { ...settings.uses, [kind]: { ...use_of(settings, kind), [part]: number } },
+  uses: Object.fromEntries(Object.entries(settings.uses).filter(([each]) => each !== kind)),
 });
 
 const AT_MOST = 64;
@@ -211,6 +221,49 @@ export const why_no_hand = (wanted: boolean, there: boolean, hand: SpeedHand): s
     : say('auto_wants_a_hand_on_the_gamepad_and');
 };
 
+export interface PadFacts {
+  readonly there: boolean;
+  /** It cannot drive. */
+  readonly why_not: string | null;
+  /** Of its dead-man. */
+  readonly hold_name: string;
+  readonly by_hand: boolean;
+  /** The robot does not take the stick yet; null: it does. */
+  readonly not_yet: string | null;
+  /** AUTO is under a hand now, so fast. */
+  readonly auto_share: number | null;
+  readonly wants_hand: boolean;
+  /** A mission drives by itself. */
+  readonly auto_drives: boolean;
+  readonly bumpers: boolean;
+  /** MANUAL cannot be chosen now. */
+  readonly no_manual: string | null;
+}
+
+/** What the gamepad does, or waits for; null: there is none, and none is wanted. */
+export const pad_words = (facts: PadFacts): string | null => {
+  const why = (why_not: string): string => say('gamepad_why_not', { why_not });
+  if (!facts.there) return facts.wants_hand ? say('gamepad_none_and_auto_wants_one') : null;
+  if (facts.why_not !== null) return why(facts.why_not);
+  if (facts.by_hand) {
+    if (facts.not_yet !== null) return why(facts.not_yet);
+    return `${say('gamepad_hold')} ${facts.hold_name} ${say('to_drive_2')}`;
+  }
+  if (facts.auto_share !== null) {
+    const share = Math.round(100 * facts.auto_share);
+    return `${say('gamepad_auto_at')} ${share} %${say('let_go_to_hold')}`;
+  }
+  if (facts.wants_hand) {
+    return facts.auto_drives
+      ? say('gamepad_auto_drives_without_your_hand')
+      : say('gamepad_hold_a_bumper_and_draw_the');
+  }
+  if (!facts.bumpers) return say('gamepad_is_there');
+  return facts.no_manual === null
+    ? say('gamepad_hold_both_bumpers_to_drive')
+    : why(facts.no_manual);
+};
+
 /** So long both bumpers are held: nobody does that by chance. */
 export const BUMPERS_MS = 500;
 
@@ -226,6 +279,11 @@ export class PadHand {
   #phase: 'down' | 'up' | 'held' = 'down';
   #both_since_ms: number | null = null;
   #asked = false;
+
+  /** It drives by hand. */
+  get held(): boolean {
+    return this.#phase === 'held';
+  }
 
   /** @param reading null: it is gone; @param now_ms of any clock that only goes on */
   take(reading: PadReading | null, use: PadUse, bumpers: boolean, now_ms: number): PadDeed | null {

@@ -25,6 +25,8 @@ export interface Obstacle {
   /** What comes of waiting. */
   readonly then?: string | null;
   readonly decides_in_s?: number | null;
+  /** There is none around it: why. */
+  readonly no_way?: string | null;
 }
 
 const then_words: Readonly<Record<string, string>> = told({
@@ -48,12 +50,12 @@ export const obstacle_since = (obstacle: Obstacle, older_s: number): string => {
   const then = obstacle.then ?? '';
   const words = then_words[then] ?? then.replaceAll('_', ' ');
   const left_s = obstacle.decides_in_s ?? null;
-  const soon =
-    left_s === null
-      ? say('then')
-      : say('in_left', { left: lasting(Math.max(0, left_s - older_s)) });
-  if (obstacle.blocked === true)
+  const left = left_s === null ? null : lasting(Math.max(0, left_s - older_s));
+  const soon = left === null ? say('then') : say('in_left', { left });
+  if (obstacle.no_way) parts.push(say('no_way_around_it', { why: obstacle.no_way }));
+  else if (obstacle.blocked === true)
     parts.push(words === '' ? say('blocked') : say('blocked_words', { words }));
+  else if (then === 'wait' && left !== null) parts.push(say('in_left_it_is_blocked', { left }));
   else if (words !== '') parts.push(`${soon} ${words}.`);
   return parts.join(' ');
 };

@@ -151,7 +151,7 @@ export const position_lines = (
   const refused = Object.entries(estimator.rejected)
     .filter(([, times]) => times > 0)
     .map(([what, times]) => `${what} ${times}`);
-  out.push([say('refused'), refused.length === 0 ? 'nothing' : refused.join(', ')]);
+  out.push([say('refused'), refused.length === 0 ? say('nothing_refused') : refused.join(', ')]);
   out.push([say('set_anew'), count(estimator.resets, 'time')]);
   return out;
 };

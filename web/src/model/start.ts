@@ -1,6 +1,6 @@
 // Where a start begins and what speaks for and against it, in words and lights.
 
-import { accuracy, count, direction, metres } from './format';
+import { accuracy, count, degrees_text, direction, metres } from './format';
 import { target_words, type WayHome } from './homeward';
 import type { CheckReport } from './ports';
 import { say } from './say';
@@ -108,6 +108,17 @@ const position_light = ({ position, gnss }: Vehicle): StartLight => {
   const light = accuracy_m === null ? 'bad' : accuracy_m > FINE_M ? 'warn' : 'good';
   return { light: position.stale ? 'bad' : light, subject: say('position'), words };
 };
+
+/** Beyond it the robot creeps at first. */
+const UNSURE_DEG = 10;
+const heading_light = ({ position }: Vehicle): StartLight => {
+  const subject = say('heading');
+  const { heading_accuracy_deg: off_deg } = position;
+  if (off_deg === null) return { light: 'bad', subject, words: say('not_known_2') };
+  const light = position.stale ? 'bad' : off_deg > UNSURE_DEG ? 'warn' : 'good';
+  return { light, subject, words: `±${degrees_text(off_deg)}` };
+};
+
 export interface StartFacts {
   readonly vehicle: Vehicle;
   readonly preview: Preview;
@@ -117,11 +128,16 @@ export interface StartFacts {
   readonly failure: string | null;
 }
 
-/** What is to be seen before it moves, always the same lines in the same order. */
-export const start_lights = (facts: StartFacts): readonly StartLight[] => [
-  way_light(facts.preview),
-  check_light(facts.report, facts.failure),
-  fence_light(facts.vehicle.fence),
-  home_light(facts.home),
-  position_light(facts.vehicle),
-];
+const URGENCY: readonly StartLight['light'][] = ['bad', 'warn', 'good'];
+
+/** What is to be seen before it moves: what speaks against it first, for a small screen shows but some
+ * lines; among equals always in the same order. */
+export const start_lights = (facts: StartFacts): readonly StartLight[] =>
+  [
+    way_light(facts.preview),
+    check_light(facts.report, facts.failure),
+    fence_light(facts.vehicle.fence),
+    home_light(facts.home),
+    position_light(facts.vehicle),
+    heading_light(facts.vehicle),
+  ].sort((a, b) => URGENCY.indexOf(a.light) - URGENCY.indexOf(b.light));

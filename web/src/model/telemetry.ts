@@ -9,12 +9,14 @@ export interface Signal {
   readonly id: string;
   readonly label: PlainKey;
   readonly unit: string;
+  /** Its column in a file, without the unit, where the id alone would be taken for something else. */
+  readonly column?: string;
 }
 /** In the order of the columns behind the time. */
 export const SIGNALS = [
   { id: 'speed', label: 'speed', unit: 'm/s' },
   { id: 'deviation', label: 'off_path', unit: 'm' },
-  { id: 'heading', label: 'heading_error', unit: '°' },
+  { id: 'heading', label: 'heading_error', unit: '°', column: 'heading_error' },
   { id: 'battery', label: 'battery', unit: 'V' },
   { id: 'link', label: 'link_there_and_back', unit: 'ms' },
   { id: 'gnss', label: 'gnss_accuracy', unit: 'm' },
@@ -115,7 +117,11 @@ export const value_range = (
 
 /** As other programs read it. Times: UTC, RFC 3339; what is unknown is empty. */
 export const csv_of = ([times, ...signals]: Columns): string => {
-  const head = ['time', ...SIGNALS.map(({ id, unit }) => `${id}_${unit.replace('/', 'p')}`)];
+  const signals_of: readonly Signal[] = SIGNALS;
+  const head = [
+    'time',
+    ...signals_of.map(({ id, unit, column }) => `${column ?? id}_${unit.replace('/', 'p')}`),
+  ];
   const lines = times.map((t_s, row) =>
     [
       new Date(1000 * t_s).toISOString(),

@@ -49,10 +49,12 @@ export class Gamepads {
 
   readonly #hand = new PadHand();
   readonly #deed: (deed: PadDeed) => void;
+  readonly #gone: () => void;
 
-  /** @param deed told what the hands do, at once */
-  constructor(deed: (deed: PadDeed) => void) {
+  /** @param deed told what the hands do, at once @param gone told when one in hand is pulled out */
+  constructor(deed: (deed: PadDeed) => void, gone: () => void) {
     this.#deed = deed;
+    this.#gone = gone;
   }
 
   /** @return ends it */
@@ -82,7 +84,10 @@ export class Gamepads {
   #look(): void {
     const found = read();
     if (found === null && this.reading === null) return;
+    const pulled = found === null && document.visibilityState === 'visible';
+    const in_hand = this.hand.held || this.#hand.held;
     this.reading = found && copy(found);
+    if (pulled && in_hand) this.#gone();
     const given = this.assigns ? null : this.reading;
     const { bumpers } = device.settings.gamepad;
     this.#take_hand(speed_hand(given, this.use, this.kind));

@@ -169,6 +169,11 @@ export class Pilot {
     await this.#do(say('start'), { to: 'run' }, () => this.#calls.start(id, revision, from));
   }
 
+  /** The one in hand was pulled out, or its battery is empty. */
+  gamepad_gone(): void {
+    this.#notices.show('warning', say('the_gamepad_is_gone'), 'gamepad');
+  }
+
   /** One command at a time; another one is not sent, and not in silence. */
   async #one(what: string, run: () => Promise<boolean>): Promise<boolean> {
     if (this.busy !== null) {

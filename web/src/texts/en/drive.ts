@@ -64,6 +64,11 @@ export const drive = {
   let_go_to_hold: '; let go to hold.',
   gamepad_hold_a_bumper_and_draw_the: 'Gamepad: hold a bumper and draw the trigger for AUTO.',
   gamepad_hold_both_bumpers_to_drive: 'Gamepad: hold both bumpers to drive by hand.',
+  gamepad_none_and_auto_wants_one: 'Gamepad: none is there, and AUTO wants a hand on one.',
+  gamepad_auto_drives_without_your_hand:
+    'Gamepad: AUTO drives without your hand. Hold a bumper to take its speed in hand.',
+  the_gamepad_is_gone: 'The gamepad is gone: the robot is told to stop.',
+  buttons_as_at_first: 'Buttons as they were at first',
   gamepad_is_there: 'Gamepad is there.',
   buttons: 'Buttons…',
   plots_of_the_last_five_minutes: 'Plots of the last five minutes…',

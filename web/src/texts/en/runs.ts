@@ -150,6 +150,7 @@ export const runs = {
   both_bumpers_held_together_choose: 'Both bumpers, held together, choose MANUAL',
   auto_drives_only_while_a_bumper_is:
     'AUTO drives only while a bumper is held, as fast as the trigger is drawn',
+  parts_of_this_panel: 'Parts of this panel',
   checks_before_arming: 'Checks before arming',
   check_again: 'Check again',
   events: 'Events',

@@ -64,6 +64,11 @@ export const drive = {
   let_go_to_hold: '; irrota pysäyttääksesi.',
   gamepad_hold_a_bumper_and_draw_the: 'Ohjain: pidä olkanappia ja vedä liipaisinta AUTO-ajoon.',
   gamepad_hold_both_bumpers_to_drive: 'Ohjain: pidä molempia olkanappeja ajaaksesi käsin.',
+  gamepad_none_and_auto_wants_one: 'Ohjain: sellaista ei ole, ja AUTO haluaa käden ohjaimelle.',
+  gamepad_auto_drives_without_your_hand:
+    'Ohjain: AUTO ajaa ilman kättäsi. Pidä nappia, niin nopeus on sinun.',
+  the_gamepad_is_gone: 'Ohjain on poissa: robotti käskettiin pysähtyä.',
+  buttons_as_at_first: 'Napit kuten alussa',
   gamepad_is_there: 'Ohjain on kytketty.',
   buttons: 'Napit…',
   plots_of_the_last_five_minutes: 'Viiden viime minuutin käyrät…',

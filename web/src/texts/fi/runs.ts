@@ -149,6 +149,7 @@ export const runs = {
   fine_about_the_middle_expo_percent: 'Pehmeys keskiasennon lähellä: {expo} %',
   both_bumpers_held_together_choose: 'Molemmat olkanapit yhdessä valitsevat MANUAL-tilan',
   auto_drives_only_while_a_bumper_is: 'AUTO ajaa vain olkanappi pidettynä, liipaisimen nopeudella',
+  parts_of_this_panel: 'Tämän paneelin osat',
   checks_before_arming: 'Tarkistukset ennen aktivointia',
   check_again: 'Tarkista uudelleen',
   events: 'Tapahtumat',

@@ -64,6 +64,11 @@ export const drive = {
   let_go_to_hold: '; lascia per fermare.',
   gamepad_hold_a_bumper_and_draw_the: 'Gamepad: tieni un dorsale e tira il grilletto per AUTO.',
   gamepad_hold_both_bumpers_to_drive: 'Gamepad: tieni i due dorsali per guidare a mano.',
+  gamepad_none_and_auto_wants_one: 'Gamepad: non c’è, e AUTO vuole una mano su un gamepad.',
+  gamepad_auto_drives_without_your_hand:
+    'Gamepad: AUTO guida senza la tua mano. Tieni un tasto dorsale per prendere in mano la velocità.',
+  the_gamepad_is_gone: 'Il gamepad è sparito: al robot è stato detto di fermarsi.',
+  buttons_as_at_first: 'Tasti come all’inizio',
   gamepad_is_there: 'Il gamepad c’è.',
   buttons: 'Pulsanti…',
   plots_of_the_last_five_minutes: 'Grafici degli ultimi cinque minuti…',

@@ -149,6 +149,7 @@ export const runs = {
   fine_about_the_middle_expo_percent: 'Dolcezza vicino al centro: {expo} %',
   both_bumpers_held_together_choose: 'I due dorsali, tenuti insieme, scelgono MANUAL',
   auto_drives_only_while_a_bumper_is: 'AUTO guida solo tenendo un dorsale, secondo il grilletto',
+  parts_of_this_panel: 'Parti di questo pannello',
   checks_before_arming: 'Verifiche prima di armare',
   check_again: 'Verifica di nuovo',
   events: 'Eventi',

@@ -150,6 +150,7 @@ export const runs = {
   both_bumpers_held_together_choose: 'Begge skulderknapper, holdt sammen, velger MANUAL',
   auto_drives_only_while_a_bumper_is:
     'AUTO kjører bare mens en skulderknapp holdes, så fort som avtrekkeren',
+  parts_of_this_panel: 'Deler av dette panelet',
   checks_before_arming: 'Sjekker før aktivering',
   check_again: 'Sjekk igjen',
   events: 'Hendelser',
