@@ -314,6 +314,13 @@ export const fix_tone = (fix: Fix | undefined): 'plain' | 'good' | 'bad' => {
   }
 };
 
+/** The receiver tells places, and the robot goes by something else: by its tracks, or by a map. */
+export const fix_unused = ({ position, gnss }: Vehicle): boolean =>
+  gnss.fix !== 'none' &&
+  gnss.fix !== 'unknown' &&
+  position.source !== null &&
+  !position.source.startsWith('gnss');
+
 export const control_words: Record<Control, string> = told({
   none: 'nobody_drives',
   auto: 'autopilot_drives',

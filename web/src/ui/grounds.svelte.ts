@@ -31,12 +31,15 @@ const AGAIN_AFTER_MS = 3000;
 /** So many pieces or tiles in a row that do not come through end it. */
 const MOST_FAILED = 20;
 
+type Far = 'robot' | 'network';
+
 /** What is being brought to the robot. */
 export interface Bringing {
   readonly name: string;
   /** 0 to 1. */
   readonly share: number;
-  readonly waits: boolean;
+  /** For whom, while nothing comes through; null: it does. */
+  readonly waits: Far | null;
 }
 
 const EMPTY: TileShelf = { items: [], unfinished: [], online: [] };
@@ -163,24 +166,24 @@ export class Grounds {
 
   async #while_bringing(name: string, work: () => Promise<string | null>): Promise<void> {
     this.#given_up = false;
-    this.bringing = { name, share: 0, waits: false };
+    this.bringing = { name, share: 0, waits: null };
     const trouble = await work();
     this.bringing = null;
     this.#notices.outcome(`ground ${name}`, trouble);
     await this.refresh();
   }
 
-  #tell(share: number, waits = false): void {
+  #tell(share: number, waits: Far | null = null): void {
     if (this.bringing) this.bringing = { ...this.bringing, share, waits };
   }
 
   /** As long as the link fails it is tried again. @return what is in the way; null: nothing */
-  async #insist<T>(call: () => Promise<Answer<T>>): Promise<Answer<T> | null> {
+  async #insist<T>(call: () => Promise<Answer<T>>, of: Far = 'robot'): Promise<Answer<T> | null> {
     for (let failed = 0; ; failed++) {
       const answer = await call();
       const lost = !answer.ok && (answer.refusal.status === 0 || answer.refusal.status === 429);
       if (!lost || failed >= MOST_FAILED) return answer;
-      this.#tell(this.bringing?.share ?? 0, true);
+      this.#tell(this.bringing?.share ?? 0, of);
       await pause(AGAIN_AFTER_MS);
       if (this.#given_up) return null;
     }
@@ -273,7 +276,10 @@ export class Grounds {
     let missing = 0;
     for (const [k, at] of addresses.entries()) {
       if (this.#given_up) break;
-      const picture = await this.#insist(() => this.#calls.fetch(tile_url(online.url, at)));
+      const picture = await this.#insist(
+        () => this.#calls.fetch(tile_url(online.url, at)),
+        'network',
+      );
       if (!picture?.ok) {
         if (picture) return this.#refused(online.name, picture.refusal);
         break;

@@ -18,6 +18,8 @@ export const drive = {
   an_admin_may_change_them: 'An admin may change them.',
   parameters: 'Parameters…',
   control: 'Control',
+  a_viewer_changes_nothing:
+    'Your role is viewer: you see everything, and may stop; nothing is changed.',
   you_watch_and_may_stop: 'You watch, and may stop.',
   take_control: 'Take control',
   stop_asking: 'Stop asking',

@@ -161,6 +161,8 @@ export const maps = {
   ground_how_to_align:
     'If it lies beside: park the robot on a mark that the picture shows, hold a finger on that mark in the map, and choose “The robot is here”.',
   ground_robot_is_here: 'The robot is here',
+  ground_network_waits:
+    'No picture comes from the network; nothing is lost, it goes on by itself when they do.',
   ground_waits: 'The link is lost: it goes on by itself.',
   ground_give_up: 'Give up',
   ground_how_fine: 'The finest picture that is kept: {size} a pixel',

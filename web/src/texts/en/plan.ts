@@ -134,7 +134,7 @@ export const plan = {
   file_shape: 'shape',
   rows_of_the_file: 'Rows of the file',
   all_of_it_on_the_map: 'All of it on the map',
-  the_file_tells_no_place_for_it: 'The file tells no place for it.',
+  the_file_tells_no_place_for_it: 'No place is shown for it.',
   it_would_come_after_what_lies_here: 'Without a place of its own: after what lies here.',
   rows_block_open: 'Block of rows…',
   rows_block: 'Block of rows',

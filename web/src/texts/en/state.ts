@@ -135,6 +135,7 @@ export const state = {
   no_way_around_it: 'No way around it: {why}.',
   in_left_it_is_blocked: 'In {left} it counts as blocked.',
   nothing_refused: 'nothing',
+  gnss_not_used: 'not used',
   blocked_words: 'Blocked: {words}.',
   the_guard_is_overridden_by_hand_reason: 'The guard is overridden by hand: {reason}.',
   it_creeps: 'It creeps',

@@ -18,6 +18,7 @@ export const drive = {
   an_admin_may_change_them: 'Neid saab muuta ainult haldur.',
   parameters: 'Parameetrid…',
   control: 'Juhtimine',
+  a_viewer_changes_nothing: 'Sinu roll on vaataja: näed kõike ja võid peatada; muuta ei saa.',
   you_watch_and_may_stop: 'Vaatad, ja võid peatada.',
   take_control: 'Võta juhtimine',
   stop_asking: 'Võta palve tagasi',

@@ -157,6 +157,8 @@ export const maps = {
   ground_how_to_align:
     'Kui see on nihkes: sõida robot pildil näha oleva märgi peale, hoia sõrme kaardil selle märgi kohal ja vali „Robot on siin”.',
   ground_robot_is_here: 'Robot on siin',
+  ground_network_waits:
+    'Võrgust ei tule ühtki pilti; midagi ei lähe kaotsi, jätkub ise, kui tuleb.',
   ground_waits: 'Side katkes: jätkub ise.',
   ground_give_up: 'Katkesta',
   ground_how_fine: 'Täpseim pilt, mis jääb alles: {size} piksli kohta',

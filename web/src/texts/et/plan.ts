@@ -134,7 +134,7 @@ export const plan = {
   file_shape: 'kujund',
   rows_of_the_file: 'Faili read',
   all_of_it_on_the_map: 'Kõik kaardile',
-  the_file_tells_no_place_for_it: 'Fail ei ütle selle kohta.',
+  the_file_tells_no_place_for_it: 'Selle kohta kaardil ei näidata.',
   it_would_come_after_what_lies_here: 'Ilma oma kohata: pärast siin olevat.',
   rows_block_open: 'Ridade plokk…',
   rows_block: 'Ridade plokk',

@@ -18,6 +18,8 @@ export const drive = {
   an_admin_may_change_them: 'Vain ylläpitäjä voi muuttaa niitä.',
   parameters: 'Parametrit…',
   control: 'Ohjaus',
+  a_viewer_changes_nothing:
+    'Roolisi on katselija: näet kaiken ja voit pysäyttää; mitään ei muuteta.',
   you_watch_and_may_stop: 'Seuraat, ja voit pysäyttää.',
   take_control: 'Ota ohjaus',
   stop_asking: 'Peru pyyntö',

@@ -159,6 +159,8 @@ export const maps = {
   ground_how_to_align:
     'Jos se on vinossa: aja robotti kuvassa näkyvän merkin päälle, pidä sormea kartalla merkin kohdalla ja valitse ”Robotti on tässä”.',
   ground_robot_is_here: 'Robotti on tässä',
+  ground_network_waits:
+    'Verkosta ei tule kuvia; mitään ei katoa, jatkuu itsestään, kun niitä tulee.',
   ground_waits: 'Yhteys katkesi: jatkuu itsestään.',
   ground_give_up: 'Keskeytä',
   ground_how_fine: 'Tarkin tallennettava kuva: {size} pikseliä kohti',

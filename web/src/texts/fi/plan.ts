@@ -135,7 +135,7 @@ export const plan = {
   file_shape: 'muoto',
   rows_of_the_file: 'Tiedoston rivit',
   all_of_it_on_the_map: 'Kaikki kartalle',
-  the_file_tells_no_place_for_it: 'Tiedosto ei kerro sille paikkaa.',
+  the_file_tells_no_place_for_it: 'Sen paikkaa ei näytetä.',
   it_would_come_after_what_lies_here: 'Ilman omaa paikkaa: tämän jälkeen.',
   rows_block_open: 'Rivilohko…',
   rows_block: 'Rivilohko',

@@ -135,6 +135,7 @@ export const state = {
   no_way_around_it: 'Sitä ei voi kiertää: {why}.',
   in_left_it_is_blocked: '{left} kuluttua tie katsotaan tukkoiseksi.',
   nothing_refused: 'ei mitään',
+  gnss_not_used: 'ei käytössä',
   blocked_words: 'Tukossa: {words}.',
   the_guard_is_overridden_by_hand_reason: 'Estevahti on ohitettu käsin: {reason}.',
   it_creeps: 'Se ryömii',

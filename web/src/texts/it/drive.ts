@@ -18,6 +18,8 @@ export const drive = {
   an_admin_may_change_them: 'Può cambiarli un amministratore.',
   parameters: 'Parametri…',
   control: 'Controllo',
+  a_viewer_changes_nothing:
+    'Il tuo ruolo è osservatore: vedi tutto e puoi fermare; non si cambia nulla.',
   you_watch_and_may_stop: 'Stai guardando, e puoi fermare.',
   take_control: 'Prendi il controllo',
   stop_asking: 'Annulla richiesta',

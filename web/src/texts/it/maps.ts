@@ -161,6 +161,8 @@ export const maps = {
   ground_how_to_align:
     "Se è fuori posto: ferma il robot su un segno visibile nell'immagine, tieni il dito su quel segno nella mappa e scegli “Il robot è qui”.",
   ground_robot_is_here: 'Il robot è qui',
+  ground_network_waits:
+    'Dalla rete non arriva nessuna immagine; nulla va perso, riprende da solo quando arrivano.',
   ground_waits: 'Collegamento perso: riprende da solo.',
   ground_give_up: 'Interrompi',
   ground_how_fine: 'L’immagine più fine che si tiene: {size} per pixel',

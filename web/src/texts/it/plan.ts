@@ -136,7 +136,7 @@ export const plan = {
   file_shape: 'forma',
   rows_of_the_file: 'Righe del file',
   all_of_it_on_the_map: 'Tutto sulla mappa',
-  the_file_tells_no_place_for_it: 'Il file non ne indica il luogo.',
+  the_file_tells_no_place_for_it: 'Il suo luogo non è mostrato.',
   it_would_come_after_what_lies_here: 'Senza un luogo proprio: dopo ciò che è qui.',
   rows_block_open: 'Blocco di filari…',
   rows_block: 'Blocco di filari',

@@ -135,6 +135,7 @@ export const state = {
   no_way_around_it: 'Non c’è modo di aggirarlo: {why}.',
   in_left_it_is_blocked: 'Tra {left} è considerato bloccato.',
   nothing_refused: 'niente',
+  gnss_not_used: 'non usato',
   blocked_words: 'Bloccato: {words}.',
   the_guard_is_overridden_by_hand_reason: 'Protezione ostacoli esclusa a mano: {reason}.',
   it_creeps: 'Striscia',

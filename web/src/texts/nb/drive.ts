@@ -18,6 +18,7 @@ export const drive = {
   an_admin_may_change_them: 'En administrator kan endre dem.',
   parameters: 'Parametere…',
   control: 'Kontroll',
+  a_viewer_changes_nothing: 'Rollen din er seer: du ser alt og kan stoppe; ingenting endres.',
   you_watch_and_may_stop: 'Du ser på, og kan stoppe.',
   take_control: 'Ta kontroll',
   stop_asking: 'Trekk forespørsel',

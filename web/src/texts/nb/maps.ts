@@ -160,6 +160,8 @@ export const maps = {
   ground_how_to_align:
     'Ligger det skjevt: parker roboten på et merke som bildet viser, hold en finger på merket i kartet og velg «Roboten er her».',
   ground_robot_is_here: 'Roboten er her',
+  ground_network_waits:
+    'Det kommer ingen bilder fra nettet; ingenting går tapt, det fortsetter av seg selv når de kommer.',
   ground_waits: 'Forbindelsen er borte: det fortsetter av seg selv.',
   ground_give_up: 'Avbryt',
   ground_how_fine: 'Det fineste bildet som beholdes: {size} per piksel',

@@ -135,7 +135,7 @@ export const plan = {
   file_shape: 'form',
   rows_of_the_file: 'Radene i filen',
   all_of_it_on_the_map: 'Alt på kartet',
-  the_file_tells_no_place_for_it: 'Filen sier ikke hvor.',
+  the_file_tells_no_place_for_it: 'Stedet vises ikke.',
   it_would_come_after_what_lies_here: 'Uten eget sted: etter det som ligger her.',
   rows_block_open: 'Radblokk…',
   rows_block: 'Radblokk',

@@ -135,6 +135,7 @@ export const state = {
   no_way_around_it: 'Ingen vei rundt: {why}.',
   in_left_it_is_blocked: 'Om {left} regnes den som blokkert.',
   nothing_refused: 'ingenting',
+  gnss_not_used: 'ikke brukt',
   blocked_words: 'Blokkert: {words}.',
   the_guard_is_overridden_by_hand_reason: 'Hindervakten er overstyrt for hånd: {reason}.',
   it_creeps: 'Den kryper',
