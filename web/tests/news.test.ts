@@ -4,7 +4,8 @@ import { afterEach, expect, test } from 'vitest';
 
 import { advice_words, news_title, title_before } from '../src/model/news';
 import { IN_ENGLISH, speak } from '../src/model/say';
-import { ended_driving, type StationEvent } from '../src/model/vehicle';
+import { ended_driving } from '../src/model/happened';
+import type { StationEvent } from '../src/model/vehicle';
 import { finnish } from '../src/texts/fi';
 
 afterEach(() => speak(() => IN_ENGLISH));

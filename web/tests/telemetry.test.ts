@@ -11,12 +11,11 @@ import {
   Telemetry,
   value_range,
 } from '../src/model/telemetry';
+import { event_about, worth_a_word } from '../src/model/happened';
 import {
   radio_lines,
   receiver_place,
   robot_place,
-  event_about,
-  worth_a_word,
   type Rc,
   type Vehicle,
 } from '../src/model/vehicle';
@@ -170,5 +169,8 @@ test('what a driver that comes and goes says is one message, the newest', () => 
   expect(about('driver_failed', 'top: it hangs')).toBe('driver top');
   expect(about('driver_up', 'top is up')).toBe('driver top');
   expect(about('driver_down', 'front: silent')).not.toBe('driver top');
-  expect(about('known_place', 'gate contradicts')).toBeNull();
+  expect(about('obstacle', 'something, 0.8 m ahead')).toBe(
+    about('obstacle', 'something, 12 m ahead'),
+  );
+  expect(about('known_place', 'gate fits')).not.toBe(about('known_place', 'door fits'));
 });

@@ -2,6 +2,9 @@
 
 import type { Answer } from './answer';
 
+/** Of a password, in bytes. */
+export const SHORTEST_PASSWORD = 12;
+
 /** As what this browser is paired: a PIN opens it. */
 export interface Paired {
   readonly id: string;

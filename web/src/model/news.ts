@@ -69,6 +69,8 @@ const titles: Readonly<Record<string, string>> = told({
   estop_reset: 'news_estop_reset',
   fence: 'news_fence',
   fence_set: 'news_fence_set',
+  forbidden_left_out: 'news_forbidden',
+  forbidden_not_placed: 'news_forbidden',
   gnss_disagree: 'news_gnss_disagree',
   gnss_fix: 'news_gnss_fix',
   gnss_lost: 'news_gnss_lost',

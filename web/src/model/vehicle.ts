@@ -255,38 +255,6 @@ export interface StationEvent {
   readonly detail: string;
 }
 
-/** Tells events apart: the stream sends them before they have a number. */
-export const event_key = ({ time, kind, detail }: StationEvent): string =>
-  `${time} ${kind} ${detail}`;
-
-/** Good news that a person waits for. The other good news is only logged. */
-const TOLD = new Set(['mission_finished', 'mission_lap', 'radio_takeover', 'radio_released']);
-/** What the page itself shows already, in the answer to its command. */
-const SHOWN_ELSEWHERE = new Set(['arm_refused', 'estop', 'disarmed']);
-
-/** Whether an event deserves a message on the screen, besides its line in the log. */
-export const worth_a_word = ({ level, kind }: StationEvent): boolean =>
-  level === 'info' ? TOLD.has(kind) : !SHOWN_ELSEWHERE.has(kind);
-
-const ENDS_DRIVING = new Set([
-  'estop',
-  'disarmed',
-  'stopped',
-  'mission_paused',
-  'mission_aborted',
-  'blocked',
-  'activity_held',
-  'base_left_control',
-]);
-
-/** After it the robot does not do any more what it was told before. */
-export const ended_driving = ({ kind, detail }: StationEvent): boolean =>
-  kind === 'mode' ? detail.startsWith('mode HOLD') : ENDS_DRIVING.has(kind);
-
-/** What one message is kept of, the newest: a driver that comes and goes. @return null: each has its own */
-export const event_about = ({ kind, detail }: StationEvent): string | null =>
-  kind.startsWith('driver_') ? `driver ${/^[^\s:]*/.exec(detail)?.[0] ?? ''}` : null;
-
 export const fix_words: Record<Fix, string> = told({
   none: 'no_fix',
   unknown: 'fix_unknown',

@@ -3,13 +3,8 @@
 import { plain_devices } from '../model/control';
 import { title_before } from '../model/news';
 import { say } from '../model/say';
-import {
-  ended_driving,
-  event_about,
-  event_key,
-  worth_a_word,
-  type StationEvent,
-} from '../model/vehicle';
+import { ended_driving, event_about, event_key, worth_a_word } from '../model/happened';
+import type { StationEvent } from '../model/vehicle';
 
 export type Level = 'info' | 'good' | 'warning' | 'error';
 

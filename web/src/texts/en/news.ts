@@ -70,6 +70,7 @@ export const news = {
   news_estop_reset: 'Stop reset',
   news_fence: 'Fence',
   news_fence_set: 'Fence in force',
+  news_forbidden: 'Forbidden areas not kept out of',
   news_gnss_disagree: 'Two receivers disagree',
   news_gnss_fix: 'GNSS fix',
   news_gnss_lost: 'No usable position',

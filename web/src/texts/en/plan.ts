@@ -91,7 +91,8 @@ export const plan = {
   runs: 'Runs',
   maps: 'Maps',
   what_is_stored: 'What is stored',
-  name_is_stored_this_one_ends_where: '“{name}” is stored; this one ends where it was cut.',
+  name_is_stored_this_one_ends_where:
+    '“{name}” is stored; this one ends where it was cut. Undo joins this one again, and leaves that one.',
   name_has_changes_that_are_not_saved: '“{name}” has changes that are not saved.',
   name_has_changes_undo_brings_them_back:
     '“{name}” has changes that are not saved. When it is opened again, undo brings them back.',

@@ -151,6 +151,7 @@ export const runs = {
   auto_drives_only_while_a_bumper_is:
     'AUTO drives only while a bumper is held, as fast as the trigger is drawn',
   parts_of_this_panel: 'Parts of this panel',
+  so_many_times: ', {times} times',
   checks_before_arming: 'Checks before arming',
   check_again: 'Check again',
   events: 'Events',

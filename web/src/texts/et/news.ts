@@ -69,6 +69,7 @@ export const news = {
   news_estop_reset: 'Seiskamine tühistatud',
   news_fence: 'Tara',
   news_fence_set: 'Tara kehtib',
+  news_forbidden: 'Keelatud aladest ei hoiduta',
   news_gnss_disagree: 'Vastuvõtjad on eri meelt',
   news_gnss_fix: 'GNSS-lahend',
   news_gnss_lost: 'Kasutatav asukoht puudub',

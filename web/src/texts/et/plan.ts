@@ -91,7 +91,8 @@ export const plan = {
   runs: 'Sõidud',
   maps: 'Kaardid',
   what_is_stored: 'Mis on salvestatud',
-  name_is_stored_this_one_ends_where: '„{name}“ on salvestatud; see siin lõpeb lõikekohas.',
+  name_is_stored_this_one_ends_where:
+    '„{name}“ on salvestatud; see siin lõpeb lõikekohas. Tagasivõtmine jätab selle alles.',
   name_has_changes_that_are_not_saved: 'Ülesandes „{name}“ on salvestamata muudatusi.',
   name_has_changes_undo_brings_them_back:
     'Ülesandes „{name}“ on salvestamata muudatusi. Kui see uuesti avada, toob tagasivõtmine need tagasi.',

@@ -149,6 +149,7 @@ export const runs = {
   both_bumpers_held_together_choose: 'Mõlemad õlanupud koos valivad MANUAL',
   auto_drives_only_while_a_bumper_is: 'AUTO sõidab ainult õlanuppu hoides, päästiku kiirusega',
   parts_of_this_panel: 'Selle paneeli osad',
+  so_many_times: ', {times} korda',
   checks_before_arming: 'Kontrollid enne aktiveerimist',
   check_again: 'Kontrolli uuesti',
   events: 'Sündmused',

@@ -69,6 +69,7 @@ export const news = {
   news_estop_reset: 'Pysäytys kuitattu',
   news_fence: 'Aita',
   news_fence_set: 'Aita voimassa',
+  news_forbidden: 'Kiellettyjä alueita ei vältetä',
   news_gnss_disagree: 'Vastaanottimet eri mieltä',
   news_gnss_fix: 'GNSS-ratkaisu',
   news_gnss_lost: 'Ei käyttökelpoista sijaintia',

@@ -91,7 +91,8 @@ export const plan = {
   runs: 'Ajot',
   maps: 'Kartat',
   what_is_stored: 'Mitä on tallennettu',
-  name_is_stored_this_one_ends_where: '”{name}” on tallennettu; tämä päättyy katkaisukohtaan.',
+  name_is_stored_this_one_ends_where:
+    '”{name}” on tallennettu; tämä päättyy katkaisukohtaan. Kumoaminen jättää sen talteen.',
   name_has_changes_that_are_not_saved: 'Tehtävässä ”{name}” on tallentamattomia muutoksia.',
   name_has_changes_undo_brings_them_back:
     'Tehtävässä ”{name}” on tallentamattomia muutoksia. Kun se avataan uudelleen, kumoaminen tuo ne takaisin.',

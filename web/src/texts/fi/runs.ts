@@ -150,6 +150,7 @@ export const runs = {
   both_bumpers_held_together_choose: 'Molemmat olkanapit yhdessä valitsevat MANUAL-tilan',
   auto_drives_only_while_a_bumper_is: 'AUTO ajaa vain olkanappi pidettynä, liipaisimen nopeudella',
   parts_of_this_panel: 'Tämän paneelin osat',
+  so_many_times: ', {times} kertaa',
   checks_before_arming: 'Tarkistukset ennen aktivointia',
   check_again: 'Tarkista uudelleen',
   events: 'Tapahtumat',

@@ -70,6 +70,7 @@ export const news = {
   news_estop_reset: 'Arresto ripristinato',
   news_fence: 'Recinto',
   news_fence_set: 'Recinto in vigore',
+  news_forbidden: 'Aree vietate non evitate',
   news_gnss_disagree: 'Due ricevitori in disaccordo',
   news_gnss_fix: 'Fix GNSS',
   news_gnss_lost: 'Nessuna posizione utilizzabile',

@@ -91,7 +91,8 @@ export const plan = {
   runs: 'Corse',
   maps: 'Mappe',
   what_is_stored: 'Cosa è salvato',
-  name_is_stored_this_one_ends_where: '«{name}» è salvata; questa finisce dov’è stata tagliata.',
+  name_is_stored_this_one_ends_where:
+    '«{name}» è salvata; questa finisce dov’è stata tagliata. Annulla ricompone questa e lascia quella.',
   name_has_changes_that_are_not_saved: '«{name}» ha modifiche non salvate.',
   name_has_changes_undo_brings_them_back:
     '«{name}» ha modifiche non salvate. Quando si riapre, annulla le riporta.',

@@ -150,6 +150,7 @@ export const runs = {
   both_bumpers_held_together_choose: 'I due dorsali, tenuti insieme, scelgono MANUAL',
   auto_drives_only_while_a_bumper_is: 'AUTO guida solo tenendo un dorsale, secondo il grilletto',
   parts_of_this_panel: 'Parti di questo pannello',
+  so_many_times: ', {times} volte',
   checks_before_arming: 'Verifiche prima di armare',
   check_again: 'Verifica di nuovo',
   events: 'Eventi',

@@ -69,6 +69,7 @@ export const news = {
   news_estop_reset: 'Stopp tilbakestilt',
   news_fence: 'Gjerde',
   news_fence_set: 'Gjerde i kraft',
+  news_forbidden: 'Forbudte områder unngås ikke',
   news_gnss_disagree: 'To mottakere er uenige',
   news_gnss_fix: 'GNSS-fiks',
   news_gnss_lost: 'Ingen brukbar posisjon',

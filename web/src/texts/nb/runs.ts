@@ -151,6 +151,7 @@ export const runs = {
   auto_drives_only_while_a_bumper_is:
     'AUTO kjører bare mens en skulderknapp holdes, så fort som avtrekkeren',
   parts_of_this_panel: 'Deler av dette panelet',
+  so_many_times: ', {times} ganger',
   checks_before_arming: 'Sjekker før aktivering',
   check_again: 'Sjekk igjen',
   events: 'Hendelser',
