@@ -317,3 +317,35 @@ test('what another one forbade meanwhile is not allowed unseen', async ({ page, 
   await press(page, 'Save');
   await expect.poll(async () => (await stored(station)).forbidden?.length).toBe(1);
 });
+
+test('what is forbidden in a map that nobody can place is told as not kept out of, as long as it is so', async ({
+  page,
+  station,
+}) => {
+  test.setTimeout(120_000);
+  await open_page(page, station.url);
+  await open_maps(page);
+  await page.getByLabel('Map files').setInputFiles(files());
+  await expect(page.getByText('The map “hall” is stored.')).toBeVisible();
+  const { id } = await stored(station);
+  const corners = [
+    { x_m: 0, y_m: 0 },
+    { x_m: 1, y_m: 0 },
+    { x_m: 0, y_m: 1 },
+  ];
+  await station.rest('PATCH', `/maps/${id}`, { edits: [{ kind: 'forbid', polygon: corners }] });
+  const unplaced = 'does not keep out of the 1 forbidden areas of the map in use';
+  const told = page.getByRole('list', { name: 'Safety conditions' });
+  await item(page).getByRole('button', { name: /^hall/ }).click();
+  await expect(told).toBeHidden();
+  await press(page, 'Use it');
+  await expect(told).toContainText(unplaced);
+  const { checks } = await station.rest<{ checks: { ok: boolean; detail: string }[] }>(
+    'GET',
+    '/vehicle/checks',
+  );
+  expect(checks.filter(({ detail }) => detail.includes(unplaced))).toMatchObject([{ ok: false }]);
+  await press(page, 'Stop using it');
+  await press(page, 'Without a map');
+  await expect(page.getByText(unplaced)).toHaveCount(0);
+});

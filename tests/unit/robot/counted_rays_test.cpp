@@ -68,7 +68,7 @@ TEST(CountedRaysGuard, StopWhatDrivesAheadAndSayWhy) {
     EXPECT_NEAR(o.age_s, 0.05, 1e-9);
     EXPECT_EQ(
         o.reason,
-        "something stands in the way, 1.1 m ahead, seen by camera: 6 rays shorter than 0.70 m "
+        "something stands in the way, 0.6 m ahead, seen by camera: 6 rays shorter than 0.70 m "
         "(sense.rays.stop_m)");
   }
 }

@@ -255,6 +255,12 @@ TEST_F(Detours, WithoutAWayItSaysSoOnceAndWaits) {
   field.run(30.0);
   EXPECT_EQ(told("no_way_around"), 1);
   EXPECT_FALSE(field.moves());
+  // The state says so as well, for whoever looks later.
+  const auto said = std::ranges::find(field.events, "no_way_around", &base::Event::kind);
+  const auto obstacle = field.state()->obstacle;
+  ASSERT_TRUE(obstacle);
+  ASSERT_NE(obstacle->no_way, "");
+  EXPECT_EQ("no way around it: " + obstacle->no_way, said->detail);
   EXPECT_EQ(field.execution(), ExecutionState::Running);
 }
 
