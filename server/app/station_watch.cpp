@@ -118,13 +118,14 @@ void Station::Impl::tell_alive() {
 void Station::Impl::watch_forbidden() {
   const auto id = shelf->in_use();
   const auto label = id ? shelf->label_of(*id) : std::nullopt;
+  const bool anew = place && place->changes();  // before what it tells: that may end in between
   ForbiddenOf now;
   if (label) now = {*id, label->revision, place ? place->placed() : nullptr};
   if (now == forbidden) return;
   // It is being looked through anew: what was laid stays until it is laid again.
-  if (!now.placed && forbidden.placed && now.id == forbidden.id) return;
+  if (anew && !now.placed && forbidden.placed && now.id == forbidden.id) return;
   // It has come into use this moment: where it lies is known in the next.
-  if (now.id != forbidden.id && place && place->changes()) return;
+  if (now.id != forbidden.id && anew) return;
   const auto about = label ? shelf->find(*id) : Result<maps::About>(maps::About{});
   if (!about) return;  // it went meanwhile; in a second it is not in use any more
   forbidden = now;

@@ -70,7 +70,11 @@ bool Robot::Impl::publish() {
   s->detour = detour_way();
   if (guard.obstacle().action != base::GuardAction::None) {
     s->obstacle = guard.obstacle();
-    if (around_hopeless) s->obstacle->no_way = around_none;
+    // Of the mission that stands there; any other drive has asked nobody for a way around.
+    if (around_hopeless && machine.mode() == base::Mode::Auto && missions.executor.running() &&
+        guard.stops()) {
+      s->obstacle->no_way = around_none;
+    }
   }
   s->row = row_state();
   s->tags = tag_states();

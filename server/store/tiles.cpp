@@ -17,6 +17,8 @@ using base::Code;
 using base::Result;
 
 constexpr int kTilesBusy_ms = 200;
+// No tile is larger, whatever a file says that somebody made up.
+constexpr int kMostValue_bytes = 64 << 20;
 /// Steps of SQLite's machine between two looks, and how many looks one question may last. To count
 /// the zooms of a million tiles without an index takes 20 million steps.
 constexpr int kStride = 100'000;
@@ -81,6 +83,7 @@ struct TileFile::Db {
   Db(const std::filesystem::path& path, int flags)
       : file(path), db(path.string(), flags, kTilesBusy_ms) {
     db.exec("PRAGMA trusted_schema = OFF");
+    sqlite3_limit(db.getHandle(), SQLITE_LIMIT_LENGTH, kMostValue_bytes);
     sqlite3_progress_handler(db.getHandle(), kStride, is_over, &strides);
   }
   std::string meta(const char* name) {
@@ -109,7 +112,7 @@ struct TileFile::Db {
   /// have none). Empty: there is no tile, or it is nothing known.
   std::string first_format() {
     strides = 0;
-    SQLite::Statement row(db, "SELECT tile_data FROM tiles LIMIT 1");
+    SQLite::Statement row(db, "SELECT tile_data FROM tiles WHERE length(tile_data) > 0 LIMIT 1");
     return row.executeStep() ? std::string(format_of(row.getColumn(0).getString())) : std::string{};
   }
   /// Around all tiles of the deepest zoom; empty: there are none.

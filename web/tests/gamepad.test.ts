@@ -131,9 +131,11 @@ describe('what is chosen', () => {
     expect(use_of(settings, 'standard')).toMatchObject({ hold: 5, other: 4 });
     const turned = assigned(settings, 'standard', 'turn', 1);
     expect(use_of(turned, 'standard')).toMatchObject({ speed: 2, turn: 1, hold: 5, other: 4 });
-    // Axis 5 and button 5 of this one are two things.
-    const trigger = assigned(PAD_DEFAULTS, 'xpad', 'trigger', 3);
-    expect(use_of(trigger, 'xpad')).toEqual({ speed: 1, turn: 5, hold: 4, other: 5, trigger: 3 });
+    // Axis 5 and button 5 of this one are two things; and no stick is a trigger, which rests at its end.
+    const trigger = use_of(assigned(PAD_DEFAULTS, 'xpad', 'trigger', 3), 'xpad');
+    expect(trigger).toEqual({ speed: 1, turn: null, hold: 4, other: 5, trigger: 3 });
+    expect(why_not_pad(trigger)).toContain('assign');
+    expect(use_of(assigned(PAD_DEFAULTS, 'xpad', 'turn', 5), 'xpad').trigger).toBeNull();
     expect(use_of(as_at_first(turned, 'standard'), 'standard')).toEqual(usual);
   });
 

@@ -29,6 +29,13 @@ describe('the rows of the log', () => {
     expect(
       log_rows([event(3, 'known_place', 'gate fits'), event(2, 'known_place', 'door fits')]),
     ).toHaveLength(2);
+    for (const [kind, one, other] of [
+      ['item_missed', 'item 3 was missed by 0.4 m', 'item 7 was missed by 0.4 m'],
+      ['safety_parameter', 'max_mps from 0.8 m/s to 1.2 m/s', 'max_mps from 1.2 m/s to 1.5 m/s'],
+      ['driver_down', 'lidar1: silent', 'lidar2: silent'],
+      ['mission_started', 'Field 1', 'Field 2'],
+    ] as const)
+      expect(log_rows([event(3, kind, one), event(2, kind, other)])).toHaveLength(2);
     const between = ['armed', 'mission_started', 'disarmed'].map((kind) => event(4, kind, ''));
     const rows = log_rows([event(9, 'obstacle', 'x'), ...between, event(1, 'obstacle', 'x')]);
     expect(rows.map(({ times }) => times)).toEqual([1, 1, 1, 1, 1]);

@@ -129,6 +129,7 @@ base::Result<std::size_t> Chain::take(const base::Sight& sight, const PoseHistor
   }
   eye.health.took(sight, reduced_.counts, now);
   if (!reduced_.lie.told) hills_.forget();
+  hills_.drive(reduced_);
   if (!eye.setup.planar) {
     ground_.judge(reduced_.voxels);
     // Who is not believed to see the way free does not tell of the ground either.

@@ -22,6 +22,8 @@ constexpr float kRingPart = 0.8F;
 // Whatever the settings say of the grass.
 constexpr double kMostOver_m = 0.18;
 
+// So long after the last that told ground the way is counted by others.
+constexpr double kSilent_s = 1.0;
 // Where no place about it is known: cells to what is.
 constexpr std::int32_t kNear = 3;
 
@@ -192,16 +194,28 @@ void Hills::look_out(std::size_t direction) noexcept {
   }
 }
 
+void Hills::count_way(const Reduced& in) noexcept {
+  if (in.stamp <= last_at_) return;
+  way_m_ += std::hypot(in.pose.x_m - last_.x_m, in.pose.y_m - last_.y_m);
+  last_ = in.pose;
+  last_at_ = in.stamp;
+}
+
+void Hills::drive(const Reduced& in) noexcept {
+  // Who tells ground counts the way as well; seldom is often enough.
+  if (begun_ && base::seconds(in.stamp - last_at_) > kSilent_s) count_way(in);
+}
+
 void Hills::learn(const Reduced& in) {
   if (!in.lie.told) return forget();
   if (!begun_) {
     begun_ = true;
     begin_ = in.stamp;
     last_ = in.pose;
+    last_at_ = in.stamp;
     way_m_ = 0.0;
   }
-  way_m_ += std::hypot(in.pose.x_m - last_.x_m, in.pose.y_m - last_.y_m);
-  last_ = in.pose;
+  count_way(in);
   const std::int32_t half = half_of(in.stamp);
   const Lies lies(in);
   look_out(in);

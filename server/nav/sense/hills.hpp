@@ -61,6 +61,8 @@ class Hills {
 
   /// Of a piece whose ground was judged.
   void learn(const Reduced& in);
+  /// Of any piece, before it is judged: the robot drives on while nobody tells ground.
+  void drive(const Reduced& in) noexcept;
   /// Of one plane: sets what is an Obstacle and lies on known ground to Ground. @return how many
   std::size_t judge(Reduced& in) const;
   /// Something that is so high in O is the ground there, as far as that is known. @param x_m, y_m
@@ -113,7 +115,10 @@ class Hills {
   std::vector<Place> places_;
   bool begun_ = false;
   base::Time begin_;
-  Pose2 last_;          ///< X_OB of the last piece that told ground
+  /// From there to here, once, however many sensors tell the ground and whose piece is late.
+  void count_way(const Reduced& in) noexcept;
+  Pose2 last_;          ///< X_OB until which the way is counted
+  base::Time last_at_;  ///< and when that was
   double way_m_ = 0.0;  ///< since it began
 };
 

@@ -470,6 +470,13 @@ void Guard::forget() noexcept {
   obstacle_ = {};
 }
 
+/// Between the body and what limits it; of what the trailer would touch, how far it is from the
+/// origin: where the trailer is, is known less well.
+double Guard::room_m(const Looked& v) const noexcept {
+  if (v.trailer) return std::hypot(v.at.x, v.at.y);
+  return std::max(0.0, body_.distance_m(v.at));
+}
+
 void Guard::tell(const Looked& v, base::GuardAction action, base::Time now) {
   const bool old = too_old(now);
   obstacle_.action = action;
@@ -485,8 +492,7 @@ void Guard::tell(const Looked& v, base::GuardAction action, base::Time now) {
   }
   obstacle_.age_s = v.age_s + (around_ ? base::seconds(now - around_->patch.stamp) : 0.0);
   obstacle_.stopped_since = stopped_since_;
-  obstacle_.reason =
-      sentence(obstacle_, std::max(0.0, body_.distance_m({obstacle_.ahead_m, obstacle_.left_m})));
+  obstacle_.reason = sentence(obstacle_, room_m(v));
   // Who may help: a person who sees it, or whoever sets how the robot goes there.
   if (const auto key = key_of(obstacle_, v.foreseen, wanted_, body_.reach_m()); !key.empty()) {
     const bool unseen = obstacle_.what == "unseen";

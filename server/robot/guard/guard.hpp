@@ -131,6 +131,7 @@ class Guard {
   void look_behind(Looked& v, const base::BodyTwist& twist,
                    const nav::sense::ProtectParams& params) const noexcept;
   void tell(const Looked& v, base::GuardAction action, base::Time now);
+  double room_m(const Looked& v) const noexcept;
 
   bool clear_long_enough(base::Time now);
 

@@ -10,9 +10,6 @@ import { to_plane } from './projection';
 export const FIT_MARGIN_PX = 48;
 /** The map's buttons stand there. */
 const FIT_RIGHT_PX = 88;
-/** The scale bar and the lights of accuracy lie below; a low map has no room for that. */
-const FIT_LOW_PX = 76;
-const LOW_MAP_PX = 240;
 
 const extent_of = (points: readonly LatLon[]): [number, number, number, number] => {
   const extent: [number, number, number, number] = [Infinity, Infinity, -Infinity, -Infinity];
@@ -79,8 +76,7 @@ export const fit_in = (
   free: FreePart,
   max_zoom: number,
 ): void => {
-  const low = free.height < LOW_MAP_PX ? FIT_MARGIN_PX : FIT_LOW_PX;
-  const padding = [FIT_MARGIN_PX, FIT_RIGHT_PX, low, FIT_MARGIN_PX];
+  const padding = [FIT_MARGIN_PX, FIT_RIGHT_PX, FIT_MARGIN_PX, FIT_MARGIN_PX];
   view.fit(extent_of(points), { padding, maxZoom: max_zoom });
   const rightmost = Math.max(...points.map((at) => pixel_of(view, at, free)[0]));
   const room = free.left + free.width - FIT_RIGHT_PX - rightmost;

@@ -66,7 +66,8 @@ export const PAD_DEFAULTS: PadSettings = { uses: {}, expo: 0.4, bumpers: false, 
 export const use_of = (settings: PadSettings, kind: PadKind): PadUse =>
   settings.uses[kind] ?? USUAL[kind];
 
-/** What had that number gets the one that was before: one button never means two things. */
+/** What had that number gets the one that was before: one button never means two things. But a trigger
+ * that is an axis rests at its end, and a stick in its middle: neither is given for the other. */
 export const assigned = (
   settings: PadSettings,
   kind: PadKind,
@@ -77,7 +78,9 @@ export const assigned = (
   const had = PAD_PARTS.find(
     (each) => use[each] === number && is_axis(each, kind) === is_axis(part, kind),
   );
-  const changed = { ...use, ...(had ? { [had]: use[part] } : {}), [part]: number };
+  const unlike = trigger_is_axis(kind) && (had === 'trigger' || part === 'trigger');
+  const given = unlike ? null : use[part];
+  const changed = { ...use, ...(had ? { [had]: given } : {}), [part]: number };
   return { ...settings, uses: { ...settings.uses, [kind]: changed } };
 };
 

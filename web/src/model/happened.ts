@@ -30,9 +30,13 @@ const ENDS_DRIVING = new Set([
 export const ended_driving = ({ kind, detail }: StationEvent): boolean =>
   kind === 'mode' ? detail.startsWith('mode HOLD') : ENDS_DRIVING.has(kind);
 
-/** The same for all that differ in nothing but figures. */
-export const event_shape = ({ kind, detail }: StationEvent): string =>
-  `${kind} ${detail.replaceAll(/\d+(?:\.\d+)?/g, '#')}`;
+/** Numbers of items and values that were changed say which; a measure that differs says nothing new. */
+const EACH_ITS_OWN = /^(?:item_|action|parameter|safety_parameter)/;
+const MEASURE = /\d+(?:\.\d+)?(?=\s?(?:m|cm|km|s|ms|min|deg|V|m\/s)\b|\s?[%°])/g;
+
+/** The same for all that differ in nothing but what was measured. */
+export const event_shape = ({ level, kind, detail }: StationEvent): string =>
+  `${level} ${kind} ${EACH_ITS_OWN.test(kind) ? detail : detail.replaceAll(MEASURE, '#')}`;
 
 /** What one message is kept of, the newest: a driver that comes and goes, the same with other figures. */
 export const event_about = (event: StationEvent): string =>

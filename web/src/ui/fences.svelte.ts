@@ -23,6 +23,9 @@ import type { Notices } from './notices.svelte';
 /** The area that a hand on the map changes, or the rally points. */
 export type Part = number | 'rally' | null;
 
+/** Whether the fence that was saved holds the robot. */
+const IN_FORCE = 'fence in force';
+
 export class Fences extends RingDrawing implements Drawing {
   items = $state.raw<readonly FenceSummary[]>([]);
   failure = $state<string | null>(null);
@@ -72,7 +75,7 @@ export class Fences extends RingDrawing implements Drawing {
   /** @return its places, to be shown on the map */
   async open(id: string): Promise<readonly LatLon[]> {
     const answer = await this.#calls.read(id);
-    this.#tell(say('done_opened'), answer);
+    this.#tell(say('done_opened'), id, answer);
     if (!answer.ok) return [];
     this.#show(answer.value, answer.value);
     return [...answer.value.areas.flatMap(area_places), ...answer.value.rally];
@@ -150,7 +153,7 @@ export class Fences extends RingDrawing implements Drawing {
     const stored = this.#stored;
     if (!draft) return;
     let kept: Fence | null = null;
-    await this.#do(say('done_saved'), async () => {
+    await this.#do(say('done_saved'), stored?.id ?? '', async () => {
       const answer = stored
         ? await this.#calls.replace(stored.id, stored.revision, draft)
         : await this.#calls.create(draft);
@@ -162,10 +165,10 @@ export class Fences extends RingDrawing implements Drawing {
 
   #tell_saved({ id, name }: Fence): void {
     const saved = say('saved_the_fence_name', { name });
-    if (this.active?.id === id) this.#notices.show('good', saved, 'fence');
+    if (this.active?.id === id) this.#notices.show('good', saved, IN_FORCE);
     else {
       const not_in_force = say('it_is_not_kept_to', { use: say('use_it') });
-      this.#notices.show('warning', `${saved} ${not_in_force}`, 'fence');
+      this.#notices.show('warning', `${saved} ${not_in_force}`, IN_FORCE);
     }
   }
 
@@ -180,13 +183,19 @@ export class Fences extends RingDrawing implements Drawing {
       });
       if (!sure) return;
     }
-    await this.#do(say('done_changed'), () => this.#calls.activate(fence?.id ?? null));
+    await this.#activate(fence?.id ?? null);
   }
 
   /** One that came with a mission. @return whether the robot keeps to it now */
   async use_imported(id: string): Promise<boolean> {
-    await this.#do(say('done_changed'), () => this.#calls.activate(id));
+    await this.#activate(id);
     return this.active?.id === id;
+  }
+
+  async #activate(id: string | null): Promise<void> {
+    await this.#do(say('done_changed'), 'which', () => this.#calls.activate(id));
+    // What was said of one that was saved holds no longer.
+    if ((this.active?.id ?? null) === id) this.#notices.outcome(IN_FORCE, null);
   }
 
   async remove(fence: FenceSummary): Promise<void> {
@@ -197,7 +206,9 @@ export class Fences extends RingDrawing implements Drawing {
       danger: true,
     });
     if (sure)
-      await this.#do(say('done_deleted'), () => this.#calls.remove(fence.id, fence.revision));
+      await this.#do(say('done_deleted'), fence.id, () =>
+        this.#calls.remove(fence.id, fence.revision),
+      );
   }
 
   get #circle(): boolean {
@@ -233,16 +244,19 @@ export class Fences extends RingDrawing implements Drawing {
     this.#history = perform(this.#history, () => draft);
   }
 
-  async #do(failed: string, call: () => Promise<Answer<unknown>>): Promise<void> {
+  async #do(failed: string, of: string, call: () => Promise<Answer<unknown>>): Promise<void> {
     if (this.busy) return;
     this.busy = true;
     const answer = await call();
     this.busy = false;
-    this.#tell(failed, answer);
+    this.#tell(failed, of, answer);
     await this.refresh();
   }
 
-  #tell(failed: string, answer: Answer<unknown>): void {
-    this.#notices.outcome('fence', answer.ok ? null : failure_text(failed, answer.refusal));
+  #tell(failed: string, of: string, answer: Answer<unknown>): void {
+    this.#notices.outcome(
+      `fence ${failed} ${of}`,
+      answer.ok ? null : failure_text(failed, answer.refusal),
+    );
   }
 }

@@ -159,7 +159,7 @@ export class Grounds {
 
   async #changed(done: string, call: Promise<Answer<unknown>>): Promise<boolean> {
     const answer = await call;
-    this.#notices.outcome('ground', answer.ok ? null : failure_text(done, answer.refusal));
+    this.#notices.outcome(`ground ${done}`, answer.ok ? null : failure_text(done, answer.refusal));
     await this.refresh();
     return answer.ok;
   }

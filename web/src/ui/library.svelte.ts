@@ -105,7 +105,7 @@ export class Library {
   async open(id: string): Promise<boolean> {
     if (!(await this.#editor.may_discard())) return false;
     const answer = await this.#calls.read(id);
-    this.#notices.outcome('missions', answer.ok ? null : refusal_text(answer.refusal));
+    this.#notices.outcome(`open ${id}`, answer.ok ? null : refusal_text(answer.refusal));
     if (!answer.ok) return false;
     this.#editor.show_mission(answer.value);
     return true;
@@ -124,7 +124,7 @@ export class Library {
     if (!sure) return;
     const answer = await this.#calls.remove(mission.id, mission.revision);
     this.#notices.outcome(
-      'missions',
+      `delete ${mission.id}`,
       answer.ok ? null : failure_text(say('done_deleted'), answer.refusal),
     );
     if (answer.ok) this.#notices.show('good', say('deleted_name', { name: mission.name }));
@@ -132,25 +132,27 @@ export class Library {
   }
 
   set_tags = (mission: MissionSummary, tags: readonly string[]): Promise<void> =>
-    this.#change(say('tags_not_changed'), () =>
+    this.#change(say('tags_not_changed'), mission.id, () =>
       this.#calls.describe(mission.id, mission.revision, { tags }),
     );
 
   set_archived = (mission: MissionSummary, archived: boolean): Promise<void> =>
-    this.#change(archived ? say('not_archived') : say('not_brought_back'), () =>
+    this.#change(archived ? say('not_archived') : say('not_brought_back'), mission.id, () =>
       this.#calls.describe(mission.id, mission.revision, { archived }),
     );
 
   restore = (mission: MissionSummary): Promise<void> =>
-    this.#change(say('not_brought_back'), () => this.#calls.restore(mission.id, mission.revision));
+    this.#change(say('not_brought_back'), mission.id, () =>
+      this.#calls.restore(mission.id, mission.revision),
+    );
 
   copy = (mission: MissionSummary): Promise<void> =>
-    this.#change(say('not_copied'), () => this.#calls.copy(mission.id));
+    this.#change(say('not_copied'), mission.id, () => this.#calls.copy(mission.id));
 
-  async #change(failed: string, call: () => Promise<Answer<Mission>>): Promise<void> {
+  async #change(failed: string, id: string, call: () => Promise<Answer<Mission>>): Promise<void> {
     const answer = await call();
     this.#notices.outcome(
-      'missions',
+      `${failed} ${id}`,
       answer.ok ? null : `${failed}: ${refusal_text(answer.refusal)}`,
     );
     await this.refresh();
@@ -160,7 +162,7 @@ export class Library {
   async check(id: string, revision: number, name: string): Promise<void> {
     const answer = await this.#calls.check(id, revision);
     this.#notices.outcome(
-      'missions',
+      `check ${id}`,
       answer.ok ? null : say('not_checked_refusal', { refusal: refusal_text(answer.refusal) }),
     );
     if (answer.ok) this.#dialogs.show({ kind: 'check', name, report: answer.value });

@@ -228,7 +228,7 @@ export class SiteMaps {
     const answer = await call();
     this.busy = null;
     this.#notices.outcome(
-      'map',
+      `map ${done}`,
       answer.ok ? null : say('the_map_done', { done: failure_text(done, answer.refusal) }),
     );
     await this.refresh();

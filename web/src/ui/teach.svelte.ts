@@ -73,7 +73,7 @@ export class Teacher {
     this.busy = true;
     const answer = await call();
     this.busy = false;
-    this.#notices.outcome('teach', answer.ok ? null : failure_text(what, answer.refusal));
+    this.#notices.outcome(`teach ${what}`, answer.ok ? null : failure_text(what, answer.refusal));
     return answer.ok;
   }
 }

@@ -65,10 +65,10 @@ export const drive = {
   let_go_to_hold: '; lase lahti, et peatada.',
   gamepad_hold_a_bumper_and_draw_the: 'Mängupult: hoia õlanuppu ja tõmba päästikut AUTO jaoks.',
   gamepad_hold_both_bumpers_to_drive: 'Mängupult: hoia mõlemat õlanuppu, et käsitsi sõita.',
-  gamepad_none_and_auto_wants_one: 'Pult: seda pole, aga AUTO tahab kätt puldil.',
+  gamepad_none_and_auto_wants_one: 'Mängupult: seda pole, aga AUTO tahab kätt puldil.',
   gamepad_auto_drives_without_your_hand:
-    'Pult: AUTO sõidab ilma sinu käeta. Hoia nuppu, et kiirus enda kätte võtta.',
-  the_gamepad_is_gone: 'Pult on kadunud: robotil kästi peatuda.',
+    'Mängupult: AUTO sõidab ilma sinu käeta. Hoia õlanuppu, et kiirus enda kätte võtta.',
+  the_gamepad_is_gone: 'Mängupult on kadunud: robotil kästi peatuda.',
   buttons_as_at_first: 'Nupud nagu alguses',
   gamepad_is_there: 'Mängupult on olemas.',
   buttons: 'Nupud…',

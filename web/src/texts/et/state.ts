@@ -134,7 +134,7 @@ export const state = {
   blocked: 'Teel ees.',
   no_way_around_it: 'Ümber ei pääse: {why}.',
   in_left_it_is_blocked: '{left} pärast loetakse teed suletuks.',
-  nothing_refused: 'midagi',
+  nothing_refused: 'ei midagi',
   gnss_not_used: 'ei kasutata',
   blocked_words: 'Teel ees: {words}.',
   the_guard_is_overridden_by_hand_reason: 'Takistusevalve on käsitsi üle sõidetud: {reason}.',

@@ -67,10 +67,10 @@ export const drive = {
     'Håndkontroller: hold en skulderknapp og trekk avtrekkeren for AUTO.',
   gamepad_hold_both_bumpers_to_drive:
     'Håndkontroller: hold begge skulderknapper for å kjøre for hånd.',
-  gamepad_none_and_auto_wants_one: 'Spillkontroll: det er ingen, og AUTO vil ha en hånd på en.',
+  gamepad_none_and_auto_wants_one: 'Håndkontroller: det er ingen, og AUTO vil ha en hånd på en.',
   gamepad_auto_drives_without_your_hand:
-    'Spillkontroll: AUTO kjører uten hånden din. Hold en skulderknapp for å ta farten i hånden.',
-  the_gamepad_is_gone: 'Spillkontrollen er borte: roboten får beskjed om å stoppe.',
+    'Håndkontroller: AUTO kjører uten hånden din. Hold en skulderknapp for å ta farten i hånden.',
+  the_gamepad_is_gone: 'Håndkontrolleren er borte: roboten får beskjed om å stoppe.',
   buttons_as_at_first: 'Knapper som i begynnelsen',
   gamepad_is_there: 'Håndkontrolleren er tilkoblet.',
   buttons: 'Knapper…',
