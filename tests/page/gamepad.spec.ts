@@ -77,6 +77,7 @@ test('a gamepad drives while its dead-man is held, and is let go when it is pull
   await expect(page.getByLabel('Drive by hand')).toContainText(/[1-9][\d.]* °\/s to the right/);
   await hands(page, { there: false });
   await expect.poll(() => Math.abs(station.sim.now.yaw_rate_dps)).toBeLessThan(0.5);
+  await expect(page.getByLabel('Messages')).toContainText('The gamepad is gone');
   await hands(page, { there: true });
   await page.waitForTimeout(600);
   expect(Math.abs(station.sim.now.yaw_rate_dps)).toBeLessThan(0.5);
