@@ -10,7 +10,7 @@ import sys
 import urllib.parse
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "harness"))
-from station import Station, check, run_cases, until  # noqa: E402
+from station import Station, check, reset_stop, run_cases, until  # noqa: E402
 
 GRACE_S = 3
 PASSWORD = "four tractors in a barn"
@@ -84,7 +84,7 @@ def one_drives():
         rows.do("PUT", "/vehicle/mode", {"mode": "HOLD"})  # anyone may stop
         watch.do("POST", "/vehicle/estop", {})
         rows.do("POST", "/vehicle/estop/reset", {}, 403)
-        patrol.do("POST", "/vehicle/estop/reset", {})
+        reset_stop(patrol)
         check("control_forced" in events_of(watch), "force is no event")
 
 
@@ -152,7 +152,7 @@ def without_access():
         check(control["on"] is False and control["mine"] is True, f"it is {control}")
         station.rest.do("POST", "/control/take", {})
         station.rest.do("POST", "/vehicle/estop", {})
-        station.rest.do("POST", "/vehicle/estop/reset", {})
+        reset_stop(station.rest)
 
 
 if __name__ == "__main__":

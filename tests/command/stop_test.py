@@ -15,7 +15,7 @@ import time
 import urllib.parse
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "harness"))
-from station import Program, Rest, Station, check, run_cases, until  # noqa: E402
+from station import Program, Rest, Station, check, reset_stop, run_cases, until  # noqa: E402
 
 SOON_S = 2.0  # the machine may be busy; without what is tested here it takes 12 s or never comes
 
@@ -106,15 +106,7 @@ def again(station, *before):
 
 
 def reset(rest):
-    """Where the program hung for half a second, what reaches it then may be older than the last stop, and
-    is refused as late: whoever looks clicks again."""
-    def asked():
-        status, _, body = rest.call("POST", "/vehicle/estop/reset", {"valid_for_s": 5})
-        check(status == 200 or (status == 409 and body["title"] == "Too late"),
-              f"a reset answers {status}: {body}")
-        return status == 200
-
-    until("the stop is reset", 10, asked, 0.2)
+    reset_stop(rest, {"valid_for_s": 5})
 
 
 def in_a_house_full_of_half_headers():

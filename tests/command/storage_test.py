@@ -14,7 +14,7 @@ import tempfile
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "harness"))
-from station import BIN, Program, Rest, Station, check, make_large, run_cases, until  # noqa: E402
+from station import BIN, Program, Rest, Station, check, make_large, reset_stop, run_cases, until  # noqa: E402
 
 PLAN = {"name": "kept", "items": [{"type": "waypoint", "lat": 58.0, "lon": 26.0 + i * 1e-5} for i in range(50)]}
 
@@ -42,7 +42,7 @@ def drives_by_hand(rest, station):
     time.sleep(0.5)
     moved = station.control.ask({"get": "truth"})["driven_m"] - stood
     check(moved < 0.02, f"it drove {moved:.2f} m after the stop")
-    rest.do("POST", "/vehicle/estop/reset")
+    reset_stop(rest)
 
 
 def a_removed_data_folder():

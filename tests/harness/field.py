@@ -11,7 +11,7 @@ import time
 import urllib.parse
 
 import lateness
-from station import Program, Station, check, until
+from station import Program, Station, check, reset_stop, until
 
 PASSWORD = "four tractors in a barn"
 ATTACKS = pathlib.Path(__file__).with_name("attacks.py")
@@ -85,7 +85,7 @@ class Field:
     def drive(self):
         """Drives off, in front of it as far as it takes."""
         soon = {"valid_for_s": 5}
-        self.operator.do("POST", "/vehicle/estop/reset", soon)
+        reset_stop(self.operator, soon)
         until("it is armed", 60, lambda: self.operator.call("POST", "/vehicle/arm", soon)[0] == 200, 0.2)
         at = self.truth()["driven_m"]
         self.operator.do("POST", "/vehicle/move", {"forward_m": 100, **soon}, 202)

@@ -46,6 +46,18 @@ def until(what, seconds, ask, pause=0.05):
         time.sleep(pause)
 
 
+def reset_stop(caller, body=None):
+    """Where the program hung for half a second, what reaches it then may be older than the last stop, and
+    is refused as late: whoever looks clicks again. @param caller has call()"""
+    def asked():
+        status, *_, answer = caller.call("POST", "/vehicle/estop/reset", {} if body is None else body)
+        check(status == 200 or (status == 409 and answer["title"] == "Too late"),
+              f"a reset answers {status}: {answer}")
+        return status == 200
+
+    until("the stop is reset", 10, asked, 0.2)
+
+
 def hear_ctrl_c():
     """Where the tests were started in the background, Ctrl-C is ignored, and children inherit that."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
