@@ -94,6 +94,8 @@ class Hills {
   static void renew(Place& p, std::int32_t x, std::int32_t y, std::int32_t half,
                     float z_m) noexcept;
   std::size_t index(std::int32_t x, std::int32_t y) const noexcept;
+  /// To here, once, however many sensors tell the ground and whose piece is late.
+  void count_way(const Reduced& in) noexcept;
   /// Which half of what is known for a while this is, by time and way.
   std::int32_t half_of(base::Time t) const noexcept;
   /// Of the cells so far about it, each with the rise from there; infinity: none is known.
@@ -115,8 +117,6 @@ class Hills {
   std::vector<Place> places_;
   bool begun_ = false;
   base::Time begin_;
-  /// From there to here, once, however many sensors tell the ground and whose piece is late.
-  void count_way(const Reduced& in) noexcept;
   Pose2 last_;          ///< X_OB until which the way is counted
   base::Time last_at_;  ///< and when that was
   double way_m_ = 0.0;  ///< since it began

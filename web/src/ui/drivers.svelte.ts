@@ -42,7 +42,7 @@ export class Drivers {
     const answer = await this.#calls.restart_driver(name);
     this.restarting = null;
     this.#notices.outcome(
-      `driver ${name}`,
+      `restart ${name}`, // not as what the driver itself tells, which would replace it
       answer.ok ? null : failure_text(say('done_restarted'), answer.refusal),
     );
     if (answer.ok) this.#notices.show('good', say('the_driver_name_is_being_restarted', { name }));
