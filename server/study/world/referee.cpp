@@ -25,6 +25,9 @@ constexpr double kAnew_m = 0.05;
 constexpr double kMarch_m = 1.0;
 constexpr double kMarchStep_m = 0.01;
 constexpr double kStandsFor_s = 0.3;
+constexpr double kOverIt_m = 0.1;      // over what the guard lets pass above
+constexpr double kUnderIt_m = 0.02;    // what is lower is ground to it
+constexpr double kAbout_m = 0.2;       // of a place that was touched
 constexpr double kSightReach_m = 8.0;  // farther nothing is looked at
 
 std::string_view word_of(world::Cause cause) {
@@ -51,6 +54,11 @@ bool touches_any(const world::Scene& scene, const world::Moment& moment, const w
   return !world::contact(scene, moment, pose, body, 0.01).touches.empty();
 }
 
+std::pair<int, int> cell_of(double x_m, double y_m) {
+  return {static_cast<int>(std::floor(x_m / kMapCell_m)),
+          static_cast<int>(std::floor(y_m / kMapCell_m))};
+}
+
 world::Body grown(world::Body body, double by_m) {
   for (world::Vec2& p : body.outline) {
     p = {p.x + (p.x < 0.0 ? -by_m : by_m), p.y + (p.y < 0.0 ? -by_m : by_m)};
@@ -74,6 +82,7 @@ Referee::Referee(const sim::Surroundings& around, const nav::sense::ProtectParam
   }
   sights_.resize(around_.scene().world().things.size());
   beams_.resize(sights_.size());
+  places_.resize(sights_.size());
 }
 
 Referee::Met* Referee::met_at(double x_m, double y_m) {
@@ -100,6 +109,7 @@ void Referee::saw(const std::vector<world::Sweep>& sweeps, const world::Pose& mo
       const auto thing = static_cast<std::size_t>(s.thing);
       std::vector<double>& seen = sights_[thing];
       ++beams_[thing];
+      places_[thing].try_emplace(cell_of(at.x, at.y), now_s);
       if (seen.empty() || now_s - seen.back() > kSightEvery_s) seen.push_back(now_s);
     }
   }
@@ -185,14 +195,15 @@ bool Referee::beside_plane(int thing, const world::Pose& pose, double at_s) cons
   return plane_m_ > 0.0 && !reaches(thing, pose, at_s, plane_m_ - kUneven_m, plane_m_ + kUneven_m);
 }
 
-/// The uphill corner of a low box, say: looked for everywhere below the body, over its own plane
-/// there. The ground is laid through the middle of the grass.
-bool Referee::low_as_grass(int thing, const world::Pose& pose, double at_s) const {
-  if (thing < 0) return false;
+/// Looked for everywhere below the body, over its own plane there.
+std::vector<world::Vec2> Referee::places_touched(int thing, const world::Pose& pose, double at_s,
+                                                 double from_m) const {
+  std::vector<world::Vec2> out;
+  if (thing < 0) return out;
   constexpr double kStep_m = 0.05;
   const world::Body whole = grown(around_.witness().body(), 0.02);
-  world::Body little =
-      world::Body::rectangle(0.5 * kStep_m, 0.5 * kStep_m, kStep_m, whole.height_m, grass_m_);
+  const world::Body little =
+      world::Body::rectangle(0.5 * kStep_m, 0.5 * kStep_m, kStep_m, whole.height_m, from_m);
   const auto [rear, front] = std::ranges::minmax(whole.outline, {}, &world::Vec2::x);
   const auto [right, left] = std::ranges::minmax(whole.outline, {}, &world::Vec2::y);
   const world::Frame body(pose);
@@ -203,19 +214,42 @@ bool Referee::low_as_grass(int thing, const world::Pose& pose, double at_s) cons
       const world::Vec3 at = body * world::Vec3{x, y, 0.0};
       const world::Pose there{at.x, at.y, at.z, 0.0, 0.0, pose.yaw_rad};
       const auto met = world::contact(around_.scene(), moment, there, little, 0.01).touches;
-      if (std::ranges::find(met, thing, &world::Touch::thing) != met.end()) return false;
+      if (std::ranges::find(met, thing, &world::Touch::thing) != met.end()) {
+        out.push_back({at.x, at.y});
+      }
     }
   }
-  return true;
+  return out;
 }
 
-std::optional<double> Referee::in_sight_since_s(int number, double touched_s) const {
+/// The uphill corner of a low box, say. The ground is laid through the middle of the grass.
+bool Referee::low_as_grass(int thing, const world::Pose& pose, double at_s) const {
+  return thing >= 0 && places_touched(thing, pose, at_s, grass_m_).empty();
+}
+
+std::optional<double> Referee::place_seen_since_s(int number, const world::Pose& pose,
+                                                  double at_s) const {
+  const auto touched = places_touched(number, pose, at_s, kUnderIt_m);
+  std::optional<double> since_s;
+  for (const auto& [cell, first_s] : places_[static_cast<std::size_t>(number)]) {
+    if (since_s && first_s >= *since_s) continue;
+    const world::Vec2 seen{(cell.first + 0.5) * kMapCell_m, (cell.second + 0.5) * kMapCell_m};
+    const bool about = std::ranges::any_of(touched, [&](const world::Vec2& at) {
+      return std::hypot(seen.x - at.x, seen.y - at.y) <= kAbout_m;
+    });
+    if (about) since_s = first_s;
+  }
+  return since_s;
+}
+
+std::optional<double> Referee::in_sight_since_s(int number, const world::Pose& pose,
+                                                double touched_s) const {
   if (number < 0) return std::nullopt;
   const auto& seen = sights_[static_cast<std::size_t>(number)];
   if (seen.empty()) return std::nullopt;
   const world::Thing& thing = around_.scene().world().things[static_cast<std::size_t>(number)];
   // What stands does not leave; and what was seen once is known.
-  if (!world::moves(thing.kind)) return seen.front();
+  if (!world::moves(thing.kind)) return place_seen_since_s(number, pose, touched_s);
   if (touched_s - seen.back() > kUnbroken_s) return std::nullopt;
   std::size_t i = seen.size() - 1;
   while (i > 0 && seen[i] - seen[i - 1] <= kUnbroken_s) --i;
@@ -272,7 +306,7 @@ void Referee::judge(const world::Witness::Seen& seen) {
     out.height_m = around_.scene().world().things[static_cast<std::size_t>(seen.thing)].height_m;
     out.beams = beams_[static_cast<std::size_t>(seen.thing)];
   }
-  const auto since_s = in_sight_since_s(seen.thing, seen.at_s);
+  const auto since_s = in_sight_since_s(seen.thing, now.pose, seen.at_s);
   if (since_s) out.seen_before_s = seen.at_s - *since_s;
   if (comes_to_it(seen.thing, now)) {
     out.blame = Blame::Standing;
@@ -344,8 +378,8 @@ StopSeen Referee::stop_of(const base::Obstacle& o) {
 }
 
 std::string Referee::cause_of(const base::Obstacle& o, const world::Pose& there, bool& needless) {
-  const world::Body about =
-      world::Body::rectangle(kBeside_m, kBeside_m, 2.0 * kBeside_m, pass_below_m_ + 0.1, 0.02);
+  const world::Body about = world::Body::rectangle(kBeside_m, kBeside_m, 2.0 * kBeside_m,
+                                                   pass_below_m_ + kOverIt_m, kUnderIt_m);
   world::Moment moment;
   around_.scene().move_to(moment, around_.now_s());
   needless = false;
@@ -380,15 +414,18 @@ std::string Referee::cause_of(const base::Obstacle& o, const world::Pose& there,
   return std::string(word_of(last.cause));
 }
 
-/// In plan, between the outline and a thing; to a centimetre.
+/// In plan, between the outline and a thing; to a centimetre. Of what the guard counts, so also of
+/// what the body would pass beneath.
 double Referee::room_m(int thing) const {
   const world::Pose pose = around_.pose_at(around_.now_s());
+  world::Body counts = around_.witness().body();
+  counts.height_m = pass_below_m_ + kOverIt_m;
+  counts.clearance_m = kUnderIt_m;
   world::Moment moment;
   around_.scene().move_to(moment, around_.now_s());
   double room_m = 0.0;
   for (; room_m < kMarch_m; room_m += kMarchStep_m) {
-    const auto met = world::contact(around_.scene(), moment, pose,
-                                    grown(around_.witness().body(), room_m), 0.01);
+    const auto met = world::contact(around_.scene(), moment, pose, grown(counts, room_m), 0.01);
     const auto it = std::ranges::find(met.touches, thing, &world::Touch::thing);
     if (it != met.touches.end()) break;
   }

@@ -4,18 +4,21 @@
 //
 // A contact is ours when braking from the first sight would have avoided it. That is tried: from
 // the begin of the unbroken sight of the thing (a gap of a second breaks it; of who moves, not
-// before he set out for there) the body goes on as it did for sense.protect.delay_s, then along the
-// same way slower and slower, as decel_mps2 and turn_decel_radps2 let it, and stands. What moves
-// goes on as it does. If they meet until a second after the true contact, no brakes would have
-// avoided it. So whoever walks into the way of a robot that saw him coming counts; that he was not
-// in the way yet, in time for the brakes, is said:
+// before he set out for there; of what stands, from the first sight of it within 0.2 m of where it
+// was touched: the far end of a wall does not tell where this one is) the body goes on as it did
+// for sense.protect.delay_s, then along the same way slower and slower, as decel_mps2 and
+// turn_decel_radps2 let it, and stands. What moves goes on as it does. If they meet until a second
+// after the true contact, no brakes would have avoided it. So whoever walks into the way of a robot
+// that saw him coming counts; that he was not in the way yet, in time for the brakes, is said:
 //
 //   way since it was where it was touched  ≤  u·delay + u·max(v / 2a, ω / 2α),   u = |v| +
 //   |ω|·reach
 
 #include <deque>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/sensing.hpp"
@@ -68,13 +71,19 @@ class Referee {
 
   void judge(const sim::world::Witness::Seen& seen);
   bool beside_plane(int thing, const sim::world::Pose& pose, double at_s) const;
+  /// Middles of the squares of 5 cm under the body in which something of it rises over from_m.
+  std::vector<sim::world::Vec2> places_touched(int thing, const sim::world::Pose& pose, double at_s,
+                                               double from_m) const;
   bool low_as_grass(int thing, const sim::world::Pose& pose, double at_s) const;
   /// What of it was touched reaches between these heights over the body's plane.
   bool reaches(int thing, const sim::world::Pose& pose, double at_s, double from_m,
                double to_m) const;
   /// Begin of the unbroken sight before the contact; of who moves, not before he set out. Empty:
-  /// never seen, or he was not any more.
-  std::optional<double> in_sight_since_s(int number, double touched_s) const;
+  /// never seen, or he was not any more; of what stands: never seen about there.
+  std::optional<double> in_sight_since_s(int number, const sim::world::Pose& pose,
+                                         double touched_s) const;
+  std::optional<double> place_seen_since_s(int number, const sim::world::Pose& pose,
+                                           double at_s) const;
   bool comes_to_it(int number, const Was& now) const;
   bool brakes_avoid(int thing, double from_s, double touched_s) const;
   double there_since_s(int thing, const sim::world::Pose& pose, double at_s) const;
@@ -94,6 +103,8 @@ class Referee {
   std::vector<Was> trail_;
   std::vector<std::vector<double>> sights_;  ///< of each thing, when beams met it
   std::vector<std::size_t> beams_;           ///< that met it
+  /// Of each thing that stands: the cells of kMapCell_m where beams met it, and when first.
+  std::vector<std::map<std::pair<int, int>, double>> places_;
   std::vector<Met> met_;
   std::size_t hard_ = 0;
   std::size_t soft_ = 0;

@@ -216,7 +216,7 @@ TEST(WorldRunTest, WhatNoSensorSeesIsTouchedAndSaidSo) {
 }
 
 //   Over a bump the scanners' plane tips up and meets the far part of a bar for a moment; level
-//   again it passes beneath, and the near part is touched.
+//   again it passes beneath, and the near part is touched, which no beam ever met.
 TEST(WorldRunTest, WhatHangsAboveThePlaneOfItsScannersIsNoContactThatBrakesWouldHaveSpared) {
   Scenario s = ahead(
       R"({"kind": "bar", "points": [[0.2, 6.8], [-1.5, 9.8]], "height_m": 0.1, "bottom_m": 0.36})");
@@ -224,8 +224,20 @@ TEST(WorldRunTest, WhatHangsAboveThePlaneOfItsScannersIsNoContactThatBrakesWould
   const auto run = run_world(setup_of(), s);
   ASSERT_TRUE(run) << run.error().detail;
   ASSERT_FALSE(run->touches.empty());
-  EXPECT_EQ(run->touches[0].blame, Blame::Beside);
+  EXPECT_EQ(run->touches[0].blame, Blame::Unseen);
   EXPECT_GT(run->touches[0].beams, 0U);
+}
+
+//   Of a wall that is seen from end to end, any place is in sight: a guard that believes in better
+//   brakes than there are touches it, and that is its own contact.
+TEST(WorldRunTest, WhatWasSeenWhereItIsTouchedIsTheRobotsOwnContact) {
+  study::Setup blunt = setup_of();
+  blunt.sim_overrides = {"drive.decel_mps2=0.2"};
+  const auto run =
+      run_world(blunt, ahead(R"({"kind": "wall", "points": [[-3, 6], [3, 6]], "height_m": 1})"));
+  ASSERT_TRUE(run) << run.error().detail;
+  ASSERT_FALSE(run->touches.empty());
+  EXPECT_EQ(run->touches[0].blame, Blame::Ours);
   EXPECT_GT(run->touches[0].seen_before_s, 2.0);
 }
 
