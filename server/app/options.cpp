@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/version.hpp"
+#include "base/angle.hpp"
 
 namespace roverd {
 
@@ -186,7 +187,8 @@ Told add_locate(CLI::App& app, LocateCommand& c) {
   CLI::App* l = app.add_subcommand("locate", "a recorded drive placed in a map, and how well");
   l->footer(
       "LOG is the text of CARMEN (FLASER and ODOM lines), plain or gzip; its poses are taken for\n"
-      "the truth. The map is that of ROS's map server.");
+      "the truth, or as good as --truth-m and --truth-deg say. The map is that of ROS's map "
+      "server.");
   l->add_option("--map", c.map, "the map's yaml; its image lies beside it")->required();
   l->add_option("LOG", c.log, "the recorded drive")->required();
   l->add_flag(
@@ -211,6 +213,16 @@ Told add_locate(CLI::App& app, LocateCommand& c) {
                                       "which of them are compared: all, odd or even")
       ->check(words)
       ->default_str("all");
+  l->add_option(
+       "--truth-m", c.options.truth_m,
+       "how sure the log's poses are along x and along y, 1 sigma: counts in the certainty")
+      ->check(number_in(0.0, 10.0))
+      ->capture_default_str();
+  l->add_option_function<double>(
+       "--truth-deg", [&c](const double& deg) { c.options.truth_rad = base::rad_from_deg(deg); },
+       "the same of their heading")
+      ->check(number_in(0.0, 180.0))
+      ->default_str("0");
   return {l, "locate wants --map MAP.yaml and LOG"};
 }
 

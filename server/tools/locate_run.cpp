@@ -39,6 +39,7 @@ double thread_s() noexcept {
 }
 
 struct Errors {
+  Eigen::Matrix3d unsure = Eigen::Matrix3d::Zero();  // covariance of the poses compared with
   std::vector<double> m;
   std::vector<double> deg;
   double nees = 0.0;
@@ -49,7 +50,8 @@ struct Errors {
                             base::angle_diff_rad(truth.yaw_rad, fix.pose.yaw_rad));
     m.push_back(std::hypot(e(0), e(1)));
     deg.push_back(base::deg_from_rad(std::abs(e(2))));
-    const double n = e.dot(fix.covariance.inverse() * e);
+    const Eigen::Matrix3d both = fix.covariance + unsure;
+    const double n = e.dot(both.inverse() * e);
     nees += n;
     constexpr double kChi3_95 = 7.81;
     if (n < kChi3_95) ++within;
@@ -107,6 +109,8 @@ LocateFigures locate_log(std::shared_ptr<const nav::place::Field> field,
     tracker.set_pose(scans[0].pose * step, 0.1, 0.05);
   }
   Errors errors;
+  const double place = options.truth_m * options.truth_m;
+  errors.unsure.diagonal() << place, place, options.truth_rad * options.truth_rad;
   std::vector<double> ms;
   bool was_lost = false;
   for (std::size_t i = 0; i < scans.size(); ++i) {

@@ -20,6 +20,10 @@ struct LocateOptions {
   WhichScans use = WhichScans::All;    ///< given to the tracker, counted from 0
   WhichScans score = WhichScans::All;  ///< compared with the log's poses
   bool with_start = true;              ///< the log's first pose is told
+  /// How sure the log's poses are, 1 sigma along x, along y and of the heading: counted with the
+  /// certainty that is judged by them. 0: they are the truth.
+  double truth_m = 0.0;
+  double truth_rad = 0.0;
   nav::place::TrackerParams tracker{};
 };
 
@@ -37,7 +41,8 @@ struct LocateFigures {
   double max_m = 0.0;
   double median_deg = 0.0;
   double p95_deg = 0.0;
-  double nees = 0.0;       ///< mean of e' C^-1 e over three values: 3 where C is honest
+  double nees = 0.0;       ///< mean of e' C^-1 e over three values: 3 where C is honest; in C what
+                           ///< the log's poses are unsure of, too
   double within_95 = 0.0;  ///< share of e' C^-1 e below 7.81, its 95 % point
   double match_p50_ms = 0.0;
   double match_p99_ms = 0.0;

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "atlas/map_files.hpp"
+#include "base/angle.hpp"
 #include "real_data.hpp"
 #include "tools/locate_run.hpp"
 
@@ -25,14 +26,21 @@ std::shared_ptr<const Field> field_of(const std::filesystem::path& words_path,
   return std::make_shared<Field>(*map);
 }
 
+/// Odd scans only; the poses compared with are good to 2 cm and 0.3 deg, median: so many sigma.
+LocateOptions odd_scans() {
+  LocateOptions odd{WhichScans::Odd, WhichScans::Odd};
+  odd.truth_m = 0.017;
+  odd.truth_rad = base::rad_from_deg(0.44);
+  return odd;
+}
+
 TEST(RealDrive, ThroughTheOfficeIsFollowed) {
   ROVERD_REAL_DATA(words, "sensors/carmen/intel-map.yaml");
   ROVERD_REAL_DATA(picture, "sensors/carmen/intel-map.pgm");
   ROVERD_REAL_DATA(log, "sensors/carmen/intel-corrected.log.gz");
   const auto scans = scans_of_log(tests::read_file(log));
   ASSERT_TRUE(scans) << scans.error().detail;
-  const LocateOptions odd{WhichScans::Odd, WhichScans::Odd};
-  const LocateFigures f = locate_log(field_of(words, picture), *scans, odd);
+  const LocateFigures f = locate_log(field_of(words, picture), *scans, odd_scans());
   SCOPED_TRACE(figures_text(f));
   EXPECT_EQ(f.scored, 455U);
   EXPECT_EQ(f.lost, 0U);
@@ -42,6 +50,7 @@ TEST(RealDrive, ThroughTheOfficeIsFollowed) {
   EXPECT_LT(f.p95_m, 0.065);
   EXPECT_LT(f.max_m, 0.40);
   EXPECT_LT(f.median_deg, 0.30);
+  EXPECT_GT(f.within_95, 0.95);
   RecordProperty("figures", figures_text(f));
 }
 
@@ -51,8 +60,7 @@ TEST(RealDrive, ThroughTheCorridorIsFollowed) {
   ROVERD_REAL_DATA(log, "sensors/carmen/freiburg-079-corrected.log.gz");
   const auto scans = scans_of_log(tests::read_file(log));
   ASSERT_TRUE(scans) << scans.error().detail;
-  const LocateOptions odd{WhichScans::Odd, WhichScans::Odd};
-  const LocateFigures f = locate_log(field_of(words, picture), *scans, odd);
+  const LocateFigures f = locate_log(field_of(words, picture), *scans, odd_scans());
   SCOPED_TRACE(figures_text(f));
   EXPECT_EQ(f.scored, 2395U);
   EXPECT_EQ(f.lost, 0U);
@@ -60,6 +68,7 @@ TEST(RealDrive, ThroughTheCorridorIsFollowed) {
   EXPECT_LT(f.median_m, 0.025);
   EXPECT_LT(f.p95_m, 0.070);
   EXPECT_LT(f.max_m, 0.40);
+  EXPECT_GT(f.within_95, 0.91);
   RecordProperty("figures", figures_text(f));
 }
 
