@@ -107,6 +107,17 @@ test('control is taken, asked for, handed over, and taken by force', async ({
   await press(ben, 'Emergency stop');
   await expect(anna.getByText('Emergency stop is latched.')).toBeVisible();
 
+  // On a phone all of it leaves a strip of the map, and is said once.
+  await ben.setViewportSize({ width: 390, height: 844 });
+  await expect(ben.getByText('Emergency stop is latched.')).toBeVisible();
+  await expect(ben.getByRole('log', { name: 'Messages' })).not.toContainText('by force');
+  const strip_px = async (): Promise<number> => {
+    const head = await ben.locator('header').boundingBox();
+    const panel = await ben.locator('#panel').boundingBox();
+    return head && panel ? panel.y - (head.y + head.height) : 0;
+  };
+  await expect.poll(strip_px).toBeGreaterThan(100);
+
   // when: anna's page is gone; then it is free after the grace, by itself
   await anna.close();
   await expect(control(ben)).toContainText('Nobody has control', {

@@ -12,6 +12,7 @@ import {
   duration,
   metres,
   number_text,
+  offset_words,
   said_in,
 } from '../src/model/format';
 
@@ -79,6 +80,11 @@ describe('format', () => {
     expect(duration(45)).toBe('45 s');
     expect(duration(185)).toBe('3 min 05 s');
     expect(duration(4320)).toBe('1 h 12 min');
+  });
+
+  test('an offset goes to the side that it goes to', () => {
+    expect(offset_words(-13.469, 1.2)).toBe('13.47 m W, 1.20 m N');
+    expect(offset_words(0, -0.5)).toBe('0.00 m E, 0.50 m S');
   });
 
   test('directions have three digits and a wind', () => {

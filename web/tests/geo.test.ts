@@ -37,6 +37,10 @@ describe('geo', () => {
       expect(back.north_m).toBeCloseTo(-1200, 3);
     }
     expect(distance_m({ lat: 0, lon: 179.9999 }, { lat: 0, lon: -179.9999 })).toBeCloseTo(22.26, 1);
+    // A quarter of the equator of WGS84 is 10,018.754 km: half a percent is enough so far away.
+    expect(distance_m({ lat: 0, lon: 100 }, { lat: 0, lon: -170 }) / 10_018_754).toBeCloseTo(1, 2);
+    // Over the pole it is 2 degrees of a meridian.
+    expect(distance_m({ lat: 89, lon: 0 }, { lat: 89, lon: 180 }) / 223_388).toBeCloseTo(1, 2);
     expect(midpoint({ lat: 0, lon: 179 }, { lat: 0, lon: -179 }).lon).toBeCloseTo(180, 9);
   });
 

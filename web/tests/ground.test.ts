@@ -2,6 +2,7 @@ import { describe, expect, it } from 'vitest';
 
 import { offset_from } from '../src/model/geo';
 import {
+  away_words,
   ground_of,
   kind_of_file,
   moved_shift,
@@ -70,4 +71,17 @@ it('is moved by as much as it lies beside the robot', () => {
   expect(moved_shift([0, 0], mark, robot)).toEqual([1.5, -0.75]);
   // What was moved before is moved further.
   expect(moved_shift([0.25, 1], mark, robot)).toEqual([1.75, 0.25]);
+});
+
+describe('a picture that lies elsewhere', () => {
+  const bounds = [26, 58, 27, 59];
+  it('is said with how far away it begins', () => {
+    // One degree of latitude south of it: 111 km.
+    expect(away_words(bounds, { lat: 57, lon: 26.5 })).toBe('111 km from the robot');
+  });
+  it('is not said of one that the robot stands in, or beside', () => {
+    expect(away_words(bounds, { lat: 58.5, lon: 26.5 })).toBeNull();
+    expect(away_words(bounds, { lat: 57.995, lon: 26.5 })).toBeNull();
+    expect(away_words(bounds, null)).toBeNull();
+  });
 });

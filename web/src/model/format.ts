@@ -81,6 +81,11 @@ export const duration = (seconds: Value): string => {
 /** The letter that a language has for a wind. */
 export const wind = (which: 'north' | 'east' | 'south' | 'west'): string => say(`wind_${which}`);
 
+/** "13.47 m W, 1.20 m N" */
+export const offset_words = (east_m: number, north_m: number): string =>
+  `${Math.abs(east_m).toFixed(2)} m ${wind(east_m < 0 ? 'west' : 'east')}, ` +
+  `${Math.abs(north_m).toFixed(2)} m ${wind(north_m < 0 ? 'south' : 'north')}`;
+
 /** Clockwise from north. */
 const winds = (): readonly string[] => {
   const [n, e, s, w] = [wind('north'), wind('east'), wind('south'), wind('west')];

@@ -44,9 +44,20 @@ export const offset_from = (from: LatLon, offset: Offset): LatLon => {
   };
 };
 
+/** Farther apart than a degree, along a sphere: to half a percent. */
+const FAR_DEG = 1;
+const SPHERE_M = 6371008.8;
+
 export const distance_m = (from: LatLon, to: LatLon): number => {
-  const { east_m, north_m } = offset_between(from, to);
-  return Math.hypot(east_m, north_m);
+  const turn = lon_difference(from.lon, to.lon);
+  if (Math.abs(turn) <= FAR_DEG && Math.abs(to.lat - from.lat) <= FAR_DEG) {
+    const { east_m, north_m } = offset_between(from, to);
+    return Math.hypot(east_m, north_m);
+  }
+  const half =
+    Math.sin(((to.lat - from.lat) * RAD) / 2) ** 2 +
+    Math.cos(from.lat * RAD) * Math.cos(to.lat * RAD) * Math.sin((turn * RAD) / 2) ** 2;
+  return 2 * SPHERE_M * Math.asin(Math.min(1, Math.sqrt(half)));
 };
 
 /** Compass bearing, degrees in [0, 360). */

@@ -2,8 +2,10 @@
 // how far it is moved.
 
 import type { Answer } from './answer';
-import { offset_between } from './geo';
+import { metres } from './format';
+import { distance_m, offset_between } from './geo';
 import type { LatLon } from './plan';
+import { say } from './say';
 import type { Bounds, TileAddress } from './tiling';
 
 export type TileFormat = 'png' | 'jpg' | 'webp' | 'pbf';
@@ -161,3 +163,18 @@ export const kind_of_file = (head: Uint8Array): GroundFile => {
 export const MOST_TILES = 20_000;
 /** Of an aerial picture. */
 export const USUAL_TILE_BYTES = 20_000;
+
+const FAR_M = 1000;
+
+/** Of a picture that shows nothing near the robot: how far away it begins. @param bounds west,
+ * south, east, north @param robot null: nobody knows where it is @return null: it is near */
+export const away_words = (bounds: readonly number[], robot: LatLon | null): string | null => {
+  const [west = 0, south = 0, east = 0, north = 0] = bounds;
+  if (!robot) return null;
+  const nearest = {
+    lat: Math.min(Math.max(robot.lat, south), north),
+    lon: Math.min(Math.max(robot.lon, west), east),
+  };
+  const far_m = distance_m(robot, nearest);
+  return far_m > FAR_M ? say('ground_far', { far: metres(far_m) }) : null;
+};

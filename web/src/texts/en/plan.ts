@@ -85,6 +85,8 @@ export const plan = {
   select_a_first_and_a_last_one: 'Select a first and a last one.',
   properties: 'Properties…',
   transform: 'Transform',
+  join_another: 'Join another…',
+  join_how: 'Choose ⋯ beside the mission that comes after this one, then “Join to the plan”.',
   split_here: 'Split here',
   they_have_no_property_in_common: 'They have no property in common.',
   they_differ: 'they differ',

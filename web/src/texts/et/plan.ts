@@ -85,6 +85,8 @@ export const plan = {
   select_a_first_and_a_last_one: 'Vali esimene ja viimane.',
   properties: 'Omadused…',
   transform: 'Teisenda',
+  join_another: 'Liida teine…',
+  join_how: 'Vali ⋯ selle ülesande juures, mis järgneb, ja siis „Liida plaaniga“.',
   split_here: 'Lõika siit',
   they_have_no_property_in_common: 'Neil pole ühiseid omadusi.',
   they_differ: 'need erinevad',

@@ -85,6 +85,8 @@ export const plan = {
   select_a_first_and_a_last_one: 'Valitse ensimmäinen ja viimeinen.',
   properties: 'Ominaisuudet…',
   transform: 'Muunnos',
+  join_another: 'Liitä toinen…',
+  join_how: 'Valitse ⋯ seuraavan tehtävän kohdalla ja sitten ”Liitä suunnitelmaan”.',
   split_here: 'Katkaise tästä',
   they_have_no_property_in_common: 'Niillä ei ole yhteisiä ominaisuuksia.',
   they_differ: 'ne eroavat',

@@ -85,6 +85,8 @@ export const plan = {
   select_a_first_and_a_last_one: 'Seleziona un primo e un ultimo.',
   properties: 'Proprietà…',
   transform: 'Trasforma',
+  join_another: 'Unisci un’altra…',
+  join_how: 'Scegli ⋯ accanto alla missione che viene dopo, poi «Unisci al piano».',
   split_here: 'Taglia qui',
   they_have_no_property_in_common: 'Non hanno proprietà in comune.',
   they_differ: 'sono diversi',

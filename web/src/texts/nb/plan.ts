@@ -85,6 +85,8 @@ export const plan = {
   select_a_first_and_a_last_one: 'Velg en første og en siste.',
   properties: 'Egenskaper…',
   transform: 'Omform',
+  join_another: 'Føy til en annen…',
+  join_how: 'Velg ⋯ ved oppdraget som kommer etter, og så «Føy til planen».',
   split_here: 'Del her',
   they_have_no_property_in_common: 'De har ingen felles egenskap.',
   they_differ: 'de er ulike',
