@@ -183,7 +183,9 @@ test(
     await page.keyboard.down('ArrowUp');
     await expect(past).toBeVisible({ timeout: 60_000 });
     expect(drives.some((drive) => drive.override_guard)).toBe(false);
-    await past.scrollIntoViewIfNeeded();
+    // In sight by itself, above the tabs: nobody scrolls while the other thumb drives.
+    await expect(past).toBeInViewport({ ratio: 1 });
+    await page.screenshot({ path: '../tests/page/results/override-phone.png' });
     const box = await past.boundingBox();
     await page.mouse.move((box?.x ?? 0) + 20, (box?.y ?? 0) + 20);
     await page.mouse.down();
