@@ -127,8 +127,22 @@ void KnownPlaces::see(const nav::tags::TagsSeen& image, nav::Estimator& estimato
       seen.face_rad = base::wrap_rad(tag.pose.yaw_rad + base::kPi);
       seen.face_sigma_rad = tag.sigma_yaw_rad;
     }
+    if (!estimator.located()) begin(*known, seen, estimator, now);
     judge(*known, seen, estimator, now);
   }
+}
+
+/// Only one that tells where the robot stands by itself: a tag that was entered with its face.
+void KnownPlaces::begin(Known& known, const Seen& seen, nav::Estimator& estimator, base::Time now) {
+  const auto body = history_.at(seen.stamp);
+  if (!body || !known.place.yaw_rad || !seen.face_rad) return;
+  estimator.need_frame(known.place.at);
+  if (!place_in(known, estimator)) return;
+  const auto which = static_cast<std::size_t>(known.place.tag.value_or(0));
+  const auto found = first_sight_.look(which, sight_of(known, seen), *body);
+  if (!found || !estimator.begin(*found, now) || news_.size() >= kMostNews) return;
+  news_.push_back({false, "where the robot stands is known by " + known.place.name + ", to " +
+                              number(found->sigma_m, "%.2f m")});
 }
 
 /// So far from where it was seen that nothing is to be compared: quickly.

@@ -13,6 +13,8 @@
 // known one only where no other known one lies within 5 sigma of what was predicted (1 m at least),
 // and no other thing that stands alone was seen there.
 //
+// A robot that does not know where it is yet begins at the first tag that tells it (FirstSight).
+//
 // What contradicts is distrusted alone where satellites, a map, or what was believed before the
 // last known place (20 to 1) speak against it. Else it is one word against another: both are
 // distrusted and the estimate is as uncertain as they differ, until another one decides. Two that
@@ -32,6 +34,7 @@
 #include "nav/marks/view.hpp"
 #include "nav/sense/odometry.hpp"
 #include "nav/tags/tag_place.hpp"
+#include "robot/first_sight.hpp"
 
 namespace roverd::robot {
 
@@ -99,6 +102,7 @@ class KnownPlaces {
   nav::LandmarkSight sight_of(const Known& known, const Seen& seen) const;
   std::vector<Post> posts_in(const nav::marks::View& view, const nav::Estimator& estimator,
                              base::Time now);
+  void begin(Known& known, const Seen& seen, nav::Estimator& estimator, base::Time now);
   void judge(Known& known, const Seen& seen, nav::Estimator& estimator, base::Time now);
   void watch(Known& known, base::Time now);
   void contradicts(Known& known, nav::Estimator& estimator, base::Time now);
@@ -112,6 +116,7 @@ class KnownPlaces {
   std::vector<Known> known_;
   nav::sense::PoseHistory history_;
   double way_m_ = 0.0;
+  FirstSight first_sight_;
   std::map<std::uint32_t, base::Time> posts_taken_;  ///< by the landmark's id
   std::vector<News> news_;
   bool changed_ = true;

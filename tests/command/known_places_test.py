@@ -57,6 +57,7 @@ accuracy_m = 0.03
 # The robot drives north along east = 0. Name to what it is, where it stands, and by how much it was entered wrong.
 DOOR, POLE, GATE, WRONG = (1.3, 8.0), (-1.6, 15.0), (1.3, 22.0), (1.3, 29.0)
 END_M = 30.0
+PORCH = (0.3, 2.8)  # before the robot at its start
 
 
 def tag(number, at):
@@ -72,8 +73,8 @@ def place(east, north):
 
 
 class Lane(SeeingRobot):
-    def __init__(self):
-        super().__init__({"name": "lane", "ground": {"grass_m": 0.0}, "things": THINGS}, EYES, self.hears())
+    def __init__(self, things=None):
+        super().__init__({"name": "lane", "ground": {"grass_m": 0.0}, "things": things or THINGS}, EYES, self.hears())
 
     @staticmethod
     def hears():
@@ -143,5 +144,25 @@ def past_four_of_them():
         check(lane.truth()["contacts"] == 0, f"it touched something: {lane.truth()}")
 
 
+def begins_at_a_tag():
+    """switched on indoors: a tag tells place and heading before anybody else does, with what is not known of them"""
+    with Lane([tag(6, PORCH)]) as lane:
+        check(lane.rest.get("/vehicle")["position"]["lat"] is None, "nothing tells where it is")
+        lane.rest.do("PUT", "/known-places/porch", {**place(*PORCH), "tag": 6, "accuracy_m": 0.03})
+        time.sleep(3.0)
+        check(lane.rest.get("/vehicle")["position"]["lat"] is None, "it may look at it from anywhere")
+        lane.enter("porch", PORCH, 0.0, 6)
+        until("the tag tells it", 20, lambda: lane.rest.get("/vehicle")["position"]["lat"] is not None)
+        off_m, claimed_m, truth = lane.off()
+        position = lane.rest.get("/vehicle")["position"]
+        turned = (position["heading_deg"] - truth["heading_deg"] + 180.0) % 360.0 - 180.0
+        print(f"# {off_m:.3f} m and {turned:.2f} deg off, {claimed_m:.3f} m claimed", flush=True)
+        check(off_m < 0.25 and off_m < 3.0 * claimed_m, f"{off_m} m off, {claimed_m} claimed")
+        check(abs(turned) < 6.0, f"{turned} deg off")
+        check(position["source"] == "landmark+odometry", f"said so: {position['source']}")
+        events = [e["detail"] for e in lane.rest.get("/events?limit=1000")["items"] if e["kind"] == "known_place"]
+        check(len(events) == 1 and "known by porch" in events[0], f"what was told: {events}")
+
+
 if __name__ == "__main__":
-    sys.exit(run_cases([past_four_of_them]))
+    sys.exit(run_cases([past_four_of_them, begins_at_a_tag]))

@@ -107,6 +107,15 @@ class Estimator {
   /// Corrects the estimate by it. @return false: it does not fit (kLandmarkGate2), cannot be
   /// compared, or nobody needs it; nothing changed.
   bool correct(const LandmarkSight& sight, Time now) noexcept;
+  /// The first position and heading, where there are none yet, by a known place.
+  /// @return false: there is a position, or no frame, or it is too old or not finite; nothing
+  /// changed.
+  bool begin(const LandmarkPose& seen, Time now) noexcept;
+  /// Makes a frame with its origin there, where there is none.
+  void need_frame(const base::LatLon& at) noexcept {
+    if (!frame_) frame_.emplace(next_frame_id_, at);
+  }
+  bool located() const noexcept { return located_; }
   /// Fixed satellites or a map lead: known places are compared only.
   bool needs_no_landmark() const noexcept;
   /// Are positions that moved for good a question to a person (health().base_shift), or simply the

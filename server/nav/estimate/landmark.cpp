@@ -133,6 +133,39 @@ bool Estimator::correct(const LandmarkSight& s, Time now) noexcept {
   return true;
 }
 
+bool Estimator::begin(const LandmarkPose& seen, Time now) noexcept {
+  now_ = now;
+  const bool sound = std::isfinite(seen.at.east_m + seen.at.north_m + seen.yaw_rad) &&
+                     seen.sigma_m > 0.0 && seen.sigma_rad > 0.0;
+  if (located_ || !frame_ || !sound || seen.stamp > now || now - seen.stamp > kSightTooOld ||
+      history_.forgotten(seen.stamp)) {
+    return false;
+  }
+  const Belief before = belief_;
+  const auto past = history_.at(seen.stamp);
+  const StateVector at = past ? past->x : belief_.x;
+  const double turned = base::angle_diff_rad(at(kYaw), belief_.x(kYaw));
+  // Its way since then went by the heading of then.
+  const double askew = base::angle_diff_rad(at(kYaw), seen.yaw_rad);
+  const Eigen::Vector2d way{belief_.x(kEast) - at(kEast), belief_.x(kNorth) - at(kNorth)};
+  const Eigen::Vector2d since = Eigen::Rotation2Dd(askew) * way;
+  const double known = belief_.P(kYaw, kYaw) + seen.sigma_rad * seen.sigma_rad;
+  const bool contradicts = heading_known_ && askew * askew > kGate1 * known;
+  set_heading(seen.yaw_rad + turned, seen.sigma_rad);
+  reset_state(belief_, kBias, belief_.x(kBias),
+              base::rad_from_deg(params_->compass_bias_sigma_deg));
+  if (contradicts) note_reset("heading", before);
+  move({seen.at.east_m + since(0), seen.at.north_m + since(1)}, seen.sigma_m);
+  located_ = true;
+  located_since_ = now;
+  landmarks_led_ = true;
+  last_by_landmark_ = by_landmark_at_ = now;
+  last_fused_ = seen.stamp;
+  coarse_walk_.found();
+  free_m_ = 0.0;
+  return true;
+}
+
 void Estimator::turn_by(const LandmarkSight& s, const StateVector& at, double together) noexcept {
   Observation<1> o;
   o.innovation(0) = base::angle_diff_rad(at(kYaw), *s.yaw_rad);

@@ -22,6 +22,15 @@ struct LandmarkSight {
   double face_sigma_rad = 0.035;  ///< how well it is known which way it faces
 };
 
+/// Where the body stood by what it saw, of which nothing was known before.
+struct LandmarkPose {
+  base::Time stamp;
+  base::EnuPoint at;  ///< in the estimator's frame
+  double yaw_rad = 0.0;
+  double sigma_m = 0.0;  ///< 1 sigma, each way
+  double sigma_rad = 0.0;
+};
+
 /// How a sight compares with what is believed.
 struct LandmarkLook {
   base::EnuPoint off;     ///< so far the robot would have to stand elsewhere

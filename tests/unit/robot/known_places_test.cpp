@@ -185,6 +185,48 @@ TEST(KnownPlaces, KeepItWithinADecimetreOverThirtyMetresWithoutSatellites) {
   EXPECT_LT(p.fastest_mps, 0.16);
 }
 
+//   Switched on in the dark, two metres before a tag.
+TEST(KnownPlaces, ATagTellsARobotThatKnowsNothingWhereItStands) {
+  Passing p({tag("door", 3, {0.6, 2.2})});
+  p.run(0.4);
+  EXPECT_FALSE(p.d.pose()) << "one look, or two, may be wrong";
+  p.run(1.0);
+  ASSERT_TRUE(p.d.pose());
+  EXPECT_TRUE(p.d.pose()->heading_known);
+  EXPECT_LT(p.d.position_error_m(), 0.05);
+  EXPECT_LT(std::abs(base::angle_diff_rad(p.d.yaw_rad, p.d.pose()->yaw_rad)), 0.03);
+  EXPECT_LT(p.worst_sigmas, 2.0);
+  EXPECT_GT(p.sigma_m(), 0.03) << "no better than the tag's own place";
+  EXPECT_EQ(p.verdict("door"), PlaceVerdict::Used);
+  ASSERT_EQ(p.news.size(), 1u);
+  EXPECT_FALSE(p.news[0].bad);
+  EXPECT_NE(p.news[0].words.find("known by door"), std::string::npos) << p.news[0].words;
+}
+
+TEST(KnownPlaces, ATagTellsItWhileItIsDrivenPastByHand) {
+  Passing p({tag("door", 3, {0.6, 3.5})});
+  p.d.speed_mps = 0.6;
+  p.run(3.5);
+  ASSERT_TRUE(p.d.pose());
+  EXPECT_LT(p.d.position_error_m(), 0.12);
+  EXPECT_LT(p.worst_sigmas, 3.0);
+}
+
+TEST(KnownPlaces, ATagWhoseFaceWasNotEnteredTellsNoFirstPlace) {
+  Thing door = tag("door", 3, {0.6, 2.2});
+  door.faces = false;
+  Passing p({door});
+  p.run(5.0);
+  EXPECT_FALSE(p.d.pose());
+  EXPECT_TRUE(p.news.empty());
+}
+
+TEST(KnownPlaces, APoleTellsNoFirstPlace) {
+  Passing p({pole("pole", {0.6, 2.2})});
+  p.run(5.0);
+  EXPECT_FALSE(p.d.pose());
+}
+
 TEST(KnownPlaces, WithoutThemItWouldHaveBeenFarther) {
   Passing p({});
   p.d.slip = 0.95;
