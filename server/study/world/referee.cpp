@@ -25,10 +25,13 @@ constexpr double kAnew_m = 0.05;
 constexpr double kMarch_m = 1.0;
 constexpr double kMarchStep_m = 0.01;
 constexpr double kStandsFor_s = 0.3;
-constexpr double kOverIt_m = 0.1;      // over what the guard lets pass above
-constexpr double kUnderIt_m = 0.02;    // what is lower is ground to it
-constexpr double kAbout_m = 0.2;       // of a place that was touched
-constexpr double kSightReach_m = 8.0;  // farther nothing is looked at
+constexpr double kOverIt_m = 0.1;       // over what the guard lets pass above
+constexpr double kUnderIt_m = 0.02;     // what is lower is ground to it
+constexpr double kAbout_m = 0.2;        // of a place that was touched
+constexpr double kThrough_m = 5.0;      // beams lie no farther from each other than a pole is wide
+constexpr double kBefore_m = 0.2;       // where it was met
+constexpr std::uint32_t kThrough = 30;  // several scans
+constexpr double kSightReach_m = 8.0;   // farther nothing is looked at
 
 std::string_view word_of(world::Cause cause) {
   switch (cause) {
@@ -97,14 +100,22 @@ void Referee::saw(const std::vector<world::Sweep>& sweeps, const world::Pose& mo
   for (const world::Sweep& sweep : sweeps) {
     const world::Frame sensor = world::Frame(around_.pose_at(sweep.at_s)) * world::Frame(mount);
     for (const world::Shot& s : sweep.shots) {
-      const auto range_m = static_cast<double>(s.range_m);
-      if (range_m <= 0.0 || range_m > kSightReach_m) continue;
       const auto b = static_cast<double>(s.bearing_rad);
       const auto e = static_cast<double>(s.elevation_rad);
-      const world::Vec3 at =
-          sensor * world::Vec3{range_m * std::cos(e) * std::cos(b),
-                               range_m * std::cos(e) * std::sin(b), range_m * std::sin(e)};
-      if (Met* met = met_at(at.x, at.y)) *met = {static_cast<float>(now_s), s.cause};
+      const auto place = [&](double m) {
+        return sensor * world::Vec3{m * std::cos(e) * std::cos(b), m * std::cos(e) * std::sin(b),
+                                    m * std::sin(e)};
+      };
+      const auto range_m = static_cast<double>(s.range_m);
+      const bool goes_on = s.cause == world::Cause::Nothing || range_m > kThrough_m;
+      const world::Vec3 end = place(goes_on ? kThrough_m + kBefore_m : range_m);
+      if (goes_on || range_m > 0.0) passes({sensor.p.x, sensor.p.y}, {end.x, end.y});
+      if (range_m <= 0.0 || range_m > kSightReach_m) continue;
+      const world::Vec3 at = place(range_m);
+      if (Met* met = met_at(at.x, at.y)) {
+        const bool thing = s.cause == world::Cause::Thing;
+        *met = {static_cast<float>(now_s), s.cause, thing ? 0 : met->through};
+      }
       if (s.thing < 0 || s.cause != world::Cause::Thing) continue;
       const auto thing = static_cast<std::size_t>(s.thing);
       std::vector<double>& seen = sights_[thing];
@@ -113,6 +124,25 @@ void Referee::saw(const std::vector<world::Sweep>& sweeps, const world::Pose& mo
       if (seen.empty() || now_s - seen.back() > kSightEvery_s) seen.push_back(now_s);
     }
   }
+}
+
+void Referee::passes(world::Vec2 from, world::Vec2 to) {
+  const double far_m = world::length(to - from);
+  const double until_m = std::min(far_m - kBefore_m, kThrough_m);
+  for (double m = kMapCell_m; m < until_m; m += kMapCell_m) {
+    const double part = m / far_m;
+    Met* met = met_at(from.x + part * (to.x - from.x), from.y + part * (to.y - from.y));
+    if (met != nullptr) ++met->through;
+  }
+}
+
+bool Referee::looked_through(int thing, const world::Pose& pose, double at_s) {
+  if (plane_m_ <= 0.0) return false;  // a lidar's beams go over what is low
+  const auto touched = places_touched(thing, pose, at_s, kUnderIt_m);
+  return !touched.empty() && std::ranges::all_of(touched, [this](const world::Vec2& at) {
+    const Met* met = met_at(at.x, at.y);
+    return met != nullptr && met->through >= kThrough;
+  });
 }
 
 void Referee::begin() {
@@ -316,7 +346,8 @@ void Referee::judge(const world::Witness::Seen& seen) {
     out.blame = Blame::Late;
   } else {
     const bool beside = beside_plane(seen.thing, now.pose, seen.at_s) ||
-                        low_as_grass(seen.thing, now.pose, seen.at_s);
+                        low_as_grass(seen.thing, now.pose, seen.at_s) ||
+                        (!seen.moving && looked_through(seen.thing, now.pose, seen.at_s));
     out.blame = beside ? Blame::Beside : Blame::Ours;
   }
   if (since_s) {

@@ -14,6 +14,7 @@
 //   way since it was where it was touched  ≤  u·delay + u·max(v / 2a, ω / 2α),   u = |v| +
 //   |ω|·reach
 
+#include <cstdint>
 #include <deque>
 #include <map>
 #include <optional>
@@ -67,6 +68,7 @@ class Referee {
   struct Met {
     float at_s = -1e9F;
     sim::world::Cause cause = sim::world::Cause::Nothing;
+    std::uint32_t through = 0;  ///< beams from nearby that went on, since one met a thing there
   };
 
   void judge(const sim::world::Witness::Seen& seen);
@@ -74,6 +76,9 @@ class Referee {
   /// Middles of the squares of 5 cm under the body in which something of it rises over from_m.
   std::vector<sim::world::Vec2> places_touched(int thing, const sim::world::Pose& pose, double at_s,
                                                double from_m) const;
+  /// Since a beam met it there last, many went through the very place: it lies beside their plane.
+  bool looked_through(int thing, const sim::world::Pose& pose, double at_s);
+  void passes(sim::world::Vec2 from, sim::world::Vec2 to);
   bool low_as_grass(int thing, const sim::world::Pose& pose, double at_s) const;
   /// What of it was touched reaches between these heights over the body's plane.
   bool reaches(int thing, const sim::world::Pose& pose, double at_s, double from_m,
