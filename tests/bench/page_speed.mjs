@@ -409,7 +409,7 @@ const measure_stale = async (robot) => {
 
 const measure_pad = async (robot) => {
   await robot.rest('POST', '/execution/stop').catch(() => undefined);
-  await robot.rest('POST', '/vehicle/arm').catch(() => undefined);
+  await until('arm', () => robot.rest('POST', '/vehicle/arm').then(() => true, () => false));
   const view = await open(robot, LAPTOP, 1);
   const { page } = view;
   await page.getByRole('group', { name: 'Change the mode' }).getByRole('button', { name: 'MANUAL' }).click();
