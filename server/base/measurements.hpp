@@ -296,8 +296,10 @@ struct MapPlace {
 struct PlaceState {
   Time stamp;  ///< when it was seen; of Off: when it was told
   PlacePhase phase = PlacePhase::Off;
-  std::string map;                   ///< its name; empty: none
-  std::string reason;                ///< one phrase for people; empty: nothing is wrong
+  std::string map;     ///< its name; empty: none
+  std::string reason;  ///< one phrase for people; empty: nothing is wrong
+  /// What is seen does not fit where somebody said that the robot is, or fits nowhere any more.
+  bool denied = false;
   std::optional<MapPlace> in_map{};  ///< empty: not known
   std::optional<double> sigma_m{};   ///< larger axis
   std::optional<double> sigma_rad{};

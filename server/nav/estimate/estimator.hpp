@@ -17,7 +17,9 @@
 //            same place, where they are; each where the other is silent. Meanwhile what the other
 //            says beside it is learned: the receiver's drift, or by how much the map's anchor is
 //            off. When the lead changes, the estimate moves to the new one at 0.1 m/s at most.
-//            A map that is refused for 1 s while no satellites speak is believed (a counted reset)
+//            A map that is refused for 1 s while no satellites speak is believed (a counted reset).
+//            Where what is seen does not fit the place that a person told, or fits nowhere any
+//            more, and neither satellites nor known places have told it since: 5 m uncertain
 //
 // Landmark:  things whose place is known (nav/estimate/landmark.hpp) correct the estimate while
 //            neither fixed satellites nor a map lead, by 0.1 m/s at most; no number of looks makes
@@ -257,6 +259,7 @@ class Estimator {
   double map_floor_rad() const noexcept;
   void first_place(const base::PlaceFix& fix, Time stamp) noexcept;
   void follow_satellites(const base::PlaceFix& fix, Time stamp) noexcept;
+  void watch_denial(const base::PlaceState& told) noexcept;
   void lead_by_map(Time stamp) noexcept;
   void fuse_place(const base::PlaceFix& fix, Time stamp) noexcept;
   void fuse_place_heading(const base::PlaceFix& fix, const StateVector& at,
@@ -395,9 +398,9 @@ class Estimator {
   int map_refused_ = 0;
   std::uint32_t map_ = 0;
   std::uint32_t map_found_ = 0;
-  MapOffset map_offset_;            ///< of health().map_offset
-  double map_yaw_sigma_rad_ = 0.0;  ///< of the map's own heading on the earth
-  bool map_lost_ = false;
+  MapOffset map_offset_;                  ///< of health().map_offset
+  double map_yaw_sigma_rad_ = 0.0;        ///< of the map's own heading on the earth
+  bool denial_counted_ = false;           ///< what the map denies is in the claim
   std::optional<Time> last_by_landmark_;  ///< when one was fused
   std::optional<Time> by_landmark_at_;    ///< when one was to be
   bool landmarks_led_ = false;            ///< since a fixed position was fused

@@ -80,9 +80,7 @@ bool Estimator::satellites_lead() const noexcept {
 }
 
 void Estimator::take(const base::PlaceState& told) {
-  const bool lost = told.phase == base::PlacePhase::Lost;
-  if (lost && !map_lost_ && health_.by_map && located_) doubt_position(kLostDoubt_m);
-  map_lost_ = lost;
+  watch_denial(told);
   if (!told.fix) return;
   Input& in = health_.place;
   const base::PlaceFix& fix = *told.fix;
@@ -105,6 +103,19 @@ void Estimator::take(const base::PlaceState& told) {
   if (!located_ || !heading_known_) return first_place(fix, told.stamp);
   if (satellites_lead()) return follow_satellites(fix, told.stamp);
   fuse_place(fix, told.stamp);
+}
+
+/// A person's word, and what the map said itself, are outweighed by what is seen; what satellites
+/// or known places have told since are not: where they see it, there may be no map.
+void Estimator::watch_denial(const base::PlaceState& told) noexcept {
+  const bool lost = told.phase == base::PlacePhase::Lost;
+  if (!told.denied && !lost) {
+    denial_counted_ = false;
+    return;
+  }
+  if (denial_counted_ || !located_ || !(health_.by_map || placed_)) return;
+  denial_counted_ = true;
+  doubt_position(kLostDoubt_m);
 }
 
 void Estimator::first_place(const base::PlaceFix& fix, Time stamp) noexcept {

@@ -53,6 +53,7 @@ void Estimator::place(std::optional<base::EnuPoint> at, std::optional<double> ya
     if (!located_) located_since_ = now_;
     located_ = true;
     placed_ = true;
+    denial_counted_ = false;  // of this word anew
     differed_m_ = 0.0;
     coarse_walk_.found();
     last_fused_ = now_;

@@ -187,6 +187,8 @@ void CellTracker::track(const Cloud& cloud, const Pose2& step, Told& told) {
   told.agreement.hits = cloud.points.size();
   told.reason = misfit(a, at);
   if (!told.reason.empty()) {
+    const bool alike = a.verdict == cells::Verdict::Ambiguous && told_;
+    told.denied = !fitted_ && a.verdict != cells::Verdict::Nothing && !alike;
     phase_ = now_.bad(step, p_);
     if (phase_ == Phase::Lost) told.reason = kLostWords;
     return;

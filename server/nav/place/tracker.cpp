@@ -173,6 +173,7 @@ void Tracker::track(const chart::Scan& scan, const Pose2& step, Told& told) {
   told.agreement = agreement(*field_, scan, match.pose);
   told.reason = misfit(told.agreement, p_);
   if (!told.reason.empty()) {
+    told.denied = !fitted_;
     bad(step);
     if (phase_ == Phase::Lost) told.reason = kLostWords;
     return;
@@ -239,6 +240,7 @@ bool Tracker::tries(const chart::Scan& scan, Told& told) {
     phase_ = before;
     told_ = false;
     told.agreement = {};
+    told.denied = false;  // satellites said so, and nobody else believes it
     return false;
   }
   if (phase_ == Phase::Tracking) {

@@ -75,6 +75,7 @@ struct Told {
   Agreement agreement;         ///< of this scan at the pose
   std::size_t candidates = 0;  ///< places still followed while searching
   bool fitted = false;         ///< a scan fitted since the pose was told; else it is a guess
+  bool denied = false;         ///< enough is seen where somebody said that it is, and does not fit
   std::uint32_t resets = 0;    ///< how often the pose was taken anew: it may have jumped then
   std::string_view reason;     ///< one phrase for people
 };

@@ -236,6 +236,7 @@ base::PlaceState Whereabouts::tell(const Look& look, const std::optional<Believe
   state.map = map_->name;
   state.phase = phase_for_people(told.phase, told.fitted);
   state.reason = told.reason;
+  state.denied = told.denied || told.phase == Phase::Lost;
   if (told.pose && told.fitted)
     state.in_map = base::MapPlace{told.pose->x_m, told.pose->y_m, told.pose->yaw_rad};
   if (!told.fix) return state;

@@ -26,6 +26,7 @@ class Mapped {
   Drive d;
   bool map = true;
   PlacePhase phase = PlacePhase::Known;
+  bool denied = false;
   double off_north_m = 0.0;
   double off_east_m = 0.0;  ///< of the map's anchor, or of a wrong place in it
   double sigma_m = 0.02;
@@ -69,6 +70,7 @@ class Mapped {
     s.stamp = was.stamp;
     s.phase = phase;
     s.map = "shed";
+    s.denied = denied;
     if (map && phase == PlacePhase::Known) {
       base::PlaceFix f;
       f.at = frame_.to_global({was.east_m + off_east_m, was.north_m + off_north_m});
@@ -366,6 +368,43 @@ TEST(EstimatorPlace, WhoWasCarriedIsUncertainAndFoundAnew) {
   EXPECT_LT(m.d.position_error_m(), 0.05);
   EXPECT_LT(m.d.pose()->horizontal_sigma_m, 0.1);
   EXPECT_EQ(m.d.estimator.health().last_reset->what, "map");
+}
+
+//   Told a place by a person, in the map of another building.
+TEST(EstimatorPlace, WhatAPersonSaysAndTheMapDeniesIsUncertain) {
+  Mapped m;
+  m.d.gnss = m.d.compass = false;
+  m.phase = PlacePhase::Searching;
+  m.d.estimator.use_frame({7, kOrigin});
+  m.run(1.0);
+  m.d.estimator.place(base::EnuPoint{9.0, 0.0}, 1.0);
+  m.run(0.5);
+  EXPECT_LT(m.d.pose()->horizontal_sigma_m, 0.2) << "nothing speaks against it yet";
+  m.denied = true;
+  m.run(0.5);
+  EXPECT_GT(m.d.pose()->horizontal_sigma_m, 4.0);
+  // when: it is told once more, wrongly again
+  m.d.estimator.place(base::EnuPoint{6.0, 0.0}, 1.0);
+  m.run(0.5);
+  EXPECT_GT(m.d.pose()->horizontal_sigma_m, 4.0);
+  // when: it is told rightly, and what is seen fits
+  m.d.estimator.place(base::EnuPoint{0.0, 0.0}, base::kPi / 2.0);
+  m.denied = false;
+  m.phase = PlacePhase::Known;
+  m.run(1.0);
+  EXPECT_LT(m.d.pose()->horizontal_sigma_m, 0.1);
+  EXPECT_LT(m.d.position_error_m(), 0.05);
+}
+
+TEST(EstimatorPlace, WhatSatellitesToldAMapThatDeniesItDoesNotMakeUncertain) {
+  Mapped m;
+  m.phase = PlacePhase::Lost;  // it left the shed
+  m.denied = true;
+  m.d.speed_mps = 0.5;
+  m.run(5.0);
+  m.d.gnss = false;  // under a tree
+  m.run(5.0);
+  EXPECT_LT(m.d.pose()->horizontal_sigma_m, 0.5);
 }
 
 TEST(EstimatorPlace, RefusesWhatIsNotFiniteTooOldOrTwice) {
