@@ -39,6 +39,7 @@ Json Context::vehicle(const base::Snapshot& snapshot, base::Time now) const {
   const auto label = in_use ? shelf->label_of(*in_use) : std::nullopt;
   if (label && !out["place"]["map"].is_null()) out["place"]["map"] = label->name;
   out["place"]["map_id"] = in_use ? Json(*in_use) : Json(nullptr);
+  out["localisation"]["map_id"] = out["place"]["map_id"];
   out["place"]["placed"] = anchor_json(placed);
   out["teach"] = teach_brief_json(deps.services.view()->teach);
   out["holder"] = control.holder();

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "api/json/plain_json.hpp"
+#include "api/json/words.hpp"
 #include "api/stream.hpp"
 #include "api/topics.hpp"
 
@@ -24,6 +25,11 @@ void StreamTexts::add_seen_topics() {
   add(kGrid, grid_json);
   add(kObstacles, [](const robot::Outlook& seen, const base::Snapshot& snapshot, base::Time now) {
     return obstacles_json(&seen, snapshot, now);
+  });
+  stream_.add_sampled_topic(kRow, [this](std::uint64_t seq) -> std::optional<std::string> {
+    const auto snapshot = context_->deps.robot.snapshot();
+    if (!snapshot) return std::nullopt;
+    return stream_text(kRow, seq, plain_json(row_now_json(snapshot->row)));
   });
 }
 

@@ -16,10 +16,11 @@ inline constexpr const char* kControl = "control";
 inline constexpr const char* kObstacles = "obstacles";
 inline constexpr const char* kScan = "scan";
 inline constexpr const char* kGrid = "grid";
+inline constexpr const char* kRow = "row";
 inline constexpr double kMostSeen_hz = 5.0;
 
-inline constexpr const char* kTopics[] = {kVehicle, kEvents,    kMissions, kExecution,
-                                          kControl, kObstacles, kScan,     kGrid};
+inline constexpr const char* kTopics[] = {kVehicle,   kEvents, kMissions, kExecution, kControl,
+                                          kObstacles, kScan,   kGrid,     kRow};
 
 inline bool is_topic(std::string_view name) noexcept {
   return std::find(std::begin(kTopics), std::end(kTopics), name) != std::end(kTopics);

@@ -11,6 +11,7 @@ struct RowInSight {
   double offset_m = 0.0;          ///< of the vehicle from the line that it follows, left positive
   double angle_rad = 0.0;         ///< of the vehicle against it, left positive
   double sigma_m = 0.0;           ///< 1 sigma of where the line lies 1.5 m ahead
+  double certainty = 0.0;         ///< 1: as sure as full speed needs; 0: it stands for want of it
   std::optional<double> width_m;  ///< between both sides' plants
   std::optional<double> width_sigma_m;
   std::optional<double> to_end_m;  ///< where nothing comes behind the last plants

@@ -65,9 +65,9 @@ struct Surroundings {
 
 /// Of what is driven, repetitions included; the way from the vehicle to the first item is not.
 struct Estimate {
-  double length_m = 0.0;
-  std::optional<double> time_s;     ///< empty: it has no end
-  std::optional<double> energy_wh;  ///< empty: no end, or the profile does not tell
+  std::optional<double> length_m;   ///< empty: an item goes as far as it sees its row, wall, marks
+  std::optional<double> time_s;     ///< empty: likewise, or it has no end
+  std::optional<double> energy_wh;  ///< empty: likewise, or the profile does not tell
 };
 
 struct CheckReport {

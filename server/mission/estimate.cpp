@@ -71,6 +71,7 @@ class Walk {
         }
         break;
     }
+    if (by_sight_) return out;
     out.length_m = length_m_;
     ends = ends && !endless_;
     if (!ends) return out;
@@ -103,14 +104,14 @@ class Walk {
   }
   void pass(const Jump&) {}
   /// One that goes to its end shows on the way how long it is.
-  void pass(const Row& row) {
-    if (row.distance_m) add_way(*row.distance_m, row.speed_mps.value_or(speed_mps_));
+  void pass(const Row& row) { along(row.distance_m, row.speed_mps); }
+  void pass(const Wall& wall) { along(wall.length_m, wall.speed_mps); }
+  void pass(const Landmarks&) { by_sight_ = true; }
+  void pass(const Dock&) { by_sight_ = true; }
+  void along(const std::optional<double>& way_m, const std::optional<double>& speed_mps) {
+    if (way_m) return add_way(*way_m, speed_mps.value_or(speed_mps_));
+    by_sight_ = true;
   }
-  void pass(const Wall& wall) {
-    if (wall.length_m) add_way(*wall.length_m, wall.speed_mps.value_or(speed_mps_));
-  }
-  void pass(const Landmarks&) {}
-  void pass(const Dock&) {}
   void pass(const Action&) {}
   void pass(const Loiter& loiter) {
     if (const auto at = loiter.at()) go(*at, speed_mps_);
@@ -162,6 +163,7 @@ class Walk {
 
   const Plan& plan_;
   const VehicleLimits& vehicle_;
+  bool by_sight_ = false;  ///< how long it is nobody knows before
   bool endless_ = false;   ///< stays somewhere until somebody says to go on
   std::vector<int> left_;  ///< repetitions left, by item; −1: not begun
   double speed_mps_;

@@ -113,15 +113,26 @@ TEST_F(SeenApi, LandmarksAndWhatCamerasToldAreListedWithTheirSource) {
 TEST_F(SeenApi, TheTopicsAreAsTheDocumentSaysAndNoFasterThanTheyAreMade) {
   until_ready();
   house.sees(a_thing_ahead());
-  auto client = watch({{"scan", 50}, {"grid", 2}, {"obstacles", 0}});
+  auto client = watch({{"scan", 50}, {"grid", 2}, {"obstacles", 0}, {"row", 2}});
   const Json hello = next(*client, "hello");
-  for (const char* topic : {"scan", "grid", "obstacles"}) {
+  for (const char* topic : {"scan", "grid", "obstacles", "row"}) {
     const auto& all = hello["data"]["topics"];
     EXPECT_NE(std::find(all.begin(), all.end(), topic), all.end()) << topic;
   }
   const Json scan = next(*client, "scan");
   EXPECT_EQ(fault("StreamScan", scan), "");
   EXPECT_EQ(scan["data"]["sensors"][0]["obstacle_cm"], Json({200, 0}));
+  EXPECT_EQ(scan["data"]["sensor"], "all");
+  EXPECT_EQ(scan["data"]["angle_min_deg"], -180);
+  ASSERT_EQ(scan["data"]["ranges_m"].size(), scan["data"]["hit_cm"].size());
+  for (std::size_t i = 0; i < scan["data"]["hit_cm"].size(); ++i) {
+    const int cm = scan["data"]["hit_cm"][i];
+    const Json& m = scan["data"]["ranges_m"][i];
+    EXPECT_TRUE(cm == 0 ? m.is_null() : std::abs(m.get<double>() - 0.01 * cm) < 0.006) << i;
+  }
+  const Json row = next(*client, "row");
+  EXPECT_EQ(fault("StreamRow", row), "");
+  EXPECT_TRUE(row["data"]["offset_m"].is_null()) << "no row is driven";
   const Json grid = next(*client, "grid");
   EXPECT_EQ(fault("StreamGrid", grid), "");
   EXPECT_EQ(grid["data"]["runs"], "fwA=");

@@ -76,6 +76,11 @@ Json age_json(const Outlook& seen, base::Time now) {
   return rounded(std::max(0.0, base::seconds(now - seen.stamp)), kPlaces2);
 }
 
+std::string stamp_json(const Outlook& seen, base::Time now) {
+  const auto age = std::chrono::duration_cast<std::chrono::milliseconds>(now - seen.stamp);
+  return base::to_rfc3339(base::wall_now() - age);
+}
+
 std::string base64(const std::vector<std::uint8_t>& bytes) {
   static constexpr std::string_view kDigits =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -170,9 +175,18 @@ Json scan_json(const Outlook& seen, const base::Snapshot& s, base::Time now) {
     hit_cm.push_back(centimetres(double(ray.hit_m)));
     free_cm.push_back(centimetres(double(ray.free_m)));
   }
+  Json ranges_m = Json::array();
+  for (const Outlook::Ray& ray : seen.rays) {
+    ranges_m.push_back(ray.hit_m > 0.0F ? rounded(double(ray.hit_m), kPlaces2) : Json(nullptr));
+  }
   Json sensors = Json::array();
   for (const Outlook::Scan& scan : seen.scans) sensors.push_back(dots_json(scan, now));
   return {{"age_s", age_json(seen, now)},
+          {"sensor", "all"},
+          {"stamp", stamp_json(seen, now)},
+          {"angle_min_deg", -180},
+          {"angle_step_deg", 1},
+          {"ranges_m", std::move(ranges_m)},
           {"at", Places(s).on_map(plane_of(seen.at))},
           {"begin_deg", -180},
           {"step_deg", 1},

@@ -37,10 +37,24 @@ Json row_json(const std::optional<base::RowState>& row) {
                  // Angles of the outside count clockwise.
                  {"angle_deg", degrees(-seen.angle_rad)},
                  {"sigma_m", rounded(seen.sigma_m, kPlaces3)},
+                 {"certainty", rounded(seen.certainty, kPlaces2)},
                  {"width_m", rounded(seen.width_m, kPlaces3)},
                  {"width_sigma_m", rounded(seen.width_sigma_m, kPlaces3)},
                  {"to_end_m", rounded(seen.to_end_m, kPlaces2)},
                  {"age_s", rounded(seen.age_s, kPlaces2)}};
+  return out;
+}
+
+Json row_now_json(const std::optional<base::RowState>& row) {
+  const Json whole = row_json(row);
+  const Json seen = whole.is_null() ? Json() : whole["seen"];
+  Json out = Json::object();
+  for (const char* name : {"offset_m", "angle_deg", "width_m", "certainty", "to_end_m", "age_s"}) {
+    out[name] = seen.is_null() ? Json() : seen[name];
+  }
+  for (const char* name : {"item", "side", "seeing", "state"}) {
+    out[name] = whole.is_null() ? Json() : whole[name];
+  }
   return out;
 }
 

@@ -82,6 +82,23 @@ Json place_json(const std::optional<base::PlaceState>& place, base::Time now) {
   return out;
 }
 
+/// The position's source, and what the map in use has to say of it.
+Json localisation_json(const base::Snapshot& s, base::Time now) {
+  using base::PlacePhase;
+  const Json place = place_json(s.place, now);
+  const PlacePhase phase = s.place ? s.place->phase : PlacePhase::Off;
+  const char* state = phase == PlacePhase::Known       ? "tracking"
+                      : phase == PlacePhase::Searching ? "searching"
+                      : phase == PlacePhase::Lost      ? "lost"
+                                                       : "unknown";
+  return {{"source", s.pose ? Json(s.pose->source) : Json(nullptr)},
+          {"map_id", nullptr},  // whoever keeps the maps says it
+          {"state", state},
+          {"accuracy", place["accuracy_m"]},
+          {"age_s", place["age_s"]},
+          {"stale", place["stale"]}};
+}
+
 Json attitude_json(const std::optional<base::Attitude>& a, base::Time now) {
   Json out = {{"roll_deg", nullptr}, {"pitch_deg", nullptr}};
   set_age(out, stamp_of(a), now, StaleAfter::kAttitude_s);
@@ -281,6 +298,7 @@ Json vehicle_json(const base::Snapshot& s, const std::string& name, base::Time n
             {"yaw_rate_dps", degrees(s.command.twist.angular_radps)}}},
           {"position", position_json(s.pose, now)},
           {"place", place_json(s.place, now)},
+          {"localisation", localisation_json(s, now)},
           {"attitude", attitude_json(s.attitude, now)},
           {"gnss", gnss_json(s, now)},
           {"base", base_json(s, now)},

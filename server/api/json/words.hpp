@@ -84,6 +84,8 @@ Json trail_json(const services::Trail& trail, const base::Snapshot& snapshot);
 /// [[lat, lon], …], 200 at most; null: none.
 Json detour_json(const base::Snapshot& s);
 Json row_json(const std::optional<base::RowState>& row);
+/// The same in short, of nulls where no row is driven or seen: the topic `row`.
+Json row_now_json(const std::optional<base::RowState>& row);
 Json obstacle_json(const std::optional<base::Obstacle>& obstacle, base::Time now);
 /// All of the profile, as they were seen last.
 Json sensors_json(const base::Snapshot& snapshot, base::Time now);

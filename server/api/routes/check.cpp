@@ -21,14 +21,10 @@ Json report_json(const mission::CheckReport& report, const Profile& profile) {
   if (e.energy_wh && profile.limits.battery_wh) {
     battery_pct = 100.0 * *e.energy_wh / *profile.limits.battery_wh;
   }
-  return {{"ready", report.errors == 0},
-          {"errors", report.errors},
-          {"warnings", report.warnings},
-          {"findings", findings_json(report, std::nullopt)},
-          {"length_m", e.length_m},
-          {"time_s", or_null(e.time_s)},
-          {"energy_wh", or_null(e.energy_wh)},
-          {"battery_pct", std::move(battery_pct)}};
+  return {{"ready", report.errors == 0},       {"errors", report.errors},
+          {"warnings", report.warnings},       {"findings", findings_json(report, std::nullopt)},
+          {"length_m", or_null(e.length_m)},   {"time_s", or_null(e.time_s)},
+          {"energy_wh", or_null(e.energy_wh)}, {"battery_pct", std::move(battery_pct)}};
 }
 
 Handler check_mission(const ContextPtr& context) {

@@ -167,6 +167,11 @@ class Layout {
   void add(const mission::Row& r) {
     if (params_.tool.pulled()) return refuse("with a trailer no row is driven by sight");
     not_back_and_forth("a row");
+    const double half_m = 0.5 * params_.vehicle.width_m;
+    if (r.side != mission::RowSide::Both && r.gap_m && *r.gap_m <= half_m) {
+      return refuse("is driven " + tenths_text(*r.gap_m) +
+                    " beside its plants: this vehicle would drive over them");
+    }
     RowToDrive row;
     row.order.sides = r.side == mission::RowSide::Left    ? rows::Sides::Left
                       : r.side == mission::RowSide::Right ? rows::Sides::Right
@@ -182,6 +187,10 @@ class Layout {
   }
   void add(const mission::Wall& w) {
     if (params_.tool.pulled()) return refuse("with a trailer no wall is driven along by sight");
+    if (w.distance_m <= 0.5 * params_.vehicle.width_m) {
+      return refuse("is driven " + tenths_text(w.distance_m) +
+                    " from its wall: this vehicle would touch it");
+    }
     not_back_and_forth("a wall");
     WallToDrive wall;
     wall.side = w.side == mission::Side::Left ? marks::Side::Left : marks::Side::Right;

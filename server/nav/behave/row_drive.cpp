@@ -66,14 +66,17 @@ bool RowDrive::sure(const rows::RowView& view, const rows::Along& at) const noex
   return std::max(view.sigma_m(at.s_m), view.sigma_m(at.s_m + kLeast_m)) <= params_->unsure_m;
 }
 
+double RowDrive::certainty(double sigma_m) const noexcept {
+  const double span_m = std::max(1e-3, params_->unsure_m - params_->sure_m);
+  return std::clamp((params_->unsure_m - sigma_m) / span_m, 0.0, 1.0);
+}
+
 /// Full where the row is sure, creeping where it hardly is.
 double RowDrive::wanted_mps(const rows::RowView& view, double s_m) const noexcept {
   const RowDriveParams& p = *params_;
   const double full_mps =
       std::min(order_.speed_mps.value_or(p.speed_mps), path_params_->speed.max_mps);
-  const double sigma_m = view.sigma_m(s_m + kLook_m);
-  const double span_m = std::max(1e-3, p.unsure_m - p.sure_m);
-  const double part = std::clamp((p.unsure_m - sigma_m) / span_m, 0.0, 1.0);
+  const double part = certainty(view.sigma_m(s_m + kLook_m));
   return std::max(std::min(p.creep_mps, full_mps), part * full_mps);
 }
 

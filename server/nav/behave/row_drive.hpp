@@ -98,6 +98,9 @@ class RowDrive {
   /// It stands because nothing certain is seen.
   bool waits() const noexcept { return waited_s_ > 0.0; }
   std::optional<double> left_m() const noexcept { return left_m_; }
+  /// 1: the row is as sure as full speed needs; 0: so unsure that it stands. @param sigma_m of
+  /// where the line lies kLook_m ahead, 1 sigma
+  double certainty(double sigma_m) const noexcept;
 
  private:
   static constexpr std::size_t kMostPoints = 64;

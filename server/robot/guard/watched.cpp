@@ -126,6 +126,7 @@ std::optional<base::RowState> Robot::Impl::row_state() const {
   seen.angle_rad =
       base::wrap_rad(sight->body.yaw_rad - view.line.yaw_rad - view.curvature_1pm * at.s_m);
   seen.sigma_m = view.sigma_m(at.s_m + nav::RowDrive::kLook_m);
+  seen.certainty = drive->certainty(seen.sigma_m);
   if (view.width_m > 0.0) {
     seen.width_m = view.width_m;
     seen.width_sigma_m = view.width_sigma_m;

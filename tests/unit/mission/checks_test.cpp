@@ -136,21 +136,32 @@ TEST(Estimate, CountsWayWaitsTurnsAndRepetitions) {
   hold.hold_s = 5.0;
 
   const auto once = estimate(course({spot(0, 0), hold, spot(10, 10)}), v);
-  EXPECT_NEAR(once.length_m, 20.0, 0.01);
+  EXPECT_NEAR(once.length_m.value(), 20.0, 0.01);
   EXPECT_NEAR(*once.time_s, 20.0 + 5.0 + 1.5708, 0.01);
   EXPECT_NEAR(*once.energy_wh, 21.5708 * 0.1, 0.01);
 
   const auto thrice = estimate(course({spot(0, 0), spot(10, 0), Jump{1, 2}}), v);
-  EXPECT_NEAR(thrice.length_m, 50.0, 0.01);
+  EXPECT_NEAR(thrice.length_m.value(), 50.0, 0.01);
   EXPECT_FALSE(estimate(course({spot(0, 0), spot(10, 0), Jump{1, 0}}), v).time_s);
   EXPECT_FALSE(
       estimate(course({spot(0, 0), spot(10, 0), Jump{1, 10'000}, Jump{1, 10'000}}), v).time_s);
+
+  // How far an item goes by sight nobody knows before; with its length it is told.
+  for (const Item& item : {Item{Row{}}, Item{Wall{}}, Item{Landmarks{}}, Item{Dock{}}}) {
+    const auto by_sight = estimate(course({spot(0, 0), spot(10, 0), item}), v);
+    EXPECT_FALSE(by_sight.length_m) << type_name(item);
+    EXPECT_FALSE(by_sight.time_s) << type_name(item);
+    EXPECT_FALSE(by_sight.energy_wh) << type_name(item);
+  }
+  Row known;
+  known.distance_m = 30.0;
+  EXPECT_NEAR(estimate(course({spot(0, 0), spot(10, 0), known}), v).length_m.value(), 40.0, 0.01);
 
   Plan repeated = course({spot(0, 0), spot(10, 0)});
   repeated.settings.at_end = AtEnd::BackAndForth;
   EXPECT_FALSE(estimate(repeated, v).time_s);
   repeated.settings.times = 4;
-  EXPECT_NEAR(estimate(repeated, v).length_m, 40.0, 0.01);
+  EXPECT_NEAR(estimate(repeated, v).length_m.value(), 40.0, 0.01);
 }
 
 }  // namespace

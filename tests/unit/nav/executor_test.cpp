@@ -36,6 +36,31 @@ TEST(Route, TheOffsetFromALandmarkLeavesRoomForItsThickness) {
   EXPECT_TRUE(lay_route(plan({l}), kFrame, wide));
 }
 
+TEST(Route, RowsAndWallsThatAreNearerThanHalfTheVehicleAreRefused) {
+  PathParams wide;
+  wide.vehicle.width_m = 0.78;
+  mission::Row row;
+  row.side = mission::RowSide::Left;
+  row.gap_m = 0.2;
+  const auto over = lay_route(plan({row}), kFrame, wide);
+  ASSERT_FALSE(over);
+  EXPECT_EQ(over.error().fields[0].detail,
+            "is driven 0.2 m beside its plants: this vehicle would drive over them");
+  row.gap_m = 0.5;
+  EXPECT_TRUE(lay_route(plan({row}), kFrame, wide));
+  row = {};
+  row.gap_m = 0.2;  // of no meaning between two sides
+  EXPECT_TRUE(lay_route(plan({row}), kFrame, wide));
+  mission::Wall wall;
+  wall.distance_m = 0.1;
+  const auto into = lay_route(plan({wall}), kFrame, wide);
+  ASSERT_FALSE(into);
+  EXPECT_EQ(into.error().fields[0].detail,
+            "is driven 0.1 m from its wall: this vehicle would touch it");
+  wall.distance_m = 0.6;
+  EXPECT_TRUE(lay_route(plan({wall}), kFrame, wide));
+}
+
 TEST(Route, RefusesPlacesOutOfReachAndJumpsToNowhere) {
   const auto far = lay_route(plan({at(1, 1), far_away()}), kFrame, {});
   ASSERT_FALSE(far);

@@ -85,8 +85,9 @@ export interface CheckReport {
   /** No errors: it can be loaded. */
   readonly ready: boolean;
   readonly findings: readonly Finding[];
-  readonly length_m: number;
-  /** Null: it has no end. */
+  /** Null: an item goes as far as it sees. */
+  readonly length_m: number | null;
+  /** Null: likewise, or it has no end. */
   readonly time_s: number | null;
   readonly energy_wh: number | null;
   /** Of a full battery. */

@@ -2,6 +2,7 @@
 
 export const plan = {
   a_field_is_wrong: 'A field is wrong: what it shows is not what would be taken.',
+  length_by_sight: 'How long it is shows on the way',
   length_long: '{length} long',
   has_no_end: 'has no end',
   about_time: 'about {time}',

@@ -2,6 +2,7 @@
 
 export const plan = {
   a_field_is_wrong: 'Üks väli on vale: kehtiks midagi muud kui see, mida see näitab.',
+  length_by_sight: 'Pikkus selgub teel',
   length_long: 'pikkus {length}',
   has_no_end: 'lõputa',
   about_time: 'umbes {time}',

@@ -2,6 +2,7 @@
 
 export const plan = {
   a_field_is_wrong: 'Kenttä on virheellinen: käyttöön tulisi muu kuin mitä se näyttää.',
+  length_by_sight: 'Pituus selviää matkalla',
   length_long: 'pituus {length}',
   has_no_end: 'ei loppua',
   about_time: 'noin {time}',

@@ -2,6 +2,7 @@
 
 export const plan = {
   a_field_is_wrong: 'Un campo è errato: varrebbe un valore diverso da quello mostrato.',
+  length_by_sight: 'La lunghezza si vedrà strada facendo',
   length_long: 'lunga {length}',
   has_no_end: 'senza fine',
   about_time: 'circa {time}',

@@ -2,6 +2,7 @@
 
 export const plan = {
   a_field_is_wrong: 'Et felt er feil: det som vises, er ikke det som ville gjelde.',
+  length_by_sight: 'Lengden viser seg underveis',
   length_long: '{length} lang',
   has_no_end: 'har ingen ende',
   about_time: 'ca. {time}',
