@@ -362,6 +362,7 @@ struct Snapshot {
 
   Mode mode = Mode::Hold;
   bool armed = false;
+  bool armed_by_hand = false;  ///< although the position was not known: to be driven by hand
   bool estop = false;
   Driver control = Driver::None;
   std::string speed_reason;  ///< the term that limits the speed now: "item", "bend", "approach" …

@@ -90,13 +90,14 @@ base::Result<void> Robot::Impl::carry_out(const PendingCommand& pending) {
   return done;
 }
 
-base::Result<void> Robot::Impl::handle(const Arm&) {
+base::Result<void> Robot::Impl::handle(const Arm& c) {
   if (arm.armed()) return {};
-  if (auto refusal = arming_refusal(checks)) {
+  if (auto refusal = arming_refusal(checks, c.by_hand)) {
     event(Severity::Warning, "arm_refused", refusal->detail);
     return tl::unexpected(std::move(*refusal));
   }
-  if (!arm.arm()) return base::fail(Code::Conflict, "the emergency stop is latched");
+  const bool by_hand_only = arming_refusal(checks).has_value();
+  if (!arm.arm(by_hand_only)) return base::fail(Code::Conflict, "the emergency stop is latched");
   base_watch.ask_anew();
   by_hand.lock("the robot was armed", clock.now());
   reset_latch.armed();
@@ -104,7 +105,8 @@ base::Result<void> Robot::Impl::handle(const Arm&) {
   change_mode(ModeCause::Armed, "armed");
   const HomeAtArm rule = home_at_arm_from(config->robot.home_at_arm).value_or(HomeAtArm::Keep);
   if (pose && home.arm(pose->global, rule)) begin_way_anew();
-  event(Severity::Info, "armed", "armed");
+  event(Severity::Info, "armed",
+        by_hand_only ? "armed to be driven by hand: the position is not known" : "armed");
   return {};
 }
 

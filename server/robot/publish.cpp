@@ -36,6 +36,7 @@ bool Robot::Impl::publish() {
   s->tick = clock.health().ticks;
   s->mode = machine.mode();
   s->armed = arm.armed();
+  s->armed_by_hand = arm.by_hand();
   s->estop = arm.latched();
   s->control = driver;
   s->speed_reason = speed_reason;

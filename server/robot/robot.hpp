@@ -55,7 +55,10 @@ struct MissionCopy {
   mission::Plan plan;
 };
 
-struct Arm {};
+/// by_hand: the position need not be known; nothing drives by itself before it is.
+struct Arm {
+  bool by_hand = false;
+};
 struct Disarm {};
 /// AUTO goes on with a mission that waits. It starts none: StartMission names which.
 /// A place to go to, in words of the outside. Neither `at` nor `local`: a way to go, by yaw and

@@ -2,6 +2,7 @@ import { describe, expect, test } from 'vitest';
 
 import { DEAD_ZONE, drive_wish, wish_of_keys } from '../src/model/drive';
 import {
+  only_position_fails,
   why_not_acknowledge,
   why_not_arm,
   why_not_drive,
@@ -168,5 +169,27 @@ describe('long lists', () => {
     expect(scroll_to_row(0, 46, 100, 322)).toBe(0);
     expect(scroll_to_row(3, 46, 0, 322)).toBe(0);
     expect(scroll_to_row(20, 46, 0, 322)).toBe(20 * 46 + 46 - 322);
+  });
+});
+
+describe('arming to drive by hand', () => {
+  const check = (id: string, ok: boolean, severity: 'error' | 'warning' = 'error') => ({
+    id,
+    ok,
+    severity,
+    detail: '',
+  });
+  test('is offered where nothing but the position speaks against arming', () => {
+    expect(only_position_fails([check('gnss_fix', false), check('radio', true)])).toBe(true);
+    expect(
+      only_position_fails([
+        check('gnss_fix', false),
+        check('position_accuracy', false),
+        check('heading', false, 'warning'),
+      ]),
+    ).toBe(true);
+    expect(only_position_fails([check('gnss_fix', false), check('radio', false)])).toBe(false);
+    expect(only_position_fails([check('gnss_fix', true)])).toBe(false);
+    expect(only_position_fails([])).toBe(false);
   });
 });

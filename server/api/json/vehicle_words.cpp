@@ -285,6 +285,7 @@ Json vehicle_json(const base::Snapshot& s, const std::string& name, base::Time n
           {"mono_s", mono_s(now)},
           {"mode", base::to_string(s.mode)},
           {"armed", s.armed},
+          {"armed_by_hand", s.armed_by_hand},
           {"estop", s.estop},
           {"control", base::to_string(s.control)},
           {"teleop",

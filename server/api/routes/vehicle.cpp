@@ -46,9 +46,11 @@ Handler arm(const ContextPtr& context) {
     if (!body) return call->respond(problem(body.error()));
     Members members(*body);
     const robot::Validity validity = validity_of(members, *call, Moves::Yes);
+    const bool by_hand = members.flag("by_hand").value_or(false);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
     context->commands.run(
-        robot::Arm{}, validity, base::steady_now(), [context, call](base::Result<void> result) {
+        robot::Arm{by_hand}, validity, base::steady_now(),
+        [context, call](base::Result<void> result) {
           const auto snapshot = context->deps.robot.snapshot();
           if (!result) {
             return call->respond(problem(with_checks(std::move(result.error()), snapshot)));

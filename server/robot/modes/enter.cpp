@@ -67,6 +67,12 @@ bool Robot::Impl::change_mode(ModeCause cause, const std::string& why, Mode chos
 base::Result<void> Robot::Impl::may_drive_by_itself(bool homeward, bool sight) const {
   if (arm.latched()) return base::fail(Code::Conflict, "the emergency stop is latched");
   if (!arm.armed()) return base::fail(Code::Conflict, "the robot is not armed");
+  if (arm.by_hand()) {
+    if (auto refusal = arming_refusal(checks)) {
+      return base::fail(Code::Conflict,
+                        "it was armed to be driven by hand only, " + refusal->detail);
+    }
+  }
   if (!pose) return base::fail(Code::Conflict, "the position is not known");
   if (radio_drives(world, config->safety, clock.now())) {
     return base::fail(Code::Conflict, "the radio drives: put its switch SWB up first");

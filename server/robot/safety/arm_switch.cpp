@@ -1,13 +1,23 @@
 #include "robot/safety/arm_switch.hpp"
 
+#include <string_view>
 #include <utility>
 
 namespace roverd::robot {
 
-std::optional<base::Error> arming_refusal(const std::vector<base::Check>& checks) {
+namespace {
+
+/// What only tells where the robot is.
+bool is_of_position(std::string_view check) noexcept {
+  return check == "gnss_fix" || check == "position_accuracy";
+}
+
+}  // namespace
+
+std::optional<base::Error> arming_refusal(const std::vector<base::Check>& checks, bool by_hand) {
   std::vector<base::FieldError> failing;
   for (const base::Check& c : checks) {
-    if (!c.ok && c.severity == base::Severity::Error) {
+    if (!c.ok && c.severity == base::Severity::Error && !(by_hand && is_of_position(c.id))) {
       failing.push_back({"/checks/" + c.id, c.detail});
     }
   }

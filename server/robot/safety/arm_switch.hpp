@@ -23,10 +23,14 @@ class ArmSwitch {
   bool armed() const noexcept { return armed_; }
   bool latched() const noexcept { return latched_; }
 
+  /// Armed although the position was not known: to be driven by hand.
+  bool by_hand() const noexcept { return armed_ && by_hand_; }
+
   /// @return false: latched, or armed already.
-  bool arm() noexcept {
+  bool arm(bool by_hand = false) noexcept {
     if (latched_ || armed_) return false;
     armed_ = true;
+    by_hand_ = by_hand;
     return true;
   }
   /// @return whether it was armed.
@@ -54,11 +58,14 @@ class ArmSwitch {
 
  private:
   bool armed_ = false;
+  bool by_hand_ = false;
   bool latched_ = false;
 };
 
 /// Every failing check by name; empty: arming is allowed.
-std::optional<base::Error> arming_refusal(const std::vector<base::Check>& checks);
+/// @param by_hand somebody drives who sees where it is: the position is not asked for
+std::optional<base::Error> arming_refusal(const std::vector<base::Check>& checks,
+                                          bool by_hand = false);
 /// Who still presses the stop; empty: nobody.
 std::string release_refusal(const World& world);
 

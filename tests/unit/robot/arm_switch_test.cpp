@@ -69,6 +69,12 @@ TEST(ArmingRefusal, NamesEveryFailingCheckAndNoWarning) {
   EXPECT_EQ(two->detail, "not armed: no fix (and 1 more)");
   ASSERT_EQ(two->fields.size(), 2u);
   EXPECT_EQ(two->fields[1].pointer, "/checks/radio");
+  const auto by_hand = arming_refusal({{"gnss_fix", false, Severity::Error, "no fix"},
+                                       {"position_accuracy", false, Severity::Error, "5 m"},
+                                       {"radio", false, Severity::Error, "silent"}},
+                                      true);
+  ASSERT_TRUE(by_hand);
+  EXPECT_EQ(by_hand->fields.size(), 1u) << "a radio must be heard, whoever drives";
 }
 
 TEST(ReleaseRefusal, NamesWhoStillPresses) {

@@ -86,6 +86,35 @@ TEST(Arming, OneBadThingAtATimeIsEnoughToRefuse) {
   }
 }
 
+//   Indoors: to make a map, or to be found in one.
+TEST(Arming, ByHandNeedsNoPositionAndNothingDrivesByItselfBeforeThereIsOne) {
+  Field f;
+  f.fix = base::FixType::None;
+  f.run(8.0);
+  ASSERT_FALSE(f.ask(Arm{}));
+  ASSERT_TRUE(f.ask(Arm{.by_hand = true}));
+  f.run(0.1);
+  EXPECT_TRUE(f.state()->armed);
+  EXPECT_TRUE(f.state()->armed_by_hand);
+  EXPECT_TRUE(f.ask(SetMode{Mode::Manual}));
+  const auto refused = f.ask(SetMode{Mode::Guided});
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().detail.find("by hand only"), std::string::npos)
+      << refused.error().detail;
+  // when: the position is known; then it is as any armed robot
+  f.fix = base::FixType::RtkFixed;
+  f.run(15.0);
+  const auto asked = f.ask(SetMode{Mode::Guided});
+  EXPECT_TRUE(asked || asked.error().detail.find("by hand only") == std::string::npos);
+  // when: all else must be well all the same
+  Field silent;
+  silent.fix = base::FixType::None;
+  silent.run(8.0);
+  silent.base_speaks = false;
+  silent.run(3.0);
+  EXPECT_FALSE(silent.ask(Arm{.by_hand = true}));
+}
+
 TEST(Arming, AnUncertainHeadingOrNoMissionOnlyWarns) {
   Field f;
   f.run(8.0);

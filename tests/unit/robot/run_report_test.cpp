@@ -138,8 +138,9 @@ TEST(RunReports, TwoCentimetresTellNothing) {
 /// that were never begun.
 TEST(RunReports, WhatIsDrivenBySightIsJudgedByWhatWasSeen) {
   mission::Plan plan = plan_of({{0, 0}, {0, 8}});
-  plan.items = {mission::Row{}, mission::Move{1.0}, mission::Wall{},
-                mission::Landmarks{"any", 1.0}};
+  mission::Wall beside;
+  beside.distance_m = 0.8;
+  plan.items = {mission::Row{}, mission::Move{1.0}, beside, mission::Landmarks{"any", 1.0}};
   std::vector<ReportPoint> track;
   double t_s = 0.0;
   double north_m = 0.0;

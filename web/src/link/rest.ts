@@ -242,7 +242,7 @@ export const vehicle_calls = (seen: Seen): VehicleCalls => {
   return {
     ...questions,
     halt,
-    arm: () => command('POST', '/vehicle/arm'),
+    arm: (by_hand) => command('POST', '/vehicle/arm', by_hand ? { by_hand } : {}),
     set_mode: (mode) => command('PUT', '/vehicle/mode', { mode }),
     go_to: (goal) => command('POST', '/vehicle/goto', goal),
     dock: (goal) => command('PUT', '/vehicle/mode', { mode: 'DOCK', ...goal }),

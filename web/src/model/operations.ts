@@ -3,7 +3,14 @@
 // is never refused here.
 
 import { say } from './say';
-import { antennas_wait, estimate_waits, shift_waits, type Mode, type Vehicle } from './vehicle';
+import {
+  antennas_wait,
+  estimate_waits,
+  shift_waits,
+  type Check,
+  type Mode,
+  type Vehicle,
+} from './vehicle';
 
 export interface Facts {
   /** What is shown is old, or of unknown age. */
@@ -33,6 +40,14 @@ export const out_of_reach = (facts: Facts): Reason => no_link(facts) ?? facts.no
 
 const no_stop = ({ vehicle }: Facts): Reason =>
   vehicle?.estop === true ? say('the_emergency_stop_is_latched_reset') : null;
+
+/** Nothing speaks against arming but that the position is not known: who drives by hand sees it. */
+export const only_position_fails = (checks: readonly Check[]): boolean => {
+  const failing = checks.filter(({ ok, severity }) => !ok && severity === 'error');
+  return (
+    failing.length > 0 && failing.every(({ id }) => id === 'gnss_fix' || id === 'position_accuracy')
+  );
+};
 
 export const why_not_arm = (facts: Facts): Reason => out_of_reach(facts) ?? no_stop(facts);
 

@@ -177,7 +177,8 @@ export interface VehicleCalls {
   /** What stops or slows: sent at once, beside whatever else is under way. */
   halt(halt: Halt, signal: AbortSignal): Promise<Answer<unknown>>;
   vehicle(): Promise<Answer<Vehicle>>;
-  arm(): Promise<Answer<unknown>>;
+  /** @param by_hand the position need not be known: nothing drives by itself before it is */
+  arm(by_hand: boolean): Promise<Answer<unknown>>;
   set_mode(mode: string): Promise<Answer<unknown>>;
   go_to(goal: Goal): Promise<Answer<unknown>>;
   dock(goal: Goal & { readonly heading_deg: number }): Promise<Answer<unknown>>;

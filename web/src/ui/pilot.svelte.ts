@@ -68,7 +68,8 @@ export class Pilot {
   /** At once and without a question. */
   estop = (): void => this.halt('estop');
 
-  arm = (): Promise<boolean> => this.#do(say('arm'), { to: 'arm' }, () => this.#calls.arm());
+  arm = (by_hand = false): Promise<boolean> =>
+    this.#do(say('arm'), { to: 'arm' }, () => this.#calls.arm(by_hand));
   go_on = (): Promise<boolean> =>
     this.#do(say('go_on'), { to: 'go_on' }, () => this.#calls.go_on());
   resume = (): Promise<boolean> =>

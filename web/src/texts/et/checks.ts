@@ -154,6 +154,9 @@ export const checks = {
   draw_over_a_stretch_to_look_at_it: 'Tõmba üle lõigu, et seda lähemalt vaadata.',
   under_the_pointer: 'Kursori all',
   before_arming: 'Enne aktiveerimist',
+  arm_by_hand: 'Aktiveeri käsitsi sõitmiseks',
+  arm_by_hand_means:
+    'Ta ei tea, kus ta on: sõidad ainult sina, et teha kaart või et ta end kaardilt leiaks.',
   ready_to_arm: 'Valmis aktiveerimiseks',
   not_ready_to_arm: 'Pole aktiveerimiseks valmis',
   what_the_robot_sees: 'Mida robot näeb',

@@ -154,6 +154,9 @@ export const checks = {
   draw_over_a_stretch_to_look_at_it: 'Vedä osuuden yli nähdäksesi sen läheltä.',
   under_the_pointer: 'Osoittimen alla',
   before_arming: 'Ennen aktivointia',
+  arm_by_hand: 'Aktivoi käsin ajamista varten',
+  arm_by_hand_means:
+    'Se ei tiedä, missä se on: vain sinä ajat, kartan tekemistä tai siltä löytymistä varten.',
   ready_to_arm: 'Valmis aktivoitavaksi',
   not_ready_to_arm: 'Ei valmis aktivoitavaksi',
   what_the_robot_sees: 'Mitä robotti näkee',

@@ -156,6 +156,9 @@ export const checks = {
   draw_over_a_stretch_to_look_at_it: 'Trascina su un tratto per vederlo da vicino.',
   under_the_pointer: 'Sotto il puntatore',
   before_arming: 'Prima di armare',
+  arm_by_hand: 'Arma per guidare a mano',
+  arm_by_hand_means:
+    'Non sa dove si trova: guidi solo tu, per fare una mappa o per farlo ritrovare in una.',
   ready_to_arm: 'Pronto da armare',
   not_ready_to_arm: 'Non pronto da armare',
   what_the_robot_sees: 'Cosa vede il robot',

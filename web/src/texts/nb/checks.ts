@@ -155,6 +155,9 @@ export const checks = {
   draw_over_a_stretch_to_look_at_it: 'Dra over en strekning for å se den på nært hold.',
   under_the_pointer: 'Under pekeren',
   before_arming: 'Før aktivering',
+  arm_by_hand: 'Aktiver for å kjøre for hånd',
+  arm_by_hand_means:
+    'Den vet ikke hvor den er: bare du kjører, for å lage et kart eller for å bli funnet i et.',
   ready_to_arm: 'Klar til aktivering',
   not_ready_to_arm: 'Ikke klar til aktivering',
   what_the_robot_sees: 'Hva roboten ser',
