@@ -9,6 +9,7 @@ namespace roverd::nav::cells {
 namespace {
 
 constexpr std::int32_t kHalf = 1 << 20;  // cells on either side of the origin
+constexpr double kFar = kHalf - 2;       // neighbours have keys, too
 
 bool finite(const Cell& c) noexcept {
   const bool spread = std::all_of(c.spread_m2.begin(), c.spread_m2.end(),
@@ -75,9 +76,12 @@ std::uint64_t key_of(const CellIndex& c) noexcept {
   return axis(c.x) << 42U | axis(c.y) << 21U | axis(c.z);
 }
 
+double reach_m(double cell_m) noexcept {
+  return cell_m * kFar;
+}
+
 bool index_of(const Eigen::Vector3d& p_m, double cell_m, CellIndex& out) noexcept {
   const Eigen::Vector3d at = p_m / cell_m;
-  constexpr double kFar = kHalf - 2;  // neighbours have keys, too
   // Written so that NaN is refused.
   if (!(std::abs(at.x()) < kFar && std::abs(at.y()) < kFar && std::abs(at.z()) < kFar)) {
     return false;

@@ -59,6 +59,8 @@ struct CellIndex {
   std::int32_t x = 0, y = 0, z = 0;
 };
 std::uint64_t key_of(const CellIndex& c) noexcept;
+/// So far from the origin, along each axis, points have cells.
+double reach_m(double cell_m) noexcept;
 /// @return false where the point is no number or too far away.
 bool index_of(const Eigen::Vector3d& p_m, double cell_m, CellIndex& out) noexcept;
 

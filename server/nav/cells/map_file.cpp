@@ -1,7 +1,13 @@
 #include "nav/cells/map_file.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cstdio>
+#include <span>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "nav/cells/pcd.hpp"
 
@@ -40,17 +46,37 @@ base::Result<std::vector<std::uint8_t>> write_map(const CellMap& map) {
   return write_pcd(t, PcdData::Compressed);
 }
 
+namespace {
+
+/// Why nothing was taken of it. @param cloud at least one point that is taken nowhere, or none
+std::string why_empty(std::span<const Eigen::Vector3f> cloud, double cell_m) {
+  const auto far = std::find_if(cloud.begin(), cloud.end(),
+                                [](const Eigen::Vector3f& p) { return p.allFinite(); });
+  if (far == cloud.end()) return "not one point of the file is a number";
+  char words[240];
+  std::snprintf(words, sizeof words,
+                "all points lie too far from the origin (one at x %.0f, y %.0f, z %.0f m; cells of "
+                "%.2f m reach %.0f km): take a corner of the site off all of them",
+                static_cast<double>(far->x()), static_cast<double>(far->y()),
+                static_cast<double>(far->z()), cell_m, reach_m(cell_m) / 1000.0);
+  return words;
+}
+
+}  // namespace
+
 base::Result<CellMap> read_map(base::Bytes file, double cell_m) {
   CellMap map(cell_m);
+  std::vector<Eigen::Vector3f> points;
   if (const auto table = read_pcd(file, kColumns)) {
     for (std::size_t i = 0; i < table->columns[0].size(); ++i) map.add(cell_at(*table, i));
   } else {
-    const auto cloud = read_pcd_cloud(file);
+    auto cloud = read_pcd_cloud(file);
     if (!cloud) return tl::unexpected<base::Error>(cloud.error());
     map.add(*cloud);
+    points = std::move(*cloud);
   }
   if (map.cells().empty()) {
-    return base::fail(base::Code::Invalid, "not one point of the file is a number");
+    return base::fail(base::Code::Invalid, why_empty(points, map.cell_m()));
   }
   return map;
 }

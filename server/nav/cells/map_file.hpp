@@ -18,7 +18,7 @@ namespace roverd::nav::cells {
 base::Result<std::vector<std::uint8_t>> write_map(const CellMap& map);
 
 /// A file without the columns of spread is taken as points. @param cell_m edge of the cells
-/// @return the errors of read_pcd; Invalid where not one point is a number
+/// @return the errors of read_pcd; Invalid where not one point is a number, or all lie too far away
 base::Result<CellMap> read_map(base::Bytes file, double cell_m);
 
 }  // namespace roverd::nav::cells

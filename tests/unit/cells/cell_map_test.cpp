@@ -96,5 +96,17 @@ TEST(MapFile, RefusesAFileWithoutOnePoint) {
   EXPECT_EQ(map.error().detail, "not one point of the file is a number");
 }
 
+//   As a surveyor's program writes them: national coordinates.
+TEST(MapFile, PointsThatLieTooFarFromTheOriginAreToldAsSuch) {
+  const std::string text =
+      "VERSION .7\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 1\n"
+      "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA ascii\n500000 6470000 60\n500001 6470000 60\n";
+  const auto map = read_map(std::vector<std::uint8_t>(text.begin(), text.end()), 0.2);
+  ASSERT_FALSE(map);
+  EXPECT_EQ(map.error().detail,
+            "all points lie too far from the origin (one at x 500000, y 6470000, z 60 m; cells of "
+            "0.20 m reach 210 km): take a corner of the site off all of them");
+}
+
 }  // namespace
 }  // namespace roverd::nav::cells
