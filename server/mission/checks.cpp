@@ -47,7 +47,7 @@ class PlanCheck {
     types();
     targets();
     const bool drives = std::any_of(plan_.items.begin(), plan_.items.end(), drives_from_anywhere);
-    if (targets_.empty() && !drives) {
+    if (targets_.empty() && !drives && !nowhere_) {
       add(Severity::Error, "no_target", 0, "the mission leads nowhere");
     }
     distances();
@@ -90,6 +90,11 @@ class PlanCheck {
       if (const auto* jump = std::get_if<Jump>(&item); jump != nullptr && jump->times == 0) {
         add(Severity::Warning, "repeats_for_ever", number,
             "jumps to item " + std::to_string(jump->item) + " for ever");
+      }
+      if (std::holds_alternative<Local>(item) && !plan_.home) {
+        nowhere_ = true;
+        add(Severity::Error, "no_target", number,
+            "counts from the mission's home, and the mission has none");
       }
       if (const auto* speed = std::get_if<Speed>(&item)) speed_limit(number, speed->speed_mps);
       if (const auto* circle = std::get_if<Circle>(&item)) this->circle(number, *circle);
@@ -321,6 +326,7 @@ class PlanCheck {
   const VehicleLimits& vehicle_;
   const Surroundings& around_;
   CheckReport report_;
+  bool nowhere_ = false;  ///< told of an item
   std::optional<base::TangentPlane> home_;
   std::optional<base::LocalFrame> frame_;
   std::vector<Target> targets_;

@@ -71,6 +71,8 @@ TEST(Check, NamesTheItemsThatSpeakAgainstIt) {
 
   EXPECT_EQ(found(course({}), v), Codes{"no_target@0"});
   EXPECT_EQ(found(course({Speed{0.5}, Wait{1.0}}), v), Codes{"no_target@0"});
+  // Local places count from a home: without one they are nowhere, and it is said of each.
+  EXPECT_EQ(found(course({Local{2.0, 3.0, std::nullopt}, spot(0, 0)}), v), Codes{"no_target@1"});
   EXPECT_EQ(found(course({spot(0, 0), spot(0, 0)}), v), Codes{"duplicate_point@2"});
   EXPECT_EQ(found(course({spot(0, 0), spot(1500, 0)}), v), Codes{"leg_too_long@2"});
   EXPECT_EQ(found(course({low, high}), v), Codes{"too_steep@2"});
