@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
+#include <cmath>
 #include <span>
 #include <string>
 #include <string_view>
@@ -53,13 +53,11 @@ std::string why_empty(std::span<const Eigen::Vector3f> cloud, double cell_m) {
   const auto far = std::find_if(cloud.begin(), cloud.end(),
                                 [](const Eigen::Vector3f& p) { return p.allFinite(); });
   if (far == cloud.end()) return "not one point of the file is a number";
-  char words[240];
-  std::snprintf(words, sizeof words,
-                "all points lie too far from the origin (one at x %.0f, y %.0f, z %.0f m; cells of "
-                "%.2f m reach %.0f km): take a corner of the site off all of them",
-                static_cast<double>(far->x()), static_cast<double>(far->y()),
-                static_cast<double>(far->z()), cell_m, reach_m(cell_m) / 1000.0);
-  return words;
+  const auto metres = [](float m) { return std::to_string(std::lround(m)); };
+  return "all points lie too far from the origin (one at x " + metres(far->x()) + ", y " +
+         metres(far->y()) + ", z " + metres(far->z()) + " m; the cells reach " +
+         std::to_string(std::lround(reach_m(cell_m) / 1000.0)) +
+         " km): take a corner of the site off all of them";
 }
 
 }  // namespace

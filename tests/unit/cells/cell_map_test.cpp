@@ -104,8 +104,8 @@ TEST(MapFile, PointsThatLieTooFarFromTheOriginAreToldAsSuch) {
   const auto map = read_map(std::vector<std::uint8_t>(text.begin(), text.end()), 0.2);
   ASSERT_FALSE(map);
   EXPECT_EQ(map.error().detail,
-            "all points lie too far from the origin (one at x 500000, y 6470000, z 60 m; cells of "
-            "0.20 m reach 210 km): take a corner of the site off all of them");
+            "all points lie too far from the origin (one at x 500000, y 6470000, z 60 m; the cells "
+            "reach 210 km): take a corner of the site off all of them");
 }
 
 }  // namespace
