@@ -111,6 +111,7 @@ Line joined(const Line& a, const Line& b, Vec2 eye) noexcept {
   };
   line.from = at(a.from);
   line.to = at(b.to);
+  line.to_open = b.to_open;
   line.normal = {-fit.along.y, fit.along.x};
   if (sense::dot(line.normal, eye - line.from) < 0.0) line.normal = -1.0 * line.normal;
   line.rms_m = fit.rms_m;
@@ -185,6 +186,14 @@ std::vector<Line> lines_of(const PlanarScan& scan, const WallParams& params) {
     run.push_back(beam.at);
   }
   end_run();
+  // Beyond its first and its last beam the scanner did not look.
+  const bool meets = !scan.beams.empty() && !out.empty();
+  if (meets && scan.beams.front().hit) {
+    out.front().from_open = length(out.front().from - scan.beams.front().at) < params.jump_m;
+  }
+  if (meets && scan.beams.back().hit) {
+    out.back().to_open = length(out.back().to - scan.beams.back().at) < params.jump_m;
+  }
   std::vector<Line> lines;
   for (Line& line : out) {
     if (!lines.empty() && one_line(lines.back(), line, params)) {

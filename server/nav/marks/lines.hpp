@@ -49,6 +49,8 @@ struct Line {
   double sigma_rad = 0.0;  ///< 1σ of its direction
   std::size_t points = 0;
   Moments moments{};
+  bool from_open = false;  ///< nobody looked beyond that end: the wall may go on there
+  bool to_open = false;
 
   double length_m() const noexcept;
   /// From a point to the line without ends, positive on the sensor's side.

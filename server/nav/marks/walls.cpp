@@ -16,6 +16,7 @@ constexpr int kBelieved = 3;
 constexpr int kMisses = 5;
 constexpr double kSameAngle_rad = 0.14;  // 8°
 constexpr double kSameOffset_m = 0.15;
+constexpr double kSameEnd_m = 0.3;
 constexpr double kThrough_m = 0.3;
 constexpr double kForgotten_m = 15.0;
 constexpr int kPlanePlaces = 11;  // of two points each
@@ -52,6 +53,18 @@ Line in_o(const Line& b, const Pose2& ob) noexcept {
   return o;
 }
 
+/// Of two that are one: an end is open where the one that reaches farther is, unless the other one
+/// was seen to end about there.
+Stretch joined(const Stretch& a, const Stretch& b) noexcept {
+  Stretch out{std::min(a.from_m, b.from_m), std::max(a.to_m, b.to_m)};
+  const bool begin_together = std::abs(a.from_m - b.from_m) < kSameEnd_m;
+  const bool end_together = std::abs(a.to_m - b.to_m) < kSameEnd_m;
+  out.from_open = begin_together ? a.from_open && b.from_open
+                                 : (a.from_m < b.from_m ? a.from_open : b.from_open);
+  out.to_open = end_together ? a.to_open && b.to_open : (a.to_m > b.to_m ? a.to_open : b.to_open);
+  return out;
+}
+
 /// Adds a stretch; those nearer than `gap_m` are one.
 void cover(std::vector<Stretch>& all, Stretch more, double gap_m, std::size_t most) {
   std::vector<Stretch> out;
@@ -59,7 +72,7 @@ void cover(std::vector<Stretch>& all, Stretch more, double gap_m, std::size_t mo
     if (s.to_m + gap_m < more.from_m || more.to_m + gap_m < s.from_m) {
       out.push_back(s);
     } else {
-      more = {std::min(more.from_m, s.from_m), std::max(more.to_m, s.to_m)};
+      more = joined(more, s);
     }
   }
   out.push_back(more);
@@ -76,10 +89,11 @@ double gap_to(const std::vector<Stretch>& all, Stretch s) noexcept {
   return least;
 }
 
-Stretch along(const Wall& w, Vec2 a, Vec2 b) noexcept {
-  const double from = sense::dot(w.along, a - w.anchor);
-  const double to = sense::dot(w.along, b - w.anchor);
-  return {std::min(from, to), std::max(from, to)};
+Stretch along(const Wall& w, Vec2 a, Vec2 b, bool a_open = false, bool b_open = false) noexcept {
+  const double at_a = sense::dot(w.along, a - w.anchor);
+  const double at_b = sense::dot(w.along, b - w.anchor);
+  if (at_a <= at_b) return {at_a, at_b, a_open, b_open};
+  return {at_b, at_a, b_open, a_open};
 }
 
 double angle_between(Vec2 a, Vec2 b) noexcept {
@@ -151,6 +165,7 @@ void Walls::take(const PlaneWall& plane, const Pose2& pose, base::Time stamp,
   line.from = plane.centre - kPlaneHalf_m * ahead;
   line.to = plane.centre + kPlaneHalf_m * ahead;
   line.normal = plane.normal;
+  line.from_open = line.to_open = true;
   line.moments.origin = plane.centre;
   for (int i = 0; i < kPlanePlaces; ++i) {
     const double part = 2.0 * i / (kPlanePlaces - 1) - 1.0;
@@ -192,7 +207,8 @@ void Walls::put(const Line& line, Source source, base::Time stamp, const WallPar
   if (!best->matched) best->moments.fade(kFade);
   best->moments.add(line.moments);
   refit(best->wall, best->moments);
-  cover(best->wall.seen, along(best->wall, line.from, line.to), params.jump_m, kMostStretches);
+  cover(best->wall.seen, along(best->wall, line.from, line.to, line.from_open, line.to_open),
+        params.jump_m, kMostStretches);
   best->wall.source = source;
   best->wall.seen_at = stamp;
   if (!best->matched) ++best->wall.hits;
@@ -241,8 +257,9 @@ void Walls::merge(const WallParams& params) {
       if (gap_to(a.wall.seen, whole) > params.door_m) continue;
       a.moments.add(b.moments);
       for (const Stretch& s : b.wall.seen) {
-        cover(a.wall.seen, along(a.wall, b.wall.at(s.from_m), b.wall.at(s.to_m)), params.jump_m,
-              kMostStretches);
+        cover(a.wall.seen,
+              along(a.wall, b.wall.at(s.from_m), b.wall.at(s.to_m), s.from_open, s.to_open),
+              params.jump_m, kMostStretches);
       }
       refit(a.wall, a.moments);
       a.wall.hits = std::max(a.wall.hits, b.wall.hits);

@@ -7,6 +7,10 @@
 //
 // A wall's line is the fit over all of its points, older ones fading by kFade a scan; its
 // certainty is that of the fit. One vision plane counts as 2 kPlanePlaces points.
+//
+// Where a scan's first or last beam met it a wall is open: it may go on there. A vision plane tells
+// neither where it begins nor where it ends, so both of its ends are. A scan that sees an end
+// closes it.
 // Bounded: kMostWalls, kMostStretches each. Not shared between threads; time comes with the scans.
 
 #include <cstdint>
@@ -26,6 +30,8 @@ std::string_view to_string(Source s) noexcept;  // scan vision
 struct Stretch {
   double from_m = 0.0;
   double to_m = 0.0;
+  bool from_open = false;  ///< the edge of what was looked at: no end of the wall
+  bool to_open = false;
 };
 
 struct Wall {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/angle.hpp"
+#include "nav/marks/pieces.hpp"
 
 namespace roverd::nav::marks {
 namespace {
@@ -22,7 +23,8 @@ constexpr double kStart_rad = base::kPi * 80.0 / 180.0;
 constexpr double kCorner_rad = base::kPi / 12.0;
 constexpr double kNever = 1e9;
 constexpr double kGlance_s = 0.5;
-constexpr double kMeet_m = 0.2;
+/// A wall that is seen ahead only and lies more across the heading is none beside the vehicle: cos.
+constexpr double kBeside = 0.5;
 
 Vec2 unit(Vec2 v) noexcept {
   return (1.0 / std::max(1e-12, length(v))) * v;
@@ -35,51 +37,6 @@ double turn_from(Vec2 a, Vec2 b) noexcept {
 }
 EnuPoint point(Vec2 p) noexcept {
   return {p.x, p.y};
-}
-
-/// A piece of wall, doors closed.
-struct Piece {
-  Vec2 a{};
-  Vec2 b{};
-  Vec2 normal{};
-  base::Time seen_at;
-};
-
-std::vector<Piece> pieces_of(std::span<const Wall> walls, double door_m) {
-  std::vector<Piece> out;
-  for (const Wall& w : walls) {
-    if (!w.believed || w.seen.empty()) continue;
-    Stretch now = w.seen.front();
-    for (const Stretch& s : w.seen) {
-      if (s.from_m - now.to_m > door_m) {
-        out.push_back({w.at(now.from_m), w.at(now.to_m), w.normal, w.seen_at});
-        now = s;
-      }
-      now.to_m = std::max(now.to_m, s.to_m);
-    }
-    out.push_back({w.at(now.from_m), w.at(now.to_m), w.normal, w.seen_at});
-  }
-  return out;
-}
-
-/// Two walls that nearly meet have one corner: where their lines cross.
-void close_corners(std::vector<Piece>& pieces) {
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    for (std::size_t j = i + 1; j < pieces.size(); ++j) {
-      const Vec2 u = pieces[i].b - pieces[i].a;
-      const Vec2 v = pieces[j].b - pieces[j].a;
-      const double det = sense::cross(u, v);
-      if (std::abs(det) < std::sin(kCorner_rad) * length(u) * length(v)) continue;
-      const Vec2 meet = pieces[i].a + (sense::cross(pieces[j].a - pieces[i].a, v) / det) * u;
-      const auto nearer_end = [&](Piece& p) -> Vec2& {
-        return length(p.a - meet) < length(p.b - meet) ? p.a : p.b;
-      };
-      Vec2& of_one = nearer_end(pieces[i]);
-      Vec2& of_other = nearer_end(pieces[j]);
-      if (length(of_one - meet) > kMeet_m || length(of_other - meet) > kMeet_m) continue;
-      of_one = of_other = meet;
-    }
-  }
 }
 
 struct Nearest {
@@ -115,17 +72,21 @@ struct Sample {
 /// Drives a point along the curve at the distance from the walls.
 class March {
  public:
-  March(const std::vector<Piece>& pieces, Side side, double distance_m)
+  March(std::vector<Piece>& pieces, Side side, double distance_m)
       : pieces_(pieces), sign_(side == Side::Left ? 1.0 : -1.0), distance_m_(distance_m) {}
 
+  /// @param ahead_m so far ahead a wall may begin that is beside the vehicle, too
   /// @return false: there is no wall on that side.
-  bool begin(const Pose2& pose) {
+  bool begin(const Pose2& pose, double ahead_m) {
     const Vec2 here{pose.x_m, pose.y_m};
     const Vec2 heading{std::cos(pose.yaw_rad), std::sin(pose.yaw_rad)};
     const Vec2 to_side = sign_ * left_of(heading);
-    const Nearest wall = nearest(
-        pieces_, here, [&](Vec2 to) { return std::abs(turn_from(to_side, to)) < kStart_rad; });
-    if (wall.distance_m > 3.0 * distance_m_ + 1.0) return false;
+    const auto beside = [&](Vec2 to) { return std::abs(turn_from(to_side, to)) < kStart_rad; };
+    const double most_m = 3.0 * distance_m_ + 1.0;
+    Nearest wall = nearest(pieces_, here, beside);
+    const bool known = wall.distance_m <= most_m && !opens_at(wall);
+    if (!known && go_back(here, heading, ahead_m)) wall = nearest(pieces_, here, beside);
+    if (wall.distance_m > most_m) return false;
     const Vec2 back = unit(here - wall.at);
     samples_.push_back({wall.at + distance_m_ * back, along(-1.0 * back), wall});
     start_ = samples_.front();
@@ -165,12 +126,44 @@ class March {
   const std::vector<Sample>& samples() const noexcept { return samples_; }
 
  private:
+  /// Where the wall begins for who drives along it.
+  bool begins_at_a(const Piece& p) const noexcept {
+    return sign_ * sense::cross(p.normal, p.b - p.a) > 0.0;
+  }
+  /// It is the beginning of a wall, at the edge of what was looked at.
+  bool opens_at(const Nearest& wall) const noexcept {
+    const Piece& p = pieces_[wall.piece];
+    const bool at_a = begins_at_a(p);
+    return wall.end && (at_a ? p.a_open : p.b_open) && length(wall.at - (at_a ? p.a : p.b)) < 1e-6;
+  }
+  /// The wall that lies nearest aside, of those of which nothing but what is ahead is seen, goes
+  /// back along its line until it is beside the vehicle. @return there is one.
+  bool go_back(Vec2 here, Vec2 heading, double ahead_m) {
+    Piece* best = nullptr;
+    double least_m = kNever;
+    for (Piece& p : pieces_) {
+      const Vec2 along = sign_ * left_of(p.normal);
+      const bool at_a = begins_at_a(p);
+      const double far_m = sense::dot((at_a ? p.a : p.b) - here, along);
+      const double aside_m = sense::dot(p.normal, here - p.a);
+      const bool open = at_a ? p.a_open : p.b_open;
+      if (!open || far_m <= 0.0 || far_m > ahead_m) continue;
+      if (aside_m <= 0.0 || aside_m >= least_m || sense::dot(heading, along) < kBeside) continue;
+      best = &p;
+      least_m = aside_m;
+    }
+    if (best == nullptr) return false;
+    Vec2& begin = begins_at_a(*best) ? best->a : best->b;
+    const Vec2 along = sign_ * left_of(best->normal);
+    begin = begin - (sense::dot(begin - here, along) + kBehind_m) * along;
+    return true;
+  }
   Vec2 along(Vec2 to_wall) const noexcept { return -sign_ * left_of(to_wall); }
   static bool turns(const Sample& last, const Sample& now) noexcept {
     return std::abs(turn_from(last.along, now.along)) > kCorner_rad;
   }
 
-  const std::vector<Piece>& pieces_;
+  std::vector<Piece>& pieces_;
   const double sign_;
   const double distance_m_;
   std::vector<Sample> samples_;
@@ -285,7 +278,7 @@ std::optional<Way> wall_way(std::span<const Wall> walls, const Pose2& pose, Side
   std::vector<Piece> pieces = pieces_of(walls, params.door_m);
   close_corners(pieces);
   March march(pieces, side, distance_m);
-  if (!march.begin(pose)) return std::nullopt;
+  if (!march.begin(pose, params.max_range_m)) return std::nullopt;
   // A wall that is not seen any more is gone on along as far as a door is wide.
   const double unseen_s = base::seconds(now - march.seen_at()) - kGlance_s;
   const bool dark = unseen_s > 0.0;

@@ -10,6 +10,13 @@
 //   ─────────╯ │══════╡      rounded as far as corner_m allows
 //   ──────────────────╯     door: a gap up to door_m is driven past as if it were wall
 //
+// Where the wall begins ahead of the vehicle, at the edge of what was looked at, it is the wall
+// beside it, too: a camera that looks ahead never sees what is abeam. It is gone back along its
+// line until there; not where a wall is known beside the vehicle, nor where one was seen to begin.
+//
+//     ─▶───────
+//   · · · · ·════ ▸ seen
+//
 // Past landmarks: the chain of landmarks, each passed at the offset on the same side; where the
 // chain turns around one of them the way is an arc about it.
 //
@@ -40,7 +47,7 @@ struct Way {
 };
 
 /// @param pose X_OB. @param side where the wall is. @return empty: no believed wall on that side
-/// within 3 distances, nor within max_range_m ahead of it.
+/// within 3 distances and a metre, nor one so far aside that is seen from max_range_m ahead on.
 std::optional<Way> wall_way(std::span<const Wall> walls, const Pose2& pose, Side side,
                             double distance_m, double speed_mps, base::Time now,
                             const WallParams& params);

@@ -63,6 +63,21 @@ TEST(MarksLines, TheCertaintyIsThatOfTheErrors) {
   EXPECT_NEAR(std::sqrt(turn / n), 1.0, 0.35);
 }
 
+//       ▶     the last beam, 135° to the left, meets it behind: there it may go on
+//  ══════════════╡
+TEST(MarksLines, AnEndIsOneOnlyWhereTheScannerLookedBeyondIt) {
+  Looking l;
+  l.yard.slabs = {{{-9.0, 0.9}, {5.0, 0.9}}};
+  auto scan = l.scan();
+  while (!scan.beams.back().hit) scan = l.scan();
+  const auto lines = lines_of(scan, {});
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_FALSE(lines[0].from_open);
+  EXPECT_NEAR(lines[0].from.x, 5.0, 0.3);
+  EXPECT_TRUE(lines[0].to_open);
+  EXPECT_NEAR(lines[0].to.x, -0.9, 0.1);
+}
+
 TEST(MarksLines, ClutterIsNoWall) {
   Looking l;
   std::mt19937_64 random(3);
