@@ -21,8 +21,12 @@ constexpr double kLongestMove_s = 2.0;  ///< by that much
 constexpr double kFarAway_m = 15.0;
 constexpr double kVisionSigma_m = 0.05;
 constexpr double kVisionSigmaOfRange = 0.02;
-constexpr double kOnePart = 0.5;       ///< of near_m: two so near to each other are one
-constexpr double kNothingBack = 0.5;   ///< where no echo comes back it may be dark, or gone
+constexpr double kOnePart = 0.5;      ///< of near_m: two so near to each other are one
+constexpr double kNothingBack = 0.5;  ///< where no echo comes back it may be dark, or gone
+constexpr int kAstray = 3;            ///< sights in a row, of one that is not believed
+constexpr int kBelievedAstray = 5;    ///< somebody may hide it, whose leg is seen instead
+constexpr double kLegs_m = 0.1;       ///< radius of what wanders
+constexpr double kThere_m = 0.1;
 constexpr double kLongestGap_s = 0.5;  ///< between two pieces, of the time unseen
 
 double since(base::Time& last, base::Time now) noexcept {
@@ -47,7 +51,7 @@ bool may_be_cut(const base::VisionPoint& at, double half_view_rad, double radius
 }
 
 /// How much it counts that the scan did not see what stood there: 1 where it saw something farther,
-/// less where nothing came back; 0: it did not look, or something stands before it.
+/// less where nothing came back; 0: it did not look, or something stands there or before it.
 double missed(const PlanarScan& scan, Vec2 at_b, double by_m) noexcept {
   const Vec2 to = at_b - scan.eye;
   const double range_m = length(to);
@@ -58,7 +62,7 @@ double missed(const PlanarScan& scan, Vec2 at_b, double by_m) noexcept {
     const double ray_m = length(ray);
     if (ray_m < 1e-6 || sense::dot(ray, to) <= 0.0) continue;
     if (std::abs(sense::cross(ray, to)) / ray_m > by_m) continue;
-    if (beam.hit && ray_m < range_m - 0.2) return 0.0;  // something stands before it
+    if (beam.hit && ray_m < range_m + kThere_m) return 0.0;
     out = std::max(out, beam.hit ? 1.0 : kNothingBack);
   }
   return out;
@@ -80,6 +84,7 @@ Kept one_of(Kept older, const Kept& newer) {
   older.mark.believed |= newer.mark.believed;
   older.mark.seen_at = std::max(older.mark.seen_at, newer.mark.seen_at);
   older.hits = std::max(older.hits, newer.hits);
+  older.imaged_at = std::max(older.imaged_at, newer.imaged_at);
   older.add(newer);
   older.moved_s = std::max(older.moved_s, newer.moved_s);
   older.scanned_at = std::max(older.scanned_at, newer.scanned_at);
@@ -141,14 +146,24 @@ void Landmarks::join(Kept& kept, const Seen& seen, const Look& look, const Landm
   kept.mark.sigma_m = 1.0 / std::sqrt(kept.weight);
   if (seen.radius_m > 0.0) kept.mark.radius_m = seen.radius_m;
   (look.by_vision ? kept.mark.by_vision : kept.mark.by_scan) = true;
-  if (!look.by_vision) kept.scanned_at = look.stamp;
   kept.mark.seen_at = std::max(kept.mark.seen_at, look.stamp);
   kept.moved_s = look.moved_s;
   if (kept.by(look.eye) == nullptr) kept.told.push_back({look.eye, look.stamp, 0.0});
   kept.by(look.eye)->at = look.stamp;
   for (Told& one : kept.told) one.unseen_s = 0.0;
   kept.mark.eyes = kept.eyes();
-  kept.mark.believed = kept.mark.believed || ++kept.hits >= static_cast<int>(params.confirm);
+  if (look.by_vision) {
+    kept.imaged_at = look.stamp;
+    kept.mark.believed = kept.mark.believed || ++kept.hits >= static_cast<int>(params.confirm);
+  } else {
+    kept.scanned_at = look.stamp;
+    ++kept.scans;
+    const int most = kept.mark.believed ? kBelievedAstray : kAstray;
+    kept.wanders = kept.stands.see(seen.at, seen.slack_m, most, look.stamp);
+    const bool imaged = base::seconds(look.stamp - kept.imaged_at) < kTogether_s;
+    if (kept.wanders) kept.scans = 0;
+    if (kept.wanders && !imaged) kept.mark.believed = false;
+  }
   if (seen.name.empty()) return;
   for (auto& [name, votes] : kept.names) votes *= kFadeName;
   kept.names[seen.name] += 1.0;
@@ -157,6 +172,13 @@ void Landmarks::join(Kept& kept, const Seen& seen, const Look& look, const Landm
     kept.names.erase(std::min_element(kept.names.begin(), kept.names.end(), by_votes));
   }
   kept.mark.name = std::max_element(kept.names.begin(), kept.names.end(), by_votes)->first;
+}
+
+/// Where somebody goes by what stands, what is seen beside its place is his leg, and not it.
+bool Landmarks::is_other(const Kept& kept, const Seen& seen, const Look& look) const noexcept {
+  return !look.by_vision && kept.mark.believed &&
+         !kept.stands.holds(seen.at, seen.slack_m, look.stamp) &&
+         stirs_.beside(kept.mark.at, look.stamp);
 }
 
 void Landmarks::put(const std::vector<Seen>& seen, const Look& look, const LandmarkParams& params,
@@ -169,7 +191,8 @@ void Landmarks::put(const std::vector<Seen>& seen, const Look& look, const Landm
   for (std::size_t k = 0; k < kept_.size(); ++k) {
     for (std::size_t s = 0; s < seen.size(); ++s) {
       const double apart_m = length(kept_[k].mark.at - seen[s].at);
-      if (apart_m <= params.near_m) pairs.push_back({apart_m, k, s});
+      if (apart_m > params.near_m || is_other(kept_[k], seen[s], look)) continue;
+      pairs.push_back({apart_m, k, s});
     }
   }
   std::ranges::sort(pairs, {}, &Pair::apart_m);
@@ -201,15 +224,37 @@ void Landmarks::put(const std::vector<Seen>& seen, const Look& look, const Landm
   }
 }
 
-void Landmarks::take(const PlanarScan& scan, const LandmarkParams& params, std::size_t eye) {
+/// Those that this scan told.
+void Landmarks::believe(const PlanarScan& scan, const LandmarkParams& params) {
+  const auto told = [&](const Kept& k) { return k.scanned_at == scan.stamp; };
+  for (const Kept& k : kept_) {
+    if (told(k) && k.wanders) stirs_.tell(k.mark.at, kLegs_m, scan.stamp);
+  }
+  for (Kept& k : kept_) {
+    if (!told(k) || k.mark.believed) continue;
+    if (stirs_.beside(k.mark.at, scan.stamp)) k.stands.begin_anew(scan.stamp);
+    k.mark.believed =
+        k.scans >= static_cast<int>(params.confirm) && k.stands.for_s(scan.stamp) >= kStands_s;
+  }
+}
+
+void Landmarks::take(const PlanarScan& scan, const LandmarkParams& params, std::size_t eye,
+                     std::span<const sense::Mover> movers) {
+  slack_.move(scan.pose, scan.stamp);
+  for (const sense::Mover& m : movers) stirs_.tell(m.at, m.radius_m, m.seen);
   std::vector<Seen> seen;
   for (const Post& post : posts_of(scan, params)) {
-    seen.push_back({placed(scan.pose, post.at), std::max(0.01, post.sigma_m), post.radius_m, {}});
+    seen.push_back({placed(scan.pose, post.at),
+                    std::max(0.01, post.sigma_m),
+                    post.radius_m,
+                    slack_.at_m(length(post.at)),
+                    {}});
   }
   move(scan.pose, scan.stamp);
   const double dt_s = since(looked_at_[eye % looked_at_.size()], scan.stamp);
   std::vector<bool> met;
   put(seen, {false, eye_of(eye), scan.stamp, moved_s_}, params, met);
+  believe(scan, params);
   const Pose2 bo = sense::inverse(scan.pose);
   for (std::size_t i = 0; i < kept_.size(); ++i) {
     const Vec2 at = placed(bo, kept_[i].mark.at);
@@ -233,7 +278,8 @@ void Landmarks::take(const base::Vision& vision, const base::Mount& mount, const
     if (l.at.x_m <= 0.0 || range_m > params.max_range_m) continue;  // behind the camera: false
     double sigma_m = kVisionSigma_m + kVisionSigmaOfRange * range_m;
     if (may_be_cut(l.at, half_view_rad, params.max_radius_m)) sigma_m += params.max_radius_m;
-    seen.push_back({placed(pose, {mount.x_m + b.x(), mount.y_m + b.y()}), sigma_m, 0.0, l.name});
+    seen.push_back(
+        {placed(pose, {mount.x_m + b.x(), mount.y_m + b.y()}), sigma_m, 0.0, 0.0, l.name});
   }
   move(pose, vision.stamp);
   const double dt_s = since(looked_at_[eye % looked_at_.size()], vision.stamp);

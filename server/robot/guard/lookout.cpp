@@ -124,7 +124,8 @@ void Lookout::look_beside(const base::Sight& sight, std::size_t number) {
   }
   last = sight.stamp;
   walls_.take(beside_scan_, wall_params_);
-  landmarks_.take(beside_scan_, landmark_params_, number);
+  chain_.movers(beside_scan_.stamp, movers_);
+  landmarks_.take(beside_scan_, landmark_params_, number, movers_);
   tell_beside(beside_scan_.stamp, number);
 }
 

@@ -114,7 +114,8 @@ class Lookout {
   nav::marks::Walls walls_;
   nav::marks::LandmarkParams landmark_params_;
   nav::marks::Landmarks landmarks_;
-  nav::marks::PlanarScan beside_scan_;  ///< the last one
+  std::vector<nav::sense::Mover> movers_;  ///< who moved, at the last scan
+  nav::marks::PlanarScan beside_scan_;     ///< the last one
   std::shared_ptr<const nav::marks::View> beside_;
   std::vector<Camera> cameras_;
   std::vector<Image> images_;                         ///< the last one of each
