@@ -200,7 +200,7 @@ void CellTracker::track(const Cloud& cloud, const Pose2& step, Told& told) {
                base::wrap_rad(now_.pose.yaw_rad + moved.z())};
   const Matrix3d left = (Matrix3d::Identity() - gain) * now_.covariance;
   now_.covariance = 0.5 * (left + left.transpose());
-  now_.good();
+  now_.good(step, p_);
   z_m_ = a.x_ts.translation().z();
   told_ = false;
   fitted_ = true;

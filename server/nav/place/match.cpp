@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <unordered_set>
 
 #include <Eigen/Cholesky>
@@ -101,6 +102,20 @@ Matrix3d without_depth(const Matrix4d& h, double held) {
   return h.topLeftCorner<3, 3>() - with * with.transpose() / (h(3, 3) + held);
 }
 
+/// From the line of the nearest wall; beyond its end from there. Infinite: none within reach.
+double off_line_m(const Field& field, double x_m, double y_m) noexcept {
+  constexpr double kBeside_m = 0.20;  // further from its point than that, the line has ended
+  constexpr double kPoint_m = 0.10;
+  const Wall* wall = field.wall(x_m, y_m);
+  if (wall == nullptr) return std::numeric_limits<double>::infinity();
+  const double x = x_m - wall->x_m;
+  const double y = y_m - wall->y_m;
+  const double off =
+      std::sqrt(std::max(wall->xx * x * x + 2.0 * wall->xy * x * y + wall->yy * y * y, 0.0));
+  const double all = std::hypot(x, y);
+  return all > kBeside_m ? std::max(off, all - kPoint_m) : off;
+}
+
 Point point_of(const chart::Scan& scan, const chart::Beam& b) {
   const float x = b.x_m - scan.eye_x_m;
   const float y = b.y_m - scan.eye_y_m;
@@ -187,6 +202,8 @@ Agreement agreement(const Field& field, const chart::Scan& scan, const Pose2& po
   constexpr double kAtWall_m = 0.17;
   constexpr double kBehind_m = 0.35;
   constexpr double kSigma_m = 0.10;
+  constexpr double kStray = 0.05;  // share of hits that are anywhere
+  const double close_m = std::max(0.05, 0.5 * field.resolution_m());
   Agreement a;
   const Pose2 eye = pose * Pose2{scan.eye_x_m, scan.eye_y_m, 0.0};
   std::size_t at_wall = 0;
@@ -194,6 +211,7 @@ Agreement agreement(const Field& field, const chart::Scan& scan, const Pose2& po
   std::size_t odd = 0;
   std::size_t unseen = 0;
   double log_sum = 0.0;
+  double close_sum = 0.0;
   const std::vector<Point> hits = hits_of(scan, most);
   for (const Point& p : hits) {
     const Pose2 hit = pose * Pose2{p.x_m, p.y_m, 0.0};
@@ -209,9 +227,11 @@ Agreement agreement(const Field& field, const chart::Scan& scan, const Pose2& po
     const double d = field.distance_m(hit.x_m, hit.y_m);
     const bool explained = d <= kAtWall_m;
     // Through a wall, yet at a wall: half a contradiction, for a table's leg hides nothing.
-    double likelihood = 0.05 + 0.95 * std::exp(-d * d / (2.0 * kSigma_m * kSigma_m));
+    double likelihood = kStray + (1.0 - kStray) * std::exp(-d * d / (2.0 * kSigma_m * kSigma_m));
     if (crossed) likelihood = std::min(likelihood, 0.02);
     log_sum += std::log(likelihood);
+    const double off = crossed ? 1.0 : off_line_m(field, hit.x_m, hit.y_m) / close_m;
+    close_sum += std::log(kStray + (crossed ? 0.0 : (1.0 - kStray) * std::exp(-0.5 * off * off)));
     if (crossed) {
       ++through;
     } else if (explained) {
@@ -232,6 +252,7 @@ Agreement agreement(const Field& field, const chart::Scan& scan, const Pose2& po
   a.odd = share(odd);
   a.unseen = share(unseen);
   a.log_fit = log_sum / static_cast<double>(hits.size());
+  a.close_fit = close_sum / static_cast<double>(hits.size());
   return a;
 }
 

@@ -13,7 +13,9 @@
 //                because neighbours share one wall and one error of the map; directions in which
 //                H is nearly empty (along a corridor) get the greatest deviation that is told
 //   agreement    hits at a wall; hits behind a wall of the map (crossed: a contradiction); hits
-//                where the map has nothing (people, boxes, what is new); hits where nobody ever saw
+//                where the map has nothing (people, boxes, what is new); hits where nobody ever
+//                saw. How near to the walls' lines they are tells a place from one that is only
+//                alike: somewhere in a map of another building most hits are near some wall
 //
 // Sources: Welsch's robust weights, Holland and Welsch 1977; point-to-line: Censi, ICRA 2008.
 // Frame G of the map; poses X_GB. Pure.
@@ -83,6 +85,7 @@ struct Agreement {
   double odd = 0.0;        ///< in the free space of the map
   double unseen = 0.0;     ///< outside of what the map shows, no wall in between
   double log_fit = 0.0;    ///< mean over the hits of ln p(hit); 0 at best
+  double close_fit = 0.0;  ///< likewise, where p is sharp: a hit 0.1 m off its wall's line is odd
   std::size_t hits = 0;
 };
 

@@ -13,11 +13,20 @@ constexpr std::size_t kFineHits = 180;
 constexpr double kNearMore_m = 0.5;  // what the odometry errs by until it is decided
 constexpr double kNearMore_rad = 0.2;
 constexpr std::uint32_t kNearFor = 10;
+constexpr double kNowhereAfter_m = 5.0;
 
-void weigh(const Field& field, const chart::Scan& scan, double counts, Place& place) {
+double apart_m(const Pose2& a, const Pose2& b) noexcept {
+  return std::hypot(a.x_m - b.x_m, a.y_m - b.y_m);
+}
+
+/// @param fresh share of what is seen that no scan before saw from this place
+void weigh(const Field& field, const chart::Scan& scan, const StartParams& p, double fresh,
+           Place& place) {
   constexpr std::size_t kLooked = 90;
   const Agreement a = agreement(field, scan, place.pose, kLooked);
-  place.evidence += counts * a.log_fit;
+  place.evidence += p.counts * a.log_fit;
+  place.close = a.close_fit;
+  place.stands += fresh * p.counts * (a.close_fit - p.nowhere);
   const double n = place.scans;
   place.explained = (place.explained * n + a.explained) / (n + 1.0);
   place.crossed = (place.crossed * n + a.crossed) / (n + 1.0);
@@ -70,10 +79,17 @@ std::optional<Pose2> GlobalStart::feed(const Field& field, const chart::Scan& sc
 
 void GlobalStart::follow(const Field& field, const chart::Scan& scan, std::span<const Point> few,
                          std::span<const Point> hits, const Pose2& step) {
+  constexpr double kWorstStep = 8.0;
+  const double way = std::hypot(step.x_m, step.y_m);
+  const double fresh = std::min(1.0, way / p_.fresh_m + std::abs(step.yaw_rad) / p_.fresh_rad);
   for (Place& place : places_) {
-    const Found found = search_window(field, few, place.pose * step, p_.window);
+    const Pose2 expected = place.pose * step;
+    const Found found = search_window(field, few, expected, p_.window);
     place.pose = refine(field, hits, found.pose, {}, p_.match).pose;
-    weigh(field, scan, p_.counts, place);
+    place.way_m += way;
+    weigh(field, scan, p_, fresh, place);
+    const double off = apart_m(place.pose, expected) / (p_.step_m + p_.step_share * way);
+    place.stands -= std::min(0.5 * off * off, kWorstStep);
   }
 }
 
@@ -94,7 +110,7 @@ void GlobalStart::begin(const Field& field, const chart::Scan& scan, std::span<c
     if (!counts(f.pose)) continue;
     Place place;
     place.pose = refine(field, hits, f.pose, {}, p_.match).pose;
-    weigh(field, scan, p_.counts, place);
+    weigh(field, scan, p_, 1.0, place);
     if (scans_ > 0) place.evidence += best - now;
     places_.push_back(place);
   }
@@ -108,7 +124,7 @@ void GlobalStart::merge() {
     if (!kept.empty() && place.evidence < kept.front().evidence - p_.hopeless) break;
     if (kept.size() >= p_.whole.most) break;
     auto same = std::find_if(kept.begin(), kept.end(), [&](const Place& k) {
-      return std::hypot(k.pose.x_m - place.pose.x_m, k.pose.y_m - place.pose.y_m) < 0.4 &&
+      return apart_m(k.pose, place.pose) < 0.4 &&
              std::abs(base::angle_diff_rad(k.pose.yaw_rad, place.pose.yaw_rad)) < 0.2;
     });
     if (same == kept.end()) {
@@ -117,16 +133,24 @@ void GlobalStart::merge() {
       same->scans = place.scans;  // the same place, known for longer
       same->explained = place.explained;
       same->crossed = place.crossed;
+      same->stands = place.stands;
+      same->way_m = place.way_m;
     }
   }
   places_ = std::move(kept);
 }
 
+bool GlobalStart::fits_nowhere() const noexcept {
+  return way_m_ >= kNowhereAfter_m &&
+         std::none_of(places_.begin(), places_.end(), [](auto& p) { return p.stands > 0.0; });
+}
+
 std::optional<Pose2> GlobalStart::decide() const {
-  if (places_.empty() || cut_ || way_m_ < p_.least_way_m) return std::nullopt;
+  if (places_.empty() || cut_) return std::nullopt;
   const Place& best = places_.front();
-  if (best.scans < p_.least_scans || best.explained < p_.least_explained ||
-      best.crossed > p_.most_crossed) {
+  if (best.scans < p_.least_scans || best.way_m < p_.least_way_m ||
+      best.explained < p_.least_explained || best.crossed > p_.most_crossed ||
+      best.stands < doubt_ * p_.stands || best.close < p_.least_close) {
     return std::nullopt;
   }
   if (places_.size() > 1 && best.evidence - places_[1].evidence < p_.lead) return std::nullopt;

@@ -19,6 +19,7 @@ constexpr double kSame_rad = 0.2;
 constexpr double kDepthAtFirst_m = 0.02;
 constexpr double kDepthDrift_m = 0.0005;  // a scan; other walls, other materials
 constexpr double kDepthSurest_m = 0.003;
+constexpr double kMostDoubt = 8.0;
 
 bool finite(const Pose2& p) noexcept {
   return std::isfinite(p.x_m) && std::isfinite(p.y_m) && std::isfinite(p.yaw_rad);
@@ -82,7 +83,8 @@ void Reckoned::begin(const Pose2& at, double deviation_m, double deviation_rad) 
   pose = at;
   covariance = Matrix3d::Zero();
   covariance.diagonal() << place * place, place * place, turn * turn;
-  good();
+  bad_m = 0.0;
+  bad_scans = 0;
 }
 
 void Reckoned::go(const Pose2& step, const TrackerParams& p) {
@@ -108,11 +110,17 @@ Phase Reckoned::bad(const Pose2& step, const TrackerParams& p) noexcept {
   return lost ? Phase::Lost : Phase::Doubtful;
 }
 
+void Reckoned::good(const Pose2& step, const TrackerParams& p) noexcept {
+  bad_m = std::max(0.0, bad_m - p.made_up * std::hypot(step.x_m, step.y_m));
+  if (bad_m == 0.0) bad_scans = 0;
+}
+
 void Tracker::begin_at(const Pose2& in_map, double deviation_m, double deviation_rad) {
   now_.begin(inverse(field_->shape().origin) * in_map, deviation_m, deviation_rad);
   phase_ = Phase::Tracking;
   told_ = true;
   fitted_ = false;
+  held_m_ = 0.0;
 }
 
 void Tracker::forget() {
@@ -172,6 +180,9 @@ void Tracker::track(const chart::Scan& scan, const Pose2& step, Told& told) {
   const Match match = refine(*field_, hits, found.pose, prior, p_.match);
   told.agreement = agreement(*field_, scan, match.pose);
   told.reason = misfit(told.agreement, p_);
+  if (told.reason.empty() && told_ && told.agreement.close_fit < p_.start.nowhere) {
+    told.reason = "what the scanner sees is not in the map at the told place";
+  }
   if (!told.reason.empty()) {
     told.denied = !fitted_;
     bad(step);
@@ -194,7 +205,9 @@ void Tracker::track(const chart::Scan& scan, const Pose2& step, Told& told) {
   depth_deviation_m_ = std::max(match.depth_deviation_m, kDepthSurest_m);
   told_ = false;
   fitted_ = true;
-  now_.good();
+  now_.good(step, p_);
+  held_m_ += std::hypot(step.x_m, step.y_m);
+  if (held_m_ >= p_.held_after_m) doubt_ = 1.0;
   phase_ = Phase::Tracking;
   const double yaw = field_->shape().origin.yaw_rad;
   told.fix = Fix{scan.stamp, field_->shape().origin * now_.pose, turned_by(match.covariance, yaw)};
@@ -218,7 +231,7 @@ bool Tracker::has_rival(const chart::Scan& scan, const std::vector<Point>& few,
         std::abs(base::angle_diff_rad(other.pose.yaw_rad, match.pose.yaw_rad)) < kSame_rad;
     if (same) continue;
     const Agreement a = agreement(*field_, scan, other.pose);
-    if (misfit(a, p_).empty() && p_.start.counts * (log_fit - a.log_fit) < p_.start.lead) {
+    if (misfit(a, p_).empty() && p_.start.counts * (log_fit - a.log_fit) < p_.rival) {
       return true;
     }
   }
@@ -227,7 +240,10 @@ bool Tracker::has_rival(const chart::Scan& scan, const std::vector<Point>& few,
 
 void Tracker::bad(const Pose2& step) {
   phase_ = now_.bad(step, p_);
-  if (phase_ == Phase::Lost) start_.clear();
+  if (phase_ != Phase::Lost) return;
+  if (fitted_ && held_m_ < p_.held_after_m) doubt_ = std::min(2.0 * doubt_, kMostDoubt);
+  start_.clear();
+  start_.doubt(doubt_);
 }
 
 /// @return false: nothing fits at the suggested place, the search goes on
@@ -253,14 +269,14 @@ bool Tracker::tries(const chart::Scan& scan, Told& told) {
 void Tracker::search(const chart::Scan& scan, const Pose2& step, Told& told) {
   const auto decided = start_.feed(*field_, scan, step);
   told.candidates = start_.places().size();
-  told.reason = phase_ == Phase::Lost ? kLostWords : "looking for the place in the map";
+  told.reason = phase_ == Phase::Lost   ? kLostWords
+                : start_.fits_nowhere() ? "nothing in the map fits: is it the map of this place?"
+                                        : "looking for the place in the map";
   if (!decided) return;
-  now_.pose = *decided;
-  now_.covariance = Matrix3d::Zero();
-  now_.covariance.diagonal() << 0.01, 0.01, 0.001;
+  now_.begin(*decided, 0.1, 0.03);
   phase_ = Phase::Tracking;
-  now_.good();
   told_ = fitted_ = false;
+  held_m_ = 0.0;
   ++resets_;
   start_.clear();
   track(scan, Pose2{}, told);

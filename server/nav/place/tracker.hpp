@@ -1,7 +1,7 @@
 #pragma once
 // Where the robot is in a map of the plane, from scan to scan.
 //
-//             set_pose                    two bad scans, or 1 m of them
+//             set_pose                    two bad scans, and 1 m of them
 //   Searching ---------> Tracking --bad scan--> Doubtful ------------------> Lost
 //       |  decided          ^  <---good scan---    |                          |
 //       +-------------------+----------------------+---- decided, set_pose ---+
@@ -11,6 +11,12 @@
 //   Doubtful   what is seen does not fit there; odometry carries the pose, nothing is told
 //   Lost       the place is not known any more; it is searched as in Searching, and people are told
 //              "lost: drive by hand to a known place, or tap where the robot is"
+//
+// A good scan among bad ones does not make the place right: in a map of another building every
+// third one fits somewhere near. So a metre of good ones makes up for half a metre of bad ones
+// only, and a place that did not hold for 10 m before it was lost was none: the next one that the
+// search finds has to stand twice as firm against "nowhere in this map" (start.hpp), then four
+// times, eight times at most.
 //
 // A tap on the map is a start with its own uncertainty, looked up around it, and not believed when
 // the scan does not fit there. Where it fits at another place around it as well (two bays of a
@@ -56,6 +62,9 @@ struct TrackerParams {
   double most_crossed = 0.35;     ///< share of the hits behind walls above which it is
   std::size_t least_hits = 20;    ///< fewer say nothing
   double lost_after_m = 1.0;      ///< of bad scans
+  double made_up = 0.5;           ///< of bad way, by as much way of good scans
+  double held_after_m = 10.0;     ///< of good scans: the map is the right one
+  double rival = 8.0;             ///< of the told place over another one near it, in evidence
   std::uint32_t lost_after = 2;   ///< bad scans at least
 };
 
@@ -94,10 +103,7 @@ struct Reckoned {
   void go(const Pose2& step, const TrackerParams& p);
   /// @return Doubtful, or Lost
   Phase bad(const Pose2& step, const TrackerParams& p) noexcept;
-  void good() noexcept {
-    bad_m = 0.0;
-    bad_scans = 0;
-  }
+  void good(const Pose2& step, const TrackerParams& p) noexcept;
 };
 
 class Tracker {
@@ -151,6 +157,8 @@ class Tracker {
   double depth_deviation_m_ = 0.0;
   bool told_ = false;    ///< set_pose since the last scan: the window is wide
   bool fitted_ = false;  ///< a scan since the pose was told or found
+  double held_m_ = 0.0;  ///< way of good scans since the pose was told or found
+  double doubt_ = 1.0;   ///< of the map: GlobalStart::doubt
   std::uint32_t resets_ = 0;
 };
 

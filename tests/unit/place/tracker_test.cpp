@@ -123,6 +123,43 @@ TEST(Tracker, NoticesThatItWasCarriedAway) {
   EXPECT_LT(driven_m, 3.0);
 }
 
+TEST(Tracker, IsLostWhereEveryThirdScanFitsOnly) {
+  // Given: a robot that knows its place.
+  Tracker tracker(tests::field_of(tests::shed(), 12.0, 8.0));
+  tests::Scanner scanner(18);
+  const Drive drive = round_the_shed(40);
+  tracker.set_pose(drive.poses[0], 0.1, 0.05);
+  ASSERT_TRUE(
+      tracker.feed(scanner.look(tests::shed(), drive.poses[0], 1.0), drive.odometry[0]).fix);
+  // When: of three scans two are of another building.
+  double driven_m = 0.0;
+  for (std::size_t i = 1; i < 40 && tracker.phase() != Phase::Lost; ++i, driven_m += 0.3) {
+    const double time_s = 1.0 + 0.1 * static_cast<double>(i);
+    const bool fits = i % 3 == 0;
+    tracker.feed(fits ? scanner.look(tests::shed(), drive.poses[i], time_s)
+                      : scanner.look(tests::other_building(), {1.5, 1.7, 0.3}, time_s),
+                 drive.odometry[i]);
+  }
+  // Then: the good ones do not hold it.
+  EXPECT_EQ(tracker.phase(), Phase::Lost);
+  EXPECT_LT(driven_m, 3.0);
+}
+
+TEST(Tracker, StaysWhereEveryThirdScanIsOdd) {
+  Tracker tracker(tests::field_of(tests::shed(), 12.0, 8.0));
+  tests::Scanner scanner(19);
+  const Drive drive = round_the_shed(60);
+  tracker.set_pose(drive.poses[0], 0.1, 0.05);
+  for (std::size_t i = 0; i < 60; ++i) {
+    const double time_s = 1.0 + 0.1 * static_cast<double>(i);
+    const bool odd = i % 3 == 2;
+    tracker.feed(odd ? scanner.look(tests::other_building(), {1.5, 1.7, 0.3}, time_s)
+                     : scanner.look(tests::shed(), drive.poses[i], time_s),
+                 drive.odometry[i]);
+    ASSERT_NE(tracker.phase(), Phase::Lost) << i;
+  }
+}
+
 TEST(Tracker, FindsItsPlaceWithoutAPose) {
   tests::Scanner scanner(13);
   const auto field = tests::field_of(tests::shed(), 12.0, 8.0);

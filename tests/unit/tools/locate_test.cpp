@@ -88,6 +88,21 @@ TEST(RealDrive, AStartWithoutAPoseIsRightOrNotTold) {
   RecordProperty("figures", figures_text(f));
 }
 
+/// Scans of the office in the map of a depot: somewhere in it most hits are near some wall, and no
+/// place is called known. Three of the hundred of `roverd locate --starts 100`.
+TEST(RealDrive, AStartInAnotherBuildingIsNotTold) {
+  ROVERD_REAL_DATA(words, "sensors/maps/depot.yaml");
+  ROVERD_REAL_DATA(picture, "sensors/maps/depot.pgm");
+  ROVERD_REAL_DATA(log, "sensors/carmen/intel-corrected.log.gz");
+  const auto scans = scans_of_log(tests::read_file(log));
+  ASSERT_TRUE(scans) << scans.error().detail;
+  const StartFigures f = start_in_log(field_of(words, picture), *scans, {}, 3);
+  SCOPED_TRACE(figures_text(f));
+  EXPECT_EQ(f.starts, 3U);
+  EXPECT_EQ(f.untold, 3U);
+  RecordProperty("figures", figures_text(f));
+}
+
 TEST(Log, WithoutAScanIsRefused) {
   const std::string text = "# nothing\nODOM 0 0 0\nFLASER 3 1\n";
   const auto scans =
