@@ -142,8 +142,8 @@ TEST(Circles, CountWithTheirWholeLengthAndLoitersWithTheirTime) {
   v.max_speed_mps = 1.0;
   v.default_speed_mps = 1.0;
   const Estimate round = estimate(course({spot(0, -13), circle(0, 0, 5, 2.5)}), v);
-  EXPECT_NEAR(round.length_m, 12.0 + 2.5 * 10.0 * base::kPi, 0.01);
-  EXPECT_NEAR(round.time_s.value(), round.length_m, 0.01);
+  EXPECT_NEAR(round.length_m.value(), 12.0 + 2.5 * 10.0 * base::kPi, 0.01);
+  EXPECT_NEAR(round.time_s.value(), round.length_m.value(), 0.01);
   const Estimate stays = estimate(course({spot(0, 0), loiter(10, 0, 30.0)}), v);
   EXPECT_NEAR(stays.time_s.value(), 40.0, 0.01);
   EXPECT_FALSE(estimate(course({spot(0, 0), loiter(10, 0, {})}), v).time_s)
