@@ -136,11 +136,13 @@ void KnownPlaces::see(const nav::tags::TagsSeen& image, nav::Estimator& estimato
 void KnownPlaces::begin(Known& known, const Seen& seen, nav::Estimator& estimator, base::Time now) {
   const auto body = history_.at(seen.stamp);
   if (!body || !known.place.yaw_rad || !seen.face_rad) return;
-  estimator.need_frame(known.place.at);
-  if (!place_in(known, estimator)) return;
+  // Without a frame it is counted from the tag itself; a glance at one makes none.
+  if (estimator.frame() && !place_in(known, estimator)) return;
   const auto which = static_cast<std::size_t>(known.place.tag.value_or(0));
   const auto found = first_sight_.look(which, sight_of(known, seen), *body);
-  if (!found || !estimator.begin(*found, now) || news_.size() >= kMostNews) return;
+  if (!found) return;
+  estimator.need_frame(known.place.at);
+  if (!estimator.begin(*found, now) || news_.size() >= kMostNews) return;
   news_.push_back({false, "where the robot stands is known by " + known.place.name + ", to " +
                               number(found->sigma_m, "%.2f m")});
 }

@@ -67,6 +67,33 @@ test('what keeps it from arming is a light with its cure', async ({ page, statio
   await expect(ready).not.toContainText('reset the stop');
 });
 
+test('where no fix is heard it is armed to be driven by hand, and nothing else drives', async ({
+  page,
+  station,
+}) => {
+  await page.setViewportSize({ width: 390, height: 844 });
+  await open_page(page, station.url);
+  const ready = page.getByRole('region', { name: 'Before arming' });
+  const by_hand = ready.getByRole('button', { name: 'Arm to drive by hand' });
+  await expect(ready).toContainText('Ready to arm', { timeout: 30_000 });
+  await expect(by_hand).toHaveCount(0);
+  station.sim.tell({ set: { gnss_outage: true } });
+  await expect(by_hand).toBeVisible({ timeout: 20_000 });
+  await expect(async () => {
+    await by_hand.focus();
+    await page.keyboard.down('Enter');
+    await page.waitForTimeout(1200);
+    await page.keyboard.up('Enter');
+    await expect(page.getByRole('button', { name: 'Disarm' })).toBeVisible({ timeout: 1500 });
+  }).toPass({ timeout: 30_000 });
+  expect(await station.rest('GET', '/vehicle')).toMatchObject({ armed: true, armed_by_hand: true });
+  await press(page, 'MANUAL');
+  await expect.poll(() => station.rest('GET', '/vehicle')).toMatchObject({ mode: 'MANUAL' });
+  await expect(station.rest('PUT', '/vehicle/mode', { mode: 'GUIDED' })).rejects.toThrow(
+    /by hand only/,
+  );
+});
+
 test('a start shows its first way, the way home, the fence and its end, and covers no map', async ({
   page,
   station,

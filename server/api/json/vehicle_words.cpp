@@ -82,10 +82,9 @@ Json place_json(const std::optional<base::PlaceState>& place, base::Time now) {
   return out;
 }
 
-/// The position's source, and what the map in use has to say of it.
-Json localisation_json(const base::Snapshot& s, base::Time now) {
+/// The position's source, and what the map in use has to say of it. @param place of place_json
+Json localisation_json(const base::Snapshot& s, const Json& place) {
   using base::PlacePhase;
-  const Json place = place_json(s.place, now);
   const PlacePhase phase = s.place ? s.place->phase : PlacePhase::Off;
   const char* state = phase == PlacePhase::Known       ? "tracking"
                       : phase == PlacePhase::Searching ? "searching"
@@ -280,6 +279,7 @@ Json vehicle_json(const base::Snapshot& s, const std::string& name, base::Time n
   for (const auto& condition : s.safety) {
     safety.push_back({{"id", condition.id}, {"detail", condition.detail}});
   }
+  Json place = place_json(s.place, now);
   return {{"name", name},
           {"time", base::to_rfc3339(s.wall)},
           {"mono_s", mono_s(now)},
@@ -298,8 +298,8 @@ Json vehicle_json(const base::Snapshot& s, const std::string& name, base::Time n
            {{"speed_mps", rounded(s.command.twist.linear_mps, kPlaces3)},
             {"yaw_rate_dps", degrees(s.command.twist.angular_radps)}}},
           {"position", position_json(s.pose, now)},
-          {"place", place_json(s.place, now)},
-          {"localisation", localisation_json(s, now)},
+          {"localisation", localisation_json(s, place)},
+          {"place", std::move(place)},
           {"attitude", attitude_json(s.attitude, now)},
           {"gnss", gnss_json(s, now)},
           {"base", base_json(s, now)},

@@ -259,6 +259,11 @@ class Estimator {
   double map_floor_rad() const noexcept;
   void first_place(const base::PlaceFix& fix, Time stamp) noexcept;
   void follow_satellites(const base::PlaceFix& fix, Time stamp) noexcept;
+  struct Since {
+    base::EnuPoint way;
+    double turned_rad = 0.0;
+  };
+  Since driven_since(const StateVector& then, double yaw_rad) const noexcept;
   void watch_denial(const base::PlaceState& told) noexcept;
   void lead_by_map(Time stamp) noexcept;
   void fuse_place(const base::PlaceFix& fix, Time stamp) noexcept;

@@ -144,18 +144,15 @@ bool Estimator::begin(const LandmarkPose& seen, Time now) noexcept {
   const Belief before = belief_;
   const auto past = history_.at(seen.stamp);
   const StateVector at = past ? past->x : belief_.x;
-  const double turned = base::angle_diff_rad(at(kYaw), belief_.x(kYaw));
-  // Its way since then went by the heading of then.
+  const Since since = driven_since(at, seen.yaw_rad);
   const double askew = base::angle_diff_rad(at(kYaw), seen.yaw_rad);
-  const Eigen::Vector2d way{belief_.x(kEast) - at(kEast), belief_.x(kNorth) - at(kNorth)};
-  const Eigen::Vector2d since = Eigen::Rotation2Dd(askew) * way;
   const double known = belief_.P(kYaw, kYaw) + seen.sigma_rad * seen.sigma_rad;
   const bool contradicts = heading_known_ && askew * askew > kGate1 * known;
-  set_heading(seen.yaw_rad + turned, seen.sigma_rad);
+  set_heading(seen.yaw_rad + since.turned_rad, seen.sigma_rad);
   reset_state(belief_, kBias, belief_.x(kBias),
               base::rad_from_deg(params_->compass_bias_sigma_deg));
   if (contradicts) note_reset("heading", before);
-  move({seen.at.east_m + since(0), seen.at.north_m + since(1)}, seen.sigma_m);
+  move(seen.at + since.way, seen.sigma_m);
   located_ = true;
   located_since_ = now;
   landmarks_led_ = true;

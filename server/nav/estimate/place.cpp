@@ -118,12 +118,22 @@ void Estimator::watch_denial(const base::PlaceState& told) noexcept {
   doubt_position(kLostDoubt_m);
 }
 
+/// From a moment to now. What was driven since then went by the heading of then.
+/// @param yaw_rad which way it pointed then, as is known by now
+Estimator::Since Estimator::driven_since(const StateVector& then, double yaw_rad) const noexcept {
+  const double askew = base::angle_diff_rad(then(kYaw), yaw_rad);
+  const Eigen::Vector2d way{belief_.x(kEast) - then(kEast), belief_.x(kNorth) - then(kNorth)};
+  const Eigen::Vector2d turned = Eigen::Rotation2Dd(askew) * way;
+  return {{turned.x(), turned.y()}, base::angle_diff_rad(then(kYaw), belief_.x(kYaw))};
+}
+
 void Estimator::first_place(const base::PlaceFix& fix, Time stamp) noexcept {
   const Belief before = belief_;
   const Eigen::Matrix2d r = place_covariance(fix);
   const auto past = history_.at(stamp);
   const StateVector at = past ? past->x : belief_.x;
   const base::EnuPoint seen = frame_->to_local(fix.at);
+  const Since since = driven_since(at, heading_known_ ? at(kYaw) : fix.yaw_rad);
   if (located_) {  // so its heading is not known: not by a place that is not its own
     const Eigen::Vector2d off{seen.east_m + health_.map_offset.east_m - at(kEast),
                               seen.north_m + health_.map_offset.north_m - at(kNorth)};
@@ -131,17 +141,12 @@ void Estimator::first_place(const base::PlaceFix& fix, Time stamp) noexcept {
     const bool near = off.dot(S.inverse() * off) <= kGate2 || (placed_ && off.norm() < kTap_m);
     if (!near) return place_refused(fix, stamp, {off(0), off(1)});
   }
-  const double turned = base::angle_diff_rad(at(kYaw), belief_.x(kYaw));
-  // Its way since then went by the heading of then.
-  const double askew = heading_known_ ? 0.0 : base::angle_diff_rad(at(kYaw), fix.yaw_rad);
-  const Eigen::Vector2d way{belief_.x(kEast) - at(kEast), belief_.x(kNorth) - at(kNorth)};
-  const Eigen::Vector2d since = Eigen::Rotation2Dd(askew) * way;
   if (!heading_known_) {
-    set_heading(fix.yaw_rad + turned, std::sqrt(yaw_variance(fix)));
+    set_heading(fix.yaw_rad + since.turned_rad, std::sqrt(yaw_variance(fix)));
     note_reset("map", before);
   }
   if (located_) return;  // its place is the next one's matter
-  move({seen.east_m + since(0), seen.north_m + since(1)}, std::sqrt(std::max(r(0, 0), r(1, 1))));
+  move(seen + since.way, std::sqrt(std::max(r(0, 0), r(1, 1))));
   located_since_ = now_;
   located_ = true;
   lead_by_map(stamp);

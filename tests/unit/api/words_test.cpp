@@ -144,6 +144,50 @@ TEST(VehicleWords, ASpeedThatNobodyTellsAnyMoreIsUnknown) {
   EXPECT_EQ(v["base"]["stale"], false);
 }
 
+TEST(VehicleWords, LocalisationSaysInShortWhatTheMapInUseSays) {
+  const auto kept = std::make_unique<base::Snapshot>();
+  base::Snapshot& s = *kept;
+  const Json none = vehicle_json(s, "bunker", at(10s))["localisation"];
+  EXPECT_EQ(none["state"], "unknown");
+  EXPECT_TRUE(none["source"].is_null());
+  EXPECT_TRUE(none["accuracy"].is_null());
+  s.pose.emplace();
+  s.pose->source = "map+odometry";
+  s.place.emplace();
+  s.place->stamp = at(9'900ms);
+  s.place->sigma_m = 0.021;
+  for (const auto& [phase, word] : {std::pair{base::PlacePhase::Known, "tracking"},
+                                    {base::PlacePhase::Searching, "searching"},
+                                    {base::PlacePhase::Lost, "lost"}}) {
+    s.place->phase = phase;
+    const Json now = vehicle_json(s, "bunker", at(10s))["localisation"];
+    EXPECT_EQ(now["state"], word);
+    EXPECT_EQ(now["source"], "map+odometry");
+    EXPECT_EQ(now["accuracy"], 0.021);
+    EXPECT_EQ(now["age_s"], 0.1);
+  }
+}
+
+TEST(RowWords, InShortTheyAreNullWhereNoneIsDrivenOrSeen) {
+  EXPECT_TRUE(row_now_json(std::nullopt)["offset_m"].is_null());
+  EXPECT_TRUE(row_now_json(std::nullopt)["item"].is_null());
+  base::RowState row;
+  row.item = 3;
+  row.side = "both";
+  EXPECT_TRUE(row_now_json(row)["certainty"].is_null());
+  EXPECT_EQ(row_now_json(row)["item"], 3);
+  row.seen.emplace();
+  row.seen->offset_m = -0.04;
+  row.seen->angle_rad = 0.1;
+  row.seen->certainty = 0.75;
+  row.seen->width_m = 1.9;
+  const Json seen = row_now_json(row);
+  EXPECT_EQ(seen["offset_m"], -0.04);
+  EXPECT_NEAR(seen["angle_deg"].get<double>(), -5.73, 0.01) << "clockwise";
+  EXPECT_EQ(seen["certainty"], 0.75);
+  EXPECT_EQ(seen["width_m"], 1.9);
+}
+
 TEST(VehicleWords, AMessageIsAboutOneKilobyte) {
   base::Snapshot s;
   s.pose.emplace();

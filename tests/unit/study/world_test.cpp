@@ -241,6 +241,34 @@ TEST(WorldRunTest, WhatWasSeenWhereItIsTouchedIsTheRobotsOwnContact) {
   EXPECT_GT(run->touches[0].seen_before_s, 2.0);
 }
 
+//   A bar 1 cm above the plane: from afar, where beams are thick, they meet it; from nearby all go
+//   beneath it, and so does what the robot remembers of it.
+TEST(WorldRunTest, WhatIsLookedBeneathFromNearbyLiesBesideThePlane) {
+  const auto run =
+      run_world(setup_of(), ahead(R"({"kind": "bar", "points": [[-2, 7], [2, 7]], "height_m": 0.07,
+                            "bottom_m": 0.31})"));
+  ASSERT_TRUE(run) << run.error().detail;
+  ASSERT_FALSE(run->touches.empty());
+  EXPECT_EQ(run->touches[0].blame, Blame::Beside);
+  EXPECT_GT(run->touches[0].beams, 100U);
+  EXPECT_GT(run->touches[0].seen_before_s, 1.0);
+}
+
+//   It stops for what it would pass beneath, for the guard lets nothing pass so low above it: the
+//   room before that is told all the same.
+TEST(WorldRunTest, TheRoomBeforeWhatHangsOverTheBodyIsMeasured) {
+  Scenario s = ahead(R"({"kind": "bar", "points": [[-2, 7], [2, 7]], "height_m": 0.3,
+                         "bottom_m": 0.52})");
+  s.lidar = true;
+  const auto run = run_world(setup_of(), s);
+  ASSERT_TRUE(run) << run.error().detail;
+  EXPECT_TRUE(run->touches.empty());
+  ASSERT_FALSE(run->stops.empty());
+  ASSERT_TRUE(run->stops[0].stands_m);
+  EXPECT_GE(*run->stops[0].stands_m, 0.05);
+  EXPECT_LE(*run->stops[0].stands_m, 0.6);
+}
+
 //   A lidar meets a flat thing for seconds; by the settings it rises no higher than grass may.
 TEST(WorldRunTest, WhatRisesNoHigherThanGrassIsNoContactThatBrakesWouldHaveSpared) {
   Scenario s =
