@@ -106,7 +106,8 @@ base::Result<void> Robot::Impl::handle(const Arm& c) {
   const HomeAtArm rule = home_at_arm_from(config->robot.home_at_arm).value_or(HomeAtArm::Keep);
   if (pose && home.arm(pose->global, rule)) begin_way_anew();
   event(Severity::Info, "armed",
-        by_hand_only ? "armed to be driven by hand: the position is not known" : "armed");
+        by_hand_only ? "armed to be driven by hand: the checks of the position do not hold"
+                     : "armed");
   return {};
 }
 

@@ -158,8 +158,7 @@ export const checks = {
   under_the_pointer: 'Under the pointer',
   before_arming: 'Before arming',
   arm_by_hand: 'Arm to drive by hand',
-  arm_by_hand_means:
-    'It does not know where it is: only you drive it, to make a map or to be found in one.',
+  arm_by_hand_means: 'It has no fix: only you drive it, to make a map or to be found in one.',
   ready_to_arm: 'Ready to arm',
   not_ready_to_arm: 'Not ready to arm',
   what_the_robot_sees: 'What the robot sees',

@@ -156,7 +156,7 @@ export const checks = {
   before_arming: 'Enne aktiveerimist',
   arm_by_hand: 'Aktiveeri käsitsi sõitmiseks',
   arm_by_hand_means:
-    'Ta ei tea, kus ta on: sõidad ainult sina, et teha kaart või et ta end kaardilt leiaks.',
+    'Ta on asukohata: sõidad ainult sina, et teha kaart või et ta end kaardilt leiaks.',
   ready_to_arm: 'Valmis aktiveerimiseks',
   not_ready_to_arm: 'Pole aktiveerimiseks valmis',
   what_the_robot_sees: 'Mida robot näeb',

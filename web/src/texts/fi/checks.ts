@@ -156,7 +156,7 @@ export const checks = {
   before_arming: 'Ennen aktivointia',
   arm_by_hand: 'Aktivoi käsin ajamista varten',
   arm_by_hand_means:
-    'Se ei tiedä, missä se on: vain sinä ajat, kartan tekemistä tai siltä löytymistä varten.',
+    'Sillä ei ole sijaintia: vain sinä ajat, kartan tekemistä tai siltä löytymistä varten.',
   ready_to_arm: 'Valmis aktivoitavaksi',
   not_ready_to_arm: 'Ei valmis aktivoitavaksi',
   what_the_robot_sees: 'Mitä robotti näkee',

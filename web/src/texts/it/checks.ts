@@ -157,8 +157,7 @@ export const checks = {
   under_the_pointer: 'Sotto il puntatore',
   before_arming: 'Prima di armare',
   arm_by_hand: 'Arma per guidare a mano',
-  arm_by_hand_means:
-    'Non sa dove si trova: guidi solo tu, per fare una mappa o per farlo ritrovare in una.',
+  arm_by_hand_means: 'Nessun fix: guidi solo tu, per fare una mappa o per farlo ritrovare in una.',
   ready_to_arm: 'Pronto da armare',
   not_ready_to_arm: 'Non pronto da armare',
   what_the_robot_sees: 'Cosa vede il robot',

@@ -156,8 +156,7 @@ export const checks = {
   under_the_pointer: 'Under pekeren',
   before_arming: 'Før aktivering',
   arm_by_hand: 'Aktiver for å kjøre for hånd',
-  arm_by_hand_means:
-    'Den vet ikke hvor den er: bare du kjører, for å lage et kart eller for å bli funnet i et.',
+  arm_by_hand_means: 'Ingen fix: bare du kjører, for å lage et kart eller for å bli funnet i et.',
   ready_to_arm: 'Klar til aktivering',
   not_ready_to_arm: 'Ikke klar til aktivering',
   what_the_robot_sees: 'Hva roboten ser',
