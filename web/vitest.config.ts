@@ -4,6 +4,7 @@ import { defineConfig } from 'vitest/config';
 // so one process runs them all: to start one for each file takes longer than the tests.
 export default defineConfig({
   test: {
+    execArgv: ['--expose-gc'], // what grows is seen only without what is garbage
     include: ['tests/**/*.test.ts'],
     environment: 'node',
     isolate: false,

@@ -49,6 +49,11 @@ export class Trail {
     return this.#count;
   }
 
+  /** So many points at most. */
+  get capacity(): number {
+    return this.#lat.length;
+  }
+
   /** The next point costs the oldest. */
   get full(): boolean {
     return this.#count === this.#lat.length;
