@@ -3,6 +3,7 @@
 import type { Answer, FieldError, Refusal } from '../model/answer';
 import type { Mission } from '../model/ports';
 import { say } from '../model/say';
+import { asked_anew } from './anew';
 import { in_lane, type Lane } from './lanes';
 import type { components } from './schema';
 
@@ -55,15 +56,16 @@ export const read_problem = async (response: Response): Promise<Refusal> => {
   };
 };
 
-const fetch_options = (call: Call): RequestInit => {
+const fetch_options = (call: Call, hang_up?: AbortSignal): RequestInit => {
   const limit = AbortSignal.timeout(call.limit_ms ?? LIMIT_MS);
+  const ends = [limit, call.signal, hang_up].filter((signal) => signal !== undefined);
   const body = call.file ?? (call.body === undefined ? undefined : JSON.stringify(call.body));
   const type = call.file === undefined ? 'application/json' : 'application/octet-stream';
   return {
     method: call.method ?? 'GET',
     headers: { ...(body === undefined ? {} : { 'Content-Type': type }), ...call.headers },
     cache: 'no-store',
-    signal: call.signal ? AbortSignal.any([limit, call.signal]) : limit,
+    signal: AbortSignal.any(ends),
     ...(body === undefined ? {} : { body }),
   };
 };
@@ -81,9 +83,15 @@ const read_body = (response: Response, as: Call['as']): Promise<unknown> => {
   return as === 'bytes' ? response.arrayBuffer() : response.json();
 };
 
+const ask = (path: string, call: Call): Promise<Response> => {
+  const url = `/api/v1${path}`;
+  if ((call.method ?? 'GET') !== 'GET') return fetch(url, fetch_options(call));
+  return asked_anew((hang_up) => fetch(url, fetch_options(call, hang_up)));
+};
+
 const sent = async <T>(path: string, call: Call): Promise<Answer<T>> => {
   try {
-    const response = await fetch(`/api/v1${path}`, fetch_options(call));
+    const response = await ask(path, call);
     if (!response.ok) return { ok: false, refusal: await read_problem(response) };
     const value = response.status === 204 ? null : await read_body(response, call.as);
     return { ok: true, value: value as T };

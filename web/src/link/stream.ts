@@ -18,6 +18,7 @@ import {
 import type { Halt } from '../model/halt';
 import type { LiveLink, StreamEvents } from '../model/ports';
 import type { SeenTopic } from '../model/seen';
+import { ask_anew } from './anew';
 import type { components } from './schema';
 import { bytes_of } from './seen';
 
@@ -66,6 +67,7 @@ export class Stream implements LiveLink {
   /** The shown state: the robot's clock when it was sent, and when it came. */
   #shown: { readonly mono_s: number; readonly came_ms: number } | null = null;
   #attempt = 0;
+  #was_open = false;
   #probing = false;
   #retry: ReturnType<typeof setTimeout> | undefined;
   #drive_seq = 0;
@@ -146,6 +148,8 @@ export class Stream implements LiveLink {
     this.#opened_ms = performance.now();
     this.#report('connecting');
     socket.onopen = () => {
+      if (this.#was_open) ask_anew();
+      this.#was_open = true;
       this.#subscribe();
       this.#pings.restart();
       this.#ping();
