@@ -144,6 +144,50 @@ test('what is chosen stays chosen through undo, and nothing is stored that is no
   expect(turned.map((text, k) => text === five[k])).toEqual([true, true, true, false, false]);
 });
 
+test('what was cut in two is one again by a step back, and two by a step forward', async ({
+  page,
+  station,
+}) => {
+  const names = async (): Promise<string[]> => {
+    const { items: all } = await station.rest<{ items: { name: string }[] }>('GET', '/missions');
+    return all.map(({ name }) => name).sort();
+  };
+  await open_page(page, station.url);
+  await tab(page, 'Plan');
+  await draw(page, SQUARE);
+  await save(page);
+  const [name = ''] = await names();
+  await press(page, 'Select several');
+  await items(page).nth(1).getByRole('button').click();
+  await press(page, 'Split here');
+  await expect(items(page)).toHaveCount(2);
+  await expect.poll(names).toEqual([name, `${name} (2)`]);
+
+  // when it is undone, then the second part is gone with it; and back when it is done again
+  await press(page, 'Undo');
+  await expect(items(page)).toHaveCount(4);
+  await expect(page.getByText(`“${name} (2)” is deleted again`)).toBeVisible();
+  expect(await names()).toEqual([name]);
+  await press(page, 'Redo');
+  await expect(items(page)).toHaveCount(2);
+  await expect.poll(names).toEqual([name, `${name} (2)`]);
+
+  // when somebody has changed the second part, then it stays
+  interface Stored {
+    readonly id: string;
+    readonly name: string;
+    readonly revision: number;
+  }
+  const { items: all } = await station.rest<{ items: Stored[] }>('GET', '/missions');
+  const second = all.find((each) => each.name === `${name} (2)`);
+  if (!second) throw new Error('no second part');
+  const etag = { 'If-Match': `"rev-${second.revision}"` };
+  await station.rest('PATCH', `/missions/${second.id}`, { name: 'Orchard' }, etag);
+  await press(page, 'Undo');
+  await expect(page.getByText(`“${name} (2)” stays`)).toBeVisible();
+  expect(await names()).toEqual([name, 'Orchard'].sort());
+});
+
 test('the revisions of one mission are not those of the next', async ({ page, station }) => {
   const { lat, lon } = station.sim.now;
   const make = (name: string, north: number) =>

@@ -19,6 +19,7 @@ import type { Dialogs } from './dialogs.svelte';
 import { plan_of, type Kept, type Preview } from './edited';
 import { fresh_key } from './fresh_key';
 import type { Notices } from './notices.svelte';
+import { Splits } from './splits.svelte';
 
 const DRAFT_AFTER_MS = 300;
 
@@ -57,6 +58,7 @@ export class Editor implements Drawing {
   readonly #past: DraftStorage;
   readonly #notices: Notices;
   readonly #dialogs: Dialogs;
+  readonly #splits: Splits;
   #draft_timer: ReturnType<typeof setTimeout> | undefined;
 
   constructor(calls: MissionCalls, kept: Kept, notices: Notices, dialogs: Dialogs) {
@@ -66,6 +68,7 @@ export class Editor implements Drawing {
     this.#past = kept.past;
     this.#notices = notices;
     this.#dialogs = dialogs;
+    this.#splits = new Splits(calls, notices);
   }
 
   /** Every tap on the map adds a waypoint. */
@@ -99,12 +102,14 @@ export class Editor implements Drawing {
 
   undo(): void {
     this.#preview?.cancel();
+    this.#splits.back(this.plan);
     this.#set_history(undo(this.history));
   }
 
   redo(): void {
     this.#preview?.cancel();
     this.#set_history(redo(this.history));
+    this.#splits.forward(this.plan);
   }
 
   add(at: LatLon): void {
@@ -162,18 +167,13 @@ export class Editor implements Drawing {
   }
 
   /** The first part stays here, to be saved; the second one is stored as a mission of its own. */
-  async split([first, second]: readonly [Plan, Plan]): Promise<void> {
+  async split(parts: readonly [Plan, Plan]): Promise<void> {
     this.saving = true;
-    // Neither part is what was drawn.
-    const answer = await this.#calls.create({ ...second, drawing: null });
+    const first = await this.#splits.make(parts);
     this.saving = false;
-    if (!answer.ok) {
-      this.#notices.show('error', failure_text(say('done_kept'), answer.refusal));
-      return;
-    }
-    this.do(() => ({ ...first, drawing: null }));
+    if (!first) return;
+    this.do(() => first);
     this.choose_tool('edit');
-    this.#notices.show('good', say('name_is_stored_this_one_ends_where', { name: second.name }));
   }
 
   /** An empty plan; undo brings back what was never saved. Whoever calls has asked. */

@@ -95,7 +95,9 @@ export const plan = {
   maps: 'Maps',
   what_is_stored: 'What is stored',
   name_is_stored_this_one_ends_where:
-    '“{name}” is stored; this one ends where it was cut. Undo joins this one again, and leaves that one.',
+    '“{name}” is stored; this one ends where it was cut. Undo joins them again.',
+  split_taken_back: '“{name}” is deleted again: the two are one.',
+  split_stays: '“{name}” stays: somebody has changed it since, or it could not be deleted.',
   name_has_changes_that_are_not_saved: '“{name}” has changes that are not saved.',
   name_has_changes_undo_brings_them_back:
     '“{name}” has changes that are not saved. When it is opened again, undo brings them back.',

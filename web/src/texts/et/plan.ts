@@ -95,7 +95,9 @@ export const plan = {
   maps: 'Kaardid',
   what_is_stored: 'Mis on salvestatud',
   name_is_stored_this_one_ends_where:
-    '„{name}“ on salvestatud; see siin lõpeb lõikekohas. Tagasivõtmine jätab selle alles.',
+    '„{name}“ on salvestatud; see siin lõpeb lõikekohas. Tagasivõtmine ühendab need jälle.',
+  split_taken_back: '„{name}“ on jälle kustutatud: need kaks on taas üks.',
+  split_stays: '„{name}“ jääb alles: keegi on seda vahepeal muutnud või ei saanud seda kustutada.',
   name_has_changes_that_are_not_saved: 'Ülesandes „{name}“ on salvestamata muudatusi.',
   name_has_changes_undo_brings_them_back:
     'Ülesandes „{name}“ on salvestamata muudatusi. Kui see uuesti avada, toob tagasivõtmine need tagasi.',

@@ -95,7 +95,9 @@ export const plan = {
   maps: 'Kartat',
   what_is_stored: 'Mitä on tallennettu',
   name_is_stored_this_one_ends_where:
-    '”{name}” on tallennettu; tämä päättyy katkaisukohtaan. Kumoaminen jättää sen talteen.',
+    '”{name}” on tallennettu; tämä päättyy katkaisukohtaan. Kumoaminen yhdistää ne taas.',
+  split_taken_back: '”{name}” on taas poistettu: nämä kaksi ovat yksi.',
+  split_stays: '”{name}” jää talteen: joku on muuttanut sitä välillä, tai sitä ei voitu poistaa.',
   name_has_changes_that_are_not_saved: 'Tehtävässä ”{name}” on tallentamattomia muutoksia.',
   name_has_changes_undo_brings_them_back:
     'Tehtävässä ”{name}” on tallentamattomia muutoksia. Kun se avataan uudelleen, kumoaminen tuo ne takaisin.',
