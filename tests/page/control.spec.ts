@@ -2,7 +2,7 @@
 
 import type { Browser, Page } from '@playwright/test';
 
-import { press } from './page';
+import { press, tab } from './page';
 import { expect, test } from './station';
 
 test.use({ more: ['--set', 'server.access=true'] });
@@ -79,6 +79,21 @@ test('control is taken, asked for, handed over, and taken by force', async ({
   await expect(here.first()).toContainText('anna');
   await expect(here.first()).toContainText('has control');
   await expect(here.filter({ hasText: 'cleo' })).toContainText('that is you');
+
+  // … and what would store something says so before it is pressed.
+  await tab(cleo, 'Missions');
+  for (const [shelf, names] of [
+    ['Missions', ['New', 'Import']],
+    ['Fences', ['New fence']],
+    ['Maps', ['Add a map', 'Add MBTiles or GeoTIFF']],
+  ] as const) {
+    await cleo.getByRole('main').getByRole('button', { name: shelf, exact: true }).click();
+    for (const name of names) {
+      const button = cleo.getByRole('button', { name, exact: true });
+      await expect(button).toHaveAttribute('title', /Your role is viewer/);
+    }
+  }
+  await tab(cleo, 'Drive');
 
   // when: ben asks, and anna keeps it
   await press(ben, 'Ask');
