@@ -95,7 +95,7 @@ test('an orthophoto is cut, kept, shown under the robot, moved and deleted', asy
   const [x, y] = await map_middle(page);
   const east = 2 * (await pixels_per_m(page));
   await page.mouse.click(x + east, y, { button: 'right' });
-  await press(page, 'The robot is here');
+  await press(page, 'Move the picture: the robot is here');
   await page.getByRole('button', { name: 'Move it' }).click();
   await expect
     .poll(async () => (await sets_of(station))[0]?.['shift_m'])

@@ -45,7 +45,7 @@ for (const [name, viewport] of [
     await width.getByRole('textbox').press('Enter');
     await expect(width).toContainText('Until the next start it is');
     await card.getByRole('searchbox', { name: 'Search' }).fill('');
-    await card.getByRole('checkbox', { name: /Only what was changed/ }).check();
+    await card.getByRole('checkbox', { name: /differ from their defaults/ }).check();
     await expect(damping).toBeVisible();
     await expect(width).toBeVisible();
     await page.screenshot({ path: `../tests/page/results/parameters-${name}.png` });

@@ -160,8 +160,8 @@ export const maps = {
   ground_of_the_configuration: "it is of the robot's configuration",
   ground_from_the_network: 'from the network',
   ground_how_to_align:
-    'If it lies beside: park the robot on a mark that the picture shows, hold a finger on that mark in the map, and choose “The robot is here”.',
-  ground_robot_is_here: 'The robot is here',
+    'If it lies beside: park the robot on a mark that the picture shows, hold a finger on that mark in the map, and choose “Move the picture: the robot is here”.',
+  ground_robot_is_here: 'Move the picture: the robot is here',
   ground_network_waits:
     'No picture comes from the network; nothing is lost, it goes on by itself when they do.',
   ground_waits: 'The link is lost: it goes on by itself.',

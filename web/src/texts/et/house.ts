@@ -117,7 +117,7 @@ export const house = {
   one_one_2_as_it_comes_default_acts: '{one}{one_2}vaikimisi {default} · {acts_words}{stricter}',
   until_the_next_start_it_is_one: 'Järgmise käivituseni on see {one}.',
   parameters_2: 'Parameetrid',
-  only_what_was_changed_changed_of_all: 'Ainult muudetud ({changed}/{all})',
+  only_what_was_changed_changed_of_all: 'Ainult vaikeväärtusest erinevad: {changed} / {all}',
   save_to_a_file: 'Salvesta faili',
   compare_with_a_file: 'Võrdle failiga…',
   file_of_parameters: 'Parameetrite fail',

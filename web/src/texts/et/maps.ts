@@ -156,8 +156,8 @@ export const maps = {
   ground_of_the_configuration: 'see kuulub roboti seadistusse',
   ground_from_the_network: 'võrgust',
   ground_how_to_align:
-    'Kui see on nihkes: sõida robot pildil näha oleva märgi peale, hoia sõrme kaardil selle märgi kohal ja vali „Robot on siin”.',
-  ground_robot_is_here: 'Robot on siin',
+    'Kui see on nihkes: sõida robot pildil näha oleva märgi peale, hoia sõrme kaardil selle märgi kohal ja vali „Nihuta pilti: robot on siin”.',
+  ground_robot_is_here: 'Nihuta pilti: robot on siin',
   ground_network_waits:
     'Võrgust ei tule ühtki pilti; midagi ei lähe kaotsi, jätkub ise, kui tuleb.',
   ground_waits: 'Side katkes: jätkub ise.',

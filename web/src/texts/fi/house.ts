@@ -117,7 +117,7 @@ export const house = {
   one_one_2_as_it_comes_default_acts: '{one}{one_2}oletus {default} · {acts_words}{stricter}',
   until_the_next_start_it_is_one: 'Seuraavaan käynnistykseen asti arvo on {one}.',
   parameters_2: 'Parametrit',
-  only_what_was_changed_changed_of_all: 'Vain muutetut ({changed}/{all})',
+  only_what_was_changed_changed_of_all: 'Vain oletusarvosta poikkeavat: {changed} / {all}',
   save_to_a_file: 'Tallenna tiedostoon',
   compare_with_a_file: 'Vertaa tiedostoon…',
   file_of_parameters: 'Parametritiedosto',

@@ -158,8 +158,8 @@ export const maps = {
   ground_of_the_configuration: 'se kuuluu robotin asetuksiin',
   ground_from_the_network: 'verkosta',
   ground_how_to_align:
-    'Jos se on vinossa: aja robotti kuvassa näkyvän merkin päälle, pidä sormea kartalla merkin kohdalla ja valitse ”Robotti on tässä”.',
-  ground_robot_is_here: 'Robotti on tässä',
+    'Jos se on vinossa: aja robotti kuvassa näkyvän merkin päälle, pidä sormea kartalla merkin kohdalla ja valitse ”Siirrä kuva: robotti on tässä”.',
+  ground_robot_is_here: 'Siirrä kuva: robotti on tässä',
   ground_network_waits:
     'Verkosta ei tule kuvia; mitään ei katoa, jatkuu itsestään, kun niitä tulee.',
   ground_waits: 'Yhteys katkesi: jatkuu itsestään.',

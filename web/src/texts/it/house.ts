@@ -118,7 +118,8 @@ export const house = {
   one_one_2_as_it_comes_default_acts: '{one}{one_2}di fabbrica {default} · {acts_words}{stricter}',
   until_the_next_start_it_is_one: 'Fino al prossimo avvio è {one}.',
   parameters_2: 'Parametri',
-  only_what_was_changed_changed_of_all: 'Solo quelli cambiati ({changed} di {all})',
+  only_what_was_changed_changed_of_all:
+    'Solo quelli diversi dal valore di fabbrica: {changed} di {all}',
   save_to_a_file: 'Salva in un file',
   compare_with_a_file: 'Confronta con un file…',
   file_of_parameters: 'File di parametri',

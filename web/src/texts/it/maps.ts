@@ -160,8 +160,8 @@ export const maps = {
   ground_of_the_configuration: 'è della configurazione del robot',
   ground_from_the_network: 'dalla rete',
   ground_how_to_align:
-    "Se è fuori posto: ferma il robot su un segno visibile nell'immagine, tieni il dito su quel segno nella mappa e scegli “Il robot è qui”.",
-  ground_robot_is_here: 'Il robot è qui',
+    "Se è fuori posto: ferma il robot su un segno visibile nell'immagine, tieni il dito su quel segno nella mappa e scegli “Sposta l'immagine: il robot è qui”.",
+  ground_robot_is_here: "Sposta l'immagine: il robot è qui",
   ground_network_waits:
     'Dalla rete non arriva nessuna immagine; nulla va perso, riprende da solo quando arrivano.',
   ground_waits: 'Collegamento perso: riprende da solo.',

@@ -117,7 +117,7 @@ export const house = {
   one_one_2_as_it_comes_default_acts: '{one}{one_2}som levert {default} · {acts_words}{stricter}',
   until_the_next_start_it_is_one: 'Til neste start er den {one}.',
   parameters_2: 'Parametere',
-  only_what_was_changed_changed_of_all: 'Bare det som er endret ({changed} av {all})',
+  only_what_was_changed_changed_of_all: 'Bare de som ikke er som levert: {changed} av {all}',
   save_to_a_file: 'Lagre til en fil',
   compare_with_a_file: 'Sammenlign med en fil…',
   file_of_parameters: 'Parameterfil',

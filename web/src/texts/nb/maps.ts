@@ -159,8 +159,8 @@ export const maps = {
   ground_of_the_configuration: 'det hører til robotens konfigurasjon',
   ground_from_the_network: 'fra nettet',
   ground_how_to_align:
-    'Ligger det skjevt: parker roboten på et merke som bildet viser, hold en finger på merket i kartet og velg «Roboten er her».',
-  ground_robot_is_here: 'Roboten er her',
+    'Ligger det skjevt: parker roboten på et merke som bildet viser, hold en finger på merket i kartet og velg «Flytt bildet: roboten er her».',
+  ground_robot_is_here: 'Flytt bildet: roboten er her',
   ground_network_waits:
     'Det kommer ingen bilder fra nettet; ingenting går tapt, det fortsetter av seg selv når de kommer.',
   ground_waits: 'Forbindelsen er borte: det fortsetter av seg selv.',
