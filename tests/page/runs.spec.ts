@@ -1,5 +1,7 @@
 // What was driven: the list, a report, its track on the map, and two runs side by side.
 
+import type { Page } from '@playwright/test';
+
 import { arm, open_page, press, tab, type Point } from './page';
 import { expect, test, type Station } from './station';
 
@@ -23,6 +25,24 @@ const drive = async (station: Station, name: string, speed_mps: number): Promise
     (await station.rest<{ mission: { state: string } }>('GET', '/vehicle')).mission.state;
   await expect.poll(state, { timeout: 90_000 }).toBe('finished');
 };
+
+/** Whether the plots have the colours of this run and of the other one. */
+const plotted = (page: Page): Promise<boolean[]> =>
+  page.evaluate(() => {
+    const style = getComputedStyle(document.documentElement);
+    const canvas = document.querySelector<HTMLCanvasElement>('.u-wrap canvas');
+    const { data } = canvas?.getContext('2d')?.getImageData(0, 0, canvas.width, canvas.height) ?? {
+      data: [],
+    };
+    return ['--run-a', '--run-b'].map((name) => {
+      const color = Number.parseInt(style.getPropertyValue(name).trim().slice(1), 16);
+      const wanted = [color >> 16, (color >> 8) & 255, color & 255];
+      for (let k = 0; k < data.length; k += 4) {
+        if (wanted.every((value, n) => data[k + n] === value)) return true;
+      }
+      return false;
+    });
+  });
 
 test('a run has a report and a track, and is compared with another one', async ({
   page,
@@ -66,6 +86,15 @@ test('a run has a report and a track, and is compared with another one', async (
   await expect(report).toContainText('Other');
   const time = report.getByRole('row', { name: /^Time/ });
   await expect(time.locator('.better')).toHaveCount(1);
+  await expect(page.getByText('better by more than 5 %')).toBeVisible();
+  await expect(page.getByText(/^This: \d+ s · /)).toBeVisible();
+  await expect(page.getByText(/^Other: \d+ s · /)).toBeVisible();
+  await expect(page.getByText('Off the path, cm (left +)')).toBeVisible();
+  // The lines of both have the colours of the page, also when the device turns dark meanwhile.
+  await expect.poll(() => plotted(page)).toEqual([true, true]);
+  await page.emulateMedia({ colorScheme: 'dark' });
+  await expect.poll(() => plotted(page)).toEqual([true, true]);
+  await page.emulateMedia({ colorScheme: 'light' });
   expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBeLessThanOrEqual(390);
 
   await press(page, 'All runs');

@@ -99,7 +99,17 @@ describe('shades', () => {
   ]);
 
   test('grow with the distance from the path, to either side', () => {
-    expect([...(shades_of(driven, 'deviation').of[0] ?? [])]).toEqual([0, 4, 5, UNKNOWN_SHADE]);
+    const shades = shades_of(driven, 'deviation');
+    expect([...(shades.of[0] ?? [])]).toEqual([0, 4, 5, UNKNOWN_SHADE]);
+    // in the unit of the report
+    expect(shade_words(shades)).toEqual([
+      'to 2 cm',
+      'to 5 cm',
+      'to 10 cm',
+      'to 20 cm',
+      'to 50 cm',
+      'more',
+    ]);
   });
 
   test('of speed go up to the fastest of this run, also in reverse', () => {
@@ -123,7 +133,7 @@ describe('plots', () => {
 
   test('of one run leave out what nobody measured', () => {
     const plots = plots_of(slow, null, 'time');
-    expect(plots.map(({ label }) => label)).toEqual(['Speed, m/s', 'Accuracy, m']);
+    expect(plots.map(({ label }) => label)).toEqual(['Speed, m/s', 'Accuracy, cm']);
     expect(plots[0]?.data).toEqual([
       [0, 2, 4],
       [0.5, 0.5, 0.5],
@@ -143,7 +153,7 @@ describe('plots', () => {
     expect(off?.data).toEqual([
       [0, 1, 2, 4],
       [null, null, null, null],
-      [0.1, 0.1, 0.1, null],
+      [10, 10, 10, null],
     ]);
   });
 });

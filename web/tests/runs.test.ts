@@ -67,6 +67,14 @@ describe('report', () => {
     expect(time(false)).toMatchObject({ second: '5 s', better: null });
   });
 
+  test('two distances beside each other have one unit', () => {
+    const other = { ...report, cut_max_m: 0.14, driven_m: 1240 };
+    expect(row('Corner cut, at most', other)).toMatchObject({ first: '0.04 m', second: '0.14 m' });
+    expect(row('Driven', other)).toMatchObject({ first: '0.08 km', second: '1.24 km' });
+    // alone it has its own
+    expect(row('Corner cut, at most', null)?.first).toBe('4.0 cm');
+  });
+
   test('marks the better one of two, where they differ enough', () => {
     const other = {
       ...report,

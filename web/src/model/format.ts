@@ -18,9 +18,12 @@ export const degrees_text = (value: Value): string =>
   known(value) ? `${fixed(value, 1)}°` : UNKNOWN;
 
 /** 0.012 → "1.2 cm", 12.34 → "12.3 m", 1234 → "1.23 km". */
-export const metres = (value: Value): string => {
+export const metres = (value: Value): string => metres_as(value, value);
+
+/** In the unit of another one that it stands beside. */
+export const metres_as = (value: Value, other: Value): string => {
   if (!known(value)) return UNKNOWN;
-  const size = Math.abs(value);
+  const size = Math.abs(known(other) ? other : value);
   if (size < 0.1) return `${fixed(value * 100, 1)} cm`;
   if (size < 10) return `${fixed(value, 2)} m`;
   if (size < 1000) return `${fixed(value, size < 100 ? 1 : 0)} m`;

@@ -9,9 +9,9 @@ interface PlotSpec {
   readonly column: 'speed_mps' | 'cross_track_m' | 'accuracy_m' | 'power_w';
 }
 const SPECS: readonly PlotSpec[] = [
-  { label: 'off_the_path_m_left_plus', column: 'cross_track_m' },
+  { label: 'off_the_path_cm_left_plus', column: 'cross_track_m' },
   { label: 'speed', column: 'speed_mps' },
-  { label: 'accuracy_m', column: 'accuracy_m' },
+  { label: 'accuracy_cm', column: 'accuracy_m' },
   { label: 'power_w', column: 'power_w' },
 ];
 
@@ -27,16 +27,22 @@ const value_at = (column: Float64Array, k: number): number | null => {
   return value === undefined || Number.isNaN(value) ? null : value;
 };
 
+/** How many of the unit that is shown make one of the column's: distances from the way as the report has them. */
+const shown_of = (column: PlotSpec['column'], speed: SpeedUnit): number => {
+  if (column === 'speed_mps') return shown_per('m/s', speed);
+  return column === 'power_w' ? 1 : 100;
+};
+
 /** In the unit of this device. */
 const plot_of = (
   { label, column }: PlotSpec,
   speed: SpeedUnit,
   [x, ...values]: Plot['data'],
 ): Plot => {
-  if (column !== 'speed_mps') return { label: say_plain(label), data: [x, ...values] };
-  const per = shown_per('m/s', speed);
+  const per = shown_of(column, speed);
   const shown = values.map((each) => each.map((value) => value && value * per));
-  return { label: say('speed_speed', { speed }), data: [x, ...shown] };
+  const title = column === 'speed_mps' ? say('speed_speed', { speed }) : say_plain(label);
+  return { label: title, data: [x, ...shown] };
 };
 
 /** Whoever is compared is known at each place of both; between its own samples by the last one. */

@@ -129,16 +129,18 @@ export const shades_of = (track: RunTrack, by: 'deviation' | 'speed'): Shades =>
   return { limits, unit: speed ? 'm/s' : 'm', of };
 };
 
-/** "to 0.02", "to 0.05" … "more", in the order of the shades. */
-export const shade_words = ({ limits, unit }: Shades, speed: SpeedUnit = 'm/s'): string[] => [
-  ...limits.map((limit) =>
-    say('to_limit_unit', {
-      limit: shortest(limit * shown_per(unit, speed), 2),
-      unit: shown_unit(unit, speed),
-    }),
-  ),
-  say('word_more'),
-];
+/** "to 2 cm", "to 5 cm" … "more", in the order of the shades. */
+export const shade_words = ({ limits, unit }: Shades, speed: SpeedUnit = 'm/s'): string[] => {
+  const in_cm = unit === 'm';
+  const per = in_cm ? 100 : shown_per(unit, speed);
+  const shown = in_cm ? 'cm' : shown_unit(unit, speed);
+  return [
+    ...limits.map((limit) =>
+      say('to_limit_unit', { limit: shortest(limit * per, 2), unit: shown }),
+    ),
+    say('word_more'),
+  ];
+};
 
 export const heat_words = (): string[] => shade_words({ limits: HEAT_LIMITS_M, unit: 'm', of: [] });
 

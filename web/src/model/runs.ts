@@ -1,6 +1,6 @@
 // What was driven and how well, in rows that a person can compare.
 
-import { degrees_text, duration, metres, number_text } from './format';
+import { degrees_text, duration, metres_as, number_text } from './format';
 import type { Plan } from './plan';
 import { type PlainKey, say_plain, told } from './say';
 
@@ -84,7 +84,8 @@ export const outcome_words: Record<Outcome, string> = told({
 interface Measure {
   readonly label: PlainKey;
   readonly value: (report: RunReport) => number | null;
-  readonly text: (value: number | null) => string;
+  /** @param larger of the two that stand beside each other: they have one unit */
+  readonly text: (value: number | null, larger: number | null) => string;
   /** Less is better; of what adds up only between runs that came to their end; else it only describes. */
   readonly judged: boolean | 'at_the_end';
 }
@@ -92,7 +93,7 @@ interface Measure {
 const measure = (
   label: PlainKey,
   value: Measure['value'],
-  text: Measure['text'] = metres,
+  text: Measure['text'] = metres_as,
   judged: Measure['judged'] = true,
 ): Measure => ({ label, value, text, judged });
 
@@ -115,8 +116,8 @@ const MEASURES: readonly Measure[] = [
   measure('from_the_end_point', (r) => r.end_m),
   measure('time', (r) => r.time_s, duration, 'at_the_end'),
   measure('of_it_driving', (r) => r.driving_s, duration, false),
-  measure('driven', (r) => r.driven_m, metres, false),
-  measure('of_it_to_the_first_item', (r) => r.approach?.driven_m ?? null, metres, false),
+  measure('driven', (r) => r.driven_m, metres_as, false),
+  measure('of_it_to_the_first_item', (r) => r.approach?.driven_m ?? null, metres_as, false),
   measure(
     'energy',
     (r) => r.energy_wh,
@@ -133,6 +134,9 @@ export interface ReportRow {
   /** Which one did better, where that can be said and is worth it. */
   readonly better: 'first' | 'second' | null;
 }
+
+const larger_of = (first: number | null, second: number | null): number | null =>
+  first === null || second === null ? (first ?? second) : Math.max(first, second);
 
 /** Nearer to each other than this share they are alike. */
 const ALIKE = 0.05;
@@ -154,10 +158,11 @@ export const report_rows = (
     const counts = judged === 'at_the_end' ? ended : judged;
     const one = value(first);
     const other = second && value(second);
+    const larger = larger_of(one, other);
     return {
       label: say_plain(label),
-      first: text(one),
-      second: second && text(other),
+      first: text(one, larger),
+      second: second && text(other, larger),
       better: counts && second ? better_of(one, other) : null,
     };
   });
