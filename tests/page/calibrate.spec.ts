@@ -105,7 +105,7 @@ test('a whole calibration is kept, which is said, and acts', async ({ page, stat
   await card.scrollIntoViewIfNeeded();
   await page.screenshot({ path: '../tests/page/results/calibrate-judge.png' });
   await card.getByRole('button', { name: 'Keep' }).click();
-  await expect(card.getByText(/^Kept, and used from now on: .*Braking/)).toBeVisible();
+  await expect(card.getByText(/^Kept, and used from now on: .*Braking/)).toBeInViewport();
   const after = await station.rest<Vehicle>('GET', '/vehicle');
   expect(after.learned.calibrated).toBe(true);
   // It was settled: a second word finds nothing, and what was kept can be forgotten.
