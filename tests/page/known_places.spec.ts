@@ -30,6 +30,12 @@ for (const [device, width, height] of [
     const card = page.getByRole('region', { name: 'Known places' });
     await expect(card).toContainText('None is known.');
     await card.getByRole('button', { name: 'Enter a place' }).click();
+    // What may be left empty says what that means.
+    await expect(card.getByLabel('It looks to')).toHaveAttribute('placeholder', 'not known');
+    await expect(card.getByLabel('Known to')).toHaveAttribute('placeholder', '0.05');
+    // The kind is readable in full.
+    const kind = await card.getByLabel('What').boundingBox();
+    expect(kind?.width).toBeGreaterThan(200);
     await card.getByLabel('Name').fill('shed_door');
     await card.getByLabel('Its number').fill('12');
     await card.getByLabel('Its number').press('Enter');
