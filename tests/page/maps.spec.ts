@@ -133,6 +133,7 @@ const send_map = async (page: Page): Promise<void> => {
     await page.getByLabel(label).press('Tab');
   }
   await press(page, 'It lies there');
+  await expect(page.getByText('“hall” lies there from now on.')).toBeVisible();
 };
 
 /** Where a point of the map is on the page, by its upper right corner: what is seen tints others. */

@@ -159,7 +159,12 @@ export class SiteMaps {
 
   /** @param anchor null: nobody knows where it lies */
   async lay(map: SiteMap, anchor: MapAnchor | null): Promise<void> {
-    await this.#do(say('laid_there'), () => this.#calls.change(map.id, { anchor }));
+    if (!(await this.#do(say('laid_there'), () => this.#calls.change(map.id, { anchor })))) return;
+    const { name } = map;
+    const said = anchor
+      ? say('map_laid', { name, change: say('change') })
+      : say('map_laid_nowhere', { name });
+    this.#notices.show('good', said, 'map laid');
   }
 
   async remove(map: SiteMap): Promise<void> {

@@ -95,6 +95,8 @@ export const maps = {
   name_is_still_being_sent: '“{name}” is still being sent.',
   the_map_name_is_stored: 'The map “{name}” is stored.',
   laid_there: 'laid there',
+  map_laid: '“{name}” lies there from now on. “{change}” shows it on the map.',
+  map_laid_nowhere: 'Where “{name}” lies is not known from now on.',
   delete_the_map: 'Delete the map?',
   name_goes_for_good_with_what_was: '“{name}” goes for good, with what was changed in it by hand.',
   without_a_map: 'Without a map?',

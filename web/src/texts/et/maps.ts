@@ -91,6 +91,8 @@ export const maps = {
   name_is_still_being_sent: '„{name}“ on alles saatmisel.',
   the_map_name_is_stored: 'Kaart „{name}“ on salvestatud.',
   laid_there: 'paigutatud',
+  map_laid: '„{name}“ on nüüdsest seal. „{change}“ näitab seda kaardil.',
+  map_laid_nowhere: 'Kus „{name}“ asub, ei ole nüüdsest teada.',
   delete_the_map: 'Kas kustutada kaart?',
   name_goes_for_good_with_what_was: '„{name}“ kaob jäädavalt koos käsitsi muudetuga.',
   without_a_map: 'Ilma kaardita?',

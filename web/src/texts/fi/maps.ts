@@ -93,6 +93,8 @@ export const maps = {
   name_is_still_being_sent: '”{name}” lähetetään yhä.',
   the_map_name_is_stored: 'Kartta ”{name}” on tallessa.',
   laid_there: 'asetettu',
+  map_laid: '”{name}” on tästä lähtien siinä. ”{change}” näyttää sen kartalla.',
+  map_laid_nowhere: 'Tästä lähtien ei tiedetä, missä ”{name}” on.',
   delete_the_map: 'Poistetaanko kartta?',
   name_goes_for_good_with_what_was: '”{name}” poistuu lopullisesti käsin tehtyine muutoksineen.',
   without_a_map: 'Ilman karttaa?',

@@ -94,6 +94,8 @@ export const maps = {
   name_is_still_being_sent: '«{name}» è ancora in invio.',
   the_map_name_is_stored: 'La mappa «{name}» è salvata.',
   laid_there: 'collocata lì',
+  map_laid: 'D’ora in poi «{name}» è lì. «{change}» la mostra sulla mappa.',
+  map_laid_nowhere: 'D’ora in poi non si sa dove sia «{name}».',
   delete_the_map: 'Eliminare la mappa?',
   name_goes_for_good_with_what_was: '«{name}» sparisce per sempre, con quanto cambiato a mano.',
   without_a_map: 'Senza mappa?',

@@ -93,6 +93,8 @@ export const maps = {
   name_is_still_being_sent: '«{name}» sendes fortsatt.',
   the_map_name_is_stored: 'Kartet «{name}» er lagret.',
   laid_there: 'lagt der',
+  map_laid: '«{name}» ligger der fra nå av. «{change}» viser det i kartet.',
+  map_laid_nowhere: 'Hvor «{name}» ligger, er ikke kjent fra nå av.',
   delete_the_map: 'Slette kartet?',
   name_goes_for_good_with_what_was:
     '«{name}» forsvinner for godt, med det som ble endret for hånd.',
