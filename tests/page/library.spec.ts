@@ -61,6 +61,8 @@ test('a file of every format that is written is read again at the same places', 
       buffer: Buffer.from(await answer.arrayBuffer()),
     });
     await expect(page.getByRole('dialog')).toContainText(/became the mission.*[34] taken/s);
+    // Of what there is none, nothing is shown.
+    await expect(page.getByRole('button', { name: /^0 /, pressed: true })).toHaveCount(0);
     await press(page, 'Continue');
     const list = await station.rest<{ items: { id: string }[] }>('GET', '/missions?limit=1');
     const read = await station.rest<Mission>('GET', `/missions/${list.items[0]?.id ?? ''}`);
