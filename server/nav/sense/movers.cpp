@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "nav/sense/side_line.hpp"
+
 namespace roverd::nav::sense {
 
 namespace {
@@ -21,10 +23,10 @@ constexpr double kWindow_s = 0.7;
 constexpr double kEvery_s = 0.035;
 constexpr double kSpan_s = 0.25;
 constexpr std::size_t kSamples = 4;  // at least
-constexpr double kOut_m = 0.01;      // a line is not surer than a side that is so far out
 constexpr double kGate_m = 0.35;
 constexpr double kGate_mps = 1.5;
-constexpr double kLeft_m = 0.12;  // so far outside of its box a place was left
+constexpr double kLeft_m = 0.12;      // so far outside of its box a place was left
+constexpr std::uint32_t kLately = 2;  // pieces: what was met in the last ones is taken
 constexpr double kNoMore_mps = 0.15;
 constexpr double kAgree_mps = 0.3;  // else one side is hidden, or comes into sight
 constexpr double kTakenOver_mps = 0.15;
@@ -32,54 +34,6 @@ constexpr double kGlance_s = 0.1;
 constexpr double kHisWay = 0.3;  // of his velocity: half of it where one side is cut off
 constexpr double kBeside_m = 0.15;
 constexpr double kAgain_m = 0.05;  // of the body that no beam met
-
-/// A straight line through what was measured.
-struct SideLine {
-  double slope = 0.0;
-  double sigma = 0.0;
-};
-
-template <class Of>
-SideLine line_through(std::size_t n, const Of& of) {
-  double t = 0.0;
-  double y = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto [ti, yi] = of(i);
-    t += ti / static_cast<double>(n);
-    y += yi / static_cast<double>(n);
-  }
-  double tt = 0.0;
-  double ty = 0.0;
-  double yy = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto [ti, yi] = of(i);
-    tt += (ti - t) * (ti - t);
-    ty += (ti - t) * (yi - y);
-    yy += (yi - y) * (yi - y);
-  }
-  SideLine out;
-  if (tt <= 0.0) return {0.0, 1e3};
-  out.slope = ty / tt;
-  const double rest = std::max(0.0, yy - out.slope * ty) / static_cast<double>(n - 2);
-  out.sigma = std::sqrt((rest + kOut_m * kOut_m) / tt);
-  return out;
-}
-
-/// Along one axis, of two opposite sides.
-struct Going {
-  double mean = 0.0;
-  double sure = 0.0;  ///< the slower of the two; 0: they part, or meet
-  double sigma = 0.0;
-};
-
-Going going(const SideLine& low, const SideLine& high) noexcept {
-  Going out;
-  out.sigma = std::max({low.sigma, high.sigma, 0.5 * std::abs(low.slope - high.slope)});
-  if (low.slope * high.slope <= 0.0) return out;
-  out.mean = 0.5 * (low.slope + high.slope);
-  out.sure = std::abs(low.slope) < std::abs(high.slope) ? low.slope : high.slope;
-  return out;
-}
 
 }  // namespace
 
@@ -90,6 +44,11 @@ Movers::Movers(double range_m, bool planar) : range_m_(range_m), planar_(planar)
   places_.resize(static_cast<std::size_t>(side) * side);
 }
 
+Movers::Cell Movers::cell_at(Vec2 p) noexcept {
+  return {static_cast<std::int32_t>(std::floor(p.x / kPlace_m)),
+          static_cast<std::int32_t>(std::floor(p.y / kPlace_m))};
+}
+
 void Movers::forget() noexcept {
   std::fill(places_.begin(), places_.end(), Place{});
   tracks_.clear();
@@ -97,10 +56,15 @@ void Movers::forget() noexcept {
   begun_ = false;
 }
 
-Movers::Place& Movers::place(std::int32_t x, std::int32_t y) noexcept {
+std::size_t Movers::index(std::int32_t x, std::int32_t y) const noexcept {
   const auto column = static_cast<std::uint32_t>(x) & mask_;
   const auto row = static_cast<std::uint32_t>(y) & mask_;
-  return places_[static_cast<std::size_t>(row) * (mask_ + 1) + column];
+  return static_cast<std::size_t>(row) * (mask_ + 1) + column;
+}
+
+bool Movers::met_lately(Vec2 p) const noexcept {
+  const Cell cell = cell_at(p);
+  return piece_ - places_[index(cell.x, cell.y)].piece < kLately;
 }
 
 /// There or beside it something has stood for long, and was met lately.
@@ -130,8 +94,7 @@ void Movers::gather(const Reduced& in, const Grid& before) {
     const auto y = static_cast<double>(v.y_m);
     if (x * x + y * y > far_m * far_m) continue;
     const Vec2 at{in.pose.x_m + c * x - s * y, in.pose.y_m + s * x + c * y};
-    const Cell cell{static_cast<std::int32_t>(std::floor(at.x / kPlace_m)),
-                    static_cast<std::int32_t>(std::floor(at.y / kPlace_m))};
+    const Cell cell = cell_at(at);
     points_.push_back(at);
     of_.push_back(cell);
     Place& p = place(cell.x, cell.y);
@@ -265,9 +228,8 @@ void Movers::follow(const Grid& grid, std::span<const Mover> others) {
     for (std::size_t k = 0; k < std::min(kSpread, some.size()); ++k) {
       const Vec2 p = some[k * some.size() / std::min(kSpread, some.size())];
       sample.points[sample.size] = p;
-      sample.was_free[sample.size++] = place(static_cast<std::int32_t>(std::floor(p.x / kPlace_m)),
-                                             static_cast<std::int32_t>(std::floor(p.y / kPlace_m)))
-                                           .was_free;
+      const Cell cell = cell_at(p);
+      sample.was_free[sample.size++] = place(cell.x, cell.y).was_free;
     }
     best->samples.push_back(sample);
     estimate(*best, grid);
@@ -287,8 +249,9 @@ bool Movers::Box::leaves_out(Vec2 p) const noexcept {
   return p.x <= x0 - kLeft_m || p.x >= x1 + kLeft_m || p.y <= y0 - kLeft_m || p.y >= y1 + kLeft_m;
 }
 
-/// Where it was and is not any more, rays went through; or all of it lies behind him as the sensor
-/// sees him, and he came onto free places.
+/// Where it was and is not any more, rays went through. Or nobody looked there since: it lies
+/// behind him as the sensor sees him, or beside, for a body hides more than the part of it that is
+/// met; and he came onto free places.
 bool Movers::left_free(const Track& track, const Grid& grid) const {
   const Box& b = track.box;
   const Vec2 to = b.mid() - eye_;
@@ -307,8 +270,13 @@ bool Movers::left_free(const Track& track, const Grid& grid) const {
         ++hidden;
         continue;
       }
+      const bool is_free = grid.at(p.x, p.y, stamp_) == Known::Free;
+      if (planar_ && !is_free && !met_lately(p)) {
+        ++hidden;
+        continue;
+      }
       ++left;
-      if (grid.at(p.x, p.y, stamp_) == Known::Free) ++free;
+      if (is_free) ++free;
     }
   }
   return left >= 2 ? 2 * free > left : hidden >= 2 && came_onto_free(track);

@@ -8,9 +8,10 @@
 // stands; so both opposite sides must go the same way, faster than kLeast_mps beyond twice what
 // their lines are unsure of, and most of the places that it left must have been seen free: what
 // slides along behind a gap, as the robot passes, left nothing free. Who comes towards the sensor
-// hides the places that he leaves: of him most of those that he came to must have been seen free
-// before, which nothing does that only comes into sight. That is believed of scanners of one plane
-// alone: what a cloud's rows meet of a standing thing changes too much.
+// hides the places that he leaves, and nobody may have looked there since: of him most of those
+// that he came to must have been seen free before, which nothing does that only comes into sight.
+// That is believed of scanners of one plane alone: what a cloud's rows meet of a standing thing
+// changes too much.
 //
 // Who leaves a sensor's view, or enters it, shows one side only: his velocity is kept meanwhile,
 // and taken over from another sensor that sees him there.
@@ -95,7 +96,9 @@ class Movers {
     double agreed_s = 0.0;  ///< when its sides last went the same way
   };
 
-  Place& place(std::int32_t x, std::int32_t y) noexcept;
+  std::size_t index(std::int32_t x, std::int32_t y) const noexcept;
+  Place& place(std::int32_t x, std::int32_t y) noexcept { return places_[index(x, y)]; }
+  static Cell cell_at(Vec2 p) noexcept;
   bool still_about(std::int32_t x, std::int32_t y) noexcept;
   void count_from(base::Time begin);
   void gather(const Reduced& in, const Grid& before);
@@ -103,6 +106,8 @@ class Movers {
   void follow(const Grid& grid, std::span<const Mover> others);
   const Mover* seen_elsewhere(const Track& track, std::span<const Mover> others) const noexcept;
   void estimate(Track& track, const Grid& grid) const;
+  /// Something was met there, in the last pieces.
+  bool met_lately(Vec2 p) const noexcept;
   bool left_free(const Track& track, const Grid& grid) const;
   static bool came_onto_free(const Track& track) noexcept;
 

@@ -16,9 +16,10 @@ using Blocks = std::function<std::vector<Block>(double)>;
 using Body = std::function<Pose2(double)>;
 
 /// A scanner at 25 Hz before the body, for so long. @param late_s between its first piece and the
-/// others @return who moves at the end of each piece
+/// others @param clear_s for so long rays that meet nothing see the way free
+/// @return who moves at the end of each piece
 std::vector<std::vector<Mover>> watch(double lasts_s, const Body& body, const Blocks& blocks,
-                                      double late_s = 0.0) {
+                                      double late_s = 0.0, double clear_s = 1e9) {
   SensorSetup eye;
   eye.name = "eye";
   eye.mount = {.x_m = 0.45, .z_m = 0.3};
@@ -42,7 +43,9 @@ std::vector<std::vector<Mover>> watch(double lasts_s, const Body& body, const Bl
     for (base::SightPoint& p : sight.points) {
       const double r = std::hypot(double(p.x_m), double(p.y_m));
       const double k = p.echo == base::Echo::Hit ? 1.0 + noise(random) / r : 6.0 / r;
-      if (p.echo != base::Echo::Hit) p.echo = base::Echo::Clear;
+      if (p.echo != base::Echo::Hit) {
+        p.echo = since < clear_s ? base::Echo::Clear : base::Echo::Unknown;
+      }
       p.x_m = static_cast<float>(k * double(p.x_m));
       p.y_m = static_cast<float>(k * double(p.y_m));
     }
@@ -92,6 +95,23 @@ TEST(Movers, WhoComesStraightAtTheSensorIsToldThoughHeHidesWhereHeWas) {
   ASSERT_EQ(seen.back().size(), 1U);
   EXPECT_NEAR(seen.back().front().v_mps.x, -1.2, 0.2);
   EXPECT_NEAR(seen.back().front().v_mps.y, 0.0, 0.2);
+}
+
+//   The sun is low behind him: rays that meet nothing tell nothing any more. Nobody has seen the
+//   places free that he left beside his shadow, nor that anything is there.
+TEST(Movers, WhoComesIsToldThoughNobodySawFreeWhatHeLeft) {
+  for (const double side : {-1.0, 1.0}) {
+    const auto seen = watch(
+        3.0, stands,
+        [&](double t) {
+          const double walks_s = std::max(0.0, t - 1.0);
+          return std::vector{person(4.5 - 1.2 * walks_s, side * 2.0)};
+        },
+        0.0, 1.0);
+    ASSERT_EQ(seen.back().size(), 1U) << side;
+    EXPECT_NEAR(seen.back().front().v_mps.x, -1.2, 0.25) << side;
+    EXPECT_NEAR(seen.back().front().v_mps.y, 0.0, 0.25) << side;
+  }
 }
 
 TEST(Movers, HeIsToldFromARobotThatDrives) {
