@@ -132,6 +132,7 @@ base::Result<std::size_t> Chain::take(const base::Sight& sight, const PoseHistor
   hills_.drive(reduced_);
   if (!eye.setup.planar) {
     ground_.judge(reduced_.voxels);
+    hills_.deny(reduced_);
     // Who is not believed to see the way free does not tell of the ground either.
     const bool sees = sight.window != base::Window::Blocked && eye.health.at(now).eye != Eye::Blind;
     if (sees) hills_.learn(reduced_);

@@ -24,7 +24,9 @@ constexpr double kMostOver_m = 0.18;
 
 // So long after the last that told ground the way is counted by others.
 constexpr double kSilent_s = 1.0;
-// Where no place about it is known: cells to what is.
+// Cells about one whose ground tells of it,
+constexpr std::int32_t kAbout = 1;
+// and where no place among them is known.
 constexpr std::int32_t kNear = 3;
 
 std::int32_t hill_cell(double m) noexcept {
@@ -275,10 +277,25 @@ bool Hills::is_ground(double x_m, double y_m, float z_m, base::Time now) const n
   const std::int32_t x = hill_cell(x_m);
   const std::int32_t y = hill_cell(y_m);
   // Lower ground beside it may be down the slope.
-  float ground = lowest_about(x, y, half, 1);
+  float ground = lowest_about(x, y, half, kAbout);
   if (ground == kNoGroundBefore) ground = lowest_about(x, y, half, kNear);
   // Nothing known is infinitely high: below it.
   return z_m <= ground + low_m_ && z_m >= ground - kInside_m;
+}
+
+std::size_t Hills::deny(Reduced& in) const {
+  if (!begun_ || !in.lie.told) return 0;
+  const Lies lies(in);
+  const std::int32_t half = half_of(in.stamp);
+  std::size_t count = 0;
+  for (Voxel& v : in.voxels) {
+    if (v.kind != Kind::Ground || !has_cell(lies.x_m(v), lies.y_m(v))) continue;
+    const float known = lowest_about(hill_cell(lies.x_m(v)), hill_cell(lies.y_m(v)), half, kAbout);
+    if (known == kNoGroundBefore || lies.height_m(v) <= known + kStands_m) continue;
+    v.kind = Kind::Obstacle;
+    ++count;
+  }
+  return count;
 }
 
 std::size_t Hills::judge(Reduced& in) const {

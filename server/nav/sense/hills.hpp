@@ -49,6 +49,7 @@ class Hills {
   static constexpr float kSteepest = 0.15F;  ///< rise over way
   static constexpr float kRough_m = 0.05F;
   static constexpr double kMostLow_m = 0.08;
+  static constexpr float kStands_m = 0.25F;
   static constexpr float kBeside_m = 0.8F;
   static constexpr float kWide_m = 1.0F;
   /// Farther from where the odometry began nothing is ground.
@@ -63,6 +64,9 @@ class Hills {
   void learn(const Reduced& in);
   /// Of any piece, before it is judged: the robot drives on while nobody tells ground.
   void drive(const Reduced& in) noexcept;
+  /// Of a cloud, judged, before it is learned: what was laid as ground, but rises more than
+  /// kStands_m over ground that is known there, is set to Obstacle. @return how many
+  std::size_t deny(Reduced& in) const;
   /// Of one plane: sets what is an Obstacle and lies on known ground to Ground. @return how many
   std::size_t judge(Reduced& in) const;
   /// Something that is so high in O is the ground there, as far as that is known. @param x_m, y_m

@@ -125,6 +125,25 @@ TEST(HillsTest, WhoComesFromTheSideAndHidesTheGroundFromTheLidarIsAnObstacle) {
 
 //   It lies there when the robot starts; the lowest ring never saw its foot, or two rings have it
 //   between them, and the robot drives on.
+//         ●lidar      Its lowest ring meets the thing 0.34 m over the ground, and nothing below:
+//   ▭═══════ ═▟▙══    a slope of 15 deg from the body on would do as well. But there the ground
+//                     was seen.
+TEST(HillsTest, WhoLiesWhereTheLidarSawLevelGroundBeforeIsNotLaidAsGround) {
+  Scene level;
+  level.ground = [](double, double) { return 0.0; };
+  for (const double high_m : {0.36, 0.39}) {
+    Climb drives({rings_above()});
+    drives.drive(level, 1.0, 7.0);  // to x = 3 m
+    EXPECT_TRUE(drives.taken(3.5, 6.0).empty());
+    Scene lies = level;
+    lies.blocks.push_back({4.8, 5.4, -0.3, 0.3, -0.1, high_m});
+    drives.drive(lies, 7.0, 7.45);
+    const auto taken = drives.taken(4.6, 5.6);
+    ASSERT_FALSE(taken.empty()) << high_m;
+    EXPECT_NEAR(taken.front(), 4.8, 0.11) << high_m;
+  }
+}
+
 TEST(HillsTest, WhatLiesAheadLowAndFarOffStaysAnObstacleOnTheWayThere) {
   struct Case {
     double lidar_m, scanner_m, high_m, x;
