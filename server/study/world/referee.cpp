@@ -382,8 +382,12 @@ void Referee::heed(const std::optional<base::Obstacle>& obstacle) {
   StopSeen& last = stops_.back();
   if (last.cause != "thing") return;
   // Of what it stopped for; of several so near to one another, the nearest.
-  for (const int thing : blamed_)
-    last.stands_m = std::min(last.stands_m.value_or(kMarch_m), room_m(thing));
+  for (const int thing : blamed_) {
+    const double room = room_m(thing);
+    if (last.stands_m && *last.stands_m <= room) continue;
+    last.stands_m = room;
+    last.thing = around_.scene().name_of(thing);
+  }
 }
 
 StopSeen Referee::stop_of(const base::Obstacle& o) {

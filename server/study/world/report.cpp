@@ -94,7 +94,10 @@ ordered_json stop_json(const StopSeen& s) {
     out["age_s"] = s.age_s;
     out["rise_m"] = s.rise_m;
   }
-  if (s.stands_m) out["stands_m"] = *s.stands_m;
+  if (s.stands_m) {
+    out["stands_m"] = *s.stands_m;
+    out["thing"] = s.thing;
+  }
   return out;
 }
 

@@ -102,6 +102,7 @@ struct StopSeen {
   double age_s = 0.0;     ///< of its last echo
   double rise_m = 0.0;    ///< of the ground there over the plane on which the robot stood
   std::optional<double> stands_m;  ///< room before the static thing that it stopped for
+  std::string thing;               ///< that one
 };
 
 struct WorldRun {

@@ -200,6 +200,7 @@ TEST(WorldRunTest, StandsBeforeAWallAndTouchesNothing) {
   ASSERT_TRUE(run->stops[0].stands_m);
   EXPECT_GE(*run->stops[0].stands_m, 0.05);
   EXPECT_LE(*run->stops[0].stands_m, 0.40);
+  EXPECT_EQ(run->stops[0].thing, "wall 0");
   // The wall's near side at 5.9 m, half of the vehicle 0.51 m.
   EXPECT_NEAR(run->driven_m, 5.9 - 0.51 - *run->stops[0].stands_m, 0.1);
 }
