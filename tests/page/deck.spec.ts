@@ -63,6 +63,16 @@ test('the figures tell how it drives, and are large', async ({ page, station }) 
   await save(page);
   await drive_it(page);
   await expect(deck).toContainText(/Speed\s*0\.[1-9]\dm\/s/, { timeout: 30_000 });
+  // On a phone's side no name runs into the next one: which side it is off is told by an arrow.
+  await page.setViewportSize({ width: 844, height: 390 });
+  const names = page.locator('.deck > dl dt');
+  await expect(deck).toContainText(/Off path\s*\d+\.\dcm (left|right)/);
+  await expect(names).toHaveCount(4);
+  const over_px = await names.evaluateAll((all) =>
+    Math.max(...all.map((one) => one.scrollWidth - one.clientWidth)),
+  );
+  expect(over_px).toBeLessThan(6);
+  await page.setViewportSize({ width: 1440, height: 900 });
   await expect(deck).toContainText(/Off path\s*\d+\.\d(c?m)( left| right)?/);
   await expect(deck).toContainText(/To drive\s*\d+(\.\d+)?m/);
   await expect(deck).toContainText(/Time left\s*(\d+s|\d+:\d\dmin)/);

@@ -47,6 +47,15 @@ describe('the figures of the deck', () => {
     expect(said(blocked).slice(2)).toEqual(['To drive: 51.3 m', 'Time left: —']);
   });
 
+  test('tell the side by an arrow where there is no room for a word', () => {
+    const brief = (off_m: number | null) =>
+      deck_figures(vehicle({ cross_track_m: off_m }))[1]?.brief;
+    expect(brief(0.034)).toEqual({ unit: 'cm', side: '◂' });
+    expect(brief(-0.25)).toEqual({ unit: 'm', side: '▸' });
+    expect(brief(0)).toEqual({ unit: 'cm', side: '' });
+    expect(brief(null)).toEqual({ unit: '', side: '' });
+  });
+
   test('tell the speed in the unit that was chosen', () => {
     expect(deck_figures(vehicle(), 'km/h')[0]).toMatchObject({ value: '2.9', unit: 'km/h' });
   });

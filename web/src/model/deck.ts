@@ -12,6 +12,8 @@ export interface DeckFigure {
   readonly value: string;
   /** And the side, of a distance from the path. */
   readonly unit: string;
+  /** Where there is no room for "cm left": the unit alone, and to which side. */
+  readonly brief: { readonly unit: string; readonly side: '' | '◂' | '▸' };
   readonly tone: 'plain' | 'warn' | 'bad';
 }
 
@@ -26,6 +28,17 @@ const split = (text: string): readonly [value: string, unit: string] => {
 
 const side_of = (left_m: number | null): string =>
   left_m === null || left_m === 0 ? '' : ` ${side_word(left_m)}`;
+
+const arrow_of = (left_m: number | null): DeckFigure['brief']['side'] =>
+  left_m === null || left_m === 0 ? '' : left_m > 0 ? '◂' : '▸';
+
+const figure = (label: string, [value, unit]: readonly [string, string]): DeckFigure => ({
+  label,
+  value,
+  unit,
+  brief: { unit, side: '' },
+  tone: 'plain',
+});
 
 const path_tone = ({ cross_track_m, cross_track_limit_m }: MissionProgress): DeckFigure['tone'] => {
   if (cross_track_m === null || cross_track_limit_m === null) return 'plain';
@@ -49,23 +62,21 @@ export const deck_figures = (
   speed_in: SpeedUnit = 'm/s',
 ): readonly DeckFigure[] => {
   const mission = vehicle?.mission ?? null;
-  const [speed, speed_unit] = split(speed_text(vehicle?.position.speed_mps, speed_in));
   const off_m = mission?.cross_track_m ?? null;
   const [off, off_unit] = split(metres(off_m === null ? null : Math.abs(off_m)));
   // Of one that has ended there is nothing left; how long one stands that is blocked nobody knows.
   const ended = mission?.state === 'finished' || mission?.state === 'aborted';
   const waits = vehicle?.obstacle?.blocked === true;
-  const [left, left_unit] = split(metres(ended ? null : mission?.distance_left_m));
-  const [time, time_unit] = clock_of(ended || waits ? null : (mission?.eta_s ?? null));
   return [
-    { label: say('speed'), value: speed, unit: speed_unit, tone: 'plain' },
+    figure(say('speed'), split(speed_text(vehicle?.position.speed_mps, speed_in))),
     {
       label: say('off_path'),
       value: off,
       unit: `${off_unit}${side_of(off_m)}`,
+      brief: { unit: off_unit, side: arrow_of(off_m) },
       tone: mission ? path_tone(mission) : 'plain',
     },
-    { label: say('to_drive'), value: left, unit: left_unit, tone: 'plain' },
-    { label: say('time_left'), value: time, unit: time_unit, tone: 'plain' },
+    figure(say('to_drive'), split(metres(ended ? null : mission?.distance_left_m))),
+    figure(say('time_left'), clock_of(ended || waits ? null : (mission?.eta_s ?? null))),
   ];
 };

@@ -12,7 +12,7 @@ export const state = {
   speed: 'Velocità',
   off_path: 'Scarto',
   to_drive: 'Da fare',
-  time_left: 'Tempo rim.',
+  time_left: 'Mancano',
   whole_min_whole_2_s: '{whole} min {whole_2} s',
   whole_h_whole_2_min: '{whole} h {whole_2} min',
   qgroundcontrol: 'QGroundControl',
