@@ -34,6 +34,11 @@ test('points are drawn, moved, inserted, edited and deleted, and every step is u
   const places = (): Promise<string[]> => items(page).allInnerTexts();
   const drawn = await places();
   const [x, y] = await map_middle(page);
+  // A field's name stands nearer to it than to the field above.
+  const at_end = await page.getByLabel('At the end the robot').boundingBox();
+  const corridor = await page.getByLabel('Corridor to each side, m').boundingBox();
+  if (!at_end || !corridor) throw new Error('no fields of the mission');
+  expect(corridor.y - (at_end.y + at_end.height)).toBeGreaterThan(24);
 
   await page.mouse.move(x, y - 100);
   await page.mouse.down();
