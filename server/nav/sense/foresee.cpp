@@ -134,6 +134,7 @@ Foreseen foresee(std::span<const Mover> movers, const Odometry& now, const Footp
           out.found = true;
           out.meets_s = *t;
           out.at = who[i].at;
+          out.radius_m = who[i].radius_m;
           out.sensor = of[i]->sensor;
           out.age_s = base::seconds(now.stamp - of[i]->seen);
         }

@@ -32,7 +32,8 @@ struct Foreseen {
   double part = 1.0;     ///< of the commanded twist, 0..1
   bool found = false;    ///< somebody would be met
   double meets_s = 0.0;  ///< when, if all went on so
-  Vec2 at{};             ///< where he is now, in B
+  Vec2 at{};             ///< where he is now, in B: the middle of what was seen of him
+  double radius_m = 0.0;
   std::uint8_t sensor = 0;
   double age_s = 0.0;
 };

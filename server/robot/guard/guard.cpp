@@ -261,6 +261,7 @@ void Guard::look_ahead_of_time(Looked& v, const BodyTwist& twist,
     v.touch_s = f.meets_s;
     v.distance_m = std::abs(twist.linear_mps) * f.meets_s;
     v.at = f.at;
+    v.radius_m = f.radius_m;
     v.bearing_rad = std::atan2(f.at.y, f.at.x);
     v.sensor = f.sensor;
     v.age_s = f.age_s;
@@ -474,7 +475,7 @@ void Guard::forget() noexcept {
 /// origin: where the trailer is, is known less well.
 double Guard::room_m(const Looked& v) const noexcept {
   if (v.trailer) return std::hypot(v.at.x, v.at.y);
-  return std::max(0.0, body_.distance_m(v.at));
+  return std::max(0.0, body_.distance_m(v.at) - v.radius_m);
 }
 
 void Guard::tell(const Looked& v, base::GuardAction action, base::Time now) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <memory>
+#include <string>
 
 #include "seeing.hpp"
 
@@ -72,7 +73,14 @@ TEST_F(Seeing, WhoCrossesIsWaitedForAndTheMissionGoesOn) {
     }
     const auto& o = field.robot.snapshot()->obstacle;
     slowed = slowed || (o && o->moves && o->action != base::GuardAction::None);
-    said = said || (o && o->reason.starts_with("somebody comes into the way"));
+    if (said || !o || !o->reason.starts_with("somebody comes into the way")) continue;
+    said = true;
+    // The room is to his nearest edge, not to his middle; he is ahead, to the right.
+    const double ahead_m = him.at.x - pose.x_m - 0.5 * VehicleLength;
+    const double aside_m = std::max(0.0, pose.y_m - y_m - 0.5 * VehicleWidth);
+    const double room_m = std::max(0.0, std::hypot(ahead_m, aside_m) - him.radius_m);
+    const std::string words = "somebody comes into the way, ";
+    EXPECT_NEAR(std::stod(o->reason.substr(words.size())), room_m, 0.1) << o->reason;
   }
   EXPECT_TRUE(slowed);
   EXPECT_TRUE(said);

@@ -68,6 +68,7 @@ class Seeing : public ::testing::Test {
   double driven_m() const { return field.at.north_m; }
 
   static constexpr double VehicleLength = 1.023;
+  static constexpr double VehicleWidth = 0.778;
   Field field;
   bool sees = true;
   bool heard = true;
