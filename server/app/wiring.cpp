@@ -54,9 +54,8 @@ api::Profile profile_of(const Settings& s, const Supervisor& supervisor) {
   profile.drivers = supervisor.names();
   profile.lights = supervisor.has_lights();
   profile.clears_errors = supervisor.clears_errors();
-  profile.item_types = {"waypoint",    "local", "move",   "wait",   "speed",
+  profile.item_types = {"waypoint",    "local", "move",   "turn",   "wait",  "speed",
                         "return_home", "jump",  "action", "loiter", "circle"};
-  if (!s.robot.vehicle.steered()) profile.item_types.emplace_back("turn");
   if (std::ranges::any_of(s.sensors, [](const auto& one) {
         return one.second.said.enabled && one.second.said.ranging();
       })) {

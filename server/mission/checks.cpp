@@ -98,10 +98,7 @@ class PlanCheck {
       }
       if (const auto* speed = std::get_if<Speed>(&item)) speed_limit(number, speed->speed_mps);
       if (const auto* circle = std::get_if<Circle>(&item)) this->circle(number, *circle);
-      if (std::holds_alternative<TurnBy>(item) && vehicle_.turn_radius_m > 0.0) {
-        add(Severity::Error, "turn_too_tight", number,
-            "is a turn on the spot: this vehicle cannot");
-      }
+      if (const auto* turn = std::get_if<TurnBy>(&item)) this->turn(number, *turn);
     }
     if (plan_.settings.speed_mps) speed_limit(0, *plan_.settings.speed_mps);
   }
@@ -111,6 +108,18 @@ class PlanCheck {
     add(Severity::Warning, "speed_above_limit", item,
         "asks for " + tenths(speed_mps) + " m/s; " + tenths(vehicle_.max_speed_mps) +
             " m/s will be driven");
+  }
+
+  void turn(int item, const TurnBy& turn) {
+    if (!(vehicle_.turn_radius_m > 0.0)) return;
+    if (!turn.radius_m) {
+      add(Severity::Error, "turn_too_tight", item,
+          "is a turn on the spot: this vehicle cannot; with a radius_m it is driven as an arc");
+    } else if (*turn.radius_m < vehicle_.turn_radius_m) {
+      add(Severity::Error, "turn_too_tight", item,
+          "is a turn with a radius of " + tenths(*turn.radius_m) +
+              " m; this vehicle's turning radius is " + tenths(vehicle_.turn_radius_m) + " m");
+    }
   }
 
   void circle(int item, const Circle& circle) {

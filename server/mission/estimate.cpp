@@ -95,7 +95,9 @@ class Walk {
   }
   void pass(const Move& move) { add_way(std::abs(move.forward_m), speed_mps_); }
   void pass(const TurnBy& turn) {
-    turn_by(base::rad_from_deg(std::abs(turn.turn_deg.value_or(90.0))));
+    const double turn_rad = base::rad_from_deg(std::abs(turn.turn_deg.value_or(90.0)));
+    if (turn.radius_m) return add_way(turn_rad * *turn.radius_m, speed_mps_);
+    turn_by(turn_rad);
   }
   void pass(const Wait& wait) { wait_s_ += wait.seconds; }
   void pass(const Speed& speed) { speed_mps_ = speed.speed_mps; }

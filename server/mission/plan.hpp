@@ -43,10 +43,11 @@ struct Move {
   double forward_m = 0.0;
   friend bool operator==(const Move&, const Move&) = default;
 };
-/// Exactly one of the two.
+/// Exactly one of the first two.
 struct TurnBy {
   std::optional<double> turn_deg;     ///< relative, clockwise positive (as compass)
   std::optional<double> heading_deg;  ///< absolute
+  std::optional<double> radius_m{};   ///< forwards on an arc of this; empty: on the spot
   friend bool operator==(const TurnBy&, const TurnBy&) = default;
 };
 struct Wait {

@@ -304,6 +304,9 @@ Result<Done> apply(Plan plan, const ScaleRotate& change) {
   for (Item& item : plan.items) {
     if (auto* move = std::get_if<Move>(&item)) move->forward_m *= change.factor;
     if (auto* circle = std::get_if<Circle>(&item)) circle->radius_m *= change.factor;
+    if (auto* turn = std::get_if<TurnBy>(&item); turn && turn->radius_m) {
+      *turn->radius_m *= change.factor;
+    }
   }
   std::string what;
   if (change.factor != 1.0) what = "scaled by " + rounded_text(change.factor);

@@ -58,6 +58,7 @@ inline constexpr Range kStandOff_m{0.1, 5.0};
 inline constexpr Range kOffset_m{-20.0, 20.0};
 inline constexpr Range kDrift_m{0.1, 100.0};
 inline constexpr Range kCircle_m{0.5, 1000.0};
+inline constexpr Range kArc_m{0.1, 100.0};  ///< of a turn
 inline constexpr Range kCircleTurns{0.05, 1000.0};
 inline constexpr int kMaxLandmarks = 10'000;
 inline constexpr int kMaxStations = 36;  ///< a turn
@@ -106,6 +107,7 @@ template <class V>
 void fields(V& v, Of<TurnBy> auto& p) {
   v.number("turn_deg", p.turn_deg, kTurn_deg);
   v.number("heading_deg", p.heading_deg, kHeading_deg);
+  v.number("radius_m", p.radius_m, kArc_m);
   v.exactly_one("turn_deg", p.turn_deg.has_value(), "heading_deg", p.heading_deg.has_value());
 }
 template <class V>

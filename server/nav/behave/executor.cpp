@@ -162,6 +162,7 @@ void Executor::wait() noexcept {
     leg_ = tracker_.leg();
     s_m_ = tracker_.s_m();
   }
+  if (doing_ == Doing::Arc) arc_rad_ = arc_left_rad();
   tracker_.reset();
   row_.interrupt();
   wall_.interrupt();
@@ -179,6 +180,7 @@ std::optional<EnuPoint> Executor::place_to_go_on() const noexcept {
       return connector_.points.back().at;
     case Doing::Nothing:
     case Doing::Wait:
+    case Doing::Arc:
     case Doing::Turn:
     case Doing::Stay:
     case Doing::Row:
@@ -232,6 +234,10 @@ void Executor::go_on(EnuPoint here) {
   if (doing_ == Doing::Turn) {
     left_ = rotation_.left_rad();
     doing_ = Doing::Nothing;  // the rest of it is begun anew
+  }
+  if (doing_ == Doing::Arc) {  // likewise
+    left_ = arc_rad_;
+    doing_ = Doing::Nothing;
   }
   const bool left = std::exchange(row_left_, false);
   if (doing_ == Doing::Row && left) ++rows_begun_;

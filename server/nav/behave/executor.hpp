@@ -203,7 +203,7 @@ class Executor {
   }
   /// What item, bend and vehicle allow where it is on its way; empty: it drives along none.
   std::optional<double> set_mps() const noexcept {
-    const bool on_way = doing_ == Doing::Path || doing_ == Doing::Connector;
+    const bool on_way = doing_ == Doing::Path || on_own_way();
     return running() && on_way ? tracker_.set_mps() : std::nullopt;
   }
   TrackPhase phase() const noexcept {
@@ -220,7 +220,7 @@ class Executor {
   std::vector<Notice>& notices() noexcept { return notices_; }
 
  private:
-  enum class Doing { Nothing, Path, Connector, Wait, Turn, Stay, Row, Wall, Landmarks, Dock };
+  enum class Doing { Nothing, Path, Connector, Arc, Wait, Turn, Stay, Row, Wall, Landmarks, Dock };
   /// Way and time, jumps not counted.
   struct Left {
     double m = 0.0;
@@ -241,6 +241,10 @@ class Executor {
   bool lay_connector(Vertex end, const Vehicle& vehicle);
   bool enter_move(const RouteStep& step, const Vehicle& vehicle);
   bool enter_turn(const RouteStep& step, const Vehicle& vehicle);
+  bool enter_arc(const RouteStep& step, const Vehicle& vehicle);
+  double arc_left_rad() const noexcept;
+  /// On a way that was laid from where it stood: connector_.
+  bool on_own_way() const noexcept { return doing_ == Doing::Connector || doing_ == Doing::Arc; }
   TrackOutput step_turn(const Vehicle& vehicle, double dt_s);
   std::optional<rows::Pose2> until_in_odometry(EnuPoint place, const Vehicle& vehicle,
                                                const rows::Pose2& body) const noexcept;
@@ -292,6 +296,7 @@ class Executor {
   const Course* course_ = nullptr;
   Path connector_;
   Vertex connector_end_;
+  double arc_rad_ = 0.0;  ///< left positive; while it waits what is left of it
   RotateInPlace rotation_;
   RowDrive row_;
   std::optional<RowSight> row_sight_;

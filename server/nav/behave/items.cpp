@@ -26,6 +26,7 @@ bool relative(const RouteStep& step) noexcept {
 }
 
 double length_of_move_m(const RouteStep& step) noexcept {
+  if (step.kind == StepKind::Turn) return std::abs(step.by) * step.radius_m;
   return step.kind == StepKind::Move ? std::abs(step.by) : 0.0;
 }
 
@@ -72,6 +73,7 @@ bool Executor::enter_move(const RouteStep& step, const Vehicle& vehicle) {
 
 bool Executor::enter_turn(const RouteStep& step, const Vehicle& vehicle) {
   carry(vehicle);
+  if (step.moves_on()) return enter_arc(step, vehicle);
   const double rate_radps =
       step.kind == StepKind::Turn ? modes_->turn_radps : path_params_->pivot.max_rate_radps;
   if (step.yaw_rad) {
@@ -110,7 +112,7 @@ void Executor::carry(const Vehicle& vehicle) noexcept {
 
 /// The way in hand lies in the frame that the odometry carries, not in the map's.
 bool Executor::by_odometry() const noexcept {
-  const bool moves = doing_ == Doing::Connector || doing_ == Doing::Turn;
+  const bool moves = doing_ == Doing::Connector || doing_ == Doing::Arc || doing_ == Doing::Turn;
   return carry_ && row_sight_ && moves && asks_no_place();
 }
 

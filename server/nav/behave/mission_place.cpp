@@ -44,8 +44,12 @@ std::optional<base::MissionPlace> Executor::place() const {
   if (doing_ == Doing::Wait || stays_) p.wait_s = wait_s_;
   const RouteStep* step = step_now();
   const bool counts = step != nullptr && !step->yaw_rad;
+  constexpr double kDone_rad = 1e-3;  // all of it, and it backs up to its end
   if (counts && step->kind == StepKind::Turn) {
-    p.left = doing_ == Doing::Turn ? rotation_.left_rad() : left_;
+    p.left = doing_ == Doing::Turn        ? rotation_.left_rad()
+             : doing_ == Doing::Arc       ? arc_left_rad()
+             : doing_ == Doing::Connector ? kDone_rad
+                                          : left_;
   }
   if (counts && step->kind == StepKind::Row) {
     p.left = doing_ == Doing::Row ? row_.driven_m() : left_;

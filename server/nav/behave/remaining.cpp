@@ -63,7 +63,7 @@ std::optional<Executor::Left> Executor::left(const RouteStep& step,
     if (off_m > path_params_->track.rejoin_m) all = {all.m + off_m, all.s + off_m / by_mps};
     return all;
   }
-  if (doing_ == Doing::Connector) {
+  if (on_own_way()) {
     const bool drives = tracker_.path() == &connector_;
     if (connector_.points.empty() || (!drives && !here)) return std::nullopt;
     // One that waits begins anew where the robot stands then.
@@ -133,12 +133,12 @@ Progress Executor::progress(std::optional<EnuPoint> here, double sigma_m) const 
   }
   if (here && in_hand()) p.cross_track_limit_m = cross_track_limit_m(sigma_m);
   if (stays_) p.target = stays_;
-  if (step->kind != StepKind::Go && doing_ == Doing::Connector) {
+  if (step->kind != StepKind::Go && on_own_way()) {
     p.target = connector_.points.back().at;
   }
   tell_item_end(p, here);
   const bool tracking = (doing_ == Doing::Path && tracker_.path() == &course_->path) ||
-                        (doing_ == Doing::Connector && tracker_.path() == &connector_);
+                        (on_own_way() && tracker_.path() == &connector_);
   if (running() && tracking) p.cross_track_m = tracker_.cross_track_m();
   // Where it only looks for one, there is no line to be beside of.
   const auto beside = [&](Doing doing, const auto& drive) {

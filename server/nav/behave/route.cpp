@@ -154,11 +154,19 @@ class Layout {
   }
   void add(const mission::TurnBy& t) {
     if (params_.tool.pulled()) {
-      return refuse("with a trailer (nav.tool.trailer_m) nothing turns on the spot");
+      return refuse("with a trailer (nav.tool.trailer_m) nothing turns from where it stands");
     }
-    if (params_.vehicle.steered()) return refuse("this vehicle cannot turn on the spot");
+    const double least_m = min_radius_m(params_.vehicle);
+    if (params_.vehicle.steered() && !t.radius_m) {
+      return refuse("this vehicle cannot turn on the spot; with a radius_m it drives an arc");
+    }
+    if (t.radius_m && *t.radius_m < least_m) {
+      return refuse("is a turn too narrow for this vehicle: its radius_m must be at least " +
+                    tenths_text(least_m));
+    }
     not_back_and_forth("a turn");
-    RouteStep step{.kind = StepKind::Turn, .item = item_};
+    if (t.radius_m) leave_circle();
+    RouteStep step{.kind = StepKind::Turn, .item = item_, .radius_m = t.radius_m.value_or(0.0)};
     if (t.heading_deg) step.yaw_rad = base::yaw_from_heading(*t.heading_deg);
     // Compass turns count clockwise.
     if (t.turn_deg) step.by = -base::rad_from_deg(*t.turn_deg);
@@ -281,8 +289,8 @@ class Layout {
     const auto& steps = route_.forth.steps;
     for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
       if (step->kind == StepKind::Go) return route_.forth.nodes[step->node].at;
-      const bool elsewhere = step->kind == StepKind::Home || step->kind == StepKind::Move ||
-                             step->by_sight() || (step->kind == StepKind::Stay && !step->place);
+      const bool elsewhere = step->kind == StepKind::Home || step->moves_on() || step->by_sight() ||
+                             (step->kind == StepKind::Stay && !step->place);
       if (elsewhere || step->kind == StepKind::Jump) return std::nullopt;
     }
     return route_.home;
@@ -492,6 +500,10 @@ class Layout {
         return std::abs(step.by) / std::max(0.1, params_.speed.creep_mps);
       case StepKind::Face:
       case StepKind::Turn:
+        if (step.moves_on()) {
+          return (step.yaw_rad ? base::kPi / 2.0 : std::abs(step.by)) * step.radius_m /
+                 std::max(0.1, params_.speed.creep_mps);
+        }
         return (step.yaw_rad ? base::kPi / 2.0 : std::abs(step.by)) / turn_radps;
       case StepKind::Row:  // how long it is, shows on the way
         if (!step.row->distance_m) break;
@@ -525,7 +537,7 @@ class Layout {
         before = forth().nodes[step.node].at;
         if (at_home) route_.home_ends.push_back({*before, step.item});
         at_home = false;
-      } else if (step.kind == StepKind::Move || step.by_sight()) {
+      } else if (step.moves_on() || step.by_sight()) {
         before.reset();
         at_home = false;
       } else if (step.kind == StepKind::Home) {

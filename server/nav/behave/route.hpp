@@ -74,6 +74,7 @@ struct RouteStep {
   int times = 0;           ///< Jump: repetitions; 0 = for ever
   double by = 0.0;         ///< Move: m, negative backwards. Turn: rad, left positive
   std::optional<double> yaw_rad{};    ///< Face: to this; Turn: to this instead of by an angle
+  double radius_m = 0.0;              ///< Turn: forwards on such an arc; 0: on the spot
   bool silent = false;                ///< Go: a point on the way to the item's own
   std::optional<EnuPoint> place{};    ///< Stay: here; empty: where the robot stands
   double within_m = 0.0;              ///< Stay: farther from there it drives back
@@ -85,6 +86,10 @@ struct RouteStep {
   std::optional<LandmarksToPass> landmarks{};  ///< Landmarks
   std::optional<DockToCome> dock{};            ///< Dock
 
+  /// Away from where it stands, to a place that no plan tells.
+  bool moves_on() const noexcept {
+    return kind == StepKind::Move || (kind == StepKind::Turn && radius_m > 0.0);
+  }
   /// Along what is seen: where it leads shows on the way.
   bool by_sight() const noexcept {
     return kind == StepKind::Row || kind == StepKind::Wall || kind == StepKind::Landmarks ||

@@ -36,6 +36,7 @@ class StopWalk {
         if (step.yaw_rad) face(*step.yaw_rad);
         return;
       case StepKind::Turn:
+        if (step.moves_on()) return leave();
         if (step.yaw_rad) {
           face(*step.yaw_rad);
         } else if (yaw_rad_) {
@@ -48,16 +49,20 @@ class StopWalk {
       case StepKind::Wall:
       case StepKind::Landmarks:
       case StepKind::Dock:
-        yaw_rad_.reset();
-        elsewhere_ = true;
-        places_ = 0;
-        return;
+        return leave();
       case StepKind::Wait:
       case StepKind::Jump:
       case StepKind::Act:
       case StepKind::Stay:
         return;
     }
+  }
+
+  /// To where no plan tells.
+  void leave() {
+    yaw_rad_.reset();
+    elsewhere_ = true;
+    places_ = 0;
   }
 
   void go(const RouteStep& step) {

@@ -57,7 +57,7 @@ std::optional<Finding> link_outside(const nav::Route& route, const mission::Comp
   std::optional<base::EnuPoint> before;
   for (const nav::RouteStep& step : course.steps) {
     if (step.kind == nav::StepKind::Go) before = course.nodes[step.node].at;
-    if (step.kind == nav::StepKind::Move || step.kind == nav::StepKind::Home) before.reset();
+    if (step.moves_on() || step.kind == nav::StepKind::Home) before.reset();
     if (step.kind != nav::StepKind::Jump || !before) continue;
     const std::size_t to = go_from(step.target);
     if (to == course.steps.size()) continue;

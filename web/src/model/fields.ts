@@ -101,6 +101,7 @@ export const fields_of: Record<ItemType, readonly Field[]> = {
   turn: [
     may('turn_deg', 'turn_by', '°', [-3600, 3600]),
     may('heading_deg', 'turn_to_heading', '°', [0, 360]),
+    may('radius_m', 'turn_on_an_arc_of', 'm', [0.1, 100]),
   ],
   wait: [must('seconds', 'wait', 's', [0, 86_400])],
   speed: [must('speed_mps', 'speed', 'm/s', [0.01, 10])],
@@ -254,7 +255,7 @@ export const with_field = (item: Item, key: string, value: unknown): Item => {
     ([name]) => name !== key && !(without_place && (name === 'lat' || name === 'lon')),
   );
   const rest =
-    item.type === 'turn' && value !== null
+    item.type === 'turn' && value !== null && key !== 'radius_m'
       ? entries.filter(([name]) => name !== 'turn_deg' && name !== 'heading_deg')
       : entries;
   if (value !== null && value !== undefined) rest.push([key, value]);

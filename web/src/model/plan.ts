@@ -37,11 +37,13 @@ export interface Move {
   readonly type: 'move';
   readonly forward_m: number;
 }
-/** Exactly one of the two: relative (clockwise positive) or absolute. */
+/** Exactly one of the first two: relative (clockwise positive) or absolute. */
 export interface Turn {
   readonly type: 'turn';
   readonly turn_deg?: number | null;
   readonly heading_deg?: number | null;
+  /** Forwards on an arc of this; none: on the spot. */
+  readonly radius_m?: number | null;
 }
 export interface Wait {
   readonly type: 'wait';
@@ -207,6 +209,9 @@ export const item_title = (item: Item, speed_in: SpeedUnit = 'm/s'): string => {
         ? say('back_forward_m', { forward: -item.forward_m })
         : say('forward_forward_m', { forward: item.forward_m });
     case 'turn':
+      if (typeof item.turn_deg === 'number' && item.radius_m) {
+        return say('turn_on_an_arc', { turn: item.turn_deg, radius: item.radius_m });
+      }
       return typeof item.turn_deg === 'number'
         ? say('turn_turn_deg', { turn: item.turn_deg })
         : say('turn_to_heading_heading_deg', { heading: item.heading_deg ?? 0 });

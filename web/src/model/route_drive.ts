@@ -202,7 +202,8 @@ class Walk {
   take(item: Item, index: number): void {
     const place = place_of(item);
     if (place) this.#go(item, index, this.#plane.to_plane(place));
-    else if (item.type === 'turn') this.#turn(item.turn_deg ?? null, item.heading_deg ?? null);
+    else if (item.type === 'turn' && !item.radius_m)
+      this.#turn(item.turn_deg ?? null, item.heading_deg ?? null);
     else if (item.type !== 'speed' && item.type !== 'wait' && item.type !== 'action') {
       this.#stand = null;
     }

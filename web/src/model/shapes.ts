@@ -98,6 +98,9 @@ export const scale_items = (picked: Picked, factor: number, about: LatLon | null
     place: ({ east_m, north_m }) => ({ east_m: east_m * factor, north_m: north_m * factor }),
     item: (item) => {
       if (item.type === 'move') return { ...item, forward_m: scaled(item.forward_m, factor) };
+      if (item.type === 'turn' && typeof item.radius_m === 'number') {
+        return { ...item, radius_m: scaled(item.radius_m, factor) };
+      }
       return item.type === 'circle' ? { ...item, radius_m: scaled(item.radius_m, factor) } : item;
     },
   });

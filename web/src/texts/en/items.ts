@@ -69,6 +69,8 @@ export const items = {
   local_east_m_east_north_m_north: 'Local {east} m east, {north} m north',
   back_forward_m: 'Back {forward} m',
   forward_forward_m: 'Forward {forward} m',
+  turn_on_an_arc: 'Turn {turn}° on an arc of {radius} m',
+  turn_on_an_arc_of: 'Forwards on an arc of, m',
   turn_turn_deg: 'Turn {turn}°',
   turn_to_heading_heading_deg: 'Turn to heading {heading}°',
   wait_seconds_s: 'Wait {seconds} s',

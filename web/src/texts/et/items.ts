@@ -69,6 +69,8 @@ export const items = {
   local_east_m_east_north_m_north: 'Kohalik {east} m itta, {north} m põhja',
   back_forward_m: 'Tagasi {forward} m',
   forward_forward_m: 'Edasi {forward} m',
+  turn_on_an_arc: 'Pööra {turn}° kaarega {radius} m',
+  turn_on_an_arc_of: 'Edasi kaarega, m',
   turn_turn_deg: 'Pööra {turn}°',
   turn_to_heading_heading_deg: 'Pööra suunda {heading}°',
   wait_seconds_s: 'Oota {seconds} s',

@@ -69,6 +69,8 @@ export const items = {
   local_east_m_east_north_m_north: 'Paikallinen {east} m itään, {north} m pohjoiseen',
   back_forward_m: 'Taakse {forward} m',
   forward_forward_m: 'Eteen {forward} m',
+  turn_on_an_arc: 'Käänny {turn}° kaarella {radius} m',
+  turn_on_an_arc_of: 'Eteenpäin kaarella, m',
   turn_turn_deg: 'Käänny {turn}°',
   turn_to_heading_heading_deg: 'Käänny suuntaan {heading}°',
   wait_seconds_s: 'Odota {seconds} s',

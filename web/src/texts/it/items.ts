@@ -69,6 +69,8 @@ export const items = {
   local_east_m_east_north_m_north: 'Locale {east} m est, {north} m nord',
   back_forward_m: 'Indietro {forward} m',
   forward_forward_m: 'Avanti {forward} m',
+  turn_on_an_arc: 'Gira di {turn}° con arco di {radius} m',
+  turn_on_an_arc_of: 'Avanti su un arco di, m',
   turn_turn_deg: 'Gira di {turn}°',
   turn_to_heading_heading_deg: 'Gira alla rotta {heading}°',
   wait_seconds_s: 'Aspetta {seconds} s',

@@ -69,6 +69,8 @@ export const items = {
   local_east_m_east_north_m_north: 'Lokalt {east} m øst, {north} m nord',
   back_forward_m: 'Tilbake {forward} m',
   forward_forward_m: 'Fram {forward} m',
+  turn_on_an_arc: 'Snu {turn}° i en bue på {radius} m',
+  turn_on_an_arc_of: 'Fremover i en bue på, m',
   turn_turn_deg: 'Snu {turn}°',
   turn_to_heading_heading_deg: 'Snu til kurs {heading}°',
   wait_seconds_s: 'Vent {seconds} s',

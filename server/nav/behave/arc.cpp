@@ -1,0 +1,73 @@
+// A turn that has a radius: forwards, from where the robot is and points.
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "base/angle.hpp"
+#include "nav/behave/executor.hpp"
+#include "nav/track/corner.hpp"
+
+namespace roverd::nav {
+namespace {
+
+constexpr double kArcPiece_rad = base::kPi / 12.0;
+constexpr double kLeastArc_rad = 1e-3;  // 0 stands for all of it
+
+/// From `from` on, by so much. A vehicle that can turns the last bit on the spot.
+std::vector<Vertex> arc_of(const Vehicle& from, double by_rad, double radius_m, double speed_mps,
+                           bool faces) {
+  const double side = by_rad > 0.0 ? 1.0 : -1.0;
+  const double out_rad = from.yaw_rad - side * base::kPi / 2.0;  // from its centre to the robot
+  const EnuPoint centre{from.at.east_m - radius_m * std::cos(out_rad),
+                        from.at.north_m - radius_m * std::sin(out_rad)};
+  const int pieces = std::max(1, static_cast<int>(std::ceil(std::abs(by_rad) / kArcPiece_rad)));
+  std::vector<Vertex> way;
+  way.reserve(static_cast<std::size_t>(pieces) + 1);
+  Vertex v;
+  v.at = from.at;
+  v.speed_mps = speed_mps;
+  way.push_back(v);
+  v.curvature_1pm = side / radius_m;
+  for (int i = 1; i <= pieces; ++i) {
+    const double at_rad = out_rad + by_rad * i / pieces;
+    v.at = {centre.east_m + radius_m * std::cos(at_rad),
+            centre.north_m + radius_m * std::sin(at_rad)};
+    v.tangent = i < pieces;
+    way.push_back(v);
+  }
+  if (faces) way.back().yaw_rad = base::wrap_rad(from.yaw_rad + by_rad);
+  return way;
+}
+
+}  // namespace
+
+bool Executor::enter_arc(const RouteStep& step, const Vehicle& vehicle) {
+  const double whole_rad =
+      step.yaw_rad ? base::angle_diff_rad(vehicle.yaw_rad, *step.yaw_rad) : step.by;
+  arc_rad_ = left_ != 0.0 ? left_ : whole_rad;
+  left_ = 0.0;
+  standing_.reset();
+  const std::vector<Vertex> way = arc_of(vehicle, arc_rad_, step.radius_m, modes_->move_mps,
+                                         turning_on_the_spot(path_params_->vehicle));
+  connector_end_ = way.back();
+  connector_ = build_path(way, *path_params_);
+  rejoin_.reset();
+  if (connector_.legs.empty()) {
+    reached(step);
+    return doing_ != Doing::Nothing;
+  }
+  doing_ = Doing::Arc;
+  drove_ = true;
+  tracker_.begin(connector_, 0, 0.0);
+  return true;
+}
+
+/// By the way that is driven of it.
+double Executor::arc_left_rad() const noexcept {
+  if (tracker_.path() != &connector_) return arc_rad_;
+  const double share = 1.0 - tracker_.s_m() / connector_.length_m();
+  return std::copysign(std::max(kLeastArc_rad, std::abs(arc_rad_) * share), arc_rad_);
+}
+
+}  // namespace roverd::nav

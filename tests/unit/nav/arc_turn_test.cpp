@@ -1,0 +1,113 @@
+// Turns that have a radius: forwards on an arc from where the robot stands.
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "nav/behave/stops.hpp"
+#include "ride.hpp"
+
+namespace roverd::nav {
+namespace {
+
+using base::ExecutionState;
+using mission::TurnBy;
+
+PathParams car_params() {
+  PathParams p;
+  p.vehicle.kinematics = "ackermann";
+  p.vehicle.wheelbase_m = 1.3;
+  p.vehicle.max_steering_deg = 40.0;
+  return p;
+}
+
+//        ╭──╮
+//        │  ▼ 2 m to the right, pointing back
+TEST(ArcTurn, LeadsRoundAHalfCircleForwards) {
+  Ride r;
+  r.vehicle.yaw_rad = base::kPi / 2.0;
+  r.load(plan({TurnBy{180.0, std::nullopt, 1.0}, mission::Wait{0.1}}));
+  r.start();
+  double slowest_mps = 0.0;
+  while (r.executor.running()) {
+    r.tick();
+    slowest_mps = std::min(slowest_mps, r.vehicle.speed_mps);
+    ASSERT_LT(r.vehicle.at.north_m, 1.1);
+  }
+  EXPECT_EQ(r.executor.state(), ExecutionState::Finished) << r.executor.reason();
+  EXPECT_EQ(r.reached, (std::vector<int>{1, 2}));
+  EXPECT_NEAR(r.vehicle.at.east_m, 2.0, 0.06);
+  EXPECT_NEAR(r.vehicle.at.north_m, 0.0, 0.06);
+  EXPECT_NEAR(r.vehicle.yaw_rad, -base::kPi / 2.0, 0.03);
+  EXPECT_EQ(slowest_mps, 0.0);
+}
+
+TEST(ArcTurn, LeadsToAHeadingTheShorterWay) {
+  Ride r;  // looks east
+  r.load(plan({TurnBy{std::nullopt, 0.0, 2.0}}));
+  r.start();
+  ASSERT_TRUE(r.run(60.0));
+  EXPECT_NEAR(r.vehicle.at.east_m, 2.0, 0.06);
+  EXPECT_NEAR(r.vehicle.at.north_m, 2.0, 0.06);
+  EXPECT_NEAR(r.vehicle.yaw_rad, base::kPi / 2.0, 0.03);
+}
+
+// A pause in its middle, and a restart there: what is left of it is driven.
+TEST(ArcTurn, GoesOnWithWhatIsLeftOfIt) {
+  for (const bool restarts : {false, true}) {
+    const auto mission = plan({TurnBy{-90.0, std::nullopt, 4.0}});
+    Ride r;
+    r.load(mission);
+    r.start();
+    while (r.executor.running() && r.vehicle.yaw_rad < base::rad_from_deg(40.0)) r.tick();
+    if (restarts) {
+      const auto place = r.executor.place();
+      ASSERT_TRUE(place);
+      EXPECT_NEAR(place->left, base::rad_from_deg(50.0), 0.1);
+      ASSERT_TRUE(r.executor.restore(r.route_of(mission), *place, "restarted"));
+    } else {
+      r.executor.pause("asked");
+    }
+    r.vehicle.speed_mps = r.vehicle.yaw_rate_radps = 0.0;
+    ASSERT_TRUE(r.executor.resume(r.vehicle.at));
+    ASSERT_TRUE(r.run(60.0));
+    EXPECT_EQ(r.executor.state(), ExecutionState::Finished) << r.executor.reason();
+    EXPECT_NEAR(base::deg_from_rad(r.vehicle.yaw_rad), 90.0, 3.0);
+    EXPECT_NEAR(r.vehicle.at.east_m, 4.0, 0.3);
+    EXPECT_NEAR(r.vehicle.at.north_m, 4.0, 0.3);
+  }
+}
+
+TEST(ArcTurn, AVehicleThatCannotTurnOnTheSpotDrivesItNoNarrowerThanItCan) {
+  const auto refusal = [](const TurnBy& turn) {
+    const auto route = lay_route(plan({at(1, 1), turn}), kFrame, car_params());
+    return route ? std::string() : route.error().fields.at(0).detail;
+  };
+  EXPECT_EQ(refusal({90.0, std::nullopt}),
+            "this vehicle cannot turn on the spot; with a radius_m it drives an arc");
+  EXPECT_EQ(refusal({90.0, std::nullopt, 1.6}),
+            "is a turn too narrow for this vehicle: its radius_m must be at least 1.7 m");
+  EXPECT_EQ(refusal({90.0, std::nullopt, 1.8}), "");
+}
+
+TEST(ArcTurn, BetweenRowsItCountsAsWayAndAsksForNoPlace) {
+  const auto asks_none = [](double radius_m) {
+    const auto route = lay_route(
+        plan({mission::Row{}, TurnBy{180.0, std::nullopt, radius_m}, mission::Row{}}), kFrame, {});
+    return asks_no_place(route->forth, 1);
+  };
+  EXPECT_TRUE(asks_none(9.0));    // 28 m
+  EXPECT_FALSE(asks_none(10.0));  // 31 m: the odometry alone is not trusted so far
+}
+
+TEST(ArcTurn, TakesThePlanToWhereNobodyKnows) {
+  const auto route = lay_route(
+      plan({at(0, 0), at(5, 0), TurnBy{90.0, std::nullopt, 1.0}, TurnBy{90.0, {}}}), kFrame, {});
+  ASSERT_TRUE(route);
+  const CourseStops stops = stops_of(route->forth, 100);
+  ASSERT_EQ(stops.stops.size(), 2U);
+  EXPECT_TRUE(stops.stops.back().turns.empty()) << "the turn on the spot is elsewhere";
+}
+
+}  // namespace
+}  // namespace roverd::nav
