@@ -21,6 +21,7 @@ void take_parameters(Profile& profile, const robot::Config& config) {
         2.0 * limits.default_speed_mps * v.max_steering_deg / v.max_steering_rate_dps;
     limits.settle_m = config.track.lookahead_max_m;
   }
+  profile.turning = {config.narrowest_turn_m(), config.tool.pulled()};
   profile.kinematics = v.kinematics;
   profile.length_m = v.length_m;
   profile.width_m = v.width_m;

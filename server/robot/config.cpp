@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "nav/sense/rays_rule.hpp"
+#include "nav/track/corner.hpp"
 
 namespace roverd::robot {
 namespace {
@@ -124,6 +125,10 @@ bool acts_at_next_start(std::string_view section, std::string_view name) noexcep
   }
   const auto& first = nav::kBelievedAtFirst;
   return section == "nav.estimate" && std::find(first.begin(), first.end(), name) != first.end();
+}
+
+double Config::narrowest_turn_m() const {
+  return nav::min_radius_m(vehicle);
 }
 
 bool acts_by_way(std::string_view section, std::string_view name) noexcept {

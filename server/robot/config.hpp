@@ -257,6 +257,9 @@ struct Config {
   /// And what a way that is asked for keeps of it: tracking is not exact.
   double way_margin_m() const { return kept_fence().margin_m + kFenceAllowance_m; }
 
+  /// The narrowest arc that a way may have, m; 0: the vehicle turns on the spot.
+  double narrowest_turn_m() const;
+
   /// What following a path needs; the vehicle goes no faster than it can, and with a trailer it
   /// takes bends as a steered one.
   nav::PathParams path() const {

@@ -50,9 +50,11 @@ def free_port():
 
 class SeeingRobot:
     """@param world of config/worlds' form. @param eyes of roverd-sim's configuration, with {port} for a free
-    one. @param hears of roverd's, with {port}, {front} (the scanner's address; {at_front}, {at_eye}: without "tcp:") and {folder} (`scratch`)"""
+    one. @param hears of roverd's, with {port}, {front} (the scanner's address; {at_front}, {at_eye}: without "tcp:") and {folder} (`scratch`).
+    @param vehicle one of config/sim"""
 
-    def __init__(self, world, eyes=TOP_AND_FRONT, hears=HEARS_TOP_AND_FRONT, sim=()):
+    def __init__(self, world, eyes=TOP_AND_FRONT, hears=HEARS_TOP_AND_FRONT, sim=(), vehicle="bunker"):
+        self.vehicle = vehicle
         self.scratch = pathlib.Path(tempfile.mkdtemp(prefix="roverd-seeing."))
         self.sim = self.roverd = self.control = None
         try:
@@ -64,7 +66,7 @@ class SeeingRobot:
     def begin(self, world, eyes, hears, sim):
         port = free_port()
         (self.scratch / "world.json").write_text(json.dumps(world))
-        (self.scratch / "sim.toml").write_text((ROOT / "config/sim/bunker.toml").read_text()
+        (self.scratch / "sim.toml").write_text((ROOT / f"config/sim/{self.vehicle}.toml").read_text()
                                                + eyes.format(port=port))
         self.sim = Program(BIN / "roverd-sim", "--cansock", self.scratch / "can", "--gnss", "tcp:0",
                            "--control", "0", "--seed", "1", "--config", self.scratch / "sim.toml",
@@ -82,10 +84,11 @@ class SeeingRobot:
                           + hears.format(port=port, front=at.get("front", ""), folder=self.scratch,
                                          at_front=at.get("front", "").removeprefix("tcp:"),
                                          at_eye=at.get("eye", "").removeprefix("tcp:")))
+        links = [f"drivers.{'bunker' if name == 'can' else name}.link={link}" for name, link in at.items()
+                 if name in ("can", "gnss", "mti", "ackermann")]
         self.roverd = Program(BIN / "roverd", "--config", config, "--data", self.scratch / "data",
-                              "--port", "0", "--set", f"drivers.bunker.link={at['can']}",
-                              "--set", f"drivers.gnss.link={at['gnss']}",
-                              "--set", f"drivers.mti.link={at['mti']}")
+                              "--port", "0", "--vehicle", self.vehicle,
+                              *(word for link in links for word in ("--set", link)))
         self.rest = Rest(self.roverd.wait_line(r"^listening on (https?://\S+)")[1])
 
     def prepare(self):

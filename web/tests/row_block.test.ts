@@ -68,6 +68,23 @@ describe('a block of rows, as it is drawn', () => {
     expect(metres(way.at(-1))).toEqual([2.5, 0]);
   });
 
+  it('draws turns that are arcs as arcs', () => {
+    const items: readonly Item[] = [
+      ROW,
+      forward(1.5),
+      { type: 'turn', turn_deg: 180, radius_m: 1.25 },
+      ROW,
+    ];
+    const { rows, way } = drawn_block(items, { at: ENTRY, heading_deg: 0 }, 10);
+    expect(rows[1]?.map(metres)).toEqual([
+      [2.5, 10],
+      [2.5, 0],
+    ]);
+    const farthest = Math.max(...way.map((place) => metres(place)[1]));
+    expect(farthest).toBeCloseTo(11.5 + 1.25, 2);
+    expect(way.length).toBe(3 + 12 + 1);
+  });
+
   it('says what is to be tapped next', () => {
     expect(why_not_rows(true, [])).toBe('Tap the map where row 1 begins.');
     expect(why_not_rows(true, [ENTRY])).toBe('Tap where row 1 ends.');

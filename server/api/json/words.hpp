@@ -12,6 +12,7 @@
 #include "base/snapshot.hpp"
 #include "mission/checks.hpp"
 #include "mission/formats/formats.hpp"
+#include "mission/rows/headland.hpp"
 #include "robot/guard/outlook.hpp"
 #include "robot/robot.hpp"
 #include "services/trail.hpp"
@@ -69,6 +70,7 @@ struct Profile {
   std::vector<std::string> item_types;       ///< those that execution can drive
   std::map<std::string, std::string> radio;  ///< "swc_up" → "mode.manual"
   mission::VehicleLimits limits{};           ///< what missions are checked against
+  mission::TurningVehicle turning{};         ///< between rows
   std::optional<GuardProfile> guard{};       ///< empty: it drives blind
 };
 

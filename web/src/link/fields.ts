@@ -44,10 +44,11 @@ const survey_calls: SurveyCalls = {
 };
 
 const rows = (wish: RowsWish): Promise<Answer<Schemas['RowsPlan']>> => {
-  const { entry, ...others } = wish;
+  const { entry, to, ...others } = wish;
+  const begin = entry ? { entry: entry.at, heading_deg: entry.heading_deg % 360 } : {};
   const body: Schemas['RowsRequest'] = {
     ...others,
-    ...(entry ? { entry: entry.at, heading_deg: entry.heading_deg % 360 } : {}),
+    ...(entry && to ? { block: [entry.at, to] } : begin),
   };
   return request<Schemas['RowsPlan']>('/missions/rows', { method: 'POST', body });
 };
@@ -55,9 +56,9 @@ const rows = (wish: RowsWish): Promise<Answer<Schemas['RowsPlan']>> => {
 const rows_calls: RowsCalls = {
   preview: async (wish): Promise<Answer<RowBlock>> => {
     const answer = await rows(wish);
-    return answer.ok
-      ? { ok: true, value: { order: answer.value.order, plan: answer.value.mission } }
-      : answer;
+    if (!answer.ok) return answer;
+    const { mission, ...figures } = answer.value;
+    return { ok: true, value: { ...figures, plan: mission } };
   },
 };
 

@@ -5,6 +5,10 @@ import { distance_m, offset_from } from './geo';
 import type { Item, LatLon, Plan, RowSide, Side } from './plan';
 import { say } from './say';
 
+/** From row to row: `auto` as suits the vehicle. */
+export const ROW_TURNS = ['auto', 'pivot', 'arc', 'omega', 'shunt'] as const;
+export type RowTurn = (typeof ROW_TURNS)[number];
+
 export interface RowsWish {
   /** Lanes to drive. */
   readonly rows: number;
@@ -16,8 +20,15 @@ export interface RowsWish {
   readonly skip: number;
   /** Out of a row before it turns. */
   readonly out_m: number;
+  readonly turn_kind: RowTurn;
+  /** Of arcs; null: as suits the vehicle. */
+  readonly radius_m: number | null;
+  /** Every other row is driven the other way; else all are entered at the same end. */
+  readonly alternating: boolean;
   /** Null: where the robot stands when it starts, pointing along row 1. */
   readonly entry: RowEntry | null;
+  /** Row 1 ends here: rows end at the latest there; null: where the robot sees it. */
+  readonly to: LatLon | null;
   readonly side: RowSide;
   /** Along one side; null: the usual one. */
   readonly gap_m: number | null;
@@ -34,6 +45,8 @@ export interface RowEntry {
 export interface RowBlock {
   /** Numbers of the rows, from 1, as they are driven. */
   readonly order: readonly number[];
+  /** So far beyond the rows' ends the vehicle comes. */
+  readonly headland_m: number;
   readonly plan: Plan;
 }
 
@@ -65,6 +78,20 @@ interface Spot {
   readonly right_m: number;
 }
 
+/** Of a turn that is an arc: a piece each 15 degrees. */
+const ARC_PIECE_DEG = 15;
+
+/** @param radius_m 0: on the spot */
+const pieces_of = (
+  by_deg: number,
+  radius_m: number,
+): readonly { readonly half_deg: number; readonly chord_m: number }[] => {
+  const count = radius_m > 0 ? Math.max(1, Math.ceil(Math.abs(by_deg) / ARC_PIECE_DEG)) : 1;
+  const half_deg = (0.5 * by_deg) / count;
+  const piece = { half_deg, chord_m: 2 * radius_m * Math.sin(Math.abs(half_deg) * RAD) };
+  return Array.from({ length: count }, () => piece);
+};
+
 /** @param length_m how long the rows are thought to be @param items row, move and turn items; others
  * move nothing */
 export const drawn_block = (
@@ -93,10 +120,15 @@ export const drawn_block = (
   };
   for (const item of items) {
     if (item.type === 'turn') {
-      turned_deg =
+      const by_deg =
         typeof item.turn_deg === 'number'
-          ? turned_deg + item.turn_deg
-          : (item.heading_deg ?? heading_deg) - heading_deg;
+          ? item.turn_deg
+          : (item.heading_deg ?? heading_deg) - heading_deg - turned_deg;
+      for (const { half_deg, chord_m } of pieces_of(by_deg, item.radius_m ?? 0)) {
+        turned_deg += half_deg;
+        if (chord_m > 0) forward(chord_m);
+        turned_deg += half_deg;
+      }
     } else if (item.type === 'move') {
       forward(item.forward_m);
     } else if (item.type === 'row') {

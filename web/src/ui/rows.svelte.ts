@@ -13,6 +13,7 @@ import {
   type RowBlock,
   type RowEntry,
   type RowsWish,
+  type RowTurn,
 } from '../model/row_block';
 import type { RunOnMap } from '../model/run_ports';
 import { say } from '../model/say';
@@ -50,6 +51,11 @@ export class RowPlanner extends Planner<RowsWish, RowBlock> {
   turn = $state<Side>('right');
   skip = $state(0);
   out_m = $state(1.5);
+  turn_kind = $state<RowTurn>('auto');
+  radius_m = $state<number | null>(null);
+  alternating = $state(true);
+  /** Rows end at the latest where the first one was drawn to. */
+  ends_there = $state(false);
   side = $state<RowSide>('both');
   gap_m = $state<number | null>(null);
   speed_mps = $state<number | null>(null);
@@ -72,6 +78,10 @@ export class RowPlanner extends Planner<RowsWish, RowBlock> {
     turn: this.turn,
     skip: this.skip,
     out_m: this.out_m,
+    turn_kind: this.turn_kind,
+    radius_m: this.turn_kind === 'pivot' ? null : this.radius_m,
+    alternating: this.alternating,
+    to: this.by_place && this.ends_there ? (this.outline.places[1] ?? null) : null,
     entry: this.by_place ? this.tapped : null,
     side: this.side,
     gap_m: this.side === 'both' ? null : this.gap_m,
@@ -137,6 +147,12 @@ export class RowPlanner extends Planner<RowsWish, RowBlock> {
     this.turn = wish.turn;
     this.skip = wish.skip;
     this.out_m = wish.out_m;
+    // Those that were drawn before there was a choice turned on the spot, there and back.
+    const kept: Partial<RowsWish> = wish;
+    this.turn_kind = kept.turn_kind ?? 'auto';
+    this.radius_m = kept.radius_m ?? null;
+    this.alternating = kept.alternating ?? true;
+    this.ends_there = (kept.to ?? null) !== null;
     this.side = wish.side;
     this.gap_m = wish.gap_m;
     this.speed_mps = wish.speed_mps;

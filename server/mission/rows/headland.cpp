@@ -1,0 +1,113 @@
+#include "mission/rows/headland.hpp"
+
+#include <cmath>
+
+#include "base/angle.hpp"
+
+namespace roverd::mission {
+namespace {
+
+constexpr double kStraight_m = 0.01;  // shorter ways between two arcs are none
+constexpr double kExact_m = 1e-6;
+
+/// Turns to the change's own hand are positive here.
+class Turns {
+ public:
+  Turns(double side, double radius_m, std::vector<Item>& items)
+      : side_(side), radius_m_(radius_m), items_(items) {}
+
+  void on_the_spot(double deg) { items_.emplace_back(TurnBy{side_ * deg, std::nullopt}); }
+  void arc(double deg) {
+    // To the millionth of a degree: more digits are of no use in a file.
+    const double rounded = std::round(side_ * deg * 1e6) / 1e6;
+    items_.emplace_back(TurnBy{rounded, std::nullopt, radius_m_});
+  }
+  void straight(double by_m) { items_.emplace_back(Move{std::round(by_m * 1e6) / 1e6}); }
+
+ private:
+  double side_;
+  double radius_m_;
+  std::vector<Item>& items_;
+};
+
+}  // namespace
+
+std::string_view to_string(RowTurn kind) noexcept {
+  switch (kind) {
+    case RowTurn::Auto:
+      return "auto";
+    case RowTurn::Pivot:
+      return "pivot";
+    case RowTurn::Arc:
+      return "arc";
+    case RowTurn::Omega:
+      return "omega";
+    case RowTurn::Shunt:
+      return "shunt";
+  }
+  return "auto";
+}
+
+RowTurn kind_of(const LaneChange& change, const TurningVehicle& vehicle) noexcept {
+  const bool wide = std::abs(change.aside_m) >= 2.0 * change.radius_m - kExact_m;
+  switch (change.kind) {
+    case RowTurn::Auto:
+      if (!(vehicle.narrowest_m > 0.0)) return RowTurn::Pivot;
+      return wide ? RowTurn::Arc : RowTurn::Shunt;
+    case RowTurn::Omega:
+    case RowTurn::Shunt:
+      return wide ? RowTurn::Arc : change.kind;
+    case RowTurn::Pivot:
+    case RowTurn::Arc:
+      return change.kind;
+  }
+  return change.kind;
+}
+
+double change_lane(const LaneChange& change, RowTurn kind, std::vector<Item>& items) {
+  const double wide_m = std::abs(change.aside_m);
+  const bool right = wide_m > 0.0 ? change.aside_m > 0.0 : change.hand == Side::Right;
+  const double radius_m = change.radius_m;
+  Turns turns(right ? 1.0 : -1.0, radius_m, items);
+  turns.straight(change.out_m);
+  switch (kind) {
+    case RowTurn::Auto:
+    case RowTurn::Pivot:
+      if (!(wide_m > 0.0)) {
+        turns.on_the_spot(180.0);
+        return change.out_m;
+      }
+      turns.on_the_spot(90.0);
+      turns.straight(wide_m);
+      turns.on_the_spot(90.0);
+      return change.out_m;
+    case RowTurn::Arc: {
+      const double between_m = wide_m - 2.0 * radius_m;
+      if (between_m < kStraight_m) {
+        turns.arc(180.0);
+      } else {
+        turns.arc(90.0);
+        turns.straight(between_m);
+        turns.arc(90.0);
+      }
+      return change.out_m + radius_m;
+    }
+    case RowTurn::Omega: {
+      // Three circles that touch: the outer two lie beside the lanes, the middle one between them.
+      const double swing_rad = std::acos((radius_m + 0.5 * wide_m) / (2.0 * radius_m));
+      const double swing_deg = base::deg_from_rad(swing_rad);
+      turns.arc(-swing_deg);
+      turns.arc(180.0 + 2.0 * swing_deg);
+      turns.arc(-swing_deg);
+      return change.out_m + 2.0 * radius_m * std::sin(swing_rad) + radius_m;
+    }
+    case RowTurn::Shunt:
+      turns.arc(90.0);
+      turns.straight(wide_m - 2.0 * radius_m);
+      turns.arc(90.0);
+      return change.out_m + radius_m;
+  }
+  return change.out_m;
+}
+
+}  // namespace roverd::mission
