@@ -119,6 +119,15 @@ void TagDock::look(const TagSight& sight) {
       *track_->pose() * sense::Pose2{-order_.stand_off_m.value_or(params_->stand_off_m), 0.0, 0.0};
 }
 
+std::string TagDock::why_unseen(const TagSight& sight) const {
+  const auto twice = sight.book != nullptr ? sight.book->twice_at(order_.tag) : std::nullopt;
+  if (twice && *twice > seen_at_) {
+    return "two tags of number " + std::to_string(order_.tag) +
+           " are seen at once: nobody knows which one is meant";
+  }
+  return goal_ ? "the tag is not seen any more" : "the tag is not seen";
+}
+
 void TagDock::fail(std::string why) {
   reason_ = std::move(why);
   state_ = State::Failed;
@@ -294,7 +303,7 @@ TrackOutput TagDock::step(const TagSight& sight, const Vehicle& vehicle, double 
                     tracker_.phase() != TrackPhase::Done;  // standing it must be seen
   const bool turning = state_ == State::ToGate || state_ == State::Back;  // it may look away
   if (!near && !turning && base::seconds(sight.now - seen_at_) > params_->lost_s) {
-    fail(goal_ ? "the tag is not seen any more" : "the tag is not seen");
+    fail(why_unseen(sight));
     return {};
   }
   TrackOutput out;

@@ -72,6 +72,7 @@ class TagDock {
   struct Stand;
   Stand stand(const TagSight& sight, const Vehicle& v) const noexcept;
   void judge(const Stand& s, const Vehicle& v);
+  std::string why_unseen(const TagSight& sight) const;
   void fail(std::string why);
   bool looked(double dt_s) noexcept;
   void step_look(const Vehicle& v, double dt_s);

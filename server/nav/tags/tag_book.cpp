@@ -16,6 +16,8 @@ std::size_t TagBook::take(const TagsSeen& seen) {
   for (const TagPlace& tag : seen.tags) {
     if (std::ranges::count(seen.tags, tag.id, &TagPlace::id) > 1) {
       ++twice_;
+      twice_id_ = tag.id;
+      twice_at_ = seen.stamp;
       continue;
     }
     auto known = std::ranges::find(known_, tag.id, &KnownTag::id);

@@ -11,6 +11,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,10 @@ class TagBook {
   std::uint64_t images() const noexcept { return images_; }
   std::uint64_t refused() const noexcept { return refused_; }  ///< images of an unknown moment
   std::uint64_t twice() const noexcept { return twice_; }      ///< ids that an image showed twice
+  /// When an image showed that id twice last, of the id that one did last. Empty: never.
+  std::optional<base::Time> twice_at(int id) const noexcept {
+    return id == twice_id_ ? std::optional(twice_at_) : std::nullopt;
+  }
   /// When an image was taken that was looked through last; by any camera.
   base::Time looked_at() const noexcept { return looked_at_; }
 
@@ -53,6 +58,8 @@ class TagBook {
   std::uint64_t images_ = 0;
   std::uint64_t refused_ = 0;
   std::uint64_t twice_ = 0;
+  int twice_id_ = -1;
+  base::Time twice_at_{};
   base::Time looked_at_{};
 };
 

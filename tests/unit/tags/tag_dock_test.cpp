@@ -162,7 +162,8 @@ TEST(TagDock, OfTwoTagsOfOneNumberNeitherIsDockedAt) {
   d.another = true;
   const Pose2 before = d.truth;
   EXPECT_FALSE(d.run(10.0));
-  EXPECT_EQ(d.dock.reason(), "the tag is not seen");
+  EXPECT_EQ(d.dock.reason(),
+            "two tags of number 5 are seen at once: nobody knows which one is meant");
   EXPECT_EQ(d.truth.x_m, before.x_m);
   EXPECT_GT(d.book.twice(), 10U);
 }
