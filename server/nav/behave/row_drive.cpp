@@ -187,7 +187,9 @@ TrackOutput RowDrive::step(const RowSight& sight, const Vehicle& vehicle, double
   const bool sees = usable(sight);
   const rows::Along at = sees ? rows::beside_line(*sight.view, sight.body) : rows::Along{};
   if (sees && state_ == State::Seeking && sure(*sight.view, at)) state_ = State::Driving;
-  beside_ = sees && sight.view->sigma_m(at.s_m) <= params_->sure_m;
+  // Rays are never as sure as a line; what they tell is what is driven by.
+  beside_ = sees && sight.view->sigma_m(at.s_m) <=
+                        (sight.view->by_rays ? params_->unsure_m : params_->sure_m);
   if (state_ == State::Seeking) {
     seek(sight);
   } else if (sees) {

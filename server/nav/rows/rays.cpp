@@ -75,6 +75,7 @@ RowView view_by_rays(const RowScan& scan, const RowOrder& order, const RowParams
   }
   RowView view;
   view.stamp = scan.stamp;
+  view.by_rays = true;
   view.line = scan.pose * Pose2{0.0, 0.0, std::atan2(aside_m, std::max(0.3, ahead_m))};
   if (both && left.rays > 0 && right.rays > 0) view.width_m = left.aside_m + right.aside_m;
   const bool middle = left.rays > 0 && right.rays > 0;

@@ -50,6 +50,7 @@ struct RowView {
   int right = 0;                   ///< likewise
   double seen_m = 0.0;             ///< way along this row since it was found
   double plants_m = 0.0;           ///< from the first plant that was seen to the last one
+  bool by_rays = false;            ///< of the rays of one moment, that are never sure
   std::optional<double> to_end_m;  ///< from L to the last plants, where nothing comes behind them
 
   /// 1 sigma of where the line lies at s from L.

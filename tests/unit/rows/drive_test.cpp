@@ -44,6 +44,15 @@ TEST(RowDriving, TellsAnOffsetOnlyWhereItKnowsOne) {
   }
 }
 
+TEST(RowDriving, TellsAnOffsetByRaysToo) {
+  const Block block({.bends = {{16.0, 0.0}}, .seed = 3});
+  DriveSetup setup;
+  setup.order.seeing = Seeing::Rays;
+  const DriveTold t = drive_row(block, setup);
+  EXPECT_TRUE(t.done) << t.reason;
+  EXPECT_GT(t.told_part, 0.9);
+}
+
 TEST(RowDriving, FollowsBendsOf15Metres) {
   const Block block({.bends = {{8.0, 0.0}, {12.0, 1.0 / 15.0}, {12.0, -1.0 / 15.0}}, .seed = 2});
   const DriveTold t = drive_row(block, {});
