@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -21,6 +22,8 @@ namespace {
 using base::Code;
 using base::FieldError;
 using base::Result;
+
+constexpr std::size_t kLongestName = 40;  // that is told
 
 /// Plain decimal numbers only: what yaml calls infinite or not a number is none here.
 std::optional<double> number_of(const YAML::Node& node) {
@@ -52,6 +55,15 @@ std::string file_name_text(const std::string& name) {
 class FieldReader {
  public:
   explicit FieldReader(const YAML::Node& table) : table_(table) {}
+
+  /// Of two, some readers take the first and some the last.
+  void no_name_twice() {
+    std::set<std::string> names;
+    for (const auto& line : table_) {
+      if (!line.first.IsScalar() || names.insert(line.first.Scalar()).second) continue;
+      wrong(line.first.Scalar().substr(0, kLongestName).c_str(), "is given twice");
+    }
+  }
 
   void text(const char* name, std::string& out) {
     const YAML::Node node = wanted(name);
@@ -142,13 +154,12 @@ class FieldReader {
 std::vector<std::string> others_of(const YAML::Node& table) {
   constexpr std::array<std::string_view, 7> kOurs = {
       "image", "mode", "resolution", "origin", "negate", "occupied_thresh", "free_thresh"};
-  constexpr std::size_t kLongest = 40;
   std::vector<std::string> out;
   for (const auto& line : table) {
     const std::string name = line.first.IsScalar() ? line.first.Scalar() : std::string("?");
     if (std::find(kOurs.begin(), kOurs.end(), name) != kOurs.end()) continue;
     if (out.size() == kMostOthers) break;
-    out.push_back(name.substr(0, kLongest));
+    out.push_back(name.substr(0, kLongestName));
   }
   return out;
 }
@@ -160,6 +171,7 @@ Result<MapWords> words_of(const YAML::Node& table) {
   }
   MapWords words;
   FieldReader reader(table);
+  reader.no_name_twice();
   reader.text("image", words.image);
   reader.mode(words.mode);
   reader.number("resolution", nav::chart::kFinest_m, nav::chart::kCoarsest_m, words.resolution_m);

@@ -84,6 +84,8 @@ TEST(MapWords, ThatCannotBeAreNamed) {
   EXPECT_EQ(problem_of(with_line("mode", "mode: colourful")), "/mode");
   EXPECT_EQ(problem_of(with_line("occupied_thresh", "occupied_thresh: 1.5")), "/occupied_thresh");
   EXPECT_EQ(problem_of(with_line("occupied_thresh", "occupied_thresh: 0.1")), "/free_thresh");
+  EXPECT_EQ(problem_of(std::string(kWords) + "resolution: 0.1\n"), "/resolution") << "twice";
+  EXPECT_EQ(problem_of(std::string(kWords) + "by: a\nby: b\n"), "/by") << "twice";
   EXPECT_EQ(problem_of("image: [a"), "line 1");
   EXPECT_EQ(problem_of(""), "line 1");
   EXPECT_EQ(problem_of("just words"), "line 1");

@@ -65,6 +65,7 @@ TEST(MapUpload, ThatCannotBeIsNamedByFileAndPlace) {
   EXPECT_EQ(problem_of("{", kPicture).substr(0, 6), "/yaml/");
   EXPECT_EQ(problem_of("", kPicture), "/yaml/line 1");
   EXPECT_EQ(problem_of(yaml("mode: colours\n"), kPicture), "/yaml/mode");
+  EXPECT_EQ(problem_of(yaml("resolution: 0.1\n"), kPicture), "/yaml/resolution");
   EXPECT_EQ(problem_of(yaml(), "GIF89a").substr(0, 11), "/image/byte");
   EXPECT_EQ(problem_of(yaml(), kPicture.substr(0, 12)), "/image/byte 12");
   EXPECT_EQ(problem_of(yaml(), kPicture + "x"), "/image/byte 15");
