@@ -51,6 +51,27 @@ void inside(const OccupancyMap& map, const Area& area, Visit visit) {
   }
 }
 
+}  // namespace
+
+bool lies_outside(const nav::chart::MapShape& map, const Area& area) noexcept {
+  const Pose2 to_grid = nav::sense::inverse(map.origin);
+  double west = 1e300;
+  double east = -1e300;
+  double south = 1e300;
+  double north = -1e300;
+  for (const Corner& c : area) {
+    const Pose2 p = to_grid * Pose2{c.x_m, c.y_m, 0.0};
+    west = std::min(west, p.x_m);
+    east = std::max(east, p.x_m);
+    south = std::min(south, p.y_m);
+    north = std::max(north, p.y_m);
+  }
+  return east <= 0.0 || north <= 0.0 || west >= map.columns * map.resolution_m ||
+         south >= map.rows * map.resolution_m;
+}
+
+namespace {
+
 void fill(OccupancyMap& map, const Area& area, Cell value) {
   inside(map, area, [&](std::int32_t row, std::int32_t begin, std::int32_t end) {
     for (std::int32_t column = begin; column < end; ++column) map.set({column, row}, value);

@@ -14,6 +14,9 @@ namespace roverd::maps {
 /// crosses itself); Forbid on none. Effort: the rows of the map times the corners, and the cells.
 void edit(nav::chart::OccupancyMap& map, const Edit& edit);
 
+/// None of it can lie on the map: its box and the map's do not meet, along the map's own sides.
+bool lies_outside(const nav::chart::MapShape& map, const Area& area) noexcept;
+
 /// Grey values of what people are shown.
 inline constexpr std::uint16_t kGreyOccupied = 0;
 inline constexpr std::uint16_t kGreyForbidden = 100;

@@ -381,6 +381,12 @@ Result<About> Shelf::change(std::int64_t id, const Change& change) {
   if (change.of_revision && *change.of_revision != before->about.revision) {
     return base::fail(Code::Conflict, "the map was changed meanwhile");
   }
+  for (std::size_t i = 0; i < change.edits.size(); ++i) {
+    if (!lies_outside(before->about.shape, change.edits[i].area)) continue;
+    const std::string at = "/edits/" + std::to_string(i) + "/polygon";
+    const std::string detail = "lies outside of the map: it would change nothing";
+    return base::fail(Code::Invalid, at + " " + detail, {{at, detail}});
+  }
   Kept after = *before;
   ++after.about.revision;
   if (change.name) after.about.name = *change.name;

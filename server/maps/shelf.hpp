@@ -86,7 +86,7 @@ class Shelf {
                           const std::optional<Anchor>& anchor, base::WallTime now,
                           base::Bytes solid = {});
   /// All of it or nothing. NotFound; Conflict: of the configuration, or of another revision;
-  /// Invalid: too many areas; Unavailable.
+  /// Invalid: too many areas, or an edit outside of the map; Unavailable.
   base::Result<About> change(std::int64_t id, const Change& change);
   /// NotFound; Conflict: in use, or of the configuration; Unavailable.
   base::Result<void> remove(std::int64_t id);

@@ -216,6 +216,7 @@ TEST_F(MapsApi, UglyChangesAreNamedAndNothingIsChanged) {
   EXPECT_EQ(refused_change({{"anchor", {{"lat", 1}, {"lon", 0}}}}), "/anchor/heading_deg");
   EXPECT_EQ(refused_change({{"anchor", 5}}), "/anchor");
   EXPECT_EQ(refused_change({{"edits", Json(51, Json::object())}}), "/edits");
+  EXPECT_EQ(refused_change(edit("erase", square(900, 0, 1))), "/edits/0/polygon");
   EXPECT_EQ(refused_change({{"forbidden", 1}}), "/forbidden");
   EXPECT_EQ(refused_change({{"name", ""}}), "/name");
   EXPECT_EQ(refused_change({{"resolution_m", 1}}), "/resolution_m");

@@ -106,6 +106,27 @@ TEST_F(ShelfTest, AChangeHoldsAsAWhole) {
   EXPECT_EQ(shelf->read(1)->at({1, 1}), kOccupied);
 }
 
+// One edit lies beside the map: nothing of the change is done.
+TEST_F(ShelfTest, AnEditOutsideOfTheMapIsRefused) {
+  auto shelf = open();
+  (void)shelf->add("shed", floor(), {}, kNow);
+  for (const auto kind : {Edit::Kind::Erase, Edit::Kind::Wall, Edit::Kind::Forbid}) {
+    Change change = wall();
+    change.edits.push_back({kind, {{500, 0}, {501, 0}, {501, 0.5}}});
+    const auto refused = shelf->change(1, change);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Code::Invalid);
+    EXPECT_EQ(refused.error().fields.at(0).pointer, "/edits/1/polygon");
+  }
+  EXPECT_EQ(shelf->find(1)->revision, 1);
+  EXPECT_EQ(shelf->read(1)->at({1, 1}), kFree);
+  // Partly outside it is done where the map is.
+  Change over;
+  over.edits = {{Edit::Kind::Wall, {{-500, -500}, {500, -500}, {500, 500}, {-500, 500}}}};
+  ASSERT_TRUE(shelf->change(1, over));
+  EXPECT_EQ(shelf->read(1)->at({1, 1}), kOccupied);
+}
+
 TEST_F(ShelfTest, AChangeThatWasCutOffLeavesTheMapAsItWas) {
   auto shelf = open();
   (void)shelf->add("shed", floor(), {}, kNow);
