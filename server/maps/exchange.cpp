@@ -1,6 +1,8 @@
 #include "maps/exchange.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -18,6 +20,14 @@ namespace {
 using base::Error;
 using base::Result;
 using nav::chart::OccupancyMap;
+
+/// The shortest that reads back as the same.
+std::string decimal(double value) {
+  std::array<char, 400> text{};
+  const auto end =
+      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed).ptr;
+  return {text.data(), end};
+}
 
 /// Of a form's part: "/yaml/origin" for its "/origin", "/image/byte 3" for its "byte 3".
 tl::unexpected<Error> of_part(const std::string& part, Error error) {
@@ -64,10 +74,19 @@ Result<Upload> read_solid_upload(std::string_view pcd) {
   return Upload{std::move(*plane), {}, std::move(*file)};
 }
 
-std::string exported_yaml(const OccupancyMap& map, const std::string& image) {
+std::string exported_yaml(const OccupancyMap& map, const About& about, const std::string& image) {
   atlas::MapWords words = words_for(map);
   words.image = image;
-  return atlas::write_words(words);
+  std::string text = "# name: " + about.name + "\n";
+  if (about.anchor) {
+    const Anchor& a = *about.anchor;
+    text += "# anchor_lat: " + decimal(a.at.lat) + "\n";
+    text += "# anchor_lon: " + decimal(a.at.lon) + "\n";
+    text += "# anchor_heading_deg: " + decimal(a.heading_deg) + "\n";
+    text += "# anchor_accuracy_m: " + decimal(a.accuracy_m) + "\n";
+    text += "# anchor_heading_accuracy_deg: " + decimal(a.heading_accuracy_deg) + "\n";
+  }
+  return text + atlas::write_words(words);
 }
 
 Result<std::string> exported_pgm(OccupancyMap map, const std::vector<Area>& forbidden) {

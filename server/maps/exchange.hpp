@@ -28,8 +28,10 @@ base::Result<Upload> read_upload(std::string_view yaml, std::string_view picture
 /// naming the byte or line: "/cloud/byte 17".
 base::Result<Upload> read_solid_upload(std::string_view pcd);
 
-/// The words of an exported map, for a picture of that file name.
-std::string exported_yaml(const nav::chart::OccupancyMap& map, const std::string& image);
+/// The words of an exported map, for a picture of that file name. Name and anchor, for which map
+/// servers have no words, are comments before them, called as in [map] of the configuration.
+std::string exported_yaml(const nav::chart::OccupancyMap& map, const About& about,
+                          const std::string& image);
 /// Its picture: what is doubtful stays as it is, what is forbidden is drawn as occupied.
 base::Result<std::string> exported_pgm(nav::chart::OccupancyMap map,
                                        const std::vector<Area>& forbidden);

@@ -384,7 +384,7 @@ Response export_response(const maps::Shelf& shelf, std::int64_t id, const std::s
   auto map = shelf.read(id);
   if (!map) return problem(map.error());
   if (format == "yaml")
-    return file("application/yaml", ".yaml", maps::exported_yaml(*map, name + ".pgm"));
+    return file("application/yaml", ".yaml", maps::exported_yaml(*map, *about, name + ".pgm"));
   auto pgm = maps::exported_pgm(std::move(*map),
                                 with_forbidden ? about->forbidden : std::vector<maps::Area>());
   if (!pgm) return problem(pgm.error());

@@ -80,13 +80,28 @@ TEST(MapExport, ReadsAsTheMapThatItIsOf) {
     ASSERT_TRUE(read) << read.error().detail;
     const auto picture = maps::exported_pgm(read->map, {});
     ASSERT_TRUE(picture);
-    const std::string text = maps::exported_yaml(read->map, "map-1.pgm");
+    const std::string text = maps::exported_yaml(read->map, {}, "map-1.pgm");
     const auto again = maps::read_upload(text, *picture);
     ASSERT_TRUE(again) << again.error().detail;
     EXPECT_TRUE(std::ranges::equal(again->map.cells(), read->map.cells())) << words;
     EXPECT_EQ(again->map.shape().origin.x_m, -1.5);
     EXPECT_NE(text.find("image: map-1.pgm\n"), std::string::npos);
   }
+}
+
+TEST(MapExport, TellsNameAndAnchorAsComments) {
+  const auto read = maps::read_upload(yaml(), kPicture);
+  maps::About about;
+  about.name = "shed";
+  EXPECT_TRUE(maps::exported_yaml(read->map, about, "a.pgm").starts_with("# name: shed\nimage: "));
+  about.anchor = maps::Anchor{{58.378, 26.729}, 45.5, 0.25, 1.0};
+  const std::string text = maps::exported_yaml(read->map, about, "a.pgm");
+  EXPECT_TRUE(
+      text.starts_with("# name: shed\n# anchor_lat: 58.378\n# anchor_lon: 26.729\n"
+                       "# anchor_heading_deg: 45.5\n# anchor_accuracy_m: 0.25\n"
+                       "# anchor_heading_accuracy_deg: 1\nimage: a.pgm\n"))
+      << text;
+  EXPECT_TRUE(maps::read_upload(text, *maps::exported_pgm(read->map, {})));
 }
 
 TEST(MapExport, DrawsWhatIsForbidden) {
