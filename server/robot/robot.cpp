@@ -171,6 +171,17 @@ const mission::Until* until_of(const mission::Item& item) noexcept {
 }
 
 /// What ends beside a known place gets that one's position, in a plan of its own; empty: nothing
+/// "; known are: gate, pole".
+std::string names_of(const std::vector<base::KnownPlace>* places) {
+  constexpr std::size_t kMostNames = 5;
+  if (places == nullptr || places->empty()) return "; none is";
+  std::string text = "; known are: ";
+  for (std::size_t i = 0; i < std::min(kMostNames, places->size()); ++i) {
+    text += (i > 0 ? ", " : "") + (*places)[i].name;
+  }
+  return text + (places->size() > kMostNames ? " and others" : "");
+}
+
 /// does. Invalid, naming the item. @param places null: none
 base::Result<std::optional<mission::Plan>> with_places(
     const mission::Plan& said, const std::vector<base::KnownPlace>* places) {
@@ -183,7 +194,7 @@ base::Result<std::optional<mission::Plan>> with_places(
   std::vector<base::FieldError> wrong;
   const auto resolve = [&](mission::Until& until, std::size_t item) {
     if (!until.place) return;
-    const std::string at = "/items/" + std::to_string(item);
+    const std::string at = "/items/" + std::to_string(item) + "/until_place";
     if (until.lat) {
       wrong.push_back({at, "until_place and until_lat exclude each other: give one of them"});
       return;
@@ -196,7 +207,8 @@ base::Result<std::optional<mission::Plan>> with_places(
         return;
       }
     }
-    wrong.push_back({at, "no place \"" + *until.place + "\" is known"});
+    wrong.push_back({at, "ends at \"" + *until.place +
+                             "\", which nobody has entered as a known place" + names_of(places)});
   };
   for (std::size_t i = 0; i < plan.items.size(); ++i) {
     if (auto* row = std::get_if<mission::Row>(&plan.items[i])) resolve(row->until, i);
@@ -204,7 +216,7 @@ base::Result<std::optional<mission::Plan>> with_places(
   }
   if (wrong.empty()) return plan;
   std::string detail = "item " + std::to_string(std::stoi(wrong.front().pointer.substr(7)) + 1) +
-                       ": " + wrong.front().detail;
+                       " " + wrong.front().detail;
   return base::fail(Code::Invalid, std::move(detail), std::move(wrong));
 }
 

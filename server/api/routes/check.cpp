@@ -97,7 +97,8 @@ std::vector<mission::Finding> not_laid_out(const base::Error& error,
     mission::Finding finding{mission::Severity::Error, "not_drivable", f.pointer, {}, f.detail};
     constexpr std::string_view kItems = "/items/";
     if (f.pointer.starts_with(kItems)) {
-      if (const auto at = whole_number(f.pointer.substr(kItems.size()))) {
+      const std::string number = f.pointer.substr(kItems.size());
+      if (const auto at = whole_number(number.substr(0, number.find('/')))) {
         finding.item = static_cast<int>(*at) + 1;
       }
     }

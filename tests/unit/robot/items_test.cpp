@@ -54,6 +54,27 @@ TEST(Items, LocalPosesMovesTurnsAndActionsAreDriven) {
             "item 1 reached\nitem 3 reached\nitem 4 reached\nitem 5 reached\nitem 6 reached\n");
 }
 
+/// The name is nobody's; the others are told, so that a slip shows.
+TEST(Items, AnEndBesideAPlaceThatNobodyEnteredNamesThePlace) {
+  Worker f;
+  mission::Row row;
+  row.until.place = "gate";
+  const auto why = [&f, &row] {
+    const auto made = f.robot.compile({"m", 1, items({row})});
+    EXPECT_FALSE(made);
+    return made ? base::Error{} : made.error();
+  };
+  EXPECT_EQ(why().fields.at(0).pointer, "/items/0/until_place");
+  EXPECT_EQ(why().detail,
+            "item 1 ends at \"gate\", which nobody has entered as a known place; none is");
+  base::KnownPlace pole;
+  pole.name = "pole";
+  pole.at = kFrame.origin();
+  f.robot.know(std::make_shared<const std::vector<base::KnownPlace>>(1, pole));
+  EXPECT_EQ(why().detail,
+            "item 1 ends at \"gate\", which nobody has entered as a known place; known are: pole");
+}
+
 /// Nothing here pumps: the mission is not driven as if something did.
 TEST(Items, AnActionThatNobodyDoesIsRefusedWithItsItem) {
   Worker f;
