@@ -60,6 +60,7 @@ api::Profile profile_of(const Settings& s, const Supervisor& supervisor) {
         return one.second.said.enabled && one.second.said.ranging();
       })) {
     profile.item_types.emplace_back("row");
+    profile.item_types.emplace_back("map_point");
     const nav::VehicleParams& v = s.robot.vehicle;
     const double back_m = v.steered() ? 0.5 * (v.length_m - v.wheelbase_m) : 0.5 * v.length_m;
     profile.guard = {.back_m = back_m};  // the rest: take_parameters

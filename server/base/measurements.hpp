@@ -292,6 +292,12 @@ struct MapPlace {
   double yaw_rad = 0.0;
 };
 
+/// How a map's frame lies on the earth.
+struct MapLies {
+  LatLon at;             ///< of its origin, x = y = 0
+  double yaw_rad = 0.0;  ///< of its x axis: from east, left positive
+};
+
 /// What the matcher of a map says of one moment.
 struct PlaceState {
   Time stamp;  ///< when it was seen; of Off: when it was told
@@ -303,6 +309,7 @@ struct PlaceState {
   std::optional<MapPlace> in_map{};  ///< empty: not known
   std::optional<double> sigma_m{};   ///< larger axis
   std::optional<double> sigma_rad{};
+  std::optional<MapLies> lies{};  ///< the map; empty: nobody knows
   std::optional<PlaceFix> fix{};  ///< only of a moment at which what is seen fits
 };
 

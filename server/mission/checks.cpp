@@ -96,6 +96,9 @@ class PlanCheck {
         add(Severity::Error, "no_target", number,
             "counts from the mission's home, and the mission has none");
       }
+      if (const auto* point = std::get_if<MapPoint>(&item)) {
+        speed_limit(number, point->speed_mps.value_or(0.0));
+      }
       if (const auto* speed = std::get_if<Speed>(&item)) speed_limit(number, speed->speed_mps);
       if (const auto* circle = std::get_if<Circle>(&item)) this->circle(number, *circle);
       if (const auto* turn = std::get_if<TurnBy>(&item)) this->turn(number, *turn);
@@ -188,6 +191,9 @@ class PlanCheck {
         if (target.waypoint != nullptr) {
           speed_limit(target.item, target.waypoint->speed_mps.value_or(0.0));
         }
+      } else if (const auto* point = std::get_if<MapPoint>(&item);
+                 point != nullptr && plan_.frame && plan_.frame->lies) {
+        target.at = plane.to_local(place_on_earth(*plan_.frame->lies, *point));
       } else if (const auto* local = std::get_if<Local>(&item); local != nullptr && home_) {
         target.at = plane.to_local(home_->to_global({local->east_m, local->north_m}));
       } else {
@@ -204,11 +210,12 @@ class PlanCheck {
            !std::holds_alternative<Action>(item) && !std::holds_alternative<Loiter>(item);
   }
 
-  /// From wherever the robot stands; no place is needed.
+  /// From wherever the robot stands, or to a place that only the robot knows: no other is needed.
   static bool drives_from_anywhere(const Item& item) {
     return std::holds_alternative<Move>(item) || std::holds_alternative<TurnBy>(item) ||
            std::holds_alternative<Row>(item) || std::holds_alternative<Wall>(item) ||
-           std::holds_alternative<Landmarks>(item) || std::holds_alternative<Dock>(item);
+           std::holds_alternative<Landmarks>(item) || std::holds_alternative<Dock>(item) ||
+           std::holds_alternative<MapPoint>(item);
   }
 
   void distances() {
@@ -375,6 +382,9 @@ std::string why_not_drivable(std::string_view type) {
   if (type == "wall") return item + "no scanner or camera that sees walls is configured";
   if (type == "landmarks") return item + "no scanner or camera that sees landmarks is configured";
   if (type == "dock") return item + "no camera that reads tags is configured";
+  if (type == "map_point") {
+    return item + "no sensor that finds the robot in a map is configured";
+  }
   return item + "items of type " + std::string(type) + " are not available yet";
 }
 

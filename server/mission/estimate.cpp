@@ -93,6 +93,15 @@ class Walk {
     if (!home_) home_.emplace(plan_.home->at);
     go(home_->to_global({local.east_m, local.north_m}), speed_mps_);
   }
+  /// Where the map lies is known once the mission can be loaded.
+  void pass(const MapPoint& point) {
+    if (!plan_.frame || !plan_.frame->lies) {
+      by_sight_ = true;
+    } else {
+      go(place_on_earth(*plan_.frame->lies, point), point.speed_mps.value_or(speed_mps_));
+    }
+    wait_s_ += point.hold_s.value_or(0.0);
+  }
   void pass(const Move& move) { add_way(std::abs(move.forward_m), speed_mps_); }
   void pass(const TurnBy& turn) {
     const double turn_rad = base::rad_from_deg(std::abs(turn.turn_deg.value_or(90.0)));
@@ -165,7 +174,7 @@ class Walk {
 
   const Plan& plan_;
   const VehicleLimits& vehicle_;
-  bool by_sight_ = false;  ///< how long it is nobody knows before
+  bool by_sight_ = false;  ///< how long it is nobody knows yet
   bool endless_ = false;   ///< stays somewhere until somebody says to go on
   std::vector<int> left_;  ///< repetitions left, by item; −1: not begun
   double speed_mps_;

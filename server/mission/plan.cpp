@@ -10,8 +10,8 @@ namespace roverd::mission {
 std::string_view type_name(const Item& item) noexcept {
   // In the order of the variant.
   static constexpr std::array<std::string_view, std::variant_size_v<Item>> kNames{
-      "waypoint",  "local", "move", "turn",        "wait",   "speed",  "row",   "wall",
-      "landmarks", "dock",  "jump", "return_home", "action", "loiter", "circle"};
+      "waypoint",  "local", "move", "turn",        "wait",   "speed",  "row",    "wall",
+      "landmarks", "dock",  "jump", "return_home", "action", "loiter", "circle", "map_point"};
   return item.valueless_by_exception() ? std::string_view{} : kNames[item.index()];
 }
 
@@ -20,6 +20,13 @@ std::optional<LatLon> place_of(const Item& item) noexcept {
   if (const auto* loiter = std::get_if<Loiter>(&item)) return loiter->at();
   if (const auto* circle = std::get_if<Circle>(&item)) return circle->at;
   return std::nullopt;
+}
+
+LatLon place_on_earth(const base::MapLies& lies, const MapPoint& point) noexcept {
+  const double c = std::cos(lies.yaw_rad);
+  const double s = std::sin(lies.yaw_rad);
+  return base::TangentPlane(lies.at).to_global(
+      {c * point.x_m - s * point.y_m, s * point.x_m + c * point.y_m});
 }
 
 double length_m(const Plan& plan) noexcept {

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/geo.hpp"
+#include "base/measurements.hpp"
 
 namespace roverd::mission {
 
@@ -42,6 +43,17 @@ struct Local {
 struct Move {
   double forward_m = 0.0;
   friend bool operator==(const Move&, const Move&) = default;
+};
+/// A place of the map that the mission counts from (Plan::frame).
+struct MapPoint {
+  double x_m = 0.0;  ///< in the map's own frame
+  double y_m = 0.0;
+  std::optional<double> yaw_deg{};  ///< to point there: from the x axis, left positive; empty: any
+  std::optional<double> speed_mps{};
+  std::optional<double> radius_m{};
+  std::optional<double> hold_s{};
+  bool reverse = false;
+  friend bool operator==(const MapPoint&, const MapPoint&) = default;
 };
 /// Exactly one of the first two.
 struct TurnBy {
@@ -146,7 +158,7 @@ struct Circle {
 };
 
 using Item = std::variant<Waypoint, Local, Move, TurnBy, Wait, Speed, Row, Wall, Landmarks, Dock,
-                          Jump, ReturnHome, Action, Loiter, Circle>;
+                          Jump, ReturnHome, Action, Loiter, Circle, MapPoint>;
 
 /// Where an item with a position of its own lies: a waypoint, a loiter at a place, a circle's
 /// centre.
@@ -173,11 +185,23 @@ struct Settings {
   friend bool operator==(const Settings&, const Settings&) = default;
 };
 
+/// The map of the plane that the mission's map points count from.
+struct MissionMap {
+  std::string map;  ///< its name
+  /// Where it lies, as the robot knew when the mission was loaded. In no file, and no part of what
+  /// the mission is.
+  std::optional<base::MapLies> lies{};
+  friend bool operator==(const MissionMap& a, const MissionMap& b) { return a.map == b.map; }
+};
+/// On the earth.
+LatLon place_on_earth(const base::MapLies& lies, const MapPoint& point) noexcept;
+
 struct Plan {
   std::string name;
   std::optional<Home> home;
   Settings settings;
   std::vector<Item> items;
+  std::optional<MissionMap> frame{};  ///< needed where there are map points
   /// What the items were drawn as (a field, a block of rows): kept for whoever draws, and read by
   /// nothing here. An object of at most kMaxDrawing bytes as text with a word `kind`; null: none.
   nlohmann::json drawing{};

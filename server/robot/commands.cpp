@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "robot/impl.hpp"
+#include "robot/map_frame.hpp"
 
 namespace roverd::robot {
 namespace {
@@ -155,6 +156,10 @@ base::Result<void> Robot::Impl::may_drive_mission(
     const std::optional<base::MissionPlace>& from) const {
   if (arm.latched()) return base::fail(Code::Conflict, "the emergency stop is latched");
   if (!missions) return base::fail(Code::Conflict, "no mission is loaded");
+  if (const auto& map = missions.get()->copy.plan.frame) {
+    const MapNow now{world.place, estimator.frame(), estimator.health().map_offset};
+    if (auto ok = counts_from(*map, now); !ok) return ok;
+  }
   return may_drive_by_itself(false, from && by_sight_from(missions->route, *from));
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "robot/impl.hpp"
+#include "robot/map_frame.hpp"
 #include "robot/safety/self_test.hpp"
 #include "robot/safety/start_check.hpp"
 
@@ -170,7 +171,6 @@ const mission::Until* until_of(const mission::Item& item) noexcept {
   return nullptr;
 }
 
-/// What ends beside a known place gets that one's position, in a plan of its own; empty: nothing
 /// "; known are: gate, pole".
 std::string names_of(const std::vector<base::KnownPlace>* places) {
   constexpr std::size_t kMostNames = 5;
@@ -182,6 +182,7 @@ std::string names_of(const std::vector<base::KnownPlace>* places) {
   return text + (places->size() > kMostNames ? " and others" : "");
 }
 
+/// What ends beside a known place gets that one's position, in a plan of its own; empty: nothing
 /// does. Invalid, naming the item. @param places null: none
 base::Result<std::optional<mission::Plan>> with_places(
     const mission::Plan& said, const std::vector<base::KnownPlace>* places) {
@@ -242,6 +243,13 @@ base::Result<std::shared_ptr<const CompiledMission>> Robot::compile(MissionCopy 
   if (!frame) {
     return base::fail(Code::Invalid, "the mission has no waypoint",
                       {{"/items", "the mission has no waypoint"}});
+  }
+  if (copy.plan.frame) {
+    const std::optional<base::PlaceState> nowhere;
+    auto lies = lies_of(*copy.plan.frame, {state ? state->place : nowhere, frame,
+                                           state ? state->estimator.map_offset : base::EnuPoint{}});
+    if (!lies) return tl::unexpected(std::move(lies.error()));
+    copy.plan.frame->lies = *lies;
   }
   const auto known = impl_->shared_places.get();
   auto named = with_places(copy.plan, known.get());
@@ -316,6 +324,10 @@ std::vector<mission::Finding> Robot::objections(const CompiledMission& mission,
         compared != nullptr ? *compared : route_objection(mission.route, fence->limits, margin_m);
     view.limits = &fence->limits;
     view.legs = &legs;
+  }
+  if (const auto& map = mission.copy.plan.frame; map && state) {
+    const auto ok = counts_from(*map, {state->place, state->frame, state->estimator.map_offset});
+    if (!ok) view.not_in_map = ok.error().detail;
   }
   return start_findings(view);
 }

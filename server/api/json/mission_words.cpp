@@ -101,6 +101,8 @@ Json differences_json(const store::StoredMission& older, const store::StoredMiss
           {"name", both_json(found.name, from["name"], to["name"])},
           {"home", both_json(found.home, from.value("home", Json()), to.value("home", Json()))},
           {"settings", both_json(found.settings, from["settings"], to["settings"])},
+          {"frame", both_json(found.frame, from.value("frame", Json(nullptr)),
+                              to.value("frame", Json(nullptr)))},
           {"length_m",
            {{"from", mission::length_m(older.plan)}, {"to", mission::length_m(newer.plan)}}},
           {"added", found.added},

@@ -126,7 +126,8 @@ Verdict verdict_of(robot::MissionCopy copy, Bench bench) {
   // check itself looks whether the mission lies inside.
   const bool compared = compiled && bench.robot.fenced(**compiled);
   if (bench.fence && !compared) bench.around.fence = &bench.fence->fence;
-  out.report = mission::check(copy.plan, bench.limits, bench.around);
+  const mission::Plan& plan = compiled ? (*compiled)->copy.plan : copy.plan;
+  out.report = mission::check(plan, bench.limits, bench.around);
   out.refusal.code = base::Code::Invalid;
   add_findings(out.report, bench.robot.changed_safety());
   if (compiled) {

@@ -47,6 +47,7 @@ class Comparison {
     out_.name = before.name != now.name;
     out_.home = before.home != now.home;
     out_.settings = before.settings != now.settings;
+    out_.frame = before.frame != now.frame;
   }
 
   Differences run() {

@@ -23,6 +23,7 @@ struct Differences {
   bool name = false;
   bool home = false;
   bool settings = false;
+  bool frame = false;
   std::size_t added = 0;
   std::size_t removed = 0;
   std::size_t changed = 0;

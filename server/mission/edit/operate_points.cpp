@@ -114,7 +114,7 @@ bool moves_otherwise(const Item& item) {
          std::holds_alternative<Landmarks>(item) || std::holds_alternative<Dock>(item) ||
          std::holds_alternative<Jump>(item) || std::holds_alternative<ReturnHome>(item) ||
          std::holds_alternative<Action>(item) || std::holds_alternative<Loiter>(item) ||
-         std::holds_alternative<Circle>(item);
+         std::holds_alternative<Circle>(item) || std::holds_alternative<MapPoint>(item);
 }
 
 /// How many pieces of at most `at_most_m` a leg has; a micrometre too long is no reason for one

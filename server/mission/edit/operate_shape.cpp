@@ -23,6 +23,11 @@ struct Spot {
   LatLon at;
 };
 
+Error on_map(int number) {
+  return wrong("/op", "cannot be: item " + std::to_string(number) +
+                          " counts from a map, which lies where the robot finds it");
+}
+
 /// Of a row or a wall that ends beside a place.
 Until* until_of(Item& item) noexcept {
   if (auto* row = std::get_if<Row>(&item)) return &row->until;
@@ -60,6 +65,8 @@ Result<std::vector<Spot>> places_in(const Plan& plan, const Numbers& which) {
     } else if (const Until* until = until_of(plan.items[i]);
                until != nullptr && until->lat && until->lon) {
       out.push_back({i, {*until->lat, *until->lon}});
+    } else if (std::holds_alternative<MapPoint>(plan.items[i])) {
+      return tl::unexpected<Error>(on_map(number));
     } else if (const auto* local = std::get_if<Local>(&plan.items[i])) {
       if (!home) {
         return tl::unexpected<Error>(
@@ -269,6 +276,8 @@ Result<Done> apply(Plan plan, const Offset& offset) {
     const auto i = static_cast<std::size_t>(number) - 1;
     if (const auto at = place_of(plan.items[i])) {
       places.push_back({i, *at});
+    } else if (std::holds_alternative<MapPoint>(plan.items[i])) {
+      return tl::unexpected<Error>(on_map(number));
     } else if (auto* local = std::get_if<Local>(&plan.items[i])) {
       local->east_m += offset.by.east_m;
       local->north_m += offset.by.north_m;

@@ -44,7 +44,7 @@ bool drives(const Plan& plan) {
            std::holds_alternative<Row>(item) || std::holds_alternative<Wall>(item) ||
            std::holds_alternative<Landmarks>(item) || std::holds_alternative<Dock>(item) ||
            std::holds_alternative<ReturnHome>(item) || std::holds_alternative<Circle>(item) ||
-           place_of(item).has_value();
+           std::holds_alternative<MapPoint>(item) || place_of(item).has_value();
   });
 }
 

@@ -276,6 +276,9 @@ void report_left_out(const Plan& plan, TrackHolds holds, std::vector<FileRow>& r
     rows.push_back(
         {"/settings", "settings", Outcome::LeftOut, "the format has no settings", std::nullopt});
   }
+  if (plan.frame) {
+    rows.push_back({"/frame", "frame", Outcome::LeftOut, "the format knows no maps", std::nullopt});
+  }
   for (std::size_t i = 0; i < plan.items.size(); ++i) {
     const auto* point = std::get_if<Waypoint>(&plan.items[i]);
     FileRow row{"/items/" + std::to_string(i), std::string(type_name(plan.items[i])),

@@ -62,6 +62,7 @@ class Writer {
     for (const auto& [command, item] : jumps_) {
       out_[command].p[0] = static_cast<double>(first[item] + 1);
     }
+    if (plan_.frame) note("/frame", "frame", Outcome::LeftOut, "the format knows no maps");
     if (plan_.settings.corridor_m) {
       note("/settings/corridor_m", "corridor", Outcome::LeftOut, kNoCommand);
     }
@@ -91,6 +92,7 @@ class Writer {
     c.alt = w.alt_m.value_or(0.0);
   }
   void add(const TurnBy& t) {
+    if (t.radius_m) note_item(Outcome::Changed, "its radius is lost: it turns on the spot");
     if (t.heading_deg) {
       action(cmd::kYaw, *t.heading_deg);
     } else {
@@ -146,6 +148,7 @@ class Writer {
     c.alt = 0.0;
   }
   void add(const Local&) { leave_out(kNoCommand); }
+  void add(const MapPoint&) { leave_out("it counts from a map"); }
   void add(const Move&) { leave_out(kNoCommand); }
   void add(const Row&) { leave_out(kNoCommand); }
   void add(const Wall&) { leave_out(kNoCommand); }

@@ -100,6 +100,20 @@ void fields(V& v, Of<Local> auto& p) {
   v.number("heading_deg", p.heading_deg, kHeading_deg);
 }
 template <class V>
+void fields(V& v, Of<MapPoint> auto& p) {
+  v.number("x_m", p.x_m, kLocal_m);
+  v.number("y_m", p.y_m, kLocal_m);
+  v.number("yaw_deg", p.yaw_deg, kTurn_deg);
+  v.number("speed_mps", p.speed_mps, kSpeed_mps);
+  v.number("radius_m", p.radius_m, kRadius_m);
+  v.number("hold_s", p.hold_s, kHold_s);
+  v.flag("reverse", p.reverse);
+}
+template <class V>
+void fields(V& v, Of<MissionMap> auto& p) {
+  v.name("map", p.map);
+}
+template <class V>
 void fields(V& v, Of<Move> auto& p) {
   v.number("forward_m", p.forward_m, kLocal_m);
 }

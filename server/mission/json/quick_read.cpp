@@ -240,6 +240,7 @@ bool quick_items(Scanner& in, QuickMembers& members, std::vector<Item>& items) {
     if (!place_type(item, members.type(), kTypes)) return false;
     std::visit([&](auto& values) { fields(members, values); }, item);
     if (!members.all_known()) return false;
+    if (std::holds_alternative<MapPoint>(item)) return false;  // asks for a frame
   } while (in.take(','));
   return in.take(']');
 }

@@ -93,6 +93,16 @@ void check_jumps(const Plan& plan, Problems& problems) {
   }
 }
 
+/// Likewise: what counts from a map needs to know from which one.
+void check_map_points(const Plan& plan, Problems& problems) {
+  if (plan.frame) return;
+  for (std::size_t i = 0; i < plan.items.size(); ++i) {
+    if (!std::holds_alternative<MapPoint>(plan.items[i])) continue;
+    problems.add("/items/" + std::to_string(i),
+                 "counts from a map: the mission needs a frame {map: its name}");
+  }
+}
+
 /// What is wrong with a drawing that is one; empty: nothing.
 std::string drawing_problem(const json& drawing) {
   if (!drawing.is_object()) return "must be an object";
@@ -138,6 +148,9 @@ Result<Plan> plan_from_json(const json& value) {
       settings != nullptr && !settings->is_null()) {
     read_object(*settings, "/settings", plan.settings, problems);
   }
+  if (const json* frame = reader.known("frame"); frame != nullptr && !frame->is_null()) {
+    read_object(*frame, "/frame", plan.frame.emplace(), problems);
+  }
   if (const json* drawing = reader.known("drawing"); drawing != nullptr && !drawing->is_null()) {
     const std::string wrong = drawing_problem(*drawing);
     if (!wrong.empty()) problems.add("/drawing", wrong);
@@ -156,6 +169,7 @@ Result<Plan> plan_from_json(const json& value) {
       plan.items.push_back(read_item((*items)[i], Place{"/items", i}, problems));
     }
     check_jumps(plan, problems);
+    check_map_points(plan, problems);
   }
   reader.refuse_unknown();
   if (problems.none()) return plan;
@@ -186,6 +200,7 @@ Result<void> check_plan(const Plan& plan) {
   };
   if (plan.home) check({"/home"}, *plan.home);
   check({"/settings"}, plan.settings);
+  if (plan.frame) check({"/frame"}, *plan.frame);
   if (!plan.drawing.is_null()) {
     if (const std::string wrong = drawing_problem(plan.drawing); !wrong.empty()) {
       problems.add("/drawing", wrong);
@@ -195,6 +210,7 @@ Result<void> check_plan(const Plan& plan) {
     std::visit([&](const auto& members) { check({"/items", i}, members); }, plan.items[i]);
   }
   check_jumps(plan, problems);
+  check_map_points(plan, problems);
   if (problems.none()) return {};
   return tl::unexpected<Error>(std::move(problems).error("the mission"));
 }

@@ -156,6 +156,10 @@ json plan_to_json(const Plan& plan) {
   items.reserve(plan.items.size());
   for (const Item& item : plan.items) items.push_back(item_to_json(item));
   out["items"] = std::move(items);
+  if (plan.frame) {
+    ValueWriter of_frame(out["frame"] = json::object());
+    fields(of_frame, *plan.frame);
+  }
   if (!plan.drawing.is_null()) out["drawing"] = plan.drawing;
   return out;
 }
@@ -165,6 +169,10 @@ std::string plan_to_text(const Plan& plan) {
   if (plan.home) {
     out += ",\"home\":";
     append_object(out, *plan.home);
+  }
+  if (plan.frame) {
+    out += ",\"frame\":";
+    append_object(out, *plan.frame);
   }
   out += ",\"settings\":";
   append_object(out, plan.settings);

@@ -127,25 +127,49 @@ class Layout {
     if (!(std::hypot(at.east_m, at.north_m) <= base::LocalFrame::kReach_m)) {
       return refuse("lies more than 10 km from the robot's map");
     }
-    RouteNode node{at, speed_mps_, 0.0, false, mission::Turn::Auto, item_};
+    std::optional<double> yaw_rad;
+    if (l.heading_deg) yaw_rad = base::yaw_from_heading(*l.heading_deg);
+    go_facing({at, speed_mps_, 0.0, false, mission::Turn::Auto, item_}, yaw_rad, 0.0);
+  }
+  void add(const mission::MapPoint& p) {
+    if (!plan_.frame || !plan_.frame->lies) {
+      return refuse("counts from a map, and nobody knows where that lies");
+    }
+    const base::MapLies& lies = *plan_.frame->lies;
+    const auto at = place(mission::place_on_earth(lies, p), pointer_);
+    if (!at) return;
+    std::optional<double> yaw_rad;
+    if (p.yaw_deg) yaw_rad = base::wrap_rad(lies.yaw_rad + base::rad_from_deg(*p.yaw_deg));
+    go_facing({*at, p.speed_mps.value_or(speed_mps_), p.radius_m.value_or(0.0), p.reverse,
+               mission::Turn::Auto, item_},
+              yaw_rad, std::max(0.0, p.hold_s.value_or(0.0)));
+  }
+  /// To a place, to point there so. A steered vehicle comes to it on a straight.
+  void go_facing(const RouteNode& node, std::optional<double> to_rad, double hold_s) {
     leave_circle();
-    const bool faces = l.heading_deg.has_value();
-    const double yaw_rad = base::yaw_from_heading(l.heading_deg.value_or(0.0));
-    if (faces && params_.vehicle.steered()) {
-      const double run_m = std::max(2.0, 1.5 * min_radius_m(params_.vehicle));
+    const double yaw_rad = to_rad.value_or(0.0);
+    if (to_rad && params_.vehicle.steered()) {
+      const double run_m =
+          (node.reverse ? -1.0 : 1.0) * std::max(2.0, 1.5 * min_radius_m(params_.vehicle));
       RouteNode before = node;
-      before.at = {at.east_m - run_m * std::cos(yaw_rad), at.north_m - run_m * std::sin(yaw_rad)};
+      before.at = node.at - EnuPoint{run_m * std::cos(yaw_rad), run_m * std::sin(yaw_rad)};
       forth().steps.push_back(
           {.kind = StepKind::Go, .item = item_, .node = forth().nodes.size(), .silent = true});
       forth().nodes.push_back(before);
     }
+    const bool turns = to_rad && !params_.vehicle.steered();
     forth().steps.push_back({.kind = StepKind::Go,
                              .item = item_,
                              .node = forth().nodes.size(),
-                             .silent = faces && !params_.vehicle.steered()});
+                             .seconds = turns ? 0.0 : hold_s,
+                             .silent = turns});
     forth().nodes.push_back(node);
-    if (faces && !params_.vehicle.steered()) {
-      forth().steps.push_back({.kind = StepKind::Face, .item = item_, .yaw_rad = yaw_rad});
+    if (!turns) return;
+    const bool holds = hold_s > 0.0;
+    forth().steps.push_back(
+        {.kind = StepKind::Face, .item = item_, .yaw_rad = yaw_rad, .silent = holds});
+    if (holds) {
+      forth().steps.push_back({.kind = StepKind::Wait, .item = item_, .seconds = hold_s});
     }
   }
   void add(const mission::Move& m) {
@@ -500,11 +524,9 @@ class Layout {
         return std::abs(step.by) / std::max(0.1, params_.speed.creep_mps);
       case StepKind::Face:
       case StepKind::Turn:
-        if (step.moves_on()) {
-          return (step.yaw_rad ? base::kPi / 2.0 : std::abs(step.by)) * step.radius_m /
-                 std::max(0.1, params_.speed.creep_mps);
-        }
-        return (step.yaw_rad ? base::kPi / 2.0 : std::abs(step.by)) / turn_radps;
+        return (step.yaw_rad ? base::kPi / 2.0 : std::abs(step.by)) /
+               (step.moves_on() ? std::max(0.1, params_.speed.creep_mps) / step.radius_m
+                                : turn_radps);
       case StepKind::Row:  // how long it is, shows on the way
         if (!step.row->distance_m) break;
         return *step.row->distance_m / std::max(0.1, step.row->speed_mps.value_or(speed_mps_));

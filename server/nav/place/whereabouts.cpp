@@ -239,6 +239,7 @@ base::PlaceState Whereabouts::tell(const Look& look, const std::optional<Believe
   state.denied = told.denied || told.phase == Phase::Lost;
   if (told.pose && told.fitted)
     state.in_map = base::MapPlace{told.pose->x_m, told.pose->y_m, told.pose->yaw_rad};
+  if (anchor_) state.lies = base::MapLies{anchor_->at, anchor_->yaw_rad};
   if (!told.fix) return state;
   started_.reset();
   again_s_ = kAgain_s;
@@ -249,6 +250,7 @@ base::PlaceState Whereabouts::tell(const Look& look, const std::optional<Believe
   state.sigma_rad = std::sqrt(std::max(0.0, c(2, 2)));
   lay(told.fix->pose, told.stamp, believed);
   if (anchor_) {
+    state.lies = base::MapLies{anchor_->at, anchor_->yaw_rad};
     found_ = found_before_ + told.resets;
     state.fix = fix_of(*told.fix, found_);
   } else {

@@ -14,6 +14,7 @@ constexpr std::size_t kMostHomeEnds = 100;
 constexpr const char* kApproach = "approach_outside_fence";
 constexpr const char* kTooFar = "start_too_far";
 constexpr const char* kBlind = "sensor_blind";
+constexpr const char* kNotInMap = "not_in_map";
 
 Finding at_item(const char* code, int item, std::string detail) {
   return {mission::Severity::Error, code, "/items/" + std::to_string(item - 1), item,
@@ -53,6 +54,10 @@ std::vector<Finding> start_findings(const StartView& view) {
     out.push_back(
         {mission::Severity::Error, kBlind, "", std::nullopt, "cannot begin: " + view.blind});
   }
+  if (!view.not_in_map.empty()) {
+    out.push_back({mission::Severity::Error, kNotInMap, "/frame/map", std::nullopt,
+                   "cannot begin: " + view.not_in_map});
+  }
   if (view.legs != nullptr && *view.legs) out.push_back(**view.legs);
   if (fenced) {
     if (auto home = way_home(view)) out.push_back(std::move(*home));
@@ -77,7 +82,8 @@ std::vector<Finding> start_findings(const StartView& view) {
 }
 
 bool of_the_moment(const Finding& finding) noexcept {
-  return finding.code == kApproach || finding.code == kTooFar || finding.code == kBlind;
+  return finding.code == kApproach || finding.code == kTooFar || finding.code == kBlind ||
+         finding.code == kNotInMap;
 }
 
 }  // namespace roverd::robot

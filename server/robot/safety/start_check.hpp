@@ -5,6 +5,7 @@
 //   outside_fence           a way of the mission leaves the fence: legs, jumps, laps, ways home
 //   approach_outside_fence  the straight way from the robot to the first item does
 //   sensor_blind            a sensor that the profile demands sees nothing
+//   not_in_map              the robot is not known to be in the map that the mission counts from
 //   start_too_far           the first item is farther away than nav.behave.start_within_m
 //
 // Where the robot joins its way ahead of the first item (nav/behave/join.hpp), that place stands in
@@ -33,7 +34,8 @@ struct StartView {
   std::optional<nav::Stand> stand{};  ///< empty: not known
   std::optional<base::EnuPoint> home{};
   nav::StartAt at{};
-  std::string blind{};  ///< which sensor, and why; empty: all see
+  std::string blind{};       ///< which sensor, and why; empty: all see
+  std::string not_in_map{};  ///< why it is not known to be in the mission's map; empty: it is
 };
 
 /// Errors all of them; at most one of a kind. Empty: a start has nothing against it.

@@ -58,6 +58,8 @@ TEST(Compare, NamesNameHomeAndSettings) {
   now.home = Home{{1, 2}, std::nullopt};
   EXPECT_TRUE(compare(before, now).name);
   EXPECT_TRUE(compare(before, now).home);
+  now.frame = MissionMap{"shed"};
+  EXPECT_TRUE(compare(before, now).frame);
   EXPECT_FALSE(compare(before, now).settings);
 }
 

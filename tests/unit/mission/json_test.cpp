@@ -163,6 +163,21 @@ TEST(PlanJson, AMissionMayHaveACorridor) {
   }
 }
 
+TEST(PlanJson, WhatCountsFromAMapSaysFromWhichOne) {
+  const std::string point = R"("items":[{"type":"map_point","x_m":1,"y_m":2}]})";
+  const auto plan = plan_from_text(R"({"name":"x","frame":{"map":"shed"},)" + point);
+  ASSERT_TRUE(plan) << plan.error().detail;
+  EXPECT_EQ(plan->frame->map, "shed");
+  EXPECT_EQ(plan->items.at(0), Item(MapPoint{.x_m = 1.0, .y_m = 2.0}));
+  EXPECT_EQ(wrong_in(R"({"name":"x",)" + point), Names{"/items/0"});
+  EXPECT_EQ(wrong_in(R"({"name":"x","frame":{},)" + point), Names{"/frame/map"});
+  EXPECT_EQ(wrong_in(R"({"name":"x","frame":"shed",)" + point), Names{"/frame"});
+  EXPECT_EQ(wrong_in(R"({"name":"x","frame":{"map":"shed","id":1},)" + point), Names{"/frame/id"});
+  Plan bare = *plan;
+  bare.frame.reset();
+  EXPECT_FALSE(check_plan(bare));
+}
+
 TEST(PlanText, IsFoldedForSearching) {
   EXPECT_EQ(folded("Põld ÕUNAAED Žürii ПОЛЕ Ω 100%"), "põld õunaaed žürii поле ω 100%");
   EXPECT_EQ(folded("\xc3\x97\xff\xc3"), "\xc3\x97\xff\xc3");
@@ -388,6 +403,7 @@ TEST(PlanJson, EveryNumberOfEveryItemHasItsRange) {
       {R"({"type":"move","forward_m":1})", "forward_m", -10'000.1, 10'000.1},
       {R"({"type":"turn","turn_deg":1})", "turn_deg", -360.1, 360.1},
       {R"({"type":"turn","heading_deg":1})", "heading_deg", -0.1, 360.0},
+      {R"({"type":"turn","turn_deg":1})", "radius_m", 0.09, 100.1},
       {R"({"type":"wait","seconds":1})", "seconds", -0.1, 86'400.1},
       {R"({"type":"speed","speed_mps":1})", "speed_mps", 0.0, 10.1},
       {R"({"type":"row","side":"left"})", "gap_m", 0.0, 20.1},

@@ -19,6 +19,7 @@ inline Plan plan_with_every_item() {
   plan.name = "Everything — „kõik“ \"x\" \\ /";
   plan.home = Home{{58.378020123456789, 26.728900987654321}, 61.25};
   plan.settings = {AtEnd::BackAndForth, 0.9};
+  plan.frame = MissionMap{"shed"};
   Waypoint full = waypoint_at(-35.36256542276401, 149.16525136037512);
   full.alt_m = -12.5;
   full.speed_mps = 0.75;
@@ -47,7 +48,10 @@ inline Plan plan_with_every_item() {
       Loiter{58.1, 26.5, 30.0, 2.5},
       Loiter{},
       Circle{{58.2, 26.6}, 12.5, 2.25, true, 0.6, 8, 3.0},
-      Circle{{58.2, 26.6}, 4.0, {}, false, {}, {}, {}}};
+      Circle{{58.2, 26.6}, 4.0, {}, false, {}, {}, {}},
+      TurnBy{180.0, std::nullopt, 1.25},
+      MapPoint{3.5, -2.25, 90.0, 0.5, 0.2, 3.0, true},
+      MapPoint{.x_m = 1.0, .y_m = 2.0}};
   return plan;
 }
 

@@ -99,6 +99,9 @@ TEST(Whereabouts, TellsThePlaceOnTheEarthOfATapByTheAnchor) {
   EXPECT_NEAR(told->in_map->x_m, w.at.x_m, 0.04);
   EXPECT_EQ(told->fix->map, 7u);
   EXPECT_EQ(told->fix->anchor_sigma_m, 0.2);
+  ASSERT_TRUE(told->lies);
+  EXPECT_EQ(told->lies->at, kShedAt);
+  EXPECT_EQ(told->lies->yaw_rad, kTurned_rad);
   EXPECT_EQ(told->stamp, w.now());
   EXPECT_GT(*told->sigma_m, 0.01);
   EXPECT_LT(*told->sigma_m, 0.1);

@@ -27,6 +27,7 @@ const draft_of = (plan: Plan): Schemas['MissionDraft'] => ({
   items: [...plan.items],
   home: plan.home ?? null,
   settings: plan.settings ?? {},
+  ...(plan.frame ? { frame: plan.frame } : {}),
   ...(plan.drawing ? { drawing: plan.drawing } : {}),
 });
 

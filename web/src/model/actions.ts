@@ -109,6 +109,11 @@ export const set_home =
   (home: Home | null): PlanAction =>
   (plan) => ({ ...plan, home });
 
+/** @param map its name; null: from none */
+export const count_from =
+  (map: string | null): PlanAction =>
+  (plan) => ({ ...plan, frame: map === null ? null : { map } });
+
 export const change_settings =
   (change: Settings): PlanAction =>
   (plan) => ({ ...plan, settings: { ...plan.settings, ...change } });

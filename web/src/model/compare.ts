@@ -45,8 +45,8 @@ export const differences = (from: Plan, to: Plan): Differences => {
   const added = surplus(to.items, from.items);
   const same = gone.length === 0 && added.length === 0;
   // What is left out is as if it were said.
-  const settings = ({ settings: set, home }: Plan): string =>
-    words_of({ at_end: 'hold', ...set, home: home && words_of(home) });
+  const settings = ({ settings: set, home, frame }: Plan): string =>
+    words_of({ at_end: 'hold', ...set, home: home && words_of(home), frame: frame?.map });
   return {
     added,
     gone,

@@ -95,6 +95,7 @@ const is_step = (value: unknown): value is Step =>
   ['undefined', 'string'].includes(typeof value['name']) &&
   ['undefined', 'object'].includes(typeof value['home']) &&
   (value['settings'] === undefined || is_record(value['settings'])) &&
+  ['undefined', 'object'].includes(typeof value['frame']) &&
   ['undefined', 'object'].includes(typeof value['drawing']);
 
 const is_steps = (value: unknown): value is Steps =>

@@ -97,6 +97,15 @@ export const fields_of: Record<ItemType, readonly Field[]> = {
     must('north_m', 'north', 'm', FAR),
     may('heading_deg', 'heading', '°', [0, 360]),
   ],
+  map_point: [
+    must('x_m', 'x_in_the_map', 'm', FAR),
+    must('y_m', 'y_in_the_map', 'm', FAR),
+    may('yaw_deg', 'points_to_in_the_map', '°', [-360, 360]),
+    may('speed_mps', 'speed', 'm/s', [0.01, 10]),
+    may('hold_s', 'hold_2', 's', [0, 86_400]),
+    may('radius_m', 'radius', 'm', [0.01, 100]),
+    { kind: 'flag', key: 'reverse', label: 'drive_backwards' },
+  ],
   move: [must('forward_m', 'forward', 'm', FAR)],
   turn: [
     may('turn_deg', 'turn_by', '°', [-3600, 3600]),
@@ -157,6 +166,8 @@ export const fresh_item = (type: Exclude<ItemType, 'waypoint'>, near: LatLon | n
   switch (type) {
     case 'local':
       return { type, east_m: 0, north_m: 0 };
+    case 'map_point':
+      return { type, x_m: 0, y_m: 0 };
     case 'move':
       return { type, forward_m: 1 };
     case 'turn':
@@ -189,6 +200,7 @@ export const fresh_item = (type: Exclude<ItemType, 'waypoint'>, near: LatLon | n
 export const type_words: Record<ItemType, string> = told({
   waypoint: 'waypoint',
   local: 'local_point',
+  map_point: 'map_point',
   move: 'move_straight',
   turn: 'turn',
   wait: 'wait',

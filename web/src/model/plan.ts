@@ -123,6 +123,19 @@ export interface Circle extends LatLon {
   readonly hold_s?: number | null;
 }
 
+/** A place of the mission's map, in the map's own frame. */
+export interface OnMap {
+  readonly type: 'map_point';
+  readonly x_m: number;
+  readonly y_m: number;
+  /** To point there: from the map's x axis, left positive. */
+  readonly yaw_deg?: number | null;
+  readonly speed_mps?: number | null;
+  readonly radius_m?: number | null;
+  readonly hold_s?: number | null;
+  readonly reverse?: boolean;
+}
+
 export type Item =
   | Waypoint
   | Local
@@ -138,7 +151,8 @@ export type Item =
   | ReturnHome
   | Action
   | Loiter
-  | Circle;
+  | Circle
+  | OnMap;
 export type ItemType = Item['type'];
 
 export interface Home extends LatLon {
@@ -158,6 +172,8 @@ export interface Plan {
   readonly home?: Home | null;
   readonly settings?: Settings;
   readonly items: readonly Item[];
+  /** The map that map points count from, by its name. */
+  readonly frame?: { readonly map: string } | null;
   /** What the items were drawn as, kept by the robot with each revision; what is in it, makings.ts knows. */
   readonly drawing?: KeptDrawing | null;
 }
@@ -197,6 +213,15 @@ export const spots = (plan: Plan): Spot[] => {
   return found;
 };
 
+const turn_text = ({ turn_deg, heading_deg, radius_m }: Turn): string => {
+  if (typeof turn_deg !== 'number') {
+    return say('turn_to_heading_heading_deg', { heading: heading_deg ?? 0 });
+  }
+  return radius_m
+    ? say('turn_on_an_arc', { turn: turn_deg, radius: radius_m })
+    : say('turn_turn_deg', { turn: turn_deg });
+};
+
 /** A sentence for an item that has no place on the map (also used in the item list). */
 export const item_title = (item: Item, speed_in: SpeedUnit = 'm/s'): string => {
   switch (item.type) {
@@ -204,17 +229,14 @@ export const item_title = (item: Item, speed_in: SpeedUnit = 'm/s'): string => {
       return item.reverse === true ? say('waypoint_backwards') : say('waypoint');
     case 'local':
       return say('local_east_m_east_north_m_north', { east: item.east_m, north: item.north_m });
+    case 'map_point':
+      return say('map_point_x_m_y_m', { x: item.x_m, y: item.y_m });
     case 'move':
       return item.forward_m < 0
         ? say('back_forward_m', { forward: -item.forward_m })
         : say('forward_forward_m', { forward: item.forward_m });
     case 'turn':
-      if (typeof item.turn_deg === 'number' && item.radius_m) {
-        return say('turn_on_an_arc', { turn: item.turn_deg, radius: item.radius_m });
-      }
-      return typeof item.turn_deg === 'number'
-        ? say('turn_turn_deg', { turn: item.turn_deg })
-        : say('turn_to_heading_heading_deg', { heading: item.heading_deg ?? 0 });
+      return turn_text(item);
     case 'wait':
       return say('wait_seconds_s', { seconds: item.seconds });
     case 'speed':

@@ -13,6 +13,7 @@ export interface Step {
   readonly name?: string;
   readonly home?: Home | null;
   readonly settings?: Settings;
+  readonly frame?: { readonly map: string } | null;
   readonly drawing?: KeptDrawing | null;
 }
 export interface Steps {
@@ -46,6 +47,7 @@ export const step_between = (from: Plan, to: Plan): Step => {
     ...(from.name === to.name ? {} : { name: to.name }),
     ...(from.home === to.home ? {} : { home: to.home ?? null }),
     ...(from.settings === to.settings ? {} : { settings: to.settings ?? {} }),
+    ...(from.frame === to.frame ? {} : { frame: to.frame ?? null }),
     ...(from.drawing === to.drawing ? {} : { drawing: to.drawing ?? null }),
   };
 };

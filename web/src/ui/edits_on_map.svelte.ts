@@ -9,6 +9,7 @@ import { drawn_on_map } from '../model/makings';
 import type { LineOnMap } from '../model/on_map';
 import { EMPTY_PLAN, spots } from '../model/plan';
 import { NOTHING_PICKED } from '../model/selection';
+import { map_points_of } from '../model/site_map';
 import { settled } from './settled';
 import type { Station } from './station.svelte';
 
@@ -65,13 +66,16 @@ export const keep_edits_in_step = (station: Station, hidden: () => boolean): voi
   const made_on_map = $derived(
     made && !made.by_hand ? drawn_on_map(made.drawn, editor.plan.items) : [],
   );
+  const by_map = $derived(map_points_of(editor.plan, station.sites.items));
   const told = $derived(
     station.dialogs.open?.kind === 'report' ? station.dialogs.open.report.on_map : null,
   );
   $effect(() =>
     map.show_beside(
       told ??
-        (planned ? [...made_on_map, ...station.beneath.on_map, ...compared] : beside(station)),
+        (planned
+          ? [...made_on_map, ...by_map, ...station.beneath.on_map, ...compared]
+          : beside(station)),
     ),
   );
   // Where they differ is seen before the person chooses.

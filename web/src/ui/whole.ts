@@ -2,13 +2,15 @@
 
 import { drawn_on_map } from '../model/makings';
 import { spots, type LatLon } from '../model/plan';
+import { map_points_of } from '../model/site_map';
 import type { Station } from './station.svelte';
 
 /** Rows have no points: they lie where they were drawn. */
-const edited_in = ({ editor, makings }: Station): readonly LatLon[] => {
+const edited_in = ({ editor, makings, sites }: Station): readonly LatLon[] => {
   const made = makings.here;
   const drawn = made && !made.by_hand ? drawn_on_map(made.drawn, editor.plan.items) : [];
-  return [...spots(editor.plan), ...drawn.flatMap(({ places }) => places)];
+  const by_map = map_points_of(editor.plan, sites.items);
+  return [...spots(editor.plan), ...[...drawn, ...by_map].flatMap(({ places }) => places)];
 };
 
 /** What a report tells of, or the edited mission, or the loaded one, or the way so far. */

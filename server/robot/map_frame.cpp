@@ -1,0 +1,56 @@
+#include "robot/map_frame.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "base/angle.hpp"
+
+namespace roverd::robot {
+namespace {
+
+using base::Code;
+using base::PlacePhase;
+
+// By more it is another way than the one that was shown.
+constexpr double kLiesElsewhere_m = 0.2;
+constexpr double kLiesAskew_rad = 0.02;
+
+base::Error against(const std::string& map, const std::string& why) {
+  return {Code::Conflict, "the mission counts from the map \"" + map + "\": " + why, {}};
+}
+
+}  // namespace
+
+base::Result<base::MapLies> lies_of(const mission::MissionMap& said, const MapNow& now) {
+  const auto no = [&said](const std::string& why) {
+    return tl::unexpected(against(said.map, why));
+  };
+  if (!now.place || now.place->phase == PlacePhase::Off) return no("no map is in use");
+  if (now.place->map != said.map) return no("the map in use is \"" + now.place->map + "\"");
+  if (!now.place->lies || !now.frame) {
+    return no("where it lies is not known before the robot is found in it");
+  }
+  base::MapLies lies = *now.place->lies;
+  const double far_m = base::distance_bearing(now.frame->origin(), lies.at).distance_m;
+  if (far_m > base::LocalFrame::kReach_m) return no("it lies more than 10 km away");
+  lies.at = now.frame->to_global(now.frame->to_local(lies.at) + now.offset);
+  return lies;
+}
+
+base::Result<void> counts_from(const mission::MissionMap& laid, const MapNow& now) {
+  const auto lies = lies_of(laid, now);
+  if (!lies) return tl::unexpected(lies.error());
+  if (now.place->phase != PlacePhase::Known) {
+    const std::string& reason = now.place->reason;
+    return tl::unexpected(against(laid.map, "where the robot is in it is not known" +
+                                                (reason.empty() ? reason : " (" + reason + ")")));
+  }
+  const bool same =
+      laid.lies && base::distance_bearing(laid.lies->at, lies->at).distance_m <= kLiesElsewhere_m &&
+      std::abs(base::angle_diff_rad(laid.lies->yaw_rad, lies->yaw_rad)) <= kLiesAskew_rad;
+  if (same) return {};
+  return tl::unexpected(against(
+      laid.map, "it lies elsewhere by now than when the mission was loaded: load it again"));
+}
+
+}  // namespace roverd::robot
