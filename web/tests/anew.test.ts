@@ -1,69 +1,18 @@
-import { afterAll, beforeAll, beforeEach, describe, expect, it, vi } from 'vitest';
+import { describe, expect, it } from 'vitest';
 
-import { ask_anew, asked_anew } from '../src/link/anew';
+import { try_limit_ms } from '../src/model/anew';
 
-/** A connection that is dead: it ends only when it is given up. */
-const dead = (signal: AbortSignal): Promise<string> =>
-  new Promise((_, refuse) => {
-    signal.addEventListener('abort', () => refuse(new DOMException('given up', 'AbortError')));
-  });
-
-/** The first so many connections are dead. */
-const robot = (dead_ones: number) => {
-  let tries = 0;
-  return vi.fn((signal: AbortSignal) => {
-    tries += 1;
-    return tries <= dead_ones ? dead(signal) : Promise.resolve(`answer ${tries}`);
-  });
-};
+const limits = (back_ms: number): (number | undefined)[] =>
+  [0, 1, 2, 3].map((tries) => try_limit_ms(tries, back_ms));
 
 describe('what only reads, over a link that was lost', () => {
-  beforeAll(() => {
-    vi.useFakeTimers();
-  });
-  afterAll(() => {
-    vi.useRealTimers();
-  });
-  // Long after: no test doubts for another one.
-  beforeEach(() => {
-    vi.advanceTimersByTime(60_000);
+  it('is asked soon again over every dead connection, and has all its time in the end', () => {
+    expect(limits(0)).toEqual([800, 800, 800, undefined]);
+    expect(limits(9_900)).toEqual([800, 800, 800, undefined]);
   });
 
-  it('is asked once where nothing was lost', async () => {
-    const ask = robot(1);
-    const answer = asked_anew(ask);
-    await vi.advanceTimersByTimeAsync(14_000);
-    expect(ask).toHaveBeenCalledTimes(1);
-    ask_anew();
-    expect(await answer).toBe('answer 2');
-  });
-
-  it('is asked anew when the stream is back, and soon again over every dead connection', async () => {
-    const ask = robot(3);
-    const answer = asked_anew(ask);
-    await vi.advanceTimersByTimeAsync(4000);
-    expect(ask).toHaveBeenCalledTimes(1);
-    ask_anew();
-    await vi.advanceTimersByTimeAsync(1650);
-    expect(ask).toHaveBeenCalledTimes(4);
-    expect(await answer).toBe('answer 4');
-  });
-
-  it('has all its time in the end: slow is not dead', async () => {
-    ask_anew();
-    const ask = robot(Infinity);
-    const answer = asked_anew(ask).catch(() => 'never');
-    await vi.advanceTimersByTimeAsync(20_000);
-    expect(ask).toHaveBeenCalledTimes(4);
-    ask.mockImplementation(() => Promise.reject(new Error('over')));
-    ask_anew();
-    expect(await answer).toBe('never');
-  });
-
-  it('tells a failure that was no silence at once', async () => {
-    ask_anew();
-    await expect(asked_anew(() => Promise.reject(new TypeError('refused')))).rejects.toThrow(
-      'refused',
-    );
+  it('is asked once where nothing was lost, or long ago', () => {
+    expect(limits(Infinity)).toEqual([undefined, undefined, undefined, undefined]);
+    expect(limits(10_000)).toEqual([undefined, undefined, undefined, undefined]);
   });
 });

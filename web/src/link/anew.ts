@@ -1,10 +1,7 @@
-// Where the link was lost, connections stay behind that are dead although nobody told the browser, and it asks
-// over them again. What only reads may be asked twice: what still waits when the live stream is back is asked
-// anew, and for some seconds whatever is not answered soon. A try that is given up takes its connection along.
+// What only reads may be asked twice: what still waits when the live stream is back is asked anew, and for some
+// seconds whatever is not answered soon (model/anew.ts).
 
-/** As long as a probe: on a link of which the stream came back that fast. The try after these has no limit here. */
-const TRIES_MS = [800, 800, 800];
-const DOUBTED_MS = 10_000;
+import { try_limit_ms } from '../model/anew';
 
 const waiting = new Set<AbortController>();
 let back_ms = -Infinity;
@@ -15,14 +12,11 @@ export const ask_anew = (): void => {
   for (const hang_up of waiting) hang_up.abort();
 };
 
-const limit_ms = (tries: number): number | undefined =>
-  performance.now() - back_ms < DOUBTED_MS ? TRIES_MS[tries] : undefined;
-
 /** @param ask one try, which the signal ends */
 export const asked_anew = async <T>(ask: (signal: AbortSignal) => Promise<T>): Promise<T> => {
   for (let tries = 0; ; tries += 1) {
     const hang_up = new AbortController();
-    const limit = limit_ms(tries);
+    const limit = try_limit_ms(tries, performance.now() - back_ms);
     const timer = limit === undefined ? undefined : setTimeout(() => hang_up.abort(), limit);
     waiting.add(hang_up);
     try {

@@ -1,8 +1,8 @@
 import { describe, expect, test } from 'vitest';
 
-import { from_plane } from '../src/map/projection';
-import { TrailLine } from '../src/map/trail_line';
+import type { LatLon } from '../src/model/plan';
 import { Trail, type TrailPiece } from '../src/model/trail';
+import { TrailColumns } from '../src/model/trail_columns';
 
 // Of the runtime of the tests (vitest.config.ts), not of browsers.
 declare const gc: () => void;
@@ -14,8 +14,9 @@ const measured = { speed_mps: 0.8, off_m: 0.013 };
 const drive = (trail: Trail, from: number, to: number): void => {
   for (let k = from; k < to; k += 1) trail.add(north(k), k, REACH_M, measured);
 };
-const metres = (line: TrailLine, first = 0): number[] =>
-  [...line.places(first)].map((at) => Math.round((from_plane(at).lat - 58) * 111_000));
+const to_plane = ({ lat, lon }: LatLon): readonly [number, number] => [lon, (lat - 58) * 111_000];
+const metres = (line: TrailColumns, begin = 0): number[] =>
+  [...line.ys.subarray(line.first + begin, line.end)].map(Math.round);
 const range = (from: number, to: number): number[] =>
   Array.from({ length: to - from }, (_, k) => from + k);
 
@@ -25,10 +26,10 @@ const heap = (): number => {
   return process.memoryUsage().heapUsed;
 };
 
-describe('the trail in the plane', () => {
+describe('the trail in columns', () => {
   test('has the points of the ring, also long after the ring is full', () => {
     const trail = new Trail(100, 0.05);
-    const line = new TrailLine();
+    const line = new TrailColumns(to_plane);
     for (let k = 0; k < 9000; k += 7) {
       drive(trail, k, k + 7);
       line.follow(trail);
@@ -39,7 +40,7 @@ describe('the trail in the plane', () => {
 
   test('has what the robot remembers instead, whenever that comes', () => {
     const trail = new Trail(3000, 0.05);
-    const line = new TrailLine();
+    const line = new TrailColumns(to_plane);
     for (let k = 0; k < 4900; k += 70) {
       drive(trail, k, k + 70);
       line.follow(trail);
@@ -57,7 +58,7 @@ describe('the trail in the plane', () => {
 
   test('takes no more memory after an hour than after a minute', () => {
     const trail = new Trail();
-    const line = new TrailLine();
+    const line = new TrailColumns(to_plane);
     const follow = (from: number, to: number): void => {
       for (let k = from; k < to; k += 1) {
         drive(trail, k, k + 1);
