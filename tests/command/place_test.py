@@ -126,6 +126,31 @@ def drives_by_the_map():
         check("place_known" in events and "place_lost" not in events, f"what happened: {events}")
 
 
+def drives_in_the_metres_of_the_map():
+    """a mission that counts from the map is refused until the robot is found in it, and ends where the map says"""
+    with Hall() as hall:
+        points = [{"type": "map_point", "x_m": 2, "y_m": 2}, {"type": "map_point", "x_m": 8, "y_m": 2},
+                  {"type": "map_point", "x_m": 9, "y_m": 4.5, "speed_mps": 0.4},
+                  {"type": "map_point", "x_m": 9.5, "y_m": 0, "yaw_deg": -90}]
+        mission = hall.rest.do("POST", "/missions", {"name": "by the map", "frame": {"map": "hall"}, "items": points})
+        elsewhere = hall.rest.do("POST", "/missions", {"name": "in a barn", "frame": {"map": "barn"}, "items": points})
+        status, _, said = hall.rest.call("POST", "/execution/load", {"mission_id": mission["id"]})
+        check(status == 409 and "not known" in said["detail"], f"loaded before it is found: {status} {said}")
+        hall.tap()
+        until("it is ready", 30, lambda: hall.rest.get("/vehicle")["ready_to_arm"], 0.2)
+        status, _, said = hall.rest.call("POST", "/execution/load", {"mission_id": elsewhere["id"]})
+        check(status == 409 and "barn" in said["detail"], f"another map's: {status} {said}")
+        hall.start(mission)
+        hall.watch(150, lambda: hall.rest.get("/execution")["state"] == "finished")
+        truth = hall.truth()
+        # The map's x axis points east from the world's origin.
+        east, north = (truth["lon"] - START[1]) / METRE_LON, (truth["lat"] - START[0]) / METRE_LAT
+        print(f"# it ended at {east:.2f} east, {north:.2f} north of the map's origin, {truth['heading_deg']:.0f} deg")
+        check(math.hypot(east - 9.5, north) < 0.35, f"it ended at {east:.2f}, {north:.2f}")
+        check(abs((truth["heading_deg"] - 180 + 180) % 360 - 180) < 6, f"it points to {truth['heading_deg']:.0f} deg")
+        check(truth["contacts"] == 0, f"it touched something: {truth}")
+
+
 def satellites_come_back_without_a_jump():
     """satellites that are heard again take over, and the estimate does not jump"""
     with Hall() as hall:
@@ -161,4 +186,5 @@ def is_told_when_it_was_carried():
 
 
 if __name__ == "__main__":
-    sys.exit(run_cases([drives_by_the_map, satellites_come_back_without_a_jump, is_told_when_it_was_carried]))
+    sys.exit(run_cases([drives_by_the_map, drives_in_the_metres_of_the_map, satellites_come_back_without_a_jump,
+                        is_told_when_it_was_carried]))
