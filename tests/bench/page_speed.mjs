@@ -457,6 +457,7 @@ const measure_heap = async (robot) => {
   const steps = Math.max(4, Math.round(minutes * 2));
   for (let k = 0; k < steps; k += 1) {
     await wait((minutes * 60_000) / steps);
+    await keep_driving(robot);
     seen.push(await heap());
   }
   const [first, last] = [seen[1], seen.at(-1)];
