@@ -106,8 +106,8 @@ TEST_F(MapsApi, WhatIsExportedIsTheMap) {
   ASSERT_EQ(add().status, 201u);
   const auto yaml = call("GET", "/maps/1/export?format=yaml");
   const auto picture = call("GET", "/maps/1/export?format=pgm");
-  EXPECT_EQ(yaml.raw.header("content-disposition"), "attachment; filename=\"map-1.yaml\"");
-  EXPECT_NE(yaml.raw.body.find("image: map-1.pgm\n"), std::string::npos) << yaml.raw.body;
+  EXPECT_EQ(yaml.raw.header("content-disposition"), "attachment; filename=\"shed-1.yaml\"");
+  EXPECT_NE(yaml.raw.body.find("image: shed-1.pgm\n"), std::string::npos) << yaml.raw.body;
   ASSERT_EQ(add(form(yaml.raw.body, picture.raw.body)).status, 201u);
   EXPECT_EQ(call("GET", "/maps/1/cells").raw.body, call("GET", "/maps/2/cells").raw.body);
   EXPECT_EQ(call("GET", "/maps/1/export?format=png").status, 422u);
@@ -136,7 +136,7 @@ TEST_F(MapsApi, AMapInThreeDimensionsIsKeptWithItsPlaneAndGivenBack) {
   const std::string cells = call("GET", "/maps/1/cells").raw.body;
   EXPECT_NE(cells.find('\0'), std::string::npos) << "the wall is occupied";
   const auto given = call("GET", "/maps/1/export?format=pcd");
-  EXPECT_EQ(given.raw.header("content-disposition"), "attachment; filename=\"map-1.pcd\"");
+  EXPECT_EQ(given.raw.header("content-disposition"), "attachment; filename=\"yard-1.pcd\"");
   ASSERT_EQ(add(cloud(given.raw.body)).status, 201u);
   EXPECT_EQ(call("GET", "/maps/2/cells").raw.body, cells) << "what is given is what is taken";
   EXPECT_EQ(call("POST", "/maps/1/use").status, 200u);
