@@ -6,6 +6,7 @@ import type { Halt } from '../model/halt';
 import type { Plan } from '../model/plan';
 import type { MissionCalls, VehicleCalls } from '../model/ports';
 import type { SpeedsSet } from '../model/route_drive';
+import { body_of } from '../model/stored_plan';
 import type { Remembered } from '../model/tracks';
 import type { TrailPiece } from '../model/trail';
 import { request, type Call } from './request';
@@ -22,14 +23,7 @@ const LARGE_LIMIT_MS = 30_000;
 
 const etag = (revision: number): string => `"rev-${revision}"`;
 
-const draft_of = (plan: Plan): Schemas['MissionDraft'] => ({
-  name: plan.name,
-  items: [...plan.items],
-  home: plan.home ?? null,
-  settings: plan.settings ?? {},
-  ...(plan.frame ? { frame: plan.frame } : {}),
-  ...(plan.drawing ? { drawing: plan.drawing } : {}),
-});
+const draft_of = (plan: Plan): Schemas['MissionDraft'] => body_of(plan);
 
 const mission_path = (id: string): string => `/missions/${encodeURIComponent(id)}`;
 

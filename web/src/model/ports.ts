@@ -50,6 +50,7 @@ export interface Mission {
   readonly items: readonly Item[];
   readonly home: Home | null;
   readonly settings: Settings;
+  readonly frame?: NonNullable<Plan['frame']>;
   readonly drawing?: KeptDrawing;
   readonly updated: string;
 }

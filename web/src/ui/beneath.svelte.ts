@@ -6,7 +6,7 @@ import { line_of } from '../model/beside';
 import type { LineOnMap } from '../model/on_map';
 import type { Plan } from '../model/plan';
 import type { MissionCalls } from '../model/ports';
-import { plan_of } from './edited';
+import { plan_of } from '../model/stored_plan';
 import type { Notices } from './notices.svelte';
 
 interface Shown {

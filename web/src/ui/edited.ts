@@ -1,15 +1,6 @@
-// What the editor is given, and what others ask of a mission to edit it.
+// What the editor is given.
 
-import type { Plan } from '../model/plan';
-import type { DraftStorage, Mission } from '../model/ports';
-
-export const plan_of = (mission: Mission): Plan => ({
-  name: mission.name,
-  items: mission.items,
-  home: mission.home,
-  settings: mission.settings,
-  ...(mission.drawing ? { drawing: mission.drawing } : {}),
-});
+import type { DraftStorage } from '../model/ports';
 
 /** What is shown in place of the plan before it is done. */
 export interface Preview {

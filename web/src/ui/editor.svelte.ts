@@ -12,11 +12,12 @@ import { say } from '../model/say';
 import { followed, joined, NOTHING_PICKED, toggled, type Picked } from '../model/selection';
 import { drag_items } from '../model/shapes';
 import { revived, steps_of } from '../model/steps';
+import { plan_of } from '../model/stored_plan';
 import { remove_items } from '../model/stretch';
 import type { DraftStorage, MapMode, Mission, MissionCalls } from '../model/ports';
 import type { Drawing } from './drawing.svelte';
 import type { Dialogs } from './dialogs.svelte';
-import { plan_of, type Kept, type Preview } from './edited';
+import type { Kept, Preview } from './edited';
 import { fresh_key } from './fresh_key';
 import type { Notices } from './notices.svelte';
 import { Splits } from './splits.svelte';
@@ -180,10 +181,8 @@ export class Editor implements Drawing {
   begin_new(): void {
     this.#keep_edits();
     const unkept = this.stored === null ? this.history : begin_history(EMPTY_PLAN);
-    this.#begin(
-      perform(unkept, () => EMPTY_PLAN),
-      null,
-    );
+    const begun = perform(unkept, () => EMPTY_PLAN);
+    this.#begin(begun, null);
     this.adding = true;
   }
 

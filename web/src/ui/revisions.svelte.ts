@@ -8,7 +8,7 @@ import type { Plan } from '../model/plan';
 import type { MissionCalls } from '../model/ports';
 import type { Revision } from '../model/revision';
 import { say } from '../model/say';
-import { plan_of } from './edited';
+import { plan_of } from '../model/stored_plan';
 import type { Editor } from './editor.svelte';
 import type { Notices } from './notices.svelte';
 

@@ -6,8 +6,8 @@ import type { LatLon, Plan } from '../model/plan';
 import type { MissionCalls, VehicleCalls } from '../model/ports';
 import { begin_heading, NO_SPEEDS, type SpeedsSet } from '../model/route_drive';
 import { say } from '../model/say';
+import { plan_of } from '../model/stored_plan';
 import type { Vehicle } from '../model/vehicle';
-import { plan_of } from './edited';
 import type { Notices } from './notices.svelte';
 
 interface LaidWay {
