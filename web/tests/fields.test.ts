@@ -65,6 +65,18 @@ describe('fields', () => {
     }
   });
 
+  test('a turn with a radius is told as an arc, by an angle or to a heading', () => {
+    const titles = (more: object): string[] =>
+      [{ turn_deg: 90 }, { heading_deg: 0 }].map((by) =>
+        item_title({ type: 'turn', ...by, ...more }),
+      );
+    expect(titles({ radius_m: 1.2 })).toEqual([
+      'Turn 90° on an arc of 1.2 m',
+      'Turn to heading 0° on an arc of 1.2 m',
+    ]);
+    expect(titles({})).toEqual(['Turn 90°', 'Turn to heading 0°']);
+  });
+
   test('a place is latitude and longitude, or none', () => {
     const here = { lat: 58.1, lon: 26.2 };
     const item = fresh_item('loiter', here);

@@ -215,7 +215,10 @@ export const spots = (plan: Plan): Spot[] => {
 
 const turn_text = ({ turn_deg, heading_deg, radius_m }: Turn): string => {
   if (typeof turn_deg !== 'number') {
-    return say('turn_to_heading_heading_deg', { heading: heading_deg ?? 0 });
+    const heading = heading_deg ?? 0;
+    return radius_m
+      ? say('turn_to_heading_on_an_arc', { heading, radius: radius_m })
+      : say('turn_to_heading_heading_deg', { heading });
   }
   return radius_m
     ? say('turn_on_an_arc', { turn: turn_deg, radius: radius_m })

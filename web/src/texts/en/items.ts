@@ -80,6 +80,7 @@ export const items = {
   turn_on_an_arc_of: 'Forwards on an arc of, m',
   turn_turn_deg: 'Turn {turn}°',
   turn_to_heading_heading_deg: 'Turn to heading {heading}°',
+  turn_to_heading_on_an_arc: 'Turn to heading {heading}° on an arc of {radius} m',
   wait_seconds_s: 'Wait {seconds} s',
   speed_speed_m_s: 'Speed {speed}',
   row_in_its_middle: 'Row, in its middle',

@@ -80,6 +80,7 @@ export const items = {
   turn_on_an_arc_of: 'Edasi kaarega, m',
   turn_turn_deg: 'Pööra {turn}°',
   turn_to_heading_heading_deg: 'Pööra suunda {heading}°',
+  turn_to_heading_on_an_arc: 'Pööra suunda {heading}° kaarega {radius} m',
   wait_seconds_s: 'Oota {seconds} s',
   speed_speed_m_s: 'Kiirus {speed}',
   row_in_its_middle: 'Rida, keskelt',

@@ -80,6 +80,7 @@ export const items = {
   turn_on_an_arc_of: 'Eteenpäin kaarella, m',
   turn_turn_deg: 'Käänny {turn}°',
   turn_to_heading_heading_deg: 'Käänny suuntaan {heading}°',
+  turn_to_heading_on_an_arc: 'Käänny suuntaan {heading}° kaarella {radius} m',
   wait_seconds_s: 'Odota {seconds} s',
   speed_speed_m_s: 'Nopeus {speed}',
   row_in_its_middle: 'Rivi, keskellä',

@@ -80,6 +80,7 @@ export const items = {
   turn_on_an_arc_of: 'Avanti su un arco di, m',
   turn_turn_deg: 'Gira di {turn}°',
   turn_to_heading_heading_deg: 'Gira alla rotta {heading}°',
+  turn_to_heading_on_an_arc: 'Gira alla rotta {heading}° con arco di {radius} m',
   wait_seconds_s: 'Aspetta {seconds} s',
   speed_speed_m_s: 'Velocità {speed}',
   row_in_its_middle: 'Filare, al centro',

@@ -80,6 +80,7 @@ export const items = {
   turn_on_an_arc_of: 'Fremover i en bue på, m',
   turn_turn_deg: 'Snu {turn}°',
   turn_to_heading_heading_deg: 'Snu til kurs {heading}°',
+  turn_to_heading_on_an_arc: 'Snu til kurs {heading}° i en bue på {radius} m',
   wait_seconds_s: 'Vent {seconds} s',
   speed_speed_m_s: 'Fart {speed}',
   row_in_its_middle: 'Rad, i midten',
