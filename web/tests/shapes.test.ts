@@ -2,7 +2,7 @@ import { describe, expect, test } from 'vitest';
 
 import { bearing_deg, distance_m, offset_between, offset_from } from '../src/model/geo';
 import { plane_at } from '../src/model/plane';
-import type { Item, LatLon, Plan } from '../src/model/plan';
+import type { Item, LatLon, Plan, Row, Wall } from '../src/model/plan';
 import { followed, picked_words, run_between, toggled } from '../src/model/selection';
 import {
   align_items,
@@ -78,6 +78,48 @@ describe('a figure', () => {
     expect(bearing_deg(place(after, 0), place(after, 1))).toBeCloseTo(180, 4);
     expect(distance_m(place(after, 0), place(after, 1))).toBeCloseTo(10, 3);
     expect(after.items[2]).toEqual({ type: 'turn', heading_deg: 80 });
+  });
+
+  describe('with rows and walls that end beside a place', () => {
+    const ends = (east_m: number, north_m: number) => {
+      const { lat, lon } = plane_at(TARTU).from_plane({ east_m, north_m });
+      return { until_lat: lat, until_lon: lon };
+    };
+    const row = (east_m: number, north_m: number): Item => ({
+      type: 'row',
+      ...ends(east_m, north_m),
+    });
+    const wall: Item = { type: 'wall', side: 'left', distance_m: 1, ...ends(0, 4) };
+    // The last one comes after a point that is not chosen.
+    const before = plan(point(-5, 0), row(5, 4), point(5, 0), wall, point(20, 0), row(30, 0));
+    const end_of = (of: Plan, k: number): readonly [number, number] => {
+      const { until_lat: lat, until_lon: lon } = of.items[k] as Row | Wall;
+      if (typeof lat !== 'number' || typeof lon !== 'number') throw new Error('ends nowhere');
+      const { east_m, north_m } = plane_at(TARTU).to_plane({ lat, lon });
+      const cm = (metres: number): number => Math.round(metres * 100) / 100 + 0;
+      return [cm(east_m), cm(north_m)];
+    };
+    const chosen = new Set([0, 2]);
+
+    test.each([
+      ['moved', move_items(chosen, { east_m: 3, north_m: -2 }), [8, 2], [3, 2]],
+      ['turned', rotate_items(chosen, 90, TARTU), [4, -5], [4, 0]],
+      ['scaled', scale_items(chosen, 2, TARTU), [10, 8], [0, 8]],
+      ['mirrored', mirror_items(chosen, 0, TARTU), [-5, 4], [0, 4]],
+      ['dragged', drag_items(chosen, 0, place(plan(point(-4, 1)), 0)), [6, 5], [1, 5]],
+    ] as const)('is %s with their ends', (_done, change, row_end, wall_end) => {
+      const after = change(before);
+      expect(end_of(after, 1)).toEqual(row_end);
+      expect(end_of(after, 3)).toEqual(wall_end);
+      expect(after.items[5]).toBe(before.items[5]);
+    });
+
+    test('leaves one alone that ends beside a known place, or nowhere', () => {
+      const named: Item = { type: 'row', until_place: 'gate' };
+      const bare: Item = { type: 'wall', side: 'left', distance_m: 1 };
+      const after = move_items(both, { east_m: 3, north_m: 0 })(plan(point(0, 0), named, bare));
+      expect(after.items.slice(1)).toEqual([named, bare]);
+    });
   });
 
   test('of a kilometre keeps its shape when it is turned, and comes back', () => {

@@ -53,7 +53,13 @@ export interface Speed {
   readonly type: 'speed';
   readonly speed_mps: number;
 }
-export interface Row {
+/** Done at the latest beside a place: one of the map, both or none, or a known one by its name. */
+export interface EndsBeside {
+  readonly until_lat?: number | null;
+  readonly until_lon?: number | null;
+  readonly until_place?: string | null;
+}
+export interface Row extends EndsBeside {
   readonly type: 'row';
   readonly side?: RowSide;
   readonly gap_m?: number | null;
@@ -61,7 +67,7 @@ export interface Row {
   readonly distance_m?: number | null;
   readonly seeing?: 'line' | 'rays';
 }
-export interface Wall {
+export interface Wall extends EndsBeside {
   readonly type: 'wall';
   readonly side: Side;
   readonly distance_m: number;

@@ -19,6 +19,15 @@ const compass = (deg: number): number => {
 
 const at_place = (item: Item, at: LatLon): Item => ({ ...item, ...at }) as Item;
 
+/** A row or a wall that ends beside a place goes on ending there, wherever that goes. */
+const with_end = (item: Item, moved: (at: LatLon) => LatLon): Item => {
+  if (item.type !== 'row' && item.type !== 'wall') return item;
+  const { until_lat: lat, until_lon: lon } = item;
+  if (typeof lat !== 'number' || typeof lon !== 'number') return item;
+  const to = moved({ lat, lon });
+  return { ...item, until_lat: to.lat, until_lon: to.lon };
+};
+
 /** What becomes of the places, and of what has a direction or a length of its own. */
 interface Change {
   readonly place: (offset: Offset) => Offset;
@@ -32,14 +41,13 @@ const as_figure =
     const origin = about ?? middle_of(picked_spots(plan, picked));
     if (!origin) return plan;
     const plane = plane_at(origin);
+    const moved = (at: LatLon): LatLon => plane.from_plane(place(plane.to_plane(at)));
     const touched = with_followers(plan, picked);
     const items = plan.items.map((item, index) => {
       if (!touched.has(index)) return item;
-      const changed = change(item);
+      const changed = with_end(change(item), moved);
       const at = place_of(item);
-      return at && picked.has(index)
-        ? at_place(changed, plane.from_plane(place(plane.to_plane(at))))
-        : changed;
+      return at && picked.has(index) ? at_place(changed, moved(at)) : changed;
     });
     return { ...plan, items };
   };
