@@ -152,14 +152,29 @@ base::Result<void> Robot::Impl::handle(const ResetEstop&) {
   return {};
 }
 
+/// A mission that counts from a map does so rightly. @param from empty: from anywhere
+base::Result<void> Robot::Impl::in_its_map(const CompiledMission& mission,
+                                           const std::optional<base::MissionPlace>& from) const {
+  const auto& map = mission.copy.plan.frame;
+  if (!map) return {};
+  const nav::RouteStep* step = nullptr;
+  if (from) {
+    const auto& steps = (from->back ? mission.route.back : mission.route.forth).steps;
+    const auto i = static_cast<std::size_t>(from->step);
+    if (i < steps.size()) step = &steps[i];
+  }
+  return counts_from(*map, map_now(), leads_into_map(mission.copy.plan, step));
+}
+
+MapNow Robot::Impl::map_now() const {
+  return {world.place, estimator.frame(), estimator.health().map_offset, clock.now()};
+}
+
 base::Result<void> Robot::Impl::may_drive_mission(
     const std::optional<base::MissionPlace>& from) const {
   if (arm.latched()) return base::fail(Code::Conflict, "the emergency stop is latched");
   if (!missions) return base::fail(Code::Conflict, "no mission is loaded");
-  if (const auto& map = missions.get()->copy.plan.frame) {
-    const MapNow now{world.place, estimator.frame(), estimator.health().map_offset};
-    if (auto ok = counts_from(*map, now); !ok) return ok;
-  }
+  if (auto ok = in_its_map(*missions.get(), from); !ok) return ok;
   return may_drive_by_itself(false, from && by_sight_from(missions->route, *from));
 }
 
@@ -375,6 +390,7 @@ base::Result<void> Robot::Impl::handle(const ResumeAt& c) {
     return base::fail(Code::Conflict, "the robot's map began meanwhile: try once more");
   }
   if (auto ok = missions.may_restore(c, config, pose->at); !ok) return ok;
+  if (auto ok = in_its_map(*c.mission, c.place); !ok) return ok;
   adopt(c.mission);
   missions.restore(rolled_on(c.mission->route, c.place, *pose));
   return resume();

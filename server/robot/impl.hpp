@@ -28,6 +28,7 @@
 #include "robot/handling.hpp"
 #include "robot/known_places.hpp"
 #include "robot/loop_clock.hpp"
+#include "robot/map_frame.hpp"
 #include "robot/mission_keeper.hpp"
 #include "robot/modes/auto_hand.hpp"
 #include "robot/modes/by_hand.hpp"
@@ -140,7 +141,9 @@ struct Robot::Impl {
   std::string overrider;      ///< who does
   bool waits_before = false;  ///< the drive was not asked at this tick: something stands before it
   std::optional<base::Time> blind_since;
-  std::string blind;         ///< why nothing may drive by itself: a sensor; empty: nothing is wrong
+  std::string blind;  ///< why nothing may drive by itself: a sensor; empty: nothing is wrong
+  base::Time looked_for_map{};                 ///< of the mission, while it leads into it
+  std::optional<base::Time> out_of_map_since;  ///< it may lie elsewhere, or the robot is not in it
   bool blind_pause = false;  ///< the mission waits because of it, and nobody has said a word since
   std::optional<base::Time> sees_since;
   bool recognises = false;  ///< cameras tell of walls and landmarks, and nothing looks around
@@ -236,6 +239,10 @@ struct Robot::Impl {
   base::Result<void> handle(const LayAnew& c);
   base::Result<void> may_change(const SetParameter& c, const Config& next) const;
   /// @param from empty: it does not begin or go on now
+  base::Result<void> in_its_map(const CompiledMission& mission,
+                                const std::optional<base::MissionPlace>& from) const;
+  MapNow map_now() const;
+  std::optional<std::string> out_of_map();
   base::Result<void> may_drive_mission(const std::optional<base::MissionPlace>& from = {}) const;
   bool by_sight_from(const nav::Route& route, const base::MissionPlace& from) const noexcept;
   /// @param homeward what leads to where a return leads, too @param sight it asks for no place

@@ -37,13 +37,25 @@ base::Result<base::MapLies> lies_of(const mission::MissionMap& said, const MapNo
   return lies;
 }
 
-base::Result<void> counts_from(const mission::MissionMap& laid, const MapNow& now) {
+bool leads_into_map(const mission::Plan& plan, const nav::RouteStep* step) noexcept {
+  if (step == nullptr) return true;
+  if (step->kind != nav::StepKind::Go && step->kind != nav::StepKind::Face) return false;
+  const auto i = static_cast<std::size_t>(step->item - 1);
+  return i < plan.items.size() && std::holds_alternative<mission::MapPoint>(plan.items[i]);
+}
+
+base::Result<void> counts_from(const mission::MissionMap& laid, const MapNow& now, bool into_it) {
   const auto lies = lies_of(laid, now);
   if (!lies) return tl::unexpected(lies.error());
-  if (now.place->phase != PlacePhase::Known) {
+  if (into_it && now.place->phase != PlacePhase::Known) {
     const std::string& reason = now.place->reason;
     return tl::unexpected(against(laid.map, "where the robot is in it is not known" +
                                                 (reason.empty() ? reason : " (" + reason + ")")));
+  }
+  const double age_s = base::seconds(now.now - now.place->stamp);
+  if (into_it && age_s > kSeen_s) {
+    return tl::unexpected(against(
+        laid.map, "nothing was seen in it for " + std::to_string(std::lround(age_s)) + " s"));
   }
   const bool same =
       laid.lies && base::distance_bearing(laid.lies->at, lies->at).distance_m <= kLiesElsewhere_m &&

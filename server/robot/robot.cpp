@@ -247,7 +247,8 @@ base::Result<std::shared_ptr<const CompiledMission>> Robot::compile(MissionCopy 
   if (copy.plan.frame) {
     const std::optional<base::PlaceState> nowhere;
     auto lies = lies_of(*copy.plan.frame, {state ? state->place : nowhere, frame,
-                                           state ? state->estimator.map_offset : base::EnuPoint{}});
+                                           state ? state->estimator.map_offset : base::EnuPoint{},
+                                           state ? state->now : base::Time{}});
     if (!lies) return tl::unexpected(std::move(lies.error()));
     copy.plan.frame->lies = *lies;
   }
@@ -326,7 +327,13 @@ std::vector<mission::Finding> Robot::objections(const CompiledMission& mission,
     view.legs = &legs;
   }
   if (const auto& map = mission.copy.plan.frame; map && state) {
-    const auto ok = counts_from(*map, {state->place, state->frame, state->estimator.map_offset});
+    const auto& steps = mission.route.forth.steps;
+    const std::size_t first =
+        state->pose ? nav::first_step(mission.route, view.at, state->pose->at) : 0;
+    const bool into_it =
+        leads_into_map(mission.copy.plan, first < steps.size() ? &steps[first] : nullptr);
+    const auto ok = counts_from(
+        *map, {state->place, state->frame, state->estimator.map_offset, state->now}, into_it);
     if (!ok) view.not_in_map = ok.error().detail;
   }
   return start_findings(view);

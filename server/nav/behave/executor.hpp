@@ -195,6 +195,8 @@ class Executor {
   /// Another one: what was found out about the way ahead is of no use any more.
   std::uint64_t way_id() const noexcept { return way_id_; }
   const std::string& reason() const noexcept { return reason_; }
+  /// Null: nothing runs, or it is at its end.
+  const RouteStep* step_in_hand() const noexcept { return running() ? step_now() : nullptr; }
   bool running() const noexcept { return state_ == base::ExecutionState::Running; }
   bool interrupted() const noexcept { return interrupted_; }
   /// Of the mission that runs; empty: it asks for none, or nothing runs.

@@ -16,6 +16,9 @@ using base::Driver;
 using base::ExecutionState;
 using base::Severity;
 
+constexpr double kLookForMap_s = 0.2;
+constexpr double kOutOfMap_s = 2.0;
+
 }  // namespace
 
 nav::Vehicle Robot::Impl::vehicle() const {
@@ -155,8 +158,34 @@ base::DriveCommand Robot::Impl::drive_by_itself() {
   return {left ? base::BodyTwist{} : step.twist, true};
 }
 
+/// On the way to a point of its map: why that may lie elsewhere, after kOutOfMap_s. Asked seldom:
+/// it costs a geodesic.
+std::optional<std::string> Robot::Impl::out_of_map() {
+  const nav::RouteStep* step = missions.executor.step_in_hand();
+  const mission::Plan& plan = missions.get()->copy.plan;
+  if (!plan.frame || step == nullptr || !leads_into_map(plan, step)) {
+    out_of_map_since.reset();
+    return std::nullopt;
+  }
+  if (base::seconds(clock.now() - looked_for_map) < kLookForMap_s) return std::nullopt;
+  looked_for_map = clock.now();
+  auto ok = counts_from(*plan.frame, map_now(), true);
+  if (ok) out_of_map_since.reset();
+  if (ok) return std::nullopt;
+  if (!out_of_map_since) out_of_map_since = clock.now();
+  if (base::seconds(clock.now() - *out_of_map_since) < kOutOfMap_s) return std::nullopt;
+  out_of_map_since.reset();
+  return std::move(ok.error().detail);
+}
+
 base::DriveCommand Robot::Impl::drive_mission() {
   if (!missions.executor.running() || !pose) return {{}, true};
+  if (const auto why = out_of_map()) {
+    hold(*why);
+    event(Severity::Warning, "mission_paused", *why);
+    driver = Driver::None;
+    return {{}, true};
+  }
   driver = Driver::Autonomy;
   if (hand_holds()) {
     missions.executor.wait();

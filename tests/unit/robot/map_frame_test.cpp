@@ -14,10 +14,12 @@ using base::PlacePhase;
 struct InShed : Field {
   PlacePhase phase = PlacePhase::Known;
   std::string map = "shed";
+  bool seen = true;  ///< its scanner tells something
   std::optional<base::MapLies> lies = base::MapLies{kFrame.to_global({0.0, 10.0}), base::kPi / 2.0};
 
   InShed() {
     more = [this] {
+      if (!seen) return;
       base::PlaceState place;
       place.stamp = now;
       place.phase = phase;
@@ -117,6 +119,74 @@ TEST(MapFrame, IsLoadedAgainWhereTheMapWasLaidElsewhere) {
             "mission was loaded: load it again");
   ASSERT_TRUE(f.load(in_the_shed()));
   EXPECT_EQ(refused(f.ask(StartMission{"m", 1})), "");
+}
+
+//   The street first, by satellites, then the shed: nobody is asked to be in it from afar.
+TEST(MapFrame, BeginsOutsideAndWaitsAtTheMapWhereItIsNotFound) {
+  InShed f;
+  f.run(8.0);
+  f.phase = PlacePhase::Searching;
+  f.run(0.5);
+  mission::Plan plan = in_the_shed();
+  mission::Waypoint street;
+  street.at = kFrame.to_global({0.0, 5.0});
+  plan.items.insert(plan.items.begin(), street);
+  ASSERT_TRUE(f.load(plan));
+  ASSERT_TRUE(f.ask(Arm{}));
+  EXPECT_TRUE(f.robot.objections(StartMission{"m", 1}).empty());
+  ASSERT_EQ(refused(f.ask(StartMission{"m", 1})), "");
+  f.run(25.0);
+  EXPECT_EQ(f.execution(), ExecutionState::Paused);
+  EXPECT_TRUE(f.has_event("item_reached"));
+  EXPECT_LT(f.at.north_m, 9.0) << "two seconds after the street's end it stands";
+  EXPECT_NE(refused(f.ask(ResumeMission{})), "");
+  f.phase = PlacePhase::Known;
+  f.run(0.5);
+  ASSERT_EQ(refused(f.ask(ResumeMission{})), "");
+  f.run(60.0);
+  EXPECT_EQ(f.execution(), ExecutionState::Finished);
+}
+
+TEST(MapFrame, StandsWhereTheMapTurnsOutToLieElsewhere) {
+  InShed f;
+  f.run(8.0);
+  ASSERT_TRUE(f.load(in_the_shed()));
+  ASSERT_TRUE(f.ask(Arm{}));
+  ASSERT_EQ(refused(f.ask(StartMission{"m", 1})), "");
+  f.run(3.0);
+  ASSERT_TRUE(f.moves());
+  f.lies->at = kFrame.to_global({0.3, 10.0});
+  f.run(5.0);
+  EXPECT_EQ(f.execution(), ExecutionState::Paused);
+  EXPECT_FALSE(f.moves());
+}
+
+TEST(MapFrame, WhatWasSeenLongAgoIsNotWhereItIs) {
+  InShed f;
+  f.run(8.0);
+  ASSERT_TRUE(f.load(in_the_shed()));
+  ASSERT_TRUE(f.ask(Arm{}));
+  f.seen = false;
+  f.run(10.0);
+  EXPECT_EQ(refused(f.ask(StartMission{"m", 1})),
+            "the mission counts from the map \"shed\": nothing was seen in it for 10 s");
+  EXPECT_EQ(f.robot.objections(StartMission{"m", 1}).size(), 1U);
+}
+
+TEST(MapFrame, ARefusedWordToGoOnAfterARestartLoadsNothing) {
+  InShed f;
+  f.run(8.0);
+  const auto made = f.robot.compile({"m", 1, in_the_shed()});
+  ASSERT_TRUE(made);
+  ASSERT_TRUE(f.ask(Arm{}));
+  f.phase = PlacePhase::Searching;
+  f.run(0.5);
+  EXPECT_NE(refused(f.ask(ResumeAt{*made, {}})), "");
+  EXPECT_FALSE(f.robot.loaded());
+  f.phase = PlacePhase::Known;
+  f.run(0.5);
+  EXPECT_EQ(refused(f.ask(ResumeAt{*made, {}})), "");
+  EXPECT_EQ(f.execution(), ExecutionState::Running);
 }
 
 }  // namespace
