@@ -14,6 +14,7 @@ import {
   shared_value,
   simplify_items,
   split_at,
+  why_not_join,
 } from '../src/model/stretch';
 import {
   first_amounts,
@@ -131,6 +132,29 @@ describe('two missions', () => {
   test('become one: the other one’s jumps lead to its own items', () => {
     const joined = join_plan(plan(point(5, 0), jump(1)))(plan(point(0, 0), point(1, 0)));
     expect(told(joined)).toEqual([0, 1, 5, jump(3)]);
+  });
+
+  test('become one with the map of the one that counts from one', () => {
+    const on_map: Item = { type: 'map_point', x_m: 1, y_m: 2 };
+    const plain = plan(point(0, 0));
+    const shed: Plan = { ...plan(on_map), frame: { map: 'shed' } };
+    for (const mine of [plain, { ...plain, frame: null }, { ...plain, frame: { map: 'shed' } }]) {
+      expect(why_not_join(mine, shed)).toBeNull();
+      expect(join_plan(shed)(mine)).toEqual({
+        ...plain,
+        items: [...plain.items, on_map],
+        frame: { map: 'shed' },
+      });
+    }
+    expect(join_plan(plain)(shed).frame).toEqual({ map: 'shed' });
+    expect(join_plan(plain)(plain)).not.toHaveProperty('frame');
+  });
+
+  test('that count from two maps stay two, and both maps are named', () => {
+    const shed: Plan = { ...plan(point(0, 0)), frame: { map: 'shed' } };
+    const yard: Plan = { ...plan(point(1, 0)), name: 'Q', frame: { map: 'yard' } };
+    expect(why_not_join(shed, yard)).toMatch(/map “shed” and “Q” from “yard”/);
+    expect(join_plan(yard)(shed)).toBe(shed);
   });
 });
 

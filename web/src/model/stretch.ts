@@ -6,6 +6,7 @@ import { fields_of, with_field, type Field } from './fields';
 import type { Offset } from './geo';
 import { plane_at } from './plane';
 import { place_of, type Item, type Plan, type Waypoint } from './plan';
+import { say } from './say';
 import { in_order, picked_spots, type Picked } from './selection';
 
 /** Jumps lead to the same items as before. @param new_number by old index, from 1; 0: it is gone */
@@ -203,13 +204,23 @@ export const split_at = (plan: Plan, index: number): readonly [Plan, Plan] => {
   return [first, { ...second, name: `${plan.name} (2)` }];
 };
 
-/** The other one's items behind these. */
+/** Metres of two maps are not told apart in one mission. @return null: they can be joined */
+export const why_not_join = (plan: Plan, other: Plan): string | null => {
+  const [mine, theirs] = [plan.frame?.map, other.frame?.map];
+  if (mine === undefined || theirs === undefined || mine === theirs) return null;
+  return say('two_maps_are_not_joined', { mine, theirs, name: other.name });
+};
+
+/** The other one's items behind these, and its map where these count from none. */
 export const join_plan =
   (other: Plan): PlanAction =>
   (plan) => {
+    if (why_not_join(plan, other) !== null) return plan;
     const before = plan.items.length;
     const items = other.items.map((item) =>
       item.type === 'jump' ? { ...item, item: item.item + before } : item,
     );
-    return items.length === 0 ? plan : { ...plan, items: [...plan.items, ...items] };
+    if (items.length === 0) return plan;
+    const frame = plan.frame ?? other.frame;
+    return { ...plan, items: [...plan.items, ...items], ...(frame ? { frame } : {}) };
   };

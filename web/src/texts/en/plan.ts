@@ -88,6 +88,8 @@ export const plan = {
   transform: 'Transform',
   join_another: 'Join another…',
   join_how: 'Choose ⋯ beside the mission that comes after this one, then “Join to the plan”.',
+  two_maps_are_not_joined:
+    'The plan counts from the map “{mine}” and “{name}” from “{theirs}”: one mission counts from one map.',
   split_here: 'Split here',
   they_have_no_property_in_common: 'They have no property in common.',
   they_differ: 'they differ',

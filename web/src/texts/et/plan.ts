@@ -88,6 +88,8 @@ export const plan = {
   transform: 'Teisenda',
   join_another: 'Liida teine…',
   join_how: 'Vali ⋯ selle ülesande juures, mis järgneb, ja siis „Liida plaaniga“.',
+  two_maps_are_not_joined:
+    'Plaan loetakse kaardilt „{mine}“ ja „{name}“ kaardilt „{theirs}“: ühel ülesandel on üks kaart.',
   split_here: 'Lõika siit',
   they_have_no_property_in_common: 'Neil pole ühiseid omadusi.',
   they_differ: 'need erinevad',

@@ -88,6 +88,8 @@ export const plan = {
   transform: 'Muunnos',
   join_another: 'Liitä toinen…',
   join_how: 'Valitse ⋯ seuraavan tehtävän kohdalla ja sitten ”Liitä suunnitelmaan”.',
+  two_maps_are_not_joined:
+    'Suunnitelma lasketaan kartasta ”{mine}” ja ”{name}” kartasta ”{theirs}”: yhdellä tehtävällä on yksi kartta.',
   split_here: 'Katkaise tästä',
   they_have_no_property_in_common: 'Niillä ei ole yhteisiä ominaisuuksia.',
   they_differ: 'ne eroavat',

@@ -88,6 +88,8 @@ export const plan = {
   transform: 'Trasforma',
   join_another: 'Unisci un’altra…',
   join_how: 'Scegli ⋯ accanto alla missione che viene dopo, poi «Unisci al piano».',
+  two_maps_are_not_joined:
+    'Il piano si conta dalla mappa «{mine}» e «{name}» da «{theirs}»: una missione si conta da una sola mappa.',
   split_here: 'Taglia qui',
   they_have_no_property_in_common: 'Non hanno proprietà in comune.',
   they_differ: 'sono diversi',

@@ -88,6 +88,8 @@ export const plan = {
   transform: 'Omform',
   join_another: 'Føy til en annen…',
   join_how: 'Velg ⋯ ved oppdraget som kommer etter, og så «Føy til planen».',
+  two_maps_are_not_joined:
+    'Planen regnes fra kartet «{mine}» og «{name}» fra «{theirs}»: ett oppdrag regnes fra ett kart.',
   split_here: 'Del her',
   they_have_no_property_in_common: 'De har ingen felles egenskap.',
   they_differ: 'de er ulike',
