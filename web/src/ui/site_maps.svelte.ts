@@ -62,7 +62,8 @@ export class SiteMaps {
   readonly #live: Live;
   readonly #notices: Notices;
   readonly #dialogs: Dialogs;
-  #watched = false;
+  /** The map is drawn, not only known by its name. */
+  #draws = false;
   /** Of two answers the later question's counts. */
   #question = 0;
   #waits = 0;
@@ -82,8 +83,8 @@ export class SiteMaps {
     untrack(() => void this.fetch_cells());
   }
 
-  /** Asks now and then, as long as it is looked at. @return ends it */
-  watch(): () => void {
+  /** Asks now and then, as long as it is looked at. @param draws also for cells @return ends it */
+  watch(draws: boolean): () => void {
     const again = setInterval(() => {
       if (this.#waits === 0) void this.refresh(); // a slow answer is not overtaken by the next question
     }, RENEWED_MS);
@@ -91,12 +92,12 @@ export class SiteMaps {
       if (this.#listed && this.making && this.busy === null && this.#waits === 0)
         void this.refresh();
     }, MAKING_RENEWED_MS);
-    this.#watched = true;
+    this.#draws = draws;
     void this.refresh();
     return () => {
       clearInterval(again);
       clearInterval(sooner);
-      this.#watched = false;
+      this.#draws = false;
       void this.fetch_cells();
     };
   }
@@ -113,7 +114,7 @@ export class SiteMaps {
   }
 
   async fetch_cells(): Promise<void> {
-    await this.#cells.want(this.#watched ? this.drawn : null);
+    await this.#cells.want(this.#draws ? this.drawn : null);
   }
 
   /** Where a map is drawn that lies nowhere yet. */

@@ -3,6 +3,7 @@
 
 import { untrack } from 'svelte';
 
+import { maps_wanted } from '../model/map_frame';
 import type { Station } from './station.svelte';
 
 /** Called where effects may begin. */
@@ -12,10 +13,15 @@ export const keep_site_in_step = (station: Station): void => {
   const maps_seen = $derived(station.tab === 'missions' && station.shelf === 'maps');
   const located = $derived((live.vehicle?.place?.state ?? 'off') !== 'off');
   const map_in_use = $derived(live.vehicle?.place?.map_id ?? null);
-  const site_wanted = $derived(maps_seen || (located && station.seen.layers.map));
+  const site_drawn = $derived(maps_seen || (located && station.seen.layers.map));
+  // A mission that counts from a map has to be told from which, also where the robot is in none.
+  const sites_wanted = $derived(
+    maps_wanted(site_drawn, station.tab === 'plan' ? station.editor.plan : null),
+  );
   $effect(() => {
     void map_in_use; // another one: whoever changed it
-    return site_wanted ? untrack(() => station.sites.watch()) : undefined;
+    const draws = site_drawn;
+    return sites_wanted ? untrack(() => station.sites.watch(draws)) : undefined;
   });
   $effect(() => {
     const { grounds } = station;
@@ -25,6 +31,6 @@ export const keep_site_in_step = (station: Station): void => {
     if (maps_seen) void untrack(() => station.grounds.refresh());
   });
   $effect(() => station.sites.look(maps_seen));
-  $effect(() => map.show_site(site_wanted ? station.sites.on_map : null));
+  $effect(() => map.show_site(site_drawn ? station.sites.on_map : null));
   $effect(() => map.show_site_edits(maps_seen ? station.sites.editor.edits : []));
 };

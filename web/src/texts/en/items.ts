@@ -56,6 +56,10 @@ export const items = {
   points_to_in_the_map: 'Points to, from the x axis',
   counts_from_the_map: 'Counts from the map',
   no_map: 'none',
+  map_point_by_another_map:
+    'The points count from the map “{frame}”, and the robot uses “{other}”: the point would lie elsewhere.',
+  map_point_without_its_map:
+    'The points count from the map “{frame}”, which the robot does not use now.',
   local_point: 'Local point',
   move_straight: 'Move straight',
   change_speed: 'Change speed',

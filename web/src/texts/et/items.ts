@@ -56,6 +56,9 @@ export const items = {
   points_to_in_the_map: 'Suund x-teljest',
   counts_from_the_map: 'Loetakse kaardilt',
   no_map: 'mitte ühtegi',
+  map_point_by_another_map:
+    'Punktid loetakse kaardilt „{frame}“, aga robot kasutab kaarti „{other}“: punkt satuks mujale.',
+  map_point_without_its_map: 'Punktid loetakse kaardilt „{frame}“, mida robot praegu ei kasuta.',
   local_point: 'Kohalik punkt',
   move_straight: 'Liigu otse',
   change_speed: 'Muuda kiirust',

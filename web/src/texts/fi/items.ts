@@ -56,6 +56,9 @@ export const items = {
   points_to_in_the_map: 'Suunta x-akselista',
   counts_from_the_map: 'Lasketaan kartasta',
   no_map: 'ei mistään',
+  map_point_by_another_map:
+    'Pisteet lasketaan kartasta ”{frame}”, mutta robotti käyttää karttaa ”{other}”: piste osuisi muualle.',
+  map_point_without_its_map: 'Pisteet lasketaan kartasta ”{frame}”, jota robotti ei nyt käytä.',
   local_point: 'Paikallinen piste',
   move_straight: 'Aja suoraan',
   change_speed: 'Muuta nopeutta',

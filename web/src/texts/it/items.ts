@@ -56,6 +56,9 @@ export const items = {
   points_to_in_the_map: 'Direzione dall’asse x',
   counts_from_the_map: 'Si conta dalla mappa',
   no_map: 'nessuna',
+  map_point_by_another_map:
+    'I punti si contano dalla mappa «{frame}», ma il robot usa «{other}»: il punto sarebbe altrove.',
+  map_point_without_its_map: 'I punti si contano dalla mappa «{frame}», che il robot ora non usa.',
   local_point: 'Punto locale',
   move_straight: 'Vai dritto',
   change_speed: 'Cambia velocità',

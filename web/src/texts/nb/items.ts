@@ -56,6 +56,9 @@ export const items = {
   points_to_in_the_map: 'Retning fra x-aksen',
   counts_from_the_map: 'Regnes fra kartet',
   no_map: 'ingen',
+  map_point_by_another_map:
+    'Punktene regnes fra kartet «{frame}», men roboten bruker «{other}»: punktet ville havne et annet sted.',
+  map_point_without_its_map: 'Punktene regnes fra kartet «{frame}», som roboten ikke bruker nå.',
   local_point: 'Lokalt punkt',
   move_straight: 'Kjør rett',
   change_speed: 'Endre fart',
