@@ -21,6 +21,11 @@ std::string with_jumps(std::string what, int jumps) {
   return what;
 }
 
+bool counts_from_map(const Plan& plan) noexcept {
+  return std::any_of(plan.items.begin(), plan.items.end(),
+                     [](const Item& item) { return std::holds_alternative<MapPoint>(item); });
+}
+
 }  // namespace
 
 Result<Done> apply(Plan plan, const AddWaypoint& add) {
@@ -88,6 +93,15 @@ Result<Done> apply(Plan plan, const Join& join) {
         wrong("/mission_id", "has " + std::to_string(join.other.items.size()) +
                                  " items: together more than " + std::to_string(kMaxItems)));
   }
+  // A mission counts from one map: the other's metres would mean other places on this one.
+  const auto& theirs = join.other.frame;
+  if (counts_from_map(join.other) && plan.frame && theirs && *plan.frame != *theirs) {
+    return tl::unexpected<Error>(wrong("/mission_id", "counts from the map \"" + theirs->map +
+                                                          "\", this mission from \"" +
+                                                          plan.frame->map + "\""));
+  }
+  if (!plan.frame) plan.frame = theirs;
+  if (!plan.frame) plan.frame = join.other.frame;
   plan.items.reserve(plan.items.size() + join.other.items.size());
   for (const Item& item : join.other.items) {
     plan.items.push_back(item);
@@ -145,6 +159,7 @@ Result<Parts> split(Plan plan, int after, bool shared) {
   parts.rest.name = name_with_ending(plan.name, " (2)");
   parts.rest.home = plan.home;
   parts.rest.settings = plan.settings;
+  parts.rest.frame = plan.frame;
   for (int i = 0; i < count; ++i) {
     const auto* jump = std::get_if<Jump>(&plan.items[static_cast<std::size_t>(i)]);
     if (jump == nullptr) continue;

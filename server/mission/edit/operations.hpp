@@ -85,7 +85,7 @@ struct Densify {
   double at_most_m = 0.0;
   std::optional<Numbers> which;
 };
-/// Appends the other's items.
+/// Appends the other's items. If they count from a map, this mission counts from the same or none.
 struct Join {
   Plan other;
 };
@@ -127,7 +127,7 @@ base::Result<Done> perform(Plan plan, const Operation& operation);
 
 struct Parts {
   Plan first;  ///< keeps the name
-  Plan rest;   ///< "… (2)"; the same home and settings
+  Plan rest;   ///< "… (2)"; the same home, settings and map
 };
 /// The items up to `after` and those that follow. A jump across the cut is Invalid.
 /// @param shared the item `after` is the first one of the rest, too: no gap in the way

@@ -130,5 +130,40 @@ TEST(ListOperations, WhatIsSplitCanBeJoinedAgain) {
   EXPECT_EQ(split(plan, 3)->rest.name, std::string(196, 'x') + " (2)");
 }
 
+Plan in_map(const char* map) {
+  Plan plan = numbered(1);
+  plan.frame = MissionMap{map};
+  plan.items.emplace_back(MapPoint{.x_m = 3.0, .y_m = 4.0});
+  return plan;
+}
+
+TEST(ListOperations, WhatIsSplitGoesOnCountingFromItsMap) {
+  const auto parts = split(in_map("shed"), 1);
+  ASSERT_TRUE(parts);
+  EXPECT_EQ(parts->first.frame, MissionMap{"shed"});
+  EXPECT_EQ(parts->rest.frame, MissionMap{"shed"});
+  EXPECT_EQ(perform(parts->first, Join{parts->rest})->plan, in_map("shed"));
+}
+
+TEST(ListOperations, OnlyMissionsOfTheSameMapAreJoined) {
+  // Given a mission that counts from a map, when it is joined to one that counts from another,
+  const auto refused = perform(in_map("shed"), Join{in_map("barn")});
+  // then that is refused: the same metres would be other places.
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().fields.at(0).pointer, "/mission_id");
+  EXPECT_EQ(refused.error().detail,
+            "mission_id counts from the map \"barn\", this mission from \"shed\"");
+  // One that counts from none takes the other's map.
+  const auto joined = perform(numbered(2), Join{in_map("barn")});
+  ASSERT_TRUE(joined) << joined.error().detail;
+  EXPECT_EQ(joined->plan.frame, MissionMap{"barn"});
+  // Without places of it a map does not matter.
+  Plan bare = numbered(2);
+  bare.frame = MissionMap{"barn"};
+  const auto kept = perform(in_map("shed"), Join{bare});
+  ASSERT_TRUE(kept);
+  EXPECT_EQ(kept->plan.frame, MissionMap{"shed"});
+}
+
 }  // namespace
 }  // namespace roverd::mission
