@@ -46,6 +46,14 @@ double lon_difference(double from, double to) noexcept {
   return std::abs(way) < 180.0 ? way : std::remainder(way, 360.0);  // which is slow
 }
 
+/// Its own place, or that beside which it ends.
+std::optional<LatLon> moved_with(const Item& item) noexcept {
+  if (const auto at = place_of(item)) return at;
+  const Until* until = until_of(item);
+  if (until == nullptr || !until->lat || !until->lon) return std::nullopt;
+  return LatLon{*until->lat, *until->lon};
+}
+
 double compass(double deg) noexcept {
   const double wrapped = std::fmod(deg, 360.0);
   const double heading = wrapped < 0.0 ? wrapped + 360.0 : wrapped;
@@ -60,11 +68,8 @@ Result<std::vector<Spot>> places_in(const Plan& plan, const Numbers& which) {
   if (plan.home) home.emplace(plan.home->at);
   for (int number = which.first; number <= which.last; ++number) {
     const auto i = static_cast<std::size_t>(number) - 1;
-    if (const auto at = place_of(plan.items[i])) {
+    if (const auto at = moved_with(plan.items[i])) {
       out.push_back({i, *at});
-    } else if (const Until* until = until_of(plan.items[i]);
-               until != nullptr && until->lat && until->lon) {
-      out.push_back({i, {*until->lat, *until->lon}});
     } else if (std::holds_alternative<MapPoint>(plan.items[i])) {
       return tl::unexpected<Error>(on_map(number));
     } else if (const auto* local = std::get_if<Local>(&plan.items[i])) {
@@ -274,7 +279,7 @@ Result<Done> apply(Plan plan, const Offset& offset) {
   places.reserve(static_cast<std::size_t>(which->last - which->first + 1));
   for (int number = which->first; number <= which->last; ++number) {
     const auto i = static_cast<std::size_t>(number) - 1;
-    if (const auto at = place_of(plan.items[i])) {
+    if (const auto at = moved_with(plan.items[i])) {
       places.push_back({i, *at});
     } else if (std::holds_alternative<MapPoint>(plan.items[i])) {
       return tl::unexpected<Error>(on_map(number));

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/angle.hpp"
 #include "base/geo.hpp"
 #include "mission/edit/operations.hpp"
 #include "plans.hpp"
@@ -171,6 +172,28 @@ TEST(ShapeOperations, OffsetOfADriftedFrameAgreesWithTheGeodesic) {
   EXPECT_EQ(at(one, 0), at(plan, 0));
   EXPECT_EQ(at(one, 2), at(plan, 2));
   EXPECT_NEAR(base::distance_bearing(at(plan, 1), at(one, 1)).distance_m, 10.0, 1e-6);
+}
+
+TEST(ShapeOperations, AnOffsetTakesThePlacesWithItBesideWhichRowsAndWallsEnd) {
+  Plan plan;
+  plan.name = "block";
+  const Until until{58.001, 26.0, std::nullopt};
+  plan.items = {waypoint_at(58.0, 26.0), Row{.until = until},
+                Wall{.distance_m = 0.9, .until = until},
+                Row{.until = {std::nullopt, std::nullopt, "gate"}}};
+  const Plan moved = done(plan, Offset{{3.0, 4.0}, {}});
+  const LatLon expected =
+      base::destination({58.001, 26.0}, base::deg_from_rad(std::atan2(3.0, 4.0)), 5.0);
+  const auto off_m = [&](const Until& at) {
+    return base::distance_bearing(expected, {at.lat.value(), at.lon.value()}).distance_m;
+  };
+  EXPECT_LT(off_m(std::get<Row>(moved.items[1]).until), kMillimetre);
+  EXPECT_LT(off_m(std::get<Wall>(moved.items[2]).until), kMillimetre);
+  EXPECT_EQ(moved.items[3], plan.items[3]) << "a known place lies where it lies";
+  // A run of rows alone is moved, too.
+  const Plan rows = done(plan, Offset{{3.0, 4.0}, Numbers{2, 2}});
+  EXPECT_LT(off_m(std::get<Row>(rows.items[1]).until), kMillimetre);
+  EXPECT_EQ(rows.items[2], plan.items[2]);
 }
 
 TEST(ShapeOperations, AligningPutsOneItemOnItsAnchorAndKeepsTheFigure) {
