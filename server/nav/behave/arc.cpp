@@ -12,7 +12,8 @@ namespace roverd::nav {
 namespace {
 
 constexpr double kArcPiece_rad = base::kPi / 12.0;
-constexpr double kLeastArc_rad = 1e-3;  // 0 stands for all of it
+constexpr double kLeastArc_rad = 1e-3;                    // 0 stands for all of it
+constexpr double kEitherWay_rad = 5.0 * base::kPi / 6.0;  // more than this is as far either way
 
 /// From `from` on, by so much. A vehicle that can turns the last bit on the spot.
 std::vector<Vertex> arc_of(const Vehicle& from, double by_rad, double radius_m, double speed_mps,
@@ -40,12 +41,19 @@ std::vector<Vertex> arc_of(const Vehicle& from, double by_rad, double radius_m, 
   return way;
 }
 
+/// To a heading: from as it points now, whatever was left when it was interrupted, since somebody
+/// may have turned it by hand. Only the hand stays where the heading is about behind it.
+double arc_to_rad(double from_rad, double to_rad, double left_rad) noexcept {
+  const double by_rad = base::angle_diff_rad(from_rad, to_rad);
+  const bool other_hand = by_rad * left_rad < 0.0 && std::abs(by_rad) > kEitherWay_rad;
+  return other_hand ? by_rad + std::copysign(2.0 * base::kPi, left_rad) : by_rad;
+}
+
 }  // namespace
 
 bool Executor::enter_arc(const RouteStep& step, const Vehicle& vehicle) {
-  const double whole_rad =
-      step.yaw_rad ? base::angle_diff_rad(vehicle.yaw_rad, *step.yaw_rad) : step.by;
-  arc_rad_ = left_ != 0.0 ? left_ : whole_rad;
+  const double rest_rad = left_ != 0.0 ? left_ : step.by;
+  arc_rad_ = step.yaw_rad ? arc_to_rad(vehicle.yaw_rad, *step.yaw_rad, left_) : rest_rad;
   left_ = 0.0;
   standing_.reset();
   const std::vector<Vertex> way = arc_of(vehicle, arc_rad_, step.radius_m, modes_->move_mps,

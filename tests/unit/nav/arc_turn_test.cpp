@@ -78,6 +78,44 @@ TEST(ArcTurn, GoesOnWithWhatIsLeftOfIt) {
   }
 }
 
+// Turned by hand while it waits: the heading counts, not what was left of the way to it.
+TEST(ArcTurn, LeadsToItsHeadingAlsoIfItWasTurnedByHandMeanwhile) {
+  for (const double by_deg : {-20.0, 20.0}) {
+    SCOPED_TRACE(by_deg);
+    // Given an arc from east to north, paused at 40 degrees,
+    Ride r;
+    r.load(plan({TurnBy{std::nullopt, 0.0, 4.0}}));
+    r.start();
+    while (r.executor.running() && r.vehicle.yaw_rad < base::rad_from_deg(40.0)) r.tick();
+    r.executor.pause("asked");
+    r.vehicle.speed_mps = r.vehicle.yaw_rate_radps = 0.0;
+    // when somebody turns the robot and resumes,
+    r.vehicle.yaw_rad += base::rad_from_deg(by_deg);
+    ASSERT_TRUE(r.executor.resume(r.vehicle.at));
+    ASSERT_TRUE(r.run(60.0));
+    // then it points north.
+    EXPECT_EQ(r.executor.state(), ExecutionState::Finished) << r.executor.reason();
+    EXPECT_NEAR(base::deg_from_rad(r.vehicle.yaw_rad), 90.0, 3.0);
+  }
+}
+
+//   west ◀──╮
+//   east ●──╯      begun to the left, it stays so
+TEST(ArcTurn, KeepsItsHandToAHeadingBehindIt) {
+  Ride r;
+  r.vehicle.yaw_rad = 0.05;
+  r.load(plan({TurnBy{std::nullopt, 270.0, 2.0}}));
+  r.start();
+  for (int i = 0; i < 10; ++i) r.tick();
+  r.executor.pause("asked");
+  r.vehicle.speed_mps = r.vehicle.yaw_rate_radps = 0.0;
+  r.vehicle.yaw_rad = -0.05;  // from here the other way round is shorter
+  ASSERT_TRUE(r.executor.resume(r.vehicle.at));
+  ASSERT_TRUE(r.run(60.0));
+  EXPECT_NEAR(std::abs(base::deg_from_rad(r.vehicle.yaw_rad)), 180.0, 3.0);
+  EXPECT_NEAR(r.vehicle.at.north_m, 4.0, 0.3);
+}
+
 TEST(ArcTurn, AVehicleThatCannotTurnOnTheSpotDrivesItNoNarrowerThanItCan) {
   const auto refusal = [](const TurnBy& turn) {
     const auto route = lay_route(plan({at(1, 1), turn}), kFrame, car_params());
