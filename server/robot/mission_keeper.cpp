@@ -1,5 +1,8 @@
 #include "robot/mission_keeper.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace roverd::robot {
 namespace {
 
@@ -8,6 +11,20 @@ using base::Code;
 constexpr const char* kLeftBehind = "left by a restart";
 constexpr double kKnown_m = 0.5;  // a vaguer place says nothing of how far it rolled
 constexpr double kRolls_m = 3.0;  // farther it was carried, or driven by hand
+// What stays left of what was all but done: 0 stands for all of it.
+constexpr double kLeastTurn_rad = 1e-3;
+constexpr double kLeastMove_m = 0.01;
+
+/// @param left either sign
+double less(double left, double by, double least) noexcept {
+  const double most = std::max(0.0, std::abs(left) - least);
+  return left - std::copysign(std::min(by, most), left);
+}
+
+/// Of an arc whose ends lie so far apart.
+double arc_rad(double chord_m, double radius_m) noexcept {
+  return 2.0 * std::asin(std::min(1.0, chord_m / (2.0 * radius_m)));
+}
 
 }  // namespace
 
@@ -80,10 +97,16 @@ base::MissionPlace rolled_on(const nav::Route& route, base::MissionPlace place,
   const auto& steps = place.back ? route.back.steps : route.forth.steps;
   const bool fits = place.step >= 0 && static_cast<std::size_t>(place.step) < steps.size();
   if (!fits || !place.driving || !place.at || pose.horizontal_sigma_m > kKnown_m) return place;
-  const nav::StepKind kind = steps[static_cast<std::size_t>(place.step)].kind;
-  if (kind != nav::StepKind::Row && kind != nav::StepKind::Wall) return place;
+  const nav::RouteStep& step = steps[static_cast<std::size_t>(place.step)];
   const double way_m = base::distance_bearing(*place.at, pose.global).distance_m;
-  if (way_m <= kRolls_m) place.left += way_m;
+  if (way_m > kRolls_m) return place;
+  if (step.kind == nav::StepKind::Row || step.kind == nav::StepKind::Wall) {
+    place.left += way_m;
+  } else if (step.moves_on() && place.left != 0.0) {
+    const bool turns = step.kind == nav::StepKind::Turn;
+    place.left = turns ? less(place.left, arc_rad(way_m, step.radius_m), kLeastTurn_rad)
+                       : less(place.left, way_m, kLeastMove_m);
+  }
   return place;
 }
 

@@ -77,7 +77,8 @@ class MissionKeeper {
 };
 
 /// What is kept is up to a second old, and the robot rolled on: of a row or a wall so much more is
-/// done. @param place of that route. @param pose where the robot stands now
+/// done, of a move or an arc so much less is left. @param place of that route. @param pose where
+/// the robot stands now
 base::MissionPlace rolled_on(const nav::Route& route, base::MissionPlace place,
                              const base::Pose& pose) noexcept;
 

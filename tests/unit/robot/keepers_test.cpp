@@ -1,5 +1,7 @@
 // Who keeps the mission, the fence and the driven way, each alone.
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "field.hpp"
@@ -125,13 +127,41 @@ TEST(MissionKeeper, CountsHowFarItRolledOnAlongARowOrAWall) {
   pose.global = kFrame.to_global({1.0, 5.0});
   EXPECT_EQ(rolled_on(*route, kept, pose).left, 3.0) << "it was carried";
   pose.global = kFrame.to_global({1.0, 1.8});
-  kept.step = 1;
-  EXPECT_EQ(rolled_on(*route, kept, pose).left, 3.0) << "a move counts what is left";
-  kept.step = 0;
   kept.driving = false;
   EXPECT_EQ(rolled_on(*route, kept, pose).left, 3.0);
   kept.step = 99;
   EXPECT_EQ(rolled_on(*route, kept, pose).left, 3.0);
+}
+
+//        ╭~~○      kept at the dot: what it rolled on is not driven once more
+//       ●
+//      ╱
+TEST(MissionKeeper, CountsHowFarItRolledOnAlongAnArcOrAMove) {
+  mission::Plan plan;
+  plan.items = {mission::TurnBy{90.0, std::nullopt, 1.25}, mission::Move{-2.0},
+                mission::TurnBy{90.0, std::nullopt}, mission::Wait{1.0}};
+  const auto route = nav::lay_route(plan, kFrame, Config{}.path());
+  ASSERT_TRUE(route) << route.error().detail;
+  base::Pose pose;
+  pose.global = kFrame.to_global({1.0, 1.5});
+  pose.horizontal_sigma_m = 0.02;
+  const auto left = [&](int step, double kept_left) {
+    base::MissionPlace kept;
+    kept.step = step;
+    kept.left = kept_left;
+    kept.driving = true;
+    kept.at = kFrame.to_global({1.0, 1.0});
+    return rolled_on(*route, kept, pose).left;
+  };
+  // half a metre from end to end is an arc of 23 degrees
+  const double rolled_rad = 2.0 * std::asin(0.25 / 1.25);
+  EXPECT_NEAR(left(0, -1.2), -1.2 + rolled_rad, 1e-3);
+  EXPECT_NEAR(left(0, 1.2), 1.2 - rolled_rad, 1e-3);
+  EXPECT_NEAR(left(0, -0.2), -0.001, 1e-9) << "none would be all of it";
+  EXPECT_EQ(left(0, 0.0), 0.0) << "it had not begun";
+  EXPECT_NEAR(left(1, -1.5), -1.0, 1e-3);
+  EXPECT_NEAR(left(1, -0.3), -0.01, 1e-9);
+  EXPECT_EQ(left(2, -1.2), -1.2) << "on the spot";
 }
 
 // ---- the fence ----
