@@ -41,6 +41,21 @@ TEST(LaneChange, ACarShuntsAndSwingsIntoALaneThatIsTooNear) {
   }
 }
 
+// Lanes about two radii apart: the way between the arcs, back or forth, is shorter than a car is
+// sent round for a place.
+TEST(LaneChange, ACarDrivesAlsoTheLittleWayBetweenTwoArcs) {
+  for (const double aside_m : {3.5, 4.0, 4.2}) {
+    SCOPED_TRACE(aside_m);
+    const double narrowest_m = settings_of("uku").robot.narrowest_turn_m();
+    CartRig rig({.vehicle = "uku", .heading_deg = 90.0});
+    const LaneChange change{
+        .aside_m = aside_m, .out_m = 1.5, .kind = RowTurn::Auto, .radius_m = 1.9};
+    rig.arm_and_start(into_the_next_lane(rig, change, {narrowest_m, false}));
+    ASSERT_TRUE(rig.finish(300.0)) << rig.state()->mission.reason;
+    expect_in_lane(rig, aside_m, 11.5, 0.15, 3.0);
+  }
+}
+
 TEST(LaneChange, ATrackedVehicleDrivesTheArcsThatItIsAskedFor) {
   for (const RowTurn kind : {RowTurn::Auto, RowTurn::Arc, RowTurn::Omega, RowTurn::Shunt}) {
     SCOPED_TRACE(to_string(kind));

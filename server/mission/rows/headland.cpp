@@ -1,5 +1,6 @@
 #include "mission/rows/headland.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/angle.hpp"
@@ -7,7 +8,8 @@
 namespace roverd::mission {
 namespace {
 
-constexpr double kStraight_m = 0.01;  // shorter ways between two arcs are none
+constexpr double kStraight_m =
+    0.1;  // for less between two arcs nobody stops: they are so much wider
 constexpr double kExact_m = 1e-6;
 
 /// Turns to the change's own hand are positive here.
@@ -17,10 +19,11 @@ class Turns {
       : side_(side), radius_m_(radius_m), items_(items) {}
 
   void on_the_spot(double deg) { items_.emplace_back(TurnBy{side_ * deg, std::nullopt}); }
-  void arc(double deg) {
+  void arc(double deg) { arc(deg, radius_m_); }
+  void arc(double deg, double radius_m) {
     // To the millionth of a degree: more digits are of no use in a file.
     const double rounded = std::round(side_ * deg * 1e6) / 1e6;
-    items_.emplace_back(TurnBy{rounded, std::nullopt, radius_m_});
+    items_.emplace_back(TurnBy{rounded, std::nullopt, radius_m});
   }
   void straight(double by_m) { items_.emplace_back(Move{std::round(by_m * 1e6) / 1e6}); }
 
@@ -84,12 +87,13 @@ double change_lane(const LaneChange& change, RowTurn kind, std::vector<Item>& it
     case RowTurn::Arc: {
       const double between_m = wide_m - 2.0 * radius_m;
       if (between_m < kStraight_m) {
-        turns.arc(180.0);
-      } else {
-        turns.arc(90.0);
-        turns.straight(between_m);
-        turns.arc(90.0);
+        const double half_m = std::max(radius_m, 0.5 * wide_m);
+        turns.arc(180.0, half_m);
+        return change.out_m + half_m;
       }
+      turns.arc(90.0);
+      turns.straight(between_m);
+      turns.arc(90.0);
       return change.out_m + radius_m;
     }
     case RowTurn::Omega: {

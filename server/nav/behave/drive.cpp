@@ -179,7 +179,7 @@ bool Executor::connect(EnuPoint to, const RouteNode* node, const Vehicle& vehicl
   return lay_connector(end, vehicle);
 }
 
-bool Executor::lay_connector(Vertex end, const Vehicle& vehicle) {
+bool Executor::lay_connector(Vertex end, const Vehicle& vehicle, std::optional<double> least_m) {
   EnuPoint from = vehicle.at;
   if (standing_) {
     const EnuPoint nominal = course_->nodes[*standing_].at;
@@ -189,8 +189,8 @@ bool Executor::lay_connector(Vertex end, const Vehicle& vehicle) {
   const Vertex both[] = {{from, end.speed_mps, end.reverse, false, mission::Turn::Auto, 0.1}, end};
   connector_ = build_path(both, *path_params_);
   rejoin_.reset();
-  if (connector_.legs.empty() || connector_.length_m() < there_m(vehicle, *path_params_))
-    return false;
+  const double shortest_m = least_m.value_or(there_m(vehicle, *path_params_));
+  if (connector_.legs.empty() || connector_.length_m() < shortest_m) return false;
   doing_ = Doing::Connector;
   drove_ = true;
   tracker_.begin(connector_, 0, 0.0);

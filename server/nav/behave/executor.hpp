@@ -240,7 +240,8 @@ class Executor {
   bool passed_by(const RouteStep* step, double off_m);
   double cross_track_limit_m(double sigma_m) const noexcept;
   bool connect(EnuPoint to, const RouteNode* node, const Vehicle& vehicle);
-  bool lay_connector(Vertex end, const Vehicle& vehicle);
+  /// @param least_m shorter ways are none; empty: as this vehicle is sent round for a place
+  bool lay_connector(Vertex end, const Vehicle& vehicle, std::optional<double> least_m = {});
   bool enter_move(const RouteStep& step, const Vehicle& vehicle);
   bool enter_turn(const RouteStep& step, const Vehicle& vehicle);
   bool enter_arc(const RouteStep& step, const Vehicle& vehicle);

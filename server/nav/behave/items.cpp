@@ -18,6 +18,8 @@ constexpr double kCarriedSigma_rad = 0.02;
 constexpr double kUntilSigma_m = 1.0;     // a vaguer place is not ended beside
 constexpr double kUntilSigma_rad = 0.35;  // likewise
 constexpr double kMostPassed = 1e6;       // of what a kept place says
+/// It counts from where the robot stands: that its place is vague is no reason to leave it out.
+constexpr double kLeastMove_m = 0.05;
 
 /// It counts from where the robot is and points.
 bool relative(const RouteStep& step) noexcept {
@@ -66,7 +68,7 @@ bool Executor::enter_move(const RouteStep& step, const Vehicle& vehicle) {
   end.reverse = way_m < 0.0;
   end.speed_mps = end.reverse ? modes_->move_back_mps : modes_->move_mps;
   carry(vehicle);
-  if (lay_connector(end, vehicle)) return true;
+  if (lay_connector(end, vehicle, kLeastMove_m)) return true;
   reached(step);
   return false;
 }

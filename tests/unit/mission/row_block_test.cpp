@@ -170,6 +170,16 @@ TEST(RowBlocks, TurnAsSuitsTheVehicleWhereNobodySaysHow) {
   EXPECT_EQ(planned->items.at(2), Item(TurnBy{180.0, std::nullopt, 1.25}));
 }
 
+// A few centimetres more than two radii apart: one half circle that is so much wider.
+TEST(RowBlocks, DoNotStopBetweenTwoArcsForALittleWay) {
+  RowBlock block = rows_of(2, 6.08);
+  block.radius_m = 3.0;
+  const auto planned = plan_rows(block, kCar);
+  ASSERT_TRUE(planned);
+  EXPECT_EQ(planned->items.at(2), Item(TurnBy{180.0, std::nullopt, 3.04}));
+  EXPECT_NEAR(planned->headland_m, 1.5 + 3.04, 1e-9);
+}
+
 TEST(RowBlocks, EnterAllRowsAtTheSameEndWhereTheyDoNotAlternate) {
   for (const TurningVehicle& vehicle : {kTracked, kCar}) {
     RowBlock block = rows_of(3, 2.5);
