@@ -8,6 +8,7 @@
 
 #include "base/angle.hpp"
 #include "base/tangent_plane.hpp"
+#include "mission/rows/ends.hpp"
 #include "mission/text.hpp"
 
 namespace roverd::mission {
@@ -16,6 +17,7 @@ namespace {
 constexpr double kRoomy = 1.1;  // times the narrowest: a car steers with the rest
 constexpr double kRunUp = 1.5;  // radii, to come to row 1 along it
 constexpr double kLeastRunUp_m = 2.0;
+constexpr double kNear_m = 0.3;  // so much nearer to a row nobody drives up to it
 
 std::string tenths_up(double value) {
   return fixed_number(std::ceil(value * 10.0 - 1e-6) / 10.0, 1);
@@ -24,16 +26,21 @@ std::string tenths_up(double value) {
 class RowsPlanner {
  public:
   RowsPlanner(const RowBlock& block, const TurningVehicle& vehicle)
-      : block_(block), vehicle_(vehicle), steered_(vehicle.narrowest_m > 0.0) {}
+      : block_(block),
+        vehicle_(vehicle),
+        steered_(vehicle.narrowest_m > 0.0),
+        ends_(block.lanes, block.spacing_m) {}
 
   base::Result<PlannedRows> plan() {
     check();
     if (wrong_.empty()) check_turns();
+    if (wrong_.empty()) {
+      come_to_row_1();
+      drive();
+    }
     if (!wrong_.empty()) {
       return base::fail(base::Code::Invalid, wrong_[0].pointer + ' ' + wrong_[0].detail, wrong_);
     }
-    come_to_row_1();
-    drive();
     return std::move(out_);
   }
 
@@ -140,12 +147,13 @@ class RowsPlanner {
       if (i + 1 == order.size()) break;
       const int aside = order[i + 1] - order[i];
       if (!block_.alternating) {
-        change(0, aside, forth);
+        change(order[i], 0, aside, forth);
         forth = !forth;
         row(order[i], forth);
       }
-      change(aside, aside, forth);
+      change(order[i], aside, aside, forth);
       forth = !forth;
+      if (!wrong_.empty()) return;
     }
     out_.items.emplace_back(Move{block_.out_m});
     out_.headland_m = std::max(out_.headland_m, block_.out_m);
@@ -164,22 +172,45 @@ class RowsPlanner {
     out_.items.emplace_back(row);
   }
 
+  /// From lane to lane, or back into the same one, as far out as the border asks for.
   /// @param lanes to the side where row 2 lies. @param next where the next lane lies, to turn there
-  void change(int lanes, int next, bool forth) {
+  void change(int lane, int lanes, int next, bool forth) {
+    const LaneLeft left{lane, forth, (block_.turn == Side::Right) == forth};
     // On the way back the next row lies on the other hand.
-    const bool right = (block_.turn == Side::Right) == ((next > 0) == forth);
+    const bool right = left.grows_right == (next > 0);
     LaneChange c;
     c.aside_m = (right ? 1.0 : -1.0) * std::abs(lanes) * block_.spacing_m;
     c.hand = right ? Side::Right : Side::Left;
     c.out_m = block_.out_m;
     c.kind = block_.turn_kind;
     c.radius_m = radius_m(std::abs(c.aside_m));
-    out_.headland_m = std::max(out_.headland_m, change_lane(c, kind_of(c, vehicle_), out_.items));
+    std::vector<Item> items;
+    change_lane(c, kind_of(c, vehicle_), items);
+    const std::vector<TurnPoint> way = way_of(items);
+    const double farther_m = centimetres(ends_.farther_m(left, way, block_.out_m));
+    c.out_m += farther_m;
+    const double far_m = change_lane(c, kind_of(c, vehicle_), out_.items);
+    const double up_m = centimetres(farther_m - ends_.beyond_m(left, lane + lanes));
+    if (up_m > kNear_m) out_.items.emplace_back(Move{up_m});
+    if (std::max(c.out_m, up_m) > kFarthestOut_m) too_slanted(lane, lane + lanes, c.out_m, up_m);
+    const bool lies = !block_.lanes.empty();
+    const double deep_m = lies ? centimetres(ends_.deepest_m(left, way, farther_m)) : far_m;
+    out_.headland_m = std::max(out_.headland_m, deep_m);
+  }
+
+  static double centimetres(double value_m) { return std::round(value_m * 100.0) / 100.0; }
+
+  void too_slanted(int from, int to, double out_m, double up_m) {
+    wrong_.push_back({"/block", "has too slanted a border: from row " + std::to_string(from) +
+                                    " to row " + std::to_string(to) + " nothing is seen for " +
+                                    tenths_up(std::max(out_m, up_m)) + " m; at most " +
+                                    fixed_number(kFarthestOut_m, 1) + " m are driven so"});
   }
 
   const RowBlock& block_;
   const TurningVehicle& vehicle_;
   const bool steered_;
+  const LaneEnds ends_;
   std::vector<base::FieldError> wrong_;
   PlannedRows out_;
 };

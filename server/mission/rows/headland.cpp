@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/angle.hpp"
 
@@ -31,6 +32,38 @@ class Turns {
   double side_;
   double radius_m_;
   std::vector<Item>& items_;
+};
+
+/// Follows items from the lane's end on.
+class Follower {
+ public:
+  void follow(const Item& item) {
+    const auto* turn = std::get_if<TurnBy>(&item);
+    const double turn_rad = turn ? base::rad_from_deg(turn->turn_deg.value_or(0.0)) : 0.0;
+    const auto* move = std::get_if<Move>(&item);
+    const double way_m = move                     ? move->forward_m
+                         : turn && turn->radius_m ? *turn->radius_m * std::abs(turn_rad)
+                                                  : 0.0;
+    // An even number of pieces has a point in the middle, where an arc is farthest out.
+    const int pieces = 2 * std::max(1, static_cast<int>(std::ceil(std::abs(way_m) / kApart_m)));
+    const double half_rad = 0.5 * turn_rad / pieces;
+    const double chord = turn_rad != 0.0 ? std::sin(half_rad) / half_rad : 1.0;
+    for (int i = 0; i < pieces; ++i) {
+      right_rad_ += half_rad;
+      at_.ahead_m += way_m / pieces * chord * std::cos(right_rad_);
+      at_.right_m += way_m / pieces * chord * std::sin(right_rad_);
+      right_rad_ += half_rad;
+      way.push_back(at_);
+    }
+  }
+
+  std::vector<TurnPoint> way;
+
+ private:
+  static constexpr double kApart_m = 0.05;
+
+  TurnPoint at_;
+  double right_rad_ = 0.0;  // of where it points
 };
 
 }  // namespace
@@ -112,6 +145,12 @@ double change_lane(const LaneChange& change, RowTurn kind, std::vector<Item>& it
       return change.out_m + radius_m;
   }
   return change.out_m;
+}
+
+std::vector<TurnPoint> way_of(const std::vector<Item>& items) {
+  Follower follower;
+  for (const Item& item : items) follower.follow(item);
+  return std::move(follower.way);
 }
 
 }  // namespace roverd::mission

@@ -48,4 +48,12 @@ RowTurn kind_of(const LaneChange& change, const TurningVehicle& vehicle) noexcep
 /// Appends the items. @param kind as kind_of() says. @return how far beyond the row's end it comes
 double change_lane(const LaneChange& change, RowTurn kind, std::vector<Item>& items);
 
+/// A point of a turn, seen from where the lane ends and as the vehicle points there.
+struct TurnPoint {
+  double ahead_m = 0.0;
+  double right_m = 0.0;
+};
+/// Where such items lead the vehicle's origin, a few centimetres apart.
+std::vector<TurnPoint> way_of(const std::vector<Item>& items);
+
 }  // namespace roverd::mission
