@@ -82,6 +82,13 @@ class RowsPlanner {
       wrong_.push_back({"/radius_m", "must be at least " + tenths_up(vehicle_.narrowest_m) +
                                          ": this vehicle turns no narrower"});
     }
+    const bool spins =
+        block_.turn_kind == RowTurn::Pivot || (block_.turn_kind == RowTurn::Auto && !steered_);
+    if (block_.radius_m && spins) {
+      wrong_.push_back({"/radius_m",
+                        "acts with arcs alone, and this turns on the spot: turn_kind must be arc, "
+                        "omega or shunt"});
+    }
     const bool swings = block_.turn_kind == RowTurn::Omega || block_.turn_kind == RowTurn::Shunt;
     if (swings && !steered_ && !block_.radius_m) {
       wrong_.push_back({"/radius_m",

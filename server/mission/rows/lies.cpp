@@ -7,6 +7,7 @@
 
 #include "base/angle.hpp"
 #include "base/tangent_plane.hpp"
+#include "mission/fence/plane_lines.hpp"
 #include "mission/rows/block.hpp"
 
 namespace roverd::mission {
@@ -52,13 +53,25 @@ class DrawnBlock {
     return sum;
   }
 
+  /// The corners, from the first one.
+  std::vector<EnuPoint> border() const {
+    std::vector<EnuPoint> out;
+    for (const RowSpot& s : spots_) out.push_back({s.along_m, -s.right_m});
+    return out;
+  }
+
+  struct Lane {
+    std::array<LatLon, 2> ends;
+    bool parted = false;  ///< it leaves the block on the way, and comes back into it
+  };
   /// The lane so far to the right; empty: it does not meet the block. Lanes on its border do.
-  std::optional<std::array<LatLon, 2>> lane(double right_m) const {
-    if (!drawn_whole()) return std::array{place({0.0, right_m}), place({length_m_, right_m})};
+  std::optional<Lane> lane(double right_m) const {
+    if (!drawn_whole()) return Lane{{place({0.0, right_m}), place({length_m_, right_m})}};
     const double inward_m = std::copysign(kInside_m, right_m2());
     const double cut_m = right_m == 0.0 ? inward_m : right_m - inward_m;
     double least_m = 1e300;
     double most_m = -1e300;
+    int meets = 0;
     for (std::size_t i = 0; i < spots_.size(); ++i) {
       const RowSpot& a = spots_[i];
       const RowSpot& b = spots_[(i + 1) % spots_.size()];
@@ -67,9 +80,10 @@ class DrawnBlock {
       const double along_m = a.along_m + part * (b.along_m - a.along_m);
       least_m = std::min(least_m, along_m);
       most_m = std::max(most_m, along_m);
+      ++meets;
     }
     if (!(most_m - least_m >= kShortest_m)) return std::nullopt;
-    return std::array{place({least_m, right_m}), place({most_m, right_m})};
+    return Lane{{place({least_m, right_m}), place({most_m, right_m})}, meets > 2};
   }
 
  private:
@@ -87,6 +101,17 @@ class DrawnBlock {
   double length_m_ = 0.0;
   std::vector<RowSpot> spots_;
 };
+
+bool crosses_itself(const std::vector<EnuPoint>& border) {
+  const std::size_t n = border.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t k = i + 2; k < n; ++k) {
+      if ((k + 1) % n == i) continue;  // neighbours join
+      if (meeting(border[i], border[i + 1], border[k], border[(k + 1) % n])) return true;
+    }
+  }
+  return false;
+}
 
 std::optional<base::Error> wrong_corner(const std::vector<LatLon>& corners) {
   if (corners.size() < 2 || corners.size() > kMostCorners) {
@@ -114,6 +139,9 @@ base::Result<LaidRows> lay_rows(const BlockPlaces& block) {
   }
   const bool whole = field.drawn_whole();
   if (!whole && !block.rows) return tl::unexpected(wrong_block("/rows", "is required"));
+  if (whole && crosses_itself(field.border())) {
+    return tl::unexpected(wrong_block("/block", "crosses itself"));
+  }
   const Side inside = field.right_m2() < 0.0 ? Side::Left : Side::Right;
   LaidRows out;
   out.turn = block.turn.value_or(inside);
@@ -129,8 +157,13 @@ base::Result<LaidRows> lay_rows(const BlockPlaces& block) {
   const int most = block.rows.value_or(kMostRows);
   for (int k = 0; k < most; ++k) {
     const auto lane = field.lane(side * k * block.spacing_m);
+    if (lane && lane->parted) {
+      return tl::unexpected(wrong_block("/block", "is left and entered again by row " +
+                                                      std::to_string(k + 1) +
+                                                      ": draw it as several blocks"));
+    }
     if (lane) {
-      out.lanes.push_back(*lane);
+      out.lanes.push_back(lane->ends);
       continue;
     }
     if (!block.rows && k > 0) return out;

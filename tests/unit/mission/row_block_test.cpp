@@ -272,6 +272,11 @@ TEST(RowBlocks, NameWhatThisVehicleCannotDrive) {
   block.turn_kind = RowTurn::Omega;
   block.radius_m.reset();
   EXPECT_EQ(pointers(plan_rows(block, kTracked)), "/radius_m ");
+  block.radius_m = 2.0;  // it would turn on the spot whatever is said
+  block.turn_kind = RowTurn::Auto;
+  EXPECT_EQ(pointers(plan_rows(block, kTracked)), "/radius_m ");
+  EXPECT_TRUE(plan_rows(block, {1.5, false})) << "a car drives arcs";
+  block.radius_m.reset();
   EXPECT_EQ(pointers(plan_rows(rows_of(2, 2.5), {3.0, true})), "/rows ");  // a trailer
   RowBlock turned = rows_of(2, 2.5);
   turned.heading_deg = 30.0;

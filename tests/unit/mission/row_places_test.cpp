@@ -61,6 +61,13 @@ TEST(RowPlaces, NameWhatIsWrong) {
   EXPECT_EQ(wrong_of({square, 2.5, 9, {}}), "/rows");
   EXPECT_EQ(wrong_of({square, 2.5, 2, Side::Left}), "/turn");
   EXPECT_EQ(wrong_of({square, 2.5, 2, Side::Right}), "nothing");
+  // It crosses itself; it has a bay, into which row 2 leads and out again.
+  EXPECT_EQ(wrong_of({{at(0, 0), at(0, 20), at(10, 0), at(10, 20)}, 2.5, {}, {}}), "/block");
+  const std::vector<LatLon> bay{at(0, 0),     at(0, 16),   at(5.5, 16), at(5.5, 11),
+                                at(1.25, 11), at(1.25, 5), at(5.5, 5),  at(5.5, 0)};
+  EXPECT_EQ(lay_rows({bay, 2.5, {}, {}}).error().detail,
+            "/block is left and entered again by row 2: draw it as several blocks");
+  EXPECT_EQ(wrong_of({bay, 2.5, 1, {}}), "nothing");
 }
 
 }  // namespace
