@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kArcPiece_rad = base::kPi / 12.0;
 constexpr double kLeastArc_rad = 1e-3;                    // 0 stands for all of it
+constexpr double kBraked_rad = base::kPi / 9.0;           // of an arc, at most, as it brakes
 constexpr double kEitherWay_rad = 5.0 * base::kPi / 6.0;  // more than this is as far either way
 
 /// From `from` on, by so much. A vehicle that can turns the last bit on the spot.
@@ -49,9 +50,19 @@ double arc_to_rad(double from_rad, double to_rad, double left_rad) noexcept {
   return other_hand ? by_rad + std::copysign(2.0 * base::kPi, left_rad) : by_rad;
 }
 
+/// What is left of it, of which the robot drove some as it braked. More, or back, it was turned by
+/// somebody: the rest is driven from there.
+double braked_rad(double left_rad, double turned_rad) noexcept {
+  if (turned_rad * left_rad <= 0.0 || std::abs(turned_rad) > kBraked_rad) return left_rad;
+  return std::copysign(std::max(kLeastArc_rad, std::abs(left_rad) - std::abs(turned_rad)),
+                       left_rad);
+}
+
 }  // namespace
 
 bool Executor::enter_arc(const RouteStep& step, const Vehicle& vehicle) {
+  if (arc_yaw_rad_) left_ = braked_rad(left_, base::angle_diff_rad(*arc_yaw_rad_, vehicle.yaw_rad));
+  arc_yaw_rad_.reset();
   const double rest_rad = left_ != 0.0 ? left_ : step.by;
   arc_rad_ = step.yaw_rad ? arc_to_rad(vehicle.yaw_rad, *step.yaw_rad, left_) : rest_rad;
   left_ = 0.0;

@@ -58,6 +58,7 @@ TrackOutput Executor::step(const Vehicle& vehicle, double limit_mps, std::option
   if (doing_ == Doing::Wait || cut_goal(vehicle, dt_s)) return {};
   const TrackOutput out = tracker_.step(moves, limit_mps, dt_s);
   if (doing_ == Doing::Path) pass_nodes(vehicle);
+  if (doing_ == Doing::Arc) arc_yaw_rad_ = vehicle.yaw_rad;
   if (tracker_.phase() == TrackPhase::Done) {
     leg_done(moves);
     if (running() && doing_ == Doing::Nothing) enter(vehicle, home);

@@ -100,6 +100,7 @@ void Executor::begin_at(std::size_t step) {
   dock_.reset();
   doing_ = Doing::Nothing;
   left_ = looked_s_ = 0.0;
+  arc_yaw_rad_.reset();
   at_ = step;
   standing_.reset();
   rejoin_.reset();

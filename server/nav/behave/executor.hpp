@@ -299,7 +299,8 @@ class Executor {
   const Course* course_ = nullptr;
   Path connector_;
   Vertex connector_end_;
-  double arc_rad_ = 0.0;  ///< left positive; while it waits what is left of it
+  double arc_rad_ = 0.0;               ///< left positive; while it waits what is left of it
+  std::optional<double> arc_yaw_rad_;  ///< as it pointed when it was driven last
   RotateInPlace rotation_;
   RowDrive row_;
   std::optional<RowSight> row_sight_;

@@ -78,6 +78,25 @@ TEST(ArcTurn, GoesOnWithWhatIsLeftOfIt) {
   }
 }
 
+// Nobody stands at once: what it rolls on as it brakes is of the arc, each time anew.
+TEST(ArcTurn, IsAsLongWithPausesAsWithout) {
+  Ride r;
+  r.load(plan({TurnBy{-180.0, std::nullopt, 2.0}}));
+  r.start();
+  for (const double at_deg : {40.0, 80.0, 120.0}) {
+    while (r.executor.running() && r.vehicle.yaw_rad < base::rad_from_deg(at_deg)) r.tick();
+    r.executor.pause("asked");
+    const double by_rad = base::rad_from_deg(5.0);
+    r.vehicle.yaw_rad += by_rad;
+    r.vehicle.at = r.vehicle.at + EnuPoint{2.0 * by_rad * std::cos(r.vehicle.yaw_rad),
+                                           2.0 * by_rad * std::sin(r.vehicle.yaw_rad)};
+    r.vehicle.speed_mps = r.vehicle.yaw_rate_radps = 0.0;
+    ASSERT_TRUE(r.executor.resume(r.vehicle.at));
+  }
+  ASSERT_TRUE(r.run(60.0));
+  EXPECT_NEAR(std::abs(base::deg_from_rad(base::wrap_rad(r.vehicle.yaw_rad))), 180.0, 3.0);
+}
+
 // Turned by hand while it waits: the heading counts, not what was left of the way to it.
 TEST(ArcTurn, LeadsToItsHeadingAlsoIfItWasTurnedByHandMeanwhile) {
   for (const double by_deg : {-20.0, 20.0}) {
