@@ -7,7 +7,6 @@
 
 #include "base/angle.hpp"
 #include "base/tangent_plane.hpp"
-#include "mission/fence/plane_lines.hpp"
 #include "mission/rows/block.hpp"
 
 namespace roverd::mission {
@@ -102,12 +101,21 @@ class DrawnBlock {
   std::vector<RowSpot> spots_;
 };
 
+/// On which side of the line from a to b; 0: on it.
+double side_of(EnuPoint a, EnuPoint b, EnuPoint p) {
+  const EnuPoint ab = b - a;
+  const EnuPoint ap = p - a;
+  return ab.east_m * ap.north_m - ab.north_m * ap.east_m;
+}
+
 bool crosses_itself(const std::vector<EnuPoint>& border) {
   const std::size_t n = border.size();
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t k = i + 2; k < n; ++k) {
-      if ((k + 1) % n == i) continue;  // neighbours join
-      if (meeting(border[i], border[i + 1], border[k], border[(k + 1) % n])) return true;
+      const EnuPoint a = border[i], b = border[i + 1], c = border[k], d = border[(k + 1) % n];
+      if (side_of(a, b, c) * side_of(a, b, d) < 0.0 && side_of(c, d, a) * side_of(c, d, b) < 0.0) {
+        return true;
+      }
     }
   }
   return false;
