@@ -74,22 +74,6 @@ Result<Upload> read_solid_upload(std::string_view pcd) {
   return Upload{std::move(*plane), {}, std::move(*file)};
 }
 
-std::string file_name(const About& about) {
-  constexpr std::size_t kLongest = 60;
-  std::string out;
-  for (const char c : about.name.substr(0, kLongest)) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                       c == '-' || c == '_';
-    if (plain) {
-      out += c;
-    } else if (!out.empty() && out.back() != '_') {
-      out += '_';
-    }
-  }
-  while (!out.empty() && out.back() == '_') out.pop_back();
-  return (out.empty() ? "map" : out) + "-" + std::to_string(about.id);
-}
-
 std::string exported_yaml(const OccupancyMap& map, const About& about, const std::string& image) {
   atlas::MapWords words = words_for(map);
   words.image = image;

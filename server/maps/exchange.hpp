@@ -28,10 +28,6 @@ base::Result<Upload> read_upload(std::string_view yaml, std::string_view picture
 /// naming the byte or line: "/cloud/byte 17".
 base::Result<Upload> read_solid_upload(std::string_view pcd);
 
-/// Of an exported map, without an ending: what of its name every system can write, and its number,
-/// so that two of one name are two files. "north_shed-3"
-std::string file_name(const About& about);
-
 /// The words of an exported map, for a picture of that file name. Name and anchor, for which map
 /// servers have no words, are comments before them, called as in [map] of the configuration.
 std::string exported_yaml(const nav::chart::OccupancyMap& map, const About& about,

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "robot/impl.hpp"
-#include "robot/map_frame.hpp"
 
 namespace roverd::robot {
 namespace {

@@ -110,6 +110,12 @@ TEST_F(MapsApi, WhatIsExportedIsTheMap) {
   EXPECT_NE(yaml.raw.body.find("image: shed-1.pgm\n"), std::string::npos) << yaml.raw.body;
   ASSERT_EQ(add(form(yaml.raw.body, picture.raw.body)).status, 201u);
   EXPECT_EQ(call("GET", "/maps/1/cells").raw.body, call("GET", "/maps/2/cells").raw.body);
+  ASSERT_EQ(add(form(kYaml, kPicture, part("name", "North shed (new)"))).status, 201u);
+  EXPECT_EQ(call("GET", "/maps/3/export?format=pgm").raw.header("content-disposition"),
+            "attachment; filename=\"North_shed_new-3.pgm\"");
+  ASSERT_EQ(add(form(kYaml, kPicture, part("name", "\u5e93"))).status, 201u);
+  EXPECT_EQ(call("GET", "/maps/4/export?format=pgm").raw.header("content-disposition"),
+            "attachment; filename=\"map-4.pgm\"");
   EXPECT_EQ(call("GET", "/maps/1/export?format=png").status, 422u);
   EXPECT_EQ(call("GET", "/maps/1/export").status, 422u);
 }

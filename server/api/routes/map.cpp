@@ -12,6 +12,7 @@
 #include "api/json/map_words.hpp"
 #include "api/map_request.hpp"
 #include "maps/exchange.hpp"
+#include "mission/formats/formats.hpp"
 #include "robot/modes/machine.hpp"
 
 namespace roverd::api {
@@ -369,7 +370,7 @@ Response export_response(const maps::Shelf& shelf, std::int64_t id, const std::s
                          bool with_forbidden) {
   const auto about = shelf.find(id);
   if (!about) return problem(about.error());
-  const std::string name = maps::file_name(*about);
+  const std::string name = mission::file_stem(about->name, "map") + "-" + std::to_string(id);
   const auto file = [&name](const char* type, const char* ending, std::string content) {
     Response response = text_response(http::status::ok, type, std::move(content));
     response.set(http::field::content_disposition,

@@ -251,7 +251,7 @@ Result<ImportedFile> import_file(std::string_view content, std::optional<Format>
   return file;
 }
 
-std::string file_stem(std::string_view name) {
+std::string file_stem(std::string_view name, std::string_view otherwise) {
   constexpr std::size_t kMax = 80;
   std::string out;
   for (const char c : name) {
@@ -265,7 +265,7 @@ std::string file_stem(std::string_view name) {
     if (out.size() == kMax) break;
   }
   while (!out.empty() && out.back() == '_') out.pop_back();
-  return out.empty() ? "mission" : out;
+  return out.empty() ? std::string(otherwise) : out;
 }
 
 ExportedFile export_file(const Plan& plan, Format format, const Fence* fence) {

@@ -136,8 +136,8 @@ struct ExportedFile {
 };
 
 /// Of a file that is given: ASCII letters, digits, '-' and '_'; runs of all else become one '_'.
-/// 80 characters at most; "mission" where none is left.
-std::string file_stem(std::string_view name);
+/// 80 characters at most. @param otherwise where none is left
+std::string file_stem(std::string_view name, std::string_view otherwise = "mission");
 
 /// Positions come back equal when the file is imported again. @param format is_written @param fence
 /// written into .plan, GeoJSON, KML and KMZ; the other formats have no place for it, and `rows`

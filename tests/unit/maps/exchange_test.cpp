@@ -89,23 +89,6 @@ TEST(MapExport, ReadsAsTheMapThatItIsOf) {
   }
 }
 
-TEST(MapExport, IsCalledAsTheMapInWhatEverySystemCanWrite) {
-  maps::About about;
-  about.id = 3;
-  for (const auto& [name, file] : {std::pair{"shed", "shed-3"},
-                                   {"North shed (new)", "North_shed_new-3"},
-                                   {"k\u00f5rval", "k_rval-3"},
-                                   {"../../etc/passwd", "etc_passwd-3"},
-                                   {"a\"b\nc", "a_b_c-3"},
-                                   {"\u5e93", "map-3"},
-                                   {"", "map-3"}}) {
-    about.name = name;
-    EXPECT_EQ(maps::file_name(about), file) << name;
-  }
-  about.name = std::string(300, 'x');
-  EXPECT_EQ(maps::file_name(about), std::string(60, 'x') + "-3");
-}
-
 TEST(MapExport, TellsNameAndAnchorAsComments) {
   const auto read = maps::read_upload(yaml(), kPicture);
   maps::About about;
