@@ -107,6 +107,8 @@ describe('a figure', () => {
       ['scaled', scale_items(chosen, 2, TARTU), [10, 8], [0, 8]],
       ['mirrored', mirror_items(chosen, 0, TARTU), [-5, 4], [0, 4]],
       ['dragged', drag_items(chosen, 0, place(plan(point(-4, 1)), 0)), [6, 5], [1, 5]],
+      ['offset', parallel_items(chosen, 2), [5, 2], [0, 2]],
+      ['straightened', align_items(chosen), [5, 0], [0, 0]],
     ] as const)('is %s with their ends', (_done, change, row_end, wall_end) => {
       const after = change(before);
       expect(end_of(after, 1)).toEqual(row_end);

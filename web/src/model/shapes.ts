@@ -150,41 +150,60 @@ export const mirror_items = (
   });
 };
 
-/** The chosen places by what a function of all of them says. */
-const with_places = (
-  plan: Plan,
-  picked: Picked,
-  change: (offsets: readonly Offset[]) => readonly Offset[],
-): Plan => {
+/** What a line of places becomes, and what lies beside the leg that begins with its place k. */
+interface LineChange {
+  readonly places: (offsets: readonly Offset[]) => readonly Offset[];
+  readonly beside: (at: Offset, offsets: readonly Offset[], k: number) => Offset;
+}
+
+/** The chosen places by what a function of all of them says, and where a row or a wall ends with them. */
+const with_places = (plan: Plan, picked: Picked, change: LineChange): Plan => {
   const found = picked_spots(plan, picked);
   const [origin] = found;
   if (!origin) return plan;
   const plane = plane_at(origin);
-  const changed = change(found.map((spot) => plane.to_plane(spot)));
+  const offsets = found.map((spot) => plane.to_plane(spot));
+  const changed = change.places(offsets);
   const items = [...plan.items];
   found.forEach(({ index }, k) => {
     const [item, offset] = [items[index], changed[k]];
     if (item && offset) items[index] = at_place(item, plane.from_plane(offset));
   });
+  for (const index of with_followers(plan, picked)) {
+    const item = items[index];
+    const k = Math.max(
+      0,
+      found.findLastIndex((spot) => spot.index <= index),
+    );
+    const moved = (at: LatLon): LatLon =>
+      plane.from_plane(change.beside(plane.to_plane(at), offsets, k));
+    if (item) items[index] = with_end(item, moved);
+  }
   return { ...plan, items };
+};
+
+/** Onto the line from a to b. */
+const onto_line = (p: Offset, a: Offset, b: Offset): Offset => {
+  const [east, north] = [b.east_m - a.east_m, b.north_m - a.north_m];
+  const length2 = east * east + north * north;
+  if (length2 === 0) return p;
+  const share = ((p.east_m - a.east_m) * east + (p.north_m - a.north_m) * north) / length2;
+  return { east_m: a.east_m + share * east, north_m: a.north_m + share * north };
 };
 
 /** Onto the straight line from the first to the last of them. */
 export const align_items =
   (picked: Picked): PlanAction =>
-  (plan) =>
-    with_places(plan, picked, (offsets) => {
-      const [a] = offsets;
-      const b = offsets.at(-1);
-      if (!a || !b) return offsets;
-      const [east, north] = [b.east_m - a.east_m, b.north_m - a.north_m];
-      const length2 = east * east + north * north;
-      if (length2 === 0) return offsets;
-      return offsets.map((p) => {
-        const share = ((p.east_m - a.east_m) * east + (p.north_m - a.north_m) * north) / length2;
-        return { east_m: a.east_m + share * east, north_m: a.north_m + share * north };
-      });
+  (plan) => {
+    const straight = (p: Offset, offsets: readonly Offset[]): Offset => {
+      const [a, b] = [offsets[0], offsets.at(-1)];
+      return a && b ? onto_line(p, a, b) : p;
+    };
+    return with_places(plan, picked, {
+      places: (offsets) => offsets.map((p) => straight(p, offsets)),
+      beside: straight,
     });
+  };
 
 /** Sharper corners than this are cut: no spike runs away. */
 const MITER_MOST = 4;
@@ -196,30 +215,39 @@ const unit = (from: Offset | undefined, to: Offset | undefined): Offset | null =
   return length < 1e-6 ? null : { east_m: east / length, north_m: north / length };
 };
 
+/** So far to the right of where it is, seen along a. */
+const to_the_right = (at: Offset, a: Offset, right_m: number): Offset => ({
+  east_m: at.east_m + a.north_m * right_m,
+  north_m: at.north_m - a.east_m * right_m,
+});
+
+const beside_line = (offsets: readonly Offset[], right_m: number): readonly Offset[] =>
+  offsets.map((at, k) => {
+    const before = unit(offsets[k - 1], at);
+    const after = unit(at, offsets[k + 1]);
+    const [a, b] = [before ?? after, after ?? before];
+    if (!a || !b) return at;
+    // Along the mean of the two normals, as long as the legs' distance asks for.
+    const [east, north] = [a.north_m + b.north_m, -a.east_m - b.east_m];
+    const size = Math.hypot(east, north);
+    if (size < 1e-6) return to_the_right(at, a, right_m);
+    const miter = Math.min(2 / size, MITER_MOST);
+    return {
+      east_m: at.east_m + (east / size) * miter * right_m,
+      north_m: at.north_m + (north / size) * miter * right_m,
+    };
+  });
+
 /** The line through them, so far to its right: each leg stays parallel to itself.
  * @param right_m negative: to its left */
 export const parallel_items = (picked: Picked, right_m: number): PlanAction => {
   if (right_m === 0) return (plan) => plan;
   return (plan) =>
-    with_places(plan, picked, (offsets) =>
-      offsets.map((at, k) => {
-        const before = unit(offsets[k - 1], at);
-        const after = unit(at, offsets[k + 1]);
-        const [a, b] = [before ?? after, after ?? before];
-        if (!a || !b) return at;
-        // Along the mean of the two normals, as long as the legs' distance asks for.
-        const [east, north] = [a.north_m + b.north_m, -a.east_m - b.east_m];
-        const size = Math.hypot(east, north);
-        if (size < 1e-6)
-          return {
-            east_m: at.east_m + a.north_m * right_m,
-            north_m: at.north_m - a.east_m * right_m,
-          };
-        const miter = Math.min(2 / size, MITER_MOST);
-        return {
-          east_m: at.east_m + (east / size) * miter * right_m,
-          north_m: at.north_m + (north / size) * miter * right_m,
-        };
-      }),
-    );
+    with_places(plan, picked, {
+      places: (offsets) => beside_line(offsets, right_m),
+      beside: (at, offsets, k) => {
+        const leg = unit(offsets[k], offsets[k + 1]) ?? unit(offsets[k - 1], offsets[k]);
+        return leg ? to_the_right(at, leg, right_m) : at;
+      },
+    });
 };
