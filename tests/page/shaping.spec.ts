@@ -259,3 +259,60 @@ test.describe('with a finger, on a phone', () => {
     for (const by of moved) expect(by).toBeCloseTo(moved[0] ?? 0, 6);
   });
 });
+
+test('a mission cut in two is one again by a step back, also after a reload', async ({
+  page,
+  station,
+}) => {
+  interface Listed {
+    readonly id: string;
+    readonly name: string;
+    readonly revision: number;
+  }
+  const stored = async (): Promise<readonly Listed[]> =>
+    (await station.rest<{ items: readonly Listed[] }>('GET', '/missions')).items;
+  const reload = async (): Promise<void> => {
+    page.once('dialog', (dialog) => void dialog.accept());
+    await page.reload();
+    await tab(page, 'Plan');
+  };
+  await open_page(page, station.url);
+  await tab(page, 'Plan');
+  await draw(page, SQUARE);
+  await save(page);
+  await press(page, 'Select several');
+  await items(page).nth(1).getByRole('button').click();
+  await press(page, 'Split here');
+  await expect(items(page)).toHaveCount(2);
+  await expect.poll(async () => (await stored()).length).toBe(2);
+
+  await reload();
+  await expect(items(page)).toHaveCount(2);
+  await press(page, 'Undo');
+  await expect(items(page)).toHaveCount(4);
+  await expect(page.getByLabel('Messages')).toContainText('is deleted again: the two are one');
+  await expect.poll(async () => (await stored()).length).toBe(1);
+
+  // Forward after one more reload it is cut again, and stored as before.
+  await reload();
+  await press(page, 'Redo');
+  await expect(items(page)).toHaveCount(2);
+  await expect.poll(async () => (await stored()).length).toBe(2);
+
+  // What somebody changed since is not taken away; the page says so.
+  await save(page);
+  const whole = await page.getByRole('textbox', { name: 'Name' }).inputValue();
+  const second = (await stored()).find(({ name }) => name !== whole);
+  if (!second) throw new Error('no second part');
+  await station.rest(
+    'PATCH',
+    `/missions/${second.id}`,
+    { tags: ['theirs'] },
+    { 'If-Match': `"rev-${second.revision}"` },
+  );
+  await reload();
+  await press(page, 'Undo');
+  await expect(items(page)).toHaveCount(4);
+  await expect(page.getByLabel('Messages')).toContainText('stays: somebody has changed it since');
+  expect(await stored()).toHaveLength(2);
+});

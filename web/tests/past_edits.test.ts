@@ -21,35 +21,37 @@ const past = (history: typeof one, plan: Plan | null = saved) => {
 
 describe('a mission to which one comes back', () => {
   it('is as it was left, and its steps can be undone', () => {
-    const history = edits_resumed(past(one), STORED, saved);
+    const { history } = edits_resumed(past(one), STORED, saved);
     expect(history.present).toEqual(saved);
     expect(undo(history).present).toEqual(EMPTY);
   });
 
   it('is as it is stored; what was not saved is one step back', () => {
-    const history = edits_resumed(past(unsaved), STORED, saved);
+    const { history } = edits_resumed(past(unsaved), STORED, saved);
     expect(history.present).toEqual(saved);
     expect(undo(history).present).toEqual(unsaved.present);
     expect(undo(undo(undo(history))).present).toEqual(saved);
   });
 
   it('can still be done again what had been undone', () => {
-    const history = edits_resumed(past(undo(one), EMPTY), STORED, EMPTY);
+    const { history } = edits_resumed(past(undo(one), EMPTY), STORED, EMPTY);
     expect(history.present).toEqual(EMPTY);
     expect(redo(history).present).toEqual(saved);
   });
 
   it('has what somebody else saved meanwhile as one more step', () => {
     const theirs: Plan = { name: 'Theirs', items: [] };
-    const history = edits_resumed(past(one), { id: 'a', revision: 4 }, theirs);
+    const { history } = edits_resumed(past(one), { id: 'a', revision: 4 }, theirs);
     expect(history.present).toBe(theirs);
     expect(undo(history).present).toEqual(saved);
   });
 
   it('begins anew where nothing is kept of it, or nothing was done', () => {
     expect(edits_left(begin_history(saved), saved, STORED)).toBeNull();
-    expect(edits_resumed(past(one), { id: 'b', revision: 1 }, EMPTY).past).toEqual([]);
-    expect(edits_resumed([{ id: 'a', draft: '{"version": 1' }], STORED, EMPTY).past).toEqual([]);
+    expect(edits_resumed(past(one), { id: 'b', revision: 1 }, EMPTY).history.past).toEqual([]);
+    expect(
+      edits_resumed([{ id: 'a', draft: '{"version": 1' }], STORED, EMPTY).history.past,
+    ).toEqual([]);
   });
 });
 

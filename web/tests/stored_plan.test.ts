@@ -22,7 +22,7 @@ const stored = { id, revision };
 
 describe('a stored mission', () => {
   test('that is opened, edited and saved is sent with all of it: its map too', () => {
-    const opened = edits_resumed([], stored, plan_of(mission));
+    const { history: opened } = edits_resumed([], stored, plan_of(mission));
     const edited = perform(opened, rename('through it'));
     expect(body_of(edited.present)).toEqual({ ...content, name: 'through it' });
   });

@@ -2,6 +2,7 @@
 // is read back may be of another version or damaged, so every part is checked.
 
 import { is_record, json_of } from './checked';
+import { checked_cuts, type KeptCut } from './cuts';
 import { fields_of } from './fields';
 import type { PlanShape } from './on_map';
 import type { Item, Plan } from './plan';
@@ -24,6 +25,8 @@ export interface Draft {
   readonly unsaved: boolean;
   /** What can be undone and done again. */
   readonly steps?: Steps;
+  /** Which of those steps cut a mission in two. */
+  readonly cuts?: readonly KeptCut[];
   readonly tried?: Tried;
 }
 
@@ -117,6 +120,7 @@ export const parse_draft = (text: string | null): Draft | null => {
     stored: is_stored(value['stored']) ? value['stored'] : null,
     unsaved: value['unsaved'] === true,
     ...(is_steps(value['steps']) ? { steps: value['steps'] } : {}),
+    ...(value['cuts'] === undefined ? {} : { cuts: checked_cuts(value['cuts']) }),
     ...(is_tried(value['tried']) ? { tried: value['tried'] } : {}),
   };
 };

@@ -2,9 +2,11 @@
 // to one finds his steps again, also after a reload.
 
 import { is_record, json_of } from './checked';
+import { cuts_kept, cuts_revived, type Cut } from './cuts';
 import { draft_text, parse_draft, type Draft, type Stored } from './draft';
 import { begin_history, perform, type History } from './history';
 import type { Plan } from './plan';
+import type { DraftStorage } from './ports';
 import { revived, steps_of } from './steps';
 
 export interface KeptEdits {
@@ -42,6 +44,14 @@ export const with_past = (
     });
 };
 
+/** Where there is no room for all of them, the newest go before. */
+export const keep_past = (shelf: DraftStorage, kept: KeptEdits): void => {
+  let past = with_past(parse_past(shelf.read()), kept);
+  while (!shelf.write(JSON.stringify(past)) && past.length > 0) {
+    past = past.slice(0, Math.floor(past.length / 2));
+  }
+};
+
 /** How a mission is left: as it is stored. What was not saved lies one step back.
  * @param saved the plan as it is stored; null: not known */
 export const left_history = (history: History<Plan>, saved: Plan | null): History<Plan> =>
@@ -52,17 +62,26 @@ export const edits_left = (
   history: History<Plan>,
   saved: Plan | null,
   stored: Stored,
+  cuts: readonly Cut[] = [],
 ): KeptEdits | null => {
-  const { past, present, future } = left_history(history, saved);
+  const left = left_history(history, saved);
+  const { past, present, future } = left;
   if (past.length === 0 && future.length === 0) return null;
   const draft: Draft = {
     plan: present,
     stored,
     unsaved: saved === null,
-    steps: steps_of({ past, present, future }, saved),
+    steps: steps_of(left, saved),
+    cuts: cuts_kept(left, cuts),
   };
   return { id: stored.id, draft: draft_text(draft) };
 };
+
+export interface Resumed {
+  readonly history: History<Plan>;
+  /** Those among its steps. */
+  readonly cuts: readonly Cut[];
+}
 
 /**
  * The history of a mission that comes into the editor.
@@ -72,11 +91,15 @@ export const edits_resumed = (
   past: readonly KeptEdits[],
   { id, revision }: Stored,
   plan: Plan,
-): History<Plan> => {
+): Resumed => {
   const draft = parse_draft(past.find((kept) => kept.id === id)?.draft ?? null);
-  if (!draft?.steps) return begin_history(plan);
+  if (!draft?.steps) return { history: begin_history(plan), cuts: [] };
   const { history } = revived(draft.plan, draft.steps);
   const as_left = draft.stored?.revision === revision && !draft.unsaved;
   // Somebody else saved it meanwhile: one more step.
-  return as_left ? { ...history, present: plan } : perform(history, () => plan);
+  if (!as_left) {
+    return { history: perform(history, () => plan), cuts: cuts_revived(history, draft.cuts) };
+  }
+  const as_stored = { ...history, present: plan };
+  return { history: as_stored, cuts: cuts_revived(as_stored, draft.cuts) };
 };

@@ -77,19 +77,36 @@ const steps_away = (present: Plan, plans: readonly Plan[], room: { left: number 
   return steps;
 };
 
+/** How many steps back a plan lies; negative: ahead; null: it is none of them. */
+export const place_in = ({ past, present, future }: History<Plan>, plan: Plan): number | null => {
+  if (plan === present) return 0;
+  const back = past.lastIndexOf(plan);
+  if (back >= 0) return past.length - back;
+  const ahead = future.indexOf(plan);
+  return ahead >= 0 ? -1 - ahead : null;
+};
+
+/** @param place as place_in tells it. @return undefined: the history does not reach there */
+export const plan_at = (
+  { past, present, future }: History<Plan>,
+  place: number,
+): Plan | undefined => {
+  if (place === 0) return present;
+  return place > 0 ? past[past.length - place] : future[-1 - place];
+};
+
 /** @param saved the plan as it is stored; null: it never was */
 export const steps_of = ({ past, present, future }: History<Plan>, saved: Plan | null): Steps => {
   const room = { left: KEPT_ITEMS };
   const back = [...past].reverse();
   const behind = steps_away(present, back, room);
   const ahead = steps_away(present, future, room);
-  const index = saved === null ? -1 : [present, ...back.slice(0, behind.length)].indexOf(saved);
-  const later = saved === null ? -1 : future.slice(0, ahead.length).indexOf(saved);
-  return {
-    past: behind,
-    future: ahead,
-    saved: index >= 0 ? index : later >= 0 ? -1 - later : null,
+  const kept: History<Plan> = {
+    past: past.slice(past.length - behind.length),
+    present,
+    future: future.slice(0, ahead.length),
   };
+  return { past: behind, future: ahead, saved: saved === null ? null : place_in(kept, saved) };
 };
 
 const plans_away = (present: Plan, steps: readonly Step[]): Plan[] => {
@@ -113,10 +130,6 @@ export interface Revived {
 export const revived = (present: Plan, { past, future, saved }: Steps): Revived => {
   const back = plans_away(present, past);
   const ahead = plans_away(present, future);
-  const stored =
-    saved === null ? undefined : saved >= 0 ? [present, ...back][saved] : ahead[-1 - saved];
-  return {
-    history: { past: [...back].reverse(), present, future: ahead },
-    saved: stored ?? null,
-  };
+  const history = { past: [...back].reverse(), present, future: ahead };
+  return { history, saved: saved === null ? null : (plan_at(history, saved) ?? null) };
 };

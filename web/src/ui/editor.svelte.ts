@@ -3,10 +3,11 @@
 import { type Answer, failure_text, refusal_text, refused_items } from '../model/answer';
 import { append_waypoint, insert_waypoint, move_waypoint, remove_item } from '../model/actions';
 import type { PlanAction } from '../model/actions';
+import { cuts_revived } from '../model/cuts';
 import { draft_text, parse_draft, type Stored } from '../model/draft';
 import { FirstSave } from '../model/first_save';
 import { begin_history, perform, redo, undo, type History } from '../model/history';
-import { edits_left, edits_resumed, parse_past, with_past } from '../model/past_edits';
+import { edits_left, edits_resumed, keep_past, parse_past } from '../model/past_edits';
 import { EMPTY_PLAN, type LatLon, type Plan } from '../model/plan';
 import { say } from '../model/say';
 import { followed, joined, NOTHING_PICKED, toggled, type Picked } from '../model/selection';
@@ -69,7 +70,7 @@ export class Editor implements Drawing {
     this.#past = kept.past;
     this.#notices = notices;
     this.#dialogs = dialogs;
-    this.#splits = new Splits(calls, notices);
+    this.#splits = new Splits(calls, notices, () => this.write_draft());
   }
 
   /** Every tap on the map adds a waypoint. */
@@ -190,7 +191,10 @@ export class Editor implements Drawing {
   show_mission(mission: Mission): void {
     this.#keep_edits();
     const stored = { id: mission.id, revision: mission.revision };
-    this.#begin(edits_resumed(parse_past(this.#past.read()), stored, plan_of(mission)), stored);
+    const past = parse_past(this.#past.read());
+    const { history, cuts } = edits_resumed(past, stored, plan_of(mission));
+    this.#splits.resume(cuts);
+    this.#begin(history, stored);
     this.adding = mission.items.length === 0;
   }
 
@@ -336,6 +340,7 @@ export class Editor implements Drawing {
       ? revived(draft.plan, draft.steps)
       : { history: begin_history(draft.plan), saved: null };
     this.history = history;
+    this.#splits.resume(cuts_revived(history, draft.cuts));
     this.#saved_plan = draft.unsaved ? saved : draft.plan;
     this.stored = draft.stored;
     this.#first.tried = draft.tried ?? null;
@@ -351,11 +356,12 @@ export class Editor implements Drawing {
 
   write_draft(): void {
     clearTimeout(this.#draft_timer);
-    const draft = { plan: this.plan, stored: this.stored, unsaved: this.unsaved };
-    const steps = steps_of(this.history, this.#saved_plan);
-    // Where there is no room for what can be undone, the plan itself goes before.
+    const { history, plan, stored, unsaved } = this;
+    const draft = { plan, stored, unsaved };
     const { tried } = this.#first;
-    if (!this.#storage.write(draft_text({ ...draft, ...(tried ? { tried } : {}), steps }))) {
+    const steps = { steps: steps_of(history, this.#saved_plan), cuts: this.#splits.kept(history) };
+    // Where there is no room for what can be undone, the plan itself goes before.
+    if (!this.#storage.write(draft_text({ ...draft, ...(tried ? { tried } : {}), ...steps }))) {
       this.#storage.write(draft_text(draft));
     }
   }
@@ -363,13 +369,8 @@ export class Editor implements Drawing {
   /** Before another mission comes. */
   #keep_edits(): void {
     if (this.stored === null) return;
-    const left = edits_left(this.history, this.#saved_plan, this.stored);
-    if (left === null) return;
-    let past = with_past(parse_past(this.#past.read()), left);
-    // Where there is no room for all of them, the newest go before.
-    while (!this.#past.write(JSON.stringify(past)) && past.length > 0) {
-      past = past.slice(0, Math.floor(past.length / 2));
-    }
+    const left = edits_left(this.history, this.#saved_plan, this.stored, this.#splits.all);
+    if (left !== null) keep_past(this.#past, left);
   }
 
   #begin(history: History<Plan>, stored: Stored | null): void {

@@ -99,7 +99,8 @@ export const plan = {
   name_is_stored_this_one_ends_where:
     '“{name}” is stored; this one ends where it was cut. Undo joins them again.',
   split_taken_back: '“{name}” is deleted again: the two are one.',
-  split_stays: '“{name}” stays: somebody has changed it since, or it could not be deleted.',
+  split_stays: '“{name}” stays: somebody has changed it since.',
+  split_was_deleted: '“{name}” is no longer there: somebody has deleted it.',
   name_has_changes_that_are_not_saved: '“{name}” has changes that are not saved.',
   name_has_changes_undo_brings_them_back:
     '“{name}” has changes that are not saved. When it is opened again, undo brings them back.',

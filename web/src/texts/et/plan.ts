@@ -99,7 +99,8 @@ export const plan = {
   name_is_stored_this_one_ends_where:
     '„{name}“ on salvestatud; see siin lõpeb lõikekohas. Tagasivõtmine ühendab need jälle.',
   split_taken_back: '„{name}“ on jälle kustutatud: need kaks on taas üks.',
-  split_stays: '„{name}“ jääb alles: keegi on seda vahepeal muutnud või ei saanud seda kustutada.',
+  split_stays: '„{name}“ jääb alles: keegi on seda vahepeal muutnud.',
+  split_was_deleted: '„{name}“ ei ole enam alles: keegi on selle kustutanud.',
   name_has_changes_that_are_not_saved: 'Ülesandes „{name}“ on salvestamata muudatusi.',
   name_has_changes_undo_brings_them_back:
     'Ülesandes „{name}“ on salvestamata muudatusi. Kui see uuesti avada, toob tagasivõtmine need tagasi.',

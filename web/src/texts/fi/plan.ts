@@ -99,7 +99,8 @@ export const plan = {
   name_is_stored_this_one_ends_where:
     '”{name}” on tallennettu; tämä päättyy katkaisukohtaan. Kumoaminen yhdistää ne taas.',
   split_taken_back: '”{name}” on taas poistettu: nämä kaksi ovat yksi.',
-  split_stays: '”{name}” jää talteen: joku on muuttanut sitä välillä, tai sitä ei voitu poistaa.',
+  split_stays: '”{name}” jää talteen: joku on muuttanut sitä välillä.',
+  split_was_deleted: '”{name}” ei ole enää tallessa: joku on poistanut sen.',
   name_has_changes_that_are_not_saved: 'Tehtävässä ”{name}” on tallentamattomia muutoksia.',
   name_has_changes_undo_brings_them_back:
     'Tehtävässä ”{name}” on tallentamattomia muutoksia. Kun se avataan uudelleen, kumoaminen tuo ne takaisin.',

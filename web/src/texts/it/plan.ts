@@ -99,7 +99,8 @@ export const plan = {
   name_is_stored_this_one_ends_where:
     '«{name}» è salvata; questa finisce dov’è stata tagliata. Annulla le riunisce.',
   split_taken_back: '«{name}» è di nuovo eliminata: le due sono una.',
-  split_stays: '«{name}» resta: qualcuno l’ha cambiata nel frattempo, o non si è potuta eliminare.',
+  split_stays: '«{name}» resta: qualcuno l’ha cambiata nel frattempo.',
+  split_was_deleted: '«{name}» non c’è più: qualcuno l’ha eliminata.',
   name_has_changes_that_are_not_saved: '«{name}» ha modifiche non salvate.',
   name_has_changes_undo_brings_them_back:
     '«{name}» ha modifiche non salvate. Quando si riapre, annulla le riporta.',

@@ -99,7 +99,8 @@ export const plan = {
   name_is_stored_this_one_ends_where:
     '«{name}» er lagret; dette slutter der det ble delt. Angre føyer dem sammen igjen.',
   split_taken_back: '«{name}» er slettet igjen: de to er ett.',
-  split_stays: '«{name}» blir liggende: noen har endret det siden, eller det lot seg ikke slette.',
+  split_stays: '«{name}» blir liggende: noen har endret det siden.',
+  split_was_deleted: '«{name}» finnes ikke lenger: noen har slettet det.',
   name_has_changes_that_are_not_saved: '«{name}» har endringer som ikke er lagret.',
   name_has_changes_undo_brings_them_back:
     '«{name}» har endringer som ikke er lagret. Når det åpnes igjen, henter angre dem tilbake.',
