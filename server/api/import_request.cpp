@@ -17,6 +17,8 @@ using base::Code;
 using base::Error;
 using base::Result;
 
+constexpr std::string_view kLeaveOut = "leave_out";
+
 /// Words, no path: what a person called the file.
 std::string without_folders(std::string name) {
   if (const auto slash = name.find_last_of("/\\"); slash != std::string::npos) {
@@ -25,7 +27,7 @@ std::string without_folders(std::string name) {
   return name;
 }
 
-/// origin_lat and origin_lon (both or neither) and speed_unit=mps|kmh.
+/// origin_lat and origin_lon (both or neither), speed_unit=mps|kmh and wrong=refuse|leave_out.
 Result<mission::ImportHints> hints_of(const ImportWish& wish) {
   mission::ImportHints hints;
   const auto refuse = [](const char* name, const char* detail) {
@@ -35,6 +37,10 @@ Result<mission::ImportHints> hints_of(const ImportWish& wish) {
     return refuse("speed_unit", "must be mps or kmh");
   }
   hints.kmh = wish.speed_unit == "kmh";
+  if (!wish.wrong.empty() && wish.wrong != "refuse" && wish.wrong != kLeaveOut) {
+    return refuse("wrong", "must be refuse or leave_out");
+  }
+  hints.leave_out_wrong = wish.wrong == kLeaveOut;
   if (wish.origin_lat.empty() && wish.origin_lon.empty()) return hints;
   base::LatLon origin;
   const auto read = [](const std::string& text, double& out) {
@@ -57,7 +63,8 @@ std::string* member_of(ImportWish& wish, std::string_view field) {
   if (field == "name") return &wish.name;
   if (field == "origin_lat") return &wish.origin_lat;
   if (field == "origin_lon") return &wish.origin_lon;
-  return field == "speed_unit" ? &wish.speed_unit : nullptr;
+  if (field == "speed_unit") return &wish.speed_unit;
+  return field == "wrong" ? &wish.wrong : nullptr;
 }
 
 /// The one file of a form; its fields go into the wish.
@@ -107,7 +114,22 @@ ImportWish import_wish(const Call& call) {
           query_text(call, "name"),
           query_text(call, "origin_lat"),
           query_text(call, "origin_lon"),
-          query_text(call, "speed_unit")};
+          query_text(call, "speed_unit"),
+          query_text(call, "wrong")};
+}
+
+std::optional<Rest> rest_of(std::string_view body, ImportWish wish, const Error& refused) {
+  if (refused.code != Code::Invalid || !wish.wrong.empty()) return std::nullopt;
+  wish.wrong = kLeaveOut;
+  const auto upload = read_upload(body, std::move(wish));
+  if (!upload) return std::nullopt;
+  Rest rest;
+  for (const mission::FileRow& row : upload->file.rows) {
+    const bool taken = row.outcome == mission::Outcome::Taken;
+    const bool changed = row.outcome == mission::Outcome::Changed;
+    (taken ? rest.taken : changed ? rest.changed : rest.left_out) += 1;
+  }
+  return rest;
 }
 
 Result<Upload> read_upload(std::string_view body, ImportWish wish) {

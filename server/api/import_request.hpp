@@ -2,6 +2,8 @@
 // What POST /missions/import is asked: a file as the body, or as a part of a form, and how it is to
 // be read. Pure; with a large file it takes its time.
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -18,6 +20,7 @@ struct ImportWish {
   std::string origin_lat{};
   std::string origin_lon{};
   std::string speed_unit{};
+  std::string wrong{};  ///< refuse (also empty) or leave_out: positions that cannot be
 };
 
 struct Upload {
@@ -26,6 +29,16 @@ struct Upload {
 };
 
 ImportWish import_wish(const Call& call);
+
+/// What would become of the rows of a file that is refused, if what is wrong were left out.
+struct Rest {
+  std::size_t taken = 0;
+  std::size_t changed = 0;
+  std::size_t left_out = 0;
+};
+
+/// @param refused by read_upload of the same. Empty: it would be refused all the same
+std::optional<Rest> rest_of(std::string_view body, ImportWish wish, const base::Error& refused);
 
 /// Invalid names the parameter, or the line or place in the file; Malformed: an empty file, a form
 /// that is none. @param body of the request

@@ -91,6 +91,29 @@ TEST_F(ImportApi, NothingToDriveIsRefusedAndNothingIsKept) {
   EXPECT_EQ(stored("fences"), 0u);
 }
 
+TEST_F(ImportApi, ARefusedFileSaysWhatCouldBeTakenAndThatIsTakenWhenAsked) {
+  const std::string file = "lat,lon\n58.378,26.7289\n95,26.729\n58.3785,26.729\n";
+  const auto refused = send(file, "?name=field.csv");
+  ASSERT_EQ(refused.status, 422u);
+  EXPECT_EQ(refused.body["errors"][0]["pointer"], "line 3");
+  EXPECT_EQ(refused.body["rest"], (Json{{"taken", 2}, {"changed", 0}, {"left_out", 1}}));
+  EXPECT_EQ(stored("missions"), 0u);
+
+  const auto made = send(file, "?name=field.csv&wrong=leave_out");
+  ASSERT_EQ(made.status, 201u);
+  EXPECT_EQ(made.body["mission"]["items"].size(), 2u);
+  EXPECT_EQ(made.body["left_out"], 1);
+  EXPECT_EQ(made.body["report"][1]["row"], "line 3");
+  EXPECT_NE(made.body["report"][1]["reason"].get<std::string>().find("is 95"), std::string::npos);
+
+  // Where nothing would be left, or the wish is no word of ours, there is no rest.
+  const auto none = send("lat,lon\n95,26.729\n");
+  EXPECT_EQ(none.status, 422u);
+  EXPECT_FALSE(none.body.contains("rest"));
+  EXPECT_FALSE(send("lat,lon\n95,26.729\n", "?wrong=leave_out").body.contains("rest"));
+  EXPECT_EQ(send(file, "?wrong=maybe").status, 422u);
+}
+
 TEST_F(ImportApi, AFormIsTakenAsCurlSendsIt) {
   // As `curl -F file=@"field 1.csv" -F format=csv` sends it.
   const std::string border = "------------------------d74496d66958873e";

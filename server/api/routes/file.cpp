@@ -76,16 +76,37 @@ void keep_import(const ContextPtr& context, const CallPtr& call, Upload upload) 
                                     });
 }
 
+/// A file that is kept, or the refusal of one.
+struct ReadFile {
+  base::Result<Upload> upload;
+  std::optional<Rest> rest;
+};
+
+ReadFile read_file(const std::string& body, const ImportWish& wish) {
+  ReadFile out{read_upload(body, wish), std::nullopt};
+  if (!out.upload) out.rest = rest_of(body, wish, out.upload.error());
+  return out;
+}
+
+Response import_problem(const base::Error& error, const std::optional<Rest>& rest) {
+  if (!rest) return problem(error);
+  Json body = problem_json(error);
+  body["rest"] = {{"taken", rest->taken}, {"changed", rest->changed}, {"left_out", rest->left_out}};
+  return problem_response(status_of(error.code), body);
+}
+
 Handler import_mission(const ContextPtr& context) {
   return [context](const CallPtr& call) {
     std::string body = std::move(call->request.body());
     const Effort effort{2 * body.size()};
     context->aside(
         call, effort,
-        [body = std::move(body), wish = import_wish(*call)] { return read_upload(body, wish); },
-        [context, call](base::Result<Upload> upload) {
-          if (!upload) return call->respond(problem(upload.error()));
-          keep_import(context, call, std::move(*upload));
+        [body = std::move(body), wish = import_wish(*call)] { return read_file(body, wish); },
+        [context, call](ReadFile read) {
+          if (!read.upload) {
+            return call->respond(import_problem(read.upload.error(), read.rest));
+          }
+          keep_import(context, call, std::move(*read.upload));
         });
   };
 }

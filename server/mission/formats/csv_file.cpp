@@ -106,7 +106,10 @@ bool is_whole(std::string_view text) {
 class CsvReader {
  public:
   CsvReader(std::string_view content, const ImportHints& hints)
-      : table_(content), origin_(hints.origin), kmh_(hints.kmh) {}
+      : table_(content),
+        origin_(hints.origin),
+        kmh_(hints.kmh),
+        builder_(file_, problems_, hints.leave_out_wrong) {}
 
   Result<ImportedFile> read() {
     while (table_.next()) {
@@ -214,8 +217,9 @@ class CsvReader {
   void row(const std::vector<CsvField>& fields) {
     const std::string place = table_.place();
     if (fields.size() != columns_.size()) {
-      problems_.add(place, "must have " + std::to_string(columns_.size()) + " columns, has " +
-                               std::to_string(fields.size()));
+      builder_.refuse(place, "row",
+                      "must have " + std::to_string(columns_.size()) + " columns, has " +
+                          std::to_string(fields.size()));
       return;
     }
     TrackPoint point{place, "row"};
@@ -227,7 +231,8 @@ class CsvReader {
       if (optional && is_not_known(fields[i].text)) continue;
       const auto value = table_.number(fields[i]);
       if (!value) {
-        problems_.add(place, "column " + std::to_string(i + 1) + " must be a finite number");
+        builder_.refuse(place, "row",
+                        "column " + std::to_string(i + 1) + " must be a finite number");
         return;
       }
       put(columns_[i], *value, point, local);
@@ -283,7 +288,7 @@ class CsvReader {
     }
     const double far_m = std::hypot(local.east_m, local.north_m);
     if (!(far_m <= kFarthest_m)) {
-      problems_.add(point.row, "must lie within 20,000 km of the origin");
+      builder_.refuse(point.row, point.what, "must lie within 20,000 km of the origin");
       return false;
     }
     if (!plane_) plane_.emplace(*origin_);
@@ -313,7 +318,7 @@ class CsvReader {
   std::optional<TangentPlane> plane_;
   ImportedFile file_;
   Problems problems_;
-  TrackBuilder builder_{file_, problems_};
+  TrackBuilder builder_;
 };
 
 }  // namespace

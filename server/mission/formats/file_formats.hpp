@@ -16,17 +16,17 @@ std::string write_qgc_plan(const Plan& plan, const Fence* fence, std::vector<Fil
 base::Result<ImportedFile> read_waypoints(std::string_view content);
 std::string write_waypoints(const Plan& plan, std::vector<FileRow>& rows);
 
-base::Result<ImportedFile> read_gpx(std::string_view content);
+base::Result<ImportedFile> read_gpx(std::string_view content, const ImportHints& hints);
 std::string write_gpx(const Plan& plan, std::vector<FileRow>& rows);
 
-base::Result<ImportedFile> read_kml(std::string_view content);
+base::Result<ImportedFile> read_kml(std::string_view content, const ImportHints& hints);
 std::string write_kml(const Plan& plan, const Fence* fence, std::vector<FileRow>& rows);
 
-base::Result<ImportedFile> read_kmz(std::string_view content);
+base::Result<ImportedFile> read_kmz(std::string_view content, const ImportHints& hints);
 /// Empty if there is no memory.
 std::string write_kmz(const Plan& plan, const Fence* fence, std::vector<FileRow>& rows);
 
-base::Result<ImportedFile> read_geojson(std::string_view content);
+base::Result<ImportedFile> read_geojson(std::string_view content, const ImportHints& hints);
 std::string write_geojson(const Plan& plan, const Fence* fence, std::vector<FileRow>& rows);
 
 base::Result<ImportedFile> read_fence_text(std::string_view content);

@@ -118,13 +118,13 @@ Result<ImportedFile> read_as(std::string_view content, Format format, const Impo
     case Format::Waypoints:
       return read_waypoints(content);
     case Format::Gpx:
-      return read_gpx(content);
+      return read_gpx(content, hints);
     case Format::Kml:
-      return read_kml(content);
+      return read_kml(content, hints);
     case Format::Kmz:
-      return read_kmz(content);
+      return read_kmz(content, hints);
     case Format::GeoJson:
-      return read_geojson(content);
+      return read_geojson(content, hints);
     case Format::Csv:
     case Format::Follower:
       return read_csv(content, hints);

@@ -109,10 +109,14 @@ struct ImportedFile {
   std::string name{};  ///< the file's own; while it is read
 };
 
-/// What a file of the follower's form may leave unsaid.
+/// What a file of the follower's form may leave unsaid, and what is to be done with wrong places.
 struct ImportHints {
-  std::optional<LatLon> origin;  ///< goes before the file's own
-  bool kmh = false;              ///< its velocities are in km/h
+  std::optional<LatLon> origin{};  ///< goes before the file's own
+  bool kmh = false;                ///< its velocities are in km/h
+  /// A position that cannot be is a row that is left out, with its reason. Without it, and in
+  /// .plan, .waypoints and fences always, it makes the file Invalid; so does a wrong corner of an
+  /// area.
+  bool leave_out_wrong = false;
 };
 
 /// @param format empty: detected, Unsupported if that fails. @param file_name for the plan's name

@@ -48,6 +48,8 @@ bool is_wgs84(const json& crs) {
 
 class GeoJsonReader {
  public:
+  explicit GeoJsonReader(bool leave_out_wrong) : builder_(file_, problems_, leave_out_wrong) {}
+
   Result<ImportedFile> read(std::string_view content) {
     auto document = parse_json(content);
     if (!document) {
@@ -210,7 +212,7 @@ class GeoJsonReader {
   }
 
   void position(const json& value, std::string where) {
-    if (!is_position(value)) return problems_.add(where, kNoPosition);
+    if (!is_position(value)) return builder_.refuse(std::move(where), "position", kNoPosition);
     TrackPoint point{std::move(where), "position", value[1].get<double>(), value[0].get<double>()};
     if (value.size() > 2) point.alt_m = value[2].get<double>();
     if (value.size() > 3) {
@@ -224,13 +226,13 @@ class GeoJsonReader {
   ImportedFile file_;
   Fence fence_;
   Problems problems_;
-  TrackBuilder builder_{file_, problems_};
+  TrackBuilder builder_;
 };
 
 }  // namespace
 
-Result<ImportedFile> read_geojson(std::string_view content) {
-  return GeoJsonReader().read(without_bom(content));
+Result<ImportedFile> read_geojson(std::string_view content, const ImportHints& hints) {
+  return GeoJsonReader(hints.leave_out_wrong).read(without_bom(content));
 }
 
 std::string write_geojson(const Plan& plan, const Fence* fence, std::vector<FileRow>& rows) {

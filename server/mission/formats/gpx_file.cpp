@@ -38,6 +38,8 @@ std::optional<double> number_in(std::string_view text) {
 
 class GpxReader {
  public:
+  explicit GpxReader(bool leave_out_wrong) : builder_(file_, problems_, leave_out_wrong) {}
+
   Result<ImportedFile> read(std::string_view content) {
     XmlEvents events;
     events.begin = [this](const XmlElement& element) { begin(element); };
@@ -80,7 +82,9 @@ class GpxReader {
     const auto lat = number_in(element.attribute("lat"));
     const auto lon = number_in(element.attribute("lon"));
     point_good_ = lat && lon;
-    if (!point_good_) problems_.add(element.row, "lat and lon must be finite numbers");
+    if (!point_good_) {
+      builder_.refuse(element.row, point.what, "lat and lon must be finite numbers");
+    }
     point.lat = lat.value_or(0.0);
     point.lon = lon.value_or(0.0);
   }
@@ -135,13 +139,13 @@ class GpxReader {
   bool point_good_ = false;
   ImportedFile file_;
   Problems problems_;
-  TrackBuilder builder_{file_, problems_};
+  TrackBuilder builder_;
 };
 
 }  // namespace
 
-Result<ImportedFile> read_gpx(std::string_view content) {
-  return GpxReader().read(content);
+Result<ImportedFile> read_gpx(std::string_view content, const ImportHints& hints) {
+  return GpxReader(hints.leave_out_wrong).read(content);
 }
 
 std::string write_gpx(const Plan& plan, std::vector<FileRow>& rows) {

@@ -56,6 +56,8 @@ std::string_view unknown_kml_version(std::string_view name_space) {
 
 class KmlReader {
  public:
+  explicit KmlReader(bool leave_out_wrong) : builder_(file_, problems_, leave_out_wrong) {}
+
   Result<ImportedFile> read(std::string_view content) {
     XmlEvents events;
     events.begin = [this](const XmlElement& element) { begin(element); };
@@ -153,7 +155,7 @@ class KmlReader {
     FieldArea area{name_, shape.row, {}};
     for (const std::string& text : shape.rings) {
       auto& ring = area.rings.emplace_back();
-      const bool good = tuples(text, shape.row, "corner", [&](const TrackPoint& corner) {
+      const bool good = tuples(text, shape.row, kCorner, [&](const TrackPoint& corner) {
         ring.push_back({corner.lat, corner.lon});
         return ring.size() <= kMaxItems;
       });
@@ -176,7 +178,7 @@ class KmlReader {
       auto rings = nlohmann::json::array();
       for (const std::string& text : shape.rings) {
         auto& ring = rings.emplace_back(nlohmann::json::array());
-        const bool good = tuples(text, shape.row, "corner", [&](const TrackPoint& corner) {
+        const bool good = tuples(text, shape.row, kCorner, [&](const TrackPoint& corner) {
           ring.push_back(position(corner));
           return ring.size() <= kMaxFencePoints + 1;
         });
@@ -221,6 +223,13 @@ class KmlReader {
     }
   }
 
+  /// A shape without one of its corners is another shape: those are never left out.
+  void no_position(std::string row, std::string what) {
+    const char* detail = "must be longitude, latitude and perhaps a height";
+    if (what == kCorner) return problems_.add(std::move(row), detail);
+    builder_.refuse(std::move(row), std::move(what), detail);
+  }
+
   /// longitude, latitude and perhaps a height; what more there is is told
   std::optional<TrackPoint> tuple(std::string_view text, std::string row, std::string what,
                                   char separator) {
@@ -244,7 +253,7 @@ class KmlReader {
       }
     }
     if (!good || count < 2) {
-      problems_.add(row, "must be longitude, latitude and perhaps a height");
+      no_position(std::move(row), std::move(what));
       return std::nullopt;
     }
     TrackPoint point{std::move(row), std::move(what), values[1], values[0]};
@@ -254,6 +263,8 @@ class KmlReader {
     }
     return point;
   }
+
+  static constexpr const char* kCorner = "corner";
 
   std::vector<std::string> path_;
   std::vector<std::string> rows_;
@@ -266,13 +277,13 @@ class KmlReader {
   Fence fence_;
   ImportedFile file_;
   Problems problems_;
-  TrackBuilder builder_{file_, problems_};
+  TrackBuilder builder_;
 };
 
 }  // namespace
 
-Result<ImportedFile> read_kml(std::string_view content) {
-  return KmlReader().read(content);
+Result<ImportedFile> read_kml(std::string_view content, const ImportHints& hints) {
+  return KmlReader(hints.leave_out_wrong).read(content);
 }
 
 std::string write_kml(const Plan& plan, const Fence* fence, std::vector<FileRow>& rows) {

@@ -75,7 +75,7 @@ Result<std::string> unpacked(zip_t* archive, zip_uint64_t number) {
 
 }  // namespace
 
-Result<ImportedFile> read_kmz(std::string_view content) {
+Result<ImportedFile> read_kmz(std::string_view content, const ImportHints& hints) {
   zip_error_t error;
   zip_error_init(&error);
   zip_source_t* source = zip_source_buffer_create(content.data(), content.size(), 0, &error);
@@ -97,7 +97,7 @@ Result<ImportedFile> read_kmz(std::string_view content) {
   if (!document) return bad_archive("there is no .kml in it");
   const auto text = unpacked(archive.get(), *document);
   if (!text) return tl::unexpected<base::Error>(text.error());
-  return read_kml(*text);
+  return read_kml(*text, hints);
 }
 
 std::string write_kmz(const Plan& plan, const Fence* fence, std::vector<FileRow>& rows) {

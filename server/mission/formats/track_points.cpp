@@ -67,7 +67,7 @@ bool TrackBuilder::check(const TrackPoint& point, const char* name, double value
   std::string detail = std::string(name) + " must be from " + number_text(range.min) + " to " +
                        number_text(range.max) + ", is " + number_text(value);
   if (kLat.holds(point.lon) && kLon.holds(point.lat)) detail += ": is it swapped with longitude?";
-  problems_.add(point.row, std::move(detail));
+  refuse(point.row, point.what, std::move(detail));
   return false;
 }
 
@@ -111,6 +111,14 @@ void TrackBuilder::leave_out(std::string row, std::string what, std::string reas
   if (!room_for_row()) return;
   file_.rows.push_back(
       {std::move(row), std::move(what), Outcome::LeftOut, std::move(reason), std::nullopt});
+}
+
+void TrackBuilder::refuse(std::string row, std::string what, std::string detail) {
+  if (leave_out_wrong_) {
+    leave_out(std::move(row), std::move(what), std::move(detail));
+  } else {
+    problems_.add(std::move(row), std::move(detail));
+  }
 }
 
 std::optional<PartKind> TrackBuilder::chosen() const {

@@ -44,7 +44,9 @@ inline constexpr std::size_t kMaxRowsOfFile = 400'000;
 
 class TrackBuilder {
  public:
-  TrackBuilder(ImportedFile& file, Problems& problems) : file_(file), problems_(problems) {}
+  /// @param leave_out_wrong positions that cannot be; otherwise they are problems
+  TrackBuilder(ImportedFile& file, Problems& problems, bool leave_out_wrong)
+      : file_(file), problems_(problems), leave_out_wrong_(leave_out_wrong) {}
 
   /// A part begins. Without a call there is one, of Points.
   void begin(PartKind kind);
@@ -54,6 +56,8 @@ class TrackBuilder {
   /// A position that says nothing new after the one before it is left out.
   void add(TrackPoint point);
   void leave_out(std::string row, std::string what, std::string reason);
+  /// A position that cannot be.
+  void refuse(std::string row, std::string what, std::string detail);
 
   /// From now on a position that repeats the one before it stays, too.
   void keep_duplicates(bool keep) noexcept { keep_duplicates_ = keep; }
@@ -91,6 +95,7 @@ class TrackBuilder {
 
   ImportedFile& file_;
   Problems& problems_;
+  bool leave_out_wrong_;
   std::vector<Waypoint> points_;
   std::vector<std::size_t> rows_;  ///< by point: its row
   std::vector<Part> parts_;

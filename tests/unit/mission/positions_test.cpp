@@ -135,6 +135,40 @@ TEST(Csv, BadRowsAreNamed) {
             "none of .plan, .waypoints, GPX, KML, KMZ, GeoJSON and a table of positions");
 }
 
+TEST(Positions, ThatCannotBeAreLeftOutWhereThatIsWished) {
+  const ImportHints rest{.leave_out_wrong = true};
+  const auto taken = [&](const std::string& text) {
+    const auto file = import_file(text, std::nullopt, "", rest);
+    EXPECT_TRUE(file) << file.error().detail;
+    return std::to_string(file ? file->plan.items.size() : 0) + " items; " +
+           (file ? losses(file->rows) : "");
+  };
+  EXPECT_EQ(taken("lat,lon\n58.1,26.1\n95,26.1\n58.2\n58.3,x\n58.11,26.1\n"),
+            "2 items; line 3 row: latitude must be from -90 to 90, is 95: is it swapped with "
+            "longitude?\nline 4 row: must have 2 columns, has 1\n"
+            "line 5 row: column 2 must be a finite number\n");
+  EXPECT_EQ(taken("<kml><LineString><coordinates>26,58 26,95 x 26.1,58</coordinates></LineString>"
+                  "</kml>"),
+            "2 items; line 1, coordinate 2 coordinate: latitude must be from -90 to 90, is 95: is "
+            "it swapped with longitude?\n"
+            "line 1, coordinate 3 coordinate: must be longitude, latitude and perhaps a height\n");
+  EXPECT_EQ(taken("<gpx><rte><rtept lat=\"58\" lon=\"26\"/>\n<rtept lat=\"x\" lon=\"26\"/>"
+                  "<rtept lat=\"58.01\" lon=\"26\"/></rte></gpx>"),
+            "2 items; line 2 rtept: lat and lon must be finite numbers\n");
+  EXPECT_EQ(taken(R"({"type":"LineString","coordinates":[[0,0],[181,0],["x"],[0.01,0]]})"),
+            "2 items; /coordinates/1 position: longitude must be from -180 to 180, is 181\n"
+            "/coordinates/2 position: must be [longitude, latitude] or with a height\n");
+
+  // Nothing that is left, and what nobody can mend by leaving a place out.
+  EXPECT_FALSE(import_file("lat,lon\n95,26\n", std::nullopt, "", rest));
+  EXPECT_FALSE(import_file("# origin 91 0\nx,y\n1,1\n", std::nullopt, "", rest));
+  EXPECT_FALSE(import_file("x,y\n1,1\n", std::nullopt, "", rest));
+  EXPECT_FALSE(
+      import_file("<kml><Polygon><LinearRing><coordinates>26,58 x 26.1,58 26.1,58.1"
+                  "</coordinates></LinearRing></Polygon></kml>",
+                  std::nullopt, "", rest));
+}
+
 TEST(GeoJson, LinesPointsAndCollectionsAreRead) {
   const auto file = import_file(
       R"({"type":"FeatureCollection","features":[

@@ -53,6 +53,7 @@ export const read_problem = async (response: Response): Promise<Refusal> => {
     detail: problem.detail ?? fallback,
     errors,
     ...(current === undefined ? {} : { current }),
+    ...(problem.rest === undefined ? {} : { rest: problem.rest }),
   };
 };
 

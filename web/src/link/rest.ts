@@ -89,12 +89,13 @@ export const mission_calls: MissionCalls = {
       method: 'POST',
       body: { revision },
     }),
-  import_file: (file, origin) => {
+  import_file: (file, { origin, rest }) => {
     const query = new URLSearchParams({ name: file.name });
     if (origin) {
       query.set('origin_lat', String(origin.lat));
       query.set('origin_lon', String(origin.lon));
     }
+    if (rest) query.set('wrong', 'leave_out');
     return with_mission<Schemas['ImportResult']>(`/missions/import?${query}`, {
       method: 'POST',
       file,

@@ -16,6 +16,8 @@ export interface Refusal {
   readonly title: string;
   readonly detail: string;
   readonly errors: readonly FieldError[];
+  /** Of a file: what would become of its rows if the wrong ones were left out. */
+  readonly rest?: { readonly taken: number; readonly changed: number; readonly left_out: number };
   /** With 412: what is stored now. */
   readonly current?: Mission;
 }
@@ -35,11 +37,15 @@ const sentence_of = ({ detail, errors }: Refusal): string => {
   );
 };
 
+/** Each place that is wrong, in words: "line 3: latitude must …". */
+export const places_wrong = ({ errors }: Refusal): readonly string[] =>
+  errors.map(({ pointer, detail }) =>
+    pointer === '' ? detail : `${row_words(pointer)}: ${detail}`,
+  );
+
 /** One line for a person: the cause, then what is wrong in each place. */
 export const refusal_text = (refusal: Refusal): string => {
-  const causes = new_causes(refusal).map((error) =>
-    error.pointer === '' ? error.detail : `${row_words(error.pointer)}: ${error.detail}`,
-  );
+  const causes = places_wrong({ ...refusal, errors: new_causes(refusal) });
   return [refusal.detail === '' ? refusal.title : sentence_of(refusal), ...causes].join(' · ');
 };
 

@@ -133,6 +133,13 @@ export interface ImportResult {
 /** Where a mission begins: its first item, the nearest one, or an item's number. */
 export type StartFrom = 'first' | 'nearest' | number;
 
+export interface ImportHints {
+  /** Of a file in metres that tells none itself. */
+  readonly origin: LatLon | null;
+  /** Positions that cannot be are left out; otherwise they refuse the file. */
+  readonly rest: boolean;
+}
+
 export interface MissionCalls {
   list(filter: MissionFilter, cursor: string | null): Promise<Answer<Page<MissionSummary>>>;
   read(id: string): Promise<Answer<Mission>>;
@@ -156,7 +163,7 @@ export interface MissionCalls {
   restore(id: string, revision: number): Promise<Answer<Mission>>;
   check(id: string, revision: number): Promise<Answer<CheckReport>>;
   /** @param origin of a table in metres that does not tell its own */
-  import_file(file: File, origin: LatLon | null): Promise<Answer<ImportResult>>;
+  import_file(file: File, hints: ImportHints): Promise<Answer<ImportResult>>;
   export_address(id: string, format: string): string;
 }
 /** A place to drive to. */

@@ -2,7 +2,16 @@
 
 import { type Answer, failure_text, refusal_text, wants_origin } from '../model/answer';
 import type { LatLon } from '../model/plan';
-import type { CheckReport, Mission, MissionCalls, MissionSummary, Place } from '../model/ports';
+import { rest_question } from '../model/import_rest';
+import type {
+  CheckReport,
+  ImportHints,
+  ImportResult,
+  Mission,
+  MissionCalls,
+  MissionSummary,
+  Place,
+} from '../model/ports';
 import { say } from '../model/say';
 import type { Dialogs } from './dialogs.svelte';
 import type { Editor } from './editor.svelte';
@@ -105,7 +114,7 @@ export class Library {
   async open(id: string): Promise<boolean> {
     if (!(await this.#editor.may_discard())) return false;
     const answer = await this.#calls.read(id);
-    this.#notices.outcome(`open ${id}`, answer.ok ? null : refusal_text(answer.refusal));
+    this.#notices.tried(`open ${id}`, answer.ok ? null : refusal_text(answer.refusal));
     if (!answer.ok) return false;
     this.#editor.show_mission(answer.value);
     return true;
@@ -123,7 +132,7 @@ export class Library {
     });
     if (!sure) return;
     const answer = await this.#calls.remove(mission.id, mission.revision);
-    this.#notices.outcome(
+    this.#notices.tried(
       `delete ${mission.id}`,
       answer.ok ? null : failure_text(say('done_deleted'), answer.refusal),
     );
@@ -151,7 +160,7 @@ export class Library {
 
   async #change(failed: string, id: string, call: () => Promise<Answer<Mission>>): Promise<void> {
     const answer = await call();
-    this.#notices.outcome(
+    this.#notices.tried(
       `${failed} ${id}`,
       answer.ok ? null : `${failed}: ${refusal_text(answer.refusal)}`,
     );
@@ -161,7 +170,7 @@ export class Library {
   /** What speaks against driving the stored mission, in a dialog. */
   async check(id: string, revision: number, name: string): Promise<void> {
     const answer = await this.#calls.check(id, revision);
-    this.#notices.outcome(
+    this.#notices.tried(
       `check ${id}`,
       answer.ok ? null : say('not_checked_refusal', { refusal: refusal_text(answer.refusal) }),
     );
@@ -176,35 +185,27 @@ export class Library {
   /** One after the other: each report is read before the next file comes.
    * @param shown hears that one of them is in the editor */
   async import_files(files: readonly File[], shown: () => void): Promise<void> {
+    const refused: (readonly [about: string, failure: string])[] = [];
     for (const file of files) {
-      if (await this.import_file(file)) shown();
+      const failure = await this.#import(file, shown);
+      if (failure !== null) refused.push([`file ${file.name}`, failure]);
       await this.#dialogs.gone();
     }
+    // The next file was no doing of the person's: what became of this one is still to be read.
+    if (files.length > 1) for (const each of refused) this.#notices.tried(...each);
   }
 
-  /** @return whether the imported mission is now in the editor */
-  async import_file(file: File): Promise<boolean> {
-    if (!(await this.#editor.may_discard())) return false;
-    let answer = await this.#calls.import_file(file, null);
-    const origin = this.#origin();
-    if (!answer.ok && origin && wants_origin(answer.refusal)) {
-      const here = await this.#dialogs.ask({
-        title: say('where_does_it_begin'),
-        text: say('name_counts_metres_from_an_origin', { name: file.name }),
-        yes: say('take_home'),
-        danger: false,
-      });
-      if (!here) return false;
-      answer = await this.#calls.import_file(file, origin);
-    }
-    const failure = answer.ok
-      ? null
-      : say('name_was_not_imported_text', {
-          name: file.name,
-          text: refusal_text(answer.refusal),
-        });
-    this.#notices.outcome(`file ${file.name}`, failure);
-    if (!answer.ok) return false;
+  /** @param shown hears that it is now in the editor. @return why it was not imported; null: it was, or
+   * the person does not want it */
+  async #import(file: File, shown: () => void): Promise<string | null> {
+    if (!(await this.#editor.may_discard())) return null;
+    const answer = await this.#ask_import(file);
+    const refusal = answer === null || answer.ok ? null : answer.refusal;
+    const failure =
+      refusal &&
+      say('name_was_not_imported_text', { name: file.name, text: refusal_text(refusal) });
+    this.#notices.tried(`file ${file.name}`, failure);
+    if (!answer?.ok) return failure;
     const { mission } = answer.value;
     if (mission) this.#editor.show_mission(mission);
     const text = file.size <= READ_AGAIN_BYTES ? await file.text() : null;
@@ -212,7 +213,29 @@ export class Library {
     this.#dialogs.show({ kind: 'report', report });
     void this.#fetch_others(report);
     await this.refresh();
-    return mission !== null;
+    if (mission) shown();
+    return null;
+  }
+
+  /** Asks what a refusal leaves open. @return null: the person does not want it so */
+  async #ask_import(file: File): Promise<Answer<ImportResult> | null> {
+    let hints: ImportHints = { origin: null, rest: false };
+    const origin = this.#origin();
+    let answer = await this.#calls.import_file(file, hints);
+    if (!answer.ok && origin && wants_origin(answer.refusal)) {
+      const here = await this.#dialogs.ask({
+        title: say('where_does_it_begin'),
+        text: say('name_counts_metres_from_an_origin', { name: file.name }),
+        yes: say('take_home'),
+        danger: false,
+      });
+      if (!here) return null;
+      hints = { ...hints, origin };
+      answer = await this.#calls.import_file(file, hints);
+    }
+    if (answer.ok || !answer.refusal.rest) return answer;
+    const so = await this.#dialogs.ask(rest_question(file.name, answer.refusal));
+    return so ? this.#calls.import_file(file, { ...hints, rest: true }) : null;
   }
 
   /** The first mission of the file came with the report. */

@@ -14,9 +14,11 @@ export interface Notice {
   readonly text: string;
   /** Two about the same are one: the newer. */
   readonly about: string | null;
+  /** Of something that was tried: over once the person does the next thing. */
+  readonly passing: boolean;
 }
 
-/** Errors stay until they are dismissed. */
+/** Errors stay until they are dismissed, or until what is done next. */
 const SHOWN_MS: Record<Exclude<Level, 'error'>, number> = { info: 4000, good: 4000, warning: 8000 };
 const AT_MOST = 4;
 const LOG_LINES = 500;
@@ -40,11 +42,11 @@ export class Notices {
     return this.log[0]?.time ?? '';
   }
 
-  show(level: Level, text: string, about: string | null = null): void {
+  show(level: Level, text: string, about: string | null = null, passing = false): void {
     const rest = this.shown.filter(
       (notice) => notice.text !== text && (about === null || notice.about !== about),
     );
-    const notice = { id: this.#next, level, text, about };
+    const notice = { id: this.#next, level, text, about, passing };
     this.#next += 1;
     this.shown = [...rest, notice].slice(-AT_MOST);
     if (level !== 'error') setTimeout(() => this.dismiss(notice.id), SHOWN_MS[level]);
@@ -54,6 +56,19 @@ export class Notices {
   outcome(about: string, failure: string | null): void {
     if (failure === null) this.shown = this.shown.filter((notice) => notice.about !== about);
     else this.show('error', failure, about);
+  }
+
+  /** The same of what matters only until something else is done. */
+  tried(about: string, failure: string | null): void {
+    if (failure === null) this.outcome(about, null);
+    else this.show('error', failure, about, true);
+  }
+
+  /** The person does something else. */
+  move_on(): void {
+    if (this.shown.some(({ passing }) => passing)) {
+      this.shown = this.shown.filter(({ passing }) => !passing);
+    }
   }
 
   dismiss(id: number): void {

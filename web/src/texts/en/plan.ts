@@ -118,6 +118,10 @@ export const plan = {
   not_brought_back: 'Not brought back',
   not_copied: 'Not copied',
   not_checked_refusal: 'Not checked: {refusal}',
+  take_the_rest: 'Take the rest?',
+  file_rest_text:
+    '“{name}” has places that cannot be: {wrong}. Without them its other rows are taken ({taken}); the report names what was left out ({left_out}).',
+  take_the_rest_yes: 'Take the rest',
   where_does_it_begin: 'Where does it begin?',
   name_counts_metres_from_an_origin:
     '“{name}” counts metres from an origin that it does not tell. Take the robot’s home for it?',

@@ -118,6 +118,10 @@ export const plan = {
   not_brought_back: 'Ei toodud tagasi',
   not_copied: 'Ei kopeeritud',
   not_checked_refusal: 'Ei kontrollitud: {refusal}',
+  take_the_rest: 'Kas võtta ülejäänu?',
+  file_rest_text:
+    'Failis „{name}“ on võimatuid kohti: {wrong}. Ilma nendeta võetakse ülejäänud read ({taken}); aruanne nimetab välja jäetud read ({left_out}).',
+  take_the_rest_yes: 'Võta ülejäänu',
   where_does_it_begin: 'Kust see algab?',
   name_counts_metres_from_an_origin:
     '„{name}“ loeb meetreid alguspunktist, mida see ei ütle. Kas võtta selleks roboti kodu?',

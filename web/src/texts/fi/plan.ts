@@ -119,6 +119,10 @@ export const plan = {
   not_brought_back: 'Ei tuotu takaisin',
   not_copied: 'Ei kopioitu',
   not_checked_refusal: 'Ei tarkistettu: {refusal}',
+  take_the_rest: 'Otetaanko loput?',
+  file_rest_text:
+    'Tiedostossa ”{name}” on mahdottomia paikkoja: {wrong}. Ilman niitä muut rivit otetaan ({taken}); raportti nimeää pois jätetyt ({left_out}).',
+  take_the_rest_yes: 'Ota loput',
   where_does_it_begin: 'Mistä se alkaa?',
   name_counts_metres_from_an_origin:
     '”{name}” laskee metrejä alkupisteestä, jota se ei kerro. Otetaanko robotin koti alkupisteeksi?',

@@ -120,6 +120,10 @@ export const plan = {
   not_brought_back: 'Non recuperata',
   not_copied: 'Non copiata',
   not_checked_refusal: 'Non verificata: {refusal}',
+  take_the_rest: 'Prendere il resto?',
+  file_rest_text:
+    '«{name}» contiene posizioni impossibili: {wrong}. Senza di esse si prendono le altre righe ({taken}); il rapporto nomina quelle tralasciate ({left_out}).',
+  take_the_rest_yes: 'Prendi il resto',
   where_does_it_begin: 'Da dove comincia?',
   name_counts_metres_from_an_origin:
     '«{name}» conta i metri da un’origine che non dice. Prendere la casa del robot?',

@@ -119,6 +119,10 @@ export const plan = {
   not_brought_back: 'Ikke hentet tilbake',
   not_copied: 'Ikke kopiert',
   not_checked_refusal: 'Ikke sjekket: {refusal}',
+  take_the_rest: 'Ta resten?',
+  file_rest_text:
+    '«{name}» har steder som ikke kan finnes: {wrong}. Uten dem tas de andre radene ({taken}); rapporten nevner det som ble utelatt ({left_out}).',
+  take_the_rest_yes: 'Ta resten',
   where_does_it_begin: 'Hvor begynner det?',
   name_counts_metres_from_an_origin:
     '«{name}» teller meter fra et origo det ikke oppgir. Bruke robotens hjem?',
