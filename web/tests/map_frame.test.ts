@@ -10,6 +10,7 @@ import {
   why_not_map_point,
 } from '../src/model/map_frame';
 import type { Item, Plan } from '../src/model/plan';
+import { SHED } from './shed';
 
 const point: Item = { type: 'map_point', x_m: 1, y_m: 2 };
 const wait: Item = { type: 'wait', seconds: 1 };
@@ -48,6 +49,14 @@ describe('a new point of the map', () => {
     expect(why_not_map_point(framed, { ...in_yard, map: 'shed' })).toBeNull();
     expect(why_not_map_point(pointed, in_yard)).toBeNull();
     expect(why_not_map_point({ ...pointed, frame: null }, undefined)).toBeNull();
+  });
+
+  test('is offered in a map of the list that is drawn, and begins in its middle', () => {
+    const seen = { ...SHED, name: 'shed' };
+    expect(why_not_map_point(framed, in_yard, seen)).toBeNull();
+    expect(fresh_map_point(in_yard, seen)).toEqual({ type: 'map_point', x_m: 5, y_m: 3 });
+    expect(fresh_map_point({ ...in_yard, map: 'shed' }, seen)).toMatchObject({ x_m: 3.5 });
+    expect(fresh_map_point({ map: 'shed', x_m: null }, seen)).toMatchObject({ x_m: 5 });
   });
 
   test('lies where the robot is, and the first one says from which map it counts', () => {

@@ -1,7 +1,6 @@
 import { describe, expect, it } from 'vitest';
 
 import { distance_m, offset_between, offset_from } from '../src/model/geo';
-import type { Plan } from '../src/model/plan';
 import {
   FORBIDDEN_CELL,
   FREE_CELL,
@@ -18,7 +17,6 @@ import {
   in_map,
   lies_anywhere,
   made_so_far,
-  map_points_of,
   on_earth,
   name_of_files,
   pair_of,
@@ -141,37 +139,6 @@ describe('where a map lies', () => {
     expect(place_of_map(map, null)).toBeNull();
     expect(lies_anywhere(map)).toBe(true);
     expect(lies_anywhere({ ...map, placed })).toBe(false);
-  });
-});
-
-describe('a mission that counts from a map', () => {
-  const plan: Plan = {
-    name: 'shed',
-    frame: { map: map.name },
-    items: [
-      { type: 'map_point', x_m: 1, y_m: 2 },
-      { type: 'wait', seconds: 1 },
-    ],
-  };
-  const placed = {
-    lat: 58,
-    lon: 26,
-    heading_deg: 0,
-    accuracy_m: 0.1,
-    heading_accuracy_deg: 1,
-  };
-
-  it('lies where the map in use lies', () => {
-    const [line] = map_points_of(plan, [{ ...map, in_use: true, placed }]);
-    // x looks north, so y looks west.
-    const { east_m, north_m } = offset_between(placed, line?.places[0] ?? placed);
-    expect([Math.round(east_m), Math.round(north_m)]).toEqual([-2, 1]);
-  });
-
-  it('lies nowhere by another map, or one that is not in use', () => {
-    expect(map_points_of(plan, [{ ...map, in_use: false, placed }])).toEqual([]);
-    expect(map_points_of(plan, [{ ...map, in_use: true, placed, name: 'yard' }])).toEqual([]);
-    expect(map_points_of({ ...plan, frame: null }, [{ ...map, in_use: true, placed }])).toEqual([]);
   });
 });
 

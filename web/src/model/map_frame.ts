@@ -4,7 +4,8 @@
 import type { PlanAction } from './actions';
 import type { OnMap, Plan } from './plan';
 import { say } from './say';
-import type { MapPlace } from './site_map';
+import { middle_of_map } from './map_plan';
+import type { MapPlace, SiteMap } from './site_map';
 
 /** Where the robot stands in its map; nothing: it was not told. */
 type Standing = Pick<MapPlace, 'map' | 'x_m' | 'y_m'> | undefined;
@@ -29,22 +30,28 @@ export const frames_to_choose = (
   return [...new Set(names)].filter((name) => name !== '');
 };
 
-/** Metres of one map are none of another. @return null: a point may be added */
-export const why_not_map_point = (plan: Plan, standing: Standing): string | null => {
+/** Metres of one map are none of another. @param seen the map that counts, which is drawn; null: it is not
+ * @return null: a point may be added */
+export const why_not_map_point = (
+  plan: Plan,
+  standing: Standing,
+  seen: SiteMap | null = null,
+): string | null => {
   const frame = plan.frame?.map;
   const other = standing?.map ?? null;
-  if (frame === undefined || frame === other) return null;
+  if (frame === undefined || frame === other || frame === seen?.name) return null;
   return other === null
     ? say('map_point_without_its_map', { frame })
     : say('map_point_by_another_map', { frame, other });
 };
 
-/** Where the robot is in the map. */
-export const fresh_map_point = (standing: Standing): OnMap => ({
-  type: 'map_point',
-  x_m: standing?.x_m ?? 0,
-  y_m: standing?.y_m ?? 0,
-});
+/** Where the robot is in the map; the middle of one that is seen while the robot is not in it. */
+export const fresh_map_point = (standing: Standing, seen: SiteMap | null = null): OnMap => {
+  const elsewhere =
+    seen !== null && (standing?.map !== seen.name || (standing.x_m ?? null) === null);
+  if (elsewhere) return { type: 'map_point', ...middle_of_map(seen) };
+  return { type: 'map_point', x_m: standing?.x_m ?? 0, y_m: standing?.y_m ?? 0 };
+};
 
 /** The first point makes the mission count from the map that the robot uses. */
 export const counted_where = (standing: Standing): PlanAction => {

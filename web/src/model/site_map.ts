@@ -6,8 +6,7 @@ import type { Answer } from './answer';
 import { accuracy, count, degrees_text, metres, sentence } from './format';
 import { offset_between, offset_from } from './geo';
 import type { Places } from './outline';
-import type { LineOnMap } from './on_map';
-import type { LatLon, Plan } from './plan';
+import type { LatLon } from './plan';
 import { say, told } from './say';
 import type { Placed } from './seen';
 
@@ -122,20 +121,6 @@ const RAD = Math.PI / 180;
 export const on_earth = (at: Placed, { x_m, y_m }: MapPoint): LatLon => {
   const [sin, cos] = [Math.sin(at.heading_deg * RAD), Math.cos(at.heading_deg * RAD)];
   return offset_from(at, { east_m: x_m * sin - y_m * cos, north_m: x_m * cos + y_m * sin });
-};
-
-/** A mission's points that count from the map in use, where that lies; of another map nobody knows. */
-export const map_points_of = (plan: Plan, maps: readonly SiteMap[]): readonly LineOnMap[] => {
-  const map = maps.find(({ name, in_use }) => name === plan.frame?.map && in_use);
-  const at = map && (map.placed ?? map.anchor);
-  const places = at
-    ? plan.items.flatMap((item) => (item.type === 'map_point' ? [on_earth(at, item)] : []))
-    : [];
-  if (places.length === 0) return [];
-  return [
-    { places, tone: 'drawn' },
-    { places, tone: 'drawn', points: 'ring' },
-  ];
 };
 
 /** The other way: millimetres are more than any cell. */

@@ -5,11 +5,11 @@ import { untrack } from 'svelte';
 
 import { other_on_map } from '../model/compare';
 import { is_loaded, look_of } from '../model/draft';
+import { drawn_plan } from '../model/map_plan';
 import { drawn_on_map } from '../model/makings';
 import type { LineOnMap } from '../model/on_map';
 import { EMPTY_PLAN, spots } from '../model/plan';
 import { NOTHING_PICKED } from '../model/selection';
-import { map_points_of } from '../model/site_map';
 import { settled } from './settled';
 import type { Station } from './station.svelte';
 
@@ -48,7 +48,7 @@ export const keep_edits_in_step = (station: Station, hidden: () => boolean): voi
   $effect(() => {
     const { drawing } = station;
     const { plan, selected, shape } = drawing ?? editor;
-    const shown = drawing ? plan : (shaping.preview ?? plan);
+    const shown = drawing ? plan : drawn_plan(shaping.preview ?? plan, station.in_map.by);
     const look = look_of(shape, drives, loaded, has_route);
     const refused = drawing ? NOTHING : editor.refused;
     map.show_plan(hidden() ? EMPTY_PLAN : shown, selected, refused, look.shape, look.faint);
@@ -66,16 +66,13 @@ export const keep_edits_in_step = (station: Station, hidden: () => boolean): voi
   const made_on_map = $derived(
     made && !made.by_hand ? drawn_on_map(made.drawn, editor.plan.items) : [],
   );
-  const by_map = $derived(map_points_of(editor.plan, station.sites.items));
   const told = $derived(
     station.dialogs.open?.kind === 'report' ? station.dialogs.open.report.on_map : null,
   );
   $effect(() =>
     map.show_beside(
       told ??
-        (planned
-          ? [...made_on_map, ...by_map, ...station.beneath.on_map, ...compared]
-          : beside(station)),
+        (planned ? [...made_on_map, ...station.beneath.on_map, ...compared] : beside(station)),
     ),
   );
   // Where they differ is seen before the person chooses.

@@ -3,11 +3,13 @@
 import { untrack } from 'svelte';
 
 import { failure_text, refusal_text, type Answer } from '../model/answer';
+import type { PlanMap } from '../model/map_plan';
 import type { LatLon } from '../model/plan';
 import { say } from '../model/say';
 import {
   name_of_files,
   pair_of,
+  lies_anywhere,
   place_of_map,
   type MapAnchor,
   type MapFiles,
@@ -43,17 +45,23 @@ export class SiteMaps {
   readonly editor: SiteEditor;
   in_use = $derived<SiteMap | null>(this.items.find((map) => map.in_use) ?? null);
   #edited = $derived.by<SiteMap | null>(() => (this.#listed ? this.editor.map : null));
-  /** What is drawn: the map that is edited, else the one in use. */
+  /** Of the mission that is planned; null: it counts from none. */
+  #planned = $state.raw<PlanMap | null>(null);
+  /** In the list: a map that lies somewhere and is not in use. */
+  #looked = $state<number | null>(null);
+  /** What is drawn: the map that is edited or looked at, else that of the plan, else the one in use. */
   drawn = $derived.by<SiteMap | null>(() => {
     const map = this.#edited;
     if (map) return this.items.find(({ id }) => id === map.id) ?? map;
-    return this.in_use;
+    const looked = this.#listed ? this.items.find(({ id }) => id === this.#looked) : undefined;
+    return looked ?? this.#planned?.map ?? this.in_use;
   });
   on_map = $derived.by<SiteOnMap | null>(() => {
     const { drawn } = this;
     const cells = drawn && this.#cells.of(drawn);
     if (!drawn || !cells) return null;
-    const at = this.#edited ? this.editor.at : place_of_map(drawn, null);
+    const planned = this.#planned?.map === drawn ? this.#planned.at : null;
+    const at = this.#edited ? this.editor.at : (planned ?? place_of_map(drawn, null));
     return at && { map: drawn, cells, at };
   });
 
@@ -80,7 +88,21 @@ export class SiteMaps {
   /** What is changed in the list is drawn only while one looks at it: the robot does not drive by it. */
   look(listed: boolean): void {
     this.#listed = listed;
+    if (!listed) this.#looked = null;
     untrack(() => void this.fetch_cells());
+  }
+
+  /** Draws one of the list, as long as one looks at that. @return whether it lies anywhere */
+  show(map: SiteMap): boolean {
+    this.#looked = map.id;
+    void this.fetch_cells();
+    return !lies_anywhere(map);
+  }
+
+  /** Draws the map that is planned in. @param by null: none is */
+  plan_in(by: PlanMap | null): void {
+    this.#planned = by;
+    void this.fetch_cells();
   }
 
   /** Asks now and then, as long as it is looked at. @param draws also for cells @return ends it */

@@ -13,7 +13,10 @@ export const keep_site_in_step = (station: Station): void => {
   const maps_seen = $derived(station.tab === 'missions' && station.shelf === 'maps');
   const located = $derived((live.vehicle?.place?.state ?? 'off') !== 'off');
   const map_in_use = $derived(live.vehicle?.place?.map_id ?? null);
-  const site_drawn = $derived(maps_seen || (located && station.seen.layers.map));
+  const planned = $derived(station.tab === 'plan' ? station.in_map.by : null);
+  const site_drawn = $derived(
+    maps_seen || planned !== null || (located && station.seen.layers.map),
+  );
   // A mission that counts from a map has to be told from which, also where the robot is in none.
   const sites_wanted = $derived(
     maps_wanted(site_drawn, station.tab === 'plan' ? station.editor.plan : null),
@@ -29,6 +32,14 @@ export const keep_site_in_step = (station: Station): void => {
   });
   $effect(() => {
     if (maps_seen) void untrack(() => station.grounds.refresh());
+  });
+  // From which maps a mission could count is asked once.
+  $effect(() => {
+    if (station.tab === 'plan') void untrack(() => station.sites.refresh());
+  });
+  $effect(() => {
+    const by = planned;
+    untrack(() => station.sites.plan_in(by));
   });
   $effect(() => station.sites.look(maps_seen));
   $effect(() => map.show_site(site_drawn ? station.sites.on_map : null));

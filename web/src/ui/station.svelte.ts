@@ -6,7 +6,7 @@ import { refusal_text } from '../model/answer';
 import type { Found } from '../model/makings';
 import { activity_mark } from '../model/modes';
 import { EMPTY_PLAN, spots, type LatLon } from '../model/plan';
-import type { ImportedArea, MapCalls, MapEvents, StreamEvents } from '../model/ports';
+import type { ImportedArea, MapCalls, StreamEvents } from '../model/ports';
 import { field_rings } from '../model/survey';
 import { robot_place, type Check } from '../model/vehicle';
 import { Beneath } from './beneath.svelte';
@@ -17,6 +17,8 @@ import type { Doors } from './doors';
 import { drawn_in } from './drawn';
 import { Drills, type DrillSubject } from './drill.svelte';
 import type { Drawing } from './drawing.svelte';
+import { hand_on_map } from './hand_on_map';
+import { MapPlanner } from './map_planner.svelte';
 import { Drivers } from './drivers.svelte';
 import { keep_edits_in_step } from './edits_on_map.svelte';
 import { Editor } from './editor.svelte';
@@ -117,6 +119,7 @@ export class Station {
   readonly known: KnownPlaces;
   readonly seen: Seen;
   readonly sites: SiteMaps;
+  readonly in_map: MapPlanner;
   readonly grounds: Grounds;
   readonly standing: Standing;
   readonly me: MyPlace;
@@ -160,6 +163,7 @@ export class Station {
     this.seen = new Seen(doors.seen, doors.link, this.live, doors.layers);
     this.grounds = new Grounds(doors.tiles, doors.ground, this.notices, this.dialogs);
     this.sites = new SiteMaps(doors.sites, this.live, this.notices, this.dialogs);
+    this.in_map = new MapPlanner(this.editor, this.sites);
     this.standing = new Standing(this.live, this.pilot);
     this.drills = new Drills(doors.drill);
     this.makings = new Makings(doors.kept.makings, this.editor);
@@ -174,7 +178,7 @@ export class Station {
     this.findings = new Findings(doors.missions);
     this.teacher = new Teacher(doors.teach, this.editor, this.notices, this.dialogs);
     this.#past_way = new PastWay(doors.vehicle, this.live, doors.map);
-    doors.map.listen(this.#map_events());
+    doors.map.listen(hand_on_map(this));
     if (this.editor.restore_draft()) this.map.fit(spots(this.editor.plan));
     void this.#fetch_past_events(null);
     $effect.root(() => this.#keep_map_in_step());
@@ -314,36 +318,6 @@ export class Station {
       const answer = await this.#doors.vehicle.recent_events();
       if (answer.ok) return this.notices.past_events(answer.value.items, missed_since);
     }
-  }
-
-  #map_events(): MapEvents {
-    const drawn = (): Drawing => this.drawing ?? this.editor;
-    return {
-      on_add: (at) => drawn().add(at),
-      on_insert: (index, at) => drawn().insert(index, at),
-      on_move: (index, to) => drawn().move(index, to),
-      on_select: (index) => {
-        if (this.shaping.transform && this.drawing === null) return;
-        drawn().select(index);
-        if (index !== null && this.drawing === null) this.tab = 'plan';
-      },
-      on_pick: (index) => {
-        if (this.drawing) this.drawing.select(index);
-        else this.editor.pick(index);
-      },
-      on_pick_box: (indices) => {
-        if (!this.drawing) this.editor.pick_more(indices);
-      },
-      on_place: (at) => {
-        if (this.tab !== 'drive') return;
-        this.target.choose(at);
-        this.sheet_open = true;
-      },
-      on_point: (at, toward) => this.standing.point(at, toward),
-      on_pan: () => {
-        if (this.follow) this.set_follow(false);
-      },
-    };
   }
 
   #keep_map_in_step(): void {

@@ -1,16 +1,16 @@
 // What is shown when the whole of it is asked for.
 
 import { drawn_on_map } from '../model/makings';
+import { drawn_plan } from '../model/map_plan';
 import { spots, type LatLon } from '../model/plan';
-import { map_points_of } from '../model/site_map';
 import type { Station } from './station.svelte';
 
 /** Rows have no points: they lie where they were drawn. */
-const edited_in = ({ editor, makings, sites }: Station): readonly LatLon[] => {
+const edited_in = ({ editor, makings, in_map }: Station): readonly LatLon[] => {
   const made = makings.here;
   const drawn = made && !made.by_hand ? drawn_on_map(made.drawn, editor.plan.items) : [];
-  const by_map = map_points_of(editor.plan, sites.items);
-  return [...spots(editor.plan), ...[...drawn, ...by_map].flatMap(({ places }) => places)];
+  const planned = drawn_plan(editor.plan, in_map.by);
+  return [...spots(planned), ...drawn.flatMap(({ places }) => places)];
 };
 
 /** What a report tells of, or the edited mission, or the loaded one, or the way so far. */

@@ -54,6 +54,9 @@ export const items = {
   x_in_the_map: 'x in the map',
   y_in_the_map: 'y in the map',
   points_to_in_the_map: 'Points to, from the x axis',
+  plan_in_the_map: 'Taps on the map “{name}” become points of it, taps beside it waypoints.',
+  plan_in_a_map_that_lies_nowhere:
+    'Taps become points of the map “{name}”. Nobody has said where it lies: it is drawn about the robot, or anywhere.',
   counts_from_the_map: 'Counts from the map',
   no_map: 'none',
   map_point_by_another_map:

@@ -54,6 +54,9 @@ export const items = {
   x_in_the_map: 'x kaardil',
   y_in_the_map: 'y kaardil',
   points_to_in_the_map: 'Suund x-teljest',
+  plan_in_the_map: 'Puudutused kaardil „{name}“ on selle punktid, selle kõrval teepunktid.',
+  plan_in_a_map_that_lies_nowhere:
+    'Puudutustest saavad kaardi „{name}“ punktid. Keegi pole öelnud, kus see asub: see joonistatakse roboti ümber või kuhu tahes.',
   counts_from_the_map: 'Loetakse kaardilt',
   no_map: 'mitte ühtegi',
   map_point_by_another_map:

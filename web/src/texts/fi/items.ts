@@ -54,6 +54,9 @@ export const items = {
   x_in_the_map: 'x kartalla',
   y_in_the_map: 'y kartalla',
   points_to_in_the_map: 'Suunta x-akselista',
+  plan_in_the_map: 'Napautukset kartalla ”{name}” ovat sen pisteitä, sen vieressä reittipisteitä.',
+  plan_in_a_map_that_lies_nowhere:
+    'Napautuksista tulee kartan ”{name}” pisteitä. Kukaan ei ole kertonut, missä se sijaitsee: se piirretään robotin ympärille tai minne vain.',
   counts_from_the_map: 'Lasketaan kartasta',
   no_map: 'ei mistään',
   map_point_by_another_map:

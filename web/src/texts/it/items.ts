@@ -54,6 +54,10 @@ export const items = {
   x_in_the_map: 'x nella mappa',
   y_in_the_map: 'y nella mappa',
   points_to_in_the_map: 'Direzione dall’asse x',
+  plan_in_the_map:
+    'I tocchi sulla mappa «{name}» ne diventano punti, quelli accanto punti di passaggio.',
+  plan_in_a_map_that_lies_nowhere:
+    'I tocchi diventano punti della mappa «{name}». Nessuno ha detto dove si trova: è disegnata attorno al robot, o dove capita.',
   counts_from_the_map: 'Si conta dalla mappa',
   no_map: 'nessuna',
   map_point_by_another_map:

@@ -54,6 +54,10 @@ export const items = {
   x_in_the_map: 'x i kartet',
   y_in_the_map: 'y i kartet',
   points_to_in_the_map: 'Retning fra x-aksen',
+  plan_in_the_map:
+    'Trykk på kartet «{name}» blir punkter i det, trykk ved siden av blir veipunkter.',
+  plan_in_a_map_that_lies_nowhere:
+    'Trykk blir punkter i kartet «{name}». Ingen har sagt hvor det ligger: det tegnes rundt roboten, eller hvor som helst.',
   counts_from_the_map: 'Regnes fra kartet',
   no_map: 'ingen',
   map_point_by_another_map:
