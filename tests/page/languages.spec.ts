@@ -72,6 +72,22 @@ test('Finnish is chosen, said at once, and still spoken after a reload', async (
   expect(await language_of(page)).toBe('fi');
 });
 
+test('why the robot does not do as it is told is said in the language that is chosen', async ({
+  page,
+  station,
+}) => {
+  await open_page(page, station.url);
+  await station.rest('POST', '/vehicle/estop', {});
+  await tab(page, 'Log');
+  await choose(page, 'Suomi');
+  // A check, by its sentence; and what was not known stays in English, and says so.
+  await expect(page.getByText('hätäseis on lukittuna: kuittaa se ensin').first()).toBeVisible();
+  const file = { name: 'a.csv', mimeType: 'text/csv', buffer: Buffer.from('lat,lon\n95,26.7\n') };
+  await panel(page, 2);
+  await page.locator('input[type=file]').first().setInputFiles(file);
+  await expect(page.getByRole('log')).toContainText('rivi 2 leveysasteen on oltava');
+});
+
 test('in every language the panels fit a phone, and no text is missing', async ({
   page,
   station,

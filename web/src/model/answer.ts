@@ -1,6 +1,7 @@
 // What a request to the server ended in. A refusal is a value, not an exception: the page shows the
 // robot's own words.
 
+import { robot_says } from './robot_words';
 import { row_words } from './import_rows';
 import type { Mission } from './ports';
 import { say } from './say';
@@ -31,6 +32,8 @@ const new_causes = ({ detail, errors }: Refusal): readonly FieldError[] =>
 /** The robot's sentence, with the fields that it names in words: "/areas/0/polygon crosses itself". Paths
  * of its interface stay. */
 const sentence_of = ({ detail, errors }: Refusal): string => {
+  const said = robot_says(detail);
+  if (said !== detail) return said;
   const named = new Set(errors.map(({ pointer }) => pointer));
   return detail.replace(/(?<=^|[\s(])\/[\w/]*\w/g, (path) =>
     named.has(path) || /\/\d/.test(path) ? row_words(path) : path,
@@ -40,7 +43,7 @@ const sentence_of = ({ detail, errors }: Refusal): string => {
 /** Each place that is wrong, in words: "line 3: latitude must …". */
 export const places_wrong = ({ errors }: Refusal): readonly string[] =>
   errors.map(({ pointer, detail }) =>
-    pointer === '' ? detail : `${row_words(pointer)}: ${detail}`,
+    pointer === '' ? robot_says(detail) : `${row_words(pointer)}: ${robot_says(detail)}`,
   );
 
 /** One line for a person: the cause, then what is wrong in each place. */
@@ -73,5 +76,5 @@ export const wants_origin = (refusal: Refusal): boolean =>
 export const complaint = (refusal: Refusal): string =>
   [
     sentence_of(refusal),
-    ...new_causes(refusal).map((e) => `${row_words(e.pointer)} ${e.detail}`),
+    ...new_causes(refusal).map((e) => `${row_words(e.pointer)} ${robot_says(e.detail)}`),
   ].join('; ');

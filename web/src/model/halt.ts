@@ -5,6 +5,7 @@
 //   trying  --answer | state that is young enough--> confirmed
 //   trying  --the robot says that there is nothing to halt--> refused
 
+import { robot_says } from './robot_words';
 import { fixed } from './figures';
 import { language_now, say, told } from './say';
 import type { Vehicle } from './vehicle';
@@ -152,7 +153,8 @@ export const halt_line = (at: HaltTry, now_ms: number): HaltLine | null => {
     return slow ? { tone: 'bad', head: say('name_stopping', { name }), detail } : null;
   }
   if (over(at, now_ms)) return null;
-  if (at.state === 'refused') return { tone: 'warn', head: `${name}:`, detail: at.detail };
+  if (at.state === 'refused')
+    return { tone: 'warn', head: `${name}:`, detail: robot_says(at.detail) };
   const detail = say('by_the_robot_took_s_after_the_press', { took });
   return slow ? { tone: 'good', head: say('name_confirmed', { name }), detail } : null;
 };

@@ -1,6 +1,7 @@
 // Where “Come home” leads, before anything moves, as the robot itself tells it; and why it would do
 // nothing.
 
+import { robot_says } from './robot_words';
 import type { LatLon } from './plan';
 import { say, told } from './say';
 
@@ -29,7 +30,7 @@ export const target_words = ({ target_is }: WayHome): string =>
 
 /** @return null: it would drive */
 export const why_not_home = (way: WayHome): string | null => {
-  if (!way.possible) return way.reason;
+  if (!way.possible) return robot_says(way.reason);
   return way.distance_m !== null && way.distance_m < AT_HOME_M
     ? say('it_stands_there_already_way', { way: target_words(way).toLowerCase() })
     : null;

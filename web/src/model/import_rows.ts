@@ -27,7 +27,11 @@ const SILENT: ReadonlySet<string> = new Set([
 
 /** "/mission/items/2" → "item 3"; "line 7" stays. */
 export const row_words = (row: string): string => {
-  if (!row.startsWith('/')) return row;
+  if (!row.startsWith('/')) {
+    return row.replace(/\b(line|coordinate|corner)(?= \d)/g, (word) =>
+      say(word === 'line' ? 'file_line' : 'file_point'),
+    );
+  }
   const parts = row.split('/').slice(1);
   const words: string[] = [];
   let list = '';

@@ -1,6 +1,7 @@
 // Modes, single moves and the speed's reason in words that a person in the field understands, and
 // what of them makes sense now. The robot has the last word: its own reason is shown then.
 
+import { robot_says } from './robot_words';
 import { count, metres } from './format';
 import { by_hand, why_not_mode, type Facts } from './operations';
 import type { Mark } from './ports';
@@ -111,13 +112,13 @@ export const activity_line = (vehicle: Vehicle | null): ActivityLine | null => {
       return { head, state: 'going', detail: left(activity) };
     case 'waiting':
     case 'held':
-      return { head, state: 'waiting', detail: activity.reason };
+      return { head, state: 'waiting', detail: robot_says(activity.reason) };
     case 'reached':
       return { head, state: 'reached', detail: say('done') };
     case 'failed':
       // Whoever chose another mode knows it.
       if (/^ended by mode (AUTO|\w+: by the operator$)/.test(activity.reason)) return null;
-      return { head, state: 'failed', detail: activity.reason };
+      return { head, state: 'failed', detail: robot_says(activity.reason) };
   }
 };
 

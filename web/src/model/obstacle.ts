@@ -1,6 +1,7 @@
 // What the guard does about what stands in the way: the words for it, the place on the map, and which
 // sound it makes.
 
+import { robot_says } from './robot_words';
 import { sentence } from './format';
 import { offset_from } from './geo';
 import type { LatLon } from './plan';
@@ -62,9 +63,11 @@ export const obstacle_since = (obstacle: Obstacle, older_s: number): string => {
 
 /** "It slows: something stands in the way, 1.2 m ahead, seen by front." */
 export const obstacle_line = ({ action, reason }: Obstacle): string => {
-  if (action === 'stop') return `${sentence(reason)}.`;
-  if (action === 'overridden') return say('the_guard_is_overridden_by_hand_reason', { reason });
-  return `${action === 'creep' ? say('it_creeps') : say('it_slows')}: ${reason}.`;
+  const why = robot_says(reason);
+  if (action === 'stop') return `${sentence(why)}.`;
+  if (action === 'overridden')
+    return say('the_guard_is_overridden_by_hand_reason', { reason: why });
+  return `${action === 'creep' ? say('it_creeps') : say('it_slows')}: ${why}.`;
 };
 
 /** A place on the body, on the map. @param heading_deg of the body */

@@ -1,6 +1,7 @@
 // Maps of a place in the plane: where their cells lie on the earth, what a hand changes in them, and
 // the words for whether the robot knows its place in the one that is in use.
 
+import { robot_says } from './robot_words';
 import type { SiteCells } from './site_cells';
 import type { Answer } from './answer';
 import { accuracy, count, degrees_text, metres, sentence } from './format';
@@ -275,7 +276,7 @@ const FINE_M = 0.3;
 /** "Knows its place in “hall”" · "±3 cm, ±0.4°" */
 export const place_words = (place: MapPlace): PlaceWords | null => {
   const map = `“${place.map ?? ''}”`;
-  const why = place.reason === null ? '' : `${sentence(place.reason)}. `;
+  const why = place.reason === null ? '' : `${sentence(robot_says(place.reason))}. `;
   switch (place.state) {
     case 'off':
       return null;

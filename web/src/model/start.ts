@@ -1,5 +1,6 @@
 // Where a start begins and what speaks for and against it, in words and lights.
 
+import { robot_says } from './robot_words';
 import { accuracy, count, degrees_text, direction, metres } from './format';
 import { target_words, type WayHome } from './homeward';
 import type { CheckReport } from './ports';
@@ -88,7 +89,7 @@ const fence_light = (fence: FenceState | null): StartLight => {
 const home_light = (home: WayHome | null): StartLight => {
   const subject = say('way_home');
   if (home === null) return { light: 'warn', subject, words: say('not_known_yet') };
-  if (!home.possible) return { light: 'warn', subject, words: home.reason };
+  if (!home.possible) return { light: 'warn', subject, words: robot_says(home.reason) };
   return { light: 'good', subject, words: `${target_words(home)}, ${metres(home.distance_m)}` };
 };
 

@@ -1,5 +1,6 @@
 // Short messages to the person, and the log of what happened.
 
+import { robot_says } from '../model/robot_words';
 import { plain_devices } from '../model/control';
 import { title_before } from '../model/news';
 import { say } from '../model/say';
@@ -27,7 +28,7 @@ const MISSED_AT_MOST = 2;
 
 const words_of = (event: StationEvent): string => {
   const title = title_before(event.kind);
-  const detail = plain_devices(event.detail);
+  const detail = plain_devices(robot_says(event.detail));
   return title === null ? detail : `${title}: ${detail}`;
 };
 

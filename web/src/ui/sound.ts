@@ -1,6 +1,8 @@
 // Sounds of the page's own: a stop before something, the way free again, blocked for good, and what
 // happens to the mission. Browsers let a page sound only after somebody touched it: then and not before.
 
+import { language_said, robot_says } from '../model/robot_words';
+import { language_now } from '../model/say';
 import { cue_of, notes_of, vibration_of, type Cue, type CueSettings } from '../model/cues';
 import { sentence } from '../model/format';
 import type { Sound } from '../model/obstacle';
@@ -68,8 +70,8 @@ export class Speaker {
     // A device without a motor, or a page that nobody has touched yet, says no.
     if (vibration && 'vibrate' in navigator) navigator.vibrate([...vibration_of[cue]]);
     if (speech && 'speechSynthesis' in window) {
-      const words = new SpeechSynthesisUtterance(sentence(event.detail));
-      words.lang = 'en';
+      const words = new SpeechSynthesisUtterance(sentence(robot_says(event.detail)));
+      words.lang = language_said(event.detail) ?? language_now();
       window.speechSynthesis.speak(words);
     }
   }

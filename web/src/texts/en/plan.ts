@@ -120,7 +120,7 @@ export const plan = {
   not_checked_refusal: 'Not checked: {refusal}',
   take_the_rest: 'Take the rest?',
   file_rest_text:
-    '“{name}” has places that cannot be: {wrong}. Without them its other rows are taken ({taken}); the report names what was left out ({left_out}).',
+    '“{name}” has places that cannot be ({wrong}). Without them its other rows are taken ({taken}); the report names what was left out ({left_out}).',
   take_the_rest_yes: 'Take the rest',
   where_does_it_begin: 'Where does it begin?',
   name_counts_metres_from_an_origin:
@@ -138,6 +138,7 @@ export const plan = {
   measured_area: 'Area',
   measured_legs: 'Legs',
   measure_from_the_robot: 'From the robot',
+  file_line: 'line',
   file_item: 'item',
   file_area: 'area',
   file_feature: 'feature',

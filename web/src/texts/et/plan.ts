@@ -120,7 +120,7 @@ export const plan = {
   not_checked_refusal: 'Ei kontrollitud: {refusal}',
   take_the_rest: 'Kas võtta ülejäänu?',
   file_rest_text:
-    'Failis „{name}“ on võimatuid kohti: {wrong}. Ilma nendeta võetakse ülejäänud read ({taken}); aruanne nimetab välja jäetud read ({left_out}).',
+    'Failis „{name}“ on võimatuid kohti ({wrong}). Ilma nendeta võetakse ülejäänud read ({taken}); aruanne nimetab välja jäetud read ({left_out}).',
   take_the_rest_yes: 'Võta ülejäänu',
   where_does_it_begin: 'Kust see algab?',
   name_counts_metres_from_an_origin:
@@ -138,6 +138,7 @@ export const plan = {
   measured_area: 'Pindala',
   measured_legs: 'Lõigud',
   measure_from_the_robot: 'Robotist',
+  file_line: 'rida',
   file_item: 'element',
   file_area: 'ala',
   file_feature: 'objekt',

@@ -10,6 +10,7 @@ import { maps } from './maps';
 import { me } from './me';
 import { news } from './news';
 import { plan } from './plan';
+import { robot } from './robot';
 import { runs } from './runs';
 import { state } from './state';
 import { words } from './words';
@@ -28,4 +29,5 @@ export const finnish = {
   ...guide,
   ...me,
   ...news,
+  ...robot,
 } as const;

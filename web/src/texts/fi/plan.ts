@@ -121,7 +121,7 @@ export const plan = {
   not_checked_refusal: 'Ei tarkistettu: {refusal}',
   take_the_rest: 'Otetaanko loput?',
   file_rest_text:
-    'Tiedostossa ”{name}” on mahdottomia paikkoja: {wrong}. Ilman niitä muut rivit otetaan ({taken}); raportti nimeää pois jätetyt ({left_out}).',
+    'Tiedostossa ”{name}” on mahdottomia paikkoja ({wrong}). Ilman niitä muut rivit otetaan ({taken}); raportti nimeää pois jätetyt ({left_out}).',
   take_the_rest_yes: 'Ota loput',
   where_does_it_begin: 'Mistä se alkaa?',
   name_counts_metres_from_an_origin:
@@ -139,6 +139,7 @@ export const plan = {
   measured_area: 'Pinta-ala',
   measured_legs: 'Osuudet',
   measure_from_the_robot: 'Robotista',
+  file_line: 'rivi',
   file_item: 'kohta',
   file_area: 'alue',
   file_feature: 'kohde',

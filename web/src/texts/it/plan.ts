@@ -122,7 +122,7 @@ export const plan = {
   not_checked_refusal: 'Non verificata: {refusal}',
   take_the_rest: 'Prendere il resto?',
   file_rest_text:
-    '«{name}» contiene posizioni impossibili: {wrong}. Senza di esse si prendono le altre righe ({taken}); il rapporto nomina quelle tralasciate ({left_out}).',
+    '«{name}» contiene posizioni impossibili ({wrong}). Senza di esse si prendono le altre righe ({taken}); il rapporto nomina quelle tralasciate ({left_out}).',
   take_the_rest_yes: 'Prendi il resto',
   where_does_it_begin: 'Da dove comincia?',
   name_counts_metres_from_an_origin:
@@ -140,6 +140,7 @@ export const plan = {
   measured_area: 'Area',
   measured_legs: 'Tratti',
   measure_from_the_robot: 'Dal robot',
+  file_line: 'riga',
   file_item: 'elemento',
   file_area: 'area',
   file_feature: 'oggetto',

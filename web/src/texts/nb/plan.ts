@@ -121,7 +121,7 @@ export const plan = {
   not_checked_refusal: 'Ikke sjekket: {refusal}',
   take_the_rest: 'Ta resten?',
   file_rest_text:
-    '«{name}» har steder som ikke kan finnes: {wrong}. Uten dem tas de andre radene ({taken}); rapporten nevner det som ble utelatt ({left_out}).',
+    '«{name}» har steder som ikke kan finnes ({wrong}). Uten dem tas de andre radene ({taken}); rapporten nevner det som ble utelatt ({left_out}).',
   take_the_rest_yes: 'Ta resten',
   where_does_it_begin: 'Hvor begynner det?',
   name_counts_metres_from_an_origin:
@@ -139,6 +139,7 @@ export const plan = {
   measured_area: 'Areal',
   measured_legs: 'Stykker',
   measure_from_the_robot: 'Fra roboten',
+  file_line: 'linje',
   file_item: 'punkt i listen',
   file_area: 'område',
   file_feature: 'objekt',
