@@ -176,6 +176,20 @@ test('a block of rows is begun with two taps, seen with its turns, and kept as a
   await page.getByLabel('Row 2 lies').press('Enter');
   await expect(figures).toContainText('1 3 5 2 4');
 
+  // What is chosen can be read on a tablet, too, where the panel is narrowest.
+  await page.setViewportSize({ width: 820, height: 1180 });
+  const cut = await page.locator('.fields select').evaluateAll((all) =>
+    all.flatMap((each) => {
+      const pen = document.createElement('canvas').getContext('2d');
+      const chosen = (each as HTMLSelectElement).selectedOptions[0]?.text ?? '';
+      if (!pen) return ['no canvas'];
+      pen.font = getComputedStyle(each).font;
+      return pen.measureText(chosen).width > each.clientWidth - 32 ? [chosen] : [];
+    }),
+  );
+  expect(cut).toEqual([]);
+  await page.setViewportSize({ width: 1440, height: 900 });
+
   // Five rows side by side to the right of the first, on which the drawn line lies: 10 m, and as
   // long as that one.
   const scale = await pixels_per_m(page);
