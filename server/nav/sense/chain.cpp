@@ -105,8 +105,8 @@ base::Result<Chain> Chain::of(ChainParams params, std::vector<SensorSetup> senso
     sighted.low_m = params.ground.min_height_m;
     sighted.range_m = params.reduce.max_range_m;
     chain.eyes_.push_back({s, sighted, Persist(s.persist, params.reduce.max_range_m),
-                           HealthWatch(s.health, now),
-                           Movers(params.reduce.max_range_m, s.planar)});
+                           HealthWatch(s.health, now), Movers(params.reduce.max_range_m, s.planar),
+                           Grass()});
   }
   return chain;
 }
@@ -147,6 +147,7 @@ base::Result<std::size_t> Chain::take(const base::Sight& sight, const PoseHistor
     std::erase_if(reduced_.voxels, [](const Voxel& v) { return v.kind != Kind::Obstacle; });
   }
   sight_sectors(reduced_, sight.half_step_rad, eye.sighted, *sectors_);
+  if (eye.sighted.thin) eye.grass.see(reduced_, *sectors_, hills_);
   eye.movers.meet(reduced_, grid_);
   grid_.take(reduced_, *sectors_, static_cast<std::uint8_t>(i), &hills_);
   others_.clear();
@@ -167,7 +168,10 @@ void Chain::movers(base::Time now, std::vector<Mover>& out) const {
 void Chain::forget() noexcept {
   grid_.forget();
   hills_.forget();
-  for (EyeOf& eye : eyes_) eye.movers.forget();
+  for (EyeOf& eye : eyes_) {
+    eye.movers.forget();
+    eye.grass.forget();
+  }
 }
 
 std::optional<std::string> Chain::blind(base::Time now) const {

@@ -16,6 +16,7 @@
 #include "base/result.hpp"
 #include "base/sight.hpp"
 #include "nav/sense/footprint.hpp"
+#include "nav/sense/grass.hpp"
 #include "nav/sense/grid.hpp"
 #include "nav/sense/ground.hpp"
 #include "nav/sense/health.hpp"
@@ -82,6 +83,7 @@ class Chain {
     Persist persist;
     HealthWatch health;
     Movers movers;
+    Grass grass;  ///< of one plane with thin beams
   };
   Chain(const ChainParams& params, const Footprint& body);
 

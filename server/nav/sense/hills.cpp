@@ -1,11 +1,11 @@
 #include "nav/sense/hills.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 
 #include "base/angle.hpp"
+#include "nav/sense/lies.hpp"
 
 namespace roverd::nav::sense {
 
@@ -28,6 +28,8 @@ constexpr double kSilent_s = 1.0;
 constexpr std::int32_t kAbout = 1;
 // and where no place among them is known.
 constexpr std::int32_t kNear = 3;
+// and where what stands there was seen to be as thin as grass.
+constexpr std::int32_t kFar = 6;
 
 std::int32_t hill_cell(double m) noexcept {
   return static_cast<std::int32_t>(std::floor(m / Hills::kCell_m));
@@ -37,34 +39,6 @@ std::int32_t hill_cell(double m) noexcept {
 bool has_cell(double x_m, double y_m) noexcept {
   return std::abs(x_m) < Hills::kFarthest_m && std::abs(y_m) < Hills::kFarthest_m;
 }
-
-/// Where a voxel lies in O.
-class Lies {
- public:
-  explicit Lies(const Reduced& in)
-      : in_(in),
-        c_(std::cos(in.pose.yaw_rad)),
-        s_(std::sin(in.pose.yaw_rad)),
-        up_(up_in_body(in.lie)) {}
-
-  double x_m(const Voxel& v) const noexcept {
-    return in_.pose.x_m + c_ * static_cast<double>(v.x_m) - s_ * static_cast<double>(v.y_m);
-  }
-  double y_m(const Voxel& v) const noexcept {
-    return in_.pose.y_m + s_ * static_cast<double>(v.x_m) + c_ * static_cast<double>(v.y_m);
-  }
-  float height_m(const Voxel& v) const noexcept {
-    return static_cast<float>(in_.lie.z_m + up_[0] * static_cast<double>(v.x_m) +
-                              up_[1] * static_cast<double>(v.y_m) +
-                              up_[2] * static_cast<double>(v.z_m));
-  }
-
- private:
-  const Reduced& in_;
-  double c_;
-  double s_;
-  std::array<double, 3> up_;
-};
 
 }  // namespace
 
@@ -78,6 +52,7 @@ Hills::Hills(double range_m, double low_m)
   mask_ = static_cast<std::int32_t>(std::bit_ceil(std::clamp(wide, 16U, 1024U))) - 1;
   const auto side = static_cast<std::size_t>(mask_) + 1;
   places_.resize(side * side);
+  grown_.resize(side * side);
 }
 
 std::size_t Hills::index(std::int32_t x, std::int32_t y) const noexcept {
@@ -91,7 +66,10 @@ std::int32_t Hills::half_of(base::Time t) const noexcept {
 }
 
 void Hills::forget() noexcept {
-  if (begun_) std::fill(places_.begin(), places_.end(), Place{});
+  if (begun_) {
+    std::fill(places_.begin(), places_.end(), Place{});
+    std::fill(grown_.begin(), grown_.end(), Grown{});
+  }
   begun_ = false;
 }
 
@@ -279,8 +257,36 @@ bool Hills::is_ground(double x_m, double y_m, float z_m, base::Time now) const n
   // Lower ground beside it may be down the slope.
   float ground = lowest_about(x, y, half, kAbout);
   if (ground == kNoGroundBefore) ground = lowest_about(x, y, half, kNear);
-  // Nothing known is infinitely high: below it.
-  return z_m <= ground + low_m_ && z_m >= ground - kInside_m;
+  if (ground == kNoGroundBefore && is_grown(x, y, half)) {
+    ground = lowest_about(x, y, half, kFar);
+  }
+  return lies_on(ground, z_m);
+}
+
+/// Nothing known is infinitely high: below it.
+bool Hills::lies_on(float ground_m, float z_m) const noexcept {
+  return z_m <= ground_m + low_m_ && z_m >= ground_m - kInside_m;
+}
+
+bool Hills::is_grown(std::int32_t x, std::int32_t y, std::int32_t half) const noexcept {
+  const Grown& g = grown_[index(x, y)];
+  return g.x == x && g.y == y && g.half >= half - 1;
+}
+
+bool Hills::may_be_grass(double x_m, double y_m, float z_m, base::Time now) const noexcept {
+  if (!begun_ || !has_cell(x_m, y_m)) return false;
+  const std::int32_t half = half_of(now);
+  const std::int32_t x = hill_cell(x_m);
+  const std::int32_t y = hill_cell(y_m);
+  return lowest_about(x, y, half, kNear) == kNoGroundBefore &&
+         lies_on(lowest_about(x, y, half, kFar), z_m);
+}
+
+void Hills::grows(double x_m, double y_m, base::Time now) noexcept {
+  if (!begun_ || !has_cell(x_m, y_m)) return;
+  const std::int32_t x = hill_cell(x_m);
+  const std::int32_t y = hill_cell(y_m);
+  grown_[index(x, y)] = {x, y, half_of(now)};
 }
 
 std::size_t Hills::deny(Reduced& in) const {

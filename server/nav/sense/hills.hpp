@@ -72,6 +72,12 @@ class Hills {
   /// Something that is so high in O is the ground there, as far as that is known. @param x_m, y_m
   /// in O
   bool is_ground(double x_m, double y_m, float z_m, base::Time now) const noexcept;
+  /// It would be ground if it were grass: no ground is known near by, and it is low over what is
+  /// known within 0.6 m.
+  bool may_be_grass(double x_m, double y_m, float z_m, base::Time now) const noexcept;
+  /// What stands there is as thin as grass: it is ground over what is known within 0.6 m, for as
+  /// long as ground is known.
+  void grows(double x_m, double y_m, base::Time now) noexcept;
   void forget() noexcept;
 
  private:
@@ -83,6 +89,13 @@ class Hills {
     float z_m = 0.0F;            ///< the lowest then
     float before_m = 0.0F;       ///< and in the half before
   };
+  struct Grown {
+    std::int32_t x = 0;
+    std::int32_t y = 0;
+    std::int32_t half = kNever;
+  };
+  bool lies_on(float ground_m, float z_m) const noexcept;
+  bool is_grown(std::int32_t x, std::int32_t y, std::int32_t half) const noexcept;
   static constexpr std::size_t kDirections = 180;
   static constexpr float kStep_m = 0.1F;
   /// kStep_m of a direction, from the body's origin outwards.
@@ -119,6 +132,7 @@ class Hills {
   };
   std::vector<First> first_;  ///< of each direction
   std::vector<Place> places_;
+  std::vector<Grown> grown_;  ///< by the same index
   bool begun_ = false;
   base::Time begin_;
   Pose2 last_;          ///< X_OB until which the way is counted

@@ -77,9 +77,14 @@ void keep_rays(const Reduced& in, const std::vector<float>& at, Sectors& out) {
     const float dy = v.y_m - out.y_m;
     const float d = std::sqrt(dx * dx + dy * dy);
     const float back = ((out.x_m - from[0]) * dx + (out.y_m - from[1]) * dy) / d;
-    out.rays[next[sector_at(at[i])]++] = {
-        at[i],   d,    back, heights.of(from[0], from[1], from[2]), heights.of(v.x_m, v.y_m, v.z_m),
-        from[2], v.z_m};
+    out.rays[next[sector_at(at[i])]++] = {at[i],
+                                          d,
+                                          back,
+                                          heights.of(from[0], from[1], from[2]),
+                                          heights.of(v.x_m, v.y_m, v.z_m),
+                                          from[2],
+                                          v.z_m,
+                                          v.points};
   }
 }
 
@@ -108,6 +113,27 @@ Sectors::Pass Sectors::passes(std::size_t sector, float d_m, const Band& band) c
         out = Pass::Along;
       } else if (in >= -band.beside_m) {
         out = std::max(out, Pass::Beside);
+      }
+    }
+  }
+  return out;
+}
+
+Sectors::Share Sectors::share(double from, double to, float d_m, float about_m,
+                              float top_m) const noexcept {
+  constexpr auto n = static_cast<int>(kSectors);
+  Share out;
+  for (int k = static_cast<int>(std::floor(from)); k <= static_cast<int>(std::floor(to)); ++k) {
+    const auto sector = static_cast<std::size_t>((k % n + n) % n);
+    for (std::uint32_t i = begin[sector]; i < begin[sector + 1]; ++i) {
+      const Ray& ray = rays[i];
+      const double at = static_cast<double>(ray.at) + (k - static_cast<int>(sector));
+      if (at < from || at > to || ray.end_m < d_m - about_m) continue;
+      const float part = (d_m + ray.back_m) / (ray.end_m + ray.back_m);
+      if (ray.end_m <= d_m + about_m) {
+        out.met += ray.points;
+      } else if (ray.from_z_m + (ray.end_z_m - ray.from_z_m) * part <= top_m) {
+        out.through += ray.points;
       }
     }
   }

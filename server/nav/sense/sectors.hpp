@@ -55,6 +55,7 @@ struct Sectors {
     float end_z_m = 0.0F;  ///< heights in O
     float from_body_m = 0.0F;
     float end_body_m = 0.0F;  ///< heights over the body's plane
+    std::uint32_t points = 1;
   };
   std::vector<Ray> rays;  ///< by direction
   std::array<std::uint32_t, kSectors + 1> begin{};
@@ -80,6 +81,13 @@ struct Sectors {
   };
   /// How a ray of this direction went through at d_m from the sensor: the one that says most.
   Pass passes(std::size_t sector, float d_m, const Band& band) const noexcept;
+  struct Share {
+    double met = 0.0;  ///< points of rays that ended there
+    double through = 0.0;
+  };
+  /// What rays between two directions (in sectors from −π) did about d_m: ended within about_m of
+  /// it, or went on beyond and were no higher than top_m in O there.
+  Share share(double from, double to, float d_m, float about_m, float top_m) const noexcept;
 };
 
 /// @param in judged voxels; the rays take one place each, whatever their width. @param
