@@ -163,8 +163,12 @@ Result<MapForm> read_map_form(std::string_view body, std::string_view content_ty
   auto upload = parts->cloud ? maps::read_solid_upload(*parts->cloud)
                              : maps::read_upload(*parts->yaml, *parts->image);
   if (!upload) return tl::unexpected<Error>(upload.error());
-  if (!name) name = mission::clean_name(bare_name(parts->file), "Map");
-  return MapForm{std::move(*name), std::move(*upload)};
+  const auto if_taken = name ? maps::IfTaken::Refuse : maps::IfTaken::Number;
+  if (!name) {
+    const std::string of_file = mission::clean_name(bare_name(parts->file), "Map");
+    name = mission::clean_name(upload->name, of_file);
+  }
+  return MapForm{std::move(*name), if_taken, std::move(*upload)};
 }
 
 Result<StopMaking> read_stop_making(const Json& body) {
@@ -173,7 +177,8 @@ Result<StopMaking> read_stop_making(const Json& body) {
   if (const auto problem = problem_with(name)) members.complain("name", *problem);
   const bool discard = members.flag("discard").value_or(false);
   if (auto read = members.finish(); !read) return tl::unexpected<Error>(read.error());
-  return StopMaking{name.value_or("Map"), discard};
+  return StopMaking{name.value_or("Map"), name ? maps::IfTaken::Refuse : maps::IfTaken::Number,
+                    discard};
 }
 
 Result<maps::Change> read_map_change(const Json& body) {

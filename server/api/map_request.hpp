@@ -14,17 +14,19 @@ namespace roverd::api {
 
 struct MapForm {
   std::string name;
+  maps::IfTaken if_taken = maps::IfTaken::Refuse;  ///< Number: nobody gave it, it is of the files
   maps::Upload upload;
 };
 
 /// multipart/form-data with `yaml` and `image`, or `cloud`, and perhaps `name`; without one the map
-/// is called as the yaml's file, or the cloud's. Unsupported: another type; Malformed: its frame is
-/// broken; Invalid: a file is missing, comes twice or cannot be, or a field is not known, with its
-/// name.
+/// is called as its yaml says (maps/comments.hpp), else as the yaml's file, or the cloud's.
+/// Unsupported: another type; Malformed: its frame is broken; Invalid: a file is missing, comes
+/// twice or cannot be, or a field is not known, with its name.
 base::Result<MapForm> read_map_form(std::string_view body, std::string_view content_type);
 
 struct StopMaking {
-  std::string name;  ///< one that people may give
+  std::string name;                                ///< one that people may give
+  maps::IfTaken if_taken = maps::IfTaken::Refuse;  ///< Number: nobody gave one
   bool discard = false;
 };
 /// {name?, discard?}. Invalid, with the name of what is wrong.

@@ -1,13 +1,12 @@
 #include "maps/exchange.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cstdint>
 #include <string>
 #include <utility>
 
 #include "atlas/map_files.hpp"
+#include "maps/comments.hpp"
 #include "maps/edit.hpp"
 #include "maps/solid.hpp"
 #include "maps/words.hpp"
@@ -20,14 +19,6 @@ namespace {
 using base::Error;
 using base::Result;
 using nav::chart::OccupancyMap;
-
-/// The shortest that reads back as the same.
-std::string decimal(double value) {
-  std::array<char, 400> text{};
-  const auto end =
-      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed).ptr;
-  return {text.data(), end};
-}
 
 /// Of a form's part: "/yaml/origin" for its "/origin", "/image/byte 3" for its "byte 3".
 tl::unexpected<Error> of_part(const std::string& part, Error error) {
@@ -60,7 +51,10 @@ Result<Upload> read_upload(std::string_view yaml, std::string_view picture) {
                                   " cells along a side; at most " + std::to_string(kLongestSide),
                               {}});
   }
-  return Upload{std::move(*map), std::move(words->others), {}};
+  Comments said = read_comments(yaml);
+  Upload out{std::move(*map), std::move(words->others), {}, std::move(said.name), said.anchor};
+  for (std::string& name : said.wrong) out.passed_over.push_back(std::move(name));
+  return out;
 }
 
 Result<Upload> read_solid_upload(std::string_view pcd) {
@@ -71,22 +65,13 @@ Result<Upload> read_solid_upload(std::string_view pcd) {
   if (!plane) return of_part("/cloud", plane.error());
   auto file = nav::cells::write_map(*solid);
   if (!file) return of_part("/cloud", file.error());
-  return Upload{std::move(*plane), {}, std::move(*file)};
+  return Upload{std::move(*plane), {}, std::move(*file), {}, {}};
 }
 
 std::string exported_yaml(const OccupancyMap& map, const About& about, const std::string& image) {
   atlas::MapWords words = words_for(map);
   words.image = image;
-  std::string text = "# name: " + about.name + "\n";
-  if (about.anchor) {
-    const Anchor& a = *about.anchor;
-    text += "# anchor_lat: " + decimal(a.at.lat) + "\n";
-    text += "# anchor_lon: " + decimal(a.at.lon) + "\n";
-    text += "# anchor_heading_deg: " + decimal(a.heading_deg) + "\n";
-    text += "# anchor_accuracy_m: " + decimal(a.accuracy_m) + "\n";
-    text += "# anchor_heading_accuracy_deg: " + decimal(a.heading_accuracy_deg) + "\n";
-  }
-  return text + atlas::write_words(words);
+  return comments_of(about) + atlas::write_words(words);
 }
 
 Result<std::string> exported_pgm(OccupancyMap map, const std::vector<Area>& forbidden) {

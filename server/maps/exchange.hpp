@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,18 +19,22 @@ struct Upload {
   nav::chart::OccupancyMap map;
   std::vector<std::string> passed_over;  ///< what the yaml says besides, by name
   std::vector<std::uint8_t> solid;       ///< its third dimension as a PCD file; empty: it has none
+  /// What exported_yaml() wrote before the words; foreign files have none.
+  std::string name{};  ///< any bytes; empty: none
+  std::optional<Anchor> anchor{};
 };
 
 /// Both files of a map server's map. Which picture the yaml names does not matter. Invalid, naming
-/// the file and its field, line or byte: "/yaml/origin", "/image/size", "/image/byte 17".
+/// the file and its field, line or byte: "/yaml/origin", "/image/size", "/image/byte 17". An anchor
+/// in its comments that cannot be is left out as a whole, and named in passed_over ("#
+/// anchor_lat").
 base::Result<Upload> read_upload(std::string_view yaml, std::string_view picture);
 
 /// A map in three dimensions: a PCD file, which is kept as cells, and the plane of it. Invalid,
 /// naming the byte or line: "/cloud/byte 17".
 base::Result<Upload> read_solid_upload(std::string_view pcd);
 
-/// The words of an exported map, for a picture of that file name. Name and anchor, for which map
-/// servers have no words, are comments before them, called as in [map] of the configuration.
+/// The words of an exported map, for a picture of that file name, with comments.hpp before them.
 std::string exported_yaml(const nav::chart::OccupancyMap& map, const About& about,
                           const std::string& image);
 /// Its picture: what is doubtful stays as it is, what is forbidden is drawn as occupied.

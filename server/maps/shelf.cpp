@@ -90,6 +90,7 @@ Result<std::unique_ptr<Shelf>> Shelf::open(const fs::path& folder,
   if (configured) read = shelf->take_configured(*configured);
   shelf->look_through();
   shelf->recall_choice();
+  shelf->part_names();
   if (read) return shelf;
   if (configured->needed && shelf->in_use_ == kConfigured) {
     return tl::unexpected<Error>(read.error());
@@ -113,6 +114,10 @@ Result<void> Shelf::take_configured(const Configured& said) {
   kept.about.shape = map->shape();
   kept.about.size_bytes = map->cells().size();
   return {};
+}
+
+Result<void> Shelf::write_about(std::int64_t id, const Kept& kept) const {
+  return replace_file(folder_of(id) / kAbout, bytes_of(about_text(kept)));
 }
 
 void Shelf::look_through() {
@@ -311,9 +316,11 @@ Result<std::vector<std::uint8_t>> Shelf::solid_file(std::int64_t id) const {
 }
 
 Result<About> Shelf::add(std::string name, const OccupancyMap& map,
-                         const std::optional<Anchor>& anchor, base::WallTime now,
-                         base::Bytes solid) {
+                         const std::optional<Anchor>& anchor, base::WallTime now, base::Bytes solid,
+                         IfTaken if_taken) {
   const std::lock_guard disk(disk_);
+  if (if_taken == IfTaken::Number) name = free_name(name);
+  if (auto free = is_free(name); !free) return tl::unexpected<Error>(free.error());
   if (auto room = has_room(map.cells().size() + solid.size()); !room)
     return tl::unexpected<Error>(room.error());
   Kept made;
@@ -368,7 +375,7 @@ Result<void> Shelf::write_change(std::int64_t id, const Kept& before, Kept& afte
     const auto solid = fs::file_size(solid_of(id), none);
     if (before.about.solid && !none) after.about.size_bytes += solid;
   }
-  auto done = replace_file(folder_of(id) / kAbout, bytes_of(about_text(after)));
+  auto done = write_about(id, after);
   if (cells) remove_quietly(folder_of(id) / (done ? before : after).image);
   return done;
 }
@@ -380,6 +387,9 @@ Result<About> Shelf::change(std::int64_t id, const Change& change) {
   if (!before) return tl::unexpected<Error>(before.error());
   if (change.of_revision && *change.of_revision != before->about.revision) {
     return base::fail(Code::Conflict, "the map was changed meanwhile");
+  }
+  if (change.name) {
+    if (auto free = is_free(*change.name, id); !free) return tl::unexpected<Error>(free.error());
   }
   for (std::size_t i = 0; i < change.edits.size(); ++i) {
     if (!lies_outside(before->about.shape, change.edits[i].area)) continue;

@@ -7,8 +7,10 @@
 //   FOLDER/in_use.json       what a person chose; no such file: the map of the configuration
 //
 // A change writes a new picture beside the old one, then about.json in one step: after a power cut
-// one of both holds. A map is made in a folder of another name (new-3), which is then renamed; one
-// that goes is renamed first (gone-3). What such folders were left behind goes with the next start.
+// one of both holds. Each map has a name of its own, the configured one that of its file: of those
+// that were kept before this was asked for, all but one get another name when it is opened. A map
+// is made in a folder of another name (new-3), which is then renamed; one that goes is renamed
+// first (gone-3). What such folders were left behind goes with the next start.
 //
 // Any thread. Whoever reads or writes cells waits for the disk, and for others who do: not on the
 // web thread, nor on control's. list(), find() and the choice touch no disk, but keep_choice().
@@ -78,15 +80,17 @@ class Shelf {
   /// The same as the file that is kept. Conflict: it has none.
   base::Result<std::vector<std::uint8_t>> solid_file(std::int64_t id) const;
 
+  /// Conflict: a map is called so.
+  base::Result<void> is_free(const std::string& name) const;
   /// @param name one that people may give
   /// @param solid its third dimension as a PCD file; empty: it has none
-  /// @return Conflict: kMostMaps are kept; Unavailable: the disk refuses, or is almost full, and
-  /// nothing was kept
+  /// @return Conflict: kMostMaps are kept, or another map is called so; Unavailable: the disk
+  /// refuses, or is almost full, and nothing was kept
   base::Result<About> add(std::string name, const nav::chart::OccupancyMap& map,
                           const std::optional<Anchor>& anchor, base::WallTime now,
-                          base::Bytes solid = {});
-  /// All of it or nothing. NotFound; Conflict: of the configuration, or of another revision;
-  /// Invalid: too many areas, or an edit outside of the map; Unavailable.
+                          base::Bytes solid = {}, IfTaken if_taken = IfTaken::Refuse);
+  /// All of it or nothing. NotFound; Conflict: of the configuration, of another revision, or
+  /// another map is called so; Invalid: too many areas, or an edit outside of the map; Unavailable.
   base::Result<About> change(std::int64_t id, const Change& change);
   /// NotFound; Conflict: in use, or of the configuration; Unavailable.
   base::Result<void> remove(std::int64_t id);
@@ -99,11 +103,17 @@ class Shelf {
   base::Result<void> keep_choice() const;
 
  private:
+  static constexpr std::int64_t kNoMap = -1;
   Shelf(std::filesystem::path folder, std::uintmax_t leave_free)
       : folder_(std::move(folder)), leave_free_(leave_free) {}
   base::Result<void> take_configured(const Configured& said);
   void look_through();
   void recall_choice();
+  void part_names();
+  void call_otherwise(std::int64_t id, std::int64_t namesake);
+  std::optional<std::int64_t> namesake_of(const std::string& name, std::int64_t but = kNoMap) const;
+  base::Result<void> is_free(const std::string& name, std::int64_t but) const;
+  std::string free_name(const std::string& wanted) const;
   std::string problem_of(std::int64_t id) const;
   base::Result<void> has_room(std::size_t cells) const;
   void take_in(std::int64_t id);
@@ -111,6 +121,7 @@ class Shelf {
   std::filesystem::path solid_of(std::int64_t id) const;
   base::Result<Kept> kept(std::int64_t id) const;
   base::Result<nav::chart::OccupancyMap> cells_of(std::int64_t id, const Kept& kept) const;
+  base::Result<void> write_about(std::int64_t id, const Kept& kept) const;
   base::Result<void> write_change(std::int64_t id, const Kept& before, Kept& after,
                                   const Change& change) const;
 

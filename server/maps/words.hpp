@@ -55,6 +55,12 @@ struct About {
   std::string problem;           ///< why it cannot be used now: "its picture is gone"; else empty
 };
 
+/// What becomes of a new map whose name another one has: missions count from a map by its name.
+enum class IfTaken : std::uint8_t {
+  Refuse,  ///< a person gave it
+  Number   ///< nobody did: "hall 2" instead
+};
+
 /// The cells whose middle lies inside become free or occupied; an area that is forbidden is kept
 /// beside them.
 struct Edit {
@@ -86,9 +92,10 @@ struct Change {
   std::optional<std::vector<Area>> forbidden;  ///< all that are from now on, before the edits
   std::vector<Edit> edits;                     ///< one after the other
 
-  /// Whether it matters to whoever looks for himself in the map.
+  /// Whether it matters to whoever looks for himself in the map, and to missions that count from
+  /// it: they do by its name.
   bool moves() const noexcept {
-    if (changes_anchor) return true;
+    if (changes_anchor || name) return true;
     for (const Edit& e : edits) {
       if (e.kind != Edit::Kind::Forbid) return true;
     }

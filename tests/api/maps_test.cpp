@@ -108,7 +108,9 @@ TEST_F(MapsApi, WhatIsExportedIsTheMap) {
   const auto picture = call("GET", "/maps/1/export?format=pgm");
   EXPECT_EQ(yaml.raw.header("content-disposition"), "attachment; filename=\"shed-1.yaml\"");
   EXPECT_NE(yaml.raw.body.find("image: shed-1.pgm\n"), std::string::npos) << yaml.raw.body;
-  ASSERT_EQ(add(form(yaml.raw.body, picture.raw.body)).status, 201u);
+  const auto again = add(form(yaml.raw.body, picture.raw.body));
+  ASSERT_EQ(again.status, 201u);
+  EXPECT_EQ(again.body["name"], "shed 2");  // nobody asked for a name that is taken
   EXPECT_EQ(call("GET", "/maps/1/cells").raw.body, call("GET", "/maps/2/cells").raw.body);
   ASSERT_EQ(add(form(kYaml, kPicture, part("name", "North shed (new)"))).status, 201u);
   EXPECT_EQ(call("GET", "/maps/3/export?format=pgm").raw.header("content-disposition"),
@@ -118,6 +120,58 @@ TEST_F(MapsApi, WhatIsExportedIsTheMap) {
             "attachment; filename=\"map-4.pgm\"");
   EXPECT_EQ(call("GET", "/maps/1/export?format=png").status, 422u);
   EXPECT_EQ(call("GET", "/maps/1/export").status, 422u);
+}
+
+TEST_F(MapsApi, AnExportedMapComesBackWithItsNameAndWhereItLies) {
+  // Given: a map that was told where it lies.
+  ASSERT_EQ(add().status, 201u);
+  const Json anchor = {{"lat", 58.37802},
+                       {"lon", 26.7289},
+                       {"heading_deg", 45.5},
+                       {"accuracy_m", 0.25},
+                       {"heading_accuracy_deg", 0.5}};
+  ASSERT_EQ(call("PATCH", "/maps/1", Json{{"name", "north: shed"}, {"anchor", anchor}}).status,
+            200u);
+  const std::string yaml = call("GET", "/maps/1/export?format=yaml").raw.body;
+  ASSERT_EQ(call("DELETE", "/maps/1").status, 204u);
+  // When: it is brought to another robot.
+  const auto back = add(form(yaml, kPicture));
+  // Then
+  ASSERT_EQ(back.status, 201u) << back.body;
+  EXPECT_EQ(back.body["name"], "north: shed");
+  EXPECT_EQ(back.body["anchor"], anchor);
+  EXPECT_EQ(back.body["passed_over"], Json::array());
+  // And: an anchor that cannot be is told, and the map is kept.
+  const auto poor = add(form("# anchor_lat: 158\n" + kYaml, kPicture));
+  EXPECT_EQ(poor.body["anchor"], nullptr);
+  EXPECT_EQ(poor.body["passed_over"],
+            Json({"written_by", "# anchor_lat", "# anchor_lon", "# anchor_heading_deg"}));
+}
+
+TEST_F(MapsApi, ANameIsGivenOnce) {
+  const auto named = [this](const std::string& name) {
+    return add(form(kYaml, kPicture, part("name", name)));
+  };
+  ASSERT_EQ(named("barn").status, 201u);
+  const auto refused = named("barn");
+  EXPECT_EQ(refused.status, 409u);
+  EXPECT_EQ(refused.body["detail"],
+            "the name \"barn\" is taken by map 1: give another one, or rename that map");
+  EXPECT_EQ(refused.body["errors"][0]["pointer"], "/name");
+  EXPECT_EQ(add().body["name"], "shed");
+  EXPECT_EQ(add().body["name"], "shed 2");  // as the files are called: nobody's wish
+  EXPECT_EQ(call("PATCH", "/maps/2", Json{{"name", "barn"}}).status, 409u);
+  EXPECT_EQ(call("PATCH", "/maps/2", Json{{"name", "shed"}}).status, 200u);
+}
+
+// Missions count from it by its name.
+TEST_F(MapsApi, TheRobotKnowsTheMapInUseByTheNameThatItIsGiven) {
+  ASSERT_EQ(add().status, 201u);
+  ASSERT_EQ(call("POST", "/maps/1/use").status, 200u);
+  house.map_taken = -2;
+  ASSERT_EQ(call("PATCH", "/maps/1", Json{{"name", "yard"}}).status, 200u);
+  EXPECT_EQ(house.map_taken, 1);
+  EXPECT_EQ(house.map_same_place, true);
 }
 
 //   A wall on a piece of ground, as some other program wrote it.
@@ -325,7 +379,9 @@ TEST_F(MapsApi, NobodyChangesTheMapUnderARobotThatDrivesByItself) {
   const Json wall = {{"edits", {{{"kind", "wall"}, {"polygon", square(0, 0, 1)}}}}};
   EXPECT_EQ(call("PATCH", "/maps/1", wall).status, 409u);
   EXPECT_EQ(call("PATCH", "/maps/2", wall).status, 200u);
-  EXPECT_EQ(call("PATCH", "/maps/1", Json{{"name", "now"}}).status, 200u);
+  // What is driven may count from it by its name.
+  EXPECT_EQ(call("PATCH", "/maps/1", Json{{"name", "now"}}).status, 409u);
+  EXPECT_EQ(call("PATCH", "/maps/2", Json{{"name", "now"}}).status, 200u);
   EXPECT_EQ(call("GET", "/maps").body["in_use"], 1);
   ASSERT_EQ(call("PUT", "/vehicle/mode", Json{{"mode", "HOLD"}}).status, 200u);
   until([this] { return call("GET", "/vehicle").body["mode"] == "HOLD"; }, "it holds");
@@ -377,7 +433,7 @@ class ConfiguredMap : public MapsApi {
 TEST_F(ConfiguredMap, IsListedFirstAndChangedElsewhere) {
   const auto list = call("GET", "/maps").body;
   EXPECT_EQ(list["items"][0]["id"], 0);
-  EXPECT_EQ(list["items"][0]["name"], "(configuration)");
+  EXPECT_EQ(list["items"][0]["name"], "hall");  // as `place` tells it, and missions name it
   EXPECT_EQ(list["from_configuration"], true);
   EXPECT_EQ(call("DELETE", "/maps/0").status, 409u);
   EXPECT_EQ(call("PATCH", "/maps/0", Json{{"name", "x"}}).status, 409u);

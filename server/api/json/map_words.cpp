@@ -21,7 +21,7 @@ Json map_json(const maps::About& a, const MapsNow& now, bool whole) {
   const bool configured = a.id == maps::kConfigured;
   const bool in_use = now.in_use == a.id;
   Json out = {{"id", a.id},
-              {"name", configured ? "(configuration)" : a.name},
+              {"name", a.name},
               {"created_at", configured ? Json(nullptr) : Json(base::to_rfc3339(a.created))},
               {"revision", a.revision},
               {"width", a.shape.columns},

@@ -182,8 +182,8 @@ Handler add(const ContextPtr& context) {
          type = std::string(header(call->request, http::field::content_type))]() -> Response {
           const auto form = read_map_form(body, type);
           if (!form) return problem(form.error());
-          const auto about =
-              shelf->add(form->name, form->upload.map, std::nullopt, now, form->upload.solid);
+          const auto about = shelf->add(form->name, form->upload.map, form->upload.anchor, now,
+                                        form->upload.solid, form->if_taken);
           if (!about) return problem(about.error());
           Json json = map_json(*about, now_of(*context), true);
           json["passed_over"] = form->upload.passed_over;
@@ -220,6 +220,12 @@ Handler stop_making(const ContextPtr& context) {
     if (!door.finish_making || !door.making || !door.making()) {
       return call->respond(problem({Code::Conflict, "no map is being made"}));
     }
+    // Before it ends the drive.
+    if (!what->discard && what->if_taken == maps::IfTaken::Refuse) {
+      if (const auto free = door.shelf->is_free(what->name); !free) {
+        return call->respond(problem(free.error()));
+      }
+    }
     context->answer_aside(
         call, kCells,
         [context, door, what = std::move(*what), now = base::wall_now()]() -> Response {
@@ -228,7 +234,8 @@ Handler stop_making(const ContextPtr& context) {
             return Response{http::status::no_content, 11};
           }
           const auto about = door.finish_making([&](const maps::Made& made) {
-            return door.shelf->add(what.name, made.map, made.anchor, now, made.solid);
+            return door.shelf->add(what.name, made.map, made.anchor, now, made.solid,
+                                   what.if_taken);
           });
           if (!about) return problem(about.error());
           Response response = map_response(*context, http::status::created, *about);

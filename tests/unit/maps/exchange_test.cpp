@@ -104,6 +104,53 @@ TEST(MapExport, TellsNameAndAnchorAsComments) {
   EXPECT_TRUE(maps::read_upload(text, *maps::exported_pgm(read->map, {})));
 }
 
+TEST(MapExport, IsReadBackWithNameAndAnchor) {
+  // Given: a map with both, as another program may have passed it on: with a mark, CRLF and more.
+  const auto read = maps::read_upload(yaml(), kPicture);
+  maps::About about;
+  about.name = "shed: the \u00f6ld one";
+  about.anchor = maps::Anchor{{58.37802, -26.7289}, 45.5, 0.25, 2.0};
+  std::string text =
+      "\xEF\xBB\xBF# written by somebody\r\n\r\n" + maps::exported_yaml(read->map, about, "a.pgm");
+  // When
+  const auto again = maps::read_upload(text, kPicture);
+  // Then
+  ASSERT_TRUE(again) << again.error().detail;
+  EXPECT_EQ(again->name, about.name);
+  ASSERT_TRUE(again->anchor);
+  EXPECT_EQ(again->anchor->at.lat, 58.37802);
+  EXPECT_EQ(again->anchor->at.lon, -26.7289);
+  EXPECT_EQ(again->anchor->heading_deg, 45.5);
+  EXPECT_EQ(again->anchor->accuracy_m, 0.25);
+  EXPECT_EQ(again->anchor->heading_accuracy_deg, 2.0);
+  EXPECT_TRUE(again->passed_over.empty());
+}
+
+TEST(MapExport, AnAnchorThatCannotBeIsToldAndLeftOut) {
+  const auto reads = [](const std::string& comments) {
+    const auto read = maps::read_upload(comments + yaml(), kPicture);
+    EXPECT_TRUE(read) << comments;
+    EXPECT_FALSE(read->anchor) << comments;
+    return read->passed_over;
+  };
+  using Names = std::vector<std::string>;
+  const std::string place = "# anchor_lat: 58\n# anchor_lon: 26\n";
+  EXPECT_EQ(reads("# a map: of somebody\n#\n###\n# :\n"), Names{});
+  EXPECT_EQ(reads(place), Names{"# anchor_heading_deg"});
+  EXPECT_EQ(reads(place + "# anchor_heading_deg: north\n"), Names{"# anchor_heading_deg"});
+  EXPECT_EQ(reads(place + "# anchor_heading_deg: nan\n"), Names{"# anchor_heading_deg"});
+  EXPECT_EQ(reads(place + "# anchor_heading_deg: 9\n# anchor_accuracy_m: -1\n"),
+            Names{"# anchor_accuracy_m"});
+  EXPECT_EQ(reads(place + "# anchor_heading_deg: 9\n# anchor_lat: 58\n"), Names{"# anchor_lat"});
+  EXPECT_EQ(reads("# anchor_lat: 91\n"),
+            (Names{"# anchor_lat", "# anchor_lon", "# anchor_heading_deg"}));
+  // Behind the first word it is of somebody else.
+  const auto below = maps::read_upload(yaml(place + "# anchor_heading_deg: 9\n"), kPicture);
+  ASSERT_TRUE(below);
+  EXPECT_FALSE(below->anchor);
+  EXPECT_EQ(below->name, "");
+}
+
 TEST(MapExport, DrawsWhatIsForbidden) {
   const auto read = maps::read_upload(yaml("", "[0, 0, 0]"), kPicture);
   const auto picture = maps::exported_pgm(read->map, {{{0.5, 0}, {1, 0}, {1, 1}, {0.5, 1}}});

@@ -80,7 +80,84 @@ TEST_F(ShelfTest, AMapIsKeptOverARestart) {
   ASSERT_TRUE(map) << map.error().detail;
   EXPECT_EQ(map->at({3, 2}), kFree);
   EXPECT_EQ(shelf->find(2).error().code, Code::NotFound);
-  EXPECT_EQ(shelf->add("shed", floor(), {}, kNow)->id, 2);  // a name twice is no harm
+  EXPECT_EQ(shelf->add("barn", floor(), {}, kNow)->id, 2);
+}
+
+TEST_F(ShelfTest, NoTwoMapsAreCalledTheSame) {
+  // Given: a map of the configuration, "hall", and a kept one, "shed".
+  auto shelf = open(configured());
+  ASSERT_TRUE(shelf->add("shed", floor(), {}, kNow));
+  // When, then: a person who gives one of these names is refused, and told who has it.
+  const auto refused = shelf->add("shed", floor(), {}, kNow);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, Code::Conflict);
+  EXPECT_NE(refused.error().detail.find("\"shed\" is taken by map 1"), std::string::npos);
+  EXPECT_NE(shelf->add("hall", floor(), {}, kNow).error().detail.find("that of the configuration"),
+            std::string::npos);
+  ASSERT_EQ(shelf->add("barn", floor(), {}, kNow)->id, 2);
+  Change change;
+  for (const char* taken : {"shed", "hall"}) {
+    change.name = taken;
+    EXPECT_EQ(shelf->change(2, change).error().code, Code::Conflict) << taken;
+  }
+  EXPECT_EQ(shelf->find(2)->revision, 1);
+  change.name = "barn";  // its own is no other map's
+  EXPECT_TRUE(shelf->change(2, change));
+  // Then: what nobody named gets a number.
+  const auto numbered = [&](const std::string& name) {
+    return shelf->add(name, floor(), {}, kNow, {}, maps::IfTaken::Number)->name;
+  };
+  EXPECT_EQ(numbered("shed"), "shed 2");
+  EXPECT_EQ(numbered("shed"), "shed 3");
+  EXPECT_EQ(numbered("yard"), "yard");
+  std::string longest;
+  for (int i = 0; i < 100; ++i) longest += "\u00e4";  // of two bytes each
+  EXPECT_EQ(numbered(longest), longest);
+  EXPECT_EQ(numbered(longest), longest.substr(0, 190) + " 2");
+}
+
+// As the program before this kept them.
+TEST_F(ShelfTest, MapsThatWereCalledTheSameArePartedWhenItOpens) {
+  // Given: four maps that are called "hall", of which the third is in use, and a "hall 2".
+  auto shelf = open();
+  for (const char* name : {"a", "b", "c", "d", "hall 2"}) {
+    ASSERT_TRUE(shelf->add(name, floor(), {}, kNow));
+  }
+  ASSERT_TRUE(shelf->choose(3));
+  ASSERT_TRUE(shelf->keep_choice());
+  const auto call_all = [&] {
+    for (const char* id : {"1", "2", "3", "4"}) {
+      const fs::path about = file(std::string(id) + "/about.json");
+      std::ifstream in(about);
+      std::string text((std::istreambuf_iterator<char>(in)), {});
+      const auto at = text.find("\"name\": \"");
+      const auto end = text.find('"', at + 9);
+      std::ofstream(about) << text.substr(0, at + 9) + "hall" + text.substr(end);
+    }
+  };
+  call_all();
+  const auto names = [&] {
+    std::string out;
+    for (const auto& about : shelf->list()) out += about.name + ", ";
+    return out;
+  };
+  // When, then: the one in use keeps the name, and it is told.
+  shelf = open();
+  EXPECT_EQ(names(), "hall 3, hall 4, hall, hall 5, hall 2, ");
+  ASSERT_EQ(shelf->troubles().size(), 3u);
+  EXPECT_EQ(shelf->troubles()[0],
+            "map 1 is called \"hall 3\" now: missions count from a map by its name, and \"hall\" "
+            "is map 3");
+  // Then: it stays so, and is told once.
+  shelf = open();
+  EXPECT_EQ(names(), "hall 3, hall 4, hall, hall 5, hall 2, ");
+  EXPECT_TRUE(shelf->troubles().empty());
+  // And: that of the configuration is called as its file, whoever is in use.
+  call_all();
+  shelf = open(configured());
+  EXPECT_NE(shelf->troubles().at(0).find("is that of the configuration"), std::string::npos);
+  EXPECT_EQ(names(), "hall, hall 3, hall 4, hall 5, hall 6, hall 2, ");
+  EXPECT_EQ(shelf->in_use(), 3);
 }
 
 TEST_F(ShelfTest, AChangeHoldsAsAWhole) {

@@ -44,13 +44,8 @@ const post = (
     call.send(form);
   });
 
-const add = async (
-  files: MapFiles,
-  name: string,
-  sent: (share: number) => void,
-): Promise<Answer<SiteMap>> => {
+const add = async (files: MapFiles, sent: (share: number) => void): Promise<Answer<SiteMap>> => {
   const form = new FormData();
-  if (name !== '') form.set('name', name);
   for (const [field, file] of Object.entries(files)) form.set(field, file as File);
   try {
     const { status, text } = await in_lane('bulk', () => post(form, sent));

@@ -92,8 +92,8 @@ export interface SiteOnMap {
 export interface SiteMapCalls {
   list(): Promise<Answer<SiteMapList>>;
   read(id: number): Promise<Answer<SiteMap>>;
-  /** @param name empty: as the files say; @param sent told a share from 0 to 1 now and then */
-  add(pair: MapFiles, name: string, sent: (share: number) => void): Promise<Answer<SiteMap>>;
+  /** It is called as the files say. @param sent told a share from 0 to 1 now and then */
+  add(pair: MapFiles, sent: (share: number) => void): Promise<Answer<SiteMap>>;
   change(id: number, change: SiteChange): Promise<Answer<SiteMap>>;
   remove(id: number): Promise<Answer<unknown>>;
   /** @param id null: none */
@@ -101,7 +101,7 @@ export interface SiteMapCalls {
   /** @param tag of what is known already; @param signal gives up. @return null: that is still so */
   cells(id: number, tag: string | null, signal: AbortSignal): Promise<Answer<TaggedCells | null>>;
   start_making(): Promise<Answer<SiteMaking>>;
-  /** @param name empty: any */
+  /** @param name empty: any that is free */
   finish_making(name: string): Promise<Answer<SiteMap>>;
   drop_making(): Promise<Answer<unknown>>;
   file_address(id: number, format: 'yaml' | 'pgm' | 'pcd'): string;

@@ -161,7 +161,8 @@ export class SiteMaps {
     }
     const name = name_of_files(pair);
     this.sending = { name, share: 0 };
-    const answer = await this.#calls.add(pair, name, (share) => (this.sending = { name, share }));
+    // The files name it, in an exported one by what stands in it; one that is taken gets a number.
+    const answer = await this.#calls.add(pair, (share) => (this.sending = { name, share }));
     this.sending = null;
     this.#notices.outcome(
       `map ${name}`,
