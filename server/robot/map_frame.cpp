@@ -19,6 +19,15 @@ base::Error against(const std::string& map, const std::string& why) {
   return {Code::Conflict, "the mission counts from the map \"" + map + "\": " + why, {}};
 }
 
+/// Why the robot's place in the map in use is not known, and what to do. @param place not Off
+std::string not_found(const base::PlaceState& place) {
+  const std::string why = place.reason.empty() ? "" : " (" + place.reason + ")";
+  const bool lost = place.phase == PlacePhase::Lost;
+  const bool helps = place.reason.find("by hand") != std::string::npos;  // it says what to do
+  return (lost ? "the robot is lost in it" : "the robot is not found in it yet") + why +
+         (helps ? "" : ": drive some metres by hand, or say where it stands (a tap on the map)");
+}
+
 }  // namespace
 
 base::Result<base::MapLies> lies_of(const mission::MissionMap& said, const MapNow& now) {
@@ -27,9 +36,14 @@ base::Result<base::MapLies> lies_of(const mission::MissionMap& said, const MapNo
   };
   if (!now.place || now.place->phase == PlacePhase::Off) return no("no map is in use");
   if (now.place->map != said.map) return no("the map in use is \"" + now.place->map + "\"");
-  if (!now.place->lies || !now.frame) {
-    return no("where it lies is not known before the robot is found in it");
+  if (now.place->phase != PlacePhase::Known && (!now.place->lies || !now.frame)) {
+    return no(not_found(*now.place));
   }
+  if (!now.place->lies) {
+    const std::string& reason = now.place->reason;
+    return no(reason.empty() ? "nobody knows where on the earth it lies" : reason);
+  }
+  if (!now.frame) return no("the robot's position is not known yet");
   base::MapLies lies = *now.place->lies;
   const double far_m = base::distance_bearing(now.frame->origin(), lies.at).distance_m;
   if (far_m > base::LocalFrame::kReach_m) return no("it lies more than 10 km away");
@@ -48,9 +62,7 @@ base::Result<void> counts_from(const mission::MissionMap& laid, const MapNow& no
   const auto lies = lies_of(laid, now);
   if (!lies) return tl::unexpected(lies.error());
   if (into_it && now.place->phase != PlacePhase::Known) {
-    const std::string& reason = now.place->reason;
-    return tl::unexpected(against(laid.map, "where the robot is in it is not known" +
-                                                (reason.empty() ? reason : " (" + reason + ")")));
+    return tl::unexpected(against(laid.map, not_found(*now.place)));
   }
   const double age_s = base::seconds(now.now - now.place->stamp);
   if (into_it && age_s > kSeen_s) {

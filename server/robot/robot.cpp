@@ -236,6 +236,15 @@ base::Result<std::shared_ptr<const CompiledMission>> Robot::compile(MissionCopy 
   if (!frame && copy.plan.home && local) {
     frame.emplace(impl_->frame_ids.fetch_add(1), copy.plan.home->at);
   }
+  const std::optional<base::PlaceState> nowhere;
+  const MapNow map_now{state ? state->place : nowhere, frame,
+                       state ? state->estimator.map_offset : base::EnuPoint{},
+                       state ? state->now : base::Time{}};
+  if (copy.plan.frame) {  // before all else: it says why the position is not known
+    auto lies = lies_of(*copy.plan.frame, map_now);
+    if (!lies) return tl::unexpected(std::move(lies.error()));
+    copy.plan.frame->lies = *lies;
+  }
   if (!frame && local) {
     return base::fail(Code::Conflict,
                       "the position is not known, and the mission says of no place where it is");
@@ -243,14 +252,6 @@ base::Result<std::shared_ptr<const CompiledMission>> Robot::compile(MissionCopy 
   if (!frame) {
     return base::fail(Code::Invalid, "the mission has no waypoint",
                       {{"/items", "the mission has no waypoint"}});
-  }
-  if (copy.plan.frame) {
-    const std::optional<base::PlaceState> nowhere;
-    auto lies = lies_of(*copy.plan.frame, {state ? state->place : nowhere, frame,
-                                           state ? state->estimator.map_offset : base::EnuPoint{},
-                                           state ? state->now : base::Time{}});
-    if (!lies) return tl::unexpected(std::move(lies.error()));
-    copy.plan.frame->lies = *lies;
   }
   const auto known = impl_->shared_places.get();
   auto named = with_places(copy.plan, known.get());

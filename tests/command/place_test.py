@@ -135,7 +135,7 @@ def drives_in_the_metres_of_the_map():
         mission = hall.rest.do("POST", "/missions", {"name": "by the map", "frame": {"map": "hall"}, "items": points})
         elsewhere = hall.rest.do("POST", "/missions", {"name": "in a barn", "frame": {"map": "barn"}, "items": points})
         status, _, said = hall.rest.call("POST", "/execution/load", {"mission_id": mission["id"]})
-        check(status == 409 and "not known" in said["detail"], f"loaded before it is found: {status} {said}")
+        check(status == 409 and "not found in it yet" in said["detail"], f"loaded before it is found: {status} {said}")
         hall.tap()
         until("it is ready", 30, lambda: hall.rest.get("/vehicle")["ready_to_arm"], 0.2)
         status, _, said = hall.rest.call("POST", "/execution/load", {"mission_id": elsewhere["id"]})
@@ -149,6 +149,37 @@ def drives_in_the_metres_of_the_map():
         check(math.hypot(east - 9.5, north) < 0.35, f"it ended at {east:.2f}, {north:.2f}")
         check(abs((truth["heading_deg"] - 180 + 180) % 360 - 180) < 6, f"it points to {truth['heading_deg']:.0f} deg")
         check(truth["contacts"] == 0, f"it touched something: {truth}")
+
+
+class BareHall(Hall):
+    """Nobody has said where on the earth its map lies."""
+
+    def __init__(self):
+        SeeingRobot.__init__(self, {"name": "hall", "ground": {"grass_m": 0.0}, "things": THINGS},
+                             hears=HEARS_TOP_AND_FRONT + '\n[map]\nfile = "{folder}/hall.yaml"\n')
+
+    def sticks(self, ahead):
+        """Somebody drives it by the radio, past roverd."""
+        self.control.ask({"radio": {"on": True, "swb": "middle", "right_ud": ahead, "left_lr": 0.1}})
+
+
+def is_laid_where_a_person_says_that_it_stands():
+    """a map without an anchor: a tap is kept until the place in it is found by driving, then lays it"""
+    with BareHall() as hall:
+        until("a map is in use", 10, lambda: hall.place()["state"] == "searching", 0.2)
+        check(hall.rest.get("/maps")["items"][0]["name"] == hall.place()["map"], "the map has one name")
+        truth = hall.truth()
+        hall.rest.do("PUT", "/vehicle/pose", {name: truth[name] for name in ("lat", "lon", "heading_deg")})
+        until("the word is heard", 10, lambda: "counts once it is found there" in (hall.place()["reason"] or ""), 0.2)
+        hall.sticks(0.35)
+        until("it is found", 60, lambda: hall.place()["state"] == "known", 0.1)
+        hall.sticks(0.0)
+        until("it lies there", 10, lambda: hall.place()["placed"], 0.2)
+        until("what is believed is there", 10, lambda: math.hypot(*hall.off()[:2]) < 0.3, 0.2)
+        check(hall.off()[2]["source"] == "map+odometry", f"by the map: {hall.off()[2]}")
+        points = [{"type": "map_point", "x_m": 2, "y_m": 2}]
+        mission = hall.rest.do("POST", "/missions", {"name": "m", "frame": {"map": "hall"}, "items": points})
+        hall.rest.do("POST", "/execution/load", {"mission_id": mission["id"]})
 
 
 def satellites_come_back_without_a_jump():
@@ -186,5 +217,6 @@ def is_told_when_it_was_carried():
 
 
 if __name__ == "__main__":
-    sys.exit(run_cases([drives_by_the_map, drives_in_the_metres_of_the_map, satellites_come_back_without_a_jump,
+    sys.exit(run_cases([drives_by_the_map, drives_in_the_metres_of_the_map,
+                        is_laid_where_a_person_says_that_it_stands, satellites_come_back_without_a_jump,
                         is_told_when_it_was_carried]))

@@ -72,6 +72,16 @@ describe('what the robot says', () => {
     );
   });
 
+  test('says of a mission by a map why it is not taken, with what helps', () => {
+    in_finnish();
+    const looking =
+      'looking for the place in the map; drive some metres by hand: a tap does not help before, ' +
+      'for nobody knows where on the earth the map lies';
+    const refused = `the mission counts from the map "hall": the robot is not found in it yet (${looking})`;
+    expect(robot_says(refused)).toMatch(/^tehtävä lasketaan kartasta ”hall”: .*\(.*; aja muutama/);
+    expect(robot_says(refused)).not.toContain('the');
+  });
+
   test('is never taken for a shorter sentence that begins the same', () => {
     in_finnish();
     for (const [key, text] of Object.entries(english)) {

@@ -8,6 +8,7 @@ import {
   read_cells,
   UNKNOWN_CELL,
 } from '../src/model/site_cells';
+import { IN_ENGLISH, speak } from '../src/model/say';
 import {
   add_edit,
   allow,
@@ -29,6 +30,7 @@ import {
   type SiteDraft,
   type SiteMap,
 } from '../src/model/site_map';
+import { finnish } from '../src/texts/fi';
 
 const HERE = { lat: 58.378, lon: 26.7289 };
 const map: SiteMap = {
@@ -246,6 +248,19 @@ describe('the place in the map', () => {
     const lost = place_words({ ...place, state: 'lost' });
     expect(lost).toMatchObject({ tone: 'bad', head: 'Lost in “hall”' });
     expect(lost?.detail).toContain('by hand');
+  });
+  it('waits to be found where the map lies nowhere, whatever a person tells', () => {
+    const nowhere = 'for nobody knows where on the earth the map lies';
+    const reason = `looking for the place in the map; drive some metres by hand: a tap does not help before, ${nowhere}`;
+    const searching: MapPlace = { ...place, state: 'searching', accuracy_m: null, reason };
+    const detail = `L${reason.slice(1)}.`;
+    expect(place_words(searching)?.detail).toBe(detail);
+    expect(seen_since(searching, 1, null)?.head).toContain('the map lies nowhere yet');
+    speak(() => ({ language: 'fi', texts: finnish }));
+    expect(place_words(searching)?.detail).not.toContain('nobody');
+    speak(() => IN_ENGLISH);
+    const known = place_words({ ...place, reason: `${nowhere.slice(4)}: say it` });
+    expect(known?.tone).toBe('warn');
   });
   it('that a person told is seen to fit, or not', () => {
     const searching: MapPlace = { ...place, state: 'searching', accuracy_m: null };

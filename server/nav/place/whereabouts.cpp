@@ -41,6 +41,7 @@ base::PlaceState Whereabouts::use(std::shared_ptr<const MapInUse> map, base::Tim
   // Where satellites laid it, or nobody did, it stays; so does what was learned of how far off.
   const bool same_lie = same_place && map_ && map && map_->anchor == map->anchor;
   const auto lie = same_lie ? anchor_ : std::nullopt;
+  said_ = said_ && same_lie;
   number_ = same_lie ? number_ : map ? map->number : 0;
   found_before_ = same_lie ? found_ + 1 : 0;
   map_ = std::move(map);
@@ -102,9 +103,12 @@ Pose2 Whereabouts::on_map(base::LatLon at, double yaw_rad) const {
 }
 
 bool Whereabouts::told(const Word& word) {
-  if (!tracker_) return false;
+  if (!tracker_ || !base::is_valid(word.at)) return false;
   if (!anchor_ && p_.local_origin) anchor_ = MapAnchor{*p_.local_origin, 0.0, 0.0, 0.0};
-  if (!anchor_ || !base::is_valid(word.at)) return false;
+  if (!anchor_) {
+    said_ = true;
+    return false;
+  }
   const double yaw_rad = word.yaw_rad.value_or(0.0);
   const double turn_rad = word.yaw_rad ? kTap_rad : base::kPi / 3.0;
   start_near(on_map(word.at, yaw_rad), kTap_m, turn_rad, true);
@@ -123,24 +127,50 @@ void Whereabouts::start_by_satellites(const Believed& b, base::Time stamp) {
              std::max(0.1, std::hypot(b.yaw_sigma_rad, anchor_->yaw_sigma_rad)), false);
 }
 
-/// Such that what is believed now and the place in the map are one: X_EM = X_EB · X_BM.
 void Whereabouts::lay(const Pose2& in_map, base::Time stamp,
                       const std::optional<Believed>& believed) {
   if (anchor_) return;
-  const bool by_satellites = believed && believed->by_satellites;
-  if (!by_satellites) {
-    if (p_.local_origin) anchor_ = MapAnchor{*p_.local_origin, 0.0, 0.0, 0.0};
-    return;
+  if (believed && believed->by_satellites) {
+    const bool sure = believed->sigma_m <= kSure_m && believed->yaw_sigma_rad <= kLay_rad;
+    if (sure) anchor_ = laid_by(*believed, in_map, stamp);
+  } else if (p_.local_origin) {
+    anchor_ = MapAnchor{*p_.local_origin, 0.0, 0.0, 0.0};
+  } else if (said_ && believed) {
+    anchor_ = laid_by(*believed, in_map, stamp);
+    // Nothing else tells which way is north: from now on it is what the map says.
+    if (anchor_) anchor_->yaw_sigma_rad = 0.0;
   }
-  if (believed->sigma_m > kSure_m || believed->yaw_sigma_rad > kLay_rad) return;
+}
+
+/// Such that what is believed now and the place in the map are one: X_EM = X_EB · X_BM. Empty: how
+/// the body moved between the two is not known.
+std::optional<MapAnchor> Whereabouts::laid_by(const Believed& believed, const Pose2& in_map,
+                                              base::Time stamp) const {
   const auto then = history_.at(stamp);
-  const auto now = history_.at(believed->stamp);
-  if (!then || !now) return;
-  const base::LocalFrame frame(1, believed->at);
-  const Pose2 at_stamp = Pose2{0.0, 0.0, believed->yaw_rad} * (inverse(*now) * *then);
+  const auto now = history_.at(believed.stamp);
+  if (!then || !now) return std::nullopt;
+  const base::LocalFrame frame(1, believed.at);
+  const Pose2 at_stamp = Pose2{0.0, 0.0, believed.yaw_rad} * (inverse(*now) * *then);
   const Pose2 origin = at_stamp * inverse(in_map);
-  anchor_ = MapAnchor{frame.to_global({origin.x_m, origin.y_m}), origin.yaw_rad, believed->sigma_m,
-                      believed->yaw_sigma_rad};
+  return MapAnchor{frame.to_global({origin.x_m, origin.y_m}), origin.yaw_rad, believed.sigma_m,
+                   believed.yaw_sigma_rad};
+}
+
+/// What is awaited; a tap alone does not help then.
+void Whereabouts::say_that_it_lies_nowhere(base::PlaceState& state) const {
+  if (anchor_ || p_.local_origin) return;
+  if (state.phase == base::PlacePhase::Known) {
+    state.reason =
+        "nobody knows where on the earth the map lies, for it has no anchor, and no satellites are "
+        "heard: say where the robot stands and which way it points";
+  } else if (state.phase == base::PlacePhase::Searching) {
+    const char* const awaited =
+        said_ ? "drive some metres by hand: what was said of where it stands counts once it is "
+                "found there, for nobody knows where on the earth the map lies"
+              : "drive some metres by hand: a tap does not help before, for nobody knows where on "
+                "the earth the map lies";
+    state.reason += state.reason.empty() ? awaited : std::string("; ") + awaited;
+  }
 }
 
 base::PlaceFix Whereabouts::fix_of(const Fix& fix, std::uint32_t found) const {
@@ -240,7 +270,10 @@ base::PlaceState Whereabouts::tell(const Look& look, const std::optional<Believe
   if (told.pose && told.fitted)
     state.in_map = base::MapPlace{told.pose->x_m, told.pose->y_m, told.pose->yaw_rad};
   if (anchor_) state.lies = base::MapLies{anchor_->at, anchor_->yaw_rad};
-  if (!told.fix) return state;
+  if (!told.fix) {
+    say_that_it_lies_nowhere(state);
+    return state;
+  }
   started_.reset();
   again_s_ = kAgain_s;
   fitted_ = Seen{told.fix->pose, look.odometry};
@@ -253,9 +286,8 @@ base::PlaceState Whereabouts::tell(const Look& look, const std::optional<Believe
     state.lies = base::MapLies{anchor_->at, anchor_->yaw_rad};
     found_ = found_before_ + told.resets;
     state.fix = fix_of(*told.fix, found_);
-  } else {
-    state.reason = "nobody knows where on the earth the map lies: it has no anchor";
   }
+  say_that_it_lies_nowhere(state);
   return state;
 }
 

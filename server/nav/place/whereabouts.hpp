@@ -12,7 +12,9 @@
 // How M lies on the earth is its anchor: where its origin is, and which way its x axis looks. A map
 // without one is laid where the satellites see the robot when its place in the map is known, as
 // surely as they are; where none are heard, at the origin of the local map (nav.estimate.map_lat,
-// map_lon), x to the east. Where there is neither, the place in the map is told, and no fix.
+// map_lon), x to the east; without that, where a person has said that the robot stands, once its
+// place in the map is known. Where there is none of these, the place in the map is told, and no
+// fix.
 //
 // Satellites that are good enough save the search: the tracker begins where they see the robot, and
 // believes it only if the scan fits there. What a person tells is taken likewise.
@@ -104,7 +106,8 @@ class Whereabouts {
   const std::optional<MapAnchor>& anchor() const noexcept { return anchor_; }
 
   void moved(const sense::Odometry& o) noexcept { (void)history_.push(o); }
-  /// @return false: no map is in use, or nobody knows where it lies
+  /// @return false: no map is in use, or nobody knows where it lies: then it does not tell where in
+  /// the map the robot is, but the map is laid by it when that is known
   bool told(const Word& word);
   /// One sensor is looked through: the best of WhereaboutsParams::eyes that is heard. Where it has
   /// told nothing for a second, the next one.
@@ -116,6 +119,9 @@ class Whereabouts {
  private:
   void start_by_satellites(const Believed& b, base::Time stamp);
   void lay(const Pose2& in_map, base::Time stamp, const std::optional<Believed>& believed);
+  std::optional<MapAnchor> laid_by(const Believed& believed, const Pose2& in_map,
+                                   base::Time stamp) const;
+  void say_that_it_lies_nowhere(base::PlaceState& state) const;
   Pose2 on_map(base::LatLon at, double yaw_rad) const;
   std::size_t rank_of(const std::string& sensor, bool rows) const noexcept;
   bool looks_through(const base::Sight& sight, base::Time end) const noexcept;
@@ -138,6 +144,7 @@ class Whereabouts {
   std::optional<Tracker> tracker_;
   std::optional<CellTracker> cells_;  ///< of a map in three dimensions
   std::optional<MapAnchor> anchor_;
+  bool said_ = false;  ///< where the robot stands, of a map that lay nowhere
   sense::PoseHistory history_;
   std::string eye_;        ///< the sensor that is looked through
   bool eye_rows_ = false;  ///< and as a cloud

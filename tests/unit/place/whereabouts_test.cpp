@@ -214,6 +214,52 @@ TEST(Whereabouts, SaysThatAMapLiesNowhereWithoutAnchorAndSatellites) {
   EXPECT_NE(told->reason.find("no anchor"), std::string::npos);
 }
 
+//   Indoors, with a map of which nobody has said where it lies: a person says where the robot is.
+TEST(Whereabouts, LaysAMapWhereAPersonSaysThatTheRobotStands) {
+  for (const bool before_it_is_found : {true, false}) {
+    Walk w({2.5, 3.0, 0.1});
+    w.where.use(Walk::map({}), w.now());
+    const auto believed = [&w] {
+      auto b = w.by_satellites(0.6, 0.17);
+      b.by_satellites = false;
+      return b;
+    };
+    std::optional<base::PlaceState> told = w.step(0.0, 0.0);
+    ASSERT_TRUE(told);
+    EXPECT_EQ(told->phase, PlacePhase::Searching);
+    EXPECT_NE(told->reason.find("a tap does not help before"), std::string::npos) << told->reason;
+    if (before_it_is_found) {
+      // When: it is said while the place in the map is not known, which is told.
+      EXPECT_FALSE(w.where.told({w.global(), w.at.yaw_rad + kTurned_rad}));
+      told = w.step(0.0, 0.0, believed());
+      ASSERT_TRUE(told && !told->fix);
+      EXPECT_NE(told->reason.find("counts once it is found there"), std::string::npos)
+          << told->reason;
+    }
+    for (int i = 0; i < 20 && !(told && told->in_map); ++i) told = w.step(0.15, 0.02, believed());
+    ASSERT_TRUE(told && told->in_map);
+    if (!before_it_is_found) {
+      // When: it is said afterwards.
+      EXPECT_FALSE(told->fix) << "what the robot believes is nobody's word";
+      EXPECT_FALSE(w.where.told({w.global(), w.at.yaw_rad + kTurned_rad}));
+      told = w.step(0.1, 0.0, believed());
+    }
+    // Then: it lies such that both are one.
+    ASSERT_TRUE(told && told->fix);
+    EXPECT_EQ(told->reason, "");
+    ASSERT_TRUE(told->lies);
+    EXPECT_LT(apart_m(told->lies->at, kShedAt), 0.12);
+    EXPECT_NEAR(told->lies->yaw_rad, kTurned_rad, 0.03);
+    EXPECT_EQ(told->fix->anchor_sigma_m, 0.6);
+    EXPECT_EQ(told->fix->anchor_yaw_sigma_rad, 0.0);
+    // And: another map is laid by another word.
+    w.where.use(Walk::map({}, 8), w.now());
+    for (int i = 0; i < 20; ++i) told = w.step(0.1, 0.02, believed());
+    ASSERT_TRUE(told && told->in_map);
+    EXPECT_FALSE(told->fix);
+  }
+}
+
 TEST(Whereabouts, TakesTheLocalMapsOriginForTheMapsWhereNothingElseIsKnown) {
   Walk w({2.5, 3.0, 0.1});
   WhereaboutsParams params;

@@ -14,6 +14,7 @@ using base::PlacePhase;
 struct InShed : Field {
   PlacePhase phase = PlacePhase::Known;
   std::string map = "shed";
+  std::string reason;
   bool seen = true;  ///< its scanner tells something
   std::optional<base::MapLies> lies = base::MapLies{kFrame.to_global({0.0, 10.0}), base::kPi / 2.0};
 
@@ -24,6 +25,7 @@ struct InShed : Field {
       place.stamp = now;
       place.phase = phase;
       place.map = map;
+      place.reason = reason;
       place.lies = lies;
       robot.measurements().put(place);
     };
@@ -74,10 +76,38 @@ TEST(MapFrame, IsNotLoadedWhereNobodyKnowsWhereItLies) {
   f.map = "shed";
   f.lies.reset();
   EXPECT_EQ(why(),
-            "the mission counts from the map \"shed\": where it lies is not known before the robot "
-            "is found in it");
+            "the mission counts from the map \"shed\": nobody knows where on the earth it lies");
+  f.phase = PlacePhase::Searching;
+  f.reason = "looking for the place in the map";
+  EXPECT_EQ(
+      why(),
+      "the mission counts from the map \"shed\": the robot is not found in it yet (looking for "
+      "the place in the map): drive some metres by hand, or say where it stands (a tap on the "
+      "map)");
+  f.phase = PlacePhase::Lost;
+  f.reason = "lost: drive by hand to a known place, or tap where the robot is";
+  EXPECT_EQ(
+      why(),
+      "the mission counts from the map \"shed\": the robot is lost in it (lost: drive by hand "
+      "to a known place, or tap where the robot is)")
+      << "what to do is said once";
   f.phase = PlacePhase::Off;
   EXPECT_EQ(why(), "the mission counts from the map \"shed\": no map is in use");
+}
+
+//   Switched on indoors: no position at all, and the map is being looked for.
+TEST(MapFrame, SaysOfARobotWithoutAPositionThatItsPlaceInTheMapIsMissing) {
+  InShed f;
+  f.gnss_speaks = false;
+  f.phase = PlacePhase::Searching;
+  f.run(3.0);
+  const auto made = f.robot.compile({"m", 1, in_the_shed()});
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().code, base::Code::Conflict);
+  EXPECT_EQ(
+      made.error().detail,
+      "the mission counts from the map \"shed\": the robot is not found in it yet: drive some "
+      "metres by hand, or say where it stands (a tap on the map)");
 }
 
 TEST(MapFrame, StartsAndGoesOnOnlyWhereTheRobotIsTrackedInIt) {
@@ -87,8 +117,10 @@ TEST(MapFrame, StartsAndGoesOnOnlyWhereTheRobotIsTrackedInIt) {
   f.run(0.5);
   ASSERT_TRUE(f.load(in_the_shed()));
   ASSERT_TRUE(f.ask(Arm{}));
-  EXPECT_EQ(refused(f.ask(StartMission{"m", 1})),
-            "the mission counts from the map \"shed\": where the robot is in it is not known");
+  EXPECT_EQ(
+      refused(f.ask(StartMission{"m", 1})),
+      "the mission counts from the map \"shed\": the robot is not found in it yet: drive some "
+      "metres by hand, or say where it stands (a tap on the map)");
   const auto told = f.robot.objections(StartMission{"m", 1});
   ASSERT_EQ(told.size(), 1U);
   EXPECT_EQ(told[0].code, "not_in_map");

@@ -273,6 +273,10 @@ export interface PlaceWords {
 
 const FINE_M = 0.3;
 
+/** Neither anchor nor satellites, and nobody has said where the robot stands: it says itself what helps. */
+const lies_nowhere = ({ reason }: MapPlace): boolean =>
+  reason?.includes('nobody knows where on the earth the map lies') ?? false;
+
 /** "Knows its place in “hall”" · "±3 cm, ±0.4°" */
 export const place_words = (place: MapPlace): PlaceWords | null => {
   const map = `“${place.map ?? ''}”`;
@@ -286,6 +290,9 @@ export const place_words = (place: MapPlace): PlaceWords | null => {
         const head = say('not_sure_of_its_place_in_map', { map });
         return { tone: 'warn', head, detail: why === '' ? now : why.trim() };
       }
+      if (lies_nowhere(place)) {
+        return { tone: 'warn', head: say('knows_its_place_in_map', { map }), detail: why.trim() };
+      }
       const head = say('knows_its_place_in_map', { map });
       const turned = place.heading_accuracy_deg;
       const angle = turned === null ? '' : `, ±${degrees_text(turned)}`;
@@ -298,7 +305,9 @@ export const place_words = (place: MapPlace): PlaceWords | null => {
       return {
         tone: 'warn',
         head: say('looks_for_its_place_in_map', { map }),
-        detail: say('why_drive_some_metres_by_hand_or_say', { why }),
+        detail: lies_nowhere(place)
+          ? why.trim()
+          : say('why_drive_some_metres_by_hand_or_say', { why }),
       };
     case 'lost':
       return {
@@ -329,6 +338,10 @@ export const seen_since = (
   after_s: number,
   off_m: number | null,
 ): PlaceWords | null => {
+  if (place.state === 'searching' && lies_nowhere(place)) {
+    const detail = `${sentence(robot_says(place.reason ?? ''))}.`;
+    return { tone: 'warn', head: say('it_is_heard_and_the_map_lies_nowhere'), detail };
+  }
   if (place.state === 'known' && place.accuracy_m !== null && !place.stale && off_m !== null) {
     if (off_m > THERE_M) {
       if (after_s < LONG_S) return null;

@@ -198,10 +198,6 @@ export const maps = {
   ortho_no_projection: 'its projection is not known',
   ortho_not_8_bit: 'its colours do not have 8 bits each',
   ortho_too_large: 'it would be too many tiles',
-  why_drive_until_it_is_found:
-    '{why}Drive some metres by hand until it is found. Nobody knows yet where on the earth this map lies, so “I am here” counts after that.',
-  nobody_knows_where_this_map_lies:
-    'Nobody knows where on the earth this map lies: say “I am here” with the direction, or say where the map lies.',
   it_is_heard_and_the_map_lies_nowhere: 'Heard, but the map lies nowhere yet',
   map_of_the_configuration: 'of the configuration',
   it_counts_from_a_map_that_lies_nowhere:

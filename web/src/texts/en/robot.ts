@@ -125,7 +125,6 @@ export const robot = {
   rb_more_places: 'more than one place around the told one fits: drive on',
   rb_nothing_fits: 'nothing in the map fits: is it the map of this place?',
   rb_looking: 'looking for the place in the map',
-  rb_no_anchor: 'nobody knows where on the earth the map lies: it has no anchor',
   rb_picture_old: 'nothing is seen any more: the picture of the surroundings is too old',
   rb_in_way: 'something stands in the way, {where}',
   rb_comes_in_way: 'somebody comes into the way, {where}',
@@ -182,4 +181,20 @@ export const robot = {
   rb_told_no_rest: 'the file has nothing to drive',
   rb_file_wrong_line: 'the file has 1 wrong value: line {line} {what}',
   rb_file_wrong_lines: 'the file has {n} wrong values, first line {line} {what}',
+  rb_no_anchor:
+    'nobody knows where on the earth the map lies, for it has no anchor, and no satellites are heard: say where the robot stands and which way it points',
+  rb_word_counts_once_found:
+    'drive some metres by hand: what was said of where it stands counts once it is found there, for nobody knows where on the earth the map lies',
+  rb_no_tap_before:
+    'drive some metres by hand: a tap does not help before, for nobody knows where on the earth the map lies',
+  rb_map_name_taken: 'the name "{name}" is taken by map {n}: give another one, or rename that map',
+  rb_map_name_taken_configured:
+    'the name "{name}" is taken by that of the configuration: give another one, or rename that map',
+  rb_counts_from: 'the mission counts from the map "{map}": {why}',
+  rb_not_found_yet:
+    'the robot is not found in it yet: drive some metres by hand, or say where it stands (a tap on the map)',
+  rb_not_found_yet_why: 'the robot is not found in it yet ({why})',
+  rb_not_found_yet_do:
+    'the robot is not found in it yet ({why}): drive some metres by hand, or say where it stands (a tap on the map)',
+  rb_lost_in_it: 'the robot is lost in it ({why})',
 } as const;

@@ -193,10 +193,6 @@ export const maps = {
   ortho_no_projection: 'selle projektsiooni ei tunta',
   ortho_not_8_bit: 'selle värvidel pole 8 bitti',
   ortho_too_large: 'ruute tuleks liiga palju',
-  why_drive_until_it_is_found:
-    '{why}Sõida mõni meeter käsitsi, kuni koht leitakse. Keegi ei tea veel, kus see kaart maakeral asub, nii et „Olen siin“ hakkab kehtima pärast seda.',
-  nobody_knows_where_this_map_lies:
-    'Keegi ei tea, kus see kaart maakeral asub: vali „Olen siin“ koos suunaga või ütle, kus kaart asub.',
   it_is_heard_and_the_map_lies_nowhere: 'Kuuldud, aga kaart ei asu veel kuskil',
   map_of_the_configuration: 'seadistusest',
   it_counts_from_a_map_that_lies_nowhere:

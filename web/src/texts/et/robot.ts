@@ -122,7 +122,6 @@ export const robot = {
   rb_more_places: 'öeldud koha ümber sobib mitu kohta: sõida edasi',
   rb_nothing_fits: 'miski kaardil ei sobi: kas see on selle koha kaart?',
   rb_looking: 'otsib oma kohta kaardil',
-  rb_no_anchor: 'keegi ei tea, kus kaart maa peal asub: sel pole ankrut',
   rb_picture_old: 'midagi pole enam näha: pilt ümbrusest on liiga vana',
   rb_in_way: 'midagi on tee peal ees, {where}',
   rb_comes_in_way: 'keegi tuleb tee peale, {where}',
@@ -179,4 +178,19 @@ export const robot = {
   rb_told_no_rest: 'failis pole midagi sõita',
   rb_file_wrong_line: 'failis on üks vale väärtus: rida {line} {what}',
   rb_file_wrong_lines: 'failis on {n} vale väärtust, esimesena rida {line} {what}',
+  rb_no_anchor:
+    'keegi ei tea, kus kaart maakeral asub, sest tal pole ankrut ja satelliite pole kuulda: ütle, kus robot seisab ja kuhu ta osutab',
+  rb_word_counts_once_found:
+    'sõida mõni meeter käsitsi: öeldud koht hakkab kehtima, kui robot kaardilt leitakse, sest keegi ei tea, kus kaart maakeral asub',
+  rb_no_tap_before:
+    'sõida mõni meeter käsitsi: enne puudutus ei aita, sest keegi ei tea, kus kaart maakeral asub',
+  rb_map_name_taken: 'nimi „{name}“ on kaardil {n}: anna teine nimi või nimeta see kaart ümber',
+  rb_map_name_taken_configured: 'nimi „{name}“ on seadistuse kaardil: anna teine nimi',
+  rb_counts_from: 'ülesanne loeb kaardilt „{map}“: {why}',
+  rb_not_found_yet:
+    'robotit pole sealt veel leitud: sõida mõni meeter käsitsi või ütle, kus see seisab (puuduta kaarti)',
+  rb_not_found_yet_why: 'robotit pole sealt veel leitud ({why})',
+  rb_not_found_yet_do:
+    'robotit pole sealt veel leitud ({why}): sõida mõni meeter käsitsi või ütle, kus see seisab (puuduta kaarti)',
+  rb_lost_in_it: 'robot on seal eksinud ({why})',
 } as const;

@@ -195,10 +195,6 @@ export const maps = {
   ortho_no_projection: 'sen projektiota ei tunneta',
   ortho_not_8_bit: 'sen väreissä ei ole 8 bittiä',
   ortho_too_large: 'ruutuja tulisi liikaa',
-  why_drive_until_it_is_found:
-    '{why}Aja muutama metri käsin, kunnes paikka löytyy. Kukaan ei tiedä vielä, missä tämä kartta maapallolla on, joten ”Olen tässä” vaikuttaa vasta sen jälkeen.',
-  nobody_knows_where_this_map_lies:
-    'Kukaan ei tiedä, missä tämä kartta maapallolla on: valitse ”Olen tässä” suunnan kanssa tai kerro, missä kartta on.',
   it_is_heard_and_the_map_lies_nowhere: 'Kuultu, mutta kartalla ei ole vielä paikkaa',
   map_of_the_configuration: 'asetuksista',
   it_counts_from_a_map_that_lies_nowhere:

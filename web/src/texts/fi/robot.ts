@@ -123,7 +123,6 @@ export const robot = {
   rb_more_places: 'useampi paikka kerrotun ympärillä sopii: aja eteenpäin',
   rb_nothing_fits: 'mikään kartalla ei sovi: onko se tämän paikan kartta?',
   rb_looking: 'etsii paikkaansa kartalta',
-  rb_no_anchor: 'kukaan ei tiedä, missä maan päällä kartta on: sillä ei ole ankkuria',
   rb_picture_old: 'mitään ei enää nähdä: kuva ympäristöstä on liian vanha',
   rb_in_way: 'jotakin on tiellä, {where}',
   rb_comes_in_way: 'joku tulee tielle, {where}',
@@ -180,4 +179,20 @@ export const robot = {
   rb_told_no_rest: 'tiedostossa ei ole ajettavaa',
   rb_file_wrong_line: 'tiedostossa on yksi väärä arvo: rivi {line} {what}',
   rb_file_wrong_lines: 'tiedostossa on {n} väärää arvoa, ensin rivi {line} {what}',
+  rb_no_anchor:
+    'kukaan ei tiedä, missä kartta maapallolla on, sillä sillä ei ole ankkuria eikä satelliitteja kuulu: kerro, missä robotti seisoo ja minne se osoittaa',
+  rb_word_counts_once_found:
+    'aja muutama metri käsin: kerrottu paikka vaikuttaa, kun robotti on löytynyt kartalta, sillä kukaan ei tiedä, missä kartta maapallolla on',
+  rb_no_tap_before:
+    'aja muutama metri käsin: sitä ennen napautus ei auta, sillä kukaan ei tiedä, missä kartta maapallolla on',
+  rb_map_name_taken:
+    'nimi ”{name}” on kartalla {n}: anna toinen nimi tai nimeä se kartta uudelleen',
+  rb_map_name_taken_configured: 'nimi ”{name}” on asetusten kartalla: anna toinen nimi',
+  rb_counts_from: 'tehtävä lasketaan kartasta ”{map}”: {why}',
+  rb_not_found_yet:
+    'robottia ei ole vielä löydetty siltä: aja muutama metri käsin tai kerro, missä se seisoo (napauta karttaa)',
+  rb_not_found_yet_why: 'robottia ei ole vielä löydetty siltä ({why})',
+  rb_not_found_yet_do:
+    'robottia ei ole vielä löydetty siltä ({why}): aja muutama metri käsin tai kerro, missä se seisoo (napauta karttaa)',
+  rb_lost_in_it: 'robotti on eksynyt siinä ({why})',
 } as const;

@@ -198,10 +198,6 @@ export const maps = {
   ortho_no_projection: 'la sua proiezione non è nota',
   ortho_not_8_bit: 'i suoi colori non hanno 8 bit',
   ortho_too_large: 'sarebbero troppi tasselli',
-  why_drive_until_it_is_found:
-    '{why}Guida qualche metro a mano finché non si trova. Nessuno sa ancora dove questa mappa stia sulla terra: «Sono qui» vale dopo.',
-  nobody_knows_where_this_map_lies:
-    'Nessuno sa dove questa mappa stia sulla terra: di’ «Sono qui» con la direzione, o di’ dove sta la mappa.',
   it_is_heard_and_the_map_lies_nowhere: 'Sentito, ma la mappa non sta ancora da nessuna parte',
   map_of_the_configuration: 'della configurazione',
   it_counts_from_a_map_that_lies_nowhere:

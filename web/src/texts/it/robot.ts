@@ -126,7 +126,6 @@ export const robot = {
   rb_more_places: 'attorno al posto indicato ne va bene più d’uno: prosegui',
   rb_nothing_fits: 'nella mappa non va bene nulla: è la mappa di questo posto?',
   rb_looking: 'cerca il posto nella mappa',
-  rb_no_anchor: 'nessuno sa dove sulla terra si trovi la mappa: non ha un’ancora',
   rb_picture_old: 'non si vede più nulla: l’immagine dei dintorni è troppo vecchia',
   rb_in_way: 'qualcosa è sulla via, {where}',
   rb_comes_in_way: 'qualcuno entra nella via, {where}',
@@ -184,4 +183,20 @@ export const robot = {
   rb_told_no_rest: 'il file non ha nulla da percorrere',
   rb_file_wrong_line: 'il file ha un valore sbagliato: riga {line} {what}',
   rb_file_wrong_lines: 'il file ha {n} valori sbagliati, prima la riga {line} {what}',
+  rb_no_anchor:
+    'nessuno sa dove la mappa stia sulla terra, perché non ha un’ancora e non si sentono satelliti: di’ dove si trova il robot e dove punta',
+  rb_word_counts_once_found:
+    'guida qualche metro a mano: il posto detto vale quando il robot è trovato nella mappa, perché nessuno sa dove stia sulla terra',
+  rb_no_tap_before:
+    'guida qualche metro a mano: prima un tocco non serve, perché nessuno sa dove la mappa stia sulla terra',
+  rb_map_name_taken: 'il nome «{name}» è della mappa {n}: danne un altro, o rinomina quella mappa',
+  rb_map_name_taken_configured:
+    'il nome «{name}» è della mappa della configurazione: danne un altro',
+  rb_counts_from: 'la missione conta dalla mappa «{map}»: {why}',
+  rb_not_found_yet:
+    'il robot non vi è ancora trovato: guida qualche metro a mano, o di’ dove si trova (un tocco sulla mappa)',
+  rb_not_found_yet_why: 'il robot non vi è ancora trovato ({why})',
+  rb_not_found_yet_do:
+    'il robot non vi è ancora trovato ({why}): guida qualche metro a mano, o di’ dove si trova (un tocco sulla mappa)',
+  rb_lost_in_it: 'il robot vi si è perso ({why})',
 } as const;

@@ -196,10 +196,6 @@ export const maps = {
   ortho_no_projection: 'projeksjonen er ukjent',
   ortho_not_8_bit: 'fargene har ikke 8 biter hver',
   ortho_too_large: 'det ville bli for mange ruter',
-  why_drive_until_it_is_found:
-    '{why}Kjør noen meter for hånd til stedet er funnet. Ingen vet ennå hvor på jorden dette kartet ligger, så «Jeg er her» gjelder først etterpå.',
-  nobody_knows_where_this_map_lies:
-    'Ingen vet hvor på jorden dette kartet ligger: si «Jeg er her» med retningen, eller si hvor kartet ligger.',
   it_is_heard_and_the_map_lies_nowhere: 'Hørt, men kartet ligger ingen steder ennå',
   map_of_the_configuration: 'fra konfigurasjonen',
   it_counts_from_a_map_that_lies_nowhere:

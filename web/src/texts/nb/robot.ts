@@ -124,7 +124,6 @@ export const robot = {
   rb_more_places: 'flere steder rundt det oppgitte passer: kjør videre',
   rb_nothing_fits: 'ingenting i kartet passer: er det kartet over dette stedet?',
   rb_looking: 'leter etter stedet i kartet',
-  rb_no_anchor: 'ingen vet hvor på jorden kartet ligger: det har ikke noe anker',
   rb_picture_old: 'ingenting ses lenger: bildet av omgivelsene er for gammelt',
   rb_in_way: 'noe står i veien, {where}',
   rb_comes_in_way: 'noen kommer inn i veien, {where}',
@@ -182,4 +181,21 @@ export const robot = {
   rb_told_no_rest: 'filen har ingenting å kjøre',
   rb_file_wrong_line: 'filen har én feil verdi: linje {line} {what}',
   rb_file_wrong_lines: 'filen har {n} feil verdier, først linje {line} {what}',
+  rb_no_anchor:
+    'ingen vet hvor på jorden kartet ligger, for det har ikke noe anker, og ingen satellitter høres: si hvor roboten står og hvilken vei den peker',
+  rb_word_counts_once_found:
+    'kjør noen meter for hånd: stedet som ble sagt, gjelder når roboten er funnet i kartet, for ingen vet hvor på jorden kartet ligger',
+  rb_no_tap_before:
+    'kjør noen meter for hånd: et trykk hjelper ikke før, for ingen vet hvor på jorden kartet ligger',
+  rb_map_name_taken:
+    'navnet «{name}» er brukt av kart {n}: gi et annet, eller gi det kartet nytt navn',
+  rb_map_name_taken_configured:
+    'navnet «{name}» er brukt av kartet fra konfigurasjonen: gi et annet',
+  rb_counts_from: 'oppdraget regnes fra kartet «{map}»: {why}',
+  rb_not_found_yet:
+    'roboten er ikke funnet i det ennå: kjør noen meter for hånd, eller si hvor den står (et trykk på kartet)',
+  rb_not_found_yet_why: 'roboten er ikke funnet i det ennå ({why})',
+  rb_not_found_yet_do:
+    'roboten er ikke funnet i det ennå ({why}): kjør noen meter for hånd, eller si hvor den står (et trykk på kartet)',
+  rb_lost_in_it: 'roboten har gått seg bort i det ({why})',
 } as const;
