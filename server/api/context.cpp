@@ -1,11 +1,13 @@
 #include "api/context.hpp"
 
+#include <algorithm>
 #include <exception>
 #include <utility>
 
 #include "api/json/map_words.hpp"
 #include "api/json/teach_words.hpp"
 #include "api/profile.hpp"
+#include "base/angle.hpp"
 #include "base/log.hpp"
 
 namespace roverd::api {
@@ -44,6 +46,20 @@ Json Context::vehicle(const base::Snapshot& snapshot, base::Time now) const {
   out["teach"] = teach_brief_json(deps.services.view()->teach);
   out["holder"] = control.holder();
   return out;
+}
+
+std::optional<base::MapLies> Context::lies_of(const std::string& map) const {
+  const maps::Shelf* const shelf = deps.maps.shelf;
+  if (shelf == nullptr) return std::nullopt;
+  const auto known = shelf->list();
+  const auto found = std::ranges::find(known, map, &maps::About::name);
+  if (found == known.end()) return std::nullopt;
+  std::optional<maps::Anchor> lies = found->anchor;
+  if (shelf->in_use() == found->id && deps.maps.placed) {
+    if (const auto placed = deps.maps.placed()) lies = placed;
+  }
+  if (!lies) return std::nullopt;
+  return base::MapLies{lies->at, base::yaw_from_heading(lies->heading_deg)};
 }
 
 std::optional<store::StoredPlace> Context::offer(const base::Snapshot& snapshot) const {

@@ -117,6 +117,9 @@ struct Context {
   Profile profile() const;
   /// The refusal of a call that acts on the robot, of whom control is not held by now.
   std::optional<Response> without_control(const Call& call) const;
+  /// Where the map of that name lies: as the robot drives by it where it is in use, else by its
+  /// anchor. Empty: there is none, or nobody knows.
+  std::optional<base::MapLies> lies_of(const std::string& map) const;
   /// The whole state, with what the robot does not know of itself.
   Json vehicle(const base::Snapshot& snapshot, base::Time now) const;
   /// The mission that another life of the program left behind, if nothing else is in hand: what the

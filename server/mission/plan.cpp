@@ -1,6 +1,7 @@
 #include "mission/plan.hpp"
 
 #include <array>
+#include <cmath>
 
 #include "base/tangent_plane.hpp"
 #include "mission/circle.hpp"
@@ -32,11 +33,20 @@ LatLon place_on_earth(const base::MapLies& lies, const MapPoint& point) noexcept
 double length_m(const Plan& plan) noexcept {
   double sum_m = 0.0;
   std::optional<LatLon> before;
+  const MapPoint* in_map = nullptr;  // the item before it
   const auto go = [&](LatLon to) {
     if (before) sum_m += base::distance_bearing(*before, to).distance_m;
     before = to;
   };
   for (const Item& item : plan.items) {
+    if (const auto* point = std::get_if<MapPoint>(&item)) {
+      if (in_map != nullptr)
+        sum_m += std::hypot(point->x_m - in_map->x_m, point->y_m - in_map->y_m);
+      in_map = point;
+      before.reset();
+      continue;
+    }
+    if (place_of(item)) in_map = nullptr;
     if (const auto* circle = std::get_if<Circle>(&item)) {
       const base::TangentPlane plane(circle->at);
       const CircleWay round =
@@ -49,6 +59,22 @@ double length_m(const Plan& plan) noexcept {
     }
   }
   return sum_m;
+}
+
+Plan laid_on_earth(Plan plan, const base::MapLies& lies) {
+  for (Item& item : plan.items) {
+    const auto* point = std::get_if<MapPoint>(&item);
+    if (point == nullptr) continue;
+    Waypoint laid;
+    laid.at = place_on_earth(lies, *point);
+    laid.speed_mps = point->speed_mps;
+    laid.radius_m = point->radius_m;
+    laid.hold_s = point->hold_s;
+    laid.reverse = point->reverse;
+    item = laid;
+  }
+  plan.frame.reset();
+  return plan;
 }
 
 }  // namespace roverd::mission

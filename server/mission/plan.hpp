@@ -208,7 +208,13 @@ struct Plan {
   friend bool operator==(const Plan&, const Plan&) = default;
 };
 
-/// Sum of the geodesic legs between consecutive waypoints, metres.
+/// Sum of the geodesic legs between consecutive waypoints, and of those between consecutive points
+/// of the map, metres. A leg from one kind to the other is not counted: where the map lies is not
+/// known.
 double length_m(const Plan& plan) noexcept;
+
+/// Its points of the map as waypoints, where the map lies; it counts from no map any more. What a
+/// point wants of the heading is lost: a waypoint has none.
+Plan laid_on_earth(Plan plan, const base::MapLies& lies);
 
 }  // namespace roverd::mission

@@ -33,3 +33,10 @@ test('of a plan that was changed in one place all the rest is as it was', () => 
   expect(length(...(first && third ? [third, first, third] : []))).toBeCloseTo(40, 2);
   expect(length(...items)).toBeCloseTo(30, 2);
 });
+
+test('points of a map are as far apart as they are in it', () => {
+  const spot = (x_m: number, y_m: number): Item => ({ type: 'map_point', x_m, y_m });
+  expect(length(spot(1, 0), { type: 'wait', seconds: 3 }, spot(4, 4))).toBe(5);
+  // What lies between the street and the map nobody knows.
+  expect(length(spot(1, 0), point(0), spot(4, 4), spot(4, 6))).toBe(2);
+});

@@ -111,8 +111,25 @@ Handler import_mission(const ContextPtr& context) {
   };
 }
 
+/// Files of others hold places on the earth. @return what is in the way of that; empty: nothing
+std::optional<Response> cannot_be_laid(const mission::Plan& plan) {
+  const bool in_map = std::ranges::any_of(plan.items, [](const mission::Item& item) {
+    return std::holds_alternative<mission::MapPoint>(item);
+  });
+  if (!in_map || (plan.frame && plan.frame->lies)) return std::nullopt;
+  const std::string map = plan.frame ? " \"" + plan.frame->map + "\"" : "";
+  return problem(
+      {base::Code::Conflict,
+       "the mission's points are metres of the map" + map +
+           ", and nobody knows where on the earth that lies; this format holds latitudes "
+           "and longitudes. Give the map an anchor, or take the mission as JSON: GET "
+           "/missions/{id}",
+       {}});
+}
+
 Response file_response(const store::StoredMission& stored, mission::Format format,
                        const std::shared_ptr<const store::StoredFence>& fence) {
+  if (auto refusal = cannot_be_laid(stored.plan)) return std::move(*refusal);
   mission::ExportedFile file =
       mission::export_file(stored.plan, format, fence ? &fence->fence : nullptr);
   const auto count = [&file](mission::Outcome outcome) {
@@ -149,6 +166,7 @@ Handler export_mission(const ContextPtr& context) {
         call->params.at("id"),
         [context, call, format, fence](base::Result<store::StoredMission> stored) {
           if (!stored) return call->respond(problem(stored.error()));
+          if (auto& frame = stored->plan.frame) frame->lies = context->lies_of(frame->map);
           const Effort effort{2 * bytes_of(stored->plan)};
           context->answer_aside(call, effort,
                                 [format = *format, fence, mission = std::move(*stored)] {
@@ -166,8 +184,10 @@ void add_file_routes(const ContextPtr& c) {
                  {200, 201, 400, 403, 413, 415, 422, 429, 503},
                  import_mission(c),
                  kFileBytes});
-  c->router.add(
-      {http::verb::get, "/missions/{id}/export", {200, 400, 404, 422, 503}, export_mission(c)});
+  c->router.add({http::verb::get,
+                 "/missions/{id}/export",
+                 {200, 400, 404, 409, 422, 503},
+                 export_mission(c)});
 }
 
 }  // namespace roverd::api

@@ -200,6 +200,25 @@ bool has_element(std::string_view xml, std::string_view name) {
   return false;
 }
 
+/// Of a plan that counts from a map: where that lies is known.
+ExportedFile export_laid(const Plan& plan, Format format, const Fence* fence) {
+  ExportedFile file = export_file(laid_on_earth(plan, *plan.frame->lies), format, fence);
+  for (std::size_t i = 0; i < plan.items.size(); ++i) {
+    if (!std::holds_alternative<MapPoint>(plan.items[i])) continue;
+    const std::string row = "/items/" + std::to_string(i);
+    const std::string reason = "a point of the map \"" + plan.frame->map +
+                               "\", written as a waypoint where that lies by now";
+    const auto told = std::ranges::find(file.rows, row, &FileRow::row);
+    if (told == file.rows.end()) {
+      file.rows.push_back({row, "map_point", Outcome::Changed, reason, static_cast<int>(i) + 1});
+    } else {  // of the waypoint
+      told->what = "map_point";
+      told->reason = reason + (told->reason.empty() ? "" : "; " + told->reason);
+    }
+  }
+  return file;
+}
+
 }  // namespace
 
 std::optional<Format> detect_format(std::string_view raw, std::string_view file_name) {
@@ -269,6 +288,7 @@ std::string file_stem(std::string_view name, std::string_view otherwise) {
 }
 
 ExportedFile export_file(const Plan& plan, Format format, const Fence* fence) {
+  if (plan.frame && plan.frame->lies) return export_laid(plan, format, fence);
   ExportedFile file;
   file.file_name = file_stem(plan.name) + '.' + ending_of(format);
   switch (format) {

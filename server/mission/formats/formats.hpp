@@ -143,9 +143,10 @@ struct ExportedFile {
 /// 80 characters at most. @param otherwise where none is left
 std::string file_stem(std::string_view name, std::string_view otherwise = "mission");
 
-/// Positions come back equal when the file is imported again. @param format is_written @param fence
-/// written into .plan, GeoJSON, KML and KMZ; the other formats have no place for it, and `rows`
-/// says so. Null: none
+/// Positions come back equal when the file is imported again. A plan that counts from a map, where
+/// that lies is known (Plan::frame): its points are written as waypoints there, and `rows` says so.
+/// Where it is not, they are left out. @param format is_written @param fence written into .plan,
+/// GeoJSON, KML and KMZ; the other formats have no place for it, and `rows` says so. Null: none
 ExportedFile export_file(const Plan& plan, Format format, const Fence* fence = nullptr);
 
 }  // namespace roverd::mission

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "base/tangent_plane.hpp"
 #include "files.hpp"
 #include "mission/formats/formats.hpp"
 #include "plans.hpp"
@@ -54,6 +55,36 @@ TEST(Export, WhatTheFormatCannotHoldIsReportedByItem) {
   EXPECT_EQ(left_out, (std::vector<int>{3, 4, 5, 10, 11, 12, 13, 14, 16, 23, 24}));
   EXPECT_EQ(changed, (std::vector<int>{1, 20, 22}));
   EXPECT_EQ(file.rows.back().what, "back_and_forth");
+}
+
+TEST(Export, PointsOfAMapAreWrittenWhereItLies) {
+  // Given: two points of a map that lies somewhere, its x axis to the east, and a wait.
+  Plan plan;
+  plan.name = "shed";
+  plan.frame = MissionMap{"shed", base::MapLies{{58.0, 26.0}, 0.0}};
+  plan.items = {MapPoint{.x_m = 1.0}, MapPoint{.x_m = 4.0, .hold_s = 2.0}, Wait{5.0}};
+  const Plan laid = laid_on_earth(plan, *plan.frame->lies);
+  for (const Format format : kFormats) {
+    if (!is_written(format)) continue;
+    // When
+    const auto file = export_file(plan, format);
+    // Then: it holds their places, and each is told once, with the map.
+    const auto again = import_file(file.content, std::nullopt, file.file_name);
+    ASSERT_TRUE(again) << to_string(format) << " " << again.error().detail;
+    const auto there = positions(again->plan);
+    const auto wanted = positions(laid);
+    ASSERT_EQ(there.size(), 2u) << to_string(format);
+    for (std::size_t i = 0; i < there.size(); ++i) {
+      EXPECT_LT(base::distance_m(base::TangentPlane(there[i]).to_local(wanted[i]), {}), 0.001)
+          << to_string(format);
+    }
+    const auto told = std::ranges::count_if(file.rows, [](const FileRow& row) {
+      return row.what == "map_point" && row.outcome == Outcome::Changed &&
+             row.reason.starts_with("a point of the map \"shed\", written as a waypoint");
+    });
+    EXPECT_EQ(told, 2) << to_string(format);
+    EXPECT_EQ(std::ranges::count(file.rows, std::string("frame"), &FileRow::what), 0);
+  }
 }
 
 TEST(Export, AWaypointsOwnSpeedIsCommandedBeforeItAndTakenBackAfterIt) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "base/angle.hpp"
+#include "base/tangent_plane.hpp"
 #include "plans.hpp"
 
 namespace roverd::mission {
@@ -22,6 +24,49 @@ TEST(Plan, LengthIsTheSumOfTheLegsBetweenWaypoints) {
                 waypoint_at(0.001, 10.001),
                 ReturnHome{}};
   EXPECT_NEAR(length_m(plan), 110.574 + 111.320, 0.01);
+}
+
+TEST(Plan, PointsOfAMapAreAsFarApartAsTheyAreThere) {
+  Plan plan;
+  plan.frame = MissionMap{"shed"};
+  plan.items = {MapPoint{.x_m = 1.0}, Wait{5.0}, MapPoint{.x_m = 4.0, .y_m = 4.0}};
+  EXPECT_DOUBLE_EQ(length_m(plan), 5.0);
+  // What lies between street and map nobody knows.
+  Waypoint street;
+  street.at = {58.0, 26.0};
+  plan.items.insert(plan.items.begin() + 1, street);
+  EXPECT_DOUBLE_EQ(length_m(plan), 0.0);
+  plan.items.emplace_back(MapPoint{.x_m = 4.0, .y_m = 6.5});
+  EXPECT_DOUBLE_EQ(length_m(plan), 2.5);
+}
+
+TEST(Plan, IsLaidOnTheEarthWhereItsMapLies) {
+  // Given: a map whose x axis looks north.
+  Plan plan;
+  plan.frame = MissionMap{"shed"};
+  plan.items = {MapPoint{.x_m = 10.0,
+                         .y_m = 5.0,
+                         .yaw_deg = 90.0,
+                         .speed_mps = 0.4,
+                         .radius_m = 0.2,
+                         .hold_s = 3.0,
+                         .reverse = true},
+                Wait{1.0}};
+  const LatLon origin{58.0, 26.0};
+  // When
+  const Plan laid = laid_on_earth(plan, {origin, base::kPi / 2.0});
+  // Then
+  EXPECT_FALSE(laid.frame);
+  ASSERT_EQ(laid.items.size(), 2u);
+  const auto& point = std::get<Waypoint>(laid.items[0]);
+  const auto at = base::TangentPlane(origin).to_local(point.at);
+  EXPECT_NEAR(at.north_m, 10.0, 1e-3);
+  EXPECT_NEAR(at.east_m, -5.0, 1e-3);
+  EXPECT_EQ(point.speed_mps, 0.4);
+  EXPECT_EQ(point.radius_m, 0.2);
+  EXPECT_EQ(point.hold_s, 3.0);
+  EXPECT_TRUE(point.reverse);
+  EXPECT_EQ(laid.items[1], plan.items[1]);
 }
 
 TEST(Plan, TypeNamesAreThoseOfThePublicInterface) {

@@ -103,6 +103,11 @@ export const mission_calls: MissionCalls = {
   },
   export_address: (id, format) =>
     `/api/v1${mission_path(id)}/export?format=${encodeURIComponent(format)}`,
+  export_refusal: async (id, format) => {
+    const address = `${mission_path(id)}/export?format=${encodeURIComponent(format)}`;
+    const answer = await request<ArrayBuffer>(address, { as: 'bytes' });
+    return answer.ok ? null : answer.refusal;
+  },
 };
 
 /** The robot's own time at which the person saw the state that he acts upon; null: not known. */

@@ -1,7 +1,7 @@
 // How long the way through a plan is, as far as its places tell.
 
 import { distance_m } from './geo';
-import { place_of, type Item, type LatLon, type Plan } from './plan';
+import { place_of, type Item, type LatLon, type OnMap, type Plan } from './plan';
 
 /** From a place to a circle, or off it: along its tangent from outside, else straight to it. */
 const to_ring_m = (between_m: number, radius_m: number): number =>
@@ -22,13 +22,22 @@ const way_m = (from: Item, a: Placed, to: Item, b: Placed): number => {
   return way_m;
 };
 
-/** Metres; circles all the way round. Moves, jumps and ways home are not counted. */
+/** Metres; circles all the way round. Moves, jumps and ways home are not counted, nor is the way between
+ * a place on the earth and a point of a map. */
 export const plan_length_m = (plan: Plan): number => {
   let sum = 0;
   let last: { readonly item: Item; readonly at: Placed } | null = null;
+  let in_map: OnMap | null = null;
   for (const item of plan.items) {
+    if (item.type === 'map_point') {
+      if (in_map) sum += Math.hypot(item.x_m - in_map.x_m, item.y_m - in_map.y_m);
+      in_map = item;
+      last = null;
+      continue;
+    }
     const place = place_of(item);
     if (!place) continue;
+    in_map = null;
     const radius_m = item.type === 'circle' ? item.radius_m : 0;
     const at = { lat: place.lat, lon: place.lon, radius_m };
     if (last) sum += way_m(last.item, last.at, item, at);

@@ -165,6 +165,8 @@ export interface MissionCalls {
   /** @param origin of a table in metres that does not tell its own */
   import_file(file: File, hints: ImportHints): Promise<Answer<ImportResult>>;
   export_address(id: string, format: string): string;
+  /** Why there is no file; null: there is one. */
+  export_refusal(id: string, format: string): Promise<Refusal | null>;
 }
 /** A place to drive to. */
 export interface Goal extends LatLon {

@@ -62,6 +62,14 @@ export class Library {
     return this.#calls.export_address(id, format);
   }
 
+  /** Of a file that is refused a browser says only that it failed. */
+  async tell_export(id: string, format: string): Promise<void> {
+    const refusal = await this.#calls.export_refusal(id, format);
+    const lies_nowhere = refusal?.status === 409;
+    const why = lies_nowhere ? say('it_counts_from_a_map_that_lies_nowhere') : null;
+    this.#notices.outcome('export', why ?? (refusal && refusal_text(refusal)));
+  }
+
   async refresh(): Promise<void> {
     await this.#fetch(null);
   }
