@@ -1,7 +1,7 @@
 // What becomes a mission when it is kept: asked for as it is changed, shown as it would be. It stays one
 // object: taken up again later, the mission's points follow.
 
-import { refusal_text } from '../model/answer';
+import { refusal_text, type Refusal } from '../model/answer';
 import { drawing_of, type Drawn } from '../model/makings';
 import type { Plan } from '../model/plan';
 import type { PlanningCalls } from '../model/ports';
@@ -130,6 +130,11 @@ export abstract class Planner<Wish, Result extends { readonly plan: Plan }> {
     if (question !== this.#question) return;
     this.busy = false;
     this.result = answer.ok ? answer.value : null;
-    this.failure = answer.ok ? null : refusal_text(answer.refusal);
+    this.failure = answer.ok ? null : this.words_of(answer.refusal);
+  }
+
+  /** Why it cannot be made so. */
+  protected words_of(refusal: Refusal): string {
+    return refusal_text(refusal);
   }
 }

@@ -1,12 +1,14 @@
 // A block of rows that is planned: two taps, the first row's beginning and its end, and the rest as
 // figures.
 
+import type { Refusal } from '../model/answer';
 import { bearing_deg, offset_from } from '../model/geo';
 import type { Drawn, DrawnRows } from '../model/makings';
 import type { LatLon, RowSide, Side } from '../model/plan';
 import type { PlanningCalls } from '../model/ports';
 import {
   drawn_block,
+  ROW_TURNS,
   row_length_m,
   USUAL_ROW_M,
   why_not_rows,
@@ -16,6 +18,7 @@ import {
   type RowTurn,
 } from '../model/row_block';
 import type { RunOnMap } from '../model/run_ports';
+import { row_refusal } from '../model/row_refusal';
 import { say } from '../model/say';
 import { robot_place } from '../model/vehicle';
 import { Outline } from './drawing.svelte';
@@ -72,6 +75,14 @@ export class RowPlanner extends Planner<RowsWish, RowBlock> {
   });
   /** The rows are drawn so long. */
   length_m = $derived(row_length_m(this.distance_m, this.by_place ? this.outline.places : []));
+  /** It drives by steering, and turns nowhere on the spot. */
+  steers = $derived.by(() => this.#live.capabilities?.kinematics === 'ackermann');
+  /** A turn of another kind that was kept stays to be seen. */
+  turn_kinds = $derived(
+    ROW_TURNS.filter((kind) => kind !== 'pivot' || !this.steers || this.turn_kind === 'pivot'),
+  );
+  /** There are arcs. */
+  has_radius = $derived(this.turn_kind === 'auto' ? this.steers : this.turn_kind !== 'pivot');
   wish = $derived<RowsWish>({
     rows: this.rows,
     spacing_m: this.spacing_m,
@@ -79,7 +90,7 @@ export class RowPlanner extends Planner<RowsWish, RowBlock> {
     skip: this.skip,
     out_m: this.out_m,
     turn_kind: this.turn_kind,
-    radius_m: this.turn_kind === 'pivot' ? null : this.radius_m,
+    radius_m: this.has_radius ? this.radius_m : null,
     alternating: this.alternating,
     to: this.by_place && this.ends_there ? (this.outline.places[1] ?? null) : null,
     entry: this.by_place ? this.tapped : null,
@@ -163,6 +174,10 @@ export class RowPlanner extends Planner<RowsWish, RowBlock> {
 
   protected drawn_now(): Drawn {
     return { kind: 'rows', wish: this.wish, places: this.outline.places };
+  }
+
+  protected override words_of(refusal: Refusal): string {
+    return row_refusal(refusal);
   }
 
   protected clear(): void {

@@ -203,4 +203,17 @@ export const plan = {
   at_the_latest_where_drawn: 'there, or 1 m behind where drawn',
   drop_to_import: 'Drop it: missions and maps are imported',
   use_this_fence: 'Use it',
+  rows_not_with_a_trailer: 'Rows are not driven by sight with a trailer.',
+  row_turns_need_arcs: 'This vehicle does not turn on the spot: choose arcs.',
+  no_arc_into_the_same_row:
+    'No arc leads back into the same row: choose another turn, or drive there and back by turns.',
+  arcs_need_rows_farther_apart:
+    'Arcs with a radius of {radius} need rows {apart} apart: leave rows out each time, or choose “{omega}” or “{shunt}”.',
+  arcs_are_no_narrower_than: 'This vehicle turns no narrower than {least}: give a wider radius.',
+  a_radius_is_of_arcs: 'A radius is for arcs: choose them, or leave it empty.',
+  arcs_need_a_radius:
+    'Give the radius of the arcs: this vehicle turns on the spot and has none of its own.',
+  row_1_is_too_short: 'Row 1 is shorter than 1 m: draw it longer.',
+  row_1_is_too_long: 'Row 1 ends more than 5 km away.',
+  field_from_to: '{field}: from {least} to {most}.',
 } as const;

@@ -202,4 +202,17 @@ export const plan = {
   at_the_latest_where_drawn: 'seal või 1 m joonistatu taga',
   drop_to_import: 'Lase lahti: missioonid ja kaardid imporditakse',
   use_this_fence: 'Kasuta seda',
+  rows_not_with_a_trailer: 'Haagisega ei sõideta ridu nähtu järgi.',
+  row_turns_need_arcs: 'See sõiduk ei pöördu kohapeal: vali kaared.',
+  no_arc_into_the_same_row:
+    'Ükski kaar ei vii samasse ritta tagasi: vali muu pööre või sõida kordamööda edasi-tagasi.',
+  arcs_need_rows_farther_apart:
+    'Kaared raadiusega {radius} vajavad ridu, mille vahe on {apart}: jäta iga kord ridu vahele või vali „{omega}“ või „{shunt}“.',
+  arcs_are_no_narrower_than: 'See sõiduk ei pöördu kitsamalt kui {least}: anna suurem raadius.',
+  a_radius_is_of_arcs: 'Raadius käib kaarte kohta: vali need või jäta see tühjaks.',
+  arcs_need_a_radius:
+    'Anna kaarte raadius: see sõiduk pöördub kohapeal ja oma raadiust tal ei ole.',
+  row_1_is_too_short: '1. rida on lühem kui 1 m: joonista see pikemaks.',
+  row_1_is_too_long: '1. rida lõpeb kaugemal kui 5 km.',
+  field_from_to: '{field}: {least} kuni {most}.',
 } as const;

@@ -205,4 +205,17 @@ export const plan = {
   at_the_latest_where_drawn: 'siellä tai 1 m piirretyn takana',
   drop_to_import: 'Pudota: tehtävät ja kartat tuodaan',
   use_this_fence: 'Käytä sitä',
+  rows_not_with_a_trailer: 'Perävaunun kanssa ei ajeta rivejä näkemän mukaan.',
+  row_turns_need_arcs: 'Tämä ajoneuvo ei käänny paikallaan: valitse kaaret.',
+  no_arc_into_the_same_row:
+    'Mikään kaari ei vie takaisin samaan riviin: valitse muu käännös tai aja vuorotellen edestakaisin.',
+  arcs_need_rows_farther_apart:
+    'Kaaret, joiden säde on {radius}, vaativat rivejä {apart} välein: jätä rivejä väliin joka kerta tai valitse ”{omega}” tai ”{shunt}”.',
+  arcs_are_no_narrower_than: 'Tämä ajoneuvo ei käänny jyrkemmin kuin {least}: anna suurempi säde.',
+  a_radius_is_of_arcs: 'Säde koskee kaaria: valitse ne tai jätä se tyhjäksi.',
+  arcs_need_a_radius:
+    'Anna kaarten säde: tämä ajoneuvo kääntyy paikallaan, eikä sillä ole omaa sädettä.',
+  row_1_is_too_short: 'Rivi 1 on alle 1 m: piirrä se pidemmäksi.',
+  row_1_is_too_long: 'Rivi 1 päättyy yli 5 km:n päähän.',
+  field_from_to: '{field}: {least}–{most}.',
 } as const;

@@ -204,4 +204,18 @@ export const plan = {
   at_the_latest_where_drawn: 'lì, o 1 m oltre il disegno',
   drop_to_import: 'Rilascia: missioni e mappe vengono importate',
   use_this_fence: 'Usalo',
+  rows_not_with_a_trailer: 'Con un rimorchio i filari non si percorrono a vista.',
+  row_turns_need_arcs: 'Questo veicolo non gira sul posto: scegli gli archi.',
+  no_arc_into_the_same_row:
+    'Nessun arco riporta nello stesso filare: scegli un’altra svolta, o percorrili a turno avanti e indietro.',
+  arcs_need_rows_farther_apart:
+    'Archi con un raggio di {radius} vogliono filari distanti {apart}: salta dei filari ogni volta, o scegli «{omega}» o «{shunt}».',
+  arcs_are_no_narrower_than:
+    'Questo veicolo non gira più stretto di {least}: dai un raggio più ampio.',
+  a_radius_is_of_arcs: 'Il raggio vale per gli archi: sceglili, o lascialo vuoto.',
+  arcs_need_a_radius:
+    'Dai il raggio degli archi: questo veicolo gira sul posto e non ne ha uno suo.',
+  row_1_is_too_short: 'Il filare 1 è più corto di 1 m: disegnalo più lungo.',
+  row_1_is_too_long: 'Il filare 1 finisce a più di 5 km.',
+  field_from_to: '{field}: da {least} a {most}.',
 } as const;

@@ -204,4 +204,17 @@ export const plan = {
   at_the_latest_where_drawn: 'der, eller 1 m bak det tegnede',
   drop_to_import: 'Slipp: oppdrag og kart importeres',
   use_this_fence: 'Bruk det',
+  rows_not_with_a_trailer: 'Med tilhenger kjøres ikke rader etter syn.',
+  row_turns_need_arcs: 'Dette kjøretøyet snur ikke på stedet: velg buer.',
+  no_arc_into_the_same_row:
+    'Ingen bue fører tilbake i samme rad: velg en annen vending, eller kjør frem og tilbake etter tur.',
+  arcs_need_rows_farther_apart:
+    'Buer med radius {radius} trenger rader {apart} fra hverandre: hopp over rader hver gang, eller velg «{omega}» eller «{shunt}».',
+  arcs_are_no_narrower_than:
+    'Dette kjøretøyet svinger ikke krappere enn {least}: gi en større radius.',
+  a_radius_is_of_arcs: 'En radius gjelder buer: velg dem, eller la den stå tom.',
+  arcs_need_a_radius: 'Gi buenes radius: dette kjøretøyet snur på stedet og har ingen egen.',
+  row_1_is_too_short: 'Rad 1 er kortere enn 1 m: tegn den lengre.',
+  row_1_is_too_long: 'Rad 1 slutter mer enn 5 km unna.',
+  field_from_to: '{field}: fra {least} til {most}.',
 } as const;
