@@ -9,7 +9,7 @@ import {
   maps_wanted,
   why_not_map_point,
 } from '../src/model/map_frame';
-import type { Item, Plan } from '../src/model/plan';
+import { item_title, type Item, type Plan } from '../src/model/plan';
 import { SHED } from './shed';
 
 const point: Item = { type: 'map_point', x_m: 1, y_m: 2 };
@@ -66,5 +66,10 @@ describe('a new point of the map', () => {
     expect(counted_where(in_yard)(framed)).toBe(framed);
     expect(counted_where({ map: null })(bare)).toBe(bare);
     expect(fresh_map_point({ map: 'yard', x_m: null })).toEqual({ ...point, x_m: 0, y_m: 0 });
+    const fine = fresh_map_point({ map: 'yard', x_m: 2.498370912, y_m: -0.001 });
+    expect(fine).toEqual({ ...point, x_m: 2.5, y_m: 0 });
+    expect(item_title({ ...point, x_m: 2.498370912, y_m: 3 })).toBe(
+      'In the map: x 2.50 m, y 3.00 m',
+    );
   });
 });

@@ -45,12 +45,19 @@ export const why_not_map_point = (
     : say('map_point_by_another_map', { frame, other });
 };
 
+/** As places on the earth are: nobody knows it better. */
+const centimetres = (value_m: number): number => Math.round(value_m * 100) / 100 + 0; // no -0
+
 /** Where the robot is in the map; the middle of one that is seen while the robot is not in it. */
 export const fresh_map_point = (standing: Standing, seen: SiteMap | null = null): OnMap => {
   const elsewhere =
     seen !== null && (standing?.map !== seen.name || (standing.x_m ?? null) === null);
   if (elsewhere) return { type: 'map_point', ...middle_of_map(seen) };
-  return { type: 'map_point', x_m: standing?.x_m ?? 0, y_m: standing?.y_m ?? 0 };
+  return {
+    type: 'map_point',
+    x_m: centimetres(standing?.x_m ?? 0),
+    y_m: centimetres(standing?.y_m ?? 0),
+  };
 };
 
 /** The first point makes the mission count from the map that the robot uses. */

@@ -1,7 +1,7 @@
 // The mission as the page edits it: plain immutable values in the words of the public interface.
 // Item numbers shown to people start at 1; indices here start at 0.
 
-import { count } from './format';
+import { count, number_text } from './format';
 import { say, told } from './say';
 import { speed_text, type SpeedUnit } from './settings';
 
@@ -239,7 +239,10 @@ export const item_title = (item: Item, speed_in: SpeedUnit = 'm/s'): string => {
     case 'local':
       return say('local_east_m_east_north_m_north', { east: item.east_m, north: item.north_m });
     case 'map_point':
-      return say('map_point_x_m_y_m', { x: item.x_m, y: item.y_m });
+      return say('map_point_x_m_y_m', {
+        x: number_text(item.x_m, 2),
+        y: number_text(item.y_m, 2),
+      });
     case 'move':
       return item.forward_m < 0
         ? say('back_forward_m', { forward: -item.forward_m })
