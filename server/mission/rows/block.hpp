@@ -7,9 +7,9 @@
 //      ╭─── ░░░░░░░░░░░░░░░░░░ ◀─╯        every other row is driven the other way
 //      ▼    row 2 …
 //
-// Not alternating, each row is driven back, and the next one entered at the same end as row 1.
-// Where a block is told to lie (lies.hpp), its rows end at the latest kPastEnd_m beyond there, as
-// far as the position is known then; they end by sight before.
+// Not alternating, each row but the last is driven back, and the next one entered at the same end
+// as row 1. Where a block is told to lie (lies.hpp), its rows end at the latest kPastEnd_m beyond
+// there, as far as the position is known then; they end by sight before.
 //
 // Pure.
 
