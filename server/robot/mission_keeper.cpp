@@ -134,7 +134,8 @@ base::MissionProgress MissionKeeper::progress(const std::optional<base::Pose>& p
   p.cross_track_limit_m = at.cross_track_limit_m;
   p.distance_left_m = at.distance_left_m;
   p.eta_s = at.eta_s;
-  p.place = executor.place();
+  p.place =
+      executor.place(pose && pose->heading_known ? std::optional(pose->yaw_rad) : std::nullopt);
   const bool known = pose && pose->horizontal_sigma_m <= kKnown_m;
   if (p.place && p.place->driving && known) p.place->at = pose->global;
   if (pose && at.item_end && frame) {

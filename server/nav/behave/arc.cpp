@@ -82,9 +82,14 @@ bool Executor::enter_arc(const RouteStep& step, const Vehicle& vehicle) {
   return true;
 }
 
-/// By the way that is driven of it.
-double Executor::arc_left_rad() const noexcept {
-  if (tracker_.path() != &connector_) return arc_rad_;
+/// By the way that is driven of it; of one that waits, and was driven on as it braked, by how it
+/// points now.
+double Executor::arc_left_rad(std::optional<double> yaw_rad) const noexcept {
+  if (tracker_.path() != &connector_) {
+    return arc_yaw_rad_ && yaw_rad
+               ? braked_rad(arc_rad_, base::angle_diff_rad(*arc_yaw_rad_, *yaw_rad))
+               : arc_rad_;
+  }
   const double share = 1.0 - tracker_.s_m() / connector_.length_m();
   return std::copysign(std::max(kLeastArc_rad, std::abs(arc_rad_) * share), arc_rad_);
 }

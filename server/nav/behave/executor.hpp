@@ -130,8 +130,9 @@ class Executor {
   bool waits_for_word() const noexcept;
   /// What resume would refuse, without doing it.
   base::Result<void> may_resume(EnuPoint here) const;
-  /// Where it stands; empty: nothing is in hand.
-  std::optional<base::MissionPlace> place() const;
+  /// Where it stands; empty: nothing is in hand. @param yaw_rad as the robot points now: of an arc
+  /// it drove some as it braked for a pause. Empty: not known
+  std::optional<base::MissionPlace> place(std::optional<double> yaw_rad = std::nullopt) const;
   /// Loads a route and is Paused at a place of it, as if it had been interrupted there. Where it
   /// was being driven, resume goes on from the nearest place ahead: the robot rolled on meanwhile.
   /// Conflict if the place is none of this route's.
@@ -245,7 +246,7 @@ class Executor {
   bool enter_move(const RouteStep& step, const Vehicle& vehicle);
   bool enter_turn(const RouteStep& step, const Vehicle& vehicle);
   bool enter_arc(const RouteStep& step, const Vehicle& vehicle);
-  double arc_left_rad() const noexcept;
+  double arc_left_rad(std::optional<double> yaw_rad = std::nullopt) const noexcept;
   /// On a way that was laid from where it stood: connector_.
   bool on_own_way() const noexcept { return doing_ == Doing::Connector || doing_ == Doing::Arc; }
   TrackOutput step_turn(const Vehicle& vehicle, double dt_s);

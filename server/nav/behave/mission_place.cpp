@@ -30,7 +30,7 @@ double direction_at(const Path& path, double s_m) {
 
 }  // namespace
 
-std::optional<base::MissionPlace> Executor::place() const {
+std::optional<base::MissionPlace> Executor::place(std::optional<double> yaw_rad) const {
   if (!in_hand() || course_ == nullptr) return std::nullopt;
   base::MissionPlace p;
   p.back = course_ == &route_->back;
@@ -47,7 +47,7 @@ std::optional<base::MissionPlace> Executor::place() const {
   constexpr double kDone_rad = 1e-3;  // all of it, and it backs up to its end
   if (counts && step->kind == StepKind::Turn) {
     p.left = doing_ == Doing::Turn        ? rotation_.left_rad()
-             : doing_ == Doing::Arc       ? arc_left_rad()
+             : doing_ == Doing::Arc       ? arc_left_rad(yaw_rad)
              : doing_ == Doing::Connector ? kDone_rad
                                           : left_;
   }

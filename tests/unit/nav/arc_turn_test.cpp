@@ -97,6 +97,30 @@ TEST(ArcTurn, IsAsLongWithPausesAsWithout) {
   EXPECT_NEAR(std::abs(base::deg_from_rad(base::wrap_rad(r.vehicle.yaw_rad))), 180.0, 3.0);
 }
 
+// Between a pause and its going on the program may end: what it braked is of the arc there, too.
+TEST(ArcTurn, IsAsLongWithARestartDuringAPause) {
+  // Given: paused at 40 degrees, and rolled on by 5.
+  const auto mission = plan({TurnBy{-90.0, std::nullopt, 4.0}});
+  Ride r;
+  r.load(mission);
+  r.start();
+  while (r.executor.running() && r.vehicle.yaw_rad < base::rad_from_deg(40.0)) r.tick();
+  r.executor.pause("asked");
+  const double paused_rad = r.executor.place()->left;
+  r.vehicle.yaw_rad += base::rad_from_deg(5.0);
+  r.vehicle.speed_mps = r.vehicle.yaw_rate_radps = 0.0;
+  // When: its place is kept, and it goes on from there after a restart.
+  const auto kept = r.executor.place(r.vehicle.yaw_rad);
+  ASSERT_TRUE(kept);
+  EXPECT_NEAR(kept->left, paused_rad - base::rad_from_deg(5.0), 0.01);
+  ASSERT_TRUE(r.executor.restore(r.route_of(mission), *kept, "restarted"));
+  EXPECT_NEAR(r.executor.place(r.vehicle.yaw_rad + 0.1)->left, kept->left, 1e-9) << "once only";
+  ASSERT_TRUE(r.executor.resume(r.vehicle.at));
+  ASSERT_TRUE(r.run(60.0));
+  // Then
+  EXPECT_NEAR(base::deg_from_rad(r.vehicle.yaw_rad), 90.0, 3.0);
+}
+
 // Turned by hand while it waits: the heading counts, not what was left of the way to it.
 TEST(ArcTurn, LeadsToItsHeadingAlsoIfItWasTurnedByHandMeanwhile) {
   for (const double by_deg : {-20.0, 20.0}) {
