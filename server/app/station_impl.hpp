@@ -22,6 +22,7 @@
 #include "app/child_process.hpp"
 #include "app/control_loop.hpp"
 #include "app/devices.hpp"
+#include "app/drawing_mark.hpp"
 #include "app/drill.hpp"
 #include "app/estop_keeper.hpp"
 #include "app/front.hpp"
@@ -72,7 +73,8 @@ struct Station::Impl {
   std::unique_ptr<store::TileShelf> tiles;
   std::unique_ptr<AroundLoop> around;  ///< null: nobody goes around anything
   std::unique_ptr<maps::Shelf> shelf;
-  std::unique_ptr<MapMaker> maker;   ///< null: no sensors
+  std::unique_ptr<MapMaker> maker;  ///< null: no sensors
+  std::unique_ptr<DrawingMark> drawing;
   std::unique_ptr<PlaceLoop> place;  ///< null: no sensors
   std::shared_ptr<SenseLoop> sense;  ///< null: no sensors
   std::shared_ptr<CameraRack> cameras;
@@ -119,6 +121,7 @@ struct Station::Impl {
   Result<void> open(const Settings& settings, const Options& options);
   Result<void> open_maps(const Settings& settings, const Options& options);
   void tell_map_trouble(const std::string& what);
+  void tell_drawing(std::string_view kind, const std::string& what);
   api::MapDoor map_door();
   api::KnownPlaceDoor known_places_door(const Settings& settings, const Options& options);
   Result<void> open_senses(const Settings& settings, const Options& options);

@@ -99,6 +99,8 @@ Result<void> Station::Impl::open_maps(const Settings& settings, const Options& o
   }
   shelf = std::move(*opened);
   for (const std::string& trouble : shelf->troubles()) tell_map_trouble(trouble);
+  drawing = std::make_unique<DrawingMark>(std::filesystem::path(options.data) / "map_being_made");
+  if (const auto lost = drawing->found()) tell_map_trouble(*lost);
   return {};
 }
 
@@ -108,14 +110,33 @@ void Station::Impl::tell_map_trouble(const std::string& what) {
   robot.tell({base::wall_now(), base::Severity::Warning, "map_trouble", what});
 }
 
+void Station::Impl::tell_drawing(std::string_view kind, const std::string& what) {
+  robot.tell({base::wall_now(), base::Severity::Info, std::string(kind), what});
+}
+
 /// What the web asks of maps.
 api::MapDoor Station::Impl::map_door() {
   api::MapDoor door;
   door.shelf = shelf.get();
   if (!place || !maker) return door;
-  door.start_making = [this] { return maker->start(); };
-  door.finish_making = [this](const auto& keep) { return maker->finish(keep); };
-  door.drop_making = [this] { return maker->drop(); };
+  door.start_making = [this]() -> Result<void> {
+    if (auto begun = maker->start(); !begun) return begun;
+    drawing->begun(base::wall_now());
+    tell_drawing("map_begun", "a map is being made: what is seen from now on becomes part of it");
+    return {};
+  };
+  door.finish_making = [this](const auto& keep) {
+    auto kept = maker->finish(keep);
+    if (!maker->progress()) drawing->ended();
+    if (kept) tell_drawing("map_kept", "the map \"" + kept->name + "\" is kept");
+    return kept;
+  };
+  door.drop_making = [this]() -> Result<void> {
+    if (auto done = maker->drop(); !done) return done;
+    drawing->ended();
+    tell_drawing("map_dropped", "the map that was being made is dropped");
+    return {};
+  };
   door.making = [this] { return maker->progress(); };
   door.prepare = [this](std::int64_t id, bool same_place) -> Result<api::MapDoor::Take> {
     auto made = map_of(*shelf, id);

@@ -23,6 +23,10 @@ class Barn(SeeingRobot):
     def maps(self):
         return self.rest.get("/maps")
 
+    def lost(self):
+        events = self.rest.get("/events?limit=200")["items"]
+        return [e["detail"] for e in events if e["kind"] == "map_trouble" and "being made" in e["detail"]]
+
     def restart(self):
         arguments = list(self.roverd.process.args)
         self.roverd.stop(signal.SIGKILL)
@@ -56,6 +60,9 @@ def what_does_not_become_a_map():
         barn.restart()
         left = barn.maps()
         check(left["making"] is None and [m["name"] for m in left["items"]] == ["barn"], f"after a cut: {left}")
+        check(len(barn.lost()) == 1 and "begun at 20" in barn.lost()[0], f"that it is gone is told: {barn.lost()}")
+        barn.restart()
+        check(len(barn.lost()) == 1, f"once: {barn.lost()}")
         barn.rest.do("POST", "/maps/start")
         barn.roverd.stop(signal.SIGTERM)  # in the middle: it ends in time
 
