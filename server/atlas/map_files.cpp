@@ -15,10 +15,12 @@ using nav::chart::kOccupied;
 using nav::chart::kUnknown;
 using nav::chart::OccupancyMap;
 
-/// What the map server writes for unknown cells.
-std::uint16_t unknown_grey(const MapWords& words) noexcept {
-  constexpr std::uint16_t kGrey = 205;
-  return words.negate ? std::uint16_t{255 - kGrey} : kGrey;
+/// What the map server writes for unknown cells; in a picture of more shades the same grey.
+/// @param greatest 255 to 65535
+std::uint16_t unknown_grey(const MapWords& words, std::uint32_t greatest = 255) noexcept {
+  constexpr std::uint32_t kGrey = 205;
+  const std::uint32_t grey = words.negate ? 255 - kGrey : kGrey;
+  return static_cast<std::uint16_t>((grey * greatest + 127) / 255);
 }
 
 Cell cell_from(std::uint16_t value, std::uint32_t greatest, const MapWords& words) {
@@ -28,7 +30,7 @@ Cell cell_from(std::uint16_t value, std::uint32_t greatest, const MapWords& word
     return percent <= kOccupied ? static_cast<Cell>(percent) : kUnknown;
   }
   // With a free_thresh of 0.25 the map server reads its own grey of "unknown" as free.
-  if (words.mode == MapMode::Trinary && greatest == 255 && value == unknown_grey(words)) {
+  if (words.mode == MapMode::Trinary && greatest >= 255 && value == unknown_grey(words, greatest)) {
     return kUnknown;
   }
   const double p = words.negate ? shade : 1.0 - shade;

@@ -97,22 +97,28 @@ class FieldReader {
     bool good = node.IsSequence() && node.size() == values.size();
     for (std::size_t i = 0; good && i < values.size(); ++i) {
       const auto value = number_of(node[i]);
-      good = value && std::abs(*value) <= kFar_m;
+      good = value.has_value();
       if (good) values[i] = *value;
     }
     if (!good) return wrong("origin", "must be three finite numbers: x, y, yaw");
+    if (std::any_of(values.begin(), values.end(), [](double v) { return std::abs(v) > kFar_m; })) {
+      return wrong("origin",
+                   "must lie within 1000 km of zero: take a corner of the site off coordinates of "
+                   "a country");
+    }
     out = {values[0], values[1], values[2]};
   }
 
   void negate(bool& out) {
     const YAML::Node node = wanted("negate");
     if (!node) return;
-    const std::string word = node.IsScalar() ? node.Scalar() : std::string();
-    if (word == "0" || word == "false") {
-      out = false;
-    } else if (word == "1" || word == "true") {
-      out = true;
-    } else {
+    // YAML 1.1 has more words for it than 1.2, and both are written.
+    constexpr std::array<std::string_view, 5> kNo = {"0", "false", "no", "off", "n"};
+    constexpr std::array<std::string_view, 5> kYes = {"1", "true", "yes", "on", "y"};
+    std::string word = node.IsScalar() ? node.Scalar() : std::string();
+    for (char& c : word) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    out = std::find(kYes.begin(), kYes.end(), word) != kYes.end();
+    if (!out && std::find(kNo.begin(), kNo.end(), word) == kNo.end()) {
       wrong("negate", "must be 0 or 1");
     }
   }

@@ -2,6 +2,8 @@
 
 #include "atlas/map_files.hpp"
 
+#include <cmath>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -45,6 +47,28 @@ TEST(MapWords, AreReadAndWrittenAsTheyStand) {
   EXPECT_DOUBLE_EQ(words->origin.x_m, -1.5);
   EXPECT_DOUBLE_EQ(words->free_thresh, 0.196);
   EXPECT_EQ(atlas::write_words(*words), kWords);
+}
+
+TEST(MapWords, NegateIsAnyWordThatYamlHasForTrueAndFalse) {
+  for (const char* word : {"1", "true", "True", "TRUE", "yes", "On", "y"}) {
+    const auto words = atlas::read_words(with_line("negate", std::string("negate: ") + word));
+    ASSERT_TRUE(words) << word;
+    EXPECT_TRUE(words->negate) << word;
+  }
+  for (const char* word : {"0", "false", "False", "no", "NO", "off", "n"}) {
+    const auto words = atlas::read_words(with_line("negate", std::string("negate: ") + word));
+    ASSERT_TRUE(words) << word;
+    EXPECT_FALSE(words->negate) << word;
+  }
+}
+
+TEST(MapWords, AnOriginInCoordinatesOfACountryIsToldAsSuch) {
+  const auto words = atlas::read_words(with_line("origin", "origin: [500000.5, 6470000.25, 0]"));
+  ASSERT_FALSE(words);
+  EXPECT_EQ(
+      words.error().detail,
+      "origin must lie within 1000 km of zero: take a corner of the site off coordinates of a "
+      "country");
 }
 
 TEST(MapWords, OfOlderMapsTakeTheirDefaults) {
@@ -159,6 +183,24 @@ TEST(MapModes, SayWhatAGreyValueMeans) {
   EXPECT_EQ(cells_under(words), (std::vector<int>{0, 9, 43, 100, 100, 100}));
   words.mode = MapMode::Raw;
   EXPECT_EQ(cells_under(words), (std::vector<int>{0, 60, 100, -1, -1, -1}));
+}
+
+//   The map server's grey of "unknown", 205 of 255, in pictures of more shades.
+TEST(MapModes, TheGreyOfUnknownIsUnknownInPicturesOfAnyDepth) {
+  for (const bool negate : {false, true}) {
+    MapWords words;
+    words.free_thresh = 0.25;
+    words.negate = negate;
+    const std::uint32_t grey = negate ? 50 : 205;
+    for (const std::uint32_t greatest : {255U, 1023U, 4095U, 65535U}) {
+      const auto unknown = static_cast<std::uint16_t>(std::lround(grey * greatest / 255.0));
+      const auto lighter = static_cast<std::uint16_t>(negate ? unknown - 3 : unknown + 3);
+      const auto map = atlas::map_of(words, Picture{2, 1, greatest, {unknown, lighter}});
+      ASSERT_TRUE(map);
+      EXPECT_EQ(map->at({0, 0}), -1) << greatest;
+      EXPECT_EQ(map->at({1, 0}), 0) << greatest;
+    }
+  }
 }
 
 // The picture's first row is the map's highest.
