@@ -23,20 +23,50 @@ constexpr int kMostValue_bytes = 64 << 20;
 /// the zooms of a million tiles without an index takes 20 million steps.
 constexpr int kStride = 100'000;
 constexpr int kMostStrides = 500;
+/// For what the metadata say as well: of a set so large that this is too little they are believed.
+constexpr int kFewStrides = 100;
+
+std::string small_letters(std::string text) {
+  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return text;
+}
+
+/// One of ours, for how people write it: "PNG", "image/png"; what is not known stays as it is.
+std::string plain_format(std::string said) {
+  said = small_letters(std::move(said));
+  if (said.starts_with("image/")) said.erase(0, 6);
+  if (said == "jpeg") return "jpg";
+  if (said == "mvt" || said == "application/vnd.mapbox-vector-tile" ||
+      said == "application/x-protobuf") {
+    return "pbf";
+  }
+  return said;
+}
 
 std::string content_type_of(std::string_view format) {
   if (format == "png") return "image/png";
-  if (format == "jpg" || format == "jpeg") return "image/jpeg";
+  if (format == "jpg") return "image/jpeg";
   if (format == "webp") return "image/webp";
   if (format == "pbf") return "application/vnd.mapbox-vector-tile";
   return {};
 }
 
-/// "24.5,58.2,24.9,58.5"; empty unless it is four numbers in range.
-std::optional<std::array<double, 4>> read_bounds(const std::string& text) {
+using Bounds = std::array<double, 4>;
+
+/// What both hold; empty: they have no ground in common.
+std::optional<Bounds> common(const Bounds& a, const Bounds& b) {
+  const Bounds out = {std::max(a[0], b[0]), std::max(a[1], b[1]), std::min(a[2], b[2]),
+                      std::min(a[3], b[3])};
+  if (!(out[0] < out[2] && out[1] < out[3])) return std::nullopt;
+  return out;
+}
+
+/// "24.5,58.2,24.9,58.5"; empty unless it is four numbers in range, west before east and south
+/// before north.
+std::optional<Bounds> read_bounds(const std::string& text) {
   std::istringstream in(text);
   in.imbue(std::locale::classic());
-  std::array<double, 4> out{};
+  Bounds out{};
   for (std::size_t i = 0; i < out.size(); ++i) {
     char comma = ',';
     if (i > 0 && !(in >> comma)) return std::nullopt;
@@ -44,16 +74,34 @@ std::optional<std::array<double, 4>> read_bounds(const std::string& text) {
     const double limit_deg = i % 2 == 0 ? 180.0 : 90.0;
     if (!(out[i] >= -limit_deg && out[i] <= limit_deg)) return std::nullopt;
   }
+  if (!(out[0] < out[2] && out[1] < out[3])) return std::nullopt;
   return out;
 }
 
-/// From the south.
-std::int64_t row_of(const TileAddress& at) {
-  return (std::int64_t{1} << at.zoom) - 1 - at.y;
+/// Where tiles of a zoom lie. @param seen first and last column, first and last row of the file
+/// @param from_north its rows are counted so
+std::optional<Bounds> bounds_between(int zoom, const std::array<int, 4>& seen, bool from_north) {
+  const std::int64_t last = (std::int64_t{1} << zoom) - 1;
+  if (std::ranges::any_of(seen, [last](int at) { return at < 0 || at > last; })) {
+    return std::nullopt;
+  }
+  const auto& [west, east, first, end] = seen;
+  const int whole = static_cast<int>(last);
+  const auto a = bounds_of({zoom, west, from_north ? first : whole - end});
+  const auto b = bounds_of({zoom, east, from_north ? end : whole - first});
+  return Bounds{a[0], b[1], b[2], a[3]};
 }
 
-int is_over(void* strides) {
-  return ++*static_cast<int*>(strides) > kMostStrides ? 1 : 0;
+/// RFC 1950: deflate, and a check of the first two bytes.
+bool is_zlib(std::string_view bytes) noexcept {
+  if (bytes.size() < 2) return false;
+  const auto first = static_cast<unsigned char>(bytes[0]);
+  const auto second = static_cast<unsigned char>(bytes[1]);
+  return (first & 0x0FU) == 8U && first <= 0x78U && (first * 256U + second) % 31U == 0;
+}
+
+int is_over(void* strides_left) {
+  return --*static_cast<int*>(strides_left) < 0 ? 1 : 0;
 }
 
 }  // namespace
@@ -84,10 +132,10 @@ struct TileFile::Db {
       : file(path), db(path.string(), flags, kTilesBusy_ms) {
     db.exec("PRAGMA trusted_schema = OFF");
     sqlite3_limit(db.getHandle(), SQLITE_LIMIT_LENGTH, kMostValue_bytes);
-    sqlite3_progress_handler(db.getHandle(), kStride, is_over, &strides);
+    sqlite3_progress_handler(db.getHandle(), kStride, is_over, &strides_left);
   }
   std::string meta(const char* name) {
-    strides = 0;
+    strides_left = kMostStrides;
     SQLite::Statement row(db, "SELECT value FROM metadata WHERE name = ?");
     row.bind(1, name);
     return row.executeStep() ? row.getColumn(0).getString() : std::string{};
@@ -98,38 +146,46 @@ struct TileFile::Db {
     row.bind(2, value);
     row.exec();
   }
-  int number(const char* sql) {
-    strides = 0;
+  int number(const char* sql, int strides = kMostStrides) {
+    strides_left = strides;
     return db.execAndGet(sql).getInt();
   }
-  /// What the tiles say where the metadata are silent (the specification lets them be).
-  int zoom(const char* name, const char* fallback_sql) {
-    const std::string text = meta(name);
-    const int said = text.empty() ? number(fallback_sql) : std::atoi(text.c_str());
-    return std::clamp(said, 0, kMostZoom);
+  /// `ask(strides)`, of which the metadata say something, too; empty: there is too much to look at.
+  template <class Ask>
+  auto if_cheap(Ask ask) -> std::optional<decltype(ask(0))> {
+    try {
+      return ask(kFewStrides);
+    } catch (const SQLite::Exception& error) {
+      if (error.getErrorCode() != SQLITE_INTERRUPT) throw;
+      return std::nullopt;
+    }
+  }
+  /// The tiles' own; what the metadata say is often of another state of the file, and is believed
+  /// where there are too many tiles to look at.
+  int zoom(const char* name, const char* sql) {
+    const auto found = if_cheap([&](int strides) { return number(sql, strides); });
+    const std::string said = found ? std::string() : meta(name);
+    const int is = found ? *found : said.empty() ? number(sql) : std::atoi(said.c_str());
+    return std::clamp(is, 0, kMostZoom);
   }
   /// What the first tile is, for whoever wrote no format (the specification wants it, many files
   /// have none). Empty: there is no tile, or it is nothing known.
   std::string first_format() {
-    strides = 0;
+    strides_left = kMostStrides;
     SQLite::Statement row(db, "SELECT tile_data FROM tiles WHERE length(tile_data) > 0 LIMIT 1");
     return row.executeStep() ? std::string(format_of(row.getColumn(0).getString())) : std::string{};
   }
-  /// Around all tiles of the deepest zoom; empty: there are none.
-  std::optional<std::array<double, 4>> extent(int zoom) {
-    strides = 0;
+  /// First and last column, first and last row of a zoom, as the file counts them; empty: it has
+  /// no tiles.
+  std::optional<std::array<int, 4>> extent(int zoom, int strides) {
+    strides_left = strides;
     SQLite::Statement row(db,
                           "SELECT min(tile_column), max(tile_column), min(tile_row), "
                           "max(tile_row) FROM tiles WHERE zoom_level = ?");
     row.bind(1, zoom);
     if (!row.executeStep() || row.getColumn(0).isNull()) return std::nullopt;
-    const int last = static_cast<int>((std::int64_t{1} << zoom) - 1);
-    const TileAddress north_west{zoom, row.getColumn(0).getInt(), last - row.getColumn(3).getInt()};
-    const TileAddress south_east{zoom, row.getColumn(1).getInt(), last - row.getColumn(2).getInt()};
-    if (!north_west.possible() || !south_east.possible()) return std::nullopt;
-    const auto a = bounds_of(north_west);
-    const auto b = bounds_of(south_east);
-    return std::array{a[0], b[1], b[2], a[3]};
+    return std::array{row.getColumn(0).getInt(), row.getColumn(1).getInt(),
+                      row.getColumn(2).getInt(), row.getColumn(3).getInt()};
   }
   std::uintmax_t bytes() const {
     std::error_code ec;
@@ -138,7 +194,7 @@ struct TileFile::Db {
   }
 
   std::filesystem::path file;
-  int strides = 0;
+  int strides_left = kMostStrides;
   SQLite::Database db;
   std::optional<SQLite::Statement> select;
   std::optional<SQLite::Statement> insert;
@@ -154,8 +210,10 @@ std::string TileFile::describe() {
                     "tile_row = ?");
   about_.name = db.meta("name");
   if (about_.name.empty()) about_.name = about_.set;
-  about_.format = db.meta("format");
-  if (about_.format.empty()) about_.format = db.first_format();
+  about_.format = plain_format(db.meta("format"));
+  if (content_type_of(about_.format).empty()) {
+    if (const std::string shown = db.first_format(); !shown.empty()) about_.format = shown;
+  }
   content_type_ = content_type_of(about_.format);
   if (content_type_.empty()) {
     if (about_.format.empty())
@@ -164,11 +222,33 @@ std::string TileFile::describe() {
   }
   about_.min_zoom = db.zoom("minzoom", "SELECT ifnull(min(zoom_level), 0) FROM tiles");
   about_.max_zoom = db.zoom("maxzoom", "SELECT ifnull(max(zoom_level), 0) FROM tiles");
-  about_.bounds_deg = read_bounds(db.meta("bounds"));
-  if (!about_.bounds_deg) about_.bounds_deg = db.extent(about_.max_zoom);
+  place();
   about_.attribution = db.meta("attribution");
   about_.bytes = db.bytes();
   return {};
+}
+
+/// Where its tiles lie, and which way their rows are counted. Many programs write rows from the
+/// north, which the specification has no word for, and say so in `scheme` or nowhere: then the
+/// bounds tell it. Bounds that are of somewhere else say nothing.
+void TileFile::place() {
+  Db& db = *db_;
+  const auto said = read_bounds(db.meta("bounds"));
+  const int zoom = about_.max_zoom;
+  auto extent = db.if_cheap([&](int strides) { return db.extent(zoom, strides); });
+  if (!extent && !said) extent = db.extent(zoom, kMostStrides);
+  const std::string scheme = small_letters(db.meta("scheme"));
+  from_north_ = scheme == "xyz";
+  about_.bounds_deg = said;
+  if (!extent || !*extent) return;
+  const auto seen = [&](bool from_north) { return bounds_between(zoom, **extent, from_north); };
+  const auto fits = [&](bool from_north) {
+    const auto tiles = seen(from_north);
+    return said && tiles ? common(*said, *tiles) : std::nullopt;
+  };
+  if (scheme.empty() && !fits(false) && fits(true)) from_north_ = true;
+  const auto both = fits(from_north_);
+  about_.bounds_deg = both ? both : seen(from_north_);
 }
 
 Result<std::unique_ptr<TileFile>> TileFile::open(const std::string& set,
@@ -223,11 +303,15 @@ Result<std::unique_ptr<TileFile>> TileFile::grow(const TileSet& about,
   return out;
 }
 
+std::int64_t TileFile::row_of(const TileAddress& at) const noexcept {
+  return from_north_ ? at.y : (std::int64_t{1} << at.zoom) - 1 - at.y;
+}
+
 std::optional<Tile> TileFile::read(const TileAddress& at) {
   if (!at.possible()) return std::nullopt;
   try {
     SQLite::Statement& select = *db_->select;
-    db_->strides = 0;
+    db_->strides_left = kMostStrides;
     select.reset();
     select.bind(1, at.zoom);
     select.bind(2, at.x);
@@ -235,6 +319,7 @@ std::optional<Tile> TileFile::read(const TileAddress& at) {
     if (!select.executeStep()) return std::nullopt;
     Tile tile{select.getColumn(0).getString(), content_type_, {}};
     if (tile.bytes.starts_with("\x1f\x8b")) tile.content_encoding = "gzip";
+    if (about_.format == "pbf" && is_zlib(tile.bytes)) tile.content_encoding = "deflate";
     select.reset();
     return tile;
   } catch (const SQLite::Exception&) {
@@ -257,7 +342,7 @@ Result<void> TileFile::put(const TileAddress& at, std::string_view bytes) {
   }
   try {
     SQLite::Statement& insert = *db_->insert;
-    db_->strides = 0;
+    db_->strides_left = kMostStrides;
     insert.reset();
     insert.bind(1, at.zoom);
     insert.bind(2, at.x);

@@ -1,7 +1,10 @@
 #pragma once
 // One file of map tiles: MBTiles (specification 1.3), an SQLite file with the tables tiles
 // (zoom_level, tile_column, tile_row, tile_data) and metadata (name, value). Rows are counted from
-// the south there (TMS); the addresses of the interface count from the north (XYZ).
+// the south there (TMS), but by some programs from the north, which is told by `scheme` or, where
+// that is not said, by the bounds; the addresses of the interface count from the north (XYZ). Zooms
+// and bounds are those of the tiles: what the metadata say is believed of sets too large to look
+// at.
 //
 // Not thread-safe. A file of somebody else is opened to be read only; what it asks of SQLite is
 // bounded, so that a view without end is an error and no hang.
@@ -37,7 +40,7 @@ struct TileSet {
 struct Tile {
   std::string bytes;
   std::string content_type;
-  std::string content_encoding;  ///< "gzip" for most vector tiles, otherwise empty
+  std::string content_encoding;  ///< "gzip" or "deflate" for most vector tiles, otherwise empty
 };
 
 /// XYZ numbering.
@@ -82,11 +85,14 @@ class TileFile {
   struct Db;
   TileFile();
   std::string describe();
+  void place();
+  std::int64_t row_of(const TileAddress& at) const noexcept;
   void widen(const TileAddress& at);
 
   std::unique_ptr<Db> db_;
   TileSet about_;
   std::string content_type_;
+  bool from_north_ = false;  ///< rows are counted so in the file
 };
 
 }  // namespace roverd::store

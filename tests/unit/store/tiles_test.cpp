@@ -36,7 +36,7 @@ class TilesTest : public ::testing::Test {
     meta.bind(1, format);
     meta.exec();
     db.exec(
-        "INSERT INTO metadata VALUES ('bounds', '24.5,58.2,24.9,58.5'), "
+        "INSERT INTO metadata VALUES ('bounds', '-40,70,-20,75'), "
         "('attribution', 'Land Board')");
     SQLite::Statement tile(db, "INSERT INTO tiles VALUES (2, 1, 3, ?)");
     tile.bind(1, bytes.data(), static_cast<int>(bytes.size()));
@@ -82,7 +82,7 @@ TEST_F(TilesTest, TheSetIsDescribedAlsoWhereItsMetadataAreSilent) {
   EXPECT_EQ(sets[0].min_zoom, 2);
   EXPECT_EQ(sets[0].max_zoom, 2);
   EXPECT_EQ(sets[0].attribution, "Land Board");
-  EXPECT_EQ(sets[0].bounds_deg, (std::array{24.5, 58.2, 24.9, 58.5}));
+  EXPECT_EQ(sets[0].bounds_deg, (std::array{-40.0, 70.0, -20.0, 75.0}));
   EXPECT_FALSE(sets[0].kept);
 }
 
@@ -105,6 +105,67 @@ TEST_F(TilesTest, WithoutAFormatTheFirstTileTellsIt) {
             "it does not say the format of its tiles, and they do not show it");
 }
 
+/// Zoom 12, column 2352, row 1225 from the north: about 26.7 E, 58.4 N.
+class FieldTiles : public TilesTest {
+ protected:
+  std::filesystem::path with(const std::string& metadata, bool from_north) {
+    const auto file = make("png", kPng);
+    SQLite::Database db(file.string(), SQLite::OPEN_READWRITE);
+    db.exec("DELETE FROM tiles");
+    db.exec("DELETE FROM metadata WHERE name = 'bounds'");
+    db.exec("INSERT INTO metadata VALUES " + metadata);
+    SQLite::Statement tile(db, "INSERT INTO tiles VALUES (12, 2352, ?, ?)");
+    tile.bind(1, from_north ? kAt.y : 4095 - kAt.y);
+    tile.bind(2, kPng.data(), static_cast<int>(kPng.size()));
+    tile.exec();
+    return file;
+  }
+  static constexpr TileAddress kAt{12, 2352, 1225};
+};
+
+TEST_F(FieldTiles, RowsFromTheNorthAreFoundWhereTheFileSaysSoOrItsBoundsTellIt) {
+  const auto bounds = bounds_of(kAt);
+  ASSERT_NEAR(bounds[0], 26.7, 0.1);
+  ASSERT_NEAR(bounds[1], 58.4, 0.1);
+  for (const std::string metadata :
+       {"('scheme', 'xyz')", "('scheme', 'XYZ'), ('bounds', '-180,-85,180,85')",
+        "('bounds', '26.7,58.3,26.8,58.5')"}) {
+    const auto tiles = shelf({{"farm", with(metadata, true)}});
+    EXPECT_TRUE(tiles->read("farm", kAt)) << metadata;
+    EXPECT_FALSE(tiles->read("farm", {12, kAt.x, 4095 - kAt.y})) << metadata;
+    EXPECT_NEAR(tiles->sets().at(0).bounds_deg->at(1), 58.4, 0.1) << metadata;
+    std::filesystem::remove(folder_ / "png.mbtiles");
+  }
+  const auto usual = shelf({{"farm", with("('bounds', '26.7,58.3,26.8,58.5')", false)}});
+  EXPECT_TRUE(usual->read("farm", kAt));
+}
+
+TEST_F(FieldTiles, TheTilesTellTheirZoomAndWhereTheyLieAgainstWrongMetadata) {
+  for (const std::string bounds : {"26.8,58.5,26.7,58.3", "-100,-20,-90,-10", "here"}) {
+    const auto tiles =
+        shelf({{"farm",
+                with("('minzoom', '3'), ('maxzoom', '9'), ('bounds', '" + bounds + "')", false)}});
+    const TileSet about = tiles->sets().at(0);
+    EXPECT_EQ(about.min_zoom, 12);
+    EXPECT_EQ(about.max_zoom, 12);
+    EXPECT_EQ(about.bounds_deg, bounds_of(kAt)) << bounds;
+    EXPECT_TRUE(tiles->read("farm", kAt)) << bounds;
+    std::filesystem::remove(folder_ / "png.mbtiles");
+  }
+}
+
+TEST_F(TilesTest, TheFormatIsKnownHoweverItIsWritten) {
+  for (const char* said : {"PNG", "image/png"}) {
+    const auto file = make("png", "PNG");
+    SQLite::Database(file.string(), SQLite::OPEN_READWRITE)
+        .exec("UPDATE metadata SET value = '" + std::string(said) + "' WHERE name = 'format'");
+    const auto tiles = shelf({{"farm", file}});
+    EXPECT_EQ(tiles->sets().at(0).format, "png");
+    EXPECT_EQ(tiles->read("farm", kThere)->content_type, "image/png");
+    std::filesystem::remove(folder_ / "png.mbtiles");
+  }
+}
+
 TEST_F(TilesTest, WithoutBoundsTheTilesTellThem) {
   const auto file = make("png", kPng);
   SQLite::Database(file.string(), SQLite::OPEN_READWRITE)
@@ -124,6 +185,8 @@ TEST_F(TilesTest, PackedVectorTilesSaySo) {
   ASSERT_TRUE(tile);
   EXPECT_EQ(tile->content_encoding, "gzip");
   EXPECT_EQ(tile->content_type, "application/vnd.mapbox-vector-tile");
+  const auto other = shelf({{"roads", make("mvt", "\x78\x9c and so on"s)}});
+  EXPECT_EQ(other->read("roads", kThere)->content_encoding, "deflate");
 }
 
 TEST_F(TilesTest, WhatIsOutsideTheWorldIsNotThere) {
