@@ -6,9 +6,10 @@
 //
 // The origin stands in a comment before the rows, "# origin LAT LON", or is given with the call.
 // Within 10 km of it x and y are those of the tangent plane; farther out, where that shrinks, they
-// are direction and length of the way there (the two agree within 4 mm where they meet). A unit in
-// the name of a column makes it that unit: km/h, mph, knots, feet. A height or speed that is empty
-// or "nan" is not known; a speed of 0 is none of its own.
+// are direction and length of the way there (the two agree within 4 mm where they meet). What the
+// names of the columns say of their units holds (csv_columns.hpp); a height or speed in a unit that
+// is not known is left out. One that is empty or "nan" is not known; a speed of 0 is none of its
+// own.
 
 #include <algorithm>
 #include <array>
@@ -17,6 +18,7 @@
 
 #include "base/angle.hpp"
 #include "base/tangent_plane.hpp"
+#include "mission/formats/csv_columns.hpp"
 #include "mission/formats/csv_table.hpp"
 #include "mission/formats/file_formats.hpp"
 #include "mission/formats/text_lines.hpp"
@@ -33,63 +35,12 @@ using base::Error;
 using base::Result;
 using base::TangentPlane;
 
-constexpr double kMpsOfKmh = 1.0 / 3.6;
-
-enum class Column { Lat, Lon, Alt, Speed, X, Y, Other };
-struct NamedColumn {
-  Column column = Column::Other;
-  double unit = 1.0;  ///< in m or m/s
-};
-
 std::string lower_case(std::string_view text) {
   std::string out(text);
   for (char& c : out) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   }
   return out;
-}
-
-/// Is `word` one of the words of the name, which are apart by whatever is no letter or digit?
-bool has_word(std::string_view name, std::string_view word) {
-  const auto is_part = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); };
-  for (std::size_t at = name.find(word); at != std::string_view::npos;
-       at = name.find(word, at + 1)) {
-    const std::size_t end = at + word.size();
-    const bool begins = at == 0 || !is_part(name[at - 1]);
-    if (begins && (end == name.size() || !is_part(name[end]))) return true;
-  }
-  return false;
-}
-
-bool has_word(std::string_view name, std::initializer_list<std::string_view> words) {
-  return std::any_of(words.begin(), words.end(),
-                     [&](std::string_view word) { return has_word(name, word); });
-}
-
-double speed_unit(std::string_view name) {
-  constexpr double kMpsOfKnot = 1852.0 / 3600.0;
-  constexpr double kMpsOfMph = 0.44704;
-  if (name.find("km/h") != std::string_view::npos || has_word(name, {"kmh", "kph"})) {
-    return kMpsOfKmh;
-  }
-  if (has_word(name, {"kn", "kt", "kts", "knot", "knots"})) return kMpsOfKnot;
-  return has_word(name, "mph") ? kMpsOfMph : 1.0;
-}
-
-/// @param name in small letters
-NamedColumn column_of(std::string_view name) {
-  constexpr double kMetresOfFoot = 0.3048;
-  if (has_word(name, {"lat", "latitude"})) return {Column::Lat};
-  if (has_word(name, {"lon", "lng", "long", "longitude"})) return {Column::Lon};
-  if (has_word(name, {"alt", "altitude", "ele", "elevation", "height", "z"})) {
-    return {Column::Alt, has_word(name, {"ft", "feet", "foot"}) ? kMetresOfFoot : 1.0};
-  }
-  if (has_word(name, {"x", "east"})) return {Column::X};
-  if (has_word(name, {"y", "north"})) return {Column::Y};
-  if (name.starts_with("speed") || name.starts_with("velocity") || has_word(name, {"v", "vel"})) {
-    return {Column::Speed, speed_unit(name)};
-  }
-  return {};
 }
 
 bool is_not_known(std::string_view text) {
@@ -101,6 +52,13 @@ bool is_not_known(std::string_view text) {
 bool is_whole(std::string_view text) {
   const std::size_t digits = text.find_first_not_of("+-");
   return digits <= 1 && text.find_first_not_of("0123456789", digits) == std::string_view::npos;
+}
+
+/// As angles in degrees and minutes have them.
+bool has_marks(std::string_view text) {
+  return std::any_of(text.begin(), text.end(), [](char c) {
+    return static_cast<unsigned char>(c) >= 0x80U || c == ':' || c == '\'' || c == '"' || c == ' ';
+  });
 }
 
 class CsvReader {
@@ -122,6 +80,7 @@ class CsvReader {
         const bool head = !table_.number(fields.front());
         if (!(head ? take_head(fields) : take_usual(fields.size()))) return no_table();
         if (head) continue;
+        if (counts_rows()) return counted();
       }
       row(fields);
     }
@@ -141,23 +100,55 @@ class CsvReader {
                          [column](const NamedColumn& c) { return c.column == column; });
   }
 
-  tl::unexpected<Error> no_table() const {
+  tl::unexpected<Error> refuse(const std::string& detail) const {
     const std::string where = table_.place();
-    const std::string detail =
-        "must name lat and lon, or x and y, each once, or hold 2 to 4 numbers (lat, lon, alt, "
-        "speed) or 5 (x, y, z, yaw, velocity)";
     return base::fail(Code::Invalid, where + " " + detail, {{where, detail}});
   }
 
+  tl::unexpected<Error> no_table() const {
+    return refuse(why_none_.empty() ? "must name lat and lon, or x and y, each once, or hold 2 to "
+                                      "4 numbers (lat, lon, alt, "
+                                      "speed) or 5 (x, y, z, yaw, velocity)"
+                                    : "must name lat and lon, or x and y, each once: " + why_none_);
+  }
+
+  /// Of several columns for one thing the surest one stays, if there is one.
+  void keep_surest(Column column, const std::vector<CsvField>& fields) {
+    auto surest = Fit::Not;
+    for (const NamedColumn& c : columns_) {
+      if (c.column == column) surest = std::min(surest, c.fit);
+    }
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      NamedColumn& at = columns_[i];
+      if (at.column != column || (at.fit == surest && surest != Fit::Not)) continue;
+      const std::string name = clean_name(fields[i].text, "a column without a name");
+      const bool position = column != Column::Alt && column != Column::Speed;
+      if (at.fit == Fit::Not && position && why_none_.empty()) {
+        why_none_ = "column " + name + ' ' + at.why;
+      }
+      unused(name, at.fit == Fit::Not ? at.why : "another column fits better");
+      at = {};
+    }
+  }
+
   bool take_head(const std::vector<CsvField>& fields) {
-    for (const CsvField& field : fields) columns_.push_back(column_of(lower_case(field.text)));
+    for (const CsvField& field : fields) columns_.push_back(column_of(field.text));
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      if (columns_[i].column == Column::Other) unused(fields[i]);
+    }
+    for (const Column c :
+         {Column::Lat, Column::Lon, Column::X, Column::Y, Column::Alt, Column::Speed}) {
+      keep_surest(c, fields);
+    }
     local_ = !(has(Column::Lat) && has(Column::Lon));
     for (std::size_t i = 0; i < fields.size(); ++i) {
       NamedColumn& at = columns_[i];
       const bool of_other_form = local_ ? at.column == Column::Lat || at.column == Column::Lon
                                         : at.column == Column::X || at.column == Column::Y;
-      if (of_other_form) at = {};
-      if (at.column == Column::Other) unused(clean_name(fields[i].text, "a column without a name"));
+      if (of_other_form) {
+        at = {};
+        unused(fields[i]);
+      }
     }
     if (count(Column::Alt) > 1 || count(Column::Speed) > 1) return false;
     return local_ ? count(Column::X) == 1 && count(Column::Y) == 1
@@ -172,16 +163,39 @@ class CsvReader {
       unused("yaw");
       return true;
     }
-    constexpr std::array kUsual{NamedColumn{Lat}, NamedColumn{Lon}, NamedColumn{Alt},
-                                NamedColumn{Speed}};
+    constexpr std::array kUsual{Lat, Lon, Alt, Speed};
     if (count < 2 || count > kUsual.size()) return false;
-    columns_.assign(kUsual.begin(), kUsual.begin() + static_cast<std::ptrdiff_t>(count));
+    for (std::size_t i = 0; i < count; ++i) columns_.push_back({kUsual[i]});
     suspicious_ = count == kUsual.size() && table_.separator() == ',';
     return true;
   }
 
-  void unused(std::string name) {
-    builder_.leave_out(table_.place(), "column " + name, "a waypoint has no place for it");
+  void unused(const std::string& name, std::string reason = "a waypoint has no place for it") {
+    builder_.leave_out(table_.place(), "column " + name, std::move(reason));
+  }
+  void unused(const CsvField& field) { unused(clean_name(field.text, "a column without a name")); }
+
+  /// Without a head: is the first column whole in all rows, as a count is, and the next two are
+  /// not? "1,58.378,26.729" is no latitude of 1 degree.
+  bool counts_rows() const {
+    if (columns_.size() < 3 || columns_.size() > 4) return false;
+    CsvTable rows = table_;
+    std::array<bool, 2> parts{};
+    do {
+      const auto& fields = rows.fields();
+      if (!rows.comment().empty()) continue;
+      if (fields.size() < 3 || !is_whole(fields[0].text)) return false;
+      for (std::size_t i = 0; i < parts.size(); ++i) {
+        parts[i] = parts[i] || !is_whole(fields[i + 1].text);
+      }
+    } while (rows.next());
+    return parts[0] && parts[1];
+  }
+
+  tl::unexpected<Error> counted() const {
+    return refuse(
+        "begins with a whole number, as all rows do: if it counts them, put a line before that "
+        "names the columns (number,lat,lon)");
   }
 
   void comment(std::string_view text) {
@@ -229,10 +243,13 @@ class CsvReader {
       if (column == Column::Other) continue;
       const bool optional = column == Column::Alt || column == Column::Speed;
       if (optional && is_not_known(fields[i].text)) continue;
-      const auto value = table_.number(fields[i]);
+      const auto value = value_of(columns_[i], fields[i]);
       if (!value) {
+        const bool angle =
+            (column == Column::Lat || column == Column::Lon) && has_marks(fields[i].text);
         builder_.refuse(place, "row",
-                        "column " + std::to_string(i + 1) + " must be a finite number");
+                        "column " + std::to_string(i + 1) + " must be a finite number" +
+                            (angle ? ", of degrees with decimals" : ""));
         return;
       }
       put(columns_[i], *value, point, local);
@@ -240,6 +257,15 @@ class CsvReader {
     if (suspicious_) look_for_commas(fields);
     if (local_ && !place_locally(point, local)) return;
     builder_.add(std::move(point));
+  }
+
+  std::optional<double> value_of(const NamedColumn& column, const CsvField& field) const {
+    const auto number = table_.number(field);
+    const bool lat = column.column == Column::Lat;
+    if (number || column.unit != 1.0 || (!lat && column.column != Column::Lon)) return number;
+    double angle_deg = 0.0;
+    const bool read = read_angle(field.text, lat ? 'N' : 'E', lat ? 'S' : 'W', angle_deg);
+    return read ? std::optional(angle_deg) : std::nullopt;
   }
 
   /// "58,37,26,72" without a head line may be two numbers or four.
@@ -253,10 +279,10 @@ class CsvReader {
            base::EnuPoint& local) const {
     switch (column.column) {
       case Column::Lat:
-        point.lat = value;
+        point.lat = value * column.unit;
         break;
       case Column::Lon:
-        point.lon = value;
+        point.lon = value * column.unit;
         break;
       case Column::Alt:
         point.alt_m = value * column.unit;
@@ -265,14 +291,14 @@ class CsvReader {
         if (value == 0.0) {
           point.note = "a speed of 0 is none of its own";
         } else {
-          point.speed_mps = kmh_ && column.unit == 1.0 ? value / 3.6 : value * column.unit;
+          point.speed_mps = kmh_ && !column.said ? value / 3.6 : value * column.unit;
         }
         break;
       case Column::X:
-        local.east_m = value;
+        local.east_m = value * column.unit;
         break;
       case Column::Y:
-        local.north_m = value;
+        local.north_m = value * column.unit;
         break;
       case Column::Other:
         break;
@@ -315,6 +341,7 @@ class CsvReader {
   std::size_t decimal_commas_ = 0;
   std::size_t other_numbers_ = 0;
   std::vector<NamedColumn> columns_;
+  std::string why_none_;  ///< why a column is no place though its name begins so
   std::optional<TangentPlane> plane_;
   ImportedFile file_;
   Problems problems_;
@@ -332,7 +359,7 @@ bool looks_like_csv(std::string_view content) {
     if (table.number(fields[0])) return table.number(fields[1]).has_value() && fields.size() <= 5;
     std::array<bool, 7> has{};
     for (const CsvField& field : fields) {
-      has[static_cast<std::size_t>(column_of(lower_case(field.text)).column)] = true;
+      has[static_cast<std::size_t>(column_of(field.text).column)] = true;
     }
     const auto is = [&has](Column c) { return has[static_cast<std::size_t>(c)]; };
     return (is(Column::Lat) && is(Column::Lon)) || (is(Column::X) && is(Column::Y));
