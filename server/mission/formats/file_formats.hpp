@@ -2,6 +2,8 @@
 // One pair of functions per file format; formats.cpp chooses among them. The reader fills a plan
 // without a name.
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,7 +21,11 @@ std::string write_waypoints(const Plan& plan, std::vector<FileRow>& rows);
 base::Result<ImportedFile> read_gpx(std::string_view content, const ImportHints& hints);
 std::string write_gpx(const Plan& plan, std::vector<FileRow>& rows);
 
-base::Result<ImportedFile> read_kml(std::string_view content, const ImportHints& hints);
+/// What a link of a KML document leads to, inside of an archive; empty: nothing.
+using LinkedKml = std::function<std::optional<std::string>(const std::string& href)>;
+/// @param linked may be empty: then no link is followed
+base::Result<ImportedFile> read_kml(std::string_view content, const ImportHints& hints,
+                                    const LinkedKml& linked = {});
 std::string write_kml(const Plan& plan, const Fence* fence, std::vector<FileRow>& rows);
 
 base::Result<ImportedFile> read_kmz(std::string_view content, const ImportHints& hints);

@@ -1,12 +1,15 @@
 // KML 2.0 to 2.3: its lines (LineString, LinearRing, gx:Track); without one, its Points. Each line
 // is a way of its own, unless it stands in one Placemark with the one before it and begins where
 // that ends. Polygons are areas that can be covered, or, if their Placemark says so, fences (see
-// kml_fence.hpp). Written as one Placemark with a LineString, a Point if there is only one.
+// kml_fence.hpp). Links to other documents are followed inside of a KMZ archive. Written as one
+// Placemark with a LineString, a Point if there is only one.
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <deque>
+#include <set>
 #include <utility>
 
 #include "mission/formats/field_area.hpp"
@@ -34,10 +37,49 @@ std::optional<double> take_number(std::string_view& text) {
   return value;
 }
 
+constexpr std::string_view kXmlBlanks = " \t\r\n";
+
+/// "./layers/a.kml#view" → "layers/a.kml".
+std::string file_of(std::string_view href) {
+  href.remove_prefix(std::min(href.find_first_not_of(kXmlBlanks), href.size()));
+  href = href.substr(0, href.find_first_of("#?"));
+  href = href.substr(0, href.find_last_not_of(kXmlBlanks) + 1);
+  while (href.starts_with("./")) href.remove_prefix(2);
+  return std::string(href);
+}
+
+/// A position in coordinates: up to the next blank.
+std::string_view take_word(std::string_view& text) {
+  text.remove_prefix(std::min(text.find_first_not_of(kXmlBlanks), text.size()));
+  const std::string_view word = text.substr(0, text.find_first_of(kXmlBlanks));
+  text.remove_prefix(word.size());
+  return word;
+}
+
+/// KML has no blanks inside a position, some programs do: "26.7, 58.3, 0". Such a text without the
+/// blanks at its commas; any other as it stands, for "26.7,58.3, 26.8,58.4" is two positions.
+std::string joined_at_commas(std::string_view text) {
+  bool in_pieces = false;
+  for (std::string_view rest = text, word = take_word(rest); !word.empty();
+       word = take_word(rest)) {
+    const std::size_t comma = word.find(',');
+    in_pieces =
+        in_pieces || comma == 0 || comma == std::string_view::npos || comma + 1 == word.size();
+  }
+  if (!in_pieces) return std::string(text);
+  std::string out;
+  for (std::string_view rest = text, word = take_word(rest); !word.empty();
+       word = take_word(rest)) {
+    if (!out.empty() && out.back() != ',' && word.front() != ',') out += ' ';
+    out += word;
+  }
+  return out;
+}
+
 /// Geometry and features that are nothing to drive.
 bool is_picture(std::string_view element) {
-  return element == "NetworkLink" || element == "GroundOverlay" || element == "ScreenOverlay" ||
-         element == "PhotoOverlay" || element == "Model" || element == "Tour";
+  return element == "GroundOverlay" || element == "ScreenOverlay" || element == "PhotoOverlay" ||
+         element == "Model" || element == "Tour";
 }
 
 /// "2.9" of a namespace that says so; empty: known, or none.
@@ -58,23 +100,62 @@ class KmlReader {
  public:
   explicit KmlReader(bool leave_out_wrong) : builder_(file_, problems_, leave_out_wrong) {}
 
-  Result<ImportedFile> read(std::string_view content) {
+  /// The file, and what it links to, as far as `linked` has it.
+  Result<ImportedFile> read(std::string_view content, const LinkedKml& linked) {
+    if (auto done = read_document(content); !done) return tl::unexpected<Error>(done.error());
+    while (linked && !links_.empty()) {
+      const Link link = std::move(links_.front());
+      links_.pop_front();
+      if (!read_.insert(link.href).second) continue;
+      const auto text = linked(link.href);
+      if (!text) {
+        builder_.leave_out(link.row, "NetworkLink", "what it links to is not in the archive");
+        continue;
+      }
+      within_ = clean_name(link.href, "a linked file") + ", ";
+      if (auto done = read_document(*text); !done) {
+        return base::fail(done.error().code, within_ + done.error().detail, done.error().fields);
+      }
+    }
+    const bool links = !links_.empty() || !read_.empty();
+    for (const Link& link : links_) {
+      builder_.leave_out(link.row, "NetworkLink",
+                         "it leads to another file, which is read inside of a KMZ archive alone");
+    }
+    if (!fence_.areas.empty() || !fence_.rally.empty()) file_.fence = std::move(fence_);
+    const bool nothing = builder_.count() == 0 && file_.areas.empty() && !file_.fence;
+    if (nothing && links && problems_.none()) {
+      return base::fail(
+          base::Code::Invalid,
+          "the file has no position that could be driven to: its NetworkLink leads to "
+          "another file, which is not read",
+          {{"", "has no position"}});
+    }
+    return std::move(builder_).finish();
+  }
+
+ private:
+  struct Link {
+    std::string row;
+    std::string href;
+  };
+
+  Result<void> read_document(std::string_view content) {
     XmlEvents events;
     events.begin = [this](const XmlElement& element) { begin(element); };
     events.end = [this](std::string_view name, const std::string& text, const std::string&) {
       end(name, text);
     };
-    if (auto done = read_xml(content, events); !done) return tl::unexpected<Error>(done.error());
+    path_.clear();
+    rows_.clear();
+    is_kml_ = false;
+    if (auto done = read_xml(content, events); !done) return done;
     end_placemark();  // shapes outside of one
-    if (!is_kml_) {
-      return base::fail(base::Code::Invalid, "line 1 must begin a <kml> document",
-                        {{"line 1", "must begin a <kml> document"}});
-    }
-    if (!fence_.areas.empty() || !fence_.rally.empty()) file_.fence = std::move(fence_);
-    return std::move(builder_).finish();
+    if (is_kml_) return {};
+    return base::fail(base::Code::Invalid, "line 1 must begin a <kml> document",
+                      {{"line 1", "must begin a <kml> document"}});
   }
 
- private:
   /// Of the Placemark that is being read. What it is is told by its words, which may come last.
   struct Shape {
     std::string row;
@@ -84,14 +165,15 @@ class KmlReader {
 
   void begin(const XmlElement& element) {
     path_.emplace_back(element.name);
-    rows_.push_back(element.row);
+    rows_.push_back(within_ + element.row);
     if (path_.size() == 1) begin_kml(element);
+    if (element.name == "NetworkLink") links_.push_back({rows_.back(), {}});
     if (element.name == "Placemark") {
       words_ = nlohmann::json::object();
       name_.clear();
     }
     if (element.name == "Polygon") {
-      shapes_.push_back({element.row, {}, std::nullopt});
+      shapes_.push_back({rows_.back(), {}, std::nullopt});
       in_polygon_ = true;
     }
     if (element.name == "Track") builder_.begin(PartKind::Line);
@@ -121,8 +203,15 @@ class KmlReader {
       set_kml_word(words_, word_, text);
     }
     if (name == "Polygon") in_polygon_ = false;
+    if (name == "href" && in_link()) links_.back().href = file_of(text);
     if (is_picture(name)) builder_.leave_out(row, std::string(name), "it is nothing to drive");
     if (name == "Placemark") end_placemark();
+  }
+
+  /// Of <NetworkLink><Link><href>, or <Url> in older files.
+  bool in_link() const {
+    return path_.size() >= 2 && (path_.back() == "Link" || path_.back() == "Url") &&
+           path_[path_.size() - 2] == "NetworkLink" && !links_.empty();
   }
 
   void end_placemark() {
@@ -199,7 +288,7 @@ class KmlReader {
         return true;
       });
     } else if (inside == "Point") {
-      auto point = tuple(text, row, "Point", ',');
+      auto point = tuple(joined_at_commas(text), row, "Point", ',');
       if (point) shapes_.push_back({row, {}, std::move(*point)});
     }
   }
@@ -209,13 +298,11 @@ class KmlReader {
   template <class Take>
   bool tuples(std::string_view text, const std::string& row, const std::string& each, Take take) {
     bool good = true;
-    constexpr std::string_view kXmlBlanks = " \t\r\n";
+    const std::string joined = joined_at_commas(text);
+    std::string_view rest = joined;
     for (std::size_t number = 1;; ++number) {
-      const std::size_t begin = text.find_first_not_of(kXmlBlanks);
-      if (begin == std::string_view::npos) return good;
-      text.remove_prefix(begin);
-      const std::string_view one = text.substr(0, text.find_first_of(kXmlBlanks));
-      text.remove_prefix(one.size());
+      const std::string_view one = take_word(rest);
+      if (one.empty()) return good;
       std::string place = row + ", " + each + ' ' + std::to_string(number);
       auto point = tuple(one, std::move(place), each, ',');
       good = good && point.has_value();
@@ -233,7 +320,6 @@ class KmlReader {
   /// longitude, latitude and perhaps a height; what more there is is told
   std::optional<TrackPoint> tuple(std::string_view text, std::string row, std::string what,
                                   char separator) {
-    constexpr std::string_view kXmlBlanks = " \t\r\n";
     const std::size_t begin = std::min(text.find_first_not_of(kXmlBlanks), text.size());
     text.remove_prefix(begin);
     while (!text.empty() && kXmlBlanks.find(text.back()) != std::string_view::npos) {
@@ -268,6 +354,9 @@ class KmlReader {
 
   std::vector<std::string> path_;
   std::vector<std::string> rows_;
+  std::deque<Link> links_;      ///< that were found and not read
+  std::set<std::string> read_;  ///< links that were
+  std::string within_;          ///< "layers/a.kml, " while a linked document is read
   bool is_kml_ = false;
   bool in_polygon_ = false;
   std::string name_;  ///< of the open Placemark
@@ -282,8 +371,9 @@ class KmlReader {
 
 }  // namespace
 
-Result<ImportedFile> read_kml(std::string_view content, const ImportHints& hints) {
-  return KmlReader(hints.leave_out_wrong).read(content);
+Result<ImportedFile> read_kml(std::string_view content, const ImportHints& hints,
+                              const LinkedKml& linked) {
+  return KmlReader(hints.leave_out_wrong).read(content, linked);
 }
 
 std::string write_kml(const Plan& plan, const Fence* fence, std::vector<FileRow>& rows) {

@@ -1,5 +1,5 @@
 // KMZ: a ZIP archive with a KML document in it. Read from memory and never unpacked to the disk, so
-// that the names inside lead nowhere; what it says of its sizes is not believed.
+// that the names inside lead nowhere but to each other; what it says of its sizes is not believed.
 // Source: KML 2.2, "KMZ files": the document is the first .kml in the archive, usually doc.kml.
 
 #include <cstring>
@@ -73,6 +73,30 @@ Result<std::string> unpacked(zip_t* archive, zip_uint64_t number) {
   }
 }
 
+/// What links lead to, by name. All documents together may be as long as one.
+class Linked {
+ public:
+  Linked(zip_t* archive, zip_uint64_t first, std::size_t first_bytes)
+      : archive_(archive), first_(first), bytes_(first_bytes) {}
+
+  std::optional<std::string> operator()(const std::string& name) {
+    const zip_int64_t number = zip_name_locate(archive_, name.c_str(), ZIP_FL_ENC_GUESS);
+    if (number < 0 || static_cast<zip_uint64_t>(number) == first_ || !is_kml_name(name) ||
+        bytes_ > kMostBytes) {
+      return std::nullopt;
+    }
+    auto text = unpacked(archive_, static_cast<zip_uint64_t>(number));
+    bytes_ += text ? text->size() : kMostBytes;
+    if (!text || bytes_ > kMostBytes) return std::nullopt;
+    return std::move(*text);
+  }
+
+ private:
+  zip_t* archive_;
+  zip_uint64_t first_;
+  std::size_t bytes_;
+};
+
 }  // namespace
 
 Result<ImportedFile> read_kmz(std::string_view content, const ImportHints& hints) {
@@ -80,8 +104,9 @@ Result<ImportedFile> read_kmz(std::string_view content, const ImportHints& hints
   zip_error_init(&error);
   zip_source_t* source = zip_source_buffer_create(content.data(), content.size(), 0, &error);
   if (source == nullptr) return bad_archive("there is no memory for it");
-  std::unique_ptr<zip_t, Discard> archive(
-      zip_open_from_source(source, ZIP_RDONLY | ZIP_CHECKCONS, &error));
+  // Not ZIP_CHECKCONS: that refuses what programs that write to a pipe leave open in the headers
+  // before each entry, and any byte behind the end. The checksum of what is read is checked.
+  std::unique_ptr<zip_t, Discard> archive(zip_open_from_source(source, ZIP_RDONLY, &error));
   if (!archive) {
     zip_source_free(source);  // an opened archive owns it
     const std::string why = zip_error_strerror(&error);
@@ -97,7 +122,7 @@ Result<ImportedFile> read_kmz(std::string_view content, const ImportHints& hints
   if (!document) return bad_archive("there is no .kml in it");
   const auto text = unpacked(archive.get(), *document);
   if (!text) return tl::unexpected<base::Error>(text.error());
-  return read_kml(*text, hints);
+  return read_kml(*text, hints, Linked(archive.get(), *document, text->size()));
 }
 
 std::string write_kmz(const Plan& plan, const Fence* fence, std::vector<FileRow>& rows) {

@@ -66,6 +66,58 @@ TEST(Kmz, TheDocumentIsFoundAmongOtherFiles) {
             3u);
 }
 
+//   As GDAL writes it: the first document links to one of each layer.
+TEST(Kmz, LinksAreFollowedInsideOfTheArchive) {
+  const auto link = [](const std::string& to) {
+    return "<NetworkLink><Link><href>" + to + "</href></Link></NetworkLink>";
+  };
+  const auto file = import_file(
+      archive_of({{"doc.kml", "<kml><Document>" + link("layers/a.kml") + link("./layers/a.kml#x") +
+                                  link("https://example.org/b.kml") + link("doc.kml") +
+                                  "</Document></kml>"},
+                  {"layers/a.kml", kml_with("26,58 26.001,58 26.002,58")}}),
+      std::nullopt);
+  ASSERT_TRUE(file) << file.error().detail;
+  EXPECT_EQ(file->plan.items.size(), 3u);
+  EXPECT_TRUE(file->more.empty());
+  std::string told;
+  for (const FileRow& row : file->rows) {
+    told += row.row + " " + (row.outcome == Outcome::LeftOut ? row.reason : "taken") + "\n";
+  }
+  EXPECT_EQ(told,
+            "layers/a.kml, line 1, coordinate 1 taken\n"
+            "layers/a.kml, line 1, coordinate 2 taken\n"
+            "layers/a.kml, line 1, coordinate 3 taken\n"
+            "line 1 what it links to is not in the archive\n"
+            "line 1 what it links to is not in the archive\n");
+  // A document alone has no archive.
+  EXPECT_EQ(import_file("<kml><Document>" + link("a.kml") + "</Document></kml>", std::nullopt)
+                .error()
+                .detail,
+            "the file has no position that could be driven to: its NetworkLink leads to another "
+            "file, which is not read");
+}
+
+TEST(Kmz, AFewBytesBehindTheEndDoNoHarm) {
+  const std::string archive = archive_of({{"doc.kml", kml_with("26,58 26.001,58")}});
+  for (const std::string& tail :
+       {std::string("\n"), std::string("\r\n\0\0", 4), std::string(100, '\0')}) {
+    const auto file = import_file(archive + tail, std::nullopt);
+    ASSERT_TRUE(file) << file.error().detail;
+    EXPECT_EQ(file->plan.items.size(), 2u);
+  }
+}
+
+//   As a program leaves it that does not know yet what will come: checksum and sizes stand behind
+//   the entry and in the directory at the end.
+TEST(Kmz, HeadersThatWereWrittenBeforeTheirEntriesMayBeOpen) {
+  std::string archive = archive_of({{"doc.kml", kml_with("26,58 26.001,58")}});
+  for (std::size_t i = 14; i < 26; ++i) archive[i] = '\0';
+  const auto file = import_file(archive, std::nullopt);
+  ASSERT_TRUE(file) << file.error().detail;
+  EXPECT_EQ(file->plan.items.size(), 2u);
+}
+
 TEST(Kmz, BombsAndDamageAreRefused) {
   const std::string bomb =
       archive_of({{"doc.kml", kml_with(std::string(std::size_t{80} << 20, ' '))}});

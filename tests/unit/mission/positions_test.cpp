@@ -121,6 +121,31 @@ TEST(Csv, TheFollowersFormNeedsAnOrigin) {
             "origin_lon with the call");
 }
 
+TEST(Kml, BlanksAtTheCommasOfAPositionArePassedOver) {
+  const auto line = [](const std::string& coordinates) {
+    return import_file("<kml><Placemark><LineString><coordinates>" + coordinates +
+                           "</coordinates></LineString></Placemark></kml>",
+                       std::nullopt);
+  };
+  for (const char* text : {"26.7, 58.3, 61 26.7001, 58.3, 61", "26.7 ,58.3 ,61\n26.7001 ,58.3,61",
+                           "26.7,58.3, 61 26.7001,58.3, 61"}) {
+    const auto file = line(text);
+    ASSERT_TRUE(file) << text << file.error().detail;
+    ASSERT_EQ(file->plan.items.size(), 2u) << text;
+    EXPECT_EQ(std::get<Waypoint>(file->plan.items[1]).at, (LatLon{58.3, 26.7001})) << text;
+    EXPECT_EQ(std::get<Waypoint>(file->plan.items[1]).alt_m, 61.0) << text;
+  }
+  // A comma at the end of a position is none inside of it.
+  const auto two = line("26.7,58.3, 26.7001,58.3,");
+  ASSERT_TRUE(two);
+  EXPECT_EQ(two->plan.items.size(), 2u);
+  const auto point = import_file(
+      "<kml><Placemark><Point><coordinates> 26.7, 58.3 </coordinates></Point></Placemark></kml>",
+      std::nullopt);
+  ASSERT_TRUE(point) << point.error().detail;
+  EXPECT_EQ(std::get<Waypoint>(point->plan.items.at(0)).at, (LatLon{58.3, 26.7}));
+}
+
 TEST(Csv, BadRowsAreNamed) {
   EXPECT_EQ(refusal("lat,lon\n91,0\n"),
             "line 2: latitude must be from -90 to 90, is 91: is it swapped with longitude?");
