@@ -55,6 +55,21 @@ class File {
   const int fd_;
 };
 
+/// Captures are often kept packed. Empty: these first bytes are of no packer that is known.
+std::string packed_by(std::span<const std::uint8_t> begin) {
+  const auto begins = [begin](std::string_view magic) {
+    return begin.size() >= magic.size() &&
+           std::memcmp(begin.data(), magic.data(), magic.size()) == 0;
+  };
+  if (begins("\x1f\x8b\x08")) return "gzip";
+  if (begins("\xfd"
+             "7zXZ"))
+    return "xz";
+  if (begins("\x28\xb5\x2f\xfd")) return "zstd";
+  if (begins("BZh")) return "bzip2";
+  return {};
+}
+
 /// Everything that comes in so far goes out before the next block is waited for, so that a live
 /// `candump can0 | roverd decode bunker -` shows each frame at once.
 int run(const Kind& kind, const std::string& path) {
@@ -63,23 +78,35 @@ int run(const Kind& kind, const std::string& path) {
   std::string out;
   const Reader reader =
       kind.make([&out](const nlohmann::ordered_json& object) { out += to_line(object); });
+  const std::string name = path == "-" ? "standard input" : path;
+  bool begun = false;
+  bool anything = false;
   std::array<std::uint8_t, 65536> block{};
   for (bool more = true; more;) {
     const ssize_t n = file.read(block);
     if (n < 0) return say(kUnreadable, path + ": " + std::strerror(errno));
     more = n > 0;
+    if (!begun && more) {
+      const std::string packer = packed_by({block.data(), static_cast<std::size_t>(n)});
+      if (!packer.empty()) {
+        return say(kUnreadable, name + ": is packed: " + packer + " -dc FILE | roverd decode " +
+                                    std::string(kind.name) + " -");
+      }
+      begun = true;
+    }
     if (more) {
       reader.feed({block.data(), static_cast<std::size_t>(n)});
     } else {
       reader.finish();
     }
+    anything = anything || !out.empty();
     const bool written =
         std::fwrite(out.data(), 1, out.size(), stdout) == out.size() && std::fflush(stdout) == 0;
     if (!written && errno == EPIPE) return 0;
     if (!written) return say(kUnreadable, std::string("standard output: ") + std::strerror(errno));
     out.clear();
   }
-  return 0;
+  return anything ? 0 : say(kUnreadable, name + ": there are no packets in it");
 }
 
 }  // namespace

@@ -4,7 +4,10 @@
 Recordings are taken from ROVERD_REAL_DATA where that is set; a missing one is a skipped test.
 """
 
+import bz2
+import gzip
 import json
+import lzma
 import os
 import pathlib
 import resource
@@ -38,6 +41,20 @@ def same(got, wanted, where):
         near = (isinstance(value, float) and isinstance(got[name], (int, float))
                 and abs(got[name] - value) < 1e-9)
         check(near or got[name] == value, f"{where}: {name} is {got[name]!r}, not {value!r}")
+
+
+def nothing_to_decode():
+    """a capture without packets, and one that is packed, say so"""
+    header = bytes.fromhex("d4c3b2a1020004000000000000000000ffff000001000000")
+    for data in (b"", header):
+        done = run("vlp16", "-", data=data)
+        check(done.returncode == 1, f"exit code {done.returncode}")
+        check(done.stderr == b"roverd: standard input: there are no packets in it\n", done.stderr)
+    for packer, magic in (("gzip", gzip.compress(header)), ("xz", lzma.compress(header)),
+                          ("bzip2", bz2.compress(header))):
+        done = run("vlp16", "-", data=magic)
+        check(done.returncode == 1, f"exit code {done.returncode}")
+        check(f"is packed: {packer} -dc FILE | roverd decode vlp16 -".encode() in done.stderr, done.stderr)
 
 
 # id, data, fields of the fact sheet
@@ -373,7 +390,8 @@ def mixed_receiver():
 if __name__ == "__main__":
     cases = [bunker_vectors, bunker_refusals, v1_has_another_0x211, nmea_vectors,
              nmea_between_other_bytes, ubx_vectors, sentences_and_frames_of_one_port, mti_vectors,
-             mti_damage, usage_is_answered, a_closed_pipe_is_quiet, a_long_file_is_streamed, live_input_is_answered_at_once]
+             mti_damage, usage_is_answered, a_closed_pipe_is_quiet, a_long_file_is_streamed, live_input_is_answered_at_once,
+             nothing_to_decode]
     for case in (moving_receiver, rtk_receiver, mixed_receiver):
         if (FOLDER / case.__doc__).is_file():
             cases.append(case)
