@@ -11,20 +11,19 @@ namespace {
 constexpr std::int32_t kHalf = 1 << 20;  // cells on either side of the origin
 constexpr double kFar = kHalf - 2;       // neighbours have keys, too
 
+}  // namespace
+
 bool finite(const Cell& c) noexcept {
   const bool spread = std::all_of(c.spread_m2.begin(), c.spread_m2.end(),
                                   [](double v) { return std::isfinite(v); });
   return spread && std::isfinite(c.points) && c.points > 0.0 && c.mean_m.allFinite();
 }
 
-}  // namespace
-
 KeyTable::KeyTable(std::size_t expected)
-    : slots_(std::bit_ceil(std::max<std::size_t>(2 * expected, 64))) {}
+    : slots_(std::bit_ceil(std::max<std::size_t>(expected + expected / 3 + 1, 64))) {}
 
 std::size_t KeyTable::place(std::uint64_t key) const noexcept {
-  // Knuth's multiplicative hash: the upper bits are the good ones.
-  std::size_t i = (key * 0x9E3779B97F4A7C15U) >> 24U & (slots_.size() - 1);
+  std::size_t i = first_slot(key, std::countr_zero(slots_.size()));
   while (slots_[i].at >= 0 && slots_[i].key != key) i = (i + 1) & (slots_.size() - 1);
   return i;
 }
@@ -34,7 +33,7 @@ std::int32_t KeyTable::find(std::uint64_t key) const noexcept {
 }
 
 std::int32_t KeyTable::find_or_add(std::uint64_t key, std::int32_t fresh) {
-  if (2 * used_ >= slots_.size()) grow();
+  if (4 * used_ >= 3 * slots_.size()) grow();
   Slot& slot = slots_[place(key)];
   if (slot.at < 0) {
     slot = {key, fresh};
@@ -110,6 +109,10 @@ CellMap::Added CellMap::add(std::span<const Eigen::Vector3f> cloud) {
     }
   }
   return added;
+}
+
+void CellMap::expect(std::size_t cells) {
+  cells_.reserve(std::min(cells, kMaxCells));
 }
 
 bool CellMap::add(const Cell& cell) {

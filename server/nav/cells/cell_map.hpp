@@ -19,7 +19,19 @@ namespace roverd::nav::cells {
 /// Points in one frame, metres. Those that are not numbers are allowed and say nothing.
 using Cloud = std::vector<Eigen::Vector3f>;
 
-/// From 64-bit keys to indices below 2^31: open addressing, grows by itself.
+/// Where a table of 2^bits slots looks for a key first: of a product (Knuth) the upper bits depend
+/// on every bit of the key, the lower ones on those below them alone. Twice, for once is a lattice
+/// of the axes, in which the cells of a wall fall together. Pure.
+/// @param bits 1 to 63
+constexpr std::size_t first_slot(std::uint64_t key, int bits) noexcept {
+  constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15U;
+  key *= kGolden;
+  key ^= key >> 32U;
+  return static_cast<std::size_t>((key * kGolden) >> (64 - bits));
+}
+
+/// From 64-bit keys to indices below 2^31: open addressing, grows by itself when three quarters of
+/// its slots are taken.
 class KeyTable {
  public:
   explicit KeyTable(std::size_t expected = 512);
@@ -46,6 +58,9 @@ struct Cell {
   Eigen::Vector3d mean_m = Eigen::Vector3d::Zero();
   std::array<double, 6> spread_m2{};
 };
+
+/// All its values are numbers, and there are points in it.
+bool finite(const Cell& c) noexcept;
 
 /// Two cells as one (Chan, Golub, LeVeque 1979: sums about the common mean). Pure.
 void merge(Cell& into, const Cell& more) noexcept;
@@ -80,6 +95,9 @@ class CellMap {
   };
   /// Any number of points, in M.
   Added add(std::span<const Eigen::Vector3f> cloud);
+  /// Takes address space for so many cells, so that growing needs none twice. Memory is used by
+  /// what is added alone.
+  void expect(std::size_t cells);
   /// One cell as written by another map. It goes where its mean lies. @return false: no room, or
   /// no number in it
   bool add(const Cell& cell);

@@ -2,13 +2,20 @@
 
 #include "nav/cells/cell_map.hpp"
 
+#include <array>
+#include <cstdint>
 #include <limits>
 #include <random>
+#include <string>
+#include <vector>
 
 #include <Eigen/Core>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include "nav/cells/lzf.hpp"
 #include "nav/cells/map_file.hpp"
+#include "nav/cells/pcd.hpp"
 
 namespace roverd::nav::cells {
 namespace {
@@ -41,6 +48,43 @@ TEST(CellMap, KeepsNumberMeanAndSpreadOfEachCubesPoints) {
   EXPECT_EQ(map.cells()[0].points, 500.0);
   EXPECT_LT((map.cells()[0].mean_m - mean).norm(), 1e-9);
   EXPECT_LT((covariance_m2(map.cells()[0]) - covariance).norm(), 1e-9);
+}
+
+/// How many slots are looked at for each key, on the average, where each takes the next free one.
+double mean_probes(const std::vector<std::uint64_t>& keys, int bits) {
+  std::vector<bool> taken(std::size_t{1} << bits);
+  double probes = 0.0;
+  for (const std::uint64_t key : keys) {
+    std::size_t at = first_slot(key, bits);
+    for (probes += 1.0; taken[at]; probes += 1.0) at = (at + 1) & (taken.size() - 1);
+    taken[at] = true;
+  }
+  return probes / static_cast<double>(keys.size());
+}
+
+TEST(KeyTable, FindsTheCellsOfGroundWallsAndSpaceAtOnce) {
+  const std::array<CellIndex, 4> sizes = {
+      {{600, 600, 1}, {600, 1, 600}, {1, 600, 600}, {70, 70, 70}}};
+  for (const CellIndex& size : sizes) {
+    // Given the cells of a block about the origin, in a table that is two thirds full,
+    std::vector<std::uint64_t> keys;
+    for (int x = 0; x < size.x; ++x) {
+      for (int y = 0; y < size.y; ++y) {
+        for (int z = 0; z < size.z; ++z) keys.push_back(key_of({x - size.x / 2, y, z}));
+      }
+    }
+    // then hardly one waits behind others.
+    EXPECT_LT(mean_probes(keys, 19), 2.5) << size.x << " x " << size.y << " x " << size.z;
+  }
+}
+
+TEST(KeyTable, KeepsEveryKeyWhileItGrows) {
+  KeyTable table(1);
+  for (std::int32_t i = 0; i < 5000; ++i) {
+    EXPECT_EQ(table.find_or_add(key_of({i, -i, 7}), i), i);
+  }
+  for (std::int32_t i = 0; i < 5000; ++i) ASSERT_EQ(table.find(key_of({i, -i, 7})), i);
+  EXPECT_EQ(table.find(key_of({0, 0, 8})), -1);
 }
 
 TEST(CellMap, CoarserCellsAreThoseOfThePoints) {
