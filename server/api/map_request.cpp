@@ -147,7 +147,20 @@ Result<std::vector<T>> list_from(const Json& json, const std::string& pointer, s
 
 }  // namespace
 
-Result<MapForm> read_map_form(std::string_view body, std::string_view content_type) {
+namespace {
+
+/// A cloud's body goes before its cells are drawn and written: both beside it would be too much.
+Result<maps::Upload> upload_of(const Parts& parts, std::string& body) {
+  if (!parts.cloud) return maps::read_upload(*parts.yaml, *parts.image);
+  auto read = maps::read_cloud(*parts.cloud);
+  std::string().swap(body);
+  if (!read) return tl::unexpected<Error>(read.error());
+  return maps::solid_upload(std::move(*read));
+}
+
+}  // namespace
+
+Result<MapForm> read_map_form(std::string body, std::string_view content_type) {
   const auto boundary = form_boundary(content_type);
   if (!boundary) return tl::unexpected<Error>(boundary.error());
   if (!*boundary) {
@@ -160,14 +173,11 @@ Result<MapForm> read_map_form(std::string_view body, std::string_view content_ty
   std::optional<std::string> name;
   if (parts->name) name = std::string(*parts->name);
   if (const auto problem = problem_with(name)) return refuse("/name", *problem);
-  auto upload = parts->cloud ? maps::read_solid_upload(*parts->cloud)
-                             : maps::read_upload(*parts->yaml, *parts->image);
+  const std::string of_file = mission::clean_name(bare_name(parts->file), "Map");
+  auto upload = upload_of(*parts, body);
   if (!upload) return tl::unexpected<Error>(upload.error());
   const auto if_taken = name ? maps::IfTaken::Refuse : maps::IfTaken::Number;
-  if (!name) {
-    const std::string of_file = mission::clean_name(bare_name(parts->file), "Map");
-    name = mission::clean_name(upload->name, of_file);
-  }
+  if (!name) name = mission::clean_name(upload->name, of_file);
   return MapForm{std::move(*name), if_taken, std::move(*upload)};
 }
 

@@ -21,8 +21,9 @@ struct MapForm {
 /// multipart/form-data with `yaml` and `image`, or `cloud`, and perhaps `name`; without one the map
 /// is called as its yaml says (maps/comments.hpp), else as the yaml's file, or the cloud's.
 /// Unsupported: another type; Malformed: its frame is broken; Invalid: a file is missing, comes
-/// twice or cannot be, or a field is not known, with its name.
-base::Result<MapForm> read_map_form(std::string_view body, std::string_view content_type);
+/// twice or cannot be, or a field is not known, with its name. @param body is freed as soon as all
+/// of it is read
+base::Result<MapForm> read_map_form(std::string body, std::string_view content_type);
 
 struct StopMaking {
   std::string name;                                ///< one that people may give

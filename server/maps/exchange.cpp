@@ -10,7 +10,6 @@
 #include "maps/edit.hpp"
 #include "maps/solid.hpp"
 #include "maps/words.hpp"
-#include "nav/cells/map_file.hpp"
 
 namespace roverd::maps {
 
@@ -57,15 +56,19 @@ Result<Upload> read_upload(std::string_view yaml, std::string_view picture) {
   return out;
 }
 
-Result<Upload> read_solid_upload(std::string_view pcd) {
-  const auto solid = nav::cells::read_map(
-      {reinterpret_cast<const std::uint8_t*>(pcd.data()), pcd.size()}, kSolidCell_m);
-  if (!solid) return of_part("/cloud", solid.error());
-  auto plane = plane_of(*solid);
+Result<nav::cells::ReadMap> read_cloud(std::string_view pcd) {
+  auto read =
+      nav::cells::read_whole_map({reinterpret_cast<const std::uint8_t*>(pcd.data()), pcd.size()},
+                                 kSolidCell_m, kMostSentCells);
+  if (!read) return of_part("/cloud", read.error());
+  return read;
+}
+
+Result<Upload> solid_upload(nav::cells::ReadMap read) {
+  auto plane = plane_of(read.map);
   if (!plane) return of_part("/cloud", plane.error());
-  auto file = nav::cells::write_map(*solid);
-  if (!file) return of_part("/cloud", file.error());
-  return Upload{std::move(*plane), {}, std::move(*file), {}, {}};
+  return Upload{
+      std::move(*plane), nav::cells::left_out(read), nav::cells::write_map(read.map), {}, {}};
 }
 
 std::string exported_yaml(const OccupancyMap& map, const About& about, const std::string& image) {

@@ -11,14 +11,16 @@
 
 #include "base/result.hpp"
 #include "maps/words.hpp"
+#include "nav/cells/map_file.hpp"
 #include "nav/chart/map.hpp"
 
 namespace roverd::maps {
 
 struct Upload {
   nav::chart::OccupancyMap map;
-  std::vector<std::string> passed_over;  ///< what the yaml says besides, by name
-  std::vector<std::uint8_t> solid;       ///< its third dimension as a PCD file; empty: it has none
+  /// Of the yaml: what it says besides, by name. Of a cloud: what of it was left out.
+  std::vector<std::string> passed_over;
+  std::vector<std::uint8_t> solid;  ///< its third dimension as a PCD file; empty: it has none
   /// What exported_yaml() wrote before the words; foreign files have none.
   std::string name{};  ///< any bytes; empty: none
   std::optional<Anchor> anchor{};
@@ -30,9 +32,15 @@ struct Upload {
 /// anchor_lat").
 base::Result<Upload> read_upload(std::string_view yaml, std::string_view picture);
 
-/// A map in three dimensions: a PCD file, which is kept as cells, and the plane of it. Invalid,
-/// naming the byte or line: "/cloud/byte 17".
-base::Result<Upload> read_solid_upload(std::string_view pcd);
+/// Of a map that comes as a file: what such a one takes to be read, drawn and written stays below
+/// 600 MB, for the same process drives (docs/place.md). Ten hectares and more.
+inline constexpr std::size_t kMostSentCells = 3'000'000;
+
+/// A map in three dimensions: a PCD file, as cells. Invalid, naming the byte or line:
+/// "/cloud/byte 17"; or that it has more than kMostSentCells.
+base::Result<nav::cells::ReadMap> read_cloud(std::string_view pcd);
+/// The same with its plane, to be kept. Invalid: it has none. What `read` holds is let go of.
+base::Result<Upload> solid_upload(nav::cells::ReadMap read);
 
 /// The words of an exported map, for a picture of that file name, with comments.hpp before them.
 std::string exported_yaml(const nav::chart::OccupancyMap& map, const About& about,

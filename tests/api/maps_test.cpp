@@ -209,6 +209,51 @@ TEST_F(MapsApi, AMapInThreeDimensionsIsKeptWithItsPlaneAndGivenBack) {
   EXPECT_EQ(call("GET", "/maps").body["items"].size(), 3u);
 }
 
+//   A cloud of another program, moved by its header, with a point that is none and a stray one.
+TEST_F(MapsApi, WhatOfACloudIsLeftOutIsTold) {
+  std::string points = "nan 0 0\n9e9 0 0\n";
+  for (int i = 0; i < 198; ++i) points += std::to_string(0.1 * i) + " 0.5 0\n";
+  const auto cloud = [](const std::string& text) {
+    return part("cloud",
+                "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 200\n"
+                "HEIGHT 1\nVIEWPOINT 100 50 1 1 0 0 0\nPOINTS 200\nDATA ascii\n" +
+                    text,
+                "yard.pcd") +
+           "--x--\r\n";
+  };
+  const auto made = add(cloud(points));
+  ASSERT_EQ(made.status, 201u) << made.body;
+  EXPECT_EQ(made.body["passed_over"],
+            Json({"1 point that is no number", "1 point too far from the origin",
+                  "VIEWPOINT: the points are taken as they stand"}));
+  // With half of it in national coordinates it is no map.
+  for (int i = 0; i < 100; ++i) points.insert(0, "500000 6470000 60\n");
+  const auto half = add(cloud(points));
+  EXPECT_EQ(half.status, 422u);
+  EXPECT_NE(half.raw.body.find("101 of 199 points lie too far from the origin"), std::string::npos)
+      << half.raw.body;
+  EXPECT_EQ(call("GET", "/maps").body["items"].size(), 1u);
+}
+
+TEST_F(MapsApi, AMissionOfManyItemsDoesNotWaitBehindAMap) {
+  // Given a map on its way in, which takes as long as it takes,
+  auto held = house.hold(net::Lane::Slow);
+  const std::string body = form(kYaml, kPicture);
+  Client map(house.port());
+  map.send("POST /api/v1/maps HTTP/1.1\r\nHost: 127.0.0.1\r\n" + std::string(kForm) +
+           "Content-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body);
+  // when a mission of many items comes, then it is taken,
+  std::string line = R"({"type":"LineString","coordinates":[[26.7,58.3])";
+  for (int i = 1; i < 20'000; ++i) line += ",[" + std::to_string(26.7 + 1e-5 * i) + ",58.300001]";
+  EXPECT_EQ(call("POST", "/missions/import?name=line", line + "]}").status, 201u);
+  // before the map is.
+  EXPECT_FALSE(fs::exists(house.maps_folder() / "1"));
+  held.reset();
+  const auto made = map.answer();
+  ASSERT_TRUE(made);
+  EXPECT_EQ(made->status, 201u);
+}
+
 TEST_F(MapsApi, UglyUploadsAreNamedAndNothingIsKept) {
   EXPECT_EQ(refused(form("resolution: 0.5\n", kPicture)), "/yaml/image");
   EXPECT_EQ(refused(form(kYaml, "P5 10000 10000 255 ")), "/image/size");

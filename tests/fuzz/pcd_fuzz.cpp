@@ -27,8 +27,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto again = cells::unpack_lzf(cells::pack_lzf(bytes), size);
   check(again && std::equal(again->begin(), again->end(), bytes.begin(), bytes.end()));
 
-  const auto map = cells::read_map(bytes, 0.2);
-  check(!map || cells::write_map(*map).has_value());
+  const auto map = cells::read_whole_map(bytes, 0.2);
+  if (map) {
+    check(map->map.cells().size() + map->no_number + map->too_far <= map->points);
+    check(cells::read_map(cells::write_map(map->map), 0.2).has_value());
+  }
   const auto cloud = cells::read_pcd_cloud(bytes);
   if (!cloud) return 0;
   check(cloud->size() <= size * cells::kLzfMostTimes);

@@ -26,7 +26,7 @@ using base::Result;
 constexpr std::int64_t kUsualCells = 1'000'000;
 constexpr std::int64_t kMostCells = 40'000'000;
 const Effort kLook{Effort::kAtOnce + 1};  // a disk may pause
-const Effort kCells{Effort::kSmall + 1};  // all cells of a map
+const Effort kCells{Effort::kSlow};       // all cells of a map
 const Effort kKeep{Effort::kSmall + 1, true};
 const Effort kTell{Effort::kAtOnce + 1, true};  // what was done is told, however many ask
 
@@ -179,8 +179,9 @@ Handler add(const ContextPtr& context) {
     context->answer_aside(
         call, kCells,
         [context, shelf, now = base::wall_now(), body = std::move(body),
-         type = std::string(header(call->request, http::field::content_type))]() -> Response {
-          const auto form = read_map_form(body, type);
+         type =
+             std::string(header(call->request, http::field::content_type))]() mutable -> Response {
+          const auto form = read_map_form(std::move(body), type);
           if (!form) return problem(form.error());
           const auto about = shelf->add(form->name, form->upload.map, form->upload.anchor, now,
                                         form->upload.solid, form->if_taken);

@@ -2,163 +2,26 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cstring>
-#include <optional>
 #include <utility>
 
 #include "nav/cells/lzf.hpp"
+#include "nav/cells/pcd_head.hpp"
 
 namespace roverd::nav::cells {
 
 namespace {
 
-constexpr std::size_t kMostFields = 64;
-constexpr std::size_t kMostHeader_bytes = 65'536;
-constexpr std::size_t kMostCount = 4096;  // values of one field, as of a descriptor
-constexpr std::size_t kMostRow_bytes = 65'536;
+using pcd::Field;
+using pcd::Header;
+using pcd::wrong_line;
+
 constexpr std::size_t kMostPacked_bytes = std::size_t{1} << 30U;
-
-struct Field {
-  std::string name;
-  std::size_t size = 4;
-  char type = 'F';
-  std::size_t count = 1;
-  std::size_t bytes() const noexcept { return size * count; }
-};
-
-struct Header {
-  std::vector<Field> fields;
-  std::uint32_t width = 0;
-  std::uint32_t height = 1;
-  std::optional<std::uint32_t> points;
-  std::array<double, 7> viewpoint = {0, 0, 0, 1, 0, 0, 0};
-  std::string data;
-  std::size_t lines = 0;
-  std::size_t ends_at = 0;  // byte after it
-
-  std::size_t row_bytes() const noexcept {
-    std::size_t sum = 0;
-    for (const Field& f : fields) sum += f.bytes();
-    return sum;
-  }
-};
-
-tl::unexpected<base::Error> wrong_line(std::size_t line, const std::string& what) {
-  return base::fail(base::Code::Malformed, "PCD line " + std::to_string(line) + ": " + what,
-                    {{"line " + std::to_string(line), what}});
-}
+constexpr std::size_t kAtOnce = 1024;  // points that are unpacked together
 
 tl::unexpected<base::Error> wrong_byte(std::size_t byte, const std::string& what) {
   return base::fail(base::Code::Malformed, "PCD byte " + std::to_string(byte) + ": " + what,
                     {{"byte " + std::to_string(byte), what}});
-}
-
-/// The next word of the line; empty at its end.
-std::string_view next_word(std::string_view& rest) {
-  constexpr std::string_view kBlank = " \t\r";
-  const std::size_t from = std::min(rest.find_first_not_of(kBlank), rest.size());
-  rest.remove_prefix(from);
-  const std::size_t to = std::min(rest.find_first_of(kBlank), rest.size());
-  const std::string_view word = rest.substr(0, to);
-  rest.remove_prefix(to);
-  return word;
-}
-
-std::vector<std::string_view> words_of(std::string_view rest) {
-  std::vector<std::string_view> out;
-  for (auto word = next_word(rest); !word.empty() && out.size() <= kMostFields;
-       word = next_word(rest)) {
-    out.push_back(word);
-  }
-  return out;
-}
-
-template <class Number>
-bool read_number(std::string_view word, Number& out) {
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), out);
-  return error == std::errc{} && end == word.data() + word.size();
-}
-
-bool known_type(const Field& f) {
-  if (f.type == 'F') return f.size == 4 || f.size == 8;
-  return (f.type == 'I' || f.type == 'U') &&
-         (f.size == 1 || f.size == 2 || f.size == 4 || f.size == 8);
-}
-
-/// Takes the words of one line of the header. @return what is wrong; empty: nothing
-std::string take_line(std::string_view key, const std::vector<std::string_view>& words, Header& h) {
-  const bool of_fields = key == "SIZE" || key == "TYPE" || key == "COUNT";
-  if (key == "FIELDS" || key == "COLUMNS") {
-    if (words.empty() || words.size() > kMostFields) return "FIELDS names 1 to 64 fields";
-    if (!h.fields.empty()) return "FIELDS for the second time";
-    for (const auto word : words) h.fields.push_back({std::string(word)});
-    return {};
-  }
-  if (of_fields && words.size() != h.fields.size()) {
-    return std::string(key) + " has not as many values as FIELDS";
-  }
-  for (std::size_t i = 0; of_fields && i < words.size(); ++i) {
-    Field& f = h.fields[i];
-    if (key == "TYPE") {
-      f.type = words[i].size() == 1 ? words[i][0] : '?';
-    } else if (std::size_t& value = key == "SIZE" ? f.size : f.count;
-               !read_number(words[i], value) || value == 0 || value > kMostCount) {
-      return std::string(key) + " of " + f.name + " must be 1 to 4096";
-    }
-  }
-  if (key == "WIDTH" || key == "HEIGHT" || key == "POINTS") {
-    std::uint32_t value = 0;
-    if (words.size() != 1 || !read_number(words[0], value)) {
-      return std::string(key) + " must be one number";
-    }
-    if (key == "POINTS") h.points = value;
-    if (key == "WIDTH") h.width = value;
-    if (key == "HEIGHT") h.height = value;
-  } else if (key == "VIEWPOINT") {
-    if (words.size() != 7) return "VIEWPOINT must be seven numbers";
-    for (std::size_t i = 0; i < 7; ++i) {
-      if (!read_number(words[i], h.viewpoint[i])) return "VIEWPOINT must be seven numbers";
-    }
-  } else if (key == "DATA") {
-    if (words.size() != 1) return "DATA must be one word";
-    h.data = words[0];
-  } else if (!of_fields && key != "VERSION") {
-    return "not a line of a PCD header";
-  }
-  return {};
-}
-
-base::Result<Header> read_header(base::Bytes file) {
-  const auto head = file.first(std::min(file.size(), kMostHeader_bytes));
-  const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
-  Header h;
-  while (h.data.empty()) {
-    ++h.lines;
-    const std::size_t end = text.find('\n', h.ends_at);
-    if (end == std::string_view::npos) return wrong_line(h.lines, "ends before DATA");
-    std::string_view line = text.substr(h.ends_at, end - h.ends_at);
-    h.ends_at = end + 1;
-    const std::string_view key = next_word(line);
-    if (key.empty() || key.front() == '#') continue;
-    if (const std::string wrong = take_line(key, words_of(line), h); !wrong.empty()) {
-      return wrong_line(h.lines, wrong);
-    }
-  }
-  if (h.fields.empty()) return wrong_line(h.lines, "DATA without FIELDS before it");
-  for (const Field& f : h.fields) {
-    if (!known_type(f))
-      return wrong_line(h.lines, "field " + f.name + " has no known TYPE and SIZE");
-  }
-  if (h.row_bytes() > kMostRow_bytes) return wrong_line(h.lines, "more than 65536 bytes a point");
-  const std::uint64_t points = std::uint64_t{h.width} * h.height;
-  if (points > kMostPcdPoints) {
-    return base::fail(base::Code::TooLarge, "PCD of " + std::to_string(points) +
-                                                " points: more than " +
-                                                std::to_string(kMostPcdPoints));
-  }
-  if (h.points && *h.points != points) return wrong_line(h.lines, "POINTS is not WIDTH x HEIGHT");
-  return h;
 }
 
 /// Little-endian, as every machine that writes them.
@@ -205,64 +68,13 @@ base::Result<std::vector<std::size_t>> places_of(const Header& h,
   return out;
 }
 
-base::Result<void> read_ascii(base::Bytes body, const Header& h,
-                              std::span<const std::size_t> places, std::size_t points,
-                              PcdTable& out) {
-  std::string_view text(reinterpret_cast<const char*>(body.data()), body.size());
-  std::size_t words = 0;
-  for (const Field& f : h.fields) words += f.count;
-  if (points > 0 && points > (text.size() + 1) / (2 * words)) {
-    return wrong_line(h.lines, "more points than the text can hold");
-  }
-  for (auto& column : out.columns) column.reserve(points);
-  std::size_t line_number = h.lines;
-  for (std::size_t point = 0; point < points; ++point) {
-    std::string_view line;
-    std::string_view word;
-    while (word.empty()) {
-      if (text.empty()) return wrong_line(line_number, "ends before the last point");
-      ++line_number;
-      const std::size_t end = std::min(text.find('\n'), text.size());
-      line = text.substr(0, end);
-      text.remove_prefix(std::min(end + 1, text.size()));
-      word = next_word(line);
-    }
-    for (std::size_t i = 0; i < h.fields.size(); ++i) {
-      for (std::size_t k = 0; k < h.fields[i].count; ++k) {
-        double value = 0.0;
-        if (!read_number(word, value)) {
-          return wrong_line(line_number, "no number for " + h.fields[i].name);
-        }
-        for (std::size_t c = 0; c < places.size(); ++c) {
-          if (places[c] == i) out.columns[c].push_back(static_cast<float>(value));
-        }
-        word = next_word(line);
-      }
-    }
-    if (!word.empty()) return wrong_line(line_number, "more values than fields");
-  }
-  return {};
-}
+/// What is packed, after its two sizes.
+struct Packed {
+  base::Bytes bytes;
+  std::size_t plain_bytes = 0;
+};
 
-/// @param by_columns all values of the first field, then of the second, ...: as they are packed
-void take_binary(const std::uint8_t* data, const Header& h, std::span<const std::size_t> places,
-                 std::size_t points, bool by_columns, PcdTable& out) {
-  const std::size_t row = h.row_bytes();
-  for (std::size_t c = 0; c < places.size(); ++c) {
-    const Field& field = h.fields[places[c]];
-    std::size_t offset = 0;
-    for (std::size_t i = 0; i < places[c]; ++i) offset += h.fields[i].bytes();
-    const std::uint8_t* from = data + (by_columns ? offset * points : offset);
-    const std::size_t step = by_columns ? field.bytes() : row;
-    const Convert convert = converter(field);
-    out.columns[c].resize(points);
-    for (std::size_t i = 0; i < points; ++i) out.columns[c][i] = convert(from + i * step);
-  }
-}
-
-base::Result<void> read_packed(base::Bytes body, const Header& h,
-                               std::span<const std::size_t> places, std::size_t points,
-                               PcdTable& out) {
+base::Result<Packed> packed_in(base::Bytes body, const Header& h, std::size_t points) {
   if (body.size() < 8) return wrong_byte(h.ends_at, "ends before the packed sizes");
   const auto u32 = [&](std::size_t at) {
     std::uint32_t value = 0;
@@ -276,51 +88,209 @@ base::Result<void> read_packed(base::Bytes body, const Header& h,
   if (u32(4) > kMostPacked_bytes) {
     return base::fail(base::Code::TooLarge, "PCD packs more than 1 GB");
   }
-  const auto plain = unpack_lzf(body.subspan(8, u32(0)), u32(4));
-  if (!plain) return tl::unexpected<base::Error>(plain.error());
-  take_binary(plain->data(), h, places, points, true, out);
+  return Packed{body.subspan(8, u32(0)), u32(4)};
+}
+
+/// Whether a body of the kind that the header says can hold its points.
+base::Result<void> holds_points(base::Bytes file, const Header& h, std::size_t points) {
+  const base::Bytes body = file.subspan(h.ends_at);
+  if (h.data == "ascii") {
+    std::size_t words = 0;
+    for (const Field& f : h.fields) words += f.count;
+    if (points > 0 && points > (body.size() + 1) / (2 * words)) {
+      return wrong_line(h.lines, "more points than the text can hold");
+    }
+  } else if (h.data == "binary") {
+    if (body.size() / h.row_bytes() < points) {
+      return wrong_byte(file.size(), "ends before the last point");
+    }
+  } else if (h.data == "binary_compressed") {
+    const auto packed = packed_in(body, h, points);
+    if (!packed) return tl::unexpected<base::Error>(packed.error());
+    return check_lzf(packed->bytes, packed->plain_bytes);
+  } else {
+    return base::fail(base::Code::Unsupported,
+                      "PCD data must be ascii, binary or binary_compressed");
+  }
+  return {};
+}
+
+/// One line of numbers into `values`, those of the wanted fields.
+base::Result<void> take_line(std::string_view line, std::string_view word, const Header& h,
+                             std::size_t line_number, std::span<const std::size_t> places,
+                             std::vector<float>& values) {
+  for (std::size_t i = 0; i < h.fields.size(); ++i) {
+    for (std::size_t k = 0; k < h.fields[i].count; ++k) {
+      double value = 0.0;
+      if (!pcd::read_number(word, value)) {
+        return wrong_line(line_number, "no number for " + h.fields[i].name);
+      }
+      for (std::size_t c = 0; c < places.size(); ++c) {
+        if (places[c] == i) values[c] = static_cast<float>(value);
+      }
+      word = pcd::next_word(line);
+    }
+  }
+  if (!word.empty()) return wrong_line(line_number, "more values than fields");
+  return {};
+}
+
+base::Result<void> read_ascii(base::Bytes body, const Header& h,
+                              std::span<const std::size_t> places, std::size_t points,
+                              const PcdReader::Take& take) {
+  std::string_view text(reinterpret_cast<const char*>(body.data()), body.size());
+  std::vector<float> values(places.size());
+  std::size_t line_number = h.lines;
+  for (std::size_t point = 0; point < points; ++point) {
+    std::string_view line;
+    std::string_view word;
+    while (word.empty()) {
+      if (text.empty()) return wrong_line(line_number, "ends before the last point");
+      ++line_number;
+      const std::size_t end = std::min(text.find('\n'), text.size());
+      line = text.substr(0, end);
+      text.remove_prefix(std::min(end + 1, text.size()));
+      word = pcd::next_word(line);
+    }
+    if (auto read = take_line(line, word, h, line_number, places, values); !read) return read;
+    if (!take(values)) return {};
+  }
+  return {};
+}
+
+/// Where a field of a point begins.
+std::size_t offset_of(const Header& h, std::size_t place) {
+  std::size_t offset = 0;
+  for (std::size_t i = 0; i < place; ++i) offset += h.fields[i].bytes();
+  return offset;
+}
+
+void read_binary(base::Bytes body, const Header& h, std::span<const std::size_t> places,
+                 std::size_t points, const PcdReader::Take& take) {
+  struct Column {
+    Convert convert;
+    std::size_t offset;
+  };
+  std::vector<Column> columns;
+  for (const std::size_t place : places) {
+    columns.push_back({converter(h.fields[place]), offset_of(h, place)});
+  }
+  std::vector<float> values(places.size());
+  const std::size_t row = h.row_bytes();
+  for (std::size_t i = 0; i < points; ++i) {
+    const std::uint8_t* from = body.data() + i * row;
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      values[c] = columns[c].convert(from + columns[c].offset);
+    }
+    if (!take(values)) return;
+  }
+}
+
+/// Packed are all values of the first field, then all of the second, and so on: each wanted field
+/// is unpacked beside the others from where its values begin, so that no more than a few kilobytes
+/// of any are held.
+base::Result<void> read_packed(base::Bytes body, const Header& h,
+                               std::span<const std::size_t> places, std::size_t points,
+                               const PcdReader::Take& take) {
+  const auto packed = packed_in(body, h, points);
+  if (!packed) return tl::unexpected<base::Error>(packed.error());
+  std::vector<LzfStream> streams(places.size(), LzfStream(packed->bytes));
+  for (std::size_t c = 0; c < places.size(); ++c) {
+    if (auto to = streams[c].read(nullptr, offset_of(h, places[c]) * points); !to) return to;
+  }
+  std::vector<std::uint8_t> bytes;
+  std::vector<float> together(places.size() * kAtOnce);
+  for (std::size_t done = 0; done < points; done += kAtOnce) {
+    const std::size_t now = std::min(kAtOnce, points - done);
+    for (std::size_t c = 0; c < places.size(); ++c) {
+      const Field& field = h.fields[places[c]];
+      bytes.resize(now * field.bytes());
+      if (auto read = streams[c].read(bytes.data(), bytes.size()); !read) return read;
+      const Convert convert = converter(field);
+      for (std::size_t i = 0; i < now; ++i) {
+        together[i * places.size() + c] = convert(bytes.data() + i * field.bytes());
+      }
+    }
+    for (std::size_t i = 0; i < now; ++i) {
+      if (!take({together.data() + i * places.size(), places.size()})) return {};
+    }
+  }
   return {};
 }
 
 }  // namespace
 
-base::Result<PcdTable> read_pcd(base::Bytes file, std::span<const std::string_view> wanted) {
+struct PcdReader::Inside {
+  base::Bytes file;
+  Header header;
+  std::vector<std::size_t> places;
+};
+
+PcdReader::PcdReader(std::unique_ptr<Inside> inside) : inside_(std::move(inside)) {}
+PcdReader::PcdReader(PcdReader&&) noexcept = default;
+PcdReader& PcdReader::operator=(PcdReader&&) noexcept = default;
+PcdReader::~PcdReader() = default;
+
+base::Result<PcdReader> PcdReader::open(base::Bytes file,
+                                        std::span<const std::string_view> wanted) {
   static_assert(std::endian::native == std::endian::little);
-  auto header = read_header(file);
+  auto header = pcd::read_header(file);
   if (!header) return tl::unexpected<base::Error>(header.error());
-  const auto places = places_of(*header, wanted);
+  auto places = places_of(*header, wanted);
   if (!places) return tl::unexpected<base::Error>(places.error());
-  PcdTable out{header->width, header->height, header->viewpoint, {}, {}};
+  const std::size_t points = std::size_t{header->width} * header->height;
+  if (auto holds = holds_points(file, *header, points); !holds) {
+    return tl::unexpected<base::Error>(holds.error());
+  }
+  return PcdReader(std::make_unique<Inside>(Inside{file, std::move(*header), std::move(*places)}));
+}
+
+std::uint32_t PcdReader::width() const noexcept {
+  return inside_->header.width;
+}
+
+std::uint32_t PcdReader::height() const noexcept {
+  return inside_->header.height;
+}
+
+const std::array<double, 7>& PcdReader::viewpoint() const noexcept {
+  return inside_->header.viewpoint;
+}
+
+base::Result<void> PcdReader::read(const Take& take) const {
+  const Header& h = inside_->header;
+  const base::Bytes body = inside_->file.subspan(h.ends_at);
+  if (h.data == "ascii") return read_ascii(body, h, inside_->places, points(), take);
+  if (h.data == "binary_compressed") return read_packed(body, h, inside_->places, points(), take);
+  read_binary(body, h, inside_->places, points(), take);
+  return {};
+}
+
+base::Result<PcdTable> read_pcd(base::Bytes file, std::span<const std::string_view> wanted) {
+  const auto reader = PcdReader::open(file, wanted);
+  if (!reader) return tl::unexpected<base::Error>(reader.error());
+  PcdTable out{reader->width(), reader->height(), reader->viewpoint(), {}, {}};
   out.names.assign(wanted.begin(), wanted.end());
   out.columns.resize(wanted.size());
-  const std::size_t points = std::size_t{header->width} * header->height;
-  const base::Bytes body = file.subspan(header->ends_at);
-  base::Result<void> read;
-  if (header->data == "ascii") {
-    read = read_ascii(body, *header, *places, points, out);
-  } else if (header->data == "binary") {
-    if (body.size() / header->row_bytes() < points) {
-      return wrong_byte(file.size(), "ends before the last point");
-    }
-    take_binary(body.data(), *header, *places, points, false, out);
-  } else if (header->data == "binary_compressed") {
-    read = read_packed(body, *header, *places, points, out);
-  } else {
-    return base::fail(base::Code::Unsupported,
-                      "PCD data must be ascii, binary or binary_compressed");
-  }
+  for (auto& column : out.columns) column.reserve(reader->points());
+  const auto read = reader->read([&out](std::span<const float> values) {
+    for (std::size_t c = 0; c < values.size(); ++c) out.columns[c].push_back(values[c]);
+    return true;
+  });
   if (!read) return tl::unexpected<base::Error>(read.error());
   return out;
 }
 
 base::Result<Cloud> read_pcd_cloud(base::Bytes file) {
-  constexpr std::array<std::string_view, 3> kXyz = {"x", "y", "z"};
-  const auto table = read_pcd(file, kXyz);
-  if (!table) return tl::unexpected<base::Error>(table.error());
-  Cloud out(table->columns[0].size());
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    out[i] = {table->columns[0][i], table->columns[1][i], table->columns[2][i]};
-  }
+  const auto reader = PcdReader::open(file, kPcdXyz);
+  if (!reader) return tl::unexpected<base::Error>(reader.error());
+  Cloud out;
+  out.reserve(reader->points());
+  const auto read = reader->read([&out](std::span<const float> at) {
+    out.emplace_back(at[0], at[1], at[2]);
+    return true;
+  });
+  if (!read) return tl::unexpected<base::Error>(read.error());
   return out;
 }
 

@@ -6,6 +6,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -31,6 +33,36 @@ struct PcdTable {
   std::vector<std::vector<float>> columns;  ///< width * height values each
 };
 
+inline constexpr std::array<std::string_view, 3> kPcdXyz = {"x", "y", "z"};
+
+/// A file's points one after the other: none is held.
+class PcdReader {
+ public:
+  /// @param values of the wanted fields, while the call lasts. @return false: it is enough
+  using Take = std::function<bool(std::span<const float> values)>;
+
+  /// Reads the header, and whether the file can hold what that says; the packing is checked to its
+  /// end. @param file outlives it. @param wanted as for read_pcd
+  static base::Result<PcdReader> open(base::Bytes file, std::span<const std::string_view> wanted);
+  PcdReader(PcdReader&&) noexcept;
+  PcdReader& operator=(PcdReader&&) noexcept;
+  ~PcdReader();
+
+  std::uint32_t width() const noexcept;
+  std::uint32_t height() const noexcept;
+  std::size_t points() const noexcept { return std::size_t{width()} * height(); }
+  /// As in PcdTable.
+  const std::array<double, 7>& viewpoint() const noexcept;
+  /// Gives each point to `take`, in the file's order. @return Malformed: ascii that ends or is no
+  /// number, after the points before it were given
+  base::Result<void> read(const Take& take) const;
+
+ private:
+  struct Inside;
+  explicit PcdReader(std::unique_ptr<Inside> inside);
+  std::unique_ptr<Inside> inside_;
+};
+
 /// @param wanted names of the fields that are read; the order of the answer's columns. One that the
 /// file has not, or has as an array, is named in the error.
 /// @return Malformed with "line n" of the header or of ascii data, or "byte n"; TooLarge;
@@ -41,6 +73,13 @@ base::Result<PcdTable> read_pcd(base::Bytes file, std::span<const std::string_vi
 base::Result<Cloud> read_pcd_cloud(base::Bytes file);
 
 enum class PcdData { Ascii, Binary, Compressed };
+
+/// binary_compressed, a column at a time, so that one is held beside what is packed.
+/// @param names without blanks, 1 to 64. @param points at most kMostPcdPoints
+/// @param value of a column's point
+std::vector<std::uint8_t> write_packed_pcd(
+    std::span<const std::string_view> names, std::uint32_t points,
+    const std::function<float(std::size_t column, std::size_t point)>& value);
 
 /// @param table names without blanks, columns of width * height values; else Invalid
 /// @return the file. ascii: the shortest text that reads back as the same float

@@ -66,11 +66,30 @@ std::vector<std::uint8_t> with_bytes(const std::string& text, base::Bytes more) 
   return out;
 }
 
-std::vector<std::uint8_t> bytes_by_columns(const PcdTable& t, std::size_t points) {
-  std::vector<std::uint8_t> out(points * 4 * t.columns.size());
-  for (std::size_t c = 0; points > 0 && c < t.columns.size(); ++c) {
-    std::memcpy(out.data() + c * points * 4, t.columns[c].data(), points * 4);
+using Value = std::function<float(std::size_t column, std::size_t point)>;
+
+/// Behind `head` the two sizes, then the columns, each packed for itself.
+std::vector<std::uint8_t> packed_behind(const std::string& head, std::size_t columns,
+                                        std::size_t points, const Value& value) {
+  const std::size_t plain_bytes = columns * points * 4;
+  std::vector<std::uint8_t> out;
+  // Address space alone, as far as it is not filled.
+  out.reserve(head.size() + 8 + plain_bytes + plain_bytes / 32 + columns);
+  out.assign(head.begin(), head.end());
+  out.resize(head.size() + 8);
+  std::vector<std::uint8_t> column(points * 4);
+  for (std::size_t c = 0; c < columns; ++c) {
+    for (std::size_t i = 0; i < points; ++i) {
+      const float v = value(c, i);
+      std::memcpy(column.data() + i * 4, &v, 4);
+    }
+    const auto packed = pack_lzf(column);
+    out.insert(out.end(), packed.begin(), packed.end());
   }
+  const std::array<std::uint32_t, 2> sizes = {
+      static_cast<std::uint32_t>(out.size() - head.size() - 8),
+      static_cast<std::uint32_t>(plain_bytes)};
+  std::memcpy(out.data() + head.size(), sizes.data(), sizeof sizes);
   return out;
 }
 
@@ -96,15 +115,10 @@ base::Result<std::vector<std::uint8_t>> write_pcd(const PcdTable& table, PcdData
   switch (data) {
     case PcdData::Binary:
       return with_bytes(header_of(table, "binary"), bytes_by_points(table, points));
-    case PcdData::Compressed: {
-      const auto plain = bytes_by_columns(table, points);
-      const auto packed = pack_lzf(plain);
-      const std::array<std::uint32_t, 2> sizes = {static_cast<std::uint32_t>(packed.size()),
-                                                  static_cast<std::uint32_t>(plain.size())};
-      std::string head = header_of(table, "binary_compressed");
-      head.append(reinterpret_cast<const char*>(sizes.data()), sizeof sizes);
-      return with_bytes(head, packed);
-    }
+    case PcdData::Compressed:
+      return packed_behind(
+          header_of(table, "binary_compressed"), table.columns.size(), points,
+          [&table](std::size_t column, std::size_t i) { return table.columns[column][i]; });
     case PcdData::Ascii:
       break;
   }
@@ -117,6 +131,14 @@ base::Result<std::vector<std::uint8_t>> write_pcd(const PcdTable& table, PcdData
     text += "\n";
   }
   return with_bytes(text, {});
+}
+
+std::vector<std::uint8_t> write_packed_pcd(std::span<const std::string_view> names,
+                                           std::uint32_t points, const Value& value) {
+  PcdTable head;
+  head.width = points;
+  head.names.assign(names.begin(), names.end());
+  return packed_behind(header_of(head, "binary_compressed"), names.size(), points, value);
 }
 
 PcdTable pcd_table(std::span<const Eigen::Vector3f> cloud) {

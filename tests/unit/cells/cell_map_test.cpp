@@ -119,9 +119,7 @@ TEST(CellMap, CountsWhatIsNoPoint) {
 TEST(MapFile, GivesBackTheMap) {
   CellMap map(0.5);
   map.add(random_cloud(5000, 10.0F, 3));
-  const auto file = write_map(map);
-  ASSERT_TRUE(file);
-  const auto again = read_map(*file, 0.5);
+  const auto again = read_map(write_map(map), 0.5);
   ASSERT_TRUE(again) << again.error().detail;
   double points = 0.0;
   for (const Cell& c : again->cells()) points += c.points;
@@ -130,6 +128,87 @@ TEST(MapFile, GivesBackTheMap) {
   EXPECT_NEAR(double(again->cells().size()), double(map.cells().size()), 3.0);
   EXPECT_LT((again->cells()[0].mean_m - map.cells()[0].mean_m).norm(), 1e-5);
   EXPECT_LT((covariance_m2(again->cells()[0]) - covariance_m2(map.cells()[0])).norm(), 1e-5);
+}
+
+/// A cloud in text; its rows are x, y and z.
+std::vector<std::uint8_t> text_cloud(const std::vector<std::string>& rows,
+                                     const std::string& viewpoint = "0 0 0 1 0 0 0") {
+  const std::string n = std::to_string(rows.size());
+  std::string text = "FIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nWIDTH " + n + "\nHEIGHT 1\nVIEWPOINT " +
+                     viewpoint + "\nDATA ascii\n";
+  for (const std::string& row : rows) text += row + "\n";
+  return {text.begin(), text.end()};
+}
+
+TEST(MapFile, CountsWhatIsLeftOutAndSeesThatTheSensorWasMoved) {
+  std::vector<std::string> rows(300, "1 2 3");
+  rows[7] = "nan 0 0";
+  rows[8] = "0 inf 0";
+  rows[9] = "0 0 9e9";
+  const auto read = read_whole_map(text_cloud(rows, "1 0 0 1 0 0 0"), 0.2);
+  ASSERT_TRUE(read) << read.error().detail;
+  EXPECT_EQ(read->map.cells().size(), 1U);
+  EXPECT_EQ(read->map.cells()[0].points, 297.0);
+  EXPECT_EQ(read->points, 300U);
+  EXPECT_EQ(read->no_number, 2U);
+  EXPECT_EQ(read->too_far, 1U);
+  EXPECT_TRUE(read->viewpoint);
+  EXPECT_EQ(left_out(*read), (std::vector<std::string>{
+                                 "2 points that are no numbers", "1 point too far from the origin",
+                                 "VIEWPOINT: the points are taken as they stand"}));
+  EXPECT_TRUE(left_out(*read_whole_map(text_cloud({"1 2 3"}), 0.2)).empty());
+}
+
+TEST(MapFile, RefusesWhatWouldLoseAPartOfTheMap) {
+  // Half of the points in national coordinates; points that are no numbers do not count.
+  const auto half = read_whole_map(
+      text_cloud({"0 0 0", "nan 0 0", "500000 6470000 60", "1 0 0", "500001 6470000 60"}), 0.2);
+  ASSERT_FALSE(half);
+  EXPECT_EQ(half.error().detail,
+            "2 of 4 points lie too far from the origin (one at x 500000, y 6470000, z 60 m; the "
+            "cells reach 210 km): take a corner of the site off all of them");
+  // Four cells where three are the most, in whatever form they come.
+  const std::vector<Eigen::Vector3f> four = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 0, 0}, {3, 0, 0}};
+  for (const PcdData data : {PcdData::Ascii, PcdData::Binary, PcdData::Compressed}) {
+    const auto file = write_pcd(pcd_table(four), data);
+    ASSERT_TRUE(file);
+    const auto cut = read_whole_map(*file, 0.2, 3);
+    ASSERT_FALSE(cut);
+    EXPECT_EQ(cut.error().code, base::Code::TooLarge);
+    EXPECT_EQ(cut.error().detail,
+              "there is more in it than 3 cells can hold, each with an edge of 20 cm: cut it to "
+              "where the robot drives");
+    EXPECT_TRUE(read_whole_map(*file, 0.2, 4));
+  }
+}
+
+long peak_kb() {
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  return used.ru_maxrss;
+}
+
+//   Twelve million points, packed into half a megabyte.
+TEST(MapFile, HoldsNoPointsWhileItReadsThem) {
+  constexpr std::size_t kBlock = 1'000'000;  // values
+  const auto zeros = pack_lzf(std::vector<std::uint8_t>(kBlock * 4));
+  std::vector<std::uint8_t> packed;
+  for (int i = 0; i < 3 * 12; ++i) packed.insert(packed.end(), zeros.begin(), zeros.end());
+  const std::string head =
+      "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 12000000\nHEIGHT 1\nDATA binary_compressed\n";
+  std::vector<std::uint8_t> file(head.begin(), head.end());
+  const std::array<std::uint32_t, 2> sizes = {static_cast<std::uint32_t>(packed.size()),
+                                              3U * 12U * 4U * kBlock};
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(sizes.data());
+  file.insert(file.end(), bytes, bytes + sizeof sizes);
+  file.insert(file.end(), packed.begin(), packed.end());
+  const long before_kb = peak_kb();
+  // when
+  const auto read = read_whole_map(file, 0.2);
+  // then
+  ASSERT_TRUE(read) << read.error().detail;
+  EXPECT_EQ(read->map.cells().at(0).points, 12e6);
+  EXPECT_LT(peak_kb() - before_kb, 20'000);
 }
 
 TEST(MapFile, RefusesAFileWithoutOnePoint) {

@@ -2,6 +2,7 @@
 
 #include "nav/cells/lzf.hpp"
 
+#include <algorithm>
 #include <random>
 #include <string>
 
@@ -35,6 +36,34 @@ TEST(Lzf, RefusesWhatIsNone) {
   EXPECT_EQ(refusal({0, 'a'}, 2), "byte 2: less comes out than was said");
   EXPECT_EQ(refusal({}, 4'000'000'000), "byte 0: 0 bytes cannot hold 4000000000");
   EXPECT_EQ(refusal({}, 0), "");
+}
+
+TEST(Lzf, ComesOutInPiecesAsAtOnceAlsoFromTwoThatWerePackedApart) {
+  // Given two blocks, of which copies reach far back, one behind the other,
+  std::mt19937 random(7);
+  Blob plain(60'000);
+  for (auto& b : plain) b = static_cast<std::uint8_t>(random() % 3);
+  const base::Bytes all(plain);
+  Blob packed = pack_lzf(all.first(25'001));
+  const Blob second = pack_lzf(all.subspan(25'001));
+  packed.insert(packed.end(), second.begin(), second.end());
+  // when they are read in pieces of all sizes, one of them passed over,
+  LzfStream stream(packed);
+  Blob out(plain.size());
+  std::size_t at = 0;
+  for (std::size_t piece = 1; at < plain.size(); piece = piece * 3 % 20'011) {
+    const std::size_t size = std::min(piece, plain.size() - at);
+    const bool over = piece == 27;
+    ASSERT_TRUE(stream.read(over ? nullptr : out.data() + at, size));
+    if (over)
+      std::copy_n(plain.begin() + static_cast<long>(at), size, out.begin() + static_cast<long>(at));
+    at += size;
+  }
+  // then it is what was packed, and no more.
+  EXPECT_EQ(out, plain);
+  EXPECT_TRUE(stream.ended());
+  EXPECT_FALSE(stream.read(nullptr, 1));
+  EXPECT_EQ(*unpack_lzf(packed, plain.size()), plain);
 }
 
 TEST(Lzf, GivesBackWhatItPacked) {
