@@ -149,8 +149,9 @@ struct NetFigures {
 struct Aside {
   std::function<void()> work;
   std::function<void()> then{};  ///< on the web thread
-  bool large = false;            ///< others should not wait behind it
-  bool must = false;             ///< never refused
+  /// None waits behind one of another size.
+  enum class Size { Small, Large, Slow } size = Size::Small;
+  bool must = false;  ///< never refused
 };
 
 /// An address that another device may open.

@@ -25,7 +25,7 @@ struct Api::Impl {
   explicit Impl(Deps deps) : context(std::make_shared<Context>(std::move(deps))) {
     if (!context->deps.aside) return;
     idempotency.aside = [this](std::function<void()> work, std::function<void()> then) {
-      context->deps.aside({std::move(work), std::move(then), false, true});
+      context->deps.aside({std::move(work), std::move(then), Aside::Size::Small, true});
     };
   }
 

@@ -93,7 +93,10 @@ void Context::go_aside(const CallPtr& call, Effort effort, std::function<void()>
     tried();
     return ended();
   }
-  if (deps.aside({tried, ended, effort.bytes > Effort::kSmall, effort.must})) return;
+  const Aside::Size size = effort.bytes >= Effort::kSlow   ? Aside::Size::Slow
+                           : effort.bytes > Effort::kSmall ? Aside::Size::Large
+                                                           : Aside::Size::Small;
+  if (deps.aside({tried, ended, size, effort.must})) return;
   call->respond(
       problem({base::Code::Unavailable, "too much is being worked on; nothing was done"}));
 }

@@ -61,6 +61,8 @@ class Commands {
 struct Effort {
   static constexpr std::size_t kAtOnce = 16 * 1024;
   static constexpr std::size_t kSmall = 256 * 1024;
+  /// From here on, seconds: whole maps and sets of tiles. Missions do not wait behind them.
+  static constexpr std::size_t kSlow = std::size_t{1} << 40U;
   std::size_t bytes = 0;
   bool must = false;  ///< something was changed already: it is not refused any more
 };

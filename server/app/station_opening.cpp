@@ -371,7 +371,10 @@ void Station::Impl::make_api(const Settings& settings, const Options& options) {
   deps.identity = [this] { return presence->identity(); };
   deps.host = [this] { return host; };
   deps.aside = [this](api::Aside a) {
-    const net::Lane lane = a.large ? net::Lane::Large : net::Lane::Small;
+    using Size = api::Aside::Size;
+    const net::Lane lane = a.size == Size::Small   ? net::Lane::Small
+                           : a.size == Size::Large ? net::Lane::Large
+                                                   : net::Lane::Slow;
     if (!a.must) return workers.run(lane, std::move(a.work), std::move(a.then));
     workers.must_run(lane, std::move(a.work), std::move(a.then));
     return true;

@@ -30,8 +30,10 @@ void step_back(int niceness) noexcept {
 Workers::Workers(boost::asio::io_context& web) : web_(web) {
   queue(Lane::Small).most = kSmallWaiting;
   queue(Lane::Large).most = kLargeWaiting;
+  queue(Lane::Slow).most = kSlowWaiting;
   const unsigned large = large_at_once();
   threads_.emplace_back([this] { serve(queue(Lane::Small), kSmallNice); });
+  threads_.emplace_back([this] { serve(queue(Lane::Slow), kLargeNice); });
   for (unsigned i = 0; i < large; ++i) {
     threads_.emplace_back([this] { serve(queue(Lane::Large), kLargeNice); });
   }

@@ -1,7 +1,8 @@
 #pragma once
 // Threads beside the web thread, for what would hold it up: reading and writing large files, plans,
-// reports. Two lanes, so that a small thing never waits behind a large one; each is bounded. They
-// run below the web's and the control loop's priority.
+// reports. Three lanes, so that a small thing never waits behind a large one, nor a mission of many
+// items behind a map of three dimensions, which takes seconds; each is bounded. They run below the
+// web's and the control loop's priority.
 //
 //   web ─run─▶ lane (bounded) ─▶ work, on a thread of the lane ─post─▶ then, on the web thread
 //
@@ -22,13 +23,15 @@
 
 namespace roverd::net {
 
-enum class Lane { Small, Large };
+/// Slow: one at once, for what takes seconds and hundreds of megabytes.
+enum class Lane { Small, Large, Slow };
 
 class Workers {
  public:
   /// So many may wait in a lane, besides those at work.
   static constexpr std::size_t kSmallWaiting = 64;
   static constexpr std::size_t kLargeWaiting = 8;
+  static constexpr std::size_t kSlowWaiting = 8;
 
   explicit Workers(boost::asio::io_context& web);
   /// Ends the threads after what they are at; what waits is dropped.
@@ -59,7 +62,7 @@ class Workers {
     std::size_t most = 0;
   };
 
-  static std::size_t place(Lane lane) { return lane == Lane::Small ? 0 : 1; }
+  static std::size_t place(Lane lane) { return static_cast<std::size_t>(lane); }
   Queue& queue(Lane lane) { return queues_[place(lane)]; }
   bool put(Lane lane, Job job, bool must);
   void serve(Queue& queue, int niceness) noexcept;
@@ -68,7 +71,7 @@ class Workers {
 
   boost::asio::io_context& web_;
   mutable std::mutex mutex_;  // leaf
-  std::array<Queue, 2> queues_;
+  std::array<Queue, 3> queues_;
   bool stopping_ = false;
   std::vector<std::thread> threads_;
 };

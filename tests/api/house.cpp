@@ -98,7 +98,10 @@ House::House(net::Limits limits, Vehicle vehicle, const Before& before)
   deps.tiles = {tiles_.get(), {{"aerial", "https://tiles.example.org/{z}/{x}/{y}", "Board", 20}}};
   deps.cameras.cameras = {{"front", "ip", [this] { return picture_.get(); }}};
   deps.aside = [this](api::Aside a) {
-    const net::Lane lane = a.large ? net::Lane::Large : net::Lane::Small;
+    using Size = api::Aside::Size;
+    const net::Lane lane = a.size == Size::Small   ? net::Lane::Small
+                           : a.size == Size::Large ? net::Lane::Large
+                                                   : net::Lane::Slow;
     if (!a.must) return workers_.run(lane, std::move(a.work), std::move(a.then));
     workers_.must_run(lane, std::move(a.work), std::move(a.then));
     return true;
@@ -282,13 +285,14 @@ std::string House::code() {
   return code_;
 }
 
-std::shared_ptr<void> House::hold_large() {
+std::shared_ptr<void> House::hold(net::Lane lane) {
   auto until = std::make_shared<std::promise<void>>();
   const std::shared_future<void> let_go = until->get_future().share();
-  for (unsigned i = 0; i < net::Workers::large_at_once(); ++i) {
-    workers_.must_run(net::Lane::Large, [let_go] { let_go.wait(); }, {});
+  const unsigned threads = lane == net::Lane::Large ? net::Workers::large_at_once() : 1;
+  for (unsigned i = 0; i < threads; ++i) {
+    workers_.must_run(lane, [let_go] { let_go.wait(); }, {});
   }
-  while (large_waiting() > 0) std::this_thread::yield();  // until the lane is at them
+  while (workers_.waiting(lane) > 0) std::this_thread::yield();  // until the lane is at them
   return {nullptr, [until](void*) { until->set_value(); }};
 }
 

@@ -98,8 +98,8 @@ class House {
   void shows(base::PicturePtr picture) { picture_.publish(std::move(picture)); }
   /// The one-time code of the first admin, as it was told last; empty: none.
   std::string code();
-  /// Nothing large is begun until what this gives is let go.
-  [[nodiscard]] std::shared_ptr<void> hold_large();
+  /// Nothing of the lane is begun until what this gives is let go.
+  [[nodiscard]] std::shared_ptr<void> hold(net::Lane lane);
   [[nodiscard]] std::size_t large_waiting() const;
   /// A device says something more.
   void hear(base::Measurement m) { robot_.measurements().put(std::move(m)); }

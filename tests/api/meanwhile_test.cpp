@@ -23,7 +23,7 @@ class Meanwhile : public AccessApi {
     return client;
   }
   /// What costs much waits, until go_on().
-  void keep_busy() { held_ = house.hold_large(); }
+  void keep_busy() { held_ = house.hold(net::Lane::Large); }
   void go_on() { held_.reset(); }
   /// It was not answered yet.
   static bool waits(const Client& client) {
