@@ -47,6 +47,8 @@ export interface SiteMap {
   readonly problem: string | null;
   /** Areas where nobody shall drive; only where one map is asked for. */
   readonly forbidden?: readonly (readonly MapPoint[])[];
+  /** Of one that was just sent: what of its files is not in it. */
+  readonly passed_over?: readonly string[];
 }
 /** A map that is being driven. */
 export interface SiteMaking {

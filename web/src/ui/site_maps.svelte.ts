@@ -168,8 +168,15 @@ export class SiteMaps {
       `map ${name}`,
       answer.ok ? null : `“${name}”: ${failure_text(say('done_stored'), answer.refusal)}`,
     );
-    if (answer.ok)
-      this.#notices.show('good', say('the_map_name_is_stored', { name: answer.value.name }));
+    if (answer.ok) {
+      const { name: called, passed_over = [] } = answer.value;
+      this.#notices.show('good', say('the_map_name_is_stored', { name: called }));
+      // Of a yaml it is words that say nothing here; of a cloud parts of the place.
+      if ('cloud' in pair && passed_over.length > 0) {
+        const what = passed_over.join('; ');
+        this.#notices.show('warning', say('left_out_of_the_map_name', { name: called, what }));
+      }
+    }
     await this.refresh();
   }
 

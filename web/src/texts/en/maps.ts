@@ -94,6 +94,7 @@ export const maps = {
   saved_the_map_name: 'Saved the map “{name}”.',
   name_is_still_being_sent: '“{name}” is still being sent.',
   the_map_name_is_stored: 'The map “{name}” is stored.',
+  left_out_of_the_map_name: 'Left out of the map “{name}”: {what}.',
   laid_there: 'laid there',
   map_laid: '“{name}” lies there from now on. “{change}” shows it on the map.',
   map_laid_nowhere: 'Where “{name}” lies is not known from now on.',

@@ -90,6 +90,7 @@ export const maps = {
   saved_the_map_name: 'Kaart „{name}“ salvestatud.',
   name_is_still_being_sent: '„{name}“ on alles saatmisel.',
   the_map_name_is_stored: 'Kaart „{name}“ on salvestatud.',
+  left_out_of_the_map_name: 'Kaardist „{name}“ jäeti välja: {what}.',
   laid_there: 'paigutatud',
   map_laid: '„{name}“ on nüüdsest seal. „{change}“ näitab seda kaardil.',
   map_laid_nowhere: 'Kus „{name}“ asub, ei ole nüüdsest teada.',

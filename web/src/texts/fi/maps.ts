@@ -92,6 +92,7 @@ export const maps = {
   saved_the_map_name: 'Kartta ”{name}” tallennettu.',
   name_is_still_being_sent: '”{name}” lähetetään yhä.',
   the_map_name_is_stored: 'Kartta ”{name}” on tallessa.',
+  left_out_of_the_map_name: 'Kartasta ”{name}” jätettiin pois: {what}.',
   laid_there: 'asetettu',
   map_laid: '”{name}” on tästä lähtien siinä. ”{change}” näyttää sen kartalla.',
   map_laid_nowhere: 'Tästä lähtien ei tiedetä, missä ”{name}” on.',

@@ -93,6 +93,7 @@ export const maps = {
   saved_the_map_name: 'Mappa «{name}» salvata.',
   name_is_still_being_sent: '«{name}» è ancora in invio.',
   the_map_name_is_stored: 'La mappa «{name}» è salvata.',
+  left_out_of_the_map_name: 'Tralasciato dalla mappa «{name}»: {what}.',
   laid_there: 'collocata lì',
   map_laid: 'D’ora in poi «{name}» è lì. «{change}» la mostra sulla mappa.',
   map_laid_nowhere: 'D’ora in poi non si sa dove sia «{name}».',

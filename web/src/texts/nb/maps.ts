@@ -92,6 +92,7 @@ export const maps = {
   saved_the_map_name: 'Kartet «{name}» er lagret.',
   name_is_still_being_sent: '«{name}» sendes fortsatt.',
   the_map_name_is_stored: 'Kartet «{name}» er lagret.',
+  left_out_of_the_map_name: 'Utelatt fra kartet «{name}»: {what}.',
   laid_there: 'lagt der',
   map_laid: '«{name}» ligger der fra nå av. «{change}» viser det i kartet.',
   map_laid_nowhere: 'Hvor «{name}» ligger, er ikke kjent fra nå av.',
