@@ -4,25 +4,12 @@ import { describe, expect, it } from 'vitest';
 
 import { utm_of } from '../src/model/utm';
 import { open_picture } from '../src/ortho/picture';
+import { file_reader } from './file_reader';
 import { geotiff, type Made } from './geotiff';
 
 const TARTU = { lat: 58.378, lon: 26.729 };
 
-/** What a browser has and this program lacks. */
-class Reader {
-  result: ArrayBuffer | null = null;
-  onload: (() => void) | null = null;
-  onerror: (() => void) | null = null;
-  onabort: (() => void) | null = null;
-
-  readAsArrayBuffer(blob: Blob): void {
-    void blob.arrayBuffer().then((bytes) => {
-      this.result = bytes;
-      this.onload?.();
-    });
-  }
-}
-Object.assign(globalThis, { FileReader: Reader });
+file_reader();
 
 const made = (more: Partial<Made> = {}): Blob =>
   new Blob([

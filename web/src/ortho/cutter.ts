@@ -3,7 +3,8 @@
 
 import { TILE_PX, tiles_across, type TileAddress } from '../model/tiling';
 import type { Asked, Told } from './messages';
-import { open_picture, Trouble, type Picture } from './picture';
+import { open_picture, type Picture } from './picture';
+import { Trouble } from './trouble';
 import { lattice_of, warp, window_of } from './warp';
 
 /** The page's, but for what a worker has else. */

@@ -1,21 +1,14 @@
 // A GeoTIFF: where it lies, and its pixels.
 
-import { fromBlob, type GeoTIFFImage } from 'geotiff';
+import { fromBlob, type GeoTIFF, type GeoTIFFImage } from 'geotiff';
 import { toProj4 } from 'geotiff-geokeys-to-proj4';
 import proj4 from 'proj4';
 
 import { tiles_across, count_of, zoom_for, type Bounds } from '../model/tiling';
-import type { Looked, OrthoTrouble } from './messages';
-import { to_pixels, type Affine, type PictureWindow, type Pixels, type ToPicture } from './warp';
-
-export class Trouble extends Error {
-  constructor(
-    readonly why: OrthoTrouble,
-    detail = '',
-  ) {
-    super(detail);
-  }
-}
+import type { Looked } from './messages';
+import { reader_of, type PixelReader } from './pixels';
+import { Trouble } from './trouble';
+import { to_pixels, type Affine, type ToPicture } from './warp';
 
 const MOST_ZOOM = 24;
 const MOST_TILES = 200_000;
@@ -27,7 +20,7 @@ export interface Picture {
   readonly height: number;
   readonly to_picture: ToPicture;
   readonly is: Omit<Looked, 'format'>;
-  read(window: PictureWindow): Promise<Pixels>;
+  readonly read: PixelReader;
 }
 
 const affine_of = (image: GeoTIFFImage): Affine => {
@@ -111,38 +104,17 @@ const zooms_of = (
   return { min_zoom, max_zoom, tiles };
 };
 
-/** With the alpha that it has, and clear where it says that there is nothing. */
-const read_pixels = async (image: GeoTIFFImage, window: PictureWindow): Promise<Pixels> => {
-  const { left, top, right, bottom } = window;
-  const raw = (await image.readRGB({
-    window: [left, top, right, bottom],
-    interleave: true,
-    enableAlpha: true,
-  })) as unknown as ArrayLike<number>;
-  const count = (right - left) * (bottom - top);
-  const samples = Math.round(raw.length / count);
-  const nothing = image.getGDALNoData();
-  const rgba = new Uint8ClampedArray(4 * count);
-  for (let k = 0; k < count; k++) {
-    const from = k * samples;
-    const [r = 0, g = 0, b = 0] = [raw[from], raw[from + 1], raw[from + 2]];
-    rgba.set([r, g, b], 4 * k);
-    const empty = nothing !== null && r === nothing && g === nothing && b === nothing;
-    rgba[4 * k + 3] = empty ? 0 : samples > 3 ? (raw[from + 3] ?? 255) : 255;
-  }
-  return { window, rgba };
-};
-
 /** @throws Trouble */
-export const open_picture = async (file: Blob): Promise<Picture> => {
+export const open_picture = async (from: Blob): Promise<Picture> => {
+  let file: GeoTIFF;
   let image: GeoTIFFImage;
   try {
-    image = await (await fromBlob(file)).getImage();
+    file = await fromBlob(from);
+    image = await file.getImage();
   } catch (cause) {
     throw new Trouble('unreadable', cause instanceof Error ? cause.message : '');
   }
-  const bits = image.getBitsPerSample(0);
-  if (bits !== 8 && bits !== 1) throw new Trouble('not_8_bit', String(bits));
+  const read = await reader_of(file, image);
   const affine = affine_of(image);
   const pixels = to_pixels(affine);
   if (!pixels) throw new Trouble('no_place');
@@ -166,5 +138,5 @@ export const open_picture = async (file: Blob): Promise<Picture> => {
     (bounds.north - bounds.south) * 111_320,
   );
   const is = { bounds, ...zooms_of(bounds, across_m / Math.hypot(width, height)) };
-  return { width, height, to_picture, is, read: (window) => read_pixels(image, window) };
+  return { width, height, to_picture, is, read };
 };
