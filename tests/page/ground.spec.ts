@@ -20,7 +20,10 @@ const MAGENTA: Color = [230, 20, 200];
 const TILES = join(__dirname, '..', 'data', 'fuzz', 'tiles', 'one.mbtiles');
 
 /** 20 m by 20 m around the robot, all of one colour, by degrees. */
-const field_around = ({ lat, lon }: { lat: number; lon: number }): Uint8Array<ArrayBuffer> => {
+const field_around = (
+  { lat, lon }: { lat: number; lon: number },
+  plane = 4326,
+): Uint8Array<ArrayBuffer> => {
   const metre = { lat: 1 / 111_300, lon: 1 / (111_320 * Math.cos((lat * Math.PI) / 180)) };
   return geotiff({
     width: 100,
@@ -28,7 +31,7 @@ const field_around = ({ lat, lon }: { lat: number; lon: number }): Uint8Array<Ar
     color: () => [...MAGENTA],
     corner: [lon - 10 * metre.lon, lat + 10 * metre.lat],
     pixel: [0.2 * metre.lon, 0.2 * metre.lat],
-    plane: 4326,
+    plane,
     geographic: true,
   });
 };
@@ -121,7 +124,15 @@ test('a file of tiles is sent as it is, and what is none is refused', async ({ p
   await expect(page.getByText(/torn\.mbtiles is not taken/)).toBeVisible();
   await bring(page, 'torn.tif', field_around(station.sim.now).subarray(0, 900));
   await expect(page.getByText(/torn\.tif is not taken: it cannot be read/)).toBeVisible();
+  await bring(page, 'buoys.tif', field_around(station.sim.now, 4267));
+  await expect(page.getByText(/buoys\.tif is not taken: .*\(NAD27\)/)).toBeVisible();
   expect((await sets_of(station)).map(({ set }) => set)).toEqual(['roads']);
+  // What lies less exactly than it looks says so, and goes on saying it.
+  await bring(page, 'county.tif', field_around(station.sim.now, 4269));
+  await expect(page.getByText(/county is on the robot\. It lies to about 4 m only/)).toBeVisible({
+    timeout: 30_000,
+  });
+  await expect(page.locator('.map-credit')).toHaveText('± 4 m (NAD83)');
 });
 
 test.describe('with pictures in the network', () => {

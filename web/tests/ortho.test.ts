@@ -63,6 +63,19 @@ describe('an orthophoto', () => {
     expect([x, y].map((value) => Math.round(value * 1000) / 1000)).toEqual([10, 10]);
   });
 
+  it('lies half a pixel off where its corner is the middle of a pixel', async () => {
+    const { east_m = 0, north_m = 0 } = utm_of(TARTU) ?? {};
+    const picture = await open_picture(made({ corner: [east_m - 5, north_m + 2], point: true }));
+    const [x, y] = picture.to_picture(TARTU.lon, TARTU.lat);
+    expect(x).toBeCloseTo(10.5, 2);
+    expect(y).toBeCloseTo(4.5, 2);
+  });
+
+  it('tells of a datum that is not known to a metre', async () => {
+    const at = { plane: 2263, codes: { 3076: 9003 }, corner: [984_250, 200_000] } as const;
+    expect((await open_picture(made(at))).is.datum).toEqual({ name: 'NAD83', good_to_m: 4 });
+  });
+
   it('gives its pixels, clear ones too', async () => {
     const picture = await open_picture(
       made({ corner: [500_000, 6_470_000], color: (x, y) => [x, y, 9, x < 2 ? 0 : 255] }),
@@ -76,6 +89,8 @@ describe('an orthophoto', () => {
   it('is refused with the reason', async () => {
     expect(await why(new Blob(['II*\0 and nothing else']))).toBe('unreadable');
     expect(await why(made({ plane: 30001, corner: [500_000, 6_470_000] }))).toBe('no_projection');
+    expect(await why(made({ plane: 32035, corner: [2e6, 1e5] }))).toBe('no_datum');
+    expect(await why(made({ plane: 2048, corner: [0, 0] }))).toBe('other_axes');
     expect(await why(made({ corner: [5e9, 6_470_000] }))).toBe('no_place');
     expect(await why(made({ bits: 16, corner: [500_000, 6_470_000] }))).toBe('not_8_bit');
     expect(await why(made({ pixel: [0, 0], corner: [500_000, 6_470_000] }))).toBe('no_place');

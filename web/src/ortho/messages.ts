@@ -10,8 +10,17 @@ export type Asked =
   /** The last tile was taken: the next one. */
   | { readonly kind: 'next' };
 
+/** How well it is known where the datum of a picture lies. */
+export interface OfDatum {
+  readonly name: string;
+  /** So many metres; null: the file brings its own shift, and does not say. */
+  readonly good_to_m: number | null;
+}
+
 export interface Looked {
   readonly bounds: Bounds;
+  /** null: to a metre, as any picture. */
+  readonly datum: OfDatum | null;
   readonly min_zoom: number;
   readonly max_zoom: number;
   /** Tiles of the finest zoom. */
@@ -19,7 +28,14 @@ export interface Looked {
   readonly format: 'webp' | 'png';
 }
 
-export type OrthoTrouble = 'unreadable' | 'no_place' | 'no_projection' | 'not_8_bit' | 'too_large';
+export type OrthoTrouble =
+  | 'unreadable'
+  | 'no_place'
+  | 'no_projection'
+  | 'no_datum'
+  | 'other_axes'
+  | 'not_8_bit'
+  | 'too_large';
 
 export type Told =
   | { readonly kind: 'looked'; readonly is: Looked }

@@ -1,12 +1,11 @@
 // A GeoTIFF: where it lies, and its pixels.
 
 import { fromBlob, type GeoTIFF, type GeoTIFFImage } from 'geotiff';
-import { toProj4 } from 'geotiff-geokeys-to-proj4';
-import proj4 from 'proj4';
 
 import { tiles_across, count_of, zoom_for, type Bounds } from '../model/tiling';
 import type { Looked } from './messages';
 import { reader_of, type PixelReader } from './pixels';
+import { plane_of, type Keys } from './plane';
 import { Trouble } from './trouble';
 import { to_pixels, type Affine, type ToPicture } from './warp';
 
@@ -23,7 +22,18 @@ export interface Picture {
   readonly read: PixelReader;
 }
 
-const affine_of = (image: GeoTIFFImage): Affine => {
+const PIXEL_IS_POINT = 2;
+
+/** From the corners of the pixels. */
+const affine_of = (image: GeoTIFFImage, keys: Keys): Affine => {
+  const said = said_affine(image);
+  if (keys.GTRasterTypeGeoKey !== PIXEL_IS_POINT) return said;
+  // It is said from the middle of the first pixel.
+  const { a, b, d, e } = said;
+  return { ...said, c: said.c - (a + b) / 2, f: said.f - (d + e) / 2 };
+};
+
+const said_affine = (image: GeoTIFFImage): Affine => {
   const m: unknown = image.fileDirectory.getValue('ModelTransformation');
   if (Array.isArray(m) || ArrayBuffer.isView(m)) {
     const [a = 0, b = 0, , c = 0, d = 0, e = 0, , f = 0] = m as unknown as number[];
@@ -39,21 +49,6 @@ const affine_of = (image: GeoTIFFImage): Affine => {
   } catch {
     throw new Trouble('no_place');
   }
-};
-
-/** Degrees to the picture's plane, and back. */
-const plane_of = (
-  image: GeoTIFFImage,
-): proj4.Converter & { readonly scale: readonly [number, number] } => {
-  const keys = image.getGeoKeys() as unknown;
-  if (keys === null || typeof keys !== 'object') throw new Trouble('no_place');
-  const said = toProj4(keys as Parameters<typeof toProj4>[0]);
-  if (Object.keys(said.errors).length > 0 || said.proj4 === '') {
-    throw new Trouble('no_projection', Object.entries(said.errors).map(String).join(' '));
-  }
-  const { forward, inverse } = proj4('WGS84', said.proj4);
-  const { x, y } = said.coordinatesConversionParameters;
-  return { forward, inverse, scale: [x, y] };
 };
 
 /** Around its edges: a picture may be turned. */
@@ -104,6 +99,12 @@ const zooms_of = (
   return { min_zoom, max_zoom, tiles };
 };
 
+const keys_of = (image: GeoTIFFImage): Keys => {
+  const keys: unknown = image.getGeoKeys();
+  if (keys === null || typeof keys !== 'object') throw new Trouble('no_place');
+  return keys as Keys;
+};
+
 /** @throws Trouble */
 export const open_picture = async (from: Blob): Promise<Picture> => {
   let file: GeoTIFF;
@@ -115,28 +116,30 @@ export const open_picture = async (from: Blob): Promise<Picture> => {
     throw new Trouble('unreadable', cause instanceof Error ? cause.message : '');
   }
   const read = await reader_of(file, image);
-  const affine = affine_of(image);
-  const pixels = to_pixels(affine);
-  if (!pixels) throw new Trouble('no_place');
-  const { forward, inverse, scale } = plane_of(image);
-  const place = (px: number, py: number): [number, number] => {
-    const x = (affine.a * px + affine.b * py + affine.c) * scale[0];
-    const y = (affine.d * px + affine.e * py + affine.f) * scale[1];
-    const [lon = Number.NaN, lat = Number.NaN] = inverse([x, y]);
-    return [lon, lat];
-  };
-  const to_picture: ToPicture = (lon, lat) => {
-    const [x = Number.NaN, y = Number.NaN] = forward([lon, lat]);
-    return pixels(x / scale[0], y / scale[1]);
-  };
-  const bounds = bounds_of(image, place);
   const width = image.getWidth();
   const height = image.getHeight();
+  const keys = keys_of(image);
+  const affine = affine_of(image, keys);
+  const pixels = to_pixels(affine);
+  if (!pixels) throw new Trouble('no_place');
+  const on_plane = (px: number, py: number): [number, number] => [
+    affine.a * px + affine.b * py + affine.c,
+    affine.d * px + affine.e * py + affine.f,
+  ];
+  const plane = plane_of(keys, on_plane(width / 2, height / 2));
+  const bounds = bounds_of(image, (px, py) => plane.inverse(...on_plane(px, py)));
   // Of its diagonal: pixels may be no squares.
   const across_m = Math.hypot(
     (bounds.east - bounds.west) * 111_320 * Math.cos((bounds.south * Math.PI) / 180),
     (bounds.north - bounds.south) * 111_320,
   );
-  const is = { bounds, ...zooms_of(bounds, across_m / Math.hypot(width, height)) };
-  return { width, height, to_picture, is, read };
+  const zooms = zooms_of(bounds, across_m / Math.hypot(width, height));
+  const { datum } = plane;
+  return {
+    width,
+    height,
+    to_picture: (lon, lat) => pixels(...plane.forward(lon, lat)),
+    is: { bounds, datum, ...zooms },
+    read,
+  };
 };

@@ -25,6 +25,8 @@ import { count_tiles, tile_url, tiles_of, type Bounds, type TileAddress } from '
 import type { Dialogs } from './dialogs.svelte';
 import type { Notices } from './notices.svelte';
 import type { Cutter } from '../ortho/conversation';
+import type { OrthoTrouble } from '../ortho/messages';
+import { accuracy_mark, inexact_words, ortho_words } from '../ortho/words';
 
 const PIECE_BYTES = 1024 * 1024;
 const AGAIN_AFTER_MS = 3000;
@@ -242,15 +244,14 @@ export class Grounds {
 
   async #cut_by(cutter: Cutter, file: File): Promise<string | null> {
     const seen = await cutter.look(file);
-    const words = (why: string, detail: string): string =>
-      say('ground_is_not_taken', {
-        name: file.name,
-        why: `${say(`ortho_${why}` as 'ortho_unreadable')}${detail === '' ? '' : ` (${detail})`}`,
-      });
+    const words = (why: OrthoTrouble, detail: string): string =>
+      say('ground_is_not_taken', { name: file.name, why: ortho_words(why, detail) });
     if ('why' in seen) return words(seen.why, seen.detail);
     const name = file.name.replace(/\.[a-z]+$/i, '');
     const set = set_name(file.name, this.#names());
-    const made = await this.#insist(() => this.#calls.create({ set, name, format: seen.format }));
+    const { format } = seen;
+    const attribution = seen.datum ? accuracy_mark(seen.datum) : '';
+    const made = await this.#insist(() => this.#calls.create({ set, name, format, attribution }));
     if (!made?.ok) return made ? this.#refused(file.name, made.refusal) : null;
     let refusal: Refusal | null = null;
     const trouble = await cutter.cut(async ({ at, picture, done }) => {
@@ -265,7 +266,8 @@ export class Grounds {
       return trouble && words(trouble.why, trouble.detail);
     }
     this.choose(`set:${set}`);
-    this.#notices.show('good', say('ground_is_there', { name }));
+    if (seen.datum) this.#notices.show('warning', inexact_words(name, seen.datum));
+    else this.#notices.show('good', say('ground_is_there', { name }));
     return null;
   }
 

@@ -189,6 +189,10 @@ export const maps = {
   ground_delete: 'Delete {name}?',
   ground_delete_text: '{size} on the robot become free. It cannot be undone.',
   ground_is_there: '{name} is on the robot.',
+  ground_is_there_about:
+    '{name} is on the robot. It lies to about {about_m} m only, as well as its datum ({datum}) is known: check it against a mark.',
+  ground_is_there_by_its_own:
+    '{name} is on the robot. It brings a shift of its own to WGS 84 and does not say how good that is: check it against a mark.',
   ground_is_not_taken: '{name} is not taken: {why}',
   ground_network_silent: 'The network gives no picture of this area just now.',
   ground_network_no_picture: '{name} gave no pictures.',
@@ -197,6 +201,10 @@ export const maps = {
   ortho_unreadable: 'it cannot be read',
   ortho_no_place: 'it does not say where it lies',
   ortho_no_projection: 'its projection is not known',
+  ortho_no_datum:
+    'where its coordinate system ({datum}) lies is not known well enough here. Convert it first: gdalwarp -t_srs EPSG:4326 OLD.tif NEW.tif',
+  ortho_other_axes:
+    'its axes point west or south. Convert it first: gdalwarp -t_srs EPSG:4326 OLD.tif NEW.tif',
   ortho_not_8_bit: 'its colours do not have 8 bits each',
   ortho_too_large: 'it would be too many tiles',
   it_is_heard_and_the_map_lies_nowhere: 'Heard, but the map lies nowhere yet',

@@ -184,6 +184,10 @@ export const maps = {
   ground_delete: 'Kas kustutada {name}?',
   ground_delete_text: 'Robotis vabaneb {size}. Seda ei saa tagasi võtta.',
   ground_is_there: '{name} on robotis.',
+  ground_is_there_about:
+    '{name} on robotis. See asub ainult umbes {about_m} m täpsusega, sest nii hästi on teada selle lähteraamistik ({datum}): võrdle seda mõne märgiga.',
+  ground_is_there_by_its_own:
+    '{name} on robotis. Sellel on oma nihe WGS 84 suhtes, mille täpsust see ei ütle: võrdle seda mõne märgiga.',
   ground_is_not_taken: '{name} ei sobi: {why}',
   ground_network_silent: 'Võrgust ei tule praegu sellest alast pilti.',
   ground_network_no_picture: '{name} ei andnud pilte.',
@@ -192,6 +196,10 @@ export const maps = {
   ortho_unreadable: 'seda ei saa lugeda',
   ortho_no_place: 'see ei ütle, kus see asub',
   ortho_no_projection: 'selle projektsiooni ei tunta',
+  ortho_no_datum:
+    'selle koordinaatsüsteemi ({datum}) asend pole siin piisavalt teada. Teisenda see enne: gdalwarp -t_srs EPSG:4326 VANA.tif UUS.tif',
+  ortho_other_axes:
+    'selle teljed osutavad läände või lõunasse. Teisenda see enne: gdalwarp -t_srs EPSG:4326 VANA.tif UUS.tif',
   ortho_not_8_bit: 'selle värvidel pole 8 bitti',
   ortho_too_large: 'ruute tuleks liiga palju',
   it_is_heard_and_the_map_lies_nowhere: 'Kuuldud, aga kaart ei asu veel kuskil',

@@ -186,6 +186,10 @@ export const maps = {
   ground_delete: 'Poistetaanko {name}?',
   ground_delete_text: 'Robotista vapautuu {size}. Tätä ei voi perua.',
   ground_is_there: '{name} on robotissa.',
+  ground_is_there_about:
+    '{name} on robotissa. Sen sijainti pätee vain noin {about_m} m tarkkuudella, sillä niin hyvin sen datumi ({datum}) tunnetaan: vertaa sitä johonkin merkkiin.',
+  ground_is_there_by_its_own:
+    '{name} on robotissa. Siinä on oma siirto WGS 84:ään, eikä se kerro siirron tarkkuutta: vertaa sitä johonkin merkkiin.',
   ground_is_not_taken: '{name} ei kelpaa: {why}',
   ground_network_silent: 'Verkosta ei juuri nyt tule kuvaa tältä alueelta.',
   ground_network_no_picture: '{name} ei antanut kuvia.',
@@ -194,6 +198,10 @@ export const maps = {
   ortho_unreadable: 'sitä ei voi lukea',
   ortho_no_place: 'siinä ei ole sijaintia',
   ortho_no_projection: 'sen projektiota ei tunneta',
+  ortho_no_datum:
+    'sen koordinaatiston ({datum}) sijaintia ei tunneta täällä riittävän hyvin. Muunna se ensin: gdalwarp -t_srs EPSG:4326 VANHA.tif UUSI.tif',
+  ortho_other_axes:
+    'sen akselit osoittavat länteen tai etelään. Muunna se ensin: gdalwarp -t_srs EPSG:4326 VANHA.tif UUSI.tif',
   ortho_not_8_bit: 'sen väreissä ei ole 8 bittiä',
   ortho_too_large: 'ruutuja tulisi liikaa',
   it_is_heard_and_the_map_lies_nowhere: 'Kuultu, mutta kartalla ei ole vielä paikkaa',

@@ -189,6 +189,10 @@ export const maps = {
   ground_delete: 'Eliminare {name}?',
   ground_delete_text: 'Sul robot si liberano {size}. Non si può annullare.',
   ground_is_there: '{name} è sul robot.',
+  ground_is_there_about:
+    '{name} è sul robot. La sua posizione vale solo fino a circa {about_m} m, quanto è noto il suo datum ({datum}): confrontala con un segno.',
+  ground_is_there_by_its_own:
+    '{name} è sul robot. Porta una propria traslazione verso WGS 84 e non dice quanto è precisa: confrontala con un segno.',
   ground_is_not_taken: '{name} non è accettato: {why}',
   ground_network_silent: 'In questo momento la rete non dà immagini di questa zona.',
   ground_network_no_picture: '{name} non ha dato immagini.',
@@ -197,6 +201,10 @@ export const maps = {
   ortho_unreadable: 'non si può leggere',
   ortho_no_place: 'non dice dove si trova',
   ortho_no_projection: 'la sua proiezione non è nota',
+  ortho_no_datum:
+    'la posizione del suo sistema di coordinate ({datum}) qui non è nota abbastanza bene. Prima convertilo: gdalwarp -t_srs EPSG:4326 VECCHIO.tif NUOVO.tif',
+  ortho_other_axes:
+    'i suoi assi puntano a ovest o a sud. Prima convertilo: gdalwarp -t_srs EPSG:4326 VECCHIO.tif NUOVO.tif',
   ortho_not_8_bit: 'i suoi colori non hanno 8 bit',
   ortho_too_large: 'sarebbero troppi tasselli',
   it_is_heard_and_the_map_lies_nowhere: 'Sentito, ma la mappa non sta ancora da nessuna parte',

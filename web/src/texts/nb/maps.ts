@@ -187,6 +187,10 @@ export const maps = {
   ground_delete: 'Slette {name}?',
   ground_delete_text: '{size} blir ledig på roboten. Det kan ikke angres.',
   ground_is_there: '{name} er på roboten.',
+  ground_is_there_about:
+    '{name} er på roboten. Det ligger bare på omtrent {about_m} m, så godt som datumet ({datum}) er kjent: sammenlign det med et merke.',
+  ground_is_there_by_its_own:
+    '{name} er på roboten. Det har sin egen forskyvning til WGS 84 og sier ikke hvor god den er: sammenlign det med et merke.',
   ground_is_not_taken: '{name} tas ikke imot: {why}',
   ground_network_silent: 'Nettet gir ikke noe bilde av dette området akkurat nå.',
   ground_network_no_picture: '{name} ga ingen bilder.',
@@ -195,6 +199,10 @@ export const maps = {
   ortho_unreadable: 'det kan ikke leses',
   ortho_no_place: 'det sier ikke hvor det ligger',
   ortho_no_projection: 'projeksjonen er ukjent',
+  ortho_no_datum:
+    'hvor koordinatsystemet ({datum}) ligger, er ikke kjent godt nok her. Gjør det om først: gdalwarp -t_srs EPSG:4326 GAMMEL.tif NY.tif',
+  ortho_other_axes:
+    'aksene peker mot vest eller sør. Gjør det om først: gdalwarp -t_srs EPSG:4326 GAMMEL.tif NY.tif',
   ortho_not_8_bit: 'fargene har ikke 8 biter hver',
   ortho_too_large: 'det ville bli for mange ruter',
   it_is_heard_and_the_map_lies_nowhere: 'Hørt, men kartet ligger ingen steder ennå',
