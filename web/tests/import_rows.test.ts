@@ -22,9 +22,11 @@ describe('where something stands in a file', () => {
 
 describe('dropped files', () => {
   it('are maps by their endings, and missions otherwise', () => {
-    const names = ['a.plan', 'yard.YAML', 'yard.pgm', 'b', 'c.yml.gpx'].map((name) => ({ name }));
+    const names = ['a.plan', 'yard.YAML', 'yard.pgm', 'b', 'hall.pcd', 'm.PNG', 'c.yml.gpx'].map(
+      (name) => ({ name }),
+    );
     const { missions, maps } = sorted_files(names);
     expect(missions.map(({ name }) => name)).toEqual(['a.plan', 'b', 'c.yml.gpx']);
-    expect(maps.map(({ name }) => name)).toEqual(['yard.YAML', 'yard.pgm']);
+    expect(maps.map(({ name }) => name)).toEqual(['yard.YAML', 'yard.pgm', 'hall.pcd', 'm.PNG']);
   });
 });

@@ -30,6 +30,7 @@ import {
   type SiteDraft,
   type SiteMap,
 } from '../src/model/site_map';
+import { for_robot } from '../src/ortho/map_picture';
 import { finnish } from '../src/texts/fi';
 
 const HERE = { lat: 58.378, lon: 26.7289 };
@@ -154,10 +155,35 @@ describe('files of a map', () => {
     expect(pair_of([cloud, image, yaml])).toContain('One map at a time');
     expect(pair_of([image, yaml])).toEqual({ yaml, image });
     expect(pair_of([])).toContain('Pick the .yaml and the .pgm');
-    expect(pair_of([yaml])).toContain('.pgm is missing');
+    expect(pair_of([yaml])).toContain('.pgm or .png is missing');
     expect(pair_of([image])).toContain('.yaml is missing');
     expect(pair_of([yaml, image, file('shed.pgm')])).toContain('One map at a time');
-    expect(pair_of([yaml, file('hall.png')])).toContain('“hall.png” is no part of a map');
+    expect(pair_of([yaml, file('hall.bmp')])).toContain('“hall.bmp” is no part of a map');
+  });
+
+  it('go to the robot with a grey picture', async () => {
+    const [yaml, image] = [file('hall.yaml'), file('hall.pgm')];
+    expect(await for_robot({ yaml, image })).toEqual({ yaml, image });
+    // One cell of 205, as the map server's saver writes it.
+    const base64 =
+      'iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGM4CwAAzwDOoP4pUAAAAABJRU5ErkJggg==';
+    const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+    const made = await for_robot({ yaml, image: new File([bytes], 'hall.PNG') });
+    if (typeof made === 'string' || 'cloud' in made) throw new Error('not made');
+    expect(made.image.name).toBe('hall.pgm');
+    expect([...new Uint8Array(await made.image.arrayBuffer())].at(-1)).toBe(205);
+    expect(await for_robot({ yaml, image: file('hall.png') })).toBe('the PNG cannot be read.');
+    // What is clear is one of four parts, but for the modes where it is unknown.
+    const clear = Uint8Array.from(
+      atob(
+        'iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAQAAAC1HAwCAAAAC0lEQVR4nGM4ywAAAZ0Azj8oeDoAAAAASUVORK5CYII=',
+      ),
+      (letter) => letter.charCodeAt(0),
+    );
+    const scale = new File(['image: hall.png\nmode: scale\n'], 'hall.yaml');
+    const picture = new File([clear], 'hall.png');
+    expect(await for_robot({ yaml: scale, image: picture })).toContain('in the mode trinary');
+    expect(typeof (await for_robot({ yaml, image: picture }))).toBe('object');
   });
 });
 

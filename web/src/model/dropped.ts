@@ -1,8 +1,8 @@
 // What files are, that were dropped onto the page, by their names.
 
-/** Of the plane: a description and its picture. */
 const GROUND = /\.(mbtiles|tiff?|gtiff)$/i;
-const MAP = /\.(ya?ml|pgm)$/i;
+/** Of the plane: a description and its picture. In three dimensions: points. */
+const MAP = /\.(ya?ml|pgm|png|pcd)$/i;
 
 export interface Dropped<F> {
   readonly missions: readonly F[];

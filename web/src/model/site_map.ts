@@ -157,7 +157,7 @@ export const lies_anywhere = (map: SiteMap): boolean => !map.placed && !map.anch
 /** By the fields of the form in which they are sent. */
 export type MapFiles = { readonly yaml: File; readonly image: File } | { readonly cloud: File };
 
-const endings = /\.(ya?ml|pgm|pcd)$/i;
+const endings = /\.(ya?ml|pgm|png|pcd)$/i;
 
 /** As the map is called. */
 export const name_of_files = (files: MapFiles): string =>
@@ -167,7 +167,7 @@ export const name_of_files = (files: MapFiles): string =>
 export const pair_of = (files: readonly File[]): MapFiles | string => {
   const cloud = files.find(({ name }) => /\.pcd$/i.test(name));
   if (cloud && files.length === 1) return { cloud };
-  const [yamls, images] = [/\.ya?ml$/i, /\.pgm$/i].map((ending) =>
+  const [yamls, images] = [/\.ya?ml$/i, /\.(pgm|png)$/i].map((ending) =>
     files.filter(({ name }) => ending.test(name)),
   );
   const [yaml, image] = [yamls?.[0], images?.[0]];

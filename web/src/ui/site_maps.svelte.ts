@@ -19,6 +19,7 @@ import {
   type SiteOnMap,
 } from '../model/site_map';
 import { robot_place } from '../model/vehicle';
+import { for_robot } from '../ortho/map_picture';
 import type { Dialogs } from './dialogs.svelte';
 import type { Live } from './live.svelte';
 import type { Notices } from './notices.svelte';
@@ -161,8 +162,14 @@ export class SiteMaps {
     }
     const name = name_of_files(pair);
     this.sending = { name, share: 0 };
+    const files = await for_robot(pair);
+    if (typeof files === 'string') {
+      this.sending = null;
+      this.#notices.outcome(`map ${name}`, `“${name}”: ${files}`);
+      return;
+    }
     // The files name it, in an exported one by what stands in it; one that is taken gets a number.
-    const answer = await this.#calls.add(pair, (share) => (this.sending = { name, share }));
+    const answer = await this.#calls.add(files, (share) => (this.sending = { name, share }));
     this.sending = null;
     this.#notices.outcome(
       `map ${name}`,

@@ -2,12 +2,18 @@
 
 export const maps = {
   name_is_no_part_of_a_map_pick_its:
-    '“{name}” is no part of a map: pick its .yaml and its .pgm, or one .pcd.',
-  pick_the_yaml_and_the_pgm_of_a_map: 'Pick the .yaml and the .pgm of a map, or one .pcd.',
+    '“{name}” is no part of a map: pick its .yaml and its .pgm or .png, or one .pcd.',
+  pick_the_yaml_and_the_pgm_of_a_map:
+    'Pick the .yaml and the .pgm (or .png) of a map, or one .pcd.',
   the_yaml_is_missing_pick_both_files: 'The .yaml is missing: pick both files together.',
-  the_pgm_is_missing_pick_both_files: 'The .pgm is missing: pick both files together.',
+  the_pgm_is_missing_pick_both_files: 'The .pgm or .png is missing: pick both files together.',
   one_map_at_a_time_pick_one_yaml_and:
-    'One map at a time: pick one .yaml and its .pgm, or one .pcd.',
+    'One map at a time: pick one .yaml and its .pgm or .png, or one .pcd.',
+  png_unreadable: 'the PNG cannot be read.',
+  png_interlaced: 'an interlaced PNG is not taken: save it without interlacing, or as .pgm.',
+  png_clear:
+    'what is clear in the picture means “unknown” in the mode that the .yaml names, and the robot cannot keep that: save the map in the mode trinary.',
+  png_too_large: 'it has more than 10,000 cells along a side.',
   erase: 'Erase',
   forbid: 'Forbid',
   wall: 'Wall',
@@ -68,7 +74,7 @@ export const maps = {
   new_map: 'New map',
   add_a_map: 'Add a map',
   pick_its_files_together_or_drop:
-    'Pick the .yaml and the .pgm together, or drop them here. A .pcd is a map in three dimensions.',
+    'Pick the .yaml and the .pgm or .png together, or drop them here. A .pcd is a map in three dimensions.',
   map_files: 'Map files',
   sending_name_share_percent: 'Sending “{name}”, {share} %',
   show_it_while_driving: 'Show it while driving',

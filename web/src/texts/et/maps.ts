@@ -2,12 +2,17 @@
 
 export const maps = {
   name_is_no_part_of_a_map_pick_its:
-    '„{name}“ pole kaardi osa: vali selle .yaml ja .pgm või üks .pcd.',
-  pick_the_yaml_and_the_pgm_of_a_map: 'Vali kaardi .yaml ja .pgm või üks .pcd.',
+    '„{name}“ pole kaardi osa: vali selle .yaml ja .pgm või .png, või üks .pcd.',
+  pick_the_yaml_and_the_pgm_of_a_map: 'Vali kaardi .yaml ja .pgm (või .png) või üks .pcd.',
   the_yaml_is_missing_pick_both_files: '.yaml puudub: vali mõlemad failid koos.',
-  the_pgm_is_missing_pick_both_files: '.pgm puudub: vali mõlemad failid koos.',
+  the_pgm_is_missing_pick_both_files: '.pgm või .png puudub: vali mõlemad failid koos.',
   one_map_at_a_time_pick_one_yaml_and:
-    'Üks kaart korraga: vali üks .yaml ja selle .pgm või üks .pcd.',
+    'Üks kaart korraga: vali üks .yaml ja selle .pgm või .png, või üks .pcd.',
+  png_unreadable: 'PNG-d ei saa lugeda.',
+  png_interlaced: 'ülerealaotusega PNG ei sobi: salvesta see ilma selleta või .pgm-ina.',
+  png_clear:
+    'läbipaistev tähendab .yaml-is nimetatud režiimis tundmatut ja seda robot hoida ei saa: salvesta kaart režiimis trinary.',
+  png_too_large: 'sellel on küljel üle 10 000 ruudu.',
   erase: 'Kustuta',
   forbid: 'Keela',
   wall: 'Sein',
@@ -66,7 +71,7 @@ export const maps = {
   new_map: 'Uus kaart',
   add_a_map: 'Lisa kaart',
   pick_its_files_together_or_drop:
-    'Vali .yaml ja .pgm koos või lohista siia. .pcd on ruumiline kaart.',
+    'Vali .yaml ja .pgm või .png koos või lohista siia. .pcd on ruumiline kaart.',
   map_files: 'Kaardifailid',
   sending_name_share_percent: 'Saadab „{name}“, {share} %',
   show_it_while_driving: 'Näita sõidu ajal',

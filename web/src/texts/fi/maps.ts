@@ -2,12 +2,17 @@
 
 export const maps = {
   name_is_no_part_of_a_map_pick_its:
-    '”{name}” ei ole kartan osa: valitse sen .yaml ja .pgm tai yksi .pcd.',
-  pick_the_yaml_and_the_pgm_of_a_map: 'Valitse kartan .yaml ja .pgm tai yksi .pcd.',
+    '”{name}” ei ole kartan osa: valitse sen .yaml ja .pgm tai .png, tai yksi .pcd.',
+  pick_the_yaml_and_the_pgm_of_a_map: 'Valitse kartan .yaml ja .pgm (tai .png) tai yksi .pcd.',
   the_yaml_is_missing_pick_both_files: '.yaml puuttuu: valitse molemmat tiedostot.',
-  the_pgm_is_missing_pick_both_files: '.pgm puuttuu: valitse molemmat tiedostot.',
+  the_pgm_is_missing_pick_both_files: '.pgm tai .png puuttuu: valitse molemmat tiedostot.',
   one_map_at_a_time_pick_one_yaml_and:
-    'Yksi kartta kerrallaan: valitse yksi .yaml ja sen .pgm tai yksi .pcd.',
+    'Yksi kartta kerrallaan: valitse yksi .yaml ja sen .pgm tai .png, tai yksi .pcd.',
+  png_unreadable: 'PNG:tä ei voi lukea.',
+  png_interlaced: 'lomitettu PNG ei kelpaa: tallenna se lomittamatta tai .pgm-tiedostona.',
+  png_clear:
+    'läpinäkyvä tarkoittaa .yaml-tiedoston tilassa tuntematonta, eikä robotti voi säilyttää sitä: tallenna kartta tilassa trinary.',
+  png_too_large: 'siinä on yli 10 000 ruutua sivulla.',
   erase: 'Pyyhi',
   forbid: 'Kiellä',
   wall: 'Seinä',
@@ -66,7 +71,7 @@ export const maps = {
   new_map: 'Uusi kartta',
   add_a_map: 'Lisää kartta',
   pick_its_files_together_or_drop:
-    'Valitse .yaml ja .pgm yhdessä, tai pudota ne tähän. .pcd on kolmiulotteinen kartta.',
+    'Valitse .yaml ja .pgm tai .png yhdessä, tai pudota ne tähän. .pcd on kolmiulotteinen kartta.',
   map_files: 'Karttatiedostot',
   sending_name_share_percent: 'Lähetetään ”{name}”, {share} %',
   show_it_while_driving: 'Näytä ajettaessa',

@@ -2,12 +2,18 @@
 
 export const maps = {
   name_is_no_part_of_a_map_pick_its:
-    '“{name}” non fa parte di una mappa: scegli il suo .yaml e il suo .pgm, o un .pcd.',
-  pick_the_yaml_and_the_pgm_of_a_map: 'Scegli il .yaml e il .pgm di una mappa, o un .pcd.',
+    '“{name}” non fa parte di una mappa: scegli il suo .yaml e il suo .pgm o .png, o un .pcd.',
+  pick_the_yaml_and_the_pgm_of_a_map: 'Scegli il .yaml e il .pgm (o .png) di una mappa, o un .pcd.',
   the_yaml_is_missing_pick_both_files: 'Manca il .yaml: scegli i due file insieme.',
-  the_pgm_is_missing_pick_both_files: 'Manca il .pgm: scegli i due file insieme.',
+  the_pgm_is_missing_pick_both_files: 'Manca il .pgm o .png: scegli i due file insieme.',
   one_map_at_a_time_pick_one_yaml_and:
-    'Una mappa alla volta: scegli un .yaml e il suo .pgm, o un .pcd.',
+    'Una mappa alla volta: scegli un .yaml e il suo .pgm o .png, o un .pcd.',
+  png_unreadable: 'il PNG non si può leggere.',
+  png_interlaced:
+    'un PNG interlacciato non è accettato: salvalo senza interlacciamento o come .pgm.',
+  png_clear:
+    'ciò che è trasparente significa “ignoto” nel modo indicato dal .yaml, e il robot non può conservarlo: salva la mappa nel modo trinary.',
+  png_too_large: 'ha più di 10 000 celle su un lato.',
   erase: 'Cancella',
   forbid: 'Vieta',
   wall: 'Muro',
@@ -68,7 +74,7 @@ export const maps = {
   new_map: 'Nuova mappa',
   add_a_map: 'Aggiungi una mappa',
   pick_its_files_together_or_drop:
-    'Scegli il .yaml e il .pgm insieme, o trascinali qui. Un .pcd è una mappa in tre dimensioni.',
+    'Scegli il .yaml e il .pgm o .png insieme, o trascinali qui. Un .pcd è una mappa in tre dimensioni.',
   map_files: 'File della mappa',
   sending_name_share_percent: 'Invio di «{name}», {share} %',
   show_it_while_driving: 'Mostrala guidando',

@@ -2,12 +2,17 @@
 
 export const maps = {
   name_is_no_part_of_a_map_pick_its:
-    '«{name}» er ingen del av et kart: velg dets .yaml og .pgm, eller én .pcd.',
-  pick_the_yaml_and_the_pgm_of_a_map: 'Velg .yaml og .pgm for et kart, eller én .pcd.',
+    '«{name}» er ingen del av et kart: velg dets .yaml og .pgm eller .png, eller én .pcd.',
+  pick_the_yaml_and_the_pgm_of_a_map: 'Velg .yaml og .pgm (eller .png) for et kart, eller én .pcd.',
   the_yaml_is_missing_pick_both_files: '.yaml mangler: velg begge filene sammen.',
-  the_pgm_is_missing_pick_both_files: '.pgm mangler: velg begge filene sammen.',
+  the_pgm_is_missing_pick_both_files: '.pgm eller .png mangler: velg begge filene sammen.',
   one_map_at_a_time_pick_one_yaml_and:
-    'Ett kart om gangen: velg én .yaml og dens .pgm, eller én .pcd.',
+    'Ett kart om gangen: velg én .yaml og dens .pgm eller .png, eller én .pcd.',
+  png_unreadable: 'PNG-filen kan ikke leses.',
+  png_interlaced: 'en PNG med linjefletting tas ikke imot: lagre den uten, eller som .pgm.',
+  png_clear:
+    'det gjennomsiktige betyr «ukjent» i modusen som .yaml-filen nevner, og det kan ikke roboten beholde: lagre kartet i modusen trinary.',
+  png_too_large: 'det har mer enn 10 000 ruter langs en side.',
   erase: 'Visk ut',
   forbid: 'Forby',
   wall: 'Vegg',
@@ -67,7 +72,7 @@ export const maps = {
   new_map: 'Nytt kart',
   add_a_map: 'Legg til et kart',
   pick_its_files_together_or_drop:
-    'Velg .yaml og .pgm sammen, eller slipp dem her. En .pcd er et kart i tre dimensjoner.',
+    'Velg .yaml og .pgm eller .png sammen, eller slipp dem her. En .pcd er et kart i tre dimensjoner.',
   map_files: 'Kartfiler',
   sending_name_share_percent: 'Sender «{name}», {share} %',
   show_it_while_driving: 'Vis under kjøring',
