@@ -82,6 +82,19 @@ describe('what the robot says', () => {
     expect(robot_says(refused)).not.toContain('the');
   });
 
+  test('is said of files of missions, too', () => {
+    in_finnish();
+    expect(robot_says('a waypoint has no place for it')).toBe(
+      'reittipisteessä ei ole sille paikkaa',
+    );
+    expect(robot_says('not a KMZ file that can be read: there is no .kml in it')).toBe(
+      'ei ole luettava KMZ-tiedosto: siinä ei ole yhtään .kml-tiedostoa',
+    );
+    expect(robot_says('column 2 must be a finite number, of degrees with decimals')).toBe(
+      'sarakkeen 2 on oltava äärellinen luku, asteita desimaalein',
+    );
+  });
+
   test('is never taken for a shorter sentence that begins the same', () => {
     in_finnish();
     for (const [key, text] of Object.entries(english)) {
