@@ -106,6 +106,17 @@ std::string WallDrive::wall_text() const {
   return order_.side == marks::Side::Left ? "the wall on the left" : "the wall on the right";
 }
 
+std::string WallDrive::ended_text() const {
+  switch (drive_.end()) {
+    case marks::WayEnd::TooNarrow:
+      return "there is no room along " + wall_text();
+    case marks::WayEnd::NoEcho:
+      return wall_text() + " gives no echo any more, and its end was not seen";
+    default:
+      return wall_text() + " is not seen any further";
+  }
+}
+
 TrackPhase WallDrive::phase() const noexcept {
   switch (drive_.state()) {
     case marks::SightDrive::State::Idle:
@@ -187,8 +198,7 @@ void WallDrive::judge(double dt_s) {
   } else if (unseen_s_ > params_.sight->old_s + params_.sight->wait_s) {
     fail(wall_text() + " is not seen any more");
   } else if (!ends && stood_s_ > params_.sight->wait_s) {
-    fail(drive_.end() == WayEnd::TooNarrow ? "there is no room along " + wall_text()
-                                           : wall_text() + " is not seen any further");
+    fail(ended_text());
   }
 }
 

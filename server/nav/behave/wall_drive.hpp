@@ -57,6 +57,7 @@ class WallDrive {
   void judge(double dt_s);
   void fail(std::string why);
   std::string wall_text() const;
+  std::string ended_text() const;  ///< why it goes on no further
 
   base::Setting<PathParams> path_params_;
   MarkSettings params_;

@@ -13,7 +13,14 @@ constexpr double kOneWall_rad = base::kPi / 12.0;  ///< flatter, they are one wa
 constexpr double kMeet_m = 0.2;
 
 Piece piece_of(const Wall& w, const Stretch& s) {
-  return {w.at(s.from_m), w.at(s.to_m), w.normal, w.seen_at, s.from_open, s.to_open};
+  return {w.at(s.from_m),
+          w.at(s.to_m),
+          w.normal,
+          w.seen_at,
+          s.from_open,
+          s.to_open,
+          w.ends_at(s.from_m, false),
+          w.ends_at(s.to_m, true)};
 }
 
 }  // namespace
@@ -44,13 +51,14 @@ void close_corners(std::vector<Piece>& pieces) {
       const double det = sense::cross(u, v);
       if (std::abs(det) < std::sin(kOneWall_rad) * length(u) * length(v)) continue;
       const Vec2 meet = pieces[i].a + (sense::cross(pieces[j].a - pieces[i].a, v) / det) * u;
-      const auto nearer_end = [&](Piece& p) -> Vec2& {
-        return length(p.a - meet) < length(p.b - meet) ? p.a : p.b;
-      };
-      Vec2& of_one = nearer_end(pieces[i]);
-      Vec2& of_other = nearer_end(pieces[j]);
-      if (length(of_one - meet) > kMeet_m || length(of_other - meet) > kMeet_m) continue;
-      of_one = of_other = meet;
+      const auto at_a = [&](const Piece& p) { return length(p.a - meet) < length(p.b - meet); };
+      const auto off_m = [&](const Piece& p) { return length((at_a(p) ? p.a : p.b) - meet); };
+      if (off_m(pieces[i]) > kMeet_m || off_m(pieces[j]) > kMeet_m) continue;
+      for (Piece* p : {&pieces[i], &pieces[j]}) {
+        const bool a = at_a(*p);
+        (a ? p->a : p->b) = meet;
+        (a ? p->a_ends : p->b_ends) = true;
+      }
     }
   }
 }

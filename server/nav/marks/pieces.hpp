@@ -17,6 +17,8 @@ struct Piece {
   base::Time seen_at;
   bool a_open = false;  ///< the edge of what was looked at: no end of the wall
   bool b_open = false;
+  bool a_ends = false;  ///< something told that the wall ends there
+  bool b_ends = false;
 };
 
 /// Of those that are believed.

@@ -36,7 +36,8 @@ base::Result<void> planar_of(const base::Sight& sight, const base::Mount& mount,
     if (!then) continue;
     Beam beam;
     beam.range_m = s.norm();
-    beam.hit = p.echo == base::Echo::Hit && beam.range_m <= max_range_m && beam.range_m > 0.0;
+    beam.echo = p.echo == base::Echo::Hit && beam.range_m > 0.0;
+    beam.hit = beam.echo && beam.range_m <= max_range_m;
     beam.at = placed(back * *then, {mount.x_m + b.x(), mount.y_m + b.y()});
     out.beams.push_back(beam);
   }

@@ -21,6 +21,7 @@ struct Beam {
   Vec2 at;               ///< where it hit, or the direction's far end
   double range_m = 0.0;  ///< from the sensor
   bool hit = false;      ///< else nothing is known of it
+  bool echo = false;     ///< something stands there, be it too far for a hit
 };
 
 struct PlanarScan {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/angle.hpp"
+#include "nav/marks/ends.hpp"
 #include "nav/sense/mount.hpp"
 
 namespace roverd::nav::marks {
@@ -149,11 +150,16 @@ std::optional<PlaneWall> wall_of(const base::Vision& vision, const base::Mount& 
 }
 
 void Walls::take(const PlanarScan& scan, const WallParams& params) {
-  for (Kept& k : walls_) k.matched = false;
+  for (Kept& k : walls_) {
+    k.matched = false;
+    k.now.clear();
+    k.rms_m = 0.0;
+  }
   for (const Line& line : lines_of(scan, params)) {
     put(in_o(line, scan.pose), Source::Scan, scan.stamp, params);
   }
   look_through(scan);
+  look_past_ends(scan);
   merge(params);
   expire(scan.stamp, {scan.pose.x_m, scan.pose.y_m}, params);
 }
@@ -207,8 +213,10 @@ void Walls::put(const Line& line, Source source, base::Time stamp, const WallPar
   if (!best->matched) best->moments.fade(kFade);
   best->moments.add(line.moments);
   refit(best->wall, best->moments);
-  cover(best->wall.seen, along(best->wall, line.from, line.to, line.from_open, line.to_open),
-        params.jump_m, kMostStretches);
+  const Stretch now = along(best->wall, line.from, line.to, line.from_open, line.to_open);
+  cover(best->wall.seen, now, params.jump_m, kMostStretches);
+  best->now.push_back(now);
+  best->rms_m = std::max(best->rms_m, line.rms_m);
   best->wall.source = source;
   best->wall.seen_at = stamp;
   if (!best->matched) ++best->wall.hits;
@@ -242,6 +250,12 @@ void Walls::look_through(const PlanarScan& scan) {
   });
 }
 
+void Walls::look_past_ends(const PlanarScan& scan) {
+  for (Kept& k : walls_) {
+    if (k.wall.source == Source::Scan) look_past(k.wall, k.now, k.rms_m, scan);
+  }
+}
+
 /// Two that turn out to be one line: the older one stays.
 void Walls::merge(const WallParams& params) {
   for (std::size_t i = 0; i < walls_.size(); ++i) {
@@ -260,6 +274,11 @@ void Walls::merge(const WallParams& params) {
         cover(a.wall.seen,
               along(a.wall, b.wall.at(s.from_m), b.wall.at(s.to_m), s.from_open, s.to_open),
               params.jump_m, kMostStretches);
+      }
+      for (const SeenEnd& e : b.wall.ends) {
+        const bool same_way = sense::dot(a.wall.along, b.wall.along) > 0.0;
+        const double at_m = sense::dot(a.wall.along, b.wall.at(e.at_m) - a.wall.anchor);
+        tell_end(a.wall, {at_m, same_way == e.ahead, e.hits});
       }
       refit(a.wall, a.moments);
       a.wall.hits = std::max(a.wall.hits, b.wall.hits);

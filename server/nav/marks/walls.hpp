@@ -11,6 +11,16 @@
 // Where a scan's first or last beam met it a wall is open: it may go on there. A vision plane tells
 // neither where it begins nor where it ends, so both of its ends are. A scan that sees an end
 // closes it.
+//
+// Where nothing comes back any more a wall need not end: glass, a mirror and black paint give no
+// echo. It was seen to end only where something was met behind its line, close beyond the end: its
+// face, or whatever stands there.
+//
+//   eye ·
+//        \  ╲ ·
+//   ══════╗\  ╲         met behind the line: the wall ends
+//   ──────╝
+//
 // Bounded: kMostWalls, kMostStretches each. Not shared between threads; time comes with the scans.
 
 #include <cstdint>
@@ -34,6 +44,16 @@ struct Stretch {
   bool to_open = false;
 };
 
+/// So many echoes from behind a wall's line, close beyond one place of it, make that place its end.
+constexpr int kEndsHits = 6;
+
+/// Where a wall may have been seen to end.
+struct SeenEnd {
+  double at_m = 0.0;   ///< along the wall
+  bool ahead = false;  ///< it ends there for who goes along `along`; else it begins there
+  int hits = 0;        ///< echoes from behind its line, close beyond
+};
+
 struct Wall {
   std::uint32_t id = 0;  ///< never given again
   Source source = Source::Scan;
@@ -41,13 +61,16 @@ struct Wall {
   Vec2 along{1.0, 0.0};       ///< of length 1
   Vec2 normal{};              ///< of length 1, to the side from which it was seen
   std::vector<Stretch> seen;  ///< in order; what lies between two is a gap
-  double sigma_m = 0.0;       ///< 1σ beside it
+  std::vector<SeenEnd> ends;
+  double sigma_m = 0.0;  ///< 1σ beside it
   double sigma_rad = 0.0;
   int hits = 0;
   bool believed = false;
   base::Time seen_at;
 
   Vec2 at(double along_m) const noexcept { return anchor + along_m * along; }
+  /// Something told that it ends there, within 0.3 m.
+  bool ends_at(double along_m, bool ahead) const noexcept;
   /// From the line without ends, positive on the side from which it was seen.
   double distance_m(Vec2 p) const noexcept { return sense::dot(normal, p - anchor); }
 };
@@ -83,11 +106,14 @@ class Walls {
   struct Kept {
     Wall wall;
     Moments moments;
+    std::vector<Stretch> now;  ///< of the scan in hand
+    double rms_m = 0.0;        ///< of its worst line in that scan
     int misses = 0;
     bool matched = false;
   };
   void put(const Line& line_in_o, Source source, base::Time stamp, const WallParams& params);
   void look_through(const PlanarScan& scan);
+  void look_past_ends(const PlanarScan& scan);
   void merge(const WallParams& params);
 
   std::vector<Kept> walls_;

@@ -72,8 +72,12 @@ struct Sample {
 /// Drives a point along the curve at the distance from the walls.
 class March {
  public:
-  March(std::vector<Piece>& pieces, Side side, double distance_m)
-      : pieces_(pieces), sign_(side == Side::Left ? 1.0 : -1.0), distance_m_(distance_m) {}
+  /// @param door_m so far a wall may go on where nothing tells that it ends
+  March(std::vector<Piece>& pieces, Side side, double distance_m, double door_m)
+      : pieces_(pieces),
+        sign_(side == Side::Left ? 1.0 : -1.0),
+        distance_m_(distance_m),
+        door_m_(door_m) {}
 
   /// @param ahead_m so far ahead a wall may begin that is beside the vehicle, too
   /// @return false: there is no wall on that side.
@@ -87,6 +91,7 @@ class March {
     const bool known = wall.distance_m <= most_m && !opens_at(wall);
     if (!known && go_back(here, heading, ahead_m)) wall = nearest(pieces_, here, beside);
     if (wall.distance_m > most_m) return false;
+    if (may_go_on(wall) && go_on(wall)) wall = nearest(pieces_, here, beside);
     const Vec2 back = unit(here - wall.at);
     samples_.push_back({wall.at + distance_m_ * back, along(-1.0 * back), wall});
     start_ = samples_.front();
@@ -102,10 +107,15 @@ class March {
     for (double gone_m = 0.0; gone_m < way_m; gone_m += kStep_m) {
       const Sample last = samples_.back();
       const Vec2 next = last.at + kStep_m * last.along;
-      const Nearest wall = nearest(pieces_, next, [&](Vec2 to) {
+      const auto aside = [&](Vec2 to) {
         const double off = sign_ * turn_from(last.along, to);  // π/2: square to the way
         return off > base::kPi / 2.0 - kAhead_rad && off < base::kPi / 2.0 + kAstern_rad;
-      });
+      };
+      Nearest wall = nearest(pieces_, next, aside);
+      if (may_go_on(wall)) {
+        if (!go_on(wall)) return WayEnd::NoEcho;
+        wall = nearest(pieces_, next, aside);
+      }
       if (wall.distance_m > distance_m_ + 2.0 * kStep_m) return WayEnd::WallEnds;
       const Vec2 back = unit(next - wall.at);
       const Sample now{wall.at + distance_m_ * back, along(-1.0 * back), wall};
@@ -135,6 +145,26 @@ class March {
     const Piece& p = pieces_[wall.piece];
     const bool at_a = begins_at_a(p);
     return wall.end && (at_a ? p.a_open : p.b_open) && length(wall.at - (at_a ? p.a : p.b)) < 1e-6;
+  }
+  /// It is where a wall is not seen any further, and nothing told that it ends.
+  bool may_go_on(const Nearest& wall) const noexcept {
+    if (wall.distance_m >= kNever) return false;
+    const Piece& p = pieces_[wall.piece];
+    const bool to_a = !begins_at_a(p);
+    return wall.end && !(to_a ? p.a_ends : p.b_ends) && length(wall.at - (to_a ? p.a : p.b)) < 1e-6;
+  }
+  /// On along its line, once. @return false: it was before.
+  bool go_on(const Nearest& wall) {
+    if (std::ranges::find(went_on_, wall.piece) != went_on_.end()) return false;
+    went_on_.push_back(wall.piece);
+    Piece& p = pieces_[wall.piece];
+    const Vec2 along = unit(p.b - p.a);
+    if (begins_at_a(p)) {
+      p.b = p.b + door_m_ * along;
+    } else {
+      p.a = p.a - door_m_ * along;
+    }
+    return true;
   }
   /// The wall that lies nearest aside, of those of which nothing but what is ahead is seen, goes
   /// back along its line until it is beside the vehicle. @return there is one.
@@ -166,6 +196,8 @@ class March {
   std::vector<Piece>& pieces_;
   const double sign_;
   const double distance_m_;
+  const double door_m_;
+  std::vector<std::size_t> went_on_;  ///< pieces
   std::vector<Sample> samples_;
   Sample start_;
 };
@@ -277,7 +309,7 @@ std::optional<Way> wall_way(std::span<const Wall> walls, const Pose2& pose, Side
                             const WallParams& params) {
   std::vector<Piece> pieces = pieces_of(walls, params.door_m);
   close_corners(pieces);
-  March march(pieces, side, distance_m);
+  March march(pieces, side, distance_m, params.door_m);
   if (!march.begin(pose, params.max_range_m)) return std::nullopt;
   // A wall that is not seen any more is gone on along as far as a door is wide.
   const double unseen_s = base::seconds(now - march.seen_at()) - kGlance_s;

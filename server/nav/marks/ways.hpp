@@ -10,6 +10,10 @@
 //   ─────────╯ │══════╡      rounded as far as corner_m allows
 //   ──────────────────╯     door: a gap up to door_m is driven past as if it were wall
 //
+// It is gone about an end only where something tells that the wall ends: what stands behind its
+// line close beyond, its face, or the next wall (walls.hpp). Elsewhere the wall may give no echo,
+// and is gone on along for door_m, where it may show again.
+//
 // Where the wall begins ahead of the vehicle, at the edge of what was looked at, it is the wall
 // beside it, too: a camera that looks ahead never sees what is abeam. It is gone back along its
 // line until there; not where a wall is known beside the vehicle, nor where one was seen to begin.
@@ -35,8 +39,8 @@
 namespace roverd::nav::marks {
 
 /// Why a way ends where it does. NotSeen: the wall beside it is remembered only; it is gone on
-/// along for door_m.
-enum class WayEnd { Horizon, WallEnds, TooNarrow, NotSeen, LastLandmark };
+/// along for door_m. NoEcho: nothing told that it ends, but it does not show again within door_m.
+enum class WayEnd { Horizon, WallEnds, TooNarrow, NotSeen, NoEcho, LastLandmark };
 
 struct Way {
   std::vector<Vertex> vertices;      ///< in O; the first lies behind the vehicle

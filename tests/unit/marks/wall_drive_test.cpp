@@ -46,7 +46,7 @@ struct WallRun {
     return false;
   }
   void see() {
-    const auto scan = scan_of(scanner.look(yard, rover.truth, rover.now), rover);
+    const auto scan = scan_of(scanner.look(yard, rover.truth, rover.now), rover, scanner.eye_m);
     if (scan.beams.empty()) return;
     walls.take(scan, params);
     const auto known = walls.all();
@@ -147,14 +147,72 @@ TEST(WallDrive, InACorridorItKeepsToItsSide) {
   EXPECT_LT(worst_m, 0.04);
 }
 
-//   ═══════╗   a wall without thickness: its back is a wall, too
+//   ═══════╗   in an open field its end is known by its face
 //   ───────╯
 TEST(WallDrive, AroundTheEndOfAFreeWallItGoesAlongItsBack) {
   WallRun r;
-  r.yard.slabs = {{{-5.0, 0.9}, {6.0, 0.9}}};
+  r.yard.slabs = {
+      {{-5.0, 0.9}, {6.0, 0.9}}, {{6.0, 0.9}, {6.0, 1.05}}, {{6.0, 1.05}, {-5.0, 1.05}}};
+  r.scanner.eye_m = 0.5;
   r.done = [](Vec2 p) { return p.x < 2.0 && p.y > 1.5; };
   EXPECT_TRUE(r.run(60.0)) << r.rover.truth.x_m << " " << r.rover.truth.y_m;
   EXPECT_LT(r.worst_all_m, 0.10);
+}
+
+//   ═══════   a board without thickness in an open field: nothing tells its end from glass
+TEST(WallDrive, AThinWallThatEndsInTheOpenIsNotGoneAround) {
+  WallRun r;
+  r.yard.slabs = {{{-5.0, 0.9}, {6.0, 0.9}}};
+  r.scanner.eye_m = 0.5;
+  EXPECT_FALSE(r.run(25.0));
+  EXPECT_NEAR(r.rover.truth.y_m, 0.0, 0.06);
+  EXPECT_NEAR(r.rover.truth.x_m, 6.0 + r.params.door_m, 0.4);
+  EXPECT_EQ(r.drive.end(), WayEnd::NoEcho);
+}
+
+//   ═══════   something stands behind it
+TEST(WallDrive, AThinWallIsGoneAroundWhereItIsLookedPast) {
+  WallRun r;
+  r.yard.slabs = {{{-5.0, 0.9}, {6.0, 0.9}}, {{-5.0, 9.0}, {16.0, 9.0}}};
+  r.counts = [](Vec2) { return false; };
+  r.done = [](Vec2 p) { return p.x < 2.0 && p.y > 1.5; };
+  EXPECT_TRUE(r.run(60.0)) << r.rover.truth.x_m << " " << r.rover.truth.y_m;
+  EXPECT_LT(r.worst_all_m, 0.10);
+}
+
+//   ══════▒▒▒▒▒▒══════   no echo from 3 m of it: black paint
+//   ─▶──────────|        and nothing tells that it ends
+TEST(WallDrive, AStretchOfWallThatGivesNoEchoIsNotTurnedInto) {
+  for (const Side side : {Side::Left, Side::Right}) {
+    for (const bool walled : {false, true}) {
+      const double sign = side == Side::Left ? 1.0 : -1.0;
+      WallRun r;
+      r.side = side;
+      r.yard.slabs = {{{-5.0, sign * 0.9}, {5.0, sign * 0.9}},
+                      {{5.0, sign * 0.9}, {8.0, sign * 0.9}, true},
+                      {{8.0, sign * 0.9}, {20.0, sign * 0.9}}};
+      if (walled) {
+        r.yard.slabs.push_back({{-5.0, sign * 6.0}, {20.0, sign * 6.0}});
+        r.yard.slabs.push_back({{-5.0, sign * -6.0}, {20.0, sign * -6.0}});
+      }
+      r.done = [](Vec2 p) { return p.x > 7.5; };
+      EXPECT_FALSE(r.run(25.0)) << "it does not go on for ever, either";
+      EXPECT_LT(r.worst_all_m, 0.05);
+      EXPECT_NEAR(r.rover.truth.x_m, 5.0 + r.params.door_m, 0.4);
+      EXPECT_NEAR(r.rover.truth.y_m, 0.0, 0.06);
+      EXPECT_EQ(r.rover.speed_mps, 0.0);
+      EXPECT_EQ(r.drive.end(), WayEnd::NoEcho);
+    }
+  }
+}
+
+TEST(WallDrive, AShortStretchThatGivesNoEchoIsPassedLikeADoor) {
+  WallRun r;
+  r.yard.slabs = {
+      {{-5.0, 0.9}, {5.0, 0.9}}, {{5.0, 0.9}, {6.2, 0.9}, true}, {{6.2, 0.9}, {20.0, 0.9}}};
+  r.done = [](Vec2 p) { return p.x > 12.0; };
+  EXPECT_TRUE(r.run(40.0));
+  EXPECT_LT(r.worst_all_m, 0.05);
 }
 
 //   bulges of 2 cm every 0.7 m, a scanner of 3 cm noise at 10 Hz, 5 % of slip: as in a cellar

@@ -56,6 +56,7 @@ TEST(WallItem, IsDoneWhereTheWallEnds) {
   wall.normal = {0.0, -1.0};
   wall.seen = {{-5.0, 6.0}};
   wall.believed = true;
+  wall.ends = {{6.0, true, marks::kEndsHits}};
   w.view.walls = {wall};
   w.begin({.side = Side::Left, .distance_m = 0.9});
   const auto run = [&](double seconds) {
@@ -71,6 +72,19 @@ TEST(WallItem, IsDoneWhereTheWallEnds) {
   EXPECT_EQ(w.drive.state(), WallDrive::State::Done) << w.drive.reason();
   EXPECT_EQ(w.rover.speed_mps, 0.0);
   EXPECT_NEAR(w.rover.truth.x_m, 6.9, 0.15) << "about its end";
+}
+
+//   ══════▒▒▒▒▒▒▒▒▒
+TEST(WallItem, FailsWhereAWallGivesNoEchoAndSaysSo) {
+  WallItem w;
+  w.yard.slabs = {{{-5.0, 0.9}, {4.0, 0.9}}, {{4.0, 0.9}, {9.0, 0.9}, true}};
+  w.begin({.side = Side::Left, .distance_m = 0.9, .length_m = 12.0});
+  w.run(40.0);
+  EXPECT_EQ(w.drive.state(), WallDrive::State::Failed);
+  EXPECT_EQ(w.drive.reason(),
+            "the wall on the left gives no echo any more, and its end was not seen");
+  EXPECT_NEAR(w.rover.truth.y_m, 0.0, 0.05);
+  EXPECT_NEAR(w.rover.truth.x_m, 4.0 + w.params.door_m, 0.4);
 }
 
 TEST(WallItem, IsDoneAfterItsLengthAndCountsWhatWasDrivenBefore) {
@@ -191,6 +205,7 @@ TEST(WallItem, IsDoneWhereItIsHeldJustBeforeTheWallsEnd) {
     wall.normal = {0.0, -1.0};
     wall.seen = {{-5.0, 0.0}};
     wall.believed = true;
+    wall.ends = {{0.0, true, marks::kEndsHits}};
     w.view.walls = {wall};
     const auto run = [&](double seconds) {
       for (int i = 0; i < seconds * 10.0 && w.drive.driven_m() < whole_m - 0.2; ++i) {

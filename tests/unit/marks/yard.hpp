@@ -20,6 +20,7 @@ namespace roverd::nav::marks {
 struct Slab {
   Vec2 a{};
   Vec2 b{};
+  bool black = false;  ///< it gives no echo
 };
 struct Pole {
   Vec2 at{};
@@ -30,26 +31,33 @@ struct Yard {
   std::vector<Slab> slabs;
   std::vector<Pole> poles;
 
-  /// Metres along a ray to the first thing; infinite: nothing.
+  /// Metres along a ray to the first thing; infinite: nothing, or what gives no echo.
   double cast(Vec2 from, double yaw_rad) const {
     const Vec2 d{std::cos(yaw_rad), std::sin(yaw_rad)};
-    double best = std::numeric_limits<double>::infinity();
+    const double never = std::numeric_limits<double>::infinity();
+    double best = never;
+    bool black = false;
     for (const Slab& s : slabs) {
       const Vec2 e = s.b - s.a;
       const double det = sense::cross(d, e);
       if (std::abs(det) < 1e-12) continue;
       const double t = sense::cross(s.a - from, e) / det;
       const double u = sense::cross(s.a - from, d) / det;
-      if (t > 0.0 && u >= 0.0 && u <= 1.0) best = std::min(best, t);
+      if (t <= 0.0 || u < 0.0 || u > 1.0 || t >= best) continue;
+      best = t;
+      black = s.black;
     }
     for (const Pole& p : poles) {
       const Vec2 to = p.at - from;
       const double along = sense::dot(to, d);
       const double off = sense::cross(d, to);
       if (along <= 0.0 || std::abs(off) >= p.radius_m) continue;
-      best = std::min(best, along - std::sqrt(p.radius_m * p.radius_m - off * off));
+      const double far_m = along - std::sqrt(p.radius_m * p.radius_m - off * off);
+      if (far_m >= best) continue;
+      best = far_m;
+      black = false;
     }
-    return best;
+    return black ? never : best;
   }
   /// To the nearest wall.
   double wall_m(Vec2 p) const {
@@ -64,20 +72,22 @@ struct Yard {
   }
 };
 
-/// A scanner of 270 deg, half a degree a step, 30 m, on the body's origin.
+/// A scanner of 270 deg, half a degree a step, 30 m, eye_m ahead of the body's origin.
 struct Scanner {
   double noise_m = 0.012;
   double lost_part = 0.01;
+  double eye_m = 0.0;
   std::mt19937_64 random{7};
 
   base::Sight look(const Yard& yard, const Pose2& truth, base::Time stamp) {
+    const Vec2 eye = placed(truth, {eye_m, 0.0});
     base::Sight sight;
     sight.stamp = stamp;
     std::normal_distribution<double> noise(0.0, noise_m);
     std::uniform_real_distribution<double> chance(0.0, 1.0);
     for (int i = -270; i <= 270; ++i) {
       const double yaw_rad = base::rad_from_deg(0.5 * i);
-      const double true_m = yard.cast({truth.x_m, truth.y_m}, truth.yaw_rad + yaw_rad);
+      const double true_m = yard.cast(eye, truth.yaw_rad + yaw_rad);
       const bool lost = !(true_m < 30.0) || chance(random) < lost_part;
       const double range_m = lost ? 1.0 : true_m + noise(random);
       base::SightPoint p;
@@ -124,10 +134,10 @@ struct Rover {
   }
 };
 
-inline PlanarScan scan_of(const base::Sight& sight, const Rover& rover, double max_range_m = 8.0) {
+inline PlanarScan scan_of(const base::Sight& sight, const Rover& rover, double eye_m = 0.0) {
   PlanarScan out;
-  const base::Mount mount{0.0, 0.0, 0.3, 0.0, 0.0, 0.0};
-  const auto good = planar_of(sight, mount, rover.history, max_range_m, 0.5, out);
+  const base::Mount mount{eye_m, 0.0, 0.3, 0.0, 0.0, 0.0};
+  const auto good = planar_of(sight, mount, rover.history, 8.0, 0.5, out);
   if (!good) out.beams.clear();
   return out;
 }
