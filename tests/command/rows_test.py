@@ -146,15 +146,19 @@ class Field(SeeingRobot):
 
 def judge(trail, lane, end, forth, swing_m):
     """@param swing_m that its turn into the next one comes farther out. @return off the middle of a lane, root
-    of the mean square and at most; where it turned, from its plants' end on"""
+    of the mean square and at most; likewise in the first metre behind its plants, at most; where it turned,
+    from its plants' end on"""
     middle = lane * SPACING_M
-    inside = [(e - middle, n) for _, e, n, _ in trail
-              if abs(e - middle) < SPACING_M / 2 and end[0] + 1.0 < n < end[1] - 0.2]
+    here = [(e - middle, n - end[0] if forth else end[1] - n) for _, e, n, _ in trail
+            if abs(e - middle) < SPACING_M / 2]
+    whole = end[1] - end[0]
+    inside = [(d, s) for d, s in here if 1.0 < s <= whole]
+    behind = [abs(d) for d, s in here if whole < s <= whole + 1.0]
     check(len(inside) > 20, f"lane {lane} was driven: {len(inside)} places of it")
     rms = math.sqrt(sum(d * d for d, _ in inside) / len(inside))
     near = [n for _, e, n, _ in trail if abs(e - middle) < SPACING_M / 2]
     turned = max(near) - end[1] if forth else end[0] - min(near)
-    return rms, max(abs(d) for d, _ in inside), turned - OUT_M - swing_m
+    return rms, max(abs(d) for d, _ in inside), max(behind, default=0.0), turned - OUT_M - swing_m
 
 
 def plan(field, lanes, **more):
@@ -176,12 +180,14 @@ def drive_block(eye, lanes, length_m, seed, more="", sim=(), each=None, entry=Fa
         truth = field.truth()
         figures = [judge(field.trail, i, end, i % 2 == 0, arc_m if i + 1 < lanes else 0.0)
                    for i, end in enumerate(ends)]
-        for i, (rms, most, beyond) in enumerate(figures):
+        for i, (rms, most, behind, beyond) in enumerate(figures):
             print(f"# {eye} lane {i}: rms {100 * rms:.1f} cm, at most {100 * most:.1f} cm, "
+                  f"a metre behind it {100 * behind:.1f} cm, "
                   f"its end {beyond:+.2f} m; brushed {truth['brushes']} times", flush=True)
         # Leaves, which plants here are all of, are brushes to the simulator.
         check(truth["contacts"] == 0 and truth["brushes"] == 0, f"it touched a plant: {truth}")
-        for i, (rms, most, beyond) in enumerate(figures):
+        for i, (rms, most, behind, beyond) in enumerate(figures):
+            check(behind <= 0.2, f"lane {i}: left {behind:.3f} m off its middle")
             check(rms <= 0.04 and most <= 0.15, f"lane {i}: {rms:.3f} m off its middle, {most:.3f} at most")
             check(-0.5 <= beyond <= 0.5, f"lane {i} ended {beyond:.2f} m beyond its plants")
         reached = [e["detail"] for e in field.rest.get("/events?limit=1000")["items"]

@@ -27,6 +27,11 @@ constexpr double kShiftPerRootMetre = 0.02;  // what the odometry loses
 constexpr double kTurnPerRootMetre = 0.01;
 constexpr double kDriftOver_m = 3.0;  // of way it is learned
 constexpr double kMostDrift = 0.08;
+constexpr double kBendOver_m = 6.0;
+constexpr double kPastEnd_m = 1.0;              // farther behind it nobody drives along this row
+constexpr double kBendSigma_1pm = 0.005;        // at a row's end,
+constexpr double kEndShiftPerRootMetre = 0.01;  // and what moves the line there
+constexpr double kEndTurnPerRootMetre = 0.002;
 constexpr double kLeast_m = 0.01;  // nobody knows a hedge better than this
 
 constexpr double kBin_m = 0.25;
@@ -87,6 +92,8 @@ void RowFinder::lose() {
   line_.reset();
   view_.reset();
   last_ = {};
+  bend_1pm_ = 0.0;
+  ending_ = false;
   unfitted_m_ = 0.0;
 }
 
@@ -130,7 +137,7 @@ void RowFinder::begin(const RowScan& scan) {
   line_ = search_line(read_, scan.pose, order_, p_);
   if (!line_) return;
   learned_ = {line_->width_m, order_.sides == Sides::Both ? kFirstWidthSigma_m : kGivenSigma_m};
-  last_ = fit_line(read_, order_.sides, kFirstGate_m, learned_, p_, *line_, pieces_);
+  last_ = fit_line(read_, order_.sides, kFirstGate_m, learned_, {}, p_, *line_, pieces_);
   const bool wide = line_->width_m >= p_.width_min_m && line_->width_m <= p_.width_max_m;
   if (!last_.good || (order_.sides == Sides::Both && !wide)) return lose();
   advance(scan);
@@ -172,12 +179,30 @@ void RowFinder::undrift() {
   }
 }
 
+bool RowFinder::ends() const noexcept {
+  return view_ && view_->to_end_m && *view_->to_end_m > -kPastEnd_m;
+}
+
+/// Until the end is in sight the plants alone tell. Then the line hardly moves; the first time
+/// it is free to, for its bend may be another one.
+LinePrior RowFinder::known() const noexcept {
+  LinePrior known;
+  if (!ends()) return known;
+  known.curvature_1pm = bend_1pm_;
+  known.curvature_sigma_1pm = kBendSigma_1pm;
+  if (!ending_) return known;
+  const double root = std::sqrt(std::max(1e-4, unfitted_m_));
+  known.aside_m = kEndShiftPerRootMetre * root;
+  known.turned_rad = kEndTurnPerRootMetre * root;
+  return known;
+}
+
 void RowFinder::fit() {
   if (unfitted_m_ > kLostAfter_m) return lose();
   Line now = *line_;
   const double sigma_m = std::sqrt(std::max(0.0, now.covariance[0]));
   const double gate_m = p_.gate_m + std::min(0.2, sigma_m);
-  const Fitted fitted = fit_line(read_, order_.sides, gate_m, learned_, p_, now, pieces_);
+  const Fitted fitted = fit_line(read_, order_.sides, gate_m, learned_, known(), p_, now, pieces_);
   if (!fitted.good) {
     last_ = fitted;
     return;
@@ -193,6 +218,13 @@ void RowFinder::fit() {
     last_ = {};
     return;
   }
+  const bool ends = this->ends();
+  if (!ends) {
+    bend_1pm_ += std::min(1.0, unfitted_m_ / kBendOver_m) * (now.curvature_1pm - bend_1pm_);
+  } else if (ending_) {
+    now.covariance = line_->covariance;  // what was known before is not known twice
+  }
+  ending_ = ends;
   unfitted_m_ = 0.0;
   last_ = fitted;
   *line_ = now;

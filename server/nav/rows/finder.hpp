@@ -7,7 +7,9 @@
 //
 // The end is where no plant stands for end_gap_m and that was *seen*: rays went through there.
 // What is not looked at, dazzled or hidden, is no end. It is told as soon as it is seen, from
-// inside the row, and taken back where a plant appears behind it. Sources: rows as two parallel
+// inside the row, and taken back where a plant appears behind it. From then on fewer plants are
+// left with every step, and an arc through them bends as it likes: where the row lies, its
+// direction and how much it bends are kept, and moved only slowly. Sources: rows as two parallel
 // lines joined in one fit, with trimming: navigation notes 14; robust weights: Cauchy's. For the
 // sense thread; time only as the scans' stamps. Not shared.
 
@@ -50,6 +52,8 @@ class RowFinder {
   void advance(const RowScan& scan);
   void undrift();
   void fit();
+  bool ends() const noexcept;
+  LinePrior known() const noexcept;
   void tell(const RowScan& scan);
   void look_through(const RowScan& scan);
   void find_plants();
@@ -71,8 +75,10 @@ class RowFinder {
   double unfitted_m_ = 0.0;
   double met_m_ = 0.0;  ///< seeing by rays: way with a side in sight
   double learned_at_m_ = 0.0;
-  double drift_ = 0.0;   ///< RowView::drift
-  long cleared_to_ = 0;  ///< bins of the ring that are new ones
+  double drift_ = 0.0;     ///< RowView::drift
+  double bend_1pm_ = 0.0;  ///< the row's curvature, over some metres of way
+  bool ending_ = false;    ///< the line is kept, for its end is in sight
+  long cleared_to_ = 0;    ///< bins of the ring that are new ones
   std::optional<base::Time> fitted_;
   Fitted last_;
   std::optional<RowView> view_;

@@ -15,10 +15,7 @@ constexpr double kMarkSigma_m = 0.10;    // foliage: of one mark within its piec
 constexpr double kDriftPerMetre = 0.01;  // of the odometry, since a mark was seen
 constexpr double kSameLook_m = 0.4;      // of way
 constexpr double kDriftSigma = 0.02;     // of what is known of the drift
-constexpr double kStraight_1pm = 0.08;   // 1 sigma of a row's curvature: radii down to 12 m
 constexpr double kTightest_1pm = 1.0 / 10.0;
-constexpr double kAside_m = 1.0;  // what is known before: nearly nothing
-constexpr double kTurned_rad = 0.5;
 constexpr double kCauchy = 2.0;
 constexpr int kRounds = 4;
 
@@ -90,11 +87,12 @@ void pieces_of(const std::vector<Mark>& marks, const Line& line, Sides sides, do
 }
 
 Fitted fit_line(const std::vector<Mark>& marks, Sides sides, double gate_m, const WidthPrior& prior,
-                const RowParams& params, Line& line, std::vector<Piece>& pieces) {
+                const LinePrior& known, const RowParams& params, Line& line,
+                std::vector<Piece>& pieces) {
   Fitted out;
   Line now = line;
-  const double before[5] = {kAside_m, kTurned_rad, kStraight_1pm, std::max(1e-4, prior.sigma_m),
-                            kDriftSigma};
+  const double before[5] = {known.aside_m, known.turned_rad, known.curvature_sigma_1pm,
+                            std::max(1e-4, prior.sigma_m), kDriftSigma};
   Matrix5 information = Matrix5::Zero();
   double chi = 0.0;
   double weights = 0.0;
@@ -109,7 +107,10 @@ Fitted fit_line(const std::vector<Mark>& marks, Sides sides, double gate_m, cons
     information.setZero();
     // What is known before: rows are rather straight, as wide as they were, and drift as they did.
     for (int i = 0; i < 5; ++i) information(i, i) = 1.0 / (before[i] * before[i]);
-    gradient(2) = -now.curvature_1pm * information(2, 2);
+    const Pose2 moved = sense::inverse(line.at) * now.at;
+    gradient(0) = -moved.y_m * information(0, 0);
+    gradient(1) = -moved.yaw_rad * information(1, 1);
+    gradient(2) = (known.curvature_1pm - now.curvature_1pm) * information(2, 2);
     gradient(3) = (prior.width_m - now.width_m) * information(3, 3);
     gradient(4) = -out.drift * information(4, 4);
     chi = weights = 0.0;

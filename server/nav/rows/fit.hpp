@@ -27,6 +27,14 @@ struct WidthPrior {
   double sigma_m = 0.0;
 };
 
+/// What is known of the line already; as it is, nearly nothing: rows are rather straight.
+struct LinePrior {
+  double aside_m = 1.0;     ///< 1 sigma of where it lies
+  double turned_rad = 0.5;  ///< and of its direction
+  double curvature_1pm = 0.0;
+  double curvature_sigma_1pm = 0.08;  ///< radii down to 12 m
+};
+
 /// Half a metre of one side.
 struct Piece {
   double s_m = 0.0;  ///< from L, mean
@@ -50,8 +58,10 @@ void pieces_of(const std::vector<Mark>& marks, const Line& line, Sides sides, do
                const RowParams& params, std::vector<Piece>& out);
 
 /// Moves the line to where the plants are. On failure it stays as it was.
+/// @param known of the line as it is handed in
 /// @param pieces a buffer; holds the last ones.
 Fitted fit_line(const std::vector<Mark>& marks, Sides sides, double gate_m, const WidthPrior& prior,
-                const RowParams& params, Line& line, std::vector<Piece>& pieces);
+                const LinePrior& known, const RowParams& params, Line& line,
+                std::vector<Piece>& pieces);
 
 }  // namespace roverd::nav::rows

@@ -67,6 +67,47 @@ TEST(RowDriving, GoesOnWhereOneSideIsMissingForAWhile) {
   EXPECT_NEAR(t.stopped_m, block.end_m(), kEndWithin_m);
 }
 
+//   ▓▓▓ ▓▓▓▓▓▓▓▓▓
+//  ────────────────▶|   straight out of it, though one side tells of its end alone
+//   ▓▓▓▓▓▓▓▓
+TEST(RowDriving, LeavesARowStraight) {
+  double square = 0.0;
+  int n = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    for (const double ragged_m : {0.0, 0.8, 1.5}) {
+      const Block block({.bends = {{9.0, 0.0}}, .ragged_m = ragged_m, .seed = seed});
+      DriveSetup setup;
+      setup.seed = seed;
+      const DriveTold t = drive_row(block, setup);
+      const double turned_deg = base::deg_from_rad(t.end_turned_rad);
+      EXPECT_TRUE(t.done) << t.reason;
+      EXPECT_LT(std::abs(turned_deg), 4.0) << seed << " " << ragged_m;
+      EXPECT_LT(std::abs(t.swerved_m), 0.13) << seed << " " << ragged_m;
+      square += turned_deg * turned_deg;
+      ++n;
+    }
+  }
+  EXPECT_LT(std::sqrt(square / n), 2.0) << "degrees";
+}
+
+// A row that bends to its end is left along its bend. One that begins to bend just before its end
+// is not known so well.
+TEST(RowDriving, LeavesABentRowAlongItsBend) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    for (const double bent_m : {4.0, 12.0}) {
+      const double bend_1pm = seed % 2 == 0 ? 1.0 / 15.0 : -1.0 / 15.0;
+      const Block block({.bends = {{9.0, 0.0}, {bent_m, bend_1pm}}, .seed = seed});
+      DriveSetup setup;
+      setup.seed = seed;
+      const DriveTold t = drive_row(block, setup);
+      const double turned_deg = std::abs(base::deg_from_rad(t.end_turned_rad));
+      EXPECT_TRUE(t.done) << t.reason;
+      EXPECT_LT(turned_deg, bent_m > 10.0 ? 3.5 : 8.0) << seed;
+      EXPECT_LT(std::abs(t.swerved_m), bent_m > 10.0 ? 0.12 : 0.20) << seed;
+    }
+  }
+}
+
 // The left row ends 3 m later: the lane ends with it.
 TEST(RowDriving, EndsWithTheSideThatIsLonger) {
   const Block block({.bends = {{18.0, 0.0}}, .gaps = 0.2, .ragged_m = 3.0, .seed = 6});

@@ -195,7 +195,10 @@ struct DriveTold {
   double rms_m = 0.0;  ///< off the middle, inside the row
   double worst_m = 0.0;
   double worst_at_m = 0.0;
-  double stopped_m = 0.0;  ///< along the lane, of the body's origin
+  double stopped_m = 0.0;       ///< along the lane, of the body's origin
+  double end_off_m = 0.0;       ///< off the middle's line where it stopped, left positive
+  double swerved_m = 0.0;       ///< likewise, against where it was 2.5 m before
+  double end_turned_rad = 0.0;  ///< likewise: of the body, from the lane's direction
   double driven_m = 0.0;
   double time_s = 0.0;
   std::size_t touched = 0;
@@ -259,6 +262,7 @@ inline DriveTold drive_row(const Block& block, const DriveSetup& setup) {
   double nees = 0.0;
   double view_sum = 0.0;
   double told_n = 0.0;
+  std::optional<double> on_line_m;
   std::size_t n = 0;
   RowScan scan;
   world::Sweep sweep;
@@ -347,6 +351,7 @@ inline DriveTold drive_row(const Block& block, const DriveSetup& setup) {
 
     const Along where = block.beside(truth.x_m, truth.y_m, s_m);
     s_m = where.s_m;
+    if (!on_line_m && s_m > block.end_m() - 2.5) on_line_m = where.d_m;
     if (const auto off_m = drive.cross_track_m()) {
       const double wrong_m = std::abs(*off_m - where.d_m);
       if (wrong_m > told.told_wrong_m) {
@@ -373,6 +378,9 @@ inline DriveTold drive_row(const Block& block, const DriveSetup& setup) {
   told.rms_m = n > 0 ? std::sqrt(sum / double(n)) : 0.0;
   told.told_part = n > 0 ? told_n / double(n) : 0.0;
   told.stopped_m = s_m;
+  told.swerved_m = on_line_m ? block.beside(truth.x_m, truth.y_m, s_m).d_m - *on_line_m : 0.0;
+  told.end_off_m = block.beside(truth.x_m, truth.y_m, s_m).d_m;
+  told.end_turned_rad = base::wrap_rad(truth.yaw_rad - block.at(s_m, 0.0).yaw_rad);
   told.time_s = now_s;
   told.touched = witness.hard() + witness.soft();
   told.least_m = witness.least_m();
