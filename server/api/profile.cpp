@@ -30,6 +30,11 @@ void take_parameters(Profile& profile, const robot::Config& config) {
   profile.max_acceleration_mps2 = config.speed.accel_mps2;
   if (profile.guard) {
     const nav::sense::ProtectParams& p = config.protect;
+    limits.creeps_back = p.creep_back_mps > 0.0;
+    limits.creeps_turning = p.creep_turn_radps > 0.0;
+    // Rays that stand in for the guard's own rule leave no room of a known width.
+    const bool own = !(config.rays.enabled && config.rays.instead);
+    limits.room_m = own ? 0.5 * v.width_m + p.side_m : 0.0;
     profile.guard = {profile.guard->back_m, p.side_m,           p.gap_m, p.delay_s,
                      p.decel_mps2,          p.turn_decel_radps2};
     if (const nav::sense::RaysParams& r = config.rays; r.enabled) {

@@ -1,6 +1,7 @@
 #include "app/wiring.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -19,6 +20,26 @@ mission::VehicleLimits limits_of(const Settings& s) {
   limits.idle_power_w = known(s.vehicle.idle_power_w);
   limits.battery_wh = known(s.vehicle.battery_wh);
   return limits;
+}
+
+/// By where its sensors point: how wide each one sees is not told before it speaks. A lidar that
+/// turns sees all around.
+void look_out(mission::VehicleLimits& limits, const Settings& s) {
+  constexpr double kSideways_deg = 60.0;
+  constexpr double kBackwards_deg = 100.0;
+  bool left = false;
+  bool right = false;
+  limits.sees_behind = limits.sees_around = false;
+  for (const auto& [name, sensor] : s.sensors) {
+    if (!sensor.said.enabled || !sensor.said.ranging()) continue;
+    const double yaw_deg =
+        base::deg_from_rad(base::wrap_rad(base::rad_from_deg(sensor.said.yaw_deg)));
+    const bool turns = sensor.said.kind == "velodyne";
+    limits.sees_behind = limits.sees_behind || turns || std::abs(yaw_deg) >= kBackwards_deg;
+    left = left || turns || yaw_deg >= kSideways_deg;
+    right = right || turns || yaw_deg <= -kSideways_deg;
+  }
+  limits.sees_around = limits.sees_behind || (left && right);
 }
 
 }  // namespace
@@ -74,6 +95,7 @@ api::Profile profile_of(const Settings& s, const Supervisor& supervisor) {
   if (read_tags(s.cameras) && !s.robot.vehicle.steered()) profile.item_types.emplace_back("dock");
   profile.limits = limits_of(s);
   profile.limits.item_types = profile.item_types;
+  if (profile.guard) look_out(profile.limits, s);
   profile.limits.actions = robot::kActions;
   api::take_parameters(profile, s.robot);
   return profile;

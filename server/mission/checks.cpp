@@ -8,6 +8,7 @@
 #include "base/tangent_plane.hpp"
 #include "mission/circle.hpp"
 #include "mission/fence/plane_lines.hpp"
+#include "mission/guarded.hpp"
 #include "mission/text.hpp"
 
 namespace roverd::mission {
@@ -54,6 +55,9 @@ class PlanCheck {
     legs();
     turns();
     fence();
+    for (Finding& f : guarded_findings(plan_, vehicle_)) {
+      add(f.severity, f.code.c_str(), *f.item, std::move(f.detail));
+    }
     auto& all = report_.findings;
     std::stable_sort(all.begin(), all.end(), [](const Finding& a, const Finding& b) {
       if (a.severity != b.severity) return a.severity == Severity::Error;

@@ -15,6 +15,9 @@
 //   speed_above_limit  warning: it will be driven at the limit
 //   unreachable_type   error: a type of item that cannot be driven as configured
 //   unknown_action     error: an action that nothing here does
+//   too_near           error: a wall or plants nearer beside the way than the guard lets it drive
+//   no_effect          warning: a member that does not act as it stands
+//   unseen_way         warning: backwards or on the spot into what no sensor of this vehicle sees
 //   repeats_for_ever   warning: a jump without end
 
 #include <cstddef>
@@ -51,6 +54,12 @@ struct VehicleLimits {
   double steer_in_m = 0.0;
   double settle_m = 0.0;
   double yaw_rate_radps = 0.75;  ///< of a turn on the spot
+  /// From its middle to what the guard lets it drive past; 0: nothing is guarded.
+  double room_m = 0.0;
+  bool sees_behind = true;  ///< a sensor looks there; or nothing is guarded
+  bool sees_around = true;
+  bool creeps_back = false;  ///< into what nobody has seen
+  bool creeps_turning = false;
   std::optional<double> drive_power_w;
   std::optional<double> idle_power_w;
   std::optional<double> battery_wh;

@@ -54,6 +54,10 @@ class RowsPlanner {
     within("/rows", b.rows, 1, kMostRows, "must be from 1 to 1000");
     within("/spacing_m", b.spacing_m, 0.3, 50.0, "must be from 0.3 to 50");
     within("/skip", b.skip, 0, 20, "must be from 0 to 20");
+    if (b.rows > 1 && b.skip >= b.rows && b.skip <= 20) {
+      wrong_.push_back(
+          {"/skip", "must be less than rows: so many lanes are not there to leave out"});
+    }
     within("/out_m", b.out_m, 0.1, kFarthestOut_m,
            "must be from 0.1 to 6: farther off the next row is not seen");
     if (b.radius_m) within("/radius_m", *b.radius_m, 0.1, 100.0, "must be from 0.1 to 100");

@@ -49,4 +49,17 @@ void fields(V& v, RowParams& p) {
   v("rays_side", p.rays_side, 1, 30, "likewise: so many outermost rays of a side are counted");
 }
 
+/// Two that leave nothing between them would make it blind.
+inline base::Result<void> check(const RowParams& p) {
+  if (!(p.low_m < p.high_m)) {
+    return base::fail(base::Code::Invalid, "low_m must be smaller than high_m",
+                      {{"low_m", "must be smaller than high_m"}});
+  }
+  if (!(p.width_min_m < p.width_max_m)) {
+    return base::fail(base::Code::Invalid, "width_min_m must be smaller than width_max_m",
+                      {{"width_min_m", "must be smaller than width_max_m"}});
+  }
+  return {};
+}
+
 }  // namespace roverd::nav::rows

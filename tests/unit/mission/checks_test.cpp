@@ -97,6 +97,49 @@ TEST(Check, TellsWhatMustBeConfiguredForAType) {
   EXPECT_NE(report.findings.at(3).detail.find("no camera that reads tags"), std::string::npos);
 }
 
+// The guard keeps 0.08 m beside a body of 0.78 m: an item that asks for less never moves.
+TEST(Check, NamesTheLeastDistanceThatTheGuardLetsItDrive) {
+  VehicleLimits v = tracks();
+  v.item_types.insert(v.item_types.end(), {"wall", "row"});
+  v.room_m = 0.469;
+
+  EXPECT_EQ(found(course({Wall{Side::Left, 0.46}}), v), Codes{"too_near@1"});
+  EXPECT_EQ(found(course({Wall{Side::Left, 0.47}}), v), Codes{});
+  EXPECT_EQ(found(course({Wall{Side::Right, 0.3}}), v), Codes{"too_near@1"});
+  EXPECT_EQ(found(course({Row{RowSide::Left, 0.4}}), v), Codes{"too_near@1"});
+  EXPECT_EQ(found(course({Row{RowSide::Right, 0.7}}), v), Codes{});
+  EXPECT_EQ(found(course({Row{RowSide::Both, 0.7}}), v), Codes{"no_effect@1"});
+  EXPECT_EQ(found(course({Row{RowSide::Both}}), v), Codes{});
+  const auto report = check(course({Wall{Side::Left, 0.4}}), v, {});
+  EXPECT_EQ(report.errors, 1u);
+  EXPECT_NE(report.findings.at(0).detail.find("0.47 m"), std::string::npos)
+      << report.findings.at(0).detail;
+  v.room_m = 0.0;  // nothing is guarded
+  EXPECT_EQ(found(course({Wall{Side::Left, 0.1}}), v), Codes{});
+}
+
+TEST(Check, TellsOfWaysThatNoSensorSees) {
+  VehicleLimits v = tracks();
+  v.item_types.insert(v.item_types.end(), {"move", "turn"});
+  v.sees_behind = v.sees_around = false;
+  Waypoint back = spot(20, 0);
+  back.reverse = true;
+  const Plan shunt = course({Move{2.0}, Move{-3.0}, Move{2.0}, Move{-1.0}});
+  const Plan spin = course({TurnBy{90.0, std::nullopt}, Move{1.0}});
+
+  EXPECT_EQ(found(shunt, v), Codes{"unseen_way@2"}) << "once";
+  EXPECT_EQ(found(course({spot(10, 0), back}), v), Codes{"unseen_way@2"});
+  EXPECT_EQ(found(spin, v), Codes{"unseen_way@1"});
+  EXPECT_EQ(check(shunt, v, {}).errors, 0u);
+  v.creeps_back = v.creeps_turning = true;
+  EXPECT_EQ(found(shunt, v), Codes{});
+  EXPECT_EQ(found(spin, v), Codes{});
+  v.creeps_back = v.creeps_turning = false;
+  v.sees_behind = v.sees_around = true;
+  EXPECT_EQ(found(shunt, v), Codes{});
+  EXPECT_EQ(found(spin, v), Codes{});
+}
+
 TEST(Check, ACarNeedsRoomToTurn) {
   // 90 deg: 2 · (3.9 tan 45° + 3) + 8 = 21.8 m between two corners
   const auto square = [](double side) {

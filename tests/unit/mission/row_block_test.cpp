@@ -253,6 +253,18 @@ TEST(RowBlocks, NameWhatIsWrong) {
             "/rows /spacing_m /skip /out_m /radius_m /entry /heading_deg ");
 }
 
+TEST(RowBlocks, RefuseToLeaveOutMoreLanesThanThereAre) {
+  RowBlock block = rows_of(3, 2.5);
+  block.skip = 20;
+  const auto planned = plan_rows(block, kTracked);
+  EXPECT_EQ(pointers(planned), "/skip ");
+  EXPECT_NE(planned.error().detail.find("less than rows"), std::string::npos);
+  block.skip = 3;
+  EXPECT_EQ(pointers(plan_rows(block, kTracked)), "/skip ");
+  block.skip = 2;
+  EXPECT_TRUE(plan_rows(block, kTracked));
+}
+
 TEST(RowBlocks, NameWhatThisVehicleCannotDrive) {
   RowBlock block = rows_of(2, 2.5);
   block.turn_kind = RowTurn::Pivot;
@@ -267,7 +279,7 @@ TEST(RowBlocks, NameWhatThisVehicleCannotDrive) {
   const auto near = plan_rows(block, kCar);
   EXPECT_EQ(pointers(near), "/turn_kind ");
   EXPECT_NE(near.error().detail.find("6.0 m apart"), std::string::npos) << near.error().detail;
-  block.skip = 2;  // nor does it help, with two rows
+  block.skip = 1;  // nor does it help, with two rows
   EXPECT_EQ(pointers(plan_rows(block, kCar)), "/turn_kind ");
   block.turn_kind = RowTurn::Omega;
   block.radius_m.reset();

@@ -140,6 +140,19 @@ TEST(RowFinder, GivesARowUpThatIsNotSeenForThreeMetres) {
   EXPECT_FALSE(drive(finder, lane, 5.1, 14.0));
 }
 
+// As parameters are changed while it drives: such a pair would make it blind to every row.
+TEST(RowParams, HeightsAndWidthsThatLeaveNothingBetweenThemAreRefused) {
+  EXPECT_TRUE(check(RowParams{}));
+  RowParams p;
+  p.high_m = p.low_m;
+  const auto flat = check(p);
+  ASSERT_FALSE(flat);
+  EXPECT_EQ(flat.error().fields.at(0).pointer, "low_m");
+  p = {};
+  p.width_min_m = 4.5;
+  EXPECT_FALSE(check(p));
+}
+
 TEST(RowFinder, TakesOnePlantForNoRow) {
   RowFinder finder({}, {});
   Lane lane;
