@@ -67,6 +67,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   about(text);
   comments(text);
   change(text);
-  (void)api::read_map_form(text, "multipart/form-data; boundary=x");
+  (void)api::read_map_form(std::string(text), "multipart/form-data; boundary=x");
   return 0;
 }

@@ -15,7 +15,7 @@ using base::Result;
 
 constexpr std::int64_t kMostBytes = std::int64_t{1} << 40;
 const Effort kADisk{Effort::kAtOnce + 1};  // it may pause
-const Effort kAFile{Effort::kSlow};  // a whole set is looked through when it is complete
+const Effort kAFile{Effort::kSlow};        // a whole set is looked through when it is complete
 
 Json set_json(const store::TileSet& set) {
   return {{"set", set.set},
