@@ -112,6 +112,22 @@ def along_a_wall():
         check(yard.truth()["contacts"] == 0, "nothing was touched")
 
 
+def black_wall():
+    """3 m of a wall give no echo, as glass or black paint do: it is not turned into, and it is said why it stops"""
+    walls = [{"kind": "wall", "points": [[-1.0, -7], [-1.0, -1]]},
+             {"kind": "wall", "points": [[-1.0, -1], [-1.0, 2]], "reflect": 0.0},
+             {"kind": "wall", "points": [[-1.0, 2], [-1.0, 8]]}]
+    with Yard(walls, SCANNER) as yard:
+        yard.sees("front")
+        over = yard.drive({"type": "wall", "side": "left", "distance_m": 0.9, "length_m": 10}, 120)
+        check(over["state"] == "blocked" and "no echo" in over["reason"], f"it stopped and said why: {over}")
+        offs = [e + 1.0 - HALF_WALL_M - 0.9 for e, n in yard.trail if n > -2.5]
+        print(f"# it stood {yard.trail[-1][1] + 1.0:.2f} m along the black wall, off its line by "
+              f"{100 * max(map(abs, offs)):.1f} cm at most", flush=True)
+        check(max(map(abs, offs)) <= 0.06, f"{offs[-1]:.3f} m off the line of the wall")
+        check(yard.truth()["contacts"] == 0, "nothing was touched")
+
+
 def cones(eyes, name, sees, fault=None):
     things = [{"kind": "cone", "at": at, "radius_m": 0.15, "height_m": 0.5} for at in CONES]
     with Yard(things, eyes) as yard:
@@ -155,4 +171,4 @@ def no_cone():
 
 if __name__ == "__main__":
     chosen = [globals()[name] for name in sys.argv[1:]]
-    sys.exit(run_cases(chosen or [along_a_wall, cones_by_scanner, cones_by_camera, no_cone]))
+    sys.exit(run_cases(chosen or [along_a_wall, black_wall, cones_by_scanner, cones_by_camera, no_cone]))

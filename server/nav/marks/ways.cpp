@@ -131,6 +131,8 @@ class March {
   }
 
   const Sample& start() const noexcept { return start_; }
+  /// Past where a wall is not seen any further, though nothing told that it ends.
+  bool went_on() const noexcept { return !went_on_.empty(); }
   /// When the wall beside it was seen last.
   base::Time seen_at() const noexcept { return pieces_[start_.wall.piece].seen_at; }
   const std::vector<Sample>& samples() const noexcept { return samples_; }
@@ -316,7 +318,7 @@ std::optional<Way> wall_way(std::span<const Wall> walls, const Pose2& pose, Side
   const bool dark = unseen_s > 0.0;
   const double way_m = dark ? params.door_m - speed_mps * unseen_s : params.way_m;
   WayEnd end = march.run(way_m);
-  if (dark && end == WayEnd::Horizon) end = WayEnd::NotSeen;
+  if (dark && end == WayEnd::Horizon) end = march.went_on() ? WayEnd::NoEcho : WayEnd::NotSeen;
   if (march.samples().size() < 2) return std::nullopt;
   const double sign = side == Side::Left ? 1.0 : -1.0;
   Way way = Drawing(speed_mps, params.corner_m, sign / distance_m).take(march.samples());

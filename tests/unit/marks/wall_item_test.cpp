@@ -25,6 +25,7 @@ struct WallItem {
   bool looks = true;
   WallDrive drive{base::Setting<PathParams>(path), {}};
   double fastest_mps = 0.0;
+  double eye_m = 0.0;  ///< the scanner, ahead of the body's origin
 
   void begin(const WallDrive::Order& order) {
     drive = WallDrive(base::Setting<PathParams>(path), {base::Setting<SightParams>(sight),
@@ -40,7 +41,8 @@ struct WallItem {
     }
   }
   void look() {
-    const auto scan = scan_of(scanner.look(yard, rover.truth, rover.now), rover);
+    scanner.eye_m = eye_m;
+    const auto scan = scan_of(scanner.look(yard, rover.truth, rover.now), rover, eye_m);
     if (scan.beams.empty()) return;
     walls.take(scan, params);
     view = {.stamp = scan.stamp, .walls = walls.all()};
@@ -85,6 +87,19 @@ TEST(WallItem, FailsWhereAWallGivesNoEchoAndSaysSo) {
             "the wall on the left gives no echo any more, and its end was not seen");
   EXPECT_NEAR(w.rover.truth.y_m, 0.0, 0.05);
   EXPECT_NEAR(w.rover.truth.x_m, 4.0 + w.params.door_m, 0.4);
+}
+
+// A scanner far ahead has lost all of it when the robot comes to its end.
+TEST(WallItem, SaysSoOfAWallThatIsNotSeenAtAllAnyMore) {
+  WallItem w;
+  w.eye_m = 0.8;
+  w.yard.slabs = {{{-5.0, 0.9}, {4.0, 0.9}}, {{4.0, 0.9}, {9.0, 0.9}, true}};
+  w.begin({.side = Side::Left, .distance_m = 0.9, .length_m = 12.0});
+  w.run(40.0);
+  EXPECT_EQ(w.drive.reason(),
+            "the wall on the left gives no echo any more, and its end was not seen");
+  EXPECT_NEAR(w.rover.truth.y_m, 0.0, 0.05);
+  EXPECT_LT(w.rover.truth.x_m, 4.0 + w.params.door_m + 0.4);
 }
 
 TEST(WallItem, IsDoneAfterItsLengthAndCountsWhatWasDrivenBefore) {
