@@ -1,8 +1,8 @@
 #pragma once
 // Threads beside the web thread, for what would hold it up: reading and writing large files, plans,
-// reports. Three lanes, so that a small thing never waits behind a large one, nor that behind one of
-// tens of megabytes, which takes seconds; each is bounded. They run below the web's and the control
-// loop's priority.
+// reports. Three lanes, so that a small thing never waits behind a large one, nor that behind one
+// of tens of megabytes, which takes seconds; each is bounded. They run below the web's and the
+// control loop's priority.
 //
 //   web ─run─▶ lane (bounded) ─▶ work, on a thread of the lane ─post─▶ then, on the web thread
 //

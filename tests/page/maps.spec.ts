@@ -213,7 +213,9 @@ test('a map is forbidden a corner by hand, taken back before it is saved, rename
   await open_page(page, station.url);
   await open_maps(page);
   await page.getByLabel('Map files').setInputFiles(files().slice(0, 1));
-  await expect(page.getByText('The .pgm or .png is missing: pick both files together.')).toBeVisible();
+  await expect(
+    page.getByText('The .pgm or .png is missing: pick both files together.'),
+  ).toBeVisible();
   await send_map(page);
   await press(page, 'Change…');
   await expect.poll(async () => (await walls(page)).length).toBeGreaterThan(200);
