@@ -34,8 +34,8 @@ void take_parameters(Profile& profile, const robot::Config& config) {
     limits.creeps_turning = p.creep_turn_radps > 0.0;
     // Rays that stand in for the guard's own rule leave no room of a known width.
     const bool own = !(config.rays.enabled && config.rays.instead);
-    limits.room_m = own ? 0.5 * v.width_m + p.side_m : 0.0;
-    profile.guard = {profile.guard->back_m, p.side_m,           p.gap_m, p.delay_s,
+    limits.room_m = own ? 0.5 * v.width_m + beside_m(p, profile.guard->cell_m) : 0.0;
+    profile.guard = {profile.guard->back_m, profile.guard->cell_m, p.side_m, p.gap_m, p.delay_s,
                      p.decel_mps2,          p.turn_decel_radps2};
     if (const nav::sense::RaysParams& r = config.rays; r.enabled) {
       profile.guard->rays = {r.instead, r.stop_m, r.slow_m, base::rad_from_deg(r.stop_fan_deg),

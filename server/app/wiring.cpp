@@ -84,7 +84,7 @@ api::Profile profile_of(const Settings& s, const Supervisor& supervisor) {
     profile.item_types.emplace_back("map_point");
     const nav::VehicleParams& v = s.robot.vehicle;
     const double back_m = v.steered() ? 0.5 * (v.length_m - v.wheelbase_m) : 0.5 * v.length_m;
-    profile.guard = {.back_m = back_m};  // the rest: take_parameters
+    profile.guard = {.back_m = back_m, .cell_m = s.sense.grid.cell_m};  // the rest: take_parameters
   }
   if (std::ranges::any_of(s.sensors, [](const auto& one) {
         return one.second.said.enabled && (one.second.said.planar() || !one.second.said.ranging());

@@ -38,7 +38,7 @@ class Guarded {
     add(Severity::Error, "too_near",
         "asks for " + fixed_number(asked_m, 2) + " m from the " + what + "; the guard needs " +
             fixed_number(std::ceil(least_m * 100.0 - 1e-6) / 100.0, 2) +
-            " m there: half the vehicle's width and sense.protect.side_m");
+            " m there: half the vehicle's width, sense.protect.side_m and half of a cell");
   }
 
   void row(const Row& row) {

@@ -36,6 +36,7 @@ struct StaleAfter {
 /// By what the guard reckons how far ahead it must be free.
 struct GuardProfile {
   double back_m = 0.0;  ///< from the vehicle's origin to its rear end
+  double cell_m = 0.0;  ///< of the grid in which it sees
   double side_m = 0.0;
   double gap_m = 0.0;
   double delay_s = 0.0;

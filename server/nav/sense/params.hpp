@@ -2,6 +2,8 @@
 // What the sense chain may be told. Sections [sense], [sense.ground], [sense.persist],
 // [sense.grid], [sense.health], [sense.rays] and [sense.protect].
 
+#include <cmath>
+
 #include "base/params.hpp"
 
 namespace roverd::nav::sense {
@@ -175,6 +177,12 @@ struct ProtectParams {
   double foresee_s = 3.0;
   double foresee_gap_m = 0.30;
 };
+
+/// What the guard leaves beside the body of the middle of a cell: a cell may hold its thing
+/// anywhere, half of its diagonal off.
+inline double beside_m(const ProtectParams& p, double cell_m) noexcept {
+  return p.side_m + cell_m * std::sqrt(0.5);
+}
 
 template <class V>
 void fields(V& v, ProtectParams& p) {

@@ -24,7 +24,7 @@ constexpr double kLess_m = 0.02;
 constexpr double kBefore_m = 0.05;
 
 Drive drive_of(const Footprint& body, const base::BodyTwist& twist, const ProtectParams& p,
-               double cell_radius_m) noexcept {
+               double cell_m) noexcept {
   Drive d;
   d.twist = twist;
   const double v = std::abs(twist.linear_mps);
@@ -40,7 +40,7 @@ Drive drive_of(const Footprint& body, const base::BodyTwist& twist, const Protec
   d.horizon_s = std::min(d.horizon_s + gap_s, p.reach_m / fastest);
   // A full turn sees everything.
   if (w > 1e-5) d.horizon_s = std::min(d.horizon_s, 2.0 * base::kPi / w);
-  d.margin_m = p.side_m + cell_radius_m;
+  d.margin_m = beside_m(p, cell_m);
   d.grown_m = d.margin_m;
   d.clear_m = d.margin_m;
   if (d.straight) return d;
@@ -233,8 +233,7 @@ Verdict protect(const Patch& patch, const Pose2& pose, const Footprint& body,
   if (std::abs(twist.linear_mps) < kStill_mps && std::abs(twist.angular_radps) < kStill_radps) {
     return verdict;
   }
-  // A cell may hold its thing anywhere: half of its diagonal.
-  Drive d = drive_of(body, twist, params, patch.cell_m * std::sqrt(0.5));
+  Drive d = drive_of(body, twist, params, patch.cell_m);
   const Picture seen{patch, marks != nullptr && marks->fit(patch) ? marks : nullptr};
   Nearest dock;
   const Nearest taken = nearest_taken(seen, pose, body, d, spared, dock);

@@ -126,7 +126,7 @@ Sweep sweep_of(const Trailer& t, const base::BodyTwist& twist, const ProtectPara
   s.hitch_mps = hitch_mps;
   s.step_s = horizon_s / kSteps;
   s.step_m = fastest * s.step_s;
-  s.margin_m = p.side_m + cell_m * std::sqrt(0.5);
+  s.margin_m = beside_m(p, cell_m);
   s.grown_m = s.clear_m = s.margin_m;
   s.reach_m = t.hitch_m + t.body.reach_m() + fastest * horizon_s + s.margin_m;
   return s;
