@@ -2,6 +2,7 @@ import { describe, expect, test } from 'vitest';
 
 import { offset_between } from '../src/model/geo';
 import {
+  drag_there,
   drawn_plan,
   insert_there,
   map_of_plan,
@@ -64,6 +65,31 @@ describe('the map that a mission is planned in', () => {
       x_m: 3,
       y_m: 4,
     });
+  });
+
+  test('moves all that are chosen by what one of them was dragged, waypoints among them', () => {
+    const here = on_earth(at, { x_m: 5, y_m: 0 });
+    const mixed: Plan = {
+      ...plan,
+      items: [
+        { type: 'map_point', x_m: 1, y_m: 2, yaw_deg: 10 },
+        { type: 'map_point', x_m: 4, y_m: 2 },
+        { type: 'waypoint', ...here },
+        { type: 'map_point', x_m: 8, y_m: 8 },
+      ],
+    };
+    const picked = new Set([0, 1, 2]);
+    for (const [index, to] of [
+      [0, { x_m: 2, y_m: 4 }],
+      [2, { x_m: 6, y_m: 2 }],
+    ] as const) {
+      const { items } = drag_there(picked, index, on_earth(at, to), by)(mixed);
+      expect(items[0]).toEqual({ type: 'map_point', x_m: 2, y_m: 4, yaw_deg: 10 });
+      expect(items[1]).toEqual({ type: 'map_point', x_m: 5, y_m: 4 });
+      const { east_m, north_m } = offset_between(here, items[2] as typeof here);
+      expect([Math.round(east_m * 1e3), Math.round(north_m * 1e3)]).toEqual([-2000, 1000]);
+      expect(items[3]).toEqual({ type: 'map_point', x_m: 8, y_m: 8 });
+    }
   });
 
   test('has a middle, however its picture is turned', () => {

@@ -8,8 +8,10 @@ import {
   replace_item,
   type PlanAction,
 } from './actions';
-import type { Item, LatLon, Plan } from './plan';
+import { place_of, type Item, type LatLon, type Plan } from './plan';
 import type { Placed } from './seen';
+import type { Picked } from './selection';
+import { drag_items } from './shapes';
 import { in_map, lies_anywhere, on_earth, type MapPoint, type SiteMap } from './site_map';
 
 /** The map that a plan counts from, and where it is drawn. */
@@ -65,6 +67,20 @@ export const move_there =
     return by && item?.type === 'map_point'
       ? replace_item(index, { ...item, ...in_map(by.at, place) })(plan)
       : move_waypoint(index, place)(plan);
+  };
+
+/** All that are chosen, by what one of them was dragged: points of the map stay points of it. */
+export const drag_there =
+  (picked: Picked, index: number, to: LatLon, by: PlanMap | null): PlanAction =>
+  (plan) => {
+    const moved = drag_items(picked, index, to)(drawn_plan(plan, by));
+    const items = plan.items.map((item, i): Item => {
+      const now = moved.items[i] ?? item;
+      if (item.type !== 'map_point') return now;
+      const at = place_of(now);
+      return by && at && picked.has(i) ? { ...item, ...in_map(by.at, at) } : item;
+    });
+    return { ...plan, items };
   };
 
 /** The middle of its picture: where a point of it begins that nobody has shown. */

@@ -20,7 +20,7 @@ interface Layout {
   /** Colours are darker by what is clear. */
   readonly associated: boolean;
   readonly white_is_zero: boolean;
-  /** What the greatest value of a sample is multiplied with: 255 of 8 bits. */
+  /** What a sample is multiplied with, to reach from 0 to 255. */
   readonly scale: number;
 }
 

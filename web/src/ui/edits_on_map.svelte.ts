@@ -45,15 +45,16 @@ export const keep_edits_in_step = (station: Station, hidden: () => boolean): voi
   );
   const drives = $derived(station.tab === 'drive');
   const has_route = $derived(station.route.plan !== null);
+  const planned = $derived(station.tab === 'plan' && station.drawing === null);
+  const drawn_in = $derived(planned ? station.in_map.by : station.in_map.laid);
   $effect(() => {
     const { drawing } = station;
     const { plan, selected, shape } = drawing ?? editor;
-    const shown = drawing ? plan : drawn_plan(shaping.preview ?? plan, station.in_map.by);
+    const shown = drawing ? plan : drawn_plan(shaping.preview ?? plan, drawn_in);
     const look = look_of(shape, drives, loaded, has_route);
     const refused = drawing ? NOTHING : editor.refused;
     map.show_plan(hidden() ? EMPTY_PLAN : shown, selected, refused, look.shape, look.faint);
   });
-  const planned = $derived(station.tab === 'plan' && station.drawing === null);
   const same_numbers = $derived(
     shaping.preview === null || shaping.preview.items.length === editor.plan.items.length,
   );

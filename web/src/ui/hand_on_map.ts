@@ -1,6 +1,6 @@
 // What a hand on the map does: to what is drawn just now, else to the mission.
 
-import { insert_there, move_there } from '../model/map_plan';
+import { drag_there, insert_there, move_there } from '../model/map_plan';
 import type { LatLon } from '../model/plan';
 import type { MapEvents } from '../model/ports';
 import type { Station } from './station.svelte';
@@ -22,10 +22,9 @@ const insert = ({ drawing, editor, in_map }: Station, index: number, at: LatLon)
 };
 
 const move = ({ drawing, editor, in_map }: Station, index: number, to: LatLon): void => {
-  if (drawing || editor.plan.items[index]?.type !== 'map_point') {
-    (drawing ?? editor).move(index, to);
-    return;
-  }
+  if (drawing) return drawing.move(index, to);
+  if (editor.picked.has(index)) return editor.do(drag_there(editor.picked, index, to, in_map.by));
+  if (editor.plan.items[index]?.type !== 'map_point') return editor.move(index, to);
   editor.do(move_there(index, to, in_map.by));
   editor.selected = index;
 };

@@ -66,8 +66,9 @@ export class Library {
   async tell_export(id: string, format: string): Promise<void> {
     const refusal = await this.#calls.export_refusal(id, format);
     const lies_nowhere = refusal?.status === 409;
+    // Asked for once more, it may be refused for other reasons than the file was.
     const why = lies_nowhere ? say('it_counts_from_a_map_that_lies_nowhere') : null;
-    this.#notices.outcome('export', why ?? (refusal && refusal_text(refusal)));
+    this.#notices.outcome('export', why);
   }
 
   async refresh(): Promise<void> {

@@ -1,10 +1,8 @@
 // The map of the plane that the edited mission counts from: any of the robot's list, wherever the robot is.
 
-import { untrack } from 'svelte';
-
 import { map_of_plan, type PlanMap } from '../model/map_plan';
 import type { LatLon } from '../model/plan';
-import { place_of_map } from '../model/site_map';
+import { lies_anywhere, place_of_map } from '../model/site_map';
 import type { Editor } from './editor.svelte';
 import type { SiteMaps } from './site_maps.svelte';
 
@@ -18,6 +16,10 @@ export class MapPlanner {
     const at = map && place_of_map(map, this.#here);
     return map && at && { map, at };
   });
+  /** The same where it lies somewhere: where another one is drawn means nothing but to who plans in it. */
+  laid = $derived.by<PlanMap | null>(() =>
+    this.by === null || lies_anywhere(this.by.map) ? null : this.by,
+  );
   readonly #editor: Editor;
   readonly #sites: SiteMaps;
   #frame = $derived.by(() => this.#editor.plan.frame ?? null);
@@ -33,6 +35,7 @@ export class MapPlanner {
   }
 
   get #here(): LatLon {
-    return (this.#first_here ??= untrack(() => this.#sites.here) ?? ANYWHERE);
+    this.#first_here ??= this.#sites.here;
+    return this.#first_here ?? ANYWHERE;
   }
 }

@@ -9,7 +9,6 @@ import { say } from '../model/say';
 import {
   name_of_files,
   pair_of,
-  lies_anywhere,
   place_of_map,
   type MapAnchor,
   type MapFiles,
@@ -93,11 +92,10 @@ export class SiteMaps {
     untrack(() => void this.fetch_cells());
   }
 
-  /** Draws one of the list, as long as one looks at that. @return whether it lies anywhere */
-  show(map: SiteMap): boolean {
+  /** Draws one of the list, as long as one looks at that. */
+  show(map: SiteMap): void {
     this.#looked = map.id;
     void this.fetch_cells();
-    return !lies_anywhere(map);
   }
 
   /** Draws the map that is planned in. @param by null: none is */

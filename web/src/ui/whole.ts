@@ -6,10 +6,10 @@ import { spots, type LatLon } from '../model/plan';
 import type { Station } from './station.svelte';
 
 /** Rows have no points: they lie where they were drawn. */
-const edited_in = ({ editor, makings, in_map }: Station): readonly LatLon[] => {
+const edited_in = ({ editor, makings, in_map, tab }: Station): readonly LatLon[] => {
   const made = makings.here;
   const drawn = made && !made.by_hand ? drawn_on_map(made.drawn, editor.plan.items) : [];
-  const planned = drawn_plan(editor.plan, in_map.by);
+  const planned = drawn_plan(editor.plan, tab === 'plan' ? in_map.by : in_map.laid);
   return [...spots(planned), ...drawn.flatMap(({ places }) => places)];
 };
 
