@@ -77,9 +77,9 @@ constexpr std::array<std::string_view, 2> kSpeedWords = {"v", "vel"};
 constexpr std::array<std::string_view, 14> kBeside = {"gps",      "gnss",     "wgs",  "wgs84", "84",
                                                       "pos",      "position", "pose", "point", "wp",
                                                       "waypoint", "of",       "the",  "in"};
-constexpr std::array<std::string_view, 17> kBesideDegrees = {
-    "deg",  "degs", "degree", "degrees", "d", "dd", "decimal", "dec",       "dms",
-    "epsg", "4326", "n",      "s",       "e", "w",  "coord",   "coordinate"};
+constexpr std::array<std::string_view, 15> kBesideDegrees = {
+    "deg", "degs", "degree", "degrees", "d", "dd",    "decimal",   "dec",
+    "dms", "epsg", "4326",   "n",       "e", "coord", "coordinate"};
 constexpr std::array<std::string_view, 16> kBesideHeight = {
     "msl",         "amsl", "asl",   "above", "mean",   "sea", "level",    "ellipsoid",
     "ellipsoidal", "hae",  "geoid", "agl",   "ground", "rel", "relative", "up"};
@@ -89,16 +89,22 @@ constexpr std::array<std::string_view, 19> kBesideSpeed = {
     "limit",   "max",      "maximum", "target",  "desired",   "over",      "ground",
     "set",     "setpoint", "cmd",     "command", "commanded", "reference", "ref",
     "planned", "plan",     "nominal", "cruise",  "value"};
-/// Of something else than a place: how sure it is, how it changes, the least and the most of it.
-constexpr std::array<std::string_view, 38> kNoPlace = {
-    "std",        "stdev",       "stddev",      "sd",        "sigma",  "err",      "error",
-    "acc",        "accuracy",    "hacc",        "vacc",      "var",    "variance", "cov",
-    "covariance", "dop",         "uncertainty", "precision", "min",    "mins",     "minute",
-    "minutes",    "max",         "sec",         "secs",      "second", "seconds",  "dir",
-    "direction",  "hemisphere",  "offset",      "delta",     "speed",  "vel",      "velocity",
-    "accel",      "orientation", "gon"};
-constexpr std::array<std::string_view, 12> kNoDegrees = {
-    "m", "meter", "meters", "metre", "metres", "cm", "mm", "km", "ft", "feet", "utm", "ref"};
+/// Of something else than a place: how sure it is, how it changes, the most of it.
+constexpr std::array<std::string_view, 25> kNoPlace = {
+    "std",   "stdev", "stddev",     "sd",         "sigma",       "err",       "error",
+    "acc",   "hacc",  "vacc",       "var",        "variance",    "accuracy",  "cov",
+    "dop",   "max",   "covariance", "vel",        "uncertainty", "precision", "speed",
+    "accel", "gon",   "velocity",   "orientation"};
+/// Of the same angle, or of a place along one axis: its minutes and seconds, its sign, what is
+/// still to be added. Without it the rest is another place.
+constexpr std::array<std::string_view, 33> kPartOfAngle = {
+    "min",  "mins",   "minute",    "minutes",    "arcmin",    "m",         "sec",
+    "secs", "second", "seconds",   "arcsec",     "s",         "dir",       "direction",
+    "ref",  "hem",    "hemi",      "hemisphere", "ns",        "ew",        "w",
+    "sign", "offset", "delta",     "frac",       "fraction",  "arcminute", "arcminutes",
+    "sgn",  "letter", "indicator", "arcsecond",  "arcseconds"};
+constexpr std::array<std::string_view, 10> kNoDegrees = {
+    "meter", "meters", "metre", "metres", "cm", "mm", "km", "ft", "feet", "utm"};
 constexpr std::array<std::string_view, 14> kNoLength = {
     "deg",    "degree", "degrees", "rad",   "radian",  "radians", "inch",
     "inches", "yd",     "yard",    "yards", "angular", "linear",  "quaternion"};
@@ -239,9 +245,13 @@ NamedColumn known(Column column, double unit, const Rest& rest) {
 NamedColumn angle_column(Column column, const Rest& rest) {
   const auto unit = unit_in(rest.joined(), kAngleUnits);
   if (unit) return known(column, *unit, rest);
-  if (any_of(rest, kNoPlace) || any_of(rest, kNoDegrees)) {
-    return none(column, std::string("is no ") + (column == Column::Lat ? "latitude" : "longitude") +
-                            " in degrees or radians");
+  const bool part = any_of(rest, kPartOfAngle) && !any_of(rest, kNoPlace);
+  if (part || any_of(rest, kNoPlace) || any_of(rest, kNoDegrees)) {
+    NamedColumn out =
+        none(column, std::string("is no ") + (column == Column::Lat ? "latitude" : "longitude") +
+                         " in degrees or radians");
+    out.part = part;
+    return out;
   }
   return {column, 1.0, Fit::Likely, {}};
 }
@@ -249,7 +259,7 @@ NamedColumn angle_column(Column column, const Rest& rest) {
 NamedColumn plane_column(Column column, const Rest& rest) {
   const auto unit = unit_in(rest.joined(), kLengthUnits);
   if (unit) return known(column, *unit, rest);
-  if (any_of(rest, kNoPlace) || any_of(rest, kNoLength)) {
+  if (any_of(rest, kNoPlace) || any_of(rest, kPartOfAngle) || any_of(rest, kNoLength)) {
     return none(column, "is no coordinate in m, cm, mm, km or ft");
   }
   return {column, 1.0, Fit::Likely, {}};
@@ -268,10 +278,21 @@ NamedColumn speed_column(const Rest& rest) {
               "is no speed in a unit that is known: " + std::string(kSpeedUnits) + " are");
 }
 
+/// "N/S", "E/W indicator": the column of the letters, as NMEA 0183 has them, with no word of what
+/// they are the sign of. @return Other: it is none
+Column column_of_letters(const std::vector<std::string>& words) {
+  if (words.size() < 2) return Column::Other;
+  if (words[0] == "n" && words[1] == "s") return Column::Lat;
+  return words[0] == "e" && words[1] == "w" ? Column::Lon : Column::Other;
+}
+
 }  // namespace
 
 NamedColumn column(std::string_view name) {
   const auto words = words_of(name);
+  if (const Column of = column_of_letters(words); of != Column::Other) {
+    return angle_column(of, {{"sign"}, false});
+  }
   if (any_of(words, kLatWords)) {
     return angle_column(Column::Lat, rest_of(words, kLatWords, kBesideDegrees));
   }

@@ -28,6 +28,9 @@ struct NamedColumn {
   Fit fit = Fit::Exact;
   std::string why{};  ///< of Not: "is no ..."
   bool said = false;  ///< the name says the unit
+  /// Of Not, latitude and longitude: minutes, seconds, a sign. Beside it no other column is the
+  /// whole angle.
+  bool part = false;
 };
 
 inline constexpr std::string_view kSpeedUnits = "m/s, m/min, km/h, mph, knots, ft/s, cm/s and mm/s";

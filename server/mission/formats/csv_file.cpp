@@ -123,9 +123,10 @@ class CsvReader {
       if (at.column != column || (at.fit == surest && surest != Fit::Not)) continue;
       const std::string name = clean_name(fields[i].text, "a column without a name");
       const bool position = column != Column::Alt && column != Column::Speed;
-      if (at.fit == Fit::Not && position && why_none_.empty()) {
+      if (at.fit == Fit::Not && position && (why_none_.empty() || (at.part && !in_parts_))) {
         why_none_ = "column " + name + ' ' + at.why;
       }
+      in_parts_ = in_parts_ || at.part;
       unused(name, at.fit == Fit::Not ? at.why : "another column fits better");
       at = {};
     }
@@ -150,7 +151,7 @@ class CsvReader {
         unused(fields[i]);
       }
     }
-    if (count(Column::Alt) > 1 || count(Column::Speed) > 1) return false;
+    if (count(Column::Alt) > 1 || count(Column::Speed) > 1 || (in_parts_ && !local_)) return false;
     return local_ ? count(Column::X) == 1 && count(Column::Y) == 1
                   : count(Column::Lat) == 1 && count(Column::Lon) == 1;
   }
@@ -341,7 +342,8 @@ class CsvReader {
   std::size_t decimal_commas_ = 0;
   std::size_t other_numbers_ = 0;
   std::vector<NamedColumn> columns_;
-  std::string why_none_;  ///< why a column is no place though its name begins so
+  bool in_parts_ = false;  ///< a column is a part of the angle that another one begins
+  std::string why_none_;   ///< why a column is no place though its name begins so
   std::optional<TangentPlane> plane_;
   ImportedFile file_;
   Problems problems_;

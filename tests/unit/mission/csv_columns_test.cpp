@@ -108,6 +108,31 @@ TEST(CsvColumns, AnglesInRadiansAreConvertedAndMinutesRefused) {
       "degrees or radians");
 }
 
+TEST(CsvColumns, AnAngleInSeveralColumnsIsRefusedNotTakenByItsDegrees) {
+  const auto refused_for = [](const std::string& content) {
+    const std::string begin = "line 1: must name lat and lon, or x and y, each once: column ";
+    const std::string all = told(content);
+    return all.starts_with(begin) ? all.substr(begin.size()) : all;
+  };
+  const std::string no_lat = " is no latitude in degrees or radians";
+  EXPECT_EQ(refused_for("lat_deg,lat_min,lon_deg,lon_min\n58,22.68,26,43.74\n"),
+            "lat_min" + no_lat);
+  EXPECT_EQ(refused_for("LatDeg,LatMin,LatSec,LonDeg,LonMin,LonSec\n58,22,41,26,43,44\n"),
+            "LatMin" + no_lat);
+  EXPECT_EQ(refused_for("lat_d,lat_m,lon_d,lon_m\n58,22.68,26,43.74\n"), "lat_m" + no_lat);
+  EXPECT_EQ(refused_for("lat_d,lat_s,lon_d,lon_s\n58,22.68,26,43.74\n"), "lat_s" + no_lat);
+  EXPECT_EQ(refused_for("lat,lat_dir,lon,lon_dir\n33.378,S,70.729,W\n"), "lat_dir" + no_lat);
+  EXPECT_EQ(refused_for("GPSLatitude,GPSLatitudeRef,GPSLongitude,GPSLongitudeRef\n33,S,70,W\n"),
+            "GPSLatitudeRef" + no_lat);
+  EXPECT_EQ(refused_for("latitude,N/S,longitude,E/W\n33.378,S,70.729,W\n"), "N/S" + no_lat);
+  EXPECT_EQ(refused_for("lat,lon,lat_offset\n33,70,0.5\n"), "lat_offset" + no_lat);
+  EXPECT_EQ(refused_for("lat,lat_std,lat_ns,lon\n33,1,S,70\n"), "lat_ns" + no_lat);
+  EXPECT_EQ(refused_for("lat,lon W\n33,70\n"), "lon W is no longitude in degrees or radians");
+  // What speaks of the angle alone takes nothing from it, nor do parts beside x and y.
+  EXPECT_EQ(told("lat,lat_std_m,lat_sd_sec,lat_max,lon\n33,1,1,34,70\n"), "taken");
+  EXPECT_EQ(told("# origin 58 26\nx,y,lat_min\n1,2,22\n"), "taken");
+}
+
 TEST(CsvColumns, OfSeveralForOneThingTheExactNameWins) {
   const auto file = import_file(
       "lat_std,lat,lon,lon_std,alt_accuracy,alt,lat_of_gate\n0.01,58.378,26.729,0.01,3,61,1\n",
