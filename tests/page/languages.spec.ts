@@ -80,7 +80,7 @@ test('why the robot does not do as it is told is said in the language that is ch
   await station.rest('POST', '/vehicle/estop', {});
   await tab(page, 'Log');
   await choose(page, 'Suomi');
-  // A check, by its sentence; and what was not known stays in English, and says so.
+  // A check, and what is wrong in a file, each by its sentence.
   await expect(page.getByText('hätäseis on lukittuna: kuittaa se ensin').first()).toBeVisible();
   const file = { name: 'a.csv', mimeType: 'text/csv', buffer: Buffer.from('lat,lon\n95,26.7\n') };
   await panel(page, 2);

@@ -11,7 +11,7 @@ import { finnish } from '../src/texts/fi';
 
 const SERVER = join(import.meta.dirname, '../../server');
 
-/** What a person meets in the field: refusals of commands, failsafes and checks, the place in a map. */
+/** What a person meets in the field, where it is a whole sentence and not joined from parts: refusals of commands, failsafes and checks, the place in a map. */
 const SOURCES: readonly (readonly [files: RegExp, sentences: RegExp])[] = [
   [/^robot\/.*\.cpp$/, /Code::(?:Conflict|Late),\s*"([^"]+)"\)/g],
   [/^nav\/behave\/executor\.cpp$/, /Code::Conflict,\s*"([^"]+)"\)/g],
@@ -20,11 +20,16 @@ const SOURCES: readonly (readonly [files: RegExp, sentences: RegExp])[] = [
     /^robot\/safety\/(safety|arm_switch)\.cpp$/,
     /(?:return|Severity::Error,|[?:]) "([a-z]\w* [^"]+)"[);:]/g,
   ],
-  [/^nav\/place\/\w+\.cpp$/, /(?:return|reason =|[?:]) "([a-z]\w* [^"]+)"[;\s]/g],
+  [/^nav\/place\/\w+\.cpp$/, /(?:return|reason =|[?:])\s+"([a-z]\w* [^"]+)"[;\s]/g],
   [
     /^mission\/formats\/(kml|csv|gpx)_file\.cpp$/,
     /detail = "([^"]+)";|refuse\([^"]*"row",\s*"([^"]+)"\)/g,
   ],
+  [/^mission\/formats\/csv_columns\.cpp$/, /none\([\w:]+,\s*"([^"]+)"\)/g],
+  [/^mission\/formats\/kmz_file\.cpp$/, /(?:bad_archive\(|why = )"([^"]+)"[;)]/g],
+  [/^robot\/guard\/\w+\.cpp$/, /return "([a-z]\w* [^"]+)";/g],
+  [/^robot\/guard\/watched\.cpp$/, /(?:told\(|again =|[?:])\s*"([a-z]\w* [^"]+)"[;:)\s]/g],
+  [/^nav\/sense\/health\.cpp$/, /(?:say\(Eye::\w+,|[?:]) "([a-z]\w* [^"]+)"\s?[:)]/g],
 ];
 /** Said in English in all languages; the list only ever gets shorter. */
 const STILL: ReadonlySet<string> = new Set([
@@ -72,6 +77,67 @@ describe('what the robot says', () => {
     );
   });
 
+  test.each([
+    [
+      'blocked: something stands in the way, 1.2 m ahead, seen by front; it waits until the way is clear',
+      'tie on tukossa: jotakin on tiellä, 1.2 m edessä, sen näki front; se odottaa, kunnes tie on vapaa',
+    ],
+    [
+      'blocked: the ground ends, 0.8 m ahead, seen by front (sense.ground.drop_m): the trailer would touch it',
+      'tie on tukossa: maa päättyy, 0.8 m edessä, sen näki front (sense.ground.drop_m): perävaunu osuisi siihen',
+    ],
+    [
+      'the guard is overridden by anna: something stands in the way, 1.2 m ahead',
+      'estevahdin on ohittanut anna: jotakin on tiellä, 1.2 m edessä',
+    ],
+    [
+      'the sensor front does not see: it is silent: nothing drives by itself',
+      'anturi front ei näe: siitä ei kuulu mitään: mikään ei aja itsestään',
+    ],
+    [
+      'can0: somebody else commands the base; can1: somebody else commands the base',
+      'can0: joku muu ohjaa ajoneuvoa; can1: joku muu ohjaa ajoneuvoa',
+    ],
+    [
+      'the file has 1 wrong value: line 2 latitude must be from -90 to 90, is 95',
+      'tiedostossa on yksi väärä arvo: rivi 2 leveysasteen on oltava -90…90, on 95',
+    ],
+    ['charge is 20 %; the row is lost', 'akun varaus on 20 %; rivi on kadonnut'],
+    [
+      'must name lat and lon, or x and y, each once: column lat [ft] is no latitude in degrees or radians',
+      'rivin on nimettävä lat ja lon tai x ja y, kukin kerran: sarake lat [ft] ei ole leveysaste asteina tai radiaaneina',
+    ],
+  ])('is said whole where one sentence follows another: %s', (text, words) => {
+    in_finnish();
+    expect(robot_says(text)).toBe(words);
+    expect(language_said(text)).toBeUndefined();
+  });
+
+  test.each([
+    'blocked: the moon is full, 1.2 m ahead; it waits until the way is clear',
+    'blocked: something stands in the way, 1.2 m ahead; the moon is full',
+    'the guard is overridden by anna: the moon is full',
+    'the sensor front does not see: the moon is full',
+    'the moon is full, 1.2 m ahead',
+    'the moon is full, seen by front',
+    'can0: two bases answer; can1: somebody else commands the base',
+    'charge is 20 %; the moon is full',
+    'the base reports: motor 1 too hot',
+    'fix rtk_float, waiting 4 s more, at most, to see whether its positions wander',
+    'fix rtk_fixed, but its positions contradicted other sensors, 3 s ago: waiting 9 s more to trust it',
+  ])('stays all English where a part is not known: %s', (text) => {
+    in_finnish();
+    expect(robot_says(text)).toBe(text);
+    expect(language_said(text)).toBe('en');
+  });
+
+  test('of a name in quotes takes whatever a person wrote', () => {
+    in_finnish();
+    expect(
+      robot_says('the name "hall: 2; old" is taken by map 3: give another one, or rename that map'),
+    ).toBe('nimi ”hall: 2; old” on kartalla 3: anna toinen nimi tai nimeä se kartta uudelleen');
+  });
+
   test('says of a mission by a map why it is not taken, with what helps', () => {
     in_finnish();
     const looking =
@@ -97,12 +163,17 @@ describe('what the robot says', () => {
 
   test('is never taken for a shorter sentence that begins the same', () => {
     in_finnish();
+    const sample: Readonly<Record<string, string>> = { place: 'x', value: '7', parameter: 'x.y' };
+    const fill = (text: string, why: string): string =>
+      text
+        .replaceAll(/\{(why|what|where)\}/g, why)
+        .replaceAll(/\{(name|map|mode|state|fix|device|sensor|column)\}/g, 'x')
+        .replaceAll(/\{(\w+)\}/g, (_, name: string) => sample[name] ?? '7');
     for (const [key, text] of Object.entries(english)) {
       if (!key.startsWith('rb_') || typeof text !== 'string') continue;
-      const spoken = (finnish as unknown as Readonly<Record<string, string>>)[key];
-      const plain = text.replaceAll(/\{(n|has|line)\}/g, '7').replaceAll(/\{\w+\}/g, 'x');
-      const wanted = spoken?.replaceAll(/\{(n|has|line)\}/g, '7').replaceAll(/\{\w+\}/g, 'x');
-      expect(robot_says(plain), plain).toBe(wanted);
+      const spoken = (finnish as unknown as Readonly<Record<string, string>>)[key] ?? '';
+      const plain = fill(text, 'the radio drives');
+      expect(robot_says(plain), plain).toBe(fill(spoken, 'radio ohjaa'));
     }
   });
 
@@ -111,6 +182,7 @@ describe('what the robot says', () => {
     const missing = new Set<string>();
     let seen = 0;
     for (const [files, sentences] of SOURCES) {
+      const before = seen;
       for (const file of all.filter((name) => files.test(name))) {
         const source = readFileSync(join(SERVER, file), 'utf8').replace(/"\s*\n\s*"/g, '');
         for (const [, one, other] of source.matchAll(sentences)) {
@@ -119,8 +191,17 @@ describe('what the robot says', () => {
           if (!is_known_sentence(text)) missing.add(text);
         }
       }
+      expect(seen, `${files} ${sentences}`).toBeGreaterThan(before);
     }
     expect(seen).toBeGreaterThan(60);
     expect([...missing].sort()).toEqual([...STILL].sort());
+  });
+
+  test('of a map that lies nowhere is what the page looks for', () => {
+    const source = readFileSync(join(SERVER, 'nav/place/whereabouts.cpp'), 'utf8');
+    const said = source.replace(/"\s*\n\s*"/g, '');
+    for (const key of ['rb_no_anchor', 'rb_word_counts_once_found', 'rb_no_tap_before'] as const) {
+      expect(said).toContain(`"${english[key]}"`);
+    }
   });
 });

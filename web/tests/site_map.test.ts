@@ -31,6 +31,7 @@ import {
   type SiteMap,
 } from '../src/model/site_map';
 import { for_robot } from '../src/ortho/map_picture';
+import { english } from '../src/texts/en';
 import { finnish } from '../src/texts/fi';
 
 const HERE = { lat: 58.378, lon: 26.7289 };
@@ -285,8 +286,7 @@ describe('the place in the map', () => {
     speak(() => ({ language: 'fi', texts: finnish }));
     expect(place_words(searching)?.detail).not.toContain('nobody');
     speak(() => IN_ENGLISH);
-    const known = place_words({ ...place, reason: `${nowhere.slice(4)}: say it` });
-    expect(known?.tone).toBe('warn');
+    expect(place_words({ ...place, reason: english.rb_no_anchor })?.tone).toBe('warn');
   });
   it('that a person told is seen to fit, or not', () => {
     const searching: MapPlace = { ...place, state: 'searching', accuracy_m: null };

@@ -13,19 +13,39 @@ interface Sentence {
   readonly names: readonly string[];
 }
 
-/** Filled in are sentences of the robot, too. */
+/** What is filled in where nothing else is said of it: a name, as of a sensor or a mode, that
+ * takes no more of the sentence. */
+const NAME = '[^;:,()"]+?';
+const FIGURE = String.raw`-?\d+(?:\.\d+)?(?: ?(?:m|cm|mm|km|s|min|h|deg|%|m/s))?`;
+const FILLED: Readonly<Record<string, string>> = {
+  ...Object.fromEntries(['n', 'has', 'line'].map((name) => [name, String.raw`\d+`])),
+  ...Object.fromEntries(
+    ['m', 'time', 'far', 'most', 'least', 'need', 'wide', 'driven', 'charge', 'angle', 'deg'].map(
+      (name) => [name, FIGURE],
+    ),
+  ),
+  value: String.raw`[-+.\de]+`,
+  parameter: String.raw`[\w.]+`,
+  // As it stands in a file.
+  column: '.+?',
+};
+/** Filled in are sentences of the robot, too: only where they are known, so is what holds them. */
 const SENTENCES: ReadonlySet<string> = new Set(['why', 'what', 'where']);
-const NUMBERS: ReadonlySet<string> = new Set(['n', 'has', 'line']);
-const DEEPEST = 4;
+const DEEPEST = 8;
 const KEPT = 500;
 
 const escaped = (text: string): string => text.replace(/[.*+?^${}()|[\]\\]/g, '\\$&');
+
+const pattern_of = (name: string, before: string): string => {
+  if (SENTENCES.has(name)) return '.+?';
+  return FILLED[name] ?? (before.endsWith('"') ? '[^"]+' : NAME);
+};
 
 const sentence_of = (key: Key, text: string): Sentence => {
   const parts = text.split(/\{(\w+)\}/);
   const names = parts.filter((_, k) => k % 2 === 1);
   const source = parts.map((part, k) =>
-    k % 2 === 0 ? escaped(part) : NUMBERS.has(part) ? '(\\d+)' : '(.+?)',
+    k % 2 === 0 ? escaped(part) : `(${pattern_of(part, parts[k - 1] ?? '')})`,
   );
   return { key, names, pattern: new RegExp(`^${source.join('')}$`, 's') };
 };
@@ -44,24 +64,47 @@ const open = known
 
 const said = (key: Key): string => say_plain(key as PlainKey);
 
-/** @return null: it is none that is known */
-const in_words = (text: string, depth: number): string | null => {
+/** Sentences, one after the other, each of which is known: one may hold a "; " itself. */
+const joined_in_words = (text: string, depth: number): string | null => {
+  for (let at = text.indexOf('; '); at >= 0; at = text.indexOf('; ', at + 1)) {
+    const first = single_in_words(text.slice(0, at), depth);
+    const rest = first === null ? null : in_words(text.slice(at + 2), depth + 1);
+    if (rest !== null) return `${first}; ${rest}`;
+  }
+  return null;
+};
+
+/** @return null: the pattern does not fit, or what fills it is not known */
+const filled_in_words = ({ key, names, pattern }: Sentence, text: string, depth: number) => {
+  const match = pattern.exec(text);
+  if (!match) return null;
+  const values: [string, string][] = [];
+  for (const [k, name] of names.entries()) {
+    const value = match[k + 1] ?? '';
+    const words = SENTENCES.has(name) ? in_words(value, depth + 1) : value;
+    if (words === null) return null;
+    values.push([name, words]);
+  }
+  return filled(said(key), Object.fromEntries(values));
+};
+
+const single_in_words = (text: string, depth: number): string | null => {
   const key = whole.get(text);
   if (key) return said(key);
-  if (depth > DEEPEST) return null;
-  for (const { key: open_key, names, pattern } of open) {
-    const match = pattern.exec(text);
-    if (!match) continue;
-    const values = names.map((name, k): [string, string] => {
-      const value = match[k + 1] ?? '';
-      return [name, SENTENCES.has(name) ? (in_words(value, depth + 1) ?? value) : value];
-    });
-    return filled(said(open_key), Object.fromEntries(values));
+  for (const sentence of open) {
+    const words = filled_in_words(sentence, text, depth);
+    if (words !== null) return words;
   }
-  const parts = text.split('; ');
-  const words = parts.map((part) => (parts.length > 1 ? in_words(part, depth + 1) : null));
-  if (words.every((word) => word === null)) return null;
-  return words.map((word, k) => word ?? parts[k]).join('; ');
+  return null;
+};
+
+/** All of it, never a part: half a sentence would be read out in the wrong language. @return null: it is
+ * none that is known */
+const in_words = (text: string, depth: number): string | null => {
+  if (depth > DEEPEST) return null;
+  const key = whole.get(text);
+  if (key) return said(key);
+  return joined_in_words(text, depth) ?? single_in_words(text, depth);
 };
 
 const found = new Map<string, string | null>();

@@ -1,6 +1,7 @@
 // Maps of a place in the plane: where their cells lie on the earth, what a hand changes in them, and
 // the words for whether the robot knows its place in the one that is in use.
 
+import { robot } from '../texts/en/robot';
 import { robot_says } from './robot_words';
 import type { SiteCells } from './site_cells';
 import type { Answer } from './answer';
@@ -276,8 +277,9 @@ export interface PlaceWords {
 const FINE_M = 0.3;
 
 /** Neither anchor nor satellites, and nobody has said where the robot stands: it says itself what helps. */
+const LIES_NOWHERE = [robot.rb_no_anchor, robot.rb_word_counts_once_found, robot.rb_no_tap_before];
 const lies_nowhere = ({ reason }: MapPlace): boolean =>
-  reason?.includes('nobody knows where on the earth the map lies') ?? false;
+  LIES_NOWHERE.some((words) => reason?.includes(words) ?? false);
 
 /** "Knows its place in “hall”" · "±3 cm, ±0.4°" */
 export const place_words = (place: MapPlace): PlaceWords | null => {
