@@ -2,10 +2,24 @@
 
 import { afterEach, describe, expect, it } from 'vitest';
 
+import block from '../../server/mission/rows/block.cpp?raw';
+import lies from '../../server/mission/rows/lies.cpp?raw';
 import type { FieldError } from '../src/model/answer';
-import { row_refusal } from '../src/model/row_refusal';
+import { CAUSES, row_refusal } from '../src/model/row_refusal';
 import { IN_ENGLISH, speak } from '../src/model/say';
 import { finnish } from '../src/texts/fi';
+
+/** What the server's sources say, whole: a 7 stands for what is put between two pieces. */
+const server_says = (): readonly string[] =>
+  [block, lies].flatMap((source) =>
+    [
+      ...source
+        .replace(/\/\/.*$/gm, '')
+        .replace(/"\s*\n\s*"/g, '')
+        .replace(/"\s*\+[^";]*\+\s*"/g, '7')
+        .matchAll(/"([^"]+)"/g),
+    ].map(([, text = '']) => text),
+  );
 
 const refused = (...errors: readonly FieldError[]): string =>
   row_refusal({
@@ -86,6 +100,13 @@ describe('a refused block of rows', () => {
     speak(() => ({ language: 'fi', texts: finnish }));
     expect(refused(...both)).toContain('Tämä ajoneuvo ei käänny paikallaan: valitse kaaret.');
   });
+
+  it.each(CAUSES.map(({ pointer, said }) => [pointer, said] as const))(
+    'is known by what the server says of %s: %s',
+    (_, said) => {
+      expect(server_says().filter((text) => said.test(text))).not.toEqual([]);
+    },
+  );
 
   it('leaves what it has no words for as the robot says it', () => {
     expect(refused(at('/block', 'crosses itself'))).toBe('block crosses itself');
