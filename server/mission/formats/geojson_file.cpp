@@ -69,6 +69,11 @@ class GeoJsonReader {
     return at != value.end() && at->is_string() ? at->get<std::string>() : std::string();
   }
 
+  static bool says_fence(const json& properties) {
+    const std::string kind = text_of(properties, "fence");
+    return kind == "inclusion" || kind == "exclusion";
+  }
+
   void object(const json& value, const std::string& where, int depth) {
     if (!value.is_object()) return problems_.add(where, "must be an object");
     if (depth == 0) return problems_.add(where, "is nested too deeply");
@@ -96,11 +101,14 @@ class GeoJsonReader {
 
   void feature(const json& value, const std::string& where, int depth) {
     const auto shape = value.find("geometry");
-    if (shape == value.end() || shape->is_null()) {
-      return builder_.leave_out(where, "Feature", "it has no geometry");
-    }
     const auto properties = value.find("properties");
     const bool has_properties = properties != value.end() && properties->is_object();
+    if (shape == value.end() || shape->is_null()) {
+      if (has_properties && says_fence(*properties)) {
+        return problems_.add(where, "must be a Polygon, or a Point with radius_m, to be a fence");
+      }
+      return builder_.leave_out(where, "Feature", "it has no geometry");
+    }
     if (has_properties && take_fence_feature(*properties, *shape, {where, where + "/geometry"},
                                              fence_, file_.rows, problems_)) {
       return;
@@ -109,9 +117,9 @@ class GeoJsonReader {
     if (first_name_.empty()) first_name_ = name_;
     const std::size_t before = builder_.count();
     const bool own = has_properties && properties->contains("waypoints");
-    builder_.keep_duplicates(own);
+    builder_.keep_each(own);
     object(*shape, where + "/geometry", depth - 1);
-    builder_.keep_duplicates(false);
+    builder_.keep_each(false);
     builder_.end_whole(name_);
     if (own) take_waypoints(*properties, where + "/properties/waypoints", before);
     name_.clear();

@@ -161,6 +161,7 @@ class KmlReader {
     std::string row;
     std::vector<std::string> rings;  ///< of a Polygon, as they stand there; the outer one first
     std::optional<TrackPoint> point;
+    bool no_position = false;  ///< a Point whose position cannot be read
   };
 
   void begin(const XmlElement& element) {
@@ -173,7 +174,7 @@ class KmlReader {
       name_.clear();
     }
     if (element.name == "Polygon") {
-      shapes_.push_back({rows_.back(), {}, std::nullopt});
+      shapes_.push_back({rows_.back(), {}, std::nullopt, false});
       in_polygon_ = true;
     }
     if (element.name == "Track") builder_.begin(PartKind::Line);
@@ -216,7 +217,9 @@ class KmlReader {
 
   void end_placemark() {
     for (Shape& shape : shapes_) {
-      if (is_kml_fence(words_)) {
+      if (shape.no_position) {
+        refuse_point(shape);
+      } else if (is_kml_fence(words_)) {
         take_fence(shape);
       } else if (shape.point) {
         builder_.begin(PartKind::Points);
@@ -230,6 +233,12 @@ class KmlReader {
     in_polygon_ = false;  // a Placemark inside a Polygon, which no schema allows, ends both
     name_.clear();
     words_ = nlohmann::json::object();
+  }
+
+  /// A fence or a rally point is never left out.
+  void refuse_point(Shape& shape) {
+    if (is_kml_fence(words_)) return problems_.add(std::move(shape.row), kNoPosition);
+    builder_.refuse(std::move(shape.row), kPoint, kNoPosition);
   }
 
   /// A gx:coord; KML 2.3 lets it be empty where the receiver had no position.
@@ -288,8 +297,8 @@ class KmlReader {
         return true;
       });
     } else if (inside == "Point") {
-      auto point = tuple(joined_at_commas(text), row, "Point", ',');
-      if (point) shapes_.push_back({row, {}, std::move(*point)});
+      auto point = tuple(joined_at_commas(text), row, kPoint, ',');
+      if (point) shapes_.push_back({row, {}, std::move(*point), false});
     }
   }
 
@@ -310,11 +319,12 @@ class KmlReader {
     }
   }
 
-  /// A shape without one of its corners is another shape: those are never left out.
+  /// A shape without one of its corners is another shape: those are never left out. What a Point is
+  /// the words of its Placemark tell, which may come later.
   void no_position(std::string row, std::string what) {
-    const char* detail = "must be longitude, latitude and perhaps a height";
-    if (what == kCorner) return problems_.add(std::move(row), detail);
-    builder_.refuse(std::move(row), std::move(what), detail);
+    if (what == kCorner) return problems_.add(std::move(row), kNoPosition);
+    if (what == kPoint) return void(shapes_.push_back({std::move(row), {}, std::nullopt, true}));
+    builder_.refuse(std::move(row), std::move(what), kNoPosition);
   }
 
   /// longitude, latitude and perhaps a height; what more there is is told
@@ -351,6 +361,8 @@ class KmlReader {
   }
 
   static constexpr const char* kCorner = "corner";
+  static constexpr const char* kPoint = "Point";
+  static constexpr const char* kNoPosition = "must be longitude, latitude and perhaps a height";
 
   std::vector<std::string> path_;
   std::vector<std::string> rows_;

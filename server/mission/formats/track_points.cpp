@@ -72,7 +72,7 @@ bool TrackBuilder::check(const TrackPoint& point, const char* name, double value
 }
 
 bool TrackBuilder::repeats(const Waypoint& next) const {
-  if (keep_duplicates_ || parts_.empty() || points_.size() == parts_.back().first) return false;
+  if (keep_each_ || parts_.empty() || points_.size() == parts_.back().first) return false;
   const Waypoint& last = points_.back();
   return last.at == next.at && (!next.alt_m || last.alt_m == next.alt_m) &&
          (!next.speed_mps || last.speed_mps == next.speed_mps);
@@ -114,7 +114,7 @@ void TrackBuilder::leave_out(std::string row, std::string what, std::string reas
 }
 
 void TrackBuilder::refuse(std::string row, std::string what, std::string detail) {
-  if (leave_out_wrong_) {
+  if (leave_out_wrong_ && !keep_each_) {
     leave_out(std::move(row), std::move(what), std::move(detail));
   } else {
     problems_.add(std::move(row), std::move(detail));

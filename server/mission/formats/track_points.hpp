@@ -59,8 +59,9 @@ class TrackBuilder {
   /// A position that cannot be.
   void refuse(std::string row, std::string what, std::string detail);
 
-  /// From now on a position that repeats the one before it stays, too.
-  void keep_duplicates(bool keep) noexcept { keep_duplicates_ = keep; }
+  /// From now on each position is counted: one that repeats the one before it stays, too, and one
+  /// that cannot be is never left out.
+  void keep_each(bool keep) noexcept { keep_each_ = keep; }
 
   /// How many positions were taken, and one of them.
   std::size_t count() const noexcept { return points_.size(); }
@@ -102,7 +103,7 @@ class TrackBuilder {
   std::vector<Plan> plans_;
   std::size_t whole_ = 0;
   std::size_t first_of_whole_ = 0;  ///< of parts_
-  bool keep_duplicates_ = false;
+  bool keep_each_ = false;
   bool overflow_ = false;
 };
 

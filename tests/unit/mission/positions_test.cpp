@@ -194,6 +194,58 @@ TEST(Positions, ThatCannotBeAreLeftOutWhereThatIsWished) {
                   std::nullopt, "", rest));
 }
 
+TEST(Positions, ThatArePartOfAFenceAreNeverLeftOut) {
+  const ImportHints rest{.leave_out_wrong = true};
+  const std::string way =
+      "<Placemark><LineString><coordinates>26,58 26.001,58</coordinates></LineString></Placemark>";
+  const auto told = [&](const std::string& text) {
+    const auto file = import_file(text, std::nullopt, "", rest);
+    if (file) return "taken; " + losses(file->rows);
+    const auto& fields = file.error().fields;
+    return fields.empty() ? file.error().detail : fields[0].pointer + ": " + fields[0].detail;
+  };
+  const std::string point = "<Point><coordinates>26.0005;58.0</coordinates></Point>";
+  const auto words_of = [&](const std::string& name, const std::string& value) {
+    return "<ExtendedData><Data name=\"" + name + "\"><value>" + value +
+           "</value></Data><Data name=\"radius_m\"><value>5</value></Data></ExtendedData>";
+  };
+  const std::string no_position = "line 2: must be longitude, latitude and perhaps a height";
+  for (const std::string& words : {words_of("fence", "exclusion"), words_of("rally", "true")}) {
+    EXPECT_EQ(told("<kml><Document>" + way + "\n<Placemark>" + words + point +
+                   "</Placemark></Document></kml>"),
+              no_position);
+    EXPECT_EQ(told("<kml><Document>" + way + "\n<Placemark>" + point + words +
+                   "</Placemark></Document></kml>"),
+              no_position);
+  }
+  // One that is no fence still is.
+  EXPECT_EQ(
+      told("<kml><Document>" + way + "\n<Placemark>" + point + "</Placemark></Document></kml>"),
+      "taken; line 2 Point: must be longitude, latitude and perhaps a height\n");
+  EXPECT_EQ(told(R"({"type":"FeatureCollection","features":[
+              {"type":"Feature","properties":{"fence":"exclusion"},"geometry":null},
+              {"type":"Feature","properties":{},"geometry":
+                {"type":"LineString","coordinates":[[26,58],[26.001,58]]}}]})"),
+            "/features/0: must be a Polygon, or a Point with radius_m, to be a fence");
+}
+
+//   Without one position the list of what each has beside it belongs to none.
+TEST(GeoJson, OfOurOwnWaypointsNoneIsLeftOut) {
+  const ImportHints rest{.leave_out_wrong = true};
+  const auto feature = [](const std::string& properties) {
+    return R"({"type":"Feature","properties":)" + properties +
+           R"(,"geometry":{"type":"LineString","coordinates":[[26,58],[26,95],[26.001,58]]}})";
+  };
+  const auto own =
+      import_file(feature(R"({"waypoints":[{},{},{"reverse":true}]})"), std::nullopt, "", rest);
+  ASSERT_FALSE(own);
+  EXPECT_EQ(own.error().fields.at(0).pointer, "/geometry/coordinates/1");
+  // Those of others have no such list.
+  const auto other = import_file(feature("{}"), std::nullopt, "", rest);
+  ASSERT_TRUE(other) << other.error().detail;
+  EXPECT_EQ(other->plan.items.size(), 2u);
+}
+
 TEST(GeoJson, LinesPointsAndCollectionsAreRead) {
   const auto file = import_file(
       R"({"type":"FeatureCollection","features":[
