@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <unordered_map>
 #include <utility>
 
 #include "mission/formats/encoding.hpp"
@@ -203,17 +204,22 @@ bool has_element(std::string_view xml, std::string_view name) {
 /// Of a plan that counts from a map: where that lies is known.
 ExportedFile export_laid(const Plan& plan, Format format, const Fence* fence) {
   ExportedFile file = export_file(laid_on_earth(plan, *plan.frame->lies), format, fence);
+  std::unordered_map<std::string, std::size_t> told;  // the first row of each item
+  for (std::size_t i = 0; i < file.rows.size(); ++i) told.try_emplace(file.rows[i].row, i);
   for (std::size_t i = 0; i < plan.items.size(); ++i) {
-    if (!std::holds_alternative<MapPoint>(plan.items[i])) continue;
+    const auto* point = std::get_if<MapPoint>(&plan.items[i]);
+    if (point == nullptr) continue;
     const std::string row = "/items/" + std::to_string(i);
     const std::string reason = "a point of the map \"" + plan.frame->map +
-                               "\", written as a waypoint where that lies by now";
-    const auto told = std::ranges::find(file.rows, row, &FileRow::row);
-    if (told == file.rows.end()) {
+                               "\", written as a waypoint where that lies by now" +
+                               (point->yaw_deg ? "; its heading is lost" : "");
+    const auto at = told.find(row);
+    if (at == told.end()) {
       file.rows.push_back({row, "map_point", Outcome::Changed, reason, static_cast<int>(i) + 1});
-    } else {  // of the waypoint
-      told->what = "map_point";
-      told->reason = reason + (told->reason.empty() ? "" : "; " + told->reason);
+    } else {
+      FileRow& of_waypoint = file.rows[at->second];
+      of_waypoint.what = "map_point";
+      of_waypoint.reason = reason + (of_waypoint.reason.empty() ? "" : "; " + of_waypoint.reason);
     }
   }
   return file;

@@ -87,6 +87,19 @@ TEST(Export, PointsOfAMapAreWrittenWhereItLies) {
   }
 }
 
+TEST(Export, OfAPointOfAMapItIsToldWhereItsHeadingIsLost) {
+  Plan plan;
+  plan.name = "shed";
+  plan.frame = MissionMap{"shed", base::MapLies{{58.0, 26.0}, 0.0}};
+  plan.items = {MapPoint{.x_m = 1.0, .yaw_deg = 0.0}, MapPoint{.x_m = 4.0}};
+  const std::string reason =
+      "a point of the map \"shed\", written as a waypoint where that lies by now";
+  const auto file = export_file(plan, Format::GeoJson);
+  ASSERT_EQ(file.rows.size(), 2u);
+  EXPECT_EQ(file.rows[0].reason, reason + "; its heading is lost");
+  EXPECT_EQ(file.rows[1].reason, reason);
+}
+
 TEST(Export, AWaypointsOwnSpeedIsCommandedBeforeItAndTakenBackAfterIt) {
   Plan plan;
   plan.name = "x";

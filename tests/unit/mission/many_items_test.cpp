@@ -1,5 +1,7 @@
 // 100,000 items there and back, in every format: what our own programs write they read.
 
+#include <algorithm>
+#include <chrono>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -54,6 +56,24 @@ TEST(ManyItems, ComeBackInEveryFormat) {
       EXPECT_EQ(file->plan.items, plan.items);
     }
   }
+}
+
+TEST(ManyItems, OfAMapAreWrittenInATimeThatGrowsAsTheyDo) {
+  // Given: so many points of a map that to look through all rows for each takes half a minute.
+  constexpr int kItems = 200'000;
+  Plan plan;
+  plan.name = "shed";
+  plan.frame = MissionMap{"shed", base::MapLies{{58.0, 26.0}, 0.0}};
+  for (int i = 0; i < kItems; ++i) {
+    plan.items.emplace_back(MapPoint{.x_m = i * 0.01, .hold_s = 2.0});
+  }
+  // When
+  const auto begin = std::chrono::steady_clock::now();
+  const auto file = export_file(plan, Format::Csv);
+  const std::chrono::duration<double> took_s = std::chrono::steady_clock::now() - begin;
+  // Then
+  EXPECT_EQ(std::ranges::count(file.rows, std::string("map_point"), &FileRow::what), kItems);
+  EXPECT_LT(took_s.count(), 15.0);
 }
 
 }  // namespace
