@@ -92,6 +92,15 @@ std::optional<Bounds> bounds_between(int zoom, const std::array<int, 4>& seen, b
   return Bounds{a[0], b[1], b[2], a[3]};
 }
 
+/// Are the coarse tiles those that hold the fine ones, and no more? Then the fine ones tell more
+/// closely where all lie: a tile of zoom 0 is the whole earth. @param zooms between them
+bool is_pyramid(const std::array<int, 4>& coarse, const std::array<int, 4>& fine, int zooms) {
+  for (std::size_t i = 0; i < coarse.size(); ++i) {
+    if (fine[i] >> zooms != coarse[i]) return false;
+  }
+  return true;
+}
+
 /// RFC 1950: deflate, and a check of the first two bytes.
 bool is_zlib(std::string_view bytes) noexcept {
   if (bytes.size() < 2) return false;
@@ -230,7 +239,8 @@ std::string TileFile::describe() {
 
 /// Where its tiles lie, and which way their rows are counted. Many programs write rows from the
 /// north, which the specification has no word for, and say so in `scheme` or nowhere: then the
-/// bounds tell it. Bounds that are of somewhere else say nothing.
+/// bounds tell it by the deepest zoom, the smallest tiles. Bounds that are of somewhere else say
+/// nothing.
 void TileFile::place() {
   Db& db = *db_;
   const auto said = read_bounds(db.meta("bounds"));
@@ -247,8 +257,15 @@ void TileFile::place() {
     return said && tiles ? common(*said, *tiles) : std::nullopt;
   };
   if (scheme.empty() && !fits(false) && fits(true)) from_north_ = true;
-  const auto both = fits(from_north_);
-  about_.bounds_deg = both ? both : seen(from_north_);
+  // All of the deepest zoom may be one corner of what the others show.
+  const int least = about_.min_zoom;
+  const auto coarse = db.if_cheap([&](int strides) { return db.extent(least, strides); });
+  const auto deepest = seen(from_north_);
+  const auto all = coarse && *coarse && !is_pyramid(**coarse, **extent, zoom - least)
+                       ? bounds_between(least, **coarse, from_north_)
+                       : deepest;
+  const auto both = said && all && fits(from_north_) ? common(*said, *all) : std::nullopt;
+  about_.bounds_deg = both ? both : all ? all : deepest;
 }
 
 Result<std::unique_ptr<TileFile>> TileFile::open(const std::string& set,

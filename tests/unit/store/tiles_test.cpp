@@ -154,6 +154,40 @@ TEST_F(FieldTiles, TheTilesTellTheirZoomAndWhereTheyLieAgainstWrongMetadata) {
   }
 }
 
+TEST_F(FieldTiles, LieWhereAllZoomsDoThoughTheDeepestIsOfOneCorner) {
+  // Given: zoom 5 all over, columns 17 to 18 and rows 9 to 10 from the north, one tile of zoom 12.
+  const auto file = [this](const std::string& metadata) {
+    auto out = with(metadata, false);
+    SQLite::Database db(out.string(), SQLite::OPEN_READWRITE);
+    for (const int x : {17, 18}) {
+      for (const int y : {9, 10}) {
+        db.exec("INSERT INTO tiles SELECT 5, " + std::to_string(x) + ", " + std::to_string(31 - y) +
+                ", tile_data FROM tiles WHERE zoom_level = 12");
+      }
+    }
+    return out;
+  };
+  const auto bounds = [&](const std::string& metadata) {
+    const auto out = shelf({{"farm", file(metadata)}})->sets().at(0).bounds_deg;
+    std::filesystem::remove(folder_ / "png.mbtiles");
+    return out;
+  };
+  const auto first = bounds_of({5, 17, 9});
+  const auto last = bounds_of({5, 18, 10});
+  const std::array whole = {first[0], last[1], last[2], first[3]};
+  // Then: its bounds are what it says, as far as there are tiles, or those of all tiles.
+  EXPECT_EQ(bounds("('bounds', '20,55,30,60')"), (std::array{20.0, 55.0, 30.0, 60.0}));
+  EXPECT_EQ(bounds("('bounds', '-100,-20,-90,-10')"), whole);
+  EXPECT_EQ(bounds("('scheme', 'tms')"), whole);
+}
+
+TEST_F(FieldTiles, TheDeepestZoomTellsWhereTheyLieIfTheOthersAreWhatHoldsIt) {
+  const auto file = with("('scheme', 'tms')", false);
+  SQLite::Database(file.string(), SQLite::OPEN_READWRITE)
+      .exec("INSERT INTO tiles SELECT 0, 0, 0, tile_data FROM tiles");
+  EXPECT_EQ(shelf({{"farm", file}})->sets().at(0).bounds_deg, bounds_of(kAt));
+}
+
 TEST_F(TilesTest, TheFormatIsKnownHoweverItIsWritten) {
   for (const char* said : {"PNG", "image/png"}) {
     const auto file = make("png", "PNG");
