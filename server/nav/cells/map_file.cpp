@@ -33,6 +33,16 @@ Cell point_at(std::span<const float> values) {
   return cell;
 }
 
+/// No sensor fills a cube so, and what is more is none of a file: sums of them are infinite.
+bool can_be(const Cell& cell) {
+  constexpr double kMostPoints = 1e15;
+  constexpr double kMostSpread_m2 = 1e6;  // of one point; the largest cell has an edge of 100 m
+  return finite(cell) && cell.points <= kMostPoints &&
+         std::ranges::all_of(cell.spread_m2, [&](double sum) {
+           return std::abs(sum) <= kMostSpread_m2 * cell.points;
+         });
+}
+
 std::string count_of(std::size_t n, const char* one, const char* many) {
   return std::to_string(n) + (n == 1 ? one : many);
 }
@@ -88,7 +98,7 @@ base::Result<ReadMap> read_whole_map(base::Bytes file, double cell_m, std::size_
     ++out.points;
     if (CellIndex at; cell.mean_m.allFinite() && !index_of(cell.mean_m, out.map.cell_m(), at)) {
       if (out.too_far++ == 0) far = cell.mean_m;
-    } else if (!finite(cell)) {
+    } else if (!can_be(cell)) {
       ++out.no_number;
     } else {
       full = !out.map.add(cell) || out.map.cells().size() > most_cells;

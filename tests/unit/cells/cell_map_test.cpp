@@ -159,6 +159,25 @@ TEST(MapFile, CountsWhatIsLeftOutAndSeesThatTheSensorWasMoved) {
   EXPECT_TRUE(left_out(*read_whole_map(text_cloud({"1 2 3"}), 0.2)).empty());
 }
 
+TEST(MapFile, TakesNoCellWhoseSumsWouldBecomeInfinite) {
+  // Given: a file with a usual cell and three of more points, or wider, than any can be.
+  const std::string head =
+      "FIELDS x y z points xx xy xz yy yz zz\nSIZE 4 4 4 4 4 4 4 4 4 4\n"
+      "TYPE F F F F F F F F F F\nWIDTH 4\nHEIGHT 1\nDATA ascii\n";
+  const std::string text = head +
+                           "1 2 3 5 0.01 0 0 0.01 0 0.01\n1 2 3 3e38 0 0 0 0 0 0\n"
+                           "1 2 3 5 3e38 0 0 0 0 0\n1 2 3 5 0 -3e38 0 0 0 0\n";
+  // When: it is read, written, and read.
+  const auto read = read_whole_map(std::vector<std::uint8_t>(text.begin(), text.end()), 0.2);
+  ASSERT_TRUE(read) << read.error().detail;
+  EXPECT_EQ(read->no_number, 3U);
+  const auto again = read_map(write_map(read->map), 0.2);
+  // Then
+  ASSERT_TRUE(again) << again.error().detail;
+  ASSERT_EQ(again->cells().size(), 1U);
+  EXPECT_EQ(again->cells()[0].points, 5.0);
+}
+
 TEST(MapFile, RefusesWhatWouldLoseAPartOfTheMap) {
   // Half of the points in national coordinates; points that are no numbers do not count.
   const auto half = read_whole_map(
