@@ -30,30 +30,58 @@ void Grass::see(const Reduced& in, const Sectors& rays, Hills& hills) {
   if (!in.lie.told) return forget();
   meet(in, hills);
   look_through(in, rays);
+  judge(in.stamp, hills);
+}
+
+void Grass::judge(base::Time now, Hills& hills) {
+  const auto due = [&](const Place& p) {
+    return p.taken && base::seconds(now - p.since) >= kSees_s;
+  };
+  // What stands beside tips has the last word on the place that they share.
+  for (const Thin thin : {Thin::Yes, Thin::No}) {
+    for (const Place& p : places_) {
+      if (!due(p) || thin_of(p) != thin) continue;
+      const double x_m = (p.x + 0.5) * kCell_m;
+      const double y_m = (p.y + 0.5) * kCell_m;
+      if (thin == Thin::Yes) {
+        hills.grows(x_m, y_m, now);
+      } else {
+        hills.stands(x_m, y_m);
+      }
+    }
+  }
   for (Place& p : places_) {
-    if (!p.taken || base::seconds(in.stamp - p.since) < kSees_s) continue;
-    if (is_thin(p)) hills.grows((p.x + 0.5) * kCell_m, (p.y + 0.5) * kCell_m, in.stamp);
-    // Half of it counts on: what came to stand there is told in as long again.
+    if (!due(p)) continue;
+    // Half of it counts on.
     for (Sectors::Share& share : p.shares) share = {0.5 * share.met, 0.5 * share.through};
-    p.since = in.stamp;
+    p.since = now;
   }
 }
 
-bool Grass::is_thin(const Place& p) noexcept {
-  return std::ranges::all_of(p.shares, [](const Sectors::Share& share) {
+Grass::Thin Grass::thin_of(const Place& p) noexcept {
+  bool enough = true;
+  for (const Sectors::Share& share : p.shares) {
     const double all = share.met + share.through;
-    return all >= kRays && share.met <= kFew * all;
-  });
+    if (all < kRays) {
+      enough = false;
+    } else if (share.met > kFew * all) {
+      return Thin::No;
+    }
+  }
+  return enough ? Thin::Yes : Thin::Unknown;
 }
 
 void Grass::meet(const Reduced& in, const Hills& hills) {
   const Lies lies(in);
   for (const Voxel& v : in.voxels) {
-    if (v.kind != Kind::Obstacle && v.kind != Kind::Passing) continue;
+    const bool ground = v.kind == Kind::Ground;
+    if (!ground && v.kind != Kind::Obstacle && v.kind != Kind::Passing) continue;
     const double x_m = lies.x_m(v);
     const double y_m = lies.y_m(v);
     const float z_m = lies.height_m(v);
-    if (!hills.may_be_grass(x_m, y_m, z_m, in.stamp)) continue;
+    // Where grass was found, what is met is asked on: somebody may have put a board there.
+    if (ground ? !hills.grown_at(x_m, y_m, in.stamp) : !hills.may_be_grass(x_m, y_m, z_m, in.stamp))
+      continue;
     const auto x = static_cast<std::int32_t>(std::floor(x_m / kCell_m));
     const auto y = static_cast<std::int32_t>(std::floor(y_m / kCell_m));
     Place& p = places_[slot_of(x, y, places_.size())];

@@ -11,7 +11,8 @@
 //                                  beside it, over kSees_s and kRays rays; met: within kAbout_m
 //
 // What may be grass at all Hills says (low over the ground within 0.6 m); what was found to be
-// grass is told to it. Of one sensor of one plane with thin beams. Not shared between threads.
+// grass is told to it, and taken back where what is met there by then stops more: within a second.
+// Of one sensor of one plane with thin beams. Not shared between threads.
 
 #include <array>
 #include <cstddef>
@@ -51,7 +52,9 @@ class Grass {
     base::Time last;  ///< that something was met there
   };
   void meet(const Reduced& in, const Hills& hills);
-  static bool is_thin(const Place& p) noexcept;
+  enum class Thin : std::uint8_t { Unknown, Yes, No };
+  void judge(base::Time now, Hills& hills);
+  static Thin thin_of(const Place& p) noexcept;
   void look_through(const Reduced& in, const Sectors& rays);
 
   std::vector<Place> places_;  ///< by cell; two that share one take turns

@@ -289,6 +289,16 @@ void Hills::grows(double x_m, double y_m, base::Time now) noexcept {
   grown_[index(x, y)] = {x, y, half_of(now)};
 }
 
+void Hills::stands(double x_m, double y_m) noexcept {
+  if (!has_cell(x_m, y_m)) return;
+  Grown& g = grown_[index(hill_cell(x_m), hill_cell(y_m))];
+  if (g.x == hill_cell(x_m) && g.y == hill_cell(y_m)) g = {};
+}
+
+bool Hills::grown_at(double x_m, double y_m, base::Time now) const noexcept {
+  return begun_ && has_cell(x_m, y_m) && is_grown(hill_cell(x_m), hill_cell(y_m), half_of(now));
+}
+
 std::size_t Hills::deny(Reduced& in) const {
   if (!begun_ || !in.lie.told) return 0;
   const Lies lies(in);

@@ -78,6 +78,10 @@ class Hills {
   /// What stands there is as thin as grass: it is ground over what is known within 0.6 m, for as
   /// long as ground is known.
   void grows(double x_m, double y_m, base::Time now) noexcept;
+  /// It is no grass (any more).
+  void stands(double x_m, double y_m) noexcept;
+  /// grows() was said of it, and not stands() since.
+  bool grown_at(double x_m, double y_m, base::Time now) const noexcept;
   void forget() noexcept;
 
  private:

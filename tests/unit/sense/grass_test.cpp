@@ -5,6 +5,7 @@
 //                                        ════ known from 2.2 m on, 0.06 m
 #include "nav/sense/grass.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -42,8 +43,11 @@ Hills known_ahead() {
 
 using Stops = std::function<bool(double y_m)>;  // whether a ray stops that comes there at 1.7 m
 
-/// 50 scans a second of half a degree, each a little beside the one before.
-void scan(Grass& grass, Hills& hills, const Stops& stops, double from_s, double to_s) {
+/// 50 scans a second of half a degree, each a little beside the one before, judged as the chain
+/// does.
+/// @return of the last one, how many echoes are an obstacle
+std::size_t scan(Grass& grass, Hills& hills, const Stops& stops, double from_s, double to_s) {
+  std::size_t obstacles = 0;
   std::mt19937 random(7);
   std::uniform_real_distribution<double> any(0.0, 1.0);
   SightedParams params;
@@ -60,9 +64,13 @@ void scan(Grass& grass, Hills& hills, const Stops& stops, double from_s, double 
                            static_cast<float>(d * std::sin(turn)), kTip_m, 1,
                            met ? Kind::Obstacle : Kind::Clear});
     }
+    hills.judge(in);
+    obstacles =
+        static_cast<std::size_t>(std::ranges::count(in.voxels, Kind::Obstacle, &Voxel::kind));
     sight_sectors(in, static_cast<float>(base::rad_from_deg(0.25)), params, *sectors);
     grass.see(in, *sectors, hills);
   }
+  return obstacles;
 }
 
 Stops tips(double part) {
@@ -93,6 +101,18 @@ TEST(GrassTest, AStakeOfTwoCentimetresAmongThemStays) {
       [grows = tips(0.02)](double y_m) { return std::abs(y_m - 0.01) <= 0.01 || grows(y_m); }, 0.1,
       3.0);
   EXPECT_FALSE(is_ground(hills, 3.0));
+}
+
+//   Who lies down in the grass, or a board that is put there: grass of before is no excuse.
+TEST(GrassTest, WhatComesToStandWhereGrassWasIsAnObstacleWithinASecond) {
+  Hills hills = known_ahead();
+  Grass grass;
+  scan(grass, hills, tips(0.06), 0.1, 3.0);
+  ASSERT_TRUE(is_ground(hills, 3.0));
+  const auto board = [](double y_m) { return std::abs(y_m) < 0.1; };
+  EXPECT_GE(scan(grass, hills, board, 3.0, 4.1), 10U);
+  EXPECT_FALSE(is_ground(hills, 4.1));
+  EXPECT_GE(scan(grass, hills, board, 4.1, 8.0), 10U) << "and stays one";
 }
 
 TEST(GrassTest, ABoardStays) {
