@@ -59,16 +59,13 @@ void Grass::judge(base::Time now, Hills& hills) {
 }
 
 Grass::Thin Grass::thin_of(const Place& p) noexcept {
-  bool enough = true;
+  bool few = true;
   for (const Sectors::Share& share : p.shares) {
     const double all = share.met + share.through;
-    if (all < kRays) {
-      enough = false;
-    } else if (share.met > kFew * all) {
-      return Thin::No;
-    }
+    if (all >= kRays && share.met > kMany * all) return Thin::No;
+    few = few && all >= kRays && share.met <= kFew * all;
   }
-  return enough ? Thin::Yes : Thin::Unknown;
+  return few ? Thin::Yes : Thin::Unknown;
 }
 
 void Grass::meet(const Reduced& in, const Hills& hills) {
@@ -85,7 +82,9 @@ void Grass::meet(const Reduced& in, const Hills& hills) {
     const auto x = static_cast<std::int32_t>(std::floor(x_m / kCell_m));
     const auto y = static_cast<std::int32_t>(std::floor(y_m / kCell_m));
     Place& p = places_[slot_of(x, y, places_.size())];
-    if (!p.taken || p.x != x || p.y != y) p = {x, y, z_m, true, {}, in.stamp, in.stamp};
+    const bool here = p.taken && p.x == x && p.y == y;
+    if (ground && p.taken && !here) continue;  // what is not known yet goes before
+    if (!here) p = {x, y, z_m, true, {}, in.stamp, in.stamp};
     p.top_m = std::max(p.top_m, z_m);
     p.last = in.stamp;
   }

@@ -11,7 +11,8 @@
 //                                  beside it, over kSees_s and kRays rays; met: within kAbout_m
 //
 // What may be grass at all Hills says (low over the ground within 0.6 m); what was found to be
-// grass is told to it, and taken back where what is met there by then stops more: within a second.
+// grass is told to it, and taken back where what is met there by then stops more than kMany: within
+// a second. Between the two it stays what it was.
 // Of one sensor of one plane with thin beams. Not shared between threads.
 
 #include <array>
@@ -32,6 +33,7 @@ class Grass {
   static constexpr double kSees_s = 0.5;
   static constexpr double kRays = 30.0;
   static constexpr double kFew = 0.16;
+  static constexpr double kMany = 0.28;  ///< what stops more is no grass any more
   static constexpr float kAbout_m = 0.1F;
 
   Grass() : places_(kPlaces) {}

@@ -115,6 +115,15 @@ TEST(GrassTest, WhatComesToStandWhereGrassWasIsAnObstacleWithinASecond) {
   EXPECT_GE(scan(grass, hills, board, 4.1, 8.0), 10U) << "and stays one";
 }
 
+TEST(GrassTest, AStakeThatIsPutWhereGrassWasIsAnObstacleWithinASecondAndAHalf) {
+  Hills hills = known_ahead();
+  Grass grass;
+  scan(grass, hills, tips(0.06), 0.1, 3.0);
+  const auto stake = [](double y_m) { return std::abs(y_m - 0.01) <= 0.01; };
+  scan(grass, hills, stake, 3.0, 4.6);
+  EXPECT_FALSE(is_ground(hills, 4.6));
+}
+
 TEST(GrassTest, ABoardStays) {
   Hills hills = known_ahead();
   Grass grass;
