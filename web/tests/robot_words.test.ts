@@ -22,8 +22,8 @@ const SOURCES: readonly (readonly [files: RegExp, sentences: RegExp])[] = [
   ],
   [/^nav\/place\/\w+\.cpp$/, /(?:return|reason =|[?:])\s+"([a-z]\w* [^"]+)"[;\s]/g],
   [
-    /^mission\/formats\/(kml|csv|gpx)_file\.cpp$/,
-    /detail = "([^"]+)";|refuse\([^"]*"row",\s*"([^"]+)"\)/g,
+    /^mission\/formats\/(kml|csv|gpx|geojson)_file\.cpp$/,
+    /kNoPosition =\s*"([^"]+)";|refuse\([^";]*"([a-z][^"]+)"\)/g,
   ],
   [/^mission\/formats\/csv_columns\.cpp$/, /none\([\w:]+,\s*"([^"]+)"\)/g],
   [/^mission\/formats\/kmz_file\.cpp$/, /(?:bad_archive\(|why = )"([^"]+)"[;)]/g],
@@ -156,8 +156,8 @@ describe('what the robot says', () => {
     expect(robot_says('not a KMZ file that can be read: there is no .kml in it')).toBe(
       'ei ole luettava KMZ-tiedosto: siinä ei ole yhtään .kml-tiedostoa',
     );
-    expect(robot_says('column 2 must be a finite number, of degrees with decimals')).toBe(
-      'sarakkeen 2 on oltava äärellinen luku, asteita desimaalein',
+    expect(robot_says('column 2 must be a finite number, or degrees, minutes and seconds')).toBe(
+      'sarakkeen 2 on oltava äärellinen luku tai asteita, minuutteja ja sekunteja',
     );
   });
 

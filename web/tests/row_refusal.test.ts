@@ -1,19 +1,21 @@
 // Refusals of a block of rows, as the robot writes them, in the page's words.
 
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { afterEach, describe, expect, it } from 'vitest';
 
-import block from '../../server/mission/rows/block.cpp?raw';
-import lies from '../../server/mission/rows/lies.cpp?raw';
 import type { FieldError } from '../src/model/answer';
 import { CAUSES, row_refusal } from '../src/model/row_refusal';
 import { IN_ENGLISH, speak } from '../src/model/say';
 import { finnish } from '../src/texts/fi';
 
+const ROWS = join(import.meta.dirname, '../../server/mission/rows');
+
 /** What the server's sources say, whole: a 7 stands for what is put between two pieces. */
 const server_says = (): readonly string[] =>
-  [block, lies].flatMap((source) =>
+  ['block.cpp', 'lies.cpp'].flatMap((name) =>
     [
-      ...source
+      ...readFileSync(join(ROWS, name), 'utf8')
         .replace(/\/\/.*$/gm, '')
         .replace(/"\s*\n\s*"/g, '')
         .replace(/"\s*\+[^";]*\+\s*"/g, '7')

@@ -250,7 +250,7 @@ class CsvReader {
             (column == Column::Lat || column == Column::Lon) && has_marks(fields[i].text);
         builder_.refuse(place, "row",
                         "column " + std::to_string(i + 1) + " must be a finite number" +
-                            (angle ? ", of degrees with decimals" : ""));
+                            (angle ? ", or degrees, minutes and seconds" : ""));
         return;
       }
       put(columns_[i], *value, point, local);

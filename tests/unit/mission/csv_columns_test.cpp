@@ -174,7 +174,7 @@ TEST(CsvColumns, AnglesInDegreesMinutesAndSecondsAreRead) {
   EXPECT_NEAR(point.at.lat, 58.378111111, 1e-8);
   EXPECT_NEAR(point.at.lon, 26.729, 1e-8);
   EXPECT_EQ(told("lat,lon\n58°22'41.2\"E,26.7\n"),
-            "line 2: column 1 must be a finite number, of degrees with decimals");
+            "line 2: column 1 must be a finite number, or degrees, minutes and seconds");
 }
 
 TEST(CsvColumns, AFirstColumnThatCountsIsNoLatitude) {

@@ -180,6 +180,8 @@ export const robot = {
   rb_columns: 'must have {n} columns, has {has}',
   rb_column_number: 'column {n} must be a finite number',
   rb_kml_place: 'must be longitude, latitude and perhaps a height',
+  rb_geojson_place: 'must be [longitude, latitude] or with a height',
+  rb_far_from_origin: 'must lie within 20,000 km of the origin',
   rb_gpx_numbers: 'lat and lon must be finite numbers',
   rb_no_place_for_it: 'a waypoint has no place for it',
   rb_other_column: 'another column fits better',
@@ -196,7 +198,7 @@ export const robot = {
     'speed in a unit that is known: m/s, m/min, km/h, mph, knots, ft/s, cm/s and mm/s are',
   rb_table_counted:
     'begins with a whole number, as all rows do: if it counts them, put a line before that names the columns (number,lat,lon)',
-  rb_column_degrees: 'column {n} must be a finite number, of degrees with decimals',
+  rb_column_degrees: 'column {n} must be a finite number, or degrees, minutes and seconds',
   rb_decimal_commas: "has whole numbers alone: with decimal commas fields must be apart by ';'",
   rb_quote_open: 'opens a quote that is not closed',
   rb_no_kml: 'must begin a <kml> document',

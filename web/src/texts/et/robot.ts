@@ -177,6 +177,8 @@ export const robot = {
   rb_columns: 'veerge peab olema {n}, on {has}',
   rb_column_number: 'veerg {n} peab olema arv',
   rb_kml_place: 'peab olema pikkus, laius ja võib-olla kõrgus',
+  rb_geojson_place: 'peab olema [pikkuskraad, laiuskraad], soovi korral kõrgusega',
+  rb_far_from_origin: 'peab asuma lähtepunktist kuni 20 000 km kaugusel',
   rb_gpx_numbers: 'lat ja lon peavad olema arvud',
   rb_no_place_for_it: 'teekonnapunktis pole sellele kohta',
   rb_other_column: 'teine veerg sobib paremini',
@@ -192,7 +194,7 @@ export const robot = {
   rb_speed_column: 'kiirus tuntud ühikus: need on m/s, m/min, km/h, mph, knots, ft/s, cm/s ja mm/s',
   rb_table_counted:
     'algab täisarvuga nagu kõik read: kui see neid loendab, pane ette rida, mis nimetab veerud (number,lat,lon)',
-  rb_column_degrees: 'veerg {n} peab olema lõplik arv, kümnendkohtadega kraadid',
+  rb_column_degrees: 'veerg {n} peab olema lõplik arv või kraadid, minutid ja sekundid',
   rb_decimal_commas: "sisaldab ainult täisarve: kümnendkomadega peab väljade vahel olema ';'",
   rb_quote_open: 'avab jutumärgi, mida ei suleta',
   rb_no_kml: 'peab alustama <kml>-dokumenti',

@@ -178,6 +178,8 @@ export const robot = {
   rb_columns: 'sarakkeita on oltava {n}, on {has}',
   rb_column_number: 'sarakkeen {n} on oltava luku',
   rb_kml_place: 'on oltava pituus, leveys ja ehkä korkeus',
+  rb_geojson_place: 'on oltava [pituusaste, leveysaste], korkeus saa seurata',
+  rb_far_from_origin: 'on oltava enintään 20 000 km:n päässä lähtöpisteestä',
   rb_gpx_numbers: 'lat ja lon on oltava lukuja',
   rb_no_place_for_it: 'reittipisteessä ei ole sille paikkaa',
   rb_other_column: 'toinen sarake sopii paremmin',
@@ -194,7 +196,7 @@ export const robot = {
     'nopeus tunnetussa yksikössä: niitä ovat m/s, m/min, km/h, mph, knots, ft/s, cm/s ja mm/s',
   rb_table_counted:
     'alkaa kokonaisluvulla kuten kaikki rivit: jos se numeroi ne, lisää eteen rivi, joka nimeää sarakkeet (number,lat,lon)',
-  rb_column_degrees: 'sarakkeen {n} on oltava äärellinen luku, asteita desimaalein',
+  rb_column_degrees: 'sarakkeen {n} on oltava äärellinen luku tai asteita, minuutteja ja sekunteja',
   rb_decimal_commas:
     "siinä on vain kokonaislukuja: desimaalipilkkujen kanssa kenttien välissä on oltava ';'",
   rb_quote_open: 'avaa lainausmerkin, jota ei suljeta',

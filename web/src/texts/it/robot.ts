@@ -182,6 +182,8 @@ export const robot = {
   rb_columns: 'deve avere {n} colonne, ne ha {has}',
   rb_column_number: 'la colonna {n} dev’essere un numero',
   rb_kml_place: 'dev’essere longitudine, latitudine ed eventualmente quota',
+  rb_geojson_place: 'deve essere [longitudine, latitudine], anche con una quota',
+  rb_far_from_origin: "deve trovarsi entro 20.000 km dall'origine",
   rb_gpx_numbers: 'lat e lon devono essere numeri',
   rb_no_place_for_it: 'un punto del percorso non ha posto per questo',
   rb_other_column: 'un’altra colonna va meglio',
@@ -198,7 +200,7 @@ export const robot = {
     'una velocità in un’unità nota: lo sono m/s, m/min, km/h, mph, knots, ft/s, cm/s e mm/s',
   rb_table_counted:
     'comincia con un numero intero, come tutte le righe: se le conta, metti prima una riga che nomini le colonne (number,lat,lon)',
-  rb_column_degrees: 'la colonna {n} deve essere un numero finito, di gradi con decimali',
+  rb_column_degrees: 'la colonna {n} deve essere un numero finito, oppure gradi, minuti e secondi',
   rb_decimal_commas: "ha solo numeri interi: con le virgole decimali i campi vanno separati da ';'",
   rb_quote_open: 'apre una virgoletta che non si chiude',
   rb_no_kml: 'deve cominciare un documento <kml>',

@@ -180,6 +180,8 @@ export const robot = {
   rb_columns: 'må ha {n} kolonner, har {has}',
   rb_column_number: 'kolonne {n} må være et tall',
   rb_kml_place: 'må være lengde, bredde og kanskje høyde',
+  rb_geojson_place: 'må være [lengdegrad, breddegrad], gjerne med høyde',
+  rb_far_from_origin: 'må ligge innenfor 20 000 km fra utgangspunktet',
   rb_gpx_numbers: 'lat og lon må være tall',
   rb_no_place_for_it: 'et veipunkt har ikke plass til det',
   rb_other_column: 'en annen kolonne passer bedre',
@@ -196,7 +198,7 @@ export const robot = {
     'en fart i en kjent enhet: det er m/s, m/min, km/h, mph, knots, ft/s, cm/s og mm/s',
   rb_table_counted:
     'begynner med et heltall, som alle rader: teller det dem, sett foran en linje som nevner kolonnene (number,lat,lon)',
-  rb_column_degrees: 'kolonne {n} må være et endelig tall, i grader med desimaler',
+  rb_column_degrees: 'kolonne {n} må være et endelig tall, eller grader, minutter og sekunder',
   rb_decimal_commas: "har bare heltall: med desimalkomma må feltene skilles av ';'",
   rb_quote_open: 'åpner et anførselstegn som ikke lukkes',
   rb_no_kml: 'må begynne et <kml>-dokument',
