@@ -93,9 +93,9 @@ struct Change {
   std::vector<Edit> edits;                     ///< one after the other
 
   /// Whether it matters to whoever looks for himself in the map, and to missions that count from
-  /// it: they do by its name.
-  bool moves() const noexcept {
-    if (changes_anchor || name) return true;
+  /// it: they do by its name. @param named what it is called by now
+  bool moves(const std::string& named) const noexcept {
+    if (changes_anchor || (name && *name != named)) return true;
     for (const Edit& e : edits) {
       if (e.kind != Edit::Kind::Forbid) return true;
     }

@@ -254,10 +254,13 @@ struct ChangedMap {
 };
 
 Result<ChangedMap> change(const MapDoor& door, std::int64_t id, const maps::Change& what) {
+  const auto before = door.shelf->find(id);
   auto about = door.shelf->change(id, what);
   if (!about) return tl::unexpected<Error>(about.error());
   ChangedMap out{std::move(*about), {}, {}};
-  if (!what.moves() || door.shelf->in_use() != id || !door.prepare) return out;
+  if (!what.moves(before ? before->name : std::string{}) || door.shelf->in_use() != id ||
+      !door.prepare)
+    return out;
   try {  // it is kept by now: an answer that it failed would have it done once more
     auto made = door.prepare(id, true);
     if (made) {
@@ -288,7 +291,8 @@ std::optional<std::string> look_through(const ContextPtr& context, const CallPtr
 
 void apply(const ContextPtr& context, const CallPtr& call, maps::Shelf& shelf, std::int64_t id,
            maps::Change what) {
-  if (what.moves() && shelf.in_use() == id) {
+  const auto now = shelf.find(id);
+  if (what.moves(now ? now->name : std::string{}) && shelf.in_use() == id) {
     if (const auto why = drives_by_itself(*context)) return call->respond(problem(*why));
   }
   context->aside(
