@@ -180,7 +180,8 @@ struct Deps {
   /// What the sensors see, for people; null: nothing yet. Empty: the robot has no sensors.
   std::function<std::shared_ptr<const robot::Outlook>()> outlook{};
   /// A person said where the robot stands, and the robot took it; empty: nobody looks for it.
-  std::function<void(base::LatLon, std::optional<double> yaw_rad)> pose_told{};
+  /// @param both place and heading were said; else one of them is what was believed
+  std::function<void(base::LatLon, std::optional<double> yaw_rad, bool both)> pose_told{};
   /// What is wrong with this computer now. Empty: nobody looks.
   std::function<std::vector<base::HostProblem>()> host{};
   /// Any number at a time, bounded. @return false: no room, nothing was taken. Empty: both at once.

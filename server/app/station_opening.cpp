@@ -364,8 +364,8 @@ void Station::Impl::make_api(const Settings& settings, const Options& options) {
   };
   if (sense) deps.outlook = [this] { return sense->outlook(); };
   if (place) {
-    deps.pose_told = [this](base::LatLon at, std::optional<double> yaw_rad) {
-      place->told({at, yaw_rad});
+    deps.pose_told = [this](base::LatLon at, std::optional<double> yaw_rad, bool both) {
+      place->told({at, yaw_rad, both});
     };
   }
   deps.identity = [this] { return presence->identity(); };

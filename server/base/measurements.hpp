@@ -279,6 +279,8 @@ struct PlaceFix {
   LatLon anchor;                      ///< where the map's origin lies
   double anchor_sigma_m = 0.0;        ///< how well that is known, 1 sigma
   double anchor_yaw_sigma_rad = 0.0;  ///< how well it is known which way the map looks, 1 sigma
+  /// A person said where north is: while nothing else tells it, it is what the map says.
+  bool north_said = false;
 };
 
 /// Off: no map is in use. Lost: what is seen fits nowhere.
@@ -304,6 +306,7 @@ struct PlaceState {
   PlacePhase phase = PlacePhase::Off;
   std::string map;     ///< its name; empty: none
   std::string reason;  ///< one phrase for people; empty: nothing is wrong
+  bool says_cure = false;  ///< the reason says what to do
   /// What is seen does not fit where somebody said that the robot is, or fits nowhere any more.
   bool denied = false;
   std::optional<MapPlace> in_map{};  ///< empty: not known

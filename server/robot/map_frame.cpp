@@ -23,9 +23,10 @@ base::Error against(const std::string& map, const std::string& why) {
 std::string not_found(const base::PlaceState& place) {
   const std::string why = place.reason.empty() ? "" : " (" + place.reason + ")";
   const bool lost = place.phase == PlacePhase::Lost;
-  const bool helps = place.reason.find("by hand") != std::string::npos;  // it says what to do
   return (lost ? "the robot is lost in it" : "the robot is not found in it yet") + why +
-         (helps ? "" : ": drive some metres by hand, or say where it stands (a tap on the map)");
+         (place.says_cure
+              ? ""
+              : ": drive some metres by hand, or say where it stands (a tap on the map)");
 }
 
 }  // namespace

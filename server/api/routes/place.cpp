@@ -51,11 +51,12 @@ Handler set_pose(const ContextPtr& context) {
     const robot::Validity validity = validity_of(members, *call, Moves::No);
     if (const auto read = members.finish(); !read) return call->respond(problem(read.error()));
     run_command(context, call, command, validity,
-                [context, state = state_after(context)](const base::Snapshot& snapshot) {
+                [context, both = !nothing && command.heading_deg,
+                 state = state_after(context)](const base::Snapshot& snapshot) {
                   if (context->deps.pose_told && snapshot.pose) {
                     const base::Pose& p = *snapshot.pose;
                     context->deps.pose_told(
-                        p.global, p.heading_known ? std::optional(p.yaw_rad) : std::nullopt);
+                        p.global, p.heading_known ? std::optional(p.yaw_rad) : std::nullopt, both);
                   }
                   return state(snapshot);
                 });

@@ -264,6 +264,7 @@ class Estimator {
     double turned_rad = 0.0;
   };
   Since driven_since(const StateVector& then, double yaw_rad) const noexcept;
+  void ask_north(base::PlaceFix& fix) noexcept;
   void watch_denial(const base::PlaceState& told) noexcept;
   void lead_by_map(Time stamp) noexcept;
   void fuse_place(const base::PlaceFix& fix, Time stamp) noexcept;
@@ -405,6 +406,7 @@ class Estimator {
   std::uint32_t map_found_ = 0;
   MapOffset map_offset_;                  ///< of health().map_offset
   double map_yaw_sigma_rad_ = 0.0;        ///< of the map's own heading on the earth
+  bool north_asked_ = false;              ///< satellites were heard beside this map
   bool denial_counted_ = false;           ///< what the map denies is in the claim
   std::optional<Time> last_by_landmark_;  ///< when one was fused
   std::optional<Time> by_landmark_at_;    ///< when one was to be

@@ -83,7 +83,7 @@ void Estimator::take(const base::PlaceState& told) {
   watch_denial(told);
   if (!told.fix) return;
   Input& in = health_.place;
-  const base::PlaceFix& fix = *told.fix;
+  base::PlaceFix fix = *told.fix;
   if (!sound(fix)) return refuse(in, Refusal::NotFinite);
   if (!in_order(in, last_place_, told.stamp)) return;
   if (now_ - told.stamp > kPlaceTooOld || history_.forgotten(told.stamp)) {
@@ -93,7 +93,7 @@ void Estimator::take(const base::PlaceState& told) {
   if (base::distance_bearing(frame_->origin(), fix.at).distance_m > base::LocalFrame::kReach_m) {
     return refuse(in, Refusal::Impossible);
   }
-  map_yaw_sigma_rad_ = fix.anchor_yaw_sigma_rad;
+  ask_north(fix);
   if (fix.map != map_) {
     map_ = fix.map;
     health_.map_offset = {};
@@ -103,6 +103,19 @@ void Estimator::take(const base::PlaceState& told) {
   if (!located_ || !heading_known_) return first_place(fix, told.stamp);
   if (satellites_lead()) return follow_satellites(fix, told.stamp);
   fuse_place(fix, told.stamp);
+}
+
+/// Which way north is by a person's word nobody asks indoors. From the first satellites on it is no
+/// surer than the word, and so is the heading that was believed by it.
+void Estimator::ask_north(base::PlaceFix& fix) noexcept {
+  const bool same = fix.map == map_;
+  const bool heard = beside_ && now_ - beside_->at < kPlaceFresh;
+  north_asked_ = (same && north_asked_) || heard;
+  if (fix.north_said && !north_asked_) fix.anchor_yaw_sigma_rad = 0.0;
+  const double more =
+      fix.anchor_yaw_sigma_rad * fix.anchor_yaw_sigma_rad - map_yaw_sigma_rad_ * map_yaw_sigma_rad_;
+  if (same && health_.by_map && more > 0.0) belief_.P(kYaw, kYaw) += more;
+  map_yaw_sigma_rad_ = fix.anchor_yaw_sigma_rad;
 }
 
 /// A person's word, and what the map said itself, are outweighed by what is seen; what satellites

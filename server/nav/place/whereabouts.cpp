@@ -42,6 +42,7 @@ base::PlaceState Whereabouts::use(std::shared_ptr<const MapInUse> map, base::Tim
   const bool same_lie = same_place && map_ && map && map_->anchor == map->anchor;
   const auto lie = same_lie ? anchor_ : std::nullopt;
   said_ = said_ && same_lie;
+  laid_by_word_ = laid_by_word_ && same_lie;
   number_ = same_lie ? number_ : map ? map->number : 0;
   found_before_ = same_lie ? found_ + 1 : 0;
   map_ = std::move(map);
@@ -106,7 +107,7 @@ bool Whereabouts::told(const Word& word) {
   if (!tracker_ || !base::is_valid(word.at)) return false;
   if (!anchor_ && p_.local_origin) anchor_ = MapAnchor{*p_.local_origin, 0.0, 0.0, 0.0};
   if (!anchor_) {
-    said_ = true;
+    said_ = said_ || (word.both && word.yaw_rad);
     return false;
   }
   const double yaw_rad = word.yaw_rad.value_or(0.0);
@@ -129,16 +130,24 @@ void Whereabouts::start_by_satellites(const Believed& b, base::Time stamp) {
 
 void Whereabouts::lay(const Pose2& in_map, base::Time stamp,
                       const std::optional<Believed>& believed) {
-  if (anchor_) return;
-  if (believed && believed->by_satellites) {
-    const bool sure = believed->sigma_m <= kSure_m && believed->yaw_sigma_rad <= kLay_rad;
-    if (sure) anchor_ = laid_by(*believed, in_map, stamp);
-  } else if (p_.local_origin) {
+  if (anchor_ && !laid_by_word_) return;
+  const auto known = [&believed](double sigma_m, double yaw_sigma_rad) {
+    return believed && believed->sigma_m <= sigma_m && believed->yaw_sigma_rad <= yaw_sigma_rad;
+  };
+  const bool heard = believed && believed->by_satellites;
+  if (heard && known(kSure_m, kLay_rad)) {
+    const auto laid = laid_by(*believed, in_map, stamp);
+    if (!laid) return;
+    if (laid_by_word_) number_ |= kLaidAnew;
+    anchor_ = laid;
+    laid_by_word_ = false;
+  } else if (anchor_) {
+    return;
+  } else if (!heard && p_.local_origin) {
     anchor_ = MapAnchor{*p_.local_origin, 0.0, 0.0, 0.0};
-  } else if (said_ && believed) {
+  } else if (said_ && known(kSure_m, kTap_rad)) {
     anchor_ = laid_by(*believed, in_map, stamp);
-    // Nothing else tells which way is north: from now on it is what the map says.
-    if (anchor_) anchor_->yaw_sigma_rad = 0.0;
+    laid_by_word_ = anchor_.has_value();
   }
 }
 
@@ -161,8 +170,9 @@ void Whereabouts::say_that_it_lies_nowhere(base::PlaceState& state) const {
   if (anchor_ || p_.local_origin) return;
   if (state.phase == base::PlacePhase::Known) {
     state.reason =
-        "nobody knows where on the earth the map lies, for it has no anchor, and no satellites are "
-        "heard: say where the robot stands and which way it points";
+        "nobody knows where on the earth the map lies, for it has no anchor, and no satellites "
+        "good "
+        "enough are heard: say where the robot stands and which way it points";
   } else if (state.phase == base::PlacePhase::Searching) {
     const char* const awaited =
         said_ ? "drive some metres by hand: what was said of where it stands counts once it is "
@@ -170,6 +180,7 @@ void Whereabouts::say_that_it_lies_nowhere(base::PlaceState& state) const {
               : "drive some metres by hand: a tap does not help before, for nobody knows where on "
                 "the earth the map lies";
     state.reason += state.reason.empty() ? awaited : std::string("; ") + awaited;
+    state.says_cure = true;
   }
 }
 
@@ -190,6 +201,7 @@ base::PlaceFix Whereabouts::fix_of(const Fix& fix, std::uint32_t found) const {
   out.anchor = anchor_->at;
   out.anchor_sigma_m = anchor_->sigma_m;
   out.anchor_yaw_sigma_rad = anchor_->yaw_sigma_rad;
+  out.north_said = laid_by_word_;
   return out;
 }
 
@@ -266,6 +278,7 @@ base::PlaceState Whereabouts::tell(const Look& look, const std::optional<Believe
   state.map = map_->name;
   state.phase = phase_for_people(told.phase, told.fitted);
   state.reason = told.reason;
+  state.says_cure = state.reason == kLostWords;
   state.denied = told.denied || told.phase == Phase::Lost;
   if (told.pose && told.fitted)
     state.in_map = base::MapPlace{told.pose->x_m, told.pose->y_m, told.pose->yaw_rad};

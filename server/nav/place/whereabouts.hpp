@@ -13,8 +13,8 @@
 // without one is laid where the satellites see the robot when its place in the map is known, as
 // surely as they are; where none are heard, at the origin of the local map (nav.estimate.map_lat,
 // map_lon), x to the east; without that, where a person has said that the robot stands, once its
-// place in the map is known. Where there is none of these, the place in the map is told, and no
-// fix.
+// place in the map is known, until satellites as good see it. Where there is none of these, the
+// place in the map is told, and no fix.
 //
 // Satellites that are good enough save the search: the tracker begins where they see the robot, and
 // believes it only if the scan fits there. What a person tells is taken likewise.
@@ -68,6 +68,7 @@ struct Believed {
 struct Word {
   base::LatLon at;
   std::optional<double> yaw_rad;  ///< empty: any
+  bool both = true;  ///< place and heading were said; else one of them is only believed
 };
 
 struct WhereaboutsParams {
@@ -93,6 +94,8 @@ class Whereabouts {
   /// A tap is off by so much (1 sigma).
   static constexpr double kTap_m = 0.5;
   static constexpr double kTap_rad = 0.26;
+  /// In the number of a map that was laid by satellites after a person's word had laid it.
+  static constexpr std::uint32_t kLaidAnew = 0x8000'0000U;
 
   explicit Whereabouts(const WhereaboutsParams& params = {}) : p_(params) {}
 
@@ -107,7 +110,8 @@ class Whereabouts {
 
   void moved(const sense::Odometry& o) noexcept { (void)history_.push(o); }
   /// @return false: no map is in use, or nobody knows where it lies: then it does not tell where in
-  /// the map the robot is, but the map is laid by it when that is known
+  /// the map the robot is, but the map is laid by it when that is known, if it was place and
+  /// heading and what is believed since is still about as sure as a tap
   bool told(const Word& word);
   /// One sensor is looked through: the best of WhereaboutsParams::eyes that is heard. Where it has
   /// told nothing for a second, the next one.
@@ -145,6 +149,7 @@ class Whereabouts {
   std::optional<CellTracker> cells_;  ///< of a map in three dimensions
   std::optional<MapAnchor> anchor_;
   bool said_ = false;  ///< where the robot stands, of a map that lay nowhere
+  bool laid_by_word_ = false;
   sense::PoseHistory history_;
   std::string eye_;        ///< the sensor that is looked through
   bool eye_rows_ = false;  ///< and as a cloud

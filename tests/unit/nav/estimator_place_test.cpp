@@ -34,6 +34,7 @@ class Mapped {
   double anchor_sigma_m = 0.5;
   double askew_rad = 0.0;  ///< the map lies turned by so much
   double anchor_yaw_sigma_rad = 0.0;
+  bool north_said = false;
   std::uint32_t found = 0;
   double fastest_mps = 0.0;  ///< the estimate beside the odometry, since forget()
 
@@ -82,6 +83,7 @@ class Mapped {
       f.anchor = kOrigin;
       f.anchor_sigma_m = anchor_sigma_m;
       f.anchor_yaw_sigma_rad = anchor_yaw_sigma_rad;
+      f.north_said = north_said;
       s.fix = f;
     }
     if (map) d.estimator.take(s, d.now());
@@ -239,6 +241,34 @@ TEST(EstimatorPlace, IsNoSurerOfTheHeadingThanTheMapOfItsOwn) {
   m.run(30.0);
   ASSERT_TRUE(m.d.pose());
   EXPECT_GE(m.d.pose()->yaw_sigma_rad, 0.05) << "however often it was matched";
+}
+
+TEST(EstimatorPlace, NorthByAWordCountsUntilSatellitesCouldTellIt) {
+  // Given: indoors, by a map whose north a person said, 10 degrees off.
+  Mapped m;
+  m.d.gnss = m.d.compass = false;
+  m.askew_rad = 0.17;
+  m.anchor_yaw_sigma_rad = 0.17;
+  m.north_said = true;
+  m.run(20.0);
+  ASSERT_TRUE(m.d.pose());
+  EXPECT_LT(m.d.pose()->yaw_sigma_rad, 0.02) << "every way there is counted by the map's north";
+  // When: satellites are heard beside it.
+  m.d.gnss = true;
+  m.d.fix = base::FixType::RtkFloat;
+  m.run(2.0);
+  // Then: nobody claims the heading any more, also when they are gone again.
+  EXPECT_GE(m.d.pose()->yaw_sigma_rad, 0.17);
+  m.d.gnss = false;
+  m.run(10.0);
+  EXPECT_GE(m.d.pose()->yaw_sigma_rad, 0.17);
+  // And: what they say on the way is believed.
+  m.d.gnss = true;
+  m.d.fix = base::FixType::RtkFixed;
+  m.map = false;
+  m.d.speed_mps = 1.0;
+  m.run(60.0);
+  EXPECT_LT(std::abs(m.d.yaw_error_deg()), 3.5) << "the rest may be a crab as well";
 }
 
 TEST(EstimatorPlace, AMapThatLiesAskewDoesNotReplaceTheTrueHeading) {

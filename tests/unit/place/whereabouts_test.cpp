@@ -251,13 +251,77 @@ TEST(Whereabouts, LaysAMapWhereAPersonSaysThatTheRobotStands) {
     EXPECT_LT(apart_m(told->lies->at, kShedAt), 0.12);
     EXPECT_NEAR(told->lies->yaw_rad, kTurned_rad, 0.03);
     EXPECT_EQ(told->fix->anchor_sigma_m, 0.6);
-    EXPECT_EQ(told->fix->anchor_yaw_sigma_rad, 0.0);
+    EXPECT_EQ(told->fix->anchor_yaw_sigma_rad, 0.17) << "as sure as the word";
+    EXPECT_TRUE(told->fix->north_said);
     // And: another map is laid by another word.
     w.where.use(Walk::map({}, 8), w.now());
     for (int i = 0; i < 20; ++i) told = w.step(0.1, 0.02, believed());
     ASSERT_TRUE(told && told->in_map);
     EXPECT_FALSE(told->fix);
   }
+}
+
+TEST(Whereabouts, LaysNoMapByAWordThatIsNotWholeOrLongAgo) {
+  struct Case {
+    bool both;
+    double sigma_m;
+    double yaw_sigma_rad;
+  };
+  for (const Case& c : {Case{false, 0.6, 0.17}, Case{true, 4.0, 0.17}, Case{true, 0.6, 0.5}}) {
+    Walk w({2.5, 3.0, 0.1});
+    w.where.use(Walk::map({}), w.now());
+    auto believed = w.by_satellites(c.sigma_m, c.yaw_sigma_rad);
+    EXPECT_FALSE(w.where.told({w.global(), w.at.yaw_rad + kTurned_rad, c.both}));
+    std::optional<base::PlaceState> told;
+    for (int i = 0; i < 20; ++i) {
+      believed = w.by_satellites(c.sigma_m, c.yaw_sigma_rad);
+      believed.by_satellites = false;
+      told = w.step(0.1, 0.02, believed);
+    }
+    ASSERT_TRUE(told && told->in_map);
+    EXPECT_FALSE(told->lies);
+    EXPECT_NE(told->reason.find("say where the robot stands"), std::string::npos) << told->reason;
+  }
+}
+
+TEST(Whereabouts, LaysAMapByAWordAlsoWhereSatellitesAreTooBadForIt) {
+  Walk w({2.5, 3.0, 0.1});
+  w.where.use(Walk::map({}), w.now());
+  EXPECT_FALSE(w.where.told({w.global(), w.at.yaw_rad + kTurned_rad}));
+  std::optional<base::PlaceState> told;
+  for (int i = 0; i < 20; ++i) told = w.step(0.1, 0.02, w.by_satellites(1.2, 0.15));
+  ASSERT_TRUE(told && told->lies);
+  EXPECT_EQ(told->fix->anchor_yaw_sigma_rad, 0.15);
+}
+
+TEST(Whereabouts, LaysAMapAnewThatLayByAWordOnceSatellitesAreSure) {
+  Walk w({2.5, 3.0, 0.1});
+  w.where.use(Walk::map({}), w.now());
+  // Given: a word that is 10 degrees off.
+  const auto believed = [&w] {
+    auto b = w.by_satellites(0.6, 0.17);
+    b.yaw_rad += 0.17;
+    b.by_satellites = false;
+    return b;
+  };
+  EXPECT_FALSE(w.where.told({w.global(), w.at.yaw_rad + kTurned_rad + 0.17}));
+  std::optional<base::PlaceState> told;
+  for (int i = 0; i < 20; ++i) told = w.step(0.1, 0.02, believed());
+  ASSERT_TRUE(told && told->lies);
+  EXPECT_NEAR(told->lies->yaw_rad, kTurned_rad + 0.17, 0.03);
+  const std::uint32_t number = told->fix->map;
+  // When: satellites see it, not sure of the heading at first.
+  told = w.step(0.1, 0.02, w.by_satellites(0.3, 0.1));
+  ASSERT_TRUE(told && told->fix);
+  EXPECT_EQ(told->fix->map, number);
+  told = w.step(0.1, 0.02, w.by_satellites(0.3));
+  // Then: it lies by them, as another map does.
+  ASSERT_TRUE(told && told->fix);
+  EXPECT_NEAR(told->lies->yaw_rad, kTurned_rad, 0.03);
+  EXPECT_LT(apart_m(told->fix->at, w.global()), 0.12);
+  EXPECT_NE(told->fix->map, number);
+  EXPECT_FALSE(told->fix->north_said);
+  EXPECT_EQ(told->fix->anchor_yaw_sigma_rad, 0.02);
 }
 
 TEST(Whereabouts, TakesTheLocalMapsOriginForTheMapsWhereNothingElseIsKnown) {

@@ -15,6 +15,7 @@ struct InShed : Field {
   PlacePhase phase = PlacePhase::Known;
   std::string map = "shed";
   std::string reason;
+  bool says_cure = false;
   bool seen = true;  ///< its scanner tells something
   std::optional<base::MapLies> lies = base::MapLies{kFrame.to_global({0.0, 10.0}), base::kPi / 2.0};
 
@@ -26,6 +27,7 @@ struct InShed : Field {
       place.phase = phase;
       place.map = map;
       place.reason = reason;
+      place.says_cure = says_cure;
       place.lies = lies;
       robot.measurements().put(place);
     };
@@ -86,6 +88,7 @@ TEST(MapFrame, IsNotLoadedWhereNobodyKnowsWhereItLies) {
       "map)");
   f.phase = PlacePhase::Lost;
   f.reason = "lost: drive by hand to a known place, or tap where the robot is";
+  f.says_cure = true;
   EXPECT_EQ(
       why(),
       "the mission counts from the map \"shed\": the robot is lost in it (lost: drive by hand "

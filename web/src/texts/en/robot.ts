@@ -253,7 +253,7 @@ export const robot = {
   rb_file_wrong_line: 'the file has 1 wrong value: line {line} {what}',
   rb_file_wrong_lines: 'the file has {n} wrong values, first line {line} {what}',
   rb_no_anchor:
-    'nobody knows where on the earth the map lies, for it has no anchor, and no satellites are heard: say where the robot stands and which way it points',
+    'nobody knows where on the earth the map lies, for it has no anchor, and no satellites good enough are heard: say where the robot stands and which way it points',
   rb_word_counts_once_found:
     'drive some metres by hand: what was said of where it stands counts once it is found there, for nobody knows where on the earth the map lies',
   rb_no_tap_before:

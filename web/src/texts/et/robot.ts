@@ -249,7 +249,7 @@ export const robot = {
   rb_file_wrong_line: 'failis on üks vale väärtus: rida {line} {what}',
   rb_file_wrong_lines: 'failis on {n} vale väärtust, esimesena rida {line} {what}',
   rb_no_anchor:
-    'keegi ei tea, kus kaart maakeral asub, sest tal pole ankrut ja satelliite pole kuulda: ütle, kus robot seisab ja kuhu ta osutab',
+    'keegi ei tea, kus kaart maakeral asub, sest tal pole ankrut ja küllalt häid satelliite pole kuulda: ütle, kus robot seisab ja kuhu ta osutab',
   rb_word_counts_once_found:
     'sõida mõni meeter käsitsi: öeldud koht hakkab kehtima, kui robot kaardilt leitakse, sest keegi ei tea, kus kaart maakeral asub',
   rb_no_tap_before:

@@ -252,7 +252,7 @@ export const robot = {
   rb_file_wrong_line: 'tiedostossa on yksi väärä arvo: rivi {line} {what}',
   rb_file_wrong_lines: 'tiedostossa on {n} väärää arvoa, ensin rivi {line} {what}',
   rb_no_anchor:
-    'kukaan ei tiedä, missä kartta maapallolla on, sillä sillä ei ole ankkuria eikä satelliitteja kuulu: kerro, missä robotti seisoo ja minne se osoittaa',
+    'kukaan ei tiedä, missä kartta maapallolla on, sillä sillä ei ole ankkuria eikä tarpeeksi hyviä satelliitteja kuulu: kerro, missä robotti seisoo ja minne se osoittaa',
   rb_word_counts_once_found:
     'aja muutama metri käsin: kerrottu paikka vaikuttaa, kun robotti on löytynyt kartalta, sillä kukaan ei tiedä, missä kartta maapallolla on',
   rb_no_tap_before:

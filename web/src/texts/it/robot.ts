@@ -255,7 +255,7 @@ export const robot = {
   rb_file_wrong_line: 'il file ha un valore sbagliato: riga {line} {what}',
   rb_file_wrong_lines: 'il file ha {n} valori sbagliati, prima la riga {line} {what}',
   rb_no_anchor:
-    'nessuno sa dove la mappa stia sulla terra, perché non ha un’ancora e non si sentono satelliti: di’ dove si trova il robot e dove punta',
+    'nessuno sa dove la mappa stia sulla terra, perché non ha un’ancora e non si sentono satelliti abbastanza buoni: di’ dove si trova il robot e dove punta',
   rb_word_counts_once_found:
     'guida qualche metro a mano: il posto detto vale quando il robot è trovato nella mappa, perché nessuno sa dove stia sulla terra',
   rb_no_tap_before:

@@ -253,7 +253,7 @@ export const robot = {
   rb_file_wrong_line: 'filen har én feil verdi: linje {line} {what}',
   rb_file_wrong_lines: 'filen har {n} feil verdier, først linje {line} {what}',
   rb_no_anchor:
-    'ingen vet hvor på jorden kartet ligger, for det har ikke noe anker, og ingen satellitter høres: si hvor roboten står og hvilken vei den peker',
+    'ingen vet hvor på jorden kartet ligger, for det har ikke noe anker, og ingen satellitter som er gode nok høres: si hvor roboten står og hvilken vei den peker',
   rb_word_counts_once_found:
     'kjør noen meter for hånd: stedet som ble sagt, gjelder når roboten er funnet i kartet, for ingen vet hvor på jorden kartet ligger',
   rb_no_tap_before:
