@@ -28,9 +28,11 @@ constexpr double kTurnPerRootMetre = 0.01;
 constexpr double kDriftOver_m = 3.0;  // of way it is learned
 constexpr double kMostDrift = 0.08;
 constexpr double kBendOver_m = 6.0;
-constexpr double kPastEnd_m = 1.0;              // farther behind it nobody drives along this row
-constexpr double kBendSigma_1pm = 0.005;        // at a row's end,
-constexpr double kEndShiftPerRootMetre = 0.01;  // and what moves the line there
+constexpr double kBendAtFirst_1pm = 1.0 / 15.0;  // 1 sigma while nothing was seen of it
+constexpr double kBendTells_m = 4.0;             // of way it takes to see some
+constexpr double kPastEnd_m = 1.0;               // farther behind it nobody drives along this row
+constexpr double kBendSigma_1pm = 0.005;         // at a row's end,
+constexpr double kEndShiftPerRootMetre = 0.01;   // and what moves the line there
 constexpr double kEndTurnPerRootMetre = 0.002;
 constexpr double kLeast_m = 0.01;  // nobody knows a hedge better than this
 
@@ -92,7 +94,7 @@ void RowFinder::lose() {
   line_.reset();
   view_.reset();
   last_ = {};
-  bend_1pm_ = 0.0;
+  bend_1pm_ = bend_over_m_ = 0.0;
   ending_ = false;
   unfitted_m_ = 0.0;
 }
@@ -189,7 +191,8 @@ LinePrior RowFinder::known() const noexcept {
   LinePrior known;
   if (!ends()) return known;
   known.curvature_1pm = bend_1pm_;
-  known.curvature_sigma_1pm = kBendSigma_1pm;
+  known.curvature_sigma_1pm =
+      kBendSigma_1pm + kBendAtFirst_1pm * std::exp(-bend_over_m_ / kBendTells_m);
   if (!ending_) return known;
   const double root = std::sqrt(std::max(1e-4, unfitted_m_));
   known.aside_m = kEndShiftPerRootMetre * root;
@@ -220,6 +223,7 @@ void RowFinder::fit() {
   }
   const bool ends = this->ends();
   if (!ends) {
+    bend_over_m_ += unfitted_m_;
     bend_1pm_ += std::min(1.0, unfitted_m_ / kBendOver_m) * (now.curvature_1pm - bend_1pm_);
   } else if (ending_) {
     now.covariance = line_->covariance;  // what was known before is not known twice

@@ -75,10 +75,11 @@ class RowFinder {
   double unfitted_m_ = 0.0;
   double met_m_ = 0.0;  ///< seeing by rays: way with a side in sight
   double learned_at_m_ = 0.0;
-  double drift_ = 0.0;     ///< RowView::drift
-  double bend_1pm_ = 0.0;  ///< the row's curvature, over some metres of way
-  bool ending_ = false;    ///< the line is kept, for its end is in sight
-  long cleared_to_ = 0;    ///< bins of the ring that are new ones
+  double drift_ = 0.0;        ///< RowView::drift
+  double bend_1pm_ = 0.0;     ///< the row's curvature, over some metres of way
+  double bend_over_m_ = 0.0;  ///< of how much it was learned
+  bool ending_ = false;       ///< the line is kept, for its end is in sight
+  long cleared_to_ = 0;       ///< bins of the ring that are new ones
   std::optional<base::Time> fitted_;
   Fitted last_;
   std::optional<RowView> view_;

@@ -108,6 +108,23 @@ TEST(RowDriving, LeavesABentRowAlongItsBend) {
   }
 }
 
+// Of a short row that bends all along not much is known before its end is in sight.
+TEST(RowDriving, LeavesAShortBentRowAlongItsBend) {
+  double worst_m = 0.0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    for (const double long_m : {4.0, 5.0, 6.0}) {
+      const Block block(
+          {.bends = {{long_m, seed % 2 == 0 ? 1.0 / 15.0 : -1.0 / 15.0}}, .seed = seed});
+      DriveSetup setup;
+      setup.seed = seed;
+      const DriveTold t = drive_row(block, setup);
+      EXPECT_TRUE(t.done) << t.reason;
+      worst_m = std::max({worst_m, t.worst_m, std::abs(t.end_off_m)});
+    }
+  }
+  EXPECT_LT(worst_m, 0.175);
+}
+
 // The left row ends 3 m later: the lane ends with it.
 TEST(RowDriving, EndsWithTheSideThatIsLonger) {
   const Block block({.bends = {{18.0, 0.0}}, .gaps = 0.2, .ragged_m = 3.0, .seed = 6});
