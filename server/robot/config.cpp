@@ -75,8 +75,6 @@ base::Result<void> check_orders(const Config& c) {
       Order{c.modes.follow_hold_s, c.modes.follow_brake_s, "nav.modes.follow_hold_s",
             "nav.modes.follow_brake_s"},
       Order{c.row.unsure_m, c.row.sure_m, "nav.row.unsure_m", "nav.row.sure_m"},
-      Order{c.rows.high_m, c.rows.low_m, "nav.rows.high_m", "nav.rows.low_m"},
-      Order{c.rows.width_max_m, c.rows.width_min_m, "nav.rows.width_max_m", "nav.rows.width_min_m"},
       Order{c.safety.gnss_hold_s, c.safety.gnss_slow_s, "robot.safety.gnss_hold_s",
             "robot.safety.gnss_slow_s"},
       Order{c.safety.sigma_hold_m, c.safety.sigma_slow_m, "robot.safety.sigma_hold_m",
@@ -110,6 +108,7 @@ base::Result<void> check(const Config& c) {
   if (auto good = in_section("radio", check(c.radio)); !good) return good;
   if (auto good = in_section("nav.tool", check(c.tool)); !good) return good;
   if (auto good = in_section("nav.landmarks", check(c.landmarks)); !good) return good;
+  if (auto good = in_section("nav.rows", nav::rows::check(c.rows)); !good) return good;
   if (auto good = in_section("nav.tag_dock", nav::tags::check(c.tag_dock)); !good) return good;
   if (auto good = in_section("sense.rays", nav::sense::check(c.rays)); !good) return good;
   if (auto good = in_section("sense.blocked", check(c.blocked)); !good) return good;

@@ -77,6 +77,8 @@ TEST(Parameters, WhatAStartWouldRefuseAChangeRefusesInTheSameWords) {
        "nav.speed.reverse_max_mps must not be below nav.speed.min_mps"},
       {"nav.modes.follow_brake_s", 9.0, [](Config& c) { c.modes.follow_brake_s = 9.0; },
        "nav.modes.follow_hold_s must not be below nav.modes.follow_brake_s"},
+      {"nav.rows.low_m", 1.5, [](Config& c) { c.rows.low_m = 1.5; },
+       "nav.rows.low_m must be smaller than high_m"},
       {"robot.safety.gnss_slow_s", 50.0, [](Config& c) { c.safety.gnss_slow_s = 50.0; },
        "robot.safety.gnss_hold_s must not be below robot.safety.gnss_slow_s"},
       {"robot.safety.sigma_slow_m", 9.0, [](Config& c) { c.safety.sigma_slow_m = 9.0; },
