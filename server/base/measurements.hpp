@@ -304,8 +304,8 @@ struct MapLies {
 struct PlaceState {
   Time stamp;  ///< when it was seen; of Off: when it was told
   PlacePhase phase = PlacePhase::Off;
-  std::string map;     ///< its name; empty: none
-  std::string reason;  ///< one phrase for people; empty: nothing is wrong
+  std::string map;         ///< its name; empty: none
+  std::string reason;      ///< one phrase for people; empty: nothing is wrong
   bool says_cure = false;  ///< the reason says what to do
   /// What is seen does not fit where somebody said that the robot is, or fits nowhere any more.
   bool denied = false;
