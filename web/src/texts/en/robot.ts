@@ -1,7 +1,10 @@
 // What the robot itself says, as it says it: its sentences are found by these, and said in other languages.
 // What stands in braces is whatever it fills in there; `why` and `what` are sentences of their own.
 
+import { robot_files } from './robot_files';
+
 export const robot = {
+  ...robot_files,
   rb_estop_latched: 'the emergency stop is latched',
   rb_estop_latched_2: 'emergency stop is latched',
   rb_estop_reset_first: 'emergency stop is latched: reset it first',

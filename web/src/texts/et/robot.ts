@@ -1,6 +1,9 @@
 // What the robot itself says (texts/en/robot.ts).
 
+import { robot_files } from './robot_files';
+
 export const robot = {
+  ...robot_files,
   rb_estop_latched: 'hädaseis on lukus',
   rb_estop_latched_2: 'hädaseis on lukus',
   rb_estop_reset_first: 'hädaseis on lukus: vabasta see kõigepealt',

@@ -1,6 +1,9 @@
 // What the robot itself says (texts/en/robot.ts).
 
+import { robot_files } from './robot_files';
+
 export const robot = {
+  ...robot_files,
   rb_estop_latched: 'l’arresto d’emergenza è inserito',
   rb_estop_latched_2: 'l’arresto d’emergenza è inserito',
   rb_estop_reset_first: 'l’arresto d’emergenza è inserito: prima va sbloccato',

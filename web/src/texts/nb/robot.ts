@@ -1,6 +1,9 @@
 // What the robot itself says (texts/en/robot.ts).
 
+import { robot_files } from './robot_files';
+
 export const robot = {
+  ...robot_files,
   rb_estop_latched: 'nødstoppen er låst',
   rb_estop_latched_2: 'nødstoppen er låst',
   rb_estop_reset_first: 'nødstoppen er låst: tilbakestill den først',
