@@ -37,6 +37,8 @@ const SOURCES: readonly (readonly [files: RegExp, sentences: RegExp])[] = [
   [/^mission\/formats\/kmz_file\.cpp$/, /(?:bad_archive\(|why = )"([^"]+)"[;)]/g],
   [/^robot\/guard\/\w+\.cpp$/, /return "([a-z]\w* [^"]+)";/g],
   [/^robot\/guard\/watched\.cpp$/, /(?:told\(|again =|[?:])\s*"([a-z]\w* [^"]+)"[;:)\s]/g],
+  [/^nav\/around\/around\.cpp$/, /return "([a-z]\w* \w+ [^"]+)";/g],
+  [/^robot\/modes\/around\.cpp$/, /(?:"no_way_around",|\?) "([a-z]\w* [^"]+[a-z])"[);\n]/g],
   [/^nav\/sense\/health\.cpp$/, /(?:say\(Eye::\w+,|[?:]) "([a-z]\w* [^"]+)"\s?[:)]/g],
 ];
 /** Said in English in all languages; the list only ever gets shorter. */
