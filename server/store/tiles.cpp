@@ -61,6 +61,11 @@ std::optional<Bounds> common(const Bounds& a, const Bounds& b) {
   return out;
 }
 
+/// What holds both.
+Bounds hull(const Bounds& a, const Bounds& b) {
+  return {std::min(a[0], b[0]), std::min(a[1], b[1]), std::max(a[2], b[2]), std::max(a[3], b[3])};
+}
+
 /// "24.5,58.2,24.9,58.5"; empty unless it is four numbers in range, west before east and south
 /// before north.
 std::optional<Bounds> read_bounds(const std::string& text) {
@@ -261,9 +266,11 @@ void TileFile::place() {
   const int least = about_.min_zoom;
   const auto coarse = db.if_cheap([&](int strides) { return db.extent(least, strides); });
   const auto deepest = seen(from_north_);
-  const auto all = coarse && *coarse && !is_pyramid(**coarse, **extent, zoom - least)
-                       ? bounds_between(least, **coarse, from_north_)
-                       : deepest;
+  auto all = deepest;
+  if (coarse && *coarse && zoom >= least && !is_pyramid(**coarse, **extent, zoom - least)) {
+    const auto wide = bounds_between(least, **coarse, from_north_);
+    if (wide) all = deepest ? hull(*wide, *deepest) : *wide;
+  }
   const auto both = said && all && fits(from_north_) ? common(*said, *all) : std::nullopt;
   about_.bounds_deg = both ? both : all ? all : deepest;
 }

@@ -107,6 +107,9 @@ class GeoJsonReader {
       if (has_properties && says_fence(*properties)) {
         return problems_.add(where, "must be a Polygon, or a Point with radius_m, to be a fence");
       }
+      if (has_properties && properties->value("rally", json()) == true) {
+        return problems_.add(where, "must be a Point to be a rally point");
+      }
       return builder_.leave_out(where, "Feature", "it has no geometry");
     }
     if (has_properties && take_fence_feature(*properties, *shape, {where, where + "/geometry"},

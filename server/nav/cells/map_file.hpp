@@ -24,7 +24,7 @@ struct ReadMap {
   explicit ReadMap(double cell_m) : map(cell_m) {}
   CellMap map;
   std::size_t points = 0;     ///< of the file; of a map's own file: cells
-  std::size_t no_number = 0;  ///< of them, left out: NaN, infinite, or a cell without points
+  std::size_t no_number = 0;  ///< of them, left out: NaN, infinite, or a cell that cannot be
   std::size_t too_far = 0;    ///< of them, left out: beyond reach_m()
   bool viewpoint = false;     ///< the header moves or turns the sensor; the points stay as they are
 };

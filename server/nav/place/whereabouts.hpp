@@ -13,8 +13,8 @@
 // without one is laid where the satellites see the robot when its place in the map is known, as
 // surely as they are; where none are heard, at the origin of the local map (nav.estimate.map_lat,
 // map_lon), x to the east; without that, where a person has said that the robot stands, once its
-// place in the map is known, until satellites as good see it. Where there is none of these, the
-// place in the map is told, and no fix.
+// place in the map is known, until satellites that are sure (kSure_m, kLay_rad) see it. Where there
+// is none of these, the place in the map is told, and no fix.
 //
 // Satellites that are good enough save the search: the tracker begins where they see the robot, and
 // believes it only if the scan fits there. What a person tells is taken likewise.

@@ -12,7 +12,8 @@
 //
 // What may be grass at all Hills says (low over the ground within 0.6 m); what was found to be
 // grass is told to it, and taken back where what is met there by then stops more than kMany: within
-// a second. Between the two it stays what it was.
+// a second, where no tips share its place. Between the two it stays what it was, for as long as
+// ground is known.
 // Of one sensor of one plane with thin beams. Not shared between threads.
 
 #include <array>
@@ -59,7 +60,8 @@ class Grass {
   static Thin thin_of(const Place& p) noexcept;
   void look_through(const Reduced& in, const Sectors& rays);
 
-  std::vector<Place> places_;  ///< by cell; two that share one take turns
+  std::vector<Place>
+      places_;  ///< by cell; what is not known yet goes before ground that is asked on
 };
 
 }  // namespace roverd::nav::sense

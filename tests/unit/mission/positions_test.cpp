@@ -227,6 +227,11 @@ TEST(Positions, ThatArePartOfAFenceAreNeverLeftOut) {
               {"type":"Feature","properties":{},"geometry":
                 {"type":"LineString","coordinates":[[26,58],[26.001,58]]}}]})"),
             "/features/0: must be a Polygon, or a Point with radius_m, to be a fence");
+  EXPECT_EQ(told(R"({"type":"FeatureCollection","features":[
+              {"type":"Feature","properties":{"rally":true},"geometry":null},
+              {"type":"Feature","properties":{},"geometry":
+                {"type":"LineString","coordinates":[[26,58],[26.001,58]]}}]})"),
+            "/features/0: must be a Point to be a rally point");
 }
 
 //   Without one position the list of what each has beside it belongs to none.

@@ -181,6 +181,18 @@ TEST_F(FieldTiles, LieWhereAllZoomsDoThoughTheDeepestIsOfOneCorner) {
   EXPECT_EQ(bounds("('scheme', 'tms')"), whole);
 }
 
+TEST_F(FieldTiles, LieAlsoWhereTheDeepestZoomAloneIs) {
+  // Given: two downloads in one set, of zoom 5 here and of zoom 12 elsewhere.
+  const auto file = with("('scheme', 'tms')", false);
+  SQLite::Database(file.string(), SQLite::OPEN_READWRITE)
+      .exec("INSERT INTO tiles SELECT 5, 3, 22, tile_data FROM tiles");
+  const auto wide = bounds_of({5, 3, 9});
+  const auto deep = bounds_of(kAt);
+  const std::array all = {std::min(wide[0], deep[0]), std::min(wide[1], deep[1]),
+                          std::max(wide[2], deep[2]), std::max(wide[3], deep[3])};
+  EXPECT_EQ(shelf({{"farm", file}})->sets().at(0).bounds_deg, all);
+}
+
 TEST_F(FieldTiles, TheDeepestZoomTellsWhereTheyLieIfTheOthersAreWhatHoldsIt) {
   const auto file = with("('scheme', 'tms')", false);
   SQLite::Database(file.string(), SQLite::OPEN_READWRITE)
