@@ -111,6 +111,9 @@ struct MapDoor {
   std::function<base::Result<Take>(std::int64_t id, bool same_place)> prepare{};
   /// From now on none is in use.
   std::function<void()> drop{};
+  /// Any thread but the web's: waits until the robot looks in what was chosen, or in none.
+  /// @return false: not within 3 s, for a search of a large map takes a second. Empty: nobody looks.
+  std::function<bool()> looks{};
   /// Any thread: where the map in use lies on the earth, by its anchor or by what was found. Empty:
   /// nobody knows yet.
   std::function<std::optional<maps::Anchor>()> placed{};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <ctime>
 #include <optional>
@@ -169,9 +170,25 @@ void PlaceLoop::take_maps() {
   }
   if (!next) return;
   const bool same_place = next->same_place;
-  robot_.measurements().put(where_.use(std::move(next->map), base::steady_now(), same_place));
+  const base::Time now = base::steady_now();
+  robot_.measurements().put(where_.use(std::move(next->map), now, same_place));
   tell_placed();
+  begun_ = now;
   done_ = asked;
+}
+
+bool PlaceLoop::looks_within(base::Duration most) const {
+  constexpr auto kOften = std::chrono::milliseconds(5);
+  const base::Time until = base::steady_now() + most;
+  const auto told = [this] {
+    const auto snapshot = robot_.snapshot();
+    return !changes() && snapshot && snapshot->place && snapshot->place->stamp >= begun_.load();
+  };
+  while (!told()) {
+    if (base::steady_now() >= until) return false;
+    std::this_thread::sleep_for(kOften);
+  }
+  return true;
 }
 
 std::shared_ptr<const nav::place::MapAnchor> PlaceLoop::placed() const {

@@ -52,6 +52,9 @@ class PlaceLoop {
   void use(Map map, bool same_place);
   /// Any thread: another map was asked for and is not looked in yet.
   bool changes() const noexcept { return done_ != asked_; }
+  /// Waits until what was asked for is looked in, and the robot tells so. @return false: not within
+  /// that time
+  bool looks_within(base::Duration most) const;
   /// Any thread: how the map in use lies on the earth; null: nobody knows.
   std::shared_ptr<const nav::place::MapAnchor> placed() const;
 
@@ -76,6 +79,7 @@ class PlaceLoop {
   base::Latest<nav::place::MapAnchor> placed_;
   std::atomic<std::uint64_t> asked_{0};  ///< for another map, so often; with choice_mutex_ held
   std::atomic<std::uint64_t> done_{0};
+  std::atomic<base::Time> begun_{};  ///< with the map that is looked in
   std::vector<std::shared_ptr<const base::Sight>> sight_batch_;
   std::vector<nav::sense::Odometry> moved_batch_;
   std::vector<nav::place::Word> word_batch_;

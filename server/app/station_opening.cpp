@@ -144,6 +144,7 @@ api::MapDoor Station::Impl::map_door() {
     return [this, map = std::move(*made), same_place] { place->use(map, same_place); };
   };
   door.drop = [this] { place->use(nullptr, false); };
+  door.looks = [this] { return place->looks_within(std::chrono::seconds(3)); };
   door.placed = [this]() -> std::optional<maps::Anchor> {
     const auto placed = place->placed();
     return placed ? std::optional(told_anchor(*placed)) : std::nullopt;

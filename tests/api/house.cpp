@@ -150,6 +150,7 @@ api::MapDoor House::map_door(const Before& before) {
   api::MapDoor out;
   out.shelf = shelf_.get();
   if (!before.sees) return out;
+  out.looks = [this] { return map_looks.load(); };
   out.prepare = [this](std::int64_t id, bool same_place) -> base::Result<api::MapDoor::Take> {
     if (const auto map = shelf_->read(id); !map) return tl::unexpected(map.error());
     return [this, id, same_place] {

@@ -89,6 +89,7 @@ class House {
   std::atomic<int> drills_stopped{0};
   /// The map in which it is looked for, as it was taken last; -1: none, -2: nobody said a word.
   std::atomic<std::int64_t> map_taken{-2};
+  std::atomic<bool> map_looks{true};
   std::atomic<bool> map_same_place{false};
   std::atomic<bool> making{false};  ///< a map
   std::filesystem::path maps_folder() const { return folder_ / "maps"; }

@@ -360,6 +360,16 @@ TEST_F(MapsApi, TheChoiceActsAtOnceAndIsWrittenDown) {
   EXPECT_EQ(call("POST", "/maps/2/use").status, 404u);
 }
 
+TEST_F(MapsApi, AChoiceInWhichTheRobotDoesNotLookYetIsNotSaidToBeInUse) {
+  ASSERT_EQ(add().status, 201u);
+  house.map_looks = false;  // it is busy for longer than anybody waits
+  for (const char* path : {"/maps/1/use", "/maps/unuse"}) {
+    const auto reply = call("POST", path);
+    EXPECT_EQ(reply.status, 503u);
+    EXPECT_EQ(reply.body["detail"], "it is chosen and kept, but the robot does not look there yet");
+  }
+}
+
 TEST_F(MapsApi, WhatAnotherOneForbadeMeanwhileIsNotAllowedUnseen) {
   ASSERT_EQ(add().status, 201u);
   const auto revision = call("GET", "/maps/1").body["revision"].get<int>();

@@ -170,6 +170,8 @@ def is_made_by_a_drive():
         check(up[len(up) // 2] < 0.08 and up[len(up) * 95 // 100] < 0.2, "they stand where the walls do")
         barn.control.ask({"fault": {"gnss_outage": True}})
         barn.rest.do("POST", f"/maps/{made['id']}/use")
+        looked = barn.rest.get("/vehicle")["place"]["map"]
+        check(looked == "barn", f"the answer came before the robot looked in it: {looked}")
         until("the map leads", 20, lambda: barn.position_by("map"), 0.2)
         barn.drives_rightly()
         check(barn.truth()["contacts"] == 0, "it touched nothing")

@@ -25,9 +25,9 @@ using base::Result;
 
 constexpr std::int64_t kUsualCells = 1'000'000;
 constexpr std::int64_t kMostCells = 40'000'000;
-const Effort kLook{Effort::kAtOnce + 1};  // a disk may pause
-const Effort kCells{Effort::kSlow};       // all cells of a map
-const Effort kKeep{Effort::kSmall + 1, true};
+const Effort kLook{Effort::kAtOnce + 1};        // a disk may pause
+const Effort kCells{Effort::kSlow};             // all cells of a map
+const Effort kKeep{Effort::kSlow, true};        // waits for the robot
 const Effort kTell{Effort::kAtOnce + 1, true};  // what was done is told, however many ask
 
 Response no_shelf() {
@@ -112,13 +112,18 @@ struct Beside {
   }
 };
 
-/// The choice is in force; it is written down, and the answer tells it.
+/// The choice is made; it is written down, and the answer tells it once the robot looks there.
 void keep_choice(const ContextPtr& context, const CallPtr& call, std::function<Response()> answer) {
   context->answer_aside(
-      call, kKeep, [shelf = context->deps.maps.shelf, answer = std::move(answer)]() -> Response {
-        if (const auto kept = shelf->keep_choice(); !kept) {
+      call, kKeep, [door = context->deps.maps, answer = std::move(answer)]() -> Response {
+        if (const auto kept = door.shelf->keep_choice(); !kept) {
           return problem({Code::Unavailable,
                           "it is so now, but not after a restart: " + kept.error().detail,
+                          {}});
+        }
+        if (door.looks && !door.looks()) {
+          return problem({Code::Unavailable,
+                          "it is chosen and kept, but the robot does not look there yet",
                           {}});
         }
         return answer();
