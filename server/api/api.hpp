@@ -112,7 +112,8 @@ struct MapDoor {
   /// From now on none is in use.
   std::function<void()> drop{};
   /// Any thread but the web's: waits until the robot looks in what was chosen, or in none.
-  /// @return false: not within 3 s, for a search of a large map takes a second. Empty: nobody looks.
+  /// @return false: not within 3 s, for a search of a large map takes a second. Empty: nobody
+  /// looks.
   std::function<bool()> looks{};
   /// Any thread: where the map in use lies on the earth, by its anchor or by what was found. Empty:
   /// nobody knows yet.

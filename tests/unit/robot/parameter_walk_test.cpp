@@ -42,8 +42,9 @@ std::vector<base::ParamValue> others(const Parameter& p) {
   if (const auto* flag = std::get_if<bool>(&p.info.value)) return {!*flag};
   if (const auto* number = std::get_if<double>(&p.info.value)) {
     std::vector<base::ParamValue> out;
-    for (const double v : {*p.info.max, *p.info.min, 0.5 * *number, 1.5 * *number,
-                           0.5 * (*p.info.min + *p.info.max)}) {
+    for (const double v :
+         {*p.info.max, *p.info.min, 0.5 * *number, 1.5 * *number, 0.5 * (*p.info.min + *p.info.max),
+          0.99 * *p.info.min + 0.01 * *p.info.max}) {
       const double fits = p.info.integer ? std::round(v) : v;
       if (fits >= *p.info.min && fits <= *p.info.max && fits != *number) out.emplace_back(fits);
     }
