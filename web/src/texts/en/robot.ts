@@ -162,7 +162,7 @@ export const robot = {
   rb_goes_on_beyond: 'what stands there goes on beyond what is looked at',
   rb_corridor_no_way: 'the corridor leaves no way',
   rb_fence_no_way: 'the fence leaves no way',
-  rb_way_unseen: 'the way leads through what no sensor has seen',
+  rb_around_unseen: 'the way leads through what no sensor has seen',
   rb_too_narrow_turn: 'the vehicle cannot turn as narrowly as it would have to',
   rb_stands_in_it: 'the vehicle stands in what blocks it',
   rb_target_in_it: 'what the route leads to lies in what blocks it',

@@ -159,7 +159,7 @@ export const robot = {
   rb_goes_on_beyond: 'mis seal seisab, jätkub kaugemale, kui vaadatakse',
   rb_corridor_no_way: 'koridor ei jäta teed',
   rb_fence_no_way: 'piir ei jäta teed',
-  rb_way_unseen: 'tee viib läbi selle, mida ükski andur pole näinud',
+  rb_around_unseen: 'tee viib läbi selle, mida ükski andur pole näinud',
   rb_too_narrow_turn: 'sõiduk ei saa pöörata nii järsult, kui vaja',
   rb_stands_in_it: 'sõiduk seisab selle sees, mis teda takistab',
   rb_target_in_it: 'see, kuhu tee viib, asub takistuse sees',

@@ -160,7 +160,7 @@ export const robot = {
   rb_goes_on_beyond: 'se, mikä siellä on, jatkuu kauemmas kuin katsotaan',
   rb_corridor_no_way: 'käytävä ei jätä tietä',
   rb_fence_no_way: 'aita ei jätä tietä',
-  rb_way_unseen: 'tie vie sen läpi, mitä mikään anturi ei ole nähnyt',
+  rb_around_unseen: 'tie vie sen läpi, mitä mikään anturi ei ole nähnyt',
   rb_too_narrow_turn: 'ajoneuvo ei käänny niin jyrkästi kuin pitäisi',
   rb_stands_in_it: 'ajoneuvo seisoo siinä, mikä sen estää',
   rb_target_in_it: 'se, mihin reitti johtaa, on esteessä',

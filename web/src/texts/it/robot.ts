@@ -163,7 +163,7 @@ export const robot = {
   rb_goes_on_beyond: 'ciò che sta lì prosegue oltre quanto si guarda',
   rb_corridor_no_way: 'il corridoio non lascia passaggio',
   rb_fence_no_way: 'il recinto non lascia passaggio',
-  rb_way_unseen: 'il percorso attraversa ciò che nessun sensore ha visto',
+  rb_around_unseen: 'il percorso attraversa ciò che nessun sensore ha visto',
   rb_too_narrow_turn: 'il veicolo non può svoltare stretto quanto dovrebbe',
   rb_stands_in_it: 'il veicolo sta dentro ciò che lo blocca',
   rb_target_in_it: 'ciò a cui porta il percorso sta in ciò che lo blocca',

@@ -161,7 +161,7 @@ export const robot = {
   rb_goes_on_beyond: 'det som står der, fortsetter lenger enn det ses',
   rb_corridor_no_way: 'korridoren lar ingen vei være',
   rb_fence_no_way: 'gjerdet lar ingen vei være',
-  rb_way_unseen: 'veien går gjennom det ingen sensor har sett',
+  rb_around_unseen: 'veien går gjennom det ingen sensor har sett',
   rb_too_narrow_turn: 'kjøretøyet kan ikke svinge så krapt som det måtte',
   rb_stands_in_it: 'kjøretøyet står i det som sperrer',
   rb_target_in_it: 'det ruten fører til, ligger i det som sperrer',
