@@ -25,20 +25,10 @@ const SOURCES: readonly (readonly [files: RegExp, sentences: RegExp])[] = [
     /^mission\/formats\/(kml|csv|gpx|geojson)_file\.cpp$/,
     /kNoPosition =\s*"([^"]+)";|refuse\([^";]*"([a-z][^"]+)"\)/g,
   ],
-  [
-    /^mission\/formats\/\w+\.cpp$/,
-    /(?:leave_out|change|change_row|note_item|note)\([^;"]*(?:"[a-z_]+",\s*)?"([a-z0-9/]+ [^"]*[a-z])"\)/g,
-  ],
-  [
-    /^mission\/formats\/\w+\.cpp$/,
-    /(?:[?:]|reason =|note =|kNoCommand =|LeftOut,|std::string\()\s*"([a-z0-9/]+ [^"]*[a-z])"[;),]/g,
-  ],
   [/^mission\/formats\/csv_columns\.cpp$/, /none\([\w:]+,\s*"([^"]+)"\)/g],
   [/^mission\/formats\/kmz_file\.cpp$/, /(?:bad_archive\(|why = )"([^"]+)"[;)]/g],
   [/^robot\/guard\/\w+\.cpp$/, /return "([a-z]\w* [^"]+)";/g],
   [/^robot\/guard\/watched\.cpp$/, /(?:told\(|again =|[?:])\s*"([a-z]\w* [^"]+)"[;:)\s]/g],
-  [/^nav\/around\/around\.cpp$/, /return "([a-z]\w* \w+ [^"]+)";/g],
-  [/^robot\/modes\/around\.cpp$/, /(?:"no_way_around",|\?) "([a-z]\w* [^"]+[a-z])"[);\n]/g],
   [/^nav\/sense\/health\.cpp$/, /(?:say\(Eye::\w+,|[?:]) "([a-z]\w* [^"]+)"\s?[:)]/g],
 ];
 /** Said in English in all languages; the list only ever gets shorter. */
@@ -168,23 +158,6 @@ describe('what the robot says', () => {
     );
     expect(robot_says('column 2 must be a finite number, or degrees, minutes and seconds')).toBe(
       'sarakkeen 2 on oltava äärellinen luku tai asteita, minuutteja ja sekunteja',
-    );
-  });
-
-  test('is said of the rows of a file, each with all that was changed', () => {
-    in_finnish();
-    expect(robot_says('a height of 120000 cannot be kept; driven straight, not as a curve')).toBe(
-      'korkeutta 120000 ei voi säilyttää; ajetaan suoraan, ei kaarena',
-    );
-    expect(robot_says('the robot stops at a fence; rally points are where it can be sent')).toBe(
-      'robotti pysähtyy aidalle; kokoontumispisteisiin sen voi lähettää',
-    );
-    expect(
-      robot_says(
-        'a point of the map "hall; 2", written as a waypoint where that lies by now; its heading is lost',
-      ),
-    ).toBe(
-      'kartan ”hall; 2” piste, kirjoitettu reittipisteeksi sinne, missä kartta nyt on; sen suunta katoaa',
     );
   });
 

@@ -1,9 +1,6 @@
 // What the robot itself says (texts/en/robot.ts).
 
-import { robot_files } from './robot_files';
-
 export const robot = {
-  ...robot_files,
   rb_estop_latched: 'l’arresto d’emergenza è inserito',
   rb_estop_latched_2: 'l’arresto d’emergenza è inserito',
   rb_estop_reset_first: 'l’arresto d’emergenza è inserito: prima va sbloccato',
@@ -159,21 +156,6 @@ export const robot = {
   rb_blocked_alone: 'bloccato: {why}',
   rb_waits_clear: 'aspetta finché la via è libera',
   rb_looks_around: 'si cerca una via per aggirarlo',
-  rb_no_gap: 'nessun varco è abbastanza largo',
-  rb_goes_on_beyond: 'ciò che sta lì prosegue oltre quanto si guarda',
-  rb_corridor_no_way: 'il corridoio non lascia passaggio',
-  rb_fence_no_way: 'il recinto non lascia passaggio',
-  rb_around_unseen: 'il percorso attraversa ciò che nessun sensore ha visto',
-  rb_too_narrow_turn: 'il veicolo non può svoltare stretto quanto dovrebbe',
-  rb_stands_in_it: 'il veicolo sta dentro ciò che lo blocca',
-  rb_target_in_it: 'ciò a cui porta il percorso sta in ciò che lo blocca',
-  rb_no_way_in_time: 'non si è trovato un passaggio in tempo',
-  rb_item_in_it: 'l’elemento {n} sta in ciò che si trova lì',
-  rb_no_way_around: 'nessuna via per aggirarlo: {why}',
-  rb_around_not_driven: 'la via per aggirarlo non si è potuta percorrere',
-  rb_turns_to_look: 'gira sul posto per cercare una via intorno a ciò che sta lì',
-  rb_around_left: 'intorno a ciò che sta lì, a sinistra, {n} m',
-  rb_around_right: 'intorno a ciò che sta lì, a destra, {n} m',
   rb_homeward_waits: 'è già sulla via di casa: aspetta finché la via è libera',
   rb_returns: 'torna a casa',
   rb_mission_ends: 'la missione finisce',
