@@ -52,6 +52,10 @@ def what_does_not_become_a_map():
         (barn.scratch / "aside").rename(folder)
         made = barn.rest.do("POST", "/maps/stop", {"name": "barn"})
         check(made["name"] == "barn" and barn.maps()["making"] is None, f"at last: {made}")
+        for path, looked_in in ((f"{made['id']}/use", "barn"), ("unuse", None)) * 3:
+            barn.rest.do("POST", f"/maps/{path}")
+            place = barn.rest.get("/vehicle")["place"]
+            check(place["map"] == looked_in, f"{path} is answered, and it looks in {place}")
         barn.rest.do("POST", "/maps/start")
         barn.rest.do("POST", "/maps/stop", {"discard": True})
         check(barn.maps()["making"] is None and len(barn.maps()["items"]) == 1, f"dropped: {barn.maps()}")
