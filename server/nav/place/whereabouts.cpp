@@ -171,8 +171,7 @@ void Whereabouts::say_that_it_lies_nowhere(base::PlaceState& state) const {
   if (state.phase == base::PlacePhase::Known) {
     state.reason =
         "nobody knows where on the earth the map lies, for it has no anchor, and no satellites "
-        "good "
-        "enough are heard: say where the robot stands and which way it points";
+        "good enough are heard: say where the robot stands and which way it points";
   } else if (state.phase == base::PlacePhase::Searching) {
     const char* const awaited =
         said_ ? "drive some metres by hand: what was said of where it stands counts once it is "

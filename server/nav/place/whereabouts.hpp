@@ -111,7 +111,7 @@ class Whereabouts {
   void moved(const sense::Odometry& o) noexcept { (void)history_.push(o); }
   /// @return false: no map is in use, or nobody knows where it lies: then it does not tell where in
   /// the map the robot is, but the map is laid by it when that is known, if it was place and
-  /// heading and what is believed since is still about as sure as a tap
+  /// heading and what is believed since is still sure (kSure_m, kTap_rad)
   bool told(const Word& word);
   /// One sensor is looked through: the best of WhereaboutsParams::eyes that is heard. Where it has
   /// told nothing for a second, the next one.

@@ -60,8 +60,8 @@ class Grass {
   static Thin thin_of(const Place& p) noexcept;
   void look_through(const Reduced& in, const Sectors& rays);
 
-  std::vector<Place>
-      places_;  ///< by cell; what is not known yet goes before ground that is asked on
+  /// By cell; what is not known yet goes before ground that is asked on.
+  std::vector<Place> places_;
 };
 
 }  // namespace roverd::nav::sense
