@@ -404,10 +404,11 @@ class Estimator {
   int map_refused_ = 0;
   std::uint32_t map_ = 0;
   std::uint32_t map_found_ = 0;
-  MapOffset map_offset_;                  ///< of health().map_offset
-  double map_yaw_sigma_rad_ = 0.0;        ///< of the map's own heading on the earth
-  bool north_asked_ = false;              ///< satellites were heard beside this map
-  bool denial_counted_ = false;           ///< what the map denies is in the claim
+  MapOffset map_offset_;            ///< of health().map_offset
+  double map_yaw_sigma_rad_ = 0.0;  ///< of the map's own heading on the earth
+  bool north_asked_ = false;        ///< satellites were heard beside this map
+  double north_said_rad_ = 0.0;     ///< by which a person's word of north may be wrong; 0: none
+  bool denial_counted_ = false;     ///< what the map denies is in the claim
   std::optional<Time> last_by_landmark_;  ///< when one was fused
   std::optional<Time> by_landmark_at_;    ///< when one was to be
   bool landmarks_led_ = false;            ///< since a fixed position was fused

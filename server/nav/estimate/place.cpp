@@ -109,8 +109,10 @@ void Estimator::take(const base::PlaceState& told) {
 /// surer than the word, and so is the heading that was believed by it.
 void Estimator::ask_north(base::PlaceFix& fix) noexcept {
   const bool same = fix.map == map_;
-  const bool heard = beside_ && now_ - beside_->at < kPlaceFresh;
+  const bool heard = (beside_ && now_ - beside_->at < kPlaceFresh) ||
+                     (last_satellites_ && now_ - *last_satellites_ < kPlaceFresh);
   north_asked_ = (same && north_asked_) || heard;
+  north_said_rad_ = fix.north_said ? fix.anchor_yaw_sigma_rad : 0.0;
   if (fix.north_said && !north_asked_) fix.anchor_yaw_sigma_rad = 0.0;
   const double more =
       fix.anchor_yaw_sigma_rad * fix.anchor_yaw_sigma_rad - map_yaw_sigma_rad_ * map_yaw_sigma_rad_;
@@ -371,6 +373,8 @@ bool Estimator::beside_the_map(const base::GnssFix& fix, const GnssQuality& q) n
   // They lead from now on. Nothing jumps: what they differ by is driven out slowly.
   in.refused_since.reset();
   health_.by_map = false;
+  // Every match was wrong by the same: their number made none of them truer.
+  belief_.P(kYaw, kYaw) = std::max(belief_.P(kYaw, kYaw), north_said_rad_ * north_said_rad_);
   lead_until_.reset();
   drift_ = q.drift;
   if (fix.fix != fused_type_) {

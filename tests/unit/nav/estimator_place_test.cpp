@@ -271,6 +271,40 @@ TEST(EstimatorPlace, NorthByAWordCountsUntilSatellitesCouldTellIt) {
   EXPECT_LT(std::abs(m.d.yaw_error_deg()), 3.5) << "the rest may be a crab as well";
 }
 
+TEST(EstimatorPlace, NorthByAWordIsNoSurerOnceSatellitesLead) {
+  for (const double without_map_s : {0.0, 3.0}) {
+    // Given: a word as sure as a person's arrow, and farther off; floating satellites beside it.
+    Mapped m;
+    m.d.gnss = m.d.compass = false;
+    m.askew_rad = 0.17;
+    m.anchor_yaw_sigma_rad = 0.052;
+    m.north_said = true;
+    m.run(20.0);
+    m.d.gnss = true;
+    m.d.fix = base::FixType::RtkFloat;
+    m.run(30.0);
+    // When: they are fixed, and lead; the robot stands.
+    m.d.fix = base::FixType::RtkFixed;
+    m.map = without_map_s <= 0.0;
+    m.run(6.0);
+    // Then: a hundred matches of the same error have not made the heading sure.
+    ASSERT_EQ(m.d.pose()->source.substr(0, 4), "gnss");
+    EXPECT_GE(m.d.pose()->yaw_sigma_rad, 0.05) << without_map_s;
+  }
+}
+
+TEST(EstimatorPlace, NorthByAWordIsAskedWhereSatellitesLedBefore) {
+  Mapped m;
+  m.d.compass = false;
+  m.d.speed_mps = 1.0;
+  m.anchor_yaw_sigma_rad = 0.17;
+  m.north_said = true;
+  m.run(20.0);
+  m.d.gnss = false;
+  m.run(10.0);
+  EXPECT_GE(m.d.pose()->yaw_sigma_rad, 0.17);
+}
+
 TEST(EstimatorPlace, AMapThatLiesAskewDoesNotReplaceTheTrueHeading) {
   Mapped m;
   m.d.antennas = true;
