@@ -79,9 +79,12 @@ const std::vector<EstimateWatch::News>& EstimateWatch::step(const base::Estimato
 void EstimateWatch::watch_resets(const base::EstimatorHealth& health) {
   if (health.resets == resets_) return;
   resets_ = health.resets;
-  std::string detail = "the sensors contradicted the estimate for too long: ";
-  if (const auto& reset = health.last_reset) {
-    detail += std::string(reset->what) + " set anew, moved by " +
+  const auto& reset = health.last_reset;
+  const bool map = reset && reset->what == "map";
+  std::string detail = map ? "its place in the map is not where it was believed to be: "
+                           : "the sensors contradicted the estimate for too long: ";
+  if (reset) {
+    detail += std::string(map ? "the estimate" : reset->what) + " set anew, moved by " +
               tenths_of(std::hypot(reset->jump.east_m, reset->jump.north_m)) + " m, turned by " +
               tenths_of(base::deg_from_rad(reset->jump_rad)) + " deg";
   }

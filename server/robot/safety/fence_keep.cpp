@@ -83,7 +83,7 @@ FenceKeep::Verdict FenceKeep::judge(const base::BodyTwist& asked, const base::Po
   }
   const bool newly = !std::exchange(told_, true);
   return {true, newly,
-          is_laid ? "the fence is reached: only the way back inside is open"
+          is_laid ? "the fence, or an area to keep out of, is reached: only the way back is open"
                   : "the fence is not laid out in the robot's map"};
 }
 

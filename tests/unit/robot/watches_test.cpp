@@ -177,6 +177,13 @@ TEST(EstimateWatch, TellsResetsButNotThoseThatAnOperatorMade) {
             "the sensors contradicted the estimate for too long: position set anew, moved by "
             "5.0 m, turned by 0.0 deg");
   t.health.resets = 2;
+  t.health.last_reset->what = "map";  // which may lie anew: then nothing contradicted it before
+  t.run(0.1);
+  EXPECT_EQ(t.take(), Kinds{"estimate_reset"});
+  EXPECT_EQ(t.details.back(),
+            "its place in the map is not where it was believed to be: the estimate set anew, "
+            "moved by 5.0 m, turned by 0.0 deg");
+  t.health.resets = 3;
   t.watch.moved_on_purpose(t.health);
   t.run(0.1);
   EXPECT_EQ(t.take(), Kinds{});

@@ -67,7 +67,7 @@ export const robot = {
   rb_eye_too_many_bad: 'too many of its points are no points',
   rb_eye_many_bad: 'many of its points are no points',
   rb_eye_slow: 'it is slow',
-  rb_fence_reached: 'the fence is reached: only the way back inside is open',
+  rb_fence_reached: 'the fence, or an area to keep out of, is reached: only the way back is open',
   rb_fence_leaves: 'the way there leaves the fence',
   rb_fence_outside: 'the robot stands outside of the fence: drive it back by hand',
   rb_fence_not_laid: "the fence is not laid out in the robot's map yet: try again",

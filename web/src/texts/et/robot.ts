@@ -64,7 +64,7 @@ export const robot = {
   rb_eye_too_many_bad: 'liiga paljud selle punktid ei ole punktid',
   rb_eye_many_bad: 'paljud selle punktid ei ole punktid',
   rb_eye_slow: 'see on aeglane',
-  rb_fence_reached: 'tara on käes: avatud on vaid tee tagasi sisse',
+  rb_fence_reached: 'tara või keelatud ala on käes: avatud on vaid tee tagasi',
   rb_fence_leaves: 'tee sinna läheb tarast välja',
   rb_fence_outside: 'robot seisab väljaspool tara: sõida see käsitsi tagasi',
   rb_fence_not_laid: 'tara ei ole veel roboti kaardile paigutatud: proovi uuesti',

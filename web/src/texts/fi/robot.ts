@@ -65,7 +65,7 @@ export const robot = {
   rb_eye_too_many_bad: 'liian moni sen pisteistä ei ole piste',
   rb_eye_many_bad: 'moni sen pisteistä ei ole piste',
   rb_eye_slow: 'se on hidas',
-  rb_fence_reached: 'aita on saavutettu: vain tie takaisin sisään on auki',
+  rb_fence_reached: 'aita tai kielletty alue on saavutettu: vain tie takaisin on auki',
   rb_fence_leaves: 'matka sinne menee aidan ulkopuolelle',
   rb_fence_outside: 'robotti on aidan ulkopuolella: aja se takaisin käsin',
   rb_fence_not_laid: 'aitaa ei ole vielä sijoitettu robotin kartalle: yritä uudelleen',

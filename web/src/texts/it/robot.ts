@@ -68,7 +68,8 @@ export const robot = {
   rb_eye_too_many_bad: 'troppi dei suoi punti non sono punti',
   rb_eye_many_bad: 'molti dei suoi punti non sono punti',
   rb_eye_slow: 'è lento',
-  rb_fence_reached: 'il recinto è raggiunto: resta aperta solo la via verso l’interno',
+  rb_fence_reached:
+    'il recinto o un’area vietata è raggiunta: resta aperta solo la via del ritorno',
   rb_fence_leaves: 'la via per arrivarci esce dal recinto',
   rb_fence_outside: 'il robot sta fuori dal recinto: riportalo dentro a mano',
   rb_fence_not_laid: 'il recinto non è ancora disposto nella mappa del robot: riprova',

@@ -66,7 +66,7 @@ export const robot = {
   rb_eye_too_many_bad: 'for mange av punktene dens er ikke punkter',
   rb_eye_many_bad: 'mange av punktene dens er ikke punkter',
   rb_eye_slow: 'den er treg',
-  rb_fence_reached: 'gjerdet er nådd: bare veien tilbake inn er åpen',
+  rb_fence_reached: 'gjerdet eller et forbudt område er nådd: bare veien tilbake er åpen',
   rb_fence_leaves: 'veien dit går utenfor gjerdet',
   rb_fence_outside: 'roboten står utenfor gjerdet: kjør den tilbake for hånd',
   rb_fence_not_laid: 'gjerdet er ikke lagt ut i robotens kart ennå: prøv igjen',
