@@ -206,13 +206,22 @@ class KmlReader {
     if (name == "Polygon") in_polygon_ = false;
     if (name == "href" && in_link()) links_.back().href = file_of(text);
     if (is_picture(name)) builder_.leave_out(row, std::string(name), "it is nothing to drive");
-    if (name == "Placemark") end_placemark();
+    if (name == "Placemark") {
+      ask_for_shape(row);
+      end_placemark();
+    }
   }
 
   /// Of <NetworkLink><Link><href>, or <Url> in older files.
   bool in_link() const {
     return path_.size() >= 2 && (path_.back() == "Link" || path_.back() == "Url") &&
            path_[path_.size() - 2] == "NetworkLink" && !links_.empty();
+  }
+
+  /// A line that is meant as a fence is not to be driven, and what has no shape keeps nobody out.
+  void ask_for_shape(const std::string& row) {
+    if (!is_kml_fence(words_) || !shapes_.empty()) return;
+    take_fence_feature(words_, nlohmann::json::object(), {row, row}, fence_, file_.rows, problems_);
   }
 
   void end_placemark() {

@@ -372,7 +372,9 @@ TEST(Kml, AFenceMayBeSaidAfterItsShapeAndByASchema) {
       "<Placemark><Polygon><outerBoundaryIs><LinearRing><coordinates>0,0,7 0.001,0,7 0,0.001,7 "
       "0,0,7</coordinates></LinearRing></outerBoundaryIs></Polygon>\n"
       "<ExtendedData><SchemaData><SimpleData name=\"fence\"> inclusion\n</SimpleData>"
-      "</SchemaData></ExtendedData></Placemark></Document></kml>",
+      "</SchemaData></ExtendedData></Placemark>\n"
+      "<ExtendedData><Data name=\"rally\"><value>true</value></Data></ExtendedData>"
+      "</Document></kml>",
       std::nullopt);
   ASSERT_TRUE(file) << file.error().detail;
   EXPECT_EQ(file->plan.items.size(), 1u);  // words of the document are nobody's
@@ -417,6 +419,13 @@ TEST(Kml, AFenceThatCannotBeIsRefusedByItsLine) {
             "line 3: must be a Polygon, or a Point with radius_m, to be a fence");
   EXPECT_EQ(refused({{"rally", "true"}}, polygon(ring)),
             "line 3: must be a Point to be a rally point");
+  // A line that is called a fence is not driven, and one without a shape is not passed over.
+  const std::string line = "<LineString><coordinates>0,0 0.001,0</coordinates></LineString>";
+  for (const std::string& shape : {line, std::string("<name>north</name>")}) {
+    EXPECT_EQ(refused({{"fence", "exclusion"}}, shape),
+              "line 2: must be a Polygon, or a Point with radius_m, to be a fence");
+    EXPECT_EQ(refused({{"rally", "true"}}, shape), "line 2: must be a Point to be a rally point");
+  }
 }
 
 TEST(GeoJson, AFenceThatCannotBeIsRefusedAndAnAreaWithoutItsWordLeftOut) {
