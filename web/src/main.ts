@@ -40,6 +40,7 @@ import { ControlDesk } from './ui/control.svelte';
 import { device } from './ui/device.svelte';
 import type { Doors } from './ui/doors';
 import { Identity } from './ui/identity.svelte';
+import { tongue } from './ui/language.svelte';
 import { Station } from './ui/station.svelte';
 
 const LOOK_MS = 10_000;
@@ -195,6 +196,7 @@ const begin = (account: Account | null, session: string | null): void => {
   first_stop.hand_over(() => station.pilot.estop());
 
   void field_map.then(() => station.grounds.refresh());
+  void rest.then(() => tongue.page_is_live());
   watch_window(station, late);
 };
 

@@ -7,7 +7,9 @@ import { afterEach, describe, expect, test } from 'vitest';
 import { is_known_sentence, language_said, robot_says } from '../src/model/robot_words';
 import { IN_ENGLISH, speak } from '../src/model/say';
 import { english } from '../src/texts/en';
+import { late as english_late } from '../src/texts/en/late';
 import { finnish } from '../src/texts/fi';
+import { late as finnish_late } from '../src/texts/fi/late';
 
 const SERVER = join(import.meta.dirname, '../../server');
 
@@ -25,10 +27,20 @@ const SOURCES: readonly (readonly [files: RegExp, sentences: RegExp])[] = [
     /^mission\/formats\/(kml|csv|gpx|geojson)_file\.cpp$/,
     /kNoPosition =\s*"([^"]+)";|refuse\([^";]*"([a-z][^"]+)"\)/g,
   ],
+  [
+    /^mission\/formats\/\w+\.cpp$/,
+    /(?:leave_out|change|change_row|note_item|note)\([^;"]*(?:"[a-z_]+",\s*)?"([a-z0-9/]+ [^"]*[a-z])"\)/g,
+  ],
+  [
+    /^mission\/formats\/\w+\.cpp$/,
+    /(?:[?:]|reason =|note =|kNoCommand =|LeftOut,|std::string\()\s*"([a-z0-9/]+ [^"]*[a-z])"[;),]/g,
+  ],
   [/^mission\/formats\/csv_columns\.cpp$/, /none\([\w:]+,\s*"([^"]+)"\)/g],
   [/^mission\/formats\/kmz_file\.cpp$/, /(?:bad_archive\(|why = )"([^"]+)"[;)]/g],
   [/^robot\/guard\/\w+\.cpp$/, /return "([a-z]\w* [^"]+)";/g],
   [/^robot\/guard\/watched\.cpp$/, /(?:told\(|again =|[?:])\s*"([a-z]\w* [^"]+)"[;:)\s]/g],
+  [/^nav\/around\/around\.cpp$/, /return "([a-z]\w* \w+ [^"]+)";/g],
+  [/^robot\/modes\/around\.cpp$/, /(?:"no_way_around",|\?) "([a-z]\w* [^"]+[a-z])"[);\n]/g],
   [/^nav\/sense\/health\.cpp$/, /(?:say\(Eye::\w+,|[?:]) "([a-z]\w* [^"]+)"\s?[:)]/g],
 ];
 /** Said in English in all languages; the list only ever gets shorter. */
@@ -46,7 +58,9 @@ const STILL: ReadonlySet<string> = new Set([
 ]);
 
 afterEach(() => speak(() => IN_ENGLISH));
-const in_finnish = (): void => speak(() => ({ language: 'fi', texts: finnish }));
+const all_finnish = { ...finnish, ...finnish_late };
+const in_finnish = (): void =>
+  speak(() => ({ language: 'fi', texts: all_finnish, late: english_late }));
 
 describe('what the robot says', () => {
   test('stays as it is in English, and where it is not known', () => {
@@ -161,6 +175,34 @@ describe('what the robot says', () => {
     );
   });
 
+  test('stays English of files until those sentences have come, and then follows', () => {
+    const left_out = 'a ground vehicle does not take off';
+    speak(() => ({ language: 'fi', texts: finnish }));
+    expect(robot_says(left_out)).toBe(left_out);
+    expect(language_said(left_out)).toBe('en');
+    expect(robot_says('the radio drives')).toBe('radio ohjaa');
+    in_finnish();
+    expect(robot_says(left_out)).toBe('maa-ajoneuvo ei nouse ilmaan');
+    expect(language_said(left_out)).toBeUndefined();
+  });
+
+  test('is said of the rows of a file, each with all that was changed', () => {
+    in_finnish();
+    expect(robot_says('a height of 120000 cannot be kept; driven straight, not as a curve')).toBe(
+      'korkeutta 120000 ei voi säilyttää; ajetaan suoraan, ei kaarena',
+    );
+    expect(robot_says('the robot stops at a fence; rally points are where it can be sent')).toBe(
+      'robotti pysähtyy aidalle; kokoontumispisteisiin sen voi lähettää',
+    );
+    expect(
+      robot_says(
+        'a point of the map "hall; 2", written as a waypoint where that lies by now; its heading is lost',
+      ),
+    ).toBe(
+      'kartan ”hall; 2” piste, kirjoitettu reittipisteeksi sinne, missä kartta nyt on; sen suunta katoaa',
+    );
+  });
+
   test('is never taken for a shorter sentence that begins the same', () => {
     in_finnish();
     const sample: Readonly<Record<string, string>> = { place: 'x', value: '7', parameter: 'x.y' };
@@ -169,15 +211,16 @@ describe('what the robot says', () => {
         .replaceAll(/\{(why|what|where)\}/g, why)
         .replaceAll(/\{(name|map|mode|state|fix|device|sensor|column)\}/g, 'x')
         .replaceAll(/\{(\w+)\}/g, (_, name: string) => sample[name] ?? '7');
-    for (const [key, text] of Object.entries(english)) {
+    for (const [key, text] of Object.entries({ ...english, ...english_late })) {
       if (!key.startsWith('rb_') || typeof text !== 'string') continue;
-      const spoken = (finnish as unknown as Readonly<Record<string, string>>)[key] ?? '';
+      const spoken = (all_finnish as unknown as Readonly<Record<string, string>>)[key] ?? '';
       const plain = fill(text, 'the radio drives');
       expect(robot_says(plain), plain).toBe(fill(spoken, 'radio ohjaa'));
     }
   });
 
-  test('in the field has words in every language: a new sentence is put into texts/en/robot.ts', () => {
+  test('in the field has words in every language: a new sentence is put into texts/en/robot.ts, or into what comes late', () => {
+    in_finnish();
     const all = readdirSync(SERVER, { recursive: true }).map((name) => String(name));
     const missing = new Set<string>();
     let seen = 0;

@@ -14,20 +14,35 @@ import {
   speak,
   told,
   type Language,
+  type LateTexts,
   type Plural,
   type Texts,
 } from '../src/model/say';
 import { english } from '../src/texts/en';
+import { late as english_late } from '../src/texts/en/late';
+import { robot_around } from '../src/texts/en/robot_around';
+import { robot_files } from '../src/texts/en/robot_files';
 import { estonian } from '../src/texts/et';
+import { late as estonian_late } from '../src/texts/et/late';
 import { finnish } from '../src/texts/fi';
+import { late as finnish_late } from '../src/texts/fi/late';
 import { italian } from '../src/texts/it';
+import { late as italian_late } from '../src/texts/it/late';
 import { norwegian } from '../src/texts/nb';
+import { late as norwegian_late } from '../src/texts/nb/late';
 
 const all: Readonly<Record<Exclude<Language, 'en'>, Texts>> = {
   fi: finnish,
   et: estonian,
   it: italian,
   nb: norwegian,
+};
+/** Those that come once the page is live. */
+const all_late: Readonly<Record<Exclude<Language, 'en'>, LateTexts>> = {
+  fi: finnish_late,
+  et: estonian_late,
+  it: italian_late,
+  nb: norwegian_late,
 };
 const in_language = (language: Exclude<Language, 'en'>): void =>
   speak(() => ({ language, texts: all[language] }));
@@ -104,13 +119,17 @@ const forms_needed = (language: Language): string[] =>
   [0, 1, 2, 5, 11, 21, 100].map((n) => new Intl.PluralRules(language).select(n));
 
 describe.each(Object.entries(all))('the texts of %s', (language, texts) => {
+  const late = all_late[language as Exclude<Language, 'en'>];
+
   test('are all there, and none besides', () => {
     expect(Object.keys(texts).sort()).toEqual(Object.keys(english).sort());
+    expect(Object.keys(late).sort()).toEqual(Object.keys(english_late).sort());
   });
 
   test('have the same names to fill in as the English, and are not empty', () => {
-    for (const [key, text] of Object.entries<string | Plural>(english)) {
-      const other = (texts as Readonly<Record<string, string | Plural>>)[key] ?? '';
+    const others: Readonly<Record<string, string | Plural>> = { ...texts, ...late };
+    for (const [key, text] of Object.entries<string | Plural>({ ...english, ...english_late })) {
+      const other = others[key] ?? '';
       expect(typeof other, key).toBe(typeof text);
       for (const form of forms_of(other)) {
         expect(form.trim(), key).not.toBe('');
@@ -136,6 +155,11 @@ describe.each(Object.entries(all))('the texts of %s', (language, texts) => {
     expect(texts.stop_caps).toBe('STOP');
     expect(texts.emergency_stop).toMatch(/^STOP/);
   });
+});
+
+test('none that comes late hides another', () => {
+  expect(Object.keys(english_late).filter((key) => key in english)).toEqual([]);
+  expect(Object.keys(robot_around).filter((key) => key in robot_files)).toEqual([]);
 });
 
 test('every language that can be chosen has texts', () => {

@@ -53,7 +53,7 @@ export const obstacle_since = (obstacle: Obstacle, older_s: number): string => {
   const left_s = obstacle.decides_in_s ?? null;
   const left = left_s === null ? null : lasting(Math.max(0, left_s - older_s));
   const soon = left === null ? say('then') : say('in_left', { left });
-  if (obstacle.no_way) parts.push(say('no_way_around_it', { why: obstacle.no_way }));
+  if (obstacle.no_way) parts.push(say('no_way_around_it', { why: robot_says(obstacle.no_way) }));
   else if (obstacle.blocked === true)
     parts.push(words === '' ? say('blocked') : say('blocked_words', { words }));
   else if (then === 'wait' && left !== null) parts.push(say('in_left_it_is_blocked', { left }));

@@ -1,11 +1,12 @@
 // What the robot says in English, in the language of the page. It has stable words for kinds of events and
 // conditions, but says why in sentences, with figures in them; those that people meet in the field are in
-// the texts (texts/en/robot.ts), and are known by how they read in English.
+// the texts (texts/en/robot.ts), and are known by how they read in English. Some of them come once the page
+// is live (texts/en/late.ts); until then those are not known.
 
 import { robot } from '../texts/en/robot';
-import { filled, language_now, say_plain, type PlainKey } from './say';
+import { filled, language_now, late_now, say_plain, type LateTexts, type PlainKey } from './say';
 
-type Key = keyof typeof robot;
+type Key = keyof typeof robot | keyof LateTexts;
 
 interface Sentence {
   readonly key: Key;
@@ -54,13 +55,30 @@ const sentence_of = (key: Key, text: string): Sentence => {
 const own_letters = (text: string): number =>
   text.replace(/\{\w+\}/g, '').length + (/\{(why|what)\}/.test(text) ? 1000 : 0);
 
-const known = (Object.entries(robot) as [Key, string][]).sort(
-  ([, a], [, b]) => own_letters(b) - own_letters(a),
-);
-const whole = new Map(known.map(([key, text]) => [text, key]));
-const open = known
-  .filter(([, text]) => text.includes('{'))
-  .map(([key, text]) => sentence_of(key, text));
+interface Known {
+  readonly whole: ReadonlyMap<string, Key>;
+  readonly open: readonly Sentence[];
+}
+
+const known_by = (texts: Partial<Readonly<Record<Key, string>>>): Known => {
+  const sorted = (Object.entries(texts) as [Key, string][]).sort(
+    ([, a], [, b]) => own_letters(b) - own_letters(a),
+  );
+  const open = sorted.filter(([, text]) => text.includes('{'));
+  return {
+    whole: new Map(sorted.map(([key, text]) => [text, key])),
+    open: open.map(([key, text]) => sentence_of(key, text)),
+  };
+};
+
+const at_first = known_by(robot);
+let with_late: Known | null = null;
+const known = (): Known => {
+  const late = late_now();
+  if (!late) return at_first;
+  with_late ??= known_by({ ...robot, ...late });
+  return with_late;
+};
 
 const said = (key: Key): string => say_plain(key as PlainKey);
 
@@ -89,9 +107,9 @@ const filled_in_words = ({ key, names, pattern }: Sentence, text: string, depth:
 };
 
 const single_in_words = (text: string, depth: number): string | null => {
-  const key = whole.get(text);
+  const key = known().whole.get(text);
   if (key) return said(key);
-  for (const sentence of open) {
+  for (const sentence of known().open) {
     const words = filled_in_words(sentence, text, depth);
     if (words !== null) return words;
   }
@@ -102,7 +120,7 @@ const single_in_words = (text: string, depth: number): string | null => {
  * none that is known */
 const in_words = (text: string, depth: number): string | null => {
   if (depth > DEEPEST) return null;
-  const key = whole.get(text);
+  const key = known().whole.get(text);
   if (key) return said(key);
   return joined_in_words(text, depth) ?? single_in_words(text, depth);
 };
@@ -110,7 +128,7 @@ const in_words = (text: string, depth: number): string | null => {
 const found = new Map<string, string | null>();
 
 const found_in_words = (text: string): string | null => {
-  const name = `${language_now()} ${text}`;
+  const name = `${language_now()}${late_now() ? '+' : ''} ${text}`;
   if (!found.has(name)) {
     if (found.size >= KEPT) found.clear();
     found.set(name, in_words(text, 0));

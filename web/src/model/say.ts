@@ -3,6 +3,7 @@
 // language does not have yet is said in English, never as its key.
 
 import { english } from '../texts/en';
+import type { late } from '../texts/en/late';
 
 export type English = typeof english;
 export type Key = keyof English;
@@ -26,9 +27,14 @@ export const language_names: Readonly<Record<Language, string>> = {
   nb: 'Norsk',
 };
 
+/** The robot's sentences that come once the page is live (texts/en/late.ts). */
+export type LateTexts = Readonly<Record<keyof typeof late, string>>;
+
 export interface Spoken {
   readonly language: Language;
-  readonly texts: Partial<Texts>;
+  readonly texts: Partial<Texts & LateTexts>;
+  /** How the robot says those in English; nothing: they are not here yet, or not needed, as in English. */
+  readonly late?: LateTexts;
 }
 export const IN_ENGLISH: Spoken = { language: 'en', texts: english };
 
@@ -98,6 +104,7 @@ export const say_plain = (key: PlainKey): string => {
 };
 
 export const language_now = (): Language => spoken().language;
+export const late_now = (): LateTexts | undefined => spoken().late;
 
 const signs = new Map<Language, string>();
 /** Between whole and parts: "." or ",". Only where a person reads it; fields and files keep the point. */

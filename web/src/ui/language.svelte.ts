@@ -1,18 +1,37 @@
 // The language of the page. Its texts come when it is chosen; until they are here, and where they do not
-// come, the page goes on in English: nobody waits for words before the stop button is there.
+// come, the page goes on in English: nobody waits for words before the stop button is there. Some of the
+// robot's sentences come behind them, once the page is live; until then those are in English, too.
 
-import { IN_ENGLISH, say, speak, type Language, type Spoken, type Texts } from '../model/say';
+import {
+  IN_ENGLISH,
+  say,
+  speak,
+  type Language,
+  type LateTexts,
+  type Spoken,
+  type Texts,
+} from '../model/say';
 
-const files: Readonly<Record<Exclude<Language, 'en'>, () => Promise<Partial<Texts>>>> = {
+type Fetched = Exclude<Language, 'en'>;
+const files: Readonly<Record<Fetched, () => Promise<Partial<Texts>>>> = {
   fi: async () => (await import('../texts/fi')).finnish,
   et: async () => (await import('../texts/et')).estonian,
   it: async () => (await import('../texts/it')).italian,
   nb: async () => (await import('../texts/nb')).norwegian,
 };
+const late_files: Readonly<Record<Language, () => Promise<{ readonly late: LateTexts }>>> = {
+  en: () => import('../texts/en/late'),
+  fi: () => import('../texts/fi/late'),
+  et: () => import('../texts/et/late'),
+  it: () => import('../texts/it/late'),
+  nb: () => import('../texts/nb/late'),
+};
+const AGAIN_MS = 2000;
 
 class Tongue {
   spoken = $state.raw<Spoken>(IN_ENGLISH);
   #wanted: Language = 'en';
+  #live = false;
 
   constructor() {
     speak(() => this.spoken);
@@ -30,8 +49,29 @@ class Tongue {
     }
   }
 
+  /** What can wait for it comes now, and from now on with every language. */
+  page_is_live(): void {
+    this.#live = true;
+    void this.#bring_late();
+  }
+
+  /** What does not come is asked for again: it is about what the robot tells just now. */
+  async #bring_late(): Promise<void> {
+    const { language, late } = this.spoken;
+    if (!this.#live || language === 'en' || late) return;
+    try {
+      const [told, here] = await Promise.all([late_files.en(), late_files[language]()]);
+      if (language !== this.spoken.language) return;
+      const texts = { ...this.spoken.texts, ...here.late };
+      this.spoken = { language, texts, late: told.late };
+    } catch {
+      setTimeout(() => void this.#bring_late(), AGAIN_MS);
+    }
+  }
+
   #take(spoken: Spoken): void {
     this.spoken = spoken;
+    void this.#bring_late();
     document.documentElement.lang = spoken.language;
     // What the document itself says: it was there before any language was known.
     document.getElementById('map')?.setAttribute('aria-label', say('map'));
