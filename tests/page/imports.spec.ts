@@ -68,3 +68,51 @@ test('on a phone a refused file is told until it is dismissed, or until what is 
   await press(page, 'Continue');
   await expect(messages).toContainText('“bad.csv” was not imported');
 });
+
+test('a report is read in the language that is chosen, as soon as its sentences have come', async ({
+  page,
+  station,
+}) => {
+  // They come behind the page itself. Where the network does not let them through, they are asked for again.
+  let comes = false;
+  let asked = 0;
+  await page.route(/\/assets\/late-[^/]*\.js$/, (route) => {
+    asked += 1;
+    return comes ? route.continue() : route.abort();
+  });
+  await open_page(page, station.url);
+  await tab(page, 'Log');
+  expect(asked, 'English needs none').toBe(0);
+  await page.getByLabel('Language').selectOption('fi');
+  const file = {
+    name: 'from_the_air.waypoints',
+    mimeType: 'text/plain',
+    buffer: Buffer.from(
+      [
+        'QGC WPL 110',
+        '0\t1\t0\t16\t0\t0\t0\t0\t58.378\t26.7289\t0\t1',
+        '1\t0\t3\t22\t0\t0\t0\t0\t58.378\t26.7289\t10\t1',
+        '2\t0\t3\t16\t0\t0\t0\t0\t58.3785\t26.729\t0\t1',
+        '3\t0\t3\t16\t0\t0\t0\t0\t58.379\t26.729\t0\t1',
+        '',
+      ].join('\n'),
+    ),
+  };
+  const panel = (at: number): Promise<void> =>
+    page.getByRole('navigation').getByRole('button').nth(at).click();
+  const report = page.getByRole('dialog').getByRole('listitem');
+  await panel(2);
+  await page.locator('input[type=file]').first().setInputFiles(file);
+  await expect(report.filter({ hasText: 'a ground vehicle does not take off' })).toBeVisible();
+  expect(asked).toBeGreaterThan(0);
+
+  comes = true;
+  await expect(report.filter({ hasText: 'maa-ajoneuvo ei nouse ilmaan' })).toBeVisible();
+  await press(page, 'Jatka');
+
+  await panel(3);
+  await page.getByLabel('Language').selectOption('et');
+  await panel(2);
+  await page.locator('input[type=file]').first().setInputFiles(file);
+  await expect(report.filter({ hasText: 'maasõiduk ei tõuse õhku' })).toBeVisible();
+});

@@ -76,6 +76,11 @@ test('why the robot does not do as it is told is said in the language that is ch
   page,
   station,
 }) => {
+  // A refusal stays as it was told: the language is there with all of its sentences, or not yet.
+  await page.route(/\/assets\/late-/, async (route) => {
+    await new Promise((done) => setTimeout(done, 2000));
+    return route.continue();
+  });
   await open_page(page, station.url);
   await station.rest('POST', '/vehicle/estop', {});
   await tab(page, 'Log');

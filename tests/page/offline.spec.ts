@@ -123,6 +123,8 @@ test('of all that the robot says nothing is kept', async ({ page, station }) => 
   });
   expect(paths).toContain('/');
   expect(paths.filter((path) => path.startsWith('/assets/')).length).toBeGreaterThan(5);
+  // What comes late in each language, too.
+  expect(paths.filter((path) => path.startsWith('/assets/late-')).length).toBe(5);
   expect(paths.filter((path) => path.startsWith('/api/'))).toEqual(
     paths.filter((path) => path.startsWith('/api/v1/tiles')),
   );

@@ -28,10 +28,22 @@ const late_files: Readonly<Record<Language, () => Promise<{ readonly late: LateT
 };
 const AGAIN_MS = 2000;
 
+type Late = readonly [english: LateTexts, texts: LateTexts];
+const late_of = async (language: Fetched): Promise<Late> => {
+  const [told, here] = await Promise.all([late_files.en(), late_files[language]()]);
+  return [told.late, here.late];
+};
+const with_late = (spoken: Spoken, [late, texts]: Late): Spoken => ({
+  ...spoken,
+  texts: { ...spoken.texts, ...texts },
+  late,
+});
+
 class Tongue {
   spoken = $state.raw<Spoken>(IN_ENGLISH);
   #wanted: Language = 'en';
   #live = false;
+  #again: ReturnType<typeof setTimeout> | undefined;
 
   constructor() {
     speak(() => this.spoken);
@@ -41,9 +53,9 @@ class Tongue {
     if (language === this.#wanted) return;
     this.#wanted = language;
     try {
-      const texts = language === 'en' ? IN_ENGLISH.texts : await files[language]();
+      const spoken = language === 'en' ? IN_ENGLISH : await this.#fetch(language);
       // Another one may have been chosen meanwhile.
-      if (language === this.#wanted) this.#take({ language, texts });
+      if (language === this.#wanted) this.#take(spoken);
     } catch {
       if (language === this.#wanted) this.#wanted = this.spoken.language; // may be tried again
     }
@@ -55,17 +67,24 @@ class Tongue {
     void this.#bring_late();
   }
 
-  /** What does not come is asked for again: it is about what the robot tells just now. */
+  /** On a live page all of it at once: a refusal that is told just then stays as it was said. */
+  async #fetch(language: Fetched): Promise<Spoken> {
+    const late = this.#live ? late_of(language).catch(() => null) : null;
+    const spoken = { language, texts: await files[language]() };
+    const come = await late;
+    return come ? with_late(spoken, come) : spoken;
+  }
+
+  /** What does not come is asked for again. */
   async #bring_late(): Promise<void> {
     const { language, late } = this.spoken;
     if (!this.#live || language === 'en' || late) return;
     try {
-      const [told, here] = await Promise.all([late_files.en(), late_files[language]()]);
-      if (language !== this.spoken.language) return;
-      const texts = { ...this.spoken.texts, ...here.late };
-      this.spoken = { language, texts, late: told.late };
+      const come = await late_of(language);
+      if (language === this.spoken.language) this.spoken = with_late(this.spoken, come);
     } catch {
-      setTimeout(() => void this.#bring_late(), AGAIN_MS);
+      clearTimeout(this.#again);
+      this.#again = setTimeout(() => void this.#bring_late(), AGAIN_MS);
     }
   }
 
