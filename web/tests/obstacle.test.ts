@@ -1,6 +1,6 @@
 // What stands in the way, in words, on the map and as a sound.
 
-import { describe, expect, it } from 'vitest';
+import { afterEach, describe, expect, it } from 'vitest';
 
 import { bearing_deg, distance_m } from '../src/model/geo';
 import {
@@ -11,6 +11,12 @@ import {
   sound_of,
   type Obstacle,
 } from '../src/model/obstacle';
+import { IN_ENGLISH, speak } from '../src/model/say';
+import { late as english_late } from '../src/texts/en/late';
+import { finnish } from '../src/texts/fi';
+import { late as finnish_late } from '../src/texts/fi/late';
+
+afterEach(() => speak(() => IN_ENGLISH));
 
 const HERE = { lat: 58.378, lon: 26.729 };
 const wall: Obstacle = {
@@ -57,6 +63,15 @@ describe('its words', () => {
     );
     const none = { ...blocked, no_way: 'the corridor leaves no way' };
     expect(obstacle_since(none, 0)).toBe('For 12 s. No way around it: the corridor leaves no way.');
+  });
+
+  it('says in the language that is chosen why there is no way around it', () => {
+    const texts = { ...finnish, ...finnish_late };
+    speak(() => ({ language: 'fi', texts, late: english_late }));
+    const none = { ...wall, no_way: 'item 4 lies in what stands there' };
+    expect(obstacle_since(none, 0)).toMatch(
+      /Sitä ei voi kiertää: kohta 4 on siinä, mikä siellä seisoo\.$/,
+    );
   });
 });
 
