@@ -36,5 +36,10 @@ describe('the lights before arming', () => {
     expect(lights_of([check('estop', true)])[0]?.cure).toBeNull();
     // A newer robot may check what this page does not know.
     expect(lights_of([check('tyre_pressure', false)])[0]?.cure).toBeNull();
+    // Of the computer's troubles only some are mended in the field.
+    const computer = (detail: string): string | undefined =>
+      lights_of([{ ...check('computer', false, 'warning'), detail }])[0]?.cure?.words;
+    expect(computer('only 120 MB are left on the disk')).toContain('make room on its disk');
+    expect(computer('nobody finds this robot by its name: no avahi-daemon runs')).toBeUndefined();
   });
 });

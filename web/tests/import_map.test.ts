@@ -119,6 +119,16 @@ describe('the map of an import', () => {
     ]);
   });
 
+  it('has no place for an area that was taken: it does not come after a point', () => {
+    const point = { lat: 58, lon: 26 };
+    const [, area] = located(
+      [row('line 5', 'taken', 1), row('line 6', 'taken', null)],
+      () => ({ name: 'A', items: [{ type: 'waypoint', ...point }] }),
+      () => [],
+    );
+    expect(area).toMatchObject({ places: [], behind: false });
+  });
+
   it('shows a row together with what lies before and behind it', () => {
     expect(in_context(rows, 3).map(({ lat }) => lat)).toEqual([58.001, 58, 58.002]);
     expect(in_context(rows, 0).map(({ lat }) => lat)).toEqual([58, 58]);

@@ -26,10 +26,10 @@ describe('how sure the robot is, as lights', () => {
     expect(lights(0.05, 2, 5).every((each) => each.endsWith('good'))).toBe(true);
   });
 
-  it('is fair up to 30 cm, 6 degrees and 30 s, and not well beyond', () => {
+  it('is fair up to 30 cm, 10 degrees and 30 s, and not well beyond', () => {
     expect(lights(0.06, 2.1, 6).every((each) => each.endsWith('warn'))).toBe(true);
-    expect(lights(0.3, 6, 30).every((each) => each.endsWith('warn'))).toBe(true);
-    expect(lights(0.31, 6.1, 31).every((each) => each.endsWith('bad'))).toBe(true);
+    expect(lights(0.3, 10, 30).every((each) => each.endsWith('warn'))).toBe(true);
+    expect(lights(0.31, 10.1, 31).every((each) => each.endsWith('bad'))).toBe(true);
   });
 
   it('does not call well what it does not know; a receiver may work without corrections', () => {

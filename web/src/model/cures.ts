@@ -44,6 +44,10 @@ export interface CheckLight {
   readonly cure: Cure | null;
 }
 
+/** What is told of the computer has many causes; two of them a person in the field can mend. */
+const cure_of = ({ id, detail }: Check): Cure | null =>
+  id === 'computer' && !/disk|loop/.test(detail) ? null : (cures[id] ?? null);
+
 const light_of = ({ ok, severity }: Check): Light =>
   ok || severity === 'info' ? 'good' : severity === 'warning' ? 'warn' : 'bad';
 const ORDER: readonly Light[] = ['bad', 'warn', 'good'];
@@ -55,7 +59,7 @@ export const lights_of = (checks: readonly Check[]): readonly CheckLight[] =>
       id: check.id,
       light: light_of(check),
       detail: check.detail,
-      cure: check.ok ? null : (cures[check.id] ?? null),
+      cure: check.ok ? null : cure_of(check),
     }))
     .sort((a, b) => ORDER.indexOf(a.light) - ORDER.indexOf(b.light));
 

@@ -37,7 +37,9 @@ export const located = (
       if (places.length === 1) last = { list, at };
       return { entry, places, behind: false };
     }
-    return last?.list === list
+    // An area that was taken is nothing to come after a point.
+    const would_come = entry.item !== null || entry.outcome !== 'taken';
+    return would_come && last?.list === list
       ? { entry, places: [last.at], behind: true }
       : { entry, places: [], behind: false };
   });

@@ -5,6 +5,7 @@ import { accuracy, count, degrees_text, direction, metres } from './format';
 import { target_words, type WayHome } from './homeward';
 import type { CheckReport } from './ports';
 import { say } from './say';
+import { HEADING_DEG } from './sureness';
 import {
   fix_words,
   type FenceState,
@@ -110,13 +111,11 @@ const position_light = ({ position, gnss }: Vehicle): StartLight => {
   return { light: position.stale ? 'bad' : light, subject: say('position'), words };
 };
 
-/** Beyond it the robot creeps at first. */
-const UNSURE_DEG = 10;
 const heading_light = ({ position }: Vehicle): StartLight => {
   const subject = say('heading');
   const { heading_accuracy_deg: off_deg } = position;
   if (off_deg === null) return { light: 'bad', subject, words: say('not_known_2') };
-  const light = position.stale ? 'bad' : off_deg > UNSURE_DEG ? 'warn' : 'good';
+  const light = position.stale ? 'bad' : off_deg > HEADING_DEG.good ? 'warn' : 'good';
   return { light, subject, words: `±${degrees_text(off_deg)}` };
 };
 

@@ -17,8 +17,8 @@ interface Limits {
 }
 /** Rows and survey lines at best, then a field way. */
 const POSITION_M: Limits = { good: 0.05, warn: 0.3 };
-/** Two degrees are 3.5 cm after a metre. */
-const HEADING_DEG: Limits = { good: 2, warn: 6 };
+/** Two degrees are 3.5 cm after a metre; beyond ten the robot creeps at first. */
+export const HEADING_DEG: Limits = { good: 2, warn: 10 };
 /** Receivers lose their fix after about half a minute without. */
 const CORRECTIONS_S: Limits = { good: 5, warn: 30 };
 
