@@ -103,7 +103,7 @@ bool LandmarkDrive::look(const MarkSight& sight) {
     fail("stands too near to a landmark (" + tenths_text(*near_m) + ")");
     return false;
   }
-  ahead_ = course_.target().has_value();
+  ahead_ = course_.ahead();
   if (!told()) return nobody_looks();
   if (!ahead_ && course_.passed() == 0) return false;
   // Where one that was driven to is gone, the way may end behind the robot already.

@@ -35,7 +35,6 @@ void Course::begin(const Pose2& pose) {
 }
 
 void Course::go_on(const Pose2& pose) {
-  target_.reset();
   first_.reset();
   if (!passed_.empty()) eyes_ = passed_.back().eyes;
   began_here_ = true;
@@ -127,15 +126,10 @@ Way Course::lay(std::span<const Landmark> known, const Pose2& pose, Side side,
       chain.erase(chain.begin());
     }
   }
-  target_.reset();
   first_.reset();
   if (!chain.empty()) {
     first_ = chain[0].id;
     eyes_ = chain[0].eyes;
-    const Vec2 along = towards(here, chain[0].at);
-    const Vec2 beside = chain[0].at - (sign * params.offset_m) * Vec2{-along.y, along.x};
-    const bool next = chain.size() > 1 && length(beside - here) < params.next_m;
-    target_ = chain[next ? 1 : 0].id;
   }
   std::vector<Vec2> places;
   for (const Landmark& l : chain) places.push_back(l.at);

@@ -4,9 +4,9 @@
 //
 //   begin ─▶ the nearest ahead ─passed─▶ the next ─passed─▶ … ─none ahead─▶ on_m further, the end
 //
-// A landmark is passed when the vehicle is abeam of it; whoever asks which one counts is told the
-// next one already when its passing point is nearer than next_m. Passed ones never count again, nor
-// what is seen anew where one was passed. Frame O. Not shared between threads.
+// A landmark is passed when the vehicle is abeam of it; the way leads past the next ones long
+// before. Passed ones never count again, nor what is seen anew where one was passed. Frame O. Not
+// shared between threads.
 
 #include <cstdint>
 #include <deque>
@@ -33,8 +33,8 @@ class Course {
           double speed_mps, const LandmarkParams& params);
 
   int passed() const noexcept { return count_; }
-  /// The id of the one that counts; empty: none is ahead.
-  std::optional<std::uint32_t> target() const noexcept { return target_; }
+  /// One is still to be passed.
+  bool ahead() const noexcept { return first_.has_value(); }
   /// Those that told the landmark that is ahead; behind the last one, those that told that one:
   /// only they can say that it is still there, or that no other one follows. 0: none counted yet.
   Eyes eyes(std::span<const Landmark> known) const noexcept;
@@ -53,7 +53,6 @@ class Course {
   int count_ = 0;
   bool began_here_ = false;  ///< none was passed since it goes on
   std::optional<double> too_near_m_;
-  std::optional<std::uint32_t> target_;
   std::optional<std::uint32_t> first_;  ///< of the chain
   Eyes eyes_ = 0;                       ///< of that, or of the last one passed
 };

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "nav/marks/bearing.hpp"
 #include "nav/marks/choose.hpp"
 #include "nav/marks/course.hpp"
 #include "yard.hpp"
@@ -271,22 +270,6 @@ TEST(Landmarks, OutOfViewTheyAreKeptForAMinuteOfDrivingNotOfStanding) {
     marks.take(image({}, now += 500ms), {}, turned, 0.5, {});
   }
   EXPECT_TRUE(marks.all().empty()) << "70 s of driving";
-}
-
-//   wall on the left at 1.2 m, parallel: the target is 1.40 m ahead and 0.30 m to the left
-TEST(Bearing, TheTargetsAreThoseOfTheField) {
-  const PlaneWall wall{{0.5, 1.2}, {0.0, -1.0}, 1.2, 5000.0};
-  const Vec2 target = wall_target(wall, {});
-  EXPECT_NEAR(target.x, 1.4, 1e-12);
-  EXPECT_NEAR(target.y, 0.3, 1e-12);
-  EXPECT_NEAR(turn_towards_radps(target, WallParams{}.gain, 1.0), std::atan2(0.3, 1.4), 1e-12);
-  const std::vector<Vec2> cones{{0.5, 0.0}, {2.0, 0.0}, {1.5, 4.0}, {-1.0, 0.0}};
-  const auto beside = landmark_target(cones, Side::Left, {});
-  ASSERT_TRUE(beside);
-  EXPECT_NEAR(beside->x, 2.0, 1e-12) << "the one at 0.5 m is nearer than 0.60 m: the next";
-  EXPECT_NEAR(beside->y, -0.7, 1e-12);
-  EXPECT_NEAR(turn_towards_radps({0.0, 1.0}, LandmarkParams{}.gain, 0.5), 0.5, 1e-12);
-  EXPECT_FALSE(landmark_target({}, Side::Left, {}));
 }
 
 TEST(Chooser, WhatIsSeenDecidesAndDoesNotFlicker) {
