@@ -13,6 +13,7 @@ void take_parameters(Profile& profile, const robot::Config& config) {
   limits.max_speed_mps = std::min(v.max_speed_mps, config.speed.max_mps);
   limits.default_speed_mps = std::min(config.speed.default_mps, limits.max_speed_mps);
   limits.width_m = v.width_m;
+  limits.wall_m = config.wall.distance_m;
   limits.yaw_rate_radps = config.speed.max_yaw_rate_radps;
   if (v.steered()) {
     limits.turn_radius_m = v.wheelbase_m / std::tan(base::rad_from_deg(v.max_steering_deg));

@@ -56,6 +56,7 @@ struct VehicleLimits {
   double yaw_rate_radps = 0.75;  ///< of a turn on the spot
   /// From its middle to what the guard lets it drive past; 0: nothing is guarded.
   double room_m = 0.0;
+  double wall_m = 0.9;      ///< from a wall whose item says no distance
   bool sees_behind = true;  ///< a sensor looks there; or nothing is guarded
   bool sees_around = true;
   bool creeps_back = false;  ///< into what nobody has seen

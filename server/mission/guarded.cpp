@@ -18,7 +18,9 @@ class Guarded {
     for (std::size_t i = 0; i < plan_.items.size(); ++i) {
       item_ = static_cast<int>(i) + 1;
       const Item& item = plan_.items[i];
-      if (const auto* wall = std::get_if<Wall>(&item)) beside(wall->distance_m, "wall");
+      if (const auto* wall = std::get_if<Wall>(&item)) {
+        beside(wall->distance_m.value_or(vehicle_.wall_m), "wall");
+      }
       if (const auto* row = std::get_if<Row>(&item)) this->row(*row);
       if (goes_back(item)) back();
       if (spins(item)) spin();

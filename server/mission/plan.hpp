@@ -90,19 +90,22 @@ struct Row {
 };
 /// Along a wall, around its corners and past its doors.
 struct Wall {
-  Side side = Side::Left;             ///< of the vehicle, where the wall is
-  double distance_m = 0.0;            ///< from the wall to the vehicle's middle
-  std::optional<double> speed_mps{};  ///< empty: as the profile says for walls
-  std::optional<double> length_m{};   ///< done after so much way; empty: at the wall's end
+  Side side = Side::Left;              ///< of the vehicle, where the wall is
+  std::optional<double> distance_m{};  ///< from it to the vehicle's middle; empty: the profile's
+  std::optional<double> speed_mps{};   ///< empty: as the profile says for walls
+  std::optional<double> length_m{};    ///< done after so much way; empty: at the wall's end
   Until until{};
   friend bool operator==(const Wall&, const Wall&) = default;
 };
 /// Past landmarks, one after the other, all on the same side.
 struct Landmarks {
-  std::string name;       ///< only those that are called so; kAnyLandmark: whatever stands like one
-  double offset_m = 0.0;  ///< the vehicle's middle passes them so far to their left; < 0: right
+  std::string name;  ///< only those that are called so; kAnyLandmark: whatever stands like one
+  /// The vehicle's middle passes them so far to their left; < 0: right.
+  std::optional<double> offset_m{};
   std::optional<double> speed_mps{};  ///< empty: as the profile says
   std::optional<int> count{};         ///< done behind so many; empty or 0: behind the last one
+  /// Instead of offset_m: of the vehicle, where they are; so far from them as the profile says.
+  std::optional<Side> side{};
   friend bool operator==(const Landmarks&, const Landmarks&) = default;
 };
 inline constexpr std::string_view kAnyLandmark = "any";

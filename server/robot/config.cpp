@@ -90,6 +90,49 @@ base::Result<void> check_orders(const Config& c) {
   return {};
 }
 
+/// The law in use must be left within what its own parameters may be.
+base::Result<void> check_gains(const std::string& section, const nav::TrackParams& t) {
+  constexpr double kRounding = 1e-9;
+  const auto too = [&](const char* gain, const char* what) {
+    return wrong((section + gain).c_str(), what);
+  };
+  if (t.law == "path_frame") {
+    if (t.settle_min_m < 0.15 - kRounding) {
+      return too(".offset_gain", "must leave nav.track.settle_min_m over its root at least 0.15");
+    }
+    if (t.damping < 0.5 - kRounding || t.damping > 3.0 + kRounding) {
+      return too(".heading_gain",
+                 "must leave nav.track.damping times it, over the root of offset_gain, from 0.5 to "
+                 "3.0");
+    }
+  } else if (t.law == "pure_pursuit" && t.lookahead_min_m < 0.2 - kRounding) {
+    return too(".offset_gain", "must leave nav.track.lookahead_min_m over its root at least 0.2");
+  } else if (t.law == "stanley" &&
+             (t.stanley_gain_1ps < 0.1 - kRounding || t.stanley_gain_1ps > 10.0 + kRounding)) {
+    return too(".offset_gain", "must leave nav.track.stanley_gain_1ps times it from 0.1 to 10.0");
+  }
+  return {};
+}
+
+/// Along walls and past landmarks.
+base::Result<void> check_by_sight(const Config& c) {
+  if (auto good = check_gains("nav.wall", c.wall_path().track); !good) return good;
+  if (auto good = check_gains("nav.landmarks", c.landmark_path().track); !good) return good;
+  // The defaults may stand of a wider vehicle, too: an item that would take one of them is refused
+  // when it is to be driven.
+  const double wall_m = c.wall.distance_m;
+  if (wall_m <= nav::touches_wall_m(c.vehicle) && wall_m != nav::marks::WallParams{}.distance_m) {
+    return wrong("nav.wall.distance_m", "must be more than half of vehicle.width_m");
+  }
+  const double offset_m = c.landmarks.offset_m;
+  if (offset_m <= nav::touches_landmark_m(c.vehicle) &&
+      offset_m != nav::marks::LandmarkParams{}.offset_m) {
+    return wrong("nav.landmarks.offset_m",
+                 "must be more than half of vehicle.width_m and 0.25 m of a landmark");
+  }
+  return {};
+}
+
 /// A section's own check, under its full name.
 base::Result<void> in_section(const char* section, base::Result<void> result) {
   if (result) return result;
@@ -105,6 +148,7 @@ base::Result<void> in_section(const char* section, base::Result<void> result) {
 base::Result<void> check(const Config& c) {
   if (auto good = check_words(c); !good) return good;
   if (auto good = check_orders(c); !good) return good;
+  if (auto good = check_by_sight(c); !good) return good;
   if (auto good = in_section("radio", check(c.radio)); !good) return good;
   if (auto good = in_section("nav.tool", check(c.tool)); !good) return good;
   if (auto good = in_section("nav.landmarks", check(c.landmarks)); !good) return good;

@@ -267,6 +267,9 @@ struct Config {
     p.speed.max_mps = std::min(speed.max_mps, vehicle.max_speed_mps);
     return p;
   }
+  /// The same along walls and past landmarks.
+  nav::PathParams wall_path() const { return nav::by_sight(path(), wall.gains, sight); }
+  nav::PathParams landmark_path() const { return nav::by_sight(path(), landmarks.gains, sight); }
 };
 
 template <class V>

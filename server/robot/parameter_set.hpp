@@ -17,7 +17,11 @@ namespace roverd::robot {
 
 class ParameterSet {
  public:
-  explicit ParameterSet(Config c) { adopt(std::make_shared<const Config>(std::move(c))); }
+  explicit ParameterSet(Config c) {
+    marks.wall_path.emplace();
+    marks.landmark_path.emplace();
+    adopt(std::make_shared<const Config>(std::move(c)));
+  }
 
   /// @param next not null, and checked.
   void adopt(std::shared_ptr<const Config> next) {
@@ -35,6 +39,8 @@ class ParameterSet {
     marks.walls.adopt(section(all_->wall));
     marks.landmarks.adopt(section(all_->landmarks));
     marks.tag_dock.adopt(section(all_->tag_dock));
+    marks.wall_path->adopt(std::make_shared<const nav::PathParams>(all_->wall_path()));
+    marks.landmark_path->adopt(std::make_shared<const nav::PathParams>(all_->landmark_path()));
     manual.adopt(section(all_->manual));
     safety.adopt(section(all_->safety));
     radio.adopt(section(all_->radio));

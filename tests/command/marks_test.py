@@ -64,7 +64,7 @@ class Yard(SeeingRobot):
         # Until here it stood among the cones, as its configuration says, and touched one.
         self.control.ask({"pose": {"east_m": 0.05, "north_m": -4.0, "heading_deg": 1.0}, "forget": True})
 
-    def drive(self, item, seconds):
+    def drive(self, item, seconds, on_the_way=lambda truth: None):
         """A mission of one item, its trail kept. @return the execution at its end"""
         until("it is ready", 30, lambda: self.rest.get("/vehicle")["ready_to_arm"], 0.2)
         self.start(self.rest.do("POST", "/missions", {"name": "marks", "items": [item]}))
@@ -72,6 +72,7 @@ class Yard(SeeingRobot):
         def over():
             truth = self.truth()
             self.trail.append((truth["east_m"], truth["north_m"]))
+            on_the_way(truth)
             execution = self.rest.get("/execution")
             self.fastest_mps = max(self.fastest_mps, truth["speed_mps"])
             if execution["state"] == "paused" and "sensor" in execution["reason"]:
@@ -109,6 +110,25 @@ def along_a_wall():
         check(max(e for e, _ in yard.trail) > 2.0, "it went around the corner")
         check(rms <= 0.03, f"{rms:.3f} m off the way, rms")
         check(0.55 <= yard.fastest_mps <= 0.66, f"{yard.fastest_mps} m/s at its fastest")
+        check(yard.truth()["contacts"] == 0, "nothing was touched")
+
+
+def farther_off():
+    """along a wall at the distance of the parameters, and farther off as soon as it is told to on the way"""
+    told = []
+    with Yard([{"kind": "wall", "points": [[-1.0, -7], [-1.0, 12]]}], SCANNER) as yard:
+        def tell(truth):
+            if truth["north_m"] > -0.5 and not told:
+                told.append(yard.rest.do("PUT", "/parameters/nav.wall.distance_m", {"value": 1.3}))
+        yard.sees("front")
+        over = yard.drive({"type": "wall", "side": "left", "length_m": 11}, 120, tell)
+        check(over["state"] == "finished", f"it was driven: {over}")
+        check(told and told[0]["acts"] == "at_once", f"it acted at once: {told}")
+        off = lambda n0, n1, m: max(abs(e + 1.0 - HALF_WALL_M - m) for e, n in yard.trail if n0 < n < n1)
+        print(f"# off its line before by {100 * off(-2.5, -0.6, 0.9):.1f} cm at most, "
+              f"3.5 m later by {100 * off(3.0, 6.5, 1.3):.1f} cm", flush=True)
+        check(off(-2.5, -0.6, 0.9) <= 0.06, "it kept 0.90 m")
+        check(off(3.0, 6.5, 1.3) <= 0.06, "and then 1.30 m")
         check(yard.truth()["contacts"] == 0, "nothing was touched")
 
 
@@ -171,4 +191,4 @@ def no_cone():
 
 if __name__ == "__main__":
     chosen = [globals()[name] for name in sys.argv[1:]]
-    sys.exit(run_cases(chosen or [along_a_wall, black_wall, cones_by_scanner, cones_by_camera, no_cone]))
+    sys.exit(run_cases(chosen or [along_a_wall, farther_off, black_wall, cones_by_scanner, cones_by_camera, no_cone]))

@@ -351,7 +351,8 @@ Result<Done> apply(Plan plan, const Mirror& mirror) {
     } else if (auto* wall = std::get_if<Wall>(&item)) {
       wall->side = other(wall->side);
     } else if (auto* marks = std::get_if<Landmarks>(&item)) {
-      marks->offset_m = -marks->offset_m;
+      if (marks->offset_m) marks->offset_m = -*marks->offset_m;
+      if (marks->side) marks->side = other(*marks->side);
     } else if (auto* circle = std::get_if<Circle>(&item)) {
       circle->clockwise = !circle->clockwise;
     }

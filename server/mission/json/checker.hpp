@@ -38,6 +38,10 @@ class Checker {
     if (std::find(words.begin(), words.end(), value) == words.end()) add(name, words_problem<E>());
   }
   template <class E>
+  void word(std::string_view name, const std::optional<E>& value) {
+    if (value) word(name, *value);
+  }
+  template <class E>
   void word_or(std::string_view name, const E& value, E) {
     word(name, value);
   }

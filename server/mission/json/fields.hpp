@@ -9,6 +9,7 @@
 //   v.count(name, optional<int>&, max)        the same, may be absent
 //   v.flag(name, bool&)                       absent means false
 //   v.word(name, enumeration&)                required
+//   v.word(name, optional<enumeration>&)      may be absent
 //   v.word_or(name, enumeration&, usual)      absent means `usual`
 //   v.name(name, string&)                     required
 //   v.name(name, optional<string>&)           may be absent
@@ -160,6 +161,8 @@ template <class V>
 void fields(V& v, Of<Landmarks> auto& p) {
   v.name("name", p.name);
   v.number("offset_m", p.offset_m, kOffset_m);
+  v.word("side", p.side);
+  v.exactly_one("offset_m", p.offset_m.has_value(), "side", p.side.has_value());
   v.number("speed_mps", p.speed_mps, kSpeed_mps);
   v.count("count", p.count, kMaxLandmarks);
 }

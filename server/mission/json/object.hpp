@@ -101,6 +101,10 @@ class Members {
     if (const nlohmann::json* value = required(name)) read_word(name, *value, out);
   }
   template <class E>
+  void word(std::string_view name, std::optional<E>& out) {
+    if (const nlohmann::json* value = any(name)) read_word(name, *value, out.emplace());
+  }
+  template <class E>
   void word_or(std::string_view name, E& out, E usual) {
     out = usual;
     if (const nlohmann::json* value = any(name)) read_word(name, *value, out);

@@ -153,6 +153,10 @@ class QuickMembers {
     if (const Simple* m = required(name, Simple::Kind::Text)) read_word(m->text, out);
   }
   template <class E>
+  void word(std::string_view name, std::optional<E>& out) {
+    if (const Simple* m = optional(name, Simple::Kind::Text)) read_word(m->text, out.emplace());
+  }
+  template <class E>
   void word_or(std::string_view name, E& out, E usual) {
     out = usual;
     if (const Simple* m = optional(name, Simple::Kind::Text)) read_word(m->text, out);

@@ -32,6 +32,10 @@ class ValueWriter {
     out_[name] = to_string(value);
   }
   template <class E>
+  void word(const char* name, const std::optional<E>& value) {
+    if (value) word(name, *value);
+  }
+  template <class E>
   void word_or(const char* name, const E& value, E usual) {
     if (value != usual) word(name, value);
   }
@@ -85,6 +89,10 @@ class TextWriter {
     out_ += '"';
     out_ += to_string(value);
     out_ += '"';
+  }
+  template <class E>
+  void word(const char* name, const std::optional<E>& value) {
+    if (value) word(name, *value);
   }
   template <class E>
   void word_or(const char* name, const E& value, E usual) {

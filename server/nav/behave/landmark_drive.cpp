@@ -75,6 +75,10 @@ TrackPhase LandmarkDrive::phase() const noexcept {
   return TrackPhase::Idle;
 }
 
+double LandmarkDrive::offset_m() const noexcept {
+  return order_.offset_m.value_or(params_.landmarks->offset_m);
+}
+
 /// Lays the way past what is known. @return false: nobody looks, or there is nothing to drive to.
 bool LandmarkDrive::look(const MarkSight& sight) {
   const auto told = [&] {
@@ -91,7 +95,7 @@ bool LandmarkDrive::look(const MarkSight& sight) {
   if (laid_ == sight.view->stamp) return unseen_s_ == 0.0;
   laid_ = sight.view->stamp;
   marks::LandmarkParams params = *params_.landmarks;
-  params.offset_m = order_.offset_m;
+  params.offset_m = offset_m();
   const double speed_mps =
       std::min(order_.speed_mps.value_or(params_.sight->speed_mps), path_params_->speed.max_mps);
   const auto lay = [&](std::span<const marks::Landmark> known) {
@@ -169,6 +173,11 @@ TrackOutput LandmarkDrive::step(const MarkSight& sight, const Vehicle& vehicle, 
   if (enough() && course_.passed() == 0) {  // they were passed before
     drive_.reset();
     state_ = State::Done;
+    return {};
+  }
+  if (offset_m() <= touches_landmark_m(path_params_->vehicle)) {
+    fail("nav.landmarks.offset_m is " + tenths_text(offset_m()) +
+         ": this vehicle would drive over them");
     return {};
   }
   const Vehicle v = by_odometry(sight, vehicle);

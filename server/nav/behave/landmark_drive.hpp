@@ -31,8 +31,9 @@ class LandmarkDrive {
 
   struct Order {
     marks::Side side = marks::Side::Left;  ///< of the vehicle, where they are
-    double offset_m = 0.7;                 ///< from them to the vehicle's middle
-    std::string name{};                    ///< only those that are called so; empty: all
+    /// From them to the vehicle's middle; empty: the parameter, as it is at each look.
+    std::optional<double> offset_m{};
+    std::string name{};  ///< only those that are called so; empty: all
     std::optional<double> speed_mps{};
     std::optional<int> count{};  ///< done behind so many; empty: behind the last that is seen
     int passed = 0;              ///< of an item that was interrupted: so many are done already
@@ -54,6 +55,7 @@ class LandmarkDrive {
   TrackPhase phase() const noexcept;
 
  private:
+  double offset_m() const noexcept;
   bool look(const MarkSight& sight);
   void seek(const marks::Pose2& body);
   void judge(double dt_s);

@@ -1,6 +1,7 @@
 #include "nav/behave/mark_sight.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace roverd::nav {
 namespace {
@@ -18,6 +19,22 @@ Vehicle by_odometry(const marks::Pose2& body, const Vehicle& vehicle) noexcept {
   v.slide = {};
   v.crab = 0.0;
   return v;
+}
+
+PathParams by_sight(PathParams path, const marks::SteerGains& gains, const SightParams& sight) {
+  TrackParams& t = path.track;
+  // The laws know lengths: path_frame steers by 1/L² for an offset and by 2·damping/L for a
+  // direction, pure_pursuit by 2/L².
+  const double shorter = std::sqrt(gains.offset);
+  t.settle_min_m /= shorter;
+  t.settle_time_s /= shorter;
+  t.damping *= gains.heading / shorter;
+  t.lookahead_min_m /= shorter;
+  t.lookahead_time_s /= shorter;
+  t.lookahead_max_m /= shorter;
+  t.stanley_gain_1ps *= gains.offset;
+  path.speed.max_yaw_rate_radps = std::min(path.speed.max_yaw_rate_radps, sight.max_yaw_rate_radps);
+  return path;
 }
 
 marks::Way straight_on(const marks::Pose2& body, double ahead_m, double speed_mps) {

@@ -2,6 +2,8 @@
 // What is common to the items that are driven by what is seen of walls and landmarks (nav/marks),
 // in the frame O of the odometry: their parameters, what they are told, how they begin. Pure.
 
+#include <optional>
+
 #include "base/params.hpp"
 #include "base/setting.hpp"
 #include "nav/marks/params.hpp"
@@ -20,6 +22,7 @@ struct SightParams {
   double entry_m = 2.0;
   double old_s = 0.6;
   double wait_s = 5.0;
+  double max_yaw_rate_radps = 5.0;
 };
 
 template <class V>
@@ -33,6 +36,23 @@ void fields(V& v, SightParams& p) {
         "an older view stops it; so does a side without a wall, or no landmark, for so long"));
   v("wait_s", p.wait_s, 0.0, 600.0,
     "standing without a wall or landmark for so long, the item has failed");
+  v("max_yaw_rate_radps", p.max_yaw_rate_radps, 0.1, 5.0,
+    "it turns no faster there, nor faster than nav.speed.max_yaw_rate_radps");
+}
+
+/// What [nav.track] and [nav.speed] are along walls or past landmarks. Of gains of 1 and no limit
+/// of its own it is what it was.
+PathParams by_sight(PathParams path, const marks::SteerGains& gains, const SightParams& sight);
+
+/// What counts as a landmark is no thicker: the default of nav.landmarks.max_radius_m.
+inline constexpr double kLandmarkRadius_m = 0.25;
+/// This near to a wall, or less, the vehicle's middle cannot be driven along it.
+inline double touches_wall_m(const VehicleParams& vehicle) noexcept {
+  return 0.5 * vehicle.width_m;
+}
+/// Likewise past a landmark, told to its middle.
+inline double touches_landmark_m(const VehicleParams& vehicle) noexcept {
+  return 0.5 * vehicle.width_m + kLandmarkRadius_m;
 }
 
 struct MarkSettings {
@@ -40,6 +60,9 @@ struct MarkSettings {
   base::Setting<marks::WallParams> walls{};
   base::Setting<marks::LandmarkParams> landmarks{};
   base::Setting<tags::TagDockParams> tag_dock{};
+  /// by_sight() of the two; empty: as every other way is driven.
+  std::optional<base::Setting<PathParams>> wall_path{};
+  std::optional<base::Setting<PathParams>> landmark_path{};
 };
 
 /// What is known of walls and landmarks at one tick.

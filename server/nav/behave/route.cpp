@@ -6,6 +6,7 @@
 
 #include "base/angle.hpp"
 #include "mission/circle.hpp"
+#include "nav/behave/mark_sight.hpp"
 #include "nav/behave/text.hpp"
 #include "nav/track/corner.hpp"
 #include "nav/track/tool.hpp"
@@ -16,8 +17,6 @@ namespace {
 using base::FieldError;
 using mission::AtEnd;
 
-/// What counts as a landmark is no thicker: the default of nav.landmarks.max_radius_m.
-constexpr double kLandmarkRadius_m = 0.25;
 constexpr double kNodeEvery_rad = base::kPi / 12.0;  // of a circle
 constexpr double kMostCircled_m = 50'000.0;
 constexpr double kMostPlaces = 200'000.0;  // as many as a mission may have items
@@ -219,8 +218,8 @@ class Layout {
   }
   void add(const mission::Wall& w) {
     if (params_.tool.pulled()) return refuse("with a trailer no wall is driven along by sight");
-    if (w.distance_m <= 0.5 * params_.vehicle.width_m) {
-      return refuse("is driven " + tenths_text(w.distance_m) +
+    if (w.distance_m && *w.distance_m <= touches_wall_m(params_.vehicle)) {
+      return refuse("is driven " + tenths_text(*w.distance_m) +
                     " from its wall: this vehicle would touch it");
     }
     not_back_and_forth("a wall");
@@ -235,16 +234,15 @@ class Layout {
   }
   void add(const mission::Landmarks& l) {
     if (params_.tool.pulled()) return refuse("with a trailer no landmarks are passed by sight");
-    // The offset is to a landmark's middle.
-    const double clear_m = 0.5 * params_.vehicle.width_m + kLandmarkRadius_m;
-    if (std::abs(l.offset_m) <= clear_m) {
-      return refuse("passes landmarks at " + tenths_text(std::abs(l.offset_m)) +
+    if (l.offset_m && std::abs(*l.offset_m) <= touches_landmark_m(params_.vehicle)) {
+      return refuse("passes landmarks at " + tenths_text(std::abs(*l.offset_m)) +
                     ": this vehicle would drive over them");
     }
     not_back_and_forth("a way past landmarks");
     LandmarksToPass pass;
-    pass.side = l.offset_m > 0.0 ? marks::Side::Right : marks::Side::Left;
-    pass.offset_m = std::abs(l.offset_m);
+    const bool on_right = l.offset_m ? *l.offset_m > 0.0 : l.side == mission::Side::Right;
+    pass.side = on_right ? marks::Side::Right : marks::Side::Left;
+    if (l.offset_m) pass.offset_m = std::abs(*l.offset_m);
     pass.name = l.name == mission::kAnyLandmark ? "" : l.name;
     pass.speed_mps = l.speed_mps;
     if (l.count.value_or(0) > 0) pass.count = l.count;

@@ -43,19 +43,19 @@ struct RowToDrive {
 /// A wall to drive along by sight.
 struct WallToDrive {
   marks::Side side = marks::Side::Left;
-  double distance_m = 0.9;
-  std::optional<double> speed_mps;  ///< empty: the default of what is driven by sight
-  std::optional<double> length_m;   ///< empty: to its end
-  std::optional<EnuPoint> until{};  ///< at the latest beside this place
+  std::optional<double> distance_m{};  ///< empty: the default of walls
+  std::optional<double> speed_mps;     ///< empty: the default of what is driven by sight
+  std::optional<double> length_m;      ///< empty: to its end
+  std::optional<EnuPoint> until{};     ///< at the latest beside this place
 };
 
 /// Landmarks to drive past by sight.
 struct LandmarksToPass {
   marks::Side side = marks::Side::Left;  ///< of the vehicle, where they are
-  double offset_m = 0.7;
-  std::string name;                 ///< empty: all
-  std::optional<double> speed_mps;  ///< empty: the default of what is driven by sight
-  std::optional<int> count;         ///< empty: to the last one that is seen
+  std::optional<double> offset_m{};      ///< empty: the default of landmarks
+  std::string name;                      ///< empty: all
+  std::optional<double> speed_mps;       ///< empty: the default of what is driven by sight
+  std::optional<int> count;              ///< empty: to the last one that is seen
 };
 
 /// A tag to stand before.

@@ -138,6 +138,10 @@ void WallDrive::count(const marks::Pose2& body) noexcept {
   last_ = body;
 }
 
+double WallDrive::distance_m() const noexcept {
+  return order_.distance_m.value_or(params_.walls->distance_m);
+}
+
 /// Lays the way along what is known. @return false: nobody looks, or there is no wall.
 bool WallDrive::look(const MarkSight& sight) {
   if (!sight.fresh(*params_.sight)) {
@@ -148,8 +152,8 @@ bool WallDrive::look(const MarkSight& sight) {
   laid_ = sight.view->stamp;
   const double speed_mps =
       std::min(order_.speed_mps.value_or(params_.sight->speed_mps), path_params_->speed.max_mps);
-  auto way = marks::wall_way(sight.view->walls, sight.body, order_.side, order_.distance_m,
-                             speed_mps, sight.now, *params_.walls);
+  auto way = marks::wall_way(sight.view->walls, sight.body, order_.side, distance_m(), speed_mps,
+                             sight.now, *params_.walls);
   if (!way) return false;
   bool to_length = false;
   if (order_.length_m) {
@@ -205,6 +209,10 @@ void WallDrive::judge(double dt_s) {
 TrackOutput WallDrive::step(const MarkSight& sight, const Vehicle& vehicle, double limit_mps,
                             double dt_s) {
   if (state_ != State::Seeking && state_ != State::Driving) return {};
+  if (distance_m() <= touches_wall_m(path_params_->vehicle)) {
+    fail("nav.wall.distance_m is " + tenths_text(distance_m()) + ": this vehicle would touch it");
+    return {};
+  }
   const Vehicle v = by_odometry(sight, vehicle);
   count(sight.body);
   unseen_s_ = look(sight) ? 0.0 : unseen_s_ + dt_s;

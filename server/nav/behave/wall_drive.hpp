@@ -28,7 +28,7 @@ class WallDrive {
 
   struct Order {
     marks::Side side = marks::Side::Left;
-    double distance_m = 0.9;
+    std::optional<double> distance_m{};  ///< empty: the parameter, as it is at each look
     std::optional<double> speed_mps{};
     std::optional<double> length_m{};  ///< done after so much way; empty: at its end
     double driven_m = 0.0;             ///< of an item that was interrupted: so much is done already
@@ -52,6 +52,7 @@ class WallDrive {
 
  private:
   void count(const marks::Pose2& body) noexcept;
+  double distance_m() const noexcept;
   bool look(const MarkSight& sight);
   void seek(const marks::Pose2& body);
   void judge(double dt_s);

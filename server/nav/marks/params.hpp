@@ -11,6 +11,21 @@ namespace roverd::nav::marks {
 /// Which of the robot's sides.
 enum class Side { Left, Right };
 
+/// How hard it steers back to a way by sight: so many times as [nav.track] says of all ways.
+struct SteerGains {
+  double offset = 1.0;   ///< for each metre beside the way
+  double heading = 1.0;  ///< for each radian off its direction; the law path_frame alone has it
+};
+
+template <class V>
+void fields(V& v, SteerGains& p) {
+  v("offset_gain", p.offset, 0.25, 4.0,
+    "so many times as hard as nav.track says it steers back when beside its way; more is livelier, "
+    "may weave");
+  v("heading_gain", p.heading, 0.5, 3.0,
+    "likewise when off the way's direction; more is calmer; law path_frame only");
+}
+
 struct WallParams {
   double max_range_m = 8.0;
   double jump_m = 0.3;
@@ -21,8 +36,7 @@ struct WallParams {
   double door_m = 1.5;
   double min_plane_size = 4000.0;
   double distance_m = 0.9;
-  double ahead_m = 1.4;
-  double gain = 10.0;
+  SteerGains gains;
   double way_m = 4.0;
   double corner_m = 0.15;
   double keep_s = 20.0;
@@ -38,6 +52,9 @@ void fields(V& v, WallParams& p) {
   v("max_rms_m", p.max_rms_m, 0.005, 0.3, "nor what is less straight");
   v("door_m", p.door_m, 0.0, 5.0, "a gap up to this width is a door: the wall goes on behind it");
   v("min_plane_size", p.min_plane_size, 0.0, 1e6, "a camera's smaller planes are no wall");
+  v("distance_m", p.distance_m, 0.1, 20.0,
+    "from the wall to the vehicle's middle, where the item does not say it");
+  fields(v, p.gains);
   v("way_m", p.way_m, 1.0, 10.0, "the way along the wall is laid so far ahead");
   v("corner_m", p.corner_m, 0.02, 1.0, "how far an inner corner may be cut");
   v("keep_s", p.keep_s, 1.0, 300.0, "a wall that is not seen any more is kept so long");
@@ -51,9 +68,9 @@ struct LandmarkParams {
   double near_m = 0.5;
   double confirm = 3.0;
   double forget_s = 1.0;
-  double offset_m = 0.7;  ///< they are passed at this distance: each item says its own
-  double next_m = 0.6;    ///< nearer to its passing point than this the next one counts
-  double gain = 18.0;
+  double offset_m = 0.7;
+  SteerGains gains;
+  double corner_m = 0.03;
   double on_m = 1.0;
 };
 
@@ -66,13 +83,22 @@ void fields(V& v, LandmarkParams& p) {
   v("near_m", p.near_m, 0.1, 2.0, "what is seen this close to a known landmark is that landmark");
   v("confirm", p.confirm, 1.0, 50.0, "seen so often it is believed");
   v("forget_s", p.forget_s, 0.2, 60.0, "in view and not seen for so long it is gone");
+  v("offset_m", p.offset_m, 0.1, 20.0,
+    "from a landmark to the vehicle's middle, where the item does not say it");
+  fields(v, p.gains);
+  v("corner_m", p.corner_m, 0.01, 0.2,
+    "how far the bend may be cut where the way to the next one turns off");
   v("on_m", p.on_m, 0.2, 5.0, "behind the last one it drives on so far, and stops");
 }
 
 inline base::Result<void> check(const LandmarkParams& p) {
-  if (p.min_radius_m < p.max_radius_m) return {};
-  return base::fail(base::Code::Invalid, "min_radius_m must be smaller than max_radius_m",
-                    {{"min_radius_m", "must be smaller than max_radius_m"}});
+  if (!(p.min_radius_m < p.max_radius_m)) {
+    return base::fail(base::Code::Invalid, "min_radius_m must be smaller than max_radius_m",
+                      {{"min_radius_m", "must be smaller than max_radius_m"}});
+  }
+  if (p.corner_m < p.offset_m) return {};
+  return base::fail(base::Code::Invalid, "corner_m must be smaller than offset_m",
+                    {{"corner_m", "must be smaller than offset_m"}});
 }
 
 }  // namespace roverd::nav::marks

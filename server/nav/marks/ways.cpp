@@ -337,7 +337,7 @@ Way landmark_way(std::span<const Vec2> chain, std::span<const Vec2> behind, cons
   Vertex common;
   common.speed_mps = speed_mps;
   common.turn = mission::Turn::Arc;
-  common.deviation_m = 0.03;
+  common.deviation_m = params.corner_m;
   const auto put = [&](Vec2 at, double curvature_1pm, bool tangent) {
     common.at = point(at);
     common.curvature_1pm = curvature_1pm;

@@ -61,6 +61,9 @@ TEST(SenseKeys, AllStandInThePageAsTheyAreAndNoOthers) {
   rows("sense.blocked", guard.blocked);
   rows("nav.row", guard.row);
   rows("nav.rows", guard.rows);
+  rows("nav.sight", guard.sight);
+  rows("nav.wall", guard.wall);
+  rows("nav.landmarks", guard.landmarks);
   rows("nav.tag_dock", guard.tag_dock);
   rows("", SensorSettings{});
   rows("", cloud::Params{});

@@ -98,6 +98,25 @@ TEST(LandmarksItem, PassesEachAtTheOffsetAndIsDoneBehindTheLast) {
   }
 }
 
+// The last two are passed as it is told on the way, where the item says nothing itself.
+TEST(LandmarksItem, AnOffsetThatIsChangedOnTheWayIsKeptWhereTheItemSaysNone) {
+  for (const auto& own : {std::optional<double>{}, std::optional(0.7)}) {
+    LandmarksItem l;
+    l.stand_poles(4);
+    base::Setting<marks::LandmarkParams> params(l.params);
+    l.drive = LandmarkDrive(base::Setting<PathParams>(l.path), {l.sight, {}, params});
+    l.drive.begin({.side = Side::Left, .offset_m = own});
+    while (l.drive.passed() < 2 && l.rover.now < base::Time(std::chrono::hours(2))) l.run(0.1);
+    marks::LandmarkParams farther;
+    farther.offset_m = 1.0;
+    params.adopt(std::make_shared<const marks::LandmarkParams>(farther));
+    l.run(25.0);
+    EXPECT_EQ(l.drive.state(), State::Done) << l.drive.reason();
+    EXPECT_NEAR(l.nearest_m[0], 0.7, 0.05);
+    EXPECT_NEAR(l.nearest_m[3], own ? 0.7 : 1.0, 0.05);
+  }
+}
+
 TEST(LandmarksItem, IsDoneBehindSoManyAndCountsThoseOfBefore) {
   for (const int before : {0, 1}) {
     LandmarksItem l;

@@ -76,6 +76,68 @@ TEST(WallItem, IsDoneWhereTheWallEnds) {
   EXPECT_NEAR(w.rover.truth.x_m, 6.9, 0.15) << "about its end";
 }
 
+//   ═══════════════════
+//   ────────╮                 told on the way to keep farther off; not one whose item says its own
+//           ╰──────────▶
+TEST(WallItem, ADistanceThatIsChangedOnTheWayIsKeptWhereTheItemSaysNone) {
+  for (const auto& own : {std::optional<double>{}, std::optional(0.9)}) {
+    WallItem w;
+    w.yard.slabs = {{{-5.0, 0.9}, {20.0, 0.9}}};
+    base::Setting<marks::WallParams> params(w.params);
+    w.drive = WallDrive(base::Setting<PathParams>(w.path), {w.sight, params});
+    w.drive.begin({.side = Side::Left, .distance_m = own});
+    w.run(6.0);
+    EXPECT_NEAR(w.rover.truth.y_m, 0.0, 0.04);
+    marks::WallParams farther;
+    farther.distance_m = 1.3;
+    params.adopt(std::make_shared<const marks::WallParams>(farther));
+    w.run(14.0);
+    EXPECT_EQ(w.drive.state(), WallDrive::State::Driving) << w.drive.reason();
+    EXPECT_NEAR(w.rover.truth.y_m, own ? 0.0 : -0.4, 0.04);
+  }
+}
+
+// Beside its way it steers back four times as hard, at the tick at which it is told to.
+TEST(WallItem, AGainThatIsChangedActsAtOnce) {
+  WallItem w;
+  w.scanner.noise_m = 0.0;
+  w.yard.slabs = {{{-5.0, 1.1}, {20.0, 1.1}}};
+  const base::Setting<PathParams> path(w.path);
+  base::Setting<PathParams> livelier(w.path);
+  WallDrive as_before(path, {w.sight, w.params});
+  WallDrive told(livelier, {w.sight, w.params});
+  for (WallDrive* d : {&as_before, &told}) d->begin({.side = Side::Left});
+  double before_radps = 0.0;
+  double told_radps = 0.0;
+  const auto step = [&](int i) {
+    if (i % 5 == 0) w.look();
+    const MarkSight seen{&w.view, w.rover.now, w.rover.odometry};
+    const Vehicle vehicle = w.rover.vehicle();
+    before_radps = as_before.step(seen, vehicle, 10.0, 0.02).command.angular_radps;
+    told_radps = told.step(seen, vehicle, 10.0, 0.02).command.angular_radps;
+  };
+  for (int i = 0; i < 60; ++i) {
+    step(i);
+    w.rover.step({0.4, 0.0});  // it does not come nearer
+  }
+  ASSERT_GT(before_radps, 0.0);
+  ASSERT_EQ(told_radps, before_radps);
+  livelier.adopt(std::make_shared<const PathParams>(by_sight(w.path, {4.0, 1.5}, w.sight)));
+  step(1);
+  EXPECT_GT(told_radps, before_radps + 0.02);
+}
+
+TEST(WallItem, WithoutADistanceItFailsWhereTheVehicleWouldTouch) {
+  WallItem w;
+  w.yard.slabs = {{{-5.0, 0.9}, {20.0, 0.9}}};
+  w.path.vehicle.width_m = 1.9;
+  w.begin({.side = Side::Left});
+  w.run(1.0);
+  EXPECT_EQ(w.drive.state(), WallDrive::State::Failed);
+  EXPECT_EQ(w.drive.reason(), "nav.wall.distance_m is 0.9 m: this vehicle would touch it");
+  EXPECT_EQ(w.rover.speed_mps, 0.0);
+}
+
 //   ══════▒▒▒▒▒▒▒▒▒
 TEST(WallItem, FailsWhereAWallGivesNoEchoAndSaysSo) {
   WallItem w;

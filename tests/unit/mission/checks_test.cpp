@@ -106,6 +106,9 @@ TEST(Check, NamesTheLeastDistanceThatTheGuardLetsItDrive) {
   EXPECT_EQ(found(course({Wall{Side::Left, 0.46}}), v), Codes{"too_near@1"});
   EXPECT_EQ(found(course({Wall{Side::Left, 0.47}}), v), Codes{});
   EXPECT_EQ(found(course({Wall{Side::Right, 0.3}}), v), Codes{"too_near@1"});
+  EXPECT_EQ(found(course({Wall{}}), v), Codes{});
+  v.wall_m = 0.46;
+  EXPECT_EQ(found(course({Wall{}}), v), Codes{"too_near@1"}) << "what the profile says of walls";
   EXPECT_EQ(found(course({Row{RowSide::Left, 0.4}}), v), Codes{"too_near@1"});
   EXPECT_EQ(found(course({Row{RowSide::Right, 0.7}}), v), Codes{});
   EXPECT_EQ(found(course({Row{RowSide::Both, 0.7}}), v), Codes{"no_effect@1"});

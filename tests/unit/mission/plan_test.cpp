@@ -72,11 +72,12 @@ TEST(Plan, IsLaidOnTheEarthWhereItsMapLies) {
 TEST(Plan, TypeNamesAreThoseOfThePublicInterface) {
   std::vector<std::string_view> names;
   for (const Item& item : plan_with_every_item().items) names.push_back(type_name(item));
-  EXPECT_EQ(names, (std::vector<std::string_view>{
-                       "waypoint",  "waypoint", "local",  "local",  "move",        "turn",
-                       "turn",      "wait",     "speed",  "row",    "row",         "wall",
-                       "landmarks", "dock",     "jump",   "action", "return_home", "loiter",
-                       "loiter",    "circle",   "circle", "turn",   "map_point",   "map_point"}));
+  EXPECT_EQ(names,
+            (std::vector<std::string_view>{
+                "waypoint", "waypoint",  "local",       "local",  "move",     "turn",      "turn",
+                "wait",     "speed",     "row",         "row",    "wall",     "landmarks", "dock",
+                "jump",     "action",    "return_home", "loiter", "loiter",   "circle",    "circle",
+                "turn",     "map_point", "map_point",   "wall",   "landmarks"}));
 }
 
 }  // namespace

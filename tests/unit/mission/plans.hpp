@@ -51,7 +51,9 @@ inline Plan plan_with_every_item() {
       Circle{{58.2, 26.6}, 4.0, {}, false, {}, {}, {}},
       TurnBy{180.0, std::nullopt, 1.25},
       MapPoint{3.5, -2.25, 90.0, 0.5, 0.2, 3.0, true},
-      MapPoint{.x_m = 1.0, .y_m = 2.0}};
+      MapPoint{.x_m = 1.0, .y_m = 2.0},
+      Wall{.side = Side::Left, .length_m = 4.0},
+      Landmarks{.name = "any", .side = Side::Right}};
   return plan;
 }
 
@@ -121,9 +123,10 @@ class RandomPlans {
         return Row{static_cast<RowSide>(whole(0, 2)), maybe(0.1, 20.0), maybe(0.01, 10.0),
                    maybe(0.1, 500.0), coin() ? RowSeeing::Line : RowSeeing::Rays};
       case 6:
-        return Wall{side(), number(0.1, 20.0)};
+        return Wall{side(), maybe(0.1, 20.0)};
       case 7:
-        return Landmarks{"cone", number(-20.0, 20.0), maybe(0.01, 10.0)};
+        return coin() ? Landmarks{"cone", number(-20.0, 20.0), maybe(0.01, 10.0)}
+                      : Landmarks{.name = "cone", .side = side()};
       case 8: {
         const int to = whole(1, items);
         if (to != index + 1) return Jump{to, whole(0, 100)};

@@ -296,12 +296,15 @@ TEST(ShapeOperations, AMirrorAboutNorthChangesEastAndWest) {
   Plan plan;
   plan.name = "line";
   plan.items = {waypoint_at(58.0, 26.0), waypoint_at(58.0, 26.001), TurnBy{-30.0, std::nullopt},
-                Row{.side = RowSide::Left}};
+                Row{.side = RowSide::Left}, Landmarks{.name = "any", .side = Side::Left},
+                Landmarks{"any", 0.7}};
   const Plan mirrored = done(plan, Mirror{0.0, LatLon{58.0, 26.0}});
   EXPECT_NEAR(at(mirrored, 1).lon, 25.999, 1e-9);
   EXPECT_NEAR(at(mirrored, 1).lat, 58.0, 1e-9);
   EXPECT_EQ(mirrored.items[2], Item(TurnBy{30.0, std::nullopt}));
   EXPECT_EQ(mirrored.items[3], Item(Row{.side = RowSide::Right}));
+  EXPECT_EQ(mirrored.items[4], Item(Landmarks{.name = "any", .side = Side::Right}));
+  EXPECT_EQ(mirrored.items[5], Item(Landmarks{"any", -0.7}));
 }
 
 TEST(ShapeOperations, TheMiddleIsThatOfTheExtremes) {

@@ -13,7 +13,7 @@ inline mission::Plan some_landmarks() {
   plan.name = "landmarks";
   mission::Landmarks landmarks;
   landmarks.name = mission::kAnyLandmark;
-  landmarks.offset_m = -0.7;
+  landmarks.side = mission::Side::Left;
   plan.items.emplace_back(landmarks);
   return plan;
 }
@@ -42,6 +42,17 @@ inline const std::vector<Scene> kLandmarkScenes = {
        w.run(2.0);
        poles->posts.pop_back();
        w.run(12.0);
+     },
+     creep_beside_walls},
+    {"past poles that stand now nearer, now farther",
+     [](Walk& w) {
+       const auto poles = look_along_walls(w, {});
+       poles->posts = {{2.5, 0.7, 0.1}, {5.0, 1.5, 0.1}, {7.5, 0.6, 0.1}, {10.0, 1.5, 0.1}};
+       w.run(8.0);
+       w.go(some_landmarks());
+       w.run(2.0);
+       w.change();
+       w.run(20.0);
      },
      creep_beside_walls},
 };

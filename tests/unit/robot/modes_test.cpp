@@ -131,7 +131,7 @@ TEST(Missions, CompilingNamesTheItemThatCannotBeDriven) {
   Field f;
   f.run(1.0);
   auto plan = plan_of({{0, 20}});
-  plan.items.emplace_back(mission::Landmarks{});
+  plan.items.emplace_back(mission::Landmarks{"any", 0.0});
   const auto refused = f.robot.compile({"m", 1, plan});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().fields.at(0).pointer, "/items/1");

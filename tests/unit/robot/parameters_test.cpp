@@ -37,6 +37,13 @@ TEST(Parameters, AreRefusedWithAReasonAndChangeNothing) {
   EXPECT_EQ(of("nothing", 1.0), "there is no parameter nothing");
   EXPECT_EQ(of("nav.speed.max_mps", 99.0), "nav.speed.max_mps must lie in 0.1 .. 5.0");
   EXPECT_EQ(of("nav.speed.max_mps", std::nan("")), "nav.speed.max_mps must lie in 0.1 .. 5.0");
+  EXPECT_EQ(of("nav.wall.distance_m", 0.05), "nav.wall.distance_m must lie in 0.1 .. 20.0");
+  EXPECT_EQ(of("nav.wall.offset_gain", 5.0), "nav.wall.offset_gain must lie in 0.25 .. 4.0");
+  EXPECT_EQ(of("nav.landmarks.heading_gain", 0.1),
+            "nav.landmarks.heading_gain must lie in 0.5 .. 3.0");
+  EXPECT_EQ(of("nav.landmarks.corner_m", 0.3), "nav.landmarks.corner_m must lie in 0.01 .. 0.2");
+  EXPECT_EQ(of("nav.sight.max_yaw_rate_radps", 0.0),
+            "nav.sight.max_yaw_rate_radps must lie in 0.1 .. 5.0");
   EXPECT_EQ(of("nav.speed.max_mps", true), "nav.speed.max_mps must be a number");
   EXPECT_EQ(of("nav.behave.unreachable", std::string("fly")),
             "nav.behave.unreachable must be stop, skip or return, is \"fly\"");
@@ -79,6 +86,17 @@ TEST(Parameters, WhatAStartWouldRefuseAChangeRefusesInTheSameWords) {
        "nav.modes.follow_hold_s must not be below nav.modes.follow_brake_s"},
       {"nav.rows.low_m", 1.5, [](Config& c) { c.rows.low_m = 1.5; },
        "nav.rows.low_m must be smaller than high_m"},
+      // Half of the vehicle is 0.39 m.
+      {"nav.wall.distance_m", 0.38, [](Config& c) { c.wall.distance_m = 0.38; },
+       "nav.wall.distance_m must be more than half of vehicle.width_m"},
+      {"nav.landmarks.offset_m", 0.6, [](Config& c) { c.landmarks.offset_m = 0.6; },
+       "nav.landmarks.offset_m must be more than half of vehicle.width_m and 0.25 m of a landmark"},
+      {"nav.wall.heading_gain", 0.5, [](Config& c) { c.wall.gains.heading = 0.5; },
+       "nav.wall.heading_gain must leave nav.track.damping times it, over the root of offset_gain, "
+       "from 0.5 to 3.0"},
+      {"nav.landmarks.offset_gain", 4.0, [](Config& c) { c.landmarks.gains.offset = 4.0; },
+       "nav.landmarks.heading_gain must leave nav.track.damping times it, over the root of "
+       "offset_gain, from 0.5 to 3.0"},
       {"robot.safety.gnss_slow_s", 50.0, [](Config& c) { c.safety.gnss_slow_s = 50.0; },
        "robot.safety.gnss_hold_s must not be below robot.safety.gnss_slow_s"},
       {"robot.safety.sigma_slow_m", 9.0, [](Config& c) { c.safety.sigma_slow_m = 9.0; },
@@ -100,6 +118,55 @@ TEST(Parameters, WhatAStartWouldRefuseAChangeRefusesInTheSameWords) {
     EXPECT_EQ(change.error().fields.at(0).pointer, "/value");
   }
   EXPECT_FALSE(f.has_event("parameter"));
+}
+
+/// What an item without a distance takes of a vehicle that is too wide for it is refused when it is
+/// to be driven; that vehicle starts as it did.
+TEST(Parameters, TheDistancesOfTheFieldMayStandForAWideVehicle) {
+  Config wide;
+  wide.vehicle.width_m = 2.0;
+  EXPECT_TRUE(check(wide));
+  wide.wall.distance_m = 0.8;
+  EXPECT_FALSE(check(wide));
+}
+
+/// Each law is held within what its own parameters may be; of the others nothing is asked.
+TEST(Parameters, TheGainsAreBoundedByTheLawInUse) {
+  Config c;
+  c.track.settle_min_m = 0.2;
+  c.wall.gains = {4.0, 2.0};
+  ASSERT_FALSE(check(c));
+  EXPECT_EQ(check(c).error().fields.at(0).pointer, "nav.wall.offset_gain");
+  c.track.law = "pure_pursuit";
+  EXPECT_TRUE(check(c));
+  c.track.lookahead_min_m = 0.3;
+  EXPECT_FALSE(check(c));
+  c.track.law = "stanley";
+  EXPECT_TRUE(check(c));
+  c.track.stanley_gain_1ps = 3.0;
+  EXPECT_FALSE(check(c));
+}
+
+/// With the gains as they are at first nothing is driven otherwise than any other way.
+TEST(Parameters, WallsAndLandmarksAreDrivenAsAllElseUntilTheyAreToldOtherwise) {
+  Config c;
+  c.track.settle_min_m = 1.2;
+  c.track.damping = 0.7;
+  c.speed.max_yaw_rate_radps = 0.6;
+  for (const nav::PathParams& p : {c.wall_path(), c.landmark_path()}) {
+    EXPECT_EQ(p.track.settle_min_m, 1.2);
+    EXPECT_EQ(p.track.settle_time_s, c.track.settle_time_s);
+    EXPECT_EQ(p.track.damping, 0.7);
+    EXPECT_EQ(p.track.lookahead_min_m, c.track.lookahead_min_m);
+    EXPECT_EQ(p.track.stanley_gain_1ps, c.track.stanley_gain_1ps);
+    EXPECT_EQ(p.speed.max_yaw_rate_radps, 0.6);
+  }
+  c.wall.gains = {4.0, 2.0};
+  c.sight.max_yaw_rate_radps = 0.4;
+  EXPECT_EQ(c.wall_path().track.settle_min_m, 0.6) << "half as long: four times as hard";
+  EXPECT_EQ(c.wall_path().track.damping, 0.7);
+  EXPECT_EQ(c.wall_path().speed.max_yaw_rate_radps, 0.4);
+  EXPECT_EQ(c.landmark_path().track.settle_min_m, 1.2) << "each has its own";
 }
 
 /// The order in which the store tells them is not the one in which they were changed.

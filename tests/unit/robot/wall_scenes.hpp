@@ -137,7 +137,6 @@ inline mission::Plan a_wall() {
   plan.name = "wall";
   mission::Wall wall;
   wall.side = mission::Side::Left;
-  wall.distance_m = 0.9;
   plan.items.emplace_back(wall);
   return plan;
 }
