@@ -2,6 +2,7 @@ import { describe, expect, test } from 'vitest';
 
 import { draft_text, parse_draft } from '../src/model/draft';
 import {
+  field_value,
   fields_of,
   fresh_item,
   read_number,
@@ -54,6 +55,26 @@ describe('fields', () => {
   test('a turn is either relative or absolute', () => {
     const turned = with_field({ type: 'turn', turn_deg: 90 }, 'heading_deg', 180);
     expect(turned).toEqual({ type: 'turn', heading_deg: 180 });
+  });
+
+  test('landmarks have an offset with its side, or a side alone', () => {
+    const cones: Item = { type: 'landmarks', name: 'cone', offset_m: 0.7 };
+    expect(field_value(cones, 'side')).toBe('right');
+    const emptied = with_field(cones, 'offset_m', null);
+    expect(emptied).toEqual({ type: 'landmarks', name: 'cone', side: 'right' });
+    expect(with_field(cones, 'side', 'left')).toEqual({ ...cones, offset_m: -0.7 });
+    expect(with_field(emptied, 'side', 'left')).toEqual({ ...emptied, side: 'left' });
+    expect(with_field(emptied, 'offset_m', -0.8)).toEqual({ ...cones, offset_m: -0.8 });
+  });
+
+  test('what says no distance is told by its side', () => {
+    expect(item_title({ type: 'wall', side: 'right' })).toBe('Wall on the right');
+    expect(item_title({ type: 'wall', side: 'right', distance_m: 0.9 })).toBe(
+      'Wall on the right, 0.9 m',
+    );
+    expect(item_title({ type: 'landmarks', name: 'cone', side: 'left' })).toBe(
+      'Landmarks “cone” on the left',
+    );
   });
 
   test('every kind of item has a title, and a fresh one passes its own checks', () => {

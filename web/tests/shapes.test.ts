@@ -116,6 +116,20 @@ describe('a figure', () => {
       expect(after.items[5]).toBe(before.items[5]);
     });
 
+    test('mirrors the side of walls and landmarks, which may say no distance', () => {
+      const items: Item[] = [
+        { type: 'wall', side: 'left' },
+        { type: 'landmarks', name: 'any', side: 'right' },
+        { type: 'landmarks', name: 'any', offset_m: 0.7 },
+      ];
+      const after = mirror_items(new Set([0, 1, 2, 3]), 0, TARTU)(plan(point(0, 0), ...items));
+      expect(after.items.slice(1)).toEqual([
+        { type: 'wall', side: 'right' },
+        { type: 'landmarks', name: 'any', side: 'left' },
+        { type: 'landmarks', name: 'any', offset_m: -0.7 },
+      ]);
+    });
+
     test('leaves one alone that ends beside a known place, or nowhere', () => {
       const named: Item = { type: 'row', until_place: 'gate' };
       const bare: Item = { type: 'wall', side: 'left', distance_m: 1 };

@@ -1,7 +1,7 @@
 // The fields of every kind of item: label, unit, range. One table makes the editor, reads what was
 // typed and names what is wrong. The server checks again.
 
-import type { Item, ItemType, LatLon } from './plan';
+import type { Item, ItemType, Landmarks, LatLon, Side } from './plan';
 import { type PlainKey, say, told } from './say';
 
 export interface NumberField {
@@ -123,13 +123,14 @@ export const fields_of: Record<ItemType, readonly Field[]> = {
   ],
   wall: [
     SIDE,
-    must('distance_m', 'distance', 'm', [0.01, 20]),
+    may('distance_m', 'distance', 'm', [0.01, 20]),
     may('speed_mps', 'speed', 'm/s', [0.01, 10]),
     may('length_m', 'ends_after', 'm', [0.01, 10_000]),
   ],
   landmarks: [
     { kind: 'text', key: 'name', label: 'name' },
-    must('offset_m', 'offset', 'm', [-20, 20]),
+    SIDE,
+    may('offset_m', 'offset', 'm', [-20, 20]),
     may('speed_mps', 'speed', 'm/s', [0.01, 10]),
     whole(may('count', 'ends_after', '', [0, 10_000])),
   ],
@@ -179,9 +180,9 @@ export const fresh_item = (type: Exclude<ItemType, 'waypoint'>, near: LatLon | n
     case 'row':
       return { type, side: 'both' };
     case 'wall':
-      return { type, side: 'left', distance_m: 0.9 };
+      return { type, side: 'left' };
     case 'landmarks':
-      return { type, name: 'cone', offset_m: 0.7 };
+      return { type, name: 'cone', side: 'right' };
     case 'dock':
       return { type, tag: 0 };
     case 'jump':
@@ -256,11 +257,36 @@ export const read_number = (
   return { ok: true, value: per === 1 ? value : Number(value.toFixed(4)) };
 };
 
+/** Of the vehicle, where they are: an offset says it by its sign. */
+const side_of = ({ offset_m, side }: Landmarks): Side => {
+  if (typeof offset_m === 'number') return offset_m > 0 ? 'right' : 'left';
+  return side ?? 'left';
+};
+
+/** Landmarks have an offset, with its side, or a side alone: never neither. */
+const with_side = (item: Landmarks, key: string, value: unknown): Landmarks => {
+  const { offset_m, ...others } = item;
+  const rest = Object.fromEntries(
+    Object.entries(others).filter(([name]) => name !== 'side'),
+  ) as unknown as Landmarks;
+  if (key === 'offset_m') {
+    return typeof value === 'number'
+      ? { ...rest, offset_m: value }
+      : { ...rest, side: side_of(item) };
+  }
+  const side: Side = value === 'right' ? 'right' : 'left';
+  if (typeof offset_m !== 'number') return { ...rest, side };
+  return { ...rest, offset_m: side === 'right' ? Math.abs(offset_m) : -Math.abs(offset_m) };
+};
+
 /**
  * The item with one field set; null takes it out. A turn is either relative or absolute; a place is
  * latitude and longitude, or none.
  */
 export const with_field = (item: Item, key: string, value: unknown): Item => {
+  if (item.type === 'landmarks' && (key === 'offset_m' || key === 'side')) {
+    return with_side(item, key, value);
+  }
   const without_place =
     item.type === 'loiter' && value === null && (key === 'lat' || key === 'lon');
   const entries = Object.entries(item).filter(
@@ -275,4 +301,6 @@ export const with_field = (item: Item, key: string, value: unknown): Item => {
 };
 
 export const field_value = (item: Item, key: string): unknown =>
-  (item as unknown as Record<string, unknown>)[key];
+  item.type === 'landmarks' && key === 'side'
+    ? side_of(item)
+    : (item as unknown as Record<string, unknown>)[key];

@@ -70,7 +70,8 @@ export interface Row extends EndsBeside {
 export interface Wall extends EndsBeside {
   readonly type: 'wall';
   readonly side: Side;
-  readonly distance_m: number;
+  /** From the wall; absent: as the robot's parameters say. */
+  readonly distance_m?: number | null;
   readonly speed_mps?: number | null;
   readonly length_m?: number | null;
 }
@@ -78,7 +79,9 @@ export interface Landmarks {
   readonly type: 'landmarks';
   readonly name: string;
   /** The vehicle passes them so far to their left; negative: to their right. */
-  readonly offset_m: number;
+  readonly offset_m?: number | null;
+  /** Instead: where they are; how far off, the robot's parameters say. */
+  readonly side?: Side | null;
   readonly speed_mps?: number | null;
   /** Done behind so many; absent: behind the last. */
   readonly count?: number | null;
@@ -219,6 +222,16 @@ export const spots = (plan: Plan): Spot[] => {
   return found;
 };
 
+const wall_text = ({ side, distance_m }: Wall): string =>
+  typeof distance_m === 'number'
+    ? say(side === 'left' ? 'wall_on_left' : 'wall_on_right', { distance: distance_m })
+    : say(side === 'left' ? 'wall_left' : 'wall_right');
+
+const landmarks_text = ({ name, side, offset_m }: Landmarks): string =>
+  typeof offset_m === 'number'
+    ? say('landmarks_name_offset_m', { name, offset: offset_m })
+    : say(side === 'right' ? 'landmarks_right' : 'landmarks_left', { name });
+
 const turn_text = ({ turn_deg, heading_deg, radius_m }: Turn): string => {
   if (typeof turn_deg !== 'number') {
     const heading = heading_deg ?? 0;
@@ -260,11 +273,9 @@ export const item_title = (item: Item, speed_in: SpeedUnit = 'm/s'): string => {
           ? say('row_on_left')
           : say('row_on_right');
     case 'wall':
-      return say(item.side === 'left' ? 'wall_on_left' : 'wall_on_right', {
-        distance: item.distance_m,
-      });
+      return wall_text(item);
     case 'landmarks':
-      return say('landmarks_name_offset_m', { name: item.name, offset: item.offset_m });
+      return landmarks_text(item);
     case 'dock':
       return say('dock_at_tag_tag', { tag: item.tag });
     case 'jump':

@@ -128,7 +128,9 @@ const mirrored = (item: Item, axis_deg: number): Item => {
       if (item.side === 'left') return { ...item, side: 'right' };
       return item.side === 'right' ? { ...item, side: 'left' } : item;
     case 'landmarks':
-      return { ...item, offset_m: -item.offset_m };
+      return typeof item.offset_m === 'number'
+        ? { ...item, offset_m: -item.offset_m }
+        : { ...item, side: item.side === 'left' ? 'right' : 'left' };
     default:
       return item;
   }
